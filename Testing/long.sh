@@ -12,6 +12,8 @@
 #   clang         the whole suite, and the benchmarks that nothing tests, built by clang
 #   headers       each header of the renderer compiled alone
 #   faults        every fault that Testing/Faults makes, and 20,000 damaged files
+#   films         200 kills of a render that keeps a film, and a picture merged from 16 parts
+#   study         a study of 12 cases, killed half way; array jobs of a real Slurm
 #   paths         instructions a path, against the record in Testing/Benchmarks/Report
 #   package       the archive in a root with busybox alone, in Debian 11, in the extension's package; built
 #                 twice; the Debian package by lintian
@@ -203,6 +205,35 @@ stage_faults() {
     say "damaged files do harm: see $record/mutations.md"
 }
 
+stage_films() {
+  build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON
+  "$top/Testing/Cli/kills.sh" "$top/build/bin/fenestra" 200 150 >"$logs/films.log" 2>&1 ||
+    say "a killed render does not go on: $logs/films.log"
+  FENESTRA_LONG=1 "$top/build/bin/CommandTests" --gtest_filter='MergeCommand.*' >>"$logs/films.log" 2>&1 ||
+    say "merged parts are not the picture: $logs/films.log"
+}
+
+# in_study NAME COMMAND...: a study whose end is in a log; says where it was skipped, or failed.
+in_study() {
+  local log=$logs/$1.log status=0
+  shift
+  "$@" >"$log" 2>&1 || status=$?
+  case $status in
+    0) ;;
+    77) tail -n 1 "$log" ;;
+    *) say "a study does not end whole: see $log" ;;
+  esac
+}
+
+stage_study() {
+  build release
+  local data
+  data=$(sed -n 's/^FENESTRA_DATA:PATH=//p' "$top/build/CMakeCache.txt")
+  in_study twelve "$top/Testing/Study/twelve.sh" "$top/build/bin/fenestra" "$data" "$logs/twelve"
+  in_study slurm-study "$top/Testing/Cluster/study.sh" "$top/build/bin/fenestra" "$logs/slurm-study"
+  in_study slurm-shards "$top/Testing/Cluster/shards.sh" "$top/build/bin/fenestra" "$logs/slurm-shards"
+}
+
 stage_paths() {
   bash "$top/Testing/Benchmarks/instructions.sh" >"$logs/paths.log" 2>&1 ||
     say "a path takes more instructions than the record has: $logs/paths.log"
@@ -234,7 +265,8 @@ stage_fuzz() {
 
 mkdir -p "$logs"
 install_packages "${build_packages[@]}" libgmock-dev libboost-dev libbenchmark-dev qtbase5-dev lld
-[ $# -gt 0 ] || set -- accuracy seeds planted instructions addresses threads clang headers faults paths package
+[ $# -gt 0 ] || set -- accuracy seeds planted instructions addresses threads clang headers faults films study paths \
+  package
 for name in "$@"; do
   say "$name"
   "stage_$name"

@@ -65,6 +65,19 @@ std::vector<std::string> split(std::string_view text, char separator) {
   return parts;
 }
 
+std::string wrapped(std::string_view text, std::size_t width) {
+  std::string lines;
+  std::size_t used = 0;
+  for (const std::string& word : split(text, ' ')) {
+    const bool fits = used + 1 + word.size() <= width;
+    if (!lines.empty())
+      lines += fits ? ' ' : '\n';
+    lines += word;
+    used = (fits ? used + 1 : 0) + word.size();
+  }
+  return lines;
+}
+
 std::string replacedAll(std::string_view text, std::string_view from, std::string_view to) {
   std::string result;
   for (std::size_t at = text.find(from); at != std::string_view::npos; at = text.find(from)) {

@@ -80,6 +80,8 @@ std::vector<std::string> words(std::string_view text);
 std::vector<std::string> nameWords(std::string_view name, std::string_view kept = "");
 /// Parts between separators, as std::getline reads them: none is empty at the end.
 std::vector<std::string> split(std::string_view text, char separator);
+/// Words of `text` in lines of at most `width` bytes; a longer word has its own line.
+std::string wrapped(std::string_view text, std::size_t width);
 /// Text with every `from` replaced by `to`.
 std::string replacedAll(std::string_view text, std::string_view from, std::string_view to);
 

@@ -35,7 +35,7 @@ std::string entry(std::string_view name, std::string_view text) {
 std::string helpText(const CommandSyntax& syntax) {
   std::string usage = "Usage: fenestra " + syntax.name, names;
   for (const Positional& positional : syntax.positionals) {
-    usage += " " + positional.name;
+    usage += " " + positional.name + (positional.repeats ? "..." : "");
     names += entry(positional.name, positional.text);
   }
   std::string text = textOf(wrapped(syntax.summary, page), "\n\n", usage, " [FLAGS]\n\n", names);
@@ -114,10 +114,10 @@ FlagValues parsedWords(const CommandSyntax& syntax, Words words) {
       throw extraArgument(syntax, word);
     else if (word.empty())
       throw usageError(positional->name, ": is empty; name a file");
-    else
-      values.add((positional++)->name, std::string(word));
+    else if (values.add(positional->name, std::string(word)); !positional->repeats)
+      ++positional;
   }
-  if (positional != syntax.positionals.end())
+  if (positional != syntax.positionals.end() && !values.has(positional->name))
     throw usageError(positional->name, ": is missing; name it: ", positional->text,
                      seeHelp(syntax));
   return values;
@@ -143,19 +143,6 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
 } // namespace
 
 const std::span<const Flag> commonFlags = everywhere;
-
-std::string wrapped(std::string_view text, std::size_t width) {
-  std::string lines;
-  std::size_t used = 0;
-  for (const std::string& word : split(text, ' ')) {
-    const bool fits = used + 1 + word.size() <= width;
-    if (!lines.empty())
-      lines += fits ? ' ' : '\n';
-    lines += word;
-    used = (fits ? used + 1 : 0) + word.size();
-  }
-  return lines;
-}
 
 std::vector<std::string> namesOf(std::span<const Flag> flags) {
   std::vector<std::string> names;

@@ -22,9 +22,6 @@ inline bool isSame(const Flag& a, const Flag& b) {
   return a.name == b.name && a.value == b.value && a.text == b.text;
 }
 
-/// Words of `text` in lines of at most `width` bytes; a longer word has its own line.
-std::string wrapped(std::string_view text, std::size_t width);
-
 /// Candidate that `word` probably misspells or abbreviates; empty: none.
 std::string nearest(std::string_view word, std::span<const std::string> candidates);
 std::vector<std::string> namesOf(std::span<const Flag> flags);

@@ -1,6 +1,7 @@
 #include "program/Commands.h"
 
 #include "program/RenderFlags.h"
+#include "program/StudyTable.h"
 #include "program/TurntableFrames.h"
 
 namespace fenestra {
@@ -10,6 +11,8 @@ constexpr Command subcommands[] = {
     {[]() -> const CommandSyntax& { return renderSyntax; }, renderCommand},
     {inspectSyntax, inspectCommand},
     {turntableSyntax, turntableCommand},
+    {studySyntax, studyCommand},
+    {mergeSyntax, mergeCommand},
     {serveSyntax, serveCommand},
     {compareSyntax, compareCommand},
     {phantomSyntax, phantomCommand},

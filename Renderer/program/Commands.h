@@ -20,6 +20,7 @@ std::span<const Command> commands();
 const CommandSyntax& inspectSyntax();
 const CommandSyntax& compareSyntax();
 const CommandSyntax& phantomSyntax();
+const CommandSyntax& mergeSyntax();
 const CommandSyntax& serveSyntax();
 const CommandSyntax& describeSyntax();
 
@@ -27,13 +28,18 @@ int renderCommand(int argc, char** argv, int first);
 int inspectCommand(int argc, char** argv, int first);
 int compareCommand(int argc, char** argv, int first);
 int phantomCommand(int argc, char** argv, int first);
+int mergeCommand(int argc, char** argv, int first);
 int serveCommand(int argc, char** argv, int first);
+int studyCommand(int argc, char** argv, int first);
 int turntableCommand(int argc, char** argv, int first);
 int describeCommand(int argc, char** argv, int first);
 
 /// Pins the instruction set that the environment variable FENESTRA_INSTRUCTIONS names. Throws Error
 /// (usage) if the machine lacks it.
 void useInstructions();
+
+/// Threads that --threads asks for, at most one a core.
+int threadCount(const FlagValues& flags);
 
 /// Limits this process to --threads threads, at most one a core, and starts them before other code
 /// uses threads; pins the instruction set, too. Throws Error: as useInstructions; output if the

@@ -43,6 +43,7 @@ struct Takes {
   static Takes picture() { return {"image", "output", "vector", ".nrrd"}; }
   static Takes surface() { return {"file", "output", "", ".vtp,.ply,.stl"}; }
   static Takes report() { return {"file", "output", "", ".json"}; }
+  static Takes film() { return {"file", "output", "", ".film"}; }
   static Takes slicersOwn() { return {""}; }
   static Takes number(double least, double greatest) {
     return {"double", "", "", "", least, greatest};
@@ -163,6 +164,7 @@ struct Positional {
   std::string name;
   std::string text;                    ///< one sentence of help
   std::vector<std::string> words = {}; ///< values; empty: it names a file
+  bool repeats = false;                ///< the last may be given several times
 };
 
 struct CommandSyntax {

@@ -20,12 +20,6 @@
 namespace fenestra {
 namespace {
 
-int threadCount(const FlagValues& flags) {
-  const int cores = tbb::info::default_concurrency();
-  const auto wanted = static_cast<int>(flags.count("threads").value_or(0));
-  return wanted > 0 ? std::min(wanted, cores) : cores;
-}
-
 /// Starts `count` threads at once, to find out whether they can run: TBB's threads start each
 /// other, and end the process where one cannot start.
 void tryThreads(int count) {
@@ -47,6 +41,12 @@ void tryThreads(int count) {
 void useInstructions() {
   if (const char* pinned = std::getenv("FENESTRA_INSTRUCTIONS"))
     WideTracker::useInstructionSet(pinned);
+}
+
+int threadCount(const FlagValues& flags) {
+  const int cores = tbb::info::default_concurrency();
+  const auto wanted = static_cast<int>(flags.count("threads").value_or(0));
+  return wanted > 0 ? std::min(wanted, cores) : cores;
 }
 
 void useMachine(const FlagValues& flags) {

@@ -96,7 +96,7 @@ void declareOutputs(const RenderOptions& options, Outputs& outputs) {
     declareImage(path, outputs, options.outputsNamedBy, options.filteredFiles());
   if (options.surface)
     declareSurface(*options.surface, outputs);
-  for (const auto& file : {options.stats, options.returnValues})
+  for (const auto& file : {options.stats, options.returnValues, options.checkpoint})
     if (file)
       outputs.add(*file);
 }

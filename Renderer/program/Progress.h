@@ -2,7 +2,7 @@
 // Progress of a render, reported to a person or to Slicer from a separate thread.
 
 #include "base/Stopwatch.h"
-#include "program/RenderFlags.h"
+#include "program/ProgressView.h"
 
 #include <condition_variable>
 #include <mutex>
@@ -13,8 +13,7 @@
 
 namespace fenestra {
 
-/// Shows progress from construction to destruction: a bar on standard error, erased at the end, or
-/// Slicer's tags on standard output. `automatic`: a bar if standard error is a terminal.
+/// Shows progress from construction to destruction.
 class Progress {
 public:
   /// For a command that renders `frames` pictures one after the other, `before` of them by earlier
@@ -27,8 +26,6 @@ public:
 private:
   void run(const std::stop_token& end);
   void show(bool last);
-  void showTags(bool last) const;
-  void showBar() const;
   /// Texts of frame, samples a pixel and noise.
   std::vector<std::string> reached() const;
   /// Finished share of all the work, in [0, 1].
@@ -36,16 +33,15 @@ private:
   /// Finished share of the current picture, in [0, 1], by samples, seconds or noise.
   double frameFraction() const;
 
-  ProgressMode m_mode;
+  ProgressView m_view;
   RenderSettings m_settings;
   double m_pixels;
   RenderMonitor& m_monitor;
   int m_before, m_finished, m_frames; ///< frames: by earlier runs, so far (these included), all
-  Stopwatch m_watch, m_frameWatch;
+  Stopwatch m_frameWatch;
   std::mutex m_mutex;
   std::condition_variable_any m_wake;
-  double m_fraction = 0.0; ///< last shown; never decreases, although noise can grow between passes
-  std::jthread m_thread;   ///< ends before the members above
+  std::jthread m_thread; ///< ends before the members above
 };
 
 } // namespace fenestra

@@ -1,4 +1,4 @@
-#include "program/Commands.h"
+#include "program/RenderCommand.h"
 
 #include "base/safe/JsonNode.h"
 #include "base/safe/ShownText.h"
@@ -7,6 +7,7 @@
 #include "files/pictures/ImageWriter.h"
 #include "measure/FocusMeasures.h"
 #include "program/CommandLine.h"
+#include "program/Commands.h"
 #include "program/FileNames.h"
 #include "program/Pictures.h"
 #include "program/Progress.h"
@@ -199,7 +200,8 @@ void report(const RenderOptions& options, const RenderResult& result,
     line += ", filtered " + numberText(*filtered, 3);
   line += ", " + numberText(seconds, 3) + " s";
   if (result.reason == StopReason::request)
-    line += " (stopped on request)";
+    line += options.checkpoint ? " (stopped on request; the same command goes on)"
+                               : " (stopped on request)";
   std::cout << oneLine(line) << std::endl;
 }
 
@@ -209,10 +211,59 @@ void warn(const RenderOptions& options, const std::vector<std::string>& warnings
         << "fenestra: warning: " << oneLine(warning) << '\n';
 }
 
-/// Renders the scene, puts its pictures in place, then measures them for the statistics. Returns
-/// the exit status.
-int renderScene(const PictureRequest& request, const std::vector<std::string>& words,
+/// Puts the film of a part in place. Returns the exit status.
+int finishPart(const RenderOptions& options, const RenderResult& result, Checkpoint& checkpoint,
+               double seconds) {
+  checkpoint.write(result);
+  const bool isStopped = result.reason == StopReason::request;
+  std::cout << oneLine(textOf(*options.checkpoint, ": part ", partText(options.settings.shard),
+                              " of ", options.scene.width, "x", options.scene.height, " pixels, ",
+                              result.finishedSamples,
+                              result.finishedSamples == 1 ? " sample" : " samples", " each, ",
+                              numberText(seconds, 3), " s",
+                              isStopped ? " (stopped on request; the same command goes on)" : ""))
+            << std::endl;
+  return isStopped ? stopStatus() : 0;
+}
+
+/// Measures the focus, unless a stop is asked for, and writes options.stats, if set.
+void writeStats(const RenderOptions& options, const Scene& scene, const RenderResult& result,
+                const Stopwatch& total, RenderMonitor& monitor, RenderStats& stats,
                 Outputs& outputs) {
+  if (!options.stats)
+    return;
+  const Stopwatch watch;
+  const std::vector<double>& depth = scene.clipResult().focusDepth;
+  if (!depth.empty() && !monitor.stop) // a stop does not wait for measures
+    stats.focus = measureFocus(scene.forRender(), scene.ranges(), *scene.focus(), depth,
+                               options.settings.seed, monitor.stop);
+  stats.measure = watch.seconds();
+  stats.total = total.seconds();
+  outputs.write(*options.stats, statsJson(stats, options, scene, result));
+}
+
+/// Renders, from the checkpoint on if there is one, and keeps the film there.
+RenderResult renderFilm(const RenderOptions& options, const Scene& scene,
+                        const RenderSettings& settings, std::optional<Checkpoint>& checkpoint,
+                        RenderMonitor& monitor) {
+  std::optional<RenderResult> begun;
+  if (checkpoint) {
+    begun = checkpoint->begun(scene, settings);
+    checkpoint->watch(monitor);
+  }
+  RenderResult result = [&] {
+    const Progress progress(options, monitor);
+    return render(scene.forRender(), settings, monitor, std::move(begun));
+  }();
+  if (options.checkpoint && !options.isPart)
+    checkpoint->keep(result);
+  return result;
+}
+
+} // namespace
+
+int renderScene(const PictureRequest& request, const std::vector<std::string>& words,
+                std::optional<Checkpoint>& checkpoint, Outputs& outputs) {
   const RenderOptions& options = request.options;
   const Stopwatch total;
   const Scene scene(options.scene, request.input);
@@ -227,12 +278,11 @@ int renderScene(const PictureRequest& request, const std::vector<std::string>& w
   Stopwatch watch;
   RenderStats stats;
   PictureFilter filter(options, scene);
-  const RenderResult result = [&] {
-    const Progress progress(options, monitor);
-    return render(scene.forRender(), filter.settings(), monitor);
-  }();
+  const RenderResult result = renderFilm(options, scene, filter.settings(), checkpoint, monitor);
   stats.transport = watch.seconds();
   surface.get();
+  if (options.isPart)
+    return finishPart(options, result, *checkpoint, total.seconds());
   if (result.finishedSamples == 0) {
     std::cerr << "fenestra: stopped on request before the first pass; no picture was written\n";
     return stopStatus();
@@ -247,16 +297,7 @@ int renderScene(const PictureRequest& request, const std::vector<std::string>& w
   stats.warnings = staleParts(options, outputs);
   warn(options, stats.warnings);
 
-  if (options.stats) {
-    watch.lap();
-    const std::vector<double>& depth = scene.clipResult().focusDepth;
-    if (!depth.empty() && !monitor.stop) // a stop does not wait for measures
-      stats.focus = measureFocus(scene.forRender(), scene.ranges(), *scene.focus(), depth,
-                                 options.settings.seed, monitor.stop);
-    stats.measure = watch.seconds();
-    stats.total = total.seconds();
-    outputs.write(*options.stats, statsJson(stats, options, scene, result));
-  }
+  writeStats(options, scene, result, total, monitor, stats, outputs);
   if (options.returnValues)
     outputs.write(
         *options.returnValues,
@@ -266,8 +307,6 @@ int renderScene(const PictureRequest& request, const std::vector<std::string>& w
   report(options, result, stats.filtered, total.seconds());
   return result.reason == StopReason::request ? stopStatus() : 0;
 }
-
-} // namespace
 
 int renderCommand(int argc, char** argv, int first) {
   if (std::find(argv + first, argv + argc, std::string_view("--xml")) != argv + argc) {
@@ -281,10 +320,15 @@ int renderCommand(int argc, char** argv, int first) {
   const PictureRequest request = pictureRequest(*given);
   if (given->has("echo"))
     std::cout << request.flags.echo() << std::flush;
+  std::optional<Checkpoint> checkpoint;
+  if (request.options.checkpoint)
+    checkpoint.emplace(request, *given, [&request](const std::string& warning) {
+      warn(request.options, {warning});
+    });
   Outputs outputs;
   declareOutputs(request.options, outputs);
   checkMemory(request.options.scene);
-  return renderScene(request, {argv + 1, argv + argc}, outputs);
+  return renderScene(request, {argv + 1, argv + argc}, checkpoint, outputs);
 }
 
 } // namespace fenestra

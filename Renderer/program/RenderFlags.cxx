@@ -86,6 +86,18 @@ void readSize(const FlagValues& flags, const std::string& name, SceneRequest& sc
                      ", got '", oneLine(text), "'");
 }
 
+void readShard(const FlagValues& flags, const std::string& name, RenderOptions& options) {
+  const std::string text = *flags.text(name);
+  int number = 0, count = 0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%d/%d%c", &number, &count, &rest) != 2 || number < 1 ||
+      number > count || count > mostShards)
+    throw usageError("--", name, ": expected K/N, the K-th of N parts, from 1/1 to ", mostShards,
+                     "/", mostShards, ", got '", oneLine(text), "'");
+  options.settings.shard = {number - 1, count};
+  options.isPart = true;
+}
+
 void readTexts(const FlagValues& flags, const std::string& name, std::vector<std::string>& texts) {
   texts = flags.texts(name);
 }
@@ -316,6 +328,15 @@ struct RenderTable {
        Takes::surface().into(options.surface), Topic::process},
       {"stats", "FILE", outputGroup, "Times, counts and measures as .json",
        Takes::report().into(options.stats), Topic::process},
+      {"checkpoint", "FILE", outputGroup,
+       "Keeps what is rendered so far in this film (.film), so that the same command goes on after "
+       "a stop, a crash or a power cut, and ends with the same picture; --samples, --noise, "
+       "--seconds, --threads and outputs may change",
+       Takes::film().into(options.checkpoint), Topic::process},
+      {"shard", "K/N", outputGroup,
+       "Renders the K-th of N parts of the picture alone, for fenestra merge: --checkpoint names "
+       "the part's film; of a turntable, the frames of that part",
+       Takes::text().into(options, readShard), Topic::process},
       {"progress", "KIND", outputGroup, "auto, bar, xml (Slicer's tags) or none",
        Takes::word(options.progress, {{"auto", ProgressMode::automatic},
                                       {"bar", ProgressMode::bar},
@@ -341,7 +362,9 @@ const CommandSyntax renderSyntax = {
     "render",
     "Renders a medical volume by Monte Carlo path tracing; a focus segment is shown unoccluded by "
     "a clipping surface. \"render\" may be left out. Other subcommands: fenestra inspect, fenestra "
-    "compare, fenestra phantom, fenestra serve, fenestra turntable, fenestra describe.",
+    "compare, fenestra phantom, fenestra serve, fenestra turntable, fenestra study, fenestra "
+    "merge, "
+    "fenestra describe.",
     {{"INPUT", "Volume (.nrrd .nhdr .nii .nii.gz .mha .mhd), DICOM folder, or Slicer scene (.mrml "
                ".mrb)"}},
     described.flags,

@@ -30,6 +30,9 @@ struct RenderOptions {
   NoiseTarget noiseTarget = NoiseTarget::automatic;  ///< settled: raw or filtered
   std::optional<std::filesystem::path> surface = {}; ///< only with a clip by depth
   std::optional<std::filesystem::path> stats = {};
+  std::optional<std::filesystem::path> checkpoint = {}; ///< film of what is rendered so far
+  /// True for a part of a picture, settings.shard: the checkpoint is the only result.
+  bool isPart = false;
   /// Slicer's return parameters. If set, warnings go to standard output: Slicer reports everything
   /// on standard error as an error.
   std::optional<std::filesystem::path> returnValues = {};

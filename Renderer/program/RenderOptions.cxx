@@ -128,7 +128,9 @@ void settleLayers(const FlagValues& flags, RenderOptions& options) {
   for (const std::filesystem::path& path : options.outputs)
     if (!options.layers.contains("color") && imageFormat(path) != ImageFormat::exr)
       throw usageError("--layers: ", path, " needs color; add it, or write .exr alone");
-  options.settings.path.wantNormals = hasExr && options.layers.contains("normal");
+  // A film holds all that a later command may write.
+  options.settings.path.wantNormals =
+      (hasExr && options.layers.contains("normal")) || options.checkpoint;
 }
 
 /// Settles what is filtered, and which noise ends the render.
@@ -155,6 +157,20 @@ void settleFilter(const FlagValues& flags, RenderOptions& options) {
             : NoiseTarget::raw;
 }
 
+/// Checks the flags of a part of a picture, which has no picture yet.
+void checkPart(const FlagValues& flags, const RenderOptions& options) {
+  if (!options.checkpoint)
+    throw usageError("--shard: needs --checkpoint FILE, the film of that part; add it");
+  for (const char* name : {"output", "surface", "stats", "layers"})
+    if (flags.differs(name))
+      throw usageError("--", name, ": is for the whole picture; give it to fenestra merge");
+  for (const char* name : {"noise", "seconds"})
+    if (flags.has(name))
+      throw usageError("--", name,
+                       ": depends on the whole picture, and parts must have the same "
+                       "samples; with --shard give --samples N");
+}
+
 } // namespace
 
 RenderOptions renderOptions(const FlagValues& flags) {
@@ -168,7 +184,9 @@ RenderOptions renderOptions(const FlagValues& flags) {
   if (!flags.has("samples") && (flags.has("seconds") || flags.has("noise")))
     options.settings.samples = static_cast<std::uint64_t>(unlimited);
   options.inputs = inputFiles(flags);
-  if (options.outputs.empty()) {
+  if (options.isPart) {
+    checkPart(flags, options);
+  } else if (options.outputs.empty()) {
     options.outputs.push_back(defaultOutput(scene.input));
     options.outputsNamedBy = NamedBy::standard;
   }

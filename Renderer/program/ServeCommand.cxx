@@ -161,7 +161,8 @@ int serveCommand(int argc, char** argv, int first) {
     return 0;
   refuseFlags(*given, {"stats", "returnparameterfile", "progress", "xml", "echo"},
               "serve tells all on standard output; drop it");
-  refuseFlags(*given, {"surface"}, "serve writes pictures alone; write it with fenestra render");
+  refuseFlags(*given, {"surface", "checkpoint", "shard"},
+              "serve writes pictures alone; write it with fenestra render");
   useMachine(*given);
   const PictureRequest start = pictureRequest(*given);
   // Never destroyed: the reading thread, which lives as long as the process, uses both.

@@ -47,7 +47,7 @@ public:
     if (!m_record.warning().empty())
       warn(m_record.warning());
     renderFrames();
-    const bool isWhole = finished() == m_options.frames;
+    const bool isWhole = finished() == frames();
     const auto& stats = m_options.render.stats;
     if (stats && (rendered() > 0 || isWhole)) // otherwise they would describe missing pictures
       m_outputs.write(*stats, statsJson());
@@ -67,6 +67,8 @@ private:
     std::optional<SurfaceChange> change = {}; ///< since the preceding frame
   };
 
+  /// Number of frames of this part.
+  int frames() const { return m_options.end() - m_options.first(); }
   int finished() const { return static_cast<int>(m_record.finished().size()); }
   int rendered() const { return finished() - m_before; }
 
@@ -77,8 +79,8 @@ private:
   }
 
   void renderFrames() {
-    Progress progress(m_options.render, m_monitor, m_before, m_options.frames);
-    for (int frame = 0; frame < m_options.frames; ++frame) {
+    Progress progress(m_options.render, m_monitor, m_before, frames());
+    for (int frame = m_options.first(); frame < m_options.end(); ++frame) {
       if (m_record.finished().contains(frame))
         continue;
       if (!renderFrame(frame))
@@ -151,15 +153,12 @@ private:
   }
 
   std::string statsJson() const {
-    nlohmann::ordered_json json = {{"frames", m_options.frames},
+    nlohmann::ordered_json json = {{"frames", frames()},
                                    {"finished", finished()},
                                    {"rendered", rendered()},
                                    {"degrees", m_options.degrees},
                                    {"seconds", m_total.seconds()}};
-    std::vector<SurfaceChange> changes;
-    for (const auto& [number, frame] : m_record.finished())
-      if (frame.change)
-        changes.push_back(*frame.change);
+    const std::vector<SurfaceChange> changes = m_record.changes();
     SurfaceChange all;
     double excess = 0.0;
     for (const SurfaceChange& change : changes) {
@@ -178,10 +177,10 @@ private:
   }
 
   void report() const {
-    const bool isWhole = finished() == m_options.frames;
-    std::cout << oneLine(textOf(m_options.pictures(0).front(), " to ",
-                                m_options.pictures(m_options.frames - 1).front().filename(), ": ",
-                                finished(), " of ", m_options.frames, " frames, ", rendered(),
+    const bool isWhole = finished() == frames();
+    std::cout << oneLine(textOf(m_options.pictures(m_options.first()).front(), " to ",
+                                m_options.pictures(m_options.end() - 1).front().filename(), ": ",
+                                finished(), " of ", frames(), " frames, ", rendered(),
                                 " rendered now, ", numberText(m_total.seconds(), 3), " s",
                                 isWhole ? "" : " (stopped on request; the same command goes on)"))
               << std::endl;
@@ -204,7 +203,7 @@ private:
 /// Fenestra's own files: other files in its place were put there since.
 void declareFrames(const TurntableOptions& options, const TurntableRecord& record,
                    Outputs& outputs) {
-  for (int frame = 0; frame < options.frames; ++frame) {
+  for (int frame = options.first(); frame < options.end(); ++frame) {
     const bool isOurs = !options.restart && !record.finished().contains(frame);
     for (const std::filesystem::path& path : options.pictures(frame))
       declareImage(path, outputs, isOurs ? NamedBy::standard : options.render.outputsNamedBy,
@@ -220,7 +219,8 @@ void declareFrames(const TurntableOptions& options, const TurntableRecord& recor
 std::list<NameLock> lockFrames(const TurntableOptions& options) {
   std::map<std::filesystem::path, std::filesystem::path> names; // as given, by canonical path
   for (const std::filesystem::path& output : options.render.outputs) {
-    const std::filesystem::path name = recordPath(output), folder = name.parent_path();
+    const std::filesystem::path name = recordPath(output, options.shard),
+                                folder = name.parent_path();
     std::error_code failed;
     const auto known = std::filesystem::canonical(folder.empty() ? "." : folder, failed);
     if (failed)
@@ -244,9 +244,16 @@ int turntableCommand(int argc, char** argv, int first) {
     return 0;
   refuseFlags(*given, {"surface", "returnparameterfile", "xml", "echo"},
               "is for a single picture; use it with fenestra render, or drop it");
+  refuseFlags(*given, {"checkpoint"}, "a turntable records its frames by itself; drop it");
   useMachine(*given);
-  const PictureRequest request = pictureRequest(*given);
-  const TurntableOptions options = turntableOptions(request.flags, request.options);
+  FlagValues flags = *given;
+  flags.remove("shard"); // which deals out frames here, not tiles
+  const PictureRequest request = pictureRequest(flags);
+  TurntableOptions options = turntableOptions(request.flags, request.options);
+  options.shard = givenOptions(*given).settings.shard;
+  if (options.first() == options.end())
+    throw usageError("--shard: ", options.shard.count, " parts are more than the ", options.frames,
+                     " frames; ask for fewer parts");
   for (const std::filesystem::path& input : options.render.inputs)
     expectInput(input); // --restart replaces no input
   const auto locks = lockFrames(options);

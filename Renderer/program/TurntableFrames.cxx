@@ -79,9 +79,10 @@ std::vector<std::filesystem::path> TurntableOptions::files(int frame) const {
   return files;
 }
 
-std::filesystem::path recordPath(const std::filesystem::path& output) {
+std::filesystem::path recordPath(const std::filesystem::path& output, const Shard& shard) {
   std::filesystem::path path = output;
-  return path.replace_filename(output.stem().string() + ".turntable.json");
+  const std::string part = shard.isWhole() ? "" : textOf(".", shard.index + 1, "of", shard.count);
+  return path.replace_filename(output.stem().string() + part + ".turntable.json");
 }
 
 } // namespace fenestra

@@ -12,6 +12,10 @@ struct TurntableOptions {
   int frames = 36;
   double degrees = 360.0;
   bool restart = false;
+  Shard shard = {}; ///< of the frames: those from `first` to `end` - 1
+
+  int first() const { return frames * shard.index / shard.count; }
+  int end() const { return frames * (shard.index + 1) / shard.count; }
 
   /// Degrees from frame 0 to `frame`; a full turn loops without a repeated frame.
   double angle(int frame) const { return degrees * frame / frames; }
@@ -30,7 +34,8 @@ const CommandSyntax& turntableSyntax();
 /// `render`: options of the same flags. Throws Error (usage).
 TurntableOptions turntableOptions(const FlagValues& flags, const RenderOptions& render);
 
-/// Record of the finished frames: turn.png's is turn.turntable.json.
-std::filesystem::path recordPath(const std::filesystem::path& output);
+/// Record of the finished frames: turn.png's is turn.turntable.json, that of its second part of
+/// three turn.2of3.turntable.json, so that parts are rendered beside each other.
+std::filesystem::path recordPath(const std::filesystem::path& output, const Shard& shard);
 
 } // namespace fenestra

@@ -2,13 +2,9 @@
 
 #include "base/Error.h"
 #include "base/safe/Inputs.h"
-#include "base/safe/JsonNode.h"
 #include "program/FileNames.h"
-#include "program/about/Version.h"
 
 #include <algorithm>
-#include <fstream>
-#include <set>
 
 namespace fenestra {
 namespace {
@@ -17,7 +13,7 @@ using nlohmann::json;
 namespace fs = std::filesystem;
 
 /// Arguments on which the pictures of the frames depend.
-json requestedArguments(const FlagValues& flags, const fs::path& folder) {
+std::vector<std::string> requestedArguments(const FlagValues& flags, const fs::path& folder) {
   FlagValues request = flags;
   for (const char* name : {"threads", "progress", "stats", "restart"})
     request.remove(name);
@@ -31,119 +27,7 @@ std::uint64_t digest(const auto& voxels) {
   return stateOf(memoryOf(voxels)).digest;
 }
 
-/// Name, size and time of each file, by which a replaced file is noticed.
-json fileStates(const std::set<fs::path>& files, const fs::path& folder) {
-  json states = json::array();
-  std::error_code failed;
-  for (const fs::path& file : files) // a member of an archive changes with the archive
-    if (fs::is_regular_file(file, failed))
-      states.push_back(
-          {{"file", relativeName(file.string(), folder)},
-           {"bytes", fs::file_size(file, failed)},
-           {"modified", fs::last_write_time(file, failed).time_since_epoch().count()}});
-  return states;
-}
-
-/// True if a frame's file is as recorded; false if missing or empty: to be rendered again. Throws
-/// Error (usage) for any other file: frames are placed whole, so a shorter one is no torn frame but
-/// somebody's work.
-bool isAsRecorded(const fs::path& path, const JsonNode& recorded) {
-  std::error_code failed;
-  const std::uintmax_t bytes = fs::file_size(path, failed);
-  if (failed || bytes == 0)
-    return false;
-  if (recorded.at("bytes").json() == std::to_string(bytes)) {
-    std::ifstream file(path, std::ios::binary);
-    const std::string content(std::istreambuf_iterator<char>(file), {});
-    if (recorded.at("digest").json() == std::to_string(stateOf(content).digest))
-      return true;
-  }
-  throw usageError(path, ": is not the frame that was recorded; move it away, and the same "
-                         "command renders it again");
-}
-
-/// Reads a record file, of untrusted size: at most a record of `mostFrames` frames. Throws Error
-/// (input) if it is no JSON.
-json readRecord(const fs::path& path, const TurntableOptions& options) {
-  // Values and keys of a file and its frame; bytes, with a name of 255 letters, all escaped.
-  constexpr int parts = 23, bytes = 2100;
-  const int files =
-      mostFrames * static_cast<int>(std::min<std::size_t>(options.files(0).size(), 100));
-  const std::string text =
-      readText(path, largestText + std::uint64_t{bytes} * static_cast<unsigned>(files));
-  return parseJson(text, path.string(), mostJsonParts + parts * files);
-}
-
-/// True for the record of any turntable of any version of Fenestra.
-bool isRecord(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  const json document = json::parse(file, nullptr, false);
-  return document.contains("/finished"_json_pointer) &&
-         document.contains("/request/arguments"_json_pointer) &&
-         document.contains("/request/version"_json_pointer);
-}
-
-/// Warning about existing files of the turntable in `record` that are no frames of these options.
-/// Empty if there are none, or the record cannot be read: it is about to be replaced.
-std::string warningBeyond(const TurntableOptions& options, const fs::path& record) {
-  std::set<fs::path> beyond;
-  try {
-    const json document = readRecord(record, options);
-    for (const JsonNode& frame : JsonNode(document, "").at("finished").elements())
-      for (const JsonNode& file : frame.at("files").elements()) {
-        const fs::path path = record.parent_path() / fs::path(file.at("file").text()).filename();
-        std::error_code failed;
-        const std::uintmax_t bytes = fs::file_size(path, failed);
-        if (!failed && file.at("bytes").json() == std::to_string(bytes))
-          beyond.insert(path);
-      }
-  } catch (const Error&) {
-    return {};
-  }
-  for (int frame = 0; frame < options.frames; ++frame)
-    for (const fs::path& file : options.files(frame))
-      beyond.erase(file);
-  if (beyond.empty())
-    return {};
-  constexpr const char* whose = " of the turntable that was there before; remove ";
-  if (beyond.size() == 1)
-    return textOf(*beyond.begin(), ": is", whose, "it");
-  return textOf(*beyond.begin(), " to ", beyond.rbegin()->filename(), ": ", beyond.size(),
-                " files are", whose, "them");
-}
-
-/// Elements of `some` missing from `others`, separated by blanks: arguments, or names of inputs.
-std::string elementsBeyond(const json& some, const json& others) {
-  std::string text;
-  for (const json& element : some)
-    if (std::ranges::find(others, element) == others.end())
-      text += (text.empty() ? "" : " ") +
-              (element.is_string() ? element.get<std::string>() : element.value("file", ""));
-  return text;
-}
-
-/// Text of the difference between two requests in the value of `key`.
-std::string difference(const std::string& key, const json& there, const json& here) {
-  if (key == "version")
-    return "made by fenestra " + there.dump();
-  const std::string now = key == "voxels" ? "" : elementsBeyond(here, there);
-  if (key != "arguments")
-    return (now.empty() ? "the volume or the focus" : now) + " has changed since";
-  const std::string before = elementsBeyond(there, here);
-  return before + (before.empty() || now.empty() ? "" : " there, ") + now +
-         (now.empty() ? " there" : " here");
-}
-
-/// Throws Error (input), naming file and field, unless a record's request has the structure that
-/// `difference` relies on.
-void checkRequest(const JsonNode& request) {
-  request.allowOnly({"version", "arguments", "inputs", "voxels"});
-  request.at("version").text();
-  for (const JsonNode& argument : request.at("arguments").elements())
-    argument.text();
-  for (const JsonNode& input : request.at("inputs").elements())
-    input.at("file").text();
-}
+constexpr const char* changeKey = "surfaceChange";
 
 SurfaceChange changeIn(const JsonNode& node) {
   const auto number = [&](const char* name) { return node.at(name).numberIn(0.0, 1e30); };
@@ -158,12 +42,11 @@ nlohmann::ordered_json changeJson(const SurfaceChange& change) {
 
 TurntableRecord::TurntableRecord(const TurntableOptions& options, const FlagValues& flags)
     : m_options(options),
-      m_path(recordPath(options.render.outputs.front())),
-      m_request{{"version", versionText},
-                {"arguments", requestedArguments(flags, m_path.parent_path())}} {
-  const std::optional<FileId> there = fileId(m_path);
+      m_record(recordPath(options.render.outputs.front(), options.shard), "frame",
+               requestedArguments(flags, options.render.outputs.front().parent_path())) {
+  const std::optional<FileId> there = fileId(m_record.path());
   if (options.restart && there)
-    m_warning = warningBeyond(options, m_path);
+    m_warning = warningBeyond();
   else if (there)
     read();
   else if (!options.restart)
@@ -172,76 +55,86 @@ TurntableRecord::TurntableRecord(const TurntableOptions& options, const FlagValu
     forgetInput(*there); // the record is rewritten, so it is no input
 }
 
+int TurntableRecord::mostFiles() const {
+  return mostFrames * static_cast<int>(std::min<std::size_t>(m_options.files(0).size(), 100));
+}
+
 void TurntableRecord::refuseFramesWithoutRecord() const {
-  for (int frame = 0; frame < m_options.frames; ++frame)
+  for (int frame = m_options.first(); frame < m_options.end(); ++frame)
     for (const fs::path& file : m_options.files(frame))
       if (const auto id = fileId(file); id && !inputNamed(*id)) // inputs have their own refusal
-        throw usageError(file, ": is there, and no ", m_path,
+        throw usageError(file, ": is there, and no ", m_record.path(),
                          " tells what it is of; choose another --output, or add --restart to "
                          "replace it");
 }
 
 void TurntableRecord::read() {
-  const json document = readRecord(m_path, m_options);
-  const JsonNode root(document, m_path.string());
-  checkRequest(root.at("request"));
-  m_recorded = root.at("request").value();
+  m_record.readRequest(mostFiles());
   requireSame();
-  for (const JsonNode& finished : root.at("finished").elements()) {
-    const auto frame = static_cast<int>(finished.at("frame").numberIn(0, m_options.frames - 1));
-    const auto files = finished.find("files"); // absent in files of older versions
-    if (!files || !std::ranges::equal(m_options.files(frame), files->elements(), isAsRecorded))
-      continue;
-    m_finished[frame].files = files->value();
-    if (const auto change = finished.find("surfaceChange"))
-      m_finished[frame].change = changeIn(*change);
+  m_record.readPieces(
+      m_options.frames, [this](int frame) { return m_options.files(frame); },
+      [](const JsonNode& entry) {
+        const auto change = entry.find(changeKey);
+        return change ? json{{changeKey, changeJson(changeIn(*change))}} : json();
+      });
+}
+
+/// Empty if there are none, or the record cannot be read: it is about to be replaced.
+std::string TurntableRecord::warningBeyond() {
+  std::set<fs::path> beyond;
+  try {
+    Record previous(m_record.path(), "frame", {});
+    previous.readRequest(mostFiles());
+    beyond = previous.recordedFiles();
+  } catch (const Error&) {
+    return {};
   }
+  for (int frame = 0; frame < m_options.frames; ++frame)
+    for (const fs::path& file : m_options.files(frame))
+      beyond.erase(file);
+  if (beyond.empty())
+    return {};
+  constexpr const char* whose = " of the turntable that was there before; remove ";
+  if (beyond.size() == 1)
+    return textOf(*beyond.begin(), ": is", whose, "it");
+  return textOf(*beyond.begin(), " to ", beyond.rbegin()->filename(), ": ", beyond.size(),
+                " files are", whose, "them");
 }
 
 void TurntableRecord::setInputs(const Scene& scene) {
   const std::vector<std::string> referred = scene.files();
   std::set<fs::path> files(referred.begin(), referred.end());
   files.insert(m_options.render.inputs.begin(), m_options.render.inputs.end());
-  m_request["inputs"] = fileStates(files, m_path.parent_path());
-  json& voxels = m_request["voxels"]; // which may lie in files that only a header names
-  voxels["volume"] = std::visit([](const auto& v) { return digest(v); }, scene.volume().voxels);
+  m_record.requireInputs(files);
+  json voxels = {
+      {"volume", std::visit([](const auto& v) { return digest(v); }, scene.volume().voxels)}};
   if (scene.focus())
     voxels["focus"] = digest(scene.focus()->voxels);
-  if (!m_recorded.is_null())
-    requireSame();
+  m_record.require("voxels", voxels); // which may lie in files that only a header names
+  requireSame();
 }
 
 void TurntableRecord::requireSame() const {
-  for (const auto& [key, here] : m_request.items())
-    if (const json there = m_recorded.value(key, json()); there != here)
-      throw usageError(m_path, ": is of another turntable (", difference(key, there, here),
-                       "); choose another --output, or add --restart to replace its frames");
+  if (const auto difference = m_record.difference())
+    throw usageError(m_record.path(), ": is of another turntable (", *difference,
+                     "); choose another --output, or add --restart to replace its frames");
 }
 
-void TurntableRecord::declare(Outputs& outputs) const {
-  outputs.add(m_path, isRecord);
-}
-
-void TurntableRecord::write(Outputs& outputs) const {
-  nlohmann::ordered_json finished = nlohmann::ordered_json::array();
-  for (const auto& [number, frame] : m_finished) {
-    finished.push_back({{"frame", number}, {"files", frame.files}});
-    if (frame.change)
-      finished.back()["surfaceChange"] = changeJson(*frame.change);
-  }
-  outputs.write(m_path, jsonText({{"request", m_request}, {"finished", finished}}, 1));
-  outputs.commit();
+std::vector<SurfaceChange> TurntableRecord::changes() const {
+  std::vector<SurfaceChange> changes;
+  for (const auto& [number, frame] : finished())
+    if (!frame.more.is_null())
+      changes.push_back(changeIn(JsonNode(frame.more, m_record.path().string()).at(changeKey)));
+  return changes;
 }
 
 void TurntableRecord::finish(int frame, const std::optional<SurfaceChange>& change,
                              Outputs& outputs) {
-  Frame& finished = m_finished[frame] = {json::array(), change};
+  Record::WrittenFiles files;
   for (const fs::path& file : m_options.files(frame))
     if (const auto state = outputs.written(file))
-      finished.files.push_back({{"file", file.filename().string()}, // beside the record
-                                {"bytes", state->bytes},
-                                {"digest", state->digest}});
-  write(outputs);
+      files.emplace_back(file, *state);
+  m_record.finish(frame, files, change ? json{{changeKey, changeJson(*change)}} : json(), outputs);
 }
 
 } // namespace fenestra

@@ -2,6 +2,7 @@
 // auto, which may choose the first frame's view.
 
 #include "CommandTesting.h"
+#include "PictureTesting.h"
 #include "base/Stopwatch.h"
 #include "files/pictures/ImageReader.h"
 
@@ -342,6 +343,26 @@ TEST_F(TurntableCommand, RefusesRecordFieldsOfTheWrongType) {
         {{text, turntable({"--output", "turn.exr"}), 3, "turn.turntable.json: " + message}},
         folder.path());
   }
+}
+
+TEST_F(TurntableCommand, PartsRenderTheirFramesBesideEachOther) {
+  const auto turn = [this](const std::string& output, const Arguments& more) {
+    Arguments all = {"turntable", "volume.nrrd", "--size", "8x8",      "--samples",
+                     "1",         "--frames",    "5",      "--output", output};
+    all.insert(all.end(), more.begin(), more.end());
+    return run(all, folder.path());
+  };
+  ASSERT_EQ(turn("whole.exr", {}).status, 0);
+  for (const char* part : {"2/3", "1/3", "3/3"}) {
+    const Outcome outcome = turn("part.exr", {"--shard", part});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+  }
+  for (const char* frame : {"0000", "0001", "0002", "0003", "0004"})
+    expectSamePicture(folder / ("whole_" + std::string(frame) + ".exr"),
+                      folder / ("part_" + std::string(frame) + ".exr"));
+  const Outcome again = turn("part.exr", {"--shard", "2/3"});
+  EXPECT_NE(again.out.find("2 of 2 frames, 0 rendered now"), std::string::npos) << again.out;
+  EXPECT_EQ(turn("few.exr", {"--shard", "1/6"}).status, 2);
 }
 
 } // namespace

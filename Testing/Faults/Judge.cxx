@@ -80,14 +80,20 @@ Lines tornFiles(const Subject& subject, const Files& files) {
     for (const std::string& name : group)
       if (!areAs(files, subject.before, {name}) && !areAs(files, subject.after, {name}))
         wrong.push_back(name + " is neither old nor new");
+  const std::string& film = subject.request->film;
+  if (!film.empty() && !areAs(files, subject.before, {film}) &&
+      !areAs(files, subject.after, {film}))
+    wrong.push_back(film + " is neither old nor new");
   for (const std::string& name : {subject.request->stats, subject.request->record})
     if (!name.empty() && !nlohmann::json::accept(content(files, name)))
       wrong.push_back(name + " is not whole");
   return wrong;
 }
 
-/// Violations: groups whose files stem from two requests, or whose stats are of another request.
-Lines mixedFiles(const Subject& subject, const Files& files, bool isDone) {
+/// Violations: groups whose files stem from two requests, or whose stats are of another request; a
+/// film that stayed old without a warning.
+Lines mixedFiles(const Subject& subject, const Files& files, const Outcome& outcome) {
+  const bool isDone = outcome.status == 0;
   Lines wrong;
   bool allNew = true, anyNew = false;
   for (const Lines& group : subject.request->groups) {
@@ -103,6 +109,10 @@ Lines mixedFiles(const Subject& subject, const Files& files, bool isDone) {
     wrong.push_back("stats of a request whose pictures are not there");
   if (isDone && !(allNew && statsNew))
     wrong.push_back("status 0 without all files");
+  const std::string& film = subject.request->film;
+  const bool isFilmNew = film.empty() || areAs(files, subject.after, {film});
+  if (isDone && !isFilmNew && outcome.errors.find(film + ": ") == std::string::npos)
+    wrong.push_back("status 0 without a film, and without a warning");
   return wrong;
 }
 
@@ -148,13 +158,13 @@ Lines judge(const Subject& subject, const Fault& fault, const Place& place, Outc
     wrong.push_back("an input is changed or gone");
   // Leftovers of a kill, or of a death outside our code, must be gone after the next run.
   if (outcome.signal == 0) {
-    append(wrong, mixedFiles(subject, files, outcome.status == 0));
+    append(wrong, mixedFiles(subject, files, outcome));
     append(wrong, leftovers(subject, files, place));
   } else {
     const Outcome next = place.run(subject.request->words, {});
     if (next.status != 0)
       wrong.push_back("the next run ends with " + std::to_string(next.status));
-    append(wrong, mixedFiles(subject, place.files(), next.status == 0));
+    append(wrong, mixedFiles(subject, place.files(), next));
     for (const std::string& line : leftovers(subject, place.files(), place))
       wrong.push_back(line + " that the next run does not remove");
   }

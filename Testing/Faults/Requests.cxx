@@ -26,25 +26,50 @@ std::vector<Request> makeRequests() {
   const Words turntable = joined({"turntable", "knee.mrb", "--frames", "2", "--output", "t.png",
                                   "--stats", "s.json", "--restart"},
                                  quick);
+  const Words study = joined({"study", "t.csv", "--output", "d"}, quick);
   const Words phantom = {"phantom", "cube", "--output", "p", "--size", "16"};
-  Request three = {"phantom", phantom, joined(phantom, {"--edge", "2"}), {{}}, "", ""};
+  const auto kept = [](const char* samples) {
+    return Words{"render",       "knee.mrb",  "--size",   "16x16",      "--samples",
+                 samples,        "--threads", "1",        "--progress", "none",
+                 "--checkpoint", "o.film",    "--output", "o.exr"};
+  };
+  const auto part = [](const char* shard, const char* film) {
+    return Words{"render", "knee.mrb", "--shard", shard, "--checkpoint", film};
+  };
+  Request three = {"phantom", phantom, {joined(phantom, {"--edge", "2"})}, {{}}, "", ""};
   for (const char* ending :
        {".mrml", ".mrb", ".nrrd", ".seg.nrrd", ".vp", ".vp.json", "-roi.mrk.json"})
     three.groups[0].push_back("p/cube" + std::string(ending));
   return {
       {"render",
        render,
-       joined(render, {"--seed", "7", "--offset", "2"}),
+       {joined(render, {"--seed", "7", "--offset", "2"})},
        {{"o.exr", "o.png", "o.vtp"}},
        "s.json",
        ""},
       {"turntable",
        turntable,
-       joined(turntable, {"--seed", "7"}),
+       {joined(turntable, {"--seed", "7"})},
        {{"t_0000.png"}, {"t_0001.png"}},
        "s.json",
        "t.turntable.json"},
       three,
+      {"study",
+       study,
+       {joined(study, {"--seed", "7"})},
+       {{"d/a/a.png"}},
+       "d/a/a.json",
+       "d/a/a.study.json",
+       "",
+       {{"t.csv", "name,input\na,knee.mrb\n"}}},
+      {"checkpoint", kept("2"), {kept("1")}, {{"o.exr"}}, "", "", "o.film"},
+      {"merge",
+       {"merge", "a.film", "b.film", "--output", "o.exr", "--threads", "1", "--progress", "none"},
+       {joined(part("1/2", "a.film"), quick), joined(part("2/2", "b.film"), quick),
+        joined({"render", "knee.mrb", "--seed", "7", "--output", "o.exr"}, quick)},
+       {{"o.exr"}},
+       "",
+       ""},
   };
 }
 
@@ -107,13 +132,20 @@ Outcome Place::run(const Words& words, const Fault& fault) const {
 
 Subject learn(const Request& request, const Tools& tools) {
   const Place place(tools);
-  Subject subject = {&request, {}, {}, {"knee.mrb"}, {}};
-  place.fill({{"knee.mrb", bytesOf(tools.data / "knee/knee.mrb")}});
-  const Outcome first = place.run(request.before, {});
+  Files inputs = request.inputs;
+  inputs.emplace("knee.mrb", bytesOf(tools.data / "knee/knee.mrb"));
+  Subject subject = {&request, {}, {}, {"a.film", "b.film"}, {}};
+  for (const auto& [name, content] : inputs)
+    subject.inputs.push_back(name);
+  place.fill(inputs);
+  std::vector<Outcome> outcomes;
+  for (const Words& words : request.before)
+    outcomes.push_back(place.run(words, {}));
   subject.before = place.files();
   subject.undisturbed = place.run(request.words, {Fault::Kind::counting});
   subject.after = place.files();
-  for (const Outcome& outcome : {first, subject.undisturbed})
+  outcomes.push_back(subject.undisturbed);
+  for (const Outcome& outcome : outcomes)
     if (outcome.status != 0)
       throw std::runtime_error(request.name + " fails without a fault: " + outcome.errors);
   if (subject.undisturbed.calls == 0 || subject.undisturbed.allocations == 0)

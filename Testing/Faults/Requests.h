@@ -9,14 +9,20 @@ namespace fenestra::faults {
 
 struct Request {
   std::string name;
-  std::vector<std::string> words;  ///< arguments, without the executable
-  std::vector<std::string> before; ///< arguments of the run that wrote the files already there
+  std::vector<std::string> words; ///< arguments, without the executable
+  /// Arguments of the runs that wrote the files already there.
+  std::vector<std::vector<std::string>> before;
   std::vector<std::vector<std::string>> groups; ///< files that must stem from one request
   std::string stats;  ///< name of the JSON file written after the groups; may be empty
   std::string record; ///< name of the JSON file that may precede some groups; may be empty
+  /// Name of a film that is kept meanwhile, and may stay old in a run that succeeds with a warning;
+  /// may be empty.
+  std::string film = {};
+  std::map<std::string, std::string> inputs = {}; ///< files beside knee.mrb, by name
 };
 
-/// Requests: a render with all kinds of files, two frames of a turntable, a phantom.
+/// Requests: a render with all kinds of files, two frames of a turntable, a phantom, a study, a
+/// render that goes on from a film, parts that are merged.
 const std::vector<Request>& requests();
 
 struct Tools {

@@ -1,49 +1,12 @@
 // A picture is a function of scene, seed and sample counts only.
 
-#include "Support.h"
-
-#include <gtest/gtest.h>
+#include "FilmTesting.h"
 
 namespace fenestra::testing::DeterminismTests {
 namespace {
 
-TestScene scene() {
-  const Grid grid = centredGrid({20, 20, 20}, {1.0, 1.0, 1.0});
-  TestScene s{makeVolume<std::int16_t>(
-                  grid, [](const Vec3& p) { return 100.0 * std::sin(p.x()) * std::cos(p.y()); }),
-              linearTransfer(0.01, Rgb(0.9, 0.8, 0.7), 0.4),
-              {EnvironmentLight{}, DirectionalLight{},
-               AreaLight{.center = {0, 0, 30}, .normal = -Vec3::UnitZ(), .size = {10, 10}}},
-              {},
-              33,
-              21};
-  s.transfer = {
-      ScalarFunction({{-50.0, ScalarFunction::Value(0.0)}, {100.0, ScalarFunction::Value(0.8)}}),
-      ColorFunction({{0.0, Rgb(0.9, 0.8, 0.7)}}),
-      {},
-      0.4,
-      SurfaceShading{}};
-  s.pose.position = {0, -60, 10};
-  s.pose.target = Vec3::Zero();
-  s.pose.scale = 13.0;
-  return s;
-}
-
-void expectIdentical(const Film& a, const Film& b) {
-  for (int row = 0; row < a.height(); ++row)
-    for (int column = 0; column < a.width(); ++column) {
-      const PixelSums& p = a.at(column, row);
-      const PixelSums& q = b.at(column, row);
-      ASSERT_EQ(p.samples, q.samples);
-      ASSERT_TRUE(p.mean == q.mean && p.deviation == q.deviation);
-      ASSERT_TRUE(p.albedo == q.albedo && p.normal == q.normal);
-      ASSERT_EQ(p.depth, q.depth);
-      ASSERT_EQ(p.alpha, q.alpha);
-    }
-}
-
 TEST(Determinism, ThreadsAndPassesChangeNoBit) {
-  const TestScene s = scene();
+  const TestScene s = wavyScene();
   RenderSettings settings;
   settings.samples = 20;
   settings.seed = 5;
@@ -60,7 +23,7 @@ TEST(Determinism, ThreadsAndPassesChangeNoBit) {
 }
 
 TEST(Determinism, DifferentSeedsGiveDifferentPictures) {
-  const TestScene s = scene();
+  const TestScene s = wavyScene();
   RenderSettings settings;
   settings.samples = 4;
   const RenderResult a = s.render(settings);
@@ -69,7 +32,7 @@ TEST(Determinism, DifferentSeedsGiveDifferentPictures) {
 }
 
 TEST(Render, StopOnRequestReturnsFinishedSamples) {
-  const TestScene s = scene();
+  const TestScene s = wavyScene();
   const Camera camera(s.pose, s.width, s.height);
   const LightSet lights(s.lights, s.volume.grid, camera);
   const CellRanges ranges(s.volume, 0);
@@ -84,7 +47,7 @@ TEST(Render, StopOnRequestReturnsFinishedSamples) {
 }
 
 TEST(Render, StopsAtTimeLimitAndAtNoiseTarget) {
-  const TestScene s = scene();
+  const TestScene s = wavyScene();
   RenderSettings settings;
   settings.samples = 1u << 30;
   settings.seconds = 0.2;
@@ -101,7 +64,7 @@ TEST(Render, StopsAtTimeLimitAndAtNoiseTarget) {
 }
 
 TEST(Render, StopsBySeenNoiseAtFixedCountsAlikeInAllPixels) {
-  const TestScene s = scene();
+  const TestScene s = wavyScene();
   RenderSettings settings;
   settings.samples = 1000;
   settings.noise = 0.5;

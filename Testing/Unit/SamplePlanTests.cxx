@@ -7,7 +7,7 @@
 namespace fenestra::testing::SamplePlanTests {
 namespace {
 
-constexpr std::uint64_t pilotSamples = 16;
+constexpr std::uint64_t pilotSamples = SamplePlan::pilotSamples;
 
 /// Pilot with pixels of mean 0.5 and standard deviation `deviation(column, row)`.
 template <typename Deviation>

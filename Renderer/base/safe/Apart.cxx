@@ -1,6 +1,7 @@
 #include "base/safe/Apart.h"
 
 #include "base/Error.h"
+#include "base/safe/OwnProgram.h"
 
 #include <algorithm>
 #include <array>
@@ -15,7 +16,6 @@
 #include <poll.h>
 #include <spawn.h>
 #include <stdexcept>
-#include <sys/auxv.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
@@ -181,24 +181,10 @@ std::vector<const ApartJob*>& jobs() {
 
 // ---- starting a child
 
-/// Arguments of /proc/self/exe that make it this program with `words`. Where a loader was called
-/// with the program's file (an archive brings its own), /proc/self/exe is that loader: the kernel
-/// has no base of an interpreter then, and the loader says the file (glibc: AT_EXECFN).
-std::vector<std::string> ownArguments(std::vector<std::string> words) {
-  if (::getauxval(AT_BASE) == 0)
-    words.insert(words.begin(), reinterpret_cast<const char*>(::getauxval(AT_EXECFN)));
-  words.insert(words.begin(), "fenestra");
-  return words;
-}
-
 /// Starts the child for `job`, which has no file but its end of the connection, and default signal
 /// handlers. Returns the process id, or 0: failed.
 pid_t spawn(const std::string& job, int connection) {
-  std::vector<std::string> words = ownArguments({subcommand, job, std::to_string(::getpid())});
-  std::vector<char*> arguments;
-  for (std::string& word : words)
-    arguments.push_back(word.data());
-  arguments.push_back(nullptr);
+  const OwnArguments arguments({subcommand, job, std::to_string(::getpid())});
   posix_spawn_file_actions_t files;
   ::posix_spawn_file_actions_init(&files);
   ::posix_spawn_file_actions_adddup2(&files, connection, childConnection);
@@ -217,7 +203,7 @@ pid_t spawn(const std::string& job, int connection) {
                                               POSIX_SPAWN_SETPGROUP);
   pid_t child = 0;
   const int failed =
-      ::posix_spawn(&child, "/proc/self/exe", &files, &attributes, arguments.data(), environ);
+      ::posix_spawn(&child, ownProgram, &files, &attributes, arguments.get(), environ);
   ::posix_spawnattr_destroy(&attributes);
   ::posix_spawn_file_actions_destroy(&files);
   return failed ? 0 : child;

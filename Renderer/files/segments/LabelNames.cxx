@@ -2,6 +2,7 @@
 
 #include "base/Error.h"
 #include "base/Text.h"
+#include "base/safe/Csv.h"
 #include "base/safe/EmbeddedResources.h"
 #include "base/safe/Inputs.h"
 #include "base/safe/JsonNode.h"
@@ -98,12 +99,13 @@ void readSnapTable(const std::string& text, TableBuilder& table) {
 void readCsv(const std::string& text, TableBuilder& table) {
   std::size_t value = 0, name = 1;
   bool isFirst = true;
-  const auto unquoted = [](const std::string& field) {
-    return std::string(trimmed(field, " \t\r\""));
-  };
-  forLines(text, [&](const std::string& place, std::string_view line) {
-    std::vector<std::string> fields = split(line, line.find(',') != line.npos ? ',' : ';');
-    std::ranges::transform(fields, fields.begin(), unquoted);
+  for (CsvRecord& record : parseCsv(text, table.source())) {
+    std::vector<std::string>& fields = record.fields;
+    const std::string place = textOf("line ", record.line);
+    for (std::string& field : fields)
+      field = trimmed(field, " \t\"");
+    if (fields[0].starts_with('#'))
+      continue;
     const auto columnOf = [&](std::initializer_list<std::string_view> titles) {
       return static_cast<std::size_t>(
           std::ranges::find_if(fields,
@@ -118,11 +120,11 @@ void readCsv(const std::string& text, TableBuilder& table) {
       if (value >= fields.size() || name >= fields.size())
         throw inputError(table.source(), place,
                          ": has no columns \"label\" and \"name\"; name them so");
-      return;
+      continue;
     }
     const auto field = [&](std::size_t i) { return i < fields.size() ? fields[i] : std::string(); };
     table.add(place, wholeNumber(field(value)), field(name));
-  });
+  }
 }
 
 void readJsonTable(std::string_view text, TableBuilder& table) {

@@ -17,7 +17,7 @@ namespace fenestra {
 namespace {
 
 /// Samples per pixel below which a noise estimate is too uncertain to stop by.
-constexpr std::uint64_t leastForNoise = 16;
+constexpr std::uint64_t leastForNoise = SamplePlan::pilotSamples;
 
 /// Traces one path after the other.
 template <typename Voxel>
@@ -50,32 +50,30 @@ struct OneByOne {
 std::uint64_t passSize(std::uint64_t done, const RenderSettings& settings) {
   constexpr std::uint64_t largest = 16;
   const std::uint64_t grown = std::clamp<std::uint64_t>(done, 1, largest);
-  const std::uint64_t wanted = settings.passSamples > 0 ? settings.passSamples : grown;
-  return std::min(wanted, settings.samples - done);
+  return settings.passSamples > 0 ? settings.passSamples : grown;
 }
 
 /// Samples per pixel of the next pass toward a noise target. The pilot ends at leastForNoise
 /// whatever the passes are. After the pilot passes grow from 1 again, for some pixels may get far
 /// more than the mean; the last pass is as small as the noise so far predicts (variance ~ 1 /
 /// samples).
-std::uint64_t passTowardNoise(std::uint64_t done, double noise, const SamplePlan& plan,
-                              const RenderSettings& settings) {
+std::uint64_t passTowardNoise(const LastPass& last, const RenderSettings& settings) {
+  const std::uint64_t done = last.samples;
   if (done < leastForNoise)
     return std::min(passSize(done, settings), leastForNoise - done);
   constexpr double mostInOnePixel = 256.0;
-  const double missing = static_cast<double>(done) * (std::pow(noise / settings.noise, 2.0) - 1.0);
-  const double room = mostInOnePixel / plan.at(done + 1).greatestShare();
+  const double missing =
+      static_cast<double>(done) * (std::pow(last.noise / settings.noise, 2.0) - 1.0);
+  const double room = mostInOnePixel / last.plan.at(done + 1).greatestShare();
   const auto most = static_cast<std::uint64_t>(std::max(1.0, std::min(missing, room)));
-  return std::min({passSize(done - leastForNoise, settings), settings.samples - done, most});
+  return std::min(passSize(done - leastForNoise, settings), most);
 }
 
-/// Renders the samples of stage `to` beyond stage `from`. Returns false if stopped before all were
-/// done; tiles are done whole or not at all.
+/// Lets all threads render what is left of a pass, to its end, a pause or a stop; tiles are done
+/// whole or not at all.
 template <typename Tracer>
-bool renderPass(const Tracer& tracer, const SamplePlan::Stage& from, const SamplePlan::Stage& to,
-                const EmptyPixels& empty, const NumberSource& source, Film& film, Counters& total,
-                RenderMonitor& monitor) {
-  Pass pass(from, to, empty, source, film, monitor.paths);
+void renderTiles(const Tracer& tracer, Pass& pass, const Film& film, Counters& total,
+                 RenderMonitor& monitor) {
   const int threads = tbb::this_task_arena::max_concurrency();
   // Paths at once in a thread: limited, so that all threads get some and tails are short.
   const std::size_t atOnce =
@@ -84,13 +82,35 @@ bool renderPass(const Tracer& tracer, const SamplePlan::Stage& from, const Sampl
   tbb::parallel_for(
       0, threads,
       [&](int) {
-        TileStream stream(pass);
+        TileStream stream(pass, monitor.isKeepDue);
         if (!monitor.stop.load(std::memory_order_relaxed))
           tracer.trace(stream, atOnce, counters.local());
       },
       tbb::simple_partitioner());
   counters.combine_each([&](const Counters& local) { total += local; });
-  return pass.whole();
+}
+
+/// Parts of a render that all its passes share.
+struct PassSource {
+  std::vector<int> tiles;
+  EmptyPixels empty;
+  NumberSource numbers;
+};
+
+/// Renders the samples that stage `result.begunSamples` has beyond the film. Returns false if
+/// stopped before all were done.
+template <typename Tracer>
+bool renderPass(const Tracer& tracer, const PassSource& source, RenderResult& result,
+                RenderMonitor& monitor) {
+  const SamplePlan& plan = result.last.plan;
+  Pass pass(source.tiles, plan.at(result.finishedSamples), plan.at(result.begunSamples),
+            source.empty, source.numbers, result.film, monitor.paths);
+  for (;;) {
+    renderTiles(tracer, pass, result.film, result.counters, monitor);
+    if (pass.whole() || monitor.stop)
+      return pass.whole();
+    monitor.keep(result); // nothing but a pause leaves tiles undone
+  }
 }
 
 /// True if all eye rays through one pixel that meet no matter return the same radiance.
@@ -136,85 +156,119 @@ class NoiseLimit {
 public:
   explicit NoiseLimit(const RenderSettings& settings) : m_settings(settings) {}
 
-  std::uint64_t nextPass(std::uint64_t done, double noise) const {
-    if (isRaw())
-      return passTowardNoise(done, noise, m_plan, m_settings);
-    const std::uint64_t size = passSize(done, m_settings);
-    return isSeen() ? std::min(size, nextLook(done) - done) : size;
+  /// Samples of the pass after `last`, which no other limit cuts short.
+  std::uint64_t nextPass(const LastPass& last) const {
+    if (m_settings.plansByNoise())
+      return passTowardNoise(last, m_settings);
+    const std::uint64_t size = passSize(last.samples, m_settings);
+    return isSeen() ? std::min(size, nextLook(last.samples) - last.samples) : size;
   }
-  SamplePlan::Stage stage(std::uint64_t mean) const { return m_plan.at(mean); }
 
   /// Looks at the film after a pass, if a look is due, and sets `noise`. Returns true if the target
-  /// is reached.
-  bool isReached(const Film& film, std::uint64_t done, std::atomic<double>& noise) {
+  /// is reached. A pass that nothing has cut short becomes the last one.
+  bool isReached(RenderResult& result, bool isCut, std::atomic<double>& noise) const {
+    const std::uint64_t done = result.finishedSamples;
+    if (!isCut)
+      result.last.samples = done;
     if (isSeen()) {
       if (nextLook(done - 1) != done)
         return false;
-      noise = m_settings.seenNoise(film);
+      noise = m_settings.seenNoise(result.film);
       return noise <= m_settings.noise;
     }
-    noise = film.noise();
-    if (!isRaw() || done < leastForNoise)
+    noise = result.film.noise();
+    if (!m_settings.plansByNoise())
+      return false;
+    if (!isCut)
+      result.last.noise = noise;
+    if (done < leastForNoise)
       return false;
     if (done == leastForNoise)
-      m_plan = SamplePlan(film);
+      result.last.plan = SamplePlan(result.film);
     return noise <= m_settings.noise;
   }
 
 private:
   bool isSeen() const { return m_settings.noise > 0.0 && m_settings.seenNoise; }
-  bool isRaw() const { return m_settings.noise > 0.0 && !m_settings.seenNoise; }
 
   const RenderSettings& m_settings;
-  SamplePlan m_plan;
 };
+
+/// Result before the first sample.
+RenderResult emptyResult(const Camera& camera, const NumberSource& numbers) {
+  return {
+      Film(camera.width(), camera.height(), NumberSource::hasIndependentHalves, numbers.block())};
+}
+
+/// True if no tile of the film is ahead of the last pass or behind it.
+bool isAtLastPass(const RenderResult& result) {
+  const SamplePlan::Stage stage = result.last.plan.at(result.last.samples);
+  const std::vector<PixelSums>& pixels = result.film.pixels();
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+    if (!pixels[i].isCertain && pixels[i].samples != stage.count(i))
+      return false;
+  return result.last.samples > 0 && result.finishedSamples == result.last.samples;
+}
 
 template <typename Tracer>
 RenderResult renderPasses(const Tracer& tracer, const std::string& arithmetic,
                           const RenderScene& scene, const RenderSettings& settings,
-                          RenderMonitor& monitor) {
-  const NumberSource source(settings.sampling, settings.seed);
-  RenderResult result{Film(scene.camera.width(), scene.camera.height(),
-                           NumberSource::hasIndependentHalves, source.block()),
-                      {},
-                      {},
-                      0,
-                      arithmetic};
-  const EmptyPixels empty = isConstantInPixels(settings.path.background, scene.lights)
-                                ? EmptyPixels(scene.camera, scene.majorants)
-                                : EmptyPixels();
+                          RenderMonitor& monitor, std::optional<RenderResult> begun) {
+  const NumberSource numbers(settings.sampling, settings.seed);
+  RenderResult result = begun ? std::move(*begun) : emptyResult(scene.camera, numbers);
+  result.reason = StopReason::samples;
+  result.target = arithmetic;
+  if (!settings.plansByNoise())
+    result.last = {result.last.samples}; // a plan made by the pilot is not followed
+  const bool hasEmpty = isConstantInPixels(settings.path.background, scene.lights);
+  const PassSource source{Tiles(result.film.width(), result.film.height()).of(settings.shard),
+                          hasEmpty ? EmptyPixels(scene.camera, scene.majorants) : EmptyPixels(),
+                          numbers};
   for (int row = 0; row < result.film.height(); ++row)
     for (int column = 0; column < result.film.width(); ++column)
-      result.film.at(column, row).isCertain = empty.contains(column, row);
-  NoiseLimit target(settings);
+      result.film.at(column, row).isCertain = source.empty.contains(column, row);
+  monitor.paths = result.finishedSamples * result.film.pixelCount() /
+                  static_cast<std::size_t>(settings.shard.count);
+  const NoiseLimit target(settings);
   Pace pace(settings.seconds);
+  const auto looksReached = [&](bool isCut) {
+    const bool isReached = target.isReached(result, isCut, monitor.noise);
+    if (isReached)
+      result.reason = StopReason::noise;
+    return isReached;
+  };
+  if (isAtLastPass(result) && looksReached(false))
+    return result;
   while (result.finishedSamples < settings.samples) {
     const std::uint64_t done = result.finishedSamples;
-    const std::uint64_t count = std::min(target.nextPass(done, monitor.noise), pace.affordable());
+    const std::uint64_t whole =
+        std::max(result.last.samples + target.nextPass(result.last), done + 1);
+    const std::uint64_t count =
+        std::min({whole - done, settings.samples - done, pace.affordable()});
     if (count == 0) {
       result.reason = StopReason::seconds;
       return result;
     }
     if (done > 0 && monitor.between)
       monitor.between(result);
-    if (!renderPass(tracer, target.stage(done), target.stage(done + count), empty, source,
-                    result.film, result.counters, monitor)) {
+    if (monitor.isKeepDue && monitor.isKeepDue())
+      monitor.keep(result);
+    result.begunSamples = done + count;
+    if (!renderPass(tracer, source, result, monitor)) {
       result.reason = StopReason::request;
       return result;
     }
     pace.passed(count);
     result.finishedSamples += count;
-    if (target.isReached(result.film, result.finishedSamples, monitor.noise)) {
-      result.reason = StopReason::noise;
+    if (looksReached(result.finishedSamples < whole))
       return result;
-    }
     pace.looked();
   }
   return result;
 }
 
 RenderResult renderInLanes(const RenderScene& scene, const RenderSettings& settings,
-                           RenderMonitor& monitor) {
+                           RenderMonitor& monitor, std::optional<RenderResult> begun) {
   const Domain domain(scene.volume.grid, scene.crop);
   const WideTracker tracker(scene.volume, domain, scene.transfer, scene.majorants, scene.clip,
                             scene.style, monitor.stop, scene.mixture);
@@ -226,19 +280,24 @@ RenderResult renderInLanes(const RenderScene& scene, const RenderSettings& setti
                     settings.path.background);
   const WideEyeRays begin(tracker.scene(), domain, scene.camera, eye);
   const PathWave wave(begin, tracker, events, eye, monitor.stop);
-  return renderPasses(wave, WideTracker::instructionSet(), scene, settings, monitor);
+  return renderPasses(wave, WideTracker::instructionSet(), scene, settings, monitor,
+                      std::move(begun));
 }
 
 RenderResult renderOneByOne(const RenderScene& scene, const RenderSettings& settings,
-                            RenderMonitor& monitor) {
+                            RenderMonitor& monitor, std::optional<RenderResult> begun) {
   const auto work = [&]<typename Voxel>(const Medium<Voxel>& medium,
                                         const Tracker<Voxel>& tracker) {
     const OneByOne<Voxel> readable{PathEstimator<Voxel>(scene.volume.grid, medium, tracker,
                                                         scene.lights, scene.camera, scene.clip,
                                                         settings.path, monitor.stop)};
-    return renderPasses(readable, "scalar", scene, settings, monitor);
+    return renderPasses(readable, "scalar", scene, settings, monitor, std::move(begun));
   };
   return withMedium(scene, work, monitor.stop);
+}
+
+bool rendersInLanes(const RenderScene& scene, const RenderSettings& settings) {
+  return settings.transport == Transport::fast && lanesServe(scene);
 }
 
 } // namespace
@@ -249,14 +308,18 @@ bool lanesServe(const RenderScene& scene) {
          (!scene.tint || WideShares::serves(*scene.tint->shares));
 }
 
+std::string targetOf(const RenderScene& scene, const RenderSettings& settings) {
+  return rendersInLanes(scene, settings) ? WideTracker::instructionSet() : "scalar";
+}
+
 RenderResult render(const RenderScene& scene, const RenderSettings& settings,
-                    RenderMonitor& monitor) {
+                    RenderMonitor& monitor, std::optional<RenderResult> begun) {
   const int cores = tbb::info::default_concurrency(); // TBB complains about more
   tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
   return arena.execute([&] {
-    return settings.transport == Transport::fast && lanesServe(scene)
-               ? renderInLanes(scene, settings, monitor)
-               : renderOneByOne(scene, settings, monitor);
+    return rendersInLanes(scene, settings)
+               ? renderInLanes(scene, settings, monitor, std::move(begun))
+               : renderOneByOne(scene, settings, monitor, std::move(begun));
   });
 }
 

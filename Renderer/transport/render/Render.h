@@ -3,12 +3,14 @@
 // The voxel type is resolved once, in withMedium; everything below is a template.
 
 #include "image/Film.h"
+#include "image/Tiles.h"
 #include "model/lights/LightSet.h"
 #include "model/volume/Domain.h"
 #include "model/volume/Volume.h"
 #include "transport/readable/Counters.h"
 #include "transport/readable/MajorantGrid.h"
 #include "transport/readable/PathEstimator.h"
+#include "transport/render/SamplePlan.h"
 
 #include <atomic>
 #include <functional>
@@ -65,6 +67,10 @@ struct RenderSettings {
   Transport transport = Transport::fast;
   int threads = 0;               ///< 0: all
   std::uint64_t passSamples = 0; ///< in a pass; 0: growing passes. Never changes the picture.
+  Shard shard = {}; ///< of the picture's tiles; the others stay empty. Not with `noise`.
+
+  /// True if noisier pixels get more samples, once the pilot has ended.
+  bool plansByNoise() const { return noise > 0.0 && !seenNoise; }
 };
 
 struct RenderResult;
@@ -76,17 +82,31 @@ struct RenderMonitor {
   std::atomic<double> noise = infinity; ///< at the last look
   /// Called between two passes with the result so far; the render waits.
   std::function<void(const RenderResult&)> between = {};
+  /// Looked at by all threads, often. Once true, they end their tiles, and `keep` is called with
+  /// the result so far, which render() goes on from; the render waits. Empty: never.
+  std::function<bool()> isKeepDue = {};
+  std::function<void(const RenderResult&)> keep = {};
 };
 
 enum class StopReason { samples, seconds, noise, request };
 
+/// Last pass that no limit of samples or time has cut short. The passes after it follow from it
+/// alone, so that a render toward a noise target that goes on ends as if it had not been stopped.
+struct LastPass {
+  std::uint64_t samples = 0; ///< mean per pixel at its end
+  double noise = infinity;   ///< Film::noise() there, for a target on the raw picture
+  SamplePlan plan = {};
+};
+
 struct RenderResult {
   Film film;
-  Counters counters;
+  Counters counters = {};
   StopReason reason = StopReason::samples;
   /// Mean samples per pixel, over pixels with isCertain = false. After a stop by request single
   /// tiles may be one pass ahead.
   std::uint64_t finishedSamples = 0;
+  std::uint64_t begunSamples = 0; ///< at the end of the pass that was begun last
+  LastPass last = {};
   /// Arithmetic within which pictures are bit-identical: "scalar", or the lanes' instruction set.
   std::string target = "scalar";
 };
@@ -94,7 +114,13 @@ struct RenderResult {
 /// True if SIMD lanes serve the scene (WideTracker::serves, EventScene::serves).
 bool lanesServe(const RenderScene& scene);
 
+/// RenderResult::target of a render.
+std::string targetOf(const RenderScene& scene, const RenderSettings& settings);
+
+/// `begun`: result of a render of the same scene and settings to go on from, but for threads and
+/// the limits of samples, time and noise: at least begun->begunSamples samples, and planned by
+/// noise or not as before if that is beyond the pilot.
 RenderResult render(const RenderScene& scene, const RenderSettings& settings,
-                    RenderMonitor& monitor);
+                    RenderMonitor& monitor, std::optional<RenderResult> begun = {});
 
 } // namespace fenestra

@@ -80,12 +80,22 @@ SamplePlan::SamplePlan(const Film& pilot) : m_pilot(pilot.sampleCounts().greates
     return;
   }
   const auto least = static_cast<float>(leastNoise * sum / static_cast<double>(uncertain));
-  m_sorted.reserve(uncertain);
   for (std::size_t i = 0; i < m_noise.size(); ++i)
-    if (!pilot.pixels()[i].isCertain) {
+    if (!pilot.pixels()[i].isCertain)
       m_noise[i] = std::max(m_noise[i], least);
-      m_sorted.push_back(m_noise[i]);
-    }
+  sort();
+}
+
+SamplePlan::SamplePlan(std::vector<float> noise)
+    : m_pilot(pilotSamples), m_noise(std::move(noise)) {
+  sort();
+}
+
+/// Makes the sums of sorted s, without those of certain pixels.
+void SamplePlan::sort() {
+  std::ranges::copy_if(m_noise, std::back_inserter(m_sorted), [](float s) { return s > 0.0F; });
+  if (m_sorted.empty())
+    return m_noise.clear();
   tbb::parallel_sort(m_sorted.begin(), m_sorted.end());
   m_sumFrom.resize(m_sorted.size() + 1);
   for (std::size_t i = m_sorted.size(); i-- > 0;)

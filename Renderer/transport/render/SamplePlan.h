@@ -19,10 +19,17 @@ public:
   SamplePlan() = default;
   /// Number of uncertain pixels below which the plan is uniform.
   static constexpr std::size_t leastPixels = 2048;
+  /// Samples of a pixel in a render's pilot.
+  static constexpr std::uint64_t pilotSamples = 16;
 
   /// `pilot` must have the same number of samples, at least two, in every pixel that is not
   /// certain. Certain pixels do not count in the mean.
   explicit SamplePlan(const Film& pilot);
+
+  /// Plan after a pilot of pilotSamples, of which s of each pixel is known (noise()).
+  explicit SamplePlan(std::vector<float> noise);
+  /// s of each pixel, 0: certain pixel; empty: uniform plan.
+  const std::vector<float>& noise() const { return m_noise; }
 
   /// A stage of the plan: `mean` samples a pixel, on average.
   class Stage {
@@ -41,8 +48,10 @@ public:
   Stage at(std::uint64_t mean) const;
 
 private:
+  void sort();
+
   std::uint64_t m_pilot = 0;
-  std::vector<float> m_noise;    ///< s of each pixel; 0: certain pixel; empty: uniform plan
+  std::vector<float> m_noise;
   std::vector<float> m_sorted;   ///< s of the uncertain pixels, ascending
   std::vector<double> m_sumFrom; ///< sums of m_sorted from each element to the end
 };

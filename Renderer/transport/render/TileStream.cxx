@@ -2,16 +2,17 @@
 
 namespace fenestra {
 
-Pass::Pass(const SamplePlan::Stage& from, const SamplePlan::Stage& to, const EmptyPixels& empty,
-           const NumberSource& source, Film& film, std::atomic<std::uint64_t>& paths)
-    : m_from(from),
+Pass::Pass(std::span<const int> tiles, const SamplePlan::Stage& from, const SamplePlan::Stage& to,
+           const EmptyPixels& empty, const NumberSource& source, Film& film,
+           std::atomic<std::uint64_t>& paths)
+    : m_tiles(tiles),
+      m_cut(film.width(), film.height()),
+      m_from(from),
       m_to(to),
       m_empty(empty),
       m_source(source),
       m_film(film),
-      m_paths(paths),
-      m_tilesAcross((film.width() + tileSize - 1) / tileSize),
-      m_tileCount(m_tilesAcross * ((film.height() + tileSize - 1) / tileSize)) {}
+      m_paths(paths) {}
 
 void TileStream::fill(PathStarts& starts, std::size_t most) {
   const NumberSource& source = m_pass.m_source;
@@ -44,18 +45,20 @@ void TileStream::fill(PathStarts& starts, std::size_t most) {
   }
 }
 
-/// Makes the next tile that has samples the current one; false if none is left.
+/// Makes the next tile that has samples the current one; false if none is left, or for a pause.
 bool TileStream::openTile() {
+  if (m_pauses && m_pauses())
+    return false;
   if (m_free.empty()) {
     m_free.push_back(static_cast<std::uint32_t>(m_tiles.size()));
     m_tiles.emplace_back();
   }
   Tile& tile = m_tiles[m_free.back()];
   for (;;) {
-    const int index = m_pass.m_nextTile.fetch_add(1, std::memory_order_relaxed);
-    if (index >= m_pass.m_tileCount)
+    const std::size_t next = m_pass.m_nextTile.fetch_add(1, std::memory_order_relaxed);
+    if (next >= m_pass.m_tiles.size())
       return false;
-    list(tile, index);
+    list(tile, m_pass.m_tiles[next]);
     if (tile.awaited > 0)
       break;
     close(tile);
@@ -69,20 +72,19 @@ bool TileStream::openTile() {
   return true;
 }
 
-/// Lists the samples of tile `index`, pixel by pixel.
+/// Lists the samples of tile `index` that the film lacks, pixel by pixel.
 void TileStream::list(Tile& tile, int index) const {
   tile.planned = 0;
   tile.awaited = 0;
   tile.runs.clear();
   const Film& film = m_pass.m_film;
-  const int left = index % m_pass.m_tilesAcross * Pass::tileSize;
-  const int top = index / m_pass.m_tilesAcross * Pass::tileSize;
-  for (int row = top; row < std::min(top + Pass::tileSize, film.height()); ++row)
-    for (int column = left; column < std::min(left + Pass::tileSize, film.width()); ++column) {
+  const Tiles::Tile pixels = m_pass.m_cut.at(index);
+  for (int row = pixels.top; row < pixels.bottom; ++row)
+    for (int column = pixels.left; column < pixels.right; ++column) {
       const std::size_t here = film.index(column, row);
-      const std::uint64_t begin = m_pass.m_from.count(here);
+      const std::uint64_t begin = film.pixels()[here].samples;
       const std::uint64_t end = m_pass.m_to.count(here);
-      tile.planned += end - begin;
+      tile.planned += end - m_pass.m_from.count(here);
       const std::uint64_t enough =
           m_pass.m_empty.contains(column, row) ? std::min<std::uint64_t>(1, end) : end;
       if (begin >= enough)

@@ -3,43 +3,48 @@
 // thread that follows many paths at once never runs short of paths before the pass ends.
 
 #include "image/Film.h"
+#include "image/Tiles.h"
 #include "transport/lanes/PathEstimator.h"
 #include "transport/render/EmptyPixels.h"
 #include "transport/render/SamplePlan.h"
 
 #include <atomic>
+#include <functional>
+#include <span>
 
 namespace fenestra {
 
-/// State shared by all threads of a pass: the samples of stage `to` beyond stage `from`, cut into
-/// tiles.
+/// State shared by all threads of a pass: the samples that the pixels of `tiles` have in stage `to`
+/// beyond those in the film.
 class Pass {
 public:
-  /// A view of plan, empty pixels and film. Each finished tile adds its planned number of samples
-  /// to `paths`.
-  Pass(const SamplePlan::Stage& from, const SamplePlan::Stage& to, const EmptyPixels& empty,
-       const NumberSource& source, Film& film, std::atomic<std::uint64_t>& paths);
+  /// A view of tiles, plan, empty pixels and film. Each finished tile adds the samples of stage
+  /// `to` beyond stage `from` to `paths`, as if no pixel were empty.
+  Pass(std::span<const int> tiles, const SamplePlan::Stage& from, const SamplePlan::Stage& to,
+       const EmptyPixels& empty, const NumberSource& source, Film& film,
+       std::atomic<std::uint64_t>& paths);
 
   /// True once all tiles have been added to the film.
-  bool whole() const { return m_tilesDone == m_tileCount; }
+  bool whole() const { return m_tilesDone == m_tiles.size(); }
 
 private:
   friend class TileStream;
-  static constexpr int tileSize = 8; ///< pixels; a tile's samples are kept until all are done
 
+  const std::span<const int> m_tiles;
+  const Tiles m_cut;
   const SamplePlan::Stage m_from, m_to;
   const EmptyPixels& m_empty;
   NumberSource m_source;
   Film& m_film;
   std::atomic<std::uint64_t>& m_paths;
-  int m_tilesAcross, m_tileCount;
-  std::atomic<int> m_nextTile = 0, m_tilesDone = 0;
+  std::atomic<std::size_t> m_nextTile = 0, m_tilesDone = 0;
 };
 
 /// One thread's part of a pass: a source of paths for PathWave::trace.
 class TileStream {
 public:
-  explicit TileStream(Pass& pass) : m_pass(pass) {}
+  /// Begins no tile once `pauses` returns true, which must outlive the stream; empty: never.
+  TileStream(Pass& pass, const std::function<bool()>& pauses) : m_pass(pass), m_pauses(pauses) {}
 
   /// Random numbers of the starts.
   const NumberSource& numbers() const { return m_pass.m_source; }
@@ -74,6 +79,7 @@ private:
   void close(Tile& tile);
 
   Pass& m_pass;
+  const std::function<bool()>& m_pauses;
   std::vector<Tile> m_tiles;         ///< open tiles, and free places
   std::vector<std::uint32_t> m_free; ///< free places in m_tiles
   std::uint32_t m_current = 0;       ///< place of the tile of the next samples

@@ -1,0 +1,29 @@
+#pragma once
+// Digest of bytes, the same on every machine: notices damage and other contents, not an attacker.
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace fenestra {
+
+/// Chain of mixed words of eight bytes: two contents that differ within one aligned word have
+/// different digests.
+class Digest {
+public:
+  void add(std::string_view bytes);
+  /// Digest of all bytes so far; their number counts.
+  std::uint64_t value() const;
+
+private:
+  std::uint64_t m_state = 0, m_size = 0;
+  std::string m_rest; ///< bytes of a word that is not complete
+};
+
+/// Digest of the first `bytes` bytes of a file, or of all if it is shorter, read block by block.
+/// Throws Error (input) where the file cannot be read.
+std::uint64_t digestOf(const std::filesystem::path& file, std::uint64_t bytes = UINT64_MAX);
+
+} // namespace fenestra

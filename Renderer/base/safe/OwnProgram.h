@@ -1,0 +1,37 @@
+#pragma once
+// This program, to be run once more in a process of its own.
+
+#include <string>
+#include <vector>
+
+#include <sys/auxv.h>
+
+namespace fenestra {
+
+/// File to run: the same build, even if the program's file has been replaced.
+inline constexpr const char* ownProgram = "/proc/self/exe";
+
+/// Arguments with which it is this program with `words`. Where a loader was called with the
+/// program's file (an archive brings its own), /proc/self/exe is that loader: the kernel has no
+/// base of an interpreter then, and the loader says the file (glibc: AT_EXECFN).
+class OwnArguments {
+public:
+  explicit OwnArguments(std::vector<std::string> words) : m_words(std::move(words)) {
+    if (::getauxval(AT_BASE) == 0)
+      m_words.insert(m_words.begin(), reinterpret_cast<const char*>(::getauxval(AT_EXECFN)));
+    m_words.insert(m_words.begin(), "fenestra");
+    for (std::string& word : m_words)
+      m_pointers.push_back(word.data());
+    m_pointers.push_back(nullptr);
+  }
+  OwnArguments(const OwnArguments&) = delete;
+  OwnArguments& operator=(const OwnArguments&) = delete;
+
+  char* const* get() const { return m_pointers.data(); }
+
+private:
+  std::vector<std::string> m_words;
+  std::vector<char*> m_pointers; ///< into m_words, and a null
+};
+
+} // namespace fenestra

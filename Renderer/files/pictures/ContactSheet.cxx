@@ -1,0 +1,212 @@
+#include "files/pictures/ContactSheet.h"
+
+#include "base/Color.h"
+#include "base/Error.h"
+#include "base/Text.h"
+#include "files/pictures/ImageReader.h"
+#include "files/pictures/Letters.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace fenestra {
+namespace {
+
+constexpr int boxWidth = 336, mostBoxHeight = 504, leastBoxHeight = 168; ///< pixels
+constexpr int gap = 20;
+constexpr double titleDot = 3.0, nameDot = 2.0, textDot = 1.5; ///< pixels a dot
+
+constexpr std::uint32_t paper = 0x17191b, panel = 0x222527, white = 0xf0f0f0, grey = 0xa2a8ad,
+                        alarm = 0xff9d7a;
+
+/// Opaque picture in the making, linear Rec. 709.
+class Canvas {
+public:
+  Canvas(int width, int height, std::uint32_t color) : m_width(width), m_height(height) {
+    for (Plane& plane : m_planes)
+      plane.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    fill(0, 0, width, height, color);
+  }
+
+  int width() const { return m_width; }
+  int height() const { return m_height; }
+  /// Rectangle; what lies beyond the canvas is left out.
+  void fill(int left, int top, int width, int height, std::uint32_t color) {
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x)
+        mix(left + x, top + y, linearOf(color), 1.0F);
+  }
+  /// Text from the left, cut with an ellipsis where wider than `width` pixels.
+  void write(int left, int top, const std::string& text, double dot, std::uint32_t color,
+             int width) {
+    const auto most = static_cast<std::size_t>(std::max(4.0, width / (letterWidth * dot)));
+    std::string shown = letters(text);
+    if (shown.size() > most)
+      shown = shown.substr(0, most - 3) + "...";
+    const Lettering line = lettering(shown, dot);
+    for (int y = 0; y < line.height; ++y)
+      for (int x = 0; x < line.width; ++x)
+        mix(left + x, top + y, linearOf(color),
+            line.ink[static_cast<std::size_t>(y * line.width + x)]);
+  }
+  void place(int left, int top, const Canvas& picture) {
+    for (int y = 0; y < picture.m_height; ++y)
+      for (int x = 0; x < picture.m_width; ++x)
+        mix(left + x, top + y, picture.at(x, y), 1.0F);
+  }
+  /// Puts `share` of the colour over a pixel.
+  void mix(int x, int y, const Rgb& color, float share) {
+    if (x < 0 || y < 0 || x >= m_width || y >= m_height)
+      return;
+    for (std::size_t c = 0; c < m_planes.size(); ++c) {
+      float& value = m_planes[c][index(x, y)];
+      value += share * (static_cast<float>(color[static_cast<int>(c)]) - value);
+    }
+  }
+  Image image() && {
+    Image image{m_width, m_height, {}, {}};
+    for (std::size_t c = 0; c < m_planes.size(); ++c)
+      image.channels[std::string(1, "RGB"[c])] = std::move(m_planes[c]);
+    return image;
+  }
+
+private:
+  static Rgb linearOf(std::uint32_t color) { return decodeSrgb(colorOf(color)); }
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(m_width) +
+           static_cast<std::size_t>(x);
+  }
+  Rgb at(int x, int y) const {
+    const std::size_t i = index(x, y);
+    return Rgb(m_planes[0][i], m_planes[1][i], m_planes[2][i]);
+  }
+
+  int m_width, m_height;
+  std::array<Plane, 3> m_planes;
+};
+
+/// Picture of display values, with straight alpha over the panel, averaged in light down to the
+/// box, or enlarged to it.
+Canvas scaledToBox(const Image& picture) {
+  const double scale =
+      std::min(1.0 * boxWidth / picture.width, 1.0 * mostBoxHeight / picture.height);
+  const auto scaled = [scale](int size) {
+    return std::max(1, static_cast<int>(size * scale + 0.5));
+  };
+  Canvas canvas(scaled(picture.width), scaled(picture.height), panel);
+  const Plane* const alpha = picture.find("A");
+  const std::array<const Plane*, 3> planes = {picture.find("R"), picture.find("G"),
+                                              picture.find("B")};
+  const auto from = [](int at, int size, int all) {
+    return static_cast<int>(std::int64_t{at} * all / size);
+  };
+  for (int y = 0; y < canvas.height(); ++y)
+    for (int x = 0; x < canvas.width(); ++x) {
+      const int top = from(y, canvas.height(), picture.height);
+      const int left = from(x, canvas.width(), picture.width);
+      const int bottom = std::max(top + 1, from(y + 1, canvas.height(), picture.height));
+      const int right = std::max(left + 1, from(x + 1, canvas.width(), picture.width));
+      Rgb sum = Rgb::Zero();
+      double covered = 0.0;
+      for (int v = top; v < bottom; ++v)
+        for (int u = left; u < right; ++u) {
+          const std::size_t i =
+              static_cast<std::size_t>(v) * static_cast<std::size_t>(picture.width) +
+              static_cast<std::size_t>(u);
+          const double weight = alpha ? static_cast<double>((*alpha)[i]) : 1.0;
+          sum += weight * decodeSrgb(Rgb((*planes[0])[i], (*planes[1])[i], (*planes[2])[i]));
+          covered += weight;
+        }
+      const double all = 1.0 * (bottom - top) * (right - left);
+      if (covered > 0.0)
+        canvas.mix(x, y, sum / covered, static_cast<float>(covered / all));
+    }
+  return canvas;
+}
+
+/// Entry with its picture as small as it will be shown.
+struct Thumbnail {
+  const SheetEntry* entry;
+  std::string problem;
+  std::optional<Canvas> picture = {};
+};
+
+Thumbnail thumbnailOf(const SheetEntry& entry) {
+  Thumbnail thumbnail{&entry, entry.problem};
+  if (entry.picture.empty())
+    return thumbnail;
+  try {
+    thumbnail.picture = scaledToBox(readImage(entry.picture));
+  } catch (const Error& error) {
+    thumbnail.problem = error.what();
+  }
+  return thumbnail;
+}
+
+/// Columns for a sheet somewhat wider than high, with few empty places in the last row.
+int columnsFor(int count) {
+  const int wide = std::max(1, static_cast<int>(std::ceil(std::sqrt(1.4 * count))));
+  const int narrow = std::max(1, wide - 1);
+  const auto empty = [count](int columns) { return (columns - count % columns) % columns; };
+  return empty(narrow) < empty(wide) ? narrow : wide;
+}
+
+/// Draws an entry into its cell.
+void draw(Canvas& sheet, int left, int top, int boxHeight, const Thumbnail& thumbnail) {
+  constexpr int margin = 14, nameLine = static_cast<int>(lineHeight * nameDot),
+                textLine = static_cast<int>(lineHeight * textDot) + 2;
+  sheet.fill(left, top, boxWidth, boxHeight, panel);
+  if (const auto& picture = thumbnail.picture)
+    sheet.place(left + (boxWidth - picture->width()) / 2, top + (boxHeight - picture->height()) / 2,
+                *picture);
+  int line = top + margin;
+  const auto fits = static_cast<std::size_t>((boxWidth - 2 * margin) / (letterWidth * textDot));
+  if (!thumbnail.problem.empty())
+    for (const std::string& text : split(wrapped(thumbnail.problem, fits), '\n')) {
+      if (line + textLine > top + boxHeight)
+        break;
+      sheet.write(left + margin, line, text, textDot, alarm, boxWidth - 2 * margin);
+      line += textLine;
+    }
+  line = top + boxHeight + 8;
+  sheet.write(left, line, thumbnail.entry->name, nameDot, thumbnail.problem.empty() ? white : alarm,
+              boxWidth);
+  line += nameLine;
+  for (const std::string& text : thumbnail.entry->lines) {
+    sheet.write(left, line, text, textDot, grey, boxWidth);
+    line += textLine;
+  }
+}
+
+} // namespace
+
+Image contactSheet(const std::string& title, const std::string& subtitle,
+                   std::span<const SheetEntry> entries, int mostColumns) {
+  std::vector<Thumbnail> thumbnails;
+  int boxHeight = leastBoxHeight;
+  std::size_t lines = 0;
+  for (const SheetEntry& entry : entries) {
+    thumbnails.push_back(thumbnailOf(entry));
+    lines = std::max(lines, entry.lines.size());
+    if (const auto& picture = thumbnails.back().picture)
+      boxHeight = std::max(boxHeight, picture->height());
+  }
+  const int count = static_cast<int>(entries.size());
+  const int columns = std::min(mostColumns, columnsFor(count));
+  const int rows = (count + columns - 1) / columns;
+  const int caption = 8 + static_cast<int>(lineHeight * nameDot) +
+                      static_cast<int>(lines) * (static_cast<int>(lineHeight * textDot) + 2);
+  const int head = static_cast<int>(lineHeight * (titleDot + textDot)) + 2 * gap;
+  const int across = boxWidth + gap, down = boxHeight + caption + gap;
+  Canvas sheet(gap + std::max(columns, 2) * across, head + rows * down + gap / 2, paper);
+  const int width = sheet.width() - 2 * gap;
+  sheet.write(gap, gap, title, titleDot, white, width);
+  sheet.write(gap, gap + static_cast<int>(lineHeight * titleDot), subtitle, textDot, grey, width);
+  for (int i = 0; i < count; ++i)
+    draw(sheet, gap + i % columns * across, head + i / columns * down, boxHeight,
+         thumbnails[static_cast<std::size_t>(i)]);
+  return std::move(sheet).image();
+}
+
+} // namespace fenestra

@@ -1,0 +1,79 @@
+#pragma once
+// Film of a render that is under way, on disk (--checkpoint): the same command goes on from it.
+
+#include "base/Stopwatch.h"
+#include "base/safe/Locks.h"
+#include "base/safe/Outputs.h"
+#include "program/Pictures.h"
+#include "session/FilmFile.h"
+
+namespace fenestra {
+
+/// True if a sample depends on the flag; false if only when to stop, how a picture is shown, and
+/// where.
+bool shapesSamples(const Flag& flag);
+
+/// What a film is made with: the version, the flags as given and those that shape its samples, by
+/// name, and the content of all files read; names are relative to `folder`.
+nlohmann::ordered_json madeWith(const FlagValues& given, const FlagValues& flags,
+                                const std::filesystem::path& folder);
+/// Name, size and digest of every file that the scene was made from.
+nlohmann::ordered_json inputsOf(const Scene& scene, const RenderOptions& options,
+                                const std::filesystem::path& folder);
+
+/// First difference between what two films, or a film and a command, are made with, as "--seed was
+/// 1, is 2"; empty: none. `there` may be damaged, and is the film that `source` names; a key that
+/// `here` lacks is not compared. Throws Error (input).
+std::string firstDifference(const nlohmann::json& there, const nlohmann::json& here,
+                            const std::string& source);
+
+/// "2/3" for the second of three parts.
+std::string partText(const Shard& shard);
+
+class Checkpoint {
+public:
+  using Warn = std::function<void(const std::string&)>;
+
+  /// Locks options.checkpoint, which must be set, and reads what is there. The request must outlive
+  /// this. Throws Error: usage where another process writes that film, or it belongs to other
+  /// settings; input where it is damaged; output where none can be written.
+  Checkpoint(const PictureRequest& request, const FlagValues& given, Warn warn);
+
+  /// The parts of one picture, in their order (wholePicture), which are read and never written.
+  Checkpoint(const PictureRequest& request, const FlagValues& given, std::vector<FilmFile> parts);
+
+  /// Result to go on from; nothing: from the beginning. Throws Error: usage where the film belongs
+  /// to other inputs, another instruction set, or more samples than the settings allow; input.
+  std::optional<RenderResult> begun(const Scene& scene, const RenderSettings& settings);
+
+  /// Lets a render be kept: first after a second, then so often that writing takes 1 % of the time,
+  /// or each minute if it takes more.
+  void watch(RenderMonitor& monitor);
+
+  /// Writes the film, if there is more than in the one on disk. A failure is one warning, however
+  /// often: the earlier film stays.
+  void keep(const RenderResult& result);
+
+  /// Writes the film, which is the command's result. Throws Error (output).
+  void write(const RenderResult& result);
+
+private:
+  Error otherRender(const std::string& difference) const;
+  void requireSame(const FilmFile& film, const std::string& key) const;
+  void requireRoom(const RenderResult& result, const RenderSettings& settings) const;
+
+  const PictureRequest& m_request;
+  const std::filesystem::path m_path;
+  Warn m_warn;
+  std::optional<NameLock> m_lock;
+  std::vector<FilmFile> m_films; ///< as they were at the start
+  bool m_isMerge = false;
+  nlohmann::ordered_json m_made;
+  Outputs m_outputs;
+  std::optional<std::uint64_t> m_paths; ///< in the film on disk
+  Stopwatch m_watch;
+  double m_due = 1.0; ///< s by m_watch
+  bool m_isWarned = false;
+};
+
+} // namespace fenestra

@@ -1,0 +1,151 @@
+// `fenestra merge`: parts of a picture (render --shard) as the picture that one machine would have
+// made. The scene is made again, from the flags that the parts record: for the filter's features,
+// the clip's surface and its measures.
+
+#include "base/Error.h"
+#include "base/safe/JsonNode.h"
+#include "program/CommandLine.h"
+#include "program/Commands.h"
+#include "program/RenderCommand.h"
+
+#include <algorithm>
+
+namespace fenestra {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// True for flags of a picture that is rendered already.
+bool isOfMerge(const Flag& flag) {
+  constexpr std::string_view others[] = {
+      "checkpoint", "shard", "xml", "echo", "returnparameterfile", "processinformationaddress"};
+  return !shapesSamples(flag) && flag.topic != Topic::stop &&
+         std::ranges::find(others, flag.name) == std::end(others);
+}
+
+/// Throws Error (usage) unless both are parts of one picture with the same samples.
+void requireTogether(const FilmFile& one, const FilmFile& other) {
+  const auto refuse = [&](const std::string& what) {
+    return usageError(other.path(), ": ", what, "; merge parts of one picture");
+  };
+  if (one.shard().count != other.shard().count)
+    throw refuse(textOf("is part ", partText(other.shard()), ", and ", one.path(), " is ",
+                        partText(one.shard())));
+  for (const char* key : {"version", "settings", "inputs"}) {
+    const nlohmann::json here = {
+        {key, JsonNode(other.made(), other.path().string()).at(key).value()}};
+    const std::string difference = firstDifference(one.made(), here, one.path().string());
+    if (!difference.empty())
+      throw refuse(textOf("is not of the picture of ", one.path(), ": ", difference));
+  }
+  if (one.target() != other.target())
+    throw refuse(
+        textOf("has samples by ", other.target(), ", and ", one.path(), " by ", one.target()));
+  if (one.finishedSamples() != other.finishedSamples())
+    throw usageError(other.path(), ": has ", other.finishedSamples(), " samples a pixel, and ",
+                     one.path(), " has ", one.finishedSamples(),
+                     "; run the command of the lesser one to its end");
+}
+
+/// Films in the order of their parts. Throws Error: usage where one is missing, doubled, not
+/// finished, or of another picture; input where one is damaged.
+std::vector<FilmFile> wholePicture(const std::vector<std::string>& names) {
+  std::vector<FilmFile> films;
+  for (const std::string& name : names) {
+    const FilmFile& film = films.emplace_back(name);
+    requireTogether(films.front(), film);
+    if (film.finishedSamples() == 0 || film.begunSamples() != film.finishedSamples())
+      throw usageError(film.path(), ": is not finished; run its command again");
+  }
+  std::ranges::sort(films, {}, [](const FilmFile& film) { return film.shard().index; });
+  const auto twice = std::ranges::adjacent_find(
+      films, {}, [](const FilmFile& film) { return film.shard().index; });
+  if (twice != films.end())
+    throw usageError(twice->path(), ": is part ", partText(twice->shard()), ", as is ",
+                     std::next(twice)->path(), "; drop one");
+  std::vector<int> missing;
+  const int count = films.front().shard().count;
+  for (int index = 0; index < count; ++index)
+    if (std::ranges::none_of(films, [&](const auto& film) { return film.shard().index == index; }))
+      missing.push_back(index + 1);
+  constexpr std::size_t mostNamed = 10;
+  if (!missing.empty())
+    throw usageError("PART: of ", count, " parts, number ",
+                     joined(
+                         missing, ", ", [](int i) { return textOf(i); }, mostNamed),
+                     missing.size() == 1 ? " is" : " are", " missing; add ",
+                     missing.size() == 1 ? "it" : "them");
+  return films;
+}
+
+/// Flags with which a film was rendered, whose names of files are relative to the film. Throws
+/// Error (input).
+FlagValues renderedWith(const FilmFile& film) {
+  FlagValues flags(renderSyntax.flags);
+  const JsonNode given = JsonNode(film.made(), film.path().string()).at("given");
+  const fs::path folder = film.path().parent_path();
+  for (const auto& [name, values] : given.members()) {
+    const Flag* const flag = findFlag(renderSyntax.flags, name);
+    if (name != "INPUT" && !(flag && shapesPicture(*flag)))
+      throw given.error("\"" + name + "\" is no flag of a picture; render the film again");
+    for (const JsonNode& value : values.elements()) {
+      const std::string text = value.text();
+      std::error_code failed;
+      const fs::path file = (folder / text).lexically_normal();
+      const bool isFile = (!flag || flag->takesFile()) && fs::exists(file, failed);
+      flags.add(name, isFile ? file.string() : text);
+    }
+  }
+  if (flags.texts("INPUT").size() != 1)
+    throw given.error("must have one INPUT; render the film again");
+  return flags;
+}
+
+} // namespace
+
+/// Built on first use: renderSyntax is initialised in another source.
+const CommandSyntax& mergeSyntax() {
+  static const std::vector<Flag> flags = [] {
+    std::vector<Flag> all;
+    std::ranges::copy_if(renderSyntax.flags, std::back_inserter(all), isOfMerge);
+    return all;
+  }();
+  static const CommandSyntax syntax = {
+      "merge",
+      "Makes a picture of its parts, which fenestra render --shard K/N has put into films, in any "
+      "order: bit for bit the picture that one machine would have made. A single film of "
+      "--checkpoint will do as well. The films name the inputs, which are read again.",
+      {{.name = "PART", .text = "Films (.film), all parts of one picture", .repeats = true}},
+      flags,
+  };
+  return syntax;
+}
+
+int mergeCommand(int argc, char** argv, int first) {
+  const std::optional<FlagValues> given = parseCommandLine(mergeSyntax(), argc, argv, first);
+  if (!given)
+    return 0;
+  useMachine(*given);
+  std::vector<FilmFile> films = wholePicture(given->texts("PART"));
+  FlagValues flags = renderedWith(films.front());
+  for (const Flag& flag : mergeSyntax().flags)
+    if (given->has(flag.name)) {
+      flags.remove(flag.name);
+      for (const std::string& value : given->texts(flag.name))
+        flags.add(flag.name, value);
+    }
+  PictureRequest request = pictureRequest(flags);
+  RenderSettings& settings = request.options.settings; // nothing is left to render
+  settings.samples = films.front().finishedSamples();
+  settings.seconds = infinity;
+  settings.noise = -1.0;
+  request.options.noiseTarget = NoiseTarget::raw;
+  std::optional<Checkpoint> checkpoint;
+  checkpoint.emplace(request, flags, std::move(films));
+  Outputs outputs;
+  declareOutputs(request.options, outputs);
+  checkMemory(request.options.scene);
+  return renderScene(request, flags.arguments(), checkpoint, outputs);
+}
+
+} // namespace fenestra

@@ -1,0 +1,97 @@
+#include "program/ProgressView.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+namespace fenestra {
+namespace {
+
+std::string clock(double seconds) {
+  if (!(seconds < 360000.0))
+    return "--:--";
+  const int s = static_cast<int>(seconds + 0.5);
+  char text[32];
+  if (s >= 3600)
+    std::snprintf(text, sizeof text, "%d:%02d:%02d", s / 3600, s / 60 % 60, s % 60);
+  else
+    std::snprintf(text, sizeof text, "%d:%02d", s / 60, s % 60);
+  return text;
+}
+
+std::string bar(double fraction, std::size_t width) {
+  const auto full = static_cast<std::size_t>(fraction * static_cast<double>(width));
+  return std::string("[") + std::string(full, '#') + std::string(width - full, '.') + "] ";
+}
+
+/// Width of the terminal in characters, queried each time: a user may change it.
+std::size_t columns() {
+  winsize size = {};
+  const bool known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return known ? size.ws_col : 80;
+}
+
+} // namespace
+
+ProgressView::ProgressView(ProgressMode mode, const char* comment) : m_mode(mode) {
+  if (m_mode == ProgressMode::automatic)
+    m_mode = ::isatty(STDERR_FILENO) ? ProgressMode::bar : ProgressMode::none;
+  if (m_mode != ProgressMode::xml)
+    return;
+  std::printf("<filter-start>\n<filter-name>fenestra</filter-name>\n"
+              "<filter-comment>%s</filter-comment>\n</filter-start>\n",
+              comment);
+  std::fflush(stdout);
+}
+
+void ProgressView::show(double fraction, const std::vector<std::string>& reached, bool last) {
+  m_fraction = std::max(m_fraction, fraction); // noise can grow between passes
+  if (m_mode == ProgressMode::xml)
+    return showTags(reached, last);
+  if (last)
+    return erase(); // leaves an empty line for the final report
+  if (m_mode == ProgressMode::bar)
+    showBar(reached);
+}
+
+void ProgressView::erase() const {
+  if (m_mode != ProgressMode::bar)
+    return;
+  std::fputs("\r\033[K", stderr);
+  std::fflush(stderr);
+}
+
+void ProgressView::showTags(const std::vector<std::string>& reached, bool last) const {
+  std::printf("<filter-progress>%.4f</filter-progress>\n<filter-comment>%s</filter-comment>\n",
+              m_fraction, joined(reached, ", ").c_str());
+  if (last)
+    std::printf("<filter-end>\n<filter-name>fenestra</filter-name>\n<filter-time>%.2f"
+                "</filter-time>\n</filter-end>\n",
+                m_watch.seconds());
+  std::fflush(stdout);
+}
+
+void ProgressView::showBar(const std::vector<std::string>& reached) const {
+  const double done = m_fraction;
+  const double left = done > 0.0 ? m_watch.seconds() * (1.0 - done) / done : infinity;
+  char share[16];
+  std::snprintf(share, sizeof share, "%3.0f %%", 100.0 * done);
+  std::vector<std::string> fields = reached;
+  fields.insert(fields.begin(), {share, clock(left) + " left"});
+
+  // A wrapped line cannot be erased: fields that do not fit are left out, the bar first.
+  constexpr std::size_t longest = 24;
+  constexpr std::size_t frame = 3;
+  const std::size_t width = columns() - 1;
+  std::string line;
+  for (const std::string& field : fields)
+    if (line.size() + 2 + field.size() <= width)
+      line += (line.empty() ? "" : "  ") + field;
+  if (line.size() + frame + longest / 3 <= width)
+    line = bar(done, std::min(longest, width - line.size() - frame)) + line;
+  std::fprintf(stderr, "\r%s\033[K", line.c_str());
+  std::fflush(stderr);
+}
+
+} // namespace fenestra

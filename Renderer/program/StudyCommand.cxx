@@ -1,0 +1,281 @@
+// `fenestra study`: the rows of a table, each rendered by a process of its own.
+
+#include "base/Error.h"
+#include "base/safe/Child.h"
+#include "base/safe/ShownText.h"
+#include "program/CommandLine.h"
+#include "program/Commands.h"
+#include "program/ProgressView.h"
+#include "program/Stop.h"
+#include "program/StudyResults.h"
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <iostream>
+#include <memory>
+#include <thread>
+
+namespace fenestra {
+namespace {
+
+namespace fs = std::filesystem;
+using State = RowOutcome::State;
+
+/// Part K of N of the rows, from 0.
+struct RowShare {
+  std::size_t part = 0, parts = 1;
+
+  bool has(std::size_t row) const { return row % parts == part; }
+};
+
+struct StudyOptions {
+  std::vector<std::string> formats; ///< beside .png
+  int workers = 1;
+  int threads = 1; ///< of all workers together
+  RowShare share;
+  bool restart = false;
+  ProgressMode progress = ProgressMode::automatic;
+};
+
+/// Renders the rows that are not finished, some at once.
+class Study {
+public:
+  Study(const StudyOptions& options, StudyResults& results)
+      : m_options(options),
+        m_results(results),
+        m_view(options.progress, "Study"),
+        m_workers(static_cast<std::size_t>(options.workers)) {
+    for (std::size_t row = 0; row < results.rows.size(); ++row)
+      if (options.share.has(row))
+        m_rows.push_back(row);
+  }
+
+  /// Returns once no row is left, or all have ended after a request to stop.
+  void run() {
+    const StopInstead stopInstead(m_stop);
+    while (hasWork()) {
+      for (std::size_t i = 0; i < m_workers.size(); ++i) {
+        if (m_workers[i] && m_workers[i]->child.hasEnded())
+          end(m_workers[i]);
+        while (!m_workers[i] && m_next < m_rows.size() && !m_stop)
+          begin(m_rows[m_next++], i);
+      }
+      if (m_stop)
+        askToStop();
+      m_view.show(fraction(), reached(), false);
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    m_view.show(m_stop ? fraction() : 1.0, reached(), true);
+  }
+
+  std::size_t rows() const { return m_rows.size(); }
+  std::size_t rendered() const { return m_rendered; }
+  std::size_t failed() const { return m_results.count(State::failed); }
+  bool isStopped() const { return m_stop; }
+
+private:
+  /// Row under way.
+  struct Worker {
+    std::size_t row;
+    std::unique_ptr<StudyRecord> record;
+    Child child;
+    Stopwatch watch = {};
+  };
+
+  bool hasWork() const {
+    return (m_next < m_rows.size() && !m_stop) ||
+           std::ranges::any_of(m_workers, [](const auto& worker) { return worker != nullptr; });
+  }
+
+  /// Threads of a worker: all of them, shared out.
+  int threadsOf(std::size_t worker) const {
+    const int share = m_options.threads / m_options.workers;
+    const int rest = m_options.threads % m_options.workers;
+    return std::max(1, share + (static_cast<int>(worker) < rest ? 1 : 0));
+  }
+
+  void begin(std::size_t row, std::size_t worker) {
+    try {
+      auto record = std::make_unique<StudyRecord>(m_results.rows[row], m_results.folder,
+                                                  m_options.formats, m_options.restart);
+      if (record->finished()) {
+        ++m_kept;
+        m_results.outcomes[row] = *record->finished();
+        return;
+      }
+      record->begin();
+      auto arguments = record->arguments(threadsOf(worker));
+      m_workers[worker].reset(new Worker{row, std::move(record), Child(std::move(arguments))});
+    } catch (const Error& error) {
+      tell(row, {State::failed, error.exitStatus(), 0.0, error.what()});
+    }
+  }
+
+  void end(std::unique_ptr<Worker>& worker) {
+    const Child& child = worker->child;
+    RowOutcome outcome{State::done, child.status(), worker->watch.seconds()};
+    const bool wasYoung = m_asked && outcome.status == 128 + SIGTERM; // without a handler yet
+    if (wasYoung || outcome.status == stoppedStatus) {
+      outcome.state = State::stopped;
+      outcome.status = stoppedStatus;
+    } else if (outcome.status != 0) {
+      outcome.state = State::failed;
+      outcome.error = errorLine(child);
+    }
+    try {
+      worker->record->finish(outcome);
+    } catch (const Error& error) {
+      outcome = {State::failed, error.exitStatus(), outcome.seconds, error.what()};
+    }
+    tell(worker->row, outcome);
+    worker.reset();
+  }
+
+  /// Last line that the process wrote which is no warning.
+  static std::string errorLine(const Child& child) {
+    if (child.status() > 128)
+      return textOf("ended by signal ", child.status() - 128, " (",
+                    ::strsignal(child.status() - 128), ")");
+    std::string last;
+    constexpr std::string_view program = "fenestra: ";
+    for (const std::string& line : split(child.errors(), '\n'))
+      if (line.starts_with(program) && !line.starts_with("fenestra: warning: "))
+        last = line.substr(program.size());
+    return oneLine(last);
+  }
+
+  /// Keeps what came of a row, and prints it.
+  void tell(std::size_t row, const RowOutcome& outcome) {
+    m_results.outcomes[row] = outcome;
+    ++m_rendered;
+    m_seconds += outcome.seconds;
+    if (m_view.mode() == ProgressMode::xml)
+      return;
+    m_view.erase();
+    const std::string& name = m_results.rows[row].name;
+    if (outcome.state == State::failed)
+      std::cerr << "fenestra: warning: " << oneLine(name + ": " + outcome.error) << '\n';
+    else if (outcome.state == State::done)
+      std::cout << oneLine(name) << ": " << numberText(outcome.seconds, 3) << " s" << std::endl;
+  }
+
+  /// Asks running processes once to end: they write what they have reached.
+  void askToStop() {
+    if (std::exchange(m_asked, true))
+      return;
+    for (const auto& worker : m_workers)
+      if (worker)
+        worker->child.send(SIGTERM);
+  }
+
+  /// Finished share of the rows that were to be made, in [0, 1]; of a row under way by the mean
+  /// seconds of rows so far.
+  double fraction() const {
+    const double toDo = static_cast<double>(m_rows.size() - m_kept);
+    double done = static_cast<double>(m_rendered);
+    for (const auto& worker : m_workers)
+      if (worker && m_seconds > 0.0)
+        done +=
+            std::min(0.9, worker->watch.seconds() * static_cast<double>(m_rendered) / m_seconds);
+    return toDo > 0.0 ? std::min(1.0, done / toDo) : 1.0;
+  }
+
+  std::vector<std::string> reached() const {
+    std::vector<std::string> fields = {
+        textOf("row ", std::min(m_kept + m_rendered + 1, m_rows.size()), " of ", m_rows.size())};
+    if (failed() > 0)
+      fields.push_back(textOf(failed(), " failed"));
+    return fields;
+  }
+
+  const StudyOptions& m_options;
+  StudyResults& m_results;
+  ProgressView m_view;
+  std::vector<std::size_t> m_rows; ///< of this run
+  std::vector<std::unique_ptr<Worker>> m_workers;
+  std::size_t m_next = 0, m_kept = 0, m_rendered = 0; ///< rows: to begin, of earlier runs, of this
+  double m_seconds = 0.0;                             ///< of the rows of this run
+  std::atomic<bool> m_stop = false;
+  bool m_asked = false;
+};
+
+RowShare shareOf(const FlagValues& values) {
+  const std::string text = values.text("rows").value_or("1/1");
+  std::size_t part = 0, parts = 0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%zu/%zu%c", &part, &parts, &rest) != 2 || part < 1 ||
+      parts < part || parts > 100'000)
+    throw usageError("--rows: expected K/N, K from 1 to N, got '", oneLine(text), "'");
+  return {part - 1, parts};
+}
+
+StudyOptions studyOptions(const FlagValues& values) {
+  StudyOptions options;
+  options.formats = values.list("formats");
+  for (const std::string& format : options.formats)
+    if (format != "exr" && format != "nrrd" && format != "tif")
+      throw usageError("--formats: expected exr, nrrd or tif, got '", oneLine(format), "'");
+  options.threads = threadCount(values);
+  options.workers = static_cast<int>(values.count("workers").value_or(1));
+  options.share = shareOf(values);
+  options.restart = values.has("restart");
+  options.progress = givenOptions(values).progress;
+  return options;
+}
+
+/// Flags of all rows, without the study's own.
+FlagValues givenToAllRows(const FlagValues& values) {
+  FlagValues common = values;
+  for (const Flag& flag : studySyntax().flags)
+    if (!shapesPicture(flag) && flag.name != "layers")
+      common.remove(flag.name);
+  for (const char* name : {"TABLE", "output", "workers", "formats", "rows", "restart"})
+    common.remove(name);
+  return common;
+}
+
+} // namespace
+
+int studyCommand(int argc, char** argv, int first) {
+  const std::optional<FlagValues> values = parseCommandLine(studySyntax(), argc, argv, first);
+  if (!values)
+    return 0;
+  const StudyOptions options = studyOptions(*values);
+  StudyResults results{*values->text("TABLE"), {}, {}, {}};
+  results.folder = values->text("output").value_or(
+      (results.table.parent_path() / results.table.stem()).string());
+  results.rows = readStudyTable(results.table, givenToAllRows(*values));
+  results.outcomes.resize(results.rows.size());
+  const MadeFolders made(results.folder);
+  Outputs outputs;
+  const bool isWhole = options.share.parts == 1; // one of several machines knows its own rows only
+  if (isWhole)
+    declareResults(results, outputs);
+  const Stopwatch watch;
+  Study study(options, results);
+  study.run();
+  if (isWhole)
+    writeResults(results, outputs);
+  outputs.commit();
+  std::cout << oneLine(textOf(results.folder, ": ", results.count(State::done), " of ",
+                              study.rows(), " rows done, ", study.rendered(), " rendered now, ",
+                              numberText(watch.seconds(), 3), " s",
+                              study.isStopped() ? " (stopped on request; the same command goes on)"
+                                                : ""))
+            << std::endl;
+  if (study.isStopped())
+    return stopStatus();
+  for (std::size_t row = 0; row < results.rows.size(); ++row)
+    if (const RowOutcome& outcome = results.outcomes[row]; outcome.state == State::failed) {
+      const int status = outcome.status > 128 ? 4 : outcome.status;
+      throw Error(static_cast<ErrorKind>(status),
+                  textOf(results.table, ": ", study.failed(), " of ", study.rows(),
+                         " rows failed, the first ", results.rows[row].name, ": ", outcome.error));
+    }
+  return 0;
+}
+
+} // namespace fenestra

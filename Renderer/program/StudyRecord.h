@@ -1,0 +1,61 @@
+#pragma once
+// Files of a study's row, and what their record tells of them.
+
+#include "base/safe/Folders.h"
+#include "base/safe/Locks.h"
+#include "program/Record.h"
+#include "program/StudyTable.h"
+
+namespace fenestra {
+
+/// End of a row.
+struct RowOutcome {
+  enum class State { missing, done, failed, stopped };
+
+  State state = State::missing;
+  int status = 0;         ///< exit status; 128 and a signal's number where one ended the process
+  double seconds = 0.0;   ///< wall time of its process
+  std::string error = {}; ///< error line of a row that failed
+};
+
+/// Folder, files and record of a row, held against other studies of these names during the
+/// object's life.
+class StudyRecord {
+public:
+  /// Makes the folder. Reads the record of the row, if any; with `restart`, nothing counts as
+  /// finished. `formats`: extensions of pictures beside .png. Throws Error: usage if another
+  /// process makes this row, or if a file is there that is not as recorded; input if the record is
+  /// damaged; output.
+  StudyRecord(const StudyRow& row, const std::filesystem::path& folder,
+              const std::vector<std::string>& formats, bool restart);
+
+  /// Outcome of an earlier run with the same flags and inputs that was done; nullopt: none.
+  const std::optional<RowOutcome>& finished() const { return m_finished; }
+  /// Arguments of the process that makes the row, with its share of threads.
+  std::vector<std::string> arguments(int threads) const;
+
+  /// Puts the record in place, before the row is made. Throws Error (output).
+  void begin();
+  /// Records what came of the row; of one that is done, files and inputs. Throws Error.
+  void finish(const RowOutcome& outcome);
+
+private:
+  void read(bool restart);
+  /// Files that the row has.
+  std::vector<std::filesystem::path> files() const;
+
+  const StudyRow& m_row;
+  std::filesystem::path m_folder; ///< of the row
+  MadeFolders m_made;
+  std::vector<std::filesystem::path> m_pictures;
+  NameLock m_lock;
+  Record m_record;
+  Outputs m_outputs;
+  std::optional<RowOutcome> m_finished;
+};
+
+/// Files of a row in its folder: NAME.png, and its statistics.
+std::filesystem::path rowPicture(const StudyRow& row, const std::filesystem::path& folder);
+std::filesystem::path rowStats(const StudyRow& row, const std::filesystem::path& folder);
+
+} // namespace fenestra

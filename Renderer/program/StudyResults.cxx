@@ -1,0 +1,163 @@
+#include "program/StudyResults.h"
+
+#include "base/safe/Csv.h"
+#include "files/pictures/ContactSheet.h"
+#include "files/pictures/ImageWriter.h"
+
+#include <algorithm>
+#include <fstream>
+
+namespace fenestra {
+namespace {
+
+namespace fs = std::filesystem;
+using State = RowOutcome::State;
+
+const char* nameOf(State state) {
+  switch (state) {
+  case State::done:
+    return "done";
+  case State::failed:
+    return "failed";
+  case State::stopped:
+    return "stopped";
+  default:
+    return "missing";
+  }
+}
+
+fs::path summaryPath(const StudyResults& results) {
+  return results.folder / "study.csv";
+}
+
+std::vector<fs::path> sheetPaths(const StudyResults& results) {
+  std::vector<fs::path> paths = {results.folder / "study.png"};
+  while (paths.size() * mostOnSheet < results.rows.size())
+    paths.push_back(results.folder / textOf("study-", paths.size() + 1, ".png"));
+  return paths;
+}
+
+const std::vector<std::string> firstColumns = {"name",  "status",  "exitStatus",
+                                               "error", "picture", "seconds"};
+
+/// True for a summary of any version.
+bool isSummary(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string line;
+  const std::string head = csvLine(firstColumns);
+  return std::getline(file, line) && line.starts_with(head.substr(0, head.size() - 2));
+}
+
+/// Numbers of statistics by their places, as "samplesPerPixel.mean"; lists are left out.
+using Measures = std::map<std::string, double>;
+
+void addMeasures(const nlohmann::json& json, const std::string& place, Measures& measures) {
+  for (const auto& [key, value] : json.items()) {
+    const std::string name = place.empty() ? key : place + "." + key;
+    if (value.is_number())
+      measures[name] = value.get<double>();
+    else if (value.is_object())
+      addMeasures(value, name, measures);
+  }
+}
+
+/// Empty without statistics.
+Measures measuresOf(const StudyRow& row, const fs::path& folder) {
+  Measures measures;
+  try {
+    const fs::path path = rowStats(row, folder);
+    addMeasures(parseJson(readText(path), path.string()), "", measures);
+  } catch (const Error&) { // the row has none, or they are damaged
+    measures.clear();
+  }
+  return measures;
+}
+
+std::string summary(const StudyResults& results, const std::vector<Measures>& measures) {
+  std::vector<std::string> columns = {"noise", "noiseFiltered", "focusCoverage"};
+  for (const Measures& row : measures)
+    for (const auto& [name, value] : row)
+      if (std::ranges::find(columns, name) == columns.end())
+        columns.push_back(name);
+  std::vector<std::string> head = firstColumns;
+  head.insert(head.end(), columns.begin(), columns.end());
+  std::string text = csvLine(head);
+  for (std::size_t i = 0; i < results.rows.size(); ++i) {
+    const RowOutcome& outcome = results.outcomes[i];
+    const fs::path picture = rowPicture(results.rows[i], results.folder);
+    std::vector<std::string> fields = {
+        results.rows[i].name,
+        nameOf(outcome.state),
+        outcome.state == State::missing ? "" : textOf(outcome.status),
+        outcome.error,
+        outcome.state == State::done ? picture.lexically_relative(results.folder).string() : "",
+        outcome.state == State::missing ? "" : numberText(outcome.seconds)};
+    for (const std::string& column : columns) {
+      const auto found = measures[i].find(column);
+      fields.push_back(found == measures[i].end() ? "" : numberText(found->second, 9));
+    }
+    text += csvLine(fields);
+  }
+  return text;
+}
+
+SheetEntry entryOf(const StudyRow& row, const RowOutcome& outcome, const Measures& measures,
+                   const fs::path& folder) {
+  SheetEntry entry{.name = row.name, .lines = {row.shown}};
+  if (outcome.state == State::done)
+    entry.picture = rowPicture(row, folder);
+  if (outcome.state != State::done)
+    entry.problem = textOf(nameOf(outcome.state), outcome.error.empty() ? "" : ": ", outcome.error);
+  std::vector<std::string> told;
+  const auto measure = [&measures](const char* name) {
+    const auto found = measures.find(name);
+    return found == measures.end() ? std::optional<double>() : found->second;
+  };
+  if (const auto coverage = measure("focusCoverage"))
+    told.push_back(textOf(std::lround(100.0 * *coverage), " % of the focus seen"));
+  if (const auto filtered = measure("noiseFiltered");
+      const auto noise = filtered ? filtered : measure("noise"))
+    told.push_back("noise " + numberText(*noise, 2));
+  entry.lines.push_back(joined(told, ", "));
+  return entry;
+}
+
+} // namespace
+
+std::size_t StudyResults::count(State state) const {
+  return static_cast<std::size_t>(std::ranges::count(outcomes, state, &RowOutcome::state));
+}
+
+void declareResults(const StudyResults& results, Outputs& outputs) {
+  outputs.add(summaryPath(results), isSummary);
+  for (const fs::path& path : sheetPaths(results))
+    declareImage(path, outputs, NamedBy::standard);
+}
+
+void writeResults(const StudyResults& results, Outputs& outputs) {
+  std::vector<Measures> measures;
+  std::vector<SheetEntry> entries;
+  for (std::size_t i = 0; i < results.rows.size(); ++i) {
+    const StudyRow& row = results.rows[i];
+    const RowOutcome& outcome = results.outcomes[i];
+    measures.push_back(outcome.state == State::done ? measuresOf(row, results.folder) : Measures());
+    entries.push_back(entryOf(row, outcome, measures.back(), results.folder));
+  }
+  outputs.write(summaryPath(results), summary(results, measures));
+  const std::vector<fs::path> paths = sheetPaths(results);
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    std::string told = textOf(results.rows.size(), " cases");
+    for (const State state : {State::done, State::failed, State::stopped, State::missing})
+      if (const std::size_t count = results.count(state); count > 0)
+        told += textOf(", ", count, " ", nameOf(state));
+    if (paths.size() > 1)
+      told += textOf(", sheet ", i + 1, " of ", paths.size());
+    const std::size_t first = i * mostOnSheet;
+    const auto shown =
+        std::span(entries).subspan(first, std::min(mostOnSheet, entries.size() - first));
+    writeImage(contactSheet(results.table.stem().string(), told, shown), {}, paths[i], outputs,
+               {DisplayView::standard});
+  }
+}
+
+} // namespace fenestra

@@ -1,0 +1,239 @@
+#include "session/FilmFile.h"
+
+#include "base/safe/Digest.h"
+#include "base/safe/Inputs.h"
+#include "base/safe/JsonNode.h"
+
+#include <array>
+#include <bit>
+#include <cstring>
+
+namespace fenestra {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+constexpr std::string_view filmFormat = "fenestra film 1 ";
+constexpr std::size_t pixelWords = 30;
+constexpr std::size_t longestFirstLine = 40;
+constexpr double mostFilmSamples = 0x1p62; ///< sums of a few such counts fit 64 bits
+
+using PixelWords = std::array<std::uint64_t, pixelWords>;
+
+/// Calls `each` for every number of a pixel, in the order of the file; PixelSums::block and
+/// isCertain belong to the film and to the scene.
+template <typename Sums, typename Each>
+void forNumbers(Sums& p, Each&& each) {
+  const auto colors = [&](auto& color) {
+    for (int c = 0; c < 3; ++c)
+      each(color[c]);
+  };
+  each(p.samples);
+  colors(p.mean);
+  colors(p.deviation);
+  each(p.alpha);
+  each(p.depth);
+  each(p.collided);
+  colors(p.albedo);
+  colors(p.normal);
+  each(p.scatterings);
+  colors(p.evenMean);
+  each(p.evenAlpha);
+  colors(p.open[0]);
+  colors(p.open[1]);
+  colors(p.blockDeviation);
+}
+
+PixelWords wordsOf(const PixelSums& pixel) {
+  PixelWords words = {};
+  std::size_t i = 0;
+  forNumbers(pixel, [&](const auto& number) { words[i++] = std::bit_cast<std::uint64_t>(number); });
+  return words;
+}
+
+void setWords(const PixelWords& words, PixelSums& pixel) {
+  std::size_t i = 0;
+  forNumbers(pixel,
+             [&]<typename Number>(Number& number) { number = std::bit_cast<Number>(words[i++]); });
+}
+
+/// Calls visit(index of the pixel in the film) for the pixels of a part, in the order of the file.
+template <typename Visit>
+void forPixels(const Film& film, const Shard& shard, Visit&& visit) {
+  const Tiles tiles(film.width(), film.height());
+  for (const int number : tiles.of(shard)) {
+    const Tiles::Tile tile = tiles.at(number);
+    for (int row = tile.top; row < tile.bottom; ++row)
+      for (int column = tile.left; column < tile.right; ++column)
+        visit(column, row);
+  }
+}
+
+std::uint64_t pixelsOf(int width, int height, const Shard& shard) {
+  const Tiles tiles(width, height);
+  std::uint64_t pixels = 0;
+  for (const int number : tiles.of(shard)) {
+    const Tiles::Tile tile = tiles.at(number);
+    pixels += static_cast<std::uint64_t>(tile.right - tile.left) *
+              static_cast<std::uint64_t>(tile.bottom - tile.top);
+  }
+  return pixels;
+}
+
+struct NamedCount {
+  const char* name;
+  std::uint64_t Counters::*count;
+};
+
+constexpr NamedCount namedCounts[] = {
+    {"paths", &Counters::paths},
+    {"collisions", &Counters::collisions},
+    {"lookups", &Counters::lookups},
+    {"cells", &Counters::cells},
+    {"skippedCells", &Counters::skippedCells},
+    {"shadowRays", &Counters::shadowRays},
+    {"gradients", &Counters::gradients},
+};
+
+ordered_json headerOf(const RenderResult& result, const Shard& shard, const ordered_json& made) {
+  ordered_json header = {{"size", {result.film.width(), result.film.height()}},
+                         {"part", {shard.index, shard.count}},
+                         {"block", result.film.pixels().front().block},
+                         {"target", result.target},
+                         {"finished", result.finishedSamples},
+                         {"begun", result.begunSamples},
+                         {"lastPass", result.last.samples},
+                         {"lastNoise", result.last.noise}, // null: infinite
+                         {"hasPlan", !result.last.plan.noise().empty()},
+                         {"counts", ordered_json::object()},
+                         {"made", made}};
+  for (const auto& [name, count] : namedCounts)
+    header["counts"][name] = result.counters.*count;
+  return header;
+}
+
+} // namespace
+
+std::string filmContent(const RenderResult& result, const Shard& shard, const ordered_json& made) {
+  const Film& film = result.film;
+  const std::string header = jsonText(headerOf(result, shard, made), -1) + '\n';
+  const std::vector<float>& plan = result.last.plan.noise();
+  std::string content = textOf(filmFormat, header.size(), '\n', header);
+  content.reserve(content.size() +
+                  sizeof(PixelWords) * pixelsOf(film.width(), film.height(), shard) +
+                  plan.size() * sizeof(float) + sizeof(std::uint64_t));
+  forPixels(film, shard,
+            [&](int column, int row) { content += memoryOf(wordsOf(film.at(column, row))); });
+  content += memoryOf(plan);
+  Digest digest;
+  digest.add(content);
+  return content += memoryOf(std::array{digest.value()});
+}
+
+FilmFile::FilmFile(const fs::path& path) : m_path(path) {
+  requireFile(path, "name a film");
+  std::ifstream file = open(0);
+  std::string line(longestFirstLine, '\0');
+  file.read(line.data(), static_cast<std::streamsize>(line.size()));
+  line.resize(static_cast<std::size_t>(file.gcount()));
+  const std::size_t end = line.find('\n');
+  const auto bytes =
+      line.starts_with(filmFormat) && end != line.npos
+          ? parsed<std::uint64_t>(line.substr(filmFormat.size(), end - filmFormat.size()))
+          : std::nullopt;
+  if (!bytes)
+    throw inputError(path, "is no film of this version of Fenestra; name another file, or move it "
+                           "away to begin anew");
+  const std::uint64_t size = fs::file_size(path);
+  std::array<std::uint64_t, 1> digest = {};
+  if (*bytes > largestText || size < end + 1 + *bytes + sizeof digest)
+    throw damaged();
+  open(size - sizeof digest).read(reinterpret_cast<char*>(digest.data()), sizeof digest);
+  if (digestOf(path, size - sizeof digest) != digest.front())
+    throw damaged();
+  std::string text(*bytes, '\0');
+  open(end + 1).read(text.data(), static_cast<std::streamsize>(text.size()));
+  m_header = parseJson(text, path.string());
+  const JsonNode header(m_header, path.string());
+  constexpr int largest = 1 << 14; // of --size
+  const std::vector<double> pixels = header.at("size").numbers(2, 1, largest),
+                            part = header.at("part").numbers(2, 0, mostShards);
+  m_width = static_cast<int>(pixels[0]);
+  m_height = static_cast<int>(pixels[1]);
+  m_shard = {static_cast<int>(part[0]), static_cast<int>(part[1])};
+  m_hasPlan = header.at("hasPlan").boolean();
+  if (m_shard.index >= m_shard.count || !header.at("made").isObject())
+    throw damaged();
+  m_pixelsBegin = end + 1 + *bytes;
+  m_planBegin = m_pixelsBegin + sizeof(PixelWords) * pixelsOf(m_width, m_height, m_shard);
+  const std::uint64_t all =
+      static_cast<std::uint64_t>(m_width) * static_cast<std::uint64_t>(m_height);
+  if (size != m_planBegin + (m_hasPlan ? all * sizeof(float) : 0) + sizeof digest)
+    throw damaged();
+}
+
+Error FilmFile::damaged() const {
+  return inputError(m_path, "is a damaged film; remove it, and render it anew");
+}
+
+std::ifstream FilmFile::open(std::uint64_t position) const {
+  std::ifstream file(m_path, std::ios::binary);
+  file.seekg(static_cast<std::streamoff>(position));
+  return file;
+}
+
+std::string FilmFile::target() const {
+  return JsonNode(m_header, m_path.string()).at("target").text();
+}
+
+std::uint64_t FilmFile::samplesOf(const char* key) const {
+  const double samples = JsonNode(m_header, m_path.string()).at(key).numberIn(0.0, mostFilmSamples);
+  return static_cast<std::uint64_t>(samples);
+}
+
+Counters FilmFile::counters() const {
+  const JsonNode counts = JsonNode(m_header, m_path.string()).at("counts");
+  Counters counters;
+  for (const auto& [name, count] : namedCounts)
+    counters.*count = static_cast<std::uint64_t>(counts.at(name).numberIn(0.0, mostFilmSamples));
+  return counters;
+}
+
+RenderResult FilmFile::begun() const {
+  const JsonNode header(m_header, m_path.string());
+  constexpr double largestBlock = 1024.0;
+  const auto block = static_cast<std::uint32_t>(header.at("block").numberIn(1.0, largestBlock));
+  RenderResult result{Film(m_width, m_height, NumberSource::hasIndependentHalves, block)};
+  result.target = target();
+  result.counters = counters();
+  result.finishedSamples = finishedSamples();
+  result.begunSamples = begunSamples();
+  result.last.samples = samplesOf("lastPass");
+  if (header.at("lastNoise").isNumber())
+    result.last.noise = header.at("lastNoise").numberIn(0.0, infinity);
+  if (!m_hasPlan)
+    return result;
+  std::vector<float> plan(result.film.pixelCount());
+  open(m_planBegin)
+      .read(reinterpret_cast<char*>(plan.data()),
+            static_cast<std::streamsize>(plan.size() * sizeof(float)));
+  if (!std::ranges::all_of(plan, [](float s) { return s >= 0.0F && std::isfinite(s); }))
+    throw damaged();
+  result.last.plan = SamplePlan(std::move(plan));
+  return result;
+}
+
+void FilmFile::read(Film& film) const {
+  std::ifstream file = open(m_pixelsBegin);
+  PixelWords words = {};
+  forPixels(film, m_shard, [&](int column, int row) {
+    file.read(reinterpret_cast<char*>(words.data()), sizeof words);
+    setWords(words, film.at(column, row));
+  });
+  if (!file)
+    throw damaged();
+}
+
+} // namespace fenestra

@@ -1,0 +1,172 @@
+// Films of renders that are under way: the same command goes on, and no other one does.
+
+#include "CommandTesting.h"
+#include "PictureTesting.h"
+
+#include <csignal>
+
+namespace fenestra::CheckpointCommandTests {
+namespace {
+
+class CheckpointCommand : public SmallScene {
+protected:
+  CheckpointCommand() {
+    const Outcome made = keep();
+    EXPECT_EQ(made.status, 0) << made.err;
+  }
+
+  Outcome keep(const Arguments& more = {}) const {
+    Arguments all = {"--checkpoint", "a.film", "--output", "a.exr"};
+    all.insert(all.end(), more.begin(), more.end());
+    return renderWith(all);
+  }
+  /// Refusal of the film a.film, for a command with other words.
+  Refusal refusal(const std::string& name, const Arguments& words, const std::string& text,
+                  int status = 2) const {
+    Arguments all = {"volume.nrrd", "--checkpoint", "a.film", "--output", "a.exr"};
+    all.insert(all.end(), words.begin(), words.end());
+    return {name, all, status, text};
+  }
+
+  const Arguments small = {"--size", "16x16", "--samples", "2"};
+};
+
+TEST_F(CheckpointCommand, MoreSamplesGoOnFromTheFilm) {
+  const Outcome more = run({"volume.nrrd", "--size", "16x16", "--samples", "9", "--checkpoint",
+                            "a.film", "--output", "more.exr", "--threads", "1"},
+                           folder.path());
+  ASSERT_EQ(more.status, 0) << more.err;
+  const Outcome once = run(
+      {"volume.nrrd", "--size", "16x16", "--samples", "9", "--output", "once.exr"}, folder.path());
+  ASSERT_EQ(once.status, 0) << once.err;
+  expectSamePicture(folder / "once.exr", folder / "more.exr");
+}
+
+TEST_F(CheckpointCommand, FinishedFilmGivesThePictureAgain) {
+  const std::string film = bytesOf(folder / "a.film"), picture = bytesOf(folder / "a.exr");
+  const Outcome again = keep({"--output", "a.png", "--denoise", "on"});
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_TRUE(bytesOf(folder / "a.film") == film);
+  EXPECT_EQ(keep().status, 0);
+  EXPECT_TRUE(bytesOf(folder / "a.exr") == picture);
+  EXPECT_EQ(filesIn(folder.path()), (std::set<std::string>{"a.exr", "a.film", "a.png",
+                                                           "segments.seg.nrrd", "volume.nrrd"}));
+}
+
+TEST_F(CheckpointCommand, StoppedRenderGoesOnToTheSameBits) {
+  const auto words = [](const std::string& name) {
+    return Arguments{"volume.nrrd", "--size",       "64x64",         "--samples", "600",
+                     "--noise",     "0.1",          "--noisetarget", "raw",       "--progress",
+                     "xml",         "--checkpoint", name + ".film",  "--output",  name + ".exr"};
+  };
+  const Outcome once = run(words("once"), folder.path());
+  ASSERT_EQ(once.status, 0) << once.err;
+  Process process(words("two"), folder.path());
+  ASSERT_TRUE(process.waitForOutput("<filter-progress>0\\.[2-9]"));
+  process.send(SIGTERM);
+  const Outcome stopped = process.wait();
+  ASSERT_EQ(stopped.status, 5) << stopped.err;
+  EXPECT_NE(stopped.out.find("the same command goes on"), std::string::npos) << stopped.out;
+  const Outcome rest = run(words("two"), folder.path());
+  ASSERT_EQ(rest.status, 0) << rest.err;
+  expectSamePicture(folder / "once.exr", folder / "two.exr");
+}
+
+TEST_F(CheckpointCommand, FilmOfAnotherRenderIsRefused) {
+  folder.write("other.json", R"({"extinction": [[0, 0], [64, 1]], "albedo": [[0, 1, 1, 1]]})");
+  const auto with = [this](Arguments words) {
+    words.insert(words.end(), small.begin(), small.end());
+    return words;
+  };
+  std::vector<Refusal> refusals = {
+      refusal("seed", with({"--seed", "3"}), "--seed was not given, is 3"),
+      refusal("size", {"--size", "16x17", "--samples", "2"}, "--size was 16x16, is 16x17"),
+      refusal("view", with({"--view", "left"}), "--view was not given, is left"),
+      refusal("transfer", with({"--transfer", "other.json"}), "--transfer was not given, is other"),
+      refusal("bounces", with({"--bounces", "1"}), "--bounces"),
+      refusal("sampling", with({"--sampling", "independent"}), "--sampling"),
+      refusal("fewer samples", {"--size", "16x16", "--samples", "1"}, "has up to 2 samples"),
+      refusal("turntable", {}, "--checkpoint: a turntable records"),
+  };
+  refusals.back().arguments.insert(refusals.back().arguments.begin(), "turntable");
+  for (Refusal& one : refusals)
+    one.arguments.insert(one.arguments.end(), {"--progress", "xml"});
+  expectRefused(refusals, folder.path());
+}
+
+TEST_F(CheckpointCommand, ChangedInputsAreRefused) {
+  std::string samples = ramp();
+  samples[77] = 9;
+  folder.write("volume.nrrd", NrrdText().with(samples));
+  const Outcome outcome = keep();
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("volume.nrrd has changed since"), std::string::npos) << outcome.err;
+}
+
+TEST_F(CheckpointCommand, PlanByNoiseIsNotChangedBeyondThePilot) {
+  const Arguments even = {"volume.nrrd",  "--size", "16x16",    "--samples", "20",
+                          "--checkpoint", "b.film", "--output", "b.exr"};
+  ASSERT_EQ(run(even, folder.path()).status, 0);
+  Arguments planned = even;
+  planned.insert(planned.end(), {"--noise", "1e-4"});
+  const Outcome outcome = run(planned, folder.path());
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("--noise: b.film lacks"), std::string::npos) << outcome.err;
+}
+
+TEST_F(CheckpointCommand, OtherInstructionSetIsRefused) {
+  ::setenv("FENESTRA_INSTRUCTIONS", "SCALAR", 1);
+  const Outcome outcome = keep();
+  ::unsetenv("FENESTRA_INSTRUCTIONS");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("is SCALAR"), std::string::npos) << outcome.err;
+}
+
+TEST_F(CheckpointCommand, DamagedFilmIsRefusedAndKept) {
+  const std::string film = bytesOf(folder / "a.film");
+  for (const std::size_t at : {std::size_t{3}, film.size() / 2, film.size() - 2}) {
+    std::string damaged = film;
+    damaged[at] = static_cast<char>(damaged[at] ^ 4);
+    folder.write("a.film", damaged);
+    const Outcome outcome = keep();
+    EXPECT_EQ(outcome.status, 3);
+    EXPECT_NE(outcome.err.find("a.film: is "), std::string::npos) << outcome.err;
+    EXPECT_TRUE(bytesOf(folder / "a.film") == damaged);
+  }
+  folder.write("a.film", "somebody's notes");
+  EXPECT_EQ(keep().status, 3);
+  EXPECT_EQ(bytesOf(folder / "a.film"), "somebody's notes");
+  folder.write("a.film", "");
+  EXPECT_EQ(keep().status, 0);
+  EXPECT_EQ(bytesOf(folder / "a.film").size(), film.size());
+}
+
+TEST_F(CheckpointCommand, FilmOfARunningRenderIsRefused) {
+  const Arguments words = {"volume.nrrd", "--size",     "64x64", "--samples",
+                           "1000000",     "--progress", "xml",   "--checkpoint",
+                           "c.film",      "--output",   "c.exr"};
+  Process process(words, folder.path());
+  ASSERT_TRUE(process.waitForOutput("<filter-start>"));
+  const Outcome second = run(words, folder.path());
+  EXPECT_EQ(second.status, 2);
+  EXPECT_NE(second.err.find("another process is writing this film"), std::string::npos)
+      << second.err;
+}
+
+TEST_F(CheckpointCommand, FilmThatCannotBeWrittenIsOneWarning) {
+  Process process({"volume.nrrd", "--size", "64x64", "--samples", "1000000", "--seconds", "1.6",
+                   "--threads", "1", "--progress", "xml", "--checkpoint", "c.film", "--output",
+                   "c.exr"},
+                  folder.path());
+  ASSERT_TRUE(process.waitForOutput("<filter-start>"));
+  std::filesystem::create_directory(folder / "c.film"); // as a failing disk, in its place
+  const Outcome outcome = process.wait();
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  EXPECT_TRUE(outcome.err.starts_with("fenestra: warning: c.film: ")) << outcome.err;
+  EXPECT_EQ(readImage(folder / "c.exr").width, 64);
+  EXPECT_TRUE(std::filesystem::is_empty(folder / "c.film"));
+}
+
+} // namespace
+} // namespace fenestra::CheckpointCommandTests

@@ -1,0 +1,248 @@
+// `fenestra study`: a row's failure is its own, and no row is made twice.
+
+#include "CommandTesting.h"
+#include "base/Stopwatch.h"
+#include "files/pictures/ImageReader.h"
+
+#include <nlohmann/json.hpp>
+
+#include <csignal>
+#include <sstream>
+#include <thread>
+
+namespace fenestra::StudyCommandTests {
+namespace {
+
+const Arguments quick = {"--size", "16x16", "--samples", "2"};
+
+class StudyCommand : public SmallScene {
+protected:
+  static Arguments study(const Arguments& more, const std::string& table = "t.csv") {
+    Arguments all = {"study", table, "--output", "out"};
+    all.insert(all.end(), quick.begin(), quick.end());
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  Outcome made(const Arguments& more = {}) const { return run(study(more), folder.path()); }
+  std::string bytes(const std::string& file) const { return bytesOf(folder / ("out/" + file)); }
+  nlohmann::json record(const std::string& row) const {
+    return nlohmann::json::parse(bytes(row + "/" + row + ".study.json"));
+  }
+  /// Line of the summary that begins with a row's name.
+  std::string summaryOf(const std::string& row) const {
+    std::istringstream lines(bytes("study.csv"));
+    for (std::string line; std::getline(lines, line);)
+      if (line.starts_with(row + ","))
+        return line;
+    return "";
+  }
+};
+
+TEST_F(StudyCommand, RowsEqualThoseOfRender) {
+  folder.write("t.csv", "\xef\xbb\xbfname,input,segmentation,focus,view,samples\r\n"
+                        "left,volume.nrrd,segments.seg.nrrd,A,left,\r\n"
+                        "\"Bone, left\",volume.nrrd,segments.seg.nrrd,\"Bone\\, left\",,3\r\n"
+                        ",,,,,\r\n");
+  const Outcome outcome =
+      made({"--formats", "exr", "--workers", "2", "--threads", "2", "--progress", "none"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("out: 2 of 2 rows done, 2 rendered now"), std::string::npos)
+      << outcome.out;
+  const std::vector<std::pair<std::string, Arguments>> rows = {
+      {"left", {"--focus", "A", "--view", "left"}},
+      {"Bone, left", {"--focus", "A", "--samples", "3"}}};
+  for (const auto& [name, flags] : rows) {
+    Arguments single = {"volume.nrrd", "--segmentation", "segments.seg.nrrd", "--size",    "16x16",
+                        "--output",    "single.exr",     "--output",          "single.png"};
+    if (name == "left")
+      single.insert(single.end(), {"--samples", "2"});
+    single.insert(single.end(), flags.begin(), flags.end());
+    ASSERT_EQ(run(single, folder.path()).status, 0);
+    const std::string base = "out/" + name + "/" + name;
+    EXPECT_EQ(readImage(folder / (base + ".exr")).channels,
+              readImage(folder / "single.exr").channels)
+        << name;
+    EXPECT_EQ(bytesOf(folder / (base + ".png")), bytesOf(folder / "single.png")) << name;
+  }
+  EXPECT_EQ(readImage(folder / "out/left/left.exr").header.at("command").find(folder.path()),
+            std::string::npos)
+      << "the header's names are relative";
+  EXPECT_NE(summaryOf("\"Bone, left\"").find("done,0,,\"Bone, left/Bone, left.png\","),
+            std::string::npos);
+  EXPECT_GT(readImage(folder / "out/study.png").width, 16);
+  EXPECT_EQ(filesIn(folder / "out").size(), 2U + 2 * (1 + 4)) << "four files in each folder";
+}
+
+TEST_F(StudyCommand, AFailingRowEndsNoOther) {
+  folder.write("torn.nrrd", NrrdText().with("x"));
+  folder.write("t.csv", "name,input,focus\na,torn.nrrd,\nb,nowhere.nrrd,\nc,volume.nrrd,7\n"
+                        "d,volume.nrrd,\n");
+  const Outcome outcome = made();
+  EXPECT_EQ(outcome.status, 3) << outcome.err;
+  EXPECT_NE(outcome.err.find("t.csv: 3 of 4 rows failed, the first a: torn.nrrd: "),
+            std::string::npos)
+      << outcome.err;
+  EXPECT_NE(outcome.out.find("out: 1 of 4 rows done, 4 rendered now"), std::string::npos);
+  EXPECT_TRUE(summaryOf("a").starts_with("a,failed,3,")) << summaryOf("a");
+  EXPECT_TRUE(summaryOf("b").starts_with("b,failed,3,")) << summaryOf("b");
+  EXPECT_TRUE(summaryOf("c").starts_with("c,failed,2,")) << summaryOf("c");
+  EXPECT_TRUE(summaryOf("d").starts_with("d,done,0,,d/d.png,")) << summaryOf("d");
+  EXPECT_EQ(record("b")["finished"][0]["status"], 3);
+  EXPECT_NE(record("b")["finished"][0]["error"].get<std::string>().find("nowhere.nrrd: there is"),
+            std::string::npos);
+
+  folder.write("torn.nrrd", NrrdText().with(ramp()));
+  folder.write("nowhere.nrrd", NrrdText().with(ramp()));
+  const Outcome again = made();
+  EXPECT_NE(again.out.find("3 of 4 rows done, 3 rendered now"), std::string::npos) << again.out;
+}
+
+TEST_F(StudyCommand, MakesOnlyRowsWhoseFlagsOrFilesHaveChanged) {
+  folder.write("other.nrrd", NrrdText().with(ramp()));
+  NrrdText header;
+  header.fields = "data file: voxels.raw\n";
+  folder.write("detached.nhdr", header.with(""));
+  folder.write("voxels.raw", ramp());
+  const std::string rows = "name,input,seed\na,volume.nrrd,\nb,other.nrrd,\nc,detached.nhdr,";
+  folder.write("t.csv", rows + "\n");
+  ASSERT_EQ(made().status, 0);
+  const auto expectMade = [&](int count, const Arguments& more = {}) {
+    const Outcome outcome = made(more);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("3 of 3 rows done, " + std::to_string(count) + " rendered now"),
+              std::string::npos)
+        << outcome.out;
+  };
+  expectMade(0, {"--workers", "3", "--threads", "1"});
+  folder.write("t.csv", rows + "7\n");
+  expectMade(1);
+  for (const char* input : {"other.nrrd", "voxels.raw"}) {
+    const auto before = std::filesystem::last_write_time(folder / input);
+    std::filesystem::last_write_time(folder / input, before + std::chrono::seconds(1));
+    expectMade(1);
+  }
+  std::filesystem::remove(folder / "out/a/a.png");
+  expectMade(1);
+  expectMade(3, {"--exposure", "1"});
+  expectMade(3, {"--exposure", "1", "--restart"});
+  expectMade(0, {"--exposure", "1"});
+}
+
+TEST_F(StudyCommand, GoesOnAfterAKillWithTheSameFiles) {
+  std::string table = "name,input\n";
+  for (char row = 'a'; row < 'g'; ++row)
+    table += std::string(1, row) + ",volume.nrrd\n";
+  folder.write("t.csv", table);
+  const Arguments words = study({"--workers", "2"});
+  std::string told;
+  {
+    Process process(words, folder.path());
+    ASSERT_TRUE(process.waitForOutput("b: [0-9.e-]+ s"));
+    process.send(SIGKILL);
+    process.wait();
+    told = process.output();
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/study.csv"));
+  std::map<std::string, std::string> before; // statistics of the rows that are done
+  for (char row = 'a'; row < 'g'; ++row)
+    if (told.find(std::string(1, row) + ": ") != std::string::npos)
+      before[std::string(1, row)] = bytes(std::string(1, row) + "/" + row + ".json");
+  const Outcome rest = run(words, folder.path());
+  ASSERT_EQ(rest.status, 0) << rest.err;
+  EXPECT_NE(rest.out.find("6 of 6 rows done, "), std::string::npos) << rest.out;
+  EXPECT_EQ(rest.out.find("6 rendered now"), std::string::npos) << rest.out;
+  for (const auto& [row, stats] : before)
+    EXPECT_EQ(bytes(row + "/" + row + ".json"), stats) << "a row is made twice";
+  EXPECT_EQ(filesIn(folder / "out").size(), 2U + 6 * (1 + 3)) << "something is left";
+}
+
+TEST_F(StudyCommand, StopsOnRequestAndGoesOn) {
+  folder.write("t.csv", "name,input,samples,size\na,volume.nrrd,2,16x16\n"
+                        "b,volume.nrrd,1000000,64x64\nc,volume.nrrd,2,16x16\n");
+  for (const int milliseconds : {0, 300}) { // before the row's process has begun, and within it
+    Process process({"study", "t.csv", "--output", "out", "--restart"}, folder.path());
+    ASSERT_TRUE(process.waitForOutput("a: "));
+    const Stopwatch watch;
+    while (!std::filesystem::exists(folder / "out/b/b.study.json") && watch.seconds() < 10.0)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+    process.send(SIGTERM);
+    const Outcome outcome = process.wait();
+    EXPECT_EQ(outcome.status, 5) << outcome.err;
+    EXPECT_LT(outcome.seconds, 10.0);
+    EXPECT_NE(outcome.out.find("1 of 3 rows done"), std::string::npos) << outcome.out;
+    EXPECT_TRUE(summaryOf("b").starts_with("b,stopped,5,,,")) << summaryOf("b");
+    EXPECT_TRUE(summaryOf("c").starts_with("c,missing,,")) << summaryOf("c");
+  }
+}
+
+TEST_F(StudyCommand, PartsOfTheRowsMakeTheWhole) {
+  folder.write("t.csv", "name,input\na,volume.nrrd\nb,volume.nrrd\nc,volume.nrrd\n");
+  for (const char* part : {"1/2", "2/2"})
+    ASSERT_EQ(made({"--rows", part}).status, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/study.csv"));
+  const Outcome whole = made();
+  EXPECT_NE(whole.out.find("3 of 3 rows done, 0 rendered now"), std::string::npos) << whole.out;
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/study.png"));
+}
+
+TEST_F(StudyCommand, LeavesOthersFilesAlone) {
+  folder.write("t.csv", "name,input\na,volume.nrrd\nb,volume.nrrd\n");
+  std::filesystem::create_directories(folder / "out/a");
+  folder.write("out/a/a.png", "mine");
+  const Outcome refused = made();
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("out/a/a.png: is there, and no a.study.json tells what it is of"),
+            std::string::npos)
+      << refused.err;
+  EXPECT_EQ(bytes("a/a.png"), "mine");
+  ASSERT_EQ(made({"--restart"}).status, 0);
+  folder.write("out/b/b.png", "mine");
+  folder.write("out/a/a.study.json", "{\"request\": 7}");
+  const Outcome edited = made();
+  EXPECT_NE(edited.err.find("out/b/b.png: is not the row that was recorded"), std::string::npos)
+      << edited.err;
+  EXPECT_NE(edited.err.find("out/a/a.study.json: request: must be an object"), std::string::npos)
+      << edited.err;
+  EXPECT_EQ(bytes("b/b.png"), "mine");
+  std::filesystem::remove(folder / "out/a/a.study.json");
+  ASSERT_EQ(made({"--restart"}).status, 0);
+  folder.write("out/study.csv", "mine");
+  EXPECT_EQ(made().status, 2);
+  EXPECT_EQ(bytes("study.csv"), "mine");
+}
+
+TEST_F(StudyCommand, RefusesDamagedTables) {
+  const std::vector<std::array<std::string, 2>> tables = {
+      {"", "holds no row"},
+      {"name,input\n", "holds no row"},
+      {"name\na\n", "line 1: has no column 'input'; add it"},
+      {"input\na\n", "line 1: has no column 'name'; add it"},
+      {"name,input,veiw\na,b,c\n", "line 1: 'veiw' is no column of a study; did you mean view?"},
+      {"name,input,stats\na,b,c\n", "line 1: 'stats' is no column of a study"},
+      {"name,input,view,view\na,b,,\n", "line 1: has the column 'view' twice"},
+      {"name,input\na\n", "line 2: has 1 fields, the first line 2"},
+      {"name,input\n../a,b\n", "line 2: '../a' cannot be a folder's name"},
+      {"name,input\n.a,b\n", "line 2: '.a' cannot be a folder's name"},
+      {"name,input\n=1+2,b\n", "line 2: '=1+2' cannot be a folder's name"},
+      {"name,input\n\"a\nb\",b\n", "line 2, name: holds a line's end"},
+      {"name,input\n,b\n", "line 2: '' cannot be a folder's name"},
+      {"name,input\na,\n", "line 2: names no input"},
+      {"name,input\na,b\nA,b\n", "line 3: has the name of line 2, 'A'; rename one"},
+      {"name,input\na,\"b\n", "line 2: its quotes do not close"},
+      {"name,input\n" + std::string(101, 'a') + ",b\n", "cannot be a folder's name"}};
+  for (const auto& [text, message] : tables) {
+    folder.write("t.csv", text);
+    expectRefused({{text, study({}), 3, "t.csv: "}}, folder.path());
+    EXPECT_NE(run(study({}), folder.path()).err.find(message), std::string::npos) << text;
+  }
+  folder.write("t.csv", "name,input\na,volume.nrrd\n");
+  expectRefused({{"rows", study({"--rows", "3/2"}), 2, "--rows: expected K/N"},
+                 {"formats", study({"--formats", "gif"}), 2, "--formats: expected exr"},
+                 {"flag", study({"--surface", "a.vtp"}), 2, "--surface: no such flag"},
+                 {"no table", {"study", "none.csv"}, 3, "none.csv: there is no such file"}},
+                folder.path());
+}
+
+} // namespace
+} // namespace fenestra::StudyCommandTests

@@ -1,0 +1,131 @@
+# Sourced: a Slurm of one machine (munged, slurmctld, slurmd) in a folder of its own, for a test.
+# begin_test FENESTRA FOLDER goes to the folder, emptied, or skips where there is no Slurm; start_cluster
+# starts it and sets SLURM_CONF; what was started ends with the test.
+
+cluster_ids=()
+
+# can_run_cluster: says why not, where it cannot.
+can_run_cluster() {
+  local name
+  for name in munged slurmctld slurmd sbatch squeue; do
+    PATH=$PATH:/usr/sbin command -v "$name" >/dev/null || { echo "$name is not installed"; return 1; }
+  done
+  [ "$(id -u)" -eq 0 ] || { echo "slurmd needs root"; return 1; }
+}
+
+fail() {
+  printf '%s: %s\n' "$(basename "$0")" "$*" >&2
+  exit 1
+}
+
+skip() {
+  printf 'SKIPPED: %s\n' "$*"
+  exit 77
+}
+
+begin_test() {
+  local why
+  why=$(can_run_cluster) || skip "the array job, for $why"
+  export FENESTRA
+  FENESTRA=$(realpath "$1")
+  rm -rf "$2"
+  mkdir -p "$2"
+  cd "$2"
+  trap stop_cluster EXIT
+}
+
+# print_jobs: the log of the jobs, as slurmctld keeps it, and what they printed.
+print_jobs() {
+  local log
+  printf -- '-- jobs, as slurmctld records them\n'
+  grep -oE '\<(JobId|Name|JobState|StartTime|EndTime|NodeList|ArrayJobId|ArrayTaskId|ExitCode)=[^ ]+' \
+    slurm/jobs.log | tr '\n' ' ' | sed 's/ JobId/\nJobId/g; s/ $/\n/'
+  for log in fenestra-*.log; do
+    printf '\n-- %s\n' "$log"
+    cat "$log"
+  done
+}
+
+free_port() { python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])'; }
+
+# in_background LOG COMMAND...: starts a daemon in the foreground of its own.
+in_background() {
+  local log=$1
+  shift
+  "$@" >"$log" 2>&1 &
+  cluster_ids+=($!)
+}
+
+start_cluster() {
+  local folder=$PWD/slurm host
+  host=$(hostname -s)
+  export PATH=$PATH:/usr/sbin SLURM_CONF=$folder/slurm.conf
+  mkdir -p "$folder"/{state,spool,munge}
+  chmod 0700 "$folder/munge"
+  head -c 1024 /dev/urandom >"$folder/munge/key"
+  chmod 0400 "$folder/munge/key"
+  cat >"$SLURM_CONF" <<CONF
+ClusterName=fenestra
+SlurmctldHost=$host(127.0.0.1)
+SlurmctldPort=$(free_port)
+SlurmdPort=$(free_port)
+SlurmUser=root
+AuthType=auth/munge
+AuthInfo=socket=$folder/munge/socket
+CredType=cred/munge
+StateSaveLocation=$folder/state
+SlurmdSpoolDir=$folder/spool
+SlurmctldPidFile=$folder/slurmctld.pid
+SlurmdPidFile=$folder/slurmd.pid
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_CPU
+SwitchType=switch/none
+MpiDefault=none
+JobAcctGatherType=jobacct_gather/none
+AccountingStorageType=accounting_storage/none
+JobCompType=jobcomp/filetxt
+JobCompLoc=$folder/jobs.log
+SchedulerParameters=bf_interval=2,sched_interval=2
+ReturnToService=2
+NodeName=$host NodeAddr=127.0.0.1 CPUs=$(nproc) State=UNKNOWN
+PartitionName=all Nodes=ALL Default=YES MaxTime=INFINITE State=UP
+CONF
+  in_background "$folder/munged.log" munged --foreground --force --key-file="$folder/munge/key" \
+    --socket="$folder/munge/socket" --pid-file="$folder/munge/pid" --log-file="$folder/munge/log" \
+    --seed-file="$folder/munge/seed" --num-threads=2
+  until [ -S "$folder/munge/socket" ]; do
+    kill -0 "${cluster_ids[-1]}" || { cat "$folder/munged.log"; return 1; }
+    sleep 0.1
+  done
+  in_background "$folder/slurmctld.log" slurmctld -D
+  in_background "$folder/slurmd.log" slurmd -D
+  local tries
+  for tries in $(seq 300); do
+    [ "$(sinfo --noheader --format=%T 2>/dev/null)" != idle ] || return 0
+    sleep 0.1
+  done
+  tail -n 20 "$folder"/*.log
+  return 1
+}
+
+# wait_for_jobs SECONDS: until the queue is empty.
+wait_for_jobs() {
+  local tries
+  for tries in $(seq $((2 * $1))); do
+    [ -n "$(squeue --noheader 2>&1)" ] || return 0
+    sleep 0.5
+  done
+  squeue
+  return 1
+}
+
+stop_cluster() {
+  local i
+  for ((i = ${#cluster_ids[@]} - 1; i >= 0; --i)); do
+    kill "${cluster_ids[i]}" 2>/dev/null || true
+    wait "${cluster_ids[i]}" 2>/dev/null || true
+  done
+  cluster_ids=()
+}

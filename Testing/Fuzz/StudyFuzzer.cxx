@@ -1,0 +1,28 @@
+// Table of a study, or record of finished work; the first byte chooses.
+#include "Harness.h"
+
+#include "program/Record.h"
+#include "program/StudyTable.h"
+
+#include <set>
+
+FENESTRA_FUZZ(Study, input) {
+  using namespace fenestra;
+  const std::string name = fuzzing::chooseName(input, std::array{"t.csv", "record.json"});
+  const std::filesystem::path path = fuzzing::asFile(input, name);
+  if (name == "t.csv") {
+    std::set<std::string> names;
+    for (const StudyRow& row : readStudyTable(path, FlagValues(studySyntax().flags)))
+      if (row.name.find('/') != row.name.npos || row.input.empty() ||
+          !names.insert(row.name).second)
+        throw std::logic_error("a row that has no folder of its own, or no input");
+    return;
+  }
+  Record record(path, "row", {"--seed=7"});
+  record.readRequest(4);
+  record.requireInputs(record.recordedInputs());
+  record.difference();
+  record.readPieces(
+      3, [&path](int) { return std::vector{path}; },
+      [](const JsonNode&) { return nlohmann::json(); });
+}

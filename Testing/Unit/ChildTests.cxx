@@ -1,0 +1,75 @@
+#include "base/safe/Child.h"
+
+#include "base/Stopwatch.h"
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <iostream>
+#include <thread>
+
+#include <fcntl.h>
+
+namespace fenestra::ChildTests {
+namespace {
+
+/// Runs one of the disabled cases below.
+std::vector<std::string> playing(const std::string& part) {
+  return {"--gtest_also_run_disabled_tests", "--gtest_filter=Child.DISABLED_" + part};
+}
+
+void waitFor(Child& child) {
+  const Stopwatch watch;
+  while (!child.hasEnded() && watch.seconds() < 30.0)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+TEST(Child, DISABLED_Speaks) {
+  std::cerr << "said by the child\n";
+}
+TEST(Child, DISABLED_Fails) {
+  FAIL();
+}
+TEST(Child, DISABLED_Crashes) {
+  std::cerr << std::string(70'000, 'x') << "the end\n";
+  ::kill(::getpid(), SIGKILL);
+}
+TEST(Child, DISABLED_Sleeps) {
+  std::this_thread::sleep_for(std::chrono::minutes(1));
+}
+/// Standard input is empty, and no file of the parent is open.
+TEST(Child, DISABLED_HasNoFileOfTheParent) {
+  EXPECT_EQ(std::cin.get(), EOF);
+  for (int file = 3; file < 64; ++file)
+    EXPECT_LT(::fcntl(file, F_GETFD), 0) << file;
+}
+
+TEST(Child, TellsHowItEnded) {
+  const std::vector<std::pair<std::string, int>> ends = {
+      {"Speaks", 0}, {"Fails", 1}, {"Crashes", 128 + SIGKILL}, {"HasNoFileOfTheParent", 0}};
+  for (const auto& [part, status] : ends) {
+    Child child(playing(part));
+    waitFor(child);
+    EXPECT_EQ(child.status(), status) << part << child.errors();
+    if (part == "Speaks") {
+      EXPECT_EQ(child.errors(), "said by the child\n");
+    }
+    if (part == "Crashes") {
+      EXPECT_TRUE(child.errors().ends_with("xthe end\n"));
+      EXPECT_EQ(child.errors().size(), 1U << 16U);
+    }
+  }
+}
+
+TEST(Child, EndsBySignalAndWithItsObject) {
+  const Stopwatch watch;
+  Child child(playing("Sleeps"));
+  child.send(SIGTERM);
+  waitFor(child);
+  EXPECT_EQ(child.status(), 128 + SIGTERM);
+  { const Child other(playing("Sleeps")); }
+  EXPECT_LT(watch.seconds(), 30.0);
+}
+
+} // namespace
+} // namespace fenestra::ChildTests

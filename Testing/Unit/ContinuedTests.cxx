@@ -1,0 +1,153 @@
+// A render that goes on from a film ends as one that was never interrupted, and parts of a picture
+// add up to it.
+
+#include "FilmTesting.h"
+
+#include <atomic>
+
+namespace fenestra::testing::ContinuedTests {
+namespace {
+
+RenderSettings settingsOf(std::uint64_t samples, double noise = -1.0) {
+  RenderSettings settings;
+  settings.samples = samples;
+  settings.noise = noise;
+  settings.path.wantNormals = true;
+  return settings;
+}
+
+/// Results that a render of `scene` keeps each time that its threads have looked `period` times
+/// whether it should; some are in the middle of a pass.
+std::vector<RenderResult> keptResults(const TestScene& scene, const RenderSettings& settings,
+                                      int period) {
+  std::vector<RenderResult> kept;
+  std::atomic<int> looks = 0;
+  RenderMonitor monitor;
+  monitor.isKeepDue = [&] { return ++looks > period; };
+  monitor.keep = [&](const RenderResult& result) {
+    kept.push_back(result);
+    looks = 0;
+  };
+  scene.with([&](const RenderScene& s) { return render(s, settings, monitor); });
+  return kept;
+}
+
+RenderResult continued(const TestScene& scene, const RenderSettings& settings,
+                       const RenderResult& begun) {
+  RenderMonitor monitor;
+  return scene.with([&](const RenderScene& s) { return render(s, settings, monitor, begun); });
+}
+
+void expectSameEnd(const RenderResult& once, const RenderResult& again) {
+  expectIdentical(once.film, again.film);
+  EXPECT_EQ(once.finishedSamples, again.finishedSamples);
+  EXPECT_EQ(once.reason, again.reason);
+}
+
+/// True if some pixels have more samples than the finished passes give them.
+bool isAhead(const RenderResult& result) {
+  return result.film.sampleCounts().greatest > result.finishedSamples;
+}
+
+TEST(Continued, EndsAtTheSameBits) {
+  const TestScene scene = wavyScene();
+  const RenderSettings settings = settingsOf(37);
+  const RenderResult once = scene.render(settings);
+  const auto kept = keptResults(scene, settings, 5);
+  ASSERT_GT(kept.size(), 5U);
+  EXPECT_GT(std::ranges::count_if(kept, isAhead), 2);
+  for (const RenderResult& begun : kept)
+    expectSameEnd(once, continued(scene, settings, begun));
+  expectSameEnd(once, continued(scene, settings, once));
+}
+
+TEST(Continued, MoreSamplesGoOnWhereFewerEnded) {
+  const TestScene scene = wavyScene();
+  const RenderResult fewer = scene.render(settingsOf(13));
+  expectSameEnd(scene.render(settingsOf(40)), continued(scene, settingsOf(40), fewer));
+}
+
+TEST(Continued, PlanByNoiseEndsAtTheSameBits) {
+  const TestScene scene = wavyScene(80, 72);
+  const RenderSettings settings = settingsOf(1000, 0.05);
+  const RenderResult once = scene.render(settings);
+  ASSERT_GT(once.finishedSamples, 2 * SamplePlan::pilotSamples);
+  ASSERT_FALSE(once.last.plan.noise().empty());
+  const auto kept = keptResults(scene, settings, 97);
+  ASSERT_GT(kept.size(), 5U);
+  for (const RenderResult& begun : kept)
+    expectSameEnd(once, continued(scene, settings, begun));
+  expectSameEnd(once, continued(scene, settings, once));
+}
+
+TEST(Continued, LimitOfSamplesLeavesThePassesTowardANoiseAsTheyAre) {
+  const TestScene scene = wavyScene(80, 72);
+  const RenderResult once = scene.render(settingsOf(1000, 0.05));
+  const std::pair<std::uint64_t, std::uint64_t> limitsAndPasses[] = {
+      {5, 4}, {16, 16}, {19, 18}, {25, 24}}; // passes of 1, 1, 2, 4, 8; 1, 1, 2, 4, ...
+  for (const auto& [samples, lastPass] : limitsAndPasses) {
+    const RenderResult fewer = scene.render(settingsOf(samples, 0.05));
+    EXPECT_EQ(fewer.finishedSamples, samples);
+    EXPECT_EQ(fewer.last.samples, lastPass);
+    expectSameEnd(once, continued(scene, settingsOf(1000, 0.05), fewer));
+  }
+}
+
+TEST(Continued, LooksAtTheSeenNoiseFallOnTheSameCounts) {
+  const TestScene scene = wavyScene();
+  RenderSettings settings = settingsOf(1000, 0.05);
+  settings.seenNoise = [](const Film& film) {
+    return film.sampleCounts().greatest < 32 ? 1.0 : 0.01;
+  };
+  const RenderResult once = scene.render(settings);
+  EXPECT_EQ(once.finishedSamples, 32U);
+  for (const RenderResult& begun : keptResults(scene, settings, 17))
+    expectSameEnd(once, continued(scene, settings, begun));
+}
+
+TEST(Shards, AddUpToThePicture) {
+  const TestScene scene = wavyScene();
+  RenderSettings settings = settingsOf(9);
+  const RenderResult once = scene.render(settings);
+  for (const int count : {1, 3, 7, 40}) { // more parts than tiles
+    Film sum = once.film;
+    for (int row = 0; row < sum.height(); ++row)
+      for (int column = 0; column < sum.width(); ++column)
+        sum.at(column, row) = {.block = sum.at(column, row).block};
+    for (int index = 0; index < count; ++index) {
+      settings.shard = {index, count};
+      const Film part = scene.render(settings).film;
+      for (int row = 0; row < sum.height(); ++row)
+        for (int column = 0; column < sum.width(); ++column)
+          if (part.at(column, row).samples > 0) {
+            EXPECT_EQ(sum.at(column, row).samples, 0U) << "two parts have this pixel";
+            sum.at(column, row) = part.at(column, row);
+          }
+    }
+    expectIdentical(once.film, sum);
+  }
+}
+
+TEST(Tiles, PartsAreEvenAndScattered) {
+  const Tiles tiles(500, 300);
+  EXPECT_EQ(tiles.count(), 63 * 38);
+  for (const int count : {1, 3, 7, 16}) {
+    std::vector<int> owners(static_cast<std::size_t>(tiles.count()), 0);
+    for (int index = 0; index < count; ++index) {
+      const std::vector<int> part = tiles.of({index, count});
+      EXPECT_NEAR(static_cast<double>(part.size()), 1.0 * tiles.count() / count, 1.0);
+      int left = 0;
+      for (const int tile : part) {
+        ++owners[static_cast<std::size_t>(tile)];
+        left += tiles.at(tile).left < 250 ? 1 : 0;
+      }
+      EXPECT_NEAR(left, 0.5 * static_cast<double>(part.size()), 0.06 * 63 * 38 / count);
+    }
+    EXPECT_EQ(std::ranges::count(owners, 1), tiles.count());
+  }
+  EXPECT_EQ(tiles.at(62).right, 500);
+  EXPECT_EQ(tiles.at(tiles.count() - 1).bottom, 300);
+}
+
+} // namespace
+} // namespace fenestra::testing::ContinuedTests

@@ -1,0 +1,137 @@
+// Films on disk: what is written is read, and nothing else is taken for a film.
+
+#include "session/FilmFile.h"
+
+#include "FilmTesting.h"
+#include "Refusals.h"
+#include "base/safe/Digest.h"
+
+#include <random>
+
+namespace fenestra::testing::FilmFileTests {
+namespace {
+
+const nlohmann::ordered_json madeForTest = {{"version", "1"}, {"settings", {{"seed", {"1"}}}}};
+
+RenderResult someResult(int width, int height, double noise) {
+  RenderSettings settings;
+  settings.samples = 21;
+  settings.noise = noise;
+  settings.path.wantNormals = true;
+  return wavyScene(width, height).render(settings);
+}
+
+RenderResult readFrom(const std::filesystem::path& path) {
+  const FilmFile file(path);
+  RenderResult result = file.begun();
+  file.read(result.film);
+  return result;
+}
+
+/// Makes certain pixels certain again, which the scene says, not the film.
+void copyCertainty(const Film& from, Film& to) {
+  for (int row = 0; row < to.height(); ++row)
+    for (int column = 0; column < to.width(); ++column)
+      to.at(column, row).isCertain = from.at(column, row).isCertain;
+}
+
+TEST(FilmFile, RoundTripKeepsEveryBit) {
+  const TemporaryFolder folder;
+  for (const double noise : {-1.0, 0.01}) {
+    const RenderResult result = someResult(80, 72, noise);
+    EXPECT_EQ(result.last.plan.noise().empty(), noise < 0.0);
+    const auto path = folder.write("a.film", filmContent(result, {}, madeForTest));
+    EXPECT_EQ(FilmFile(path).made(), madeForTest);
+    RenderResult again = readFrom(path);
+    copyCertainty(result.film, again.film);
+    expectIdentical(result.film, again.film);
+    EXPECT_EQ(again.film.hasIndependentHalves(), result.film.hasIndependentHalves());
+    EXPECT_EQ(again.finishedSamples, result.finishedSamples);
+    EXPECT_EQ(again.begunSamples, result.begunSamples);
+    EXPECT_EQ(again.last.samples, result.last.samples);
+    EXPECT_EQ(again.last.noise, result.last.noise);
+    EXPECT_EQ(again.last.plan.noise(), result.last.plan.noise());
+    EXPECT_EQ(again.target, result.target);
+    EXPECT_EQ(again.counters.paths, result.counters.paths);
+    EXPECT_EQ(again.counters.gradients, result.counters.gradients);
+  }
+}
+
+TEST(FilmFile, PartsHoldTheirTilesAlone) {
+  const TemporaryFolder folder;
+  const RenderResult result = someResult(33, 21, -1.0);
+  Film sum = readFrom(folder.write("a.film", filmContent(result, {}, madeForTest))).film;
+  const Film whole = sum;
+  std::size_t bytes = 0;
+  sum = Film(33, 21, true, result.film.pixels().front().block);
+  for (int index = 0; index < 4; ++index) {
+    const auto path = folder.write("p.film", filmContent(result, {index, 4}, madeForTest));
+    bytes += bytesOf(path).size();
+    EXPECT_EQ(FilmFile(path).shard(), (Shard{index, 4}));
+    FilmFile(path).read(sum);
+  }
+  expectIdentical(whole, sum);
+  EXPECT_LT(bytes, bytesOf(folder / "a.film").size() + 4000);
+}
+
+TEST(FilmFile, DamagedByteAnywhereIsRefused) {
+  const TemporaryFolder folder;
+  const std::string content = filmContent(someResult(8, 8, -1.0), {}, madeForTest);
+  ASSERT_NO_THROW(readFrom(folder.write("a.film", content)));
+  std::mt19937 random(1);
+  for (std::size_t at = 0; at < content.size(); at += 1 + random() % (at < 700 ? 5 : 90)) {
+    std::string damaged = content;
+    damaged[at] = static_cast<char>(damaged[at] ^ 1 << random() % 8);
+    const auto path = folder.write("a.film", damaged);
+    expectRefused(path, "film", [&] { readFrom(path); });
+  }
+}
+
+TEST(FilmFile, TruncatedOrLongerFileIsRefused) {
+  const TemporaryFolder folder;
+  const std::string content = filmContent(someResult(8, 8, -1.0), {}, madeForTest);
+  for (std::size_t size = 0; size < content.size(); size += size < 700 ? 23 : 1009) {
+    const auto path = folder.write("a.film", content.substr(0, size));
+    expectRefused(path, "film", [&] { readFrom(path); });
+  }
+  const auto path = folder.write("a.film", content + '\0');
+  expectRefused(path, "damaged", [&] { readFrom(path); });
+}
+
+/// `content` with a text in its header replaced by one of the same length, and a right digest.
+std::string forged(std::string content, const std::string& text, const std::string& by) {
+  EXPECT_EQ(text.size(), by.size());
+  const std::size_t at = content.find(text);
+  EXPECT_NE(at, content.npos) << text;
+  content.replace(at, text.size(), by);
+  content.resize(content.size() - 8);
+  Digest digest;
+  digest.add(content);
+  const std::uint64_t value = digest.value();
+  return content.append(reinterpret_cast<const char*>(&value), 8);
+}
+
+TEST(FilmFile, ForgedHeaderIsRefused) {
+  const TemporaryFolder folder;
+  const std::string content = filmContent(someResult(8, 8, -1.0), {}, madeForTest);
+  ASSERT_NO_THROW(readFrom(folder.write("a.film", forged(content, "[8,8]", "[8,8]"))));
+  const std::pair<const char*, const char*> forgeries[] = {
+      {"[8,8]", "[9,8]"},
+      {"[8,8]", "[0,8]"},
+      {"[0,1]", "[1,1]"},
+      {"[0,1]", "[0,0]"},
+      {"[0,1]", "[1,2]"},
+      {"\"block\":8", "\"block\":0"},
+      {"\"begun\":21", "\"begun\":-1"},
+      {"\"finished\"", "\"finish\":0"},
+      {"false", "true "},
+      {"\"made\"", "\"mode\""},
+  };
+  for (const auto& [text, by] : forgeries) {
+    const auto path = folder.write("a.film", forged(content, text, by));
+    expectRefused(path, "", [&] { readFrom(path); });
+  }
+}
+
+} // namespace
+} // namespace fenestra::testing::FilmFileTests
