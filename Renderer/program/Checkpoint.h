@@ -13,8 +13,8 @@ namespace fenestra {
 /// where.
 bool shapesSamples(const Flag& flag);
 
-/// What a film is made with: the version, the flags as given and those that shape its samples, by
-/// name, and the content of all files read; names are relative to `folder`.
+/// Facts that a film is made with: the version, the flags as given and those that shape its
+/// samples, by name, and the content of all files read; names are relative to `folder`.
 nlohmann::ordered_json madeWith(const FlagValues& given, const FlagValues& flags,
                                 const std::filesystem::path& folder);
 /// Name, size and digest of every file that the scene was made from.

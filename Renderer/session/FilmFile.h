@@ -35,7 +35,7 @@ public:
   int width() const { return m_width; }
   int height() const { return m_height; }
   const Shard& shard() const { return m_shard; }
-  /// What the film was made with: an object.
+  /// Facts that the film was made with: an object.
   const nlohmann::json& made() const { return m_header.at("made"); }
   /// Arithmetic of the samples (RenderResult::target).
   std::string target() const;

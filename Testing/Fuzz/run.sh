@@ -14,7 +14,7 @@ work=${FENESTRA_FUZZ_DIR:-$build_folder/fuzz}
 # The words that a target's inputs are made of; not every target has some.
 dictionary() {
   case $1 in
-    Transfer | PropertyJson | Lights | Materials | Preset | Serve) echo "-dict=$here/Dictionaries/Json.dict" ;;
+    Film | Transfer | PropertyJson | Lights | Materials | Preset | Serve) echo "-dict=$here/Dictionaries/Json.dict" ;;
     *) [ ! -f "$here/Dictionaries/$1.dict" ] || echo "-dict=$here/Dictionaries/$1.dict" ;;
   esac
 }

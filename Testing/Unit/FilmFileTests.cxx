@@ -6,6 +6,7 @@
 #include "Refusals.h"
 #include "base/safe/Digest.h"
 
+#include <array>
 #include <random>
 
 namespace fenestra::testing::FilmFileTests {
@@ -98,17 +99,20 @@ TEST(FilmFile, TruncatedOrLongerFileIsRefused) {
   expectRefused(path, "damaged", [&] { readFrom(path); });
 }
 
+/// `content` with the digest that it should have.
+std::string withDigest(std::string content) {
+  content.resize(content.size() - sizeof(std::uint64_t));
+  Digest digest;
+  digest.add(content);
+  return content += memoryOf(std::array{digest.value()});
+}
+
 /// `content` with a text in its header replaced by one of the same length, and a right digest.
 std::string forged(std::string content, const std::string& text, const std::string& by) {
   EXPECT_EQ(text.size(), by.size());
   const std::size_t at = content.find(text);
   EXPECT_NE(at, content.npos) << text;
-  content.replace(at, text.size(), by);
-  content.resize(content.size() - 8);
-  Digest digest;
-  digest.add(content);
-  const std::uint64_t value = digest.value();
-  return content.append(reinterpret_cast<const char*>(&value), 8);
+  return withDigest(content.replace(at, text.size(), by));
 }
 
 TEST(FilmFile, ForgedHeaderIsRefused) {
@@ -131,6 +135,27 @@ TEST(FilmFile, ForgedHeaderIsRefused) {
     const auto path = folder.write("a.film", forged(content, text, by));
     expectRefused(path, "", [&] { readFrom(path); });
   }
+}
+
+TEST(FilmFile, ChangedFilmOfARightDigestIsReadOrRefused) {
+  const TemporaryFolder folder;
+  const std::string content = filmContent(someResult(2, 2, -1.0), {}, madeForTest);
+  std::mt19937 random(2);
+  int read = 0;
+  for (int i = 0; i < 500; ++i) {
+    std::string changed = content;
+    for (int change = 0; change < 2; ++change)
+      changed[random() % 420] = static_cast<char>(random() % 4 ? '0' + random() % 10 : random());
+    const auto path = folder.write("a.film", withDigest(changed));
+    try {
+      readFrom(path);
+      ++read;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
+    }
+  }
+  EXPECT_GT(read, 10);
+  EXPECT_LT(read, 490);
 }
 
 } // namespace

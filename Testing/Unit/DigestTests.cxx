@@ -1,0 +1,50 @@
+#include "base/safe/Digest.h"
+
+#include "Refusals.h"
+
+#include <string>
+
+namespace fenestra::testing::DigestTests {
+namespace {
+
+std::uint64_t valueOf(const std::string& text, std::size_t step) {
+  Digest digest;
+  for (std::size_t at = 0; at < text.size(); at += step)
+    digest.add(std::string_view(text).substr(at, step));
+  return digest.value();
+}
+
+TEST(Digest, DependsOnTheBytesAloneNotOnTheirPieces) {
+  std::string text;
+  for (int i = 0; i < 1000; ++i)
+    text += static_cast<char>(i * i);
+  for (const std::size_t step : {1U, 3U, 7U, 8U, 9U, 64U})
+    EXPECT_EQ(valueOf(text, step), valueOf(text, text.size()));
+  const TemporaryFolder folder;
+  EXPECT_EQ(digestOf(folder.write("a", text)), valueOf(text, 1));
+  EXPECT_EQ(digestOf(folder / "a", 77), valueOf(text.substr(0, 77), 1));
+}
+
+TEST(Digest, NoticesEveryBitAndTheLength) {
+  const std::string text(40, '\0');
+  for (std::size_t bit = 0; bit < 8 * text.size(); ++bit) {
+    std::string other = text;
+    other[bit / 8] = static_cast<char>(1U << bit % 8);
+    EXPECT_NE(valueOf(other, 40), valueOf(text, 40));
+  }
+  EXPECT_NE(valueOf(text + '\0', 41), valueOf(text, 40));
+  EXPECT_NE(valueOf("", 1), valueOf(std::string(8, '\0'), 8));
+}
+
+TEST(Digest, StaysAsItIs) { // films and records of earlier runs hold it
+  EXPECT_EQ(valueOf("fenestra", 8), 7811035952669358778ULL);
+}
+
+TEST(Digest, MissingFileIsRefused) {
+  const TemporaryFolder folder;
+  const std::filesystem::path path = folder / "none";
+  expectRefused(path, "cannot be read", [&] { digestOf(path); });
+}
+
+} // namespace
+} // namespace fenestra::testing::DigestTests
