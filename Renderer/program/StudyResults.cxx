@@ -53,7 +53,7 @@ using Measures = std::map<std::string, double>;
 
 void addMeasures(const nlohmann::json& json, const std::string& place, Measures& measures) {
   for (const auto& [key, value] : json.items()) {
-    const std::string name = place.empty() ? key : place + "." + key;
+    const std::string name = place.empty() ? key : textOf(place, ".", key);
     if (value.is_number())
       measures[name] = value.get<double>();
     else if (value.is_object())

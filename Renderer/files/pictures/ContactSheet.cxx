@@ -45,10 +45,10 @@ public:
     if (shown.size() > most)
       shown = shown.substr(0, most - 3) + "...";
     const Lettering line = lettering(shown, dot);
+    auto ink = line.ink.begin();
     for (int y = 0; y < line.height; ++y)
       for (int x = 0; x < line.width; ++x)
-        mix(left + x, top + y, linearOf(color),
-            line.ink[static_cast<std::size_t>(y * line.width + x)]);
+        mix(left + x, top + y, linearOf(color), *ink++);
   }
   void place(int left, int top, const Canvas& picture) {
     for (int y = 0; y < picture.m_height; ++y)

@@ -22,10 +22,8 @@ Grid thinned(const Grid& fine, const Size3& stride) {
 
 /// Axis of the grid that is nearest to the patient's S axis.
 int longAxis(const Grid& grid) {
-  const auto upness = [&](int axis) {
-    return std::abs(grid.indexToWorld.linear().col(axis).normalized().z());
-  };
-  return std::ranges::max({0, 1, 2}, {}, upness);
+  const Vec3 up = grid.indexToWorld.linear().normalizedColumns().row(2).cwiseAbs();
+  return static_cast<int>(std::ranges::max_element(up.data(), up.data() + 3) - up.data());
 }
 
 /// Voxels that a front reaches from the sides, through those that are air.

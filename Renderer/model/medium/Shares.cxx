@@ -43,7 +43,7 @@ std::vector<Placed> placed(std::size_t count,
   return all;
 }
 
-/// What of a brick a part has.
+/// Part of a brick that a segment covers.
 enum class Cover { none, some, whole };
 
 /// Indicators of a part in the voxels of a row of bricks along x.
