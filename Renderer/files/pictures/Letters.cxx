@@ -10,8 +10,7 @@ namespace fenestra {
 namespace {
 
 constexpr int dotsWide = 5, dotsHigh = 9;
-constexpr int inBand = 16;                         ///< letters beside each other in `shapes`
-constexpr int rowLength = inBand * (dotsWide + 1); ///< with the blank or the line's end behind each
+constexpr int inBand = 16; ///< letters beside each other in `shapes`
 
 /// Shapes of the characters from blank to DEL, 16 in a band of 9 rows; a line's end comes first.
 constexpr std::string_view shapes = R"(
@@ -70,6 +69,7 @@ constexpr std::string_view shapes = R"(
 #.... ....# ..... ..... ..... ..... ..... ..... ..... ....# ..... ..... ..... ..... ..... .....
 #.... ....# ..... ..... ..... ..... ..... ..... ..... .###. ..... ..... ..... ..... ..... .....
 )";
+constexpr std::size_t rowLength = shapes.find('\n', 1); ///< with the line's end
 
 /// Grid of dots, true where there is ink.
 struct Dots {
@@ -91,8 +91,9 @@ Dots dotsOf(const std::string& text) {
       const int row = dotsHigh * (letter / inBand) + y;
       const int column = letterWidth * (letter % inBand) + x % letterWidth;
       const bool isInside = x % letterWidth < dotsWide && y < dotsHigh;
-      const char* const shape = shapes.begin() + 1 + row * rowLength + column;
-      dots.ink.push_back(isInside && *shape == '#');
+      const std::size_t dot =
+          static_cast<std::size_t>(row) * rowLength + static_cast<std::size_t>(column) + 1;
+      dots.ink.push_back(isInside && shapes[dot] == '#');
     }
   return dots;
 }
