@@ -77,7 +77,7 @@ TEST_F(MergeCommand, PartsInAnyOrderGiveThePictureOfOneMachine) {
 
 TEST_F(MergeCommand, PartThatWasStoppedGoesOn) {
   const Arguments words = {"volume.nrrd", "--size",     "64x64", "--samples",
-                           "40",          "--shard",    "2/2",   "--checkpoint",
+                           "200",         "--shard",    "2/2",   "--checkpoint",
                            "2of2.film",   "--progress", "xml"};
   Process process(words, folder.path());
   ASSERT_TRUE(process.waitForOutput("<filter-progress>0\\.0*[1-9]"));
@@ -91,7 +91,7 @@ TEST_F(MergeCommand, PartThatWasStoppedGoesOn) {
   for (const Arguments& one : {first, words})
     EXPECT_EQ(run(one, folder.path()).status, 0);
   ASSERT_EQ(merge({"1of2.film", "2of2.film"}, {"--output", "merged.exr"}).status, 0);
-  ASSERT_EQ(run({"volume.nrrd", "--size", "64x64", "--samples", "40", "--output", "once.exr"},
+  ASSERT_EQ(run({"volume.nrrd", "--size", "64x64", "--samples", "200", "--output", "once.exr"},
                 folder.path())
                 .status,
             0);

@@ -42,7 +42,7 @@ TEST(FilmFile, RoundTripKeepsEveryBit) {
     const RenderResult result = someResult(80, 72, noise);
     EXPECT_EQ(result.last.plan.noise().empty(), noise < 0.0);
     const auto path = folder.write("a.film", filmContent(result, {}, madeForTest));
-    EXPECT_EQ(FilmFile(path).made(), madeForTest);
+    EXPECT_EQ(FilmFile(path).made(), nlohmann::json(madeForTest));
     RenderResult again = readFrom(path);
     copyCertainty(result.film, again.film);
     expectIdentical(result.film, again.film);
