@@ -1,10 +1,10 @@
+#include "program/Process.h"
+
 #include "base/Error.h"
 #include "base/safe/Apart.h"
 #include "base/safe/Folders.h"
 #include "base/safe/Leftovers.h"
 #include "base/safe/ShownText.h"
-#include "program/CommandLine.h"
-#include "program/Commands.h"
 #include "program/Stop.h"
 
 #include <algorithm>
@@ -19,30 +19,10 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+namespace fenestra {
 namespace {
 
-/// Throws Error (usage) for a word that names no file and nearly a subcommand.
-void refuseMisspelt(std::string_view word) {
-  std::vector<std::string> names;
-  for (const fenestra::Command& command : fenestra::commands())
-    names.push_back(command.syntax().name);
-  const std::string likely = fenestra::nearest(word, names);
-  std::error_code failed;
-  if (!likely.empty() && !std::filesystem::exists(word, failed) && !failed)
-    throw fenestra::usageError(
-        "'", word, "': neither a file nor a subcommand; did you mean fenestra ", likely, "?");
-}
-
-int dispatch(int argc, char** argv) {
-  const std::string_view word = argc > 1 ? argv[1] : "";
-  for (const auto& [syntax, run] : fenestra::commands())
-    if (word == syntax().name)
-      return run(argc, argv, 2);
-  refuseMisspelt(word);
-  return fenestra::renderCommand(argc, argv, 1);
-}
-
-void say(std::string_view text) {
+void print(std::string_view text) {
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
 }
 
@@ -51,19 +31,19 @@ int fail(int status, std::string_view line) {
   static char buffer[8192];
   const std::size_t size = std::min(line.size(), sizeof buffer);
   std::copy_n(line.begin(), size, buffer);
-  fenestra::makeOneLine({buffer, size});
-  say("fenestra: ");
-  say({buffer, size});
-  say("\n");
+  makeOneLine({buffer, size});
+  print("fenestra: ");
+  print({buffer, size});
+  print("\n");
   return status;
 }
 
-constexpr int outputStatus = static_cast<int>(fenestra::ErrorKind::output);
+constexpr int outputStatus = static_cast<int>(ErrorKind::output);
 
-int run(int argc, char** argv) {
+int run(int argc, char** argv, DispatchFunction dispatch) {
   try {
     return dispatch(argc, argv);
-  } catch (const fenestra::Error& error) {
+  } catch (const Error& error) {
     return fail(error.exitStatus(), error.what());
   } catch (const std::bad_alloc&) {
     return fail(outputStatus, "out of memory; use a smaller volume or picture");
@@ -90,28 +70,30 @@ int finishOutput(int status) {
 
 /// Retries the removal of temporary files, and names those that the user has to remove.
 int removeRest(int status) {
-  fenestra::removeLeftovers();
+  removeLeftovers();
   try {
-    for (const std::filesystem::path& path : fenestra::remainingLeftovers()) {
-      say("fenestra: warning: temporary file left: ");
-      say(path.native());
-      say("; remove it\n");
+    for (const std::filesystem::path& path : remainingLeftovers()) {
+      print("fenestra: warning: temporary file left: ");
+      print(path.native());
+      print("; remove it\n");
     }
   } catch (const std::bad_alloc&) {
-    say("fenestra: warning: temporary files are left; run any command again to remove them\n");
+    print("fenestra: warning: temporary files are left; run any command again to remove them\n");
   }
   return status;
 }
 
 } // namespace
 
-int main(int argc, char** argv) {
+void runProcess(int argc, char** argv, DispatchFunction dispatch) {
   openStandardStreams();
-  fenestra::serveApart(argc, argv); // the child does not return
-  fenestra::handleStops();
-  fenestra::removeAbandonedFolders();
-  const int status = removeRest(finishOutput(run(argc, argv)));
+  serveApart(argc, argv); // the child does not return
+  handleStops();
+  removeAbandonedFolders();
+  const int status = removeRest(finishOutput(run(argc, argv, dispatch)));
   // Everything is written. Destructors of libraries' static objects do no useful work, take a tenth
   // of a short command's time, and print if memory fails (HDF5's).
-  std::_Exit(status == 0 && fenestra::stopRequested() ? fenestra::stopStatus() : status);
+  std::_Exit(status == 0 && stopRequested() ? stopStatus() : status);
 }
+
+} // namespace fenestra
