@@ -86,6 +86,12 @@ for kind in samples noise; do
   done
 done
 
+# Files come from rank 0: the other one works where there are none.
+in_folder elsewhere
+timeout 120 mpirun --oversubscribe --bind-to none -n 1 "$ranked" "${samples[@]}" : \
+  -n 1 --wdir / "$ranked" "${samples[@]}" >out 2>&1 || fail "files of rank 0: $(cat out)"
+cmp ../samples-alone/v.exr v.exr || fail 'files of rank 0: the picture differs'
+
 in_folder seconds
 begun=$SECONDS
 on 2 "$ranked" volume.nrrd --size 64x64 --seconds 1 --progress none --output v.exr >out 2>&1 ||

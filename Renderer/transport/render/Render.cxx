@@ -44,14 +44,13 @@ struct OneByOne {
   }
 };
 
-constexpr std::uint64_t largestPass = 16; ///< samples per pixel, in one process
-
 /// Samples per pixel of the next pass. Passes grow, so that a picture is there early and overhead
 /// stays small later; sizes are fixed, so that a stop by noise falls on the same sample count on
-/// every machine.
+/// every machine. With several processes they grow faster, and more: each moves the film.
 std::uint64_t passSize(std::uint64_t done, const RenderSettings& settings,
-                       std::uint64_t largest = largestPass) {
-  const std::uint64_t grown = std::clamp<std::uint64_t>(done, 1, largest);
+                       std::uint64_t processes = 1) {
+  constexpr std::uint64_t largest = 16; // by one process
+  const std::uint64_t grown = std::clamp<std::uint64_t>(done * processes, 1, largest * processes);
   return settings.passSamples > 0 ? settings.passSamples : grown;
 }
 
@@ -172,15 +171,15 @@ std::uint64_t nextLook(std::uint64_t done) {
 /// Decides how many samples a pass gets, and when the noise is low enough.
 class NoiseLimit {
 public:
-  /// `processes`: that share the work. More of them get larger passes, where these change nothing.
+  /// `processes`: number of those that share the work.
   NoiseLimit(const RenderSettings& settings, int processes)
-      : m_settings(settings), m_largest(largestPass * static_cast<std::uint64_t>(processes)) {}
+      : m_settings(settings), m_processes(static_cast<std::uint64_t>(processes)) {}
 
   /// Samples of the pass after `last`, which no other limit cuts short.
   std::uint64_t nextPass(const LastPass& last) const {
     if (m_settings.plansByNoise())
       return passTowardNoise(last, m_settings);
-    const std::uint64_t size = passSize(last.samples, m_settings, m_largest);
+    const std::uint64_t size = passSize(last.samples, m_settings, m_processes);
     return isSeen() ? std::min(size, nextLook(last.samples) - last.samples) : size;
   }
 
@@ -212,7 +211,7 @@ private:
   bool isSeen() const { return m_settings.noise > 0.0 && m_settings.seenNoise; }
 
   const RenderSettings& m_settings;
-  const std::uint64_t m_largest; ///< samples per pixel of a pass
+  const std::uint64_t m_processes;
 };
 
 /// Result before the first sample.
