@@ -12,7 +12,8 @@
 #   clang         the whole suite, and the benchmarks that nothing tests, built by clang
 #   headers       each header of the renderer compiled alone
 #   faults        every fault that Testing/Faults makes, and 20,000 damaged files
-#   films         200 kills of a render that keeps a film, and a picture merged from 16 parts
+#   films         200 kills of a render that keeps a film, a picture merged from 16 parts, and
+#                 pictures by up to 7 ranks of mpirun
 #   study         a study of 12 cases, killed half way; array jobs of a real Slurm
 #   paths         instructions a path, against the record in Testing/Benchmarks/Report
 #   package       the archive in a root with busybox alone, in Debian 11, in the extension's package; built
@@ -211,6 +212,14 @@ stage_films() {
     say "a killed render does not go on: $logs/films.log"
   FENESTRA_LONG=1 "$top/build/bin/CommandTests" --gtest_filter='MergeCommand.*' >>"$logs/films.log" 2>&1 ||
     say "merged parts are not the picture: $logs/films.log"
+  local status=0
+  "$top/Testing/Cluster/ranks.sh" "$top/build/bin/fenestra" "$top/build/bin/fenestra-mpi" 1 2 3 7 \
+    >"$logs/ranks.log" 2>&1 || status=$?
+  case $status in
+    0) ;;
+    77) tail -n 1 "$logs/ranks.log" ;;
+    *) say "ranks of mpirun do not make the picture of one process: $logs/ranks.log" ;;
+  esac
 }
 
 # in_study NAME COMMAND...: a study whose end is in a log; says where it was skipped, or failed.

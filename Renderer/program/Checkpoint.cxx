@@ -74,20 +74,27 @@ ordered_json madeWith(const FlagValues& given, const FlagValues& flags, const fs
           {"settings", toldFlags(flags, folder, shapesSamples)}};
 }
 
-ordered_json inputsOf(const Scene& scene, const RenderOptions& options, const fs::path& folder) {
+std::vector<fs::path> filesOf(const Scene& scene, const RenderOptions& options) {
   std::set<fs::path> files(options.inputs.begin(), options.inputs.end());
   for (const std::string& file : scene.files())
     files.insert(file);
   for (const fs::path& file : std::set(files))
     for (const fs::path& part : filesNamedBy(file))
       files.insert(part);
-  ordered_json inputs = ordered_json::array();
+  std::vector<fs::path> there;
   std::error_code failed;
-  for (const fs::path& file : files) // a member of an archive changes with the archive
-    if (fs::is_regular_file(file, failed))
-      inputs.push_back({{"file", relativeName(file.string(), folder)},
-                        {"bytes", fs::file_size(file)},
-                        {"digest", digestOf(file)}});
+  std::ranges::copy_if(files, std::back_inserter(there), [&](const fs::path& file) {
+    return fs::is_regular_file(file, failed); // a member of an archive changes with the archive
+  });
+  return there;
+}
+
+ordered_json inputsOf(const Scene& scene, const RenderOptions& options, const fs::path& folder) {
+  ordered_json inputs = ordered_json::array();
+  for (const fs::path& file : filesOf(scene, options))
+    inputs.push_back({{"file", relativeName(file.string(), folder)},
+                      {"bytes", fs::file_size(file)},
+                      {"digest", digestOf(file)}});
   return inputs;
 }
 

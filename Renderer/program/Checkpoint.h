@@ -17,6 +17,8 @@ bool shapesSamples(const Flag& flag);
 /// samples, by name, and the content of all files read; names are relative to `folder`.
 nlohmann::ordered_json madeWith(const FlagValues& given, const FlagValues& flags,
                                 const std::filesystem::path& folder);
+/// All files that the scene was made from; an archive, not its members.
+std::vector<std::filesystem::path> filesOf(const Scene& scene, const RenderOptions& options);
 /// Name, size and digest of every file that the scene was made from.
 nlohmann::ordered_json inputsOf(const Scene& scene, const RenderOptions& options,
                                 const std::filesystem::path& folder);

@@ -1,8 +1,12 @@
 #include "program/Commands.h"
 
+#include "base/Error.h"
+#include "program/CommandLine.h"
 #include "program/RenderFlags.h"
 #include "program/StudyTable.h"
 #include "program/TurntableFrames.h"
+
+#include <filesystem>
 
 namespace fenestra {
 namespace {
@@ -19,10 +23,31 @@ constexpr Command subcommands[] = {
     {describeSyntax, describeCommand},
 };
 
+/// Throws Error (usage) for a word that names no file and nearly a subcommand.
+void refuseMisspelt(std::string_view word) {
+  std::vector<std::string> names;
+  for (const Command& command : commands())
+    names.push_back(command.syntax().name);
+  const std::string likely = nearest(word, names);
+  std::error_code failed;
+  if (!likely.empty() && !std::filesystem::exists(word, failed) && !failed)
+    throw usageError("'", word, "': neither a file nor a subcommand; did you mean fenestra ",
+                     likely, "?");
+}
+
 } // namespace
 
 std::span<const Command> commands() {
   return subcommands;
+}
+
+int dispatch(int argc, char** argv) {
+  const std::string_view word = argc > 1 ? argv[1] : "";
+  for (const auto& [syntax, run] : commands())
+    if (word == syntax().name)
+      return run(argc, argv, 2);
+  refuseMisspelt(word);
+  return renderCommand(argc, argv, 1);
 }
 
 } // namespace fenestra

@@ -17,6 +17,9 @@ struct Command {
 /// All subcommands; the name of the first may be left out.
 std::span<const Command> commands();
 
+/// Runs the command that the first argument names, else a render.
+int dispatch(int argc, char** argv);
+
 const CommandSyntax& inspectSyntax();
 const CommandSyntax& compareSyntax();
 const CommandSyntax& phantomSyntax();

@@ -245,12 +245,14 @@ void writeStats(const RenderOptions& options, const Scene& scene, const RenderRe
 /// Renders, from the checkpoint on if there is one, and keeps the film there.
 RenderResult renderFilm(const RenderOptions& options, const Scene& scene,
                         const RenderSettings& settings, std::optional<Checkpoint>& checkpoint,
-                        RenderMonitor& monitor) {
+                        RenderMonitor& monitor, const Recruit& recruit) {
   std::optional<RenderResult> begun;
   if (checkpoint) {
     begun = checkpoint->begun(scene, settings);
     checkpoint->watch(monitor);
   }
+  if (recruit)
+    recruit(options, scene, settings, monitor);
   RenderResult result = [&] {
     const Progress progress(options, monitor);
     return render(scene.forRender(), settings, monitor, std::move(begun));
@@ -263,7 +265,7 @@ RenderResult renderFilm(const RenderOptions& options, const Scene& scene,
 } // namespace
 
 int renderScene(const PictureRequest& request, const std::vector<std::string>& words,
-                std::optional<Checkpoint>& checkpoint, Outputs& outputs) {
+                std::optional<Checkpoint>& checkpoint, Outputs& outputs, const Recruit& recruit) {
   const RenderOptions& options = request.options;
   const Stopwatch total;
   const Scene scene(options.scene, request.input);
@@ -278,7 +280,8 @@ int renderScene(const PictureRequest& request, const std::vector<std::string>& w
   Stopwatch watch;
   RenderStats stats;
   PictureFilter filter(options, scene);
-  const RenderResult result = renderFilm(options, scene, filter.settings(), checkpoint, monitor);
+  const RenderResult result =
+      renderFilm(options, scene, filter.settings(), checkpoint, monitor, recruit);
   stats.transport = watch.seconds();
   surface.get();
   if (options.isPart)
@@ -309,6 +312,10 @@ int renderScene(const PictureRequest& request, const std::vector<std::string>& w
 }
 
 int renderCommand(int argc, char** argv, int first) {
+  return renderWith({}, argc, argv, first);
+}
+
+int renderWith(const Recruit& recruit, int argc, char** argv, int first) {
   if (std::find(argv + first, argv + argc, std::string_view("--xml")) != argv + argc) {
     std::cout << slicerDescription(renderSyntax) << std::flush;
     return 0;
@@ -328,7 +335,7 @@ int renderCommand(int argc, char** argv, int first) {
   Outputs outputs;
   declareOutputs(request.options, outputs);
   checkMemory(request.options.scene);
-  return renderScene(request, {argv + 1, argv + argc}, checkpoint, outputs);
+  return renderScene(request, {argv + 1, argv + argc}, checkpoint, outputs, recruit);
 }
 
 } // namespace fenestra

@@ -3,12 +3,23 @@
 
 #include "program/Checkpoint.h"
 
+#include <functional>
+
 namespace fenestra {
+
+/// Finds processes that help with a render, tells them of it, and puts them into its monitor;
+/// empty: there are none.
+using Recruit =
+    std::function<void(const RenderOptions&, const Scene&, const RenderSettings&, RenderMonitor&)>;
 
 /// Renders the scene, from `checkpoint` on if there is one, puts its pictures in place, then
 /// measures them for the statistics; of a part, puts its film in place. `words`: arguments of the
 /// process, for the pictures' headers. Returns the exit status.
 int renderScene(const PictureRequest& request, const std::vector<std::string>& words,
-                std::optional<Checkpoint>& checkpoint, Outputs& outputs);
+                std::optional<Checkpoint>& checkpoint, Outputs& outputs,
+                const Recruit& recruit = {});
+
+/// The command `render`, with processes that help.
+int renderWith(const Recruit& recruit, int argc, char** argv, int first);
 
 } // namespace fenestra

@@ -3,9 +3,9 @@
 #include "base/safe/Digest.h"
 #include "base/safe/Inputs.h"
 #include "base/safe/JsonNode.h"
+#include "image/PixelWords.h"
 
 #include <array>
-#include <bit>
 #include <cstring>
 
 namespace fenestra {
@@ -16,48 +16,8 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 
 constexpr std::string_view filmFormat = "fenestra film 1 ";
-constexpr std::size_t pixelWords = 30;
 constexpr std::size_t longestFirstLine = 40;
 constexpr double mostFilmSamples = 0x1p62; ///< sums of a few such counts fit 64 bits
-
-using PixelWords = std::array<std::uint64_t, pixelWords>;
-
-/// Calls `each` for every number of a pixel, in the order of the file; PixelSums::block and
-/// isCertain belong to the film and to the scene.
-template <typename Sums, typename Each>
-void forNumbers(Sums& p, Each&& each) {
-  const auto colors = [&](auto& color) {
-    for (int c = 0; c < 3; ++c)
-      each(color[c]);
-  };
-  each(p.samples);
-  colors(p.mean);
-  colors(p.deviation);
-  each(p.alpha);
-  each(p.depth);
-  each(p.collided);
-  colors(p.albedo);
-  colors(p.normal);
-  each(p.scatterings);
-  colors(p.evenMean);
-  each(p.evenAlpha);
-  colors(p.open[0]);
-  colors(p.open[1]);
-  colors(p.blockDeviation);
-}
-
-PixelWords wordsOf(const PixelSums& pixel) {
-  PixelWords words = {};
-  std::size_t i = 0;
-  forNumbers(pixel, [&](const auto& number) { words[i++] = std::bit_cast<std::uint64_t>(number); });
-  return words;
-}
-
-void setWords(const PixelWords& words, PixelSums& pixel) {
-  std::size_t i = 0;
-  forNumbers(pixel,
-             [&]<typename Number>(Number& number) { number = std::bit_cast<Number>(words[i++]); });
-}
 
 /// Calls visit(index of the pixel in the film) for the pixels of a part, in the order of the file.
 template <typename Visit>

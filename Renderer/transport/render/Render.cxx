@@ -46,10 +46,11 @@ struct OneByOne {
 
 /// Samples per pixel of the next pass. Passes grow, so that a picture is there early and overhead
 /// stays small later; sizes are fixed, so that a stop by noise falls on the same sample count on
-/// every machine.
-std::uint64_t passSize(std::uint64_t done, const RenderSettings& settings) {
-  constexpr std::uint64_t largest = 16;
-  const std::uint64_t grown = std::clamp<std::uint64_t>(done, 1, largest);
+/// every machine. With several processes they grow faster, and more: each moves the film.
+std::uint64_t passSize(std::uint64_t done, const RenderSettings& settings,
+                       std::uint64_t processes = 1) {
+  constexpr std::uint64_t largest = 16; // by one process
+  const std::uint64_t grown = std::clamp<std::uint64_t>(done * processes, 1, largest * processes);
   return settings.passSamples > 0 ? settings.passSamples : grown;
 }
 
@@ -105,11 +106,16 @@ bool renderPass(const Tracer& tracer, const PassSource& source, RenderResult& re
   const SamplePlan& plan = result.last.plan;
   Pass pass(source.tiles, plan.at(result.finishedSamples), plan.at(result.begunSamples),
             source.empty, source.numbers, result.film, monitor.paths);
+  const Helpers& helpers = monitor.helpers;
   for (;;) {
+    if (helpers.count > 0)
+      helpers.lend(pass, result);
     renderTiles(tracer, pass, result.film, result.counters, monitor);
+    if (helpers.count > 0)
+      result.counters += helpers.settle(monitor);
     if (pass.whole() || monitor.stop)
       return pass.whole();
-    monitor.keep(result); // nothing but a pause leaves tiles undone
+    monitor.keep(result); // nothing but a rest leaves tiles undone
   }
 }
 
@@ -117,6 +123,17 @@ bool renderPass(const Tracer& tracer, const PassSource& source, RenderResult& re
 bool isConstantInPixels(const Background& background, const LightSet& lights) {
   return background.kind != Background::Kind::environment ||
          (!lights.hasMaps() && lights.skies().empty());
+}
+
+/// Pixels of which one sample is enough; the film is told.
+EmptyPixels emptyPixels(const RenderScene& scene, const RenderSettings& settings, Film& film) {
+  const EmptyPixels empty = isConstantInPixels(settings.path.background, scene.lights)
+                                ? EmptyPixels(scene.camera, scene.majorants)
+                                : EmptyPixels();
+  for (int row = 0; row < film.height(); ++row)
+    for (int column = 0; column < film.width(); ++column)
+      film.at(column, row).isCertain = empty.contains(column, row);
+  return empty;
 }
 
 /// Duration of passes, and the samples that the time limit still allows.
@@ -154,13 +171,15 @@ std::uint64_t nextLook(std::uint64_t done) {
 /// Decides how many samples a pass gets, and when the noise is low enough.
 class NoiseLimit {
 public:
-  explicit NoiseLimit(const RenderSettings& settings) : m_settings(settings) {}
+  /// `processes`: number of those that share the work.
+  NoiseLimit(const RenderSettings& settings, int processes)
+      : m_settings(settings), m_processes(static_cast<std::uint64_t>(processes)) {}
 
   /// Samples of the pass after `last`, which no other limit cuts short.
   std::uint64_t nextPass(const LastPass& last) const {
     if (m_settings.plansByNoise())
       return passTowardNoise(last, m_settings);
-    const std::uint64_t size = passSize(last.samples, m_settings);
+    const std::uint64_t size = passSize(last.samples, m_settings, m_processes);
     return isSeen() ? std::min(size, nextLook(last.samples) - last.samples) : size;
   }
 
@@ -192,6 +211,7 @@ private:
   bool isSeen() const { return m_settings.noise > 0.0 && m_settings.seenNoise; }
 
   const RenderSettings& m_settings;
+  const std::uint64_t m_processes;
 };
 
 /// Result before the first sample.
@@ -220,16 +240,11 @@ RenderResult renderPasses(const Tracer& tracer, const std::string& arithmetic,
   result.target = arithmetic;
   if (!settings.plansByNoise())
     result.last = {result.last.samples}; // a plan made by the pilot is not followed
-  const bool hasEmpty = isConstantInPixels(settings.path.background, scene.lights);
   const PassSource source{Tiles(result.film.width(), result.film.height()).of(settings.shard),
-                          hasEmpty ? EmptyPixels(scene.camera, scene.majorants) : EmptyPixels(),
-                          numbers};
-  for (int row = 0; row < result.film.height(); ++row)
-    for (int column = 0; column < result.film.width(); ++column)
-      result.film.at(column, row).isCertain = source.empty.contains(column, row);
+                          emptyPixels(scene, settings, result.film), numbers};
   monitor.paths = result.finishedSamples * result.film.pixelCount() /
                   static_cast<std::size_t>(settings.shard.count);
-  const NoiseLimit target(settings);
+  const NoiseLimit target(settings, monitor.helpers.count + 1);
   Pace pace(settings.seconds);
   const auto looksReached = [&](bool isCut) {
     const bool isReached = target.isReached(result, isCut, monitor.noise);
@@ -267,11 +282,29 @@ RenderResult renderPasses(const Tracer& tracer, const std::string& arithmetic,
   return result;
 }
 
-RenderResult renderInLanes(const RenderScene& scene, const RenderSettings& settings,
-                           RenderMonitor& monitor, std::optional<RenderResult> begun) {
+template <typename Tracer>
+void renderEachLoan(const Tracer& tracer, const RenderScene& scene, const RenderSettings& settings,
+                    RenderMonitor& monitor,
+                    const std::function<std::optional<Loan>(RenderResult&)>& next) {
+  const NumberSource numbers(settings.sampling, settings.seed);
+  RenderResult result = emptyResult(scene.camera, numbers);
+  const EmptyPixels empty = emptyPixels(scene, settings, result.film);
+  while (const std::optional<Loan> loan = next(result)) {
+    result.counters = {};
+    const SamplePlan& plan = result.last.plan;
+    Pass pass(loan->tiles, plan.at(loan->from), plan.at(loan->to), empty, numbers, result.film,
+              monitor.paths);
+    renderTiles(tracer, pass, result.film, result.counters, monitor);
+  }
+}
+
+/// Calls work(tracer, arithmetic) with rays in lanes.
+template <typename Work>
+auto tracedInLanes(const RenderScene& scene, const RenderSettings& settings, const StopFlag& stop,
+                   Work&& work) {
   const Domain domain(scene.volume.grid, scene.crop);
   const WideTracker tracker(scene.volume, domain, scene.transfer, scene.majorants, scene.clip,
-                            scene.style, monitor.stop, scene.mixture);
+                            scene.style, stop, scene.mixture);
   const WideEvents events(tracker.scene(),
                           EventScene(scene.volume.grid, scene.transfer, scene.lights,
                                      settings.path.bounces, settings.path.wantNormals, scene.tint,
@@ -279,25 +312,37 @@ RenderResult renderInLanes(const RenderScene& scene, const RenderSettings& setti
   const EyeRays eye(scene.camera, eyeClip(scene.clip, scene.mixture), scene.lights,
                     settings.path.background);
   const WideEyeRays begin(tracker.scene(), domain, scene.camera, eye);
-  const PathWave wave(begin, tracker, events, eye, monitor.stop);
-  return renderPasses(wave, WideTracker::instructionSet(), scene, settings, monitor,
-                      std::move(begun));
+  return work(PathWave(begin, tracker, events, eye, stop), WideTracker::instructionSet());
 }
 
-RenderResult renderOneByOne(const RenderScene& scene, const RenderSettings& settings,
-                            RenderMonitor& monitor, std::optional<RenderResult> begun) {
-  const auto work = [&]<typename Voxel>(const Medium<Voxel>& medium,
-                                        const Tracker<Voxel>& tracker) {
-    const OneByOne<Voxel> readable{PathEstimator<Voxel>(scene.volume.grid, medium, tracker,
-                                                        scene.lights, scene.camera, scene.clip,
-                                                        settings.path, monitor.stop)};
-    return renderPasses(readable, "scalar", scene, settings, monitor, std::move(begun));
+/// Calls work(tracer, arithmetic) with the readable estimator.
+template <typename Work>
+auto tracedOneByOne(const RenderScene& scene, const RenderSettings& settings, const StopFlag& stop,
+                    Work&& work) {
+  const auto readable = [&]<typename Voxel>(const Medium<Voxel>& medium,
+                                            const Tracker<Voxel>& tracker) {
+    return work(
+        OneByOne<Voxel>{PathEstimator<Voxel>(scene.volume.grid, medium, tracker, scene.lights,
+                                             scene.camera, scene.clip, settings.path, stop)},
+        std::string("scalar"));
   };
-  return withMedium(scene, work, monitor.stop);
+  return withMedium(scene, readable, stop);
 }
 
 bool rendersInLanes(const RenderScene& scene, const RenderSettings& settings) {
   return settings.transport == Transport::fast && lanesServe(scene);
+}
+
+/// Calls work(tracer, arithmetic) in the threads that the settings allow.
+template <typename Work>
+auto traced(const RenderScene& scene, const RenderSettings& settings, const StopFlag& stop,
+            Work&& work) {
+  const int cores = tbb::info::default_concurrency(); // TBB complains about more
+  tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
+  return arena.execute([&] {
+    return rendersInLanes(scene, settings) ? tracedInLanes(scene, settings, stop, work)
+                                           : tracedOneByOne(scene, settings, stop, work);
+  });
 }
 
 } // namespace
@@ -314,12 +359,16 @@ std::string targetOf(const RenderScene& scene, const RenderSettings& settings) {
 
 RenderResult render(const RenderScene& scene, const RenderSettings& settings,
                     RenderMonitor& monitor, std::optional<RenderResult> begun) {
-  const int cores = tbb::info::default_concurrency(); // TBB complains about more
-  tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
-  return arena.execute([&] {
-    return rendersInLanes(scene, settings)
-               ? renderInLanes(scene, settings, monitor, std::move(begun))
-               : renderOneByOne(scene, settings, monitor, std::move(begun));
+  return traced(
+      scene, settings, monitor.stop, [&](const auto& tracer, const std::string& arithmetic) {
+        return renderPasses(tracer, arithmetic, scene, settings, monitor, std::move(begun));
+      });
+}
+
+void renderLoans(const RenderScene& scene, const RenderSettings& settings, RenderMonitor& monitor,
+                 const std::function<std::optional<Loan>(RenderResult&)>& next) {
+  traced(scene, settings, monitor.stop, [&](const auto& tracer, const std::string&) {
+    renderEachLoan(tracer, scene, settings, monitor, next);
   });
 }
 

@@ -73,7 +73,20 @@ struct RenderSettings {
   bool plansByNoise() const { return noise > 0.0 && !seenNoise; }
 };
 
+class Pass;
+struct RenderMonitor;
 struct RenderResult;
+
+/// Other processes that take tiles of a pass, from another thread, and add them to the film.
+struct Helpers {
+  int count = 0;
+  /// Lends them tiles of the pass, and lets them add to result.film, until the next settle().
+  std::function<void(Pass&, RenderResult&)> lend = {};
+  /// Called when this process's threads have no tile left, or rest. Returns once the pass is whole,
+  /// or `monitor` wants a film kept or a stop; nothing is added any more then. The result: counts
+  /// of what was added.
+  std::function<Counters(const RenderMonitor&)> settle = {};
+};
 
 /// Progress of a running render, and its stop flag.
 struct RenderMonitor {
@@ -86,6 +99,7 @@ struct RenderMonitor {
   /// the result so far, which render() goes on from; the render waits. Empty: never.
   std::function<bool()> isKeepDue = {};
   std::function<void(const RenderResult&)> keep = {};
+  Helpers helpers = {};
 };
 
 enum class StopReason { samples, seconds, noise, request };
@@ -122,5 +136,19 @@ std::string targetOf(const RenderScene& scene, const RenderSettings& settings);
 /// noise or not as before if that is beyond the pilot.
 RenderResult render(const RenderScene& scene, const RenderSettings& settings,
                     RenderMonitor& monitor, std::optional<RenderResult> begun = {});
+
+/// Tiles that another process lends, and the stages of the plan between which their pixels lack
+/// samples (SamplePlan::at).
+struct Loan {
+  std::vector<int> tiles;
+  std::uint64_t from = 0, to = 0;
+};
+
+/// Renders tiles for the process whose render has this one among its helpers. `next` takes the last
+/// loan's tiles from result.film, with result.counters, unless the stop flag is set; it puts the
+/// next one's pixels there, and the plan into result.last. It returns the next loan, or nothing at
+/// the end.
+void renderLoans(const RenderScene& scene, const RenderSettings& settings, RenderMonitor& monitor,
+                 const std::function<std::optional<Loan>(RenderResult&)>& next);
 
 } // namespace fenestra

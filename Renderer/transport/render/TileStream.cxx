@@ -14,6 +14,15 @@ Pass::Pass(std::span<const int> tiles, const SamplePlan::Stage& from, const Samp
       m_film(film),
       m_paths(paths) {}
 
+std::span<const int> Pass::lend(std::size_t most) {
+  const std::size_t first = std::min(m_nextTile.fetch_add(most), m_tiles.size());
+  return m_tiles.subspan(first, std::min(most, m_tiles.size() - first));
+}
+
+void Pass::takeBack(int tile) {
+  added(forPixels(tile, [](int, int, std::size_t) {}));
+}
+
 void TileStream::fill(PathStarts& starts, std::size_t most) {
   const NumberSource& source = m_pass.m_source;
   starts.size = 0;
@@ -74,24 +83,18 @@ bool TileStream::openTile() {
 
 /// Lists the samples of tile `index` that the film lacks, pixel by pixel.
 void TileStream::list(Tile& tile, int index) const {
-  tile.planned = 0;
   tile.awaited = 0;
   tile.runs.clear();
-  const Film& film = m_pass.m_film;
-  const Tiles::Tile pixels = m_pass.m_cut.at(index);
-  for (int row = pixels.top; row < pixels.bottom; ++row)
-    for (int column = pixels.left; column < pixels.right; ++column) {
-      const std::size_t here = film.index(column, row);
-      const std::uint64_t begin = film.pixels()[here].samples;
-      const std::uint64_t end = m_pass.m_to.count(here);
-      tile.planned += end - m_pass.m_from.count(here);
-      const std::uint64_t enough =
-          m_pass.m_empty.contains(column, row) ? std::min<std::uint64_t>(1, end) : end;
-      if (begin >= enough)
-        continue;
-      tile.runs.push_back({column, row, begin, enough});
-      tile.awaited += enough - begin;
-    }
+  tile.planned = m_pass.forPixels(index, [&](int column, int row, std::size_t here) {
+    const std::uint64_t begin = m_pass.m_film.pixels()[here].samples;
+    const std::uint64_t end = m_pass.m_to.count(here);
+    const std::uint64_t enough =
+        m_pass.m_empty.contains(column, row) ? std::min<std::uint64_t>(1, end) : end;
+    if (begin >= enough)
+      return;
+    tile.runs.push_back({column, row, begin, enough});
+    tile.awaited += enough - begin;
+  });
 }
 
 void TileStream::close(Tile& tile) {
@@ -101,8 +104,7 @@ void TileStream::close(Tile& tile) {
     for (std::uint64_t number = run.begin; number < run.end; ++number)
       sums.add(*result++);
   }
-  m_pass.m_paths.fetch_add(tile.planned, std::memory_order_relaxed);
-  m_pass.m_tilesDone.fetch_add(1, std::memory_order_relaxed);
+  m_pass.added(tile.planned);
 }
 
 } // namespace fenestra

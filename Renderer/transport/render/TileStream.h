@@ -8,6 +8,7 @@
 #include "transport/render/EmptyPixels.h"
 #include "transport/render/SamplePlan.h"
 
+#include <algorithm>
 #include <atomic>
 #include <functional>
 #include <span>
@@ -27,8 +28,36 @@ public:
   /// True once all tiles have been added to the film.
   bool whole() const { return m_tilesDone == m_tiles.size(); }
 
+  /// Number of tiles that nobody has begun.
+  std::size_t left() const {
+    return m_tiles.size() - std::min<std::size_t>(m_nextTile, m_tiles.size());
+  }
+  /// Takes the next tiles, `most` at most, for another process.
+  std::span<const int> lend(std::size_t most);
+  /// Counts a lent tile, whose samples are in the film again, as added.
+  void takeBack(int tile);
+
 private:
   friend class TileStream;
+
+  /// Calls visit(column, row, index in the film) for the pixels of a tile, and returns the samples
+  /// that its plan adds to them, as if no pixel were empty.
+  template <typename Visit>
+  std::uint64_t forPixels(int tile, Visit&& visit) const {
+    std::uint64_t planned = 0;
+    const Tiles::Tile pixels = m_cut.at(tile);
+    for (int row = pixels.top; row < pixels.bottom; ++row)
+      for (int column = pixels.left; column < pixels.right; ++column) {
+        const std::size_t here = m_film.index(column, row);
+        planned += m_to.count(here) - m_from.count(here);
+        visit(column, row, here);
+      }
+    return planned;
+  }
+  void added(std::uint64_t planned) {
+    m_paths.fetch_add(planned, std::memory_order_relaxed);
+    m_tilesDone.fetch_add(1);
+  }
 
   const std::span<const int> m_tiles;
   const Tiles m_cut;

@@ -1,0 +1,52 @@
+#pragma once
+// A pixel's sums as words, for films on disk and films that processes send each other.
+
+#include "image/Film.h"
+
+#include <array>
+#include <bit>
+
+namespace fenestra {
+
+inline constexpr std::size_t pixelWords = 30;
+
+using PixelWords = std::array<std::uint64_t, pixelWords>;
+
+/// Calls `each` for every number of a pixel, in the order of the words; PixelSums::block and
+/// isCertain belong to the film and to the scene.
+template <typename Sums, typename Each>
+void forNumbers(Sums& p, Each&& each) {
+  const auto colors = [&](auto& color) {
+    for (int c = 0; c < 3; ++c)
+      each(color[c]);
+  };
+  each(p.samples);
+  colors(p.mean);
+  colors(p.deviation);
+  each(p.alpha);
+  each(p.depth);
+  each(p.collided);
+  colors(p.albedo);
+  colors(p.normal);
+  each(p.scatterings);
+  colors(p.evenMean);
+  each(p.evenAlpha);
+  colors(p.open[0]);
+  colors(p.open[1]);
+  colors(p.blockDeviation);
+}
+
+inline PixelWords wordsOf(const PixelSums& pixel) {
+  PixelWords words = {};
+  std::size_t i = 0;
+  forNumbers(pixel, [&](const auto& number) { words[i++] = std::bit_cast<std::uint64_t>(number); });
+  return words;
+}
+
+inline void setWords(const PixelWords& words, PixelSums& pixel) {
+  std::size_t i = 0;
+  forNumbers(pixel,
+             [&]<typename Number>(Number& number) { number = std::bit_cast<Number>(words[i++]); });
+}
+
+} // namespace fenestra

@@ -1,0 +1,99 @@
+#include "program/Process.h"
+
+#include "base/Error.h"
+#include "base/safe/Apart.h"
+#include "base/safe/Folders.h"
+#include "base/safe/Leftovers.h"
+#include "base/safe/ShownText.h"
+#include "program/Stop.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <new>
+#include <string>
+#include <string_view>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace fenestra {
+namespace {
+
+void print(std::string_view text) {
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
+}
+
+/// Prints an exception's message on one line, without allocating: memory may have run out.
+int fail(int status, std::string_view line) {
+  static char buffer[8192];
+  const std::size_t size = std::min(line.size(), sizeof buffer);
+  std::copy_n(line.begin(), size, buffer);
+  makeOneLine({buffer, size});
+  print("fenestra: ");
+  print({buffer, size});
+  print("\n");
+  return status;
+}
+
+constexpr int outputStatus = static_cast<int>(ErrorKind::output);
+
+int run(int argc, char** argv, DispatchFunction dispatch) {
+  try {
+    return dispatch(argc, argv);
+  } catch (const Error& error) {
+    return fail(error.exitStatus(), error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(outputStatus, "out of memory; use a smaller volume or picture");
+  } catch (const std::exception& error) {
+    return fail(outputStatus, error.what());
+  }
+}
+
+/// Opens closed standard streams, so that no file gets their numbers. Reads find an empty file;
+/// writes to /dev/full fail as they would have.
+void openStandardStreams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (::fcntl(stream, F_GETFD) < 0)
+      ::open(stream == STDIN_FILENO ? "/dev/null" : "/dev/full", O_RDWR); // gets number `stream`
+}
+
+/// Fails if standard output cannot be written: printed text is also a result.
+int finishOutput(int status) {
+  const bool isWhole = std::cout.flush() && std::fflush(stdout) == 0 && !std::ferror(stdout);
+  if (isWhole || status != 0)
+    return status;
+  return fail(outputStatus, "standard output: cannot be written; is there room, and a reader?");
+}
+
+/// Retries the removal of temporary files, and names those that the user has to remove.
+int removeRest(int status) {
+  removeLeftovers();
+  try {
+    for (const std::filesystem::path& path : remainingLeftovers()) {
+      print("fenestra: warning: temporary file left: ");
+      print(path.native());
+      print("; remove it\n");
+    }
+  } catch (const std::bad_alloc&) {
+    print("fenestra: warning: temporary files are left; run any command again to remove them\n");
+  }
+  return status;
+}
+
+} // namespace
+
+void runProcess(int argc, char** argv, DispatchFunction dispatch) {
+  openStandardStreams();
+  serveApart(argc, argv); // the child does not return
+  handleStops();
+  removeAbandonedFolders();
+  const int status = removeRest(finishOutput(run(argc, argv, dispatch)));
+  // Everything is written. Destructors of libraries' static objects do no useful work, take a tenth
+  // of a short command's time, and print if memory fails (HDF5's).
+  std::_Exit(status == 0 && stopRequested() ? stopStatus() : status);
+}
+
+} // namespace fenestra

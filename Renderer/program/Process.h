@@ -1,0 +1,13 @@
+#pragma once
+// What every process of this program does around its command.
+
+namespace fenestra {
+
+/// Runs what the arguments say, and returns the exit status; may throw Error.
+using DispatchFunction = int (*)(int argc, char** argv);
+
+/// Runs `dispatch` between opening and closing streams, handles stops, reports errors, removes
+/// temporary files, and ends the process.
+[[noreturn]] void runProcess(int argc, char** argv, DispatchFunction dispatch);
+
+} // namespace fenestra

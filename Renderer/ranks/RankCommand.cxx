@@ -1,0 +1,136 @@
+#include "ranks/RankCommand.h"
+
+#include "base/Error.h"
+#include "program/CommandLine.h"
+#include "program/Commands.h"
+#include "program/RenderCommand.h"
+#include "program/Stop.h"
+#include "program/about/Version.h"
+#include "ranks/Loans.h"
+#include "ranks/SharedFiles.h"
+#include "transport/lanes/Tracker.h"
+
+#include <algorithm>
+#include <new>
+
+namespace fenestra {
+namespace {
+
+/// Index of the first argument of a render. Throws Error (usage) for another command.
+int firstArgument(int argc, char** argv) {
+  const std::string word = argc > 1 ? argv[1] : "";
+  if (word == renderSyntax.name)
+    return 2;
+  for (const Command& command : commands())
+    if (word == command.syntax().name)
+      throw usageError(word, ": mpirun is for one picture; run it without, in one process or as an "
+                             "array job");
+  return 1;
+}
+
+/// Throws Error (usage) unless all ranks make the same samples.
+void requireSameRanks(const std::vector<std::string>& arithmetics) {
+  const auto other = std::ranges::find_if(
+      arithmetics, [&](const std::string& text) { return text != arithmetics.front(); });
+  if (other != arithmetics.end())
+    throw usageError("mpirun: rank ", other - arithmetics.begin(), " is ", *other, ", rank 0 is ",
+                     arithmetics.front(),
+                     "; use one build, and set FENESTRA_INSTRUCTIONS to what all machines have");
+}
+
+/// Facts that differ where scenes do: the voxels' range, the camera, the bounds of the extinction.
+std::string described(const Scene& scene, const RenderSettings& settings) {
+  constexpr int exact = 17; // significant digits
+  const CameraPose& pose = scene.camera().pose();
+  const MajorantGrid& majorants = scene.forRender().majorants;
+  return textOf(
+      targetOf(scene.forRender(), settings), "; voxels ", numberText(scene.volume().minimum, exact),
+      " to ", numberText(scene.volume().maximum, exact), "; camera at ",
+      numbersText(pose.position, ",", exact), " toward ", numbersText(pose.target, ",", exact),
+      "; ", majorants.size(), " cells, ", majorants.emptyCount(), " of them empty");
+}
+
+/// Lets the other ranks make the scene, and lend a hand.
+void recruitRanks(const RenderOptions& options, const Scene& scene, const RenderSettings& settings,
+                  RenderMonitor& monitor, Ranks& ranks, Lender& lender) {
+  recruitAll(ranks);
+  try {
+    shareFiles(filesOf(scene, options), ranks);
+    std::string text = described(scene, settings);
+    ranks.spread(text);
+  } catch (const Error& error) { // the others wait for bytes
+    ranks.abort(error.what(), error.exitStatus());
+  } catch (const std::exception& error) {
+    ranks.abort(error.what(), static_cast<int>(ErrorKind::input));
+  }
+  lender.help(monitor);
+}
+
+/// Rank 0: the whole command.
+int lead(int argc, char** argv, Ranks& ranks, const std::vector<std::string>& arithmetics) {
+  Lender lender(ranks);
+  try {
+    requireSameRanks(arithmetics);
+    const auto recruit = [&](const RenderOptions& options, const Scene& scene,
+                             const RenderSettings& settings, RenderMonitor& monitor) {
+      recruitRanks(options, scene, settings, monitor, ranks, lender);
+    };
+    const int status = renderWith(recruit, argc, argv, firstArgument(argc, argv));
+    if (!lender.dismiss(status == stoppedStatus))
+      ranks.abort("stopped; other ranks do not answer", status);
+    return status;
+  } catch (...) {
+    lender.dismiss(true);
+    throw;
+  }
+}
+
+/// Other ranks: tiles of the picture that rank 0 makes of the same arguments.
+void follow(int argc, char** argv, Ranks& ranks) {
+  const std::optional<FlagValues> given =
+      parseCommandLine(renderSyntax, argc, argv, firstArgument(argc, argv));
+  useMachine(*given);
+  const SharedFiles files(ranks);
+  std::string expected;
+  ranks.spread(expected);
+  PictureRequest request = pictureRequest(files.renamed(*given, renderSyntax.flags));
+  SceneRequest& wanted = request.options.scene;
+  wanted.features = wanted.measure = false; // what is for rank 0 alone
+  checkMemory(wanted);
+  const Scene scene(wanted, request.input);
+  const RenderSettings settings = settingsFor(request.options, scene.background());
+  if (const std::string here = described(scene, settings); here != expected)
+    throw inputError(wanted.input, "is another scene than rank 0 has (", here, ", not ", expected,
+                     "); a file that it names may differ between machines");
+  RenderMonitor monitor;
+  const StopInstead stopInstead(monitor.stop);
+  borrow(ranks, scene.forRender(), settings, monitor);
+}
+
+} // namespace
+
+int dispatchRank(int argc, char** argv) {
+  useInstructions();
+  Ranks ranks;
+  if (ranks.count() == 1)
+    return dispatch(argc, argv);
+  const std::vector<std::string> arithmetics = ranks.together(
+      textOf(versionText, " on ", processorText, " by ", WideTracker::instructionSet()));
+  if (ranks.rank() == 0)
+    return lead(argc, argv, ranks, arithmetics);
+  if (!isRecruited(ranks))
+    return 0;
+  try {
+    follow(argc, argv, ranks);
+  } catch (const Error& error) {
+    ranks.abort(error.what(), error.exitStatus());
+  } catch (const std::bad_alloc&) {
+    ranks.abort("out of memory; use fewer ranks on a machine, or a smaller picture",
+                static_cast<int>(ErrorKind::output));
+  } catch (const std::exception& error) {
+    ranks.abort(error.what(), static_cast<int>(ErrorKind::output));
+  }
+  return 0;
+}
+
+} // namespace fenestra

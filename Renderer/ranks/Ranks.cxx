@@ -1,0 +1,96 @@
+#include "ranks/Ranks.h"
+
+#include "base/Error.h"
+#include "base/safe/ShownText.h"
+
+#include <algorithm>
+#include <chrono>
+#include <iostream>
+#include <thread>
+
+#include <mpi.h>
+#include <unistd.h>
+
+namespace fenestra {
+namespace {
+
+constexpr int anyTag = 0; ///< of all messages
+
+} // namespace
+
+Ranks::Ranks() {
+  int level = MPI_THREAD_SINGLE;
+  MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &level);
+  if (level < MPI_THREAD_SERIALIZED)
+    throw outputError("MPI", "this library serves one thread alone; use another one");
+  MPI_Comm_rank(MPI_COMM_WORLD, &m_rank);
+  MPI_Comm_size(MPI_COMM_WORLD, &m_count);
+}
+
+Ranks::~Ranks() {
+  MPI_Finalize();
+}
+
+std::vector<std::string> Ranks::together(const std::string& text) {
+  constexpr std::size_t longest = 512;
+  std::vector<char> mine(longest), all(longest * static_cast<std::size_t>(m_count));
+  std::copy_n(text.begin(), std::min(text.size(), longest - 1), mine.begin());
+  const std::lock_guard lock(m_mutex);
+  MPI_Allgather(mine.data(), longest, MPI_CHAR, all.data(), longest, MPI_CHAR, MPI_COMM_WORLD);
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < all.size(); i += longest)
+    texts.emplace_back(&all[i]);
+  return texts;
+}
+
+void Ranks::spread(std::span<char> bytes) {
+  const std::lock_guard lock(m_mutex);
+  MPI_Bcast(bytes.data(), static_cast<int>(bytes.size()), MPI_CHAR, 0, MPI_COMM_WORLD);
+}
+
+void Ranks::spread(std::string& text) {
+  std::uint64_t size = text.size();
+  spread({reinterpret_cast<char*>(&size), sizeof size});
+  text.resize(size);
+  spread(std::span(text));
+}
+
+void Ranks::send(int to, const Message& message) {
+  const std::lock_guard lock(m_mutex);
+  MPI_Send(message.data(), static_cast<int>(message.size()), MPI_UINT64_T, to, anyTag,
+           MPI_COMM_WORLD);
+}
+
+std::optional<Received> Ranks::receive() {
+  const std::lock_guard lock(m_mutex);
+  int isThere = 0;
+  MPI_Status status = {};
+  MPI_Iprobe(MPI_ANY_SOURCE, anyTag, MPI_COMM_WORLD, &isThere, &status);
+  if (!isThere)
+    return std::nullopt;
+  int size = 0;
+  MPI_Get_count(&status, MPI_UINT64_T, &size);
+  Received received{status.MPI_SOURCE, Message(static_cast<std::size_t>(size))};
+  MPI_Recv(received.message.data(), size, MPI_UINT64_T, received.from, anyTag, MPI_COMM_WORLD,
+           MPI_STATUS_IGNORE);
+  return received;
+}
+
+bool Ranks::hasMessage() {
+  const std::lock_guard lock(m_mutex);
+  int isThere = 0;
+  MPI_Iprobe(MPI_ANY_SOURCE, anyTag, MPI_COMM_WORLD, &isThere, MPI_STATUS_IGNORE);
+  return isThere;
+}
+
+void Ranks::abort(std::string_view line, int status) {
+  std::cerr << oneLine(textOf("fenestra: rank ", m_rank, ": ", line)) << std::endl;
+  MPI_Abort(MPI_COMM_WORLD, status); // other threads may be inside a call: no lock
+  ::_exit(status);
+}
+
+void restBetweenLooks() {
+  std::this_thread::sleep_for(std::chrono::microseconds(300));
+}
+
+} // namespace fenestra

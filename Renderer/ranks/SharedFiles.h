@@ -1,0 +1,30 @@
+#pragma once
+// Input files, which rank 0 has read, as files of the other ranks' own.
+
+#include "base/safe/Folders.h"
+#include "program/Flags.h"
+#include "ranks/Ranks.h"
+
+namespace fenestra {
+
+/// Gives files to all other ranks, which call SharedFiles(ranks) meanwhile. Throws Error (input).
+void shareFiles(const std::vector<std::filesystem::path>& files, Ranks& ranks);
+
+/// Files of rank 0, in a temporary folder (TMPDIR) of this rank.
+class SharedFiles {
+public:
+  /// Throws Error (output).
+  explicit SharedFiles(Ranks& ranks);
+
+  /// Flags with those names of files, relative to rank 0's working folder, that are here in place
+  /// of the ones that rank 0 was given.
+  FlagValues renamed(const FlagValues& flags, std::span<const Flag> known) const;
+
+private:
+  std::filesystem::path here(const std::filesystem::path& there) const;
+
+  PrivateFolder m_folder;
+  std::filesystem::path m_working; ///< rank 0's
+};
+
+} // namespace fenestra

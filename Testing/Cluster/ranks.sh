@@ -1,0 +1,132 @@
+#!/usr/bin/env bash
+# Pictures by several ranks of mpirun equal, byte for byte, those of one process: with a number of samples
+# and toward a noise target. A rank that dies ends the job, which names it, and one process goes on from the
+# film. --seconds, a stop, other instruction sets and a wrong command end all ranks.
+# usage: ranks.sh FENESTRA FENESTRA_MPI RANKS...; exit status 77: skipped.
+set -euo pipefail
+export LC_ALL=C
+skip() {
+  printf 'SKIPPED: %s\n' "$*"
+  exit 77
+}
+[ -x "$2" ] || skip "$2 is not built, for MPI was not found"
+command -v mpirun >/dev/null || skip "mpirun is not installed"
+program=$(realpath "$1") ranked=$(realpath "$2")
+shift 2
+work=$(mktemp -d "${TMPDIR:-/tmp}/ranks-XXXXXX")
+trap 'rm -rf "$work"' EXIT
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+wrong=0
+fail() {
+  printf 'ranks.sh: %s\n' "$*"
+  wrong=$((wrong + 1))
+}
+
+# on RANKS COMMAND...
+on() {
+  local ranks=$1
+  shift
+  timeout 120 mpirun --oversubscribe --bind-to none -n "$ranks" "$@"
+}
+
+# in_folder NAME: goes to an empty folder with a volume of 4^3 voxels.
+in_folder() {
+  mkdir -p "$work/$1"
+  cd "$work/$1"
+  {
+    printf 'NRRD0004\ntype: uint8\ndimension: 3\nspace: left-posterior-superior\nsizes: 4 4 4\n'
+    printf 'space directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (0,0,0)\nencoding: raw\n\n'
+    printf '0123456789abcdefghijklmnopqrstuvwxyz@ABCDEFGHIJKLMNOPQRSTUVWXYZ$%%'
+  } >volume.nrrd
+}
+
+# of_rank RANK: process of that rank below this shell's mpirun.
+of_rank() {
+  local id
+  for id in $(pgrep -f "^$ranked " || true); do
+    if tr '\0' '\n' <"/proc/$id/environ" 2>/dev/null | grep -qx "OMPI_COMM_WORLD_RANK=$1" &&
+      [ "$(readlink "/proc/$id/cwd")" = "$PWD" ]; then
+      printf '%s' "$id"
+      return
+    fi
+  done
+}
+
+# begin COMMAND...: starts two ranks, and waits until their film is there.
+begin() {
+  on 2 "$ranked" "$@" >out 2>&1 &
+  run=$!
+  local tries
+  for tries in $(seq 200); do
+    [ -e v.film ] && return
+    sleep 0.05
+  done
+  fail "no film: $(cat out)"
+}
+
+# status_of_run: exit status of what begin has started.
+status_of_run() {
+  local status=0
+  wait "$run" || status=$?
+  printf '%s' "$status"
+}
+
+samples=(volume.nrrd --size 72x64 --samples 40 --threads 1 --progress none --output v.exr --output v.png)
+noise=(volume.nrrd --size 72x64 --noise 0.02 --threads 1 --progress none --output v.exr)
+for kind in samples noise; do
+  declare -n flags=$kind
+  in_folder "$kind-alone"
+  "$program" "${flags[@]}" >out 2>&1 || fail "$(cat out)"
+  for ranks in "$@"; do
+    in_folder "$kind-$ranks"
+    on "$ranks" "$ranked" "${flags[@]}" >out 2>&1 || fail "$kind by $ranks ranks: $(cat out)"
+    for file in ../"$kind"-alone/v.*; do
+      cmp "$file" "$(basename "$file")" || fail "$kind: $ranks ranks differ from one process"
+    done
+  done
+done
+
+# Files come from rank 0: the other one works where there are none.
+in_folder elsewhere
+timeout 120 mpirun --oversubscribe --bind-to none -n 1 "$ranked" "${samples[@]}" : \
+  -n 1 --wdir / "$ranked" "${samples[@]}" >out 2>&1 || fail "files of rank 0: $(cat out)"
+cmp ../samples-alone/v.exr v.exr || fail 'files of rank 0: the picture differs'
+
+in_folder seconds
+begun=$SECONDS
+on 2 "$ranked" volume.nrrd --size 64x64 --seconds 1 --progress none --output v.exr >out 2>&1 ||
+  fail "--seconds: $(cat out)"
+[ $((SECONDS - begun)) -le 20 ] || fail "--seconds 1 took $((SECONDS - begun)) s"
+
+long=(volume.nrrd --size 64x64 --samples 3000 --threads 1 --progress none --checkpoint v.film --output v.exr)
+in_folder long-alone
+"$program" "${long[@]}" >out 2>&1 || fail "$(cat out)"
+in_folder dead
+begin "${long[@]}"
+kill -9 "$(of_rank 1)" || fail 'no rank 1'
+[ "$(status_of_run)" -ne 0 ] || fail 'a dead rank went unnoticed'
+grep -q 'rank 1 ' out || fail "the dead rank is not named: $(cat out)"
+rm -f v.exr
+"$program" "${long[@]}" >out 2>&1 || fail "the film of a dead job does not go on: $(cat out)"
+cmp ../long-alone/v.exr v.exr || fail 'the picture that went on differs'
+
+in_folder stopped
+begin "${long[@]}"
+kill -TERM "$(of_rank 0)" || fail 'no rank 0'
+status=$(status_of_run)
+[ "$status" -eq 5 ] || fail "a stop ends with status $status: $(cat out)"
+[ -e v.exr ] || fail 'a stop writes no picture'
+
+in_folder refused
+status=0
+timeout 120 mpirun --oversubscribe --bind-to none -n 1 -x FENESTRA_INSTRUCTIONS=SSE4 "$ranked" "${samples[@]}" : \
+  -n 1 -x FENESTRA_INSTRUCTIONS=SCALAR "$ranked" "${samples[@]}" >out 2>&1 || status=$?
+{ [ "$status" -eq 2 ] && grep -q 'rank 1 is .*, rank 0 is ' out; } ||
+  fail "other instructions end with status $status: $(cat out)"
+status=0
+on 2 "$ranked" volume.nrrd --samples none >out 2>&1 || status=$?
+{ [ "$status" -eq 2 ] && [ "$(grep -c '^fenestra: ' out)" -eq 1 ]; } ||
+  fail "a wrong command ends with status $status: $(cat out)"
+
+echo "$wrong wrong"
+[ "$wrong" -eq 0 ]
