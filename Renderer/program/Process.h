@@ -1,5 +1,5 @@
 #pragma once
-// What every process of this program does around its command.
+// Frame of every process of this program: streams, stops, errors, temporary files.
 
 namespace fenestra {
 
