@@ -127,9 +127,9 @@ bool isConstantInPixels(const Background& background, const LightSet& lights) {
 
 /// Pixels of which one sample is enough; the film is told.
 EmptyPixels emptyPixels(const RenderScene& scene, const RenderSettings& settings, Film& film) {
-  const EmptyPixels empty = isConstantInPixels(settings.path.background, scene.lights)
-                                ? EmptyPixels(scene.camera, scene.majorants)
-                                : EmptyPixels();
+  EmptyPixels empty = isConstantInPixels(settings.path.background, scene.lights)
+                          ? EmptyPixels(scene.camera, scene.majorants)
+                          : EmptyPixels();
   for (int row = 0; row < film.height(); ++row)
     for (int column = 0; column < film.width(); ++column)
       film.at(column, row).isCertain = empty.contains(column, row);
