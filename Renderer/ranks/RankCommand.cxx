@@ -90,14 +90,15 @@ void follow(int argc, char** argv, Ranks& ranks) {
   const std::optional<FlagValues> given =
       parseCommandLine(renderSyntax, argc, argv, firstArgument(argc, argv));
   useMachine(*given);
-  const SharedFiles files(ranks);
+  std::optional<SharedFiles> files(ranks);
   std::string expected;
   ranks.spread(expected);
-  PictureRequest request = pictureRequest(files.renamed(*given, renderSyntax.flags));
+  PictureRequest request = pictureRequest(files->renamed(*given, renderSyntax.flags));
   SceneRequest& wanted = request.options.scene;
   wanted.features = wanted.measure = false; // what is for rank 0 alone
   checkMemory(wanted);
   const Scene scene(wanted, request.input);
+  files.reset();
   const RenderSettings settings = settingsFor(request.options, scene.background());
   if (const std::string here = described(scene, settings); here != expected)
     throw inputError(wanted.input, "is another scene than rank 0 has (", here, ", not ", expected,

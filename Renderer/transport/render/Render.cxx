@@ -98,6 +98,23 @@ struct PassSource {
   NumberSource numbers;
 };
 
+/// Renders tiles as renderTiles, beside helpers.
+template <typename Tracer>
+void renderShare(const Tracer& tracer, Pass& pass, RenderResult& result, RenderMonitor& monitor) {
+  const Helpers& helpers = monitor.helpers;
+  if (helpers.count == 0)
+    return renderTiles(tracer, pass, result.film, result.counters, monitor);
+  helpers.lend(pass, result);
+  try {
+    renderTiles(tracer, pass, result.film, result.counters, monitor);
+  } catch (...) { // pass and film end here
+    monitor.stop = true;
+    helpers.settle(monitor);
+    throw;
+  }
+  result.counters += helpers.settle(monitor);
+}
+
 /// Renders the samples that stage `result.begunSamples` has beyond the film. Returns false if
 /// stopped before all were done.
 template <typename Tracer>
@@ -106,13 +123,8 @@ bool renderPass(const Tracer& tracer, const PassSource& source, RenderResult& re
   const SamplePlan& plan = result.last.plan;
   Pass pass(source.tiles, plan.at(result.finishedSamples), plan.at(result.begunSamples),
             source.empty, source.numbers, result.film, monitor.paths);
-  const Helpers& helpers = monitor.helpers;
   for (;;) {
-    if (helpers.count > 0)
-      helpers.lend(pass, result);
-    renderTiles(tracer, pass, result.film, result.counters, monitor);
-    if (helpers.count > 0)
-      result.counters += helpers.settle(monitor);
+    renderShare(tracer, pass, result, monitor);
     if (pass.whole() || monitor.stop)
       return pass.whole();
     monitor.keep(result); // nothing but a rest leaves tiles undone
