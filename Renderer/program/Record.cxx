@@ -1,6 +1,7 @@
 #include "program/Record.h"
 
 #include "base/Error.h"
+#include "base/safe/Digest.h"
 #include "base/safe/Inputs.h"
 #include "program/FileNames.h"
 #include "program/about/Version.h"
@@ -39,12 +40,9 @@ bool isAsRecorded(const fs::path& path, const JsonNode& recorded, const std::str
   const std::uintmax_t bytes = fs::file_size(path, failed);
   if (failed || bytes == 0)
     return false;
-  if (recorded.at("bytes").json() == std::to_string(bytes)) {
-    std::ifstream file(path, std::ios::binary);
-    const std::string content(std::istreambuf_iterator<char>(file), {});
-    if (recorded.at("digest").json() == std::to_string(stateOf(content).digest))
-      return true;
-  }
+  if (recorded.at("bytes").json() == std::to_string(bytes) &&
+      recorded.at("digest").json() == std::to_string(digestOf(path)))
+    return true;
   throw usageError(path, ": is not the ", word,
                    " that was recorded; move it away, and the same command renders it again");
 }

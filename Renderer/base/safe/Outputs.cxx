@@ -1,6 +1,7 @@
 #include "base/safe/Outputs.h"
 
 #include "base/Error.h"
+#include "base/safe/Digest.h"
 #include "base/safe/Inputs.h"
 #include "base/safe/Locks.h"
 #include "base/safe/SystemCalls.h"
@@ -133,7 +134,9 @@ void sendTo(int stream, const std::string& content, const fs::path& path) {
 } // namespace
 
 ContentState stateOf(std::string_view content) {
-  return {content.size(), std::hash<std::string_view>()(content)};
+  Digest digest;
+  digest.add(content);
+  return {content.size(), digest.value()};
 }
 
 bool resultsWerePlaced() {

@@ -20,7 +20,7 @@
 
 namespace fenestra {
 
-/// Size and digest of a content, which identify a result.
+/// Size and digest (Digest.h) of a content, which identify a result.
 struct ContentState {
   std::uint64_t bytes = 0, digest = 0;
 
