@@ -53,12 +53,23 @@ const ColorFunction& albedoOf(const std::optional<ColorFunction>& own,
   return own ? *own : transfer.albedo;
 }
 
+/// How far knobs may be turned, and the difference of colours from their own that all of what is
+/// wanted would be worth.
+struct Limits {
+  double saturation, lightness, shift, chroma, accent;
+  double worth;
+};
+/// Tissue stays tissue; and, of a focus that would not be told from its like (bowel in bowel, a
+/// vertebra on another), paint.
+constexpr Limits gentle{0.5, 0.35, 12.0, 1.4, 0.35, 300.0}, strong{0.3, 0.5, 18.0, 1.7, 0.6, 600.0};
+
 /// Turns knobs until a border has enough of what is wanted.
 class Knobs {
 public:
-  Knobs(const std::vector<BorderColors>& colors, const ContrastKnobs& start, double saturation,
-        double g)
+  Knobs(const std::vector<BorderColors>& colors, const ContrastKnobs& start, double worth,
+        double saturation, double g)
       : m_colors(&colors),
+        m_worth(worth),
         m_saturation(saturation),
         m_g(g),
         m_start(start),
@@ -66,6 +77,7 @@ public:
         m_share(shareOf(start)) {}
 
   const ContrastKnobs& knobs() const { return m_knobs; }
+  double share() const { return m_share; }
 
   /// Turns a knob from where it is, in steps, to at most `farthest`.
   void turn(double ContrastKnobs::*knob, double farthest) {
@@ -75,13 +87,17 @@ public:
            [this](double share) { return share > m_share; });
   }
 
-  /// Turns a knob back toward the start, as far as that costs nothing that is wanted.
-  void turnBack(double ContrastKnobs::*knob) {
-    const double last = m_knobs.*knob, needed = std::min(m_share, enoughShare);
-    for (int i = 1; i <= steps; ++i)
-      if (!take(knob, last + (m_start.*knob - last) * i / steps,
-                [needed](double share) { return share >= needed; }))
-        return;
+  /// Turns all knobs back toward the start, from the last to the first, as far as that costs
+  /// nothing that is wanted: again as long as one that is back lets another follow.
+  void turnBack() {
+    ContrastKnobs before;
+    do {
+      before = m_knobs;
+      for (const auto knob : {&ContrastKnobs::focusAccent, &ContrastKnobs::focusChroma,
+                              &ContrastKnobs::focusLightness, &ContrastKnobs::contextLightness,
+                              &ContrastKnobs::contextSaturation})
+        turnBack(knob);
+    } while (!(m_knobs == before));
   }
 
   /// Turns the focus toward the accent that is worth most, if one is worth the change.
@@ -98,12 +114,19 @@ public:
     m_share = best.m_share;
   }
 
-  /// True if its share is worth its change: a tenth of what is wanted, colours that differ by 30
-  /// from their own.
+  /// True if its share is worth its change.
   bool isBetterThan(const Knobs& other) const { return worth() > other.worth(); }
 
 private:
   static constexpr int steps = 20;
+
+  void turnBack(double ContrastKnobs::*knob) {
+    const double last = m_knobs.*knob, needed = std::min(m_share, enoughShare);
+    for (int i = 1; i <= steps; ++i)
+      if (!take(knob, last + (m_start.*knob - last) * i / steps,
+                [needed](double share) { return share >= needed; }))
+        return;
+  }
 
   bool take(double ContrastKnobs::*knob, double value, const auto& isWanted) {
     ContrastKnobs turned = m_knobs;
@@ -130,10 +153,7 @@ private:
       return tintShare(contrastUnder(knobs, part, m_saturation, m_g));
     });
   }
-  double worth() const {
-    constexpr double changePerShare = 300.0;
-    return std::min(m_share, enoughShare) - change() / changePerShare;
-  }
+  double worth() const { return std::min(m_share, enoughShare) - change() / m_worth; }
   /// Difference of the colours from their own, both sides together.
   double change() const {
     return meanOf([&](const BorderColors& part) {
@@ -143,7 +163,7 @@ private:
   }
 
   const std::vector<BorderColors>* m_colors;
-  double m_saturation, m_g;
+  double m_worth, m_saturation, m_g;
   ContrastKnobs m_start, m_knobs;
   double m_share;
 };
@@ -199,8 +219,7 @@ Contrast contrastUnder(const ContrastKnobs& knobs, const BorderColors& colors, d
 
 ContrastKnobs chosenKnobs(const std::vector<BorderColors>& colors, const ContextColors& context,
                           Turned what, double saturation, double g) {
-  constexpr double leastSaturation = 0.5, mostLightness = 0.35, mostChroma = 1.4, mostShift = 12.0,
-                   mostAccent = 0.35, white = 100.0, bright = 72.0, dim = 40.0;
+  constexpr double white = 100.0, bright = 72.0, dim = 40.0;
   ContrastKnobs start;
   start.contextSaturation = context.saturation.value_or(start.contextSaturation);
   if (context.lightness) {
@@ -209,27 +228,30 @@ ContrastKnobs chosenKnobs(const std::vector<BorderColors>& colors, const Context
   }
   if (what == Turned::nothing || colors.empty())
     return start;
-  const auto turned = [&](double shift, double goal) {
+  const auto turned = [&](const Limits& limits, double shift, double goal) {
     if (!context.lightness)
       start.contextGoal = goal;
-    Knobs knobs(colors, start, saturation, g);
+    Knobs knobs(colors, start, limits.worth, saturation, g);
     if (!context.saturation)
-      knobs.turn(&ContrastKnobs::contextSaturation, what == Turned::both ? leastSaturation : grey);
+      knobs.turn(&ContrastKnobs::contextSaturation,
+                 what == Turned::both ? limits.saturation : grey);
     if (!context.lightness)
-      knobs.turn(&ContrastKnobs::contextLightness, mostLightness);
+      knobs.turn(&ContrastKnobs::contextLightness, limits.lightness);
     if (what == Turned::both) {
       knobs.turn(&ContrastKnobs::focusLightness, shift);
-      knobs.turn(&ContrastKnobs::focusChroma, mostChroma);
-      knobs.turnToAccent(mostAccent);
+      knobs.turn(&ContrastKnobs::focusChroma, limits.chroma);
+      knobs.turnToAccent(limits.accent);
     }
-    for (const auto knob :
-         {&ContrastKnobs::focusAccent, &ContrastKnobs::focusChroma, &ContrastKnobs::focusLightness,
-          &ContrastKnobs::contextLightness, &ContrastKnobs::contextSaturation})
-      knobs.turnBack(knob);
+    knobs.turnBack();
     return knobs;
   };
-  const Knobs darker = turned(-mostShift, bright), lighter = turned(mostShift, dim);
-  return lighter.isBetterThan(darker) ? lighter.knobs() : darker.knobs();
+  const auto best = [&](const Limits& limits) {
+    const Knobs darker = turned(limits, -limits.shift, bright),
+                lighter = turned(limits, limits.shift, dim);
+    return lighter.isBetterThan(darker) ? lighter : darker;
+  };
+  const Knobs tissue = best(gentle);
+  return tissue.share() < almostEnough ? best(strong).knobs() : tissue.knobs();
 }
 
 TintContrast tintContrast(const std::vector<ComponentBorder>& borders, const TintPlan& plan,

@@ -50,6 +50,8 @@ struct BorderColors {
 double tintShare(const Contrast& contrast);
 /// Share beyond which no knob is turned: nobody sees what is missing.
 inline constexpr double enoughShare = 0.995;
+/// Share below which knobs are turned beyond what tissue looks like: a difference of 19 of 22.
+inline constexpr double almostEnough = 0.966;
 
 /// Contrast (CIELAB) under the knobs across the focus's edge in a picture: in the light, or, if
 /// that is less, where the focus stands in a groove that it shades. `saturation`: of the context's
