@@ -41,8 +41,8 @@ std::string helpText(const CommandSyntax& syntax) {
   std::string text = textOf(wrapped(syntax.summary, page), "\n\n", usage, " [FLAGS]\n\n", names);
   for (const Flag& flag : commonFlags)
     text += entry("--" + flag.name, flag.text);
-  std::string_view group;
-  for (const Flag& flag : syntax.flags) {
+  std::string group;
+  for (const Flag& flag : takenFlags(syntax)) {
     if (flag.group != group)
       text += "\n" + flag.group + ":\n";
     group = flag.group;
@@ -58,7 +58,7 @@ std::string seeHelp(const CommandSyntax& syntax) {
 Error unknownFlag(const CommandSyntax& syntax, std::string_view given) {
   given = given.substr(0, given.find('='));
   std::vector<std::string> names = namesOf(commonFlags);
-  std::ranges::copy(namesOf(syntax.flags), std::back_inserter(names));
+  std::ranges::copy(namesOf(takenFlags(syntax)), std::back_inserter(names));
   const std::string_view word = given.substr(std::min(given.find_first_not_of('-'), given.size()));
   const std::string likely = nearest(lower(word), names);
   return usageError(given, ": no such flag",
@@ -120,6 +120,10 @@ FlagValues parsedWords(const CommandSyntax& syntax, Words words) {
   if (positional != syntax.positionals.end() && !values.has(positional->name))
     throw usageError(positional->name, ": is missing; name it: ", positional->text,
                      seeHelp(syntax));
+  for (const Refusal& refusal : syntax.refusals)
+    for (const std::string& name : refusal.names)
+      if (values.has(name))
+        throw usageError("--", name, ": ", refusal.why);
   return values;
 }
 
@@ -184,11 +188,15 @@ std::optional<FlagValues> parseCommandLine(const CommandSyntax& syntax, int argc
   return std::nullopt;
 }
 
-void refuseFlags(const FlagValues& given, std::initializer_list<const char*> names,
-                 std::string_view why) {
-  for (const char* name : names)
-    if (given.has(name))
-      throw usageError("--", name, ": ", why);
+std::vector<Flag> takenFlags(const CommandSyntax& syntax) {
+  const auto isTaken = [&](const Flag& flag) {
+    return std::ranges::none_of(syntax.refusals, [&](const Refusal& refusal) {
+      return std::ranges::find(refusal.names, flag.name) != refusal.names.end();
+    });
+  };
+  std::vector<Flag> flags;
+  std::ranges::copy_if(syntax.flags, std::back_inserter(flags), isTaken);
+  return flags;
 }
 
 } // namespace fenestra

@@ -26,9 +26,7 @@ inline bool isSame(const Flag& a, const Flag& b) {
 std::string nearest(std::string_view word, std::span<const std::string> candidates);
 std::vector<std::string> namesOf(std::span<const Flag> flags);
 
-/// Throws Error (usage) for a given flag of these, which the command does not take; `why`: the rest
-/// of the message.
-void refuseFlags(const FlagValues& given, std::initializer_list<const char*> names,
-                 std::string_view why);
+/// Flags that the command takes, in the table's order.
+std::vector<Flag> takenFlags(const CommandSyntax& syntax);
 
 } // namespace fenestra

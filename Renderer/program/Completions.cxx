@@ -37,7 +37,7 @@ std::string commandNames() {
 /// Flags of a command, the common ones first.
 std::vector<Flag> allFlags(const CommandSyntax& syntax) {
   std::vector<Flag> flags(commonFlags.begin(), commonFlags.end());
-  flags.insert(flags.end(), syntax.flags.begin(), syntax.flags.end());
+  std::ranges::copy(takenFlags(syntax), std::back_inserter(flags));
   return flags;
 }
 

@@ -167,11 +167,18 @@ struct Positional {
   bool repeats = false;                ///< the last may be given several times
 };
 
+/// Flags of another command that this one shares its table with, but does not take.
+struct Refusal {
+  std::vector<std::string> names;
+  std::string why; ///< and what to do; the rest of the message
+};
+
 struct CommandSyntax {
   std::string name;
   std::string summary;
   std::vector<Positional> positionals; ///< all required, in order
-  std::span<const Flag> flags;
+  std::span<const Flag> flags;         ///< those refused, too
+  std::vector<Refusal> refusals = {};
 };
 
 /// Flag values as the user gave them. Accessors throw Error (usage) for values that the flag does

@@ -151,6 +151,10 @@ const CommandSyntax& serveSyntax() {
       "flags of fenestra render.",
       renderSyntax.positionals,
       renderSyntax.flags,
+      {{{"stats", "returnparameterfile", "progress", "xml", "echo"},
+        "serve tells all on standard output; drop it"},
+       {{"surface", "checkpoint", "shard"},
+        "serve writes pictures alone; write it with fenestra render"}},
   };
   return syntax;
 }
@@ -159,10 +163,6 @@ int serveCommand(int argc, char** argv, int first) {
   const std::optional<FlagValues> given = parseCommandLine(serveSyntax(), argc, argv, first);
   if (!given)
     return 0;
-  refuseFlags(*given, {"stats", "returnparameterfile", "progress", "xml", "echo"},
-              "serve tells all on standard output; drop it");
-  refuseFlags(*given, {"surface", "checkpoint", "shard"},
-              "serve writes pictures alone; write it with fenestra render");
   useMachine(*given);
   const PictureRequest start = pictureRequest(*given);
   // Never destroyed: the reading thread, which lives as long as the process, uses both.

@@ -242,9 +242,6 @@ int turntableCommand(int argc, char** argv, int first) {
   const std::optional<FlagValues> given = parseCommandLine(turntableSyntax(), argc, argv, first);
   if (!given)
     return 0;
-  refuseFlags(*given, {"surface", "returnparameterfile", "xml", "echo"},
-              "is for a single picture; use it with fenestra render, or drop it");
-  refuseFlags(*given, {"checkpoint"}, "a turntable records its frames by itself; drop it");
   useMachine(*given);
   FlagValues flags = *given;
   flags.remove("shard"); // which deals out frames here, not tiles

@@ -36,10 +36,13 @@ const CommandSyntax& turntableSyntax() {
       "Renders what the eye sees while it goes around its target, about the axis that is up: "
       "--output turn.png gives turn_0000.png, turn_0001.png and so on, each as fenestra render "
       "makes it. Beside them turn.turntable.json records what is finished: the same command goes "
-      "on where it was stopped. Takes all flags of fenestra render but --surface; --samples, "
-      "--seconds and --noise are for a frame, --stats for all of them.",
+      "on where it was stopped. --samples, --seconds and --noise are for a frame, --stats for all of "
+      "them.",
       renderSyntax.positionals,
       flags,
+      {{{"surface", "returnparameterfile", "xml", "echo"},
+        "is for a single picture; use it with fenestra render, or drop it"},
+       {{"checkpoint"}, "a turntable records its frames by itself; drop it"}},
   };
   return syntax;
 }
