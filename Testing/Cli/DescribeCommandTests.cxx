@@ -2,6 +2,7 @@
 // shells.
 
 #include "CommandTesting.h"
+#include "base/Text.h"
 
 #include <nlohmann/json.hpp>
 
@@ -105,6 +106,19 @@ TEST_F(DescribeCommand, ManualPageHasItsSectionsAndEveryFlagOfTheHelp) {
       EXPECT_TRUE(std::regex_search(outcome.out, std::regex("\n.It Fl Fl " + it->str(1) + "[ \n]")))
           << command << " " << it->str(1);
   }
+}
+
+TEST_F(DescribeCommand, WhatACommandRefusesIsNotOffered) {
+  using Pair = std::pair<const char*, const char*>;
+  for (const auto& [command, flag] :
+       {Pair("serve", "--stats"), Pair("serve", "--checkpoint"), Pair("turntable", "--surface"),
+        Pair("turntable", "--checkpoint")}) {
+    expectRefused({{flag, {command, "volume.nrrd", flag, "a.json"}, 2, flag}}, folder.path());
+    EXPECT_EQ(run({command, "--help"}, folder.path()).out.find(textOf("\n  ", flag, " ")),
+              std::string::npos);
+  }
+  EXPECT_NE(run({"render", "--help"}, folder.path()).out.find("\n  --checkpoint "),
+            std::string::npos);
 }
 
 TEST_F(DescribeCommand, UnknownKindIsRefused) {

@@ -22,6 +22,9 @@ fenestra --clip=su|surface
 fenestra tur|turntable
 fenestra turntable --fra|--frames
 fenestra inspect --fra|
+fenestra serve --checkp|
+fenestra turntable --surf|
+fenestra --checkp|--checkpoint
 fenestra inspect --js|--json
 fenestra serve scan.nrrd --noiset|--noisetarget
 fenestra serve scan.nrrd --noisetarget fi|filtered
