@@ -156,6 +156,47 @@ TEST_F(StudyCommand, GoesOnAfterAKillWithTheSameFiles) {
   EXPECT_EQ(filesIn(folder / "out").size(), 2U + 6 * (1 + 3)) << "something is left";
 }
 
+TEST_F(StudyCommand, ALongRowGoesOnFromItsFilm) {
+  namespace fs = std::filesystem;
+  const Arguments large = {"--size", "96x96", "--samples", "600", "--threads", "1"};
+  folder.write("t.csv", "name,input\na,volume.nrrd\n");
+  Arguments words = {"study", "t.csv", "--formats", "exr", "--output", "out"};
+  words.insert(words.end(), large.begin(), large.end());
+  {
+    Process process(words, folder.path());
+    const Stopwatch watch;
+    while (!fs::exists(folder / "out/a/a.film") && watch.seconds() < 30.0)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    process.send(SIGKILL);
+    process.wait();
+  }
+  ASSERT_TRUE(fs::exists(folder / "out/a/a.film"));
+  ASSERT_FALSE(fs::exists(folder / "out/a/a.png"));
+  for (const char* copy : {"torn", "other"})
+    fs::copy(folder / "out", folder / copy, fs::copy_options::recursive);
+  fs::resize_file(folder / "torn/a/a.film", fs::file_size(folder / "out/a/a.film") / 2);
+
+  Arguments alone = {"volume.nrrd", "--output", "alone.exr"};
+  alone.insert(alone.end(), large.begin(), large.end());
+  ASSERT_EQ(run(alone, folder.path()).status, 0);
+  const auto expected = readImage(folder / "alone.exr").channels;
+  const auto fromFilm = [&](const std::string& output, const std::string& samples) {
+    words[5] = output;
+    words[9] = samples;
+    const Outcome outcome = run(words, folder.path());
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("1 of 1 rows done, 1 rendered now"), std::string::npos)
+        << outcome.out;
+    EXPECT_EQ(filesIn(folder / output / "a").size(), 4U) << "something is left";
+    return nlohmann::json::parse(bytesOf(folder / output / "a/a.json")).value("pathsFromFilm", 0);
+  };
+  EXPECT_GT(fromFilm("out", "600"), 0);
+  EXPECT_EQ(readImage(folder / "out/a/a.exr").channels, expected);
+  EXPECT_EQ(fromFilm("torn", "600"), 0) << "a damaged film";
+  EXPECT_EQ(readImage(folder / "torn/a/a.exr").channels, expected);
+  EXPECT_EQ(fromFilm("other", "1"), 0) << "a film of other flags";
+}
+
 TEST_F(StudyCommand, StopsOnRequestAndGoesOn) {
   folder.write("t.csv", "name,input,samples,size\na,volume.nrrd,2,16x16\n"
                         "b,volume.nrrd,1000000,64x64\nc,volume.nrrd,2,16x16\n");
