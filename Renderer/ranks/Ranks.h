@@ -56,8 +56,9 @@ private:
   int m_rank = 0, m_count = 1;
 };
 
-/// Rests between looks for messages, each an eighth of the time since the last one that was there: looks
-/// take next to nothing of a long wait from threads that render, and make a short one hardly longer.
+/// Rests between looks for messages, each an eighth of the time since the last one that was there:
+/// looks take next to nothing of a long wait from threads that render, and make a short one hardly
+/// longer.
 class Rests {
 public:
   /// There was a message.

@@ -158,12 +158,13 @@ TEST_F(StudyCommand, GoesOnAfterAKillWithTheSameFiles) {
 
 TEST_F(StudyCommand, ALongRowGoesOnFromItsFilm) {
   namespace fs = std::filesystem;
-  const Arguments large = {"--size", "96x96", "--samples", "600", "--threads", "1"};
-  folder.write("t.csv", "name,input\na,volume.nrrd\n");
-  Arguments words = {"study", "t.csv", "--formats", "exr", "--output", "out"};
-  words.insert(words.end(), large.begin(), large.end());
+  folder.write("t.csv", "name,input,size\na,volume.nrrd,96x96\n");
+  const auto words = [](const std::string& output, const std::string& samples) {
+    return Arguments{"study", "t.csv",     "--output", output,      "--formats",
+                     "exr",   "--samples", samples,    "--threads", "1"};
+  };
   {
-    Process process(words, folder.path());
+    Process process(words("out", "300"), folder.path());
     const Stopwatch watch;
     while (!fs::exists(folder / "out/a/a.film") && watch.seconds() < 30.0)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -172,29 +173,38 @@ TEST_F(StudyCommand, ALongRowGoesOnFromItsFilm) {
   }
   ASSERT_TRUE(fs::exists(folder / "out/a/a.film"));
   ASSERT_FALSE(fs::exists(folder / "out/a/a.png"));
-  for (const char* copy : {"torn", "other"})
-    fs::copy(folder / "out", folder / copy, fs::copy_options::recursive);
-  fs::resize_file(folder / "torn/a/a.film", fs::file_size(folder / "out/a/a.film") / 2);
-
-  Arguments alone = {"volume.nrrd", "--output", "alone.exr"};
-  alone.insert(alone.end(), large.begin(), large.end());
-  ASSERT_EQ(run(alone, folder.path()).status, 0);
-  const auto expected = readImage(folder / "alone.exr").channels;
-  const auto fromFilm = [&](const std::string& output, const std::string& samples) {
-    words[5] = output;
-    words[9] = samples;
-    const Outcome outcome = run(words, folder.path());
+  fs::copy(folder / "out", folder / "other", fs::copy_options::recursive);
+  const auto pathsFromFilm = [&](const std::string& output, const std::string& samples) {
+    const Outcome outcome = run(words(output, samples), folder.path());
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_NE(outcome.out.find("1 of 1 rows done, 1 rendered now"), std::string::npos)
         << outcome.out;
     EXPECT_EQ(filesIn(folder / output / "a").size(), 4U) << "something is left";
     return nlohmann::json::parse(bytesOf(folder / output / "a/a.json")).value("pathsFromFilm", 0);
   };
-  EXPECT_GT(fromFilm("out", "600"), 0);
-  EXPECT_EQ(readImage(folder / "out/a/a.exr").channels, expected);
-  EXPECT_EQ(fromFilm("torn", "600"), 0) << "a damaged film";
-  EXPECT_EQ(readImage(folder / "torn/a/a.exr").channels, expected);
-  EXPECT_EQ(fromFilm("other", "1"), 0) << "a film of other flags";
+  EXPECT_GT(pathsFromFilm("out", "300"), 0);
+  ASSERT_EQ(run({"volume.nrrd", "--size", "96x96", "--samples", "300", "--output", "alone.exr"},
+                folder.path())
+                .status,
+            0);
+  EXPECT_EQ(readImage(folder / "out/a/a.exr").channels, readImage(folder / "alone.exr").channels);
+  EXPECT_EQ(pathsFromFilm("other", "1"), 0) << "a film of other flags";
+}
+
+TEST_F(StudyCommand, ARowWhoseFilmIsRefusedBeginsAnew) {
+  folder.write("t.csv", "name,input\na,late.nrrd\n");
+  EXPECT_EQ(made().status, 3);
+  folder.write("late.nrrd", NrrdText().with(ramp()));
+  folder.write("out/a/a.film", "torn");
+  const Outcome again = made();
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/a/a.film"));
+  std::filesystem::remove(folder / "out/a/a.study.json");
+  for (const char* file : {"a.png", "a.json"})
+    std::filesystem::remove(folder / ("out/a/" + std::string(file)));
+  folder.write("out/a/a.film", "mine");
+  EXPECT_NE(made().err.find("out/a/a.film: is there, and no a.study.json"), std::string::npos);
+  EXPECT_EQ(bytes("a/a.film"), "mine");
 }
 
 TEST_F(StudyCommand, StopsOnRequestAndGoesOn) {
