@@ -151,7 +151,7 @@ private:
     for (const std::string& line : split(child.errors(), '\n'))
       if (line.starts_with(program) && !line.starts_with("fenestra: warning: "))
         last = line.substr(program.size());
-    return oneLine(last);
+    return last.empty() ? textOf("ended with status ", child.status()) : oneLine(last);
   }
 
   /// Keeps what came of a row, and prints it.
@@ -277,8 +277,9 @@ int studyCommand(int argc, char** argv, int first) {
     return stopStatus();
   for (std::size_t row = 0; row < results.rows.size(); ++row)
     if (const RowOutcome& outcome = results.outcomes[row]; outcome.state == State::failed) {
-      const int status = outcome.status > 128 ? 4 : outcome.status;
-      throw Error(static_cast<ErrorKind>(status),
+      const bool isKnown = outcome.status == static_cast<int>(ErrorKind::usage) ||
+                           outcome.status == static_cast<int>(ErrorKind::input);
+      throw Error(isKnown ? static_cast<ErrorKind>(outcome.status) : ErrorKind::output,
                   textOf(results.table, ": ", study.failed(), " of ", study.rows(),
                          " rows failed, the first ", results.rows[row].name, ": ", outcome.error));
     }

@@ -192,6 +192,7 @@ TEST_F(StudyCommand, ALongRowGoesOnFromItsFilm) {
 }
 
 TEST_F(StudyCommand, ARowWhoseFilmIsRefusedBeginsAnew) {
+  folder.write("late.nrrd", NrrdText().with("x"));
   folder.write("t.csv", "name,input\na,late.nrrd\n");
   EXPECT_EQ(made().status, 3);
   folder.write("late.nrrd", NrrdText().with(ramp()));
