@@ -241,6 +241,8 @@ stage_study() {
   in_study twelve "$top/Testing/Study/twelve.sh" "$top/build/bin/fenestra" "$data" "$logs/twelve"
   in_study slurm-study "$top/Testing/Cluster/study.sh" "$top/build/bin/fenestra" "$logs/slurm-study"
   in_study slurm-shards "$top/Testing/Cluster/shards.sh" "$top/build/bin/fenestra" "$logs/slurm-shards"
+  in_study slurm-mpi "$top/Testing/Cluster/mpi.sh" "$top/build/bin/fenestra" "$top/build/bin/fenestra-mpi" \
+    "$logs/slurm-mpi"
 }
 
 stage_paths() {

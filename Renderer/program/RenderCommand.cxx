@@ -31,7 +31,8 @@ using Json = nlohmann::ordered_json;
 struct RenderStats {
   /// Wall-clock seconds; transport includes looks at a filtered picture's error.
   double transport = 0.0, filter = 0.0, write = 0.0, measure = 0.0, total = 0.0;
-  std::optional<double> filtered = {}; ///< noise of the filtered picture, as it tells
+  std::optional<std::uint64_t> pathsFromFilm = {}; ///< of the film that the render went on from
+  std::optional<double> filtered = {};             ///< noise of the filtered picture, as it tells
   std::optional<FocusReport> focus = {};
   std::vector<std::string> warnings = {}; ///< beside the scene's
 };
@@ -129,6 +130,8 @@ std::string statsJson(const RenderStats& stats, const RenderOptions& options, co
       {"measure", stats.measure},    {"write", stats.write},          {"total", stats.total}};
   json["cpuSeconds"] = seconds(usage.ru_utime) + seconds(usage.ru_stime);
   json["paths"] = c.paths;
+  if (stats.pathsFromFilm)
+    json["pathsFromFilm"] = *stats.pathsFromFilm;
   json["collisions"] = c.collisions;
   json["lookups"] = c.lookups;
   json["skippedFraction"] =
@@ -245,12 +248,14 @@ void writeStats(const RenderOptions& options, const Scene& scene, const RenderRe
 /// Renders, from the checkpoint on if there is one, and keeps the film there.
 RenderResult renderFilm(const RenderOptions& options, const Scene& scene,
                         const RenderSettings& settings, std::optional<Checkpoint>& checkpoint,
-                        RenderMonitor& monitor, const Recruit& recruit) {
+                        RenderMonitor& monitor, const Recruit& recruit, RenderStats& stats) {
   std::optional<RenderResult> begun;
   if (checkpoint) {
     begun = checkpoint->begun(scene, settings);
     checkpoint->watch(monitor);
   }
+  if (begun)
+    stats.pathsFromFilm = begun->counters.paths;
   if (recruit)
     recruit(options, scene, settings, monitor);
   RenderResult result = [&] {
@@ -281,7 +286,7 @@ int renderScene(const PictureRequest& request, const std::vector<std::string>& w
   RenderStats stats;
   PictureFilter filter(options, scene);
   const RenderResult result =
-      renderFilm(options, scene, filter.settings(), checkpoint, monitor, recruit);
+      renderFilm(options, scene, filter.settings(), checkpoint, monitor, recruit, stats);
   stats.transport = watch.seconds();
   surface.get();
   if (options.isPart)

@@ -59,7 +59,7 @@ public:
     while (hasWork()) {
       for (std::size_t i = 0; i < m_workers.size(); ++i) {
         if (m_workers[i] && m_workers[i]->child.hasEnded())
-          end(m_workers[i]);
+          end(i);
         while (!m_workers[i] && m_next < m_rows.size() && !m_stop)
           begin(m_rows[m_next++], i);
       }
@@ -107,14 +107,20 @@ private:
         return;
       }
       record->begin();
-      auto arguments = record->arguments(threadsOf(worker));
-      m_workers[worker].reset(new Worker{row, std::move(record), Child(std::move(arguments))});
+      start(row, std::move(record), worker);
     } catch (const Error& error) {
       tell(row, {State::failed, error.exitStatus(), 0.0, error.what()});
     }
   }
 
-  void end(std::unique_ptr<Worker>& worker) {
+  /// Throws Error (output).
+  void start(std::size_t row, std::unique_ptr<StudyRecord> record, std::size_t worker) {
+    auto arguments = record->arguments(threadsOf(worker));
+    m_workers[worker].reset(new Worker{row, std::move(record), Child(std::move(arguments))});
+  }
+
+  void end(std::size_t index) {
+    const std::unique_ptr<Worker> worker = std::move(m_workers[index]);
     const Child& child = worker->child;
     RowOutcome outcome{State::done, child.status(), worker->watch.seconds()};
     const bool wasYoung = m_asked && outcome.status == 128 + SIGTERM; // without a handler yet
@@ -126,12 +132,13 @@ private:
       outcome.error = errorLine(child);
     }
     try {
+      if (!m_stop && worker->record->beginsAnew(outcome))
+        return start(worker->row, std::move(worker->record), index);
       worker->record->finish(outcome);
     } catch (const Error& error) {
       outcome = {State::failed, error.exitStatus(), outcome.seconds, error.what()};
     }
     tell(worker->row, outcome);
-    worker.reset();
   }
 
   /// Last line that the process wrote which is no warning.
@@ -144,7 +151,7 @@ private:
     for (const std::string& line : split(child.errors(), '\n'))
       if (line.starts_with(program) && !line.starts_with("fenestra: warning: "))
         last = line.substr(program.size());
-    return oneLine(last);
+    return last.empty() ? textOf("ended with status ", child.status()) : oneLine(last);
   }
 
   /// Keeps what came of a row, and prints it.
@@ -270,8 +277,9 @@ int studyCommand(int argc, char** argv, int first) {
     return stopStatus();
   for (std::size_t row = 0; row < results.rows.size(); ++row)
     if (const RowOutcome& outcome = results.outcomes[row]; outcome.state == State::failed) {
-      const int status = outcome.status > 128 ? 4 : outcome.status;
-      throw Error(static_cast<ErrorKind>(status),
+      const bool isKnown = outcome.status == static_cast<int>(ErrorKind::usage) ||
+                           outcome.status == static_cast<int>(ErrorKind::input);
+      throw Error(isKnown ? static_cast<ErrorKind>(outcome.status) : ErrorKind::output,
                   textOf(results.table, ": ", study.failed(), " of ", study.rows(),
                          " rows failed, the first ", results.rows[row].name, ": ", outcome.error));
     }

@@ -1,13 +1,14 @@
 #include "program/StudyRecord.h"
 
 #include "base/Error.h"
+#include "base/safe/Digest.h"
 #include "base/safe/Inputs.h"
 #include "files/medical/NamedFiles.h"
 #include "files/pictures/ImageWriter.h"
 #include "program/FileNames.h"
 
 #include <algorithm>
-#include <fstream>
+#include <utility>
 
 namespace fenestra {
 namespace {
@@ -59,11 +60,6 @@ std::set<fs::path> inputsOf(const StudyRow& row, const fs::path& stats) {
   return files;
 }
 
-ContentState stateOfFile(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return stateOf(std::string(std::istreambuf_iterator<char>(file), {}));
-}
-
 /// Outcome in the record's entry. Throws Error (input).
 json checkedOutcome(const JsonNode& entry) {
   json more = {{"status", entry.at("status").numberIn(0, 255)},
@@ -89,6 +85,7 @@ StudyRecord::StudyRecord(const StudyRow& row, const fs::path& folder,
       m_folder(folder / row.name),
       m_made(m_folder),
       m_pictures(rowPictures(row, folder, formats)),
+      m_film(rowFile(row, folder, ".film")),
       m_lock(rowFile(row, folder, ".study.json")),
       m_record(rowFile(row, folder, ".study.json"), "row",
                recordedArguments(row, folder, formats)) {
@@ -104,7 +101,10 @@ void StudyRecord::read(bool restart) {
     return;
   const std::optional<FileId> there = fileId(m_record.path());
   if (!there) {
-    for (const fs::path& file : files())
+    std::vector<fs::path> unknown = files();
+    if (isThere(m_film))
+      unknown.push_back(m_film);
+    for (const fs::path& file : unknown)
       throw usageError(file, ": is there, and no ", m_record.path().filename(),
                        " tells what it is of; move it away, or add --restart to replace it");
     return;
@@ -114,10 +114,14 @@ void StudyRecord::read(bool restart) {
   m_record.requireInputs(m_record.recordedInputs());
   m_record.readPieces(
       1, [this](int) { return files(); }, checkedOutcome);
+  const bool isSame = !m_record.difference();
   if (const auto& pieces = m_record.finished();
-      !m_record.difference() && pieces.contains(0) && pieces.at(0).more.at("status") == 0)
+      isSame && pieces.contains(0) && pieces.at(0).more.at("status") == 0)
     m_finished = {RowOutcome::State::done, 0, pieces.at(0).more.at("seconds")};
   m_record.forgetPieces();
+  m_goesOn = isSame && !m_finished && isThere(m_film);
+  if (m_finished)
+    removeFilm();
 }
 
 std::vector<fs::path> StudyRecord::files() const {
@@ -138,6 +142,7 @@ std::vector<std::string> StudyRecord::arguments(int threads) const {
   for (const fs::path& picture : m_pictures)
     words.push_back(textOf("--output=", picture));
   words.push_back(textOf("--stats=", rowStats(m_row, m_folder.parent_path())));
+  words.push_back(textOf("--checkpoint=", m_film));
   words.push_back(textOf("--threads=", threads));
   words.insert(words.end(), {"--progress=none", "--", m_row.input});
   return words;
@@ -146,6 +151,22 @@ std::vector<std::string> StudyRecord::arguments(int threads) const {
 void StudyRecord::begin() {
   m_record.requireInputs({});
   m_record.write(m_outputs);
+  if (!m_goesOn)
+    removeFilm();
+}
+
+bool StudyRecord::beginsAnew(const RowOutcome& outcome) {
+  const bool isRefused = outcome.status == static_cast<int>(ErrorKind::usage) ||
+                         outcome.status == static_cast<int>(ErrorKind::input);
+  if (!isRefused || !std::exchange(m_goesOn, false))
+    return false;
+  removeFilm();
+  return true;
+}
+
+void StudyRecord::removeFilm() const {
+  std::error_code failed; // a film that stays is refused by what makes the row
+  fs::remove(m_film, failed);
 }
 
 void StudyRecord::finish(const RowOutcome& outcome) {
@@ -156,9 +177,11 @@ void StudyRecord::finish(const RowOutcome& outcome) {
   if (outcome.state == RowOutcome::State::done) {
     m_record.requireInputs(inputsOf(m_row, rowStats(m_row, m_folder.parent_path())));
     for (const fs::path& file : files())
-      written.emplace_back(file, stateOfFile(file));
+      written.emplace_back(file, ContentState{fs::file_size(file), digestOf(file)});
   }
   m_record.finish(0, written, more, m_outputs);
+  if (outcome.state == RowOutcome::State::done)
+    removeFilm();
 }
 
 } // namespace fenestra

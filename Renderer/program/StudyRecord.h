@@ -19,7 +19,8 @@ struct RowOutcome {
 };
 
 /// Folder, files and record of a row, held against other studies of these names during the
-/// object's life.
+/// object's life. Until the row is done its film lies there, too, from which a row that was
+/// interrupted goes on.
 class StudyRecord {
 public:
   /// Makes the folder. Reads the record of the row, if any; with `restart`, nothing counts as
@@ -34,8 +35,12 @@ public:
   /// Arguments of the process that makes the row, with its share of threads.
   std::vector<std::string> arguments(int threads) const;
 
-  /// Puts the record in place, before the row is made. Throws Error (output).
+  /// Puts the record in place, before the row is made, and removes a film of other flags. Throws
+  /// Error (output).
   void begin();
+  /// True if the film may be why the row's process refused to begin (files or machine have
+  /// changed, or the film is damaged): it is removed, and the row has to be made from nothing.
+  bool beginsAnew(const RowOutcome& outcome);
   /// Records what came of the row; of one that is done, files and inputs. Throws Error.
   void finish(const RowOutcome& outcome);
 
@@ -43,11 +48,14 @@ private:
   void read(bool restart);
   /// Files that the row has.
   std::vector<std::filesystem::path> files() const;
+  void removeFilm() const;
 
   const StudyRow& m_row;
   std::filesystem::path m_folder; ///< of the row
   MadeFolders m_made;
   std::vector<std::filesystem::path> m_pictures;
+  std::filesystem::path m_film;
+  bool m_goesOn = false; ///< from the film
   NameLock m_lock;
   Record m_record;
   Outputs m_outputs;

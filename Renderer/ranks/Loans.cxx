@@ -88,10 +88,10 @@ public:
   std::optional<Loan> next(RenderResult& result) {
     m_watch = {};
     bringBack(result);
-    for (;;) {
+    for (const Rests rests;;) {
       const std::optional<Received> received = m_ranks.receive();
       if (!received) {
-        restBetweenLooks();
+        rests.rest();
         continue;
       }
       MessageReader reader(received->message);
@@ -134,7 +134,7 @@ private:
       while (!end.stop_requested() && !m_monitor.stop) {
         if (m_ranks.hasMessage())
           m_monitor.stop = true;
-        wake.wait_for(lock, end, std::chrono::milliseconds(5), [] { return false; });
+        wake.wait_for(lock, end, std::chrono::milliseconds(20), [] { return false; });
       }
     });
   }
@@ -171,30 +171,35 @@ void Lender::help(RenderMonitor& monitor) {
 }
 
 void Lender::serve(const std::stop_token& end) {
+  Rests rests;
   try {
     while (!end.stop_requested()) {
       {
         const std::lock_guard lock(m_mutex);
         if (m_pass) {
-          hear();
+          if (hear())
+            rests.begin();
           lendAll();
         }
       }
-      restBetweenLooks();
+      rests.rest();
     }
   } catch (const std::bad_alloc&) {
     m_ranks.abort("out of memory; use a smaller picture", static_cast<int>(ErrorKind::output));
   }
 }
 
-/// Takes all messages that are there. Locked.
-void Lender::hear() {
+/// Takes all messages that are there; false if there is none. Locked.
+bool Lender::hear() {
+  bool isHeard = false;
   while (const std::optional<Received> received = m_ranks.receive()) {
+    isHeard = true;
     Borrower& borrower = m_borrowers[static_cast<std::size_t>(received->from)];
     borrower.waits = true;
     takeBack(received->message);
     borrower.threads = received->message[1];
   }
+  return isHeard;
 }
 
 /// Locked.
@@ -238,7 +243,7 @@ Message Lender::loanFor(Borrower& borrower) {
 }
 
 Counters Lender::settle(const RenderMonitor& monitor) {
-  for (;;) {
+  for (const Rests rests;;) {
     {
       const std::lock_guard lock(m_mutex);
       if (m_pass->whole() || monitor.stop || (monitor.isKeepDue && monitor.isKeepDue())) {
@@ -246,7 +251,7 @@ Counters Lender::settle(const RenderMonitor& monitor) {
         return std::exchange(m_added, {});
       }
     }
-    restBetweenLooks();
+    rests.rest();
   }
 }
 
@@ -260,11 +265,12 @@ bool Lender::dismiss(bool isStopped) {
   for (std::size_t rank = 1; isBegun && rank < m_borrowers.size(); ++rank)
     busy += m_borrowers[rank].waits ? 0 : 1;
   const Stopwatch watch;
+  const Rests rests;
   while (busy > 0 && (!isStopped || watch.seconds() < longest)) {
     if (m_ranks.receive())
       --busy;
     else
-      restBetweenLooks();
+      rests.rest();
   }
   return busy == 0;
 }
@@ -272,10 +278,10 @@ bool Lender::dismiss(bool isStopped) {
 // ---- other ranks
 
 bool isRecruited(Ranks& ranks) {
-  for (;;) {
+  for (const Rests rests;;) {
     if (const std::optional<Received> received = ranks.receive())
       return received->message.front() == recruits;
-    restBetweenLooks();
+    rests.rest();
   }
 }
 

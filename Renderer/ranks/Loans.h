@@ -32,7 +32,7 @@ private:
   };
 
   void serve(const std::stop_token& end);
-  void hear();
+  bool hear();
   void lendAll();
   void takeBack(const Message& message);
   Message loanFor(Borrower& borrower);

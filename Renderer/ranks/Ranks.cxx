@@ -89,8 +89,10 @@ void Ranks::abort(std::string_view line, int status) {
   ::_exit(status);
 }
 
-void restBetweenLooks() {
-  std::this_thread::sleep_for(std::chrono::microseconds(300));
+void Rests::rest() const {
+  constexpr double shortest = 0.0003, longest = 0.005; // s
+  std::this_thread::sleep_for(
+      std::chrono::duration<double>(std::clamp(m_watch.seconds() / 8.0, shortest, longest)));
 }
 
 } // namespace fenestra

@@ -1,6 +1,8 @@
 #pragma once
 // Processes of one mpirun, and what they tell each other. The only sources that know MPI.
 
+#include "base/Stopwatch.h"
+
 #include <cstdint>
 #include <mutex>
 #include <optional>
@@ -54,7 +56,17 @@ private:
   int m_rank = 0, m_count = 1;
 };
 
-/// Lets other threads work, while there is no message.
-void restBetweenLooks();
+/// Rests between looks for messages, each an eighth of the time since the last one that was there:
+/// looks take next to nothing of a long wait from threads that render, and make a short one hardly
+/// longer.
+class Rests {
+public:
+  /// There was a message.
+  void begin() { m_watch = {}; }
+  void rest() const;
+
+private:
+  Stopwatch m_watch;
+};
 
 } // namespace fenestra

@@ -156,6 +156,58 @@ TEST_F(StudyCommand, GoesOnAfterAKillWithTheSameFiles) {
   EXPECT_EQ(filesIn(folder / "out").size(), 2U + 6 * (1 + 3)) << "something is left";
 }
 
+TEST_F(StudyCommand, ALongRowGoesOnFromItsFilm) {
+  namespace fs = std::filesystem;
+  folder.write("t.csv", "name,input,size\na,volume.nrrd,96x96\n");
+  const auto words = [](const std::string& output, const std::string& samples) {
+    return Arguments{"study", "t.csv",     "--output", output,      "--formats",
+                     "exr",   "--samples", samples,    "--threads", "1"};
+  };
+  {
+    Process process(words("out", "300"), folder.path());
+    const Stopwatch watch;
+    while (!fs::exists(folder / "out/a/a.film") && watch.seconds() < 30.0)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    process.send(SIGKILL);
+    process.wait();
+  }
+  ASSERT_TRUE(fs::exists(folder / "out/a/a.film"));
+  ASSERT_FALSE(fs::exists(folder / "out/a/a.png"));
+  fs::copy(folder / "out", folder / "other", fs::copy_options::recursive);
+  const auto pathsFromFilm = [&](const std::string& output, const std::string& samples) {
+    const Outcome outcome = run(words(output, samples), folder.path());
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("1 of 1 rows done, 1 rendered now"), std::string::npos)
+        << outcome.out;
+    EXPECT_EQ(filesIn(folder / output / "a").size(), 4U) << "something is left";
+    return nlohmann::json::parse(bytesOf(folder / output / "a/a.json")).value("pathsFromFilm", 0);
+  };
+  EXPECT_GT(pathsFromFilm("out", "300"), 0);
+  ASSERT_EQ(run({"volume.nrrd", "--size", "96x96", "--samples", "300", "--output", "alone.exr"},
+                folder.path())
+                .status,
+            0);
+  EXPECT_EQ(readImage(folder / "out/a/a.exr").channels, readImage(folder / "alone.exr").channels);
+  EXPECT_EQ(pathsFromFilm("other", "1"), 0) << "a film of other flags";
+}
+
+TEST_F(StudyCommand, ARowWhoseFilmIsRefusedBeginsAnew) {
+  folder.write("late.nrrd", NrrdText().with("x"));
+  folder.write("t.csv", "name,input\na,late.nrrd\n");
+  EXPECT_EQ(made().status, 3);
+  folder.write("late.nrrd", NrrdText().with(ramp()));
+  folder.write("out/a/a.film", "torn");
+  const Outcome again = made();
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/a/a.film"));
+  std::filesystem::remove(folder / "out/a/a.study.json");
+  for (const char* file : {"a.png", "a.json"})
+    std::filesystem::remove(folder / ("out/a/" + std::string(file)));
+  folder.write("out/a/a.film", "mine");
+  EXPECT_NE(made().err.find("out/a/a.film: is there, and no a.study.json"), std::string::npos);
+  EXPECT_EQ(bytes("a/a.film"), "mine");
+}
+
 TEST_F(StudyCommand, StopsOnRequestAndGoesOn) {
   folder.write("t.csv", "name,input,samples,size\na,volume.nrrd,2,16x16\n"
                         "b,volume.nrrd,1000000,64x64\nc,volume.nrrd,2,16x16\n");

@@ -63,10 +63,14 @@ bool areAs(const Files& files, const Files& wanted, const Lines& names) {
   });
 }
 
-Lines leftovers(const Subject& subject, const Files& files, const Place& place) {
+Lines leftovers(const Subject& subject, const Files& files, const Outcome& outcome,
+                const Place& place) {
   Lines wrong;
+  const auto isUnfinished = [&](const std::string& name) {
+    return outcome.status != 0 && name == subject.request->unfinished;
+  };
   for (const auto& [name, text] : files)
-    if (!subject.before.contains(name) && !subject.after.contains(name))
+    if (!isUnfinished(name) && !subject.before.contains(name) && !subject.after.contains(name))
       wrong.push_back("leaves a file in the folder");
   if (!place.temporaries().empty())
     wrong.push_back("leaves files in TMPDIR");
@@ -159,13 +163,13 @@ Lines judge(const Subject& subject, const Fault& fault, const Place& place, Outc
   // Leftovers of a kill, or of a death outside our code, must be gone after the next run.
   if (outcome.signal == 0) {
     append(wrong, mixedFiles(subject, files, outcome));
-    append(wrong, leftovers(subject, files, place));
+    append(wrong, leftovers(subject, files, outcome, place));
   } else {
     const Outcome next = place.run(subject.request->words, {});
     if (next.status != 0)
       wrong.push_back("the next run ends with " + std::to_string(next.status));
     append(wrong, mixedFiles(subject, place.files(), next));
-    for (const std::string& line : leftovers(subject, place.files(), place))
+    for (const std::string& line : leftovers(subject, place.files(), next, place))
       wrong.push_back(line + " that the next run does not remove");
   }
   return wrong;

@@ -61,6 +61,7 @@ std::vector<Request> makeRequests() {
        "d/a/a.json",
        "d/a/a.study.json",
        "",
+       "d/a/a.film",
        {{"t.csv", "name,input\na,knee.mrb\n"}}},
       {"checkpoint", kept("2"), {kept("1")}, {{"o.exr"}}, "", "", "o.film"},
       {"merge",

@@ -18,6 +18,8 @@ struct Request {
   /// Name of a film that is kept meanwhile, and may stay old in a run that succeeds with a warning;
   /// may be empty.
   std::string film = {};
+  /// Name of a film that a run which is not done may leave, for the next one; may be empty.
+  std::string unfinished = {};
   std::map<std::string, std::string> inputs = {}; ///< files beside knee.mrb, by name
 };
 

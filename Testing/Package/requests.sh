@@ -25,6 +25,8 @@ asked dicom "$fenestra" render "$data/native" $quick --output dicom.png --output
 asked jpeg2000 "$fenestra" render "$data/jpeg2000" $quick --output jpeg2000.png
 asked archive "$fenestra" render "$data/cube.mrb" $quick --output archive.nrrd
 asked turntable "$fenestra" turntable "$data/cube.mrb" $quick --frames 3 --output turn.png
+printf 'name,input,view\nfront,%s,\nleft,%s,left\n' "$data/cube.mrb" "$data/cube.mrb" >cases.csv
+asked study "$fenestra" study cases.csv $quick --output study
 asked compare "$fenestra" compare dicom.tif dicom.tif
 
 # until_done ID: waits until serve has told of its last picture of a change.
