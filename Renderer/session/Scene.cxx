@@ -119,7 +119,8 @@ StageSeconds Scene::seconds() const {
 StagesMade Scene::made() const {
   return {m_volume.isNew(), m_focus.isNew(),     m_look.isNew(),
           m_camera.isNew(), m_lights.isNew(),    m_clip.isNew(),
-          m_ranges.isNew(), m_majorants.isNew(), m_tint.isNew() || m_contrastedTint.isNew()};
+          m_ranges.isNew(), m_majorants.isNew(), m_tint.isNew() || m_contrastedTint.isNew(),
+          m_shares.isNew()};
 }
 
 std::string Scene::choices() const {

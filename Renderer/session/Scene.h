@@ -18,7 +18,7 @@ struct StageSeconds {
 /// Stages made for a scene; false: shared with the scene before.
 struct StagesMade {
   bool volume = false, focus = false, transfer = false, camera = false, lights = false,
-       clip = false, ranges = false, majorants = false, tint = false;
+       clip = false, ranges = false, majorants = false, tint = false, shares = false;
 
   bool operator==(const StagesMade&) const = default;
 };

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <tuple>
 
 namespace fenestra {
@@ -32,6 +33,16 @@ std::vector<SegmentMaterial> matterOf(const Segmentation& segmentation,
     all[i].matter = changed(all[i].matter, change, materials.table);
   }
   return all;
+}
+
+/// Places of the segments by name, then id: components are numbered so, and pictures do not depend
+/// on the order in a file.
+std::vector<std::size_t> byName(const std::vector<SegmentInfo>& segments) {
+  std::vector<std::size_t> places(segments.size());
+  std::iota(places.begin(), places.end(), std::size_t{0});
+  std::ranges::stable_sort(
+      places, {}, [&](std::size_t i) { return std::tie(segments[i].name, segments[i].id); });
+  return places;
 }
 
 /// Material of what no segment covers.
@@ -153,7 +164,7 @@ TintPlan tintPlan(const Handle<SegmentsInput>& input, const Handle<std::vector<b
   TintPlan plan{
       .parts = {}, .components = {{restOf(*materials)}}, .names = {"the rest"}, .isFocus = {false}};
   std::map<std::pair<std::uint8_t, int>, std::vector<std::size_t>> segments;
-  for (std::size_t i = 0; i < all.size(); ++i)
+  for (const std::size_t i : byName(segmentation.segments()))
     if ((*there)[i]) {
       const std::uint8_t component = componentOf(all[i], segmentation.segments()[i].name,
                                                  isFocus[i], plan, segmentation.source());

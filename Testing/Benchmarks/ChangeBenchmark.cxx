@@ -26,7 +26,8 @@ std::string text(const StagesMade& made) {
   const std::pair<const char*, bool> stages[] = {
       {"volume", made.volume}, {"focus", made.focus},         {"transfer function", made.transfer},
       {"camera", made.camera}, {"lights", made.lights},       {"clip", made.clip},
-      {"ranges", made.ranges}, {"majorants", made.majorants}, {"materials", made.tint}};
+      {"ranges", made.ranges}, {"majorants", made.majorants}, {"labels' shares", made.shares},
+      {"colours", made.tint}};
   std::string list;
   for (const auto& [name, isMade] : stages)
     if (isMade)
@@ -44,30 +45,44 @@ double firstSample(const Scene& scene, RenderSettings settings) {
   return watch.seconds();
 }
 
-void measure(const std::string& otherFocus, const RenderOptions& options) {
-  std::vector<Change> changes = {
-      {"nothing, from the start", [](SceneRequest&) {}},
+/// Makes a scene, prints the row of that change, and returns it.
+Scene tell(const char* change, const RenderSettings& settings,
+           const std::function<Scene()>& changed) {
+  const Stopwatch watch;
+  Scene scene = changed();
+  const double made = watch.seconds();
+  std::cout << "| " << change << " | " << text(scene.made()) << " | " << made << " | "
+            << made + firstSample(scene, settings) << " |\n";
+  return scene;
+}
+
+void measure(const std::string& other, const RenderOptions& options) {
+  const Change changes[] = {
       {"camera", [](SceneRequest& r) { r.view.name = "left"; }},
-      {"focus", [&](SceneRequest& r) { r.focus = {otherFocus}; }},
+      {"focus", [&](SceneRequest& r) { r.focus = {other}; }},
       {"clip", [](SceneRequest& r) { r.clip.mode = ClipMode::cutaway; }},
       {"transfer function", [](SceneRequest& r) { r.density *= 2.0; }},
       {"lights", [](SceneRequest& r) { r.environment = Rgb(1.0, 1.0, 1.0); }}};
-  if (options.scene.materials.value_or(noMaterials) != noMaterials)
-    changes.push_back({"a segment's colour", [&](SceneRequest& r) {
-                         r.materialChanges.push_back(otherFocus + ": color=#3060c0");
-                       }});
   std::cout << "| change | made anew | seconds | and with the first sample |\n|---|---|---|---|\n"
             << std::fixed << std::setprecision(3);
-  const Scene before(options.scene);
+  const RenderSettings& settings = options.settings;
+  const Scene before =
+      tell("nothing, from the start", settings, [&] { return Scene(options.scene); });
   for (const Change& change : changes) {
     SceneRequest request = options.scene;
     change.apply(request);
-    const Stopwatch watch;
-    const Scene scene = &change == &changes.front() ? Scene(request) : before.changed(request);
-    const double made = watch.seconds();
-    std::cout << "| " << change.name << " | " << text(scene.made()) << " | " << made << " | "
-              << made + firstSample(scene, options.settings) << " |\n";
+    tell(change.name, settings, [&] { return before.changed(request); });
   }
+  if (!before.tint() && !before.mixture())
+    return;
+  const auto colored = [&](const char* color) {
+    SceneRequest request = options.scene;
+    request.materialChanges.push_back(other + ": color=" + color);
+    return request;
+  };
+  const Scene blue = tell("a segment's colour, for the first time", settings,
+                          [&] { return before.changed(colored("#3060c0")); });
+  tell("its colour again", settings, [&] { return blue.changed(colored("#c06030")); });
 }
 
 } // namespace

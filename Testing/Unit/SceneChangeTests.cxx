@@ -70,8 +70,9 @@ TEST_P(SceneChange, RemakesOnlyDependentStages) {
   EXPECT_EQ(changed.made(), GetParam().made);
 
   const Scene fromNothing(request);
-  EXPECT_EQ(fromNothing.made(), (StagesMade{true, true, true, true, true, true, true, true,
-                                            request.materials != noMaterials}));
+  const bool isTinted = request.materials != noMaterials;
+  EXPECT_EQ(fromNothing.made(),
+            (StagesMade{true, true, true, true, true, true, true, true, isTinted, isTinted}));
   EXPECT_EQ(changed.files(), fromNothing.files());
   EXPECT_EQ(changed.warnings(), fromNothing.warnings());
   EXPECT_EQ(changed.look(), fromNothing.look());
@@ -127,7 +128,7 @@ INSTANTIATE_TEST_SUITE_P(
                {.clip = true, .majorants = true}},
         Change{"Materials",
                [](SceneRequest& r) { r.materials = "library"; },
-               {.majorants = true, .tint = true}}, // no pale context
+               {.majorants = true, .tint = true, .shares = true}}, // no pale context
         Change{"Volume",
                [](SceneRequest& r) { r.input = *r.segmentation; },
                {true, true, true, true, true, true, true, true}}),
@@ -206,6 +207,7 @@ TEST_F(SceneChange, LabelsAreReadOnceAndSharedByColours) {
   const Scene green = before.changed(request);
   EXPECT_TRUE(green.made().tint);
   EXPECT_EQ(green.tint()->shares, before.tint()->shares);
+  EXPECT_FALSE(green.made().shares);
   EXPECT_FALSE(green.made().majorants);
   request.focus = {"2"};
   EXPECT_TRUE(green.changed(request).made().focus);

@@ -46,11 +46,18 @@ TEST(SegmentTint, OnePartAColourAndPriority) {
   const auto segments = row({"kidney_left", "empty", "aorta", "kidney_right", "body_trunc"});
   const TintPlan plan = planOf(segments, library, {});
   EXPECT_EQ(plan.components.size(), 3U) << "the volume's own, kidney, artery";
-  EXPECT_EQ(plan.parts, (Parts{{{0, 3}, 10, 1}, {{2}, 15, 2}}))
+  EXPECT_EQ(plan.parts, (Parts{{{2}, 15, 1}, {{0, 3}, 10, 2}}))
       << "the body has the volume's own look, and no priority over anything";
   const TintPlan lifted = planOf(segments, library, {"aorta: priority=3"});
-  EXPECT_EQ(lifted.parts, (Parts{{{4}, 5, 0}, {{0, 3}, 10, 1}, {{2}, 3, 2}}))
+  EXPECT_EQ(lifted.parts, (Parts{{{4}, 5, 0}, {{2}, 3, 1}, {{0, 3}, 10, 2}}))
       << "the body takes from the aorta what both cover";
+}
+
+TEST(SegmentTint, OrderInAFileMakesNoDifference) {
+  const TintPlan one = planOf(row({"spleen", "aorta", "liver"}), automatic, {}, {"liver"}),
+                 other = planOf(row({"liver", "spleen", "aorta"}), automatic, {}, {"liver"});
+  EXPECT_EQ(one.names, other.names);
+  EXPECT_EQ(one.isFocus, other.isFocus);
 }
 
 TEST(SegmentTint, ChangesOfASegmentMakeItAComponentOfItsOwn) {
@@ -70,13 +77,13 @@ TEST(SegmentTint, FocusIsApartWhereItIsSetOff) {
   const auto segments = row({"kidney_left", "kidney_right", "aorta", "body", "Thing"});
   const TintPlan one = planOf(segments, automatic, {}, {"kidney_right"});
   EXPECT_EQ(one.names,
-            (std::vector<std::string>{"the rest", "kidney_left", "kidney_right", "aorta"}));
-  EXPECT_EQ(one.isFocus, (std::vector<bool>{false, false, true, false}));
-  EXPECT_EQ(one.parts, (Parts{{{4}, 10, 0}, {{0}, 10, 1}, {{1}, 10, 2, true}, {{2}, 15, 3}}));
+            (std::vector<std::string>{"the rest", "aorta", "kidney_left", "kidney_right"}));
+  EXPECT_EQ(one.isFocus, (std::vector<bool>{false, false, false, true}));
+  EXPECT_EQ(one.parts, (Parts{{{4}, 10, 0}, {{2}, 15, 1}, {{0}, 10, 2}, {{1}, 10, 3, true}}));
   const TintPlan both = planOf(segments, automatic, {}, {"1", "body", "id1"});
-  EXPECT_EQ(both.names, (std::vector<std::string>{"the rest", "kidney", "aorta", "body"}));
-  EXPECT_EQ(both.isFocus, (std::vector<bool>{false, true, false, true}));
-  EXPECT_FALSE(both.components[3].material.color) << "the volume's own";
+  EXPECT_EQ(both.names, (std::vector<std::string>{"the rest", "aorta", "body", "kidney"}));
+  EXPECT_EQ(both.isFocus, (std::vector<bool>{false, false, true, true}));
+  EXPECT_FALSE(both.components[2].material.color) << "the volume's own";
   EXPECT_EQ(planOf(segments, library, {}, {"aorta"}).isFocus, std::vector<bool>(4, false));
 }
 
@@ -98,7 +105,7 @@ TEST(SegmentTint, RestColoursWhatNoSegmentCovers) {
              {});
   ASSERT_EQ(plan.components.size(), 3U);
   EXPECT_EQ(plan.components[0].material.color->knots()[0].value.x(), 1.0);
-  EXPECT_FALSE(plan.components[2].material.color) << "the body's: the volume's own, not the rest's";
+  EXPECT_FALSE(plan.components[1].material.color) << "the body's: the volume's own, not the rest's";
   const TintPlan bare = planOf(row({"body"}), library, {});
   EXPECT_EQ(bare.parts, (Parts{{{0}, 5, 0}})) << "nothing is coloured, and there is a part";
 }
@@ -120,7 +127,7 @@ TEST(SegmentTint, MatterMakesAMixture) {
 }
 
 TEST(SegmentTint, MixturesHaveTheMatterOfTheirMaterials) {
-  const auto segments = row({"kidney_left", "kidney_right", "spleen", "liver"});
+  const auto segments = row({"kidney_left", "kidney_right", "liver", "spleen"});
   TransferFunction own{
       ScalarFunction({{0.0, ScalarFunction::Value(0.0)}, {100.0, ScalarFunction::Value(2.0)}}),
       ColorFunction({{0.0, Rgb(0.3, 0.4, 0.5)}})};
@@ -150,11 +157,11 @@ TEST(SegmentTint, MixturesHaveTheMatterOfTheirMaterials) {
   EXPECT_TRUE(mixture.components[1].isClipped);
   EXPECT_EQ(mixture.components[2].transfer.g, 0.3) << "a tint keeps the volume's scattering";
 
-  const Component& spleen = mixture.components[3];
-  EXPECT_EQ(extinctionAt(3, -500.0), 1.5);
-  EXPECT_EQ(extinctionAt(4, 50.0), 1.0) << "the base's";
+  const Component& spleen = mixture.components[4];
+  EXPECT_EQ(extinctionAt(4, -500.0), 1.5);
+  EXPECT_EQ(extinctionAt(3, 50.0), 1.0) << "the base's";
   EXPECT_FALSE(spleen.transfer.gradientOpacity) << "of the base's extinction";
-  EXPECT_TRUE(mixture.components[4].transfer.gradientOpacity);
+  EXPECT_TRUE(mixture.components[3].transfer.gradientOpacity);
   EXPECT_EQ(spleen.transfer.g, 0.6);
   EXPECT_EQ(spleen.border, 0.5);
   const double grey = decodeSrgb(Rgb::Constant(128.0 / 255.0)).x();

@@ -9,6 +9,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
+#include <algorithm>
 #include <atomic>
 #include <functional>
 #include <map>
@@ -104,32 +105,48 @@ public:
     indexToWorld.translate(origin.cast<double>());
     mask.grid = Grid(size, indexToWorld);
     mask.voxels.resize(static_cast<std::size_t>(mask.grid.voxelCount()));
-    const Size3 last = m_grid.size.array() - 1;
     std::atomic<std::int64_t> total = 0;
     tbb::parallel_for(std::int64_t{0}, size.z(), [&](std::int64_t z) {
       std::uint8_t* to = mask.voxels.data() + size.x() * size.y() * z;
       std::int64_t count = 0;
-      for (std::int64_t y = 0; y < size.y(); ++y)
-        for (std::int64_t x = 0; x < size.x(); ++x, ++to) {
-          const Size3 voxel = origin + Size3(x, y, z);
-          const Size3 nearest = voxel.cwiseMax(0).cwiseMin(last);
-          *to = voxel == voxel.cwiseMax(continued.lower).cwiseMin(continued.upper) &&
-                isChosen(nearest);
-          count += *to && voxel == nearest;
-        }
+      for (std::int64_t y = 0; y < size.y(); ++y, to += size.x())
+        count += fillRow(origin + Size3(0, y, z), size.x(), continued, to);
       total += count;
     });
     mask.count = total;
   }
 
 private:
-  bool isChosen(const Size3& voxel) const {
-    const auto first =
-        static_cast<std::size_t>(voxel.x() +
-                                 m_grid.size.x() * (voxel.y() + m_grid.size.y() * voxel.z())) *
-        m_layerCount;
+  /// Writes the `count` voxels from `first` on, 0 before; returns how many of the labelmap's own
+  /// are chosen.
+  std::int64_t fillRow(const Size3& first, std::int64_t count, const VoxelExtent& continued,
+                       std::uint8_t* to) const {
+    const Size3 last = m_grid.size.array() - 1, nearest = first.cwiseMax(0).cwiseMin(last);
+    const auto isContinued = [&](int axis, std::int64_t at) {
+      return at >= continued.lower[axis] && at <= continued.upper[axis];
+    };
+    if (!isContinued(1, first.y()) || !isContinued(2, first.z()))
+      return 0;
+    const bool isOwn = nearest.y() == first.y() && nearest.z() == first.z();
+    const Label* const row = rowAt(nearest.y(), nearest.z());
+    std::int64_t chosen = 0;
+    for (std::int64_t i = 0; i < count; ++i) {
+      const std::int64_t x = first.x() + i, inside = std::clamp<std::int64_t>(x, 0, last.x());
+      to[i] = isContinued(0, x) && isChosen(row, inside);
+      chosen += to[i] && isOwn && x == inside;
+    }
+    return chosen;
+  }
+
+  /// Labels of a row, its voxels' layers together.
+  const Label* rowAt(std::int64_t y, std::int64_t z) const {
+    return m_labels.data() + numberOf({0, y, z}, m_grid.size) * m_layerCount;
+  }
+
+  bool isChosen(const Label* row, std::int64_t x) const {
+    const Label* const voxel = row + static_cast<std::size_t>(x) * m_layerCount;
     for (std::size_t layer = 0; layer < m_layerCount; ++layer)
-      if (m_values[layer].contains(m_labels[first + layer]))
+      if (m_values[layer].contains(voxel[layer]))
         return true;
     return false;
   }
@@ -150,13 +167,14 @@ private:
   }
 
   VoxelExtent rowExtent(std::int64_t y, std::int64_t z) const {
+    const Label* const row = rowAt(y, z);
     std::int64_t first = 0;
     std::int64_t last = m_grid.size.x() - 1;
-    while (first <= last && !isChosen({first, y, z}))
+    while (first <= last && !isChosen(row, first))
       ++first;
     if (first > last)
       return {};
-    while (!isChosen({last, y, z}))
+    while (!isChosen(row, last))
       --last;
     return {{first, y, z}, {last, y, z}};
   }
@@ -324,8 +342,10 @@ Mask Segmentation::maskOf(const std::vector<SegmentInfo>& chosen, const Grid& vo
   if (shaping == MaskShaping())
     return labelled(chosen);
   const auto shaped = [&](const std::vector<SegmentInfo>& segments, double margin) {
-    const Mask mask = labelled(segments);
-    return grown(shaping.smoothing == 0.0 ? mask : betweenSlices(mask), margin, volume);
+    Mask mask = labelled(segments);
+    if (shaping.smoothing != 0.0)
+      mask = betweenSlices(std::move(mask));
+    return grown(std::move(mask), margin, volume);
   };
   std::vector<Mask> masks;
   if (shaping.margins.size() <= 1) // the union first: no gaps where segments touch
@@ -333,7 +353,7 @@ Mask Segmentation::maskOf(const std::vector<SegmentInfo>& chosen, const Grid& vo
   else
     for (std::size_t i = 0; i < chosen.size(); ++i)
       masks.push_back(shaped({chosen[i]}, shaping.margins[i]));
-  const Mask all = united(masks);
+  const Mask all = united(std::move(masks));
   return shaping.smoothing ? smoothed(all, *shaping.smoothing, volume)
                            : smoothedAutomatically(all, volume);
 }

@@ -6,6 +6,7 @@
 #include <itkImage.h>
 #include <itkSignedMaurerDistanceMapImageFilter.h>
 #include <itkSmoothingRecursiveGaussianImageFilter.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 
@@ -74,23 +75,20 @@ Pixels::Pointer pixelsOf(const Mask& mask, const Part& part) {
   return image;
 }
 
-/// Mask of the same segments on a part of the grid; voxel i is value(i).
-template <typename Value>
-Mask maskOf(const Mask& from, const Part& part, std::uint8_t full, const Value& value) {
+/// Mask of the same segments on a part of the grid.
+Mask maskOf(const Mask& from, const Part& part, std::uint8_t full,
+            std::vector<std::uint8_t> voxels) {
   Affine indexToWorld = from.grid.indexToWorld;
   indexToWorld.translate(part.first.cast<double>());
-  Mask mask{{part.size, indexToWorld}, {}, 0, from.names, full};
-  mask.voxels.resize(static_cast<std::size_t>(part.size.prod()));
-  for (std::size_t i = 0; i < mask.voxels.size(); ++i) {
-    mask.voxels[i] = value(i);
-    mask.count += mask.voxels[i] >= mask.half();
-  }
+  Mask mask{{part.size, indexToWorld}, std::move(voxels), 0, from.names, full};
+  mask.count = std::ranges::count_if(
+      mask.voxels, [half = mask.half()](std::uint8_t voxel) { return voxel >= half; });
   return mask;
 }
 
 } // namespace
 
-Mask grown(const Mask& mask, double margin, const Grid& volume) {
+Mask grown(Mask mask, double margin, const Grid& volume) {
   if (margin == 0.0)
     return mask;
   const Part part =
@@ -109,14 +107,16 @@ Mask grown(const Mask& mask, double margin, const Grid& volume) {
   distance->Update();
   const float* const from = distance->GetOutput()->GetBufferPointer();
   const auto reach = static_cast<float>(std::abs(margin) * (1.0 + 1e-6)); // rounding
-  return maskOf(mask, part, 1, [&](std::size_t i) -> std::uint8_t {
-    return margin > 0.0 ? from[i] <= reach : from[i] > reach;
+  std::vector<std::uint8_t> voxels(static_cast<std::size_t>(part.size.prod()));
+  std::transform(from, from + voxels.size(), voxels.begin(), [&](float away) -> std::uint8_t {
+    return margin > 0.0 ? away <= reach : away > reach;
   });
+  return maskOf(mask, part, 1, std::move(voxels));
 }
 
-Mask united(const std::vector<Mask>& masks) {
+Mask united(std::vector<Mask> masks) {
   if (masks.size() == 1)
-    return masks.front();
+    return std::move(masks.front());
   const Mask& first = masks.front();
   // Place of a mask in the first mask's voxels.
   const auto placeOf = [&](const Mask& mask) {
@@ -129,7 +129,8 @@ Mask united(const std::vector<Mask>& masks) {
     const Size3 lower = all.first.cwiseMin(part.first), end = all.end().cwiseMax(part.end());
     all = {lower, end - lower};
   }
-  Mask result = maskOf(first, all, 1, [](std::size_t) { return std::uint8_t{0}; });
+  Mask result =
+      maskOf(first, all, 1, std::vector<std::uint8_t>(static_cast<std::size_t>(all.size.prod())));
   for (const Mask& mask : masks) {
     const Part part = placeOf(mask);
     forVoxels(part, [&](const Size3& voxel, std::size_t number) {
@@ -162,29 +163,57 @@ std::vector<std::uint8_t> blurredRecursively(const Mask& mask, const Part& part,
   return result;
 }
 
-/// Voxels of the mask around which nothing is left of it.
-std::vector<std::size_t> vanished(const Mask& mask, const Mask& smooth, const Size3& first) {
-  std::vector<std::size_t> voxels;
-  const Size3& size = smooth.grid.size;
-  forVoxels(Part{Size3::Zero(), mask.grid.size}, [&](const Size3& voxel, std::size_t number) {
-    if (mask.voxels[number] < mask.half())
-      return;
-    const Size3 at = voxel - first;
-    const auto isLeft = [&](const Size3& other) {
-      return smooth.voxels[numberOf(other, size)] >= smooth.half();
-    };
-    bool isAny = isLeft(at);
+/// Voxels of a mask around which nothing is left of it once smoothed.
+class Vanished {
+public:
+  /// `first`: voxel of the mask at which `smooth` begins.
+  Vanished(const Mask& mask, const Mask& smooth, const Size3& first)
+      : m_mask(mask), m_smooth(smooth), m_first(first) {}
+
+  /// Their numbers in the smoothed mask.
+  std::vector<std::size_t> all() const {
+    const Size3& size = m_mask.grid.size;
+    std::vector<std::vector<std::size_t>> slices(static_cast<std::size_t>(size.z()));
+    tbb::parallel_for(std::int64_t{0}, size.z(), [&](std::int64_t z) {
+      std::vector<std::size_t>& found = slices[static_cast<std::size_t>(z)];
+      for (std::int64_t y = 0; y < size.y(); ++y)
+        addRow({0, y, z}, found);
+    });
+    std::vector<std::size_t> voxels;
+    for (const std::vector<std::size_t>& slice : slices)
+      voxels.insert(voxels.end(), slice.begin(), slice.end());
+    return voxels;
+  }
+
+private:
+  void addRow(const Size3& start, std::vector<std::size_t>& found) const {
+    const std::uint8_t* const row = &m_mask.voxels[numberOf(start, m_mask.grid.size)];
+    const std::size_t there = numberOf(start - m_first, m_smooth.grid.size);
+    const std::uint8_t half = m_mask.half(), left = m_smooth.half();
+    for (std::int64_t x = 0; x < m_mask.grid.size.x(); ++x) {
+      const std::size_t voxel = there + static_cast<std::size_t>(x);
+      if (row[x] >= half && m_smooth.voxels[voxel] < left &&
+          isAloneAt(start + Size3(x, 0, 0) - m_first))
+        found.push_back(voxel);
+    }
+  }
+
+  /// True if nothing is left among the voxels around.
+  bool isAloneAt(const Size3& at) const {
+    const Size3& size = m_smooth.grid.size;
     const Size3 lower = (at - Size3::Constant(1)).cwiseMax(0);
     const Size3 upper = (at + Size3::Constant(1)).cwiseMin((size.array() - 1).matrix());
-    for (std::int64_t z = lower.z(); z <= upper.z() && !isAny; ++z)
-      for (std::int64_t y = lower.y(); y <= upper.y() && !isAny; ++y)
-        for (std::int64_t x = lower.x(); x <= upper.x() && !isAny; ++x)
-          isAny = isLeft({x, y, z});
-    if (!isAny)
-      voxels.push_back(numberOf(at, size));
-  });
-  return voxels;
-}
+    for (std::int64_t z = lower.z(); z <= upper.z(); ++z)
+      for (std::int64_t y = lower.y(); y <= upper.y(); ++y)
+        for (std::int64_t x = lower.x(); x <= upper.x(); ++x)
+          if (m_smooth.voxels[numberOf({x, y, z}, size)] >= m_smooth.half())
+            return false;
+    return true;
+  }
+
+  const Mask &m_mask, &m_smooth;
+  Size3 m_first;
+};
 
 } // namespace
 
@@ -194,10 +223,10 @@ Mask smoothed(const Mask& mask, double deviation, const Grid& volume) {
   constexpr double farthest = 3.0; // deviations
   const Part part = around(mask, farthest * deviation, volume);
   const Vec3 deviations = deviation * mask.grid.spacing().cwiseInverse();
-  const std::vector<std::uint8_t> values = deviations.maxCoeff() > widestKernel
-                                               ? blurredRecursively(mask, part, deviation)
-                                               : blurred(mask, part.first, part.size, deviations);
-  Mask result = maskOf(mask, part, 255, [&](std::size_t i) { return values[i]; });
+  Mask result = maskOf(mask, part, 255,
+                       deviations.maxCoeff() > widestKernel
+                           ? blurredRecursively(mask, part, deviation)
+                           : blurred(mask, part.first, part.size, deviations));
   result.smoothing = deviation;
   return result;
 }
@@ -208,8 +237,9 @@ Mask smoothedAutomatically(const Mask& mask, const Grid& volume) {
     return mask; // voxels like needles, or flakes
   Mask result = smoothed(mask, deviation, volume);
   const Vec3 first = mask.grid.worldToIndex * result.grid.indexToWorld.translation();
-  for (const std::size_t voxel :
-       vanished(mask, result, first.array().round().cast<std::int64_t>())) {
+  const std::vector<std::size_t> vanished =
+      Vanished(mask, result, first.array().round().cast<std::int64_t>()).all();
+  for (const std::size_t voxel : vanished) {
     result.voxels[voxel] = result.full;
     ++result.count;
   }

@@ -22,17 +22,17 @@ struct MaskShaping {
 /// Mask of the voxels whose centres are at most `margin` mm from a voxel of `mask`; margin < 0:
 /// more than -margin from every voxel that is not in `mask`. Reaches at most one voxel beyond the
 /// volume. Throws Error (output) for more than 2^31 voxels.
-Mask grown(const Mask& mask, double margin, const Grid& volume);
+Mask grown(Mask mask, double margin, const Grid& volume);
 
 /// Union of at least one mask, all on voxels of one labelmap.
-Mask united(const std::vector<Mask>& masks);
+Mask united(std::vector<Mask> masks);
 
 /// Mask on voxels that are nearly cubes: divides slices that are at least twice as thick as their
 /// pixels are wide. The mask's own slices stay; between two of them a voxel is inside if the signed
 /// distance to their outlines, interpolated linearly, is < 0 (Raya and Udupa 1990: shape based
 /// interpolation). Labels of a surface that is oblique to the slices form a stair: each tread is as
 /// wide as the outline's shift from slice to slice, and only a Gaussian of that width smooths it.
-Mask betweenSlices(const Mask& mask);
+Mask betweenSlices(Mask mask);
 
 /// Deviation, mm, that takes the stairs off a label map and leaves the shapes: 0.6 of the longest
 /// edge of its voxels, after betweenSlices. `labels`: before it or after, which makes no

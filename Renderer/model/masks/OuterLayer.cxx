@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
 
 namespace fenestra {
@@ -77,15 +78,17 @@ private:
 Mask outsideAir(const Volume& volume, double airBelow, const Size3& stride) {
   Mask mask{thinned(volume.grid, stride), {}, 0, {}, 255};
   const Size3& size = mask.grid.size;
-  mask.voxels.reserve(static_cast<std::size_t>(size.prod()));
+  mask.voxels.resize(static_cast<std::size_t>(size.prod()));
   const auto classify = [&](const auto& voxels) {
-    for (std::int64_t z = 0; z < size.z(); ++z)
-      for (std::int64_t y = 0; y < size.y(); ++y)
-        for (std::int64_t x = 0; x < size.x(); ++x) {
-          const Size3 voxel = Size3(x, y, z).array() * stride.array();
-          const auto scalar = static_cast<double>(voxels[numberOf(voxel, volume.grid.size)]);
-          mask.voxels.push_back(scalar < airBelow ? Flood::air : Flood::matter);
-        }
+    tbb::parallel_for(std::int64_t{0}, size.z(), [&](std::int64_t z) {
+      std::uint8_t* to = &mask.voxels[numberOf({0, 0, z}, size)];
+      for (std::int64_t y = 0; y < size.y(); ++y) {
+        const Size3 row = Size3(0, y, z).array() * stride.array();
+        const auto* const from = &voxels[numberOf(row, volume.grid.size)];
+        for (std::int64_t x = 0; x < size.x(); ++x)
+          *to++ = static_cast<double>(from[x * stride.x()]) < airBelow ? Flood::air : Flood::matter;
+      }
+    });
   };
   std::visit(classify, volume.voxels);
   Flood(size, mask.voxels).fromSides(longAxis(mask.grid));
@@ -157,10 +160,13 @@ Mask outerLayer(const Volume& volume, double airBelow, double depth) {
   const Vec3 deviations = ((depth / 1.2816) * layer.grid.spacing().cwiseInverse())
                               .cwiseMin(layer.grid.size.cast<double>());
   layer.voxels = blurred(layer, Size3::Zero(), layer.grid.size, deviations);
-  for (std::uint8_t& voxel : layer.voxels) {
-    const double share = std::clamp((voxel / 255.0 - 0.05) / 0.1, 0.0, 1.0);
-    voxel = static_cast<std::uint8_t>(std::lround(share * layer.full));
+  std::array<std::uint8_t, 256> shares; // by what is left
+  for (std::size_t left = 0; left < shares.size(); ++left) {
+    const double share = std::clamp((static_cast<double>(left) / 255.0 - 0.05) / 0.1, 0.0, 1.0);
+    shares[left] = static_cast<std::uint8_t>(std::lround(share * layer.full));
   }
+  for (std::uint8_t& voxel : layer.voxels)
+    voxel = shares[voxel];
   return layer;
 }
 

@@ -155,7 +155,7 @@ double automaticSmoothing(const Grid& labels) {
   return 0.6 * grid.spacing().maxCoeff();
 }
 
-Mask betweenSlices(const Mask& mask) {
+Mask betweenSlices(Mask mask) {
   const std::int64_t parts = divisionOf(mask.grid).parts;
   if (parts == 1)
     return mask;

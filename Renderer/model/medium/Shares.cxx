@@ -120,8 +120,9 @@ private:
 /// Shares of a brick's components, in their order, each once.
 class BrickShares {
 public:
-  /// Adds the parts, by priority, in the brick whose first voxel has this x.
-  BrickShares(const std::vector<PartRows>& parts, std::int64_t x) {
+  /// Takes the parts, by priority, in the brick whose first voxel has this x.
+  void take(const std::vector<PartRows>& parts, std::int64_t x) {
+    m_shares.clear();
     m_left.fill(full);
     for (auto p = parts.begin(); p != parts.end() && isLeft();) {
       m_class.clear();
@@ -245,6 +246,7 @@ Shares::Shares(std::size_t count, const std::function<Part(std::size_t)>& partAt
   std::vector<std::vector<Plane>> layers(static_cast<std::size_t>(m_brickCount.z()));
   tbb::parallel_for(std::int64_t{0}, m_brickCount.z(), [&](std::int64_t z) {
     std::vector<Plane>& planes = layers[static_cast<std::size_t>(z)];
+    BrickShares shares;
     std::vector<PartRows> rows;
     for (const Placed& part : parts)
       if (part.first.z() < edge * z + width && part.end.z() > edge * z)
@@ -253,7 +255,7 @@ Shares::Shares(std::size_t count, const std::function<Part(std::size_t)>& partAt
       for (PartRows& part : rows)
         part.take(edge * y, edge * z);
       for (std::int64_t x = 0; x < m_brickCount.x(); ++x) {
-        const BrickShares shares(rows, edge * x);
+        shares.take(rows, edge * x);
         std::int32_t& code = m_bricks[numberOf(Size3(x, y, z), m_brickCount)];
         if (const std::optional<std::uint8_t> pure = shares.pure()) {
           code = *pure;

@@ -107,6 +107,20 @@ int checkLoaded(const Panel& panel, vtkMRMLScene* scene) {
   return EXIT_SUCCESS;
 }
 
+/// Renders end with their scene, also waiting ones.
+int checkEnd(const Panel& panel, vtkMRMLScene* scene, qSlicerFenestraSession* session) {
+  panel.find<QSpinBox>("SamplesBox")->setValue(1000000);
+  panel.find<QPushButton>("RenderButton")->click();
+  panel.find<QPushButton>("RenderButton")->click();
+  CHECK_INT(session->waiting(), 1);
+  CHECK_BOOL(waitFor([&] { return panel.shows("ProgressBar"); }), true);
+  scene->Clear(false);
+  CHECK_BOOL(waitFor([&] { return !session->rendering(); }), true);
+  CHECK_STD_STRING(textOf(panel, "StateLabel"), "Ended at once, without a picture.");
+  CHECK_BOOL(panel.shows("ProgressBar"), false);
+  return EXIT_SUCCESS;
+}
+
 } // namespace
 
 int qSlicerFenestraReloadTest1(int argc, char* argv[]) {
@@ -166,17 +180,8 @@ int qSlicerFenestraReloadTest1(int argc, char* argv[]) {
   scene->Clear(false);
   CHECK_EXIT_SUCCESS(checkClosed(panel));
 
-  // Renders end with their scene, also waiting ones.
   CHECK_BOOL(scene->ReadFromMRB(file.c_str(), true), true);
-  panel.find<QSpinBox>("SamplesBox")->setValue(1000000);
-  panel.find<QPushButton>("RenderButton")->click();
-  panel.find<QPushButton>("RenderButton")->click();
-  CHECK_INT(owner->session()->waiting(), 1);
-  CHECK_BOOL(waitFor([&] { return panel.shows("ProgressBar"); }), true);
-  scene->Clear(false);
-  CHECK_BOOL(waitFor([&] { return !owner->session()->rendering(); }), true);
-  CHECK_STD_STRING(textOf(panel, "StateLabel"), "Ended at once, without a picture.");
-  CHECK_BOOL(panel.shows("ProgressBar"), false);
+  CHECK_EXIT_SUCCESS(checkEnd(panel, scene, owner->session()));
   owner->exit();
   return EXIT_SUCCESS;
 }

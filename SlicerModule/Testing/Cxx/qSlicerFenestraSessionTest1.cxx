@@ -113,6 +113,63 @@ int checkResult(vtkMRMLScene* scene, Node* render) {
   return EXIT_SUCCESS;
 }
 
+/// Two renders, one after the other.
+int checkTwoRenders(vtkMRMLScene* scene, qSlicerFenestraSession& session, Node* settings,
+                    Heard& heard) {
+  Node* first = session.render(settings);
+  CHECK_NOT_NULL(first);
+  settings->SetFlag("seed", "5");
+  CHECK_NOT_NULL(session.render(settings));
+  CHECK_INT(session.waiting(), 1);
+  CHECK_BOOL(waitFor([&] { return heard.ended == 2; }), true);
+  CHECK_INT(static_cast<int>(heard.last.kind), static_cast<int>(Kind::done));
+  CHECK_EXIT_SUCCESS(checkResult(scene, first));
+  CHECK_BOOL(session.results().fileOf(first, "exr").isEmpty(), false);
+  return EXIT_SUCCESS;
+}
+
+/// Finished samples of a stopped render are kept, soon.
+int checkStop(qSlicerFenestraSession& session, Node* settings, Heard& heard) {
+  settings->SetFlag("samples", "100000000");
+  Node* long_ = session.render(settings);
+  heard.progress = 0;
+  CHECK_BOOL(waitFor([&] { return heard.progress > 3; }), true);
+  QElapsedTimer watch;
+  watch.start();
+  session.stop();
+  CHECK_BOOL(waitFor([&] { return heard.ended == 3; }), true);
+  std::cout << "Stopped after " << watch.elapsed() << " ms\n";
+  CHECK_INT(static_cast<int>(heard.last.kind), static_cast<int>(Kind::stopped));
+  CHECK_POINTER(heard.render, long_);
+  return EXIT_SUCCESS;
+}
+
+/// Failures leave no node behind. `ids`: of a segment, and of an empty one.
+int checkFailures(vtkSlicerFenestraLogic* logic, qSlicerFenestraSession& session, Node* settings,
+                  const std::vector<std::string>& ids, Heard& heard) {
+  vtkMRMLScene* const scene = settings->GetScene();
+  const int nodes = scene->GetNumberOfNodes();
+  settings->SetFocus({ids[1]}); // empty
+  session.render(settings);
+  CHECK_BOOL(waitFor([&] { return heard.ended == 4; }), true);
+  CHECK_INT(static_cast<int>(heard.last.kind), static_cast<int>(Kind::failed));
+  CHECK_STD_STRING(heard.last.message.toStdString(),
+                   "The focus has no voxel (Nothing); choose segments that are not empty");
+  CHECK_NULL(heard.render);
+  settings->SetFocus({ids[0]});
+  settings->SetFlags({{"size", "0x0"}});
+  session.render(settings);
+  CHECK_BOOL(waitFor([&] { return heard.ended == 5; }), true);
+  CHECK_INT(static_cast<int>(heard.last.kind), static_cast<int>(Kind::failed));
+  CHECK_INT(scene->GetNumberOfNodes(), nodes);
+  qSlicerFenestraSession without(logic, "/nowhere/fenestra");
+  Heard other(without);
+  CHECK_NULL(without.render(settings));
+  CHECK_BOOL(other.last.message.contains("missing"), true);
+  CHECK_INT(scene->GetNumberOfNodes(), nodes);
+  return EXIT_SUCCESS;
+}
+
 /// Another scene has a node with this render's ID: results of the render are not shown for it.
 int checkAnotherScene(vtkMRMLScene* scene, qSlicerFenestraSession& session, Node* render) {
   const std::string id = render->GetID();
@@ -212,53 +269,12 @@ int qSlicerFenestraSessionTest1(int argc, char* argv[]) {
   session.refresh();
   CHECK_BOOL(waitFor([&] { return heard.previews > before; }), true);
 
-  // Two renders, one after the other.
-  Node* first = session.render(settings);
-  CHECK_NOT_NULL(first);
-  settings->SetFlag("seed", "5");
-  CHECK_NOT_NULL(session.render(settings));
-  CHECK_INT(session.waiting(), 1);
-  CHECK_BOOL(waitFor([&] { return heard.ended == 2; }), true);
-  CHECK_INT(static_cast<int>(heard.last.kind), static_cast<int>(Kind::done));
-  CHECK_EXIT_SUCCESS(checkResult(scene, first));
-  CHECK_BOOL(session.results().fileOf(first, "exr").isEmpty(), false);
+  CHECK_EXIT_SUCCESS(checkTwoRenders(scene, session, settings, heard));
   Node* second = heard.render;
   CHECK_STD_STRING(second->GetFlag("seed"), "5");
   CHECK_EXIT_SUCCESS(compareWithCommandLine(scene, second, program, folder));
-
-  // Stopped: finished samples are kept, soon.
-  settings->SetFlag("samples", "100000000");
-  Node* long_ = session.render(settings);
-  heard.progress = 0;
-  CHECK_BOOL(waitFor([&] { return heard.progress > 3; }), true);
-  QElapsedTimer watch;
-  watch.start();
-  session.stop();
-  CHECK_BOOL(waitFor([&] { return heard.ended == 3; }), true);
-  std::cout << "Stopped after " << watch.elapsed() << " ms\n";
-  CHECK_INT(static_cast<int>(heard.last.kind), static_cast<int>(Kind::stopped));
-  CHECK_POINTER(heard.render, long_);
-
-  // Failures leave no node behind.
-  const int nodes = scene->GetNumberOfNodes();
-  settings->SetFocus({ids[1]}); // empty
-  session.render(settings);
-  CHECK_BOOL(waitFor([&] { return heard.ended == 4; }), true);
-  CHECK_INT(static_cast<int>(heard.last.kind), static_cast<int>(Kind::failed));
-  CHECK_STD_STRING(heard.last.message.toStdString(),
-                   "The focus has no voxel (Nothing); choose segments that are not empty");
-  CHECK_NULL(heard.render);
-  settings->SetFocus({ids[0]});
-  settings->SetFlags({{"size", "0x0"}});
-  session.render(settings);
-  CHECK_BOOL(waitFor([&] { return heard.ended == 5; }), true);
-  CHECK_INT(static_cast<int>(heard.last.kind), static_cast<int>(Kind::failed));
-  CHECK_INT(scene->GetNumberOfNodes(), nodes);
-  qSlicerFenestraSession without(logic, "/nowhere/fenestra");
-  Heard other(without);
-  CHECK_NULL(without.render(settings));
-  CHECK_BOOL(other.last.message.contains("missing"), true);
-  CHECK_INT(scene->GetNumberOfNodes(), nodes);
+  CHECK_EXIT_SUCCESS(checkStop(session, settings, heard));
+  CHECK_EXIT_SUCCESS(checkFailures(logic, session, settings, ids, heard));
   CHECK_EXIT_SUCCESS(checkScript(scene, logic, session, settings));
   CHECK_EXIT_SUCCESS(checkAnotherScene(scene, session, second));
   return EXIT_SUCCESS;

@@ -106,6 +106,29 @@ int testWithheld() {
   return EXIT_SUCCESS;
 }
 
+/// Every flag, and the measures, written with the node's scene and read again.
+int testEveryFlag(Node* read) {
+  std::map<std::string, std::string> all;
+  for (const FenestraScene::Flag& flag : FenestraScene::flags())
+    all[flag.name] = example(flag.kind);
+  read->SetFlags(all);
+  CHECK_BOOL(read->GetFlags() == all, true);
+  CHECK_BOOL(read->IsTurntable(), true);
+  const std::string measures = R"({"boundaryGapMm":{"max":0.1},"focusCoverage":1})";
+  read->SetAttribute(Node::MeasuresAttribute, measures.c_str());
+  vtkNew<vtkMRMLScene> third;
+  Node* last = readIn(third, written(read->GetScene()));
+  CHECK_NOT_NULL(last);
+  CHECK_BOOL(last->GetFlags() == all, true);
+  CHECK_STD_STRING(last->GetAttribute(Node::MeasuresAttribute), measures);
+  for (const std::string& name : Node::GetTurntableFlagNames())
+    last->SetFlag(name, "");
+  CHECK_BOOL(last->IsTurntable(), false);
+  CHECK_INT(static_cast<int>(last->GetFlags().size()),
+            static_cast<int>(all.size() - Node::GetTurntableFlagNames().size()));
+  return EXIT_SUCCESS;
+}
+
 } // namespace
 
 int vtkMRMLFenestraRenderNodeTest1(int, char*[]) {
@@ -138,25 +161,7 @@ int vtkMRMLFenestraRenderNodeTest1(int, char*[]) {
   CHECK_BOOL(read->GetFocus() == first->GetFocus(), true);
   CHECK_NOT_NULL(read->GetNodeReference(Node::VolumeRole));
 
-  // Every flag, and the measures.
-  std::map<std::string, std::string> all;
-  for (const FenestraScene::Flag& flag : FenestraScene::flags())
-    all[flag.name] = example(flag.kind);
-  read->SetFlags(all);
-  CHECK_BOOL(read->GetFlags() == all, true);
-  CHECK_BOOL(read->IsTurntable(), true);
-  const std::string measures = R"({"boundaryGapMm":{"max":0.1},"focusCoverage":1})";
-  read->SetAttribute(Node::MeasuresAttribute, measures.c_str());
-  vtkNew<vtkMRMLScene> third;
-  Node* last = readIn(third, written(again));
-  CHECK_NOT_NULL(last);
-  CHECK_BOOL(last->GetFlags() == all, true);
-  CHECK_STD_STRING(last->GetAttribute(Node::MeasuresAttribute), measures);
-  for (const std::string& name : Node::GetTurntableFlagNames())
-    last->SetFlag(name, "");
-  CHECK_BOOL(last->IsTurntable(), false);
-  CHECK_INT(static_cast<int>(last->GetFlags().size()),
-            static_cast<int>(all.size() - Node::GetTurntableFlagNames().size()));
+  CHECK_EXIT_SUCCESS(testEveryFlag(read));
 
   vtkNew<Node> copy;
   copy->Copy(first);
