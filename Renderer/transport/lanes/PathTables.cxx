@@ -19,25 +19,16 @@ EventScene::Area narrowArea(const PlacedAreaLight& light, const Vec3& from) {
           narrow(light.share)};
 }
 
-double roughnessOf(const SurfaceShading& shading) {
-  return std::sqrt(2.0 / (shading.power + 2.0));
-}
-
-ScatterLaw<float> lawOf(const TransferFunction& transfer) {
-  ScatterLaw<float> law{narrow(transfer.g), 0.0F, 0.0F, 0.0F, 1.0F, 1.0F, false, {}};
-  if (!transfer.shading)
-    return law;
-  const SurfaceShading& shading = *transfer.shading;
-  const SurfaceShading::Lobes lobes = shading.lobes();
-  law.diffuse = narrow(lobes.lambert);
-  law.specular = narrow(lobes.glossy);
-  law.f0 = narrow(lobes.f0);
-  law.odds = narrow(shading.odds);
-  law.roughness = narrow(roughnessOf(shading));
-  law.isCoated = shading.coated.has_value();
-  law.coat = {narrow(lobes.coat.constant), narrow(lobes.coat.x2), narrow(lobes.coat.x4),
-              narrow(lobes.coat.x8)};
-  return law;
+ScatterLaw<float> narrowLaw(const TransferFunction& transfer) {
+  const ScatterLaw<double> law = lawOf(transfer.g, transfer.shading);
+  return {narrow(law.g),
+          narrow(law.diffuse),
+          narrow(law.specular),
+          narrow(law.f0),
+          narrow(law.odds),
+          narrow(law.roughness),
+          law.isCoated,
+          {narrow(law.coat[0]), narrow(law.coat[1]), narrow(law.coat[2]), narrow(law.coat[3])}};
 }
 
 /// True if no lobe is narrower than the resolution of directions in float.
@@ -45,7 +36,7 @@ bool isWide(const TransferFunction& transfer) {
   constexpr double leastRoughness = 1e-2;
   constexpr double greatestG = 0.9999;
   return std::abs(transfer.g) <= greatestG &&
-         !(transfer.shading && roughnessOf(*transfer.shading) < leastRoughness);
+         lawOf(transfer.g, transfer.shading).roughness >= leastRoughness;
 }
 
 } // namespace
@@ -82,7 +73,7 @@ EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const
                        std::uint64_t mostBounces, bool normalsWanted, const Tint* tints,
                        const Mixture* mixture)
     : albedo(transfer.albedo),
-      law(lawOf(transfer)),
+      law(narrowLaw(transfer)),
       hybrid(transfer.shading && transfer.extinction.span() > 0.0),
       surfaceRate(hybrid ? narrow(25.0 * std::pow(transfer.shading->gamma, 3)) : 0.0F),
       wantNormals(normalsWanted || transfer.shading),
@@ -94,7 +85,7 @@ EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const
   if (mixture)
     for (const Component& component : mixture->components) {
       albedos.emplace_back(component.transfer.albedo);
-      laws.push_back(lawOf(component.transfer));
+      laws.push_back(narrowLaw(component.transfer));
     }
   Affine local = grid.indexToWorld;
   local.translation() -= grid.worldCenter();

@@ -3,7 +3,7 @@
 
 #include "base/Narrow.h"
 #include "model/lights/LightSet.h"
-#include "model/medium/TransferFunction.h"
+#include "model/medium/ScatterLaw.h"
 #include "model/volume/Grid.h"
 #include "transport/lanes/MapTables.h"
 #include "transport/lanes/Medium.h"
@@ -13,15 +13,6 @@
 #include <vector>
 
 namespace fenestra {
-
-/// How matter scatters, beside its albedo; `Number`: plain, or one a lane.
-template <typename Number>
-struct ScatterLaw {
-  Number g;
-  Number diffuse, specular, f0, odds, roughness; ///< of SurfaceShading
-  bool isCoated;
-  std::array<Number, 4> coat; ///< of CoatReflectance; 0: reflects nothing
-};
 
 /// "Local" space: world axes, mm, origin at the volume's centre: floats keep their digits wherever
 /// the volume lies.
