@@ -22,6 +22,10 @@ using Real = float; ///< the plain number of which Float is one a lane
 HWY_INLINE float abs(float x) {
   return std::abs(x);
 }
+/// An event of that probability, by a uniform number of (0, 1].
+HWY_INLINE LaneMask happens(float probability, Float uniform) {
+  return uniform <= probability;
+}
 HWY_INLINE bool isEverywhere(float x, float value) {
   return x == value;
 }

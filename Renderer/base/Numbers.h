@@ -21,6 +21,7 @@ struct Truth {
   bool is;
 
   Truth(bool value) : is(value) {}
+  static Truth none() { return false; }
   bool any() const { return is; }
   Truth without(Truth other) const { return is && !other.is; }
   Truth operator&(Truth other) const { return is && other.is; }
@@ -62,6 +63,10 @@ inline Float sqrt(Float x) {
 }
 inline Float copySign(Float magnitude, Float sign) {
   return std::copysign(magnitude, sign);
+}
+/// An event of that probability, by a uniform number of [0, 1).
+inline LaneMask happens(Real probability, Float uniform) {
+  return uniform < probability;
 }
 inline bool isEverywhere(Float x, Real value) {
   return x == value;

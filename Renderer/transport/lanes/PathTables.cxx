@@ -3,22 +3,6 @@
 namespace fenestra {
 namespace {
 
-/// An area light in local space, in float.
-EventScene::Area narrowArea(const PlacedAreaLight& light, const Vec3& from) {
-  const Vec3 right = light.half.x() * light.right;
-  const Vec3 up = light.half.y() * light.up;
-  return {light.shape == AreaLight::Shape::disk,
-          narrow3(light.center - from),
-          narrow3(light.normal),
-          narrow3(right),
-          narrow3(up),
-          narrow(1.0 / right.squaredNorm()),
-          narrow(1.0 / up.squaredNorm()),
-          narrow(light.area),
-          narrow3(light.radiance),
-          narrow(light.share)};
-}
-
 ScatterLaw<float> narrowLaw(const TransferFunction& transfer) {
   const ScatterLaw<double> law = lawOf(transfer.g, transfer.shading);
   return {narrow(law.g),
@@ -51,25 +35,25 @@ bool EventScene::serves(const Grid& grid, const TransferFunction& transfer, cons
     return (light.center - grid.worldCenter()).norm() < farthest &&
            light.radiance.maxCoeff() < brightest;
   };
-  const auto fits = [&](const PlacedAreaLight& light) {
-    return isNear(light) && light.half.maxCoeff() < farthest;
+  const auto fits = [&](const auto& light) {
+    return isNear(light) && std::max(light.right.norm(), light.up.norm()) < farthest;
   };
-  const auto sphereFits = [&](const PlacedSphereLight& light) {
-    return light.radius > smallest && light.radius < greatestSphere &&
+  const auto sphereFits = [&](const auto& light) {
+    return light.radius2 > smallest * smallest && light.radius2 < greatestSphere * greatestSphere &&
            (light.center - grid.worldCenter()).norm() < greatestSphere &&
            light.radiance.maxCoeff() < brightest;
   };
   const auto mapFits = [](const SharedEnvironment& environment) {
     return MapTables::serves(environment.sampler);
   };
-  return lights.hasOnlyListedKinds() && isWide(transfer) &&
+  return isWide(transfer) &&
          (!mixture || std::ranges::all_of(mixture->components, isWide, &Component::transfer)) &&
-         std::ranges::all_of(lights.areas(), fits) &&
-         std::ranges::all_of(lights.spheres(), sphereFits) &&
+         std::ranges::all_of(lights.tables().areas, fits) &&
+         std::ranges::all_of(lights.tables().spheres, sphereFits) &&
          std::ranges::all_of(lights.environments(), mapFits);
 }
 
-EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const LightSet& lights,
+EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const LightSet& set,
                        std::uint64_t mostBounces, bool normalsWanted, const Tint* tints,
                        const Mixture* mixture)
     : albedo(transfer.albedo),
@@ -79,7 +63,7 @@ EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const
       wantNormals(normalsWanted || transfer.shading),
       bounces(static_cast<std::int32_t>(
           std::min<std::uint64_t>(mostBounces, std::numeric_limits<std::int32_t>::max()))),
-      constantEnvironment(narrow3(lights.constantEnvironment())) {
+      lights(set.tables().cast<float>(grid.worldCenter())) {
   if (tints)
     tint.emplace(*tints, grid);
   if (mixture)
@@ -95,19 +79,8 @@ EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const
   const double scale = 0.5 / (span > 0.0 ? span : 1.0);
   indexDifferenceToGradient =
       affineRows(Affine(Mat3(scale * grid.worldToIndex.linear().transpose())));
-  for (const PlacedAreaLight& light : lights.areas())
-    areas.push_back(narrowArea(light, grid.worldCenter()));
-  for (const PlacedDirectionalLight& light : lights.directionals())
-    directionals.push_back({narrow3(light.toward), narrow3(light.irradiance), narrow(light.share)});
-  for (const PlacedSphereLight& light : lights.spheres())
-    spheres.push_back({narrow3(Vec3(light.center - grid.worldCenter())),
-                       narrow(light.radius * light.radius), narrow3(light.radiance),
-                       narrow(light.share)});
-  for (const SkyLight& sky : lights.skies())
-    skies.push_back({narrow3(sky.up), narrow3(sky.middle), narrow3(Rgb(sky.top - sky.middle)),
-                     narrow3(Rgb(sky.bottom - sky.middle))});
   if (bounces > 0) // else nothing is lit, and large tables are not needed
-    for (const SharedEnvironment& environment : lights.environments())
+    for (const SharedEnvironment& environment : set.environments())
       if (environment.share > 0.0) // no constant, no black map
         maps.emplace_back(environment.sampler, environment.share);
 }
