@@ -10,67 +10,34 @@
 #endif
 
 #include "base/Lanes-inl.h"
+#include "base/Numbers.h"
 
 #include <initializer_list>
 
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 
-HWY_INLINE Float lerp(Float a, Float b, Float f) {
-  return fma(b - a, f, a);
+using Real = float; ///< the plain number of which Float is one a lane
+
+HWY_INLINE float abs(float x) {
+  return std::abs(x);
 }
-HWY_INLINE Float notBelow0(Float x) {
-  return max(x, 0.0F);
+/// An event of that probability, by a uniform number of (0, 1].
+HWY_INLINE LaneMask happens(float probability, Float uniform) {
+  return uniform <= probability;
 }
-/// sqrt(max(x, 0)): rounding may have made x negative.
-HWY_INLINE Float root(Float x) {
-  return sqrt(notBelow0(x));
+HWY_INLINE bool isEverywhere(float x, float value) {
+  return x == value;
 }
-HWY_INLINE Float square(Float x) {
-  return x * x;
+HWY_INLINE bool isEverywhere(Float x, float value) {
+  return !(~(x == value)).any();
 }
 
-/// A vector, point or colour in every lane.
-struct Float3 {
-  Float x, y, z;
+#include "base/VectorFormulas-inl.h"
 
-  Float3() = default;
-  HWY_INLINE Float3(Float a, Float b, Float c) : x(a), y(b), z(c) {}
-  HWY_INLINE Float3(const std::array<float, 3>& v) : x(v[0]), y(v[1]), z(v[2]) {}
-};
-
-HWY_INLINE Float3 operator+(const Float3& a, const Float3& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-HWY_INLINE Float3 operator-(const Float3& a, const Float3& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-HWY_INLINE Float3 operator*(const Float3& a, const Float3& b) {
-  return {a.x * b.x, a.y * b.y, a.z * b.z};
-}
-HWY_INLINE Float3 operator*(Float s, const Float3& v) {
-  return {s * v.x, s * v.y, s * v.z};
-}
-HWY_INLINE Float3 operator-(const Float3& v) {
-  return {-v.x, -v.y, -v.z};
-}
-HWY_INLINE Float dot(const Float3& a, const Float3& b) {
-  return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z));
-}
-HWY_INLINE Float3 cross(const Float3& a, const Float3& b) {
-  return {fms(a.y, b.z, a.z * b.y), fms(a.z, b.x, a.x * b.z), fms(a.x, b.y, a.y * b.x)};
-}
-HWY_INLINE Float greatest(const Float3& v) {
-  return max(max(v.x, v.y), v.z);
-}
-HWY_INLINE Float3 normalized(const Float3& v) {
-  return 1.0F / sqrt(dot(v, v)) * v;
-}
-HWY_INLINE Float3 select(LaneMask which, const Float3& yes, const Float3& no) {
-  return {select(which, yes.x, no.x), select(which, yes.y, no.y), select(which, yes.z, no.z)};
-}
-HWY_INLINE Float3 orZero(LaneMask which, const Float3& v) {
-  return {orZero(which, v.x), orZero(which, v.y), orZero(which, v.z)};
+/// A choice for all lanes.
+HWY_INLINE Float3 select(bool which, const Float3& yes, const Float3& no) {
+  return which ? yes : no;
 }
 
 /// Applies one row of an affine map.
@@ -175,9 +142,6 @@ HWY_INLINE Float exponential(Word& counter) {
 
 /// Cosine and sine of an angle in turns, 0 <= turns <= 1, to 1e-7: Taylor series about the nearest
 /// multiple of a quarter turn.
-struct CosineSine {
-  Float cosine, sine;
-};
 HWY_INLINE CosineSine ofTurns(Float turns) {
   const Float quarters = turns * 4.0F;
   const Float nearest = floor(quarters + 0.5F);
@@ -213,26 +177,6 @@ HWY_INLINE Float turnsOf(Float x, Float y) {
   const Float quadrant = select(abs(y) > abs(x), 0.25F - octant, octant);
   return copySign(select(x < 0.0F, 0.5F - quadrant, quadrant), y);
 }
-
-/// A right-handed orthonormal frame around a unit normal (base/Vector.h's Frame).
-struct Frames {
-  Float3 tangent, bitangent, normal;
-
-  explicit HWY_INLINE Frames(const Float3& n) : normal(n) {
-    const Float sign = copySign(1.0F, n.z);
-    const Float a = Float(-1.0F) / (sign + n.z);
-    const Float b = n.x * n.y * a;
-    tangent = {fma(sign * square(n.x), a, 1.0F), sign * b, -(sign * n.x)};
-    bitangent = {b, fma(square(n.y), a, sign), -n.y};
-  }
-
-  HWY_INLINE Float3 toWorld(const Float3& v) const {
-    return v.x * tangent + v.y * bitangent + v.z * normal;
-  }
-  HWY_INLINE Float3 toLocal(const Float3& v) const {
-    return {dot(v, tangent), dot(v, bitangent), dot(v, normal)};
-  }
-};
 
 /// Sends lanes to other places, in whole vectors.
 class Shuffle {

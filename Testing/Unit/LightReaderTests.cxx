@@ -221,7 +221,7 @@ TEST(LightReader, CinemasKeyIsAboutFourTimesItsFillAndSky) {
     for (int k = 0; k < n * n; ++k) {
       const Vec2 u((k % n + 0.5) / n, (k / n + 0.5) / n);
       const auto sample = set.sample(grid.worldCenter(), 0.0, u);
-      const double cosine = -set.areas().at(0).normal.dot(sample->direction);
+      const double cosine = -set.tables().areas.at(0).normal.dot(sample->direction);
       sum += luminance(sample->radiance) * cosine / (sample->pdf * pi * n * n);
     }
     return sum;

@@ -140,7 +140,7 @@ TEST_F(SceneChange, LampAtTheFocusFollowsIt) {
   request.view.target = Vec3::Zero();
   const Scene before(request);
   const auto lamp = [](const Scene& scene) {
-    return scene.forRender().lights.spheres().at(0).center;
+    return scene.forRender().lights.tables().spheres.at(0).center;
   };
   const Vec3 center = before.volume().grid.indexToWorld * Vec3::Constant(7.5);
   EXPECT_LT((lamp(before) - center - Vec3(0, 20, 0)).norm(), 1e-9);

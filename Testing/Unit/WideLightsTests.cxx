@@ -224,7 +224,7 @@ TEST_P(WideLights, MeanOfRadianceOverDensityIsTheIntegral) {
       Random random(7, i, 0);
       directions.push_back(uniformDirection(random.uniform2()));
     }
-    Rgb sum = Rgb::Zero(), squares = Rgb::Zero(), expected = fog.lights.constantEnvironment();
+    Rgb sum = Rgb::Zero(), squares = Rgb::Zero(), expected = fog.lights.tables().constant;
     for (const Sampled& one : sampled(fog, 8, count)) {
       sum += one.estimate;
       squares += one.estimate.square();
@@ -236,8 +236,8 @@ TEST_P(WideLights, MeanOfRadianceOverDensityIsTheIntegral) {
     for (const SharedEnvironment& each : fog.lights.environments())
       if (!each.sampler.constant())
         expected += each.sampler.mean();
-    for (const SkyLight& sky : fog.lights.skies()) // linear in the cosine
-      expected += 0.5 * sky.middle + 0.25 * (sky.top + sky.bottom);
+    for (const auto& sky : fog.lights.tables().skies) // linear in the cosine
+      expected += sky.middle + 0.25 * (sky.toTop + sky.toBottom);
     const Rgb deviation = squares.sqrt() / count; // no less than the standard error
     EXPECT_TRUE(((sum / count - expected).abs() <= 4.5 * deviation).all())
         << sum[0] / count << " for " << expected[0];

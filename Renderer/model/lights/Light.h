@@ -39,12 +39,6 @@ struct SkyLight {
   Rgb top = Rgb::Ones(), middle = Rgb::Ones(), bottom = Rgb::Ones();
   Vec3 up = Vec3::UnitY(); ///< unit
   LightFrame frame = LightFrame::camera;
-
-  /// Radiance from a unit direction, toward the sky, in the sky's frame.
-  Rgb radiance(const Vec3& direction) const {
-    const double t = std::clamp(up.dot(direction), -1.0, 1.0);
-    return middle + std::abs(t) * ((t < 0.0 ? bottom : top) - middle);
-  }
 };
 
 /// Parallel light travelling along `direction`; `irradiance` on a plane facing the light.

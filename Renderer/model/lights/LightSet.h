@@ -5,13 +5,18 @@
 // second ray.
 // Area lights and spheres only emit: they block nothing, and eye rays do not see them.
 
+#include "base/Numbers.h"
 #include "base/Random.h"
 #include "model/camera/Camera.h"
 #include "model/lights/EnvironmentSampler.h"
-#include "model/lights/Light.h"
+#include "model/lights/LightTables.h"
 #include "model/volume/Grid.h"
 
 #include <optional>
+
+namespace fenestra::plain {
+#include "model/lights/LightFormulas-inl.h"
+} // namespace fenestra::plain
 
 namespace fenestra {
 
@@ -28,39 +33,6 @@ struct LightSample {
 struct LightArrival {
   Rgb radiance = Rgb::Zero();
   double pdf = 0.0;
-};
-
-/// An area light in the world.
-struct PlacedAreaLight {
-  AreaLight::Shape shape;
-  Vec3 center, normal, right, up; ///< right, up: unit vectors along the edges
-  Vec2 half;                      ///< half edges; disk: the radius in both, mm
-  double area;                    ///< mm^2
-  Rgb radiance;
-  double share; ///< probability that LightSet::sample() takes this light
-
-  std::optional<LightSample> sample(const Vec3& point, const Vec2& u) const;
-  std::optional<LightArrival> arrival(const Ray& ray, double end) const;
-};
-/// A sphere of light in the world. Directions toward it are drawn uniformly: in the cone that it
-/// subtends, or from inside in all.
-struct PlacedSphereLight {
-  Vec3 center;
-  double radius; ///< mm
-  Rgb radiance;
-  double share; ///< probability that LightSet::sample() takes this light
-
-  std::optional<LightSample> sample(const Vec3& point, const Vec2& u) const;
-  std::optional<LightArrival> arrival(const Ray& ray, double end) const;
-
-private:
-  double spread(double distance2) const;
-  double toward(const Vec3& point, double along, double across2) const;
-};
-struct PlacedDirectionalLight {
-  Vec3 toward; ///< unit, from the scene to the light
-  Rgb irradiance;
-  double share;
 };
 
 /// An environment in the world.
@@ -92,29 +64,16 @@ public:
   template <typename Weigh>
   Rgb areaArrivals(const Ray& ray, double end, Weigh&& weigh) const {
     Rgb sum = Rgb::Zero();
-    for (const PlacedAreaLight& light : m_areas)
-      if (const std::optional<LightArrival> arrival = light.arrival(ray, end))
-        sum += weigh(*arrival);
-    for (const PlacedSphereLight& light : m_spheres)
-      if (const std::optional<LightArrival> arrival = light.arrival(ray, end))
-        sum += weigh(*arrival);
+    plain::forEachMet(m_tables, true, ray.origin, ray.direction, end,
+                      [&](plain::Truth, const plain::Float3& radiance, double pdf) {
+                        sum += weigh(LightArrival{toColor(radiance), pdf});
+                      });
     return sum;
   }
 
-  /// True if every light is of a kind that SIMD lanes know, and that the members below list.
-  bool hasOnlyListedKinds() const {
-    return m_areas.size() + m_spheres.size() + m_directionals.size() + m_environments.size() +
-               m_skies.size() ==
-           m_count;
-  }
-  const std::vector<PlacedAreaLight>& areas() const { return m_areas; }
-  const std::vector<PlacedSphereLight>& spheres() const { return m_spheres; }
-  const std::vector<PlacedDirectionalLight>& directionals() const { return m_directionals; }
+  /// All lights in the world but environment maps.
+  const LightTables<double>& tables() const { return m_tables; }
   const std::vector<SharedEnvironment>& environments() const { return m_environments; }
-  /// Skies in the world's frame.
-  const std::vector<SkyLight>& skies() const { return m_skies; }
-  /// Sum of the constant environments' radiance.
-  Rgb constantEnvironment() const;
   /// True if any environment is not constant.
   bool hasMaps() const;
 
@@ -136,12 +95,8 @@ private:
   void place(const SphereLight& light, const FrameInWorld& frame);
   void chooseShares(const Vec3& center);
 
-  std::size_t m_count; ///< lights of all kinds
-  std::vector<PlacedAreaLight> m_areas;
-  std::vector<PlacedSphereLight> m_spheres;
-  std::vector<PlacedDirectionalLight> m_directionals;
+  LightTables<double> m_tables;
   std::vector<SharedEnvironment> m_environments;
-  std::vector<SkyLight> m_skies;
 };
 
 } // namespace fenestra

@@ -7,10 +7,10 @@
 // After foreach_target.h:
 #include "transport/lanes/LightSet-inl.h"
 #include "transport/lanes/Mixture-inl.h"
-#include "transport/lanes/Scattering-inl.h"
 #include "transport/lanes/Tint-inl.h"
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
+#include "model/medium/ScatteringFormulas-inl.h"
 namespace {
 
 /// A path's own random numbers: hashes of a counter and a key.
@@ -104,10 +104,10 @@ private:
   template <typename Number>
   HWY_INLINE LaneMask scatter(std::size_t i, const Collisions& at, Draws& draws,
                               const ScatterLaw<Number>& law) {
-    const WidePhase<Number> phase(law, at.incoming, at.albedo);
+    const PhaseLobe<Number> phase(law.g, at.incoming, at.albedo);
     const bool surfaces = at.surface.any();
     const auto surface = [&] {
-      return WideSurface<Number>(law, at.incoming, at.gradient, at.albedo);
+      return SurfaceLobes<Number>(law, at.incoming, at.gradient, at.albedo);
     };
     if (m_lights.some())
       sampleLights(i, at, draws, [&](const Float3& toward) {

@@ -3,41 +3,16 @@
 namespace fenestra {
 namespace {
 
-/// An area light in local space, in float.
-EventScene::Area narrowArea(const PlacedAreaLight& light, const Vec3& from) {
-  const Vec3 right = light.half.x() * light.right;
-  const Vec3 up = light.half.y() * light.up;
-  return {light.shape == AreaLight::Shape::disk,
-          narrow3(light.center - from),
-          narrow3(light.normal),
-          narrow3(right),
-          narrow3(up),
-          narrow(1.0 / right.squaredNorm()),
-          narrow(1.0 / up.squaredNorm()),
-          narrow(light.area),
-          narrow3(light.radiance),
-          narrow(light.share)};
-}
-
-double roughnessOf(const SurfaceShading& shading) {
-  return std::sqrt(2.0 / (shading.power + 2.0));
-}
-
-ScatterLaw<float> lawOf(const TransferFunction& transfer) {
-  ScatterLaw<float> law{narrow(transfer.g), 0.0F, 0.0F, 0.0F, 1.0F, 1.0F, false, {}};
-  if (!transfer.shading)
-    return law;
-  const SurfaceShading& shading = *transfer.shading;
-  const SurfaceShading::Lobes lobes = shading.lobes();
-  law.diffuse = narrow(lobes.lambert);
-  law.specular = narrow(lobes.glossy);
-  law.f0 = narrow(lobes.f0);
-  law.odds = narrow(shading.odds);
-  law.roughness = narrow(roughnessOf(shading));
-  law.isCoated = shading.coated.has_value();
-  law.coat = {narrow(lobes.coat.constant), narrow(lobes.coat.x2), narrow(lobes.coat.x4),
-              narrow(lobes.coat.x8)};
-  return law;
+ScatterLaw<float> narrowLaw(const TransferFunction& transfer) {
+  const ScatterLaw<double> law = lawOf(transfer.g, transfer.shading);
+  return {narrow(law.g),
+          narrow(law.diffuse),
+          narrow(law.specular),
+          narrow(law.f0),
+          narrow(law.odds),
+          narrow(law.roughness),
+          law.isCoated,
+          {narrow(law.coat[0]), narrow(law.coat[1]), narrow(law.coat[2]), narrow(law.coat[3])}};
 }
 
 /// True if no lobe is narrower than the resolution of directions in float.
@@ -45,7 +20,7 @@ bool isWide(const TransferFunction& transfer) {
   constexpr double leastRoughness = 1e-2;
   constexpr double greatestG = 0.9999;
   return std::abs(transfer.g) <= greatestG &&
-         !(transfer.shading && roughnessOf(*transfer.shading) < leastRoughness);
+         lawOf(transfer.g, transfer.shading).roughness >= leastRoughness;
 }
 
 } // namespace
@@ -60,41 +35,41 @@ bool EventScene::serves(const Grid& grid, const TransferFunction& transfer, cons
     return (light.center - grid.worldCenter()).norm() < farthest &&
            light.radiance.maxCoeff() < brightest;
   };
-  const auto fits = [&](const PlacedAreaLight& light) {
-    return isNear(light) && light.half.maxCoeff() < farthest;
+  const auto fits = [&](const auto& light) {
+    return isNear(light) && std::max(light.right.norm(), light.up.norm()) < farthest;
   };
-  const auto sphereFits = [&](const PlacedSphereLight& light) {
-    return light.radius > smallest && light.radius < greatestSphere &&
+  const auto sphereFits = [&](const auto& light) {
+    return light.radius2 > smallest * smallest && light.radius2 < greatestSphere * greatestSphere &&
            (light.center - grid.worldCenter()).norm() < greatestSphere &&
            light.radiance.maxCoeff() < brightest;
   };
   const auto mapFits = [](const SharedEnvironment& environment) {
     return MapTables::serves(environment.sampler);
   };
-  return lights.hasOnlyListedKinds() && isWide(transfer) &&
+  return isWide(transfer) &&
          (!mixture || std::ranges::all_of(mixture->components, isWide, &Component::transfer)) &&
-         std::ranges::all_of(lights.areas(), fits) &&
-         std::ranges::all_of(lights.spheres(), sphereFits) &&
+         std::ranges::all_of(lights.tables().areas, fits) &&
+         std::ranges::all_of(lights.tables().spheres, sphereFits) &&
          std::ranges::all_of(lights.environments(), mapFits);
 }
 
-EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const LightSet& lights,
+EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const LightSet& set,
                        std::uint64_t mostBounces, bool normalsWanted, const Tint* tints,
                        const Mixture* mixture)
     : albedo(transfer.albedo),
-      law(lawOf(transfer)),
+      law(narrowLaw(transfer)),
       hybrid(transfer.shading && transfer.extinction.span() > 0.0),
       surfaceRate(hybrid ? narrow(25.0 * std::pow(transfer.shading->gamma, 3)) : 0.0F),
       wantNormals(normalsWanted || transfer.shading),
       bounces(static_cast<std::int32_t>(
           std::min<std::uint64_t>(mostBounces, std::numeric_limits<std::int32_t>::max()))),
-      constantEnvironment(narrow3(lights.constantEnvironment())) {
+      lights(set.tables().cast<float>(grid.worldCenter())) {
   if (tints)
     tint.emplace(*tints, grid);
   if (mixture)
     for (const Component& component : mixture->components) {
       albedos.emplace_back(component.transfer.albedo);
-      laws.push_back(lawOf(component.transfer));
+      laws.push_back(narrowLaw(component.transfer));
     }
   Affine local = grid.indexToWorld;
   local.translation() -= grid.worldCenter();
@@ -104,19 +79,8 @@ EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const
   const double scale = 0.5 / (span > 0.0 ? span : 1.0);
   indexDifferenceToGradient =
       affineRows(Affine(Mat3(scale * grid.worldToIndex.linear().transpose())));
-  for (const PlacedAreaLight& light : lights.areas())
-    areas.push_back(narrowArea(light, grid.worldCenter()));
-  for (const PlacedDirectionalLight& light : lights.directionals())
-    directionals.push_back({narrow3(light.toward), narrow3(light.irradiance), narrow(light.share)});
-  for (const PlacedSphereLight& light : lights.spheres())
-    spheres.push_back({narrow3(Vec3(light.center - grid.worldCenter())),
-                       narrow(light.radius * light.radius), narrow3(light.radiance),
-                       narrow(light.share)});
-  for (const SkyLight& sky : lights.skies())
-    skies.push_back({narrow3(sky.up), narrow3(sky.middle), narrow3(Rgb(sky.top - sky.middle)),
-                     narrow3(Rgb(sky.bottom - sky.middle))});
   if (bounces > 0) // else nothing is lit, and large tables are not needed
-    for (const SharedEnvironment& environment : lights.environments())
+    for (const SharedEnvironment& environment : set.environments())
       if (environment.share > 0.0) // no constant, no black map
         maps.emplace_back(environment.sampler, environment.share);
 }

@@ -3,7 +3,7 @@
 
 #include "base/Narrow.h"
 #include "model/lights/LightSet.h"
-#include "model/medium/TransferFunction.h"
+#include "model/medium/ScatterLaw.h"
 #include "model/volume/Grid.h"
 #include "transport/lanes/MapTables.h"
 #include "transport/lanes/Medium.h"
@@ -14,44 +14,9 @@
 
 namespace fenestra {
 
-/// How matter scatters, beside its albedo; `Number`: plain, or one a lane.
-template <typename Number>
-struct ScatterLaw {
-  Number g;
-  Number diffuse, specular, f0, odds, roughness; ///< of SurfaceShading
-  bool isCoated;
-  std::array<Number, 4> coat; ///< of CoatReflectance; 0: reflects nothing
-};
-
 /// "Local" space: world axes, mm, origin at the volume's centre: floats keep their digits wherever
 /// the volume lies.
 struct EventScene {
-  using Triple = std::array<float, 3>;
-  struct Area {
-    bool disk;
-    Triple center, normal; ///< local
-    Triple right, up;      ///< half edges (disk: radii) as vectors, mm
-    float perRight, perUp; ///< 1 / squared length of right, up
-    float area;            ///< mm^2
-    Triple radiance;
-    float share;
-  };
-  struct Directional {
-    Triple toward, irradiance;
-    float share;
-  };
-
-  struct Sphere {
-    Triple center; ///< local
-    float radius2; ///< mm^2
-    Triple radiance;
-    float share;
-  };
-  struct Sky {
-    Triple up, middle;
-    Triple toTop, toBottom; ///< difference of the radiance there and in the middle
-  };
-
   /// True if floats suffice: no lobe narrower than the resolution of directions in float, and no
   /// light so far away or bright that squares overflow.
   static bool serves(const Grid& grid, const TransferFunction& transfer, const LightSet& lights,
@@ -73,11 +38,7 @@ struct EventScene {
   bool wantNormals;
   std::int32_t bounces; ///< greatest number of scatterings
 
-  std::vector<Area> areas;
-  std::vector<Directional> directionals;
-  std::vector<Sphere> spheres;
-  std::vector<Sky> skies;
-  Triple constantEnvironment;
+  LightTables<float> lights; ///< local
   std::vector<MapTables> maps;
 
   AffineRows toLocal;      ///< points, from index space

@@ -134,7 +134,7 @@ bool renderPass(const Tracer& tracer, const PassSource& source, RenderResult& re
 /// True if all eye rays through one pixel that meet no matter return the same radiance.
 bool isConstantInPixels(const Background& background, const LightSet& lights) {
   return background.kind != Background::Kind::environment ||
-         (!lights.hasMaps() && lights.skies().empty());
+         (!lights.hasMaps() && lights.tables().skies.empty());
 }
 
 /// Pixels of which one sample is enough; the film is told.

@@ -1,18 +1,5 @@
-// Scattering of many paths: model/medium/Scattering.h in lanes. Compiled once for each instruction
-// set (see PathSteps.cxx).
-
-#if defined(FENESTRA_WIDE_SCATTERING_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef FENESTRA_WIDE_SCATTERING_INL_H
-#undef FENESTRA_WIDE_SCATTERING_INL_H
-#else
-#define FENESTRA_WIDE_SCATTERING_INL_H
-#endif
-
-#include "base/LaneMath-inl.h"
-#include "transport/lanes/PathTables.h"
-
-HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
+// Formulas of scattering, for plain numbers and for lanes: a part of the namespace that includes it
+// (base/Numbers.h), behind model/medium/ScatterLaw.h.
 
 /// Factor of scattering on radiance toward a direction, and the density of drawing that direction.
 struct Scattered {
@@ -25,49 +12,31 @@ struct ScatterDraw {
   Float pdf;
 };
 
-inline constexpr float perSphere = static_cast<float>(0.25 / pi);
+/// Density of the uniform distribution over directions.
+inline constexpr Real perSphere = static_cast<Real>(0.25 / pi);
 
-/// Plain numbers, or one a lane.
-HWY_INLINE bool isEverywhere(float x, float value) {
-  return x == value;
-}
-HWY_INLINE bool isEverywhere(Float x, float value) {
-  return !(~(x == value)).any();
-}
-HWY_INLINE float magnitude(float x) {
-  return std::abs(x);
-}
-HWY_INLINE Float magnitude(Float x) {
-  return abs(x);
-}
-HWY_INLINE Float3 turnedBelow0(float g, const Float3& direction) {
-  return g < 0.0F ? -direction : direction;
-}
-HWY_INLINE Float3 turnedBelow0(Float g, const Float3& direction) {
-  return select(g < 0.0F, -direction, direction);
-}
-
-/// `Number`: of the law, float or Float.
+/// Henyey-Greenstein 1941, times the albedo. `Number`: of g, Real or Float.
 template <typename Number>
-class WidePhase {
+class PhaseLobe {
 public:
-  HWY_INLINE WidePhase(const ScatterLaw<Number>& law, const Float3& incoming, const Float3& albedo)
-      : m_g(magnitude(law.g)), m_peak(turnedBelow0(law.g, incoming)), m_albedo(albedo) {}
+  FENESTRA_INLINE PhaseLobe(Number g, const Float3& incoming, const Float3& albedo)
+      : m_g(abs(g)), m_peak(select(g < 0.0F, -incoming, incoming)), m_albedo(albedo) {}
 
-  HWY_INLINE Scattered toward(const Float3& outgoing) const {
+  FENESTRA_INLINE Scattered toward(const Float3& outgoing) const {
     const Float3 chord = outgoing - m_peak;
     const Float pdf = density(dot(chord, chord));
     return {pdf * m_albedo, pdf};
   }
 
-  HWY_INLINE ScatterDraw draw(Float u, Float v) const {
+  FENESTRA_INLINE ScatterDraw draw(Float u, Float v) const {
     const CosineSine phi = ofTurns(v);
     if (isEverywhere(m_g, 0.0F)) {
       const Float z = fnma(2.0F, u, 1.0F);
       const Float r = root(fnma(z, z, 1.0F));
       return {{r * phi.cosine, r * phi.sine, z}, m_albedo, perSphere};
     }
-    // PhaseScattering::sample's formula, in 1 - cos.
+    // cos = (1 + g^2 - ((1 - g^2) / (1 + g - 2 g u))^2) / (2 g), as 1 - cos for accuracy near 1:
+    // with a = 1 + g - 2 g u, 1 - cos = 2 u (1 - g)^2 (1 + g (1 - u)) / a^2.
     const Float g = m_g;
     const Float a = fnma(2.0F * m_g, u, 1.0F + m_g);
     const Float part = (2.0F * (1.0F - m_g) * (1.0F - m_g)) * u;
@@ -81,24 +50,33 @@ public:
 
 private:
   /// Density of a direction; chord2: squared distance of that unit vector from the lobe's peak.
-  HWY_INLINE Float density(Float chord2) const {
+  /// 1 + g^2 - 2 g cos, written so that nothing cancels where g and cos are near 1: with unit
+  /// vectors 2 (1 - cos) is the squared chord.
+  FENESTRA_INLINE Float density(Float chord2) const {
     if (isEverywhere(m_g, 0.0F))
       return perSphere;
     const Float d = fma(m_g, chord2, (1.0F - m_g) * (1.0F - m_g));
     return (perSphere * (1.0F - m_g) * (1.0F + m_g)) / (d * sqrt(d));
   }
 
-  Number m_g; ///< |g|
-  Float3 m_peak;
+  Number m_g;    ///< |g|
+  Float3 m_peak; ///< incoming; -incoming for g < 0, as the lobe (g, d) equals (-g, -d)
   Float3 m_albedo;
 };
 
-/// `Number`: of the law, float or Float.
+/// A Lambert lobe of the albedo and a GGX lobe (Walter et al. 2007; visible normals by Heitz 2018)
+/// with Schlick's Fresnel term F. Side by side they are weighted so that they never reflect more
+/// than arrives. Under a coat that reflects E the Lambert lobe is
+/// albedo / pi (1 - E(viewer)) (1 - E(outgoing)) / (1 - E_mean), which is reciprocal and returns,
+/// for albedo 1, all but what the coat reflects (Kelemen, Szirmay-Kalos 2001). `Number`: of the
+/// law, Real or Float.
 template <typename Number>
-class WideSurface {
+class SurfaceLobes {
 public:
-  HWY_INLINE WideSurface(const ScatterLaw<Number>& law, const Float3& incoming,
-                         const Float3& gradient, const Float3& albedo)
+  /// `gradient` must not be zero; the normal is -gradient, flipped to the side of the path's
+  /// origin.
+  FENESTRA_INLINE SurfaceLobes(const ScatterLaw<Number>& law, const Float3& incoming,
+                               const Float3& gradient, const Float3& albedo)
       : m_specular(law.specular),
         m_f0(law.f0),
         m_roughness(law.roughness),
@@ -117,11 +95,12 @@ public:
     m_lambertShare = select(some, lambert / sum, 1.0F);
   }
 
-  HWY_INLINE Scattered toward(const Float3& outgoing) const {
+  FENESTRA_INLINE Scattered toward(const Float3& outgoing) const {
     return towardLocal(m_frame.toLocal(outgoing));
   }
 
-  HWY_INLINE ScatterDraw draw(Float choice, Float u, Float v) const {
+  /// `choice` selects the lobe.
+  FENESTRA_INLINE ScatterDraw draw(Float choice, Float u, Float v) const {
     const CosineSine phi = ofTurns(v);
     const Float r = sqrt(u);
     const Float3 lambert{r * phi.cosine, r * phi.sine, root(1.0F - u)};
@@ -138,17 +117,18 @@ public:
   }
 
 private:
-  HWY_INLINE Float fresnel(Float cosine) const {
+  /// Schlick 1994.
+  FENESTRA_INLINE Float fresnel(Float cosine) const {
     const Float x = notBelow0(min(1.0F - cosine, 1.0F));
     return fma(1.0F - m_f0, square(square(x)) * x, m_f0);
   }
   /// Albedo whose odds are `odds` times those of the given one.
-  static HWY_INLINE Float3 ofOdds(Number odds, const Float3& albedo) {
+  static FENESTRA_INLINE Float3 ofOdds(Number odds, const Float3& albedo) {
     const auto channel = [odds](Float a) { return odds * a / fnma(1.0F - odds, a, 1.0F); };
     return {channel(albedo.x), channel(albedo.y), channel(albedo.z)};
   }
   /// Share of light that passes the coat.
-  HWY_INLINE Float belowCoat(Float cosine) const {
+  FENESTRA_INLINE Float belowCoat(Float cosine) const {
     const Float x = notBelow0(min(1.0F - cosine, 1.0F));
     const Float x2 = square(x), x4 = square(x2);
     const Float high = fma(m_coat[3], x4, m_coat[2]);
@@ -156,9 +136,10 @@ private:
     return 1.0F - fma(high, x4, low);
   }
 
-  /// SurfaceScattering's evaluate() and pdf().
-  HWY_INLINE Scattered towardLocal(const Float3& l) const {
-    const Float lambertPdf = notBelow0(l.z) * static_cast<float>(1.0 / pi);
+  /// The glossy lobe is D F G / (4 cos cos) times the outgoing cosine, G separable (Smith); its
+  /// density is Heitz 2018, eq. 17.
+  FENESTRA_INLINE Scattered towardLocal(const Float3& l) const {
+    const Float lambertPdf = notBelow0(l.z) * static_cast<Real>(1.0 / pi);
     Scattered s{lambertPdf * m_diffuse, m_lambertShare * lambertPdf};
     if (isEverywhere(m_specular, 0.0F))
       return s;
@@ -176,21 +157,21 @@ private:
   }
 
   /// Smith's G1.
-  HWY_INLINE Float masking(const Float3& v) const {
+  FENESTRA_INLINE Float masking(const Float3& v) const {
     const Float sine2 = fma(v.x, v.x, square(v.y));
     const Float cosine = abs(v.z);
     const Float slope = sqrt(fma(m_roughness * m_roughness, sine2, square(cosine)));
     return 2.0F * cosine / (cosine + slope);
   }
 
-  HWY_INLINE Float normalDensity(const Float3& h) const {
+  FENESTRA_INLINE Float normalDensity(const Float3& h) const {
     const Float a2 = (m_roughness * m_roughness);
     const Float d = fma(h.x, h.x, fma(h.y, h.y, a2 * square(h.z)));
-    return a2 / (static_cast<float>(pi) * square(d));
+    return a2 / (static_cast<Real>(pi) * square(d));
   }
 
   /// Heitz 2018, listing 1; `r`, `phi`: polar coordinates of a point in the unit disc.
-  HWY_INLINE Float3 visibleNormal(Float r, const CosineSine& phi) const {
+  FENESTRA_INLINE Float3 visibleNormal(Float r, const CosineSine& phi) const {
     const Float a = m_roughness;
     const Float3 stretched = normalized({a * m_viewer.x, a * m_viewer.y, m_viewer.z});
     const Float length2 = fma(stretched.x, stretched.x, square(stretched.y));
@@ -204,19 +185,14 @@ private:
     const Float p2 = lerp(root(fnma(p1, p1, 1.0F)), r * phi.sine, s);
     const Float p3 = root(fnma(p1, p1, fnma(p2, p2, 1.0F)));
     const Float3 n = p1 * side + p2 * other + p3 * stretched;
-    return normalized({a * n.x, a * n.y, max(n.z, std::numeric_limits<float>::min())});
+    return normalized({a * n.x, a * n.y, max(n.z, std::numeric_limits<Real>::min())});
   }
 
   Number m_specular, m_f0, m_roughness;
   bool m_isCoated;
   std::array<Number, 4> m_coat;
-  Frames m_frame;  ///< local z is the normal
-  Float3 m_viewer; ///< local direction back along the path
-  Float3 m_diffuse;
-  Float m_lambertShare;
+  Frames m_frame;       ///< local z is the normal
+  Float3 m_viewer;      ///< local direction back along the path
+  Float3 m_diffuse;     ///< weight * albedo, and what the coat lets through from the viewer
+  Float m_lambertShare; ///< probability that draw() takes the Lambert lobe
 };
-
-} // namespace fenestra::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
-
-#endif

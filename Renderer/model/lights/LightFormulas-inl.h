@@ -1,0 +1,178 @@
+// Formulas of lights, for plain numbers and for lanes: a part of the namespace that includes it
+// (base/Numbers.h), behind model/lights/LightTables.h.
+
+using Lights = LightTables<Real>;
+
+/// LightSample; radiance 0: no sample.
+struct LightDraw {
+  Float3 direction, radiance;
+  Float distance;
+  Float pdf;
+  LaneMask delta;
+};
+
+/// Draws for the lanes of `mine`, seen from `point`.
+FENESTRA_INLINE void drawFrom(const Lights::Area& light, LaneMask mine, const Float3& point,
+                              Float u, Float v, LightDraw& drawn) {
+  Float x = fms(2.0F, u, 1.0F);
+  Float y = fms(2.0F, v, 1.0F);
+  if (light.isDisk) {
+    const CosineSine phi = ofTurns(v);
+    const Float r = sqrt(u);
+    x = r * phi.cosine;
+    y = r * phi.sine;
+  }
+  const Float3 d = Float3(light.center) + x * Float3(light.right) + y * Float3(light.up) - point;
+  const Float distance2 = dot(d, d);
+  const Float distance = sqrt(distance2);
+  const Float3 direction = (1.0F / distance) * d;
+  const Float cosine = -dot(Float3(light.normal), direction);
+  // False behind the light, in its plane, and on the light: no direction.
+  const LaneMask apart = distance2 >= std::numeric_limits<Real>::min();
+  const LaneMask lit = mine & apart & (cosine > 0.0F);
+  const Float pdf = light.share * distance2 / (light.area * cosine);
+  drawn.direction = select(lit, direction, drawn.direction);
+  drawn.radiance = select(lit, Float3(light.radiance), drawn.radiance);
+  drawn.distance = select(lit, distance, drawn.distance);
+  drawn.pdf = select(lit, pdf, drawn.pdf);
+}
+
+/// 1 - cos of half the angle that a sphere subtends, as sin^2 / (1 + cos), which keeps the digits
+/// of narrow cones; 2 from inside: all directions. The solid angle is 2 pi of that.
+FENESTRA_INLINE Float spreadOf(const Lights::Sphere& light, Float distance2) {
+  const Float sine2 = light.radius2 / distance2; // NaN at the centre of one without a square
+  const Float cosine = sqrt(max(1.0F - sine2, 0.0F));
+  return select(sine2 < 1.0F, sine2 / (1.0F + cosine), 2.0F);
+}
+FENESTRA_INLINE Float densityOf(const Lights::Sphere& light, Float spread) {
+  return light.share / (static_cast<Real>(2.0 * pi) * spread);
+}
+/// Distance to a sphere whose centre is `along` ahead, and aside by the square root of `across2`.
+FENESTRA_INLINE Float distanceTo(const Lights::Sphere& light, Float distance2, Float along,
+                                 Float across2) {
+  const Float outside = distance2 - light.radius2;
+  const Float half = sqrt(max(light.radius2 - across2, 0.0F)); // of the chord
+  const Float far = along + half;
+  return select(outside > 0.0F, outside / far, far);
+}
+
+/// Draws for the lanes of `mine`, seen from `point`.
+FENESTRA_INLINE void drawFrom(const Lights::Sphere& light, LaneMask mine, const Float3& point,
+                              Float u, Float v, LightDraw& drawn) {
+  const Float3 d = Float3(light.center) - point;
+  const Float distance2 = dot(d, d);
+  const Float distance = sqrt(distance2);
+  const Float spread = spreadOf(light, distance2);
+  const Float fall = spread * u; // 1 - cos of the angle to the axis
+  const Float cosine = 1.0F - fall;
+  const Float sine2 = max(fall * (2.0F - fall), 0.0F);
+  const Float sine = sqrt(sine2);
+  const CosineSine phi = ofTurns(v);
+  const LaneMask apart = distance > 0.0F;
+  const Float3 axis = select(apart, (1.0F / distance) * d, Float3{0.0F, 0.0F, 1.0F});
+  const Float3 local{sine * phi.cosine, sine * phi.sine, cosine};
+  const Float far = distanceTo(light, distance2, distance * cosine, distance2 * sine2);
+  drawn.direction = select(mine, normalized(Frames(axis).toWorld(local)), drawn.direction);
+  drawn.radiance = select(mine, Float3(light.radiance), drawn.radiance);
+  drawn.distance = select(mine, far, drawn.distance);
+  drawn.pdf = select(mine, densityOf(light, spread), drawn.pdf);
+}
+
+/// Draws one light for each lane of `which`, seen from `point`. `choice` selects it by the lights'
+/// shares. What remains of both is for environments.
+FENESTRA_INLINE LightDraw drawLight(const Lights& lights, LaneMask& which, const Float3& point,
+                                    Float& choice, Float u, Float v) {
+  const Float far = std::numeric_limits<Real>::infinity();
+  LightDraw drawn{{0.0F, 0.0F, 1.0F}, {0.0F, 0.0F, 0.0F}, far, 1.0F, LaneMask::none()};
+  const auto chosen = [&](Real share) {
+    const LaneMask mine = which & happens(share, choice);
+    which = which.without(mine);
+    choice = choice - share;
+    return mine;
+  };
+  for (const Lights::Area& light : lights.areas) {
+    const LaneMask mine = chosen(light.share);
+    if (mine.any())
+      drawFrom(light, mine, point, u, v, drawn);
+  }
+  for (const Lights::Directional& light : lights.directionals) {
+    const LaneMask mine = chosen(light.share);
+    drawn.direction = select(mine, Float3(light.toward), drawn.direction);
+    drawn.radiance = select(mine, Float3(light.irradiance), drawn.radiance);
+    drawn.pdf = select(mine, light.share, drawn.pdf);
+    drawn.delta = mine | drawn.delta;
+  }
+  for (const Lights::Sphere& light : lights.spheres) {
+    const LaneMask mine = chosen(light.share);
+    if (mine.any())
+      drawFrom(light, mine, point, u, v, drawn);
+  }
+  return drawn;
+}
+
+/// Lanes whose ray meets a light, and there the density of drawing the ray's direction.
+struct LightMet {
+  LaneMask met;
+  Float pdf;
+};
+
+/// Meeting of rays of the lanes of `which` with a light before `end` (mm).
+FENESTRA_INLINE LightMet meeting(const Lights::Area& light, LaneMask which, const Float3& origin,
+                                 const Float3& direction, Float end) {
+  const Float3 normal = Float3(light.normal);
+  const Float cosine = -dot(normal, direction);
+  const Float t = dot(normal, origin - Float3(light.center)) / cosine;
+  const LaneMask ahead = (cosine > 0.0F) & (t > 0.0F) & (t < end);
+  const LaneMask met = which & ahead;
+  if (!met.any())
+    return {met, 0.0F};
+  const Float3 d = origin + t * direction - Float3(light.center);
+  const Float x2 = square(dot(d, Float3(light.right)) * light.perRight);
+  const Float y2 = square(dot(d, Float3(light.up)) * light.perUp);
+  const LaneMask inside = (light.isDisk ? x2 + y2 : max(x2, y2)) <= 1.0F;
+  return {met & inside, light.share * square(t) / (light.area * cosine)};
+}
+
+FENESTRA_INLINE LightMet meeting(const Lights::Sphere& light, LaneMask which, const Float3& origin,
+                                 const Float3& direction, Float end) {
+  const Float3 d = Float3(light.center) - origin;
+  const Float distance2 = dot(d, d);
+  const Float along = dot(d, direction);
+  const Float3 across = d - along * direction;
+  const Float across2 = dot(across, across);
+  const Float radius2 = light.radius2;
+  const LaneMask ahead = (along > 0.0F) & (across2 <= radius2);
+  const LaneMask hits = LaneMask(distance2 <= radius2) | ahead;
+  const Float far = distanceTo(light, distance2, along, across2);
+  const LaneMask met = which & hits & (far < end);
+  if (!met.any())
+    return {met, 0.0F};
+  return {met, densityOf(light, spreadOf(light, distance2))};
+}
+
+/// Calls visit(lanes, radiance, pdf) for the area lights and spheres that rays of the lanes of
+/// `which` meet before `end` (mm).
+template <typename Visit>
+FENESTRA_INLINE void forEachMet(const Lights& lights, LaneMask which, const Float3& origin,
+                                const Float3& direction, Float end, Visit&& visit) {
+  const auto meet = [&](const auto& light) {
+    const LightMet at = meeting(light, which, origin, direction, end);
+    if (at.met.any())
+      visit(at.met, Float3(light.radiance), at.pdf);
+  };
+  for (const Lights::Area& light : lights.areas)
+    meet(light);
+  for (const Lights::Sphere& light : lights.spheres)
+    meet(light);
+}
+
+/// Radiance of constant environments and skies.
+FENESTRA_INLINE Float3 around(const Lights& lights, const Float3& direction) {
+  Float3 sum = Float3(lights.constant);
+  for (const Lights::Sky& sky : lights.skies) {
+    const Float t = min(max(dot(Float3(sky.up), direction), -1.0F), 1.0F);
+    const Float3 slope = select(t < 0.0F, Float3(sky.toBottom), Float3(sky.toTop));
+    sum = sum + Float3(sky.middle) + abs(t) * slope;
+  }
+  return sum;
+}

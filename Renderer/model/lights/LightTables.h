@@ -1,0 +1,72 @@
+#pragma once
+// Placed lights in the form that formulas read: plain numbers, double or float, in a space with the
+// world's axes and mm.
+
+#include "base/Vector.h"
+
+#include <vector>
+
+namespace fenestra {
+
+template <typename Real>
+struct LightTables {
+  using Point = Vector<Real, 3>;
+  using Color = Array<Real, 3>;
+
+  struct Area {
+    bool isDisk;
+    Point center, normal;
+    Point right, up;      ///< half edges (disk: radii) as vectors, mm
+    Real perRight, perUp; ///< 1 / squared length of right, up
+    Real area;            ///< mm^2
+    Color radiance;
+    Real share; ///< probability that a sample is of this light
+  };
+  /// Directions toward it are drawn uniformly: in the cone that it subtends, or from inside in all.
+  struct Sphere {
+    Point center;
+    Real radius2; ///< mm^2
+    Color radiance;
+    Real share; ///< as above
+  };
+  struct Directional {
+    Point toward; ///< unit, from the scene to the light
+    Color irradiance;
+    Real share; ///< as above
+  };
+  struct Sky {
+    Point up;
+    Color middle;
+    Color toTop, toBottom; ///< difference of the radiance there and in the middle
+  };
+
+  std::vector<Area> areas;
+  std::vector<Sphere> spheres;
+  std::vector<Directional> directionals;
+  std::vector<Sky> skies;
+  Color constant = Color::Zero(); ///< radiance of all constant environments
+
+  /// The same in other numbers, around `origin`.
+  template <typename To>
+  LightTables<To> cast(const Point& origin) const {
+    LightTables<To> to;
+    const auto number = [](Real x) { return static_cast<To>(x); };
+    const auto three = [](const auto& x) { return x.template cast<To>(); };
+    const auto point = [&](const Point& x) { return three(Point(x - origin)); };
+    for (const Area& a : areas)
+      to.areas.push_back({a.isDisk, point(a.center), three(a.normal), three(a.right), three(a.up),
+                          number(a.perRight), number(a.perUp), number(a.area), three(a.radiance),
+                          number(a.share)});
+    for (const Sphere& s : spheres)
+      to.spheres.push_back(
+          {point(s.center), number(s.radius2), three(s.radiance), number(s.share)});
+    for (const Directional& d : directionals)
+      to.directionals.push_back({three(d.toward), three(d.irradiance), number(d.share)});
+    for (const Sky& s : skies)
+      to.skies.push_back({three(s.up), three(s.middle), three(s.toTop), three(s.toBottom)});
+    to.constant = three(constant);
+    return to;
+  }
+};
+
+} // namespace fenestra

@@ -1,0 +1,22 @@
+#pragma once
+// How matter scatters, beside its albedo, in the form that formulas read.
+
+#include "model/medium/TransferFunction.h"
+
+#include <array>
+
+namespace fenestra {
+
+/// `Number`: plain, or one a lane.
+template <typename Number>
+struct ScatterLaw {
+  Number g;
+  Number diffuse, specular, f0, odds, roughness; ///< of SurfaceShading
+  bool isCoated;
+  std::array<Number, 4> coat; ///< of CoatReflectance, over the Lambert lobe; 0: reflects nothing
+};
+
+/// Without shading nothing is reflected.
+ScatterLaw<double> lawOf(double g, const std::optional<SurfaceShading>& shading);
+
+} // namespace fenestra
