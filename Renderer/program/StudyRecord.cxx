@@ -175,8 +175,10 @@ bool StudyRecord::beginsAnew(const RowOutcome& outcome) {
 }
 
 void StudyRecord::removeFilm() const {
-  std::error_code failed; // a film that stays is refused by what makes the row
+  std::error_code failed;
   fs::remove(m_film, failed);
+  if (failed)
+    throw outputError(m_film, "cannot be removed: ", systemMessage(failed.value()), "; remove it");
 }
 
 void StudyRecord::finish(const RowOutcome& outcome) {
