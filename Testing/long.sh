@@ -14,7 +14,7 @@
 #   faults        every fault that Testing/Faults makes, and 20,000 damaged files
 #   films         200 kills of a render that keeps a film, a picture merged from 16 parts, and
 #                 pictures by up to 7 ranks of mpirun
-#   study         a study of 12 cases, killed half way; array jobs of a real Slurm
+#   study         a study of 12 cases, killed half way; jobs of a real Slurm
 #   paths         instructions a path, against the record in Testing/Benchmarks/Report
 #   package       the archive in a root with busybox alone, in Debian 11, in the extension's package; built
 #                 twice; the Debian package by lintian

@@ -3,6 +3,7 @@
 #include "base/Error.h"
 #include "base/safe/Digest.h"
 #include "base/safe/Inputs.h"
+#include "base/safe/SystemCalls.h"
 #include "files/medical/NamedFiles.h"
 #include "files/pictures/ImageWriter.h"
 #include "program/FileNames.h"
@@ -58,6 +59,15 @@ std::set<fs::path> inputsOf(const StudyRow& row, const fs::path& stats) {
     for (const fs::path& named : filesNamedBy(file))
       files.insert(named);
   return files;
+}
+
+/// Throws Error (input).
+ContentState stateOfFile(const fs::path& path) {
+  std::error_code failed;
+  const std::uintmax_t bytes = fs::file_size(path, failed);
+  if (failed)
+    throw readingError(path, failed.value(), "check its disk");
+  return {bytes, digestOf(path)};
 }
 
 /// Outcome in the record's entry. Throws Error (input).
@@ -165,8 +175,10 @@ bool StudyRecord::beginsAnew(const RowOutcome& outcome) {
 }
 
 void StudyRecord::removeFilm() const {
-  std::error_code failed; // a film that stays is refused by what makes the row
+  std::error_code failed;
   fs::remove(m_film, failed);
+  if (failed)
+    throw outputError(m_film, "cannot be removed: ", systemMessage(failed.value()), "; remove it");
 }
 
 void StudyRecord::finish(const RowOutcome& outcome) {
@@ -177,7 +189,7 @@ void StudyRecord::finish(const RowOutcome& outcome) {
   if (outcome.state == RowOutcome::State::done) {
     m_record.requireInputs(inputsOf(m_row, rowStats(m_row, m_folder.parent_path())));
     for (const fs::path& file : files())
-      written.emplace_back(file, ContentState{fs::file_size(file), digestOf(file)});
+      written.emplace_back(file, stateOfFile(file));
   }
   m_record.finish(0, written, more, m_outputs);
   if (outcome.state == RowOutcome::State::done)

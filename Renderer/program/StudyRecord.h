@@ -40,6 +40,7 @@ public:
   void begin();
   /// True if the film may be why the row's process refused to begin (files or machine have
   /// changed, or the film is damaged): it is removed, and the row has to be made from nothing.
+  /// Throws Error (output).
   bool beginsAnew(const RowOutcome& outcome);
   /// Records what came of the row; of one that is done, files and inputs. Throws Error.
   void finish(const RowOutcome& outcome);
@@ -48,6 +49,7 @@ private:
   void read(bool restart);
   /// Files that the row has.
   std::vector<std::filesystem::path> files() const;
+  /// Throws Error (output).
   void removeFilm() const;
 
   const StudyRow& m_row;

@@ -61,7 +61,7 @@ private:
 /// longer.
 class Rests {
 public:
-  /// There was a message.
+  /// Counts from now, for a message was there.
   void begin() { m_watch = {}; }
   void rest() const;
 

@@ -26,6 +26,7 @@ print_jobs
 "$FENESTRA" "${flags[@]}" --noise 0.1 --output alone-noise.exr --output alone-noise.png >>alone.log 2>&1
 for kind in samples noise; do
   cmp "alone-$kind.png" "$kind.png" || fail "the picture of job ${!kind} differs"
-  "$FENESTRA" compare "$kind.exr" "alone-$kind.exr" | grep -q '^largest  *0$' || fail "the channels of job ${!kind} differ"
+  "$FENESTRA" compare "$kind.exr" "alone-$kind.exr" | grep -q '^largest  *0$' ||
+    fail "the channels of job ${!kind} differ"
 done
 printf '\nThe jobs %s and %s, of two ranks each, made the pictures of one process.\n' "$samples" "$noise"

@@ -13,12 +13,14 @@ inline constexpr const char* ownProgram = "/proc/self/exe";
 
 /// Arguments with which it is this program with `words`. Where a loader was called with the
 /// program's file (an archive brings its own), /proc/self/exe is that loader: the kernel has no
-/// base of an interpreter then, and the loader says the file (glibc: AT_EXECFN).
+/// base of an interpreter then, and the loader says the file (glibc: AT_EXECFN). It is told again
+/// to keep away from the system's libraries, as the archive's launcher tells it.
 class OwnArguments {
 public:
   explicit OwnArguments(std::vector<std::string> words) : m_words(std::move(words)) {
     if (::getauxval(AT_BASE) == 0)
-      m_words.insert(m_words.begin(), reinterpret_cast<const char*>(::getauxval(AT_EXECFN)));
+      m_words.insert(m_words.begin(),
+                     {"--inhibit-cache", reinterpret_cast<const char*>(::getauxval(AT_EXECFN))});
     m_words.insert(m_words.begin(), "fenestra");
     for (std::string& word : m_words)
       m_pointers.push_back(word.data());
