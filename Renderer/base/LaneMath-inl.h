@@ -35,9 +35,8 @@ HWY_INLINE bool isEverywhere(Float x, float value) {
 
 #include "base/VectorFormulas-inl.h"
 
-/// A choice for all lanes.
-HWY_INLINE Float3 select(bool which, const Float3& yes, const Float3& no) {
-  return which ? yes : no;
+HWY_INLINE Float3 turnedBelow0(float x, const Float3& v) {
+  return x < 0.0F ? -v : v;
 }
 
 /// Applies one row of an affine map.

@@ -61,7 +61,12 @@ FENESTRA_INLINE Float3 orZero(LaneMask which, const Float3& v) {
   return {orZero(which, v.x), orZero(which, v.y), orZero(which, v.z)};
 }
 
-/// Of an angle.
+/// -v where x < 0, else v.
+FENESTRA_INLINE Float3 turnedBelow0(Float x, const Float3& v) {
+  return select(x < 0.0F, -v, v);
+}
+
+/// Cosine and sine of an angle.
 struct CosineSine {
   Float cosine, sine;
 };

@@ -25,11 +25,12 @@ the focus, in CIELAB, for normal sight, for the red-blind, for the green-blind, 
 
 END_OF_PAGE
 
-# measured "ARGUMENTS": ΔE*ab, protan, deutan, ΔL* of the picture; dashes without LookBenchmark.
+# measured "ARGUMENTS": ΔE*ab, protan, deutan, ΔL* of the picture, to 0.6 (look-scenes.txt); a dash without
+# LookBenchmark.
 measured() {
   local cells="" table=$out/materials-scene.txt
   if [ -x "$look" ]; then
-    echo "this product $1 --samples 32 --size 512x512" >"$table"
+    echo "this product $1 --samples 8 --size 512x512" >"$table"
     cells=$("$look" --table "$table" | awk -F ' *[|] *' 'NR == 3 { print $5 ", " $6 ", " $7 " and " $8 }')
   fi
   echo "${cells:--}"

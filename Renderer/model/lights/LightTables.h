@@ -46,7 +46,7 @@ struct LightTables {
   std::vector<Sky> skies;
   Color constant = Color::Zero(); ///< radiance of all constant environments
 
-  /// The same in other numbers, around `origin`.
+  /// These tables in other numbers, around `origin`.
   template <typename To>
   LightTables<To> cast(const Point& origin) const {
     LightTables<To> to;

@@ -36,6 +36,7 @@ private:
   plain::PhaseLobe<double> m_lobe;
 };
 
+/// Lambert and glossy lobes of a surface.
 class SurfaceScattering {
 public:
   /// `gradient` must not be zero; the normal is -gradient, flipped to the side of the path's

@@ -20,7 +20,7 @@ template <typename Number>
 class PhaseLobe {
 public:
   FENESTRA_INLINE PhaseLobe(Number g, const Float3& incoming, const Float3& albedo)
-      : m_g(abs(g)), m_peak(select(g < 0.0F, -incoming, incoming)), m_albedo(albedo) {}
+      : m_g(abs(g)), m_peak(turnedBelow0(g, incoming)), m_albedo(albedo) {}
 
   FENESTRA_INLINE Scattered toward(const Float3& outgoing) const {
     const Float3 chord = outgoing - m_peak;

@@ -118,29 +118,29 @@ HWY_INLINE Float nearestDepth(const WideScene& scene, const InView& view) {
   return gather(scene.depths, r * scene.depthColumns + c);
 }
 
-/// Depth of a linear surface: exact in seams for the lanes of `which`.
-HWY_INLINE Float linearDepth(const WideScene& scene, const InView& view, const DepthCell& cell,
-                             LaneMask which) {
+/// Way of points behind the clip's surface, mm; below 0 in front. In seams exact for the lanes of
+/// `which`.
+HWY_INLINE Float behindSurface(const WideScene& scene, const Float3& p, const InView& view,
+                               LaneMask which) {
+  if (scene.clipKind == WideScene::ClipKind::plane)
+    return -apply(scene.toPlane, p);
+  if (scene.clipKind == WideScene::ClipKind::depthNearest)
+    return view.depth - nearestDepth(scene, view);
+  const DepthCell cell = depthCell(scene, view);
   const Float surface = cell.depth();
-  return scene.seams ? sewn(scene, which, cell.first, view.x, view.y, view.depth, surface)
-                     : surface;
+  return view.depth - (scene.seams
+                           ? sewn(scene, which, cell.first, view.x, view.y, view.depth, surface)
+                           : surface);
 }
 
 /// keep for every kind of clip, for the lanes of `which`.
 inline Float keep(const WideScene& scene, const Float3& p, LaneMask which) {
   const InView view = inView(scene, p);
-  const auto edge = [&](Float behind) {
-    const Float ghost = scene.ghost;
-    const Float rise = scene.perSoftness > 0.0F ? min(behind * scene.perSoftness, 1.0F) : 1.0F;
-    const Float share = select(behind < 0.0F, ghost, lerp(ghost, 1.0F, rise));
-    return select(view.behindEye, 0.0F, share);
-  };
-  if (scene.clipKind == WideScene::ClipKind::plane)
-    return edge(-apply(scene.toPlane, p));
-  const Float surface = scene.clipKind == WideScene::ClipKind::depthNearest
-                            ? nearestDepth(scene, view)
-                            : linearDepth(scene, view, depthCell(scene, view), which);
-  return edge(view.depth - surface);
+  const Float behind = behindSurface(scene, p, view, which);
+  const Float ghost = scene.ghost;
+  const Float rise = scene.perSoftness > 0.0F ? min(behind * scene.perSoftness, 1.0F) : 1.0F;
+  const Float share = select(behind < 0.0F, ghost, lerp(ghost, 1.0F, rise));
+  return select(view.behindEye, 0.0F, share);
 }
 
 /// Slope of a surface along one axis of the buffer, mm per mm, from its `rise` over a cell. Beyond
@@ -172,21 +172,16 @@ HWY_INLINE Float3 behindGradient(const WideScene& scene, const InView& view,
 /// cutGradient, world axes, for the lanes of `which`; 0 in the others. Requires a soft edge.
 inline Float3 cutGradient(const WideScene& scene, const Float3& p, LaneMask which) {
   const InView view = inView(scene, p);
-  const auto ramp = [&](Float behind) {
-    const LaneMask isRamp = (behind >= 0.0F) & (behind < scene.softness);
-    return (which & isRamp).without(view.behindEye);
-  };
-  const Float length = scene.cutSlope;
-  if (scene.clipKind == WideScene::ClipKind::plane)
-    return orZero(ramp(-apply(scene.toPlane, p)), length * Float3(scene.cutNormal));
-  if (scene.clipKind == WideScene::ClipKind::depthNearest)
-    return orZero(ramp(view.depth - nearestDepth(scene, view)), length * Float3(scene.cutNormal));
-  const DepthCell cell = depthCell(scene, view);
-  const LaneMask isRamp = ramp(view.depth - linearDepth(scene, view, cell, which));
-  if (!isRamp.any())
+  const Float behind = behindSurface(scene, p, view, which);
+  const LaneMask isRamp = which & (behind >= 0.0F) & (behind < scene.softness);
+  const LaneMask isCut = isRamp.without(view.behindEye);
+  if (!isCut.any())
     return {0.0F, 0.0F, 0.0F};
-  const Float3 normal = normalized(mapDirection(scene.fromView, behindGradient(scene, view, cell)));
-  return orZero(isRamp, length * normal);
+  const Float length = scene.cutSlope;
+  if (scene.clipKind != WideScene::ClipKind::depthLinear)
+    return orZero(isCut, length * Float3(scene.cutNormal));
+  const Float3 gradient = behindGradient(scene, view, depthCell(scene, view));
+  return orZero(isCut, length * normalized(mapDirection(scene.fromView, gradient)));
 }
 
 } // namespace fenestra::HWY_NAMESPACE

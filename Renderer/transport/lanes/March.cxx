@@ -7,7 +7,6 @@
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
 #include "transport/lanes/Mixture-inl.h"
-#include "transport/lanes/Tint-inl.h"
 #include "transport/lanes/Way-inl.h"
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {

@@ -1,5 +1,5 @@
-// Matter of lanes at points in index space: albedo and gradient. Compiled once for each instruction
-// set.
+// Matter of lanes at points in index space: albedo, with segments' colours, and gradient. Compiled
+// once for each instruction set.
 
 #if defined(FENESTRA_WIDE_MATTER_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef FENESTRA_WIDE_MATTER_INL_H
@@ -10,7 +10,7 @@
 
 #include "transport/lanes/PathTables.h"
 // After foreach_target.h:
-#include "transport/lanes/Medium-inl.h"
+#include "transport/lanes/Shares-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
@@ -22,6 +22,21 @@ HWY_INLINE Float3 albedoOf(const WideTable& table, Float scalar) {
   const Segment segment = segmentOf(table, scalar);
   return {valueIn(channels[0], segment), valueIn(channels[1], segment),
           valueIn(channels[2], segment)};
+}
+
+/// TintedField::albedo for the lanes of `which`, 0 in others; `own`: of the transfer function.
+HWY_INLINE Float3 tintedAlbedo(const WideTint& tint, LaneMask which, const Float3& index,
+                               Float scalar, const Float3& own) {
+  Float3 sum(0.0F, 0.0F, 0.0F);
+  LaneShares(tint.shares, index).forEach(which, [&](LaneMask lanes, Int components, Float share) {
+    Float3 albedo = own;
+    forEachComponent(lanes, components, [&](LaneMask same, std::size_t component) {
+      if (const auto& table = tint.albedo[component])
+        albedo = select(same, albedoOf(*table, scalar), albedo);
+    });
+    sum = sum + share * albedo;
+  });
+  return sum;
 }
 
 /// ContextStyle::paled, outside the focus.

@@ -82,58 +82,41 @@ HWY_INLINE Pairs loadPairs(const Element* memory, const Indices& index) {
 /// The eight voxels around a point: four rows of two along x.
 using Corners = std::array<Pairs, 4>;
 
-/// Offset of each row from the first row, in voxels.
-HWY_INLINE std::array<std::int32_t, 4> rowsOf(const WideField& field) {
+/// Corners by pairOf(offset of a row from the first one, in voxels).
+template <typename PairOf>
+HWY_INLINE Corners cornersBy(const WideField& field, PairOf&& pairOf) {
   const std::int32_t up = field.axes[1].stride;
   const std::int32_t deep = field.axes[2].stride;
-  return {0, up, deep, deep + up};
+  return {pairOf(0), pairOf(up), pairOf(deep), pairOf(deep + up)};
 }
-
 HWY_INLINE Corners cornersAt(const WideField& field, const float* voxels, Int first) {
-  Corners c;
-  const std::array<std::int32_t, 4> rows = rowsOf(field);
   const Indices index(first);
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    c[i] = loadPairs(voxels + rows[i], index);
-  return c;
-}
-
-/// Corners of 16-bit voxels: 32 bits hold a row's two voxels, extracted by `lower` and `upper`.
-template <typename Voxel, typename Lower, typename Upper>
-HWY_INLINE Corners cornersInPairs(const WideField& field, const Voxel* voxels, Int first,
-                                  Lower&& lower, Upper&& upper) {
-  Corners c;
-  const std::array<std::int32_t, 4> rows = rowsOf(field);
-  const Indices index(first);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const Int both = loadInts(voxels + rows[i], index);
-    c[i] = {toFloat(lower(both)), toFloat(upper(both))};
-  }
-  return c;
+  return cornersBy(field, [&](std::int32_t row) { return loadPairs(voxels + row, index); });
 }
 HWY_INLINE Corners cornersAt(const WideField& field, const std::int16_t* voxels, Int first) {
-  return cornersInPairs(
-      field, voxels, first, [](Int both) { return shiftRight<16>(shiftLeft<16>(both)); },
-      [](Int both) { return shiftRight<16>(both); });
+  const Indices index(first);
+  return cornersBy(field, [&](std::int32_t row) {
+    const Int both = loadInts(voxels + row, index);
+    return Pairs{toFloat(shiftRight<16>(shiftLeft<16>(both))), toFloat(shiftRight<16>(both))};
+  });
 }
 HWY_INLINE Corners cornersAt(const WideField& field, const std::uint16_t* voxels, Int first) {
-  return cornersInPairs(
-      field, voxels, first, [](Int both) { return both & 0xffff; },
-      [](Int both) { return shiftRight<16>(both) & 0xffff; });
+  const Indices index(first);
+  return cornersBy(field, [&](std::int32_t row) {
+    const Int both = loadInts(voxels + row, index);
+    return Pairs{toFloat(both & 0xffff), toFloat(shiftRight<16>(both) & 0xffff)};
+  });
 }
 HWY_INLINE Corners cornersAt(const WideField& field, const std::uint8_t* voxels, Int first) {
-  Corners c;
-  const std::array<std::int32_t, 4> rows = rowsOf(field);
   const Int lastFour = static_cast<std::int32_t>(field.count - 4);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
+  return cornersBy(field, [&](std::int32_t offset) {
     // Reads four bytes, never beyond the last voxel.
-    const Int row = first + rows[i];
+    const Int row = first + offset;
     const Int from = min(row, lastFour);
     const Int four = loadInts(voxels, Indices(from));
     const Int both = hn::Shr(four.v, shiftLeft<3>(row - from).v);
-    c[i] = {toFloat(both & 0xff), toFloat(shiftRight<8>(both) & 0xff)};
-  }
-  return c;
+    return Pairs{toFloat(both & 0xff), toFloat(shiftRight<8>(both) & 0xff)};
+  });
 }
 
 /// A point among voxel centres, clamped in the outer half voxel.

@@ -11,7 +11,6 @@
 // After foreach_target.h:
 #include "transport/lanes/Clip-inl.h"
 #include "transport/lanes/Matter-inl.h"
-#include "transport/lanes/Shares-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {

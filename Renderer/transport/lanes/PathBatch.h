@@ -1,6 +1,5 @@
 #pragma once
-// Paths under way together, as structures of arrays: what begins, what goes on, what has ended. The
-// instruction set is chosen at run time (Highway).
+// Paths under way together, as structures of arrays: what begins, what goes on, what has ended.
 
 #include "transport/lanes/Tracker.h"
 
@@ -41,8 +40,5 @@ struct PathBatch {
   /// Bit i % 64 of number i / 64: path i has ended.
   std::array<std::uint64_t, RayBatch::capacity / 64> ended;
 };
-
-/// Takes the paths that have ended out of the batch.
-void dropEnded(PathBatch& paths);
 
 } // namespace fenestra

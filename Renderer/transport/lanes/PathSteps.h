@@ -31,4 +31,7 @@ private:
   EventScene m_scene;
 };
 
+/// Takes the paths that have ended out of the batch.
+void dropEnded(PathBatch& paths);
+
 } // namespace fenestra

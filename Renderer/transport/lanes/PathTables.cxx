@@ -3,18 +3,6 @@
 namespace fenestra {
 namespace {
 
-ScatterLaw<float> narrowLaw(const TransferFunction& transfer) {
-  const ScatterLaw<double> law = lawOf(transfer.g, transfer.shading);
-  return {narrow(law.g),
-          narrow(law.diffuse),
-          narrow(law.specular),
-          narrow(law.f0),
-          narrow(law.odds),
-          narrow(law.roughness),
-          law.isCoated,
-          {narrow(law.coat[0]), narrow(law.coat[1]), narrow(law.coat[2]), narrow(law.coat[3])}};
-}
-
 /// True if no lobe is narrower than the resolution of directions in float.
 bool isWide(const TransferFunction& transfer) {
   constexpr double leastRoughness = 1e-2;
@@ -31,24 +19,23 @@ bool EventScene::serves(const Grid& grid, const TransferFunction& transfer, cons
   constexpr double brightest = 1e20;
   constexpr double smallest = 1e-3; // mm; radius of a sphere whose square of the sine is a float
   constexpr double greatestSphere = 1e6; // mm; distance^2 - radius^2 has digits left in float
-  const auto isNear = [&](const auto& light) {
-    return (light.center - grid.worldCenter()).norm() < farthest &&
+  const auto isNear = [&](const auto& light, double most) {
+    return (light.center - grid.worldCenter()).norm() < most &&
            light.radiance.maxCoeff() < brightest;
   };
-  const auto fits = [&](const auto& light) {
-    return isNear(light) && std::max(light.right.norm(), light.up.norm()) < farthest;
+  const auto areaFits = [&](const auto& light) {
+    return isNear(light, farthest) && std::max(light.right.norm(), light.up.norm()) < farthest;
   };
   const auto sphereFits = [&](const auto& light) {
-    return light.radius2 > smallest * smallest && light.radius2 < greatestSphere * greatestSphere &&
-           (light.center - grid.worldCenter()).norm() < greatestSphere &&
-           light.radiance.maxCoeff() < brightest;
+    const double radius = std::sqrt(light.radius2);
+    return isNear(light, greatestSphere) && radius > smallest && radius < greatestSphere;
   };
   const auto mapFits = [](const SharedEnvironment& environment) {
     return MapTables::serves(environment.sampler);
   };
   return isWide(transfer) &&
          (!mixture || std::ranges::all_of(mixture->components, isWide, &Component::transfer)) &&
-         std::ranges::all_of(lights.tables().areas, fits) &&
+         std::ranges::all_of(lights.tables().areas, areaFits) &&
          std::ranges::all_of(lights.tables().spheres, sphereFits) &&
          std::ranges::all_of(lights.environments(), mapFits);
 }
@@ -57,7 +44,7 @@ EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const
                        std::uint64_t mostBounces, bool normalsWanted, const Tint* tints,
                        const Mixture* mixture)
     : albedo(transfer.albedo),
-      law(narrowLaw(transfer)),
+      law(lawOf(transfer.g, transfer.shading).cast<float>()),
       hybrid(transfer.shading && transfer.extinction.span() > 0.0),
       surfaceRate(hybrid ? narrow(25.0 * std::pow(transfer.shading->gamma, 3)) : 0.0F),
       wantNormals(normalsWanted || transfer.shading),
@@ -68,8 +55,9 @@ EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const
     tint.emplace(*tints, grid);
   if (mixture)
     for (const Component& component : mixture->components) {
-      albedos.emplace_back(component.transfer.albedo);
-      laws.push_back(narrowLaw(component.transfer));
+      const TransferFunction& own = component.transfer;
+      albedos.emplace_back(own.albedo);
+      laws.push_back(lawOf(own.g, own.shading).cast<float>());
     }
   Affine local = grid.indexToWorld;
   local.translation() -= grid.worldCenter();

@@ -127,41 +127,36 @@ void WideTracker::setCells(const MajorantGrid& majorants, const Grid& grid) {
 }
 
 void WideTracker::setClip(const Clip& clip, const Grid& grid) {
-  if (std::holds_alternative<ClipNone>(clip))
+  const auto* plane = std::get_if<ClipPlane>(&clip);
+  const auto* depth = std::get_if<ClipDepth>(&clip);
+  if (!plane && !depth)
     return;
-  const auto setCamera = [&](const Camera& camera) {
-    const Vec3& eye = camera.pose().position;
-    m_scene.perspective = camera.pose().projection == Projection::perspective;
-    m_scene.targetDepth = narrow(camera.targetDepth());
-    m_scene.toView = {row(grid, camera.right(), eye, 0.0), row(grid, camera.up(), eye, 0.0),
-                      row(grid, camera.forward(), eye, -camera.targetDepth())};
-    m_scene.fromView = affineRows(Affine(Mat3(camera.right(), camera.up(), camera.forward())));
-    m_scene.cutNormal = narrow3(camera.forward());
-  };
-  const auto setEdge = [&](const ClipEdge& edge) {
-    m_scene.ghost = narrow(edge.ghost);
-    m_scene.softness = narrow(edge.softness);
-    m_scene.perSoftness = edge.softness > 0.0 ? narrow(1.0 / edge.softness) : 0.0F;
-    m_scene.cutSlope = edge.softness > 0.0 ? narrow(cutShading / edge.softness) : 0.0F;
-  };
-  if (const auto* plane = std::get_if<ClipPlane>(&clip)) {
+  const ClipEdge& edge = plane ? plane->edge : depth->edge;
+  m_scene.ghost = narrow(edge.ghost);
+  m_scene.softness = narrow(edge.softness);
+  m_scene.perSoftness = edge.softness > 0.0 ? narrow(1.0 / edge.softness) : 0.0F;
+  m_scene.cutSlope = edge.softness > 0.0 ? narrow(cutShading / edge.softness) : 0.0F;
+  const Camera& camera = plane ? plane->camera : depth->camera;
+  const Vec3& eye = camera.pose().position;
+  m_scene.perspective = camera.pose().projection == Projection::perspective;
+  m_scene.targetDepth = narrow(camera.targetDepth());
+  m_scene.toView = {row(grid, camera.right(), eye, 0.0), row(grid, camera.up(), eye, 0.0),
+                    row(grid, camera.forward(), eye, -camera.targetDepth())};
+  m_scene.fromView = affineRows(Affine(Mat3(camera.right(), camera.up(), camera.forward())));
+  if (plane) {
     m_scene.clipKind = WideScene::ClipKind::plane;
-    setEdge(plane->edge);
-    setCamera(plane->camera);
     m_scene.cutNormal = narrow3(-plane->normal.normalized());
     m_scene.toPlane = row(grid, plane->normal.normalized(), plane->point, 0.0);
     return;
   }
-  const auto& depth = std::get<ClipDepth>(clip);
-  m_scene.clipKind = depth.lookup == ClipDepth::Lookup::linear ? WideScene::ClipKind::depthLinear
-                                                               : WideScene::ClipKind::depthNearest;
-  setEdge(depth.edge);
-  setCamera(depth.camera);
-  m_scene.depthX = wide(depth.buffer->xAxis());
-  m_scene.depthY = wide(depth.buffer->yAxis());
-  m_scene.depths = depth.buffer->depthsFromReference().data();
-  m_scene.depthColumns = static_cast<std::int32_t>(depth.buffer->columns());
-  m_scene.seams = depth.seams.get();
+  m_scene.clipKind = depth->lookup == ClipDepth::Lookup::linear ? WideScene::ClipKind::depthLinear
+                                                                : WideScene::ClipKind::depthNearest;
+  m_scene.cutNormal = narrow3(camera.forward());
+  m_scene.depthX = wide(depth->buffer->xAxis());
+  m_scene.depthY = wide(depth->buffer->yAxis());
+  m_scene.depths = depth->buffer->depthsFromReference().data();
+  m_scene.depthColumns = static_cast<std::int32_t>(depth->buffer->columns());
+  m_scene.seams = depth->seams.get();
 }
 
 void WideTracker::setContext(const ContextStyle& style, const Grid& grid) {
