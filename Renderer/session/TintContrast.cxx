@@ -53,15 +53,17 @@ const ColorFunction& albedoOf(const std::optional<ColorFunction>& own,
   return own ? *own : transfer.albedo;
 }
 
-/// How far knobs may be turned, and the difference of colours from their own that all of what is
-/// wanted would be worth.
+/// Context's saturation before any knob is turned, how far knobs may be turned, and the difference
+/// of colours from their own that all of what is wanted would be worth.
 struct Limits {
+  double muted;
   double saturation, lightness, shift, chroma, accent;
   double worth;
 };
 /// Tissue stays tissue; and, of a focus that would not be told from its like (bowel in bowel, a
 /// vertebra on another), paint.
-constexpr Limits gentle{0.5, 0.35, 12.0, 1.4, 0.35, 300.0}, strong{0.3, 0.5, 18.0, 1.7, 0.6, 600.0};
+constexpr Limits gentle{0.6, 0.5, 0.35, 12.0, 1.4, 0.35, 300.0},
+    strong{1.0, 0.3, 0.5, 18.0, 1.7, 0.6, 600.0};
 
 /// Turns knobs until a border has enough of what is wanted.
 class Knobs {
@@ -231,6 +233,8 @@ ContrastKnobs chosenKnobs(const std::vector<BorderColors>& colors, const Context
   const auto turned = [&](const Limits& limits, double shift, double goal) {
     if (!context.lightness)
       start.contextGoal = goal;
+    if (!context.saturation && what == Turned::both)
+      start.contextSaturation = limits.muted;
     Knobs knobs(colors, start, limits.worth, saturation, g);
     if (!context.saturation)
       knobs.turn(&ContrastKnobs::contextSaturation,

@@ -24,6 +24,9 @@ const Rgb liver = colorOf(0x963e2e), muscle = colorOf(0xa03e38), bone = colorOf(
 ContrastKnobs chosen(const std::vector<BorderColors>& colors, const ContextColors& context = {}) {
   return chosenKnobs(colors, context, Turned::both, 1.0, 0.0);
 }
+/// Surroundings of a focus that is tinted, not painted, before a knob is turned.
+constexpr ContrastKnobs muted{.contextSaturation = 0.6};
+
 double shareOf(const ContrastKnobs& knobs, const BorderColors& colors) {
   return tintShare(contrastUnder(knobs, colors, 1.0, 0.0));
 }
@@ -72,7 +75,7 @@ TEST(TintContrast, ColoursBeyondTheDisplayKeepLightnessAndHue) {
 // ---- knobs
 
 TEST(TintContrast, LeavesColoursThatDiffer) {
-  EXPECT_EQ(chosen({{spleen, bone, 1.0}}), ContrastKnobs());
+  EXPECT_EQ(chosen({{spleen, bone, 1.0}}), muted);
   EXPECT_EQ(shareOf({}, {spleen, bone, 1.0}), 1.0);
 }
 
@@ -83,20 +86,20 @@ TEST(TintContrast, FocusWithoutNeighboursStaysAsItIs) {
 /// Expects that `knob` alone is turned, in the middle of its range, and that a twentieth of the
 /// range less would not be enough.
 void expectAlone(double ContrastKnobs::*knob, double farthest, const BorderColors& colors) {
-  const ContrastKnobs knobs = chosen({colors}), none;
-  const double step = (farthest - none.*knob) / 20.0, turned = (knobs.*knob - none.*knob) / step;
+  const ContrastKnobs knobs = chosen({colors});
+  const double step = (farthest - muted.*knob) / 20.0, turned = (knobs.*knob - muted.*knob) / step;
   EXPECT_GT(turned, 0.5);
   EXPECT_LT(turned, 19.5);
   EXPECT_GE(shareOf(knobs, colors), enoughShare);
   ContrastKnobs less = knobs;
   less.*knob -= step;
   EXPECT_LT(shareOf(less, colors), enoughShare);
-  less.*knob = none.*knob;
-  EXPECT_EQ(less, none) << "others are turned, too";
+  less.*knob = muted.*knob;
+  EXPECT_EQ(less, muted) << "others are turned, too";
 }
 
 TEST(TintContrast, TurnsAKnobNoFurtherThanNeeded) {
-  expectAlone(&ContrastKnobs::contextSaturation, 0.5, {colorOf(0x882a2e), colorOf(0xe78670), 1.0});
+  expectAlone(&ContrastKnobs::contextSaturation, 0.5, {colorOf(0x882a2e), colorOf(0xe1806a), 1.0});
   expectAlone(&ContrastKnobs::contextLightness, 0.35, {liver, fat, 1.0});
 }
 
@@ -105,7 +108,7 @@ TEST(TintContrast, TurnsKnobsInTheirOrder) {
   const auto onRed = [](std::uint32_t context) {
     return chosen({{colorOf(0x882a2e), colorOf(context), 1.0}});
   };
-  const ContrastKnobs two = onRed(0xd57661), three = onRed(0xed674d);
+  const ContrastKnobs two = onRed(0xda7963), three = onRed(0xed674d);
   EXPECT_EQ(two.contextSaturation, 0.5);
   EXPECT_GT(two.contextLightness, 0.0);
   EXPECT_LT(two.contextLightness, 0.35);
@@ -162,12 +165,13 @@ TEST(TintContrast, WhatIsNotNeededIsTurnedBack) {
   constexpr std::array turning = {&ContrastKnobs::contextSaturation,
                                   &ContrastKnobs::contextLightness, &ContrastKnobs::focusLightness,
                                   &ContrastKnobs::focusChroma, &ContrastKnobs::focusAccent};
-  const ContrastKnobs none;
   for (const BorderColors& colors :
        {BorderColors{pancreas, fat, 1.0}, BorderColors{artery, fat, 1.0},
         BorderColors{liver, muscle, 1.0},
         BorderColors{colorOf(0x882a2e), colorOf(0xbb8375), 1.0}}) {
     const ContrastKnobs knobs = chosen({colors});
+    const bool isPainted = knobs.contextLightness > 0.35 || knobs.focusAccent > 0.35;
+    const ContrastKnobs none = isPainted ? ContrastKnobs() : muted;
     const double needed = std::min(shareOf(knobs, colors), enoughShare);
     for (const auto knob : turning) {
       ContrastKnobs less = knobs;
