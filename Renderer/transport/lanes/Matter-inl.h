@@ -51,10 +51,10 @@ HWY_INLINE Float3 paled(const WideScene::Context& context, const Float3& index,
 /// Differences of the scalar over two voxels along each axis.
 template <typename Voxel>
 HWY_INLINE Float3 differenceAt(const WideField& field, const Float3& p) {
-  const auto value = [&](Float x, Float y, Float z) { return scalarAt<Voxel>(field, {x, y, z}); };
-  return {value(p.x + 1.0F, p.y, p.z) - value(p.x - 1.0F, p.y, p.z),
-          value(p.x, p.y + 1.0F, p.z) - value(p.x, p.y - 1.0F, p.z),
-          value(p.x, p.y, p.z + 1.0F) - value(p.x, p.y, p.z - 1.0F)};
+  const auto& [x, y, z] = p;
+  return {scalarAt<Voxel>(field, {x + 1.0F, y, z}) - scalarAt<Voxel>(field, {x - 1.0F, y, z}),
+          scalarAt<Voxel>(field, {x, y + 1.0F, z}) - scalarAt<Voxel>(field, {x, y - 1.0F, z}),
+          scalarAt<Voxel>(field, {x, y, z + 1.0F}) - scalarAt<Voxel>(field, {x, y, z - 1.0F})};
 }
 
 /// 1 - e^-x.
