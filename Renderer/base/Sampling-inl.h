@@ -17,7 +17,7 @@ namespace fenestra::HWY_NAMESPACE {
 
 /// The 32 leading bits of each number of a sample, in the order of NumberSource's words.
 struct LaneNumbers {
-  std::array<Word, 2> position, flight, scattered, rest;
+  std::array<Word, 2> position, flight, scattered, choices, rest;
 };
 
 /// NumberSource::numbers of `sample` in the stream (start, key).
@@ -27,22 +27,24 @@ HWY_INLINE LaneNumbers numbersOf(Word start, Word key, Word sample, bool isStrat
   const auto at = [&](Word n) { return mixBits((start + n * Stream::step) ^ key); };
   const Word first = sample * Stream::each;
   const auto two = [&](std::uint32_t i) { return std::array{at(first + i), at(first + (i + 1))}; };
-  LaneNumbers numbers{two(0), two(2), two(4), two(6)};
+  LaneNumbers numbers{two(0), two(2), two(4), two(6), two(8)};
   if (!isStratified)
     return numbers;
   const Word place = shiftRight<1>(sample) & NumberSource::elements;
-  const Word shuffle = at((sample - (place + place)) * Stream::each + NumberSource::ofBlock);
-  int pair = 0;
-  for (std::array<Word, 2>* words : {&numbers.position, &numbers.flight, &numbers.scattered}) {
-    const Word factor = shiftRight(shuffle, places * pair) & NumberSource::elements;
+  const Word block = (sample - (place + place)) * Stream::each;
+  std::uint32_t ofPair = NumberSource::ofBlock;
+  for (std::array<Word, 2>* words :
+       {&numbers.position, &numbers.flight, &numbers.scattered, &numbers.choices}) {
+    const Word shuffle = at(block + ofPair++);
+    const Word factor = shuffle & NumberSource::elements;
     const Word net =
         gather(NumberSource::nets.data(), bitsAsInt(factor * NumberSource::blockSize + place));
-    const auto put = [&](Word strata, Word& word) {
-      word = (strata & NumberSource::leading) ^ shiftRight<places>(word);
+    const auto put = [&](Word leading, Word& word) {
+      word = (leading & NumberSource::leading) ^ shiftRight<places>(word);
     };
-    put(net ^ shiftLeft(shuffle, places * pair), (*words)[0]);
-    put(shiftLeft<places>(net) ^ shiftLeft(shuffle, places * (pair + 3)), (*words)[1]);
-    ++pair;
+    const Word strata = net ^ shuffle;
+    put(strata, (*words)[0]);
+    put(shiftLeft<places>(strata), (*words)[1]);
   }
   return numbers;
 }

@@ -17,21 +17,23 @@ constexpr const char* nameOf(Sampling sampling) {
   return sampling == Sampling::strata ? "strata" : "independent";
 }
 
-/// Random bits of one sample, independent of each other: six numbers that decide most, and the seed
-/// of all others.
+/// Random bits of one sample, independent of each other: eight numbers that decide most, and the
+/// seed of all others.
 struct SampleNumbers {
   std::uint64_t position;          ///< in the pixel: uniform2Of
   std::uint64_t depth, acceptance; ///< optical depth to the eye ray's first tentative collision,
                                    ///< and whether that one is real: uniformOf
   std::uint64_t scattered;         ///< the first scattered direction: uniform2Of
+  std::uint64_t choices;           ///< whether the first collision is a surface's, and the light
+                                   ///< that is looked at there: uniform2Of
   std::uint64_t rest;
 };
 
 /// Strata lie in blocks of `blockSize` samples of one half, the pixel's samples of even or of odd
-/// index: of each of the six numbers a block has one sample in each of blockSize equal strata, and
-/// of each pair (position; depth and acceptance; direction) one in each of the boxes that are a
-/// power of two wide and high and hold as much (Hammersley's net; Niederreiter 1992, chapter 3).
-/// Blocks, and with them the halves, are independent of each other.
+/// index: of each of the eight numbers a block has one sample in each of blockSize equal strata,
+/// and of each pair (position; depth and acceptance; direction; choices) one in each of the boxes
+/// that are a power of two wide and high and hold as much (Hammersley's net; Niederreiter 1992,
+/// chapter 3). Blocks, and with them the halves, are independent of each other.
 ///
 /// A sample's place in its block is an element of the field of blockSize elements. It is multiplied
 /// by a random element for each pair, so that one pair's strata tell nothing of another's; then the
@@ -53,7 +55,7 @@ public:
   /// Words for up to `samples` successive samples of a pixel: hashes of a counter and a key.
   struct Stream {
     static constexpr std::uint32_t samples = std::uint32_t{1} << 27;
-    static constexpr std::uint32_t each = 16; ///< words of a sample, eleven of use
+    static constexpr std::uint32_t each = 16; ///< words of a sample
     static constexpr std::uint32_t step = 0x9e3779b9U;
 
     std::uint32_t start, key;
@@ -82,14 +84,16 @@ public:
     const auto joined = [&](std::size_t high, std::size_t low) {
       return std::uint64_t{words[high]} << 32 | words[low];
     };
-    return {joined(0, 1), joined(2, 8), joined(3, 9), joined(4, 5), joined(6, 7)};
+    return {joined(0, 1), joined(2, 10), joined(3, 11), joined(4, 5), joined(6, 7), joined(8, 9)};
   }
 
   static constexpr unsigned places = 3;                    ///< binary places of a stratum
   static constexpr std::uint32_t elements = blockSize - 1; ///< mask
   static constexpr std::uint32_t leading = elements << (32 - places); ///< places of a word
-  /// Index of the word that shuffles a block's strata, among those of the block's first sample.
-  static constexpr std::uint32_t ofBlock = Stream::each - 1;
+  static constexpr std::uint32_t pairs = 4;
+  /// Index of the first of the words that shuffle a block's strata, one a pair, among those of the
+  /// block's first sample.
+  static constexpr std::uint32_t ofBlock = Stream::each - pairs;
 
   /// Strata of a pair, at blockSize * factor + place: element `place` times element `factor` modulo
   /// x^3 + x + 1 in a word's leading places, and behind them its places in reverse order. Factor 0
@@ -98,21 +102,22 @@ public:
   static const Nets nets;
 
 private:
-  /// Hashes of a sample: position (0, 1), depth, acceptance, direction (4, 5), rest (6, 7), and the
-  /// less significant bits of depth and acceptance, which lanes leave out.
-  using Words = std::array<std::uint32_t, 10>;
+  /// Hashes of a sample: position (0, 1), depth, acceptance, direction (4, 5), choices (6, 7), rest
+  /// (8, 9), and the less significant bits of depth and acceptance, which lanes leave out.
+  using Words = std::array<std::uint32_t, ofBlock>;
 
   /// Replaces leading bits by strata.
   static void stratify(const Stream& stream, std::uint32_t sample, Words& words) {
     const std::uint32_t place = sample / 2 % blockSize;
-    const std::uint32_t shuffle = stream.at(Stream::each * (sample - 2 * place) + ofBlock);
-    for (const std::uint32_t pair : {0U, 1U, 2U}) {
-      const std::uint32_t net = nets[blockSize * (shuffle >> places * pair & elements) + place];
+    const std::uint32_t block = Stream::each * (sample - 2 * place) + ofBlock;
+    for (std::uint32_t pair = 0; pair < pairs; ++pair) {
+      const std::uint32_t shuffle = stream.at(block + pair);
+      const std::uint32_t net = nets[blockSize * (shuffle & elements) + place];
       const auto put = [&](std::uint32_t strata, std::uint32_t& word) {
         word = (strata & leading) | word >> places;
       };
-      put(net ^ shuffle << places * pair, words[2 * pair]);
-      put(net << places ^ shuffle << places * (pair + 3), words[2 * pair + 1]);
+      put(net ^ shuffle, words[2 * pair]);
+      put((net ^ shuffle) << places, words[2 * pair + 1]);
     }
   }
 

@@ -46,6 +46,46 @@ TEST_P(SingleScatter, RadianceEqualsClosedForm) {
         }
 }
 
+/// Mean of a picture that shows everywhere the same, and its standard error.
+RgbEstimate meanOfPixels(const Film& film) {
+  Rgb sum = Rgb::Zero(), squares = Rgb::Zero();
+  for (const PixelSums& pixel : film.pixels()) {
+    sum += pixel.mean;
+    squares += pixel.mean.square();
+  }
+  const auto count = static_cast<double>(film.pixelCount());
+  const Rgb mean = sum / count;
+  return {mean, ((squares / count - mean.square()) / (count - 1.0)).sqrt()};
+}
+
+/// Each collision looks at one of three lights, drawn from strata that eight samples share out:
+/// their sum, of blocks whole and begun.
+TEST(SingleScatterOfLights, DrawnFromStrataAddUp) {
+  const double thickness = 1.5;
+  const Rgb albedo(1.0, 0.6, 0.2);
+  TestScene scene = endlessSlab(thickness, albedo);
+  scene.width = scene.height = 128;
+  look(scene, downward(0.95, 1.0));
+  Rgb expected = Rgb::Zero();
+  for (const double mu0 : {1.0, 0.5, 0.2}) {
+    const Rgb irradiance(0.5, 1.5 - mu0, 2.0 * mu0);
+    scene.lights.push_back(DirectionalLight{.direction = downward(mu0), .irradiance = irradiance});
+    const double layer = mu0 / (0.95 + mu0) * -std::expm1(-thickness / 0.95 - thickness / mu0);
+    expected += albedo * irradiance * (0.25 / pi * layer);
+  }
+  scene.lights.erase(scene.lights.begin()); // the slab's environment
+  for (const Transport transport : {Transport::fast, Transport::readable})
+    for (const std::uint64_t samples : {1U, 3U, 16U}) {
+      SCOPED_TRACE(std::to_string(samples));
+      RenderSettings settings;
+      settings.transport = transport;
+      settings.samples = samples;
+      settings.seed = seeded(5900 + samples);
+      settings.path.bounces = 1;
+      expectMean(meanOfPixels(scene.render(settings).film), expected, 0.03);
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Anisotropies, SingleScatter, ::testing::Values(-0.9, 0.0, 0.5, 0.9));
 
 } // namespace

@@ -40,14 +40,15 @@ inline Random randomWithDraw(int draw, std::uint64_t bits) {
 /// Numbers of a path of which the `draw`-th one, in the order of SampleNumbers from depth on, is
 /// `bits`.
 inline SampleNumbers numbersWithDraw(int draw, std::uint64_t bits) {
-  constexpr int given = 3;
+  constexpr int given = 4;
   Random random = randomWithDraw(draw, bits);
   const std::uint64_t depth = random.bits();
   const std::uint64_t acceptance = random.bits();
   const std::uint64_t scattered = random.bits();
+  const std::uint64_t choices = random.bits();
   const std::uint64_t rest =
       unmixBits(bits) - static_cast<std::uint64_t>(draw - given) * Random::gamma;
-  return {0, depth, acceptance, scattered, rest};
+  return {0, depth, acceptance, scattered, choices, rest};
 }
 
 /// Length of a ray inside a grid's box, t >= 0, mm; in long double, without the product's code.

@@ -13,15 +13,22 @@ namespace fenestra::testing::SamplingTests {
 namespace {
 
 constexpr std::uint64_t size = NumberSource::blockSize;
-constexpr std::size_t numberCount = 6;
-using Six = std::array<double, numberCount>;
+constexpr std::size_t numberCount = 8;
+using Eight = std::array<double, numberCount>;
 
-/// The six numbers that have strata, in pairs.
-Six sixOf(const SampleNumbers& numbers) {
+/// The eight numbers that have strata, in pairs.
+Eight eightOf(const SampleNumbers& numbers) {
   const Vec2 position = uniform2Of(numbers.position);
   const Vec2 scattered = uniform2Of(numbers.scattered);
-  return {position.x(),  position.y(), uniformOf(numbers.depth), uniformOf(numbers.acceptance),
-          scattered.x(), scattered.y()};
+  const Vec2 choices = uniform2Of(numbers.choices);
+  return {position.x(),
+          position.y(),
+          uniformOf(numbers.depth),
+          uniformOf(numbers.acceptance),
+          scattered.x(),
+          scattered.y(),
+          choices.x(),
+          choices.y()};
 }
 
 /// Sample number of a place in a block.
@@ -61,12 +68,12 @@ TEST(Strata, BlocksHitEachStratumOnce) {
         std::array<std::set<std::size_t>, numberCount> strata;
         std::array<std::set<std::size_t>, numberCount> boxes; // pair i: in [2 i] and [2 i + 1]
         for (std::uint64_t place = 0; place < size; ++place) {
-          const Six six = sixOf(source.numbers(pixel, sampleAt(block, half, place)));
+          const Eight eight = eightOf(source.numbers(pixel, sampleAt(block, half, place)));
           for (std::size_t i = 0; i < numberCount; ++i)
-            strata[i].insert(cellOf(six[i], size));
+            strata[i].insert(cellOf(eight[i], size));
           for (std::size_t i = 0; i < numberCount; i += 2) {
-            boxes[i].insert(cellOf(six[i], 2) * 4 + cellOf(six[i + 1], 4));
-            boxes[i + 1].insert(cellOf(six[i], 4) * 2 + cellOf(six[i + 1], 2));
+            boxes[i].insert(cellOf(eight[i], 2) * 4 + cellOf(eight[i + 1], 4));
+            boxes[i + 1].insert(cellOf(eight[i], 4) * 2 + cellOf(eight[i + 1], 2));
           }
         }
         for (std::size_t i = 0; i < numberCount; ++i) {
@@ -85,40 +92,41 @@ TEST(Strata, NumbersOfASampleAreUniformAndIndependent) {
         for (std::size_t j = i + 1; j < numberCount; ++j)
           expectJointlyUniform(
               [&](std::uint64_t pixel) {
-                const Six six = sixOf(source.numbers(pixel, sample));
-                return std::array{six[i], six[j]};
+                const Eight eight = eightOf(source.numbers(pixel, sample));
+                return std::array{eight[i], eight[j]};
               },
               16, std::to_string(sample) + ": " + std::to_string(i) + ", " + std::to_string(j));
-      std::vector<double> octants(64, 0.0); // of all six numbers
+      std::vector<double> halves(256, 0.0); // of all eight numbers
       for (std::uint64_t pixel = 0; pixel < 40000; ++pixel) {
-        std::size_t octant = 0;
-        for (const double number : sixOf(source.numbers(pixel, sample)))
-          octant = 2 * octant + cellOf(number, 2);
-        octants[octant] += 1.0;
+        std::size_t half = 0;
+        for (const double number : eightOf(source.numbers(pixel, sample)))
+          half = 2 * half + cellOf(number, 2);
+        halves[half] += 1.0;
       }
-      expectEven(octants, "octants");
+      expectEven(halves, "halves");
     }
   }
 }
 
-/// Two samples of one block: no number of one tells more of another number of the other than that
-/// they differ in their strata, pair by pair.
+/// Two samples of one block: no number of one tells more of a number of another pair of the other
+/// than that they differ in their strata.
 TEST(Strata, PairsOfNumbersAreShuffledApart) {
   const NumberSource source(Sampling::strata, 12);
-  for (const std::uint64_t place : {1ULL, 4ULL, 7ULL}) {
-    std::vector<double> counts((size - 1) * (size - 1), 0.0);
-    for (std::uint64_t pixel = 0; pixel < 40000; ++pixel) {
-      const Six a = sixOf(source.numbers(pixel, sampleAt(0, 0, 0)));
-      const Six b = sixOf(source.numbers(pixel, sampleAt(0, 0, place)));
-      const std::size_t first = cellOf(a[0], size) ^ cellOf(b[0], size);
-      const std::size_t second = cellOf(a[4], size) ^ cellOf(b[4], size);
-      ASSERT_TRUE(first > 0 && second > 0);
-      counts[(first - 1) * (size - 1) + second - 1] += 1.0;
+  for (const std::uint64_t place : {1ULL, 4ULL, 7ULL})
+    for (const auto& [i, j] : {std::pair{0U, 4U}, {0U, 6U}, {2U, 6U}, {4U, 6U}}) {
+      std::vector<double> counts((size - 1) * (size - 1), 0.0);
+      for (std::uint64_t pixel = 0; pixel < 40000; ++pixel) {
+        const Eight a = eightOf(source.numbers(pixel, sampleAt(0, 0, 0)));
+        const Eight b = eightOf(source.numbers(pixel, sampleAt(0, 0, place)));
+        const std::size_t first = cellOf(a[i], size) ^ cellOf(b[i], size);
+        const std::size_t second = cellOf(a[j], size) ^ cellOf(b[j], size);
+        ASSERT_TRUE(first > 0 && second > 0);
+        counts[(first - 1) * (size - 1) + second - 1] += 1.0;
+      }
+      // Two of eight random factors stand for 1.
+      for (const double count : counts)
+        EXPECT_TRUE(count > 40000.0 / 64 * 0.8 && count < 40000.0 / 16 * 1.1) << count;
     }
-    // Two of eight random factors stand for 1.
-    for (const double count : counts)
-      EXPECT_TRUE(count > 40000.0 / 64 * 0.8 && count < 40000.0 / 16 * 1.1) << count;
-  }
 }
 
 TEST(Strata, HalvesAndBlocksAreIndependent) {
@@ -130,8 +138,8 @@ TEST(Strata, HalvesAndBlocksAreIndependent) {
       for (std::size_t i = 0; i < numberCount; ++i)
         expectJointlyUniform(
             [&](std::uint64_t pixel) {
-              return std::array{sixOf(source.numbers(pixel, here))[i],
-                                sixOf(source.numbers(pixel, other))[i]};
+              return std::array{eightOf(source.numbers(pixel, here))[i],
+                                eightOf(source.numbers(pixel, other))[i]};
             },
             size,
             std::to_string(i) + ": samples " + std::to_string(here) + ", " + std::to_string(other));
@@ -157,8 +165,8 @@ TEST(Independent, SamplesShareNothing) {
     for (std::size_t i = 0; i < numberCount; ++i)
       expectJointlyUniform(
           [&](std::uint64_t pixel) {
-            return std::array{sixOf(source.numbers(pixel, 0))[i],
-                              sixOf(source.numbers(pixel, other))[i]};
+            return std::array{eightOf(source.numbers(pixel, 0))[i],
+                              eightOf(source.numbers(pixel, other))[i]};
           },
           size, std::to_string(i) + ": " + std::to_string(other));
 }

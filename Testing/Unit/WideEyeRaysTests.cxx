@@ -103,6 +103,9 @@ TEST_P(WideEyeRaysOf, NumbersAreThoseOfTheSource) {
           ASSERT_EQ(paths->rays.acceptance[i], below1(numbers.acceptance >> 32)) << i;
           ASSERT_EQ(paths->scattered[0][i], below1(numbers.scattered >> 32)) << i;
           ASSERT_EQ(paths->scattered[1][i], below1(numbers.scattered)) << i;
+          const Vec2 choices = uniform2Of(numbers.choices);
+          ASSERT_NEAR(double{paths->choices[0][i]}, choices.x(), 2e-7) << i;
+          ASSERT_NEAR(double{paths->choices[1][i]}, choices.y(), 2e-7) << i;
           ASSERT_EQ(std::uint64_t{paths->counter[i]} << 32 | paths->key[i], numbers.rest) << i;
           const Vec2 jitter = uniform2Of(numbers.position);
           const std::uint64_t pixel = 400 + i;

@@ -100,8 +100,11 @@ void setPath(PathBatch& paths, std::size_t i, const Vec3& direction, const Vec2&
     paths.weight[axis][i] = 1.0F;
     paths.radiance[axis][i] = 0.0F;
   }
-  for (std::size_t axis = 0; axis < 2; ++axis)
+  const Vec2 choices = Random(key).uniform2();
+  for (std::size_t axis = 0; axis < 2; ++axis) {
     paths.scattered[axis][i] = static_cast<float>(scattered[static_cast<int>(axis)]);
+    paths.choices[axis][i] = static_cast<float>(choices[static_cast<int>(axis)]);
+  }
   paths.bounces[i] = 0;
   paths.key[i] = static_cast<std::uint32_t>(key);
   paths.counter[i] = static_cast<std::uint32_t>(key >> 32);

@@ -25,8 +25,10 @@ void drawAll(const EyeTable& eye, PathStarts& starts, PathBatch& paths) {
     store(load(&starts.ofTile[i]), &paths.ofTile[to]);
     store(numbers.flight[0], &paths.rays.depth[to]);
     store(below1(numbers.flight[1]), &paths.rays.acceptance[to]);
-    for (const std::size_t axis : {0U, 1U})
-      store(below1(numbers.scattered[axis]), &paths.scattered[axis][to]);
+    for (const std::size_t which : {0U, 1U}) {
+      store(below1(numbers.scattered[which]), &paths.scattered[which][to]);
+      store(uniformOf(numbers.choices[which]), &paths.choices[which][to]);
+    }
     store(numbers.rest[0], &paths.counter[to]);
     store(numbers.rest[1], &paths.key[to]);
   }

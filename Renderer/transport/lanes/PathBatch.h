@@ -26,6 +26,7 @@ struct PathBatch {
   Column<std::uint32_t> key, counter;     ///< of the paths' random numbers
   Column<std::uint32_t> tile, ofTile;     ///< PathStarts
   std::array<Column<float>, 2> scattered; ///< numbers of the first scattered directions
+  std::array<Column<float>, 2> choices;   ///< at the first collisions: surface or not, light
 
   /// Eye rays, of use until the first collision: row of the pixel, direction, depth at the ray's
   /// beginning (mm, counted from WideEyeRays::nearDepth()) and its growth per mm of the ray.

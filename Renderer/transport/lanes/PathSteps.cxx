@@ -118,8 +118,8 @@ private:
       });
 
     const Float choice = m_scene.hybrid ? draws.uniform() : 0.0F; // independent of neighbours
-    const Float u = select(at.first, load(&m_paths.scattered[0][i]), draws.uniform());
-    const Float v = select(at.first, load(&m_paths.scattered[1][i]), draws.uniform());
+    const Float u = givenFirst(at.first, m_paths.scattered[0], i, draws);
+    const Float v = givenFirst(at.first, m_paths.scattered[1], i, draws);
     ScatterDraw drawn = phase.draw(u, v);
     if (surfaces) {
       const ScatterDraw other = surface().draw(choice, u, v);
@@ -160,9 +160,15 @@ private:
         at.gradient = at.gradient + cutGradient(m_volume, index, removable(at));
       const Float slope = sqrt(dot(at.gradient, at.gradient));
       const Float chance = surfaceChance(m_scene, extinctionOfOne(at), slope);
-      at.surface = going & (draws.uniform() < chance);
+      at.surface = going & (givenFirst(first, m_paths.choices[0], i, draws) < chance);
     }
     return at;
+  }
+
+  /// A number of each path at i: of `given` where it scatters for the first time.
+  static HWY_INLINE Float givenFirst(LaneMask first, const Column<float>& given, std::size_t i,
+                                     Draws& draws) {
+    return select(first, load(&given[i]), draws.uniform());
   }
 
   /// Lanes whose matter the clip may remove.
@@ -218,7 +224,7 @@ private:
   /// toward that light.
   template <typename Toward>
   void sampleLights(std::size_t i, const Collisions& at, Draws& draws, Toward&& toward) {
-    const Float choice = draws.uniform();
+    const Float choice = givenFirst(at.first, m_paths.choices[1], i, draws);
     const Word u = draws.nextBits();
     const Word v = draws.nextBits();
     const LightDraw light =
@@ -252,8 +258,8 @@ private:
                            Draws& draws) {
     constexpr auto below = static_cast<float>(rouletteBelow);
     Float3 weight = at.weight * drawn.weight;
-    const Float most = greatest(weight);
-    const Float chance = min(most * (1.0F / below), 1.0F);
+    const Float size = sqrt((1.0F / 3.0F) * dot(weight, weight));
+    const Float chance = min(size * (1.0F / below), 1.0F);
     const LaneMask survives = draws.uniform() <= chance;
     weight = orZero(survives, (1.0F / chance) * weight);
     store3(weight, m_paths.weight, i);

@@ -145,7 +145,7 @@ private:
     m_acceptance.where(hit, uniform(counter));
     m_counter.where(hit, counter);
     if constexpr (wantRatio) {
-      constexpr float rouletteBelow = 0.1F;
+      constexpr float rouletteBelow = 0.4F;
       const Float thinned = m_ratio * notBelow0(1.0F - extinction / m_majorant);
       const Float survived = orZero(u * rouletteBelow < thinned, rouletteBelow);
       m_ratio.where(hit, select(thinned < rouletteBelow, survived, thinned));

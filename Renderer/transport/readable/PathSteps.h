@@ -27,7 +27,7 @@ struct PathSettings {
   bool wantNormals = false; ///< fill PathSample::normal even without shading
 };
 
-/// Weight (greatest component) below which paths are subject to Russian roulette.
+/// Weight (root mean square of its components) below which paths are subject to Russian roulette.
 inline constexpr double rouletteBelow = 0.5;
 
 /// A path under way: its next ray, and the sample gathered so far.
@@ -35,6 +35,7 @@ struct Path {
   Random random;
   Vec2 flight;    ///< numbers of the next flight's first collision
   Vec2 scattered; ///< numbers of the next direction
+  Vec2 choices;   ///< of the next collision: whether it is a surface's, and its light
   double row;     ///< raster row of the eye ray
   Ray ray;        ///< world space
   Interval range; ///< part of the ray left by clipping, mm
@@ -69,7 +70,12 @@ public:
   Path begin(double column, double row, const SampleNumbers& numbers) const {
     const Ray ray = m_eye.ray(column, row);
     const Vec2 flight{uniformOf(numbers.depth), uniformOf(numbers.acceptance)};
-    return {Random(numbers.rest), flight, uniform2Of(numbers.scattered), row, ray,
+    return {Random(numbers.rest),
+            flight,
+            uniform2Of(numbers.scattered),
+            uniform2Of(numbers.choices),
+            row,
+            ray,
             m_eye.range(ray)};
   }
 
@@ -94,10 +100,11 @@ public:
         drawMatter(m_medium, m_clip, point, m_worldToIndex * point, wantGradient, path.random);
     if (first)
       recordFirst(path, distance, matter);
-    const Scattering scattering = chooseScattering(path.ray.direction, matter, path.random);
+    const Scattering scattering = chooseScattering(path.ray.direction, matter, path.choices.x());
     std::optional<ShadowRay> light = sampledLight(point, scattering, path);
     const ScatterSample scattered = scatterSample(scattering, path.scattered, path.random);
     path.scattered = path.random.uniform2();
+    path.choices = path.random.uniform2();
     path.weight *= scattered.weight;
     roulette(path);
     path.scatterPdf = scattered.pdf;
@@ -122,9 +129,9 @@ private:
           matter.gradient / (path.ray.direction.dot(matter.gradient) < 0.0 ? slope : -slope);
   }
 
-  static Scattering chooseScattering(const Vec3& incoming, const Matter& matter, Random& random) {
+  static Scattering chooseScattering(const Vec3& incoming, const Matter& matter, double choice) {
     const TransferFunction& transfer = *matter.transfer;
-    if (matter.surfaceProbability > 0.0 && random.uniform() < matter.surfaceProbability)
+    if (choice < matter.surfaceProbability)
       return SurfaceScattering(incoming, matter.gradient, *transfer.shading, matter.albedo);
     return PhaseScattering(incoming, transfer.g, matter.albedo);
   }
@@ -133,7 +140,8 @@ private:
   /// toward that light.
   std::optional<ShadowRay> sampledLight(const Vec3& point, const Scattering& scattering,
                                         Path& path) const {
-    const std::optional<LightSample> light = m_lights.sample(point, path.random);
+    const std::optional<LightSample> light =
+        m_lights.sample(point, path.choices.y(), path.random.uniform2());
     if (!light)
       return std::nullopt;
     const Rgb factor = scatterEvaluate(scattering, light->direction);
@@ -155,12 +163,12 @@ private:
     return sum;
   }
 
-  /// Russian roulette on the path's weight.
+  /// Russian roulette on the path's weight: its square is what the path adds to the variance.
   static void roulette(Path& path) {
-    const double most = path.weight.maxCoeff();
-    if (most >= rouletteBelow)
+    const double weight = std::sqrt(path.weight.square().mean());
+    if (weight >= rouletteBelow)
       return;
-    const double chance = most / rouletteBelow;
+    const double chance = weight / rouletteBelow;
     if (path.random.uniform() < chance)
       path.weight /= chance;
     else

@@ -29,10 +29,10 @@ double firstRealCollision(Walk&& walk, double acceptance, Random& random) {
   return distance;
 }
 
-/// Transmittance by ratio tracking (Novak et al. 2014), with Russian roulette below 0.1.
+/// Transmittance by ratio tracking (Novak et al. 2014), with Russian roulette below 0.4.
 template <typename Walk>
 double ratioTracked(Walk&& walk, Random& random) {
-  constexpr double rouletteBelow = 0.1;
+  constexpr double rouletteBelow = 0.4;
   double ratio = 1.0;
   walk([&](double, double realShare) {
     ratio *= std::max(0.0, 1.0 - realShare);
