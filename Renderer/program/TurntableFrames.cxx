@@ -36,7 +36,8 @@ const CommandSyntax& turntableSyntax() {
       "Renders what the eye sees while it goes around its target, about the axis that is up: "
       "--output turn.png gives turn_0000.png, turn_0001.png and so on, each as fenestra render "
       "makes it. Beside them turn.turntable.json records what is finished: the same command goes "
-      "on where it was stopped. --samples, --seconds and --noise are for a frame, --stats for all of "
+      "on where it was stopped. --samples, --seconds and --noise are for a frame, --stats for all "
+      "of "
       "them.",
       renderSyntax.positionals,
       flags,
