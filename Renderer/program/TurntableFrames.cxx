@@ -37,8 +37,7 @@ const CommandSyntax& turntableSyntax() {
       "--output turn.png gives turn_0000.png, turn_0001.png and so on, each as fenestra render "
       "makes it. Beside them turn.turntable.json records what is finished: the same command goes "
       "on where it was stopped. --samples, --seconds and --noise are for a frame, --stats for all "
-      "of "
-      "them.",
+      "of them.",
       renderSyntax.positionals,
       flags,
       {{{"surface", "returnparameterfile", "xml", "echo"},
