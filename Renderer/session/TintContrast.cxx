@@ -102,10 +102,15 @@ public:
     } while (!(m_knobs == before));
   }
 
-  /// Turns the focus toward the accent that is worth most, if one is worth the change.
+  /// Turns the focus toward the accent that is worth most, if one is worth the change, of those
+  /// about as light as itself: a pale organ in dark red would be taken for muscle.
   void turnToAccent(double farthest) {
+    constexpr double mostApart = 40.0;
+    const double own = meanOf([](const BorderColors& part) { return labOf(part.focus).L; });
     Knobs best = *this;
     for (std::size_t i = 0; i < accents.size() && m_share < enoughShare; ++i) {
+      if (std::abs(labOf(decodeSrgb(colorOf(accents[i].color))).L - own) > mostApart)
+        continue;
       Knobs turned = *this;
       turned.m_knobs.accent = i;
       turned.turn(&ContrastKnobs::focusAccent, farthest);
@@ -249,13 +254,14 @@ ContrastKnobs chosenKnobs(const std::vector<BorderColors>& colors, const Context
     knobs.turnBack();
     return knobs;
   };
-  const auto best = [&](const Limits& limits) {
-    const Knobs darker = turned(limits, -limits.shift, bright),
-                lighter = turned(limits, limits.shift, dim);
-    return lighter.isBetterThan(darker) ? lighter : darker;
-  };
-  const Knobs tissue = best(gentle);
-  return tissue.share() < almostEnough ? best(strong).knobs() : tissue.knobs();
+  const auto darker = [&](const Limits& limits) { return turned(limits, -limits.shift, bright); };
+  const auto lighter = [&](const Limits& limits) { return turned(limits, limits.shift, dim); };
+  const Knobs dark = darker(gentle), light = lighter(gentle);
+  const bool isLight = light.isBetterThan(dark);
+  const Knobs& tissue = isLight ? light : dark;
+  if (tissue.share() >= almostEnough)
+    return tissue.knobs();
+  return (isLight ? lighter(strong) : darker(strong)).knobs();
 }
 
 TintContrast tintContrast(const std::vector<ComponentBorder>& borders, const TintPlan& plan,

@@ -67,10 +67,10 @@ enum class Turned { nothing, context, both };
 /// its saturation on: muted, it takes fewer collisions, too. They are turned one after the other,
 /// in their order, each no further than that needs, or, where that is out of its reach, to where
 /// the share is greatest; then, from the last to the first, back as far as nothing is lost. Where
-/// even almostEnough is out of reach they begin at the whole saturation, and go farther. Of a
-/// darker focus in a lighter context and the reverse, the way whose share is more worth its change
-/// of colours. `context`: what it sets is not turned. `colors`: without any, nothing is, either.
-/// Where the focus is not turned, its context may become grey.
+/// even almostEnough is out of reach they begin at the whole saturation, and go farther, on the
+/// same way. Of a darker focus in a lighter context and the reverse, the way whose share is more
+/// worth its change of colours. `context`: what it sets is not turned. `colors`: without any,
+/// nothing is, either. Where the focus is not turned, its context may become grey.
 ContrastKnobs chosenKnobs(const std::vector<BorderColors>& colors, const ContextColors& context,
                           Turned what, double saturation, double g);
 
