@@ -30,7 +30,7 @@ inline Grid centredGrid(const Size3& size, const Vec3& spacing) {
 
 template <typename Voxel = float, typename Function>
 Volume makeVolume(const Grid& grid, Function&& value) {
-  std::vector<Voxel> voxels;
+  LargeArray<Voxel> voxels;
   voxels.reserve(static_cast<std::size_t>(grid.voxelCount()));
   for (std::int64_t k = 0; k < grid.size.z(); ++k)
     for (std::int64_t j = 0; j < grid.size.y(); ++j)

@@ -40,7 +40,7 @@ Phantom makeCubePhantom(const CubeOptions& options) {
   Phantom phantom;
   phantom.volume.grid =
       phantomGrid(size, Vec3::Constant(options.edge), Mat3::Identity(), Vec3::Zero());
-  std::vector<std::int16_t> voxels(static_cast<std::size_t>(size.prod()));
+  LargeArray<std::int16_t> voxels(static_cast<std::size_t>(size.prod()));
   const std::int64_t sliceVoxels = size.x() * size.y();
   for (std::int64_t k = 0; k < size.z(); ++k)
     std::fill_n(voxels.begin() + k * sliceVoxels, sliceVoxels, sliceScalar(k, size.z()));

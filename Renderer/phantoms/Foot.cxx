@@ -43,7 +43,7 @@ double footFat(const Vec3& p) {
 
 /// Adds layer 1: all voxels of at least footBoneThreshold.
 void addThresholdedBones(Phantom& phantom) {
-  const auto& voxels = std::get<std::vector<std::int16_t>>(phantom.volume.voxels);
+  const auto& voxels = std::get<LargeArray<std::int16_t>>(phantom.volume.voxels);
   std::vector<std::uint8_t> bones(voxels.size());
   for (std::size_t i = 0; i < voxels.size(); ++i)
     bones[i] = voxels[i] >= footBoneThreshold;

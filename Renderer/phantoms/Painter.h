@@ -171,7 +171,7 @@ template <typename Subject>
 Phantom paintPhantom(const Subject& subject, const Grid& grid, const std::string& name) {
   const Painter painter(subject, grid);
   const auto count = static_cast<std::size_t>(grid.voxelCount());
-  std::vector<std::int16_t> voxels(count);
+  LargeArray<std::int16_t> voxels(count);
   std::vector<std::uint8_t> labels(count);
   const Size3& size = grid.size;
   tbb::parallel_for(std::int64_t{0}, size.z(), [&](std::int64_t k) {

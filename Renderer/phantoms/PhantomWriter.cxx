@@ -131,7 +131,7 @@ std::vector<std::string> writePhantom(const Phantom& phantom,
                                       const std::filesystem::path& directory,
                                       const std::string& name) {
   const Volume& volume = phantom.volume;
-  const auto& voxels = std::get<std::vector<std::int16_t>>(volume.voxels);
+  const auto& voxels = std::get<LargeArray<std::int16_t>>(volume.voxels);
   const NrrdHeader header{.type = "short",
                           .size = volume.grid.size,
                           .indexToWorld = volume.grid.indexToWorld,

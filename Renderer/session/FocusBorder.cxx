@@ -42,7 +42,7 @@ private:
 template <typename Voxel>
 class Border {
 public:
-  Border(const Mask& focus, const Volume& volume, const std::vector<Voxel>& voxels,
+  Border(const Mask& focus, const Volume& volume, const LargeArray<Voxel>& voxels,
          const TransferFunction& transfer)
       : m_focus(focus),
         m_field(volume.grid, voxels),

@@ -16,7 +16,7 @@ constexpr std::array voxelTypes = {"uint8", "int16", "uint16", "float"}; ///< as
 /// least 59 % in those at hand) and in no scan (at most 8 %).
 bool looksLikeLabels(const Volume& volume) {
   constexpr double most = 0.5;
-  if (volume.minimum < 0.0 || std::holds_alternative<std::vector<float>>(volume.voxels))
+  if (volume.minimum < 0.0 || std::holds_alternative<LargeArray<float>>(volume.voxels))
     return false;
   const auto mostAlike = [&](const auto& voxels) {
     const auto isLeast = [&](auto voxel) { return static_cast<double>(voxel) == volume.minimum; };

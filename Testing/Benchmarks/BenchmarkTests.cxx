@@ -106,7 +106,7 @@ private:
                       m_camera,
                       m_clip,
                       CropBox(Affine(scalingBy({4.0, 4.0, 0.125})))};
-  Medium<float> m_medium{m_volume.grid, std::get<std::vector<float>>(m_volume.voxels), m_transfer};
+  Medium<float> m_medium{m_volume.grid, std::get<LargeArray<float>>(m_volume.voxels), m_transfer};
 };
 
 TEST(GlobalTracker, ThinWallTransmittanceIsExponential) {

@@ -52,7 +52,7 @@ using Voxel = std::int16_t; ///< storage type of the phantoms
 struct Probe {
   static constexpr std::size_t count = 1 << 14;
   const Subject& subject;
-  const std::vector<Voxel>& voxels = std::get<std::vector<Voxel>>(subject.scene.volume().voxels);
+  const LargeArray<Voxel>& voxels = std::get<LargeArray<Voxel>>(subject.scene.volume().voxels);
   Field<Voxel> field{subject.scene.volume().grid, voxels};
   Medium<Voxel> medium{subject.scene.volume().grid, voxels, subject.scene.transfer()};
   RenderScene parts = subject.scene.forRender();

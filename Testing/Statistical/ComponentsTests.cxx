@@ -307,7 +307,7 @@ double expectBound(const TestScene& scene) {
   double greatest = 0.0;
   scene.with([&](const RenderScene& parts) {
     const MajorantGrid& majorants = parts.majorants;
-    const auto& voxels = std::get<std::vector<float>>(scene.volume.voxels);
+    const auto& voxels = std::get<LargeArray<float>>(scene.volume.voxels);
     const Medium<float> medium(scene.volume.grid, voxels, scene.transfer, parts.style, nullptr,
                                parts.mixture);
     const Affine toWorld = majorants.worldToCell().inverse();

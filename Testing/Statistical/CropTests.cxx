@@ -59,7 +59,7 @@ TEST_P(CroppedTransmittance, IsExponentialAlongTheChord) {
   if (GetParam()) // sheared, as by a transform above the box
     box = Affine(Mat3::FromRows({1.0, 0.3, 0.0}, {0.0, 1.0, -0.2}, {0.1, 0.0, 0.8})) * box;
   const MajorantGrid majorants(volume.grid, CellRanges(volume, 0), looser, ClipNone{});
-  const Medium<float> medium(volume.grid, std::get<std::vector<float>>(volume.voxels), transfer);
+  const Medium<float> medium(volume.grid, std::get<LargeArray<float>>(volume.voxels), transfer);
   const Clip clip;
   const Tracker<float> tracker(Domain(volume.grid, CropBox(box)), medium, majorants, clip);
   Counters counters;

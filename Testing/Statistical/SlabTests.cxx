@@ -30,7 +30,7 @@ TEST(RatioTracking, ShadowThroughASlabIsExponential) {
   const Camera camera(scene.pose, 8, 8);
   const CellRanges ranges(scene.volume, 0);
   const MajorantGrid majorants(scene.volume.grid, ranges, scene.transfer, ClipNone{});
-  const auto& voxels = std::get<std::vector<float>>(scene.volume.voxels);
+  const auto& voxels = std::get<LargeArray<float>>(scene.volume.voxels);
   // Majorant twice the extinction, so that not all ratios are 0: a scaled grid.
   const TransferFunction doubled = scene.transfer.scaled(2.0);
   const MajorantGrid loose(scene.volume.grid, ranges, doubled, ClipNone{});

@@ -176,7 +176,7 @@ public:
 template <typename Voxel>
 class ScalarFollower : public Follower {
 public:
-  ScalarFollower(const Subject& s, const std::vector<Voxel>& voxels, const MajorantGrid& majorants,
+  ScalarFollower(const Subject& s, const LargeArray<Voxel>& voxels, const MajorantGrid& majorants,
                  const Clip& clip)
       : m_medium(s.volume.grid, voxels, s.transfer),
         m_clip(clip),

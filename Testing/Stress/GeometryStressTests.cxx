@@ -177,7 +177,7 @@ TEST(NeedleVoxels, DiagonalTransmittanceEqualsExpOfIntegral) {
     // Reference: the field's formula, bilinear across the voxels' values, midpoint rule.
     constexpr int steps = 20000;
     double depth = 0.0;
-    const auto& voxels = std::get<std::vector<float>>(volume.voxels);
+    const auto& voxels = std::get<LargeArray<float>>(volume.voxels);
     for (int k = 0; k < steps; ++k) {
       const Vec3 p = from + (to - from) * ((k + 0.5) / steps);
       const double x = std::clamp(p.x() / 0.01 + 11.5, 0.0, 23.0);

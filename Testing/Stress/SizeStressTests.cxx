@@ -11,7 +11,7 @@ namespace {
 /// Continuous field from the voxel array, by definition: trilinear, clamped.
 template <typename Voxel>
 double fieldAt(const Volume& volume, const Vec3& index) {
-  const auto& voxels = std::get<std::vector<Voxel>>(volume.voxels);
+  const auto& voxels = std::get<LargeArray<Voxel>>(volume.voxels);
   const Size3& size = volume.grid.size;
   double sum = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
@@ -187,7 +187,7 @@ constexpr bool isSanitized() {
 
 /// Volume with blocks of 16^3 voxels of 100 and 200 in two opposite corners; 0 elsewhere.
 Volume hugeVolume(std::int64_t side) {
-  std::vector<std::uint8_t> voxels(static_cast<std::size_t>(side * side * side));
+  LargeArray<std::uint8_t> voxels(static_cast<std::size_t>(side * side * side));
   for (std::int64_t k = 0; k < 16; ++k)
     for (std::int64_t j = 0; j < 16; ++j)
       for (std::int64_t i = 0; i < 16; ++i) {

@@ -87,7 +87,7 @@ public:
       : m_transfer(std::move(transfer)),
         m_majorants(volume.grid, CellRanges(volume, MajorantGrid::apronFor(m_transfer)), m_transfer,
                     m_clip),
-        m_medium(volume.grid, std::get<std::vector<Voxel>>(volume.voxels), m_transfer),
+        m_medium(volume.grid, std::get<LargeArray<Voxel>>(volume.voxels), m_transfer),
         m_tracker(volume.grid, m_medium, m_majorants, m_clip),
         m_domain(volume.grid) {}
   RayProbe(const RayProbe&) = delete;

@@ -364,7 +364,7 @@ TEST(DicomSeries, DamagedBytesAreReadOrRefused) {
 
 /// Ball of soft tissue in air, as stored: values below `tissue` / 2 are air's.
 Volume ball(double tissue, double air) {
-  std::vector<std::int16_t> voxels;
+  LargeArray<std::int16_t> voxels;
   for (int z = 0; z < 8; ++z)
     for (int y = 0; y < 16; ++y)
       for (int x = 0; x < 16; ++x)

@@ -15,8 +15,8 @@ ScalarFunction::Knot knot(double s, double y) {
 }
 
 template <typename Voxel>
-std::vector<Voxel> noise(const Size3& size, double low, double high) {
-  std::vector<Voxel> voxels;
+LargeArray<Voxel> noise(const Size3& size, double low, double high) {
+  LargeArray<Voxel> voxels;
   for (std::int64_t i = 0; i < size.prod(); ++i) {
     Random random(6, static_cast<std::uint64_t>(i), 0);
     // One half nearly flat, the other with rare peaks, so that ranges differ from cell to cell.
@@ -56,7 +56,7 @@ void expectConservative(const TransferFunction& transfer, double low, double hig
   computeRange(volume);
   const CellRanges ranges(volume, MajorantGrid::apronFor(transfer));
   const MajorantGrid majorants(grid, ranges, transfer, ClipNone{});
-  const Medium<Voxel> medium(grid, std::get<std::vector<Voxel>>(volume.voxels), transfer);
+  const Medium<Voxel> medium(grid, std::get<LargeArray<Voxel>>(volume.voxels), transfer);
 
   const Box box = grid.indexBox();
   double tightest = infinity;
@@ -137,7 +137,7 @@ double emptyFraction(const MajorantGrid& grid) {
 
 TEST(MajorantGrid, ClippedCellsAreEmptyAndCutOnesMarked) {
   const Grid grid(Size3(32, 32, 32), Affine::Identity());
-  Volume volume{grid, std::vector<float>(32768, 1.0F), 1.0, 1.0, "ones", {}};
+  Volume volume{grid, LargeArray<float>(32768, 1.0F), 1.0, 1.0, "ones", {}};
   const CellRanges ranges(volume, 0);
   const TransferFunction opaque{ScalarFunction({knot(0, 0), knot(1, 2)}), grey};
   CameraPose pose;
@@ -160,7 +160,7 @@ TEST(MajorantGrid, ClippedCellsAreEmptyAndCutOnesMarked) {
 
 TEST(MajorantGrid, ClipAndStyleAreBoundedInTheStripAroundACell) {
   const Grid grid(Size3(24, 24, 24), Affine::Identity());
-  Volume volume{grid, std::vector<float>(13824, 1.0F), 1.0, 1.0, "ones", {}};
+  Volume volume{grid, LargeArray<float>(13824, 1.0F), 1.0, 1.0, "ones", {}};
   const TransferFunction opaque{ScalarFunction({knot(0, 0), knot(1, 2)}), grey};
   CameraPose pose;
   pose.position = {12, 12, 100};
@@ -174,7 +174,7 @@ TEST(MajorantGrid, ClipAndStyleAreBoundedInTheStripAroundACell) {
     focus->voxels[i] = 1;
   const ContextStyle style{.focus = focus, .extinction = 0.25};
   const MajorantGrid majorants(grid, CellRanges(volume, 0), opaque, plane, &style);
-  const Medium<float> medium(grid, std::get<std::vector<float>>(volume.voxels), opaque, &style);
+  const Medium<float> medium(grid, std::get<LargeArray<float>>(volume.voxels), opaque, &style);
   const Box box = grid.indexBox();
   for (int i = 0; i < briefly(200000); ++i) {
     Random random(8, static_cast<std::uint64_t>(i), 0);

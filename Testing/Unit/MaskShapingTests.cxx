@@ -242,7 +242,7 @@ TEST(MaskShaping, NearlyCubicVoxelsAreNotInterpolated) {
 
 TEST(MaskShaping, OneMarginShrinksTouchingSegmentsAsOne) {
   const Grid grid = centredGrid({40, 40, 40});
-  std::vector<std::uint8_t> labels;
+  LargeArray<std::uint8_t> labels;
   for (std::int64_t z = 0; z < 40; ++z)
     for (std::int64_t y = 0; y < 40; ++y)
       for (std::int64_t x = 0; x < 40; ++x) {
@@ -259,7 +259,7 @@ TEST(MaskShaping, OneMarginShrinksTouchingSegmentsAsOne) {
 
 TEST(MaskShaping, EachSegmentTakesItsOwnMargin) {
   const Grid grid = centredGrid({40, 40, 40});
-  std::vector<std::uint8_t> labels;
+  LargeArray<std::uint8_t> labels;
   for (std::int64_t z = 0; z < 40; ++z)
     for (std::int64_t y = 0; y < 40; ++y)
       for (std::int64_t x = 0; x < 40; ++x)

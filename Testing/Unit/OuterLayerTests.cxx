@@ -16,7 +16,7 @@ constexpr double radius = 30.0, depth = 2.5; // mm
 /// CT of what is water where isWater(world) says so, else air.
 template <typename IsWater>
 Volume ctOf(const Grid& grid, const IsWater& isWater) {
-  std::vector<std::int16_t> voxels;
+  LargeArray<std::int16_t> voxels;
   for (std::int64_t z = 0; z < grid.size.z(); ++z)
     for (std::int64_t y = 0; y < grid.size.y(); ++y)
       for (std::int64_t x = 0; x < grid.size.x(); ++x)

@@ -7,8 +7,8 @@
 namespace fenestra::PhantomCubeTests {
 namespace {
 
-const std::vector<std::int16_t>& voxelsOf(const Phantom& phantom) {
-  return std::get<std::vector<std::int16_t>>(phantom.volume.voxels);
+const LargeArray<std::int16_t>& voxelsOf(const Phantom& phantom) {
+  return std::get<LargeArray<std::int16_t>>(phantom.volume.voxels);
 }
 
 std::vector<int> slicesOf(const Phantom& cube) {

@@ -14,8 +14,8 @@ const Phantom& smallFetus() {
   return fetus;
 }
 
-const std::vector<std::int16_t>& voxelsOf(const Phantom& phantom) {
-  return std::get<std::vector<std::int16_t>>(phantom.volume.voxels);
+const LargeArray<std::int16_t>& voxelsOf(const Phantom& phantom) {
+  return std::get<LargeArray<std::int16_t>>(phantom.volume.voxels);
 }
 
 std::size_t countOf(int label) {

@@ -21,8 +21,8 @@ const Phantom& smallFoot() {
   return foot;
 }
 
-const std::vector<std::int16_t>& voxelsOf(const Phantom& phantom) {
-  return std::get<std::vector<std::int16_t>>(phantom.volume.voxels);
+const LargeArray<std::int16_t>& voxelsOf(const Phantom& phantom) {
+  return std::get<LargeArray<std::int16_t>>(phantom.volume.voxels);
 }
 
 const PhantomSegment& segmentOf(const Phantom& phantom, const std::string& id) {

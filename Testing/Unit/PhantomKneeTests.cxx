@@ -18,8 +18,8 @@ const Phantom& smallKnee() {
   return knee;
 }
 
-const std::vector<std::int16_t>& voxelsOf(const Phantom& phantom) {
-  return std::get<std::vector<std::int16_t>>(phantom.volume.voxels);
+const LargeArray<std::int16_t>& voxelsOf(const Phantom& phantom) {
+  return std::get<LargeArray<std::int16_t>>(phantom.volume.voxels);
 }
 
 const std::vector<std::uint8_t>& labelsOf(const Phantom& phantom) {

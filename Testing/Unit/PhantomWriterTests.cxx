@@ -3,6 +3,7 @@
 #include "phantoms/Phantoms.h"
 
 #include "Approx.h"
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <itkMetaDataObject.h>
 #include <itkNrrdImageIO.h>
@@ -64,7 +65,8 @@ TEST_F(PhantomFiles, VolumeRoundTripsVoxelForVoxelInItsPlace) {
     const Vec3 index = Box{Vec3::Zero(), phantom.volume.grid.size.cast<double>()}.corner(corner);
     EXPECT_TRUE(isApprox(worldOf(*io, index), phantom.volume.grid.indexToWorld * index, 1e-9));
   }
-  EXPECT_EQ(read<std::int16_t>(*io), std::get<std::vector<std::int16_t>>(phantom.volume.voxels));
+  EXPECT_TRUE(std::ranges::equal(read<std::int16_t>(*io),
+                                 std::get<LargeArray<std::int16_t>>(phantom.volume.voxels)));
 }
 
 TEST_F(PhantomFiles, SegmentationHasSlicersFieldsForEverySegment) {

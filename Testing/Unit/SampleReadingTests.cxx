@@ -58,8 +58,8 @@ template <typename Kept, typename T>
 void expectKeptAs(T odd) {
   const std::vector<T> samples = samplesWith(odd);
   const Store::Vectors vectors = stored(samples);
-  ASSERT_TRUE(std::holds_alternative<std::vector<Kept>>(vectors)) << odd;
-  const auto& kept = std::get<std::vector<Kept>>(vectors);
+  ASSERT_TRUE(std::holds_alternative<LargeArray<Kept>>(vectors)) << odd;
+  const auto& kept = std::get<LargeArray<Kept>>(vectors);
   ASSERT_EQ(kept.size(), samples.size());
   for (std::size_t i = 0; i < count; ++i)
     ASSERT_EQ(static_cast<double>(kept[i]), static_cast<double>(static_cast<Kept>(samples[i])))
@@ -82,7 +82,7 @@ TEST(SampleReading, WidensMoreThanOnce) {
   std::vector<std::int32_t> samples = samplesWith<std::int32_t>(-7);
   samples[300'000] = 40'000; // to uint16, then to float for the negative sample
   const Store::Vectors vectors = stored(samples);
-  const auto& kept = std::get<std::vector<float>>(vectors);
+  const auto& kept = std::get<LargeArray<float>>(vectors);
   EXPECT_TRUE(std::equal(kept.begin(), kept.end(), samples.begin(), samples.end(),
                          [](float a, std::int32_t b) { return a == static_cast<float>(b); }));
 }
@@ -174,7 +174,8 @@ TEST(SampleReading, ReadsBothByteOrdersInEveryStorage) {
                         meta("BinaryDataByteOrderMSB = 1\nCompressedData = True\n") + zlib(big)),
        }) {
     const Volume volume = readVolume(path);
-    EXPECT_EQ(std::get<std::vector<std::int16_t>>(volume.voxels), samples) << path;
+    EXPECT_TRUE(std::ranges::equal(std::get<LargeArray<std::int16_t>>(volume.voxels), samples))
+        << path;
     EXPECT_EQ(volume.minimum, -1000.0);
     EXPECT_EQ(volume.maximum, 199.0);
   }

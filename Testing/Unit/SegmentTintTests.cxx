@@ -12,7 +12,7 @@ namespace {
 /// segment "empty" there is none.
 Handle<SegmentsInput> row(const std::vector<std::string>& names) {
   std::vector<SegmentInfo> segments;
-  std::vector<std::uint8_t> labels(2 * names.size() + 3);
+  LargeArray<std::uint8_t> labels(2 * names.size() + 3);
   for (std::size_t i = 0; i < names.size(); ++i) {
     segments.push_back({.id = "id" + std::to_string(i),
                         .name = names[i],
@@ -192,7 +192,7 @@ TEST(SegmentTint, RefusesWhatItCannotShow) {
 
 TEST(SegmentTint, RefusesMoreColoursThanAByteCounts) {
   std::vector<SegmentInfo> segments;
-  std::vector<std::int16_t> labels;
+  LargeArray<std::int16_t> labels;
   for (int i = 0; i < 256; ++i) {
     labels.push_back(static_cast<std::int16_t>(i + 1));
     segments.push_back({.id = std::to_string(i),

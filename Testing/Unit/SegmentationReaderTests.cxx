@@ -29,7 +29,7 @@ int at(const Mask& mask, const Vec3& world) {
 Segmentation labelmap(const std::vector<std::pair<Size3, int>>& labels, Vec3 origin = Vec3::Zero(),
                       double spacing = 1.0) {
   const Grid grid = unitGrid(Size3::Constant(6), origin, spacing);
-  std::vector<std::uint8_t> voxels(216, 0);
+  LargeArray<std::uint8_t> voxels(216, 0);
   std::vector<SegmentInfo> segments;
   for (const auto& [voxel, label] : labels) {
     voxels[static_cast<std::size_t>(index(grid, voxel.x(), voxel.y(), voxel.z()))] =
@@ -367,7 +367,7 @@ TEST(SegmentationReader, StatisticsHoldVoxelsAndBoundsOfEachSegment) {
   // Permuted axes: index x runs along S, y along -R, z along A.
   const Affine map(Mat3({0, 0, 1}, {-2, 0, 0}, {0, 3, 0}), {10, 20, 30});
   const Grid grid({4, 5, 6}, map);
-  std::vector<std::uint8_t> labels(240, 0); // two layers
+  LargeArray<std::uint8_t> labels(240, 0); // two layers
   for (const Size3& voxel : {Size3(1, 2, 3), Size3(2, 2, 3), Size3(1, 4, 5)})
     labels[2 * static_cast<std::size_t>(index(grid, voxel.x(), voxel.y(), voxel.z()))] = 1;
   labels[1] = 1;

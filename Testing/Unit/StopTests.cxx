@@ -38,7 +38,7 @@ void alongEndlessRay(Work&& work) {
 TEST(Stop, EndsAWalkThatMeetsNothing) {
   alongEndlessRay([](const TestScene& s, const MajorantGrid& majorants, const Ray& ray) {
     const StopFlag stop = true;
-    const Medium<float> medium(s.volume.grid, std::get<std::vector<float>>(s.volume.voxels),
+    const Medium<float> medium(s.volume.grid, std::get<LargeArray<float>>(s.volume.voxels),
                                s.transfer, nullptr);
     const Tracker<float> tracker(s.volume.grid, medium, majorants, s.clip, stop);
     Random random(1, 2, 3);

@@ -11,8 +11,8 @@ namespace fenestra::VolumeReaderTests {
 namespace {
 
 template <typename Stored>
-const std::vector<Stored>& as(const Volume& volume) {
-  return std::get<std::vector<Stored>>(volume.voxels);
+const LargeArray<Stored>& as(const Volume& volume) {
+  return std::get<LargeArray<Stored>>(volume.voxels);
 }
 
 /// Ramp of 24 samples, for the default geometry.
@@ -34,7 +34,7 @@ void expectRoundTrip(const std::vector<T>& samples) {
       const auto path = folder / name;
       writeFile(path, samples, {.compress = compress});
       const Volume volume = readVolume(path);
-      ASSERT_TRUE(std::holds_alternative<std::vector<Stored>>(volume.voxels)) << name;
+      ASSERT_TRUE(std::holds_alternative<LargeArray<Stored>>(volume.voxels)) << name;
       ASSERT_EQ(as<Stored>(volume).size(), samples.size());
       for (std::size_t i = 0; i < samples.size(); ++i)
         ASSERT_EQ(static_cast<double>(as<Stored>(volume)[i]), static_cast<double>(samples[i]))
@@ -425,12 +425,12 @@ TEST(VolumeReader, ReadsRealScans) {
     GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
   const Volume torso = readVolume(data("torso_ct_ccth_a01/ct.nii.gz"));
   EXPECT_EQ(torso.grid.size, Size3(493, 389, 296));
-  EXPECT_TRUE(std::holds_alternative<std::vector<std::int16_t>>(torso.voxels));
+  EXPECT_TRUE(std::holds_alternative<LargeArray<std::int16_t>>(torso.voxels));
   EXPECT_EQ(torso.minimum, -1024.0);
   EXPECT_NEAR(torso.grid.spacing().z(), 2.5, 1e-3);
   const Volume abdomen = readVolume(data("abdomen_ct_totalseg/ct.nii.gz"));
   EXPECT_EQ(abdomen.grid.size, Size3(122, 101, 112));
-  EXPECT_TRUE(std::holds_alternative<std::vector<std::int16_t>>(abdomen.voxels)); // from int32
+  EXPECT_TRUE(std::holds_alternative<LargeArray<std::int16_t>>(abdomen.voxels)); // from int32
   const Volume head = readVolume(data("head_mr_seg3d/t1.nii.gz"));
   EXPECT_EQ(head.grid.size, Size3(160, 232, 160));
   EXPECT_NEAR(head.maximum, 255 * 2.007843, 1e-3); // uint8 in the file, rescaled

@@ -15,7 +15,7 @@ using Extinction = double (*)(const Vec3&);
 /// Cells of a volume of 1 mm voxels whose scalars are extinctions.
 MajorantGrid cellsOf(Extinction extinction, const Clip& clip = ClipNone{}) {
   const Grid grid(Size3(edge, edge, edge), Affine::Identity());
-  std::vector<float> voxels;
+  LargeArray<float> voxels;
   for (std::int64_t z = 0; z < edge; ++z)
     for (std::int64_t y = 0; y < edge; ++y)
       for (std::int64_t x = 0; x < edge; ++x)
@@ -122,7 +122,7 @@ TEST(WideCells, ReachIsZeroInCutCells) {
 TEST(WideCells, CellsOfFewVoxelsAreMergedAndOthersNot) {
   EXPECT_EQ(Walk{cellsOf(ballInMist)}.wide.merged, 2) << "2^3 voxels";
   const Grid grid(Size3(256, 256, 256), Affine::Identity());
-  const Volume volume{grid, std::vector<std::uint8_t>(1 << 24, 1), 0.0, 1.0, "", {}};
+  const Volume volume{grid, LargeArray<std::uint8_t>(1 << 24, 1), 0.0, 1.0, "", {}};
   const TransferFunction thin{
       ScalarFunction({{0.0, ScalarFunction::Value(0.1)}, {1.0, ScalarFunction::Value(0.1)}}),
       ColorFunction({{0.0, Rgb::Ones()}})};

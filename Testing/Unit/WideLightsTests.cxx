@@ -57,7 +57,7 @@ struct Fog {
   static Volume volume() {
     Affine toWorld = Affine::Identity();
     toWorld.translation() = Vec3::Constant(-3.5);
-    Volume made{Grid(Size3(8, 8, 8), toWorld), std::vector<float>(512, 1.0F), 0.0, 0.0, "", {}};
+    Volume made{Grid(Size3(8, 8, 8), toWorld), LargeArray<float>(512, 1.0F), 0.0, 0.0, "", {}};
     computeRange(made);
     return made;
   }

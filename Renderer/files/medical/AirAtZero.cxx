@@ -12,7 +12,7 @@ constexpr int airOffset = 1024; ///< HU of a stored 0, negated
 
 /// Most frequent value, to 25, of the voxels on the four sides along the slices' edges.
 template <typename Voxel>
-double modeOfSides(const std::vector<Voxel>& voxels, const Size3& size) {
+double modeOfSides(const LargeArray<Voxel>& voxels, const Size3& size) {
   constexpr double width = 25.0;
   std::map<long, std::size_t> counts;
   for (std::int64_t z = 0; z < size.z(); ++z)
@@ -31,7 +31,7 @@ double modeOfSides(const std::vector<Voxel>& voxels, const Size3& size) {
 
 /// Median of the voxels above 200; 0: there are none.
 template <typename Voxel>
-double medianOfTissue(const std::vector<Voxel>& voxels) {
+double medianOfTissue(const LargeArray<Voxel>& voxels) {
   std::vector<Voxel> tissue;
   std::ranges::copy_if(voxels, std::back_inserter(tissue), [](Voxel v) { return v > 200; });
   if (tissue.empty())
@@ -43,9 +43,9 @@ double medianOfTissue(const std::vector<Voxel>& voxels) {
 
 /// Voxels less the offset, in a type that holds them.
 template <typename Voxel>
-Voxels moved(const std::vector<Voxel>& voxels, double greatest) {
+Voxels moved(const LargeArray<Voxel>& voxels, double greatest) {
   const auto as = [&]<typename To>(To) -> Voxels {
-    std::vector<To> to(voxels.size());
+    LargeArray<To> to(voxels.size());
     std::ranges::transform(voxels, to.begin(),
                            [](Voxel v) { return static_cast<To>(v - airOffset); });
     return to;
@@ -55,7 +55,7 @@ Voxels moved(const std::vector<Voxel>& voxels, double greatest) {
 
 /// The voxels in Hounsfield units where they are certainly not; warns.
 template <typename Voxel>
-std::optional<Voxels> inHounsfield(const std::vector<Voxel>& voxels, Volume& volume) {
+std::optional<Voxels> inHounsfield(const LargeArray<Voxel>& voxels, Volume& volume) {
   constexpr double nearAir = 50.0, leastTissue = 800.0, mostTissue = 1300.0;
   if (std::abs(modeOfSides(voxels, volume.grid.size)) > nearAir)
     return std::nullopt;

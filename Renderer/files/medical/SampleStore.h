@@ -2,6 +2,7 @@
 // Keeps samples in the smallest type that holds all of them so far: a file's own, wider type never
 // takes memory as a whole.
 
+#include "base/LargePages.h"
 #include "base/Vector.h"
 
 #include <algorithm>
@@ -61,7 +62,7 @@ SampleSurvey survey(std::span<const T> samples) {
 template <typename... Stored>
 class SampleStore {
 public:
-  using Vectors = std::variant<std::vector<Stored>...>;
+  using Vectors = std::variant<LargeArray<Stored>...>;
 
   /// Reserves room for `count` samples; pages are touched only as samples come.
   explicit SampleStore(std::size_t count) : m_count(count) { change(0); }
@@ -82,7 +83,7 @@ public:
   /// Least and greatest sample that take() returns.
   std::array<double, 2> range() const {
     return std::visit(
-        [this]<typename To>(const std::vector<To>&) -> std::array<double, 2> {
+        [this]<typename To>(const LargeArray<To>&) -> std::array<double, 2> {
           return {static_cast<double>(converted<To>(m_survey.least)),
                   static_cast<double>(converted<To>(m_survey.greatest))};
         },
@@ -123,7 +124,7 @@ private:
     const Vectors before = std::exchange(m_samples, Vectors());
     m_index = wanted;
     std::size_t index = 0;
-    ((index++ == wanted ? convert<std::vector<Stored>>(before) : void()), ...);
+    ((index++ == wanted ? convert<LargeArray<Stored>>(before) : void()), ...);
   }
   template <typename Samples>
   void convert(const Vectors& before) {
@@ -135,7 +136,7 @@ private:
   /// Appends in parts: growing fills with zeros, which costs little while a part stays in the
   /// cache.
   template <typename T, typename To>
-  static void copy(std::span<const T> from, std::vector<To>& to) {
+  static void copy(std::span<const T> from, LargeArray<To>& to) {
     if constexpr (std::is_same_v<T, To>)
       to.insert(to.end(), from.begin(), from.end());
     else
@@ -161,7 +162,7 @@ private:
   }
 
   template <typename To>
-  void mend(std::vector<To>& samples) const {
+  void mend(LargeArray<To>& samples) const {
     if constexpr (std::is_floating_point_v<To>) {
       const auto least = converted<To>(m_survey.least);
       const auto greatest = converted<To>(m_survey.greatest);

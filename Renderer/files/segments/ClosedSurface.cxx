@@ -136,7 +136,7 @@ public:
   }
 
   std::size_t count = 0;
-  std::vector<Label> labels;
+  LargeArray<Label> labels;
 
 private:
   std::span<Label> voxels(std::size_t layer, const VoxelRun& run) {

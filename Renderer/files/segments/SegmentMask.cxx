@@ -86,7 +86,7 @@ private:
 template <typename Label>
 class Focus {
 public:
-  Focus(const Grid& grid, std::size_t layerCount, const std::vector<Label>& labels,
+  Focus(const Grid& grid, std::size_t layerCount, const LargeArray<Label>& labels,
         const std::vector<SegmentInfo>& chosen)
       : m_grid(grid), m_layerCount(layerCount), m_labels(labels), m_values(layerCount) {
     for (const SegmentInfo& segment : chosen)
@@ -181,7 +181,7 @@ private:
 
   const Grid& m_grid;
   std::size_t m_layerCount;
-  const std::vector<Label>& m_labels;
+  const LargeArray<Label>& m_labels;
   std::vector<ChosenValues<Label>> m_values; ///< chosen values of each layer
 };
 
@@ -196,7 +196,7 @@ using StatisticsOfValues = std::map<std::int32_t, ValueStatistics>;
 
 /// Adds one layer's voxels to the statistics of the values in `values`.
 template <typename Label>
-void countVoxels(const std::vector<Label>& labels, const Size3& size, std::size_t layer,
+void countVoxels(const LargeArray<Label>& labels, const Size3& size, std::size_t layer,
                  std::size_t layerCount, StatisticsOfValues& values) {
   std::size_t at = layer;
   std::int32_t last = 0; // labels come in runs

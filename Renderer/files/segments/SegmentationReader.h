@@ -1,6 +1,7 @@
 #pragma once
 // Reads segmentations and makes the focus of some of their segments.
 
+#include "base/LargePages.h"
 #include "base/Vector.h"
 #include "model/masks/MaskShaping.h"
 #include "model/volume/Mask.h"
@@ -38,7 +39,7 @@ class Segmentation {
 public:
   /// Labels in the smallest type that holds all values; a voxel's layers together, x fastest.
   using Labels =
-      std::variant<std::vector<std::uint8_t>, std::vector<std::int16_t>, std::vector<std::int32_t>>;
+      std::variant<LargeArray<std::uint8_t>, LargeArray<std::int16_t>, LargeArray<std::int32_t>>;
 
   /// `source` names the file in messages.
   Segmentation(std::string source, const Grid& grid, std::size_t layerCount, Labels labels,

@@ -26,7 +26,7 @@ struct Matter {
 template <typename Voxel>
 class Medium {
 public:
-  Medium(const Grid& grid, const std::vector<Voxel>& voxels, const TransferFunction& transfer,
+  Medium(const Grid& grid, std::span<const Voxel> voxels, const TransferFunction& transfer,
          const ContextStyle* style = nullptr, const Tint* tint = nullptr,
          const Mixture* mixture = nullptr)
       : m_field(grid, voxels), m_transfer(transfer) {
@@ -132,5 +132,8 @@ private:
   std::optional<TintedField> m_tinted;
   std::optional<MixedField> m_mixed;
 };
+
+template <typename Voxels, typename... More>
+Medium(const Grid&, const Voxels&, const More&...) -> Medium<typename Voxels::value_type>;
 
 } // namespace fenestra

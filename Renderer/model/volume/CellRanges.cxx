@@ -75,7 +75,7 @@ Size3 CellRanges::edgeFor(const Grid& grid) {
 }
 
 template <typename Voxel>
-void CellRanges::fill(const Grid& grid, const std::vector<Voxel>& voxels) {
+void CellRanges::fill(const Grid& grid, const LargeArray<Voxel>& voxels) {
   // A row of cells is first reduced to one row of voxels, elementwise: memory is read in order,
   // with vector instructions.
   const auto fillSlab = [&](std::int64_t cz) {

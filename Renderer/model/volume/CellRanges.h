@@ -25,7 +25,7 @@ public:
 
 private:
   template <typename Voxel>
-  void fill(const Grid& grid, const std::vector<Voxel>& voxels);
+  void fill(const Grid& grid, const LargeArray<Voxel>& voxels);
 
   int m_apron;
   Size3 m_edge, m_cellCount;

@@ -1,9 +1,11 @@
 #pragma once
 // The scalar volume: voxels in their storage type, and the continuous field that they define.
 
+#include "base/LargePages.h"
 #include "model/volume/Grid.h"
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -15,8 +17,8 @@ enum class Modality { ct, mr, us };
 
 /// Storage types, x fastest. Readers narrow or widen every file type to the smallest of these that
 /// holds all its values (64-bit and double values that do not fit are rounded to float).
-using Voxels = std::variant<std::vector<std::uint8_t>, std::vector<std::int16_t>,
-                            std::vector<std::uint16_t>, std::vector<float>>;
+using Voxels = std::variant<LargeArray<std::uint8_t>, LargeArray<std::int16_t>,
+                            LargeArray<std::uint16_t>, LargeArray<float>>;
 
 /// Every voxel is finite: readers replace NaN and -infinity by the least finite value of the volume
 /// and +infinity by the greatest, and say so in `warnings`.
@@ -46,7 +48,7 @@ inline void computeRange(Volume& volume) {
 template <typename Voxel>
 class Field {
 public:
-  Field(const Grid& grid, const std::vector<Voxel>& voxels)
+  Field(const Grid& grid, std::span<const Voxel> voxels)
       : m_voxels(voxels.data()),
         m_last((grid.size.array() - 1).cast<double>()),
         m_lastCell((grid.size.array() - 2).max(0)),
@@ -103,5 +105,8 @@ private:
   std::int64_t m_row, m_slice;
   Mat3 m_indexGradientToWorld;
 };
+
+template <typename Voxels>
+Field(const Grid&, const Voxels&) -> Field<typename Voxels::value_type>;
 
 } // namespace fenestra

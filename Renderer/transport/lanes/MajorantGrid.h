@@ -6,6 +6,7 @@
 // one that it leaves alone lies one that it cuts, as their bounds overlap (MajorantGrid::margin):
 // what is merged of the two is cut.
 
+#include "base/LargePages.h"
 #include "transport/readable/MajorantGrid.h"
 
 #include <cstdint>
@@ -34,7 +35,7 @@ struct WideCells {
   std::int64_t merged = 1;     ///< cells of the MajorantGrid in a cell, along each axis
   Size3 count = Size3::Zero(); ///< cells, without the border
   /// Codes of all cells, with a border of empty cells.
-  std::vector<std::int32_t> codes;
+  LargeArray<std::int32_t> codes;
 };
 
 } // namespace fenestra

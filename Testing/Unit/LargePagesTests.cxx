@@ -1,0 +1,58 @@
+#include "base/LargePages.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+using namespace fenestra;
+
+namespace {
+
+/// Flags (VmFlags of /proc/self/smaps) of the mapping that holds an address; empty: none does.
+std::string flagsAt(const void* address) {
+  std::ifstream maps("/proc/self/smaps");
+  const auto wanted = reinterpret_cast<std::uintptr_t>(address);
+  bool isThere = false;
+  for (std::string line; std::getline(maps, line);) {
+    std::istringstream words(line);
+    std::uintptr_t begin = 0, end = 0;
+    char dash = 0;
+    if (words >> std::hex >> begin >> dash >> end && dash == '-')
+      isThere = begin <= wanted && wanted < end;
+    else if (isThere && line.starts_with("VmFlags:"))
+      return line + ' ';
+  }
+  return {};
+}
+
+std::uintptr_t placeOf(const void* address) {
+  return reinterpret_cast<std::uintptr_t>(address);
+}
+
+} // namespace
+
+TEST(LargePages, AreAskedForWhereAnArrayFillsThem) {
+  constexpr std::size_t page = std::size_t{2} << 20;
+  const LargeArray<float> large(3 * page / sizeof(float) + 1, 1.0F);
+  EXPECT_EQ(placeOf(large.data()) % page, 0U);
+  const std::string flags = flagsAt(large.data());
+  if (flags.empty())
+    GTEST_SKIP() << "no /proc/self/smaps here";
+  if (!std::ifstream("/sys/kernel/mm/transparent_hugepage/enabled"))
+    GTEST_SKIP() << "the system has no large pages";
+  EXPECT_NE(flags.find(" hg "), std::string::npos) << flags;
+}
+
+TEST(LargePages, SmallArraysBeginALineOfTheCache) {
+  for (const std::size_t size : {1, 15, 4096})
+    EXPECT_EQ(placeOf(LargeArray<char>(size).data()) % 64, 0U) << size;
+}
+
+TEST(LargePages, TooLargeArraysAreRefused) {
+  LargePages<double> pages;
+  EXPECT_THROW((void)pages.allocate(static_cast<std::size_t>(-1) / 4), std::bad_alloc);
+  EXPECT_THROW((void)pages.allocate(static_cast<std::size_t>(-1) / 32), std::bad_alloc);
+}
