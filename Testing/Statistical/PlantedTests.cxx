@@ -153,6 +153,9 @@ TEST(PlantedErrors, EveryErrorIsFound) {
   lookAgain(faults, leastProbability(count));
   for (const Fault& fault : faults)
     EXPECT_FALSE(fault.foundIn.empty()) << fault.name << " was not found: " << fault.why;
+  std::cout << "planted errors found: "
+            << std::ranges::count_if(faults, [](const Fault& f) { return !f.foundIn.empty(); })
+            << " of " << faults.size() << '\n';
   record(faults);
 }
 

@@ -31,20 +31,25 @@ HWY_INLINE Number numberAt(const void* memory) {
 }
 
 #if HWY_TARGET != HWY_SCALAR
+/// loadEach of few places. By a pack: where a loop is unrolled too late, lanes go through memory.
+template <typename Number, std::size_t step, typename Element, std::size_t... i>
+HWY_INLINE auto loadFew(const Element* memory, const std::uint32_t* index,
+                        std::index_sequence<i...>) {
+  auto numbers = hn::Zero(hn::CappedTag<Number, sizeof...(i)>());
+  ((numbers = hn::InsertLane(numbers, i, numberAt<Number>(memory + index[step * i]))), ...);
+  return numbers;
+}
+
 /// Loads a Number from each of `count` places, `step` indices apart, aligned or not. Loads one by
 /// one are less work for the processor than gathers, once the indices are in registers.
 template <typename Number, std::size_t count, std::size_t step, typename Element>
 HWY_INLINE auto loadEach(const Element* memory, const std::uint32_t* index) {
-  constexpr hn::CappedTag<Number, count> d;
-  if constexpr (count * sizeof(Number) > 16) {
-    return hn::Combine(d, loadEach<Number, count / 2, step>(memory, index + step * count / 2),
+  if constexpr (count * sizeof(Number) > 16)
+    return hn::Combine(hn::CappedTag<Number, count>(),
+                       loadEach<Number, count / 2, step>(memory, index + step * count / 2),
                        loadEach<Number, count / 2, step>(memory, index));
-  } else {
-    auto numbers = hn::Zero(d);
-    for (std::size_t i = 0; i < count; ++i)
-      numbers = hn::InsertLane(numbers, i, numberAt<Number>(memory + index[step * i]));
-    return numbers;
-  }
+  else
+    return loadFew<Number, step>(memory, index, std::make_index_sequence<count>());
 }
 #endif
 
