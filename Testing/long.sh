@@ -3,7 +3,7 @@
 # usage: bash Testing/long.sh [STAGE...]
 # Stages, in this order where none is named:
 #   accuracy      Release: the statistical, stress and regression tests with long budgets
-#   seeds         the short matrix with twenty seed bases
+#   seeds         the short matrix with twenty seed bases, on every instruction set
 #   planted       the errors planted in a copy of the renderer
 #   instructions  the statistical tests and the planted errors on every instruction set
 #   addresses     the whole suite under AddressSanitizer and UndefinedBehaviorSanitizer, each access
@@ -30,6 +30,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/../Resources/setup.sh"
 record=$top/Testing/Report
 logs=$top/build/report
 labels=(unit statistical stress regression cli slicer)
+sets=(AVX3 AVX2 SSE4 SCALAR) # instruction sets, by Highway's names
 
 # in_record FILE COMMAND...: the file of the record becomes what the command prints.
 in_record() {
@@ -72,31 +73,41 @@ stage_accuracy() {
     statistical stress regression
 }
 
-# seed_row SEED: a row of the table, in $rows/SEED.
+# machine_has SET: whether programs can be pinned to an instruction set here.
+machine_has() {
+  FENESTRA_INSTRUCTIONS=$1 "$top/build/bin/MatrixTests" --gtest_list_tests >/dev/null 2>&1
+}
+
+# seed_row SET SEED: a row of the table, in $rows/SET-SEED.
 seed_row() {
   local held=yes out
-  out=$(FENESTRA_SEED=$1 "$top/build/bin/MatrixTests" --gtest_filter='*fast') || held=no
-  printf '| %s | %s%s |\n' "$1" \
-    "$(sed -n 's/.*: probability \([^ ]*\) .*/\1 | /p' <<<"$out" | tr -d '\n')" "$held" >"$rows/$1"
+  out=$(FENESTRA_INSTRUCTIONS=$1 FENESTRA_SEED=$2 "$top/build/bin/MatrixTests" --gtest_filter='*fast') || held=no
+  printf '| %s | %s | %s%s |\n' "$1" "$2" \
+    "$(sed -n 's/.*: probability \([^ ]*\) .*/\1 | /p' <<<"$out" | tr -d '\n')" "$held" >"$rows/$1-$2"
 }
 
 # print_seeds FOLDER: the table of the rows in it.
 print_seeds() {
-  printf '# Twenty seed bases of the short matrix\n\n'
-  printf '| seed base | %s | all hold |\n|---|---|---|---|---|---|---|---|\n' \
+  printf '# Twenty seed bases of the short matrix, on every instruction set\n\n'
+  printf '| instructions | seed base | %s | all hold |\n|---|---|---|---|---|---|---|---|---|\n' \
     'pixel | tile | picture | tiles uniform | pictures uniform | mean is 0'
-  local seed
-  for seed in $(seq 20); do
-    cat "$1/$seed"
+  local name seed
+  for name in "${sets[@]}"; do
+    for seed in $(seq 20); do
+      [ ! -e "$1/$name-$seed" ] || cat "$1/$name-$seed"
+    done
   done
 }
 
 stage_seeds() {
   build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON
-  local rows
+  local rows name
   rows=$(mktemp -d)
   export -f seed_row
-  seq 20 | top=$top rows=$rows xargs -P "$(nproc)" -I{} bash -c 'seed_row {}'
+  for name in "${sets[@]}"; do
+    machine_has "$name" || continue
+    seq 20 | top=$top rows=$rows xargs -P "$(nproc)" -I{} bash -c "seed_row $name {}"
+  done
   in_record seeds.md print_seeds "$rows"
   rm -r "$rows"
 }
@@ -118,15 +129,13 @@ stage_planted() {
     say "not all planted errors are found: see $logs/planted.log"
 }
 
-# run_instructions SET...: prints a table of the statistical tests on each that the machine has.
+# run_instructions: prints a table of the statistical tests on each that the machine has.
 run_instructions() {
   printf '# The statistical tests on every instruction set\n\n'
   printf '| instructions | passed | skipped | failed | seconds | planted errors found |\n|---|---|---|---|---|---|\n'
   local name start log row
-  for name in "$@"; do
-    # Where the machine lacks a set, programs pinned to it end at once.
-    FENESTRA_INSTRUCTIONS=$name "$top/build/bin/AnalyticTests" --gtest_list_tests >/dev/null 2>&1 ||
-      continue
+  for name in "${sets[@]}"; do
+    machine_has "$name" || continue
     log=$logs/instructions-$name.log
     start=$SECONDS
     FENESTRA_INSTRUCTIONS=$name ctest --test-dir "$top/build" -L '^statistical$' -j"$(nproc)" \
@@ -140,7 +149,7 @@ run_instructions() {
 
 stage_instructions() {
   build_planted
-  in_record instructions.md run_instructions AVX3 AVX2 SSE4 SCALAR
+  in_record instructions.md run_instructions
 }
 
 # Sanitizers look at what is computed, not at its error: a fourth of the samples, a tenth of the
