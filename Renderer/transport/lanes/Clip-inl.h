@@ -1,19 +1,4 @@
 // Clip of lanes at points in index space: keep, and the gradient of a soft cut (clip/keep/Clip.h).
-// Compiled once for each instruction set (see Tracker.cxx).
-
-#if defined(FENESTRA_WIDE_CLIP_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef FENESTRA_WIDE_CLIP_INL_H
-#undef FENESTRA_WIDE_CLIP_INL_H
-#else
-#define FENESTRA_WIDE_CLIP_INL_H
-#endif
-
-#include "clip/keep/Seams.h"
-// After foreach_target.h:
-#include "transport/lanes/Medium-inl.h"
-
-HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
 
 /// Continuous index of a coordinate in mm among a depth buffer's samples (DepthAxis::index).
 HWY_INLINE Float depthIndex(const WideScene::DepthAxis& axis, Float coordinate) {
@@ -183,8 +168,3 @@ inline Float3 cutGradient(const WideScene& scene, const Float3& p, LaneMask whic
   const Float3 gradient = behindGradient(scene, view, depthCell(scene, view));
   return orZero(isCut, length * normalized(mapDirection(scene.fromView, gradient)));
 }
-
-} // namespace fenestra::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
-
-#endif

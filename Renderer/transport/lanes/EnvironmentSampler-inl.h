@@ -1,19 +1,5 @@
-// Environment maps for many paths: model/lights/EnvironmentSampler.h in lanes. Compiled once for
-// each instruction set (see PathSteps.cxx).
-
-#if defined(FENESTRA_WIDE_ENVIRONMENT_SAMPLER_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef FENESTRA_WIDE_ENVIRONMENT_SAMPLER_INL_H
-#undef FENESTRA_WIDE_ENVIRONMENT_SAMPLER_INL_H
-#else
-#define FENESTRA_WIDE_ENVIRONMENT_SAMPLER_INL_H
-#endif
-
-#include "transport/lanes/MapTables.h"
-// After foreach_target.h:
-#include "transport/lanes/Medium-inl.h"
-
-HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
+// Environment maps for many paths: model/lights/EnvironmentSampler.h in lanes. A part of the
+// namespace that includes it, as LightSet-inl.h.
 
 /// A bin of an alias table, and a place inside it, uniform in (0, 1].
 struct Bin {
@@ -88,8 +74,3 @@ private:
 
   const MapTables& m_map;
 };
-
-} // namespace fenestra::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
-
-#endif

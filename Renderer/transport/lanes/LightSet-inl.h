@@ -1,21 +1,8 @@
-// Lights for many paths: model/lights/LightSet.h in lanes. Compiled once for each instruction set
-// (see PathSteps.cxx).
-
-#if defined(FENESTRA_WIDE_LIGHTS_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef FENESTRA_WIDE_LIGHTS_INL_H
-#undef FENESTRA_WIDE_LIGHTS_INL_H
-#else
-#define FENESTRA_WIDE_LIGHTS_INL_H
-#endif
-
-#include "base/LaneMath-inl.h"
-#include "transport/lanes/EnvironmentSampler-inl.h"
-#include "transport/lanes/PathTables.h"
-
-HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
+// Lights for many paths: model/lights/LightSet.h in lanes. A part of the namespace that includes
+// it, behind Scene-inl.h.
 
 #include "model/lights/LightFormulas-inl.h"
+#include "transport/lanes/EnvironmentSampler-inl.h"
 
 /// LightSet in lanes.
 class WideLights {
@@ -102,8 +89,3 @@ private:
 
   const EventScene& m_scene;
 };
-
-} // namespace fenestra::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
-
-#endif

@@ -6,8 +6,7 @@
 #define HWY_TARGET_INCLUDE "transport/lanes/March.cxx"
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
-#include "transport/lanes/Mixture-inl.h"
-#include "transport/lanes/Way-inl.h"
+#include "transport/lanes/Scene-inl.h"
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 namespace {

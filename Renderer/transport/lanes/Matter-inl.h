@@ -1,19 +1,4 @@
-// Matter of lanes at points in index space: albedo, with segments' colours, and gradient. Compiled
-// once for each instruction set.
-
-#if defined(FENESTRA_WIDE_MATTER_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef FENESTRA_WIDE_MATTER_INL_H
-#undef FENESTRA_WIDE_MATTER_INL_H
-#else
-#define FENESTRA_WIDE_MATTER_INL_H
-#endif
-
-#include "transport/lanes/PathTables.h"
-// After foreach_target.h:
-#include "transport/lanes/Shares-inl.h"
-
-HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
+// Matter of lanes at points in index space: albedo, with segments' colours, and gradient.
 
 HWY_INLINE Float3 albedoOf(const WideTable& table, Float scalar) {
   const auto& channels = table.channels;
@@ -66,8 +51,3 @@ HWY_INLINE Float missing(Float x) {
 HWY_INLINE Float surfaceChance(const EventScene& scene, Float extinction, Float slope) {
   return missing(extinction) * missing(scene.surfaceRate * slope);
 }
-
-} // namespace fenestra::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
-
-#endif

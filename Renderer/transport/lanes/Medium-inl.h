@@ -1,21 +1,4 @@
-// Look-ups of lanes at points in index space: scalar, extinction, majorant cells. Compiled once for
-// each instruction set (see Tracker.cxx).
-
-#if defined(FENESTRA_LANE_MEDIUM_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef FENESTRA_LANE_MEDIUM_INL_H
-#undef FENESTRA_LANE_MEDIUM_INL_H
-#else
-#define FENESTRA_LANE_MEDIUM_INL_H
-#endif
-
-#include "transport/lanes/TrackerTables.h"
-// After foreach_target.h:
-#include "base/LaneMath-inl.h"
-
-#include <cstring>
-
-HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
+// Look-ups of lanes at points in index space: scalar, extinction, majorant cells.
 
 /// Places in memory, one a lane. Without a sign, so that they are addresses as they are.
 struct Indices : LaneArray<std::uint32_t> {
@@ -240,8 +223,3 @@ HWY_INLINE Float lengthInside(const WideScene& scene, const Float3& origin,
 HWY_INLINE LaneMask isFocus(const WideScene::Context& context, const Float3& p) {
   return scalarAt<std::uint8_t>(context.focus, mapPoint(context.toFocus, p)) >= context.level;
 }
-
-} // namespace fenestra::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
-
-#endif

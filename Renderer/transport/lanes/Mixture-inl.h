@@ -1,19 +1,4 @@
-// Parts of a mixture at points in index space. Compiled once for each instruction set.
-
-#if defined(FENESTRA_LANE_MIXTURE_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef FENESTRA_LANE_MIXTURE_INL_H
-#undef FENESTRA_LANE_MIXTURE_INL_H
-#else
-#define FENESTRA_LANE_MIXTURE_INL_H
-#endif
-
-#include "transport/lanes/Mixture.h"
-// After foreach_target.h:
-#include "transport/lanes/Clip-inl.h"
-#include "transport/lanes/Matter-inl.h"
-
-HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
+// Parts of a mixture at points in index space.
 
 /// Extinction (mm^-1) of one component a lane, as if it had all of the space.
 HWY_INLINE Float extinctionOf(const WideMixture& mixture, LaneMask which, Int components,
@@ -144,8 +129,3 @@ inline ScatterLaw<Float> lawsOf(const EventScene& scene, Int components) {
           true,
           {each(first.coat[0]), each(first.coat[1]), each(first.coat[2]), each(first.coat[3])}};
 }
-
-} // namespace fenestra::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
-
-#endif

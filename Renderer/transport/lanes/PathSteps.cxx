@@ -5,11 +5,11 @@
 #define HWY_TARGET_INCLUDE "transport/lanes/PathSteps.cxx"
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
-#include "transport/lanes/LightSet-inl.h"
-#include "transport/lanes/Mixture-inl.h"
+#include "transport/lanes/Scene-inl.h"
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 #include "model/medium/ScatteringFormulas-inl.h"
+#include "transport/lanes/LightSet-inl.h"
 namespace {
 
 /// A path's own random numbers: hashes of a counter and a key.

@@ -1,18 +1,4 @@
-// Shares of components at points in index space. Compiled once for each instruction set.
-
-#if defined(FENESTRA_LANE_SHARES_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef FENESTRA_LANE_SHARES_INL_H
-#undef FENESTRA_LANE_SHARES_INL_H
-#else
-#define FENESTRA_LANE_SHARES_INL_H
-#endif
-
-#include "transport/lanes/Shares.h"
-// After foreach_target.h:
-#include "transport/lanes/Medium-inl.h"
-
-HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
+// Shares of components at points in index space.
 
 /// Calls visit(lanes, component) for each component that lanes of `which` have: its lanes, and its
 /// number, plain.
@@ -137,8 +123,3 @@ private:
   const WideShares& m_shares;
   Corner m_corner;
 };
-
-} // namespace fenestra::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
-
-#endif
