@@ -16,16 +16,15 @@ inline Float askSeams(const Seams& seams, LaneMask isAsked, Int seam, Float x, F
   const LaneArray<float> xs(x), ys(y), depths(depth);
   LaneArray<float> surfaces(surface);
   std::array<Seams::Question, laneCount> questions;
-  std::array<std::size_t, laneCount> lanes;
-  std::size_t count = 0;
+  auto* question = questions.data();
   forEachLane(isAsked, [&](std::size_t lane) {
-    lanes[count] = lane;
-    questions[count++] = {numbers[lane], Vec2(xs[lane], ys[lane]), surfaces[lane],
-                          depths[lane] - softness};
+    *question++ = {numbers[lane], Vec2(xs[lane], ys[lane]), surfaces[lane],
+                   depths[lane] - softness};
   });
-  seams.answer(std::span(questions).first(count));
-  for (std::size_t i = 0; i < count; ++i)
-    surfaces[lanes[i]] = static_cast<float>(questions[i].surface);
+  seams.answer({questions.data(), question});
+  question = questions.data();
+  forEachLane(isAsked,
+              [&](std::size_t lane) { surfaces[lane] = static_cast<float>(question++->surface); });
   return load(surfaces.data());
 }
 

@@ -41,7 +41,7 @@ public:
     if (!escaped.any())
       return sum;
     const Arrival far =
-        withMaps(direction, [&](const WideMap& map) { return map.texelToward(direction); });
+        withMaps(direction, [&](const MapTables& map) { return texelToward(map, direction); });
     const Float weight = scatterPdf / (scatterPdf + far.pdf);
     return sum + orZero(escaped, weight * far.radiance);
   }
@@ -49,7 +49,7 @@ public:
 private:
   void drawMaps(LaneMask which, Float choice, Word u, Word v, LightDraw& drawn) const {
     const std::size_t count = m_scene.maps.size();
-    WideMap::Drawn toward = WideMap(m_scene.maps[0]).draw(u, v);
+    TexelDraw toward = drawTexel(m_scene.maps[0], u, v);
     LaneMask later = which;
     for (std::size_t i = 1; i < count; ++i) { // the last map takes the remainder of rounding
       const float before = m_scene.maps[i - 1].share;
@@ -57,10 +57,10 @@ private:
       choice = choice - before;
       if (later.any())
         toward.direction =
-            select(later, WideMap(m_scene.maps[i]).draw(u, v).direction, toward.direction);
+            select(later, drawTexel(m_scene.maps[i], u, v).direction, toward.direction);
     }
-    const Arrival light = withMaps(toward.direction, [&](const WideMap& map) {
-      return count == 1 ? toward.texel : map.texelToward(toward.direction);
+    const Arrival light = withMaps(toward.direction, [&](const MapTables& map) {
+      return count == 1 ? toward.texel : texelToward(map, toward.direction);
     });
     const LaneMask lit = which & (light.pdf > 0.0F);
     drawn.direction = select(lit, toward.direction, drawn.direction);
@@ -78,11 +78,10 @@ private:
   template <typename TexelOf>
   HWY_INLINE Arrival withMaps(const Float3& direction, TexelOf&& texelOf) const {
     Arrival sum{around(m_scene.lights, direction), 0.0F};
-    for (const MapTables& each : m_scene.maps) {
-      const WideMap map(each);
-      const Float3 radiance = map.radiance(texelOf(map));
+    for (const MapTables& map : m_scene.maps) {
+      const Float3 radiance = radianceOf(map, texelOf(map));
       sum.radiance = sum.radiance + radiance;
-      sum.pdf = sum.pdf + map.pdf(radiance);
+      sum.pdf = sum.pdf + map.perBrightness * greatest(radiance);
     }
     return sum;
   }

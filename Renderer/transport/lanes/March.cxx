@@ -144,24 +144,19 @@ public:
   };
 
   Mean own(LaneMask which, const Float3& p, Float scalar) const {
-    Mean mean{albedoOf(m_scene.albedo, scalar), 0.0F};
-    if (m_scene.tint)
-      mean.albedo = tintedAlbedo(*m_scene.tint, which, p, scalar, mean.albedo);
-    if (m_scene.hybrid)
-      mean.opacity = missing(extinctionOf(m_volume, scalar));
-    return mean;
+    return {albedoAt(m_scene, which, p, scalar),
+            m_scene.hybrid ? missing(extinctionOf(m_volume.extinctions, scalar)) : 0.0F};
   }
 
   Mean meanOfParts(LaneMask which, const Float3& p, Float scalar) const {
-    const WideMixture& mixture = *m_volume.mixture;
     const Float kept = keptOfParts(m_volume, which, p);
     Mean sums{{0.0F, 0.0F, 0.0F}, 0.0F};
     Float all = 0.0F;
-    forEachPart(mixture, which, p, scalar, kept, [&](LaneMask lanes, Int components, Float part) {
+    forEachPart(m_volume, which, p, scalar, kept, [&](LaneMask lanes, Int components, Float part) {
+      const Float extinction = extinctionOf(m_volume.extinctions, lanes, components, scalar);
       all = all + part;
       sums.albedo = sums.albedo + part * albedoIn(m_scene, lanes, components, scalar);
-      sums.opacity =
-          sums.opacity + part * missing(extinctionOf(mixture, lanes, components, scalar));
+      sums.opacity = sums.opacity + part * missing(extinction);
     });
     const Float scale = orZero(all > 0.0F, 1.0F / all);
     return {scale * sums.albedo, scale * sums.opacity};
@@ -232,12 +227,12 @@ namespace fenestra {
 HWY_EXPORT(marchAll);
 HWY_EXPORT(passAll);
 
-void WideMarch::along(MarchBatch& batch) const {
-  HWY_DYNAMIC_DISPATCH(marchAll)(m_volume, m_scene, batch);
+void marchAlong(const WideScene& volume, const EventScene& scene, MarchBatch& batch) {
+  HWY_DYNAMIC_DISPATCH(marchAll)(volume, scene, batch);
 }
 
-void WideMarch::through(RayBatch& rays) const {
-  HWY_DYNAMIC_DISPATCH(passAll)(m_volume, rays);
+void marchThrough(const WideScene& volume, RayBatch& rays) {
+  HWY_DYNAMIC_DISPATCH(passAll)(volume, rays);
 }
 
 } // namespace fenestra

@@ -9,17 +9,23 @@ HWY_INLINE Float3 albedoOf(const WideTable& table, Float scalar) {
           valueIn(channels[2], segment)};
 }
 
-/// TintedField::albedo for the lanes of `which`, 0 in others; `own`: of the transfer function.
-HWY_INLINE Float3 tintedAlbedo(const WideTint& tint, LaneMask which, const Float3& index,
-                               Float scalar, const Float3& own) {
+/// Albedo of one component a lane; 0 in lanes that are not of `which`.
+HWY_INLINE Float3 albedoIn(const EventScene& scene, LaneMask which, Int components, Float scalar) {
+  Float3 albedo(0.0F, 0.0F, 0.0F);
+  forEachComponent(which, components, [&](LaneMask same, std::size_t component) {
+    albedo = select(same, albedoOf(scene.albedos[component], scalar), albedo);
+  });
+  return albedo;
+}
+
+/// Albedo without a mixture: with a tint TintedField::albedo, for the lanes of `which`.
+HWY_INLINE Float3 albedoAt(const EventScene& scene, LaneMask which, const Float3& index,
+                           Float scalar) {
+  if (!scene.tint)
+    return albedoOf(scene.albedos[0], scalar);
   Float3 sum(0.0F, 0.0F, 0.0F);
-  LaneShares(tint.shares, index).forEach(which, [&](LaneMask lanes, Int components, Float share) {
-    Float3 albedo = own;
-    forEachComponent(lanes, components, [&](LaneMask same, std::size_t component) {
-      if (const auto& table = tint.albedo[component])
-        albedo = select(same, albedoOf(*table, scalar), albedo);
-    });
-    sum = sum + share * albedo;
+  LaneShares(*scene.tint, index).forEach(which, [&](LaneMask lanes, Int components, Float share) {
+    sum = sum + share * albedoIn(scene, lanes, components, scalar);
   });
   return sum;
 }

@@ -108,27 +108,29 @@ struct Place {
   Float3 fractions; ///< position from there, 0 to 1
 };
 
-HWY_INLINE Place placeOf(const WideField& field, const Float3& p) {
-  const auto cell = [&](std::size_t axis, Float x, Float& fraction) {
-    const WideField::Axis& a = field.axes[axis];
-    // This order of min and max maps NaN to 0.
-    const Float inside = max(min(x, a.last), 0.0F);
-    const Float lower = min(floor(inside), a.lastCell);
-    fraction = inside - lower;
-    return wholeToInt(lower);
-  };
-  Place place;
-  const Int x = cell(0, p.x, place.fractions.x);
-  const Int y = cell(1, p.y, place.fractions.y);
-  const Int z = cell(2, p.z, place.fractions.z);
-  place.first = x + y * field.axes[1].stride + z * field.axes[2].stride;
-  return place;
+/// The same along one axis: the lower voxel, whole, and the fraction.
+struct PlaceAlong {
+  Float lower, fraction;
+};
+HWY_INLINE PlaceAlong placeAlong(const WideAxis& a, Float x) {
+  // This order of min and max maps NaN to 0.
+  const Float inside = max(min(x, a.last), 0.0F);
+  const Float lower = min(floor(inside), a.lastCell);
+  return {lower, inside - lower};
+}
+
+HWY_INLINE Place placeOf(const WideAxes& axes, const Float3& p) {
+  const auto [x, fx] = placeAlong(axes[0], p.x);
+  const auto [y, fy] = placeAlong(axes[1], p.y);
+  const auto [z, fz] = placeAlong(axes[2], p.z);
+  return {wholeToInt(x) + wholeToInt(y) * axes[1].stride + wholeToInt(z) * axes[2].stride,
+          {fx, fy, fz}};
 }
 
 /// The scalar, trilinear between voxel centres.
 template <typename Voxel>
 HWY_INLINE Float scalarAt(const WideField& field, const Float3& p) {
-  const Place place = placeOf(field, p);
+  const Place place = placeOf(field.axes, p);
   const Corners c = cornersAt(field, static_cast<const Voxel*>(field.voxels), place.first);
   const Float3& f = place.fractions;
   const auto along = [&](const Pairs& row) { return lerp(row.first, row.second, f.x); };
@@ -164,17 +166,28 @@ HWY_INLINE Float valueIn(const WideTable::Channel& channel, const Segment& at) {
   return notBelow0(value + select(slope == 0.0F, 0.0F, at.beyondStart * slope));
 }
 
-/// Extinction (mm^-1) of a scalar: one load where its bin lies in one segment.
-HWY_INLINE Float extinctionOf(const WideScene& scene, Float s) {
-  const WideTable& table = scene.extinction;
-  const Float place = max(min((s - table.binStart) * table.linesPerUnit, table.lastLine), 0.0F);
+HWY_INLINE Float valueOf(const WideTable& table, Float s) {
+  return valueIn(table.channels[0], segmentOf(table, s));
+}
+
+/// Values by lines, one load a lane; not where a lane's bin holds a knot.
+struct ByLines {
+  Float value;
+  LaneMask isBent;
+};
+/// `first`: number of each lane's first line.
+HWY_INLINE ByLines byLines(const WideLines& table, Int first, Float s) {
+  const Float place = max(min((s - table.start) * table.perUnit, table.last), 0.0F);
   const Float line = floor(place);
   const auto [value, rise] =
-      loadPairs(&table.lines[0].value, Indices(shiftLeft<1>(wholeToInt(line))));
-  const Float extinction = notBelow0(fma(place - line, rise, value));
-  const LaneMask mixed = ~(rise == rise);
-  return mixed.any() ? select(mixed, valueIn(table.channels[0], segmentOf(table, s)), extinction)
-                     : extinction;
+      loadPairs(&table.lines[0].value, Indices(shiftLeft<1>(first + wholeToInt(line))));
+  return {notBelow0(fma(place - line, rise, value)), ~(rise == rise)};
+}
+
+/// Extinction (mm^-1) of a scalar, without a mixture.
+HWY_INLINE Float extinctionOf(const WideLines& table, Float s) {
+  const auto [value, isBent] = byLines(table, 0, s);
+  return isBent.any() ? select(isBent, valueOf(table.segments[0], s), value) : value;
 }
 
 /// Majorant cells, one a lane (WideCells).
@@ -195,28 +208,43 @@ HWY_INLINE LaneCells cellsAt(const WideScene& scene, Float x, Float y, Float z) 
           code < 0};
 }
 
-/// Length of a ray from inside [lower, upper] to the faces; 0 if rounding put the origin outside.
-HWY_INLINE Float toFaces(const Float3& lower, const Float3& upper, const Float3& origin,
-                         const Float3& direction) {
-  const auto along = [](Float low, Float high, Float o, Float d) {
-    const Float t = (select(d < 0.0F, low, high) - o) / d;
-    return select(d == 0.0F, std::numeric_limits<float>::infinity(), t);
-  };
-  const Float x = along(lower.x, upper.x, origin.x, direction.x);
-  const Float y = along(lower.y, upper.y, origin.y, direction.y);
-  const Float z = along(lower.z, upper.z, origin.z, direction.z);
-  return notBelow0(min(min(x, y), z));
-}
+/// Stretches of rays, one a lane, t in mm.
+struct Stretches {
+  Float begin, end;
 
-/// Length (mm) of a ray from inside the domain to its end; ray in index space, t in mm.
+  /// Cuts off what is outside the domain (Domain::clip); rays in index space.
+  HWY_INLINE void clip(const WideScene& scene, const Float3& origin, const Float3& direction) {
+    clip(scene.lower, scene.upper, origin, direction);
+    if (const std::optional<AffineRows>& toCrop = scene.toCrop)
+      clip({-1.0F, -1.0F, -1.0F}, {1.0F, 1.0F, 1.0F}, mapPoint(*toCrop, origin),
+           mapDirection(*toCrop, direction));
+  }
+
+private:
+  /// For a box. A ray that lies in a face counts as inside.
+  HWY_INLINE void clip(const Float3& lower, const Float3& upper, const Float3& origin,
+                       const Float3& direction) {
+    const auto along = [&](Float low, Float high, Float o, Float d) {
+      constexpr float infinite = std::numeric_limits<float>::infinity();
+      const LaneMask still = d == 0.0F, back = d < 0.0F;
+      const LaneMask inside = (low <= o) & (o <= high);
+      const Float near = (select(back, high, low) - o) / d;
+      const Float far = (select(back, low, high) - o) / d;
+      begin = max(begin, select(still, select(inside, -infinite, infinite), near));
+      end = min(end, select(still, infinite, far));
+    };
+    along(lower.x, upper.x, origin.x, direction.x);
+    along(lower.y, upper.y, origin.y, direction.y);
+    along(lower.z, upper.z, origin.z, direction.z);
+  }
+};
+
+/// Length (mm) of a ray from inside the domain to its end; 0 if rounding put the origin outside.
 HWY_INLINE Float lengthInside(const WideScene& scene, const Float3& origin,
                               const Float3& direction) {
-  const Float toBox = toFaces(scene.lower, scene.upper, origin, direction);
-  if (!scene.cropped)
-    return toBox;
-  const Float3 lower(-1.0F, -1.0F, -1.0F), upper(1.0F, 1.0F, 1.0F);
-  return min(toBox, toFaces(lower, upper, mapPoint(scene.toCrop, origin),
-                            mapDirection(scene.toCrop, direction)));
+  Stretches inside{0.0F, std::numeric_limits<float>::infinity()};
+  inside.clip(scene, origin, direction);
+  return notBelow0(inside.end);
 }
 
 /// Lanes whose point (index space) lies in the focus, where a style changes nothing.

@@ -96,7 +96,7 @@ private:
     if constexpr (isMixed)
       return scatter(i, at, draws, lawsOf(m_scene, at.component));
     else
-      return scatter(i, at, draws, m_scene.law);
+      return scatter(i, at, draws, m_scene.laws[0]);
   }
 
   /// Scatters lanes by the law; returns those that go on afterwards.
@@ -143,14 +143,11 @@ private:
                   LaneMask::none(),
                   0};
     if constexpr (isMixed) {
-      at.component = drawComponents(*m_volume.mixture, going, index, at.scalar,
-                                    keptOfParts(m_volume, going, index), draws.uniform());
+      at.component = drawComponents(m_volume, going, index, at.scalar, draws.uniform());
       at.albedo = albedoIn(m_scene, going, at.component, at.scalar);
     } else {
-      at.albedo = albedoOf(m_scene.albedo, at.scalar);
+      at.albedo = albedoAt(m_scene, going, index, at.scalar);
     }
-    if (m_scene.tint)
-      at.albedo = tintedAlbedo(*m_scene.tint, going, index, at.scalar, at.albedo);
     if (m_volume.context)
       at.albedo = paled(*m_volume.context, index, at.albedo);
     if (m_scene.hybrid) {
@@ -174,17 +171,17 @@ private:
   /// Lanes whose matter the clip may remove.
   HWY_INLINE LaneMask removable(const Collisions& at) const {
     if constexpr (isMixed)
-      if (m_volume.mixture->hasFree)
-        return at.going.without(freeIn(*m_volume.mixture, at.going, at.component));
-    return at.going;
+      return at.going.without(freeIn(*m_volume.mixture, at.going, at.component));
+    else
+      return at.going;
   }
 
   /// Extinction of the matter that collisions meet, as if it had all of the space.
   HWY_INLINE Float extinctionOfOne(const Collisions& at) const {
     if constexpr (isMixed)
-      return extinctionOf(*m_volume.mixture, at.going, at.component, at.scalar);
+      return extinctionOf(m_volume.extinctions, at.going, at.component, at.scalar);
     else
-      return extinctionOf(m_volume, at.scalar);
+      return extinctionOf(m_volume.extinctions, at.scalar);
   }
 
   Float3 gradientAt(const Float3& p) const {
@@ -290,13 +287,10 @@ private:
 void scatterAll(const WideScene& volume, const EventScene& scene, PathBatch& paths,
                 LightBatch& lights, Counters& counters) {
   std::visit(
-      [&]<typename Voxel>(const Voxel*) {
-        if (volume.mixture)
-          Events<Voxel, true>(volume, scene, paths, lights).run(counters);
-        else
-          Events<Voxel, false>(volume, scene, paths, lights).run(counters);
+      [&]<typename Voxel>(const Voxel*, auto isMixed) {
+        Events<Voxel, isMixed>(volume, scene, paths, lights).run(counters);
       },
-      volume.voxels);
+      volume.voxels, choiceOf(volume.mixture.has_value()));
 }
 
 /// Moves lanes of columns to the front, from place `from` to place `to` on.

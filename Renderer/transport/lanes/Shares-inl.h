@@ -56,25 +56,17 @@ private:
   };
 
   HWY_INLINE Corner cornerAt(const Float3& p) const {
-    Corner corner{0, 0, p};
-    Float voxel = 0.0F;
-    float stride = 1.0F;
-    const auto along = [&](const WideShares::Axis& axis, Float x, Float& fraction) {
-      // This order of min and max maps NaN to 0.
-      const Float inside = max(min(x, axis.last), 0.0F);
-      const Float cell = min(floor(inside), axis.lastCell);
-      const Float brick = floor(cell * (1.0F / Shares::edge));
-      fraction = inside - cell;
-      voxel = fma(cell - brick * float{Shares::edge}, stride, voxel);
-      stride *= edge;
-      return wholeToInt(brick);
-    };
-    const Int x = along(m_shares.axes[0], p.x, corner.fractions.x);
-    const Int y = along(m_shares.axes[1], p.y, corner.fractions.y);
-    const Int z = along(m_shares.axes[2], p.z, corner.fractions.z);
-    corner.brick = x + y * m_shares.axes[1].brick + z * m_shares.axes[2].brick;
-    corner.voxel = wholeToInt(voxel);
-    return corner;
+    const auto [x, fx] = placeAlong(m_shares.axes[0], p.x);
+    const auto [y, fy] = placeAlong(m_shares.axes[1], p.y);
+    const auto [z, fz] = placeAlong(m_shares.axes[2], p.z);
+    const auto brickOf = [](Float cell) { return floor(cell * (1.0F / Shares::edge)); };
+    const Float3 brick{brickOf(x), brickOf(y), brickOf(z)};
+    const Float3 inside = Float3{x, y, z} - float{Shares::edge} * brick;
+    const Float voxel = fma(fma(inside.z, float{edge}, inside.y), float{edge}, inside.x);
+    return {wholeToInt(brick.x) + wholeToInt(brick.y) * m_shares.axes[1].stride +
+                wholeToInt(brick.z) * m_shares.axes[2].stride,
+            wholeToInt(voxel),
+            {fx, fy, fz}};
   }
 
   /// Shares in mixed bricks, but for the rest's; `plane`: the first of the brick.

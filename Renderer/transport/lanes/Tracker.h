@@ -103,11 +103,6 @@ public:
   static void useInstructionSet(const std::string& name);
 
 private:
-  void setDomain(const Domain& domain);
-  void setCells(const MajorantGrid& majorants, const Grid& grid);
-  void setClip(const Clip& clip, const Grid& grid);
-  void setContext(const ContextStyle& style, const Grid& grid);
-
   WideScene m_scene;
   const StopFlag& m_stop;
 };
