@@ -8,45 +8,6 @@ HWY_INLINE Float depthIndex(const WideScene::DepthAxis& axis, Float coordinate) 
   return max(min(index, axis.last), 0.0F);
 }
 
-/// Exact surface depth at (x, y) in seams for the lanes of `isAsked`; `surface` for the others.
-inline Float askSeams(const Seams& seams, LaneMask isAsked, Int seam, Float x, Float y, Float depth,
-                      double softness, Float surface) {
-  static_assert(laneCount <= Seams::mostQuestions);
-  const LaneArray<std::int32_t> numbers(seam);
-  const LaneArray<float> xs(x), ys(y), depths(depth);
-  LaneArray<float> surfaces(surface);
-  std::array<Seams::Question, laneCount> questions;
-  auto* question = questions.data();
-  forEachLane(isAsked, [&](std::size_t lane) {
-    *question++ = {numbers[lane], Vec2(xs[lane], ys[lane]), surfaces[lane],
-                   depths[lane] - softness};
-  });
-  seams.answer({questions.data(), question});
-  question = questions.data();
-  forEachLane(isAsked,
-              [&](std::size_t lane) { surfaces[lane] = static_cast<float>(question++->surface); });
-  return load(surfaces.data());
-}
-
-/// Surface depth for points at (x, y) and `depth` (ClipDepth::surfaceFor): exact in seams for the
-/// lanes of `which`, else `surface`.
-HWY_INLINE Float sewn(const WideScene& scene, LaneMask which, Int sample, Float x, Float y,
-                      Float depth, Float surface) {
-  const Int seam = gather(scene.seams->numbers().data(), sample);
-  const LaneMask isSeam = seam > -1;
-  if (!isSeam.any())
-    return surface;
-  const Int first = shiftLeft<1>(max(seam, 0));
-  const float* const reaches = &scene.seams->reaches().data()->least;
-  const Float least = min(surface, gather(reaches, first));
-  const Float greatest = max(surface, gather(reaches + 1, first)); // least and greatest alternate
-  const LaneMask isNear = (depth >= least) & (depth <= greatest + scene.softness);
-  const LaneMask isAsked = which & isSeam & isNear;
-  if (!isAsked.any())
-    return surface;
-  return askSeams(*scene.seams, isAsked, seam, x, y, depth, scene.softness, surface);
-}
-
 /// Points in view space.
 struct InView {
   Float x, y;         ///< as toBuffer's; 0 for a plane
@@ -67,6 +28,44 @@ HWY_INLINE InView inView(const WideScene& scene, const Float3& p) {
   at.x = apply(scene.toView[0], p) * at.scale;
   at.y = apply(scene.toView[1], p) * at.scale;
   return at;
+}
+
+/// Exact surface depth in seams for the lanes of `isAsked`; `surface` for the others.
+inline Float askSeams(const Seams& seams, LaneMask isAsked, Int seam, const InView& at,
+                      double softness, Float surface) {
+  static_assert(laneCount <= Seams::mostQuestions);
+  const LaneArray<std::int32_t> numbers(seam);
+  const LaneArray<float> xs(at.x), ys(at.y), depths(at.depth);
+  LaneArray<float> surfaces(surface);
+  std::array<Seams::Question, laneCount> questions;
+  auto* question = questions.data();
+  forEachLane(isAsked, [&](std::size_t lane) {
+    *question++ = {numbers[lane], Vec2(xs[lane], ys[lane]), surfaces[lane],
+                   depths[lane] - softness};
+  });
+  seams.answer({questions.data(), question});
+  question = questions.data();
+  forEachLane(isAsked,
+              [&](std::size_t lane) { surfaces[lane] = static_cast<float>(question++->surface); });
+  return load(surfaces.data());
+}
+
+/// ClipDepth::surfaceFor: exact in seams for the lanes of `which`, else `surface`.
+HWY_INLINE Float sewn(const WideScene& scene, LaneMask which, Int sample, const InView& at,
+                      Float surface) {
+  const Int seam = gather(scene.seams->numbers().data(), sample);
+  const LaneMask isSeam = seam > -1;
+  if (!isSeam.any())
+    return surface;
+  const Int first = shiftLeft<1>(max(seam, 0));
+  const float* const reaches = &scene.seams->reaches().data()->least;
+  const Float least = min(surface, gather(reaches, first));
+  const Float greatest = max(surface, gather(reaches + 1, first)); // least and greatest alternate
+  const LaneMask isNear = (at.depth >= least) & (at.depth <= greatest + scene.softness);
+  const LaneMask isAsked = which & isSeam & isNear;
+  if (!isAsked.any())
+    return surface;
+  return askSeams(*scene.seams, isAsked, seam, at, scene.softness, surface);
 }
 
 /// Depths, mm from the target, of the four samples around places in the buffer.
@@ -112,9 +111,7 @@ HWY_INLINE Float behindSurface(const WideScene& scene, const Float3& p, const In
     return view.depth - nearestDepth(scene, view);
   const DepthCell cell = depthCell(scene, view);
   const Float surface = cell.depth();
-  return view.depth - (scene.seams
-                           ? sewn(scene, which, cell.first, view.x, view.y, view.depth, surface)
-                           : surface);
+  return view.depth - (scene.seams ? sewn(scene, which, cell.first, view, surface) : surface);
 }
 
 /// keep for every kind of clip, for the lanes of `which`.

@@ -127,9 +127,7 @@ public:
       along = dot(mapDirection(m_scene.toLocal, walk.direction()), gradient);
     }
     const Float slope = sqrt(dot(gradient, gradient));
-    const LaneMask away = along < 0.0F;
-    const Float scale = select(away, probability, -probability) / slope;
-    const Float3 normal = orZero(slope > 0.0F, scale * gradient);
+    const Float3 normal = normalOf(gradient, along, probability);
     m_normal = m_normal + normal;
     if (m_scene.hybrid)
       m_facing = m_facing + mean.opacity * missing(m_scene.surfaceRate * slope) * normal;

@@ -48,6 +48,13 @@ HWY_INLINE Float3 differenceAt(const WideField& field, const Float3& p) {
           scalarAt<Voxel>(field, {x, y, z + 1.0F}) - scalarAt<Voxel>(field, {x, y, z - 1.0F})};
 }
 
+/// Unit normal toward a ray's origin, times `weight`; 0 where there is no gradient. `along`: the
+/// gradient along the ray, or a number of its sign.
+HWY_INLINE Float3 normalOf(const Float3& gradient, Float along, Float weight) {
+  const Float slope = sqrt(dot(gradient, gradient));
+  return orZero(slope > 0.0F, select(along < 0.0F, weight, -weight) / slope * gradient);
+}
+
 /// 1 - e^-x.
 HWY_INLINE Float missing(Float x) {
   return -expm1(-x);

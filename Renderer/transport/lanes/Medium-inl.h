@@ -62,55 +62,10 @@ HWY_INLINE Pairs loadPairs(const Element* memory, const Indices& index) {
 #endif
 }
 
-/// The eight voxels around a point: four rows of two along x.
-using Corners = std::array<Pairs, 4>;
-
-/// Corners by pairOf(offset of a row from the first one, in voxels).
-template <typename PairOf>
-HWY_INLINE Corners cornersBy(const WideField& field, PairOf&& pairOf) {
-  const std::int32_t up = field.axes[1].stride;
-  const std::int32_t deep = field.axes[2].stride;
-  return {pairOf(0), pairOf(up), pairOf(deep), pairOf(deep + up)};
-}
-HWY_INLINE Corners cornersAt(const WideField& field, const float* voxels, Int first) {
-  const Indices index(first);
-  return cornersBy(field, [&](std::int32_t row) { return loadPairs(voxels + row, index); });
-}
-HWY_INLINE Corners cornersAt(const WideField& field, const std::int16_t* voxels, Int first) {
-  const Indices index(first);
-  return cornersBy(field, [&](std::int32_t row) {
-    const Int both = loadInts(voxels + row, index);
-    return Pairs{toFloat(shiftRight<16>(shiftLeft<16>(both))), toFloat(shiftRight<16>(both))};
-  });
-}
-HWY_INLINE Corners cornersAt(const WideField& field, const std::uint16_t* voxels, Int first) {
-  const Indices index(first);
-  return cornersBy(field, [&](std::int32_t row) {
-    const Int both = loadInts(voxels + row, index);
-    return Pairs{toFloat(both & 0xffff), toFloat(shiftRight<16>(both) & 0xffff)};
-  });
-}
-HWY_INLINE Corners cornersAt(const WideField& field, const std::uint8_t* voxels, Int first) {
-  const Int lastFour = static_cast<std::int32_t>(field.count - 4);
-  return cornersBy(field, [&](std::int32_t offset) {
-    // Reads four bytes, never beyond the last voxel.
-    const Int row = first + offset;
-    const Int from = min(row, lastFour);
-    const Int four = loadInts(voxels, Indices(from));
-    const Int both = hn::Shr(four.v, shiftLeft<3>(row - from).v);
-    return Pairs{toFloat(both & 0xff), toFloat(shiftRight<8>(both) & 0xff)};
-  });
-}
-
-/// A point among voxel centres, clamped in the outer half voxel.
-struct Place {
-  Int first;        ///< index of the lowest of the eight voxels around it
-  Float3 fractions; ///< position from there, 0 to 1
-};
-
-/// The same along one axis: the lower voxel, whole, and the fraction.
+/// A point along one axis of voxels or shares, clamped in the outer half voxel.
 struct PlaceAlong {
-  Float lower, fraction;
+  Float lower;    ///< the lower of the two voxels around it, whole
+  Float fraction; ///< position from there, 0 to 1
 };
 HWY_INLINE PlaceAlong placeAlong(const WideAxis& a, Float x) {
   // This order of min and max maps NaN to 0.
@@ -118,25 +73,51 @@ HWY_INLINE PlaceAlong placeAlong(const WideAxis& a, Float x) {
   const Float lower = min(floor(inside), a.lastCell);
   return {lower, inside - lower};
 }
+/// Offset of a voxel or brick.
+HWY_INLINE Int offsetOf(const WideAxes& axes, Float x, Float y, Float z) {
+  return wholeToInt(x) + wholeToInt(y) * axes[1].stride + wholeToInt(z) * axes[2].stride;
+}
 
-HWY_INLINE Place placeOf(const WideAxes& axes, const Float3& p) {
-  const auto [x, fx] = placeAlong(axes[0], p.x);
-  const auto [y, fy] = placeAlong(axes[1], p.y);
-  const auto [z, fz] = placeAlong(axes[2], p.z);
-  return {wholeToInt(x) + wholeToInt(y) * axes[1].stride + wholeToInt(z) * axes[2].stride,
-          {fx, fy, fz}};
+/// Voxels from places on, and their neighbours along x.
+template <typename Voxel>
+HWY_INLINE Pairs voxelsAt(const WideField& field, Int first, const Indices& index,
+                          std::int32_t offset) {
+  const auto* const voxels = static_cast<const Voxel*>(field.voxels);
+  if constexpr (std::is_same_v<Voxel, float>) {
+    return loadPairs(voxels + offset, index);
+  } else if constexpr (std::is_same_v<Voxel, std::int16_t>) {
+    const Int both = loadInts(voxels + offset, index);
+    return {toFloat(shiftRight<16>(shiftLeft<16>(both))), toFloat(shiftRight<16>(both))};
+  } else if constexpr (std::is_same_v<Voxel, std::uint16_t>) {
+    const Int both = loadInts(voxels + offset, index);
+    return {toFloat(both & 0xffff), toFloat(shiftRight<16>(both) & 0xffff)};
+  } else { // reads four bytes, never beyond the last voxel
+    const Int row = first + offset;
+    const Int from = min(row, static_cast<std::int32_t>(field.count - 4));
+    const Int four = loadInts(voxels, Indices(from));
+    const Int both = hn::Shr(four.v, shiftLeft<3>(row - from).v);
+    return {toFloat(both & 0xff), toFloat(shiftRight<8>(both) & 0xff)};
+  }
 }
 
 /// The scalar, trilinear between voxel centres.
 template <typename Voxel>
 HWY_INLINE Float scalarAt(const WideField& field, const Float3& p) {
-  const Place place = placeOf(field.axes, p);
-  const Corners c = cornersAt(field, static_cast<const Voxel*>(field.voxels), place.first);
-  const Float3& f = place.fractions;
-  const auto along = [&](const Pairs& row) { return lerp(row.first, row.second, f.x); };
-  const Float low = lerp(along(c[0]), along(c[1]), f.y);
-  const Float high = lerp(along(c[2]), along(c[3]), f.y);
-  return lerp(low, high, f.z);
+  const WideAxes& axes = field.axes;
+  const PlaceAlong x = placeAlong(axes[0], p.x);
+  const PlaceAlong y = placeAlong(axes[1], p.y);
+  const PlaceAlong z = placeAlong(axes[2], p.z);
+  const Int first = offsetOf(axes, x.lower, y.lower, z.lower);
+  const Indices index(first);
+  const std::int32_t up = axes[1].stride, deep = axes[2].stride;
+  const Pairs near = voxelsAt<Voxel>(field, first, index, 0);
+  const Pairs above = voxelsAt<Voxel>(field, first, index, up);
+  const Pairs behind = voxelsAt<Voxel>(field, first, index, deep);
+  const Pairs last = voxelsAt<Voxel>(field, first, index, deep + up);
+  const auto along = [&](const Pairs& row) { return lerp(row.first, row.second, x.fraction); };
+  const Float low = lerp(along(near), along(above), y.fraction);
+  const Float high = lerp(along(behind), along(last), y.fraction);
+  return lerp(low, high, z.fraction);
 }
 
 /// Segment of a table that holds a scalar.

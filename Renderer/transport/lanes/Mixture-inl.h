@@ -3,11 +3,11 @@
 /// Extinction (mm^-1) of one component a lane, as if it had all of the space.
 HWY_INLINE Float extinctionOf(const WideLines& table, LaneMask which, Int components,
                               Float scalar) {
-  auto [value, isBent] = byLines(table, orZero(which, components * table.count), scalar);
-  forEachComponent(which & isBent, components, [&](LaneMask same, std::size_t component) {
-    value.where(same, valueOf(table.segments[component], scalar));
+  ByLines at = byLines(table, orZero(which, components * table.count), scalar);
+  forEachComponent(which & at.isBent, components, [&](LaneMask same, std::size_t component) {
+    at.value.where(same, valueOf(table.segments[component], scalar));
   });
-  return value;
+  return at.value;
 }
 
 /// Lanes of `which` whose component the clip leaves.

@@ -40,7 +40,7 @@ template <typename Voxel, bool isMixed>
 class Events {
 public:
   Events(const WideScene& volume, const EventScene& scene, PathBatch& paths, LightBatch& lights)
-      : m_volume(volume), m_scene(scene), m_paths(paths), m_out(lights), m_lights(scene) {}
+      : m_volume(volume), m_scene(scene), m_paths(paths), m_out(lights) {}
 
   void run(Counters& counters) {
     m_out.rays.size = 0;
@@ -79,8 +79,8 @@ private:
     if (!scattered.any())
       return;
     const Float3 light =
-        m_lights.arriving(scattered, mapPoint(m_scene.toLocal, origin), load3(m_paths.direction, i),
-                          distance, load(&m_paths.scatterPdf[i]));
+        arriving(m_scene, scattered, mapPoint(m_scene.toLocal, origin), load3(m_paths.direction, i),
+                 distance, load(&m_paths.scatterPdf[i]));
     const Float3 sum = load3(m_paths.radiance, i);
     store3(select(scattered, sum + load3(m_paths.weight, i) * light, sum), m_paths.radiance, i);
   }
@@ -108,7 +108,7 @@ private:
     const auto surface = [&] {
       return SurfaceLobes<Number>(law, at.incoming, at.gradient, at.albedo);
     };
-    if (m_lights.some())
+    if (hasDrawn(m_scene))
       sampleLights(i, at, draws, [&](const Float3& toward) {
         const Scattered s = phase.toward(toward);
         if (!surfaces)
@@ -191,41 +191,29 @@ private:
 
   void recordFirst(std::size_t i, const Collisions& at, Float distance) {
     const auto keep = [&](Float now, Column<float>& column) {
-      const Float before = load(&column[i]);
-      store(select(at.first, now, before), &column[i]);
+      store(select(at.first, now, load(&column[i])), &column[i]);
     };
     const auto keep3 = [&](const Float3& now, Columns3& columns) {
-      keep(now.x, columns[0]);
-      keep(now.y, columns[1]);
-      keep(now.z, columns[2]);
+      store3(select(at.first, now, load3(columns, i)), columns, i);
     };
-    const Float depth = fma(distance, load(&m_paths.depthPerLength[i]), load(&m_paths.depth[i]));
-    keep(depth, m_paths.firstDepth);
+    keep(fma(distance, load(&m_paths.depthPerLength[i]), load(&m_paths.depth[i])),
+         m_paths.firstDepth);
     keep3(at.albedo, m_paths.firstAlbedo);
-    if (m_scene.hybrid) {
-      keep3(normalOf(at.gradient, at.incoming), m_paths.firstNormal);
-    } else if (m_scene.wantNormals) {
-      keep3(normalOf(gradientAt(at.index), at.incoming), m_paths.firstNormal);
-      m_gradients += at.first.count();
-    }
+    if (!m_scene.wantNormals)
+      return;
+    const Float3 gradient = m_scene.hybrid ? at.gradient : gradientAt(at.index);
+    m_gradients += m_scene.hybrid ? 0 : at.first.count();
+    keep3(normalOf(gradient, dot(at.incoming, gradient), 1.0F), m_paths.firstNormal);
   }
 
-  /// Unit, toward the ray's origin; 0 where there is no gradient.
-  static HWY_INLINE Float3 normalOf(const Float3& gradient, const Float3& incoming) {
-    const Float slope = sqrt(dot(gradient, gradient));
-    const LaneMask away = dot(incoming, gradient) < 0.0F;
-    return orZero(slope > 0.0F, select(away, 1.0F, -1.0F) / slope * gradient);
-  }
-
-  /// Next-event estimation: one light, to be seen through the volume, weighted against scattering
-  /// toward that light.
+  /// PathSteps::sampledLight.
   template <typename Toward>
   void sampleLights(std::size_t i, const Collisions& at, Draws& draws, Toward&& toward) {
     const Float choice = givenFirst(at.first, m_paths.choices[1], i, draws);
     const Word u = draws.nextBits();
     const Word v = draws.nextBits();
     const LightDraw light =
-        m_lights.draw(at.going, mapPoint(m_scene.toLocal, at.index), choice, u, v);
+        drawOf(m_scene, at.going, mapPoint(m_scene.toLocal, at.index), choice, u, v);
     const Scattered scattered = toward(light.direction);
     const Float pdf = light.pdf + select(light.delta, 0.0F, scattered.pdf);
     const Float3 radiance = (1.0F / pdf) * (at.weight * scattered.factor * light.radiance);
@@ -246,7 +234,7 @@ private:
     store3(pack(radiance), m_out.radiance, to);
     put(depth, m_out.rays.depth);
     put(acceptance, m_out.rays.acceptance);
-    put(numbersFrom(i), m_out.path);
+    put(Word(hn::Iota(words, static_cast<std::uint32_t>(i))), m_out.path);
     m_out.rays.size += count;
   }
 
@@ -272,15 +260,10 @@ private:
     return at.going & (greatest(weight) > 0.0F);
   }
 
-  static HWY_INLINE Word numbersFrom(std::size_t i) {
-    return hn::Iota(words, static_cast<std::uint32_t>(i));
-  }
-
   const WideScene& m_volume;
   const EventScene& m_scene;
   PathBatch& m_paths;
   LightBatch& m_out;
-  WideLights m_lights;
   std::size_t m_collisions = 0, m_gradients = 0;
 };
 
@@ -293,37 +276,22 @@ void scatterAll(const WideScene& volume, const EventScene& scene, PathBatch& pat
       volume.voxels, choiceOf(volume.mixture.has_value()));
 }
 
-/// Moves lanes of columns to the front, from place `from` to place `to` on.
-struct Packing {
-  Shuffle pack;
-  std::size_t from, to;
-
-  template <typename T>
-  HWY_INLINE void operator()(Column<T>& column) const {
-    store(pack(load(&column[from])), &column[to]);
-  }
-  HWY_INLINE void operator()(Columns3& columns) const {
-    for (Column<float>& column : columns)
-      (*this)(column);
-  }
-  template <typename... Columns>
-  HWY_INLINE void each(Columns&... columns) const {
-    ((*this)(columns), ...);
-  }
-};
-
 void dropEndedLanes(PathBatch& paths) {
   std::size_t left = 0;
   for (std::size_t i = 0; i < paths.rays.size; i += laneCount) {
     const LaneMask ended = LaneMask::fromBits(paths.ended[i / 64] >> i % 64);
     const LaneMask going = LaneMask::first(paths.rays.size - i).without(ended);
-    // All that paths need after their first scattering.
-    if (left != i || ended.any())
-      Packing{Shuffle::packing(going), i, left}.each(
-          paths.rays.origin, paths.rays.direction, paths.rays.length, paths.rays.depth,
-          paths.rays.acceptance, paths.direction, paths.weight, paths.radiance, paths.scatterPdf,
-          paths.bounces, paths.key, paths.counter, paths.tile, paths.ofTile, paths.firstDepth,
-          paths.firstAlbedo, paths.firstNormal);
+    const Shuffle pack = Shuffle::packing(going);
+    const auto move = [&](auto&... columns) {
+      (store(pack(load(&columns[i])), &columns[left]), ...);
+    };
+    const auto move3 = [&](auto&... columns) { (move(columns[0], columns[1], columns[2]), ...); };
+    if (left != i || ended.any()) { // all that paths need after their first scattering
+      move3(paths.rays.origin, paths.rays.direction, paths.direction, paths.weight, paths.radiance,
+            paths.firstAlbedo, paths.firstNormal);
+      move(paths.rays.length, paths.rays.depth, paths.rays.acceptance, paths.scatterPdf,
+           paths.bounces, paths.key, paths.counter, paths.tile, paths.ofTile, paths.firstDepth);
+    }
     left += going.count();
   }
   paths.rays.size = left;

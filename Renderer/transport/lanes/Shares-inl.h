@@ -56,17 +56,18 @@ private:
   };
 
   HWY_INLINE Corner cornerAt(const Float3& p) const {
-    const auto [x, fx] = placeAlong(m_shares.axes[0], p.x);
-    const auto [y, fy] = placeAlong(m_shares.axes[1], p.y);
-    const auto [z, fz] = placeAlong(m_shares.axes[2], p.z);
+    const WideAxes& axes = m_shares.axes;
+    const PlaceAlong x = placeAlong(axes[0], p.x);
+    const PlaceAlong y = placeAlong(axes[1], p.y);
+    const PlaceAlong z = placeAlong(axes[2], p.z);
     const auto brickOf = [](Float cell) { return floor(cell * (1.0F / Shares::edge)); };
-    const Float3 brick{brickOf(x), brickOf(y), brickOf(z)};
-    const Float3 inside = Float3{x, y, z} - float{Shares::edge} * brick;
+    const Float3 cell{x.lower, y.lower, z.lower};
+    const Float3 brick{brickOf(cell.x), brickOf(cell.y), brickOf(cell.z)};
+    const Float3 inside = cell - float{Shares::edge} * brick;
     const Float voxel = fma(fma(inside.z, float{edge}, inside.y), float{edge}, inside.x);
-    return {wholeToInt(brick.x) + wholeToInt(brick.y) * m_shares.axes[1].stride +
-                wholeToInt(brick.z) * m_shares.axes[2].stride,
+    return {offsetOf(axes, brick.x, brick.y, brick.z),
             wholeToInt(voxel),
-            {fx, fy, fz}};
+            {x.fraction, y.fraction, z.fraction}};
   }
 
   /// Shares in mixed bricks, but for the rest's; `plane`: the first of the brick.

@@ -203,7 +203,7 @@ private:
   LaneMask m_cut = LaneMask::none(); ///< lanes whose collision lies in a cut cell
   Int m_ray = static_cast<std::int32_t>(RayBatch::capacity); ///< index of the ray in the batch
 
-  Way m_way[3] = {idle(), idle(), idle()};
+  Way m_way[3] = {};
   Float m_t = 0.0F;          ///< mm
   Float m_end = 0.0F;        ///< mm
   Float m_depth = 0.0F;      ///< optical depth to the next tentative collision
@@ -214,8 +214,6 @@ private:
   Word m_counter = 0U;   ///< of the random numbers
   Word m_cells = 0U, m_skipped = 0U;
   std::uint64_t m_lookups = 0;
-
-  static Way idle() { return {0.0F, 0.0F, 0.0F, 0.0F}; }
 };
 
 /// Two sets of lanes take turns: while one waits for memory, the other computes.
