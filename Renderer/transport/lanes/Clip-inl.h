@@ -30,6 +30,40 @@ HWY_INLINE InView inView(const WideScene& scene, const Float3& p) {
   return at;
 }
 
+/// Slope of a surface along one axis of the buffer, mm per mm, from its `rise` over a cell. Beyond
+/// the samples, and at the first of them, 0.
+HWY_INLINE Float slopeAlong(const WideScene::DepthAxis& axis, Float index, Float rise) {
+  const Float before = axis.before;
+  const LaneMask isFine = (index >= before) & (index < before + axis.lastInside);
+  const LaneMask isBetween = (index > 0.0F) & (index < axis.last);
+  const Float perLength = select(isFine, axis.perPitch, axis.perPitch * axis.perFactor);
+  return orZero(isBetween, rise * perLength);
+}
+
+/// A surface between four samples of the buffer.
+struct Surface {
+  Int sample;           ///< the first of the four
+  Float depth;          ///< mm from the target
+  Float slopeX, slopeY; ///< mm per mm
+};
+HWY_INLINE Surface surfaceAt(const WideScene& scene, const InView& view) {
+  const Float column = depthIndex(scene.depthX, view.x);
+  const Float row = depthIndex(scene.depthY, view.y);
+  const Int columns = scene.depthColumns;
+  const Int c0 = toInt(column);
+  const Int r0 = toInt(row);
+  const Int c1 = min(c0 + 1, toInt(scene.depthX.last));
+  const Int r1 = min(r0 + 1, toInt(scene.depthY.last));
+  const Float fc = column - toFloat(c0);
+  const Float fr = row - toFloat(r0);
+  const auto at = [&](Int c, Int r) { return gather(scene.depths, r * columns + c); };
+  const Float upLeft = at(c0, r0), upRight = at(c1, r0);
+  const Float downLeft = at(c0, r1), downRight = at(c1, r1);
+  return {r0 * columns + c0, lerp(lerp(upLeft, upRight, fc), lerp(downLeft, downRight, fc), fr),
+          slopeAlong(scene.depthX, column, lerp(upRight - upLeft, downRight - downLeft, fr)),
+          slopeAlong(scene.depthY, row, lerp(downLeft - upLeft, downRight - upRight, fc))};
+}
+
 /// Exact surface depth in seams for the lanes of `isAsked`; `surface` for the others.
 inline Float askSeams(const Seams& seams, LaneMask isAsked, Int seam, const InView& at,
                       double softness, Float surface) {
@@ -51,9 +85,10 @@ inline Float askSeams(const Seams& seams, LaneMask isAsked, Int seam, const InVi
 }
 
 /// ClipDepth::surfaceFor: exact in seams for the lanes of `which`, else `surface`.
-HWY_INLINE Float sewn(const WideScene& scene, LaneMask which, Int sample, const InView& at,
-                      Float surface) {
-  const Int seam = gather(scene.seams->numbers().data(), sample);
+HWY_INLINE Float sewn(const WideScene& scene, LaneMask which, const Surface& linear,
+                      const InView& at) {
+  const Float surface = linear.depth;
+  const Int seam = gather(scene.seams->numbers().data(), linear.sample);
   const LaneMask isSeam = seam > -1;
   if (!isSeam.any())
     return surface;
@@ -66,32 +101,6 @@ HWY_INLINE Float sewn(const WideScene& scene, LaneMask which, Int sample, const 
   if (!isAsked.any())
     return surface;
   return askSeams(*scene.seams, isAsked, seam, at, scene.softness, surface);
-}
-
-/// Depths, mm from the target, of the four samples around places in the buffer.
-struct DepthCell {
-  Float column, row; ///< of the places
-  Float fc, fr;      ///< places in their cells, 0 to 1
-  Int first;         ///< sample
-  Float upLeft, upRight, downLeft, downRight;
-
-  HWY_INLINE Float depth() const {
-    return lerp(lerp(upLeft, upRight, fc), lerp(downLeft, downRight, fc), fr);
-  }
-};
-
-HWY_INLINE DepthCell depthCell(const WideScene& scene, const InView& view) {
-  const Float column = depthIndex(scene.depthX, view.x);
-  const Float row = depthIndex(scene.depthY, view.y);
-  const Int columns = scene.depthColumns;
-  const Int c0 = toInt(column);
-  const Int r0 = toInt(row);
-  const Int c1 = min(c0 + 1, toInt(scene.depthX.last));
-  const Int r1 = min(r0 + 1, toInt(scene.depthY.last));
-  const Float fc = column - toFloat(c0);
-  const Float fr = row - toFloat(r0);
-  const auto at = [&](Int c, Int r) { return gather(scene.depths, r * columns + c); };
-  return {column, row, fc, fr, r0 * columns + c0, at(c0, r0), at(c1, r0), at(c0, r1), at(c1, r1)};
 }
 
 /// Depth of the nearest sample.
@@ -109,9 +118,8 @@ HWY_INLINE Float behindSurface(const WideScene& scene, const Float3& p, const In
     return -apply(scene.toPlane, p);
   if (scene.clipKind == WideScene::ClipKind::depthNearest)
     return view.depth - nearestDepth(scene, view);
-  const DepthCell cell = depthCell(scene, view);
-  const Float surface = cell.depth();
-  return view.depth - (scene.seams ? sewn(scene, which, cell.first, view, surface) : surface);
+  const Surface surface = surfaceAt(scene, view);
+  return view.depth - (scene.seams ? sewn(scene, which, surface, view) : surface.depth);
 }
 
 /// keep for every kind of clip, for the lanes of `which`.
@@ -124,25 +132,10 @@ inline Float keep(const WideScene& scene, const Float3& p, LaneMask which) {
   return select(view.behindEye, 0.0F, share);
 }
 
-/// Slope of a surface along one axis of the buffer, mm per mm, from its `rise` over a cell. Beyond
-/// the samples, and at the first of them, 0.
-HWY_INLINE Float slopeAlong(const WideScene::DepthAxis& axis, Float index, Float rise) {
-  const Float before = axis.before;
-  const LaneMask isFine = (index >= before) & (index < before + axis.lastInside);
-  const LaneMask isBetween = (index > 0.0F) & (index < axis.last);
-  const Float perLength = select(isFine, axis.perPitch, axis.perPitch * axis.perFactor);
-  return orZero(isBetween, rise * perLength);
-}
-
-/// Gradient of the depth behind a linear surface, along the view's axes.
+/// Gradient of the depth behind a surface, along the view's axes.
 HWY_INLINE Float3 behindGradient(const WideScene& scene, const InView& view,
-                                 const DepthCell& cell) {
-  const Float x =
-      slopeAlong(scene.depthX, cell.column,
-                 lerp(cell.upRight - cell.upLeft, cell.downRight - cell.downLeft, cell.fr));
-  const Float y =
-      slopeAlong(scene.depthY, cell.row,
-                 lerp(cell.downLeft - cell.upLeft, cell.downRight - cell.upRight, cell.fc));
+                                 const Surface& surface) {
+  const Float x = surface.slopeX, y = surface.slopeY;
   if (!scene.perspective)
     return {-x, -y, 1.0F};
   const Float perDepth = view.scale / scene.targetDepth;
@@ -161,6 +154,6 @@ inline Float3 cutGradient(const WideScene& scene, const Float3& p, LaneMask whic
   const Float length = scene.cutSlope;
   if (scene.clipKind != WideScene::ClipKind::depthLinear)
     return orZero(isCut, length * Float3(scene.cutNormal));
-  const Float3 gradient = behindGradient(scene, view, depthCell(scene, view));
+  const Float3 gradient = behindGradient(scene, view, surfaceAt(scene, view));
   return orZero(isCut, length * normalized(mapDirection(scene.fromView, gradient)));
 }

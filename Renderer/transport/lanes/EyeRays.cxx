@@ -100,22 +100,23 @@ EyeTable::EyeTable(const Domain& domain, const Camera& camera)
   toIndex = affineRows(Affine(linear));
 }
 
-void WideEyeRays::begin(PathStarts& starts, PathBatch& paths) const {
-  HWY_DYNAMIC_DISPATCH(drawAll)(m_table, starts, paths);
-  if (m_eye.isWhole()) {
+void beginPaths(const WideScene& volume, const EyeTable& table, const EyeRays& eye,
+                PathStarts& starts, PathBatch& paths) {
+  HWY_DYNAMIC_DISPATCH(drawAll)(table, starts, paths);
+  if (eye.isWhole()) {
     std::fill_n(starts.from.begin(), starts.size, 0.0F);
     std::fill_n(starts.to.begin(), starts.size, std::numeric_limits<float>::infinity());
   } else {
     for (std::size_t i = 0; i < starts.size; ++i) {
-      const Ray ray = m_eye.ray(double{m_table.middleColumn} + double{starts.column[i]},
-                                double{m_table.middleRow} + double{starts.row[i]});
-      const Interval range = m_eye.range(ray);
-      const double before = m_table.nearDepth / m_eye.depth(ray, 1.0);
+      const Ray ray = eye.ray(double{table.middleColumn} + double{starts.column[i]},
+                              double{table.middleRow} + double{starts.row[i]});
+      const Interval range = eye.range(ray);
+      const double before = table.nearDepth / eye.depth(ray, 1.0);
       starts.from[i] = narrow(range.begin - before);
       starts.to[i] = narrow(range.end - before);
     }
   }
-  HWY_DYNAMIC_DISPATCH(beginAll)(m_volume, m_table, starts, paths);
+  HWY_DYNAMIC_DISPATCH(beginAll)(volume, table, starts, paths);
   paths.rays.size += starts.size;
 }
 

@@ -77,8 +77,7 @@ private:
     const Float middle = fma(0.5F, length, m_t);
     const Float3 p = pointAt(middle);
     const Float scalar = scalarAt<Voxel>(m_volume.field, p);
-    LaneExtinctions all = m_volume.mixture ? extinctionsAt<true>(m_volume, filled, p, scalar)
-                                           : extinctionsAt<false>(m_volume, filled, p, scalar);
+    LaneExtinctions all = extinctionsAt(m_volume, filled, p, scalar);
     if (m_asksKeep) {
       const LaneMask cut = filled & cell.cut;
       if (cut.any())
@@ -176,43 +175,38 @@ private:
       m_facing{m_hit, m_hit, m_hit};
 };
 
-template <typename Voxel>
-void marchBatch(const WideScene& volume, const EventScene& scene, MarchBatch& batch) {
+void marchAll(const WideScene& volume, const EventScene& scene, MarchBatch& batch) {
   // Eye rays begin behind the surface, where only an edge that is not sharp matters; unless they
   // are whole, for matter that the clip leaves.
   const bool asksKeep =
       volume.ghost > 0.0F || volume.softness > 0.0F || (volume.mixture && volume.mixture->hasFree);
-  for (std::size_t first = 0; first < batch.rays.size; first += laneCount) {
-    Walk<Voxel> walk(volume, batch.rays, first, 1.0, asksKeep);
-    Sums<Voxel> sums(volume, scene);
-    while (!walk.isDone()) {
-      const LaneMask ended = walk.step();
-      const Float least = select(ended, 0.0F, narrow(MarchSteps::share));
-      const LaneMask due = walk.pendingAbove(least);
-      if (due.any())
-        sums.collect(walk, due);
+  const auto march = [&]<typename Voxel>(const Voxel*) {
+    for (std::size_t first = 0; first < batch.rays.size; first += laneCount) {
+      Walk<Voxel> walk(volume, batch.rays, first, 1.0, asksKeep);
+      Sums<Voxel> sums(volume, scene);
+      while (!walk.isDone()) {
+        const LaneMask ended = walk.step();
+        const Float least = select(ended, 0.0F, narrow(MarchSteps::share));
+        const LaneMask due = walk.pendingAbove(least);
+        if (due.any())
+          sums.collect(walk, due);
+      }
+      sums.putTo(batch, first);
     }
-    sums.putTo(batch, first);
-  }
-}
-
-template <typename Voxel>
-void passBatch(const WideScene& volume, RayBatch& rays) {
-  for (std::size_t first = 0; first < rays.size; first += laneCount) {
-    Walk<Voxel> walk(volume, rays, first, MarchSteps::coarser, true);
-    while (!walk.isDone())
-      walk.step();
-    store(walk.transmittance(), &rays.result[first]);
-  }
-}
-
-void marchAll(const WideScene& volume, const EventScene& scene, MarchBatch& batch) {
-  std::visit([&]<typename Voxel>(const Voxel*) { marchBatch<Voxel>(volume, scene, batch); },
-             volume.voxels);
+  };
+  std::visit(march, volume.voxels);
 }
 
 void passAll(const WideScene& volume, RayBatch& rays) {
-  std::visit([&]<typename Voxel>(const Voxel*) { passBatch<Voxel>(volume, rays); }, volume.voxels);
+  const auto pass = [&]<typename Voxel>(const Voxel*) {
+    for (std::size_t first = 0; first < rays.size; first += laneCount) {
+      Walk<Voxel> walk(volume, rays, first, MarchSteps::coarser, true);
+      while (!walk.isDone())
+        walk.step();
+      store(walk.transmittance(), &rays.result[first]);
+    }
+  };
+  std::visit(pass, volume.voxels);
 }
 
 } // namespace

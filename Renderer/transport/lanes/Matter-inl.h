@@ -59,8 +59,3 @@ HWY_INLINE Float3 normalOf(const Float3& gradient, Float along, Float weight) {
 HWY_INLINE Float missing(Float x) {
   return -expm1(-x);
 }
-
-/// Medium's probability of scattering at a surface; `slope`: length of the gradient.
-HWY_INLINE Float surfaceChance(const EventScene& scene, Float extinction, Float slope) {
-  return missing(extinction) * missing(scene.surfaceRate * slope);
-}

@@ -114,9 +114,11 @@ HWY_INLINE Float scalarAt(const WideField& field, const Float3& p) {
   const Pairs above = voxelsAt<Voxel>(field, first, index, up);
   const Pairs behind = voxelsAt<Voxel>(field, first, index, deep);
   const Pairs last = voxelsAt<Voxel>(field, first, index, deep + up);
-  const auto along = [&](const Pairs& row) { return lerp(row.first, row.second, x.fraction); };
-  const Float low = lerp(along(near), along(above), y.fraction);
-  const Float high = lerp(along(behind), along(last), y.fraction);
+  const Float f = x.fraction;
+  const Float low =
+      lerp(lerp(near.first, near.second, f), lerp(above.first, above.second, f), y.fraction);
+  const Float high =
+      lerp(lerp(behind.first, behind.second, f), lerp(last.first, last.second, f), y.fraction);
   return lerp(low, high, z.fraction);
 }
 

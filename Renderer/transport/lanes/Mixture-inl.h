@@ -48,12 +48,11 @@ inline LaneExtinctions extinctionsOf(const WideScene& scene, LaneMask which, con
   return sums;
 }
 
-/// Extinctions of all matter at points, under the context's style. `isMixed`: there is a mixture.
-template <bool isMixed>
+/// Extinctions of all matter at points, under the context's style.
 HWY_INLINE LaneExtinctions extinctionsAt(const WideScene& scene, LaneMask which,
                                          const Float3& index, Float scalar) {
   LaneExtinctions all{0.0F, 0.0F};
-  if constexpr (isMixed)
+  if (scene.mixture)
     all = extinctionsOf(scene, which, index, scalar);
   else
     all.clipped = extinctionOf(scene.extinctions, scalar);

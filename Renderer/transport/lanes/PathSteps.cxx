@@ -30,13 +30,13 @@ struct Collisions {
   Float3 index;   ///< points, index space
   Float scalar;
   Float3 incoming, weight;
-  Float3 albedo, gradient; ///< gradient: 0 unless needed
-  LaneMask surface;
-  Int component; ///< of a mixture
+  Float3 albedo = {};
+  Float3 gradient = {0.0F, 0.0F, 0.0F}; ///< 0 unless needed
+  LaneMask surface = LaneMask::none();
+  Int component = 0; ///< of a mixture
 };
 
-/// `isMixed`: the matter is a mixture.
-template <typename Voxel, bool isMixed>
+template <typename Voxel>
 class Events {
 public:
   Events(const WideScene& volume, const EventScene& scene, PathBatch& paths, LightBatch& lights)
@@ -93,10 +93,8 @@ private:
     const Collisions at = matter(i, going, first, index, draws);
     if (first.any())
       recordFirst(i, at, distance);
-    if constexpr (isMixed)
-      return scatter(i, at, draws, lawsOf(m_scene, at.component));
-    else
-      return scatter(i, at, draws, m_scene.laws[0]);
+    return m_volume.mixture ? scatter(i, at, draws, lawsOf(m_scene, at.component))
+                            : scatter(i, at, draws, m_scene.laws[0]);
   }
 
   /// Scatters lanes by the law; returns those that go on afterwards.
@@ -137,12 +135,8 @@ private:
                   index,
                   load(&m_paths.rays.scalar[i]),
                   load3(m_paths.direction, i),
-                  load3(m_paths.weight, i),
-                  {},
-                  {0.0F, 0.0F, 0.0F},
-                  LaneMask::none(),
-                  0};
-    if constexpr (isMixed) {
+                  load3(m_paths.weight, i)};
+    if (m_volume.mixture) {
       at.component = drawComponents(m_volume, going, index, at.scalar, draws.uniform());
       at.albedo = albedoIn(m_scene, going, at.component, at.scalar);
     } else {
@@ -156,7 +150,7 @@ private:
       if (m_volume.cutSlope > 0.0F)
         at.gradient = at.gradient + cutGradient(m_volume, index, removable(at));
       const Float slope = sqrt(dot(at.gradient, at.gradient));
-      const Float chance = surfaceChance(m_scene, extinctionOfOne(at), slope);
+      const Float chance = missing(extinctionOfOne(at)) * missing(m_scene.surfaceRate * slope);
       at.surface = going & (givenFirst(first, m_paths.choices[0], i, draws) < chance);
     }
     return at;
@@ -170,18 +164,14 @@ private:
 
   /// Lanes whose matter the clip may remove.
   HWY_INLINE LaneMask removable(const Collisions& at) const {
-    if constexpr (isMixed)
-      return at.going.without(freeIn(*m_volume.mixture, at.going, at.component));
-    else
-      return at.going;
+    return m_volume.mixture ? at.going.without(freeIn(*m_volume.mixture, at.going, at.component))
+                            : at.going;
   }
 
   /// Extinction of the matter that collisions meet, as if it had all of the space.
   HWY_INLINE Float extinctionOfOne(const Collisions& at) const {
-    if constexpr (isMixed)
-      return extinctionOf(m_volume.extinctions, at.going, at.component, at.scalar);
-    else
-      return extinctionOf(m_volume.extinctions, at.scalar);
+    return m_volume.mixture ? extinctionOf(m_volume.extinctions, at.going, at.component, at.scalar)
+                            : extinctionOf(m_volume.extinctions, at.scalar);
   }
 
   Float3 gradientAt(const Float3& p) const {
@@ -269,11 +259,9 @@ private:
 
 void scatterAll(const WideScene& volume, const EventScene& scene, PathBatch& paths,
                 LightBatch& lights, Counters& counters) {
-  std::visit(
-      [&]<typename Voxel>(const Voxel*, auto isMixed) {
-        Events<Voxel, isMixed>(volume, scene, paths, lights).run(counters);
-      },
-      volume.voxels, choiceOf(volume.mixture.has_value()));
+  std::visit([&]<typename Voxel>(
+                 const Voxel*) { Events<Voxel>(volume, scene, paths, lights).run(counters); },
+             volume.voxels);
 }
 
 void dropEndedLanes(PathBatch& paths) {
@@ -307,8 +295,9 @@ namespace fenestra {
 HWY_EXPORT(scatterAll);
 HWY_EXPORT(dropEndedLanes);
 
-void WideEvents::scatter(PathBatch& paths, LightBatch& lights, Counters& counters) const {
-  HWY_DYNAMIC_DISPATCH(scatterAll)(m_volume, m_scene, paths, lights, counters);
+void scatterPaths(const WideScene& volume, const EventScene& scene, PathBatch& paths,
+                  LightBatch& lights, Counters& counters) {
+  HWY_DYNAMIC_DISPATCH(scatterAll)(volume, scene, paths, lights, counters);
 }
 
 void dropEnded(PathBatch& paths) {

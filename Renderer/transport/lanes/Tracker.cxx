@@ -28,12 +28,11 @@ struct Queue {
   std::size_t left() const { return rays.size - next; }
 };
 
-/// One ray a lane, all followed together. `isMixed`: the matter is a mixture.
-template <typename Voxel, bool wantRatio, bool isMixed>
+/// One ray a lane, all followed together.
+template <typename Voxel, bool wantRatio>
 class Lanes {
 public:
-  Lanes(const WideScene& scene, Queue& queue)
-      : m_scene(scene), m_queue(queue), m_rays(queue.rays) {}
+  Lanes(const WideScene& scene, Queue& queue) : m_scene(scene), m_queue(queue) {}
 
   /// Advances all lanes: look-ups where enough lanes wait for one, then cells. Returns false if no
   /// ray is left. What is decided here was computed a step ago: while other sets took their turns
@@ -79,15 +78,15 @@ private:
     const Shuffle deal = Shuffle::dealing(fresh);
     const auto dealt = [&](const auto& column) { return deal(load(&column[first])); };
     for (std::size_t axis = 0; axis < 3; ++axis)
-      m_way[axis].where(fresh, Way::entered(m_scene.axes[axis], dealt(m_rays.origin[axis]),
-                                            dealt(m_rays.direction[axis])));
+      m_way[axis].where(fresh, Way::entered(m_scene.axes[axis], dealt(m_queue.rays.origin[axis]),
+                                            dealt(m_queue.rays.direction[axis])));
     m_t.where(fresh, 0.0F);
-    m_end.where(fresh, dealt(m_rays.length));
+    m_end.where(fresh, dealt(m_queue.rays.length));
     m_ratio.where(fresh, 1.0F);
-    const Word depth = dealt(m_rays.depth);
+    const Word depth = dealt(m_queue.rays.depth);
     m_depth.where(fresh, exponentialOf(depth));
     m_counter.where(fresh, depth);
-    m_acceptance.where(fresh, dealt(m_rays.acceptance));
+    m_acceptance.where(fresh, dealt(m_queue.rays.acceptance));
     m_ray.where(fresh, deal.from() + static_cast<std::int32_t>(first));
     m_busy = m_busy | fresh;
   }
@@ -132,15 +131,14 @@ private:
     m_lookups += hit.count();
     const Float3 at = point();
     const Float scalar = scalarAt<Voxel>(m_scene.field, at);
-    const LaneExtinctions all = extinctionsAt<isMixed>(m_scene, hit, at, scalar);
+    const LaneExtinctions all = extinctionsAt(m_scene, hit, at, scalar);
     Float extinction = all.clipped;
     Word counter = m_counter;
     const Float u = m_acceptance;
     const LaneMask cut = hit & m_cut;
     if (cut.any())
       extinction = clipped(cut, at, all, u, counter);
-    if constexpr (isMixed)
-      extinction = extinction + all.free;
+    extinction = extinction + all.free;
     m_depth.where(hit, exponential(counter));
     m_acceptance.where(hit, uniform(counter));
     m_counter.where(hit, counter);
@@ -169,7 +167,7 @@ private:
     Float extinction = all.clipped;
     if constexpr (wantRatio) {
       cut = cut & (extinction > 0.0F);
-      if (m_scene.seams && !(isMixed && m_scene.mixture->hasFree)) {
+      if (m_scene.seams && !(m_scene.mixture && m_scene.mixture->hasFree)) {
         Word after = counter;
         const LaneMask isReal = uniform(after) * m_majorant < extinction;
         counter.where(cut, after);
@@ -177,7 +175,7 @@ private:
         cut = cut & isReal;
       }
     } else {
-      cut = cut & (u * m_majorant < (isMixed ? extinction + all.free : extinction));
+      cut = cut & (u * m_majorant < extinction + all.free);
     }
     if (cut.any())
       extinction.where(cut, extinction * keep(m_scene, at, cut));
@@ -189,15 +187,14 @@ private:
     const Indices rays(m_ray);
     const LaneArray<float> results(wantRatio ? m_ratio : m_t), scalars(m_scalar);
     for (std::size_t lane = 0; lane < laneCount; ++lane) {
-      m_rays.result[rays[lane]] = results[lane];
+      m_queue.rays.result[rays[lane]] = results[lane];
       if constexpr (!wantRatio)
-        m_rays.scalar[rays[lane]] = scalars[lane];
+        m_queue.rays.scalar[rays[lane]] = scalars[lane];
     }
   }
 
   const WideScene& m_scene;
   Queue& m_queue;
-  RayBatch& m_rays;
   LaneMask m_busy = LaneMask::none();
   LaneMask m_hit = LaneMask::none(); ///< busy lanes at a tentative collision
   LaneMask m_cut = LaneMask::none(); ///< lanes whose collision lies in a cut cell
@@ -217,10 +214,10 @@ private:
 };
 
 /// Two sets of lanes take turns: while one waits for memory, the other computes.
-template <typename Voxel, bool wantRatio, bool isMixed>
+template <typename Voxel, bool wantRatio>
 void followBatch(const WideScene& scene, RayBatch& rays, const StopFlag& stop, Counters& counters) {
   Queue queue{rays};
-  using Set = Lanes<Voxel, wantRatio, isMixed>;
+  using Set = Lanes<Voxel, wantRatio>;
   std::array<Set, 2> sets{Set(scene, queue), Set(scene, queue)};
   bool isBusy = true;
   for (std::uint32_t steps = 1; isBusy; ++steps) {
@@ -237,10 +234,13 @@ void followBatch(const WideScene& scene, RayBatch& rays, const StopFlag& stop, C
 void followAll(const WideScene& scene, RayBatch& rays, bool wantRatio, const StopFlag& stop,
                Counters& counters) {
   std::visit(
-      [&]<typename Voxel>(const Voxel*, auto isRatio, auto isMixed) {
-        followBatch<Voxel, isRatio, isMixed>(scene, rays, stop, counters);
+      [&]<typename Voxel>(const Voxel*) {
+        if (wantRatio)
+          followBatch<Voxel, true>(scene, rays, stop, counters);
+        else
+          followBatch<Voxel, false>(scene, rays, stop, counters);
       },
-      scene.voxels, choiceOf(wantRatio), choiceOf(scene.mixture.has_value()));
+      scene.voxels);
 }
 
 } // namespace

@@ -102,16 +102,16 @@ void setContext(WideScene& scene, const ContextStyle& style, const Grid& grid) {
 } // namespace
 
 double setInside(RayBatch& rays, std::size_t i, const Domain& domain, const Ray& ray,
-                 const Interval& range, const RayNumbers& numbers) {
+                 const Interval& range) {
   const Affine& worldToIndex = domain.grid().worldToIndex;
   const Ray indexRay = transformed(worldToIndex, ray);
   const Interval inside = domain.clip(indexRay, range);
   if (inside.empty()) {
-    rays.set(i, {Vec3::Zero(), Vec3::Ones()}, 0.0, numbers);
+    rays.set(i, {Vec3::Zero(), Vec3::Ones()}, 0.0);
     return 0.0;
   }
   const Vec3 origin = inside.begin > 0.0 ? worldToIndex * ray.at(inside.begin) : indexRay.origin;
-  rays.set(i, {origin, indexRay.direction}, inside.end - inside.begin, numbers);
+  rays.set(i, {origin, indexRay.direction}, inside.end - inside.begin);
   return inside.begin;
 }
 

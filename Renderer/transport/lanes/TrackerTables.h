@@ -15,12 +15,6 @@ namespace fenestra {
 
 class Seams;
 
-/// A truth that std::visit makes a constant.
-using Choice = std::variant<std::false_type, std::true_type>;
-inline Choice choiceOf(bool is) {
-  return is ? Choice(std::true_type()) : Choice();
-}
-
 /// Voxels for interpolation in lanes.
 struct WideField {
   const void* voxels = nullptr;

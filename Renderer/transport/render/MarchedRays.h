@@ -76,7 +76,7 @@ public:
       for (std::size_t i = 0; i < count; ++i) {
         const Ray ray = m_scene.camera.ray(points[from + i].column, points[from + i].row);
         before[i] = setInside(batch->rays, i, m_domain, ray,
-                              visible(eyeClip(m_scene.clip, m_scene.mixture), ray), {});
+                              visible(eyeClip(m_scene.clip, m_scene.mixture), ray));
         perLength[i] = m_scene.camera.depthPerLength(ray);
       }
       marchAlong(m_volume, m_events, *batch);
@@ -90,7 +90,7 @@ public:
     for (std::size_t from = 0; from < rays.size(); from += RayBatch::capacity) {
       batch->size = std::min(rays.size() - from, RayBatch::capacity);
       for (std::size_t i = 0; i < batch->size; ++i)
-        setInside(*batch, i, m_domain, rays[from + i].ray, {0.0, rays[from + i].distance}, {});
+        setInside(*batch, i, m_domain, rays[from + i].ray, {0.0, rays[from + i].distance});
       marchThrough(m_volume, *batch);
       out = std::copy_n(batch->result.begin(), batch->size, out);
     }
