@@ -29,7 +29,7 @@ MajorantGrid cellsOf(Extinction extinction, const Clip& clip = ClipNone{}) {
   return {grid, CellRanges(volume, 0), transfer, clip};
 }
 
-/// What a code says, as lanes decode it.
+/// Contents of a code, as lanes decode it.
 struct Decoded {
   float majorant;
   std::int32_t reach;

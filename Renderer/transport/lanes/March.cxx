@@ -77,7 +77,8 @@ private:
     const Float middle = fma(0.5F, length, m_t);
     const Float3 p = pointAt(middle);
     const Float scalar = scalarAt<Voxel>(m_volume.field, p);
-    LaneExtinctions all = extinctionsAt(m_volume, filled, p, scalar);
+    LaneExtinctions all = m_volume.mixture ? extinctionsAt<true>(m_volume, filled, p, scalar)
+                                           : extinctionsAt<false>(m_volume, filled, p, scalar);
     if (m_asksKeep) {
       const LaneMask cut = filled & cell.cut;
       if (cut.any())

@@ -204,7 +204,7 @@ struct Stretches {
   }
 
 private:
-  /// For a box. A ray that lies in a face counts as inside.
+  /// Cuts off what is outside a box. A ray that lies in a face counts as inside.
   HWY_INLINE void clip(const Float3& lower, const Float3& upper, const Float3& origin,
                        const Float3& direction) {
     const auto along = [&](Float low, Float high, Float o, Float d) {

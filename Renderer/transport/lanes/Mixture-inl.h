@@ -48,11 +48,12 @@ inline LaneExtinctions extinctionsOf(const WideScene& scene, LaneMask which, con
   return sums;
 }
 
-/// Extinctions of all matter at points, under the context's style.
+/// Extinctions of all matter at points, under the context's style. `isMixed`: there is a mixture.
+template <bool isMixed>
 HWY_INLINE LaneExtinctions extinctionsAt(const WideScene& scene, LaneMask which,
                                          const Float3& index, Float scalar) {
   LaneExtinctions all{0.0F, 0.0F};
-  if (scene.mixture)
+  if constexpr (isMixed)
     all = extinctionsOf(scene, which, index, scalar);
   else
     all.clipped = extinctionOf(scene.extinctions, scalar);

@@ -27,10 +27,8 @@ struct EventScene {
              std::uint64_t mostBounces, bool normalsWanted, const Tint* tinted = nullptr,
              const Mixture* mixture = nullptr);
 
-  /// Of the transfer function alone; or of each component of a mixture.
-  std::vector<ScatterLaw<float>> laws;
-  /// As laws; or of each component of a tint.
-  std::vector<WideTable> albedos;
+  std::vector<ScatterLaw<float>> laws; ///< one; or of each component of a mixture
+  std::vector<WideTable> albedos;      ///< one; or of each component of a mixture or tint
   std::optional<WideShares> tint;
   bool hybrid;       ///< surface shading
   float surfaceRate; ///< 25 gamma^3 of Medium's surface probability

@@ -1,6 +1,6 @@
-// What lanes ask of a scene. Each of the files named below doubles the readable or model header of
-// its name, and is a part of this namespace. Compiled once for each instruction set: include after
-// Highway's foreach_target.h.
+// Look-ups of lanes in a scene. Each of the files named below doubles the readable or model header
+// of its name, and is a part of this namespace. Compiled once for each instruction set: include
+// after Highway's foreach_target.h.
 
 #if defined(FENESTRA_LANE_SCENE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef FENESTRA_LANE_SCENE_INL_H
@@ -20,10 +20,10 @@
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 #include "transport/lanes/Medium-inl.h"
-// What look-ups are made of:
+// Parts of a look-up:
 #include "transport/lanes/Clip-inl.h"
 #include "transport/lanes/Shares-inl.h"
-// And of these:
+// Matter, made of these:
 #include "transport/lanes/Matter-inl.h"
 #include "transport/lanes/Mixture-inl.h"
 // Rays among cells:

@@ -28,11 +28,12 @@ struct Queue {
   std::size_t left() const { return rays.size - next; }
 };
 
-/// One ray a lane, all followed together.
-template <typename Voxel, bool wantRatio>
+/// One ray a lane, all followed together. `isMixed`: the matter is a mixture.
+template <typename Voxel, bool wantRatio, bool isMixed>
 class Lanes {
 public:
-  Lanes(const WideScene& scene, Queue& queue) : m_scene(scene), m_queue(queue) {}
+  Lanes(const WideScene& scene, Queue& queue)
+      : m_scene(scene), m_queue(queue), m_rays(queue.rays) {}
 
   /// Advances all lanes: look-ups where enough lanes wait for one, then cells. Returns false if no
   /// ray is left. What is decided here was computed a step ago: while other sets took their turns
@@ -78,15 +79,15 @@ private:
     const Shuffle deal = Shuffle::dealing(fresh);
     const auto dealt = [&](const auto& column) { return deal(load(&column[first])); };
     for (std::size_t axis = 0; axis < 3; ++axis)
-      m_way[axis].where(fresh, Way::entered(m_scene.axes[axis], dealt(m_queue.rays.origin[axis]),
-                                            dealt(m_queue.rays.direction[axis])));
+      m_way[axis].where(fresh, Way::entered(m_scene.axes[axis], dealt(m_rays.origin[axis]),
+                                            dealt(m_rays.direction[axis])));
     m_t.where(fresh, 0.0F);
-    m_end.where(fresh, dealt(m_queue.rays.length));
+    m_end.where(fresh, dealt(m_rays.length));
     m_ratio.where(fresh, 1.0F);
-    const Word depth = dealt(m_queue.rays.depth);
+    const Word depth = dealt(m_rays.depth);
     m_depth.where(fresh, exponentialOf(depth));
     m_counter.where(fresh, depth);
-    m_acceptance.where(fresh, dealt(m_queue.rays.acceptance));
+    m_acceptance.where(fresh, dealt(m_rays.acceptance));
     m_ray.where(fresh, deal.from() + static_cast<std::int32_t>(first));
     m_busy = m_busy | fresh;
   }
@@ -131,14 +132,15 @@ private:
     m_lookups += hit.count();
     const Float3 at = point();
     const Float scalar = scalarAt<Voxel>(m_scene.field, at);
-    const LaneExtinctions all = extinctionsAt(m_scene, hit, at, scalar);
+    const LaneExtinctions all = extinctionsAt<isMixed>(m_scene, hit, at, scalar);
     Float extinction = all.clipped;
     Word counter = m_counter;
     const Float u = m_acceptance;
     const LaneMask cut = hit & m_cut;
     if (cut.any())
       extinction = clipped(cut, at, all, u, counter);
-    extinction = extinction + all.free;
+    if constexpr (isMixed)
+      extinction = extinction + all.free;
     m_depth.where(hit, exponential(counter));
     m_acceptance.where(hit, uniform(counter));
     m_counter.where(hit, counter);
@@ -175,7 +177,7 @@ private:
         cut = cut & isReal;
       }
     } else {
-      cut = cut & (u * m_majorant < extinction + all.free);
+      cut = cut & (u * m_majorant < (isMixed ? extinction + all.free : extinction));
     }
     if (cut.any())
       extinction.where(cut, extinction * keep(m_scene, at, cut));
@@ -187,20 +189,21 @@ private:
     const Indices rays(m_ray);
     const LaneArray<float> results(wantRatio ? m_ratio : m_t), scalars(m_scalar);
     for (std::size_t lane = 0; lane < laneCount; ++lane) {
-      m_queue.rays.result[rays[lane]] = results[lane];
+      m_rays.result[rays[lane]] = results[lane];
       if constexpr (!wantRatio)
-        m_queue.rays.scalar[rays[lane]] = scalars[lane];
+        m_rays.scalar[rays[lane]] = scalars[lane];
     }
   }
 
   const WideScene& m_scene;
   Queue& m_queue;
+  RayBatch& m_rays;
   LaneMask m_busy = LaneMask::none();
   LaneMask m_hit = LaneMask::none(); ///< busy lanes at a tentative collision
   LaneMask m_cut = LaneMask::none(); ///< lanes whose collision lies in a cut cell
   Int m_ray = static_cast<std::int32_t>(RayBatch::capacity); ///< index of the ray in the batch
 
-  Way m_way[3] = {};
+  Way m_way[3] = {idle(), idle(), idle()};
   Float m_t = 0.0F;          ///< mm
   Float m_end = 0.0F;        ///< mm
   Float m_depth = 0.0F;      ///< optical depth to the next tentative collision
@@ -211,13 +214,15 @@ private:
   Word m_counter = 0U;   ///< of the random numbers
   Word m_cells = 0U, m_skipped = 0U;
   std::uint64_t m_lookups = 0;
+
+  static Way idle() { return {0.0F, 0.0F, 0.0F, 0.0F}; }
 };
 
 /// Two sets of lanes take turns: while one waits for memory, the other computes.
-template <typename Voxel, bool wantRatio>
+template <typename Voxel, bool wantRatio, bool isMixed>
 void followBatch(const WideScene& scene, RayBatch& rays, const StopFlag& stop, Counters& counters) {
   Queue queue{rays};
-  using Set = Lanes<Voxel, wantRatio>;
+  using Set = Lanes<Voxel, wantRatio, isMixed>;
   std::array<Set, 2> sets{Set(scene, queue), Set(scene, queue)};
   bool isBusy = true;
   for (std::uint32_t steps = 1; isBusy; ++steps) {
@@ -231,16 +236,20 @@ void followBatch(const WideScene& scene, RayBatch& rays, const StopFlag& stop, C
     set.addTo(counters);
 }
 
+/// A truth that std::visit makes a constant.
+std::variant<std::false_type, std::true_type> constant(bool is) {
+  if (is)
+    return std::true_type();
+  return std::false_type();
+}
+
 void followAll(const WideScene& scene, RayBatch& rays, bool wantRatio, const StopFlag& stop,
                Counters& counters) {
   std::visit(
-      [&]<typename Voxel>(const Voxel*) {
-        if (wantRatio)
-          followBatch<Voxel, true>(scene, rays, stop, counters);
-        else
-          followBatch<Voxel, false>(scene, rays, stop, counters);
+      [&]<typename Voxel>(const Voxel*, auto isRatio, auto isMixed) {
+        followBatch<Voxel, isRatio, isMixed>(scene, rays, stop, counters);
       },
-      scene.voxels);
+      scene.voxels, constant(wantRatio), constant(scene.mixture.has_value()));
 }
 
 } // namespace
