@@ -237,10 +237,10 @@ private:
       begins.clear();
     };
     for (Travel t : travels) {
-      const RayNumbers numbers{static_cast<std::uint32_t>(t.random.bits() >> 32),
-                               static_cast<float>(t.random.uniform())};
-      begins.push_back(setInside(rays, rays.size++, m_domain, t.ray, t.range, numbers));
-      if (rays.full())
+      rays.depth[rays.size] = static_cast<std::uint32_t>(t.random.bits() >> 32);
+      rays.acceptance[rays.size] = static_cast<float>(t.random.uniform());
+      begins.push_back(setInside(rays, rays.size++, m_domain, t.ray, t.range));
+      if (rays.size == RayBatch::capacity)
         flush();
     }
     flush();

@@ -56,8 +56,11 @@ TEST(Stop, EndsTheLanesOfABatch) {
     const Domain domain(s.volume.grid);
     const WideTracker tracker(s.volume, domain, s.transfer, majorants, s.clip, nullptr, stop);
     const auto rays = std::make_unique<RayBatch>();
-    for (rays->size = 0; !rays->full(); ++rays->size)
-      setInside(*rays, rays->size, domain, ray, {}, {static_cast<std::uint32_t>(rays->size), 0.5F});
+    for (std::size_t& i = rays->size; i < RayBatch::capacity; ++i) {
+      setInside(*rays, i, domain, ray, {});
+      rays->depth[i] = static_cast<std::uint32_t>(i);
+      rays->acceptance[i] = 0.5F;
+    }
     Counters counters;
     tracker.sampleCollisions(*rays, counters);
     tracker.estimateTransmittances(*rays, counters);

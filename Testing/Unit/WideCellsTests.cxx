@@ -29,6 +29,13 @@ MajorantGrid cellsOf(Extinction extinction, const Clip& clip = ClipNone{}) {
   return {grid, CellRanges(volume, 0), transfer, clip};
 }
 
+/// Contents of a code, as lanes decode it.
+struct Decoded {
+  float majorant;
+  std::int32_t reach;
+  bool cut;
+};
+
 struct Walk {
   MajorantGrid majorants;
   WideCells wide{majorants};
@@ -48,9 +55,10 @@ struct Walk {
         }
     return all;
   }
-  WideCells::Cell cell(const Size3& c) const {
-    return wide.cell(static_cast<std::size_t>(
-        c.x() + 1 + (count.x() + 2) * (c.y() + 1 + (count.y() + 2) * (c.z() + 1))));
+  Decoded cell(const Size3& c) const {
+    const std::int32_t code = wide.codes[numberOf(c.array() + 1, count.array() + 2)];
+    return {std::bit_cast<float>(code & WideCells::majorantBits), code & WideCells::reachBits,
+            code < 0};
   }
   explicit Walk(MajorantGrid of) : majorants(std::move(of)) {}
   template <typename Visit>
@@ -73,14 +81,14 @@ void expectBounds(const Walk& walk) {
   walk.forEach([&](const Size3& c) {
     if ((c.x() + 3 * c.y() + 7 * c.z()) % 16 != 0)
       return;
-    const WideCells::Cell cell = walk.cell(c);
+    const Decoded cell = walk.cell(c);
     const MajorantGrid::Cell own = walk.narrow(c);
     ASSERT_EQ(cell.majorant == 0.0F, own.majorant == 0.0F) << c;
     ASSERT_EQ(cell.cut, own.cut) << c;
     if (cell.reach == 0) { // fifteen bits, rounded up
       ASSERT_LE(cell.majorant, own.majorant * (1.0F + 0x1p-15F)) << c;
     }
-    const Size3 around = Size3::Constant(static_cast<std::int64_t>(cell.reach));
+    const Size3 around = Size3::Constant(cell.reach);
     walk.forEach(c - around, c + around, [&](const Size3& other) {
       ASSERT_GE(cell.majorant, walk.narrow(other).majorant) << c << ", " << other;
       ASSERT_TRUE(other == c || !walk.narrow(other).cut) << c << ", " << other;
@@ -98,11 +106,11 @@ double ballInMist(const Vec3& p) {
 TEST(WideCells, MajorantBoundsEveryCellInReach) {
   const Walk walk{cellsOf(ballInMist)};
   expectBounds(walk);
-  EXPECT_GT(walk.cell(Size3::Constant(4)).reach, 3U) << "mist";
-  EXPECT_EQ(walk.cell(walk.count / 2).reach, 0U) << "the ball";
-  const WideCells::Cell above = walk.cell({5, 5, walk.count.z() - 2});
+  EXPECT_GT(walk.cell(Size3::Constant(4)).reach, 3) << "mist";
+  EXPECT_EQ(walk.cell(walk.count / 2).reach, 0) << "the ball";
+  const Decoded above = walk.cell({5, 5, walk.count.z() - 2});
   EXPECT_EQ(above.majorant, 0.0F);
-  EXPECT_GT(above.reach, 0U);
+  EXPECT_GT(above.reach, 0);
 }
 
 TEST(WideCells, ReachIsZeroInCutCells) {

@@ -51,7 +51,7 @@ struct Beginning {
   WideTracker tracker;
   Background background = {};
   EyeRays eye;
-  WideEyeRays wide;
+  EyeTable wide;
   std::unique_ptr<PathStarts> starts = std::make_unique<PathStarts>();
   std::unique_ptr<PathBatch> paths = std::make_unique<PathBatch>();
 
@@ -59,7 +59,7 @@ struct Beginning {
       : domain(in),
         tracker(s.volume, domain, s.transfer, s.majorants, s.clip),
         eye(s.camera, s.clip, s.lights, background),
-        wide(tracker.scene(), domain, s.camera, eye) {}
+        wide(domain, s.camera) {}
 };
 
 /// Starts of one sample each in neighbouring pixels.
@@ -92,7 +92,7 @@ TEST_P(WideEyeRaysOf, NumbersAreThoseOfTheSource) {
         const NumberSource source(sampling, 5);
         fill(*starts, source, 400, sample);
         paths->rays.size = 0;
-        wide.begin(*starts, *paths);
+        beginPaths(tracker.scene(), wide, eye, *starts, *paths);
         ASSERT_EQ(paths->rays.size, starts->size);
         const auto below1 = [](std::uint64_t bits) {
           return static_cast<float>(bits >> 8 & 0xffffff) * 0x1p-24F;
@@ -137,19 +137,19 @@ TEST_P(WideEyeRaysOf, RaysAreThoseInDouble) {
       for (std::uint64_t pixel = 0; pixel + RayBatch::capacity < width * height; pixel += 400) {
         fill(*starts, NumberSource(Sampling::strata, pixel), pixel, 0);
         paths->rays.size = 3;
-        wide.begin(*starts, *paths);
+        beginPaths(tracker.scene(), wide, eye, *starts, *paths);
         for (std::size_t i = 0; i < starts->size; ++i) {
           const std::size_t at = i + 3;
           const Ray ray = eye.ray(double{starts->column[i]} + 0.5 * width,
                                   double{starts->row[i]} + 0.5 * height);
-          setInside(*exact, i, domain, ray, eye.range(ray), {});
+          setInside(*exact, i, domain, ray, eye.range(ray));
           ASSERT_NEAR(exact->length[i], paths->rays.length[at], 2e-4);
           for (std::size_t axis = 0; axis < 3; ++axis)
             ASSERT_NEAR(ray.direction[static_cast<int>(axis)], paths->direction[axis][at], 2e-7);
           if (exact->length[i] < 1e-3F)
             continue;
           ++met;
-          const double before = (wide.nearDepth() + double{paths->depth[at]}) / eye.depth(ray, 1.0);
+          const double before = (wide.nearDepth + double{paths->depth[at]}) / eye.depth(ray, 1.0);
           const Vec3 origin = grid.worldToIndex * ray.at(before);
           for (std::size_t axis = 0; axis < 3; ++axis) {
             ASSERT_NEAR(exact->direction[axis][i], paths->rays.direction[axis][at], 3e-7);

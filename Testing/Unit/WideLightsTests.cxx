@@ -71,11 +71,10 @@ struct Fog {
   Clip clip = ClipNone{};
   WideTracker tracker{matter, domain, transfer, majorants, clip};
   LightSet lights;
-  WideEvents events;
+  EventScene events;
 
   explicit Fog(const std::vector<Light>& around)
-      : lights(around, matter.grid, camera()),
-        events(tracker.scene(), EventScene(matter.grid, transfer, lights, 100, false)) {}
+      : lights(around, matter.grid, camera()), events(matter.grid, transfer, lights, 100, false) {}
 
   static Camera camera() {
     CameraPose pose;
@@ -94,7 +93,7 @@ struct Sampled {
 /// Sets path i, at the middle of the fog.
 void setPath(PathBatch& paths, std::size_t i, const Vec3& direction, const Vec2& scattered,
              std::uint64_t key) {
-  paths.rays.set(i, {Vec3::Constant(3.5), direction}, 9.0, {});
+  paths.rays.set(i, {Vec3::Constant(3.5), direction}, 9.0);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     paths.direction[axis][i] = static_cast<float>(direction[static_cast<int>(axis)]);
     paths.weight[axis][i] = 1.0F;
@@ -125,7 +124,7 @@ std::vector<Sampled> sampled(const Fog& fog, std::uint64_t seed, std::size_t cou
       paths->rays.scalar[i] = 1.0F;
     }
     Counters counters;
-    fog.events.scatter(*paths, *lights, counters);
+    scatterPaths(fog.tracker.scene(), fog.events, *paths, *lights, counters);
     for (std::size_t i = 0; i < lights->rays.size; ++i) {
       Sampled s;
       for (int axis = 0; axis < 3; ++axis) {
@@ -152,7 +151,7 @@ std::vector<Rgb> met(const Fog& fog, const std::vector<Vec3>& directions) {
       paths->rays.result[i] = std::numeric_limits<float>::infinity();
     }
     Counters counters;
-    fog.events.scatter(*paths, *lights, counters);
+    scatterPaths(fog.tracker.scene(), fog.events, *paths, *lights, counters);
     for (std::size_t i = 0; i < paths->rays.size; ++i)
       all.emplace_back(paths->radiance[0][i], paths->radiance[1][i], paths->radiance[2][i]);
   }

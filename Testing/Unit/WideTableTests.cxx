@@ -15,15 +15,19 @@ ScalarFunction functionOf(const std::vector<std::array<double, 2>>& points) {
   return ScalarFunction(knots);
 }
 
+WideLines linesOf(const std::vector<std::array<double, 2>>& points) {
+  const ScalarFunction function = functionOf(points);
+  return WideLines({&function});
+}
+
 /// Line that lanes read for a scalar, as Medium-inl.h finds it, and the value on it.
 struct Read {
   bool isLine;
   double value;
 };
-Read read(const WideTable& table, double scalar) {
-  const auto last = static_cast<float>(table.lines.size() - 1);
-  const float at = (narrow(scalar) - table.binStart) * table.linesPerUnit;
-  const float place = std::max(std::min(at, last), 0.0F);
+Read read(const WideLines& table, double scalar) {
+  const float at = (narrow(scalar) - table.start) * table.perUnit;
+  const float place = std::max(std::min(at, table.last), 0.0F);
   const WideTable::Line& line = table.lines[static_cast<std::size_t>(place)];
   return {!std::isnan(line.slope),
           static_cast<double>(line.value + (place - std::floor(place)) * line.slope)};
@@ -31,7 +35,7 @@ Read read(const WideTable& table, double scalar) {
 
 /// Expects lines to be the function, and no more bins without a line than knots can explain.
 void expectFunction(const ScalarFunction& function, double tolerance) {
-  const WideTable table(function);
+  const WideLines table({&function});
   const double start = function.knots().front().position;
   const double margin = std::max(function.span(), 1e-30);
   for (int i = 0; i < 100000; ++i) {
@@ -48,30 +52,30 @@ void expectFunction(const ScalarFunction& function, double tolerance) {
   EXPECT_LE(mixed, 3 * static_cast<std::ptrdiff_t>(function.knots().size()));
 }
 
-TEST(WideTable, LinesAreTheFunction) {
+TEST(WideLines, LinesAreTheFunction) {
   expectFunction(functionOf({{-1000, 0}, {-300.3, 0}, {45, 0.7}, {45.5, 2.5}, {3071, 9}}), 1e-3);
   expectFunction(functionOf({{0, 0}, {255, 3}}), 1e-5);
   expectFunction(functionOf({{0, 0}, {100, 0}, {100, 5}, {101, 5}, {101, 0}, {1000, 0.1}}), 1e-3);
 }
 
-TEST(WideTable, BinsOfKnotsHaveNoLine) {
-  const WideTable table(functionOf({{0, 0}, {100.05, 1}, {1024, 0}}));
+TEST(WideLines, BinsOfKnotsHaveNoLine) {
+  const WideLines table = linesOf({{0, 0}, {100.05, 1}, {1024, 0}});
   EXPECT_FALSE(read(table, 100.5).isLine);
   EXPECT_TRUE(read(table, 99.5).isLine);
   EXPECT_TRUE(read(table, 101.5).isLine);
-  const WideTable jump(functionOf({{0, 0}, {512, 0}, {512, 1}, {1024, 1}}));
+  const WideLines jump = linesOf({{0, 0}, {512, 0}, {512, 1}, {1024, 1}});
   EXPECT_FALSE(read(jump, 511.9).isLine) << "rounding may take a scalar to the other side";
   EXPECT_FALSE(read(jump, 512.1).isLine);
 }
 
-TEST(WideTable, DegenerateFunctionsAreRead) {
-  const WideTable one(functionOf({{5, 2}}));
+TEST(WideLines, DegenerateFunctionsAreRead) {
+  const WideLines one = linesOf({{5, 2}});
   EXPECT_EQ(read(one, -1e30).value, 2.0);
   EXPECT_EQ(read(one, 1e30).value, 2.0);
-  EXPECT_FALSE(read(WideTable(functionOf({{5, 2}, {5, 3}})), 4.0).isLine);
-  EXPECT_FALSE(read(WideTable(functionOf({{0, 1}, {1e-44, 3}})), 1.0).isLine);
+  EXPECT_FALSE(read(linesOf({{5, 2}, {5, 3}}), 4.0).isLine);
+  EXPECT_FALSE(read(linesOf({{0, 1}, {1e-44, 3}}), 1.0).isLine);
   // A span of a few last places: no float tells which bin a scalar lies in.
-  EXPECT_FALSE(read(WideTable(functionOf({{1e6, 1}, {1e6 + 1.0, 3}})), 1e6).isLine);
+  EXPECT_FALSE(read(linesOf({{1e6, 1}, {1e6 + 1.0, 3}}), 1e6).isLine);
 }
 
 } // namespace

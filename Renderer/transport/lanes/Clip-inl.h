@@ -1,19 +1,4 @@
 // Clip of lanes at points in index space: keep, and the gradient of a soft cut (clip/keep/Clip.h).
-// Compiled once for each instruction set (see Tracker.cxx).
-
-#if defined(FENESTRA_WIDE_CLIP_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef FENESTRA_WIDE_CLIP_INL_H
-#undef FENESTRA_WIDE_CLIP_INL_H
-#else
-#define FENESTRA_WIDE_CLIP_INL_H
-#endif
-
-#include "clip/keep/Seams.h"
-// After foreach_target.h:
-#include "transport/lanes/Medium-inl.h"
-
-HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
 
 /// Continuous index of a coordinate in mm among a depth buffer's samples (DepthAxis::index).
 HWY_INLINE Float depthIndex(const WideScene::DepthAxis& axis, Float coordinate) {
@@ -21,46 +6,6 @@ HWY_INLINE Float depthIndex(const WideScene::DepthAxis& axis, Float coordinate) 
   const Float fine = max(min(pixel, axis.lastInside), 0.0F);
   const Float index = fma(pixel - fine, axis.perFactor, fine + axis.before);
   return max(min(index, axis.last), 0.0F);
-}
-
-/// Exact surface depth at (x, y) in seams for the lanes of `isAsked`; `surface` for the others.
-inline Float askSeams(const Seams& seams, LaneMask isAsked, Int seam, Float x, Float y, Float depth,
-                      double softness, Float surface) {
-  static_assert(laneCount <= Seams::mostQuestions);
-  const LaneArray<std::int32_t> numbers(seam);
-  const LaneArray<float> xs(x), ys(y), depths(depth);
-  LaneArray<float> surfaces(surface);
-  std::array<Seams::Question, laneCount> questions;
-  std::array<std::size_t, laneCount> lanes;
-  std::size_t count = 0;
-  forEachLane(isAsked, [&](std::size_t lane) {
-    lanes[count] = lane;
-    questions[count++] = {numbers[lane], Vec2(xs[lane], ys[lane]), surfaces[lane],
-                          depths[lane] - softness};
-  });
-  seams.answer(std::span(questions).first(count));
-  for (std::size_t i = 0; i < count; ++i)
-    surfaces[lanes[i]] = static_cast<float>(questions[i].surface);
-  return load(surfaces.data());
-}
-
-/// Surface depth for points at (x, y) and `depth` (ClipDepth::surfaceFor): exact in seams for the
-/// lanes of `which`, else `surface`.
-HWY_INLINE Float sewn(const WideScene& scene, LaneMask which, Int sample, Float x, Float y,
-                      Float depth, Float surface) {
-  const Int seam = gather(scene.seams->numbers().data(), sample);
-  const LaneMask isSeam = seam > -1;
-  if (!isSeam.any())
-    return surface;
-  const Int first = shiftLeft<1>(max(seam, 0));
-  const float* const reaches = &scene.seams->reaches().data()->least;
-  const Float least = min(surface, gather(reaches, first));
-  const Float greatest = max(surface, gather(reaches + 1, first)); // least and greatest alternate
-  const LaneMask isNear = (depth >= least) & (depth <= greatest + scene.softness);
-  const LaneMask isAsked = which & isSeam & isNear;
-  if (!isAsked.any())
-    return surface;
-  return askSeams(*scene.seams, isAsked, seam, x, y, depth, scene.softness, surface);
 }
 
 /// Points in view space.
@@ -85,19 +30,23 @@ HWY_INLINE InView inView(const WideScene& scene, const Float3& p) {
   return at;
 }
 
-/// Depths, mm from the target, of the four samples around places in the buffer.
-struct DepthCell {
-  Float column, row; ///< of the places
-  Float fc, fr;      ///< places in their cells, 0 to 1
-  Int first;         ///< sample
-  Float upLeft, upRight, downLeft, downRight;
+/// Slope of a surface along one axis of the buffer, mm per mm, from its `rise` over a cell. Beyond
+/// the samples, and at the first of them, 0.
+HWY_INLINE Float slopeAlong(const WideScene::DepthAxis& axis, Float index, Float rise) {
+  const Float before = axis.before;
+  const LaneMask isFine = (index >= before) & (index < before + axis.lastInside);
+  const LaneMask isBetween = (index > 0.0F) & (index < axis.last);
+  const Float perLength = select(isFine, axis.perPitch, axis.perPitch * axis.perFactor);
+  return orZero(isBetween, rise * perLength);
+}
 
-  HWY_INLINE Float depth() const {
-    return lerp(lerp(upLeft, upRight, fc), lerp(downLeft, downRight, fc), fr);
-  }
+/// A surface between four samples of the buffer.
+struct Surface {
+  Int sample;           ///< the first of the four
+  Float depth;          ///< mm from the target
+  Float slopeX, slopeY; ///< mm per mm
 };
-
-HWY_INLINE DepthCell depthCell(const WideScene& scene, const InView& view) {
+HWY_INLINE Surface surfaceAt(const WideScene& scene, const InView& view) {
   const Float column = depthIndex(scene.depthX, view.x);
   const Float row = depthIndex(scene.depthY, view.y);
   const Int columns = scene.depthColumns;
@@ -108,7 +57,50 @@ HWY_INLINE DepthCell depthCell(const WideScene& scene, const InView& view) {
   const Float fc = column - toFloat(c0);
   const Float fr = row - toFloat(r0);
   const auto at = [&](Int c, Int r) { return gather(scene.depths, r * columns + c); };
-  return {column, row, fc, fr, r0 * columns + c0, at(c0, r0), at(c1, r0), at(c0, r1), at(c1, r1)};
+  const Float upLeft = at(c0, r0), upRight = at(c1, r0);
+  const Float downLeft = at(c0, r1), downRight = at(c1, r1);
+  return {r0 * columns + c0, lerp(lerp(upLeft, upRight, fc), lerp(downLeft, downRight, fc), fr),
+          slopeAlong(scene.depthX, column, lerp(upRight - upLeft, downRight - downLeft, fr)),
+          slopeAlong(scene.depthY, row, lerp(downLeft - upLeft, downRight - upRight, fc))};
+}
+
+/// Exact surface depth in seams for the lanes of `isAsked`; `surface` for the others.
+inline Float askSeams(const Seams& seams, LaneMask isAsked, Int seam, const InView& at,
+                      double softness, Float surface) {
+  static_assert(laneCount <= Seams::mostQuestions);
+  const LaneArray<std::int32_t> numbers(seam);
+  const LaneArray<float> xs(at.x), ys(at.y), depths(at.depth);
+  LaneArray<float> surfaces(surface);
+  std::array<Seams::Question, laneCount> questions;
+  auto* question = questions.data();
+  forEachLane(isAsked, [&](std::size_t lane) {
+    *question++ = {numbers[lane], Vec2(xs[lane], ys[lane]), surfaces[lane],
+                   depths[lane] - softness};
+  });
+  seams.answer({questions.data(), question});
+  question = questions.data();
+  forEachLane(isAsked,
+              [&](std::size_t lane) { surfaces[lane] = static_cast<float>(question++->surface); });
+  return load(surfaces.data());
+}
+
+/// ClipDepth::surfaceFor: exact in seams for the lanes of `which`, else `surface`.
+HWY_INLINE Float sewn(const WideScene& scene, LaneMask which, const Surface& linear,
+                      const InView& at) {
+  const Float surface = linear.depth;
+  const Int seam = gather(scene.seams->numbers().data(), linear.sample);
+  const LaneMask isSeam = seam > -1;
+  if (!isSeam.any())
+    return surface;
+  const Int first = shiftLeft<1>(max(seam, 0));
+  const float* const reaches = &scene.seams->reaches().data()->least;
+  const Float least = min(surface, gather(reaches, first));
+  const Float greatest = max(surface, gather(reaches + 1, first)); // least and greatest alternate
+  const LaneMask isNear = (at.depth >= least) & (at.depth <= greatest + scene.softness);
+  const LaneMask isAsked = which & isSeam & isNear;
+  if (!isAsked.any())
+    return surface;
+  return askSeams(*scene.seams, isAsked, seam, at, scene.softness, surface);
 }
 
 /// Depth of the nearest sample.
@@ -126,11 +118,8 @@ HWY_INLINE Float behindSurface(const WideScene& scene, const Float3& p, const In
     return -apply(scene.toPlane, p);
   if (scene.clipKind == WideScene::ClipKind::depthNearest)
     return view.depth - nearestDepth(scene, view);
-  const DepthCell cell = depthCell(scene, view);
-  const Float surface = cell.depth();
-  return view.depth - (scene.seams
-                           ? sewn(scene, which, cell.first, view.x, view.y, view.depth, surface)
-                           : surface);
+  const Surface surface = surfaceAt(scene, view);
+  return view.depth - (scene.seams ? sewn(scene, which, surface, view) : surface.depth);
 }
 
 /// keep for every kind of clip, for the lanes of `which`.
@@ -143,25 +132,10 @@ inline Float keep(const WideScene& scene, const Float3& p, LaneMask which) {
   return select(view.behindEye, 0.0F, share);
 }
 
-/// Slope of a surface along one axis of the buffer, mm per mm, from its `rise` over a cell. Beyond
-/// the samples, and at the first of them, 0.
-HWY_INLINE Float slopeAlong(const WideScene::DepthAxis& axis, Float index, Float rise) {
-  const Float before = axis.before;
-  const LaneMask isFine = (index >= before) & (index < before + axis.lastInside);
-  const LaneMask isBetween = (index > 0.0F) & (index < axis.last);
-  const Float perLength = select(isFine, axis.perPitch, axis.perPitch * axis.perFactor);
-  return orZero(isBetween, rise * perLength);
-}
-
-/// Gradient of the depth behind a linear surface, along the view's axes.
+/// Gradient of the depth behind a surface, along the view's axes.
 HWY_INLINE Float3 behindGradient(const WideScene& scene, const InView& view,
-                                 const DepthCell& cell) {
-  const Float x =
-      slopeAlong(scene.depthX, cell.column,
-                 lerp(cell.upRight - cell.upLeft, cell.downRight - cell.downLeft, cell.fr));
-  const Float y =
-      slopeAlong(scene.depthY, cell.row,
-                 lerp(cell.downLeft - cell.upLeft, cell.downRight - cell.upRight, cell.fc));
+                                 const Surface& surface) {
+  const Float x = surface.slopeX, y = surface.slopeY;
   if (!scene.perspective)
     return {-x, -y, 1.0F};
   const Float perDepth = view.scale / scene.targetDepth;
@@ -180,11 +154,6 @@ inline Float3 cutGradient(const WideScene& scene, const Float3& p, LaneMask whic
   const Float length = scene.cutSlope;
   if (scene.clipKind != WideScene::ClipKind::depthLinear)
     return orZero(isCut, length * Float3(scene.cutNormal));
-  const Float3 gradient = behindGradient(scene, view, depthCell(scene, view));
+  const Float3 gradient = behindGradient(scene, view, surfaceAt(scene, view));
   return orZero(isCut, length * normalized(mapDirection(scene.fromView, gradient)));
 }
-
-} // namespace fenestra::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
-
-#endif

@@ -1,19 +1,5 @@
-// Environment maps for many paths: model/lights/EnvironmentSampler.h in lanes. Compiled once for
-// each instruction set (see PathSteps.cxx).
-
-#if defined(FENESTRA_WIDE_ENVIRONMENT_SAMPLER_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef FENESTRA_WIDE_ENVIRONMENT_SAMPLER_INL_H
-#undef FENESTRA_WIDE_ENVIRONMENT_SAMPLER_INL_H
-#else
-#define FENESTRA_WIDE_ENVIRONMENT_SAMPLER_INL_H
-#endif
-
-#include "transport/lanes/MapTables.h"
-// After foreach_target.h:
-#include "transport/lanes/Medium-inl.h"
-
-HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
+// Environment maps for many paths: model/lights/EnvironmentSampler.h in lanes. A part of the
+// namespace that includes it, as LightSet-inl.h.
 
 /// A bin of an alias table, and a place inside it, uniform in (0, 1].
 struct Bin {
@@ -34,62 +20,44 @@ HWY_INLINE Bin drawBin(const AliasTables& tables, Int table, Word random) {
   return {select(below, own, toInt(other)), inside / size};
 }
 
-/// Texels of a map: directions are drawn in proportion to brightness times solid angle.
-class WideMap {
-public:
-  explicit HWY_INLINE WideMap(const MapTables& map) : m_map(map) {}
-
-  struct Drawn {
-    Float3 direction;
-    Int texel;
-  };
-  HWY_INLINE Drawn draw(Word u, Word v) const {
-    const Bin row = drawBin(m_map.rows, 0, u);
-    const Bin column = drawBin(m_map.columns, row.index, v);
-
-    // Uniform in solid angle inside the texel: uniform in cos(theta) and phi.
-    const Int fromSouth = Int(m_map.height - 1) - row.index;
-    const LaneMask isSouth = row.index > fromSouth;
-    const auto [upper, lower] =
-        loadPairs(m_map.falls.data(), Indices(select(isSouth, fromSouth, row.index)));
-    const Float fall = lerp(upper, lower, row.place);
-    const Float sine = root(fall * (2.0F - fall));
-    const CosineSine phi = ofTurns((toFloat(column.index) + column.place) * (1.0F / width()));
-    const Float z = 1.0F - fall;
-    return {{-sine * phi.sine, -sine * phi.cosine, select(isSouth, -z, z)},
-            row.index * m_map.width + column.index};
-  }
-
-  HWY_INLINE Int texelToward(const Float3& d) const {
-    const auto cell = [](Float place, std::int32_t count) { // NaN, too, gets one that is there
-      return toInt(notBelow0(min(place, static_cast<float>(count - 1))));
-    };
-    const Float sine = sqrt(square(d.x) + square(d.y));
-    const Int column = cell((0.5F + turnsOf(d.y, d.x)) * width(), m_map.width);
-    const Int row =
-        cell(turnsOf(d.z, sine) * (2.0F * static_cast<float>(m_map.height)), m_map.height);
-    return row * m_map.width + column;
-  }
-
-  HWY_INLINE Float3 radiance(Int texel) const {
-    const Indices first(texel * 3);
-    const auto channel = [&](std::size_t c) {
-      return m_map.tint[c] * bitsAsFloat(loadInts(m_map.rgb + c, first));
-    };
-    return {channel(0), channel(1), channel(2)};
-  }
-  /// Density of drawing this map and a direction of that radiance.
-  HWY_INLINE Float pdf(const Float3& radiance) const {
-    return m_map.perBrightness * greatest(radiance);
-  }
-
-private:
-  float width() const { return static_cast<float>(m_map.width); }
-
-  const MapTables& m_map;
+/// A direction, drawn in proportion to its texel's brightness times solid angle.
+struct TexelDraw {
+  Float3 direction;
+  Int texel;
 };
+HWY_INLINE TexelDraw drawTexel(const MapTables& map, Word u, Word v) {
+  const Bin row = drawBin(map.rows, 0, u);
+  const Bin column = drawBin(map.columns, row.index, v);
 
-} // namespace fenestra::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
+  // Uniform in solid angle inside the texel: uniform in cos(theta) and phi.
+  const Int fromSouth = Int(map.height - 1) - row.index;
+  const LaneMask isSouth = row.index > fromSouth;
+  const auto [upper, lower] =
+      loadPairs(map.falls.data(), Indices(select(isSouth, fromSouth, row.index)));
+  const Float fall = lerp(upper, lower, row.place);
+  const Float sine = root(fall * (2.0F - fall));
+  const float perWidth = 1.0F / static_cast<float>(map.width);
+  const CosineSine phi = ofTurns((toFloat(column.index) + column.place) * perWidth);
+  const Float z = 1.0F - fall;
+  return {{-sine * phi.sine, -sine * phi.cosine, select(isSouth, -z, z)},
+          row.index * map.width + column.index};
+}
 
-#endif
+HWY_INLINE Int texelToward(const MapTables& map, const Float3& d) {
+  const auto cell = [](Float place, std::int32_t count) { // NaN, too, gets one that is there
+    return toInt(notBelow0(min(place, static_cast<float>(count - 1))));
+  };
+  const Float sine = sqrt(square(d.x) + square(d.y));
+  const auto width = static_cast<float>(map.width), height = static_cast<float>(map.height);
+  const Int column = cell((0.5F + turnsOf(d.y, d.x)) * width, map.width);
+  const Int row = cell(turnsOf(d.z, sine) * (2.0F * height), map.height);
+  return row * map.width + column;
+}
+
+HWY_INLINE Float3 radianceOf(const MapTables& map, Int texel) {
+  const Indices first(texel * 3);
+  const auto channel = [&](std::size_t c) {
+    return map.tint[c] * bitsAsFloat(loadInts(map.rgb + c, first));
+  };
+  return {channel(0), channel(1), channel(2)};
+}

@@ -6,6 +6,7 @@
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
 #include "base/Sampling-inl.h"
+#include "transport/lanes/Scene-inl.h"
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 namespace {
@@ -34,61 +35,32 @@ void drawAll(const EyeTable& eye, PathStarts& starts, PathBatch& paths) {
   }
 }
 
-/// Stretches of rays, one a lane.
-struct Stretches {
-  Float begin, end;
-
-  /// Cuts off what is outside the box [lower, upper]. A ray that lies in a face counts as inside.
-  HWY_INLINE void clip(const Float3& lower, const Float3& upper, const Float3& origin,
-                       const Float3& direction) {
-    const auto along = [&](Float low, Float high, Float o, Float d) {
-      constexpr float infinite = std::numeric_limits<float>::infinity();
-      const LaneMask still = d == 0.0F;
-      const LaneMask inside = (low <= o) & (o <= high);
-      const Float a = (low - o) / d, b = (high - o) / d;
-      begin = max(begin, select(still, select(inside, -infinite, infinite), min(a, b)));
-      end = min(end, select(still, infinite, max(a, b)));
-    };
-    along(lower.x, upper.x, origin.x, direction.x);
-    along(lower.y, upper.y, origin.y, direction.y);
-    along(lower.z, upper.z, origin.z, direction.z);
-  }
-};
-
-/// Sets path `to` and the lanes behind to the eye rays of starts `i` and behind.
-HWY_INLINE void beginRays(const WideScene& volume, const EyeTable& eye, const PathStarts& starts,
-                          std::size_t i, PathBatch& paths, std::size_t to) {
-  const Float x = load(&starts.column[i]), y = load(&starts.row[i]);
-  const auto at = [&](const auto& middle, const auto& perColumn, const auto& perRow) {
-    return Float3(middle) + x * Float3(perColumn) + y * Float3(perRow);
-  };
-  const Float3 toward = at(eye.forward, eye.turnColumn, eye.turnRow);
-  const Float depthPerLength = 1.0F / sqrt(dot(toward, toward));
-  const Float3 world = depthPerLength * toward;
-  const Float3 direction = mapDirection(eye.toIndex, world);
-  const Float3 point = at(eye.point, eye.perColumn, eye.perRow);
-  Stretches inside{notBelow0(load(&starts.from[i])), load(&starts.to[i])};
-  inside.clip(volume.lower, volume.upper, point, direction);
-  if (volume.cropped)
-    inside.clip({-1.0F, -1.0F, -1.0F}, {1.0F, 1.0F, 1.0F}, mapPoint(volume.toCrop, point),
-                mapDirection(volume.toCrop, direction));
-  const LaneMask some = inside.begin < inside.end;
-  const Float before = orZero(some, inside.begin);
-
-  store3(point + before * direction, paths.rays.origin, to);
-  store3(direction, paths.rays.direction, to);
-  store(orZero(some, inside.end - before), &paths.rays.length[to]);
-  store3(world, paths.direction, to);
-  store3(world, paths.eyeDirection, to);
-  store(before * depthPerLength, &paths.depth[to]);
-  store(depthPerLength, &paths.depthPerLength[to]);
-}
-
+/// Begins the paths with their eye rays.
 void beginAll(const WideScene& volume, const EyeTable& eye, const PathStarts& starts,
               PathBatch& paths) {
   for (std::size_t i = 0; i < starts.size; i += laneCount) {
+    const Float x = load(&starts.column[i]), y = load(&starts.row[i]);
+    const auto at = [&](const auto& middle, const auto& perColumn, const auto& perRow) {
+      return Float3(middle) + x * Float3(perColumn) + y * Float3(perRow);
+    };
+    const Float3 toward = at(eye.forward, eye.turnColumn, eye.turnRow);
+    const Float depthPerLength = 1.0F / sqrt(dot(toward, toward));
+    const Float3 world = depthPerLength * toward;
+    const Float3 direction = mapDirection(eye.toIndex, world);
+    const Float3 point = at(eye.point, eye.perColumn, eye.perRow);
+    Stretches inside{notBelow0(load(&starts.from[i])), load(&starts.to[i])};
+    inside.clip(volume, point, direction);
+    const LaneMask some = inside.begin < inside.end;
+    const Float before = orZero(some, inside.begin);
+
     const std::size_t to = paths.rays.size + i;
-    beginRays(volume, eye, starts, i, paths, to);
+    store3(point + before * direction, paths.rays.origin, to);
+    store3(direction, paths.rays.direction, to);
+    store(orZero(some, inside.end - before), &paths.rays.length[to]);
+    store3(world, paths.direction, to);
+    store3(world, paths.eyeDirection, to);
+    store(before * depthPerLength, &paths.depth[to]);
+    store(depthPerLength, &paths.depthPerLength[to]);
     store3({1.0F, 1.0F, 1.0F}, paths.weight, to);
     store3({0.0F, 0.0F, 0.0F}, paths.radiance, to);
     store(Int(0), &paths.bounces[to]);
@@ -128,22 +100,23 @@ EyeTable::EyeTable(const Domain& domain, const Camera& camera)
   toIndex = affineRows(Affine(linear));
 }
 
-void WideEyeRays::begin(PathStarts& starts, PathBatch& paths) const {
-  HWY_DYNAMIC_DISPATCH(drawAll)(m_table, starts, paths);
-  if (m_eye.isWhole()) {
+void beginPaths(const WideScene& volume, const EyeTable& table, const EyeRays& eye,
+                PathStarts& starts, PathBatch& paths) {
+  HWY_DYNAMIC_DISPATCH(drawAll)(table, starts, paths);
+  if (eye.isWhole()) {
     std::fill_n(starts.from.begin(), starts.size, 0.0F);
     std::fill_n(starts.to.begin(), starts.size, std::numeric_limits<float>::infinity());
   } else {
     for (std::size_t i = 0; i < starts.size; ++i) {
-      const Ray ray = m_eye.ray(double{m_table.middleColumn} + double{starts.column[i]},
-                                double{m_table.middleRow} + double{starts.row[i]});
-      const Interval range = m_eye.range(ray);
-      const double before = m_table.nearDepth / m_eye.depth(ray, 1.0);
+      const Ray ray = eye.ray(double{table.middleColumn} + double{starts.column[i]},
+                              double{table.middleRow} + double{starts.row[i]});
+      const Interval range = eye.range(ray);
+      const double before = table.nearDepth / eye.depth(ray, 1.0);
       starts.from[i] = narrow(range.begin - before);
       starts.to[i] = narrow(range.end - before);
     }
   }
-  HWY_DYNAMIC_DISPATCH(beginAll)(m_volume, m_table, starts, paths);
+  HWY_DYNAMIC_DISPATCH(beginAll)(volume, table, starts, paths);
   paths.rays.size += starts.size;
 }
 

@@ -15,31 +15,16 @@ struct EyeTable {
 
   EyeTable(const Domain& domain, const Camera& camera);
 
-  double nearDepth;                    ///< of the plane, mm
+  double nearDepth;                    ///< of the plane, mm; PathBatch counts depths from here
   float middleColumn, middleRow;       ///< of the picture
   Triple point, perColumn, perRow;     ///< of the plane, index space: in the middle, and its change
   Triple forward, turnColumn, turnRow; ///< direction, world axes: in the middle, and its change
   AffineRows toIndex;                  ///< of directions
 };
 
-class WideEyeRays {
-public:
-  /// A view of `volume` and `eye`.
-  WideEyeRays(const WideScene& volume, const Domain& domain, const Camera& camera,
-              const EyeRays& eye)
-      : m_volume(volume), m_eye(eye), m_table(domain, camera) {}
-
-  /// PathBatch counts depths from here, mm.
-  double nearDepth() const { return m_table.nearDepth; }
-
-  /// Begins a path for each start, behind those of `paths`. Changes rows and columns of `starts` to
-  /// raster positions, counted from the picture's middle.
-  void begin(PathStarts& starts, PathBatch& paths) const;
-
-private:
-  const WideScene& m_volume;
-  const EyeRays& m_eye;
-  EyeTable m_table;
-};
+/// Begins a path for each start, behind those of `paths`. Changes rows and columns of `starts` to
+/// raster positions, counted from the picture's middle.
+void beginPaths(const WideScene& volume, const EyeTable& table, const EyeRays& eye,
+                PathStarts& starts, PathBatch& paths);
 
 } // namespace fenestra

@@ -1,109 +1,81 @@
-// Lights for many paths: model/lights/LightSet.h in lanes. Compiled once for each instruction set
-// (see PathSteps.cxx).
-
-#if defined(FENESTRA_WIDE_LIGHTS_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef FENESTRA_WIDE_LIGHTS_INL_H
-#undef FENESTRA_WIDE_LIGHTS_INL_H
-#else
-#define FENESTRA_WIDE_LIGHTS_INL_H
-#endif
-
-#include "base/LaneMath-inl.h"
-#include "transport/lanes/EnvironmentSampler-inl.h"
-#include "transport/lanes/PathTables.h"
-
-HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
+// Lights for many paths: model/lights/LightSet.h in lanes. A part of the namespace that includes
+// it, behind Scene-inl.h.
 
 #include "model/lights/LightFormulas-inl.h"
+#include "transport/lanes/EnvironmentSampler-inl.h"
 
-/// LightSet in lanes.
-class WideLights {
-public:
-  explicit HWY_INLINE WideLights(const EventScene& scene) : m_scene(scene) {}
+/// True if there are lights to draw.
+inline bool hasDrawn(const EventScene& scene) {
+  const LightTables<float>& lights = scene.lights;
+  return !lights.areas.empty() || !lights.directionals.empty() || !lights.spheres.empty() ||
+         !scene.maps.empty();
+}
 
-  bool some() const {
-    const LightTables<float>& lights = m_scene.lights;
-    return !lights.areas.empty() || !lights.directionals.empty() || !lights.spheres.empty() ||
-           !m_scene.maps.empty();
-  }
-
-  /// Draws one light for each lane of `which`, seen from a local point. `choice` selects the
-  /// light; `uBits`, `vBits`: random bits.
-  LightDraw draw(LaneMask which, const Float3& point, Float choice, Word uBits, Word vBits) const {
-    const Float u = uniformOf(uBits), v = uniformOf(vBits);
-    LightDraw drawn = drawLight(m_scene.lights, which, point, choice, u, v);
-    if (!m_scene.maps.empty() && which.any())
-      drawMaps(which, choice, uBits, vBits, drawn);
-    return drawn;
-  }
-
-  /// Light that scattered rays from local points meet before `distance`, or at infinity, weighted
-  /// against drawing that light (Veach 1997, eq. 9.8).
-  Float3 arriving(LaneMask which, const Float3& origin, const Float3& direction, Float distance,
-                  Float scatterPdf) const {
-    Float3 sum{0.0F, 0.0F, 0.0F};
-    forEachMet(m_scene.lights, which, origin, direction, distance,
-               [&](LaneMask met, const Float3& radiance, Float pdf) {
-                 const Float weight = scatterPdf / (scatterPdf + pdf);
-                 sum = sum + orZero(met, weight * radiance);
-               });
-    const LaneMask escaped = which & (distance == std::numeric_limits<float>::infinity());
-    if (m_scene.maps.empty())
-      return sum + orZero(escaped, around(m_scene.lights, direction));
-    if (!escaped.any())
-      return sum;
-    const Arrival far =
-        withMaps(direction, [&](const WideMap& map) { return map.texelToward(direction); });
-    const Float weight = scatterPdf / (scatterPdf + far.pdf);
-    return sum + orZero(escaped, weight * far.radiance);
-  }
-
-private:
-  void drawMaps(LaneMask which, Float choice, Word u, Word v, LightDraw& drawn) const {
-    const std::size_t count = m_scene.maps.size();
-    WideMap::Drawn toward = WideMap(m_scene.maps[0]).draw(u, v);
-    LaneMask later = which;
-    for (std::size_t i = 1; i < count; ++i) { // the last map takes the remainder of rounding
-      const float before = m_scene.maps[i - 1].share;
-      later = later & (choice > before);
-      choice = choice - before;
-      if (later.any())
-        toward.direction =
-            select(later, WideMap(m_scene.maps[i]).draw(u, v).direction, toward.direction);
-    }
-    const Arrival light = withMaps(toward.direction, [&](const WideMap& map) {
-      return count == 1 ? toward.texel : map.texelToward(toward.direction);
-    });
-    const LaneMask lit = which & (light.pdf > 0.0F);
-    drawn.direction = select(lit, toward.direction, drawn.direction);
-    drawn.radiance = select(lit, light.radiance, drawn.radiance);
-    drawn.pdf = select(lit, light.pdf, drawn.pdf);
-  }
-
-  /// LightArrival in lanes.
-  struct Arrival {
-    Float3 radiance;
-    Float pdf;
-  };
-  /// Radiance and density of all environments and skies together; texelOf(map): each map's texel in
-  /// the direction.
-  template <typename TexelOf>
-  HWY_INLINE Arrival withMaps(const Float3& direction, TexelOf&& texelOf) const {
-    Arrival sum{around(m_scene.lights, direction), 0.0F};
-    for (const MapTables& each : m_scene.maps) {
-      const WideMap map(each);
-      const Float3 radiance = map.radiance(texelOf(map));
-      sum.radiance = sum.radiance + radiance;
-      sum.pdf = sum.pdf + map.pdf(radiance);
-    }
-    return sum;
-  }
-
-  const EventScene& m_scene;
+/// LightArrival in lanes.
+struct Arrival {
+  Float3 radiance;
+  Float pdf;
 };
+/// LightSet::environment; texelOf(map): each map's texel in the direction.
+template <typename TexelOf>
+HWY_INLINE Arrival environment(const EventScene& scene, const Float3& direction,
+                               TexelOf&& texelOf) {
+  Arrival sum{around(scene.lights, direction), 0.0F};
+  for (const MapTables& map : scene.maps) {
+    const Float3 radiance = radianceOf(map, texelOf(map));
+    sum.radiance = sum.radiance + radiance;
+    sum.pdf = sum.pdf + map.perBrightness * greatest(radiance);
+  }
+  return sum;
+}
 
-} // namespace fenestra::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
+inline void drawMaps(const EventScene& scene, LaneMask which, Float choice, Word u, Word v,
+                     LightDraw& drawn) {
+  const std::size_t count = scene.maps.size();
+  TexelDraw toward = drawTexel(scene.maps[0], u, v);
+  LaneMask later = which;
+  for (std::size_t i = 1; i < count; ++i) { // the last map takes the remainder of rounding
+    const float before = scene.maps[i - 1].share;
+    later = later & (choice > before);
+    choice = choice - before;
+    if (later.any())
+      toward.direction = select(later, drawTexel(scene.maps[i], u, v).direction, toward.direction);
+  }
+  const Arrival light = environment(scene, toward.direction, [&](const MapTables& map) {
+    return count == 1 ? toward.texel : texelToward(map, toward.direction);
+  });
+  const LaneMask lit = which & (light.pdf > 0.0F);
+  drawn.direction = select(lit, toward.direction, drawn.direction);
+  drawn.radiance = select(lit, light.radiance, drawn.radiance);
+  drawn.pdf = select(lit, light.pdf, drawn.pdf);
+}
 
-#endif
+/// LightSet::sample for the lanes of `which`, from local points; `uBits`, `vBits`: random bits.
+inline LightDraw drawOf(const EventScene& scene, LaneMask which, const Float3& point, Float choice,
+                        Word uBits, Word vBits) {
+  const Float u = uniformOf(uBits), v = uniformOf(vBits);
+  LightDraw drawn = drawLight(scene.lights, which, point, choice, u, v);
+  if (!scene.maps.empty() && which.any())
+    drawMaps(scene, which, choice, uBits, vBits, drawn);
+  return drawn;
+}
+
+/// PathSteps::arriving for rays from local points, for the lanes of `which`; 0 in the others.
+inline Float3 arriving(const EventScene& scene, LaneMask which, const Float3& origin,
+                       const Float3& direction, Float distance, Float scatterPdf) {
+  Float3 sum{0.0F, 0.0F, 0.0F};
+  forEachMet(scene.lights, which, origin, direction, distance,
+             [&](LaneMask met, const Float3& radiance, Float pdf) {
+               const Float weight = scatterPdf / (scatterPdf + pdf);
+               sum = sum + orZero(met, weight * radiance);
+             });
+  const LaneMask escaped = which & (distance == std::numeric_limits<float>::infinity());
+  if (scene.maps.empty())
+    return sum + orZero(escaped, around(scene.lights, direction));
+  if (!escaped.any())
+    return sum;
+  const Arrival far = environment(
+      scene, direction, [&](const MapTables& map) { return texelToward(map, direction); });
+  const Float weight = scatterPdf / (scatterPdf + far.pdf);
+  return sum + orZero(escaped, weight * far.radiance);
+}

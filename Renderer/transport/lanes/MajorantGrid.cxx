@@ -13,15 +13,17 @@ struct Bordered {
   Size3 size;
 
   std::size_t count() const { return static_cast<std::size_t>(size.prod()); }
-  std::size_t index(std::int64_t x, std::int64_t y, std::int64_t z) const {
-    return static_cast<std::size_t>(x + size.x() * (y + size.y() * z));
+  std::size_t index(const Size3& cell) const { return numberOf(cell, size); }
+  /// Steps from a cell to its neighbours along the axes.
+  std::array<std::size_t, 3> strides() const {
+    return {index(Size3::UnitX()), index(Size3::UnitY()), index(Size3::UnitZ())};
   }
-  /// Calls visit(x, y, z) for all cells of a layer inside the border.
+  /// Calls visit(index, cell) for all cells of a layer inside the border.
   template <typename Visit>
   void forEachInLayer(std::int64_t z, Visit&& visit) const {
     for (std::int64_t y = 1; y < size.y() - 1; ++y)
       for (std::int64_t x = 1; x < size.x() - 1; ++x)
-        visit(x, y, z);
+        visit(index({x, y, z}), Size3(x, y, z));
   }
   /// Visits inner cells in the order of their indices.
   template <typename Visit>
@@ -43,37 +45,27 @@ struct Bordered {
 std::vector<std::int32_t> emptyAround(const Bordered& at, const std::vector<float>& majorants) {
   constexpr std::int32_t unknown = 1000000;
   std::vector<std::int32_t> cells(at.count(), 0);
-  at.forEachInner([&](auto x, auto y, auto z) {
-    cells[at.index(x, y, z)] = majorants[at.index(x, y, z)] > 0.0F ? -1 : unknown;
-  });
-  // `side`: -1 for neighbours visited earlier in the first sweep, 1 in the second.
-  const auto relax = [&](std::int64_t x, std::int64_t y, std::int64_t z, std::int64_t side) {
-    std::int32_t& cell = cells[at.index(x, y, z)];
-    if (cell < 0)
-      return;
+  at.forEachInner(
+      [&](std::size_t i, const Size3&) { cells[i] = majorants[i] > 0.0F ? -1 : unknown; });
+  std::array<std::ptrdiff_t, 13> back; // to the neighbours that the first sweep visits before
+  for (std::ptrdiff_t n = 0; n < 13; ++n)
+    back[static_cast<std::size_t>(n)] =
+        n % 3 - 1 + at.size.x() * (n / 3 % 3 - 1 + at.size.y() * (n / 9 - 1));
+  const auto relax = [&](std::int32_t* cell, std::ptrdiff_t side) {
     // A filled neighbour (-1) allows 0; an empty neighbour with n around allows n + 1.
-    const auto neighbour = [&](std::int64_t dx, std::int64_t dy, std::int64_t dz) {
-      cell = std::min(cell, cells[at.index(x + dx, y + dy, z + dz)] + 1);
-    };
-    for (std::int64_t dy = -1; dy <= 1; ++dy)
-      for (std::int64_t dx = -1; dx <= 1; ++dx)
-        neighbour(dx, dy, side);
-    for (std::int64_t dx = -1; dx <= 1; ++dx)
-      neighbour(dx, side, 0);
-    neighbour(side, 0, 0);
+    for (const std::ptrdiff_t step : back)
+      if (*cell > 0)
+        *cell = std::min(*cell, cell[side * step] + 1);
   };
-  at.forEachInner([&](auto x, auto y, auto z) { relax(x, y, z, -1); });
-  at.forEachInner([&](auto x, auto y, auto z) {
-    relax(at.size.x() - 1 - x, at.size.y() - 1 - y, at.size.z() - 1 - z, 1);
-  });
+  at.forEachInner([&](std::size_t i, const Size3&) { relax(&cells[i], 1); });
+  at.forEachInner([&](std::size_t i, const Size3&) { relax(&cells[at.count() - 1 - i], -1); });
   return cells;
 }
 
 /// Replaces each cell inside the border by the maximum of the 27 cells centred there.
 void dilate(const Bordered& at, std::vector<float>& cells, std::vector<float>& room) {
-  for (const std::size_t stride : {at.index(1, 0, 0), at.index(0, 1, 0), at.index(0, 0, 1)}) {
-    at.forEachInParallel([&](auto x, auto y, auto z) {
-      const std::size_t i = at.index(x, y, z);
+  for (const std::size_t stride : at.strides()) {
+    at.forEachInParallel([&](std::size_t i, const Size3&) {
       room[i] = std::max({cells[i - stride], cells[i], cells[i + stride]});
     });
     cells.swap(room);
@@ -89,26 +81,22 @@ struct Reach {
 /// Sums over boxes of cells.
 class BoxSums {
 public:
-  BoxSums(const Bordered& at, const std::vector<float>& cells) : m_at(at), m_sums(cells.size()) {
-    for (std::size_t i = 0; i < cells.size(); ++i)
-      m_sums[i] = static_cast<double>(cells[i]);
-    for (const std::size_t stride : {at.index(1, 0, 0), at.index(0, 1, 0), at.index(0, 0, 1)})
-      at.forEachInner([&](auto x, auto y, auto z) {
-        const std::size_t i = at.index(x, y, z);
-        m_sums[i] += m_sums[i - stride];
-      });
+  BoxSums(const Bordered& at, const std::vector<float>& cells)
+      : m_at(at), m_sums(cells.begin(), cells.end()) {
+    for (const std::size_t stride : at.strides())
+      at.forEachInner([&](std::size_t i, const Size3&) { m_sums[i] += m_sums[i - stride]; });
   }
 
-  /// Mean over the inner cells at most `reach` away from (x, y, z).
-  float mean(std::int64_t x, std::int64_t y, std::int64_t z, std::int64_t reach) const {
-    const Size3 low = (Size3(x, y, z).array() - reach).max(1);
-    const Size3 high = (Size3(x, y, z).array() + reach).min(m_at.size.array() - 2);
-    const auto upTo = [&](std::int64_t i, std::int64_t j, std::int64_t k) {
-      return m_sums[m_at.index(i, j, k)];
+  /// Mean over the inner cells at most `reach` away from a cell.
+  float mean(const Size3& cell, std::int64_t reach) const {
+    const Size3 low = (cell.array() - reach).max(1);
+    const Size3 high = (cell.array() + reach).min(m_at.size.array() - 2);
+    const auto upTo = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
+      return m_sums[m_at.index({x, y, z})];
     };
-    const auto slice = [&](std::int64_t k) {
-      return upTo(high.x(), high.y(), k) - upTo(low.x() - 1, high.y(), k) -
-             upTo(high.x(), low.y() - 1, k) + upTo(low.x() - 1, low.y() - 1, k);
+    const auto slice = [&](std::int64_t z) {
+      return upTo(high.x(), high.y(), z) - upTo(low.x() - 1, high.y(), z) -
+             upTo(high.x(), low.y() - 1, z) + upTo(low.x() - 1, low.y() - 1, z);
     };
     return static_cast<float>((slice(high.z()) - slice(low.z() - 1)) /
                               static_cast<double>((high - low + Size3::Ones()).prod()));
@@ -139,12 +127,11 @@ Reach findReach(const Bordered& at, const std::vector<float>& majorants,
     some = false;
     dilate(at, bounds, room);
     const auto step = static_cast<float>(stepCost / (edge * (0.7 + reach)));
-    at.forEachInParallel([&](auto x, auto y, auto z) {
-      const std::size_t i = at.index(x, y, z);
+    at.forEachInParallel([&](std::size_t i, const Size3& cell) {
       if (majorants[i] == 0.0F || best.cells[i] + 2U < reach)
         return;
       some.store(true, std::memory_order_relaxed);
-      const float here = bounds[i] - sums.mean(x, y, z, reach) + step;
+      const float here = bounds[i] - sums.mean(cell, reach) + step;
       if (here < least[i]) {
         least[i] = here;
         best.bound[i] = bounds[i];
@@ -154,8 +141,6 @@ Reach findReach(const Bordered& at, const std::vector<float>& majorants,
   }
   return best;
 }
-
-constexpr std::uint32_t cutBit = 1U << 31;
 
 /// Cells of this many voxels at most are merged (measured: looser bounds cost less than more
 /// cells).
@@ -181,7 +166,7 @@ WideCells::WideCells(const MajorantGrid& majorants)
     for (std::int64_t y = 0; y < fine.y(); ++y)
       for (std::int64_t x = 0; x < fine.x(); ++x) {
         const MajorantGrid::Cell& cell = majorants.cell(next++);
-        const std::size_t i = at.index(x / merged + 1, y / merged + 1, z / merged + 1);
+        const std::size_t i = at.index({x / merged + 1, y / merged + 1, z / merged + 1});
         bound[i] = std::max(bound[i], cell.majorant);
         cut[i] = cut[i] || cell.cut;
       }
@@ -192,17 +177,11 @@ WideCells::WideCells(const MajorantGrid& majorants)
   codes.assign(at.count(), 0);
   for (std::size_t i = 0; i < at.count(); ++i) {
     if (bound[i] > 0.0F)
-      codes[i] = static_cast<std::int32_t>((cut[i] ? cutBit : 0U) | majorantCode(reach.bound[i]) |
-                                           reach.cells[i]);
+      codes[i] = static_cast<std::int32_t>((cut[i] ? WideCells::cutBit : 0U) |
+                                           majorantCode(reach.bound[i]) | reach.cells[i]);
     else
       codes[i] = std::min(std::max(around[i], 0), reachBits);
   }
-}
-
-WideCells::Cell WideCells::cell(std::size_t place) const {
-  const std::int32_t code = codes[place];
-  return {std::bit_cast<float>(code & majorantBits), static_cast<std::uint32_t>(code & reachBits),
-          code < 0};
 }
 
 } // namespace fenestra

@@ -6,8 +6,7 @@
 #define HWY_TARGET_INCLUDE "transport/lanes/March.cxx"
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
-#include "transport/lanes/Mixture-inl.h"
-#include "transport/lanes/Way-inl.h"
+#include "transport/lanes/Scene-inl.h"
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 namespace {
@@ -128,9 +127,7 @@ public:
       along = dot(mapDirection(m_scene.toLocal, walk.direction()), gradient);
     }
     const Float slope = sqrt(dot(gradient, gradient));
-    const LaneMask away = along < 0.0F;
-    const Float scale = select(away, probability, -probability) / slope;
-    const Float3 normal = orZero(slope > 0.0F, scale * gradient);
+    const Float3 normal = normalOf(gradient, along, probability);
     m_normal = m_normal + normal;
     if (m_scene.hybrid)
       m_facing = m_facing + mean.opacity * missing(m_scene.surfaceRate * slope) * normal;
@@ -145,24 +142,19 @@ public:
   };
 
   Mean own(LaneMask which, const Float3& p, Float scalar) const {
-    Mean mean{albedoOf(m_scene.albedo, scalar), 0.0F};
-    if (m_scene.tint)
-      mean.albedo = tintedAlbedo(*m_scene.tint, which, p, scalar, mean.albedo);
-    if (m_scene.hybrid)
-      mean.opacity = missing(extinctionOf(m_volume, scalar));
-    return mean;
+    return {albedoAt(m_scene, which, p, scalar),
+            m_scene.hybrid ? missing(extinctionOf(m_volume.extinctions, scalar)) : 0.0F};
   }
 
   Mean meanOfParts(LaneMask which, const Float3& p, Float scalar) const {
-    const WideMixture& mixture = *m_volume.mixture;
     const Float kept = keptOfParts(m_volume, which, p);
     Mean sums{{0.0F, 0.0F, 0.0F}, 0.0F};
     Float all = 0.0F;
-    forEachPart(mixture, which, p, scalar, kept, [&](LaneMask lanes, Int components, Float part) {
+    forEachPart(m_volume, which, p, scalar, kept, [&](LaneMask lanes, Int components, Float part) {
+      const Float extinction = extinctionOf(m_volume.extinctions, lanes, components, scalar);
       all = all + part;
       sums.albedo = sums.albedo + part * albedoIn(m_scene, lanes, components, scalar);
-      sums.opacity =
-          sums.opacity + part * missing(extinctionOf(mixture, lanes, components, scalar));
+      sums.opacity = sums.opacity + part * missing(extinction);
     });
     const Float scale = orZero(all > 0.0F, 1.0F / all);
     return {scale * sums.albedo, scale * sums.opacity};
@@ -184,43 +176,38 @@ private:
       m_facing{m_hit, m_hit, m_hit};
 };
 
-template <typename Voxel>
-void marchBatch(const WideScene& volume, const EventScene& scene, MarchBatch& batch) {
+void marchAll(const WideScene& volume, const EventScene& scene, MarchBatch& batch) {
   // Eye rays begin behind the surface, where only an edge that is not sharp matters; unless they
   // are whole, for matter that the clip leaves.
   const bool asksKeep =
       volume.ghost > 0.0F || volume.softness > 0.0F || (volume.mixture && volume.mixture->hasFree);
-  for (std::size_t first = 0; first < batch.rays.size; first += laneCount) {
-    Walk<Voxel> walk(volume, batch.rays, first, 1.0, asksKeep);
-    Sums<Voxel> sums(volume, scene);
-    while (!walk.isDone()) {
-      const LaneMask ended = walk.step();
-      const Float least = select(ended, 0.0F, narrow(MarchSteps::share));
-      const LaneMask due = walk.pendingAbove(least);
-      if (due.any())
-        sums.collect(walk, due);
+  const auto march = [&]<typename Voxel>(const Voxel*) {
+    for (std::size_t first = 0; first < batch.rays.size; first += laneCount) {
+      Walk<Voxel> walk(volume, batch.rays, first, 1.0, asksKeep);
+      Sums<Voxel> sums(volume, scene);
+      while (!walk.isDone()) {
+        const LaneMask ended = walk.step();
+        const Float least = select(ended, 0.0F, narrow(MarchSteps::share));
+        const LaneMask due = walk.pendingAbove(least);
+        if (due.any())
+          sums.collect(walk, due);
+      }
+      sums.putTo(batch, first);
     }
-    sums.putTo(batch, first);
-  }
-}
-
-template <typename Voxel>
-void passBatch(const WideScene& volume, RayBatch& rays) {
-  for (std::size_t first = 0; first < rays.size; first += laneCount) {
-    Walk<Voxel> walk(volume, rays, first, MarchSteps::coarser, true);
-    while (!walk.isDone())
-      walk.step();
-    store(walk.transmittance(), &rays.result[first]);
-  }
-}
-
-void marchAll(const WideScene& volume, const EventScene& scene, MarchBatch& batch) {
-  std::visit([&]<typename Voxel>(const Voxel*) { marchBatch<Voxel>(volume, scene, batch); },
-             volume.voxels);
+  };
+  std::visit(march, volume.voxels);
 }
 
 void passAll(const WideScene& volume, RayBatch& rays) {
-  std::visit([&]<typename Voxel>(const Voxel*) { passBatch<Voxel>(volume, rays); }, volume.voxels);
+  const auto pass = [&]<typename Voxel>(const Voxel*) {
+    for (std::size_t first = 0; first < rays.size; first += laneCount) {
+      Walk<Voxel> walk(volume, rays, first, MarchSteps::coarser, true);
+      while (!walk.isDone())
+        walk.step();
+      store(walk.transmittance(), &rays.result[first]);
+    }
+  };
+  std::visit(pass, volume.voxels);
 }
 
 } // namespace
@@ -233,12 +220,12 @@ namespace fenestra {
 HWY_EXPORT(marchAll);
 HWY_EXPORT(passAll);
 
-void WideMarch::along(MarchBatch& batch) const {
-  HWY_DYNAMIC_DISPATCH(marchAll)(m_volume, m_scene, batch);
+void marchAlong(const WideScene& volume, const EventScene& scene, MarchBatch& batch) {
+  HWY_DYNAMIC_DISPATCH(marchAll)(volume, scene, batch);
 }
 
-void WideMarch::through(RayBatch& rays) const {
-  HWY_DYNAMIC_DISPATCH(passAll)(m_volume, rays);
+void marchThrough(const WideScene& volume, RayBatch& rays) {
+  HWY_DYNAMIC_DISPATCH(passAll)(volume, rays);
 }
 
 } // namespace fenestra

@@ -13,18 +13,11 @@ struct MarchBatch {
   Columns3 albedo, normal, facing;
 };
 
-class WideMarch {
-public:
-  /// A view. The rays begin behind the clip's surface: a clip with a sharp edge is asked no more.
-  WideMarch(const WideScene& volume, const EventScene& scene) : m_volume(volume), m_scene(scene) {}
+/// Marches eye rays that begin behind the clip's surface: a clip with a sharp edge is asked no
+/// more.
+void marchAlong(const WideScene& volume, const EventScene& scene, MarchBatch& batch);
 
-  void along(MarchBatch& batch) const;
-  /// result: transmittance of each ray, in coarser steps. These rays may begin anywhere.
-  void through(RayBatch& rays) const;
-
-private:
-  const WideScene& m_volume;
-  const EventScene& m_scene;
-};
+/// result: transmittance of each ray, in coarser steps. These rays may begin anywhere.
+void marchThrough(const WideScene& volume, RayBatch& rays);
 
 } // namespace fenestra

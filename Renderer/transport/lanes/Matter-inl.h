@@ -1,19 +1,4 @@
-// Matter of lanes at points in index space: albedo, with segments' colours, and gradient. Compiled
-// once for each instruction set.
-
-#if defined(FENESTRA_WIDE_MATTER_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef FENESTRA_WIDE_MATTER_INL_H
-#undef FENESTRA_WIDE_MATTER_INL_H
-#else
-#define FENESTRA_WIDE_MATTER_INL_H
-#endif
-
-#include "transport/lanes/PathTables.h"
-// After foreach_target.h:
-#include "transport/lanes/Shares-inl.h"
-
-HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
+// Matter of lanes at points in index space: albedo, with segments' colours, and gradient.
 
 HWY_INLINE Float3 albedoOf(const WideTable& table, Float scalar) {
   const auto& channels = table.channels;
@@ -24,17 +9,23 @@ HWY_INLINE Float3 albedoOf(const WideTable& table, Float scalar) {
           valueIn(channels[2], segment)};
 }
 
-/// TintedField::albedo for the lanes of `which`, 0 in others; `own`: of the transfer function.
-HWY_INLINE Float3 tintedAlbedo(const WideTint& tint, LaneMask which, const Float3& index,
-                               Float scalar, const Float3& own) {
+/// Albedo of one component a lane; 0 in lanes that are not of `which`.
+HWY_INLINE Float3 albedoIn(const EventScene& scene, LaneMask which, Int components, Float scalar) {
+  Float3 albedo(0.0F, 0.0F, 0.0F);
+  forEachComponent(which, components, [&](LaneMask same, std::size_t component) {
+    albedo = select(same, albedoOf(scene.albedos[component], scalar), albedo);
+  });
+  return albedo;
+}
+
+/// Albedo without a mixture: with a tint TintedField::albedo, for the lanes of `which`.
+HWY_INLINE Float3 albedoAt(const EventScene& scene, LaneMask which, const Float3& index,
+                           Float scalar) {
+  if (!scene.tint)
+    return albedoOf(scene.albedos[0], scalar);
   Float3 sum(0.0F, 0.0F, 0.0F);
-  LaneShares(tint.shares, index).forEach(which, [&](LaneMask lanes, Int components, Float share) {
-    Float3 albedo = own;
-    forEachComponent(lanes, components, [&](LaneMask same, std::size_t component) {
-      if (const auto& table = tint.albedo[component])
-        albedo = select(same, albedoOf(*table, scalar), albedo);
-    });
-    sum = sum + share * albedo;
+  LaneShares(*scene.tint, index).forEach(which, [&](LaneMask lanes, Int components, Float share) {
+    sum = sum + share * albedoIn(scene, lanes, components, scalar);
   });
   return sum;
 }
@@ -57,17 +48,14 @@ HWY_INLINE Float3 differenceAt(const WideField& field, const Float3& p) {
           scalarAt<Voxel>(field, {x, y, z + 1.0F}) - scalarAt<Voxel>(field, {x, y, z - 1.0F})};
 }
 
+/// Unit normal toward a ray's origin, times `weight`; 0 where there is no gradient. `along`: the
+/// gradient along the ray, or a number of its sign.
+HWY_INLINE Float3 normalOf(const Float3& gradient, Float along, Float weight) {
+  const Float slope = sqrt(dot(gradient, gradient));
+  return orZero(slope > 0.0F, select(along < 0.0F, weight, -weight) / slope * gradient);
+}
+
 /// 1 - e^-x.
 HWY_INLINE Float missing(Float x) {
   return -expm1(-x);
 }
-
-/// Medium's probability of scattering at a surface; `slope`: length of the gradient.
-HWY_INLINE Float surfaceChance(const EventScene& scene, Float extinction, Float slope) {
-  return missing(extinction) * missing(scene.surfaceRate * slope);
-}
-
-} // namespace fenestra::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
-
-#endif

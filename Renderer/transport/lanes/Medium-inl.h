@@ -1,21 +1,4 @@
-// Look-ups of lanes at points in index space: scalar, extinction, majorant cells. Compiled once for
-// each instruction set (see Tracker.cxx).
-
-#if defined(FENESTRA_LANE_MEDIUM_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef FENESTRA_LANE_MEDIUM_INL_H
-#undef FENESTRA_LANE_MEDIUM_INL_H
-#else
-#define FENESTRA_LANE_MEDIUM_INL_H
-#endif
-
-#include "transport/lanes/TrackerTables.h"
-// After foreach_target.h:
-#include "base/LaneMath-inl.h"
-
-#include <cstring>
-
-HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
+// Look-ups of lanes at points in index space: scalar, extinction, majorant cells.
 
 /// Places in memory, one a lane. Without a sign, so that they are addresses as they are.
 struct Indices : LaneArray<std::uint32_t> {
@@ -84,79 +67,64 @@ HWY_INLINE Pairs loadPairs(const Element* memory, const Indices& index) {
 #endif
 }
 
-/// The eight voxels around a point: four rows of two along x.
-using Corners = std::array<Pairs, 4>;
+/// A point along one axis of voxels or shares, clamped in the outer half voxel.
+struct PlaceAlong {
+  Float lower;    ///< the lower of the two voxels around it, whole
+  Float fraction; ///< position from there, 0 to 1
+};
+HWY_INLINE PlaceAlong placeAlong(const WideAxis& a, Float x) {
+  // This order of min and max maps NaN to 0.
+  const Float inside = max(min(x, a.last), 0.0F);
+  const Float lower = min(floor(inside), a.lastCell);
+  return {lower, inside - lower};
+}
+/// Offset of a voxel or brick.
+HWY_INLINE Int offsetOf(const WideAxes& axes, Float x, Float y, Float z) {
+  return wholeToInt(x) + wholeToInt(y) * axes[1].stride + wholeToInt(z) * axes[2].stride;
+}
 
-/// Corners by pairOf(offset of a row from the first one, in voxels).
-template <typename PairOf>
-HWY_INLINE Corners cornersBy(const WideField& field, PairOf&& pairOf) {
-  const std::int32_t up = field.axes[1].stride;
-  const std::int32_t deep = field.axes[2].stride;
-  return {pairOf(0), pairOf(up), pairOf(deep), pairOf(deep + up)};
-}
-HWY_INLINE Corners cornersAt(const WideField& field, const float* voxels, Int first) {
-  const Indices index(first);
-  return cornersBy(field, [&](std::int32_t row) { return loadPairs(voxels + row, index); });
-}
-HWY_INLINE Corners cornersAt(const WideField& field, const std::int16_t* voxels, Int first) {
-  const Indices index(first);
-  return cornersBy(field, [&](std::int32_t row) {
-    const Int both = loadInts(voxels + row, index);
-    return Pairs{toFloat(shiftRight<16>(shiftLeft<16>(both))), toFloat(shiftRight<16>(both))};
-  });
-}
-HWY_INLINE Corners cornersAt(const WideField& field, const std::uint16_t* voxels, Int first) {
-  const Indices index(first);
-  return cornersBy(field, [&](std::int32_t row) {
-    const Int both = loadInts(voxels + row, index);
-    return Pairs{toFloat(both & 0xffff), toFloat(shiftRight<16>(both) & 0xffff)};
-  });
-}
-HWY_INLINE Corners cornersAt(const WideField& field, const std::uint8_t* voxels, Int first) {
-  const Int lastFour = static_cast<std::int32_t>(field.count - 4);
-  return cornersBy(field, [&](std::int32_t offset) {
-    // Reads four bytes, never beyond the last voxel.
+/// Voxels from places on, and their neighbours along x.
+template <typename Voxel>
+HWY_INLINE Pairs voxelsAt(const WideField& field, Int first, const Indices& index,
+                          std::int32_t offset) {
+  const auto* const voxels = static_cast<const Voxel*>(field.voxels);
+  if constexpr (std::is_same_v<Voxel, float>) {
+    return loadPairs(voxels + offset, index);
+  } else if constexpr (std::is_same_v<Voxel, std::int16_t>) {
+    const Int both = loadInts(voxels + offset, index);
+    return {toFloat(shiftRight<16>(shiftLeft<16>(both))), toFloat(shiftRight<16>(both))};
+  } else if constexpr (std::is_same_v<Voxel, std::uint16_t>) {
+    const Int both = loadInts(voxels + offset, index);
+    return {toFloat(both & 0xffff), toFloat(shiftRight<16>(both) & 0xffff)};
+  } else { // reads four bytes, never beyond the last voxel
     const Int row = first + offset;
-    const Int from = min(row, lastFour);
+    const Int from = min(row, static_cast<std::int32_t>(field.count - 4));
     const Int four = loadInts(voxels, Indices(from));
     const Int both = hn::Shr(four.v, shiftLeft<3>(row - from).v);
-    return Pairs{toFloat(both & 0xff), toFloat(shiftRight<8>(both) & 0xff)};
-  });
-}
-
-/// A point among voxel centres, clamped in the outer half voxel.
-struct Place {
-  Int first;        ///< index of the lowest of the eight voxels around it
-  Float3 fractions; ///< position from there, 0 to 1
-};
-
-HWY_INLINE Place placeOf(const WideField& field, const Float3& p) {
-  const auto cell = [&](std::size_t axis, Float x, Float& fraction) {
-    const WideField::Axis& a = field.axes[axis];
-    // This order of min and max maps NaN to 0.
-    const Float inside = max(min(x, a.last), 0.0F);
-    const Float lower = min(floor(inside), a.lastCell);
-    fraction = inside - lower;
-    return wholeToInt(lower);
-  };
-  Place place;
-  const Int x = cell(0, p.x, place.fractions.x);
-  const Int y = cell(1, p.y, place.fractions.y);
-  const Int z = cell(2, p.z, place.fractions.z);
-  place.first = x + y * field.axes[1].stride + z * field.axes[2].stride;
-  return place;
+    return {toFloat(both & 0xff), toFloat(shiftRight<8>(both) & 0xff)};
+  }
 }
 
 /// The scalar, trilinear between voxel centres.
 template <typename Voxel>
 HWY_INLINE Float scalarAt(const WideField& field, const Float3& p) {
-  const Place place = placeOf(field, p);
-  const Corners c = cornersAt(field, static_cast<const Voxel*>(field.voxels), place.first);
-  const Float3& f = place.fractions;
-  const auto along = [&](const Pairs& row) { return lerp(row.first, row.second, f.x); };
-  const Float low = lerp(along(c[0]), along(c[1]), f.y);
-  const Float high = lerp(along(c[2]), along(c[3]), f.y);
-  return lerp(low, high, f.z);
+  const WideAxes& axes = field.axes;
+  const PlaceAlong x = placeAlong(axes[0], p.x);
+  const PlaceAlong y = placeAlong(axes[1], p.y);
+  const PlaceAlong z = placeAlong(axes[2], p.z);
+  const Int first = offsetOf(axes, x.lower, y.lower, z.lower);
+  const Indices index(first);
+  const std::int32_t up = axes[1].stride, deep = axes[2].stride;
+  const Pairs near = voxelsAt<Voxel>(field, first, index, 0);
+  const Pairs above = voxelsAt<Voxel>(field, first, index, up);
+  const Pairs behind = voxelsAt<Voxel>(field, first, index, deep);
+  const Pairs last = voxelsAt<Voxel>(field, first, index, deep + up);
+  const Float f = x.fraction;
+  const Float low =
+      lerp(lerp(near.first, near.second, f), lerp(above.first, above.second, f), y.fraction);
+  const Float high =
+      lerp(lerp(behind.first, behind.second, f), lerp(last.first, last.second, f), y.fraction);
+  return lerp(low, high, z.fraction);
 }
 
 /// Segment of a table that holds a scalar.
@@ -186,17 +154,28 @@ HWY_INLINE Float valueIn(const WideTable::Channel& channel, const Segment& at) {
   return notBelow0(value + select(slope == 0.0F, 0.0F, at.beyondStart * slope));
 }
 
-/// Extinction (mm^-1) of a scalar: one load where its bin lies in one segment.
-HWY_INLINE Float extinctionOf(const WideScene& scene, Float s) {
-  const WideTable& table = scene.extinction;
-  const Float place = max(min((s - table.binStart) * table.linesPerUnit, table.lastLine), 0.0F);
+HWY_INLINE Float valueOf(const WideTable& table, Float s) {
+  return valueIn(table.channels[0], segmentOf(table, s));
+}
+
+/// Values by lines, one load a lane; not where a lane's bin holds a knot.
+struct ByLines {
+  Float value;
+  LaneMask isBent;
+};
+/// `first`: number of each lane's first line.
+HWY_INLINE ByLines byLines(const WideLines& table, Int first, Float s) {
+  const Float place = max(min((s - table.start) * table.perUnit, table.last), 0.0F);
   const Float line = floor(place);
   const auto [value, rise] =
-      loadPairs(&table.lines[0].value, Indices(shiftLeft<1>(wholeToInt(line))));
-  const Float extinction = notBelow0(fma(place - line, rise, value));
-  const LaneMask mixed = ~(rise == rise);
-  return mixed.any() ? select(mixed, valueIn(table.channels[0], segmentOf(table, s)), extinction)
-                     : extinction;
+      loadPairs(&table.lines[0].value, Indices(shiftLeft<1>(first + wholeToInt(line))));
+  return {notBelow0(fma(place - line, rise, value)), ~(rise == rise)};
+}
+
+/// Extinction (mm^-1) of a scalar, without a mixture.
+HWY_INLINE Float extinctionOf(const WideLines& table, Float s) {
+  const auto [value, isBent] = byLines(table, 0, s);
+  return isBent.any() ? select(isBent, valueOf(table.segments[0], s), value) : value;
 }
 
 /// Majorant cells, one a lane (WideCells).
@@ -217,36 +196,46 @@ HWY_INLINE LaneCells cellsAt(const WideScene& scene, Float x, Float y, Float z) 
           code < 0};
 }
 
-/// Length of a ray from inside [lower, upper] to the faces; 0 if rounding put the origin outside.
-HWY_INLINE Float toFaces(const Float3& lower, const Float3& upper, const Float3& origin,
-                         const Float3& direction) {
-  const auto along = [](Float low, Float high, Float o, Float d) {
-    const Float t = (select(d < 0.0F, low, high) - o) / d;
-    return select(d == 0.0F, std::numeric_limits<float>::infinity(), t);
-  };
-  const Float x = along(lower.x, upper.x, origin.x, direction.x);
-  const Float y = along(lower.y, upper.y, origin.y, direction.y);
-  const Float z = along(lower.z, upper.z, origin.z, direction.z);
-  return notBelow0(min(min(x, y), z));
-}
+/// Stretches of rays, one a lane, t in mm.
+struct Stretches {
+  Float begin, end;
 
-/// Length (mm) of a ray from inside the domain to its end; ray in index space, t in mm.
+  /// Cuts off what is outside the domain (Domain::clip); rays in index space.
+  HWY_INLINE void clip(const WideScene& scene, const Float3& origin, const Float3& direction) {
+    clip(scene.lower, scene.upper, origin, direction);
+    if (const std::optional<AffineRows>& toCrop = scene.toCrop)
+      clip({-1.0F, -1.0F, -1.0F}, {1.0F, 1.0F, 1.0F}, mapPoint(*toCrop, origin),
+           mapDirection(*toCrop, direction));
+  }
+
+private:
+  /// Cuts off what is outside a box. A ray that lies in a face counts as inside.
+  HWY_INLINE void clip(const Float3& lower, const Float3& upper, const Float3& origin,
+                       const Float3& direction) {
+    const auto along = [&](Float low, Float high, Float o, Float d) {
+      constexpr float infinite = std::numeric_limits<float>::infinity();
+      const LaneMask still = d == 0.0F, back = d < 0.0F;
+      const LaneMask inside = (low <= o) & (o <= high);
+      const Float near = (select(back, high, low) - o) / d;
+      const Float far = (select(back, low, high) - o) / d;
+      begin = max(begin, select(still, select(inside, -infinite, infinite), near));
+      end = min(end, select(still, infinite, far));
+    };
+    along(lower.x, upper.x, origin.x, direction.x);
+    along(lower.y, upper.y, origin.y, direction.y);
+    along(lower.z, upper.z, origin.z, direction.z);
+  }
+};
+
+/// Length (mm) of a ray from inside the domain to its end; 0 if rounding put the origin outside.
 HWY_INLINE Float lengthInside(const WideScene& scene, const Float3& origin,
                               const Float3& direction) {
-  const Float toBox = toFaces(scene.lower, scene.upper, origin, direction);
-  if (!scene.cropped)
-    return toBox;
-  const Float3 lower(-1.0F, -1.0F, -1.0F), upper(1.0F, 1.0F, 1.0F);
-  return min(toBox, toFaces(lower, upper, mapPoint(scene.toCrop, origin),
-                            mapDirection(scene.toCrop, direction)));
+  Stretches inside{0.0F, std::numeric_limits<float>::infinity()};
+  inside.clip(scene, origin, direction);
+  return notBelow0(inside.end);
 }
 
 /// Lanes whose point (index space) lies in the focus, where a style changes nothing.
 HWY_INLINE LaneMask isFocus(const WideScene::Context& context, const Float3& p) {
   return scalarAt<std::uint8_t>(context.focus, mapPoint(context.toFocus, p)) >= context.level;
 }
-
-} // namespace fenestra::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
-
-#endif

@@ -1,5 +1,5 @@
 #pragma once
-// A piecewise linear function for lanes: in float, by segments instead of knots.
+// Piecewise linear functions for lanes: in float, by segments instead of knots.
 
 #include "model/medium/PiecewiseLinear.h"
 
@@ -17,33 +17,31 @@ struct WideTable {
   };
   using Channel = std::vector<Line>;
 
-  /// Equal bins from the scalar `low` to `high`.
-  struct Bins {
-    double start, end;
-    float perUnit; ///< bins; 0: none have a width that floats can tell
-
-    Bins(double low, double high);
-    /// The first channel over the bins, each a line: value, and rise over the bin; then the value
-    /// beyond. NaN rise: the bin holds a knot, ask the segments.
-    template <int Channels>
-    std::vector<Line> linesOf(const PiecewiseLinear<Channels>& function) const;
-  };
+  template <int Channels>
+  explicit WideTable(const PiecewiseLinear<Channels>& function);
 
   std::vector<float> position;
   std::vector<std::int32_t> binSegment; ///< first candidate of each equal bin, from binStart on
-  float binStart = 0.0F, binsPerUnit = 0.0F;
+  float binStart, binsPerUnit;
   std::vector<Channel> channels;
-  std::vector<Line> lines; ///< of Bins over all knots, from binStart on
-  float linesPerUnit = 0.0F, lastLine = 0.0F;
-
-  WideTable() = default;
-  template <int Channels>
-  explicit WideTable(const PiecewiseLinear<Channels>& function);
 };
 
 extern template WideTable::WideTable(const PiecewiseLinear<1>&);
 extern template WideTable::WideTable(const PiecewiseLinear<3>&);
-extern template std::vector<WideTable::Line>
-WideTable::Bins::linesOf(const PiecewiseLinear<1>&) const;
+
+/// Functions over equal bins, the same for all, so that one load serves lanes of different
+/// functions: `count` lines of one function, then the next. Over a bin a line is value and rise,
+/// then comes the value beyond. NaN rise: the bin holds a knot, ask the segments.
+struct WideLines {
+  WideLines() = default;
+  explicit WideLines(const std::vector<const ScalarFunction*>& functions);
+
+  std::vector<WideTable::Line> lines;
+  std::vector<WideTable> segments; ///< of each function
+  float start = 0.0F;              ///< of the first bin
+  float perUnit = 0.0F;            ///< bins; 0: none have a width that floats can tell
+  std::int32_t count = 0;
+  float last = 0.0F; ///< count - 1
+};
 
 } // namespace fenestra

@@ -1,39 +1,19 @@
-// Parts of a mixture at points in index space. Compiled once for each instruction set.
-
-#if defined(FENESTRA_LANE_MIXTURE_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef FENESTRA_LANE_MIXTURE_INL_H
-#undef FENESTRA_LANE_MIXTURE_INL_H
-#else
-#define FENESTRA_LANE_MIXTURE_INL_H
-#endif
-
-#include "transport/lanes/Mixture.h"
-// After foreach_target.h:
-#include "transport/lanes/Clip-inl.h"
-#include "transport/lanes/Matter-inl.h"
-
-HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
+// Parts of a mixture at points in index space.
 
 /// Extinction (mm^-1) of one component a lane, as if it had all of the space.
-HWY_INLINE Float extinctionOf(const WideMixture& mixture, LaneMask which, Int components,
+HWY_INLINE Float extinctionOf(const WideLines& table, LaneMask which, Int components,
                               Float scalar) {
-  const Float place =
-      max(min((scalar - mixture.start) * mixture.linesPerUnit, mixture.lastLine), 0.0F);
-  const Float line = floor(place);
-  const Int at = orZero(which, components * mixture.count) + wholeToInt(line);
-  const auto [value, rise] = loadPairs(&mixture.lines[0].value, Indices(shiftLeft<1>(at)));
-  Float extinction = notBelow0(fma(place - line, rise, value));
-  const LaneMask bent = which & ~(rise == rise);
-  forEachComponent(bent, components, [&](LaneMask same, std::size_t component) {
-    const WideTable& table = mixture.extinction[component];
-    extinction.where(same, valueIn(table.channels[0], segmentOf(table, scalar)));
+  ByLines at = byLines(table, orZero(which, components * table.count), scalar);
+  forEachComponent(which & at.isBent, components, [&](LaneMask same, std::size_t component) {
+    at.value.where(same, valueOf(table.segments[component], scalar));
   });
-  return extinction;
+  return at.value;
 }
 
 /// Lanes of `which` whose component the clip leaves.
 HWY_INLINE LaneMask freeIn(const WideMixture& mixture, LaneMask which, Int components) {
+  if (!mixture.hasFree)
+    return LaneMask::none();
   return gather(mixture.isFree.data(), orZero(which, components)) == 1;
 }
 
@@ -41,38 +21,30 @@ HWY_INLINE LaneMask freeIn(const WideMixture& mixture, LaneMask which, Int compo
 /// (MixedField::forEachPart); extinctions of lanes that are not in `lanes` are 0. `kept`: keep of
 /// the clip.
 template <typename Visit>
-HWY_INLINE void forEachPart(const WideMixture& mixture, LaneMask which, const Float3& index,
+HWY_INLINE void forEachPart(const WideScene& scene, LaneMask which, const Float3& index,
                             Float scalar, Float kept, Visit&& visit) {
-  LaneShares(mixture.shares, index)
-      .forEach(which, [&](LaneMask lanes, Int components, Float share) {
-        Float part = share * extinctionOf(mixture, lanes, components, scalar);
-        if (mixture.hasFree) {
-          const LaneMask free = freeIn(mixture, lanes, components);
-          part = select(free, part, kept * part);
-        } else {
-          part = kept * part;
-        }
-        visit(lanes, components, part);
-      });
+  const auto part = [&](LaneMask lanes, Int components, Float share) {
+    const Float whole = share * extinctionOf(scene.extinctions, lanes, components, scalar);
+    const LaneMask free = freeIn(*scene.mixture, lanes, components);
+    visit(lanes, components, select(free, whole, kept * whole));
+  };
+  LaneShares(scene.mixture->shares, index).forEach(which, part);
 }
 
 /// Extinction (mm^-1) of what a clip may remove, and of what it leaves.
 struct LaneExtinctions {
   Float clipped, free;
 };
-inline LaneExtinctions extinctionsOf(const WideMixture& mixture, LaneMask which,
-                                     const Float3& index, Float scalar) {
+inline LaneExtinctions extinctionsOf(const WideScene& scene, LaneMask which, const Float3& index,
+                                     Float scalar) {
   LaneExtinctions sums{0.0F, 0.0F};
-  LaneShares(mixture.alike, index).forEach(which, [&](LaneMask lanes, Int components, Float share) {
-    const Float part = share * extinctionOf(mixture, lanes, components, scalar);
-    if (!mixture.hasFree) {
-      sums.clipped = sums.clipped + part;
-      return;
-    }
-    const LaneMask free = freeIn(mixture, lanes, components);
+  const auto add = [&](LaneMask lanes, Int components, Float share) {
+    const Float part = share * extinctionOf(scene.extinctions, lanes, components, scalar);
+    const LaneMask free = freeIn(*scene.mixture, lanes, components);
     sums.free = sums.free + orZero(free, part);
     sums.clipped = sums.clipped + select(free, 0.0F, part);
-  });
+  };
+  LaneShares(scene.mixture->alike, index).forEach(which, add);
   return sums;
 }
 
@@ -82,15 +54,12 @@ HWY_INLINE LaneExtinctions extinctionsAt(const WideScene& scene, LaneMask which,
                                          const Float3& index, Float scalar) {
   LaneExtinctions all{0.0F, 0.0F};
   if constexpr (isMixed)
-    all = extinctionsOf(*scene.mixture, which, index, scalar);
+    all = extinctionsOf(scene, which, index, scalar);
   else
-    all.clipped = extinctionOf(scene, scalar);
+    all.clipped = extinctionOf(scene.extinctions, scalar);
   if (scene.context && scene.context->extinction != 1.0F) {
-    const LaneMask focus = isFocus(*scene.context, index);
-    const float factor = scene.context->extinction;
-    all.clipped = select(focus, all.clipped, all.clipped * factor);
-    if constexpr (isMixed)
-      all.free = select(focus, all.free, all.free * factor);
+    const Float factor = select(isFocus(*scene.context, index), 1.0F, scene.context->extinction);
+    all = {all.clipped * factor, all.free * factor};
   }
   return all;
 }
@@ -103,30 +72,22 @@ inline Float keptOfParts(const WideScene& scene, LaneMask which, const Float3& i
 }
 
 /// Components that collisions of the lanes of `which` meet (MixedField::draw); 0 in others.
-inline Int drawComponents(const WideMixture& mixture, LaneMask which, const Float3& index,
-                          Float scalar, Float kept, Float uniform) {
+inline Int drawComponents(const WideScene& scene, LaneMask which, const Float3& index, Float scalar,
+                          Float uniform) {
+  const Float kept = keptOfParts(scene, which, index);
   Float sum = 0.0F;
-  forEachPart(mixture, which, index, scalar, kept,
+  forEachPart(scene, which, index, scalar, kept,
               [&](LaneMask, Int, Float part) { sum = sum + part; });
   Float left = uniform * sum;
   LaneMask open = which;
   Int drawn = 0;
-  forEachPart(mixture, which, index, scalar, kept, [&](LaneMask, Int components, Float part) {
+  forEachPart(scene, which, index, scalar, kept, [&](LaneMask, Int components, Float part) {
     const LaneMask some = open & (part > 0.0F);
     drawn = select(some, components, drawn); // the last one, if rounding leaves all
     open = open.without(some & (left < part));
     left = left - part;
   });
   return drawn;
-}
-
-/// Albedo of one component a lane.
-HWY_INLINE Float3 albedoIn(const EventScene& scene, LaneMask which, Int components, Float scalar) {
-  Float3 albedo(0.0F, 0.0F, 0.0F);
-  forEachComponent(which, components, [&](LaneMask same, std::size_t component) {
-    albedo = select(same, albedoOf(scene.albedos[component], scalar), albedo);
-  });
-  return albedo;
 }
 
 /// Scattering of one component a lane; all count as coated, with a coat that may reflect nothing.
@@ -144,8 +105,3 @@ inline ScatterLaw<Float> lawsOf(const EventScene& scene, Int components) {
           true,
           {each(first.coat[0]), each(first.coat[1]), each(first.coat[2]), each(first.coat[3])}};
 }
-
-} // namespace fenestra::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
-
-#endif

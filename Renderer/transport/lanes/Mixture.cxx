@@ -4,18 +4,17 @@ namespace fenestra {
 
 namespace {
 
-bool areAlike(const Component& a, const Component& b) {
-  return a.isClipped == b.isClipped && a.transfer.extinction == b.transfer.extinction;
-}
-
-/// For each component the first one that is alike.
+/// For each component the first one of that extinction, clipped alike.
 std::vector<std::int32_t> firstAlike(const std::vector<Component>& components) {
   std::vector<std::int32_t> first;
-  for (const Component& component : components)
-    first.push_back(static_cast<std::int32_t>(
-        std::ranges::find_if(components,
-                             [&](const Component& other) { return areAlike(other, component); }) -
-        components.begin()));
+  for (const Component& component : components) {
+    const auto isAlike = [&](const Component& other) {
+      return other.isClipped == component.isClipped &&
+             other.transfer.extinction == component.transfer.extinction;
+    };
+    first.push_back(
+        static_cast<std::int32_t>(std::ranges::find_if(components, isAlike) - components.begin()));
+  }
   return first;
 }
 
@@ -50,23 +49,8 @@ WideMixture::WideMixture(const Mixture& mixture, const Grid& volume)
       alikeBricks(std::make_shared<const std::vector<std::int32_t>>(bricksAlike(mixture))),
       hasFree(mixture.hasFree()) {
   alike.bricks = alikeBricks->data();
-  double low = infinity, high = -infinity;
-  for (const Component& component : mixture.components) {
-    const auto& knots = component.transfer.extinction.knots();
-    low = std::min(low, knots.front().position);
-    high = std::max(high, knots.back().position);
-  }
-  const WideTable::Bins bins(low, high);
-  for (const Component& component : mixture.components) {
+  for (const Component& component : mixture.components)
     isFree.push_back(component.isClipped ? 0 : 1);
-    extinction.emplace_back(component.transfer.extinction);
-    const std::vector<WideTable::Line> own = bins.linesOf(component.transfer.extinction);
-    lines.insert(lines.end(), own.begin(), own.end());
-  }
-  count = static_cast<std::int32_t>(lines.size() / mixture.components.size());
-  start = narrow(low);
-  linesPerUnit = bins.perUnit;
-  lastLine = static_cast<float>(count - 1);
 }
 
 } // namespace fenestra

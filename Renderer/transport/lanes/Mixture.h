@@ -1,5 +1,5 @@
 #pragma once
-// Extinctions of a mixture's components in the form that lanes read.
+// Shares of a mixture's components in the form that lanes read.
 
 #include "model/medium/Mixture.h"
 #include "transport/lanes/Shares.h"
@@ -21,14 +21,8 @@ struct WideMixture {
   /// ones of the first such component: flights need not tell them apart.
   WideShares alike;
   std::shared_ptr<const std::vector<std::int32_t>> alikeBricks;
-  bool hasFree;                      ///< the clip leaves some component
-  std::vector<std::int32_t> isFree;  ///< of each component: 1, or 0
-  std::vector<WideTable> extinction; ///< of each component, mm^-1
-  /// Extinctions as WideTable::lines has them, but all over the same bins, so that one load serves
-  /// lanes of different components: `count` lines of one component, then the next.
-  std::vector<WideTable::Line> lines;
-  std::int32_t count;
-  float start, linesPerUnit, lastLine;
+  bool hasFree;                     ///< the clip leaves some component
+  std::vector<std::int32_t> isFree; ///< of each component: 1, or 0
 };
 
 } // namespace fenestra

@@ -10,7 +10,7 @@ struct PathStarts {
   std::size_t size = 0;
   bool isStratified = false;
   Column<float> column, row;          ///< of the pixel
-  Column<float> from, to;             ///< part of the eye ray left by clipping: see WideEyeRays
+  Column<float> from, to;             ///< part of the eye ray left by clipping: see beginPaths
   Column<std::uint32_t> start, key;   ///< NumberSource::Stream
   Column<std::uint32_t> number;       ///< of the sample in the stream
   Column<std::uint32_t> tile, ofTile; ///< whom the sample is delivered to: tile, sample in there
@@ -29,7 +29,7 @@ struct PathBatch {
   std::array<Column<float>, 2> choices;   ///< at the first collisions: surface or not, light
 
   /// Eye rays, of use until the first collision: row of the pixel, direction, depth at the ray's
-  /// beginning (mm, counted from WideEyeRays::nearDepth()) and its growth per mm of the ray.
+  /// beginning (mm, counted from EyeTable::nearDepth) and its growth per mm of the ray.
   Column<float> row;
   Columns3 eyeDirection;
   Column<float> depth, depthPerLength;

@@ -15,9 +15,9 @@ class PathWave {
 public:
   /// A view: all arguments must outlive the wave. The tracker must have the same `stop`: paths left
   /// unfinished are dropped here.
-  PathWave(const WideEyeRays& begin, const WideTracker& tracker, const WideEvents& events,
+  PathWave(const WideTracker& tracker, const EventScene& scene, const EyeTable& table,
            const EyeRays& eye, const StopFlag& stop)
-      : m_begin(begin), m_tracker(tracker), m_events(events), m_eye(eye), m_stop(stop) {}
+      : m_tracker(tracker), m_scene(scene), m_table(table), m_eye(eye), m_stop(stop) {}
 
   /// Traces all paths of source.fill(starts, most), at most `atOnce` together, and calls
   /// source.deliver(tile, ofTile, sample) for each, in any order. Returns false if `stop` became
@@ -29,13 +29,13 @@ public:
     for (;;) {
       source.fill(batch->starts, most - batch->paths.rays.size);
       counters.paths += batch->starts.size;
-      m_begin.begin(batch->starts, batch->paths);
+      beginPaths(m_tracker.scene(), m_table, m_eye, batch->starts, batch->paths);
       if (batch->paths.rays.size == 0)
         return true;
       m_tracker.sampleCollisions(batch->paths.rays, counters);
       if (stopped())
         return false;
-      m_events.scatter(batch->paths, batch->lights, counters);
+      scatterPaths(m_tracker.scene(), m_scene, batch->paths, batch->lights, counters);
       look(*batch, counters);
       if (stopped())
         return false;
@@ -82,14 +82,14 @@ private:
     sample.radiance = triple(paths.radiance);
     sample.albedo = triple(paths.firstAlbedo);
     sample.normal = triple(paths.firstNormal).matrix();
-    sample.depth = m_begin.nearDepth() + double{paths.firstDepth[i]};
+    sample.depth = m_table.nearDepth + double{paths.firstDepth[i]};
     sample.scatterings = static_cast<double>(paths.bounces[i]);
     return sample;
   }
 
-  const WideEyeRays& m_begin;
   const WideTracker& m_tracker;
-  const WideEvents& m_events;
+  const EventScene& m_scene;
+  const EyeTable& m_table;
   const EyeRays& m_eye;
   const StopFlag& m_stop;
 };

@@ -5,11 +5,11 @@
 #define HWY_TARGET_INCLUDE "transport/lanes/PathSteps.cxx"
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
-#include "transport/lanes/LightSet-inl.h"
-#include "transport/lanes/Mixture-inl.h"
+#include "transport/lanes/Scene-inl.h"
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 #include "model/medium/ScatteringFormulas-inl.h"
+#include "transport/lanes/LightSet-inl.h"
 namespace {
 
 /// A path's own random numbers: hashes of a counter and a key.
@@ -30,17 +30,17 @@ struct Collisions {
   Float3 index;   ///< points, index space
   Float scalar;
   Float3 incoming, weight;
-  Float3 albedo, gradient; ///< gradient: 0 unless needed
-  LaneMask surface;
-  Int component; ///< of a mixture
+  Float3 albedo = {};
+  Float3 gradient = {0.0F, 0.0F, 0.0F}; ///< 0 unless needed
+  LaneMask surface = LaneMask::none();
+  Int component = 0; ///< of a mixture
 };
 
-/// `isMixed`: the matter is a mixture.
-template <typename Voxel, bool isMixed>
+template <typename Voxel>
 class Events {
 public:
   Events(const WideScene& volume, const EventScene& scene, PathBatch& paths, LightBatch& lights)
-      : m_volume(volume), m_scene(scene), m_paths(paths), m_out(lights), m_lights(scene) {}
+      : m_volume(volume), m_scene(scene), m_paths(paths), m_out(lights) {}
 
   void run(Counters& counters) {
     m_out.rays.size = 0;
@@ -79,8 +79,8 @@ private:
     if (!scattered.any())
       return;
     const Float3 light =
-        m_lights.arriving(scattered, mapPoint(m_scene.toLocal, origin), load3(m_paths.direction, i),
-                          distance, load(&m_paths.scatterPdf[i]));
+        arriving(m_scene, scattered, mapPoint(m_scene.toLocal, origin), load3(m_paths.direction, i),
+                 distance, load(&m_paths.scatterPdf[i]));
     const Float3 sum = load3(m_paths.radiance, i);
     store3(select(scattered, sum + load3(m_paths.weight, i) * light, sum), m_paths.radiance, i);
   }
@@ -93,10 +93,8 @@ private:
     const Collisions at = matter(i, going, first, index, draws);
     if (first.any())
       recordFirst(i, at, distance);
-    if constexpr (isMixed)
-      return scatter(i, at, draws, lawsOf(m_scene, at.component));
-    else
-      return scatter(i, at, draws, m_scene.law);
+    return m_volume.mixture ? scatter(i, at, draws, lawsOf(m_scene, at.component))
+                            : scatter(i, at, draws, m_scene.laws[0]);
   }
 
   /// Scatters lanes by the law; returns those that go on afterwards.
@@ -108,7 +106,7 @@ private:
     const auto surface = [&] {
       return SurfaceLobes<Number>(law, at.incoming, at.gradient, at.albedo);
     };
-    if (m_lights.some())
+    if (hasDrawn(m_scene))
       sampleLights(i, at, draws, [&](const Float3& toward) {
         const Scattered s = phase.toward(toward);
         if (!surfaces)
@@ -137,20 +135,13 @@ private:
                   index,
                   load(&m_paths.rays.scalar[i]),
                   load3(m_paths.direction, i),
-                  load3(m_paths.weight, i),
-                  {},
-                  {0.0F, 0.0F, 0.0F},
-                  LaneMask::none(),
-                  0};
-    if constexpr (isMixed) {
-      at.component = drawComponents(*m_volume.mixture, going, index, at.scalar,
-                                    keptOfParts(m_volume, going, index), draws.uniform());
+                  load3(m_paths.weight, i)};
+    if (m_volume.mixture) {
+      at.component = drawComponents(m_volume, going, index, at.scalar, draws.uniform());
       at.albedo = albedoIn(m_scene, going, at.component, at.scalar);
     } else {
-      at.albedo = albedoOf(m_scene.albedo, at.scalar);
+      at.albedo = albedoAt(m_scene, going, index, at.scalar);
     }
-    if (m_scene.tint)
-      at.albedo = tintedAlbedo(*m_scene.tint, going, index, at.scalar, at.albedo);
     if (m_volume.context)
       at.albedo = paled(*m_volume.context, index, at.albedo);
     if (m_scene.hybrid) {
@@ -159,7 +150,7 @@ private:
       if (m_volume.cutSlope > 0.0F)
         at.gradient = at.gradient + cutGradient(m_volume, index, removable(at));
       const Float slope = sqrt(dot(at.gradient, at.gradient));
-      const Float chance = surfaceChance(m_scene, extinctionOfOne(at), slope);
+      const Float chance = missing(extinctionOfOne(at)) * missing(m_scene.surfaceRate * slope);
       at.surface = going & (givenFirst(first, m_paths.choices[0], i, draws) < chance);
     }
     return at;
@@ -173,18 +164,14 @@ private:
 
   /// Lanes whose matter the clip may remove.
   HWY_INLINE LaneMask removable(const Collisions& at) const {
-    if constexpr (isMixed)
-      if (m_volume.mixture->hasFree)
-        return at.going.without(freeIn(*m_volume.mixture, at.going, at.component));
-    return at.going;
+    return m_volume.mixture ? at.going.without(freeIn(*m_volume.mixture, at.going, at.component))
+                            : at.going;
   }
 
   /// Extinction of the matter that collisions meet, as if it had all of the space.
   HWY_INLINE Float extinctionOfOne(const Collisions& at) const {
-    if constexpr (isMixed)
-      return extinctionOf(*m_volume.mixture, at.going, at.component, at.scalar);
-    else
-      return extinctionOf(m_volume, at.scalar);
+    return m_volume.mixture ? extinctionOf(m_volume.extinctions, at.going, at.component, at.scalar)
+                            : extinctionOf(m_volume.extinctions, at.scalar);
   }
 
   Float3 gradientAt(const Float3& p) const {
@@ -194,41 +181,29 @@ private:
 
   void recordFirst(std::size_t i, const Collisions& at, Float distance) {
     const auto keep = [&](Float now, Column<float>& column) {
-      const Float before = load(&column[i]);
-      store(select(at.first, now, before), &column[i]);
+      store(select(at.first, now, load(&column[i])), &column[i]);
     };
     const auto keep3 = [&](const Float3& now, Columns3& columns) {
-      keep(now.x, columns[0]);
-      keep(now.y, columns[1]);
-      keep(now.z, columns[2]);
+      store3(select(at.first, now, load3(columns, i)), columns, i);
     };
-    const Float depth = fma(distance, load(&m_paths.depthPerLength[i]), load(&m_paths.depth[i]));
-    keep(depth, m_paths.firstDepth);
+    keep(fma(distance, load(&m_paths.depthPerLength[i]), load(&m_paths.depth[i])),
+         m_paths.firstDepth);
     keep3(at.albedo, m_paths.firstAlbedo);
-    if (m_scene.hybrid) {
-      keep3(normalOf(at.gradient, at.incoming), m_paths.firstNormal);
-    } else if (m_scene.wantNormals) {
-      keep3(normalOf(gradientAt(at.index), at.incoming), m_paths.firstNormal);
-      m_gradients += at.first.count();
-    }
+    if (!m_scene.wantNormals)
+      return;
+    const Float3 gradient = m_scene.hybrid ? at.gradient : gradientAt(at.index);
+    m_gradients += m_scene.hybrid ? 0 : at.first.count();
+    keep3(normalOf(gradient, dot(at.incoming, gradient), 1.0F), m_paths.firstNormal);
   }
 
-  /// Unit, toward the ray's origin; 0 where there is no gradient.
-  static HWY_INLINE Float3 normalOf(const Float3& gradient, const Float3& incoming) {
-    const Float slope = sqrt(dot(gradient, gradient));
-    const LaneMask away = dot(incoming, gradient) < 0.0F;
-    return orZero(slope > 0.0F, select(away, 1.0F, -1.0F) / slope * gradient);
-  }
-
-  /// Next-event estimation: one light, to be seen through the volume, weighted against scattering
-  /// toward that light.
+  /// PathSteps::sampledLight.
   template <typename Toward>
   void sampleLights(std::size_t i, const Collisions& at, Draws& draws, Toward&& toward) {
     const Float choice = givenFirst(at.first, m_paths.choices[1], i, draws);
     const Word u = draws.nextBits();
     const Word v = draws.nextBits();
     const LightDraw light =
-        m_lights.draw(at.going, mapPoint(m_scene.toLocal, at.index), choice, u, v);
+        drawOf(m_scene, at.going, mapPoint(m_scene.toLocal, at.index), choice, u, v);
     const Scattered scattered = toward(light.direction);
     const Float pdf = light.pdf + select(light.delta, 0.0F, scattered.pdf);
     const Float3 radiance = (1.0F / pdf) * (at.weight * scattered.factor * light.radiance);
@@ -249,7 +224,7 @@ private:
     store3(pack(radiance), m_out.radiance, to);
     put(depth, m_out.rays.depth);
     put(acceptance, m_out.rays.acceptance);
-    put(numbersFrom(i), m_out.path);
+    put(Word(hn::Iota(words, static_cast<std::uint32_t>(i))), m_out.path);
     m_out.rays.size += count;
   }
 
@@ -275,61 +250,36 @@ private:
     return at.going & (greatest(weight) > 0.0F);
   }
 
-  static HWY_INLINE Word numbersFrom(std::size_t i) {
-    return hn::Iota(words, static_cast<std::uint32_t>(i));
-  }
-
   const WideScene& m_volume;
   const EventScene& m_scene;
   PathBatch& m_paths;
   LightBatch& m_out;
-  WideLights m_lights;
   std::size_t m_collisions = 0, m_gradients = 0;
 };
 
 void scatterAll(const WideScene& volume, const EventScene& scene, PathBatch& paths,
                 LightBatch& lights, Counters& counters) {
-  std::visit(
-      [&]<typename Voxel>(const Voxel*) {
-        if (volume.mixture)
-          Events<Voxel, true>(volume, scene, paths, lights).run(counters);
-        else
-          Events<Voxel, false>(volume, scene, paths, lights).run(counters);
-      },
-      volume.voxels);
+  std::visit([&]<typename Voxel>(
+                 const Voxel*) { Events<Voxel>(volume, scene, paths, lights).run(counters); },
+             volume.voxels);
 }
-
-/// Moves lanes of columns to the front, from place `from` to place `to` on.
-struct Packing {
-  Shuffle pack;
-  std::size_t from, to;
-
-  template <typename T>
-  HWY_INLINE void operator()(Column<T>& column) const {
-    store(pack(load(&column[from])), &column[to]);
-  }
-  HWY_INLINE void operator()(Columns3& columns) const {
-    for (Column<float>& column : columns)
-      (*this)(column);
-  }
-  template <typename... Columns>
-  HWY_INLINE void each(Columns&... columns) const {
-    ((*this)(columns), ...);
-  }
-};
 
 void dropEndedLanes(PathBatch& paths) {
   std::size_t left = 0;
   for (std::size_t i = 0; i < paths.rays.size; i += laneCount) {
     const LaneMask ended = LaneMask::fromBits(paths.ended[i / 64] >> i % 64);
     const LaneMask going = LaneMask::first(paths.rays.size - i).without(ended);
-    // All that paths need after their first scattering.
-    if (left != i || ended.any())
-      Packing{Shuffle::packing(going), i, left}.each(
-          paths.rays.origin, paths.rays.direction, paths.rays.length, paths.rays.depth,
-          paths.rays.acceptance, paths.direction, paths.weight, paths.radiance, paths.scatterPdf,
-          paths.bounces, paths.key, paths.counter, paths.tile, paths.ofTile, paths.firstDepth,
-          paths.firstAlbedo, paths.firstNormal);
+    const Shuffle pack = Shuffle::packing(going);
+    const auto move = [&](auto&... columns) {
+      (store(pack(load(&columns[i])), &columns[left]), ...);
+    };
+    const auto move3 = [&](auto&... columns) { (move(columns[0], columns[1], columns[2]), ...); };
+    if (left != i || ended.any()) { // all that paths need after their first scattering
+      move3(paths.rays.origin, paths.rays.direction, paths.direction, paths.weight, paths.radiance,
+            paths.firstAlbedo, paths.firstNormal);
+      move(paths.rays.length, paths.rays.depth, paths.rays.acceptance, paths.scatterPdf,
+           paths.bounces, paths.key, paths.counter, paths.tile, paths.ofTile, paths.firstDepth);
+    }
     left += going.count();
   }
   paths.rays.size = left;
@@ -345,8 +295,9 @@ namespace fenestra {
 HWY_EXPORT(scatterAll);
 HWY_EXPORT(dropEndedLanes);
 
-void WideEvents::scatter(PathBatch& paths, LightBatch& lights, Counters& counters) const {
-  HWY_DYNAMIC_DISPATCH(scatterAll)(m_volume, m_scene, paths, lights, counters);
+void scatterPaths(const WideScene& volume, const EventScene& scene, PathBatch& paths,
+                  LightBatch& lights, Counters& counters) {
+  HWY_DYNAMIC_DISPATCH(scatterAll)(volume, scene, paths, lights, counters);
 }
 
 void dropEnded(PathBatch& paths) {

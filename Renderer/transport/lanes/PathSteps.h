@@ -15,21 +15,11 @@ struct LightBatch {
   Column<std::uint32_t> path;
 };
 
-/// A view: `volume`, and the maps of `scene`, must outlive the object.
-class WideEvents {
-public:
-  WideEvents(const WideScene& volume, EventScene scene)
-      : m_volume(volume), m_scene(std::move(scene)) {}
-
-  /// Handles the paths' collisions and escapes (rays.result): gathers the light met by the rays,
-  /// replaces `lights` by one light for each path that scatters, sets new rays, and marks the paths
-  /// that have ended.
-  void scatter(PathBatch& paths, LightBatch& lights, Counters& counters) const;
-
-private:
-  const WideScene& m_volume;
-  EventScene m_scene;
-};
+/// Handles the paths' collisions and escapes (rays.result): gathers the light met by the rays,
+/// replaces `lights` by one light for each path that scatters, sets new rays, and marks the paths
+/// that have ended.
+void scatterPaths(const WideScene& volume, const EventScene& scene, PathBatch& paths,
+                  LightBatch& lights, Counters& counters);
 
 /// Takes the paths that have ended out of the batch.
 void dropEnded(PathBatch& paths);

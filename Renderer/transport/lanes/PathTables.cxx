@@ -41,24 +41,29 @@ bool EventScene::serves(const Grid& grid, const TransferFunction& transfer, cons
 }
 
 EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const LightSet& set,
-                       std::uint64_t mostBounces, bool normalsWanted, const Tint* tints,
+                       std::uint64_t mostBounces, bool normalsWanted, const Tint* tinted,
                        const Mixture* mixture)
-    : albedo(transfer.albedo),
-      law(lawOf(transfer.g, transfer.shading).cast<float>()),
-      hybrid(transfer.shading && transfer.extinction.span() > 0.0),
+    : hybrid(transfer.shading && transfer.extinction.span() > 0.0),
       surfaceRate(hybrid ? narrow(25.0 * std::pow(transfer.shading->gamma, 3)) : 0.0F),
       wantNormals(normalsWanted || transfer.shading),
       bounces(static_cast<std::int32_t>(
           std::min<std::uint64_t>(mostBounces, std::numeric_limits<std::int32_t>::max()))),
       lights(set.tables().cast<float>(grid.worldCenter())) {
-  if (tints)
-    tint.emplace(*tints, grid);
+  const auto add = [&](const TransferFunction& matter) {
+    laws.push_back(lawOf(matter.g, matter.shading).cast<float>());
+    if (!tinted)
+      albedos.emplace_back(matter.albedo);
+  };
+  if (tinted) {
+    tint.emplace(*tinted->shares, grid);
+    for (const std::optional<ColorFunction>& color : tinted->albedo)
+      albedos.emplace_back(color.value_or(transfer.albedo));
+  }
   if (mixture)
-    for (const Component& component : mixture->components) {
-      const TransferFunction& own = component.transfer;
-      albedos.emplace_back(own.albedo);
-      laws.push_back(lawOf(own.g, own.shading).cast<float>());
-    }
+    for (const Component& component : mixture->components)
+      add(component.transfer);
+  else
+    add(transfer);
   Affine local = grid.indexToWorld;
   local.translation() -= grid.worldCenter();
   toLocal = affineRows(local);

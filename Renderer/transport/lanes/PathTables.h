@@ -4,11 +4,11 @@
 #include "base/Narrow.h"
 #include "model/lights/LightSet.h"
 #include "model/medium/ScatterLaw.h"
+#include "model/medium/Tint.h"
 #include "model/volume/Grid.h"
 #include "transport/lanes/MapTables.h"
 #include "transport/lanes/Medium.h"
 #include "transport/lanes/Mixture.h"
-#include "transport/lanes/Tint.h"
 
 #include <vector>
 
@@ -24,17 +24,14 @@ struct EventScene {
 
   /// A view of environment maps and tint, which must outlive the object.
   EventScene(const Grid& grid, const TransferFunction& transfer, const LightSet& lights,
-             std::uint64_t mostBounces, bool normalsWanted, const Tint* tints = nullptr,
+             std::uint64_t mostBounces, bool normalsWanted, const Tint* tinted = nullptr,
              const Mixture* mixture = nullptr);
 
-  WideTable albedo;
-  std::optional<WideTint> tint;
-  ScatterLaw<float> law;
+  std::vector<ScatterLaw<float>> laws; ///< one; or of each component of a mixture
+  std::vector<WideTable> albedos;      ///< one; or of each component of a mixture or tint
+  std::optional<WideShares> tint;
   bool hybrid;       ///< surface shading
   float surfaceRate; ///< 25 gamma^3 of Medium's surface probability
-  /// Components of a mixture; empty: there is none.
-  std::vector<WideTable> albedos;
-  std::vector<ScatterLaw<float>> laws;
   bool wantNormals;
   std::int32_t bounces; ///< greatest number of scatterings
 

@@ -1,18 +1,4 @@
-// Shares of components at points in index space. Compiled once for each instruction set.
-
-#if defined(FENESTRA_LANE_SHARES_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef FENESTRA_LANE_SHARES_INL_H
-#undef FENESTRA_LANE_SHARES_INL_H
-#else
-#define FENESTRA_LANE_SHARES_INL_H
-#endif
-
-#include "transport/lanes/Shares.h"
-// After foreach_target.h:
-#include "transport/lanes/Medium-inl.h"
-
-HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
+// Shares of components at points in index space.
 
 /// Calls visit(lanes, component) for each component that lanes of `which` have: its lanes, and its
 /// number, plain.
@@ -70,25 +56,18 @@ private:
   };
 
   HWY_INLINE Corner cornerAt(const Float3& p) const {
-    Corner corner{0, 0, p};
-    Float voxel = 0.0F;
-    float stride = 1.0F;
-    const auto along = [&](const WideShares::Axis& axis, Float x, Float& fraction) {
-      // This order of min and max maps NaN to 0.
-      const Float inside = max(min(x, axis.last), 0.0F);
-      const Float cell = min(floor(inside), axis.lastCell);
-      const Float brick = floor(cell * (1.0F / Shares::edge));
-      fraction = inside - cell;
-      voxel = fma(cell - brick * float{Shares::edge}, stride, voxel);
-      stride *= edge;
-      return wholeToInt(brick);
-    };
-    const Int x = along(m_shares.axes[0], p.x, corner.fractions.x);
-    const Int y = along(m_shares.axes[1], p.y, corner.fractions.y);
-    const Int z = along(m_shares.axes[2], p.z, corner.fractions.z);
-    corner.brick = x + y * m_shares.axes[1].brick + z * m_shares.axes[2].brick;
-    corner.voxel = wholeToInt(voxel);
-    return corner;
+    const WideAxes& axes = m_shares.axes;
+    const PlaceAlong x = placeAlong(axes[0], p.x);
+    const PlaceAlong y = placeAlong(axes[1], p.y);
+    const PlaceAlong z = placeAlong(axes[2], p.z);
+    const auto brickOf = [](Float cell) { return floor(cell * (1.0F / Shares::edge)); };
+    const Float3 cell{x.lower, y.lower, z.lower};
+    const Float3 brick{brickOf(cell.x), brickOf(cell.y), brickOf(cell.z)};
+    const Float3 inside = cell - float{Shares::edge} * brick;
+    const Float voxel = fma(fma(inside.z, float{edge}, inside.y), float{edge}, inside.x);
+    return {offsetOf(axes, brick.x, brick.y, brick.z),
+            wholeToInt(voxel),
+            {x.fraction, y.fraction, z.fraction}};
   }
 
   /// Shares in mixed bricks, but for the rest's; `plane`: the first of the brick.
@@ -137,8 +116,3 @@ private:
   const WideShares& m_shares;
   Corner m_corner;
 };
-
-} // namespace fenestra::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
-
-#endif

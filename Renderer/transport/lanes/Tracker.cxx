@@ -2,6 +2,7 @@
 
 #include "base/Error.h"
 #include "base/LaneTargets.h"
+#include "base/Text.h"
 
 #include <numeric>
 
@@ -9,8 +10,7 @@
 #define HWY_TARGET_INCLUDE "transport/lanes/Tracker.cxx"
 #include <hwy/foreach_target.h>
 // After foreach_target.h:
-#include "transport/lanes/Mixture-inl.h"
-#include "transport/lanes/Way-inl.h"
+#include "transport/lanes/Scene-inl.h"
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 namespace {
@@ -114,7 +114,7 @@ private:
     const LaneMask ended = crossed & (stop >= m_end);
     if constexpr (!wantRatio)
       m_t.where(ended, std::numeric_limits<float>::infinity());
-    finish(ended);
+    m_busy = m_busy.without(ended); // results stay until handIn()
   }
 
   /// Point of each lane, index space.
@@ -149,11 +149,11 @@ private:
       const Float thinned = m_ratio * notBelow0(1.0F - extinction / m_majorant);
       const Float survived = orZero(u * rouletteBelow < thinned, rouletteBelow);
       m_ratio.where(hit, select(thinned < rouletteBelow, survived, thinned));
-      finish(hit & (m_ratio <= 0.0F));
+      m_busy = m_busy.without(hit & (m_ratio <= 0.0F));
     } else {
       const LaneMask real = hit & (u * m_majorant < extinction);
       m_scalar.where(real, scalar);
-      finish(real);
+      m_busy = m_busy.without(real);
     }
   }
 
@@ -169,7 +169,7 @@ private:
     Float extinction = all.clipped;
     if constexpr (wantRatio) {
       cut = cut & (extinction > 0.0F);
-      if (m_scene.seams && !(isMixed && m_scene.mixture->hasFree)) {
+      if (m_scene.seams && !(m_scene.mixture && m_scene.mixture->hasFree)) {
         Word after = counter;
         const LaneMask isReal = uniform(after) * m_majorant < extinction;
         counter.where(cut, after);
@@ -183,9 +183,6 @@ private:
       extinction.where(cut, extinction * keep(m_scene, at, cut));
     return extinction;
   }
-
-  /// Makes lanes idle; their results stay until handIn().
-  HWY_INLINE void finish(LaneMask ended) { m_busy = m_busy.without(ended); }
 
   /// Stores the results of rays that have ended.
   HWY_INLINE void handIn() {
@@ -239,26 +236,20 @@ void followBatch(const WideScene& scene, RayBatch& rays, const StopFlag& stop, C
     set.addTo(counters);
 }
 
-template <bool wantRatio>
-void followAll(const WideScene& scene, RayBatch& rays, const StopFlag& stop, Counters& counters) {
-  std::visit(
-      [&]<typename Voxel>(const Voxel*) {
-        if (scene.mixture)
-          followBatch<Voxel, wantRatio, true>(scene, rays, stop, counters);
-        else
-          followBatch<Voxel, wantRatio, false>(scene, rays, stop, counters);
-      },
-      scene.voxels);
+/// A truth that std::visit makes a constant.
+std::variant<std::false_type, std::true_type> constant(bool is) {
+  if (is)
+    return std::true_type();
+  return std::false_type();
 }
 
-void flyAll(const WideScene& scene, RayBatch& rays, const StopFlag& stop, Counters& counters) {
-  followAll<false>(scene, rays, stop, counters);
-}
-void seeAll(const WideScene& scene, RayBatch& rays, const StopFlag& stop, Counters& counters) {
-  followAll<true>(scene, rays, stop, counters);
-}
-const char* nameOfTarget() {
-  return hwy::TargetName(HWY_TARGET);
+void followAll(const WideScene& scene, RayBatch& rays, bool wantRatio, const StopFlag& stop,
+               Counters& counters) {
+  std::visit(
+      [&]<typename Voxel>(const Voxel*, auto isRatio, auto isMixed) {
+        followBatch<Voxel, isRatio, isMixed>(scene, rays, stop, counters);
+      },
+      scene.voxels, constant(wantRatio), constant(scene.mixture.has_value()));
 }
 
 } // namespace
@@ -268,16 +259,14 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace fenestra {
 
-HWY_EXPORT(flyAll);
-HWY_EXPORT(seeAll);
-HWY_EXPORT(nameOfTarget);
+HWY_EXPORT(followAll);
 
 void WideTracker::sampleCollisions(RayBatch& rays, Counters& counters) const {
-  HWY_DYNAMIC_DISPATCH(flyAll)(m_scene, rays, m_stop, counters);
+  HWY_DYNAMIC_DISPATCH(followAll)(m_scene, rays, false, m_stop, counters);
 }
 
 void WideTracker::estimateTransmittances(RayBatch& rays, Counters& counters) const {
-  HWY_DYNAMIC_DISPATCH(seeAll)(m_scene, rays, m_stop, counters);
+  HWY_DYNAMIC_DISPATCH(followAll)(m_scene, rays, true, m_stop, counters);
 }
 
 namespace {
@@ -298,21 +287,17 @@ std::vector<std::string> WideTracker::instructionSets() {
 }
 
 std::string WideTracker::instructionSet() {
-  return HWY_DYNAMIC_DISPATCH(nameOfTarget)();
+  const std::int64_t sets = hwy::SupportedTargets() & HWY_TARGETS;
+  return hwy::TargetName(sets & -sets);
 }
 
 void WideTracker::useInstructionSet(const std::string& name) {
-  std::string choices;
-  for (std::int64_t left = knownSets(); left != 0; left &= left - 1) {
-    const std::int64_t set = left & -left;
-    if (name == hwy::TargetName(set)) {
-      hwy::SetSupportedTargetsForTest(set);
-      return;
-    }
-    choices.append(choices.empty() ? "" : ", ").append(hwy::TargetName(set));
-  }
+  for (std::int64_t left = knownSets(); left != 0; left &= left - 1)
+    if (name == hwy::TargetName(left & -left))
+      return hwy::SetSupportedTargetsForTest(left & -left);
   throw usageError("FENESTRA_INSTRUCTIONS: " + name +
-                   " is no instruction set of this machine, which has " + choices);
+                   " is no instruction set of this machine, which has " +
+                   joined(instructionSets(), ", "));
 }
 
 } // namespace fenestra

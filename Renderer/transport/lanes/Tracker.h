@@ -29,37 +29,28 @@ template <typename T>
 struct alignas(64) Column : std::array<T, 512 + 16> {};
 using Columns3 = std::array<Column<float>, 3>;
 
-/// Random numbers of a ray.
-struct RayNumbers {
-  /// Bits of the optical depth to the first tentative collision. All but these two numbers are
-  /// hashes of what is counted from there.
-  std::uint32_t depth = 0;
-  float acceptance = 0.0F; ///< at that collision, in [0, 1]
-};
-
 /// Rays followed together; a structure of arrays.
 struct RayBatch {
   static constexpr std::size_t capacity = 512;
 
   std::size_t size = 0;
-  Columns3 origin;             ///< index space, inside the domain
-  Columns3 direction;          ///< index space per mm: t is in mm
-  Column<float> length;        ///< mm until the ray ends or leaves the domain
-  Column<std::uint32_t> depth; ///< RayNumbers, with the next
+  Columns3 origin;      ///< index space, inside the domain
+  Columns3 direction;   ///< index space per mm: t is in mm
+  Column<float> length; ///< mm until the ray ends or leaves the domain
+  /// Random numbers of the first tentative collision: bits of the optical depth to it, and whether
+  /// it is real, in [0, 1]. All others are hashes of what is counted from these bits.
+  Column<std::uint32_t> depth;
   Column<float> acceptance;
   Column<float> result; ///< mm to the collision, or infinity; or the transmittance
   Column<float> scalar; ///< at the collision
 
-  bool full() const { return size == capacity; }
-  void set(std::size_t i, const Ray& indexRay, double lengthInMm, const RayNumbers& numbers) {
+  void set(std::size_t i, const Ray& indexRay, double lengthInMm) {
     for (int axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<std::size_t>(axis);
       origin[a][i] = static_cast<float>(indexRay.origin[axis]);
       direction[a][i] = static_cast<float>(indexRay.direction[axis]);
     }
     length[i] = static_cast<float>(lengthInMm);
-    depth[i] = numbers.depth;
-    acceptance[i] = numbers.acceptance;
   }
 };
 
@@ -67,7 +58,7 @@ struct RayBatch {
 /// if that part is empty. Returns the beginning of the part, mm along the ray: lengths count from
 /// there, so that free paths keep their digits, however far away the ray's origin is.
 double setInside(RayBatch& rays, std::size_t i, const Domain& domain, const Ray& ray,
-                 const Interval& range, const RayNumbers& numbers);
+                 const Interval& range);
 
 class WideTracker {
 public:
@@ -103,11 +94,6 @@ public:
   static void useInstructionSet(const std::string& name);
 
 private:
-  void setDomain(const Domain& domain);
-  void setCells(const MajorantGrid& majorants, const Grid& grid);
-  void setClip(const Clip& clip, const Grid& grid);
-  void setContext(const ContextStyle& style, const Grid& grid);
-
   WideScene m_scene;
   const StopFlag& m_stop;
 };

@@ -28,31 +28,90 @@ double mostVoxelsPerMm(const Grid& grid) {
 }
 
 WideField fieldOf(const void* voxels, const Grid& grid) {
-  WideField field{voxels, grid.voxelCount()};
-  std::int64_t stride = 1;
+  return {voxels, grid.voxelCount(), wideAxes(grid.size, grid.size)};
+}
+
+/// Extinctions of all matter.
+std::vector<const ScalarFunction*> extinctionsOf(const TransferFunction& transfer,
+                                                 const Mixture* mixture) {
+  if (!mixture)
+    return {&transfer.extinction};
+  std::vector<const ScalarFunction*> extinctions;
+  for (const Component& component : mixture->components)
+    extinctions.push_back(&component.transfer.extinction);
+  return extinctions;
+}
+
+void setCells(WideScene& scene, const MajorantGrid& majorants, const Grid& grid) {
+  scene.cells = WideCells(majorants);
+  const Size3& count = scene.cells.count;
+  std::int64_t cellStride = 1;
   for (int axis = 0; axis < 3; ++axis) {
-    const std::int64_t size = grid.size[axis];
-    field.axes[static_cast<std::size_t>(axis)] = {
-        static_cast<float>(size - 1), static_cast<float>(std::max<std::int64_t>(size - 2, 0)),
-        static_cast<std::int32_t>(size > 1 ? stride : 0)};
-    stride *= size;
+    const std::int64_t edge = scene.cells.merged * majorants.edge()[axis];
+    scene.axes[static_cast<std::size_t>(axis)] = {
+        static_cast<float>(edge), narrow(1.0 / static_cast<double>(edge)),
+        std::nextafter(static_cast<float>(count[axis]), 0.0F), static_cast<float>(cellStride)};
+    scene.firstCell += static_cast<float>(cellStride);
+    cellStride *= count[axis] + 2;
   }
-  return field;
+  scene.lastCell = static_cast<float>(scene.cells.codes.size() - 1);
+  scene.overshoot = narrow(0.5 * MajorantGrid::margin / mostVoxelsPerMm(grid));
+}
+
+void setClip(WideScene& scene, const Clip& clip, const Grid& grid) {
+  const auto* plane = std::get_if<ClipPlane>(&clip);
+  const auto* depth = std::get_if<ClipDepth>(&clip);
+  if (!plane && !depth)
+    return;
+  const ClipEdge& edge = plane ? plane->edge : depth->edge;
+  scene.ghost = narrow(edge.ghost);
+  scene.softness = narrow(edge.softness);
+  scene.perSoftness = edge.softness > 0.0 ? narrow(1.0 / edge.softness) : 0.0F;
+  scene.cutSlope = edge.softness > 0.0 ? narrow(cutShading / edge.softness) : 0.0F;
+  const Camera& camera = plane ? plane->camera : depth->camera;
+  const Vec3& eye = camera.pose().position;
+  scene.perspective = camera.pose().projection == Projection::perspective;
+  scene.targetDepth = narrow(camera.targetDepth());
+  scene.toView = {row(grid, camera.right(), eye, 0.0), row(grid, camera.up(), eye, 0.0),
+                  row(grid, camera.forward(), eye, -camera.targetDepth())};
+  scene.fromView = affineRows(Affine(Mat3(camera.right(), camera.up(), camera.forward())));
+  if (plane) {
+    scene.clipKind = WideScene::ClipKind::plane;
+    scene.cutNormal = narrow3(-plane->normal.normalized());
+    scene.toPlane = row(grid, plane->normal.normalized(), plane->point, 0.0);
+    return;
+  }
+  scene.clipKind = depth->lookup == ClipDepth::Lookup::linear ? WideScene::ClipKind::depthLinear
+                                                              : WideScene::ClipKind::depthNearest;
+  scene.cutNormal = narrow3(camera.forward());
+  scene.depthX = wide(depth->buffer->xAxis());
+  scene.depthY = wide(depth->buffer->yAxis());
+  scene.depths = depth->buffer->depthsFromReference().data();
+  scene.depthColumns = static_cast<std::int32_t>(depth->buffer->columns());
+  scene.seams = depth->seams.get();
+}
+
+void setContext(WideScene& scene, const ContextStyle& style, const Grid& grid) {
+  const Mask& focus = *style.focus;
+  scene.context = {fieldOf(focus.voxels.data(), focus.grid),
+                   affineRows(focus.grid.worldToIndex * grid.indexToWorld),
+                   0.5F * static_cast<float>(focus.full), narrow(style.extinction),
+                   narrow(style.saturation)};
 }
 
 } // namespace
 
 double setInside(RayBatch& rays, std::size_t i, const Domain& domain, const Ray& ray,
-                 const Interval& range, const RayNumbers& numbers) {
+                 const Interval& range) {
   const Affine& worldToIndex = domain.grid().worldToIndex;
   const Ray indexRay = transformed(worldToIndex, ray);
   const Interval inside = domain.clip(indexRay, range);
   if (inside.empty()) {
-    rays.set(i, {Vec3::Zero(), Vec3::Ones()}, 0.0, numbers);
+    rays.set(i, {Vec3::Zero(), Vec3::Ones()}, 0.0);
     return 0.0;
   }
   const Vec3 origin = inside.begin > 0.0 ? worldToIndex * ray.at(inside.begin) : indexRay.origin;
-  rays.set(i, {origin, indexRay.direction}, inside.end - inside.begin, numbers);
+  rays.set(i, {origin, indexRay.direction}, inside.end - inside.begin);
   return inside.begin;
 }
 
@@ -63,22 +122,15 @@ bool WideTracker::serves(const Volume& volume, const TransferFunction& transfer,
   constexpr double longest = 1 << 17;
   const std::int64_t count = volume.grid.voxelCount();
   constexpr std::int64_t most = std::int64_t{1} << 31; // indices of 32 bits
-  if (transfer.gradientOpacity || volume.grid.size.x() < 2 || count < 4 || count > most)
+  if (transfer.gradientOpacity || volume.grid.size.x() < 2 || count < 4 || count > most ||
+      (mixture && !WideMixture::serves(*mixture)))
     return false;
-  if (2.0 * volume.grid.boundingRadius() * mostVoxelsPerMm(volume.grid) > longest)
-    return false;
+  const double diagonal = 2.0 * volume.grid.boundingRadius();
   double greatest = 0.0;
-  const auto add = [&](const ScalarFunction& extinction) {
-    for (const auto& knot : extinction.knots())
+  for (const ScalarFunction* extinction : extinctionsOf(transfer, mixture))
+    for (const auto& knot : extinction->knots())
       greatest = std::max(greatest, knot.value[0]);
-  };
-  add(transfer.extinction);
-  if (mixture && !WideMixture::serves(*mixture))
-    return false;
-  if (mixture)
-    for (const Component& component : mixture->components)
-      add(component.transfer.extinction);
-  return greatest * 2.0 * volume.grid.boundingRadius() <= deepest;
+  return diagonal * mostVoxelsPerMm(volume.grid) <= longest && greatest * diagonal <= deepest;
 }
 
 WideTracker::WideTracker(const Volume& volume, const Domain& domain,
@@ -86,85 +138,22 @@ WideTracker::WideTracker(const Volume& volume, const Domain& domain,
                          const Clip& clip, const ContextStyle* style, const StopFlag& stop,
                          const Mixture* mixture)
     : m_stop(stop) {
-  m_scene.voxels =
-      std::visit([](const auto& v) { return WideScene::FirstVoxel(v.data()); }, volume.voxels);
-  m_scene.field = fieldOf(
-      std::visit([](const auto* v) -> const void* { return v; }, m_scene.voxels), volume.grid);
-  setCells(majorants, volume.grid);
-  m_scene.extinction = WideTable(transfer.extinction);
+  const auto setVoxels = [&](const auto& voxels) {
+    m_scene.voxels = voxels.data();
+    m_scene.field = fieldOf(voxels.data(), volume.grid);
+  };
+  std::visit(setVoxels, volume.voxels);
+  setCells(m_scene, majorants, volume.grid);
+  m_scene.extinctions = WideLines(extinctionsOf(transfer, mixture));
   if (mixture)
     m_scene.mixture.emplace(*mixture, volume.grid);
-  setDomain(domain);
-  setClip(clip, volume.grid);
-  if (style)
-    setContext(*style, volume.grid);
-}
-
-void WideTracker::setDomain(const Domain& domain) {
-  const Box& box = domain.box();
-  m_scene.lower = narrow3(box.lower);
-  m_scene.upper = narrow3(box.upper);
-  const Affine* toCrop = domain.toCrop();
-  m_scene.cropped = toCrop != nullptr;
-  if (toCrop)
+  m_scene.lower = narrow3(domain.box().lower);
+  m_scene.upper = narrow3(domain.box().upper);
+  if (const Affine* toCrop = domain.toCrop())
     m_scene.toCrop = affineRows(*toCrop);
-}
-
-void WideTracker::setCells(const MajorantGrid& majorants, const Grid& grid) {
-  m_scene.cells = WideCells(majorants);
-  const Size3& count = m_scene.cells.count;
-  std::int64_t cellStride = 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::int64_t edge = m_scene.cells.merged * majorants.edge()[axis];
-    m_scene.axes[static_cast<std::size_t>(axis)] = {
-        static_cast<float>(edge), narrow(1.0 / static_cast<double>(edge)),
-        std::nextafter(static_cast<float>(count[axis]), 0.0F), static_cast<float>(cellStride)};
-    m_scene.firstCell += static_cast<float>(cellStride);
-    cellStride *= count[axis] + 2;
-  }
-  m_scene.lastCell = static_cast<float>(m_scene.cells.codes.size() - 1);
-  m_scene.overshoot = narrow(0.5 * MajorantGrid::margin / mostVoxelsPerMm(grid));
-}
-
-void WideTracker::setClip(const Clip& clip, const Grid& grid) {
-  const auto* plane = std::get_if<ClipPlane>(&clip);
-  const auto* depth = std::get_if<ClipDepth>(&clip);
-  if (!plane && !depth)
-    return;
-  const ClipEdge& edge = plane ? plane->edge : depth->edge;
-  m_scene.ghost = narrow(edge.ghost);
-  m_scene.softness = narrow(edge.softness);
-  m_scene.perSoftness = edge.softness > 0.0 ? narrow(1.0 / edge.softness) : 0.0F;
-  m_scene.cutSlope = edge.softness > 0.0 ? narrow(cutShading / edge.softness) : 0.0F;
-  const Camera& camera = plane ? plane->camera : depth->camera;
-  const Vec3& eye = camera.pose().position;
-  m_scene.perspective = camera.pose().projection == Projection::perspective;
-  m_scene.targetDepth = narrow(camera.targetDepth());
-  m_scene.toView = {row(grid, camera.right(), eye, 0.0), row(grid, camera.up(), eye, 0.0),
-                    row(grid, camera.forward(), eye, -camera.targetDepth())};
-  m_scene.fromView = affineRows(Affine(Mat3(camera.right(), camera.up(), camera.forward())));
-  if (plane) {
-    m_scene.clipKind = WideScene::ClipKind::plane;
-    m_scene.cutNormal = narrow3(-plane->normal.normalized());
-    m_scene.toPlane = row(grid, plane->normal.normalized(), plane->point, 0.0);
-    return;
-  }
-  m_scene.clipKind = depth->lookup == ClipDepth::Lookup::linear ? WideScene::ClipKind::depthLinear
-                                                                : WideScene::ClipKind::depthNearest;
-  m_scene.cutNormal = narrow3(camera.forward());
-  m_scene.depthX = wide(depth->buffer->xAxis());
-  m_scene.depthY = wide(depth->buffer->yAxis());
-  m_scene.depths = depth->buffer->depthsFromReference().data();
-  m_scene.depthColumns = static_cast<std::int32_t>(depth->buffer->columns());
-  m_scene.seams = depth->seams.get();
-}
-
-void WideTracker::setContext(const ContextStyle& style, const Grid& grid) {
-  const Mask& focus = *style.focus;
-  m_scene.context = {fieldOf(focus.voxels.data(), focus.grid),
-                     affineRows(focus.grid.worldToIndex * grid.indexToWorld),
-                     0.5F * static_cast<float>(focus.full), narrow(style.extinction),
-                     narrow(style.saturation)};
+  setClip(m_scene, clip, volume.grid);
+  if (style)
+    setContext(m_scene, *style, volume.grid);
 }
 
 } // namespace fenestra

@@ -17,14 +17,9 @@ class Seams;
 
 /// Voxels for interpolation in lanes.
 struct WideField {
-  struct Axis {
-    float last;          ///< index of the last voxel
-    float lastCell;      ///< greatest index of a lower voxel in interpolation
-    std::int32_t stride; ///< offset of the next voxel in this axis, 0 if the axis has one voxel
-  };
   const void* voxels = nullptr;
   std::int64_t count = 0;
-  std::array<Axis, 3> axes = {};
+  WideAxes axes = {};
 };
 
 /// Plain numbers and pointers, in float and index space. Built by WideTracker.
@@ -55,13 +50,12 @@ struct WideScene {
   FirstVoxel voxels;
   WideField field; ///< of `voxels`
   std::array<Axis, 3> axes;
-  /// Domain: the box [lower, upper] in index space and, if `cropped`, [-1, 1]^3 in crop space.
+  /// Domain: the box [lower, upper] in index space and, if cropped, [-1, 1]^3 in crop space.
   std::array<float, 3> lower, upper;
-  bool cropped = false;
-  AffineRows toCrop = {};
+  std::optional<AffineRows> toCrop = {};
 
-  WideTable extinction;                    ///< mm^-1 over the scalar
-  std::optional<WideMixture> mixture = {}; ///< in place of `extinction`
+  WideLines extinctions; ///< mm^-1 over the scalar: of all matter, or of a mixture's components
+  std::optional<WideMixture> mixture = {};
 
   WideCells cells;        ///< fewer than 2^23
   float firstCell = 0.0F; ///< index in WideCells::codes of the first cell inside the border

@@ -1,18 +1,4 @@
-// Rays through majorant cells, axis by axis. Compiled once for each instruction set.
-
-#if defined(FENESTRA_LANE_WAY_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef FENESTRA_LANE_WAY_INL_H
-#undef FENESTRA_LANE_WAY_INL_H
-#else
-#define FENESTRA_LANE_WAY_INL_H
-#endif
-
-#include "transport/lanes/TrackerTables.h"
-// After foreach_target.h:
-#include "transport/lanes/Medium-inl.h"
-
-HWY_BEFORE_NAMESPACE();
-namespace fenestra::HWY_NAMESPACE {
+// Rays through majorant cells, axis by axis.
 
 /// One axis of rays in units of a cell's edge: where they are, and when they leave a cell.
 struct Way {
@@ -58,8 +44,3 @@ HWY_INLINE Float stayAt(const WideScene& scene, const Way (&ways)[3], Float t, L
   const Float half = cell.reach + 0.5F;
   return min(min(ways[0].leaving(x, half), ways[1].leaving(y, half)), ways[2].leaving(z, half));
 }
-
-} // namespace fenestra::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
-
-#endif

@@ -1,6 +1,6 @@
 #pragma once
 // A path, event by event: begins, arrives at a collision (gathering light), scatters. The readable
-// truth; WideEvents does the same for many paths at once.
+// truth; transport/lanes/PathSteps does the same for many paths at once.
 //
 // Radiative transfer, one extinction for the three channels:
 //   L(x, w) = T(x, exit) L_light(w) + ∫ T(x, y) sigma_t(y) ∫ f(y, w, w') L(y, w') dw' dy

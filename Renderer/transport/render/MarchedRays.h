@@ -69,7 +69,6 @@ public:
 
   void along(std::span<const RasterPoint> points, Met* out) const {
     const auto batch = std::make_unique<MarchBatch>();
-    const WideMarch march(m_volume, m_events);
     std::array<double, RayBatch::capacity> before = {}, perLength = {};
     for (std::size_t from = 0; from < points.size(); from += RayBatch::capacity) {
       const std::size_t count = std::min(points.size() - from, RayBatch::capacity);
@@ -77,10 +76,10 @@ public:
       for (std::size_t i = 0; i < count; ++i) {
         const Ray ray = m_scene.camera.ray(points[from + i].column, points[from + i].row);
         before[i] = setInside(batch->rays, i, m_domain, ray,
-                              visible(eyeClip(m_scene.clip, m_scene.mixture), ray), {});
+                              visible(eyeClip(m_scene.clip, m_scene.mixture), ray));
         perLength[i] = m_scene.camera.depthPerLength(ray);
       }
-      march.along(*batch);
+      marchAlong(m_volume, m_events, *batch);
       for (std::size_t i = 0; i < count; ++i)
         *out++ = metIn(*batch, i, before[i], perLength[i]);
     }
@@ -88,12 +87,11 @@ public:
 
   void through(std::span<const ShadowRay> rays, float* out) const {
     const auto batch = std::make_unique<RayBatch>();
-    const WideMarch march(m_volume, m_events);
     for (std::size_t from = 0; from < rays.size(); from += RayBatch::capacity) {
       batch->size = std::min(rays.size() - from, RayBatch::capacity);
       for (std::size_t i = 0; i < batch->size; ++i)
-        setInside(*batch, i, m_domain, rays[from + i].ray, {0.0, rays[from + i].distance}, {});
-      march.through(*batch);
+        setInside(*batch, i, m_domain, rays[from + i].ray, {0.0, rays[from + i].distance});
+      marchThrough(m_volume, *batch);
       out = std::copy_n(batch->result.begin(), batch->size, out);
     }
   }

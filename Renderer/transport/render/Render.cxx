@@ -317,14 +317,12 @@ auto tracedInLanes(const RenderScene& scene, const RenderSettings& settings, con
   const Domain domain(scene.volume.grid, scene.crop);
   const WideTracker tracker(scene.volume, domain, scene.transfer, scene.majorants, scene.clip,
                             scene.style, stop, scene.mixture);
-  const WideEvents events(tracker.scene(),
-                          EventScene(scene.volume.grid, scene.transfer, scene.lights,
-                                     settings.path.bounces, settings.path.wantNormals, scene.tint,
-                                     scene.mixture));
+  const EventScene events(scene.volume.grid, scene.transfer, scene.lights, settings.path.bounces,
+                          settings.path.wantNormals, scene.tint, scene.mixture);
+  const EyeTable table(domain, scene.camera);
   const EyeRays eye(scene.camera, eyeClip(scene.clip, scene.mixture), scene.lights,
                     settings.path.background);
-  const WideEyeRays begin(tracker.scene(), domain, scene.camera, eye);
-  return work(PathWave(begin, tracker, events, eye, stop), WideTracker::instructionSet());
+  return work(PathWave(tracker, events, table, eye, stop), WideTracker::instructionSet());
 }
 
 /// Calls work(tracer, arithmetic) with the readable estimator.
