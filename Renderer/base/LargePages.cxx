@@ -13,7 +13,9 @@ constexpr std::size_t largePage = std::size_t{2} << 20;
 /// Alignment of small arrays, bytes: a line of the cache.
 constexpr std::size_t line = 64;
 
-std::size_t roundedUp(std::size_t bytes, std::size_t to) { return (bytes + to - 1) / to * to; }
+std::size_t roundedUp(std::size_t bytes, std::size_t to) {
+  return (bytes + to - 1) / to * to;
+}
 
 } // namespace
 
@@ -30,6 +32,8 @@ void* allocateInLargePages(std::size_t bytes) {
   return memory;
 }
 
-void freeLargePages(void* memory) noexcept { std::free(memory); }
+void freeLargePages(void* memory) noexcept {
+  std::free(memory);
+}
 
 } // namespace fenestra
