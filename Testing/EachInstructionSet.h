@@ -1,7 +1,7 @@
 #pragma once
 // Tests of lanes on each of the machine's instruction sets.
 
-#include "transport/lanes/Tracker.h"
+#include "base/InstructionSets.h"
 
 #include <gtest/gtest.h>
 
@@ -11,14 +11,12 @@ namespace fenestra::testing {
 class OnInstructionSet : public ::testing::TestWithParam<std::size_t> {
 protected:
   void SetUp() override {
-    const std::vector<std::string> known = WideTracker::instructionSets();
+    const std::vector<std::string> known = instructionSets();
     if (GetParam() >= known.size())
       GTEST_SKIP() << "this machine has fewer";
-    WideTracker::useInstructionSet(known[GetParam()]);
+    useInstructionSet(known[GetParam()]);
   }
-  void TearDown() override {
-    WideTracker::useInstructionSet(WideTracker::instructionSets().front());
-  }
+  void TearDown() override { useInstructionSet(instructionSets().front()); }
 };
 
 inline const auto eachInstructionSet = ::testing::Range<std::size_t>(0, 4);

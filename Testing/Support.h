@@ -1,7 +1,7 @@
 #pragma once
 // Small scenes and statistics that tests share.
 
-#include "transport/lanes/Tracker.h"
+#include "base/InstructionSets.h"
 #include "transport/render/Render.h"
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace fenestra::testing {
 inline const bool instructionSetIsPinned = [] {
   const char* name = std::getenv("FENESTRA_INSTRUCTIONS");
   if (name)
-    WideTracker::useInstructionSet(name);
+    useInstructionSet(name);
   return name != nullptr;
 }();
 

@@ -1,9 +1,9 @@
 // Use of this machine's cores and instruction sets.
 
 #include "base/Error.h"
+#include "base/InstructionSets.h"
 #include "program/Commands.h"
 #include "program/Flags.h"
-#include "transport/lanes/Tracker.h"
 
 #include <tbb/global_control.h>
 #include <tbb/info.h>
@@ -40,7 +40,7 @@ void tryThreads(int count) {
 
 void useInstructions() {
   if (const char* pinned = std::getenv("FENESTRA_INSTRUCTIONS"))
-    WideTracker::useInstructionSet(pinned);
+    useInstructionSet(pinned);
 }
 
 int threadCount(const FlagValues& flags) {

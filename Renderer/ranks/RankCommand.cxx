@@ -1,6 +1,7 @@
 #include "ranks/RankCommand.h"
 
 #include "base/Error.h"
+#include "base/InstructionSets.h"
 #include "program/CommandLine.h"
 #include "program/Commands.h"
 #include "program/RenderCommand.h"
@@ -8,7 +9,6 @@
 #include "program/about/Version.h"
 #include "ranks/Loans.h"
 #include "ranks/SharedFiles.h"
-#include "transport/lanes/Tracker.h"
 
 #include <algorithm>
 #include <new>
@@ -115,8 +115,8 @@ int dispatchRank(int argc, char** argv) {
   Ranks ranks;
   if (ranks.count() == 1)
     return dispatch(argc, argv);
-  const std::vector<std::string> arithmetics = ranks.together(
-      textOf(versionText, " on ", processorText, " by ", WideTracker::instructionSet()));
+  const std::vector<std::string> arithmetics =
+      ranks.together(textOf(versionText, " on ", processorText, " by ", instructionSet()));
   if (ranks.rank() == 0)
     return lead(argc, argv, ranks, arithmetics);
   if (!isRecruited(ranks))

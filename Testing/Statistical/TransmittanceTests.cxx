@@ -3,6 +3,7 @@
 #include "Anchors.h"
 #include "Significance.h"
 #include "StraightIntegral.h"
+#include "base/InstructionSets.h"
 
 #include "clip/surface/ClippingSurface.h"
 #include "transport/lanes/Tracker.h"
@@ -262,12 +263,12 @@ std::unique_ptr<Follower> followerOf(const Subject& subject, const MajorantGrid&
           return std::make_unique<ScalarFollower<Voxel>>(subject, voxels, majorants, clip);
         },
         subject.volume.voxels);
-  const std::vector<std::string> known = WideTracker::instructionSets();
+  const std::vector<std::string> known = instructionSets();
   if (std::find(known.begin(), known.end(), name) == known.end())
     return nullptr;
   EXPECT_TRUE(WideTracker::serves(subject.volume, subject.transfer));
-  WideTracker::useInstructionSet(name);
-  EXPECT_EQ(WideTracker::instructionSet(), name);
+  useInstructionSet(name);
+  EXPECT_EQ(instructionSet(), name);
   return std::make_unique<WideFollower>(subject, majorants, clip);
 }
 
@@ -281,9 +282,7 @@ protected:
     if (!m_follower)
       GTEST_SKIP() << "this machine has no " << std::get<1>(GetParam());
   }
-  void TearDown() override {
-    WideTracker::useInstructionSet(WideTracker::instructionSets().front());
-  }
+  void TearDown() override { useInstructionSet(instructionSets().front()); }
 
   Subject m_subject = subject(std::get<0>(GetParam()));
   StraightIntegral m_integral{m_subject.volume, m_subject.transfer};
@@ -353,9 +352,7 @@ TEST_P(Tracking, RayResultDoesNotDependOnItsBatch) {
 /// Matter in front of an exact surface, by each follower of rays.
 class SeamTracking : public ::testing::TestWithParam<std::string> {
 protected:
-  void TearDown() override {
-    WideTracker::useInstructionSet(WideTracker::instructionSets().front());
-  }
+  void TearDown() override { useInstructionSet(instructionSets().front()); }
 };
 
 /// Short segments of eye rays where the surface between samples differs from the samples: past the

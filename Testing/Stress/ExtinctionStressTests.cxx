@@ -3,6 +3,8 @@
 
 #include "StressSupport.h"
 
+#include "transport/lanes/Tracker.h"
+
 namespace fenestra::testing::ExtinctionStressTests {
 namespace {
 

@@ -3,6 +3,7 @@
 #include "Support.h"
 
 #include "measure/FocusMeasures.h"
+#include "transport/lanes/Tracker.h"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,10 @@
 #include "program/about/About.h"
 
+#include "base/InstructionSets.h"
 #include "base/safe/JsonNode.h"
 #include "files/slicer/SlicerPresets.h"
 #include "program/about/Commit.h"
 #include "program/about/Version.h"
-#include "transport/lanes/Tracker.h"
 
 namespace fenestra {
 namespace {
@@ -18,8 +18,8 @@ nlohmann::ordered_json facts() {
       {"license", "Apache-2.0"},
       {"system", systemText},
       {"compiler", compilerText},
-      {"instructions", WideTracker::instructionSet()},
-      {"instructionSets", WideTracker::instructionSets()},
+      {"instructions", instructionSet()},
+      {"instructionSets", instructionSets()},
       {"data", nullptr}, // compiled in
       {"slicerPresets", nullptr},
   };

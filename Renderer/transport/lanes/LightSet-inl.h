@@ -4,13 +4,6 @@
 #include "model/lights/LightFormulas-inl.h"
 #include "transport/lanes/EnvironmentSampler-inl.h"
 
-/// True if there are lights to draw.
-inline bool hasDrawn(const EventScene& scene) {
-  const LightTables<float>& lights = scene.lights;
-  return !lights.areas.empty() || !lights.directionals.empty() || !lights.spheres.empty() ||
-         !scene.maps.empty();
-}
-
 /// LightArrival in lanes.
 struct Arrival {
   Float3 radiance;

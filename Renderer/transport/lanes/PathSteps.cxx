@@ -82,7 +82,7 @@ private:
         arriving(m_scene, scattered, mapPoint(m_scene.toLocal, origin), load3(m_paths.direction, i),
                  distance, load(&m_paths.scatterPdf[i]));
     const Float3 sum = load3(m_paths.radiance, i);
-    store3(select(scattered, sum + load3(m_paths.weight, i) * light, sum), m_paths.radiance, i);
+    store3(sum + load3(m_paths.weight, i) * light, m_paths.radiance, i);
   }
 
   /// Scatters the lanes of `going`; returns the lanes that go on afterwards.
@@ -106,7 +106,7 @@ private:
     const auto surface = [&] {
       return SurfaceLobes<Number>(law, at.incoming, at.gradient, at.albedo);
     };
-    if (hasDrawn(m_scene))
+    if (m_scene.drawsLights)
       sampleLights(i, at, draws, [&](const Float3& toward) {
         const Scattered s = phase.toward(toward);
         if (!surfaces)

@@ -76,6 +76,8 @@ EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const
     for (const SharedEnvironment& environment : set.environments())
       if (environment.share > 0.0) // no constant, no black map
         maps.emplace_back(environment.sampler, environment.share);
+  drawsLights = !lights.areas.empty() || !lights.directionals.empty() || !lights.spheres.empty() ||
+                !maps.empty();
 }
 
 } // namespace fenestra

@@ -36,6 +36,7 @@ struct EventScene {
   std::int32_t bounces; ///< greatest number of scatterings
 
   LightTables<float> lights; ///< local
+  bool drawsLights;          ///< there are lights, or maps, to draw
   std::vector<MapTables> maps;
 
   AffineRows toLocal;      ///< points, from index space

@@ -1,8 +1,6 @@
 #include "transport/lanes/Tracker.h"
 
-#include "base/Error.h"
 #include "base/LaneTargets.h"
-#include "base/Text.h"
 
 #include <numeric>
 
@@ -267,37 +265,6 @@ void WideTracker::sampleCollisions(RayBatch& rays, Counters& counters) const {
 
 void WideTracker::estimateTransmittances(RayBatch& rays, Counters& counters) const {
   HWY_DYNAMIC_DISPATCH(followAll)(m_scene, rays, true, m_stop, counters);
-}
-
-namespace {
-
-/// Bits of the instruction sets of both program and machine, pinned or not.
-std::int64_t knownSets() {
-  static const std::int64_t known = hwy::SupportedTargets() & HWY_TARGETS;
-  return known;
-}
-
-} // namespace
-
-std::vector<std::string> WideTracker::instructionSets() {
-  std::vector<std::string> names;
-  for (std::int64_t left = knownSets(); left != 0; left &= left - 1) // the best has the lowest bit
-    names.emplace_back(hwy::TargetName(left & -left));
-  return names;
-}
-
-std::string WideTracker::instructionSet() {
-  const std::int64_t sets = hwy::SupportedTargets() & HWY_TARGETS;
-  return hwy::TargetName(sets & -sets);
-}
-
-void WideTracker::useInstructionSet(const std::string& name) {
-  for (std::int64_t left = knownSets(); left != 0; left &= left - 1)
-    if (name == hwy::TargetName(left & -left))
-      return hwy::SetSupportedTargetsForTest(left & -left);
-  throw usageError("FENESTRA_INSTRUCTIONS: " + name +
-                   " is no instruction set of this machine, which has " +
-                   joined(instructionSets(), ", "));
 }
 
 } // namespace fenestra

@@ -18,8 +18,6 @@
 #include "transport/readable/StopFlag.h"
 
 #include <array>
-#include <string>
-#include <vector>
 
 namespace fenestra {
 
@@ -82,16 +80,6 @@ public:
   /// result: unbiased estimate of the transmittance along the whole length, by ratio tracking with
   /// Russian roulette; by delta tracking where an exact clipping surface cuts.
   void estimateTransmittances(RayBatch& rays, Counters& counters) const;
-
-  /// Instruction sets of both program and machine, the best first, by Highway's names: AVX3
-  /// (AVX-512), AVX2, SSE4, SCALAR (none needed).
-  static std::vector<std::string> instructionSets();
-  /// Instruction set in use: the best, unless another was pinned.
-  static std::string instructionSet();
-  /// Pins one of instructionSets(), for the whole process (the command line does it on behalf of
-  /// the environment variable FENESTRA_INSTRUCTIONS); throws Error (usage) for any other name. Must
-  /// not be called while rays are followed.
-  static void useInstructionSet(const std::string& name);
 
 private:
   WideScene m_scene;

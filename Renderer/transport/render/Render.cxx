@@ -1,5 +1,6 @@
 #include "transport/render/Render.h"
 
+#include "base/InstructionSets.h"
 #include "base/Stopwatch.h"
 #include "transport/readable/PathEstimator.h"
 #include "transport/render/EmptyPixels.h"
@@ -322,7 +323,7 @@ auto tracedInLanes(const RenderScene& scene, const RenderSettings& settings, con
   const EyeTable table(domain, scene.camera);
   const EyeRays eye(scene.camera, eyeClip(scene.clip, scene.mixture), scene.lights,
                     settings.path.background);
-  return work(PathWave(tracker, events, table, eye, stop), WideTracker::instructionSet());
+  return work(PathWave(tracker, events, table, eye, stop), instructionSet());
 }
 
 /// Calls work(tracer, arithmetic) with the readable estimator.
@@ -364,7 +365,7 @@ bool lanesServe(const RenderScene& scene) {
 }
 
 std::string targetOf(const RenderScene& scene, const RenderSettings& settings) {
-  return rendersInLanes(scene, settings) ? WideTracker::instructionSet() : "scalar";
+  return rendersInLanes(scene, settings) ? instructionSet() : "scalar";
 }
 
 RenderResult render(const RenderScene& scene, const RenderSettings& settings,

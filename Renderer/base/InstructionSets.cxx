@@ -1,0 +1,42 @@
+#include "base/InstructionSets.h"
+
+#include "base/Error.h"
+#include "base/LaneTargets.h"
+#include "base/Text.h"
+
+#include <hwy/targets.h>
+
+namespace fenestra {
+namespace {
+
+/// Bits of the instruction sets of both program and machine, pinned or not; the best has the
+/// lowest.
+std::int64_t knownSets() {
+  static const std::int64_t known = hwy::SupportedTargets() & HWY_TARGETS;
+  return known;
+}
+
+} // namespace
+
+std::vector<std::string> instructionSets() {
+  std::vector<std::string> names;
+  for (std::int64_t left = knownSets(); left != 0; left &= left - 1)
+    names.emplace_back(hwy::TargetName(left & -left));
+  return names;
+}
+
+std::string instructionSet() {
+  const std::int64_t sets = hwy::SupportedTargets() & HWY_TARGETS;
+  return hwy::TargetName(sets & -sets);
+}
+
+void useInstructionSet(const std::string& name) {
+  for (std::int64_t left = knownSets(); left != 0; left &= left - 1)
+    if (name == hwy::TargetName(left & -left))
+      return hwy::SetSupportedTargetsForTest(left & -left);
+  throw usageError("FENESTRA_INSTRUCTIONS: " + name +
+                   " is no instruction set of this machine, which has " +
+                   joined(instructionSets(), ", "));
+}
+
+} // namespace fenestra
