@@ -131,7 +131,7 @@ stage_planted() {
 
 # run_instructions: prints a table of the statistical tests on each that the machine has.
 run_instructions() {
-  printf '# The statistical tests on every instruction set\n\n'
+  printf '# The statistical tests on every instruction set\n\nAn error planted in both transports counts as two.\n\n'
   printf '| instructions | passed | skipped | failed | seconds | planted errors found |\n|---|---|---|---|---|---|\n'
   local name start log row
   for name in "${sets[@]}"; do
