@@ -17,6 +17,7 @@
 #include <bit>
 #include <concepts>
 #include <cstdint>
+#include <cstring>
 
 #include <hwy/cache_control.h>
 #include <hwy/contrib/math/math-inl.h>
@@ -223,6 +224,73 @@ struct alignas(64) LaneArray : std::array<T, laneCount> {
     hn::Store(numbers.v, typename N::Tag(), this->data());
   }
 };
+
+/// Places in memory, one a lane. Without a sign, so that they are addresses as they are.
+struct Indices : LaneArray<std::uint32_t> {
+  explicit HWY_INLINE Indices(Int notNegative) : LaneArray(bitsAsWord(notNegative)) {}
+};
+
+/// Reads a number, aligned or not.
+template <typename Number>
+HWY_INLINE Number numberAt(const void* memory) {
+  Number number;
+  std::memcpy(&number, memory, sizeof(number));
+  return number;
+}
+
+#if HWY_TARGET != HWY_SCALAR
+/// loadEach of few places. By a pack: where a loop is unrolled too late, lanes go through memory.
+template <typename Number, std::size_t step, typename Element, std::size_t... i>
+HWY_INLINE auto loadFew(const Element* memory, const std::uint32_t* index,
+                        std::index_sequence<i...>) {
+  auto numbers = hn::Zero(hn::CappedTag<Number, sizeof...(i)>());
+  ((numbers = hn::InsertLane(numbers, i, numberAt<Number>(memory + index[step * i]))), ...);
+  return numbers;
+}
+
+/// Loads a Number from each of `count` places, `step` indices apart, aligned or not. Loads one by
+/// one are less work for the processor than gathers, once the indices are in registers.
+template <typename Number, std::size_t count, std::size_t step, typename Element>
+HWY_INLINE auto loadEach(const Element* memory, const std::uint32_t* index) {
+  if constexpr (count * sizeof(Number) > 16)
+    return hn::Combine(hn::CappedTag<Number, count>(),
+                       loadEach<Number, count / 2, step>(memory, index + step * count / 2),
+                       loadEach<Number, count / 2, step>(memory, index));
+  else
+    return loadFew<Number, step>(memory, index, std::make_index_sequence<count>());
+}
+#endif
+
+/// Loads 32 bits from memory[i] on for each i.
+template <typename Element>
+HWY_INLINE Int loadInts(const Element* memory, const Indices& index) {
+#if HWY_TARGET == HWY_SCALAR
+  return numberAt<std::int32_t>(memory + index[0]);
+#else
+  return loadEach<std::int32_t, laneCount, 1>(memory, index.data());
+#endif
+}
+
+/// Two floats a lane, neighbours in memory.
+struct Pairs {
+  Float first, second;
+};
+
+/// Loads 64 bits from memory[i] on for each i.
+template <typename Element>
+HWY_INLINE Pairs loadPairs(const Element* memory, const Indices& index) {
+#if HWY_TARGET == HWY_SCALAR
+  const auto both = numberAt<std::array<float, 2>>(memory + index[0]);
+  return {both[0], both[1]};
+#else
+  constexpr std::size_t half = laneCount / 2;
+  const Float::Vector even =
+      hn::BitCast(floats, loadEach<std::int64_t, half, 2>(memory, index.data()));
+  const Float::Vector odd =
+      hn::BitCast(floats, loadEach<std::int64_t, half, 2>(memory, index.data() + 1));
+  return {hn::OddEven(hn::DupEven(odd), even), hn::OddEven(odd, hn::DupOdd(even))};
+#endif
+}
 
 /// Calls visit(lane) for every lane of `which`.
 template <typename Visit>

@@ -15,8 +15,6 @@
 // After foreach_target.h:
 #include "base/LaneMath-inl.h"
 
-#include <cstring>
-
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 #include "transport/lanes/Medium-inl.h"
