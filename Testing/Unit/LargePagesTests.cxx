@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdint>
 #include <fstream>
 #include <sstream>
@@ -47,7 +48,7 @@ TEST(LargePages, AreAskedForWhereAnArrayFillsThem) {
 }
 
 TEST(LargePages, SmallArraysBeginALineOfTheCache) {
-  for (const std::size_t size : {1, 15, 4096})
+  for (const std::size_t size : std::array<std::size_t, 3>{1, 15, 4096})
     EXPECT_EQ(placeOf(LargeArray<char>(size).data()) % 64, 0U) << size;
 }
 
