@@ -155,7 +155,7 @@ TEST_F(TurntableCommand, ResumesAfterAnInterruptionBitForBit) {
         << i;
   // The files differ in their headers, by the command.
   const nlohmann::json atOnce = nlohmann::json::parse(bytesOf(folder / "whole.turntable.json"));
-  for (const std::size_t i : {0, 1, 2, 3})
+  for (std::size_t i = 0; i < 4; ++i)
     EXPECT_EQ(atOnce["finished"][i]["surfaceChange"], resumed["finished"][i]["surfaceChange"]);
 }
 

@@ -292,7 +292,7 @@ TEST(OrderOfSegments, ChangesNoBit) {
       const RenderSettings settings = settingsOf(transport, 8, 81);
       const Film first = scene.render(settings).film;
       std::ranges::reverse(parts);
-      std::ranges::rotate(parts, parts.begin() + 2);
+      std::rotate(parts.begin(), parts.begin() + 2, parts.end());
       // A labelmap begins where its first part does: all of these begin there.
       scene.mixture = mixtureOf(parts, whiteMatter(true));
       const Film other = scene.render(settings).film;
