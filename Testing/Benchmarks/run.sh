@@ -25,7 +25,7 @@ say "Error against time"
 # The README quotes medians over all scenes.
 # median_ratio COLUMN: of the product's efficiency and that of the mode in the column.
 median_ratio() {
-  sed -n '/^## Efficiency/,/^## Bias/p' "$report/README.md" |
+  sed -n '/^## Efficiency/,/^## Other/p' "$report/README.md" |
     awk -F '|' -v column="$1" '$4 + 0 > 0 { print $4 / $column }' | sort -g |
     awk '{ ratios[NR] = $1 } END { printf "%.2g", (ratios[int((NR + 1) / 2)] + ratios[int(NR / 2) + 1]) / 2 }'
 }
