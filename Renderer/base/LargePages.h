@@ -22,7 +22,7 @@ struct LargePages {
 
   LargePages() = default;
   template <typename Other>
-  explicit(false) LargePages(const LargePages<Other>&) {}
+  LargePages(const LargePages<Other>&) {}
 
   T* allocate(std::size_t count) {
     if (count > static_cast<std::size_t>(-1) / 2 / sizeof(T))
