@@ -46,6 +46,19 @@ TEST(Render, StopOnRequestReturnsFinishedSamples) {
   EXPECT_EQ(result.finishedSamples, 0U);
 }
 
+TEST(Render, EstimatesNoiseForThoseWhoWatch) {
+  const TestScene s = wavyScene();
+  RenderSettings settings;
+  settings.samples = 4;
+  for (const bool isWatched : {false, true}) {
+    RenderMonitor monitor;
+    monitor.isNoiseWatched = isWatched;
+    const RenderResult result =
+        s.with([&](const RenderScene& scene) { return render(scene, settings, monitor); });
+    EXPECT_EQ(monitor.noise, isWatched ? result.film.noise() : infinity);
+  }
+}
+
 TEST(Render, StopsAtTimeLimitAndAtNoiseTarget) {
   const TestScene s = wavyScene();
   RenderSettings settings;

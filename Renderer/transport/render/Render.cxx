@@ -196,10 +196,11 @@ public:
     return isSeen() ? std::min(size, nextLook(last.samples) - last.samples) : size;
   }
 
-  /// Looks at the film after a pass, if a look is due, and sets `noise`. Returns true if the target
-  /// is reached. A pass that nothing has cut short becomes the last one.
-  bool isReached(RenderResult& result, bool isCut, std::atomic<double>& noise) const {
+  /// Looks at the film after a pass, if a look is due, and sets `monitor.noise`. Returns true if
+  /// the target is reached. A pass that nothing has cut short becomes the last one.
+  bool isReached(RenderResult& result, bool isCut, RenderMonitor& monitor) const {
     const std::uint64_t done = result.finishedSamples;
+    std::atomic<double>& noise = monitor.noise;
     if (!isCut)
       result.last.samples = done;
     if (isSeen()) {
@@ -208,8 +209,10 @@ public:
       noise = m_settings.seenNoise(result.film);
       return noise <= m_settings.noise;
     }
-    noise = result.film.noise();
-    if (!m_settings.plansByNoise())
+    const bool isPlanned = m_settings.plansByNoise();
+    if (isPlanned || monitor.isNoiseWatched)
+      noise = result.film.noise();
+    if (!isPlanned)
       return false;
     if (!isCut)
       result.last.noise = noise;
@@ -260,7 +263,7 @@ RenderResult renderPasses(const Tracer& tracer, const std::string& arithmetic,
   const NoiseLimit target(settings, monitor.helpers.count + 1);
   Pace pace(settings.seconds);
   const auto looksReached = [&](bool isCut) {
-    const bool isReached = target.isReached(result, isCut, monitor.noise);
+    const bool isReached = target.isReached(result, isCut, monitor);
     if (isReached)
       result.reason = StopReason::noise;
     return isReached;

@@ -93,6 +93,8 @@ struct RenderMonitor {
   std::atomic<bool> stop = false;
   std::atomic<std::uint64_t> paths = 0; ///< finished so far, as if no pixel were empty
   std::atomic<double> noise = infinity; ///< at the last look
+  /// Somebody watches `noise`: it is estimated after each pass, though nothing else needs it.
+  bool isNoiseWatched = false;
   /// Called between two passes with the result so far; the render waits.
   std::function<void(const RenderResult&)> between = {};
   /// Looked at by all threads, often. Once true, they end their tiles, and `keep` is called with
