@@ -234,7 +234,7 @@ Message Lender::loanFor(Borrower& borrower) {
   const std::size_t fair = m_pass->left() / (2 * m_borrowers.size());
   const std::size_t wanted = std::min(std::max(fair, 2 * borrower.threads), mostTiles);
   Message message = {lends, m_result->finishedSamples, m_result->begunSamples};
-  writeTiles(m_pass->lend(wanted), m_result->film, message);
+  writeTiles(m_pass->take(wanted), m_result->film, message);
   const std::vector<float>& plan = m_result->last.plan.noise();
   if (!plan.empty() && !std::exchange(borrower.knowsPlan, true))
     for (const float s : plan)

@@ -45,13 +45,18 @@ struct OneByOne {
   }
 };
 
+/// Samples per pixel of passes.
+struct PassGrowth {
+  std::uint64_t perSample = 1; ///< of a pass, for each sample before it
+  std::uint64_t largest = 16;
+};
+
 /// Samples per pixel of the next pass. Passes grow, so that a picture is there early and overhead
 /// stays small later; sizes are fixed, so that a stop by noise falls on the same sample count on
-/// every machine. With several processes they grow faster, and more: each moves the film.
+/// every machine.
 std::uint64_t passSize(std::uint64_t done, const RenderSettings& settings,
-                       std::uint64_t processes = 1) {
-  constexpr std::uint64_t largest = 16; // by one process
-  const std::uint64_t grown = std::clamp<std::uint64_t>(done * processes, 1, largest * processes);
+                       const PassGrowth& growth = {}) {
+  const std::uint64_t grown = std::clamp<std::uint64_t>(done * growth.perSample, 1, growth.largest);
   return settings.passSamples > 0 ? settings.passSamples : grown;
 }
 
@@ -184,16 +189,18 @@ std::uint64_t nextLook(std::uint64_t done) {
 /// Decides how many samples a pass gets, and when the noise is low enough.
 class NoiseLimit {
 public:
-  /// `processes`: number of those that share the work.
-  NoiseLimit(const RenderSettings& settings, int processes)
-      : m_settings(settings), m_processes(static_cast<std::uint64_t>(processes)) {}
+  NoiseLimit(const RenderSettings& settings, const PassGrowth& growth)
+      : m_settings(settings), m_growth(growth) {}
 
   /// Samples of the pass after `last`, which no other limit cuts short.
   std::uint64_t nextPass(const LastPass& last) const {
     if (m_settings.plansByNoise())
       return passTowardNoise(last, m_settings);
-    const std::uint64_t size = passSize(last.samples, m_settings, m_processes);
-    return isSeen() ? std::min(size, nextLook(last.samples) - last.samples) : size;
+    const std::uint64_t size = passSize(last.samples, m_settings, m_growth);
+    if (isSeen())
+      return std::min(size, nextLook(last.samples) - last.samples);
+    const std::uint64_t left = m_settings.samples - last.samples;
+    return left <= size + size / 2 ? left : size; // no short pass for the rest
   }
 
   /// Looks at the film after a pass, if a look is due, and sets `monitor.noise`. Returns true if
@@ -227,8 +234,16 @@ private:
   bool isSeen() const { return m_settings.noise > 0.0 && m_settings.seenNoise; }
 
   const RenderSettings& m_settings;
-  const std::uint64_t m_processes;
+  const PassGrowth m_growth;
 };
+
+/// A short pass costs more a sample: in each one caches meet the whole volume anew, and threads run
+/// out of paths once. So passes grow fourfold where nobody is shown pictures between them; and with
+/// several processes, each of which moves the film, yet faster, and more.
+PassGrowth growthFor(const RenderMonitor& monitor) {
+  const auto processes = static_cast<std::uint64_t>(monitor.helpers.count) + 1;
+  return {(monitor.between ? 1 : 3) * processes, 16 * processes};
+}
 
 /// Result before the first sample.
 RenderResult emptyResult(const Camera& camera, const NumberSource& numbers) {
@@ -260,7 +275,7 @@ RenderResult renderPasses(const Tracer& tracer, const std::string& arithmetic,
                           emptyPixels(scene, settings, result.film), numbers};
   monitor.paths = result.finishedSamples * result.film.pixelCount() /
                   static_cast<std::size_t>(settings.shard.count);
-  const NoiseLimit target(settings, monitor.helpers.count + 1);
+  const NoiseLimit target(settings, growthFor(monitor));
   Pace pace(settings.seconds);
   const auto looksReached = [&](bool isCut) {
     const bool isReached = target.isReached(result, isCut, monitor);

@@ -14,7 +14,7 @@ Pass::Pass(std::span<const int> tiles, const SamplePlan::Stage& from, const Samp
       m_film(film),
       m_paths(paths) {}
 
-std::span<const int> Pass::lend(std::size_t most) {
+std::span<const int> Pass::take(std::size_t most) {
   const std::size_t first = std::min(m_nextTile.fetch_add(most), m_tiles.size());
   return m_tiles.subspan(first, std::min(most, m_tiles.size() - first));
 }
@@ -54,20 +54,27 @@ void TileStream::fill(PathStarts& starts, std::size_t most) {
   }
 }
 
-/// Makes the next tile that has samples the current one; false if none is left, or for a pause.
-bool TileStream::openTile() {
+/// Takes neighbouring tiles, which meet much of the same matter; one by one when few are left, so
+/// that all threads get some. Returns false if none is left, or for a pause.
+bool TileStream::takeTiles() {
   if (m_pauses && m_pauses())
     return false;
+  m_taken = m_pass.take(std::min<std::size_t>(4, 1 + m_pass.left() / 64));
+  return !m_taken.empty();
+}
+
+/// Makes the next tile that has samples the current one; false if none is left, or for a pause.
+bool TileStream::openTile() {
   if (m_free.empty()) {
     m_free.push_back(static_cast<std::uint32_t>(m_tiles.size()));
     m_tiles.emplace_back();
   }
   Tile& tile = m_tiles[m_free.back()];
   for (;;) {
-    const std::size_t next = m_pass.m_nextTile.fetch_add(1, std::memory_order_relaxed);
-    if (next >= m_pass.m_tiles.size())
+    if (m_taken.empty() && !takeTiles())
       return false;
-    list(tile, m_pass.m_tiles[next]);
+    list(tile, m_taken.front());
+    m_taken = m_taken.subspan(1);
     if (tile.awaited > 0)
       break;
     close(tile);

@@ -28,13 +28,13 @@ public:
   /// True once all tiles have been added to the film.
   bool whole() const { return m_tilesDone == m_tiles.size(); }
 
-  /// Number of tiles that nobody has begun.
+  /// Number of tiles that nobody has taken.
   std::size_t left() const {
     return m_tiles.size() - std::min<std::size_t>(m_nextTile, m_tiles.size());
   }
-  /// Takes the next tiles, `most` at most, for another process.
-  std::span<const int> lend(std::size_t most);
-  /// Counts a lent tile, whose samples are in the film again, as added.
+  /// Takes the next tiles, `most` at most, for a thread or for another process.
+  std::span<const int> take(std::size_t most);
+  /// Counts another process's tile, whose samples are in the film again, as added.
   void takeBack(int tile);
 
 private:
@@ -72,7 +72,7 @@ private:
 /// One thread's part of a pass: a source of paths for PathWave::trace.
 class TileStream {
 public:
-  /// Begins no tile once `pauses` returns true, which must outlive the stream; empty: never.
+  /// Takes no more tiles once `pauses` returns true, which must outlive the stream; empty: never.
   TileStream(Pass& pass, const std::function<bool()>& pauses) : m_pass(pass), m_pauses(pauses) {}
 
   /// Random numbers of the starts.
@@ -103,12 +103,14 @@ private:
     std::size_t awaited = 0;
   };
 
+  bool takeTiles();
   bool openTile();
   void list(Tile& tile, int index) const;
   void close(Tile& tile);
 
   Pass& m_pass;
   const std::function<bool()>& m_pauses;
+  std::span<const int> m_taken;      ///< tiles that are not yet open
   std::vector<Tile> m_tiles;         ///< open tiles, and free places
   std::vector<std::uint32_t> m_free; ///< free places in m_tiles
   std::uint32_t m_current = 0;       ///< place of the tile of the next samples
