@@ -30,39 +30,39 @@ void visitSeen(const Camera& camera, const DepthBuffer& buffer, const FocusCells
   });
 }
 
-/// Tiles of cells, marked if isAskedFor is set for any cell of the tile: an unmarked tile is
-/// skipped at once.
-class AskedTiles {
+/// Number of cells that are asked for above and left of each cell (Crow 1984): what a rectangle
+/// holds of them takes four look-ups.
+class AskedSums {
 public:
-  AskedTiles(const CellRange& range, const std::vector<std::uint8_t>& isAskedFor)
+  AskedSums(const CellRange& range, const std::vector<std::uint8_t>& isAskedFor)
       : m_range(range),
-        m_across(range.columns() / side + 1),
-        m_isAskedFor(static_cast<std::size_t>(m_across * (range.rows() / side + 1))) {
+        m_across(range.columns() + 1),
+        m_sums(static_cast<std::size_t>(m_across * (range.rows() + 1)), 0) {
     std::size_t cell = 0;
-    for (std::int64_t row = range.top; row < range.bottom; ++row)
-      for (std::int64_t column = range.left; column < range.right; ++column)
-        m_isAskedFor[tile(column, row)] |= isAskedFor[cell++];
+    for (std::int64_t row = range.top; row < range.bottom; ++row) {
+      std::uint32_t inRow = 0;
+      for (std::int64_t column = range.left; column < range.right; ++column) {
+        inRow += isAskedFor[cell++] != 0 ? 1U : 0U;
+        m_sums[at(column + 1, row + 1)] = m_sums[at(column + 1, row)] + inRow;
+      }
+    }
   }
 
+  /// True if any cell of the rectangle, which lies in the range, is asked for.
   bool any(const CellRange& cells) const {
-    for (std::int64_t row = cells.top; row < cells.bottom + side; row += side)
-      for (std::int64_t column = cells.left; column < cells.right + side; column += side)
-        if (m_isAskedFor[tile(std::min(column, cells.right), std::min(row, cells.bottom))])
-          return true;
-    return false;
+    return cells.left < cells.right && cells.top < cells.bottom &&
+           m_sums[at(cells.right, cells.bottom)] + m_sums[at(cells.left, cells.top)] !=
+               m_sums[at(cells.left, cells.bottom)] + m_sums[at(cells.right, cells.top)];
   }
 
 private:
-  static constexpr std::int64_t side = 8;
-
-  std::size_t tile(std::int64_t column, std::int64_t row) const {
-    return static_cast<std::size_t>((column - m_range.left) / side +
-                                    (row - m_range.top) / side * m_across);
+  std::size_t at(std::int64_t column, std::int64_t row) const {
+    return static_cast<std::size_t>(column - m_range.left + m_across * (row - m_range.top));
   }
 
   CellRange m_range;
   std::int64_t m_across;
-  std::vector<std::uint8_t> m_isAskedFor;
+  std::vector<std::uint32_t> m_sums; ///< modulo 2^32
 };
 
 } // namespace
@@ -129,13 +129,15 @@ std::vector<Interval> focusReaches(const Camera& camera, const DepthBuffer& buff
                                    const FocusCells& cells, const CellRange& range,
                                    const std::vector<std::uint8_t>& isAskedFor) {
   std::vector<Interval> reaches(range.size(), {infinity, -infinity});
-  const AskedTiles tiles(range, isAskedFor);
+  const AskedSums asked(range, isAskedFor);
   const BoxProjection boxes(camera, cells.cellToWorld());
   const auto reach = [&](const Size3& cell) {
     const auto [depths, lower, upper] = boxes.of(cell);
     if (depths.end < 0.0)
       return;
     const CellRange seen = cellsBetween(buffer, lower, upper);
+    if (!asked.any(seen))
+      return;
     for (std::int64_t row = seen.top; row < seen.bottom; ++row)
       for (std::int64_t column = seen.left; column < seen.right; ++column) {
         const std::size_t at = range.at(column, row);
@@ -144,7 +146,7 @@ std::vector<Interval> focusReaches(const Camera& camera, const DepthBuffer& buff
       }
   };
   visitSeen(camera, buffer, cells, [&](const Size3& block, const Interval&, const CellRange& seen) {
-    if (tiles.any(seen))
+    if (asked.any(seen))
       cells.visitCells(block, reach);
   });
   return reaches;
