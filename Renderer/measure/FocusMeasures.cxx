@@ -124,7 +124,7 @@ std::optional<double> contextRemoved(const RenderScene& scene, const Mask& focus
   const Domain domain(scene.volume.grid, scene.crop);
   const Box box = scene.volume.grid.indexBox();
   return withMedium(scene, [&](const auto& medium, const auto&) {
-    std::vector<double> matter(strata), removed(strata);
+    std::vector<double> occupied(strata), removed(strata);
     tbb::parallel_for(std::int64_t{0}, strata, [&](std::int64_t z) {
       for (std::int64_t y = 0; y < strata; ++y)
         for (std::int64_t x = 0; x < strata; ++x) {
@@ -135,11 +135,11 @@ std::optional<double> contextRemoved(const RenderScene& scene, const Mask& focus
           const Vec3 world = scene.volume.grid.indexToWorld * index;
           if (!domain.contains(index) || where.isFocus(index) || !(medium.extinction(index) > 0.0))
             continue;
-          matter[static_cast<std::size_t>(z)] += 1.0;
+          occupied[static_cast<std::size_t>(z)] += 1.0;
           removed[static_cast<std::size_t>(z)] += 1.0 - keep(scene.clip, world);
         }
     });
-    const double all = sum(matter);
+    const double all = sum(occupied);
     return all > 0.0 ? std::optional(sum(removed) / all) : std::nullopt;
   });
 }

@@ -36,7 +36,7 @@ public:
 
 private:
   /// Context in one coarse cell of the volume.
-  struct Matter {
+  struct ContextCell {
     Vec3 center;   ///< world mm
     double weight; ///< opacity of the cell, 0 to 1
   };
@@ -46,8 +46,8 @@ private:
 
   Domain m_domain;
   FocusCells m_focus;
-  std::vector<Matter> m_context;
-  double m_matterEdge = 1.0; ///< edge of a coarse cell, mm
+  std::vector<ContextCell> m_context;
+  double m_cellEdge = 1.0; ///< edge of a coarse cell, mm
 };
 
 /// Direction from the target to the viewer, and the viewer's up; unit vectors, RAS.

@@ -99,8 +99,8 @@ Interval extentAlong(const Domain& domain, const Vec3& axis) {
 /// Way along `up`, mm, that takes a frame of `half` above and below `center` from beyond an end of
 /// the scan back over its matter, but no farther than until as much is empty on the other side.
 /// 0 where matter ends inside the scan: what is empty there belongs to the picture.
-double wayFromEnd(const Domain& matter, const Vec3& up, const Vec3& center, double half) {
-  const Interval seen = extentAlong(matter, up), scan = extentAlong(matter.grid(), up);
+double wayFromEnd(const Domain& occupied, const Vec3& up, const Vec3& center, double half) {
+  const Interval seen = extentAlong(occupied, up), scan = extentAlong(occupied.grid(), up);
   const double at = up.dot(center), rounding = 1e-6 * half;
   const double above = at + half - seen.end, below = seen.begin - (at - half); // empty
   const double way = std::min(std::max(above, below), 0.5 * std::abs(above - below));

@@ -85,13 +85,13 @@ const char* kindText(const Material& material) {
 }
 
 Json materialJson(const SegmentMaterial& material) {
-  const SegmentMatter& matter = material.matter;
+  const SegmentMedium& medium = material.medium;
   return {{"name", orNull(material.name)},
-          {"kind", kindText(matter.material)},
-          {"color", colorJson(seenColor(matter.material))},
-          {"priority", matter.priority},
-          {"clip", matter.isClipped},
-          {"density", matter.density},
+          {"kind", kindText(medium.material)},
+          {"color", colorJson(seenColor(medium.material))},
+          {"priority", medium.priority},
+          {"clip", medium.isClipped},
+          {"density", medium.density},
           {"why", material.why}};
 }
 

@@ -53,9 +53,9 @@ void Scene::make() {
   if (r.view.isAutomatic() && focus->mask)
     m_view.of(volume, settings, focus, look);
   const auto ranges = m_ranges.of(volume, MajorantGrid::apronFor(look->transfer));
-  const Box matter = settings->camera ? Box() : *m_matter.of(volume, ranges, look);
+  const Box bounds = settings->camera ? Box() : *m_occupiedBounds.of(volume, ranges, look);
   const auto camera =
-      m_camera.of(r.view, r.width, r.height, volume, settings, matter, focus, m_view.result());
+      m_camera.of(r.view, r.width, r.height, volume, settings, bounds, focus, m_view.result());
   const auto placed = m_lights.of({lights, camera, focus}, volume);
   const auto clip = m_clip.of(r.clip, r.measure, r.steadyDegrees, volume, settings, focus, camera);
   const double extinction = r.focusLook.contextExtinction;
@@ -108,7 +108,7 @@ StageSeconds Scene::seconds() const {
       .materials = m_materials.seconds() + m_segmentsThere.seconds() + m_plan.seconds() +
                    m_skin.seconds() + m_shares.seconds() + m_tint.seconds() + m_borders.seconds() +
                    m_tintContrast.seconds() + m_contrastedTint.seconds() + m_mixture.seconds(),
-      .classify = m_ranges.seconds() + m_matter.seconds() + m_contrast.seconds() +
+      .classify = m_ranges.seconds() + m_occupiedBounds.seconds() + m_contrast.seconds() +
                   m_style.seconds() + m_majorants.seconds(),
       .focus = clip.focusSeconds,
       .spline = clip.splineSeconds,

@@ -94,7 +94,7 @@ private:
                     s.m_focus, s.m_sceneLook, s.m_look, s.m_materials, s.m_segmentsThere, s.m_skin,
                     s.m_plan, s.m_shares, s.m_tint, s.m_borders, s.m_tintContrast,
                     s.m_contrastedTint, s.m_mixture, s.m_focusWarnings, s.m_view, s.m_ranges,
-                    s.m_matter, s.m_camera, s.m_lights, s.m_clip, s.m_contrast, s.m_style,
+                    s.m_occupiedBounds, s.m_camera, s.m_lights, s.m_clip, s.m_contrast, s.m_style,
                     s.m_majorants, s.m_flight);
   }
 
@@ -117,11 +117,11 @@ private:
   Stage<&bordersOf> m_borders; ///< this and the next two: unused unless materials set off a focus
   Stage<&tintContrastOf> m_tintContrast;
   Stage<&contrastedTintOf> m_contrastedTint;
-  Stage<&mixedMatterOf> m_mixture; ///< unused where segments differ in colour alone
+  Stage<&makeMixture> m_mixture; ///< unused where segments differ in colour alone
   Stage<&focusWarnings> m_focusWarnings;
   Stage<&bestView> m_view; ///< used by automatic views alone
   Stage<&rangesOf> m_ranges;
-  Stage<&matterBox> m_matter; ///< unused where the scene's camera applies
+  Stage<&findOccupiedBounds> m_occupiedBounds; ///< unused where the scene's camera applies
   Stage<&placedCamera> m_camera;
   Stage<&placedLights> m_lights;
   Stage<&builtClip> m_clip;

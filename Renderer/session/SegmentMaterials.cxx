@@ -83,7 +83,7 @@ bool isDefault(const Rgb& color) {
 
 SegmentMaterial colored(const Rgb& encoded, const char* why) {
   SegmentMaterial result{.why = why};
-  result.matter.material.color = ColorFunction({{0.0, decodeSrgb(encoded)}});
+  result.medium.material.color = ColorFunction({{0.0, decodeSrgb(encoded)}});
   return result;
 }
 

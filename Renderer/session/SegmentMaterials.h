@@ -10,7 +10,7 @@
 namespace fenestra {
 
 struct SegmentMaterial {
-  SegmentMatter matter = {};
+  SegmentMedium medium = {};
   std::string name = {}; ///< of the material; empty: none of the table's, but a colour
   /// Reason: "by SCT^10200004", "by name 'liver'", "by value 5", "by its own colour", "by palette".
   std::string why = {};

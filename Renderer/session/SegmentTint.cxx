@@ -18,19 +18,19 @@ constexpr const char* skinMaterial = "skin";
 constexpr int skinPriority = 1;
 
 /// Material of each segment, with the changes; empty segments as they come.
-std::vector<SegmentMaterial> matterOf(const Segmentation& segmentation,
-                                      const NamedMaterials& materials,
-                                      const std::vector<std::string>& changes) {
+std::vector<SegmentMaterial> collectMaterials(const Segmentation& segmentation,
+                                              const NamedMaterials& materials,
+                                              const std::vector<std::string>& changes) {
   const std::vector<SegmentInfo>& segments = segmentation.segments();
   std::vector<SegmentMaterial> all = materialsOf(segments, materials.table);
   if (materials.table.hasContrast)
     for (SegmentMaterial& material : all)
       if (material.isOfPalette)
-        material.matter.material = {};
+        material.medium.material = {};
   for (const std::string& text : changes) {
     const MaterialChange change = parseMaterialChange(text, materials.table);
     const std::size_t i = segmentation.find(change.selector);
-    all[i].matter = changed(all[i].matter, change, materials.table);
+    all[i].medium = changed(all[i].medium, change, materials.table);
   }
   return all;
 }
@@ -60,7 +60,7 @@ bool isSkinThere(const std::vector<SegmentMaterial>& all, const std::vector<bool
 }
 
 /// True if both are the same under any transfer function; priority aside.
-bool isSame(const SegmentMatter& a, const SegmentMatter& b) {
+bool isSame(const SegmentMedium& a, const SegmentMedium& b) {
   const Material &m = a.material, &n = b.material;
   const bool looksAlike = m.color == n.color && (!m.color || m.colorIsAlbedo == n.colorIsAlbedo);
   if (!looksAlike || m.kind != n.kind || a.isClipped != b.isClipped || a.density != b.density)
@@ -76,7 +76,7 @@ std::uint8_t componentOf(const SegmentMaterial& material, const std::string& seg
                          TintPlan& plan, const std::string& source) {
   const std::string& name = material.name.empty() ? segment : material.name;
   for (std::size_t i = 0; i < plan.components.size(); ++i)
-    if (plan.isFocus[i] == isFocus && isSame(material.matter, plan.components[i])) {
+    if (plan.isFocus[i] == isFocus && isSame(material.medium, plan.components[i])) {
       if (i > 0)
         plan.names[i] = name;
       return static_cast<std::uint8_t>(i);
@@ -84,7 +84,7 @@ std::uint8_t componentOf(const SegmentMaterial& material, const std::string& seg
   if (plan.components.size() == mostComponents)
     throw inputError(source, "its segments have more than ", mostComponents - 1,
                      " materials; give several of them one material with --materials FILE");
-  plan.components.push_back(material.matter);
+  plan.components.push_back(material.medium);
   plan.names.push_back(segment);
   plan.isFocus.push_back(isFocus);
   return static_cast<std::uint8_t>(plan.components.size() - 1);
@@ -159,7 +159,7 @@ TintPlan tintPlan(const Handle<SegmentsInput>& input, const Handle<std::vector<b
                   const Handle<NamedMaterials>& materials, const std::vector<std::string>& changes,
                   const std::vector<std::string>& focus, const Handle<Mask>& skin) {
   const Segmentation& segmentation = input->segmentation;
-  const std::vector<SegmentMaterial> all = matterOf(segmentation, *materials, changes);
+  const std::vector<SegmentMaterial> all = collectMaterials(segmentation, *materials, changes);
   const std::vector<bool> isFocus = focusOf(segmentation, *materials, focus);
   TintPlan plan{
       .parts = {}, .components = {{restOf(*materials)}}, .names = {"the rest"}, .isFocus = {false}};
@@ -168,7 +168,7 @@ TintPlan tintPlan(const Handle<SegmentsInput>& input, const Handle<std::vector<b
     if ((*there)[i]) {
       const std::uint8_t component = componentOf(all[i], segmentation.segments()[i].name,
                                                  isFocus[i], plan, segmentation.source());
-      segments[{component, all[i].matter.priority}].push_back(i);
+      segments[{component, all[i].medium.priority}].push_back(i);
     }
   const bool mayGrow = isTint(plan); // matter stays where its segment is
   for (auto& [of, places] : segments)
@@ -210,7 +210,7 @@ Shares tintShares(const Handle<SegmentsInput>& input, const std::vector<TintPart
 
 Tint tintOf(const Handle<TintPlan>& plan, const Handle<Shares>& shares, double g) {
   Tint tint{shares, {}};
-  for (const SegmentMatter& component : plan->components) {
+  for (const SegmentMedium& component : plan->components) {
     const std::optional<ColorFunction>& color = component.material.color;
     const bool isAlbedo = component.material.colorIsAlbedo;
     tint.albedo.push_back(!color || isAlbedo ? color : std::optional(albedoFor(*color, g)));
@@ -219,7 +219,7 @@ Tint tintOf(const Handle<TintPlan>& plan, const Handle<Shares>& shares, double g
 }
 
 bool isTint(const TintPlan& plan) {
-  return std::ranges::all_of(plan.components, [](const SegmentMatter& component) {
+  return std::ranges::all_of(plan.components, [](const SegmentMedium& component) {
     return component.material.kind == MaterialKind::tint && component.isClipped &&
            component.density == 1.0;
   });
@@ -228,13 +228,13 @@ bool isTint(const TintPlan& plan) {
 Mixture mixtureOf(const TintPlan& plan, const Tint& tint, const TransferFunction& transfer) {
   Mixture mixture{tint.shares, {}};
   for (std::size_t i = 0; i < plan.components.size(); ++i) {
-    const SegmentMatter& matter = plan.components[i];
-    Component component{transfer, matter.isClipped};
+    const SegmentMedium& medium = plan.components[i];
+    Component component{transfer, medium.isClipped};
     if (tint.albedo[i])
       component.transfer.albedo = *tint.albedo[i];
-    if (matter.material.kind == MaterialKind::matter)
-      takeMaterial(matter.material, component);
-    component.transfer = component.transfer.scaled(matter.density);
+    if (medium.material.kind == MaterialKind::medium)
+      takeMaterial(medium.material, component);
+    component.transfer = component.transfer.scaled(medium.density);
     mixture.components.push_back(std::move(component));
   }
   return mixture;

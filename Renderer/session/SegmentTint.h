@@ -26,7 +26,7 @@ struct TintPlan {
   std::vector<TintPart> parts; ///< at least one; skin that is no segment is the last
   /// Matter of the components, at least one; their priority is the parts'. Component 0 is what no
   /// segment covers, and every segment of the same matter.
-  std::vector<SegmentMatter> components;
+  std::vector<SegmentMedium> components;
   std::vector<std::string> names; ///< of the components: a segment's, else a material's
   std::vector<bool> isFocus;      ///< by component; none is where nothing sets off the focus
 

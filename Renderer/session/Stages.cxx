@@ -227,17 +227,18 @@ ViewDirection bestView(const Read& volume, const Settings& settings, const Focus
       ViewScorer(volume->volume, domainOf(volume, settings), look->transfer, *focus->mask));
 }
 
-Box matterBox(const Read& volume, const Handle<CellRanges>& ranges, const Handle<Look>& look) {
-  return MajorantGrid(volume->volume.grid, *ranges, look->transfer, ClipNone()).matterBox();
+Box findOccupiedBounds(const Read& volume, const Handle<CellRanges>& ranges,
+                       const Handle<Look>& look) {
+  return MajorantGrid(volume->volume.grid, *ranges, look->transfer, ClipNone()).occupiedBounds();
 }
 
 Camera placedCamera(const ViewRequest& view, int width, int height, const Read& volume,
-                    const Settings& settings, const Box& matter, const Focus& focus,
+                    const Settings& settings, const Box& bounds, const Focus& focus,
                     const Handle<ViewDirection>& best) {
   if (settings->camera)
     return {adjustedView(view, *settings->camera), width, height};
   const Domain whole = domainOf(volume, settings);
-  const Domain part = whole.within(matter);
+  const Domain part = whole.within(bounds);
   const bool isEmpty = part.indexCorners().empty();
   return {frameView(view, isEmpty ? whole : part, maskOf(focus), width, height, best.get()), width,
           height};
@@ -295,8 +296,8 @@ TintContrast tintContrastOf(const Handle<TintBorders>& borders, const Handle<Tin
                       saturation.value_or(1.0));
 }
 
-Mixture mixedMatterOf(const Handle<TintPlan>& plan, const Handle<Tint>& tint,
-                      const Handle<Look>& look) {
+Mixture makeMixture(const Handle<TintPlan>& plan, const Handle<Tint>& tint,
+                    const Handle<Look>& look) {
   return mixtureOf(*plan, *tint, look->transfer);
 }
 

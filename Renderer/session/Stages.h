@@ -55,12 +55,13 @@ ViewDirection bestView(const Read& volume, const Settings& settings, const Focus
                        const Handle<Look>& look);
 
 /// Box, in index space, of the cells that hold matter under the transfer function, before any clip.
-Box matterBox(const Read& volume, const Handle<CellRanges>& ranges, const Handle<Look>& look);
+Box findOccupiedBounds(const Read& volume, const Handle<CellRanges>& ranges,
+                       const Handle<Look>& look);
 
 /// `matter`: framed without a scene's camera; by value, so that a look that fills the same cells
 /// keeps the camera. `best`: null unless the view is automatic.
 Camera placedCamera(const ViewRequest& view, int width, int height, const Read& volume,
-                    const Settings& settings, const Box& matter, const Focus& focus,
+                    const Settings& settings, const Box& bounds, const Focus& focus,
                     const Handle<ViewDirection>& best);
 
 /// Lights, and the camera and the focus for those in their frames.
@@ -108,8 +109,8 @@ TintContrast tintContrastOf(const Handle<TintBorders>& borders, const Handle<Tin
                             const Handle<Look>& look, const std::optional<double>& saturation);
 
 /// Only where isTint() is false.
-Mixture mixedMatterOf(const Handle<TintPlan>& plan, const Handle<Tint>& tint,
-                      const Handle<Look>& look);
+Mixture makeMixture(const Handle<TintPlan>& plan, const Handle<Tint>& tint,
+                    const Handle<Look>& look);
 
 Tint contrastedTintOf(const Handle<Tint>& tint, const Handle<TintPlan>& plan,
                       const Handle<TintContrast>& contrast, const Handle<Look>& look);

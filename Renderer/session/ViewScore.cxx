@@ -123,10 +123,10 @@ ViewScorer::ViewScorer(const Volume& volume, const Domain& domain, const Transfe
   constexpr double cellsAlong = 32.0;
   const Grid& grid = volume.grid;
   const Vec3 edges = grid.spacing().cwiseProduct(grid.size.cast<double>());
-  m_matterEdge = edges.maxCoeff() / cellsAlong;
+  m_cellEdge = edges.maxCoeff() / cellsAlong;
   const Size3 count =
-      (edges / m_matterEdge).array().round().max(1.0).cast<std::int64_t>().min(grid.size.array());
-  std::vector<std::vector<Matter>> layers(static_cast<std::size_t>(count.z()));
+      (edges / m_cellEdge).array().round().max(1.0).cast<std::int64_t>().min(grid.size.array());
+  std::vector<std::vector<ContextCell>> layers(static_cast<std::size_t>(count.z()));
   std::visit(
       [&](const auto& voxels) {
         const Medium medium(grid, voxels, transfer);
@@ -139,24 +139,24 @@ ViewScorer::ViewScorer(const Volume& volume, const Domain& domain, const Transfe
               const Vec3 world = grid.indexToWorld * index;
               if (!m_domain.contains(index) || isFocus(focus, world))
                 continue;
-              const double opacity = -std::expm1(-m_matterEdge * medium.extinction(index));
+              const double opacity = -std::expm1(-m_cellEdge * medium.extinction(index));
               if (opacity > 0.0)
                 layers[static_cast<std::size_t>(z)].push_back({world, opacity});
             }
         });
       },
       volume.voxels);
-  for (const std::vector<Matter>& layer : layers)
+  for (const std::vector<ContextCell>& layer : layers)
     m_context.insert(m_context.end(), layer.begin(), layer.end());
 }
 
 double ViewScorer::removedShare(const FocusDepths& focus) const {
   double removed = 0.0, all = 0.0;
-  for (const Matter& matter : m_context) {
-    const Vec3 at = focus.local(matter.center);
-    const double inFront = (focus.surfaceAt(at) - at.z()) / m_matterEdge;
-    removed += matter.weight * std::clamp(inFront + 0.5, 0.0, 1.0);
-    all += matter.weight;
+  for (const ContextCell& cell : m_context) {
+    const Vec3 at = focus.local(cell.center);
+    const double inFront = (focus.surfaceAt(at) - at.z()) / m_cellEdge;
+    removed += cell.weight * std::clamp(inFront + 0.5, 0.0, 1.0);
+    all += cell.weight;
   }
   return all > 0.0 ? removed / all : 0.0;
 }

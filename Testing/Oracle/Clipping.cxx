@@ -33,14 +33,14 @@ struct Sight {
 /// Sight along a ray within the volume: sampled twenty-five times a voxel and at every summit
 /// between samples, where a ray may graze the surface; then bisected. Steps beyond the focus's box,
 /// where the indicator is 0, are counted and not looked at.
-Sight lookAlong(const FocusField& focus, const Matter& matter, const Ray& ray,
+Sight lookAlong(const FocusField& focus, const Medium& matter, const Ray& ray,
                 const Interval& range) {
-  Interval part = matter.inBox(ray.origin, ray.direction);
+  Interval part = matter.boxInterval(ray.origin, ray.direction);
   part = {std::max(part.begin, range.begin), std::min(part.end, range.end)};
   const auto level = [&](double t) {
     const Vec3 world = ray.at(t);
     const double share = focus.at(world);
-    return share > 0.0 && matter.inside(world) ? share : 0.0;
+    return share > 0.0 && matter.contains(world) ? share : 0.0;
   };
   const auto between = [&](double outside, double inside) {
     for (int i = 0; i < 60; ++i) {
@@ -75,7 +75,7 @@ Sight lookAlong(const FocusField& focus, const Matter& matter, const Ray& ray,
   return best;
 }
 
-double firstMeeting(const FocusField& focus, const Matter& matter, const Ray& ray) {
+double firstMeeting(const FocusField& focus, const Medium& matter, const Ray& ray) {
   const Sight sight = lookAlong(focus, matter, ray, {});
   return sight.height >= 0.5 ? sight.t : infinity;
 }
@@ -142,7 +142,7 @@ private:
 };
 
 std::vector<double> depthsOf(const DepthClip& clip, const FocusField& focus, const View& view,
-                             const Matter& matter) {
+                             const Medium& matter) {
   std::vector<double> depths;
   std::vector<Meeting> meetings;
   for (const double y : clip.rows)
@@ -244,7 +244,7 @@ double FocusField::at(const Vec3& world) const {
   return sum;
 }
 
-Clipping::Clipping(const ClipDescription& description, const View& view, const Matter& matter)
+Clipping::Clipping(const ClipDescription& description, const View& view, const Medium& matter)
     : m_description(description), m_view(view), m_matter(matter) {
   if (const auto* clip = std::get_if<DepthClip>(&description)) {
     m_focus.emplace(clip->focus);

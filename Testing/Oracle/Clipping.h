@@ -28,7 +28,7 @@ private:
 class Clipping {
 public:
   /// Builds the whole buffer for a depth clip.
-  Clipping(const ClipDescription& description, const View& view, const Matter& matter);
+  Clipping(const ClipDescription& description, const View& view, const Medium& matter);
 
   /// Share of the extinction that the clip leaves, 0 to 1.
   double keep(const Vec3& world) const;
@@ -52,7 +52,7 @@ private:
 
   const ClipDescription& m_description;
   const View& m_view;
-  const Matter& m_matter;
+  const Medium& m_matter;
   std::optional<FocusField> m_focus; ///< of a depth clip
   std::vector<double> m_depths;
 };

@@ -41,7 +41,7 @@ double greatestExtinction(const TransferFunction& transfer) {
          (transfer.gradientOpacity ? greatestKnot(*transfer.gradientOpacity) : 1.0);
 }
 
-Matter::Matter(const Volume& volume, const TransferFunction& transfer,
+Medium::Medium(const Volume& volume, const TransferFunction& transfer,
                const std::optional<Affine>& crop)
     : m_size(volume.grid.size),
       m_worldToIndex(volume.grid.indexToWorld.inverse()),
@@ -51,7 +51,7 @@ Matter::Matter(const Volume& volume, const TransferFunction& transfer,
     m_worldToCrop = crop->inverse();
 }
 
-bool Matter::inside(const Vec3& world) const {
+bool Medium::contains(const Vec3& world) const {
   const Vec3 index = m_worldToIndex * world;
   for (int axis = 0; axis < 3; ++axis)
     if (index[axis] < -0.5 || index[axis] > static_cast<double>(m_size[axis]) - 0.5)
@@ -60,7 +60,7 @@ bool Matter::inside(const Vec3& world) const {
 }
 
 /// Trilinear sum of eight voxels; points beyond the outermost voxel centres are clamped to these.
-double Matter::scalarAtIndex(const Vec3& index) const {
+double Medium::scalarAtIndex(const Vec3& index) const {
   Size3 base;
   Vec3 share;
   for (int axis = 0; axis < 3; ++axis) {
@@ -83,7 +83,7 @@ double Matter::scalarAtIndex(const Vec3& index) const {
   return sum;
 }
 
-double Matter::extinction(const TransferFunction& transfer, const Vec3& world,
+double Medium::extinction(const TransferFunction& transfer, const Vec3& world,
                           double scalar) const {
   const double sigma_t = valueOf(transfer.extinction, scalar)[0];
   if (!transfer.gradientOpacity || sigma_t == 0.0)
@@ -91,7 +91,7 @@ double Matter::extinction(const TransferFunction& transfer, const Vec3& world,
   return sigma_t * valueOf(*transfer.gradientOpacity, gradient(world).norm())[0];
 }
 
-Vec3 Matter::gradient(const Vec3& world) const {
+Vec3 Medium::gradient(const Vec3& world) const {
   const Vec3 index = m_worldToIndex * world;
   Vec3 perVoxel;
   for (int axis = 0; axis < 3; ++axis) {
@@ -101,18 +101,18 @@ Vec3 Matter::gradient(const Vec3& world) const {
   return m_worldToIndex.linear().transpose() * perVoxel; // chain rule
 }
 
-Vec3 Matter::spansPerMm(const Vec3& world) const {
+Vec3 Medium::spansPerMm(const Vec3& world) const {
   const auto& knots = m_transfer.extinction.knots();
   return gradient(world) / (knots.back().position - knots.front().position);
 }
 
-double Matter::surfaceProbability(const TransferFunction& transfer, const Vec3& world,
+double Medium::surfaceProbability(const TransferFunction& transfer, const Vec3& world,
                                   double slope) const {
   const double o = 1.0 - std::exp(-extinction(transfer, world, scalar(world)));
   return o * (1.0 - std::exp(-25.0 * std::pow(transfer.shading->gamma, 3.0) * slope));
 }
 
-Interval Matter::inBox(const Vec3& origin, const Vec3& direction) const {
+Interval Medium::boxInterval(const Vec3& origin, const Vec3& direction) const {
   const Box box{Vec3::Constant(-0.5), m_size.cast<double>() - Vec3::Constant(0.5)};
   return partIn(box, transformed(m_worldToIndex, {origin, direction}));
 }

@@ -14,12 +14,12 @@ double greatestExtinction(const TransferFunction& transfer);
 /// Interval of a ray, t >= 0, inside a box; empty: ray misses.
 Interval partIn(const Box& box, const Ray& ray);
 
-class Matter {
+class Medium {
 public:
-  Matter(const Volume& volume, const TransferFunction& transfer, const std::optional<Affine>& crop);
+  Medium(const Volume& volume, const TransferFunction& transfer, const std::optional<Affine>& crop);
 
   /// True if a world point lies in the volume's box and in the crop.
-  bool inside(const Vec3& world) const;
+  bool contains(const Vec3& world) const;
   double scalar(const Vec3& world) const { return scalarAtIndex(m_worldToIndex * world); }
   /// Gradient of the scalar, per mm, world axes.
   Vec3 gradient(const Vec3& world) const;
@@ -35,7 +35,7 @@ public:
                             double slope) const;
 
   /// Interval of a world ray, t >= 0, inside the volume's box; empty: ray misses.
-  Interval inBox(const Vec3& origin, const Vec3& direction) const;
+  Interval boxInterval(const Vec3& origin, const Vec3& direction) const;
 
 private:
   double scalarAtIndex(const Vec3& index) const;

@@ -85,7 +85,7 @@ private:
   /// Distance to the next real collision, by delta tracking with one majorant for the whole volume;
   /// every tentative collision is tested at its place.
   double collision(const Ray& ray, Generator& generator) const {
-    const Interval part = m_matter.inBox(ray.origin, ray.direction);
+    const Interval part = m_matter.boxInterval(ray.origin, ray.direction);
     if (part.empty() || m_majorant == 0.0)
       return infinity;
     double t = part.begin;
@@ -94,7 +94,7 @@ private:
       if (t >= part.end)
         return infinity;
       const Vec3 point = ray.at(t);
-      if (!m_matter.inside(point))
+      if (!m_matter.contains(point))
         continue;
       if (uniform(generator) * m_majorant < sumOf(extinctions(point)))
         return t;
@@ -221,7 +221,7 @@ private:
 
   const OracleScene& m_scene;
   View m_view;
-  Matter m_matter;
+  Medium m_matter;
   Clipping m_clipping;
   std::optional<FocusField> m_styledFocus;
   std::optional<Segments> m_segments;

@@ -28,9 +28,9 @@ TEST_P(SeenColor, IsRenderedByVolumeShading) {
 TestScene slabOfMaterial(const Rgb& color, double g) {
   TestScene scene = endlessSlab(deepFor(g), Rgb::Constant(0.5));
   scene.transfer.g = 0.3;
-  TintPlan plan{{}, std::vector<SegmentMatter>(2), {}, {}};
+  TintPlan plan{{}, std::vector<SegmentMedium>(2), {}, {}};
   Material& material = plan.components[1].material;
-  material.kind = MaterialKind::matter;
+  material.kind = MaterialKind::medium;
   material.color = ColorFunction({{0.0, color}});
   material.extinction = ScalarFunction({knot(0.0, 0.5)});
   material.g = g;

@@ -85,7 +85,7 @@ TEST_P(SmallSizes, GradientIsZeroAlongSingleVoxels) {
   for (int i = 0; i < 20; ++i) {
     Random random(3, static_cast<std::uint64_t>(i), 0);
     const Vec3 index = randomIndex(grid, random);
-    const Vec3 gradient = probe.medium().matter(index, true).gradient;
+    const Vec3 gradient = probe.medium().evaluate(index, true).gradient;
     for (int axis = 0; axis < 3; ++axis) {
       // The derivative along index axis a is the gradient's component along column a.
       const Vec3 step = Vec3::Unit(axis);

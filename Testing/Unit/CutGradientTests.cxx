@@ -143,8 +143,8 @@ TEST(CutGradient, MakesASurfaceOfHomogeneousMatter) {
   const auto at = [&](double y, bool wantGradient = false) {
     const Vec3 point(1.0, y, 2.0);
     Random random(0);
-    return drawMatter(Medium<float>(grid, voxels, transfer), clip, point, grid.worldToIndex * point,
-                      wantGradient, random);
+    return sampleMedium(Medium<float>(grid, voxels, transfer), clip, point,
+                        grid.worldToIndex * point, wantGradient, random);
   };
   const double opacity = 1.0 - std::exp(-0.8);
   const double expected = opacity * (1.0 - std::exp(-25.0 * 0.216 * 0.5 / 4.0));

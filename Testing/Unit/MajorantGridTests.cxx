@@ -98,7 +98,7 @@ TEST(MajorantGrid, MatterBoxHoldsAllMatterAndAtMostACellMore) {
   const auto boxFrom = [&](double threshold) {
     const TransferFunction transfer{ScalarFunction({knot(threshold, 0), knot(threshold + 1, 1)}),
                                     grey};
-    return MajorantGrid(grid, CellRanges(volume, 0), transfer, ClipNone{}).matterBox();
+    return MajorantGrid(grid, CellRanges(volume, 0), transfer, ClipNone{}).occupiedBounds();
   };
   const Vec3 edge = CellRanges::edgeFor(grid).cast<double>();
   const Box box = boxFrom(100.0);

@@ -46,14 +46,14 @@ TEST(MaterialReader, ReadsEveryFieldOfAMaterial) {
   EXPECT_EQ(liver.roughness, 0.35);
   EXPECT_EQ(liver.border, 0.1);
   const Material& lesion = materials.at("lesion");
-  EXPECT_EQ(lesion.kind, MaterialKind::matter) << "extinction of its own";
+  EXPECT_EQ(lesion.kind, MaterialKind::medium) << "extinction of its own";
   EXPECT_TRUE(lesion.colorIsAlbedo);
   EXPECT_EQ((*lesion.color)(-1000)[2], 0.1);
   EXPECT_EQ(extinctionOf(lesion, 1e6), 6.0);
   EXPECT_EQ(lesion.g, -0.5);
   EXPECT_EQ(lesion.diffuse, 0.8);
   EXPECT_EQ(extinctionOf(materials.at("bone"), 200), 4.0);
-  EXPECT_EQ(materials.at("stone").kind, MaterialKind::matter);
+  EXPECT_EQ(materials.at("stone").kind, MaterialKind::medium);
   EXPECT_EQ((*materials.at("stone").color)(0)[1], 0.2);
   EXPECT_FALSE(materials.at("tissue").color) << "the volume's own";
 }
@@ -192,21 +192,21 @@ TEST(MaterialReader, ChangesOneSegment) {
   const MaterialChange change =
       parseMaterialChange("Liver: left : color=#00ff00, density=2.5 ,clip=no,priority=7", table);
   EXPECT_EQ(change.selector, "Liver: left") << "up to the last colon";
-  SegmentMatter matter{table.materials.at("liver"), 10, true, 1.0};
+  SegmentMedium matter{table.materials.at("liver"), 10, true, 1.0};
   matter = changed(matter, change, table);
-  EXPECT_EQ((*matter.material.color)(0)[1], 1.0);
-  EXPECT_EQ((*matter.material.color)(0)[0], 0.0);
-  EXPECT_EQ(matter.material.specular, 0.25) << "the liver's, unchanged";
-  EXPECT_EQ(matter.density, 2.5);
-  EXPECT_FALSE(matter.isClipped);
-  EXPECT_EQ(matter.priority, 7);
+  EXPECT_EQ((*medium.material.color)(0)[1], 1.0);
+  EXPECT_EQ((*medium.material.color)(0)[0], 0.0);
+  EXPECT_EQ(medium.material.specular, 0.25) << "the liver's, unchanged";
+  EXPECT_EQ(medium.density, 2.5);
+  EXPECT_FALSE(medium.isClipped);
+  EXPECT_EQ(medium.priority, 7);
   matter = changed(matter, parseMaterialChange("x: material=lesion, extinction=3", table), table);
-  EXPECT_EQ(extinctionOf(matter.material, 0), 3.0);
-  EXPECT_EQ(matter.material.diffuse, 0.8) << "the lesion's";
-  EXPECT_EQ(matter.density, 2.5) << "the segment's";
+  EXPECT_EQ(extinctionOf(medium.material, 0), 3.0);
+  EXPECT_EQ(medium.material.diffuse, 0.8) << "the lesion's";
+  EXPECT_EQ(medium.density, 2.5) << "the segment's";
   matter = changed(matter, parseMaterialChange("x: extinction=base, kind=tint", table), table);
-  EXPECT_FALSE(matter.material.extinction);
-  EXPECT_EQ(matter.material.kind, MaterialKind::tint);
+  EXPECT_FALSE(medium.material.extinction);
+  EXPECT_EQ(medium.material.kind, MaterialKind::tint);
 }
 
 TEST(MaterialReader, ErrorNamesTheFieldOfAChange) {
@@ -227,7 +227,7 @@ TEST(MaterialReader, ErrorNamesTheFieldOfAChange) {
   refuseChange("liver: density=-1", "liver", "density: is -1");
   refuseChange("liver: material=stomach", "liver", "material: there is no material \"stomach\"");
   const MaterialChange color = parseMaterialChange("a: color=#ffffff", table);
-  const SegmentMatter backward{table.materials.at("lesion")};
+  const SegmentMedium backward{table.materials.at("lesion")};
   expectRefused("--material a", "has no \"g\"", [&] { changed(backward, color, table); });
 }
 

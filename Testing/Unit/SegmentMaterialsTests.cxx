@@ -161,8 +161,8 @@ TEST(SegmentMaterials, RulesOfAFileWinOverTheLibrary) {
   seven.labelValue = 7;
   const SegmentMaterial found = materialOf(seven, table);
   EXPECT_EQ(found.why, "by value 7");
-  EXPECT_FALSE(found.matter.isClipped);
-  EXPECT_EQ(found.matter.density, 3.0);
+  EXPECT_FALSE(found.medium.isClipped);
+  EXPECT_EQ(found.medium.density, 3.0);
 }
 
 /// Names that a rule excepts are excepted whatever their code.
@@ -177,12 +177,12 @@ TEST(SegmentMaterials, UnknownSegmentsKeepTheirColorOrGetOneOfThePalette) {
   const std::vector<SegmentMaterial> found = materialsOf(segments, materialLibrary());
   EXPECT_EQ(found[0].why, "by palette");
   EXPECT_EQ(found[1].why, "by its own colour");
-  const Rgb own = encodeSrgb((*found[1].matter.material.color)(0));
+  const Rgb own = encodeSrgb((*found[1].medium.material.color)(0));
   EXPECT_LT((own - segments[1].color).abs().maxCoeff(), 1e-12);
   std::vector<Lab> palette;
   for (const SegmentMaterial& material : found)
     if (material.why == "by palette")
-      palette.push_back(labOf((*material.matter.material.color)(0)));
+      palette.push_back(labOf((*material.medium.material.color)(0)));
   ASSERT_EQ(palette.size(), 21u);
   for (std::size_t i = 0; i < 20; ++i)
     for (std::size_t j = 0; j < i; ++j)
@@ -191,7 +191,7 @@ TEST(SegmentMaterials, UnknownSegmentsKeepTheirColorOrGetOneOfThePalette) {
 }
 
 TEST(SegmentMaterials, PriorityIsThatOfTheKind) {
-  const auto priority = [](const char* name) { return materialOf(named(name)).matter.priority; };
+  const auto priority = [](const char* name) { return materialOf(named(name)).medium.priority; };
   EXPECT_EQ(priority("liver tumour"), 30);
   EXPECT_EQ(priority("aorta"), 15);
   EXPECT_EQ(priority("liver"), 10);

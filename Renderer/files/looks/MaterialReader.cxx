@@ -51,7 +51,7 @@ void readKind(const JsonNode& object, Material& material) {
   if (extinction) {
     material.extinction = readExtinction(*extinction);
     if (material.extinction)
-      material.kind = MaterialKind::matter;
+      material.kind = MaterialKind::medium;
   }
   if (kind)
     material.kind = static_cast<MaterialKind>(kind->oneOf({"tint", "matter"}));
@@ -155,13 +155,13 @@ nlohmann::json valueOf(const std::string& text) {
   return text;
 }
 
-void apply(const JsonNode& fields, const MaterialTable& table, SegmentMatter& matter) {
+void apply(const JsonNode& fields, const MaterialTable& table, SegmentMedium& medium) {
   fields.allowOnly({"material", "color", "albedo", "extinction", "g", "kind", "diffuse", "specular",
                     "roughness", "border", "priority", "clip", "density"});
   if (const auto name = fields.find("material"))
-    matter.material = table.materials.at(readMaterialName(*name, table.materials));
-  readMaterial(fields, matter.material);
-  readUse(fields, matter);
+    medium.material = table.materials.at(readMaterialName(*name, table.materials));
+  readMaterial(fields, medium.material);
+  readUse(fields, medium);
 }
 
 std::string sourceOf(const MaterialChange& change) {
@@ -225,9 +225,9 @@ MaterialChange parseMaterialChange(const std::string& text, const MaterialTable&
   return change;
 }
 
-SegmentMatter changed(const SegmentMatter& matter, const MaterialChange& change,
+SegmentMedium changed(const SegmentMedium& medium, const MaterialChange& change,
                       const MaterialTable& table) {
-  SegmentMatter result = matter;
+  SegmentMedium result = medium;
   apply(JsonNode(change.fields, sourceOf(change)), table, result);
   return result;
 }

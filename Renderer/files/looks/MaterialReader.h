@@ -59,7 +59,7 @@ MaterialChange parseMaterialChange(const std::string& text, const MaterialTable&
 
 /// Matter with the change: first its "material", then single members. Throws Error (input), where
 /// members contradict those of `matter`.
-SegmentMatter changed(const SegmentMatter& matter, const MaterialChange& change,
+SegmentMedium changed(const SegmentMedium& medium, const MaterialChange& change,
                       const MaterialTable& table);
 
 } // namespace fenestra

@@ -47,7 +47,7 @@ public:
     }
   }
 
-  static constexpr std::uint8_t matter = 0, air = 1, outside = 255;
+  static constexpr std::uint8_t body = 0, air = 1, outside = 255;
 
 private:
   void enterSide(int axis, std::int64_t at) {
@@ -86,7 +86,7 @@ Mask outsideAir(const Volume& volume, double airBelow, const Size3& stride) {
         const Size3 row = Size3(0, y, z).array() * stride.array();
         const auto* const from = &voxels[numberOf(row, volume.grid.size)];
         for (std::int64_t x = 0; x < size.x(); ++x)
-          *to++ = static_cast<double>(from[x * stride.x()]) < airBelow ? Flood::air : Flood::matter;
+          *to++ = static_cast<double>(from[x * stride.x()]) < airBelow ? Flood::air : Flood::body;
       }
     });
   };

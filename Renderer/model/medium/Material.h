@@ -9,7 +9,7 @@
 //
 // This header is data, without names. `files/looks/MaterialReader` reads tables of materials, and
 // the rules that say which segments they are for; `session/SegmentMaterials` chooses by these rules
-// one SegmentMatter for each segment, in the segments' order. Transport sees no rule, code or name.
+// one SegmentMedium for each segment, in the segments' order. Transport sees no rule, code or name.
 //
 // A renderer of them takes a list of components (Mixture.h, Tint.h), one for each distinct material
 // of a volume, and the share of each in every voxel, on the segmentation's grid and under its
@@ -22,7 +22,7 @@
 
 namespace fenestra {
 
-enum class MaterialKind { tint, matter };
+enum class MaterialKind { tint, medium };
 
 /// Members that are not set are as the volume's transfer function has them.
 struct Material {
@@ -45,7 +45,7 @@ struct Material {
 std::optional<ColorFunction> seenColor(const Material& material);
 
 /// A segment's matter.
-struct SegmentMatter {
+struct SegmentMedium {
   Material material = {};
   int priority = 10;     ///< where segments overlap, the greater takes what it covers
   bool isClipped = true; ///< false: stays where the clip removes all else

@@ -13,7 +13,7 @@
 namespace fenestra {
 
 /// Matter at a real collision, for the estimator.
-struct Matter {
+struct MediumSample {
   Rgb albedo;
   Vec3 gradient; ///< of the scalar, with a cut's, per mm, world axes; zero unless needsGradient()
   double surfaceProbability;        ///< probability that the path scatters at a surface here
@@ -39,7 +39,7 @@ public:
   }
 
   /// True if the extinction may be above 0 where a clip keeps `kept`.
-  bool hasMatter(double kept) const { return kept > 0.0 || (m_mixed && m_mixed->hasFree()); }
+  bool canCollide(double kept) const { return kept > 0.0 || (m_mixed && m_mixed->hasFree()); }
   /// Extinction, mm^-1, of which the clip keeps `kept`.
   double extinction(const Vec3& index, double kept = 1.0) const {
     if (m_mixed)
@@ -61,24 +61,25 @@ public:
   /// Matter without a mixture. `wantGradient`: fills the gradient even without shading. `cut`:
   /// gradient that a cut adds where there is shading, spans of the transfer function per mm, world
   /// axes; it changes surfaces, not the extinction.
-  Matter matter(const Vec3& index, bool wantGradient, const Vec3& cut = Vec3::Zero()) const {
+  MediumSample evaluate(const Vec3& index, bool wantGradient,
+                        const Vec3& cut = Vec3::Zero()) const {
     const bool oneAlbedo = m_transfer.albedo.knots().size() == 1 && !m_tinted;
     const double scalar = oneAlbedo && !m_transfer.shading ? 0.0 : m_field.value(index);
     Rgb albedo = m_transfer.albedo(scalar);
     if (m_tinted)
       albedo = m_tinted->albedo(index, scalar, albedo);
-    return matterOf(m_transfer, albedo, index, scalar, wantGradient, cut);
+    return makeSample(m_transfer, albedo, index, scalar, wantGradient, cut);
   }
   /// Matter of a mixture's component.
-  Matter matter(std::uint8_t number, const MixedPoint& point, bool wantGradient,
-                const Vec3& cut = Vec3::Zero()) const {
+  MediumSample evaluate(std::uint8_t number, const MixedPoint& point, bool wantGradient,
+                        const Vec3& cut = Vec3::Zero()) const {
     const Component& component = m_mixed->mixture().components[number];
     const Vec3 border = component.border > 0.0 && component.transfer.shading
                             ? Vec3(component.border * m_mixed->shareGradient(number, point.index))
                             : Vec3::Zero();
-    return matterOf(component.transfer, component.transfer.albedo(point.scalar), point.index,
-                    point.scalar, wantGradient,
-                    border + (component.isClipped ? cut : Vec3::Zero()));
+    return makeSample(component.transfer, component.transfer.albedo(point.scalar), point.index,
+                      point.scalar, wantGradient,
+                      border + (component.isClipped ? cut : Vec3::Zero()));
   }
   /// A point with what a mixture's parts there depend on.
   MixedPoint at(const Vec3& index, double kept) const {
@@ -95,9 +96,9 @@ private:
   }
 
   /// `added`: to the scalar's gradient, spans of the volume's own extinction per mm.
-  Matter matterOf(const TransferFunction& transfer, const Rgb& albedo, const Vec3& index,
-                  double scalar, bool wantGradient, const Vec3& added) const {
-    Matter m{albedo, Vec3::Zero(), 0.0, &transfer};
+  MediumSample makeSample(const TransferFunction& transfer, const Rgb& albedo, const Vec3& index,
+                          double scalar, bool wantGradient, const Vec3& added) const {
+    MediumSample m{albedo, Vec3::Zero(), 0.0, &transfer};
     if (m_context && !m_context->isFocus(index))
       m.albedo = m_context->style().paled(m.albedo);
     if (wantGradient || transfer.shading)

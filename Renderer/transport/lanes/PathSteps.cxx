@@ -90,7 +90,7 @@ private:
                    Float distance) {
     Draws draws{load(&m_paths.key[i]), load(&m_paths.counter[i])};
     const Float3 index = origin + distance * load3(m_paths.rays.direction, i);
-    const Collisions at = matter(i, going, first, index, draws);
+    const Collisions at = lookUpMedium(i, going, first, index, draws);
     if (first.any())
       recordFirst(i, at, distance);
     return m_volume.mixture ? scatter(i, at, draws, lawsOf(m_scene, at.component))
@@ -128,8 +128,8 @@ private:
     return goOn(i, at, drawn, draws);
   }
 
-  HWY_INLINE Collisions matter(std::size_t i, LaneMask going, LaneMask first, const Float3& index,
-                               Draws& draws) {
+  HWY_INLINE Collisions lookUpMedium(std::size_t i, LaneMask going, LaneMask first,
+                                     const Float3& index, Draws& draws) {
     Collisions at{going,
                   first,
                   index,

@@ -134,7 +134,7 @@ std::size_t MajorantGrid::emptyCount() const {
       std::ranges::count_if(m_cells, [](const Cell& cell) { return cell.majorant == 0.0F; }));
 }
 
-Box MajorantGrid::matterBox() const {
+Box MajorantGrid::occupiedBounds() const {
   Box box = Box::nothing(); // in cells
   std::size_t next = 0;
   for (std::int64_t z = 0; z < m_cellCount.z(); ++z)

@@ -38,7 +38,7 @@ public:
   /// Number of cells with majorant 0.
   std::size_t emptyCount() const;
   /// Box, in index space, of the cells with a majorant above 0; Box::nothing(): all are empty.
-  Box matterBox() const;
+  Box occupiedBounds() const;
   /// Edges of a cell, voxels per axis.
   const Size3& edge() const { return m_edge; }
   const Cell& cell(std::int64_t index) const { return m_cells[static_cast<std::size_t>(index)]; }

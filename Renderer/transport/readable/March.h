@@ -111,7 +111,7 @@ private:
       for (double i = 0.5; i < steps; i += 1.0) {
         const double t = interval.begin + i * each;
         const double kept = cell.cut ? keep(m_clip, part.ray.at(t)) : 1.0;
-        if (m_medium.hasMatter(kept) &&
+        if (m_medium.canCollide(kept) &&
             !visit(t, each, m_medium.extinction(part.indexRay.at(t), kept)))
           return;
       }
@@ -126,18 +126,18 @@ private:
     FirstMatter& met = sums.met;
     met.hit += sums.pending;
     met.distance += sums.pending * (part.before + t);
-    const auto add = [&](const Matter& matter, double probability) {
+    const auto add = [&](const MediumSample& medium, double probability) {
       const double weight = sums.pending * probability;
-      met.albedo += weight * matter.albedo;
-      const double slope = matter.gradient.norm();
-      const bool away = part.ray.direction.dot(matter.gradient) < 0.0;
+      met.albedo += weight * medium.albedo;
+      const double slope = medium.gradient.norm();
+      const bool away = part.ray.direction.dot(medium.gradient) < 0.0;
       if (slope > 0.0) {
-        const Vec3 normal = matter.gradient * (weight / (away ? slope : -slope));
+        const Vec3 normal = medium.gradient * (weight / (away ? slope : -slope));
         met.normal += normal;
-        met.facing += matter.surfaceProbability * normal;
+        met.facing += medium.surfaceProbability * normal;
       }
     };
-    forEachMatter(m_medium, m_clip, part.ray.at(t), part.indexRay.at(t), true, add);
+    forEachMediumSample(m_medium, m_clip, part.ray.at(t), part.indexRay.at(t), true, add);
     sums.pending = sums.moment = 0.0;
   }
 

@@ -9,41 +9,41 @@ namespace fenestra {
 
 /// Gradient of the clip's cut, where surfaces are shaded.
 template <typename Voxel>
-Vec3 cutAt(const Medium<Voxel>& medium, const Clip& clip, const Vec3& world) {
+Vec3 findCutGradient(const Medium<Voxel>& medium, const Clip& clip, const Vec3& world) {
   return medium.transfer().shading ? cutGradient(clip, world) : Vec3::Zero();
 }
 
 /// Parts of a mixture; what a clip keeps matters where it does not keep as much of all.
 template <typename Voxel>
-MixedPoint mixedAt(const Medium<Voxel>& medium, const Clip& clip, const Vec3& world,
-                   const Vec3& index) {
+MixedPoint makeMixturePoint(const Medium<Voxel>& medium, const Clip& clip, const Vec3& world,
+                            const Vec3& index) {
   return medium.at(index, medium.mixed()->hasFree() ? keep(clip, world) : 1.0);
 }
 
 /// Matter that a collision meets; of a mixture one component, drawn.
 template <typename Voxel>
-Matter drawMatter(const Medium<Voxel>& medium, const Clip& clip, const Vec3& world,
-                  const Vec3& index, bool wantGradient, Random& random) {
-  const Vec3 cut = cutAt(medium, clip, world);
+MediumSample sampleMedium(const Medium<Voxel>& medium, const Clip& clip, const Vec3& world,
+                          const Vec3& index, bool wantGradient, Random& random) {
+  const Vec3 cut = findCutGradient(medium, clip, world);
   if (!medium.mixed())
-    return medium.matter(index, wantGradient, cut);
-  const MixedPoint point = mixedAt(medium, clip, world, index);
-  return medium.matter(medium.mixed()->draw(point, random), point, wantGradient, cut);
+    return medium.evaluate(index, wantGradient, cut);
+  const MixedPoint point = makeMixturePoint(medium, clip, world, index);
+  return medium.evaluate(medium.mixed()->draw(point, random), point, wantGradient, cut);
 }
 
 /// Calls visit(matter, probability) for all matter that a collision may meet.
 template <typename Voxel, typename Visit>
-void forEachMatter(const Medium<Voxel>& medium, const Clip& clip, const Vec3& world,
-                   const Vec3& index, bool wantGradient, Visit&& visit) {
-  const Vec3 cut = cutAt(medium, clip, world);
+void forEachMediumSample(const Medium<Voxel>& medium, const Clip& clip, const Vec3& world,
+                         const Vec3& index, bool wantGradient, Visit&& visit) {
+  const Vec3 cut = findCutGradient(medium, clip, world);
   if (!medium.mixed()) {
-    visit(medium.matter(index, wantGradient, cut), 1.0);
+    visit(medium.evaluate(index, wantGradient, cut), 1.0);
     return;
   }
-  const MixedPoint point = mixedAt(medium, clip, world, index);
+  const MixedPoint point = makeMixturePoint(medium, clip, world, index);
   const double all = medium.mixed()->extinction(point);
   medium.mixed()->forEachPart(point, [&](const MixturePart& part) {
-    visit(medium.matter(part.component, point, wantGradient, cut), part.extinction / all);
+    visit(medium.evaluate(part.component, point, wantGradient, cut), part.extinction / all);
   });
 }
 

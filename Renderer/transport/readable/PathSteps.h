@@ -96,11 +96,11 @@ public:
     const bool first = path.bounces == 0;
     const bool wantGradient = first && m_settings.wantNormals;
     counters.gradients += m_medium.needsGradient(wantGradient) ? 1 : 0;
-    const Matter matter =
-        drawMatter(m_medium, m_clip, point, m_worldToIndex * point, wantGradient, path.random);
+    const MediumSample medium =
+        sampleMedium(m_medium, m_clip, point, m_worldToIndex * point, wantGradient, path.random);
     if (first)
-      recordFirst(path, distance, matter);
-    const Scattering scattering = chooseScattering(path.ray.direction, matter, path.choices.x());
+      recordFirst(path, distance, medium);
+    const Scattering scattering = chooseScattering(path.ray.direction, medium, path.choices.x());
     std::optional<ShadowRay> light = sampledLight(point, scattering, path);
     const ScatterSample scattered = scatterSample(scattering, path.scattered, path.random);
     path.scattered = path.random.uniform2();
@@ -119,21 +119,22 @@ public:
   static bool ended(const Path& path) { return !(path.weight.maxCoeff() > 0.0); }
 
 private:
-  void recordFirst(Path& path, double distance, const Matter& matter) const {
+  void recordFirst(Path& path, double distance, const MediumSample& medium) const {
     PathSample& sample = path.sample;
     sample.depth = m_eye.depth(path.ray, distance);
-    sample.albedo = matter.albedo;
-    const double slope = matter.gradient.norm();
+    sample.albedo = medium.albedo;
+    const double slope = medium.gradient.norm();
     if (slope > 0.0)
       sample.normal =
-          matter.gradient / (path.ray.direction.dot(matter.gradient) < 0.0 ? slope : -slope);
+          medium.gradient / (path.ray.direction.dot(medium.gradient) < 0.0 ? slope : -slope);
   }
 
-  static Scattering chooseScattering(const Vec3& incoming, const Matter& matter, double choice) {
-    const TransferFunction& transfer = *matter.transfer;
-    if (choice < matter.surfaceProbability)
-      return SurfaceScattering(incoming, matter.gradient, *transfer.shading, matter.albedo);
-    return PhaseScattering(incoming, transfer.g, matter.albedo);
+  static Scattering chooseScattering(const Vec3& incoming, const MediumSample& medium,
+                                     double choice) {
+    const TransferFunction& transfer = *medium.transfer;
+    if (choice < medium.surfaceProbability)
+      return SurfaceScattering(incoming, medium.gradient, *transfer.shading, medium.albedo);
+    return PhaseScattering(incoming, transfer.g, medium.albedo);
   }
 
   /// Next-event estimation: one light, to be seen through the volume, weighted against scattering

@@ -108,7 +108,7 @@ private:
         t += opticalDepth / majorant;
         const double kept = cell.cut ? keep(m_clip, entering.at(t)) : 1.0;
         double extinction = 0.0;
-        if (m_medium.hasMatter(kept)) {
+        if (m_medium.canCollide(kept)) {
           ++counters.lookups;
           extinction = m_medium.extinction(indexRay.at(t), kept);
         }

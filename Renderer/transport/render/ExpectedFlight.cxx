@@ -108,7 +108,7 @@ private:
   struct Collision {
     std::size_t pixel;
     Vec3 point, incoming;
-    Matter matter;
+    MediumSample medium;
     double hit;
   };
 
@@ -140,23 +140,23 @@ private:
       const double depth = static_cast<double>(met.depth / met.hit);
       const Vec3 point = eye.at(depth / m_scene.camera.depthPerLength(eye));
       const Vec3 index = m_scene.volume.grid.worldToIndex * point;
-      if (const auto matter = mostProbable(point, index))
-        collisions.push_back({pixel, point, eye.direction, *matter, static_cast<double>(met.hit)});
+      if (const auto medium = mostProbable(point, index))
+        collisions.push_back({pixel, point, eye.direction, *medium, static_cast<double>(met.hit)});
     }
     return collisions;
   }
 
   /// Matter that a collision meets with the greatest probability.
-  std::optional<Matter> mostProbable(const Vec3& point, const Vec3& index) const {
-    std::optional<Matter> found;
+  std::optional<MediumSample> mostProbable(const Vec3& point, const Vec3& index) const {
+    std::optional<MediumSample> found;
     double most = 0.0;
-    forEachMatter(m_medium, m_scene.clip, point, index, true,
-                  [&](const Matter& matter, double probability) {
-                    if (probability <= most)
-                      return;
-                    found = matter;
-                    most = probability;
-                  });
+    forEachMediumSample(m_medium, m_scene.clip, point, index, true,
+                        [&](const MediumSample& medium, double probability) {
+                          if (probability <= most)
+                            return;
+                          found = medium;
+                          most = probability;
+                        });
     return found;
   }
 
@@ -167,15 +167,15 @@ private:
     const auto light = m_scene.lights.sample(at.point, choice, random.uniform2());
     if (!light)
       return std::nullopt;
-    const double share = at.matter.surfaceProbability;
+    const double share = at.medium.surfaceProbability;
     Rgb factor = Rgb::Zero();
     if (share < 1.0)
       factor +=
-          (1.0 - share) * PhaseScattering(at.incoming, at.matter.transfer->g, at.matter.albedo)
+          (1.0 - share) * PhaseScattering(at.incoming, at.medium.transfer->g, at.medium.albedo)
                               .evaluate(light->direction);
     if (share > 0.0)
-      factor += share * SurfaceScattering(at.incoming, at.matter.gradient,
-                                          *at.matter.transfer->shading, at.matter.albedo)
+      factor += share * SurfaceScattering(at.incoming, at.medium.gradient,
+                                          *at.medium.transfer->shading, at.medium.albedo)
                             .evaluate(light->direction);
     const Rgb radiance = factor * light->radiance * (at.hit / (light->pdf * samples));
     if (!(radiance.maxCoeff() > 0.0))
