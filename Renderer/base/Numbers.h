@@ -11,29 +11,29 @@
 /// Highway's HWY_INLINE, for formulas.
 #define FENESTRA_INLINE inline __attribute__((always_inline))
 
-namespace fenestra::plain {
+namespace fenestra::scalar {
 
 using Real = double; ///< the plain number of which Float is one a lane
 using Float = double;
 
 /// True or false.
-struct Truth {
-  bool is;
+struct ScalarMask {
+  bool value;
 
-  Truth(bool value) : is(value) {}
-  static Truth none() { return false; }
-  bool any() const { return is; }
-  Truth without(Truth other) const { return is && !other.is; }
-  Truth operator&(Truth other) const { return is && other.is; }
-  Truth operator|(Truth other) const { return is || other.is; }
+  ScalarMask(bool value) : value(value) {}
+  static ScalarMask none() { return false; }
+  bool any() const { return value; }
+  ScalarMask without(ScalarMask other) const { return value && !other.value; }
+  ScalarMask operator&(ScalarMask other) const { return value && other.value; }
+  ScalarMask operator|(ScalarMask other) const { return value || other.value; }
 };
-using LaneMask = Truth;
+using LaneMask = ScalarMask;
 
 inline Float select(LaneMask m, Float yes, Float no) {
-  return m.is ? yes : no;
+  return m.value ? yes : no;
 }
-inline Float orZero(LaneMask m, Float yes) {
-  return m.is ? yes : 0.0;
+inline Float zeroUnless(LaneMask m, Float yes) {
+  return m.value ? yes : 0.0;
 }
 /// b where either is NaN.
 inline Float min(Float a, Float b) {
@@ -65,17 +65,17 @@ inline Float copySign(Float magnitude, Float sign) {
   return std::copysign(magnitude, sign);
 }
 /// An event of that probability, by a uniform number of [0, 1).
-inline LaneMask happens(Real probability, Float uniform) {
+inline LaneMask sampleBernoulli(Real probability, Float uniform) {
   return uniform < probability;
 }
-inline bool isEverywhere(Float x, Real value) {
+inline bool isAllEqual(Float x, Real value) {
   return x == value;
 }
 
 #include "base/VectorFormulas-inl.h"
 
 /// Cosine and sine of an angle in turns.
-inline CosineSine ofTurns(Float turns) {
+inline CosineSine cosSinTurns(Float turns) {
   const double angle = 2.0 * pi * turns;
   return {std::cos(angle), std::sin(angle)};
 }
@@ -87,4 +87,4 @@ inline Rgb toColor(const Float3& v) {
   return {v.x, v.y, v.z};
 }
 
-} // namespace fenestra::plain
+} // namespace fenestra::scalar

@@ -58,7 +58,7 @@ FENESTRA_INLINE Float3 select(LaneMask which, const Float3& yes, const Float3& n
   return {select(which, yes.x, no.x), select(which, yes.y, no.y), select(which, yes.z, no.z)};
 }
 FENESTRA_INLINE Float3 orZero(LaneMask which, const Float3& v) {
-  return {orZero(which, v.x), orZero(which, v.y), orZero(which, v.z)};
+  return {zeroUnless(which, v.x), zeroUnless(which, v.y), zeroUnless(which, v.z)};
 }
 
 /// -v where x < 0, else v.

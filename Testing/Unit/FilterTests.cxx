@@ -108,8 +108,8 @@ TEST(Filter, PictureThatIsLinearInItsFeaturesStays) {
 
 TEST(Filter, ErrorFallsAndTheToldErrorIsTrueInTheMean) {
   const Errors errors = errorsOf({.width = 192, .height = 160}, 12);
-  EXPECT_GT(errors.raw / errors.truth, 10.0);
-  EXPECT_NEAR(errors.told / errors.truth, 1.0, 0.15);
+  EXPECT_GT(errors.raw / errors.exact, 10.0);
+  EXPECT_NEAR(errors.told / errors.exact, 1.0, 0.15);
 }
 
 TEST(ToldError, OfOneWindowIsUnbiased) {
@@ -131,7 +131,7 @@ TEST(ToldError, OfOneWindowIsUnbiased) {
         truth += std::pow(mean - subject.truth(0, x, y), 2);
       }
   }
-  EXPECT_NEAR(told / truth, 1.0, 0.15) << "four standard errors";
+  EXPECT_NEAR(told / exact, 1.0, 0.15) << "four standard errors";
 }
 
 /// The choice must not know the noise of the pixel that it is made for: the hole of Judge.
@@ -161,7 +161,7 @@ TEST(ToldError, OfTheChosenWindowsIsUnbiased) {
       }
   }
   std::cout << "told / true " << told / truth << "\n";
-  EXPECT_NEAR(told / truth, 1.0, 0.1);
+  EXPECT_NEAR(told / exact, 1.0, 0.1);
 }
 
 TEST(Filter, FeaturesWithTheSamplesOwnNoiseMakeTheToldErrorALie) {
@@ -169,7 +169,7 @@ TEST(Filter, FeaturesWithTheSamplesOwnNoiseMakeTheToldErrorALie) {
     for (std::size_t i = 0; i < input.pixelCount(); ++i)
       input.features[0][i] = 0.5F * (input.even[0][i] + input.odd[0][i]);
   });
-  EXPECT_LT(errors.told / errors.truth, 0.7);
+  EXPECT_LT(errors.told / errors.exact, 0.7);
 }
 
 TEST(Filter, ToldErrorsOfPixelsAverageToThePictures) {
@@ -228,7 +228,7 @@ TEST(Filter, FireflyIsNoWorseThanRaw) {
     input.variance[0][4000] = 0.25e12F;
   });
   const double firefly = std::pow(0.5e6, 2) / (3.0 * static_cast<double>(Subject().count()));
-  EXPECT_LT(errors.truth, 1.02 * firefly);
+  EXPECT_LT(errors.exact, 1.02 * firefly);
   EXPECT_TRUE(std::isfinite(errors.told));
 }
 
@@ -300,7 +300,7 @@ TEST(Filter, BlackBesideBrightTellsAFiniteErrorThatCanBeReached) {
 
 TEST(Filter, PictureWithoutFeaturesIsFilteredByMeans) {
   const Errors errors = errorsOf({.unknown = 0.0}, 1, [](FilterInput& in) { in.features.clear(); });
-  EXPECT_LT(errors.truth, errors.raw);
+  EXPECT_LT(errors.exact, errors.raw);
 }
 
 } // namespace

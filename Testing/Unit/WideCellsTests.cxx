@@ -83,10 +83,10 @@ void expectBounds(const Walk& walk) {
       return;
     const Decoded cell = walk.cell(c);
     const MajorantGrid::Cell own = walk.narrow(c);
-    ASSERT_EQ(cell.majorant == 0.0F, own.majorant == 0.0F) << c;
-    ASSERT_EQ(cell.cut, own.cut) << c;
+    ASSERT_EQ(cell.majorant == 0.0F, exact.majorant == 0.0F) << c;
+    ASSERT_EQ(cell.cut, exact.cut) << c;
     if (cell.reach == 0) { // fifteen bits, rounded up
-      ASSERT_LE(cell.majorant, own.majorant * (1.0F + 0x1p-15F)) << c;
+      ASSERT_LE(cell.majorant, exact.majorant * (1.0F + 0x1p-15F)) << c;
     }
     const Size3 around = Size3::Constant(cell.reach);
     walk.forEach(c - around, c + around, [&](const Size3& other) {

@@ -207,7 +207,7 @@ TEST_P(WideLights, DrawDirectionsAsTheScalarLightsDo) {
       if (const auto sample = fog.lights.sample(Vec3::Zero(), random))
         there[static_cast<std::size_t>(SphereBins::of(sample->direction))] += 1.0;
     }
-    EXPECT_LT(deviateBetween(here, there), 4.5);
+    EXPECT_LT(deviateBetween(here, scalar), 4.5);
     const std::size_t apart = differences(
         fog, all, [&](std::size_t i) { return all[i].direction; },
         [&](std::size_t i) { return all[i].estimate; });

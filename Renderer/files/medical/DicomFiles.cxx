@@ -166,7 +166,7 @@ DicomFiles::DicomFiles() : m_child(dicomJob) {}
 DicomHeader dicomHeader(std::string_view answer) {
   AnswerReader texts(answer);
   DicomHeader header;
-  for (bool* flag : {&header.image, &header.compressed, &header.whole})
+  for (bool* flag : {&header.image, &header.compressed, &header.isComplete})
     *flag = texts.text() == "1";
   for (const HeaderField& field : dicomFields)
     std::visit(

@@ -24,7 +24,7 @@ struct DicomHeader {
   unsigned bits = 0, bitsStored = 0, highBit = 0, isSigned = 0; ///< layout of a voxel
   bool image = false;      ///< this kind of object has an image
   bool compressed = false; ///< voxels are compressed
-  bool whole = false;      ///< all before the voxels can be read
+  bool isComplete = false; ///< all before the voxels can be read
 };
 
 /// True for images: objects without one (structures, plans, reports) have no rows.

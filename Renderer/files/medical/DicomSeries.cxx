@@ -65,7 +65,7 @@ std::vector<DicomSeries> findDicomSeries(const Path& folder) {
   std::map<std::string, DicomSeries> byUid;
   for (const Path& file : candidates(folder)) {
     const auto header = files.header(file);
-    if (!header || header->seriesUid.empty() || (header->whole && !isImage(*header)))
+    if (!header || header->seriesUid.empty() || (header->isComplete && !isImage(*header)))
       continue;
     DicomSeries& series = byUid[header->seriesUid];
     if (series.files.empty())

@@ -32,7 +32,7 @@ Slice openSlice(DicomFiles& files, const Path& path) {
   if (!header)
     refuse("is not a DICOM file; name a volume file or a DICOM series");
   const DicomHeader& h = *header;
-  if (!h.whole)
+  if (!h.isComplete)
     refuse("is damaged, truncated or deflated; export the series again");
   if (!isImage(h))
     refuse("PixelData: there is none; name a series of images");

@@ -56,11 +56,11 @@ herr_t visitObject(hid_t file, const char* name, const H5O_info_t* object, void*
 bool holdsAllItsParts(const std::string& path) {
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   // Each group and object is visited once, however often it is named.
-  const bool isWhole = file >= 0 &&
-                       H5Lvisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, visitLink, nullptr) >= 0 &&
-                       H5Ovisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, visitObject, nullptr) >= 0;
+  const bool isComplete = file >= 0 &&
+                          H5Lvisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, visitLink, nullptr) >= 0 &&
+                          H5Ovisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, visitObject, nullptr) >= 0;
   H5Fclose(file);
-  return isWhole;
+  return isComplete;
 }
 
 // ---- in the child: what the file says

@@ -17,7 +17,7 @@ FENESTRA_INLINE void drawFrom(const Lights::Area& light, LaneMask mine, const Fl
   Float x = fms(2.0F, u, 1.0F);
   Float y = fms(2.0F, v, 1.0F);
   if (light.isDisk) {
-    const CosineSine phi = ofTurns(v);
+    const CosineSine phi = cosSinTurns(v);
     const Float r = sqrt(u);
     x = r * phi.cosine;
     y = r * phi.sine;
@@ -67,7 +67,7 @@ FENESTRA_INLINE void drawFrom(const Lights::Sphere& light, LaneMask mine, const 
   const Float cosine = 1.0F - fall;
   const Float sine2 = max(fall * (2.0F - fall), 0.0F);
   const Float sine = sqrt(sine2);
-  const CosineSine phi = ofTurns(v);
+  const CosineSine phi = cosSinTurns(v);
   const LaneMask apart = distance > 0.0F;
   const Float3 axis = select(apart, (1.0F / distance) * d, Float3{0.0F, 0.0F, 1.0F});
   const Float3 local{sine * phi.cosine, sine * phi.sine, cosine};
@@ -85,7 +85,7 @@ FENESTRA_INLINE LightDraw drawLight(const Lights& lights, LaneMask& which, const
   const Float far = std::numeric_limits<Real>::infinity();
   LightDraw drawn{{0.0F, 0.0F, 1.0F}, {0.0F, 0.0F, 0.0F}, far, 1.0F, LaneMask::none()};
   const auto chosen = [&](Real share) {
-    const LaneMask mine = which & happens(share, choice);
+    const LaneMask mine = which & sampleBernoulli(share, choice);
     which = which.without(mine);
     choice = choice - share;
     return mine;

@@ -101,15 +101,15 @@ void LightSet::chooseShares(const Vec3& center) {
 }
 
 std::optional<LightSample> LightSet::sample(const Vec3& point, double choice, const Vec2& u) const {
-  plain::Truth left = true;
-  const plain::LightDraw drawn = plain::drawLight(m_tables, left, point, choice, u.x(), u.y());
+  scalar::ScalarMask left = true;
+  const scalar::LightDraw drawn = scalar::drawLight(m_tables, left, point, choice, u.x(), u.y());
   if (left.any())
     return sampleEnvironment(choice, u);
   const Rgb radiance = toColor(drawn.radiance);
   if (!(radiance.maxCoeff() > 0.0))
     return std::nullopt;
   return LightSample{toVector(drawn.direction), drawn.distance, radiance, drawn.pdf,
-                     drawn.delta.is};
+                     drawn.delta.value};
 }
 
 std::optional<LightSample> LightSet::sampleEnvironment(double choice, const Vec2& u) const {
@@ -132,7 +132,7 @@ std::optional<LightSample> LightSet::sampleEnvironment(double choice, const Vec2
 }
 
 LightArrival LightSet::environment(const Vec3& direction) const {
-  LightArrival sum{toColor(plain::around(m_tables, direction)), 0.0};
+  LightArrival sum{toColor(scalar::around(m_tables, direction)), 0.0};
   for (const SharedEnvironment& environment : m_environments) {
     if (environment.sampler.constant())
       continue;

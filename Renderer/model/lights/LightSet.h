@@ -14,9 +14,9 @@
 
 #include <optional>
 
-namespace fenestra::plain {
+namespace fenestra::scalar {
 #include "model/lights/LightFormulas-inl.h"
-} // namespace fenestra::plain
+} // namespace fenestra::scalar
 
 namespace fenestra {
 
@@ -64,10 +64,10 @@ public:
   template <typename Weigh>
   Rgb areaArrivals(const Ray& ray, double end, Weigh&& weigh) const {
     Rgb sum = Rgb::Zero();
-    plain::forEachMet(m_tables, true, ray.origin, ray.direction, end,
-                      [&](plain::Truth, const plain::Float3& radiance, double pdf) {
-                        sum += weigh(LightArrival{toColor(radiance), pdf});
-                      });
+    scalar::forEachMet(m_tables, true, ray.origin, ray.direction, end,
+                       [&](scalar::ScalarMask, const scalar::Float3& radiance, double pdf) {
+                         sum += weigh(LightArrival{toColor(radiance), pdf});
+                       });
     return sum;
   }
 

@@ -8,7 +8,7 @@ namespace {
 /// Roughness limit: a narrower lobe is finer than directions in double, and its density overflows.
 constexpr double leastRoughness = 1e-6;
 
-ScatterSample sampleOf(const plain::ScatterDraw& draw) {
+ScatterSample sampleOf(const scalar::ScatterDraw& draw) {
   return {toVector(draw.outgoing), toColor(draw.weight), draw.pdf};
 }
 

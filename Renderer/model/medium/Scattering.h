@@ -10,9 +10,9 @@
 
 #include <variant>
 
-namespace fenestra::plain {
+namespace fenestra::scalar {
 #include "model/medium/ScatteringFormulas-inl.h"
-} // namespace fenestra::plain
+} // namespace fenestra::scalar
 
 namespace fenestra {
 
@@ -33,7 +33,7 @@ public:
   ScatterSample sample(const Vec2& u) const;
 
 private:
-  plain::PhaseLobe<double> m_lobe;
+  scalar::PhaseLobe<double> m_lobe;
 };
 
 /// Lambert and glossy lobes of a surface.
@@ -50,7 +50,7 @@ public:
   ScatterSample sample(double choice, const Vec2& u) const;
 
 private:
-  plain::SurfaceLobes<double> m_lobes;
+  scalar::SurfaceLobes<double> m_lobes;
 };
 
 using Scattering = std::variant<PhaseScattering, SurfaceScattering>;

@@ -29,8 +29,8 @@ public:
   }
 
   FENESTRA_INLINE ScatterDraw draw(Float u, Float v) const {
-    const CosineSine phi = ofTurns(v);
-    if (isEverywhere(m_g, 0.0F)) {
+    const CosineSine phi = cosSinTurns(v);
+    if (isAllEqual(m_g, 0.0F)) {
       const Float z = fnma(2.0F, u, 1.0F);
       const Float r = root(fnma(z, z, 1.0F));
       return {{r * phi.cosine, r * phi.sine, z}, m_albedo, perSphere};
@@ -53,7 +53,7 @@ private:
   /// 1 + g^2 - 2 g cos, written so that nothing cancels where g and cos are near 1: with unit
   /// vectors 2 (1 - cos) is the squared chord.
   FENESTRA_INLINE Float density(Float chord2) const {
-    if (isEverywhere(m_g, 0.0F))
+    if (isAllEqual(m_g, 0.0F))
       return perSphere;
     const Float d = fma(m_g, chord2, (1.0F - m_g) * (1.0F - m_g));
     return (perSphere * (1.0F - m_g) * (1.0F + m_g)) / (d * sqrt(d));
@@ -85,7 +85,7 @@ public:
         m_frame(normalized(select(dot(incoming, gradient) >= 0.0F, -gradient, gradient))),
         m_viewer(m_frame.toLocal(-incoming)),
         m_diffuse(law.diffuse * albedo) {
-    if (!isEverywhere(law.odds, 1.0F))
+    if (!isAllEqual(law.odds, 1.0F))
       m_diffuse = law.diffuse * ofOdds(law.odds, albedo);
     if (m_isCoated)
       m_diffuse = belowCoat(m_viewer.z) * m_diffuse;
@@ -101,11 +101,11 @@ public:
 
   /// `choice` selects the lobe.
   FENESTRA_INLINE ScatterDraw draw(Float choice, Float u, Float v) const {
-    const CosineSine phi = ofTurns(v);
+    const CosineSine phi = cosSinTurns(v);
     const Float r = sqrt(u);
     const Float3 lambert{r * phi.cosine, r * phi.sine, root(1.0F - u)};
     Float3 local = lambert;
-    if (!isEverywhere(m_specular, 0.0F)) {
+    if (!isAllEqual(m_specular, 0.0F)) {
       const Float3 h = visibleNormal(r, phi);
       const Float3 glossy = (2.0F * dot(m_viewer, h)) * h - m_viewer;
       local = select(choice < m_lambertShare, lambert, glossy);
@@ -141,17 +141,17 @@ private:
   FENESTRA_INLINE Scattered towardLocal(const Float3& l) const {
     const Float lambertPdf = notBelow0(l.z) * static_cast<Real>(1.0 / pi);
     Scattered s{lambertPdf * m_diffuse, m_lambertShare * lambertPdf};
-    if (isEverywhere(m_specular, 0.0F))
+    if (isAllEqual(m_specular, 0.0F))
       return s;
     if (m_isCoated)
       s.factor = belowCoat(l.z) * s.factor;
     const Float3 h = normalized(l + m_viewer);
     const Float perViewer = masking(m_viewer) * normalDensity(h) / (4.0F * m_viewer.z);
     const LaneMask facing = (l.z > 0.0F) & (m_viewer.z > 0.0F);
-    const Float pdf = orZero(facing, perViewer);
+    const Float pdf = zeroUnless(facing, perViewer);
     s.pdf = fma(1.0F - m_lambertShare, pdf, s.pdf);
     const Float glossy = m_specular * fresnel(dot(l, h)) * masking(l);
-    const Float value = orZero(facing, glossy * perViewer);
+    const Float value = zeroUnless(facing, glossy * perViewer);
     s.factor = s.factor + Float3{value, value, value};
     return s;
   }

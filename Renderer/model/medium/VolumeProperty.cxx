@@ -133,10 +133,10 @@ private:
     constexpr int probes = 8;
     for (int k = 1; k < probes; ++k) {
       const double t = static_cast<double>(k) / probes;
-      const Value truth = at(segment, begin + t * (end - begin));
-      const Value miss = (atBegin + (atEnd - atBegin) * t - truth).abs();
+      const Value exact = at(segment, begin + t * (end - begin));
+      const Value miss = (atBegin + (atEnd - atBegin) * t - exact).abs();
       if ((miss > m_floor).any())
-        chord.error = std::max(chord.error, Value(miss / (truth.abs() + m_floor)).maxCoeff());
+        chord.error = std::max(chord.error, Value(miss / (exact.abs() + m_floor)).maxCoeff());
     }
     m_chords.push(chord);
   }

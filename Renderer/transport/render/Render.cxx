@@ -22,25 +22,25 @@ constexpr std::uint64_t leastForNoise = SamplePlan::pilotSamples;
 
 /// Traces one path after the other.
 template <typename Voxel>
-struct OneByOne {
+struct ScalarTracer {
   PathEstimator<Voxel> estimator;
 
   template <typename Source>
-  bool trace(Source& source, std::size_t atOnce, Counters& counters) const {
-    const auto starts = std::make_unique<PathStarts>();
+  bool trace(Source& source, std::size_t maxPaths, Counters& counters) const {
+    const auto samples = std::make_unique<PathStarts>();
     do {
-      source.fill(*starts, std::min(atOnce, RayBatch::capacity));
-      for (std::size_t i = 0; i < starts->size; ++i) {
+      source.fill(*samples, std::min(maxPaths, RayBatch::capacity));
+      for (std::size_t i = 0; i < samples->size; ++i) {
         const SampleNumbers numbers =
-            source.numbers().numbers({starts->start[i], starts->key[i]}, starts->number[i]);
-        const Vec2 place = uniform2Of(numbers.position) + Vec2(starts->column[i], starts->row[i]);
+            source.numbers().numbers({samples->start[i], samples->key[i]}, samples->number[i]);
+        const Vec2 place = uniform2Of(numbers.position) + Vec2(samples->column[i], samples->row[i]);
         const std::optional<PathSample> sample =
             estimator.trace(place.x(), place.y(), numbers, counters);
         if (!sample)
           return false;
-        source.deliver(starts->tile[i], starts->ofTile[i], *sample);
+        source.deliver(samples->tile[i], samples->ofTile[i], *sample);
       }
-    } while (starts->size > 0);
+    } while (samples->size > 0);
     return true;
   }
 };
@@ -83,7 +83,7 @@ void renderTiles(const Tracer& tracer, Pass& pass, const Film& film, Counters& t
                  RenderMonitor& monitor) {
   const int threads = tbb::this_task_arena::max_concurrency();
   // Paths at once in a thread: limited, so that all threads get some and tails are short.
-  const std::size_t atOnce =
+  const std::size_t maxPaths =
       std::max<std::size_t>(64, film.pixelCount() / (4 * static_cast<std::size_t>(threads)));
   tbb::combinable<Counters> counters;
   tbb::parallel_for(
@@ -91,7 +91,7 @@ void renderTiles(const Tracer& tracer, Pass& pass, const Film& film, Counters& t
       [&](int) {
         TileStream stream(pass, monitor.isKeepDue);
         if (!monitor.stop.load(std::memory_order_relaxed))
-          tracer.trace(stream, atOnce, counters.local());
+          tracer.trace(stream, maxPaths, counters.local());
       },
       tbb::simple_partitioner());
   counters.combine_each([&](const Counters& local) { total += local; });
@@ -331,46 +331,46 @@ void renderEachLoan(const Tracer& tracer, const RenderScene& scene, const Render
 
 /// Calls work(tracer, arithmetic) with rays in lanes.
 template <typename Work>
-auto tracedInLanes(const RenderScene& scene, const RenderSettings& settings, const StopFlag& stop,
-                   Work&& work) {
+auto traceSimd(const RenderScene& scene, const RenderSettings& settings, const StopFlag& stop,
+               Work&& work) {
   const Domain domain(scene.volume.grid, scene.crop);
   const WideTracker tracker(scene.volume, domain, scene.transfer, scene.majorants, scene.clip,
                             scene.style, stop, scene.mixture);
-  const EventScene events(scene.volume.grid, scene.transfer, scene.lights, settings.path.bounces,
-                          settings.path.wantNormals, scene.tint, scene.mixture);
+  const EventScene shading(scene.volume.grid, scene.transfer, scene.lights, settings.path.bounces,
+                           settings.path.wantNormals, scene.tint, scene.mixture);
   const EyeTable table(domain, scene.camera);
-  const EyeRays eye(scene.camera, eyeClip(scene.clip, scene.mixture), scene.lights,
-                    settings.path.background);
-  return work(PathWave(tracker, events, table, eye, stop), instructionSet());
+  const EyeRays cameraRays(scene.camera, eyeClip(scene.clip, scene.mixture), scene.lights,
+                           settings.path.background);
+  return work(PathWave(tracker, shading, table, cameraRays, stop), instructionSet());
 }
 
 /// Calls work(tracer, arithmetic) with the readable estimator.
 template <typename Work>
-auto tracedOneByOne(const RenderScene& scene, const RenderSettings& settings, const StopFlag& stop,
-                    Work&& work) {
-  const auto readable = [&]<typename Voxel>(const Medium<Voxel>& medium,
-                                            const Tracker<Voxel>& tracker) {
+auto traceScalar(const RenderScene& scene, const RenderSettings& settings, const StopFlag& stop,
+                 Work&& work) {
+  const auto scalar = [&]<typename Voxel>(const Medium<Voxel>& medium,
+                                          const Tracker<Voxel>& tracker) {
     return work(
-        OneByOne<Voxel>{PathEstimator<Voxel>(scene.volume.grid, medium, tracker, scene.lights,
-                                             scene.camera, scene.clip, settings.path, stop)},
+        ScalarTracer<Voxel>{PathEstimator<Voxel>(scene.volume.grid, medium, tracker, scene.lights,
+                                                 scene.camera, scene.clip, settings.path, stop)},
         std::string("scalar"));
   };
-  return withMedium(scene, readable, stop);
+  return withMedium(scene, scalar, stop);
 }
 
-bool rendersInLanes(const RenderScene& scene, const RenderSettings& settings) {
+bool isSimdUsed(const RenderScene& scene, const RenderSettings& settings) {
   return settings.transport == Transport::fast && lanesServe(scene);
 }
 
 /// Calls work(tracer, arithmetic) in the threads that the settings allow.
 template <typename Work>
-auto traced(const RenderScene& scene, const RenderSettings& settings, const StopFlag& stop,
-            Work&& work) {
+auto traceScene(const RenderScene& scene, const RenderSettings& settings, const StopFlag& stop,
+                Work&& work) {
   const int cores = tbb::info::default_concurrency(); // TBB complains about more
   tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
   return arena.execute([&] {
-    return rendersInLanes(scene, settings) ? tracedInLanes(scene, settings, stop, work)
-                                           : tracedOneByOne(scene, settings, stop, work);
+    return isSimdUsed(scene, settings) ? traceSimd(scene, settings, stop, work)
+                                       : traceScalar(scene, settings, stop, work);
   });
 }
 
@@ -383,12 +383,12 @@ bool lanesServe(const RenderScene& scene) {
 }
 
 std::string targetOf(const RenderScene& scene, const RenderSettings& settings) {
-  return rendersInLanes(scene, settings) ? instructionSet() : "scalar";
+  return isSimdUsed(scene, settings) ? instructionSet() : "scalar";
 }
 
 RenderResult render(const RenderScene& scene, const RenderSettings& settings,
                     RenderMonitor& monitor, std::optional<RenderResult> begun) {
-  return traced(
+  return traceScene(
       scene, settings, monitor.stop, [&](const auto& tracer, const std::string& arithmetic) {
         return renderPasses(tracer, arithmetic, scene, settings, monitor, std::move(begun));
       });
@@ -396,7 +396,7 @@ RenderResult render(const RenderScene& scene, const RenderSettings& settings,
 
 void renderLoans(const RenderScene& scene, const RenderSettings& settings, RenderMonitor& monitor,
                  const std::function<std::optional<Loan>(RenderResult&)>& next) {
-  traced(scene, settings, monitor.stop, [&](const auto& tracer, const std::string&) {
+  traceScene(scene, settings, monitor.stop, [&](const auto& tracer, const std::string&) {
     renderEachLoan(tracer, scene, settings, monitor, next);
   });
 }
