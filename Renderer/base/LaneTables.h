@@ -8,33 +8,33 @@
 namespace fenestra {
 
 /// Eight small numbers, the first in the lowest byte, for each set of eight lanes.
-using LaneOrders = std::array<std::uint64_t, 256>;
+using LaneTable = std::array<std::uint64_t, 256>;
 
 /// Numbers of the lanes in the set, ascending; then zeros.
-constexpr LaneOrders packedOrders() {
-  LaneOrders orders{};
-  for (std::uint64_t set = 0; set < orders.size(); ++set) {
+constexpr LaneTable makePackTable() {
+  LaneTable table{};
+  for (std::uint64_t set = 0; set < table.size(); ++set) {
     int count = 0;
     for (std::uint64_t lane = 0; lane < 8; ++lane)
       if ((set >> lane & 1) != 0)
-        orders[set] |= lane << 8 * count++;
+        table[set] |= lane << 8 * count++;
   }
-  return orders;
+  return table;
 }
 
 /// How many lanes of the set come before each lane.
-constexpr LaneOrders rankOrders() {
-  LaneOrders orders{};
-  for (std::uint64_t set = 0; set < orders.size(); ++set) {
+constexpr LaneTable makeRankTable() {
+  LaneTable table{};
+  for (std::uint64_t set = 0; set < table.size(); ++set) {
     std::uint64_t rank = 0;
     for (std::uint64_t lane = 0; lane < 8; ++lane) {
-      orders[set] |= rank << 8 * lane;
+      table[set] |= rank << 8 * lane;
       rank += set >> lane & 1;
     }
   }
-  return orders;
+  return table;
 }
 
-inline constexpr LaneOrders lanePacks = packedOrders(), laneRanks = rankOrders();
+inline constexpr LaneTable lanePackTable = makePackTable(), laneRankTable = makeRankTable();
 
 } // namespace fenestra

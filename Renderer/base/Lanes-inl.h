@@ -3,11 +3,11 @@
 // number in every lane. Nothing is fused unless fma() says so. Compiled once for each instruction
 // set: include after Highway's foreach_target.h.
 
-#if defined(FENESTRA_LANES_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef FENESTRA_LANES_INL_H
-#undef FENESTRA_LANES_INL_H
+#if defined(FENESTRA_SIMD_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef FENESTRA_SIMD_INL_H
+#undef FENESTRA_SIMD_INL_H
 #else
-#define FENESTRA_LANES_INL_H
+#define FENESTRA_SIMD_INL_H
 #endif
 
 #include "base/LaneTables.h"
@@ -30,10 +30,10 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Floats = hn::ScalableTag<float>;
 using Ints = hn::RebindToSigned<Floats>;
-using Words = hn::RebindToUnsigned<Floats>;
+using UInts = hn::RebindToUnsigned<Floats>;
 inline constexpr Floats floats{};
 inline constexpr Ints ints{};
-inline constexpr Words words{};
+inline constexpr UInts uints{};
 
 inline constexpr std::size_t laneCount = hn::MaxLanes(floats);
 
@@ -43,8 +43,8 @@ struct LaneMask {
 
   LaneMask() = default;
   /// Takes any vector's comparison.
-  template <typename Of>
-  HWY_INLINE LaneMask(Of mask) : m(hn::RebindMask(floats, mask)) {}
+  template <typename Mask>
+  HWY_INLINE LaneMask(Mask mask) : m(hn::RebindMask(floats, mask)) {}
   /// The first n lanes; all where there are no more.
   static HWY_INLINE LaneMask first(std::size_t n) { return hn::FirstN(floats, n); }
   static HWY_INLINE LaneMask none() { return first(0); }
@@ -66,64 +66,64 @@ struct LaneMask {
   HWY_INLINE LaneMask operator~() const { return hn::Not(m); }
   /// For a vector of other numbers.
   template <typename Tag>
-  HWY_INLINE auto of(Tag tag) const {
+  HWY_INLINE auto cast(Tag tag) const {
     return hn::RebindMask(tag, m);
   }
 };
 
 /// A number a lane, of the plain type T.
 template <typename T>
-struct Numbers {
+struct Simd {
   using Tag = hn::Rebind<T, Floats>;
   using Vector = hn::Vec<Tag>;
 
   Vector v;
 
-  Numbers() = default;
-  HWY_INLINE Numbers(Vector x) : v(x) {}
+  Simd() = default;
+  HWY_INLINE Simd(Vector x) : v(x) {}
   template <std::same_as<T> X> // no other plain number becomes one unseen
-  HWY_INLINE Numbers(X x) : v(hn::Set(Tag(), x)) {}
+  HWY_INLINE Simd(X x) : v(hn::Set(Tag(), x)) {}
 
-  HWY_INLINE void where(LaneMask m, Numbers value) { v = hn::IfThenElse(m.of(Tag()), value.v, v); }
-  HWY_INLINE Numbers operator-() const { return hn::Neg(v); }
-  friend HWY_INLINE Numbers operator+(Numbers a, Numbers b) { return hn::Add(a.v, b.v); }
-  friend HWY_INLINE Numbers operator-(Numbers a, Numbers b) { return hn::Sub(a.v, b.v); }
-  friend HWY_INLINE Numbers operator*(Numbers a, Numbers b) { return hn::Mul(a.v, b.v); }
-  friend HWY_INLINE Numbers operator/(Numbers a, Numbers b) { return hn::Div(a.v, b.v); }
-  friend HWY_INLINE Numbers operator&(Numbers a, Numbers b) { return hn::And(a.v, b.v); }
-  friend HWY_INLINE Numbers operator^(Numbers a, Numbers b) { return hn::Xor(a.v, b.v); }
-  friend HWY_INLINE LaneMask operator<(Numbers a, Numbers b) { return hn::Lt(a.v, b.v); }
-  friend HWY_INLINE LaneMask operator<=(Numbers a, Numbers b) { return hn::Le(a.v, b.v); }
-  friend HWY_INLINE LaneMask operator>(Numbers a, Numbers b) { return hn::Gt(a.v, b.v); }
-  friend HWY_INLINE LaneMask operator>=(Numbers a, Numbers b) { return hn::Ge(a.v, b.v); }
-  friend HWY_INLINE LaneMask operator==(Numbers a, Numbers b) { return hn::Eq(a.v, b.v); }
+  HWY_INLINE void setIf(LaneMask m, Simd value) { v = hn::IfThenElse(m.cast(Tag()), value.v, v); }
+  HWY_INLINE Simd operator-() const { return hn::Neg(v); }
+  friend HWY_INLINE Simd operator+(Simd a, Simd b) { return hn::Add(a.v, b.v); }
+  friend HWY_INLINE Simd operator-(Simd a, Simd b) { return hn::Sub(a.v, b.v); }
+  friend HWY_INLINE Simd operator*(Simd a, Simd b) { return hn::Mul(a.v, b.v); }
+  friend HWY_INLINE Simd operator/(Simd a, Simd b) { return hn::Div(a.v, b.v); }
+  friend HWY_INLINE Simd operator&(Simd a, Simd b) { return hn::And(a.v, b.v); }
+  friend HWY_INLINE Simd operator^(Simd a, Simd b) { return hn::Xor(a.v, b.v); }
+  friend HWY_INLINE LaneMask operator<(Simd a, Simd b) { return hn::Lt(a.v, b.v); }
+  friend HWY_INLINE LaneMask operator<=(Simd a, Simd b) { return hn::Le(a.v, b.v); }
+  friend HWY_INLINE LaneMask operator>(Simd a, Simd b) { return hn::Gt(a.v, b.v); }
+  friend HWY_INLINE LaneMask operator>=(Simd a, Simd b) { return hn::Ge(a.v, b.v); }
+  friend HWY_INLINE LaneMask operator==(Simd a, Simd b) { return hn::Eq(a.v, b.v); }
   /// b where either is NaN.
-  friend HWY_INLINE Numbers min(Numbers a, Numbers b) { return hn::Min(a.v, b.v); }
+  friend HWY_INLINE Simd min(Simd a, Simd b) { return hn::Min(a.v, b.v); }
   /// b where either is NaN.
-  friend HWY_INLINE Numbers max(Numbers a, Numbers b) { return hn::Max(a.v, b.v); }
+  friend HWY_INLINE Simd max(Simd a, Simd b) { return hn::Max(a.v, b.v); }
 };
 
-using Float = Numbers<float>;
-using Int = Numbers<std::int32_t>;
-using Word = Numbers<std::uint32_t>; ///< bits, and numbers modulo 2^32
+using Float = Simd<float>;
+using Int = Simd<std::int32_t>;
+using UInt = Simd<std::uint32_t>; ///< bits, and numbers modulo 2^32
 
 template <int by, typename T>
-HWY_INLINE Numbers<T> shiftLeft(Numbers<T> x) {
+HWY_INLINE Simd<T> shiftLeft(Simd<T> x) {
   return hn::ShiftLeft<by>(x.v);
 }
 /// Shift of Int is arithmetic: the sign stays.
 template <int by, typename T>
-HWY_INLINE Numbers<T> shiftRight(Numbers<T> x) {
+HWY_INLINE Simd<T> shiftRight(Simd<T> x) {
   return hn::ShiftRight<by>(x.v);
 }
 
 /// By a number of bits, the same in every lane.
 template <typename T>
-HWY_INLINE Numbers<T> shiftLeft(Numbers<T> x, int by) {
+HWY_INLINE Simd<T> shiftLeft(Simd<T> x, int by) {
   return hn::ShiftLeftSame(x.v, by);
 }
 template <typename T>
-HWY_INLINE Numbers<T> shiftRight(Numbers<T> x, int by) {
+HWY_INLINE Simd<T> shiftRight(Simd<T> x, int by) {
   return hn::ShiftRightSame(x.v, by);
 }
 
@@ -131,16 +131,16 @@ HWY_INLINE Float select(LaneMask m, Float yes, Float no) {
   return hn::IfThenElse(m.m, yes.v, no.v);
 }
 HWY_INLINE Int select(LaneMask m, Int yes, Int no) {
-  return hn::IfThenElse(m.of(ints), yes.v, no.v);
+  return hn::IfThenElse(m.cast(ints), yes.v, no.v);
 }
-HWY_INLINE Float orZero(LaneMask m, Float yes) {
+HWY_INLINE Float zeroUnless(LaneMask m, Float yes) {
   return hn::IfThenElseZero(m.m, yes.v);
 }
-HWY_INLINE Word orZero(LaneMask m, Word yes) {
-  return hn::IfThenElseZero(m.of(words), yes.v);
+HWY_INLINE UInt zeroUnless(LaneMask m, UInt yes) {
+  return hn::IfThenElseZero(m.cast(uints), yes.v);
 }
-HWY_INLINE Int orZero(LaneMask m, Int yes) {
-  return hn::IfThenElseZero(m.of(ints), yes.v);
+HWY_INLINE Int zeroUnless(LaneMask m, Int yes) {
+  return hn::IfThenElseZero(m.cast(ints), yes.v);
 }
 
 /// a b + c, rounded once where the instruction set can.
@@ -190,29 +190,29 @@ HWY_INLINE Int toInt(Float x) {
 }
 /// Bits of a number as another kind of number.
 template <typename T>
-HWY_INLINE Float bitsAsFloat(Numbers<T> x) {
+HWY_INLINE Float bitsAsFloat(Simd<T> x) {
   return hn::BitCast(floats, x.v);
 }
 template <typename T>
-HWY_INLINE Int bitsAsInt(Numbers<T> x) {
+HWY_INLINE Int bitsAsInt(Simd<T> x) {
   return hn::BitCast(ints, x.v);
 }
 template <typename T>
-HWY_INLINE Word bitsAsWord(Numbers<T> x) {
-  return hn::BitCast(words, x.v);
+HWY_INLINE UInt bitsAsUInt(Simd<T> x) {
+  return hn::BitCast(uints, x.v);
 }
 
 template <typename T>
-HWY_INLINE Numbers<T> load(const T* from) {
-  return hn::LoadU(typename Numbers<T>::Tag(), from);
+HWY_INLINE Simd<T> load(const T* from) {
+  return hn::LoadU(typename Simd<T>::Tag(), from);
 }
 template <typename T>
-HWY_INLINE void store(Numbers<T> x, T* to) {
-  hn::StoreU(x.v, typename Numbers<T>::Tag(), to);
+HWY_INLINE void store(Simd<T> x, T* to) {
+  hn::StoreU(x.v, typename Simd<T>::Tag(), to);
 }
 template <typename T>
-HWY_INLINE Numbers<T> gather(const T* memory, Int index) {
-  return hn::GatherIndex(typename Numbers<T>::Tag(), memory, index.v);
+HWY_INLINE Simd<T> gather(const T* memory, Int index) {
+  return hn::GatherIndex(typename Simd<T>::Tag(), memory, index.v);
 }
 
 /// One number a lane, in memory, for work lane by lane.
@@ -227,12 +227,12 @@ struct alignas(64) LaneArray : std::array<T, laneCount> {
 
 /// Places in memory, one a lane. Without a sign, so that they are addresses as they are.
 struct Indices : LaneArray<std::uint32_t> {
-  explicit HWY_INLINE Indices(Int notNegative) : LaneArray(bitsAsWord(notNegative)) {}
+  explicit HWY_INLINE Indices(Int notNegative) : LaneArray(bitsAsUInt(notNegative)) {}
 };
 
 /// Reads a number, aligned or not.
 template <typename Number>
-HWY_INLINE Number numberAt(const void* memory) {
+HWY_INLINE Number loadScalar(const void* memory) {
   Number number;
   std::memcpy(&number, memory, sizeof(number));
   return number;
@@ -244,7 +244,7 @@ template <typename Number, std::size_t step, typename Element, std::size_t... i>
 HWY_INLINE auto loadFew(const Element* memory, const std::uint32_t* index,
                         std::index_sequence<i...>) {
   auto numbers = hn::Zero(hn::CappedTag<Number, sizeof...(i)>());
-  ((numbers = hn::InsertLane(numbers, i, numberAt<Number>(memory + index[step * i]))), ...);
+  ((numbers = hn::InsertLane(numbers, i, loadScalar<Number>(memory + index[step * i]))), ...);
   return numbers;
 }
 
@@ -265,7 +265,7 @@ HWY_INLINE auto loadEach(const Element* memory, const std::uint32_t* index) {
 template <typename Element>
 HWY_INLINE Int loadInts(const Element* memory, const Indices& index) {
 #if HWY_TARGET == HWY_SCALAR
-  return numberAt<std::int32_t>(memory + index[0]);
+  return loadScalar<std::int32_t>(memory + index[0]);
 #else
   return loadEach<std::int32_t, laneCount, 1>(memory, index.data());
 #endif
@@ -280,7 +280,7 @@ struct Pairs {
 template <typename Element>
 HWY_INLINE Pairs loadPairs(const Element* memory, const Indices& index) {
 #if HWY_TARGET == HWY_SCALAR
-  const auto both = numberAt<std::array<float, 2>>(memory + index[0]);
+  const auto both = loadScalar<std::array<float, 2>>(memory + index[0]);
   return {both[0], both[1]};
 #else
   constexpr std::size_t half = laneCount / 2;

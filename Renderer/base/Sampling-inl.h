@@ -1,11 +1,11 @@
 // Random numbers of samples, one a lane: base/Sampling.h, bit for bit. Compiled once for each
 // instruction set: include after Highway's foreach_target.h.
 
-#if defined(FENESTRA_LANE_SAMPLING_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef FENESTRA_LANE_SAMPLING_INL_H
-#undef FENESTRA_LANE_SAMPLING_INL_H
+#if defined(FENESTRA_SIMD_SAMPLER_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef FENESTRA_SIMD_SAMPLER_INL_H
+#undef FENESTRA_SIMD_SAMPLER_INL_H
 #else
-#define FENESTRA_LANE_SAMPLING_INL_H
+#define FENESTRA_SIMD_SAMPLER_INL_H
 #endif
 
 #include "base/Sampling.h"
@@ -17,32 +17,32 @@ namespace fenestra::HWY_NAMESPACE {
 
 /// The 32 leading bits of each number of a sample, in the order of NumberSource's words.
 struct LaneNumbers {
-  std::array<Word, 2> position, flight, scattered, choices, rest;
+  std::array<UInt, 2> position, flight, scattered, choices, rest;
 };
 
 /// NumberSource::numbers of `sample` in the stream (start, key).
-HWY_INLINE LaneNumbers numbersOf(Word start, Word key, Word sample, bool isStratified) {
+HWY_INLINE LaneNumbers numbersOf(UInt start, UInt key, UInt sample, bool isStratified) {
   using Stream = NumberSource::Stream;
   constexpr int places = NumberSource::places;
-  const auto at = [&](Word n) { return mixBits((start + n * Stream::step) ^ key); };
-  const Word first = sample * Stream::each;
+  const auto at = [&](UInt n) { return mixBits((start + n * Stream::step) ^ key); };
+  const UInt first = sample * Stream::each;
   const auto two = [&](std::uint32_t i) { return std::array{at(first + i), at(first + (i + 1))}; };
   LaneNumbers numbers{two(0), two(2), two(4), two(6), two(8)};
   if (!isStratified)
     return numbers;
-  const Word place = shiftRight<1>(sample) & NumberSource::elements;
-  const Word block = (sample - (place + place)) * Stream::each;
+  const UInt place = shiftRight<1>(sample) & NumberSource::elements;
+  const UInt block = (sample - (place + place)) * Stream::each;
   std::uint32_t ofPair = NumberSource::ofBlock;
-  for (std::array<Word, 2>* words :
+  for (std::array<UInt, 2>* words :
        {&numbers.position, &numbers.flight, &numbers.scattered, &numbers.choices}) {
-    const Word shuffle = at(block + ofPair++);
-    const Word factor = shuffle & NumberSource::elements;
-    const Word net =
+    const UInt shuffle = at(block + ofPair++);
+    const UInt factor = shuffle & NumberSource::elements;
+    const UInt net =
         gather(NumberSource::nets.data(), bitsAsInt(factor * NumberSource::blockSize + place));
-    const auto put = [&](Word leading, Word& word) {
+    const auto put = [&](UInt leading, UInt& word) {
       word = (leading & NumberSource::leading) ^ shiftRight<places>(word);
     };
-    const Word strata = net ^ shuffle;
+    const UInt strata = net ^ shuffle;
     put(strata, (*words)[0]);
     put(shiftLeft<places>(strata), (*words)[1]);
   }
@@ -50,7 +50,7 @@ HWY_INLINE LaneNumbers numbersOf(Word start, Word key, Word sample, bool isStrat
 }
 
 /// Uniform in [0, 1): the 24 leading bits.
-HWY_INLINE Float below1(Word bits) {
+HWY_INLINE Float below1(UInt bits) {
   return toFloat(bitsAsInt(shiftRight<8>(bits))) * 0x1p-24F;
 }
 

@@ -217,15 +217,15 @@ public:
         m_tracker(s.volume, m_domain, s.transfer, majorants, m_clip) {}
 
   std::vector<double> collisions(const std::vector<Travel>& travels) const override {
-    return inBatches(travels, &WideTracker::sampleCollisions);
+    return inBatches(travels, &SimdTracker::sampleCollisions);
   }
   std::vector<double> transmittances(const std::vector<Travel>& travels) const override {
-    return inBatches(travels, &WideTracker::estimateTransmittances);
+    return inBatches(travels, &SimdTracker::estimateTransmittances);
   }
 
 private:
   std::vector<double> inBatches(const std::vector<Travel>& travels,
-                                void (WideTracker::*follow)(RayBatch&, Counters&) const) const {
+                                void (SimdTracker::*follow)(RayBatch&, Counters&) const) const {
     std::vector<double> results, begins;
     Counters counters;
     RayBatch rays;
@@ -233,7 +233,7 @@ private:
       (m_tracker.*follow)(rays, counters);
       for (std::size_t i = 0; i < rays.size; ++i)
         results.push_back(static_cast<double>(rays.result[i]) +
-                          (follow == &WideTracker::sampleCollisions ? begins[i] : 0.0));
+                          (follow == &SimdTracker::sampleCollisions ? begins[i] : 0.0));
       rays.size = 0;
       begins.clear();
     };
@@ -250,7 +250,7 @@ private:
 
   Domain m_domain;
   Clip m_clip;
-  WideTracker m_tracker;
+  SimdTracker m_tracker;
 };
 
 /// Follower "scalar", or the lanes of an instruction set; null if the machine lacks that set.
@@ -266,7 +266,7 @@ std::unique_ptr<Follower> followerOf(const Subject& subject, const MajorantGrid&
   const std::vector<std::string> known = instructionSets();
   if (std::find(known.begin(), known.end(), name) == known.end())
     return nullptr;
-  EXPECT_TRUE(WideTracker::serves(subject.volume, subject.transfer));
+  EXPECT_TRUE(SimdTracker::serves(subject.volume, subject.transfer));
   useInstructionSet(name);
   EXPECT_EQ(instructionSet(), name);
   return std::make_unique<WideFollower>(subject, majorants, clip);

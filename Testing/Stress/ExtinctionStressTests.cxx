@@ -168,9 +168,9 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(HalfSpace, LanesServeDepthsUpToTheirLimit) {
   const Volume volume = layers(depthVoxels, 0.0005, 0.4);
-  EXPECT_TRUE(WideTracker::serves(volume, deep(Rgb::Ones())));
-  EXPECT_FALSE(WideTracker::serves(volume, deep(Rgb::Ones()).scaled(1.2)));
-  EXPECT_FALSE(WideTracker::serves(volume, stepped(Rgb::Ones())));
+  EXPECT_TRUE(SimdTracker::serves(volume, deep(Rgb::Ones())));
+  EXPECT_FALSE(SimdTracker::serves(volume, deep(Rgb::Ones()).scaled(1.2)));
+  EXPECT_FALSE(SimdTracker::serves(volume, stepped(Rgb::Ones())));
 }
 
 // ---- whole pictures

@@ -192,9 +192,9 @@ TEST(Numbers, EndsOfTheUnitIntervalAreFinite) {
     const double u = uniformOf(bits);
     EXPECT_TRUE(u >= 0.0 && u < 1.0);
     EXPECT_TRUE((uniform2Of(bits).array() >= 0.0).all() && (uniform2Of(bits).array() < 1.0).all());
-    EXPECT_TRUE(std::isfinite(exponentialOf(u)) && exponentialOf(u) >= 0.0);
+    EXPECT_TRUE(std::isfinite(toExponential(u)) && toExponential(u) >= 0.0);
   }
-  EXPECT_NEAR(exponentialOf(0x1p-50) / 0x1p-50, 1.0, 1e-12) << "precise near 0";
+  EXPECT_NEAR(toExponential(0x1p-50) / 0x1p-50, 1.0, 1e-12) << "precise near 0";
 }
 
 } // namespace

@@ -55,7 +55,7 @@ TEST(Stop, EndsTheLanesOfABatch) {
   alongEndlessRay([](const TestScene& s, const MajorantGrid& majorants, const Ray& ray) {
     const StopFlag stop = true;
     const Domain domain(s.volume.grid);
-    const WideTracker tracker(s.volume, domain, s.transfer, majorants, s.clip, nullptr, stop);
+    const SimdTracker tracker(s.volume, domain, s.transfer, majorants, s.clip, nullptr, stop);
     const auto rays = std::make_unique<RayBatch>();
     for (std::size_t& i = rays->size; i < RayBatch::capacity; ++i) {
       setInside(*rays, i, domain, ray, {});

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing::WideCellsTests {
+namespace fenestra::testing::SimdMajorantsTests {
 namespace {
 
 constexpr std::int64_t edge = 96;
@@ -13,7 +13,7 @@ constexpr std::int64_t edge = 96;
 using Extinction = double (*)(const Vec3&);
 
 /// Cells of a volume of 1 mm voxels whose scalars are extinctions.
-MajorantGrid cellsOf(Extinction extinction, const Clip& clip = ClipNone{}) {
+MajorantGrid makeMajorants(Extinction extinction, const Clip& clip = ClipNone{}) {
   const Grid grid(Size3(edge, edge, edge), Affine::Identity());
   LargeArray<float> voxels;
   for (std::int64_t z = 0; z < edge; ++z)
@@ -30,37 +30,37 @@ MajorantGrid cellsOf(Extinction extinction, const Clip& clip = ClipNone{}) {
 }
 
 /// Contents of a code, as lanes decode it.
-struct Decoded {
+struct DecodedCell {
   float majorant;
-  std::int32_t reach;
-  bool cut;
+  std::int32_t skipRadius;
+  bool isCut;
 };
 
-struct Walk {
+struct MajorantPair {
   MajorantGrid majorants;
-  WideCells wide{majorants};
-  Size3 count = wide.count;
+  SimdMajorants simd{majorants};
+  Size3 count = simd.count;
 
   /// Greatest majorant of the cells that cell c is made of; cut if one of them is.
-  MajorantGrid::Cell narrow(const Size3& c) const {
-    MajorantGrid::Cell all{0.0F, false};
+  MajorantGrid::Cell mergeCells(const Size3& c) const {
+    MajorantGrid::Cell merged{0.0F, false};
     const Size3& fine = majorants.cellCount();
-    const Size3 low = wide.merged * c;
-    const Size3 high = (low.array() + wide.merged).matrix().cwiseMin(fine);
+    const Size3 low = simd.merged * c;
+    const Size3 high = (low.array() + simd.merged).matrix().cwiseMin(fine);
     for (std::int64_t z = low.z(); z < high.z(); ++z)
       for (std::int64_t y = low.y(); y < high.y(); ++y)
         for (std::int64_t x = low.x(); x < high.x(); ++x) {
           const MajorantGrid::Cell& cell = majorants.cell(x + fine.x() * (y + fine.y() * z));
-          all = {std::max(all.majorant, cell.majorant), all.cut || cell.cut};
+          merged = {std::max(merged.majorant, cell.majorant), merged.cut || cell.cut};
         }
-    return all;
+    return merged;
   }
-  Decoded cell(const Size3& c) const {
-    const std::int32_t code = wide.codes[numberOf(c.array() + 1, count.array() + 2)];
-    return {std::bit_cast<float>(code & WideCells::majorantBits), code & WideCells::reachBits,
-            code < 0};
+  DecodedCell cell(const Size3& c) const {
+    const std::int32_t code = simd.codes[numberOf(c.array() + 1, count.array() + 2)];
+    return {std::bit_cast<float>(code & SimdMajorants::majorantBits),
+            code & SimdMajorants::reachBits, code < 0};
   }
-  explicit Walk(MajorantGrid of) : majorants(std::move(of)) {}
+  explicit MajorantPair(MajorantGrid scalarGrid) : majorants(std::move(scalarGrid)) {}
   template <typename Visit>
   void forEach(const Size3& from, const Size3& to, Visit&& visit) const {
     const Size3 low = from.cwiseMax(Size3::Zero());
@@ -77,72 +77,73 @@ struct Walk {
 };
 
 /// Checks the bounds that a cell states for the cells within its reach; for one cell in sixteen.
-void expectBounds(const Walk& walk) {
-  walk.forEach([&](const Size3& c) {
+void expectBounds(const MajorantPair& pair) {
+  pair.forEach([&](const Size3& c) {
     if ((c.x() + 3 * c.y() + 7 * c.z()) % 16 != 0)
       return;
-    const Decoded cell = walk.cell(c);
-    const MajorantGrid::Cell own = walk.narrow(c);
+    const DecodedCell cell = pair.cell(c);
+    const MajorantGrid::Cell exact = pair.mergeCells(c);
     ASSERT_EQ(cell.majorant == 0.0F, exact.majorant == 0.0F) << c;
     ASSERT_EQ(cell.cut, exact.cut) << c;
-    if (cell.reach == 0) { // fifteen bits, rounded up
+    if (cell.skipRadius == 0) { // fifteen bits, rounded up
       ASSERT_LE(cell.majorant, exact.majorant * (1.0F + 0x1p-15F)) << c;
     }
-    const Size3 around = Size3::Constant(cell.reach);
-    walk.forEach(c - around, c + around, [&](const Size3& other) {
-      ASSERT_GE(cell.majorant, walk.narrow(other).majorant) << c << ", " << other;
-      ASSERT_TRUE(other == c || !walk.narrow(other).cut) << c << ", " << other;
+    const Size3 radius = Size3::Constant(cell.skipRadius);
+    pair.forEach(c - radius, c + radius, [&](const Size3& other) {
+      ASSERT_GE(cell.majorant, walk.mergeCells(other).majorant) << c << ", " << other;
+      ASSERT_TRUE(other == c || !walk.mergeCells(other).cut) << c << ", " << other;
     });
   });
 }
 
 /// Extinction: dense in a ball, thin mist below, 0 above.
 double ballInMist(const Vec3& p) {
-  const bool inBall = (p - Vec3::Constant(0.5 * edge)).norm() < 0.2 * edge;
+  const bool isInBall = (p - Vec3::Constant(0.5 * edge)).norm() < 0.2 * edge;
   const double mist = p.z() < 0.6 * edge ? 1e-3 * (1.0 + p.x() / edge) : 0.0;
-  return inBall ? 2.0 + std::sin(p.y()) : mist;
+  return isInBall ? 2.0 + std::sin(p.y()) : mist;
 }
 
-TEST(WideCells, MajorantBoundsEveryCellInReach) {
-  const Walk walk{cellsOf(ballInMist)};
-  expectBounds(walk);
+TEST(SimdMajorants, MajorantBoundsEveryCellInReach) {
+  const MajorantPair pair{makeMajorants(ballInMist)};
+  expectBounds(pair);
   EXPECT_GT(walk.cell(Size3::Constant(4)).reach, 3) << "mist";
   EXPECT_EQ(walk.cell(walk.count / 2).reach, 0) << "the ball";
-  const Decoded above = walk.cell({5, 5, walk.count.z() - 2});
+  const DecodedCell above = pair.cell({5, 5, pair.count.z() - 2});
   EXPECT_EQ(above.majorant, 0.0F);
   EXPECT_GT(above.reach, 0);
 }
 
-TEST(WideCells, ReachIsZeroInCutCells) {
+TEST(SimdMajorants, ReachIsZeroInCutCells) {
   const CameraPose pose{
       .position = {0.0, 0.0, -200.0}, .target = Vec3::Zero(), .up = Vec3::UnitY()};
   const ClipPlane plane{Camera(pose, 8, 8), Vec3::Constant(0.5 * edge), Vec3(1.0, 2.0, 3.0)};
-  const Walk walk{cellsOf(ballInMist, plane)};
-  expectBounds(walk);
-  int cut = 0;
-  walk.forEach([&](const Size3& c) {
-    cut += walk.cell(c).cut ? 1 : 0;
+  const MajorantPair pair{makeMajorants(ballInMist, plane)};
+  expectBounds(pair);
+  int isCut = 0;
+  pair.forEach([&](const Size3& c) {
+    isCut += pair.cell(c).isCut ? 1 : 0;
     EXPECT_TRUE(!walk.cell(c).cut || walk.cell(c).reach == 0) << c;
   });
   EXPECT_GT(cut, 100);
 }
 
-TEST(WideCells, CellsOfFewVoxelsAreMergedAndOthersNot) {
-  EXPECT_EQ(Walk{cellsOf(ballInMist)}.wide.merged, 2) << "2^3 voxels";
+TEST(SimdMajorants, CellsOfFewVoxelsAreMergedAndOthersNot) {
+  EXPECT_EQ(MajorantPair{makeMajorants(ballInMist)}.wide.merged, 2) << "2^3 voxels";
   const Grid grid(Size3(256, 256, 256), Affine::Identity());
   const Volume volume{grid, LargeArray<std::uint8_t>(1 << 24, 1), 0.0, 1.0, "", {}};
   const TransferFunction thin{
       ScalarFunction({{0.0, ScalarFunction::Value(0.1)}, {1.0, ScalarFunction::Value(0.1)}}),
       ColorFunction({{0.0, Rgb::Ones()}})};
-  const WideCells wide(MajorantGrid(grid, CellRanges(volume, 0), thin, ClipNone{}));
+  const SimdMajorants simd(MajorantGrid(grid, CellRanges(volume, 0), thin, ClipNone{}));
   EXPECT_EQ(wide.merged, 1) << "4^3 voxels";
   EXPECT_EQ(wide.count, Size3(64, 64, 64));
 }
 
-TEST(WideCells, ExtinctionsOfAnySizeAreBounded) {
-  const Walk walk{cellsOf([](const Vec3& p) { return std::pow(10.0, 0.4 * p.x() - 33.0); })};
-  expectBounds(walk);
+TEST(SimdMajorants, ExtinctionsOfAnySizeAreBounded) {
+  const MajorantPair pair{
+      makeMajorants([](const Vec3& p) { return std::pow(10.0, 0.4 * p.x() - 33.0); })};
+  expectBounds(pair);
 }
 
 } // namespace
-} // namespace fenestra::testing::WideCellsTests
+} // namespace fenestra::testing::SimdMajorantsTests

@@ -48,7 +48,7 @@ std::vector<View> views() {
 /// All that begins paths in a scene.
 struct Beginning {
   Domain domain;
-  WideTracker tracker;
+  SimdTracker tracker;
   Background background = {};
   EyeRays eye;
   EyeTable wide;

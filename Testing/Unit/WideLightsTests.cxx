@@ -8,10 +8,10 @@
 
 #include <memory>
 
-namespace fenestra::testing::WideLightsTests {
+namespace fenestra::testing::SimdLightsTests {
 namespace {
 
-EnvironmentMap randomMap(int width, int height, std::uint64_t seed) {
+EnvironmentMap makeRandomMap(int width, int height, std::uint64_t seed) {
   EnvironmentMap map{width, height, {}};
   for (int i = 0; i < width * height; ++i) {
     Random random(seed, static_cast<std::uint64_t>(i), 0);
@@ -22,39 +22,39 @@ EnvironmentMap randomMap(int width, int height, std::uint64_t seed) {
 }
 
 /// One texel of light; the pole's row among them.
-EnvironmentMap lamp(int width, int height, int lit) {
+EnvironmentMap makeLamp(int width, int height, int litTexel) {
   EnvironmentMap map{width, height,
                      std::vector<float>(static_cast<std::size_t>(3 * width * height))};
-  map.rgb[static_cast<std::size_t>(3 * lit)] = 3.0F;
+  map.rgb[static_cast<std::size_t>(3 * litTexel)] = 3.0F;
   return map;
 }
 
-struct Surroundings {
+struct LightCase {
   const char* name;
   std::vector<Light> lights;
 };
 
-std::vector<Surroundings> surroundings() {
+std::vector<LightCase> makeLightCases() {
   const SkyLight sky{Rgb(0.3, 0.2, 0.1), Rgb::Ones(), Rgb::Zero(), Vec3::UnitX(),
                      LightFrame::world};
   return {
-      {"one map", {EnvironmentLight{Rgb(0.5, 1.0, 2.0), randomMap(12, 6, 9)}}},
-      {"odd numbers of texels", {EnvironmentLight{Rgb::Ones(), randomMap(7, 5, 8)}}},
-      {"one texel", {EnvironmentLight{Rgb::Ones(), randomMap(1, 1, 5)}}},
-      {"more columns than 256", {EnvironmentLight{Rgb::Ones(), randomMap(600, 3, 4)}}},
-      {"lamp at the north pole", {EnvironmentLight{Rgb::Ones(), lamp(16, 12, 5)}}},
-      {"lamp at the south pole", {EnvironmentLight{Rgb::Ones(), lamp(16, 12, 16 * 11 + 2)}}},
+      {"one map", {EnvironmentLight{Rgb(0.5, 1.0, 2.0), makeRandomMap(12, 6, 9)}}},
+      {"odd numbers of texels", {EnvironmentLight{Rgb::Ones(), makeRandomMap(7, 5, 8)}}},
+      {"one texel", {EnvironmentLight{Rgb::Ones(), makeRandomMap(1, 1, 5)}}},
+      {"more columns than 256", {EnvironmentLight{Rgb::Ones(), makeRandomMap(600, 3, 4)}}},
+      {"lamp at the north pole", {EnvironmentLight{Rgb::Ones(), makeLamp(16, 12, 5)}}},
+      {"lamp at the south pole", {EnvironmentLight{Rgb::Ones(), makeLamp(16, 12, 16 * 11 + 2)}}},
       {"two maps, a constant, a sky, a black map",
        {EnvironmentLight{Rgb(0.2, 0.3, 0.4), {}},
-        EnvironmentLight{Rgb::Ones(), randomMap(12, 6, 3)},
+        EnvironmentLight{Rgb::Ones(), makeRandomMap(12, 6, 3)},
         EnvironmentLight{Rgb::Ones(), EnvironmentMap{2, 1, std::vector<float>(6, 0.0F)}}, sky,
-        EnvironmentLight{Rgb(2.0, 0.0, 1.0), lamp(16, 12, 70)}}},
+        EnvironmentLight{Rgb(2.0, 0.0, 1.0), makeLamp(16, 12, 70)}}},
   };
 }
 
 /// A thin volume of 1 mm voxels around the origin, index axes along RAS; albedo 1, isotropic.
 struct Fog {
-  static Volume volume() {
+  static Volume makeVolume() {
     Affine toWorld = Affine::Identity();
     toWorld.translation() = Vec3::Constant(-3.5);
     Volume made{Grid(Size3(8, 8, 8), toWorld), LargeArray<float>(512, 1.0F), 0.0, 0.0, "", {}};
@@ -62,21 +62,22 @@ struct Fog {
     return made;
   }
 
-  Volume matter = volume();
+  Volume volume = makeVolume();
   TransferFunction transfer{
       ScalarFunction({{0.0, ScalarFunction::Value(0.0)}, {1.0, ScalarFunction::Value(0.1)}}),
       ColorFunction({{0.0, Rgb::Ones()}})};
-  Domain domain{matter.grid, std::nullopt};
-  MajorantGrid majorants{matter.grid, CellRanges(matter, 0), transfer, ClipNone{}};
+  Domain domain{volume.grid, std::nullopt};
+  MajorantGrid majorants{volume.grid, CellRanges(volume, 0), transfer, ClipNone{}};
   Clip clip = ClipNone{};
-  WideTracker tracker{matter, domain, transfer, majorants, clip};
+  SimdTracker tracker{volume, domain, transfer, majorants, clip};
   LightSet lights;
   EventScene events;
 
-  explicit Fog(const std::vector<Light>& around)
-      : lights(around, matter.grid, camera()), events(matter.grid, transfer, lights, 100, false) {}
+  explicit Fog(const std::vector<Light>& lightList)
+      : lights(lightList, volume.grid, makeCamera()),
+        events(volume.grid, transfer, lights, 100, false) {}
 
-  static Camera camera() {
+  static Camera makeCamera() {
     CameraPose pose;
     pose.position = {0, -50, 0};
     return {pose, 8, 8};
@@ -85,7 +86,7 @@ struct Fog {
 
 /// Lights that one scattering in the fog draws: a direction, and radiance times phase
 /// function over the sum of both densities, channel by channel.
-struct Sampled {
+struct ShadowSample {
   Vec3 direction;
   Rgb estimate;
 };
@@ -110,10 +111,10 @@ void setPath(PathBatch& paths, std::size_t i, const Vec3& direction, const Vec2&
 }
 
 /// Light drawn by paths that scatter at the origin; those that drew none are left out.
-std::vector<Sampled> sampled(const Fog& fog, std::uint64_t seed, std::size_t count) {
+std::vector<ShadowSample> sampleLights(const Fog& fog, std::uint64_t seed, std::size_t count) {
   const auto paths = std::make_unique<PathBatch>();
   const auto lights = std::make_unique<LightBatch>();
-  std::vector<Sampled> all;
+  std::vector<ShadowSample> all;
   for (std::size_t from = 0; from < count; from += RayBatch::capacity) {
     paths->rays.size = std::min(RayBatch::capacity, count - from);
     for (std::size_t i = 0; i < paths->rays.size; ++i) {
@@ -126,7 +127,7 @@ std::vector<Sampled> sampled(const Fog& fog, std::uint64_t seed, std::size_t cou
     Counters counters;
     scatterPaths(fog.tracker.scene(), fog.events, *paths, *lights, counters);
     for (std::size_t i = 0; i < lights->rays.size; ++i) {
-      Sampled s;
+      ShadowSample s;
       for (int axis = 0; axis < 3; ++axis) {
         s.direction[axis] = static_cast<double>(lights->rays.direction[std::size_t(axis)][i]);
         s.estimate[axis] = static_cast<double>(lights->radiance[std::size_t(axis)][i]);
@@ -138,7 +139,7 @@ std::vector<Sampled> sampled(const Fog& fog, std::uint64_t seed, std::size_t cou
 }
 
 /// Light that rays scattered with density 1 / 4 pi take from beyond the fog.
-std::vector<Rgb> met(const Fog& fog, const std::vector<Vec3>& directions) {
+std::vector<Rgb> collectEmitted(const Fog& fog, const std::vector<Vec3>& directions) {
   const auto paths = std::make_unique<PathBatch>();
   const auto lights = std::make_unique<LightBatch>();
   std::vector<Rgb> all;
@@ -160,9 +161,9 @@ std::vector<Rgb> met(const Fog& fog, const std::vector<Vec3>& directions) {
 
 /// Light of the scalar lights for a scattering with density 1 / 4 pi in that direction: both of
 /// sampling and of meeting the light, for both have the same estimate.
-Rgb truth(const LightSet& lights, const Vec3& direction) {
-  const LightArrival arrival = lights.environment(direction);
-  return arrival.radiance * (0.25 / pi / (0.25 / pi + arrival.pdf));
+Rgb computeExpected(const LightSet& lights, const Vec3& direction) {
+  const LightArrival hit = lights.environment(direction);
+  return hit.radiance * (0.25 / pi / (0.25 / pi + hit.pdf));
 }
 
 bool isNear(const Rgb& a, const Rgb& b) {
@@ -172,51 +173,51 @@ bool isNear(const Rgb& a, const Rgb& b) {
 /// Number of directions in which values differ from the truth: all but those beside edges of
 /// texels.
 template <typename Values, typename DirectionOf, typename ValueOf>
-std::size_t differences(const Fog& fog, const Values& values, DirectionOf&& directionOf,
-                        ValueOf&& valueOf) {
+std::size_t countMismatches(const Fog& fog, const Values& values, DirectionOf&& getDirection,
+                            ValueOf&& getValue) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < values.size(); ++i)
-    count += isNear(valueOf(i), truth(fog.lights, directionOf(i).normalized())) ? 0 : 1;
+    count += isNear(getValue(i), computeExpected(fog.lights, getDirection(i).normalized())) ? 0 : 1;
   return count;
 }
 
-class WideLights : public OnInstructionSet {};
+class SimdLights : public OnInstructionSet {};
 
 /// Chi-squared of two histograms of equal weight against each other, as a standard normal deviate.
-double deviateBetween(const std::vector<double>& a, const std::vector<double>& b) {
+double compareHistograms(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> mean(a.size()),
-      apart(a.size()); // (apart - mean)^2 / mean = (a - b)^2 / (a + b)
+      deviating(a.size()); // (apart - mean)^2 / mean = (a - b)^2 / (a + b)
   for (std::size_t i = 0; i < a.size(); ++i) {
     mean[i] = 0.5 * (a[i] + b[i]);
-    apart[i] = mean[i] + std::sqrt(0.5) * (a[i] - b[i]);
+    deviating[i] = mean[i] + std::sqrt(0.5) * (a[i] - b[i]);
   }
-  return chiSquaredDeviate(apart, mean);
+  return chiSquaredDeviate(deviating, mean);
 }
 
-TEST_P(WideLights, DrawDirectionsAsTheScalarLightsDo) {
-  for (const Surroundings& s : surroundings()) {
+TEST_P(SimdLights, DrawDirectionsAsTheScalarLightsDo) {
+  for (const LightCase& s : makeLightCases()) {
     SCOPED_TRACE(s.name);
     const Fog fog(s.lights);
     constexpr std::size_t count = 200000;
-    const std::vector<Sampled> all = sampled(fog, 31, count);
-    std::vector<double> here(SphereBins::count, 0.0), there(SphereBins::count, 0.0);
-    for (const Sampled& one : all)
-      here[static_cast<std::size_t>(SphereBins::of(one.direction))] += 1.0;
+    const std::vector<ShadowSample> all = sampleLights(fog, 31, count);
+    std::vector<double> simd(SphereBins::count, 0.0), scalar(SphereBins::count, 0.0);
+    for (const ShadowSample& sample : all)
+      simd[static_cast<std::size_t>(SphereBins::of(sample.direction))] += 1.0;
     for (std::size_t i = 0; i < count; ++i) {
       Random random(32, i, 0);
       if (const auto sample = fog.lights.sample(Vec3::Zero(), random))
-        there[static_cast<std::size_t>(SphereBins::of(sample->direction))] += 1.0;
+        scalar[static_cast<std::size_t>(SphereBins::of(sample->direction))] += 1.0;
     }
-    EXPECT_LT(deviateBetween(here, scalar), 4.5);
-    const std::size_t apart = differences(
+    EXPECT_LT(compareHistograms(here, scalar), 4.5);
+    const std::size_t deviating = countMismatches(
         fog, all, [&](std::size_t i) { return all[i].direction; },
         [&](std::size_t i) { return all[i].estimate; });
-    EXPECT_LT(apart, count / 10000) << "the scalar lights' radiance and density";
+    EXPECT_LT(deviating, count / 10000) << "the scalar lights' radiance and density";
   }
 }
 
-TEST_P(WideLights, MeanOfRadianceOverDensityIsTheIntegral) {
-  for (const Surroundings& s : surroundings()) {
+TEST_P(SimdLights, MeanOfRadianceOverDensityIsTheIntegral) {
+  for (const LightCase& s : makeLightCases()) {
     SCOPED_TRACE(s.name);
     const Fog fog(s.lights);
     // Sampling and meeting together, each by its weight, estimate the mean radiance.
@@ -227,57 +228,57 @@ TEST_P(WideLights, MeanOfRadianceOverDensityIsTheIntegral) {
       directions.push_back(uniformDirection(random.uniform2()));
     }
     Rgb sum = Rgb::Zero(), squares = Rgb::Zero(), expected = fog.lights.tables().constant;
-    for (const Sampled& one : sampled(fog, 8, count)) {
-      sum += one.estimate;
-      squares += one.estimate.square();
+    for (const ShadowSample& sample : sampleLights(fog, 8, count)) {
+      sum += sample.estimate;
+      squares += sample.estimate.square();
     }
-    for (const Rgb& one : met(fog, directions)) {
-      sum += one;
-      squares += one.square();
+    for (const Rgb& sample : collectEmitted(fog, directions)) {
+      sum += sample;
+      squares += sample.square();
     }
     for (const SharedEnvironment& each : fog.lights.environments())
       if (!each.sampler.constant())
         expected += each.sampler.mean();
     for (const auto& sky : fog.lights.tables().skies) // linear in the cosine
       expected += sky.middle + 0.25 * (sky.toTop + sky.toBottom);
-    const Rgb deviation = squares.sqrt() / count; // no less than the standard error
-    EXPECT_TRUE(((sum / count - expected).abs() <= 4.5 * deviation).all())
+    const Rgb maxStandardError = squares.sqrt() / count; // no less than the standard error
+    EXPECT_TRUE(((sum / count - expected).abs() <= 4.5 * maxStandardError).all())
         << sum[0] / count << " for " << expected[0];
   }
 }
 
-TEST_P(WideLights, EscapingRaysMeetTheScalarLights) {
+TEST_P(SimdLights, EscapingRaysMeetTheScalarLights) {
   std::vector<Vec3> directions = {{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {0, 1, 0}};
   for (std::size_t i = 0; i < 100000; ++i) {
     Random random(6, i, 0);
     directions.push_back(uniformDirection(random.uniform2()));
   }
-  for (const Surroundings& s : surroundings()) {
+  for (const LightCase& s : makeLightCases()) {
     SCOPED_TRACE(s.name);
     const Fog fog(s.lights);
-    const std::vector<Rgb> light = met(fog, directions);
-    const std::size_t apart = differences(
-        fog, light, [&](std::size_t i) { return directions[i]; },
-        [&](std::size_t i) { return light[i]; });
-    EXPECT_LT(apart, directions.size() / 2000);
-    EXPECT_TRUE(isNear(light[0], truth(fog.lights, directions[0]))) << "north pole";
-    EXPECT_TRUE(isNear(light[1], truth(fog.lights, directions[1]))) << "south pole";
+    const std::vector<Rgb> emitted = collectEmitted(fog, directions);
+    const std::size_t deviating = countMismatches(
+        fog, emitted, [&](std::size_t i) { return directions[i]; },
+        [&](std::size_t i) { return emitted[i]; });
+    EXPECT_LT(deviating, directions.size() / 2000);
+    EXPECT_TRUE(isNear(emitted[0], truth(fog.lights, directions[0]))) << "north pole";
+    EXPECT_TRUE(isNear(emitted[1], truth(fog.lights, directions[1]))) << "south pole";
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(InstructionSets, WideLights, ::testing::Values(0, 1, 2, 3),
+INSTANTIATE_TEST_SUITE_P(InstructionSets, SimdLights, ::testing::Values(0, 1, 2, 3),
                          [](const auto& info) { return "Set" + std::to_string(info.param); });
 
 /// Probability of each bin in a table, in units of 2^-32.
-std::vector<std::uint64_t> drawnBy(const AliasTables& tables) {
+std::vector<std::uint64_t> toProbabilities(const AliasTables& tables) {
   const auto full = static_cast<std::uint64_t>(tables.height());
-  std::vector<std::uint64_t> drawn(tables.size(), 0);
+  std::vector<std::uint64_t> units(tables.size(), 0);
   for (std::size_t i = 0; i < tables.size(); ++i) {
-    const auto own = static_cast<std::uint64_t>(tables.places[i].threshold);
-    drawn[i] += own;
-    drawn[static_cast<std::size_t>(tables.places[i].other)] += full - own;
+    const auto threshold = static_cast<std::uint64_t>(tables.places[i].threshold);
+    units[i] += threshold;
+    units[static_cast<std::size_t>(tables.places[i].other)] += full - threshold;
   }
-  return drawn;
+  return units;
 }
 
 TEST(AliasTables, DrawBinsByTheirProbabilitiesToTheLastBit) {
@@ -292,14 +293,14 @@ TEST(AliasTables, DrawBinsByTheirProbabilitiesToTheLastBit) {
       sum /= sums.back();
     AliasTables tables(bins);
     tables.append(sums);
-    const std::vector<std::uint64_t> drawn = drawnBy(tables);
-    for (std::size_t i = 0; i < drawn.size(); ++i) {
+    const std::vector<std::uint64_t> units = toProbabilities(tables);
+    for (std::size_t i = 0; i < units.size(); ++i) {
       const double probability = i < bins ? sums[i + 1] - sums[i] : 0.0;
-      ASSERT_NEAR(static_cast<double>(drawn[i]), 0x1p32 * probability, 1.0) << bins << ", " << i;
-      ASSERT_TRUE(probability > 0.0 || drawn[i] == 0U) << "a bin of probability 0";
+      ASSERT_NEAR(static_cast<double>(units[i]), 0x1p32 * probability, 1.0) << bins << ", " << i;
+      ASSERT_TRUE(probability > 0.0 || units[i] == 0U) << "a bin of probability 0";
     }
   }
 }
 
 } // namespace
-} // namespace fenestra::testing::WideLightsTests
+} // namespace fenestra::testing::SimdLightsTests

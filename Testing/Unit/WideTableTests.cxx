@@ -5,78 +5,78 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing::WideTableTests {
+namespace fenestra::testing::SimdLinesTests {
 namespace {
 
-ScalarFunction functionOf(const std::vector<std::array<double, 2>>& points) {
+ScalarFunction makeFunction(const std::vector<std::array<double, 2>>& points) {
   std::vector<ScalarFunction::Knot> knots;
   for (const auto& [position, value] : points)
     knots.push_back({position, ScalarFunction::Value(value)});
   return ScalarFunction(knots);
 }
 
-WideLines linesOf(const std::vector<std::array<double, 2>>& points) {
-  const ScalarFunction function = functionOf(points);
-  return WideLines({&function});
+SimdLines makeLines(const std::vector<std::array<double, 2>>& points) {
+  const ScalarFunction function = makeFunction(points);
+  return SimdLines({&function});
 }
 
 /// Line that lanes read for a scalar, as Medium-inl.h finds it, and the value on it.
-struct Read {
+struct Lookup {
   bool isLine;
   double value;
 };
-Read read(const WideLines& table, double scalar) {
+Lookup lookUp(const SimdLines& table, double scalar) {
   const float at = (narrow(scalar) - table.start) * table.perUnit;
-  const float place = std::max(std::min(at, table.last), 0.0F);
-  const WideTable::Line& line = table.lines[static_cast<std::size_t>(place)];
+  const float bin = std::max(std::min(at, table.last), 0.0F);
+  const SimdTable::Line& line = table.lines[static_cast<std::size_t>(bin)];
   return {!std::isnan(line.slope),
-          static_cast<double>(line.value + (place - std::floor(place)) * line.slope)};
+          static_cast<double>(line.value + (bin - std::floor(bin)) * line.slope)};
 }
 
 /// Expects lines to be the function, and no more bins without a line than knots can explain.
 void expectFunction(const ScalarFunction& function, double tolerance) {
-  const WideLines table({&function});
+  const SimdLines table({&function});
   const double start = function.knots().front().position;
   const double margin = std::max(function.span(), 1e-30);
   for (int i = 0; i < 100000; ++i) {
     Random random(4, static_cast<std::uint64_t>(i), 0);
     const double s = start + margin * (1.4 * random.uniform() - 0.2);
-    const Read at = read(table, s);
+    const Lookup at = lookUp(table, s);
     if (at.isLine) {
       ASSERT_NEAR(at.value, function(static_cast<double>(narrow(s))).value(), tolerance)
           << "at " << s;
     }
   }
-  const auto mixed = std::ranges::count_if(
-      table.lines, [](const WideTable::Line& line) { return std::isnan(line.slope); });
-  EXPECT_LE(mixed, 3 * static_cast<std::ptrdiff_t>(function.knots().size()));
+  const auto withoutLine = std::ranges::count_if(
+      table.lines, [](const SimdTable::Line& line) { return std::isnan(line.slope); });
+  EXPECT_LE(withoutLine, 3 * static_cast<std::ptrdiff_t>(function.knots().size()));
 }
 
-TEST(WideLines, LinesAreTheFunction) {
-  expectFunction(functionOf({{-1000, 0}, {-300.3, 0}, {45, 0.7}, {45.5, 2.5}, {3071, 9}}), 1e-3);
-  expectFunction(functionOf({{0, 0}, {255, 3}}), 1e-5);
-  expectFunction(functionOf({{0, 0}, {100, 0}, {100, 5}, {101, 5}, {101, 0}, {1000, 0.1}}), 1e-3);
+TEST(SimdLines, LinesAreTheFunction) {
+  expectFunction(makeFunction({{-1000, 0}, {-300.3, 0}, {45, 0.7}, {45.5, 2.5}, {3071, 9}}), 1e-3);
+  expectFunction(makeFunction({{0, 0}, {255, 3}}), 1e-5);
+  expectFunction(makeFunction({{0, 0}, {100, 0}, {100, 5}, {101, 5}, {101, 0}, {1000, 0.1}}), 1e-3);
 }
 
-TEST(WideLines, BinsOfKnotsHaveNoLine) {
-  const WideLines table = linesOf({{0, 0}, {100.05, 1}, {1024, 0}});
-  EXPECT_FALSE(read(table, 100.5).isLine);
-  EXPECT_TRUE(read(table, 99.5).isLine);
-  EXPECT_TRUE(read(table, 101.5).isLine);
-  const WideLines jump = linesOf({{0, 0}, {512, 0}, {512, 1}, {1024, 1}});
-  EXPECT_FALSE(read(jump, 511.9).isLine) << "rounding may take a scalar to the other side";
-  EXPECT_FALSE(read(jump, 512.1).isLine);
+TEST(SimdLines, BinsOfKnotsHaveNoLine) {
+  const SimdLines table = makeLines({{0, 0}, {100.05, 1}, {1024, 0}});
+  EXPECT_FALSE(lookUp(table, 100.5).isLine);
+  EXPECT_TRUE(lookUp(table, 99.5).isLine);
+  EXPECT_TRUE(lookUp(table, 101.5).isLine);
+  const SimdLines jump = makeLines({{0, 0}, {512, 0}, {512, 1}, {1024, 1}});
+  EXPECT_FALSE(lookUp(jump, 511.9).isLine) << "rounding may take a scalar to the other side";
+  EXPECT_FALSE(lookUp(jump, 512.1).isLine);
 }
 
-TEST(WideLines, DegenerateFunctionsAreRead) {
-  const WideLines one = linesOf({{5, 2}});
-  EXPECT_EQ(read(one, -1e30).value, 2.0);
-  EXPECT_EQ(read(one, 1e30).value, 2.0);
-  EXPECT_FALSE(read(linesOf({{5, 2}, {5, 3}}), 4.0).isLine);
-  EXPECT_FALSE(read(linesOf({{0, 1}, {1e-44, 3}}), 1.0).isLine);
+TEST(SimdLines, DegenerateFunctionsAreRead) {
+  const SimdLines one = makeLines({{5, 2}});
+  EXPECT_EQ(lookUp(one, -1e30).value, 2.0);
+  EXPECT_EQ(lookUp(one, 1e30).value, 2.0);
+  EXPECT_FALSE(lookUp(makeLines({{5, 2}, {5, 3}}), 4.0).isLine);
+  EXPECT_FALSE(lookUp(makeLines({{0, 1}, {1e-44, 3}}), 1.0).isLine);
   // A span of a few last places: no float tells which bin a scalar lies in.
-  EXPECT_FALSE(read(linesOf({{1e6, 1}, {1e6 + 1.0, 3}}), 1e6).isLine);
+  EXPECT_FALSE(lookUp(makeLines({{1e6, 1}, {1e6 + 1.0, 3}}), 1e6).isLine);
 }
 
 } // namespace
-} // namespace fenestra::testing::WideTableTests
+} // namespace fenestra::testing::SimdLinesTests

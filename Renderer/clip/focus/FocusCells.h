@@ -12,17 +12,17 @@ namespace fenestra {
 /// Rays traced together, in the cell space of FocusCells; a structure of arrays.
 struct FocusRays {
   static constexpr std::size_t capacity = 256;
-  using Column = std::array<double, capacity + 8>; ///< padded to whole vectors
+  using SoaArray = std::array<double, capacity + 8>; ///< padded to whole vectors
 
   /// Leaves the arrays uninitialised: clearing 256 entries costs more than tracing a few rays.
   FocusRays() {}
 
   std::size_t size = 0;
-  alignas(64) std::array<Column, 3> origin, direction;
-  alignas(64) Column begin, end; ///< range of t to search; inside FocusCells::box()
-  alignas(64) Column meeting;    ///< t at which the mask is met; infinity: missed
+  alignas(64) std::array<SoaArray, 3> origin, direction;
+  alignas(64) SoaArray begin, end; ///< range of t to search; inside FocusCells::box()
+  alignas(64) SoaArray meeting;    ///< t at which the mask is met; infinity: missed
   /// Summit's t, and the indicator there; only from findSummits, for rays that miss the mask.
-  alignas(64) Column summit, height;
+  alignas(64) SoaArray summit, height;
 
   bool full() const { return size == capacity; }
 

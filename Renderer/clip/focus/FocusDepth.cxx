@@ -142,7 +142,7 @@ void FocusTracer::follow(std::span<const Glance> glances, std::span<Sight> sight
   std::ranges::fill(sights, Sight{});
   FocusRays rays; // traced together
   std::array<Sight*, FocusRays::capacity> sightOf;
-  FocusRays::Column depthPerLength;
+  FocusRays::SoaArray depthPerLength;
   const auto trace = [&] {
     if constexpr (withSummits)
       m_cells->findSummits(rays);

@@ -18,7 +18,7 @@ namespace fenestra::HWY_NAMESPACE {
 namespace {
 
 constexpr std::size_t mostLanes = HWY_MAX_BYTES / sizeof(double);
-struct alignas(64) Lane : std::array<double, mostLanes> {};
+struct alignas(64) LaneDoubles : std::array<double, mostLanes> {};
 
 HWY_INLINE unsigned bitsOf(M mask) {
   std::array<std::uint8_t, 8> packed = {};
@@ -45,7 +45,7 @@ public:
         (*column)[i] = 0.0; // whole vectors are read
     for (std::size_t i = 0; i < m_size; i += hn::Lanes(doubles)) {
       const D s = rootsFrom(i);
-      Lane meetings;
+      LaneDoubles meetings;
       hn::Store(hn::MulAdd(s, hn::Load(doubles, &m_length[i]), hn::Load(doubles, &m_begin[i])),
                 doubles, meetings.data());
       for (std::size_t lane = 0; lane < std::min(hn::Lanes(doubles), m_size - i); ++lane)
@@ -85,7 +85,7 @@ private:
     return s;
   }
 
-  using Column = FocusRays::Column;
+  using Column = FocusRays::SoaArray;
   std::size_t m_size = 0;
   alignas(64) std::array<Column, 4> m_c;
   alignas(64) Column m_begin, m_length;
@@ -261,7 +261,7 @@ private:
   /// Searches the cubics of `which` one by one. Cubics of `rises` have one root for certain: added
   /// to m_roots, which finds many roots at once later.
   HWY_INLINE void solve(M which, const std::array<D, 4>& c, M rises, D length) {
-    alignas(64) std::array<Lane, 7> lanes;
+    alignas(64) std::array<LaneDoubles, 7> lanes;
     for (std::size_t i = 0; i < 4; ++i)
       hn::Store(c[i], doubles, lanes[i].data());
     hn::Store(m_t, doubles, lanes[4].data());
@@ -324,8 +324,8 @@ private:
   D m_t, m_end;
   M m_busy;
   std::array<Axis, 3> m_axes;
-  Lane m_heights, m_summits; ///< so far: indicator - 1/2, and t
-  Lane m_tops;               ///< t at which the summit's ridge ends
+  LaneDoubles m_heights, m_summits; ///< so far: indicator - 1/2, and t
+  LaneDoubles m_tops;               ///< t at which the summit's ridge ends
 };
 
 template <bool withSummits>
@@ -373,10 +373,10 @@ namespace {
 void prepare(FocusRays& rays) {
   std::fill_n(rays.meeting.begin(), rays.size, infinity);
   for (std::size_t i = rays.size; i < std::min(rays.size + 16, rays.begin.size()); ++i) {
-    for (FocusRays::Column* column :
+    for (FocusRays::SoaArray* column :
          {&rays.origin[0], &rays.origin[1], &rays.origin[2], &rays.begin, &rays.end})
       (*column)[i] = 0.0;
-    for (FocusRays::Column& column : rays.direction)
+    for (FocusRays::SoaArray& column : rays.direction)
       column[i] = 1.0;
   }
 }

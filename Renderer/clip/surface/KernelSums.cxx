@@ -41,8 +41,8 @@ HWY_INLINE void transform(std::span<const double> x, std::span<double> values,
   std::copy_n(rest.begin(), x.size() - i, &values[i]);
 }
 
-void addKernelsInLanes(std::span<const KernelTerm> terms, std::span<const double> u, double v,
-                       std::span<double> sums) {
+void addKernelsSimd(std::span<const KernelTerm> terms, std::span<const double> u, double v,
+                    std::span<double> sums) {
   // Keeps the logarithm finite at a site, where its factor is 0.
   const D tiny = hn::Set(doubles, 1e-300);
   transform(u, sums, [&](D x, D sum) {
@@ -57,8 +57,8 @@ void addKernelsInLanes(std::span<const KernelTerm> terms, std::span<const double
   });
 }
 
-void evaluatePolynomialInLanes(std::span<const double> coefficients, double scale,
-                               std::span<const double> x, std::span<double> values) {
+void evaluatePolynomialSimd(std::span<const double> coefficients, double scale,
+                            std::span<const double> x, std::span<double> values) {
   transform(x, values, [&](D here, D) {
     const D tau = hn::Mul(here, hn::Set(doubles, scale));
     D sum = hn::Set(doubles, coefficients.back());
@@ -75,17 +75,17 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace fenestra {
 
-HWY_EXPORT(addKernelsInLanes);
-HWY_EXPORT(evaluatePolynomialInLanes);
+HWY_EXPORT(addKernelsSimd);
+HWY_EXPORT(evaluatePolynomialSimd);
 
 void addKernels(std::span<const KernelTerm> terms, std::span<const double> u, double v,
                 std::span<double> sums) {
-  HWY_DYNAMIC_DISPATCH(addKernelsInLanes)(terms, u, v, sums);
+  HWY_DYNAMIC_DISPATCH(addKernelsSimd)(terms, u, v, sums);
 }
 
 void evaluatePolynomial(std::span<const double> coefficients, double scale,
                         std::span<const double> x, std::span<double> values) {
-  HWY_DYNAMIC_DISPATCH(evaluatePolynomialInLanes)(coefficients, scale, x, values);
+  HWY_DYNAMIC_DISPATCH(evaluatePolynomialSimd)(coefficients, scale, x, values);
 }
 
 } // namespace fenestra

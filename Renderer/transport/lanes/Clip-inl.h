@@ -17,7 +17,7 @@ struct InView {
 };
 
 HWY_INLINE InView inView(const WideScene& scene, const Float3& p) {
-  InView at{0.0F, 0.0F, apply(scene.toView[2], p), 1.0F, LaneMask::none()};
+  InView at{0.0F, 0.0F, applyRow(scene.toView[2], p), 1.0F, LaneMask::none()};
   if (scene.perspective) {
     const Float fromEye = at.depth + scene.targetDepth;
     at.behindEye = fromEye <= 0.0F;
@@ -25,8 +25,8 @@ HWY_INLINE InView inView(const WideScene& scene, const Float3& p) {
   }
   if (scene.clipKind == WideScene::ClipKind::plane)
     return at;
-  at.x = apply(scene.toView[0], p) * at.scale;
-  at.y = apply(scene.toView[1], p) * at.scale;
+  at.x = applyRow(scene.toView[0], p) * at.scale;
+  at.y = applyRow(scene.toView[1], p) * at.scale;
   return at;
 }
 
@@ -37,7 +37,7 @@ HWY_INLINE Float slopeAlong(const WideScene::DepthAxis& axis, Float index, Float
   const LaneMask isFine = (index >= before) & (index < before + axis.lastInside);
   const LaneMask isBetween = (index > 0.0F) & (index < axis.last);
   const Float perLength = select(isFine, axis.perPitch, axis.perPitch * axis.perFactor);
-  return orZero(isBetween, rise * perLength);
+  return zeroUnless(isBetween, rise * perLength);
 }
 
 /// A surface between four samples of the buffer.
@@ -115,7 +115,7 @@ HWY_INLINE Float nearestDepth(const WideScene& scene, const InView& view) {
 HWY_INLINE Float behindSurface(const WideScene& scene, const Float3& p, const InView& view,
                                LaneMask which) {
   if (scene.clipKind == WideScene::ClipKind::plane)
-    return -apply(scene.toPlane, p);
+    return -applyRow(scene.toPlane, p);
   if (scene.clipKind == WideScene::ClipKind::depthNearest)
     return view.depth - nearestDepth(scene, view);
   const Surface surface = surfaceAt(scene, view);

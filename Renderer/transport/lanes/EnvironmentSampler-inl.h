@@ -8,7 +8,7 @@ struct Bin {
 };
 
 /// `table`: number of the table among the tables.
-HWY_INLINE Bin drawBin(const AliasTables& tables, Int table, Word random) {
+HWY_INLINE Bin drawBin(const AliasTables& tables, Int table, UInt random) {
   const Int own = bitsAsInt(random & static_cast<std::uint32_t>(tables.size() - 1));
   const Int place = shiftLeft(table, tables.bits) + own;
   const auto [threshold, other] =
@@ -25,7 +25,7 @@ struct TexelDraw {
   Float3 direction;
   Int texel;
 };
-HWY_INLINE TexelDraw drawTexel(const MapTables& map, Word u, Word v) {
+HWY_INLINE TexelDraw drawTexel(const MapTables& map, UInt u, UInt v) {
   const Bin row = drawBin(map.rows, 0, u);
   const Bin column = drawBin(map.columns, row.index, v);
 
@@ -37,7 +37,7 @@ HWY_INLINE TexelDraw drawTexel(const MapTables& map, Word u, Word v) {
   const Float fall = lerp(upper, lower, row.place);
   const Float sine = root(fall * (2.0F - fall));
   const float perWidth = 1.0F / static_cast<float>(map.width);
-  const CosineSine phi = ofTurns((toFloat(column.index) + column.place) * perWidth);
+  const CosineSine phi = cosSinTurns((toFloat(column.index) + column.place) * perWidth);
   const Float z = 1.0F - fall;
   return {{-sine * phi.sine, -sine * phi.cosine, select(isSouth, -z, z)},
           row.index * map.width + column.index};
@@ -49,8 +49,8 @@ HWY_INLINE Int texelToward(const MapTables& map, const Float3& d) {
   };
   const Float sine = sqrt(square(d.x) + square(d.y));
   const auto width = static_cast<float>(map.width), height = static_cast<float>(map.height);
-  const Int column = cell((0.5F + turnsOf(d.y, d.x)) * width, map.width);
-  const Int row = cell(turnsOf(d.z, sine) * (2.0F * height), map.height);
+  const Int column = cell((0.5F + angleInTurns(d.y, d.x)) * width, map.width);
+  const Int row = cell(angleInTurns(d.z, sine) * (2.0F * height), map.height);
   return row * map.width + column;
 }
 

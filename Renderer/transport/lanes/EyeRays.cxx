@@ -28,7 +28,7 @@ void drawAll(const EyeTable& eye, PathStarts& starts, PathBatch& paths) {
     store(below1(numbers.flight[1]), &paths.rays.acceptance[to]);
     for (const std::size_t which : {0U, 1U}) {
       store(below1(numbers.scattered[which]), &paths.scattered[which][to]);
-      store(uniformOf(numbers.choices[which]), &paths.choices[which][to]);
+      store(toUniform(numbers.choices[which]), &paths.choices[which][to]);
     }
     store(numbers.rest[0], &paths.counter[to]);
     store(numbers.rest[1], &paths.key[to]);
@@ -51,12 +51,12 @@ void beginAll(const WideScene& volume, const EyeTable& eye, const PathStarts& st
     Stretches inside{notBelow0(load(&starts.from[i])), load(&starts.to[i])};
     inside.clip(volume, point, direction);
     const LaneMask some = inside.begin < inside.end;
-    const Float before = orZero(some, inside.begin);
+    const Float before = zeroUnless(some, inside.begin);
 
     const std::size_t to = paths.rays.size + i;
     store3(point + before * direction, paths.rays.origin, to);
     store3(direction, paths.rays.direction, to);
-    store(orZero(some, inside.end - before), &paths.rays.length[to]);
+    store(zeroUnless(some, inside.end - before), &paths.rays.length[to]);
     store3(world, paths.direction, to);
     store3(world, paths.eyeDirection, to);
     store(before * depthPerLength, &paths.depth[to]);

@@ -22,7 +22,7 @@ HWY_INLINE Arrival environment(const EventScene& scene, const Float3& direction,
   return sum;
 }
 
-inline void drawMaps(const EventScene& scene, LaneMask which, Float choice, Word u, Word v,
+inline void drawMaps(const EventScene& scene, LaneMask which, Float choice, UInt u, UInt v,
                      LightDraw& drawn) {
   const std::size_t count = scene.maps.size();
   TexelDraw toward = drawTexel(scene.maps[0], u, v);
@@ -45,8 +45,8 @@ inline void drawMaps(const EventScene& scene, LaneMask which, Float choice, Word
 
 /// LightSet::sample for the lanes of `which`, from local points; `uBits`, `vBits`: random bits.
 inline LightDraw drawOf(const EventScene& scene, LaneMask which, const Float3& point, Float choice,
-                        Word uBits, Word vBits) {
-  const Float u = uniformOf(uBits), v = uniformOf(vBits);
+                        UInt uBits, UInt vBits) {
+  const Float u = toUniform(uBits), v = toUniform(vBits);
   LightDraw drawn = drawLight(scene.lights, which, point, choice, u, v);
   if (!scene.maps.empty() && which.any())
     drawMaps(scene, which, choice, uBits, vBits, drawn);

@@ -123,7 +123,7 @@ Reach findReach(const Bordered& at, const std::vector<float>& majorants,
       bounds[i] = std::numeric_limits<float>::infinity();
   // A cell that gains by neither r + 1 nor r + 2 is assumed not to gain by r + 3.
   std::atomic<bool> some = true;
-  for (std::uint32_t reach = 1; some && reach <= WideCells::mostReach; ++reach) {
+  for (std::uint32_t reach = 1; some && reach <= SimdMajorants::mostReach; ++reach) {
     some = false;
     dilate(at, bounds, room);
     const auto step = static_cast<float>(stepCost / (edge * (0.7 + reach)));
@@ -148,13 +148,13 @@ constexpr std::int64_t mostMergedVoxels = 16;
 
 /// Code of a bound >= majorant, which is not 0.
 std::uint32_t majorantCode(float majorant) {
-  constexpr auto below = static_cast<std::uint32_t>(WideCells::reachBits);
+  constexpr auto below = static_cast<std::uint32_t>(SimdMajorants::reachBits);
   return (std::bit_cast<std::uint32_t>(majorant) + below) & ~below;
 }
 
 } // namespace
 
-WideCells::WideCells(const MajorantGrid& majorants)
+SimdMajorants::SimdMajorants(const MajorantGrid& majorants)
     : merged(majorants.edge().prod() <= mostMergedVoxels ? 2 : 1),
       count((majorants.cellCount().array() + merged - 1) / merged) {
   const Bordered at{count.array() + 2};
@@ -177,7 +177,7 @@ WideCells::WideCells(const MajorantGrid& majorants)
   codes.assign(at.count(), 0);
   for (std::size_t i = 0; i < at.count(); ++i) {
     if (bound[i] > 0.0F)
-      codes[i] = static_cast<std::int32_t>((cut[i] ? WideCells::cutBit : 0U) |
+      codes[i] = static_cast<std::int32_t>((cut[i] ? SimdMajorants::cutBit : 0U) |
                                            majorantCode(reach.bound[i]) | reach.cells[i]);
     else
       codes[i] = std::min(std::max(around[i], 0), reachBits);

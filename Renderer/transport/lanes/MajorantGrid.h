@@ -14,15 +14,15 @@
 
 namespace fenestra {
 
-struct WideCells {
+struct SimdMajorants {
   /// Bits of a code: a float's upper bits are the majorant (mm^-1, rounded up; 0: empty cell), its
   /// sign says that the cell is cut (query keep), and its lowest bits are the reach.
   static constexpr std::int32_t reachBits = 0xff, majorantBits = 0x7fffff00;
   static constexpr std::uint32_t cutBit = 1U << 31;
   static constexpr std::uint32_t mostReach = 7; ///< of a cell that is not empty
 
-  WideCells() = default;
-  explicit WideCells(const MajorantGrid& majorants);
+  SimdMajorants() = default;
+  explicit SimdMajorants(const MajorantGrid& majorants);
 
   std::int64_t merged = 1;     ///< cells of the MajorantGrid in a cell, along each axis
   Size3 count = Size3::Zero(); ///< cells, without the border

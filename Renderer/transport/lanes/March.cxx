@@ -64,7 +64,7 @@ public:
   /// Takes those of the lanes of `which`; 0 in the others.
   HWY_INLINE Pending take(LaneMask which) {
     const Float t = m_moment / select(which, m_pending, 1.0F);
-    const Pending taken{orZero(which, m_pending), select(which, t, m_t)};
+    const Pending taken{zeroUnless(which, m_pending), select(which, t, m_t)};
     m_pending = select(which, 0.0F, m_pending);
     m_moment = select(which, 0.0F, m_moment);
     return taken;
@@ -82,11 +82,11 @@ private:
     if (m_asksKeep) {
       const LaneMask cut = filled & cell.cut;
       if (cut.any())
-        all.clipped.where(cut, all.clipped * keep(m_volume, p, cut));
+        all.clipped.setIf(cut, all.clipped * keep(m_volume, p, cut));
     }
     const Float extinction = all.clipped + all.free;
     const Float passed = exp(-(extinction * length));
-    const Float stopped = orZero(filled, m_transmittance * (1.0F - passed));
+    const Float stopped = zeroUnless(filled, m_transmittance * (1.0F - passed));
     m_transmittance = m_transmittance - stopped;
     m_pending = m_pending + stopped;
     m_moment = fma(stopped, middle, m_moment);
@@ -156,7 +156,7 @@ public:
       sums.albedo = sums.albedo + part * albedoIn(m_scene, lanes, components, scalar);
       sums.opacity = sums.opacity + part * missing(extinction);
     });
-    const Float scale = orZero(all > 0.0F, 1.0F / all);
+    const Float scale = zeroUnless(all > 0.0F, 1.0F / all);
     return {scale * sums.albedo, scale * sums.opacity};
   }
 

@@ -9,8 +9,8 @@ namespace fenestra {
 /// Rays, and FirstMatter of each, its distance from the ray's origin in the batch.
 struct MarchBatch {
   RayBatch rays;
-  Column<float> hit, distance;
-  Columns3 albedo, normal, facing;
+  SoaArray<float> hit, distance;
+  SoaArray3 albedo, normal, facing;
 };
 
 /// Marches eye rays that begin behind the clip's surface: a clip with a sharp edge is asked no

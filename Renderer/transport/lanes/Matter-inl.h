@@ -1,6 +1,6 @@
 // Matter of lanes at points in index space: albedo, with segments' colours, and gradient.
 
-HWY_INLINE Float3 albedoOf(const WideTable& table, Float scalar) {
+HWY_INLINE Float3 albedoOf(const SimdTable& table, Float scalar) {
   const auto& channels = table.channels;
   if (table.position.size() == 3) // 1.0F knot
     return {channels[0][0].value, channels[1][0].value, channels[2][0].value};
@@ -41,7 +41,7 @@ HWY_INLINE Float3 paled(const WideScene::Context& context, const Float3& index,
 
 /// Differences of the scalar over two voxels along each axis.
 template <typename Voxel>
-HWY_INLINE Float3 differenceAt(const WideField& field, const Float3& p) {
+HWY_INLINE Float3 differenceAt(const SimdField& field, const Float3& p) {
   const auto& [x, y, z] = p;
   return {scalarAt<Voxel>(field, {x + 1.0F, y, z}) - scalarAt<Voxel>(field, {x - 1.0F, y, z}),
           scalarAt<Voxel>(field, {x, y + 1.0F, z}) - scalarAt<Voxel>(field, {x, y - 1.0F, z}),

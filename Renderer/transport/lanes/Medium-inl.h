@@ -5,20 +5,20 @@ struct PlaceAlong {
   Float lower;    ///< the lower of the two voxels around it, whole
   Float fraction; ///< position from there, 0 to 1
 };
-HWY_INLINE PlaceAlong placeAlong(const WideAxis& a, Float x) {
+HWY_INLINE PlaceAlong placeAlong(const SimdAxis& a, Float x) {
   // This order of min and max maps NaN to 0.
   const Float inside = max(min(x, a.last), 0.0F);
   const Float lower = min(floor(inside), a.lastCell);
   return {lower, inside - lower};
 }
 /// Offset of a voxel or brick.
-HWY_INLINE Int offsetOf(const WideAxes& axes, Float x, Float y, Float z) {
+HWY_INLINE Int offsetOf(const SimdAxes& axes, Float x, Float y, Float z) {
   return wholeToInt(x) + wholeToInt(y) * axes[1].stride + wholeToInt(z) * axes[2].stride;
 }
 
 /// Voxels from places on, and their neighbours along x.
 template <typename Voxel>
-HWY_INLINE Pairs voxelsAt(const WideField& field, Int first, const Indices& index,
+HWY_INLINE Pairs voxelsAt(const SimdField& field, Int first, const Indices& index,
                           std::int32_t offset) {
   const auto* const voxels = static_cast<const Voxel*>(field.voxels);
   if constexpr (std::is_same_v<Voxel, float>) {
@@ -40,8 +40,8 @@ HWY_INLINE Pairs voxelsAt(const WideField& field, Int first, const Indices& inde
 
 /// The scalar, trilinear between voxel centres.
 template <typename Voxel>
-HWY_INLINE Float scalarAt(const WideField& field, const Float3& p) {
-  const WideAxes& axes = field.axes;
+HWY_INLINE Float scalarAt(const SimdField& field, const Float3& p) {
+  const SimdAxes& axes = field.axes;
   const PlaceAlong x = placeAlong(axes[0], p.x);
   const PlaceAlong y = placeAlong(axes[1], p.y);
   const PlaceAlong z = placeAlong(axes[2], p.z);
@@ -66,7 +66,7 @@ struct Segment {
   Float beyondStart; ///< scalar units from the segment's start; not finite in the first segment
 };
 
-HWY_INLINE Segment segmentOf(const WideTable& table, Float s) {
+HWY_INLINE Segment segmentOf(const SimdTable& table, Float s) {
   s = min(s, std::numeric_limits<float>::max()); // interpolation can overflow
   const auto lastBin = static_cast<float>(table.binSegment.size() - 1);
   const Float bin = (s - table.binStart) * table.binsPerUnit;
@@ -76,18 +76,18 @@ HWY_INLINE Segment segmentOf(const WideTable& table, Float s) {
     const LaneMask beyond = s >= ends.second;
     if (!beyond.any())
       return {segment, s - ends.first};
-    segment.where(beyond, segment + 1);
+    segment.setIf(beyond, segment + 1);
   }
 }
 
 /// Value of a channel in a segment, clamped to >= 0.
-HWY_INLINE Float valueIn(const WideTable::Channel& channel, const Segment& at) {
+HWY_INLINE Float valueIn(const SimdTable::Channel& channel, const Segment& at) {
   const auto [value, slope] = loadPairs(&channel[0].value, Indices(shiftLeft<1>(at.index)));
   // Constant segments may begin at -infinity.
   return notBelow0(value + select(slope == 0.0F, 0.0F, at.beyondStart * slope));
 }
 
-HWY_INLINE Float valueOf(const WideTable& table, Float s) {
+HWY_INLINE Float valueOf(const SimdTable& table, Float s) {
   return valueIn(table.channels[0], segmentOf(table, s));
 }
 
@@ -97,7 +97,7 @@ struct ByLines {
   LaneMask isBent;
 };
 /// `first`: number of each lane's first line.
-HWY_INLINE ByLines byLines(const WideLines& table, Int first, Float s) {
+HWY_INLINE ByLines byLines(const SimdLines& table, Int first, Float s) {
   const Float place = max(min((s - table.start) * table.perUnit, table.last), 0.0F);
   const Float line = floor(place);
   const auto [value, rise] =
@@ -106,12 +106,12 @@ HWY_INLINE ByLines byLines(const WideLines& table, Int first, Float s) {
 }
 
 /// Extinction (mm^-1) of a scalar, without a mixture.
-HWY_INLINE Float extinctionOf(const WideLines& table, Float s) {
+HWY_INLINE Float extinctionOf(const SimdLines& table, Float s) {
   const auto [value, isBent] = byLines(table, 0, s);
   return isBent.any() ? select(isBent, valueOf(table.segments[0], s), value) : value;
 }
 
-/// Majorant cells, one a lane (WideCells).
+/// Majorant cells, one a lane (SimdMajorants).
 struct LaneCells {
   Float majorant; ///< mm^-1
   Float reach;    ///< cells
@@ -125,7 +125,7 @@ HWY_INLINE LaneCells cellsAt(const WideScene& scene, Float x, Float y, Float z) 
   // This order of min and max maps NaN to 0.
   const Int index = wholeToInt(max(min(place, scene.lastCell), 0.0F));
   const Int code = gather(scene.cells.codes.data(), index);
-  return {bitsAsFloat(code & WideCells::majorantBits), toFloat(code & WideCells::reachBits),
+  return {bitsAsFloat(code & SimdMajorants::majorantBits), toFloat(code & SimdMajorants::reachBits),
           code < 0};
 }
 

@@ -8,7 +8,7 @@ namespace {
 constexpr std::size_t lineCount = 1024;
 
 /// Appends a function's lines over the bins between two scalars.
-void append(std::vector<WideTable::Line>& lines, const ScalarFunction& function,
+void append(std::vector<SimdTable::Line>& lines, const ScalarFunction& function,
             const Interval& bins) {
   const auto& knots = function.knots();
   const double width = (bins.end - bins.begin) / static_cast<double>(lineCount);
@@ -45,7 +45,7 @@ float perUnitOf(std::size_t count, double range) {
 } // namespace
 
 template <int Channels>
-WideTable::WideTable(const PiecewiseLinear<Channels>& function) {
+SimdTable::SimdTable(const PiecewiseLinear<Channels>& function) {
   const auto& knots = function.knots();
   position = {-std::numeric_limits<float>::infinity()};
   for (const auto& knot : knots)
@@ -76,10 +76,10 @@ WideTable::WideTable(const PiecewiseLinear<Channels>& function) {
   }
 }
 
-template WideTable::WideTable(const PiecewiseLinear<1>&);
-template WideTable::WideTable(const PiecewiseLinear<3>&);
+template SimdTable::SimdTable(const PiecewiseLinear<1>&);
+template SimdTable::SimdTable(const PiecewiseLinear<3>&);
 
-WideLines::WideLines(const std::vector<const ScalarFunction*>& functions) {
+SimdLines::SimdLines(const std::vector<const ScalarFunction*>& functions) {
   Interval bins{infinity, -infinity};
   for (const ScalarFunction* function : functions)
     bins = joined(bins, {function->knots().front().position, function->knots().back().position});

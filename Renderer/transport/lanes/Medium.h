@@ -11,14 +11,14 @@ namespace fenestra {
 /// Segment i spans position[i] to position[i + 1], where a channel is value + slope (s -
 /// position[i]); the first segment begins at -infinity, the last ends at infinity. Value and slope
 /// are neighbours in memory: lanes load two floats at a time.
-struct WideTable {
+struct SimdTable {
   struct Line {
     float value, slope;
   };
   using Channel = std::vector<Line>;
 
   template <int Channels>
-  explicit WideTable(const PiecewiseLinear<Channels>& function);
+  explicit SimdTable(const PiecewiseLinear<Channels>& function);
 
   std::vector<float> position;
   std::vector<std::int32_t> binSegment; ///< first candidate of each equal bin, from binStart on
@@ -26,18 +26,18 @@ struct WideTable {
   std::vector<Channel> channels;
 };
 
-extern template WideTable::WideTable(const PiecewiseLinear<1>&);
-extern template WideTable::WideTable(const PiecewiseLinear<3>&);
+extern template SimdTable::SimdTable(const PiecewiseLinear<1>&);
+extern template SimdTable::SimdTable(const PiecewiseLinear<3>&);
 
 /// Functions over equal bins, the same for all, so that one load serves lanes of different
 /// functions: `count` lines of one function, then the next. Over a bin a line is value and rise,
 /// then comes the value beyond. NaN rise: the bin holds a knot, ask the segments.
-struct WideLines {
-  WideLines() = default;
-  explicit WideLines(const std::vector<const ScalarFunction*>& functions);
+struct SimdLines {
+  SimdLines() = default;
+  explicit SimdLines(const std::vector<const ScalarFunction*>& functions);
 
-  std::vector<WideTable::Line> lines;
-  std::vector<WideTable> segments; ///< of each function
+  std::vector<SimdTable::Line> lines;
+  std::vector<SimdTable> segments; ///< of each function
   float start = 0.0F;              ///< of the first bin
   float perUnit = 0.0F;            ///< bins; 0: none have a width that floats can tell
   std::int32_t count = 0;

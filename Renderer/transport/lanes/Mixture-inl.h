@@ -1,20 +1,20 @@
 // Parts of a mixture at points in index space.
 
 /// Extinction (mm^-1) of one component a lane, as if it had all of the space.
-HWY_INLINE Float extinctionOf(const WideLines& table, LaneMask which, Int components,
+HWY_INLINE Float extinctionOf(const SimdLines& table, LaneMask which, Int components,
                               Float scalar) {
-  ByLines at = byLines(table, orZero(which, components * table.count), scalar);
+  ByLines at = byLines(table, zeroUnless(which, components * table.count), scalar);
   forEachComponent(which & at.isBent, components, [&](LaneMask same, std::size_t component) {
-    at.value.where(same, valueOf(table.segments[component], scalar));
+    at.value.setIf(same, valueOf(table.segments[component], scalar));
   });
   return at.value;
 }
 
 /// Lanes of `which` whose component the clip leaves.
-HWY_INLINE LaneMask freeIn(const WideMixture& mixture, LaneMask which, Int components) {
+HWY_INLINE LaneMask freeIn(const SimdMixture& mixture, LaneMask which, Int components) {
   if (!mixture.hasFree)
     return LaneMask::none();
-  return gather(mixture.isFree.data(), orZero(which, components)) == 1;
+  return gather(mixture.isFree.data(), zeroUnless(which, components)) == 1;
 }
 
 /// Calls visit(lanes, components, extinctions) for the parts in the lanes of `which`
@@ -41,7 +41,7 @@ inline LaneExtinctions extinctionsOf(const WideScene& scene, LaneMask which, con
   const auto add = [&](LaneMask lanes, Int components, Float share) {
     const Float part = share * extinctionOf(scene.extinctions, lanes, components, scalar);
     const LaneMask free = freeIn(*scene.mixture, lanes, components);
-    sums.free = sums.free + orZero(free, part);
+    sums.free = sums.free + zeroUnless(free, part);
     sums.clipped = sums.clipped + select(free, 0.0F, part);
   };
   LaneShares(scene.mixture->alike, index).forEach(which, add);

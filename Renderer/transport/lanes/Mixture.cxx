@@ -36,14 +36,15 @@ std::vector<std::int32_t> bricksAlike(const Mixture& mixture) {
 
 } // namespace
 
-bool WideMixture::serves(const Mixture& mixture) {
+bool SimdMixture::serves(const Mixture& mixture) {
   const auto isServed = [](const Component& component) {
     return !component.transfer.gradientOpacity && component.border == 0.0;
   };
-  return WideShares::serves(*mixture.shares) && std::ranges::all_of(mixture.components, isServed);
+  return SimdLabelWeights::serves(*mixture.shares) &&
+         std::ranges::all_of(mixture.components, isServed);
 }
 
-WideMixture::WideMixture(const Mixture& mixture, const Grid& volume)
+SimdMixture::SimdMixture(const Mixture& mixture, const Grid& volume)
     : shares(*mixture.shares, volume),
       alike(shares),
       alikeBricks(std::make_shared<const std::vector<std::int32_t>>(bricksAlike(mixture))),

@@ -10,16 +10,16 @@
 namespace fenestra {
 
 /// A view: the mixture must outlive the object.
-struct WideMixture {
+struct SimdMixture {
   /// True if lanes support every part of the mixture: no gradient opacity, no borders as surfaces.
   static bool serves(const Mixture& mixture);
   /// `volume`: whose points are asked for.
-  WideMixture(const Mixture& mixture, const Grid& volume);
+  SimdMixture(const Mixture& mixture, const Grid& volume);
 
-  WideShares shares;
+  SimdLabelWeights shares;
   /// The same, but bricks whose components all have one extinction, and are clipped alike, are pure
   /// ones of the first such component: flights need not tell them apart.
-  WideShares alike;
+  SimdLabelWeights alike;
   std::shared_ptr<const std::vector<std::int32_t>> alikeBricks;
   bool hasFree;                     ///< the clip leaves some component
   std::vector<std::int32_t> isFree; ///< of each component: 1, or 0

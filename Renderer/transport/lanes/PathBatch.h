@@ -9,34 +9,34 @@ namespace fenestra {
 struct PathStarts {
   std::size_t size = 0;
   bool isStratified = false;
-  Column<float> column, row;          ///< of the pixel
-  Column<float> from, to;             ///< part of the eye ray left by clipping: see beginPaths
-  Column<std::uint32_t> start, key;   ///< NumberSource::Stream
-  Column<std::uint32_t> number;       ///< of the sample in the stream
-  Column<std::uint32_t> tile, ofTile; ///< whom the sample is delivered to: tile, sample in there
+  SoaArray<float> column, row;          ///< of the pixel
+  SoaArray<float> from, to;             ///< part of the eye ray left by clipping: see beginPaths
+  SoaArray<std::uint32_t> start, key;   ///< NumberSource::Stream
+  SoaArray<std::uint32_t> number;       ///< of the sample in the stream
+  SoaArray<std::uint32_t> tile, ofTile; ///< whom the sample is delivered to: tile, sample in there
 };
 
 /// Paths: `Path` as a structure of arrays, those that began first in front.
 struct PathBatch {
-  RayBatch rays;      ///< next rays, and their collisions
-  Columns3 direction; ///< of the rays, world axes, unit
-  Columns3 weight, radiance;
-  Column<float> scatterPdf;
-  Column<std::int32_t> bounces;
-  Column<std::uint32_t> key, counter;     ///< of the paths' random numbers
-  Column<std::uint32_t> tile, ofTile;     ///< PathStarts
-  std::array<Column<float>, 2> scattered; ///< numbers of the first scattered directions
-  std::array<Column<float>, 2> choices;   ///< at the first collisions: surface or not, light
+  RayBatch rays;       ///< next rays, and their collisions
+  SoaArray3 direction; ///< of the rays, world axes, unit
+  SoaArray3 weight, radiance;
+  SoaArray<float> scatterPdf;
+  SoaArray<std::int32_t> bounces;
+  SoaArray<std::uint32_t> key, counter;     ///< of the paths' random numbers
+  SoaArray<std::uint32_t> tile, ofTile;     ///< PathStarts
+  std::array<SoaArray<float>, 2> scattered; ///< numbers of the first scattered directions
+  std::array<SoaArray<float>, 2> choices;   ///< at the first collisions: surface or not, light
 
   /// Eye rays, of use until the first collision: row of the pixel, direction, depth at the ray's
   /// beginning (mm, counted from EyeTable::nearDepth) and its growth per mm of the ray.
-  Column<float> row;
-  Columns3 eyeDirection;
-  Column<float> depth, depthPerLength;
+  SoaArray<float> row;
+  SoaArray3 eyeDirection;
+  SoaArray<float> depth, depthPerLength;
 
   /// First collision; depth is counted as above.
-  Column<float> firstDepth;
-  Columns3 firstAlbedo, firstNormal;
+  SoaArray<float> firstDepth;
+  SoaArray3 firstAlbedo, firstNormal;
 
   /// Bit i % 64 of number i / 64: path i has ended.
   std::array<std::uint64_t, RayBatch::capacity / 64> ended;

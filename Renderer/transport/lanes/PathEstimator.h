@@ -15,7 +15,7 @@ class PathWave {
 public:
   /// A view: all arguments must outlive the wave. The tracker must have the same `stop`: paths left
   /// unfinished are dropped here.
-  PathWave(const WideTracker& tracker, const EventScene& scene, const EyeTable& table,
+  PathWave(const SimdTracker& tracker, const EventScene& scene, const EyeTable& table,
            const EyeRays& eye, const StopFlag& stop)
       : m_tracker(tracker), m_scene(scene), m_table(table), m_eye(eye), m_stop(stop) {}
 
@@ -71,7 +71,7 @@ private:
   }
 
   PathSample sample(const PathBatch& paths, std::size_t i) const {
-    const auto triple = [&](const Columns3& columns) {
+    const auto triple = [&](const SoaArray3& columns) {
       return Rgb(columns[0][i], columns[1][i], columns[2][i]);
     };
     if (paths.bounces[i] == 0) // escaped, or collided with a limit of 0 scatterings
@@ -87,7 +87,7 @@ private:
     return sample;
   }
 
-  const WideTracker& m_tracker;
+  const SimdTracker& m_tracker;
   const EventScene& m_scene;
   const EyeTable& m_table;
   const EyeRays& m_eye;

@@ -14,13 +14,13 @@ namespace {
 
 /// A path's own random numbers: hashes of a counter and a key.
 struct Draws {
-  Word key, counter;
+  UInt key, counter;
 
-  HWY_INLINE Word nextBits() {
+  HWY_INLINE UInt nextBits() {
     counter = counter + 0x9e3779b9U;
     return mixBits(counter ^ key);
   }
-  HWY_INLINE Float uniform() { return uniformOf(nextBits()); }
+  HWY_INLINE Float uniform() { return toUniform(nextBits()); }
 };
 
 /// One path a lane, at its collision.
@@ -67,9 +67,9 @@ private:
     m_collisions += going.count();
     LaneMask alive = going;
     if (going.any()) {
-      const Int one = orZero(going, 1);
+      const Int one = zeroUnless(going, 1);
       store(bounces + one, &m_paths.bounces[i]);
-      alive = collide(i, going, first & going, origin, orZero(going, distance));
+      alive = collide(i, going, first & going, origin, zeroUnless(going, distance));
     }
     m_paths.ended[i / 64] |= there.without(alive).bits() << i % 64;
   }
@@ -157,7 +157,7 @@ private:
   }
 
   /// A number of each path at i: of `given` where it scatters for the first time.
-  static HWY_INLINE Float givenFirst(LaneMask first, const Column<float>& given, std::size_t i,
+  static HWY_INLINE Float givenFirst(LaneMask first, const SoaArray<float>& given, std::size_t i,
                                      Draws& draws) {
     return select(first, load(&given[i]), draws.uniform());
   }
@@ -180,10 +180,10 @@ private:
   }
 
   void recordFirst(std::size_t i, const Collisions& at, Float distance) {
-    const auto keep = [&](Float now, Column<float>& column) {
+    const auto keep = [&](Float now, SoaArray<float>& column) {
       store(select(at.first, now, load(&column[i])), &column[i]);
     };
-    const auto keep3 = [&](const Float3& now, Columns3& columns) {
+    const auto keep3 = [&](const Float3& now, SoaArray3& columns) {
       store3(select(at.first, now, load3(columns, i)), columns, i);
     };
     keep(fma(distance, load(&m_paths.depthPerLength[i]), load(&m_paths.depth[i])),
@@ -200,8 +200,8 @@ private:
   template <typename Toward>
   void sampleLights(std::size_t i, const Collisions& at, Draws& draws, Toward&& toward) {
     const Float choice = givenFirst(at.first, m_paths.choices[1], i, draws);
-    const Word u = draws.nextBits();
-    const Word v = draws.nextBits();
+    const UInt u = draws.nextBits();
+    const UInt v = draws.nextBits();
     const LightDraw light =
         drawOf(m_scene, at.going, mapPoint(m_scene.toLocal, at.index), choice, u, v);
     const Scattered scattered = toward(light.direction);
@@ -209,14 +209,14 @@ private:
     const Float3 radiance = (1.0F / pdf) * (at.weight * scattered.factor * light.radiance);
     const LaneMask arrives = at.going & (greatest(radiance) > 0.0F);
     const std::size_t count = arrives.count();
-    const Word depth = draws.nextBits();
+    const UInt depth = draws.nextBits();
     const Float acceptance = draws.uniform();
     if (count == 0)
       return;
     const Float3 direction = mapDirection(m_scene.localToIndex, light.direction);
     const Float length = min(light.distance, lengthInside(m_volume, at.index, direction));
     const std::size_t to = m_out.rays.size;
-    const Shuffle pack = Shuffle::packing(arrives);
+    const Shuffle pack = Shuffle::compress(arrives);
     const auto put = [&](auto x, auto& column) { store(pack(x), &column[to]); };
     store3(pack(at.index), m_out.rays.origin, to);
     store3(pack(direction), m_out.rays.direction, to);
@@ -224,7 +224,7 @@ private:
     store3(pack(radiance), m_out.radiance, to);
     put(depth, m_out.rays.depth);
     put(acceptance, m_out.rays.acceptance);
-    put(Word(hn::Iota(words, static_cast<std::uint32_t>(i))), m_out.path);
+    put(UInt(hn::Iota(uints, static_cast<std::uint32_t>(i))), m_out.path);
     m_out.rays.size += count;
   }
 
@@ -269,7 +269,7 @@ void dropEndedLanes(PathBatch& paths) {
   for (std::size_t i = 0; i < paths.rays.size; i += laneCount) {
     const LaneMask ended = LaneMask::fromBits(paths.ended[i / 64] >> i % 64);
     const LaneMask going = LaneMask::first(paths.rays.size - i).without(ended);
-    const Shuffle pack = Shuffle::packing(going);
+    const Shuffle pack = Shuffle::compress(going);
     const auto move = [&](auto&... columns) {
       (store(pack(load(&columns[i])), &columns[left]), ...);
     };

@@ -11,8 +11,8 @@ namespace fenestra {
 /// Light sampled for paths: `radiance` times the transmittance of the ray arrives at `path`.
 struct LightBatch {
   RayBatch rays;
-  Columns3 radiance;
-  Column<std::uint32_t> path;
+  SoaArray3 radiance;
+  SoaArray<std::uint32_t> path;
 };
 
 /// Handles the paths' collisions and escapes (rays.result): gathers the light met by the rays,

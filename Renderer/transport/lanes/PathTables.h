@@ -28,8 +28,8 @@ struct EventScene {
              const Mixture* mixture = nullptr);
 
   std::vector<ScatterLaw<float>> laws; ///< one; or of each component of a mixture
-  std::vector<WideTable> albedos;      ///< one; or of each component of a mixture or tint
-  std::optional<WideShares> tint;
+  std::vector<SimdTable> albedos;      ///< one; or of each component of a mixture or tint
+  std::optional<SimdLabelWeights> tint;
   bool hybrid;       ///< surface shading
   float surfaceRate; ///< 25 gamma^3 of Medium's surface probability
   bool wantNormals;

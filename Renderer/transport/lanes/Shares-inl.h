@@ -17,7 +17,7 @@ HWY_INLINE void forEachComponent(LaneMask which, Int components, Visit&& visit) 
 class LaneShares {
 public:
   /// `index`: in the volume's index space.
-  HWY_INLINE LaneShares(const WideShares& shares, const Float3& index)
+  HWY_INLINE LaneShares(const SimdLabelWeights& shares, const Float3& index)
       : m_shares(shares), m_corner(cornerAt(mapPoint(shares.toShares, index))) {}
 
   /// Calls visit(lanes, components, shares) until all shares of the lanes of `which` have been
@@ -27,12 +27,12 @@ public:
     const Int code = gather(m_shares.bricks, m_corner.brick);
     const LaneMask mixed = which & (code < 0);
     Int components = code;
-    Float share = orZero(which, 1.0F);
+    Float share = zeroUnless(which, 1.0F);
     LaneMask some = which;
     if (mixed.any()) {
       const Rest rest = forEachPlane(mixed, code ^ -1, visit);
-      components.where(mixed, rest.components);
-      share.where(mixed, shareOf(rest.bytes));
+      components.setIf(mixed, rest.components);
+      share.setIf(mixed, shareOf(rest.bytes));
       some = share > 0.0F;
     }
     if (some.any())
@@ -56,7 +56,7 @@ private:
   };
 
   HWY_INLINE Corner cornerAt(const Float3& p) const {
-    const WideAxes& axes = m_shares.axes;
+    const SimdAxes& axes = m_shares.axes;
     const PlaceAlong x = placeAlong(axes[0], p.x);
     const PlaceAlong y = placeAlong(axes[1], p.y);
     const PlaceAlong z = placeAlong(axes[2], p.z);
@@ -78,13 +78,13 @@ private:
     const auto* const memory = reinterpret_cast<const std::uint8_t*>(m_shares.planes);
     Rest rest{0, {-1, -1, -1, -1}};
     for (LaneMask left = mixed; left.any(); plane = plane + 1) {
-      const Int start = orZero(left, plane * std::int32_t{sizeof(Shares::Plane)});
+      const Int start = zeroUnless(left, plane * std::int32_t{sizeof(Shares::Plane)});
       const Int numbers = loadInts(memory + numbersAt, Indices(start));
       const Bytes bytes = bytesFrom(memory, start + m_corner.voxel);
       for (std::size_t i = 0; i < bytes.size(); ++i) // no byte of the shares falls below 0
-        rest.bytes[i] = rest.bytes[i] - orZero(left, bytes[i]);
-      rest.components.where(left, shiftRight<2 * byte>(numbers) & 0xff);
-      const Float share = orZero(left, shareOf(bytes));
+        rest.bytes[i] = rest.bytes[i] - zeroUnless(left, bytes[i]);
+      rest.components.setIf(left, shiftRight<2 * byte>(numbers) & 0xff);
+      const Float share = zeroUnless(left, shareOf(bytes));
       if (const LaneMask some = share > 0.0F; some.any())
         visit(some, shiftRight<byte>(numbers) & 0xff, share);
       left = left & (numbers < 1 << 3 * byte);
@@ -113,6 +113,6 @@ private:
     return lerp(slice(0), slice(2), f.z) * (1.0F / 255.0F);
   }
 
-  const WideShares& m_shares;
+  const SimdLabelWeights& m_shares;
   Corner m_corner;
 };

@@ -9,17 +9,17 @@
 namespace fenestra {
 
 /// Voxels along one axis, for interpolation in lanes.
-struct WideAxis {
+struct SimdAxis {
   float last;          ///< index of the last voxel
   float lastCell;      ///< greatest index of a lower voxel in interpolation
   std::int32_t stride; ///< offset in this axis of the next voxel or brick; 0 for one voxel
 };
-using WideAxes = std::array<WideAxis, 3>;
+using SimdAxes = std::array<SimdAxis, 3>;
 
 /// `counts`: of voxels or bricks, for the strides.
-inline WideAxes wideAxes(const Size3& voxels, const Size3& counts) {
+inline SimdAxes makeSimdAxes(const Size3& voxels, const Size3& counts) {
   const auto axis = [&](int i, std::int64_t stride) {
-    return WideAxis{static_cast<float>(voxels[i] - 1),
+    return SimdAxis{static_cast<float>(voxels[i] - 1),
                     static_cast<float>(std::max<std::int64_t>(voxels[i] - 2, 0)),
                     static_cast<std::int32_t>(voxels[i] > 1 ? stride : 0)};
   };
@@ -27,21 +27,21 @@ inline WideAxes wideAxes(const Size3& voxels, const Size3& counts) {
 }
 
 /// A view: the shares must outlive the object.
-struct WideShares {
+struct SimdLabelWeights {
   /// True if lanes can number the bytes of all planes.
   static bool serves(const Shares& shares) {
     constexpr std::size_t most = std::size_t{1} << 32; // indices of 32 bits
     return shares.planes().size() <= most / sizeof(Shares::Plane);
   }
   /// `volume`: whose points are asked for.
-  WideShares(const Shares& shares, const Grid& volume)
+  SimdLabelWeights(const Shares& shares, const Grid& volume)
       : toShares(affineRows(shares.grid().worldToIndex * volume.indexToWorld)),
-        axes(wideAxes(shares.grid().size, shares.brickCount())),
+        axes(makeSimdAxes(shares.grid().size, shares.brickCount())),
         bricks(shares.bricks().data()),
         planes(shares.planes().data()) {}
 
   AffineRows toShares; ///< from the volume's index space
-  WideAxes axes;
+  SimdAxes axes;
   const std::int32_t* bricks; ///< Shares::bricks()
   const Shares::Plane* planes;
 };

@@ -59,7 +59,7 @@ public:
   }
 
 private:
-  static std::uint64_t sumOf(Word numbers) {
+  static std::uint64_t sumOf(UInt numbers) {
     const LaneArray<std::uint32_t> each(numbers);
     return std::accumulate(each.begin(), each.end(), std::uint64_t{0});
   }
@@ -74,19 +74,19 @@ private:
     const std::size_t first = m_queue.next;
     m_queue.next += count;
 
-    const Shuffle deal = Shuffle::dealing(fresh);
+    const Shuffle deal = Shuffle::expand(fresh);
     const auto dealt = [&](const auto& column) { return deal(load(&column[first])); };
     for (std::size_t axis = 0; axis < 3; ++axis)
       m_way[axis].where(fresh, Way::entered(m_scene.axes[axis], dealt(m_rays.origin[axis]),
                                             dealt(m_rays.direction[axis])));
-    m_t.where(fresh, 0.0F);
-    m_end.where(fresh, dealt(m_rays.length));
-    m_ratio.where(fresh, 1.0F);
-    const Word depth = dealt(m_rays.depth);
-    m_depth.where(fresh, exponentialOf(depth));
-    m_counter.where(fresh, depth);
-    m_acceptance.where(fresh, dealt(m_rays.acceptance));
-    m_ray.where(fresh, deal.from() + static_cast<std::int32_t>(first));
+    m_t.setIf(fresh, 0.0F);
+    m_end.setIf(fresh, dealt(m_rays.length));
+    m_ratio.setIf(fresh, 1.0F);
+    const UInt depth = dealt(m_rays.depth);
+    m_depth.setIf(fresh, toExponential(depth));
+    m_counter.setIf(fresh, depth);
+    m_acceptance.setIf(fresh, dealt(m_rays.acceptance));
+    m_ray.setIf(fresh, deal.indices() + static_cast<std::int32_t>(first));
     m_busy = m_busy | fresh;
   }
 
@@ -103,15 +103,15 @@ private:
     const LaneMask crossed = going.without(hit);
     m_t = select(hit, m_t + m_depth / cell.majorant, select(crossed, stop, m_t));
     m_depth = m_depth - depthToStop; // of use in crossed lanes alone
-    m_majorant.where(hit, cell.majorant);
+    m_majorant.setIf(hit, cell.majorant);
     m_cut = (cell.cut & hit) | m_cut.without(hit);
     m_hit = m_hit | hit;
-    m_cells = m_cells + orZero(crossed, 1U);
-    m_skipped = m_skipped + orZero(crossed & (cell.majorant == 0.0F), 1U);
+    m_cells = m_cells + zeroUnless(crossed, 1U);
+    m_skipped = m_skipped + zeroUnless(crossed & (cell.majorant == 0.0F), 1U);
 
     const LaneMask ended = crossed & (stop >= m_end);
     if constexpr (!wantRatio)
-      m_t.where(ended, std::numeric_limits<float>::infinity());
+      m_t.setIf(ended, std::numeric_limits<float>::infinity());
     m_busy = m_busy.without(ended); // results stay until handIn()
   }
 
@@ -132,25 +132,25 @@ private:
     const Float scalar = scalarAt<Voxel>(m_scene.field, at);
     const LaneExtinctions all = extinctionsAt<isMixed>(m_scene, hit, at, scalar);
     Float extinction = all.clipped;
-    Word counter = m_counter;
+    UInt counter = m_counter;
     const Float u = m_acceptance;
     const LaneMask cut = hit & m_cut;
     if (cut.any())
       extinction = clipped(cut, at, all, u, counter);
     if constexpr (isMixed)
       extinction = extinction + all.free;
-    m_depth.where(hit, exponential(counter));
-    m_acceptance.where(hit, uniform(counter));
-    m_counter.where(hit, counter);
+    m_depth.setIf(hit, exponential(counter));
+    m_acceptance.setIf(hit, uniform(counter));
+    m_counter.setIf(hit, counter);
     if constexpr (wantRatio) {
       constexpr float rouletteBelow = 0.4F;
       const Float thinned = m_ratio * notBelow0(1.0F - extinction / m_majorant);
-      const Float survived = orZero(u * rouletteBelow < thinned, rouletteBelow);
-      m_ratio.where(hit, select(thinned < rouletteBelow, survived, thinned));
+      const Float survived = zeroUnless(u * rouletteBelow < thinned, rouletteBelow);
+      m_ratio.setIf(hit, select(thinned < rouletteBelow, survived, thinned));
       m_busy = m_busy.without(hit & (m_ratio <= 0.0F));
     } else {
       const LaneMask real = hit & (u * m_majorant < extinction);
-      m_scalar.where(real, scalar);
+      m_scalar.setIf(real, scalar);
       m_busy = m_busy.without(real);
     }
   }
@@ -163,22 +163,22 @@ private:
   /// et al. 2018, section 4.2). Such estimates vary a little more, and cost half. (Not where
   /// something is left: together they could exceed the majorant.)
   HWY_INLINE Float clipped(LaneMask cut, const Float3& at, const LaneExtinctions& all, Float u,
-                           Word& counter) {
+                           UInt& counter) {
     Float extinction = all.clipped;
     if constexpr (wantRatio) {
       cut = cut & (extinction > 0.0F);
       if (m_scene.seams && !(m_scene.mixture && m_scene.mixture->hasFree)) {
-        Word after = counter;
+        UInt after = counter;
         const LaneMask isReal = uniform(after) * m_majorant < extinction;
-        counter.where(cut, after);
-        extinction.where(cut, orZero(isReal, m_majorant));
+        counter.setIf(cut, after);
+        extinction.setIf(cut, zeroUnless(isReal, m_majorant));
         cut = cut & isReal;
       }
     } else {
       cut = cut & (u * m_majorant < (isMixed ? extinction + all.free : extinction));
     }
     if (cut.any())
-      extinction.where(cut, extinction * keep(m_scene, at, cut));
+      extinction.setIf(cut, extinction * keep(m_scene, at, cut));
     return extinction;
   }
 
@@ -209,8 +209,8 @@ private:
   Float m_majorant = 0.0F;   ///< there
   Float m_ratio = 0.0F;
   Float m_scalar = 0.0F; ///< at a real collision
-  Word m_counter = 0U;   ///< of the random numbers
-  Word m_cells = 0U, m_skipped = 0U;
+  UInt m_counter = 0U;   ///< of the random numbers
+  UInt m_cells = 0U, m_skipped = 0U;
   std::uint64_t m_lookups = 0;
 
   static Way idle() { return {0.0F, 0.0F, 0.0F, 0.0F}; }
@@ -259,11 +259,11 @@ namespace fenestra {
 
 HWY_EXPORT(followAll);
 
-void WideTracker::sampleCollisions(RayBatch& rays, Counters& counters) const {
+void SimdTracker::sampleCollisions(RayBatch& rays, Counters& counters) const {
   HWY_DYNAMIC_DISPATCH(followAll)(m_scene, rays, false, m_stop, counters);
 }
 
-void WideTracker::estimateTransmittances(RayBatch& rays, Counters& counters) const {
+void SimdTracker::estimateTransmittances(RayBatch& rays, Counters& counters) const {
   HWY_DYNAMIC_DISPATCH(followAll)(m_scene, rays, true, m_stop, counters);
 }
 

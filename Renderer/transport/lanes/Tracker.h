@@ -24,23 +24,23 @@ namespace fenestra {
 /// One number for each ray of a batch, padded by the greatest number of lanes, so that whole
 /// vectors can be read and written.
 template <typename T>
-struct alignas(64) Column : std::array<T, 512 + 16> {};
-using Columns3 = std::array<Column<float>, 3>;
+struct alignas(64) SoaArray : std::array<T, 512 + 16> {};
+using SoaArray3 = std::array<SoaArray<float>, 3>;
 
 /// Rays followed together; a structure of arrays.
 struct RayBatch {
   static constexpr std::size_t capacity = 512;
 
   std::size_t size = 0;
-  Columns3 origin;      ///< index space, inside the domain
-  Columns3 direction;   ///< index space per mm: t is in mm
-  Column<float> length; ///< mm until the ray ends or leaves the domain
+  SoaArray3 origin;       ///< index space, inside the domain
+  SoaArray3 direction;    ///< index space per mm: t is in mm
+  SoaArray<float> length; ///< mm until the ray ends or leaves the domain
   /// Random numbers of the first tentative collision: bits of the optical depth to it, and whether
   /// it is real, in [0, 1]. All others are hashes of what is counted from these bits.
-  Column<std::uint32_t> depth;
-  Column<float> acceptance;
-  Column<float> result; ///< mm to the collision, or infinity; or the transmittance
-  Column<float> scalar; ///< at the collision
+  SoaArray<std::uint32_t> depth;
+  SoaArray<float> acceptance;
+  SoaArray<float> result; ///< mm to the collision, or infinity; or the transmittance
+  SoaArray<float> scalar; ///< at the collision
 
   void set(std::size_t i, const Ray& indexRay, double lengthInMm) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -58,7 +58,7 @@ struct RayBatch {
 double setInside(RayBatch& rays, std::size_t i, const Domain& domain, const Ray& ray,
                  const Interval& range);
 
-class WideTracker {
+class SimdTracker {
 public:
   /// True if floats suffice and lanes support every part of the medium: no gradient opacity, at
   /// least two voxels along x, 4 to 2^31 voxels in all, its diagonal at most 2^17 of its smallest
@@ -68,7 +68,7 @@ public:
 
   /// A view: volume, clip, style, mixture and stop must outlive the tracker. Once `stop` is true
   /// rays are abandoned and results are meaningless.
-  WideTracker(const Volume& volume, const Domain& domain, const TransferFunction& transfer,
+  SimdTracker(const Volume& volume, const Domain& domain, const TransferFunction& transfer,
               const MajorantGrid& majorants, const Clip& clip, const ContextStyle* style = nullptr,
               const StopFlag& stop = neverStopped, const Mixture* mixture = nullptr);
 

@@ -1,4 +1,4 @@
-// Construction of WideTracker's scene.
+// Construction of SimdTracker's scene.
 
 #include "transport/lanes/Tracker.h"
 
@@ -27,8 +27,8 @@ double mostVoxelsPerMm(const Grid& grid) {
   return grid.worldToIndex.linear().transpose().columnNorms().maxCoeff();
 }
 
-WideField fieldOf(const void* voxels, const Grid& grid) {
-  return {voxels, grid.voxelCount(), wideAxes(grid.size, grid.size)};
+SimdField fieldOf(const void* voxels, const Grid& grid) {
+  return {voxels, grid.voxelCount(), makeSimdAxes(grid.size, grid.size)};
 }
 
 /// Extinctions of all matter.
@@ -43,7 +43,7 @@ std::vector<const ScalarFunction*> extinctionsOf(const TransferFunction& transfe
 }
 
 void setCells(WideScene& scene, const MajorantGrid& majorants, const Grid& grid) {
-  scene.cells = WideCells(majorants);
+  scene.cells = SimdMajorants(majorants);
   const Size3& count = scene.cells.count;
   std::int64_t cellStride = 1;
   for (int axis = 0; axis < 3; ++axis) {
@@ -115,7 +115,7 @@ double setInside(RayBatch& rays, std::size_t i, const Domain& domain, const Ray&
   return inside.begin;
 }
 
-bool WideTracker::serves(const Volume& volume, const TransferFunction& transfer,
+bool SimdTracker::serves(const Volume& volume, const TransferFunction& transfer,
                          const Mixture* mixture) {
   constexpr double deepest = 1e5; // rounding moves a collision by 0.6 % of a free path, at most
   // Voxels in a row; a float's last place is then far below MajorantGrid::margin.
@@ -123,7 +123,7 @@ bool WideTracker::serves(const Volume& volume, const TransferFunction& transfer,
   const std::int64_t count = volume.grid.voxelCount();
   constexpr std::int64_t most = std::int64_t{1} << 31; // indices of 32 bits
   if (transfer.gradientOpacity || volume.grid.size.x() < 2 || count < 4 || count > most ||
-      (mixture && !WideMixture::serves(*mixture)))
+      (mixture && !SimdMixture::serves(*mixture)))
     return false;
   const double diagonal = 2.0 * volume.grid.boundingRadius();
   double greatest = 0.0;
@@ -133,7 +133,7 @@ bool WideTracker::serves(const Volume& volume, const TransferFunction& transfer,
   return diagonal * mostVoxelsPerMm(volume.grid) <= longest && greatest * diagonal <= deepest;
 }
 
-WideTracker::WideTracker(const Volume& volume, const Domain& domain,
+SimdTracker::SimdTracker(const Volume& volume, const Domain& domain,
                          const TransferFunction& transfer, const MajorantGrid& majorants,
                          const Clip& clip, const ContextStyle* style, const StopFlag& stop,
                          const Mixture* mixture)
@@ -144,7 +144,7 @@ WideTracker::WideTracker(const Volume& volume, const Domain& domain,
   };
   std::visit(setVoxels, volume.voxels);
   setCells(m_scene, majorants, volume.grid);
-  m_scene.extinctions = WideLines(extinctionsOf(transfer, mixture));
+  m_scene.extinctions = SimdLines(extinctionsOf(transfer, mixture));
   if (mixture)
     m_scene.mixture.emplace(*mixture, volume.grid);
   m_scene.lower = narrow3(domain.box().lower);

@@ -16,13 +16,13 @@ namespace fenestra {
 class Seams;
 
 /// Voxels for interpolation in lanes.
-struct WideField {
+struct SimdField {
   const void* voxels = nullptr;
   std::int64_t count = 0;
-  WideAxes axes = {};
+  SimdAxes axes = {};
 };
 
-/// Plain numbers and pointers, in float and index space. Built by WideTracker.
+/// Plain numbers and pointers, in float and index space. Built by SimdTracker.
 struct WideScene {
   /// First voxel, of Voxels' types.
   using FirstVoxel =
@@ -32,7 +32,7 @@ struct WideScene {
     float cellEdge;      ///< voxels
     float cellsPerVoxel; ///< 1 / cellEdge
     float insideCells;   ///< greatest float below `cells`
-    float cellStride;    ///< offset of the next cell in WideCells::codes
+    float cellStride;    ///< offset of the next cell in SimdMajorants::codes
   };
   /// Samples of the clip's depth buffer along one axis (clip/focus/DepthBuffer.h).
   struct DepthAxis {
@@ -41,24 +41,24 @@ struct WideScene {
   enum class ClipKind { none, plane, depthLinear, depthNearest };
   /// ContextStyle (model/medium/ContextStyle.h) in float.
   struct Context {
-    WideField focus;
+    SimdField focus;
     AffineRows toFocus = {}; ///< index space to the focus's index space
     float level = 0.0F;      ///< voxel value at the focus's surface
     float extinction = 1.0F, saturation = 1.0F;
   };
 
   FirstVoxel voxels;
-  WideField field; ///< of `voxels`
+  SimdField field; ///< of `voxels`
   std::array<Axis, 3> axes;
   /// Domain: the box [lower, upper] in index space and, if cropped, [-1, 1]^3 in crop space.
   std::array<float, 3> lower, upper;
   std::optional<AffineRows> toCrop = {};
 
-  WideLines extinctions; ///< mm^-1 over the scalar: of all matter, or of a mixture's components
-  std::optional<WideMixture> mixture = {};
+  SimdLines extinctions; ///< mm^-1 over the scalar: of all matter, or of a mixture's components
+  std::optional<SimdMixture> mixture = {};
 
-  WideCells cells;        ///< fewer than 2^23
-  float firstCell = 0.0F; ///< index in WideCells::codes of the first cell inside the border
+  SimdMajorants cells;    ///< fewer than 2^23
+  float firstCell = 0.0F; ///< index in SimdMajorants::codes of the first cell inside the border
   float lastCell = 0.0F;  ///< index of the last one, the border's
   /// Way, mm, that a ray goes on behind a face before it looks for its cell: half of
   /// MajorantGrid::margin at most, so that the new cell is not the old one, whatever rounding does.

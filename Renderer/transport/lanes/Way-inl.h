@@ -21,17 +21,17 @@ struct Way {
     const Float inside = fma(origin, axis.cellsPerVoxel, 0.5F * axis.cellsPerVoxel);
     way.start = max(min(inside, axis.insideCells), 0.0F);
     const LaneMask moves = abs(way.speed) >= 1e-30F;
-    way.inverse = orZero(moves, 1.0F / way.speed);
+    way.inverse = zeroUnless(moves, 1.0F / way.speed);
     way.toMiddle =
         select(moves, (0.5F - way.start) * way.inverse, std::numeric_limits<float>::infinity());
     return way;
   }
 
   HWY_INLINE void where(LaneMask which, const Way& other) {
-    start.where(which, other.start);
-    speed.where(which, other.speed);
-    inverse.where(which, other.inverse);
-    toMiddle.where(which, other.toMiddle);
+    start.setIf(which, other.start);
+    speed.setIf(which, other.speed);
+    inverse.setIf(which, other.inverse);
+    toMiddle.setIf(which, other.toMiddle);
   }
 };
 

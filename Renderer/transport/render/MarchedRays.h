@@ -59,7 +59,7 @@ public:
   explicit MarchedInLanes(const RenderScene& scene)
       : m_scene(scene),
         m_domain(scene.volume.grid, scene.crop),
-        m_volume(WideTracker(scene.volume, m_domain, scene.transfer, scene.majorants, scene.clip,
+        m_volume(SimdTracker(scene.volume, m_domain, scene.transfer, scene.majorants, scene.clip,
                              scene.style, neverStopped, scene.mixture)
                      .scene()),
         m_events(scene.volume.grid, scene.transfer, scene.lights, 0, true, scene.tint,

@@ -334,7 +334,7 @@ template <typename Work>
 auto traceSimd(const RenderScene& scene, const RenderSettings& settings, const StopFlag& stop,
                Work&& work) {
   const Domain domain(scene.volume.grid, scene.crop);
-  const WideTracker tracker(scene.volume, domain, scene.transfer, scene.majorants, scene.clip,
+  const SimdTracker tracker(scene.volume, domain, scene.transfer, scene.majorants, scene.clip,
                             scene.style, stop, scene.mixture);
   const EventScene shading(scene.volume.grid, scene.transfer, scene.lights, settings.path.bounces,
                            settings.path.wantNormals, scene.tint, scene.mixture);
@@ -377,9 +377,9 @@ auto traceScene(const RenderScene& scene, const RenderSettings& settings, const 
 } // namespace
 
 bool lanesServe(const RenderScene& scene) {
-  return WideTracker::serves(scene.volume, scene.transfer, scene.mixture) &&
+  return SimdTracker::serves(scene.volume, scene.transfer, scene.mixture) &&
          EventScene::serves(scene.volume.grid, scene.transfer, scene.lights, scene.mixture) &&
-         (!scene.tint || WideShares::serves(*scene.tint->shares));
+         (!scene.tint || SimdLabelWeights::serves(*scene.tint->shares));
 }
 
 std::string targetOf(const RenderScene& scene, const RenderSettings& settings) {

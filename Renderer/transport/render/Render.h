@@ -127,7 +127,7 @@ struct RenderResult {
   std::string target = "scalar";
 };
 
-/// True if SIMD lanes serve the scene (WideTracker::serves, EventScene::serves).
+/// True if SIMD lanes serve the scene (SimdTracker::serves, EventScene::serves).
 bool lanesServe(const RenderScene& scene);
 
 /// RenderResult::target of a render.
