@@ -172,8 +172,8 @@ Film tracePicture(const RenderScene& scene, const RenderSettings& settings,
         [&](const auto& voxels) {
           const Medium medium(scene.volume.grid, voxels, scene.transfer);
           const auto tracker = makeTracker(medium);
-          tracePixels(PathEstimator(scene.volume.grid, medium, tracker, scene.lights, scene.camera,
-                                    scene.clip, settings.path, stop));
+          tracePixels(PathIntegrator(scene.volume.grid, medium, tracker, scene.lights, scene.camera,
+                                     scene.clip, settings.path, stop));
         },
         scene.volume.voxels);
   });

@@ -38,7 +38,7 @@ constexpr Mode table[] = {
      }},
     {"readable", "the scalar estimator, null collisions in a majorant grid, independent samples",
      [](const RenderScene& scene, RenderSettings settings) {
-       settings.transport = Transport::readable;
+       settings.integrator = Integrator::scalar;
        return renderProduct(scene, settings);
      }},
     {"global", "the same, null collisions against one majorant for the whole volume",

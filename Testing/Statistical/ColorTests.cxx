@@ -88,10 +88,10 @@ TEST(Furnace, IsOneForAWhiteSurface) {
 TEST(Furnace, IsNearlyOneForAWhiteSurfaceUnderACoat) {
   TestScene scene = step(Rgb::Ones(), 0.5, SurfaceShading::coat(0.5, 0.4));
   scene.transfer.albedo = ColorFunction({{0.0, Rgb::Ones()}});
-  for (const Transport transport : {Transport::fast, Transport::readable}) {
+  for (const Integrator transport : {Integrator::simd, Integrator::scalar}) {
     RenderSettings settings;
     settings.samples = 40;
-    settings.transport = transport;
+    settings.integrator = transport;
     const RgbEstimate estimate = pictureEstimate(scene.render(settings).film);
     EXPECT_GT(estimate.mean[0], 0.985);
     EXPECT_LE(estimate.mean[0], 1.0 + 4.0 * estimate.error[0]);

@@ -196,7 +196,7 @@ Outcome compareWithOracle(const Combination& c, const MatrixSettings& settings, 
   RenderSettings renderSettings = scene.settings;
   renderSettings.samples = settings.samples;
   renderSettings.seed = seedOf(c, settings, 0);
-  renderSettings.transport = settings.transport;
+  renderSettings.integrator = settings.transport;
   Outcome outcome{.combination = c,
                   .tileProbabilities = {},
                   .pictureProbability = {},

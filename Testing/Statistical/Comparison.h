@@ -17,7 +17,7 @@ namespace fenestra::testing {
 struct MatrixSettings {
   std::uint64_t samples = 128; ///< a pixel, of each renderer
   std::uint64_t seed = 1;
-  Transport transport = Transport::fast; ///< of the product
+  Integrator transport = Integrator::simd; ///< of the product
 };
 
 struct Outcome {

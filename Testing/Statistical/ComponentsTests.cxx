@@ -10,7 +10,7 @@
 namespace fenestra::testing::ComponentsTests {
 namespace {
 
-constexpr Transport transports[] = {Transport::fast, Transport::readable};
+constexpr Integrator transports[] = {Integrator::simd, Integrator::scalar};
 
 /// Ball in a labelmap of one voxel a mm, turned against the volumes, and smooth over 2 mm or hard.
 Mask ball(const Vec3& center, double radius, bool isSoft) {
@@ -71,9 +71,9 @@ TransferFunction coated() {
   return transfer;
 }
 
-RenderSettings settingsOf(Transport transport, std::uint64_t samples, std::uint64_t seed) {
+RenderSettings settingsOf(Integrator transport, std::uint64_t samples, std::uint64_t seed) {
   RenderSettings settings;
-  settings.transport = transport;
+  settings.integrator = transport;
   settings.samples = budget(samples);
   settings.seed = seeded(seed);
   settings.path.background.kind = Background::Kind::environment;
@@ -110,7 +110,7 @@ TEST(OneMatter, IsThatOfEverySegment) {
   TransferFunction steep = coated();
   steep.gradientOpacity = ScalarFunction({knot(0.0, 0.1), knot(0.3, 1.0)});
   for (const TransferFunction& transfer : {coated(), steep})
-    for (const Transport transport : transports) {
+    for (const Integrator transport : transports) {
       const TestScene alone = hills(transfer);
       TestScene mixed = hills(transfer);
       mixed.mixture = mixtureOf(balls(4, true), std::vector<Component>(5, {transfer}));
@@ -183,7 +183,7 @@ double depthOfTwo(int lowerPriority, int upperPriority) {
 
 /// Expects exp(-depth / mu) behind the slab, at five angles.
 void expectTransmittance(TestScene scene, double depth, std::uint64_t seed) {
-  for (const Transport transport : transports)
+  for (const Integrator transport : transports)
     for (const double mu : {1.0, 0.9, 0.7, 0.5, 0.35}) {
       SCOPED_TRACE(mu);
       look(scene, downward(mu, 0.3));
@@ -252,7 +252,7 @@ std::vector<Component> whiteMatter(bool isHybrid) {
 TEST(FurnaceOfComponents, IsOne) {
   for (const bool isHybrid : {false, true})
     for (const bool isCutaway : {false, true})
-      for (const Transport transport : transports) {
+      for (const Integrator transport : transports) {
         const std::vector<Component> components = whiteMatter(isHybrid);
         TestScene scene = hills(components.front().transfer);
         scene.mixture = mixtureOf(balls(14, true), components);
@@ -285,7 +285,7 @@ TEST(FurnaceOfComponents, IsOne) {
 /// Neither segments' order nor that of priorities in it tells anything.
 TEST(OrderOfSegments, ChangesNoBit) {
   for (const bool isSoft : {false, true})
-    for (const Transport transport : transports) {
+    for (const Integrator transport : transports) {
       std::vector<Shares::Part> parts = balls(7, isSoft);
       TestScene scene = hills(coated());
       scene.mixture = mixtureOf(parts, whiteMatter(true));

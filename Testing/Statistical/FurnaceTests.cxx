@@ -125,8 +125,8 @@ TEST(SkyOfOneColour, EqualsAConstantEnvironment) {
   RenderSettings settings;
   settings.samples = 256;
   settings.path.background.kind = Background::Kind::environment;
-  for (const Transport transport : {Transport::fast, Transport::readable}) {
-    settings.transport = transport;
+  for (const Integrator transport : {Integrator::simd, Integrator::scalar}) {
+    settings.integrator = transport;
     settings.seed = 21;
     scene.lights = {EnvironmentLight{color, {}}};
     const Estimate constant = imageEstimate(scene.render(settings).film);

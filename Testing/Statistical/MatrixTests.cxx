@@ -37,7 +37,7 @@ const Truth& truthOf(const Combination& c, const MatrixSettings& settings) {
                                : truths.emplace(c.index, renderTruth(c, settings)).first->second;
 }
 
-class Matrix : public ::testing::TestWithParam<Transport> {};
+class Matrix : public ::testing::TestWithParam<Integrator> {};
 
 TEST_P(Matrix, AgreesWithTheOracle) {
   const MatrixSettings settings{isLongRun() ? 512U : 128U, seedBase(), GetParam()};
@@ -61,14 +61,14 @@ TEST_P(Matrix, AgreesWithTheOracle) {
               << ")\n";
     EXPECT_GT(verdict.probability, leastProbability(results.size())) << verdict.name;
   }
-  if (GetParam() == Transport::fast)
+  if (GetParam() == Integrator::simd)
     recordMatrix(outcomes, results, settings);
 }
 
 INSTANTIATE_TEST_SUITE_P(Transports, Matrix,
-                         ::testing::Values(Transport::fast, Transport::readable),
+                         ::testing::Values(Integrator::simd, Integrator::scalar),
                          [](const auto& info) {
-                           return info.param == Transport::fast ? "fast" : "readable";
+                           return info.param == Integrator::simd ? "fast" : "readable";
                          });
 
 } // namespace

@@ -16,7 +16,7 @@ namespace {
 
 struct Fault {
   std::string name, why;
-  Transport transport;      ///< transport in which it shows
+  Integrator transport;     ///< transport in which it shows
   bool inToldError;         ///< shows in the error that pictures tell, in place of the matrix
   std::string foundIn = {}; ///< first combination in which it shows, or the told error
   double probability = 1.0; ///< where it was found, or least so far
@@ -26,11 +26,11 @@ struct Fault {
 };
 
 /// Transports in which an entry of faults.json shows; without a word, the fast one.
-std::vector<Transport> transportsOf(const nlohmann::json& entry) {
+std::vector<Integrator> transportsOf(const nlohmann::json& entry) {
   const std::string named = entry.value("transport", "fast");
   if (named == "both")
-    return {Transport::fast, Transport::readable};
-  return {named == "fast" ? Transport::fast : Transport::readable};
+    return {Integrator::simd, Integrator::scalar};
+  return {named == "fast" ? Integrator::simd : Integrator::scalar};
 }
 
 /// FENESTRA_PLANTED, names between commas; unset: all errors are looked for.
@@ -44,10 +44,10 @@ std::vector<Fault> readFaults() {
   std::vector<Fault> faults;
   for (const auto& entry : nlohmann::json::parse(file))
     if (isWanted(entry.at("name")))
-      for (const Transport transport : transportsOf(entry)) {
+      for (const Integrator transport : transportsOf(entry)) {
         std::string why = entry.at("why");
         why += entry.value("transport", "") != "both" ? ""
-               : transport == Transport::fast         ? " (fast transport)"
+               : transport == Integrator::simd        ? " (fast transport)"
                                                       : " (readable transport)";
         faults.push_back(
             {entry.at("name"), why, transport, entry.value("shows", "") == "told error"});
@@ -76,17 +76,17 @@ void record(const std::vector<Fault>& faults) {
 }
 
 /// Probability of what pictures of sixteen samples tell of their error, if it is right.
-double toldErrorProbability(Transport transport) {
+double toldErrorProbability(Integrator transport) {
   RenderSettings settings;
   settings.samples = 16;
-  settings.transport = transport;
+  settings.integrator = transport;
   const ErrorRatio told = errorRatio(fogScene(), settings, 200);
   return normalTail((told.ratio - 1.0) / told.error);
 }
 
 /// Looks for the errors that show in no mean.
 void findInToldErrors(std::vector<Fault>& faults, double bound) {
-  for (const Transport transport : {Transport::fast, Transport::readable})
+  for (const Integrator transport : {Integrator::simd, Integrator::scalar})
     EXPECT_GT(toldErrorProbability(transport), bound) << "without an error planted";
   for (Fault& fault : faults)
     if (fault.inToldError) {
@@ -102,7 +102,7 @@ void findInToldErrors(std::vector<Fault>& faults, double bound) {
 void lookIn(const Combination& c, MatrixSettings settings, std::vector<Fault*> faults, double bound,
             const char* how) {
   const Truth truth = renderTruth(c, settings);
-  for (const Transport transport : {Transport::fast, Transport::readable}) {
+  for (const Integrator transport : {Integrator::simd, Integrator::scalar}) {
     settings.transport = transport;
     EXPECT_GT(compareWithOracle(c, settings, truth).probability(), bound)
         << "without an error planted: " << describe(c) << how;

@@ -74,11 +74,11 @@ TEST(SingleScatterOfLights, DrawnFromStrataAddUp) {
     expected += albedo * irradiance * (0.25 / pi * layer);
   }
   scene.lights.erase(scene.lights.begin()); // the slab's environment
-  for (const Transport transport : {Transport::fast, Transport::readable})
+  for (const Integrator transport : {Integrator::simd, Integrator::scalar})
     for (const std::uint64_t samples : {1U, 3U, 16U}) {
       SCOPED_TRACE(std::to_string(samples));
       RenderSettings settings;
-      settings.transport = transport;
+      settings.integrator = transport;
       settings.samples = samples;
       settings.seed = seeded(5900 + samples);
       settings.path.bounces = 1;

@@ -10,18 +10,18 @@ namespace {
 
 struct Way {
   Sampling sampling;
-  Transport transport;
+  Integrator transport;
 };
-constexpr Way ways[] = {{Sampling::strata, Transport::fast},
-                        {Sampling::independent, Transport::fast},
-                        {Sampling::strata, Transport::readable},
-                        {Sampling::independent, Transport::readable}};
+constexpr Way ways[] = {{Sampling::strata, Integrator::simd},
+                        {Sampling::independent, Integrator::simd},
+                        {Sampling::strata, Integrator::scalar},
+                        {Sampling::independent, Integrator::scalar}};
 
 RenderSettings settingsOf(const Way& way, std::uint64_t samples, std::uint64_t seed) {
   RenderSettings settings;
   settings.samples = samples;
   settings.sampling = way.sampling;
-  settings.transport = way.transport;
+  settings.integrator = way.transport;
   settings.seed = seeded(seed);
   return settings;
 }
@@ -61,12 +61,12 @@ TEST_P(ToldErrors, AreThoseOverSeeds) {
   const TestScene scene = fogScene();
   const std::uint64_t samples = GetParam();
   for (const Way& way : ways) {
-    const int seeds = std::max(20, budget(way.transport == Transport::fast ? 2400 : 800) /
+    const int seeds = std::max(20, budget(way.transport == Integrator::simd ? 2400 : 800) /
                                        static_cast<int>(samples + 10));
     const ErrorRatio told = errorRatio(scene, settingsOf(way, samples, 5000), seeds);
     std::printf("%d samples, %s, %s: ratio of variances %.4f +- %.4f\n", static_cast<int>(samples),
                 way.sampling == Sampling::strata ? "strata" : "plain",
-                way.transport == Transport::fast ? "fast" : "readable", told.ratio, told.error);
+                way.transport == Integrator::simd ? "fast" : "readable", told.ratio, told.error);
     EXPECT_LT(told.error, 0.05);
     EXPECT_GT(told.ratio, 1.0 - 4.5 * told.error);
     const bool isEven = way.sampling == Sampling::independent || samples != 17;

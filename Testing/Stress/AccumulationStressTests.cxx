@@ -88,7 +88,7 @@ TEST(Accumulation, MillionSamplesEqualARenderAndDoNotDrift) {
   settings.samples = million;
   settings.seed = 7;
   const Film fast = scene.render(settings).film;
-  settings.transport = Transport::readable;
+  settings.integrator = Integrator::scalar;
   const Film film = scene.render(settings).film;
   for (int row = 0; row < 2; ++row)
     for (int column = 0; column < 2; ++column) {

@@ -151,8 +151,8 @@ auto withEstimator(const TestScene& scene, Work&& work) {
   const RayProbe<> probe(scene.volume, scene.transfer);
   const PathSettings settings;
   const std::atomic<bool> stop = false;
-  return work(PathEstimator<float>(scene.volume.grid, probe.medium(), probe.tracker(), lights,
-                                   camera, scene.clip, settings, stop));
+  return work(PathIntegrator<float>(scene.volume.grid, probe.medium(), probe.tracker(), lights,
+                                    camera, scene.clip, settings, stop));
 }
 
 /// Expects two pictures of independent seeds to differ by chance alone: their means to 4 standard

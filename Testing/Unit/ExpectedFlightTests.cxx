@@ -132,13 +132,13 @@ TEST(ExpectedFlight, LanesAgreeWithTheReadableMarch) {
     s.with([](const RenderScene& scene) {
       ASSERT_TRUE(lanesServe(scene));
       const ExpectedFlight lanes = expectedFlight(scene), readable = expectedFlightOneByOne(scene);
-      EXPECT_LT(apart(lanes.hit, scalar.hit), 0.01);
-      EXPECT_LT(apart(lanes.depth, scalar.depth), 0.01);
-      EXPECT_LT(apart(lanes.light, scalar.light), 0.2);
+      EXPECT_LT(apart(simd.hit, scalar.hit), 0.01);
+      EXPECT_LT(apart(simd.depth, scalar.depth), 0.01);
+      EXPECT_LT(apart(simd.light, scalar.light), 0.2);
       for (std::size_t c = 0; c < 3; ++c) {
-        EXPECT_LT(apart(lanes.albedo[c], scalar.albedo[c]), 0.02);
-        EXPECT_LT(apart(lanes.normal[c], scalar.normal[c]), 0.2);
-        EXPECT_LT(apart(lanes.facing[c], scalar.facing[c]), 0.2);
+        EXPECT_LT(apart(simd.albedo[c], scalar.albedo[c]), 0.02);
+        EXPECT_LT(apart(simd.normal[c], scalar.normal[c]), 0.2);
+        EXPECT_LT(apart(simd.facing[c], scalar.facing[c]), 0.2);
       }
     });
   }

@@ -115,11 +115,11 @@ TEST(Mixture, LanesAreTheScalarEstimator) {
   for (const bool isHybrid : {false, true}) {
     const TestScene scene = mixedScene(isHybrid);
     scene.with([](const RenderScene& all) { ASSERT_TRUE(lanesServe(all)); });
-    const Film lanes = rendered(scene, Transport::fast);
-    const Film scalar = rendered(scene, Transport::readable);
+    const Film lanes = rendered(scene, Integrator::simd);
+    const Film scalar = rendered(scene, Integrator::scalar);
     const auto albedo = [](const PixelSums& pixel) { return Rgb(pixel.albedo / 64.0); };
-    EXPECT_LT(apart(lanes, scalar, albedo), 0.04) << isHybrid;
-    EXPECT_NEAR(meanDepth(lanes), meanDepth(scalar), 0.1) << isHybrid;
+    EXPECT_LT(apart(simd, scalar, albedo), 0.04) << isHybrid;
+    EXPECT_NEAR(meanDepth(simd), meanDepth(scalar), 0.1) << isHybrid;
     const Estimate a = imageEstimate(lanes), b = imageEstimate(scalar);
     EXPECT_LT(std::abs(a.mean - b.mean), 4.0 * std::hypot(a.error, b.error)) << isHybrid;
   }
@@ -145,7 +145,7 @@ TEST(Mixture, TheClipLeavesWhatIsFree) {
   TestScene scene = mixedScene(false);
   const Vec3 center = scene.volume.grid.worldCenter();
   const Camera camera(scene.pose, scene.width, scene.height);
-  const auto seen = [&](Transport transport) {
+  const auto seen = [&](Integrator transport) {
     const Film film = rendered(scene, transport);
     double sum = 0.0;
     for (const PixelSums& pixel : film.pixels())
@@ -153,12 +153,12 @@ TEST(Mixture, TheClipLeavesWhatIsFree) {
     return sum / 64.0;
   };
   scene.clip = ClipPlane{camera, center - 100.0 * Vec3::UnitY(), Vec3(0.0, 1.0, 0.0)}; // all of it
-  for (const Transport transport : {Transport::fast, Transport::readable})
-    EXPECT_GT(seen(transport), 5.0) << "pixels";
+  for (const Integrator transport : {Integrator::simd, Integrator::scalar})
+    EXPECT_GT(seen(integrator), 5.0) << "pixels";
   for (Component& component : scene.mixture->components)
     component.isClipped = true;
-  for (const Transport transport : {Transport::fast, Transport::readable})
-    EXPECT_EQ(seen(transport), 0.0);
+  for (const Integrator transport : {Integrator::simd, Integrator::scalar})
+    EXPECT_EQ(seen(integrator), 0.0);
 }
 
 TEST(Mixture, BordersAsSurfacesAreTheScalarEstimators) {

@@ -61,10 +61,10 @@ inline TestScene sceneOfParts() {
 }
 
 /// Film of 64 samples a pixel, with normals.
-inline Film rendered(const TestScene& scene, Transport transport) {
+inline Film rendered(const TestScene& scene, Integrator transport) {
   RenderSettings settings;
   settings.samples = 64;
-  settings.transport = transport;
+  settings.integrator = transport;
   settings.path.wantNormals = true;
   return scene.render(settings).film;
 }

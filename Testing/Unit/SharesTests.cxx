@@ -144,7 +144,7 @@ TestScene tintedScene() {
   return scene;
 }
 
-Film rendered(TestScene scene, bool isTinted, Transport transport) {
+Film rendered(TestScene scene, bool isTinted, Integrator transport) {
   if (!isTinted)
     scene.tint.reset();
   return rendered(scene, transport);
@@ -152,13 +152,13 @@ Film rendered(TestScene scene, bool isTinted, Transport transport) {
 
 TEST(Tint, LanesAreTheScalarEstimator) {
   const TestScene scene = tintedScene();
-  const Film lanes = rendered(scene, true, Transport::fast);
-  const Film scalar = rendered(scene, true, Transport::readable);
-  const Film plain = rendered(scene, false, Transport::readable);
+  const Film lanes = rendered(scene, true, Integrator::simd);
+  const Film scalar = rendered(scene, true, Integrator::scalar);
+  const Film plain = rendered(scene, false, Integrator::scalar);
   const auto albedo = [](const PixelSums& pixel) { return Rgb(pixel.albedo / 64.0); };
   const auto radiance = [](const PixelSums& pixel) { return pixel.mean; };
-  EXPECT_LT(apart(lanes, scalar, albedo), 0.02);
-  EXPECT_LT(apart(lanes, scalar, radiance), 0.05);
+  EXPECT_LT(apart(simd, scalar, albedo), 0.02);
+  EXPECT_LT(apart(simd, scalar, radiance), 0.05);
   EXPECT_GT(apart(plain, scalar, albedo), 0.03);
 }
 
@@ -170,13 +170,13 @@ TEST(Tint, MarchInLanesIsTheReadableOne) {
     for (std::size_t c = 0; c < 3; ++c)
       for (std::size_t i = 0; i < lanes.hit.size(); ++i)
         sum += std::pow(static_cast<double>(lanes.albedo[c][i] - readable.albedo[c][i]), 2.0);
-    EXPECT_LT(std::sqrt(sum / (3.0 * static_cast<double>(lanes.hit.size()))), 0.02);
+    EXPECT_LT(std::sqrt(sum / (3.0 * static_cast<double>(simd.hit.size()))), 0.02);
   });
 }
 
 TEST(Tint, ChangesNothingButColour) {
   const TestScene scene = tintedScene();
-  for (const Transport transport : {Transport::fast, Transport::readable}) {
+  for (const Integrator transport : {Integrator::simd, Integrator::scalar}) {
     const Film plain = rendered(scene, false, transport), tinted = rendered(scene, true, transport);
     for (std::size_t i = 0; i < plain.pixelCount(); ++i) {
       const PixelSums &a = plain.pixels()[i], &b = tinted.pixels()[i];

@@ -90,10 +90,10 @@ TEST(Stop, EndsARenderOfEndlessPaths) {
   const Camera camera(s.pose, s.width, s.height);
   const LightSet lights(s.lights, s.volume.grid, camera);
   const MajorantGrid majorants(s.volume.grid, CellRanges(s.volume, 0), s.transfer, s.clip);
-  for (const Transport transport : {Transport::readable, Transport::fast}) {
+  for (const Integrator transport : {Integrator::scalar, Integrator::simd}) {
     RenderMonitor monitor;
     RenderSettings settings;
-    settings.transport = transport;
+    settings.integrator = transport;
     auto rendering = std::async(std::launch::async, [&] {
       return render({s.volume, s.transfer, majorants, lights, camera, s.clip}, settings, monitor);
     });

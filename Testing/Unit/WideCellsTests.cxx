@@ -128,15 +128,15 @@ TEST(SimdMajorants, ReachIsZeroInCutCells) {
 }
 
 TEST(SimdMajorants, CellsOfFewVoxelsAreMergedAndOthersNot) {
-  EXPECT_EQ(MajorantPair{makeMajorants(ballInMist)}.wide.merged, 2) << "2^3 voxels";
+  EXPECT_EQ(MajorantPair{makeMajorants(ballInMist)}.simd.merged, 2) << "2^3 voxels";
   const Grid grid(Size3(256, 256, 256), Affine::Identity());
   const Volume volume{grid, LargeArray<std::uint8_t>(1 << 24, 1), 0.0, 1.0, "", {}};
   const TransferFunction thin{
       ScalarFunction({{0.0, ScalarFunction::Value(0.1)}, {1.0, ScalarFunction::Value(0.1)}}),
       ColorFunction({{0.0, Rgb::Ones()}})};
   const SimdMajorants simd(MajorantGrid(grid, CellRanges(volume, 0), thin, ClipNone{}));
-  EXPECT_EQ(wide.merged, 1) << "4^3 voxels";
-  EXPECT_EQ(wide.count, Size3(64, 64, 64));
+  EXPECT_EQ(simd.merged, 1) << "4^3 voxels";
+  EXPECT_EQ(simd.count, Size3(64, 64, 64));
 }
 
 TEST(SimdMajorants, ExtinctionsOfAnySizeAreBounded) {

@@ -9,12 +9,12 @@ namespace fenestra {
 
 /// `Distances` samples collisions and transmittances like Tracker.
 template <typename Voxel, typename Distances = Tracker<Voxel>>
-class PathEstimator {
+class PathIntegrator {
 public:
   /// A view: all arguments must outlive the estimator.
-  PathEstimator(const Grid& grid, const Medium<Voxel>& medium, const Distances& tracker,
-                const LightSet& lights, const Camera& camera, const Clip& clip,
-                const PathSettings& settings, const StopFlag& stop)
+  PathIntegrator(const Grid& grid, const Medium<Voxel>& medium, const Distances& tracker,
+                 const LightSet& lights, const Camera& camera, const Clip& clip,
+                 const PathSettings& settings, const StopFlag& stop)
       : m_steps(grid, medium, lights, camera, clip, settings), m_tracker(tracker), m_stop(stop) {}
 
   /// Traces one path through raster position (column, row). Empty if `stop` became true before the

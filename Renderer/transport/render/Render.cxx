@@ -23,7 +23,7 @@ constexpr std::uint64_t leastForNoise = SamplePlan::pilotSamples;
 /// Traces one path after the other.
 template <typename Voxel>
 struct ScalarTracer {
-  PathEstimator<Voxel> estimator;
+  PathIntegrator<Voxel> estimator;
 
   template <typename Source>
   bool trace(Source& source, std::size_t maxPaths, Counters& counters) const {
@@ -351,15 +351,15 @@ auto traceScalar(const RenderScene& scene, const RenderSettings& settings, const
   const auto scalar = [&]<typename Voxel>(const Medium<Voxel>& medium,
                                           const Tracker<Voxel>& tracker) {
     return work(
-        ScalarTracer<Voxel>{PathEstimator<Voxel>(scene.volume.grid, medium, tracker, scene.lights,
-                                                 scene.camera, scene.clip, settings.path, stop)},
+        ScalarTracer<Voxel>{PathIntegrator<Voxel>(scene.volume.grid, medium, tracker, scene.lights,
+                                                  scene.camera, scene.clip, settings.path, stop)},
         std::string("scalar"));
   };
   return withMedium(scene, scalar, stop);
 }
 
 bool isSimdUsed(const RenderScene& scene, const RenderSettings& settings) {
-  return settings.transport == Transport::fast && lanesServe(scene);
+  return settings.integrator == Integrator::simd && lanesServe(scene);
 }
 
 /// Calls work(tracer, arithmetic) in the threads that the settings allow.

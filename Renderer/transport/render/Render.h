@@ -49,7 +49,7 @@ auto withMedium(const RenderScene& scene, Work&& work, const StopFlag& stop = ne
 
 /// Implementation of transport. Both are unbiased; `fast` falls back to `readable` if lanes do not
 /// serve.
-enum class Transport { fast, readable };
+enum class Integrator { simd, scalar };
 
 /// Limits of a render, which stops at the first of samples, seconds and noise. With a noise target
 /// on the raw picture, noisier pixels get more samples, after a pilot of 16 (SamplePlan); else all
@@ -64,7 +64,7 @@ struct RenderSettings {
   std::function<double(const Film&)> seenNoise = {};
   std::uint64_t seed = 0;
   Sampling sampling = Sampling::strata;
-  Transport transport = Transport::fast;
+  Integrator integrator = Integrator::simd;
   int threads = 0;               ///< 0: all
   std::uint64_t passSamples = 0; ///< in a pass; 0: growing passes. Never changes the picture.
   Shard shard = {}; ///< of the picture's tiles; the others stay empty. Not with `noise`.
