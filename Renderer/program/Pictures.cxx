@@ -70,7 +70,7 @@ std::string filterText(const std::optional<FilteredPicture>& filtered) {
 void addFilterChannels(const RenderOptions& options, const Scene& scene,
                        const FilteredPicture& filtered, Image& image) {
   if (options.hasFilterLayer("expected"))
-    addExpected(image, *scene.flight());
+    addExpected(image, *scene.features());
   if (!options.hasFilterLayer("denoised"))
     return;
   addDenoised(image, filtered);
@@ -130,7 +130,7 @@ RenderSettings PictureFilter::settings() {
 }
 
 std::optional<FilteredPicture> PictureFilter::of(const RenderResult& result) const {
-  if (!m_scene.flight())
+  if (!m_scene.features())
     return std::nullopt;
   if (result.reason == StopReason::noise && m_seenSamples == result.finishedSamples)
     return m_seen;

@@ -144,7 +144,7 @@ std::string statsJson(const RenderStats& stats, const RenderOptions& options, co
   json["samplesPerPixel"] = {
       {"min", samples.least}, {"mean", samples.mean}, {"max", samples.greatest}};
   json["noise"] = result.film.noise(); // null: infinite
-  if (scene.flight())
+  if (scene.features())
     json["noiseFiltered"] = stats.filtered ? Json(*stats.filtered) : Json(); // null: unknown
   json["peakBytes"] = static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
   addClip(json, scene, stats.focus);

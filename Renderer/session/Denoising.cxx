@@ -11,14 +11,14 @@ namespace {
 /// Openness of pixels: 0 for certain ones, and for those around which the march met nothing, so
 /// that no window spreads a silhouette into the background. Never by what the samples met: a mask
 /// that knows their noise makes the told error a lie.
-std::vector<std::uint8_t> openPixels(const Film& film, const ExpectedFlight& flight) {
+std::vector<std::uint8_t> openPixels(const Film& film, const FeatureBuffers& features) {
   std::vector<std::uint8_t> isOpen(film.pixelCount());
   for (int row = 0; row < film.height(); ++row)
     for (int column = 0; column < film.width(); ++column) {
       bool isEmpty = true;
       for (int y = std::max(row - 1, 0); y <= std::min(row + 1, film.height() - 1); ++y)
         for (int x = std::max(column - 1, 0); x <= std::min(column + 1, film.width() - 1); ++x)
-          isEmpty = isEmpty && flight.hit[film.index(x, y)] == 0.0F;
+          isEmpty = isEmpty && features.hit[film.index(x, y)] == 0.0F;
       isOpen[film.index(column, row)] = !isEmpty && !film.at(column, row).isCertain;
     }
   return isOpen;
@@ -53,18 +53,18 @@ void fillHalves(const Film& film, FilterInput& input) {
 }
 
 /// Sums of depth as distances from their median, mm: a pixel that meets little has little.
-Plane centredDepth(const ExpectedFlight& flight) {
+Plane centredDepth(const FeatureBuffers& features) {
   std::vector<float> depths;
-  for (std::size_t i = 0; i < flight.hit.size(); ++i)
-    if (flight.hit[i] > 0.5F)
-      depths.push_back(flight.depth[i] / flight.hit[i]);
+  for (std::size_t i = 0; i < features.hit.size(); ++i)
+    if (features.hit[i] > 0.5F)
+      depths.push_back(features.depth[i] / features.hit[i]);
   if (depths.empty())
-    return flight.depth;
+    return features.depth;
   const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
   std::ranges::nth_element(depths, middle);
-  Plane plane = flight.depth;
+  Plane plane = features.depth;
   for (std::size_t i = 0; i < plane.size(); ++i)
-    plane[i] -= *middle * flight.hit[i];
+    plane[i] -= *middle * features.hit[i];
   return plane;
 }
 
@@ -91,14 +91,14 @@ Plane boundedClip(const Camera& camera, const Clip& clip) {
   return plane;
 }
 
-void addFeatures(const Scene& scene, const ExpectedFlight& flight, FilterInput& input) {
-  for (const Plane& plane : flight.albedo)
+void addFeatures(const Scene& scene, const FeatureBuffers& features, FilterInput& input) {
+  for (const Plane& plane : features.albedo)
     input.features.push_back(plane);
   // Where light scatters at surfaces, what it meets there is told by their normals.
-  for (const Plane& plane : scene.transfer().shading ? flight.facing : flight.normal)
+  for (const Plane& plane : scene.transfer().shading ? features.surfaceNormal : features.normal)
     input.features.push_back(plane);
-  input.features.push_back(flight.light);
-  const Plane depth = centredDepth(flight);
+  input.features.push_back(features.light);
+  const Plane depth = centredDepth(features);
   input.features.push_back(slopeOf(depth, input.width, input.height, false));
   input.features.push_back(slopeOf(depth, input.width, input.height, true));
   input.features.push_back(depth);
@@ -117,9 +117,9 @@ FilterInput filterInput(const Film& film, const Scene& scene) {
   if (!film.hasIndependentHalves())
     throw std::logic_error("a film without independent halves cannot be filtered");
   FilterInput input{film.width(), film.height(), {}, {}, {}, {}, {}, hasHalves(film)};
-  input.isOpen = openPixels(film, *scene.flight());
+  input.isOpen = openPixels(film, *scene.features());
   fillHalves(film, input);
-  addFeatures(scene, *scene.flight(), input);
+  addFeatures(scene, *scene.features(), input);
   return input;
 }
 

@@ -69,15 +69,15 @@ void addDenoised(Image& image, const FilteredPicture& filtered) {
     image.channels[std::string("denoised.error.") + "RGB"[c]] = filtered.error[c];
 }
 
-void addExpected(Image& image, const ExpectedFlight& flight) {
+void addExpected(Image& image, const FeatureBuffers& features) {
   for (std::size_t c = 0; c < 3; ++c) {
-    image.channels[std::string("expected.albedo.") + "RGB"[c]] = flight.albedo[c];
-    image.channels[std::string("expected.normal.") + "XYZ"[c]] = flight.normal[c];
+    image.channels[std::string("expected.albedo.") + "RGB"[c]] = features.albedo[c];
+    image.channels[std::string("expected.normal.") + "XYZ"[c]] = features.normal[c];
   }
   Plane& depth = image.channels["expected.Z"];
-  for (std::size_t i = 0; i < flight.hit.size(); ++i)
-    depth.push_back(flight.hit[i] > 0.0F ? flight.depth[i] / flight.hit[i]
-                                         : std::numeric_limits<float>::infinity());
+  for (std::size_t i = 0; i < features.hit.size(); ++i)
+    depth.push_back(features.hit[i] > 0.0F ? features.depth[i] / features.hit[i]
+                                           : std::numeric_limits<float>::infinity());
 }
 
 Image filteredColors(const FilteredPicture& filtered, int width, int height) {

@@ -26,7 +26,7 @@ Image picture(const Film& film, const Camera& camera, const Clip& clip, const La
 void addDenoised(Image& image, const FilteredPicture& filtered);
 /// Adds the channels expected.*: albedo and normal over all rays, as Film's; Z, like the channel Z,
 /// over those that meet something, and infinity where none does.
-void addExpected(Image& image, const ExpectedFlight& flight);
+void addExpected(Image& image, const FeatureBuffers& features);
 /// R, G, B and A of the filtered picture.
 Image filteredColors(const FilteredPicture& filtered, int width, int height);
 

@@ -66,8 +66,8 @@ void Scene::make() {
   const auto majorants =
       m_majorants.of(volume, ranges, look, clip, m_style.result(), m_mixture.result());
   if (r.features)
-    m_flight.of(volume, settings, look, segmentsShown(), placed, camera, clip, m_style.result(),
-                majorants);
+    m_features.of(volume, settings, look, segmentsShown(), placed, camera, clip, m_style.result(),
+                  majorants);
 }
 
 std::string Scene::wantedMaterials(const Handle<SegmentsInput>& segments) const {
@@ -113,7 +113,7 @@ StageSeconds Scene::seconds() const {
       .focus = clip.focusSeconds,
       .spline = clip.splineSeconds,
       .fill = clip.fillSeconds,
-      .features = m_flight.seconds()};
+      .features = m_features.seconds()};
 }
 
 StagesMade Scene::made() const {

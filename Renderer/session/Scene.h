@@ -63,7 +63,7 @@ public:
   const ClipResult& clipResult() const { return *m_clip; }
   const CellRanges& ranges() const { return *m_ranges; }
   /// Null unless the request asks for features.
-  const ExpectedFlight* flight() const { return m_flight.result().get(); }
+  const FeatureBuffers* features() const { return m_features.result().get(); }
   StageSeconds seconds() const;
   StagesMade made() const;
   std::vector<std::string> warnings() const;
@@ -95,7 +95,7 @@ private:
                     s.m_plan, s.m_shares, s.m_tint, s.m_borders, s.m_tintContrast,
                     s.m_contrastedTint, s.m_mixture, s.m_focusWarnings, s.m_view, s.m_ranges,
                     s.m_occupiedBounds, s.m_camera, s.m_lights, s.m_clip, s.m_contrast, s.m_style,
-                    s.m_majorants, s.m_flight);
+                    s.m_majorants, s.m_features);
   }
 
   SceneRequest m_request;
@@ -128,7 +128,7 @@ private:
   Stage<&contrastOf> m_contrast;
   Stage<&styleAround> m_style; ///< unused if the context is unchanged
   Stage<&majorantsOf> m_majorants;
-  Stage<&flightOf> m_flight; ///< unused without a filter
+  Stage<&marchFirstHits> m_features; ///< unused without a filter
 };
 
 } // namespace fenestra

@@ -324,12 +324,14 @@ MajorantGrid majorantsOf(const Read& volume, const Handle<CellRanges>& ranges,
   return {volume->volume.grid, *ranges, look->transfer, clip->clip, style.get(), mixture.get()};
 }
 
-ExpectedFlight flightOf(const Read& volume, const Settings& settings, const Handle<Look>& look,
-                        const SegmentsShown& segments, const Handle<LightSet>& lights,
-                        const Handle<Camera>& camera, const Handle<ClipResult>& clip,
-                        const Handle<ContextStyle>& style, const Handle<MajorantGrid>& majorants) {
-  return expectedFlight({volume->volume, look->transfer, *majorants, *lights, *camera, clip->clip,
-                         settings->crop, style.get(), segments.tint.get(), segments.mixture.get()});
+FeatureBuffers marchFirstHits(const Read& volume, const Settings& settings,
+                              const Handle<Look>& look, const SegmentsShown& segments,
+                              const Handle<LightSet>& lights, const Handle<Camera>& camera,
+                              const Handle<ClipResult>& clip, const Handle<ContextStyle>& style,
+                              const Handle<MajorantGrid>& majorants) {
+  return computeFeatures({volume->volume, look->transfer, *majorants, *lights, *camera, clip->clip,
+                          settings->crop, style.get(), segments.tint.get(),
+                          segments.mixture.get()});
 }
 
 } // namespace fenestra

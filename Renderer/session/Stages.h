@@ -136,9 +136,10 @@ struct SegmentsShown {
 };
 
 /// Features of the filter. `style`: null if unused.
-ExpectedFlight flightOf(const Read& volume, const Settings& settings, const Handle<Look>& look,
-                        const SegmentsShown& segments, const Handle<LightSet>& lights,
-                        const Handle<Camera>& camera, const Handle<ClipResult>& clip,
-                        const Handle<ContextStyle>& style, const Handle<MajorantGrid>& majorants);
+FeatureBuffers marchFirstHits(const Read& volume, const Settings& settings,
+                              const Handle<Look>& look, const SegmentsShown& segments,
+                              const Handle<LightSet>& lights, const Handle<Camera>& camera,
+                              const Handle<ClipResult>& clip, const Handle<ContextStyle>& style,
+                              const Handle<MajorantGrid>& majorants);
 
 } // namespace fenestra

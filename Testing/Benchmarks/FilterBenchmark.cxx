@@ -109,7 +109,7 @@ void measureScene(const SceneCase& sceneCase, const FlagValues& values,
   RenderSettings settings = settingsFor(options, scene.background());
   const Reference reference = findReference(sceneCase, scene, settings, wanted);
   double march = 0.0;
-  timed([&] { return expectedFlight(scene.forRender()); }, march);
+  timed([&] { return computeFeatures(scene.forRender()); }, march);
   for (const std::uint64_t count : countsOf(values)) {
     settings.samples = count;
     const std::uint64_t seeds = count < 1024 ? values.count("seeds").value_or(3) : 1;

@@ -31,7 +31,7 @@ TEST(Csv, ReadsEveryFormOfTheSameTable) {
        {"name,input\na,b c\nd,\n", "name,input\r\na,b c\r\nd,", "name,input\ra,b c\rd,\r",
         "\xef\xbb\xbfname,input\n\"a\",\"b c\"\nd,\"\"\n", "name;input\na;b c\nd;\n",
         "\n\nname,input\n  \na,b c\n\nd,\n\n"})
-    EXPECT_EQ(fieldsOf(text), wanted) << text;
+    EXPECT_EQ(fieldsOf(text), expected) << text;
   EXPECT_EQ(fieldsOf(""), std::vector<Fields>());
 }
 

@@ -48,9 +48,9 @@ TEST(FrameView, UpMayHaveAnyLength) {
   const CameraPose usual = framed(Vec3(1, 1, 1));
   for (const double length : {0x1p-1070, 0x1p-600, 0x1p600, 0x1p1023}) {
     const CameraPose pose = framed(length * Vec3(1, 1, 1));
-    EXPECT_EQ(pose.scale, usual.scale) << length;
-    EXPECT_EQ(pose.position, usual.position) << length;
-    EXPECT_TRUE(isApprox(Camera(pose, 200, 100).up(), Camera(usual, 200, 100).up(), 1e-15));
+    EXPECT_EQ(pose.scale, expected.scale) << length;
+    EXPECT_EQ(pose.position, expected.position) << length;
+    EXPECT_TRUE(isApprox(Camera(pose, 200, 100).up(), Camera(expected, 200, 100).up(), 1e-15));
   }
 }
 

@@ -52,7 +52,7 @@ TEST_F(Denoising, ClosedAreEmptyPixelsWhateverTheSamplesMet) {
   std::size_t without = 0, certain = 0;
   for (std::size_t i = 0; i < film.pixelCount(); ++i) {
     const PixelSums& pixel = film.pixels()[i];
-    const bool isEmpty = pixel.isCertain || scene.flight()->hit[i] == 0.0F;
+    const bool isEmpty = pixel.isCertain || scene.features()->hit[i] == 0.0F;
     EXPECT_TRUE(isEmpty || input.isOpen[i] != 0);
     EXPECT_FALSE(pixel.isCertain && input.isOpen[i] != 0);
     without += input.isOpen[i] != 0 && pixel.collided == 0;

@@ -7,15 +7,15 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing::ExpectedFlightTests {
+namespace fenestra::testing::FeatureBuffersTests {
 namespace {
 
-ExpectedFlight flightIn(const TestScene& s) {
-  return s.with([](const RenderScene& scene) { return expectedFlight(scene); });
+FeatureBuffers renderFeatures(const TestScene& s) {
+  return s.with([](const RenderScene& scene) { return computeFeatures(scene); });
 }
 
 /// Slab of 10 mm with one extinction, seen face on by parallel rays that start 50 mm before it.
-TestScene slab(double extinction) {
+TestScene makeSlab(double extinction) {
   TestScene s{
       makeVolume(centredGrid({10, 40, 40}, {1.0, 1.0, 1.0}), [](const Vec3&) { return 1.0; }),
       linearTransfer(extinction, Rgb(0.9, 0.5, 0.1)),
@@ -25,7 +25,7 @@ TestScene slab(double extinction) {
 }
 
 /// Waves of matter under hybrid shading, partly beside the frame.
-TestScene waves() {
+TestScene makeWaves() {
   TestScene s{makeVolume<std::int16_t>(centredGrid({24, 24, 24}, {1.0, 1.0, 1.5}),
                                        [](const Vec3& p) {
                                          return 100.0 * std::sin(0.5 * p.x()) *
@@ -44,7 +44,7 @@ TestScene waves() {
 }
 
 /// Soft cut along a tilted surface through the target.
-Clip tiltedCut(const TestScene& s) {
+Clip makeTiltedClip(const TestScene& s) {
   const Camera camera(s.pose, s.width, s.height);
   auto buffer = std::make_shared<DepthBuffer>(camera, s.volume.grid);
   for (std::int64_t row = 0; row < buffer->rows(); ++row)
@@ -59,46 +59,48 @@ Clip tiltedCut(const TestScene& s) {
 }
 
 double meanDepth(double extinction, double length) {
-  const double passed = std::exp(-extinction * length);
-  return (1.0 - passed * (1.0 + extinction * length)) / extinction; // times the share that collides
+  const double transmittance = std::exp(-extinction * length);
+  return (1.0 - transmittance * (1.0 + extinction * length)) /
+         extinction; // times the share that collides
 }
 
-TEST(ExpectedFlight, OfASlabHasItsClosedForm) {
+TEST(FeatureBuffers, OfASlabHasItsClosedForm) {
   for (const double extinction : {1e-3, 0.05, 0.4, 3.0}) {
-    const ExpectedFlight flight = flightIn(slab(extinction));
+    const FeatureBuffers features = renderFeatures(makeSlab(extinction));
     const double hit = 1.0 - std::exp(-10.0 * extinction);
-    const std::size_t middle = flight.hit.size() / 2 + 8;
-    EXPECT_NEAR(flight.hit[middle], hit, 0.03 * hit) << extinction; // a ray ends in the dark
-    EXPECT_NEAR(flight.depth[middle], 50.0 * hit + meanDepth(extinction, 10.0), 0.04 * 60.0 * hit);
-    EXPECT_NEAR(flight.albedo[1][middle], 0.5 * flight.hit[middle], 1e-5);
-    EXPECT_EQ(flight.normal[0][middle], 0.0F); // no gradient
+    const std::size_t middle = features.hit.size() / 2 + 8;
+    EXPECT_NEAR(features.hit[middle], hit, 0.03 * hit) << extinction; // a ray ends in the dark
+    EXPECT_NEAR(features.depth[middle], 50.0 * hit + meanDepth(extinction, 10.0),
+                0.04 * 60.0 * hit);
+    EXPECT_NEAR(features.albedo[1][middle], 0.5 * features.hit[middle], 1e-5);
+    EXPECT_EQ(features.normal[0][middle], 0.0F); // no gradient
   }
 }
 
-TEST(ExpectedFlight, LightOfASlabHasItsClosedForm) {
-  TestScene s = slab(0.1);
+TEST(FeatureBuffers, LightOfASlabHasItsClosedForm) {
+  TestScene s = makeSlab(0.1);
   s.lights = {DirectionalLight{.direction = -Vec3::UnitX(), .irradiance = Rgb::Constant(2.0)}};
-  const ExpectedFlight flight = flightIn(s);
-  const std::size_t middle = flight.hit.size() / 2 + 8;
-  const double depth = static_cast<double>(flight.depth[middle] / flight.hit[middle]) - 50.0;
+  const FeatureBuffers features = renderFeatures(s);
+  const std::size_t middle = features.hit.size() / 2 + 8;
+  const double depth = static_cast<double>(features.depth[middle] / features.hit[middle]) - 50.0;
   const double toFarSide = std::exp(-0.1 * (10.0 - depth)), phase = 1.0 / (4.0 * pi);
-  EXPECT_NEAR(flight.light[middle],
-              0.5 * phase * 2.0 * static_cast<double>(flight.hit[middle]) * toFarSide, 1e-3);
+  EXPECT_NEAR(features.light[middle],
+              0.5 * phase * 2.0 * static_cast<double>(features.hit[middle]) * toFarSide, 1e-3);
 }
 
-TEST(ExpectedFlight, RaysThatMeetNothingGiveZeros) {
-  TestScene s = slab(0.0);
+TEST(FeatureBuffers, RaysThatMeetNothingGiveZeros) {
+  TestScene s = makeSlab(0.0);
   s.pose.scale = 100.0;
-  const ExpectedFlight flight = flightIn(s);
-  for (std::size_t i = 0; i < flight.hit.size(); ++i) {
-    EXPECT_EQ(flight.hit[i], 0.0F);
-    EXPECT_EQ(flight.depth[i], 0.0F);
-    EXPECT_EQ(flight.facing[2][i], 0.0F);
+  const FeatureBuffers features = renderFeatures(s);
+  for (std::size_t i = 0; i < features.hit.size(); ++i) {
+    EXPECT_EQ(features.hit[i], 0.0F);
+    EXPECT_EQ(features.depth[i], 0.0F);
+    EXPECT_EQ(features.surfaceNormal[2][i], 0.0F);
   }
 }
 
 /// An axis on which half a voxel is less than a float's last place: nothing for lanes.
-TEST(ExpectedFlight, EndsOnAxesOfAMillionVoxels) {
+TEST(FeatureBuffers, EndsOnAxesOfAMillionVoxels) {
   const Grid grid = centredGrid({2, 2, 600'000}, {1.0, 1.0, 1.0});
   TestScene s{makeVolume<std::uint8_t>(grid, [](const Vec3& p) { return p.z() < 3.0 ? 1 : 0; }),
               linearTransfer(0.1, Rgb(0.9, 0.5, 0.1)),
@@ -108,74 +110,74 @@ TEST(ExpectedFlight, EndsOnAxesOfAMillionVoxels) {
               4};
   s.with([](const RenderScene& scene) {
     EXPECT_FALSE(lanesServe(scene));
-    EXPECT_GT(expectedFlight(scene).hit[5], 0.1F);
+    EXPECT_GT(computeFeatures(scene).hit[5], 0.1F);
   });
 }
 
 /// Root mean square of the differences, relative to that of `b`.
-double apart(const Plane& a, const Plane& b) {
-  double difference = 0.0, whole = 0.0;
+double relativeDifference(const Plane& a, const Plane& b) {
+  double difference = 0.0, reference = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     difference += std::pow(static_cast<double>(a[i]) - static_cast<double>(b[i]), 2.0);
-    whole += std::pow(static_cast<double>(b[i]), 2.0);
+    reference += std::pow(static_cast<double>(b[i]), 2.0);
   }
-  return std::sqrt(difference / whole);
+  return std::sqrt(difference / reference);
 }
 
-TEST(ExpectedFlight, LanesAgreeWithTheReadableMarch) {
-  TestScene s = waves();
-  std::vector<Clip> clips = {ClipNone(), tiltedCut(s)};
+TEST(FeatureBuffers, LanesAgreeWithTheReadableMarch) {
+  TestScene s = makeWaves();
+  std::vector<Clip> clips = {ClipNone(), makeTiltedClip(s)};
   clips.push_back(
       ClipPlane{Camera(s.pose, s.width, s.height), Vec3(0, 2, 0), -Vec3::UnitY(), {0.0, 3.0}});
   for (const Clip& clip : clips) {
     s.clip = clip;
     s.with([](const RenderScene& scene) {
       ASSERT_TRUE(lanesServe(scene));
-      const ExpectedFlight lanes = expectedFlight(scene), readable = expectedFlightOneByOne(scene);
-      EXPECT_LT(apart(simd.hit, scalar.hit), 0.01);
-      EXPECT_LT(apart(simd.depth, scalar.depth), 0.01);
-      EXPECT_LT(apart(simd.light, scalar.light), 0.2);
+      const FeatureBuffers simd = computeFeatures(scene), scalar = computeScalarFeatures(scene);
+      EXPECT_LT(relativeDifference(simd.hit, scalar.hit), 0.01);
+      EXPECT_LT(relativeDifference(simd.depth, scalar.depth), 0.01);
+      EXPECT_LT(relativeDifference(simd.light, scalar.light), 0.2);
       for (std::size_t c = 0; c < 3; ++c) {
-        EXPECT_LT(apart(simd.albedo[c], scalar.albedo[c]), 0.02);
-        EXPECT_LT(apart(simd.normal[c], scalar.normal[c]), 0.2);
-        EXPECT_LT(apart(simd.facing[c], scalar.facing[c]), 0.2);
+        EXPECT_LT(relativeDifference(simd.albedo[c], scalar.albedo[c]), 0.02);
+        EXPECT_LT(relativeDifference(simd.normal[c], scalar.normal[c]), 0.2);
+        EXPECT_LT(relativeDifference(simd.surfaceNormal[c], scalar.surfaceNormal[c]), 0.2);
       }
     });
   }
 }
 
 /// Nearly all collisions lie in the cut's softness, and matter alone has no surface.
-TEST(ExpectedFlight, FacesTheSoftCutOfHomogeneousMatter) {
+TEST(FeatureBuffers, FacesTheSoftCutOfHomogeneousMatter) {
   for (const Projection projection : {Projection::orthographic, Projection::perspective}) {
-    TestScene s = slab(6.0);
+    TestScene s = makeSlab(6.0);
     s.pose.projection = projection;
     s.transfer.shading = SurfaceShading{};
-    s.clip = tiltedCut(s);
+    s.clip = makeTiltedClip(s);
     const double opacity = 1.0 - std::exp(-6.0);
     const double probability = opacity * (1.0 - std::exp(-25.0 * 0.125 * cutShading / 3.0));
     const std::size_t middle = static_cast<std::size_t>(s.width * s.height / 2 + s.width / 2);
     const Vec3 normal = -cutGradient(s.clip, Vec3(1.0, 0.0, 0.0)).normalized();
     s.with([&](const RenderScene& scene) {
-      for (const ExpectedFlight& flight : {expectedFlight(scene), expectedFlightOneByOne(scene)})
+      for (const FeatureBuffers& features : {computeFeatures(scene), computeScalarFeatures(scene)})
         for (std::size_t c = 0; c < 3; ++c) {
-          const double hit = static_cast<double>(flight.hit[middle]);
+          const double hit = static_cast<double>(features.hit[middle]);
           const double expected = normal[static_cast<int>(c)] * hit;
-          EXPECT_NEAR(flight.normal[c][middle], expected, 0.01) << c;
-          EXPECT_NEAR(flight.facing[c][middle], expected * probability, 0.01) << c;
+          EXPECT_NEAR(features.normal[c][middle], expected, 0.01) << c;
+          EXPECT_NEAR(features.surfaceNormal[c][middle], expected * probability, 0.01) << c;
         }
     });
   }
 }
 
-TEST(ExpectedFlight, IsTheMeanOfTheSamples) {
-  TestScene s = waves();
-  s.clip = tiltedCut(s);
+TEST(FeatureBuffers, IsTheMeanOfTheSamples) {
+  TestScene s = makeWaves();
+  s.clip = makeTiltedClip(s);
   RenderSettings settings;
   settings.samples = 512;
   settings.path.wantNormals = true;
   settings.path.bounces = 1;
   const Film film = s.render(settings).film;
-  const ExpectedFlight flight = flightIn(s);
+  const FeatureBuffers features = renderFeatures(s);
   std::array<Plane, 7> means;
   for (const PixelSums& pixel : film.pixels()) {
     const auto n = static_cast<double>(pixel.samples);
@@ -185,27 +187,27 @@ TEST(ExpectedFlight, IsTheMeanOfTheSamples) {
       means[static_cast<std::size_t>(3 + c)].push_back(static_cast<float>(pixel.normal[c] / n));
     }
   }
-  EXPECT_LT(apart(flight.depth, means[6]), 0.05);
+  EXPECT_LT(relativeDifference(features.depth, means[6]), 0.05);
   for (std::size_t c = 0; c < 3; ++c) {
-    EXPECT_LT(apart(flight.albedo[c], means[c]), 0.07) << c;
-    EXPECT_LT(apart(flight.normal[c], means[3 + c]), 0.2) << c;
+    EXPECT_LT(relativeDifference(features.albedo[c], means[c]), 0.07) << c;
+    EXPECT_LT(relativeDifference(features.normal[c], means[3 + c]), 0.2) << c;
   }
 }
 
-TEST(ExpectedFlight, PartOfAPictureMarchesAsTheWholeDoes) {
-  TestScene s = waves();
+TEST(FeatureBuffers, PartOfAPictureMarchesAsTheWholeDoes) {
+  TestScene s = makeWaves();
   s.width = s.height = 40;
   s.pose.scale = 10.0;
-  const ExpectedFlight whole = flightIn(s);
+  const FeatureBuffers reference = renderFeatures(s);
   s.height = 20; // the middle rows
   s.pose.scale = 5.0;
-  const ExpectedFlight part = flightIn(s);
+  const FeatureBuffers cropped = renderFeatures(s);
   for (int row = 1; row < 19; ++row) // neighbours decide, which the border lacks
     for (int column = 0; column < 40; ++column)
-      ASSERT_NEAR(part.depth[static_cast<std::size_t>(row * 40 + column)],
+      ASSERT_NEAR(cropped.depth[static_cast<std::size_t>(row * 40 + column)],
                   whole.depth[static_cast<std::size_t>((row + 10) * 40 + column)], 1e-3)
           << column << " " << row;
 }
 
 } // namespace
-} // namespace fenestra::testing::ExpectedFlightTests
+} // namespace fenestra::testing::FeatureBuffersTests

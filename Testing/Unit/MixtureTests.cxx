@@ -127,7 +127,7 @@ TEST(Mixture, LanesAreTheScalarEstimator) {
 
 TEST(Mixture, MarchInLanesIsTheReadableOne) {
   mixedScene(true).with([](const RenderScene& scene) {
-    const ExpectedFlight lanes = expectedFlight(scene), readable = expectedFlightOneByOne(scene);
+    const FeatureBuffers lanes = computeFeatures(scene), readable = computeScalarFeatures(scene);
     double albedo = 0.0, hit = 0.0;
     for (std::size_t i = 0; i < lanes.hit.size(); ++i) {
       hit += std::pow(static_cast<double>(lanes.hit[i] - readable.hit[i]), 2.0);

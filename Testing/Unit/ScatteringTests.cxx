@@ -116,7 +116,7 @@ TEST_P(Surface, ReflectsNoMoreThanArrives) {
     return sum;
   }();
   EXPECT_LE(reflected.maxCoeff(), 1.0);
-  EXPECT_TRUE(isApprox(reflected, direct, 0.01)) << reflected << "\n" << direct;
+  EXPECT_TRUE(isApprox(reflected, expected, 0.01)) << reflected << "\n" << direct;
 }
 
 INSTANTIATE_TEST_SUITE_P(Lobes, Surface,

@@ -165,7 +165,7 @@ TEST(Tint, LanesAreTheScalarEstimator) {
 TEST(Tint, MarchInLanesIsTheReadableOne) {
   tintedScene().with([](const RenderScene& scene) {
     ASSERT_TRUE(lanesServe(scene));
-    const ExpectedFlight lanes = expectedFlight(scene), readable = expectedFlightOneByOne(scene);
+    const FeatureBuffers lanes = computeFeatures(scene), readable = computeScalarFeatures(scene);
     double sum = 0.0;
     for (std::size_t c = 0; c < 3; ++c)
       for (std::size_t i = 0; i < lanes.hit.size(); ++i)

@@ -29,7 +29,7 @@ TEST(ShownText, IsValidUtf8OnOneLine) {
       {"\xc3\n", "? "},             // and a control character
   };
   for (const auto& [text, shownAs] : bad)
-    EXPECT_EQ(oneLine(text), shownAs);
+    EXPECT_EQ(oneLine(text), expected);
 }
 
 TEST(ShownText, IsCutBetweenCharacters) {

@@ -16,8 +16,8 @@ template <typename Voxel>
 class Walk {
 public:
   /// From ray `first` on.
-  Walk(const WideScene& volume, const RayBatch& rays, std::size_t first, double coarser,
-       bool asksKeep)
+  Walk(const WideScene& volume, const RayBatch& rays, std::size_t first, double stepScale,
+       bool usesClip)
       : m_volume(volume),
         m_origin(load3(rays.origin, first)),
         m_direction(load3(rays.direction, first)),
@@ -25,9 +25,10 @@ public:
               Way::entered(volume.axes[1], m_origin.y, m_direction.y),
               Way::entered(volume.axes[2], m_origin.z, m_direction.z)},
         m_end(load(&rays.length[first])),
-        m_shortest(narrow(coarser * MarchSteps::voxels) / sqrt(dot(m_direction, m_direction))),
-        m_opticalDepth(narrow(coarser * MarchSteps::opticalDepth)),
-        m_asksKeep(asksKeep && volume.clipKind != WideScene::ClipKind::none),
+        m_minStep(narrow(stepScale * MarchAccuracy::minVoxels) /
+                  sqrt(dot(m_direction, m_direction))),
+        m_opticalDepth(narrow(stepScale * MarchAccuracy::opticalDepth)),
+        m_usesClip(usesClip && volume.clipKind != WideScene::ClipKind::none),
         m_busy(LaneMask::first(rays.size - first) & (m_end > 0.0F)) {}
 
   bool isDone() const { return !m_busy.any(); }
@@ -42,17 +43,17 @@ public:
     const Float toFace = stayAt(m_volume, m_way, m_t, cell);
     const Float stop = min(toFace, m_end);
     // A little beyond the face: the next point lies in the next cell, whatever rounding does.
-    const Float beyond = fma(m_shortest, 0.02F, max(stop, m_t));
+    const Float beyond = fma(m_minStep, 0.02F, max(stop, m_t));
     const LaneMask filled = m_busy & (cell.majorant > 0.0F);
-    const Float wanted = max(m_shortest, m_opticalDepth / cell.majorant);
+    const Float wanted = max(m_minStep, m_opticalDepth / cell.majorant);
     const Float next = select(filled, min(m_t + wanted, beyond), beyond);
     if (filled.any())
-      stopLight(filled, cell, next);
+      attenuate(filled, cell, next);
     m_t = select(m_busy, next, m_t);
-    const LaneMask lit = m_transmittance > narrow(MarchSteps::dark);
-    const LaneMask going = m_busy & lit & (m_t < m_end);
-    const LaneMask ended = m_busy.without(going);
-    m_busy = going;
+    const LaneMask lit = m_transmittance > narrow(MarchAccuracy::minTransmittance);
+    const LaneMask active = m_busy & lit & (m_t < m_end);
+    const LaneMask ended = m_busy.without(active);
+    m_busy = active;
     return ended;
   }
 
@@ -60,7 +61,7 @@ public:
   struct Pending {
     Float probability, middle;
   };
-  HWY_INLINE LaneMask pendingAbove(Float least) const { return m_pending > least; }
+  HWY_INLINE LaneMask hasPending(Float least) const { return m_pending > least; }
   /// Takes those of the lanes of `which`; 0 in the others.
   HWY_INLINE Pending take(LaneMask which) {
     const Float t = m_moment / select(which, m_pending, 1.0F);
@@ -72,14 +73,14 @@ public:
 
 private:
   /// Light that matter stops from m_t to `next`, by its extinction in the middle.
-  HWY_INLINE void stopLight(LaneMask filled, const LaneCells& cell, Float next) {
+  HWY_INLINE void attenuate(LaneMask filled, const LaneCells& cell, Float next) {
     const Float length = next - m_t;
     const Float middle = fma(0.5F, length, m_t);
     const Float3 p = pointAt(middle);
     const Float scalar = scalarAt<Voxel>(m_volume.field, p);
     LaneExtinctions all = m_volume.mixture ? extinctionsAt<true>(m_volume, filled, p, scalar)
                                            : extinctionsAt<false>(m_volume, filled, p, scalar);
-    if (m_asksKeep) {
+    if (m_usesClip) {
       const LaneMask cut = filled & cell.cut;
       if (cut.any())
         all.clipped.setIf(cut, all.clipped * keep(m_volume, p, cut));
@@ -95,15 +96,15 @@ private:
   const WideScene& m_volume;
   Float3 m_origin, m_direction; ///< index space, per mm
   Way m_way[3];
-  Float m_end, m_shortest; ///< mm
-  Float m_opticalDepth;    ///< of a step
-  bool m_asksKeep;
+  Float m_end, m_minStep; ///< mm
+  Float m_opticalDepth;   ///< of a step
+  bool m_usesClip;
   LaneMask m_busy;
   Float m_t = 0.0F, m_transmittance = 1.0F;
   Float m_pending = 0.0F, m_moment = 0.0F;
 };
 
-/// Sums of FirstMatter.
+/// Sums of ExpectedHit.
 template <typename Voxel>
 class Sums {
 public:
@@ -114,23 +115,25 @@ public:
     const auto [probability, middle] = walk.take(which);
     const Float3 p = walk.pointAt(middle);
     const Float scalar = scalarAt<Voxel>(m_volume.field, p);
-    const Mean mean = m_volume.mixture ? meanOfParts(which, p, scalar) : own(which, p, scalar);
+    const Mean mean =
+        m_volume.mixture ? evaluateMixture(which, p, scalar) : evaluateSingle(which, p, scalar);
     Float3 albedo = mean.albedo;
     if (m_volume.context)
       albedo = paled(*m_volume.context, p, albedo);
     m_albedo = m_albedo + probability * albedo;
     const Float3 difference = differenceAt<Voxel>(m_volume.field, p);
     Float3 gradient = mapDirection(m_scene.indexDifferenceToGradient, difference);
-    Float along = dot(walk.direction(), difference); // of the gradient's sign
+    Float alongRay = dot(walk.direction(), difference); // of the gradient's sign
     if (m_scene.hybrid && m_volume.cutSlope > 0.0F) {
       gradient = gradient + cutGradient(m_volume, p, which);
-      along = dot(mapDirection(m_scene.toLocal, walk.direction()), gradient);
+      alongRay = dot(mapDirection(m_scene.toLocal, walk.direction()), gradient);
     }
     const Float slope = sqrt(dot(gradient, gradient));
-    const Float3 normal = normalOf(gradient, along, probability);
+    const Float3 normal = normalOf(gradient, alongRay, probability);
     m_normal = m_normal + normal;
     if (m_scene.hybrid)
-      m_facing = m_facing + mean.opacity * missing(m_scene.surfaceRate * slope) * normal;
+      m_surfaceNormal =
+          m_surfaceNormal + mean.opacity * missing(m_scene.surfaceRate * slope) * normal;
     m_hit = m_hit + probability;
     m_distance = fma(probability, middle, m_distance);
   }
@@ -141,12 +144,12 @@ public:
     Float opacity;
   };
 
-  Mean own(LaneMask which, const Float3& p, Float scalar) const {
+  Mean evaluateSingle(LaneMask which, const Float3& p, Float scalar) const {
     return {albedoAt(m_scene, which, p, scalar),
             m_scene.hybrid ? missing(extinctionOf(m_volume.extinctions, scalar)) : 0.0F};
   }
 
-  Mean meanOfParts(LaneMask which, const Float3& p, Float scalar) const {
+  Mean evaluateMixture(LaneMask which, const Float3& p, Float scalar) const {
     const Float kept = keptOfParts(m_volume, which, p);
     Mean sums{{0.0F, 0.0F, 0.0F}, 0.0F};
     Float all = 0.0F;
@@ -160,12 +163,12 @@ public:
     return {scale * sums.albedo, scale * sums.opacity};
   }
 
-  void putTo(MarchBatch& batch, std::size_t first) const {
+  void write(MarchBatch& batch, std::size_t first) const {
     store(m_hit, &batch.hit[first]);
     store(m_distance, &batch.distance[first]);
     store3(m_albedo, batch.albedo, first);
     store3(m_normal, batch.normal, first);
-    store3(m_facing, batch.facing, first);
+    store3(m_surfaceNormal, batch.surfaceNormal, first);
   }
 
 private:
@@ -173,35 +176,35 @@ private:
   const EventScene& m_scene;
   Float m_hit = 0.0F, m_distance = 0.0F;
   Float3 m_albedo{m_hit, m_hit, m_hit}, m_normal{m_hit, m_hit, m_hit},
-      m_facing{m_hit, m_hit, m_hit};
+      m_surfaceNormal{m_hit, m_hit, m_hit};
 };
 
-void marchAll(const WideScene& volume, const EventScene& scene, MarchBatch& batch) {
+void marchCameraAll(const WideScene& volume, const EventScene& scene, MarchBatch& batch) {
   // Eye rays begin behind the surface, where only an edge that is not sharp matters; unless they
   // are whole, for matter that the clip leaves.
-  const bool asksKeep =
+  const bool usesClip =
       volume.ghost > 0.0F || volume.softness > 0.0F || (volume.mixture && volume.mixture->hasFree);
   const auto march = [&]<typename Voxel>(const Voxel*) {
     for (std::size_t first = 0; first < batch.rays.size; first += laneCount) {
-      Walk<Voxel> walk(volume, batch.rays, first, 1.0, asksKeep);
+      Walk<Voxel> walk(volume, batch.rays, first, 1.0, usesClip);
       Sums<Voxel> sums(volume, scene);
       while (!walk.isDone()) {
         const LaneMask ended = walk.step();
-        const Float least = select(ended, 0.0F, narrow(MarchSteps::share));
-        const LaneMask due = walk.pendingAbove(least);
+        const Float least = select(ended, 0.0F, narrow(MarchAccuracy::groupProbability));
+        const LaneMask due = walk.hasPending(least);
         if (due.any())
           sums.collect(walk, due);
       }
-      sums.putTo(batch, first);
+      sums.write(batch, first);
     }
   };
   std::visit(march, volume.voxels);
 }
 
-void passAll(const WideScene& volume, RayBatch& rays) {
+void marchShadowAll(const WideScene& volume, RayBatch& rays) {
   const auto pass = [&]<typename Voxel>(const Voxel*) {
     for (std::size_t first = 0; first < rays.size; first += laneCount) {
-      Walk<Voxel> walk(volume, rays, first, MarchSteps::coarser, true);
+      Walk<Voxel> walk(volume, rays, first, MarchAccuracy::shadowScale, true);
       while (!walk.isDone())
         walk.step();
       store(walk.transmittance(), &rays.result[first]);
@@ -217,15 +220,15 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace fenestra {
 
-HWY_EXPORT(marchAll);
-HWY_EXPORT(passAll);
+HWY_EXPORT(marchCameraAll);
+HWY_EXPORT(marchShadowAll);
 
-void marchAlong(const WideScene& volume, const EventScene& scene, MarchBatch& batch) {
-  HWY_DYNAMIC_DISPATCH(marchAll)(volume, scene, batch);
+void marchCameraRays(const WideScene& volume, const EventScene& scene, MarchBatch& batch) {
+  HWY_DYNAMIC_DISPATCH(marchCameraAll)(volume, scene, batch);
 }
 
-void marchThrough(const WideScene& volume, RayBatch& rays) {
-  HWY_DYNAMIC_DISPATCH(passAll)(volume, rays);
+void marchShadowRays(const WideScene& volume, RayBatch& rays) {
+  HWY_DYNAMIC_DISPATCH(marchShadowAll)(volume, rays);
 }
 
 } // namespace fenestra

@@ -6,18 +6,18 @@
 
 namespace fenestra {
 
-/// Rays, and FirstMatter of each, its distance from the ray's origin in the batch.
+/// Rays, and ExpectedHit of each, its distance from the ray's origin in the batch.
 struct MarchBatch {
   RayBatch rays;
   SoaArray<float> hit, distance;
-  SoaArray3 albedo, normal, facing;
+  SoaArray3 albedo, normal, surfaceNormal;
 };
 
 /// Marches eye rays that begin behind the clip's surface: a clip with a sharp edge is asked no
 /// more.
-void marchAlong(const WideScene& volume, const EventScene& scene, MarchBatch& batch);
+void marchCameraRays(const WideScene& volume, const EventScene& scene, MarchBatch& batch);
 
 /// result: transmittance of each ray, in coarser steps. These rays may begin anywhere.
-void marchThrough(const WideScene& volume, RayBatch& rays);
+void marchShadowRays(const WideScene& volume, RayBatch& rays);
 
 } // namespace fenestra

@@ -13,33 +13,34 @@ namespace fenestra {
 
 /// Sums over the first collisions of a ray, weighted by their probability T(t) sigma_t(t) dt; a ray
 /// that meets nothing counts as 0.
-struct FirstMatter {
+struct ExpectedHit {
   double hit = 0.0;      ///< probability of a collision
   double distance = 0.0; ///< from the ray's origin, mm
   Rgb albedo = Rgb::Zero();
-  Vec3 facing = Vec3::Zero(); ///< normal times the probability of scattering at a surface
+  Vec3 surfaceNormal = Vec3::Zero(); ///< normal times the probability of scattering at a surface
   Vec3 normal = Vec3::Zero(); ///< unit where the gradient is not zero, world axes, toward the eye
 };
 
 /// Accuracy of a march.
-struct MarchSteps {
-  static constexpr double voxels = 0.5;       ///< a step is at least that long
-  static constexpr double opticalDepth = 0.1; ///< or so deep under its cell's majorant
-  static constexpr double dark = 0.03;        ///< transmittance at which a ray ends
-  static constexpr double coarser = 2.0;      ///< factor of steps on the way to a light
-  static constexpr double share = 1.0 / 16.0; ///< of the collisions, for which matter is looked up
+struct MarchAccuracy {
+  static constexpr double minVoxels = 0.5;         ///< a step is at least that long
+  static constexpr double opticalDepth = 0.1;      ///< or so deep under its cell's majorant
+  static constexpr double minTransmittance = 0.03; ///< transmittance at which a ray ends
+  static constexpr double shadowScale = 2.0;       ///< factor of steps on the way to a light
+  static constexpr double groupProbability =
+      1.0 / 16.0; ///< of the collisions, for which matter is looked up
 };
 
 /// A view: all arguments must outlive the march. Rays are in world space, unit direction.
 template <typename Voxel>
-class March {
+class RayMarcher {
 public:
-  March(const Domain& domain, const Medium<Voxel>& medium, const MajorantGrid& majorants,
-        const Clip& clip)
+  RayMarcher(const Domain& domain, const Medium<Voxel>& medium, const MajorantGrid& majorants,
+             const Clip& clip)
       : m_domain(domain), m_medium(medium), m_majorants(majorants), m_clip(clip) {}
 
-  FirstMatter along(const Ray& ray, const Interval& range) const {
-    const std::optional<Part> part = partInside(ray, range);
+  ExpectedHit integrateHits(const Ray& ray, const Interval& range) const {
+    const std::optional<Part> part = clipToDomain(ray, range);
     if (!part)
       return {};
     Sums sums;
@@ -48,22 +49,22 @@ public:
       sums.transmittance -= stopped;
       sums.pending += stopped;
       sums.moment += stopped * t;
-      if (sums.pending > MarchSteps::share)
+      if (sums.pending > MarchAccuracy::groupProbability)
         collect(*part, sums);
-      return sums.transmittance > MarchSteps::dark;
+      return sums.transmittance > MarchAccuracy::minTransmittance;
     });
     collect(*part, sums);
-    return sums.met;
+    return sums.expected;
   }
 
   /// Transmittance over `range`, in coarser steps.
-  double through(const Ray& ray, const Interval& range) const {
-    const std::optional<Part> part = partInside(ray, range);
+  double computeTransmittance(const Ray& ray, const Interval& range) const {
+    const std::optional<Part> part = clipToDomain(ray, range);
     double transmittance = 1.0;
     if (part)
-      forEachStep(*part, MarchSteps::coarser, [&](double, double length, double extinction) {
+      forEachStep(*part, MarchAccuracy::shadowScale, [&](double, double length, double extinction) {
         transmittance *= std::exp(-extinction * length);
-        return transmittance > MarchSteps::dark;
+        return transmittance > MarchAccuracy::minTransmittance;
       });
     return transmittance;
   }
@@ -78,10 +79,10 @@ private:
     double transmittance = 1.0;
     double pending = 0.0; ///< probability of the collisions that are not collected yet
     double moment = 0.0;  ///< of these, times their distance
-    FirstMatter met = {};
+    ExpectedHit expected = {};
   };
 
-  std::optional<Part> partInside(const Ray& ray, const Interval& range) const {
+  std::optional<Part> clipToDomain(const Ray& ray, const Interval& range) const {
     const Affine& worldToIndex = m_domain.grid().worldToIndex;
     const Interval inside = m_domain.clip(transformed(worldToIndex, ray), range);
     if (inside.empty())
@@ -93,9 +94,9 @@ private:
 
   /// Calls visit(middle, length, extinction there) for the steps in matter until it returns false.
   template <typename Visit>
-  void forEachStep(const Part& part, double coarser, Visit&& visit) const {
-    constexpr double mostSteps = 64.0; // in a cell
-    const double voxels = MarchSteps::voxels / part.indexRay.direction.norm();
+  void forEachStep(const Part& part, double stepScale, Visit&& visit) const {
+    constexpr double maxSteps = 64.0; // in a cell
+    const double voxels = MarchAccuracy::minVoxels / part.indexRay.direction.norm();
     GridWalk cells(transformed(m_majorants.worldToCell(), part.ray), {0.0, part.length},
                    m_majorants.cellCount());
     for (; !cells.done(); cells.next()) {
@@ -104,9 +105,9 @@ private:
         continue;
       const Interval& interval = cells.interval();
       const double length = interval.end - interval.begin;
-      const double step =
-          coarser * std::max(voxels, MarchSteps::opticalDepth / static_cast<double>(cell.majorant));
-      const double steps = std::clamp(std::ceil(length / step), 1.0, mostSteps);
+      const double step = stepScale * std::max(voxels, MarchAccuracy::opticalDepth /
+                                                           static_cast<double>(cell.majorant));
+      const double steps = std::clamp(std::ceil(length / step), 1.0, maxSteps);
       const double each = length / steps;
       for (double i = 0.5; i < steps; i += 1.0) {
         const double t = interval.begin + i * each;
@@ -123,18 +124,18 @@ private:
     if (!(sums.pending > 0.0))
       return;
     const double t = sums.moment / sums.pending;
-    FirstMatter& met = sums.met;
-    met.hit += sums.pending;
-    met.distance += sums.pending * (part.before + t);
+    ExpectedHit& expected = sums.expected;
+    expected.hit += sums.pending;
+    expected.distance += sums.pending * (part.before + t);
     const auto add = [&](const MediumSample& medium, double probability) {
       const double weight = sums.pending * probability;
-      met.albedo += weight * medium.albedo;
+      expected.albedo += weight * medium.albedo;
       const double slope = medium.gradient.norm();
       const bool away = part.ray.direction.dot(medium.gradient) < 0.0;
       if (slope > 0.0) {
         const Vec3 normal = medium.gradient * (weight / (away ? slope : -slope));
-        met.normal += normal;
-        met.facing += medium.surfaceProbability * normal;
+        expected.normal += normal;
+        expected.surfaceNormal += medium.surfaceProbability * normal;
       }
     };
     forEachMediumSample(m_medium, m_clip, part.ray.at(t), part.indexRay.at(t), true, add);

@@ -10,7 +10,7 @@ namespace {
 /// Pixels, row 0 at the top.
 struct Raster {
   int width, height;
-  std::vector<Met> pixels;
+  std::vector<PrimaryHit> pixels;
 
   std::size_t index(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
@@ -19,10 +19,10 @@ struct Raster {
 };
 
 /// True if two neighbouring rays see different things. `pitch`: mm between pixels.
-bool differ(const Met& a, const Met& b, double pitch) {
+bool areDifferent(const PrimaryHit& a, const PrimaryHit& b, double pitch) {
   constexpr float colors = 0.08F, slope = 4.0F;
-  const auto apart = [&](std::size_t c) { return std::abs(a.albedo[c] - b.albedo[c]) > colors; };
-  if (apart(0) || apart(1) || apart(2) || std::abs(a.hit - b.hit) > colors)
+  const auto isFar = [&](std::size_t c) { return std::abs(a.albedo[c] - b.albedo[c]) > colors; };
+  if (isFar(0) || isFar(1) || isFar(2) || std::abs(a.hit - b.hit) > colors)
     return true;
   const float both = std::min(a.hit, b.hit);
   return both > 0.0F &&
@@ -30,40 +30,40 @@ bool differ(const Met& a, const Met& b, double pitch) {
 }
 
 bool isAtEdge(const Raster& raster, int column, int row, double pitch) {
-  const Met& here = raster.pixels[raster.index(column, row)];
-  const auto differsFrom = [&](int x, int y) {
+  const PrimaryHit& here = raster.pixels[raster.index(column, row)];
+  const auto isUnlike = [&](int x, int y) {
     return x >= 0 && y >= 0 && x < raster.width && y < raster.height &&
-           differ(here, raster.pixels[raster.index(x, y)], pitch);
+           areDifferent(here, raster.pixels[raster.index(x, y)], pitch);
   };
-  return differsFrom(column - 1, row) || differsFrom(column + 1, row) ||
-         differsFrom(column, row - 1) || differsFrom(column, row + 1);
+  return isUnlike(column - 1, row) || isUnlike(column + 1, row) || isUnlike(column, row - 1) ||
+         isUnlike(column, row + 1);
 }
 
-Met meanOf(std::span<const Met> parts) {
-  Met mean;
-  const float share = 1.0F / static_cast<float>(parts.size());
-  for (const Met& part : parts) {
-    mean.hit += share * part.hit;
-    mean.depth += share * part.depth;
+PrimaryHit average(std::span<const PrimaryHit> parts) {
+  PrimaryHit mean;
+  const float weight = 1.0F / static_cast<float>(parts.size());
+  for (const PrimaryHit& part : parts) {
+    mean.hit += weight * part.hit;
+    mean.depth += weight * part.depth;
     for (std::size_t c = 0; c < 3; ++c) {
-      mean.albedo[c] += share * part.albedo[c];
-      mean.normal[c] += share * part.normal[c];
-      mean.facing[c] += share * part.facing[c];
+      mean.albedo[c] += weight * part.albedo[c];
+      mean.normal[c] += weight * part.normal[c];
+      mean.surfaceNormal[c] += weight * part.surfaceNormal[c];
     }
   }
   return mean;
 }
 
 template <typename March>
-Raster marched(const Camera& camera, const March& march) {
+Raster marchPixels(const Camera& camera, const March& march) {
   const int width = camera.width(), height = camera.height();
   Raster raster{width, height, {}};
   raster.pixels.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
   tbb::parallel_for(0, height, [&](int row) {
-    std::vector<RasterPoint> middles;
+    std::vector<RasterPoint> centers;
     for (int column = 0; column < width; ++column)
-      middles.push_back({column + 0.5, row + 0.5});
-    march.along(middles, &raster.pixels[raster.index(0, row)]);
+      centers.push_back({column + 0.5, row + 0.5});
+    march.integrateHits(centers, &raster.pixels[raster.index(0, row)]);
   });
   std::vector<std::vector<int>> edges(static_cast<std::size_t>(height)); // columns
   tbb::parallel_for(0, height, [&](int row) {
@@ -77,11 +77,11 @@ Raster marched(const Camera& camera, const March& march) {
       for (const double y : {0.25, 0.75})
         for (const double x : {0.25, 0.75})
           points.push_back({column + x, row + y});
-    std::vector<Met> parts(points.size());
-    march.along(points, parts.data());
-    std::span<const Met> left = parts;
+    std::vector<PrimaryHit> parts(points.size());
+    march.integrateHits(points, parts.data());
+    std::span<const PrimaryHit> left = parts;
     for (const int column : edges[static_cast<std::size_t>(row)]) {
-      raster.pixels[raster.index(column, row)] = meanOf(left.first(4));
+      raster.pixels[raster.index(column, row)] = average(left.first(4));
       left = left.subspan(4);
     }
   });
@@ -90,12 +90,12 @@ Raster marched(const Camera& camera, const March& march) {
 
 /// Light that reaches the mean collisions of a picture's pixels unscattered.
 template <typename Voxel, typename March>
-class FirstLight {
+class DirectLight {
 public:
-  FirstLight(const RenderScene& scene, const Medium<Voxel>& medium, const March& march)
+  DirectLight(const RenderScene& scene, const Medium<Voxel>& medium, const March& march)
       : m_scene(scene), m_medium(medium), m_march(march) {}
 
-  Plane of(const Raster& raster) const {
+  Plane compute(const Raster& raster) const {
     Plane light(raster.pixels.size(), 0.0F);
     tbb::parallel_for(0, raster.height, [&](int row) { addRow(raster, row, light); });
     return light;
@@ -113,41 +113,42 @@ private:
   };
 
   void addRow(const Raster& raster, int row, Plane& light) const {
-    const std::vector<Collision> collisions = collisionsIn(raster, row);
+    const std::vector<Collision> collisions = findCollisions(raster, row);
     std::vector<ShadowRay> rays;
     std::vector<std::size_t> pixels;
     for (int sample = 0; sample < samples; ++sample) // neighbouring rays toward one light
       for (const Collision& at : collisions)
-        if (const auto ray = toLight(at, sample)) {
+        if (const auto ray = makeShadowRay(at, sample)) {
           rays.push_back(*ray);
           pixels.push_back(at.pixel);
         }
     std::vector<float> transmittance(rays.size());
-    m_march.through(rays, transmittance.data());
+    m_march.computeTransmittance(rays, transmittance.data());
     for (std::size_t i = 0; i < rays.size(); ++i)
       light[pixels[i]] += transmittance[i] * narrow(rays[i].radiance.mean());
   }
 
-  std::vector<Collision> collisionsIn(const Raster& raster, int row) const {
+  std::vector<Collision> findCollisions(const Raster& raster, int row) const {
     constexpr float least = 0.02F;
     std::vector<Collision> collisions;
     for (int column = 0; column < raster.width; ++column) {
       const std::size_t pixel = raster.index(column, row);
-      const Met& met = raster.pixels[pixel];
-      if (!(met.hit > least))
+      const PrimaryHit& primary = raster.pixels[pixel];
+      if (!(primary.hit > least))
         continue;
-      const Ray eye = m_scene.camera.ray(column + 0.5, row + 0.5);
-      const double depth = static_cast<double>(met.depth / met.hit);
-      const Vec3 point = eye.at(depth / m_scene.camera.depthPerLength(eye));
+      const Ray cameraRay = m_scene.camera.ray(column + 0.5, row + 0.5);
+      const double depth = static_cast<double>(primary.depth / primary.hit);
+      const Vec3 point = cameraRay.at(depth / m_scene.camera.depthPerLength(cameraRay));
       const Vec3 index = m_scene.volume.grid.worldToIndex * point;
-      if (const auto medium = mostProbable(point, index))
-        collisions.push_back({pixel, point, eye.direction, *medium, static_cast<double>(met.hit)});
+      if (const auto medium = findLikeliest(point, index))
+        collisions.push_back(
+            {pixel, point, cameraRay.direction, *medium, static_cast<double>(primary.hit)});
     }
     return collisions;
   }
 
   /// Matter that a collision meets with the greatest probability.
-  std::optional<MediumSample> mostProbable(const Vec3& point, const Vec3& index) const {
+  std::optional<MediumSample> findLikeliest(const Vec3& point, const Vec3& index) const {
     std::optional<MediumSample> found;
     double most = 0.0;
     forEachMediumSample(m_medium, m_scene.clip, point, index, true,
@@ -161,22 +162,22 @@ private:
   }
 
   /// Samples of lights are the same numbers everywhere: what they lack in precision is no noise.
-  std::optional<ShadowRay> toLight(const Collision& at, int sample) const {
+  std::optional<ShadowRay> makeShadowRay(const Collision& at, int sample) const {
     Random random(0, 0, static_cast<std::uint64_t>(sample));
     const double choice = (sample + random.uniform()) / samples;
     const auto light = m_scene.lights.sample(at.point, choice, random.uniform2());
     if (!light)
       return std::nullopt;
-    const double share = at.medium.surfaceProbability;
+    const double probability = at.medium.surfaceProbability;
     Rgb factor = Rgb::Zero();
-    if (share < 1.0)
-      factor +=
-          (1.0 - share) * PhaseScattering(at.incoming, at.medium.transfer->g, at.medium.albedo)
-                              .evaluate(light->direction);
-    if (share > 0.0)
-      factor += share * SurfaceScattering(at.incoming, at.medium.gradient,
-                                          *at.medium.transfer->shading, at.medium.albedo)
-                            .evaluate(light->direction);
+    if (probability < 1.0)
+      factor += (1.0 - probability) *
+                PhaseScattering(at.incoming, at.medium.transfer->g, at.medium.albedo)
+                    .evaluate(light->direction);
+    if (probability > 0.0)
+      factor += probability * SurfaceScattering(at.incoming, at.medium.gradient,
+                                                *at.medium.transfer->shading, at.medium.albedo)
+                                  .evaluate(light->direction);
     const Rgb radiance = factor * light->radiance * (at.hit / (light->pdf * samples));
     if (!(radiance.maxCoeff() > 0.0))
       return std::nullopt;
@@ -188,44 +189,46 @@ private:
   const March& m_march;
 };
 
-ExpectedFlight flightOf(const Raster& raster) {
-  ExpectedFlight flight;
+FeatureBuffers toFeatures(const Raster& raster) {
+  FeatureBuffers features;
   const auto plane = [&](Plane& values, auto&& valueOf) {
     values.reserve(raster.pixels.size());
-    for (const Met& met : raster.pixels)
-      values.push_back(valueOf(met));
+    for (const PrimaryHit& primary : raster.pixels)
+      values.push_back(valueOf(primary));
   };
-  plane(flight.hit, [](const Met& met) { return met.hit; });
-  plane(flight.depth, [](const Met& met) { return met.depth; });
+  plane(features.hit, [](const PrimaryHit& primary) { return primary.hit; });
+  plane(features.depth, [](const PrimaryHit& primary) { return primary.depth; });
   for (std::size_t c = 0; c < 3; ++c) {
-    plane(flight.albedo[c], [c](const Met& met) { return met.albedo[c]; });
-    plane(flight.normal[c], [c](const Met& met) { return met.normal[c]; });
-    plane(flight.facing[c], [c](const Met& met) { return met.facing[c]; });
+    plane(features.albedo[c], [c](const PrimaryHit& primary) { return primary.albedo[c]; });
+    plane(features.normal[c], [c](const PrimaryHit& primary) { return primary.normal[c]; });
+    plane(features.surfaceNormal[c],
+          [c](const PrimaryHit& primary) { return primary.surfaceNormal[c]; });
   }
-  return flight;
+  return features;
 }
 
 template <typename Voxel, typename March>
-ExpectedFlight flightBy(const RenderScene& scene, const Medium<Voxel>& medium, const March& march) {
-  const Raster raster = marched(scene.camera, march);
-  ExpectedFlight flight = flightOf(raster);
-  flight.light = FirstLight<Voxel, March>(scene, medium, march).of(raster);
-  return flight;
+FeatureBuffers marchFeatures(const RenderScene& scene, const Medium<Voxel>& medium,
+                             const March& march) {
+  const Raster raster = marchPixels(scene.camera, march);
+  FeatureBuffers features = toFeatures(raster);
+  features.light = DirectLight<Voxel, March>(scene, medium, march).of(raster);
+  return features;
 }
 
 } // namespace
 
-ExpectedFlight expectedFlight(const RenderScene& scene) {
+FeatureBuffers computeFeatures(const RenderScene& scene) {
   if (!lanesServe(scene))
-    return expectedFlightOneByOne(scene);
+    return computeScalarFeatures(scene);
   return withMedium(scene, [&]<typename Voxel>(const Medium<Voxel>& medium, const Tracker<Voxel>&) {
-    return flightBy(scene, medium, MarchedInLanes(scene));
+    return marchFeatures(scene, medium, SimdFeatureMarcher(scene));
   });
 }
 
-ExpectedFlight expectedFlightOneByOne(const RenderScene& scene) {
+FeatureBuffers computeScalarFeatures(const RenderScene& scene) {
   return withMedium(scene, [&]<typename Voxel>(const Medium<Voxel>& medium, const Tracker<Voxel>&) {
-    return flightBy(scene, medium, MarchedOneByOne<Voxel>(scene, medium));
+    return marchFeatures(scene, medium, ScalarFeatureMarcher<Voxel>(scene, medium));
   });
 }
 
