@@ -261,18 +261,18 @@ bool Lender::dismiss(bool isStopped) {
   const bool isBegun = m_monitor != nullptr;
   for (int rank = 1; rank < m_ranks.count(); ++rank)
     m_ranks.send(rank, {dismisses});
-  std::size_t busy = 0;
+  std::size_t isBusy = 0;
   for (std::size_t rank = 1; isBegun && rank < m_borrowers.size(); ++rank)
-    busy += m_borrowers[rank].waits ? 0 : 1;
+    isBusy += m_borrowers[rank].waits ? 0 : 1;
   const Stopwatch watch;
   const Rests rests;
-  while (busy > 0 && (!isStopped || watch.seconds() < longest)) {
+  while (isBusy > 0 && (!isStopped || watch.seconds() < longest)) {
     if (m_ranks.receive())
-      --busy;
+      --isBusy;
     else
       rests.rest();
   }
-  return busy == 0;
+  return isBusy == 0;
 }
 
 // ---- other ranks

@@ -80,10 +80,10 @@ private:
         across[batch.size] = at;
         add(batch, at);
       }
-      m_cells.findMeetings(batch);
+      m_cells.findHits(batch);
       for (std::size_t i = 0; i < batch.size; ++i)
-        if (batch.meeting[i] < infinity)
-          found(across[i], batch.meeting[i] - m_half.z());
+        if (batch.hitT[i] < infinity)
+          found(across[i], batch.hitT[i] - m_half.z());
     }
     m_mean = m_meetings > 0.0 ? m_mean / m_meetings : 0.0;
   }

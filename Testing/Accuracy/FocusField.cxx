@@ -24,7 +24,7 @@ double bisected(double a, double b, const Predicate& predicate) {
 
 /// Maximum of a function with one maximum between a and b.
 template <typename Function>
-double summit(double a, double b, const Function& f) {
+double findMaximum(double a, double b, const Function& f) {
   for (int i = 0; i < 80; ++i) {
     const double third = (b - a) / 3.0;
     if (f(a + third) <= f(b - third) + rounding)
@@ -185,7 +185,7 @@ double FocusField::firstMeeting(const Vec3& origin, const Vec3& direction) const
     }
     const double next = std::min({t + stride, face, end}), there = value(next);
     if (here > 0.25 && rises(here, t + near) && rises(there, next - near)) // else 1/2 is too far
-      if (const double top = summit(t, next, value); isInAt(top))
+      if (const double top = findMaximum(t, next, value); isInAt(top))
         return bisected(t, top, isInAt);
     if (there >= 0.5)
       return bisected(t, next, isInAt);

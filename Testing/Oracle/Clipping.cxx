@@ -9,7 +9,7 @@ namespace {
 
 /// Maximum in [low, high] of a function with one maximum there.
 template <typename Function>
-double summit(const Function& f, double low, double high) {
+double findMaximum(const Function& f, double low, double high) {
   for (int i = 0; i < 60; ++i) {
     const double a = low + (high - low) / 3.0, b = high - (high - low) / 3.0;
     const bool rises = f(a) < f(b);
@@ -19,12 +19,12 @@ double summit(const Function& f, double low, double high) {
 }
 
 /// View of a focus along a ray.
-struct Sight {
+struct DepthHit {
   double t;      ///< first t with indicator >= 1/2, else the summit; infinity: neither
   double height; ///< indicator at t
 
   /// Replaces the summit by a later one if 1/2 - `there` < (1/2 - height) / 64.
-  void pass(double top, double there) {
+  void update(double top, double there) {
     if (there > 0.25 && (height <= 0.25 || 0.5 - there < (0.5 - height) / 64.0))
       *this = {top, there};
   }
@@ -33,8 +33,8 @@ struct Sight {
 /// Sight along a ray within the volume: sampled twenty-five times a voxel and at every summit
 /// between samples, where a ray may graze the surface; then bisected. Steps beyond the focus's box,
 /// where the indicator is 0, are counted and not looked at.
-Sight lookAlong(const FocusField& focus, const Medium& matter, const Ray& ray,
-                const Interval& range) {
+DepthHit searchRay(const FocusField& focus, const Medium& matter, const Ray& ray,
+                   const Interval& range) {
   Interval part = matter.boxInterval(ray.origin, ray.direction);
   part = {std::max(part.begin, range.begin), std::min(part.end, range.end)};
   const auto level = [&](double t) {
@@ -47,13 +47,13 @@ Sight lookAlong(const FocusField& focus, const Medium& matter, const Ray& ray,
       const double middle = 0.5 * (outside + inside);
       (level(middle) >= 0.5 ? inside : outside) = middle;
     }
-    return Sight{inside, 0.5};
+    return DepthHit{inside, 0.5};
   };
   const double step = 0.04 * focus.shortestEdge();
   double before = 0.0, here = part.empty() ? 0.0 : level(part.begin);
   if (here >= 0.5)
     return {part.begin, 0.5};
-  Sight best{part.begin, 0.0};
+  DepthHit best{part.begin, 0.0};
   const Interval near = focus.inBox(ray);
   for (double t = part.begin; t < part.end && t < near.end + step; t += step) {
     if (t + step < near.begin)
@@ -62,29 +62,29 @@ Sight lookAlong(const FocusField& focus, const Medium& matter, const Ray& ray,
     if (there >= 0.5)
       return between(t, next);
     if (here > 0.2 && here >= before && here >= there) {
-      const double top = summit(level, std::max(t - step, part.begin), next);
+      const double top = findMaximum(level, std::max(t - step, part.begin), next);
       const double height = level(top);
       if (height >= 0.5)
         return between(std::max(t - step, part.begin), top);
-      best.pass(top, height);
+      best.update(top, height);
     }
     before = here;
     here = there;
   }
-  best.pass(part.end, here);
+  best.update(part.end, here);
   return best;
 }
 
-double firstMeeting(const FocusField& focus, const Medium& matter, const Ray& ray) {
-  const Sight sight = lookAlong(focus, matter, ray, {});
-  return sight.height >= 0.5 ? sight.t : infinity;
+double findFirstHit(const FocusField& focus, const Medium& matter, const Ray& ray) {
+  const DepthHit hit = searchRay(focus, matter, ray, {});
+  return hit.height >= 0.5 ? hit.t : infinity;
 }
 
 /// Spline solved from its textbook equations.
 using Spline = testing_clipping::SaddleSpline<long double>;
 
 /// Intersection of an eye ray with the focus.
-struct Meeting {
+struct Intersection {
   Vec2 onPlane;
   Vec3 world;
   double depth;
@@ -93,18 +93,18 @@ struct Meeting {
 /// Depths of a hole beside the focus.
 class Hole {
 public:
-  Hole(const HoleDescription& description, const View& view, const std::vector<Meeting>& meetings)
+  Hole(const HoleDescription& description, const View& view, const std::vector<Intersection>& hits)
       : m_description(description), m_view(view) {
     const bool isBall = description.shape == HoleDescription::Shape::sphere;
-    for (const Meeting& meeting : meetings) {
-      m_bottom = std::max(m_bottom, meeting.depth);
-      const Vec3 at = isBall ? meeting.world : Vec3(meeting.onPlane.x(), meeting.onPlane.y(), 0.0);
+    for (const Intersection& hit : hits) {
+      m_bottom = std::max(m_bottom, hit.depth);
+      const Vec3 at = isBall ? hit.world : Vec3(hit.onPlane.x(), hit.onPlane.y(), 0.0);
       m_lower = m_lower.cwiseMin(at);
       m_upper = m_upper.cwiseMax(at);
     }
     m_center = 0.5 * (m_lower + m_upper);
-    for (const Meeting& meeting : meetings) {
-      const Vec3 at = isBall ? meeting.world : Vec3(meeting.onPlane.x(), meeting.onPlane.y(), 0.0);
+    for (const Intersection& hit : hits) {
+      const Vec3 at = isBall ? hit.world : Vec3(hit.onPlane.x(), hit.onPlane.y(), 0.0);
       m_radius = std::max(m_radius, (at - m_center).norm());
     }
     m_radius += description.margin;
@@ -112,7 +112,7 @@ public:
 
   double depth(double x, double y) const {
     if (m_description.shape == HoleDescription::Shape::sphere)
-      return bowl(m_view.through(x, y));
+      return sphereDepth(m_view.through(x, y));
     const Vec3 at(x, y, 0.0);
     const bool isInBox =
         std::abs(x - m_center.x()) <= m_center.x() - m_lower.x() + m_description.margin &&
@@ -125,7 +125,7 @@ public:
 
 private:
   /// Larger solution t of |origin + t direction - center| = radius.
-  double bowl(const Ray& ray) const {
+  double sphereDepth(const Ray& ray) const {
     const Vec3 from = ray.origin - m_center;
     const double a = ray.direction.squaredNorm(), b = 2.0 * from.dot(ray.direction),
                  c = from.squaredNorm() - m_radius * m_radius;
@@ -141,22 +141,22 @@ private:
   double m_radius = 0.0, m_bottom = -infinity;
 };
 
-std::vector<double> depthsOf(const DepthClip& clip, const FocusField& focus, const View& view,
-                             const Medium& matter) {
+std::vector<double> computeDepths(const DepthClip& clip, const FocusField& focus, const View& view,
+                                  const Medium& matter) {
   std::vector<double> depths;
-  std::vector<Meeting> meetings;
+  std::vector<Intersection> hits;
   for (const double y : clip.rows)
     for (const double x : clip.columns) {
       const Ray ray = view.through(x, y);
-      const double t = firstMeeting(focus, matter, ray);
+      const double t = findFirstHit(focus, matter, ray);
       depths.push_back(t < infinity ? view.depth(ray.at(t)) : infinity);
       if (t < infinity)
-        meetings.push_back({Vec2(x, y), ray.at(t), depths.back()});
+        hits.push_back({Vec2(x, y), ray.at(t), depths.back()});
     }
   std::optional<Spline> spline;
   std::optional<Hole> hole;
   if (clip.hole)
-    hole.emplace(*clip.hole, view, meetings);
+    hole.emplace(*clip.hole, view, hits);
   else if (!clip.isCutaway && clip.given.empty())
     spline.emplace(clip.sites, clip.depths, clip.smoothing);
   std::size_t sample = 0;
@@ -248,7 +248,7 @@ Clipping::Clipping(const ClipDescription& description, const View& view, const M
     : m_description(description), m_view(view), m_matter(matter) {
   if (const auto* clip = std::get_if<DepthClip>(&description)) {
     m_focus.emplace(clip->focus);
-    m_depths = depthsOf(*clip, *m_focus, view, matter);
+    m_depths = computeDepths(*clip, *m_focus, view, matter);
   }
 }
 
@@ -291,12 +291,12 @@ double Clipping::surfaceInSeam(const DepthClip::Seam& seam, const Vec2& at, doub
   const auto lengthTo = [&](double depth) {
     return (depth - clip.offset - m_view.depth(ray.at(0.0))) / depthPerLength;
   };
-  const Sight sight =
-      lookAlong(*m_focus, m_matter, ray, {std::max(0.0, lengthTo(seam.least)), infinity});
-  const double share = std::clamp((sight.height - 0.25) / 0.25, 0.0, 1.0);
+  const DepthHit hit =
+      searchRay(*m_focus, m_matter, ray, {std::max(0.0, lengthTo(seam.least)), infinity});
+  const double share = std::clamp((hit.height - 0.25) / 0.25, 0.0, 1.0);
   if (share == 0.0)
     return between;
-  const double depth = m_view.depth(ray.at(sight.t)) + clip.offset;
+  const double depth = m_view.depth(ray.at(hit.t)) + clip.offset;
   return between + share * (std::min(depth, seam.greatest) - between);
 }
 

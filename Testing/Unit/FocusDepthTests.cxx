@@ -17,7 +17,7 @@ using testing::briefly;
 
 namespace {
 
-double trilinear(const std::array<double, 8>& v, const Vec3& p) {
+double interpolate(const std::array<double, 8>& v, const Vec3& p) {
   double sum = 0.0;
   for (std::size_t i = 0; i < 8; ++i)
     sum += v[i] * (i & 1 ? p.x() : 1.0 - p.x()) * (i & 2 ? p.y() : 1.0 - p.y()) *
@@ -36,32 +36,32 @@ double indicator(const Mask& mask, const Vec3& world) {
       corners[static_cast<std::size_t>(i)] = mask.voxels[static_cast<std::size_t>(
           voxel.x() + mask.grid.size.x() * (voxel.y() + mask.grid.size.y() * voxel.z()))];
   }
-  return trilinear(corners, index - floor);
+  return interpolate(corners, index - floor);
 }
 
-double depthAt(const FocusDepth& focus, const Vec2& position) {
+double findDepth(const FocusDepth& focus, const Vec2& position) {
   return focus.depth.nearest(position);
 }
 
 /// Rays through and beside a mask of 3^3 voxels, in its cells and in the world.
-struct SomeRays {
-  FocusRays inCells;
-  std::vector<Ray> inWorld;
+struct RandomRays {
+  FocusRays cellRays;
+  std::vector<Ray> worldRays;
 
-  SomeRays(Random& random, const FocusCells& cells) {
-    while (inWorld.size() < 50) {
+  RandomRays(Random& random, const FocusCells& cells) {
+    while (worldRays.size() < 50) {
       const Vec3 origin = randomPoint(random, -4.0, 6.0);
       const Ray world{origin, (randomPoint(random, -0.5, 2.5) - origin).normalized()};
       const Ray ray = transformed(cells.worldToCell(), world);
       const Interval inside = cells.box().clip(ray, {});
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        inCells.origin[axis][inCells.size] = ray.origin[static_cast<int>(axis)];
-        inCells.direction[axis][inCells.size] = ray.direction[static_cast<int>(axis)];
+        cellRays.origin[axis][cellRays.size] = ray.origin[static_cast<int>(axis)];
+        cellRays.direction[axis][cellRays.size] = ray.direction[static_cast<int>(axis)];
       }
-      inCells.begin[inCells.size] = inside.begin;
-      inCells.end[inCells.size] = inside.end;
-      ++inCells.size;
-      inWorld.push_back(world);
+      cellRays.begin[cellRays.size] = inside.begin;
+      cellRays.end[cellRays.size] = inside.end;
+      ++cellRays.size;
+      worldRays.push_back(world);
     }
   }
 };
@@ -69,19 +69,19 @@ struct SomeRays {
 TEST(FocusCells, RayMeetsThemWhereTheIndicatorFirstReachesAHalf) {
   Random random(5, 0, 0);
   const Grid grid({3, 3, 3}, Affine::Identity());
-  int met = 0;
+  int hits = 0;
   for (int trial = 0; trial < briefly(40); ++trial) {
     const Mask mask = maskOf(grid, [&](const Vec3&) { return random.uniform() < 0.4; });
     const FocusCells cells(mask);
-    auto [rays, worldRays] = SomeRays(random, cells);
-    cells.findMeetings(rays);
+    auto [rays, worldRays] = RandomRays(random, cells);
+    cells.findHits(rays);
     for (std::size_t i = 0; i < rays.size; ++i) {
-      const double meeting = rays.meeting[i];
-      if (meeting < infinity && meeting > rays.begin[i]) {
-        ++met;
-        EXPECT_NEAR(indicator(mask, worldRays[i].at(meeting)), 0.5, 1e-12);
+      const double hitT = rays.hitT[i];
+      if (hitT < infinity && hitT > rays.begin[i]) {
+        ++hits;
+        EXPECT_NEAR(indicator(mask, worldRays[i].at(hitT)), 0.5, 1e-12);
       }
-      for (double t = rays.begin[i]; t < std::min(rays.end[i], meeting - 1e-9); t += 0.01) {
+      for (double t = rays.begin[i]; t < std::min(rays.end[i], hitT - 1e-9); t += 0.01) {
         ASSERT_LT(indicator(mask, worldRays[i].at(t)), 0.5 + 1e-12);
       }
     }
@@ -90,20 +90,20 @@ TEST(FocusCells, RayMeetsThemWhereTheIndicatorFirstReachesAHalf) {
 }
 
 /// Tolerance within which the near end of a ridge may be returned as its summit.
-constexpr double ridge = 1.01e-4;
+constexpr double ridgeTolerance = 1.01e-4;
 
 /// Summit on a ray that misses a mask, by stepping.
-double summitOf(const Mask& mask, const Ray& ray, double begin, double end) {
+double findMaximum(const Mask& mask, const Ray& ray, double begin, double end) {
   constexpr double step = 0.003;
   double best = 0.0, before = 0.0, here = 0.0;
-  bool isOnTop = false;
+  bool isOnRidge = false;
   for (double t = begin; t < end + 2.0 * step; t += step) {
     const double next = t < end ? indicator(mask, ray.at(t)) / mask.full : 0.0;
-    const bool isTop = here >= before && here >= next && here > FocusCells::foothill;
-    const bool isBehind = !isOnTop && 0.5 - here >= FocusCells::lessHidden * (0.5 - best);
-    if (isTop && (best == 0.0 || !isBehind))
+    const bool isMaximum = here >= before && here >= next && here > FocusCells::captureThreshold;
+    const bool isHidden = !isOnRidge && 0.5 - here >= FocusCells::replaceRatio * (0.5 - best);
+    if (isMaximum && (best == 0.0 || !isHidden))
       best = std::max(best, here);
-    isOnTop = best > 0.0 && here >= best - ridge && (isOnTop || here == best);
+    isOnRidge = best > 0.0 && here >= best - ridgeTolerance && (isOnRidge || here == best);
     before = here;
     here = next;
   }
@@ -113,42 +113,42 @@ double summitOf(const Mask& mask, const Ray& ray, double begin, double end) {
 TEST(FocusCells, SummitOfAMissingRayEqualsDenseSampling) {
   Random random(6, 0, 0);
   const Grid grid({3, 3, 3}, Affine::Identity());
-  int passed = 0, hidden = 0, other = 0;
-  for (const std::uint8_t full : {std::uint8_t{1}, std::uint8_t{200}})
+  int captured = 0, hidden = 0, mismatches = 0;
+  for (const std::uint8_t maxValue : {std::uint8_t{1}, std::uint8_t{200}})
     for (int trial = 0; trial < briefly(40); ++trial) {
       Mask mask = maskOf(grid, [&](const Vec3&) { return random.uniform() < 0.3; });
-      mask.full = full;
+      mask.full = maxValue;
       for (std::uint8_t& voxel : mask.voxels)
-        voxel = static_cast<std::uint8_t>(full == 1 ? voxel : 200.0 * random.uniform());
+        voxel = static_cast<std::uint8_t>(maxValue == 1 ? voxel : 200.0 * random.uniform());
       const FocusCells cells(mask);
-      auto [rays, worldRays] = SomeRays(random, cells);
-      cells.findSummits(rays);
+      auto [rays, worldRays] = RandomRays(random, cells);
+      cells.findHitsAndMaxima(rays);
       for (std::size_t i = 0; i < rays.size; ++i) {
-        if (rays.meeting[i] < infinity)
+        if (rays.hitT[i] < infinity)
           continue;
-        double greatest = 0.0;
+        double maximum = 0.0;
         for (double t = rays.begin[i]; t < rays.end[i]; t += 0.003)
-          greatest = std::max(greatest, indicator(mask, worldRays[i].at(t)) / full);
-        if (greatest <= FocusCells::foothill) {
-          EXPECT_LT(rays.height[i], FocusCells::foothill + 1e-3);
+          maximum = std::max(maximum, indicator(mask, worldRays[i].at(t)) / maxValue);
+        if (maximum <= FocusCells::captureThreshold) {
+          EXPECT_LT(rays.maximum[i], FocusCells::captureThreshold + 1e-3);
           continue;
         }
-        ++passed;
-        hidden += greatest > rays.height[i] + 0.01;
-        const double stepped = summitOf(mask, worldRays[i], rays.begin[i], rays.end[i]);
-        if (std::abs(rays.height[i] - stepped) > 2e-3)
-          ++other; // stepping may decide either way on a hill that is barely hidden
-        else if (stepped == greatest) {
-          EXPECT_GE(rays.height[i], greatest - ridge);
+        ++captured;
+        hidden += maximum > rays.maximum[i] + 0.01;
+        const double expected = findMaximum(mask, worldRays[i], rays.begin[i], rays.end[i]);
+        if (std::abs(rays.maximum[i] - expected) > 2e-3)
+          ++mismatches; // stepping may decide either way on a hill that is barely hidden
+        else if (expected == maximum) {
+          EXPECT_GE(rays.maximum[i], greatest - ridgeTolerance);
         }
-        const Vec3 summit = worldRays[i].at(rays.summit[i]);
-        EXPECT_NEAR(indicator(mask, summit) / full, rays.height[i], 1e-9);
-        EXPECT_NEAR(cells.indicator(cells.worldToCell() * summit), rays.height[i], 1e-9);
+        const Vec3 summit = worldRays[i].at(rays.maximumT[i]);
+        EXPECT_NEAR(indicator(mask, summit) / full, rays.maximum[i], 1e-9);
+        EXPECT_NEAR(cells.indicator(cells.worldToCell() * summit), rays.maximum[i], 1e-9);
       }
     }
-  EXPECT_GT(passed, briefly(200));
+  EXPECT_GT(captured, briefly(200));
   EXPECT_GT(hidden, briefly(20));
-  EXPECT_LT(other, 3);
+  EXPECT_LT(mismatches, 3);
 }
 
 TEST(CellCubic, SlopeEqualsFiniteDifference) {

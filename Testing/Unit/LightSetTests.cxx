@@ -207,15 +207,15 @@ TEST(LightSet, ARayMeetsASphereOnceAndOnlyAhead) {
     return set.areaArrivals({from, direction}, end, radiance)[0];
   };
   const Vec3 x = Vec3::UnitX();
-  EXPECT_EQ(met({0, 1.99, 0}, x, infinity), 2.0);
-  EXPECT_EQ(met({0, 2.01, 0}, x, infinity), 0.0);
-  EXPECT_EQ(met({20, 0, 0}, x, infinity), 0.0) << "behind";
-  EXPECT_EQ(met({0, 0, 0}, x, 7.9), 0.0) << "too far";
-  EXPECT_EQ(met({0, 0, 0}, x, 8.1), 2.0);
-  EXPECT_EQ(met({11, 0, 0}, x, 1.1), 2.0) << "from inside";
-  EXPECT_EQ(met({11, 0, 0}, x, 0.9), 0.0);
-  EXPECT_EQ(met({11, 0, 0}, -x, 2.9), 0.0);
-  EXPECT_EQ(met({11, 0, 0}, -x, 3.1), 2.0);
+  EXPECT_EQ(intersect({0, 1.99, 0}, x, infinity), 2.0);
+  EXPECT_EQ(intersect({0, 2.01, 0}, x, infinity), 0.0);
+  EXPECT_EQ(intersect({20, 0, 0}, x, infinity), 0.0) << "behind";
+  EXPECT_EQ(intersect({0, 0, 0}, x, 7.9), 0.0) << "too far";
+  EXPECT_EQ(intersect({0, 0, 0}, x, 8.1), 2.0);
+  EXPECT_EQ(intersect({11, 0, 0}, x, 1.1), 2.0) << "from inside";
+  EXPECT_EQ(intersect({11, 0, 0}, x, 0.9), 0.0);
+  EXPECT_EQ(intersect({11, 0, 0}, -x, 2.9), 0.0);
+  EXPECT_EQ(intersect({11, 0, 0}, -x, 3.1), 2.0);
 }
 
 TEST(LightSet, FocusFrameIsTheWorldAroundTheFocus) {

@@ -66,7 +66,7 @@ TEST(Stop, EndsTheLanesOfABatch) {
     tracker.sampleCollisions(*rays, counters);
     tracker.estimateTransmittances(*rays, counters);
     constexpr std::uint64_t mostLanes = 2 * 16;
-    EXPECT_LE(counters.lookups, 2 * stepsBetweenLooks * mostLanes);
+    EXPECT_LE(counters.lookups, 2 * stepsBetweenLooks * maxLanes);
   });
 }
 

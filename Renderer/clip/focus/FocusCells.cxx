@@ -15,7 +15,7 @@ constexpr std::int64_t corners = edge + 1; ///< voxels along an edge of a block
 
 /// Least value of a voxel above the foothill.
 std::uint8_t leastVoxel(const Mask& mask) {
-  return static_cast<std::uint8_t>(std::floor(FocusCells::foothill * mask.full) + 1.0);
+  return static_cast<std::uint8_t>(std::floor(FocusCells::captureThreshold * mask.full) + 1.0);
 }
 
 /// Access to the mask's voxels around blocks of cells.

@@ -20,9 +20,9 @@ struct FocusRays {
   std::size_t size = 0;
   alignas(64) std::array<SoaArray, 3> origin, direction;
   alignas(64) SoaArray begin, end; ///< range of t to search; inside FocusCells::box()
-  alignas(64) SoaArray meeting;    ///< t at which the mask is met; infinity: missed
-  /// Summit's t, and the indicator there; only from findSummits, for rays that miss the mask.
-  alignas(64) SoaArray summit, height;
+  alignas(64) SoaArray hitT;       ///< t at which the mask is met; infinity: missed
+  /// Summit's t, and the indicator there; only from findHitsAndMaxima, for rays that miss the mask.
+  alignas(64) SoaArray maximumT, maximum;
 
   bool full() const { return size == capacity; }
 
@@ -53,17 +53,17 @@ public:
   Box box() const { return {Vec3::Zero(), m_count.cast<double>()}; }
 
   /// Fills rays.meeting: least t in each ray's range with indicator >= 1/2; infinity: none.
-  void findMeetings(FocusRays& rays) const;
+  void findHits(FocusRays& rays) const;
 
   /// Fills rays.meeting and, for rays that miss the mask, rays.summit and rays.height. Summit:
   /// least t at which the indicator is greatest, for a ray that just misses the mask the t at which
   /// the ray would meet the mask. Height: indicator there; `foothill`: no summit (indicator <=
   /// foothill). With several hills on a ray (faces in one plane, a ridge along the ray) the nearer
   /// hides the farther: (1) the summit is the top of the first hill above the foothill; (2) a later
-  /// hill of height h2 replaces a summit of height h1 only if 1/2 - h2 < lessHidden * (1/2 - h1).
-  void findSummits(FocusRays& rays) const;
-  static constexpr double foothill = 0.25;
-  static constexpr double lessHidden = 1.0 / 64.0;
+  /// hill of height h2 replaces a summit of height h1 only if 1/2 - h2 < replaceRatio * (1/2 - h1).
+  void findHitsAndMaxima(FocusRays& rays) const;
+  static constexpr double captureThreshold = 0.25;
+  static constexpr double replaceRatio = 1.0 / 64.0;
 
   /// Indicator at a point of cell space; 0 all over empty blocks, 1 all over whole ones.
   double indicator(const Vec3& point) const;

@@ -135,7 +135,7 @@ bool FocusTracer::isFocus(const Vec2& position, double depth) const {
   return m_isWhole || m_volume.contains(worldToIndex * m_camera.rayThrough(position).at(t));
 }
 
-template <bool withSummits>
+template <bool withMaxima>
 void FocusTracer::follow(std::span<const Glance> glances, std::span<Sight> sights) const {
   if (glances.empty())
     return;
@@ -144,15 +144,15 @@ void FocusTracer::follow(std::span<const Glance> glances, std::span<Sight> sight
   std::array<Sight*, FocusRays::capacity> sightOf;
   FocusRays::SoaArray depthPerLength;
   const auto trace = [&] {
-    if constexpr (withSummits)
-      m_cells->findSummits(rays);
+    if constexpr (withMaxima)
+      m_cells->findHitsAndMaxima(rays);
     else
-      m_cells->findMeetings(rays);
+      m_cells->findHits(rays);
     for (std::size_t i = 0; i < rays.size; ++i)
-      if (rays.meeting[i] < infinity)
-        *sightOf[i] = {rays.meeting[i] * depthPerLength[i], 0.5};
-      else if (withSummits && rays.height[i] > FocusCells::foothill)
-        *sightOf[i] = {rays.summit[i] * depthPerLength[i], rays.height[i]};
+      if (rays.hitT[i] < infinity)
+        *sightOf[i] = {rays.hitT[i] * depthPerLength[i], 0.5};
+      else if (withMaxima && rays.maximum[i] > FocusCells::captureThreshold)
+        *sightOf[i] = {rays.maximumT[i] * depthPerLength[i], rays.maximum[i]};
     rays.size = 0;
   };
   for (std::size_t i = 0; i < glances.size(); ++i) {

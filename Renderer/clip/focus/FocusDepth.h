@@ -81,7 +81,7 @@ public:
 
 private:
   Interval inDomain(const Vec2& position) const;
-  template <bool withSummits>
+  template <bool withMaxima>
   void follow(std::span<const Glance> glances, std::span<Sight> sights) const;
 
   Camera m_camera;

@@ -1,4 +1,4 @@
-// FocusCells::findMeetings and findSummits, in SIMD lanes: as many rays as there are lanes walk
+// FocusCells::findHits and findHitsAndMaxima, in SIMD lanes: as many rays as there are lanes walk
 // through the cells together (Amanatides and Woo 1987), over empty blocks in one step. Lanes are
 // double: a meeting is as exact as for a single ray.
 
@@ -17,17 +17,17 @@ HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 namespace {
 
-constexpr std::size_t mostLanes = HWY_MAX_BYTES / sizeof(double);
-struct alignas(64) LaneDoubles : std::array<double, mostLanes> {};
+constexpr std::size_t maxLanes = HWY_MAX_BYTES / sizeof(double);
+struct alignas(64) LaneDoubles : std::array<double, maxLanes> {};
 
-HWY_INLINE unsigned bitsOf(M mask) {
+HWY_INLINE unsigned maskBits(M mask) {
   std::array<std::uint8_t, 8> packed = {};
   hn::StoreMaskBits(doubles, mask, packed.data());
   return packed[0];
 }
 
 /// Cubics, over parts of rays, that rise from < 0 to >= 0.
-class Roots {
+class RootSolver {
 public:
   void add(const Cubic& cubic, double begin, double length, std::size_t ray) {
     for (std::size_t i = 0; i < 4; ++i)
@@ -39,22 +39,22 @@ public:
   }
 
   /// Writes rays.meeting from the roots, found as by rootBetween(cubic, 0, 1).
-  void solve(FocusRays& rays) {
+  void solveAll(FocusRays& rays) {
     for (std::size_t i = m_size; i % hn::Lanes(doubles) != 0; ++i)
       for (Column* column : {&m_c[0], &m_c[1], &m_c[2], &m_c[3], &m_begin, &m_length})
         (*column)[i] = 0.0; // whole vectors are read
     for (std::size_t i = 0; i < m_size; i += hn::Lanes(doubles)) {
-      const D s = rootsFrom(i);
-      LaneDoubles meetings;
+      const D s = findRoots(i);
+      LaneDoubles hits;
       hn::Store(hn::MulAdd(s, hn::Load(doubles, &m_length[i]), hn::Load(doubles, &m_begin[i])),
-                doubles, meetings.data());
+                doubles, hits.data());
       for (std::size_t lane = 0; lane < std::min(hn::Lanes(doubles), m_size - i); ++lane)
-        rays.meeting[m_ray[i + lane]] = meetings[lane];
+        rays.hitT[m_ray[i + lane]] = hits[lane];
     }
   }
 
 private:
-  HWY_INLINE D rootsFrom(std::size_t i) const {
+  HWY_INLINE D findRoots(std::size_t i) const {
     const D c0 = hn::Load(doubles, &m_c[0][i]), c1 = hn::Load(doubles, &m_c[1][i]);
     const D c2 = hn::Load(doubles, &m_c[2][i]), c3 = hn::Load(doubles, &m_c[3][i]);
     const auto at = [&](D s) {
@@ -94,42 +94,42 @@ private:
 
 /// Tolerance of a plateau: heights (indicator units) and places (mm) that differ by less are equal.
 /// Rays along a flat face pass a plateau, whose beginning is the summit.
-constexpr double level = 1e-8;
+constexpr double plateauTolerance = 1e-8;
 
 /// Tolerance of a ridge, indicator units: points of a hill less than this below its summit belong
-/// to one ridge, which hides what is behind (FocusCells::lessHidden). A face seen edge-on needs it:
-/// a ray beside the face misses it by slightly different distances along the ray.
-constexpr double ridge = 1e-4;
+/// to one ridge, which hides what is behind (FocusCells::replaceRatio). A face seen edge-on needs
+/// it: a ray beside the face misses it by slightly different distances along the ray.
+constexpr double ridgeTolerance = 1e-4;
 
 /// Walk of rays i, i + 1 and so on, one in each lane.
-template <bool withSummits>
-class Walk {
+template <bool withMaxima>
+class Traversal {
 public:
-  Walk(const FocusCells::Layout& cells, FocusRays& rays, Roots& roots, std::size_t i)
+  Traversal(const FocusCells::Layout& cells, FocusRays& rays, RootSolver& roots, std::size_t i)
       : m_cells(cells),
         m_rays(rays),
-        m_roots(roots),
+        m_solver(roots),
         m_first(i),
         m_t(hn::Load(doubles, &rays.begin[i])),
         m_end(hn::Load(doubles, &rays.end[i])),
         m_busy(
             hn::And(hn::FirstN(doubles, rays.size - std::min(i, rays.size)), hn::Lt(m_t, m_end))),
         m_axes{axis(0), axis(1), axis(2)} {
-    m_heights.fill(FocusCells::foothill - 0.5);
-    m_summits.fill(-infinity);
-    m_tops.fill(-infinity);
+    m_maxima.fill(FocusCells::captureThreshold - 0.5);
+    m_maximaT.fill(-infinity);
+    m_ridgeEnds.fill(-infinity);
   }
 
   /// Writes the summits to the rays; to be called when no lane is busy.
   void finish() {
     for (std::size_t i = m_first;
-         withSummits && i < std::min(m_first + hn::Lanes(doubles), m_rays.size); ++i) {
-      m_rays.summit[i] = m_summits[i - m_first];
-      m_rays.height[i] = 0.5 + m_heights[i - m_first];
+         withMaxima && i < std::min(m_first + hn::Lanes(doubles), m_rays.size); ++i) {
+      m_rays.maximumT[i] = m_maximaT[i - m_first];
+      m_rays.maximum[i] = 0.5 + m_maxima[i - m_first];
     }
   }
 
-  bool busy() const { return !hn::AllFalse(doubles, m_busy); }
+  bool isBusy() const { return !hn::AllFalse(doubles, m_busy); }
 
   Axis axis(std::size_t a) const {
     return {hn::Load(doubles, &m_rays.origin[a][m_first]),
@@ -149,26 +149,26 @@ public:
         hn::GatherIndex(ints, m_cells.blocks,
                         linear(hn::ShiftRight<2>(x), hn::ShiftRight<2>(y), hn::ShiftRight<2>(z),
                                m_cells.blockCount.x(), m_cells.blockCount.y()));
-    const M full = isNot0(block);
-    const M empty = hn::Not(full);
-    const D toX = m_axes[0].findFace(empty);
-    const D toY = m_axes[1].findFace(empty);
-    const D toZ = m_axes[2].findFace(empty);
+    const M isOccupied = isNot0(block);
+    const M isEmpty = hn::Not(isOccupied);
+    const D toX = m_axes[0].findFace(isEmpty);
+    const D toY = m_axes[1].findFace(isEmpty);
+    const D toZ = m_axes[2].findFace(isEmpty);
     const D out = hn::Min(hn::Min(toX, toY), toZ);
     const D exit = hn::Min(m_end, hn::Max(m_t, out));
 
-    if (const M look = hn::And(full, m_busy); !hn::AllFalse(doubles, look)) {
+    if (const M candidates = hn::And(isOccupied, m_busy); !hn::AllFalse(doubles, candidates)) {
       const I three = allInts(3);
       const I cell = linear(hn::And(x, three), hn::And(y, three), hn::And(z, three), 4, 4);
       const I at = hn::Add(hn::ShiftLeft<6>(block), cell);
       const I corners = hn::And(
           hn::GatherOffset(ints, reinterpret_cast<const std::int32_t*>(m_cells.corners), at),
           allInts(0xff));
-      if (const M some = hn::And(look, isNot0(corners)); !hn::AllFalse(doubles, some))
-        meet(some, corners,
-             hn::Add(hn::ShiftLeft<7>(block),
-                     linear(hn::And(x, three), hn::And(y, three), hn::And(z, three), 5, 5)),
-             exit);
+      if (const M occupied = hn::And(candidates, isNot0(corners)); !hn::AllFalse(doubles, occupied))
+        intersect(occupied, corners,
+                  hn::Add(hn::ShiftLeft<7>(block),
+                          linear(hn::And(x, three), hn::And(y, three), hn::And(z, three), 5, 5)),
+                  exit);
     }
 
     m_busy = hn::And(m_busy, hn::Lt(out, m_end));
@@ -185,8 +185,8 @@ private:
   /// Ends the walks that meet the surface in their cells. Bernstein's coefficients bound a cubic:
   /// only cubics with a coefficient >= 0, or near the summit so far, are solved. `values`: index of
   /// a cell's first value.
-  HWY_INLINE void meet(M which, I corners, I values, D exit) {
-    const std::array<D, 8> v = m_cells.values ? smoothed(values) : sharp(corners);
+  HWY_INLINE void intersect(M which, I corners, I values, D exit) {
+    const std::array<D, 8> v = m_cells.values ? smoothCorners(values) : binaryCorners(corners);
     const D length = hn::Sub(exit, m_t);
     const D x = m_axes[0].fractionAt(m_t), u = m_axes[0].along(length);
     const D y = m_axes[1].fractionAt(m_t), w = m_axes[1].along(length);
@@ -224,8 +224,8 @@ private:
     const D b3 = sum(c0, c1, c2, c3);
     const D greatest = hn::Max(hn::Max(c0, b1), hn::Max(b2, b3));
     D least = all(-1e-12); // a little below 0 is rounding
-    if constexpr (withSummits)
-      least = hn::Min(least, hn::Sub(hn::Load(doubles, m_heights.data()), all(ridge)));
+    if constexpr (withMaxima)
+      least = hn::Min(least, hn::Sub(hn::Load(doubles, m_maxima.data()), all(ridgeTolerance)));
     const M possible = hn::And(which, hn::Ge(greatest, least));
     if (hn::AllFalse(doubles, possible))
       return;
@@ -235,14 +235,14 @@ private:
   }
 
   /// Indicator - 1/2 at the corners of cells, x fastest.
-  HWY_INLINE static std::array<D, 8> sharp(I corners) {
+  HWY_INLINE static std::array<D, 8> binaryCorners(I corners) {
     const auto value = [&](std::int32_t i) {
       const I bit = hn::And(corners, allInts(1 << i));
       return hn::IfThenElse(isNot0(bit), all(0.5), all(-0.5));
     };
     return {value(0), value(1), value(2), value(3), value(4), value(5), value(6), value(7)};
   }
-  HWY_INLINE std::array<D, 8> smoothed(I first) const {
+  HWY_INLINE std::array<D, 8> smoothCorners(I first) const {
     const auto value = [&](I byte) {
       const D whole = hn::PromoteTo(doubles, hn::And(byte, allInts(0xff)));
       return hn::MulSub(whole, all(m_cells.perValue), all(0.5));
@@ -259,7 +259,7 @@ private:
   }
 
   /// Searches the cubics of `which` one by one. Cubics of `rises` have one root for certain: added
-  /// to m_roots, which finds many roots at once later.
+  /// to m_solver, which finds many roots at once later.
   HWY_INLINE void solve(M which, const std::array<D, 4>& c, M rises, D length) {
     alignas(64) std::array<LaneDoubles, 7> lanes;
     for (std::size_t i = 0; i < 4; ++i)
@@ -267,94 +267,94 @@ private:
     hn::Store(m_t, doubles, lanes[4].data());
     hn::Store(length, doubles, lanes[5].data());
     hn::Store(hn::IfThenElseZero(m_busy, all(1.0)), doubles, lanes[6].data());
-    const unsigned toLook = bitsOf(which);
-    const unsigned rising = bitsOf(rises);
+    const unsigned toLook = maskBits(which);
+    const unsigned rising = maskBits(rises);
     for (unsigned left = toLook; left != 0; left &= left - 1) {
       const auto lane = static_cast<std::size_t>(std::countr_zero(left));
       const Cubic cubic{{lanes[0][lane], lanes[1][lane], lanes[2][lane], lanes[3][lane]}};
       const bool isRising = rising >> lane & 1;
       const double s = isRising ? 0.0 : firstNonNegative(cubic);
       if (s == infinity) {
-        if constexpr (withSummits)
-          climb(lane, cubic, lanes[4][lane], lanes[5][lane]);
+        if constexpr (withMaxima)
+          updateMaximum(lane, cubic, lanes[4][lane], lanes[5][lane]);
         continue;
       }
       lanes[6][lane] = 0.0;
       if (isRising)
-        m_roots.add(cubic, lanes[4][lane], lanes[5][lane], m_first + lane);
+        m_solver.add(cubic, lanes[4][lane], lanes[5][lane], m_first + lane);
       else
-        m_rays.meeting[m_first + lane] = lanes[4][lane] + s * lanes[5][lane];
+        m_rays.hitT[m_first + lane] = lanes[4][lane] + s * lanes[5][lane];
     }
     m_busy = hn::Gt(hn::Load(doubles, lanes[6].data()), hn::Zero(doubles));
   }
 
   /// Updates the summit in a cell without a meeting.
-  void climb(std::size_t lane, const Cubic& cubic, double begin, double length) {
+  void updateMaximum(std::size_t lane, const Cubic& cubic, double begin, double length) {
     const std::array<double, 2> turns = turningPoints(cubic);
-    bool isOnTop = begin - m_tops[lane] < level;
+    bool isOnRidge = begin - m_ridgeEnds[lane] < plateauTolerance;
     for (const double s : {0.0, turns[0], turns[1], 1.0}) { // between these the cubic is monotone
       const double height = cubic(s);
-      if (isOnTop ? isHigher(lane, height) : isNewSummit(lane, height)) {
-        m_heights[lane] = height;
-        m_summits[lane] = begin + s * length;
-        isOnTop = true;
+      if (isOnRidge ? isHigher(lane, height) : isNewMaximum(lane, height)) {
+        m_maxima[lane] = height;
+        m_maximaT[lane] = begin + s * length;
+        isOnRidge = true;
       }
-      isOnTop = isOnTop && height >= m_heights[lane] - ridge;
-      if (isOnTop)
-        m_tops[lane] = begin + s * length;
+      isOnRidge = isOnRidge && height >= m_maxima[lane] - ridgeTolerance;
+      if (isOnRidge)
+        m_ridgeEnds[lane] = begin + s * length;
     }
   }
 
   /// True if a height on the summit's own hill replaces the summit so far.
   bool isHigher(std::size_t lane, double height) const {
-    const double least = std::min(ridge, -height / FocusCells::lessHidden);
-    return height > m_heights[lane] + std::max(level, least);
+    const double least = std::min(ridgeTolerance, -height / FocusCells::replaceRatio);
+    return height > m_maxima[lane] + std::max(plateauTolerance, least);
   }
 
-  /// True if a height on a later hill replaces the summit so far (FocusCells::findSummits).
-  bool isNewSummit(std::size_t lane, double height) const {
-    return m_summits[lane] == -infinity ? height > m_heights[lane] + level
-                                        : height > FocusCells::lessHidden * m_heights[lane];
+  /// True if a height on a later hill replaces the summit so far (FocusCells::findHitsAndMaxima).
+  bool isNewMaximum(std::size_t lane, double height) const {
+    return m_maximaT[lane] == -infinity ? height > m_maxima[lane] + plateauTolerance
+                                        : height > FocusCells::replaceRatio * m_maxima[lane];
   }
 
   const FocusCells::Layout& m_cells;
   FocusRays& m_rays;
-  Roots& m_roots;
+  RootSolver& m_solver;
   std::size_t m_first;
   D m_t, m_end;
   M m_busy;
   std::array<Axis, 3> m_axes;
-  LaneDoubles m_heights, m_summits; ///< so far: indicator - 1/2, and t
-  LaneDoubles m_tops;               ///< t at which the summit's ridge ends
+  LaneDoubles m_maxima, m_maximaT; ///< so far: indicator - 1/2, and t
+  LaneDoubles m_ridgeEnds;         ///< t at which the summit's ridge ends
 };
 
-template <bool withSummits>
-void walkAll(const FocusCells::Layout& cells, FocusRays& rays) {
-  Roots roots;
+template <bool withMaxima>
+void traverseAll(const FocusCells::Layout& cells, FocusRays& rays) {
+  RootSolver roots;
   const std::size_t lanes = hn::Lanes(doubles);
   for (std::size_t i = 0; i < rays.size; i += 2 * lanes) {
     // Two walks take turns: while one waits for its cells from memory, the other computes.
-    Walk<withSummits> one(cells, rays, roots, i);
+    Traversal<withMaxima> one(cells, rays, roots, i);
     if (i + lanes < rays.size) {
-      Walk<withSummits> other(cells, rays, roots, i + lanes);
-      while (one.busy() || other.busy()) {
+      Traversal<withMaxima> other(cells, rays, roots, i + lanes);
+      while (one.isBusy() || other.isBusy()) {
         one.step();
         other.step();
       }
       other.finish();
     }
-    while (one.busy())
+    while (one.isBusy())
       one.step();
     one.finish();
   }
-  roots.solve(rays);
+  roots.solveAll(rays);
 }
 
-void findAllMeetings(const FocusCells::Layout& cells, FocusRays& rays) {
-  walkAll<false>(cells, rays);
+void findAllHits(const FocusCells::Layout& cells, FocusRays& rays) {
+  traverseAll<false>(cells, rays);
 }
-void findAllSummits(const FocusCells::Layout& cells, FocusRays& rays) {
-  walkAll<true>(cells, rays);
+void findAllHitsAndMaxima(const FocusCells::Layout& cells, FocusRays& rays) {
+  traverseAll<true>(cells, rays);
 }
 
 } // namespace
@@ -364,14 +364,14 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace fenestra {
 
-HWY_EXPORT(findAllMeetings);
-HWY_EXPORT(findAllSummits);
+HWY_EXPORT(findAllHits);
+HWY_EXPORT(findAllHitsAndMaxima);
 
 namespace {
 
 /// Sets all meetings to infinity, and finite values beyond the last ray, where whole vectors read.
-void prepare(FocusRays& rays) {
-  std::fill_n(rays.meeting.begin(), rays.size, infinity);
+void initialize(FocusRays& rays) {
+  std::fill_n(rays.hitT.begin(), rays.size, infinity);
   for (std::size_t i = rays.size; i < std::min(rays.size + 16, rays.begin.size()); ++i) {
     for (FocusRays::SoaArray* column :
          {&rays.origin[0], &rays.origin[1], &rays.origin[2], &rays.begin, &rays.end})
@@ -383,16 +383,16 @@ void prepare(FocusRays& rays) {
 
 } // namespace
 
-void FocusCells::findMeetings(FocusRays& rays) const {
-  prepare(rays);
+void FocusCells::findHits(FocusRays& rays) const {
+  initialize(rays);
   const Layout cells = layout();
-  HWY_DYNAMIC_DISPATCH(findAllMeetings)(cells, rays);
+  HWY_DYNAMIC_DISPATCH(findAllHits)(cells, rays);
 }
 
-void FocusCells::findSummits(FocusRays& rays) const {
-  prepare(rays);
+void FocusCells::findHitsAndMaxima(FocusRays& rays) const {
+  initialize(rays);
   const Layout cells = layout();
-  HWY_DYNAMIC_DISPATCH(findAllSummits)(cells, rays);
+  HWY_DYNAMIC_DISPATCH(findAllHitsAndMaxima)(cells, rays);
 }
 
 } // namespace fenestra

@@ -135,7 +135,7 @@ void Seams::findRim(const FocusDepth& focus, const CellRange& range) {
   });
   std::size_t seen = 0;
   for (std::size_t i = 0; i < m_rim.size(); ++i)
-    if (sights[i].indicator > FocusCells::foothill)
+    if (sights[i].indicator > FocusCells::captureThreshold)
       m_rim[seen++] = {m_rim[i].sample, sights[i].depth};
   m_rim.resize(seen);
 }
@@ -174,10 +174,11 @@ void Seams::answer(std::span<Question> questions) const {
       addToRest(*inner.question[i]);
   m_tracer->look(rest.glances(), rest.sights());
   for (std::size_t i = 0; i < rest.size; ++i)
-    if (const Sight& sight = rest.sight[i]; sight.indicator > FocusCells::foothill) {
+    if (const Sight& sight = rest.sight[i]; sight.indicator > FocusCells::captureThreshold) {
       Question& question = *rest.question[i];
       const double depth = std::min(sight.depth, reachOf(question).end) - toFocus;
-      const double share = (sight.indicator - FocusCells::foothill) / (0.5 - FocusCells::foothill);
+      const double share =
+          (sight.indicator - FocusCells::captureThreshold) / (0.5 - FocusCells::captureThreshold);
       question.surface += share * (depth - question.surface);
     }
 }
