@@ -9,7 +9,7 @@
 
 namespace {
 
-enum Role : std::size_t { key, fill, rim, environment, none };
+enum Role : std::size_t { key, fill, halo, environment, none };
 
 /// Role of each light.
 std::vector<Role> rolesOf(const QJsonArray& lights) {
@@ -23,7 +23,7 @@ std::vector<Role> rolesOf(const QJsonArray& lights) {
     if (surrounds || !isPlaced) {
       roles.push_back(surrounds ? environment : none);
     } else if (light["center"].toArray().at(2).toDouble() < 0.0) { // z is toward the viewer
-      roles.push_back(rim);
+      roles.push_back(halo);
     } else {
       roles.push_back(before);
       before = before == key ? fill : none;

@@ -157,14 +157,14 @@ std::vector<double> computeDepths(const DepthClip& clip, const FocusField& focus
   std::optional<Hole> hole;
   if (clip.hole)
     hole.emplace(*clip.hole, view, hits);
-  else if (!clip.isCutaway && clip.given.empty())
+  else if (!clip.isCutaway && clip.givenDepths.empty())
     spline.emplace(clip.sites, clip.depths, clip.smoothing);
   std::size_t sample = 0;
   for (const double y : clip.rows)
     for (const double x : clip.columns) {
       double& depth = depths[sample];
-      if (depth == infinity && !clip.given.empty())
-        depth = clip.given[sample];
+      if (depth == infinity && !clip.givenDepths.empty())
+        depth = clip.givenDepths[sample];
       else if (depth == infinity)
         depth = (spline ? (*spline)({x, y}) : hole ? hole->depth(x, y) : -infinity) + clip.offset;
       else
@@ -274,17 +274,18 @@ double Clipping::keepAtDepth(double here, const Vec2& at) const {
   if (clip.hasSteps())
     return keptBehind(sampleDepth(x.before + (x.share >= 0.5), y.before + (y.share >= 0.5)));
   const double between = linearSurface(at);
-  const auto seam = clip.seams.find(y.before * clip.columns.size() + x.before);
-  if (seam == clip.seams.end())
+  const auto cell = clip.silhouettes.find(y.before * clip.columns.size() + x.before);
+  if (cell == clip.silhouettes.end())
     return keptBehind(between);
   // The surface lies between two depths. What is kept alike behind both is kept so behind it.
-  const double least = keptBehind(std::max(between, seam->second.greatest));
-  if (least == keptBehind(std::min(between, seam->second.least)))
+  const double least = keptBehind(std::max(between, cell->second.greatest));
+  if (least == keptBehind(std::min(between, cell->second.least)))
     return least;
-  return keptBehind(surfaceInSeam(seam->second, at, between));
+  return keptBehind(silhouetteSurface(cell->second, at, between));
 }
 
-double Clipping::surfaceInSeam(const DepthClip::Seam& seam, const Vec2& at, double between) const {
+double Clipping::silhouetteSurface(const DepthClip::SilhouetteCell& cell, const Vec2& at,
+                                   double between) const {
   const auto& clip = std::get<DepthClip>(m_description);
   const Ray ray = m_view.through(at.x(), at.y());
   const double depthPerLength = m_view.depth(ray.at(1.0)) - m_view.depth(ray.at(0.0));
@@ -292,12 +293,12 @@ double Clipping::surfaceInSeam(const DepthClip::Seam& seam, const Vec2& at, doub
     return (depth - clip.offset - m_view.depth(ray.at(0.0))) / depthPerLength;
   };
   const DepthHit hit =
-      searchRay(*m_focus, m_matter, ray, {std::max(0.0, lengthTo(seam.least)), infinity});
+      searchRay(*m_focus, m_matter, ray, {std::max(0.0, lengthTo(cell.least)), infinity});
   const double share = std::clamp((hit.height - 0.25) / 0.25, 0.0, 1.0);
   if (share == 0.0)
     return between;
   const double depth = m_view.depth(ray.at(hit.t)) + clip.offset;
-  return between + share * (std::min(depth, seam.greatest) - between);
+  return between + share * (std::min(depth, cell.greatest) - between);
 }
 
 double Clipping::keep(const Vec3& world) const {

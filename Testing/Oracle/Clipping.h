@@ -48,7 +48,8 @@ private:
   double sampleDepth(std::size_t column, std::size_t row) const;
   /// Depth of a surface without steps, linear between samples.
   double linearSurface(const Vec2& at) const;
-  double surfaceInSeam(const DepthClip::Seam& seam, const Vec2& at, double between) const;
+  double silhouetteSurface(const DepthClip::SilhouetteCell& cell, const Vec2& at,
+                           double between) const;
 
   const ClipDescription& m_description;
   const View& m_view;

@@ -45,13 +45,13 @@ struct DepthClip {
   double smoothing = 0.5;            ///< p of the thin plate spline
   std::optional<HoleDescription> hole = {};
   /// Depths, mm, of the samples that are not focus; empty: computed.
-  std::vector<double> given = {};
+  std::vector<double> givenDepths = {};
   /// Cell between samples in which the surface is the focus's own depth, keyed by its first sample.
   /// `least`, `greatest`: range of that depth if all samples around are focus, mm, offset included.
-  struct Seam {
+  struct SilhouetteCell {
     double least = -infinity, greatest = infinity;
   };
-  std::map<std::size_t, Seam> seams = {};
+  std::map<std::size_t, SilhouetteCell> silhouettes = {};
   double offset = 0.0; ///< shift of the surface away from the eye, mm
   Edge edge = {};
 

@@ -27,14 +27,14 @@ Mask focusOf() {
 void describeExact(const ClipDepth& surface, oracle::DepthClip& clip) {
   const DepthBuffer& buffer = *surface.buffer;
   for (std::int64_t i = 0; i < buffer.size(); ++i)
-    clip.given.push_back(buffer.at(i));
-  const Seams& seams = *surface.seams;
-  for (std::size_t i = 0; i < seams.numbers().size(); ++i)
-    if (const std::int32_t seam = seams.numbers()[i]; seam >= 0) {
-      clip.seams[i] = {};
-      if (const auto& [least, greatest] = seams.reaches()[static_cast<std::size_t>(seam)];
-          seams.isInner(seam))
-        clip.seams[i] = {buffer.reference() + least, buffer.reference() + greatest};
+    clip.givenDepths.push_back(buffer.at(i));
+  const SilhouetteCells& cells = *surface.silhouette;
+  for (std::size_t i = 0; i < cells.indices().size(); ++i)
+    if (const std::int32_t cell = cells.indices()[i]; cell >= 0) {
+      clip.silhouettes[i] = {};
+      if (const auto& [minimum, maximum] = cells.reaches()[static_cast<std::size_t>(cell)];
+          cells.isInner(cell))
+        clip.silhouettes[i] = {buffer.reference() + minimum, buffer.reference() + maximum};
     }
 }
 

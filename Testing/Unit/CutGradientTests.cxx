@@ -84,7 +84,7 @@ TEST(CutGradient, PointsAlongTheGradientOfKeep) {
 TEST(CutGradient, IsThatOfTheLinearSurfaceInSeams) {
   const Clip exact = softSurface(Projection::perspective, Boundary::exact);
   ClipDepth linear = std::get<ClipDepth>(exact);
-  linear.seams = nullptr;
+  linear.silhouette = nullptr;
   Random random(4, 5, 6);
   int differing = 0;
   for (int i = 0; i < 4000; ++i) {

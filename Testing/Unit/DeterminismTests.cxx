@@ -92,7 +92,7 @@ TEST(Render, StopsBySeenNoiseAtFixedCountsAlikeInAllPixels) {
     const RenderResult result = s.render(settings);
     EXPECT_EQ(result.reason, StopReason::noise);
     EXPECT_EQ(looks, (std::vector<std::uint64_t>{4, 8, 16}));
-    EXPECT_EQ(result.film.sampleCounts().least, 16U);
+    EXPECT_EQ(result.film.sampleCounts().min, 16U);
     EXPECT_EQ(result.film.sampleCounts().greatest, 16U);
   }
 }

@@ -55,7 +55,7 @@ TEST_P(EmptyPixelsOf, CertainPixelsAreMissedByEverySample) {
     missed += all.pixels()[i].collided == 0 ? 1 : 0;
   }
   EXPECT_EQ(film.sampleCounts().certainPixels, certain);
-  EXPECT_EQ(film.sampleCounts().least, 64U);
+  EXPECT_EQ(film.sampleCounts().min, 64U);
   if (GetParam().distance > 50.0) {
     EXPECT_GT(static_cast<double>(certain), 0.8 * static_cast<double>(missed)) << "of " << missed;
   }

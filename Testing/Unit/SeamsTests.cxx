@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::SeamsTests {
+namespace fenestra::SilhouetteCellsTests {
 using namespace testing_clipping;
 
 namespace {
@@ -27,7 +27,7 @@ struct Ball {
 };
 
 /// Depth of a ray in the focus, by stepping.
-double focusDepth(const Ball& ball, const Vec2& at) {
+double findFocusDepth(const Ball& ball, const Vec2& at) {
   const Ray ray = ball.camera.rayThrough(at);
   const Mask& mask = ball.focus;
   const auto inside = [&](double t) {
@@ -52,37 +52,37 @@ double focusDepth(const Ball& ball, const Vec2& at) {
 }
 
 /// Point at which a radial line leaves the ball.
-struct End {
+struct OutlinePoint {
   Vec2 inside, outside; ///< 1e-7 mm apart
 };
-End endOf(const FocusTracer& tracer, const Vec2& way) {
-  double in = 17.0, out = 22.0;
-  while (out - in > 1e-7) {
-    const double middle = 0.5 * (in + out);
-    (tracer.depthsAt({middle * way})[0] < infinity ? in : out) = middle;
+OutlinePoint findOutlinePoint(const FocusTracer& tracer, const Vec2& direction) {
+  double inner = 17.0, outer = 22.0;
+  while (outer - inner > 1e-7) {
+    const double middle = 0.5 * (inner + outer);
+    (tracer.depthsAt({middle * direction})[0] < infinity ? inner : outer) = middle;
   }
-  return {in * way, out * way};
+  return {inner * direction, outer * direction};
 }
 
-TEST(Seams, DepthBetweenSamplesIsThatOfTheFocus) {
+TEST(SilhouetteCells, DepthBetweenSamplesIsThatOfTheFocus) {
   for (const Projection projection : projections) {
     const Ball ball(projection);
     const ClippingSurface surface = ball.surface();
     const auto& clip = std::get<ClipDepth>(surface.clip);
     Random random(1, 0, 0);
-    std::vector<double> apart;
-    while (apart.size() < 400) {
+    std::vector<double> differences;
+    while (differences.size() < 400) {
       const double angle = uniform(random, 0.0, 2.0 * pi);
       const Vec2 at = uniform(random, 18.0, 21.0) * Vec2(std::cos(angle), std::sin(angle));
-      if (const double depth = focusDepth(ball, at); depth < infinity)
-        apart.push_back(std::abs(depth - clip.surface(at)));
+      if (const double depth = findFocusDepth(ball, at); depth < infinity)
+        differences.push_back(std::abs(depth - clip.surface(at)));
     }
-    std::ranges::sort(apart);
-    EXPECT_LT(apart[399], 0.02) << "a step of this test's search";
+    std::ranges::sort(differences);
+    EXPECT_LT(differences[399], 0.02) << "a step of this test's search";
   }
 }
 
-TEST(Seams, DepthContinuesAtTheEdgeOfTheFocus) {
+TEST(SilhouetteCells, DepthContinuesAtTheEdgeOfTheFocus) {
   for (const Projection projection : projections) {
     const Ball ball(projection);
     const ClippingSurface surface = ball.surface();
@@ -90,10 +90,11 @@ TEST(Seams, DepthContinuesAtTheEdgeOfTheFocus) {
     const FocusTracer tracer(ball.camera, ball.volume, ball.focus);
     std::vector<double> steps;
     for (int i = 0; i < 200; ++i) {
-      const End end = endOf(tracer, {std::cos(0.0314 * i), std::sin(0.0314 * i)});
-      const double depth = tracer.depthsAt({end.inside})[0];
-      EXPECT_NEAR(clip.surface(end.inside), depth, 1e-4);
-      steps.push_back(std::abs(clip.surface(end.outside) - depth));
+      const OutlinePoint outline =
+          findOutlinePoint(tracer, {std::cos(0.0314 * i), std::sin(0.0314 * i)});
+      const double depth = tracer.depthsAt({outline.inside})[0];
+      EXPECT_NEAR(clip.surface(outline.inside), depth, 1e-4);
+      steps.push_back(std::abs(clip.surface(outline.outside) - depth));
     }
     std::ranges::sort(steps);
     EXPECT_LT(steps[190], 1e-3);
@@ -101,7 +102,7 @@ TEST(Seams, DepthContinuesAtTheEdgeOfTheFocus) {
   }
 }
 
-TEST(Seams, DepthJoinsTheSamplesWithoutASteepSlope) {
+TEST(SilhouetteCells, DepthJoinsTheSamplesWithoutASteepSlope) {
   const Ball ball(Projection::orthographic);
   const ClippingSurface surface = ball.surface();
   const auto& clip = std::get<ClipDepth>(surface.clip);
@@ -109,17 +110,18 @@ TEST(Seams, DepthJoinsTheSamplesWithoutASteepSlope) {
   constexpr double step = 1e-3; // mm
   std::vector<double> slopes;
   for (int i = 0; i < 50; ++i) {
-    const Vec2 way(std::cos(0.126 * i), std::sin(0.126 * i));
-    const double end = endOf(tracer, way).outside.norm();
-    for (double r = end; r < end + 3.0; r += step)
-      slopes.push_back(std::abs(clip.surface((r + step) * way) - clip.surface(r * way)) / step);
+    const Vec2 direction(std::cos(0.126 * i), std::sin(0.126 * i));
+    const double outline = findOutlinePoint(tracer, direction).outside.norm();
+    for (double r = outline; r < outline + 3.0; r += step)
+      slopes.push_back(
+          std::abs(clip.surface((r + step) * direction) - clip.surface(r * direction)) / step);
   }
   std::ranges::sort(slopes);
   EXPECT_LT(slopes[slopes.size() * 9 / 10], 2.0);
   EXPECT_LT(slopes[slopes.size() * 998 / 1000], 20.0) << "but for outlines that cross";
 }
 
-TEST(Seams, KeepEqualsThatOfTheFullSurface) {
+TEST(SilhouetteCells, KeepEqualsThatOfTheFullSurface) {
   // keep queries only as much of the surface as it needs; the result equals that of the full
   // surface.
   for (const Projection projection : projections)
@@ -134,24 +136,24 @@ TEST(Seams, KeepEqualsThatOfTheFullSurface) {
           buildClippingSurface(ball.camera, Domain(ball.volume.grid(), crop), ball.focus, options);
       const auto& clip = std::get<ClipDepth>(surface.clip);
       Random random(3, 0, 0);
-      int between = 0;
+      int partialCount = 0;
       for (int i = 0; i < 5000; ++i) {
-        const Vec2 across(uniform(random, -22.0, 22.0), uniform(random, -22.0, 22.0));
-        const double depth = clip.surface(across) + uniform(random, -4.0, 4.0);
-        const Vec3 world = fromBuffer(ball.camera, {across.x(), across.y(), depth});
+        const Vec2 position(uniform(random, -22.0, 22.0), uniform(random, -22.0, 22.0));
+        const double depth = clip.surface(position) + uniform(random, -4.0, 4.0);
+        const Vec3 world = fromBuffer(ball.camera, {position.x(), position.y(), depth});
         const Vec3 at = toBuffer(ball.camera, world);
         const double expected = clip.edge(at.z() - clip.surface(at.head<2>()));
-        between += expected > 0.25 && expected < 1.0;
-        ASSERT_NEAR(keep(clip, world), expected, 1e-6) << across << ' ' << depth;
-        const auto bounds = clip.pyramid->bounds(*clip.buffer, across, across);
+        partialCount += expected > 0.25 && expected < 1.0;
+        ASSERT_NEAR(keep(clip, world), expected, 1e-6) << position << ' ' << depth;
+        const auto bounds = clip.pyramid->bounds(*clip.buffer, position, position);
         ASSERT_GE(clip.surface(across), bounds.begin - 1e-4);
         ASSERT_LE(clip.surface(across), bounds.end + 1e-4);
       }
-      EXPECT_EQ(between > 250, softness > 0.0);
+      EXPECT_EQ(partialCount > 250, softness > 0.0);
     }
 }
 
-TEST(Seams, DepthMeetsASmoothedFocus) {
+TEST(SilhouetteCells, DepthMeetsASmoothedFocus) {
   Ball ball(Projection::orthographic);
   ball.focus = maskOf(ball.volume.grid(), [](const Vec3&) { return false; });
   ball.focus.full = 255;
@@ -167,15 +169,16 @@ TEST(Seams, DepthMeetsASmoothedFocus) {
   const auto& clip = std::get<ClipDepth>(surface.clip);
   const FocusTracer tracer(ball.camera, ball.volume, ball.focus);
   for (int i = 0; i < 100; ++i) {
-    const End end = endOf(tracer, {std::cos(0.0628 * i), std::sin(0.0628 * i)});
-    EXPECT_NEAR(end.inside.norm(), 20.3, 0.05);
-    EXPECT_NEAR(clip.surface(end.outside), 200.0, 1.0) << "the ball ends in its middle";
-    EXPECT_NEAR(clip.surface(end.outside), clip.surface(end.inside), 0.01);
-    EXPECT_NEAR(clip.surface(1.02 * end.outside), 200.0, 1.0);
+    const OutlinePoint outline =
+        findOutlinePoint(tracer, {std::cos(0.0628 * i), std::sin(0.0628 * i)});
+    EXPECT_NEAR(outline.inside.norm(), 20.3, 0.05);
+    EXPECT_NEAR(clip.surface(outline.outside), 200.0, 1.0) << "the ball ends in its middle";
+    EXPECT_NEAR(clip.surface(outline.outside), clip.surface(outline.inside), 0.01);
+    EXPECT_NEAR(clip.surface(1.02 * outline.outside), 200.0, 1.0);
   }
 }
 
-TEST(Seams, SelfHidingFocusHasTheFartherDepthBetween) {
+TEST(SilhouetteCells, SelfHidingFocusHasTheFartherDepthBetween) {
   // The right half lies 10 mm deeper.
   const Grid volume = centredGrid({60, 60, 60});
   const Mask focus = maskOf(volume, [](const Vec3& p) {
@@ -186,21 +189,22 @@ TEST(Seams, SelfHidingFocusHasTheFartherDepthBetween) {
   const ClippingSurface surface =
       buildClippingSurface(camera, volume, focus, {.boundary = Boundary::exact});
   const auto& clip = std::get<ClipDepth>(surface.clip);
-  int between = 0;
+  int partialCount = 0;
   for (double x = -3.0; x < 3.0; x += 0.01) {
     const double depth = clip.surface({x, 0.3});
-    between += depth > 95.0 && depth < 103.0;
+    partialCount += depth > 95.0 && depth < 103.0;
   }
-  EXPECT_LT(between * 0.01, 1.0) << "mm; the voxels' own slope";
+  EXPECT_LT(partialCount * 0.01, 1.0) << "mm; the voxels' own slope";
 }
 
-TEST(Seams, OffsetMovesTheDepth) {
+TEST(SilhouetteCells, OffsetMovesTheDepth) {
   const Ball ball(Projection::orthographic);
   SurfaceOptions options;
   options.boundary = Boundary::exact;
   const ClippingSurface plain = buildClippingSurface(ball.camera, ball.volume, ball.focus, options);
   options.offset = 3.0;
-  const ClippingSurface moved = buildClippingSurface(ball.camera, ball.volume, ball.focus, options);
+  const ClippingSurface shifted =
+      buildClippingSurface(ball.camera, ball.volume, ball.focus, options);
   Random random(2, 0, 0);
   for (int i = 0; i < 1000; ++i) {
     const Vec2 at(uniform(random, -25, 25), uniform(random, -25, 25));
@@ -210,4 +214,4 @@ TEST(Seams, OffsetMovesTheDepth) {
 }
 
 } // namespace
-} // namespace fenestra::SeamsTests
+} // namespace fenestra::SilhouetteCellsTests

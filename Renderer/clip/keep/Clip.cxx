@@ -114,20 +114,22 @@ Kept keptBox(const ClipDepth& clip, const Corners& corners) {
 
 } // namespace
 
-double ClipDepth::inSeam(const DepthBuffer::Cell& cell, const Vec2& position, double linear,
-                         const Interval& between) const {
-  const std::int32_t seam =
-      seams->numbers()[static_cast<std::size_t>(buffer->sample(cell.column, cell.row))];
-  if (seam < 0)
+double ClipDepth::refineAtSilhouette(const DepthBuffer::Cell& cell, const Vec2& position,
+                                     double linear, const Interval& between) const {
+  const std::int32_t silhouetteCell =
+      silhouette->indices()[static_cast<std::size_t>(buffer->sample(cell.column, cell.row))];
+  if (silhouetteCell < 0)
     return linear;
-  const Seams::Reach& reach = seams->reaches()[static_cast<std::size_t>(seam)];
+  const SilhouetteCells::Reach& reach =
+      silhouette->reaches()[static_cast<std::size_t>(silhouetteCell)];
   const double reference = buffer->reference();
-  if (between.end < std::min(linear, reference + reach.least) ||
-      between.begin > std::max(linear, reference + reach.greatest))
+  if (between.end < std::min(linear, reference + reach.min) ||
+      between.begin > std::max(linear, reference + reach.max))
     return linear;
-  Seams::Question question{seam, position, linear - reference, between.begin - reference};
-  seams->answer({&question, 1});
-  return reference + question.surface;
+  SilhouetteCells::Query query{silhouetteCell, position, linear - reference,
+                               between.begin - reference};
+  silhouette->evaluate({&query, 1});
+  return reference + query.depth;
 }
 
 Vec3 cutGradient(const Clip& clip, const Vec3& world) {

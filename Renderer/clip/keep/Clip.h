@@ -56,7 +56,8 @@ struct ClipDepth {
   std::shared_ptr<const DepthPyramid> pyramid; ///< bounds of buffer and seams
   Lookup lookup = Lookup::linear;
   ClipEdge edge = {};
-  std::shared_ptr<const Seams> seams = nullptr; ///< null unless the boundary is exact
+  std::shared_ptr<const SilhouetteCells> silhouette =
+      nullptr; ///< null unless the boundary is exact
 
   /// Surface depth at (x, y), mm: points of smaller depth are removed.
   double surface(const Vec2& position) const { return surfaceFor(position, {-infinity, infinity}); }
@@ -68,7 +69,7 @@ struct ClipDepth {
       return buffer->nearest(position);
     const DepthBuffer::Cell cell = buffer->cell(position);
     const double linear = buffer->depthIn(cell);
-    return seams ? inSeam(cell, position, linear, between) : linear;
+    return silhouette ? refineAtSilhouette(cell, position, linear, between) : linear;
   }
 
   /// Depth of a point behind the surface, mm; negative: in front. Exact in the edge's ramp; beyond
@@ -78,8 +79,8 @@ struct ClipDepth {
   }
 
 private:
-  double inSeam(const DepthBuffer::Cell& cell, const Vec2& position, double linear,
-                const Interval& between) const;
+  double refineAtSilhouette(const DepthBuffer::Cell& cell, const Vec2& position, double linear,
+                            const Interval& between) const;
 };
 
 using Clip = std::variant<ClipNone, ClipPlane, ClipDepth>;

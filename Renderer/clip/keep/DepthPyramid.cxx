@@ -22,12 +22,13 @@ DepthPyramid::Level DepthPyramid::halved(std::int64_t columns, std::int64_t rows
   return level;
 }
 
-DepthPyramid::DepthPyramid(const DepthBuffer& buffer, const Seams* seams) {
+DepthPyramid::DepthPyramid(const DepthBuffer& buffer, const SilhouetteCells* silhouette) {
   const std::vector<float>& depths = buffer.depthsFromReference();
   m_levels.push_back(halved(buffer.columns(), buffer.rows(), [&](std::int64_t sample) {
     const float depth = depths[static_cast<std::size_t>(sample)];
-    const Seams::Reach own{depth, depth};
-    const Seams::Reach* const reach = seams ? seams->reachOfCell(sample) : nullptr;
+    const SilhouetteCells::Reach own{depth, depth};
+    const SilhouetteCells::Reach* const reach =
+        silhouette ? silhouette->reachOfCell(sample) : nullptr;
     return reach ? joined(own, *reach) : own;
   }));
   while (m_levels.back().extremes.size() > 1) {
@@ -49,13 +50,13 @@ Interval DepthPyramid::bounds(const DepthBuffer& buffer, const Vec2& a, const Ve
       static_cast<std::ptrdiff_t>(std::bit_width(static_cast<std::uint64_t>(longest)));
   const std::ptrdiff_t l = std::clamp<std::ptrdiff_t>(bits - 2, 1, std::ssize(m_levels));
   const Level& level = m_levels[static_cast<std::size_t>(l - 1)];
-  constexpr float nothing = std::numeric_limits<float>::infinity();
-  Seams::Reach extremes{nothing, -nothing};
+  constexpr float noDepth = std::numeric_limits<float>::infinity();
+  SilhouetteCells::Reach extremes{noDepth, -noDepth};
   for (std::int64_t row = rows.first >> l; row <= rows.last >> l; ++row)
     for (std::int64_t column = columns.first >> l; column <= columns.last >> l; ++column)
       extremes =
           joined(extremes, level.extremes[static_cast<std::size_t>(row * level.columns + column)]);
-  return {buffer.reference() + extremes.least, buffer.reference() + extremes.greatest};
+  return {buffer.reference() + extremes.min, buffer.reference() + extremes.max};
 }
 
 } // namespace fenestra

@@ -12,7 +12,7 @@ namespace fenestra {
 /// entries of the level below.
 class DepthPyramid {
 public:
-  explicit DepthPyramid(const DepthBuffer& buffer, const Seams* seams = nullptr);
+  explicit DepthPyramid(const DepthBuffer& buffer, const SilhouetteCells* silhouette = nullptr);
 
   /// Bounds of the surface depth (nearest, linear, or in seams) over the rectangle between two
   /// positions, mm. Samples near the rectangle count as well, so bounds may be wider.
@@ -21,7 +21,7 @@ public:
 private:
   struct Level {
     std::int64_t columns, rows;
-    std::vector<Seams::Reach> extremes;
+    std::vector<SilhouetteCells::Reach> extremes;
   };
 
   template <typename Below>

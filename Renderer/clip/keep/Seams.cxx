@@ -31,13 +31,15 @@ std::vector<std::uint8_t> outerCells(const FocusDepth& focus, const CellRange& r
 
 /// Depth range of the 4 x 4 samples around each cell, made twice as long away from the eye: a hole
 /// may be deeper than its samples. mm, relative to the target.
-std::vector<Seams::Reach> sightsAround(const DepthBuffer& buffer, const CellRange& range) {
+std::vector<SilhouetteCells::Reach> sightsAround(const DepthBuffer& buffer,
+                                                 const CellRange& range) {
   constexpr std::int64_t across = 4;
-  constexpr float nothing = std::numeric_limits<float>::infinity();
+  constexpr float noDepth = std::numeric_limits<float>::infinity();
   const auto columns = static_cast<std::size_t>(range.columns());
   std::vector<float> row(columns + across - 1);
   // Ranges of four neighbours in a row, then of four such rows.
-  std::vector<Seams::Reach> sights(columns * static_cast<std::size_t>(range.rows() + across - 1));
+  std::vector<SilhouetteCells::Reach> sights(columns *
+                                             static_cast<std::size_t>(range.rows() + across - 1));
   auto sight = sights.begin();
   for (std::int64_t r = range.top - 1; r < range.bottom + across - 2; ++r) {
     for (std::size_t i = 0; i < row.size(); ++i)
@@ -46,7 +48,7 @@ std::vector<Seams::Reach> sightsAround(const DepthBuffer& buffer, const CellRang
                                                  buffer.columns() - 1),
                         std::clamp<std::int64_t>(r, 0, buffer.rows() - 1)))];
     const auto at = [&](std::size_t i) { // empty for a sample beside the focus
-      return Seams::Reach{row[i], row[i] < nothing ? row[i] : -nothing};
+      return SilhouetteCells::Reach{row[i], row[i] < noDepth ? row[i] : -noDepth};
     };
     for (std::size_t i = 0; i < columns; ++i)
       *sight++ = joined(joined(at(i), at(i + 1)), joined(at(i + 2), at(i + 3)));
@@ -61,15 +63,15 @@ std::vector<Seams::Reach> sightsAround(const DepthBuffer& buffer, const CellRang
 }
 
 /// Questions that are traced together.
-struct Batch {
+struct QueryBatch {
   std::size_t size = 0;
-  std::array<Seams::Question*, Seams::mostQuestions> question;
-  std::array<Glance, Seams::mostQuestions> glance;
-  std::array<Sight, Seams::mostQuestions> sight;
+  std::array<SilhouetteCells::Query*, SilhouetteCells::maxQueries> queries;
+  std::array<Glance, SilhouetteCells::maxQueries> glance;
+  std::array<Sight, SilhouetteCells::maxQueries> sight;
 
-  void add(Seams::Question& asked, const Interval& depths) {
-    question[size] = &asked;
-    glance[size++] = {asked.position, depths};
+  void add(SilhouetteCells::Query& query, const Interval& depths) {
+    queries[size] = &query;
+    glance[size++] = {query.position, depths};
   }
   std::span<const Glance> glances() const { return std::span(glance).first(size); }
   std::span<Sight> sights() { return std::span(sight).first(size); }
@@ -77,10 +79,10 @@ struct Batch {
 
 } // namespace
 
-Seams::Seams(std::shared_ptr<const FocusTracer> tracer, const FocusDepth& focus)
+SilhouetteCells::SilhouetteCells(std::shared_ptr<const FocusTracer> tracer, const FocusDepth& focus)
     : m_tracer(std::move(tracer)),
       m_reference(focus.depth.reference()),
-      m_numbers(focus.regions.size(), -1) {
+      m_indices(focus.regions.size(), -1) {
   const Camera& camera = m_tracer->camera();
   const FocusCells& cells = m_tracer->cells();
   const CellRange range = focusRange(camera, focus.depth, cells);
@@ -92,28 +94,28 @@ Seams::Seams(std::shared_ptr<const FocusTracer> tracer, const FocusDepth& focus)
       const std::size_t cell = range.at(column, row);
       if (isOuter[cell] && outer[cell].empty())
         continue;
-      m_numbers[static_cast<std::size_t>(focus.depth.sample(column, row))] =
+      m_indices[static_cast<std::size_t>(focus.depth.sample(column, row))] =
           static_cast<std::int32_t>(m_reaches.size());
       m_reaches.push_back(isOuter[cell] ? Reach{static_cast<float>(outer[cell].begin - m_reference),
                                                 static_cast<float>(outer[cell].end - m_reference)}
                                         : inner[cell]);
       m_isInner.push_back(!isOuter[cell]);
     }
-  findRim(focus, range);
+  findHalo(focus, range);
 }
 
 /// Reaches of the four cells around a sample, joined, mm.
-Interval Seams::reachAround(const DepthBuffer& buffer, std::int64_t column,
-                            std::int64_t row) const {
+Interval SilhouetteCells::reachAround(const DepthBuffer& buffer, std::int64_t column,
+                                      std::int64_t row) const {
   Interval depths{infinity, -infinity};
   for (const std::int64_t r : {std::max<std::int64_t>(row, 1) - 1, row})
     for (const std::int64_t c : {std::max<std::int64_t>(column, 1) - 1, column})
       if (const Reach* const reach = reachOfCell(buffer.sample(c, r)))
-        depths = joined(depths, {m_reference + reach->least, m_reference + reach->greatest});
+        depths = joined(depths, {m_reference + reach->min, m_reference + reach->max});
   return depths;
 }
 
-void Seams::findRim(const FocusDepth& focus, const CellRange& range) {
+void SilhouetteCells::findHalo(const FocusDepth& focus, const CellRange& range) {
   const DepthBuffer& buffer = focus.depth;
   std::vector<Glance> glances;
   for (std::int64_t row = range.top; row <= std::min(range.bottom, buffer.rows() - 1); ++row)
@@ -125,7 +127,7 @@ void Seams::findRim(const FocusDepth& focus, const CellRange& range) {
       const Interval depths = reachAround(buffer, column, row);
       if (depths.empty())
         continue;
-      m_rim.push_back({sample, 0.0});
+      m_halo.push_back({sample, 0.0});
       glances.push_back({buffer.position(column, row), depths});
     }
   std::vector<Sight> sights(glances.size());
@@ -133,53 +135,53 @@ void Seams::findRim(const FocusDepth& focus, const CellRange& range) {
     m_tracer->look(std::span(glances).subspan(part.begin(), part.size()),
                    std::span(sights).subspan(part.begin(), part.size()));
   });
-  std::size_t seen = 0;
-  for (std::size_t i = 0; i < m_rim.size(); ++i)
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < m_halo.size(); ++i)
     if (sights[i].indicator > FocusCells::captureThreshold)
-      m_rim[seen++] = {m_rim[i].sample, sights[i].depth};
-  m_rim.resize(seen);
+      m_halo[found++] = {m_halo[i].sample, sights[i].depth};
+  m_halo.resize(found);
 }
 
-void Seams::move(double offset) {
+void SilhouetteCells::move(double offset) {
   m_offset += offset;
   for (Reach& reach : m_reaches)
-    reach = {static_cast<float>(reach.least + offset), static_cast<float>(reach.greatest + offset)};
+    reach = {static_cast<float>(reach.min + offset), static_cast<float>(reach.max + offset)};
 }
 
-void Seams::answer(std::span<Question> questions) const {
-  Batch inner, rest;
+void SilhouetteCells::evaluate(std::span<Query> queries) const {
+  QueryBatch inner, rest;
   const double toFocus = m_reference - m_offset;
-  const auto reachOf = [&](const Question& question) {
-    const auto& [least, greatest] = m_reaches[static_cast<std::size_t>(question.seam)];
+  const auto reachOf = [&](const Query& query) {
+    const auto& [least, greatest] = m_reaches[static_cast<std::size_t>(query.cell)];
     return Interval{toFocus + least, toFocus + greatest};
   };
-  const auto addToRest = [&](Question& question) {
-    const Interval reach = reachOf(question);
-    rest.add(question, {reach.begin, isInner(question.seam) ? infinity : reach.end});
+  const auto addToRest = [&](Query& query) {
+    const Interval reach = reachOf(query);
+    rest.add(query, {reach.begin, isInner(query.cell) ? infinity : reach.end});
   };
-  for (Question& question : questions) {
-    const Interval reach = reachOf(question);
-    if (m_tracer->isFocus(question.position, toFocus + question.from))
-      question.surface = reach.begin - toFocus; // the focus is met at `from` or before
-    else if (isInner(question.seam))
-      inner.add(question, reach);
+  for (Query& query : queries) {
+    const Interval reach = reachOf(query);
+    if (m_tracer->isFocus(query.position, toFocus + query.nearLimit))
+      query.depth = reach.begin - toFocus; // the focus is met at `from` or before
+    else if (isInner(query.cell))
+      inner.add(query, reach);
     else
-      addToRest(question);
+      addToRest(query);
   }
   m_tracer->meet(inner.glances(), inner.sights());
   for (std::size_t i = 0; i < inner.size; ++i)
     if (inner.sight[i].indicator > 0.0)
-      inner.question[i]->surface = inner.sight[i].depth - toFocus;
+      inner.queries[i]->depth = inner.sight[i].depth - toFocus;
     else
-      addToRest(*inner.question[i]);
+      addToRest(*inner.queries[i]);
   m_tracer->look(rest.glances(), rest.sights());
   for (std::size_t i = 0; i < rest.size; ++i)
     if (const Sight& sight = rest.sight[i]; sight.indicator > FocusCells::captureThreshold) {
-      Question& question = *rest.question[i];
-      const double depth = std::min(sight.depth, reachOf(question).end) - toFocus;
+      Query& query = *rest.queries[i];
+      const double depth = std::min(sight.depth, reachOf(query).end) - toFocus;
       const double share =
           (sight.indicator - FocusCells::captureThreshold) / (0.5 - FocusCells::captureThreshold);
-      question.surface += share * (depth - question.surface);
+      query.depth += share * (depth - query.depth);
     }
 }
 

@@ -23,65 +23,65 @@ namespace fenestra {
 
 struct CellRange;
 
-class Seams {
+class SilhouetteCells {
 public:
-  Seams(std::shared_ptr<const FocusTracer> tracer, const FocusDepth& focus);
+  SilhouetteCells(std::shared_ptr<const FocusTracer> tracer, const FocusDepth& focus);
 
   /// Sample beside the focus whose ray has a summit.
-  struct Rim {
+  struct HaloSample {
     std::int64_t sample;
     double depth; ///< of the summit, mm
   };
-  const std::vector<Rim>& rim() const { return m_rim; }
+  const std::vector<HaloSample>& halo() const { return m_halo; }
 
   /// Moves the surface `offset` mm away from the eye.
   void move(double offset);
 
   /// numbers()[s]: seam of the cell whose top-left sample is s; -1: none.
-  const std::vector<std::int32_t>& numbers() const { return m_numbers; }
+  const std::vector<std::int32_t>& indices() const { return m_indices; }
 
   /// Range of depths, mm, relative to the target.
   struct Reach {
-    float least, greatest;
+    float min, max;
 
     /// Shortest range that holds both.
     friend Reach joined(const Reach& a, const Reach& b) {
-      return {std::min(a.least, b.least), std::max(a.greatest, b.greatest)};
+      return {std::min(a.min, b.min), std::max(a.max, b.max)};
     }
   };
   /// reaches()[seam]: bounds of the depths of focus and summits on the seam's rays.
   const std::vector<Reach>& reaches() const { return m_reaches; }
   /// Reach of the cell whose top-left sample is `sample`; null: the cell is no seam.
   const Reach* reachOfCell(std::int64_t sample) const {
-    const std::int32_t seam = m_numbers[static_cast<std::size_t>(sample)];
-    return seam < 0 ? nullptr : &m_reaches[static_cast<std::size_t>(seam)];
+    const std::int32_t cell = m_indices[static_cast<std::size_t>(sample)];
+    return cell < 0 ? nullptr : &m_reaches[static_cast<std::size_t>(cell)];
   }
 
   /// True: all four samples around the seam are focus.
-  bool isInner(std::int32_t seam) const { return m_isInner[static_cast<std::size_t>(seam)]; }
+  bool isInner(std::int32_t cell) const { return m_isInner[static_cast<std::size_t>(cell)]; }
 
   /// Query at one point; depths in mm, relative to the target.
-  struct Question {
-    std::int32_t seam;
-    Vec2 position;  ///< in the seam, mm
-    double surface; ///< in: interpolated from the buffer's samples; out: exact
-    double from;    ///< depths <= `from` need not be exact: any value <= `from` may be returned
+  struct Query {
+    std::int32_t cell;
+    Vec2 position;    ///< in the seam, mm
+    double depth;     ///< in: interpolated from the buffer's samples; out: exact
+    double nearLimit; ///< depths <= `from` need not be exact: any value <= `from` may be returned
   };
-  /// Replaces each question's `surface` by the exact surface depth. At most `mostQuestions` a call.
-  void answer(std::span<Question> questions) const;
-  static constexpr std::size_t mostQuestions = 16;
+  /// Replaces each question's `surface` by the exact surface depth. At most `maxQueries` a call.
+  void evaluate(std::span<Query> queries) const;
+  static constexpr std::size_t maxQueries = 16;
 
 private:
   Interval reachAround(const DepthBuffer& buffer, std::int64_t column, std::int64_t row) const;
-  void findRim(const FocusDepth& focus, const CellRange& range);
+  void findHalo(const FocusDepth& focus, const CellRange& range);
 
   std::shared_ptr<const FocusTracer> m_tracer;
   double m_reference; ///< depth of the camera's target, mm
   double m_offset = 0.0;
-  std::vector<std::int32_t> m_numbers;
+  std::vector<std::int32_t> m_indices;
   std::vector<Reach> m_reaches;
   std::vector<bool> m_isInner; ///< per seam
-  std::vector<Rim> m_rim;
+  std::vector<HaloSample> m_halo;
 };
 
 } // namespace fenestra

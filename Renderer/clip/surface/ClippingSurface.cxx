@@ -154,9 +154,10 @@ void fillCutaway(DepthBuffer& buffer, const std::vector<Region>& regions) {
 }
 
 /// Fills the surface of an exact boundary, from the rim on.
-void fillFromRim(DepthBuffer& buffer, const FocusDepth& focus, const Seams& seams, double length) {
+void fillFromHalo(DepthBuffer& buffer, const FocusDepth& focus, const SilhouetteCells& silhouette,
+                  double length) {
   std::vector<Region> known = focus.regions;
-  for (const auto& [sample, depth] : seams.rim()) {
+  for (const auto& [sample, depth] : silhouette.halo()) {
     buffer.set(sample, depth);
     known[static_cast<std::size_t>(sample)] = Region::focus;
   }
@@ -199,14 +200,14 @@ ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume,
   surface.focusSeconds = stopwatch.lap();
 
   auto buffer = std::make_shared<DepthBuffer>(surface.focus.depth);
-  std::shared_ptr<Seams> seams;
+  std::shared_ptr<SilhouetteCells> silhouette;
   if (options.mode == SurfaceMode::cutaway) {
     fillCutaway(*buffer, surface.focus.regions);
   } else if (options.mode == SurfaceMode::hole) {
     fillHole(*buffer, surface.focus, camera, options.hole);
   } else if (options.boundary == Boundary::exact) {
-    seams = std::make_shared<Seams>(tracer, surface.focus);
-    fillFromRim(*buffer, surface.focus, *seams, levellingLength(volume));
+    silhouette = std::make_shared<SilhouetteCells>(tracer, surface.focus);
+    fillFromHalo(*buffer, surface.focus, *silhouette, levellingLength(volume));
   } else {
     const ThinPlateSpline spline = fitOutline(surface, options);
     surface.splineSeconds = stopwatch.lap();
@@ -214,14 +215,14 @@ ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume,
   }
   if (options.offset != 0.0) {
     buffer->move(options.offset);
-    if (seams)
-      seams->move(options.offset);
+    if (silhouette)
+      silhouette->move(options.offset);
   }
-  auto pyramid = std::make_shared<const DepthPyramid>(*buffer, seams.get());
+  auto pyramid = std::make_shared<const DepthPyramid>(*buffer, silhouette.get());
   const auto lookup =
       options.mode == SurfaceMode::surface ? ClipDepth::Lookup::linear : ClipDepth::Lookup::nearest;
   surface.clip = ClipDepth{camera, std::move(buffer), std::move(pyramid),
-                           lookup, options.edge,      std::move(seams)};
+                           lookup, options.edge,      std::move(silhouette)};
   surface.fillSeconds = stopwatch.lap();
   return surface;
 }

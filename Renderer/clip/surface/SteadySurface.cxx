@@ -73,7 +73,7 @@ ClippingSurface buildSteadySurface(const Camera& camera, const Domain& volume, c
     surface.fillSeconds += other.fillSeconds;
   }
   ClipDepth clip = own;
-  clip.pyramid = std::make_shared<const DepthPyramid>(*buffer, clip.seams.get());
+  clip.pyramid = std::make_shared<const DepthPyramid>(*buffer, clip.silhouette.get());
   clip.buffer = std::move(buffer);
   surface.clip = std::move(clip);
   return surface;

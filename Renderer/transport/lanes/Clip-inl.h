@@ -64,43 +64,42 @@ HWY_INLINE Surface surfaceAt(const WideScene& scene, const InView& view) {
           slopeAlong(scene.depthY, row, lerp(downLeft - upLeft, downRight - upRight, fc))};
 }
 
-/// Exact surface depth in seams for the lanes of `isAsked`; `surface` for the others.
-inline Float askSeams(const Seams& seams, LaneMask isAsked, Int seam, const InView& at,
-                      double softness, Float surface) {
-  static_assert(laneCount <= Seams::mostQuestions);
-  const LaneArray<std::int32_t> numbers(seam);
+/// Exact surface depth in seams for the lanes of `isQueried`; `surface` for the others.
+inline Float querySilhouettes(const SilhouetteCells& silhouettes, LaneMask isQueried, Int cell,
+                              const InView& at, double softness, Float surface) {
+  static_assert(laneCount <= SilhouetteCells::maxQueries);
+  const LaneArray<std::int32_t> numbers(cell);
   const LaneArray<float> xs(at.x), ys(at.y), depths(at.depth);
   LaneArray<float> surfaces(surface);
-  std::array<Seams::Question, laneCount> questions;
-  auto* question = questions.data();
-  forEachLane(isAsked, [&](std::size_t lane) {
-    *question++ = {numbers[lane], Vec2(xs[lane], ys[lane]), surfaces[lane],
-                   depths[lane] - softness};
+  std::array<SilhouetteCells::Query, laneCount> queries;
+  auto* query = queries.data();
+  forEachLane(isQueried, [&](std::size_t lane) {
+    *query++ = {numbers[lane], Vec2(xs[lane], ys[lane]), surfaces[lane], depths[lane] - softness};
   });
-  seams.answer({questions.data(), question});
-  question = questions.data();
-  forEachLane(isAsked,
-              [&](std::size_t lane) { surfaces[lane] = static_cast<float>(question++->surface); });
+  silhouettes.evaluate({queries.data(), query});
+  query = queries.data();
+  forEachLane(isQueried,
+              [&](std::size_t lane) { surfaces[lane] = static_cast<float>(query++->depth); });
   return load(surfaces.data());
 }
 
 /// ClipDepth::surfaceFor: exact in seams for the lanes of `which`, else `surface`.
-HWY_INLINE Float sewn(const WideScene& scene, LaneMask which, const Surface& linear,
-                      const InView& at) {
+HWY_INLINE Float refineAtSilhouette(const WideScene& scene, LaneMask which, const Surface& linear,
+                                    const InView& at) {
   const Float surface = linear.depth;
-  const Int seam = gather(scene.seams->numbers().data(), linear.sample);
-  const LaneMask isSeam = seam > -1;
-  if (!isSeam.any())
+  const Int cell = gather(scene.silhouette->indices().data(), linear.sample);
+  const LaneMask isSilhouette = cell > -1;
+  if (!isSilhouette.any())
     return surface;
-  const Int first = shiftLeft<1>(max(seam, 0));
-  const float* const reaches = &scene.seams->reaches().data()->least;
+  const Int first = shiftLeft<1>(max(cell, 0));
+  const float* const reaches = &scene.silhouette->reaches().data()->min;
   const Float least = min(surface, gather(reaches, first));
   const Float greatest = max(surface, gather(reaches + 1, first)); // least and greatest alternate
   const LaneMask isNear = (at.depth >= least) & (at.depth <= greatest + scene.softness);
-  const LaneMask isAsked = which & isSeam & isNear;
-  if (!isAsked.any())
+  const LaneMask isQueried = which & isSilhouette & isNear;
+  if (!isQueried.any())
     return surface;
-  return askSeams(*scene.seams, isAsked, seam, at, scene.softness, surface);
+  return querySilhouettes(*scene.silhouette, isQueried, cell, at, scene.softness, surface);
 }
 
 /// Depth of the nearest sample.
@@ -119,7 +118,8 @@ HWY_INLINE Float behindSurface(const WideScene& scene, const Float3& p, const In
   if (scene.clipKind == WideScene::ClipKind::depthNearest)
     return view.depth - nearestDepth(scene, view);
   const Surface surface = surfaceAt(scene, view);
-  return view.depth - (scene.seams ? sewn(scene, which, surface, view) : surface.depth);
+  return view.depth -
+         (scene.silhouette ? refineAtSilhouette(scene, which, surface, view) : surface.depth);
 }
 
 /// keep for every kind of clip, for the lanes of `which`.

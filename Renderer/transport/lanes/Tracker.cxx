@@ -167,7 +167,7 @@ private:
     Float extinction = all.clipped;
     if constexpr (wantRatio) {
       cut = cut & (extinction > 0.0F);
-      if (m_scene.seams && !(m_scene.mixture && m_scene.mixture->hasFree)) {
+      if (m_scene.silhouette && !(m_scene.mixture && m_scene.mixture->hasFree)) {
         UInt after = counter;
         const LaneMask isReal = uniform(after) * m_majorant < extinction;
         counter.setIf(cut, after);

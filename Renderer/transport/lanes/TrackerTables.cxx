@@ -88,7 +88,7 @@ void setClip(WideScene& scene, const Clip& clip, const Grid& grid) {
   scene.depthY = wide(depth->buffer->yAxis());
   scene.depths = depth->buffer->depthsFromReference().data();
   scene.depthColumns = static_cast<std::int32_t>(depth->buffer->columns());
-  scene.seams = depth->seams.get();
+  scene.silhouette = depth->silhouette.get();
 }
 
 void setContext(WideScene& scene, const ContextStyle& style, const Grid& grid) {

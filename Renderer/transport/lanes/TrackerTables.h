@@ -13,7 +13,7 @@
 
 namespace fenestra {
 
-class Seams;
+class SilhouetteCells;
 
 /// Voxels for interpolation in lanes.
 struct SimdField {
@@ -81,7 +81,7 @@ struct WideScene {
   DepthAxis depthX = {}, depthY = {};
   const float* depths = nullptr; ///< mm, counted from the target
   std::int32_t depthColumns = 0;
-  const Seams* seams = nullptr; ///< for an exact boundary; else null
+  const SilhouetteCells* silhouette = nullptr; ///< for an exact boundary; else null
 };
 
 } // namespace fenestra

@@ -65,7 +65,7 @@ public:
                      .scene()),
         m_shading(scene.volume.grid, scene.transfer, scene.lights, 0, true, scene.tint,
                   scene.mixture) {
-    m_medium.seams = nullptr; // exact surfaces cost more than features gain
+    m_medium.silhouette = nullptr; // exact surfaces cost more than features gain
   }
 
   void integrateHits(std::span<const RasterPoint> points, PrimaryHit* out) const {
