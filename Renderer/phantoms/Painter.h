@@ -110,7 +110,7 @@ public:
     const Interval range{-length, length * static_cast<double>(count)};
     std::vector<const Layer*> layers;
     for (const Layer& layer : m_subject.layers())
-      if (!expanded(layer.box, reach()).clip(row, range).empty())
+      if (!expanded(layer.box, boundaryReach()).clip(row, range).empty())
         layers.push_back(&layer);
     return layers;
   }
@@ -119,7 +119,7 @@ public:
   /// places, elsewhere from the middle alone.
   Sample voxel(const std::vector<const Layer*>& row, const Vec3& center) const {
     Sample middle = paint(row, center);
-    if (middle.border > reach())
+    if (middle.border > boundaryReach())
       return middle;
     for (const double offset : {-1.0 / 3.0, 1.0 / 3.0})
       middle.signal += paint(row, center + offset * m_sliceStep).signal;
@@ -129,7 +129,7 @@ public:
 
 private:
   /// Largest distance from a voxel's middle, mm, at which a border shows in the voxel.
-  double reach() const { return m_softness + m_sliceStep.norm() / 3.0; }
+  double boundaryReach() const { return m_softness + m_sliceStep.norm() / 3.0; }
 
   Sample paint(const std::vector<const Layer*>& row, const Vec3& point) const {
     const auto site = m_subject.site(point);

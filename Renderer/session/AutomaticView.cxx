@@ -95,12 +95,12 @@ Vec2 stepToTop(const std::vector<Vec2>& points, const std::vector<double>& score
 }
 
 Vec3 refined(const ViewScorer& score, const Vec3& start) {
-  constexpr double reach = 25.0 * degree, near = 12.0 * degree, enough = 0.5 * degree;
+  constexpr double searchRadius = 25.0 * degree, near = 12.0 * degree, enough = 0.5 * degree;
   constexpr double enoughMeetings = 1024.0;
   const double met = score(start, 1024).met;
   const auto rays =
       static_cast<std::size_t>(std::clamp(enoughMeetings / std::max(met, 1e-9), 1024.0, 32768.0));
-  const std::vector<Vec2> points = discPoints(48, reach);
+  const std::vector<Vec2> points = discPoints(48, searchRadius);
   Vec3 best = start;
   for (int i = 0; i < 4; ++i) {
     const Frame frame(best);

@@ -32,7 +32,7 @@ void describeExact(const ClipDepth& surface, oracle::DepthClip& clip) {
   for (std::size_t i = 0; i < cells.indices().size(); ++i)
     if (const std::int32_t cell = cells.indices()[i]; cell >= 0) {
       clip.silhouettes[i] = {};
-      if (const auto& [minimum, maximum] = cells.reaches()[static_cast<std::size_t>(cell)];
+      if (const auto& [minimum, maximum] = cells.depthBounds()[static_cast<std::size_t>(cell)];
           cells.isInner(cell))
         clip.silhouettes[i] = {buffer.reference() + minimum, buffer.reference() + maximum};
     }

@@ -158,8 +158,8 @@ inline void expectBoxes(const View& view, const Clip& clip) {
     const Kept verdict = keptIn(clip, corners);
     for (int point = 0; point < 16; ++point) {
       const double kept = keep(clip, center + half.cwiseProduct(randomPoint(random, -1, 1)));
-      ASSERT_FALSE(verdict == Kept::none && kept > 0.0);
-      ASSERT_FALSE(verdict == Kept::all && kept < 1.0);
+      ASSERT_FALSE(bounds == Kept::none && kept > 0.0);
+      ASSERT_FALSE(bounds == Kept::all && kept < 1.0);
     }
   }
 }
@@ -220,8 +220,8 @@ inline void expectEdges(const View& view) {
           const double kept = keep(clip, at);
           const bool isBehind = behindEye(view.camera, view.camera.toView(at).z());
           ASSERT_GE(kept, isBehind ? 0.0 : edge.ghost);
-          ASSERT_LE(kept, verdict.most);
-          ASSERT_TRUE(!verdict.isUniform || kept == verdict.most);
+          ASSERT_LE(kept, bounds.most);
+          ASSERT_TRUE(!bounds.isUniform || kept == bounds.most);
         }
       }
     }

@@ -141,8 +141,8 @@ TEST(Clip, KeptInHoldsForPointsOfTheBox) {
             kept += keep(clips[c], p) > 0.0;
           }
           const Kept verdict = keptIn(clips[c], corners);
-          ASSERT_FALSE(verdict == Kept::none && kept > 0);
-          ASSERT_FALSE(verdict == Kept::all && kept < 60);
+          ASSERT_FALSE(bounds == Kept::none && kept > 0);
+          ASSERT_FALSE(bounds == Kept::all && kept < 60);
           found += verdict == Kept::none;
           empty += kept == 0;
           foundWhole += verdict == Kept::all;

@@ -13,7 +13,7 @@ using namespace testing_clipping;
 namespace {
 
 /// Ball of single voxels, so that what lies under one cell of the buffer tells nothing of the next.
-Mask dust(const Grid& grid) {
+Mask makeDust(const Grid& grid) {
   Mask mask = sphereMask(grid, 20.3);
   Random random(7, 0, 0);
   for (std::uint8_t& voxel : mask.voxels)
@@ -23,20 +23,23 @@ Mask dust(const Grid& grid) {
 }
 
 /// Expects that rays through cells meet the focus within the cells' reaches.
-void expectMeetings(const FocusTracer& tracer, const DepthBuffer& buffer, const CellRange& range,
-                    const std::vector<Interval>& reaches, Random& random) {
-  std::vector<Vec2> places(5000);
-  for (Vec2& place : places)
-    place = Vec2(uniform(random, -22, 22), uniform(random, -22, 22));
-  const std::vector<double> depths = tracer.depthsAt(places);
-  int met = 0;
-  for (std::size_t i = 0; i < places.size(); ++i)
+void expectHitsInBounds(const FocusTracer& tracer, const DepthBuffer& buffer,
+                        const CellRange& range, const std::vector<Interval>& bounds,
+                        Random& random) {
+  std::vector<Vec2> positions(5000);
+  for (Vec2& position : positions)
+    position = Vec2(uniform(random, -22, 22), uniform(random, -22, 22));
+  const std::vector<double> depths = tracer.depthsAt(positions);
+  int hits = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i)
     if (depths[i] < infinity) {
-      const DepthBuffer::Cell cell = buffer.cell(places[i]);
-      const Interval& reach = reaches[range.at(cell.column, cell.row)];
-      ASSERT_LE(reach.begin, depths[i]) << "at x = " << places[i].x() << ", y = " << places[i].y();
-      ASSERT_GE(reach.end, depths[i]) << "at x = " << places[i].x() << ", y = " << places[i].y();
-      ++met;
+      const DepthBuffer::Cell cell = buffer.cell(positions[i]);
+      const Interval& bound = bounds[range.at(cell.column, cell.row)];
+      ASSERT_LE(reach.begin, depths[i])
+          << "at x = " << positions[i].x() << ", y = " << positions[i].y();
+      ASSERT_GE(reach.end, depths[i])
+          << "at x = " << positions[i].x() << ", y = " << positions[i].y();
+      ++hits;
     }
   EXPECT_GT(met, 200);
 }
@@ -44,28 +47,28 @@ void expectMeetings(const FocusTracer& tracer, const DepthBuffer& buffer, const 
 /// Pixels both wider and narrower than the focus's cells.
 TEST(Footprints, ReachesHoldTheFocusWhicheverCellsAreAskedFor) {
   const Grid grid = centredGrid({60, 60, 60});
-  const Mask focus = dust(grid);
+  const Mask focus = makeDust(grid);
   for (const int pixels : {8, 100}) {
     const Camera camera = anteriorCamera(Projection::perspective, 200.0, 30.0, pixels, pixels);
     const FocusTracer tracer(camera, Domain(grid), focus);
     const DepthBuffer buffer = tracer.depths().depth;
     const FocusCells& cells = tracer.cells();
     const CellRange range = focusRange(camera, buffer, cells);
-    const auto reachesOf = [&](const std::vector<std::uint8_t>& isAskedFor) {
-      return focusReaches(camera, buffer, cells, range, isAskedFor);
+    const auto computeBounds = [&](const std::vector<std::uint8_t>& isRequested) {
+      return computeDepthBounds(camera, buffer, cells, range, isRequested);
     };
-    const std::vector<Interval> all = reachesOf(std::vector<std::uint8_t>(range.size(), 1));
+    const std::vector<Interval> all = computeBounds(std::vector<std::uint8_t>(range.size(), 1));
     Random random(8, 0, 0);
-    expectMeetings(tracer, buffer, range, all, random);
-    for (const double share : {0.001, 0.05, 0.6}) {
-      std::vector<std::uint8_t> asked(range.size());
-      for (std::uint8_t& each : asked)
-        each = uniformOf(random.bits()) < share ? 1 : 0;
-      const std::vector<Interval> reaches = reachesOf(asked);
-      for (std::size_t i = 0; i < asked.size(); ++i) {
-        const Interval expected = asked[i] != 0 ? all[i] : Interval{infinity, -infinity};
-        ASSERT_EQ(reaches[i].begin, expected.begin) << pixels << " pixels, cell " << i;
-        ASSERT_EQ(reaches[i].end, expected.end) << pixels << " pixels, cell " << i;
+    expectHitsInBounds(tracer, buffer, range, all, random);
+    for (const double probability : {0.001, 0.05, 0.6}) {
+      std::vector<std::uint8_t> requested(range.size());
+      for (std::uint8_t& flag : requested)
+        flag = uniformOf(random.bits()) < probability ? 1 : 0;
+      const std::vector<Interval> bounds = computeBounds(requested);
+      for (std::size_t i = 0; i < requested.size(); ++i) {
+        const Interval expected = requested[i] != 0 ? all[i] : Interval{infinity, -infinity};
+        ASSERT_EQ(bounds[i].begin, expected.begin) << pixels << " pixels, cell " << i;
+        ASSERT_EQ(bounds[i].end, expected.end) << pixels << " pixels, cell " << i;
       }
     }
   }

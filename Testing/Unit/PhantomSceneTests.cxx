@@ -253,7 +253,7 @@ TEST_F(PhantomSceneFiles, CameraBelongsToTheViewAndFramesTheVolume) {
     reach = std::max({reach, std::abs(offset.dot(up)), std::abs(offset.dot(up.cross(backward)))});
     EXPECT_LT(offset.dot(backward), (position - target).norm()) << "in front of the camera";
   }
-  EXPECT_NEAR(reach / scale, 1.0 / 1.05, 1e-4) << "half the viewport's height";
+  EXPECT_NEAR(extent / scale, 1.0 / 1.05, 1e-4) << "half the viewport's height";
 }
 
 TEST_F(PhantomSceneFiles, RegionOfInterestIsTheVolumesBoxInLps) {

@@ -105,8 +105,8 @@ TEST_F(PhantomFiles, ExtentOfASegmentHoldsItsLayer) {
     if (phantom.labels.layers[0][static_cast<std::size_t>(at)] != 0)
       hold({at % size.x(), at / size.x() % size.y(), at / (size.x() * size.y())});
   for (int axis = 0; axis < 3; ++axis) {
-    EXPECT_EQ(extent[2 * static_cast<std::size_t>(axis)], held[0][axis]);
-    EXPECT_EQ(extent[2 * static_cast<std::size_t>(axis) + 1], held[1][axis]);
+    EXPECT_EQ(extent[2 * static_cast<std::size_t>(axis)], bounds[0][axis]);
+    EXPECT_EQ(extent[2 * static_cast<std::size_t>(axis) + 1], bounds[1][axis]);
   }
 }
 

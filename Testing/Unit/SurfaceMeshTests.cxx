@@ -114,8 +114,8 @@ TEST(SurfaceMesh, PlaneSeenAlongAnAxisLiesInItsPlace) {
   const Vec2 pixel(1.0, 1.0);
   for (const auto& [seen, half] : {std::pair{Vec2(lower.x(), lower.z()), Vec2(-10.0, -5.0)},
                                    {Vec2(upper.x(), upper.z()), Vec2(10.0, 5.0)}}) {
-    EXPECT_GE((seen.cwiseAbs() - half.cwiseAbs()).minCoeff(), -1e-9) << "all of the volume";
-    EXPECT_LE((seen.cwiseAbs() - half.cwiseAbs() - pixel).maxCoeff(), 1e-9) << "and no more";
+    EXPECT_GE((extent.cwiseAbs() - half.cwiseAbs()).minCoeff(), -1e-9) << "all of the volume";
+    EXPECT_LE((extent.cwiseAbs() - half.cwiseAbs() - pixel).maxCoeff(), 1e-9) << "and no more";
   }
 }
 

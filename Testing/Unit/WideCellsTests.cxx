@@ -58,7 +58,7 @@ struct MajorantPair {
   DecodedCell cell(const Size3& c) const {
     const std::int32_t code = simd.codes[numberOf(c.array() + 1, count.array() + 2)];
     return {std::bit_cast<float>(code & SimdMajorants::majorantBits),
-            code & SimdMajorants::reachBits, code < 0};
+            code & SimdMajorants::radiusBits, code < 0};
   }
   explicit MajorantPair(MajorantGrid scalarGrid) : majorants(std::move(scalarGrid)) {}
   template <typename Visit>
@@ -106,11 +106,11 @@ double ballInMist(const Vec3& p) {
 TEST(SimdMajorants, MajorantBoundsEveryCellInReach) {
   const MajorantPair pair{makeMajorants(ballInMist)};
   expectBounds(pair);
-  EXPECT_GT(walk.cell(Size3::Constant(4)).reach, 3) << "mist";
-  EXPECT_EQ(walk.cell(walk.count / 2).reach, 0) << "the ball";
+  EXPECT_GT(walk.cell(Size3::Constant(4)).skipRadius, 3) << "mist";
+  EXPECT_EQ(walk.cell(walk.count / 2).skipRadius, 0) << "the ball";
   const DecodedCell above = pair.cell({5, 5, pair.count.z() - 2});
   EXPECT_EQ(above.majorant, 0.0F);
-  EXPECT_GT(above.reach, 0);
+  EXPECT_GT(above.skipRadius, 0);
 }
 
 TEST(SimdMajorants, ReachIsZeroInCutCells) {
@@ -122,7 +122,7 @@ TEST(SimdMajorants, ReachIsZeroInCutCells) {
   int isCut = 0;
   pair.forEach([&](const Size3& c) {
     isCut += pair.cell(c).isCut ? 1 : 0;
-    EXPECT_TRUE(!walk.cell(c).cut || walk.cell(c).reach == 0) << c;
+    EXPECT_TRUE(!walk.cell(c).cut || walk.cell(c).skipRadius == 0) << c;
   });
   EXPECT_GT(cut, 100);
 }

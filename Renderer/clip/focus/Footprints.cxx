@@ -125,13 +125,13 @@ CellRange focusRange(const Camera& camera, const DepthBuffer& buffer, const Focu
   return range.left < range.right && range.top < range.bottom ? range : CellRange{};
 }
 
-std::vector<Interval> focusReaches(const Camera& camera, const DepthBuffer& buffer,
-                                   const FocusCells& cells, const CellRange& range,
-                                   const std::vector<std::uint8_t>& isAskedFor) {
-  std::vector<Interval> reaches(range.size(), {infinity, -infinity});
+std::vector<Interval> computeDepthBounds(const Camera& camera, const DepthBuffer& buffer,
+                                         const FocusCells& cells, const CellRange& range,
+                                         const std::vector<std::uint8_t>& isAskedFor) {
+  std::vector<Interval> bounds(range.size(), {infinity, -infinity});
   const AskedSums asked(range, isAskedFor);
   const BoxProjection boxes(camera, cells.cellToWorld());
-  const auto reach = [&](const Size3& cell) {
+  const auto extendBounds = [&](const Size3& cell) {
     const auto [depths, lower, upper] = boxes.of(cell);
     if (depths.end < 0.0)
       return;
@@ -142,14 +142,14 @@ std::vector<Interval> focusReaches(const Camera& camera, const DepthBuffer& buff
       for (std::int64_t column = seen.left; column < seen.right; ++column) {
         const std::size_t at = range.at(column, row);
         if (isAskedFor[at])
-          reaches[at] = joined(reaches[at], depths);
+          bounds[at] = joined(bounds[at], depths);
       }
   };
   visitSeen(camera, buffer, cells, [&](const Size3& block, const Interval&, const CellRange& seen) {
     if (asked.any(seen))
-      cells.visitCells(block, reach);
+      cells.visitCells(block, extendBounds);
   });
-  return reaches;
+  return bounds;
 }
 
 } // namespace fenestra

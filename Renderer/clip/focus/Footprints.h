@@ -63,8 +63,8 @@ CellRange focusRange(const Camera& camera, const DepthBuffer& buffer, const Focu
 
 /// Per cell of `range`: depths, mm, between which the cell's rays can meet the focus or have a
 /// summit; empty: none, or isAskedFor is 0.
-std::vector<Interval> focusReaches(const Camera& camera, const DepthBuffer& buffer,
-                                   const FocusCells& cells, const CellRange& range,
-                                   const std::vector<std::uint8_t>& isAskedFor);
+std::vector<Interval> computeDepthBounds(const Camera& camera, const DepthBuffer& buffer,
+                                         const FocusCells& cells, const CellRange& range,
+                                         const std::vector<std::uint8_t>& isAskedFor);
 
 } // namespace fenestra

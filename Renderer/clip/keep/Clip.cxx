@@ -120,11 +120,11 @@ double ClipDepth::refineAtSilhouette(const DepthBuffer::Cell& cell, const Vec2& 
       silhouette->indices()[static_cast<std::size_t>(buffer->sample(cell.column, cell.row))];
   if (silhouetteCell < 0)
     return linear;
-  const SilhouetteCells::Reach& reach =
-      silhouette->reaches()[static_cast<std::size_t>(silhouetteCell)];
+  const SilhouetteCells::DepthBounds& bounds =
+      silhouette->depthBounds()[static_cast<std::size_t>(silhouetteCell)];
   const double reference = buffer->reference();
-  if (between.end < std::min(linear, reference + reach.min) ||
-      between.begin > std::max(linear, reference + reach.max))
+  if (between.end < std::min(linear, reference + bounds.min) ||
+      between.begin > std::max(linear, reference + bounds.max))
     return linear;
   SilhouetteCells::Query query{silhouetteCell, position, linear - reference,
                                between.begin - reference};

@@ -26,10 +26,10 @@ DepthPyramid::DepthPyramid(const DepthBuffer& buffer, const SilhouetteCells* sil
   const std::vector<float>& depths = buffer.depthsFromReference();
   m_levels.push_back(halved(buffer.columns(), buffer.rows(), [&](std::int64_t sample) {
     const float depth = depths[static_cast<std::size_t>(sample)];
-    const SilhouetteCells::Reach own{depth, depth};
-    const SilhouetteCells::Reach* const reach =
-        silhouette ? silhouette->reachOfCell(sample) : nullptr;
-    return reach ? joined(own, *reach) : own;
+    const SilhouetteCells::DepthBounds own{depth, depth};
+    const SilhouetteCells::DepthBounds* const bounds =
+        silhouette ? silhouette->findDepthBounds(sample) : nullptr;
+    return bounds ? joined(own, *bounds) : own;
   }));
   while (m_levels.back().extremes.size() > 1) {
     const Level& below = m_levels.back();
@@ -51,7 +51,7 @@ Interval DepthPyramid::bounds(const DepthBuffer& buffer, const Vec2& a, const Ve
   const std::ptrdiff_t l = std::clamp<std::ptrdiff_t>(bits - 2, 1, std::ssize(m_levels));
   const Level& level = m_levels[static_cast<std::size_t>(l - 1)];
   constexpr float noDepth = std::numeric_limits<float>::infinity();
-  SilhouetteCells::Reach extremes{noDepth, -noDepth};
+  SilhouetteCells::DepthBounds extremes{noDepth, -noDepth};
   for (std::int64_t row = rows.first >> l; row <= rows.last >> l; ++row)
     for (std::int64_t column = columns.first >> l; column <= columns.last >> l; ++column)
       extremes =

@@ -21,7 +21,7 @@ public:
 private:
   struct Level {
     std::int64_t columns, rows;
-    std::vector<SilhouetteCells::Reach> extremes;
+    std::vector<SilhouetteCells::DepthBounds> extremes;
   };
 
   template <typename Below>

@@ -31,15 +31,15 @@ std::vector<std::uint8_t> outerCells(const FocusDepth& focus, const CellRange& r
 
 /// Depth range of the 4 x 4 samples around each cell, made twice as long away from the eye: a hole
 /// may be deeper than its samples. mm, relative to the target.
-std::vector<SilhouetteCells::Reach> sightsAround(const DepthBuffer& buffer,
-                                                 const CellRange& range) {
+std::vector<SilhouetteCells::DepthBounds> boundNeighborhoods(const DepthBuffer& buffer,
+                                                             const CellRange& range) {
   constexpr std::int64_t across = 4;
   constexpr float noDepth = std::numeric_limits<float>::infinity();
   const auto columns = static_cast<std::size_t>(range.columns());
   std::vector<float> row(columns + across - 1);
   // Ranges of four neighbours in a row, then of four such rows.
-  std::vector<SilhouetteCells::Reach> sights(columns *
-                                             static_cast<std::size_t>(range.rows() + across - 1));
+  std::vector<SilhouetteCells::DepthBounds> sights(
+      columns * static_cast<std::size_t>(range.rows() + across - 1));
   auto sight = sights.begin();
   for (std::int64_t r = range.top - 1; r < range.bottom + across - 2; ++r) {
     for (std::size_t i = 0; i < row.size(); ++i)
@@ -48,7 +48,7 @@ std::vector<SilhouetteCells::Reach> sightsAround(const DepthBuffer& buffer,
                                                  buffer.columns() - 1),
                         std::clamp<std::int64_t>(r, 0, buffer.rows() - 1)))];
     const auto at = [&](std::size_t i) { // empty for a sample beside the focus
-      return SilhouetteCells::Reach{row[i], row[i] < noDepth ? row[i] : -noDepth};
+      return SilhouetteCells::DepthBounds{row[i], row[i] < noDepth ? row[i] : -noDepth};
     };
     for (std::size_t i = 0; i < columns; ++i)
       *sight++ = joined(joined(at(i), at(i + 1)), joined(at(i + 2), at(i + 3)));
@@ -87,31 +87,33 @@ SilhouetteCells::SilhouetteCells(std::shared_ptr<const FocusTracer> tracer, cons
   const FocusCells& cells = m_tracer->cells();
   const CellRange range = focusRange(camera, focus.depth, cells);
   const std::vector<std::uint8_t> isOuter = outerCells(focus, range);
-  const std::vector<Interval> outer = focusReaches(camera, focus.depth, cells, range, isOuter);
-  const std::vector<Reach> inner = sightsAround(focus.depth, range);
+  const std::vector<Interval> outer =
+      computeDepthBounds(camera, focus.depth, cells, range, isOuter);
+  const std::vector<DepthBounds> inner = boundNeighborhoods(focus.depth, range);
   for (std::int64_t row = range.top; row < range.bottom; ++row)
     for (std::int64_t column = range.left; column < range.right; ++column) {
       const std::size_t cell = range.at(column, row);
       if (isOuter[cell] && outer[cell].empty())
         continue;
       m_indices[static_cast<std::size_t>(focus.depth.sample(column, row))] =
-          static_cast<std::int32_t>(m_reaches.size());
-      m_reaches.push_back(isOuter[cell] ? Reach{static_cast<float>(outer[cell].begin - m_reference),
+          static_cast<std::int32_t>(m_depthBounds.size());
+      m_depthBounds.push_back(isOuter[cell]
+                                  ? DepthBounds{static_cast<float>(outer[cell].begin - m_reference),
                                                 static_cast<float>(outer[cell].end - m_reference)}
-                                        : inner[cell]);
+                                  : inner[cell]);
       m_isInner.push_back(!isOuter[cell]);
     }
   findHalo(focus, range);
 }
 
 /// Reaches of the four cells around a sample, joined, mm.
-Interval SilhouetteCells::reachAround(const DepthBuffer& buffer, std::int64_t column,
-                                      std::int64_t row) const {
+Interval SilhouetteCells::joinDepthBounds(const DepthBuffer& buffer, std::int64_t column,
+                                          std::int64_t row) const {
   Interval depths{infinity, -infinity};
   for (const std::int64_t r : {std::max<std::int64_t>(row, 1) - 1, row})
     for (const std::int64_t c : {std::max<std::int64_t>(column, 1) - 1, column})
-      if (const Reach* const reach = reachOfCell(buffer.sample(c, r)))
-        depths = joined(depths, {m_reference + reach->min, m_reference + reach->max});
+      if (const DepthBounds* const bounds = findDepthBounds(buffer.sample(c, r)))
+        depths = joined(depths, {m_reference + bounds->min, m_reference + bounds->max});
   return depths;
 }
 
@@ -124,7 +126,7 @@ void SilhouetteCells::findHalo(const FocusDepth& focus, const CellRange& range) 
       const std::int64_t sample = buffer.sample(column, row);
       if (focus.regions[static_cast<std::size_t>(sample)] != Region::context)
         continue;
-      const Interval depths = reachAround(buffer, column, row);
+      const Interval depths = joinDepthBounds(buffer, column, row);
       if (depths.empty())
         continue;
       m_halo.push_back({sample, 0.0});
@@ -144,27 +146,27 @@ void SilhouetteCells::findHalo(const FocusDepth& focus, const CellRange& range) 
 
 void SilhouetteCells::move(double offset) {
   m_offset += offset;
-  for (Reach& reach : m_reaches)
-    reach = {static_cast<float>(reach.min + offset), static_cast<float>(reach.max + offset)};
+  for (DepthBounds& bounds : m_depthBounds)
+    bounds = {static_cast<float>(bounds.min + offset), static_cast<float>(bounds.max + offset)};
 }
 
 void SilhouetteCells::evaluate(std::span<Query> queries) const {
   QueryBatch inner, rest;
   const double toFocus = m_reference - m_offset;
-  const auto reachOf = [&](const Query& query) {
-    const auto& [least, greatest] = m_reaches[static_cast<std::size_t>(query.cell)];
+  const auto findBounds = [&](const Query& query) {
+    const auto& [least, greatest] = m_depthBounds[static_cast<std::size_t>(query.cell)];
     return Interval{toFocus + least, toFocus + greatest};
   };
   const auto addToRest = [&](Query& query) {
-    const Interval reach = reachOf(query);
-    rest.add(query, {reach.begin, isInner(query.cell) ? infinity : reach.end});
+    const Interval bounds = findBounds(query);
+    rest.add(query, {bounds.begin, isInner(query.cell) ? infinity : bounds.end});
   };
   for (Query& query : queries) {
-    const Interval reach = reachOf(query);
+    const Interval bounds = findBounds(query);
     if (m_tracer->isFocus(query.position, toFocus + query.nearLimit))
-      query.depth = reach.begin - toFocus; // the focus is met at `from` or before
+      query.depth = bounds.begin - toFocus; // the focus is met at `from` or before
     else if (isInner(query.cell))
-      inner.add(query, reach);
+      inner.add(query, bounds);
     else
       addToRest(query);
   }
@@ -178,7 +180,7 @@ void SilhouetteCells::evaluate(std::span<Query> queries) const {
   for (std::size_t i = 0; i < rest.size; ++i)
     if (const Sight& sight = rest.sight[i]; sight.indicator > FocusCells::captureThreshold) {
       Query& query = *rest.queries[i];
-      const double depth = std::min(sight.depth, reachOf(query).end) - toFocus;
+      const double depth = std::min(sight.depth, findBounds(query).end) - toFocus;
       const double share =
           (sight.indicator - FocusCells::captureThreshold) / (0.5 - FocusCells::captureThreshold);
       query.depth += share * (depth - query.depth);

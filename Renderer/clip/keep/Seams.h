@@ -41,20 +41,20 @@ public:
   const std::vector<std::int32_t>& indices() const { return m_indices; }
 
   /// Range of depths, mm, relative to the target.
-  struct Reach {
+  struct DepthBounds {
     float min, max;
 
     /// Shortest range that holds both.
-    friend Reach joined(const Reach& a, const Reach& b) {
+    friend DepthBounds joined(const DepthBounds& a, const DepthBounds& b) {
       return {std::min(a.min, b.min), std::max(a.max, b.max)};
     }
   };
   /// reaches()[seam]: bounds of the depths of focus and summits on the seam's rays.
-  const std::vector<Reach>& reaches() const { return m_reaches; }
+  const std::vector<DepthBounds>& depthBounds() const { return m_depthBounds; }
   /// Reach of the cell whose top-left sample is `sample`; null: the cell is no seam.
-  const Reach* reachOfCell(std::int64_t sample) const {
+  const DepthBounds* findDepthBounds(std::int64_t sample) const {
     const std::int32_t cell = m_indices[static_cast<std::size_t>(sample)];
-    return cell < 0 ? nullptr : &m_reaches[static_cast<std::size_t>(cell)];
+    return cell < 0 ? nullptr : &m_depthBounds[static_cast<std::size_t>(cell)];
   }
 
   /// True: all four samples around the seam are focus.
@@ -72,14 +72,14 @@ public:
   static constexpr std::size_t maxQueries = 16;
 
 private:
-  Interval reachAround(const DepthBuffer& buffer, std::int64_t column, std::int64_t row) const;
+  Interval joinDepthBounds(const DepthBuffer& buffer, std::int64_t column, std::int64_t row) const;
   void findHalo(const FocusDepth& focus, const CellRange& range);
 
   std::shared_ptr<const FocusTracer> m_tracer;
   double m_reference; ///< depth of the camera's target, mm
   double m_offset = 0.0;
   std::vector<std::int32_t> m_indices;
-  std::vector<Reach> m_reaches;
+  std::vector<DepthBounds> m_depthBounds;
   std::vector<bool> m_isInner; ///< per seam
   std::vector<HaloSample> m_halo;
 };

@@ -257,8 +257,8 @@ void ThinPlateSpline::evaluateTile(std::span<const double> x, std::span<const do
   std::vector<KernelTerm> near, far;
   std::ranges::partition_copy(m_terms, std::back_inserter(far), std::back_inserter(near),
                               [&](const KernelTerm& term) { return disc.isFar(term); });
-  const double reach = disc.center.norm() + disc.radius;
-  const bool isSummable = near.empty() || reach * reach <= farSquared;
+  const double extent = disc.center.norm() + disc.radius;
+  const bool isSummable = near.empty() || extent * extent <= farSquared;
   std::optional<LocalExpansion> expansion;
   if (isSummable)
     expansion = LocalExpansion::of(far, disc.center, disc.radius, tolerance);

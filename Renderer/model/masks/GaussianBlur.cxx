@@ -10,10 +10,10 @@ namespace {
 
 /// Weights from the centre on, w[0] + 2 (w[1] + ...) = 1.
 std::vector<float> halfKernel(double deviation) {
-  const auto reach = static_cast<int>(std::ceil(3.0 * deviation));
+  const auto radius = static_cast<int>(std::ceil(3.0 * deviation));
   std::vector<double> weights;
   double sum = 0.0;
-  for (int k = 0; k <= reach; ++k) {
+  for (int k = 0; k <= radius; ++k) {
     weights.push_back(k == 0 ? 1.0 : std::exp(-0.5 * k * k / (deviation * deviation)));
     sum += k == 0 ? weights.back() : 2.0 * weights.back();
   }
@@ -50,15 +50,15 @@ public:
   /// Slices [begin, end) into `to`, the whole part's voxels. Each needs the slices around it, of
   /// which a ring is kept.
   void slices(std::int64_t begin, std::int64_t end, std::uint8_t* to) const {
-    const std::int64_t reach = reachOf(2), ringSize = 2 * reach + 1;
+    const std::int64_t radius = kernelRadius(2), ringSize = 2 * radius + 1;
     std::vector<Plane> ring(static_cast<std::size_t>(ringSize), Plane(m_size.x(), m_size.y()));
     Plane raw(m_size.x(), m_size.y());
     const auto at = [&](std::int64_t z) -> Plane& {
       return ring[static_cast<std::size_t>((z + ringSize) % ringSize)];
     };
-    for (std::int64_t z = begin - reach; z < end + reach; ++z) {
+    for (std::int64_t z = begin - radius; z < end + radius; ++z) {
       blurSlice(z, raw, at(z));
-      const std::int64_t done = z - reach;
+      const std::int64_t done = z - radius;
       if (done >= begin)
         for (std::int64_t y = 0; y < m_size.y(); ++y)
           writeRow(at, done, y, to + (done * m_size.y() + y) * m_size.x());
@@ -66,7 +66,7 @@ public:
   }
 
 private:
-  std::int64_t reachOf(std::size_t axis) const {
+  std::int64_t kernelRadius(std::size_t axis) const {
     return static_cast<std::int64_t>(m_kernels[axis].size()) - 1;
   }
 
@@ -92,27 +92,27 @@ private:
   void blurAlongRow(std::int64_t z, std::int64_t y, Plane& to) const {
     const Size3 start(0, inMask(1, y), inMask(2, z));
     const std::uint8_t* const from = m_mask.voxels.data() + numberOf(start, m_mask.grid.size);
-    const std::int64_t columns = m_mask.grid.size.x(), reach = reachOf(0);
+    const std::int64_t columns = m_mask.grid.size.x(), radius = kernelRadius(0);
     char& isEmpty = to.isEmpty[static_cast<std::size_t>(y)];
     isEmpty = std::all_of(from, from + columns, [](std::uint8_t value) { return value == 0; });
     if (isEmpty)
       return;
-    std::vector<float> padded(static_cast<std::size_t>(m_size.x() + 2 * reach));
+    std::vector<float> padded(static_cast<std::size_t>(m_size.x() + 2 * radius));
     const float perFull = 1.0F / static_cast<float>(m_mask.full);
-    for (std::int64_t x = 0; x < m_size.x() + 2 * reach; ++x)
+    for (std::int64_t x = 0; x < m_size.x() + 2 * radius; ++x)
       padded[static_cast<std::size_t>(x)] =
-          perFull * static_cast<float>(from[inMask(0, x - reach)]);
+          perFull * static_cast<float>(from[inMask(0, x - radius)]);
     float* const row = to.values.data() + y * m_size.x();
     std::fill_n(row, m_size.x(), 0.0F);
     forKernel(0, [&](std::int64_t k, float weight) {
-      addRow(weight, padded.data() + reach + k, m_size.x(), row);
+      addRow(weight, padded.data() + radius + k, m_size.x(), row);
     });
   }
 
   /// Calls visit(offset, weight) for each sample of an axis' kernel.
   template <typename Visit>
   void forKernel(std::size_t axis, const Visit& visit) const {
-    for (std::int64_t k = -reachOf(axis); k <= reachOf(axis); ++k)
+    for (std::int64_t k = -kernelRadius(axis); k <= kernelRadius(axis); ++k)
       visit(k, m_kernels[axis][static_cast<std::size_t>(std::abs(k))]);
   }
 

@@ -23,7 +23,7 @@ struct Part {
 };
 
 /// Part of the mask and `reach` mm around it, at most a voxel beyond the volume.
-Part around(const Mask& mask, double reach, const Grid& volume) {
+Part around(const Mask& mask, double padding, const Grid& volume) {
   const Affine toMask = mask.grid.worldToIndex * volume.indexToWorld;
   Vec3 lower = Vec3::Constant(infinity), upper = -lower;
   for (int i = 0; i < 8; ++i) {
@@ -31,7 +31,7 @@ Part around(const Mask& mask, double reach, const Grid& volume) {
     lower = lower.cwiseMin(corner);
     upper = upper.cwiseMax(corner);
   }
-  const Vec3 voxels = (reach * mask.grid.spacing().cwiseInverse()).array().ceil() + 1.0;
+  const Vec3 voxels = (padding * mask.grid.spacing().cwiseInverse()).array().ceil() + 1.0;
   const Vec3 last = (mask.grid.size.array() - 1).cast<double>();
   const Vec3 first = (-voxels).cwiseMax((lower.array().floor() - 1.0).matrix()).cwiseMin(0.0);
   const Vec3 end = (last + voxels).cwiseMin((upper.array().ceil() + 1.0).matrix()).cwiseMax(last);
@@ -106,10 +106,10 @@ Mask grown(Mask mask, double margin, const Grid& volume) {
   distance->SetSquaredDistance(false);
   distance->Update();
   const float* const from = distance->GetOutput()->GetBufferPointer();
-  const auto reach = static_cast<float>(std::abs(margin) * (1.0 + 1e-6)); // rounding
+  const auto radius = static_cast<float>(std::abs(margin) * (1.0 + 1e-6)); // rounding
   std::vector<std::uint8_t> voxels(static_cast<std::size_t>(part.size.prod()));
   std::transform(from, from + voxels.size(), voxels.begin(), [&](float away) -> std::uint8_t {
-    return margin > 0.0 ? away <= reach : away > reach;
+    return margin > 0.0 ? away <= radius : away > radius;
   });
   return maskOf(mask, part, 1, std::move(voxels));
 }

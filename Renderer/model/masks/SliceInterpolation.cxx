@@ -100,13 +100,13 @@ private:
       isSome[static_cast<std::size_t>(row)] = hasInside(row, slice);
     const std::vector<double> along = alongRows(inside, slice);
     std::vector<double> result(along.size(), farthest() * farthest());
-    const auto reach = static_cast<std::int64_t>(farthest() / m_edge[1]);
+    const auto rowRange = static_cast<std::int64_t>(farthest() / m_edge[1]);
     for (std::int64_t row = 0; row < rows; ++row) {
       if (!inside && !isSome[static_cast<std::size_t>(row)])
         continue;
       double* const to = result.data() + columns * row;
-      const std::int64_t end = std::min(row + reach + 1, rows);
-      for (std::int64_t other = std::max<std::int64_t>(row - reach, 0); other < end; ++other) {
+      const std::int64_t end = std::min(row + rowRange + 1, rows);
+      for (std::int64_t other = std::max<std::int64_t>(row - rowRange, 0); other < end; ++other) {
         if (inside && !isSome[static_cast<std::size_t>(other)])
           continue;
         const double across = static_cast<double>(other - row) * m_edge[1];

@@ -92,9 +92,9 @@ HWY_INLINE Float refineAtSilhouette(const WideScene& scene, LaneMask which, cons
   if (!isSilhouette.any())
     return surface;
   const Int first = shiftLeft<1>(max(cell, 0));
-  const float* const reaches = &scene.silhouette->reaches().data()->min;
-  const Float least = min(surface, gather(reaches, first));
-  const Float greatest = max(surface, gather(reaches + 1, first)); // least and greatest alternate
+  const float* const bounds = &scene.silhouette->depthBounds().data()->min;
+  const Float least = min(surface, gather(bounds, first));
+  const Float greatest = max(surface, gather(bounds + 1, first)); // least and greatest alternate
   const LaneMask isNear = (at.depth >= least) & (at.depth <= greatest + scene.softness);
   const LaneMask isQueried = which & isSilhouette & isNear;
   if (!isQueried.any())

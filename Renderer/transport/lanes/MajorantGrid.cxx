@@ -73,9 +73,9 @@ void dilate(const Bordered& at, std::vector<float>& cells, std::vector<float>& r
 }
 
 /// Reach of each cell, and the bound that holds within the reach.
-struct Reach {
+struct SkipRadii {
   std::vector<float> bound;
-  std::vector<std::uint8_t> cells;
+  std::vector<std::uint8_t> radii;
 };
 
 /// Sums over boxes of cells.
@@ -88,9 +88,9 @@ public:
   }
 
   /// Mean over the inner cells at most `reach` away from a cell.
-  float mean(const Size3& cell, std::int64_t reach) const {
-    const Size3 low = (cell.array() - reach).max(1);
-    const Size3 high = (cell.array() + reach).min(m_at.size.array() - 2);
+  float mean(const Size3& cell, std::int64_t radius) const {
+    const Size3 low = (cell.array() - radius).max(1);
+    const Size3 high = (cell.array() + radius).min(m_at.size.array() - 2);
     const auto upTo = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
       return m_sums[m_at.index({x, y, z})];
     };
@@ -110,11 +110,11 @@ private:
 /// Chooses per cell the reach r of least cost per mm, in look-ups: stepCost / (edge (0.7 + r)) for
 /// steps, plus bound_r - mean majorant for null collisions. 0.7 edges: mean chord of a cell.
 /// stepCost: cost of a step relative to a look-up (measured; changes no expectation).
-Reach findReach(const Bordered& at, const std::vector<float>& majorants,
-                const std::vector<bool>& cut, double edge) {
+SkipRadii chooseRadii(const Bordered& at, const std::vector<float>& majorants,
+                      const std::vector<bool>& cut, double edge) {
   constexpr double stepCost = 0.15;
   const BoxSums sums(at, majorants);
-  Reach best{majorants, std::vector<std::uint8_t>(at.count(), 0)};
+  SkipRadii best{majorants, std::vector<std::uint8_t>(at.count(), 0)};
   std::vector<float> least(at.count(), static_cast<float>(stepCost / (edge * 0.7)));
   std::vector<float> bounds(majorants);
   std::vector<float> room(at.count(), 0.0F);
@@ -123,19 +123,19 @@ Reach findReach(const Bordered& at, const std::vector<float>& majorants,
       bounds[i] = std::numeric_limits<float>::infinity();
   // A cell that gains by neither r + 1 nor r + 2 is assumed not to gain by r + 3.
   std::atomic<bool> some = true;
-  for (std::uint32_t reach = 1; some && reach <= SimdMajorants::mostReach; ++reach) {
+  for (std::uint32_t radius = 1; some && radius <= SimdMajorants::maxRadius; ++radius) {
     some = false;
     dilate(at, bounds, room);
-    const auto step = static_cast<float>(stepCost / (edge * (0.7 + reach)));
+    const auto step = static_cast<float>(stepCost / (edge * (0.7 + radius)));
     at.forEachInParallel([&](std::size_t i, const Size3& cell) {
-      if (majorants[i] == 0.0F || best.cells[i] + 2U < reach)
+      if (majorants[i] == 0.0F || best.radii[i] + 2U < radius)
         return;
       some.store(true, std::memory_order_relaxed);
-      const float here = bounds[i] - sums.mean(cell, reach) + step;
-      if (here < least[i]) {
-        least[i] = here;
+      const float cost = bounds[i] - sums.mean(cell, radius) + step;
+      if (cost < least[i]) {
+        least[i] = cost;
         best.bound[i] = bounds[i];
-        best.cells[i] = static_cast<std::uint8_t>(reach);
+        best.radii[i] = static_cast<std::uint8_t>(radius);
       }
     });
   }
@@ -148,7 +148,7 @@ constexpr std::int64_t mostMergedVoxels = 16;
 
 /// Code of a bound >= majorant, which is not 0.
 std::uint32_t majorantCode(float majorant) {
-  constexpr auto below = static_cast<std::uint32_t>(SimdMajorants::reachBits);
+  constexpr auto below = static_cast<std::uint32_t>(SimdMajorants::radiusBits);
   return (std::bit_cast<std::uint32_t>(majorant) + below) & ~below;
 }
 
@@ -173,14 +173,14 @@ SimdMajorants::SimdMajorants(const MajorantGrid& majorants)
   const double edge = static_cast<double>(merged) *
                       std::cbrt(std::abs(1.0 / majorants.worldToCell().linear().determinant()));
   const std::vector<std::int32_t> around = emptyAround(at, bound);
-  const Reach reach = findReach(at, bound, cut, edge);
+  const SkipRadii skip = chooseRadii(at, bound, cut, edge);
   codes.assign(at.count(), 0);
   for (std::size_t i = 0; i < at.count(); ++i) {
     if (bound[i] > 0.0F)
       codes[i] = static_cast<std::int32_t>((cut[i] ? SimdMajorants::cutBit : 0U) |
-                                           majorantCode(reach.bound[i]) | reach.cells[i]);
+                                           majorantCode(skip.bound[i]) | skip.radii[i]);
     else
-      codes[i] = std::min(std::max(around[i], 0), reachBits);
+      codes[i] = std::min(std::max(around[i], 0), radiusBits);
   }
 }
 

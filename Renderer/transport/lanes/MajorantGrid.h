@@ -17,9 +17,9 @@ namespace fenestra {
 struct SimdMajorants {
   /// Bits of a code: a float's upper bits are the majorant (mm^-1, rounded up; 0: empty cell), its
   /// sign says that the cell is cut (query keep), and its lowest bits are the reach.
-  static constexpr std::int32_t reachBits = 0xff, majorantBits = 0x7fffff00;
+  static constexpr std::int32_t radiusBits = 0xff, majorantBits = 0x7fffff00;
   static constexpr std::uint32_t cutBit = 1U << 31;
-  static constexpr std::uint32_t mostReach = 7; ///< of a cell that is not empty
+  static constexpr std::uint32_t maxRadius = 7; ///< of a cell that is not empty
 
   SimdMajorants() = default;
   explicit SimdMajorants(const MajorantGrid& majorants);

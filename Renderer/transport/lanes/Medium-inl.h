@@ -113,8 +113,8 @@ HWY_INLINE Float extinctionOf(const SimdLines& table, Float s) {
 
 /// Majorant cells, one a lane (SimdMajorants).
 struct LaneCells {
-  Float majorant; ///< mm^-1
-  Float reach;    ///< cells
+  Float majorant;   ///< mm^-1
+  Float skipRadius; ///< cells
   LaneMask cut;
 };
 
@@ -125,8 +125,8 @@ HWY_INLINE LaneCells cellsAt(const WideScene& scene, Float x, Float y, Float z) 
   // This order of min and max maps NaN to 0.
   const Int index = wholeToInt(max(min(place, scene.lastCell), 0.0F));
   const Int code = gather(scene.cells.codes.data(), index);
-  return {bitsAsFloat(code & SimdMajorants::majorantBits), toFloat(code & SimdMajorants::reachBits),
-          code < 0};
+  return {bitsAsFloat(code & SimdMajorants::majorantBits),
+          toFloat(code & SimdMajorants::radiusBits), code < 0};
 }
 
 /// Stretches of rays, one a lane, t in mm.

@@ -41,6 +41,6 @@ HWY_INLINE Float stayAt(const WideScene& scene, const Way (&ways)[3], Float t, L
   const Float y = floor(ways[1].at(t));
   const Float z = floor(ways[2].at(t));
   cell = cellsAt(scene, x, y, z);
-  const Float half = cell.reach + 0.5F;
+  const Float half = cell.skipRadius + 0.5F;
   return min(min(ways[0].leaving(x, half), ways[1].leaving(y, half)), ways[2].leaving(z, half));
 }
