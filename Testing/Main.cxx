@@ -17,7 +17,7 @@ using Application = QCoreApplication;
 
 int main(int argc, char** argv) {
 #ifdef FENESTRA_TEST_APART
-  fenestra::serveApart(argc, argv); // the process that reads for a test is this executable
+  fenestra::serveSandbox(argc, argv); // the process that reads for a test is this executable
 #endif
   ::testing::InitGoogleTest(&argc, argv);
 #ifdef FENESTRA_TEST_WIDGETS

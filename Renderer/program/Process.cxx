@@ -87,7 +87,7 @@ int removeRest(int status) {
 
 void runProcess(int argc, char** argv, DispatchFunction dispatch) {
   openStandardStreams();
-  serveApart(argc, argv); // the child does not return
+  serveSandbox(argc, argv); // the child does not return
   handleStops();
   removeAbandonedFolders();
   const int status = removeRest(finishOutput(run(argc, argv, dispatch)));

@@ -195,7 +195,7 @@ bool Lender::hear() {
   while (const std::optional<Received> received = m_ranks.receive()) {
     isHeard = true;
     Borrower& borrower = m_borrowers[static_cast<std::size_t>(received->from)];
-    borrower.waits = true;
+    borrower.waitReadable = true;
     takeBack(received->message);
     borrower.threads = received->message[1];
   }
@@ -221,9 +221,9 @@ void Lender::lendAll() {
     Borrower& borrower = m_borrowers[rank];
     if (m_monitor->stop || m_pass->left() == 0)
       return;
-    if (!borrower.waits)
+    if (!borrower.waitReadable)
       continue;
-    borrower.waits = false;
+    borrower.waitReadable = false;
     m_ranks.send(static_cast<int>(rank), loanFor(borrower));
   }
 }
@@ -263,7 +263,7 @@ bool Lender::dismiss(bool isStopped) {
     m_ranks.send(rank, {dismisses});
   std::size_t isBusy = 0;
   for (std::size_t rank = 1; isBegun && rank < m_borrowers.size(); ++rank)
-    isBusy += m_borrowers[rank].waits ? 0 : 1;
+    isBusy += m_borrowers[rank].waitReadable ? 0 : 1;
   const Stopwatch watch;
   const Rests rests;
   while (isBusy > 0 && (!isStopped || watch.seconds() < longest)) {

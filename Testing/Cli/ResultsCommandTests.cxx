@@ -90,7 +90,7 @@ TEST_F(ResultsCommand, TurntableRendersAnEmptyFrameAgain) {
   const Outcome again = turn();
   ASSERT_EQ(again.status, 0) << again.err;
   EXPECT_NE(again.out.find("1 rendered now"), std::string::npos) << again.out;
-  EXPECT_EQ(bytesOf(folder / "turn_0000.png"), whole);
+  EXPECT_EQ(bytesOf(folder / "turn_0000.png"), complete);
 }
 
 /// Frames replaced by a longer file, a cut file, and an unrelated file.
@@ -130,7 +130,7 @@ TEST_F(ResultsCommand, ResumedTurntableReplacesOnlyItsOwnUnrecordedFrames) {
     folder.write("go.turntable.json", record.dump());
     const Outcome again = run(arguments, folder.path());
     EXPECT_EQ(again.status, 0) << again.err;
-    EXPECT_EQ(bytesOf(folder / ("go_0001" + ending)), whole);
+    EXPECT_EQ(bytesOf(folder / ("go_0001" + ending)), complete);
 
     folder.write("go.turntable.json", record.dump());
     folder.write("go_0001" + ending, "mine");

@@ -234,7 +234,7 @@ TEST_F(StudyCommand, PartsOfTheRowsMakeTheWhole) {
     ASSERT_EQ(made({"--rows", part}).status, 0);
   EXPECT_FALSE(std::filesystem::exists(folder / "out/study.csv"));
   const Outcome whole = made();
-  EXPECT_NE(whole.out.find("3 of 3 rows done, 0 rendered now"), std::string::npos) << whole.out;
+  EXPECT_NE(complete.out.find("3 of 3 rows done, 0 rendered now"), std::string::npos) << whole.out;
   EXPECT_TRUE(std::filesystem::exists(folder / "out/study.png"));
 }
 

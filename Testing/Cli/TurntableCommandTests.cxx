@@ -148,7 +148,7 @@ TEST_F(TurntableCommand, ResumesAfterAnInterruptionBitForBit) {
   const nlohmann::json resumed = record();
   Arguments whole = arguments;
   *std::find(whole.begin(), whole.end(), "turn.exr") = "whole.exr";
-  ASSERT_EQ(run(whole, folder.path()).status, 0);
+  ASSERT_EQ(run(complete, folder.path()).status, 0);
   for (int i = 0; i < 4; ++i)
     EXPECT_EQ(readImage(folder / ("whole_000" + std::to_string(i) + ".exr")).channels,
               readImage(folder / frame(i)).channels)

@@ -114,7 +114,7 @@ int mutate(int many, Random random) {
 } // namespace fenestra
 
 int main(int argc, char** argv) {
-  fenestra::serveApart(argc, argv);
+  fenestra::serveSandbox(argc, argv);
   if (argc != 2 && argc != 3) {
     std::fprintf(stderr, "usage: ApartMutations COUNT [SEED]\n");
     return 2;

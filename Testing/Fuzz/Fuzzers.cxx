@@ -15,7 +15,7 @@ Target::Function chosen = nullptr;
 } // namespace
 
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
-  fenestra::serveApart(*argc, *argv);
+  fenestra::serveSandbox(*argc, *argv);
   const char* name = std::getenv("FENESTRA_FUZZ_TARGET");
   const auto found = Target::all().find(name ? name : "");
   if (found == Target::all().end()) {

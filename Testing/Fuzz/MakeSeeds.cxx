@@ -108,7 +108,7 @@ void makeTransforms(const fs::path& corpus) {
 
 /// Writes a child's answers about such files.
 void makeAnswers(const fs::path& corpus) {
-  AnswerWriter composite;
+  ReplyWriter composite;
   for (const char* type : {"CompositeTransform_double_3_3", "AffineTransform_double_3_3",
                            "Euler3DTransform_double_3_3"}) {
     composite.put(type);
@@ -117,7 +117,7 @@ void makeAnswers(const fs::path& corpus) {
   }
   save(corpus / "Transform", "composite", composite.bytes());
   for (const char* compressed : {"0", "1"}) {
-    AnswerWriter slice;
+    ReplyWriter slice;
     for (const char* text :
          {"1", compressed,    "1",  "CT", "head", "1.2.3",  "7",  "1\\2\\3", "1\\0\\0\\0\\1\\0",
           "1", "MONOCHROME2", "",   "8",  "8",    "0.5\\2", "16", "12",      "11",

@@ -7,7 +7,7 @@
 
 FENESTRA_FUZZ(Transform, input) {
   using namespace fenestra;
-  const Affine toParent = answeredTransform("t.h5", input).inverse();
+  const Affine toParent = parseTransformReply("t.h5", input).inverse();
   if (!allFinite(toParent))
     throw std::logic_error("a map that is none");
 }

@@ -261,7 +261,7 @@ TEST(ExtremeContrast, NumberOfCollisionsIsBounded) {
       probe.tracker().transmittance(ray, {}, random, counters);
       worst = std::max(worst, counters.lookups);
     }
-    EXPECT_LE(worst, greatest);
+    EXPECT_LE(worst, maximum);
     RecordProperty("worstLookupsOfARay", std::to_string(worst));
     std::cout << "worst null collisions of a ray: " << worst
               << ", of a path: " << renderIn(scene, 1).counters.lookups / 64 << " on average\n";

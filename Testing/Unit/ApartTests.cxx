@@ -21,13 +21,13 @@
 #include <thread>
 #include <unistd.h>
 
-namespace fenestra::ApartTests {
+namespace fenestra::SandboxTests {
 namespace {
 
-constexpr std::uint64_t most = 1 << 20;
-constexpr std::uint64_t manyBytes = std::uint64_t{2} << 30;
+constexpr std::uint64_t maxBytes = 1 << 20;
+constexpr std::uint64_t memoryLimit = std::uint64_t{2} << 30;
 
-const ApartJob echo("test-echo", [](const std::string& question) { return question; });
+const SandboxJob echoJob("test-echo", [](const std::string& request) { return request; });
 
 /// Misbehaves in the way that the question names.
 std::string misbehave(const std::string& how) {
@@ -48,7 +48,7 @@ std::string misbehave(const std::string& how) {
     for (;;)
       ::pause();
   if (how == "take memory")
-    return std::string(3 * manyBytes / 2, 'x');
+    return std::string(3 * memoryLimit / 2, 'x');
   if (how == "number")
     return std::to_string(::getpid());
   constexpr int connection = 3;
@@ -61,30 +61,30 @@ std::string misbehave(const std::string& how) {
   return how;
 }
 
-const ApartJob misbehaving("test-misbehave", misbehave, {1, manyBytes});
+const SandboxJob misbehavingJob("test-misbehave", misbehave, {1, memoryLimit});
 
-TEST(Apart, AnswersInTurnWithinTheSizeLimits) {
-  Apart child(echo);
-  EXPECT_EQ(child.ask("hello", most), "hello");
+TEST(SandboxedReader, AnswersInTurnWithinTheSizeLimits) {
+  SandboxedReader child(echoJob);
+  EXPECT_EQ(child.request("hello", maxBytes), "hello");
   const std::string large(60000, 'x');
-  EXPECT_EQ(child.ask(large, most), large);
-  EXPECT_EQ(child.ask("", most), "");
-  EXPECT_EQ(child.ask(std::string(1 << 17, 'x'), most), std::nullopt);
-  EXPECT_EQ(child.ask("hello", 4), std::nullopt);
-  EXPECT_EQ(child.ask("hello", 5), "hello");
+  EXPECT_EQ(child.request(large, maxBytes), large);
+  EXPECT_EQ(child.request("", maxBytes), "");
+  EXPECT_EQ(child.request(std::string(1 << 17, 'x'), maxBytes), std::nullopt);
+  EXPECT_EQ(child.request("hello", 4), std::nullopt);
+  EXPECT_EQ(child.request("hello", 5), "hello");
 }
 
-TEST(Apart, SurvivesCrashesAndTimeoutsOfTheChild) {
+TEST(SandboxedReader, SurvivesCrashesAndTimeoutsOfTheChild) {
   ::testing::internal::CaptureStderr();
   ::testing::internal::CaptureStdout();
   {
-    Apart child(misbehaving);
-    EXPECT_EQ(child.ask("print", most), "print");
-    EXPECT_EQ(child.ask("throw", most), "");
+    SandboxedReader child(misbehavingJob);
+    EXPECT_EQ(child.request("print", maxBytes), "print");
+    EXPECT_EQ(child.request("throw", maxBytes), "");
     for (const char* how : {"abort", "segv", "exit", "spin", "sleep", "half a frame",
                             "endless frame", "short frame"}) {
-      EXPECT_EQ(child.ask(how, most), std::nullopt) << how;
-      EXPECT_EQ(child.ask("fine", most), "fine") << "after " << how;
+      EXPECT_EQ(child.request(how, maxBytes), std::nullopt) << how;
+      EXPECT_EQ(child.request("fine", maxBytes), "fine") << "after " << how;
     }
   }
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
@@ -93,45 +93,45 @@ TEST(Apart, SurvivesCrashesAndTimeoutsOfTheChild) {
 }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__clang__) // sanitizers map terabytes
-TEST(Apart, ChildCannotTakeMuchMemory) {
-  Apart child(misbehaving);
-  EXPECT_EQ(child.ask("take memory", 2 * manyBytes), "");
+TEST(SandboxedReader, ChildCannotTakeMuchMemory) {
+  SandboxedReader child(misbehavingJob);
+  EXPECT_EQ(child.request("take memory", 2 * memoryLimit), "");
 }
 #endif
 
 /// Words for each action that the child is allowed, for the test below.
-std::string allowed(const std::string& path) {
-  std::string found;
+std::string listPermissions(const std::string& path) {
+  std::string permissions;
   if (::open(path.c_str(), O_WRONLY | O_CREAT, 0600) >= 0)
-    found += "made a file; ";
+    permissions += "made a file; ";
   for (int file = 0; file < 1024; ++file)
     if (file > 3 && ::fcntl(file, F_GETFD) >= 0)
-      found += "has file " + std::to_string(file) + "; ";
+      permissions += "has file " + std::to_string(file) + "; ";
   int files = 0;
   while (::open("/dev/null", O_RDONLY) >= 0)
     ++files;
   if (files > 32)
-    found += "opens " + std::to_string(files) + " files; ";
+    permissions += "opens " + std::to_string(files) + " files; ";
   for (const auto limit : {RLIMIT_CORE, RLIMIT_FSIZE}) {
     rlimit now{};
     ::getrlimit(limit, &now);
     if (now.rlim_max != 0)
-      found += "may write; ";
+      permissions += "may write; ";
   }
   sigset_t blocked;
   ::sigprocmask(SIG_SETMASK, nullptr, &blocked);
   struct sigaction term {};
   ::sigaction(SIGTERM, nullptr, &term);
   if (::sigismember(&blocked, SIGINT) || term.sa_handler != SIG_DFL)
-    found += "has signals of its parent's; ";
+    permissions += "has signals of its parent's; ";
   if (::getpgrp() != ::getpid())
-    found += "is in its parent's group; ";
-  return found + "no more";
+    permissions += "is in its parent's group; ";
+  return permissions + "no more";
 }
 
-const ApartJob allowing("test-allowed", allowed);
+const SandboxJob permissionsJob("test-allowed", listPermissions);
 
-TEST(Apart, ChildInheritsNothingAndWritesNothing) {
+TEST(SandboxedReader, ChildInheritsNothingAndWritesNothing) {
   const TemporaryFolder folder;
   const std::string path = folder / "made";
   const int file = ::open("/dev/null", O_RDONLY); // inherited unless the child closes it
@@ -140,64 +140,64 @@ TEST(Apart, ChildInheritsNothingAndWritesNothing) {
   ::sigaddset(&blocked, SIGINT);
   ::pthread_sigmask(SIG_BLOCK, &blocked, &before);
   const auto handler = ::signal(SIGTERM, SIG_IGN);
-  Apart child(allowing);
-  std::string found = child.ask(path, most).value_or("nothing");
+  SandboxedReader child(permissionsJob);
+  std::string permissions = child.request(path, maxBytes).value_or("nothing");
   ::signal(SIGTERM, handler);
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   ::close(file);
   // Kernels without Landlock let the child make a file, which stays empty.
-  if (const std::string made = "made a file; "; found.starts_with(made)) {
+  if (const std::string made = "made a file; "; permissions.starts_with(made)) {
     EXPECT_EQ(std::filesystem::file_size(path), 0u);
-    found = found.substr(made.size());
+    permissions = permissions.substr(made.size());
   }
-  EXPECT_EQ(found, "no more");
+  EXPECT_EQ(permissions, "no more");
 }
 
-TEST(Apart, UnstartableProcessIsAnOutputError) {
+TEST(SandboxedReader, UnstartableProcessIsAnOutputError) {
   rlimit before{};
   ::getrlimit(RLIMIT_NOFILE, &before);
   const rlimit none{0, before.rlim_max};
-  Apart child(echo);
+  SandboxedReader child(echoJob);
   ::setrlimit(RLIMIT_NOFILE, &none);
   std::string line;
   try {
-    child.ask("hello", most);
+    child.request("hello", maxBytes);
   } catch (const Error& error) {
     ::setrlimit(RLIMIT_NOFILE, &before); // first: sanitizers inspect objects through a pipe
     line = error.kind() == ErrorKind::output ? error.what() : "of another kind";
   }
   ::setrlimit(RLIMIT_NOFILE, &before);
   EXPECT_EQ(line, "memory: no process can be started to read files in; close other programs");
-  EXPECT_EQ(child.ask("hello", most), "hello");
+  EXPECT_EQ(child.request("hello", maxBytes), "hello");
 }
 
-TEST(Apart, EachThreadMayHaveAChild) {
+TEST(SandboxedReader, EachThreadMayHaveAChild) {
   std::vector<std::thread> threads;
-  std::array<int, 8> right{};
-  for (int& count : right)
+  std::array<int, 8> correct{};
+  for (int& count : correct)
     threads.emplace_back([&count] {
       for (int i = 0; i < 4; ++i) {
-        Apart child(echo);
-        count += child.ask(std::to_string(i), most) == std::to_string(i);
+        SandboxedReader child(echoJob);
+        count += child.request(std::to_string(i), maxBytes) == std::to_string(i);
       }
     });
   for (std::thread& thread : threads)
     thread.join();
-  for (const int count : right)
+  for (const int count : correct)
     EXPECT_EQ(count, 4);
 }
 
 /// A process queries a child, reports the child's number, and has the child sleep; then the process
 /// is killed.
-TEST(Apart, ChildEndsWithItsParent) {
+TEST(SandboxedReader, ChildEndsWithItsParent) {
   std::array<int, 2> pipe{};
   ASSERT_EQ(::pipe(pipe.data()), 0);
   const pid_t parent = ::fork();
   if (parent == 0) {
-    Apart child(misbehaving);
-    const int number = std::stoi(child.ask("number", most).value_or("0"));
-    if (::write(pipe[1], &number, sizeof number) == sizeof number)
-      child.ask("sleep", most);
+    SandboxedReader child(misbehavingJob);
+    const int pid = std::stoi(child.request("number", maxBytes).value_or("0"));
+    if (::write(pipe[1], &pid, sizeof pid) == sizeof pid)
+      child.request("sleep", maxBytes);
     ::_exit(0);
   }
   pid_t child = 0;
@@ -207,44 +207,44 @@ TEST(Apart, ChildEndsWithItsParent) {
   ::kill(parent, SIGKILL);
   ::waitpid(parent, nullptr, 0);
   pollfd ended{process, POLLIN, 0};
-  constexpr int patience = 60'000; // ms; the child would sleep for ever
-  EXPECT_EQ(::poll(&ended, 1, patience), 1);
+  constexpr int timeout = 60'000; // ms; the child would sleep for ever
+  EXPECT_EQ(::poll(&ended, 1, timeout), 1);
   ::close(process);
   ::close(pipe[0]);
   ::close(pipe[1]);
 }
 
-TEST(AnswerReader, ReturnsTheValuesThatWerePut) {
-  AnswerWriter writer;
+TEST(ReplyReader, ReturnsTheValuesThatWerePut) {
+  ReplyWriter writer;
   writer.put("text");
   writer.put(std::vector<double>{1.5, -2.0});
   writer.put("");
   writer.put(std::vector<double>{});
-  AnswerReader reader(writer.bytes());
+  ReplyReader reader(writer.bytes());
   EXPECT_EQ(reader.text(), "text");
   EXPECT_EQ(reader.numbers(), (std::vector<double>{1.5, -2.0}));
   EXPECT_EQ(reader.text(), "");
-  EXPECT_FALSE(reader.atEnd());
+  EXPECT_FALSE(reader.isAtEnd());
   EXPECT_TRUE(reader.numbers().empty());
-  EXPECT_TRUE(reader.atEnd());
+  EXPECT_TRUE(reader.isAtEnd());
 }
 
-TEST(AnswerReader, RefusesTruncatedAndOverlongAnswers) {
-  AnswerWriter writer;
+TEST(ReplyReader, RefusesTruncatedAndOverlongAnswers) {
+  ReplyWriter writer;
   writer.put(std::vector<double>{1.0, 2.0});
-  const std::string& whole = writer.bytes();
-  for (std::size_t length = 0; length < whole.size(); ++length)
-    EXPECT_THROW(AnswerReader(whole.substr(0, length)).numbers(), std::runtime_error) << length;
+  const std::string& complete = writer.bytes();
+  for (std::size_t length = 0; length < complete.size(); ++length)
+    EXPECT_THROW(ReplyReader(complete.substr(0, length)).numbers(), std::runtime_error) << length;
   for (const std::uint64_t count : {std::uint64_t{17}, std::uint64_t{1} << 61, ~std::uint64_t{0}}) {
-    std::string changed = whole;
+    std::string changed = complete;
     std::memcpy(changed.data(), &count, sizeof count);
-    EXPECT_THROW(AnswerReader(changed).numbers(), std::runtime_error) << count;
-    EXPECT_THROW(AnswerReader(changed).text(), std::runtime_error) << count;
+    EXPECT_THROW(ReplyReader(changed).numbers(), std::runtime_error) << count;
+    EXPECT_THROW(ReplyReader(changed).text(), std::runtime_error) << count;
   }
-  AnswerWriter infinite;
+  ReplyWriter infinite;
   infinite.put(std::vector<double>{std::numeric_limits<double>::infinity()});
-  EXPECT_THROW(AnswerReader(infinite.bytes()).numbers(), std::runtime_error);
+  EXPECT_THROW(ReplyReader(infinite.bytes()).numbers(), std::runtime_error);
 }
 
 } // namespace
-} // namespace fenestra::ApartTests
+} // namespace fenestra::SandboxTests

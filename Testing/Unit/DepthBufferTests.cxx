@@ -145,7 +145,7 @@ TEST(DepthPyramid, BoundsHoldForEveryDepthInARectangle) {
     }
     const auto found = pyramid.bounds(buffer, Vec2::Constant(-infinity), Vec2::Constant(infinity));
     EXPECT_EQ(found.begin, least);
-    EXPECT_EQ(found.end, greatest);
+    EXPECT_EQ(found.end, maximum);
     for (int trial = 0; trial < 2000; ++trial) {
       const Vec2 a = randomPoint(random, -15, 15).head<2>();
       const Vec2 b = a + std::pow(random.uniform(), 3) * randomPoint(random, -15, 15).head<2>();
@@ -170,7 +170,7 @@ TEST(DepthPyramid, BoundsAreTightOnASmallRectangle) {
   for (double x = -20.0; x < 20.0; x += 0.7) {
     const auto [least, greatest] = pyramid.bounds(buffer, {x, 0.0}, {x + 2.0, 2.0});
     EXPECT_GT(least, 100.0 + x - 5.0);
-    EXPECT_LT(greatest, 102.0 + x + 5.0);
+    EXPECT_LT(maximum, 102.0 + x + 5.0);
   }
 }
 

@@ -180,7 +180,7 @@ TEST(FilmView, ComesNearAShoulderOfLuminanceBlendedWithOneOfChannels) {
   }
   EXPECT_GT(count, 1200);
   EXPECT_LT(sum / count, 1.3);
-  EXPECT_LT(greatest, 10.5);
+  EXPECT_LT(maximum, 10.5);
 }
 
 TEST(FilmView, KeepsBlackAndMiddleGreyAndWhitesBelowThoseOfPhotographic) {

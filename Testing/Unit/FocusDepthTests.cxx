@@ -139,7 +139,7 @@ TEST(FocusCells, SummitOfAMissingRayEqualsDenseSampling) {
         if (std::abs(rays.maximum[i] - expected) > 2e-3)
           ++mismatches; // stepping may decide either way on a hill that is barely hidden
         else if (expected == maximum) {
-          EXPECT_GE(rays.maximum[i], greatest - ridgeTolerance);
+          EXPECT_GE(rays.maximum[i], maximum - ridgeTolerance);
         }
         const Vec3 summit = worldRays[i].at(rays.maximumT[i]);
         EXPECT_NEAR(indicator(mask, summit) / full, rays.maximum[i], 1e-9);

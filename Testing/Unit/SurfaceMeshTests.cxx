@@ -283,7 +283,7 @@ TEST(SurfaceMesh, ErrorAtSamplesIsWithinTheTolerance) {
           expectWellMade(mesh, camera);
           expectNoCracks(mesh, camera);
           const MeshError error = errorOf(mesh, clip);
-          EXPECT_LE(error.greatest, tolerance + 1e-9);
+          EXPECT_LE(error.maximum, tolerance + 1e-9);
           for (const auto& [sample, triangles] : error.covered)
             ASSERT_LE(triangles, 1);
           EXPECT_GE(mesh.triangles.size(), before);
@@ -335,7 +335,7 @@ TEST(SurfaceMesh, PlaneHasTwoTrianglesAndNoiseAllOfThem) {
     const SurfaceMesh two = surfaceMesh(flat, volume, tolerance);
     EXPECT_EQ(two.triangles.size(), 2u);
     EXPECT_EQ(two.points.size(), 4u);
-    EXPECT_LE(errorOf(two, flat).greatest, tolerance);
+    EXPECT_LE(errorOf(two, flat).maximum, tolerance);
 
     // A step costs as many triangles as its own edge needs; noise needs every sample, but no more.
     const auto step = [&](const Vec2& p) { return plane(p) + (p.x() < 0.31 * p.y() ? 0.0 : 9.0); };

@@ -202,8 +202,8 @@ TEST(LocalExpansion, EqualsTheSumOfItsTermsOrIsNone) {
       expansion->evaluateRow({&from.x(), 1}, from.y(), {&value, 1});
       greatest = std::max(greatest, std::abs(value - sum));
     }
-    EXPECT_LE(greatest, tolerance);
-    EXPECT_GE(greatest, 1e-5 * tolerance) << "longer than it need be";
+    EXPECT_LE(maximum, tolerance);
+    EXPECT_GE(maximum, 1e-5 * tolerance) << "longer than it need be";
   }
   EXPECT_FALSE(LocalExpansion::of(terms, center, radius, 1e-16));
   terms[0].weight = 1e12;

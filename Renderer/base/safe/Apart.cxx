@@ -31,7 +31,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr const char* subcommand = "read-apart"; // not for users
 constexpr int childConnection = 3;
-constexpr std::uint64_t longestQuestion = 1 << 16; // bytes; less than a socket holds
+constexpr std::uint64_t maxRequestBytes = 1 << 16; // bytes; less than a socket holds
 
 // ---- frames: a length of 8 bytes, then as many bytes
 
@@ -53,7 +53,7 @@ bool sendFrame(int connection, const std::string& bytes) {
 }
 
 /// Waits for bytes to receive. False: none before `deadline`; nullopt: no deadline.
-bool waits(int connection, std::optional<Clock::time_point> deadline) {
+bool waitReadable(int connection, std::optional<Clock::time_point> deadline) {
   using std::chrono::milliseconds;
   pollfd event{connection, POLLIN, 0};
   for (;;) {
@@ -67,26 +67,26 @@ bool waits(int connection, std::optional<Clock::time_point> deadline) {
   }
 }
 
-bool receiveAll(int connection, char* place, std::uint64_t size,
+bool receiveAll(int connection, char* to, std::uint64_t size,
                 std::optional<Clock::time_point> deadline) {
   while (size > 0) {
-    if (!waits(connection, deadline))
+    if (!waitReadable(connection, deadline))
       return false;
     const auto count =
-        repeated([&] { return ::recv(connection, place, static_cast<std::size_t>(size), 0); });
+        repeated([&] { return ::recv(connection, to, static_cast<std::size_t>(size), 0); });
     if (count <= 0)
       return false;
-    place += count;
+    to += count;
     size -= static_cast<std::uint64_t>(count);
   }
   return true;
 }
 
-std::optional<std::string> receiveFrame(int connection, std::uint64_t most,
+std::optional<std::string> receiveFrame(int connection, std::uint64_t maxBytes,
                                         std::optional<Clock::time_point> deadline) {
   std::uint64_t length = 0;
   if (!receiveAll(connection, reinterpret_cast<char*>(&length), sizeof length, deadline) ||
-      length > most)
+      length > maxBytes)
     return std::nullopt;
   std::string bytes(static_cast<std::size_t>(length), '\0');
   if (!receiveAll(connection, bytes.data(), length, deadline))
@@ -97,26 +97,26 @@ std::optional<std::string> receiveFrame(int connection, std::uint64_t most,
 // ---- confinement of the child
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool hasShadows = true;
+constexpr bool hasSanitizer = true;
 #elif defined(__has_feature)
-constexpr bool hasShadows = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
+constexpr bool hasSanitizer = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
 #else
-constexpr bool hasShadows = false;
+constexpr bool hasSanitizer = false;
 #endif
 
 /// Lowers a limit for good.
-bool limit(__rlimit_resource resource, rlim_t most) {
+bool lowerLimit(__rlimit_resource resource, rlim_t maximum) {
   rlimit both{};
   if (::getrlimit(resource, &both) != 0)
     return false;
-  both.rlim_max = std::min(both.rlim_max, most);
+  both.rlim_max = std::min(both.rlim_max, maximum);
   both.rlim_cur = both.rlim_max;
   return ::setrlimit(resource, &both) == 0;
 }
 
 /// Gives up every right to write, make, remove and execute files; no effect on kernels without
 /// Landlock.
-void changeNoFolder() {
+void forbidFileChanges() {
   landlock_ruleset_attr rights{};
   rights.handled_access_fs =
       LANDLOCK_ACCESS_FS_WRITE_FILE | LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_ACCESS_FS_REMOVE_DIR |
@@ -134,19 +134,19 @@ void changeNoFolder() {
 /// terabytes), 32 open files, no growing file, no core; no right to change files. Lets the kernel
 /// kill this process when its parent dies. False where process number `parent` is gone already, or
 /// a limit cannot be set.
-bool confined(std::uint64_t bytes, const char* parent) {
+bool confineProcess(std::uint64_t bytes, const char* parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (std::to_string(::getppid()) != parent)
     return false; // the parent died before PR_SET_PDEATHSIG
   ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
-  changeNoFolder();
-  constexpr rlim_t mostFiles = 32;
-  return limit(RLIMIT_CORE, 0) && limit(RLIMIT_FSIZE, 0) && limit(RLIMIT_NOFILE, mostFiles) &&
-         (hasShadows || limit(RLIMIT_AS, bytes));
+  forbidFileChanges();
+  constexpr rlim_t maxFiles = 32;
+  return lowerLimit(RLIMIT_CORE, 0) && lowerLimit(RLIMIT_FSIZE, 0) &&
+         lowerLimit(RLIMIT_NOFILE, maxFiles) && (hasSanitizer || lowerLimit(RLIMIT_AS, bytes));
 }
 
 /// Lets the kernel kill this process once it has used `seconds` more of processor time.
-void allowSeconds(unsigned seconds) {
+void limitCpuTime(unsigned seconds) {
   const auto used = static_cast<rlim_t>(std::clock() / CLOCKS_PER_SEC);
   rlimit both{};
   ::getrlimit(RLIMIT_CPU, &both);
@@ -156,24 +156,24 @@ void allowSeconds(unsigned seconds) {
 
 // ---- the child
 
-bool served = false; ///< this program's main calls serveApart
+bool servesSandbox = false; ///< this program's main calls serveSandbox
 
 /// Jobs of this program.
-std::vector<const ApartJob*>& jobs() {
-  static std::vector<const ApartJob*> known;
-  return known;
+std::vector<const SandboxJob*>& registeredJobs() {
+  static std::vector<const SandboxJob*> jobs;
+  return jobs;
 }
 
-[[noreturn]] void answerAll(const ApartJob& job) {
-  while (const auto question = receiveFrame(childConnection, longestQuestion, std::nullopt)) {
-    allowSeconds(job.limits.seconds);
-    std::string answer;
+[[noreturn]] void serveRequests(const SandboxJob& job) {
+  while (const auto request = receiveFrame(childConnection, maxRequestBytes, std::nullopt)) {
+    limitCpuTime(job.limits.seconds);
+    std::string reply;
     try {
-      answer = job.answer(*question);
+      reply = job.handler(*request);
     } catch (...) { // the parent reports the error
-      answer.clear();
+      reply.clear();
     }
-    if (!sendFrame(childConnection, answer))
+    if (!sendFrame(childConnection, reply))
       break;
   }
   ::_exit(0);
@@ -211,13 +211,13 @@ pid_t spawn(const std::string& job, int connection) {
 
 } // namespace
 
-ApartJob::ApartJob(std::string named, Answer answers, ApartLimits limited)
-    : name(std::move(named)), answer(answers), limits(limited) {
-  jobs().push_back(this);
+SandboxJob::SandboxJob(std::string named, Handler answers, SandboxLimits limited)
+    : name(std::move(named)), handler(answers), limits(limited) {
+  registeredJobs().push_back(this);
 }
 
-void Apart::start() {
-  if (!served)
+void SandboxedReader::start() {
+  if (!servesSandbox)
     throw std::logic_error("main does not call serveApart");
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) == 0) {
@@ -230,7 +230,7 @@ void Apart::start() {
   throw outputError("memory", "no process can be started to read files in; close other programs");
 }
 
-void Apart::end() {
+void SandboxedReader::end() {
   if (m_child != 0) {
     ::kill(m_child, SIGKILL);
     repeated([this] { return ::waitpid(m_child, nullptr, 0); });
@@ -239,22 +239,23 @@ void Apart::end() {
   m_connection = Descriptor();
 }
 
-std::optional<std::string> Apart::ask(const std::string& question, std::uint64_t most) {
-  if (question.size() > longestQuestion)
+std::optional<std::string> SandboxedReader::request(const std::string& message,
+                                                    std::uint64_t maxBytes) {
+  if (message.size() > maxRequestBytes)
     return std::nullopt;
   if (m_child == 0)
     start();
-  constexpr unsigned byTheClock = 3;
-  const auto deadline = Clock::now() + std::chrono::seconds(byTheClock * m_job.limits.seconds);
-  std::optional<std::string> answer;
-  if (sendFrame(*m_connection, question))
-    answer = receiveFrame(*m_connection, most, deadline);
-  if (!answer)
+  constexpr unsigned wallClockFactor = 3;
+  const auto deadline = Clock::now() + std::chrono::seconds(wallClockFactor * m_job.limits.seconds);
+  std::optional<std::string> reply;
+  if (sendFrame(*m_connection, message))
+    reply = receiveFrame(*m_connection, maxBytes, deadline);
+  if (!reply)
     end();
-  return answer;
+  return reply;
 }
 
-std::string AnswerReader::text() {
+std::string ReplyReader::text() {
   const auto take = [this](std::uint64_t size) {
     if (size > m_bytes.size())
       throw std::runtime_error("an answer goes beyond its end");
@@ -267,7 +268,7 @@ std::string AnswerReader::text() {
   return take(size);
 }
 
-std::vector<double> AnswerReader::numbers() {
+std::vector<double> ReplyReader::numbers() {
   const std::string bytes = text();
   std::vector<double> numbers(bytes.size() / sizeof(double));
   if (bytes.size() != numbers.size() * sizeof(double))
@@ -278,13 +279,13 @@ std::vector<double> AnswerReader::numbers() {
   return numbers;
 }
 
-void serveApart(int argc, char** argv) {
-  served = true;
+void serveSandbox(int argc, char** argv) {
+  servesSandbox = true;
   if (argc != 4 || std::string_view(argv[1]) != subcommand)
     return;
-  for (const ApartJob* job : jobs())
-    if (job->name == argv[2] && confined(job->limits.bytes, argv[3]))
-      answerAll(*job);
+  for (const SandboxJob* job : registeredJobs())
+    if (job->name == argv[2] && confineProcess(job->limits.bytes, argv[3]))
+      serveRequests(*job);
   ::_exit(1);
 }
 

@@ -3,8 +3,8 @@
 //
 // The child runs the parent's own executable (/proc/self/exe: the same build, even if the file has
 // been replaced since; under a loader that was called with it, the file of its name) and inherits
-// no memory, files, threads or locks. A program whose readers work apart calls serveApart first in
-// main, as fenestra, its tests and its fuzz targets do. In any other program Apart::ask throws
+// no memory, files, threads or locks. A program whose readers work apart calls serveSandbox first
+// in main, as fenestra, its tests and its fuzz targets do. In any other program Apart::ask throws
 // std::logic_error instead of running that program's main again.
 
 #include "base/Text.h"
@@ -19,23 +19,23 @@
 namespace fenestra {
 
 /// Limits of a child, which is killed beyond `seconds`; beyond `bytes` its allocations fail.
-struct ApartLimits {
+struct SandboxLimits {
   unsigned seconds = 5; ///< processor time for a question, s; 3 times as long by the clock
   std::uint64_t bytes = std::uint64_t{2} << 30; ///< address space, libraries included
 };
 
 /// Work for a child: bytes in, bytes out. Declared as a constant at namespace scope, next to the
 /// caller of Apart::ask.
-struct ApartJob {
+struct SandboxJob {
   /// Answers a question in the child. Empty string or exception: no answer, since the file is not
   /// of the expected format.
-  using Answer = std::string (*)(const std::string& question);
+  using Handler = std::string (*)(const std::string& question);
 
-  ApartJob(std::string name, Answer answer, ApartLimits limits = {});
+  SandboxJob(std::string name, Handler handler, SandboxLimits limits = {});
 
   const std::string name;
-  const Answer answer;
-  const ApartLimits limits;
+  const Handler handler;
+  const SandboxLimits limits;
 };
 
 /// One child process, started by the first question and restarted after a failure. The child has no
@@ -43,30 +43,30 @@ struct ApartJob {
 /// its signal handlers are the defaults, and signals of the terminal do not reach it. The kernel
 /// kills the child when the thread that started it ends: call `ask` from one thread, which outlives
 /// the object.
-class Apart {
+class SandboxedReader {
 public:
-  explicit Apart(const ApartJob& job) : m_job(job) {}
-  ~Apart() { end(); }
-  Apart(const Apart&) = delete;
-  Apart& operator=(const Apart&) = delete;
+  explicit SandboxedReader(const SandboxJob& job) : m_job(job) {}
+  ~SandboxedReader() { end(); }
+  SandboxedReader(const SandboxedReader&) = delete;
+  SandboxedReader& operator=(const SandboxedReader&) = delete;
 
   /// Returns the child's answer, unchecked, at most `most` bytes; empty: the job gave no answer.
   /// nullopt: `question` exceeds 64 kB, or the child crashed, exceeded its limits or answered with
   /// more than `most` bytes. Throws Error (output) where no process can be started.
-  std::optional<std::string> ask(const std::string& question, std::uint64_t most);
+  std::optional<std::string> request(const std::string& message, std::uint64_t maxBytes);
 
 private:
   void start();
   void end();
 
-  const ApartJob& m_job;
+  const SandboxJob& m_job;
   int m_child = 0;         ///< process id; 0: not running
   Descriptor m_connection; ///< socket to the child
 };
 
 /// Encodes texts and lists of numbers in an answer, in the child: a size (8 bytes), then as many
 /// bytes of characters or doubles.
-class AnswerWriter {
+class ReplyWriter {
 public:
   void put(std::string_view text) {
     const std::uint64_t size = text.size();
@@ -81,11 +81,11 @@ private:
 
 /// Decodes an answer, in the parent. Throws std::runtime_error for a truncated answer, or a number
 /// that is not finite.
-class AnswerReader {
+class ReplyReader {
 public:
-  explicit AnswerReader(std::string_view bytes) : m_bytes(bytes) {}
+  explicit ReplyReader(std::string_view bytes) : m_bytes(bytes) {}
 
-  bool atEnd() const { return m_bytes.empty(); }
+  bool isAtEnd() const { return m_bytes.empty(); }
   std::string text();
   /// Finite numbers, in the order written.
   std::vector<double> numbers();
@@ -96,6 +96,6 @@ private:
 
 /// In a child: answers questions until the parent closes the connection or dies, and does not
 /// return. In any other process: enables Apart::ask and returns.
-void serveApart(int argc, char** argv);
+void serveSandbox(int argc, char** argv);
 
 } // namespace fenestra

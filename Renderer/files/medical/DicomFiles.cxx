@@ -89,7 +89,7 @@ bool isDicom(const std::string& path) {
   return file.read(begin.data(), begin.size()) && std::string_view(begin.data() + 128, 4) == "DICM";
 }
 
-std::string headerAnswer(const std::string& path) {
+std::string makeHeaderReply(const std::string& path) {
   if (!isDicom(path))
     return {};
   std::set<Tag> tags = {Tag(0x0008, 0x0016)}; // the kind of object
@@ -103,15 +103,15 @@ std::string headerAnswer(const std::string& path) {
   gdcm::MediaStorage kind;
   kind.SetFromFile(file);
   const auto flag = [](bool value) { return value ? "1" : "0"; };
-  AnswerWriter answer;
-  answer.put(flag(gdcm::MediaStorage::IsImage(kind)));
-  answer.put(flag(syntax.IsEncapsulated()));
-  answer.put(flag(read && syntax != gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian));
+  ReplyWriter reply;
+  reply.put(flag(gdcm::MediaStorage::IsImage(kind)));
+  reply.put(flag(syntax.IsEncapsulated()));
+  reply.put(flag(read && syntax != gdcm::TransferSyntax::DeflatedExplicitVRLittleEndian));
   gdcm::StringFilter texts;
   texts.SetFile(file);
   for (const HeaderField& field : dicomFields)
-    answer.put(texts.ToString(field.tag()));
-  return answer.bytes();
+    reply.put(texts.ToString(field.tag()));
+  return reply.bytes();
 }
 
 /// True if the file holds all `bytes` of the voxels: GDCM silently fills up what is cut off.
@@ -123,7 +123,7 @@ bool holdsVoxels(const std::string& path, std::uint64_t bytes) {
          reader.GetStreamCurrentPosition() + bytes <= std::filesystem::file_size(path);
 }
 
-std::string voxelsAnswer(const std::string& path) {
+std::string makeVoxelsReply(const std::string& path) {
   gdcm::PixmapReader reader;
   reader.SetFileName(path.c_str());
   if (!reader.Read())
@@ -136,14 +136,14 @@ std::string voxelsAnswer(const std::string& path) {
 }
 
 /// First character of a question; a path follows.
-constexpr char wantsHeader = 'h', wantsVoxels = 'v';
+constexpr char headerRequest = 'h', voxelsRequest = 'v';
 
-std::string answerDicom(const std::string& question) {
-  const std::string path = question.substr(1);
-  return question[0] == wantsHeader ? headerAnswer(path) : voxelsAnswer(path);
+std::string handleDicomRequest(const std::string& request) {
+  const std::string path = request.substr(1);
+  return request[0] == headerRequest ? makeHeaderReply(path) : makeVoxelsReply(path);
 }
 
-const ApartJob dicomJob("dicom", answerDicom);
+const SandboxJob dicomJob("dicom", handleDicomRequest);
 
 // ---- voxels
 
@@ -161,10 +161,10 @@ std::int64_t storedValue(const DicomHeader& h, const std::string& voxels, std::s
 
 } // namespace
 
-DicomFiles::DicomFiles() : m_child(dicomJob) {}
+DicomFiles::DicomFiles() : m_reader(dicomJob) {}
 
-DicomHeader dicomHeader(std::string_view answer) {
-  AnswerReader texts(answer);
+DicomHeader dicomHeader(std::string_view reply) {
+  ReplyReader texts(reply);
   DicomHeader header;
   for (bool* flag : {&header.image, &header.compressed, &header.isComplete})
     *flag = texts.text() == "1";
@@ -179,12 +179,12 @@ std::optional<DicomHeader> DicomFiles::header(const Path& path) {
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(path, unknown))
     return std::nullopt;
-  const auto answer = m_child.ask(wantsHeader + path.string(), longestFields);
-  if (answer && answer->empty())
+  const auto reply = m_reader.request(headerRequest + path.string(), longestFields);
+  if (reply && reply->empty())
     return std::nullopt;
   try {
-    if (answer)
-      return dicomHeader(*answer);
+    if (reply)
+      return dicomHeader(*reply);
   } catch (const std::runtime_error&) { // malformed answer
   }
   throw inputError(
@@ -194,9 +194,9 @@ std::optional<DicomHeader> DicomFiles::header(const Path& path) {
 
 std::string DicomFiles::voxels(const Path& path, const DicomHeader& h) {
   const std::uint64_t size = imageBytes(h);
-  auto answer = m_child.ask(wantsVoxels + path.string(), size);
-  if (answer && answer->size() == size)
-    return std::move(*answer);
+  auto reply = m_reader.request(voxelsRequest + path.string(), size);
+  if (reply && reply->size() == size)
+    return std::move(*reply);
   if (h.compressed)
     throw inputError(path, "PixelData: cannot be decoded; export the series without compression");
   throw inputError(path, "PixelData: is damaged, truncated or deflated; export the series again");

@@ -52,12 +52,12 @@ public:
   std::string voxels(const std::filesystem::path& path, const DicomHeader& header);
 
 private:
-  Apart m_child;
+  SandboxedReader m_reader;
 };
 
 /// Header in the child's answer, which is untrusted. Throws std::runtime_error for a malformed
 /// answer.
-DicomHeader dicomHeader(std::string_view answer);
+DicomHeader dicomHeader(std::string_view reply);
 
 /// Throws Error (input) unless the header describes an image that its file can hold.
 void checkDicomPixels(const std::filesystem::path& path, const DicomHeader& header);

@@ -126,26 +126,26 @@ std::vector<double> firstOf(const Parameters& parameters) {
   return {parameters.data_block(), parameters.data_block() + count};
 }
 
-std::string answerTransform(const std::string& question) {
-  const std::string extension = lowerExtension(question);
-  if ((extension == ".h5" || extension == ".hdf5") && !holdsAllItsParts(question))
+std::string handleTransformRequest(const std::string& request) {
+  const std::string extension = lowerExtension(request);
+  if ((extension == ".h5" || extension == ".hdf5") && !holdsAllItsParts(request))
     return {};
   const auto reader = readerOf(extension);
   RecordingFactory::RegisterFactory(onlyPointer(new RecordingFactory), // before ITK's own
                                     RecordingFactory::InsertionPositionEnum::INSERT_AT_FRONT);
-  reader->SetFileName(question);
+  reader->SetFileName(request);
   reader->Read();
-  AnswerWriter answer;
+  ReplyWriter reply;
   for (const auto& transform : reader->GetTransformList()) {
-    answer.put(transform->GetTransformTypeAsString());
-    answer.put(firstOf(transform->GetParameters()));
-    answer.put(firstOf(transform->GetFixedParameters()));
+    reply.put(transform->GetTransformTypeAsString());
+    reply.put(firstOf(transform->GetParameters()));
+    reply.put(firstOf(transform->GetFixedParameters()));
   }
-  return answer.bytes();
+  return reply.bytes();
 }
 
 // HDF5's tree of symbols may fan out without end; reading a transform takes a few milliseconds.
-const ApartJob transformJob("transform", answerTransform, {.seconds = 3});
+const SandboxJob transformJob("transform", handleTransformRequest, {.seconds = 3});
 
 // ---- in this process: what the answer means
 
@@ -195,9 +195,9 @@ std::string linearType(const Path& path, const std::string& name) {
 }
 
 /// Records in the answer, which is untrusted. Throws std::runtime_error where it is malformed.
-std::vector<Record> recordsIn(const Path& path, std::string_view answer) {
+std::vector<Record> recordsIn(const Path& path, std::string_view reply) {
   std::vector<Record> records;
-  for (AnswerReader reader(answer); !reader.atEnd();)
+  for (ReplyReader reader(reply); !reader.isAtEnd();)
     records.push_back({linearType(path, reader.text()), reader.numbers(), reader.numbers()});
   return records;
 }
@@ -283,15 +283,15 @@ Affine readLinearTransform(const Path& path) {
   checkExtension(path);
   checkNamesNoFile(path);
   // Starting a child takes longer than reading a transform: each thread keeps its child.
-  thread_local Apart child(transformJob);
-  return answeredTransform(path, child.ask(path.string(), longestAnswer).value_or(""));
+  thread_local SandboxedReader reader(transformJob);
+  return parseTransformReply(path, reader.request(path.string(), longestAnswer).value_or(""));
 }
 
-Affine answeredTransform(const Path& path, std::string_view answer) {
+Affine parseTransformReply(const Path& path, std::string_view reply) {
   try {
     const Quiet quiet;
     const Affine map =
-        checkedMap(composed(path, recordsIn(path, answer)), [&path](const std::string& what) {
+        checkedMap(composed(path, recordsIn(path, reply)), [&path](const std::string& what) {
           return inputError(path, "Parameters: the map ", what, "; save another one");
         });
     return Affine(lpsToRas * map.linear() * lpsToRas, lpsToRas * map.translation());
@@ -299,7 +299,7 @@ Affine answeredTransform(const Path& path, std::string_view answer) {
     throw;
   } catch (const std::bad_alloc&) {
     throw;
-  } catch (const std::exception&) { // ITK's: a matrix that its class forbids; AnswerReader's: a
+  } catch (const std::exception&) { // ITK's: a matrix that its class forbids; ReplyReader's: a
                                     // malformed answer
     throwDamaged(path);
   }

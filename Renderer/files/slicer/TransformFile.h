@@ -18,8 +18,8 @@ namespace fenestra {
 Affine readLinearTransform(const std::filesystem::path& path);
 
 /// The map from the answer of a child that read the file: for each transform its type's name,
-/// parameters and fixed parameters (AnswerReader). The answer is untrusted; empty: the file is
+/// parameters and fixed parameters (ReplyReader). The answer is untrusted; empty: the file is
 /// damaged or exceeds the child's limits.
-Affine answeredTransform(const std::filesystem::path& path, std::string_view answer);
+Affine parseTransformReply(const std::filesystem::path& path, std::string_view reply);
 
 } // namespace fenestra
