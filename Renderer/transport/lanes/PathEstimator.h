@@ -11,12 +11,12 @@
 
 namespace fenestra {
 
-class PathWave {
+class SimdPathIntegrator {
 public:
   /// A view: all arguments must outlive the wave. The tracker must have the same `stop`: paths left
   /// unfinished are dropped here.
-  PathWave(const SimdTracker& tracker, const EventScene& scene, const EyeTable& table,
-           const EyeRays& eye, const StopFlag& stop)
+  SimdPathIntegrator(const SimdTracker& tracker, const EventScene& scene, const EyeTable& table,
+                     const EyeRays& eye, const StopFlag& stop)
       : m_tracker(tracker), m_scene(scene), m_table(table), m_eye(eye), m_stop(stop) {}
 
   /// Traces all paths of source.fill(starts, most), at most `atOnce` together, and calls

@@ -341,7 +341,7 @@ auto traceSimd(const RenderScene& scene, const RenderSettings& settings, const S
   const EyeTable table(domain, scene.camera);
   const EyeRays cameraRays(scene.camera, eyeClip(scene.clip, scene.mixture), scene.lights,
                            settings.path.background);
-  return work(PathWave(tracker, shading, table, cameraRays, stop), instructionSet());
+  return work(SimdPathIntegrator(tracker, shading, table, cameraRays, stop), instructionSet());
 }
 
 /// Calls work(tracer, arithmetic) with the readable estimator.

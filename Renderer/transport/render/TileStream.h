@@ -69,7 +69,7 @@ private:
   std::atomic<std::size_t> m_nextTile = 0, m_tilesDone = 0;
 };
 
-/// One thread's part of a pass: a source of paths for PathWave::trace.
+/// One thread's part of a pass: a source of paths for SimdPathIntegrator::trace.
 class TileStream {
 public:
   /// Takes no more tiles once `pauses` returns true, which must outlive the stream; empty: never.
