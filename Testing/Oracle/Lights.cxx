@@ -123,7 +123,7 @@ double PlacedArea::area() const {
   return size.prod() * (shape == AreaLight::Shape::disk ? pi / 4.0 : 1.0);
 }
 
-double PlacedArea::meeting(const Ray& ray) const {
+double PlacedArea::intersect(const Ray& ray) const {
   const double slope = ray.direction.dot(normal);
   const double t = slope == 0.0 ? -1.0 : (center - ray.origin).dot(normal) / slope;
   if (t <= 0.0)
@@ -135,7 +135,7 @@ double PlacedArea::meeting(const Ray& ray) const {
   return isOn ? t : infinity;
 }
 
-std::vector<double> PlacedSphere::crossings(const Ray& ray) const {
+std::vector<double> PlacedSphere::intersections(const Ray& ray) const {
   const Vec3 from = ray.origin - center;
   const double b = from.dot(ray.direction);
   const double discriminant = b * b - from.squaredNorm() + radius * radius;
@@ -147,20 +147,20 @@ std::vector<double> PlacedSphere::crossings(const Ray& ray) const {
   return ahead;
 }
 
-Rgb Lights::areas(const Ray& ray, double end) const {
+Rgb Lights::areaRadiance(const Ray& ray, double end) const {
   Rgb sum = Rgb::Zero();
   for (const PlacedArea& light : m_areas)
-    if (ray.direction.dot(light.normal) < 0.0 && light.meeting(ray) < end)
+    if (ray.direction.dot(light.normal) < 0.0 && light.intersect(ray) < end)
       sum += light.radiance;
   for (const PlacedSphere& sphere : m_spheres) {
-    const std::vector<double> crossings = sphere.crossings(ray);
+    const std::vector<double> crossings = sphere.intersections(ray);
     if (!crossings.empty() && crossings.front() < end)
       sum += sphere.radiance;
   }
   return sum;
 }
 
-Vec3 Lights::towardArea(const Vec3& point, Generator& generator) const {
+Vec3 Lights::sampleArea(const Vec3& point, Generator& generator) const {
   const std::size_t which = generator() % (m_areas.size() + m_spheres.size());
   if (which >= m_areas.size()) {
     const PlacedSphere& sphere = m_spheres[which - m_areas.size()];
@@ -176,15 +176,15 @@ Vec3 Lights::towardArea(const Vec3& point, Generator& generator) const {
   }
 }
 
-double Lights::areaDensity(const Ray& ray) const {
+double Lights::areaPdf(const Ray& ray) const {
   double sum = 0.0;
   for (const PlacedArea& light : m_areas) {
-    const double t = light.meeting(ray);
+    const double t = light.intersect(ray);
     if (t < infinity)
       sum += t * t / (light.area() * std::abs(ray.direction.dot(light.normal)));
   }
   for (const PlacedSphere& sphere : m_spheres)
-    for (const double t : sphere.crossings(ray)) {
+    for (const double t : sphere.intersections(ray)) {
       const Vec3 normal = (ray.at(t) - sphere.center) / sphere.radius;
       sum +=
           t * t / (4.0 * pi * sphere.radius * sphere.radius * std::abs(ray.direction.dot(normal)));

@@ -16,7 +16,7 @@ struct PlacedArea {
 
   double area() const;
   /// Distance at which a ray hits the light from either side; infinity: ray misses.
-  double meeting(const Ray& ray) const;
+  double intersect(const Ray& ray) const;
 };
 
 /// Sphere of light in world space, mm.
@@ -26,7 +26,7 @@ struct PlacedSphere {
   Rgb radiance;
 
   /// Distances ahead at which a ray crosses the sphere: none, one (from inside) or two.
-  std::vector<double> crossings(const Ray& ray) const;
+  std::vector<double> intersections(const Ray& ray) const;
 };
 
 class Lights {
@@ -37,12 +37,12 @@ public:
   Rgb environment(const Vec3& direction) const;
   /// Radiance of all area lights that a ray hits on their emitting side before `end`, mm, and of
   /// all spheres that it hits, counted once.
-  Rgb areas(const Ray& ray, double end) const;
+  Rgb areaRadiance(const Ray& ray, double end) const;
   bool hasAreas() const { return m_areas.size() + m_spheres.size() > 0; }
-  /// Direction from `point` to a uniform point on one of the area lights or spheres; areaDensity:
+  /// Direction from `point` to a uniform point on one of the area lights or spheres; areaPdf:
   /// its pdf per steradian.
-  Vec3 towardArea(const Vec3& point, Generator& generator) const;
-  double areaDensity(const Ray& ray) const;
+  Vec3 sampleArea(const Vec3& point, Generator& generator) const;
+  double areaPdf(const Ray& ray) const;
   const std::vector<DirectionalLight>& directionals() const { return m_directionals; }
 
 private:

@@ -199,10 +199,9 @@ private:
       return Rgb::Zero();
     const bool isToward = uniform(generator) < 0.5;
     const Ray probe{point,
-                    isToward ? m_lights.towardArea(point, generator) : scatterer.draw(generator)};
-    const Rgb light = m_lights.areas(probe, collision(probe, generator));
-    const double density =
-        0.5 * m_lights.areaDensity(probe) + 0.5 * scatterer.density(probe.direction);
+                    isToward ? m_lights.sampleArea(point, generator) : scatterer.draw(generator)};
+    const Rgb light = m_lights.areaRadiance(probe, collision(probe, generator));
+    const double density = 0.5 * m_lights.areaPdf(probe) + 0.5 * scatterer.density(probe.direction);
     return light * scatterer.f(probe.direction) / density;
   }
 

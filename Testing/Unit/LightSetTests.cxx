@@ -7,7 +7,7 @@ namespace {
 
 const Grid grid(Size3(10, 10, 10), Affine::Identity());
 
-Camera camera() {
+Camera makeCamera() {
   CameraPose pose;
   pose.position = {4.5, -50, 4.5};
   pose.target = {4.5, 4.5, 4.5};
@@ -15,7 +15,7 @@ Camera camera() {
 }
 
 /// Map with rows of very different brightness, one black texel, one far brighter than the rest.
-EnvironmentMap roughMap() {
+EnvironmentMap makeRoughMap() {
   EnvironmentMap map{12, 6, {}};
   for (int i = 0; i < 72; ++i) {
     Random random(9, static_cast<std::uint64_t>(i), 0);
@@ -26,13 +26,13 @@ EnvironmentMap roughMap() {
 }
 
 TEST(EnvironmentSampler, SamplingMatchesPdf) {
-  const EnvironmentSampler sampler({Rgb::Ones(), roughMap()});
+  const EnvironmentSampler sampler({Rgb::Ones(), makeRoughMap()});
   expectSamplingMatchesPdf([&](Random& r) { return sampler.sample(r.uniform2()); },
                            [&](const Vec3& d) { return sampler.pdf(d); }, 1.0, 120);
 }
 
 TEST(EnvironmentSampler, NeverDrawsABlackTexelAtTheEndsOfTheRandomRange) {
-  const EnvironmentSampler sampler({Rgb::Ones(), roughMap()});
+  const EnvironmentSampler sampler({Rgb::Ones(), makeRoughMap()});
   const double last = std::nextafter(1.0, 0.0);
   for (const double u : {0.0, 0.5, last})
     for (const double v : {0.0, 0.5, last}) {
@@ -56,28 +56,28 @@ TEST(EnvironmentSampler, ColumnsLieAroundAnteriorAndRight) {
   EXPECT_EQ(light(3, 1).radiance(Vec3(1, -0.1, -0.5).normalized())[0], 1.0);
 }
 
-/// Expects LightSet::sample() to draw directions by the pdfs of areaArrivals() and environment().
+/// Expects LightSet::sample() to draw directions by the pdfs of sumEmitterHits() and environment().
 void expectConsistent(const std::vector<Light>& lights, const Vec3& point, int fine) {
-  const LightSet set(lights, grid, camera());
-  const auto draw = [&](Random& r) -> Vec3 {
+  const LightSet set(lights, grid, makeCamera());
+  const auto sampleDirection = [&](Random& r) -> Vec3 {
     const auto sample = set.sample(point, r);
     return sample && !sample->delta ? sample->direction : Vec3(Vec3::Zero());
   };
   const auto pdf = [&](const Vec3& d) {
     double density = set.environment(d).pdf;
-    set.areaArrivals({point, d}, infinity, [&](const LightArrival& arrival) {
-      density += arrival.pdf;
+    set.sumEmitterHits({point, d}, infinity, [&](const EmitterHit& hit) {
+      density += hit.pdf;
       return Rgb(Rgb::Zero());
     });
     return density;
   };
-  double drawn = 0.0;
+  double probability = 0.0;
   constexpr int n = 200000;
   for (int i = 0; i < n; ++i) {
     Random random(12, static_cast<std::uint64_t>(i), 0);
-    drawn += draw(random).squaredNorm() > 0.0 ? 1.0 / n : 0.0;
+    probability += sampleDirection(random).squaredNorm() > 0.0 ? 1.0 / n : 0.0;
   }
-  expectSamplingMatchesPdf(draw, pdf, drawn, fine);
+  expectSamplingMatchesPdf(sampleDirection, pdf, probability, fine);
 }
 
 TEST(LightSet, SamplingOfRectangleAndDiskMatchesPdf) {
@@ -98,7 +98,7 @@ TEST(LightSet, SamplingOfSeveralLightsMatchesPdf) {
   EnvironmentLight constant;
   constant.radiance = Rgb::Constant(0.3);
   EnvironmentLight map;
-  map.map = roughMap();
+  map.map = makeRoughMap();
   EnvironmentLight black;
   black.map = {2, 1, std::vector<float>(6, 0.0F)};
   expectConsistent({constant, black, map, DirectionalLight{}}, {1, 2, 3}, 120);
@@ -108,7 +108,7 @@ TEST(LightSet, AreaLightsShineFromOneSide) {
   AreaLight light;
   light.center = {0, 0, 10};
   light.normal = Vec3::UnitZ(); // away from the origin
-  const LightSet set({light}, grid, camera());
+  const LightSet set({light}, grid, makeCamera());
   Random random(1, 1, 1);
   EXPECT_FALSE(set.sample(Vec3::Zero(), random));
   EXPECT_TRUE(set.sample({0, 0, 20}, random));
@@ -120,7 +120,7 @@ TEST(LightSet, CameraFrameIsRightUpAndTowardTheViewer) {
   light.center = {0, 0, 3};
   light.normal = -Vec3::UnitZ();
   light.size = {0.1, 0.1};
-  const LightSet set({light}, grid, camera());
+  const LightSet set({light}, grid, makeCamera());
   Random random(1, 1, 1);
   const auto sample = set.sample(grid.worldCenter(), random);
   ASSERT_TRUE(sample);
@@ -128,24 +128,25 @@ TEST(LightSet, CameraFrameIsRightUpAndTowardTheViewer) {
   EXPECT_LT(sample->direction.y(), -0.99) << "the viewer stands at negative y";
 }
 
-SphereLight ball(const Vec3& center, double diameter) {
+SphereLight makeBall(const Vec3& center, double diameter) {
   return {center, diameter, Rgb(2.0, 1.0, 0.5)};
 }
 
 TEST(LightSet, SamplingOfASphereMatchesPdf) {
-  expectConsistent({ball({4, -3, 9}, 7)}, {4.5, 4.5, 4.5}, 300);
-  expectConsistent({ball({4, 4, 6}, 7)}, {4.5, 4.5, 4.5}, 60); // from inside
+  expectConsistent({makeBall({4, -3, 9}, 7)}, {4.5, 4.5, 4.5}, 300);
+  expectConsistent({makeBall({4, 4, 6}, 7)}, {4.5, 4.5, 4.5}, 60); // from inside
   AreaLight disk;
   disk.shape = AreaLight::Shape::disk;
   disk.center = {-4, 5, 4};
   disk.normal = Vec3::UnitX();
   disk.size = {5, 5};
-  expectConsistent({ball({4, -3, 9}, 7), disk, ball({4, 4, 6}, 7)}, {4.5, 4.5, 4.5}, 300);
+  expectConsistent({makeBall({4, -3, 9}, 7), disk, makeBall({4, 4, 6}, 7)}, {4.5, 4.5, 4.5}, 300);
 }
 
 /// Irradiance that one light of the set sends to a point of a plane that faces `normal`, over pi:
 /// the mean of samples, and the integral over directions that meet the light.
-std::array<double, 2> received(const LightSet& set, const Vec3& point, const Vec3& normal) {
+std::array<double, 2> measureIrradiance(const LightSet& set, const Vec3& point,
+                                        const Vec3& normal) {
   double sampled = 0.0;
   constexpr int n = 40000;
   for (int i = 0; i < n; ++i) {
@@ -155,12 +156,12 @@ std::array<double, 2> received(const LightSet& set, const Vec3& point, const Vec
       sampled += sample->radiance[0] * std::max(0.0, normal.dot(sample->direction)) /
                  (sample->pdf * n * pi);
   }
-  const auto arriving = [&](const Vec3& d) {
-    const auto radiance = [](const LightArrival& arrival) { return arrival.radiance; };
-    return set.areaArrivals({point, d}, infinity, radiance)[0] * std::max(0.0, normal.dot(d));
+  const auto integrand = [&](const Vec3& d) {
+    const auto radiance = [](const EmitterHit& hit) { return hit.radiance; };
+    return set.sumEmitterHits({point, d}, infinity, radiance)[0] * std::max(0.0, normal.dot(d));
   };
   double integrated = 0.0;
-  for (const double part : binIntegrals(arriving, 60))
+  for (const double part : binIntegrals(integrand, 60))
     integrated += part / pi;
   return {sampled, integrated};
 }
@@ -170,8 +171,8 @@ TEST(LightSet, SphereLightsAFacingPlaneByTheSquareOfRadiusOverDistance) {
   const Vec3 toward = Vec3(2, -1, 2) / 3.0;
   const double radius = 3.0;
   for (const double distance : {0.0, 1.0, 2.999, 3.001, 4.0, 12.0}) {
-    const LightSet set({ball(distance * toward, 2.0 * radius)}, grid, camera());
-    const auto [sampled, integrated] = received(set, Vec3::Zero(), toward);
+    const LightSet set({makeBall(distance * toward, 2.0 * radius)}, grid, makeCamera());
+    const auto [sampled, integrated] = measureIrradiance(set, Vec3::Zero(), toward);
     const double expected = 2.0 * std::pow(radius / std::max(radius, distance), 2.0);
     EXPECT_NEAR(sampled, expected, 0.02 * expected) << distance;
     EXPECT_NEAR(integrated, expected, 0.01 * expected) << distance;
@@ -181,7 +182,7 @@ TEST(LightSet, SphereLightsAFacingPlaneByTheSquareOfRadiusOverDistance) {
 TEST(LightSet, SmallFarAndNearSpheresKeepTheirDigits) {
   const Vec3 toward = Vec3(1, 2, -2) / 3.0;
   const auto sampled = [&](double radius, double distance, const Vec2& u) {
-    const LightSet set({ball(distance * toward, 2.0 * radius)}, grid, camera());
+    const LightSet set({makeBall(distance * toward, 2.0 * radius)}, grid, makeCamera());
     return set.sample(Vec3::Zero(), 0.0, u);
   };
   const auto far = sampled(1e-6, 1e6, {0.5, 0.5});
@@ -195,16 +196,16 @@ TEST(LightSet, SmallFarAndNearSpheresKeepTheirDigits) {
     EXPECT_NEAR(near->distance, gap > 0.0 ? 1e-9 : 2.0, 1e-8);
     EXPECT_NEAR(near->pdf * 2.0 * pi, gap > 0.0 ? 1.0 : 0.5, 1e-4);
   }
-  const auto centre = sampled(1.0, 0.0, {0.3, 0.7});
+  const auto center = sampled(1.0, 0.0, {0.3, 0.7});
   ASSERT_TRUE(centre);
   EXPECT_NEAR(centre->distance, 1.0, 1e-12);
 }
 
 TEST(LightSet, ARayMeetsASphereOnceAndOnlyAhead) {
-  const LightSet set({ball({10, 0, 0}, 4)}, grid, camera());
-  const auto met = [&](const Vec3& from, const Vec3& direction, double end) {
-    const auto radiance = [](const LightArrival& arrival) { return arrival.radiance; };
-    return set.areaArrivals({from, direction}, end, radiance)[0];
+  const LightSet set({makeBall({10, 0, 0}, 4)}, grid, makeCamera());
+  const auto intersect = [&](const Vec3& from, const Vec3& direction, double end) {
+    const auto radiance = [](const EmitterHit& hit) { return hit.radiance; };
+    return set.sumEmitterHits({from, direction}, end, radiance)[0];
   };
   const Vec3 x = Vec3::UnitX();
   EXPECT_EQ(intersect({0, 1.99, 0}, x, infinity), 2.0);
@@ -219,7 +220,7 @@ TEST(LightSet, ARayMeetsASphereOnceAndOnlyAhead) {
 }
 
 TEST(LightSet, FocusFrameIsTheWorldAroundTheFocus) {
-  SphereLight sphere = ball({0, 0, 20}, 0.01);
+  SphereLight sphere = makeBall({0, 0, 20}, 0.01);
   sphere.frame = LightFrame::focus;
   AreaLight disk;
   disk.shape = AreaLight::Shape::disk;
@@ -228,7 +229,7 @@ TEST(LightSet, FocusFrameIsTheWorldAroundTheFocus) {
   disk.size = {0.01, 0.01};
   disk.frame = LightFrame::focus;
   for (const Light& light : {Light(sphere), Light(disk)}) {
-    const LightSet set({light}, grid, camera(), {1, 2, 3});
+    const LightSet set({light}, grid, makeCamera(), {1, 2, 3});
     const auto sample = set.sample({1, 2, 3}, 0.0, {0.5, 0.5});
     ASSERT_TRUE(sample);
     EXPECT_NEAR(sample->distance, 20.0, 0.02);
@@ -237,13 +238,13 @@ TEST(LightSet, FocusFrameIsTheWorldAroundTheFocus) {
 }
 
 /// Irradiance that arrives from all around on a plane with that normal, over pi.
-Rgb receivedFromAround(const LightSet& set, const Vec3& normal) {
+Rgb measureSkyIrradiance(const LightSet& set, const Vec3& normal) {
   Rgb sum = Rgb::Zero();
   for (int channel = 0; channel < 3; ++channel) {
-    const auto arriving = [&](const Vec3& d) {
+    const auto integrand = [&](const Vec3& d) {
       return set.environment(d).radiance[channel] * std::max(0.0, normal.dot(d));
     };
-    for (const double part : binIntegrals(arriving, 16))
+    for (const double part : binIntegrals(integrand, 16))
       sum[channel] += part / pi;
   }
   return sum;
@@ -253,9 +254,10 @@ TEST(LightSet, SkyLightsAPlaneByTwoThirdsOfItsEndAndOneThirdOfItsMiddle) {
   // E / pi = 2 int_0^1 (middle + (top - middle) t) t dt
   const Vec3 up = Vec3(1, 2, -2) / 3.0;
   SkyLight sky{Rgb(3, 2, 1), Rgb(0.3, 0.6, 0.9), Rgb(0, 0.5, 4), up, LightFrame::world};
-  const LightSet set({sky}, grid, camera());
-  EXPECT_LT((receivedFromAround(set, up) - (2 * sky.top + sky.middle) / 3).abs().maxCoeff(), 2e-3);
-  EXPECT_LT((receivedFromAround(set, -up) - (2 * sky.bottom + sky.middle) / 3).abs().maxCoeff(),
+  const LightSet set({sky}, grid, makeCamera());
+  EXPECT_LT((measureSkyIrradiance(set, up) - (2 * sky.top + sky.middle) / 3).abs().maxCoeff(),
+            2e-3);
+  EXPECT_LT((measureSkyIrradiance(set, -up) - (2 * sky.bottom + sky.middle) / 3).abs().maxCoeff(),
             2e-3);
   EXPECT_EQ(set.environment(up).pdf, 0.0) << "never sampled";
   Random random(1, 1, 1);
@@ -266,17 +268,17 @@ TEST(LightSet, SkyOfTheCameraTurnsWithTheCamera) {
   SkyLight sky;
   sky.bottom = Rgb::Zero();
   sky.middle = Rgb::Constant(0.5);
-  const LightSet up({sky}, grid, camera());
+  const LightSet up({sky}, grid, makeCamera());
   EXPECT_NEAR(up.environment(Vec3::UnitZ()).radiance[0], 1.0, 1e-12) << "the camera's up";
   EXPECT_NEAR(up.environment(-Vec3::UnitZ()).radiance[0], 0.0, 1e-12);
   sky.up = Vec3::UnitZ();
-  const LightSet toViewer({sky}, grid, camera());
+  const LightSet toViewer({sky}, grid, makeCamera());
   EXPECT_NEAR(toViewer.environment(-Vec3::UnitY()).radiance[0], 1.0, 1e-12);
   EXPECT_NEAR(toViewer.environment(Vec3::UnitX()).radiance[0], 0.5, 1e-12);
 }
 
 TEST(LightSet, WithoutLightsNothingIsDrawn) {
-  const LightSet set({}, grid, camera());
+  const LightSet set({}, grid, makeCamera());
   Random random(1, 1, 1);
   EXPECT_FALSE(set.sample(Vec3::Zero(), random));
   EXPECT_EQ(set.environment(Vec3::UnitX()).pdf, 0.0);

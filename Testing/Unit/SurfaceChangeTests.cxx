@@ -108,7 +108,7 @@ TEST_F(TurnedBalls, WithoutSteadyingTheSurfaceIsUnchanged) {
   };
   options.mode = SurfaceMode::surface;
   EXPECT_EQ(depths(0.0, SurfaceMode::surface),
-            std::get<ClipDepth>(buildClippingSurface(cameraAt(20.0), grid, balls, options).clip)
+            std::get<ClipDepth>(buildClippingSurface(makeCamera(20.0), grid, balls, options).clip)
                 .buffer->depthsFromReference());
   EXPECT_EQ(depths(8.0, SurfaceMode::cutaway), depths(0.0, SurfaceMode::cutaway));
   EXPECT_NE(depths(8.0, SurfaceMode::surface), depths(0.0, SurfaceMode::surface));

@@ -111,30 +111,30 @@ FENESTRA_INLINE LightDraw drawLight(const Lights& lights, LaneMask& which, const
 }
 
 /// Lanes whose ray meets a light, and there the density of drawing the ray's direction.
-struct LightMet {
-  LaneMask met;
+struct LightHits {
+  LaneMask hit;
   Float pdf;
 };
 
 /// Meeting of rays of the lanes of `which` with a light before `end` (mm).
-FENESTRA_INLINE LightMet meeting(const Lights::Area& light, LaneMask which, const Float3& origin,
-                                 const Float3& direction, Float end) {
+FENESTRA_INLINE LightHits intersect(const Lights::Area& light, LaneMask which, const Float3& origin,
+                                    const Float3& direction, Float end) {
   const Float3 normal = Float3(light.normal);
   const Float cosine = -dot(normal, direction);
   const Float t = dot(normal, origin - Float3(light.center)) / cosine;
   const LaneMask ahead = (cosine > 0.0F) & (t > 0.0F) & (t < end);
-  const LaneMask met = which & ahead;
-  if (!met.any())
-    return {met, 0.0F};
+  const LaneMask hit = which & ahead;
+  if (!hit.any())
+    return {hit, 0.0F};
   const Float3 d = origin + t * direction - Float3(light.center);
   const Float x2 = square(dot(d, Float3(light.right)) * light.perRight);
   const Float y2 = square(dot(d, Float3(light.up)) * light.perUp);
   const LaneMask inside = (light.isDisk ? x2 + y2 : max(x2, y2)) <= 1.0F;
-  return {met & inside, light.share * square(t) / (light.area * cosine)};
+  return {hit & inside, light.share * square(t) / (light.area * cosine)};
 }
 
-FENESTRA_INLINE LightMet meeting(const Lights::Sphere& light, LaneMask which, const Float3& origin,
-                                 const Float3& direction, Float end) {
+FENESTRA_INLINE LightHits intersect(const Lights::Sphere& light, LaneMask which,
+                                    const Float3& origin, const Float3& direction, Float end) {
   const Float3 d = Float3(light.center) - origin;
   const Float distance2 = dot(d, d);
   const Float along = dot(d, direction);
@@ -144,26 +144,26 @@ FENESTRA_INLINE LightMet meeting(const Lights::Sphere& light, LaneMask which, co
   const LaneMask ahead = (along > 0.0F) & (across2 <= radius2);
   const LaneMask hits = LaneMask(distance2 <= radius2) | ahead;
   const Float far = distanceTo(light, distance2, along, across2);
-  const LaneMask met = which & hits & (far < end);
-  if (!met.any())
-    return {met, 0.0F};
-  return {met, densityOf(light, spreadOf(light, distance2))};
+  const LaneMask hit = which & hits & (far < end);
+  if (!hit.any())
+    return {hit, 0.0F};
+  return {hit, densityOf(light, spreadOf(light, distance2))};
 }
 
 /// Calls visit(lanes, radiance, pdf) for the area lights and spheres that rays of the lanes of
 /// `which` meet before `end` (mm).
 template <typename Visit>
-FENESTRA_INLINE void forEachMet(const Lights& lights, LaneMask which, const Float3& origin,
-                                const Float3& direction, Float end, Visit&& visit) {
-  const auto meet = [&](const auto& light) {
-    const LightMet at = meeting(light, which, origin, direction, end);
-    if (at.met.any())
-      visit(at.met, Float3(light.radiance), at.pdf);
+FENESTRA_INLINE void intersectLights(const Lights& lights, LaneMask which, const Float3& origin,
+                                     const Float3& direction, Float end, Visit&& visit) {
+  const auto intersectOne = [&](const auto& light) {
+    const LightHits at = intersect(light, which, origin, direction, end);
+    if (at.hit.any())
+      visit(at.hit, Float3(light.radiance), at.pdf);
   };
   for (const Lights::Area& light : lights.areas)
-    meet(light);
+    intersectOne(light);
   for (const Lights::Sphere& light : lights.spheres)
-    meet(light);
+    intersectOne(light);
 }
 
 /// Radiance of constant environments and skies.

@@ -125,14 +125,14 @@ std::optional<LightSample> LightSet::sampleEnvironment(double choice, const Vec2
   if (chosen == nullptr)
     return std::nullopt;
   const Vec3 direction = chosen->sampler.sample(u);
-  const LightArrival arrival = environment(direction);
-  if (!(arrival.pdf > 0.0))
+  const EmitterHit hit = environment(direction);
+  if (!(hit.pdf > 0.0))
     return std::nullopt;
-  return LightSample{direction, infinity, arrival.radiance, arrival.pdf, false};
+  return LightSample{direction, infinity, hit.radiance, hit.pdf, false};
 }
 
-LightArrival LightSet::environment(const Vec3& direction) const {
-  LightArrival sum{toColor(scalar::around(m_tables, direction)), 0.0};
+EmitterHit LightSet::environment(const Vec3& direction) const {
+  EmitterHit sum{toColor(scalar::around(m_tables, direction)), 0.0};
   for (const SharedEnvironment& environment : m_environments) {
     if (environment.sampler.constant())
       continue;

@@ -30,7 +30,7 @@ struct LightSample {
 };
 
 /// Radiance arriving from a direction, and the density of sample() for that direction.
-struct LightArrival {
+struct EmitterHit {
   Rgb radiance = Rgb::Zero();
   double pdf = 0.0;
 };
@@ -58,16 +58,16 @@ public:
   std::optional<LightSample> sample(const Vec3& point, double choice, const Vec2& u) const;
 
   /// Radiance and density of all environments and skies together.
-  LightArrival environment(const Vec3& direction) const;
+  EmitterHit environment(const Vec3& direction) const;
 
   /// Sum of weigh(arrival) over all area lights and spheres that the ray meets before `end` (mm).
   template <typename Weigh>
-  Rgb areaArrivals(const Ray& ray, double end, Weigh&& weigh) const {
+  Rgb sumEmitterHits(const Ray& ray, double end, Weigh&& weigh) const {
     Rgb sum = Rgb::Zero();
-    scalar::forEachMet(m_tables, true, ray.origin, ray.direction, end,
-                       [&](scalar::ScalarMask, const scalar::Float3& radiance, double pdf) {
-                         sum += weigh(LightArrival{toColor(radiance), pdf});
-                       });
+    scalar::intersectLights(m_tables, true, ray.origin, ray.direction, end,
+                            [&](scalar::ScalarMask, const scalar::Float3& radiance, double pdf) {
+                              sum += weigh(EmitterHit{toColor(radiance), pdf});
+                            });
     return sum;
   }
 

@@ -4,16 +4,16 @@
 #include "model/lights/LightFormulas-inl.h"
 #include "transport/lanes/EnvironmentSampler-inl.h"
 
-/// LightArrival in lanes.
-struct Arrival {
+/// EmitterHit in lanes.
+struct LaneEmitterHit {
   Float3 radiance;
   Float pdf;
 };
 /// LightSet::environment; texelOf(map): each map's texel in the direction.
 template <typename TexelOf>
-HWY_INLINE Arrival environment(const EventScene& scene, const Float3& direction,
-                               TexelOf&& texelOf) {
-  Arrival sum{around(scene.lights, direction), 0.0F};
+HWY_INLINE LaneEmitterHit environment(const EventScene& scene, const Float3& direction,
+                                      TexelOf&& texelOf) {
+  LaneEmitterHit sum{around(scene.lights, direction), 0.0F};
   for (const MapTables& map : scene.maps) {
     const Float3 radiance = radianceOf(map, texelOf(map));
     sum.radiance = sum.radiance + radiance;
@@ -34,7 +34,7 @@ inline void drawMaps(const EventScene& scene, LaneMask which, Float choice, UInt
     if (later.any())
       toward.direction = select(later, drawTexel(scene.maps[i], u, v).direction, toward.direction);
   }
-  const Arrival light = environment(scene, toward.direction, [&](const MapTables& map) {
+  const LaneEmitterHit light = environment(scene, toward.direction, [&](const MapTables& map) {
     return count == 1 ? toward.texel : texelToward(map, toward.direction);
   });
   const LaneMask lit = which & (light.pdf > 0.0F);
@@ -54,20 +54,20 @@ inline LightDraw drawOf(const EventScene& scene, LaneMask which, const Float3& p
 }
 
 /// PathSteps::arriving for rays from local points, for the lanes of `which`; 0 in the others.
-inline Float3 arriving(const EventScene& scene, LaneMask which, const Float3& origin,
-                       const Float3& direction, Float distance, Float scatterPdf) {
+inline Float3 emittedAlongRay(const EventScene& scene, LaneMask which, const Float3& origin,
+                              const Float3& direction, Float distance, Float scatterPdf) {
   Float3 sum{0.0F, 0.0F, 0.0F};
-  forEachMet(scene.lights, which, origin, direction, distance,
-             [&](LaneMask met, const Float3& radiance, Float pdf) {
-               const Float weight = scatterPdf / (scatterPdf + pdf);
-               sum = sum + orZero(met, weight * radiance);
-             });
+  intersectLights(scene.lights, which, origin, direction, distance,
+                  [&](LaneMask hits, const Float3& radiance, Float pdf) {
+                    const Float weight = scatterPdf / (scatterPdf + pdf);
+                    sum = sum + orZero(hits, weight * radiance);
+                  });
   const LaneMask escaped = which & (distance == std::numeric_limits<float>::infinity());
   if (scene.maps.empty())
     return sum + orZero(escaped, around(scene.lights, direction));
   if (!escaped.any())
     return sum;
-  const Arrival far = environment(
+  const LaneEmitterHit far = environment(
       scene, direction, [&](const MapTables& map) { return texelToward(map, direction); });
   const Float weight = scatterPdf / (scatterPdf + far.pdf);
   return sum + orZero(escaped, weight * far.radiance);

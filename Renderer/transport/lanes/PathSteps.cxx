@@ -79,8 +79,8 @@ private:
     if (!scattered.any())
       return;
     const Float3 light =
-        arriving(m_scene, scattered, mapPoint(m_scene.toLocal, origin), load3(m_paths.direction, i),
-                 distance, load(&m_paths.scatterPdf[i]));
+        emittedAlongRay(m_scene, scattered, mapPoint(m_scene.toLocal, origin),
+                        load3(m_paths.direction, i), distance, load(&m_paths.scatterPdf[i]));
     const Float3 sum = load3(m_paths.radiance, i);
     store3(sum + load3(m_paths.weight, i) * light, m_paths.radiance, i);
   }

@@ -26,7 +26,7 @@ public:
     while (!PathSteps<Voxel>::ended(path) && !stopped()) {
       const double distance =
           m_tracker.sampleCollision(path.ray, path.range, path.flight, path.random, counters);
-      if (!m_steps.arrive(path, distance))
+      if (!m_steps.handleVertex(path, distance))
         break;
       ++counters.collisions;
       const std::optional<ShadowRay> light = m_steps.scatter(path, distance, counters);

@@ -81,9 +81,9 @@ public:
 
   /// Ends the path's ray at its next collision, after `distance` mm, or at infinity (no collision).
   /// Gathers the light met before; returns true if the path scatters there.
-  bool arrive(Path& path, double distance) const {
+  bool handleVertex(Path& path, double distance) const {
     if (path.bounces > 0)
-      path.sample.radiance += path.weight * arriving(path.ray, distance, path.scatterPdf);
+      path.sample.radiance += path.weight * emittedAlongRay(path.ray, distance, path.scatterPdf);
     else if (distance == infinity)
       path.sample = m_eye.escaped(path.row, path.ray.direction);
     return distance < infinity && path.bounces < m_settings.bounces;
@@ -154,11 +154,11 @@ private:
   }
 
   /// Light that a scattered ray meets by itself before its next collision (or at infinity).
-  Rgb arriving(const Ray& ray, double distance, double scatterPdf) const {
-    const auto weigh = [&](const LightArrival& arrival) -> Rgb {
-      return arrival.radiance * (scatterPdf / (scatterPdf + arrival.pdf));
+  Rgb emittedAlongRay(const Ray& ray, double distance, double scatterPdf) const {
+    const auto weigh = [&](const EmitterHit& hit) -> Rgb {
+      return hit.radiance * (scatterPdf / (scatterPdf + hit.pdf));
     };
-    Rgb sum = m_lights.areaArrivals(ray, distance, weigh);
+    Rgb sum = m_lights.sumEmitterHits(ray, distance, weigh);
     if (distance == infinity)
       sum += weigh(m_lights.environment(ray.direction));
     return sum;
