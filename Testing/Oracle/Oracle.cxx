@@ -50,20 +50,20 @@ public:
     Met met = meet(ray.at(distance), generator);
     result.albedo = met.albedo;
 
-    Rgb weight = Rgb::Ones();
+    Rgb throughput = Rgb::Ones();
     for (std::uint64_t scattered = 0; scattered < m_scene.bounces; ++scattered) {
       const Vec3 point = ray.at(distance);
       const Scatterer scatterer = collide(met, point, ray.direction, generator);
-      result.radiance += weight * (parallelLight(point, scatterer, generator) +
-                                   areaLight(point, scatterer, generator));
+      result.radiance += throughput * (parallelLight(point, scatterer, generator) +
+                                       areaLight(point, scatterer, generator));
       const Vec3 outgoing = scatterer.draw(generator);
-      weight *= scatterer.f(outgoing) / scatterer.density(outgoing);
-      if (!survives(weight, generator))
+      throughput *= scatterer.f(outgoing) / scatterer.density(outgoing);
+      if (!survives(throughput, generator))
         break;
       ray = {point, outgoing};
       distance = collision(ray, generator);
       if (distance == infinity) {
-        result.radiance += weight * m_lights.environment(ray.direction);
+        result.radiance += throughput * m_lights.environment(ray.direction);
         break;
       }
       met = meet(ray.at(distance), generator);
@@ -207,14 +207,14 @@ private:
 
   /// Russian roulette for paths of low weight. (With analog absorption a dark medium would show too
   /// few bright paths to estimate the error of their mean.)
-  static bool survives(Rgb& weight, Generator& generator) {
+  static bool survives(Rgb& throughput, Generator& generator) {
     constexpr double least = 0.05;
-    const double most = weight.maxCoeff();
+    const double most = throughput.maxCoeff();
     if (most >= least)
       return true;
     if (uniform(generator) * least >= most)
       return false;
-    weight *= least / most;
+    throughput *= least / most;
     return true;
   }
 

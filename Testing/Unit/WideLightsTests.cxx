@@ -97,7 +97,7 @@ void setPath(PathBatch& paths, std::size_t i, const Vec3& direction, const Vec2&
   paths.rays.set(i, {Vec3::Constant(3.5), direction}, 9.0);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     paths.direction[axis][i] = static_cast<float>(direction[static_cast<int>(axis)]);
-    paths.weight[axis][i] = 1.0F;
+    paths.throughput[axis][i] = 1.0F;
     paths.radiance[axis][i] = 0.0F;
   }
   const Vec2 choices = Random(key).uniform2();

@@ -61,7 +61,7 @@ void beginAll(const WideScene& volume, const EyeTable& eye, const PathStarts& st
     store3(world, paths.eyeDirection, to);
     store(before * depthPerLength, &paths.depth[to]);
     store(depthPerLength, &paths.depthPerLength[to]);
-    store3({1.0F, 1.0F, 1.0F}, paths.weight, to);
+    store3({1.0F, 1.0F, 1.0F}, paths.throughput, to);
     store3({0.0F, 0.0F, 0.0F}, paths.radiance, to);
     store(Int(0), &paths.bounces[to]);
   }

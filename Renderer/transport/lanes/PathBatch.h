@@ -20,7 +20,7 @@ struct PathStarts {
 struct PathBatch {
   RayBatch rays;       ///< next rays, and their collisions
   SoaArray3 direction; ///< of the rays, world axes, unit
-  SoaArray3 weight, radiance;
+  SoaArray3 throughput, radiance;
   SoaArray<float> scatterPdf;
   SoaArray<std::int32_t> bounces;
   SoaArray<std::uint32_t> key, counter;     ///< of the paths' random numbers

@@ -29,7 +29,7 @@ struct Collisions {
   LaneMask first; ///< lanes that scatter for the first time
   Float3 index;   ///< points, index space
   Float scalar;
-  Float3 incoming, weight;
+  Float3 incoming, throughput;
   Float3 albedo = {};
   Float3 gradient = {0.0F, 0.0F, 0.0F}; ///< 0 unless needed
   LaneMask surface = LaneMask::none();
@@ -82,7 +82,7 @@ private:
         emittedAlongRay(m_scene, scattered, mapPoint(m_scene.toLocal, origin),
                         load3(m_paths.direction, i), distance, load(&m_paths.scatterPdf[i]));
     const Float3 sum = load3(m_paths.radiance, i);
-    store3(sum + load3(m_paths.weight, i) * light, m_paths.radiance, i);
+    store3(sum + load3(m_paths.throughput, i) * light, m_paths.radiance, i);
   }
 
   /// Scatters the lanes of `going`; returns the lanes that go on afterwards.
@@ -135,7 +135,7 @@ private:
                   index,
                   load(&m_paths.rays.scalar[i]),
                   load3(m_paths.direction, i),
-                  load3(m_paths.weight, i)};
+                  load3(m_paths.throughput, i)};
     if (m_volume.mixture) {
       at.component = drawComponents(m_volume, going, index, at.scalar, draws.uniform());
       at.albedo = albedoIn(m_scene, going, at.component, at.scalar);
@@ -206,7 +206,7 @@ private:
         drawOf(m_scene, at.going, mapPoint(m_scene.toLocal, at.index), choice, u, v);
     const Scattered scattered = toward(light.direction);
     const Float pdf = light.pdf + select(light.delta, 0.0F, scattered.pdf);
-    const Float3 radiance = (1.0F / pdf) * (at.weight * scattered.factor * light.radiance);
+    const Float3 radiance = (1.0F / pdf) * (at.throughput * scattered.factor * light.radiance);
     const LaneMask arrives = at.going & (greatest(radiance) > 0.0F);
     const std::size_t count = arrives.count();
     const UInt depth = draws.nextBits();
@@ -232,12 +232,12 @@ private:
   HWY_INLINE LaneMask goOn(std::size_t i, const Collisions& at, const ScatterDraw& drawn,
                            Draws& draws) {
     constexpr auto below = static_cast<float>(rouletteBelow);
-    Float3 weight = at.weight * drawn.weight;
-    const Float size = sqrt((1.0F / 3.0F) * dot(weight, weight));
+    Float3 throughput = at.throughput * drawn.weight;
+    const Float size = sqrt((1.0F / 3.0F) * dot(throughput, throughput));
     const Float chance = min(size * (1.0F / below), 1.0F);
     const LaneMask survives = draws.uniform() <= chance;
-    weight = orZero(survives, (1.0F / chance) * weight);
-    store3(weight, m_paths.weight, i);
+    throughput = orZero(survives, (1.0F / chance) * throughput);
+    store3(throughput, m_paths.throughput, i);
     store(drawn.pdf, &m_paths.scatterPdf[i]);
     store3(drawn.outgoing, m_paths.direction, i);
     store3(at.index, m_paths.rays.origin, i);
@@ -247,7 +247,7 @@ private:
     store(draws.nextBits(), &m_paths.rays.depth[i]);
     store(draws.uniform(), &m_paths.rays.acceptance[i]);
     store(draws.counter, &m_paths.counter[i]);
-    return at.going & (greatest(weight) > 0.0F);
+    return at.going & (greatest(throughput) > 0.0F);
   }
 
   const WideScene& m_volume;
@@ -275,8 +275,8 @@ void dropEndedLanes(PathBatch& paths) {
     };
     const auto move3 = [&](auto&... columns) { (move(columns[0], columns[1], columns[2]), ...); };
     if (left != i || ended.any()) { // all that paths need after their first scattering
-      move3(paths.rays.origin, paths.rays.direction, paths.direction, paths.weight, paths.radiance,
-            paths.firstAlbedo, paths.firstNormal);
+      move3(paths.rays.origin, paths.rays.direction, paths.direction, paths.throughput,
+            paths.radiance, paths.firstAlbedo, paths.firstNormal);
       move(paths.rays.length, paths.rays.depth, paths.rays.acceptance, paths.scatterPdf,
            paths.bounces, paths.key, paths.counter, paths.tile, paths.ofTile, paths.firstDepth);
     }

@@ -39,7 +39,7 @@ struct Path {
   double row;     ///< raster row of the eye ray
   Ray ray;        ///< world space
   Interval range; ///< part of the ray left by clipping, mm
-  Rgb weight = Rgb::Ones();
+  Rgb throughput = Rgb::Ones();
   double scatterPdf = 0.0;   ///< of the ray's direction, per steradian
   std::uint64_t bounces = 0; ///< scatterings so far
   PathSample sample = {};
@@ -83,7 +83,8 @@ public:
   /// Gathers the light met before; returns true if the path scatters there.
   bool handleVertex(Path& path, double distance) const {
     if (path.bounces > 0)
-      path.sample.radiance += path.weight * emittedAlongRay(path.ray, distance, path.scatterPdf);
+      path.sample.radiance +=
+          path.throughput * emittedAlongRay(path.ray, distance, path.scatterPdf);
     else if (distance == infinity)
       path.sample = m_eye.escaped(path.row, path.ray.direction);
     return distance < infinity && path.bounces < m_settings.bounces;
@@ -105,7 +106,7 @@ public:
     const ScatterSample scattered = scatterSample(scattering, path.scattered, path.random);
     path.scattered = path.random.uniform2();
     path.choices = path.random.uniform2();
-    path.weight *= scattered.weight;
+    path.throughput *= scattered.weight;
     roulette(path);
     path.scatterPdf = scattered.pdf;
     path.ray = {point, scattered.outgoing};
@@ -116,7 +117,7 @@ public:
     return light;
   }
 
-  static bool ended(const Path& path) { return !(path.weight.maxCoeff() > 0.0); }
+  static bool ended(const Path& path) { return !(path.throughput.maxCoeff() > 0.0); }
 
 private:
   void recordFirst(Path& path, double distance, const MediumSample& medium) const {
@@ -149,7 +150,7 @@ private:
     if (!(factor.maxCoeff() > 0.0) || !(light->radiance.maxCoeff() > 0.0))
       return std::nullopt;
     const double other = light->delta ? 0.0 : fenestra::scatterPdf(scattering, light->direction);
-    const Rgb radiance = path.weight * factor * light->radiance / (light->pdf + other);
+    const Rgb radiance = path.throughput * factor * light->radiance / (light->pdf + other);
     return ShadowRay{{point, light->direction}, light->distance, radiance};
   }
 
@@ -166,14 +167,14 @@ private:
 
   /// Russian roulette on the path's weight: its square is what the path adds to the variance.
   static void roulette(Path& path) {
-    const double weight = std::sqrt(path.weight.square().mean());
+    const double weight = std::sqrt(path.throughput.square().mean());
     if (weight >= rouletteBelow)
       return;
     const double chance = weight / rouletteBelow;
     if (path.random.uniform() < chance)
-      path.weight /= chance;
+      path.throughput /= chance;
     else
-      path.weight.setZero();
+      path.throughput.setZero();
   }
 
   Affine m_worldToIndex;
