@@ -56,7 +56,7 @@ inline TransferFunction linearTransfer(double sigma_t, const Rgb& albedo, double
 }
 
 /// Shares of parts that all lie in memory.
-inline Shares sharesOf(const std::vector<Shares::Part>& parts) {
+inline LabelWeights sharesOf(const std::vector<LabelWeights::Part>& parts) {
   return {parts.size(), [&](std::size_t i) { return parts[i]; }};
 }
 

@@ -185,11 +185,11 @@ Fitted blended(const FitInput& fit, const Candidates& candidates,
   for (std::size_t k = 0; k < candidates.count(); ++k) {
     for (std::size_t i = 0; i < choice.size(); ++i)
       chosen[i] = choice[i] == k ? fit.open[i] : 0.0F;
-    const Plane share = mean(chosen);
+    const Plane fraction = mean(chosen);
     tbb::parallel_for(std::size_t{0}, blend.size(), [&](std::size_t c) {
       const Plane& candidate = candidates[k][c];
       for (std::size_t i = 0; i < choice.size(); ++i)
-        blend[c][i] += share[i] * candidate[i];
+        blend[c][i] += fraction[i] * candidate[i];
     });
   }
   return blend;

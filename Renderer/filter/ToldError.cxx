@@ -46,7 +46,7 @@ struct Bias {
 };
 
 Bias biasOf(const Parts& parts, double variance, double count) {
-  constexpr double priorShare = 0.65, priorDeviation = 0.7; // of the variance
+  constexpr double priorRatio = 0.65, priorDeviation = 0.7; // of the variance
   double sum = 0.0, squares = 0.0;
   for (std::size_t i = 0; i < parts.bias[0].size(); ++i) {
     const double mean =
@@ -61,7 +61,7 @@ Bias biasOf(const Parts& parts, double variance, double count) {
     return {std::max(mean, 0.0), 0.0};
   // Weights of the two: the other's variance over the sum of both.
   const double told =
-      (std::max(mean, 0.0) * ofPrior + priorShare * variance * ofMean) / (ofMean + ofPrior);
+      (std::max(mean, 0.0) * ofPrior + priorRatio * variance * ofMean) / (ofMean + ofPrior);
   return {told, std::sqrt(ofMean * ofPrior / (ofMean + ofPrior))};
 }
 
@@ -99,9 +99,9 @@ void tellErrors(const FitInput& fit, const std::vector<Plane>& filtered, Filtere
           open[i] > 0.0F ? std::sqrt(std::max(told, 0.0F) / relativeWeight(picture.color[c][i]))
                          : 0.0F;
     }
-  const double share = sumOf(open) / static_cast<double>(std::max<std::size_t>(open.size(), 1));
-  picture.toldError = share * (variance + bias.mean);
-  picture.toldDeviation = share * bias.deviation;
+  const double fraction = sumOf(open) / static_cast<double>(std::max<std::size_t>(open.size(), 1));
+  picture.toldError = fraction * (variance + bias.mean);
+  picture.toldDeviation = fraction * bias.deviation;
 }
 
 } // namespace fenestra

@@ -58,7 +58,7 @@ ZStatistics zStatistics(const ImagePair& pair, int width) {
   z.mean /= count;
   z.deviation =
       std::sqrt(std::max(squares - count * square(z.mean), 0.0) / std::max(count - 1.0, 1.0));
-  z.shareAbove3 = above / count;
+  z.fractionAbove3 = above / count;
   return z;
 }
 

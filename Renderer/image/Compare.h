@@ -15,10 +15,10 @@ namespace fenestra {
 struct ZStatistics {
   std::size_t count = 0; ///< values in the statistics
   double mean = 0.0, deviation = 0.0;
-  double shareAbove3 = 0.0; ///< share of |z| > 3; 0.0027 for normal noise
-  double largest = 0.0;     ///< largest |z|
-  int column = 0, row = 0;  ///< pixel of the largest
-  char channel = 'R';       ///< channel of the largest
+  double fractionAbove3 = 0.0; ///< share of |z| > 3; 0.0027 for normal noise
+  double largest = 0.0;        ///< largest |z|
+  int column = 0, row = 0;     ///< pixel of the largest
+  char channel = 'R';          ///< channel of the largest
   /// Difference of the image means in combined standard errors.
   Rgb imageMean = Rgb::Zero();
 };

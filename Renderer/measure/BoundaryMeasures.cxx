@@ -142,7 +142,7 @@ BoundaryMeasures measureBoundary(const Clip& clip, const Domain& volume, const M
                            (edge.outside - edge.inside).norm());
   }
   if (measures.crossings > 0)
-    measures.depthJumps =
+    measures.depthJumpFraction =
         1.0 - static_cast<double>(gaps.size()) / static_cast<double>(measures.crossings);
   measures.gap = Distribution::of(std::move(gaps));
   measures.slopeJump = Distribution::of(std::move(slopeJumps));

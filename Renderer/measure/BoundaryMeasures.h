@@ -17,7 +17,7 @@ struct BoundaryMeasures {
   Distribution gap; ///< |context depth - focus depth|, mm, without depth jumps
   /// Difference of the slopes of two samples on each side, mm of depth per mm, without depth jumps.
   Distribution slopeJump;
-  double depthJumps = 0.0; ///< share of the crossings where the focus's own depth jumps
+  double depthJumpFraction = 0.0; ///< share of the crossings where the focus's own depth jumps
   std::size_t crossings = 0;
 };
 

@@ -63,7 +63,7 @@ double focusCoverage(const RenderScene& scene, const FocusPoints& points, std::u
                      const StopFlag& stop) {
   if (points.empty())
     return 0.0;
-  const auto share = [&](const auto&, const auto& tracker) {
+  const auto measure = [&](const auto&, const auto& tracker) {
     std::vector<double> shown(points.size(), 0.0);
     tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
       const FocusPoint& point = points[i];
@@ -76,7 +76,7 @@ double focusCoverage(const RenderScene& scene, const FocusPoints& points, std::u
     });
     return sum(shown) / static_cast<double>(points.size());
   };
-  return withMedium(scene, share, stop);
+  return withMedium(scene, measure, stop);
 }
 
 std::optional<double> focusLight(const RenderScene& scene, const RenderScene& alone,
@@ -130,8 +130,8 @@ std::optional<double> contextRemoved(const RenderScene& scene, const Mask& focus
         for (std::int64_t x = 0; x < strata; ++x) {
           Random random(seed, static_cast<std::uint64_t>(x + strata * (y + strata * z)), 0);
           const Vec3 jitter(random.uniform(), random.uniform(), random.uniform());
-          const Vec3 share = (Size3(x, y, z).cast<double>() + jitter) / double{strata};
-          const Vec3 index = box.lower + share.cwiseProduct(box.upper - box.lower);
+          const Vec3 fraction = (Size3(x, y, z).cast<double>() + jitter) / double{strata};
+          const Vec3 index = box.lower + fraction.cwiseProduct(box.upper - box.lower);
           const Vec3 world = scene.volume.grid.indexToWorld * index;
           if (!domain.contains(index) || where.isFocus(index) || !(medium.extinction(index) > 0.0))
             continue;

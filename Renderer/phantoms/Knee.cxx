@@ -52,25 +52,25 @@ double fasciaDepth(const Vec3& p) {
 /// the eminence.
 struct MeniscusRing {
   Vec2 center;
-  Vec2 outerRadii;     ///< mm
-  double innerShare;   ///< inner / outer radius, in the middle of the C
-  double openingAngle; ///< half of the C's gap, radians, around `opening`
-  double opening;      ///< direction to the eminence: 0 lateral, pi medial
+  Vec2 outerRadii;      ///< mm
+  double innerFraction; ///< inner / outer radius, in the middle of the C
+  double openingAngle;  ///< half of the C's gap, radians, around `opening`
+  double opening;       ///< direction to the eminence: 0 lateral, pi medial
 
   double distance(const Vec3& p) const {
     const Vec2 offset = p.head<2>() - center;
     const Vec2 scaled = offset.cwiseQuotient(outerRadii);
-    const double share = scaled.norm();
+    const double fraction = scaled.norm();
     const double scale = outerRadii.mean();
     double turn = std::atan2(scaled.y(), scaled.x()) - opening;
     turn = std::abs(std::remainder(turn, 2.0 * pi));
     // The horns are slimmer than the body, with round ends.
     const double horns = smoothStep(openingAngle + 0.9, openingAngle, turn);
-    const double inner = std::lerp(innerShare, 0.5 * (1.0 + innerShare), horns);
-    const double ring = std::max(share - 1.0, inner - share) * scale;
-    const double ends = (openingAngle - turn) * share * scale;
+    const double inner = std::lerp(innerFraction, 0.5 * (1.0 + innerFraction), horns);
+    const double ring = std::max(fraction - 1.0, inner - fraction) * scale;
+    const double ends = (openingAngle - turn) * fraction * scale;
     // The wedge grows from the thin inner edge to 6 mm at the rim.
-    const double height = 0.6 + 5.4 * std::clamp((share - inner) / (1.0 - inner), 0.0, 1.0);
+    const double height = 0.6 + 5.4 * std::clamp((fraction - inner) / (1.0 - inner), 0.0, 1.0);
     const double faces = std::max(p.z() - height, -3.6 - p.z());
     return smoothIntersection(smoothIntersection(ring, ends, 3.0), faces, 2.0);
   }

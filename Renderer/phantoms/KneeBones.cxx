@@ -79,7 +79,7 @@ double firstOrderDistance(const Field& field, const Vec3& p) {
 }
 
 /// Share of the trochlea: 1 on it, 0 on the bearing and rear parts of the condyles.
-double trochleaShare(double angle, double distalEnd, double frontEnd) {
+double trochleaWeight(double angle, double distalEnd, double frontEnd) {
   return smoothStep(distalEnd, frontEnd, angle) * (1.0 - smoothStep(1.5, 2.5, angle));
 }
 
@@ -132,7 +132,7 @@ double KneeBones::wheelField(const Vec3& p) const {
   const double groove = -5.5 * std::exp(-std::pow((p.x() - grooveX) / 9.0, 2));
   const double facets = 2.2 * smoothStep(3.0, 17.0, p.x()) - 0.6 * smoothStep(3.0, 15.0, -p.x());
   const double outer = std::max(0.0, std::abs(p.x() - 3.0) - 18.0);
-  const double anterior = trochleaShare(angle, -1.35, -0.45);
+  const double anterior = trochleaWeight(angle, -1.35, -0.45);
   const double relief = std::lerp(crown, groove + facets - outer * outer / 20.0, anterior);
   return std::hypot(y, z) - profile(angle) - relief;
 }
@@ -211,7 +211,7 @@ namespace {
 
 /// Share of the cartilage left by a lesion: 1 outside it, 1 - depth on its floor; the wall is
 /// steep.
-double lesionShare(const CartilageLesion& lesion, const Vec3& p) {
+double lesionFactor(const CartilageLesion& lesion, const Vec3& p) {
   const double y = p.y() - axisY, z = p.z() - axisZ;
   const double along = std::hypot(y, z) * (std::atan2(z, y) - lesion.angle);
   const double ragged = 0.5 * valueNoise(p / 2.0, 51);
@@ -238,7 +238,7 @@ double KneeBones::intactFemoralCartilage(const Vec3& p) const {
   const double margin = smoothUnion(corners, notchField(p) - 2.3, 4.0);
   if (margin <= 0.0)
     return 0.0;
-  const double trochlea = trochleaShare(angle, -0.9, 0.1);
+  const double trochlea = trochleaWeight(angle, -0.9, 0.1);
   const double bearing = std::exp(-std::pow((angle + 1.35) / 0.6, 2));
   const double thickness = 1.75 + 0.65 * trochlea + 0.55 * bearing + 0.22 * valueNoise(p / 9.0, 52);
   return tapered(std::clamp(thickness, 1.4, 2.65), margin);
@@ -248,7 +248,7 @@ double KneeBones::femoralCartilage(const Vec3& p) const {
   const double intact = intactFemoralCartilage(p);
   if (intact == 0.0)
     return 0.0;
-  return intact * lesionShare(fullThicknessLesion, p) * lesionShare(partialThicknessLesion, p);
+  return intact * lesionFactor(fullThicknessLesion, p) * lesionFactor(partialThicknessLesion, p);
 }
 
 double KneeBones::tibialCartilage(const Vec3& p) const {

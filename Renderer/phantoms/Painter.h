@@ -146,13 +146,13 @@ private:
       const double distance = layer->distance(site);
       sample.border = std::min(sample.border, std::abs(distance));
       // A voxel on a border holds a share of either side: the partial volume effect.
-      const double share = smoothStep(m_softness, -m_softness, distance);
-      if (share == 0.0)
+      const double coverage = smoothStep(m_softness, -m_softness, distance);
+      if (coverage == 0.0)
         continue;
       if (sample.label == 0 && distance <= 0.0)
         sample.label = layer->label;
-      sample.signal += visible * share * layer->signal(site);
-      visible *= 1.0 - share;
+      sample.signal += visible * coverage * layer->signal(site);
+      visible *= 1.0 - coverage;
       if (visible < 1e-3)
         break;
     }

@@ -59,7 +59,7 @@ void print(const Comparison& c) {
   const ZStatistics& z = *c.z;
   std::printf("z           mean %.4f, deviation %.4f, over %zu values\n", z.mean, z.deviation,
               z.count);
-  std::printf("|z| > 3     %.4f %% (0.27 %% for normal noise)\n", 100.0 * z.shareAbove3);
+  std::printf("|z| > 3     %.4f %% (0.27 %% for normal noise)\n", 100.0 * z.fractionAbove3);
   std::printf("largest |z| %.3f at column %d, row %d, %c\n", z.largest, z.column, z.row, z.channel);
   std::printf("image mean  %.2f %.2f %.2f standard errors apart\n", z.imageMean[0], z.imageMean[1],
               z.imageMean[2]);

@@ -75,7 +75,7 @@ void addClip(Json& json, const Scene& scene, const std::optional<FocusReport>& f
   if (const auto& boundary = clip.boundary; boundary && boundary->crossings > 0) {
     json["boundaryGapMm"] = jsonOf(boundary->gap);
     json["boundarySlopeJump"] = jsonOf(boundary->slopeJump);
-    json["boundaryDepthJumps"] = boundary->depthJumps;
+    json["boundaryDepthJumps"] = boundary->depthJumpFraction;
   }
   for (const ControlPoint& point : clip.controlPoints) {
     const Vec2 raster = scene.camera().toRaster(point.site);
@@ -152,8 +152,8 @@ std::string statsJson(const RenderStats& stats, const RenderOptions& options, co
     json["focusVoxels"] = scene.focus()->grid.voxelCount();
   if (const Tint* tint = scene.tint())
     json["labels"] = {{"components", tint->albedo.size()},
-                      {"pureFraction", tint->shares->pureFraction()},
-                      {"bytes", tint->shares->bytes()}};
+                      {"pureFraction", tint->weights->pureFraction()},
+                      {"bytes", tint->weights->bytes()}};
   addContrast(json, scene);
   addSources(json, stats, options, scene);
   return jsonText(json);

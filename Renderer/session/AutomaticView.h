@@ -19,10 +19,10 @@
 namespace fenestra {
 
 struct ViewScore {
-  double area = 0.0;    ///< of the focus's projection, mm²
-  double removed = 0.0; ///< share of the context, 0 to 1
-  double score = 0.0;   ///< mm²
-  double met = 0.0;     ///< share of the rays that meet the focus
+  double area = 0.0;            ///< of the focus's projection, mm²
+  double removedFraction = 0.0; ///< share of the context, 0 to 1
+  double score = 0.0;           ///< mm²
+  double met = 0.0;             ///< share of the rays that meet the focus
 };
 
 class ViewScorer {
@@ -42,7 +42,7 @@ private:
   };
   class FocusDepths;
 
-  double removedShare(const FocusDepths& focus) const;
+  double removedFraction(const FocusDepths& focus) const;
 
   Domain m_domain;
   FocusCells m_focus;

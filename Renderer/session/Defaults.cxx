@@ -143,7 +143,8 @@ std::optional<double> airLevel(const Volume& volume) {
   return backgroundLevel(volume, low, high);
 }
 
-double transparentShare(const Mask& focus, const Volume& volume, const TransferFunction& transfer) {
+double transparentFraction(const Mask& focus, const Volume& volume,
+                           const TransferFunction& transfer) {
   const Affine toVolume = volume.grid.worldToIndex * focus.grid.indexToWorld;
   const Box box = volume.grid.indexBox();
   const Size3& size = focus.grid.size;

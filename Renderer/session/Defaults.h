@@ -29,7 +29,8 @@ std::optional<double> airLevel(const Volume& volume);
 
 /// Share of the focus's voxels, 0 to 1, whose extinction is 0: a look that is made for something
 /// else shows a hole where the focus is. From at most about a million voxels of the mask.
-double transparentShare(const Mask& focus, const Volume& volume, const TransferFunction& transfer);
+double transparentFraction(const Mask& focus, const Volume& volume,
+                           const TransferFunction& transfer);
 
 /// Look for volumes without an absolute scale (MR, ultrasound, stored values): from transparent
 /// at the background's level to opaque at the 99.5th percentile, skin through tissue to ivory.

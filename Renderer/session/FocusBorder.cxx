@@ -113,27 +113,27 @@ private:
 /// Components of a mask's voxels.
 class Components {
 public:
-  Components(const Grid& mask, const Shares& shares, const std::vector<bool>& isFocus)
-      : m_shares(shares),
-        m_toShares(shares.grid().worldToIndex * mask.indexToWorld),
+  Components(const Grid& mask, const LabelWeights& weights, const std::vector<bool>& isFocus)
+      : m_weights(weights),
+        m_toWeights(weights.grid().worldToIndex * mask.indexToWorld),
         m_isFocus(isFocus) {}
 
   /// Component of the side with the greatest share; nothing: it has none there.
   std::optional<std::uint8_t> at(const Size3& voxel, bool focusSide) const {
     std::optional<std::uint8_t> greatest;
     double most = 0.0;
-    m_shares.at(m_toShares * voxel.cast<double>(), [&](std::uint8_t component, double share) {
-      if (m_isFocus[component] == focusSide && share > most) {
+    m_weights.at(m_toWeights * voxel.cast<double>(), [&](std::uint8_t component, double weight) {
+      if (m_isFocus[component] == focusSide && weight > most) {
         greatest = component;
-        most = share;
+        most = weight;
       }
     });
     return greatest;
   }
 
 private:
-  const Shares& m_shares;
-  Affine m_toShares;
+  const LabelWeights& m_weights;
+  Affine m_toWeights;
   const std::vector<bool>& m_isFocus;
 };
 
@@ -204,9 +204,9 @@ BorderScalars borderScalars(const Mask& focus, const Volume& volume,
 
 std::vector<ComponentBorder> componentBorders(const Mask& focus, const Volume& volume,
                                               const TransferFunction& transfer,
-                                              const Shares& shares,
+                                              const LabelWeights& weights,
                                               const std::vector<bool>& isFocus) {
-  const Components components(focus.grid, shares, isFocus);
+  const Components components(focus.grid, weights, isFocus);
   return std::visit(
       [&](const auto& voxels) {
         return bordersOf(Border(focus, volume, voxels, transfer), focus.grid, components);

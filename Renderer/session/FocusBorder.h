@@ -32,7 +32,7 @@ struct ComponentBorder {
 /// side's, the one with the greatest share.
 std::vector<ComponentBorder> componentBorders(const Mask& focus, const Volume& volume,
                                               const TransferFunction& transfer,
-                                              const Shares& shares,
+                                              const LabelWeights& weights,
                                               const std::vector<bool>& isFocus);
 
 } // namespace fenestra

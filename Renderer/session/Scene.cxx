@@ -87,14 +87,14 @@ void Scene::makeTint(const std::string& name) {
     m_skin.of(m_volume.result());
   const auto plan = m_plan.of(m_segments.result(), there, materials, r.materialChanges,
                               setsOff ? r.focus : std::vector<std::string>(), m_skin.result());
-  const auto shares = m_shares.of(m_segments.result(), plan->parts, m_skin.result(),
-                                  r.focusLook.shaping.smoothing, volume().grid);
+  const auto weights = m_labelWeights.of(m_segments.result(), plan->parts, m_skin.result(),
+                                         r.focusLook.shaping.smoothing, volume().grid);
   const auto look = m_look.result();
-  const auto tint = m_tint.of(plan, shares, look->transfer.g);
+  const auto tint = m_tint.of(plan, weights, look->transfer.g);
   if (!setsOff || !focus())
     return;
   const auto borders =
-      m_borders.of(m_volume.result(), m_focus.result(), look, shares, plan->isFocus);
+      m_borders.of(m_volume.result(), m_focus.result(), look, weights, plan->isFocus);
   const auto contrast =
       m_tintContrast.of(borders, plan, tint, materials, look, r.focusLook.contextSaturation);
   m_contrastedTint.of(tint, plan, contrast, look);
@@ -102,25 +102,26 @@ void Scene::makeTint(const std::string& name) {
 
 StageSeconds Scene::seconds() const {
   const ClipResult none, &clip = m_clip.isNew() ? *m_clip : none;
-  return {
-      .load = m_namedTransfer.seconds() + m_volume.seconds() + m_settings.seconds() +
-              m_segments.seconds() + m_focus.seconds() + m_sceneLook.seconds() + m_look.seconds(),
-      .materials = m_materials.seconds() + m_segmentsThere.seconds() + m_plan.seconds() +
-                   m_skin.seconds() + m_shares.seconds() + m_tint.seconds() + m_borders.seconds() +
-                   m_tintContrast.seconds() + m_contrastedTint.seconds() + m_mixture.seconds(),
-      .classify = m_ranges.seconds() + m_occupiedBounds.seconds() + m_contrast.seconds() +
-                  m_style.seconds() + m_majorants.seconds(),
-      .focus = clip.focusSeconds,
-      .spline = clip.splineSeconds,
-      .fill = clip.fillSeconds,
-      .features = m_features.seconds()};
+  return {.load = m_namedTransfer.seconds() + m_volume.seconds() + m_settings.seconds() +
+                  m_segments.seconds() + m_focus.seconds() + m_sceneLook.seconds() +
+                  m_look.seconds(),
+          .materials = m_materials.seconds() + m_segmentsThere.seconds() + m_plan.seconds() +
+                       m_skin.seconds() + m_labelWeights.seconds() + m_tint.seconds() +
+                       m_borders.seconds() + m_tintContrast.seconds() + m_contrastedTint.seconds() +
+                       m_mixture.seconds(),
+          .classify = m_ranges.seconds() + m_occupiedBounds.seconds() + m_contrast.seconds() +
+                      m_style.seconds() + m_majorants.seconds(),
+          .focus = clip.focusSeconds,
+          .spline = clip.splineSeconds,
+          .fill = clip.fillSeconds,
+          .features = m_features.seconds()};
 }
 
 StagesMade Scene::made() const {
-  return {m_volume.isNew(), m_focus.isNew(),     m_look.isNew(),
-          m_camera.isNew(), m_lights.isNew(),    m_clip.isNew(),
-          m_ranges.isNew(), m_majorants.isNew(), m_tint.isNew() || m_contrastedTint.isNew(),
-          m_shares.isNew()};
+  return {m_volume.isNew(),      m_focus.isNew(),     m_look.isNew(),
+          m_camera.isNew(),      m_lights.isNew(),    m_clip.isNew(),
+          m_ranges.isNew(),      m_majorants.isNew(), m_tint.isNew() || m_contrastedTint.isNew(),
+          m_labelWeights.isNew()};
 }
 
 std::string Scene::choices() const {

@@ -18,7 +18,7 @@ struct StageSeconds {
 /// Stages made for a scene; false: shared with the scene before.
 struct StagesMade {
   bool volume = false, focus = false, transfer = false, camera = false, lights = false,
-       clip = false, ranges = false, majorants = false, tint = false, shares = false;
+       clip = false, ranges = false, majorants = false, tint = false, labelWeights = false;
 
   bool operator==(const StagesMade&) const = default;
 };
@@ -92,7 +92,7 @@ private:
   static auto stages(Self& s) {
     return std::tie(s.m_namedLights, s.m_namedTransfer, s.m_volume, s.m_settings, s.m_segments,
                     s.m_focus, s.m_sceneLook, s.m_look, s.m_materials, s.m_segmentsThere, s.m_skin,
-                    s.m_plan, s.m_shares, s.m_tint, s.m_borders, s.m_tintContrast,
+                    s.m_plan, s.m_labelWeights, s.m_tint, s.m_borders, s.m_tintContrast,
                     s.m_contrastedTint, s.m_mixture, s.m_focusWarnings, s.m_view, s.m_ranges,
                     s.m_occupiedBounds, s.m_camera, s.m_lights, s.m_clip, s.m_contrast, s.m_style,
                     s.m_majorants, s.m_features);
@@ -112,7 +112,7 @@ private:
   Stage<&segmentsThere> m_segmentsThere;
   Stage<&skinOf> m_skin; ///< unused unless materials find skin
   Stage<&tintPlan> m_plan;
-  Stage<&tintShares> m_shares;
+  Stage<&computeLabelWeights> m_labelWeights;
   Stage<&tintOf> m_tint;
   Stage<&bordersOf> m_borders; ///< this and the next two: unused unless materials set off a focus
   Stage<&tintContrastOf> m_tintContrast;

@@ -187,12 +187,12 @@ TintPlan tintPlan(const Handle<SegmentsInput>& input, const Handle<std::vector<b
   return plan;
 }
 
-Shares tintShares(const Handle<SegmentsInput>& input, const std::vector<TintPart>& parts,
-                  const Handle<Mask>& skin, const std::optional<double>& smoothing,
-                  const Grid& volume) {
+LabelWeights computeLabelWeights(const Handle<SegmentsInput>& input,
+                                 const std::vector<TintPart>& parts, const Handle<Mask>& skin,
+                                 const std::optional<double>& smoothing, const Grid& volume) {
   const Segmentation& segmentation = input->segmentation;
   std::optional<Grid> labels; // of the parts before
-  const auto partAt = [&](std::size_t number) -> Shares::Part {
+  const auto partAt = [&](std::size_t number) -> LabelWeights::Part {
     const TintPart& part = parts[number];
     if (part.segments.empty())
       return {onLattice(*skin, labels.value_or(skin->grid), volume), part.priority, part.component};
@@ -208,8 +208,8 @@ Shares tintShares(const Handle<SegmentsInput>& input, const std::vector<TintPart
   return {parts.size(), partAt};
 }
 
-Tint tintOf(const Handle<TintPlan>& plan, const Handle<Shares>& shares, double g) {
-  Tint tint{shares, {}};
+Tint tintOf(const Handle<TintPlan>& plan, const Handle<LabelWeights>& weights, double g) {
+  Tint tint{weights, {}};
   for (const SegmentMedium& component : plan->components) {
     const std::optional<ColorFunction>& color = component.material.color;
     const bool isAlbedo = component.material.colorIsAlbedo;
@@ -226,7 +226,7 @@ bool isTint(const TintPlan& plan) {
 }
 
 Mixture mixtureOf(const TintPlan& plan, const Tint& tint, const TransferFunction& transfer) {
-  Mixture mixture{tint.shares, {}};
+  Mixture mixture{tint.weights, {}};
   for (std::size_t i = 0; i < plan.components.size(); ++i) {
     const SegmentMedium& medium = plan.components[i];
     Component component{transfer, medium.isClipped};

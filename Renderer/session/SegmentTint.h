@@ -50,12 +50,12 @@ TintPlan tintPlan(const Handle<SegmentsInput>& segments, const Handle<std::vecto
 
 /// Shares of the components. `smoothing`: MaskShaping's. Skin that is no
 /// segment is put on the labels' voxels (onLattice()).
-Shares tintShares(const Handle<SegmentsInput>& segments, const std::vector<TintPart>& parts,
-                  const Handle<Mask>& skin, const std::optional<double>& smoothing,
-                  const Grid& volume);
+LabelWeights computeLabelWeights(const Handle<SegmentsInput>& segments,
+                                 const std::vector<TintPart>& parts, const Handle<Mask>& skin,
+                                 const std::optional<double>& smoothing, const Grid& volume);
 
 /// `g`: mean cosine of whatever scatters, by which albedo makes a colour.
-Tint tintOf(const Handle<TintPlan>& plan, const Handle<Shares>& shares, double g);
+Tint tintOf(const Handle<TintPlan>& plan, const Handle<LabelWeights>& weights, double g);
 
 /// True if components differ in colour alone.
 bool isTint(const TintPlan& plan);

@@ -214,10 +214,10 @@ std::vector<std::string> focusWarnings(const Read& volume, const Focus& focus,
   constexpr double most = 0.5;
   if (!focus->mask)
     return {};
-  const double share = transparentShare(*focus->mask, volume->volume, look->transfer);
-  if (share <= most)
+  const double fraction = transparentFraction(*focus->mask, volume->volume, look->transfer);
+  if (fraction <= most)
     return {};
-  return {textOf("the look ", look->name, " leaves ", std::lround(100.0 * share),
+  return {textOf("the look ", look->name, " leaves ", std::lround(100.0 * fraction),
                  " % of the focus transparent; name one made for it with --transfer or --preset")};
 }
 
@@ -285,8 +285,8 @@ Mask skinOf(const Read& volume) {
 }
 
 TintBorders bordersOf(const Read& volume, const Focus& focus, const Handle<Look>& look,
-                      const Handle<Shares>& shares, const std::vector<bool>& isFocus) {
-  return componentBorders(*focus->mask, volume->volume, look->transfer, *shares, isFocus);
+                      const Handle<LabelWeights>& weights, const std::vector<bool>& isFocus) {
+  return componentBorders(*focus->mask, volume->volume, look->transfer, *weights, isFocus);
 }
 
 TintContrast tintContrastOf(const Handle<TintBorders>& borders, const Handle<TintPlan>& plan,

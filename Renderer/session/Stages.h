@@ -101,7 +101,7 @@ Mask skinOf(const Read& volume);
 
 /// Where the focus's components meet the others. `isFocus`: TintPlan's.
 TintBorders bordersOf(const Read& volume, const Focus& focus, const Handle<Look>& look,
-                      const Handle<Shares>& shares, const std::vector<bool>& isFocus);
+                      const Handle<LabelWeights>& weights, const std::vector<bool>& isFocus);
 
 /// Knobs of the tint. `saturation`: of the request.
 TintContrast tintContrastOf(const Handle<TintBorders>& borders, const Handle<TintPlan>& plan,

@@ -19,8 +19,8 @@ bool isShown(const Rgb& color) {
 /// Colour, linear, with as much of its chroma as the display has.
 Rgb shownColor(const Lab& lab) {
   constexpr int halvings = 20;
-  const auto withChroma = [&](double share) {
-    return linearOf({lab.L, share * lab.a, share * lab.b});
+  const auto withChroma = [&](double fraction) {
+    return linearOf({lab.L, fraction * lab.a, fraction * lab.b});
   };
   double least = 0.0, most = 1.0;
   if (isShown(withChroma(most)))
@@ -86,7 +86,7 @@ public:
     const double first = m_knobs.*knob;
     for (int i = 1; i <= steps && m_share < enoughShare; ++i)
       take(knob, first + (farthest - first) * i / steps,
-           [this](double share) { return share > m_share; });
+           [this](double fraction) { return fraction > m_share; });
   }
 
   /// Turns all knobs back toward the start, from the last to the first, as far as that costs
@@ -131,7 +131,7 @@ private:
     const double last = m_knobs.*knob, needed = std::min(m_share, enoughShare);
     for (int i = 1; i <= steps; ++i)
       if (!take(knob, last + (m_start.*knob - last) * i / steps,
-                [needed](double share) { return share >= needed; }))
+                [needed](double fraction) { return fraction >= needed; }))
         return;
   }
 

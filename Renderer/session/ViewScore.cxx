@@ -150,7 +150,7 @@ ViewScorer::ViewScorer(const Volume& volume, const Domain& domain, const Transfe
     m_context.insert(m_context.end(), layer.begin(), layer.end());
 }
 
-double ViewScorer::removedShare(const FocusDepths& focus) const {
+double ViewScorer::removedFraction(const FocusDepths& focus) const {
   double removed = 0.0, all = 0.0;
   for (const ContextCell& cell : m_context) {
     const Vec3 at = focus.local(cell.center);
@@ -165,9 +165,9 @@ ViewScore ViewScorer::operator()(const Vec3& fromTarget, std::size_t rays) const
   const FocusDepths focus(m_focus, m_domain, fromTarget, rays);
   ViewScore score{.area = focus.area(), .met = focus.met()};
   if (score.area > 0.0)
-    score.removed = removedShare(focus);
+    score.removedFraction = removedFraction(focus);
   const double custom = 1.0 + 0.05 * fromTarget.y() - 0.1 * fromTarget.z() * fromTarget.z();
-  score.score = score.area * (1.0 - score.removed) * custom;
+  score.score = score.area * (1.0 - score.removedFraction) * custom;
   return score;
 }
 

@@ -18,18 +18,19 @@ namespace {
 
 /// Worst figures over several views, for the summary.
 struct Worst {
-  double jumpShare = 0.0, rayJumpShare = 0.0, strict = 1.0, halfVoxel = 1.0, halfVoxelSmooth = 1.0;
+  double jumpFraction = 0.0, rayJumpFraction = 0.0, strictFraction = 1.0, halfVoxelFraction = 1.0,
+         halfVoxelSmooth = 1.0;
   Distances gap, cut;
 
   static void widen(Distances& worst, const Distances& other) {
     worst = {std::max(worst.mean, other.mean), std::max(worst.p95, other.p95),
-             std::max(worst.max, other.max), std::max(worst.wide, other.wide)};
+             std::max(worst.max, other.max), std::max(worst.wideFraction, other.wideFraction)};
   }
   void add(const BoundaryMeasure& measure) {
-    jumpShare = std::max(jumpShare, measure.jumpShare);
-    rayJumpShare = std::max(rayJumpShare, measure.rayJumpShare);
-    strict = std::min(strict, measure.strict);
-    halfVoxel = std::min(halfVoxel, measure.halfVoxel);
+    jumpFraction = std::max(jumpFraction, measure.jumpFraction);
+    rayJumpFraction = std::max(rayJumpFraction, measure.rayJumpFraction);
+    strictFraction = std::min(strictFraction, measure.strictFraction);
+    halfVoxelFraction = std::min(halfVoxelFraction, measure.halfVoxelFraction);
     halfVoxelSmooth = std::min(halfVoxelSmooth, measure.halfVoxelSmooth);
     widen(gap, measure.gap);
     widen(cut, measure.cut);
@@ -41,9 +42,9 @@ template <typename Figures>
 void printFigures(const Figures& f) {
   std::printf(" %.1f %% | %.3f | %.3f | %.3f | %.3f %% | %.3f | %.3f | %.2f %% | %.2f %% | %.1f %% "
               "| %.3f %% |\n",
-              100.0 * f.jumpShare, f.gap.mean, f.gap.p95, f.gap.max, 100.0 * f.gap.wide, f.cut.p95,
-              f.cut.max, 100.0 * f.strict, 100.0 * f.halfVoxel, 100.0 * f.rayJumpShare,
-              100.0 * f.halfVoxelSmooth);
+              100.0 * f.jumpFraction, f.gap.mean, f.gap.p95, f.gap.max, 100.0 * f.gap.wideFraction,
+              f.cut.p95, f.cut.max, 100.0 * f.strictFraction, 100.0 * f.halfVoxelFraction,
+              100.0 * f.rayJumpFraction, 100.0 * f.halfVoxelSmooth);
 }
 
 constexpr const char* figureTitles = " jumps | gap mean | p95 | max | over 0.2 mm | cut p95 | max "

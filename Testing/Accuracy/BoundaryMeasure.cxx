@@ -41,7 +41,7 @@ Distances summary(std::vector<double> values) {
   std::ranges::sort(values);
   for (const double value : values) {
     result.mean += value / static_cast<double>(values.size());
-    result.wide += (value > wideGap ? 1.0 : 0.0) / static_cast<double>(values.size());
+    result.wideFraction += (value > wideGap ? 1.0 : 0.0) / static_cast<double>(values.size());
   }
   result.p95 = values[static_cast<std::size_t>(0.95 * static_cast<double>(values.size() - 1))];
   result.max = values.back();
@@ -158,7 +158,7 @@ BoundaryMeasure FocusView::measure(const Surface& surface) const {
       cuts.push_back(std::max(0.0, surface(inner.raster) - inner.depth));
     }
   result.outlinePoints = static_cast<double>(m_outline.size());
-  result.jumpShare = 1.0 - static_cast<double>(gaps.size()) / result.outlinePoints;
+  result.jumpFraction = 1.0 - static_cast<double>(gaps.size()) / result.outlinePoints;
   result.gap = summary(std::move(gaps));
   result.cut = summary(std::move(cuts));
 
@@ -170,15 +170,15 @@ BoundaryMeasure FocusView::measure(const Surface& surface) const {
       const bool isJump = isAtJump({raster, m_rays[ray]});
       const bool isShown = kept <= 0.5 * m_field.longestEdge();
       result.rays += 1.0;
-      result.strict += kept <= strictTolerance ? 1.0 : 0.0;
-      result.halfVoxel += isShown ? 1.0 : 0.0;
+      result.strictFraction += kept <= strictTolerance ? 1.0 : 0.0;
+      result.halfVoxelFraction += isShown ? 1.0 : 0.0;
       jumps += isJump ? 1.0 : 0.0;
       halfVoxelSmooth += isShown && !isJump ? 1.0 : 0.0;
     }
-  result.strict /= result.rays;
-  result.halfVoxel /= result.rays;
+  result.strictFraction /= result.rays;
+  result.halfVoxelFraction /= result.rays;
   result.halfVoxelSmooth = halfVoxelSmooth / (result.rays - jumps);
-  result.rayJumpShare = jumps / result.rays;
+  result.rayJumpFraction = jumps / result.rays;
   const auto width = static_cast<std::size_t>(m_view.size);
   for (std::size_t i = 0; i < m_centres.size(); ++i)
     if (m_centres[i] < infinity) {
@@ -214,9 +214,9 @@ PictureMatch FocusView::match(const std::vector<float>& depths, const Surface& s
         continue;
       const double seen = double{depths[pixel]};
       result.pixels += 1.0;
-      result.share += seen >= least - tolerance && seen <= greatest + tolerance ? 1.0 : 0.0;
+      result.fraction += seen >= least - tolerance && seen <= greatest + tolerance ? 1.0 : 0.0;
     }
-  result.share /= result.pixels;
+  result.fraction /= result.pixels;
   return result;
 }
 

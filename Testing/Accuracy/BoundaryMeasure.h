@@ -26,25 +26,26 @@ constexpr double strictTolerance = 0.2; ///< mm kept in front of an unoccluded f
 
 struct Distances {
   double mean = 0.0, p95 = 0.0, max = 0.0; ///< mm
-  double wide = 0.0;                       ///< share of points above wideGap
+  double wideFraction = 0.0;               ///< share of points above wideGap
 };
 
 struct BoundaryMeasure {
   double outlinePoints = 0.0;
-  double jumpShare = 0.0;    ///< share of the outline's points; left out of `gap` and `cut`
+  double jumpFraction = 0.0; ///< share of the outline's points; left out of `gap` and `cut`
   Distances gap;             ///< |surface just outside - focus's last point|
   Distances cut;             ///< depth of the surface behind the focus's last point; 0 if in front
   double rays = 0.0;         ///< rays that meet the focus
-  double strict = 0.0;       ///< share of rays unoccluded, to strictTolerance
-  double halfVoxel = 0.0;    ///< share unoccluded, to half of the labelmap's longest voxel edge
-  double rayJumpShare = 0.0; ///< share of rays at a depth jump
-  double halfVoxelSmooth = 0.0; ///< halfVoxel over the rays without a depth jump
+  double strictFraction = 0.0; ///< share of rays unoccluded, to strictTolerance
+  double halfVoxelFraction =
+      0.0;                      ///< share unoccluded, to half of the labelmap's longest voxel edge
+  double rayJumpFraction = 0.0; ///< share of rays at a depth jump
+  double halfVoxelSmooth = 0.0; ///< halfVoxelFraction over the rays without a depth jump
   double centreGap = 0.0;       ///< greatest mm kept in front of the focus at a pixel centre
 };
 
 struct PictureMatch {
-  double pixels = 0.0; ///< pixels examined
-  double share = 0.0;  ///< share of these whose depth is within the surface's range there
+  double pixels = 0.0;   ///< pixels examined
+  double fraction = 0.0; ///< share of these whose depth is within the surface's range there
 };
 
 /// Depth of a clipping surface, mm from the eye's plane, at a raster position.

@@ -74,7 +74,7 @@ TEST(Boundary, ExactSurfaceGapIsBelowAThirdOfTheSplines) {
     EXPECT_LT(exact.gap.p95, 0.3 * spline.gap.p95);
     EXPECT_LT(exact.gap.p95, 0.05);
     EXPECT_LT(exact.gap.max, 0.2);
-    EXPECT_GT(exact.strict, 0.999);
+    EXPECT_GT(exact.strictFraction, 0.999);
     EXPECT_GT(exact.halfVoxelSmooth, 0.999);
     EXPECT_GT(exact.halfVoxelSmooth, spline.halfVoxelSmooth);
   }
@@ -92,9 +92,9 @@ TEST(Boundary, PictureShowsContextAtTheSurfaceDepth) {
   const Surface exact = clippingSurface(knee, view, "exact");
   const auto splinePicture = depthsInPicture(knee, view, "spline", folder.path());
   const auto exactPicture = depthsInPicture(knee, view, "exact", folder.path());
-  EXPECT_GT(focus.match(splinePicture, spline).share, 0.999);
-  EXPECT_GT(focus.match(exactPicture, exact).share, 0.999);
-  EXPECT_LT(focus.match(exactPicture, spline).share, 0.9);
+  EXPECT_GT(focus.match(splinePicture, spline).fraction, 0.999);
+  EXPECT_GT(focus.match(exactPicture, exact).fraction, 0.999);
+  EXPECT_LT(focus.match(exactPicture, spline).fraction, 0.9);
   EXPECT_GT(focus.match(exactPicture, exact).pixels, 200.0);
 }
 

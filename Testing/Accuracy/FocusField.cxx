@@ -98,7 +98,7 @@ FocusField::FocusField(const Indicator& indicator) {
   for (std::int64_t z = low.z(); z <= high.z(); ++z)
     for (std::int64_t y = low.y(); y <= high.y(); ++y)
       for (std::int64_t x = low.x(); x <= high.x(); ++x)
-        m_shares.push_back(voxel(x, y, z) / indicator.full);
+        m_fractions.push_back(voxel(x, y, z) / indicator.full);
   m_lower = Vec3::Constant(-0.5);
   m_upper = m_size.cast<double>() - Vec3::Constant(0.5);
   m_worldToIndex = (indicator.indexToWorld * translationBy(low.cast<double>())).inverse();
@@ -115,8 +115,8 @@ void FocusField::markLowness() {
           const Size3 at = (Size3(x, y, z) - Size3(corner & 1, corner >> 1 & 1, corner >> 2))
                                .cwiseMax(Size3::Zero())
                                .cwiseMin(m_size - Size3::Ones());
-          if (m_shares[static_cast<std::size_t>((at.z() * m_size.y() + at.y()) * m_size.x() +
-                                                at.x())] >= 0.5)
+          if (m_fractions[static_cast<std::size_t>((at.z() * m_size.y() + at.y()) * m_size.x() +
+                                                   at.x())] >= 0.5)
             m_lowness[static_cast<std::size_t>((z * m_cells.y() + y) * m_cells.x() + x)] = 0;
         }
   // After `farthest` rounds each cell knows its distance to the nearest cell that is not low.
@@ -141,7 +141,7 @@ double FocusField::at(const Vec3& index) const {
   const Size3 high = (low + Size3::Ones()).cwiseMin(m_size - Size3::Ones());
   const Vec3 f = in - low.cast<double>();
   const auto voxel = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
-    return m_shares[static_cast<std::size_t>((z * m_size.y() + y) * m_size.x() + x)];
+    return m_fractions[static_cast<std::size_t>((z * m_size.y() + y) * m_size.x() + x)];
   };
   const auto row = [&](std::int64_t y, std::int64_t z) {
     return (1.0 - f.x()) * voxel(low.x(), y, z) + f.x() * voxel(high.x(), y, z);

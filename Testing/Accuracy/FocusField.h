@@ -41,9 +41,9 @@ private:
   /// Cell c lies between the voxel centres c - 1 and c of the stored part: the focus and two voxels
   /// on every side, fewer at the volume's faces.
   Size3 m_size, m_cells;
-  Vec3 m_lower, m_upper;        ///< box of the part, in its own index space
-  Affine m_worldToIndex;        ///< index space of the part
-  std::vector<double> m_shares; ///< of the focus in each voxel, 0 to 1
+  Vec3 m_lower, m_upper;           ///< box of the part, in its own index space
+  Affine m_worldToIndex;           ///< index space of the part
+  std::vector<double> m_fractions; ///< of the focus in each voxel, 0 to 1
   /// Radius, in cells, of each cell's neighbourhood in which no share reaches 1/2: nor does the
   /// field.
   std::vector<std::uint8_t> m_lowness;

@@ -26,7 +26,7 @@ std::string text(const StagesMade& made) {
   const std::pair<const char*, bool> stages[] = {
       {"volume", made.volume}, {"focus", made.focus},         {"transfer function", made.transfer},
       {"camera", made.camera}, {"lights", made.lights},       {"clip", made.clip},
-      {"ranges", made.ranges}, {"majorants", made.majorants}, {"labels' shares", made.shares},
+      {"ranges", made.ranges}, {"majorants", made.majorants}, {"labels' shares", made.labelWeights},
       {"colours", made.tint}};
   std::string list;
   for (const auto& [name, isMade] : stages)

@@ -90,10 +90,10 @@ std::optional<Efficiency> efficiencyNear(const std::vector<Point>& curve, double
     if (!(point.relMse > 0.0))
       continue;
     if (last && last->relMse >= relMse && point.relMse < relMse) {
-      const double share =
+      const double fraction =
           (wanted - std::log(last->relMse)) / std::log(point.relMse / last->relMse);
       const double seconds =
-          last->cpuSeconds * std::pow(point.cpuSeconds / last->cpuSeconds, share);
+          last->cpuSeconds * std::pow(point.cpuSeconds / last->cpuSeconds, fraction);
       return Efficiency{1.0 / (relMse * seconds), relMse};
     }
     if (!nearest ||

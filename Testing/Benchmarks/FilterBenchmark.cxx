@@ -45,12 +45,12 @@ struct Row {
   double told = 0.0;                 ///< relMSE that the filter tells
   double render = 0.0, filter = 0.0; ///< CPU seconds
 
-  void add(const Row& other, double share) {
-    raw += share * other.raw;
-    filtered += share * other.filtered;
-    told += share * other.told;
-    render += share * other.render;
-    filter += share * other.filter;
+  void add(const Row& other, double weight) {
+    raw += weight * other.raw;
+    filtered += weight * other.filtered;
+    told += weight * other.told;
+    render += weight * other.render;
+    filter += weight * other.filter;
   }
 };
 

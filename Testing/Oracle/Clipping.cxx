@@ -39,8 +39,8 @@ DepthHit searchRay(const FocusField& focus, const Medium& matter, const Ray& ray
   part = {std::max(part.begin, range.begin), std::min(part.end, range.end)};
   const auto level = [&](double t) {
     const Vec3 world = ray.at(t);
-    const double share = focus.at(world);
-    return share > 0.0 && matter.contains(world) ? share : 0.0;
+    const double value = focus.at(world);
+    return value > 0.0 && matter.contains(world) ? value : 0.0;
   };
   const auto between = [&](double outside, double inside) {
     for (int i = 0; i < 60; ++i) {
@@ -184,12 +184,12 @@ double kept(const Edge& edge, double behind) {
 
 /// Position of a coordinate among monotone samples: the sample before and the share of the way to
 /// the next one, clamped at the ends.
-struct Place {
+struct SamplePosition {
   std::size_t before;
-  double share;
+  double fraction;
 };
 
-Place placeOf(const std::vector<double>& samples, double coordinate) {
+SamplePosition locateSample(const std::vector<double>& samples, double coordinate) {
   const bool rises = samples.back() > samples.front();
   std::size_t next = 1;
   while (next + 1 < samples.size() &&
@@ -197,8 +197,8 @@ Place placeOf(const std::vector<double>& samples, double coordinate) {
     ++next;
   if (samples.size() == 1)
     return {0, 0.0};
-  const double share = (coordinate - samples[next - 1]) / (samples[next] - samples[next - 1]);
-  return {next - 1, std::clamp(share, 0.0, 1.0)};
+  const double fraction = (coordinate - samples[next - 1]) / (samples[next] - samples[next - 1]);
+  return {next - 1, std::clamp(fraction, 0.0, 1.0)};
 }
 
 } // namespace
@@ -260,19 +260,19 @@ double Clipping::sampleDepth(std::size_t column, std::size_t row) const {
 
 double Clipping::linearSurface(const Vec2& at) const {
   const auto& clip = std::get<DepthClip>(m_description);
-  const Place x = placeOf(clip.columns, at.x()), y = placeOf(clip.rows, at.y());
-  return (1.0 - y.share) * ((1.0 - x.share) * sampleDepth(x.before, y.before) +
-                            x.share * sampleDepth(x.before + 1, y.before)) +
-         y.share * ((1.0 - x.share) * sampleDepth(x.before, y.before + 1) +
-                    x.share * sampleDepth(x.before + 1, y.before + 1));
+  const SamplePosition x = locateSample(clip.columns, at.x()), y = locateSample(clip.rows, at.y());
+  return (1.0 - y.fraction) * ((1.0 - x.fraction) * sampleDepth(x.before, y.before) +
+                               x.fraction * sampleDepth(x.before + 1, y.before)) +
+         y.fraction * ((1.0 - x.fraction) * sampleDepth(x.before, y.before + 1) +
+                       x.fraction * sampleDepth(x.before + 1, y.before + 1));
 }
 
 double Clipping::keepAtDepth(double here, const Vec2& at) const {
   const auto& clip = std::get<DepthClip>(m_description);
-  const Place x = placeOf(clip.columns, at.x()), y = placeOf(clip.rows, at.y());
+  const SamplePosition x = locateSample(clip.columns, at.x()), y = locateSample(clip.rows, at.y());
   const auto keptBehind = [&](double surface) { return kept(clip.edge, here - surface); };
   if (clip.hasSteps())
-    return keptBehind(sampleDepth(x.before + (x.share >= 0.5), y.before + (y.share >= 0.5)));
+    return keptBehind(sampleDepth(x.before + (x.fraction >= 0.5), y.before + (y.fraction >= 0.5)));
   const double between = linearSurface(at);
   const auto cell = clip.silhouettes.find(y.before * clip.columns.size() + x.before);
   if (cell == clip.silhouettes.end())
@@ -294,11 +294,11 @@ double Clipping::silhouetteSurface(const DepthClip::SilhouetteCell& cell, const 
   };
   const DepthHit hit =
       searchRay(*m_focus, m_matter, ray, {std::max(0.0, lengthTo(cell.least)), infinity});
-  const double share = std::clamp((hit.height - 0.25) / 0.25, 0.0, 1.0);
-  if (share == 0.0)
+  const double fraction = std::clamp((hit.height - 0.25) / 0.25, 0.0, 1.0);
+  if (fraction == 0.0)
     return between;
   const double depth = m_view.depth(ray.at(hit.t)) + clip.offset;
-  return between + share * (std::min(depth, cell.greatest) - between);
+  return between + fraction * (std::min(depth, cell.greatest) - between);
 }
 
 double Clipping::keep(const Vec3& world) const {
@@ -317,8 +317,8 @@ Vec3 Clipping::cutGradient(const Vec3& world) const {
   if (!plane && !depth)
     return Vec3::Zero();
   const Edge& edge = plane ? plane->edge : depth->edge;
-  const double share = keep(world);
-  if (!(share > edge.ghost && share < 1.0)) // not within the softness
+  const double weight = keep(world);
+  if (!(weight > edge.ghost && weight < 1.0)) // not within the softness
     return Vec3::Zero();
   Vec3 inward = m_view.forward;
   if (plane)

@@ -102,21 +102,21 @@ private:
   }
 
   /// Extinction, mm^-1, of each component: keep w sigma(s), with keep 1 where the clip leaves it.
-  Segments::Shares extinctions(const Vec3& point) const {
-    Segments::Shares all{};
-    Segments::Shares shares{1.0};
+  Segments::Weights extinctions(const Vec3& point) const {
+    Segments::Weights all{};
+    Segments::Weights fractions{1.0};
     if (isMixed())
-      shares = m_segments->at(point);
+      fractions = m_segments->at(point);
     const double keep = m_clipping.keep(point), thin = thinning(point);
     const double scalar = m_matter.scalar(point);
     for (std::size_t c = 0; c < m_components.size(); ++c)
-      if (shares[c] > 0.0)
-        all[c] = (m_components[c].isClipped ? keep : 1.0) * thin * shares[c] *
+      if (fractions[c] > 0.0)
+        all[c] = (m_components[c].isClipped ? keep : 1.0) * thin * fractions[c] *
                  m_matter.extinction(m_components[c].transfer, point, scalar);
     return all;
   }
 
-  static double sumOf(const Segments::Shares& all) {
+  static double sumOf(const Segments::Weights& all) {
     double sum = 0.0;
     for (const double one : all)
       sum += one;
@@ -127,7 +127,7 @@ private:
   Met meet(const Vec3& point, Generator& generator) const {
     std::size_t drawn = 0;
     if (isMixed()) {
-      const Segments::Shares all = extinctions(point);
+      const Segments::Weights all = extinctions(point);
       double left = uniform(generator) * sumOf(all);
       while (drawn + 1 < m_components.size() && left >= all[drawn])
         left -= all[drawn++];
@@ -169,10 +169,10 @@ private:
     const double scalar = m_matter.scalar(point);
     Rgb own = valueAt(m_components[number].transfer.albedo, scalar);
     if (m_segments && !isMixed()) {
-      const Segments::Shares shares = m_segments->at(point);
+      const Segments::Weights fractions = m_segments->at(point);
       own.setZero();
       for (std::size_t c = 0; c < m_scene.components->components.size(); ++c)
-        own += shares[c] * valueAt(m_scene.components->components[c].transfer.albedo, scalar);
+        own += fractions[c] * valueAt(m_scene.components->components[c].transfer.albedo, scalar);
     }
     if (!isStyled(point))
       return own;

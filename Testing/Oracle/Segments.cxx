@@ -8,7 +8,7 @@ namespace fenestra::oracle {
 namespace {
 
 /// First voxel of a mask in the labelmap's index space.
-Vec3 firstOf(const Mask& mask, const Affine& worldToIndex) {
+Vec3 findFirst(const Mask& mask, const Affine& worldToIndex) {
   return (worldToIndex * mask.grid.indexToWorld.translation()).array().round();
 }
 
@@ -17,11 +17,11 @@ Vec3 firstOf(const Mask& mask, const Affine& worldToIndex) {
 Segments::Segments(const ComponentsDescription& description)
     : m_description(description),
       m_worldToIndex(description.segments.front().mask.grid.indexToWorld.inverse()) {
-  if (description.components.size() > most)
+  if (description.components.size() > maxComponents)
     throw std::invalid_argument("the oracle has no more than 16 components");
   Box box = Box::nothing();
   for (const auto& segment : description.segments) {
-    const Vec3 first = firstOf(segment.mask, m_worldToIndex);
+    const Vec3 first = findFirst(segment.mask, m_worldToIndex);
     box.extend(first);
     box.extend(first + segment.mask.grid.size.cast<double>());
   }
@@ -33,10 +33,10 @@ Segments::Segments(const ComponentsDescription& description)
         m_voxels.push_back(voxel(m_first + Vec3(x, y, z)));
 }
 
-Segments::Shares Segments::atIndex(const Vec3& index) const {
+Segments::Weights Segments::atIndex(const Vec3& index) const {
   const Vec3 base = index.array().floor();
   const std::size_t count = m_description.components.size();
-  Shares sum{};
+  Weights sum{};
   for (int corner = 0; corner < 8; ++corner) {
     double weight = 1.0;
     Vec3 from = base - m_first; // the voxel, counted from the first one
@@ -50,9 +50,9 @@ Segments::Shares Segments::atIndex(const Vec3& index) const {
       continue;
     }
     const double number = from.x() + m_count.x() * (from.y() + m_count.y() * from.z());
-    const Shares& shares = m_voxels[static_cast<std::size_t>(number)];
+    const Weights& weights = m_voxels[static_cast<std::size_t>(number)];
     for (std::size_t c = 0; c < count; ++c)
-      sum[c] += weight * shares[c] / 255.0;
+      sum[c] += weight * weights[c] / 255.0;
   }
   return sum;
 }
@@ -67,10 +67,10 @@ Vec3 Segments::gradient(std::size_t component, const Vec3& world) const {
   return m_worldToIndex.linear().transpose() * perVoxel; // chain rule
 }
 
-Segments::Shares Segments::voxel(const Vec3& at) const {
+Segments::Weights Segments::voxel(const Vec3& at) const {
   const auto indicator = [&](const ComponentsDescription::Segment& segment) {
     const Size3& size = segment.mask.grid.size;
-    const Vec3 from = at - firstOf(segment.mask, m_worldToIndex);
+    const Vec3 from = at - findFirst(segment.mask, m_worldToIndex);
     for (int axis = 0; axis < 3; ++axis)
       if (from[axis] < 0.0 || from[axis] >= static_cast<double>(size[axis]))
         return 0.0;
@@ -82,7 +82,7 @@ Segments::Shares Segments::voxel(const Vec3& at) const {
   for (const auto& segment : m_description.segments)
     priorities.insert(segment.priority);
 
-  Shares shares{};
+  Weights weights{};
   double left = 255.0;
   for (const int priority : priorities) {
     double all = 0.0;
@@ -90,18 +90,18 @@ Segments::Shares Segments::voxel(const Vec3& at) const {
       all += segment.priority == priority ? indicator(segment) : 0.0;
     for (const auto& segment : m_description.segments)
       if (segment.priority == priority && all > 0.0)
-        shares[segment.component] += indicator(segment) * std::min(1.0, left / all);
+        weights[segment.component] += indicator(segment) * std::min(1.0, left / all);
     left = std::max(left - all, 0.0);
   }
-  shares[0] += left;
+  weights[0] += left;
 
   // Whole 255ths; the greatest share takes the rest.
-  const auto greatest = std::ranges::max_element(shares) - shares.begin();
+  const auto greatest = std::ranges::max_element(weights) - weights.begin();
   double sum = 0.0;
-  for (double& share : shares)
-    sum += share = std::round(share);
-  shares[static_cast<std::size_t>(greatest)] += 255.0 - sum;
-  return shares;
+  for (double& weight : weights)
+    sum += weight = std::round(weight);
+  weights[static_cast<std::size_t>(greatest)] += 255.0 - sum;
+  return weights;
 }
 
 } // namespace fenestra::oracle

@@ -9,27 +9,27 @@ namespace fenestra::oracle {
 
 class Segments {
 public:
-  static constexpr std::size_t most = 16; ///< components
+  static constexpr std::size_t maxComponents = 16; ///< components
   /// Shares of each component; all sum to 1.
-  using Shares = std::array<double, most>;
+  using Weights = std::array<double, maxComponents>;
 
   /// Throws std::invalid_argument for too many components.
   explicit Segments(const ComponentsDescription& description);
 
   /// Trilinear between the voxels of the first segment's labelmap.
-  Shares at(const Vec3& world) const { return atIndex(m_worldToIndex * world); }
+  Weights at(const Vec3& world) const { return atIndex(m_worldToIndex * world); }
   /// Gradient of a component's share, per mm, world axes: from one voxel to each side.
   Vec3 gradient(std::size_t component, const Vec3& world) const;
 
 private:
-  Shares atIndex(const Vec3& index) const;
+  Weights atIndex(const Vec3& index) const;
   /// At a voxel, in 255ths.
-  Shares voxel(const Vec3& at) const;
+  Weights voxel(const Vec3& at) const;
 
   const ComponentsDescription& m_description;
   Affine m_worldToIndex;
   Vec3 m_first, m_count; ///< voxels beyond which there is component 0 alone
-  std::vector<Shares> m_voxels;
+  std::vector<Weights> m_voxels;
 };
 
 } // namespace fenestra::oracle

@@ -32,8 +32,8 @@ Mask ball(const Vec3& center, double radius, bool isSoft) {
 }
 
 /// Parts 1 to `count`, a ball each, some of which overlap, of three priorities.
-std::vector<Shares::Part> balls(int count, bool isSoft) {
-  std::vector<Shares::Part> parts;
+std::vector<LabelWeights::Part> balls(int count, bool isSoft) {
+  std::vector<LabelWeights::Part> parts;
   for (int i = 0; i < count; ++i) {
     const double angle = 2.4 * i, height = -6.0 + 12.0 * (i + 0.5) / count;
     const Vec3 center(5.0 * std::cos(angle), 5.0 * std::sin(angle), height);
@@ -43,8 +43,8 @@ std::vector<Shares::Part> balls(int count, bool isSoft) {
   return parts;
 }
 
-Mixture mixtureOf(const std::vector<Shares::Part>& parts, std::vector<Component> components) {
-  return {std::make_shared<const Shares>(sharesOf(parts)), std::move(components)};
+Mixture mixtureOf(const std::vector<LabelWeights::Part>& parts, std::vector<Component> components) {
+  return {std::make_shared<const LabelWeights>(sharesOf(parts)), std::move(components)};
 }
 
 /// Hills of scalars from 0 to 1, seen from the front.
@@ -286,7 +286,7 @@ TEST(FurnaceOfComponents, IsOne) {
 TEST(OrderOfSegments, ChangesNoBit) {
   for (const bool isSoft : {false, true})
     for (const Integrator transport : transports) {
-      std::vector<Shares::Part> parts = balls(7, isSoft);
+      std::vector<LabelWeights::Part> parts = balls(7, isSoft);
       TestScene scene = hills(coated());
       scene.mixture = mixtureOf(parts, whiteMatter(true));
       const RenderSettings settings = settingsOf(transport, 8, 81);

@@ -101,7 +101,7 @@ void placeSegments(const Combination& c, Generator& generator, MatrixScene& scen
   labels = Grid(labels.size, rotationBy(uniform(generator, 0.0, 6.0), randomDirection(generator)) *
                                  labels.indexToWorld);
   const TransferFunction& volume = scene.product.transfer;
-  std::vector<Shares::Part> parts;
+  std::vector<LabelWeights::Part> parts;
   Tint tint{{}, {std::nullopt}};
   Mixture mixture{{}, {{volume}}};
   oracle::ComponentsDescription all{{}, {{volume}}, !c.areMatter};
@@ -122,8 +122,8 @@ void placeSegments(const Combination& c, Generator& generator, MatrixScene& scen
     mixture.components.push_back({component.transfer, component.isClipped, component.border});
     all.components.push_back(std::move(component));
   }
-  const auto shares = std::make_shared<const Shares>(sharesOf(parts));
-  tint.shares = mixture.shares = shares;
+  const auto shares = std::make_shared<const LabelWeights>(sharesOf(parts));
+  tint.weights = mixture.weights = shares;
   if (c.areMatter)
     scene.product.mixture = std::move(mixture);
   else

@@ -116,9 +116,9 @@ inline void expectKeepEverywhere(const View& view, const Clip& clip) {
       points.push_back(center + reach * view.volume.boundingRadius() * randomPoint(random, -1, 1));
   for (const Vec3& point : points) {
     const double kept = keep(clip, point);
-    ASSERT_TRUE(kept == 0.0 || kept == 1.0) << point;
+    ASSERT_TRUE(weight == 0.0 || weight == 1.0) << point;
     if (behindEye(camera, camera.toView(point).z())) {
-      ASSERT_EQ(kept, 0.0);
+      ASSERT_EQ(weight, 0.0);
     }
   }
 }
@@ -158,8 +158,8 @@ inline void expectBoxes(const View& view, const Clip& clip) {
     const Kept verdict = keptIn(clip, corners);
     for (int point = 0; point < 16; ++point) {
       const double kept = keep(clip, center + half.cwiseProduct(randomPoint(random, -1, 1)));
-      ASSERT_FALSE(bounds == Kept::none && kept > 0.0);
-      ASSERT_FALSE(bounds == Kept::all && kept < 1.0);
+      ASSERT_FALSE(bounds == Kept::none && weight > 0.0);
+      ASSERT_FALSE(bounds == Kept::all && weight < 1.0);
     }
   }
 }
@@ -219,9 +219,9 @@ inline void expectEdges(const View& view) {
               lower + Vec3(box.upper - lower).cwiseProduct(randomPoint(random, 0.0, 1.0));
           const double kept = keep(clip, at);
           const bool isBehind = behindEye(view.camera, view.camera.toView(at).z());
-          ASSERT_GE(kept, isBehind ? 0.0 : edge.ghost);
-          ASSERT_LE(kept, bounds.most);
-          ASSERT_TRUE(!bounds.isUniform || kept == bounds.most);
+          ASSERT_GE(weight, isBehind ? 0.0 : edge.ghost);
+          ASSERT_LE(weight, bounds.most);
+          ASSERT_TRUE(!bounds.isUniform || weight == bounds.most);
         }
       }
     }

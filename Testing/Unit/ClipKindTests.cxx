@@ -85,9 +85,9 @@ TEST(ClipEdge, KeptInBoundsKeepOfEveryPoint) {
           const Vec3 share = randomPoint(random, 0, 1);
           const double kept =
               keep(clip, box.lower + share.cwiseProduct(Vec3(box.upper - box.lower)));
-          ASSERT_LE(kept, bounds.most);
+          ASSERT_LE(weight, bounds.most);
           if (verdict.isUniform) {
-            ASSERT_EQ(kept, bounds.most);
+            ASSERT_EQ(weight, bounds.most);
           }
         }
         below1 += verdict.most < 1.0;
@@ -131,13 +131,13 @@ TEST_P(Holes, BoxIsFlatAtTheFarthestVisiblePointAndWiderByItsMargin) {
   };
   const double inside = half + 5.0, outside = half + 7.0;
   for (const double sign : {-1.0, 1.0}) {
-    EXPECT_EQ(below(sign * inside, inside, bottom - 0.01), 0.0) << "a box has corners";
-    EXPECT_EQ(below(sign * inside, inside, bottom + 0.01), 1.0);
-    EXPECT_EQ(below(sign * outside, 0, 70.0), 1.0);
-    EXPECT_EQ(below(0, sign * outside, 70.0), 1.0);
+    EXPECT_EQ(weight(sign * inside, inside, bottom - 0.01), 0.0) << "a box has corners";
+    EXPECT_EQ(weight(sign * inside, inside, bottom + 0.01), 1.0);
+    EXPECT_EQ(weight(sign * outside, 0, 70.0), 1.0);
+    EXPECT_EQ(weight(0, sign * outside, 70.0), 1.0);
   }
-  EXPECT_EQ(below(0, 0, 89.0), 1.0) << "the focus itself stays";
-  EXPECT_EQ(below(0, 0, 87.0), 0.0);
+  EXPECT_EQ(weight(0, 0, 89.0), 1.0) << "the focus itself stays";
+  EXPECT_EQ(weight(0, 0, 87.0), 0.0);
 }
 
 TEST_P(Holes, CylinderIsRound) {
@@ -221,7 +221,7 @@ TEST(BoundaryMeasures, CutawayGapIsTheHeightOfItsCliffs) {
   EXPECT_NEAR(measures.gap.mean, front - 60.0, 0.5);
   EXPECT_NEAR(measures.gap.max, front - 60.0, 0.5);
   EXPECT_LT(measures.slopeJump.mean, 0.5);
-  EXPECT_EQ(measures.depthJumps, 0.0);
+  EXPECT_EQ(measures.depthJumpFraction, 0.0);
   EXPECT_GT(measures.crossings, 100U);
 }
 
@@ -271,8 +271,8 @@ TEST(BoundaryMeasures, JumpsWithinTheFocusAreCountedSeparately) {
   const ClippingSurface surface = buildClippingSurface(camera, volume, focus, options);
   const BoundaryMeasures measures = measureBoundary(surface.clip, volume, focus, surface.focus);
   // Two samples on each side of the jump, at its top and its bottom.
-  EXPECT_NEAR(measures.depthJumps * static_cast<double>(measures.crossings), 4.0, 4.0);
-  EXPECT_GT(measures.depthJumps, 0.0);
+  EXPECT_NEAR(measures.depthJumpFraction * static_cast<double>(measures.crossings), 4.0, 4.0);
+  EXPECT_GT(measures.depthJumpFraction, 0.0);
   EXPECT_LT(measures.gap.max, 3.0);
 }
 

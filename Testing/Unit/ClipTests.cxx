@@ -150,7 +150,7 @@ TEST(Clip, KeptInHoldsForPointsOfTheBox) {
         }
         // Not merely conservative: small boxes that are removed, or kept, are recognised.
         EXPECT_GE(found, c == 0 ? 0 : c == 3 ? empty / 3 : empty * 3 / 4) << "clip " << c;
-        EXPECT_GE(foundWhole, whole / 3) << "clip " << c;
+        EXPECT_GE(foundWhole, full / 3) << "clip " << c;
       }
     }
 }

@@ -86,7 +86,7 @@ TEST(CompareImages, TrueErrorsGiveNormalZ) {
   EXPECT_EQ(c.z->count, 120000u);
   EXPECT_NEAR(c.z->mean, 0.0, 5.0 / std::sqrt(120000.0));
   EXPECT_NEAR(c.z->deviation, 1.0, 5.0 / std::sqrt(240000.0));
-  EXPECT_NEAR(c.z->shareAbove3, 0.0027, 5.0 * std::sqrt(0.0027 / 120000.0));
+  EXPECT_NEAR(c.z->fractionAbove3, 0.0027, 5.0 * std::sqrt(0.0027 / 120000.0));
   EXPECT_LT(c.z->imageMean.abs().maxCoeff(), 4.5);
 }
 
@@ -106,7 +106,7 @@ TEST(CompareImages, LargestZHasItsPixelAndChannel) {
   EXPECT_EQ(c.z->column, 5);
   EXPECT_EQ(c.z->row, 2);
   EXPECT_EQ(c.z->channel, 'G');
-  EXPECT_NEAR(c.z->shareAbove3, 1.0 / 84.0, 1e-12);
+  EXPECT_NEAR(c.z->fractionAbove3, 1.0 / 84.0, 1e-12);
   EXPECT_NEAR(c.z->mean, -4.0 / 84.0, 1e-6);
 }
 

@@ -187,8 +187,8 @@ TEST(MajorantGrid, ClipAndStyleAreBoundedInTheStripAroundACell) {
     const MajorantGrid::Cell& cell = majorants.cell(cellOf(majorants, grid, p));
     const Vec3 q = inStripAround(p, box, random);
     const double kept = keep(plane, q);
-    ASSERT_LE(kept * medium.extinction(q), static_cast<double>(cell.majorant)) << "at " << q;
-    ASSERT_TRUE(cell.cut || cell.majorant == 0.0F || kept == 1.0) << "at " << q;
+    ASSERT_LE(weight * medium.extinction(q), static_cast<double>(cell.majorant)) << "at " << q;
+    ASSERT_TRUE(cell.cut || cell.majorant == 0.0F || weight == 1.0) << "at " << q;
   }
 }
 

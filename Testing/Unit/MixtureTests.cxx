@@ -21,8 +21,8 @@ Mixture rampMixture() {
   const auto value = [](const Size3& voxel) {
     return std::lround(255.0 * static_cast<double>(voxel.x()) / 8.0);
   };
-  const auto shares =
-      std::make_shared<const Shares>(sharesOf({{maskOf({0, 0, 0}, {9, 2, 2}, value), 1, 1}}));
+  const auto shares = std::make_shared<const LabelWeights>(
+      sharesOf({{makeMask({0, 0, 0}, {9, 2, 2}, value), 1, 1}}));
   return {shares, {componentOf(1.0, Rgb::Ones()), componentOf(3.0, Rgb::Ones())}};
 }
 
@@ -34,16 +34,16 @@ std::map<int, double> partsAt(const MixedField& field, const MixedPoint& point) 
 
 TEST(Mixture, PartsAreSharesOfEachExtinction) {
   Mixture mixture = rampMixture();
-  const MixedField field(mixture, mixture.shares->grid());
+  const MixedField field(mixture, mixture.weights->grid());
   const MixedPoint point{Vec3(2.0, 0.5, 0.5), 0.5, 1.0};
   const double share = 64.0 / 255.0;
   const std::map<int, double> parts = partsAt(field, point);
-  EXPECT_NEAR(parts.at(0), 0.5 * (1.0 - share), 1e-12);
-  EXPECT_NEAR(parts.at(1), 1.5 * share, 1e-12);
+  EXPECT_NEAR(parts.at(0), 0.5 * (1.0 - weight), 1e-12);
+  EXPECT_NEAR(parts.at(1), 1.5 * weight, 1e-12);
   EXPECT_NEAR(field.extinction(point), parts.at(0) + parts.at(1), 1e-12);
 
   mixture.components[1].isClipped = false;
-  const MixedField open(mixture, mixture.shares->grid());
+  const MixedField open(mixture, mixture.weights->grid());
   EXPECT_TRUE(open.hasFree());
   EXPECT_FALSE(field.hasFree());
   EXPECT_NEAR(open.extinction({point.index, 0.5, 0.25}), 0.25 * parts.at(0) + parts.at(1), 1e-12);
@@ -52,7 +52,7 @@ TEST(Mixture, PartsAreSharesOfEachExtinction) {
 
 TEST(Mixture, ComponentsAreDrawnByTheirExtinction) {
   const Mixture mixture = rampMixture();
-  const MixedField field(mixture, mixture.shares->grid());
+  const MixedField field(mixture, mixture.weights->grid());
   const MixedPoint point{Vec3(3.0, 0.5, 0.5), 0.5, 1.0};
   Random random(5, 0, 0);
   constexpr int draws = 40000;
@@ -72,18 +72,18 @@ TEST(Mixture, ComponentsAreDrawnByTheirExtinction) {
 
 TEST(Mixture, GradientsOfSharesAreInTheWorld) {
   const Mixture mixture = rampMixture();
-  const MixedField field(mixture, mixture.shares->grid());
-  const Vec3 gradient = field.shareGradient(1, Vec3(4.0, 0.5, 0.5));
+  const MixedField field(mixture, mixture.weights->grid());
+  const Vec3 gradient = field.weightGradient(1, Vec3(4.0, 0.5, 0.5));
   EXPECT_LT((gradient - Vec3(0.25, 0.0, 0.0)).norm(), 1e-2) << "1/8 a voxel of 0.5 mm";
-  EXPECT_LT((field.shareGradient(0, Vec3(4.0, 0.5, 0.5)) + gradient).norm(), 1e-12);
+  EXPECT_LT((field.weightGradient(0, Vec3(4.0, 0.5, 0.5)) + gradient).norm(), 1e-12);
 }
 
 /// Dense matter of seven components that differ in all; two of them the clip leaves.
 TestScene mixedScene(bool isHybrid) {
-  TestScene scene = sceneOfParts();
+  TestScene scene = makePartsScene();
   if (isHybrid)
     scene.transfer.shading = SurfaceShading{};
-  Mixture mixture{std::make_shared<const Shares>(sharesOf(randomParts(12))), {}};
+  Mixture mixture{std::make_shared<const LabelWeights>(sharesOf(makeRandomParts(12))), {}};
   for (int i = 0; i <= 6; ++i) {
     Component component =
         componentOf(0.2 + 0.3 * i, Rgb(0.15 * i, 0.5, 0.9 - 0.1 * i), i < 4 ? 0.0 : 0.15 * i - 0.9);
@@ -115,10 +115,10 @@ TEST(Mixture, LanesAreTheScalarEstimator) {
   for (const bool isHybrid : {false, true}) {
     const TestScene scene = mixedScene(isHybrid);
     scene.with([](const RenderScene& all) { ASSERT_TRUE(lanesServe(all)); });
-    const Film lanes = rendered(scene, Integrator::simd);
-    const Film scalar = rendered(scene, Integrator::scalar);
+    const Film lanes = renderFilm(scene, Integrator::simd);
+    const Film scalar = renderFilm(scene, Integrator::scalar);
     const auto albedo = [](const PixelSums& pixel) { return Rgb(pixel.albedo / 64.0); };
-    EXPECT_LT(apart(simd, scalar, albedo), 0.04) << isHybrid;
+    EXPECT_LT(computeRmsDifference(simd, scalar, albedo), 0.04) << isHybrid;
     EXPECT_NEAR(meanDepth(simd), meanDepth(scalar), 0.1) << isHybrid;
     const Estimate a = imageEstimate(lanes), b = imageEstimate(scalar);
     EXPECT_LT(std::abs(a.mean - b.mean), 4.0 * std::hypot(a.error, b.error)) << isHybrid;
@@ -146,7 +146,7 @@ TEST(Mixture, TheClipLeavesWhatIsFree) {
   const Vec3 center = scene.volume.grid.worldCenter();
   const Camera camera(scene.pose, scene.width, scene.height);
   const auto seen = [&](Integrator transport) {
-    const Film film = rendered(scene, transport);
+    const Film film = renderFilm(scene, transport);
     double sum = 0.0;
     for (const PixelSums& pixel : film.pixels())
       sum += static_cast<double>(pixel.collided);

@@ -65,12 +65,12 @@ TEST(MrmlLooks, WindowOfTheDisplayBecomesAnOpacityRamp) {
     return 1.0 - std::exp(-f.extinction(s)[0]);
   };
   const auto whole = followedDisplay(nodes[0], nodes[2], {0, 400});
-  ASSERT_TRUE(whole); // a ramp over the whole range
-  EXPECT_NEAR(opacity(*whole, 100), 0.25, 1e-3);
-  EXPECT_NEAR(opacity(*whole, 300), 0.75, 1e-3);
-  EXPECT_NEAR(whole->albedo(100)[0], 0.0, 1e-6); // black to white over the window
-  EXPECT_NEAR(whole->albedo(200)[0], 1.0, 1e-6);
-  EXPECT_TRUE(whole->shading);
+  ASSERT_TRUE(full); // a ramp over the whole range
+  EXPECT_NEAR(opacity(*full, 100), 0.25, 1e-3);
+  EXPECT_NEAR(opacity(*full, 300), 0.75, 1e-3);
+  EXPECT_NEAR(full->albedo(100)[0], 0.0, 1e-6); // black to white over the window
+  EXPECT_NEAR(full->albedo(200)[0], 1.0, 1e-6);
+  EXPECT_TRUE(full->shading);
 
   const auto window = followedDisplay(nodes[1], nodes[2], {0, 400});
   EXPECT_NEAR(opacity(*window, 150), 0.5, 1e-3); // a ramp over the window, opaque beyond

@@ -128,7 +128,7 @@ INSTANTIATE_TEST_SUITE_P(
                {.clip = true, .majorants = true}},
         Change{"Materials",
                [](SceneRequest& r) { r.materials = "library"; },
-               {.majorants = true, .tint = true, .shares = true}}, // no pale context
+               {.majorants = true, .tint = true, .labelWeights = true}}, // no pale context
         Change{"Volume",
                [](SceneRequest& r) { r.input = *r.segmentation; },
                {true, true, true, true, true, true, true, true}}),
@@ -206,14 +206,14 @@ TEST_F(SceneChange, LabelsAreReadOnceAndSharedByColours) {
   request.materialChanges = {"1: color=#00ff00"};
   const Scene green = before.changed(request);
   EXPECT_TRUE(green.made().tint);
-  EXPECT_EQ(green.tint()->shares, before.tint()->shares);
-  EXPECT_FALSE(green.made().shares);
+  EXPECT_EQ(green.tint()->weights, before.tint()->weights);
+  EXPECT_FALSE(green.made().labelWeights);
   EXPECT_FALSE(green.made().majorants);
   request.focus = {"2"};
   EXPECT_TRUE(green.changed(request).made().focus);
   EXPECT_FALSE(green.changed(request).made().tint);
   request.focusLook.shaping.smoothing = 0.5;
-  EXPECT_NE(green.changed(request).tint()->shares, green.tint()->shares);
+  EXPECT_NE(green.changed(request).tint()->weights, green.tint()->weights);
   request.materials = noMaterials;
   EXPECT_FALSE(green.changed(request).tint());
 }

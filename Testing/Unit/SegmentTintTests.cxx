@@ -140,8 +140,8 @@ TEST(SegmentTint, MixturesHaveTheMatterOfTheirMaterials) {
               "spleen: color=#808080, extinction=1.5, g=0.6, specular=0.4, roughness=0.25, "
               "diffuse=0.7, border=0.5",
               "liver: kind=matter"}));
-  const auto shares = std::make_shared<Shares>(
-      tintShares(segments, plan->parts, {}, 0.0, segments->segmentation.grid()));
+  const auto shares = std::make_shared<LabelWeights>(
+      computeLabelWeights(segments, plan->parts, {}, 0.0, segments->segmentation.grid()));
   const Mixture mixture =
       mixtureOf(*plan, *std::make_shared<Tint>(tintOf(plan, shares, own.g)), own);
   ASSERT_EQ(mixture.components.size(), 5U);
@@ -213,7 +213,8 @@ TEST(SegmentTint, SharesAndColoursLieWhereTheLabelsAre) {
   const auto segments = row({"liver", "spleen"});
   const auto plan = std::make_shared<TintPlan>(planOf(segments, library, {}));
   const Grid& grid = segments->segmentation.grid();
-  const auto shares = std::make_shared<Shares>(tintShares(segments, plan->parts, {}, 0.0, grid));
+  const auto shares =
+      std::make_shared<LabelWeights>(computeLabelWeights(segments, plan->parts, {}, 0.0, grid));
   const Rgb own(0.1, 0.2, 0.3);
   for (const double g : {0.0, 0.5}) {
     const Tint tint = tintOf(plan, shares, g);
@@ -232,7 +233,7 @@ TEST(SegmentTint, SharesAndColoursLieWhereTheLabelsAre) {
     EXPECT_LT((field.albedo(Vec3(2.5, 0, 0), 7.0, own) - half).abs().maxCoeff(), 1e-12);
   }
   const auto liverIn = [&](const std::vector<TintPart>& parts) {
-    const Shares smooth = tintShares(segments, parts, {}, 1.0, grid);
+    const LabelWeights smooth = computeLabelWeights(segments, parts, {}, 1.0, grid);
     double liver = 0.0;
     smooth.at(smooth.grid().worldToIndex * Vec3(2, 0, 0),
               [&](std::uint8_t component, double share) { liver += component == 1 ? share : 0.0; });
@@ -262,7 +263,7 @@ TEST(SegmentTint, SkinNeedsNoSegment) {
   EXPECT_EQ(plan.parts, (Parts{{{0}, 10, 1, true}, {{1}, 10, 2}, {{}, 1, 3}}));
   EXPECT_EQ(plan.names.back(), "skin");
   EXPECT_TRUE(plan.hasFoundSkin());
-  const Shares shares = tintShares(segments, plan.parts, skinOf(grid), 0.0, grid);
+  const LabelWeights shares = computeLabelWeights(segments, plan.parts, skinOf(grid), 0.0, grid);
   const auto skinAt = [&](double x) {
     double skin = 0.0;
     shares.at(shares.grid().worldToIndex * Vec3(x, 0, 0),
@@ -285,9 +286,9 @@ TEST(SegmentTint, AlbedoIsTakenAsItIs) {
   const auto plan = std::make_shared<TintPlan>(planOf(
       segments, materials(R"({"version": 1, "materials": {"liver": {"albedo": [0.5, 0.6, 0.7]}}})"),
       {}));
-  const auto shares = std::make_shared<Shares>(
-      tintShares(segments, plan->parts, {}, 0.0, segments->segmentation.grid()));
-  EXPECT_EQ((*tintOf(plan, shares, 0.3).albedo[1])(0.0).matrix(), Vec3(0.5, 0.6, 0.7));
+  const auto shares = std::make_shared<LabelWeights>(
+      computeLabelWeights(segments, plan->parts, {}, 0.0, segments->segmentation.grid()));
+  EXPECT_EQ((*tintOf(plan, weights, 0.3).albedo[1])(0.0).matrix(), Vec3(0.5, 0.6, 0.7));
 }
 
 } // namespace

@@ -73,8 +73,8 @@ TEST(SegmentationReader, MaskContinuesOverFacesOfTheVolume) {
   EXPECT_EQ(at(mask, {0, 0, 6}), 0);
   EXPECT_EQ(at(mask, {-1, -1, 6}), 0);
   const Mask whole = s.mask({"1", "2"}, unitGrid({6, 6, 6}));
-  EXPECT_EQ(at(whole, {0, 0, 6}), 1);
-  EXPECT_EQ(whole.count, 2);
+  EXPECT_EQ(at(full, {0, 0, 6}), 1);
+  EXPECT_EQ(full.count, 2);
 }
 
 TEST(SegmentationReader, FacesWithinHalfAVoxelAreShared) {

@@ -8,7 +8,7 @@ namespace fenestra::testing {
 
 /// Box of a labelmap with `value` (0 to 255) in each voxel: index coordinates of the labelmap.
 template <typename Value>
-Mask maskOf(const Size3& first, const Size3& size, const Value& value) {
+Mask makeMask(const Size3& first, const Size3& size, const Value& value) {
   Affine map = Affine::Identity();
   map.linear() = Mat3::Diagonal(Vec3(0.5, 0.75, 2.0));
   map.translation() = Vec3(3.0, -7.0, 11.0);
@@ -24,34 +24,35 @@ Mask maskOf(const Size3& first, const Size3& size, const Value& value) {
 }
 
 /// Boxes of random indicators that overlap, with a margin of 0; priorities 0 to 2.
-inline std::vector<Shares::Part> randomParts(int count) {
-  std::vector<Shares::Part> parts;
+inline std::vector<LabelWeights::Part> makeRandomParts(int count) {
+  std::vector<LabelWeights::Part> parts;
   for (int i = 0; i < count; ++i) {
     Random random(7, static_cast<std::uint64_t>(i), 0);
-    const auto whole = [&](double most) {
-      return static_cast<std::int64_t>(random.uniform() * most);
+    const auto randomInt = [&](double limit) {
+      return static_cast<std::int64_t>(random.uniform() * limit);
     };
-    const Size3 first(whole(9), whole(9), whole(9)), size(4 + whole(9), 4 + whole(9), 4 + whole(9));
+    const Size3 first(randomInt(9), randomInt(9), randomInt(9)),
+        size(4 + randomInt(9), 4 + randomInt(9), 4 + randomInt(9));
     const bool isHard = i % 2 == 0;
-    const auto priority = static_cast<int>(whole(3));
+    const auto priority = static_cast<int>(randomInt(3));
     const auto value = [&, last = Size3(first + size)](const Size3& voxel) {
       const bool inside =
           (voxel.array() > first.array()).all() && (voxel.array() + 1 < last.array()).all();
       if (!inside)
         return std::int64_t{0};
-      return isHard ? 255 : whole(256);
+      return isHard ? 255 : randomInt(256);
     };
-    parts.push_back({maskOf(first, size, value), priority, static_cast<std::uint8_t>(i % 6 + 1)});
+    parts.push_back({makeMask(first, size, value), priority, static_cast<std::uint8_t>(i % 6 + 1)});
   }
   return parts;
 }
 
-/// Dense matter on a grid off that of randomParts(), and partly beyond it.
-inline TestScene sceneOfParts() {
-  const Shares shares = sharesOf(randomParts(12));
-  Affine map = shares.grid().indexToWorld;
+/// Dense matter on a grid off that of makeRandomParts(), and partly beyond it.
+inline TestScene makePartsScene() {
+  const LabelWeights weights = sharesOf(makeRandomParts(12));
+  Affine map = weights.grid().indexToWorld;
   map.translate(Vec3(0.4, -0.7, 0.2));
-  const Grid grid(shares.grid().size, map);
+  const Grid grid(weights.grid().size, map);
   return {makeVolume(grid, [](const Vec3& p) { return 0.3 + 0.02 * p.x(); }),
           linearTransfer(0.6, Rgb(0.9, 0.8, 0.3)),
           {EnvironmentLight{}},
@@ -61,17 +62,17 @@ inline TestScene sceneOfParts() {
 }
 
 /// Film of 64 samples a pixel, with normals.
-inline Film rendered(const TestScene& scene, Integrator transport) {
+inline Film renderFilm(const TestScene& scene, Integrator integrator) {
   RenderSettings settings;
   settings.samples = 64;
-  settings.integrator = transport;
+  settings.integrator = integrator;
   settings.path.wantNormals = true;
   return scene.render(settings).film;
 }
 
 /// Root mean square over pixels and channels of the difference of `value`.
 template <typename Value>
-double apart(const Film& a, const Film& b, const Value& value) {
+double computeRmsDifference(const Film& a, const Film& b, const Value& value) {
   double sum = 0.0;
   for (std::size_t i = 0; i < a.pixelCount(); ++i)
     sum += (value(a.pixels()[i]) - value(b.pixels()[i])).matrix().squaredNorm();

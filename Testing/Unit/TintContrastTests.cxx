@@ -282,7 +282,7 @@ protected:
       const Size3 v = index.array().round().cast<std::int64_t>();
       return isCube(v) ? 20.0 : v.x() >= high ? 30.0 : 10.0;
     });
-    const Shares shares = sharesOf(
+    const LabelWeights shares = sharesOf(
         {{maskOf(isCube), 10, 1}, {maskOf([](const Size3& v) { return v.x() >= high; }), 10, 2}});
     return componentBorders(maskOf(isCube), volume, transfer, shares, {false, true, false});
   }

@@ -181,9 +181,9 @@ void SilhouetteCells::evaluate(std::span<Query> queries) const {
     if (const Sight& sight = rest.sight[i]; sight.indicator > FocusCells::captureThreshold) {
       Query& query = *rest.queries[i];
       const double depth = std::min(sight.depth, findBounds(query).end) - toFocus;
-      const double share =
+      const double blend =
           (sight.indicator - FocusCells::captureThreshold) / (0.5 - FocusCells::captureThreshold);
-      query.depth += share * (depth - query.depth);
+      query.depth += blend * (depth - query.depth);
     }
 }
 

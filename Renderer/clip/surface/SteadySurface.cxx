@@ -50,9 +50,9 @@ ClippingSurface buildSteadySurface(const Camera& camera, const Domain& volume, c
       {-1.0, 1.0 / 16.0}, {-0.5, 4.0 / 16.0}, {0.5, 4.0 / 16.0}, {1.0, 1.0 / 16.0}};
   const auto& own = std::get<ClipDepth>(surface.clip);
   const double width = focus.grid.boundingRadius() * std::abs(degrees) * pi / 180.0;
-  std::vector<double> shares = distancesFromFocus(surface.focus);
-  for (double& share : shares) // of the mean: 0 at the focus, 1 at distances >= `width`
-    share = smoothStep(0.0, width, share);
+  std::vector<double> blends = distancesFromFocus(surface.focus);
+  for (double& blend : blends) // of the mean: 0 at the focus, 1 at distances >= `width`
+    blend = smoothStep(0.0, width, blend);
 
   auto buffer = std::make_shared<DepthBuffer>(*own.buffer);
   for (const auto& [turn, weight] : neighbours) {
@@ -65,8 +65,8 @@ ClippingSurface buildSteadySurface(const Camera& camera, const Domain& volume, c
         const std::int64_t sample = buffer->sample(column, row);
         const double difference =
             depths.depth(buffer->position(column, row)) - own.buffer->at(sample);
-        const double share = weight * shares[static_cast<std::size_t>(sample)];
-        buffer->set(sample, buffer->at(sample) + share * difference);
+        const double blend = weight * blends[static_cast<std::size_t>(sample)];
+        buffer->set(sample, buffer->at(sample) + blend * difference);
       }
     surface.focusSeconds += other.focusSeconds;
     surface.splineSeconds += other.splineSeconds;

@@ -56,12 +56,12 @@ public:
         mix(left + x, top + y, picture.at(x, y), 1.0F);
   }
   /// Puts `share` of the colour over a pixel.
-  void mix(int x, int y, const Rgb& color, float share) {
+  void mix(int x, int y, const Rgb& color, float coverage) {
     if (x < 0 || y < 0 || x >= m_width || y >= m_height)
       return;
     for (std::size_t c = 0; c < m_planes.size(); ++c) {
       float& value = m_planes[c][index(x, y)];
-      value += share * (static_cast<float>(color[static_cast<int>(c)]) - value);
+      value += coverage * (static_cast<float>(color[static_cast<int>(c)]) - value);
     }
   }
   Image image() && {

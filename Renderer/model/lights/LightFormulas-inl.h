@@ -30,7 +30,7 @@ FENESTRA_INLINE void drawFrom(const Lights::Area& light, LaneMask mine, const Fl
   // False behind the light, in its plane, and on the light: no direction.
   const LaneMask apart = distance2 >= std::numeric_limits<Real>::min();
   const LaneMask lit = mine & apart & (cosine > 0.0F);
-  const Float pdf = light.share * distance2 / (light.area * cosine);
+  const Float pdf = light.pmf * distance2 / (light.area * cosine);
   drawn.direction = select(lit, direction, drawn.direction);
   drawn.radiance = select(lit, Float3(light.radiance), drawn.radiance);
   drawn.distance = select(lit, distance, drawn.distance);
@@ -45,7 +45,7 @@ FENESTRA_INLINE Float spreadOf(const Lights::Sphere& light, Float distance2) {
   return select(sine2 < 1.0F, sine2 / (1.0F + cosine), 2.0F);
 }
 FENESTRA_INLINE Float densityOf(const Lights::Sphere& light, Float spread) {
-  return light.share / (static_cast<Real>(2.0 * pi) * spread);
+  return light.pmf / (static_cast<Real>(2.0 * pi) * spread);
 }
 /// Distance to a sphere whose centre is `along` ahead, and aside by the square root of `across2`.
 FENESTRA_INLINE Float distanceTo(const Lights::Sphere& light, Float distance2, Float along,
@@ -84,26 +84,26 @@ FENESTRA_INLINE LightDraw drawLight(const Lights& lights, LaneMask& which, const
                                     Float& choice, Float u, Float v) {
   const Float far = std::numeric_limits<Real>::infinity();
   LightDraw drawn{{0.0F, 0.0F, 1.0F}, {0.0F, 0.0F, 0.0F}, far, 1.0F, LaneMask::none()};
-  const auto chosen = [&](Real share) {
-    const LaneMask mine = which & sampleBernoulli(share, choice);
+  const auto chosen = [&](Real pmf) {
+    const LaneMask mine = which & sampleBernoulli(pmf, choice);
     which = which.without(mine);
-    choice = choice - share;
+    choice = choice - pmf;
     return mine;
   };
   for (const Lights::Area& light : lights.areas) {
-    const LaneMask mine = chosen(light.share);
+    const LaneMask mine = chosen(light.pmf);
     if (mine.any())
       drawFrom(light, mine, point, u, v, drawn);
   }
   for (const Lights::Directional& light : lights.directionals) {
-    const LaneMask mine = chosen(light.share);
+    const LaneMask mine = chosen(light.pmf);
     drawn.direction = select(mine, Float3(light.toward), drawn.direction);
     drawn.radiance = select(mine, Float3(light.irradiance), drawn.radiance);
-    drawn.pdf = select(mine, light.share, drawn.pdf);
+    drawn.pdf = select(mine, light.pmf, drawn.pdf);
     drawn.delta = mine | drawn.delta;
   }
   for (const Lights::Sphere& light : lights.spheres) {
-    const LaneMask mine = chosen(light.share);
+    const LaneMask mine = chosen(light.pmf);
     if (mine.any())
       drawFrom(light, mine, point, u, v, drawn);
   }
@@ -130,7 +130,7 @@ FENESTRA_INLINE LightHits intersect(const Lights::Area& light, LaneMask which, c
   const Float x2 = square(dot(d, Float3(light.right)) * light.perRight);
   const Float y2 = square(dot(d, Float3(light.up)) * light.perUp);
   const LaneMask inside = (light.isDisk ? x2 + y2 : max(x2, y2)) <= 1.0F;
-  return {hit & inside, light.share * square(t) / (light.area * cosine)};
+  return {hit & inside, light.pmf * square(t) / (light.area * cosine)};
 }
 
 FENESTRA_INLINE LightHits intersect(const Lights::Sphere& light, LaneMask which,

@@ -5,7 +5,7 @@ namespace {
 
 /// Least share of a light, relative to an equal share: a light that is dark at the volume's centre
 /// may matter elsewhere.
-constexpr double leastShare = 0.05;
+constexpr double minPmf = 0.05;
 
 } // namespace
 
@@ -24,7 +24,7 @@ LightSet::LightSet(const std::vector<Light>& lights, const Grid& volume, const C
   };
   for (const Light& light : lights)
     std::visit(placeKind, light);
-  chooseShares(volume.worldCenter());
+  computePmfs(volume.worldCenter());
 }
 
 void LightSet::place(const EnvironmentLight& light) {
@@ -64,40 +64,40 @@ void LightSet::place(const SphereLight& light, const FrameInWorld& frame) {
 }
 
 /// Each light is drawn in proportion to its irradiance at the volume's centre.
-void LightSet::chooseShares(const Vec3& center) {
-  std::vector<double*> shares;
-  for (SharedEnvironment& environment : m_environments) {
+void LightSet::computePmfs(const Vec3& center) {
+  std::vector<double*> pmfs;
+  for (PlacedEnvironment& environment : m_environments) {
     if (!(environment.sampler.total() > 0.0)) // constant, or black: nothing to draw
       continue;
-    environment.share = pi * brightness(environment.sampler.mean());
-    shares.push_back(&environment.share);
+    environment.pmf = pi * brightness(environment.sampler.mean());
+    pmfs.push_back(&environment.pmf);
   }
   for (auto& light : m_tables.directionals) {
-    light.share = brightness(light.irradiance);
-    shares.push_back(&light.share);
+    light.pmf = brightness(light.irradiance);
+    pmfs.push_back(&light.pmf);
   }
   for (auto& light : m_tables.areas) {
     const Vec3 d = center - light.center;
     const double cosine = std::max(0.0, light.normal.dot(d.normalized()));
-    light.share = brightness(light.radiance) * light.area * cosine / d.squaredNorm();
-    shares.push_back(&light.share);
+    light.pmf = brightness(light.radiance) * light.area * cosine / d.squaredNorm();
+    pmfs.push_back(&light.pmf);
   }
   for (auto& light : m_tables.spheres) {
     const double sine2 = std::min(1.0, light.radius2 / (center - light.center).squaredNorm());
-    light.share = pi * brightness(light.radiance) * sine2;
-    shares.push_back(&light.share);
+    light.pmf = pi * brightness(light.radiance) * sine2;
+    pmfs.push_back(&light.pmf);
   }
   double sum = 0.0;
-  for (const double* share : shares)
-    sum += *share;
+  for (const double* pmf : pmfs)
+    sum += *pmf;
   if (!(sum > 0.0) || !std::isfinite(sum)) {
-    for (double* share : shares)
-      *share = 1.0 / static_cast<double>(shares.size());
+    for (double* pmf : pmfs)
+      *pmf = 1.0 / static_cast<double>(pmfs.size());
     return;
   }
-  const double floor = leastShare / static_cast<double>(shares.size());
-  for (double* share : shares)
-    *share = floor + (1.0 - leastShare) * *share / sum;
+  const double floor = minPmf / static_cast<double>(pmfs.size());
+  for (double* pmf : pmfs)
+    *pmf = floor + (1.0 - minPmf) * *pmf / sum;
 }
 
 std::optional<LightSample> LightSet::sample(const Vec3& point, double choice, const Vec2& u) const {
@@ -113,14 +113,14 @@ std::optional<LightSample> LightSet::sample(const Vec3& point, double choice, co
 }
 
 std::optional<LightSample> LightSet::sampleEnvironment(double choice, const Vec2& u) const {
-  const SharedEnvironment* chosen = nullptr;
-  for (const SharedEnvironment& environment : m_environments) {
-    if (environment.share == 0.0)
+  const PlacedEnvironment* chosen = nullptr;
+  for (const PlacedEnvironment& environment : m_environments) {
+    if (environment.pmf == 0.0)
       continue;
     chosen = &environment; // the last map takes the remainder of rounding
-    if (choice < environment.share)
+    if (choice < environment.pmf)
       break;
-    choice -= environment.share;
+    choice -= environment.pmf;
   }
   if (chosen == nullptr)
     return std::nullopt;
@@ -133,11 +133,11 @@ std::optional<LightSample> LightSet::sampleEnvironment(double choice, const Vec2
 
 EmitterHit LightSet::environment(const Vec3& direction) const {
   EmitterHit sum{toColor(scalar::around(m_tables, direction)), 0.0};
-  for (const SharedEnvironment& environment : m_environments) {
+  for (const PlacedEnvironment& environment : m_environments) {
     if (environment.sampler.constant())
       continue;
     sum.radiance += environment.sampler.radiance(direction);
-    sum.pdf += environment.share * environment.sampler.pdf(direction);
+    sum.pdf += environment.pmf * environment.sampler.pdf(direction);
   }
   return sum;
 }

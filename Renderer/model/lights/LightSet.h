@@ -36,9 +36,9 @@ struct EmitterHit {
 };
 
 /// An environment in the world.
-struct SharedEnvironment {
+struct PlacedEnvironment {
   EnvironmentSampler sampler;
-  double share; ///< probability that LightSet::sample() takes this light; 0: never sampled
+  double pmf; ///< probability that LightSet::sample() takes this light; 0: never sampled
 };
 
 class LightSet {
@@ -73,7 +73,7 @@ public:
 
   /// All lights in the world but environment maps.
   const LightTables<double>& tables() const { return m_tables; }
-  const std::vector<SharedEnvironment>& environments() const { return m_environments; }
+  const std::vector<PlacedEnvironment>& environments() const { return m_environments; }
   /// True if any environment is not constant.
   bool hasMaps() const;
 
@@ -93,10 +93,10 @@ private:
   void place(const SkyLight& light, const FrameInWorld& frame);
   void place(const AreaLight& light, const FrameInWorld& frame);
   void place(const SphereLight& light, const FrameInWorld& frame);
-  void chooseShares(const Vec3& center);
+  void computePmfs(const Vec3& center);
 
   LightTables<double> m_tables;
-  std::vector<SharedEnvironment> m_environments;
+  std::vector<PlacedEnvironment> m_environments;
 };
 
 } // namespace fenestra

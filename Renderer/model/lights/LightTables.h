@@ -20,19 +20,19 @@ struct LightTables {
     Real perRight, perUp; ///< 1 / squared length of right, up
     Real area;            ///< mm^2
     Color radiance;
-    Real share; ///< probability that a sample is of this light
+    Real pmf; ///< probability that a sample is of this light
   };
   /// Directions toward it are drawn uniformly: in the cone that it subtends, or from inside in all.
   struct Sphere {
     Point center;
     Real radius2; ///< mm^2
     Color radiance;
-    Real share; ///< as above
+    Real pmf; ///< as above
   };
   struct Directional {
     Point toward; ///< unit, from the scene to the light
     Color irradiance;
-    Real share; ///< as above
+    Real pmf; ///< as above
   };
   struct Sky {
     Point up;
@@ -56,12 +56,11 @@ struct LightTables {
     for (const Area& a : areas)
       to.areas.push_back({a.isDisk, point(a.center), three(a.normal), three(a.right), three(a.up),
                           number(a.perRight), number(a.perUp), number(a.area), three(a.radiance),
-                          number(a.share)});
+                          number(a.pmf)});
     for (const Sphere& s : spheres)
-      to.spheres.push_back(
-          {point(s.center), number(s.radius2), three(s.radiance), number(s.share)});
+      to.spheres.push_back({point(s.center), number(s.radius2), three(s.radiance), number(s.pmf)});
     for (const Directional& d : directionals)
-      to.directionals.push_back({three(d.toward), three(d.irradiance), number(d.share)});
+      to.directionals.push_back({three(d.toward), three(d.irradiance), number(d.pmf)});
     for (const Sky& s : skies)
       to.skies.push_back({three(s.up), three(s.middle), three(s.toTop), three(s.toBottom)});
     to.constant = three(constant);

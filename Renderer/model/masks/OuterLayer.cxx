@@ -160,13 +160,13 @@ Mask outerLayer(const Volume& volume, double airBelow, double depth) {
   const Vec3 deviations = ((depth / 1.2816) * layer.grid.spacing().cwiseInverse())
                               .cwiseMin(layer.grid.size.cast<double>());
   layer.voxels = blurred(layer, Size3::Zero(), layer.grid.size, deviations);
-  std::array<std::uint8_t, 256> shares; // by what is left
-  for (std::size_t left = 0; left < shares.size(); ++left) {
-    const double share = std::clamp((static_cast<double>(left) / 255.0 - 0.05) / 0.1, 0.0, 1.0);
-    shares[left] = static_cast<std::uint8_t>(std::lround(share * layer.full));
+  std::array<std::uint8_t, 256> remapped; // by what is left
+  for (std::size_t left = 0; left < remapped.size(); ++left) {
+    const double indicator = std::clamp((static_cast<double>(left) / 255.0 - 0.05) / 0.1, 0.0, 1.0);
+    remapped[left] = static_cast<std::uint8_t>(std::lround(indicator * layer.full));
   }
   for (std::uint8_t& voxel : layer.voxels)
-    voxel = shares[voxel];
+    voxel = remapped[voxel];
   return layer;
 }
 

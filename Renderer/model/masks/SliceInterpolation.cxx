@@ -130,10 +130,10 @@ private:
 /// Place between two slices.
 struct Between {
   const float *before, *after; ///< their distances
-  float share;                 ///< of the way from one to the other, 0 to 1
+  float fraction;              ///< of the way from one to the other, 0 to 1
 
   bool isInside(std::int64_t pixel) const {
-    return (1.0F - share) * before[pixel] + share * after[pixel] < 0.0F;
+    return (1.0F - fraction) * before[pixel] + fraction * after[pixel] < 0.0F;
   }
 };
 
@@ -171,8 +171,8 @@ Mask betweenSlices(Mask mask) {
   const auto around = [&](std::int64_t at) {
     const auto before = static_cast<std::size_t>(at / parts);
     const std::size_t after = std::min(before + 1, distances.size() - 1);
-    const float share = static_cast<float>(at % parts) / static_cast<float>(parts);
-    return Between{distances[before].data(), distances[after].data(), share};
+    const float fraction = static_cast<float>(at % parts) / static_cast<float>(parts);
+    return Between{distances[before].data(), distances[after].data(), fraction};
   };
   const std::int64_t columns = axis == 0 ? size.y() : size.x();
   tbb::parallel_for(std::int64_t{0}, size.z(), [&](std::int64_t z) {

@@ -75,7 +75,7 @@ public:
                         const Vec3& cut = Vec3::Zero()) const {
     const Component& component = m_mixed->mixture().components[number];
     const Vec3 border = component.border > 0.0 && component.transfer.shading
-                            ? Vec3(component.border * m_mixed->shareGradient(number, point.index))
+                            ? Vec3(component.border * m_mixed->weightGradient(number, point.index))
                             : Vec3::Zero();
     return makeSample(component.transfer, component.transfer.albedo(point.scalar), point.index,
                       point.scalar, wantGradient,

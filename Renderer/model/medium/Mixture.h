@@ -34,7 +34,7 @@ struct Component {
 };
 
 struct Mixture {
-  std::shared_ptr<const Shares> shares;
+  std::shared_ptr<const LabelWeights> weights;
   /// By number in `shares`, at least one. All have surface shading where the volume's own transfer
   /// function has it, else none. Gradients count by that function's span for all of them: a
   /// constant extinction has none.
@@ -69,7 +69,7 @@ class MixedField {
 public:
   MixedField(const Mixture& mixture, const Grid& volume)
       : m_mixture(mixture),
-        m_toShares(mixture.shares->grid().worldToIndex * volume.indexToWorld),
+        m_toWeights(mixture.weights->grid().worldToIndex * volume.indexToWorld),
         m_hasFree(mixture.hasFree()),
         m_needsGradient(mixture.hasGradientOpacity()) {}
 
@@ -80,9 +80,9 @@ public:
   /// Calls visit(part) for the parts at a point, each component once.
   template <typename Visit>
   void forEachPart(const MixedPoint& point, Visit&& visit) const {
-    m_mixture.shares->at(m_toShares * point.index, [&](std::uint8_t number, double share) {
+    m_mixture.weights->at(m_toWeights * point.index, [&](std::uint8_t number, double weight) {
       const Component& component = m_mixture.components[number];
-      double extinction = (component.isClipped ? point.kept : 1.0) * share *
+      double extinction = (component.isClipped ? point.kept : 1.0) * weight *
                           component.transfer.extinction(point.scalar).value();
       if (component.transfer.gradientOpacity)
         extinction *= (*component.transfer.gradientOpacity)(point.slope).value();
@@ -123,25 +123,25 @@ public:
 
   /// Gradient of a component's share at a point (the volume's index space), per mm, world axes:
   /// central differences over one voxel of the shares to each side.
-  Vec3 shareGradient(std::uint8_t number, const Vec3& index) const {
-    const Vec3 middle = m_toShares * index;
-    const auto shareAt = [&](const Vec3& at) {
+  Vec3 weightGradient(std::uint8_t number, const Vec3& index) const {
+    const Vec3 middle = m_toWeights * index;
+    const auto findWeight = [&](const Vec3& at) {
       double sum = 0.0;
-      m_mixture.shares->at(
-          at, [&](std::uint8_t other, double share) { sum += other == number ? share : 0.0; });
+      m_mixture.weights->at(
+          at, [&](std::uint8_t other, double weight) { sum += other == number ? weight : 0.0; });
       return sum;
     };
     Vec3 difference;
     for (int axis = 0; axis < 3; ++axis) {
       const Vec3 step = Vec3::Unit(axis);
-      difference[axis] = 0.5 * (shareAt(middle + step) - shareAt(middle - step));
+      difference[axis] = 0.5 * (findWeight(middle + step) - findWeight(middle - step));
     }
-    return m_mixture.shares->grid().worldToIndex.linear().transpose() * difference;
+    return m_mixture.weights->grid().worldToIndex.linear().transpose() * difference;
   }
 
 private:
   const Mixture& m_mixture;
-  Affine m_toShares;
+  Affine m_toWeights;
   bool m_hasFree, m_needsGradient;
 };
 

@@ -48,9 +48,9 @@ ColorFunction albedoFor(const ColorFunction& colors, double g) {
   for (std::size_t i = 0; i + 1 < given.size(); ++i) {
     const double from = given[i].position, to = given[i + 1].position;
     for (int k = 0; k < (to > from ? between : 1); ++k) {
-      const double share = static_cast<double>(k) / between;
-      const Rgb color = given[i].value + share * (given[i + 1].value - given[i].value);
-      knots.push_back({from + share * (to - from), albedoFor(color, g)});
+      const double fraction = static_cast<double>(k) / between;
+      const Rgb color = given[i].value + fraction * (given[i + 1].value - given[i].value);
+      knots.push_back({from + fraction * (to - from), albedoFor(color, g)});
     }
   }
   knots.push_back({given.back().position, albedoFor(given.back().value, g)});

@@ -92,7 +92,7 @@ public:
     const Float lambert = greatest(m_diffuse);
     const Float sum = fma(m_specular, fresnel(m_viewer.z), lambert);
     const LaneMask some = sum > 0.0F;
-    m_lambertShare = select(some, lambert / sum, 1.0F);
+    m_lambertPmf = select(some, lambert / sum, 1.0F);
   }
 
   FENESTRA_INLINE Scattered toward(const Float3& outgoing) const {
@@ -108,7 +108,7 @@ public:
     if (!isAllEqual(m_specular, 0.0F)) {
       const Float3 h = visibleNormal(r, phi);
       const Float3 glossy = (2.0F * dot(m_viewer, h)) * h - m_viewer;
-      local = select(choice < m_lambertShare, lambert, glossy);
+      local = select(choice < m_lambertPmf, lambert, glossy);
     }
     const Float3 outgoing = normalized(m_frame.toWorld(local));
     const Scattered s = toward(outgoing);
@@ -140,7 +140,7 @@ private:
   /// density is Heitz 2018, eq. 17.
   FENESTRA_INLINE Scattered towardLocal(const Float3& l) const {
     const Float lambertPdf = notBelow0(l.z) * static_cast<Real>(1.0 / pi);
-    Scattered s{lambertPdf * m_diffuse, m_lambertShare * lambertPdf};
+    Scattered s{lambertPdf * m_diffuse, m_lambertPmf * lambertPdf};
     if (isAllEqual(m_specular, 0.0F))
       return s;
     if (m_isCoated)
@@ -149,7 +149,7 @@ private:
     const Float perViewer = masking(m_viewer) * normalDensity(h) / (4.0F * m_viewer.z);
     const LaneMask facing = (l.z > 0.0F) & (m_viewer.z > 0.0F);
     const Float pdf = zeroUnless(facing, perViewer);
-    s.pdf = fma(1.0F - m_lambertShare, pdf, s.pdf);
+    s.pdf = fma(1.0F - m_lambertPmf, pdf, s.pdf);
     const Float glossy = m_specular * fresnel(dot(l, h)) * masking(l);
     const Float value = zeroUnless(facing, glossy * perViewer);
     s.factor = s.factor + Float3{value, value, value};
@@ -191,8 +191,8 @@ private:
   Number m_specular, m_f0, m_roughness;
   bool m_isCoated;
   std::array<Number, 4> m_coat;
-  Frames m_frame;       ///< local z is the normal
-  Float3 m_viewer;      ///< local direction back along the path
-  Float3 m_diffuse;     ///< weight * albedo, and what the coat lets through from the viewer
-  Float m_lambertShare; ///< probability that draw() takes the Lambert lobe
+  Frames m_frame;     ///< local z is the normal
+  Float3 m_viewer;    ///< local direction back along the path
+  Float3 m_diffuse;   ///< weight * albedo, and what the coat lets through from the viewer
+  Float m_lambertPmf; ///< probability that draw() takes the Lambert lobe
 };

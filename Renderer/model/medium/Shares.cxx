@@ -14,11 +14,11 @@ namespace fenestra {
 namespace {
 
 /// A number for each voxel of a brick, in 255ths: whole numbers add up alike in any order.
-using InBrick = std::array<float, Shares::voxelsInBrick>;
-constexpr float full = 255.0F;
+using InBrick = std::array<float, LabelWeights::voxelsInBrick>;
+constexpr float maxWeight = 255.0F;
 
 /// Voxels of a brick along an axis, and its rows.
-constexpr std::int64_t width = Shares::edge + 1, rowsInBrick = width * width;
+constexpr std::int64_t width = LabelWeights::edge + 1, rowsInBrick = width * width;
 
 /// A part in the common grid.
 struct Placed {
@@ -30,10 +30,10 @@ struct Placed {
 
 /// Parts in the grid of the first one, whatever that one's extent is.
 std::vector<Placed> placed(std::size_t count,
-                           const std::function<Shares::Part(std::size_t)>& partAt) {
+                           const std::function<LabelWeights::Part(std::size_t)>& partAt) {
   std::vector<Placed> all;
   for (std::size_t i = 0; i < count; ++i) {
-    const Shares::Part part = partAt(i);
+    const LabelWeights::Part part = partAt(i);
     const Grid& reference = all.empty() ? part.mask.grid : all.front().mask.grid();
     const Vec3 origin = reference.worldToIndex * part.mask.grid.indexToWorld.translation();
     const Size3 first = origin.array().round().cast<std::int64_t>();
@@ -82,11 +82,11 @@ public:
     }
     if (some == 0)
       return Cover::none;
-    if (all == ~std::uint64_t{0} && m_part.mask.full() == full) {
-      values.fill(full);
+    if (all == ~std::uint64_t{0} && m_part.mask.full() == maxWeight) {
+      values.fill(maxWeight);
       return Cover::whole;
     }
-    const float scale = full / static_cast<float>(m_part.mask.full());
+    const float scale = maxWeight / static_cast<float>(m_part.mask.full());
     float* to = values.data();
     bool isAny = false;
     for (std::int64_t i = 0; i < rowsInBrick; ++i, row += m_stride)
@@ -118,12 +118,12 @@ private:
 };
 
 /// Shares of a brick's components, in their order, each once.
-class BrickShares {
+class BrickWeights {
 public:
   /// Takes the parts, by priority, in the brick whose first voxel has this x.
   void take(const std::vector<PartRows>& parts, std::int64_t x) {
-    m_shares.clear();
-    m_left.fill(full);
+    m_weights.clear();
+    m_left.fill(maxWeight);
     for (auto p = parts.begin(); p != parts.end() && isLeft();) {
       m_class.clear();
       const int priority = p->priority();
@@ -136,96 +136,96 @@ public:
           cover = one;
         }
       }
-      if (m_shares.empty() && m_class.size() == 1 && cover == Cover::whole) {
-        m_shares.swap(m_class);
+      if (m_weights.empty() && m_class.size() == 1 && cover == Cover::whole) {
+        m_weights.swap(m_class);
         return;
       }
       if (!m_class.empty())
-        shareOut();
+        distributeRest();
     }
     if (isLeft())
       add(0, m_left);
-    std::ranges::sort(m_shares, {}, &Component::component);
+    std::ranges::sort(m_weights, {}, &Component::component);
   }
 
   /// Component of the whole brick; nothing: several.
   std::optional<std::uint8_t> pure() const {
-    return m_shares.size() == 1 ? std::optional(m_shares.front().component) : std::nullopt;
+    return m_weights.size() == 1 ? std::optional(m_weights.front().component) : std::nullopt;
   }
-  std::size_t planeCount() const { return m_shares.size() - 1; }
+  std::size_t planeCount() const { return m_weights.size() - 1; }
   /// Writes planeCount() planes.
-  void write(Shares::Plane* planes) const {
+  void write(LabelWeights::Plane* planes) const {
     for (std::size_t c = 0; c < planeCount(); ++c) {
-      planes[c].component = m_shares[c].component;
-      planes[c].rest = m_shares.back().component;
+      planes[c].component = m_weights[c].component;
+      planes[c].rest = m_weights.back().component;
       planes[c].isLast = c + 1 == planeCount();
     }
-    for (std::size_t voxel = 0; voxel < Shares::voxelsInBrick; ++voxel)
+    for (std::size_t voxel = 0; voxel < LabelWeights::voxelsInBrick; ++voxel)
       writeVoxel(voxel, planes);
   }
 
 private:
   struct Component {
     std::uint8_t component;
-    InBrick share;
+    InBrick weight;
   };
 
   bool isLeft() const {
     return std::ranges::any_of(m_left, [](float left) { return left > 0.0F; });
   }
 
-  void add(std::uint8_t component, const InBrick& share) {
-    const auto found = std::ranges::find(m_shares, component, &Component::component);
-    if (found == m_shares.end()) {
-      m_shares.push_back({component, share});
+  void add(std::uint8_t component, const InBrick& weight) {
+    const auto found = std::ranges::find(m_weights, component, &Component::component);
+    if (found == m_weights.end()) {
+      m_weights.push_back({component, weight});
       return;
     }
-    for (std::size_t i = 0; i < share.size(); ++i)
-      found->share[i] += share[i];
+    for (std::size_t i = 0; i < weight.size(); ++i)
+      found->weight[i] += weight[i];
   }
 
   /// Gives what is left to the parts of one priority.
-  void shareOut() {
+  void distributeRest() {
     InBrick factor;
     for (std::size_t i = 0; i < factor.size(); ++i) {
       float sum = 0.0F;
       for (const Component& part : m_class)
-        sum += part.share[i];
+        sum += part.weight[i];
       factor[i] = sum > m_left[i] ? m_left[i] / sum : 1.0F;
       m_left[i] -= std::min(sum, m_left[i]);
     }
     for (Component& part : m_class) {
       for (std::size_t i = 0; i < factor.size(); ++i)
-        part.share[i] *= factor[i];
-      add(part.component, part.share);
+        part.weight[i] *= factor[i];
+      add(part.component, part.weight);
     }
   }
 
   /// Rounds the shares of a voxel; the greatest, of equals the first component's, takes what
   /// rounding loses or gains.
-  void writeVoxel(std::size_t voxel, Shares::Plane* planes) const {
-    int left = static_cast<int>(full);
+  void writeVoxel(std::size_t voxel, LabelWeights::Plane* planes) const {
+    int left = static_cast<int>(maxWeight);
     std::size_t greatest = 0;
-    for (std::size_t c = 0; c < m_shares.size(); ++c) {
-      const int share = static_cast<int>(std::lround(m_shares[c].share[voxel]));
-      left -= share;
+    for (std::size_t c = 0; c < m_weights.size(); ++c) {
+      const int weight = static_cast<int>(std::lround(m_weights[c].weight[voxel]));
+      left -= weight;
       if (c < planeCount())
-        planes[c].shares[voxel] = static_cast<std::uint8_t>(share);
-      if (m_shares[c].share[voxel] > m_shares[greatest].share[voxel])
+        planes[c].weights[voxel] = static_cast<std::uint8_t>(weight);
+      if (m_weights[c].weight[voxel] > m_weights[greatest].weight[voxel])
         greatest = c;
     }
     if (greatest < planeCount())
-      planes[greatest].shares[voxel] =
-          static_cast<std::uint8_t>(planes[greatest].shares[voxel] + left);
+      planes[greatest].weights[voxel] =
+          static_cast<std::uint8_t>(planes[greatest].weights[voxel] + left);
   }
 
   InBrick m_left;
-  std::vector<Component> m_class, m_shares;
+  std::vector<Component> m_class, m_weights;
 };
 
 } // namespace
 
-Shares::Shares(std::size_t count, const std::function<Part(std::size_t)>& partAt) {
+LabelWeights::LabelWeights(std::size_t count, const std::function<Part(std::size_t)>& partAt) {
   std::vector<Placed> parts = placed(count, partAt);
   Size3 first = parts.front().first, end = parts.front().end;
   for (const Placed& part : parts) {
@@ -246,7 +246,7 @@ Shares::Shares(std::size_t count, const std::function<Part(std::size_t)>& partAt
   std::vector<std::vector<Plane>> layers(static_cast<std::size_t>(m_brickCount.z()));
   tbb::parallel_for(std::int64_t{0}, m_brickCount.z(), [&](std::int64_t z) {
     std::vector<Plane>& planes = layers[static_cast<std::size_t>(z)];
-    BrickShares shares;
+    BrickWeights weights;
     std::vector<PartRows> rows;
     for (const Placed& part : parts)
       if (part.first.z() < edge * z + width && part.end.z() > edge * z)
@@ -255,16 +255,16 @@ Shares::Shares(std::size_t count, const std::function<Part(std::size_t)>& partAt
       for (PartRows& part : rows)
         part.take(edge * y, edge * z);
       for (std::int64_t x = 0; x < m_brickCount.x(); ++x) {
-        shares.take(rows, edge * x);
+        weights.take(rows, edge * x);
         std::int32_t& code = m_bricks[numberOf(Size3(x, y, z), m_brickCount)];
-        if (const std::optional<std::uint8_t> pure = shares.pure()) {
+        if (const std::optional<std::uint8_t> pure = weights.pure()) {
           code = *pure;
           continue;
         }
         const std::size_t before = planes.size();
         code = ~static_cast<std::int32_t>(before);
-        planes.resize(before + shares.planeCount());
-        shares.write(&planes[before]);
+        planes.resize(before + weights.planeCount());
+        weights.write(&planes[before]);
       }
     }
   });
@@ -284,7 +284,7 @@ Shares::Shares(std::size_t count, const std::function<Part(std::size_t)>& partAt
   }
 }
 
-double Shares::pureFraction() const {
+double LabelWeights::pureFraction() const {
   return static_cast<double>(std::ranges::count_if(m_bricks, [](auto code) { return code >= 0; })) /
          static_cast<double>(m_bricks.size());
 }

@@ -18,7 +18,7 @@
 
 namespace fenestra {
 
-class Shares {
+class LabelWeights {
 public:
   /// Voxels of a segment, or of several of one component.
   struct Part {
@@ -33,7 +33,7 @@ public:
   /// A component of a mixed brick. Its size lets lanes read 32 bits from any voxel on, and the
   /// three numbers behind the shares in one load.
   struct alignas(64) Plane {
-    std::array<std::uint8_t, voxelsInBrick> shares; ///< of 255, x fastest
+    std::array<std::uint8_t, voxelsInBrick> weights; ///< of 255, x fastest
     std::uint8_t component;
     std::uint8_t rest;   ///< component that gets what the brick's planes leave: the same in all
     std::uint8_t isLast; ///< 1: the brick's last plane; else 0, and the next one is its, too
@@ -45,7 +45,7 @@ public:
   /// component 0 gets the rest. Rounded to 255ths that sum to 255. Parts of one priority may come
   /// in any order, and be of different components. `count`: of parts, at least one; one at a time
   /// is held.
-  Shares(std::size_t count, const std::function<Part(std::size_t)>& partAt);
+  LabelWeights(std::size_t count, const std::function<Part(std::size_t)>& partAt);
 
   /// Voxels that the parts' masks cover. Beyond them the outermost voxels repeat.
   const Grid& grid() const { return m_grid; }
@@ -81,7 +81,7 @@ private:
 };
 
 template <typename Visit>
-void Shares::forEachOf(std::size_t brick, Visit&& visit) const {
+void LabelWeights::forEachOf(std::size_t brick, Visit&& visit) const {
   const std::int32_t code = m_bricks[brick];
   if (code >= 0) {
     visit(static_cast<std::uint8_t>(code));
@@ -95,7 +95,7 @@ void Shares::forEachOf(std::size_t brick, Visit&& visit) const {
 }
 
 template <typename Visit>
-void Shares::forEachIn(const Box& box, Visit&& visit) const {
+void LabelWeights::forEachIn(const Box& box, Visit&& visit) const {
   const Vec3 last = (m_brickCount.array() - 1).cast<double>();
   const auto brickOf = [&](const Vec3& index) -> Size3 {
     const Vec3 brick = (index / static_cast<double>(edge)).array().floor();
@@ -109,7 +109,7 @@ void Shares::forEachIn(const Box& box, Visit&& visit) const {
 }
 
 template <typename Visit>
-void Shares::at(const Vec3& index, Visit&& visit) const {
+void LabelWeights::at(const Vec3& index, Visit&& visit) const {
   const Vec3 last = (m_grid.size.array() - 1).cast<double>();
   const Vec3 inside = index.cwiseMax(0.0).cwiseMin(last);
   const Size3 cell =
@@ -134,15 +134,15 @@ void Shares::at(const Vec3& index, Visit&& visit) const {
       return a + f.x() * (b - a);
     };
     const auto slice = [&](std::size_t i) { return row(i) + f.y() * (row(i + 2) - row(i)); };
-    if (const double share = (slice(0) + f.z() * (slice(4) - slice(0))) / 255.0; share > 0.0)
-      visit(component, share);
+    if (const double weight = (slice(0) + f.z() * (slice(4) - slice(0))) / 255.0; weight > 0.0)
+      visit(component, weight);
   };
   AtCorners left;
   left.fill(255);
   for (auto plane = m_planes.begin() + ~code;; ++plane) {
     AtCorners values;
     for (std::size_t i = 0; i < values.size(); ++i) {
-      values[i] = plane->shares[first + corners[i]];
+      values[i] = plane->weights[first + corners[i]];
       left[i] -= values[i];
     }
     give(plane->component, values);

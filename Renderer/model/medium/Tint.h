@@ -12,7 +12,7 @@
 namespace fenestra {
 
 struct Tint {
-  std::shared_ptr<const Shares> shares;
+  std::shared_ptr<const LabelWeights> weights;
   /// Albedo of each component over the scalar; nothing: as the transfer function has it.
   std::vector<std::optional<ColorFunction>> albedo;
 };
@@ -21,22 +21,22 @@ struct Tint {
 class TintedField {
 public:
   TintedField(const Tint& tint, const Grid& volume)
-      : m_tint(tint), m_toShares(tint.shares->grid().worldToIndex * volume.indexToWorld) {}
+      : m_tint(tint), m_toWeights(tint.weights->grid().worldToIndex * volume.indexToWorld) {}
 
   /// Mean of the components' albedo at a point (the volume's index space), weighted by their
   /// shares; `own`: of the transfer function.
   Rgb albedo(const Vec3& index, double scalar, const Rgb& own) const {
     Rgb sum = Rgb::Zero();
-    m_tint.shares->at(m_toShares * index, [&](std::uint8_t component, double share) {
+    m_tint.weights->at(m_toWeights * index, [&](std::uint8_t component, double weight) {
       const std::optional<ColorFunction>& albedo = m_tint.albedo[component];
-      sum += share * (albedo ? Rgb((*albedo)(scalar)) : own);
+      sum += weight * (albedo ? Rgb((*albedo)(scalar)) : own);
     });
     return sum;
   }
 
 private:
   const Tint& m_tint;
-  Affine m_toShares;
+  Affine m_toWeights;
 };
 
 } // namespace fenestra

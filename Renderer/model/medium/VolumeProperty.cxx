@@ -11,7 +11,7 @@ constexpr double opacityCap = 0.9999;
 constexpr double tolerance = 1e-4;
 /// Share of the function's greatest value below which the error counts as absolute: a curve like
 /// x^11 would need endless knots near zero.
-constexpr double floorShare = 1e-9;
+constexpr double relativeFloor = 1e-9;
 constexpr std::size_t maxNodes = 2000; ///< in one curve
 constexpr std::size_t maxKnots = 6000; ///< in one table, besides the nodes
 
@@ -40,7 +40,7 @@ public:
     double greatest = 0.0;
     for (const Node& node : nodes)
       greatest = std::max(greatest, Value(m_map(node.value)).maxCoeff());
-    m_floor = floorShare * greatest;
+    m_floor = relativeFloor * greatest;
   }
 
   Function table() {

@@ -28,7 +28,7 @@ inline void drawMaps(const EventScene& scene, LaneMask which, Float choice, UInt
   TexelDraw toward = drawTexel(scene.maps[0], u, v);
   LaneMask later = which;
   for (std::size_t i = 1; i < count; ++i) { // the last map takes the remainder of rounding
-    const float before = scene.maps[i - 1].share;
+    const float before = scene.maps[i - 1].pmf;
     later = later & (choice > before);
     choice = choice - before;
     if (later.any())

@@ -11,13 +11,13 @@ bool MapTables::serves(const EnvironmentSampler& sampler) {
                                 (whole == 0.0 || (whole > darkest && whole < brightest)));
 }
 
-MapTables::MapTables(const EnvironmentSampler& sampler, double shareOfMap)
+MapTables::MapTables(const EnvironmentSampler& sampler, double mapPmf)
     : width(sampler.light().map.width),
       height(sampler.light().map.height),
       rgb(sampler.light().map.rgb.data()),
       tint(narrow3(sampler.light().radiance)),
-      share(narrow(shareOfMap)),
-      perBrightness(narrow(shareOfMap / sampler.total())),
+      pmf(narrow(mapPmf)),
+      perBrightness(narrow(mapPmf / sampler.total())),
       rows(static_cast<std::size_t>(height)),
       columns(static_cast<std::size_t>(width)) {
   rows.append(sampler.rows());

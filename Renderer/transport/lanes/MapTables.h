@@ -14,7 +14,7 @@ struct MapTables {
   std::int32_t width, height;
   const float* rgb; ///< of the texels, row by row; the map's own
   std::array<float, 3> tint;
-  float share;         ///< probability that LightSet::sample() takes this map
+  float pmf;           ///< probability that LightSet::sample() takes this map
   float perBrightness; ///< density of that, per steradian, of a radiance of brightness 1
   AliasTables rows;
   AliasTables columns; ///< a table for each row
@@ -25,7 +25,7 @@ struct MapTables {
   static bool serves(const EnvironmentSampler& sampler);
 
   /// A view: the sampler must outlive the object. Not of a constant, nor of a black map.
-  MapTables(const EnvironmentSampler& sampler, double shareOfMap);
+  MapTables(const EnvironmentSampler& sampler, double mapPmf);
 };
 
 } // namespace fenestra

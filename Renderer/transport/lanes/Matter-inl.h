@@ -24,9 +24,10 @@ HWY_INLINE Float3 albedoAt(const EventScene& scene, LaneMask which, const Float3
   if (!scene.tint)
     return albedoOf(scene.albedos[0], scalar);
   Float3 sum(0.0F, 0.0F, 0.0F);
-  LaneShares(*scene.tint, index).forEach(which, [&](LaneMask lanes, Int components, Float share) {
-    sum = sum + share * albedoIn(scene, lanes, components, scalar);
-  });
+  LaneLabelWeights(*scene.tint, index)
+      .forEach(which, [&](LaneMask lanes, Int components, Float fraction) {
+        sum = sum + fraction * albedoIn(scene, lanes, components, scalar);
+      });
   return sum;
 }
 

@@ -23,12 +23,12 @@ HWY_INLINE LaneMask freeIn(const SimdMixture& mixture, LaneMask which, Int compo
 template <typename Visit>
 HWY_INLINE void forEachPart(const WideScene& scene, LaneMask which, const Float3& index,
                             Float scalar, Float kept, Visit&& visit) {
-  const auto part = [&](LaneMask lanes, Int components, Float share) {
-    const Float whole = share * extinctionOf(scene.extinctions, lanes, components, scalar);
+  const auto part = [&](LaneMask lanes, Int components, Float fraction) {
+    const Float full = fraction * extinctionOf(scene.extinctions, lanes, components, scalar);
     const LaneMask free = freeIn(*scene.mixture, lanes, components);
-    visit(lanes, components, select(free, whole, kept * whole));
+    visit(lanes, components, select(free, full, kept * full));
   };
-  LaneShares(scene.mixture->shares, index).forEach(which, part);
+  LaneLabelWeights(scene.mixture->weights, index).forEach(which, part);
 }
 
 /// Extinction (mm^-1) of what a clip may remove, and of what it leaves.
@@ -38,13 +38,13 @@ struct LaneExtinctions {
 inline LaneExtinctions extinctionsOf(const WideScene& scene, LaneMask which, const Float3& index,
                                      Float scalar) {
   LaneExtinctions sums{0.0F, 0.0F};
-  const auto add = [&](LaneMask lanes, Int components, Float share) {
-    const Float part = share * extinctionOf(scene.extinctions, lanes, components, scalar);
+  const auto add = [&](LaneMask lanes, Int components, Float fraction) {
+    const Float part = fraction * extinctionOf(scene.extinctions, lanes, components, scalar);
     const LaneMask free = freeIn(*scene.mixture, lanes, components);
     sums.free = sums.free + zeroUnless(free, part);
     sums.clipped = sums.clipped + select(free, 0.0F, part);
   };
-  LaneShares(scene.mixture->alike, index).forEach(which, add);
+  LaneLabelWeights(scene.mixture->merged, index).forEach(which, add);
   return sums;
 }
 

@@ -20,11 +20,11 @@ std::vector<std::int32_t> firstAlike(const std::vector<Component>& components) {
 
 std::vector<std::int32_t> bricksAlike(const Mixture& mixture) {
   const std::vector<std::int32_t> first = firstAlike(mixture.components);
-  std::vector<std::int32_t> bricks = mixture.shares->bricks();
+  std::vector<std::int32_t> bricks = mixture.weights->bricks();
   for (std::size_t brick = 0; brick < bricks.size(); ++brick) {
     std::int32_t common = -1;
     bool isMixed = false;
-    mixture.shares->forEachOf(brick, [&](std::uint8_t component) {
+    mixture.weights->forEachOf(brick, [&](std::uint8_t component) {
       isMixed = isMixed || (common >= 0 && first[component] != common);
       common = first[component];
     });
@@ -40,16 +40,16 @@ bool SimdMixture::serves(const Mixture& mixture) {
   const auto isServed = [](const Component& component) {
     return !component.transfer.gradientOpacity && component.border == 0.0;
   };
-  return SimdLabelWeights::serves(*mixture.shares) &&
+  return SimdLabelWeights::serves(*mixture.weights) &&
          std::ranges::all_of(mixture.components, isServed);
 }
 
 SimdMixture::SimdMixture(const Mixture& mixture, const Grid& volume)
-    : shares(*mixture.shares, volume),
-      alike(shares),
-      alikeBricks(std::make_shared<const std::vector<std::int32_t>>(bricksAlike(mixture))),
+    : weights(*mixture.weights, volume),
+      merged(weights),
+      mergedBricks(std::make_shared<const std::vector<std::int32_t>>(bricksAlike(mixture))),
       hasFree(mixture.hasFree()) {
-  alike.bricks = alikeBricks->data();
+  merged.bricks = mergedBricks->data();
   for (const Component& component : mixture.components)
     isFree.push_back(component.isClipped ? 0 : 1);
 }

@@ -16,11 +16,11 @@ struct SimdMixture {
   /// `volume`: whose points are asked for.
   SimdMixture(const Mixture& mixture, const Grid& volume);
 
-  SimdLabelWeights shares;
+  SimdLabelWeights weights;
   /// The same, but bricks whose components all have one extinction, and are clipped alike, are pure
   /// ones of the first such component: flights need not tell them apart.
-  SimdLabelWeights alike;
-  std::shared_ptr<const std::vector<std::int32_t>> alikeBricks;
+  SimdLabelWeights merged;
+  std::shared_ptr<const std::vector<std::int32_t>> mergedBricks;
   bool hasFree;                     ///< the clip leaves some component
   std::vector<std::int32_t> isFree; ///< of each component: 1, or 0
 };

@@ -30,7 +30,7 @@ bool EventScene::serves(const Grid& grid, const TransferFunction& transfer, cons
     const double radius = std::sqrt(light.radius2);
     return isNear(light, greatestSphere) && radius > smallest && radius < greatestSphere;
   };
-  const auto mapFits = [](const SharedEnvironment& environment) {
+  const auto mapFits = [](const PlacedEnvironment& environment) {
     return MapTables::serves(environment.sampler);
   };
   return isWide(transfer) &&
@@ -55,7 +55,7 @@ EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const
       albedos.emplace_back(matter.albedo);
   };
   if (tinted) {
-    tint.emplace(*tinted->shares, grid);
+    tint.emplace(*tinted->weights, grid);
     for (const std::optional<ColorFunction>& color : tinted->albedo)
       albedos.emplace_back(color.value_or(transfer.albedo));
   }
@@ -73,9 +73,9 @@ EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const
   indexDifferenceToGradient =
       affineRows(Affine(Mat3(scale * grid.worldToIndex.linear().transpose())));
   if (bounces > 0) // else nothing is lit, and large tables are not needed
-    for (const SharedEnvironment& environment : set.environments())
-      if (environment.share > 0.0) // no constant, no black map
-        maps.emplace_back(environment.sampler, environment.share);
+    for (const PlacedEnvironment& environment : set.environments())
+      if (environment.pmf > 0.0) // no constant, no black map
+        maps.emplace_back(environment.sampler, environment.pmf);
   drawsLights = !lights.areas.empty() || !lights.directionals.empty() || !lights.spheres.empty() ||
                 !maps.empty();
 }

@@ -14,29 +14,29 @@ HWY_INLINE void forEachComponent(LaneMask which, Int components, Visit&& visit) 
 }
 
 /// Shares at the lanes' points (Shares::at).
-class LaneShares {
+class LaneLabelWeights {
 public:
   /// `index`: in the volume's index space.
-  HWY_INLINE LaneShares(const SimdLabelWeights& shares, const Float3& index)
-      : m_shares(shares), m_corner(cornerAt(mapPoint(shares.toShares, index))) {}
+  HWY_INLINE LaneLabelWeights(const SimdLabelWeights& weights, const Float3& index)
+      : m_weights(weights), m_corner(findCorner(mapPoint(weights.toWeights, index))) {}
 
   /// Calls visit(lanes, components, shares) until all shares of the lanes of `which` have been
   /// given. `lanes`: whose shares are above 0; the shares of others are 0.
   template <typename Visit>
   HWY_INLINE void forEach(LaneMask which, Visit&& visit) const {
-    const Int code = gather(m_shares.bricks, m_corner.brick);
+    const Int code = gather(m_weights.bricks, m_corner.brick);
     const LaneMask mixed = which & (code < 0);
     Int components = code;
-    Float share = zeroUnless(which, 1.0F);
+    Float fraction = zeroUnless(which, 1.0F);
     LaneMask some = which;
     if (mixed.any()) {
-      const Rest rest = forEachPlane(mixed, code ^ -1, visit);
+      const Remainder rest = forEachPlane(mixed, code ^ -1, visit);
       components.setIf(mixed, rest.components);
-      share.setIf(mixed, shareOf(rest.bytes));
-      some = share > 0.0F;
+      fraction.setIf(mixed, interpolate(rest.bytes));
+      some = fraction > 0.0F;
     }
     if (some.any())
-      visit(some, components, share);
+      visit(some, components, fraction);
   }
 
 private:
@@ -45,25 +45,25 @@ private:
     Int brick, voxel; ///< number of the brick; and of the voxel in it
     Float3 fractions; ///< position from there, 0 to 1
   };
-  static constexpr std::int32_t edge = Shares::edge + 1; ///< voxels
+  static constexpr std::int32_t edge = LabelWeights::edge + 1; ///< voxels
   /// Shares of a plane, from voxels on: four of a row and the four behind them; then of the next
   /// slice.
   using Bytes = std::array<Int, 4>;
   /// Remainder that the planes of mixed bricks leave.
-  struct Rest {
+  struct Remainder {
     Int components;
     Bytes bytes;
   };
 
-  HWY_INLINE Corner cornerAt(const Float3& p) const {
-    const SimdAxes& axes = m_shares.axes;
+  HWY_INLINE Corner findCorner(const Float3& p) const {
+    const SimdAxes& axes = m_weights.axes;
     const PlaceAlong x = placeAlong(axes[0], p.x);
     const PlaceAlong y = placeAlong(axes[1], p.y);
     const PlaceAlong z = placeAlong(axes[2], p.z);
-    const auto brickOf = [](Float cell) { return floor(cell * (1.0F / Shares::edge)); };
+    const auto toBrick = [](Float cell) { return floor(cell * (1.0F / LabelWeights::edge)); };
     const Float3 cell{x.lower, y.lower, z.lower};
-    const Float3 brick{brickOf(cell.x), brickOf(cell.y), brickOf(cell.z)};
-    const Float3 inside = cell - float{Shares::edge} * brick;
+    const Float3 brick{toBrick(cell.x), toBrick(cell.y), toBrick(cell.z)};
+    const Float3 inside = cell - float{LabelWeights::edge} * brick;
     const Float voxel = fma(fma(inside.z, float{edge}, inside.y), float{edge}, inside.x);
     return {offsetOf(axes, brick.x, brick.y, brick.z),
             wholeToInt(voxel),
@@ -72,27 +72,27 @@ private:
 
   /// Shares in mixed bricks, but for the rest's; `plane`: the first of the brick.
   template <typename Visit>
-  HWY_INLINE Rest forEachPlane(LaneMask mixed, Int plane, Visit&& visit) const {
-    constexpr std::int32_t byte = 8, numbersAt = sizeof(Shares::Plane) - sizeof(std::int32_t);
-    static_assert(offsetof(Shares::Plane, component) == numbersAt + 1);
-    const auto* const memory = reinterpret_cast<const std::uint8_t*>(m_shares.planes);
-    Rest rest{0, {-1, -1, -1, -1}};
+  HWY_INLINE Remainder forEachPlane(LaneMask mixed, Int plane, Visit&& visit) const {
+    constexpr std::int32_t byte = 8, numbersAt = sizeof(LabelWeights::Plane) - sizeof(std::int32_t);
+    static_assert(offsetof(LabelWeights::Plane, component) == numbersAt + 1);
+    const auto* const memory = reinterpret_cast<const std::uint8_t*>(m_weights.planes);
+    Remainder rest{0, {-1, -1, -1, -1}};
     for (LaneMask left = mixed; left.any(); plane = plane + 1) {
-      const Int start = zeroUnless(left, plane * std::int32_t{sizeof(Shares::Plane)});
+      const Int start = zeroUnless(left, plane * std::int32_t{sizeof(LabelWeights::Plane)});
       const Int numbers = loadInts(memory + numbersAt, Indices(start));
-      const Bytes bytes = bytesFrom(memory, start + m_corner.voxel);
+      const Bytes bytes = loadBytes(memory, start + m_corner.voxel);
       for (std::size_t i = 0; i < bytes.size(); ++i) // no byte of the shares falls below 0
         rest.bytes[i] = rest.bytes[i] - zeroUnless(left, bytes[i]);
       rest.components.setIf(left, shiftRight<2 * byte>(numbers) & 0xff);
-      const Float share = zeroUnless(left, shareOf(bytes));
-      if (const LaneMask some = share > 0.0F; some.any())
-        visit(some, shiftRight<byte>(numbers) & 0xff, share);
+      const Float fraction = zeroUnless(left, interpolate(bytes));
+      if (const LaneMask some = fraction > 0.0F; some.any())
+        visit(some, shiftRight<byte>(numbers) & 0xff, fraction);
       left = left & (numbers < 1 << 3 * byte);
     }
     return rest;
   }
 
-  static HWY_INLINE Bytes bytesFrom(const std::uint8_t* memory, Int first) {
+  static HWY_INLINE Bytes loadBytes(const std::uint8_t* memory, Int first) {
     const Indices index(first);
     const Pairs low = loadPairs(memory, index), high = loadPairs(memory + edge * edge, index);
     return {bitsAsInt(low.first), bitsAsInt(low.second), bitsAsInt(high.first),
@@ -100,7 +100,7 @@ private:
   }
 
   /// Share, trilinear between the eight voxels around the point.
-  HWY_INLINE Float shareOf(const Bytes& bytes) const {
+  HWY_INLINE Float interpolate(const Bytes& bytes) const {
     static_assert(edge == 5); // the next row is a byte beyond the first four
     const Float3& f = m_corner.fractions;
     const auto slice = [&](std::size_t i) {
@@ -113,6 +113,6 @@ private:
     return lerp(slice(0), slice(2), f.z) * (1.0F / 255.0F);
   }
 
-  const SimdLabelWeights& m_shares;
+  const SimdLabelWeights& m_weights;
   Corner m_corner;
 };

@@ -29,21 +29,21 @@ inline SimdAxes makeSimdAxes(const Size3& voxels, const Size3& counts) {
 /// A view: the shares must outlive the object.
 struct SimdLabelWeights {
   /// True if lanes can number the bytes of all planes.
-  static bool serves(const Shares& shares) {
+  static bool serves(const LabelWeights& weights) {
     constexpr std::size_t most = std::size_t{1} << 32; // indices of 32 bits
-    return shares.planes().size() <= most / sizeof(Shares::Plane);
+    return weights.planes().size() <= most / sizeof(LabelWeights::Plane);
   }
   /// `volume`: whose points are asked for.
-  SimdLabelWeights(const Shares& shares, const Grid& volume)
-      : toShares(affineRows(shares.grid().worldToIndex * volume.indexToWorld)),
-        axes(makeSimdAxes(shares.grid().size, shares.brickCount())),
-        bricks(shares.bricks().data()),
-        planes(shares.planes().data()) {}
+  SimdLabelWeights(const LabelWeights& weights, const Grid& volume)
+      : toWeights(affineRows(weights.grid().worldToIndex * volume.indexToWorld)),
+        axes(makeSimdAxes(weights.grid().size, weights.brickCount())),
+        bricks(weights.bricks().data()),
+        planes(weights.planes().data()) {}
 
-  AffineRows toShares; ///< from the volume's index space
+  AffineRows toWeights; ///< from the volume's index space
   SimdAxes axes;
   const std::int32_t* bricks; ///< Shares::bricks()
-  const Shares::Plane* planes;
+  const LabelWeights::Plane* planes;
 };
 
 } // namespace fenestra

@@ -91,9 +91,9 @@ CellBound mixtureBound(const Mixture& mixture, const Grid& grid, const Corners& 
   constexpr double rounding = 1.0 + 64.0 * std::numeric_limits<double>::epsilon();
   Box box = Box::nothing();
   for (const Vec3& corner : corners)
-    box.extend(mixture.shares->grid().worldToIndex * corner);
+    box.extend(mixture.weights->grid().worldToIndex * corner);
   CellBound bound;
-  mixture.shares->forEachIn(box, [&](std::uint8_t number) {
+  mixture.weights->forEachIn(box, [&](std::uint8_t number) {
     const Component& component = mixture.components[number];
     double& most = component.isClipped ? bound.clipped : bound.free;
     most = std::max(most, rounding * greatest(component.transfer, grid, low, high));

@@ -20,8 +20,8 @@ namespace fenestra {
 template <typename Walk>
 double firstRealCollision(Walk&& walk, double acceptance, Random& random) {
   double distance = infinity;
-  walk([&](double t, double realShare) {
-    if (std::exchange(acceptance, random.uniform()) >= realShare)
+  walk([&](double t, double realProbability) {
+    if (std::exchange(acceptance, random.uniform()) >= realProbability)
       return true; // a null collision
     distance = t;
     return false;
@@ -34,8 +34,8 @@ template <typename Walk>
 double ratioTracked(Walk&& walk, Random& random) {
   constexpr double rouletteBelow = 0.4;
   double ratio = 1.0;
-  walk([&](double, double realShare) {
-    ratio *= std::max(0.0, 1.0 - realShare);
+  walk([&](double, double realProbability) {
+    ratio *= std::max(0.0, 1.0 - realProbability);
     if (ratio < rouletteBelow)
       ratio = random.uniform() * rouletteBelow < ratio ? rouletteBelow : 0.0;
     return ratio > 0.0;

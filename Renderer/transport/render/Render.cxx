@@ -379,7 +379,7 @@ auto traceScene(const RenderScene& scene, const RenderSettings& settings, const 
 bool lanesServe(const RenderScene& scene) {
   return SimdTracker::serves(scene.volume, scene.transfer, scene.mixture) &&
          EventScene::serves(scene.volume.grid, scene.transfer, scene.lights, scene.mixture) &&
-         (!scene.tint || SimdLabelWeights::serves(*scene.tint->shares));
+         (!scene.tint || SimdLabelWeights::serves(*scene.tint->weights));
 }
 
 std::string targetOf(const RenderScene& scene, const RenderSettings& settings) {
