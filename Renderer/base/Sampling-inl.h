@@ -15,42 +15,42 @@
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 
-/// The 32 leading bits of each number of a sample, in the order of NumberSource's words.
-struct LaneNumbers {
-  std::array<UInt, 2> position, flight, scattered, choices, rest;
+/// The 32 leading bits of each number of a sample, in the order of Sampler's words.
+struct SimdPrimarySamples {
+  std::array<UInt, 2> position, collision, direction, choices, pathSeed;
 };
 
-/// NumberSource::numbers of `sample` in the stream (start, key).
-HWY_INLINE LaneNumbers numbersOf(UInt start, UInt key, UInt sample, bool isStratified) {
-  using Stream = NumberSource::Stream;
-  constexpr int places = NumberSource::places;
+/// Sampler::numbers of `sample` in the stream (start, key).
+HWY_INLINE SimdPrimarySamples generateSamples(UInt start, UInt key, UInt sample,
+                                              bool isStratified) {
+  using Stream = Sampler::Stream;
+  constexpr int strataBits = Sampler::strataBits;
   const auto at = [&](UInt n) { return mixBits((start + n * Stream::step) ^ key); };
-  const UInt first = sample * Stream::each;
+  const UInt first = sample * Stream::wordsPerSample;
   const auto two = [&](std::uint32_t i) { return std::array{at(first + i), at(first + (i + 1))}; };
-  LaneNumbers numbers{two(0), two(2), two(4), two(6), two(8)};
+  SimdPrimarySamples numbers{two(0), two(2), two(4), two(6), two(8)};
   if (!isStratified)
     return numbers;
-  const UInt place = shiftRight<1>(sample) & NumberSource::elements;
-  const UInt block = (sample - (place + place)) * Stream::each;
-  std::uint32_t ofPair = NumberSource::ofBlock;
+  const UInt index = shiftRight<1>(sample) & Sampler::elementMask;
+  const UInt block = (sample - (index + index)) * Stream::wordsPerSample;
+  std::uint32_t pairWord = Sampler::shuffleWords;
   for (std::array<UInt, 2>* words :
-       {&numbers.position, &numbers.flight, &numbers.scattered, &numbers.choices}) {
-    const UInt shuffle = at(block + ofPair++);
-    const UInt factor = shuffle & NumberSource::elements;
-    const UInt net =
-        gather(NumberSource::nets.data(), bitsAsInt(factor * NumberSource::blockSize + place));
-    const auto put = [&](UInt leading, UInt& word) {
-      word = (leading & NumberSource::leading) ^ shiftRight<places>(word);
+       {&numbers.position, &numbers.collision, &numbers.direction, &numbers.choices}) {
+    const UInt shuffle = at(block + pairWord++);
+    const UInt factor = shuffle & Sampler::elementMask;
+    const UInt net = gather(Sampler::nets.data(), bitsAsInt(factor * Sampler::blockSize + index));
+    const auto replaceLeading = [&](UInt leading, UInt& word) {
+      word = (leading & Sampler::leadingMask) ^ shiftRight<strataBits>(word);
     };
     const UInt strata = net ^ shuffle;
-    put(strata, (*words)[0]);
-    put(shiftLeft<places>(strata), (*words)[1]);
+    replaceLeading(strata, (*words)[0]);
+    replaceLeading(shiftLeft<strataBits>(strata), (*words)[1]);
   }
   return numbers;
 }
 
 /// Uniform in [0, 1): the 24 leading bits.
-HWY_INLINE Float below1(UInt bits) {
+HWY_INLINE Float toUniformBelow1(UInt bits) {
   return toFloat(bitsAsInt(shiftRight<8>(bits))) * 0x1p-24F;
 }
 

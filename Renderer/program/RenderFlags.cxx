@@ -306,7 +306,7 @@ struct RenderTable {
        "strata: a pixel's samples share out the numbers that decide most of its noise, eight by "
        "eight; independent: they share nothing (noisier). Both are unbiased",
        Takes::word(settings.sampling,
-                   {{"strata", Sampling::strata}, {"independent", Sampling::independent}})},
+                   {{"strata", Sampling::stratified}, {"independent", Sampling::independent}})},
       {"threads", "K", qualityGroup, "Threads, at most one a core; 0 is all",
        Takes::whole(0, 1024).into(settings.threads), Topic::process},
       {"volume", "NAME", outputGroup,

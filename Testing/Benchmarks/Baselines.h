@@ -152,14 +152,14 @@ template <typename MakeTracker>
 Film tracePicture(const RenderScene& scene, const RenderSettings& settings,
                   MakeTracker&& makeTracker) {
   Film film(scene.camera.width(), scene.camera.height());
-  const NumberSource source(Sampling::independent, settings.seed);
+  const Sampler source(Sampling::independent, settings.seed);
   const std::atomic<bool> stop = false;
   const auto tracePixels = [&](const auto& estimator) {
     tbb::parallel_for(0, film.height(), [&](int row) {
       Counters counters;
       for (int column = 0; column < film.width(); ++column)
         for (std::uint64_t sample = 0; sample < settings.samples; ++sample) {
-          const SampleNumbers numbers = source.numbers(film.index(column, row), sample);
+          const PrimarySamples numbers = source.generate(film.index(column, row), sample);
           const Vec2 jitter = uniform2Of(numbers.position);
           film.at(column, row)
               .add(*estimator.trace(column + jitter.x(), row + jitter.y(), numbers, counters));

@@ -218,8 +218,8 @@ TEST_F(RendersCommand, SamplingIsChosenAndTold) {
   const Image plain = rendered({"--sampling", "independent", "--stats", "s.json"});
   EXPECT_EQ(stats("s.json")["sampling"], "independent");
   EXPECT_EQ(plain.header.at("sampling"), "independent");
-  EXPECT_NE(strata.channels.at("R"), plain.channels.at("R"));
-  EXPECT_EQ(strata.channels, rendered({"--sampling", "strata"}).channels);
+  EXPECT_NE(stratified.channels.at("R"), plain.channels.at("R"));
+  EXPECT_EQ(stratified.channels, rendered({"--sampling", "strata"}).channels);
 }
 
 TEST_F(RendersCommand, SameSeedGivesTheSamePictureForAnyThreads) {

@@ -105,7 +105,7 @@ TEST_F(TurntableCommand, RendersOnlyMissingFrames) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("4 of 4 frames, 1 rendered now"), std::string::npos) << outcome.out;
   for (const auto& [kept, when] : written)
-    EXPECT_EQ(std::filesystem::last_write_time(folder / frame(kept)), when) << kept;
+    EXPECT_EQ(std::filesystem::last_write_time(folder / frame(index)), when) << kept;
   EXPECT_EQ(readImage(folder / frame(2)).channels, lost.channels);
   EXPECT_EQ(record()["finished"].size(), 4U);
 }

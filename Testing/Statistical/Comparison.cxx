@@ -112,7 +112,7 @@ double compareSquares(const Outcome& outcome, int size, Visit&& visit) {
   int channel = outcome.combination.index;
   for (int top = 0; top < outcome.truth.height; top += size)
     for (int left = 0; left < outcome.truth.width; left += size) {
-      const Sums a = sumsOf(outcome.product, left, top, size).inBlocks(NumberSource::blockSize);
+      const Sums a = sumsOf(outcome.product, left, top, size).inBlocks(Sampler::blockSize);
       const Sums b = sumsOf(outcome.truth, left, top, size);
       for (int c = 0; c < 3; ++c)
         least.add(welchProbability(a.channel(c, paths), b.channel(c, paths)));
@@ -126,7 +126,7 @@ double compareSquares(const Outcome& outcome, int size, Visit&& visit) {
 
 void comparePicture(Outcome& outcome) {
   const int size = outcome.truth.width;
-  const Sums a = sumsOf(outcome.product, 0, 0, size).inBlocks(NumberSource::blockSize);
+  const Sums a = sumsOf(outcome.product, 0, 0, size).inBlocks(Sampler::blockSize);
   const Sums b = sumsOf(outcome.truth, 0, 0, size);
   const Paths paths = pathsOf(outcome.truth);
   Least least;

@@ -5,23 +5,23 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::testing::StrataTests {
+namespace fenestra::testing::StratifiedTests {
 namespace {
 
-struct Way {
+struct Mode {
   Sampling sampling;
-  Integrator transport;
+  Integrator integrator;
 };
-constexpr Way ways[] = {{Sampling::strata, Integrator::simd},
-                        {Sampling::independent, Integrator::simd},
-                        {Sampling::strata, Integrator::scalar},
-                        {Sampling::independent, Integrator::scalar}};
+constexpr Mode modes[] = {{Sampling::stratified, Integrator::simd},
+                          {Sampling::independent, Integrator::simd},
+                          {Sampling::stratified, Integrator::scalar},
+                          {Sampling::independent, Integrator::scalar}};
 
-RenderSettings settingsOf(const Way& way, std::uint64_t samples, std::uint64_t seed) {
+RenderSettings makeSettings(const Mode& mode, std::uint64_t samples, std::uint64_t seed) {
   RenderSettings settings;
   settings.samples = samples;
-  settings.sampling = way.sampling;
-  settings.integrator = way.transport;
+  settings.sampling = mode.sampling;
+  settings.integrator = mode.integrator;
   settings.seed = seeded(seed);
   return settings;
 }
@@ -33,9 +33,9 @@ TEST(Strata, MeansAreThoseOfIndependentSamples) {
   for (const std::uint64_t samples : {3U, 8U, 24U}) {
     std::vector<Rgb> means;
     std::vector<Rgb> variances;
-    for (const Way& way : ways) {
+    for (const Mode& mode : modes) {
       Rgb sum = Rgb::Zero(), squares = Rgb::Zero();
-      RenderSettings settings = settingsOf(way, samples, 1000 * (1 + means.size()));
+      RenderSettings settings = makeSettings(mode, samples, 1000 * (1 + means.size()));
       for (int i = 0; i < seeds; ++i, ++settings.seed) {
         Rgb mean = Rgb::Zero();
         const Film film = scene.render(settings).film;
@@ -55,37 +55,40 @@ TEST(Strata, MeansAreThoseOfIndependentSamples) {
   }
 }
 
-class ToldErrors : public ::testing::TestWithParam<std::uint64_t> {};
+class EstimatedErrors : public ::testing::TestWithParam<std::uint64_t> {};
 
-TEST_P(ToldErrors, AreThoseOverSeeds) {
+TEST_P(EstimatedErrors, AreThoseOverSeeds) {
   const TestScene scene = fogScene();
   const std::uint64_t samples = GetParam();
-  for (const Way& way : ways) {
-    const int seeds = std::max(20, budget(way.transport == Integrator::simd ? 2400 : 800) /
+  for (const Mode& mode : modes) {
+    const int seeds = std::max(20, budget(mode.integrator == Integrator::simd ? 2400 : 800) /
                                        static_cast<int>(samples + 10));
-    const ErrorRatio told = errorRatio(scene, settingsOf(way, samples, 5000), seeds);
+    const ErrorRatio measured = errorRatio(scene, makeSettings(mode, samples, 5000), seeds);
     std::printf("%d samples, %s, %s: ratio of variances %.4f +- %.4f\n", static_cast<int>(samples),
-                way.sampling == Sampling::strata ? "strata" : "plain",
-                way.transport == Integrator::simd ? "fast" : "readable", told.ratio, told.error);
-    EXPECT_LT(told.error, 0.05);
-    EXPECT_GT(told.ratio, 1.0 - 4.5 * told.error);
-    const bool isEven = way.sampling == Sampling::independent || samples != 17;
-    EXPECT_LT(told.ratio, (isEven ? 1.0 : 1.06) + 4.5 * told.error);
+                mode.sampling == Sampling::stratified ? "strata" : "plain",
+                mode.integrator == Integrator::simd ? "fast" : "readable", measured.ratio,
+                measured.error);
+    EXPECT_LT(measured.error, 0.05);
+    EXPECT_GT(measured.ratio, 1.0 - 4.5 * measured.error);
+    const bool isEven = mode.sampling == Sampling::independent || samples != 17;
+    EXPECT_LT(measured.ratio, (isEven ? 1.0 : 1.06) + 4.5 * measured.error);
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Samples, ToldErrors, ::testing::Values(2, 8, 16, 17, 64));
+INSTANTIATE_TEST_SUITE_P(Samples, EstimatedErrors, ::testing::Values(2, 8, 16, 17, 64));
 
 TEST(Strata, TakeNoiseAway) {
   const TestScene scene = fogScene();
-  for (const std::size_t fast : {0U, 2U}) {
+  for (const std::size_t first : {0U, 2U}) {
     const int seeds = budget(240);
-    const double strata = errorRatio(scene, settingsOf(ways[fast], 16, 9000), seeds).variance;
-    const double plain = errorRatio(scene, settingsOf(ways[fast + 1], 16, 9000), seeds).variance;
-    std::printf("variance of independent samples / of strata: %.3f\n", plain / strata);
-    EXPECT_GT(plain / strata, 1.15);
+    const double stratified =
+        errorRatio(scene, makeSettings(modes[first], 16, 9000), seeds).variance;
+    const double independent =
+        errorRatio(scene, makeSettings(modes[first + 1], 16, 9000), seeds).variance;
+    std::printf("variance of independent samples / of strata: %.3f\n", independent / stratified);
+    EXPECT_GT(independent / stratified, 1.15);
   }
 }
 
 } // namespace
-} // namespace fenestra::testing::StrataTests
+} // namespace fenestra::testing::StratifiedTests

@@ -32,10 +32,10 @@ std::vector<PathSample> samplesOf(const TestScene& scene, int column, int row, s
   samples.reserve(count);
   withEstimator(scene, [&](const auto& estimator) {
     Counters counters;
-    const NumberSource source(RenderSettings().sampling, 7);
+    const Sampler source(RenderSettings().sampling, 7);
     const auto pixel = static_cast<std::uint64_t>(row * scene.width + column);
     for (std::uint64_t i = first; i < first + count; ++i) {
-      const SampleNumbers numbers = source.numbers(pixel, i);
+      const PrimarySamples numbers = source.generate(pixel, i);
       const Vec2 jitter = uniform2Of(numbers.position);
       samples.push_back(*estimator.trace(column + jitter.x(), row + jitter.y(), numbers, counters));
     }

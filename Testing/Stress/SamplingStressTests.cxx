@@ -284,7 +284,7 @@ TEST(TrackingEnds, CollisionsStayInTheRange) {
 }
 
 /// Sample of one path, with its counters.
-PathSample tracedPath(const TestScene& scene, const SampleNumbers& numbers, Counters& counters) {
+PathSample tracedPath(const TestScene& scene, const PrimarySamples& numbers, Counters& counters) {
   return withEstimator(scene, [&](const auto& estimator) {
     return *estimator.trace(0.5 * scene.width, 0.5 * scene.height, numbers, counters);
   });

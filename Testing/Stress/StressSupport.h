@@ -37,9 +37,9 @@ inline Random randomWithDraw(int draw, std::uint64_t bits) {
   return Random(unmixBits(bits) - static_cast<std::uint64_t>(draw) * Random::gamma);
 }
 
-/// Numbers of a path of which the `draw`-th one, in the order of SampleNumbers from depth on, is
+/// Numbers of a path of which the `draw`-th one, in the order of PrimarySamples from depth on, is
 /// `bits`.
-inline SampleNumbers numbersWithDraw(int draw, std::uint64_t bits) {
+inline PrimarySamples numbersWithDraw(int draw, std::uint64_t bits) {
   constexpr int given = 4;
   Random random = randomWithDraw(draw, bits);
   const std::uint64_t depth = random.bits();

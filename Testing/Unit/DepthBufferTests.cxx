@@ -47,7 +47,7 @@ TEST(DepthBuffer, LargeVolumeIsCoarserBeyondTheViewport) {
   for (const double scale : {10.0, 5.0, 0.01, 1e-6}) {
     const Camera camera = anteriorCamera(Projection::orthographic, 1000.0, scale, 300, 200);
     const DepthBuffer buffer(camera, grid);
-    EXPECT_LE(buffer.size(), most);
+    EXPECT_LE(buffer.size(), maxSamples);
     EXPECT_GT(buffer.xAxis().factor, 1.0);
     EXPECT_EQ(buffer.xAxis().factor, std::floor(buffer.xAxis().factor));
     EXPECT_LE(buffer.xAxis().coordinate(0), -250.0 * (1 - 1e-12));

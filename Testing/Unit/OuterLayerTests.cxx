@@ -44,10 +44,10 @@ TEST(OuterLayer, IsAsDeepAsAsked) {
         outerLayer(ctOf(grid, [](const Vec3& p) { return p.norm() < radius; }), -300.0, depth);
     ASSERT_GT(skin.count, 0);
     for (const Vec3& way : {Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0.6, 0.64, 0.48), Vec3(0, 0, 1)}) {
-      EXPECT_EQ(at(skin, (radius + 2.0) * way), 1.0) << way.x();
-      EXPECT_GT(at(skin, (radius - 0.5) * way), 0.7) << way.x();
-      EXPECT_LT(at(skin, (radius - depth - 2.5) * way), 0.2) << way.x();
-      EXPECT_EQ(at(skin, 0.5 * radius * way), 0.0);
+      EXPECT_EQ(at(skin, (radius + 2.0) * direction), 1.0) << way.x();
+      EXPECT_GT(at(skin, (radius - 0.5) * direction), 0.7) << way.x();
+      EXPECT_LT(at(skin, (radius - depth - 2.5) * direction), 0.2) << way.x();
+      EXPECT_EQ(at(skin, 0.5 * radius * direction), 0.0);
     }
   }
 }

@@ -9,21 +9,21 @@
 #include <bit>
 #include <set>
 
-namespace fenestra::testing::SamplingTests {
+namespace fenestra::testing::SamplerTests {
 namespace {
 
-constexpr std::uint64_t size = NumberSource::blockSize;
-constexpr std::size_t numberCount = 8;
-using Eight = std::array<double, numberCount>;
+constexpr std::uint64_t size = Sampler::blockSize;
+constexpr std::size_t dimensionCount = 8;
+using Dimensions = std::array<double, dimensionCount>;
 
 /// The eight numbers that have strata, in pairs.
-Eight eightOf(const SampleNumbers& numbers) {
+Dimensions toDimensions(const PrimarySamples& numbers) {
   const Vec2 position = uniform2Of(numbers.position);
-  const Vec2 scattered = uniform2Of(numbers.scattered);
+  const Vec2 scattered = uniform2Of(numbers.direction);
   const Vec2 choices = uniform2Of(numbers.choices);
   return {position.x(),
           position.y(),
-          uniformOf(numbers.depth),
+          uniformOf(numbers.opticalDepth),
           uniformOf(numbers.acceptance),
           scattered.x(),
           scattered.y(),
@@ -32,15 +32,15 @@ Eight eightOf(const SampleNumbers& numbers) {
 }
 
 /// Sample number of a place in a block.
-std::uint64_t sampleAt(std::uint64_t block, std::uint64_t half, std::uint64_t place) {
-  return 2 * (block * size + place) + half;
+std::uint64_t sampleIndex(std::uint64_t block, std::uint64_t half, std::uint64_t offset) {
+  return 2 * (block * size + offset) + half;
 }
 
-std::size_t cellOf(double number, std::size_t cells) {
+std::size_t findCell(double number, std::size_t cells) {
   return static_cast<std::size_t>(number * static_cast<double>(cells));
 }
 
-void expectEven(const std::vector<double>& counts, const std::string& what) {
+void expectUniform(const std::vector<double>& counts, const std::string& what) {
   double sum = 0.0;
   for (const double count : counts)
     sum += count;
@@ -49,34 +49,35 @@ void expectEven(const std::vector<double>& counts, const std::string& what) {
 }
 
 /// Counts of `cells` x `cells` cells of two numbers, drawn by draw(pixel).
-template <typename Draw>
-void expectJointlyUniform(Draw&& draw, std::size_t cells, const std::string& what) {
+template <typename Sample>
+void expectJointlyUniform(Sample&& sample, std::size_t cells, const std::string& what) {
   constexpr std::uint64_t pixels = 40000;
   std::vector<double> counts(cells * cells, 0.0);
   for (std::uint64_t pixel = 0; pixel < pixels; ++pixel) {
-    const auto [a, b] = draw(pixel);
-    counts[cellOf(a, cells) * cells + cellOf(b, cells)] += 1.0;
+    const auto [a, b] = sample(pixel);
+    counts[findCell(a, cells) * cells + findCell(b, cells)] += 1.0;
   }
-  expectEven(counts, what);
+  expectUniform(counts, what);
 }
 
 TEST(Strata, BlocksHitEachStratumOnce) {
-  const NumberSource source(Sampling::strata, 3);
+  const Sampler source(Sampling::stratified, 3);
   for (std::uint64_t pixel = 0; pixel < 200; ++pixel)
     for (std::uint64_t half = 0; half < 2; ++half)
       for (const std::uint64_t block : {0ULL, 1ULL, 5ULL, 1ULL << 40}) {
-        std::array<std::set<std::size_t>, numberCount> strata;
-        std::array<std::set<std::size_t>, numberCount> boxes; // pair i: in [2 i] and [2 i + 1]
-        for (std::uint64_t place = 0; place < size; ++place) {
-          const Eight eight = eightOf(source.numbers(pixel, sampleAt(block, half, place)));
-          for (std::size_t i = 0; i < numberCount; ++i)
-            strata[i].insert(cellOf(eight[i], size));
-          for (std::size_t i = 0; i < numberCount; i += 2) {
-            boxes[i].insert(cellOf(eight[i], 2) * 4 + cellOf(eight[i + 1], 4));
-            boxes[i + 1].insert(cellOf(eight[i], 4) * 2 + cellOf(eight[i + 1], 2));
+        std::array<std::set<std::size_t>, dimensionCount> strata;
+        std::array<std::set<std::size_t>, dimensionCount> boxes; // pair i: in [2 i] and [2 i + 1]
+        for (std::uint64_t offset = 0; offset < size; ++offset) {
+          const Dimensions values =
+              toDimensions(source.generate(pixel, sampleIndex(block, half, offset)));
+          for (std::size_t i = 0; i < dimensionCount; ++i)
+            strata[i].insert(findCell(values[i], size));
+          for (std::size_t i = 0; i < dimensionCount; i += 2) {
+            boxes[i].insert(findCell(values[i], 2) * 4 + findCell(values[i + 1], 4));
+            boxes[i + 1].insert(findCell(values[i], 4) * 2 + findCell(values[i + 1], 2));
           }
         }
-        for (std::size_t i = 0; i < numberCount; ++i) {
+        for (std::size_t i = 0; i < dimensionCount; ++i) {
           ASSERT_EQ(strata[i].size(), size) << "number " << i;
           ASSERT_EQ(boxes[i].size(), size) << "boxes " << i;
         }
@@ -85,25 +86,25 @@ TEST(Strata, BlocksHitEachStratumOnce) {
 
 /// Each sample alone is drawn as an independent one is, at each place of a block.
 TEST(Strata, NumbersOfASampleAreUniformAndIndependent) {
-  for (const Sampling sampling : {Sampling::strata, Sampling::independent}) {
-    const NumberSource source(sampling, 11);
+  for (const Sampling sampling : {Sampling::stratified, Sampling::independent}) {
+    const Sampler source(sampling, 11);
     for (const std::uint64_t sample : {0ULL, 1ULL, 2ULL, 14ULL, 15ULL, 16ULL, 77ULL}) {
-      for (std::size_t i = 0; i < numberCount; ++i)
-        for (std::size_t j = i + 1; j < numberCount; ++j)
+      for (std::size_t i = 0; i < dimensionCount; ++i)
+        for (std::size_t j = i + 1; j < dimensionCount; ++j)
           expectJointlyUniform(
               [&](std::uint64_t pixel) {
-                const Eight eight = eightOf(source.numbers(pixel, sample));
-                return std::array{eight[i], eight[j]};
+                const Dimensions values = toDimensions(source.generate(pixel, sample));
+                return std::array{values[i], values[j]};
               },
               16, std::to_string(sample) + ": " + std::to_string(i) + ", " + std::to_string(j));
-      std::vector<double> halves(256, 0.0); // of all eight numbers
+      std::vector<double> orthants(256, 0.0); // of all eight numbers
       for (std::uint64_t pixel = 0; pixel < 40000; ++pixel) {
         std::size_t half = 0;
-        for (const double number : eightOf(source.numbers(pixel, sample)))
-          half = 2 * half + cellOf(number, 2);
-        halves[half] += 1.0;
+        for (const double number : toDimensions(source.generate(pixel, sample)))
+          half = 2 * half + findCell(number, 2);
+        orthants[half] += 1.0;
       }
-      expectEven(halves, "halves");
+      expectUniform(orthants, "halves");
     }
   }
 }
@@ -111,15 +112,15 @@ TEST(Strata, NumbersOfASampleAreUniformAndIndependent) {
 /// Two samples of one block: no number of one tells more of a number of another pair of the other
 /// than that they differ in their strata.
 TEST(Strata, PairsOfNumbersAreShuffledApart) {
-  const NumberSource source(Sampling::strata, 12);
-  for (const std::uint64_t place : {1ULL, 4ULL, 7ULL})
+  const Sampler source(Sampling::stratified, 12);
+  for (const std::uint64_t offset : {1ULL, 4ULL, 7ULL})
     for (const auto& [i, j] : {std::pair{0U, 4U}, {0U, 6U}, {2U, 6U}, {4U, 6U}}) {
       std::vector<double> counts((size - 1) * (size - 1), 0.0);
       for (std::uint64_t pixel = 0; pixel < 40000; ++pixel) {
-        const Eight a = eightOf(source.numbers(pixel, sampleAt(0, 0, 0)));
-        const Eight b = eightOf(source.numbers(pixel, sampleAt(0, 0, place)));
-        const std::size_t first = cellOf(a[i], size) ^ cellOf(b[i], size);
-        const std::size_t second = cellOf(a[j], size) ^ cellOf(b[j], size);
+        const Dimensions a = toDimensions(source.generate(pixel, sampleIndex(0, 0, 0)));
+        const Dimensions b = toDimensions(source.generate(pixel, sampleIndex(0, 0, offset)));
+        const std::size_t first = findCell(a[i], size) ^ findCell(b[i], size);
+        const std::size_t second = findCell(a[j], size) ^ findCell(b[j], size);
         ASSERT_TRUE(first > 0 && second > 0);
         counts[(first - 1) * (size - 1) + second - 1] += 1.0;
       }
@@ -130,58 +131,59 @@ TEST(Strata, PairsOfNumbersAreShuffledApart) {
 }
 
 TEST(Strata, HalvesAndBlocksAreIndependent) {
-  const NumberSource source(Sampling::strata, 13);
-  const std::uint64_t here = sampleAt(0, 0, 3);
-  for (std::uint64_t place = 0; place < size; ++place)
+  const Sampler source(Sampling::stratified, 13);
+  const std::uint64_t reference = sampleIndex(0, 0, 3);
+  for (std::uint64_t offset = 0; offset < size; ++offset)
     for (const std::uint64_t other :
-         {sampleAt(0, 1, place), sampleAt(1, 0, place), sampleAt(1, 1, place)})
-      for (std::size_t i = 0; i < numberCount; ++i)
+         {sampleIndex(0, 1, offset), sampleIndex(1, 0, offset), sampleIndex(1, 1, offset)})
+      for (std::size_t i = 0; i < dimensionCount; ++i)
         expectJointlyUniform(
             [&](std::uint64_t pixel) {
-              return std::array{eightOf(source.numbers(pixel, here))[i],
-                                eightOf(source.numbers(pixel, other))[i]};
+              return std::array{toDimensions(source.generate(pixel, reference))[i],
+                                toDimensions(source.generate(pixel, other))[i]};
             },
             size,
-            std::to_string(i) + ": samples " + std::to_string(here) + ", " + std::to_string(other));
+            std::to_string(i) + ": samples " + std::to_string(reference) + ", " +
+                std::to_string(other));
 }
 
 TEST(Strata, NeighboursAndSeedsShareNothing) {
   for (const bool otherSeed : {false, true}) {
-    const NumberSource a(Sampling::strata, 1);
-    const NumberSource b(Sampling::strata, otherSeed ? 2 : 1);
+    const Sampler a(Sampling::stratified, 1);
+    const Sampler b(Sampling::stratified, otherSeed ? 2 : 1);
     expectJointlyUniform(
         [&](std::uint64_t pixel) {
-          return std::array{uniformOf(a.numbers(pixel, 4).depth),
-                            uniformOf(b.numbers(pixel + (otherSeed ? 0 : 1), 4).depth)};
+          return std::array{uniformOf(a.generate(pixel, 4).opticalDepth),
+                            uniformOf(b.generate(pixel + (otherSeed ? 0 : 1), 4).opticalDepth)};
         },
         size, otherSeed ? "seeds" : "neighbours");
   }
 }
 
 TEST(Independent, SamplesShareNothing) {
-  const NumberSource source(Sampling::independent, 14);
-  EXPECT_EQ(source.block(), 1U);
+  const Sampler source(Sampling::independent, 14);
+  EXPECT_EQ(source.samplesPerBlock(), 1U);
   for (const std::uint64_t other : {1ULL, 2ULL, 3ULL, 14ULL})
-    for (std::size_t i = 0; i < numberCount; ++i)
+    for (std::size_t i = 0; i < dimensionCount; ++i)
       expectJointlyUniform(
           [&](std::uint64_t pixel) {
-            return std::array{eightOf(source.numbers(pixel, 0))[i],
-                              eightOf(source.numbers(pixel, other))[i]};
+            return std::array{toDimensions(source.generate(pixel, 0))[i],
+                              toDimensions(source.generate(pixel, other))[i]};
           },
           size, std::to_string(i) + ": " + std::to_string(other));
 }
 
 /// Every bit of the seed of all further numbers is as often 0 as 1, and strata do not touch it.
 TEST(Strata, TheRestIsAsWithoutThem) {
-  const NumberSource strata(Sampling::strata, 15);
-  const NumberSource plain(Sampling::independent, 15);
+  const Sampler strata(Sampling::stratified, 15);
+  const Sampler independent(Sampling::independent, 15);
   std::array<int, 64> ones = {};
   constexpr int count = 40000;
   for (std::uint64_t i = 0; i < count; ++i) {
-    const std::uint64_t rest = strata.numbers(i % 200, i / 200).rest;
-    ASSERT_EQ(rest, plain.numbers(i % 200, i / 200).rest);
+    const std::uint64_t pathSeed = strata.generate(i % 200, i / 200).pathSeed;
+    ASSERT_EQ(pathSeed, independent.generate(i % 200, i / 200).pathSeed);
     for (std::size_t bit = 0; bit < 64; ++bit)
-      ones[bit] += static_cast<int>(rest >> bit & 1);
+      ones[bit] += static_cast<int>(pathSeed >> bit & 1);
   }
   for (const int n : ones)
     EXPECT_NEAR(n, count / 2, 4.5 * std::sqrt(count) / 2);
@@ -198,4 +200,4 @@ TEST(Numbers, EndsOfTheUnitIntervalAreFinite) {
 }
 
 } // namespace
-} // namespace fenestra::testing::SamplingTests
+} // namespace fenestra::testing::SamplerTests

@@ -263,7 +263,7 @@ void expectNoCracks(const SurfaceMesh& mesh, const Camera& camera) {
     for (auto point = sorted.upper_bound(low + 1e-6 * pitch);
          point != sorted.end() && point->first < high - 1e-6 * pitch; ++point) {
       const Vec2 d = at[point->second] - a;
-      ASSERT_GT(std::abs(d.x() * along.y() - d.y() * along.x()), 1e-3 * pitch)
+      ASSERT_GT(std::abs(d.x() * direction.y() - d.y() * direction.x()), 1e-3 * pitch)
           << "a point within an outer edge";
     }
   }

@@ -52,7 +52,7 @@ struct Beginning {
   Background background = {};
   EyeRays eye;
   EyeTable wide;
-  std::unique_ptr<PathStarts> starts = std::make_unique<PathStarts>();
+  std::unique_ptr<CameraSamples> starts = std::make_unique<CameraSamples>();
   std::unique_ptr<PathBatch> paths = std::make_unique<PathBatch>();
 
   Beginning(const RenderScene& s, const Domain& in)
@@ -63,19 +63,18 @@ struct Beginning {
 };
 
 /// Starts of one sample each in neighbouring pixels.
-void fill(PathStarts& starts, const NumberSource& source, std::uint64_t pixel,
-          std::uint64_t sample) {
+void fill(CameraSamples& starts, const Sampler& source, std::uint64_t pixel, std::uint64_t sample) {
   starts.isStratified = source.isStratified();
   for (starts.size = 0; starts.size < RayBatch::capacity - 50; ++starts.size) {
     const std::uint64_t here = pixel + starts.size, number = sample + starts.size;
-    const NumberSource::Stream stream = source.stream(here, number);
+    const Sampler::Stream stream = source.stream(here, number);
     starts.column[starts.size] = static_cast<float>(here % width);
     starts.row[starts.size] = static_cast<float>(here / width);
     starts.start[starts.size] = stream.start;
     starts.key[starts.size] = stream.key;
-    starts.number[starts.size] = static_cast<std::uint32_t>(number % stream.samples);
+    starts.number[starts.size] = static_cast<std::uint32_t>(number % stream.maxSamples);
     starts.tile[starts.size] = 7;
-    starts.ofTile[starts.size] = static_cast<std::uint32_t>(here);
+    starts.tileSample[starts.size] = static_cast<std::uint32_t>(here);
   }
 }
 
@@ -86,10 +85,10 @@ TEST_P(WideEyeRaysOf, NumbersAreThoseOfTheSource) {
   scene.with([&](const RenderScene& s) {
     const Beginning begun(s, Domain(grid));
     const auto& [domain, tracker, background, eye, wide, starts, paths] = begun;
-    constexpr std::uint64_t inStream = NumberSource::Stream::samples;
-    for (const Sampling sampling : {Sampling::strata, Sampling::independent})
+    constexpr std::uint64_t inStream = Sampler::Stream::maxSamples;
+    for (const Sampling sampling : {Sampling::stratified, Sampling::independent})
       for (const std::uint64_t sample : {std::uint64_t{0}, inStream - 100, inStream << 9}) {
-        const NumberSource source(sampling, 5);
+        const Sampler source(sampling, 5);
         fill(*starts, source, 400, sample);
         paths->rays.size = 0;
         beginPaths(tracker.scene(), wide, eye, *starts, *paths);
@@ -98,15 +97,15 @@ TEST_P(WideEyeRaysOf, NumbersAreThoseOfTheSource) {
           return static_cast<float>(bits >> 8 & 0xffffff) * 0x1p-24F;
         };
         for (std::size_t i = 0; i < starts->size; ++i) {
-          const SampleNumbers numbers = source.numbers(400 + i, sample + i);
-          ASSERT_EQ(paths->rays.depth[i], numbers.depth >> 32) << i;
+          const PrimarySamples numbers = source.generate(400 + i, sample + i);
+          ASSERT_EQ(paths->rays.depth[i], numbers.opticalDepth >> 32) << i;
           ASSERT_EQ(paths->rays.acceptance[i], below1(numbers.acceptance >> 32)) << i;
-          ASSERT_EQ(paths->scattered[0][i], below1(numbers.scattered >> 32)) << i;
-          ASSERT_EQ(paths->scattered[1][i], below1(numbers.scattered)) << i;
+          ASSERT_EQ(paths->uDirection[0][i], below1(numbers.direction >> 32)) << i;
+          ASSERT_EQ(paths->uDirection[1][i], below1(numbers.direction)) << i;
           const Vec2 choices = uniform2Of(numbers.choices);
-          ASSERT_NEAR(double{paths->choices[0][i]}, choices.x(), 2e-7) << i;
-          ASSERT_NEAR(double{paths->choices[1][i]}, choices.y(), 2e-7) << i;
-          ASSERT_EQ(std::uint64_t{paths->counter[i]} << 32 | paths->key[i], numbers.rest) << i;
+          ASSERT_NEAR(double{paths->uChoices[0][i]}, choices.x(), 2e-7) << i;
+          ASSERT_NEAR(double{paths->uChoices[1][i]}, choices.y(), 2e-7) << i;
+          ASSERT_EQ(std::uint64_t{paths->counter[i]} << 32 | paths->key[i], numbers.pathSeed) << i;
           const Vec2 jitter = uniform2Of(numbers.position);
           const std::uint64_t pixel = 400 + i;
           ASSERT_NEAR(double{starts->column[i]} + 0.5 * width, double(pixel % width) + jitter.x(),
@@ -114,7 +113,7 @@ TEST_P(WideEyeRaysOf, NumbersAreThoseOfTheSource) {
           ASSERT_NEAR(double{starts->row[i]} + 0.5 * height, double(pixel / width) + jitter.y(),
                       2e-6);
           ASSERT_EQ(paths->row[i], static_cast<float>(pixel / width));
-          ASSERT_EQ(paths->ofTile[i], pixel);
+          ASSERT_EQ(paths->tileSample[i], pixel);
         }
       }
   });
@@ -135,7 +134,7 @@ TEST_P(WideEyeRaysOf, RaysAreThoseInDouble) {
       const auto exact = std::make_unique<RayBatch>();
       std::size_t met = 0;
       for (std::uint64_t pixel = 0; pixel + RayBatch::capacity < width * height; pixel += 400) {
-        fill(*starts, NumberSource(Sampling::strata, pixel), pixel, 0);
+        fill(*starts, Sampler(Sampling::stratified, pixel), pixel, 0);
         paths->rays.size = 3;
         beginPaths(tracker.scene(), wide, eye, *starts, *paths);
         for (std::size_t i = 0; i < starts->size; ++i) {

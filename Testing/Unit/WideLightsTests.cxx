@@ -102,8 +102,8 @@ void setPath(PathBatch& paths, std::size_t i, const Vec3& direction, const Vec2&
   }
   const Vec2 choices = Random(key).uniform2();
   for (std::size_t axis = 0; axis < 2; ++axis) {
-    paths.scattered[axis][i] = static_cast<float>(scattered[static_cast<int>(axis)]);
-    paths.choices[axis][i] = static_cast<float>(choices[static_cast<int>(axis)]);
+    paths.uDirection[axis][i] = static_cast<float>(scattered[static_cast<int>(axis)]);
+    paths.uChoices[axis][i] = static_cast<float>(choices[static_cast<int>(axis)]);
   }
   paths.bounces[i] = 0;
   paths.key[i] = static_cast<std::uint32_t>(key);

@@ -12,31 +12,31 @@ namespace fenestra::HWY_NAMESPACE {
 namespace {
 
 /// Draws the paths' numbers, and moves starts to their places in the pixels.
-void drawAll(const EyeTable& eye, PathStarts& starts, PathBatch& paths) {
+void drawAll(const EyeTable& eye, CameraSamples& starts, PathBatch& paths) {
   for (std::size_t i = 0; i < starts.size; i += laneCount) {
-    const LaneNumbers numbers = numbersOf(load(&starts.start[i]), load(&starts.key[i]),
-                                          load(&starts.number[i]), starts.isStratified);
+    const SimdPrimarySamples numbers = generateSamples(
+        load(&starts.start[i]), load(&starts.key[i]), load(&starts.number[i]), starts.isStratified);
     const std::size_t to = paths.rays.size + i;
     const Float row = load(&starts.row[i]);
     store(row, &paths.row[to]);
-    store(row - eye.middleRow + below1(numbers.position[1]), &starts.row[i]);
+    store(row - eye.middleRow + toUniformBelow1(numbers.position[1]), &starts.row[i]);
     const Float column = load(&starts.column[i]) - eye.middleColumn;
-    store(column + below1(numbers.position[0]), &starts.column[i]);
+    store(column + toUniformBelow1(numbers.position[0]), &starts.column[i]);
     store(load(&starts.tile[i]), &paths.tile[to]);
-    store(load(&starts.ofTile[i]), &paths.ofTile[to]);
-    store(numbers.flight[0], &paths.rays.depth[to]);
-    store(below1(numbers.flight[1]), &paths.rays.acceptance[to]);
+    store(load(&starts.tileSample[i]), &paths.tileSample[to]);
+    store(numbers.collision[0], &paths.rays.depth[to]);
+    store(toUniformBelow1(numbers.collision[1]), &paths.rays.acceptance[to]);
     for (const std::size_t which : {0U, 1U}) {
-      store(below1(numbers.scattered[which]), &paths.scattered[which][to]);
-      store(toUniform(numbers.choices[which]), &paths.choices[which][to]);
+      store(toUniformBelow1(numbers.direction[which]), &paths.uDirection[which][to]);
+      store(toUniform(numbers.choices[which]), &paths.uChoices[which][to]);
     }
-    store(numbers.rest[0], &paths.counter[to]);
-    store(numbers.rest[1], &paths.key[to]);
+    store(numbers.pathSeed[0], &paths.counter[to]);
+    store(numbers.pathSeed[1], &paths.key[to]);
   }
 }
 
 /// Begins the paths with their eye rays.
-void beginAll(const WideScene& volume, const EyeTable& eye, const PathStarts& starts,
+void beginAll(const WideScene& volume, const EyeTable& eye, const CameraSamples& starts,
               PathBatch& paths) {
   for (std::size_t i = 0; i < starts.size; i += laneCount) {
     const Float x = load(&starts.column[i]), y = load(&starts.row[i]);
@@ -101,7 +101,7 @@ EyeTable::EyeTable(const Domain& domain, const Camera& camera)
 }
 
 void beginPaths(const WideScene& volume, const EyeTable& table, const EyeRays& eye,
-                PathStarts& starts, PathBatch& paths) {
+                CameraSamples& starts, PathBatch& paths) {
   HWY_DYNAMIC_DISPATCH(drawAll)(table, starts, paths);
   if (eye.isWhole()) {
     std::fill_n(starts.from.begin(), starts.size, 0.0F);

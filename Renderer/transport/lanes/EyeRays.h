@@ -25,6 +25,6 @@ struct EyeTable {
 /// Begins a path for each start, behind those of `paths`. Changes rows and columns of `starts` to
 /// raster positions, counted from the picture's middle.
 void beginPaths(const WideScene& volume, const EyeTable& table, const EyeRays& eye,
-                PathStarts& starts, PathBatch& paths);
+                CameraSamples& starts, PathBatch& paths);
 
 } // namespace fenestra

@@ -6,14 +6,15 @@
 namespace fenestra {
 
 /// Samples to begin a path for, each in its pixel.
-struct PathStarts {
+struct CameraSamples {
   std::size_t size = 0;
   bool isStratified = false;
-  SoaArray<float> column, row;          ///< of the pixel
-  SoaArray<float> from, to;             ///< part of the eye ray left by clipping: see beginPaths
-  SoaArray<std::uint32_t> start, key;   ///< NumberSource::Stream
-  SoaArray<std::uint32_t> number;       ///< of the sample in the stream
-  SoaArray<std::uint32_t> tile, ofTile; ///< whom the sample is delivered to: tile, sample in there
+  SoaArray<float> column, row;        ///< of the pixel
+  SoaArray<float> from, to;           ///< part of the eye ray left by clipping: see beginPaths
+  SoaArray<std::uint32_t> start, key; ///< Sampler::Stream
+  SoaArray<std::uint32_t> number;     ///< of the sample in the stream
+  SoaArray<std::uint32_t> tile,
+      tileSample; ///< whom the sample is delivered to: tile, sample in there
 };
 
 /// Paths: `Path` as a structure of arrays, those that began first in front.
@@ -23,10 +24,10 @@ struct PathBatch {
   SoaArray3 throughput, radiance;
   SoaArray<float> scatterPdf;
   SoaArray<std::int32_t> bounces;
-  SoaArray<std::uint32_t> key, counter;     ///< of the paths' random numbers
-  SoaArray<std::uint32_t> tile, ofTile;     ///< PathStarts
-  std::array<SoaArray<float>, 2> scattered; ///< numbers of the first scattered directions
-  std::array<SoaArray<float>, 2> choices;   ///< at the first collisions: surface or not, light
+  SoaArray<std::uint32_t> key, counter;      ///< of the paths' random numbers
+  SoaArray<std::uint32_t> tile, tileSample;  ///< CameraSamples
+  std::array<SoaArray<float>, 2> uDirection; ///< numbers of the first scattered directions
+  std::array<SoaArray<float>, 2> uChoices;   ///< at the first collisions: surface or not, light
 
   /// Eye rays, of use until the first collision: row of the pixel, direction, depth at the ray's
   /// beginning (mm, counted from EyeTable::nearDepth) and its growth per mm of the ray.

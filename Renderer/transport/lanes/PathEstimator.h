@@ -20,8 +20,8 @@ public:
       : m_tracker(tracker), m_scene(scene), m_table(table), m_eye(eye), m_stop(stop) {}
 
   /// Traces all paths of source.fill(starts, most), at most `atOnce` together, and calls
-  /// source.deliver(tile, ofTile, sample) for each, in any order. Returns false if `stop` became
-  /// true before all had ended.
+  /// source.deliver(tile, tileSample, sample) for each, in any order. Returns false if `stop`
+  /// became true before all had ended.
   template <typename Source>
   bool trace(Source& source, std::size_t atOnce, Counters& counters) const {
     const auto batch = std::make_unique<Batch>();
@@ -48,7 +48,7 @@ private:
   bool stopped() const { return m_stop.load(std::memory_order_relaxed); }
 
   struct Batch {
-    PathStarts starts;
+    CameraSamples starts;
     PathBatch paths;
     LightBatch lights;
   };
@@ -66,7 +66,7 @@ private:
     for (std::size_t first = 0; first < paths.rays.size; first += 64)
       for (std::uint64_t left = paths.ended[first / 64]; left != 0; left &= left - 1) {
         const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(left));
-        source.deliver(paths.tile[i], paths.ofTile[i], sample(paths, i));
+        source.deliver(paths.tile[i], paths.tileSample[i], sample(paths, i));
       }
   }
 

@@ -116,8 +116,8 @@ private:
       });
 
     const Float choice = m_scene.hybrid ? draws.uniform() : 0.0F; // independent of neighbours
-    const Float u = givenFirst(at.first, m_paths.scattered[0], i, draws);
-    const Float v = givenFirst(at.first, m_paths.scattered[1], i, draws);
+    const Float u = givenFirst(at.first, m_paths.uDirection[0], i, draws);
+    const Float v = givenFirst(at.first, m_paths.uDirection[1], i, draws);
     ScatterDraw drawn = phase.draw(u, v);
     if (surfaces) {
       const ScatterDraw other = surface().draw(choice, u, v);
@@ -151,7 +151,7 @@ private:
         at.gradient = at.gradient + cutGradient(m_volume, index, removable(at));
       const Float slope = sqrt(dot(at.gradient, at.gradient));
       const Float chance = missing(extinctionOfOne(at)) * missing(m_scene.surfaceRate * slope);
-      at.surface = going & (givenFirst(first, m_paths.choices[0], i, draws) < chance);
+      at.surface = going & (givenFirst(first, m_paths.uChoices[0], i, draws) < chance);
     }
     return at;
   }
@@ -199,7 +199,7 @@ private:
   /// PathSteps::sampledLight.
   template <typename Toward>
   void sampleLights(std::size_t i, const Collisions& at, Draws& draws, Toward&& toward) {
-    const Float choice = givenFirst(at.first, m_paths.choices[1], i, draws);
+    const Float choice = givenFirst(at.first, m_paths.uChoices[1], i, draws);
     const UInt u = draws.nextBits();
     const UInt v = draws.nextBits();
     const LightDraw light =
@@ -278,7 +278,7 @@ void dropEndedLanes(PathBatch& paths) {
       move3(paths.rays.origin, paths.rays.direction, paths.direction, paths.throughput,
             paths.radiance, paths.firstAlbedo, paths.firstNormal);
       move(paths.rays.length, paths.rays.depth, paths.rays.acceptance, paths.scatterPdf,
-           paths.bounces, paths.key, paths.counter, paths.tile, paths.ofTile, paths.firstDepth);
+           paths.bounces, paths.key, paths.counter, paths.tile, paths.tileSample, paths.firstDepth);
     }
     left += going.count();
   }

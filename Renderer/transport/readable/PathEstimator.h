@@ -19,13 +19,13 @@ public:
 
   /// Traces one path through raster position (column, row). Empty if `stop` became true before the
   /// path ended: with albedo 1 in a dense medium a path can take minutes.
-  std::optional<PathSample> trace(double column, double row, const SampleNumbers& numbers,
+  std::optional<PathSample> trace(double column, double row, const PrimarySamples& numbers,
                                   Counters& counters) const {
     ++counters.paths;
     Path path = m_steps.begin(column, row, numbers);
     while (!PathSteps<Voxel>::ended(path) && !stopped()) {
       const double distance =
-          m_tracker.sampleCollision(path.ray, path.range, path.flight, path.random, counters);
+          m_tracker.sampleCollision(path.ray, path.range, path.uFlight, path.random, counters);
       if (!m_steps.handleVertex(path, distance))
         break;
       ++counters.collisions;

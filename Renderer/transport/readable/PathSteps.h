@@ -33,12 +33,12 @@ inline constexpr double rouletteBelow = 0.5;
 /// A path under way: its next ray, and the sample gathered so far.
 struct Path {
   Random random;
-  Vec2 flight;    ///< numbers of the next flight's first collision
-  Vec2 scattered; ///< numbers of the next direction
-  Vec2 choices;   ///< of the next collision: whether it is a surface's, and its light
-  double row;     ///< raster row of the eye ray
-  Ray ray;        ///< world space
-  Interval range; ///< part of the ray left by clipping, mm
+  Vec2 uFlight;    ///< numbers of the next flight's first collision
+  Vec2 uDirection; ///< numbers of the next direction
+  Vec2 uChoices;   ///< of the next collision: whether it is a surface's, and its light
+  double row;      ///< raster row of the eye ray
+  Ray ray;         ///< world space
+  Interval range;  ///< part of the ray left by clipping, mm
   Rgb throughput = Rgb::Ones();
   double scatterPdf = 0.0;   ///< of the ray's direction, per steradian
   std::uint64_t bounces = 0; ///< scatterings so far
@@ -67,12 +67,12 @@ public:
         m_settings(settings) {}
 
   /// Begins a path through raster position (column, row).
-  Path begin(double column, double row, const SampleNumbers& numbers) const {
+  Path begin(double column, double row, const PrimarySamples& numbers) const {
     const Ray ray = m_eye.ray(column, row);
-    const Vec2 flight{uniformOf(numbers.depth), uniformOf(numbers.acceptance)};
-    return {Random(numbers.rest),
+    const Vec2 flight{uniformOf(numbers.opticalDepth), uniformOf(numbers.acceptance)};
+    return {Random(numbers.pathSeed),
             flight,
-            uniform2Of(numbers.scattered),
+            uniform2Of(numbers.direction),
             uniform2Of(numbers.choices),
             row,
             ray,
@@ -101,17 +101,17 @@ public:
         sampleMedium(m_medium, m_clip, point, m_worldToIndex * point, wantGradient, path.random);
     if (first)
       recordFirst(path, distance, medium);
-    const Scattering scattering = chooseScattering(path.ray.direction, medium, path.choices.x());
+    const Scattering scattering = chooseScattering(path.ray.direction, medium, path.uChoices.x());
     std::optional<ShadowRay> light = sampledLight(point, scattering, path);
-    const ScatterSample scattered = scatterSample(scattering, path.scattered, path.random);
-    path.scattered = path.random.uniform2();
-    path.choices = path.random.uniform2();
+    const ScatterSample scattered = scatterSample(scattering, path.uDirection, path.random);
+    path.uDirection = path.random.uniform2();
+    path.uChoices = path.random.uniform2();
     path.throughput *= scattered.weight;
     roulette(path);
     path.scatterPdf = scattered.pdf;
     path.ray = {point, scattered.outgoing};
     path.range = {};
-    path.flight = path.random.uniform2();
+    path.uFlight = path.random.uniform2();
     ++path.bounces;
     path.sample.scatterings += 1.0;
     return light;
@@ -143,7 +143,7 @@ private:
   std::optional<ShadowRay> sampledLight(const Vec3& point, const Scattering& scattering,
                                         Path& path) const {
     const std::optional<LightSample> light =
-        m_lights.sample(point, path.choices.y(), path.random.uniform2());
+        m_lights.sample(point, path.uChoices.y(), path.random.uniform2());
     if (!light)
       return std::nullopt;
     const Rgb factor = scatterEvaluate(scattering, light->direction);

@@ -27,18 +27,18 @@ struct ScalarTracer {
 
   template <typename Source>
   bool trace(Source& source, std::size_t maxPaths, Counters& counters) const {
-    const auto samples = std::make_unique<PathStarts>();
+    const auto samples = std::make_unique<CameraSamples>();
     do {
       source.fill(*samples, std::min(maxPaths, RayBatch::capacity));
       for (std::size_t i = 0; i < samples->size; ++i) {
-        const SampleNumbers numbers =
-            source.numbers().numbers({samples->start[i], samples->key[i]}, samples->number[i]);
+        const PrimarySamples numbers =
+            source.numbers().generate({samples->start[i], samples->key[i]}, samples->number[i]);
         const Vec2 place = uniform2Of(numbers.position) + Vec2(samples->column[i], samples->row[i]);
         const std::optional<PathSample> sample =
             estimator.trace(place.x(), place.y(), numbers, counters);
         if (!sample)
           return false;
-        source.deliver(samples->tile[i], samples->ofTile[i], *sample);
+        source.deliver(samples->tile[i], samples->tileSample[i], *sample);
       }
     } while (samples->size > 0);
     return true;
@@ -101,7 +101,7 @@ void renderTiles(const Tracer& tracer, Pass& pass, const Film& film, Counters& t
 struct PassSource {
   std::vector<int> tiles;
   EmptyPixels empty;
-  NumberSource numbers;
+  Sampler numbers;
 };
 
 /// Renders tiles as renderTiles, beside helpers.
@@ -246,9 +246,9 @@ PassGrowth growthFor(const RenderMonitor& monitor) {
 }
 
 /// Result before the first sample.
-RenderResult emptyResult(const Camera& camera, const NumberSource& numbers) {
-  return {
-      Film(camera.width(), camera.height(), NumberSource::hasIndependentHalves, numbers.block())};
+RenderResult emptyResult(const Camera& camera, const Sampler& numbers) {
+  return {Film(camera.width(), camera.height(), Sampler::hasIndependentHalves,
+               numbers.samplesPerBlock())};
 }
 
 /// True if no tile of the film is ahead of the last pass or behind it.
@@ -265,7 +265,7 @@ template <typename Tracer>
 RenderResult renderPasses(const Tracer& tracer, const std::string& arithmetic,
                           const RenderScene& scene, const RenderSettings& settings,
                           RenderMonitor& monitor, std::optional<RenderResult> begun) {
-  const NumberSource numbers(settings.sampling, settings.seed);
+  const Sampler numbers(settings.sampling, settings.seed);
   RenderResult result = begun ? std::move(*begun) : emptyResult(scene.camera, numbers);
   result.reason = StopReason::samples;
   result.target = arithmetic;
@@ -317,7 +317,7 @@ template <typename Tracer>
 void renderEachLoan(const Tracer& tracer, const RenderScene& scene, const RenderSettings& settings,
                     RenderMonitor& monitor,
                     const std::function<std::optional<Loan>(RenderResult&)>& next) {
-  const NumberSource numbers(settings.sampling, settings.seed);
+  const Sampler numbers(settings.sampling, settings.seed);
   RenderResult result = emptyResult(scene.camera, numbers);
   const EmptyPixels empty = emptyPixels(scene, settings, result.film);
   while (const std::optional<Loan> loan = next(result)) {

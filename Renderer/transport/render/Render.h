@@ -63,7 +63,7 @@ struct RenderSettings {
   /// … samples, so that a lucky picture in between ends nothing. Empty: Film::noise().
   std::function<double(const Film&)> seenNoise = {};
   std::uint64_t seed = 0;
-  Sampling sampling = Sampling::strata;
+  Sampling sampling = Sampling::stratified;
   Integrator integrator = Integrator::simd;
   int threads = 0;               ///< 0: all
   std::uint64_t passSamples = 0; ///< in a pass; 0: growing passes. Never changes the picture.

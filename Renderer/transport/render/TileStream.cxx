@@ -3,7 +3,7 @@
 namespace fenestra {
 
 Pass::Pass(std::span<const int> tiles, const SamplePlan::Stage& from, const SamplePlan::Stage& to,
-           const EmptyPixels& empty, const NumberSource& source, Film& film,
+           const EmptyPixels& empty, const Sampler& source, Film& film,
            std::atomic<std::uint64_t>& paths)
     : m_tiles(tiles),
       m_cut(film.width(), film.height()),
@@ -23,18 +23,17 @@ void Pass::takeBack(int tile) {
   added(forPixels(tile, [](int, int, std::size_t) {}));
 }
 
-void TileStream::fill(PathStarts& starts, std::size_t most) {
-  const NumberSource& source = m_pass.m_source;
+void TileStream::fill(CameraSamples& starts, std::size_t most) {
+  const Sampler& source = m_pass.m_source;
   starts.size = 0;
   starts.isStratified = source.isStratified();
   while (starts.size < most && (m_left > 0 || openTile())) {
     const Tile& tile = m_tiles[m_current];
     const Run& run = tile.runs[m_run];
-    const NumberSource::Stream stream =
-        source.stream(m_pass.m_film.index(run.column, run.row), m_next);
-    const auto first = static_cast<std::uint32_t>(m_next % stream.samples);
+    const Sampler::Stream stream = source.stream(m_pass.m_film.index(run.column, run.row), m_next);
+    const auto first = static_cast<std::uint32_t>(m_next % stream.maxSamples);
     const std::size_t count =
-        std::min({most - starts.size, run.end - m_next, std::size_t{stream.samples} - first});
+        std::min({most - starts.size, run.end - m_next, std::size_t{stream.maxSamples} - first});
     const auto begun = static_cast<std::uint32_t>(tile.results.size() - m_left);
     const std::size_t size = starts.size;
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -44,7 +43,7 @@ void TileStream::fill(PathStarts& starts, std::size_t most) {
       starts.key[size + i] = stream.key;
       starts.number[size + i] = first + i;
       starts.tile[size + i] = m_current;
-      starts.ofTile[size + i] = begun + i;
+      starts.tileSample[size + i] = begun + i;
     }
     starts.size += count;
     m_left -= count;

@@ -22,7 +22,7 @@ public:
   /// A view of tiles, plan, empty pixels and film. Each finished tile adds the samples of stage
   /// `to` beyond stage `from` to `paths`, as if no pixel were empty.
   Pass(std::span<const int> tiles, const SamplePlan::Stage& from, const SamplePlan::Stage& to,
-       const EmptyPixels& empty, const NumberSource& source, Film& film,
+       const EmptyPixels& empty, const Sampler& source, Film& film,
        std::atomic<std::uint64_t>& paths);
 
   /// True once all tiles have been added to the film.
@@ -63,7 +63,7 @@ private:
   const Tiles m_cut;
   const SamplePlan::Stage m_from, m_to;
   const EmptyPixels& m_empty;
-  NumberSource m_source;
+  Sampler m_source;
   Film& m_film;
   std::atomic<std::uint64_t>& m_paths;
   std::atomic<std::size_t> m_nextTile = 0, m_tilesDone = 0;
@@ -76,9 +76,9 @@ public:
   TileStream(Pass& pass, const std::function<bool()>& pauses) : m_pass(pass), m_pauses(pauses) {}
 
   /// Random numbers of the starts.
-  const NumberSource& numbers() const { return m_pass.m_source; }
+  const Sampler& numbers() const { return m_pass.m_source; }
   /// Replaces `starts` by the next ones, `most` at most: fewer only if no more are left.
-  void fill(PathStarts& starts, std::size_t most);
+  void fill(CameraSamples& starts, std::size_t most);
   /// Takes the samples of starts in any order. A tile is added to the film as a whole, with its
   /// last sample; each pixel's samples in the order of their numbers.
   void deliver(std::uint32_t place, std::uint32_t ofTile, const PathSample& sample) {
