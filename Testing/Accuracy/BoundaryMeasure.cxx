@@ -59,7 +59,7 @@ FocusView::FocusView(const FocusField& field, const View& view)
 }
 
 double FocusView::depthThrough(const Vec2& raster) const {
-  const View::EyeRay ray = m_view.through(raster);
+  const View::CameraRay ray = m_view.cameraRay(raster);
   return ray.depthPerLength * m_field.firstMeeting(ray.origin, ray.direction);
 }
 

@@ -16,11 +16,11 @@ struct View {
   double halfHeight = 1.0; ///< half the visible height on the plane through the target, mm
   int size = 1;            ///< pixels a side
 
-  struct EyeRay {
+  struct CameraRay {
     Vec3 origin, direction; ///< a unit vector
     double depthPerLength;
   };
-  EyeRay through(const Vec2& raster) const {
+  CameraRay cameraRay(const Vec2& raster) const {
     const Vec3 forward = (target - position).normalized();
     const Vec3 right = forward.cross(up).normalized();
     const Vec3 upward = right.cross(forward);

@@ -57,7 +57,7 @@ struct Probe {
   Medium<Voxel> medium{subject.scene.volume().grid, voxels, subject.scene.transfer()};
   RenderScene parts = subject.scene.forRender();
   Tracker<Voxel> tracker{subject.domain(), medium, parts.majorants, parts.clip};
-  std::vector<Ray> eyeRays;
+  std::vector<Ray> cameraRays;
   std::vector<Vec3> collisions; ///< world; first collisions of eye rays
   std::vector<Vec3> inside;     ///< collisions in index space
   std::vector<Ray> scattered;   ///< from the collisions, in random directions
@@ -70,7 +70,7 @@ struct Probe {
     while (collisions.size() < count) {
       const Vec2 pixel = pictureSize * random.uniform2();
       const Ray ray = parts.camera.ray(pixel.x(), pixel.y());
-      eyeRays.push_back(ray);
+      cameraRays.push_back(ray);
       const double t = tracker.sampleCollision(ray, visible(parts.clip, ray), random.uniform2(),
                                                random, counters);
       if (t < infinity) {
@@ -101,8 +101,8 @@ void addTracking(Probe& p) {
       cycle(state, p.subject.label, count, visit);
     });
   };
-  add("flight/eye ray", p.eyeRays.size(), [&p](std::size_t i) {
-    const Ray& ray = p.eyeRays[i];
+  add("flight/eye ray", p.cameraRays.size(), [&p](std::size_t i) {
+    const Ray& ray = p.cameraRays[i];
     return p.tracker.sampleCollision(ray, visible(p.parts.clip, ray), p.random.uniform2(), p.random,
                                      p.counters);
   });

@@ -89,7 +89,7 @@ TEST_P(SurfaceCommand, MeshLiesAtTheDepthsOfTheClipChannel) {
   // View from the left: depth grows along +R, columns along -A, rows along -S, 1.5 mm a pixel.
   std::size_t inside = 0;
   for (const auto& [x, y, z, depth] : readPly(folder / "a.ply").vertices) {
-    EXPECT_NEAR(x, eye[0] + depth, 1e-3);
+    EXPECT_NEAR(x, position[0] + depth, 1e-3);
     const double column = (eye[1] - y) / 1.5 + 23.5, row = (eye[2] - z) / 1.5 + 19.5;
     if (column < -0.1 || column > 47.1 || row < -0.1 || row > 39.1)
       continue;

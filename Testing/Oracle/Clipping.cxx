@@ -112,7 +112,7 @@ public:
 
   double depth(double x, double y) const {
     if (m_description.shape == HoleDescription::Shape::sphere)
-      return sphereDepth(m_view.through(x, y));
+      return sphereDepth(m_view.makeRay(x, y));
     const Vec3 at(x, y, 0.0);
     const bool isInBox =
         std::abs(x - m_center.x()) <= m_center.x() - m_lower.x() + m_description.margin &&
@@ -147,7 +147,7 @@ std::vector<double> computeDepths(const DepthClip& clip, const FocusField& focus
   std::vector<Intersection> hits;
   for (const double y : clip.rows)
     for (const double x : clip.columns) {
-      const Ray ray = view.through(x, y);
+      const Ray ray = view.makeRay(x, y);
       const double t = findFirstHit(focus, matter, ray);
       depths.push_back(t < infinity ? view.depth(ray.at(t)) : infinity);
       if (t < infinity)
@@ -287,7 +287,7 @@ double Clipping::keepAtDepth(double here, const Vec2& at) const {
 double Clipping::silhouetteSurface(const DepthClip::SilhouetteCell& cell, const Vec2& at,
                                    double between) const {
   const auto& clip = std::get<DepthClip>(m_description);
-  const Ray ray = m_view.through(at.x(), at.y());
+  const Ray ray = m_view.makeRay(at.x(), at.y());
   const double depthPerLength = m_view.depth(ray.at(1.0)) - m_view.depth(ray.at(0.0));
   const auto lengthTo = [&](double depth) {
     return (depth - clip.offset - m_view.depth(ray.at(0.0))) / depthPerLength;
@@ -308,7 +308,7 @@ double Clipping::keep(const Vec3& world) const {
     return 0.0;
   if (const auto* plane = std::get_if<PlaneClip>(&m_description))
     return kept(plane->edge, (plane->point - world).dot(plane->normal));
-  return keepAtDepth(m_view.depth(world), m_view.onPlane(world));
+  return keepAtDepth(m_view.depth(world), m_view.toPlane(world));
 }
 
 Vec3 Clipping::cutGradient(const Vec3& world) const {
@@ -327,7 +327,7 @@ Vec3 Clipping::cutGradient(const Vec3& world) const {
     for (int axis = 0; axis < 3; ++axis) {
       const Vec3 step = 1e-5 * Vec3::Unit(axis);
       const auto behind = [&](const Vec3& at) {
-        return m_view.depth(at) - linearSurface(m_view.onPlane(at));
+        return m_view.depth(at) - linearSurface(m_view.toPlane(at));
       };
       inward[axis] = behind(world + step) - behind(world - step);
     }

@@ -39,7 +39,7 @@ public:
   /// Traces one path through a raster position, in pixels from the picture's top left corner.
   PathEstimate path(double column, double row, Generator& generator) const {
     const double pitch = 2.0 * m_view.halfHeight / m_scene.height;
-    Ray ray = m_view.through((column - 0.5 * m_scene.width) * pitch,
+    Ray ray = m_view.makeRay((column - 0.5 * m_scene.width) * pitch,
                              (0.5 * m_scene.height - row) * pitch);
     PathEstimate result;
     double distance = collision(ray, generator);

@@ -6,12 +6,12 @@
 namespace fenestra::oracle {
 
 struct View {
-  Vec3 eye, right, up, forward;   ///< world
-  double targetDepth, halfHeight; ///< mm; halfHeight on the plane through the target
+  Vec3 position, right, up, forward; ///< world
+  double targetDepth, halfHeight;    ///< mm; halfHeight on the plane through the target
   bool isPerspective;
 
   explicit View(const CameraPose& pose)
-      : eye(pose.position),
+      : position(pose.position),
         forward((pose.target - pose.position).normalized()),
         targetDepth((pose.target - pose.position).norm()),
         isPerspective(pose.projection == Projection::perspective) {
@@ -21,18 +21,18 @@ struct View {
   }
 
   /// Eye ray through (x, y), mm, on the plane through the target; unit direction.
-  Ray through(double x, double y) const {
-    const Vec3 onPlane = eye + targetDepth * forward + x * right + y * up;
+  Ray makeRay(double x, double y) const {
+    const Vec3 onPlane = position + targetDepth * forward + x * right + y * up;
     if (isPerspective)
-      return {eye, (onPlane - eye).normalized()};
+      return {position, (onPlane - position).normalized()};
     return {onPlane - targetDepth * forward, forward};
   }
 
-  double depth(const Vec3& world) const { return (world - eye).dot(forward); }
+  double depth(const Vec3& world) const { return (world - position).dot(forward); }
 
   /// (x, y), mm, at which the eye ray through a point meets the plane through the target.
-  Vec2 onPlane(const Vec3& world) const {
-    const Vec3 d = world - eye;
+  Vec2 toPlane(const Vec3& world) const {
+    const Vec3 d = world - position;
     const double scale = isPerspective ? targetDepth / d.dot(forward) : 1.0;
     return {scale * d.dot(right), scale * d.dot(up)};
   }

@@ -117,7 +117,7 @@ inline void expectKeepEverywhere(const View& view, const Clip& clip) {
   for (const Vec3& point : points) {
     const double kept = keep(clip, point);
     ASSERT_TRUE(weight == 0.0 || weight == 1.0) << point;
-    if (behindEye(camera, camera.toView(point).z())) {
+    if (isBehindCamera(camera, camera.toView(point).z())) {
       ASSERT_EQ(weight, 0.0);
     }
   }
@@ -218,7 +218,7 @@ inline void expectEdges(const View& view) {
           const Vec3 at =
               lower + Vec3(box.upper - lower).cwiseProduct(randomPoint(random, 0.0, 1.0));
           const double kept = keep(clip, at);
-          const bool isBehind = behindEye(view.camera, view.camera.toView(at).z());
+          const bool isBehind = isBehindCamera(view.camera, view.camera.toView(at).z());
           ASSERT_GE(weight, isBehind ? 0.0 : edge.ghost);
           ASSERT_LE(weight, bounds.most);
           ASSERT_TRUE(!bounds.isUniform || weight == bounds.most);

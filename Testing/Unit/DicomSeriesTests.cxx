@@ -410,7 +410,7 @@ TEST(DicomSeries, RealSeriesEqualsItsNiftiFile) {
       for (std::int64_t x = 0; x < series.grid.size.x(); ++x) {
         const Vec3 place = toExpected * Size3(x, y, z).cast<double>();
         const Vec3 voxel = place.array().round();
-        ASSERT_LT((place - voxel).norm(), 1e-3);
+        ASSERT_LT((position - voxel).norm(), 1e-3);
         const Size3 i = voxel.cast<std::int64_t>();
         ASSERT_TRUE((i.array() >= 0).all() && (i.array() < expected.grid.size.array()).all());
         ASSERT_EQ(valueAt(series, x, y, z), valueAt(expected, i.x(), i.y(), i.z()));

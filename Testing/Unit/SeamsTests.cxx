@@ -146,8 +146,8 @@ TEST(SilhouetteCells, KeepEqualsThatOfTheFullSurface) {
         partialCount += expected > 0.25 && expected < 1.0;
         ASSERT_NEAR(keep(clip, world), expected, 1e-6) << position << ' ' << depth;
         const auto bounds = clip.pyramid->bounds(*clip.buffer, position, position);
-        ASSERT_GE(clip.surface(across), bounds.begin - 1e-4);
-        ASSERT_LE(clip.surface(across), bounds.end + 1e-4);
+        ASSERT_GE(clip.surface(position), bounds.begin - 1e-4);
+        ASSERT_LE(clip.surface(position), bounds.end + 1e-4);
       }
       EXPECT_EQ(partialCount > 250, softness > 0.0);
     }

@@ -5,10 +5,10 @@
 #include "EachInstructionSet.h"
 #include "Support.h"
 
-namespace fenestra::testing::WideEyeRaysTests {
+namespace fenestra::testing::SimdCameraRaysTests {
 namespace {
 
-class WideEyeRaysOf : public OnInstructionSet {};
+class SimdCameraRays : public OnInstructionSet {};
 
 constexpr int width = 40, height = 30;
 
@@ -19,26 +19,26 @@ struct View {
   std::optional<CropBox> crop = {};
 };
 
-CameraPose pose(Projection projection, const Vec3& position, double extent) {
-  CameraPose made;
-  made.projection = projection;
-  made.position = position;
-  made.target = {1.0, 2.0, 3.0};
-  made.up = Vec3(0.2, 0.1, 1.0);
-  made.scale = extent;
-  made.angle = extent;
-  return made;
+CameraPose makePose(Projection projection, const Vec3& position, double extent) {
+  CameraPose result;
+  result.projection = projection;
+  result.position = position;
+  result.target = {1.0, 2.0, 3.0};
+  result.up = Vec3(0.2, 0.1, 1.0);
+  result.scale = extent;
+  result.angle = extent;
+  return result;
 }
 
-std::vector<View> views() {
+std::vector<View> makeViews() {
   const Affine box = rotationBy(0.4, Vec3(1.0, 2.0, 2.0) / 3.0);
-  const CameraPose near = pose(Projection::perspective, {-30.0, -80.0, 20.0}, 30.0);
+  const CameraPose near = makePose(Projection::perspective, {-30.0, -80.0, 20.0}, 30.0);
   const CropBox crop(Affine(15.0 * box.linear(), Vec3(2.0, 1.0, 0.0)));
-  return {{"orthographic", pose(Projection::orthographic, {-60.0, -80.0, 20.0}, 40.0)},
+  return {{"orthographic", makePose(Projection::orthographic, {-60.0, -80.0, 20.0}, 40.0)},
           {"perspective", near},
-          {"within", pose(Projection::perspective, {-3.0, 4.0, 5.0}, 100.0)},
-          {"far", pose(Projection::perspective, {-3e7, -8e7, 2e7}, 5e-5)},
-          {"far, orthographic", pose(Projection::orthographic, {-3e7, -8e7, 2e7}, 40.0)},
+          {"within", makePose(Projection::perspective, {-3.0, 4.0, 5.0}, 100.0)},
+          {"far", makePose(Projection::perspective, {-3e7, -8e7, 2e7}, 5e-5)},
+          {"far, orthographic", makePose(Projection::orthographic, {-3e7, -8e7, 2e7}, 40.0)},
           {"cropped", near, ClipNone{}, crop},
           {"clipped", near,
            ClipPlane{Camera(near, width, height), Vec3::Zero(), Vec3(0.0, -1.0, 0.3).normalized()},
@@ -46,62 +46,63 @@ std::vector<View> views() {
 }
 
 /// All that begins paths in a scene.
-struct Beginning {
+struct PathSetup {
   Domain domain;
   SimdTracker tracker;
   Background background = {};
-  EyeRays eye;
-  EyeTable wide;
-  std::unique_ptr<CameraSamples> starts = std::make_unique<CameraSamples>();
+  CameraRays cameraRays;
+  CameraTable cameraTable;
+  std::unique_ptr<CameraSamples> samples = std::make_unique<CameraSamples>();
   std::unique_ptr<PathBatch> paths = std::make_unique<PathBatch>();
 
-  Beginning(const RenderScene& s, const Domain& in)
+  PathSetup(const RenderScene& s, const Domain& in)
       : domain(in),
         tracker(s.volume, domain, s.transfer, s.majorants, s.clip),
-        eye(s.camera, s.clip, s.lights, background),
-        wide(domain, s.camera) {}
+        cameraRays(s.camera, s.clip, s.lights, background),
+        cameraTable(domain, s.camera) {}
 };
 
 /// Starts of one sample each in neighbouring pixels.
-void fill(CameraSamples& starts, const Sampler& source, std::uint64_t pixel, std::uint64_t sample) {
-  starts.isStratified = source.isStratified();
-  for (starts.size = 0; starts.size < RayBatch::capacity - 50; ++starts.size) {
-    const std::uint64_t here = pixel + starts.size, number = sample + starts.size;
-    const Sampler::Stream stream = source.stream(here, number);
-    starts.column[starts.size] = static_cast<float>(here % width);
-    starts.row[starts.size] = static_cast<float>(here / width);
-    starts.start[starts.size] = stream.start;
-    starts.key[starts.size] = stream.key;
-    starts.number[starts.size] = static_cast<std::uint32_t>(number % stream.maxSamples);
-    starts.tile[starts.size] = 7;
-    starts.tileSample[starts.size] = static_cast<std::uint32_t>(here);
+void fill(CameraSamples& samples, const Sampler& source, std::uint64_t pixel,
+          std::uint64_t sample) {
+  samples.isStratified = source.isStratified();
+  for (samples.size = 0; samples.size < RayBatch::capacity - 50; ++samples.size) {
+    const std::uint64_t pixelIndex = pixel + samples.size, sampleIndex = sample + samples.size;
+    const Sampler::Stream stream = source.stream(pixelIndex, sampleIndex);
+    samples.column[samples.size] = static_cast<float>(pixelIndex % width);
+    samples.row[samples.size] = static_cast<float>(pixelIndex / width);
+    samples.start[samples.size] = stream.start;
+    samples.key[samples.size] = stream.key;
+    samples.number[samples.size] = static_cast<std::uint32_t>(sampleIndex % stream.maxSamples);
+    samples.tile[samples.size] = 7;
+    samples.tileSample[samples.size] = static_cast<std::uint32_t>(pixelIndex);
   }
 }
 
-TEST_P(WideEyeRaysOf, NumbersAreThoseOfTheSource) {
+TEST_P(SimdCameraRays, NumbersAreThoseOfTheSource) {
   const Grid grid = centredGrid({30, 20, 40}, {1.0, 1.5, 0.8});
   const Volume volume = makeVolume(grid, [](const Vec3&) { return 1.0; });
-  TestScene scene{volume, linearTransfer(0.1, Rgb::Ones()), {}, views()[0].pose, width, height};
+  TestScene scene{volume, linearTransfer(0.1, Rgb::Ones()), {}, makeViews()[0].pose, width, height};
   scene.with([&](const RenderScene& s) {
-    const Beginning begun(s, Domain(grid));
-    const auto& [domain, tracker, background, eye, wide, starts, paths] = begun;
-    constexpr std::uint64_t inStream = Sampler::Stream::maxSamples;
+    const PathSetup setup(s, Domain(grid));
+    const auto& [domain, tracker, background, cameraRays, cameraTable, samples, paths] = setup;
+    constexpr std::uint64_t streamLength = Sampler::Stream::maxSamples;
     for (const Sampling sampling : {Sampling::stratified, Sampling::independent})
-      for (const std::uint64_t sample : {std::uint64_t{0}, inStream - 100, inStream << 9}) {
+      for (const std::uint64_t sample : {std::uint64_t{0}, streamLength - 100, streamLength << 9}) {
         const Sampler source(sampling, 5);
-        fill(*starts, source, 400, sample);
+        fill(*samples, source, 400, sample);
         paths->rays.size = 0;
-        beginPaths(tracker.scene(), wide, eye, *starts, *paths);
+        beginPaths(tracker.scene(), cameraTable, cameraRays, *samples, *paths);
         ASSERT_EQ(paths->rays.size, starts->size);
-        const auto below1 = [](std::uint64_t bits) {
+        const auto toUnitFloat = [](std::uint64_t bits) {
           return static_cast<float>(bits >> 8 & 0xffffff) * 0x1p-24F;
         };
-        for (std::size_t i = 0; i < starts->size; ++i) {
+        for (std::size_t i = 0; i < samples->size; ++i) {
           const PrimarySamples numbers = source.generate(400 + i, sample + i);
           ASSERT_EQ(paths->rays.depth[i], numbers.opticalDepth >> 32) << i;
-          ASSERT_EQ(paths->rays.acceptance[i], below1(numbers.acceptance >> 32)) << i;
-          ASSERT_EQ(paths->uDirection[0][i], below1(numbers.direction >> 32)) << i;
-          ASSERT_EQ(paths->uDirection[1][i], below1(numbers.direction)) << i;
+          ASSERT_EQ(paths->rays.acceptance[i], toUnitFloat(numbers.acceptance >> 32)) << i;
+          ASSERT_EQ(paths->uDirection[0][i], toUnitFloat(numbers.direction >> 32)) << i;
+          ASSERT_EQ(paths->uDirection[1][i], toUnitFloat(numbers.direction)) << i;
           const Vec2 choices = uniform2Of(numbers.choices);
           ASSERT_NEAR(double{paths->uChoices[0][i]}, choices.x(), 2e-7) << i;
           ASSERT_NEAR(double{paths->uChoices[1][i]}, choices.y(), 2e-7) << i;
@@ -121,41 +122,42 @@ TEST_P(WideEyeRaysOf, NumbersAreThoseOfTheSource) {
 
 /// Origins, lengths and depths as they are in double, to some last places of the volume's edge,
 /// however far away the eye is.
-TEST_P(WideEyeRaysOf, RaysAreThoseInDouble) {
+TEST_P(SimdCameraRays, RaysAreThoseInDouble) {
   const Grid grid = centredGrid({30, 20, 40}, {1.0, 1.5, 0.8});
   const Volume volume = makeVolume(grid, [](const Vec3&) { return 1.0; });
-  for (const View& view : views()) {
+  for (const View& view : makeViews()) {
     SCOPED_TRACE(view.name);
     TestScene scene{volume,   linearTransfer(0.1, Rgb::Ones()), {}, view.pose, width, height,
                     view.clip};
     scene.with([&](const RenderScene& s) {
-      const Beginning begun(s, Domain(grid, view.crop));
-      const auto& [domain, tracker, background, eye, wide, starts, paths] = begun;
+      const PathSetup setup(s, Domain(grid, view.crop));
+      const auto& [domain, tracker, background, cameraRays, cameraTable, samples, paths] = setup;
       const auto exact = std::make_unique<RayBatch>();
-      std::size_t met = 0;
+      std::size_t hits = 0;
       for (std::uint64_t pixel = 0; pixel + RayBatch::capacity < width * height; pixel += 400) {
-        fill(*starts, Sampler(Sampling::stratified, pixel), pixel, 0);
+        fill(*samples, Sampler(Sampling::stratified, pixel), pixel, 0);
         paths->rays.size = 3;
-        beginPaths(tracker.scene(), wide, eye, *starts, *paths);
-        for (std::size_t i = 0; i < starts->size; ++i) {
+        beginPaths(tracker.scene(), cameraTable, cameraRays, *samples, *paths);
+        for (std::size_t i = 0; i < samples->size; ++i) {
           const std::size_t at = i + 3;
-          const Ray ray = eye.ray(double{starts->column[i]} + 0.5 * width,
-                                  double{starts->row[i]} + 0.5 * height);
-          setInside(*exact, i, domain, ray, eye.range(ray));
+          const Ray ray = cameraRays.ray(double{samples->column[i]} + 0.5 * width,
+                                         double{samples->row[i]} + 0.5 * height);
+          setInside(*exact, i, domain, ray, cameraRays.range(ray));
           ASSERT_NEAR(exact->length[i], paths->rays.length[at], 2e-4);
           for (std::size_t axis = 0; axis < 3; ++axis)
             ASSERT_NEAR(ray.direction[static_cast<int>(axis)], paths->direction[axis][at], 2e-7);
           if (exact->length[i] < 1e-3F)
             continue;
-          ++met;
-          const double before = (wide.nearDepth + double{paths->depth[at]}) / eye.depth(ray, 1.0);
-          const Vec3 origin = grid.worldToIndex * ray.at(before);
+          ++hits;
+          const double distance =
+              (cameraTable.nearDepth + double{paths->depth[at]}) / cameraRays.depth(ray, 1.0);
+          const Vec3 origin = grid.worldToIndex * ray.at(distance);
           for (std::size_t axis = 0; axis < 3; ++axis) {
             ASSERT_NEAR(exact->direction[axis][i], paths->rays.direction[axis][at], 3e-7);
             ASSERT_NEAR(exact->origin[axis][i], paths->rays.origin[axis][at], 2e-4);
             ASSERT_NEAR(origin[static_cast<int>(axis)], paths->rays.origin[axis][at], 1e-5);
           }
-          ASSERT_NEAR(eye.depth(ray, 1.0), paths->depthPerLength[at], 2e-7);
+          ASSERT_NEAR(cameraRays.depth(ray, 1.0), paths->depthPerLength[at], 2e-7);
         }
       }
       EXPECT_GT(met, 100U);
@@ -163,7 +165,7 @@ TEST_P(WideEyeRaysOf, RaysAreThoseInDouble) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(InstructionSets, WideEyeRaysOf, eachInstructionSet);
+INSTANTIATE_TEST_SUITE_P(InstructionSets, SimdCameraRays, eachInstructionSet);
 
 } // namespace
-} // namespace fenestra::testing::WideEyeRaysTests
+} // namespace fenestra::testing::SimdCameraRaysTests

@@ -26,7 +26,7 @@ inline Vec3 fromBuffer(const Camera& camera, const Vec3& at) {
 }
 
 /// True for depth <= 0 in perspective.
-inline bool behindEye(const Camera& camera, double depth) {
+inline bool isBehindCamera(const Camera& camera, double depth) {
   return camera.pose().projection == Projection::perspective && !(depth > 0.0);
 }
 

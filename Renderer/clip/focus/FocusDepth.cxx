@@ -16,28 +16,29 @@ public:
   CellRays(const Camera& camera, const FocusCells& cells)
       : m_orthographic(camera.pose().projection == Projection::orthographic),
         m_targetDepth(camera.targetDepth()),
-        m_eye(cells.worldToCell() * camera.pose().position),
+        m_position(cells.worldToCell() * camera.pose().position),
         m_right(cells.worldToCell().linear() * camera.right()),
         m_up(cells.worldToCell().linear() * camera.up()),
         m_forward(cells.worldToCell().linear() * camera.forward()) {}
 
-  struct EyeRay {
+  struct CameraRay {
     Ray ray; ///< in cell space, its parameter in world mm
     double depthPerLength;
   };
   /// Camera::rayThrough in cell space.
-  EyeRay through(const Vec2& plane) const {
+  CameraRay through(const Vec2& plane) const {
     const Vec3 offset = plane.x() * m_right + plane.y() * m_up;
     if (m_orthographic)
-      return {{m_eye + offset, m_forward}, 1.0};
+      return {{m_position + offset, m_forward}, 1.0};
     const double perLength = 1.0 / std::sqrt(plane.squaredNorm() + m_targetDepth * m_targetDepth);
-    return {{m_eye, perLength * (offset + m_targetDepth * m_forward)}, m_targetDepth * perLength};
+    return {{m_position, perLength * (offset + m_targetDepth * m_forward)},
+            m_targetDepth * perLength};
   }
 
 private:
   bool m_orthographic;
   double m_targetDepth;
-  Vec3 m_eye, m_right, m_up, m_forward;
+  Vec3 m_position, m_right, m_up, m_forward;
 };
 
 namespace {

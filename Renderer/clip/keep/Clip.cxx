@@ -14,9 +14,9 @@ Interval behindPart(const ClipNone&, const Ray&) {
   return {};
 }
 
-Interval behindPart(const ClipPlane& clip, const Ray& eyeRay) {
-  const double above = (eyeRay.origin - clip.point).dot(clip.normal); // the removed side is > 0
-  const double slope = eyeRay.direction.dot(clip.normal);
+Interval behindPart(const ClipPlane& clip, const Ray& cameraRay) {
+  const double above = (cameraRay.origin - clip.point).dot(clip.normal); // the removed side is > 0
+  const double slope = cameraRay.direction.dot(clip.normal);
   if (slope > 0.0)
     return {0.0, std::max(0.0, -above / slope)};
   if (slope < 0.0)
@@ -24,10 +24,10 @@ Interval behindPart(const ClipPlane& clip, const Ray& eyeRay) {
   return above > 0.0 ? Interval{0.0, 0.0} : Interval{};
 }
 
-Interval behindPart(const ClipDepth& clip, const Ray& eyeRay) {
-  const double depthPerLength = clip.camera.depthPerLength(eyeRay);
+Interval behindPart(const ClipDepth& clip, const Ray& cameraRay) {
+  const double depthPerLength = clip.camera.depthPerLength(cameraRay);
   // All points of the ray have the same (x, y); at the target's depth rounding matters least.
-  const Vec3 point = eyeRay.at(clip.camera.targetDepth() / depthPerLength);
+  const Vec3 point = cameraRay.at(clip.camera.targetDepth() / depthPerLength);
   const double depth = clip.surface(toBuffer(clip.camera, point).head<2>());
   return {std::max(0.0, depth / depthPerLength), infinity};
 }
@@ -37,7 +37,7 @@ Vec3 cutOf(const ClipNone&, const Vec3&) {
 }
 
 Vec3 cutOf(const ClipPlane& clip, const Vec3& world) {
-  if (behindEye(clip.camera, clip.camera.toView(world).z()) ||
+  if (isBehindCamera(clip.camera, clip.camera.toView(world).z()) ||
       !clip.edge.isRamp(clip.behind(world)))
     return Vec3::Zero();
   return -cutShading / clip.edge.softness * clip.normal;
@@ -46,7 +46,7 @@ Vec3 cutOf(const ClipPlane& clip, const Vec3& world) {
 Vec3 cutOf(const ClipDepth& clip, const Vec3& world) {
   const Camera& camera = clip.camera;
   const Vec3 at = toBuffer(camera, world);
-  if (behindEye(camera, at.z()) || !clip.edge.isRamp(clip.behind(at)))
+  if (isBehindCamera(camera, at.z()) || !clip.edge.isRamp(clip.behind(at)))
     return Vec3::Zero();
   Vec2 slope = Vec2::Zero();
   if (clip.lookup == ClipDepth::Lookup::linear)
@@ -77,9 +77,9 @@ Kept keptBehind(const ClipEdge& edge, const Interval& behind, Side inFrontOfEye)
 
 /// Position of a stretch of depths, mm, relative to the space in front of the eye.
 Side inFrontOfEye(const Camera& camera, const Interval& depths) {
-  if (behindEye(camera, depths.end + slack))
+  if (isBehindCamera(camera, depths.end + slack))
     return Side::outside;
-  return behindEye(camera, depths.begin - slack) ? Side::across : Side::inside;
+  return isBehindCamera(camera, depths.begin - slack) ? Side::across : Side::inside;
 }
 
 Kept keptBox(const ClipNone&, const Corners&) {
@@ -140,13 +140,13 @@ Vec3 cutGradient(const Clip& clip, const Vec3& world) {
       clip);
 }
 
-Interval behindSurface(const Clip& clip, const Ray& eyeRay) {
-  return std::visit([&](const auto& kind) { return behindPart(kind, eyeRay); }, clip);
+Interval behindSurface(const Clip& clip, const Ray& cameraRay) {
+  return std::visit([&](const auto& kind) { return behindPart(kind, cameraRay); }, clip);
 }
 
-Interval visible(const Clip& clip, const Ray& eyeRay) {
+Interval visible(const Clip& clip, const Ray& cameraRay) {
   const bool isHard = std::visit([](const auto& kind) { return kind.edge.isHard(); }, clip);
-  return isHard ? behindSurface(clip, eyeRay) : Interval{};
+  return isHard ? behindSurface(clip, cameraRay) : Interval{};
 }
 
 Kept keptIn(const Clip& clip, const Corners& corners) {

@@ -92,14 +92,14 @@ inline double keep(const ClipNone&, const Vec3&) {
 }
 
 inline double keep(const ClipPlane& clip, const Vec3& world) {
-  if (behindEye(clip.camera, clip.camera.toView(world).z()))
+  if (isBehindCamera(clip.camera, clip.camera.toView(world).z()))
     return 0.0;
   return clip.edge(clip.behind(world));
 }
 
 inline double keep(const ClipDepth& clip, const Vec3& world) {
   const Vec3 at = toBuffer(clip.camera, world);
-  if (behindEye(clip.camera, at.z()))
+  if (isBehindCamera(clip.camera, at.z()))
     return 0.0;
   return clip.edge(clip.behind(at));
 }
@@ -125,11 +125,11 @@ Vec3 cutGradient(const Clip& clip, const Vec3& world);
 
 /// Part of an eye ray, t >= 0, behind the clip's surface: one interval for every kind of clip. With
 /// a hard edge keep = 0 on the rest of the ray.
-Interval behindSurface(const Clip& clip, const Ray& eyeRay);
+Interval behindSurface(const Clip& clip, const Ray& cameraRay);
 
 /// Interval of an eye ray, t >= 0, outside of which keep = 0: paths may start at its begin, and end
 /// at its end.
-Interval visible(const Clip& clip, const Ray& eyeRay);
+Interval visible(const Clip& clip, const Ray& cameraRay);
 
 /// World corners of a box, in any order.
 using Corners = std::array<Vec3, 8>;

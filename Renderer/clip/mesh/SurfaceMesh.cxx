@@ -87,7 +87,7 @@ private:
 
   bool hasDepth(std::int64_t column, std::int64_t row) const {
     const double depth = m_buffer.at(m_buffer.sample(column, row));
-    return std::isfinite(depth) && !behindEye(m_camera, depth);
+    return std::isfinite(depth) && !isBehindCamera(m_camera, depth);
   }
 
   /// Depth of a sample of the buffer, mm; NaN: the sample has none, or is no corner of a cell in

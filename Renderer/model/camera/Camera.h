@@ -71,7 +71,7 @@ public:
   }
 
   /// Growth of depth along an eye ray: depth = t * depthPerLength(ray).
-  double depthPerLength(const Ray& eyeRay) const { return eyeRay.direction.dot(m_forward); }
+  double depthPerLength(const Ray& cameraRay) const { return cameraRay.direction.dot(m_forward); }
 
 private:
   CameraPose m_pose;

@@ -10,17 +10,17 @@ HWY_INLINE Float depthIndex(const WideScene::DepthAxis& axis, Float coordinate) 
 
 /// Points in view space.
 struct InView {
-  Float x, y;         ///< as toBuffer's; 0 for a plane
-  Float depth;        ///< from the target, mm
-  Float scale;        ///< target's depth / depth; 1 in orthographic views
-  LaneMask behindEye; ///< no lane in orthographic views
+  Float x, y;              ///< as toBuffer's; 0 for a plane
+  Float depth;             ///< from the target, mm
+  Float scale;             ///< target's depth / depth; 1 in orthographic views
+  LaneMask isBehindCamera; ///< no lane in orthographic views
 };
 
 HWY_INLINE InView inView(const WideScene& scene, const Float3& p) {
   InView at{0.0F, 0.0F, applyRow(scene.toView[2], p), 1.0F, LaneMask::none()};
   if (scene.perspective) {
     const Float fromEye = at.depth + scene.targetDepth;
-    at.behindEye = fromEye <= 0.0F;
+    at.isBehindCamera = fromEye <= 0.0F;
     at.scale = scene.targetDepth / fromEye;
   }
   if (scene.clipKind == WideScene::ClipKind::plane)
@@ -129,7 +129,7 @@ inline Float keep(const WideScene& scene, const Float3& p, LaneMask which) {
   const Float ghost = scene.ghost;
   const Float rise = scene.perSoftness > 0.0F ? min(behind * scene.perSoftness, 1.0F) : 1.0F;
   const Float share = select(behind < 0.0F, ghost, lerp(ghost, 1.0F, rise));
-  return select(view.behindEye, 0.0F, share);
+  return select(view.isBehindCamera, 0.0F, share);
 }
 
 /// Gradient of the depth behind a surface, along the view's axes.
@@ -148,7 +148,7 @@ inline Float3 cutGradient(const WideScene& scene, const Float3& p, LaneMask whic
   const InView view = inView(scene, p);
   const Float behind = behindSurface(scene, p, view, which);
   const LaneMask isRamp = which & (behind >= 0.0F) & (behind < scene.softness);
-  const LaneMask isCut = isRamp.without(view.behindEye);
+  const LaneMask isCut = isRamp.without(view.isBehindCamera);
   if (!isCut.any())
     return {0.0F, 0.0F, 0.0F};
   const Float length = scene.cutSlope;

@@ -12,18 +12,19 @@ namespace fenestra::HWY_NAMESPACE {
 namespace {
 
 /// Draws the paths' numbers, and moves starts to their places in the pixels.
-void drawAll(const EyeTable& eye, CameraSamples& starts, PathBatch& paths) {
-  for (std::size_t i = 0; i < starts.size; i += laneCount) {
-    const SimdPrimarySamples numbers = generateSamples(
-        load(&starts.start[i]), load(&starts.key[i]), load(&starts.number[i]), starts.isStratified);
+void drawAll(const CameraTable& camera, CameraSamples& samples, PathBatch& paths) {
+  for (std::size_t i = 0; i < samples.size; i += laneCount) {
+    const SimdPrimarySamples numbers =
+        generateSamples(load(&samples.start[i]), load(&samples.key[i]), load(&samples.number[i]),
+                        samples.isStratified);
     const std::size_t to = paths.rays.size + i;
-    const Float row = load(&starts.row[i]);
+    const Float row = load(&samples.row[i]);
     store(row, &paths.row[to]);
-    store(row - eye.middleRow + toUniformBelow1(numbers.position[1]), &starts.row[i]);
-    const Float column = load(&starts.column[i]) - eye.middleColumn;
-    store(column + toUniformBelow1(numbers.position[0]), &starts.column[i]);
-    store(load(&starts.tile[i]), &paths.tile[to]);
-    store(load(&starts.tileSample[i]), &paths.tileSample[to]);
+    store(row - camera.middleRow + toUniformBelow1(numbers.position[1]), &samples.row[i]);
+    const Float column = load(&samples.column[i]) - camera.middleColumn;
+    store(column + toUniformBelow1(numbers.position[0]), &samples.column[i]);
+    store(load(&samples.tile[i]), &paths.tile[to]);
+    store(load(&samples.tileSample[i]), &paths.tileSample[to]);
     store(numbers.collision[0], &paths.rays.depth[to]);
     store(toUniformBelow1(numbers.collision[1]), &paths.rays.acceptance[to]);
     for (const std::size_t which : {0U, 1U}) {
@@ -36,19 +37,19 @@ void drawAll(const EyeTable& eye, CameraSamples& starts, PathBatch& paths) {
 }
 
 /// Begins the paths with their eye rays.
-void beginAll(const WideScene& volume, const EyeTable& eye, const CameraSamples& starts,
+void beginAll(const WideScene& volume, const CameraTable& camera, const CameraSamples& samples,
               PathBatch& paths) {
-  for (std::size_t i = 0; i < starts.size; i += laneCount) {
-    const Float x = load(&starts.column[i]), y = load(&starts.row[i]);
+  for (std::size_t i = 0; i < samples.size; i += laneCount) {
+    const Float x = load(&samples.column[i]), y = load(&samples.row[i]);
     const auto at = [&](const auto& middle, const auto& perColumn, const auto& perRow) {
       return Float3(middle) + x * Float3(perColumn) + y * Float3(perRow);
     };
-    const Float3 toward = at(eye.forward, eye.turnColumn, eye.turnRow);
+    const Float3 toward = at(camera.forward, camera.forwardPerColumn, camera.forwardPerRow);
     const Float depthPerLength = 1.0F / sqrt(dot(toward, toward));
     const Float3 world = depthPerLength * toward;
-    const Float3 direction = mapDirection(eye.toIndex, world);
-    const Float3 point = at(eye.point, eye.perColumn, eye.perRow);
-    Stretches inside{notBelow0(load(&starts.from[i])), load(&starts.to[i])};
+    const Float3 direction = mapDirection(camera.toIndex, world);
+    const Float3 point = at(camera.point, camera.pointPerColumn, camera.pointPerRow);
+    Stretches inside{notBelow0(load(&samples.from[i])), load(&samples.to[i])};
     inside.clip(volume, point, direction);
     const LaneMask some = inside.begin < inside.end;
     const Float before = zeroUnless(some, inside.begin);
@@ -58,7 +59,7 @@ void beginAll(const WideScene& volume, const EyeTable& eye, const CameraSamples&
     store3(direction, paths.rays.direction, to);
     store(zeroUnless(some, inside.end - before), &paths.rays.length[to]);
     store3(world, paths.direction, to);
-    store3(world, paths.eyeDirection, to);
+    store3(world, paths.cameraDirection, to);
     store(before * depthPerLength, &paths.depth[to]);
     store(depthPerLength, &paths.depthPerLength[to]);
     store3({1.0F, 1.0F, 1.0F}, paths.throughput, to);
@@ -77,7 +78,7 @@ namespace fenestra {
 HWY_EXPORT(drawAll);
 HWY_EXPORT(beginAll);
 
-EyeTable::EyeTable(const Domain& domain, const Camera& camera)
+CameraTable::CameraTable(const Domain& domain, const Camera& camera)
     : nearDepth(infinity),
       middleColumn(narrow(0.5 * camera.width())),
       middleRow(narrow(0.5 * camera.height())),
@@ -93,31 +94,31 @@ EyeTable::EyeTable(const Domain& domain, const Camera& camera)
   const double step = perspective ? turn * nearDepth : camera.pixelPitch();
   const Mat3& linear = grid.worldToIndex.linear();
   point = narrow3(grid.worldToIndex * (camera.pose().position + nearDepth * camera.forward()));
-  perColumn = narrow3(linear * (step * camera.right()));
-  perRow = narrow3(linear * (-step * camera.up()));
-  turnColumn = narrow3(turn * camera.right());
-  turnRow = narrow3(-turn * camera.up());
+  pointPerColumn = narrow3(linear * (step * camera.right()));
+  pointPerRow = narrow3(linear * (-step * camera.up()));
+  forwardPerColumn = narrow3(turn * camera.right());
+  forwardPerRow = narrow3(-turn * camera.up());
   toIndex = affineRows(Affine(linear));
 }
 
-void beginPaths(const WideScene& volume, const EyeTable& table, const EyeRays& eye,
-                CameraSamples& starts, PathBatch& paths) {
-  HWY_DYNAMIC_DISPATCH(drawAll)(table, starts, paths);
-  if (eye.isWhole()) {
-    std::fill_n(starts.from.begin(), starts.size, 0.0F);
-    std::fill_n(starts.to.begin(), starts.size, std::numeric_limits<float>::infinity());
+void beginPaths(const WideScene& volume, const CameraTable& table, const CameraRays& cameraRays,
+                CameraSamples& samples, PathBatch& paths) {
+  HWY_DYNAMIC_DISPATCH(drawAll)(table, samples, paths);
+  if (cameraRays.isUnclipped()) {
+    std::fill_n(samples.from.begin(), samples.size, 0.0F);
+    std::fill_n(samples.to.begin(), samples.size, std::numeric_limits<float>::infinity());
   } else {
-    for (std::size_t i = 0; i < starts.size; ++i) {
-      const Ray ray = eye.ray(double{table.middleColumn} + double{starts.column[i]},
-                              double{table.middleRow} + double{starts.row[i]});
-      const Interval range = eye.range(ray);
-      const double before = table.nearDepth / eye.depth(ray, 1.0);
-      starts.from[i] = narrow(range.begin - before);
-      starts.to[i] = narrow(range.end - before);
+    for (std::size_t i = 0; i < samples.size; ++i) {
+      const Ray ray = cameraRays.ray(double{table.middleColumn} + double{samples.column[i]},
+                                     double{table.middleRow} + double{samples.row[i]});
+      const Interval range = cameraRays.range(ray);
+      const double before = table.nearDepth / cameraRays.depth(ray, 1.0);
+      samples.from[i] = narrow(range.begin - before);
+      samples.to[i] = narrow(range.end - before);
     }
   }
-  HWY_DYNAMIC_DISPATCH(beginAll)(volume, table, starts, paths);
-  paths.rays.size += starts.size;
+  HWY_DYNAMIC_DISPATCH(beginAll)(volume, table, samples, paths);
+  paths.rays.size += samples.size;
 }
 
 } // namespace fenestra

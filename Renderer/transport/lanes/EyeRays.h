@@ -1,6 +1,6 @@
 #pragma once
-// Eye rays in SIMD lanes, in float (readable/EyeRays.h): where paths begin. The instruction set is
-// chosen at run time (Highway).
+// Eye rays in SIMD lanes, in float (readable/CameraRays.h): where paths begin. The instruction set
+// is chosen at run time (Highway).
 
 #include "transport/lanes/PathBatch.h"
 #include "transport/readable/EyeRays.h"
@@ -10,21 +10,23 @@ namespace fenestra {
 /// Eye rays as functions of the raster position, counted from the picture's middle: floats keep
 /// their digits however far away the eye is, as rays begin in the plane that faces the eye at the
 /// depth of the domain's nearest corner (at the eye, if that lies behind).
-struct EyeTable {
+struct CameraTable {
   using Triple = std::array<float, 3>;
 
-  EyeTable(const Domain& domain, const Camera& camera);
+  CameraTable(const Domain& domain, const Camera& camera);
 
-  double nearDepth;                    ///< of the plane, mm; PathBatch counts depths from here
-  float middleColumn, middleRow;       ///< of the picture
-  Triple point, perColumn, perRow;     ///< of the plane, index space: in the middle, and its change
-  Triple forward, turnColumn, turnRow; ///< direction, world axes: in the middle, and its change
-  AffineRows toIndex;                  ///< of directions
+  double nearDepth;              ///< of the plane, mm; PathBatch counts depths from here
+  float middleColumn, middleRow; ///< of the picture
+  Triple point, pointPerColumn,
+      pointPerRow; ///< of the plane, index space: in the middle, and its change
+  Triple forward, forwardPerColumn,
+      forwardPerRow;  ///< direction, world axes: in the middle, and its change
+  AffineRows toIndex; ///< of directions
 };
 
 /// Begins a path for each start, behind those of `paths`. Changes rows and columns of `starts` to
 /// raster positions, counted from the picture's middle.
-void beginPaths(const WideScene& volume, const EyeTable& table, const EyeRays& eye,
-                CameraSamples& starts, PathBatch& paths);
+void beginPaths(const WideScene& volume, const CameraTable& table, const CameraRays& cameraRays,
+                CameraSamples& samples, PathBatch& paths);
 
 } // namespace fenestra

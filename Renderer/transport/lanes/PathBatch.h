@@ -30,9 +30,9 @@ struct PathBatch {
   std::array<SoaArray<float>, 2> uChoices;   ///< at the first collisions: surface or not, light
 
   /// Eye rays, of use until the first collision: row of the pixel, direction, depth at the ray's
-  /// beginning (mm, counted from EyeTable::nearDepth) and its growth per mm of the ray.
+  /// beginning (mm, counted from CameraTable::nearDepth) and its growth per mm of the ray.
   SoaArray<float> row;
-  SoaArray3 eyeDirection;
+  SoaArray3 cameraDirection;
   SoaArray<float> depth, depthPerLength;
 
   /// First collision; depth is counted as above.

@@ -15,9 +15,13 @@ class SimdPathIntegrator {
 public:
   /// A view: all arguments must outlive the wave. The tracker must have the same `stop`: paths left
   /// unfinished are dropped here.
-  SimdPathIntegrator(const SimdTracker& tracker, const EventScene& scene, const EyeTable& table,
-                     const EyeRays& eye, const StopFlag& stop)
-      : m_tracker(tracker), m_scene(scene), m_table(table), m_eye(eye), m_stop(stop) {}
+  SimdPathIntegrator(const SimdTracker& tracker, const EventScene& scene, const CameraTable& table,
+                     const CameraRays& cameraRays, const StopFlag& stop)
+      : m_tracker(tracker),
+        m_scene(scene),
+        m_table(table),
+        m_cameraRays(cameraRays),
+        m_stop(stop) {}
 
   /// Traces all paths of source.fill(starts, most), at most `atOnce` together, and calls
   /// source.deliver(tile, tileSample, sample) for each, in any order. Returns false if `stop`
@@ -29,7 +33,7 @@ public:
     for (;;) {
       source.fill(batch->starts, most - batch->paths.rays.size);
       counters.paths += batch->starts.size;
-      beginPaths(m_tracker.scene(), m_table, m_eye, batch->starts, batch->paths);
+      beginPaths(m_tracker.scene(), m_table, m_cameraRays, batch->starts, batch->paths);
       if (batch->paths.rays.size == 0)
         return true;
       m_tracker.sampleCollisions(batch->paths.rays, counters);
@@ -76,7 +80,8 @@ private:
     };
     if (paths.bounces[i] == 0) // escaped, or collided with a limit of 0 scatterings
       return std::isinf(paths.rays.result[i])
-                 ? m_eye.escaped(double{paths.row[i]}, triple(paths.eyeDirection).matrix())
+                 ? m_cameraRays.sampleBackground(double{paths.row[i]},
+                                                 triple(paths.cameraDirection).matrix())
                  : PathSample{};
     PathSample sample;
     sample.radiance = triple(paths.radiance);
@@ -89,8 +94,8 @@ private:
 
   const SimdTracker& m_tracker;
   const EventScene& m_scene;
-  const EyeTable& m_table;
-  const EyeRays& m_eye;
+  const CameraTable& m_table;
+  const CameraRays& m_cameraRays;
   const StopFlag& m_stop;
 };
 

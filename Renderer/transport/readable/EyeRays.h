@@ -13,16 +13,16 @@ namespace fenestra {
 
 /// Clip by which eye rays are shortened: none where the clip leaves some of a mixture, which may
 /// stand in front of its surface.
-inline const Clip& eyeClip(const Clip& clip, const Mixture* mixture) {
+inline const Clip& cameraRayClip(const Clip& clip, const Mixture* mixture) {
   static const Clip none = ClipNone();
   return mixture && mixture->hasFree() ? none : clip;
 }
 
-/// A view: camera, clip (eyeClip), lights and background must outlive the object.
-class EyeRays {
+/// A view: camera, clip (cameraRayClip), lights and background must outlive the object.
+class CameraRays {
 public:
-  EyeRays(const Camera& camera, const Clip& clip, const LightSet& lights,
-          const Background& background)
+  CameraRays(const Camera& camera, const Clip& clip, const LightSet& lights,
+             const Background& background)
       : m_camera(camera), m_clip(clip), m_lights(lights), m_background(background) {
     if (background.kind == Background::Kind::gradient)
       for (int row = 0; row < camera.height(); ++row)
@@ -32,7 +32,7 @@ public:
   /// Eye ray through raster position (column, row).
   Ray ray(double column, double row) const { return m_camera.ray(column, row); }
   /// True if clipping leaves every eye ray whole.
-  bool isWhole() const { return std::holds_alternative<ClipNone>(m_clip); }
+  bool isUnclipped() const { return std::holds_alternative<ClipNone>(m_clip); }
   /// Part of an eye ray that clipping leaves.
   Interval range(const Ray& ray) const { return visible(m_clip, ray); }
   /// View-space depth at `distance` along an eye ray; mm.
@@ -42,7 +42,7 @@ public:
 
   /// Sample of an eye ray without collision: the background. A gradient has one colour for a whole
   /// row of pixels, so that a sample's position inside the pixel adds no noise.
-  PathSample escaped(double row, const Vec3& direction) const {
+  PathSample sampleBackground(double row, const Vec3& direction) const {
     PathSample sample;
     switch (m_background.kind) {
     case Background::Kind::color:

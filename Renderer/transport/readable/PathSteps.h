@@ -63,20 +63,16 @@ public:
         m_medium(medium),
         m_clip(clip),
         m_lights(lights),
-        m_eye(camera, eyeClip(clip, medium.mixture()), lights, settings.background),
+        m_cameraRays(camera, cameraRayClip(clip, medium.mixture()), lights, settings.background),
         m_settings(settings) {}
 
   /// Begins a path through raster position (column, row).
   Path begin(double column, double row, const PrimarySamples& numbers) const {
-    const Ray ray = m_eye.ray(column, row);
+    const Ray ray = m_cameraRays.ray(column, row);
     const Vec2 flight{uniformOf(numbers.opticalDepth), uniformOf(numbers.acceptance)};
-    return {Random(numbers.pathSeed),
-            flight,
-            uniform2Of(numbers.direction),
-            uniform2Of(numbers.choices),
-            row,
-            ray,
-            m_eye.range(ray)};
+    return {Random(numbers.pathSeed),    flight, uniform2Of(numbers.direction),
+            uniform2Of(numbers.choices), row,    ray,
+            m_cameraRays.range(ray)};
   }
 
   /// Ends the path's ray at its next collision, after `distance` mm, or at infinity (no collision).
@@ -86,7 +82,7 @@ public:
       path.sample.radiance +=
           path.throughput * emittedAlongRay(path.ray, distance, path.scatterPdf);
     else if (distance == infinity)
-      path.sample = m_eye.escaped(path.row, path.ray.direction);
+      path.sample = m_cameraRays.sampleBackground(path.row, path.ray.direction);
     return distance < infinity && path.bounces < m_settings.bounces;
   }
 
@@ -122,7 +118,7 @@ public:
 private:
   void recordFirst(Path& path, double distance, const MediumSample& medium) const {
     PathSample& sample = path.sample;
-    sample.depth = m_eye.depth(path.ray, distance);
+    sample.depth = m_cameraRays.depth(path.ray, distance);
     sample.albedo = medium.albedo;
     const double slope = medium.gradient.norm();
     if (slope > 0.0)
@@ -181,7 +177,7 @@ private:
   const Medium<Voxel>& m_medium;
   const Clip& m_clip;
   const LightSet& m_lights;
-  EyeRays m_eye;
+  CameraRays m_cameraRays;
   const PathSettings& m_settings;
 };
 

@@ -35,7 +35,7 @@ public:
     for (const RasterPoint& point : points) {
       const Ray ray = m_scene.camera.ray(point.column, point.row);
       const ExpectedHit first =
-          m_march.integrateHits(ray, visible(eyeClip(m_scene.clip, m_scene.mixture), ray));
+          m_march.integrateHits(ray, visible(cameraRayClip(m_scene.clip, m_scene.mixture), ray));
       PrimaryHit primary{narrow(first.hit),
                          narrow(first.distance * m_scene.camera.depthPerLength(ray))};
       primary.albedo = narrow3(first.albedo.matrix());
@@ -77,7 +77,7 @@ public:
       for (std::size_t i = 0; i < count; ++i) {
         const Ray ray = m_scene.camera.ray(points[from + i].column, points[from + i].row);
         before[i] = setInside(batch->rays, i, m_domain, ray,
-                              visible(eyeClip(m_scene.clip, m_scene.mixture), ray));
+                              visible(cameraRayClip(m_scene.clip, m_scene.mixture), ray));
         perLength[i] = m_scene.camera.depthPerLength(ray);
       }
       marchCameraRays(m_medium, m_shading, *batch);

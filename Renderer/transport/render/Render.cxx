@@ -338,9 +338,9 @@ auto traceSimd(const RenderScene& scene, const RenderSettings& settings, const S
                             scene.style, stop, scene.mixture);
   const EventScene shading(scene.volume.grid, scene.transfer, scene.lights, settings.path.bounces,
                            settings.path.wantNormals, scene.tint, scene.mixture);
-  const EyeTable table(domain, scene.camera);
-  const EyeRays cameraRays(scene.camera, eyeClip(scene.clip, scene.mixture), scene.lights,
-                           settings.path.background);
+  const CameraTable table(domain, scene.camera);
+  const CameraRays cameraRays(scene.camera, cameraRayClip(scene.clip, scene.mixture), scene.lights,
+                              settings.path.background);
   return work(SimdPathIntegrator(tracker, shading, table, cameraRays, stop), instructionSet());
 }
 
