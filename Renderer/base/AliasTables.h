@@ -14,21 +14,21 @@ namespace fenestra {
 /// one. Probabilities are whole multiples of 2^-32, 0 where they are 0. All numbers of a place are
 /// exact in float.
 struct AliasTables {
-  struct Place {
-    float threshold, other;
+  struct Slot {
+    float threshold, alias;
   };
   /// Least number: what is left of a word has 24 bits then.
-  static constexpr int leastBits = 8;
+  static constexpr int minBits = 8;
 
-  int bits = leastBits;
-  std::vector<Place> places; ///< one table behind the other
+  int bits = minBits;
+  std::vector<Slot> slots; ///< one table behind the other
 
   explicit AliasTables(std::size_t bins) {
     while (std::size_t{1} << bits < bins)
       ++bits;
   }
   std::size_t size() const { return std::size_t{1} << bits; }
-  float height() const { return static_cast<float>(std::uint32_t{1} << (32 - bits)); }
+  float thresholdRange() const { return static_cast<float>(std::uint32_t{1} << (32 - bits)); }
   /// Appends a table. `cumulative`: 0, then sums of the bins' probabilities, the last of them 1;
   /// or 0 throughout, for bins that are never drawn.
   void append(std::span<const double> cumulative);

@@ -72,7 +72,7 @@ TEST(Marching, BiasShrinksWithShorterSteps) {
 class Wall {
 public:
   static constexpr double sigma_t = 3.0;
-  static constexpr int draws = 20000;
+  static constexpr int trials = 20000;
   static constexpr double tolerance = 4.0 * 0.5 / 141.0; ///< four standard errors, at most
 
   template <typename MakeTracker>
@@ -81,12 +81,12 @@ public:
     const Ray ray{{0.3, -0.2, -10.0}, Vec3::UnitZ()};
     Counters counters;
     double light = 0.0, passing = 0.0;
-    for (std::uint64_t i = 0; i < draws; ++i) {
+    for (std::uint64_t i = 0; i < trials; ++i) {
       Random random(1, 2, i);
-      light += tracker.transmittance(ray, {}, random, counters) / draws;
+      light += tracker.transmittance(ray, {}, random, counters) / trials;
       passing +=
           (tracker.sampleCollision(ray, {}, random.uniform2(), random, counters) == infinity) *
-          (1.0 / draws);
+          (1.0 / trials);
     }
     return {light, passing};
   }

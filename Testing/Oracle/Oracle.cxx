@@ -56,8 +56,8 @@ public:
       const Scatterer scatterer = collide(met, point, ray.direction, generator);
       result.radiance += throughput * (parallelLight(point, scatterer, generator) +
                                        areaLight(point, scatterer, generator));
-      const Vec3 outgoing = scatterer.draw(generator);
-      throughput *= scatterer.f(outgoing) / scatterer.density(outgoing);
+      const Vec3 outgoing = scatterer.sample(generator);
+      throughput *= scatterer.f(outgoing) / scatterer.pdf(outgoing);
       if (!survives(throughput, generator))
         break;
       ray = {point, outgoing};
@@ -155,9 +155,9 @@ private:
         gradient += component.border * m_segments->gradient(met.component, point);
       if (uniform(generator) <
           m_matter.surfaceProbability(component.transfer, point, gradient.norm()))
-        return Scatterer::atSurface(incoming, met.albedo, gradient, *component.transfer.shading);
+        return Scatterer::makeSurface(incoming, met.albedo, gradient, *component.transfer.shading);
     }
-    return Scatterer::byPhase(incoming, met.albedo, component.transfer.g);
+    return Scatterer::makePhase(incoming, met.albedo, component.transfer.g);
   }
 
   bool isStyled(const Vec3& point) const { return m_styledFocus && m_styledFocus->at(point) < 0.5; }
@@ -199,9 +199,9 @@ private:
       return Rgb::Zero();
     const bool isToward = uniform(generator) < 0.5;
     const Ray probe{point,
-                    isToward ? m_lights.sampleArea(point, generator) : scatterer.draw(generator)};
+                    isToward ? m_lights.sampleArea(point, generator) : scatterer.sample(generator)};
     const Rgb light = m_lights.areaRadiance(probe, collision(probe, generator));
-    const double density = 0.5 * m_lights.areaPdf(probe) + 0.5 * scatterer.density(probe.direction);
+    const double density = 0.5 * m_lights.areaPdf(probe) + 0.5 * scatterer.pdf(probe.direction);
     return light * scatterer.f(probe.direction) / density;
   }
 

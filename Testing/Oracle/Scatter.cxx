@@ -51,7 +51,7 @@ double henyeyGreenstein(double cosine, double g) {
   return (1.0 - g * g) / (4.0 * pi * std::pow(1.0 + g * g - 2.0 * g * cosine, 1.5));
 }
 
-Scatterer Scatterer::byPhase(const Vec3& incoming, const Rgb& albedo, double g) {
+Scatterer Scatterer::makePhase(const Vec3& incoming, const Rgb& albedo, double g) {
   Scatterer scatterer;
   scatterer.m_incoming = incoming;
   scatterer.m_albedo = albedo;
@@ -59,9 +59,9 @@ Scatterer Scatterer::byPhase(const Vec3& incoming, const Rgb& albedo, double g) 
   return scatterer;
 }
 
-Scatterer Scatterer::atSurface(const Vec3& incoming, const Rgb& albedo, const Vec3& gradient,
-                               const SurfaceShading& shading) {
-  Scatterer scatterer = byPhase(incoming, albedo, 0.0);
+Scatterer Scatterer::makeSurface(const Vec3& incoming, const Rgb& albedo, const Vec3& gradient,
+                                 const SurfaceShading& shading) {
+  Scatterer scatterer = makePhase(incoming, albedo, 0.0);
   scatterer.m_shading = shading;
   scatterer.m_normal = -gradient.normalized();
   if (scatterer.m_normal.dot(incoming) > 0.0)
@@ -82,7 +82,7 @@ Rgb Scatterer::f(const Vec3& outgoing) const {
     return Rgb::Zero();
   const double a2 = roughness2(*m_shading);
   const Vec3 h = (outgoing - m_incoming).normalized();
-  const double d = facetDensity(h);
+  const double d = facetPdf(h);
   const auto smith = [a2](double cosine) {
     return 2.0 / (1.0 + std::sqrt(1.0 + a2 * (1.0 / (cosine * cosine) - 1.0)));
   };
@@ -110,12 +110,12 @@ Rgb Scatterer::f(const Vec3& outgoing) const {
   return (m_shading->diffuse * m_albedo / pi + w * glossy) / excess * cosOut;
 }
 
-double Scatterer::facetDensity(const Vec3& h) const {
+double Scatterer::facetPdf(const Vec3& h) const {
   const double a2 = roughness2(*m_shading);
   return a2 / (pi * std::pow(std::pow(h.dot(m_normal), 2.0) * (a2 - 1.0) + 1.0, 2.0));
 }
 
-Vec3 Scatterer::draw(Generator& generator) const {
+Vec3 Scatterer::sample(Generator& generator) const {
   if (!m_shading)
     return drawHenyeyGreenstein(m_incoming, invertible(m_g), generator);
   const double u = uniform(generator);
@@ -126,14 +126,14 @@ Vec3 Scatterer::draw(Generator& generator) const {
   return m_incoming - 2.0 * m_incoming.dot(h) * h;
 }
 
-double Scatterer::density(const Vec3& outgoing) const {
+double Scatterer::pdf(const Vec3& outgoing) const {
   if (!m_shading)
     return henyeyGreenstein(m_incoming.dot(outgoing), invertible(m_g));
   const double lambert = std::max(0.0, outgoing.dot(m_normal)) / pi;
   Vec3 h = (outgoing - m_incoming).normalized();
   if (h.dot(m_normal) < 0.0)
     h = -h;
-  const double glossy = facetDensity(h) * h.dot(m_normal) / (4.0 * std::abs(outgoing.dot(h)));
+  const double glossy = facetPdf(h) * h.dot(m_normal) / (4.0 * std::abs(outgoing.dot(h)));
   return 0.5 * lambert + 0.5 * glossy;
 }
 

@@ -21,19 +21,19 @@ double henyeyGreenstein(double cosine, double g);
 /// f: factor on radiance per steradian, with albedo and, at surfaces, the cosine.
 class Scatterer {
 public:
-  static Scatterer byPhase(const Vec3& incoming, const Rgb& albedo, double g);
-  static Scatterer atSurface(const Vec3& incoming, const Rgb& albedo, const Vec3& gradient,
-                             const SurfaceShading& shading);
+  static Scatterer makePhase(const Vec3& incoming, const Rgb& albedo, double g);
+  static Scatterer makeSurface(const Vec3& incoming, const Rgb& albedo, const Vec3& gradient,
+                               const SurfaceShading& shading);
 
   Rgb f(const Vec3& outgoing) const;
   /// Random direction of travel; density(): its pdf per steradian. Drawn from the phase function;
   /// at a surface half the time from Lambert's law, else as the mirror of `incoming` at a GGX
   /// microfacet (Walter et al. 2007, eq. 35, 36 and 38).
-  Vec3 draw(Generator& generator) const;
-  double density(const Vec3& outgoing) const;
+  Vec3 sample(Generator& generator) const;
+  double pdf(const Vec3& outgoing) const;
 
 private:
-  double facetDensity(const Vec3& h) const;
+  double facetPdf(const Vec3& h) const;
 
   Vec3 m_incoming;
   Rgb m_albedo;

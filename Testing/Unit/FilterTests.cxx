@@ -295,7 +295,7 @@ TEST(Filter, BlackBesideBrightTellsAFiniteErrorThatCanBeReached) {
         left += x < 40 ? std::pow(static_cast<double>(picture.color[c][i]), 2) : 0.0;
       }
   EXPECT_LT(picture.toldError, 1.0);
-  EXPECT_GT(told, 0.25 * left) << "told standard errors at least half of what is there";
+  EXPECT_GT(told, 0.25 * remaining) << "told standard errors at least half of what is there";
 }
 
 TEST(Filter, PictureWithoutFeaturesIsFilteredByMeans) {

@@ -58,15 +58,15 @@ TEST(Mixture, ComponentsAreDrawnByTheirExtinction) {
   constexpr int draws = 40000;
   int second = 0;
   for (int i = 0; i < draws; ++i)
-    second += field.draw(point, random);
+    second += field.sampleComponent(point, random);
   const double expected = partsAt(field, point).at(1) / field.extinction(point);
   const double error = std::sqrt(expected * (1.0 - expected) / draws);
-  EXPECT_NEAR(second / double{draws}, expected, 4.0 * error);
+  EXPECT_NEAR(second / double{samples}, expected, 4.0 * error);
   EXPECT_GT(expected, 0.62) << "by shares alone it would be 3/8";
 
   Random alone(5, 0, 0), untouched(5, 0, 0);
-  EXPECT_EQ(field.draw({Vec3(8.0, 0.0, 0.0), 0.5, 1.0}, alone), 1);
-  EXPECT_EQ(field.draw({Vec3(3.0, 0.5, 0.5), 0.0, 1.0}, alone), 0) << "nothing is there";
+  EXPECT_EQ(field.sampleComponent({Vec3(8.0, 0.0, 0.0), 0.5, 1.0}, alone), 1);
+  EXPECT_EQ(field.sampleComponent({Vec3(3.0, 0.5, 0.5), 0.0, 1.0}, alone), 0) << "nothing is there";
   EXPECT_EQ(alone.bits(), untouched.bits()) << "one component takes no number";
 }
 

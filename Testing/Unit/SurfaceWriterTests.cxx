@@ -102,7 +102,7 @@ TEST(SurfaceWriter, VtpKeepsEveryDigitAndTheDepths) {
   EXPECT_EQ(bytes.take<std::uint64_t>(), 16u);
   for (const float depth : mesh.depths)
     EXPECT_EQ(bytes.take<float>(), depth);
-  EXPECT_EQ(bytes.left(), 0u);
+  EXPECT_EQ(bytes.remaining(), 0u);
 }
 
 TEST(SurfaceWriter, PlyHasTheDepthsOfItsVertices) {
@@ -124,7 +124,7 @@ TEST(SurfaceWriter, PlyHasTheDepthsOfItsVertices) {
     for (const std::uint32_t point : triangle)
       EXPECT_EQ(file.take<std::uint32_t>(), point);
   }
-  EXPECT_EQ(file.left(), 0u);
+  EXPECT_EQ(file.remaining(), 0u);
 }
 
 TEST(SurfaceWriter, StlHasUnitNormals) {
@@ -147,7 +147,7 @@ TEST(SurfaceWriter, StlHasUnitNormals) {
     EXPECT_LT((normal - expected).norm(), 1e-5);
     EXPECT_EQ(file.take<std::uint16_t>(), 0);
   }
-  EXPECT_EQ(file.left(), 0u);
+  EXPECT_EQ(file.remaining(), 0u);
 }
 
 TEST(SurfaceWriter, EqualSurfacesGiveEqualBytesAndEmptyOnesAFile) {

@@ -93,7 +93,7 @@ TEST_P(SimdCameraRays, NumbersAreThoseOfTheSource) {
         fill(*samples, source, 400, sample);
         paths->rays.size = 0;
         beginPaths(tracker.scene(), cameraTable, cameraRays, *samples, *paths);
-        ASSERT_EQ(paths->rays.size, starts->size);
+        ASSERT_EQ(paths->rays.size, samples->size);
         const auto toUnitFloat = [](std::uint64_t bits) {
           return static_cast<float>(bits >> 8 & 0xffffff) * 0x1p-24F;
         };
@@ -109,9 +109,9 @@ TEST_P(SimdCameraRays, NumbersAreThoseOfTheSource) {
           ASSERT_EQ(std::uint64_t{paths->counter[i]} << 32 | paths->key[i], numbers.pathSeed) << i;
           const Vec2 jitter = uniform2Of(numbers.position);
           const std::uint64_t pixel = 400 + i;
-          ASSERT_NEAR(double{starts->column[i]} + 0.5 * width, double(pixel % width) + jitter.x(),
+          ASSERT_NEAR(double{samples->column[i]} + 0.5 * width, double(pixel % width) + jitter.x(),
                       2e-6);
-          ASSERT_NEAR(double{starts->row[i]} + 0.5 * height, double(pixel / width) + jitter.y(),
+          ASSERT_NEAR(double{samples->row[i]} + 0.5 * height, double(pixel / width) + jitter.y(),
                       2e-6);
           ASSERT_EQ(paths->row[i], static_cast<float>(pixel / width));
           ASSERT_EQ(paths->tileSample[i], pixel);

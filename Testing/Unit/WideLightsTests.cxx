@@ -271,12 +271,12 @@ INSTANTIATE_TEST_SUITE_P(InstructionSets, SimdLights, ::testing::Values(0, 1, 2,
 
 /// Probability of each bin in a table, in units of 2^-32.
 std::vector<std::uint64_t> toProbabilities(const AliasTables& tables) {
-  const auto full = static_cast<std::uint64_t>(tables.height());
+  const auto full = static_cast<std::uint64_t>(tables.thresholdRange());
   std::vector<std::uint64_t> units(tables.size(), 0);
   for (std::size_t i = 0; i < tables.size(); ++i) {
-    const auto threshold = static_cast<std::uint64_t>(tables.places[i].threshold);
+    const auto threshold = static_cast<std::uint64_t>(tables.slots[i].threshold);
     units[i] += threshold;
-    units[static_cast<std::size_t>(tables.places[i].other)] += full - threshold;
+    units[static_cast<std::size_t>(tables.slots[i].alias)] += full - threshold;
   }
   return units;
 }

@@ -4,7 +4,7 @@
 using Lights = LightTables<Real>;
 
 /// LightSample; radiance 0: no sample.
-struct LightDraw {
+struct LightSamples {
   Float3 direction, radiance;
   Float distance;
   Float pdf;
@@ -12,8 +12,8 @@ struct LightDraw {
 };
 
 /// Draws for the lanes of `mine`, seen from `point`.
-FENESTRA_INLINE void drawFrom(const Lights::Area& light, LaneMask mine, const Float3& point,
-                              Float u, Float v, LightDraw& drawn) {
+FENESTRA_INLINE void samplePoint(const Lights::Area& light, LaneMask mine, const Float3& point,
+                                 Float u, Float v, LightSamples& samples) {
   Float x = fms(2.0F, u, 1.0F);
   Float y = fms(2.0F, v, 1.0F);
   if (light.isDisk) {
@@ -31,10 +31,10 @@ FENESTRA_INLINE void drawFrom(const Lights::Area& light, LaneMask mine, const Fl
   const LaneMask apart = distance2 >= std::numeric_limits<Real>::min();
   const LaneMask lit = mine & apart & (cosine > 0.0F);
   const Float pdf = light.pmf * distance2 / (light.area * cosine);
-  drawn.direction = select(lit, direction, drawn.direction);
-  drawn.radiance = select(lit, Float3(light.radiance), drawn.radiance);
-  drawn.distance = select(lit, distance, drawn.distance);
-  drawn.pdf = select(lit, pdf, drawn.pdf);
+  samples.direction = select(lit, direction, samples.direction);
+  samples.radiance = select(lit, Float3(light.radiance), samples.radiance);
+  samples.distance = select(lit, distance, samples.distance);
+  samples.pdf = select(lit, pdf, samples.pdf);
 }
 
 /// 1 - cos of half the angle that a sphere subtends, as sin^2 / (1 + cos), which keeps the digits
@@ -57,8 +57,8 @@ FENESTRA_INLINE Float distanceTo(const Lights::Sphere& light, Float distance2, F
 }
 
 /// Draws for the lanes of `mine`, seen from `point`.
-FENESTRA_INLINE void drawFrom(const Lights::Sphere& light, LaneMask mine, const Float3& point,
-                              Float u, Float v, LightDraw& drawn) {
+FENESTRA_INLINE void samplePoint(const Lights::Sphere& light, LaneMask mine, const Float3& point,
+                                 Float u, Float v, LightSamples& samples) {
   const Float3 d = Float3(light.center) - point;
   const Float distance2 = dot(d, d);
   const Float distance = sqrt(distance2);
@@ -72,18 +72,18 @@ FENESTRA_INLINE void drawFrom(const Lights::Sphere& light, LaneMask mine, const 
   const Float3 axis = select(apart, (1.0F / distance) * d, Float3{0.0F, 0.0F, 1.0F});
   const Float3 local{sine * phi.cosine, sine * phi.sine, cosine};
   const Float far = distanceTo(light, distance2, distance * cosine, distance2 * sine2);
-  drawn.direction = select(mine, normalized(Frames(axis).toWorld(local)), drawn.direction);
-  drawn.radiance = select(mine, Float3(light.radiance), drawn.radiance);
-  drawn.distance = select(mine, far, drawn.distance);
-  drawn.pdf = select(mine, densityOf(light, spread), drawn.pdf);
+  samples.direction = select(mine, normalized(Frames(axis).toWorld(local)), samples.direction);
+  samples.radiance = select(mine, Float3(light.radiance), samples.radiance);
+  samples.distance = select(mine, far, samples.distance);
+  samples.pdf = select(mine, densityOf(light, spread), samples.pdf);
 }
 
 /// Draws one light for each lane of `which`, seen from `point`. `choice` selects it by the lights'
 /// shares. What remains of both is for environments.
-FENESTRA_INLINE LightDraw drawLight(const Lights& lights, LaneMask& which, const Float3& point,
-                                    Float& choice, Float u, Float v) {
+FENESTRA_INLINE LightSamples sampleLights(const Lights& lights, LaneMask& which,
+                                          const Float3& point, Float& choice, Float u, Float v) {
   const Float far = std::numeric_limits<Real>::infinity();
-  LightDraw drawn{{0.0F, 0.0F, 1.0F}, {0.0F, 0.0F, 0.0F}, far, 1.0F, LaneMask::none()};
+  LightSamples samples{{0.0F, 0.0F, 1.0F}, {0.0F, 0.0F, 0.0F}, far, 1.0F, LaneMask::none()};
   const auto chosen = [&](Real pmf) {
     const LaneMask mine = which & sampleBernoulli(pmf, choice);
     which = which.without(mine);
@@ -93,21 +93,21 @@ FENESTRA_INLINE LightDraw drawLight(const Lights& lights, LaneMask& which, const
   for (const Lights::Area& light : lights.areas) {
     const LaneMask mine = chosen(light.pmf);
     if (mine.any())
-      drawFrom(light, mine, point, u, v, drawn);
+      samplePoint(light, mine, point, u, v, samples);
   }
   for (const Lights::Directional& light : lights.directionals) {
     const LaneMask mine = chosen(light.pmf);
-    drawn.direction = select(mine, Float3(light.toward), drawn.direction);
-    drawn.radiance = select(mine, Float3(light.irradiance), drawn.radiance);
-    drawn.pdf = select(mine, light.pmf, drawn.pdf);
-    drawn.delta = mine | drawn.delta;
+    samples.direction = select(mine, Float3(light.toward), samples.direction);
+    samples.radiance = select(mine, Float3(light.irradiance), samples.radiance);
+    samples.pdf = select(mine, light.pmf, samples.pdf);
+    samples.delta = mine | samples.delta;
   }
   for (const Lights::Sphere& light : lights.spheres) {
     const LaneMask mine = chosen(light.pmf);
     if (mine.any())
-      drawFrom(light, mine, point, u, v, drawn);
+      samplePoint(light, mine, point, u, v, samples);
   }
-  return drawn;
+  return samples;
 }
 
 /// Lanes whose ray meets a light, and there the density of drawing the ray's direction.

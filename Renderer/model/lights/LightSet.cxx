@@ -102,14 +102,15 @@ void LightSet::computePmfs(const Vec3& center) {
 
 std::optional<LightSample> LightSet::sample(const Vec3& point, double choice, const Vec2& u) const {
   scalar::ScalarMask left = true;
-  const scalar::LightDraw drawn = scalar::drawLight(m_tables, left, point, choice, u.x(), u.y());
+  const scalar::LightSamples lightSample =
+      scalar::sampleLights(m_tables, left, point, choice, u.x(), u.y());
   if (left.any())
     return sampleEnvironment(choice, u);
-  const Rgb radiance = toColor(drawn.radiance);
+  const Rgb radiance = toColor(lightSample.radiance);
   if (!(radiance.maxCoeff() > 0.0))
     return std::nullopt;
-  return LightSample{toVector(drawn.direction), drawn.distance, radiance, drawn.pdf,
-                     drawn.delta.value};
+  return LightSample{toVector(lightSample.direction), lightSample.distance, radiance,
+                     lightSample.pdf, lightSample.delta.value};
 }
 
 std::optional<LightSample> LightSet::sampleEnvironment(double choice, const Vec2& u) const {

@@ -100,7 +100,7 @@ public:
 
   /// Component that a collision meets, with probability sigma_j / sigma_t. Draws a number where
   /// there are several; component 0 where the extinction is 0.
-  std::uint8_t draw(const MixedPoint& point, Random& random) const {
+  std::uint8_t sampleComponent(const MixedPoint& point, Random& random) const {
     double sum = 0.0;
     std::uint8_t last = 0;
     int count = 0;
@@ -112,13 +112,13 @@ public:
     if (count < 2)
       return last;
     double left = random.uniform() * sum;
-    std::optional<std::uint8_t> drawn;
+    std::optional<std::uint8_t> sampled;
     forEachPart(point, [&](const MixturePart& part) {
-      if (!drawn && left < part.extinction)
-        drawn = part.component;
+      if (!sampled && left < part.extinction)
+        sampled = part.component;
       left -= part.extinction;
     });
-    return drawn.value_or(last);
+    return sampled.value_or(last);
   }
 
   /// Gradient of a component's share at a point (the volume's index space), per mm, world axes:

@@ -9,14 +9,14 @@ namespace fenestra {
 
 /// `Number`: plain, or one a lane.
 template <typename Number>
-struct ScatterLaw {
+struct BsdfParameters {
   Number g;
   Number diffuse, specular, f0, odds, roughness; ///< of SurfaceShading
   bool isCoated;
   std::array<Number, 4> coat; ///< of CoatReflectance, over the Lambert lobe; 0: reflects nothing
 
   template <typename To>
-  ScatterLaw<To> cast() const {
+  BsdfParameters<To> cast() const {
     const auto number = [](Number x) { return static_cast<To>(x); };
     return {number(g),        number(diffuse),
             number(specular), number(f0),
@@ -26,6 +26,6 @@ struct ScatterLaw {
 };
 
 /// Without shading nothing is reflected.
-ScatterLaw<double> lawOf(double g, const std::optional<SurfaceShading>& shading);
+BsdfParameters<double> makeBsdfParameters(double g, const std::optional<SurfaceShading>& shading);
 
 } // namespace fenestra

@@ -8,8 +8,8 @@ namespace {
 /// Roughness limit: a narrower lobe is finer than directions in double, and its density overflows.
 constexpr double leastRoughness = 1e-6;
 
-ScatterSample sampleOf(const scalar::ScatterDraw& draw) {
-  return {toVector(draw.outgoing), toColor(draw.weight), draw.pdf};
+ScatterSample sampleOf(const scalar::ScatterSamples& sample) {
+  return {toVector(sample.outgoing), toColor(sample.weight), sample.pdf};
 }
 
 } // namespace
@@ -31,19 +31,19 @@ SurfaceShading::Lobes SurfaceShading::lobes() const {
   return {diffuse / total, specular / total, 0.04, {}};
 }
 
-ScatterLaw<double> lawOf(double g, const std::optional<SurfaceShading>& shading) {
-  ScatterLaw<double> law{g, 0.0, 0.0, 0.0, 1.0, 1.0, false, {}};
+BsdfParameters<double> makeBsdfParameters(double g, const std::optional<SurfaceShading>& shading) {
+  BsdfParameters<double> bsdf{g, 0.0, 0.0, 0.0, 1.0, 1.0, false, {}};
   if (!shading)
-    return law;
+    return bsdf;
   const auto [lambert, glossy, f0, coat] = shading->lobes();
-  law.diffuse = lambert;
-  law.specular = glossy;
-  law.f0 = f0;
-  law.odds = shading->odds;
-  law.roughness = std::max(leastRoughness, std::sqrt(2.0 / (shading->power + 2.0)));
-  law.isCoated = shading->coated.has_value();
-  law.coat = {coat.constant, coat.x2, coat.x4, coat.x8};
-  return law;
+  bsdf.diffuse = lambert;
+  bsdf.specular = glossy;
+  bsdf.f0 = f0;
+  bsdf.odds = shading->odds;
+  bsdf.roughness = std::max(leastRoughness, std::sqrt(2.0 / (shading->power + 2.0)));
+  bsdf.isCoated = shading->coated.has_value();
+  bsdf.coat = {coat.constant, coat.x2, coat.x4, coat.x8};
+  return bsdf;
 }
 
 Rgb PhaseScattering::evaluate(const Vec3& outgoing) const {
@@ -51,12 +51,12 @@ Rgb PhaseScattering::evaluate(const Vec3& outgoing) const {
 }
 
 ScatterSample PhaseScattering::sample(const Vec2& u) const {
-  return sampleOf(m_lobe.draw(u.x(), u.y()));
+  return sampleOf(m_lobe.sample(u.x(), u.y()));
 }
 
 SurfaceScattering::SurfaceScattering(const Vec3& incoming, const Vec3& gradient,
                                      const SurfaceShading& shading, const Rgb& albedo)
-    : m_lobes(lawOf(0.0, shading), incoming, gradient, albedo) {}
+    : m_lobes(makeBsdfParameters(0.0, shading), incoming, gradient, albedo) {}
 
 double SurfaceScattering::pdf(const Vec3& outgoing) const {
   return m_lobes.toward(outgoing).pdf;
@@ -67,7 +67,7 @@ Rgb SurfaceScattering::evaluate(const Vec3& outgoing) const {
 }
 
 ScatterSample SurfaceScattering::sample(double choice, const Vec2& u) const {
-  return sampleOf(m_lobes.draw(choice, u.x(), u.y()));
+  return sampleOf(m_lobes.sample(choice, u.x(), u.y()));
 }
 
 } // namespace fenestra

@@ -1,12 +1,12 @@
 // Formulas of scattering, for plain numbers and for lanes: a part of the namespace that includes it
-// (base/Numbers.h), behind model/medium/ScatterLaw.h.
+// (base/Numbers.h), behind model/medium/BsdfParameters.h.
 
 /// Factor of scattering on radiance toward a direction, and the density of drawing that direction.
-struct Scattered {
+struct ScatterEval {
   Float3 factor;
   Float pdf;
 };
-struct ScatterDraw {
+struct ScatterSamples {
   Float3 outgoing;
   Float3 weight; ///< factor / pdf
   Float pdf;
@@ -22,13 +22,13 @@ public:
   FENESTRA_INLINE PhaseLobe(Number g, const Float3& incoming, const Float3& albedo)
       : m_g(abs(g)), m_peak(turnedBelow0(g, incoming)), m_albedo(albedo) {}
 
-  FENESTRA_INLINE Scattered toward(const Float3& outgoing) const {
+  FENESTRA_INLINE ScatterEval toward(const Float3& outgoing) const {
     const Float3 chord = outgoing - m_peak;
     const Float pdf = density(dot(chord, chord));
     return {pdf * m_albedo, pdf};
   }
 
-  FENESTRA_INLINE ScatterDraw draw(Float u, Float v) const {
+  FENESTRA_INLINE ScatterSamples sample(Float u, Float v) const {
     const CosineSine phi = cosSinTurns(v);
     if (isAllEqual(m_g, 0.0F)) {
       const Float z = fnma(2.0F, u, 1.0F);
@@ -75,18 +75,18 @@ class SurfaceLobes {
 public:
   /// `gradient` must not be zero; the normal is -gradient, flipped to the side of the path's
   /// origin.
-  FENESTRA_INLINE SurfaceLobes(const ScatterLaw<Number>& law, const Float3& incoming,
+  FENESTRA_INLINE SurfaceLobes(const BsdfParameters<Number>& bsdf, const Float3& incoming,
                                const Float3& gradient, const Float3& albedo)
-      : m_specular(law.specular),
-        m_f0(law.f0),
-        m_roughness(law.roughness),
-        m_isCoated(law.isCoated),
-        m_coat(law.coat),
+      : m_specular(bsdf.specular),
+        m_f0(bsdf.f0),
+        m_roughness(bsdf.roughness),
+        m_isCoated(bsdf.isCoated),
+        m_coat(bsdf.coat),
         m_frame(normalized(select(dot(incoming, gradient) >= 0.0F, -gradient, gradient))),
         m_viewer(m_frame.toLocal(-incoming)),
-        m_diffuse(law.diffuse * albedo) {
-    if (!isAllEqual(law.odds, 1.0F))
-      m_diffuse = law.diffuse * ofOdds(law.odds, albedo);
+        m_diffuse(bsdf.diffuse * albedo) {
+    if (!isAllEqual(bsdf.odds, 1.0F))
+      m_diffuse = bsdf.diffuse * ofOdds(bsdf.odds, albedo);
     if (m_isCoated)
       m_diffuse = belowCoat(m_viewer.z) * m_diffuse;
     const Float lambert = greatest(m_diffuse);
@@ -95,12 +95,12 @@ public:
     m_lambertPmf = select(some, lambert / sum, 1.0F);
   }
 
-  FENESTRA_INLINE Scattered toward(const Float3& outgoing) const {
+  FENESTRA_INLINE ScatterEval toward(const Float3& outgoing) const {
     return towardLocal(m_frame.toLocal(outgoing));
   }
 
   /// `choice` selects the lobe.
-  FENESTRA_INLINE ScatterDraw draw(Float choice, Float u, Float v) const {
+  FENESTRA_INLINE ScatterSamples sample(Float choice, Float u, Float v) const {
     const CosineSine phi = cosSinTurns(v);
     const Float r = sqrt(u);
     const Float3 lambert{r * phi.cosine, r * phi.sine, root(1.0F - u)};
@@ -111,7 +111,7 @@ public:
       local = select(choice < m_lambertPmf, lambert, glossy);
     }
     const Float3 outgoing = normalized(m_frame.toWorld(local));
-    const Scattered s = toward(outgoing);
+    const ScatterEval s = toward(outgoing);
     const LaneMask possible = s.pdf > 0.0F;
     return {outgoing, orZero(possible, (1.0F / s.pdf) * s.factor), s.pdf};
   }
@@ -138,9 +138,9 @@ private:
 
   /// The glossy lobe is D F G / (4 cos cos) times the outgoing cosine, G separable (Smith); its
   /// density is Heitz 2018, eq. 17.
-  FENESTRA_INLINE Scattered towardLocal(const Float3& l) const {
+  FENESTRA_INLINE ScatterEval towardLocal(const Float3& l) const {
     const Float lambertPdf = notBelow0(l.z) * static_cast<Real>(1.0 / pi);
-    Scattered s{lambertPdf * m_diffuse, m_lambertPmf * lambertPdf};
+    ScatterEval s{lambertPdf * m_diffuse, m_lambertPmf * lambertPdf};
     if (isAllEqual(m_specular, 0.0F))
       return s;
     if (m_isCoated)

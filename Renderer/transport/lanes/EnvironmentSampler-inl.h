@@ -8,26 +8,26 @@ struct Bin {
 };
 
 /// `table`: number of the table among the tables.
-HWY_INLINE Bin drawBin(const AliasTables& tables, Int table, UInt random) {
+HWY_INLINE Bin sampleBin(const AliasTables& tables, Int table, UInt random) {
   const Int own = bitsAsInt(random & static_cast<std::uint32_t>(tables.size() - 1));
   const Int place = shiftLeft(table, tables.bits) + own;
   const auto [threshold, other] =
-      loadPairs(&tables.places[0].threshold, Indices(shiftLeft<1>(place)));
+      loadPairs(&tables.slots[0].threshold, Indices(shiftLeft<1>(place)));
   const Float rest = toFloat(bitsAsInt(shiftRight(random, tables.bits)));
   const LaneMask below = rest < threshold;
   const Float inside = select(below, rest, rest - threshold) + 0.5F;
-  const Float size = select(below, threshold, tables.height() - threshold);
+  const Float size = select(below, threshold, tables.thresholdRange() - threshold);
   return {select(below, own, toInt(other)), inside / size};
 }
 
 /// A direction, drawn in proportion to its texel's brightness times solid angle.
-struct TexelDraw {
+struct TexelSample {
   Float3 direction;
   Int texel;
 };
-HWY_INLINE TexelDraw drawTexel(const MapTables& map, UInt u, UInt v) {
-  const Bin row = drawBin(map.rows, 0, u);
-  const Bin column = drawBin(map.columns, row.index, v);
+HWY_INLINE TexelSample sampleTexel(const MapTables& map, UInt u, UInt v) {
+  const Bin row = sampleBin(map.rows, 0, u);
+  const Bin column = sampleBin(map.columns, row.index, v);
 
   // Uniform in solid angle inside the texel: uniform in cos(theta) and phi.
   const Int fromSouth = Int(map.height - 1) - row.index;

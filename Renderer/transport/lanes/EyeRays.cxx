@@ -12,7 +12,7 @@ namespace fenestra::HWY_NAMESPACE {
 namespace {
 
 /// Draws the paths' numbers, and moves starts to their places in the pixels.
-void drawAll(const CameraTable& camera, CameraSamples& samples, PathBatch& paths) {
+void sampleAll(const CameraTable& camera, CameraSamples& samples, PathBatch& paths) {
   for (std::size_t i = 0; i < samples.size; i += laneCount) {
     const SimdPrimarySamples numbers =
         generateSamples(load(&samples.start[i]), load(&samples.key[i]), load(&samples.number[i]),
@@ -75,7 +75,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace fenestra {
 
-HWY_EXPORT(drawAll);
+HWY_EXPORT(sampleAll);
 HWY_EXPORT(beginAll);
 
 CameraTable::CameraTable(const Domain& domain, const Camera& camera)
@@ -103,7 +103,7 @@ CameraTable::CameraTable(const Domain& domain, const Camera& camera)
 
 void beginPaths(const WideScene& volume, const CameraTable& table, const CameraRays& cameraRays,
                 CameraSamples& samples, PathBatch& paths) {
-  HWY_DYNAMIC_DISPATCH(drawAll)(table, samples, paths);
+  HWY_DYNAMIC_DISPATCH(sampleAll)(table, samples, paths);
   if (cameraRays.isUnclipped()) {
     std::fill_n(samples.from.begin(), samples.size, 0.0F);
     std::fill_n(samples.to.begin(), samples.size, std::numeric_limits<float>::infinity());

@@ -22,35 +22,36 @@ HWY_INLINE LaneEmitterHit environment(const EventScene& scene, const Float3& dir
   return sum;
 }
 
-inline void drawMaps(const EventScene& scene, LaneMask which, Float choice, UInt u, UInt v,
-                     LightDraw& drawn) {
+inline void sampleMaps(const EventScene& scene, LaneMask which, Float choice, UInt u, UInt v,
+                       LightSamples& sampled) {
   const std::size_t count = scene.maps.size();
-  TexelDraw toward = drawTexel(scene.maps[0], u, v);
+  TexelSample toward = sampleTexel(scene.maps[0], u, v);
   LaneMask later = which;
   for (std::size_t i = 1; i < count; ++i) { // the last map takes the remainder of rounding
     const float before = scene.maps[i - 1].pmf;
     later = later & (choice > before);
     choice = choice - before;
     if (later.any())
-      toward.direction = select(later, drawTexel(scene.maps[i], u, v).direction, toward.direction);
+      toward.direction =
+          select(later, sampleTexel(scene.maps[i], u, v).direction, toward.direction);
   }
   const LaneEmitterHit light = environment(scene, toward.direction, [&](const MapTables& map) {
     return count == 1 ? toward.texel : texelToward(map, toward.direction);
   });
   const LaneMask lit = which & (light.pdf > 0.0F);
-  drawn.direction = select(lit, toward.direction, drawn.direction);
-  drawn.radiance = select(lit, light.radiance, drawn.radiance);
-  drawn.pdf = select(lit, light.pdf, drawn.pdf);
+  sampled.direction = select(lit, toward.direction, sampled.direction);
+  sampled.radiance = select(lit, light.radiance, sampled.radiance);
+  sampled.pdf = select(lit, light.pdf, sampled.pdf);
 }
 
 /// LightSet::sample for the lanes of `which`, from local points; `uBits`, `vBits`: random bits.
-inline LightDraw drawOf(const EventScene& scene, LaneMask which, const Float3& point, Float choice,
-                        UInt uBits, UInt vBits) {
+inline LightSamples sampleLightSet(const EventScene& scene, LaneMask which, const Float3& point,
+                                   Float choice, UInt uBits, UInt vBits) {
   const Float u = toUniform(uBits), v = toUniform(vBits);
-  LightDraw drawn = drawLight(scene.lights, which, point, choice, u, v);
+  LightSamples sampled = sampleLights(scene.lights, which, point, choice, u, v);
   if (!scene.maps.empty() && which.any())
-    drawMaps(scene, which, choice, uBits, vBits, drawn);
-  return drawn;
+    sampleMaps(scene, which, choice, uBits, vBits, sampled);
+  return sampled;
 }
 
 /// PathSteps::arriving for rays from local points, for the lanes of `which`; 0 in the others.

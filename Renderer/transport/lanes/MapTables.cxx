@@ -21,7 +21,7 @@ MapTables::MapTables(const EnvironmentSampler& sampler, double mapPmf)
       rows(static_cast<std::size_t>(height)),
       columns(static_cast<std::size_t>(width)) {
   rows.append(sampler.rows());
-  columns.places.reserve(columns.size() * static_cast<std::size_t>(height));
+  columns.slots.reserve(columns.size() * static_cast<std::size_t>(height));
   for (int row = 0; row < height; ++row)
     columns.append(sampler.columns(row));
   for (int row = 0; row <= (height + 1) / 2; ++row) {

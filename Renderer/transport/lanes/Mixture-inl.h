@@ -72,29 +72,29 @@ inline Float keptOfParts(const WideScene& scene, LaneMask which, const Float3& i
 }
 
 /// Components that collisions of the lanes of `which` meet (MixedField::draw); 0 in others.
-inline Int drawComponents(const WideScene& scene, LaneMask which, const Float3& index, Float scalar,
-                          Float uniform) {
+inline Int sampleComponents(const WideScene& scene, LaneMask which, const Float3& index,
+                            Float scalar, Float uniform) {
   const Float kept = keptOfParts(scene, which, index);
   Float sum = 0.0F;
   forEachPart(scene, which, index, scalar, kept,
               [&](LaneMask, Int, Float part) { sum = sum + part; });
   Float left = uniform * sum;
-  LaneMask open = which;
-  Int drawn = 0;
+  LaneMask undecided = which;
+  Int sampled = 0;
   forEachPart(scene, which, index, scalar, kept, [&](LaneMask, Int components, Float part) {
-    const LaneMask some = open & (part > 0.0F);
-    drawn = select(some, components, drawn); // the last one, if rounding leaves all
-    open = open.without(some & (left < part));
+    const LaneMask some = undecided & (part > 0.0F);
+    sampled = select(some, components, sampled); // the last one, if rounding leaves all
+    undecided = undecided.without(some & (left < part));
     left = left - part;
   });
-  return drawn;
+  return sampled;
 }
 
 /// Scattering of one component a lane; all count as coated, with a coat that may reflect nothing.
-inline ScatterLaw<Float> lawsOf(const EventScene& scene, Int components) {
-  constexpr std::int32_t stride = sizeof(ScatterLaw<float>) / sizeof(float);
+inline BsdfParameters<Float> gatherBsdfs(const EventScene& scene, Int components) {
+  constexpr std::int32_t stride = sizeof(BsdfParameters<float>) / sizeof(float);
   const Int at = components * stride;
-  const ScatterLaw<float>& first = scene.laws.front();
+  const BsdfParameters<float>& first = scene.bsdfs.front();
   const auto each = [&](const float& member) { return gather(&member, at); };
   return {each(first.g),
           each(first.diffuse),

@@ -93,14 +93,14 @@ private:
     const Collisions at = lookUpMedium(i, going, first, index, draws);
     if (first.any())
       recordFirst(i, at, distance);
-    return m_volume.mixture ? scatter(i, at, draws, lawsOf(m_scene, at.component))
-                            : scatter(i, at, draws, m_scene.laws[0]);
+    return m_volume.mixture ? scatter(i, at, draws, gatherBsdfs(m_scene, at.component))
+                            : scatter(i, at, draws, m_scene.bsdfs[0]);
   }
 
   /// Scatters lanes by the law; returns those that go on afterwards.
   template <typename Number>
   HWY_INLINE LaneMask scatter(std::size_t i, const Collisions& at, Draws& draws,
-                              const ScatterLaw<Number>& law) {
+                              const BsdfParameters<Number>& law) {
     const PhaseLobe<Number> phase(law.g, at.incoming, at.albedo);
     const bool surfaces = at.surface.any();
     const auto surface = [&] {
@@ -108,24 +108,25 @@ private:
     };
     if (m_scene.drawsLights)
       sampleLights(i, at, draws, [&](const Float3& toward) {
-        const Scattered s = phase.toward(toward);
+        const ScatterEval s = phase.toward(toward);
         if (!surfaces)
           return s;
-        const Scattered o = surface().toward(toward);
-        return Scattered{select(at.surface, o.factor, s.factor), select(at.surface, o.pdf, s.pdf)};
+        const ScatterEval o = surface().toward(toward);
+        return ScatterEval{select(at.surface, o.factor, s.factor),
+                           select(at.surface, o.pdf, s.pdf)};
       });
 
     const Float choice = m_scene.hybrid ? draws.uniform() : 0.0F; // independent of neighbours
     const Float u = givenFirst(at.first, m_paths.uDirection[0], i, draws);
     const Float v = givenFirst(at.first, m_paths.uDirection[1], i, draws);
-    ScatterDraw drawn = phase.draw(u, v);
+    ScatterSamples sampled = phase.sample(u, v);
     if (surfaces) {
-      const ScatterDraw other = surface().draw(choice, u, v);
-      drawn = {select(at.surface, other.outgoing, drawn.outgoing),
-               select(at.surface, other.weight, drawn.weight),
-               select(at.surface, other.pdf, drawn.pdf)};
+      const ScatterSamples other = surface().sample(choice, u, v);
+      sampled = {select(at.surface, other.outgoing, sampled.outgoing),
+                 select(at.surface, other.weight, sampled.weight),
+                 select(at.surface, other.pdf, sampled.pdf)};
     }
-    return goOn(i, at, drawn, draws);
+    return goOn(i, at, sampled, draws);
   }
 
   HWY_INLINE Collisions lookUpMedium(std::size_t i, LaneMask going, LaneMask first,
@@ -137,7 +138,7 @@ private:
                   load3(m_paths.direction, i),
                   load3(m_paths.throughput, i)};
     if (m_volume.mixture) {
-      at.component = drawComponents(m_volume, going, index, at.scalar, draws.uniform());
+      at.component = sampleComponents(m_volume, going, index, at.scalar, draws.uniform());
       at.albedo = albedoIn(m_scene, going, at.component, at.scalar);
     } else {
       at.albedo = albedoAt(m_scene, going, index, at.scalar);
@@ -202,9 +203,9 @@ private:
     const Float choice = givenFirst(at.first, m_paths.uChoices[1], i, draws);
     const UInt u = draws.nextBits();
     const UInt v = draws.nextBits();
-    const LightDraw light =
-        drawOf(m_scene, at.going, mapPoint(m_scene.toLocal, at.index), choice, u, v);
-    const Scattered scattered = toward(light.direction);
+    const LightSamples light =
+        sampleLightSet(m_scene, at.going, mapPoint(m_scene.toLocal, at.index), choice, u, v);
+    const ScatterEval scattered = toward(light.direction);
     const Float pdf = light.pdf + select(light.delta, 0.0F, scattered.pdf);
     const Float3 radiance = (1.0F / pdf) * (at.throughput * scattered.factor * light.radiance);
     const LaneMask arrives = at.going & (greatest(radiance) > 0.0F);
@@ -229,19 +230,19 @@ private:
   }
 
   /// Sets the paths' weights and new rays. Returns the lanes that survive Russian roulette.
-  HWY_INLINE LaneMask goOn(std::size_t i, const Collisions& at, const ScatterDraw& drawn,
+  HWY_INLINE LaneMask goOn(std::size_t i, const Collisions& at, const ScatterSamples& sampled,
                            Draws& draws) {
     constexpr auto below = static_cast<float>(rouletteBelow);
-    Float3 throughput = at.throughput * drawn.weight;
+    Float3 throughput = at.throughput * sampled.weight;
     const Float size = sqrt((1.0F / 3.0F) * dot(throughput, throughput));
     const Float chance = min(size * (1.0F / below), 1.0F);
     const LaneMask survives = draws.uniform() <= chance;
     throughput = orZero(survives, (1.0F / chance) * throughput);
     store3(throughput, m_paths.throughput, i);
-    store(drawn.pdf, &m_paths.scatterPdf[i]);
-    store3(drawn.outgoing, m_paths.direction, i);
+    store(sampled.pdf, &m_paths.scatterPdf[i]);
+    store3(sampled.outgoing, m_paths.direction, i);
     store3(at.index, m_paths.rays.origin, i);
-    const Float3 direction = mapDirection(m_scene.localToIndex, drawn.outgoing);
+    const Float3 direction = mapDirection(m_scene.localToIndex, sampled.outgoing);
     store3(direction, m_paths.rays.direction, i);
     store(lengthInside(m_volume, at.index, direction), &m_paths.rays.length[i]);
     store(draws.nextBits(), &m_paths.rays.depth[i]);

@@ -8,7 +8,7 @@ bool isWide(const TransferFunction& transfer) {
   constexpr double leastRoughness = 1e-2;
   constexpr double greatestG = 0.9999;
   return std::abs(transfer.g) <= greatestG &&
-         lawOf(transfer.g, transfer.shading).roughness >= leastRoughness;
+         makeBsdfParameters(transfer.g, transfer.shading).roughness >= leastRoughness;
 }
 
 } // namespace
@@ -50,7 +50,7 @@ EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const
           std::min<std::uint64_t>(mostBounces, std::numeric_limits<std::int32_t>::max()))),
       lights(set.tables().cast<float>(grid.worldCenter())) {
   const auto add = [&](const TransferFunction& matter) {
-    laws.push_back(lawOf(matter.g, matter.shading).cast<float>());
+    bsdfs.push_back(makeBsdfParameters(matter.g, matter.shading).cast<float>());
     if (!tinted)
       albedos.emplace_back(matter.albedo);
   };

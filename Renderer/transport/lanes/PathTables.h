@@ -27,8 +27,8 @@ struct EventScene {
              std::uint64_t mostBounces, bool normalsWanted, const Tint* tinted = nullptr,
              const Mixture* mixture = nullptr);
 
-  std::vector<ScatterLaw<float>> laws; ///< one; or of each component of a mixture
-  std::vector<SimdTable> albedos;      ///< one; or of each component of a mixture or tint
+  std::vector<BsdfParameters<float>> bsdfs; ///< one; or of each component of a mixture
+  std::vector<SimdTable> albedos;           ///< one; or of each component of a mixture or tint
   std::optional<SimdLabelWeights> tint;
   bool hybrid;       ///< surface shading
   float surfaceRate; ///< 25 gamma^3 of Medium's surface probability

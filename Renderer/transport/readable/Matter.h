@@ -28,7 +28,7 @@ MediumSample sampleMedium(const Medium<Voxel>& medium, const Clip& clip, const V
   if (!medium.mixed())
     return medium.evaluate(index, wantGradient, cut);
   const MixedPoint point = makeMixturePoint(medium, clip, world, index);
-  return medium.evaluate(medium.mixed()->draw(point, random), point, wantGradient, cut);
+  return medium.evaluate(medium.mixed()->sampleComponent(point, random), point, wantGradient, cut);
 }
 
 /// Calls visit(matter, probability) for all matter that a collision may meet.
