@@ -13,12 +13,12 @@ void PixelSums::add(const PathSample& sample) {
   ++samples;
   const Rgb before = sample.radiance - mean;
   mean += before / static_cast<double>(samples);
-  deviation += before * (sample.radiance - mean);
-  if (block > 1) {
+  m2 += before * (sample.radiance - mean);
+  if (blockSize > 1) {
     const std::uint64_t half = (samples - 1) % 2;
-    open[half] += sample.radiance;
-    if (openSamples(half) == 0)
-      closeBlock(half);
+    partialSums[half] += sample.radiance;
+    if (partialBlockSize(half) == 0)
+      finishBlock(half);
   }
   alpha += sample.alpha;
   albedo += sample.albedo;
@@ -26,7 +26,7 @@ void PixelSums::add(const PathSample& sample) {
   scatterings += sample.scatterings;
   if (sample.depth < infinity) {
     depth += sample.depth;
-    ++collided;
+    ++collidedSamples;
   }
 }
 
@@ -40,43 +40,43 @@ Halves PixelSums::halves() const {
 }
 
 /// Adds the open block of a half, now complete, to the others; its samples count already.
-void PixelSums::closeBlock(std::uint64_t half) {
-  const Rgb sum = std::exchange(open[half], Rgb::Zero());
-  const double count = completeBlocks();
+void PixelSums::finishBlock(std::uint64_t half) {
+  const Rgb sum = std::exchange(partialSums[half], Rgb::Zero());
+  const double count = completeBlockCount();
   if (count < 2.0)
     return;
   // Welford 1962: the block before the mean of all is moved.
-  const Rgb apart = sum / static_cast<double>(block) - meanOfBlocks();
-  blockDeviation += apart * apart * (count / (count - 1.0));
+  const Rgb difference = sum / static_cast<double>(blockSize) - completeBlockMean();
+  blockM2 += difference * difference * (count / (count - 1.0));
 }
 
-double PixelSums::completeBlocks() const {
-  const std::uint64_t blocks = (samples + 1) / 2 / block + samples / 2 / block;
+double PixelSums::completeBlockCount() const {
+  const std::uint64_t blocks = (samples + 1) / 2 / blockSize + samples / 2 / blockSize;
   return static_cast<double>(blocks);
 }
 
-Rgb PixelSums::meanOfBlocks() const {
-  return (static_cast<double>(samples) * mean - open[0] - open[1]) /
-         (completeBlocks() * static_cast<double>(block));
+Rgb PixelSums::completeBlockMean() const {
+  return (static_cast<double>(samples) * mean - partialSums[0] - partialSums[1]) /
+         (completeBlockCount() * static_cast<double>(blockSize));
 }
 
 Rgb PixelSums::standardError() const {
   if (samples < 2)
     return Rgb::Zero();
   const auto n = static_cast<double>(samples);
-  if (block == 1)
-    return (deviation / (n * (n - 1.0))).sqrt();
+  if (blockSize == 1)
+    return (m2 / (n * (n - 1.0))).sqrt();
   Rgb squares = Rgb::Zero(); // of S_b - m_b mean
   double sizes = 0.0;        // sum of m_b^2
   for (std::uint64_t half = 0; half < 2; ++half) {
-    const auto size = static_cast<double>(openSamples(half));
-    squares += (open[half] - size * mean).square();
+    const auto size = static_cast<double>(partialBlockSize(half));
+    squares += (partialSums[half] - size * mean).square();
     sizes += size * size;
   }
-  const double complete = completeBlocks();
+  const double complete = completeBlockCount();
   if (complete > 0.0) {
-    const auto size = static_cast<double>(block);
-    squares += size * size * (blockDeviation + complete * (meanOfBlocks() - mean).square());
+    const auto size = static_cast<double>(blockSize);
+    squares += size * size * (blockM2 + complete * (completeBlockMean() - mean).square());
     sizes += complete * size * size;
   }
   return (squares / (n * n - sizes)).sqrt();
@@ -102,8 +102,8 @@ SampleCounts Film::sampleCounts() const {
   for (const PixelSums& pixel : m_pixels) {
     if (pixel.isCertain && !allCertain)
       continue;
-    counts.least = std::min(counts.least, pixel.samples);
-    counts.greatest = std::max(counts.greatest, pixel.samples);
+    counts.min = std::min(counts.min, pixel.samples);
+    counts.max = std::max(counts.max, pixel.samples);
     counts.mean += static_cast<double>(pixel.samples);
   }
   counts.mean /= static_cast<double>(m_pixels.size() - (allCertain ? 0 : counts.certainPixels));

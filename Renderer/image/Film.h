@@ -33,11 +33,11 @@ struct Halves {
 /// each half may be incomplete.
 struct PixelSums {
   std::uint64_t samples = 0;
-  Rgb mean = Rgb::Zero();      ///< of radiance
-  Rgb deviation = Rgb::Zero(); ///< sum of squared deviations from the mean (Welford 1962)
+  Rgb mean = Rgb::Zero(); ///< of radiance
+  Rgb m2 = Rgb::Zero();   ///< sum of squared deviations from the mean (Welford 1962)
   double alpha = 0.0;
   double depth = 0.0; ///< sum over samples that collide
-  std::uint64_t collided = 0;
+  std::uint64_t collidedSamples = 0;
   Rgb albedo = Rgb::Zero();
   Vec3 normal = Vec3::Zero();
   double scatterings = 0.0;
@@ -45,10 +45,10 @@ struct PixelSums {
   double evenAlpha = 0.0;     ///< sum over the samples of even index
   /// Radiance: sums over the last blocks of even and of odd index, while they are incomplete, and
   /// the complete blocks' sum of squared deviations from the mean of their means.
-  std::array<Rgb, 2> open = {Rgb::Zero(), Rgb::Zero()};
-  Rgb blockDeviation = Rgb::Zero();
-  std::uint32_t block = 1; ///< samples
-  bool isCertain = false;  ///< every further sample would equal the first
+  std::array<Rgb, 2> partialSums = {Rgb::Zero(), Rgb::Zero()};
+  Rgb blockM2 = Rgb::Zero();
+  std::uint32_t blockSize = 1; ///< samples
+  bool isCertain = false;      ///< every further sample would equal the first
 
   void add(const PathSample& sample);
   /// Two independent estimates: means over the samples of even and of odd index. A function of the
@@ -63,17 +63,19 @@ struct PixelSums {
   Rgb standardError() const;
 
 private:
-  void closeBlock(std::uint64_t half);
-  double completeBlocks() const;
+  void finishBlock(std::uint64_t half);
+  double completeBlockCount() const;
   /// Mean over all samples in complete blocks, of which there must be some.
-  Rgb meanOfBlocks() const;
+  Rgb completeBlockMean() const;
   /// Samples in the incomplete block of a half: 0 even, 1 odd.
-  std::uint64_t openSamples(std::uint64_t half) const { return (samples + 1 - half) / 2 % block; }
+  std::uint64_t partialBlockSize(std::uint64_t half) const {
+    return (samples + 1 - half) / 2 % blockSize;
+  }
 };
 
 /// Samples per pixel, over pixels with isCertain = false; over all pixels if all are certain.
 struct SampleCounts {
-  std::uint64_t least = 0, greatest = 0;
+  std::uint64_t min = 0, max = 0;
   double mean = 0.0;
   std::size_t certainPixels = 0;
 };
@@ -83,13 +85,13 @@ class Film {
 public:
   /// `hasIndependentHalves`: samples of even index share no random numbers with those of odd index.
   /// `block`: PixelSums::block.
-  Film(int width, int height, bool hasIndependentHalves = true, std::uint32_t block = 1)
+  Film(int width, int height, bool hasIndependentHalves = true, std::uint32_t blockSize = 1)
       : m_width(width),
         m_height(height),
         m_hasIndependentHalves(hasIndependentHalves),
         m_pixels(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
     for (PixelSums& pixel : m_pixels)
-      pixel.block = block;
+      pixel.blockSize = blockSize;
   }
 
   int width() const { return m_width; }

@@ -22,18 +22,18 @@ void forNumbers(Sums& p, Each&& each) {
   };
   each(p.samples);
   colors(p.mean);
-  colors(p.deviation);
+  colors(p.m2);
   each(p.alpha);
   each(p.depth);
-  each(p.collided);
+  each(p.collidedSamples);
   colors(p.albedo);
   colors(p.normal);
   each(p.scatterings);
   colors(p.evenMean);
   each(p.evenAlpha);
-  colors(p.open[0]);
-  colors(p.open[1]);
-  colors(p.blockDeviation);
+  colors(p.partialSums[0]);
+  colors(p.partialSums[1]);
+  colors(p.blockM2);
 }
 
 inline PixelWords wordsOf(const PixelSums& pixel) {

@@ -122,7 +122,7 @@ RenderSettings PictureFilter::settings() {
   if (m_options.noiseTarget == NoiseTarget::filtered)
     settings.seenNoise = [this](const Film& film) {
       m_seen = denoised(film, m_scene);
-      m_seenSamples = film.sampleCounts().greatest;
+      m_seenSamples = film.sampleCounts().max;
       // Twice its standard error more, lest luck ends the render.
       return std::sqrt(m_seen.toldError + 2.0 * m_seen.toldDeviation);
     };

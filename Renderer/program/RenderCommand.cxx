@@ -141,8 +141,7 @@ std::string statsJson(const RenderStats& stats, const RenderOptions& options, co
   json["cells"] = {{"all", majorants.size()}, {"empty", majorants.emptyCount()}};
   json["emptyPixels"] = samples.certainPixels;
   json["sampling"] = nameOf(options.settings.sampling);
-  json["samplesPerPixel"] = {
-      {"min", samples.least}, {"mean", samples.mean}, {"max", samples.greatest}};
+  json["samplesPerPixel"] = {{"min", samples.min}, {"mean", samples.mean}, {"max", samples.max}};
   json["noise"] = result.film.noise(); // null: infinite
   if (scene.features())
     json["noiseFiltered"] = stats.filtered ? Json(*stats.filtered) : Json(); // null: unknown
@@ -194,9 +193,8 @@ void report(const RenderOptions& options, const RenderResult& result,
   std::string line =
       textOf(files, ": ", options.scene.width, "x", options.scene.height, " pixels, ",
              result.finishedSamples, result.finishedSamples == 1 ? " sample" : " samples");
-  line += counts.least == counts.greatest
-              ? " each"
-              : textOf(" a pixel (", counts.least, " to ", counts.greatest, ")");
+  line += counts.min == counts.max ? " each"
+                                   : textOf(" a pixel (", counts.min, " to ", counts.max, ")");
   if (noise < infinity)
     line += ", noise " + numberText(noise, 3);
   if (filtered)

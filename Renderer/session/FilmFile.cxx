@@ -60,7 +60,7 @@ constexpr NamedCount namedCounts[] = {
 ordered_json headerOf(const RenderResult& result, const Shard& shard, const ordered_json& made) {
   ordered_json header = {{"size", {result.film.width(), result.film.height()}},
                          {"part", {shard.index, shard.count}},
-                         {"block", result.film.pixels().front().block},
+                         {"block", result.film.pixels().front().blockSize},
                          {"target", result.target},
                          {"finished", result.finishedSamples},
                          {"begun", result.begunSamples},

@@ -10,7 +10,8 @@ double perSample(double sum, const PixelSums& pixel) {
 }
 
 double meanDepth(const PixelSums& pixel) {
-  return pixel.collided > 0 ? pixel.depth / static_cast<double>(pixel.collided) : infinity;
+  return pixel.collidedSamples > 0 ? pixel.depth / static_cast<double>(pixel.collidedSamples)
+                                   : infinity;
 }
 
 } // namespace

@@ -23,8 +23,8 @@ using FirstCollision = Array<double, 3>;
 struct PixelEstimate {
   double samples = 0.0;
   /// Radiance: mean, and sums of squared and cubed deviations (Pébay 2008).
-  Rgb mean = Rgb::Zero(), squares = Rgb::Zero(), cubes = Rgb::Zero();
-  FirstCollision first = FirstCollision::Zero(), firstSquares = FirstCollision::Zero();
+  Rgb mean = Rgb::Zero(), m2 = Rgb::Zero(), m3 = Rgb::Zero();
+  FirstCollision first = FirstCollision::Zero(), firstM2 = FirstCollision::Zero();
 
   void add(const PathEstimate& path) {
     samples += 1.0;
@@ -32,20 +32,20 @@ struct PixelEstimate {
     const Rgb step = before / samples;
     const Rgb added = before * step * (samples - 1.0);
     mean += step;
-    cubes += added * step * (samples - 2.0) - 3.0 * step * squares;
-    squares += added;
+    m3 += added * step * (samples - 2.0) - 3.0 * step * m2;
+    m2 += added;
     const FirstCollision value(path.collides ? 1.0 : 0.0, path.depth, path.albedo.mean());
     const FirstCollision ahead = value - first;
     first += ahead / samples;
-    firstSquares += ahead * (value - first);
+    firstM2 += ahead * (value - first);
   }
 
   /// Variance of the mean; 0 with fewer than two samples.
   Rgb variance() const {
-    return samples > 1.0 ? Rgb(squares / (samples * (samples - 1.0))) : Rgb(Rgb::Zero());
+    return samples > 1.0 ? Rgb(m2 / (samples * (samples - 1.0))) : Rgb(Rgb::Zero());
   }
   FirstCollision firstVariance() const {
-    return samples > 1.0 ? FirstCollision(firstSquares / (samples * (samples - 1.0)))
+    return samples > 1.0 ? FirstCollision(firstM2 / (samples * (samples - 1.0)))
                          : FirstCollision(FirstCollision::Zero());
   }
 };

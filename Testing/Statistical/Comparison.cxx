@@ -16,10 +16,10 @@ oracle::Estimates estimatesOf(const Film& film, std::uint64_t samples) {
     oracle::PixelEstimate& pixel = estimates.pixels[i];
     pixel.samples = static_cast<double>(samples); // all samples, even for certain pixels
     pixel.mean = sums.mean;
-    pixel.squares = sums.standardError().square() * pixel.samples * (pixel.samples - 1.0);
-    pixel.first =
-        oracle::FirstCollision(static_cast<double>(sums.collided), sums.depth, sums.albedo.mean()) /
-        pixel.samples;
+    pixel.m2 = sums.standardError().square() * pixel.samples * (pixel.samples - 1.0);
+    pixel.first = oracle::FirstCollision(static_cast<double>(sums.collidedSamples), sums.depth,
+                                         sums.albedo.mean()) /
+                  pixel.samples;
   }
   return estimates;
 }
@@ -63,8 +63,8 @@ Paths pathsOf(const oracle::Estimates& picture) {
   Rgb squares = Rgb::Zero(), cubes = Rgb::Zero(), sum = Rgb::Zero(), squaresOfMeans = Rgb::Zero();
   double samples = 0.0;
   for (const oracle::PixelEstimate& pixel : picture.pixels) {
-    squares += pixel.squares;
-    cubes += pixel.cubes;
+    squares += pixel.m2;
+    cubes += pixel.m3;
     sum += pixel.samples * pixel.mean;
     squaresOfMeans += pixel.samples * pixel.mean.square();
     samples += pixel.samples;

@@ -68,7 +68,7 @@ TEST(Accumulation, MillionSamplesEqualTwoPasses) {
   const Moments exact = twoPasses(samples);
   EXPECT_EQ(sums.samples, million);
   EXPECT_NEAR(sums.mean[0] / static_cast<double>(exact.mean), 1.0, 1e-12);
-  EXPECT_NEAR(sums.deviation[0] / static_cast<double>(exact.deviation), 1.0, 1e-12);
+  EXPECT_NEAR(sums.m2[0] / static_cast<double>(exact.m2), 1.0, 1e-12);
 
   // A large offset must not cost the variance's digits, beyond the offset's own roundoff.
   PixelSums shifted;
@@ -79,7 +79,7 @@ TEST(Accumulation, MillionSamplesEqualTwoPasses) {
   }
   const Moments exactFar = twoPasses(far);
   EXPECT_NEAR(shifted.mean[0] / static_cast<double>(exactFar.mean), 1.0, 1e-12);
-  EXPECT_NEAR(shifted.deviation[0] / static_cast<double>(exactFar.deviation), 1.0, 1e-9);
+  EXPECT_NEAR(shifted.m2[0] / static_cast<double>(exactFar.m2), 1.0, 1e-9);
 }
 
 TEST(Accumulation, MillionSamplesEqualARenderAndDoNotDrift) {
@@ -99,7 +99,7 @@ TEST(Accumulation, MillionSamplesEqualARenderAndDoNotDrift) {
           all.add(sample);
         }
       EXPECT_TRUE(film.at(column, row).mean == all.mean);
-      EXPECT_TRUE(film.at(column, row).deviation == all.deviation);
+      EXPECT_TRUE(film.at(column, row).m2 == all.m2);
       const Rgb difference = (first.mean - second.mean).abs();
       const Rgb error = (first.standardError().square() + second.standardError().square()).sqrt();
       EXPECT_TRUE((difference < 4.0 * error).all()) << difference << ", errors " << error;
@@ -113,7 +113,7 @@ TEST(SampleCounters, DoNotWrapBeyond32Bits) {
   constexpr std::uint64_t before = (std::uint64_t{1} << 32) - 1;
   PixelSums sums;
   sums.samples = before; // state after this number of samples of radiance 1
-  sums.collided = before;
+  sums.collidedSamples = before;
   sums.mean = Rgb::Ones();
   sums.alpha = static_cast<double>(before);
   PathSample sample;
@@ -122,11 +122,11 @@ TEST(SampleCounters, DoNotWrapBeyond32Bits) {
   for (int i = 0; i < 2; ++i)
     sums.add(sample);
   EXPECT_EQ(sums.samples, before + 2);
-  EXPECT_EQ(sums.collided, before + 2);
+  EXPECT_EQ(sums.collidedSamples, before + 2);
   EXPECT_EQ(sums.alpha, static_cast<double>(before) + 2.0);
   const double n = static_cast<double>(before) + 2.0;
   EXPECT_NEAR((sums.mean[0] - 1.0) * n, 2.0, 1e-5); // roundoff of a mean near 1, times n
-  EXPECT_NEAR(sums.deviation[0], 2.0 * (n - 2.0) / n, 1e-9);
+  EXPECT_NEAR(sums.m2[0], 2.0 * (n - 2.0) / n, 1e-9);
   EXPECT_NEAR(sums.standardError()[0] * n, std::sqrt(2.0), 1e-8);
 }
 
@@ -145,7 +145,7 @@ TEST(SampleIndices, IndicesBeyond32BitsGiveNewSamples) {
   for (std::size_t i = 0; i < count; ++i) {
     product += (a[i].radiance[1] - near.mean[1]) * (b[i].radiance[1] - beyond.mean[1]);
   }
-  const double normal = std::sqrt(near.deviation[1] * beyond.deviation[1]);
+  const double normal = std::sqrt(near.m2[1] * beyond.m2[1]);
   EXPECT_LT(std::abs(product / normal), 4.0 / std::sqrt(static_cast<double>(count)));
   const double error = std::hypot(near.standardError()[1], beyond.standardError()[1]);
   EXPECT_NEAR(near.mean[1], beyond.mean[1], 4.0 * error);

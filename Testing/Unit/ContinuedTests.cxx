@@ -46,7 +46,7 @@ void expectSameEnd(const RenderResult& once, const RenderResult& again) {
 
 /// True if some pixels have more samples than the finished passes give them.
 bool isAhead(const RenderResult& result) {
-  return result.film.sampleCounts().greatest > result.finishedSamples;
+  return result.film.sampleCounts().max > result.finishedSamples;
 }
 
 TEST(Continued, EndsAtTheSameBits) {
@@ -96,9 +96,7 @@ TEST(Continued, LimitOfSamplesLeavesThePassesTowardANoiseAsTheyAre) {
 TEST(Continued, LooksAtTheSeenNoiseFallOnTheSameCounts) {
   const TestScene scene = wavyScene();
   RenderSettings settings = settingsOf(1000, 0.05);
-  settings.seenNoise = [](const Film& film) {
-    return film.sampleCounts().greatest < 32 ? 1.0 : 0.01;
-  };
+  settings.seenNoise = [](const Film& film) { return film.sampleCounts().max < 32 ? 1.0 : 0.01; };
   const RenderResult once = scene.render(settings);
   EXPECT_EQ(once.finishedSamples, 32U);
   for (const RenderResult& begun : keptResults(scene, settings, 17))
@@ -113,7 +111,7 @@ TEST(Shards, AddUpToThePicture) {
     Film sum = once.film;
     for (int row = 0; row < sum.height(); ++row)
       for (int column = 0; column < sum.width(); ++column)
-        sum.at(column, row) = {.block = sum.at(column, row).block};
+        sum.at(column, row) = {.blockSize = sum.at(column, row).blockSize};
     for (int index = 0; index < count; ++index) {
       settings.shard = {index, count};
       const Film part = scene.render(settings).film;

@@ -55,7 +55,7 @@ TEST_F(Denoising, ClosedAreEmptyPixelsWhateverTheSamplesMet) {
     const bool isEmpty = pixel.isCertain || scene.features()->hit[i] == 0.0F;
     EXPECT_TRUE(isEmpty || input.isOpen[i] != 0);
     EXPECT_FALSE(pixel.isCertain && input.isOpen[i] != 0);
-    without += input.isOpen[i] != 0 && pixel.collided == 0;
+    without += input.isOpen[i] != 0 && pixel.collidedSamples == 0;
     certain += pixel.isCertain;
   }
   EXPECT_GT(without, 100U);

@@ -83,7 +83,7 @@ TEST(Render, StopsBySeenNoiseAtFixedCountsAlikeInAllPixels) {
   settings.noise = 0.5;
   std::vector<std::uint64_t> looks;
   settings.seenNoise = [&](const Film& film) {
-    looks.push_back(film.sampleCounts().greatest);
+    looks.push_back(film.sampleCounts().max);
     return looks.size() < 3 ? 0.6 : 0.4;
   };
   for (const std::uint64_t passSamples : {0U, 3U}) {

@@ -50,9 +50,9 @@ TEST_P(EmptyPixelsOf, CertainPixelsAreMissedByEverySample) {
     const PixelSums& pixel = film.pixels()[i];
     EXPECT_EQ(all.pixels()[i].samples, 256U);
     EXPECT_EQ(pixel.samples, pixel.isCertain ? 1U : 64U);
-    EXPECT_TRUE(!pixel.isCertain || all.pixels()[i].collided == 0) << "pixel " << i;
+    EXPECT_TRUE(!pixel.isCertain || all.pixels()[i].collidedSamples == 0) << "pixel " << i;
     certain += pixel.isCertain ? 1 : 0;
-    missed += all.pixels()[i].collided == 0 ? 1 : 0;
+    missed += all.pixels()[i].collidedSamples == 0 ? 1 : 0;
   }
   EXPECT_EQ(film.sampleCounts().certainPixels, certain);
   EXPECT_EQ(film.sampleCounts().min, 64U);
@@ -90,7 +90,7 @@ TEST(EmptyPixels, PictureThatMeetsNothingHasOnlyEmptyPixels) {
   settings.noise = 0.1;
   const RenderResult result = scene.render(settings);
   EXPECT_EQ(result.film.sampleCounts().certainPixels, result.film.pixelCount());
-  EXPECT_EQ(result.film.sampleCounts().greatest, 1U);
+  EXPECT_EQ(result.film.sampleCounts().max, 1U);
   EXPECT_EQ(result.film.noise(), 0.0);
 }
 

@@ -64,7 +64,7 @@ TEST(FilmFile, PartsHoldTheirTilesAlone) {
   Film sum = readFrom(folder.write("a.film", filmContent(result, {}, madeForTest))).film;
   const Film whole = sum;
   std::size_t bytes = 0;
-  sum = Film(33, 21, true, result.film.pixels().front().block);
+  sum = Film(33, 21, true, result.film.pixels().front().blockSize);
   for (int index = 0; index < 4; ++index) {
     const auto path = folder.write("p.film", filmContent(result, {index, 4}, madeForTest));
     bytes += bytesOf(path).size();

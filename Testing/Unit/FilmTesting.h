@@ -14,13 +14,14 @@ inline void expectIdentical(const Film& a, const Film& b) {
     const PixelSums& p = a.pixels()[i];
     const PixelSums& q = b.pixels()[i];
     ASSERT_EQ(p.samples, q.samples) << i;
-    ASSERT_TRUE(p.mean == q.mean && p.deviation == q.deviation) << i;
-    ASSERT_TRUE(p.alpha == q.alpha && p.depth == q.depth && p.collided == q.collided) << i;
+    ASSERT_TRUE(p.mean == q.mean && p.m2 == q.m2) << i;
+    ASSERT_TRUE(p.alpha == q.alpha && p.depth == q.depth && p.collidedSamples == q.collidedSamples)
+        << i;
     ASSERT_TRUE(p.albedo == q.albedo && p.normal == q.normal) << i;
-    ASSERT_TRUE(p.scatterings == q.scatterings && p.block == q.block) << i;
+    ASSERT_TRUE(p.scatterings == q.scatterings && p.blockSize == q.blockSize) << i;
     ASSERT_TRUE(p.evenMean == q.evenMean && p.evenAlpha == q.evenAlpha) << i;
-    ASSERT_TRUE(p.open[0] == q.open[0] && p.open[1] == q.open[1]) << i;
-    ASSERT_TRUE(p.blockDeviation == q.blockDeviation && p.isCertain == q.isCertain) << i;
+    ASSERT_TRUE(p.partialSums[0] == q.partialSums[0] && p.partialSums[1] == q.partialSums[1]) << i;
+    ASSERT_TRUE(p.blockM2 == q.blockM2 && p.isCertain == q.isCertain) << i;
   }
 }
 

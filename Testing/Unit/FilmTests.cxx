@@ -80,8 +80,8 @@ double errorOf(const std::vector<double>& values, std::size_t block) {
 TEST(PixelSums, ErrorComesFromBlocks) {
   for (const std::uint32_t block : {2U, 4U, 8U}) {
     PixelSums sums, far;
-    sums.block = block;
-    far.block = block;
+    sums.blockSize = block;
+    far.blockSize = block;
     std::vector<double> values;
     for (std::uint64_t i = 0; i < 70; ++i) {
       values.push_back(Random(3, i, 0).uniform());
@@ -102,14 +102,14 @@ TEST(PixelSums, ErrorComesFromBlocks) {
 
 TEST(PixelSums, BlocksThatCancelHaveNoError) {
   PixelSums sums;
-  sums.block = 2;
+  sums.blockSize = 2;
   for (int i = 0; i < 16; ++i) {
     PathSample sample;
     sample.radiance = Rgb::Constant(i / 2 % 2 == 0 ? 1.0 : 3.0); // each half: 1 3 1 3 ...
     sums.add(sample);
   }
   EXPECT_EQ(sums.standardError()[0], 0.0);
-  EXPECT_GT(sums.deviation[0], 0.0);
+  EXPECT_GT(sums.m2[0], 0.0);
 }
 
 TEST(Film, NoiseFollowsItsDefinition) {

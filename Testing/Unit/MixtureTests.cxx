@@ -106,7 +106,7 @@ double meanDepth(const Film& film) {
   double sum = 0.0, count = 0.0;
   for (const PixelSums& pixel : film.pixels()) {
     sum += pixel.depth;
-    count += static_cast<double>(pixel.collided);
+    count += static_cast<double>(pixel.collidedSamples);
   }
   return sum / count;
 }
@@ -149,7 +149,7 @@ TEST(Mixture, TheClipLeavesWhatIsFree) {
     const Film film = renderFilm(scene, transport);
     double sum = 0.0;
     for (const PixelSums& pixel : film.pixels())
-      sum += static_cast<double>(pixel.collided);
+      sum += static_cast<double>(pixel.collidedSamples);
     return sum / 64.0;
   };
   scene.clip = ClipPlane{camera, center - 100.0 * Vec3::UnitY(), Vec3(0.0, 1.0, 0.0)}; // all of it

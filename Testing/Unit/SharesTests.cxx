@@ -187,7 +187,7 @@ TEST(Tint, ChangesNothingButColour) {
       const PixelSums &a = untinted.pixels()[i], &b = tinted.pixels()[i];
       ASSERT_EQ(a.alpha, b.alpha);
       ASSERT_EQ(a.depth, b.depth);
-      ASSERT_EQ(a.collided, b.collided);
+      ASSERT_EQ(a.collidedSamples, b.collidedSamples);
       ASSERT_TRUE(a.normal == b.normal);
     }
     EXPECT_GT(

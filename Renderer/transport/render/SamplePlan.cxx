@@ -20,7 +20,7 @@ constexpr int reach = 2; ///< pixels to each side in around()
 double relativeVariance(const PixelSums& pixel) {
   if (pixel.isCertain)
     return 0.0;
-  const Rgb variance = pixel.deviation / static_cast<double>(pixel.samples - 1);
+  const Rgb variance = pixel.m2 / static_cast<double>(pixel.samples - 1);
   return (variance / (pixel.mean.square() + 0.01)).mean();
 }
 
@@ -51,7 +51,7 @@ double ditherOf(std::size_t pixel) {
 
 } // namespace
 
-SamplePlan::SamplePlan(const Film& pilot) : m_pilot(pilot.sampleCounts().greatest) {
+SamplePlan::SamplePlan(const Film& pilot) : m_pilot(pilot.sampleCounts().max) {
   const std::size_t uncertain = pilot.pixelCount() - pilot.sampleCounts().certainPixels;
   if (uncertain < leastPixels)
     return;
