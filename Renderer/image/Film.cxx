@@ -85,7 +85,7 @@ Rgb PixelSums::standardError() const {
 double Film::noise() const {
   double sum = 0.0;
   for (const PixelSums& pixel : m_pixels) {
-    if (pixel.isCertain)
+    if (pixel.isDeterministic)
       continue;
     if (pixel.samples < 2)
       return infinity;
@@ -96,17 +96,18 @@ double Film::noise() const {
 
 SampleCounts Film::sampleCounts() const {
   SampleCounts counts{std::numeric_limits<std::uint64_t>::max(), 0, 0.0, 0};
-  counts.certainPixels =
-      static_cast<std::size_t>(std::ranges::count(m_pixels, true, &PixelSums::isCertain));
-  const bool allCertain = counts.certainPixels == m_pixels.size();
+  counts.deterministicPixels =
+      static_cast<std::size_t>(std::ranges::count(m_pixels, true, &PixelSums::isDeterministic));
+  const bool allDeterministic = counts.deterministicPixels == m_pixels.size();
   for (const PixelSums& pixel : m_pixels) {
-    if (pixel.isCertain && !allCertain)
+    if (pixel.isDeterministic && !allDeterministic)
       continue;
     counts.min = std::min(counts.min, pixel.samples);
     counts.max = std::max(counts.max, pixel.samples);
     counts.mean += static_cast<double>(pixel.samples);
   }
-  counts.mean /= static_cast<double>(m_pixels.size() - (allCertain ? 0 : counts.certainPixels));
+  counts.mean /=
+      static_cast<double>(m_pixels.size() - (allDeterministic ? 0 : counts.deterministicPixels));
   return counts;
 }
 

@@ -47,8 +47,8 @@ struct PixelSums {
   /// the complete blocks' sum of squared deviations from the mean of their means.
   std::array<Rgb, 2> partialSums = {Rgb::Zero(), Rgb::Zero()};
   Rgb blockM2 = Rgb::Zero();
-  std::uint32_t blockSize = 1; ///< samples
-  bool isCertain = false;      ///< every further sample would equal the first
+  std::uint32_t blockSize = 1;  ///< samples
+  bool isDeterministic = false; ///< every further sample would equal the first
 
   void add(const PathSample& sample);
   /// Two independent estimates: means over the samples of even and of odd index. A function of the
@@ -77,7 +77,7 @@ private:
 struct SampleCounts {
   std::uint64_t min = 0, max = 0;
   double mean = 0.0;
-  std::size_t certainPixels = 0;
+  std::size_t deterministicPixels = 0;
 };
 
 /// Row 0 is the top row.

@@ -139,7 +139,7 @@ std::string statsJson(const RenderStats& stats, const RenderOptions& options, co
   json["shadowRays"] = c.shadowRays;
   json["gradients"] = c.gradients;
   json["cells"] = {{"all", majorants.size()}, {"empty", majorants.emptyCount()}};
-  json["emptyPixels"] = samples.certainPixels;
+  json["emptyPixels"] = samples.deterministicPixels;
   json["sampling"] = nameOf(options.settings.sampling);
   json["samplesPerPixel"] = {{"min", samples.min}, {"mean", samples.mean}, {"max", samples.max}};
   json["noise"] = result.film.noise(); // null: infinite

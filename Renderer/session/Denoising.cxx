@@ -19,7 +19,7 @@ std::vector<std::uint8_t> openPixels(const Film& film, const FeatureBuffers& fea
       for (int y = std::max(row - 1, 0); y <= std::min(row + 1, film.height() - 1); ++y)
         for (int x = std::max(column - 1, 0); x <= std::min(column + 1, film.width() - 1); ++x)
           isEmpty = isEmpty && features.hit[film.index(x, y)] == 0.0F;
-      isOpen[film.index(column, row)] = !isEmpty && !film.at(column, row).isCertain;
+      isOpen[film.index(column, row)] = !isEmpty && !film.at(column, row).isDeterministic;
     }
   return isOpen;
 }
@@ -107,8 +107,9 @@ void addFeatures(const Scene& scene, const FeatureBuffers& features, FilterInput
 }
 
 bool hasHalves(const Film& film) {
-  return std::ranges::all_of(
-      film.pixels(), [](const PixelSums& pixel) { return pixel.isCertain || pixel.samples > 1; });
+  return std::ranges::all_of(film.pixels(), [](const PixelSums& pixel) {
+    return pixel.isDeterministic || pixel.samples > 1;
+  });
 }
 
 } // namespace

@@ -95,7 +95,7 @@ TEST(AdaptiveSampling, StopsAtItsTargetWithUnequalCounts) {
   EXPECT_GT(result.film.noise(), 0.9 * settings.noise);
   std::uint64_t least = 1U << 20, most = 0;
   for (const PixelSums& pixel : result.film.pixels()) {
-    if (pixel.isCertain)
+    if (pixel.isDeterministic)
       continue;
     least = std::min(least, pixel.samples);
     most = std::max(most, pixel.samples);

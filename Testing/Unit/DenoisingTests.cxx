@@ -52,11 +52,11 @@ TEST_F(Denoising, ClosedAreEmptyPixelsWhateverTheSamplesMet) {
   std::size_t without = 0, certain = 0;
   for (std::size_t i = 0; i < film.pixelCount(); ++i) {
     const PixelSums& pixel = film.pixels()[i];
-    const bool isEmpty = pixel.isCertain || scene.features()->hit[i] == 0.0F;
+    const bool isEmpty = pixel.isDeterministic || scene.features()->hit[i] == 0.0F;
     EXPECT_TRUE(isEmpty || input.isOpen[i] != 0);
-    EXPECT_FALSE(pixel.isCertain && input.isOpen[i] != 0);
+    EXPECT_FALSE(pixel.isDeterministic && input.isOpen[i] != 0);
     without += input.isOpen[i] != 0 && pixel.collidedSamples == 0;
-    certain += pixel.isCertain;
+    certain += pixel.isDeterministic;
   }
   EXPECT_GT(without, 100U);
   EXPECT_GT(certain, 100U);
@@ -118,7 +118,7 @@ TEST_F(Denoising, OnePixelWithOneSampleLeavesNoHalvesButTheWholePicture) {
   const Scene scene(request);
   Film film = picture(scene, 4, 2);
   std::size_t open = 0;
-  while (film.pixels()[open].isCertain)
+  while (film.pixels()[open].isDeterministic)
     ++open;
   PathSample sample;
   sample.radiance = Rgb::Ones();

@@ -49,12 +49,12 @@ TEST_P(EmptyPixelsOf, CertainPixelsAreMissedByEverySample) {
   for (std::size_t i = 0; i < film.pixelCount(); ++i) {
     const PixelSums& pixel = film.pixels()[i];
     EXPECT_EQ(all.pixels()[i].samples, 256U);
-    EXPECT_EQ(pixel.samples, pixel.isCertain ? 1U : 64U);
-    EXPECT_TRUE(!pixel.isCertain || all.pixels()[i].collidedSamples == 0) << "pixel " << i;
-    certain += pixel.isCertain ? 1 : 0;
+    EXPECT_EQ(pixel.samples, pixel.isDeterministic ? 1U : 64U);
+    EXPECT_TRUE(!pixel.isDeterministic || all.pixels()[i].collidedSamples == 0) << "pixel " << i;
+    certain += pixel.isDeterministic ? 1 : 0;
     missed += all.pixels()[i].collidedSamples == 0 ? 1 : 0;
   }
-  EXPECT_EQ(film.sampleCounts().certainPixels, certain);
+  EXPECT_EQ(film.sampleCounts().deterministicPixels, certain);
   EXPECT_EQ(film.sampleCounts().min, 64U);
   if (GetParam().distance > 50.0) {
     EXPECT_GT(static_cast<double>(certain), 0.8 * static_cast<double>(missed)) << "of " << missed;
@@ -75,7 +75,8 @@ TEST(EmptyPixels, FilledPictureOfOneColumnHasNone) {
   for (const auto& [width, height] : {std::pair(1, 1), std::pair(1, 5), std::pair(5, 1)}) {
     scene.width = width;
     scene.height = height;
-    EXPECT_EQ(scene.render({}).film.sampleCounts().certainPixels, 0U) << width << "x" << height;
+    EXPECT_EQ(scene.render({}).film.sampleCounts().deterministicPixels, 0U)
+        << width << "x" << height;
   }
 }
 
@@ -89,7 +90,7 @@ TEST(EmptyPixels, PictureThatMeetsNothingHasOnlyEmptyPixels) {
   RenderSettings settings;
   settings.noise = 0.1;
   const RenderResult result = scene.render(settings);
-  EXPECT_EQ(result.film.sampleCounts().certainPixels, result.film.pixelCount());
+  EXPECT_EQ(result.film.sampleCounts().deterministicPixels, result.film.pixelCount());
   EXPECT_EQ(result.film.sampleCounts().max, 1U);
   EXPECT_EQ(result.film.noise(), 0.0);
 }

@@ -33,7 +33,7 @@ RenderResult readFrom(const std::filesystem::path& path) {
 void copyCertainty(const Film& from, Film& to) {
   for (int row = 0; row < to.height(); ++row)
     for (int column = 0; column < to.width(); ++column)
-      to.at(column, row).isCertain = from.at(column, row).isCertain;
+      to.at(column, row).isDeterministic = from.at(column, row).isDeterministic;
 }
 
 TEST(FilmFile, RoundTripKeepsEveryBit) {

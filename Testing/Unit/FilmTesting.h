@@ -21,7 +21,7 @@ inline void expectIdentical(const Film& a, const Film& b) {
     ASSERT_TRUE(p.scatterings == q.scatterings && p.blockSize == q.blockSize) << i;
     ASSERT_TRUE(p.evenMean == q.evenMean && p.evenAlpha == q.evenAlpha) << i;
     ASSERT_TRUE(p.partialSums[0] == q.partialSums[0] && p.partialSums[1] == q.partialSums[1]) << i;
-    ASSERT_TRUE(p.blockM2 == q.blockM2 && p.isCertain == q.isCertain) << i;
+    ASSERT_TRUE(p.blockM2 == q.blockM2 && p.isDeterministic == q.isDeterministic) << i;
   }
 }
 

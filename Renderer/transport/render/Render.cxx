@@ -150,7 +150,7 @@ EmptyPixels emptyPixels(const RenderScene& scene, const RenderSettings& settings
                           : EmptyPixels();
   for (int row = 0; row < film.height(); ++row)
     for (int column = 0; column < film.width(); ++column)
-      film.at(column, row).isCertain = empty.contains(column, row);
+      film.at(column, row).isDeterministic = empty.contains(column, row);
   return empty;
 }
 
@@ -256,7 +256,7 @@ bool isAtLastPass(const RenderResult& result) {
   const SamplePlan::Stage stage = result.last.plan.at(result.last.samples);
   const std::vector<PixelSums>& pixels = result.film.pixels();
   for (std::size_t i = 0; i < pixels.size(); ++i)
-    if (!pixels[i].isCertain && pixels[i].samples != stage.count(i))
+    if (!pixels[i].isDeterministic && pixels[i].samples != stage.count(i))
       return false;
   return result.last.samples > 0 && result.finishedSamples == result.last.samples;
 }

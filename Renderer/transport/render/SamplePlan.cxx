@@ -18,7 +18,7 @@ constexpr int reach = 2; ///< pixels to each side in around()
 /// they take from the variance of a mean differs little from pixel to pixel, and would be known
 /// from very few blocks.
 double relativeVariance(const PixelSums& pixel) {
-  if (pixel.isCertain)
+  if (pixel.isDeterministic)
     return 0.0;
   const Rgb variance = pixel.m2 / static_cast<double>(pixel.samples - 1);
   return (variance / (pixel.mean.square() + 0.01)).mean();
@@ -52,7 +52,7 @@ double ditherOf(std::size_t pixel) {
 } // namespace
 
 SamplePlan::SamplePlan(const Film& pilot) : m_pilot(pilot.sampleCounts().max) {
-  const std::size_t uncertain = pilot.pixelCount() - pilot.sampleCounts().certainPixels;
+  const std::size_t uncertain = pilot.pixelCount() - pilot.sampleCounts().deterministicPixels;
   if (uncertain < leastPixels)
     return;
   std::vector<double> variances, costs;
@@ -63,7 +63,7 @@ SamplePlan::SamplePlan(const Film& pilot) : m_pilot(pilot.sampleCounts().max) {
   m_noise.resize(variances.size());
   tbb::parallel_for(0, pilot.height(), [&](int row) {
     for (int column = 0; column < pilot.width(); ++column) {
-      if (pilot.at(column, row).isCertain)
+      if (pilot.at(column, row).isDeterministic)
         continue;
       const auto here = [&](const std::vector<double>& values) {
         return around(pilot, values, column, row);
@@ -81,7 +81,7 @@ SamplePlan::SamplePlan(const Film& pilot) : m_pilot(pilot.sampleCounts().max) {
   }
   const auto least = static_cast<float>(leastNoise * sum / static_cast<double>(uncertain));
   for (std::size_t i = 0; i < m_noise.size(); ++i)
-    if (!pilot.pixels()[i].isCertain)
+    if (!pilot.pixels()[i].isDeterministic)
       m_noise[i] = std::max(m_noise[i], least);
   sort();
 }
