@@ -41,7 +41,7 @@ struct PrimarySamples {
 /// other whatever the place and the other numbers are.
 class Sampler {
 public:
-  static constexpr bool hasIndependentHalves = true;
+  static constexpr bool hasIndependentHalfBuffers = true;
   static constexpr std::uint32_t blockSize = 8; ///< samples
 
   Sampler(Sampling sampling, std::uint64_t seed)

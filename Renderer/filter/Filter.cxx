@@ -22,7 +22,7 @@ using Fitted = std::vector<Plane>;
 bool isOpaque(const FilterInput& input) {
   for (std::size_t i = 0; i < input.pixelCount(); ++i)
     if (input.isOpen[i] &&
-        !(input.even[3][i] == 1.0F && (!input.hasHalves || input.odd[3][i] == 1.0F)))
+        !(input.even[3][i] == 1.0F && (!input.hasHalfBuffers || input.odd[3][i] == 1.0F)))
       return false;
   return true;
 }
@@ -72,7 +72,7 @@ FitInput prepared(FilterInput& input, std::size_t channels) {
   FitInput fit{input.width, input.height, {}, {}, {}};
   for (std::size_t c = 0; c < channels; ++c)
     fit.color.push_back(std::move(input.even[c]));
-  for (std::size_t c = 0; c < channels && input.hasHalves; ++c)
+  for (std::size_t c = 0; c < channels && input.hasHalfBuffers; ++c)
     fit.color.push_back(std::move(input.odd[c]));
   fit.open = openPixels(input, fit.color);
   for (Plane& plane : fit.color)
@@ -198,7 +198,7 @@ Fitted blended(const FitInput& fit, const Candidates& candidates,
 /// Colours as the samples have them.
 FourPlanes rawColors(const FilterInput& input) {
   FourPlanes color = input.even;
-  for (std::size_t c = 0; c < color.size() && input.hasHalves; ++c)
+  for (std::size_t c = 0; c < color.size() && input.hasHalfBuffers; ++c)
     for (std::size_t i = 0; i < color[c].size(); ++i)
       color[c][i] = 0.5F * (color[c][i] + input.odd[c][i]);
   return color;
@@ -241,13 +241,13 @@ FilteredPicture filtered(FilterInput input) {
   const std::size_t channels = isOpaque(input) ? 3 : 4;
   const FitInput fit = prepared(input, channels);
   const Fitted chosen =
-      input.hasHalves ? chosenWindows(fit, input.variance) : fitWindows(fit, singleLevel);
-  const std::size_t other = input.hasHalves ? channels : 0;
+      input.hasHalfBuffers ? chosenWindows(fit, input.variance) : fitWindows(fit, singleLevel);
+  const std::size_t other = input.hasHalfBuffers ? channels : 0;
   for (std::size_t c = 0; c < channels; ++c)
     for (std::size_t i = 0; i < fit.open.size(); ++i)
       if (fit.open[i] > 0.0F)
         picture.color[c][i] = 0.5F * (chosen[c][i] + chosen[other + c][i]);
-  if (input.hasHalves) {
+  if (input.hasHalfBuffers) {
     tellErrors(fit, chosen, picture);
     tellClosed(input.variance, fit.open, picture);
   }

@@ -23,7 +23,7 @@ struct FilterInput {
   /// not finite, the pixel stays raw.
   std::vector<Plane> features;
   std::vector<std::uint8_t> isOpen; ///< 0: the pixel takes no part and stays raw
-  bool hasHalves = true;
+  bool hasHalfBuffers = true;
 
   std::size_t pixelCount() const { return isOpen.size(); }
 };

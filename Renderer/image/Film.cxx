@@ -30,7 +30,7 @@ void PixelSums::add(const PathSample& sample) {
   }
 }
 
-Halves PixelSums::halves() const {
+HalfMeans PixelSums::halfMeans() const {
   const auto all = static_cast<double>(samples);
   const std::uint64_t oddSamples = samples / 2;
   const auto odd = static_cast<double>(oddSamples);

@@ -20,7 +20,7 @@ struct PathSample {
 };
 
 /// Means of a pixel over its samples of even and of odd index.
-struct Halves {
+struct HalfMeans {
   Rgb even, odd; ///< radiance
   double evenAlpha, oddAlpha;
 };
@@ -53,7 +53,7 @@ struct PixelSums {
   void add(const PathSample& sample);
   /// Two independent estimates: means over the samples of even and of odd index. A function of the
   /// samples alone, not of passes. Needs two samples.
-  Halves halves() const;
+  HalfMeans halfMeans() const;
   /// Standard error of the mean radiance; 0 below two samples, which is right only if isCertain. Of
   /// N samples in blocks of m_b, with sums S_b,
   ///   variance = sum of (S_b - m_b mean)^2 / (N^2 - sum of m_b^2),

@@ -25,7 +25,7 @@ std::vector<std::uint8_t> openPixels(const Film& film, const FeatureBuffers& fea
 }
 
 /// Fills the halves; with the picture twice where the pixel is closed or there are no halves.
-void fillHalves(const Film& film, FilterInput& input) {
+void fillHalfBuffers(const Film& film, FilterInput& input) {
   const std::size_t count = film.pixelCount();
   for (std::size_t c = 0; c < 4; ++c) {
     input.even[c].resize(count);
@@ -37,18 +37,18 @@ void fillHalves(const Film& film, FilterInput& input) {
     const PixelSums& pixel = film.pixels()[i];
     const double alpha =
         pixel.alpha / static_cast<double>(std::max<std::uint64_t>(pixel.samples, 1));
-    const Halves halves = input.hasHalves && input.isOpen[i]
-                              ? pixel.halves()
-                              : Halves{pixel.mean, pixel.mean, alpha, alpha};
+    const HalfMeans half = input.hasHalfBuffers && input.isOpen[i]
+                               ? pixel.halfMeans()
+                               : HalfMeans{pixel.mean, pixel.mean, alpha, alpha};
     const Rgb variance = pixel.standardError().square();
     for (std::size_t c = 0; c < 3; ++c) {
       const auto channel = static_cast<int>(c);
-      input.even[c][i] = static_cast<float>(halves.even[channel]);
-      input.odd[c][i] = static_cast<float>(halves.odd[channel]);
+      input.even[c][i] = static_cast<float>(half.even[channel]);
+      input.odd[c][i] = static_cast<float>(half.odd[channel]);
       input.variance[c][i] = static_cast<float>(variance[channel]);
     }
-    input.even[3][i] = static_cast<float>(halves.evenAlpha);
-    input.odd[3][i] = static_cast<float>(halves.oddAlpha);
+    input.even[3][i] = static_cast<float>(half.evenAlpha);
+    input.odd[3][i] = static_cast<float>(half.oddAlpha);
   }
 }
 
@@ -106,7 +106,7 @@ void addFeatures(const Scene& scene, const FeatureBuffers& features, FilterInput
     input.features.push_back(boundedClip(scene.camera(), scene.clip()));
 }
 
-bool hasHalves(const Film& film) {
+bool hasHalfBuffers(const Film& film) {
   return std::ranges::all_of(film.pixels(), [](const PixelSums& pixel) {
     return pixel.isDeterministic || pixel.samples > 1;
   });
@@ -117,9 +117,9 @@ bool hasHalves(const Film& film) {
 FilterInput filterInput(const Film& film, const Scene& scene) {
   if (!film.hasIndependentHalves())
     throw std::logic_error("a film without independent halves cannot be filtered");
-  FilterInput input{film.width(), film.height(), {}, {}, {}, {}, {}, hasHalves(film)};
+  FilterInput input{film.width(), film.height(), {}, {}, {}, {}, {}, hasHalfBuffers(film)};
   input.isOpen = openPixels(film, *scene.features());
-  fillHalves(film, input);
+  fillHalfBuffers(film, input);
   addFeatures(scene, *scene.features(), input);
   return input;
 }

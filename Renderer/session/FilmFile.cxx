@@ -165,7 +165,7 @@ RenderResult FilmFile::begun() const {
   const JsonNode header(m_header, m_path.string());
   constexpr double largestBlock = 1024.0;
   const auto block = static_cast<std::uint32_t>(header.at("block").numberIn(1.0, largestBlock));
-  RenderResult result{Film(m_width, m_height, Sampler::hasIndependentHalves, block)};
+  RenderResult result{Film(m_width, m_height, Sampler::hasIndependentHalfBuffers, block)};
   result.target = target();
   result.counters = counters();
   result.finishedSamples = finishedSamples();

@@ -125,7 +125,7 @@ TEST_F(Denoising, OnePixelWithOneSampleLeavesNoHalvesButTheWholePicture) {
   film.at(static_cast<int>(open) % 48, static_cast<int>(open) / 48) = PixelSums();
   film.at(static_cast<int>(open) % 48, static_cast<int>(open) / 48).add(sample);
   const FilterInput input = filterInput(film, scene);
-  EXPECT_FALSE(input.hasHalves);
+  EXPECT_FALSE(input.hasHalfBuffers);
   for (std::size_t i = 0; i < film.pixelCount(); ++i)
     ASSERT_EQ(input.even[0][i], static_cast<float>(film.pixels()[i].mean[0]));
   EXPECT_TRUE(denoised(film, scene).error[0].empty());

@@ -40,7 +40,7 @@ TEST(PixelSums, HalvesAreMeansBySampleIndex) {
     (i % 2 == 0 ? even : odd) += sample.radiance / (i % 2 == 0 ? 4.0 : 3.0);
     (i % 2 == 0 ? evenAlpha : oddAlpha) += sample.alpha / (i % 2 == 0 ? 4.0 : 3.0);
   }
-  const Halves halves = sums.halves();
+  const HalfMeans halves = sums.halfMeans();
   for (int c = 0; c < 3; ++c) {
     EXPECT_NEAR(halves.even[c], even[c], 1e-12);
     EXPECT_NEAR(halves.odd[c], odd[c], 1e-12);

@@ -259,12 +259,12 @@ TEST(Filter, AnySizeOfPicture) {
     const Subject subject{.width = width, .height = height};
     for (const bool hasHalves : {true, false}) {
       FilterInput input = subject.input(1);
-      input.hasHalves = hasHalves;
+      input.hasHalfBuffers = hasHalves;
       if (!hasHalves)
         input.odd = {};
       const FilteredPicture picture = filtered(input);
       EXPECT_TRUE(std::isfinite(subject.relativeError(picture.color))) << width << 'x' << height;
-      EXPECT_EQ(picture.error[0].size(), hasHalves ? subject.count() : 0U);
+      EXPECT_EQ(picture.error[0].size(), hasHalfBuffers ? subject.count() : 0U);
     }
   }
 }

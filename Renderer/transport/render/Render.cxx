@@ -247,7 +247,7 @@ PassGrowth growthFor(const RenderMonitor& monitor) {
 
 /// Result before the first sample.
 RenderResult emptyResult(const Camera& camera, const Sampler& numbers) {
-  return {Film(camera.width(), camera.height(), Sampler::hasIndependentHalves,
+  return {Film(camera.width(), camera.height(), Sampler::hasIndependentHalfBuffers,
                numbers.samplesPerBlock())};
 }
 
