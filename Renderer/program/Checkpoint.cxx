@@ -210,8 +210,8 @@ void Checkpoint::watch(RenderMonitor& monitor) {
   if (m_isMerge)
     return;
   m_watch = Stopwatch();
-  monitor.isKeepDue = [this] { return m_watch.seconds() >= m_due; };
-  monitor.keep = [this](const RenderResult& result) { keep(result); };
+  monitor.isCheckpointDue = [this] { return m_watch.seconds() >= m_due; };
+  monitor.onCheckpoint = [this](const RenderResult& result) { keep(result); };
 }
 
 void Checkpoint::keep(const RenderResult& result) {

@@ -31,8 +31,8 @@ using Json = nlohmann::ordered_json;
 struct RenderStats {
   /// Wall-clock seconds; transport includes looks at a filtered picture's error.
   double transport = 0.0, filter = 0.0, write = 0.0, measure = 0.0, total = 0.0;
-  std::optional<std::uint64_t> pathsFromFilm = {}; ///< of the film that the render went on from
-  std::optional<double> filtered = {};             ///< noise of the filtered picture, as it tells
+  std::optional<std::uint64_t> checkpointPaths = {}; ///< of the film that the render went on from
+  std::optional<double> filtered = {};               ///< noise of the filtered picture, as it tells
   std::optional<FocusReport> focus = {};
   std::vector<std::string> warnings = {}; ///< beside the scene's
 };
@@ -41,7 +41,7 @@ double seconds(const timeval& t) {
   return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
 }
 
-Json jsonOf(const Distribution& values) {
+Json toJson(const Distribution& values) {
   return {{"mean", values.mean}, {"p95", values.p95}, {"max", values.max}};
 }
 
@@ -51,30 +51,30 @@ void addContrast(Json& json, const Scene& scene) {
   const auto& contrast = tint ? tint->contrast : scene.contrast().contrast;
   if (!contrast)
     return;
-  Json& told = json["contrast"];
-  told = {
+  Json& entry = json["contrast"];
+  entry = {
       {"deltaE", contrast->deltaE[0]},       {"deltaEProtan", contrast->deltaE[1]},
       {"deltaEDeutan", contrast->deltaE[2]}, {"deltaETritan", contrast->deltaE[3]},
       {"deltaL", contrast->deltaL},          {"contextSaturation", scene.contrast().saturation}};
   if (tint)
-    told.update(Json{{"segment", tint->segment},
-                     {"neighbour", tint->neighbour},
-                     {"contextSaturation", tint->knobs.contextSaturation},
-                     {"contextLightness", tint->knobs.contextLightness},
-                     {"focusChroma", tint->knobs.focusChroma},
-                     {"focusLightness", tint->knobs.focusLightness},
-                     {"focusAccent", tint->knobs.focusAccent},
-                     {"accent", accents[tint->knobs.accent].name}});
+    entry.update(Json{{"segment", tint->segment},
+                      {"neighbour", tint->neighbour},
+                      {"contextSaturation", tint->knobs.contextSaturation},
+                      {"contextLightness", tint->knobs.contextLightness},
+                      {"focusChroma", tint->knobs.focusChroma},
+                      {"focusLightness", tint->knobs.focusLightness},
+                      {"focusAccent", tint->knobs.focusAccent},
+                      {"accent", accents[tint->knobs.accent].name}});
 }
 
 /// Adds the measures of the clip.
 void addClip(Json& json, const Scene& scene, const std::optional<FocusReport>& focus) {
   const ClipResult& clip = scene.clipResult();
   if (clip.mismatch)
-    json["boundaryMismatchMm"] = jsonOf(*clip.mismatch);
+    json["boundaryMismatchMm"] = toJson(*clip.mismatch);
   if (const auto& boundary = clip.boundary; boundary && boundary->crossings > 0) {
-    json["boundaryGapMm"] = jsonOf(boundary->gap);
-    json["boundarySlopeJump"] = jsonOf(boundary->slopeJump);
+    json["boundaryGapMm"] = toJson(boundary->gap);
+    json["boundarySlopeJump"] = toJson(boundary->slopeJump);
     json["boundaryDepthJumps"] = boundary->depthJumpFraction;
   }
   for (const ControlPoint& point : clip.controlPoints) {
@@ -113,8 +113,8 @@ void addSources(Json& json, const RenderStats& stats, const RenderOptions& optio
 /// and not in samplesPerPixel; cells: of the majorant grid; focusVoxels: of the cropped labelmap;
 /// controlPoints: column and row in the picture. Measures of the clip: see BoundaryMeasures and
 /// FocusReport. Names of files are relative to the statistics' folder.
-std::string statsJson(const RenderStats& stats, const RenderOptions& options, const Scene& scene,
-                      const RenderResult& result) {
+std::string makeStatsJson(const RenderStats& stats, const RenderOptions& options,
+                          const Scene& scene, const RenderResult& result) {
   rusage usage = {};
   getrusage(RUSAGE_SELF, &usage);
   const SampleCounts samples = result.film.sampleCounts();
@@ -130,8 +130,8 @@ std::string statsJson(const RenderStats& stats, const RenderOptions& options, co
       {"measure", stats.measure},    {"write", stats.write},          {"total", stats.total}};
   json["cpuSeconds"] = seconds(usage.ru_utime) + seconds(usage.ru_stime);
   json["paths"] = c.paths;
-  if (stats.pathsFromFilm)
-    json["pathsFromFilm"] = *stats.pathsFromFilm;
+  if (stats.checkpointPaths)
+    json["pathsFromFilm"] = *stats.checkpointPaths;
   json["collisions"] = c.collisions;
   json["lookups"] = c.lookups;
   json["skippedFraction"] =
@@ -162,7 +162,8 @@ std::string statsJson(const RenderStats& stats, const RenderOptions& options, co
 
 /// Starts writing options.surface, if set, in parallel to other work. The arguments must outlive
 /// the future; its get() throws Error (output).
-std::future<void> startSurface(const RenderOptions& options, const Scene& scene, Outputs& outputs) {
+std::future<void> startSurfaceWriter(const RenderOptions& options, const Scene& scene,
+                                     Outputs& outputs) {
   if (!options.surface)
     return std::async(std::launch::deferred, [] {});
   return std::async([&options, &scene, &outputs] {
@@ -174,7 +175,7 @@ std::future<void> startSurface(const RenderOptions& options, const Scene& scene,
 
 /// A warning for each existing file that belongs to one of options.outputs and was not written with
 /// it, such as the old depth beside a `.nrrd` that has no depth now. For after the commit.
-std::vector<std::string> staleParts(const RenderOptions& options, const Outputs& outputs) {
+std::vector<std::string> findStaleFiles(const RenderOptions& options, const Outputs& outputs) {
   std::vector<std::string> warnings;
   std::error_code failed;
   for (const std::filesystem::path& path : options.outputs)
@@ -213,8 +214,8 @@ void warn(const RenderOptions& options, const std::vector<std::string>& warnings
 }
 
 /// Puts the film of a part in place. Returns the exit status.
-int finishPart(const RenderOptions& options, const RenderResult& result, Checkpoint& checkpoint,
-               double seconds) {
+int finishShard(const RenderOptions& options, const RenderResult& result, Checkpoint& checkpoint,
+                double seconds) {
   checkpoint.write(result);
   const bool isStopped = result.reason == StopReason::request;
   std::cout << oneLine(textOf(*options.checkpoint, ": part ", partText(options.settings.shard),
@@ -240,22 +241,23 @@ void writeStats(const RenderOptions& options, const Scene& scene, const RenderRe
                                options.settings.seed, monitor.stop);
   stats.measure = watch.seconds();
   stats.total = total.seconds();
-  outputs.write(*options.stats, statsJson(stats, options, scene, result));
+  outputs.write(*options.stats, makeStatsJson(stats, options, scene, result));
 }
 
 /// Renders, from the checkpoint on if there is one, and keeps the film there.
 RenderResult renderFilm(const RenderOptions& options, const Scene& scene,
                         const RenderSettings& settings, std::optional<Checkpoint>& checkpoint,
-                        RenderMonitor& monitor, const Recruit& recruit, RenderStats& stats) {
+                        RenderMonitor& monitor, const StartWorkers& startWorkers,
+                        RenderStats& stats) {
   std::optional<RenderResult> begun;
   if (checkpoint) {
     begun = checkpoint->begun(scene, settings);
     checkpoint->watch(monitor);
   }
   if (begun)
-    stats.pathsFromFilm = begun->counters.paths;
-  if (recruit)
-    recruit(options, scene, settings, monitor);
+    stats.checkpointPaths = begun->counters.paths;
+  if (startWorkers)
+    startWorkers(options, scene, settings, monitor);
   RenderResult result = [&] {
     const Progress progress(options, monitor);
     return render(scene.forRender(), settings, monitor, std::move(begun));
@@ -267,8 +269,9 @@ RenderResult renderFilm(const RenderOptions& options, const Scene& scene,
 
 } // namespace
 
-int renderScene(const PictureRequest& request, const std::vector<std::string>& words,
-                std::optional<Checkpoint>& checkpoint, Outputs& outputs, const Recruit& recruit) {
+int renderScene(const PictureRequest& request, const std::vector<std::string>& arguments,
+                std::optional<Checkpoint>& checkpoint, Outputs& outputs,
+                const StartWorkers& startWorkers) {
   const RenderOptions& options = request.options;
   const Stopwatch total;
   const Scene scene(options.scene, request.input);
@@ -279,16 +282,16 @@ int renderScene(const PictureRequest& request, const std::vector<std::string>& w
 
   RenderMonitor monitor;
   const StopInstead stopInstead(monitor.stop);
-  std::future<void> surface = startSurface(options, scene, outputs);
+  std::future<void> surface = startSurfaceWriter(options, scene, outputs);
   Stopwatch watch;
   RenderStats stats;
   PictureFilter filter(options, scene);
   const RenderResult result =
-      renderFilm(options, scene, filter.settings(), checkpoint, monitor, recruit, stats);
+      renderFilm(options, scene, filter.settings(), checkpoint, monitor, startWorkers, stats);
   stats.transport = watch.seconds();
   surface.get();
   if (options.isPart)
-    return finishPart(options, result, *checkpoint, total.seconds());
+    return finishShard(options, result, *checkpoint, total.seconds());
   if (result.finishedSamples == 0) {
     std::cerr << "fenestra: stopped on request before the first pass; no picture was written\n";
     return stopStatus();
@@ -297,10 +300,10 @@ int renderScene(const PictureRequest& request, const std::vector<std::string>& w
   const std::optional<FilteredPicture> filtered = filter.of(result);
   stats.filtered = filteredNoise(filtered);
   stats.filter = watch.lap();
-  writePictures(options, scene, result, filtered, words, outputs);
+  writePictures(options, scene, result, filtered, arguments, outputs);
   outputs.commit();
   stats.write = watch.lap();
-  stats.warnings = staleParts(options, outputs);
+  stats.warnings = findStaleFiles(options, outputs);
   warn(options, stats.warnings);
 
   writeStats(options, scene, result, total, monitor, stats, outputs);
@@ -315,10 +318,10 @@ int renderScene(const PictureRequest& request, const std::vector<std::string>& w
 }
 
 int renderCommand(int argc, char** argv, int first) {
-  return renderWith({}, argc, argv, first);
+  return runRender({}, argc, argv, first);
 }
 
-int renderWith(const Recruit& recruit, int argc, char** argv, int first) {
+int runRender(const StartWorkers& startWorkers, int argc, char** argv, int first) {
   if (std::find(argv + first, argv + argc, std::string_view("--xml")) != argv + argc) {
     std::cout << slicerDescription(renderSyntax) << std::flush;
     return 0;
@@ -338,7 +341,7 @@ int renderWith(const Recruit& recruit, int argc, char** argv, int first) {
   Outputs outputs;
   declareOutputs(request.options, outputs);
   checkMemory(request.options.scene);
-  return renderScene(request, {argv + 1, argv + argc}, checkpoint, outputs, recruit);
+  return renderScene(request, {argv + 1, argv + argc}, checkpoint, outputs, startWorkers);
 }
 
 } // namespace fenestra

@@ -9,17 +9,17 @@ namespace fenestra {
 
 /// Finds processes that help with a render, tells them of it, and puts them into its monitor;
 /// empty: there are none.
-using Recruit =
+using StartWorkers =
     std::function<void(const RenderOptions&, const Scene&, const RenderSettings&, RenderMonitor&)>;
 
 /// Renders the scene, from `checkpoint` on if there is one, puts its pictures in place, then
 /// measures them for the statistics; of a part, puts its film in place. `words`: arguments of the
 /// process, for the pictures' headers. Returns the exit status.
-int renderScene(const PictureRequest& request, const std::vector<std::string>& words,
+int renderScene(const PictureRequest& request, const std::vector<std::string>& arguments,
                 std::optional<Checkpoint>& checkpoint, Outputs& outputs,
-                const Recruit& recruit = {});
+                const StartWorkers& startWorkers = {});
 
 /// The command `render`, with processes that help.
-int renderWith(const Recruit& recruit, int argc, char** argv, int first);
+int runRender(const StartWorkers& startWorkers, int argc, char** argv, int first);
 
 } // namespace fenestra

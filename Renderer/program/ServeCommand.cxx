@@ -77,7 +77,7 @@ private:
     m_published.reset();
     m_failure.clear();
     PictureFilter filter(m_options, *m_scene);
-    m_monitor.between = [this, &filter](const RenderResult& result) {
+    m_monitor.onPassEnd = [this, &filter](const RenderResult& result) {
       const double interval = std::max(0.1, 4.0 * m_publishing);
       if (!m_monitor.stop && (!m_published || m_published->seconds() >= interval))
         publish(result, filter, false);

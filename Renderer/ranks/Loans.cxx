@@ -84,8 +84,8 @@ class BorrowedTiles {
 public:
   BorrowedTiles(Ranks& ranks, RenderMonitor& monitor) : m_ranks(ranks), m_monitor(monitor) {}
 
-  /// Brings the last loan back and gets another (renderLoans).
-  std::optional<Loan> next(RenderResult& result) {
+  /// Brings the last loan back and gets another (renderLeases).
+  std::optional<TileLease> next(RenderResult& result) {
     m_watch = {};
     bringBack(result);
     for (const Rests rests;;) {
@@ -97,7 +97,7 @@ public:
       MessageReader reader(received->message);
       if (reader.word() == dismisses)
         return std::nullopt;
-      Loan loan = {{}, reader.word(), reader.word()};
+      TileLease loan = {{}, reader.word(), reader.word()};
       m_tiles = loan.tiles = readTiles(reader, result.film);
       if (reader.left() > 0)
         readPlan(reader, result);
@@ -160,7 +160,7 @@ Lender::~Lender() {
 
 void Lender::help(RenderMonitor& monitor) {
   m_monitor = &monitor;
-  monitor.helpers = {m_ranks.count() - 1,
+  monitor.workers = {m_ranks.count() - 1,
                      [this](Pass& pass, RenderResult& result) {
                        const std::lock_guard lock(m_mutex);
                        m_pass = &pass;
@@ -246,7 +246,8 @@ Counters Lender::settle(const RenderMonitor& monitor) {
   for (const Rests rests;;) {
     {
       const std::lock_guard lock(m_mutex);
-      if (m_pass->whole() || monitor.stop || (monitor.isKeepDue && monitor.isKeepDue())) {
+      if (m_pass->whole() || monitor.stop ||
+          (monitor.isCheckpointDue && monitor.isCheckpointDue())) {
         m_pass = nullptr;
         return std::exchange(m_added, {});
       }
@@ -288,8 +289,8 @@ bool isRecruited(Ranks& ranks) {
 void borrow(Ranks& ranks, const RenderScene& scene, const RenderSettings& settings,
             RenderMonitor& monitor) {
   BorrowedTiles tiles(ranks, monitor);
-  renderLoans(scene, settings, monitor,
-              [&tiles](RenderResult& result) { return tiles.next(result); });
+  renderLeases(scene, settings, monitor,
+               [&tiles](RenderResult& result) { return tiles.next(result); });
 }
 
 } // namespace fenestra

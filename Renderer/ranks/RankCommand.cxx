@@ -53,7 +53,7 @@ std::string described(const Scene& scene, const RenderSettings& settings) {
 /// Lets the other ranks make the scene, and lend a hand.
 void recruitRanks(const RenderOptions& options, const Scene& scene, const RenderSettings& settings,
                   RenderMonitor& monitor, Ranks& ranks, Lender& lender) {
-  recruitAll(ranks);
+  startWorkers(ranks);
   try {
     shareFiles(filesOf(scene, options), ranks);
     std::string text = described(scene, settings);

@@ -46,7 +46,7 @@ TEST_F(CheckpointCommand, FinishedFilmGivesThePictureAgain) {
   const std::string film = bytesOf(folder / "a.film"), picture = bytesOf(folder / "a.exr");
   const Outcome again = keep({"--output", "a.png", "--denoise", "on"});
   EXPECT_EQ(again.status, 0) << again.err;
-  EXPECT_TRUE(bytesOf(folder / "a.film") == film);
+  EXPECT_TRUE(bytesOf(folder / "a.film") == checkpoint);
   EXPECT_EQ(keep().status, 0);
   EXPECT_TRUE(bytesOf(folder / "a.exr") == picture);
   EXPECT_EQ(filesIn(folder.path()), (std::set<std::string>{"a.exr", "a.film", "a.png",
@@ -138,7 +138,7 @@ TEST_F(CheckpointCommand, DamagedFilmIsRefusedAndKept) {
   EXPECT_EQ(bytesOf(folder / "a.film"), "somebody's notes");
   folder.write("a.film", "");
   EXPECT_EQ(keep().status, 0);
-  EXPECT_EQ(bytesOf(folder / "a.film").size(), film.size());
+  EXPECT_EQ(bytesOf(folder / "a.film").size(), checkpoint.size());
 }
 
 TEST_F(CheckpointCommand, FilmOfARunningRenderIsRefused) {

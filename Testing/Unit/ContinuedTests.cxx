@@ -5,10 +5,10 @@
 
 #include <atomic>
 
-namespace fenestra::testing::ContinuedTests {
+namespace fenestra::testing::ResumeTests {
 namespace {
 
-RenderSettings settingsOf(std::uint64_t samples, double noise = -1.0) {
+RenderSettings makeSettings(std::uint64_t samples, double noise = -1.0) {
   RenderSettings settings;
   settings.samples = samples;
   settings.noise = noise;
@@ -18,24 +18,24 @@ RenderSettings settingsOf(std::uint64_t samples, double noise = -1.0) {
 
 /// Results that a render of `scene` keeps each time that its threads have looked `period` times
 /// whether it should; some are in the middle of a pass.
-std::vector<RenderResult> keptResults(const TestScene& scene, const RenderSettings& settings,
-                                      int period) {
-  std::vector<RenderResult> kept;
-  std::atomic<int> looks = 0;
+std::vector<RenderResult> collectCheckpoints(const TestScene& scene, const RenderSettings& settings,
+                                             int period) {
+  std::vector<RenderResult> checkpoints;
+  std::atomic<int> polls = 0;
   RenderMonitor monitor;
-  monitor.isKeepDue = [&] { return ++looks > period; };
-  monitor.keep = [&](const RenderResult& result) {
-    kept.push_back(result);
-    looks = 0;
+  monitor.isCheckpointDue = [&] { return ++polls > period; };
+  monitor.onCheckpoint = [&](const RenderResult& result) {
+    checkpoints.push_back(result);
+    polls = 0;
   };
   scene.with([&](const RenderScene& s) { return render(s, settings, monitor); });
-  return kept;
+  return checkpoints;
 }
 
-RenderResult continued(const TestScene& scene, const RenderSettings& settings,
-                       const RenderResult& begun) {
+RenderResult resume(const TestScene& scene, const RenderSettings& settings,
+                    const RenderResult& checkpoint) {
   RenderMonitor monitor;
-  return scene.with([&](const RenderScene& s) { return render(s, settings, monitor, begun); });
+  return scene.with([&](const RenderScene& s) { return render(s, settings, monitor, checkpoint); });
 }
 
 void expectSameEnd(const RenderResult& once, const RenderResult& again) {
@@ -51,61 +51,61 @@ bool isAhead(const RenderResult& result) {
 
 TEST(Continued, EndsAtTheSameBits) {
   const TestScene scene = wavyScene();
-  const RenderSettings settings = settingsOf(37);
+  const RenderSettings settings = makeSettings(37);
   const RenderResult once = scene.render(settings);
-  const auto kept = keptResults(scene, settings, 5);
-  ASSERT_GT(kept.size(), 5U);
-  EXPECT_GT(std::ranges::count_if(kept, isAhead), 2);
-  for (const RenderResult& begun : kept)
-    expectSameEnd(once, continued(scene, settings, begun));
-  expectSameEnd(once, continued(scene, settings, once));
+  const auto checkpoints = collectCheckpoints(scene, settings, 5);
+  ASSERT_GT(checkpoints.size(), 5U);
+  EXPECT_GT(std::ranges::count_if(checkpoints, isAhead), 2);
+  for (const RenderResult& checkpoint : checkpoints)
+    expectSameEnd(once, resume(scene, settings, checkpoint));
+  expectSameEnd(once, resume(scene, settings, once));
 }
 
 TEST(Continued, MoreSamplesGoOnWhereFewerEnded) {
   const TestScene scene = wavyScene();
-  const RenderResult fewer = scene.render(settingsOf(13));
-  expectSameEnd(scene.render(settingsOf(40)), continued(scene, settingsOf(40), fewer));
+  const RenderResult fewer = scene.render(makeSettings(13));
+  expectSameEnd(scene.render(makeSettings(40)), resume(scene, makeSettings(40), fewer));
 }
 
 TEST(Continued, PlanByNoiseEndsAtTheSameBits) {
   const TestScene scene = wavyScene(80, 72);
-  const RenderSettings settings = settingsOf(1000, 0.05);
+  const RenderSettings settings = makeSettings(1000, 0.05);
   const RenderResult once = scene.render(settings);
   ASSERT_GT(once.finishedSamples, 2 * SamplePlan::pilotSamples);
   ASSERT_FALSE(once.last.plan.noise().empty());
-  const auto kept = keptResults(scene, settings, 97);
-  ASSERT_GT(kept.size(), 5U);
-  for (const RenderResult& begun : kept)
-    expectSameEnd(once, continued(scene, settings, begun));
-  expectSameEnd(once, continued(scene, settings, once));
+  const auto checkpoints = collectCheckpoints(scene, settings, 97);
+  ASSERT_GT(checkpoints.size(), 5U);
+  for (const RenderResult& checkpoint : checkpoints)
+    expectSameEnd(once, resume(scene, settings, checkpoint));
+  expectSameEnd(once, resume(scene, settings, once));
 }
 
 TEST(Continued, LimitOfSamplesLeavesThePassesTowardANoiseAsTheyAre) {
   const TestScene scene = wavyScene(80, 72);
-  const RenderResult once = scene.render(settingsOf(1000, 0.05));
+  const RenderResult once = scene.render(makeSettings(1000, 0.05));
   const std::pair<std::uint64_t, std::uint64_t> limitsAndPasses[] = {
       {5, 4}, {16, 16}, {19, 18}, {25, 24}}; // passes of 1, 1, 2, 4, 8; 1, 1, 2, 4, ...
   for (const auto& [samples, lastPass] : limitsAndPasses) {
-    const RenderResult fewer = scene.render(settingsOf(samples, 0.05));
+    const RenderResult fewer = scene.render(makeSettings(samples, 0.05));
     EXPECT_EQ(fewer.finishedSamples, samples);
     EXPECT_EQ(fewer.last.samples, lastPass);
-    expectSameEnd(once, continued(scene, settingsOf(1000, 0.05), fewer));
+    expectSameEnd(once, resume(scene, makeSettings(1000, 0.05), fewer));
   }
 }
 
 TEST(Continued, LooksAtTheSeenNoiseFallOnTheSameCounts) {
   const TestScene scene = wavyScene();
-  RenderSettings settings = settingsOf(1000, 0.05);
+  RenderSettings settings = makeSettings(1000, 0.05);
   settings.seenNoise = [](const Film& film) { return film.sampleCounts().max < 32 ? 1.0 : 0.01; };
   const RenderResult once = scene.render(settings);
   EXPECT_EQ(once.finishedSamples, 32U);
-  for (const RenderResult& begun : keptResults(scene, settings, 17))
-    expectSameEnd(once, continued(scene, settings, begun));
+  for (const RenderResult& checkpoint : collectCheckpoints(scene, settings, 17))
+    expectSameEnd(once, resume(scene, settings, checkpoint));
 }
 
 TEST(Shards, AddUpToThePicture) {
   const TestScene scene = wavyScene();
-  RenderSettings settings = settingsOf(9);
+  RenderSettings settings = makeSettings(9);
   const RenderResult once = scene.render(settings);
   for (const int count : {1, 3, 7, 40}) { // more parts than tiles
     Film sum = once.film;
@@ -114,12 +114,12 @@ TEST(Shards, AddUpToThePicture) {
         sum.at(column, row) = {.blockSize = sum.at(column, row).blockSize};
     for (int index = 0; index < count; ++index) {
       settings.shard = {index, count};
-      const Film part = scene.render(settings).film;
+      const Film shard = scene.render(settings).film;
       for (int row = 0; row < sum.height(); ++row)
         for (int column = 0; column < sum.width(); ++column)
-          if (part.at(column, row).samples > 0) {
+          if (shard.at(column, row).samples > 0) {
             EXPECT_EQ(sum.at(column, row).samples, 0U) << "two parts have this pixel";
-            sum.at(column, row) = part.at(column, row);
+            sum.at(column, row) = shard.at(column, row);
           }
     }
     expectIdentical(once.film, sum);
@@ -132,10 +132,10 @@ TEST(Tiles, PartsAreEvenAndScattered) {
   for (const int count : {1, 3, 7, 16}) {
     std::vector<int> owners(static_cast<std::size_t>(tiles.count()), 0);
     for (int index = 0; index < count; ++index) {
-      const std::vector<int> part = tiles.of({index, count});
+      const std::vector<int> shard = tiles.of({index, count});
       EXPECT_NEAR(static_cast<double>(part.size()), 1.0 * tiles.count() / count, 1.0);
       int left = 0;
-      for (const int tile : part) {
+      for (const int tile : shard) {
         ++owners[static_cast<std::size_t>(tile)];
         left += tiles.at(tile).left < 250 ? 1 : 0;
       }
@@ -148,4 +148,4 @@ TEST(Tiles, PartsAreEvenAndScattered) {
 }
 
 } // namespace
-} // namespace fenestra::testing::ContinuedTests
+} // namespace fenestra::testing::ResumeTests

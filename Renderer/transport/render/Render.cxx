@@ -89,7 +89,7 @@ void renderTiles(const Tracer& tracer, Pass& pass, const Film& film, Counters& t
   tbb::parallel_for(
       0, threads,
       [&](int) {
-        TileStream stream(pass, monitor.isKeepDue);
+        TileStream stream(pass, monitor.isCheckpointDue);
         if (!monitor.stop.load(std::memory_order_relaxed))
           tracer.trace(stream, maxPaths, counters.local());
       },
@@ -106,19 +106,20 @@ struct PassSource {
 
 /// Renders tiles as renderTiles, beside helpers.
 template <typename Tracer>
-void renderShare(const Tracer& tracer, Pass& pass, RenderResult& result, RenderMonitor& monitor) {
-  const Helpers& helpers = monitor.helpers;
-  if (helpers.count == 0)
+void renderWithWorkers(const Tracer& tracer, Pass& pass, RenderResult& result,
+                       RenderMonitor& monitor) {
+  const RemoteWorkers& workers = monitor.workers;
+  if (workers.count == 0)
     return renderTiles(tracer, pass, result.film, result.counters, monitor);
-  helpers.lend(pass, result);
+  workers.dispatch(pass, result);
   try {
     renderTiles(tracer, pass, result.film, result.counters, monitor);
   } catch (...) { // pass and film end here
     monitor.stop = true;
-    helpers.settle(monitor);
+    workers.join(monitor);
     throw;
   }
-  result.counters += helpers.settle(monitor);
+  result.counters += workers.join(monitor);
 }
 
 /// Renders the samples that stage `result.begunSamples` has beyond the film. Returns false if
@@ -130,10 +131,10 @@ bool renderPass(const Tracer& tracer, const PassSource& source, RenderResult& re
   Pass pass(source.tiles, plan.at(result.finishedSamples), plan.at(result.begunSamples),
             source.empty, source.numbers, result.film, monitor.paths);
   for (;;) {
-    renderShare(tracer, pass, result, monitor);
+    renderWithWorkers(tracer, pass, result, monitor);
     if (pass.whole() || monitor.stop)
       return pass.whole();
-    monitor.keep(result); // nothing but a rest leaves tiles undone
+    monitor.onCheckpoint(result); // nothing but a rest leaves tiles undone
   }
 }
 
@@ -241,8 +242,8 @@ private:
 /// out of paths once. So passes grow fourfold where nobody is shown pictures between them; and with
 /// several processes, each of which moves the film, yet faster, and more.
 PassGrowth growthFor(const RenderMonitor& monitor) {
-  const auto processes = static_cast<std::uint64_t>(monitor.helpers.count) + 1;
-  return {(monitor.between ? 1 : 3) * processes, 16 * processes};
+  const auto processes = static_cast<std::uint64_t>(monitor.workers.count) + 1;
+  return {(monitor.onPassEnd ? 1 : 3) * processes, 16 * processes};
 }
 
 /// Result before the first sample.
@@ -295,10 +296,10 @@ RenderResult renderPasses(const Tracer& tracer, const std::string& arithmetic,
       result.reason = StopReason::seconds;
       return result;
     }
-    if (done > 0 && monitor.between)
-      monitor.between(result);
-    if (monitor.isKeepDue && monitor.isKeepDue())
-      monitor.keep(result);
+    if (done > 0 && monitor.onPassEnd)
+      monitor.onPassEnd(result);
+    if (monitor.isCheckpointDue && monitor.isCheckpointDue())
+      monitor.onCheckpoint(result);
     result.begunSamples = done + count;
     if (!renderPass(tracer, source, result, monitor)) {
       result.reason = StopReason::request;
@@ -314,16 +315,16 @@ RenderResult renderPasses(const Tracer& tracer, const std::string& arithmetic,
 }
 
 template <typename Tracer>
-void renderEachLoan(const Tracer& tracer, const RenderScene& scene, const RenderSettings& settings,
-                    RenderMonitor& monitor,
-                    const std::function<std::optional<Loan>(RenderResult&)>& next) {
+void renderEachLease(const Tracer& tracer, const RenderScene& scene, const RenderSettings& settings,
+                     RenderMonitor& monitor,
+                     const std::function<std::optional<TileLease>(RenderResult&)>& next) {
   const Sampler numbers(settings.sampling, settings.seed);
   RenderResult result = emptyResult(scene.camera, numbers);
   const EmptyPixels empty = emptyPixels(scene, settings, result.film);
-  while (const std::optional<Loan> loan = next(result)) {
+  while (const std::optional<TileLease> lease = next(result)) {
     result.counters = {};
     const SamplePlan& plan = result.last.plan;
-    Pass pass(loan->tiles, plan.at(loan->from), plan.at(loan->to), empty, numbers, result.film,
+    Pass pass(lease->tiles, plan.at(lease->from), plan.at(lease->to), empty, numbers, result.film,
               monitor.paths);
     renderTiles(tracer, pass, result.film, result.counters, monitor);
   }
@@ -394,10 +395,10 @@ RenderResult render(const RenderScene& scene, const RenderSettings& settings,
       });
 }
 
-void renderLoans(const RenderScene& scene, const RenderSettings& settings, RenderMonitor& monitor,
-                 const std::function<std::optional<Loan>(RenderResult&)>& next) {
+void renderLeases(const RenderScene& scene, const RenderSettings& settings, RenderMonitor& monitor,
+                  const std::function<std::optional<TileLease>(RenderResult&)>& next) {
   traceScene(scene, settings, monitor.stop, [&](const auto& tracer, const std::string&) {
-    renderEachLoan(tracer, scene, settings, monitor, next);
+    renderEachLease(tracer, scene, settings, monitor, next);
   });
 }
 

@@ -78,14 +78,14 @@ struct RenderMonitor;
 struct RenderResult;
 
 /// Other processes that take tiles of a pass, from another thread, and add them to the film.
-struct Helpers {
+struct RemoteWorkers {
   int count = 0;
   /// Lends them tiles of the pass, and lets them add to result.film, until the next settle().
-  std::function<void(Pass&, RenderResult&)> lend = {};
+  std::function<void(Pass&, RenderResult&)> dispatch = {};
   /// Called when this process's threads have no tile left, or rest. Returns once the pass is whole,
   /// or `monitor` wants a film kept or a stop; nothing is added any more then. The result: counts
   /// of what was added.
-  std::function<Counters(const RenderMonitor&)> settle = {};
+  std::function<Counters(const RenderMonitor&)> join = {};
 };
 
 /// Progress of a running render, and its stop flag.
@@ -96,12 +96,12 @@ struct RenderMonitor {
   /// Somebody watches `noise`: it is estimated after each pass, though nothing else needs it.
   bool isNoiseWatched = false;
   /// Called between two passes with the result so far; the render waits.
-  std::function<void(const RenderResult&)> between = {};
+  std::function<void(const RenderResult&)> onPassEnd = {};
   /// Looked at by all threads, often. Once true, they end their tiles, and `keep` is called with
   /// the result so far, which render() goes on from; the render waits. Empty: never.
-  std::function<bool()> isKeepDue = {};
-  std::function<void(const RenderResult&)> keep = {};
-  Helpers helpers = {};
+  std::function<bool()> isCheckpointDue = {};
+  std::function<void(const RenderResult&)> onCheckpoint = {};
+  RemoteWorkers workers = {};
 };
 
 enum class StopReason { samples, seconds, noise, request };
@@ -141,7 +141,7 @@ RenderResult render(const RenderScene& scene, const RenderSettings& settings,
 
 /// Tiles that another process lends, and the stages of the plan between which their pixels lack
 /// samples (SamplePlan::at).
-struct Loan {
+struct TileLease {
   std::vector<int> tiles;
   std::uint64_t from = 0, to = 0;
 };
@@ -150,7 +150,7 @@ struct Loan {
 /// loan's tiles from result.film, with result.counters, unless the stop flag is set; it puts the
 /// next one's pixels there, and the plan into result.last. It returns the next loan, or nothing at
 /// the end.
-void renderLoans(const RenderScene& scene, const RenderSettings& settings, RenderMonitor& monitor,
-                 const std::function<std::optional<Loan>(RenderResult&)>& next);
+void renderLeases(const RenderScene& scene, const RenderSettings& settings, RenderMonitor& monitor,
+                  const std::function<std::optional<TileLease>(RenderResult&)>& next);
 
 } // namespace fenestra
