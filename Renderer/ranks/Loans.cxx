@@ -16,9 +16,9 @@ namespace fenestra {
 namespace {
 
 /// First words of messages from rank 0.
-constexpr std::uint64_t recruits = 1, lends = 2, dismisses = 3;
+constexpr std::uint64_t startTag = 1, leaseTag = 2, stopTag = 3;
 
-constexpr std::size_t mostTiles = 4096; ///< of a loan: 60 MB
+constexpr std::size_t maxLeaseTiles = 4096; ///< of a loan: 60 MB
 
 /// Words of a message, one after the other.
 class MessageReader {
@@ -35,10 +35,10 @@ private:
 
 /// Calls each(pixel) for the pixels of tiles, in their order.
 template <typename Each>
-void forTilePixels(std::span<const int> tiles, Film& film, Each&& each) {
-  const Tiles cut(film.width(), film.height());
+void forEachTilePixel(std::span<const int> tiles, Film& film, Each&& each) {
+  const Tiles layout(film.width(), film.height());
   for (const int number : tiles) {
-    const Tiles::Tile tile = cut.at(number);
+    const Tiles::Tile tile = layout.at(number);
     for (int row = tile.top; row < tile.bottom; ++row)
       for (int column = tile.left; column < tile.right; ++column)
         each(film.at(column, row));
@@ -50,7 +50,7 @@ void writeTiles(std::span<const int> tiles, Film& film, Message& message) {
   message.push_back(tiles.size());
   message.insert(message.end(), tiles.begin(), tiles.end());
   message.reserve(message.size() + tiles.size() * Tiles::size * Tiles::size * pixelWords);
-  forTilePixels(tiles, film, [&](const PixelSums& pixel) {
+  forEachTilePixel(tiles, film, [&](const PixelSums& pixel) {
     const PixelWords words = wordsOf(pixel);
     message.insert(message.end(), words.begin(), words.end());
   });
@@ -61,7 +61,7 @@ std::vector<int> readTiles(MessageReader& reader, Film& film) {
   std::vector<int> tiles(reader.word());
   for (int& tile : tiles)
     tile = static_cast<int>(reader.word());
-  forTilePixels(tiles, film, [&](PixelSums& pixel) {
+  forEachTilePixel(tiles, film, [&](PixelSums& pixel) {
     PixelWords words = {};
     for (std::uint64_t& word : words)
       word = reader.word();
@@ -72,7 +72,7 @@ std::vector<int> readTiles(MessageReader& reader, Film& film) {
 
 /// Counts, in the order of messages.
 template <typename Each>
-void forCounts(Counters& counters, Each&& each) {
+void forEachCounter(Counters& counters, Each&& each) {
   for (std::uint64_t* count :
        {&counters.paths, &counters.collisions, &counters.lookups, &counters.cells,
         &counters.skippedCells, &counters.shadowRays, &counters.gradients})
@@ -80,38 +80,38 @@ void forCounts(Counters& counters, Each&& each) {
 }
 
 /// A rank's side of loans.
-class BorrowedTiles {
+class LeasedTiles {
 public:
-  BorrowedTiles(Ranks& ranks, RenderMonitor& monitor) : m_ranks(ranks), m_monitor(monitor) {}
+  LeasedTiles(Ranks& ranks, RenderMonitor& monitor) : m_ranks(ranks), m_monitor(monitor) {}
 
   /// Brings the last loan back and gets another (renderLeases).
   std::optional<TileLease> next(RenderResult& result) {
     m_watch = {};
-    bringBack(result);
-    for (const Rests rests;;) {
+    returnTiles(result);
+    for (const Rests poller;;) {
       const std::optional<Received> received = m_ranks.receive();
       if (!received) {
-        rests.rest();
+        poller.rest();
         continue;
       }
       MessageReader reader(received->message);
-      if (reader.word() == dismisses)
+      if (reader.word() == stopTag)
         return std::nullopt;
-      TileLease loan = {{}, reader.word(), reader.word()};
-      m_tiles = loan.tiles = readTiles(reader, result.film);
+      TileLease lease = {{}, reader.word(), reader.word()};
+      m_tiles = lease.tiles = readTiles(reader, result.film);
       if (reader.left() > 0)
         readPlan(reader, result);
       watch();
-      return loan;
+      return lease;
     }
   }
 
 private:
-  void bringBack(RenderResult& result) {
+  void returnTiles(RenderResult& result) {
     const bool isStopped = m_monitor.stop;
     Message message = {isStopped,
                        static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency())};
-    forCounts(result.counters, [&](std::uint64_t count) { message.push_back(count); });
+    forEachCounter(result.counters, [&](std::uint64_t count) { message.push_back(count); });
     writeTiles(isStopped ? std::span<const int>() : std::span<const int>(m_tiles), result.film,
                message);
     m_tiles.clear();
@@ -151,7 +151,7 @@ private:
 
 void recruitAll(Ranks& ranks) {
   for (int rank = 1; rank < ranks.count(); ++rank)
-    ranks.send(rank, {recruits});
+    ranks.send(rank, {startTag});
 }
 
 Lender::~Lender() {
@@ -171,18 +171,18 @@ void Lender::help(RenderMonitor& monitor) {
 }
 
 void Lender::serve(const std::stop_token& end) {
-  Rests rests;
+  Rests poller;
   try {
     while (!end.stop_requested()) {
       {
         const std::lock_guard lock(m_mutex);
         if (m_pass) {
           if (hear())
-            rests.begin();
+            poller.begin();
           lendAll();
         }
       }
-      rests.rest();
+      poller.rest();
     }
   } catch (const std::bad_alloc&) {
     m_ranks.abort("out of memory; use a smaller picture", static_cast<int>(ErrorKind::output));
@@ -191,15 +191,15 @@ void Lender::serve(const std::stop_token& end) {
 
 /// Takes all messages that are there; false if there is none. Locked.
 bool Lender::hear() {
-  bool isHeard = false;
+  bool hasReceived = false;
   while (const std::optional<Received> received = m_ranks.receive()) {
-    isHeard = true;
-    Borrower& borrower = m_borrowers[static_cast<std::size_t>(received->from)];
-    borrower.waitReadable = true;
+    hasReceived = true;
+    Borrower& worker = m_borrowers[static_cast<std::size_t>(received->from)];
+    worker.waitReadable = true;
     takeBack(received->message);
-    borrower.threads = received->message[1];
+    worker.threads = received->message[1];
   }
-  return isHeard;
+  return hasReceived;
 }
 
 /// Locked.
@@ -209,7 +209,7 @@ void Lender::takeBack(const Message& message) {
     m_monitor->stop = true;
   reader.word();
   Counters counters;
-  forCounts(counters, [&](std::uint64_t& count) { count = reader.word(); });
+  forEachCounter(counters, [&](std::uint64_t& count) { count = reader.word(); });
   m_added += counters;
   for (const int tile : readTiles(reader, m_result->film))
     m_pass->takeBack(tile);
@@ -218,32 +218,32 @@ void Lender::takeBack(const Message& message) {
 /// Lends tiles to all that wait. Locked.
 void Lender::lendAll() {
   for (std::size_t rank = 1; rank < m_borrowers.size(); ++rank) {
-    Borrower& borrower = m_borrowers[rank];
+    Borrower& worker = m_borrowers[rank];
     if (m_monitor->stop || m_pass->left() == 0)
       return;
-    if (!borrower.waitReadable)
+    if (!worker.waitReadable)
       continue;
-    borrower.waitReadable = false;
-    m_ranks.send(static_cast<int>(rank), loanFor(borrower));
+    worker.waitReadable = false;
+    m_ranks.send(static_cast<int>(rank), loanFor(worker));
   }
 }
 
 /// A share of what is left of the pass, which gets smaller toward its end, so that all ranks end it
 /// together. Locked.
-Message Lender::loanFor(Borrower& borrower) {
+Message Lender::loanFor(Borrower& worker) {
   const std::size_t fair = m_pass->left() / (2 * m_borrowers.size());
-  const std::size_t wanted = std::min(std::max(fair, 2 * borrower.threads), mostTiles);
-  Message message = {lends, m_result->finishedSamples, m_result->begunSamples};
+  const std::size_t wanted = std::min(std::max(fair, 2 * worker.threads), maxLeaseTiles);
+  Message message = {leaseTag, m_result->finishedSamples, m_result->begunSamples};
   writeTiles(m_pass->take(wanted), m_result->film, message);
   const std::vector<float>& plan = m_result->last.plan.noise();
-  if (!plan.empty() && !std::exchange(borrower.knowsPlan, true))
+  if (!plan.empty() && !std::exchange(worker.knowsPlan, true))
     for (const float s : plan)
       message.push_back(std::bit_cast<std::uint32_t>(s));
   return message;
 }
 
 Counters Lender::settle(const RenderMonitor& monitor) {
-  for (const Rests rests;;) {
+  for (const Rests poller;;) {
     {
       const std::lock_guard lock(m_mutex);
       if (m_pass->whole() || monitor.stop ||
@@ -252,26 +252,26 @@ Counters Lender::settle(const RenderMonitor& monitor) {
         return std::exchange(m_added, {});
       }
     }
-    rests.rest();
+    poller.rest();
   }
 }
 
 bool Lender::dismiss(bool isStopped) {
-  constexpr double longest = 2.0; // s
+  constexpr double maxSeconds = 2.0; // s
   m_thread = {};
   const bool isBegun = m_monitor != nullptr;
   for (int rank = 1; rank < m_ranks.count(); ++rank)
-    m_ranks.send(rank, {dismisses});
+    m_ranks.send(rank, {stopTag});
   std::size_t isBusy = 0;
   for (std::size_t rank = 1; isBegun && rank < m_borrowers.size(); ++rank)
     isBusy += m_borrowers[rank].waitReadable ? 0 : 1;
   const Stopwatch watch;
-  const Rests rests;
-  while (isBusy > 0 && (!isStopped || watch.seconds() < longest)) {
+  const Rests poller;
+  while (isBusy > 0 && (!isStopped || watch.seconds() < maxSeconds)) {
     if (m_ranks.receive())
       --isBusy;
     else
-      rests.rest();
+      poller.rest();
   }
   return isBusy == 0;
 }
@@ -279,16 +279,16 @@ bool Lender::dismiss(bool isStopped) {
 // ---- other ranks
 
 bool isRecruited(Ranks& ranks) {
-  for (const Rests rests;;) {
+  for (const Rests poller;;) {
     if (const std::optional<Received> received = ranks.receive())
-      return received->message.front() == recruits;
-    rests.rest();
+      return received->message.front() == startTag;
+    poller.rest();
   }
 }
 
 void borrow(Ranks& ranks, const RenderScene& scene, const RenderSettings& settings,
             RenderMonitor& monitor) {
-  BorrowedTiles tiles(ranks, monitor);
+  LeasedTiles tiles(ranks, monitor);
   renderLeases(scene, settings, monitor,
                [&tiles](RenderResult& result) { return tiles.next(result); });
 }

@@ -11,36 +11,36 @@
 namespace fenestra {
 
 /// Rank 0: lends tiles to all other ranks.
-class Lender {
+class Scheduler {
 public:
-  explicit Lender(Ranks& ranks)
-      : m_ranks(ranks), m_borrowers(static_cast<std::size_t>(ranks.count())) {}
-  ~Lender();
+  explicit Scheduler(Ranks& ranks)
+      : m_ranks(ranks), m_workers(static_cast<std::size_t>(ranks.count())) {}
+  ~Scheduler();
 
   /// Begins to lend tiles of the render with that monitor, which must live until the render has
   /// ended.
-  void help(RenderMonitor& monitor);
+  void start(RenderMonitor& monitor);
   /// Sends the other ranks home. False if they do not answer after a stop was asked for: one may
   /// have died.
-  bool dismiss(bool isStopped);
+  bool stopWorkers(bool isStopped);
 
 private:
-  struct Borrower {
+  struct Worker {
     std::size_t threads = 1;
-    bool waits = false;     ///< for tiles, or the end
-    bool knowsPlan = false; ///< RenderResult::last.plan
+    bool isIdle = false;  ///< for tiles, or the end
+    bool hasPlan = false; ///< RenderResult::last.plan
   };
 
   void serve(const std::stop_token& end);
-  bool hear();
-  void lendAll();
-  void takeBack(const Message& message);
-  Message loanFor(Borrower& borrower);
-  Counters settle(const RenderMonitor& monitor);
+  bool receiveResults();
+  void dispatchTiles();
+  void acceptResult(const Message& message);
+  Message makeLease(Worker& worker);
+  Counters join(const RenderMonitor& monitor);
 
   Ranks& m_ranks;
-  std::mutex m_mutex;                ///< of all below
-  std::vector<Borrower> m_borrowers; ///< by rank
+  std::mutex m_mutex;            ///< of all below
+  std::vector<Worker> m_workers; ///< by rank
   RenderMonitor* m_monitor = nullptr;
   Pass* m_pass = nullptr; ///< null: nothing is lent or taken back
   RenderResult* m_result = nullptr;
@@ -50,12 +50,12 @@ private:
 
 /// Other ranks: renders what rank 0 lends until it says that all is done. `monitor.stop`, once
 /// true, stops rank 0, too.
-void borrow(Ranks& ranks, const RenderScene& scene, const RenderSettings& settings,
-            RenderMonitor& monitor);
+void runWorker(Ranks& ranks, const RenderScene& scene, const RenderSettings& settings,
+               RenderMonitor& monitor);
 
 /// Other ranks: waits for a render to help with; false: there is none.
-bool isRecruited(Ranks& ranks);
+bool waitForStart(Ranks& ranks);
 /// Rank 0: asks all other ranks to help with a render.
-void recruitAll(Ranks& ranks);
+void startWorkers(Ranks& ranks);
 
 } // namespace fenestra

@@ -29,17 +29,17 @@ int firstArgument(int argc, char** argv) {
 }
 
 /// Throws Error (usage) unless all ranks make the same samples.
-void requireSameRanks(const std::vector<std::string>& arithmetics) {
+void requireSameRanks(const std::vector<std::string>& targets) {
   const auto other = std::ranges::find_if(
-      arithmetics, [&](const std::string& text) { return text != arithmetics.front(); });
-  if (other != arithmetics.end())
-    throw usageError("mpirun: rank ", other - arithmetics.begin(), " is ", *other, ", rank 0 is ",
-                     arithmetics.front(),
+      targets, [&](const std::string& text) { return text != targets.front(); });
+  if (other != targets.end())
+    throw usageError("mpirun: rank ", other - targets.begin(), " is ", *other, ", rank 0 is ",
+                     targets.front(),
                      "; use one build, and set FENESTRA_INSTRUCTIONS to what all machines have");
 }
 
 /// Facts that differ where scenes do: the voxels' range, the camera, the bounds of the extinction.
-std::string described(const Scene& scene, const RenderSettings& settings) {
+std::string describeScene(const Scene& scene, const RenderSettings& settings) {
   constexpr int exact = 17; // significant digits
   const CameraPose& pose = scene.camera().pose();
   const MajorantGrid& majorants = scene.forRender().majorants;
@@ -51,42 +51,42 @@ std::string described(const Scene& scene, const RenderSettings& settings) {
 }
 
 /// Lets the other ranks make the scene, and lend a hand.
-void recruitRanks(const RenderOptions& options, const Scene& scene, const RenderSettings& settings,
-                  RenderMonitor& monitor, Ranks& ranks, Lender& lender) {
+void startRanks(const RenderOptions& options, const Scene& scene, const RenderSettings& settings,
+                RenderMonitor& monitor, Ranks& ranks, Scheduler& scheduler) {
   startWorkers(ranks);
   try {
     shareFiles(filesOf(scene, options), ranks);
-    std::string text = described(scene, settings);
+    std::string text = describeScene(scene, settings);
     ranks.spread(text);
   } catch (const Error& error) { // the others wait for bytes
     ranks.abort(error.what(), error.exitStatus());
   } catch (const std::exception& error) {
     ranks.abort(error.what(), static_cast<int>(ErrorKind::input));
   }
-  lender.help(monitor);
+  scheduler.help(monitor);
 }
 
 /// Rank 0: the whole command.
-int lead(int argc, char** argv, Ranks& ranks, const std::vector<std::string>& arithmetics) {
-  Lender lender(ranks);
+int runFirstRank(int argc, char** argv, Ranks& ranks, const std::vector<std::string>& targets) {
+  Scheduler scheduler(ranks);
   try {
-    requireSameRanks(arithmetics);
-    const auto recruit = [&](const RenderOptions& options, const Scene& scene,
-                             const RenderSettings& settings, RenderMonitor& monitor) {
-      recruitRanks(options, scene, settings, monitor, ranks, lender);
+    requireSameRanks(targets);
+    const auto start = [&](const RenderOptions& options, const Scene& scene,
+                           const RenderSettings& settings, RenderMonitor& monitor) {
+      startRanks(options, scene, settings, monitor, ranks, scheduler);
     };
-    const int status = renderWith(recruit, argc, argv, firstArgument(argc, argv));
-    if (!lender.dismiss(status == stoppedStatus))
+    const int status = renderWith(start, argc, argv, firstArgument(argc, argv));
+    if (!scheduler.stopWorkers(status == stoppedStatus))
       ranks.abort("stopped; other ranks do not answer", status);
     return status;
   } catch (...) {
-    lender.dismiss(true);
+    scheduler.stopWorkers(true);
     throw;
   }
 }
 
 /// Other ranks: tiles of the picture that rank 0 makes of the same arguments.
-void follow(int argc, char** argv, Ranks& ranks) {
+void runOtherRank(int argc, char** argv, Ranks& ranks) {
   const std::optional<FlagValues> given =
       parseCommandLine(renderSyntax, argc, argv, firstArgument(argc, argv));
   useMachine(*given);
@@ -100,12 +100,12 @@ void follow(int argc, char** argv, Ranks& ranks) {
   const Scene scene(wanted, request.input);
   files.reset();
   const RenderSettings settings = settingsFor(request.options, scene.background());
-  if (const std::string here = described(scene, settings); here != expected)
+  if (const std::string here = describeScene(scene, settings); here != expected)
     throw inputError(wanted.input, "is another scene than rank 0 has (", here, ", not ", expected,
                      "); a file that it names may differ between machines");
   RenderMonitor monitor;
   const StopInstead stopInstead(monitor.stop);
-  borrow(ranks, scene.forRender(), settings, monitor);
+  runWorker(ranks, scene.forRender(), settings, monitor);
 }
 
 } // namespace
@@ -115,14 +115,14 @@ int dispatchRank(int argc, char** argv) {
   Ranks ranks;
   if (ranks.count() == 1)
     return dispatch(argc, argv);
-  const std::vector<std::string> arithmetics =
+  const std::vector<std::string> targets =
       ranks.together(textOf(versionText, " on ", processorText, " by ", instructionSet()));
   if (ranks.rank() == 0)
-    return lead(argc, argv, ranks, arithmetics);
-  if (!isRecruited(ranks))
+    return runFirstRank(argc, argv, ranks, targets);
+  if (!waitForStart(ranks))
     return 0;
   try {
-    follow(argc, argv, ranks);
+    runOtherRank(argc, argv, ranks);
   } catch (const Error& error) {
     ranks.abort(error.what(), error.exitStatus());
   } catch (const std::bad_alloc&) {

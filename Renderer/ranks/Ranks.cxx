@@ -14,7 +14,7 @@
 namespace fenestra {
 namespace {
 
-constexpr int anyTag = 0; ///< of all messages
+constexpr int messageTag = 0; ///< of all messages
 
 } // namespace
 
@@ -32,13 +32,14 @@ Ranks::~Ranks() {
 }
 
 std::vector<std::string> Ranks::together(const std::string& text) {
-  constexpr std::size_t longest = 512;
-  std::vector<char> mine(longest), all(longest * static_cast<std::size_t>(m_count));
-  std::copy_n(text.begin(), std::min(text.size(), longest - 1), mine.begin());
+  constexpr std::size_t maxSeconds = 512;
+  std::vector<char> mine(maxSeconds), all(maxSeconds * static_cast<std::size_t>(m_count));
+  std::copy_n(text.begin(), std::min(text.size(), maxSeconds - 1), mine.begin());
   const std::lock_guard lock(m_mutex);
-  MPI_Allgather(mine.data(), longest, MPI_CHAR, all.data(), longest, MPI_CHAR, MPI_COMM_WORLD);
+  MPI_Allgather(mine.data(), maxSeconds, MPI_CHAR, all.data(), maxSeconds, MPI_CHAR,
+                MPI_COMM_WORLD);
   std::vector<std::string> texts;
-  for (std::size_t i = 0; i < all.size(); i += longest)
+  for (std::size_t i = 0; i < all.size(); i += maxSeconds)
     texts.emplace_back(&all[i]);
   return texts;
 }
@@ -57,30 +58,30 @@ void Ranks::spread(std::string& text) {
 
 void Ranks::send(int to, const Message& message) {
   const std::lock_guard lock(m_mutex);
-  MPI_Send(message.data(), static_cast<int>(message.size()), MPI_UINT64_T, to, anyTag,
+  MPI_Send(message.data(), static_cast<int>(message.size()), MPI_UINT64_T, to, messageTag,
            MPI_COMM_WORLD);
 }
 
 std::optional<Received> Ranks::receive() {
   const std::lock_guard lock(m_mutex);
-  int isThere = 0;
+  int isPending = 0;
   MPI_Status status = {};
-  MPI_Iprobe(MPI_ANY_SOURCE, anyTag, MPI_COMM_WORLD, &isThere, &status);
-  if (!isThere)
+  MPI_Iprobe(MPI_ANY_SOURCE, messageTag, MPI_COMM_WORLD, &isPending, &status);
+  if (!isPending)
     return std::nullopt;
   int size = 0;
   MPI_Get_count(&status, MPI_UINT64_T, &size);
   Received received{status.MPI_SOURCE, Message(static_cast<std::size_t>(size))};
-  MPI_Recv(received.message.data(), size, MPI_UINT64_T, received.from, anyTag, MPI_COMM_WORLD,
+  MPI_Recv(received.message.data(), size, MPI_UINT64_T, received.from, messageTag, MPI_COMM_WORLD,
            MPI_STATUS_IGNORE);
   return received;
 }
 
 bool Ranks::hasMessage() {
   const std::lock_guard lock(m_mutex);
-  int isThere = 0;
-  MPI_Iprobe(MPI_ANY_SOURCE, anyTag, MPI_COMM_WORLD, &isThere, MPI_STATUS_IGNORE);
-  return isThere;
+  int isPending = 0;
+  MPI_Iprobe(MPI_ANY_SOURCE, messageTag, MPI_COMM_WORLD, &isPending, MPI_STATUS_IGNORE);
+  return isPending;
 }
 
 void Ranks::abort(std::string_view line, int status) {
@@ -90,9 +91,9 @@ void Ranks::abort(std::string_view line, int status) {
 }
 
 void Rests::rest() const {
-  constexpr double shortest = 0.0003, longest = 0.005; // s
+  constexpr double minSeconds = 0.0003, maxSeconds = 0.005; // s
   std::this_thread::sleep_for(
-      std::chrono::duration<double>(std::clamp(m_watch.seconds() / 8.0, shortest, longest)));
+      std::chrono::duration<double>(std::clamp(m_watch.seconds() / 8.0, minSeconds, maxSeconds)));
 }
 
 } // namespace fenestra

@@ -16,7 +16,7 @@ namespace fenestra {
 /// Words of a message; their meaning is the sender's and the receiver's.
 using Message = std::vector<std::uint64_t>;
 
-struct Received {
+struct ReceivedMessage {
   int from = 0; ///< rank
   Message message;
 };
@@ -36,15 +36,15 @@ public:
   int count() const { return m_count; }
 
   /// Texts of all ranks, in their order, the same everywhere; each rank must call this.
-  std::vector<std::string> together(const std::string& text);
+  std::vector<std::string> allGather(const std::string& text);
   /// Gives the bytes of rank 0 to all others; each rank must call this, with as many bytes.
-  void spread(std::span<char> bytes);
+  void broadcast(std::span<char> bytes);
   /// Gives the text of rank 0 to all others.
-  void spread(std::string& text);
+  void broadcast(std::string& text);
 
   void send(int to, const Message& message);
   /// Next message, if there is one.
-  std::optional<Received> receive();
+  std::optional<ReceivedMessage> receive();
   /// True if receive() would return a message.
   bool hasMessage();
 
@@ -59,11 +59,11 @@ private:
 /// Rests between looks for messages, each an eighth of the time since the last one that was there:
 /// looks take next to nothing of a long wait from threads that render, and make a short one hardly
 /// longer.
-class Rests {
+class BackoffPoller {
 public:
   /// Counts from now, for a message was there.
-  void begin() { m_watch = {}; }
-  void rest() const;
+  void reset() { m_watch = {}; }
+  void wait() const;
 
 private:
   Stopwatch m_watch;

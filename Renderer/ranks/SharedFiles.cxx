@@ -13,7 +13,7 @@ constexpr std::size_t blockBytes = 1 << 24;
 
 /// Calls each(bytes of the next block) for a file of `size` bytes.
 template <typename Each>
-void forBlocks(std::uint64_t size, Each&& each) {
+void forEachBlock(std::uint64_t size, Each&& each) {
   std::vector<char> block(std::min<std::uint64_t>(size, blockBytes));
   for (std::uint64_t done = 0; done < size; done += block.size()) {
     block.resize(std::min<std::uint64_t>(size - done, blockBytes));
@@ -32,7 +32,7 @@ void shareFiles(const std::vector<fs::path>& files, Ranks& ranks) {
     ranks.spread(name);
     ranks.spread({reinterpret_cast<char*>(&size), sizeof size});
     std::ifstream content(file, std::ios::binary);
-    forBlocks(size, [&](std::span<char> block) {
+    forEachBlock(size, [&](std::span<char> block) {
       if (!content.read(block.data(), static_cast<std::streamsize>(block.size())))
         throw inputError(file, "cannot be read to its end; check its disk");
       ranks.spread(block);
@@ -50,7 +50,7 @@ SharedFiles::SharedFiles(Ranks& ranks) {
     ranks.spread({reinterpret_cast<char*>(&size), sizeof size});
     const fs::path path = m_folder.add(fs::path(text).relative_path());
     std::ofstream file(path, std::ios::binary);
-    forBlocks(size, [&](std::span<char> block) {
+    forEachBlock(size, [&](std::span<char> block) {
       ranks.spread(block);
       file.write(block.data(), static_cast<std::streamsize>(block.size()));
     });
@@ -59,13 +59,13 @@ SharedFiles::SharedFiles(Ranks& ranks) {
   }
 }
 
-fs::path SharedFiles::here(const fs::path& there) const {
-  return m_folder.path() / (m_working / there).lexically_normal().relative_path();
+fs::path SharedFiles::here(const fs::path& remotePath) const {
+  return m_folder.path() / (m_working / remotePath).lexically_normal().relative_path();
 }
 
 FlagValues SharedFiles::renamed(const FlagValues& flags, std::span<const Flag> known) const {
   FlagValues result = flags;
-  const auto rename = [&](const std::string& name) {
+  const auto localize = [&](const std::string& name) {
     result.remove(name);
     for (const std::string& value : flags.texts(name)) {
       std::error_code failed;
@@ -73,10 +73,10 @@ FlagValues SharedFiles::renamed(const FlagValues& flags, std::span<const Flag> k
       result.add(name, fs::exists(file, failed) ? file.string() : value);
     }
   };
-  rename("INPUT");
+  localize("INPUT");
   for (const Flag& flag : known)
     if (flag.takesFile() && !flag.isWritten() && flags.has(flag.name))
-      rename(flag.name);
+      localize(flag.name);
   return result;
 }
 

@@ -7,21 +7,21 @@
 
 namespace fenestra {
 
-/// Gives files to all other ranks, which call SharedFiles(ranks) meanwhile. Throws Error (input).
-void shareFiles(const std::vector<std::filesystem::path>& files, Ranks& ranks);
+/// Gives files to all other ranks, which call ReceivedFiles(ranks) meanwhile. Throws Error (input).
+void broadcastFiles(const std::vector<std::filesystem::path>& files, Ranks& ranks);
 
 /// Files of rank 0, in a temporary folder (TMPDIR) of this rank.
-class SharedFiles {
+class ReceivedFiles {
 public:
   /// Throws Error (output).
-  explicit SharedFiles(Ranks& ranks);
+  explicit ReceivedFiles(Ranks& ranks);
 
   /// Flags with those names of files, relative to rank 0's working folder, that are here in place
   /// of the ones that rank 0 was given.
-  FlagValues renamed(const FlagValues& flags, std::span<const Flag> known) const;
+  FlagValues localizePaths(const FlagValues& flags, std::span<const Flag> known) const;
 
 private:
-  std::filesystem::path here(const std::filesystem::path& there) const;
+  std::filesystem::path localPath(const std::filesystem::path& remotePath) const;
 
   PrivateFolder m_folder;
   std::filesystem::path m_working; ///< rank 0's
