@@ -61,8 +61,8 @@ TEST_F(ViewOfCube, ScoreOfABallEqualsClosedForm) {
   const double context = std::pow(edge, 3.0) - 4.0 / 3.0 * disc * radius;
   for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0, 0, 1)}) {
     const ViewScore seen = score(axis, 16384);
-    EXPECT_NEAR(seen.area, disc, 0.02 * disc) << "of voxels";
-    EXPECT_NEAR(seen.removedFraction, (inFront + beside) / context, 0.01);
+    EXPECT_NEAR(result.area, disc, 0.02 * disc) << "of voxels";
+    EXPECT_NEAR(result.removedFraction, (inFront + beside) / context, 0.01);
   }
   const double front = score(Vec3::UnitY(), 16384).score;
   EXPECT_NEAR(score(-Vec3::UnitY(), 16384).score, front * 0.95 / 1.05, 0.01 * front);

@@ -21,9 +21,9 @@ public:
       : m_volume(volume),
         m_origin(load3(rays.origin, first)),
         m_direction(load3(rays.direction, first)),
-        m_way{Way::entered(volume.axes[0], m_origin.x, m_direction.x),
-              Way::entered(volume.axes[1], m_origin.y, m_direction.y),
-              Way::entered(volume.axes[2], m_origin.z, m_direction.z)},
+        m_way{DdaAxis::fromRay(volume.axes[0], m_origin.x, m_direction.x),
+              DdaAxis::fromRay(volume.axes[1], m_origin.y, m_direction.y),
+              DdaAxis::fromRay(volume.axes[2], m_origin.z, m_direction.z)},
         m_end(load(&rays.length[first])),
         m_minStep(narrow(stepScale * MarchAccuracy::minVoxels) /
                   sqrt(dot(m_direction, m_direction))),
@@ -40,7 +40,7 @@ public:
   /// that end with it.
   HWY_INLINE LaneMask step() {
     LaneCells cell;
-    const Float toFace = stayAt(m_volume, m_way, m_t, cell);
+    const Float toFace = findCellExit(m_volume, m_way, m_t, cell);
     const Float stop = min(toFace, m_end);
     // A little beyond the face: the next point lies in the next cell, whatever rounding does.
     const Float beyond = fma(m_minStep, 0.02F, max(stop, m_t));
@@ -95,7 +95,7 @@ private:
 
   const WideScene& m_volume;
   Float3 m_origin, m_direction; ///< index space, per mm
-  Way m_way[3];
+  DdaAxis m_way[3];
   Float m_end, m_minStep; ///< mm
   Float m_opticalDepth;   ///< of a step
   bool m_usesClip;

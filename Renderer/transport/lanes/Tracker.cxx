@@ -77,8 +77,8 @@ private:
     const Shuffle deal = Shuffle::expand(fresh);
     const auto dealt = [&](const auto& column) { return deal(load(&column[first])); };
     for (std::size_t axis = 0; axis < 3; ++axis)
-      m_way[axis].where(fresh, Way::entered(m_scene.axes[axis], dealt(m_rays.origin[axis]),
-                                            dealt(m_rays.direction[axis])));
+      m_axes[axis].where(fresh, DdaAxis::fromRay(m_scene.axes[axis], dealt(m_rays.origin[axis]),
+                                                 dealt(m_rays.direction[axis])));
     m_t.setIf(fresh, 0.0F);
     m_end.setIf(fresh, dealt(m_rays.length));
     m_ratio.setIf(fresh, 1.0F);
@@ -94,7 +94,7 @@ private:
   /// reach, or leave these cells.
   HWY_INLINE void cross() {
     LaneCells cell;
-    const Float toFace = stayAt(m_scene, m_way, m_t, cell);
+    const Float toFace = findCellExit(m_scene, m_axes, m_t, cell);
     const Float stop = min(max(toFace, m_t) + m_scene.overshoot, m_end);
     const Float depthToStop = (stop - m_t) * cell.majorant;
 
@@ -118,7 +118,7 @@ private:
   /// Point of each lane, index space.
   HWY_INLINE Float3 point() const {
     const auto along = [&](std::size_t axis) {
-      return fms(m_way[axis].at(m_t), m_scene.axes[axis].cellEdge, 0.5F);
+      return fms(m_axes[axis].at(m_t), m_scene.axes[axis].cellEdge, 0.5F);
     };
     return {along(0), along(1), along(2)};
   }
@@ -201,7 +201,7 @@ private:
   LaneMask m_cut = LaneMask::none(); ///< lanes whose collision lies in a cut cell
   Int m_ray = static_cast<std::int32_t>(RayBatch::capacity); ///< index of the ray in the batch
 
-  Way m_way[3] = {idle(), idle(), idle()};
+  DdaAxis m_axes[3] = {idle(), idle(), idle()};
   Float m_t = 0.0F;          ///< mm
   Float m_end = 0.0F;        ///< mm
   Float m_depth = 0.0F;      ///< optical depth to the next tentative collision
@@ -213,7 +213,7 @@ private:
   UInt m_cells = 0U, m_skipped = 0U;
   std::uint64_t m_lookups = 0;
 
-  static Way idle() { return {0.0F, 0.0F, 0.0F, 0.0F}; }
+  static DdaAxis idle() { return {0.0F, 0.0F, 0.0F, 0.0F}; }
 };
 
 /// Two sets of lanes take turns: while one waits for memory, the other computes.

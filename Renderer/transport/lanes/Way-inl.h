@@ -1,7 +1,7 @@
 // Rays through majorant cells, axis by axis.
 
 /// One axis of rays in units of a cell's edge: where they are, and when they leave a cell.
-struct Way {
+struct DdaAxis {
   Float start, speed; ///< cells, cells per mm
   Float inverse;      ///< 1 / speed; 0: the ray does not move
   Float toMiddle;     ///< t of the middle of cell 0; infinity if the ray does not move
@@ -9,25 +9,25 @@ struct Way {
   HWY_INLINE Float at(Float t) const { return fma(speed, t, start); }
   /// t at which a ray has left cell number `cell` and the cells up to `half` edges around its
   /// middle; rounding moves it by some last places of the farthest t.
-  HWY_INLINE Float leaving(Float cell, Float half) const {
+  HWY_INLINE Float exitDistance(Float cell, Float half) const {
     return fma(cell, inverse, fma(half, abs(inverse), toMiddle));
   }
 
   /// Axis of rays given in index space.
-  static HWY_INLINE Way entered(const WideScene::Axis& axis, Float origin, Float direction) {
-    Way way;
-    way.speed = direction * axis.cellsPerVoxel;
+  static HWY_INLINE DdaAxis fromRay(const WideScene::Axis& axis, Float origin, Float direction) {
+    DdaAxis result;
+    result.speed = direction * axis.cellsPerVoxel;
     // Clamped below the last face, so that a ray lying in that face starts inside the last cell.
     const Float inside = fma(origin, axis.cellsPerVoxel, 0.5F * axis.cellsPerVoxel);
-    way.start = max(min(inside, axis.insideCells), 0.0F);
-    const LaneMask moves = abs(way.speed) >= 1e-30F;
-    way.inverse = zeroUnless(moves, 1.0F / way.speed);
-    way.toMiddle =
-        select(moves, (0.5F - way.start) * way.inverse, std::numeric_limits<float>::infinity());
-    return way;
+    result.start = max(min(inside, axis.insideCells), 0.0F);
+    const LaneMask moves = abs(result.speed) >= 1e-30F;
+    result.inverse = zeroUnless(moves, 1.0F / result.speed);
+    result.toMiddle = select(moves, (0.5F - result.start) * result.inverse,
+                             std::numeric_limits<float>::infinity());
+    return result;
   }
 
-  HWY_INLINE void where(LaneMask which, const Way& other) {
+  HWY_INLINE void where(LaneMask which, const DdaAxis& other) {
     start.setIf(which, other.start);
     speed.setIf(which, other.speed);
     inverse.setIf(which, other.inverse);
@@ -36,11 +36,13 @@ struct Way {
 };
 
 /// t at which rays have left the cells in which they are with their reach; `cell`: these.
-HWY_INLINE Float stayAt(const WideScene& scene, const Way (&ways)[3], Float t, LaneCells& cell) {
-  const Float x = floor(ways[0].at(t));
-  const Float y = floor(ways[1].at(t));
-  const Float z = floor(ways[2].at(t));
+HWY_INLINE Float findCellExit(const WideScene& scene, const DdaAxis (&axes)[3], Float t,
+                              LaneCells& cell) {
+  const Float x = floor(axes[0].at(t));
+  const Float y = floor(axes[1].at(t));
+  const Float z = floor(axes[2].at(t));
   cell = cellsAt(scene, x, y, z);
   const Float half = cell.skipRadius + 0.5F;
-  return min(min(ways[0].leaving(x, half), ways[1].leaving(y, half)), ways[2].leaving(z, half));
+  return min(min(axes[0].exitDistance(x, half), axes[1].exitDistance(y, half)),
+             axes[2].exitDistance(z, half));
 }
