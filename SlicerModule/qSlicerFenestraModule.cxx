@@ -43,7 +43,7 @@ void qSlicerFenestraModule::onSceneClosed() {
     m_session->closeScene();
 }
 
-QString qSlicerFenestraModule::helpText() const {
+QString qSlicerFenestraModule::formatHelp() const {
   return tr("Photorealistic pictures of a volume in which nothing hides the anatomy of interest. "
             "Choose a volume, a segmentation and the segments to show; a smooth surface through "
             "them clips what lies in front. See the <a "

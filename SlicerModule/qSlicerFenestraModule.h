@@ -23,7 +23,7 @@ public:
   ~qSlicerFenestraModule() override;
 
   qSlicerGetTitleMacro(QTMODULE_TITLE);
-  QString helpText() const override;
+  QString formatHelp() const override;
   QString acknowledgementText() const override;
   QStringList contributors() const override;
   QIcon icon() const override;

@@ -21,13 +21,13 @@ namespace fs = std::filesystem;
 
 /// Values of the given flags that `isTold`, by name; names of files relative to `folder`.
 template <typename IsTold>
-ordered_json toldFlags(const FlagValues& flags, const fs::path& folder, IsTold&& isTold) {
+ordered_json toldFlags(const OptionValues& flags, const fs::path& folder, IsTold&& isTold) {
   ordered_json told = {{"INPUT", {relativeName(*flags.text("INPUT"), folder)}}};
-  for (const Flag& flag : renderSyntax.flags) {
+  for (const Option& flag : renderSyntax.options) {
     if (!flags.has(flag.name) || !isTold(flag))
       continue;
     for (const std::string& value : flags.texts(flag.name))
-      told[flag.name].push_back(flag.takesFile() ? relativeName(value, folder) : value);
+      told[flag.name].push_back(flag.canNameFile() ? relativeName(value, folder) : value);
   }
   return told;
 }
@@ -63,14 +63,15 @@ std::string missingFile(const json& some, const json& others) {
 
 } // namespace
 
-bool shapesSamples(const Flag& flag) {
+bool shapesSamples(const Option& flag) {
   const bool isShown = flag.name == "exposure" || flag.name == "tone" || flag.name == "denoise";
-  return shapesPicture(flag) && flag.topic != Topic::stop && !isShown;
+  return isImageOption(flag) && flag.overrideGroup != OverrideGroup::stop && !isShown;
 }
 
-ordered_json madeWith(const FlagValues& given, const FlagValues& flags, const fs::path& folder) {
+ordered_json madeWith(const OptionValues& given, const OptionValues& flags,
+                      const fs::path& folder) {
   return {{"version", textOf(versionText, " on ", processorText)},
-          {"given", toldFlags(given, folder, shapesPicture)},
+          {"given", toldFlags(given, folder, isImageOption)},
           {"settings", toldFlags(flags, folder, shapesSamples)}};
 }
 
@@ -131,7 +132,7 @@ std::string partText(const Shard& shard) {
   return textOf(shard.index + 1, '/', shard.count);
 }
 
-Checkpoint::Checkpoint(const PictureRequest& request, const FlagValues& given, Warn warn)
+Checkpoint::Checkpoint(const PictureRequest& request, const OptionValues& given, Warn warn)
     : m_request(request),
       m_path(*request.options.checkpoint),
       m_warn(std::move(warn)),
@@ -152,7 +153,7 @@ Checkpoint::Checkpoint(const PictureRequest& request, const FlagValues& given, W
   m_outputs.add(m_path);
 }
 
-Checkpoint::Checkpoint(const PictureRequest& request, const FlagValues& given,
+Checkpoint::Checkpoint(const PictureRequest& request, const OptionValues& given,
                        std::vector<FilmFile> parts)
     : m_request(request),
       m_path(parts.front().path()),

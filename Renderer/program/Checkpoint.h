@@ -11,11 +11,11 @@ namespace fenestra {
 
 /// True if a sample depends on the flag; false if only when to stop, how a picture is shown, and
 /// where.
-bool shapesSamples(const Flag& flag);
+bool shapesSamples(const Option& flag);
 
 /// Facts that a film is made with: the version, the flags as given and those that shape its
 /// samples, by name, and the content of all files read; names are relative to `folder`.
-nlohmann::ordered_json madeWith(const FlagValues& given, const FlagValues& flags,
+nlohmann::ordered_json madeWith(const OptionValues& given, const OptionValues& flags,
                                 const std::filesystem::path& folder);
 /// All files that the scene was made from; an archive, not its members.
 std::vector<std::filesystem::path> filesOf(const Scene& scene, const RenderOptions& options);
@@ -39,10 +39,10 @@ public:
   /// Locks options.checkpoint, which must be set, and reads what is there. The request must outlive
   /// this. Throws Error: usage where another process writes that film, or it belongs to other
   /// settings; input where it is damaged; output where none can be written.
-  Checkpoint(const PictureRequest& request, const FlagValues& given, Warn warn);
+  Checkpoint(const PictureRequest& request, const OptionValues& given, Warn warn);
 
   /// The parts of one picture, in their order (wholePicture), which are read and never written.
-  Checkpoint(const PictureRequest& request, const FlagValues& given, std::vector<FilmFile> parts);
+  Checkpoint(const PictureRequest& request, const OptionValues& given, std::vector<FilmFile> parts);
 
   /// Result to go on from; nothing: from the beginning. Throws Error: usage where the film belongs
   /// to other inputs, another instruction set, or more samples than the settings allow; input.

@@ -11,7 +11,7 @@
 namespace fenestra {
 namespace {
 
-const Flag everywhere[] = {
+const Option commonTable[] = {
     {"help", "", "", "Print this and exit"},
     {"version", "", "",
      "Print version, commit, compiler, instruction set, libraries and licence, as JSON with "
@@ -21,7 +21,7 @@ const Flag everywhere[] = {
 constexpr std::size_t page = 80, column = 30; ///< characters of a help line, and before its text
 
 /// Line of a name and its explanation, in two columns.
-std::string entry(std::string_view name, std::string_view text) {
+std::string formatEntry(std::string_view name, std::string_view text) {
   const std::string margin(column, ' ');
   std::string head = textOf("  ", name);
   if (head.size() < column)
@@ -32,98 +32,99 @@ std::string entry(std::string_view name, std::string_view text) {
 }
 
 /// Summary, positional arguments and flags by group.
-std::string helpText(const CommandSyntax& syntax) {
+std::string formatHelp(const CommandSyntax& syntax) {
   std::string usage = "Usage: fenestra " + syntax.name, names;
   for (const Positional& positional : syntax.positionals) {
-    usage += " " + positional.name + (positional.repeats ? "..." : "");
-    names += entry(positional.name, positional.text);
+    usage += " " + positional.name + (positional.canRepeat ? "..." : "");
+    names += formatEntry(positional.name, positional.description);
   }
   std::string text = textOf(wrapped(syntax.summary, page), "\n\n", usage, " [FLAGS]\n\n", names);
-  for (const Flag& flag : commonFlags)
-    text += entry("--" + flag.name, flag.text);
+  for (const Option& option : commonOptions)
+    text += formatEntry("--" + option.name, option.description);
   std::string group;
-  for (const Flag& flag : takenFlags(syntax)) {
-    if (flag.group != group)
-      text += "\n" + flag.group + ":\n";
-    group = flag.group;
-    text += entry(textOf("--", flag.name, flag.isSwitch() ? "" : " ", flag.value), flag.help());
+  for (const Option& option : listOptions(syntax)) {
+    if (option.group != group)
+      text += "\n" + option.group + ":\n";
+    group = option.group;
+    text += formatEntry(textOf("--", option.name, option.isSwitch() ? "" : " ", option.placeholder),
+                        option.help());
   }
   return text;
 }
 
-std::string seeHelp(const CommandSyntax& syntax) {
+std::string helpHint(const CommandSyntax& syntax) {
   return textOf(" (fenestra ", syntax.name, " --help lists what there is)");
 }
 
-Error unknownFlag(const CommandSyntax& syntax, std::string_view given) {
+Error unknownOption(const CommandSyntax& syntax, std::string_view given) {
   given = given.substr(0, given.find('='));
-  std::vector<std::string> names = namesOf(commonFlags);
-  std::ranges::copy(namesOf(takenFlags(syntax)), std::back_inserter(names));
+  std::vector<std::string> names = listNames(commonOptions);
+  std::ranges::copy(listNames(listOptions(syntax)), std::back_inserter(names));
   const std::string_view word = given.substr(std::min(given.find_first_not_of('-'), given.size()));
-  const std::string likely = nearest(lower(word), names);
+  const std::string likely = findNearest(lower(word), names);
   return usageError(given, ": no such flag",
                     likely.empty() ? "" : textOf("; did you mean --", likely, "?"),
-                    seeHelp(syntax));
+                    helpHint(syntax));
 }
 
 Error extraArgument(const CommandSyntax& syntax, std::string_view given) {
   return usageError("'", given, "': one argument too many after ",
                     joined(syntax.positionals, " and ", std::mem_fn(&Positional::name)),
-                    "; quote names with blanks", seeHelp(syntax));
+                    "; quote names with blanks", helpHint(syntax));
 }
 
-using Words = std::span<const std::string_view>;
+using Arguments = std::span<const std::string_view>;
 
-std::string_view takeFirst(Words& words) {
+std::string_view takeFirst(Arguments& words) {
   const std::string_view word = words.front();
   words = words.subspan(1);
   return word;
 }
 
 /// Takes the flag `word`, and its value from the same word or the next.
-void takeFlag(const CommandSyntax& syntax, std::string_view word, Words& words,
-              FlagValues& values) {
+void parseOption(const CommandSyntax& syntax, std::string_view word, Arguments& words,
+                 OptionValues& values) {
   const std::size_t equals = word.find('=');
   const bool hasValue = equals != word.npos;
-  const Flag* const flag =
-      word.starts_with("--") ? findFlag(syntax.flags, word.substr(2, equals - 2)) : nullptr;
-  if (!flag)
-    throw unknownFlag(syntax, word);
-  if (flag->isSwitch() && hasValue)
-    throw usageError("--", flag->name, ": is a switch; write it without a value");
-  if (flag->isSwitch())
-    return values.add(flag->name, "");
+  const Option* const option =
+      word.starts_with("--") ? findOption(syntax.options, word.substr(2, equals - 2)) : nullptr;
+  if (!option)
+    throw unknownOption(syntax, word);
+  if (option->isSwitch() && hasValue)
+    throw usageError("--", option->name, ": is a switch; write it without a value");
+  if (option->isSwitch())
+    return values.add(option->name, "");
   const bool isMissing =
       hasValue ? equals + 1 == word.size() : words.empty() || words.front().starts_with("--");
   if (isMissing || (!hasValue && words.front().empty()))
-    throw usageError("--", flag->name, ": its value is ", isMissing ? "missing" : "empty",
-                     "; write --", flag->name, " ", flag->value);
-  values.add(flag->name, std::string(hasValue ? word.substr(equals + 1) : takeFirst(words)));
+    throw usageError("--", option->name, ": its value is ", isMissing ? "missing" : "empty",
+                     "; write --", option->name, " ", option->placeholder);
+  values.add(option->name, std::string(hasValue ? word.substr(equals + 1) : takeFirst(words)));
 }
 
-FlagValues parsedWords(const CommandSyntax& syntax, Words words) {
-  FlagValues values(syntax.flags);
+OptionValues parseArguments(const CommandSyntax& syntax, Arguments words) {
+  OptionValues values(syntax.options);
   auto positional = syntax.positionals.begin();
-  for (bool flagsEnded = false; !words.empty();) {
+  for (bool optionsEnded = false; !words.empty();) {
     const std::string_view word = takeFirst(words);
-    if (!flagsEnded && word == "--")
-      flagsEnded = true;
-    else if (!flagsEnded && word.size() > 1 && word[0] == '-')
-      takeFlag(syntax, word, words, values);
+    if (!optionsEnded && word == "--")
+      optionsEnded = true;
+    else if (!optionsEnded && word.size() > 1 && word[0] == '-')
+      parseOption(syntax, word, words, values);
     else if (positional == syntax.positionals.end())
       throw extraArgument(syntax, word);
     else if (word.empty())
       throw usageError(positional->name, ": is empty; name a file");
-    else if (values.add(positional->name, std::string(word)); !positional->repeats)
+    else if (values.add(positional->name, std::string(word)); !positional->canRepeat)
       ++positional;
   }
   if (positional != syntax.positionals.end() && !values.has(positional->name))
-    throw usageError(positional->name, ": is missing; name it: ", positional->text,
-                     seeHelp(syntax));
-  for (const Refusal& refusal : syntax.refusals)
+    throw usageError(positional->name, ": is missing; name it: ", positional->description,
+                     helpHint(syntax));
+  for (const ExcludedOptions& refusal : syntax.excluded)
     for (const std::string& name : refusal.names)
       if (values.has(name))
-        throw usageError("--", name, ": ", refusal.why);
+        throw usageError("--", name, ": ", refusal.reason);
   return values;
 }
 
@@ -146,23 +147,23 @@ std::size_t editDistance(std::string_view a, std::string_view b) {
 
 } // namespace
 
-const std::span<const Flag> commonFlags = everywhere;
+const std::span<const Option> commonOptions = commonTable;
 
-std::vector<std::string> namesOf(std::span<const Flag> flags) {
+std::vector<std::string> listNames(std::span<const Option> options) {
   std::vector<std::string> names;
-  std::ranges::transform(flags, std::back_inserter(names), &Flag::name);
+  std::ranges::transform(options, std::back_inserter(names), &Option::name);
   return names;
 }
 
-std::string nearest(std::string_view word, std::span<const std::string> candidates) {
+std::string findNearest(std::string_view word, std::span<const std::string> candidates) {
   constexpr std::size_t longest = 32; // no name is longer, but a path may be
   std::string best;
   std::size_t least = std::min<std::size_t>(3, word.size() / 3 + 1); // more is no misspelling
   if (word.empty() || word.size() > longest)
     return best;
   for (const std::string& candidate : candidates) {
-    const bool cut = word.size() >= 2 && candidate.starts_with(word);
-    const std::size_t distance = cut ? 1 : editDistance(word, candidate);
+    const bool isPrefix = word.size() >= 2 && candidate.starts_with(word);
+    const std::size_t distance = isPrefix ? 1 : editDistance(word, candidate);
     if (distance < least) {
       least = distance;
       best = candidate;
@@ -171,32 +172,32 @@ std::string nearest(std::string_view word, std::span<const std::string> candidat
   return best;
 }
 
-std::optional<FlagValues> parseCommandLine(const CommandSyntax& syntax, int argc, char** argv,
-                                           int first) {
+std::optional<OptionValues> parseCommandLine(const CommandSyntax& syntax, int argc, char** argv,
+                                             int first) {
   const std::vector<std::string_view> words(argv + first, argv + argc);
-  const auto asksFor = [&words](std::string_view word) {
+  const auto hasArgument = [&words](std::string_view word) {
     return std::ranges::find(words, word) != words.end();
   };
-  if (asksFor("--help")) {
-    std::cout << helpText(syntax) << std::flush;
-  } else if (asksFor("--version")) {
+  if (hasArgument("--help")) {
+    std::cout << formatHelp(syntax) << std::flush;
+  } else if (hasArgument("--version")) {
     useInstructions();
-    std::cout << (asksFor("--json") ? aboutJson() : aboutText()) << std::flush;
+    std::cout << (hasArgument("--json") ? aboutJson() : aboutText()) << std::flush;
   } else {
-    return parsedWords(syntax, words);
+    return parseArguments(syntax, words);
   }
   return std::nullopt;
 }
 
-std::vector<Flag> takenFlags(const CommandSyntax& syntax) {
-  const auto isTaken = [&](const Flag& flag) {
-    return std::ranges::none_of(syntax.refusals, [&](const Refusal& refusal) {
-      return std::ranges::find(refusal.names, flag.name) != refusal.names.end();
+std::vector<Option> listOptions(const CommandSyntax& syntax) {
+  const auto isAccepted = [&](const Option& option) {
+    return std::ranges::none_of(syntax.excluded, [&](const ExcludedOptions& refusal) {
+      return std::ranges::find(refusal.names, option.name) != refusal.names.end();
     });
   };
-  std::vector<Flag> flags;
-  std::ranges::copy_if(syntax.flags, std::back_inserter(flags), isTaken);
-  return flags;
+  std::vector<Option> options;
+  std::ranges::copy_if(syntax.options, std::back_inserter(options), isAccepted);
+  return options;
 }
 
 } // namespace fenestra

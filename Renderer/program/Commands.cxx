@@ -28,7 +28,7 @@ void refuseMisspelt(std::string_view word) {
   std::vector<std::string> names;
   for (const Command& command : commands())
     names.push_back(command.syntax().name);
-  const std::string likely = nearest(word, names);
+  const std::string likely = findNearest(word, names);
   std::error_code failed;
   if (!likely.empty() && !std::filesystem::exists(word, failed) && !failed)
     throw usageError("'", word, "': neither a file nor a subcommand; did you mean fenestra ",

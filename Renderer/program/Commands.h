@@ -6,7 +6,7 @@
 
 namespace fenestra {
 
-class FlagValues;
+class OptionValues;
 struct CommandSyntax;
 
 struct Command {
@@ -42,11 +42,11 @@ int describeCommand(int argc, char** argv, int first);
 void useInstructions();
 
 /// Threads that --threads asks for, at most one a core.
-int threadCount(const FlagValues& flags);
+int threadCount(const OptionValues& flags);
 
 /// Limits this process to --threads threads, at most one a core, and starts them before other code
 /// uses threads; pins the instruction set, too. Throws Error: as useInstructions; output if the
 /// threads cannot be started.
-void useMachine(const FlagValues& flags);
+void useMachine(const OptionValues& flags);
 
 } // namespace fenestra

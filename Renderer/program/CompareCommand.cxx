@@ -13,13 +13,13 @@ namespace fenestra {
 namespace {
 
 constexpr const char* compareGroup = "Compare";
-const Flag compareFlags[] = {
+const Option compareFlags[] = {
     {"errora", "FILE", compareGroup, "Standard errors of A, where A itself has no error channels"},
     {"errorb", "FILE", compareGroup, "Standard errors of B, where B itself has no error channels"},
     {"output", "FILE", compareGroup, "Difference picture: .png .tif .exr .nrrd"},
 };
 
-Image readWithError(const FlagValues& values, const char* name, const char* errorFlag) {
+Image readWithError(const OptionValues& values, const char* name, const char* errorFlag) {
   Image image = readImage(*values.text(name));
   if (const auto error = values.text(errorFlag))
     attachError(image, readImage(*error));
@@ -27,7 +27,7 @@ Image readWithError(const FlagValues& values, const char* name, const char* erro
 }
 
 /// Throws Error before the pictures are read, not after.
-void declareOutput(const FlagValues& values, Outputs& outputs) {
+void declareOutput(const OptionValues& values, Outputs& outputs) {
   for (const char* name : {"A", "B", "errora", "errorb"})
     if (const auto input = values.text(name))
       expectInput(*input);
@@ -36,7 +36,7 @@ void declareOutput(const FlagValues& values, Outputs& outputs) {
 }
 
 /// Adds the file names to an error: compareImages knows pictures only.
-Comparison compared(const FlagValues& values, const Image& a, const Image& b) {
+Comparison compared(const OptionValues& values, const Image& a, const Image& b) {
   try {
     return compareImages(a, b);
   } catch (const Error& error) {
@@ -79,7 +79,7 @@ const CommandSyntax& compareSyntax() {
 }
 
 int compareCommand(int argc, char** argv, int first) {
-  const std::optional<FlagValues> values = parseCommandLine(compareSyntax(), argc, argv, first);
+  const std::optional<OptionValues> values = parseCommandLine(compareSyntax(), argc, argv, first);
   if (!values)
     return 0;
   Outputs outputs;

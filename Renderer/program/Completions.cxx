@@ -17,13 +17,14 @@ struct Offer {
   std::string text() const { return joined(words, " "); }
 };
 
-Offer offerFor(const Flag& flag) {
-  const Takes& takes = flag.takes;
-  return {takes.words.empty() ? takes.names : takes.words, flag.takesFile() || flag.value == "DIR"};
+Offer offerFor(const Option& flag) {
+  const ValueSpec& takes = flag.spec;
+  return {takes.choices.empty() ? takes.namedValues : takes.choices,
+          flag.canNameFile() || flag.placeholder == "DIR"};
 }
 
 Offer offerFor(const Positional& positional) {
-  return {positional.words, positional.words.empty()};
+  return {positional.choices, positional.choices.empty()};
 }
 
 std::string nameOf(const Command& command) {
@@ -35,9 +36,9 @@ std::string commandNames() {
 }
 
 /// Flags of a command, the common ones first.
-std::vector<Flag> allFlags(const CommandSyntax& syntax) {
-  std::vector<Flag> flags(commonFlags.begin(), commonFlags.end());
-  std::ranges::copy(takenFlags(syntax), std::back_inserter(flags));
+std::vector<Option> allFlags(const CommandSyntax& syntax) {
+  std::vector<Option> flags(commonOptions.begin(), commonOptions.end());
+  std::ranges::copy(listOptions(syntax), std::back_inserter(flags));
   return flags;
 }
 
@@ -89,8 +90,8 @@ std::string bashOffer(const Offer& offer) {
 /// Case of a command: all its flags, and the offer for the value of each.
 std::string bashCase(const CommandSyntax& syntax) {
   std::vector<std::pair<Offer, std::string>> cases; // with the flags that have it
-  const std::vector<Flag> flags = allFlags(syntax);
-  for (const Flag& flag : flags) {
+  const std::vector<Option> flags = allFlags(syntax);
+  for (const Option& flag : flags) {
     if (flag.isSwitch())
       continue;
     const Offer offer = offerFor(flag);
@@ -100,7 +101,7 @@ std::string bashCase(const CommandSyntax& syntax) {
     else
       known->second += " | --" + flag.name;
   }
-  const auto name = [](const Flag& flag) { return "--" + flag.name; };
+  const auto name = [](const Option& flag) { return "--" + flag.name; };
   std::string text = textOf("    ", syntax.name, ")\n      flags='", joined(flags, " ", name),
                             "'\n      case $before in\n");
   for (const auto& [offer, names] : cases)
@@ -165,12 +166,12 @@ std::string zshCase(const CommandSyntax& syntax) {
   const auto add = [&text](const std::string& specification) {
     text += textOf(" \\\n        ", zshQuoted(specification));
   };
-  for (const Flag& flag : allFlags(syntax)) {
+  for (const Option& flag : allFlags(syntax)) {
     const std::string help = textOf("[", escaped(flag.help(), "\\]"), "]");
     if (flag.isSwitch())
       add(textOf("--", flag.name, help));
     else
-      add(textOf("*--", flag.name, "=", help, ":", escaped(flag.value, "\\:"), ":",
+      add(textOf("*--", flag.name, "=", help, ":", escaped(flag.placeholder, "\\:"), ":",
                  zshAction(offerFor(flag))));
   }
   for (const Positional& positional : syntax.positionals)
@@ -210,15 +211,15 @@ std::string fishOffer(const Offer& offer) {
                 offer.words.empty() ? "" : textOf(" -a '", offer.text(), "'"));
 }
 
-bool takes(const Command& command, const Flag& flag) {
+bool takes(const Command& command, const Option& flag) {
   return std::ranges::any_of(allFlags(command.syntax()),
-                             [&flag](const Flag& own) { return isSame(own, flag); });
+                             [&flag](const Option& own) { return isSameOption(own, flag); });
 }
 
 /// Lines of the flags that no earlier command takes, each with all commands that take it.
 std::string fishFlags(std::size_t which) {
   std::string lines;
-  for (const Flag& flag : allFlags(commands()[which].syntax())) {
+  for (const Option& flag : allFlags(commands()[which].syntax())) {
     std::string takers;
     const auto isTaker = [&flag](const Command& command) { return takes(command, flag); };
     if (std::ranges::any_of(commands().first(which), isTaker))

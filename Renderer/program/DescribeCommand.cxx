@@ -31,7 +31,7 @@ const CommandSyntax& describeSyntax() {
 }
 
 int describeCommand(int argc, char** argv, int first) {
-  const std::optional<FlagValues> values = parseCommandLine(describeSyntax(), argc, argv, first);
+  const std::optional<OptionValues> values = parseCommandLine(describeSyntax(), argc, argv, first);
   if (!values)
     return 0;
   const std::string kind = *values->text("KIND");

@@ -61,21 +61,21 @@ std::string relativeName(const std::string& name, const fs::path& folder) {
 }
 
 std::vector<std::string> relativeArguments(const std::vector<std::string>& words,
-                                           std::span<const Flag> flags, const fs::path& folder) {
-  const auto named = [&](const Flag* flag, const std::string& value) { // null: a positional's
-    if (flag && !flag->takesFile())
+                                           std::span<const Option> flags, const fs::path& folder) {
+  const auto named = [&](const Option* flag, const std::string& value) { // null: a positional's
+    if (flag && !flag->canNameFile())
       return value;
-    return flag && flag->isWritten() ? writtenName(value, folder) : relativeName(value, folder);
+    return flag && flag->isOutputFile() ? writtenName(value, folder) : relativeName(value, folder);
   };
   std::vector<std::string> result;
-  const Flag* pending = nullptr; // flag whose value is the next word
+  const Option* pending = nullptr; // flag whose value is the next word
   for (const std::string& word : words) {
     if (pending || !word.starts_with("--")) {
       result.push_back(named(std::exchange(pending, nullptr), word));
       continue;
     }
     const std::size_t equals = word.find('=');
-    const Flag* const flag = findFlag(flags, word.substr(2, equals - 2));
+    const Option* const flag = findOption(flags, word.substr(2, equals - 2));
     if (flag && equals != word.npos)
       result.push_back(word.substr(0, equals + 1) + named(flag, word.substr(equals + 1)));
     else

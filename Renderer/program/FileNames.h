@@ -17,7 +17,7 @@ std::string relativeName(const std::string& name, const std::filesystem::path& f
 /// Words of a command line with file names made relative to `folder`: positionals, and values of
 /// flags that take a file.
 std::vector<std::string> relativeArguments(const std::vector<std::string>& words,
-                                           std::span<const Flag> flags,
+                                           std::span<const Option> flags,
                                            const std::filesystem::path& folder);
 
 } // namespace fenestra

@@ -361,13 +361,13 @@ std::string inspectionText(const Inspection& inspection) {
 // ---- the command
 
 constexpr const char* inspectGroup = "Inspect";
-const Flag inspectFlags[] = {
+const Option inspectFlags[] = {
     {"volume", "NAME", inspectGroup,
      "As for render: which volume of a scene, or series of a folder"},
     {"segmentation", "FILE|NAME", inspectGroup, "As for render: a file, or a node of the scene"},
     {"labels", "FILE|NAME", inspectGroup, "As for render: names of a label map's values"},
     {"progress", "KIND", inspectGroup, "Taken as render takes it; inspect shows none",
-     Takes::word({"auto", "bar", "xml", "none"})},
+     ValueSpec::choice({"auto", "bar", "xml", "none"})},
     {"json", "", inspectGroup,
      "Print one JSON document: volumes, segmentations, volumeRenderings, volumeProperties, rois, "
      "views, cameras, transforms, series, others; materials (the library); render (what it would "
@@ -375,7 +375,7 @@ const Flag inspectFlags[] = {
 };
 
 /// Arguments of `merged` that are not given.
-std::vector<std::string> argumentsBeyond(const FlagValues& given, const FlagValues& merged) {
+std::vector<std::string> argumentsBeyond(const OptionValues& given, const OptionValues& merged) {
   std::vector<std::string> arguments = merged.arguments();
   std::erase_if(arguments, [before = given.arguments()](const std::string& argument) {
     return std::ranges::find(before, argument) != before.end();
@@ -398,17 +398,17 @@ const CommandSyntax& inspectSyntax() {
 }
 
 int inspectCommand(int argc, char** argv, int first) {
-  const std::optional<FlagValues> values = parseCommandLine(inspectSyntax(), argc, argv, first);
+  const std::optional<OptionValues> values = parseCommandLine(inspectSyntax(), argc, argv, first);
   if (!values)
     return 0;
   useMachine(*values);
   const Input input(*values->text("INPUT"));
-  FlagValues given(renderSyntax.flags);
+  OptionValues given(renderSyntax.options);
   for (const char* name : {"INPUT", "volume", "segmentation", "labels"})
     if (const auto value = values->text(name))
       given.add(name, *value);
-  const SceneFlags stored = withSceneFlags(given, input);
-  const FlagValues& flags = stored.flags;
+  const SceneOptions stored = mergeSceneOptions(given, input);
+  const OptionValues& flags = stored.values;
   SceneRequest request;
   request.input = input.path();
   request.volume = flags.text("volume");
@@ -419,7 +419,7 @@ int inspectCommand(int argc, char** argv, int first) {
   Inspection inspection = inspectInput(request, input);
   if (Inspection& use = inspection["render"]; !use.is_null())
     use["stored"] = argumentsBeyond(given, flags);
-  const Inspection leftOut = stored.leftOut;
+  const Inspection leftOut = stored.ignored;
   Inspection& warnings = inspection["warnings"];
   warnings.insert(warnings.begin(), leftOut.begin(), leftOut.end());
   std::cout << (values->has("json") ? jsonText(inspection) : inspectionText(inspection))

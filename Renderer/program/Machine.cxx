@@ -43,14 +43,14 @@ void useInstructions() {
     useInstructionSet(pinned);
 }
 
-int threadCount(const FlagValues& flags) {
+int threadCount(const OptionValues& options) {
   const int cores = tbb::info::default_concurrency();
-  const auto wanted = static_cast<int>(flags.count("threads").value_or(0));
+  const auto wanted = static_cast<int>(options.integer("threads").value_or(0));
   return wanted > 0 ? std::min(wanted, cores) : cores;
 }
 
-void useMachine(const FlagValues& flags) {
-  const int count = threadCount(flags);
+void useMachine(const OptionValues& options) {
+  const int count = threadCount(options);
   // Never destroyed: after its destruction TBB would start more than `count` threads.
   [[maybe_unused]] static const auto* const limit = new tbb::global_control(
       tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count));

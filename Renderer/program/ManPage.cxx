@@ -39,23 +39,23 @@ std::string argumentsOf(const CommandSyntax& syntax) {
   return text;
 }
 
-bool isOfRender(const Flag& flag) {
-  const Flag* const other = findFlag(commands().front().syntax().flags, flag.name);
-  return other && isSame(*other, flag);
+bool isOfRender(const Option& flag) {
+  const Option* const other = findOption(commands().front().syntax().options, flag.name);
+  return other && isSameOption(*other, flag);
 }
 
 std::string commandEntry(const CommandSyntax& syntax, bool isRender) {
   std::string text = textOf(".It Nm Cm ", syntax.name, argumentsOf(syntax), " Op Ar FLAGS\n",
                             prose(syntax.summary));
   if (isRender || !std::ranges::equal(syntax.positionals, commands().front().syntax().positionals,
-                                      {}, &Positional::text, &Positional::text))
+                                      {}, &Positional::description, &Positional::description))
     for (const Positional& positional : syntax.positionals)
-      text += textOf(".Pp\n.Ar ", positional.name, " :\n", prose(positional.text));
+      text += textOf(".Pp\n.Ar ", positional.name, " :\n", prose(positional.description));
   return text;
 }
 
-std::string flagEntry(const Flag& flag) {
-  return textOf(".It Fl Fl ", flag.name, flag.isSwitch() ? "" : " Ar ", flag.value, "\n",
+std::string flagEntry(const Option& flag) {
+  return textOf(".It Fl Fl ", flag.name, flag.isSwitch() ? "" : " Ar ", flag.placeholder, "\n",
                 prose(flag.help()));
 }
 
@@ -66,7 +66,7 @@ constexpr const char* listEnd = ".El\n";
 std::string flagLists(const CommandSyntax& syntax, bool isRender) {
   std::string text;
   std::string_view group;
-  for (const Flag& flag : syntax.flags) {
+  for (const Option& flag : syntax.options) {
     if (!isRender && isOfRender(flag))
       continue;
     if (flag.group != group)
@@ -128,7 +128,7 @@ std::string manPage() {
     lists += flagLists(syntax, isFirst);
   }
   std::string common;
-  for (const Flag& flag : commonFlags)
+  for (const Option& flag : commonOptions)
     common += flagEntry(flag);
   return textOf(".\\\" Made by fenestra describe man.\n.Dd ", writtenDate(commitDate),
                 "\n.Dt FENESTRA 1\n.Os\n.Sh NAME\n.Nm fenestra\n.Nd ", descriptionText,

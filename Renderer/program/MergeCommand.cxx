@@ -16,10 +16,10 @@ namespace {
 namespace fs = std::filesystem;
 
 /// True for flags of a picture that is rendered already.
-bool isOfMerge(const Flag& flag) {
+bool isOfMerge(const Option& flag) {
   constexpr std::string_view others[] = {
       "checkpoint", "shard", "xml", "echo", "returnparameterfile", "processinformationaddress"};
-  return !shapesSamples(flag) && flag.topic != Topic::stop &&
+  return !shapesSamples(flag) && flag.overrideGroup != OverrideGroup::stop &&
          std::ranges::find(others, flag.name) == std::end(others);
 }
 
@@ -80,19 +80,19 @@ std::vector<FilmFile> wholePicture(const std::vector<std::string>& names) {
 
 /// Flags with which a film was rendered, whose names of files are relative to the film. Throws
 /// Error (input).
-FlagValues renderedWith(const FilmFile& film) {
-  FlagValues flags(renderSyntax.flags);
+OptionValues renderedWith(const FilmFile& film) {
+  OptionValues flags(renderSyntax.options);
   const JsonNode given = JsonNode(film.made(), film.path().string()).at("given");
   const fs::path folder = film.path().parent_path();
   for (const auto& [name, values] : given.members()) {
-    const Flag* const flag = findFlag(renderSyntax.flags, name);
-    if (name != "INPUT" && !(flag && shapesPicture(*flag)))
+    const Option* const flag = findOption(renderSyntax.options, name);
+    if (name != "INPUT" && !(flag && isImageOption(*flag)))
       throw given.error("\"" + name + "\" is no flag of a picture; render the film again");
     for (const JsonNode& value : values.elements()) {
       const std::string text = value.text();
       std::error_code failed;
       const fs::path file = (folder / text).lexically_normal();
-      const bool isFile = (!flag || flag->takesFile()) && fs::exists(file, failed);
+      const bool isFile = (!flag || flag->canNameFile()) && fs::exists(file, failed);
       flags.add(name, isFile ? file.string() : text);
     }
   }
@@ -105,9 +105,9 @@ FlagValues renderedWith(const FilmFile& film) {
 
 /// Built on first use: renderSyntax is initialised in another source.
 const CommandSyntax& mergeSyntax() {
-  static const std::vector<Flag> flags = [] {
-    std::vector<Flag> all;
-    std::ranges::copy_if(renderSyntax.flags, std::back_inserter(all), isOfMerge);
+  static const std::vector<Option> flags = [] {
+    std::vector<Option> all;
+    std::ranges::copy_if(renderSyntax.options, std::back_inserter(all), isOfMerge);
     return all;
   }();
   static const CommandSyntax syntax = {
@@ -115,20 +115,22 @@ const CommandSyntax& mergeSyntax() {
       "Makes a picture of its parts, which fenestra render --shard K/N has put into films, in any "
       "order: bit for bit the picture that one machine would have made. A single film of "
       "--checkpoint will do as well. The films name the inputs, which are read again.",
-      {{.name = "PART", .text = "Films (.film), all parts of one picture", .repeats = true}},
+      {{.name = "PART",
+        .description = "Films (.film), all parts of one picture",
+        .canRepeat = true}},
       flags,
   };
   return syntax;
 }
 
 int mergeCommand(int argc, char** argv, int first) {
-  const std::optional<FlagValues> given = parseCommandLine(mergeSyntax(), argc, argv, first);
+  const std::optional<OptionValues> given = parseCommandLine(mergeSyntax(), argc, argv, first);
   if (!given)
     return 0;
   useMachine(*given);
   std::vector<FilmFile> films = wholePicture(given->texts("PART"));
-  FlagValues flags = renderedWith(films.front());
-  for (const Flag& flag : mergeSyntax().flags)
+  OptionValues flags = renderedWith(films.front());
+  for (const Option& flag : mergeSyntax().options)
     if (given->has(flag.name)) {
       flags.remove(flag.name);
       for (const std::string& value : given->texts(flag.name))

@@ -17,41 +17,44 @@ namespace {
 // ---- an organ preset's flags
 
 /// False for a default that Slicer hands over: its panel passes every flag.
-bool isGiven(const FlagValues& given, const std::string& name) {
-  return given.has("returnparameterfile") ? given.differs(name) : given.has(name);
+bool isGiven(const OptionValues& given, const std::string& name) {
+  return given.has("returnparameterfile") ? given.hasNonDefault(name) : given.has(name);
 }
 
 /// True if given flags replace what the preset says of `own`.
-bool isOverruled(const Flag& own, const FlagValues& given) {
-  return std::ranges::any_of(renderSyntax.flags, [&](const Flag& flag) {
-    const bool isAlternative = flag.topic == own.topic && wholeOf(own.topic) != own.topic;
-    const bool isMode = flag.name == "clip" && wholeOf(own.topic) == Topic::clip;
-    return (flag.name == own.name || isAlternative || isMode) && isGiven(given, flag.name);
+bool isOverridden(const Option& own, const OptionValues& given) {
+  return std::ranges::any_of(renderSyntax.options, [&](const Option& option) {
+    const bool isAlternative = option.overrideGroup == own.overrideGroup &&
+                               parentGroup(own.overrideGroup) != own.overrideGroup;
+    const bool isMode =
+        option.name == "clip" && parentGroup(own.overrideGroup) == OverrideGroup::clip;
+    return (option.name == own.name || isAlternative || isMode) && isGiven(given, option.name);
   });
 }
 
 /// Flag that a preset sets. Throws Error (input) for one that it may not set: a preset may be a
 /// user's file.
-const Flag& presetFlag(const std::string& name, const std::string& source) {
-  if (const Flag* flag = findFlag(renderSyntax.flags, name); flag && shapesLook(*flag))
-    return *flag;
+const Option& findPresetOption(const std::string& name, const std::string& source) {
+  if (const Option* option = findOption(renderSyntax.options, name);
+      option && isAppearanceOption(*option))
+    return *option;
   throw inputError(source, "flags: \"", name, "\" is no flag of clipping, view or look; remove it");
 }
 
 /// Segments named by the given focus; all if it names none.
-std::vector<SegmentInfo> inFocus(const FlagValues& given,
-                                 const std::vector<SegmentInfo>& segments) {
+std::vector<SegmentInfo> selectFocus(const OptionValues& given,
+                                     const std::vector<SegmentInfo>& segments) {
   const std::vector<std::string> focus = given.list("focus");
-  std::vector<SegmentInfo> named;
-  std::ranges::copy_if(segments, std::back_inserter(named), [&](const SegmentInfo& segment) {
+  std::vector<SegmentInfo> selected;
+  std::ranges::copy_if(segments, std::back_inserter(selected), [&](const SegmentInfo& segment) {
     const std::string names[] = {segment.id, segment.name, std::to_string(segment.labelValue)};
     return std::ranges::find_first_of(focus, names) != focus.end();
   });
-  return named.empty() ? segments : named;
+  return selected.empty() ? segments : selected;
 }
 
-OrganPreset presetFor(const FlagValues& given, const Input& input,
-                      const std::optional<SegmentNames>& names) {
+OrganPreset choosePreset(const OptionValues& given, const Input& input,
+                         const std::optional<SegmentNames>& names) {
   const std::string name = *given.text("preset");
   if (name != "auto")
     return namedPreset(name);
@@ -65,13 +68,13 @@ OrganPreset presetFor(const FlagValues& given, const Input& input,
   std::vector<OrganPreset> presets;
   for (const std::string& own : ownPresets("presets"))
     presets.push_back(namedPreset(own));
-  return fittingPreset(presets, inFocus(given, names->segments), names->source,
+  return fittingPreset(presets, selectFocus(given, names->segments), names->source,
                        [&](Modality modality) {
                          return suits(modality, input.volume(given.text("volume")).volume);
                        });
 }
 
-void addFocus(const OrganPreset& preset, const SegmentNames& names, FlagValues& flags) {
+void addFocus(const OrganPreset& preset, const SegmentNames& names, OptionValues& values) {
   if (names.segments.empty())
     throw inputError(names.source, "--preset ", preset.name,
                      ": its segments have no names, only values; name them with --labels, or say "
@@ -81,17 +84,17 @@ void addFocus(const OrganPreset& preset, const SegmentNames& names, FlagValues& 
     throw inputError(names.source, "--preset ", preset.name, ": none of its segments is one (",
                      listedNames(names.segments), "); give --focus A,B,..., or another preset");
   for (const SegmentInfo& segment : focus)
-    flags.add("focus", replacedAll(segment.id, ",", "\\,"));
+    values.add("focus", replacedAll(segment.id, ",", "\\,"));
 }
 
 // ---- a scene's flags
 
 /// True if given flags replace a stored one: itself, or another of its topic.
-bool isReplaced(const Flag& stored, const FlagValues& given) {
-  return std::ranges::any_of(renderSyntax.flags, [&](const Flag& flag) {
-    const bool isOfTopic = wholeOf(flag.topic) == wholeOf(stored.topic);
-    return (flag.name == stored.name || (isOfTopic && stored.topic != Topic::own)) &&
-           given.has(flag.name);
+bool isReplaced(const Option& own, const OptionValues& given) {
+  return std::ranges::any_of(renderSyntax.options, [&](const Option& option) {
+    const bool isInGroup = parentGroup(option.overrideGroup) == parentGroup(own.overrideGroup);
+    return (option.name == own.name || (isInGroup && own.overrideGroup != OverrideGroup::own)) &&
+           given.has(option.name);
   });
 }
 
@@ -110,7 +113,7 @@ bool isFile(const std::string& name, const std::string& value, const Input& inpu
 
 /// True beyond the limits of a scene's flags. A text that is no number is refused later, like one
 /// that a user gave.
-bool isTooMuch(const std::string& name, const std::string& value) {
+bool isBeyondLimit(const std::string& name, const std::string& value) {
   constexpr int mostPixels = 4096; // limit of width and of height
   constexpr std::uint64_t mostSamples = 65536;
   int width = 0, height = 0;
@@ -118,35 +121,35 @@ bool isTooMuch(const std::string& name, const std::string& value) {
     return std::max(width, height) > mostPixels;
   if (name != "samples")
     return false;
-  FlagValues samples(renderSyntax.flags);
+  OptionValues samples(renderSyntax.options);
   samples.add(name, value);
-  return samples.count(name) > mostSamples;
+  return samples.integer(name) > mostSamples;
 }
 
 /// Adds a stored value; of a flag that may be repeated, values separated by commas ("\," is a
 /// comma).
-void addStored(const Flag& flag, const std::string& value, FlagValues& merged) {
-  if (!flag.takes.repeats)
-    return merged.add(flag.name, value);
-  FlagValues stored(renderSyntax.flags);
-  stored.add(flag.name, value);
-  for (const std::string& one : stored.list(flag.name))
-    merged.add(flag.name, one);
+void addStoredValue(const Option& option, const std::string& value, OptionValues& merged) {
+  if (!option.spec.canRepeat)
+    return merged.add(option.name, value);
+  OptionValues stored(renderSyntax.options);
+  stored.add(option.name, value);
+  for (const std::string& one : stored.list(option.name))
+    merged.add(option.name, one);
 }
 
 /// Reason why a scene's stored value is not taken; empty: taken.
-std::string objection(const Input& input, const std::string& name, const std::string& value) {
+std::string rejectionReason(const Input& input, const std::string& name, const std::string& value) {
   if (name == "volume" || name == "segmentation")
     return input.document()->find(value) ? "" : "is no node of the scene";
-  if (isTooMuch(name, value))
+  if (isBeyondLimit(name, value))
     return "is more than a scene may ask for";
   return isFile(name, value, input) ? "names a file, which a scene may not choose" : "";
 }
 
 } // namespace
 
-PresetFlags withPreset(const FlagValues& given, const Input& input) {
-  PresetFlags result{given};
+PresetOptions mergePreset(const OptionValues& given, const Input& input) {
+  PresetOptions result{given};
   if (!given.has("preset"))
     return result;
   const bool givenFocus = given.has("focus");
@@ -154,50 +157,50 @@ PresetFlags withPreset(const FlagValues& given, const Input& input) {
   const auto names = byNames ? input.segmentNames({given.text("volume"), given.text("segmentation"),
                                                    given.text("labels")})
                              : std::nullopt;
-  const OrganPreset preset = presetFor(given, input, names);
-  FlagValues& flags = result.flags;
+  const OrganPreset preset = choosePreset(given, input, names);
+  OptionValues& values = result.values;
   if (!givenFocus && names)
-    addFocus(preset, *names, flags);
-  for (const auto& [name, value] : preset.flags) {
-    const Flag& flag = presetFlag(name, *given.text("preset"));
-    if (isOverruled(flag, given) || (shapesClip(flag) && !flags.has("focus")))
+    addFocus(preset, *names, values);
+  for (const auto& [name, value] : preset.options) {
+    const Option& option = findPresetOption(name, *given.text("preset"));
+    if (isOverridden(option, given) || (isClipOption(option) && !values.has("focus")))
       continue;
-    flags.remove(name);
-    flags.add(name, value);
+    values.remove(name);
+    values.add(name, value);
     if (name == "transfer")
-      result.transferFor = preset.modality;
+      result.transferModality = preset.modality;
   }
-  flags.remove("preset");
-  flags.add("preset", preset.name);
+  values.remove("preset");
+  values.add("preset", preset.name);
   return result;
 }
 
-RenderOptions renderOptions(const PresetFlags& flags) {
-  RenderOptions options = renderOptions(flags.flags);
-  options.scene.transferFor = flags.transferFor;
+RenderOptions makeRenderOptions(const PresetOptions& merged) {
+  RenderOptions options = makeRenderOptions(merged.values);
+  options.scene.transferFor = merged.transferModality;
   return options;
 }
 
-SceneFlags withSceneFlags(const FlagValues& given, const Input& input) {
-  SceneFlags result{given};
-  FlagValues& merged = result.flags;
+SceneOptions mergeSceneOptions(const OptionValues& given, const Input& input) {
+  SceneOptions result{given};
+  OptionValues& merged = result.values;
   const MrmlDocument* scene = input.document();
   const auto nodes = scene ? scene->withTag("FenestraRender") : std::vector<const MrmlNode*>();
   if (nodes.empty())
     return result;
   const MrmlNode& node = *nodes.back();
-  const FlagValues deciding = withPreset(given, input).flags;
-  for (const Flag& flag : renderSyntax.flags) {
-    const std::string& name = flag.name;
+  const OptionValues explicitValues = mergePreset(given, input).values;
+  for (const Option& option : renderSyntax.options) {
+    const std::string& name = option.name;
     const bool isNode = name == "volume" || name == "segmentation";
     const std::string value = isNode ? node.referenced(name) : node.text(name);
-    if (!shapesPicture(flag) || value.empty() || isReplaced(flag, deciding))
+    if (!isImageOption(option) || value.empty() || isReplaced(option, explicitValues))
       continue;
-    if (const std::string why = objection(input, name, value); why.empty())
-      addStored(flag, value, merged);
+    if (const std::string reason = rejectionReason(input, name, value); reason.empty())
+      addStoredValue(option, value, merged);
     else
-      result.leftOut.push_back(textOf(node.tag, ' ', shown(node), ": ", name, " \"", shown(value),
-                                      "\" ", why, "; give --", name, ' ', shown(value)));
+      result.ignored.push_back(textOf(node.tag, ' ', shown(node), ": ", name, " \"", shown(value),
+                                      "\" ", reason, "; give --", name, ' ', shown(value)));
   }
   const bool hasMaterials = merged.text("materials").value_or(noMaterials) != noMaterials;
   if (!hasMaterials && !given.has("material")) // changes of what was not taken

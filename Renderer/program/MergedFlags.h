@@ -7,9 +7,9 @@
 
 namespace fenestra {
 
-struct SceneFlags {
-  FlagValues flags;
-  std::vector<std::string> leftOut = {}; ///< stored flags not taken, with the reason; a line each
+struct SceneOptions {
+  OptionValues values;
+  std::vector<std::string> ignored = {}; ///< stored flags not taken, with the reason; a line each
 };
 
 /// Given flags merged with those that Slicer's extension stored in the scene INPUT, in a node
@@ -19,12 +19,12 @@ struct SceneFlags {
 /// comes from others, so these are left out: names of files (presets, volume properties by name,
 /// and looks as text are taken), more than 4096 x 4096 pixels, more than 65536 samples. Throws
 /// Error (input) for a damaged scene.
-SceneFlags withSceneFlags(const FlagValues& given, const Input& input);
+SceneOptions mergeSceneOptions(const OptionValues& given, const Input& input);
 
-struct PresetFlags {
-  FlagValues flags;
+struct PresetOptions {
+  OptionValues values;
   /// Modality for which the transfer function was made; nullopt: it is not the preset's.
-  std::optional<Modality> transferFor = {};
+  std::optional<Modality> transferModality = {};
 };
 
 /// Given flags merged with those of their preset (--preset liver stands for a focus, a look, a view
@@ -32,9 +32,9 @@ struct PresetFlags {
 /// segmentation that a render would read; without a segmentation, nothing is clipped. A given
 /// --clip wins over all that the preset says of clipping modes. Throws Error: usage; input, also if
 /// the preset knows none of the segments.
-PresetFlags withPreset(const FlagValues& given, const Input& input);
+PresetOptions mergePreset(const OptionValues& given, const Input& input);
 
 /// Render options from given flags and their preset's.
-RenderOptions renderOptions(const PresetFlags& flags);
+RenderOptions makeRenderOptions(const PresetOptions& merged);
 
 } // namespace fenestra

@@ -13,20 +13,20 @@ namespace fenestra {
 namespace {
 
 constexpr const char* phantomGroup = "Phantom";
-const Flag phantomFlags[] = {
+const Option phantomFlags[] = {
     {"output", "DIR", phantomGroup,
      "Folder for KIND.mrml, KIND.mrb, KIND.nrrd and the others [KIND]"},
     {"size", "WxHxD", phantomGroup,
      textOf("Voxels over the same field of view; N for the cube [knee ", numbersText(kneeSize, "x"),
             ", foot ", numbersText(footSize, "x"), ", fetus ", numbersText(fetusSize, "x"),
             ", cube ", CubeOptions().size, "]"),
-     Takes{.least = 16, .greatest = 1024}}, // range of the cube's N
+     ValueSpec{.least = 16, .greatest = 1024}}, // range of the cube's N
     {"edge", "MM", phantomGroup, "The cube's edge",
-     Takes::number(1e-3, 1e5).shows(numberText(CubeOptions().edge))},
+     ValueSpec::number(1e-3, 1e5).withDefault(numberText(CubeOptions().edge))},
 };
 
 /// Size WxHxD in voxels; without --size: `standard`.
-Size3 sizeOf(const FlagValues& values, const Size3& standard) {
+Size3 sizeOf(const OptionValues& values, const Size3& standard) {
   const auto text = values.text("size");
   if (!text)
     return standard;
@@ -37,7 +37,7 @@ Size3 sizeOf(const FlagValues& values, const Size3& standard) {
   return size;
 }
 
-Phantom makeCube(const FlagValues& values) {
+Phantom makeCube(const OptionValues& values) {
   CubeOptions options;
   if (values.has("edge"))
     values.read("edge", options.edge);
@@ -46,7 +46,7 @@ Phantom makeCube(const FlagValues& values) {
   return makeCubePhantom(options);
 }
 
-Phantom makePhantom(const std::string& kind, const FlagValues& values) {
+Phantom makePhantom(const std::string& kind, const OptionValues& values) {
   if (kind != "cube" && values.has("edge"))
     throw usageError("--edge: is for the cube alone; leave it out, or use phantom cube");
   if (kind == "knee")
@@ -75,7 +75,7 @@ const CommandSyntax& phantomSyntax() {
 }
 
 int phantomCommand(int argc, char** argv, int first) {
-  const std::optional<FlagValues> values = parseCommandLine(phantomSyntax(), argc, argv, first);
+  const std::optional<OptionValues> values = parseCommandLine(phantomSyntax(), argc, argv, first);
   if (!values)
     return 0;
   const std::string kind = *values->text("KIND");

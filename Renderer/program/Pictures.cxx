@@ -42,7 +42,7 @@ std::map<std::string, std::string> header(const Scene& scene, const RenderOption
                                           const RenderResult& result,
                                           const std::vector<std::string>& words) {
   const std::filesystem::path folder = options.outputs.front().parent_path();
-  const std::vector<std::string> arguments = relativeArguments(words, renderSyntax.flags, folder);
+  const std::vector<std::string> arguments = relativeArguments(words, renderSyntax.options, folder);
   std::map<std::string, std::string> entries = {
       {"version", versionText},
       {"target", textOf(processorText, "-", result.target)},
@@ -80,12 +80,12 @@ void addFilterChannels(const RenderOptions& options, const Scene& scene,
 
 } // namespace
 
-PictureRequest pictureRequest(const FlagValues& given) {
+PictureRequest pictureRequest(const OptionValues& given) {
   const Input input(*given.text("INPUT"));
-  const SceneFlags stored = withSceneFlags(given, input);
-  const PresetFlags flags = withPreset(stored.flags, input);
-  PictureRequest request{stored.flags, flags.flags, renderOptions(flags), input};
-  request.options.scene.leftOut = stored.leftOut;
+  const SceneOptions stored = mergeSceneOptions(given, input);
+  const PresetOptions flags = mergePreset(stored.values, input);
+  PictureRequest request{stored.values, flags.values, makeRenderOptions(flags), input};
+  request.options.scene.leftOut = stored.ignored;
   return request;
 }
 
@@ -93,7 +93,7 @@ void declareOutputs(const RenderOptions& options, Outputs& outputs) {
   for (const std::filesystem::path& input : options.inputs)
     expectInput(input);
   for (const std::filesystem::path& path : options.outputs)
-    declareImage(path, outputs, options.outputsNamedBy, options.filteredFiles());
+    declareImage(path, outputs, options.outputNaming, options.filteredFiles());
   if (options.surface)
     declareSurface(*options.surface, outputs);
   for (const auto& file : {options.stats, options.returnValues, options.checkpoint})
@@ -118,7 +118,7 @@ void checkMemory(const SceneRequest& scene) {
 }
 
 RenderSettings PictureFilter::settings() {
-  RenderSettings settings = settingsFor(m_options, m_scene.background());
+  RenderSettings settings = makeSettings(m_options, m_scene.background());
   if (m_options.noiseTarget == NoiseTarget::filtered)
     settings.seenNoise = [this](const Film& film) {
       m_seen = denoised(film, m_scene);

@@ -9,13 +9,13 @@
 namespace fenestra {
 
 struct PictureRequest {
-  FlagValues stored; ///< given, and stored in the scene
-  FlagValues flags;  ///< those, and the preset's
+  OptionValues stored; ///< given, and stored in the scene
+  OptionValues flags;  ///< those, and the preset's
   RenderOptions options;
   Input input; ///< of options.scene, opened
 };
 /// Throws Error: usage; input for a damaged scene or preset.
-PictureRequest pictureRequest(const FlagValues& given);
+PictureRequest pictureRequest(const OptionValues& given);
 
 /// Declares all results that `options` name, and enters all their inputs into the ledger. Throws
 /// Error: usage or output.

@@ -262,7 +262,7 @@ RenderResult renderFilm(const RenderOptions& options, const Scene& scene,
     const Progress progress(options, monitor);
     return render(scene.forRender(), settings, monitor, std::move(begun));
   }();
-  if (options.checkpoint && !options.isPart)
+  if (options.checkpoint && !options.isShard)
     checkpoint->keep(result);
   return result;
 }
@@ -290,7 +290,7 @@ int renderScene(const PictureRequest& request, const std::vector<std::string>& a
       renderFilm(options, scene, filter.settings(), checkpoint, monitor, startWorkers, stats);
   stats.transport = watch.seconds();
   surface.get();
-  if (options.isPart)
+  if (options.isShard)
     return finishShard(options, result, *checkpoint, total.seconds());
   if (result.finishedSamples == 0) {
     std::cerr << "fenestra: stopped on request before the first pass; no picture was written\n";
@@ -326,7 +326,7 @@ int runRender(const StartWorkers& startWorkers, int argc, char** argv, int first
     std::cout << slicerDescription(renderSyntax) << std::flush;
     return 0;
   }
-  const std::optional<FlagValues> given = parseCommandLine(renderSyntax, argc, argv, first);
+  const std::optional<OptionValues> given = parseCommandLine(renderSyntax, argc, argv, first);
   if (!given)
     return 0;
   useMachine(*given);

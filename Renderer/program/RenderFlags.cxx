@@ -14,24 +14,25 @@ namespace {
 constexpr const char* sceneGroup = "What is shown";
 constexpr const char* clipGroup = "What is clipped";
 constexpr const char* viewGroup = "View";
-constexpr const char* lookGroup = "Look";
+constexpr const char* appearanceGroup = "Look";
 constexpr const char* qualityGroup = "Quality";
 constexpr const char* outputGroup = "More";
 constexpr const char* slicerGroup = "3D Slicer's own";
 
 // ---- values of a form of their own
 
-void readMargins(const FlagValues& flags, const std::string& name, std::vector<double>& margins) {
-  const auto commas = std::ranges::count(*flags.text(name), ',');
-  margins = flags.numbers(name, 1 + static_cast<std::size_t>(commas));
+void readMargins(const OptionValues& values, const std::string& name,
+                 std::vector<double>& margins) {
+  const auto commas = std::ranges::count(*values.text(name), ',');
+  margins = values.numbers(name, 1 + static_cast<std::size_t>(commas));
   for (const double margin : margins)
     if (std::abs(margin) > 1000.0)
       throw usageError("--" + name + ": must be from -1000 to 1000 mm");
 }
 
-void readPlane(const FlagValues& flags, const std::string& name,
+void readPlane(const OptionValues& values, const std::string& name,
                std::optional<PlaneRequest>& plane) {
-  const std::vector<double> numbers = flags.numbers(name, 6);
+  const std::vector<double> numbers = values.numbers(name, 6);
   const Vec3 normal(numbers[3], numbers[4], numbers[5]);
   if (normal.isZero(0.0))
     throw usageError("--" + name + ": the normal NX,NY,NZ must not be zero");
@@ -39,31 +40,32 @@ void readPlane(const FlagValues& flags, const std::string& name,
 }
 
 /// R,G,B, or one number for all three; `otherwise`: the flag's other values, for the message.
-Rgb linearColor(const FlagValues& flags, const std::string& name, const std::string& otherwise) {
+Rgb parseLinearColor(const OptionValues& values, const std::string& name,
+                     const std::string& alternatives) {
   constexpr double brightest = 1e12; // keeps products within a float's range
-  const std::string text = *flags.text(name);
+  const std::string text = *values.text(name);
   const bool numbers = text.find_first_not_of("0123456789+-.,eE ") == std::string::npos;
-  const bool isGrey = text.find(',') == std::string::npos;
+  const bool isGray = text.find(',') == std::string::npos;
   const Rgb value = !numbers ? Rgb::Constant(-1.0)
-                    : isGrey ? Rgb::Constant(flags.numbers(name, 1)[0])
-                             : Rgb(flags.triple(name).array());
+                    : isGray ? Rgb::Constant(values.numbers(name, 1)[0])
+                             : Rgb(values.triple(name).array());
   if (value.minCoeff() < 0.0 || value.maxCoeff() > brightest)
     throw usageError("--", name, ": expected R,G,B, or one number for grey, from 0 to 1e12, or ",
-                     otherwise, ", got '", oneLine(text), "'");
+                     alternatives, ", got '", oneLine(text), "'");
   return value;
 }
 
-void readEnvironment(const FlagValues& flags, const std::string& name, SceneRequest& scene) {
-  const std::string text = *flags.text(name);
+void readEnvironment(const OptionValues& values, const std::string& name, SceneRequest& scene) {
+  const std::string text = *values.text(name);
   if (imageFormat(text) == ImageFormat::exr)
     scene.environmentMap = text;
   else
-    scene.environment = linearColor(flags, name, "an .exr file");
+    scene.environment = parseLinearColor(values, name, "an .exr file");
 }
 
-void readBackground(const FlagValues& flags, const std::string& name,
+void readBackground(const OptionValues& values, const std::string& name,
                     std::optional<Background>& background) {
-  const std::string text = *flags.text(name);
+  const std::string text = *values.text(name);
   if (text == "transparent")
     background = Background{Background::Kind::transparent};
   else if (text == "environment")
@@ -72,12 +74,12 @@ void readBackground(const FlagValues& flags, const std::string& name,
     background = Background::standard();
   else
     background = Background{Background::Kind::color,
-                            linearColor(flags, name, "gradient, transparent or environment")};
+                            parseLinearColor(values, name, "gradient, transparent or environment")};
 }
 
-void readSize(const FlagValues& flags, const std::string& name, SceneRequest& scene) {
+void readSize(const OptionValues& values, const std::string& name, SceneRequest& scene) {
   constexpr int largest = 16384;
-  const std::string text = *flags.text(name);
+  const std::string text = *values.text(name);
   char rest = 0;
   const int parts = std::sscanf(text.c_str(), "%dx%d%c", &scene.width, &scene.height, &rest);
   if (parts != 2 || std::min(scene.width, scene.height) < 1 ||
@@ -86,8 +88,8 @@ void readSize(const FlagValues& flags, const std::string& name, SceneRequest& sc
                      ", got '", oneLine(text), "'");
 }
 
-void readShard(const FlagValues& flags, const std::string& name, RenderOptions& options) {
-  const std::string text = *flags.text(name);
+void readShard(const OptionValues& values, const std::string& name, RenderOptions& options) {
+  const std::string text = *values.text(name);
   int number = 0, count = 0;
   char rest = 0;
   if (std::sscanf(text.c_str(), "%d/%d%c", &number, &count, &rest) != 2 || number < 1 ||
@@ -95,19 +97,21 @@ void readShard(const FlagValues& flags, const std::string& name, RenderOptions& 
     throw usageError("--", name, ": expected K/N, the K-th of N parts, from 1/1 to ", mostShards,
                      "/", mostShards, ", got '", oneLine(text), "'");
   options.settings.shard = {number - 1, count};
-  options.isPart = true;
+  options.isShard = true;
 }
 
-void readTexts(const FlagValues& flags, const std::string& name, std::vector<std::string>& texts) {
-  texts = flags.texts(name);
+void readTexts(const OptionValues& values, const std::string& name,
+               std::vector<std::string>& texts) {
+  texts = values.texts(name);
 }
 
-void readLayers(const FlagValues& flags, const std::string& name, LayerSet& layers) {
-  layers = layerSet(flags.list(name));
+void readLayers(const OptionValues& values, const std::string& name, LayerSet& layers) {
+  layers = layerSet(values.list(name));
 }
 
 /// Names of the program's own presets, and others.
-std::vector<std::string> ownAnd(const std::string& kind, const std::vector<std::string>& others) {
+std::vector<std::string> presetNames(const std::string& kind,
+                                     const std::vector<std::string>& others) {
   std::vector<std::string> names = ownPresets(kind);
   std::ranges::copy(others, std::back_inserter(names));
   return names;
@@ -116,10 +120,10 @@ std::vector<std::string> ownAnd(const std::string& kind, const std::vector<std::
 // ---- the table
 
 /// Flags with the places of their values: the members of `options`, at first the defaults.
-struct RenderTable {
-  RenderTable() = default;
-  RenderTable(const RenderTable&) = delete;
-  RenderTable& operator=(const RenderTable&) = delete;
+struct RenderOptionTable {
+  RenderOptionTable() = default;
+  RenderOptionTable(const RenderOptionTable&) = delete;
+  RenderOptionTable& operator=(const RenderOptionTable&) = delete;
 
   RenderOptions options = {};
   SceneRequest& scene = options.scene;
@@ -129,232 +133,247 @@ struct RenderTable {
   ViewRequest& view = scene.view;
   RenderSettings& settings = options.settings;
 
-  std::vector<Flag> flags = {
+  std::vector<Option> rows = {
       {"segmentation", "FILE|NAME", sceneGroup,
        "Segments: a .seg.nrrd, any label map, or a node of the scene [the scene's]",
-       Takes::labels().into(scene.segmentation), Topic::focus},
+       ValueSpec::labels().bind(scene.segmentation), OverrideGroup::focus},
       {"labels", "FILE|NAME", sceneGroup,
        "Names of a label map's values: a .ctbl, .label, .json or .csv, or one of totalsegmentator, "
        "totalsegmentator1, totalsegmentator2, freesurfer [in or beside the label map]",
-       Takes::text().into(scene.labels).orNames(ownAnd("labels", {"totalsegmentator"})),
-       Topic::focus},
+       ValueSpec::text()
+           .bind(scene.labels)
+           .withNamedValues(presetNames("labels", {"totalsegmentator"})),
+       OverrideGroup::focus},
       {"focus", "A,B,...", sceneGroup,
        "Segments to show unoccluded, by id, name or label value (a comma in a name is \\,); may be "
        "repeated",
-       Takes::list().into(scene.focus), Topic::focus},
+       ValueSpec::list().bind(scene.focus), OverrideGroup::focus},
       {"preset", "NAME|FILE|auto", sceneGroup,
        textOf(
            "Focus, look, view and clip of an anatomy in one: ", joined(ownPresets("presets"), ", "),
            ", a .json, or auto (by the segments' names); other flags win over it"),
-       Takes::text().into(options.preset).orNames(ownAnd("presets", {"auto"}))},
+       ValueSpec::text().bind(options.preset).withNamedValues(presetNames("presets", {"auto"}))},
       {"output", "FILE", sceneGroup,
        "Picture: .png .tif (display), .exr (all channels), .nrrd (linear RGBA and depth); may be "
        "repeated [INPUT.png]",
-       Takes::picture().into(options.outputs), Topic::process},
+       ValueSpec::outputImage().bind(options.outputs), OverrideGroup::process},
       {"margin", "MM,...", clipGroup,
        "Grows the focus, or shrinks it (negative): one for all its segments together, or one "
        "each [0]",
-       Takes::numbers().into(focus.shaping.margins, readMargins), Topic::focus, Needs::focus},
+       ValueSpec::numbers().bind(focus.shaping.margins, readMargins), OverrideGroup::focus,
+       Requires::focus},
       {"labelsmoothing", "MM", clipGroup,
        "Smooths the labels of focus and materials by a Gaussian of this deviation, against stair "
        "steps; thick slices are interpolated first; auto: 0.6 of a voxel's longest edge, not for "
        "thin parts",
-       Takes::numberOrAuto(focus.shaping.smoothing, 0.0, 100.0, 0.0), Topic::own, Needs::labels},
+       ValueSpec::numberOrAuto(focus.shaping.smoothing, 0.0, 100.0, 0.0), OverrideGroup::own,
+       Requires::labels},
       {"clip", "MODE", clipGroup,
        "none, plane, hole, cutaway, ghost, surface, or auto: surface with a focus, else none",
-       Takes::word(clip.mode, {{"auto", std::nullopt},
-                               {"none", ClipMode::none},
-                               {"plane", ClipMode::plane},
-                               {"hole", ClipMode::hole},
-                               {"cutaway", ClipMode::cutaway},
-                               {"ghost", ClipMode::ghost},
-                               {"surface", ClipMode::surface}}),
-       Topic::clip},
+       ValueSpec::choice(clip.mode, {{"auto", std::nullopt},
+                                     {"none", ClipMode::none},
+                                     {"plane", ClipMode::plane},
+                                     {"hole", ClipMode::hole},
+                                     {"cutaway", ClipMode::cutaway},
+                                     {"ghost", ClipMode::ghost},
+                                     {"surface", ClipMode::surface}}),
+       OverrideGroup::clip},
       {"boundary", "KIND", clipGroup,
        "How the surface leaves the focus: spline (the paper's) or exact (with its depth and slope "
        "at every point)",
-       Takes::word(surface.boundary, {{"spline", Boundary::spline}, {"exact", Boundary::exact}}),
-       Topic::boundary, Needs::surface},
+       ValueSpec::choice(surface.boundary,
+                         {{"spline", Boundary::spline}, {"exact", Boundary::exact}}),
+       OverrideGroup::boundary, Requires::surface},
       {"controlpoints", "N", clipGroup, "Control points of the spline, 3 to 1000",
-       Takes::whole(3, 1000).into(surface.controlPoints), Topic::boundary, Needs::spline},
+       ValueSpec::integer(3, 1000).bind(surface.controlPoints), OverrideGroup::boundary,
+       Requires::spline},
       {"smoothing", "P", clipGroup, "Spline's p in mm, from 0 (a plane) to 1 (through the points)",
-       Takes::number(0.0, 1.0).into(surface.smoothing), Topic::boundary, Needs::spline},
+       ValueSpec::number(0.0, 1.0).bind(surface.smoothing), OverrideGroup::boundary,
+       Requires::spline},
       {"plane", "OX,OY,OZ,NX,NY,NZ", clipGroup,
        "Clip plane in RAS mm; what the normal points at is removed [the focus's best plane]",
-       Takes::numbers().into(clip.plane, readPlane), Topic::clip, Needs::plane},
+       ValueSpec::numbers().bind(clip.plane, readPlane), OverrideGroup::clip, Requires::plane},
       {"hole", "SHAPE", clipGroup, "Shape of --clip hole: box, cylinder or sphere",
-       Takes::word(surface.hole.shape, {{"box", HoleShape::box},
-                                        {"cylinder", HoleShape::cylinder},
-                                        {"sphere", HoleShape::sphere}}),
-       Topic::clip, Needs::hole},
+       ValueSpec::choice(surface.hole.shape, {{"box", HoleShape::box},
+                                              {"cylinder", HoleShape::cylinder},
+                                              {"sphere", HoleShape::sphere}}),
+       OverrideGroup::clip, Requires::hole},
       {"holemargin", "MM", clipGroup, "How much wider than the focus a hole is",
-       Takes::number(0.0, 1e6).into(surface.hole.margin), Topic::clip, Needs::hole},
+       ValueSpec::number(0.0, 1e6).bind(surface.hole.margin), OverrideGroup::clip, Requires::hole},
       {"ghost", "SHARE", clipGroup, "Share of the extinction that --clip ghost leaves, 0 to 1",
-       Takes::number(0.0, 1.0).into(clip.ghost), Topic::clip, Needs::ghost},
+       ValueSpec::number(0.0, 1.0).bind(clip.ghost), OverrideGroup::clip, Requires::ghost},
       {"offset", "MM", clipGroup,
        "Moves the cut away from the eye, into the focus, or toward it (negative)",
-       Takes::number(-1e6, 1e6).into(surface.offset), Topic::clip, Needs::clip},
+       ValueSpec::number(-1e6, 1e6).bind(surface.offset), OverrideGroup::clip, Requires::clip},
       {"soft", "MM", clipGroup,
        "Matter comes back gradually over this depth behind the cut; auto: as for --labelsmoothing, "
        "with --clip surface, hole and cutaway, else 0",
-       Takes::numberOrAuto(clip.softness, 0.0, 1e6, 0.0), Topic::clip, Needs::clip},
+       ValueSpec::numberOrAuto(clip.softness, 0.0, 1e6, 0.0), OverrideGroup::clip, Requires::clip},
       {"contextdensity", "F", clipGroup,
        "Multiplies the extinction of everything that is not focus, 0 to 1",
-       Takes::number(0.0, 1.0).into(focus.contextExtinction), Topic::own, Needs::focus},
+       ValueSpec::number(0.0, 1.0).bind(focus.contextExtinction), OverrideGroup::own,
+       Requires::focus},
       {"contextsaturation", "S", clipGroup,
        "Colour of everything that is not focus, from 0 (grey) to 1 (as it is); auto: the "
        "first of 1, 0.35 and 0 with which the focus is told from its surroundings; 1 with "
        "materials",
-       Takes::numberOrAuto(focus.contextSaturation, 0.0, 1.0, 1.0), Topic::own, Needs::focus},
+       ValueSpec::numberOrAuto(focus.contextSaturation, 0.0, 1.0, 1.0), OverrideGroup::own,
+       Requires::focus},
       {"view", "NAME", viewGroup,
        "anterior, posterior, left, right, superior, inferior, or auto: the direction that shows "
        "most of the focus, least foreshortened, with least removed [the scene's camera, else "
        "anterior]",
-       Takes::word({"anterior", "posterior", "left", "right", "superior", "inferior", "auto"})
-           .into(view.name)
-           .shows("anterior"),
-       Topic::eye},
-      {"position", "R,A,S", viewGroup, "Eye, mm", Takes::numbers().into(view.position), Topic::eye},
+       ValueSpec::choice({"anterior", "posterior", "left", "right", "superior", "inferior", "auto"})
+           .bind(view.name)
+           .withDefault("anterior"),
+       OverrideGroup::viewpoint},
+      {"position", "R,A,S", viewGroup, "Eye, mm", ValueSpec::numbers().bind(view.position),
+       OverrideGroup::viewpoint},
       {"target", "R,A,S", viewGroup,
        "Point looked at, mm [focus's centre, higher or lower at an end of the scan; else volume's]",
-       Takes::numbers().into(view.target), Topic::view},
+       ValueSpec::numbers().bind(view.target), OverrideGroup::view},
       {"up", "R,A,S", viewGroup, "Direction that is up in the picture",
-       Takes::numbers().into(view.up), Topic::view},
+       ValueSpec::numbers().bind(view.up), OverrideGroup::view},
       {"projection", "KIND", viewGroup,
        "orthographic or perspective [the scene's, else orthographic]",
-       Takes::word(view.projection, {{"orthographic", Projection::orthographic},
-                                     {"perspective", Projection::perspective}})
-           .shows("orthographic"),
-       Topic::extent},
+       ValueSpec::choice(view.projection, {{"orthographic", Projection::orthographic},
+                                           {"perspective", Projection::perspective}})
+           .withDefault("orthographic"),
+       OverrideGroup::extent},
       {"scale", "MM", viewGroup,
        "Orthographic: half the picture's height [frames the focus, else all that is visible]",
-       Takes::number(1e-9, 1e9).into(view.scale), Topic::extent},
+       ValueSpec::number(1e-9, 1e9).bind(view.scale), OverrideGroup::extent},
       {"angle", "DEGREES", viewGroup,
        "Perspective: full vertical angle [30, or less to frame the focus]",
-       Takes::number(1e-6, 179.0).into(view.angle), Topic::extent},
-      {"transfer", "FILE|PRESET|JSON", lookGroup,
+       ValueSpec::number(1e-6, 179.0).bind(view.angle), OverrideGroup::extent},
+      {"transfer", "FILE|PRESET|JSON", appearanceGroup,
        "Transfer function: .vp, .vp.json, Fenestra .json or its text, a preset such as ct-soft, or "
        "a volume property of the scene or of 3D Slicer by name, such as CT-AAA [the scene's, else "
        "by modality]",
-       Takes::text().into(scene.transfer).orNames(ownPresets("transfer"))},
-      {"shift", "X", lookGroup, "Moves the transfer function along the scalar",
-       Takes::number(-1e30, 1e30).into(scene.shift)},
-      {"density", "D", lookGroup, "Multiplies the extinction, 0 to 1000",
-       Takes::number(0.0, 1000.0).into(scene.density)},
-      {"materials", "none|auto|library|FILE", lookGroup,
+       ValueSpec::text().bind(scene.transfer).withNamedValues(ownPresets("transfer"))},
+      {"shift", "X", appearanceGroup, "Moves the transfer function along the scalar",
+       ValueSpec::number(-1e30, 1e30).bind(scene.shift)},
+      {"density", "D", appearanceGroup, "Multiplies the extinction, 0 to 1000",
+       ValueSpec::number(0.0, 1000.0).bind(scene.density)},
+      {"materials", "none|auto|library|FILE", appearanceGroup,
        "Colours of the segments by what they are made of: Fenestra's library, or a .json over it; "
        "auto: the library's, changed until the focus is told from its neighbours; surfaces stay "
        "the data's [auto with a focus of which something is known and without "
        "--contextsaturation, else none]",
-       Takes::text().into(scene.materials).orNames({"none", "auto", "library"}), Topic::materials},
-      {"material", "TEXT", lookGroup,
+       ValueSpec::text().bind(scene.materials).withNamedValues({"none", "auto", "library"}),
+       OverrideGroup::materials},
+      {"material", "TEXT", appearanceGroup,
        "Changes the material of one segment, such as \"Liver: color=#963e2e\" or \"Aorta: "
        "clip=no\", "
        "which then stays where all else is clipped; may be repeated",
-       Takes::texts().into(scene.materialChanges, readTexts), Topic::materials},
-      {"lights", "FILE|PRESET|JSON", lookGroup,
+       ValueSpec::texts().bind(scene.materialChanges, readTexts), OverrideGroup::materials},
+      {"lights", "FILE|PRESET|JSON", appearanceGroup,
        "Lights: .json, cinema, studio, headlight, soft, amber, or the text of a .json itself, "
        "{...}",
-       Takes::text().into(scene.lights).orNames(ownPresets("lights")), Topic::lights},
-      {"environment", "R,G,B|GREY|FILE", lookGroup,
+       ValueSpec::text().bind(scene.lights).withNamedValues(ownPresets("lights")),
+       OverrideGroup::lights},
+      {"environment", "R,G,B|GREY|FILE", appearanceGroup,
        "Radiance from all around, or a latitude-longitude .exr; replaces the lights' own",
-       Takes::text().into(scene, readEnvironment), Topic::lights},
-      {"background", "R,G,B|GREY|KIND", lookGroup,
+       ValueSpec::text().bind(scene, readEnvironment), OverrideGroup::lights},
+      {"background", "R,G,B|GREY|KIND", appearanceGroup,
        "Linear colour (the tone curve of a .png makes 1,1,1 light grey, 100,100,100 "
        "white), gradient (dark greys), transparent or environment [the scene's, else gradient]",
-       Takes::text()
-           .into(options.background, readBackground)
-           .orNames({"gradient", "transparent", "environment"})},
-      {"exposure", "EV", lookGroup,
+       ValueSpec::text()
+           .bind(options.background, readBackground)
+           .withNamedValues({"gradient", "transparent", "environment"})},
+      {"exposure", "EV", appearanceGroup,
        "Stops, -16 to 16, by which .png and .tif are shown brighter or darker; .exr and .nrrd stay",
-       Takes::number(-16.0, 16.0).into(options.display.exposure)},
-      {"tone", "CURVE", lookGroup,
+       ValueSpec::number(-16.0, 16.0).bind(options.display.exposure)},
+      {"tone", "CURVE", appearanceGroup,
        "Tone curve of .png and .tif: film (more contrast, colours keep their hue) or photographic "
        "(dark and middle values as they are, for measuring)",
-       Takes::word(options.display.view,
-                   {{"film", DisplayView::film}, {"photographic", DisplayView::photographic}})},
+       ValueSpec::choice(options.display.view, {{"film", DisplayView::film},
+                                                {"photographic", DisplayView::photographic}})},
       {"size", "WxH", qualityGroup, "Pixels",
-       Takes::text()
-           .into(scene, readSize)
-           .shows(std::to_string(scene.width) + "x" + std::to_string(scene.height))},
+       ValueSpec::text()
+           .bind(scene, readSize)
+           .withDefault(std::to_string(scene.width) + "x" + std::to_string(scene.height))},
       {"samples", "N", qualityGroup,
        "Stop at N samples a pixel [" + std::to_string(settings.samples) +
            " unless seconds or noise are given]",
-       Takes::whole(1, unlimited).into(settings.samples).shows(""), Topic::stop},
+       ValueSpec::integer(1, unlimited).bind(settings.samples).withDefault(""),
+       OverrideGroup::stop},
       {"seconds", "T", qualityGroup,
        "Stop after T seconds of rendering, but not before one sample a pixel",
-       Takes::number(1e-3, 1e9).into(settings.seconds).shows(""), Topic::stop},
+       ValueSpec::number(1e-3, 1e9).bind(settings.seconds).withDefault(""), OverrideGroup::stop},
       {"noise", "E", qualityGroup, "Stop when the relative noise is at most E, for example 0.03",
-       Takes::number(1e-6, 1e6).into(settings.noise).shows(""), Topic::stop},
+       ValueSpec::number(1e-6, 1e6).bind(settings.noise).withDefault(""), OverrideGroup::stop},
       {"noisetarget", "KIND", qualityGroup,
        "Which noise --noise means: raw (of the samples; noisier pixels get more), filtered (what "
        "the "
        "filter tells of its own error), or auto: filtered if all outputs are .png or .tif",
-       Takes::word(options.noiseTarget, {{"auto", NoiseTarget::automatic},
-                                         {"raw", NoiseTarget::raw},
-                                         {"filtered", NoiseTarget::filtered}}),
-       Topic::stop},
+       ValueSpec::choice(options.noiseTarget, {{"auto", NoiseTarget::automatic},
+                                               {"raw", NoiseTarget::raw},
+                                               {"filtered", NoiseTarget::filtered}}),
+       OverrideGroup::stop},
       {"denoise", "KIND", qualityGroup,
        "auto: filter .png and .tif, for the eye, and leave colours of .exr and .nrrd raw; on: "
        "filtered channels in these, too, beside the raw ones; off",
-       Takes::word(options.denoise,
-                   {{"auto", Denoise::automatic}, {"on", Denoise::on}, {"off", Denoise::off}})},
+       ValueSpec::choice(
+           options.denoise,
+           {{"auto", Denoise::automatic}, {"on", Denoise::on}, {"off", Denoise::off}})},
       {"bounces", "B", qualityGroup, "Scatterings a path, at most (biased) [unlimited]",
-       Takes::whole(0, unlimited).into(settings.path.bounces).shows("")},
-      {"seed", "S", qualityGroup, "Random seed", Takes::whole(0, 0x1p64).into(settings.seed)},
+       ValueSpec::integer(0, unlimited).bind(settings.path.bounces).withDefault("")},
+      {"seed", "S", qualityGroup, "Random seed", ValueSpec::integer(0, 0x1p64).bind(settings.seed)},
       {"sampling", "KIND", qualityGroup,
        "strata: a pixel's samples share out the numbers that decide most of its noise, eight by "
        "eight; independent: they share nothing (noisier). Both are unbiased",
-       Takes::word(settings.sampling,
-                   {{"strata", Sampling::stratified}, {"independent", Sampling::independent}})},
+       ValueSpec::choice(settings.sampling, {{"strata", Sampling::stratified},
+                                             {"independent", Sampling::independent}})},
       {"threads", "K", qualityGroup, "Threads, at most one a core; 0 is all",
-       Takes::whole(0, 1024).into(settings.threads), Topic::process},
+       ValueSpec::integer(0, 1024).bind(settings.threads), OverrideGroup::process},
       {"volume", "NAME", outputGroup,
        "Which volume of a scene (name or id), or which series of a DICOM folder [as in Slicer]",
-       Takes::text().into(scene.volume)},
+       ValueSpec::text().bind(scene.volume)},
       // Slicer takes one file, hence colour alone in its panel.
       {"layers", "L,...", outputGroup,
        "Channels of an .exr: color, depth, clip, albedo, normal, error, samples, and with "
        "--denoise "
        "on denoised, expected; of a .nrrd: color, depth and denoised (files of their own) [all]",
-       Takes::list()
-           .into(options.layers, readLayers)
-           .shows("color")
-           .orNames({allLayers.begin(), allLayers.end()}),
-       Topic::process},
+       ValueSpec::list()
+           .bind(options.layers, readLayers)
+           .withDefault("color")
+           .withNamedValues({allLayers.begin(), allLayers.end()}),
+       OverrideGroup::process},
       {"surface", "FILE", outputGroup,
        "Clipping surface as triangles in RAS mm, to a tenth of a pixel in depth (any --clip but "
        "none and plane): .vtp .ply (with depths) .stl",
-       Takes::surface().into(options.surface), Topic::process},
+       ValueSpec::surface().bind(options.surface), OverrideGroup::process},
       {"stats", "FILE", outputGroup, "Times, counts and measures as .json",
-       Takes::report().into(options.stats), Topic::process},
+       ValueSpec::jsonFile().bind(options.stats), OverrideGroup::process},
       {"checkpoint", "FILE", outputGroup,
        "Keeps what is rendered so far in this film (.film), so that the same command goes on after "
        "a stop, a crash or a power cut, and ends with the same picture; --samples, --noise, "
        "--seconds, --threads and outputs may change",
-       Takes::film().into(options.checkpoint), Topic::process},
+       ValueSpec::checkpointFile().bind(options.checkpoint), OverrideGroup::process},
       {"shard", "K/N", outputGroup,
        "Renders the K-th of N parts of the picture alone, for fenestra merge: --checkpoint names "
        "the part's film; of a turntable, the frames of that part",
-       Takes::text().into(options, readShard), Topic::process},
+       ValueSpec::text().bind(options, readShard), OverrideGroup::process},
       {"progress", "KIND", outputGroup, "auto, bar, xml (Slicer's tags) or none",
-       Takes::word(options.progress, {{"auto", ProgressMode::automatic},
-                                      {"bar", ProgressMode::bar},
-                                      {"xml", ProgressMode::xml},
-                                      {"none", ProgressMode::none}}),
-       Topic::process},
-      {"xml", "", slicerGroup, "Describe the flags to 3D Slicer, and exit", Takes::slicersOwn(),
-       Topic::process},
-      {"echo", "", slicerGroup, "Print the flags as they were understood", Takes::slicersOwn(),
-       Topic::process},
+       ValueSpec::choice(options.progress, {{"auto", ProgressMode::automatic},
+                                            {"bar", ProgressMode::bar},
+                                            {"xml", ProgressMode::xml},
+                                            {"none", ProgressMode::none}}),
+       OverrideGroup::process},
+      {"xml", "", slicerGroup, "Describe the flags to 3D Slicer, and exit", ValueSpec::notInPanel(),
+       OverrideGroup::process},
+      {"echo", "", slicerGroup, "Print the flags as they were understood", ValueSpec::notInPanel(),
+       OverrideGroup::process},
       {"returnparameterfile", "FILE", slicerGroup, "Write what the render reached, a line each",
-       Takes::slicersOwn().into(options.returnValues), Topic::process},
+       ValueSpec::notInPanel().bind(options.returnValues), OverrideGroup::process},
       {"processinformationaddress", "ADDRESS", slicerGroup,
-       "For modules inside Slicer's process: ignored", Takes::slicersOwn(), Topic::process},
+       "For modules inside Slicer's process: ignored", ValueSpec::notInPanel(),
+       OverrideGroup::process},
   };
 };
 
-const RenderTable described; // nobody fills its places
+const RenderOptionTable defaultTable; // nobody fills its places
 
 } // namespace
 
@@ -367,23 +386,23 @@ const CommandSyntax renderSyntax = {
     "fenestra describe.",
     {{"INPUT", "Volume (.nrrd .nhdr .nii .nii.gz .mha .mhd), DICOM folder, or Slicer scene (.mrml "
                ".mrb)"}},
-    described.flags,
+    defaultTable.rows,
 };
 
-RenderOptions givenOptions(const FlagValues& flags) {
-  RenderTable table;
-  for (const Flag& flag : table.flags)
-    if (flag.takes.put && flags.has(flag.name))
-      flag.takes.put(flags, flag.name);
+RenderOptions readOptions(const OptionValues& values) {
+  RenderOptionTable table;
+  for (const Option& option : table.rows)
+    if (option.spec.store && values.has(option.name))
+      option.spec.store(values, option.name);
   return table.options;
 }
 
-bool shapesClip(const Flag& flag) {
-  return flag.group == clipGroup;
+bool isClipOption(const Option& option) {
+  return option.group == clipGroup;
 }
 
-bool shapesLook(const Flag& flag) {
-  return shapesClip(flag) || flag.group == viewGroup || flag.group == lookGroup;
+bool isAppearanceOption(const Option& option) {
+  return isClipOption(option) || option.group == viewGroup || option.group == appearanceGroup;
 }
 
 } // namespace fenestra

@@ -23,7 +23,7 @@ struct RenderOptions {
   std::optional<Background> background = {};  ///< nullopt: the scene's, else the standard
   std::vector<std::filesystem::path> inputs;  ///< input files given as such, without presets
   std::vector<std::filesystem::path> outputs; ///< at least one
-  NamedBy outputsNamedBy = NamedBy::user;
+  NamedBy outputNaming = NamedBy::user;
   LayerSet layers = allLayers;
   Display display = {}; ///< of .png and .tif
   Denoise denoise = Denoise::automatic;
@@ -32,7 +32,7 @@ struct RenderOptions {
   std::optional<std::filesystem::path> stats = {};
   std::optional<std::filesystem::path> checkpoint = {}; ///< film of what is rendered so far
   /// True for a part of a picture, settings.shard: the checkpoint is the only result.
-  bool isPart = false;
+  bool isShard = false;
   /// Slicer's return parameters. If set, warnings go to standard output: Slicer reports everything
   /// on standard error as an error.
   std::optional<std::filesystem::path> returnValues = {};
@@ -53,25 +53,25 @@ inline constexpr double unlimited = 0x1p40; ///< limit of samples and of scatter
 extern const CommandSyntax renderSyntax;
 
 /// True if the picture depends on the flag, not only its files or how the process works.
-inline bool shapesPicture(const Flag& flag) {
-  return flag.topic != Topic::process;
+inline bool isImageOption(const Option& option) {
+  return option.overrideGroup != OverrideGroup::process;
 }
 
 /// True for a flag of clipping; also how the focus's labels are shaped, and how the context looks.
-bool shapesClip(const Flag& flag);
+bool isClipOption(const Option& option);
 /// True for a flag of clipping, view or look: the flags that an organ preset may set.
-bool shapesLook(const Flag& flag);
+bool isAppearanceOption(const Option& option);
 
 /// Values of the flags in the places that the table says. Throws Error (usage) for values out of
 /// range.
-RenderOptions givenOptions(const FlagValues& flags);
+RenderOptions readOptions(const OptionValues& values);
 
 /// Options from all flags. Throws Error (usage) for values out of range and for flags that
 /// contradict each other.
-RenderOptions renderOptions(const FlagValues& flags);
+RenderOptions makeRenderOptions(const OptionValues& values);
 
 /// options.settings with their background: the flags', else `scene` (a Slicer scene's; nullopt for
 /// other inputs), else Background::standard.
-RenderSettings settingsFor(const RenderOptions& options, const std::optional<Background>& scene);
+RenderSettings makeSettings(const RenderOptions& options, const std::optional<Background>& scene);
 
 } // namespace fenestra

@@ -15,7 +15,7 @@ bool hasMaterials(const SceneRequest& scene) {
   return scene.materials.value_or(noMaterials) != noMaterials;
 }
 
-void checkInput(const FlagValues& flags, const SceneRequest& scene) {
+void checkInput(const OptionValues& values, const SceneRequest& scene) {
   const bool isScene = isSceneFile(scene.input),
              usesLabels = !scene.focus.empty() || hasMaterials(scene);
   if (scene.volume && !isScene && !isFolder(scene.input))
@@ -27,11 +27,11 @@ void checkInput(const FlagValues& flags, const SceneRequest& scene) {
   if (!scene.materialChanges.empty() && !hasMaterials(scene))
     throw usageError("--material: changes what --materials gives; add --materials library");
   for (const char* name : {"segmentation", "labels"})
-    if (flags.has(name) && !usesLabels)
+    if (values.has(name) && !usesLabels)
       throw usageError("--", name,
                        ": only --focus, --materials and --preset use it; add --focus A,B,..., "
                        "--materials library or --preset auto");
-  if (flags.differs("view") && flags.differs("position"))
+  if (values.hasNonDefault("view") && values.hasNonDefault("position"))
     throw usageError("--view and --position contradict each other; give one");
 }
 
@@ -49,55 +49,55 @@ void checkView(const ViewRequest& view, const SceneRequest& scene) {
 }
 
 /// Reason why a flag has no effect with this clip; empty: it has one.
-std::string_view whyWithoutEffect(Needs needs, bool hasFocus, bool hasLabels, ClipMode mode,
-                                  Boundary boundary) {
+std::string_view findNoEffectReason(Requires requirement, bool hasFocus, bool hasLabels,
+                                    ClipMode mode, Boundary boundary) {
   const bool isSurface = mode == ClipMode::surface || mode == ClipMode::ghost;
-  if (needs == Needs::focus && !hasFocus)
+  if (requirement == Requires::focus && !hasFocus)
     return "needs a focus; add --focus, or drop it";
-  if (needs == Needs::labels && !hasLabels)
+  if (requirement == Requires::labels && !hasLabels)
     return "needs a focus or materials; add --focus or --materials, or drop it";
-  if (needs == Needs::clip && mode == ClipMode::none)
+  if (requirement == Requires::clip && mode == ClipMode::none)
     return "without a clip there is nothing to change; drop it";
-  if (needs == Needs::plane && mode != ClipMode::plane)
+  if (requirement == Requires::plane && mode != ClipMode::plane)
     return "only --clip plane uses it; add --clip plane, or drop it";
-  if (needs == Needs::hole && mode != ClipMode::hole)
+  if (requirement == Requires::hole && mode != ClipMode::hole)
     return "only --clip hole uses it; add --clip hole, or drop it";
-  if (needs == Needs::ghost && mode != ClipMode::ghost)
+  if (requirement == Requires::ghost && mode != ClipMode::ghost)
     return "only --clip ghost uses it; add --clip ghost, or drop it";
-  if ((needs == Needs::surface || needs == Needs::spline) && !isSurface)
+  if ((requirement == Requires::surface || requirement == Requires::spline) && !isSurface)
     return "only --clip surface and ghost use it; drop it";
-  if (needs == Needs::spline && boundary != Boundary::spline)
+  if (requirement == Requires::spline && boundary != Boundary::spline)
     return "only --boundary spline uses it; drop it";
   return "";
 }
 
-void checkClip(const FlagValues& flags, const SceneRequest& scene) {
+void checkClip(const OptionValues& values, const SceneRequest& scene) {
   const ClipRequest& clip = scene.clip;
-  const bool hasFocus = flags.has("focus"), hasLabels = hasFocus || hasMaterials(scene);
+  const bool hasFocus = values.has("focus"), hasLabels = hasFocus || hasMaterials(scene);
   const ClipMode mode = clip.modeWith(hasFocus);
   if (!hasFocus && isDepthClip(mode))
-    throw usageError("--clip: ", *flags.text("clip"), " needs a focus; add --focus");
+    throw usageError("--clip: ", *values.text("clip"), " needs a focus; add --focus");
   if (mode == ClipMode::plane && !clip.plane && !hasFocus)
     throw usageError("--clip: plane needs --plane OX,OY,OZ,NX,NY,NZ, or a --focus to place it by");
-  for (const Flag& flag : renderSyntax.flags)
-    if (const auto why =
-            whyWithoutEffect(flag.needs, hasFocus, hasLabels, mode, clip.surface.boundary);
-        !why.empty() && flags.differs(flag.name) && !flags.isIdle(flag.name))
-      throw usageError("--", flag.name, ": ", why);
-  if (flags.has("surface") && !isDepthClip(mode))
+  for (const Option& option : renderSyntax.options)
+    if (const auto reason = findNoEffectReason(option.requirement, hasFocus, hasLabels, mode,
+                                               clip.surface.boundary);
+        !reason.empty() && values.hasNonDefault(option.name) && !values.hasNoEffect(option.name))
+      throw usageError("--", option.name, ": ", reason);
+  if (values.has("surface") && !isDepthClip(mode))
     throw usageError("--surface: --clip none and plane have none; add --focus A,B,... without "
                      "another --clip, or drop it");
 }
 
 /// INPUT.png in the current folder, without the input's own endings. Throws Error (usage) if no
 /// name is left.
-std::filesystem::path defaultOutput(const std::filesystem::path& input) {
-  std::filesystem::path named = input.lexically_normal();
-  if (!named.has_filename()) // folder name with a slash at its end
-    named = named.parent_path();
-  if (std::error_code failed; named.filename() == "." || named.filename() == "..")
-    named = std::filesystem::canonical(named, failed);
-  std::string name = named.filename().string();
+std::filesystem::path makeDefaultOutput(const std::filesystem::path& input) {
+  std::filesystem::path path = input.lexically_normal();
+  if (!path.has_filename()) // folder name with a slash at its end
+    path = path.parent_path();
+  if (std::error_code failed; path.filename() == "." || path.filename() == "..")
+    path = std::filesystem::canonical(path, failed);
+  std::string name = path.filename().string();
   for (const char* ending : {".gz", ".nii", ".nrrd", ".nhdr", ".mha", ".mhd", ".mrml", ".mrb"})
     if (name.ends_with(ending))
       name.resize(name.size() - std::string_view(ending).size());
@@ -108,22 +108,22 @@ std::filesystem::path defaultOutput(const std::filesystem::path& input) {
 }
 
 /// Input files that flags name, or may name.
-std::vector<std::filesystem::path> inputFiles(const FlagValues& flags) {
-  std::vector<std::filesystem::path> files = {*flags.text("INPUT")};
-  for (const Flag& flag : renderSyntax.flags)
-    if (flag.takesFile() && shapesPicture(flag) && flags.has(flag.name))
-      files.emplace_back(*flags.text(flag.name));
+std::vector<std::filesystem::path> listInputFiles(const OptionValues& values) {
+  std::vector<std::filesystem::path> files = {*values.text("INPUT")};
+  for (const Option& option : renderSyntax.options)
+    if (option.canNameFile() && isImageOption(option) && values.has(option.name))
+      files.emplace_back(*values.text(option.name));
   std::erase_if(files, [](const auto& file) { return isLookText(file.string()); });
   return files;
 }
 
 /// Checks the layers against the pictures, and asks for normals if one of these has them.
-void settleLayers(const FlagValues& flags, RenderOptions& options) {
+void resolveLayers(const OptionValues& values, RenderOptions& options) {
   const auto has = [&options](ImageFormat format) {
     return std::ranges::count(options.outputs, format, imageFormat) > 0;
   };
   const bool hasExr = has(ImageFormat::exr);
-  if (!hasExr && !has(ImageFormat::nrrd) && flags.differs("layers"))
+  if (!hasExr && !has(ImageFormat::nrrd) && values.hasNonDefault("layers"))
     throw usageError("--layers: only .exr and .nrrd have them; add --output FILE.exr");
   for (const std::filesystem::path& path : options.outputs)
     if (!options.layers.contains("color") && imageFormat(path) != ImageFormat::exr)
@@ -134,7 +134,7 @@ void settleLayers(const FlagValues& flags, RenderOptions& options) {
 }
 
 /// Settles what is filtered, and which noise ends the render.
-void settleFilter(const FlagValues& flags, RenderOptions& options) {
+void resolveDenoising(const OptionValues& values, RenderOptions& options) {
   const bool hasDisplay = std::ranges::any_of(options.outputs, isDisplayFile);
   const bool hasLayers = options.hasFilterLayer("denoised") || options.hasFilterLayer("expected");
   options.scene.features = options.denoise != Denoise::off && (hasDisplay || hasLayers);
@@ -145,10 +145,10 @@ void settleFilter(const FlagValues& flags, RenderOptions& options) {
   if (options.noiseTarget == NoiseTarget::filtered && !options.scene.features)
     throw usageError("--noisetarget: filtered needs a filtered picture; write a .png, or add "
                      "--denoise on");
-  if (flags.differs("noisetarget") && !flags.has("noise"))
+  if (values.hasNonDefault("noisetarget") && !values.has("noise"))
     throw usageError("--noisetarget: only --noise uses it; add --noise E, or drop it");
   for (const char* layer : {"denoised", "expected"})
-    if (flags.has("layers") && options.layers.contains(layer) && options.denoise != Denoise::on)
+    if (values.has("layers") && options.layers.contains(layer) && options.denoise != Denoise::on)
       throw usageError("--layers: ", layer, " needs --denoise on; add it");
   if (options.noiseTarget == NoiseTarget::automatic)
     options.noiseTarget =
@@ -158,14 +158,14 @@ void settleFilter(const FlagValues& flags, RenderOptions& options) {
 }
 
 /// Checks the flags of a part of a picture, which has no picture yet.
-void checkPart(const FlagValues& flags, const RenderOptions& options) {
+void checkShard(const OptionValues& values, const RenderOptions& options) {
   if (!options.checkpoint)
     throw usageError("--shard: needs --checkpoint FILE, the film of that part; add it");
   for (const char* name : {"output", "surface", "stats", "layers"})
-    if (flags.differs(name))
+    if (values.hasNonDefault(name))
       throw usageError("--", name, ": is for the whole picture; give it to fenestra merge");
   for (const char* name : {"noise", "seconds"})
-    if (flags.has(name))
+    if (values.has(name))
       throw usageError("--", name,
                        ": depends on the whole picture, and parts must have the same "
                        "samples; with --shard give --samples N");
@@ -173,32 +173,32 @@ void checkPart(const FlagValues& flags, const RenderOptions& options) {
 
 } // namespace
 
-RenderOptions renderOptions(const FlagValues& flags) {
-  RenderOptions options = givenOptions(flags);
+RenderOptions makeRenderOptions(const OptionValues& values) {
+  RenderOptions options = readOptions(values);
   SceneRequest& scene = options.scene;
-  scene.input = *flags.text("INPUT");
-  checkInput(flags, scene);
+  scene.input = *values.text("INPUT");
+  checkInput(values, scene);
   checkView(scene.view, scene);
-  checkClip(flags, scene);
+  checkClip(values, scene);
 
-  if (!flags.has("samples") && (flags.has("seconds") || flags.has("noise")))
+  if (!values.has("samples") && (values.has("seconds") || values.has("noise")))
     options.settings.samples = static_cast<std::uint64_t>(unlimited);
-  options.inputs = inputFiles(flags);
-  if (options.isPart) {
-    checkPart(flags, options);
+  options.inputs = listInputFiles(values);
+  if (options.isShard) {
+    checkShard(values, options);
   } else if (options.outputs.empty()) {
-    options.outputs.push_back(defaultOutput(scene.input));
-    options.outputsNamedBy = NamedBy::standard;
+    options.outputs.push_back(makeDefaultOutput(scene.input));
+    options.outputNaming = NamedBy::standard;
   }
-  settleLayers(flags, options);
-  settleFilter(flags, options);
+  resolveLayers(values, options);
+  resolveDenoising(values, options);
   scene.measure = options.stats.has_value();
   if (options.returnValues && options.progress == ProgressMode::automatic)
     options.progress = ProgressMode::xml;
   return options;
 }
 
-RenderSettings settingsFor(const RenderOptions& options, const std::optional<Background>& scene) {
+RenderSettings makeSettings(const RenderOptions& options, const std::optional<Background>& scene) {
   RenderSettings settings = options.settings;
   settings.path.background = options.background.value_or(scene.value_or(Background::standard()));
   return settings;

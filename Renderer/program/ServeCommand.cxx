@@ -43,10 +43,10 @@ private:
   /// Returns whether all changes were taken together.
   bool take(std::span<const ServeChange> changes) {
     try {
-      FlagValues flags = m_flags;
+      OptionValues flags = m_flags;
       for (const ServeChange& change : changes)
         flags = changedFlags(change.flags, flags);
-      const RenderOptions options = renderOptions(withPreset(flags, m_source));
+      const RenderOptions options = makeRenderOptions(mergePreset(flags, m_source));
       checkMemory(options.scene);
       Scene scene = m_scene->changed(options.scene);
       m_outputs.checkInputs();
@@ -123,7 +123,7 @@ private:
   }
 
   const Input m_source; ///< of all scenes
-  FlagValues m_flags;   ///< flags of the current scene, without a preset's
+  OptionValues m_flags; ///< flags of the current scene, without a preset's
   RenderOptions m_options;
   ServeChange m_change; ///< last one taken
   Outputs& m_outputs;
@@ -150,7 +150,7 @@ const CommandSyntax& serveSyntax() {
       "{\"event\": \"picture\" or \"error\", \"id\": 7, ...}. Ends with its input. Takes the "
       "flags of fenestra render.",
       renderSyntax.positionals,
-      renderSyntax.flags,
+      renderSyntax.options,
       {{{"stats", "returnparameterfile", "progress", "xml", "echo"},
         "serve tells all on standard output; drop it"},
        {{"surface", "checkpoint", "shard"},
@@ -160,7 +160,7 @@ const CommandSyntax& serveSyntax() {
 }
 
 int serveCommand(int argc, char** argv, int first) {
-  const std::optional<FlagValues> given = parseCommandLine(serveSyntax(), argc, argv, first);
+  const std::optional<OptionValues> given = parseCommandLine(serveSyntax(), argc, argv, first);
   if (!given)
     return 0;
   useMachine(*given);

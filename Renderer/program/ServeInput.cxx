@@ -61,23 +61,23 @@ json idOf(const json& change) {
   return id;
 }
 
-FlagValues changedFlags(const json& change, const FlagValues& flags) {
+OptionValues changedFlags(const json& change, const OptionValues& flags) {
   if (!change.is_object())
     throw usageError("expected a JSON object of flags, as {\"view\": \"left\"}");
-  FlagValues result = flags;
+  OptionValues result = flags;
   for (const auto& [name, value] : change.items()) {
     if (name == "id")
       continue;
-    const Flag* flag = findFlag(renderSyntax.flags, name);
+    const Option* flag = findOption(renderSyntax.options, name);
     if (!flag) {
-      const std::string likely = nearest(name, namesOf(renderSyntax.flags));
+      const std::string likely = findNearest(name, listNames(renderSyntax.options));
       throw usageError(oneLine(name), ": no such flag",
                        likely.empty() ? "" : textOf("; did you mean ", likely, "?"));
     }
-    if (!shapesPicture(*flag))
+    if (!isImageOption(*flag))
       throw usageError(name, ": cannot change while serving; start another server");
     result.remove(name);
-    if (flag->takes.repeats && value.is_array()) {
+    if (flag->spec.canRepeat && value.is_array()) {
       for (const json& item : value)
         result.add(name, valueText(name, item));
       continue;
@@ -91,8 +91,8 @@ FlagValues changedFlags(const json& change, const FlagValues& flags) {
   return result;
 }
 
-void checkChange(const json& change, const FlagValues& flags, const Input& input) {
-  const SceneRequest scene = renderOptions(withPreset(flags, input)).scene;
+void checkChange(const json& change, const OptionValues& flags, const Input& input) {
+  const SceneRequest scene = makeRenderOptions(mergePreset(flags, input)).scene;
   const bool isPreset = change.contains("preset"); // may name lights and a transfer function
   if (isPreset || change.contains("lights"))
     namedLights(scene.lights);
@@ -104,7 +104,7 @@ void checkChange(const json& change, const FlagValues& flags, const Input& input
     readEnvironmentMap(*scene.environmentMap);
 }
 
-ServeInput::ServeInput(const FlagValues& start, const Input& input, RenderMonitor& monitor)
+ServeInput::ServeInput(const OptionValues& start, const Input& input, RenderMonitor& monitor)
     : m_input(input), m_monitor(monitor), m_wanted(start) {
   std::thread([this] { read(); }).detach(); // ends with the process only
 }
@@ -116,7 +116,7 @@ ServeChanges ServeInput::next() {
   return std::exchange(m_new, {});
 }
 
-void ServeInput::takeBack(const FlagValues& shown) {
+void ServeInput::takeBack(const OptionValues& shown) {
   const std::lock_guard lock(m_mutex);
   m_wanted = shown;
   for (const ServeChange& change : m_new)
@@ -146,7 +146,7 @@ void ServeInput::takeLine(const std::string& line) {
     change.flags = parseJson(line, "a line");
     change.id = idOf(change.flags);
     const std::lock_guard lock(m_mutex);
-    FlagValues wanted = changedFlags(change.flags, m_wanted);
+    OptionValues wanted = changedFlags(change.flags, m_wanted);
     checkChange(change.flags, wanted, m_input);
     m_wanted = std::move(wanted);
     m_new.push_back(change);

@@ -31,22 +31,22 @@ nlohmann::json idOf(const nlohmann::json& change);
 
 /// Flags after a change. A value is a text, a number, or a list of them, as on the command line;
 /// null removes the flag. Throws Error (usage) for a flag that is unknown or cannot change.
-FlagValues changedFlags(const nlohmann::json& change, const FlagValues& flags);
+OptionValues changedFlags(const nlohmann::json& change, const OptionValues& flags);
 
 /// Throws Error: usage if the flags after a change contradict each other, input if a look that the
 /// change names cannot be read.
-void checkChange(const nlohmann::json& change, const FlagValues& flags, const Input& input);
+void checkChange(const nlohmann::json& change, const OptionValues& flags, const Input& input);
 
 /// Reads standard input in its own thread. A change stops the render under way. The end of input
 /// ends the process (endProcess).
 class ServeInput {
 public:
-  ServeInput(const FlagValues& start, const Input& input, RenderMonitor& monitor);
+  ServeInput(const OptionValues& start, const Input& input, RenderMonitor& monitor);
 
   /// Blocks until there are changes, and takes them; afterwards only newer changes stop the render.
   ServeChanges next();
   /// Call if changes that were taken cannot be shown: newer changes then apply to `shown`.
-  void takeBack(const FlagValues& shown);
+  void takeBack(const OptionValues& shown);
 
 private:
   void read();
@@ -56,8 +56,8 @@ private:
   RenderMonitor& m_monitor;
   std::mutex m_mutex; ///< guards m_wanted, m_new and monitor.stop
   std::condition_variable m_changed;
-  FlagValues m_wanted; ///< flags after all changes
-  ServeChanges m_new;  ///< changes not yet taken by next()
+  OptionValues m_wanted; ///< flags after all changes
+  ServeChanges m_new;    ///< changes not yet taken by next()
 };
 
 } // namespace fenestra

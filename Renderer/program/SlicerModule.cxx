@@ -29,15 +29,16 @@ pugi::xml_node addParameters(pugi::xml_node module, const std::string& label,
 
 /// Slicer's type of a flag. Slicer always passes numbers and words, so that such a flag without a
 /// default is a text.
-std::string typeOf(const Takes& takes) {
-  const bool isPassed = takes.least > -infinity || !takes.words.empty();
-  return isPassed && takes.standard.empty() ? "string" : takes.type;
+std::string typeOf(const ValueSpec& takes) {
+  const bool isPassed = takes.least > -infinity || !takes.choices.empty();
+  return isPassed && takes.defaultValue.empty() ? "string" : takes.type;
 }
 
 /// Adds a slider if the range is narrow enough to set by hand.
-void addConstraints(pugi::xml_node parameter, const Takes& takes) {
+void addConstraints(pugi::xml_node parameter, const ValueSpec& takes) {
   constexpr double widest = 1e6;
-  if (typeOf(takes) == "string" || takes.standard.empty() || takes.greatest - takes.least > widest)
+  if (typeOf(takes) == "string" || takes.defaultValue.empty() ||
+      takes.greatest - takes.least > widest)
     return;
   pugi::xml_node constraints = parameter.append_child("constraints");
   addText(constraints, "minimum", numberText(takes.least));
@@ -45,8 +46,8 @@ void addConstraints(pugi::xml_node parameter, const Takes& takes) {
   addText(constraints, "step", takes.type == "integer" ? "1" : "0.01");
 }
 
-void addFlag(pugi::xml_node group, const Flag& flag) {
-  const Takes& takes = flag.takes;
+void addFlag(pugi::xml_node group, const Option& flag) {
+  const ValueSpec& takes = flag.spec;
   pugi::xml_node parameter = group.append_child(typeOf(takes).c_str());
   if (!takes.image.empty())
     parameter.append_attribute("type") = takes.image.c_str();
@@ -58,10 +59,10 @@ void addFlag(pugi::xml_node group, const Flag& flag) {
   addText(parameter, "description", flag.help());
   if (!takes.channel.empty())
     addText(parameter, "channel", takes.channel);
-  if (!takes.standard.empty())
-    addText(parameter, "default", takes.standard);
+  if (!takes.defaultValue.empty())
+    addText(parameter, "default", takes.defaultValue);
   addConstraints(parameter, takes);
-  for (const std::string& word : takes.words)
+  for (const std::string& word : takes.choices)
     addText(parameter, "element", word);
 }
 
@@ -70,7 +71,7 @@ void addInput(pugi::xml_node group, const Positional& input) {
   image.append_attribute("type") = "scalar";
   addText(image, "name", "inputVolume");
   addText(image, "label", "Volume");
-  addText(image, "description", input.text);
+  addText(image, "description", input.description);
   addText(image, "channel", "input");
   addText(image, "index", "0");
 }
@@ -101,8 +102,8 @@ std::string slicerDescription(const CommandSyntax& syntax) {
   addText(module, "contributor", "The Fenestra developers");
   std::string groupName;
   pugi::xml_node group;
-  for (const Flag& flag : syntax.flags) {
-    if (flag.takes.type.empty())
+  for (const Option& flag : syntax.options) {
+    if (flag.spec.type.empty())
       continue;
     if (flag.group != groupName) {
       const bool first = groupName.empty();

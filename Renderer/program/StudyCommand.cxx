@@ -209,7 +209,7 @@ private:
   bool m_asked = false;
 };
 
-RowShare shareOf(const FlagValues& values) {
+RowShare shareOf(const OptionValues& values) {
   const std::string text = values.text("rows").value_or("1/1");
   std::size_t part = 0, parts = 0;
   char rest = 0;
@@ -219,25 +219,25 @@ RowShare shareOf(const FlagValues& values) {
   return {part - 1, parts};
 }
 
-StudyOptions studyOptions(const FlagValues& values) {
+StudyOptions studyOptions(const OptionValues& values) {
   StudyOptions options;
   options.formats = values.list("formats");
   for (const std::string& format : options.formats)
     if (format != "exr" && format != "nrrd" && format != "tif")
       throw usageError("--formats: expected exr, nrrd or tif, got '", oneLine(format), "'");
   options.threads = threadCount(values);
-  options.workers = static_cast<int>(values.count("workers").value_or(1));
+  options.workers = static_cast<int>(values.integer("workers").value_or(1));
   options.share = shareOf(values);
   options.restart = values.has("restart");
-  options.progress = givenOptions(values).progress;
+  options.progress = readOptions(values).progress;
   return options;
 }
 
 /// Flags of all rows, without the study's own.
-FlagValues givenToAllRows(const FlagValues& values) {
-  FlagValues common = values;
-  for (const Flag& flag : studySyntax().flags)
-    if (!shapesPicture(flag) && flag.name != "layers")
+OptionValues givenToAllRows(const OptionValues& values) {
+  OptionValues common = values;
+  for (const Option& flag : studySyntax().options)
+    if (!isImageOption(flag) && flag.name != "layers")
       common.remove(flag.name);
   for (const char* name : {"TABLE", "output", "workers", "formats", "rows", "restart"})
     common.remove(name);
@@ -247,7 +247,7 @@ FlagValues givenToAllRows(const FlagValues& values) {
 } // namespace
 
 int studyCommand(int argc, char** argv, int first) {
-  const std::optional<FlagValues> values = parseCommandLine(studySyntax(), argc, argv, first);
+  const std::optional<OptionValues> values = parseCommandLine(studySyntax(), argc, argv, first);
   if (!values)
     return 0;
   const StudyOptions options = studyOptions(*values);

@@ -38,7 +38,7 @@ std::vector<std::string> recordedArguments(const StudyRow& row, const fs::path& 
   if (!formats.empty())
     arguments.push_back("--formats=" + joined(formats, ","));
   arguments.push_back(row.input);
-  return relativeArguments(arguments, renderSyntax.flags, folder / row.name);
+  return relativeArguments(arguments, renderSyntax.options, folder / row.name);
 }
 
 /// Input files of a row that is done: those of its arguments and statistics, what their headers

@@ -18,13 +18,13 @@ constexpr const char* studyGroup = "Study";
 constexpr const char* nameColumn = "name";
 constexpr const char* inputColumn = "input";
 
-const Flag studyFlags[] = {
+const Option studyFlags[] = {
     {"output", "DIR", studyGroup,
      "Folder for a folder of each row, study.csv and study.png [the table's name without .csv]"},
     {"workers", "N", studyGroup, "Rows at once, 1 to 256; they share out the threads",
-     Takes::whole(1, 256).shows("1")},
+     ValueSpec::integer(1, 256).withDefault("1")},
     {"formats", "L,...", studyGroup, "Pictures of each row beside the .png: exr, nrrd, tif [none]",
-     Takes::list()},
+     ValueSpec::list()},
     {"rows", "K/N", studyGroup,
      "Only the K-th of N parts of the rows, dealt out in turn, for several machines; the same "
      "command without --rows then makes study.csv and study.png [all]"},
@@ -48,22 +48,22 @@ void requireFolderName(const std::string& name, const std::string& source,
 }
 
 /// True if several cells may give the flag.
-bool isRepeatable(const Flag& flag) {
-  return flag.takes.repeats || flag.takes.type == "string-vector";
+bool isRepeatable(const Option& flag) {
+  return flag.spec.canRepeat || flag.spec.type == "string-vector";
 }
 
 /// Flags of the columns; null: name, input. Throws Error (input).
-std::vector<const Flag*> columnsOf(const CsvRecord& head, const std::string& source) {
+std::vector<const Option*> columnsOf(const CsvRecord& head, const std::string& source) {
   std::vector<std::string> known = {nameColumn, inputColumn};
-  for (const Flag& flag : renderSyntax.flags)
-    if (shapesPicture(flag))
+  for (const Option& flag : renderSyntax.options)
+    if (isImageOption(flag))
       known.push_back(flag.name);
-  std::vector<const Flag*> columns;
+  std::vector<const Option*> columns;
   std::set<std::string> names;
   for (const std::string& name : head.fields) {
-    const Flag* const flag = findFlag(renderSyntax.flags, name);
+    const Option* const flag = findOption(renderSyntax.options, name);
     if (std::ranges::find(known, name) == known.end()) {
-      const std::string likely = nearest(lower(name), known);
+      const std::string likely = findNearest(lower(name), known);
       throw inputError(source, "line ", head.line, ": '", fenestra::shown(name),
                        "' is no column of a study",
                        likely.empty() ? "; columns are name, input and flags of fenestra render"
@@ -94,7 +94,7 @@ std::string fileOf(const std::string& cell, const fs::path& folder) {
 /// Reads rows, one after the other.
 class TableReader {
 public:
-  TableReader(const fs::path& path, const CsvRecord& head, const FlagValues& common)
+  TableReader(const fs::path& path, const CsvRecord& head, const OptionValues& common)
       : m_folder(path.parent_path()),
         m_source(path.string()),
         m_head(head),
@@ -107,7 +107,7 @@ public:
       throw inputError(m_source, place, ": has ", record.fields.size(), " fields, the first line ",
                        m_columns.size(), "; quote fields with commas, or add what is missing");
     StudyRow row;
-    FlagValues others = m_common;
+    OptionValues others = m_common;
     for (std::size_t i = 0; i < m_columns.size(); ++i) {
       const std::string cell(trimmed(record.fields[i]));
       if (!cell.empty())
@@ -125,18 +125,18 @@ public:
   }
 
 private:
-  void add(StudyRow& row, FlagValues& others, std::size_t column, const std::string& cell,
+  void add(StudyRow& row, OptionValues& others, std::size_t column, const std::string& cell,
            const std::string& place) {
     if (oneLine(cell) != cell)
       throw inputError(m_source, place, ", ", m_head.fields[column],
                        ": holds a line's end or no UTF-8; write it on one line");
-    const Flag* const flag = m_columns[column];
+    const Option* const flag = m_columns[column];
     if (!flag && m_head.fields[column] == nameColumn)
       row.name = cell;
     else if (!flag)
       row.input = (m_folder / cell).string();
     else {
-      const bool namesFile = flag->takesFile();
+      const bool namesFile = flag->canNameFile();
       row.flags.push_back(textOf("--", flag->name, "=", namesFile ? fileOf(cell, m_folder) : cell));
       others.remove(flag->name);
       if (!namesFile || cell.find_first_of("./") == cell.npos)
@@ -147,18 +147,18 @@ private:
   fs::path m_folder;
   std::string m_source;
   const CsvRecord& m_head;
-  std::vector<const Flag*> m_columns;
-  const FlagValues& m_common;
+  std::vector<const Option*> m_columns;
+  const OptionValues& m_common;
   std::map<std::string, std::size_t> m_lines; ///< by name in lower case
 };
 
 } // namespace
 
 const CommandSyntax& studySyntax() {
-  static const std::vector<Flag> flags = [] {
-    std::vector<Flag> all(std::begin(studyFlags), std::end(studyFlags));
-    for (const Flag& flag : renderSyntax.flags)
-      if (shapesPicture(flag) || flag.name == "layers" || flag.name == "threads" ||
+  static const std::vector<Option> flags = [] {
+    std::vector<Option> all(std::begin(studyFlags), std::end(studyFlags));
+    for (const Option& flag : renderSyntax.options)
+      if (isImageOption(flag) || flag.name == "layers" || flag.name == "threads" ||
           flag.name == "progress")
         all.push_back(flag);
     return all;
@@ -181,7 +181,7 @@ const CommandSyntax& studySyntax() {
   return syntax;
 }
 
-std::vector<StudyRow> readStudyTable(const fs::path& path, const FlagValues& common) {
+std::vector<StudyRow> readStudyTable(const fs::path& path, const OptionValues& common) {
   constexpr std::size_t mostRows = 10'000;
   const std::vector<CsvRecord> records = parseCsv(readText(path), path.string());
   if (records.size() < 2)

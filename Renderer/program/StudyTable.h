@@ -21,6 +21,6 @@ const CommandSyntax& studySyntax();
 /// rows that have no value of their own. Throws Error (input), naming the line: for unknown or
 /// doubled columns, names that are no portable folder names, doubled names, more than 10,000 rows.
 /// Values are not checked: a row's own run does that.
-std::vector<StudyRow> readStudyTable(const std::filesystem::path& path, const FlagValues& common);
+std::vector<StudyRow> readStudyTable(const std::filesystem::path& path, const OptionValues& common);
 
 } // namespace fenestra

@@ -206,7 +206,7 @@ void declareFrames(const TurntableOptions& options, const TurntableRecord& recor
   for (int frame = options.first(); frame < options.end(); ++frame) {
     const bool isOurs = !options.restart && !record.finished().contains(frame);
     for (const std::filesystem::path& path : options.pictures(frame))
-      declareImage(path, outputs, isOurs ? NamedBy::standard : options.render.outputsNamedBy,
+      declareImage(path, outputs, isOurs ? NamedBy::standard : options.render.outputNaming,
                    options.render.filteredFiles());
   }
   if (options.render.stats)
@@ -239,15 +239,15 @@ std::list<NameLock> lockFrames(const TurntableOptions& options) {
 } // namespace
 
 int turntableCommand(int argc, char** argv, int first) {
-  const std::optional<FlagValues> given = parseCommandLine(turntableSyntax(), argc, argv, first);
+  const std::optional<OptionValues> given = parseCommandLine(turntableSyntax(), argc, argv, first);
   if (!given)
     return 0;
   useMachine(*given);
-  FlagValues flags = *given;
+  OptionValues flags = *given;
   flags.remove("shard"); // which deals out frames here, not tiles
   const PictureRequest request = pictureRequest(flags);
   TurntableOptions options = turntableOptions(request.flags, request.options);
-  options.shard = givenOptions(*given).settings.shard;
+  options.shard = readOptions(*given).settings.shard;
   if (options.first() == options.end())
     throw usageError("--shard: ", options.shard.count, " parts are more than the ", options.frames,
                      " frames; ask for fewer parts");

@@ -10,15 +10,15 @@ namespace {
 
 constexpr const char* turntableGroup = "Turntable";
 
-const Flag ownFlags[] = {
+const Option ownFlags[] = {
     {"frames", "N", turntableGroup, "Pictures, 1 to 10000",
-     Takes::whole(1, mostFrames).shows("36")},
+     ValueSpec::integer(1, mostFrames).withDefault("36")},
     {"degrees", "D", turntableGroup, "How far the eye goes around; frame i of N stands at i D / N",
-     Takes::number(-36000.0, 36000.0).shows("360")},
+     ValueSpec::number(-36000.0, 36000.0).withDefault("360")},
     {"steady", "DEGREES", turntableGroup,
      "Spreads what the clipping surface does suddenly, away from the focus, over so far to both "
      "sides; 0: every frame as render makes it [twice from frame to frame, 10 at most]",
-     Takes::number(0.0, 45.0)},
+     ValueSpec::number(0.0, 45.0)},
     {"restart", "", turntableGroup,
      "Begin anew, in place of another turntable's frames of these names"},
 };
@@ -26,9 +26,9 @@ const Flag ownFlags[] = {
 } // namespace
 
 const CommandSyntax& turntableSyntax() {
-  static const std::vector<Flag> flags = [] {
-    std::vector<Flag> all(std::begin(ownFlags), std::end(ownFlags));
-    all.insert(all.end(), renderSyntax.flags.begin(), renderSyntax.flags.end());
+  static const std::vector<Option> flags = [] {
+    std::vector<Option> all(std::begin(ownFlags), std::end(ownFlags));
+    all.insert(all.end(), renderSyntax.options.begin(), renderSyntax.options.end());
     return all;
   }();
   static const CommandSyntax syntax = {
@@ -47,10 +47,10 @@ const CommandSyntax& turntableSyntax() {
   return syntax;
 }
 
-TurntableOptions turntableOptions(const FlagValues& flags, const RenderOptions& render) {
+TurntableOptions turntableOptions(const OptionValues& flags, const RenderOptions& render) {
   TurntableOptions options{render};
   options.render.scene.measure = false; // the statistics cover all frames
-  options.frames = static_cast<int>(flags.count("frames").value_or(36));
+  options.frames = static_cast<int>(flags.integer("frames").value_or(36));
   options.degrees = flags.number("degrees").value_or(options.degrees);
   const double usual = std::min(10.0, 2.0 * std::abs(options.angle(1)));
   options.render.scene.steadyDegrees = flags.number("steady").value_or(usual);

@@ -32,7 +32,7 @@ struct TurntableOptions {
 const CommandSyntax& turntableSyntax();
 
 /// `render`: options of the same flags. Throws Error (usage).
-TurntableOptions turntableOptions(const FlagValues& flags, const RenderOptions& render);
+TurntableOptions turntableOptions(const OptionValues& flags, const RenderOptions& render);
 
 /// Record of the finished frames: turn.png's is turn.turntable.json, that of its second part of
 /// three turn.2of3.turntable.json, so that parts are rendered beside each other.

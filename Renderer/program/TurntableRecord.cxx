@@ -13,14 +13,14 @@ using nlohmann::json;
 namespace fs = std::filesystem;
 
 /// Arguments on which the pictures of the frames depend.
-std::vector<std::string> requestedArguments(const FlagValues& flags, const fs::path& folder) {
-  FlagValues request = flags;
+std::vector<std::string> requestedArguments(const OptionValues& flags, const fs::path& folder) {
+  OptionValues request = flags;
   for (const char* name : {"threads", "progress", "stats", "restart"})
     request.remove(name);
   for (const char* name : {"frames", "degrees"})
     if (!request.has(name))
-      request.add(name, findFlag(turntableSyntax().flags, name)->takes.standard);
-  return relativeArguments(request.arguments(), turntableSyntax().flags, folder);
+      request.add(name, findOption(turntableSyntax().options, name)->spec.defaultValue);
+  return relativeArguments(request.arguments(), turntableSyntax().options, folder);
 }
 
 std::uint64_t digest(const auto& voxels) {
@@ -40,7 +40,7 @@ nlohmann::ordered_json changeJson(const SurfaceChange& change) {
   return {{"mean", change.mean}, {"p95", change.p95}, {"max", change.max}, {"focus", change.focus}};
 }
 
-TurntableRecord::TurntableRecord(const TurntableOptions& options, const FlagValues& flags)
+TurntableRecord::TurntableRecord(const TurntableOptions& options, const OptionValues& flags)
     : m_options(options),
       m_record(recordPath(options.render.outputs.front(), options.shard), "frame",
                requestedArguments(flags, options.render.outputs.front().parent_path())) {

@@ -13,7 +13,7 @@ public:
   /// Reads the existing record of these flags, if any; with options.restart, none of its frames
   /// counts as finished. Throws Error: usage if the record, or a frame without a record, belongs to
   /// other flags; input if the record is damaged. Keeps a reference to the options.
-  TurntableRecord(const TurntableOptions& options, const FlagValues& flags);
+  TurntableRecord(const TurntableOptions& options, const OptionValues& flags);
   /// Adds the inputs beside the flags to the request: states of all files named or referred to, and
   /// digests of the voxels. Throws Error (usage) if the recorded frames have other inputs.
   void setInputs(const Scene& scene);

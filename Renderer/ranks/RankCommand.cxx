@@ -87,7 +87,7 @@ int runFirstRank(int argc, char** argv, Ranks& ranks, const std::vector<std::str
 
 /// Other ranks: tiles of the picture that rank 0 makes of the same arguments.
 void runOtherRank(int argc, char** argv, Ranks& ranks) {
-  const std::optional<FlagValues> given =
+  const std::optional<OptionValues> given =
       parseCommandLine(renderSyntax, argc, argv, firstArgument(argc, argv));
   useMachine(*given);
   std::optional<SharedFiles> files(ranks);
@@ -99,7 +99,7 @@ void runOtherRank(int argc, char** argv, Ranks& ranks) {
   checkMemory(wanted);
   const Scene scene(wanted, request.input);
   files.reset();
-  const RenderSettings settings = settingsFor(request.options, scene.background());
+  const RenderSettings settings = makeSettings(request.options, scene.background());
   if (const std::string here = describeScene(scene, settings); here != expected)
     throw inputError(wanted.input, "is another scene than rank 0 has (", here, ", not ", expected,
                      "); a file that it names may differ between machines");

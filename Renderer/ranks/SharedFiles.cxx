@@ -63,20 +63,20 @@ fs::path SharedFiles::here(const fs::path& remotePath) const {
   return m_folder.path() / (m_working / remotePath).lexically_normal().relative_path();
 }
 
-FlagValues SharedFiles::renamed(const FlagValues& flags, std::span<const Flag> known) const {
-  FlagValues result = flags;
+OptionValues SharedFiles::renamed(const OptionValues& options, std::span<const Flag> known) const {
+  OptionValues result = options;
   const auto localize = [&](const std::string& name) {
     result.remove(name);
-    for (const std::string& value : flags.texts(name)) {
+    for (const std::string& value : options.texts(name)) {
       std::error_code failed;
       const fs::path file = here(value);
       result.add(name, fs::exists(file, failed) ? file.string() : value);
     }
   };
   localize("INPUT");
-  for (const Flag& flag : known)
-    if (flag.takesFile() && !flag.isWritten() && flags.has(flag.name))
-      localize(flag.name);
+  for (const Flag& option : known)
+    if (option.canNameFile() && !option.isWritten() && options.has(option.name))
+      localize(option.name);
   return result;
 }
 

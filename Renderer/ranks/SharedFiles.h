@@ -18,7 +18,7 @@ public:
 
   /// Flags with those names of files, relative to rank 0's working folder, that are here in place
   /// of the ones that rank 0 was given.
-  FlagValues localizePaths(const FlagValues& flags, std::span<const Flag> known) const;
+  OptionValues localizePaths(const OptionValues& options, std::span<const Flag> known) const;
 
 private:
   std::filesystem::path localPath(const std::filesystem::path& remotePath) const;

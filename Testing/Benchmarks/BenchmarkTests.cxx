@@ -28,7 +28,7 @@ SceneCase caseOf(const std::string& line) {
 
 Image renderBy(const char* mode, const Scene& scene, const RenderOptions& options,
                std::uint64_t count, std::uint64_t seed) {
-  RenderSettings settings = settingsFor(options, scene.background());
+  RenderSettings settings = makeSettings(options, scene.background());
   settings.samples = count;
   settings.seed = seed;
   return imageOf(findMode(mode).render(scene.forRender(), settings), scene);

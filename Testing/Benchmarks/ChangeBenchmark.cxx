@@ -93,7 +93,7 @@ int main(int argc, char** argv) {
     if (argc < 3)
       throw fenestra::usageError("usage: ChangeBenchmark FOCUS ARGUMENTS...");
     if (const auto flags = fenestra::parseCommandLine(fenestra::renderSyntax, argc, argv, 2))
-      fenestra::measure(argv[1], fenestra::renderOptions(*flags));
+      fenestra::measure(argv[1], fenestra::makeRenderOptions(*flags));
     return 0;
   } catch (const fenestra::Error& error) {
     std::cerr << "ChangeBenchmark: " << error.what() << '\n';

@@ -17,17 +17,18 @@ namespace fenestra::benchmarks {
 namespace {
 
 constexpr const char* group = "Benchmark";
-const Flag flags[] = {
+const Option flags[] = {
     {"scenes", "A,B,...", group, "Scenes of the table [all]"},
     {"modes", "A,B,...", group, "Ways to render, as Modes.cxx has them [all]"},
-    {"budget", "SECONDS", group, "CPU time of one curve [60]", Takes::number(1e-3, 1e6)},
+    {"budget", "SECONDS", group, "CPU time of one curve [60]", ValueSpec::number(1e-3, 1e6)},
     {"seeds", "N", group, "Renders of a point, as many as the budget allows [3]",
-     Takes::whole(1, 1000)},
-    {"threads", "K", group, "Threads of a render [all]", Takes::whole(1, 1024)},
+     ValueSpec::integer(1, 1000)},
+    {"threads", "K", group, "Threads of a render [all]", ValueSpec::integer(1, 1024)},
     {"size", "WxH", group, "Pixels [as the table says]"},
     {"noise", "E", group, "Noise of references that are made here [0.03]",
-     Takes::number(1e-4, 1.0)},
-    {"limit", "SECONDS", group, "Time that making one may take [1800]", Takes::number(1e-3, 1e6)},
+     ValueSpec::number(1e-4, 1.0)},
+    {"limit", "SECONDS", group, "Time that making one may take [1800]",
+     ValueSpec::number(1e-3, 1e6)},
     {"references", "DIR", group, "Where references are kept [benchmarks/references of the build]"},
     {"phantoms", "DIR", group, "Where the phantoms are [benchmarks of the build]"},
     {"table", "FILE", group, "Table of scenes [scenes.txt beside the sources]"},
@@ -51,7 +52,7 @@ struct Options {
 };
 
 /// Width and height from --size, "WxH".
-std::optional<std::pair<int, int>> sizeOf(const FlagValues& values) {
+std::optional<std::pair<int, int>> sizeOf(const OptionValues& values) {
   const auto text = values.text("size");
   if (!text)
     return std::nullopt;
@@ -61,7 +62,7 @@ std::optional<std::pair<int, int>> sizeOf(const FlagValues& values) {
   return std::pair(width, height);
 }
 
-Options optionsOf(const FlagValues& values) {
+Options optionsOf(const OptionValues& values) {
   const std::filesystem::path build = FENESTRA_BENCHMARK_FOLDER;
   const auto folder = [&](const char* name, const std::filesystem::path& otherwise) {
     return std::filesystem::path(values.text(name).value_or(otherwise.string()));
@@ -79,11 +80,11 @@ Options optionsOf(const FlagValues& values) {
     for (const Mode& mode : modes())
       options.modes.push_back(&mode);
   options.curve.budget = values.number("budget").value_or(options.curve.budget);
-  options.curve.seeds = static_cast<int>(values.count("seeds").value_or(3));
+  options.curve.seeds = static_cast<int>(values.integer("seeds").value_or(3));
   options.reference.noise = values.number("noise").value_or(options.reference.noise);
   options.reference.seconds = values.number("limit").value_or(options.reference.seconds);
   options.reference.folder = folder("references", build / "references");
-  options.threads = static_cast<int>(values.count("threads").value_or(0));
+  options.threads = static_cast<int>(values.integer("threads").value_or(0));
   options.size = sizeOf(values);
   options.output = folder("output", build / "report");
   return options;
@@ -98,7 +99,7 @@ std::vector<CurveRecord> measureScene(const SceneCase& sceneCase, const Options&
   if (options.size)
     std::tie(wanted.scene.width, wanted.scene.height) = *options.size;
   const Scene scene(wanted.scene);
-  RenderSettings settings = settingsFor(wanted, scene.background());
+  RenderSettings settings = makeSettings(wanted, scene.background());
   settings.threads = options.threads;
   const Reference reference = findReference(sceneCase, scene, settings, options.reference);
   std::vector<CurveRecord> curves;
@@ -131,7 +132,7 @@ std::string notes(const Options& options) {
 }
 
 int benchmark(int argc, char** argv) {
-  const std::optional<FlagValues> values = parseCommandLine(syntax, argc, argv, 1);
+  const std::optional<OptionValues> values = parseCommandLine(syntax, argc, argv, 1);
   if (!values)
     return 0;
   const Options options = optionsOf(*values);

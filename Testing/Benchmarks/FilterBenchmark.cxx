@@ -16,12 +16,12 @@ namespace fenestra::benchmarks {
 namespace {
 
 constexpr const char* group = "Benchmark";
-const Flag flags[] = {
+const Option flags[] = {
     {"scenes", "A,B,...", group, "Scenes of the table [all]"},
     {"counts", "N,...", group, "Samples a pixel [1,2,4,8,16,64,1024]"},
-    {"seeds", "N", group, "Renders of a count below 1024 [3]", Takes::whole(1, 1000)},
+    {"seeds", "N", group, "Renders of a count below 1024 [3]", ValueSpec::integer(1, 1000)},
     {"referencesamples", "N", group, "Samples of references that are made here [1024]",
-     Takes::whole(16, 1 << 20)},
+     ValueSpec::integer(16, 1 << 20)},
     {"references", "DIR", group, "Where references are kept [benchmarks/filter of the build]"},
     {"phantoms", "DIR", group, "Where the phantoms are [benchmarks of the build]"},
     {"table", "FILE", group, "Table of scenes [filter-scenes.txt beside the sources]"},
@@ -90,14 +90,14 @@ std::uint64_t countOf(const std::string& text) {
   return count;
 }
 
-std::vector<std::uint64_t> countsOf(const FlagValues& values) {
+std::vector<std::uint64_t> countsOf(const OptionValues& values) {
   std::vector<std::uint64_t> counts;
   for (const std::string& text : values.list("counts"))
     counts.push_back(countOf(text));
   return counts.empty() ? std::vector<std::uint64_t>{1, 2, 4, 8, 16, 64, 1024} : counts;
 }
 
-void measureScene(const SceneCase& sceneCase, const FlagValues& values,
+void measureScene(const SceneCase& sceneCase, const OptionValues& values,
                   const ReferenceSettings& wanted) {
   if (!sceneCase.missing.empty()) {
     std::cout << "| " << sceneCase.name << " | not present |" << std::endl;
@@ -106,13 +106,13 @@ void measureScene(const SceneCase& sceneCase, const FlagValues& values,
   RenderOptions options = sceneCase.options();
   options.scene.features = true;
   const Scene scene(options.scene);
-  RenderSettings settings = settingsFor(options, scene.background());
+  RenderSettings settings = makeSettings(options, scene.background());
   const Reference reference = findReference(sceneCase, scene, settings, wanted);
   double march = 0.0;
   timed([&] { return computeFeatures(scene.forRender()); }, march);
   for (const std::uint64_t count : countsOf(values)) {
     settings.samples = count;
-    const std::uint64_t seeds = count < 1024 ? values.count("seeds").value_or(3) : 1;
+    const std::uint64_t seeds = count < 1024 ? values.integer("seeds").value_or(3) : 1;
     Row mean;
     for (settings.seed = 1; settings.seed <= seeds; ++settings.seed)
       mean.add(measured(scene, settings, reference.image), 1.0 / static_cast<double>(seeds));
@@ -121,7 +121,7 @@ void measureScene(const SceneCase& sceneCase, const FlagValues& values,
 }
 
 int benchmark(int argc, char** argv) {
-  const std::optional<FlagValues> values = parseCommandLine(syntax, argc, argv, 1);
+  const std::optional<OptionValues> values = parseCommandLine(syntax, argc, argv, 1);
   if (!values)
     return 0;
   const std::filesystem::path build = FENESTRA_BENCHMARK_FOLDER;
@@ -129,7 +129,7 @@ int benchmark(int argc, char** argv) {
     return std::filesystem::path(values->text(name).value_or(otherwise.string()));
   };
   const ReferenceSettings wanted{.folder = folder("references", build / "filter"),
-                                 .samples = values->count("referencesamples").value_or(1024)};
+                                 .samples = values->integer("referencesamples").value_or(1024)};
   const std::vector<std::string> scenes = values->list("scenes");
   std::cout << "| scene | samples | relMSE raw | filtered | gain | told / true | gain × time "
                "| CPU s render | march | filter |\n|---|---|---|---|---|---|---|---|---|---|"

@@ -19,7 +19,7 @@ namespace fenestra::benchmarks {
 namespace {
 
 constexpr const char* group = "Benchmark";
-const Flag flags[] = {
+const Option flags[] = {
     {"scenes", "A,B,...", group, "Scenes of the table [all]"},
     {"phantoms", "DIR", group, "Where the phantoms are [benchmarks of the build]"},
     {"table", "FILE", group, "Table of scenes [look-scenes.txt beside the sources]"},
@@ -140,7 +140,7 @@ void measureScene(const SceneCase& sceneCase) {
   RenderOptions options = sceneCase.options();
   options.scene.features = options.scene.measure = true;
   const Scene scene(options.scene);
-  const std::vector<float> rgba = displayed(scene, settingsFor(options, scene.background()));
+  const std::vector<float> rgba = displayed(scene, makeSettings(options, scene.background()));
   if (scene.focus())
     printContrast(scene, rgba);
   else
@@ -148,7 +148,7 @@ void measureScene(const SceneCase& sceneCase) {
 }
 
 int benchmark(int argc, char** argv) {
-  const std::optional<FlagValues> values = parseCommandLine(syntax, argc, argv, 1);
+  const std::optional<OptionValues> values = parseCommandLine(syntax, argc, argv, 1);
   if (!values)
     return 0;
   const std::filesystem::path build = FENESTRA_BENCHMARK_FOLDER;

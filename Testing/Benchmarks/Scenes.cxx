@@ -10,12 +10,12 @@
 namespace fenestra::benchmarks {
 namespace {
 
-using Words = std::vector<std::string>;
+using Arguments = std::vector<std::string>;
 
 /// Arguments from a file, one a line, relative to its folder: names of files there become full
 /// paths.
-Words readArguments(const std::filesystem::path& path) {
-  Words words;
+Arguments readArguments(const std::filesystem::path& path) {
+  Arguments words;
   std::ifstream file(path);
   for (std::string line; std::getline(file, line);)
     if (!line.empty()) {
@@ -39,7 +39,7 @@ public:
     for (std::string line; std::getline(file, line);) {
       if (line.empty() || line[0] == '#')
         continue;
-      const Words words = split(line);
+      const Arguments words = split(line);
       if (words.size() < 3)
         throw inputError(m_path.string(), "'" + line + "': expected NAME REFERENCE ARGUMENTS");
       if (words[1] == "=")
@@ -54,8 +54,8 @@ public:
 
 private:
   /// Words of a line, with each "@name" replaced by its definition.
-  Words split(const std::string& line) const {
-    Words words;
+  Arguments split(const std::string& line) const {
+    Arguments words;
     std::istringstream stream(line);
     for (std::string word; stream >> word;) {
       const auto name = m_names.find(word);
@@ -79,7 +79,7 @@ private:
     return found->second;
   }
 
-  SceneCase sceneOf(const Words& words) const {
+  SceneCase sceneOf(const Arguments& words) const {
     SceneCase scene;
     scene.name = words[0];
     scene.maker = maker(words[1]);
@@ -90,7 +90,7 @@ private:
         scene.arguments.push_back(word);
         continue;
       }
-      const Words read = readArguments(path);
+      const Arguments read = readArguments(path);
       scene.arguments.insert(scene.arguments.end(), read.begin(), read.end());
       scene.independent = std::filesystem::path(path).replace_extension();
     }
@@ -111,13 +111,13 @@ private:
 
   std::filesystem::path m_path;
   std::map<std::string, std::filesystem::path> m_folders;
-  std::map<std::string, Words> m_names;
+  std::map<std::string, Arguments> m_names;
 };
 
 } // namespace
 
 RenderOptions SceneCase::options() const {
-  Words words = {"fenestra"};
+  Arguments words = {"fenestra"};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words)
@@ -125,7 +125,7 @@ RenderOptions SceneCase::options() const {
   const auto flags = parseCommandLine(renderSyntax, static_cast<int>(argv.size()), argv.data(), 1);
   if (!flags)
     throw usageError("--scenes: " + name + " asks for help, not for a picture; mend scenes.txt");
-  return renderOptions(*flags);
+  return makeRenderOptions(*flags);
 }
 
 std::vector<SceneCase> readScenes(const std::filesystem::path& table, const Folders& folders) {

@@ -21,8 +21,8 @@ protected:
     return renderWith(all);
   }
   /// Refusal of the film a.film, for a command with other words.
-  Refusal refusal(const std::string& name, const Arguments& words, const std::string& text,
-                  int status = 2) const {
+  ExcludedOptions refusal(const std::string& name, const Arguments& words, const std::string& text,
+                          int status = 2) const {
     Arguments all = {"volume.nrrd", "--checkpoint", "a.film", "--output", "a.exr"};
     all.insert(all.end(), words.begin(), words.end());
     return {name, all, status, text};
@@ -78,7 +78,7 @@ TEST_F(CheckpointCommand, FilmOfAnotherRenderIsRefused) {
     words.insert(words.end(), small.begin(), small.end());
     return words;
   };
-  std::vector<Refusal> refusals = {
+  std::vector<ExcludedOptions> refusals = {
       refusal("seed", with({"--seed", "3"}), "--seed was not given, is 3"),
       refusal("size", {"--size", "16x17", "--samples", "2"}, "--size was 16x16, is 16x17"),
       refusal("view", with({"--view", "left"}), "--view was not given, is left"),
@@ -89,7 +89,7 @@ TEST_F(CheckpointCommand, FilmOfAnotherRenderIsRefused) {
       refusal("turntable", {}, "--checkpoint: a turntable records"),
   };
   refusals.back().arguments.insert(refusals.back().arguments.begin(), "turntable");
-  for (Refusal& one : refusals)
+  for (ExcludedOptions& one : refusals)
     one.arguments.insert(one.arguments.end(), {"--progress", "xml"});
   expectRefused(refusals, folder.path());
 }

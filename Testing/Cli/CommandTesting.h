@@ -98,7 +98,7 @@ inline std::set<std::string> filesIn(const std::filesystem::path& folder) {
 }
 
 /// Command line that must be refused.
-struct Refusal {
+struct ExcludedOptions {
   std::string name;
   Arguments arguments;
   int status;
@@ -107,10 +107,10 @@ struct Refusal {
 
 /// Runs each command line; expects its exit status, one line on standard error, nothing on standard
 /// output, and an unchanged set of files.
-inline void expectRefused(const std::vector<Refusal>& refusals,
+inline void expectRefused(const std::vector<ExcludedOptions>& refusals,
                           const std::filesystem::path& folder) {
   const std::set<std::string> before = filesIn(folder);
-  for (const Refusal& refusal : refusals) {
+  for (const ExcludedOptions& refusal : refusals) {
     SCOPED_TRACE(refusal.name);
     const Outcome outcome = run(refusal.arguments, folder);
     EXPECT_EQ(outcome.status, refusal.status) << outcome.err;

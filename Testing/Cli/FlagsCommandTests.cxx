@@ -11,7 +11,7 @@ namespace {
 class FlagsCommand : public SmallScene {
 protected:
   /// Refusal of `volume.nrrd flags…` as wrong usage.
-  static Refusal refusal(Arguments flags, const std::string& text) {
+  static ExcludedOptions refusal(Arguments flags, const std::string& text) {
     std::string name;
     for (const std::string& flag : flags)
       name += flag + " ";
@@ -40,7 +40,7 @@ TEST_F(FlagsCommand, RefusesUnknownArgumentsAndSuggestsTheNearest) {
 }
 
 TEST_F(FlagsCommand, RefusesFlagsNotYetImplemented) {
-  std::vector<Refusal> refusals;
+  std::vector<ExcludedOptions> refusals;
   refusals.push_back(refusal({"--resume", "1"}, "--resume: no such flag"));
   refusals.push_back(
       refusal({"--segmentation", "segments.seg.nrrd", "--focus", "A", "--boundary", "smooth"},
@@ -64,7 +64,7 @@ TEST_F(FlagsCommand, RefusesMissingAndRepeatedValues) {
 }
 
 TEST_F(FlagsCommand, RefusesNumbersOutOfRange) {
-  std::vector<Refusal> refusals;
+  std::vector<ExcludedOptions> refusals;
   const auto refuseAll = [&](const std::string& flag, const Arguments& values) {
     for (const std::string& value : values)
       refusals.push_back(refusal({flag, value}, flag + ": "));
@@ -95,7 +95,7 @@ TEST_F(FlagsCommand, RefusesNumbersOutOfRange) {
 }
 
 TEST_F(FlagsCommand, RefusesAnglesAndPlanesOutOfRange) {
-  std::vector<Refusal> refusals;
+  std::vector<ExcludedOptions> refusals;
   for (const char* angle : {"0", "180", "-30", "nan", "inf", "wide"})
     refusals.push_back(
         refusal({"--projection", "perspective", "--angle", angle}, "--angle: expected a number"));

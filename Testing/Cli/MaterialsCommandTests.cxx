@@ -209,7 +209,7 @@ TEST_F(MaterialsCommand, MatterCanBeDenserAndStandThroughTheClip) {
 TEST_F(MaterialsCommand, RefusesInOneLine) {
   folder.write("broken.json", R"({"version": 1, "materials": {"a": {"colour": "#ffffff"}}})");
   const auto refusal = [](Arguments more, int status, const std::string& text) {
-    return Refusal{text, with(more), status, text};
+    return ExcludedOptions{text, with(more), status, text};
   };
   const Arguments on = {"--materials", "library"};
   const auto change = [&](const std::string& text, const std::string& answer) {

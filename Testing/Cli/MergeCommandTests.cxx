@@ -109,7 +109,7 @@ TEST_F(MergeCommand, PartsThatDoNotBelongTogetherAreNamed) {
     std::filesystem::rename(folder / films[1], folder / name);
     std::filesystem::rename(folder / "kept.film", folder / films[1]);
   };
-  std::vector<Refusal> refusals = {
+  std::vector<ExcludedOptions> refusals = {
       {"missing", {films[0], films[2]}, 2, "PART: of 3 parts, number 2 is missing"},
       {"doubled", {films[0], films[1], films[2], "copy.film"}, 2, "is part 2/3, as is "},
       {"of another count", {films[0], foreign, films[2]}, 2, foreign + ": is part 1/2"},
@@ -129,7 +129,7 @@ TEST_F(MergeCommand, PartsThatDoNotBelongTogetherAreNamed) {
                         2,
                         std::string(name) + ": is not of the picture of 1of3.film: " + more[0]});
   }
-  for (Refusal& refusal : refusals)
+  for (ExcludedOptions& refusal : refusals)
     refusal.arguments.insert(refusal.arguments.begin(), "merge");
   expectRefused(refusals, folder.path());
 }
@@ -158,7 +158,7 @@ TEST_F(MergeCommand, FewerSamplesOrAChangedInputAreNamed) {
 TEST_F(MergeCommand, PartsTakeNoFlagsOfTheWholePicture) {
   const auto refused = [](const char* name, Arguments words, const char* text) {
     words.insert(words.begin(), {"volume.nrrd", "--shard", "1/2"});
-    return Refusal{name, words, 2, text};
+    return ExcludedOptions{name, words, 2, text};
   };
   const Arguments film = {"--checkpoint", "a.film"};
   const auto with = [&](Arguments words) {

@@ -147,7 +147,7 @@ TEST(PresetsCommand, RefusesUnknownAndDamagedPresets) {
   const auto refused = [](const std::string& name, Arguments arguments, int status,
                           const std::string& text) {
     arguments.insert(arguments.begin(), "knee/knee.nrrd");
-    return Refusal{name, arguments, status, text};
+    return ExcludedOptions{name, arguments, status, text};
   };
   expectRefused(
       {

@@ -17,14 +17,14 @@ namespace fenestra::faults {
 namespace {
 
 namespace fs = std::filesystem;
-using Words = std::vector<std::string>;
+using Arguments = std::vector<std::string>;
 
 /// File to damage, with the files that belong to it, and the command that reads it.
 struct Victim {
   std::string name;
   Files files;
   bool isPacked = false; ///< packed into a.mrb, with other files beside
-  Words words;           ///< arguments of a render or a comparison
+  Arguments words;       ///< arguments of a render or a comparison
 };
 
 class Samples {
@@ -94,7 +94,7 @@ void addVolumes(std::vector<Victim>& victims, const Samples& samples) {
 /// Adds transfer functions, segmentations and maps beside a volume.
 void addFlags(std::vector<Victim>& victims, const Samples& samples) {
   const Files volume = {{"plain.nrrd", samples.of("traps/plain.nrrd")}};
-  const auto add = [&](const std::string& name, const std::string& content, Words words,
+  const auto add = [&](const std::string& name, const std::string& content, Arguments words,
                        const Files& more = {}) {
     Victim victim = {name, volume, false, {"render", "plain.nrrd"}};
     victim.files[name] = content;
@@ -112,7 +112,7 @@ void addFlags(std::vector<Victim>& victims, const Samples& samples) {
       {"--segmentation", "cropped.seg.nrrd", "--focus", "1"});
   const std::string list = samples.seed("Surface/box.vtm"),
                     surface = samples.seed("Surface/box.vtp");
-  const Words segments = {"--segmentation", "b.vtm", "--focus", "1"};
+  const Arguments segments = {"--segmentation", "b.vtm", "--focus", "1"};
   add("b.vtm", list, segments, {{"s.vtp", surface}});
   add("s.vtp", surface, segments, {{"b.vtm", list}});
   for (const char* name : {"picture.exr", "picture.nrrd", "picture.png", "picture.tif"})
@@ -133,11 +133,11 @@ std::vector<Victim> makeVictims(const Samples& samples) {
 }
 
 /// Writes the files of a mutation into the place's folder; returns the command.
-Words prepare(const Victim& victim, long number, const Place& place) {
+Arguments prepare(const Victim& victim, long number, const Place& place) {
   std::mt19937_64 random(static_cast<std::uint64_t>(number));
   Files files = victim.files;
   files[victim.name] = mutated(files[victim.name], random);
-  Words words = victim.words;
+  Arguments words = victim.words;
   if (words[0] == "render" && random() % 4 == 0)
     words = {"inspect", words[1], "--json"};
   else if (words[0] == "render")
@@ -184,7 +184,7 @@ struct Result {
 
 Result tryOne(const std::vector<Victim>& victims, long number, const Place& place) {
   const Victim& victim = victims[static_cast<std::size_t>(number) % victims.size()];
-  const Words words = prepare(victim, number, place);
+  const Arguments words = prepare(victim, number, place);
   const Files before = place.files();
   const Outcome outcome = place.run(words, {});
   return {outcome.status, finding(outcome, before, place)};

@@ -10,31 +10,32 @@ namespace {
 
 namespace fs = std::filesystem;
 
-using Words = std::vector<std::string>;
+using Arguments = std::vector<std::string>;
 
-Words joined(Words words, const Words& more) {
+Arguments joined(Arguments words, const Arguments& more) {
   words.insert(words.end(), more.begin(), more.end());
   return words;
 }
 
 std::vector<Request> makeRequests() {
-  const Words quick = {"--size", "16x16", "--samples", "1", "--threads", "1", "--progress", "none"};
-  const Words render =
+  const Arguments quick = {"--size",    "16x16", "--samples",  "1",
+                           "--threads", "1",     "--progress", "none"};
+  const Arguments render =
       joined({"render", "knee.mrb", "--focus", "FemoralCartilage", "--output", "o.exr", "--output",
               "o.png", "--surface", "o.vtp", "--stats", "s.json"},
              quick);
-  const Words turntable = joined({"turntable", "knee.mrb", "--frames", "2", "--output", "t.png",
-                                  "--stats", "s.json", "--restart"},
-                                 quick);
-  const Words study = joined({"study", "t.csv", "--output", "d"}, quick);
-  const Words phantom = {"phantom", "cube", "--output", "p", "--size", "16"};
+  const Arguments turntable = joined({"turntable", "knee.mrb", "--frames", "2", "--output", "t.png",
+                                      "--stats", "s.json", "--restart"},
+                                     quick);
+  const Arguments study = joined({"study", "t.csv", "--output", "d"}, quick);
+  const Arguments phantom = {"phantom", "cube", "--output", "p", "--size", "16"};
   const auto kept = [](const char* samples) {
-    return Words{"render",       "knee.mrb",  "--size",   "16x16",      "--samples",
-                 samples,        "--threads", "1",        "--progress", "none",
-                 "--checkpoint", "o.film",    "--output", "o.exr"};
+    return Arguments{"render",       "knee.mrb",  "--size",   "16x16",      "--samples",
+                     samples,        "--threads", "1",        "--progress", "none",
+                     "--checkpoint", "o.film",    "--output", "o.exr"};
   };
   const auto part = [](const char* shard, const char* film) {
-    return Words{"render", "knee.mrb", "--shard", shard, "--checkpoint", film};
+    return Arguments{"render", "knee.mrb", "--shard", shard, "--checkpoint", film};
   };
   Request three = {"phantom", phantom, {joined(phantom, {"--edge", "2"})}, {{}}, "", ""};
   for (const char* ending :
@@ -125,7 +126,7 @@ void Place::fill(const Files& files) const {
       std::ofstream(folder() / name, std::ios::binary) << content;
 }
 
-Outcome Place::run(const Words& words, const Fault& fault) const {
+Outcome Place::run(const Arguments& words, const Fault& fault) const {
   return faults::run(
       {joined({m_tools.executable.string()}, words), folder(), temporary(), m_tools.preload},
       fault);
@@ -140,7 +141,7 @@ Subject learn(const Request& request, const Tools& tools) {
     subject.inputs.push_back(name);
   place.fill(inputs);
   std::vector<Outcome> outcomes;
-  for (const Words& words : request.before)
+  for (const Arguments& words : request.before)
     outcomes.push_back(place.run(words, {}));
   subject.before = place.files();
   subject.undisturbed = place.run(request.words, {Fault::Kind::counting});

@@ -19,5 +19,5 @@ FENESTRA_FUZZ(CommandLine, input) {
     argv.push_back(word.data());
   if (const auto flags =
           parseCommandLine(renderSyntax, static_cast<int>(argv.size()), argv.data(), 1))
-    renderOptions(*flags);
+    makeRenderOptions(*flags);
 }

@@ -6,7 +6,7 @@
 
 FENESTRA_FUZZ(Serve, input) {
   using namespace fenestra;
-  FlagValues flags(renderSyntax.flags);
+  OptionValues flags(renderSyntax.flags);
   flags.add("INPUT", "volume.nrrd");
   const nlohmann::json change = parseJson(input, "a line");
   idOf(change);

@@ -12,7 +12,7 @@ FENESTRA_FUZZ(Study, input) {
   const std::filesystem::path path = fuzzing::asFile(input, name);
   if (name == "t.csv") {
     std::set<std::string> names;
-    for (const StudyRow& row : readStudyTable(path, FlagValues(studySyntax().flags)))
+    for (const StudyRow& row : readStudyTable(path, OptionValues(studySyntax().flags)))
       if (row.name.find('/') != row.name.npos || row.input.empty() ||
           !names.insert(row.name).second)
         throw std::logic_error("a row that has no folder of its own, or no input");

@@ -249,7 +249,7 @@ TEST_F(SlicerProcess, AbilitiesListFlagsAndNamesOfTheRenderer) {
   EXPECT_TRUE(told[0].names("lights", "studio"));
   EXPECT_FALSE(told[0].names("lights", "stud"));
   EXPECT_TRUE(told[0].flags["holemargin"].text.startsWith("How much wider"));
-  EXPECT_TRUE(told[0].flags["holemargin"].words.isEmpty());
+  EXPECT_TRUE(told[0].flags["holemargin"].choices.isEmpty());
   EXPECT_EQ(told[0].turns(), told[0].turntable.contains("--frames"));
 
   qFenestraQuestion missing;

@@ -44,7 +44,7 @@ RenderOptions readArguments(const ReferenceCase& c) {
   std::vector<char*> argv;
   for (std::string& word : words)
     argv.push_back(word.data());
-  return renderOptions(
+  return makeRenderOptions(
       *parseCommandLine(renderSyntax, static_cast<int>(argv.size()), argv.data(), 1));
 }
 
@@ -53,7 +53,7 @@ Image renderReference(const ReferenceCase& c) {
   const Scene scene(options.scene);
   RenderMonitor monitor;
   const RenderResult result =
-      render(scene.forRender(), settingsFor(options, scene.background()), monitor);
+      render(scene.forRender(), makeSettings(options, scene.background()), monitor);
   return picture(result.film, scene.camera(), scene.clip(), options.layers);
 }
 

@@ -52,7 +52,7 @@ TEST(OrganPresets, FocusTakesSegmentsByNameOrCode) {
                                         segment("B", "SCT^4147007", "SCT^12738006"),
                                         segment("C", "SCT^396070081"),
                                         segment("D", "SCT^4147007")};
-  EXPECT_EQ(namesOf(focusOf(patterns, all)), (Texts{"left lung", "Segment_6", "A"}));
+  EXPECT_EQ(listNames(focusOf(patterns, all)), (Texts{"left lung", "Segment_6", "A"}));
 }
 
 TEST(OrganPresets, PresetFitsSegmentsAndModality) {

@@ -32,7 +32,7 @@ TEST(PresetReader, ReadsEveryField) {
       {"density", "2.5"},
       {"transfer", R"({"albedo":[[0,1,1,1]],"extinction":[[0,1]]})"},
       {"view", "left"}};
-  EXPECT_EQ(preset.flags, flags);
+  EXPECT_EQ(preset.options, options);
 }
 
 TEST(PresetReader, ErrorNamesTheField) {
@@ -107,7 +107,7 @@ TEST(PresetReader, ReadsEveryBuiltInPreset) {
     EXPECT_FALSE(preset.tested.empty());
     for (const std::string& other : preset.before)
       EXPECT_FALSE(embeddedResource("presets/" + other + ".json").empty()) << other;
-    for (const auto& [flag, value] : preset.flags)
+    for (const auto& [flag, value] : preset.options)
       if (flag == "transfer") {
         // Scalars of MR and ultrasound are unknown in advance.
         const TransferLook look =

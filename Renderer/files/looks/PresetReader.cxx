@@ -43,7 +43,7 @@ OrganPreset parsePreset(std::string_view json, const std::string& source) {
                      .focus = readFocus(root.at("focus")),
                      .before = readPatternTexts(root, "before")};
   for (const auto& [flag, value] : root.at("flags").members())
-    preset.flags.emplace_back(flag, readValue(value));
+    preset.options.emplace_back(flag, readValue(value));
   if (const auto tested = root.find("tested"))
     preset.tested = tested->text();
   return preset;

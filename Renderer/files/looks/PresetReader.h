@@ -18,7 +18,7 @@ struct OrganPreset {
   SegmentPatterns focus;                ///< segments that are the focus
   std::vector<std::string> before = {}; ///< presets that `auto` passes over where this one fits
   /// Flags of the command line and their values, sorted by name.
-  std::vector<std::pair<std::string, std::string>> flags = {};
+  std::vector<std::pair<std::string, std::string>> options = {};
   std::string tested = {}; ///< data on which the preset was tried
 };
 

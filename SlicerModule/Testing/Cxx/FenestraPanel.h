@@ -33,7 +33,7 @@ struct Panel {
     combo->setCurrentIndex(combo->findData(data));
   }
   QString chosen(const char* box) const { return find<QComboBox>(box)->currentData().toString(); }
-  bool shows(const char* widget) const { return !find<QWidget>(widget)->isHidden(); }
+  bool withDefault(const char* widget) const { return !find<QWidget>(widget)->isHidden(); }
   void set(const char* box, double value) const { find<QDoubleSpinBox>(box)->setValue(value); }
   std::string flag(const char* name) const { return settings()->GetFlag(name); }
   Node* picture() const { return Node::SafeDownCast(nodes("RendersBox")->currentNode()); }

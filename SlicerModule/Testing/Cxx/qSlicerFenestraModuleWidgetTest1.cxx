@@ -133,9 +133,9 @@ int checkClipping(const Panel& panel) {
   for (const char* automatic : {"labelsmoothing", "soft", "contextsaturation"})
     CHECK_STD_STRING(panel.flag(automatic), ""); // the renderer chooses
   panel.choose("ClipBox", "");
-  CHECK_BOOL(panel.shows("BoundaryBox"), true);
+  CHECK_BOOL(panel.withDefault("BoundaryBox"), true);
   for (const char* other : {"ghostBox", "HoleBox", "holemarginBox", "PlaneBox", "PlaneNodeBox"})
-    CHECK_BOOL(panel.shows(other), false);
+    CHECK_BOOL(panel.withDefault(other), false);
   CHECK_STD_STRING(panel.flag("boundary"), "exact"); // the default of a first focus
   panel.settings()->SetFlag("boundary", "");         // like a scene from elsewhere
   CHECK_STD_STRING(panel.chosen("BoundaryBox").toStdString(), "spline");
@@ -150,8 +150,8 @@ int checkClipping(const Panel& panel) {
   panel.set("ghostBox", 25.0);
   CHECK_STD_STRING(panel.flag("ghost"), "0.25");
   panel.choose("ClipBox", "hole");
-  CHECK_BOOL(panel.shows("ghostBox"), false);
-  CHECK_BOOL(panel.shows("BoundaryBox"), false);
+  CHECK_BOOL(panel.withDefault("ghostBox"), false);
+  CHECK_BOOL(panel.withDefault("BoundaryBox"), false);
   for (const char* other : {"ghost", "boundary", "hole", "holemargin"}) // the renderer's defaults
     CHECK_STD_STRING(panel.flag(other), "");
   panel.choose("HoleBox", "sphere");
@@ -203,10 +203,10 @@ int checkClipping(const Panel& panel) {
 int checkMargins(const Panel& panel) {
   const std::map<std::string, std::string> before = panel.settings()->GetFlags();
   QListWidget& focus = *panel.find<QListWidget>("FocusList");
-  CHECK_BOOL(panel.shows("MarginEachBox"), false);
+  CHECK_BOOL(panel.withDefault("MarginEachBox"), false);
   focus.item(1)->setCheckState(Qt::Checked);
-  CHECK_BOOL(panel.shows("MarginEachBox"), true);
-  CHECK_BOOL(panel.shows("Margin1"), false);
+  CHECK_BOOL(panel.withDefault("MarginEachBox"), true);
+  CHECK_BOOL(panel.withDefault("Margin1"), false);
   panel.find<QCheckBox>("MarginEachBox")->setChecked(true);
   panel.set("Margin0", 1.5);
   panel.set("Margin1", -0.5);
@@ -225,10 +225,10 @@ int checkPlane(const Panel& panel, vtkMRMLScene* scene) {
   panel.choose("ClipBox", "plane");
   CHECK_STD_STRING(panel.flag("clip"), "plane");
   CHECK_STD_STRING(panel.flag("plane"), ""); // placed by the focus
-  CHECK_BOOL(panel.shows("PlaneNodeBox"), false);
+  CHECK_BOOL(panel.withDefault("PlaneNodeBox"), false);
   auto* combo = panel.find<QComboBox>("PlaneBox");
   combo->setCurrentIndex(1);
-  CHECK_BOOL(panel.shows("PlaneNodeBox"), true);
+  CHECK_BOOL(panel.withDefault("PlaneNodeBox"), true);
   scene->RegisterNodeClass(vtkSmartPointer<vtkMRMLMarkupsPlaneNode>::New());
   auto* plane = vtkMRMLMarkupsPlaneNode::SafeDownCast(
       scene->AddNewNodeByClass("vtkMRMLMarkupsPlaneNode", "Cut"));
@@ -255,7 +255,7 @@ int checkPresets(const Panel& panel, const qFenestraAbilities& abilities) {
   const bool automatic = abilities.flags["view"].words.contains("auto");
   CHECK_BOOL(panel.find<QComboBox>("ViewBox")->findData("auto") >= 0, automatic);
   const bool presets = abilities.flags.contains("preset");
-  CHECK_BOOL(panel.shows("PresetBox"), presets);
+  CHECK_BOOL(panel.withDefault("PresetBox"), presets);
   const std::map<std::string, std::string> before = panel.settings()->GetFlags();
   if (automatic) {
     panel.choose("ViewBox", "auto");
@@ -288,27 +288,27 @@ int checkPresets(const Panel& panel, const qFenestraAbilities& abilities) {
 /// The panel shows withheld flags; files become flags once allowed.
 int checkWithheld(const Panel& panel) {
   const std::map<std::string, std::string> flags = panel.settings()->GetFlags();
-  CHECK_BOOL(panel.shows("WithheldLabel"), false);
+  CHECK_BOOL(panel.withDefault("WithheldLabel"), false);
   const char* attributes[] = {"transfer", "/nowhere/colours.json", "noise", "<b>", nullptr};
   panel.settings()->ReadXMLAttributes(attributes);
   CHECK_BOOL(panel.find<QLabel>("WithheldLabel")->text().contains("transfer: /nowhere"), true);
   CHECK_BOOL(panel.find<QLabel>("WithheldLabel")->text().contains("noise: <b>"), true);
-  CHECK_BOOL(panel.shows("AllowButton"), true);
+  CHECK_BOOL(panel.withDefault("AllowButton"), true);
   CHECK_STD_STRING(panel.flag("transfer"), "");
   panel.find<QPushButton>("AllowButton")->click();
   CHECK_STD_STRING(panel.flag("transfer"), "/nowhere/colours.json");
   CHECK_STD_STRING(panel.chosen("TransferBox").toStdString(), "/nowhere/colours.json");
-  CHECK_BOOL(panel.shows("AllowButton"), false);
+  CHECK_BOOL(panel.withDefault("AllowButton"), false);
   panel.settings()->SetFlag("noise", "0.05"); // removes the last withheld flag
-  CHECK_BOOL(panel.shows("WithheldLabel"), false);
+  CHECK_BOOL(panel.withDefault("WithheldLabel"), false);
   panel.settings()->SetFlags(flags);
   return EXIT_SUCCESS;
 }
 
 /// A turntable is rendered, played, stopped in between and resumed.
 int checkTurntable(const Panel& panel, const qFenestraAbilities& abilities) {
-  CHECK_BOOL(panel.shows("Turntable"), abilities.turns());
-  CHECK_BOOL(panel.shows("Player"), false);
+  CHECK_BOOL(panel.withDefault("Turntable"), abilities.turns());
+  CHECK_BOOL(panel.withDefault("Player"), false);
   if (!abilities.turns())
     return EXIT_SUCCESS;
   auto* frames = panel.find<QSpinBox>("FramesBox");
@@ -323,8 +323,8 @@ int checkTurntable(const Panel& panel, const qFenestraAbilities& abilities) {
   CHECK_BOOL(turntable->IsTurntable(), true);
   CHECK_INT(vtkSlicerFenestraLogic::GetNumberOfFrames(turntable), 3);
   CHECK_BOOL(panel.find<QLabel>("DescriptionLabel")->text().startsWith("3 of 3 frames"), true);
-  CHECK_BOOL(panel.shows("Player"), true);
-  CHECK_BOOL(panel.shows("ResumeButton"), false);
+  CHECK_BOOL(panel.withDefault("Player"), true);
+  CHECK_BOOL(panel.withDefault("ResumeButton"), false);
   auto* slider = panel.find<QSlider>("FrameSlider");
   CHECK_INT(slider->maximum(), 2);
   panel.find<QToolButton>("PlayButton")->setChecked(true);
@@ -344,7 +344,7 @@ int checkTurntable(const Panel& panel, const qFenestraAbilities& abilities) {
   const int some = vtkSlicerFenestraLogic::GetNumberOfFrames(turntable);
   std::cout << some << " frames when it was stopped\n";
   CHECK_BOOL(some > 0 && some < 60, true);
-  CHECK_BOOL(panel.shows("ResumeButton"), true);
+  CHECK_BOOL(panel.withDefault("ResumeButton"), true);
   turntable->SetFlag("frames", "x"); // an invalid frame count: cannot be resumed
   CHECK_BOOL(panel.widget->session()->canResume(turntable), false);
   turntable->SetFlag("frames", "60");
@@ -352,7 +352,7 @@ int checkTurntable(const Panel& panel, const qFenestraAbilities& abilities) {
   CHECK_POINTER(panel.picture(), turntable);
   CHECK_INT(vtkSlicerFenestraLogic::GetNumberOfFrames(turntable), 60);
   CHECK_INT(slider->maximum(), 59);
-  CHECK_BOOL(panel.shows("ResumeButton"), false);
+  CHECK_BOOL(panel.withDefault("ResumeButton"), false);
   return EXIT_SUCCESS;
 }
 
@@ -363,7 +363,7 @@ int checkRenders(const Panel& panel) {
   CHECK_NOT_NULL(first);
   CHECK_BOOL(panel.find<QLabel>("StateLabel")->text().startsWith("Done: "), true);
   CHECK_BOOL(panel.find<QLabel>("DescriptionLabel")->text().contains("samples"), true);
-  CHECK_BOOL(panel.shows("MeasuresLabel"), true);
+  CHECK_BOOL(panel.withDefault("MeasuresLabel"), true);
   CHECK_BOOL(panel.find<QLabel>("MeasuresLabel")->text().contains("Focus seen"), true);
   for (const char* enabled : {"ShowButton", "RepeatButton", "SaveButton"})
     CHECK_BOOL(panel.find<QPushButton>(enabled)->isEnabled(), true);

@@ -75,7 +75,7 @@ int checkClosed(const Panel& panel) {
     CHECK_STD_STRING(textOf(panel, label), "");
   CHECK_BOOL(panel.find<QLabel>("PreviewLabel")->text().startsWith("Load a volume"), true);
   for (const char* widget : {"DetailsButton", "ProgressBar", "MeasuresLabel", "Player"})
-    CHECK_BOOL(panel.shows(widget), false);
+    CHECK_BOOL(panel.withDefault(widget), false);
   CHECK_NULL(panel.picture());
   return EXIT_SUCCESS;
 }
@@ -113,11 +113,11 @@ int checkEnd(const Panel& panel, vtkMRMLScene* scene, qSlicerFenestraSession* se
   panel.find<QPushButton>("RenderButton")->click();
   panel.find<QPushButton>("RenderButton")->click();
   CHECK_INT(session->waiting(), 1);
-  CHECK_BOOL(waitFor([&] { return panel.shows("ProgressBar"); }), true);
+  CHECK_BOOL(waitFor([&] { return panel.withDefault("ProgressBar"); }), true);
   scene->Clear(false);
   CHECK_BOOL(waitFor([&] { return !session->rendering(); }), true);
   CHECK_STD_STRING(textOf(panel, "StateLabel"), "Ended at once, without a picture.");
-  CHECK_BOOL(panel.shows("ProgressBar"), false);
+  CHECK_BOOL(panel.withDefault("ProgressBar"), false);
   return EXIT_SUCCESS;
 }
 

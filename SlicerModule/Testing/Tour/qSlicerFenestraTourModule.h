@@ -17,7 +17,7 @@ public:
   explicit qSlicerFenestraTourModule(QObject* parent = nullptr) : Superclass(parent) {}
 
   qSlicerGetTitleMacro(QTMODULE_TITLE);
-  QString helpText() const override { return "The tutorial, done by a program."; }
+  QString formatHelp() const override { return "The tutorial, done by a program."; }
   QString acknowledgementText() const override { return "For tests and pictures."; }
   bool isHidden() const override { return true; }
   QStringList dependencies() const override { return {"Fenestra"}; }
