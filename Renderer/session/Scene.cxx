@@ -30,44 +30,44 @@ Scene Scene::changed(const SceneRequest& request) const {
 
 void Scene::make() {
   const SceneRequest& r = m_request;
-  std::apply([](auto&... stage) { (stage.begin(), ...); }, stages(*this));
-  const auto lights = m_namedLights.of(r.lights, r.environment, r.environmentMap); // errors early
+  std::apply([](auto&... stage) { (stage.markUnused(), ...); }, stages(*this));
+  const auto lights = m_namedLights.get(r.lights, r.environment, r.environmentMap); // errors early
   if (r.transfer)
-    m_namedTransfer.of(*r.transfer, m_input);
-  const auto volume = m_volume.of(m_input, r.volume);
-  const auto settings = m_settings.of(m_input, r.volume, r.view.followsScene());
+    m_namedTransfer.get(*r.transfer, m_input);
+  const auto volume = m_volume.get(m_input, r.volume);
+  const auto settings = m_settings.get(m_input, r.volume, r.view.followsScene());
   if (r.materials.value_or(noMaterials) != noMaterials || !r.focus.empty())
-    m_segments.of(m_input, {r.volume, r.segmentation, r.labels}, volume->volume.grid);
+    m_segments.get(m_input, {r.volume, r.segmentation, r.labels}, volume->volume.grid);
   const auto focus =
-      m_focus.of(m_segments.result(), r.focus, r.focusLook.shaping, volume->volume.grid);
+      m_focus.get(m_segments.result(), r.focus, r.focusLook.shaping, volume->volume.grid);
   if (!r.transfer)
-    m_sceneLook.of(m_input, r.volume, {volume->volume.minimum, volume->volume.maximum});
-  const auto look = m_look.of(volume, m_namedTransfer.result(), m_sceneLook.result(), r.transferFor,
-                              r.shift, r.density);
+    m_sceneLook.get(m_input, r.volume, {volume->volume.minimum, volume->volume.maximum});
+  const auto look = m_look.get(volume, m_namedTransfer.result(), m_sceneLook.result(),
+                               r.transferFor, r.shift, r.density);
   if (const std::string name = wantedMaterials(m_segments.result()); name != noMaterials) {
     makeTint(name);
     if (!isTint(*m_plan))
-      m_mixture.of(m_plan.result(), tintInUse(), look);
+      m_mixture.get(m_plan.result(), tintInUse(), look);
   }
-  m_focusWarnings.of(volume, focus, look);
+  m_focusWarnings.get(volume, focus, look);
   if (r.view.isAutomatic() && focus->mask)
-    m_view.of(volume, settings, focus, look);
-  const auto ranges = m_ranges.of(volume, MajorantGrid::apronFor(look->transfer));
-  const Box bounds = settings->camera ? Box() : *m_occupiedBounds.of(volume, ranges, look);
+    m_view.get(volume, settings, focus, look);
+  const auto ranges = m_ranges.get(volume, MajorantGrid::apronFor(look->transfer));
+  const Box bounds = settings->camera ? Box() : *m_occupiedBounds.get(volume, ranges, look);
   const auto camera =
-      m_camera.of(r.view, r.width, r.height, volume, settings, bounds, focus, m_view.result());
-  const auto placed = m_lights.of({lights, camera, focus}, volume);
-  const auto clip = m_clip.of(r.clip, r.measure, r.steadyDegrees, volume, settings, focus, camera);
+      m_camera.get(r.view, r.width, r.height, volume, settings, bounds, focus, m_view.result());
+  const auto placed = m_lights.get({lights, camera, focus}, volume);
+  const auto clip = m_clip.get(r.clip, r.measure, r.steadyDegrees, volume, settings, focus, camera);
   const double extinction = r.focusLook.contextExtinction;
   const double saturation =
-      m_contrast.of(volume, focus, look, tintInUse(), r.focusLook.contextSaturation)->saturation;
+      m_contrast.get(volume, focus, look, tintInUse(), r.focusLook.contextSaturation)->saturation;
   if (focus->mask && (extinction != 1.0 || saturation != 1.0))
-    m_style.of(focus, extinction, saturation);
+    m_style.get(focus, extinction, saturation);
   const auto majorants =
-      m_majorants.of(volume, ranges, look, clip, m_style.result(), m_mixture.result());
+      m_majorants.get(volume, ranges, look, clip, m_style.result(), m_mixture.result());
   if (r.features)
-    m_features.of(volume, settings, look, segmentsShown(), placed, camera, clip, m_style.result(),
-                  majorants);
+    m_features.get(volume, settings, look, segmentsShown(), placed, camera, clip, m_style.result(),
+                   majorants);
 }
 
 std::string Scene::wantedMaterials(const Handle<SegmentsInput>& segments) const {
@@ -80,28 +80,28 @@ std::string Scene::wantedMaterials(const Handle<SegmentsInput>& segments) const 
 
 void Scene::makeTint(const std::string& name) {
   const SceneRequest& r = m_request;
-  const auto materials = m_materials.of(name);
+  const auto materials = m_materials.get(name);
   const bool setsOff = materials->setsOffFocus();
-  const auto there = m_segmentsThere.of(m_segments.result());
+  const auto there = m_segmentsThere.get(m_segments.result());
   if (materials->table.findsSkin)
-    m_skin.of(m_volume.result());
-  const auto plan = m_plan.of(m_segments.result(), there, materials, r.materialChanges,
-                              setsOff ? r.focus : std::vector<std::string>(), m_skin.result());
-  const auto weights = m_labelWeights.of(m_segments.result(), plan->parts, m_skin.result(),
-                                         r.focusLook.shaping.smoothing, volume().grid);
+    m_skin.get(m_volume.result());
+  const auto plan = m_plan.get(m_segments.result(), there, materials, r.materialChanges,
+                               setsOff ? r.focus : std::vector<std::string>(), m_skin.result());
+  const auto weights = m_labelWeights.get(m_segments.result(), plan->parts, m_skin.result(),
+                                          r.focusLook.shaping.smoothing, volume().grid);
   const auto look = m_look.result();
-  const auto tint = m_tint.of(plan, weights, look->transfer.g);
+  const auto tint = m_tint.get(plan, weights, look->transfer.g);
   if (!setsOff || !focus())
     return;
   const auto borders =
-      m_borders.of(m_volume.result(), m_focus.result(), look, weights, plan->isFocus);
+      m_borders.get(m_volume.result(), m_focus.result(), look, weights, plan->isFocus);
   const auto contrast =
-      m_tintContrast.of(borders, plan, tint, materials, look, r.focusLook.contextSaturation);
-  m_contrastedTint.of(tint, plan, contrast, look);
+      m_tintContrast.get(borders, plan, tint, materials, look, r.focusLook.contextSaturation);
+  m_contrastedTint.get(tint, plan, contrast, look);
 }
 
 StageSeconds Scene::seconds() const {
-  const ClipResult none, &clip = m_clip.isNew() ? *m_clip : none;
+  const ClipResult none, &clip = m_clip.isUpdated() ? *m_clip : none;
   return {.load = m_namedTransfer.seconds() + m_volume.seconds() + m_settings.seconds() +
                   m_segments.seconds() + m_focus.seconds() + m_sceneLook.seconds() +
                   m_look.seconds(),
@@ -117,11 +117,17 @@ StageSeconds Scene::seconds() const {
           .features = m_features.seconds()};
 }
 
-StagesMade Scene::made() const {
-  return {m_volume.isNew(),      m_focus.isNew(),     m_look.isNew(),
-          m_camera.isNew(),      m_lights.isNew(),    m_clip.isNew(),
-          m_ranges.isNew(),      m_majorants.isNew(), m_tint.isNew() || m_contrastedTint.isNew(),
-          m_labelWeights.isNew()};
+UpdatedStages Scene::updatedStages() const {
+  return {m_volume.isUpdated(),
+          m_focus.isUpdated(),
+          m_look.isUpdated(),
+          m_camera.isUpdated(),
+          m_lights.isUpdated(),
+          m_clip.isUpdated(),
+          m_ranges.isUpdated(),
+          m_majorants.isUpdated(),
+          m_tint.isUpdated() || m_contrastedTint.isUpdated(),
+          m_labelWeights.isUpdated()};
 }
 
 std::string Scene::choices() const {

@@ -16,11 +16,11 @@ struct StageSeconds {
 };
 
 /// Stages made for a scene; false: shared with the scene before.
-struct StagesMade {
+struct UpdatedStages {
   bool volume = false, focus = false, transfer = false, camera = false, lights = false,
        clip = false, ranges = false, majorants = false, tint = false, labelWeights = false;
 
-  bool operator==(const StagesMade&) const = default;
+  bool operator==(const UpdatedStages&) const = default;
 };
 
 class Scene {
@@ -65,7 +65,7 @@ public:
   /// Null unless the request asks for features.
   const FeatureBuffers* features() const { return m_features.result().get(); }
   StageSeconds seconds() const;
-  StagesMade made() const;
+  UpdatedStages updatedStages() const;
   std::vector<std::string> warnings() const;
   /// Look, light and labels in a line: what was chosen where the request left it open, and where
   /// from.
@@ -100,35 +100,36 @@ private:
 
   SceneRequest m_request;
   Input m_input;
-  Stage<&requestedLights> m_namedLights;
-  Stage<&namedTransfer> m_namedTransfer; ///< unused without --transfer
-  Stage<&Input::volume> m_volume;
-  Stage<&Input::settings> m_settings;
-  Stage<&Input::segments> m_segments; ///< unused without a focus and materials
-  Stage<&requestedFocus> m_focus;
-  Stage<&Input::look> m_sceneLook; ///< unused with --transfer
-  Stage<&chosenLook> m_look;
-  Stage<&namedMaterials> m_materials; ///< this and the next five: unused without materials
-  Stage<&segmentsThere> m_segmentsThere;
-  Stage<&skinOf> m_skin; ///< unused unless materials find skin
-  Stage<&tintPlan> m_plan;
-  Stage<&computeLabelWeights> m_labelWeights;
-  Stage<&tintOf> m_tint;
-  Stage<&bordersOf> m_borders; ///< this and the next two: unused unless materials set off a focus
-  Stage<&tintContrastOf> m_tintContrast;
-  Stage<&contrastedTintOf> m_contrastedTint;
-  Stage<&makeMixture> m_mixture; ///< unused where segments differ in colour alone
-  Stage<&focusWarnings> m_focusWarnings;
-  Stage<&bestView> m_view; ///< used by automatic views alone
-  Stage<&rangesOf> m_ranges;
-  Stage<&findOccupiedBounds> m_occupiedBounds; ///< unused where the scene's camera applies
-  Stage<&placedCamera> m_camera;
-  Stage<&placedLights> m_lights;
-  Stage<&builtClip> m_clip;
-  Stage<&contrastOf> m_contrast;
-  Stage<&styleAround> m_style; ///< unused if the context is unchanged
-  Stage<&majorantsOf> m_majorants;
-  Stage<&marchFirstHits> m_features; ///< unused without a filter
+  CachedStage<&requestedLights> m_namedLights;
+  CachedStage<&namedTransfer> m_namedTransfer; ///< unused without --transfer
+  CachedStage<&Input::volume> m_volume;
+  CachedStage<&Input::settings> m_settings;
+  CachedStage<&Input::segments> m_segments; ///< unused without a focus and materials
+  CachedStage<&requestedFocus> m_focus;
+  CachedStage<&Input::look> m_sceneLook; ///< unused with --transfer
+  CachedStage<&chosenLook> m_look;
+  CachedStage<&namedMaterials> m_materials; ///< this and the next five: unused without materials
+  CachedStage<&segmentsThere> m_segmentsThere;
+  CachedStage<&skinOf> m_skin; ///< unused unless materials find skin
+  CachedStage<&tintPlan> m_plan;
+  CachedStage<&computeLabelWeights> m_labelWeights;
+  CachedStage<&tintOf> m_tint;
+  CachedStage<&bordersOf>
+      m_borders; ///< this and the next two: unused unless materials set off a focus
+  CachedStage<&tintContrastOf> m_tintContrast;
+  CachedStage<&contrastedTintOf> m_contrastedTint;
+  CachedStage<&makeMixture> m_mixture; ///< unused where segments differ in colour alone
+  CachedStage<&focusWarnings> m_focusWarnings;
+  CachedStage<&bestView> m_view; ///< used by automatic views alone
+  CachedStage<&rangesOf> m_ranges;
+  CachedStage<&findOccupiedBounds> m_occupiedBounds; ///< unused where the scene's camera applies
+  CachedStage<&placedCamera> m_camera;
+  CachedStage<&placedLights> m_lights;
+  CachedStage<&builtClip> m_clip;
+  CachedStage<&contrastOf> m_contrast;
+  CachedStage<&styleAround> m_style; ///< unused if the context is unchanged
+  CachedStage<&majorantsOf> m_majorants;
+  CachedStage<&marchFirstHits> m_features; ///< unused without a filter
 };
 
 } // namespace fenestra

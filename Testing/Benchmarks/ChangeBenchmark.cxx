@@ -22,7 +22,7 @@ struct Change {
   std::function<void(SceneRequest&)> apply;
 };
 
-std::string text(const StagesMade& made) {
+std::string text(const UpdatedStages& made) {
   const std::pair<const char*, bool> stages[] = {
       {"volume", made.volume}, {"focus", made.focus},         {"transfer function", made.transfer},
       {"camera", made.camera}, {"lights", made.lights},       {"clip", made.clip},
@@ -51,7 +51,7 @@ Scene tell(const char* change, const RenderSettings& settings,
   const Stopwatch watch;
   Scene scene = changed();
   const double made = watch.seconds();
-  std::cout << "| " << change << " | " << text(scene.made()) << " | " << made << " | "
+  std::cout << "| " << change << " | " << text(scene.updatedStages()) << " | " << made << " | "
             << made + firstSample(scene, settings) << " |\n";
   return scene;
 }

@@ -54,7 +54,7 @@ TEST_F(InputOfAnArchive, IsOpenedOnceForSceneAndChanges) {
   request.segmentation = "L";
   request.focus = {"5"};
   const Scene changed = scene.changed(request);
-  EXPECT_FALSE(changed.made().volume);
+  EXPECT_FALSE(changed.updatedStages().volume);
   EXPECT_TRUE(changed.focus());
 }
 

@@ -13,7 +13,7 @@ namespace {
 struct Change {
   std::string name;
   std::function<void(SceneRequest&)> apply;
-  StagesMade made;
+  UpdatedStages made;
 };
 
 /// Ball in a box of 16^3 voxels, and two labels in the ball.
@@ -67,12 +67,12 @@ TEST_P(SceneChange, RemakesOnlyDependentStages) {
   if (request.lights == "lamp.json")
     request.lights = folder / "lamp.json";
   const Scene changed = before.changed(request);
-  EXPECT_EQ(changed.made(), GetParam().made);
+  EXPECT_EQ(changed.updatedStages(), GetParam().made);
 
   const Scene fromNothing(request);
   const bool isTinted = request.materials != noMaterials;
-  EXPECT_EQ(fromNothing.made(),
-            (StagesMade{true, true, true, true, true, true, true, true, isTinted, isTinted}));
+  EXPECT_EQ(fromNothing.updatedStages(),
+            (UpdatedStages{true, true, true, true, true, true, true, true, isTinted, isTinted}));
   EXPECT_EQ(changed.files(), fromNothing.files());
   EXPECT_EQ(changed.warnings(), fromNothing.warnings());
   EXPECT_EQ(changed.look(), fromNothing.look());
@@ -147,7 +147,7 @@ TEST_F(SceneChange, LampAtTheFocusFollowsIt) {
   SceneRequest other = request;
   other.focus = {"2"};
   const Scene moved = before.changed(other);
-  EXPECT_TRUE(moved.made().lights);
+  EXPECT_TRUE(moved.updatedStages().lights);
   EXPECT_GT((lamp(moved) - lamp(before)).norm(), 1.0);
   request.focus.clear();
   expectRefused("--lights", "lights[0].frame: is \"focus\", and there is no focus; name one",
@@ -162,7 +162,7 @@ TEST_F(SceneChange, AutomaticViewFollowsFocusAndTransferFunction) {
   };
   request.density = 3.0;
   const Scene denser = before.changed(request);
-  EXPECT_TRUE(denser.made().camera);
+  EXPECT_TRUE(denser.updatedStages().camera);
   expectAsFromNothing(denser);
   request.width = 40;
   const Scene wider = denser.changed(request);
@@ -181,7 +181,7 @@ TEST_F(SceneChange, AutomaticScaleFramesTheMatterAlone) {
   };
   request.transfer = seen(149.0);
   const Scene part = ball.changed(request); // x > 9, and |y - 7.5|, |z - 7.5| < 6
-  EXPECT_TRUE(part.made().camera);
+  EXPECT_TRUE(part.updatedStages().camera);
   const auto [position, scale] = std::pair(part.camera().pose().target, part.camera().pose().scale);
   EXPECT_LT(scale, 0.95 * ball.camera().pose().scale);
   EXPECT_GT((part.volume().grid.worldToIndex * position).x(), 10.0);
@@ -205,13 +205,13 @@ TEST_F(SceneChange, LabelsAreReadOnceAndSharedByColours) {
   std::filesystem::remove(*request.segmentation); // a second reading would fail
   request.materialChanges = {"1: color=#00ff00"};
   const Scene green = before.changed(request);
-  EXPECT_TRUE(green.made().tint);
+  EXPECT_TRUE(green.updatedStages().tint);
   EXPECT_EQ(green.tint()->weights, before.tint()->weights);
-  EXPECT_FALSE(green.made().labelWeights);
-  EXPECT_FALSE(green.made().majorants);
+  EXPECT_FALSE(green.updatedStages().labelWeights);
+  EXPECT_FALSE(green.updatedStages().majorants);
   request.focus = {"2"};
-  EXPECT_TRUE(green.changed(request).made().focus);
-  EXPECT_FALSE(green.changed(request).made().tint);
+  EXPECT_TRUE(green.changed(request).updatedStages().focus);
+  EXPECT_FALSE(green.changed(request).updatedStages().tint);
   request.focusLook.shaping.smoothing = 0.5;
   EXPECT_NE(green.changed(request).tint()->weights, green.tint()->weights);
   request.materials = noMaterials;
@@ -231,7 +231,7 @@ TEST_F(SceneChange, NewCameraDoesNotRemakeLightsOfTheWorld) {
   request.lights = folder / "lamp.json";
   const Scene before(request);
   request.view.name = "left";
-  EXPECT_FALSE(before.changed(request).made().lights);
+  EXPECT_FALSE(before.changed(request).updatedStages().lights);
 }
 
 TEST_F(SceneChange, LightsAsTextEqualLightsAsFile) {
@@ -254,7 +254,7 @@ TEST_F(SceneChange, RefusedChangeLeavesTheSceneAsItWas) {
   refused.focus = {"9"};
   EXPECT_THROW(before.changed(refused), Error);
   EXPECT_EQ(picture(before).at(8, 8).mean.sum(), expected.at(8, 8).mean.sum());
-  EXPECT_EQ(before.changed(request).made(), StagesMade());
+  EXPECT_EQ(before.changed(request).updatedStages(), UpdatedStages());
 }
 
 } // namespace
