@@ -180,7 +180,7 @@ QString qSlicerFenestraMaterials::base() const {
 }
 
 /// Changes of a segment that the flags have.
-FenestraScene::MaterialChange qSlicerFenestraMaterials::changeOf(const QString& segment) const {
+SlicerExport::MaterialChange qSlicerFenestraMaterials::changeOf(const QString& segment) const {
   return source() == byHand ? m_changes.value(segment) : Change();
 }
 
@@ -334,7 +334,7 @@ void qSlicerFenestraMaterials::takeChanges(const std::vector<std::string>& texts
   for (const qSlicerFenestraSegment& one : m_segments)
     m_changes.remove(one.id);
   for (const std::string& text : texts) {
-    Change given = FenestraScene::materialChange(text);
+    Change given = SlicerExport::materialChange(text);
     const QString selector = QString::fromStdString(given.segment);
     const QString id = m_segments.isEmpty() ? selector : idOf(selector); // listed later
     if (id.isEmpty())
@@ -347,7 +347,7 @@ void qSlicerFenestraMaterials::takeChanges(const std::vector<std::string>& texts
 
 void qSlicerFenestraMaterials::show(const Flags& flags) {
   const QString given = flagOf(flags, "materials");
-  const auto texts = FenestraScene::textsIn(flagOf(flags, "material").toStdString());
+  const auto texts = SlicerExport::textsIn(flagOf(flags, "material").toStdString());
   const bool isByHand = !texts.empty() || (source() == byHand && given == m_base);
   const bool isFile = !given.isEmpty() && m_source->findData(given) < 0;
   const bool isNoFileYet = given.isEmpty() && source() == ofFile && m_file->text().isEmpty();
@@ -377,7 +377,7 @@ void qSlicerFenestraMaterials::take(Flags& flags) const {
   std::vector<std::string> texts;
   for (const qSlicerFenestraSegment& one : m_segments)
     if (const Change change = changeOf(one.id); !change.fields.empty())
-      texts.push_back(FenestraScene::textOf(change));
+      texts.push_back(SlicerExport::textOf(change));
   flags["materials"] = m_segments.isEmpty() ? "" : base().toStdString();
-  flags["material"] = FenestraScene::joined(texts);
+  flags["material"] = SlicerExport::joined(texts);
 }

@@ -44,7 +44,7 @@ signals:
   void changed();
 
 private:
-  using Change = FenestraScene::MaterialChange;
+  using Change = SlicerExport::MaterialChange;
 
   void buildSource(QFormLayout* form);
   void buildTable(QFormLayout* form);

@@ -117,7 +117,7 @@ void qSlicerFenestraSession::learn() {
   m_question.ask(m_program);
 }
 
-void qSlicerFenestraSession::learnMaterials(const std::vector<FenestraScene::Segment>& segments) {
+void qSlicerFenestraSession::learnMaterials(const std::vector<SlicerExport::Segment>& segments) {
   if (segments == m_asked)
     return;
   m_asked = segments;
@@ -135,9 +135,9 @@ void qSlicerFenestraSession::later(const std::function<void()>& job) {
 }
 
 void qSlicerFenestraSession::write(
-    const FenestraScene::Contents& contents,
+    const SlicerExport::Contents& contents,
     const std::function<void(const QString& scene, const QString& failure)>& then) {
-  const auto shared = std::make_shared<FenestraScene::Contents>(contents);
+  const auto shared = std::make_shared<SlicerExport::Contents>(contents);
   work([this, shared, files = m_files, then] {
     QString scene, message;
     try {
@@ -152,19 +152,19 @@ void qSlicerFenestraSession::write(
 // ---- renders
 
 vtkMRMLFenestraRenderNode* qSlicerFenestraSession::render(Node* settings, Kind kind) {
-  FenestraScene::Contents contents;
+  SlicerExport::Contents contents;
   try {
     if (!QFileInfo(m_program).isExecutable())
-      throw FenestraScene::Complaint(
+      throw SlicerExport::Complaint(
           "The renderer is missing. Install the Fenestra extension again.");
     contents = m_logic->Snapshot(settings, m_files->folder.path().toStdString());
-  } catch (const FenestraScene::Complaint& complaint) {
+  } catch (const SlicerExport::Complaint& complaint) {
     emit ended(nullptr, failure(QString::fromUtf8(complaint.what()), m_program));
     return nullptr;
   }
   m_preview.stop();
   Node* node = m_logic->AddRender(settings, kind == Kind::turntable);
-  node->SetFlags(FenestraScene::withMaterialsOf(contents.segmentation.segments, node->GetFlags()));
+  node->SetFlags(SlicerExport::withMaterialsOf(contents.segmentation.segments, node->GetFlags()));
   const int id = ++m_last;
   m_renders[id] = {node, m_files, {}};
   const bool withSurface = vtkSlicerFenestraLogic::HasSurface(node->GetFlags()) &&
@@ -175,7 +175,7 @@ vtkMRMLFenestraRenderNode* qSlicerFenestraSession::render(Node* settings, Kind k
 
 /// Writes the scene and queues the render. Voxels are the scene's own: an edit while they are
 /// written would tear them, so they are written again, `tries` times at most.
-void qSlicerFenestraSession::submit(int id, const FenestraScene::Contents& contents,
+void qSlicerFenestraSession::submit(int id, const SlicerExport::Contents& contents,
                                     bool withSurface, int tries) {
   write(contents, [=](const QString& scene, const QString& message) {
     Render& render = m_renders[id];
@@ -187,13 +187,13 @@ void qSlicerFenestraSession::submit(int id, const FenestraScene::Contents& conte
     if (render.stopped || !render.node)
       return endRender(id, {Ended::stopped, {}, {}});
     try {
-      const FenestraScene::Contents now =
+      const SlicerExport::Contents now =
           m_logic->Snapshot(render.node, m_files->folder.path().toStdString());
       const bool isWhole =
           now.volumeKey == contents.volumeKey && now.segmentationKey == contents.segmentationKey;
       if (!isWhole && tries > 0)
         return submit(id, now, withSurface, tries - 1);
-    } catch (const FenestraScene::Complaint& complaint) {
+    } catch (const SlicerExport::Complaint& complaint) {
       return endRender(id, failure(QString::fromUtf8(complaint.what())));
     }
     m_queue.add({id, arguments(render.node, scene, withSurface), render.folder});

@@ -63,7 +63,7 @@ public:
   void learn();
   /// Asks what the renderer makes the segments of, which `materialsTold` tells; the same segments
   /// are not asked about again.
-  void learnMaterials(const std::vector<FenestraScene::Segment>& segments);
+  void learnMaterials(const std::vector<SlicerExport::Segment>& segments);
   /// Previews the settings from now on; null: ends the preview.
   void preview(vtkMRMLFenestraRenderNode* settings);
 
@@ -100,7 +100,7 @@ private:
   /// Files of one scene; used in the worker thread.
   struct Files {
     qFenestraFolder folder{QDir::tempPath(), folderPrefix};
-    FenestraScene::Writer writer{folder.path().toStdString()};
+    SlicerExport::Writer writer{folder.path().toStdString()};
   };
   struct Render {
     vtkWeakPointer<vtkMRMLFenestraRenderNode> node;
@@ -112,11 +112,11 @@ private:
   static void removeFolder(const QString& folder); ///< empty: none
   void work(const std::function<void()>& job);
   void later(const std::function<void()>& job);
-  void write(const FenestraScene::Contents& contents,
+  void write(const SlicerExport::Contents& contents,
              const std::function<void(const QString& scene, const QString& failure)>& then);
   QStringList arguments(vtkMRMLFenestraRenderNode* render, const QString& scene,
                         bool withSurface) const;
-  void submit(int id, const FenestraScene::Contents& contents, bool withSurface, int tries = 3);
+  void submit(int id, const SlicerExport::Contents& contents, bool withSurface, int tries = 3);
   void finishRender(int id, const qFenestraOutcome& outcome);
   void addResult(int id, const qFenestraOutcome& outcome,
                  const std::function<void(vtkMRMLFenestraRenderNode*, int)>& add, int step = 0);
@@ -124,9 +124,9 @@ private:
 
   void follow();
   using Flags = std::map<std::string, std::string>;
-  void startPreview(const FenestraScene::Contents& contents, const Flags& flags);
-  Flags previewFlags(Flags flags, const FenestraScene::Contents& contents) const;
-  QString propertyFile(const FenestraScene::Contents& contents) const;
+  void startPreview(const SlicerExport::Contents& contents, const Flags& flags);
+  Flags previewFlags(Flags flags, const SlicerExport::Contents& contents) const;
+  QString propertyFile(const SlicerExport::Contents& contents) const;
   void tellPreview(const QJsonObject& flags);
   void showPreview(const qFenestraPicture& picture);
 
@@ -140,7 +140,7 @@ private:
 
   qFenestraQuestion m_question;
   qFenestraMaterialsQuestion m_materials;
-  std::vector<FenestraScene::Segment> m_asked; ///< segments of the last question
+  std::vector<SlicerExport::Segment> m_asked; ///< segments of the last question
   qFenestraQueue m_queue;
   QMap<int, Render> m_renders; ///< under way and waiting
   qSlicerFenestraResults m_results;

@@ -19,7 +19,7 @@ namespace {
 using Node = vtkMRMLFenestraRenderNode;
 
 /// Data whose change requires a new preview: volume, segmentation, transforms, crop.
-std::string dataOf(const FenestraScene::Contents& contents) {
+std::string dataOf(const SlicerExport::Contents& contents) {
   std::ostringstream text;
   text.precision(17);
   text << contents.volumeKey << '\n' << contents.segmentationKey << '\n';
@@ -27,7 +27,7 @@ std::string dataOf(const FenestraScene::Contents& contents) {
     text << element << ' ';
   for (const double element : contents.segmentation.toWorld)
     text << element << ' ';
-  for (const FenestraScene::Roi& roi : contents.crop)
+  for (const SlicerExport::Roi& roi : contents.crop)
     text << roi.markup;
   return text.str();
 }
@@ -62,18 +62,18 @@ void qSlicerFenestraSession::follow() {
   if (m_starting)
     return m_soon.start(); // changes are sent then
   try {
-    const FenestraScene::Contents contents =
+    const SlicerExport::Contents contents =
         m_logic->Snapshot(m_previewed, m_files->folder.path().toStdString());
     const Flags flags = previewFlags(m_logic->GetFlags(m_previewed), contents);
     if (!m_preview.running() || dataOf(contents) != m_shownData)
       return startPreview(contents, flags);
     tellPreview(qFenestraPreview::valuesOf(flags));
-  } catch (const FenestraScene::Complaint& complaint) {
+  } catch (const SlicerExport::Complaint& complaint) {
     emit previewRefused(QString::fromUtf8(complaint.what()));
   }
 }
 
-void qSlicerFenestraSession::startPreview(const FenestraScene::Contents& contents,
+void qSlicerFenestraSession::startPreview(const SlicerExport::Contents& contents,
                                           const Flags& flags) {
   m_starting = true;
   m_shownData = dataOf(contents);
@@ -82,7 +82,7 @@ void qSlicerFenestraSession::startPreview(const FenestraScene::Contents& content
     if (!message.isEmpty() || !m_previewed)
       return message.isEmpty() ? void() : emit previewRefused(message);
     QStringList arguments = {scene, "--output=preview.png"};
-    for (const std::string& argument : FenestraScene::argumentsOf(flags))
+    for (const std::string& argument : SlicerExport::argumentsOf(flags))
       arguments << QString::fromStdString(argument);
     m_told = qFenestraPreview::valuesOf(flags);
     const QString folder = QFileInfo(scene).absolutePath();
@@ -96,8 +96,8 @@ void qSlicerFenestraSession::startPreview(const FenestraScene::Contents& content
 
 /// The node's flags, adapted to a preview.
 std::map<std::string, std::string>
-qSlicerFenestraSession::previewFlags(Flags flags, const FenestraScene::Contents& contents) const {
-  flags = FenestraScene::withMaterialsOf(contents.segmentation.segments, std::move(flags));
+qSlicerFenestraSession::previewFlags(Flags flags, const SlicerExport::Contents& contents) const {
+  flags = SlicerExport::withMaterialsOf(contents.segmentation.segments, std::move(flags));
   for (const char* name : {"seconds", "seed", "samples"})
     flags.erase(name);
   for (const std::string& name : Node::GetTurntableFlagNames())
@@ -110,14 +110,14 @@ qSlicerFenestraSession::previewFlags(Flags flags, const FenestraScene::Contents&
 }
 
 /// File named by a hash of its content: another transfer function is another file.
-QString qSlicerFenestraSession::propertyFile(const FenestraScene::Contents& contents) const {
+QString qSlicerFenestraSession::propertyFile(const SlicerExport::Contents& contents) const {
   const QByteArray text = QByteArray::fromStdString(contents.property);
   const QString name = QCryptographicHash::hash(text, QCryptographicHash::Sha1).toHex();
   QFile file(m_files->folder.filePath(name + QString::fromStdString(contents.propertyEnding)));
   if (file.size() != text.size() &&
       (!file.open(QIODevice::WriteOnly) || file.write(text) != text.size()))
-    throw FenestraScene::Complaint("The transfer function could not be written. Is the disk "
-                                   "with the temporary files full?");
+    throw SlicerExport::Complaint("The transfer function could not be written. Is the disk "
+                                  "with the temporary files full?");
   return file.fileName();
 }
 

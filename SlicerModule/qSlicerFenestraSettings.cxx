@@ -263,8 +263,8 @@ void qSlicerFenestraSettings::showSegments() {
 void qSlicerFenestraSettings::showSubject(const Flags& flags) {
   using Plane = qSlicerFenestraClipping::Plane;
   const QString preset = flagOf(flags, "preset");
-  const auto verdict = FenestraScene::verdictOn("preset", preset.toStdString());
-  (verdict == FenestraScene::Verdict::file ? chooseOrAdd : choose)(m_panel->preset, preset);
+  const auto verdict = SlicerExport::verdictOn("preset", preset.toStdString());
+  (verdict == SlicerExport::Verdict::file ? chooseOrAdd : choose)(m_panel->preset, preset);
   m_panel->offerPresets(hasPreset());
   m_panel->focusHint->setVisible(hasPreset() && m_node->GetFocus().empty());
   const bool isPlaced = flags.count("plane") > 0;

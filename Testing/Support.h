@@ -60,7 +60,7 @@ inline LabelWeights sharesOf(const std::vector<LabelWeights::Part>& parts) {
   return {parts.size(), [&](std::size_t i) { return parts[i]; }};
 }
 
-/// Owner of everything that a RenderScene refers to.
+/// Owner of everything that a SceneView refers to.
 struct TestScene {
   Volume volume;
   TransferFunction transfer;
@@ -73,7 +73,7 @@ struct TestScene {
   std::optional<Tint> tint = {};
   std::optional<Mixture> mixture = {}; ///< in place of a tint
 
-  /// work(RenderScene).
+  /// work(SceneView).
   template <typename Work>
   auto with(Work&& work) const {
     const Camera camera(pose, width, height);
@@ -82,14 +82,13 @@ struct TestScene {
     const ContextStyle* const styled = style ? &*style : nullptr;
     const Mixture* const mixed = mixture ? &*mixture : nullptr;
     const MajorantGrid majorants(volume.grid, ranges, transfer, clip, styled, mixed);
-    return work(RenderScene{volume, transfer, majorants, lightSet, camera, clip, crop, styled,
-                            tint ? &*tint : nullptr, mixed});
+    return work(SceneView{volume, transfer, majorants, lightSet, camera, clip, crop, styled,
+                          tint ? &*tint : nullptr, mixed});
   }
 
   RenderResult render(const RenderSettings& settings) const {
     RenderMonitor monitor;
-    return with(
-        [&](const RenderScene& scene) { return fenestra::render(scene, settings, monitor); });
+    return with([&](const SceneView& scene) { return fenestra::render(scene, settings, monitor); });
   }
 };
 

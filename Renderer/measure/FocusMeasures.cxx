@@ -38,7 +38,7 @@ double keptShare(const FocusPoints& points) {
 
 } // namespace
 
-FocusPoints focusPoints(const RenderScene& scene, const std::vector<double>& depth) {
+FocusPoints focusPoints(const SceneView& scene, const std::vector<double>& depth) {
   FocusPoints points;
   const auto width = static_cast<std::size_t>(scene.camera.width());
   const double rounding = 0.5 * scene.camera.pixelPitch();
@@ -59,7 +59,7 @@ FocusPoints focusPoints(const RenderScene& scene, const std::vector<double>& dep
   return points;
 }
 
-double focusCoverage(const RenderScene& scene, const FocusPoints& points, std::uint64_t seed,
+double focusCoverage(const SceneView& scene, const FocusPoints& points, std::uint64_t seed,
                      const StopFlag& stop) {
   if (points.empty())
     return 0.0;
@@ -79,7 +79,7 @@ double focusCoverage(const RenderScene& scene, const FocusPoints& points, std::u
   return withMedium(scene, measure, stop);
 }
 
-std::optional<double> focusLight(const RenderScene& scene, const RenderScene& alone,
+std::optional<double> focusLight(const SceneView& scene, const SceneView& alone,
                                  const FocusPoints& focus, std::uint64_t seed,
                                  const StopFlag& stop) {
   constexpr std::size_t most = 4096; // kept points
@@ -89,7 +89,7 @@ std::optional<double> focusLight(const RenderScene& scene, const RenderScene& al
     if (point.isKept)
       points.push_back(&point);
   const std::size_t stride = points.size() / most + 1;
-  const auto arriving = [&](const RenderScene& through) {
+  const auto arriving = [&](const SceneView& through) {
     const auto sumOfLight = [&](const auto&, const auto& tracker) {
       std::vector<double> light(points.size() / stride + 1, 0.0);
       tbb::parallel_for(std::size_t{0}, points.size() / stride, [&](std::size_t i) {
@@ -116,7 +116,7 @@ std::optional<double> focusLight(const RenderScene& scene, const RenderScene& al
   return arriving(scene) / unhindered;
 }
 
-std::optional<double> contextRemoved(const RenderScene& scene, const Mask& focus,
+std::optional<double> contextRemoved(const SceneView& scene, const Mask& focus,
                                      std::uint64_t seed) {
   constexpr std::int64_t strata = 64; // along each axis
   const ContextStyle style{shared(focus)};
@@ -144,7 +144,7 @@ std::optional<double> contextRemoved(const RenderScene& scene, const Mask& focus
   });
 }
 
-std::optional<FocusReport> measureFocus(const RenderScene& scene, const CellRanges& ranges,
+std::optional<FocusReport> measureFocus(const SceneView& scene, const CellRanges& ranges,
                                         const Mask& focus, const std::vector<double>& depth,
                                         std::uint64_t seed, const StopFlag& stop) {
   const Clip noClip = ClipNone();
@@ -152,12 +152,12 @@ std::optional<FocusReport> measureFocus(const RenderScene& scene, const CellRang
     return MajorantGrid(scene.volume.grid, ranges, scene.transfer, noClip, style);
   };
   const auto unclipped = [&](const MajorantGrid& majorants, const ContextStyle* style) {
-    return RenderScene{scene.volume, scene.transfer, majorants, scene.lights, scene.camera,
-                       noClip,       scene.crop,     style,     scene.tint};
+    return SceneView{scene.volume, scene.transfer, majorants, scene.lights, scene.camera,
+                     noClip,       scene.crop,     style,     scene.tint};
   };
   const ContextStyle nothingElse{shared(focus), 0.0, 1.0};
   const MajorantGrid whole = majorantsFor(scene.style), alone = majorantsFor(&nothingElse);
-  const RenderScene wholeScene = unclipped(whole, scene.style);
+  const SceneView wholeScene = unclipped(whole, scene.style);
 
   const FocusPoints points = focusPoints(scene, depth);
   FocusReport report;

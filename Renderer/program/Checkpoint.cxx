@@ -75,7 +75,7 @@ ordered_json madeWith(const OptionValues& given, const OptionValues& flags,
           {"settings", toldFlags(flags, folder, shapesSamples)}};
 }
 
-std::vector<fs::path> filesOf(const Scene& scene, const RenderOptions& options) {
+std::vector<fs::path> filesOf(const PreparedScene& scene, const RenderOptions& options) {
   std::set<fs::path> files(options.inputs.begin(), options.inputs.end());
   for (const std::string& file : scene.files())
     files.insert(file);
@@ -90,7 +90,8 @@ std::vector<fs::path> filesOf(const Scene& scene, const RenderOptions& options) 
   return there;
 }
 
-ordered_json inputsOf(const Scene& scene, const RenderOptions& options, const fs::path& folder) {
+ordered_json inputsOf(const PreparedScene& scene, const RenderOptions& options,
+                      const fs::path& folder) {
   ordered_json inputs = ordered_json::array();
   for (const fs::path& file : filesOf(scene, options))
     inputs.push_back({{"file", relativeName(file.string(), folder)},
@@ -132,12 +133,12 @@ std::string partText(const Shard& shard) {
   return textOf(shard.index + 1, '/', shard.count);
 }
 
-Checkpoint::Checkpoint(const PictureRequest& request, const OptionValues& given, Warn warn)
-    : m_request(request),
-      m_path(*request.options.checkpoint),
+Checkpoint::Checkpoint(const PictureRequest& job, const OptionValues& given, Warn warn)
+    : m_job(job),
+      m_path(*job.options.checkpoint),
       m_warn(std::move(warn)),
       m_lock(m_path),
-      m_made(madeWith(given, request.flags, m_path.parent_path())) {
+      m_made(madeWith(given, job.flags, m_path.parent_path())) {
   if (!m_lock->isHeld())
     throw usageError(m_path, ": another process is writing this film; wait for it, or choose "
                              "another --checkpoint");
@@ -146,20 +147,20 @@ Checkpoint::Checkpoint(const PictureRequest& request, const OptionValues& given,
     const FilmFile& film = m_films.emplace_back(m_path);
     for (const char* key : {"version", "settings"})
       requireSame(film, key);
-    if (const Shard& here = request.options.settings.shard; film.shard() != here)
+    if (const Shard& here = job.options.settings.shard; film.shard() != here)
       throw otherRender(textOf("--shard was ", partText(film.shard()), ", is ", partText(here)));
     forgetInput(*fileId(m_path)); // it is written again
   }
   m_outputs.add(m_path);
 }
 
-Checkpoint::Checkpoint(const PictureRequest& request, const OptionValues& given,
+Checkpoint::Checkpoint(const PictureRequest& job, const OptionValues& given,
                        std::vector<FilmFile> parts)
-    : m_request(request),
+    : m_job(job),
       m_path(parts.front().path()),
       m_films(std::move(parts)),
       m_isMerge(true),
-      m_made(madeWith(given, request.flags, m_path.parent_path())) {
+      m_made(madeWith(given, job.flags, m_path.parent_path())) {
   for (const char* key : {"version", "settings"})
     requireSame(m_films.front(), key);
 }
@@ -182,16 +183,17 @@ void Checkpoint::requireRoom(const RenderResult& result, const RenderSettings& s
                      wasPlanned ? "give one" : "drop it", ", or choose another --checkpoint");
 }
 
-std::optional<RenderResult> Checkpoint::begun(const Scene& scene, const RenderSettings& settings) {
-  m_made["inputs"] = inputsOf(scene, m_request.options, m_path.parent_path());
+std::optional<RenderResult> Checkpoint::begun(const PreparedScene& scene,
+                                              const RenderSettings& settings) {
+  m_made["inputs"] = inputsOf(scene, m_job.options, m_path.parent_path());
   if (m_films.empty())
     return std::nullopt;
   const FilmFile& first = m_films.front();
   requireSame(first, "inputs");
-  if (const std::string here = targetOf(scene.forRender(), settings); first.target() != here)
+  if (const std::string here = targetOf(scene.view(), settings); first.target() != here)
     throw otherRender(textOf("its instruction set was ", first.target(), ", is ", here,
                              " (the environment variable FENESTRA_INSTRUCTIONS chooses)"));
-  const SceneRequest& request = m_request.options.scene;
+  const RenderRequest& request = m_job.options.scene;
   if (first.width() != request.width || first.height() != request.height)
     throw inputError(m_path, "has another size than its settings say; render it again");
   RenderResult result = first.begun();
@@ -234,7 +236,7 @@ void Checkpoint::keep(const RenderResult& result) {
 void Checkpoint::write(const RenderResult& result) {
   if (result.counters.paths == m_paths)
     return;
-  m_outputs.write(m_path, filmContent(result, m_request.options.settings.shard, m_made));
+  m_outputs.write(m_path, filmContent(result, m_job.options.settings.shard, m_made));
   m_outputs.commit();
   m_paths = result.counters.paths;
 }

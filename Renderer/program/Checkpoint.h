@@ -18,9 +18,10 @@ bool shapesSamples(const Option& flag);
 nlohmann::ordered_json madeWith(const OptionValues& given, const OptionValues& flags,
                                 const std::filesystem::path& folder);
 /// All files that the scene was made from; an archive, not its members.
-std::vector<std::filesystem::path> filesOf(const Scene& scene, const RenderOptions& options);
+std::vector<std::filesystem::path> filesOf(const PreparedScene& scene,
+                                           const RenderOptions& options);
 /// Name, size and digest of every file that the scene was made from.
-nlohmann::ordered_json inputsOf(const Scene& scene, const RenderOptions& options,
+nlohmann::ordered_json inputsOf(const PreparedScene& scene, const RenderOptions& options,
                                 const std::filesystem::path& folder);
 
 /// First difference between what two films, or a film and a command, are made with, as "--seed was
@@ -39,14 +40,14 @@ public:
   /// Locks options.checkpoint, which must be set, and reads what is there. The request must outlive
   /// this. Throws Error: usage where another process writes that film, or it belongs to other
   /// settings; input where it is damaged; output where none can be written.
-  Checkpoint(const PictureRequest& request, const OptionValues& given, Warn warn);
+  Checkpoint(const PictureRequest& job, const OptionValues& given, Warn warn);
 
   /// The parts of one picture, in their order (wholePicture), which are read and never written.
-  Checkpoint(const PictureRequest& request, const OptionValues& given, std::vector<FilmFile> parts);
+  Checkpoint(const PictureRequest& job, const OptionValues& given, std::vector<FilmFile> parts);
 
   /// Result to go on from; nothing: from the beginning. Throws Error: usage where the film belongs
   /// to other inputs, another instruction set, or more samples than the settings allow; input.
-  std::optional<RenderResult> begun(const Scene& scene, const RenderSettings& settings);
+  std::optional<RenderResult> begun(const PreparedScene& scene, const RenderSettings& settings);
 
   /// Lets a render be kept: first after a second, then so often that writing takes 1 % of the time,
   /// or each minute if it takes more.
@@ -64,7 +65,7 @@ private:
   void requireSame(const FilmFile& film, const std::string& key) const;
   void requireRoom(const RenderResult& result, const RenderSettings& settings) const;
 
-  const PictureRequest& m_request;
+  const PictureRequest& m_job;
   const std::filesystem::path m_path;
   Warn m_warn;
   std::optional<NameLock> m_lock;

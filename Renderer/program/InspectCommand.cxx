@@ -409,7 +409,7 @@ int inspectCommand(int argc, char** argv, int first) {
       given.add(name, *value);
   const SceneOptions stored = mergeSceneOptions(given, input);
   const OptionValues& flags = stored.values;
-  SceneRequest request;
+  RenderRequest request;
   request.input = input.path();
   request.volume = flags.text("volume");
   request.segmentation = flags.text("segmentation");

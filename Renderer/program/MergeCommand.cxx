@@ -136,18 +136,18 @@ int mergeCommand(int argc, char** argv, int first) {
       for (const std::string& value : given->texts(flag.name))
         flags.add(flag.name, value);
     }
-  PictureRequest request = pictureRequest(flags);
-  RenderSettings& settings = request.options.settings; // nothing is left to render
+  PictureRequest job = pictureRequest(flags);
+  RenderSettings& settings = job.options.settings; // nothing is left to render
   settings.samples = films.front().finishedSamples();
   settings.seconds = infinity;
   settings.noise = -1.0;
-  request.options.noiseTarget = NoiseTarget::raw;
+  job.options.noiseTarget = NoiseTarget::raw;
   std::optional<Checkpoint> checkpoint;
-  checkpoint.emplace(request, flags, std::move(films));
+  checkpoint.emplace(job, flags, std::move(films));
   Outputs outputs;
-  declareOutputs(request.options, outputs);
-  checkMemory(request.options.scene);
-  return renderScene(request, flags.arguments(), checkpoint, outputs);
+  declareOutputs(job.options, outputs);
+  checkMemory(job.options.scene);
+  return renderScene(job, flags.arguments(), checkpoint, outputs);
 }
 
 } // namespace fenestra

@@ -38,7 +38,7 @@ std::string cameraFlags(const CameraPose& pose) {
                 " --up=", numbersText(pose.up, ",", exact));
 }
 
-std::map<std::string, std::string> header(const Scene& scene, const RenderOptions& options,
+std::map<std::string, std::string> header(const PreparedScene& scene, const RenderOptions& options,
                                           const RenderResult& result,
                                           const std::vector<std::string>& words) {
   const std::filesystem::path folder = options.outputs.front().parent_path();
@@ -67,7 +67,7 @@ std::string filterText(const std::optional<FilteredPicture>& filtered) {
 }
 
 /// Adds the filtered channels that the layers name; R, G, B and A stay as they are.
-void addFilterChannels(const RenderOptions& options, const Scene& scene,
+void addFilterChannels(const RenderOptions& options, const PreparedScene& scene,
                        const FilteredPicture& filtered, Image& image) {
   if (options.hasFilterLayer("expected"))
     addExpected(image, *scene.features());
@@ -84,9 +84,9 @@ PictureRequest pictureRequest(const OptionValues& given) {
   const Input input(*given.text("INPUT"));
   const SceneOptions stored = mergeSceneOptions(given, input);
   const PresetOptions flags = mergePreset(stored.values, input);
-  PictureRequest request{stored.values, flags.values, makeRenderOptions(flags), input};
-  request.options.scene.leftOut = stored.ignored;
-  return request;
+  PictureRequest job{stored.values, flags.values, makeRenderOptions(flags), input};
+  job.options.scene.leftOut = stored.ignored;
+  return job;
 }
 
 void declareOutputs(const RenderOptions& options, Outputs& outputs) {
@@ -102,7 +102,7 @@ void declareOutputs(const RenderOptions& options, Outputs& outputs) {
 }
 
 /// Compared with physical memory: Linux grants more, and ends the process when it is used.
-void checkMemory(const SceneRequest& scene) {
+void checkMemory(const RenderRequest& scene) {
   constexpr double filter = 400.0; // its planes
   const double bytesPerPixel =     // the film, and its channels as written
       2.0 * sizeof(PixelSums) + (scene.features ? filter : 0.0);
@@ -143,8 +143,8 @@ std::optional<double> filteredNoise(const std::optional<FilteredPicture>& filter
   return std::sqrt(filtered->toldError);
 }
 
-void writePictures(const RenderOptions& options, const Scene& scene, const RenderResult& result,
-                   const std::optional<FilteredPicture>& filtered,
+void writePictures(const RenderOptions& options, const PreparedScene& scene,
+                   const RenderResult& result, const std::optional<FilteredPicture>& filtered,
                    const std::vector<std::string>& words, Outputs& outputs) {
   const bool isRawWanted = !filtered || !std::ranges::all_of(options.outputs, isDisplayFile);
   Image raw{options.scene.width, options.scene.height, {}, header(scene, options, result, words)};

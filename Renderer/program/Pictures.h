@@ -22,12 +22,12 @@ PictureRequest pictureRequest(const OptionValues& given);
 void declareOutputs(const RenderOptions& options, Outputs& outputs);
 
 /// Throws Error (output) if memory cannot hold the picture.
-void checkMemory(const SceneRequest& scene);
+void checkMemory(const RenderRequest& scene);
 
 /// Filter of one render, as the options ask for it. Both must outlive it.
 class PictureFilter {
 public:
-  PictureFilter(const RenderOptions& options, const Scene& scene)
+  PictureFilter(const RenderOptions& options, const PreparedScene& scene)
       : m_options(options), m_scene(scene) {}
 
   /// Settings of the render; looks at the noise of filtered pictures are kept here.
@@ -37,7 +37,7 @@ public:
 
 private:
   const RenderOptions& m_options;
-  const Scene& m_scene;
+  const PreparedScene& m_scene;
   FilteredPicture m_seen;          ///< at the last look
   std::uint64_t m_seenSamples = 0; ///< samples a pixel then; 0: no look yet
 };
@@ -48,8 +48,8 @@ std::optional<double> filteredNoise(const std::optional<FilteredPicture>& filter
 /// Writes all of options.outputs; the caller commits them. Each header has the data that reproduce
 /// the picture, `fenestra words…` among them; a picture that is `filtered` says so. Throws Error
 /// (output).
-void writePictures(const RenderOptions& options, const Scene& scene, const RenderResult& result,
-                   const std::optional<FilteredPicture>& filtered,
+void writePictures(const RenderOptions& options, const PreparedScene& scene,
+                   const RenderResult& result, const std::optional<FilteredPicture>& filtered,
                    const std::vector<std::string>& words, Outputs& outputs);
 
 } // namespace fenestra

@@ -46,7 +46,7 @@ Json toJson(const Distribution& values) {
 }
 
 /// Differences of the focus's colours from its neighbours', and what they were reached with.
-void addContrast(Json& json, const Scene& scene) {
+void addContrast(Json& json, const PreparedScene& scene) {
   const TintContrast* tint = scene.tintContrast();
   const auto& contrast = tint ? tint->contrast : scene.contrast().contrast;
   if (!contrast)
@@ -68,7 +68,7 @@ void addContrast(Json& json, const Scene& scene) {
 }
 
 /// Adds the measures of the clip.
-void addClip(Json& json, const Scene& scene, const std::optional<FocusReport>& focus) {
+void addClip(Json& json, const PreparedScene& scene, const std::optional<FocusReport>& focus) {
   const ClipResult& clip = scene.clipResult();
   if (clip.mismatch)
     json["boundaryMismatchMm"] = toJson(*clip.mismatch);
@@ -94,7 +94,7 @@ void addClip(Json& json, const Scene& scene, const std::optional<FocusReport>& f
 
 /// Adds how pictures for the eye are shown, the sources of the picture, and the warnings.
 void addSources(Json& json, const RenderStats& stats, const RenderOptions& options,
-                const Scene& scene) {
+                const PreparedScene& scene) {
   const std::filesystem::path folder = options.stats->parent_path();
   if (std::ranges::any_of(options.outputs, isDisplayFile))
     json["display"] = {{"tone", nameOf(options.display.view)},
@@ -114,13 +114,13 @@ void addSources(Json& json, const RenderStats& stats, const RenderOptions& optio
 /// controlPoints: column and row in the picture. Measures of the clip: see BoundaryMeasures and
 /// FocusReport. Names of files are relative to the statistics' folder.
 std::string makeStatsJson(const RenderStats& stats, const RenderOptions& options,
-                          const Scene& scene, const RenderResult& result) {
+                          const PreparedScene& scene, const RenderResult& result) {
   rusage usage = {};
   getrusage(RUSAGE_SELF, &usage);
   const SampleCounts samples = result.film.sampleCounts();
   const Counters& c = result.counters;
   const StageSeconds& stages = scene.seconds();
-  const MajorantGrid& majorants = scene.forRender().majorants;
+  const MajorantGrid& majorants = scene.view().majorants;
 
   Json json;
   json["seconds"] = {
@@ -162,7 +162,7 @@ std::string makeStatsJson(const RenderStats& stats, const RenderOptions& options
 
 /// Starts writing options.surface, if set, in parallel to other work. The arguments must outlive
 /// the future; its get() throws Error (output).
-std::future<void> startSurfaceWriter(const RenderOptions& options, const Scene& scene,
+std::future<void> startSurfaceWriter(const RenderOptions& options, const PreparedScene& scene,
                                      Outputs& outputs) {
   if (!options.surface)
     return std::async(std::launch::deferred, [] {});
@@ -229,15 +229,15 @@ int finishShard(const RenderOptions& options, const RenderResult& result, Checkp
 }
 
 /// Measures the focus, unless a stop is asked for, and writes options.stats, if set.
-void writeStats(const RenderOptions& options, const Scene& scene, const RenderResult& result,
-                const Stopwatch& total, RenderMonitor& monitor, RenderStats& stats,
-                Outputs& outputs) {
+void writeStats(const RenderOptions& options, const PreparedScene& scene,
+                const RenderResult& result, const Stopwatch& total, RenderMonitor& monitor,
+                RenderStats& stats, Outputs& outputs) {
   if (!options.stats)
     return;
   const Stopwatch watch;
   const std::vector<double>& depth = scene.clipResult().focusDepth;
   if (!depth.empty() && !monitor.stop) // a stop does not wait for measures
-    stats.focus = measureFocus(scene.forRender(), scene.ranges(), *scene.focus(), depth,
+    stats.focus = measureFocus(scene.view(), scene.ranges(), *scene.focus(), depth,
                                options.settings.seed, monitor.stop);
   stats.measure = watch.seconds();
   stats.total = total.seconds();
@@ -245,7 +245,7 @@ void writeStats(const RenderOptions& options, const Scene& scene, const RenderRe
 }
 
 /// Renders, from the checkpoint on if there is one, and keeps the film there.
-RenderResult renderFilm(const RenderOptions& options, const Scene& scene,
+RenderResult renderFilm(const RenderOptions& options, const PreparedScene& scene,
                         const RenderSettings& settings, std::optional<Checkpoint>& checkpoint,
                         RenderMonitor& monitor, const StartWorkers& startWorkers,
                         RenderStats& stats) {
@@ -260,7 +260,7 @@ RenderResult renderFilm(const RenderOptions& options, const Scene& scene,
     startWorkers(options, scene, settings, monitor);
   RenderResult result = [&] {
     const Progress progress(options, monitor);
-    return render(scene.forRender(), settings, monitor, std::move(begun));
+    return render(scene.view(), settings, monitor, std::move(begun));
   }();
   if (options.checkpoint && !options.isShard)
     checkpoint->keep(result);
@@ -269,12 +269,12 @@ RenderResult renderFilm(const RenderOptions& options, const Scene& scene,
 
 } // namespace
 
-int renderScene(const PictureRequest& request, const std::vector<std::string>& arguments,
+int renderScene(const PictureRequest& job, const std::vector<std::string>& arguments,
                 std::optional<Checkpoint>& checkpoint, Outputs& outputs,
                 const StartWorkers& startWorkers) {
-  const RenderOptions& options = request.options;
+  const RenderOptions& options = job.options;
   const Stopwatch total;
-  const Scene scene(options.scene, request.input);
+  const PreparedScene scene(options.scene, job.input);
   outputs.checkInputs(); // now also files that the scene refers to
   warn(options, scene.warnings());
   if (options.progress != ProgressMode::none && options.progress != ProgressMode::xml)
@@ -330,18 +330,17 @@ int runRender(const StartWorkers& startWorkers, int argc, char** argv, int first
   if (!given)
     return 0;
   useMachine(*given);
-  const PictureRequest request = pictureRequest(*given);
+  const PictureRequest job = pictureRequest(*given);
   if (given->has("echo"))
-    std::cout << request.flags.echo() << std::flush;
+    std::cout << job.flags.echo() << std::flush;
   std::optional<Checkpoint> checkpoint;
-  if (request.options.checkpoint)
-    checkpoint.emplace(request, *given, [&request](const std::string& warning) {
-      warn(request.options, {warning});
-    });
+  if (job.options.checkpoint)
+    checkpoint.emplace(job, *given,
+                       [&job](const std::string& warning) { warn(job.options, {warning}); });
   Outputs outputs;
-  declareOutputs(request.options, outputs);
-  checkMemory(request.options.scene);
-  return renderScene(request, {argv + 1, argv + argc}, checkpoint, outputs, startWorkers);
+  declareOutputs(job.options, outputs);
+  checkMemory(job.options.scene);
+  return renderScene(job, {argv + 1, argv + argc}, checkpoint, outputs, startWorkers);
 }
 
 } // namespace fenestra

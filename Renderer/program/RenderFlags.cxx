@@ -55,7 +55,7 @@ Rgb parseLinearColor(const OptionValues& values, const std::string& name,
   return value;
 }
 
-void readEnvironment(const OptionValues& values, const std::string& name, SceneRequest& scene) {
+void readEnvironment(const OptionValues& values, const std::string& name, RenderRequest& scene) {
   const std::string text = *values.text(name);
   if (imageFormat(text) == ImageFormat::exr)
     scene.environmentMap = text;
@@ -77,7 +77,7 @@ void readBackground(const OptionValues& values, const std::string& name,
                             parseLinearColor(values, name, "gradient, transparent or environment")};
 }
 
-void readSize(const OptionValues& values, const std::string& name, SceneRequest& scene) {
+void readSize(const OptionValues& values, const std::string& name, RenderRequest& scene) {
   constexpr int largest = 16384;
   const std::string text = *values.text(name);
   char rest = 0;
@@ -126,7 +126,7 @@ struct RenderOptionTable {
   RenderOptionTable& operator=(const RenderOptionTable&) = delete;
 
   RenderOptions options = {};
-  SceneRequest& scene = options.scene;
+  RenderRequest& scene = options.scene;
   ClipRequest& clip = scene.clip;
   SurfaceOptions& surface = clip.surface;
   FocusRequest& focus = scene.focusLook;

@@ -18,7 +18,7 @@ enum class NoiseTarget { automatic, raw, filtered };
 enum class ProgressMode { automatic, bar, xml, none };
 
 struct RenderOptions {
-  SceneRequest scene;
+  RenderRequest scene;
   RenderSettings settings;
   std::optional<Background> background = {};  ///< nullopt: the scene's, else the standard
   std::vector<std::filesystem::path> inputs;  ///< input files given as such, without presets

@@ -11,11 +11,11 @@
 namespace fenestra {
 namespace {
 
-bool hasMaterials(const SceneRequest& scene) {
+bool hasMaterials(const RenderRequest& scene) {
   return scene.materials.value_or(noMaterials) != noMaterials;
 }
 
-void checkInput(const OptionValues& values, const SceneRequest& scene) {
+void checkInput(const OptionValues& values, const RenderRequest& scene) {
   const bool isScene = isSceneFile(scene.input),
              usesLabels = !scene.focus.empty() || hasMaterials(scene);
   if (scene.volume && !isScene && !isFolder(scene.input))
@@ -35,7 +35,7 @@ void checkInput(const OptionValues& values, const SceneRequest& scene) {
     throw usageError("--view and --position contradict each other; give one");
 }
 
-void checkView(const ViewRequest& view, const SceneRequest& scene) {
+void checkView(const ViewRequest& view, const RenderRequest& scene) {
   if (view.isAutomatic() && scene.focus.empty())
     throw usageError("--view: auto looks for a focus; add --focus A,B,..., or name a direction");
   // A scene's camera may apply, whose projection is not known yet.
@@ -71,7 +71,7 @@ std::string_view findNoEffectReason(Requires requirement, bool hasFocus, bool ha
   return "";
 }
 
-void checkClip(const OptionValues& values, const SceneRequest& scene) {
+void checkClip(const OptionValues& values, const RenderRequest& scene) {
   const ClipRequest& clip = scene.clip;
   const bool hasFocus = values.has("focus"), hasLabels = hasFocus || hasMaterials(scene);
   const ClipMode mode = clip.modeWith(hasFocus);
@@ -175,7 +175,7 @@ void checkShard(const OptionValues& values, const RenderOptions& options) {
 
 RenderOptions makeRenderOptions(const OptionValues& values) {
   RenderOptions options = readOptions(values);
-  SceneRequest& scene = options.scene;
+  RenderRequest& scene = options.scene;
   scene.input = *values.text("INPUT");
   checkInput(values, scene);
   checkView(scene.view, scene);

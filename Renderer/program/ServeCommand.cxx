@@ -48,7 +48,7 @@ private:
         flags = changedFlags(change.flags, flags);
       const RenderOptions options = makeRenderOptions(mergePreset(flags, m_source));
       checkMemory(options.scene);
-      Scene scene = m_scene->changed(options.scene);
+      PreparedScene scene = m_scene->changed(options.scene);
       m_outputs.checkInputs();
       m_scene = std::move(scene);
       m_options = options;
@@ -82,7 +82,7 @@ private:
       if (!m_monitor.stop && (!m_published || m_published->seconds() >= interval))
         publish(result, filter, false);
     };
-    const RenderResult result = render(m_scene->forRender(), filter.settings(), m_monitor);
+    const RenderResult result = render(m_scene->view(), filter.settings(), m_monitor);
     m_complete = result.reason != StopReason::request;
     if (m_complete)
       publish(result, filter, true);
@@ -129,7 +129,7 @@ private:
   Outputs& m_outputs;
   RenderMonitor m_monitor;
   ServeInput m_input;
-  std::optional<Scene> m_scene;
+  std::optional<PreparedScene> m_scene;
   bool m_complete = false;              ///< true: the scene's picture is finished
   std::optional<Stopwatch> m_published; ///< time since the scene's last picture; nullopt: none yet
   double m_publishing = 0.0;            ///< seconds that it took

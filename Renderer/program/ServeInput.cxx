@@ -92,7 +92,7 @@ OptionValues changedFlags(const json& change, const OptionValues& flags) {
 }
 
 void checkChange(const json& change, const OptionValues& flags, const Input& input) {
-  const SceneRequest scene = makeRenderOptions(mergePreset(flags, input)).scene;
+  const RenderRequest scene = makeRenderOptions(mergePreset(flags, input)).scene;
   const bool isPreset = change.contains("preset"); // may name lights and a transfer function
   if (isPreset || change.contains("lights"))
     namedLights(scene.lights);

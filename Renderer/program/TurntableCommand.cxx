@@ -35,7 +35,7 @@ public:
         m_outputs(outputs),
         m_words(std::move(words)),
         m_before(finished()),
-        m_view{-2, Scene(options.render.scene, input)},
+        m_view{-2, PreparedScene(options.render.scene, input)},
         m_start(m_view.scene.camera().pose()) {}
 
   /// Returns the exit status.
@@ -62,7 +62,7 @@ private:
   /// Scene of a frame, before rendering.
   struct View {
     int frame; ///< -2: none, the scene is as requested
-    Scene scene;
+    PreparedScene scene;
     std::optional<SeenSurface> surface = {};
     std::optional<SurfaceChange> change = {}; ///< since the preceding frame
   };
@@ -99,7 +99,7 @@ private:
     RenderOptions options = m_options.render;
     options.outputs = m_options.pictures(frame);
     PictureFilter filter(options, m_view.scene);
-    const RenderResult result = render(m_view.scene.forRender(), filter.settings(), m_monitor);
+    const RenderResult result = render(m_view.scene.view(), filter.settings(), m_monitor);
     if (result.reason == StopReason::request)
       return false;
     writePictures(options, m_view.scene, result, filter.of(result), m_words, m_outputs);
@@ -119,9 +119,9 @@ private:
   }
 
   /// Scene for the eye of m_start turned around its target.
-  Scene sceneAt(double degrees) const {
+  PreparedScene sceneAt(double degrees) const {
     const CameraPose pose = turnedAroundTarget(m_start, degrees);
-    SceneRequest request = m_options.render.scene;
+    RenderRequest request = m_options.render.scene;
     request.view = {.projection = pose.projection,
                     .position = pose.position,
                     .target = pose.target,
@@ -145,7 +145,7 @@ private:
   }
 
   /// Visible part of the clipping surface; nullopt: the clip is no surface.
-  static std::optional<SeenSurface> seen(const Scene& scene) {
+  static std::optional<SeenSurface> seen(const PreparedScene& scene) {
     const auto* clip = std::get_if<ClipDepth>(&scene.clip());
     if (!clip || clip->lookup != ClipDepth::Lookup::linear)
       return std::nullopt;
@@ -245,8 +245,8 @@ int turntableCommand(int argc, char** argv, int first) {
   useMachine(*given);
   OptionValues flags = *given;
   flags.remove("shard"); // which deals out frames here, not tiles
-  const PictureRequest request = pictureRequest(flags);
-  TurntableOptions options = turntableOptions(request.flags, request.options);
+  const PictureRequest job = pictureRequest(flags);
+  TurntableOptions options = turntableOptions(job.flags, job.options);
   options.shard = readOptions(*given).settings.shard;
   if (options.first() == options.end())
     throw usageError("--shard: ", options.shard.count, " parts are more than the ", options.frames,
@@ -254,11 +254,11 @@ int turntableCommand(int argc, char** argv, int first) {
   for (const std::filesystem::path& input : options.render.inputs)
     expectInput(input); // --restart replaces no input
   const auto locks = lockFrames(options);
-  TurntableRecord record(options, request.flags);
+  TurntableRecord record(options, job.flags);
   Outputs outputs;
   declareFrames(options, record, outputs);
   checkMemory(options.render.scene);
-  Turntable turntable(options, request.input, record, outputs, {argv + 1, argv + argc});
+  Turntable turntable(options, job.input, record, outputs, {argv + 1, argv + argc});
   return turntable.run();
 }
 

@@ -101,7 +101,7 @@ std::string TurntableRecord::warningBeyond() {
                 " files are", whose, "them");
 }
 
-void TurntableRecord::setInputs(const Scene& scene) {
+void TurntableRecord::setInputs(const PreparedScene& scene) {
   const std::vector<std::string> referred = scene.files();
   std::set<fs::path> files(referred.begin(), referred.end());
   files.insert(m_options.render.inputs.begin(), m_options.render.inputs.end());

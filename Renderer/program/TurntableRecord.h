@@ -16,7 +16,7 @@ public:
   TurntableRecord(const TurntableOptions& options, const OptionValues& flags);
   /// Adds the inputs beside the flags to the request: states of all files named or referred to, and
   /// digests of the voxels. Throws Error (usage) if the recorded frames have other inputs.
-  void setInputs(const Scene& scene);
+  void setInputs(const PreparedScene& scene);
 
   /// Frames that are recorded and whose files are all unchanged, by number.
   const std::map<int, Record::Piece>& finished() const { return m_record.finished(); }

@@ -286,7 +286,7 @@ bool isRecruited(Ranks& ranks) {
   }
 }
 
-void borrow(Ranks& ranks, const RenderScene& scene, const RenderSettings& settings,
+void borrow(Ranks& ranks, const SceneView& scene, const RenderSettings& settings,
             RenderMonitor& monitor) {
   LeasedTiles tiles(ranks, monitor);
   renderLeases(scene, settings, monitor,

@@ -50,7 +50,7 @@ private:
 
 /// Other ranks: renders what rank 0 lends until it says that all is done. `monitor.stop`, once
 /// true, stops rank 0, too.
-void runWorker(Ranks& ranks, const RenderScene& scene, const RenderSettings& settings,
+void runWorker(Ranks& ranks, const SceneView& scene, const RenderSettings& settings,
                RenderMonitor& monitor);
 
 /// Other ranks: waits for a render to help with; false: there is none.

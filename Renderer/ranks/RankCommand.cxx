@@ -39,20 +39,21 @@ void requireSameRanks(const std::vector<std::string>& targets) {
 }
 
 /// Facts that differ where scenes do: the voxels' range, the camera, the bounds of the extinction.
-std::string describeScene(const Scene& scene, const RenderSettings& settings) {
+std::string describeScene(const PreparedScene& scene, const RenderSettings& settings) {
   constexpr int exact = 17; // significant digits
   const CameraPose& pose = scene.camera().pose();
-  const MajorantGrid& majorants = scene.forRender().majorants;
+  const MajorantGrid& majorants = scene.view().majorants;
   return textOf(
-      targetOf(scene.forRender(), settings), "; voxels ", numberText(scene.volume().minimum, exact),
+      targetOf(scene.view(), settings), "; voxels ", numberText(scene.volume().minimum, exact),
       " to ", numberText(scene.volume().maximum, exact), "; camera at ",
       numbersText(pose.position, ",", exact), " toward ", numbersText(pose.target, ",", exact),
       "; ", majorants.size(), " cells, ", majorants.emptyCount(), " of them empty");
 }
 
 /// Lets the other ranks make the scene, and lend a hand.
-void startRanks(const RenderOptions& options, const Scene& scene, const RenderSettings& settings,
-                RenderMonitor& monitor, Ranks& ranks, Scheduler& scheduler) {
+void startRanks(const RenderOptions& options, const PreparedScene& scene,
+                const RenderSettings& settings, RenderMonitor& monitor, Ranks& ranks,
+                Scheduler& scheduler) {
   startWorkers(ranks);
   try {
     shareFiles(filesOf(scene, options), ranks);
@@ -71,7 +72,7 @@ int runFirstRank(int argc, char** argv, Ranks& ranks, const std::vector<std::str
   Scheduler scheduler(ranks);
   try {
     requireSameRanks(targets);
-    const auto start = [&](const RenderOptions& options, const Scene& scene,
+    const auto start = [&](const RenderOptions& options, const PreparedScene& scene,
                            const RenderSettings& settings, RenderMonitor& monitor) {
       startRanks(options, scene, settings, monitor, ranks, scheduler);
     };
@@ -94,10 +95,10 @@ void runOtherRank(int argc, char** argv, Ranks& ranks) {
   std::string expected;
   ranks.spread(expected);
   PictureRequest request = pictureRequest(files->renamed(*given, renderSyntax.flags));
-  SceneRequest& wanted = request.options.scene;
+  RenderRequest& wanted = request.options.scene;
   wanted.features = wanted.measure = false; // what is for rank 0 alone
   checkMemory(wanted);
-  const Scene scene(wanted, request.input);
+  const PreparedScene scene(wanted, request.input);
   files.reset();
   const RenderSettings settings = makeSettings(request.options, scene.background());
   if (const std::string here = describeScene(scene, settings); here != expected)
@@ -105,7 +106,7 @@ void runOtherRank(int argc, char** argv, Ranks& ranks) {
                      "); a file that it names may differ between machines");
   RenderMonitor monitor;
   const StopInstead stopInstead(monitor.stop);
-  runWorker(ranks, scene.forRender(), settings, monitor);
+  runWorker(ranks, scene.view(), settings, monitor);
 }
 
 } // namespace

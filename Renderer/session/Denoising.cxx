@@ -91,7 +91,7 @@ Plane boundedClip(const Camera& camera, const Clip& clip) {
   return plane;
 }
 
-void addFeatures(const Scene& scene, const FeatureBuffers& features, FilterInput& input) {
+void addFeatures(const PreparedScene& scene, const FeatureBuffers& features, FilterInput& input) {
   for (const Plane& plane : features.albedo)
     input.features.push_back(plane);
   // Where light scatters at surfaces, what it meets there is told by their normals.
@@ -114,7 +114,7 @@ bool hasHalfBuffers(const Film& film) {
 
 } // namespace
 
-FilterInput filterInput(const Film& film, const Scene& scene) {
+FilterInput filterInput(const Film& film, const PreparedScene& scene) {
   if (!film.hasIndependentHalves())
     throw std::logic_error("a film without independent halves cannot be filtered");
   FilterInput input{film.width(), film.height(), {}, {}, {}, {}, {}, hasHalfBuffers(film)};

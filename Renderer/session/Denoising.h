@@ -7,14 +7,14 @@
 namespace fenestra {
 
 /// Halves of the film, and features of the scene, which must have been asked for
-/// (SceneRequest::features): expected albedo, normal and depth, light, the slope of the depth, and
+/// (RenderRequest::features): expected albedo, normal and depth, light, the slope of the depth, and
 /// the clip's depth. Without a second sample in every uncertain pixel there are no halves. Closed
 /// are pixels that are certain, and those around which the march met nothing. Throws
 /// std::logic_error for a film whose halves are not independent: the error that the filter tells
 /// would be wrong.
-FilterInput filterInput(const Film& film, const Scene& scene);
+FilterInput filterInput(const Film& film, const PreparedScene& scene);
 
-inline FilteredPicture denoised(const Film& film, const Scene& scene) {
+inline FilteredPicture denoised(const Film& film, const PreparedScene& scene) {
   return filtered(filterInput(film, scene));
 }
 

@@ -55,7 +55,7 @@ struct SegmentNames {
   std::vector<SegmentInfo> segments; ///< empty: segments have no names
 };
 
-/// Choice of a scene's nodes, or of files (SceneRequest).
+/// Choice of a scene's nodes, or of files (RenderRequest).
 struct InputChoice {
   std::optional<std::string> volume = {};
   std::optional<std::string> segmentation = {};

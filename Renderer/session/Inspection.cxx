@@ -44,7 +44,7 @@ struct FileVolume {
 };
 
 /// Adds what a render uses of the input, its refusal and its warnings.
-FileVolume inspectVolume(const SceneRequest& request, const Input& input, Json& report) {
+FileVolume inspectVolume(const RenderRequest& request, const Input& input, Json& report) {
   FileVolume result;
   const auto add = [&](const Volume& volume, const std::vector<std::string>& warnings) {
     report["render"] = emptyUse();
@@ -55,7 +55,7 @@ FileVolume inspectVolume(const SceneRequest& request, const Input& input, Json& 
     result.looksLikeLabels = looksLikeLabels(volume);
   };
   try {
-    const Scene scene(request, input);
+    const PreparedScene scene(request, input);
     add(scene.volume(), scene.warnings());
     report["render"]["camera"] = cameraUse(scene.camera().pose());
   } catch (const Error& error) {
@@ -104,7 +104,7 @@ Json libraryJson() {
   return all;
 }
 
-Json inspectFiles(const SceneRequest& request, const Input& input) {
+Json inspectFiles(const RenderRequest& request, const Input& input) {
   const bool isDicom = isFolder(request.input);
   Json report = emptyInspection(request, isDicom ? "dicom" : "volume");
   if (isDicom)
@@ -138,7 +138,7 @@ Json orNull(const std::string& text) {
   return text.empty() ? Json(nullptr) : Json(text);
 }
 
-Json emptyInspection(const SceneRequest& request, const char* kind) {
+Json emptyInspection(const RenderRequest& request, const char* kind) {
   Json report = {{"input", request.input.string()}, {"kind", kind}, {"version", nullptr}};
   for (const char* list : {"volumes", "segmentations", "volumeRenderings", "volumeProperties",
                            "rois", "views", "cameras", "transforms", "series"})
@@ -248,7 +248,7 @@ Json segmentationFile(const std::filesystem::path& path, const Grid* volume,
   return json;
 }
 
-Inspection inspectInput(const SceneRequest& request, const Input& input) {
+Inspection inspectInput(const RenderRequest& request, const Input& input) {
   return input.document() ? inspectScene(request, input) : inspectFiles(request, input);
 }
 

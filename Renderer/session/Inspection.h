@@ -43,6 +43,6 @@ using Inspection = nlohmann::ordered_json;
 /// `input`: of request.input. Uses of the request only volume and segmentation. Reads the files
 /// that a render would, and every segmentation, camera and transform (after 64 of a kind only
 /// names). Throws Error if the input is neither scene nor volume nor segmentation.
-Inspection inspectInput(const SceneRequest& request, const Input& input);
+Inspection inspectInput(const RenderRequest& request, const Input& input);
 
 } // namespace fenestra

@@ -28,7 +28,7 @@ auto attempted(Read&& read, Json& line) -> std::optional<decltype(read())> {
 Json orNull(const std::string& text);
 
 /// Report with nothing found, and its member `render` with nothing used.
-Inspection emptyInspection(const SceneRequest& request, const char* kind);
+Inspection emptyInspection(const RenderRequest& request, const char* kind);
 Json emptyUse();
 
 Json volumeUse(const Volume& volume, const std::string& id = "");
@@ -47,10 +47,10 @@ Json segmentationMembers(const char* kind, bool shown);
 void addSegments(const Segmentation& segmentation, const std::map<std::string, bool>& shown,
                  Json& json);
 /// Segmentation of a file. `volume`: grid that closed surfaces become labels on; null: none.
-/// `labels`: SceneRequest's.
+/// `labels`: RenderRequest's.
 Json segmentationFile(const std::filesystem::path& path, const Grid* volume,
                       const std::optional<std::string>& labels);
 
-Inspection inspectScene(const SceneRequest& request, const Input& input);
+Inspection inspectScene(const RenderRequest& request, const Input& input);
 
 } // namespace fenestra

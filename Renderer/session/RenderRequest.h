@@ -72,13 +72,13 @@ struct ViewRequest {
   bool operator==(const ViewRequest&) const = default;
 };
 
-/// SceneRequest::materials of a picture in the volume's own colours.
+/// RenderRequest::materials of a picture in the volume's own colours.
 inline constexpr const char* noMaterials = "none";
 
 /// Materials of the library, with the focus's contrast made sure of (TintContrast.h).
 inline constexpr const char* autoMaterials = "auto";
 
-struct SceneRequest {
+struct RenderRequest {
   std::filesystem::path input;                  ///< a volume, a DICOM folder, or a Slicer scene
   std::optional<std::string> volume = {};       ///< choice among several: a node, or a DICOM series
   std::optional<std::string> segmentation = {}; ///< a node of the scene, or a file

@@ -13,14 +13,16 @@ void append(const std::vector<std::string>& from, std::vector<std::string>& to) 
 
 } // namespace
 
-Scene::Scene(const SceneRequest& request) : Scene(request, Input(request.input)) {}
+PreparedScene::PreparedScene(const RenderRequest& request)
+    : PreparedScene(request, Input(request.input)) {}
 
-Scene::Scene(const SceneRequest& request, const Input& input) : m_request(request), m_input(input) {
+PreparedScene::PreparedScene(const RenderRequest& request, const Input& input)
+    : m_request(request), m_input(input) {
   make();
 }
 
-Scene Scene::changed(const SceneRequest& request) const {
-  Scene scene = *this;
+PreparedScene PreparedScene::changed(const RenderRequest& request) const {
+  PreparedScene scene = *this;
   scene.m_request = request;
   if (request.input != m_input.path())
     scene.m_input = Input(request.input);
@@ -28,8 +30,8 @@ Scene Scene::changed(const SceneRequest& request) const {
   return scene;
 }
 
-void Scene::make() {
-  const SceneRequest& r = m_request;
+void PreparedScene::make() {
+  const RenderRequest& r = m_request;
   std::apply([](auto&... stage) { (stage.markUnused(), ...); }, stages(*this));
   const auto lights = m_namedLights.get(r.lights, r.environment, r.environmentMap); // errors early
   if (r.transfer)
@@ -70,16 +72,16 @@ void Scene::make() {
                    majorants);
 }
 
-std::string Scene::wantedMaterials(const Handle<SegmentsInput>& segments) const {
-  const SceneRequest& r = m_request;
+std::string PreparedScene::wantedMaterials(const Handle<SegmentsInput>& segments) const {
+  const RenderRequest& r = m_request;
   if (r.materials)
     return *r.materials;
   const bool isSetOff = !r.focus.empty() && !r.focusLook.contextSaturation;
   return isSetOff && isSomeKnown(segments->segmentation, r.focus) ? autoMaterials : noMaterials;
 }
 
-void Scene::makeTint(const std::string& name) {
-  const SceneRequest& r = m_request;
+void PreparedScene::makeTint(const std::string& name) {
+  const RenderRequest& r = m_request;
   const auto materials = m_materials.get(name);
   const bool setsOff = materials->setsOffFocus();
   const auto there = m_segmentsThere.get(m_segments.result());
@@ -100,7 +102,7 @@ void Scene::makeTint(const std::string& name) {
   m_contrastedTint.get(tint, plan, contrast, look);
 }
 
-StageSeconds Scene::seconds() const {
+StageSeconds PreparedScene::seconds() const {
   const ClipResult none, &clip = m_clip.isUpdated() ? *m_clip : none;
   return {.load = m_namedTransfer.seconds() + m_volume.seconds() + m_settings.seconds() +
                   m_segments.seconds() + m_focus.seconds() + m_sceneLook.seconds() +
@@ -117,7 +119,7 @@ StageSeconds Scene::seconds() const {
           .features = m_features.seconds()};
 }
 
-UpdatedStages Scene::updatedStages() const {
+UpdatedStages PreparedScene::updatedStages() const {
   return {m_volume.isUpdated(),
           m_focus.isUpdated(),
           m_look.isUpdated(),
@@ -130,8 +132,8 @@ UpdatedStages Scene::updatedStages() const {
           m_labelWeights.isUpdated()};
 }
 
-std::string Scene::choices() const {
-  const SceneRequest& r = m_request;
+std::string PreparedScene::choices() const {
+  const RenderRequest& r = m_request;
   const char* const from = r.transferFor ? " (preset)" : "";
   std::vector<std::string> parts = {"look: " + look() + from};
   if (r.environment || r.environmentMap)
@@ -160,7 +162,7 @@ std::string Scene::choices() const {
   return joined(parts, "; ");
 }
 
-std::vector<std::string> Scene::warnings() const {
+std::vector<std::string> PreparedScene::warnings() const {
   std::vector<std::string> warnings = m_request.leftOut;
   append(volume().warnings, warnings);
   append(m_settings->warnings, warnings);
@@ -174,7 +176,7 @@ std::vector<std::string> Scene::warnings() const {
   return warnings;
 }
 
-std::vector<std::string> Scene::files() const {
+std::vector<std::string> PreparedScene::files() const {
   std::vector<std::string> files;
   const auto add = [&files](const auto& stage) {
     if constexpr (requires { stage->files; })

@@ -23,18 +23,18 @@ struct UpdatedStages {
   bool operator==(const UpdatedStages&) const = default;
 };
 
-class Scene {
+class PreparedScene {
 public:
   /// Makes all stages. Throws Error.
-  explicit Scene(const SceneRequest& request);
+  explicit PreparedScene(const RenderRequest& request);
   /// `input`: of request.input, opened before.
-  Scene(const SceneRequest& request, const Input& input);
+  PreparedScene(const RenderRequest& request, const Input& input);
 
   /// Scene(request), of which only stages that depend on a difference from this scene's request are
   /// made. Files are assumed unchanged. Throws Error.
-  Scene changed(const SceneRequest& request) const;
+  PreparedScene changed(const RenderRequest& request) const;
 
-  RenderScene forRender() const {
+  SceneView view() const {
     const SegmentsShown segments = segmentsShown();
     return {volume(), transfer(),       *m_majorants, *m_lights,           *m_camera,
             clip(),   m_settings->crop, style(),      segments.tint.get(), segments.mixture.get()};
@@ -98,7 +98,7 @@ private:
                     s.m_majorants, s.m_features);
   }
 
-  SceneRequest m_request;
+  RenderRequest m_request;
   Input m_input;
   CachedStage<&requestedLights> m_namedLights;
   CachedStage<&namedTransfer> m_namedTransfer; ///< unused without --transfer

@@ -31,7 +31,7 @@ Json backgroundColors(const MrmlNode& view) {
 
 class SceneInspector {
 public:
-  SceneInspector(const SceneRequest& request, const Input& input)
+  SceneInspector(const RenderRequest& request, const Input& input)
       : m_request(request),
         m_input(input),
         m_scene(*input.scene()),
@@ -74,8 +74,9 @@ private:
     m_report["warnings"] = m_plan->warnings;
     m_report["ignored"] = m_plan->ignored;
     std::optional<CameraPose> pose;
-    if (const auto scene = attempted([&] { return std::make_unique<Scene>(m_request, m_input); },
-                                     m_report["refused"])) {
+    if (const auto scene =
+            attempted([&] { return std::make_unique<PreparedScene>(m_request, m_input); },
+                      m_report["refused"])) {
       addVolume((*scene)->volume(), (*scene)->look(), use);
       pose = (*scene)->camera().pose();
       m_report["warnings"] = (*scene)->warnings();
@@ -270,7 +271,7 @@ private:
     m_report["segmentations"].push_back(std::move(segmentation));
   }
 
-  const SceneRequest& m_request;
+  const RenderRequest& m_request;
   const Input& m_input;
   MrmlScene& m_scene;
   std::optional<ScenePlan> m_plan;
@@ -284,7 +285,7 @@ private:
 
 } // namespace
 
-Inspection inspectScene(const SceneRequest& request, const Input& input) {
+Inspection inspectScene(const RenderRequest& request, const Input& input) {
   return SceneInspector(request, input).inspect();
 }
 

@@ -136,7 +136,7 @@ std::string vtkSlicerFenestraLogic::WriteScene(Node* render, const std::string& 
   if (!render)
     return {};
   try {
-    return FenestraScene::Writer(folder).write(this->Snapshot(render, folder)).string();
+    return SlicerExport::Writer(folder).write(this->Snapshot(render, folder)).string();
   } catch (const std::exception& error) {
     vtkErrorMacro("WriteScene: " << error.what());
     return {};
@@ -154,28 +154,28 @@ void vtkSlicerFenestraLogic::UseCamera(Node* render, vtkMRMLCameraNode* camera) 
   render->SetFlags(flags);
 }
 
-FenestraScene::Contents vtkSlicerFenestraLogic::Snapshot(Node* render,
-                                                         const std::filesystem::path& folder) {
+SlicerExport::Contents vtkSlicerFenestraLogic::Snapshot(Node* render,
+                                                        const std::filesystem::path& folder) {
   auto* volume = vtkMRMLScalarVolumeNode::SafeDownCast(render->GetNodeReference(Node::VolumeRole));
   auto* segmentation =
       vtkMRMLSegmentationNode::SafeDownCast(render->GetNodeReference(Node::SegmentationRole));
-  FenestraScene::Contents contents;
+  SlicerExport::Contents contents;
   vtkSlicerFenestraSnapshot::TakeVolume(volume, contents);
   vtkSlicerFenestraSnapshot::TakeRendering(volume, folder, contents);
   if (!segmentation && !render->GetFocus().empty())
-    throw FenestraScene::Complaint("The segmentation that holds the focus is gone. Choose one.");
+    throw SlicerExport::Complaint("The segmentation that holds the focus is gone. Choose one.");
   if (segmentation)
     vtkSlicerFenestraSnapshot::TakeSegmentation(segmentation, render->GetFocus(), contents);
   return contents;
 }
 
-std::vector<FenestraScene::Segment> vtkSlicerFenestraLogic::GetSegments(Node* render) {
+std::vector<SlicerExport::Segment> vtkSlicerFenestraLogic::GetSegments(Node* render) {
   auto* segmentation =
       render
           ? vtkMRMLSegmentationNode::SafeDownCast(render->GetNodeReference(Node::SegmentationRole))
           : nullptr;
   return segmentation ? vtkSlicerFenestraSnapshot::SegmentsOf(segmentation)
-                      : std::vector<FenestraScene::Segment>();
+                      : std::vector<SlicerExport::Segment>();
 }
 
 vtkMRMLCameraNode* vtkSlicerFenestraLogic::GetFollowedCamera(Node* render) {
@@ -251,7 +251,7 @@ std::vector<std::string> vtkSlicerFenestraLogic::GetArguments(Node* render, bool
   const bool isFiltered = denoise == flags.end() || denoise->second != "off";
   if (isFiltered && flags.count("noise") > 0 && flags.count("noisetarget") == 0)
     arguments.push_back("--noisetarget=filtered"); // of the picture that is looked at
-  const std::vector<std::string> own = FenestraScene::argumentsOf(flags);
+  const std::vector<std::string> own = SlicerExport::argumentsOf(flags);
   arguments.insert(arguments.end(), own.begin(), own.end());
   return arguments;
 }

@@ -27,8 +27,8 @@ class vtkPolyData;
 /// begin with `vtk` for classes of its own kind: no other name does here. A turntable has only
 /// `picture`, with one frame a slice.
 struct FenestraResult {
-  FenestraScene::Image radiance;         ///< linear RGBA, placed in the world
-  FenestraScene::Image depth;            ///< mm from the eye; infinite: nothing seen
+  SlicerExport::Image radiance;          ///< linear RGBA, placed in the world
+  SlicerExport::Image depth;             ///< mm from the eye; infinite: nothing seen
   vtkSmartPointer<vtkImageData> picture; ///< display colours, row 0 at the top
   vtkSmartPointer<vtkPolyData> surface;  ///< clipping surface, RAS; null: none
 };
@@ -49,7 +49,7 @@ public:
 
 /// \brief Exchange between Slicer's scene and the renderer's files.
 ///
-/// All calls are quick: files are written and read in other threads (FenestraScene::Writer,
+/// All calls are quick: files are written and read in other threads (SlicerExport::Writer,
 /// ReadResult).
 class VTK_SLICER_FENESTRA_MODULE_LOGIC_EXPORT vtkSlicerFenestraLogic : public vtkSlicerModuleLogic {
 public:
@@ -83,11 +83,11 @@ public:
   void UseCamera(vtkMRMLFenestraRenderNode* render, vtkMRMLCameraNode* camera);
 
   /// All that the renderer needs except the flags, without a copy of the voxels. `folder`: private,
-  /// for data that Slicer can only write as files. Throws FenestraScene::Complaint.
-  FenestraScene::Contents Snapshot(vtkMRMLFenestraRenderNode* render,
-                                   const std::filesystem::path& folder);
+  /// for data that Slicer can only write as files. Throws SlicerExport::Complaint.
+  SlicerExport::Contents Snapshot(vtkMRMLFenestraRenderNode* render,
+                                  const std::filesystem::path& folder);
   /// Names, tags and colours of the segments that the node names; of none without a segmentation.
-  static std::vector<FenestraScene::Segment> GetSegments(vtkMRMLFenestraRenderNode* render);
+  static std::vector<SlicerExport::Segment> GetSegments(vtkMRMLFenestraRenderNode* render);
   /// The node's flags, and those of its 3-D view's camera unless another flag sets the view.
   std::map<std::string, std::string> GetFlags(vtkMRMLFenestraRenderNode* render);
   static std::map<std::string, std::string> GetCameraFlags(vtkMRMLCameraNode* camera);
@@ -97,7 +97,7 @@ public:
   vtkMRMLCameraNode* GetFollowedCamera(vtkMRMLFenestraRenderNode* render);
 
   /// Reads a result from `folder`, where files have the names of GetArguments. Throws
-  /// FenestraScene::FileError. Thread-safe.
+  /// SlicerExport::FileError. Thread-safe.
   static FenestraResult ReadResult(const std::string& folder);
   /// Command line flags for rendering the node, with outputs that ReadResult reads.
   static std::vector<std::string> GetArguments(vtkMRMLFenestraRenderNode* render, bool withSurface);
@@ -138,14 +138,14 @@ protected:
 private:
   vtkMRMLFenestraRenderNode* Start(vtkMRMLFenestraRenderNode* settings, bool turntable, bool wait);
   vtkMRMLSliceLogic* GetPictureView();
-  FenestraScene::Matrix BesideAnatomy(vtkMRMLFenestraRenderNode* render,
-                                      const FenestraScene::Matrix& ijkToRas);
+  SlicerExport::Matrix BesideAnatomy(vtkMRMLFenestraRenderNode* render,
+                                     const SlicerExport::Matrix& ijkToRas);
   void Own(vtkMRMLFenestraRenderNode* render, vtkMRMLNode* result);
   void AddSurface(vtkMRMLFenestraRenderNode* render, vtkPolyData* surface);
   void AddFrames(vtkMRMLFenestraRenderNode* render, vtkImageData* frames);
   vtkMRMLVolumeNode* AddVolume(vtkMRMLFenestraRenderNode* render, const char* className,
                                const char* role, vtkImageData* image,
-                               const FenestraScene::Matrix& ijkToRas);
+                               const SlicerExport::Matrix& ijkToRas);
 
   std::function<FenestraRenderer*()> Renderer;
   int LayoutBefore = 3; ///< vtkMRMLLayoutNode::SlicerLayoutFourUpView

@@ -42,7 +42,7 @@ constexpr const char* ResultLayoutXml =
     "<item splitSize=\"400\"><view class=\"vtkMRMLViewNode\" singletontag=\"1\">"
     "<property name=\"viewlabel\" action=\"default\">1</property></view></item></layout>";
 
-vtkSmartPointer<vtkImageData> ToVtk(const FenestraScene::Image& image) {
+vtkSmartPointer<vtkImageData> ToVtk(const SlicerExport::Image& image) {
   vtkNew<vtkImageData> copy;
   copy->SetDimensions(static_cast<int>(image.size[0]), static_cast<int>(image.size[1]),
                       static_cast<int>(image.size[2]));
@@ -51,10 +51,10 @@ vtkSmartPointer<vtkImageData> ToVtk(const FenestraScene::Image& image) {
   return copy;
 }
 
-FenestraScene::Image ReadFloats(const std::string& file) {
-  FenestraScene::Image image = FenestraScene::readNrrd(file);
+SlicerExport::Image ReadFloats(const std::string& file) {
+  SlicerExport::Image image = SlicerExport::readNrrd(file);
   if (image.type != "float" || image.size[2] != 1)
-    throw FenestraScene::FileError(file + ": is no picture of the renderer's; render it again");
+    throw SlicerExport::FileError(file + ": is no picture of the renderer's; render it again");
   return image;
 }
 
@@ -127,7 +127,7 @@ bool Shows(vtkMRMLSliceLogic* view, const char* picture) {
 }
 
 /// Sets a grey window over the finite values.
-void ShowFinite(vtkMRMLVolumeNode* volume, const FenestraScene::Image& depth) {
+void ShowFinite(vtkMRMLVolumeNode* volume, const SlicerExport::Image& depth) {
   auto* display = vtkMRMLScalarVolumeDisplayNode::SafeDownCast(volume->GetDisplayNode());
   const auto* values = static_cast<const float*>(depth.data.get());
   double least = std::numeric_limits<double>::infinity(), greatest = -least;
@@ -222,7 +222,7 @@ void vtkSlicerFenestraLogic::OnMRMLSceneNodeRemoved(vtkMRMLNode* node) {
 
 vtkMRMLVolumeNode* vtkSlicerFenestraLogic::AddVolume(Node* render, const char* className,
                                                      const char* role, vtkImageData* image,
-                                                     const FenestraScene::Matrix& ijkToRas) {
+                                                     const SlicerExport::Matrix& ijkToRas) {
   vtkMRMLScene* scene = this->GetMRMLScene();
   const std::string name = std::string(render->GetName()) + " " + role;
   auto* volume = vtkMRMLVolumeNode::SafeDownCast(
@@ -259,10 +259,10 @@ void vtkSlicerFenestraLogic::AddSurface(Node* render, vtkPolyData* surface) {
 
 /// Matrix of the picture, moved toward the eye beyond the volume: a slice view in its plane then
 /// shows no segments and models that lie there.
-FenestraScene::Matrix vtkSlicerFenestraLogic::BesideAnatomy(Node* render,
-                                                            const FenestraScene::Matrix& ijkToRas) {
+SlicerExport::Matrix vtkSlicerFenestraLogic::BesideAnatomy(Node* render,
+                                                           const SlicerExport::Matrix& ijkToRas) {
   auto* volume = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::VolumeRole));
-  FenestraScene::Matrix moved = ijkToRas;
+  SlicerExport::Matrix moved = ijkToRas;
   if (!volume)
     return moved;
   double bounds[6];
@@ -282,7 +282,7 @@ void vtkSlicerFenestraLogic::AddFrames(Node* render, vtkImageData* frames) {
   double bounds[6] = {0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   if (auto* volume = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::VolumeRole)))
     volume->GetRASBounds(bounds);
-  FenestraScene::Matrix ijkToRas = {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1};
+  SlicerExport::Matrix ijkToRas = {1, 0, 0, 0, 0, -1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1};
   const int* size = frames->GetDimensions();
   for (size_t axis = 0; axis < 3; ++axis)
     ijkToRas[4 * axis + 3] = 2.0 * bounds[2 * axis + 1] - bounds[2 * axis] + size[axis];

@@ -30,7 +30,7 @@
 #include <sstream>
 
 namespace {
-using Complaint = FenestraScene::Complaint;
+using Complaint = SlicerExport::Complaint;
 
 std::string Quoted(vtkMRMLNode* node) {
   return std::string("\"") + (node->GetName() ? node->GetName() : "") + "\"";
@@ -68,16 +68,16 @@ std::string NrrdType(int scalarType) {
   }
 }
 
-FenestraScene::Matrix ToMatrix(vtkMatrix4x4* matrix) {
-  FenestraScene::Matrix copy;
+SlicerExport::Matrix ToMatrix(vtkMatrix4x4* matrix) {
+  SlicerExport::Matrix copy;
   std::copy_n(matrix->GetData(), 16, copy.begin());
   return copy;
 }
 
 /// Image that shares the array and keeps it alive. `ijkToRas` is for index 0, which need not be
 /// where the extent begins.
-FenestraScene::Image Shared(vtkImageData* image, vtkMatrix4x4* ijkToRas) {
-  FenestraScene::Image shared;
+SlicerExport::Image Shared(vtkImageData* image, vtkMatrix4x4* ijkToRas) {
+  SlicerExport::Image shared;
   vtkSmartPointer<vtkDataArray> array = image->GetPointData()->GetScalars();
   int extent[6];
   image->GetExtent(extent);
@@ -93,10 +93,10 @@ FenestraScene::Image Shared(vtkImageData* image, vtkMatrix4x4* ijkToRas) {
   return shared;
 }
 
-FenestraScene::Matrix ToWorld(vtkMRMLTransformableNode* node) {
+SlicerExport::Matrix ToWorld(vtkMRMLTransformableNode* node) {
   vtkMRMLTransformNode* transform = node->GetParentTransformNode();
   if (!transform)
-    return FenestraScene::identity;
+    return SlicerExport::identity;
   if (!transform->IsTransformToWorldLinear())
     throw Complaint(Quoted(node) + " is under a transform that bends space. Harden that transform "
                                    "(Data module, right click), then try again.");
@@ -105,7 +105,7 @@ FenestraScene::Matrix ToWorld(vtkMRMLTransformableNode* node) {
   return ToMatrix(toWorld);
 }
 
-std::string Key(vtkObject* object, const char* id, const FenestraScene::Image& image) {
+std::string Key(vtkObject* object, const char* id, const SlicerExport::Image& image) {
   std::ostringstream key;
   key << id << ' ' << object->GetMTime() << ' ' << image.data.get();
   for (const double element : image.ijkToRas)
@@ -148,7 +148,7 @@ struct TakenProperty {
 /// Takes the property from a file that Slicer writes: Slicer's storage node knows all fields of
 /// this version's properties.
 void TakeProperty(vtkMRMLVolumePropertyNode* property, const std::filesystem::path& folder,
-                  FenestraScene::Contents& contents) {
+                  SlicerExport::Contents& contents) {
   static TakenProperty taken; // of the main thread
   const vtkMTimeType time =
       std::max(property->GetMTime(), property->GetVolumeProperty()->GetMTime());
@@ -175,7 +175,7 @@ void TakeProperty(vtkMRMLVolumePropertyNode* property, const std::filesystem::pa
   taken = {property, time, contents.property, ending};
 }
 
-void TakeRoi(vtkMRMLVolumeRenderingDisplayNode* display, FenestraScene::Contents& contents) {
+void TakeRoi(vtkMRMLVolumeRenderingDisplayNode* display, SlicerExport::Contents& contents) {
   auto* roi = vtkMRMLMarkupsROINode::SafeDownCast(display->GetROINode());
   if (!roi)
     throw Complaint(
@@ -200,7 +200,7 @@ void TakeRoi(vtkMRMLVolumeRenderingDisplayNode* display, FenestraScene::Contents
        {at(0, 0), at(0, 1), at(0, 2), at(1, 0), at(1, 1), at(1, 2), at(2, 0), at(2, 1), at(2, 2)});
   list("size", {size[0], size[1], size[2]});
   text << ",\"insideOut\":" << (roi->GetInsideOut() ? "true" : "false") << "}]}";
-  contents.crop.push_back({text.str(), FenestraScene::identity});
+  contents.crop.push_back({text.str(), SlicerExport::identity});
 }
 
 /// Segmentation with binary labelmaps; if it has only surfaces, a converted copy outside the scene.
@@ -231,7 +231,7 @@ std::string Tags(vtkSegment* segment) {
   return std::string(vtkSegment::GetTerminologyEntryTagName()) + ":" + entry + "|";
 }
 
-FenestraScene::Segment ToSegment(const std::string& id, vtkSegment* segment, size_t layer) {
+SlicerExport::Segment ToSegment(const std::string& id, vtkSegment* segment, size_t layer) {
   const double* color = segment->GetColor();
   return {id,
           segment->GetName() ? segment->GetName() : id,
@@ -242,7 +242,7 @@ FenestraScene::Segment ToSegment(const std::string& id, vtkSegment* segment, siz
 }
 
 /// Layer on the lattice of the first one; labels on another lattice are resampled (nearest).
-FenestraScene::Layer ToLayer(vtkOrientedImageData* labels, vtkOrientedImageData* first) {
+SlicerExport::Layer ToLayer(vtkOrientedImageData* labels, vtkOrientedImageData* first) {
   vtkSmartPointer<vtkOrientedImageData> image = labels;
   if (!vtkOrientedImageDataResample::DoGeometriesMatch(labels, first)) {
     image = vtkSmartPointer<vtkOrientedImageData>::New();
@@ -251,7 +251,7 @@ FenestraScene::Layer ToLayer(vtkOrientedImageData* labels, vtkOrientedImageData*
   }
   vtkNew<vtkMatrix4x4> ijkToRas;
   image->GetImageToWorldMatrix(ijkToRas);
-  FenestraScene::Layer layer;
+  SlicerExport::Layer layer;
   layer.labels = Shared(image, ijkToRas);
   int extent[6];
   image->GetExtent(extent);
@@ -262,7 +262,7 @@ FenestraScene::Layer ToLayer(vtkOrientedImageData* labels, vtkOrientedImageData*
 } // namespace
 
 void vtkSlicerFenestraSnapshot::TakeVolume(vtkMRMLScalarVolumeNode* volume,
-                                           FenestraScene::Contents& contents) {
+                                           SlicerExport::Contents& contents) {
   if (!volume)
     throw Complaint("There is no volume to render. Load one, or choose one above.");
   vtkImageData* image = volume->GetImageData();
@@ -283,7 +283,7 @@ void vtkSlicerFenestraSnapshot::TakeVolume(vtkMRMLScalarVolumeNode* volume,
 
 void vtkSlicerFenestraSnapshot::TakeRendering(vtkMRMLScalarVolumeNode* volume,
                                               const std::filesystem::path& folder,
-                                              FenestraScene::Contents& contents) {
+                                              SlicerExport::Contents& contents) {
   vtkMRMLVolumeRenderingDisplayNode* display = RenderingOf(volume);
   if (!display)
     return;
@@ -293,12 +293,12 @@ void vtkSlicerFenestraSnapshot::TakeRendering(vtkMRMLScalarVolumeNode* volume,
     TakeRoi(display, contents);
 }
 
-std::vector<FenestraScene::Segment>
+std::vector<SlicerExport::Segment>
 vtkSlicerFenestraSnapshot::SegmentsOf(vtkMRMLSegmentationNode* node) {
   vtkSegmentation* segmentation = node->GetSegmentation();
   std::vector<std::string> ids;
   segmentation->GetSegmentIDs(ids);
-  std::vector<FenestraScene::Segment> segments;
+  std::vector<SlicerExport::Segment> segments;
   for (const std::string& id : ids)
     segments.push_back(ToSegment(id, segmentation->GetSegment(id), 0));
   return segments;
@@ -306,11 +306,11 @@ vtkSlicerFenestraSnapshot::SegmentsOf(vtkMRMLSegmentationNode* node) {
 
 void vtkSlicerFenestraSnapshot::TakeSegmentation(vtkMRMLSegmentationNode* node,
                                                  const std::vector<std::string>& focus,
-                                                 FenestraScene::Contents& contents) {
-  using FenestraScene::Segment;
+                                                 SlicerExport::Contents& contents) {
+  using SlicerExport::Segment;
   const vtkSmartPointer<vtkSegmentation> segmentation = WithLabels(node);
   const std::string name = vtkSegmentationConverter::GetBinaryLabelmapRepresentationName();
-  FenestraScene::Segmentation& taken = contents.segmentation;
+  SlicerExport::Segmentation& taken = contents.segmentation;
   std::ostringstream key;
   key << node->GetID();
   vtkOrientedImageData* first = nullptr;

@@ -10,19 +10,19 @@ class vtkMRMLScalarVolumeNode;
 class vtkMRMLSegmentationNode;
 
 /// Data of Slicer's nodes for the renderer, without copies of voxels: arrays are shared, and freed
-/// with their last owner. Functions throw FenestraScene::Complaint.
+/// with their last owner. Functions throw SlicerExport::Complaint.
 namespace vtkSlicerFenestraSnapshot {
-void TakeVolume(vtkMRMLScalarVolumeNode* volume, FenestraScene::Contents& contents);
+void TakeVolume(vtkMRMLScalarVolumeNode* volume, SlicerExport::Contents& contents);
 /// Takes the user's volume rendering, if any: its crop box and its property, which passes through a
 /// file in the private `folder`.
 void TakeRendering(vtkMRMLScalarVolumeNode* volume, const std::filesystem::path& folder,
-                   FenestraScene::Contents& contents);
+                   SlicerExport::Contents& contents);
 /// Takes all segments, also hidden and unsaved ones. Segments in `focus` must exist and not be
 /// empty.
 void TakeSegmentation(vtkMRMLSegmentationNode* segmentation, const std::vector<std::string>& focus,
-                      FenestraScene::Contents& contents);
+                      SlicerExport::Contents& contents);
 /// All segments, also empty ones, without places of their labels.
-std::vector<FenestraScene::Segment> SegmentsOf(vtkMRMLSegmentationNode* segmentation);
+std::vector<SlicerExport::Segment> SegmentsOf(vtkMRMLSegmentationNode* segmentation);
 } // namespace vtkSlicerFenestraSnapshot
 
 #endif

@@ -8,7 +8,7 @@
 #include <set>
 #include <sstream>
 
-using FenestraScene::Verdict;
+using SlicerExport::Verdict;
 
 namespace {
 /// Attributes of vtkMRMLNode.
@@ -40,7 +40,7 @@ vtkMRMLFenestraRenderNode::~vtkMRMLFenestraRenderNode() = default;
 const std::vector<std::string>& vtkMRMLFenestraRenderNode::GetFlagNames() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
-    for (const FenestraScene::Flag& flag : FenestraScene::flags())
+    for (const SlicerExport::Flag& flag : SlicerExport::flags())
       all.push_back(flag.name);
     return all;
   }();
@@ -50,7 +50,7 @@ const std::vector<std::string>& vtkMRMLFenestraRenderNode::GetFlagNames() {
 const std::vector<std::string>& vtkMRMLFenestraRenderNode::GetTurntableFlagNames() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> own;
-    for (const FenestraScene::Flag& flag : FenestraScene::flags())
+    for (const SlicerExport::Flag& flag : SlicerExport::flags())
       if (flag.ofTurntable)
         own.push_back(flag.name);
     return own;
@@ -92,14 +92,14 @@ void vtkMRMLFenestraRenderNode::Assign(Values flags, Values withheld, Values unk
 
 bool vtkMRMLFenestraRenderNode::WithholdsFiles() const {
   return std::any_of(this->Withheld.begin(), this->Withheld.end(), [](const auto& one) {
-    return FenestraScene::verdictOn(one.first, one.second) == Verdict::file;
+    return SlicerExport::verdictOn(one.first, one.second) == Verdict::file;
   });
 }
 
 void vtkMRMLFenestraRenderNode::AllowFiles() {
   std::map<std::string, std::string> flags = this->Flags;
   for (const auto& [name, value] : this->Withheld)
-    if (FenestraScene::verdictOn(name, value) == Verdict::file)
+    if (SlicerExport::verdictOn(name, value) == Verdict::file)
       flags[name] = value;
   this->SetFlags(flags);
 }
@@ -120,11 +120,11 @@ void vtkMRMLFenestraRenderNode::EndRender(const std::string& problem) {
 }
 
 void vtkMRMLFenestraRenderNode::SetFocus(const std::vector<std::string>& segments) {
-  this->SetFlag("focus", FenestraScene::joined(segments));
+  this->SetFlag("focus", SlicerExport::joined(segments));
 }
 
 std::vector<std::string> vtkMRMLFenestraRenderNode::GetFocus() const {
-  return FenestraScene::textsIn(this->GetFlag("focus"));
+  return SlicerExport::textsIn(this->GetFlag("focus"));
 }
 
 void vtkMRMLFenestraRenderNode::ReadXMLAttributes(const char** atts) {
@@ -138,7 +138,7 @@ void vtkMRMLFenestraRenderNode::ReadXMLAttributes(const char** atts) {
       if (ofEveryNode.count(name) == 0)
         unknown[name] = atts[1];
     } else if (*atts[1] != '\0') {
-      (FenestraScene::verdictOn(name, atts[1]) == Verdict::good ? flags : withheld)[name] = atts[1];
+      (SlicerExport::verdictOn(name, atts[1]) == Verdict::good ? flags : withheld)[name] = atts[1];
     }
   }
   this->Assign(flags, withheld, unknown);

@@ -47,7 +47,7 @@ qFenestraMaterialsQuestion::qFenestraMaterialsQuestion(QObject* parent) : QObjec
 }
 
 void qFenestraMaterialsQuestion::ask(const QString& program,
-                                     const std::vector<FenestraScene::Segment>& segments,
+                                     const std::vector<SlicerExport::Segment>& segments,
                                      const QString& folder) {
   if (m_asked)
     m_next = Question{program, segments, folder};
@@ -59,9 +59,9 @@ void qFenestraMaterialsQuestion::start(const Question& question) {
   constexpr const char* name = "names.seg.nrrd";
   m_said.clear();
   try {
-    FenestraScene::writeNames(question.segments,
-                              std::filesystem::path(question.folder.toStdString()) / name);
-  } catch (const FenestraScene::FileError&) { // a render tells why
+    SlicerExport::writeNames(question.segments,
+                             std::filesystem::path(question.folder.toStdString()) / name);
+  } catch (const SlicerExport::FileError&) { // a render tells why
     emit told({});
     return;
   }

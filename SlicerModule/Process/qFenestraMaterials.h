@@ -33,7 +33,7 @@ public:
   explicit qFenestraMaterialsQuestion(QObject* parent = nullptr);
   /// Asks about the segments, by names, tags and colours; a question under way is answered first.
   /// `folder`: private, for the question's file.
-  void ask(const QString& program, const std::vector<FenestraScene::Segment>& segments,
+  void ask(const QString& program, const std::vector<SlicerExport::Segment>& segments,
            const QString& folder);
 
 signals:
@@ -42,7 +42,7 @@ signals:
 private:
   struct Question {
     QString program;
-    std::vector<FenestraScene::Segment> segments;
+    std::vector<SlicerExport::Segment> segments;
     QString folder;
   };
   void start(const Question& question);

@@ -50,10 +50,10 @@ QJsonObject qFenestraPreview::valuesOf(const std::map<std::string, std::string>&
   QJsonObject all;
   for (const auto& [name, value] : flags) {
     QJsonArray texts;
-    for (const std::string& text : FenestraScene::valuesOf(name, value))
+    for (const std::string& text : SlicerExport::valuesOf(name, value))
       texts << QString::fromStdString(text);
     all[QString::fromStdString(name)] =
-        FenestraScene::repeats(name) ? QJsonValue(texts) : texts.first();
+        SlicerExport::repeats(name) ? QJsonValue(texts) : texts.first();
   }
   return all;
 }

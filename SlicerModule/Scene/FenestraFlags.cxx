@@ -4,7 +4,7 @@
 #include <locale>
 #include <sstream>
 
-namespace FenestraScene {
+namespace SlicerExport {
 namespace {
 
 constexpr std::size_t longest = 100000; // bytes; an argument of a command may have 131,071
@@ -185,4 +185,4 @@ std::vector<std::string> argumentsOf(const std::map<std::string, std::string>& f
   return arguments;
 }
 
-} // namespace FenestraScene
+} // namespace SlicerExport

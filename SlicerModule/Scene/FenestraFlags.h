@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace FenestraScene {
+namespace SlicerExport {
 
 /// Form of a flag's value. The renderer checks the limits.
 enum class FlagKind {
@@ -51,4 +51,4 @@ std::vector<std::string> valuesOf(const std::string& name, const std::string& va
 /// Arguments "--name=value" of flags; "=" keeps a value that begins with a dash.
 std::vector<std::string> argumentsOf(const std::map<std::string, std::string>& flags);
 
-} // namespace FenestraScene
+} // namespace SlicerExport

@@ -6,7 +6,7 @@
 #include <sstream>
 #include <vector>
 
-namespace FenestraScene {
+namespace SlicerExport {
 namespace {
 
 bool littleEndian() {
@@ -170,4 +170,4 @@ Image readNrrd(const std::filesystem::path& file) {
   }
 }
 
-} // namespace FenestraScene
+} // namespace SlicerExport

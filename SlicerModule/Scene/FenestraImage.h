@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace FenestraScene {
+namespace SlicerExport {
 
 /// Row by row; units of the columns are mm.
 using Matrix = std::array<double, 16>;
@@ -43,4 +43,4 @@ void writeNrrd(const Image& image, const std::filesystem::path& file);
 /// Throws FileError.
 Image readNrrd(const std::filesystem::path& file);
 
-} // namespace FenestraScene
+} // namespace SlicerExport

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <sstream>
 
-namespace FenestraScene {
+namespace SlicerExport {
 namespace {
 
 std::string trimmed(const std::string& text) {
@@ -75,4 +75,4 @@ std::map<std::string, std::string> withMaterialsOf(const std::vector<Segment>& s
   return flags;
 }
 
-} // namespace FenestraScene
+} // namespace SlicerExport

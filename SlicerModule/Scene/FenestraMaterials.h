@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace FenestraScene {
+namespace SlicerExport {
 
 struct MaterialChange {
   std::string segment;                       ///< id; a script's may be a name
@@ -35,4 +35,4 @@ std::string textOf(const MaterialChange& change);
 std::map<std::string, std::string> withMaterialsOf(const std::vector<Segment>& segments,
                                                    std::map<std::string, std::string> flags);
 
-} // namespace FenestraScene
+} // namespace SlicerExport

@@ -6,7 +6,7 @@
 #include <memory>
 #include <sstream>
 
-namespace FenestraScene {
+namespace SlicerExport {
 namespace {
 
 std::string numbers(const Matrix& matrix) {
@@ -257,4 +257,4 @@ std::filesystem::path Writer::write(const Contents& contents) {
   return folder / "scene.mrml";
 }
 
-} // namespace FenestraScene
+} // namespace SlicerExport

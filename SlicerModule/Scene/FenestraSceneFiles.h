@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace FenestraScene {
+namespace SlicerExport {
 
 /// Problem that a user can solve; one sentence that says how.
 struct Complaint : std::runtime_error {
@@ -87,4 +87,4 @@ private:
   int m_written = 0;
 };
 
-} // namespace FenestraScene
+} // namespace SlicerExport

@@ -35,8 +35,8 @@ std::string listed(const Vec3& v) {
   return text.str();
 }
 
-SceneRequest requestFor(const Subject& subject) {
-  SceneRequest request;
+RenderRequest requestFor(const Subject& subject) {
+  RenderRequest request;
   request.input = subject.input;
   if (subject.input.extension() != ".mrml")
     request.segmentation = subject.labelmap.string();
@@ -47,7 +47,7 @@ SceneRequest requestFor(const Subject& subject) {
 }
 
 Indicator smoothedIndicator(const Subject& subject) {
-  const Scene scene(requestFor(subject));
+  const PreparedScene scene(requestFor(subject));
   const Mask& mask = *scene.focus();
   return {mask.grid.size, mask.grid.indexToWorld, mask.voxels, static_cast<double>(mask.full)};
 }
@@ -102,7 +102,7 @@ View viewAround(const FocusField& field, int number, int count, int size, double
 }
 
 Surface clippingSurface(const Subject& subject, const View& view, const std::string& boundary) {
-  SceneRequest request = requestFor(subject);
+  RenderRequest request = requestFor(subject);
   request.clip.mode = ClipMode::surface;
   request.clip.surface.boundary = boundary == "exact" ? Boundary::exact : Boundary::spline;
   request.view.position = view.position;
@@ -115,7 +115,7 @@ Surface clippingSurface(const Subject& subject, const View& view, const std::str
   else
     request.view.scale = view.halfHeight;
   request.width = request.height = view.size;
-  const auto scene = std::make_shared<const Scene>(request);
+  const auto scene = std::make_shared<const PreparedScene>(request);
   return [scene](const Vec2& raster) {
     return std::get<ClipDepth>(scene->clip())
         .surface(scene->camera().toPlane(raster.x(), raster.y()));

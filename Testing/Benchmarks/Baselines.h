@@ -28,7 +28,7 @@ struct Crossing {
 template <typename Voxel>
 class GlobalTracker {
 public:
-  GlobalTracker(const RenderScene& scene, const Medium<Voxel>& medium)
+  GlobalTracker(const SceneView& scene, const Medium<Voxel>& medium)
       : m_domain(scene.volume.grid, scene.crop),
         m_medium(medium),
         m_clip(scene.clip),
@@ -52,7 +52,7 @@ public:
 
 private:
   /// Greatest extinction over the volume's range of scalars, mm^-1.
-  static double greatestExtinction(const RenderScene& scene) {
+  static double greatestExtinction(const SceneView& scene) {
     const TransferFunction& transfer = scene.transfer;
     const double greatest =
         transfer.extinction.range(scene.volume.minimum, scene.volume.maximum)[1];
@@ -92,7 +92,7 @@ template <typename Voxel>
 class MarchingTracker {
 public:
   /// `step`: in voxels of the shortest edge, as in medical renderers.
-  MarchingTracker(const RenderScene& scene, const Medium<Voxel>& medium, double step)
+  MarchingTracker(const SceneView& scene, const Medium<Voxel>& medium, double step)
       : m_domain(scene.volume.grid, scene.crop),
         m_medium(medium),
         m_clip(scene.clip),
@@ -149,7 +149,7 @@ private:
 /// Renders independent samples of every pixel by the readable estimator, with the tracker from
 /// `makeTracker(medium)`. Stops at settings.samples only.
 template <typename MakeTracker>
-Film tracePicture(const RenderScene& scene, const RenderSettings& settings,
+Film tracePicture(const SceneView& scene, const RenderSettings& settings,
                   MakeTracker&& makeTracker) {
   Film film(scene.camera.width(), scene.camera.height());
   const Sampler source(Sampling::independent, settings.seed);

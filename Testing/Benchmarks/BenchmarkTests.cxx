@@ -26,19 +26,19 @@ SceneCase caseOf(const std::string& line) {
   return readScenes(folder.write("table.txt", line), {"", "", samples}).front();
 }
 
-Image renderBy(const char* mode, const Scene& scene, const RenderOptions& options,
+Image renderBy(const char* mode, const PreparedScene& scene, const RenderOptions& options,
                std::uint64_t count, std::uint64_t seed) {
   RenderSettings settings = makeSettings(options, scene.background());
   settings.samples = count;
   settings.seed = seed;
-  return imageOf(findMode(mode).render(scene.forRender(), settings), scene);
+  return imageOf(findMode(mode).render(scene.view(), settings), scene);
 }
 
 class UnbiasedMode : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(UnbiasedMode, PictureAgreesWithReadableMode) {
   const RenderOptions options = caseOf(std::string("knee product") + knee).options();
-  const Scene scene(options.scene);
+  const PreparedScene scene(options.scene);
   const Image image = renderBy(GetParam(), scene, options, 96, 1);
   const Image truth = renderBy("readable", scene, options, 96, 2);
   for (const int tile : {8, 32})
@@ -59,7 +59,7 @@ std::pair<double, double> biasOf(const Image& image, const Image& truth) {
 /// Foot in voxels of 6 mm: steps of one voxel miss its skin.
 TEST(Marching, BiasShrinksWithShorterSteps) {
   const RenderOptions options = caseOf(std::string("foot product") + foot).options();
-  const Scene scene(options.scene);
+  const PreparedScene scene(options.scene);
   const Image truth = renderBy("readable", scene, options, 128, 1);
   const auto [whole, error] = biasOf(renderBy("marching", scene, options, 128, 2), truth);
   const auto [half, halfError] = biasOf(renderBy("marching-half", scene, options, 128, 3), truth);
@@ -99,13 +99,13 @@ private:
   Clip m_clip;
   LightSet m_lights{{}, m_volume.grid, m_camera};
   MajorantGrid m_majorants{m_volume.grid, CellRanges(m_volume, 0), m_transfer, m_clip};
-  RenderScene m_scene{m_volume,
-                      m_transfer,
-                      m_majorants,
-                      m_lights,
-                      m_camera,
-                      m_clip,
-                      CropBox(Affine(scalingBy({4.0, 4.0, 0.125})))};
+  SceneView m_scene{m_volume,
+                    m_transfer,
+                    m_majorants,
+                    m_lights,
+                    m_camera,
+                    m_clip,
+                    CropBox(Affine(scalingBy({4.0, 4.0, 0.125})))};
   Medium<float> m_medium{m_volume.grid, std::get<LargeArray<float>>(m_volume.voxels), m_transfer};
 };
 

@@ -19,7 +19,7 @@ namespace {
 
 struct Change {
   const char* name;
-  std::function<void(SceneRequest&)> apply;
+  std::function<void(RenderRequest&)> apply;
 };
 
 std::string text(const UpdatedStages& made) {
@@ -36,20 +36,20 @@ std::string text(const UpdatedStages& made) {
 }
 
 /// Seconds for one sample in every pixel.
-double firstSample(const Scene& scene, RenderSettings settings) {
+double firstSample(const PreparedScene& scene, RenderSettings settings) {
   settings.samples = 1;
   settings.noise = -1.0;
   RenderMonitor monitor;
   const Stopwatch watch;
-  render(scene.forRender(), settings, monitor);
+  render(scene.view(), settings, monitor);
   return watch.seconds();
 }
 
 /// Makes a scene, prints the row of that change, and returns it.
-Scene tell(const char* change, const RenderSettings& settings,
-           const std::function<Scene()>& changed) {
+PreparedScene tell(const char* change, const RenderSettings& settings,
+                   const std::function<PreparedScene()>& changed) {
   const Stopwatch watch;
-  Scene scene = changed();
+  PreparedScene scene = changed();
   const double made = watch.seconds();
   std::cout << "| " << change << " | " << text(scene.updatedStages()) << " | " << made << " | "
             << made + firstSample(scene, settings) << " |\n";
@@ -58,30 +58,30 @@ Scene tell(const char* change, const RenderSettings& settings,
 
 void measure(const std::string& other, const RenderOptions& options) {
   const Change changes[] = {
-      {"camera", [](SceneRequest& r) { r.view.name = "left"; }},
-      {"focus", [&](SceneRequest& r) { r.focus = {other}; }},
-      {"clip", [](SceneRequest& r) { r.clip.mode = ClipMode::cutaway; }},
-      {"transfer function", [](SceneRequest& r) { r.density *= 2.0; }},
-      {"lights", [](SceneRequest& r) { r.environment = Rgb(1.0, 1.0, 1.0); }}};
+      {"camera", [](RenderRequest& r) { r.view.name = "left"; }},
+      {"focus", [&](RenderRequest& r) { r.focus = {other}; }},
+      {"clip", [](RenderRequest& r) { r.clip.mode = ClipMode::cutaway; }},
+      {"transfer function", [](RenderRequest& r) { r.density *= 2.0; }},
+      {"lights", [](RenderRequest& r) { r.environment = Rgb(1.0, 1.0, 1.0); }}};
   std::cout << "| change | made anew | seconds | and with the first sample |\n|---|---|---|---|\n"
             << std::fixed << std::setprecision(3);
   const RenderSettings& settings = options.settings;
-  const Scene before =
-      tell("nothing, from the start", settings, [&] { return Scene(options.scene); });
+  const PreparedScene before =
+      tell("nothing, from the start", settings, [&] { return PreparedScene(options.scene); });
   for (const Change& change : changes) {
-    SceneRequest request = options.scene;
+    RenderRequest request = options.scene;
     change.apply(request);
     tell(change.name, settings, [&] { return before.changed(request); });
   }
   if (!before.tint() && !before.mixture())
     return;
   const auto colored = [&](const char* color) {
-    SceneRequest request = options.scene;
+    RenderRequest request = options.scene;
     request.materialChanges.push_back(other + ": color=" + color);
     return request;
   };
-  const Scene blue = tell("a segment's colour, for the first time", settings,
-                          [&] { return before.changed(colored("#3060c0")); });
+  const PreparedScene blue = tell("a segment's colour, for the first time", settings,
+                                  [&] { return before.changed(colored("#3060c0")); });
   tell("its colour again", settings, [&] { return blue.changed(colored("#c06030")); });
 }
 

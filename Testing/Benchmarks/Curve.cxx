@@ -16,10 +16,10 @@ struct Sample {
   double bias, ownError, referenceError; ///< of the image mean, relative to the reference's
 };
 
-Sample measure(const Mode& mode, const Scene& scene, const RenderSettings& settings,
+Sample measure(const Mode& mode, const PreparedScene& scene, const RenderSettings& settings,
                const Image& reference) {
   const double before = cpuSeconds();
-  const Film film = mode.render(scene.forRender(), settings);
+  const Film film = mode.render(scene.view(), settings);
   const double seconds = cpuSeconds() - before;
   const Image image = imageOf(film, scene);
 
@@ -58,7 +58,7 @@ Point summarise(std::uint64_t samples, const std::vector<Sample>& renders) {
 
 } // namespace
 
-std::vector<Point> measureCurve(const Mode& mode, const Scene& scene,
+std::vector<Point> measureCurve(const Mode& mode, const PreparedScene& scene,
                                 const RenderSettings& settings, const Image& reference,
                                 const CurveSettings& wanted) {
   std::vector<Point> curve;

@@ -30,7 +30,7 @@ struct Point {
 };
 
 /// Measures a mode's curve. `settings`: the scene's; their samples and seed are ignored.
-std::vector<Point> measureCurve(const Mode& mode, const Scene& scene,
+std::vector<Point> measureCurve(const Mode& mode, const PreparedScene& scene,
                                 const RenderSettings& settings, const Image& reference,
                                 const CurveSettings& wanted);
 

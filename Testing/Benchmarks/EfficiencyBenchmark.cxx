@@ -98,7 +98,7 @@ std::vector<CurveRecord> measureScene(const SceneCase& sceneCase, const Options&
   RenderOptions wanted = sceneCase.options();
   if (options.size)
     std::tie(wanted.scene.width, wanted.scene.height) = *options.size;
-  const Scene scene(wanted.scene);
+  const PreparedScene scene(wanted.scene);
   RenderSettings settings = makeSettings(wanted, scene.background());
   settings.threads = options.threads;
   const Reference reference = findReference(sceneCase, scene, settings, options.reference);

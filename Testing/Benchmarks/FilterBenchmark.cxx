@@ -54,12 +54,12 @@ struct Row {
   }
 };
 
-Row measured(const Scene& scene, const RenderSettings& settings, const Image& reference) {
+Row measured(const PreparedScene& scene, const RenderSettings& settings, const Image& reference) {
   Row row;
   const Film film = timed(
       [&] {
         RenderMonitor monitor;
-        return render(scene.forRender(), settings, monitor).film;
+        return render(scene.view(), settings, monitor).film;
       },
       row.render);
   const FilteredPicture picture = timed([&] { return denoised(film, scene); }, row.filter);
@@ -105,11 +105,11 @@ void measureScene(const SceneCase& sceneCase, const OptionValues& values,
   }
   RenderOptions options = sceneCase.options();
   options.scene.features = true;
-  const Scene scene(options.scene);
+  const PreparedScene scene(options.scene);
   RenderSettings settings = makeSettings(options, scene.background());
   const Reference reference = findReference(sceneCase, scene, settings, wanted);
   double march = 0.0;
-  timed([&] { return computeFeatures(scene.forRender()); }, march);
+  timed([&] { return computeFeatures(scene.view()); }, march);
   for (const std::uint64_t count : countsOf(values)) {
     settings.samples = count;
     const std::uint64_t seeds = count < 1024 ? values.integer("seeds").value_or(3) : 1;

@@ -28,10 +28,10 @@ const Option flags[] = {
 const CommandSyntax syntax = {"LookBenchmark", "Measures how pictures look.", {}, flags};
 
 /// Filtered picture as displayed, R G B A by pixel, before nothing.
-std::vector<float> displayed(const Scene& scene, RenderSettings settings) {
+std::vector<float> displayed(const PreparedScene& scene, RenderSettings settings) {
   settings.path.background.kind = Background::Kind::transparent;
   RenderMonitor monitor;
-  const Film film = render(scene.forRender(), settings, monitor).film;
+  const Film film = render(scene.view(), settings, monitor).film;
   const Image image = filteredColors(denoised(film, scene), film.width(), film.height());
   std::vector<float> rgba;
   for (std::size_t i = 0; i < image.find("A")->size(); ++i)
@@ -103,7 +103,7 @@ private:
 };
 
 /// Mean colours from 3 to 8 pixels to both sides of the focus's edge, and what tells them apart.
-void printContrast(const Scene& scene, const std::vector<float>& rgba) {
+void printContrast(const PreparedScene& scene, const std::vector<float>& rgba) {
   constexpr int nearest = 3, farthest = 8;
   const Camera& camera = scene.camera();
   const EdgeDistance edge(scene.clipResult().focusDepth, camera.width(), camera.height());
@@ -139,7 +139,7 @@ void measureScene(const SceneCase& sceneCase) {
   }
   RenderOptions options = sceneCase.options();
   options.scene.features = options.scene.measure = true;
-  const Scene scene(options.scene);
+  const PreparedScene scene(options.scene);
   const std::vector<float> rgba = displayed(scene, makeSettings(options, scene.background()));
   if (scene.focus())
     printContrast(scene, rgba);

@@ -20,12 +20,12 @@ constexpr int pictureSize = 512;
 /// Knee with its clip, with access to all parts.
 struct Subject {
   std::string label;
-  SceneRequest request;
-  Scene scene;
+  RenderRequest request;
+  PreparedScene scene;
   std::vector<ControlPoint> controlPoints;
 
-  static SceneRequest requestOf(const SceneCase& sceneCase) {
-    SceneRequest request = sceneCase.options().scene;
+  static RenderRequest requestOf(const SceneCase& sceneCase) {
+    RenderRequest request = sceneCase.options().scene;
     request.width = request.height = pictureSize;
     return request;
   }
@@ -40,7 +40,7 @@ struct Subject {
              std::to_string(size.z());
   }
 
-  Domain domain() const { return {scene.volume().grid, scene.forRender().crop}; }
+  Domain domain() const { return {scene.volume().grid, scene.view().crop}; }
   ClippingSurface surface(Boundary boundary = Boundary::spline) const {
     return buildClippingSurface(scene.camera(), domain(), *scene.focus(), {.boundary = boundary});
   }
@@ -55,7 +55,7 @@ struct Probe {
   const LargeArray<Voxel>& voxels = std::get<LargeArray<Voxel>>(subject.scene.volume().voxels);
   Field<Voxel> field{subject.scene.volume().grid, voxels};
   Medium<Voxel> medium{subject.scene.volume().grid, voxels, subject.scene.transfer()};
-  RenderScene parts = subject.scene.forRender();
+  SceneView parts = subject.scene.view();
   Tracker<Voxel> tracker{subject.domain(), medium, parts.majorants, parts.clip};
   std::vector<Ray> cameraRays;
   std::vector<Vec3> collisions; ///< world; first collisions of eye rays

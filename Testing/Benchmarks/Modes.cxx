@@ -7,19 +7,19 @@
 namespace fenestra::benchmarks {
 namespace {
 
-Film renderProduct(const RenderScene& scene, const RenderSettings& settings) {
+Film renderProduct(const SceneView& scene, const RenderSettings& settings) {
   RenderMonitor monitor;
   return render(scene, settings, monitor).film;
 }
 
-Film renderGlobal(const RenderScene& scene, const RenderSettings& settings) {
+Film renderGlobal(const SceneView& scene, const RenderSettings& settings) {
   return tracePicture(scene, settings, [&]<typename Voxel>(const Medium<Voxel>& medium) {
     return GlobalTracker<Voxel>(scene, medium);
   });
 }
 
 /// Renders with steps of `step` voxels.
-Film renderMarching(const RenderScene& scene, const RenderSettings& settings, double step) {
+Film renderMarching(const SceneView& scene, const RenderSettings& settings, double step) {
   return tracePicture(scene, settings, [&]<typename Voxel>(const Medium<Voxel>& medium) {
     return MarchingTracker<Voxel>(scene, medium, step);
   });
@@ -27,30 +27,28 @@ Film renderMarching(const RenderScene& scene, const RenderSettings& settings, do
 
 constexpr Mode table[] = {
     {"product", "what `fenestra` does by default",
-     [](const RenderScene& scene, RenderSettings settings) {
+     [](const SceneView& scene, RenderSettings settings) {
        return renderProduct(scene, settings);
      }},
     {"adaptive",
      "the same toward a noise target: noisier pixels get more samples, after a pilot of 16",
-     [](const RenderScene& scene, RenderSettings settings) {
+     [](const SceneView& scene, RenderSettings settings) {
        settings.noise = 1e-6; // never reached: the number of samples ends the render
        return renderProduct(scene, settings);
      }},
     {"readable", "the scalar estimator, null collisions in a majorant grid, independent samples",
-     [](const RenderScene& scene, RenderSettings settings) {
+     [](const SceneView& scene, RenderSettings settings) {
        settings.integrator = Integrator::scalar;
        return renderProduct(scene, settings);
      }},
     {"global", "the same, null collisions against one majorant for the whole volume",
-     [](const RenderScene& scene, RenderSettings settings) {
-       return renderGlobal(scene, settings);
-     }},
+     [](const SceneView& scene, RenderSettings settings) { return renderGlobal(scene, settings); }},
     {"marching", "the same, fixed steps of one voxel: biased",
-     [](const RenderScene& scene, RenderSettings settings) {
+     [](const SceneView& scene, RenderSettings settings) {
        return renderMarching(scene, settings, 1.0);
      }},
     {"marching-half", "the same, fixed steps of half a voxel: biased",
-     [](const RenderScene& scene, RenderSettings settings) {
+     [](const SceneView& scene, RenderSettings settings) {
        return renderMarching(scene, settings, 0.5);
      }},
 };

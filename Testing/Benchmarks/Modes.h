@@ -12,7 +12,7 @@ struct Mode {
   const char* name;
   const char* description; ///< for the report, half a sentence
   /// Renders with the settings' samples and seed; other limits are ignored.
-  Film (*render)(const RenderScene& scene, RenderSettings settings);
+  Film (*render)(const SceneView& scene, RenderSettings settings);
 };
 
 /// All modes, in the report's order. A new mode is a line of the table in Modes.cxx.

@@ -61,11 +61,12 @@ Image accumulate(const ReferenceSettings& wanted, std::uint64_t samples, RenderP
   return sum;
 }
 
-Image byProduct(const Scene& scene, RenderSettings settings, const ReferenceSettings& wanted) {
+Image byProduct(const PreparedScene& scene, RenderSettings settings,
+                const ReferenceSettings& wanted) {
   settings.samples = 16;
   return accumulate(wanted, settings.samples, [&](std::uint64_t seed) {
     settings.seed = seed;
-    return imageOf(findMode("product").render(scene.forRender(), settings), scene);
+    return imageOf(findMode("product").render(scene.view(), settings), scene);
   });
 }
 
@@ -75,9 +76,9 @@ std::vector<Light> lightsOf(const std::string& name) {
   return preset.empty() ? readLights(name) : parseLights(preset, name);
 }
 
-Image byOracle(const RenderOptions& options, const Scene& scene, const RenderSettings& settings,
-               const ReferenceSettings& wanted) {
-  const RenderScene parts = scene.forRender();
+Image byOracle(const RenderOptions& options, const PreparedScene& scene,
+               const RenderSettings& settings, const ReferenceSettings& wanted) {
+  const SceneView parts = scene.view();
   if (!std::holds_alternative<ClipNone>(parts.clip))
     throw inputError("scenes.txt", "asks the oracle for a clipped reference; use product");
   const oracle::OracleScene subject{.volume = parts.volume,
@@ -101,7 +102,8 @@ std::optional<Image> readIfThere(const std::filesystem::path& path) {
   return readImage(path);
 }
 
-std::optional<Reference> independentReference(const SceneCase& sceneCase, const Scene& scene) {
+std::optional<Reference> independentReference(const SceneCase& sceneCase,
+                                              const PreparedScene& scene) {
   if (sceneCase.maker != ReferenceMaker::independent)
     return std::nullopt;
   const std::string file = sceneCase.independent.string();
@@ -115,7 +117,7 @@ std::optional<Reference> independentReference(const SceneCase& sceneCase, const 
 }
 
 /// Text that identifies the request of a cached reference.
-std::string identity(const SceneCase& sceneCase, const Scene& scene,
+std::string identity(const SceneCase& sceneCase, const PreparedScene& scene,
                      const ReferenceSettings& wanted) {
   std::string text = std::to_string(scene.camera().width()) + "x" +
                      std::to_string(scene.camera().height()) + " noise " +
@@ -143,7 +145,7 @@ Reference::Reference(Image imageIn, std::string makerIn)
   relMse = sum / static_cast<double>(count);
 }
 
-Reference findReference(const SceneCase& sceneCase, const Scene& scene,
+Reference findReference(const SceneCase& sceneCase, const PreparedScene& scene,
                         const RenderSettings& settings, const ReferenceSettings& wanted) {
   if (std::optional<Reference> independent = independentReference(sceneCase, scene))
     return *std::move(independent);
@@ -163,7 +165,7 @@ Reference findReference(const SceneCase& sceneCase, const Scene& scene,
   return Reference(std::move(image), maker);
 }
 
-Image imageOf(const Film& film, const Scene& scene) {
+Image imageOf(const Film& film, const PreparedScene& scene) {
   return picture(film, scene.camera(), scene.clip(), {"color", "error", "samples"});
 }
 

@@ -27,10 +27,10 @@ struct Reference {
 /// reference cached in the folder, else a new one, which is cached. The header of a cached
 /// reference holds its command line; the reference is rebuilt if that line has changed, but not if
 /// files named in the line have. Throws Error.
-Reference findReference(const SceneCase& sceneCase, const Scene& scene,
+Reference findReference(const SceneCase& sceneCase, const PreparedScene& scene,
                         const RenderSettings& settings, const ReferenceSettings& wanted);
 
 /// Image with R, G, B and their standard errors.
-Image imageOf(const Film& film, const Scene& scene);
+Image imageOf(const Film& film, const PreparedScene& scene);
 
 } // namespace fenestra::benchmarks

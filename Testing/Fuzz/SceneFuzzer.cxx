@@ -2,7 +2,7 @@
 #include "SceneInputs.h"
 #include "SceneNeighbours.h"
 
-FENESTRA_FUZZ(Scene, input) {
+FENESTRA_FUZZ(PreparedScene, input) {
   using namespace fenestra;
   fuzzing::writeSceneNeighbours();
   fuzzing::loadScene(fuzzing::asFile(input, "scene.mrml"));

@@ -52,18 +52,18 @@ void checkPixels(const Film& film) {
       throw std::logic_error("a pixel that is no light");
 }
 
-void renderRequest(const SceneRequest& request) {
+void renderRequest(const RenderRequest& request) {
   const Input input(request.input);
   if (input.volume(request.volume).volume.grid.voxelCount() > mostVoxels)
     return;
-  const Scene scene(request, input);
+  const PreparedScene scene(request, input);
   RenderSettings settings;
   settings.path.bounces = mostBounces;
   settings.samples = 1;
   settings.threads = 1;
   RenderMonitor monitor;
   const Budget budget(monitor.stop);
-  checkPixels(render(scene.forRender(), settings, monitor).film);
+  checkPixels(render(scene.view(), settings, monitor).film);
 }
 
 } // namespace
@@ -72,7 +72,7 @@ FENESTRA_FUZZ(WholeRequest, input) {
   if (input.empty())
     return;
   fuzzing::writeSceneNeighbours();
-  SceneRequest request;
+  RenderRequest request;
   if (input[0] != '0')
     request.focus = {"A"};
   input.remove_prefix(1);

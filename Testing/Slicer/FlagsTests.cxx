@@ -10,9 +10,9 @@
 namespace fenestra {
 namespace {
 
-using FenestraScene::FlagKind;
-using FenestraScene::Verdict;
-using FenestraScene::verdictOn;
+using SlicerExport::FlagKind;
+using SlicerExport::Verdict;
+using SlicerExport::verdictOn;
 
 struct Case {
   const char* name;
@@ -107,7 +107,7 @@ TEST(SlicerFlags, KindsEqualThoseOfTheRenderer) {
   ASSERT_TRUE(child.waitForFinished());
   const QString description = QString::fromUtf8(child.readAllStandardOutput());
   const auto known = qFenestraAbilities::flagsIn(description);
-  for (const FenestraScene::Flag& flag : FenestraScene::flags()) {
+  for (const SlicerExport::Flag& flag : SlicerExport::flags()) {
     if (flag.ofTurntable)
       continue;
     const QString name = QString::fromStdString(flag.name);
@@ -117,7 +117,7 @@ TEST(SlicerFlags, KindsEqualThoseOfTheRenderer) {
     const bool maySayAuto = !hasWords && flag.kind != FlagKind::look; // there it is a name
     EXPECT_EQ(flag.kind == FlagKind::automatic, maySayAuto && known[name].text.contains("auto:"))
         << flag.name;
-    EXPECT_TRUE(!FenestraScene::repeats(flag.name) || known[name].text.contains("may be repeated"))
+    EXPECT_TRUE(!SlicerExport::repeats(flag.name) || known[name].text.contains("may be repeated"))
         << flag.name;
     for (const QString& word : known[name].words)
       EXPECT_EQ(verdictOn(flag.name, word.toStdString()), Verdict::good) << flag.name;
@@ -127,10 +127,10 @@ TEST(SlicerFlags, KindsEqualThoseOfTheRenderer) {
 TEST(SlicerFlags, TextsSurviveAsOneValue) {
   const std::vector<std::string> texts = {"Liver: color=#963e2e, clip=no", "a\\b, \"c\": clip=no",
                                           "d"};
-  const std::string value = FenestraScene::joined(texts);
-  EXPECT_EQ(FenestraScene::textsIn(value), texts);
-  EXPECT_TRUE(FenestraScene::textsIn("").empty());
-  EXPECT_EQ(FenestraScene::argumentsOf({{"focus", "a,b"}, {"material", value}, {"offset", "-1"}}),
+  const std::string value = SlicerExport::joined(texts);
+  EXPECT_EQ(SlicerExport::textsIn(value), texts);
+  EXPECT_TRUE(SlicerExport::textsIn("").empty());
+  EXPECT_EQ(SlicerExport::argumentsOf({{"focus", "a,b"}, {"material", value}, {"offset", "-1"}}),
             (std::vector<std::string>{"--focus=a,b", "--material=" + texts[0],
                                       "--material=" + texts[1], "--material=d", "--offset=-1"}));
 }
@@ -138,17 +138,17 @@ TEST(SlicerFlags, TextsSurviveAsOneValue) {
 /// A change to a segment that is gone would be refused by the renderer, with the whole picture.
 TEST(SlicerFlags, ChangesOfGoneSegmentsAreLeftOut) {
   using Flags = std::map<std::string, std::string>;
-  const std::vector<FenestraScene::Segment> there = {{"S,1", "Liver", 1}, {"S2", "Aorta", 7}};
+  const std::vector<SlicerExport::Segment> there = {{"S,1", "Liver", 1}, {"S2", "Aorta", 7}};
   const auto change = [](const char* selector) { return std::string(selector) + ": clip=no"; };
-  const std::string value = FenestraScene::joined(
+  const std::string value = SlicerExport::joined(
       {change("S,1"), change("gone"), change("Aorta"), change("7"), change("8")});
   EXPECT_EQ(
-      FenestraScene::withMaterialsOf(there, {{"materials", "auto"}, {"material", value}}),
+      SlicerExport::withMaterialsOf(there, {{"materials", "auto"}, {"material", value}}),
       (Flags{{"materials", "auto"},
-             {"material", FenestraScene::joined({change("S,1"), change("Aorta"), change("7")})}}));
-  EXPECT_EQ(FenestraScene::withMaterialsOf({}, {{"materials", "auto"}, {"material", value}}),
+             {"material", SlicerExport::joined({change("S,1"), change("Aorta"), change("7")})}}));
+  EXPECT_EQ(SlicerExport::withMaterialsOf({}, {{"materials", "auto"}, {"material", value}}),
             Flags());
-  EXPECT_EQ(FenestraScene::withMaterialsOf({}, {{"view", "left"}}), (Flags{{"view", "left"}}));
+  EXPECT_EQ(SlicerExport::withMaterialsOf({}, {{"view", "left"}}), (Flags{{"view", "left"}}));
 }
 
 } // namespace

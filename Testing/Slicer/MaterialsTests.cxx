@@ -44,20 +44,20 @@ enum Column { name, material, color, clip, reset };
 
 /// Segments with ids and names that a shell, a list or a JSON text would have to escape.
 const std::string awkward = "a, \"b\": c=d; $HOME 'e' \\, \xc3\xa9";
-std::vector<FenestraScene::Segment> segments() {
+std::vector<SlicerExport::Segment> segments() {
   return {{"Segment_1", "Liver", 1, 0, "", {0.9, 0.1, 0.1}},
           {awkward, "Aorta: 'x', \"y\"", 2, 0, "", {0.5, 0.5, 0.5}},
           {"Segment_3", "Thing", 3, 0, "", {0.2, 0.4, 0.8}}};
 }
 
-QList<qSlicerFenestraSegment> listed(const std::vector<FenestraScene::Segment>& all) {
+QList<qSlicerFenestraSegment> listed(const std::vector<SlicerExport::Segment>& all) {
   QList<qSlicerFenestraSegment> list;
-  for (const FenestraScene::Segment& one : all)
+  for (const SlicerExport::Segment& one : all)
     list.append({QString::fromStdString(one.id), QString::fromStdString(one.name)});
   return list;
 }
 
-qFenestraMaterials asked(const std::vector<FenestraScene::Segment>& all,
+qFenestraMaterials asked(const std::vector<SlicerExport::Segment>& all,
                          const TemporaryFolder& folder) {
   qFenestraMaterialsQuestion question;
   std::vector<qFenestraMaterials> told;
@@ -126,7 +126,7 @@ protected:
         given[name] = value;
     return given;
   }
-  std::vector<std::string> arguments() const { return FenestraScene::argumentsOf(taken()); }
+  std::vector<std::string> arguments() const { return SlicerExport::argumentsOf(taken()); }
 
   Materials table;
 };
@@ -267,9 +267,9 @@ TEST_F(SlicerMaterials, FlagsAreShownAndMadeAgain) {
            {{"materials", "none"}},
            {{"materials", "library"}},
            {{"materials", "/data/mine.json"}},
-           {{"materials", "auto"}, {"material", FenestraScene::joined({own})}},
-           {{"materials", "/data/mine.json"}, {"material", FenestraScene::joined({other})}},
-           {{"materials", "library"}, {"material", FenestraScene::joined({own, other})}},
+           {{"materials", "auto"}, {"material", SlicerExport::joined({own})}},
+           {{"materials", "/data/mine.json"}, {"material", SlicerExport::joined({other})}},
+           {{"materials", "library"}, {"material", SlicerExport::joined({own, other})}},
            {{"materials", "auto"}, {"material", "Segment_3: material=of a file"}},
            {{"material", "Segment_3: clip=no"}}}) { // what is missing is for the user to say
     table.show(flags);
@@ -284,7 +284,7 @@ TEST_F(SlicerMaterials, FlagsAreShownAndMadeAgain) {
 
 TEST_F(SlicerMaterials, FlagsAreThereBeforeTheSegments) {
   const Flags flags = {{"materials", "library"},
-                       {"material", FenestraScene::joined({awkward + ": clip=no"})}};
+                       {"material", SlicerExport::joined({awkward + ": clip=no"})}};
   Materials early;
   early.show(flags);
   early.show({}); // nothing is passed without segments
@@ -296,7 +296,7 @@ TEST_F(SlicerMaterials, FlagsAreThereBeforeTheSegments) {
 
 TEST_F(SlicerMaterials, ChangesOfScriptsAreFoundByName) {
   table.show({{"materials", "library"},
-              {"material", FenestraScene::joined(
+              {"material", SlicerExport::joined(
                                {"Liver: clip=no", "Gone: clip=no", "Segment_1: color=#00ff00"})}});
   EXPECT_FALSE(isClipped(0));
   EXPECT_EQ(arguments(),
@@ -307,13 +307,13 @@ TEST_F(SlicerMaterials, ChangesOfScriptsAreFoundByName) {
 class SlicerMaterialsPicture : public SlicerMaterials {
 protected:
   SlicerMaterialsPicture() {
-    FenestraScene::Contents contents;
+    SlicerExport::Contents contents;
     contents.volume.type = "int16";
     contents.volume.size = {9, 9, 9};
     const auto values = std::make_shared<std::vector<std::int16_t>>(729);
     std::iota(values->begin(), values->end(), std::int16_t(0));
     contents.volume.data = {values, values->data()};
-    FenestraScene::Layer layer;
+    SlicerExport::Layer layer;
     layer.labels.type = "uint8";
     layer.labels.size = {9, 9, 9};
     const auto labels = std::make_shared<std::vector<std::uint8_t>>(729);
@@ -322,7 +322,7 @@ protected:
     layer.labels.data = {labels, labels->data()};
     contents.segmentation.layers = {layer};
     contents.segmentation.segments = segments();
-    scene = FenestraScene::Writer(folder.path()).write(contents);
+    scene = SlicerExport::Writer(folder.path()).write(contents);
   }
 
   /// Picture with the table's arguments, by the panel's way: the queue of renders.

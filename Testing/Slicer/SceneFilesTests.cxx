@@ -13,8 +13,8 @@
 namespace fenestra {
 namespace {
 
-FenestraScene::Image ramp(std::array<std::size_t, 3> size) {
-  FenestraScene::Image image;
+SlicerExport::Image ramp(std::array<std::size_t, 3> size) {
+  SlicerExport::Image image;
   image.type = "int16";
   image.size = size;
   const auto values = std::make_shared<std::vector<std::int16_t>>(size[0] * size[1] * size[2]);
@@ -24,8 +24,8 @@ FenestraScene::Image ramp(std::array<std::size_t, 3> size) {
   return image;
 }
 
-FenestraScene::Layer block(std::array<long, 3> begin, std::uint8_t value) {
-  FenestraScene::Layer layer;
+SlicerExport::Layer block(std::array<long, 3> begin, std::uint8_t value) {
+  SlicerExport::Layer layer;
   layer.labels.type = "uint8";
   layer.labels.size = {2, 2, 2};
   const auto values = std::make_shared<std::vector<std::uint8_t>>(8, value);
@@ -38,9 +38,9 @@ FenestraScene::Layer block(std::array<long, 3> begin, std::uint8_t value) {
 
 TEST(SlicerSceneFiles, ImageRoundTripsBitForBit) {
   const TemporaryFolder folder;
-  const FenestraScene::Image image = ramp({3, 4, 5});
-  FenestraScene::writeNrrd(image, folder / "image.nrrd");
-  const FenestraScene::Image again = FenestraScene::readNrrd(folder / "image.nrrd");
+  const SlicerExport::Image image = ramp({3, 4, 5});
+  SlicerExport::writeNrrd(image, folder / "image.nrrd");
+  const SlicerExport::Image again = SlicerExport::readNrrd(folder / "image.nrrd");
   EXPECT_EQ(again.type, image.type);
   EXPECT_EQ(again.size, image.size);
   EXPECT_EQ(again.ijkToRas, image.ijkToRas); // every digit
@@ -50,21 +50,21 @@ TEST(SlicerSceneFiles, ImageRoundTripsBitForBit) {
 
 TEST(SlicerSceneFiles, DamagedNrrdIsRefused) {
   const TemporaryFolder folder;
-  FenestraScene::writeNrrd(ramp({3, 4, 5}), folder / "image.nrrd");
+  SlicerExport::writeNrrd(ramp({3, 4, 5}), folder / "image.nrrd");
   std::filesystem::resize_file(folder / "image.nrrd",
                                std::filesystem::file_size(folder / "image.nrrd") - 1);
-  EXPECT_THROW(FenestraScene::readNrrd(folder / "image.nrrd"), FenestraScene::FileError);
+  EXPECT_THROW(SlicerExport::readNrrd(folder / "image.nrrd"), SlicerExport::FileError);
   folder.write("empty.nrrd", "");
   folder.write("other.nrrd", "NRRD0004\ntype: float\n\n");
-  EXPECT_THROW(FenestraScene::readNrrd(folder / "empty.nrrd"), FenestraScene::FileError);
-  EXPECT_THROW(FenestraScene::readNrrd(folder / "other.nrrd"), FenestraScene::FileError);
-  EXPECT_THROW(FenestraScene::writeNrrd(ramp({1, 1, 1}), folder / "none" / "image.nrrd"),
-               FenestraScene::FileError);
+  EXPECT_THROW(SlicerExport::readNrrd(folder / "empty.nrrd"), SlicerExport::FileError);
+  EXPECT_THROW(SlicerExport::readNrrd(folder / "other.nrrd"), SlicerExport::FileError);
+  EXPECT_THROW(SlicerExport::writeNrrd(ramp({1, 1, 1}), folder / "none" / "image.nrrd"),
+               SlicerExport::FileError);
 }
 
 TEST(SlicerSceneFiles, ComposedLayersKeepTheirPlaces) {
-  const FenestraScene::Image both =
-      FenestraScene::composed({block({0, 0, 0}, 1), block({1, -1, 0}, 2)});
+  const SlicerExport::Image both =
+      SlicerExport::composed({block({0, 0, 0}, 1), block({1, -1, 0}, 2)});
   EXPECT_EQ(both.components, 2u);
   EXPECT_EQ(both.size, (std::array<std::size_t, 3>{3, 3, 2}));
   EXPECT_EQ(both.ijkToRas[7], -1.0);
@@ -82,8 +82,8 @@ TEST(SlicerSceneFiles, ComposedLayersKeepTheirPlaces) {
 
 TEST(SlicerSceneFiles, UnchangedVolumeIsLinked) {
   const TemporaryFolder folder;
-  FenestraScene::Writer writer(folder.path());
-  FenestraScene::Contents contents;
+  SlicerExport::Writer writer(folder.path());
+  SlicerExport::Contents contents;
   contents.volume = ramp({3, 4, 5});
   contents.volumeKey = "a";
   const auto first = writer.write(contents);
@@ -98,14 +98,14 @@ TEST(SlicerSceneFiles, UnchangedVolumeIsLinked) {
 
 TEST(SlicerSceneFiles, TagsOfSegmentsAreWritten) {
   const TemporaryFolder folder;
-  FenestraScene::Contents contents;
+  SlicerExport::Contents contents;
   contents.volume = ramp({3, 4, 5});
   contents.segmentation.layers = {block({0, 0, 0}, 1)};
   contents.segmentation.segments = {{"a", "A", 1, 0, "TerminologyEntry:b~SCT^1^\nc|"},
                                     {"d", "D", 2, 0, ""}};
-  const auto scene = FenestraScene::Writer(folder.path()).write(contents);
-  const FenestraScene::Image labels =
-      FenestraScene::readNrrd(scene.parent_path() / "segmentation.seg.nrrd");
+  const auto scene = SlicerExport::Writer(folder.path()).write(contents);
+  const SlicerExport::Image labels =
+      SlicerExport::readNrrd(scene.parent_path() / "segmentation.seg.nrrd");
   EXPECT_EQ(labels.size[0], 2u);
   std::ifstream file(scene.parent_path() / "segmentation.seg.nrrd");
   const std::string text((std::istreambuf_iterator<char>(file)), {});
@@ -115,8 +115,8 @@ TEST(SlicerSceneFiles, TagsOfSegmentsAreWritten) {
 
 TEST(SlicerSceneFiles, ColoursOfSegmentsAreWrittenAsSlicerDoes) {
   const TemporaryFolder folder;
-  FenestraScene::writeNames({{"a", "A", 7, 3, "", {0.9450980392, 0.5, 1.0 / 3.0}}, {"b", "B"}},
-                            folder / "names.seg.nrrd");
+  SlicerExport::writeNames({{"a", "A", 7, 3, "", {0.9450980392, 0.5, 1.0 / 3.0}}, {"b", "B"}},
+                           folder / "names.seg.nrrd");
   const std::string text = bytesOf(folder / "names.seg.nrrd");
   for (const char* field :
        {"Segment0_Color:=0.945098 0.5 0.333333", "Segment0_LabelValue:=1", "Segment0_Layer:=0",

@@ -305,7 +305,7 @@ TEST(OrderOfSegments, ChangesNoBit) {
 /// in which the bound holds; returns the greatest share of a majorant that was met.
 double expectBound(const TestScene& scene) {
   double greatest = 0.0;
-  scene.with([&](const RenderScene& parts) {
+  scene.with([&](const SceneView& parts) {
     const MajorantGrid& majorants = parts.majorants;
     const auto& voxels = std::get<LargeArray<float>>(scene.volume.voxels);
     const Medium<float> medium(scene.volume.grid, voxels, scene.transfer, parts.style, nullptr,

@@ -25,17 +25,17 @@ std::int16_t valueOf(const Size3& voxel) {
 }
 
 Image pictureOf(const std::filesystem::path& file, std::uint64_t seed) {
-  SceneRequest request;
+  RenderRequest request;
   request.input = file;
   request.transfer = "ct-soft";
   request.view.position = Vec3(60.0, 110.0, 70.0); // sees all three axes, and the cut
   request.width = request.height = 24;
-  const Scene scene(request);
+  const PreparedScene scene(request);
   RenderSettings settings;
   settings.samples = budget(std::uint64_t{64});
   settings.seed = seeded(seed);
   RenderMonitor monitor;
-  const Film film = render(scene.forRender(), settings, monitor).film;
+  const Film film = render(scene.view(), settings, monitor).film;
   return picture(film, scene.camera(), scene.clip(), layerSet({}));
 }
 

@@ -50,16 +50,16 @@ RenderOptions readArguments(const ReferenceCase& c) {
 
 Image renderReference(const ReferenceCase& c) {
   const RenderOptions options = readArguments(c);
-  const Scene scene(options.scene);
+  const PreparedScene scene(options.scene);
   RenderMonitor monitor;
   const RenderResult result =
-      render(scene.forRender(), makeSettings(options, scene.background()), monitor);
+      render(scene.view(), makeSettings(options, scene.background()), monitor);
   return picture(result.film, scene.camera(), scene.clip(), options.layers);
 }
 
 oracle::Estimates renderOracle(const ReferenceCase& c) {
   const RenderOptions options = readArguments(c);
-  const Scene scene(options.scene);
+  const PreparedScene scene(options.scene);
   return oracle::render({.volume = scene.volume(),
                          .transfer = scene.transfer(),
                          .lights = readLights(options.scene.lights),

@@ -46,19 +46,19 @@ std::vector<float> replaced(const std::vector<T>& samples) {
   return result;
 }
 
-Film filmOf(SceneRequest request, int samples) {
+Film filmOf(RenderRequest request, int samples) {
   request.width = 8;
   request.height = 8;
-  const Scene scene(request);
+  const PreparedScene scene(request);
   RenderSettings settings;
   settings.samples = static_cast<std::uint64_t>(budget(samples));
   RenderMonitor monitor;
-  return render(scene.forRender(), settings, monitor).film;
+  return render(scene.view(), settings, monitor).film;
 }
 
 /// Picture by the command line's defaults, in an environment of 1.
 Film pictureOf(const std::filesystem::path& volume, const std::optional<std::string>& transfer) {
-  SceneRequest request;
+  RenderRequest request;
   request.input = volume;
   request.transfer = transfer;
   request.environment = Rgb::Ones();
@@ -191,18 +191,18 @@ TEST(ExtinctionLimit, OpticalDepthAboveTenMillionIsRefused) {
   // Every eye ray meets a half-space of albedo 0.9 head-on: Chandrasekhar's reflectance.
   const Estimate estimate = imageEstimate(pictureOf(folder / "v.nrrd", look));
   EXPECT_GT(estimate.mean, 0.25); // rays beside the volume show black
-  SceneRequest request;
+  RenderRequest request;
   request.input = folder / "v.nrrd";
   request.transfer = look;
   request.density = 1.01;
-  expectRefused(look, "extinction: reaches", [&] { Scene scene(request); });
+  expectRefused(look, "extinction: reaches", [&] { PreparedScene scene(request); });
 }
 
 TEST(ExtinctionLimit, ReflectanceEqualsChandrasekhars) {
   const TemporaryFolder folder;
   writeFile(folder / "v.nrrd", std::vector<std::uint8_t>(64, 10), cube);
   const auto look = folder.write("at.json", denseLook(1e6));
-  SceneRequest request;
+  RenderRequest request;
   request.input = folder / "v.nrrd";
   request.transfer = look;
   request.lights = folder.write("lights.json", R"({"lights": [{"type": "environment",

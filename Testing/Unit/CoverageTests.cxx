@@ -39,7 +39,7 @@ struct Cube {
     const LightSet lights(scene.lights, scene.volume.grid, camera);
     const CellRanges ranges(scene.volume, 0);
     const MajorantGrid majorants(scene.volume.grid, ranges, scene.transfer, clip);
-    const RenderScene clipped{scene.volume, scene.transfer, majorants, lights, camera, clip};
+    const SceneView clipped{scene.volume, scene.transfer, majorants, lights, camera, clip};
     return focusCoverage(clipped, focusPoints(clipped, std::vector<double>(256, focusDepth)), 1);
   }
 };

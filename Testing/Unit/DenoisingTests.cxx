@@ -31,22 +31,23 @@ protected:
     request.features = true;
   }
 
-  static Film picture(const Scene& scene, std::uint64_t seed = 0, std::uint64_t samples = 2) {
+  static Film picture(const PreparedScene& scene, std::uint64_t seed = 0,
+                      std::uint64_t samples = 2) {
     RenderSettings settings;
     settings.samples = samples;
     settings.seed = seed;
     settings.path.background = {Background::Kind::color, Rgb::Constant(0.5)};
     RenderMonitor monitor;
-    return render(scene.forRender(), settings, monitor).film;
+    return render(scene.view(), settings, monitor).film;
   }
 
   static constexpr int edge = 16;
   TemporaryFolder folder;
-  SceneRequest request;
+  RenderRequest request;
 };
 
 TEST_F(Denoising, ClosedAreEmptyPixelsWhateverTheSamplesMet) {
-  const Scene scene(request);
+  const PreparedScene scene(request);
   const Film film = picture(scene);
   const FilterInput input = filterInput(film, scene);
   std::size_t without = 0, certain = 0;
@@ -63,7 +64,7 @@ TEST_F(Denoising, ClosedAreEmptyPixelsWhateverTheSamplesMet) {
 }
 
 TEST_F(Denoising, FeaturesDoNotDependOnSamples) {
-  const Scene scene(request);
+  const PreparedScene scene(request);
   const FilterInput one = filterInput(picture(scene, 1), scene);
   const FilterInput other = filterInput(picture(scene, 2), scene);
   EXPECT_GE(one.features.size(), 8U);
@@ -72,12 +73,12 @@ TEST_F(Denoising, FeaturesDoNotDependOnSamples) {
 }
 
 TEST_F(Denoising, HalvesThatAreNotIndependentAreRefused) {
-  const Scene scene(request);
+  const PreparedScene scene(request);
   EXPECT_THROW(filterInput(Film(48, 48, false), scene), std::logic_error);
 }
 
 TEST_F(Denoising, HalvesAverageToThePicture) {
-  const Scene scene(request);
+  const PreparedScene scene(request);
   const Film film = picture(scene, 3, 4);
   const FilterInput input = filterInput(film, scene);
   for (std::size_t i = 0; i < film.pixelCount(); ++i)
@@ -93,7 +94,7 @@ double errorOf(const FilteredPicture& picture, const Film& truth) {
 }
 
 TEST_F(Denoising, FilteredPictureIsNearerToTheTruth) {
-  const Scene scene(request);
+  const PreparedScene scene(request);
   const Film truth = picture(scene, 9, 512), film = picture(scene, 1, 4);
   const FilteredPicture filtered = denoised(film, scene);
   double raw = 0.0;
@@ -104,7 +105,7 @@ TEST_F(Denoising, FilteredPictureIsNearerToTheTruth) {
 }
 
 TEST_F(Denoising, ClosedPixelsKeepTheirRawColourAtAnyCount) {
-  const Scene scene(request);
+  const PreparedScene scene(request);
   const Film film = picture(scene, 4, 3);
   const FilterInput input = filterInput(film, scene);
   const FilteredPicture filtered = denoised(film, scene);
@@ -115,7 +116,7 @@ TEST_F(Denoising, ClosedPixelsKeepTheirRawColourAtAnyCount) {
 }
 
 TEST_F(Denoising, OnePixelWithOneSampleLeavesNoHalvesButTheWholePicture) {
-  const Scene scene(request);
+  const PreparedScene scene(request);
   Film film = picture(scene, 4, 2);
   std::size_t open = 0;
   while (film.pixels()[open].isDeterministic)

@@ -54,7 +54,7 @@ TEST(Render, EstimatesNoiseForThoseWhoWatch) {
     RenderMonitor monitor;
     monitor.isNoiseWatched = isWatched;
     const RenderResult result =
-        s.with([&](const RenderScene& scene) { return render(scene, settings, monitor); });
+        s.with([&](const SceneView& scene) { return render(scene, settings, monitor); });
     EXPECT_EQ(monitor.noise, isWatched ? result.film.noise() : infinity);
   }
 }

@@ -11,7 +11,7 @@ namespace fenestra::testing::FeatureBuffersTests {
 namespace {
 
 FeatureBuffers renderFeatures(const TestScene& s) {
-  return s.with([](const RenderScene& scene) { return computeFeatures(scene); });
+  return s.with([](const SceneView& scene) { return computeFeatures(scene); });
 }
 
 /// Slab of 10 mm with one extinction, seen face on by parallel rays that start 50 mm before it.
@@ -108,7 +108,7 @@ TEST(FeatureBuffers, EndsOnAxesOfAMillionVoxels) {
               {.position = {0, 0, 4e5}, .target = Vec3::Zero(), .up = Vec3::UnitY(), .scale = 1.5},
               4,
               4};
-  s.with([](const RenderScene& scene) {
+  s.with([](const SceneView& scene) {
     EXPECT_FALSE(lanesServe(scene));
     EXPECT_GT(computeFeatures(scene).hit[5], 0.1F);
   });
@@ -131,7 +131,7 @@ TEST(FeatureBuffers, LanesAgreeWithTheReadableMarch) {
       ClipPlane{Camera(s.pose, s.width, s.height), Vec3(0, 2, 0), -Vec3::UnitY(), {0.0, 3.0}});
   for (const Clip& clip : clips) {
     s.clip = clip;
-    s.with([](const RenderScene& scene) {
+    s.with([](const SceneView& scene) {
       ASSERT_TRUE(lanesServe(scene));
       const FeatureBuffers simd = computeFeatures(scene), scalar = computeScalarFeatures(scene);
       EXPECT_LT(relativeDifference(simd.hit, scalar.hit), 0.01);
@@ -157,7 +157,7 @@ TEST(FeatureBuffers, FacesTheSoftCutOfHomogeneousMatter) {
     const double probability = opacity * (1.0 - std::exp(-25.0 * 0.125 * cutShading / 3.0));
     const std::size_t middle = static_cast<std::size_t>(s.width * s.height / 2 + s.width / 2);
     const Vec3 normal = -cutGradient(s.clip, Vec3(1.0, 0.0, 0.0)).normalized();
-    s.with([&](const RenderScene& scene) {
+    s.with([&](const SceneView& scene) {
       for (const FeatureBuffers& features : {computeFeatures(scene), computeScalarFeatures(scene)})
         for (std::size_t c = 0; c < 3; ++c) {
           const double hit = static_cast<double>(features.hit[middle]);

@@ -43,17 +43,17 @@ TEST_F(InputOfAnArchive, IsOpenedOnceForAllCopies) {
 }
 
 TEST_F(InputOfAnArchive, IsOpenedOnceForSceneAndChanges) {
-  SceneRequest request;
+  RenderRequest request;
   request.input = archive;
   request.transfer = "P";
   request.width = request.height = 8;
   const Input input(archive);
   ASSERT_TRUE(input.document());
   std::filesystem::remove(archive);
-  const Scene scene(request, input);
+  const PreparedScene scene(request, input);
   request.segmentation = "L";
   request.focus = {"5"};
-  const Scene changed = scene.changed(request);
+  const PreparedScene changed = scene.changed(request);
   EXPECT_FALSE(changed.updatedStages().volume);
   EXPECT_TRUE(changed.focus());
 }

@@ -114,7 +114,7 @@ double meanDepth(const Film& film) {
 TEST(Mixture, LanesAreTheScalarEstimator) {
   for (const bool isHybrid : {false, true}) {
     const TestScene scene = mixedScene(isHybrid);
-    scene.with([](const RenderScene& all) { ASSERT_TRUE(lanesServe(all)); });
+    scene.with([](const SceneView& all) { ASSERT_TRUE(lanesServe(all)); });
     const Film lanes = renderFilm(scene, Integrator::simd);
     const Film scalar = renderFilm(scene, Integrator::scalar);
     const auto albedo = [](const PixelSums& pixel) { return Rgb(pixel.albedo / 64.0); };
@@ -126,7 +126,7 @@ TEST(Mixture, LanesAreTheScalarEstimator) {
 }
 
 TEST(Mixture, MarchInLanesIsTheReadableOne) {
-  mixedScene(true).with([](const RenderScene& scene) {
+  mixedScene(true).with([](const SceneView& scene) {
     const FeatureBuffers lanes = computeFeatures(scene), readable = computeScalarFeatures(scene);
     double albedo = 0.0, hit = 0.0;
     for (std::size_t i = 0; i < lanes.hit.size(); ++i) {
@@ -164,7 +164,7 @@ TEST(Mixture, TheClipLeavesWhatIsFree) {
 TEST(Mixture, BordersAsSurfacesAreTheScalarEstimators) {
   TestScene scene = mixedScene(true);
   scene.mixture->components[3].border = 0.5;
-  scene.with([](const RenderScene& all) { EXPECT_FALSE(lanesServe(all)); });
+  scene.with([](const SceneView& all) { EXPECT_FALSE(lanesServe(all)); });
 }
 
 } // namespace

@@ -12,7 +12,7 @@ namespace {
 
 struct Change {
   std::string name;
-  std::function<void(SceneRequest&)> apply;
+  std::function<void(RenderRequest&)> apply;
   UpdatedStages made;
 };
 
@@ -49,27 +49,27 @@ protected:
     request.width = request.height = 16;
   }
 
-  static Film picture(const Scene& scene) {
+  static Film picture(const PreparedScene& scene) {
     RenderSettings settings;
     settings.samples = 2;
     RenderMonitor monitor;
-    return render(scene.forRender(), settings, monitor).film;
+    return render(scene.view(), settings, monitor).film;
   }
 
   static constexpr int edge = 16;
   TemporaryFolder folder;
-  SceneRequest request;
+  RenderRequest request;
 };
 
 TEST_P(SceneChange, RemakesOnlyDependentStages) {
-  const Scene before(request);
+  const PreparedScene before(request);
   GetParam().apply(request);
   if (request.lights == "lamp.json")
     request.lights = folder / "lamp.json";
-  const Scene changed = before.changed(request);
+  const PreparedScene changed = before.changed(request);
   EXPECT_EQ(changed.updatedStages(), GetParam().made);
 
-  const Scene fromNothing(request);
+  const PreparedScene fromNothing(request);
   const bool isTinted = request.materials != noMaterials;
   EXPECT_EQ(fromNothing.updatedStages(),
             (UpdatedStages{true, true, true, true, true, true, true, true, isTinted, isTinted}));
@@ -86,51 +86,51 @@ TEST_P(SceneChange, RemakesOnlyDependentStages) {
 INSTANTIATE_TEST_SUITE_P(
     All, SceneChange,
     ::testing::Values(
-        Change{"Nothing", [](SceneRequest&) {}, {}},
+        Change{"Nothing", [](RenderRequest&) {}, {}},
         Change{"Camera",
-               [](SceneRequest& r) { r.view.name = "left"; },
+               [](RenderRequest& r) { r.view.name = "left"; },
                {.camera = true, .lights = true, .clip = true, .majorants = true}},
         Change{"AutomaticView",
-               [](SceneRequest& r) { r.view.name = "auto"; },
+               [](RenderRequest& r) { r.view.name = "auto"; },
                {.camera = true, .lights = true, .clip = true, .majorants = true}},
         Change{"Steadiness",
-               [](SceneRequest& r) { r.steadyDegrees = 5.0; },
+               [](RenderRequest& r) { r.steadyDegrees = 5.0; },
                {.clip = true, .majorants = true}},
         Change{"Size",
-               [](SceneRequest& r) { r.width = 24; },
+               [](RenderRequest& r) { r.width = 24; },
                {.camera = true, .lights = true, .clip = true, .majorants = true}},
         Change{"Focus",
-               [](SceneRequest& r) { r.focus = {"2"}; },
+               [](RenderRequest& r) { r.focus = {"2"}; },
                {.focus = true, .camera = true, .lights = true, .clip = true, .majorants = true}},
         Change{"NoFocus",
-               [](SceneRequest& r) { r.focus.clear(); },
+               [](RenderRequest& r) { r.focus.clear(); },
                {.focus = true, .camera = true, .lights = true, .clip = true, .majorants = true}},
         Change{"Transfer",
-               [](SceneRequest& r) { r.density = 2.0; },
+               [](RenderRequest& r) { r.density = 2.0; },
                {.transfer = true, .majorants = true}},
         Change{"TransferByTheVolume",
-               [](SceneRequest& r) { r.transfer.reset(); },
+               [](RenderRequest& r) { r.transfer.reset(); },
                {.transfer = true, .majorants = true}},
-        Change{"Lights", [](SceneRequest& r) { r.lights = "lamp.json"; }, {.lights = true}},
+        Change{"Lights", [](RenderRequest& r) { r.lights = "lamp.json"; }, {.lights = true}},
         Change{"LightsAsText",
-               [](SceneRequest& r) {
+               [](RenderRequest& r) {
                  r.lights = R"({"lights": [{"type": "environment", "radiance": [1, 2, 1]}]})";
                },
                {.lights = true}},
         Change{"LightsAtTheFocus",
-               [](SceneRequest& r) { r.lights = lampAtTheFocus; },
+               [](RenderRequest& r) { r.lights = lampAtTheFocus; },
                {.lights = true}},
         Change{"Environment",
-               [](SceneRequest& r) { r.environment = Rgb(1.0, 0.5, 0.2); },
+               [](RenderRequest& r) { r.environment = Rgb(1.0, 0.5, 0.2); },
                {.lights = true}},
         Change{"Clip",
-               [](SceneRequest& r) { r.clip.mode = ClipMode::cutaway; },
+               [](RenderRequest& r) { r.clip.mode = ClipMode::cutaway; },
                {.clip = true, .majorants = true}},
         Change{"Materials",
-               [](SceneRequest& r) { r.materials = "library"; },
+               [](RenderRequest& r) { r.materials = "library"; },
                {.majorants = true, .tint = true, .labelWeights = true}}, // no pale context
         Change{"Volume",
-               [](SceneRequest& r) { r.input = *r.segmentation; },
+               [](RenderRequest& r) { r.input = *r.segmentation; },
                {true, true, true, true, true, true, true, true}}),
     [](const auto& info) { return info.param.name; });
 
@@ -138,34 +138,34 @@ TEST_F(SceneChange, LampAtTheFocusFollowsIt) {
   request.lights = lampAtTheFocus;
   request.view.position = Vec3(0, -100, 0); // the camera stays where it is
   request.view.target = Vec3::Zero();
-  const Scene before(request);
-  const auto lamp = [](const Scene& scene) {
-    return scene.forRender().lights.tables().spheres.at(0).center;
+  const PreparedScene before(request);
+  const auto lamp = [](const PreparedScene& scene) {
+    return scene.view().lights.tables().spheres.at(0).center;
   };
   const Vec3 center = before.volume().grid.indexToWorld * Vec3::Constant(7.5);
   EXPECT_LT((lamp(before) - center - Vec3(0, 20, 0)).norm(), 1e-9);
-  SceneRequest other = request;
+  RenderRequest other = request;
   other.focus = {"2"};
-  const Scene moved = before.changed(other);
+  const PreparedScene moved = before.changed(other);
   EXPECT_TRUE(moved.updatedStages().lights);
   EXPECT_GT((lamp(moved) - lamp(before)).norm(), 1.0);
   request.focus.clear();
   expectRefused("--lights", "lights[0].frame: is \"focus\", and there is no focus; name one",
-                [&] { Scene{request}; });
+                [&] { PreparedScene{request}; });
 }
 
 TEST_F(SceneChange, AutomaticViewFollowsFocusAndTransferFunction) {
   request.view.name = "auto";
-  const Scene before(request);
-  const auto expectAsFromNothing = [&](const Scene& changed) {
-    EXPECT_EQ(changed.camera().pose().position, Scene(request).camera().pose().position);
+  const PreparedScene before(request);
+  const auto expectAsFromNothing = [&](const PreparedScene& changed) {
+    EXPECT_EQ(changed.camera().pose().position, PreparedScene(request).camera().pose().position);
   };
   request.density = 3.0;
-  const Scene denser = before.changed(request);
+  const PreparedScene denser = before.changed(request);
   EXPECT_TRUE(denser.updatedStages().camera);
   expectAsFromNothing(denser);
   request.width = 40;
-  const Scene wider = denser.changed(request);
+  const PreparedScene wider = denser.changed(request);
   EXPECT_LT((wider.camera().forward() - denser.camera().forward()).norm(), 1e-12);
   expectAsFromNothing(wider);
   request.focus = {"2"};
@@ -174,26 +174,26 @@ TEST_F(SceneChange, AutomaticViewFollowsFocusAndTransferFunction) {
 
 TEST_F(SceneChange, AutomaticScaleFramesTheMatterAlone) {
   request.focus.clear();
-  const Scene ball(request); // of radius 6 among 16 voxels
+  const PreparedScene ball(request); // of radius 6 among 16 voxels
   const auto seen = [](double from) {
     return R"({"extinction": [[)" + std::to_string(from) +
            R"(, 0], [300, 0.2]], "albedo": [[0, 1, 1, 1]]})";
   };
   request.transfer = seen(149.0);
-  const Scene part = ball.changed(request); // x > 9, and |y - 7.5|, |z - 7.5| < 6
+  const PreparedScene part = ball.changed(request); // x > 9, and |y - 7.5|, |z - 7.5| < 6
   EXPECT_TRUE(part.updatedStages().camera);
   const auto [position, scale] = std::pair(part.camera().pose().target, part.camera().pose().scale);
   EXPECT_LT(scale, 0.95 * ball.camera().pose().scale);
   EXPECT_GT((part.volume().grid.worldToIndex * position).x(), 10.0);
   request.transfer = seen(299.0);
-  const Scene nothing = ball.changed(request);
+  const PreparedScene nothing = ball.changed(request);
   EXPECT_EQ(nothing.camera().pose().scale, 1.05 * 8.0) << "the whole volume";
 }
 
 TEST_F(SceneChange, LookThatLeavesTheFocusTransparentIsWarnedOf) {
-  EXPECT_EQ(Scene(request).warnings(), std::vector<std::string>());
+  EXPECT_EQ(PreparedScene(request).warnings(), std::vector<std::string>());
   request.transfer = R"({"extinction": [[149, 0], [300, 0.2]], "albedo": [[0, 1, 1, 1]]})";
-  const std::vector<std::string> warnings = Scene(request).warnings();
+  const std::vector<std::string> warnings = PreparedScene(request).warnings();
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_NE(warnings[0].find("leaves 100 % of the focus transparent"), std::string::npos)
       << warnings[0];
@@ -201,10 +201,10 @@ TEST_F(SceneChange, LookThatLeavesTheFocusTransparentIsWarnedOf) {
 
 TEST_F(SceneChange, LabelsAreReadOnceAndSharedByColours) {
   request.materials = "library";
-  const Scene before(request);
+  const PreparedScene before(request);
   std::filesystem::remove(*request.segmentation); // a second reading would fail
   request.materialChanges = {"1: color=#00ff00"};
-  const Scene green = before.changed(request);
+  const PreparedScene green = before.changed(request);
   EXPECT_TRUE(green.updatedStages().tint);
   EXPECT_EQ(green.tint()->weights, before.tint()->weights);
   EXPECT_FALSE(green.updatedStages().labelWeights);
@@ -219,26 +219,26 @@ TEST_F(SceneChange, LabelsAreReadOnceAndSharedByColours) {
 }
 
 TEST_F(SceneChange, MaterialsLeaveTheContextItsColoursUnlessAsked) {
-  ASSERT_LT(Scene(request).contrast().saturation, 1.0);
+  ASSERT_LT(PreparedScene(request).contrast().saturation, 1.0);
   request.materials = "library";
-  EXPECT_EQ(Scene(request).contrast().saturation, 1.0);
-  EXPECT_FALSE(Scene(request).contrast().contrast) << "it would be of other colours";
+  EXPECT_EQ(PreparedScene(request).contrast().saturation, 1.0);
+  EXPECT_FALSE(PreparedScene(request).contrast().contrast) << "it would be of other colours";
   request.focusLook.contextSaturation = 0.4;
-  EXPECT_EQ(Scene(request).contrast().saturation, 0.4);
+  EXPECT_EQ(PreparedScene(request).contrast().saturation, 0.4);
 }
 
 TEST_F(SceneChange, NewCameraDoesNotRemakeLightsOfTheWorld) {
   request.lights = folder / "lamp.json";
-  const Scene before(request);
+  const PreparedScene before(request);
   request.view.name = "left";
   EXPECT_FALSE(before.changed(request).updatedStages().lights);
 }
 
 TEST_F(SceneChange, LightsAsTextEqualLightsAsFile) {
   request.lights = folder / "lamp.json";
-  const Scene file(request);
+  const PreparedScene file(request);
   request.lights = bytesOf(request.lights);
-  const Scene text(request);
+  const PreparedScene text(request);
   const Film expected = picture(file), film = picture(text);
   for (std::size_t i = 0; i < film.pixelCount(); ++i)
     ASSERT_TRUE(film.pixels()[i].mean == expected.pixels()[i].mean) << "pixel " << i;
@@ -248,9 +248,9 @@ TEST_F(SceneChange, LightsAsTextEqualLightsAsFile) {
 }
 
 TEST_F(SceneChange, RefusedChangeLeavesTheSceneAsItWas) {
-  const Scene before(request);
+  const PreparedScene before(request);
   const Film expected = picture(before);
-  SceneRequest refused = request;
+  RenderRequest refused = request;
   refused.focus = {"9"};
   EXPECT_THROW(before.changed(refused), Error);
   EXPECT_EQ(picture(before).at(8, 8).mean.sum(), expected.at(8, 8).mean.sum());

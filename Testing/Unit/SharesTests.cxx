@@ -167,7 +167,7 @@ TEST(Tint, LanesAreTheScalarEstimator) {
 }
 
 TEST(Tint, MarchInLanesIsTheReadableOne) {
-  makeTintedScene().with([](const RenderScene& scene) {
+  makeTintedScene().with([](const SceneView& scene) {
     ASSERT_TRUE(lanesServe(scene));
     const FeatureBuffers simd = computeFeatures(scene), scalar = computeScalarFeatures(scene);
     double sum = 0.0;

@@ -76,7 +76,7 @@ TEST(Stop, EndsMeasuresOfEndlessWalks) {
   const Camera camera(s.pose, s.width, s.height);
   const LightSet lights(s.lights, s.volume.grid, camera);
   const MajorantGrid majorants(s.volume.grid, CellRanges(s.volume, 0), s.transfer, s.clip);
-  const RenderScene scene{s.volume, s.transfer, majorants, lights, camera, s.clip};
+  const SceneView scene{s.volume, s.transfer, majorants, lights, camera, s.clip};
   const auto pixels = static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.height);
   const FocusPoints behind = focusPoints(scene, std::vector<double>(pixels, 2e9));
   const StopFlag stop = true;

@@ -55,7 +55,7 @@ struct PathSetup {
   std::unique_ptr<CameraSamples> samples = std::make_unique<CameraSamples>();
   std::unique_ptr<PathBatch> paths = std::make_unique<PathBatch>();
 
-  PathSetup(const RenderScene& s, const Domain& in)
+  PathSetup(const SceneView& s, const Domain& in)
       : domain(in),
         tracker(s.volume, domain, s.transfer, s.majorants, s.clip),
         cameraRays(s.camera, s.clip, s.lights, background),
@@ -83,7 +83,7 @@ TEST_P(SimdCameraRays, NumbersAreThoseOfTheSource) {
   const Grid grid = centredGrid({30, 20, 40}, {1.0, 1.5, 0.8});
   const Volume volume = makeVolume(grid, [](const Vec3&) { return 1.0; });
   TestScene scene{volume, linearTransfer(0.1, Rgb::Ones()), {}, makeViews()[0].pose, width, height};
-  scene.with([&](const RenderScene& s) {
+  scene.with([&](const SceneView& s) {
     const PathSetup setup(s, Domain(grid));
     const auto& [domain, tracker, background, cameraRays, cameraTable, samples, paths] = setup;
     constexpr std::uint64_t streamLength = Sampler::Stream::maxSamples;
@@ -92,7 +92,7 @@ TEST_P(SimdCameraRays, NumbersAreThoseOfTheSource) {
         const Sampler source(sampling, 5);
         fill(*samples, source, 400, sample);
         paths->rays.size = 0;
-        beginPaths(tracker.scene(), cameraTable, cameraRays, *samples, *paths);
+        beginPaths(tracker.medium(), cameraTable, cameraRays, *samples, *paths);
         ASSERT_EQ(paths->rays.size, samples->size);
         const auto toUnitFloat = [](std::uint64_t bits) {
           return static_cast<float>(bits >> 8 & 0xffffff) * 0x1p-24F;
@@ -129,7 +129,7 @@ TEST_P(SimdCameraRays, RaysAreThoseInDouble) {
     SCOPED_TRACE(view.name);
     TestScene scene{volume,   linearTransfer(0.1, Rgb::Ones()), {}, view.pose, width, height,
                     view.clip};
-    scene.with([&](const RenderScene& s) {
+    scene.with([&](const SceneView& s) {
       const PathSetup setup(s, Domain(grid, view.crop));
       const auto& [domain, tracker, background, cameraRays, cameraTable, samples, paths] = setup;
       const auto exact = std::make_unique<RayBatch>();
@@ -137,7 +137,7 @@ TEST_P(SimdCameraRays, RaysAreThoseInDouble) {
       for (std::uint64_t pixel = 0; pixel + RayBatch::capacity < width * height; pixel += 400) {
         fill(*samples, Sampler(Sampling::stratified, pixel), pixel, 0);
         paths->rays.size = 3;
-        beginPaths(tracker.scene(), cameraTable, cameraRays, *samples, *paths);
+        beginPaths(tracker.medium(), cameraTable, cameraRays, *samples, *paths);
         for (std::size_t i = 0; i < samples->size; ++i) {
           const std::size_t at = i + 3;
           const Ray ray = cameraRays.ray(double{samples->column[i]} + 0.5 * width,

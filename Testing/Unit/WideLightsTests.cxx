@@ -71,7 +71,7 @@ struct Fog {
   Clip clip = ClipNone{};
   SimdTracker tracker{volume, domain, transfer, majorants, clip};
   LightSet lights;
-  EventScene events;
+  SimdShading events;
 
   explicit Fog(const std::vector<Light>& lightList)
       : lights(lightList, volume.grid, makeCamera()),
@@ -125,7 +125,7 @@ std::vector<ShadowSample> sampleLights(const Fog& fog, std::uint64_t seed, std::
       paths->rays.scalar[i] = 1.0F;
     }
     Counters counters;
-    scatterPaths(fog.tracker.scene(), fog.events, *paths, *lights, counters);
+    scatterPaths(fog.tracker.medium(), fog.events, *paths, *lights, counters);
     for (std::size_t i = 0; i < lights->rays.size; ++i) {
       ShadowSample s;
       for (int axis = 0; axis < 3; ++axis) {
@@ -152,7 +152,7 @@ std::vector<Rgb> collectEmitted(const Fog& fog, const std::vector<Vec3>& directi
       paths->rays.result[i] = std::numeric_limits<float>::infinity();
     }
     Counters counters;
-    scatterPaths(fog.tracker.scene(), fog.events, *paths, *lights, counters);
+    scatterPaths(fog.tracker.medium(), fog.events, *paths, *lights, counters);
     for (std::size_t i = 0; i < paths->rays.size; ++i)
       all.emplace_back(paths->radiance[0][i], paths->radiance[1][i], paths->radiance[2][i]);
   }

@@ -1,7 +1,7 @@
 // Clip of lanes at points in index space: keep, and the gradient of a soft cut (clip/keep/Clip.h).
 
 /// Continuous index of a coordinate in mm among a depth buffer's samples (DepthAxis::index).
-HWY_INLINE Float depthIndex(const WideScene::DepthAxis& axis, Float coordinate) {
+HWY_INLINE Float depthIndex(const SimdMedium::DepthAxis& axis, Float coordinate) {
   const Float pixel = fms(coordinate, axis.perPitch, axis.start);
   const Float fine = max(min(pixel, axis.lastInside), 0.0F);
   const Float index = fma(pixel - fine, axis.perFactor, fine + axis.before);
@@ -16,23 +16,23 @@ struct InView {
   LaneMask isBehindCamera; ///< no lane in orthographic views
 };
 
-HWY_INLINE InView inView(const WideScene& scene, const Float3& p) {
-  InView at{0.0F, 0.0F, applyRow(scene.toView[2], p), 1.0F, LaneMask::none()};
-  if (scene.perspective) {
-    const Float fromEye = at.depth + scene.targetDepth;
+HWY_INLINE InView inView(const SimdMedium& medium, const Float3& p) {
+  InView at{0.0F, 0.0F, applyRow(medium.toView[2], p), 1.0F, LaneMask::none()};
+  if (medium.perspective) {
+    const Float fromEye = at.depth + medium.targetDepth;
     at.isBehindCamera = fromEye <= 0.0F;
-    at.scale = scene.targetDepth / fromEye;
+    at.scale = medium.targetDepth / fromEye;
   }
-  if (scene.clipKind == WideScene::ClipKind::plane)
+  if (medium.clipKind == SimdMedium::ClipKind::plane)
     return at;
-  at.x = applyRow(scene.toView[0], p) * at.scale;
-  at.y = applyRow(scene.toView[1], p) * at.scale;
+  at.x = applyRow(medium.toView[0], p) * at.scale;
+  at.y = applyRow(medium.toView[1], p) * at.scale;
   return at;
 }
 
 /// Slope of a surface along one axis of the buffer, mm per mm, from its `rise` over a cell. Beyond
 /// the samples, and at the first of them, 0.
-HWY_INLINE Float slopeAlong(const WideScene::DepthAxis& axis, Float index, Float rise) {
+HWY_INLINE Float slopeAlong(const SimdMedium::DepthAxis& axis, Float index, Float rise) {
   const Float before = axis.before;
   const LaneMask isFine = (index >= before) & (index < before + axis.lastInside);
   const LaneMask isBetween = (index > 0.0F) & (index < axis.last);
@@ -46,22 +46,22 @@ struct Surface {
   Float depth;          ///< mm from the target
   Float slopeX, slopeY; ///< mm per mm
 };
-HWY_INLINE Surface surfaceAt(const WideScene& scene, const InView& view) {
-  const Float column = depthIndex(scene.depthX, view.x);
-  const Float row = depthIndex(scene.depthY, view.y);
-  const Int columns = scene.depthColumns;
+HWY_INLINE Surface surfaceAt(const SimdMedium& medium, const InView& view) {
+  const Float column = depthIndex(medium.depthX, view.x);
+  const Float row = depthIndex(medium.depthY, view.y);
+  const Int columns = medium.depthColumns;
   const Int c0 = toInt(column);
   const Int r0 = toInt(row);
-  const Int c1 = min(c0 + 1, toInt(scene.depthX.last));
-  const Int r1 = min(r0 + 1, toInt(scene.depthY.last));
+  const Int c1 = min(c0 + 1, toInt(medium.depthX.last));
+  const Int r1 = min(r0 + 1, toInt(medium.depthY.last));
   const Float fc = column - toFloat(c0);
   const Float fr = row - toFloat(r0);
-  const auto at = [&](Int c, Int r) { return gather(scene.depths, r * columns + c); };
+  const auto at = [&](Int c, Int r) { return gather(medium.depths, r * columns + c); };
   const Float upLeft = at(c0, r0), upRight = at(c1, r0);
   const Float downLeft = at(c0, r1), downRight = at(c1, r1);
   return {r0 * columns + c0, lerp(lerp(upLeft, upRight, fc), lerp(downLeft, downRight, fc), fr),
-          slopeAlong(scene.depthX, column, lerp(upRight - upLeft, downRight - downLeft, fr)),
-          slopeAlong(scene.depthY, row, lerp(downLeft - upLeft, downRight - upRight, fc))};
+          slopeAlong(medium.depthX, column, lerp(upRight - upLeft, downRight - downLeft, fr)),
+          slopeAlong(medium.depthY, row, lerp(downLeft - upLeft, downRight - upRight, fc))};
 }
 
 /// Exact surface depth in seams for the lanes of `isQueried`; `surface` for the others.
@@ -84,76 +84,76 @@ inline Float querySilhouettes(const SilhouetteCells& silhouettes, LaneMask isQue
 }
 
 /// ClipDepth::surfaceFor: exact in seams for the lanes of `which`, else `surface`.
-HWY_INLINE Float refineAtSilhouette(const WideScene& scene, LaneMask which, const Surface& linear,
+HWY_INLINE Float refineAtSilhouette(const SimdMedium& medium, LaneMask which, const Surface& linear,
                                     const InView& at) {
   const Float surface = linear.depth;
-  const Int cell = gather(scene.silhouette->indices().data(), linear.sample);
+  const Int cell = gather(medium.silhouette->indices().data(), linear.sample);
   const LaneMask isSilhouette = cell > -1;
   if (!isSilhouette.any())
     return surface;
   const Int first = shiftLeft<1>(max(cell, 0));
-  const float* const bounds = &scene.silhouette->depthBounds().data()->min;
+  const float* const bounds = &medium.silhouette->depthBounds().data()->min;
   const Float least = min(surface, gather(bounds, first));
   const Float greatest = max(surface, gather(bounds + 1, first)); // least and greatest alternate
-  const LaneMask isNear = (at.depth >= least) & (at.depth <= greatest + scene.softness);
+  const LaneMask isNear = (at.depth >= least) & (at.depth <= greatest + medium.softness);
   const LaneMask isQueried = which & isSilhouette & isNear;
   if (!isQueried.any())
     return surface;
-  return querySilhouettes(*scene.silhouette, isQueried, cell, at, scene.softness, surface);
+  return querySilhouettes(*medium.silhouette, isQueried, cell, at, medium.softness, surface);
 }
 
 /// Depth of the nearest sample.
-HWY_INLINE Float nearestDepth(const WideScene& scene, const InView& view) {
-  const Int c = toInt(depthIndex(scene.depthX, view.x) + 0.5F);
-  const Int r = toInt(depthIndex(scene.depthY, view.y) + 0.5F);
-  return gather(scene.depths, r * scene.depthColumns + c);
+HWY_INLINE Float nearestDepth(const SimdMedium& medium, const InView& view) {
+  const Int c = toInt(depthIndex(medium.depthX, view.x) + 0.5F);
+  const Int r = toInt(depthIndex(medium.depthY, view.y) + 0.5F);
+  return gather(medium.depths, r * medium.depthColumns + c);
 }
 
 /// Way of points behind the clip's surface, mm; below 0 in front. In seams exact for the lanes of
 /// `which`.
-HWY_INLINE Float behindSurface(const WideScene& scene, const Float3& p, const InView& view,
+HWY_INLINE Float behindSurface(const SimdMedium& medium, const Float3& p, const InView& view,
                                LaneMask which) {
-  if (scene.clipKind == WideScene::ClipKind::plane)
-    return -applyRow(scene.toPlane, p);
-  if (scene.clipKind == WideScene::ClipKind::depthNearest)
-    return view.depth - nearestDepth(scene, view);
-  const Surface surface = surfaceAt(scene, view);
+  if (medium.clipKind == SimdMedium::ClipKind::plane)
+    return -applyRow(medium.toPlane, p);
+  if (medium.clipKind == SimdMedium::ClipKind::depthNearest)
+    return view.depth - nearestDepth(medium, view);
+  const Surface surface = surfaceAt(medium, view);
   return view.depth -
-         (scene.silhouette ? refineAtSilhouette(scene, which, surface, view) : surface.depth);
+         (medium.silhouette ? refineAtSilhouette(medium, which, surface, view) : surface.depth);
 }
 
 /// keep for every kind of clip, for the lanes of `which`.
-inline Float keep(const WideScene& scene, const Float3& p, LaneMask which) {
-  const InView view = inView(scene, p);
-  const Float behind = behindSurface(scene, p, view, which);
-  const Float ghost = scene.ghost;
-  const Float rise = scene.perSoftness > 0.0F ? min(behind * scene.perSoftness, 1.0F) : 1.0F;
+inline Float keep(const SimdMedium& medium, const Float3& p, LaneMask which) {
+  const InView view = inView(medium, p);
+  const Float behind = behindSurface(medium, p, view, which);
+  const Float ghost = medium.ghost;
+  const Float rise = medium.perSoftness > 0.0F ? min(behind * medium.perSoftness, 1.0F) : 1.0F;
   const Float share = select(behind < 0.0F, ghost, lerp(ghost, 1.0F, rise));
   return select(view.isBehindCamera, 0.0F, share);
 }
 
 /// Gradient of the depth behind a surface, along the view's axes.
-HWY_INLINE Float3 behindGradient(const WideScene& scene, const InView& view,
+HWY_INLINE Float3 behindGradient(const SimdMedium& medium, const InView& view,
                                  const Surface& surface) {
   const Float x = surface.slopeX, y = surface.slopeY;
-  if (!scene.perspective)
+  if (!medium.perspective)
     return {-x, -y, 1.0F};
-  const Float perDepth = view.scale / scene.targetDepth;
+  const Float perDepth = view.scale / medium.targetDepth;
   const Float along = fma(x, view.x, y * view.y);
   return {-(x * view.scale), -(y * view.scale), fma(along, perDepth, 1.0F)};
 }
 
 /// cutGradient, world axes, for the lanes of `which`; 0 in the others. Requires a soft edge.
-inline Float3 cutGradient(const WideScene& scene, const Float3& p, LaneMask which) {
-  const InView view = inView(scene, p);
-  const Float behind = behindSurface(scene, p, view, which);
-  const LaneMask isRamp = which & (behind >= 0.0F) & (behind < scene.softness);
+inline Float3 cutGradient(const SimdMedium& medium, const Float3& p, LaneMask which) {
+  const InView view = inView(medium, p);
+  const Float behind = behindSurface(medium, p, view, which);
+  const LaneMask isRamp = which & (behind >= 0.0F) & (behind < medium.softness);
   const LaneMask isCut = isRamp.without(view.isBehindCamera);
   if (!isCut.any())
     return {0.0F, 0.0F, 0.0F};
-  const Float length = scene.cutSlope;
-  if (scene.clipKind != WideScene::ClipKind::depthLinear)
-    return orZero(isCut, length * Float3(scene.cutNormal));
-  const Float3 gradient = behindGradient(scene, view, surfaceAt(scene, view));
-  return orZero(isCut, length * normalized(mapDirection(scene.fromView, gradient)));
+  const Float length = medium.cutSlope;
+  if (medium.clipKind != SimdMedium::ClipKind::depthLinear)
+    return orZero(isCut, length * Float3(medium.cutNormal));
+  const Float3 gradient = behindGradient(medium, view, surfaceAt(medium, view));
+  return orZero(isCut, length * normalized(mapDirection(medium.fromView, gradient)));
 }

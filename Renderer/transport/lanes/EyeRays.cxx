@@ -37,7 +37,7 @@ void sampleAll(const CameraTable& camera, CameraSamples& samples, PathBatch& pat
 }
 
 /// Begins the paths with their eye rays.
-void beginAll(const WideScene& volume, const CameraTable& camera, const CameraSamples& samples,
+void beginAll(const SimdMedium& medium, const CameraTable& camera, const CameraSamples& samples,
               PathBatch& paths) {
   for (std::size_t i = 0; i < samples.size; i += laneCount) {
     const Float x = load(&samples.column[i]), y = load(&samples.row[i]);
@@ -50,7 +50,7 @@ void beginAll(const WideScene& volume, const CameraTable& camera, const CameraSa
     const Float3 direction = mapDirection(camera.toIndex, world);
     const Float3 point = at(camera.point, camera.pointPerColumn, camera.pointPerRow);
     Stretches inside{notBelow0(load(&samples.from[i])), load(&samples.to[i])};
-    inside.clip(volume, point, direction);
+    inside.clip(medium, point, direction);
     const LaneMask some = inside.begin < inside.end;
     const Float before = zeroUnless(some, inside.begin);
 
@@ -101,7 +101,7 @@ CameraTable::CameraTable(const Domain& domain, const Camera& camera)
   toIndex = affineRows(Affine(linear));
 }
 
-void beginPaths(const WideScene& volume, const CameraTable& table, const CameraRays& cameraRays,
+void beginPaths(const SimdMedium& medium, const CameraTable& table, const CameraRays& cameraRays,
                 CameraSamples& samples, PathBatch& paths) {
   HWY_DYNAMIC_DISPATCH(sampleAll)(table, samples, paths);
   if (cameraRays.isUnclipped()) {
@@ -117,7 +117,7 @@ void beginPaths(const WideScene& volume, const CameraTable& table, const CameraR
       samples.to[i] = narrow(range.end - before);
     }
   }
-  HWY_DYNAMIC_DISPATCH(beginAll)(volume, table, samples, paths);
+  HWY_DYNAMIC_DISPATCH(beginAll)(medium, table, samples, paths);
   paths.rays.size += samples.size;
 }
 

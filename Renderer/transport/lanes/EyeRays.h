@@ -26,7 +26,7 @@ struct CameraTable {
 
 /// Begins a path for each start, behind those of `paths`. Changes rows and columns of `starts` to
 /// raster positions, counted from the picture's middle.
-void beginPaths(const WideScene& volume, const CameraTable& table, const CameraRays& cameraRays,
+void beginPaths(const SimdMedium& medium, const CameraTable& table, const CameraRays& cameraRays,
                 CameraSamples& samples, PathBatch& paths);
 
 } // namespace fenestra

@@ -11,10 +11,10 @@ struct LaneEmitterHit {
 };
 /// LightSet::environment; texelOf(map): each map's texel in the direction.
 template <typename TexelOf>
-HWY_INLINE LaneEmitterHit environment(const EventScene& scene, const Float3& direction,
+HWY_INLINE LaneEmitterHit environment(const SimdShading& shading, const Float3& direction,
                                       TexelOf&& texelOf) {
-  LaneEmitterHit sum{around(scene.lights, direction), 0.0F};
-  for (const MapTables& map : scene.maps) {
+  LaneEmitterHit sum{around(shading.lights, direction), 0.0F};
+  for (const MapTables& map : shading.maps) {
     const Float3 radiance = radianceOf(map, texelOf(map));
     sum.radiance = sum.radiance + radiance;
     sum.pdf = sum.pdf + map.perBrightness * greatest(radiance);
@@ -22,20 +22,20 @@ HWY_INLINE LaneEmitterHit environment(const EventScene& scene, const Float3& dir
   return sum;
 }
 
-inline void sampleMaps(const EventScene& scene, LaneMask which, Float choice, UInt u, UInt v,
+inline void sampleMaps(const SimdShading& shading, LaneMask which, Float choice, UInt u, UInt v,
                        LightSamples& sampled) {
-  const std::size_t count = scene.maps.size();
-  TexelSample toward = sampleTexel(scene.maps[0], u, v);
+  const std::size_t count = shading.maps.size();
+  TexelSample toward = sampleTexel(shading.maps[0], u, v);
   LaneMask later = which;
   for (std::size_t i = 1; i < count; ++i) { // the last map takes the remainder of rounding
-    const float before = scene.maps[i - 1].pmf;
+    const float before = shading.maps[i - 1].pmf;
     later = later & (choice > before);
     choice = choice - before;
     if (later.any())
       toward.direction =
-          select(later, sampleTexel(scene.maps[i], u, v).direction, toward.direction);
+          select(later, sampleTexel(shading.maps[i], u, v).direction, toward.direction);
   }
-  const LaneEmitterHit light = environment(scene, toward.direction, [&](const MapTables& map) {
+  const LaneEmitterHit light = environment(shading, toward.direction, [&](const MapTables& map) {
     return count == 1 ? toward.texel : texelToward(map, toward.direction);
   });
   const LaneMask lit = which & (light.pdf > 0.0F);
@@ -45,31 +45,31 @@ inline void sampleMaps(const EventScene& scene, LaneMask which, Float choice, UI
 }
 
 /// LightSet::sample for the lanes of `which`, from local points; `uBits`, `vBits`: random bits.
-inline LightSamples sampleLightSet(const EventScene& scene, LaneMask which, const Float3& point,
+inline LightSamples sampleLightSet(const SimdShading& shading, LaneMask which, const Float3& point,
                                    Float choice, UInt uBits, UInt vBits) {
   const Float u = toUniform(uBits), v = toUniform(vBits);
-  LightSamples sampled = sampleLights(scene.lights, which, point, choice, u, v);
-  if (!scene.maps.empty() && which.any())
-    sampleMaps(scene, which, choice, uBits, vBits, sampled);
+  LightSamples sampled = sampleLights(shading.lights, which, point, choice, u, v);
+  if (!shading.maps.empty() && which.any())
+    sampleMaps(shading, which, choice, uBits, vBits, sampled);
   return sampled;
 }
 
 /// PathSteps::arriving for rays from local points, for the lanes of `which`; 0 in the others.
-inline Float3 emittedAlongRay(const EventScene& scene, LaneMask which, const Float3& origin,
+inline Float3 emittedAlongRay(const SimdShading& shading, LaneMask which, const Float3& origin,
                               const Float3& direction, Float distance, Float scatterPdf) {
   Float3 sum{0.0F, 0.0F, 0.0F};
-  intersectLights(scene.lights, which, origin, direction, distance,
+  intersectLights(shading.lights, which, origin, direction, distance,
                   [&](LaneMask hits, const Float3& radiance, Float pdf) {
                     const Float weight = scatterPdf / (scatterPdf + pdf);
                     sum = sum + orZero(hits, weight * radiance);
                   });
   const LaneMask escaped = which & (distance == std::numeric_limits<float>::infinity());
-  if (scene.maps.empty())
-    return sum + orZero(escaped, around(scene.lights, direction));
+  if (shading.maps.empty())
+    return sum + orZero(escaped, around(shading.lights, direction));
   if (!escaped.any())
     return sum;
   const LaneEmitterHit far = environment(
-      scene, direction, [&](const MapTables& map) { return texelToward(map, direction); });
+      shading, direction, [&](const MapTables& map) { return texelToward(map, direction); });
   const Float weight = scatterPdf / (scatterPdf + far.pdf);
   return sum + orZero(escaped, weight * far.radiance);
 }

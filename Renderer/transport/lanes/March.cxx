@@ -16,19 +16,19 @@ template <typename Voxel>
 class Walk {
 public:
   /// From ray `first` on.
-  Walk(const WideScene& volume, const RayBatch& rays, std::size_t first, double stepScale,
+  Walk(const SimdMedium& medium, const RayBatch& rays, std::size_t first, double stepScale,
        bool usesClip)
-      : m_volume(volume),
+      : m_medium(medium),
         m_origin(load3(rays.origin, first)),
         m_direction(load3(rays.direction, first)),
-        m_way{DdaAxis::fromRay(volume.axes[0], m_origin.x, m_direction.x),
-              DdaAxis::fromRay(volume.axes[1], m_origin.y, m_direction.y),
-              DdaAxis::fromRay(volume.axes[2], m_origin.z, m_direction.z)},
+        m_way{DdaAxis::fromRay(medium.axes[0], m_origin.x, m_direction.x),
+              DdaAxis::fromRay(medium.axes[1], m_origin.y, m_direction.y),
+              DdaAxis::fromRay(medium.axes[2], m_origin.z, m_direction.z)},
         m_end(load(&rays.length[first])),
         m_minStep(narrow(stepScale * MarchAccuracy::minVoxels) /
                   sqrt(dot(m_direction, m_direction))),
         m_opticalDepth(narrow(stepScale * MarchAccuracy::opticalDepth)),
-        m_usesClip(usesClip && volume.clipKind != WideScene::ClipKind::none),
+        m_usesClip(usesClip && medium.clipKind != SimdMedium::ClipKind::none),
         m_busy(LaneMask::first(rays.size - first) & (m_end > 0.0F)) {}
 
   bool isDone() const { return !m_busy.any(); }
@@ -40,7 +40,7 @@ public:
   /// that end with it.
   HWY_INLINE LaneMask step() {
     LaneCells cell;
-    const Float toFace = findCellExit(m_volume, m_way, m_t, cell);
+    const Float toFace = findCellExit(m_medium, m_way, m_t, cell);
     const Float stop = min(toFace, m_end);
     // A little beyond the face: the next point lies in the next cell, whatever rounding does.
     const Float beyond = fma(m_minStep, 0.02F, max(stop, m_t));
@@ -77,13 +77,13 @@ private:
     const Float length = next - m_t;
     const Float middle = fma(0.5F, length, m_t);
     const Float3 p = pointAt(middle);
-    const Float scalar = scalarAt<Voxel>(m_volume.field, p);
-    LaneExtinctions all = m_volume.mixture ? extinctionsAt<true>(m_volume, filled, p, scalar)
-                                           : extinctionsAt<false>(m_volume, filled, p, scalar);
+    const Float scalar = scalarAt<Voxel>(m_medium.field, p);
+    LaneExtinctions all = m_medium.mixture ? extinctionsAt<true>(m_medium, filled, p, scalar)
+                                           : extinctionsAt<false>(m_medium, filled, p, scalar);
     if (m_usesClip) {
       const LaneMask cut = filled & cell.cut;
       if (cut.any())
-        all.clipped.setIf(cut, all.clipped * keep(m_volume, p, cut));
+        all.clipped.setIf(cut, all.clipped * keep(m_medium, p, cut));
     }
     const Float extinction = all.clipped + all.free;
     const Float passed = exp(-(extinction * length));
@@ -93,7 +93,7 @@ private:
     m_moment = fma(stopped, middle, m_moment);
   }
 
-  const WideScene& m_volume;
+  const SimdMedium& m_medium;
   Float3 m_origin, m_direction; ///< index space, per mm
   DdaAxis m_way[3];
   Float m_end, m_minStep; ///< mm
@@ -108,32 +108,33 @@ private:
 template <typename Voxel>
 class Sums {
 public:
-  Sums(const WideScene& volume, const EventScene& scene) : m_volume(volume), m_scene(scene) {}
+  Sums(const SimdMedium& medium, const SimdShading& shading)
+      : m_medium(medium), m_shading(shading) {}
 
   /// Adds the pending collisions of the lanes of `which` with the matter in their middle.
   void collect(Walk<Voxel>& walk, LaneMask which) {
     const auto [probability, middle] = walk.take(which);
     const Float3 p = walk.pointAt(middle);
-    const Float scalar = scalarAt<Voxel>(m_volume.field, p);
+    const Float scalar = scalarAt<Voxel>(m_medium.field, p);
     const Mean mean =
-        m_volume.mixture ? evaluateMixture(which, p, scalar) : evaluateSingle(which, p, scalar);
+        m_medium.mixture ? evaluateMixture(which, p, scalar) : evaluateSingle(which, p, scalar);
     Float3 albedo = mean.albedo;
-    if (m_volume.context)
-      albedo = paled(*m_volume.context, p, albedo);
+    if (m_medium.context)
+      albedo = paled(*m_medium.context, p, albedo);
     m_albedo = m_albedo + probability * albedo;
-    const Float3 difference = differenceAt<Voxel>(m_volume.field, p);
-    Float3 gradient = mapDirection(m_scene.indexDifferenceToGradient, difference);
+    const Float3 difference = differenceAt<Voxel>(m_medium.field, p);
+    Float3 gradient = mapDirection(m_shading.indexDifferenceToGradient, difference);
     Float alongRay = dot(walk.direction(), difference); // of the gradient's sign
-    if (m_scene.hybrid && m_volume.cutSlope > 0.0F) {
-      gradient = gradient + cutGradient(m_volume, p, which);
-      alongRay = dot(mapDirection(m_scene.toLocal, walk.direction()), gradient);
+    if (m_shading.hybrid && m_medium.cutSlope > 0.0F) {
+      gradient = gradient + cutGradient(m_medium, p, which);
+      alongRay = dot(mapDirection(m_shading.toLocal, walk.direction()), gradient);
     }
     const Float slope = sqrt(dot(gradient, gradient));
     const Float3 normal = normalOf(gradient, alongRay, probability);
     m_normal = m_normal + normal;
-    if (m_scene.hybrid)
+    if (m_shading.hybrid)
       m_surfaceNormal =
-          m_surfaceNormal + mean.opacity * missing(m_scene.surfaceRate * slope) * normal;
+          m_surfaceNormal + mean.opacity * missing(m_shading.surfaceRate * slope) * normal;
     m_hit = m_hit + probability;
     m_distance = fma(probability, middle, m_distance);
   }
@@ -145,18 +146,18 @@ public:
   };
 
   Mean evaluateSingle(LaneMask which, const Float3& p, Float scalar) const {
-    return {albedoAt(m_scene, which, p, scalar),
-            m_scene.hybrid ? missing(extinctionOf(m_volume.extinctions, scalar)) : 0.0F};
+    return {albedoAt(m_shading, which, p, scalar),
+            m_shading.hybrid ? missing(extinctionOf(m_medium.extinctions, scalar)) : 0.0F};
   }
 
   Mean evaluateMixture(LaneMask which, const Float3& p, Float scalar) const {
-    const Float kept = keptOfParts(m_volume, which, p);
+    const Float kept = keptOfParts(m_medium, which, p);
     Mean sums{{0.0F, 0.0F, 0.0F}, 0.0F};
     Float all = 0.0F;
-    forEachPart(m_volume, which, p, scalar, kept, [&](LaneMask lanes, Int components, Float part) {
-      const Float extinction = extinctionOf(m_volume.extinctions, lanes, components, scalar);
+    forEachPart(m_medium, which, p, scalar, kept, [&](LaneMask lanes, Int components, Float part) {
+      const Float extinction = extinctionOf(m_medium.extinctions, lanes, components, scalar);
       all = all + part;
-      sums.albedo = sums.albedo + part * albedoIn(m_scene, lanes, components, scalar);
+      sums.albedo = sums.albedo + part * albedoIn(m_shading, lanes, components, scalar);
       sums.opacity = sums.opacity + part * missing(extinction);
     });
     const Float scale = zeroUnless(all > 0.0F, 1.0F / all);
@@ -172,22 +173,22 @@ public:
   }
 
 private:
-  const WideScene& m_volume;
-  const EventScene& m_scene;
+  const SimdMedium& m_medium;
+  const SimdShading& m_shading;
   Float m_hit = 0.0F, m_distance = 0.0F;
   Float3 m_albedo{m_hit, m_hit, m_hit}, m_normal{m_hit, m_hit, m_hit},
       m_surfaceNormal{m_hit, m_hit, m_hit};
 };
 
-void marchCameraAll(const WideScene& volume, const EventScene& scene, MarchBatch& batch) {
+void marchCameraAll(const SimdMedium& medium, const SimdShading& shading, MarchBatch& batch) {
   // Eye rays begin behind the surface, where only an edge that is not sharp matters; unless they
   // are whole, for matter that the clip leaves.
   const bool usesClip =
-      volume.ghost > 0.0F || volume.softness > 0.0F || (volume.mixture && volume.mixture->hasFree);
+      medium.ghost > 0.0F || medium.softness > 0.0F || (medium.mixture && medium.mixture->hasFree);
   const auto march = [&]<typename Voxel>(const Voxel*) {
     for (std::size_t first = 0; first < batch.rays.size; first += laneCount) {
-      Walk<Voxel> walk(volume, batch.rays, first, 1.0, usesClip);
-      Sums<Voxel> sums(volume, scene);
+      Walk<Voxel> walk(medium, batch.rays, first, 1.0, usesClip);
+      Sums<Voxel> sums(medium, shading);
       while (!walk.isDone()) {
         const LaneMask ended = walk.step();
         const Float least = select(ended, 0.0F, narrow(MarchAccuracy::groupProbability));
@@ -198,19 +199,19 @@ void marchCameraAll(const WideScene& volume, const EventScene& scene, MarchBatch
       sums.write(batch, first);
     }
   };
-  std::visit(march, volume.voxels);
+  std::visit(march, medium.voxels);
 }
 
-void marchShadowAll(const WideScene& volume, RayBatch& rays) {
+void marchShadowAll(const SimdMedium& medium, RayBatch& rays) {
   const auto pass = [&]<typename Voxel>(const Voxel*) {
     for (std::size_t first = 0; first < rays.size; first += laneCount) {
-      Walk<Voxel> walk(volume, rays, first, MarchAccuracy::shadowScale, true);
+      Walk<Voxel> walk(medium, rays, first, MarchAccuracy::shadowScale, true);
       while (!walk.isDone())
         walk.step();
       store(walk.transmittance(), &rays.result[first]);
     }
   };
-  std::visit(pass, volume.voxels);
+  std::visit(pass, medium.voxels);
 }
 
 } // namespace
@@ -223,12 +224,12 @@ namespace fenestra {
 HWY_EXPORT(marchCameraAll);
 HWY_EXPORT(marchShadowAll);
 
-void marchCameraRays(const WideScene& volume, const EventScene& scene, MarchBatch& batch) {
-  HWY_DYNAMIC_DISPATCH(marchCameraAll)(volume, scene, batch);
+void marchCameraRays(const SimdMedium& medium, const SimdShading& shading, MarchBatch& batch) {
+  HWY_DYNAMIC_DISPATCH(marchCameraAll)(medium, shading, batch);
 }
 
-void marchShadowRays(const WideScene& volume, RayBatch& rays) {
-  HWY_DYNAMIC_DISPATCH(marchShadowAll)(volume, rays);
+void marchShadowRays(const SimdMedium& medium, RayBatch& rays) {
+  HWY_DYNAMIC_DISPATCH(marchShadowAll)(medium, rays);
 }
 
 } // namespace fenestra

@@ -15,9 +15,9 @@ struct MarchBatch {
 
 /// Marches eye rays that begin behind the clip's surface: a clip with a sharp edge is asked no
 /// more.
-void marchCameraRays(const WideScene& volume, const EventScene& scene, MarchBatch& batch);
+void marchCameraRays(const SimdMedium& medium, const SimdShading& shading, MarchBatch& batch);
 
 /// result: transmittance of each ray, in coarser steps. These rays may begin anywhere.
-void marchShadowRays(const WideScene& volume, RayBatch& rays);
+void marchShadowRays(const SimdMedium& medium, RayBatch& rays);
 
 } // namespace fenestra

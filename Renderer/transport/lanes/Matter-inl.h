@@ -10,29 +10,30 @@ HWY_INLINE Float3 albedoOf(const SimdTable& table, Float scalar) {
 }
 
 /// Albedo of one component a lane; 0 in lanes that are not of `which`.
-HWY_INLINE Float3 albedoIn(const EventScene& scene, LaneMask which, Int components, Float scalar) {
+HWY_INLINE Float3 albedoIn(const SimdShading& shading, LaneMask which, Int components,
+                           Float scalar) {
   Float3 albedo(0.0F, 0.0F, 0.0F);
   forEachComponent(which, components, [&](LaneMask same, std::size_t component) {
-    albedo = select(same, albedoOf(scene.albedos[component], scalar), albedo);
+    albedo = select(same, albedoOf(shading.albedos[component], scalar), albedo);
   });
   return albedo;
 }
 
 /// Albedo without a mixture: with a tint TintedField::albedo, for the lanes of `which`.
-HWY_INLINE Float3 albedoAt(const EventScene& scene, LaneMask which, const Float3& index,
+HWY_INLINE Float3 albedoAt(const SimdShading& shading, LaneMask which, const Float3& index,
                            Float scalar) {
-  if (!scene.tint)
-    return albedoOf(scene.albedos[0], scalar);
+  if (!shading.tint)
+    return albedoOf(shading.albedos[0], scalar);
   Float3 sum(0.0F, 0.0F, 0.0F);
-  LaneLabelWeights(*scene.tint, index)
+  LaneLabelWeights(*shading.tint, index)
       .forEach(which, [&](LaneMask lanes, Int components, Float fraction) {
-        sum = sum + fraction * albedoIn(scene, lanes, components, scalar);
+        sum = sum + fraction * albedoIn(shading, lanes, components, scalar);
       });
   return sum;
 }
 
 /// ContextStyle::paled, outside the focus.
-HWY_INLINE Float3 paled(const WideScene::Context& context, const Float3& index,
+HWY_INLINE Float3 paled(const SimdMedium::Context& context, const Float3& index,
                         const Float3& albedo) {
   const Float grey = dot(albedo, {0.2126F, 0.7152F, 0.0722F});
   const auto channel = [&](Float x) { return lerp(grey, x, context.saturation); };

@@ -119,12 +119,12 @@ struct LaneCells {
 };
 
 /// Cells of these numbers along the axes: whole, -1 and one too many for the border.
-HWY_INLINE LaneCells cellsAt(const WideScene& scene, Float x, Float y, Float z) {
+HWY_INLINE LaneCells cellsAt(const SimdMedium& medium, Float x, Float y, Float z) {
   const Float place =
-      fma(z, scene.axes[2].cellStride, fma(y, scene.axes[1].cellStride, x + scene.firstCell));
+      fma(z, medium.axes[2].cellStride, fma(y, medium.axes[1].cellStride, x + medium.firstCell));
   // This order of min and max maps NaN to 0.
-  const Int index = wholeToInt(max(min(place, scene.lastCell), 0.0F));
-  const Int code = gather(scene.cells.codes.data(), index);
+  const Int index = wholeToInt(max(min(place, medium.lastCell), 0.0F));
+  const Int code = gather(medium.cells.codes.data(), index);
   return {bitsAsFloat(code & SimdMajorants::majorantBits),
           toFloat(code & SimdMajorants::radiusBits), code < 0};
 }
@@ -134,9 +134,9 @@ struct Stretches {
   Float begin, end;
 
   /// Cuts off what is outside the domain (Domain::clip); rays in index space.
-  HWY_INLINE void clip(const WideScene& scene, const Float3& origin, const Float3& direction) {
-    clip(scene.lower, scene.upper, origin, direction);
-    if (const std::optional<AffineRows>& toCrop = scene.toCrop)
+  HWY_INLINE void clip(const SimdMedium& medium, const Float3& origin, const Float3& direction) {
+    clip(medium.lower, medium.upper, origin, direction);
+    if (const std::optional<AffineRows>& toCrop = medium.toCrop)
       clip({-1.0F, -1.0F, -1.0F}, {1.0F, 1.0F, 1.0F}, mapPoint(*toCrop, origin),
            mapDirection(*toCrop, direction));
   }
@@ -161,14 +161,14 @@ private:
 };
 
 /// Length (mm) of a ray from inside the domain to its end; 0 if rounding put the origin outside.
-HWY_INLINE Float lengthInside(const WideScene& scene, const Float3& origin,
+HWY_INLINE Float lengthInside(const SimdMedium& medium, const Float3& origin,
                               const Float3& direction) {
   Stretches inside{0.0F, std::numeric_limits<float>::infinity()};
-  inside.clip(scene, origin, direction);
+  inside.clip(medium, origin, direction);
   return notBelow0(inside.end);
 }
 
 /// Lanes whose point (index space) lies in the focus, where a style changes nothing.
-HWY_INLINE LaneMask isFocus(const WideScene::Context& context, const Float3& p) {
+HWY_INLINE LaneMask isFocus(const SimdMedium::Context& context, const Float3& p) {
   return scalarAt<std::uint8_t>(context.focus, mapPoint(context.toFocus, p)) >= context.level;
 }

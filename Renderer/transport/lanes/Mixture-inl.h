@@ -21,67 +21,67 @@ HWY_INLINE LaneMask freeIn(const SimdMixture& mixture, LaneMask which, Int compo
 /// (MixedField::forEachPart); extinctions of lanes that are not in `lanes` are 0. `kept`: keep of
 /// the clip.
 template <typename Visit>
-HWY_INLINE void forEachPart(const WideScene& scene, LaneMask which, const Float3& index,
+HWY_INLINE void forEachPart(const SimdMedium& medium, LaneMask which, const Float3& index,
                             Float scalar, Float kept, Visit&& visit) {
   const auto part = [&](LaneMask lanes, Int components, Float fraction) {
-    const Float full = fraction * extinctionOf(scene.extinctions, lanes, components, scalar);
-    const LaneMask free = freeIn(*scene.mixture, lanes, components);
+    const Float full = fraction * extinctionOf(medium.extinctions, lanes, components, scalar);
+    const LaneMask free = freeIn(*medium.mixture, lanes, components);
     visit(lanes, components, select(free, full, kept * full));
   };
-  LaneLabelWeights(scene.mixture->weights, index).forEach(which, part);
+  LaneLabelWeights(medium.mixture->weights, index).forEach(which, part);
 }
 
 /// Extinction (mm^-1) of what a clip may remove, and of what it leaves.
 struct LaneExtinctions {
   Float clipped, free;
 };
-inline LaneExtinctions extinctionsOf(const WideScene& scene, LaneMask which, const Float3& index,
+inline LaneExtinctions extinctionsOf(const SimdMedium& medium, LaneMask which, const Float3& index,
                                      Float scalar) {
   LaneExtinctions sums{0.0F, 0.0F};
   const auto add = [&](LaneMask lanes, Int components, Float fraction) {
-    const Float part = fraction * extinctionOf(scene.extinctions, lanes, components, scalar);
-    const LaneMask free = freeIn(*scene.mixture, lanes, components);
+    const Float part = fraction * extinctionOf(medium.extinctions, lanes, components, scalar);
+    const LaneMask free = freeIn(*medium.mixture, lanes, components);
     sums.free = sums.free + zeroUnless(free, part);
     sums.clipped = sums.clipped + select(free, 0.0F, part);
   };
-  LaneLabelWeights(scene.mixture->merged, index).forEach(which, add);
+  LaneLabelWeights(medium.mixture->merged, index).forEach(which, add);
   return sums;
 }
 
 /// Extinctions of all matter at points, under the context's style. `isMixed`: there is a mixture.
 template <bool isMixed>
-HWY_INLINE LaneExtinctions extinctionsAt(const WideScene& scene, LaneMask which,
+HWY_INLINE LaneExtinctions extinctionsAt(const SimdMedium& medium, LaneMask which,
                                          const Float3& index, Float scalar) {
   LaneExtinctions all{0.0F, 0.0F};
   if constexpr (isMixed)
-    all = extinctionsOf(scene, which, index, scalar);
+    all = extinctionsOf(medium, which, index, scalar);
   else
-    all.clipped = extinctionOf(scene.extinctions, scalar);
-  if (scene.context && scene.context->extinction != 1.0F) {
-    const Float factor = select(isFocus(*scene.context, index), 1.0F, scene.context->extinction);
+    all.clipped = extinctionOf(medium.extinctions, scalar);
+  if (medium.context && medium.context->extinction != 1.0F) {
+    const Float factor = select(isFocus(*medium.context, index), 1.0F, medium.context->extinction);
     all = {all.clipped * factor, all.free * factor};
   }
   return all;
 }
 
 /// Keep of the clip where a mixture's components differ in it; else 1.
-inline Float keptOfParts(const WideScene& scene, LaneMask which, const Float3& index) {
-  return scene.mixture->hasFree && scene.clipKind != WideScene::ClipKind::none
-             ? keep(scene, index, which)
+inline Float keptOfParts(const SimdMedium& medium, LaneMask which, const Float3& index) {
+  return medium.mixture->hasFree && medium.clipKind != SimdMedium::ClipKind::none
+             ? keep(medium, index, which)
              : Float(1.0F);
 }
 
 /// Components that collisions of the lanes of `which` meet (MixedField::draw); 0 in others.
-inline Int sampleComponents(const WideScene& scene, LaneMask which, const Float3& index,
+inline Int sampleComponents(const SimdMedium& medium, LaneMask which, const Float3& index,
                             Float scalar, Float uniform) {
-  const Float kept = keptOfParts(scene, which, index);
+  const Float kept = keptOfParts(medium, which, index);
   Float sum = 0.0F;
-  forEachPart(scene, which, index, scalar, kept,
+  forEachPart(medium, which, index, scalar, kept,
               [&](LaneMask, Int, Float part) { sum = sum + part; });
   Float left = uniform * sum;
   LaneMask undecided = which;
   Int sampled = 0;
-  forEachPart(scene, which, index, scalar, kept, [&](LaneMask, Int components, Float part) {
+  forEachPart(medium, which, index, scalar, kept, [&](LaneMask, Int components, Float part) {
     const LaneMask some = undecided & (part > 0.0F);
     sampled = select(some, components, sampled); // the last one, if rounding leaves all
     undecided = undecided.without(some & (left < part));
@@ -91,10 +91,10 @@ inline Int sampleComponents(const WideScene& scene, LaneMask which, const Float3
 }
 
 /// Scattering of one component a lane; all count as coated, with a coat that may reflect nothing.
-inline BsdfParameters<Float> gatherBsdfs(const EventScene& scene, Int components) {
+inline BsdfParameters<Float> gatherBsdfs(const SimdShading& shading, Int components) {
   constexpr std::int32_t stride = sizeof(BsdfParameters<float>) / sizeof(float);
   const Int at = components * stride;
-  const BsdfParameters<float>& first = scene.bsdfs.front();
+  const BsdfParameters<float>& first = shading.bsdfs.front();
   const auto each = [&](const float& member) { return gather(&member, at); };
   return {each(first.g),
           each(first.diffuse),

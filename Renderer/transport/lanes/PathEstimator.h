@@ -15,10 +15,10 @@ class SimdPathIntegrator {
 public:
   /// A view: all arguments must outlive the wave. The tracker must have the same `stop`: paths left
   /// unfinished are dropped here.
-  SimdPathIntegrator(const SimdTracker& tracker, const EventScene& scene, const CameraTable& table,
-                     const CameraRays& cameraRays, const StopFlag& stop)
+  SimdPathIntegrator(const SimdTracker& tracker, const SimdShading& shading,
+                     const CameraTable& table, const CameraRays& cameraRays, const StopFlag& stop)
       : m_tracker(tracker),
-        m_scene(scene),
+        m_shading(shading),
         m_table(table),
         m_cameraRays(cameraRays),
         m_stop(stop) {}
@@ -33,13 +33,13 @@ public:
     for (;;) {
       source.fill(batch->starts, most - batch->paths.rays.size);
       counters.paths += batch->starts.size;
-      beginPaths(m_tracker.scene(), m_table, m_cameraRays, batch->starts, batch->paths);
+      beginPaths(m_tracker.medium(), m_table, m_cameraRays, batch->starts, batch->paths);
       if (batch->paths.rays.size == 0)
         return true;
       m_tracker.sampleCollisions(batch->paths.rays, counters);
       if (stopped())
         return false;
-      scatterPaths(m_tracker.scene(), m_scene, batch->paths, batch->lights, counters);
+      scatterPaths(m_tracker.medium(), m_shading, batch->paths, batch->lights, counters);
       look(*batch, counters);
       if (stopped())
         return false;
@@ -93,7 +93,7 @@ private:
   }
 
   const SimdTracker& m_tracker;
-  const EventScene& m_scene;
+  const SimdShading& m_shading;
   const CameraTable& m_table;
   const CameraRays& m_cameraRays;
   const StopFlag& m_stop;

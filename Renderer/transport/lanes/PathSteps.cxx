@@ -39,8 +39,8 @@ struct Collisions {
 template <typename Voxel>
 class Events {
 public:
-  Events(const WideScene& volume, const EventScene& scene, PathBatch& paths, LightBatch& lights)
-      : m_volume(volume), m_scene(scene), m_paths(paths), m_out(lights) {}
+  Events(const SimdMedium& medium, const SimdShading& shading, PathBatch& paths, LightBatch& lights)
+      : m_medium(medium), m_shading(shading), m_paths(paths), m_out(lights) {}
 
   void run(Counters& counters) {
     m_out.rays.size = 0;
@@ -62,7 +62,7 @@ private:
     gather(i, there.without(first), origin, distance);
 
     const LaneMask escaped = distance == std::numeric_limits<float>::infinity();
-    const LaneMask free = bounces < m_scene.bounces;
+    const LaneMask free = bounces < m_shading.bounces;
     const LaneMask going = (there & free).without(escaped);
     m_collisions += going.count();
     LaneMask alive = going;
@@ -79,7 +79,7 @@ private:
     if (!scattered.any())
       return;
     const Float3 light =
-        emittedAlongRay(m_scene, scattered, mapPoint(m_scene.toLocal, origin),
+        emittedAlongRay(m_shading, scattered, mapPoint(m_shading.toLocal, origin),
                         load3(m_paths.direction, i), distance, load(&m_paths.scatterPdf[i]));
     const Float3 sum = load3(m_paths.radiance, i);
     store3(sum + load3(m_paths.throughput, i) * light, m_paths.radiance, i);
@@ -93,8 +93,8 @@ private:
     const Collisions at = lookUpMedium(i, going, first, index, draws);
     if (first.any())
       recordFirst(i, at, distance);
-    return m_volume.mixture ? scatter(i, at, draws, gatherBsdfs(m_scene, at.component))
-                            : scatter(i, at, draws, m_scene.bsdfs[0]);
+    return m_medium.mixture ? scatter(i, at, draws, gatherBsdfs(m_shading, at.component))
+                            : scatter(i, at, draws, m_shading.bsdfs[0]);
   }
 
   /// Scatters lanes by the law; returns those that go on afterwards.
@@ -106,7 +106,7 @@ private:
     const auto surface = [&] {
       return SurfaceLobes<Number>(law, at.incoming, at.gradient, at.albedo);
     };
-    if (m_scene.drawsLights)
+    if (m_shading.drawsLights)
       sampleLights(i, at, draws, [&](const Float3& toward) {
         const ScatterEval s = phase.toward(toward);
         if (!surfaces)
@@ -116,7 +116,7 @@ private:
                            select(at.surface, o.pdf, s.pdf)};
       });
 
-    const Float choice = m_scene.hybrid ? draws.uniform() : 0.0F; // independent of neighbours
+    const Float choice = m_shading.hybrid ? draws.uniform() : 0.0F; // independent of neighbours
     const Float u = givenFirst(at.first, m_paths.uDirection[0], i, draws);
     const Float v = givenFirst(at.first, m_paths.uDirection[1], i, draws);
     ScatterSamples sampled = phase.sample(u, v);
@@ -137,21 +137,21 @@ private:
                   load(&m_paths.rays.scalar[i]),
                   load3(m_paths.direction, i),
                   load3(m_paths.throughput, i)};
-    if (m_volume.mixture) {
-      at.component = sampleComponents(m_volume, going, index, at.scalar, draws.uniform());
-      at.albedo = albedoIn(m_scene, going, at.component, at.scalar);
+    if (m_medium.mixture) {
+      at.component = sampleComponents(m_medium, going, index, at.scalar, draws.uniform());
+      at.albedo = albedoIn(m_shading, going, at.component, at.scalar);
     } else {
-      at.albedo = albedoAt(m_scene, going, index, at.scalar);
+      at.albedo = albedoAt(m_shading, going, index, at.scalar);
     }
-    if (m_volume.context)
-      at.albedo = paled(*m_volume.context, index, at.albedo);
-    if (m_scene.hybrid) {
+    if (m_medium.context)
+      at.albedo = paled(*m_medium.context, index, at.albedo);
+    if (m_shading.hybrid) {
       at.gradient = gradientAt(index);
       m_gradients += going.count();
-      if (m_volume.cutSlope > 0.0F)
-        at.gradient = at.gradient + cutGradient(m_volume, index, removable(at));
+      if (m_medium.cutSlope > 0.0F)
+        at.gradient = at.gradient + cutGradient(m_medium, index, removable(at));
       const Float slope = sqrt(dot(at.gradient, at.gradient));
-      const Float chance = missing(extinctionOfOne(at)) * missing(m_scene.surfaceRate * slope);
+      const Float chance = missing(extinctionOfOne(at)) * missing(m_shading.surfaceRate * slope);
       at.surface = going & (givenFirst(first, m_paths.uChoices[0], i, draws) < chance);
     }
     return at;
@@ -165,19 +165,19 @@ private:
 
   /// Lanes whose matter the clip may remove.
   HWY_INLINE LaneMask removable(const Collisions& at) const {
-    return m_volume.mixture ? at.going.without(freeIn(*m_volume.mixture, at.going, at.component))
+    return m_medium.mixture ? at.going.without(freeIn(*m_medium.mixture, at.going, at.component))
                             : at.going;
   }
 
   /// Extinction of the matter that collisions meet, as if it had all of the space.
   HWY_INLINE Float extinctionOfOne(const Collisions& at) const {
-    return m_volume.mixture ? extinctionOf(m_volume.extinctions, at.going, at.component, at.scalar)
-                            : extinctionOf(m_volume.extinctions, at.scalar);
+    return m_medium.mixture ? extinctionOf(m_medium.extinctions, at.going, at.component, at.scalar)
+                            : extinctionOf(m_medium.extinctions, at.scalar);
   }
 
   Float3 gradientAt(const Float3& p) const {
-    const Float3 difference = differenceAt<Voxel>(m_volume.field, p);
-    return mapDirection(m_scene.indexDifferenceToGradient, difference);
+    const Float3 difference = differenceAt<Voxel>(m_medium.field, p);
+    return mapDirection(m_shading.indexDifferenceToGradient, difference);
   }
 
   void recordFirst(std::size_t i, const Collisions& at, Float distance) {
@@ -190,10 +190,10 @@ private:
     keep(fma(distance, load(&m_paths.depthPerLength[i]), load(&m_paths.depth[i])),
          m_paths.firstDepth);
     keep3(at.albedo, m_paths.firstAlbedo);
-    if (!m_scene.wantNormals)
+    if (!m_shading.wantNormals)
       return;
-    const Float3 gradient = m_scene.hybrid ? at.gradient : gradientAt(at.index);
-    m_gradients += m_scene.hybrid ? 0 : at.first.count();
+    const Float3 gradient = m_shading.hybrid ? at.gradient : gradientAt(at.index);
+    m_gradients += m_shading.hybrid ? 0 : at.first.count();
     keep3(normalOf(gradient, dot(at.incoming, gradient), 1.0F), m_paths.firstNormal);
   }
 
@@ -204,7 +204,7 @@ private:
     const UInt u = draws.nextBits();
     const UInt v = draws.nextBits();
     const LightSamples light =
-        sampleLightSet(m_scene, at.going, mapPoint(m_scene.toLocal, at.index), choice, u, v);
+        sampleLightSet(m_shading, at.going, mapPoint(m_shading.toLocal, at.index), choice, u, v);
     const ScatterEval scattered = toward(light.direction);
     const Float pdf = light.pdf + select(light.delta, 0.0F, scattered.pdf);
     const Float3 radiance = (1.0F / pdf) * (at.throughput * scattered.factor * light.radiance);
@@ -214,8 +214,8 @@ private:
     const Float acceptance = draws.uniform();
     if (count == 0)
       return;
-    const Float3 direction = mapDirection(m_scene.localToIndex, light.direction);
-    const Float length = min(light.distance, lengthInside(m_volume, at.index, direction));
+    const Float3 direction = mapDirection(m_shading.localToIndex, light.direction);
+    const Float length = min(light.distance, lengthInside(m_medium, at.index, direction));
     const std::size_t to = m_out.rays.size;
     const Shuffle pack = Shuffle::compress(arrives);
     const auto put = [&](auto x, auto& column) { store(pack(x), &column[to]); };
@@ -242,27 +242,27 @@ private:
     store(sampled.pdf, &m_paths.scatterPdf[i]);
     store3(sampled.outgoing, m_paths.direction, i);
     store3(at.index, m_paths.rays.origin, i);
-    const Float3 direction = mapDirection(m_scene.localToIndex, sampled.outgoing);
+    const Float3 direction = mapDirection(m_shading.localToIndex, sampled.outgoing);
     store3(direction, m_paths.rays.direction, i);
-    store(lengthInside(m_volume, at.index, direction), &m_paths.rays.length[i]);
+    store(lengthInside(m_medium, at.index, direction), &m_paths.rays.length[i]);
     store(draws.nextBits(), &m_paths.rays.depth[i]);
     store(draws.uniform(), &m_paths.rays.acceptance[i]);
     store(draws.counter, &m_paths.counter[i]);
     return at.going & (greatest(throughput) > 0.0F);
   }
 
-  const WideScene& m_volume;
-  const EventScene& m_scene;
+  const SimdMedium& m_medium;
+  const SimdShading& m_shading;
   PathBatch& m_paths;
   LightBatch& m_out;
   std::size_t m_collisions = 0, m_gradients = 0;
 };
 
-void scatterAll(const WideScene& volume, const EventScene& scene, PathBatch& paths,
+void scatterAll(const SimdMedium& medium, const SimdShading& shading, PathBatch& paths,
                 LightBatch& lights, Counters& counters) {
   std::visit([&]<typename Voxel>(
-                 const Voxel*) { Events<Voxel>(volume, scene, paths, lights).run(counters); },
-             volume.voxels);
+                 const Voxel*) { Events<Voxel>(medium, shading, paths, lights).run(counters); },
+             medium.voxels);
 }
 
 void dropEndedLanes(PathBatch& paths) {
@@ -296,9 +296,9 @@ namespace fenestra {
 HWY_EXPORT(scatterAll);
 HWY_EXPORT(dropEndedLanes);
 
-void scatterPaths(const WideScene& volume, const EventScene& scene, PathBatch& paths,
+void scatterPaths(const SimdMedium& medium, const SimdShading& shading, PathBatch& paths,
                   LightBatch& lights, Counters& counters) {
-  HWY_DYNAMIC_DISPATCH(scatterAll)(volume, scene, paths, lights, counters);
+  HWY_DYNAMIC_DISPATCH(scatterAll)(medium, shading, paths, lights, counters);
 }
 
 void dropEnded(PathBatch& paths) {

@@ -18,7 +18,7 @@ struct LightBatch {
 /// Handles the paths' collisions and escapes (rays.result): gathers the light met by the rays,
 /// replaces `lights` by one light for each path that scatters, sets new rays, and marks the paths
 /// that have ended.
-void scatterPaths(const WideScene& volume, const EventScene& scene, PathBatch& paths,
+void scatterPaths(const SimdMedium& medium, const SimdShading& shading, PathBatch& paths,
                   LightBatch& lights, Counters& counters);
 
 /// Takes the paths that have ended out of the batch.

@@ -13,8 +13,8 @@ bool isWide(const TransferFunction& transfer) {
 
 } // namespace
 
-bool EventScene::serves(const Grid& grid, const TransferFunction& transfer, const LightSet& lights,
-                        const Mixture* mixture) {
+bool SimdShading::serves(const Grid& grid, const TransferFunction& transfer, const LightSet& lights,
+                         const Mixture* mixture) {
   constexpr double farthest = 1e15; // mm; squares and areas stay far below the greatest float
   constexpr double brightest = 1e20;
   constexpr double smallest = 1e-3; // mm; radius of a sphere whose square of the sine is a float
@@ -40,9 +40,9 @@ bool EventScene::serves(const Grid& grid, const TransferFunction& transfer, cons
          std::ranges::all_of(lights.environments(), mapFits);
 }
 
-EventScene::EventScene(const Grid& grid, const TransferFunction& transfer, const LightSet& set,
-                       std::uint64_t mostBounces, bool normalsWanted, const Tint* tinted,
-                       const Mixture* mixture)
+SimdShading::SimdShading(const Grid& grid, const TransferFunction& transfer, const LightSet& set,
+                         std::uint64_t mostBounces, bool normalsWanted, const Tint* tinted,
+                         const Mixture* mixture)
     : hybrid(transfer.shading && transfer.extinction.span() > 0.0),
       surfaceRate(hybrid ? narrow(25.0 * std::pow(transfer.shading->gamma, 3)) : 0.0F),
       wantNormals(normalsWanted || transfer.shading),

@@ -1,5 +1,5 @@
 #pragma once
-// Scatterers and lights in the form that lanes' events read, in float; beside WideScene.
+// Scatterers and lights in the form that lanes' events read, in float; beside SimdMedium.
 
 #include "base/Narrow.h"
 #include "model/lights/LightSet.h"
@@ -16,16 +16,16 @@ namespace fenestra {
 
 /// "Local" space: world axes, mm, origin at the volume's centre: floats keep their digits wherever
 /// the volume lies.
-struct EventScene {
+struct SimdShading {
   /// True if floats suffice: no lobe narrower than the resolution of directions in float, and no
   /// light so far away or bright that squares overflow.
   static bool serves(const Grid& grid, const TransferFunction& transfer, const LightSet& lights,
                      const Mixture* mixture = nullptr);
 
   /// A view of environment maps and tint, which must outlive the object.
-  EventScene(const Grid& grid, const TransferFunction& transfer, const LightSet& lights,
-             std::uint64_t mostBounces, bool normalsWanted, const Tint* tinted = nullptr,
-             const Mixture* mixture = nullptr);
+  SimdShading(const Grid& grid, const TransferFunction& transfer, const LightSet& lights,
+              std::uint64_t mostBounces, bool normalsWanted, const Tint* tinted = nullptr,
+              const Mixture* mixture = nullptr);
 
   std::vector<BsdfParameters<float>> bsdfs; ///< one; or of each component of a mixture
   std::vector<SimdTable> albedos;           ///< one; or of each component of a mixture or tint

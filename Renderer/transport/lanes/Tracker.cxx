@@ -30,8 +30,8 @@ struct Queue {
 template <typename Voxel, bool wantRatio, bool isMixed>
 class Lanes {
 public:
-  Lanes(const WideScene& scene, Queue& queue)
-      : m_scene(scene), m_queue(queue), m_rays(queue.rays) {}
+  Lanes(const SimdMedium& medium, Queue& queue)
+      : m_medium(medium), m_queue(queue), m_rays(queue.rays) {}
 
   /// Advances all lanes: look-ups where enough lanes wait for one, then cells. Returns false if no
   /// ray is left. What is decided here was computed a step ago: while other sets took their turns
@@ -77,7 +77,7 @@ private:
     const Shuffle deal = Shuffle::expand(fresh);
     const auto dealt = [&](const auto& column) { return deal(load(&column[first])); };
     for (std::size_t axis = 0; axis < 3; ++axis)
-      m_axes[axis].where(fresh, DdaAxis::fromRay(m_scene.axes[axis], dealt(m_rays.origin[axis]),
+      m_axes[axis].where(fresh, DdaAxis::fromRay(m_medium.axes[axis], dealt(m_rays.origin[axis]),
                                                  dealt(m_rays.direction[axis])));
     m_t.setIf(fresh, 0.0F);
     m_end.setIf(fresh, dealt(m_rays.length));
@@ -94,8 +94,8 @@ private:
   /// reach, or leave these cells.
   HWY_INLINE void cross() {
     LaneCells cell;
-    const Float toFace = findCellExit(m_scene, m_axes, m_t, cell);
-    const Float stop = min(max(toFace, m_t) + m_scene.overshoot, m_end);
+    const Float toFace = findCellExit(m_medium, m_axes, m_t, cell);
+    const Float stop = min(max(toFace, m_t) + m_medium.overshoot, m_end);
     const Float depthToStop = (stop - m_t) * cell.majorant;
 
     const LaneMask going = m_busy.without(m_hit);
@@ -118,7 +118,7 @@ private:
   /// Point of each lane, index space.
   HWY_INLINE Float3 point() const {
     const auto along = [&](std::size_t axis) {
-      return fms(m_axes[axis].at(m_t), m_scene.axes[axis].cellEdge, 0.5F);
+      return fms(m_axes[axis].at(m_t), m_medium.axes[axis].cellEdge, 0.5F);
     };
     return {along(0), along(1), along(2)};
   }
@@ -129,8 +129,8 @@ private:
     m_hit = LaneMask::none();
     m_lookups += hit.count();
     const Float3 at = point();
-    const Float scalar = scalarAt<Voxel>(m_scene.field, at);
-    const LaneExtinctions all = extinctionsAt<isMixed>(m_scene, hit, at, scalar);
+    const Float scalar = scalarAt<Voxel>(m_medium.field, at);
+    const LaneExtinctions all = extinctionsAt<isMixed>(m_medium, hit, at, scalar);
     Float extinction = all.clipped;
     UInt counter = m_counter;
     const Float u = m_acceptance;
@@ -167,7 +167,7 @@ private:
     Float extinction = all.clipped;
     if constexpr (wantRatio) {
       cut = cut & (extinction > 0.0F);
-      if (m_scene.silhouette && !(m_scene.mixture && m_scene.mixture->hasFree)) {
+      if (m_medium.silhouette && !(m_medium.mixture && m_medium.mixture->hasFree)) {
         UInt after = counter;
         const LaneMask isReal = uniform(after) * m_majorant < extinction;
         counter.setIf(cut, after);
@@ -178,7 +178,7 @@ private:
       cut = cut & (u * m_majorant < (isMixed ? extinction + all.free : extinction));
     }
     if (cut.any())
-      extinction.setIf(cut, extinction * keep(m_scene, at, cut));
+      extinction.setIf(cut, extinction * keep(m_medium, at, cut));
     return extinction;
   }
 
@@ -193,7 +193,7 @@ private:
     }
   }
 
-  const WideScene& m_scene;
+  const SimdMedium& m_medium;
   Queue& m_queue;
   RayBatch& m_rays;
   LaneMask m_busy = LaneMask::none();
@@ -218,10 +218,11 @@ private:
 
 /// Two sets of lanes take turns: while one waits for memory, the other computes.
 template <typename Voxel, bool wantRatio, bool isMixed>
-void followBatch(const WideScene& scene, RayBatch& rays, const StopFlag& stop, Counters& counters) {
+void followBatch(const SimdMedium& medium, RayBatch& rays, const StopFlag& stop,
+                 Counters& counters) {
   Queue queue{rays};
   using Set = Lanes<Voxel, wantRatio, isMixed>;
-  std::array<Set, 2> sets{Set(scene, queue), Set(scene, queue)};
+  std::array<Set, 2> sets{Set(medium, queue), Set(medium, queue)};
   bool isBusy = true;
   for (std::uint32_t steps = 1; isBusy; ++steps) {
     if (steps % stepsBetweenLooks == 0 && stop.load(std::memory_order_relaxed))
@@ -241,13 +242,13 @@ std::variant<std::false_type, std::true_type> constant(bool is) {
   return std::false_type();
 }
 
-void followAll(const WideScene& scene, RayBatch& rays, bool wantRatio, const StopFlag& stop,
+void followAll(const SimdMedium& medium, RayBatch& rays, bool wantRatio, const StopFlag& stop,
                Counters& counters) {
   std::visit(
       [&]<typename Voxel>(const Voxel*, auto isRatio, auto isMixed) {
-        followBatch<Voxel, isRatio, isMixed>(scene, rays, stop, counters);
+        followBatch<Voxel, isRatio, isMixed>(medium, rays, stop, counters);
       },
-      scene.voxels, constant(wantRatio), constant(scene.mixture.has_value()));
+      medium.voxels, constant(wantRatio), constant(medium.mixture.has_value()));
 }
 
 } // namespace
@@ -260,11 +261,11 @@ namespace fenestra {
 HWY_EXPORT(followAll);
 
 void SimdTracker::sampleCollisions(RayBatch& rays, Counters& counters) const {
-  HWY_DYNAMIC_DISPATCH(followAll)(m_scene, rays, false, m_stop, counters);
+  HWY_DYNAMIC_DISPATCH(followAll)(m_medium, rays, false, m_stop, counters);
 }
 
 void SimdTracker::estimateTransmittances(RayBatch& rays, Counters& counters) const {
-  HWY_DYNAMIC_DISPATCH(followAll)(m_scene, rays, true, m_stop, counters);
+  HWY_DYNAMIC_DISPATCH(followAll)(m_medium, rays, true, m_stop, counters);
 }
 
 } // namespace fenestra

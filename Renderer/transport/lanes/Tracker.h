@@ -72,7 +72,7 @@ public:
               const MajorantGrid& majorants, const Clip& clip, const ContextStyle* style = nullptr,
               const StopFlag& stop = neverStopped, const Mixture* mixture = nullptr);
 
-  const WideScene& scene() const { return m_scene; }
+  const SimdMedium& medium() const { return m_medium; }
 
   /// result: distance (mm) from the origin to the next real collision, or infinity; and the scalar
   /// there.
@@ -82,7 +82,7 @@ public:
   void estimateTransmittances(RayBatch& rays, Counters& counters) const;
 
 private:
-  WideScene m_scene;
+  SimdMedium m_medium;
   const StopFlag& m_stop;
 };
 

@@ -5,7 +5,7 @@
 namespace fenestra {
 namespace {
 
-WideScene::DepthAxis wide(const DepthAxis& axis) {
+SimdMedium::DepthAxis wide(const DepthAxis& axis) {
   return {narrow(1.0 / axis.pitch),
           narrow(axis.start),
           static_cast<float>(axis.inside - 1),
@@ -42,61 +42,61 @@ std::vector<const ScalarFunction*> extinctionsOf(const TransferFunction& transfe
   return extinctions;
 }
 
-void setCells(WideScene& scene, const MajorantGrid& majorants, const Grid& grid) {
-  scene.cells = SimdMajorants(majorants);
-  const Size3& count = scene.cells.count;
+void setCells(SimdMedium& medium, const MajorantGrid& majorants, const Grid& grid) {
+  medium.cells = SimdMajorants(majorants);
+  const Size3& count = medium.cells.count;
   std::int64_t cellStride = 1;
   for (int axis = 0; axis < 3; ++axis) {
-    const std::int64_t edge = scene.cells.merged * majorants.edge()[axis];
-    scene.axes[static_cast<std::size_t>(axis)] = {
+    const std::int64_t edge = medium.cells.merged * majorants.edge()[axis];
+    medium.axes[static_cast<std::size_t>(axis)] = {
         static_cast<float>(edge), narrow(1.0 / static_cast<double>(edge)),
         std::nextafter(static_cast<float>(count[axis]), 0.0F), static_cast<float>(cellStride)};
-    scene.firstCell += static_cast<float>(cellStride);
+    medium.firstCell += static_cast<float>(cellStride);
     cellStride *= count[axis] + 2;
   }
-  scene.lastCell = static_cast<float>(scene.cells.codes.size() - 1);
-  scene.overshoot = narrow(0.5 * MajorantGrid::margin / mostVoxelsPerMm(grid));
+  medium.lastCell = static_cast<float>(medium.cells.codes.size() - 1);
+  medium.overshoot = narrow(0.5 * MajorantGrid::margin / mostVoxelsPerMm(grid));
 }
 
-void setClip(WideScene& scene, const Clip& clip, const Grid& grid) {
+void setClip(SimdMedium& medium, const Clip& clip, const Grid& grid) {
   const auto* plane = std::get_if<ClipPlane>(&clip);
   const auto* depth = std::get_if<ClipDepth>(&clip);
   if (!plane && !depth)
     return;
   const ClipEdge& edge = plane ? plane->edge : depth->edge;
-  scene.ghost = narrow(edge.ghost);
-  scene.softness = narrow(edge.softness);
-  scene.perSoftness = edge.softness > 0.0 ? narrow(1.0 / edge.softness) : 0.0F;
-  scene.cutSlope = edge.softness > 0.0 ? narrow(cutShading / edge.softness) : 0.0F;
+  medium.ghost = narrow(edge.ghost);
+  medium.softness = narrow(edge.softness);
+  medium.perSoftness = edge.softness > 0.0 ? narrow(1.0 / edge.softness) : 0.0F;
+  medium.cutSlope = edge.softness > 0.0 ? narrow(cutShading / edge.softness) : 0.0F;
   const Camera& camera = plane ? plane->camera : depth->camera;
   const Vec3& eye = camera.pose().position;
-  scene.perspective = camera.pose().projection == Projection::perspective;
-  scene.targetDepth = narrow(camera.targetDepth());
-  scene.toView = {row(grid, camera.right(), eye, 0.0), row(grid, camera.up(), eye, 0.0),
-                  row(grid, camera.forward(), eye, -camera.targetDepth())};
-  scene.fromView = affineRows(Affine(Mat3(camera.right(), camera.up(), camera.forward())));
+  medium.perspective = camera.pose().projection == Projection::perspective;
+  medium.targetDepth = narrow(camera.targetDepth());
+  medium.toView = {row(grid, camera.right(), eye, 0.0), row(grid, camera.up(), eye, 0.0),
+                   row(grid, camera.forward(), eye, -camera.targetDepth())};
+  medium.fromView = affineRows(Affine(Mat3(camera.right(), camera.up(), camera.forward())));
   if (plane) {
-    scene.clipKind = WideScene::ClipKind::plane;
-    scene.cutNormal = narrow3(-plane->normal.normalized());
-    scene.toPlane = row(grid, plane->normal.normalized(), plane->point, 0.0);
+    medium.clipKind = SimdMedium::ClipKind::plane;
+    medium.cutNormal = narrow3(-plane->normal.normalized());
+    medium.toPlane = row(grid, plane->normal.normalized(), plane->point, 0.0);
     return;
   }
-  scene.clipKind = depth->lookup == ClipDepth::Lookup::linear ? WideScene::ClipKind::depthLinear
-                                                              : WideScene::ClipKind::depthNearest;
-  scene.cutNormal = narrow3(camera.forward());
-  scene.depthX = wide(depth->buffer->xAxis());
-  scene.depthY = wide(depth->buffer->yAxis());
-  scene.depths = depth->buffer->depthsFromReference().data();
-  scene.depthColumns = static_cast<std::int32_t>(depth->buffer->columns());
-  scene.silhouette = depth->silhouette.get();
+  medium.clipKind = depth->lookup == ClipDepth::Lookup::linear ? SimdMedium::ClipKind::depthLinear
+                                                               : SimdMedium::ClipKind::depthNearest;
+  medium.cutNormal = narrow3(camera.forward());
+  medium.depthX = wide(depth->buffer->xAxis());
+  medium.depthY = wide(depth->buffer->yAxis());
+  medium.depths = depth->buffer->depthsFromReference().data();
+  medium.depthColumns = static_cast<std::int32_t>(depth->buffer->columns());
+  medium.silhouette = depth->silhouette.get();
 }
 
-void setContext(WideScene& scene, const ContextStyle& style, const Grid& grid) {
+void setContext(SimdMedium& medium, const ContextStyle& style, const Grid& grid) {
   const Mask& focus = *style.focus;
-  scene.context = {fieldOf(focus.voxels.data(), focus.grid),
-                   affineRows(focus.grid.worldToIndex * grid.indexToWorld),
-                   0.5F * static_cast<float>(focus.full), narrow(style.extinction),
-                   narrow(style.saturation)};
+  medium.context = {fieldOf(focus.voxels.data(), focus.grid),
+                    affineRows(focus.grid.worldToIndex * grid.indexToWorld),
+                    0.5F * static_cast<float>(focus.full), narrow(style.extinction),
+                    narrow(style.saturation)};
 }
 
 } // namespace
@@ -139,21 +139,21 @@ SimdTracker::SimdTracker(const Volume& volume, const Domain& domain,
                          const Mixture* mixture)
     : m_stop(stop) {
   const auto setVoxels = [&](const auto& voxels) {
-    m_scene.voxels = voxels.data();
-    m_scene.field = fieldOf(voxels.data(), volume.grid);
+    m_medium.voxels = voxels.data();
+    m_medium.field = fieldOf(voxels.data(), volume.grid);
   };
   std::visit(setVoxels, volume.voxels);
-  setCells(m_scene, majorants, volume.grid);
-  m_scene.extinctions = SimdLines(extinctionsOf(transfer, mixture));
+  setCells(m_medium, majorants, volume.grid);
+  m_medium.extinctions = SimdLines(extinctionsOf(transfer, mixture));
   if (mixture)
-    m_scene.mixture.emplace(*mixture, volume.grid);
-  m_scene.lower = narrow3(domain.box().lower);
-  m_scene.upper = narrow3(domain.box().upper);
+    m_medium.mixture.emplace(*mixture, volume.grid);
+  m_medium.lower = narrow3(domain.box().lower);
+  m_medium.upper = narrow3(domain.box().upper);
   if (const Affine* toCrop = domain.toCrop())
-    m_scene.toCrop = affineRows(*toCrop);
-  setClip(m_scene, clip, volume.grid);
+    m_medium.toCrop = affineRows(*toCrop);
+  setClip(m_medium, clip, volume.grid);
   if (style)
-    setContext(m_scene, *style, volume.grid);
+    setContext(m_medium, *style, volume.grid);
 }
 
 } // namespace fenestra

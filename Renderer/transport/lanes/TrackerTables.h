@@ -23,7 +23,7 @@ struct SimdField {
 };
 
 /// Plain numbers and pointers, in float and index space. Built by SimdTracker.
-struct WideScene {
+struct SimdMedium {
   /// First voxel, of Voxels' types.
   using FirstVoxel =
       std::variant<const std::uint8_t*, const std::int16_t*, const std::uint16_t*, const float*>;

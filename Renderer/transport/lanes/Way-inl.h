@@ -14,7 +14,7 @@ struct DdaAxis {
   }
 
   /// Axis of rays given in index space.
-  static HWY_INLINE DdaAxis fromRay(const WideScene::Axis& axis, Float origin, Float direction) {
+  static HWY_INLINE DdaAxis fromRay(const SimdMedium::Axis& axis, Float origin, Float direction) {
     DdaAxis result;
     result.speed = direction * axis.cellsPerVoxel;
     // Clamped below the last face, so that a ray lying in that face starts inside the last cell.
@@ -36,7 +36,7 @@ struct DdaAxis {
 };
 
 /// t at which rays have left the cells in which they are with their reach; `cell`: these.
-HWY_INLINE Float findCellExit(const WideScene& scene, const DdaAxis (&axes)[3], Float t,
+HWY_INLINE Float findCellExit(const SimdMedium& scene, const DdaAxis (&axes)[3], Float t,
                               LaneCells& cell) {
   const Float x = floor(axes[0].at(t));
   const Float y = floor(axes[1].at(t));

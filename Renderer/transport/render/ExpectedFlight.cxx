@@ -92,7 +92,7 @@ Raster marchPixels(const Camera& camera, const March& march) {
 template <typename Voxel, typename March>
 class DirectLight {
 public:
-  DirectLight(const RenderScene& scene, const Medium<Voxel>& medium, const March& march)
+  DirectLight(const SceneView& scene, const Medium<Voxel>& medium, const March& march)
       : m_scene(scene), m_medium(medium), m_march(march) {}
 
   Plane compute(const Raster& raster) const {
@@ -184,7 +184,7 @@ private:
     return ShadowRay{{at.point, light->direction}, light->distance, radiance};
   }
 
-  const RenderScene& m_scene;
+  const SceneView& m_scene;
   const Medium<Voxel>& m_medium;
   const March& m_march;
 };
@@ -208,7 +208,7 @@ FeatureBuffers toFeatures(const Raster& raster) {
 }
 
 template <typename Voxel, typename March>
-FeatureBuffers marchFeatures(const RenderScene& scene, const Medium<Voxel>& medium,
+FeatureBuffers marchFeatures(const SceneView& scene, const Medium<Voxel>& medium,
                              const March& march) {
   const Raster raster = marchPixels(scene.camera, march);
   FeatureBuffers features = toFeatures(raster);
@@ -218,7 +218,7 @@ FeatureBuffers marchFeatures(const RenderScene& scene, const Medium<Voxel>& medi
 
 } // namespace
 
-FeatureBuffers computeFeatures(const RenderScene& scene) {
+FeatureBuffers computeFeatures(const SceneView& scene) {
   if (!lanesServe(scene))
     return computeScalarFeatures(scene);
   return withMedium(scene, [&]<typename Voxel>(const Medium<Voxel>& medium, const Tracker<Voxel>&) {
@@ -226,7 +226,7 @@ FeatureBuffers computeFeatures(const RenderScene& scene) {
   });
 }
 
-FeatureBuffers computeScalarFeatures(const RenderScene& scene) {
+FeatureBuffers computeScalarFeatures(const SceneView& scene) {
   return withMedium(scene, [&]<typename Voxel>(const Medium<Voxel>& medium, const Tracker<Voxel>&) {
     return marchFeatures(scene, medium, ScalarFeatureMarcher<Voxel>(scene, medium));
   });

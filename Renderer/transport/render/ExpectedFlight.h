@@ -26,9 +26,9 @@ struct FeatureBuffers {
 /// through the middle of a pixel, or, where that differs from a neighbour's by more than fixed
 /// thresholds, the mean of 2x2: a part of a picture is marched as the whole is, but for its border.
 /// Uses the calling arena's threads; independent of their number.
-FeatureBuffers computeFeatures(const RenderScene& scene);
+FeatureBuffers computeFeatures(const SceneView& scene);
 
 /// The same, ray by ray (transport/readable/March.h): for scenes that lanes do not serve.
-FeatureBuffers computeScalarFeatures(const RenderScene& scene);
+FeatureBuffers computeScalarFeatures(const SceneView& scene);
 
 } // namespace fenestra

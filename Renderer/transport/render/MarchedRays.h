@@ -27,7 +27,7 @@ struct RasterPoint {
 template <typename Voxel>
 class ScalarFeatureMarcher {
 public:
-  ScalarFeatureMarcher(const RenderScene& scene, const Medium<Voxel>& medium)
+  ScalarFeatureMarcher(const SceneView& scene, const Medium<Voxel>& medium)
       : m_scene(scene),
         m_march({scene.volume.grid, scene.crop}, medium, scene.majorants, scene.clip) {}
 
@@ -50,19 +50,19 @@ public:
   }
 
 private:
-  const RenderScene& m_scene;
+  const SceneView& m_scene;
   RayMarcher<Voxel> m_march;
 };
 
 /// Rays of a picture, marched in lanes, as ScalarFeatureMarcher.
 class SimdFeatureMarcher {
 public:
-  explicit SimdFeatureMarcher(const RenderScene& scene)
+  explicit SimdFeatureMarcher(const SceneView& scene)
       : m_scene(scene),
         m_domain(scene.volume.grid, scene.crop),
         m_medium(SimdTracker(scene.volume, m_domain, scene.transfer, scene.majorants, scene.clip,
                              scene.style, neverStopped, scene.mixture)
-                     .scene()),
+                     .medium()),
         m_shading(scene.volume.grid, scene.transfer, scene.lights, 0, true, scene.tint,
                   scene.mixture) {
     m_medium.silhouette = nullptr; // exact surfaces cost more than features gain
@@ -111,10 +111,10 @@ private:
     return primary;
   }
 
-  const RenderScene& m_scene;
+  const SceneView& m_scene;
   Domain m_domain;
-  WideScene m_medium;
-  EventScene m_shading;
+  SimdMedium m_medium;
+  SimdShading m_shading;
 };
 
 } // namespace fenestra

@@ -145,7 +145,7 @@ bool isConstantInPixels(const Background& background, const LightSet& lights) {
 }
 
 /// Pixels of which one sample is enough; the film is told.
-EmptyPixels emptyPixels(const RenderScene& scene, const RenderSettings& settings, Film& film) {
+EmptyPixels emptyPixels(const SceneView& scene, const RenderSettings& settings, Film& film) {
   EmptyPixels empty = isConstantInPixels(settings.path.background, scene.lights)
                           ? EmptyPixels(scene.camera, scene.majorants)
                           : EmptyPixels();
@@ -264,7 +264,7 @@ bool isAtLastPass(const RenderResult& result) {
 
 template <typename Tracer>
 RenderResult renderPasses(const Tracer& tracer, const std::string& arithmetic,
-                          const RenderScene& scene, const RenderSettings& settings,
+                          const SceneView& scene, const RenderSettings& settings,
                           RenderMonitor& monitor, std::optional<RenderResult> begun) {
   const Sampler numbers(settings.sampling, settings.seed);
   RenderResult result = begun ? std::move(*begun) : emptyResult(scene.camera, numbers);
@@ -315,7 +315,7 @@ RenderResult renderPasses(const Tracer& tracer, const std::string& arithmetic,
 }
 
 template <typename Tracer>
-void renderEachLease(const Tracer& tracer, const RenderScene& scene, const RenderSettings& settings,
+void renderEachLease(const Tracer& tracer, const SceneView& scene, const RenderSettings& settings,
                      RenderMonitor& monitor,
                      const std::function<std::optional<TileLease>(RenderResult&)>& next) {
   const Sampler numbers(settings.sampling, settings.seed);
@@ -332,13 +332,13 @@ void renderEachLease(const Tracer& tracer, const RenderScene& scene, const Rende
 
 /// Calls work(tracer, arithmetic) with rays in lanes.
 template <typename Work>
-auto traceSimd(const RenderScene& scene, const RenderSettings& settings, const StopFlag& stop,
+auto traceSimd(const SceneView& scene, const RenderSettings& settings, const StopFlag& stop,
                Work&& work) {
   const Domain domain(scene.volume.grid, scene.crop);
   const SimdTracker tracker(scene.volume, domain, scene.transfer, scene.majorants, scene.clip,
                             scene.style, stop, scene.mixture);
-  const EventScene shading(scene.volume.grid, scene.transfer, scene.lights, settings.path.bounces,
-                           settings.path.wantNormals, scene.tint, scene.mixture);
+  const SimdShading shading(scene.volume.grid, scene.transfer, scene.lights, settings.path.bounces,
+                            settings.path.wantNormals, scene.tint, scene.mixture);
   const CameraTable table(domain, scene.camera);
   const CameraRays cameraRays(scene.camera, cameraRayClip(scene.clip, scene.mixture), scene.lights,
                               settings.path.background);
@@ -347,7 +347,7 @@ auto traceSimd(const RenderScene& scene, const RenderSettings& settings, const S
 
 /// Calls work(tracer, arithmetic) with the readable estimator.
 template <typename Work>
-auto traceScalar(const RenderScene& scene, const RenderSettings& settings, const StopFlag& stop,
+auto traceScalar(const SceneView& scene, const RenderSettings& settings, const StopFlag& stop,
                  Work&& work) {
   const auto scalar = [&]<typename Voxel>(const Medium<Voxel>& medium,
                                           const Tracker<Voxel>& tracker) {
@@ -359,13 +359,13 @@ auto traceScalar(const RenderScene& scene, const RenderSettings& settings, const
   return withMedium(scene, scalar, stop);
 }
 
-bool isSimdUsed(const RenderScene& scene, const RenderSettings& settings) {
+bool isSimdUsed(const SceneView& scene, const RenderSettings& settings) {
   return settings.integrator == Integrator::simd && lanesServe(scene);
 }
 
 /// Calls work(tracer, arithmetic) in the threads that the settings allow.
 template <typename Work>
-auto traceScene(const RenderScene& scene, const RenderSettings& settings, const StopFlag& stop,
+auto traceScene(const SceneView& scene, const RenderSettings& settings, const StopFlag& stop,
                 Work&& work) {
   const int cores = tbb::info::default_concurrency(); // TBB complains about more
   tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
@@ -377,25 +377,25 @@ auto traceScene(const RenderScene& scene, const RenderSettings& settings, const 
 
 } // namespace
 
-bool lanesServe(const RenderScene& scene) {
+bool lanesServe(const SceneView& scene) {
   return SimdTracker::serves(scene.volume, scene.transfer, scene.mixture) &&
-         EventScene::serves(scene.volume.grid, scene.transfer, scene.lights, scene.mixture) &&
+         SimdShading::serves(scene.volume.grid, scene.transfer, scene.lights, scene.mixture) &&
          (!scene.tint || SimdLabelWeights::serves(*scene.tint->weights));
 }
 
-std::string targetOf(const RenderScene& scene, const RenderSettings& settings) {
+std::string targetOf(const SceneView& scene, const RenderSettings& settings) {
   return isSimdUsed(scene, settings) ? instructionSet() : "scalar";
 }
 
-RenderResult render(const RenderScene& scene, const RenderSettings& settings,
-                    RenderMonitor& monitor, std::optional<RenderResult> begun) {
+RenderResult render(const SceneView& scene, const RenderSettings& settings, RenderMonitor& monitor,
+                    std::optional<RenderResult> begun) {
   return traceScene(
       scene, settings, monitor.stop, [&](const auto& tracer, const std::string& arithmetic) {
         return renderPasses(tracer, arithmetic, scene, settings, monitor, std::move(begun));
       });
 }
 
-void renderLeases(const RenderScene& scene, const RenderSettings& settings, RenderMonitor& monitor,
+void renderLeases(const SceneView& scene, const RenderSettings& settings, RenderMonitor& monitor,
                   const std::function<std::optional<TileLease>(RenderResult&)>& next) {
   traceScene(scene, settings, monitor.stop, [&](const auto& tracer, const std::string&) {
     renderEachLease(tracer, scene, settings, monitor, next);

@@ -19,7 +19,7 @@
 namespace fenestra {
 
 /// Data that transport reads; all must outlive the render.
-struct RenderScene {
+struct SceneView {
   const Volume& volume;
   const TransferFunction& transfer;
   const MajorantGrid& majorants;
@@ -34,7 +34,7 @@ struct RenderScene {
 
 /// Calls work(medium, tracker) for the volume's storage type.
 template <typename Work>
-auto withMedium(const RenderScene& scene, Work&& work, const StopFlag& stop = neverStopped) {
+auto withMedium(const SceneView& scene, Work&& work, const StopFlag& stop = neverStopped) {
   return std::visit(
       [&](const auto& voxels) {
         using Voxel = typename std::decay_t<decltype(voxels)>::value_type;
@@ -127,17 +127,17 @@ struct RenderResult {
   std::string target = "scalar";
 };
 
-/// True if SIMD lanes serve the scene (SimdTracker::serves, EventScene::serves).
-bool lanesServe(const RenderScene& scene);
+/// True if SIMD lanes serve the scene (SimdTracker::serves, SimdShading::serves).
+bool lanesServe(const SceneView& scene);
 
 /// RenderResult::target of a render.
-std::string targetOf(const RenderScene& scene, const RenderSettings& settings);
+std::string targetOf(const SceneView& scene, const RenderSettings& settings);
 
 /// `begun`: result of a render of the same scene and settings to go on from, but for threads and
 /// the limits of samples, time and noise: at least begun->begunSamples samples, and planned by
 /// noise or not as before if that is beyond the pilot.
-RenderResult render(const RenderScene& scene, const RenderSettings& settings,
-                    RenderMonitor& monitor, std::optional<RenderResult> begun = {});
+RenderResult render(const SceneView& scene, const RenderSettings& settings, RenderMonitor& monitor,
+                    std::optional<RenderResult> begun = {});
 
 /// Tiles that another process lends, and the stages of the plan between which their pixels lack
 /// samples (SamplePlan::at).
@@ -150,7 +150,7 @@ struct TileLease {
 /// loan's tiles from result.film, with result.counters, unless the stop flag is set; it puts the
 /// next one's pixels there, and the plan into result.last. It returns the next loan, or nothing at
 /// the end.
-void renderLeases(const RenderScene& scene, const RenderSettings& settings, RenderMonitor& monitor,
+void renderLeases(const SceneView& scene, const RenderSettings& settings, RenderMonitor& monitor,
                   const std::function<std::optional<TileLease>(RenderResult&)>& next);
 
 } // namespace fenestra

@@ -88,7 +88,7 @@ int compareWithCommandLine(vtkMRMLScene* scene, Node* render, const QString& pro
     std::cerr << child.readAllStandardError().toStdString();
   CHECK_INT(child.exitCode(), 0);
 
-  const FenestraScene::Image line = FenestraScene::readNrrd((folder + "/line.nrrd").toStdString());
+  const SlicerExport::Image line = SlicerExport::readNrrd((folder + "/line.nrrd").toStdString());
   auto* radiance =
       vtkMRMLVectorVolumeNode::SafeDownCast(render->GetNodeReference(Node::RadianceRole));
   CHECK_NOT_NULL(radiance);

@@ -12,8 +12,8 @@ namespace {
 using Node = vtkMRMLFenestraRenderNode;
 
 /// Valid value of a flag of this kind.
-std::string example(FenestraScene::FlagKind kind) {
-  using Kind = FenestraScene::FlagKind;
+std::string example(SlicerExport::FlagKind kind) {
+  using Kind = SlicerExport::FlagKind;
   switch (kind) {
   case Kind::text:
     return "a,b c";
@@ -109,7 +109,7 @@ int testWithheld() {
 /// Every flag, and the measures, written with the node's scene and read again.
 int testEveryFlag(Node* read) {
   std::map<std::string, std::string> all;
-  for (const FenestraScene::Flag& flag : FenestraScene::flags())
+  for (const SlicerExport::Flag& flag : SlicerExport::flags())
     all[flag.name] = example(flag.kind);
   read->SetFlags(all);
   CHECK_BOOL(read->GetFlags() == all, true);

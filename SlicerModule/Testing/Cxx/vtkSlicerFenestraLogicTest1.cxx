@@ -28,7 +28,7 @@ std::string complaint(vtkSlicerFenestraLogic* logic, Node* node) {
   try {
     logic->Snapshot(node, folder);
     return {};
-  } catch (const FenestraScene::Complaint& said) {
+  } catch (const SlicerExport::Complaint& said) {
     return said.what();
   }
 }
@@ -71,7 +71,7 @@ int testSubject(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, Node* settin
   vtkMRMLScalarVolumeNode* volume = FenestraTesting::addVolume(scene);
   settings->SetNodeReferenceID(Node::VolumeRole, volume->GetID());
   CHECK_STD_STRING(complaint(logic, settings), "");
-  FenestraScene::Contents contents = logic->Snapshot(settings, folder);
+  SlicerExport::Contents contents = logic->Snapshot(settings, folder);
   CHECK_STD_STRING(contents.volume.type, "int16");
   CHECK_BOOL(contents.volume.data.get() == volume->GetImageData()->GetScalarPointer(), true);
   CHECK_BOOL(contents.property.empty(), true);
@@ -99,7 +99,7 @@ int testSubject(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, Node* settin
   CHECK_BOOL(contents.segmentationKey != before, true);
   const auto named = vtkSlicerFenestraLogic::GetSegments(settings);
   CHECK_INT(static_cast<int>(named.size()), 2); // also the empty one
-  for (const FenestraScene::Segment& one : {contents.segmentation.segments[0], named[0]}) {
+  for (const SlicerExport::Segment& one : {contents.segmentation.segments[0], named[0]}) {
     CHECK_STD_STRING(one.id, ids[0]);
     CHECK_STD_STRING(one.tags, "TerminologyEntry:a~SCT^1^b|");
     CHECK_DOUBLE(one.color[0], 0.25);
