@@ -59,12 +59,12 @@ void addContrast(Json& json, const PreparedScene& scene) {
   if (tint)
     entry.update(Json{{"segment", tint->segment},
                       {"neighbour", tint->neighbour},
-                      {"contextSaturation", tint->knobs.contextSaturation},
-                      {"contextLightness", tint->knobs.contextLightness},
-                      {"focusChroma", tint->knobs.focusChroma},
-                      {"focusLightness", tint->knobs.focusLightness},
-                      {"focusAccent", tint->knobs.focusAccent},
-                      {"accent", accents[tint->knobs.accent].name}});
+                      {"contextSaturation", tint->adjustment.contextSaturation},
+                      {"contextLightness", tint->adjustment.contextLightness},
+                      {"focusChroma", tint->adjustment.focusChroma},
+                      {"focusLightness", tint->adjustment.focusLightness},
+                      {"focusAccent", tint->adjustment.focusAccent},
+                      {"accent", accentColors[tint->adjustment.accent].name}});
 }
 
 /// Adds the measures of the clip.

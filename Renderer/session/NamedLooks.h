@@ -56,7 +56,7 @@ struct NamedMaterials {
   std::vector<std::string> files = {}; ///< files read; empty: the library alone
 
   /// True if focus and context get colours of their own (TintContrast.h).
-  bool setsOffFocus() const {
+  bool hasColorAdjustment() const {
     return table.hasContrast || table.context.saturation || table.context.lightness;
   }
 };

@@ -76,24 +76,24 @@ std::string PreparedScene::wantedMaterials(const Handle<SegmentsInput>& segments
   const RenderRequest& r = m_request;
   if (r.materials)
     return *r.materials;
-  const bool isSetOff = !r.focus.empty() && !r.focusLook.contextSaturation;
-  return isSetOff && isSomeKnown(segments->segmentation, r.focus) ? autoMaterials : noMaterials;
+  const bool isAdjusted = !r.focus.empty() && !r.focusLook.contextSaturation;
+  return isAdjusted && isSomeKnown(segments->segmentation, r.focus) ? autoMaterials : noMaterials;
 }
 
 void PreparedScene::makeTint(const std::string& name) {
   const RenderRequest& r = m_request;
   const auto materials = m_materials.get(name);
-  const bool setsOff = materials->setsOffFocus();
+  const bool isAdjusted = materials->hasColorAdjustment();
   const auto there = m_segmentsThere.get(m_segments.result());
   if (materials->table.findsSkin)
     m_skin.get(m_volume.result());
   const auto plan = m_plan.get(m_segments.result(), there, materials, r.materialChanges,
-                               setsOff ? r.focus : std::vector<std::string>(), m_skin.result());
+                               isAdjusted ? r.focus : std::vector<std::string>(), m_skin.result());
   const auto weights = m_labelWeights.get(m_segments.result(), plan->parts, m_skin.result(),
                                           r.focusLook.shaping.smoothing, volume().grid);
   const auto look = m_look.result();
   const auto tint = m_tint.get(plan, weights, look->transfer.g);
-  if (!setsOff || !focus())
+  if (!isAdjusted || !focus())
     return;
   const auto borders =
       m_borders.get(m_volume.result(), m_focus.result(), look, weights, plan->isFocus);

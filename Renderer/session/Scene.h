@@ -116,8 +116,8 @@ private:
   CachedStage<&tintOf> m_tint;
   CachedStage<&bordersOf>
       m_borders; ///< this and the next two: unused unless materials set off a focus
-  CachedStage<&tintContrastOf> m_tintContrast;
-  CachedStage<&contrastedTintOf> m_contrastedTint;
+  CachedStage<&adjustTintContrast> m_tintContrast;
+  CachedStage<&adjustTint> m_contrastedTint;
   CachedStage<&makeMixture> m_mixture; ///< unused where segments differ in colour alone
   CachedStage<&focusWarnings> m_focusWarnings;
   CachedStage<&bestView> m_view; ///< used by automatic views alone

@@ -98,7 +98,7 @@ std::vector<bool> focusOf(const Segmentation& segmentation, const NamedMaterials
     throw inputError(materials.source,
                      "context: is what is not focus; add --focus, or leave it out");
   std::vector<bool> isFocus(segmentation.segments().size());
-  if (materials.setsOffFocus())
+  if (materials.hasColorAdjustment())
     for (const std::string& selector : focus)
       isFocus[segmentation.find(selector)] = true;
   return isFocus;

@@ -289,11 +289,11 @@ TintBorders bordersOf(const Read& volume, const Focus& focus, const Handle<Look>
   return componentBorders(*focus->mask, volume->volume, look->transfer, *weights, isFocus);
 }
 
-TintContrast tintContrastOf(const Handle<TintBorders>& borders, const Handle<TintPlan>& plan,
-                            const Handle<Tint>& tint, const Handle<NamedMaterials>& materials,
-                            const Handle<Look>& look, const std::optional<double>& saturation) {
-  return tintContrast(*borders, *plan, *tint, materials->table, look->transfer,
-                      saturation.value_or(1.0));
+TintContrast adjustTintContrast(const Handle<TintBorders>& borders, const Handle<TintPlan>& plan,
+                                const Handle<Tint>& tint, const Handle<NamedMaterials>& materials,
+                                const Handle<Look>& look, const std::optional<double>& saturation) {
+  return adjustContrast(*borders, *plan, *tint, materials->table, look->transfer,
+                        saturation.value_or(1.0));
 }
 
 Mixture makeMixture(const Handle<TintPlan>& plan, const Handle<Tint>& tint,
@@ -301,9 +301,9 @@ Mixture makeMixture(const Handle<TintPlan>& plan, const Handle<Tint>& tint,
   return mixtureOf(*plan, *tint, look->transfer);
 }
 
-Tint contrastedTintOf(const Handle<Tint>& tint, const Handle<TintPlan>& plan,
-                      const Handle<TintContrast>& contrast, const Handle<Look>& look) {
-  return contrastedTint(*tint, *plan, contrast->knobs, look->transfer);
+Tint adjustTint(const Handle<Tint>& tint, const Handle<TintPlan>& plan,
+                const Handle<TintContrast>& contrast, const Handle<Look>& look) {
+  return applyAdjustment(*tint, *plan, contrast->adjustment, look->transfer);
 }
 
 FocusContrast contrastOf(const Read& volume, const Focus& focus, const Handle<Look>& look,

@@ -104,19 +104,19 @@ TintBorders bordersOf(const Read& volume, const Focus& focus, const Handle<Look>
                       const Handle<LabelWeights>& weights, const std::vector<bool>& isFocus);
 
 /// Knobs of the tint. `saturation`: of the request.
-TintContrast tintContrastOf(const Handle<TintBorders>& borders, const Handle<TintPlan>& plan,
-                            const Handle<Tint>& tint, const Handle<NamedMaterials>& materials,
-                            const Handle<Look>& look, const std::optional<double>& saturation);
+TintContrast adjustTintContrast(const Handle<TintBorders>& borders, const Handle<TintPlan>& plan,
+                                const Handle<Tint>& tint, const Handle<NamedMaterials>& materials,
+                                const Handle<Look>& look, const std::optional<double>& saturation);
 
 /// Only where isTint() is false.
 Mixture makeMixture(const Handle<TintPlan>& plan, const Handle<Tint>& tint,
                     const Handle<Look>& look);
 
-Tint contrastedTintOf(const Handle<Tint>& tint, const Handle<TintPlan>& plan,
-                      const Handle<TintContrast>& contrast, const Handle<Look>& look);
+Tint adjustTint(const Handle<Tint>& tint, const Handle<TintPlan>& plan,
+                const Handle<TintContrast>& contrast, const Handle<Look>& look);
 
 /// `saturation`: of the request. `tint`: null without materials; with them nothing is paled
-/// unasked, and what contrast there is tintContrastOf tells.
+/// unasked, and what contrast there is adjustTintContrast tells.
 FocusContrast contrastOf(const Read& volume, const Focus& focus, const Handle<Look>& look,
                          const Handle<Tint>& tint, const std::optional<double>& saturation);
 

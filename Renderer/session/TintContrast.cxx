@@ -12,22 +12,22 @@
 namespace fenestra {
 namespace {
 
-bool isShown(const Rgb& color) {
+bool isInGamut(const Rgb& color) {
   return color.minCoeff() >= 0.0 && color.maxCoeff() <= whitest;
 }
 
 /// Colour, linear, with as much of its chroma as the display has.
-Rgb shownColor(const Lab& lab) {
-  constexpr int halvings = 20;
+Rgb reduceToGamut(const Lab& lab) {
+  constexpr int bisections = 20;
   const auto withChroma = [&](double fraction) {
     return linearOf({lab.L, fraction * lab.a, fraction * lab.b});
   };
   double least = 0.0, most = 1.0;
-  if (isShown(withChroma(most)))
+  if (isInGamut(withChroma(most)))
     return withChroma(most);
-  for (int i = 0; i < halvings; ++i) {
+  for (int i = 0; i < bisections; ++i) {
     const double middle = 0.5 * (least + most);
-    (isShown(withChroma(middle)) ? least : most) = middle;
+    (isInGamut(withChroma(middle)) ? least : most) = middle;
   }
   return withChroma(least).max(0.0).min(whitest);
 }
@@ -36,7 +36,7 @@ Rgb shownColor(const Lab& lab) {
 /// that the focus shades. With what pictured() says, chosen by eye for means from 3 to 8 pixels to
 /// both sides of the edges of seven foci (abdomen, knee, torso; LookBenchmark) under cinema and the
 /// film curve.
-constexpr std::array contextShades = {-3.0, 4.0};
+constexpr std::array contextShading = {-3.0, 4.0};
 
 /// Colour, linear, that pictures show of matter at the edge: shadow and what wet surfaces reflect
 /// leave less than half of the differences in lightness.
@@ -56,7 +56,7 @@ const ColorFunction& albedoOf(const std::optional<ColorFunction>& own,
 /// Context's saturation before any knob is turned, how far knobs may be turned, and the difference
 /// of colours from their own that all of what is wanted would be worth.
 struct Limits {
-  double muted;
+  double saturationStart;
   double saturation, lightness, shift, chroma, accent;
   double worth;
 };
@@ -66,88 +66,88 @@ constexpr Limits gentle{0.6, 0.5, 0.35, 12.0, 1.4, 0.35, 300.0},
     strong{1.0, 0.3, 0.5, 18.0, 1.7, 0.6, 600.0};
 
 /// Turns knobs until a border has enough of what is wanted.
-class Knobs {
+class AdjustmentSearch {
 public:
-  Knobs(const std::vector<BorderColors>& colors, const ContrastKnobs& start, double worth,
-        double saturation, double g)
+  AdjustmentSearch(const std::vector<BorderColors>& colors, const ColorAdjustment& start,
+                   double worth, double saturation, double g)
       : m_colors(&colors),
         m_worth(worth),
         m_saturation(saturation),
         m_g(g),
         m_start(start),
-        m_knobs(start),
+        m_adjustment(start),
         m_share(shareOf(start)) {}
 
-  const ContrastKnobs& knobs() const { return m_knobs; }
+  const ColorAdjustment& adjustment() const { return m_adjustment; }
   double share() const { return m_share; }
 
   /// Turns a knob from where it is, in steps, to at most `farthest`.
-  void turn(double ContrastKnobs::*knob, double farthest) {
-    const double first = m_knobs.*knob;
+  void increase(double ColorAdjustment::*knob, double farthest) {
+    const double first = m_adjustment.*knob;
     for (int i = 1; i <= steps && m_share < enoughShare; ++i)
-      take(knob, first + (farthest - first) * i / steps,
-           [this](double fraction) { return fraction > m_share; });
+      tryValue(knob, first + (farthest - first) * i / steps,
+               [this](double fraction) { return fraction > m_share; });
   }
 
   /// Turns all knobs back toward the start, from the last to the first, as far as that costs
   /// nothing that is wanted: again as long as one that is back lets another follow.
-  void turnBack() {
-    ContrastKnobs before;
+  void relax() {
+    ColorAdjustment before;
     do {
-      before = m_knobs;
-      for (const auto knob : {&ContrastKnobs::focusAccent, &ContrastKnobs::focusChroma,
-                              &ContrastKnobs::focusLightness, &ContrastKnobs::contextLightness,
-                              &ContrastKnobs::contextSaturation})
-        turnBack(knob);
-    } while (!(m_knobs == before));
+      before = m_adjustment;
+      for (const auto knob : {&ColorAdjustment::focusAccent, &ColorAdjustment::focusChroma,
+                              &ColorAdjustment::focusLightness, &ColorAdjustment::contextLightness,
+                              &ColorAdjustment::contextSaturation})
+        relax(knob);
+    } while (!(m_adjustment == before));
   }
 
   /// Turns the focus toward the accent that is worth most, if one is worth the change, of those
   /// about as light as itself: a pale organ in dark red would be taken for muscle.
-  void turnToAccent(double farthest) {
+  void addAccent(double farthest) {
     constexpr double mostApart = 40.0;
-    const double own = meanOf([](const BorderColors& part) { return labOf(part.focus).L; });
-    Knobs best = *this;
-    for (std::size_t i = 0; i < accents.size() && m_share < enoughShare; ++i) {
-      if (std::abs(labOf(decodeSrgb(colorOf(accents[i].color))).L - own) > mostApart)
+    const double own = mean([](const BorderColors& part) { return labOf(part.focus).L; });
+    AdjustmentSearch best = *this;
+    for (std::size_t i = 0; i < accentColors.size() && m_share < enoughShare; ++i) {
+      if (std::abs(labOf(decodeSrgb(colorOf(accentColors[i].color))).L - own) > mostApart)
         continue;
-      Knobs turned = *this;
-      turned.m_knobs.accent = i;
-      turned.turn(&ContrastKnobs::focusAccent, farthest);
+      AdjustmentSearch turned = *this;
+      turned.m_adjustment.accent = i;
+      turned.increase(&ColorAdjustment::focusAccent, farthest);
       if (turned.isBetterThan(best))
         best = turned;
     }
-    m_knobs = best.m_knobs;
+    m_adjustment = best.m_adjustment;
     m_share = best.m_share;
   }
 
   /// True if its share is worth its change.
-  bool isBetterThan(const Knobs& other) const { return worth() > other.worth(); }
+  bool isBetterThan(const AdjustmentSearch& other) const { return worth() > other.worth(); }
 
 private:
   static constexpr int steps = 20;
 
-  void turnBack(double ContrastKnobs::*knob) {
-    const double last = m_knobs.*knob, needed = std::min(m_share, enoughShare);
+  void relax(double ColorAdjustment::*knob) {
+    const double last = m_adjustment.*knob, needed = std::min(m_share, enoughShare);
     for (int i = 1; i <= steps; ++i)
-      if (!take(knob, last + (m_start.*knob - last) * i / steps,
-                [needed](double fraction) { return fraction >= needed; }))
+      if (!tryValue(knob, last + (m_start.*knob - last) * i / steps,
+                    [needed](double fraction) { return fraction >= needed; }))
         return;
   }
 
-  bool take(double ContrastKnobs::*knob, double value, const auto& isWanted) {
-    ContrastKnobs turned = m_knobs;
+  bool tryValue(double ColorAdjustment::*knob, double value, const auto& isWanted) {
+    ColorAdjustment turned = m_adjustment;
     turned.*knob = value;
     const double share = shareOf(turned);
     if (!isWanted(share))
       return false;
-    m_knobs = turned;
+    m_adjustment = turned;
     m_share = share;
     return true;
   }
 
   /// Mean over the border of a function of its parts.
-  double meanOf(const auto& function) const {
+  double mean(const auto& function) const {
     double sum = 0.0, area = 0.0;
     for (const BorderColors& part : *m_colors) {
       sum += part.area * function(part);
@@ -155,28 +155,28 @@ private:
     }
     return sum / area;
   }
-  double shareOf(const ContrastKnobs& knobs) const {
-    return meanOf([&](const BorderColors& part) {
+  double shareOf(const ColorAdjustment& knobs) const {
+    return mean([&](const BorderColors& part) {
       return tintShare(contrastUnder(knobs, part, m_saturation, m_g));
     });
   }
   double worth() const { return std::min(m_share, enoughShare) - change() / m_worth; }
   /// Difference of the colours from their own, both sides together.
   double change() const {
-    return meanOf([&](const BorderColors& part) {
-      return deltaE76(labOf(part.focus), labOf(changedFocus(part.focus, m_knobs))) +
-             deltaE76(labOf(part.context), labOf(changedContext(part.context, m_knobs)));
+    return mean([&](const BorderColors& part) {
+      return deltaE76(labOf(part.focus), labOf(adjustFocus(part.focus, m_adjustment))) +
+             deltaE76(labOf(part.context), labOf(adjustContext(part.context, m_adjustment)));
     });
   }
 
   const std::vector<BorderColors>* m_colors;
   double m_worth, m_saturation, m_g;
-  ContrastKnobs m_start, m_knobs;
+  ColorAdjustment m_start, m_adjustment;
   double m_share;
 };
 
 /// Parts of the border with enough of it to matter.
-std::vector<ComponentBorder> notable(std::vector<ComponentBorder> borders) {
+std::vector<ComponentBorder> selectMajor(std::vector<ComponentBorder> borders) {
   constexpr double enough = 0.05;
   double area = 0.0;
   for (const ComponentBorder& border : borders)
@@ -187,20 +187,22 @@ std::vector<ComponentBorder> notable(std::vector<ComponentBorder> borders) {
 
 } // namespace
 
-Rgb changedContext(const Rgb& seen, const ContrastKnobs& knobs) {
+Rgb adjustContext(const Rgb& seen, const ColorAdjustment& adjustment) {
   const Lab lab = labOf(seen);
-  return shownColor({lab.L + knobs.contextLightness * (knobs.contextGoal - lab.L),
-                     knobs.contextSaturation * lab.a, knobs.contextSaturation * lab.b});
+  return reduceToGamut({lab.L + adjustment.contextLightness * (adjustment.contextGoal - lab.L),
+                        adjustment.contextSaturation * lab.a,
+                        adjustment.contextSaturation * lab.b});
 }
 
-Rgb changedFocus(const Rgb& seen, const ContrastKnobs& knobs) {
-  const Lab lab = labOf(seen), accent = labOf(decodeSrgb(colorOf(accents[knobs.accent].color)));
-  const auto mixed = [&](double own, double other) {
-    return own + knobs.focusAccent * (other - own);
+Rgb adjustFocus(const Rgb& seen, const ColorAdjustment& adjustment) {
+  const Lab lab = labOf(seen),
+            accent = labOf(decodeSrgb(colorOf(accentColors[adjustment.accent].color)));
+  const auto mix = [&](double own, double other) {
+    return own + adjustment.focusAccent * (other - own);
   };
-  return shownColor({mixed(lab.L + knobs.focusLightness, accent.L),
-                     mixed(knobs.focusChroma * lab.a, accent.a),
-                     mixed(knobs.focusChroma * lab.b, accent.b)});
+  return reduceToGamut({mix(lab.L + adjustment.focusLightness, accent.L),
+                        mix(adjustment.focusChroma * lab.a, accent.a),
+                        mix(adjustment.focusChroma * lab.b, accent.b)});
 }
 
 double tintShare(const Contrast& contrast) {
@@ -211,79 +213,81 @@ double tintShare(const Contrast& contrast) {
                  std::min(1.0, contrast.deltaL / lightness));
 }
 
-Contrast contrastUnder(const ContrastKnobs& knobs, const BorderColors& colors, double saturation,
-                       double g) {
+Contrast contrastUnder(const ColorAdjustment& adjustment, const BorderColors& colors,
+                       double saturation, double g) {
   const ContextStyle style{.focus = nullptr, .saturation = saturation};
-  const Rgb focus = changedFocus(colors.focus, knobs),
+  const Rgb focus = adjustFocus(colors.focus, adjustment),
             context = reflectance(
-                Rgb(style.paled(albedoFor(changedContext(colors.context, knobs), g))), g);
+                Rgb(style.paled(albedoFor(adjustContext(colors.context, adjustment), g))), g);
   const auto in = [&](double shade) {
     return shownContrast(pictured(focus, 0.0), pictured(context, shade), deltaE76);
   };
-  return std::min(in(contextShades[0]), in(contextShades[1]),
+  return std::min(in(contextShading[0]), in(contextShading[1]),
                   [](const Contrast& x, const Contrast& y) { return tintShare(x) < tintShare(y); });
 }
 
-ContrastKnobs chosenKnobs(const std::vector<BorderColors>& colors, const ContextColors& context,
-                          Turned what, double saturation, double g) {
+ColorAdjustment chooseAdjustment(const std::vector<BorderColors>& colors,
+                                 const ContextColors& context, Adjustable adjustable,
+                                 double saturation, double g) {
   constexpr double white = 100.0, bright = 72.0, dim = 40.0;
-  ContrastKnobs start;
+  ColorAdjustment start;
   start.contextSaturation = context.saturation.value_or(start.contextSaturation);
   if (context.lightness) {
     start.contextLightness = *context.lightness;
     start.contextGoal = white;
   }
-  if (what == Turned::nothing || colors.empty())
+  if (adjustable == Adjustable::nothing || colors.empty())
     return start;
-  const auto turned = [&](const Limits& limits, double shift, double goal) {
+  const auto search = [&](const Limits& limits, double shift, double goal) {
     if (!context.lightness)
       start.contextGoal = goal;
-    if (!context.saturation && what == Turned::both)
-      start.contextSaturation = limits.muted;
-    Knobs knobs(colors, start, limits.worth, saturation, g);
+    if (!context.saturation && adjustable == Adjustable::both)
+      start.contextSaturation = limits.saturationStart;
+    AdjustmentSearch result(colors, start, limits.worth, saturation, g);
     if (!context.saturation)
-      knobs.turn(&ContrastKnobs::contextSaturation,
-                 what == Turned::both ? limits.saturation : grey);
+      result.increase(&ColorAdjustment::contextSaturation,
+                      adjustable == Adjustable::both ? limits.saturation : grey);
     if (!context.lightness)
-      knobs.turn(&ContrastKnobs::contextLightness, limits.lightness);
-    if (what == Turned::both) {
-      knobs.turn(&ContrastKnobs::focusLightness, shift);
-      knobs.turn(&ContrastKnobs::focusChroma, limits.chroma);
-      knobs.turnToAccent(limits.accent);
+      result.increase(&ColorAdjustment::contextLightness, limits.lightness);
+    if (adjustable == Adjustable::both) {
+      result.increase(&ColorAdjustment::focusLightness, shift);
+      result.increase(&ColorAdjustment::focusChroma, limits.chroma);
+      result.addAccent(limits.accent);
     }
-    knobs.turnBack();
-    return knobs;
+    result.relax();
+    return result;
   };
-  const auto darker = [&](const Limits& limits) { return turned(limits, -limits.shift, bright); };
-  const auto lighter = [&](const Limits& limits) { return turned(limits, limits.shift, dim); };
-  const Knobs dark = darker(gentle), light = lighter(gentle);
+  const auto darker = [&](const Limits& limits) { return search(limits, -limits.shift, bright); };
+  const auto lighter = [&](const Limits& limits) { return search(limits, limits.shift, dim); };
+  const AdjustmentSearch dark = darker(gentle), light = lighter(gentle);
   const bool isLight = light.isBetterThan(dark);
-  const Knobs& tissue = isLight ? light : dark;
+  const AdjustmentSearch& tissue = isLight ? light : dark;
   if (tissue.share() >= almostEnough)
-    return tissue.knobs();
-  return (isLight ? lighter(strong) : darker(strong)).knobs();
+    return tissue.adjustment();
+  return (isLight ? lighter(strong) : darker(strong)).adjustment();
 }
 
-TintContrast tintContrast(const std::vector<ComponentBorder>& borders, const TintPlan& plan,
-                          const Tint& tint, const MaterialTable& table,
-                          const TransferFunction& transfer, double saturation) {
+TintContrast adjustContrast(const std::vector<ComponentBorder>& borders, const TintPlan& plan,
+                            const Tint& tint, const MaterialTable& table,
+                            const TransferFunction& transfer, double saturation) {
   const double g = transfer.g;
   const auto seen = [&](std::uint8_t component, double scalar) {
     return reflectance(Rgb(albedoOf(tint.albedo[component], transfer)(scalar)), g);
   };
-  const std::vector<ComponentBorder> parts = notable(borders);
+  const std::vector<ComponentBorder> parts = selectMajor(borders);
   std::vector<BorderColors> colors;
   for (const ComponentBorder& part : parts)
     colors.push_back(
         {seen(part.focus, part.focusScalar), seen(part.context, part.contextScalar), part.area});
   const bool isKnown = std::ranges::any_of(
       parts, [&](const ComponentBorder& part) { return tint.albedo[part.focus].has_value(); });
-  const Turned what = !table.hasContrast ? Turned::nothing
-                      : isKnown          ? Turned::both
-                                         : Turned::context;
-  TintContrast result{.knobs = chosenKnobs(colors, table.context, what, saturation, g)};
+  const Adjustable adjustable = !table.hasContrast ? Adjustable::nothing
+                                : isKnown          ? Adjustable::both
+                                                   : Adjustable::context;
+  TintContrast result{.adjustment =
+                          chooseAdjustment(colors, table.context, adjustable, saturation, g)};
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const Contrast contrast = contrastUnder(result.knobs, colors[i], saturation, g);
+    const Contrast contrast = contrastUnder(result.adjustment, colors[i], saturation, g);
     if (result.contrast && tintShare(contrast) >= tintShare(*result.contrast))
       continue;
     result.contrast = contrast;
@@ -297,30 +301,32 @@ std::string told(const TintContrast& chosen) {
   if (!chosen.contrast)
     return "";
   const Contrast& contrast = *chosen.contrast;
-  const ContrastKnobs &knobs = chosen.knobs, none;
-  std::vector<std::string> turned = {"colour-blind " + numberText(contrast.colorBlind(), 3)};
-  const auto tell = [&](const std::string& what, double ContrastKnobs::*knob) {
-    if (knobs.*knob != none.*knob)
-      turned.push_back(what + numberText(knobs.*knob, 3));
+  const ColorAdjustment &adjustment = chosen.adjustment, neutral;
+  std::vector<std::string> parts = {"colour-blind " + numberText(contrast.colorBlind(), 3)};
+  const auto add = [&](const std::string& what, double ColorAdjustment::*member) {
+    if (adjustment.*member != neutral.*member)
+      parts.push_back(what + numberText(adjustment.*member, 3));
   };
-  tell("surroundings' colour x ", &ContrastKnobs::contextSaturation);
-  tell("lightness evened by ", &ContrastKnobs::contextLightness);
-  tell("focus's lightness + ", &ContrastKnobs::focusLightness);
-  tell("colour x ", &ContrastKnobs::focusChroma);
-  tell(textOf("toward ", accents[knobs.accent].name, " by "), &ContrastKnobs::focusAccent);
+  add("surroundings' colour x ", &ColorAdjustment::contextSaturation);
+  add("lightness evened by ", &ColorAdjustment::contextLightness);
+  add("focus's lightness + ", &ColorAdjustment::focusLightness);
+  add("colour x ", &ColorAdjustment::focusChroma);
+  add(textOf("toward ", accentColors[adjustment.accent].name, " by "),
+      &ColorAdjustment::focusAccent);
   return textOf(numberText(contrast.deltaE[0], 3), " of ", shown(chosen.segment), " to ",
-                shown(chosen.neighbour), " (", joined(turned, ", "), ")");
+                shown(chosen.neighbour), " (", joined(parts, ", "), ")");
 }
 
-Tint contrastedTint(const Tint& tint, const TintPlan& plan, const ContrastKnobs& knobs,
-                    const TransferFunction& transfer) {
+Tint applyAdjustment(const Tint& tint, const TintPlan& plan, const ColorAdjustment& adjustment,
+                     const TransferFunction& transfer) {
   Tint result = tint;
-  if (knobs == ContrastKnobs())
+  if (adjustment == ColorAdjustment())
     return result;
   for (std::size_t i = 0; i < result.albedo.size(); ++i) {
-    const auto change = plan.isFocus[i] ? changedFocus : changedContext;
+    const auto adjust = plan.isFocus[i] ? adjustFocus : adjustContext;
     result.albedo[i] = albedoOf(tint.albedo[i], transfer).withKnots([&](ColorFunction::Knot& knot) {
-      knot.value = albedoFor(change(reflectance(Rgb(knot.value), transfer.g), knobs), transfer.g);
+      knot.value =
+          albedoFor(adjust(reflectance(Rgb(knot.value), transfer.g), adjustment), transfer.g);
     });
   }
   return result;

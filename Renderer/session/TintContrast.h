@@ -12,7 +12,7 @@
 namespace fenestra {
 
 /// Change of the colours that an eye sees of thick matter, in CIELAB.
-struct ContrastKnobs {
+struct ColorAdjustment {
   double contextSaturation = 1.0; ///< factor of the context's chroma
   double contextLightness = 0.0;  ///< share of the way to the lightness `contextGoal`
   double contextGoal = 72.0;
@@ -21,21 +21,22 @@ struct ContrastKnobs {
   double focusAccent = 0.0;    ///< share of the way to the colour `accent`
   std::size_t accent = 0;      ///< of `accents`
 
-  bool operator==(const ContrastKnobs&) const = default;
+  bool operator==(const ColorAdjustment&) const = default;
 };
 
 /// Colours far from each other in CIELAB, for the colour-blind, too.
-struct Accent {
+struct AccentColor {
   const char* name;
   std::uint32_t color; ///< sRGB, 0xrrggbb
 };
-inline constexpr std::array accents = {Accent{"yellow", 0xebbe3c}, Accent{"ice", 0xbfe6f2},
-                                       Accent{"dark red", 0x7c1e22}};
+inline constexpr std::array accentColors = {AccentColor{"yellow", 0xebbe3c},
+                                            AccentColor{"ice", 0xbfe6f2},
+                                            AccentColor{"dark red", 0x7c1e22}};
 
 /// Colour changed by the knobs; linear, no whiter than matter can be, and, where the display has no
 /// such colour, of less chroma.
-Rgb changedContext(const Rgb& seen, const ContrastKnobs& knobs);
-Rgb changedFocus(const Rgb& seen, const ContrastKnobs& knobs);
+Rgb adjustContext(const Rgb& seen, const ColorAdjustment& adjustment);
+Rgb adjustFocus(const Rgb& seen, const ColorAdjustment& adjustment);
 
 /// Colours to both sides of a part of the focus's border, as an eye sees them, linear.
 struct BorderColors {
@@ -56,12 +57,12 @@ inline constexpr double almostEnough = 0.966;
 /// Contrast (CIELAB) under the knobs across the focus's edge in a picture: in the light, or, if
 /// that is less, where the focus stands in a groove that it shades. `saturation`: of the context's
 /// albedo, after the knobs (ContextStyle).
-Contrast contrastUnder(const ContrastKnobs& knobs, const BorderColors& colors, double saturation,
-                       double g);
+Contrast contrastUnder(const ColorAdjustment& adjustment, const BorderColors& colors,
+                       double saturation, double g);
 
 /// Knobs that may be turned. `context`: of a focus of which nothing is known, so that it keeps the
 /// volume's colours.
-enum class Turned { nothing, context, both };
+enum class Adjustable { nothing, context, both };
 
 /// Knobs with which the border has enoughShare, as the mean over its area, from a context of 0.6 of
 /// its saturation on: muted, it takes fewer collisions, too. They are turned one after the other,
@@ -71,25 +72,26 @@ enum class Turned { nothing, context, both };
 /// same way. Of a darker focus in a lighter context and the reverse, the way whose share is more
 /// worth its change of colours. `context`: what it sets is not turned. `colors`: without any,
 /// nothing is, either. Where the focus is not turned, its context may become grey.
-ContrastKnobs chosenKnobs(const std::vector<BorderColors>& colors, const ContextColors& context,
-                          Turned what, double saturation, double g);
+ColorAdjustment chooseAdjustment(const std::vector<BorderColors>& colors,
+                                 const ContextColors& context, Adjustable adjustable,
+                                 double saturation, double g);
 
 struct TintContrast {
-  ContrastKnobs knobs = {};
+  ColorAdjustment adjustment = {};
   std::string segment = {}, neighbour = {}; ///< of the part with the least share
   std::optional<Contrast> contrast = {};    ///< there; nothing: no neighbour is shown
 };
 
 /// Knobs for neighbours that have 5 % of the border or more. `saturation`: of the context's albedo.
-TintContrast tintContrast(const std::vector<ComponentBorder>& borders, const TintPlan& plan,
-                          const Tint& tint, const MaterialTable& table,
-                          const TransferFunction& transfer, double saturation);
+TintContrast adjustContrast(const std::vector<ComponentBorder>& borders, const TintPlan& plan,
+                            const Tint& tint, const MaterialTable& table,
+                            const TransferFunction& transfer, double saturation);
 
 /// Contrast and what it took, in a few words; empty: none.
 std::string told(const TintContrast& contrast);
 
 /// Tint with the knobs.
-Tint contrastedTint(const Tint& tint, const TintPlan& plan, const ContrastKnobs& knobs,
-                    const TransferFunction& transfer);
+Tint applyAdjustment(const Tint& tint, const TintPlan& plan, const ColorAdjustment& adjustment,
+                     const TransferFunction& transfer);
 
 } // namespace fenestra

@@ -13,22 +13,24 @@
 namespace fenestra::testing::TintContrastTests {
 namespace {
 
-Rgb colorOf(std::uint32_t rgb) {
+Rgb hexToLinear(std::uint32_t rgb) {
   return decodeSrgb(fenestra::colorOf(rgb));
 }
 
-const Rgb liver = colorOf(0x963e2e), muscle = colorOf(0xa03e38), bone = colorOf(0xf6eedc),
-          spleen = colorOf(0x763448), skin = colorOf(0xdea98f), teal = colorOf(0x207068),
-          artery = colorOf(0xd62824), fat = colorOf(0xc59685), pancreas = colorOf(0xecc48a);
+const Rgb liver = hexToLinear(0x963e2e), muscle = hexToLinear(0xa03e38),
+          bone = hexToLinear(0xf6eedc), spleen = hexToLinear(0x763448),
+          skin = hexToLinear(0xdea98f), teal = hexToLinear(0x207068),
+          artery = hexToLinear(0xd62824), fat = hexToLinear(0xc59685),
+          pancreas = hexToLinear(0xecc48a);
 
-ContrastKnobs chosen(const std::vector<BorderColors>& colors, const ContextColors& context = {}) {
-  return chosenKnobs(colors, context, Turned::both, 1.0, 0.0);
+ColorAdjustment choose(const std::vector<BorderColors>& colors, const ContextColors& context = {}) {
+  return chooseAdjustment(colors, context, Adjustable::both, 1.0, 0.0);
 }
 /// Surroundings of a focus that is tinted, not painted, before a knob is turned.
-constexpr ContrastKnobs muted{.contextSaturation = 0.6};
+constexpr ColorAdjustment muted{.contextSaturation = 0.6};
 
-double shareOf(const ContrastKnobs& knobs, const BorderColors& colors) {
-  return tintShare(contrastUnder(knobs, colors, 1.0, 0.0));
+double computeScore(const ColorAdjustment& adjustment, const BorderColors& colors) {
+  return tintShare(contrastUnder(adjustment, colors, 1.0, 0.0));
 }
 
 // ---- colours
@@ -39,31 +41,31 @@ TEST(TintContrast, LinearIsTheInverseOfLab) {
 }
 
 TEST(TintContrast, KnobsChangeWhatTheySay) {
-  EXPECT_LT((changedContext(liver, {}) - liver).abs().maxCoeff(), 1e-9);
-  EXPECT_LT((changedFocus(liver, {}) - liver).abs().maxCoeff(), 1e-9);
+  EXPECT_LT((adjustContext(liver, {}) - liver).abs().maxCoeff(), 1e-9);
+  EXPECT_LT((adjustFocus(liver, {}) - liver).abs().maxCoeff(), 1e-9);
   const Lab before = labOf(liver);
   const Lab context =
-      labOf(changedContext(liver, {.contextSaturation = 0.5, .contextLightness = 0.25}));
+      labOf(adjustContext(liver, {.contextSaturation = 0.5, .contextLightness = 0.25}));
   EXPECT_NEAR(context.L, before.L + 0.25 * (72.0 - before.L), 1e-6);
   EXPECT_NEAR(context.a, 0.5 * before.a, 1e-6);
   EXPECT_NEAR(context.b, 0.5 * before.b, 1e-6);
-  const Lab focus = labOf(changedFocus(liver, {.focusLightness = -5.0, .focusChroma = 1.1}));
+  const Lab focus = labOf(adjustFocus(liver, {.focusLightness = -5.0, .focusChroma = 1.1}));
   EXPECT_NEAR(focus.L, before.L - 5.0, 1e-6);
   EXPECT_NEAR(focus.a, 1.1 * before.a, 1e-6);
-  const Lab lesion = labOf(decodeSrgb(fenestra::colorOf(accents[0].color)));
+  const Lab lesion = labOf(decodeSrgb(fenestra::colorOf(accentColors[0].color)));
   const Lab half =
-      labOf(changedFocus(liver, {.focusLightness = 2.0, .focusAccent = 0.5, .accent = 0}));
+      labOf(adjustFocus(liver, {.focusLightness = 2.0, .focusAccent = 0.5, .accent = 0}));
   EXPECT_NEAR(half.L, 0.5 * (before.L + 2.0 + lesion.L), 1e-6);
   EXPECT_NEAR(half.a, 0.5 * (before.a + lesion.a), 1e-6);
   EXPECT_NEAR(half.b, 0.5 * (before.b + lesion.b), 1e-6);
-  const Rgb white = changedFocus(Rgb::Constant(0.94), {.focusLightness = 12.0});
+  const Rgb white = adjustFocus(Rgb::Constant(0.94), {.focusLightness = 12.0});
   EXPECT_EQ(white.maxCoeff(), whitest) << "no whiter than matter can be";
 }
 
 /// An artery's red has no darker and more colourful one: it loses chroma, not its lightness or hue.
 TEST(TintContrast, ColoursBeyondTheDisplayKeepLightnessAndHue) {
   const Lab before = labOf(artery);
-  const Rgb color = changedFocus(artery, {.focusLightness = -12.0, .focusChroma = 1.4});
+  const Rgb color = adjustFocus(artery, {.focusLightness = -12.0, .focusChroma = 1.4});
   const Lab after = labOf(color);
   EXPECT_GE(color.minCoeff(), 0.0);
   EXPECT_NEAR(after.L, before.L - 12.0, 1e-3);
@@ -80,35 +82,38 @@ TEST(TintContrast, LeavesColoursThatDiffer) {
 }
 
 TEST(TintContrast, FocusWithoutNeighboursStaysAsItIs) {
-  EXPECT_EQ(chosen({}), ContrastKnobs());
+  EXPECT_EQ(chosen({}), ColorAdjustment());
 }
 
 /// Expects that `knob` alone is turned, in the middle of its range, and that a twentieth of the
 /// range less would not be enough.
-void expectAlone(double ContrastKnobs::*knob, double farthest, const BorderColors& colors) {
-  const ContrastKnobs knobs = chosen({colors});
-  const double step = (farthest - muted.*knob) / 20.0, turned = (knobs.*knob - muted.*knob) / step;
-  EXPECT_GT(turned, 0.5);
-  EXPECT_LT(turned, 19.5);
-  EXPECT_GE(shareOf(knobs, colors), enoughShare);
-  ContrastKnobs less = knobs;
-  less.*knob -= step;
-  EXPECT_LT(shareOf(less, colors), enoughShare);
-  less.*knob = muted.*knob;
-  EXPECT_EQ(less, muted) << "others are turned, too";
+void expectSingleAdjustment(double ColorAdjustment::*member, double limit,
+                            const BorderColors& colors) {
+  const ColorAdjustment adjustment = choose({colors});
+  const double step = (limit - muted.*member) / 20.0,
+               adjusted = (adjustment.*member - muted.*member) / step;
+  EXPECT_GT(adjusted, 0.5);
+  EXPECT_LT(adjusted, 19.5);
+  EXPECT_GE(shareOf(adjustment, colors), enoughShare);
+  ColorAdjustment reduced = adjustment;
+  reduced.*member -= step;
+  EXPECT_LT(shareOf(reduced, colors), enoughShare);
+  reduced.*member = muted.*member;
+  EXPECT_EQ(reduced, muted) << "others are turned, too";
 }
 
 TEST(TintContrast, TurnsAKnobNoFurtherThanNeeded) {
-  expectAlone(&ContrastKnobs::contextSaturation, 0.5, {colorOf(0x882a2e), colorOf(0xe1806a), 1.0});
-  expectAlone(&ContrastKnobs::contextLightness, 0.35, {liver, fat, 1.0});
+  expectSingleAdjustment(&ColorAdjustment::contextSaturation, 0.5,
+                         {hexToLinear(0x882a2e), hexToLinear(0xe1806a), 1.0});
+  expectSingleAdjustment(&ColorAdjustment::contextLightness, 0.35, {liver, fat, 1.0});
 }
 
 /// A later knob is turned only if the earlier are turned out.
 TEST(TintContrast, TurnsKnobsInTheirOrder) {
-  const auto onRed = [](std::uint32_t context) {
-    return chosen({{colorOf(0x882a2e), colorOf(context), 1.0}});
+  const auto chooseOnRed = [](std::uint32_t context) {
+    return choose({{hexToLinear(0x882a2e), hexToLinear(context), 1.0}});
   };
-  const ContrastKnobs two = onRed(0xda7963), three = onRed(0xed674d);
+  const ColorAdjustment two = chooseOnRed(0xda7963), three = chooseOnRed(0xed674d);
   EXPECT_EQ(two.contextSaturation, 0.5);
   EXPECT_GT(two.contextLightness, 0.0);
   EXPECT_LT(two.contextLightness, 0.35);
@@ -121,10 +126,10 @@ TEST(TintContrast, TurnsKnobsInTheirOrder) {
 }
 
 TEST(TintContrast, DarkFociAreDarkenedAndLightOnesSetBeforeDimmerSurroundings) {
-  const ContrastKnobs dark = chosen({{colorOf(0x882a2e), colorOf(0xed674d), 1.0}});
+  const ColorAdjustment dark = choose({{hexToLinear(0x882a2e), hexToLinear(0xed674d), 1.0}});
   EXPECT_EQ(dark.contextGoal, 72.0);
   EXPECT_LT(dark.focusLightness, 0.0);
-  const ContrastKnobs light = chosen({{Rgb::Constant(0.6), Rgb::Constant(0.2), 1.0}});
+  const ColorAdjustment light = choose({{Rgb::Constant(0.6), Rgb::Constant(0.2), 1.0}});
   EXPECT_EQ(light.contextSaturation, 1.0) << "it has none";
   EXPECT_EQ(light.contextGoal, 40.0);
   EXPECT_GT(light.focusLightness, 0.0);
@@ -132,12 +137,12 @@ TEST(TintContrast, DarkFociAreDarkenedAndLightOnesSetBeforeDimmerSurroundings) {
 
 /// Turns knobs beyond what tissue looks like, where the focus would not be told from its like.
 TEST(TintContrast, LikeInLikeIsPainted) {
-  const BorderColors colors{colorOf(0xe2a08c), fat, 1.0};
-  const ContrastKnobs knobs = chosen({colors});
-  EXPECT_GT(knobs.focusAccent, 0.35);
-  EXPECT_LE(knobs.focusAccent, 0.6);
-  EXPECT_EQ(knobs.accent, 0U) << "yellow: a pale organ in dark red would be taken for muscle";
-  const Contrast contrast = contrastUnder(knobs, colors, 1.0, 0.0);
+  const BorderColors colors{hexToLinear(0xe2a08c), fat, 1.0};
+  const ColorAdjustment adjustment = choose({colors});
+  EXPECT_GT(adjustment.focusAccent, 0.35);
+  EXPECT_LE(adjustment.focusAccent, 0.6);
+  EXPECT_EQ(adjustment.accent, 0U) << "yellow: a pale organ in dark red would be taken for muscle";
+  const Contrast contrast = contrastUnder(adjustment, colors, 1.0, 0.0);
   EXPECT_GT(contrast.deltaE[0], 20.0);
   EXPECT_GT(contrast.colorBlind(), 12.0);
   EXPECT_GT(contrast.deltaL, 8.0);
@@ -146,36 +151,37 @@ TEST(TintContrast, LikeInLikeIsPainted) {
 /// An accent is the last resort, a part of the way alone, and no other would be worth more.
 TEST(TintContrast, AccentComesLast) {
   const BorderColors colors{pancreas, fat, 1.0};
-  const ContrastKnobs knobs = chosen({colors});
-  EXPECT_GT(knobs.focusAccent, 0.0);
-  EXPECT_LE(knobs.focusAccent, 0.35);
-  EXPECT_EQ(knobs.accent, 0U) << "yellow";
-  EXPECT_EQ(knobs.contextSaturation, 0.5);
-  EXPECT_EQ(knobs.contextLightness, 0.35);
-  ContrastKnobs other = knobs;
-  for (other.accent = 1; other.accent < accents.size(); ++other.accent)
-    EXPECT_LT(shareOf(other, colors), shareOf(knobs, colors));
+  const ColorAdjustment adjustment = choose({colors});
+  EXPECT_GT(adjustment.focusAccent, 0.0);
+  EXPECT_LE(adjustment.focusAccent, 0.35);
+  EXPECT_EQ(adjustment.accent, 0U) << "yellow";
+  EXPECT_EQ(adjustment.contextSaturation, 0.5);
+  EXPECT_EQ(adjustment.contextLightness, 0.35);
+  ColorAdjustment other = adjustment;
+  for (other.accent = 1; other.accent < accentColors.size(); ++other.accent)
+    EXPECT_LT(shareOf(other, colors), shareOf(adjustment, colors));
 }
 
 /// Every knob that is turned is needed: a twentieth less of any leaves less than there is, or less
 /// than enough.
 TEST(TintContrast, WhatIsNotNeededIsTurnedBack) {
-  constexpr std::array turning = {&ContrastKnobs::contextSaturation,
-                                  &ContrastKnobs::contextLightness, &ContrastKnobs::focusLightness,
-                                  &ContrastKnobs::focusChroma, &ContrastKnobs::focusAccent};
+  constexpr std::array members = {&ColorAdjustment::contextSaturation,
+                                  &ColorAdjustment::contextLightness,
+                                  &ColorAdjustment::focusLightness, &ColorAdjustment::focusChroma,
+                                  &ColorAdjustment::focusAccent};
   for (const BorderColors& colors :
        {BorderColors{pancreas, fat, 1.0}, BorderColors{artery, fat, 1.0},
         BorderColors{liver, muscle, 1.0},
-        BorderColors{colorOf(0x882a2e), colorOf(0xbb8375), 1.0}}) {
-    const ContrastKnobs knobs = chosen({colors});
-    const bool isPainted = knobs.contextLightness > 0.35 || knobs.focusAccent > 0.35;
-    const ContrastKnobs none = isPainted ? ContrastKnobs() : muted;
-    const double needed = std::min(shareOf(knobs, colors), enoughShare);
-    for (const auto knob : turning) {
-      ContrastKnobs less = knobs;
-      less.*knob += 0.05 * (none.*knob - less.*knob);
-      if (!(less == knobs)) {
-        EXPECT_LT(shareOf(less, colors), needed) << labOf(colors.focus).L;
+        BorderColors{hexToLinear(0x882a2e), hexToLinear(0xbb8375), 1.0}}) {
+    const ColorAdjustment adjustment = choose({colors});
+    const bool isAccented = adjustment.contextLightness > 0.35 || adjustment.focusAccent > 0.35;
+    const ColorAdjustment initial = isAccented ? ColorAdjustment() : muted;
+    const double required = std::min(computeScore(adjustment, colors), enoughShare);
+    for (const auto member : members) {
+      ColorAdjustment reduced = adjustment;
+      reduced.*member += 0.05 * (initial.*member - reduced.*member);
+      if (!(reduced == adjustment)) {
+        EXPECT_LT(shareOf(reduced, colors), required) << labOf(colors.focus).L;
       }
     }
   }
@@ -185,10 +191,10 @@ TEST(TintContrast, WhatIsNotNeededIsTurnedBack) {
 /// shades what is around it, and by 3 where that is in more light than a light focus.
 TEST(TintContrast, EdgesAreShownInTheLightAndInAGroove) {
   const Rgb dark = linearOf({40.0, 0.0, 0.0}), light = linearOf({80.0, 0.0, 0.0});
-  for (const auto& [colors, lost] : {std::pair(BorderColors{dark, light, 1.0}, 4.0),
+  for (const auto& [colors, loss] : {std::pair(BorderColors{dark, light, 1.0}, 4.0),
                                      std::pair(BorderColors{light, dark, 1.0}, 3.0)}) {
     const Contrast contrast = contrastUnder({}, colors, 1.0, 0.0);
-    EXPECT_NEAR(contrast.deltaL, 0.43 * 40.0 - lost, 1e-3);
+    EXPECT_NEAR(contrast.deltaL, 0.43 * 40.0 - loss, 1e-3);
     EXPECT_NEAR(contrast.deltaE[0], contrast.deltaL, 0.1);
   }
   const Lab red{50.0, 40.0, 10.0};
@@ -201,18 +207,18 @@ TEST(TintContrast, EdgesAreShownInTheLightAndInAGroove) {
 TEST(TintContrast, MindsTheColourBlindAndGreyPrints) {
   Contrast contrast{{30.0, 15.0, 15.0, 30.0}, 20.0};
   EXPECT_EQ(tintShare(contrast), 1.0);
-  for (double* poor :
+  for (double* value :
        {&contrast.deltaE[0], &contrast.deltaE[1], &contrast.deltaE[2], &contrast.deltaL}) {
-    const double before = std::exchange(*poor, 1.0);
+    const double before = std::exchange(*value, 1.0);
     EXPECT_LT(tintShare(contrast), 0.85);
-    *poor = before;
+    *value = before;
   }
-  const BorderColors colors{colorOf(0xa06848), colorOf(0x608048), 1.0};
+  const BorderColors colors{hexToLinear(0xa06848), hexToLinear(0x608048), 1.0};
   EXPECT_GT(contrastUnder({}, colors, 1.0, 0.0).deltaE[0], 16.0);
-  const ContrastKnobs knobs = chosen({colors});
-  EXPECT_NE(knobs, ContrastKnobs());
+  const ColorAdjustment adjustment = choose({colors});
+  EXPECT_NE(adjustment, ColorAdjustment());
   const Contrast before = contrastUnder({}, colors, 1.0, 0.0),
-                 after = contrastUnder(knobs, colors, 1.0, 0.0);
+                 after = contrastUnder(adjustment, colors, 1.0, 0.0);
   EXPECT_GT(std::min(after.deltaE[1], after.deltaE[2]),
             std::min(before.deltaE[1], before.deltaE[2]));
   EXPECT_GT(after.deltaL, before.deltaL);
@@ -220,16 +226,16 @@ TEST(TintContrast, MindsTheColourBlindAndGreyPrints) {
 
 TEST(TintContrast, WhatTheUserSetsIsNotTurned) {
   const std::vector<BorderColors> colors = {{liver, muscle, 1.0}};
-  const ContrastKnobs pale = chosen(colors, {.saturation = 0.8, .lightness = {}});
+  const ColorAdjustment pale = choose(colors, {.saturation = 0.8, .lightness = {}});
   EXPECT_EQ(pale.contextSaturation, 0.8);
   EXPECT_GT(pale.contextLightness, 0.0);
-  const ContrastKnobs light = chosen(colors, {.saturation = {}, .lightness = 0.1});
+  const ColorAdjustment light = choose(colors, {.saturation = {}, .lightness = 0.1});
   EXPECT_LT(light.contextSaturation, 1.0);
   EXPECT_EQ(light.contextLightness, 0.1);
   EXPECT_EQ(light.contextGoal, 100.0) << "white";
-  const ContrastKnobs fixed =
-      chosenKnobs(colors, {.saturation = 0.8, .lightness = {}}, Turned::nothing, 1.0, 0.0);
-  EXPECT_EQ(fixed, ContrastKnobs{.contextSaturation = 0.8}) << "nothing else is turned unasked";
+  const ColorAdjustment fixed =
+      chooseAdjustment(colors, {.saturation = 0.8, .lightness = {}}, Adjustable::nothing, 1.0, 0.0);
+  EXPECT_EQ(fixed, ColorAdjustment{.contextSaturation = 0.8}) << "nothing else is turned unasked";
 }
 
 /// Most of the border decides.
@@ -237,20 +243,20 @@ TEST(TintContrast, PartsCountByTheirArea) {
   const Lab own = labOf(skin);
   const BorderColors dark{skin, linearOf({own.L + 12.0, own.a, own.b}), 1.0},
       light{skin, linearOf({own.L - 12.0, own.a, own.b}), 1.0};
-  const auto shift = [&](double darkArea, double lightArea) {
+  const auto chooseLightness = [&](double darkArea, double lightArea) {
     BorderColors first = dark, second = light;
     first.area = darkArea;
     second.area = lightArea;
-    return chosen({first, second}).focusLightness;
+    return choose({first, second}).focusLightness;
   };
-  EXPECT_LT(shift(10.0, 1.0), 0.0);
-  EXPECT_GT(shift(1.0, 10.0), 0.0);
+  EXPECT_LT(chooseLightness(10.0, 1.0), 0.0);
+  EXPECT_GT(chooseLightness(1.0, 10.0), 0.0);
 }
 
 /// A context paled by --contextsaturation 0 is grey, whatever its tint.
 TEST(TintContrast, KnowsHowFarTheContextIsPaled) {
   const BorderColors colors{liver, teal, 1.0};
-  const Contrast grey = contrastUnder({}, colors, 0.0, 0.0);
+  const Contrast gray = contrastUnder({}, colors, 0.0, 0.0);
   const double own = luminance(albedoFor(teal, 0.0));
   const BorderColors same{liver, Rgb::Constant(reflectance(own, 0.0)), 1.0};
   EXPECT_NEAR(grey.deltaE[0], contrastUnder({}, same, 1.0, 0.0).deltaE[0], 0.05);
@@ -260,13 +266,13 @@ TEST(TintContrast, KnowsHowFarTheContextIsPaled) {
 
 /// Cube of 6^3 voxels (component 1), whose neighbours are component 2 where x is beyond it, else
 /// the rest; scalars 10, 20, 30; voxels of 1 x 2 x 4 mm.
-class Borders : public ::testing::Test {
+class InterfaceTests : public ::testing::Test {
 protected:
   static constexpr std::int64_t edge = 16, low = 5, high = 11;
 
   static bool isCube(const Size3& v) { return v.minCoeff() >= low && v.maxCoeff() < high; }
 
-  Mask maskOf(const auto& holds) const {
+  Mask makeMask(const auto& isInside) const {
     Mask mask{
         grid, std::vector<std::uint8_t>(static_cast<std::size_t>(grid.voxelCount())), 0, {"part"}};
     Size3 v;
@@ -274,32 +280,33 @@ protected:
     for (v[2] = 0; v[2] < edge; ++v[2])
       for (v[1] = 0; v[1] < edge; ++v[1])
         for (v[0] = 0; v[0] < edge; ++v[0], ++i)
-          mask.count += mask.voxels[i] = holds(v);
+          mask.count += mask.voxels[i] = isInside(v);
     return mask;
   }
-  std::vector<ComponentBorder> borders(const TransferFunction& transfer) const {
+  std::vector<ComponentBorder> measureInterfaces(const TransferFunction& transfer) const {
     const Volume volume = makeVolume<float>(grid, [](const Vec3& index) {
       const Size3 v = index.array().round().cast<std::int64_t>();
       return isCube(v) ? 20.0 : v.x() >= high ? 30.0 : 10.0;
     });
-    const LabelWeights shares = sharesOf(
-        {{maskOf(isCube), 10, 1}, {maskOf([](const Size3& v) { return v.x() >= high; }), 10, 2}});
-    return componentBorders(maskOf(isCube), volume, transfer, shares, {false, true, false});
+    const LabelWeights weights =
+        sharesOf({{makeMask(isCube), 10, 1},
+                  {makeMask([](const Size3& v) { return v.x() >= high; }), 10, 2}});
+    return componentBorders(makeMask(isCube), volume, transfer, weights, {false, true, false});
   }
 
   const Grid grid = centredGrid({edge, edge, edge}, Vec3(1.0, 2.0, 4.0));
   const TransferFunction all{ScalarFunction({knot(0.0, 1.0)}), ColorFunction({{0.0, skin}})};
 };
 
-TEST_F(Borders, AreMeasuredInSquareMillimetres) {
-  const std::vector<ComponentBorder> found = borders(all);
+TEST_F(InterfaceTests, AreMeasuredInSquareMillimetres) {
+  const std::vector<ComponentBorder> found = measureInterfaces(all);
   ASSERT_EQ(found.size(), 2U);
   const double x = 36 * 8.0, y = 36 * 4.0, z = 36 * 2.0;
   EXPECT_EQ(found[0].context, 0);
   EXPECT_NEAR(found[0].area, x + 2.0 * y + 2.0 * z, 1e-6);
   EXPECT_EQ(found[1].context, 2);
   EXPECT_NEAR(found[1].area, x, 1e-6);
-  for (const ComponentBorder& border : found) {
+  for (const ComponentBorder& interface : found) {
     EXPECT_EQ(border.focus, 1);
     EXPECT_EQ(border.focusScalar, 20.0);
   }
@@ -307,16 +314,16 @@ TEST_F(Borders, AreMeasuredInSquareMillimetres) {
   EXPECT_EQ(found[1].contextScalar, 30.0);
 }
 
-TEST_F(Borders, WhatIsTransparentIsNoNeighbour) {
+TEST_F(InterfaceTests, WhatIsTransparentIsNoNeighbour) {
   TransferFunction transfer = all;
   transfer.extinction = ScalarFunction({knot(10.0, 0.0), knot(20.0, 1.0)});
-  const std::vector<ComponentBorder> found = borders(transfer);
+  const std::vector<ComponentBorder> found = measureInterfaces(transfer);
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].context, 2);
 }
 
 /// A neighbour of less than a twentieth of the border does not turn a knob.
-TEST_F(Borders, SmallOnesDoNotCount) {
+TEST_F(InterfaceTests, SmallOnesDoNotCount) {
   const TintPlan plan{.parts = {},
                       .components = {{}, {}, {}},
                       .names = {"the rest", "focus", "neighbour"},
@@ -327,27 +334,29 @@ TEST_F(Borders, SmallOnesDoNotCount) {
   MaterialTable table;
   table.hasContrast = true;
   const auto at = [&](double area) {
-    return tintContrast({{1, 0, 100.0, 0.0, 0.0}, {1, 2, area, 0.0, 0.0}}, plan, tint, table, all,
-                        1.0);
+    return adjustContrast({{1, 0, 100.0, 0.0, 0.0}, {1, 2, area, 0.0, 0.0}}, plan, tint, table, all,
+                          1.0);
   };
-  EXPECT_EQ(at(4.0).knobs, muted);
+  EXPECT_EQ(at(4.0).adjustment, muted);
   EXPECT_EQ(at(4.0).neighbour, "the rest");
-  EXPECT_NE(at(6.0).knobs, muted);
+  EXPECT_NE(at(6.0).adjustment, muted);
   EXPECT_EQ(at(6.0).segment, "focus");
   EXPECT_EQ(at(6.0).neighbour, "neighbour");
-  EXPECT_FALSE(tintContrast({}, plan, tint, table, all, 1.0).contrast);
+  EXPECT_FALSE(adjustContrast({}, plan, tint, table, all, 1.0).contrast);
 
   Tint unknown = tint;
   unknown.albedo[1].reset();
-  const ContrastKnobs knobs =
-      tintContrast({{1, 2, 10.0, 0.0, 0.0}}, plan, unknown, table, all, 1.0).knobs;
-  EXPECT_EQ(changedFocus(skin, knobs).matrix(), changedFocus(skin, {}).matrix())
+  const ColorAdjustment adjustment =
+      adjustContrast({{1, 2, 10.0, 0.0, 0.0}}, plan, unknown, table, all, 1.0).adjustment;
+  EXPECT_EQ(adjustFocus(skin, adjustment).matrix(), adjustFocus(skin, {}).matrix())
       << "of which nothing is known";
-  EXPECT_LT(chosenKnobs({{skin, fat, 1.0}}, {}, Turned::context, 1.0, 0.0).contextSaturation, 0.5);
+  EXPECT_LT(
+      chooseAdjustment({{skin, fat, 1.0}}, {}, Adjustable::context, 1.0, 0.0).contextSaturation,
+      0.5);
 
-  const Tint turned = contrastedTint(tint, plan, {.contextSaturation = 0.0}, all);
+  const Tint adjusted = applyAdjustment(tint, plan, {.contextSaturation = 0.0}, all);
   const auto chroma = [&](std::size_t i) {
-    const Lab lab = labOf(reflectance(Rgb((*turned.albedo[i])(0.0)), 0.0));
+    const Lab lab = labOf(reflectance(Rgb((*adjusted.albedo[i])(0.0)), 0.0));
     return std::hypot(lab.a, lab.b);
   };
   EXPECT_LT(chroma(0), 0.5);
@@ -356,19 +365,20 @@ TEST_F(Borders, SmallOnesDoNotCount) {
 }
 
 /// Colours that are the volume's own are changed over the scalar, knot by knot.
-TEST_F(Borders, OwnColoursAreChangedToo) {
+TEST_F(InterfaceTests, OwnColoursAreChangedToo) {
   TransferFunction transfer = all;
   transfer.albedo = ColorFunction({{0.0, albedoFor(skin, 0.0)}, {9.0, albedoFor(liver, 0.0)}});
   const TintPlan plan{.parts = {}, .components = {{}}, .names = {"the rest"}, .isFocus = {false}};
   const Tint own{nullptr, {std::nullopt}};
-  EXPECT_FALSE(contrastedTint(own, plan, {}, transfer).albedo[0]);
-  const ContrastKnobs knobs{.contextSaturation = 0.5, .contextLightness = 0.2};
-  const Tint turned = contrastedTint(own, plan, knobs, transfer);
+  EXPECT_FALSE(applyAdjustment(own, plan, {}, transfer).albedo[0]);
+  const ColorAdjustment adjustment{.contextSaturation = 0.5, .contextLightness = 0.2};
+  const Tint adjusted = applyAdjustment(own, plan, adjustment, transfer);
   for (const auto& [scalar, color] : {std::pair(0.0, skin), std::pair(9.0, liver)})
-    EXPECT_LT((reflectance(Rgb((*turned.albedo[0])(scalar)), 0.0) - changedContext(color, knobs))
-                  .abs()
-                  .maxCoeff(),
-              1e-3);
+    EXPECT_LT(
+        (reflectance(Rgb((*adjusted.albedo[0])(scalar)), 0.0) - adjustContext(color, adjustment))
+            .abs()
+            .maxCoeff(),
+        1e-3);
 }
 
 } // namespace
