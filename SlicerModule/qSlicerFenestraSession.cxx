@@ -155,11 +155,11 @@ vtkMRMLFenestraRenderNode* qSlicerFenestraSession::render(Node* settings, Kind k
   SlicerExport::Contents contents;
   try {
     if (!QFileInfo(m_program).isExecutable())
-      throw SlicerExport::Complaint(
+      throw SlicerExport::UserError(
           "The renderer is missing. Install the Fenestra extension again.");
     contents = m_logic->Snapshot(settings, m_files->folder.path().toStdString());
-  } catch (const SlicerExport::Complaint& complaint) {
-    emit ended(nullptr, failure(QString::fromUtf8(complaint.what()), m_program));
+  } catch (const SlicerExport::UserError& error) {
+    emit ended(nullptr, failure(QString::fromUtf8(error.what()), m_program));
     return nullptr;
   }
   m_preview.stop();
@@ -193,8 +193,8 @@ void qSlicerFenestraSession::submit(int id, const SlicerExport::Contents& conten
           now.volumeKey == contents.volumeKey && now.segmentationKey == contents.segmentationKey;
       if (!isWhole && tries > 0)
         return submit(id, now, withSurface, tries - 1);
-    } catch (const SlicerExport::Complaint& complaint) {
-      return endRender(id, failure(QString::fromUtf8(complaint.what())));
+    } catch (const SlicerExport::UserError& error) {
+      return endRender(id, failure(QString::fromUtf8(error.what())));
     }
     m_queue.add({id, arguments(render.node, scene, withSurface), render.folder});
   });

@@ -68,8 +68,8 @@ void qSlicerFenestraSession::follow() {
     if (!m_preview.running() || dataOf(contents) != m_shownData)
       return startPreview(contents, flags);
     tellPreview(qFenestraPreview::valuesOf(flags));
-  } catch (const SlicerExport::Complaint& complaint) {
-    emit previewRefused(QString::fromUtf8(complaint.what()));
+  } catch (const SlicerExport::UserError& error) {
+    emit previewRefused(QString::fromUtf8(error.what()));
   }
 }
 
@@ -116,7 +116,7 @@ QString qSlicerFenestraSession::propertyFile(const SlicerExport::Contents& conte
   QFile file(m_files->folder.filePath(name + QString::fromStdString(contents.propertyEnding)));
   if (file.size() != text.size() &&
       (!file.open(QIODevice::WriteOnly) || file.write(text) != text.size()))
-    throw SlicerExport::Complaint("The transfer function could not be written. Is the disk "
+    throw SlicerExport::UserError("The transfer function could not be written. Is the disk "
                                   "with the temporary files full?");
   return file.fileName();
 }

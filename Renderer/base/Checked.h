@@ -11,18 +11,18 @@
 namespace fenestra {
 
 /// Makes an Error from a description: adds the file and the field, or the flag.
-using Complaint = std::function<Error(const std::string& what)>;
+using MakeError = std::function<Error(const std::string& what)>;
 
 /// Returns `map` if invertible with digits to spare: lengths of columns in (1e-9, 1e9),
 /// |translation| < 1e9 mm in each axis, |determinant| of the normalised columns > 1e-6. Throws
 /// otherwise: beyond these bounds a point keeps no fraction of a voxel.
-inline Affine checkedMap(const Affine& map, const Complaint& complaint) {
-  constexpr double largest = 1e9, flattest = 1e-6;
-  const auto scales = map.linear().columnNorms().array();
-  if (!((scales > 1.0 / largest).all() && (scales < largest).all() &&
-        (map.translation().array().abs() < largest).all() &&
-        std::abs(map.linear().normalizedColumns().determinant()) > flattest))
-    throw complaint("cannot be inverted within scales of 1e-9 to 1e9 and places of 1e9 mm");
+inline Affine checkAffine(const Affine& map, const MakeError& makeError) {
+  constexpr double maxScale = 1e9, minDeterminant = 1e-6;
+  const auto lengths = map.linear().columnNorms().array();
+  if (!((lengths > 1.0 / maxScale).all() && (lengths < maxScale).all() &&
+        (map.translation().array().abs() < maxScale).all() &&
+        std::abs(map.linear().normalizedColumns().determinant()) > minDeterminant))
+    throw makeError("cannot be inverted within scales of 1e-9 to 1e9 and places of 1e9 mm");
   return map;
 }
 

@@ -16,7 +16,7 @@ fs::file_type typeOf(const fs::path& path) {
   const fs::file_type type = fs::status(path, failed).type();
   const int code = failed.value();
   if (type == fs::file_type::none && code != ENAMETOOLONG && code != EACCES && code != ELOOP)
-    throw readingError(path, code, "check its disk");
+    throw readError(path, code, "check its disk");
   return type;
 }
 
@@ -24,7 +24,7 @@ fs::path realPath(const fs::path& path) {
   std::error_code failed;
   fs::path real = fs::canonical(path, failed);
   if (failed)
-    throw readingError(path, failed.value(), "check the permissions of its folder");
+    throw readError(path, failed.value(), "check the permissions of its folder");
   return real;
 }
 

@@ -66,7 +66,7 @@ ContentState stateOfFile(const fs::path& path) {
   std::error_code failed;
   const std::uintmax_t bytes = fs::file_size(path, failed);
   if (failed)
-    throw readingError(path, failed.value(), "check its disk");
+    throw readError(path, failed.value(), "check its disk");
   return {bytes, digestOf(path)};
 }
 

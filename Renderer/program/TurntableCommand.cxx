@@ -224,7 +224,7 @@ std::list<NameLock> lockFrames(const TurntableOptions& options) {
     std::error_code failed;
     const auto known = std::filesystem::canonical(folder.empty() ? "." : folder, failed);
     if (failed)
-      throw writingError(name, failed.value());
+      throw writeError(name, failed.value());
     names.emplace(known / name.filename(), name);
   }
   std::list<NameLock> locks;

@@ -31,10 +31,10 @@ bool isFoundAsFile(const std::string& name) {
 
 /// Error for an unknown name. A path in a folder without permission gets a reading error; any other
 /// name could be a preset's as well.
-Error unknownPreset(const std::string& flag, const std::string& name, const std::string& known) {
+Error makeUnknownError(const std::string& flag, const std::string& name, const std::string& known) {
   std::error_code failed;
   if (name.find('/') != std::string::npos && !std::filesystem::exists(name, failed) && failed)
-    return readingError(name, failed.value(), "check the permissions of its folder");
+    return readError(name, failed.value(), "check the permissions of its folder");
   return inputError(name,
                     "no such file, and no preset of that name; --" + flag + " takes " + known);
 }
@@ -96,8 +96,8 @@ NamedTransfer namedTransfer(const std::string& name, const Input& input) {
   SlicerTransfers slicer(input);
   if (auto transfer = slicer.find(name))
     return std::move(*transfer);
-  throw unknownPreset("transfer", name,
-                      "a file or one of " + listed(ownPresets("transfer")) + slicer.known());
+  throw makeUnknownError("transfer", name,
+                         "a file or one of " + listed(ownPresets("transfer")) + slicer.known());
 }
 
 bool isFileOfTransfer(const std::string& name, const Input& input) {
@@ -113,7 +113,7 @@ NamedLights namedLights(const std::string& name) {
   if (const std::string_view text = ownPreset("lights", name); !text.empty())
     return {parseLights(text, name), name};
   if (!isFoundAsFile(name))
-    throw unknownPreset("lights", name, "a file or one of " + listed(ownPresets("lights")));
+    throw makeUnknownError("lights", name, "a file or one of " + listed(ownPresets("lights")));
   return {readLights(name), name, {name}};
 }
 
@@ -128,7 +128,7 @@ NamedMaterials namedMaterials(const std::string& name) {
     return materials;
   }
   if (!isFoundAsFile(name))
-    throw unknownPreset("materials", name, "none, auto, library, or a file");
+    throw makeUnknownError("materials", name, "none, auto, library, or a file");
   return {parseMaterials(readText(name), name, materialLibrary()), name, {name}};
 }
 
@@ -140,7 +140,8 @@ OrganPreset namedPreset(const std::string& name) {
   if (const std::string_view text = ownPreset("presets", name); !text.empty())
     return parsePreset(text, name);
   if (!isFoundAsFile(name))
-    throw unknownPreset("preset", name, "auto, a file, or one of " + listed(ownPresets("presets")));
+    throw makeUnknownError("preset", name,
+                           "auto, a file, or one of " + listed(ownPresets("presets")));
   return parsePreset(readText(name), name);
 }
 

@@ -163,7 +163,7 @@ SlicerExport::Contents vtkSlicerFenestraLogic::Snapshot(Node* render,
   vtkSlicerFenestraSnapshot::TakeVolume(volume, contents);
   vtkSlicerFenestraSnapshot::TakeRendering(volume, folder, contents);
   if (!segmentation && !render->GetFocus().empty())
-    throw SlicerExport::Complaint("The segmentation that holds the focus is gone. Choose one.");
+    throw SlicerExport::UserError("The segmentation that holds the focus is gone. Choose one.");
   if (segmentation)
     vtkSlicerFenestraSnapshot::TakeSegmentation(segmentation, render->GetFocus(), contents);
   return contents;

@@ -30,7 +30,7 @@
 #include <sstream>
 
 namespace {
-using Complaint = SlicerExport::Complaint;
+using UserError = SlicerExport::UserError;
 
 std::string Quoted(vtkMRMLNode* node) {
   return std::string("\"") + (node->GetName() ? node->GetName() : "") + "\"";
@@ -98,7 +98,7 @@ SlicerExport::Matrix ToWorld(vtkMRMLTransformableNode* node) {
   if (!transform)
     return SlicerExport::identity;
   if (!transform->IsTransformToWorldLinear())
-    throw Complaint(Quoted(node) + " is under a transform that bends space. Harden that transform "
+    throw UserError(Quoted(node) + " is under a transform that bends space. Harden that transform "
                                    "(Data module, right click), then try again.");
   vtkNew<vtkMatrix4x4> toWorld;
   transform->GetMatrixTransformToWorld(toWorld);
@@ -168,7 +168,7 @@ void TakeProperty(vtkMRMLVolumePropertyNode* property, const std::filesystem::pa
   std::ostringstream text;
   text << std::ifstream(file.path, std::ios::binary).rdbuf();
   if (!written || text.str().empty())
-    throw Complaint("The volume rendering's settings could not be written to the temporary folder. "
+    throw UserError("The volume rendering's settings could not be written to the temporary folder. "
                     "Is the disk full?");
   contents.property = text.str();
   contents.propertyEnding = ending;
@@ -178,7 +178,7 @@ void TakeProperty(vtkMRMLVolumePropertyNode* property, const std::filesystem::pa
 void TakeRoi(vtkMRMLVolumeRenderingDisplayNode* display, SlicerExport::Contents& contents) {
   auto* roi = vtkMRMLMarkupsROINode::SafeDownCast(display->GetROINode());
   if (!roi)
-    throw Complaint(
+    throw UserError(
         "The volume rendering is cropped by a region of interest of an old kind. Create "
         "a new one in the Volume Rendering module, or turn cropping off.");
   vtkMatrix4x4* axes = roi->GetObjectToWorldMatrix();
@@ -212,7 +212,7 @@ vtkSmartPointer<vtkSegmentation> WithLabels(vtkMRMLSegmentationNode* node) {
   const auto copy = vtkSmartPointer<vtkSegmentation>::New();
   copy->DeepCopy(segmentation);
   if (!copy->CreateRepresentation(labels))
-    throw Complaint(Quoted(node) +
+    throw UserError(Quoted(node) +
                     " could not be made a labelmap. Create its binary labelmap in the "
                     "Segmentations module, then try again.");
   return copy;
@@ -264,18 +264,18 @@ SlicerExport::Layer ToLayer(vtkOrientedImageData* labels, vtkOrientedImageData* 
 void vtkSlicerFenestraSnapshot::TakeVolume(vtkMRMLScalarVolumeNode* volume,
                                            SlicerExport::Contents& contents) {
   if (!volume)
-    throw Complaint("There is no volume to render. Load one, or choose one above.");
+    throw UserError("There is no volume to render. Load one, or choose one above.");
   vtkImageData* image = volume->GetImageData();
   if (!image || !image->GetPointData()->GetScalars() || image->GetNumberOfPoints() == 0)
-    throw Complaint("The volume " + Quoted(volume) + " has no voxels. Choose another one.");
+    throw UserError("The volume " + Quoted(volume) + " has no voxels. Choose another one.");
   if (image->GetNumberOfScalarComponents() != 1)
-    throw Complaint("The volume " + Quoted(volume) +
+    throw UserError("The volume " + Quoted(volume) +
                     " has several values a voxel. Choose one with a single value.");
   vtkNew<vtkMatrix4x4> ijkToRas;
   volume->GetIJKToRASMatrix(ijkToRas);
   contents.volume = Shared(image, ijkToRas);
   if (contents.volume.type.empty())
-    throw Complaint("The volume " + Quoted(volume) +
+    throw UserError("The volume " + Quoted(volume) +
                     " has voxels of an unknown type. Convert it in the Cast Scalar Volume module.");
   contents.volumeKey = Key(image, volume->GetID(), contents.volume);
   contents.volumeToWorld = ToWorld(volume);
@@ -335,9 +335,9 @@ void vtkSlicerFenestraSnapshot::TakeSegmentation(vtkMRMLSegmentationNode* node,
     const auto isIt = [&id](const Segment& segment) { return segment.id == id; };
     vtkSegment* segment = segmentation->GetSegment(id);
     if (!segment)
-      throw Complaint("The segment \"" + name + "\" is gone. Choose another focus.");
+      throw UserError("The segment \"" + name + "\" is gone. Choose another focus.");
     if (std::none_of(taken.segments.begin(), taken.segments.end(), isIt))
-      throw Complaint("The segment \"" + std::string(segment->GetName()) +
+      throw UserError("The segment \"" + std::string(segment->GetName()) +
                       "\" is empty. Paint it, or choose another focus.");
   }
   contents.segmentationKey =

@@ -12,7 +12,7 @@
 namespace SlicerExport {
 
 /// Problem that a user can solve; one sentence that says how.
-struct Complaint : std::runtime_error {
+struct UserError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 

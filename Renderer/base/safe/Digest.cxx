@@ -48,7 +48,7 @@ std::uint64_t Digest::value() const {
 std::uint64_t digestOf(const std::filesystem::path& file, std::uint64_t bytes) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream)
-    throw readingError(file, errno, "check its permissions");
+    throw readError(file, errno, "check its permissions");
   Digest digest;
   std::vector<char> block(1 << 20);
   for (std::uint64_t left = bytes; left > 0 && stream;) {
@@ -59,7 +59,7 @@ std::uint64_t digestOf(const std::filesystem::path& file, std::uint64_t bytes) {
     left -= count;
   }
   if (stream.bad())
-    throw readingError(file, EIO, "check its disk");
+    throw readError(file, EIO, "check its disk");
   return digest.value();
 }
 

@@ -42,7 +42,7 @@ void makeMissing(const std::filesystem::path& folder, mode_t mode, const char* o
   if (!folder.has_filename()) // `folder` ends in a slash
     return;
   if (const int code = make(folder, mode, made); code != 0)
-    throw makingError(folder, code, other);
+    throw createError(folder, code, other);
 }
 
 } // namespace
@@ -51,7 +51,7 @@ MadeFolders::MadeFolders(const std::filesystem::path& folder) {
   std::error_code failed;
   const std::filesystem::path absolute = std::filesystem::absolute(folder, failed);
   if (failed)
-    throw makingError(folder, failed.value(), otherFolder);
+    throw createError(folder, failed.value(), otherFolder);
   makeMissing(absolute.lexically_normal(), 0777, otherFolder, m_made);
 }
 
@@ -72,7 +72,7 @@ bool PrivateFolder::makeLocked(const std::filesystem::path& folder) {
   if (code == EEXIST)
     return false;
   if (code != 0)
-    throw makingError(folder, code, otherTemporary);
+    throw createError(folder, code, otherTemporary);
   m_lock = Descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   return !m_lock.isOpen() || (tryLock(m_lock) && hasName(m_lock));
 }
@@ -95,7 +95,7 @@ std::filesystem::path PrivateFolder::add(const std::filesystem::path& relative) 
   m_entries.emplace_back(file, Leftover::Kind::file);
   if (!Descriptor(::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR))
            .isOpen())
-    throw makingError(file, errno, otherTemporary);
+    throw createError(file, errno, otherTemporary);
   return file;
 }
 

@@ -62,7 +62,7 @@ std::filesystem::file_type typeOf(const std::filesystem::path& path) {
   std::error_code failed;
   const std::filesystem::file_type type = std::filesystem::status(path, failed).type();
   if (type == std::filesystem::file_type::none)
-    throw readingError(path, failed.value(), "check the permissions of its folder");
+    throw readError(path, failed.value(), "check the permissions of its folder");
   return type;
 }
 
@@ -89,7 +89,7 @@ bool isFolder(const std::filesystem::path& path) {
   return typeOf(path) == std::filesystem::file_type::directory;
 }
 
-void requireFile(const std::filesystem::path& path, const std::string& mend, std::uint64_t most) {
+void requireFile(const std::filesystem::path& path, const std::string& hint, std::uint64_t most) {
   if (hasZeroByte(path))
     throw inputError(path.c_str(),
                      "is followed by a zero byte, which no name holds; write it again");
@@ -101,16 +101,16 @@ void requireFile(const std::filesystem::path& path, const std::string& mend, std
   if (::stat(path.c_str(), &status) != 0) {
     if (errno == ENOENT || errno == ENOTDIR)
       throw inputError(path, "there is no such file; check the name");
-    throw readingError(path, errno, "check its permissions and those of its folder");
+    throw readError(path, errno, "check its permissions and those of its folder");
   }
   if (S_ISDIR(status.st_mode))
-    throw inputError(path, "is a folder; ", mend);
+    throw inputError(path, "is a folder; ", hint);
   if (!S_ISREG(status.st_mode))
-    throw inputError(path, "is not a file that can be read; ", mend);
+    throw inputError(path, "is not a file that can be read; ", hint);
   if (static_cast<std::uint64_t>(status.st_size) > most)
     throw inputError(path, "has more than ", most >> 20, " MB; name a smaller file");
   if (::faccessat(AT_FDCWD, path.c_str(), R_OK, AT_EACCESS) != 0)
-    throw readingError(path, errno, "check its permissions");
+    throw readError(path, errno, "check its permissions");
   const std::optional<FileId> file = fileId(path);
   if (file && isResult(*file))
     throw inputError(path, "is a result of this command; name another file");

@@ -32,7 +32,7 @@ bool isFolder(const std::filesystem::path& path);
 /// Enters `path` into the ledger. Throws Error (input) unless `path` is a readable file of at most
 /// `most` bytes, inside the folder of InputsWithin if one is set, and no result of this process.
 /// `mend`: advice in the message for a folder.
-void requireFile(const std::filesystem::path& path, const std::string& mend,
+void requireFile(const std::filesystem::path& path, const std::string& hint,
                  std::uint64_t most = UINT64_MAX);
 
 /// Enters the file at `path`, or the files directly in the folder at `path`, into the ledger. No

@@ -27,7 +27,7 @@ std::string readText(const std::filesystem::path& path, std::uint64_t most) {
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file.read(text.data(), static_cast<std::streamsize>(text.size())))
-    throw readingError(path, errno, "check its permissions");
+    throw readError(path, errno, "check its permissions");
   return text;
 }
 
@@ -58,13 +58,13 @@ std::string jsonText(const nlohmann::ordered_json& json, int indent) {
   return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-Error JsonNode::error(const std::string& mend) const {
-  return inputError(m_source, m_place.empty() ? mend : m_place + ": " + mend);
+Error JsonNode::error(const std::string& hint) const {
+  return inputError(m_source, m_place.empty() ? hint : m_place + ": " + hint);
 }
 
-const nlohmann::json& JsonNode::checked(bool isRight, const char* mend) const {
+const nlohmann::json& JsonNode::checked(bool isRight, const char* hint) const {
   if (!isRight)
-    throw error(mend);
+    throw error(hint);
   return *m_value;
 }
 

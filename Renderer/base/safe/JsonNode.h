@@ -71,14 +71,14 @@ public:
   std::string json() const;
 
   /// Error (input) that names the file and the place, then says `mend`.
-  Error error(const std::string& mend) const;
+  Error error(const std::string& hint) const;
 
 private:
   JsonNode(const nlohmann::json& value, std::string source, std::string place)
       : m_value(&value), m_source(std::move(source)), m_place(std::move(place)) {}
 
   /// Returns the value. Throws Error (input) unless `isRight`.
-  const nlohmann::json& checked(bool isRight, const char* mend) const;
+  const nlohmann::json& checked(bool isRight, const char* hint) const;
   const nlohmann::json& object() const;
   std::string placeOf(const std::string& key) const {
     return m_place.empty() ? key : m_place + "." + key;

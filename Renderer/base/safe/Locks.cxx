@@ -63,7 +63,7 @@ void NameLock::take(const std::filesystem::path& lock, const std::filesystem::pa
   m_name->keep(); // the file is another process's, or missing
   m_name.reset();
   if (!file.isOpen())
-    throw writingError(path, code);
+    throw writeError(path, code);
 }
 
 } // namespace fenestra

@@ -93,12 +93,12 @@ void checkNrrdUnits(const std::filesystem::path& path, const Fields& fields, con
 /// without spacings ITK takes the mins, and 1 mm.
 void checkNrrdAxes(const std::filesystem::path& path, const Fields& fields) {
   const bool hasSpace = fields.contains("space") || fields.contains("spacedimension");
-  for (const auto& [name, mend] : {std::pair("spacings", "write space directions"),
+  for (const auto& [name, hint] : {std::pair("spacings", "write space directions"),
                                    {"axis mins", "write space directions and space origin"},
                                    {"axis maxs", "write space directions and space origin"},
                                    {"units", "write space units"}})
     if (hasSpace && fields.contains(keyOf(name)))
-      throw inputError(path, name, ": are not read beside a space; ", mend);
+      throw inputError(path, name, ": are not read beside a space; ", hint);
   for (const char* name : {"axis mins", "axis maxs"})
     if (fields.contains(keyOf(name)) && !fields.contains("spacings"))
       throw inputError(

@@ -33,12 +33,12 @@ fs::path targetOf(const fs::path& path) {
   std::error_code failed;
   fs::path target = fs::absolute(path, failed);
   if (failed)
-    throw writingError(path, failed.value());
+    throw writeError(path, failed.value());
   for (int links = 0; fs::is_symlink(target, failed) && links < mostLinks; ++links)
     target = target.parent_path() / fs::read_symlink(target);
   const fs::path folder = fs::canonical(target.parent_path(), failed);
   if (failed)
-    throw writingError(path, failed.value());
+    throw writeError(path, failed.value());
   return folder / target.filename();
 }
 
@@ -57,7 +57,7 @@ void requireReplaceable(const fs::path& path, const fs::path& target) {
     throw outputError(path, "is a folder; name a file");
   if (::lstat(target.c_str(), &status) != 0) {
     if (errno != ENOENT)
-      throw writingError(path, errno);
+      throw writeError(path, errno);
     return;
   }
   if (!S_ISREG(status.st_mode))
@@ -83,7 +83,7 @@ void syncFolder(const fs::path& folder) {
   const Descriptor file(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   // A folder that may be written but not read cannot be synced.
   if (!(file.isOpen() ? ::fsync(*file) == 0 || errno == EINVAL : errno == EACCES))
-    throw writingError(folder, errno);
+    throw writeError(folder, errno);
 }
 
 /// N of /dev/fd/N and similar paths; nullopt: other paths.

@@ -16,7 +16,7 @@ inline std::string systemMessage(int code) {
 }
 
 /// Mend for a failed write; `other`: mend where the name or its folder is at fault.
-inline std::string writingMend(int code, const std::string& other) {
+inline std::string writeHint(int code, const std::string& nameHint) {
   switch (code) {
   case ENOSPC:
   case EDQUOT:
@@ -32,30 +32,31 @@ inline std::string writingMend(int code, const std::string& other) {
   case ENOMEM:
     return "close other programs";
   default:
-    return other;
+    return nameHint;
   }
 }
 
-/// Mend for a failed read; `other` as in writingMend.
-inline std::string readingMend(int code, const std::string& other) {
+/// Mend for a failed read; `other` as in writeHint.
+inline std::string readHint(int code, const std::string& nameHint) {
   return code == ELOOP ? "its links lead to each other: name the file itself"
-                       : writingMend(code, other);
+                       : writeHint(code, nameHint);
 }
 
 /// Error for a result that cannot be written.
-inline Error writingError(const std::filesystem::path& path, int code) {
+inline Error writeError(const std::filesystem::path& path, int code) {
   return outputError(path, "cannot be written: ", systemMessage(code), "; ",
-                     writingMend(code, "name a file in an existing folder that you may write to"));
+                     writeHint(code, "name a file in an existing folder that you may write to"));
 }
 
-/// Error for a file or folder that cannot be made; `other` as in writingMend.
-inline Error makingError(const std::filesystem::path& path, int code, const std::string& other) {
-  return outputError(path, "cannot be made: ", systemMessage(code), "; ", writingMend(code, other));
+/// Error for a file or folder that cannot be made; `other` as in writeHint.
+inline Error createError(const std::filesystem::path& path, int code, const std::string& nameHint) {
+  return outputError(path, "cannot be made: ", systemMessage(code), "; ",
+                     writeHint(code, nameHint));
 }
 
 /// Error for an input that cannot be read.
-inline Error readingError(const std::filesystem::path& path, int code, const std::string& other) {
-  return inputError(path, "cannot be read: ", systemMessage(code), "; ", readingMend(code, other));
+inline Error readError(const std::filesystem::path& path, int code, const std::string& nameHint) {
+  return inputError(path, "cannot be read: ", systemMessage(code), "; ", readHint(code, nameHint));
 }
 
 /// Writes all of `content` to the descriptor `file`. Throws Error (output), which names `path`.
@@ -63,7 +64,7 @@ inline void writeAll(int file, std::string_view content, const std::filesystem::
   while (!content.empty()) {
     const auto written = repeated([&] { return ::write(file, content.data(), content.size()); });
     if (written < 0)
-      throw writingError(path, errno);
+      throw writeError(path, errno);
     content.remove_prefix(static_cast<std::size_t>(written));
   }
 }

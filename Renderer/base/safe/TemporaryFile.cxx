@@ -44,7 +44,7 @@ mode_t keptMode(const struct stat& before, bool isOfItsGroup) {
 TemporaryFile::TemporaryFile(const std::filesystem::path& target) : m_target(target) {
   open();
   if (!m_file.isOpen())
-    throw writingError(m_target, errno);
+    throw writeError(m_target, errno);
   if (const auto file = fileId(*m_file)) // it reuses a number; births may be unknown
     forgetInput(*file);
 }
@@ -79,13 +79,13 @@ void TemporaryFile::finish(Durability durability) {
     mode = keptMode(before, isOfItsGroup);
   }
   if (repeated([&] { return ::fchmod(*m_file, mode); }) != 0)
-    throw writingError(m_target, errno);
+    throw writeError(m_target, errno);
   const mode_t ownersAlone = mode & 0700; // without the list its mask, the group's bits, is void
   if (isThere && !copyAccessList(m_target, *m_file) && ::fchmod(*m_file, ownersAlone) != 0)
-    throw writingError(m_target, errno);
+    throw writeError(m_target, errno);
   if (durability == Durability::synced && repeated([&] { return ::fsync(*m_file); }) != 0 &&
       errno != EINVAL)
-    throw writingError(m_target, errno);
+    throw writeError(m_target, errno);
 }
 
 void TemporaryFile::place() {
@@ -104,7 +104,7 @@ void TemporaryFile::place() {
   else if (errno == EINVAL || errno == ENOSYS)
     placeByLink();
   else
-    throw writingError(m_target, errno);
+    throw writeError(m_target, errno);
 }
 
 /// Places the file on disks that cannot exchange names, with a hard link to the earlier file.
@@ -114,7 +114,7 @@ void TemporaryFile::placeByLink() {
   const bool isKept = ::link(m_target.c_str(), m_before->path().c_str()) == 0;
   const bool isFresh = !isKept && errno == ENOENT;
   if (repeated([&] { return ::rename(m_name->path().c_str(), m_target.c_str()); }) != 0)
-    throw writingError(m_target, errno);
+    throw writeError(m_target, errno);
   m_placed = isFresh ? Placed::fresh : isKept ? Placed::linked : Placed::no;
 }
 

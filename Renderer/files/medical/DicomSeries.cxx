@@ -31,7 +31,7 @@ std::pair<Paths, Paths> contentOf(const Path& folder) {
   }
   if (failed)
     throw inputError(folder, "the folder cannot be read: ", failed.message(), "; ",
-                     readingMend(failed.value(), "check its name and its permissions"));
+                     readHint(failed.value(), "check its name and its permissions"));
   std::ranges::sort(files);
   std::ranges::sort(folders);
   return {files, folders};

@@ -94,7 +94,7 @@ public:
   /// +infinity the greatest.
   Vectors take() {
     if (!m_survey.finite()) {
-      std::visit([this](auto& samples) { this->mend(samples); }, m_samples);
+      std::visit([this](auto& samples) { this->replaceNonFinite(samples); }, m_samples);
       m_survey.notANumber = m_survey.infinite = 0;
       if (const std::size_t needed = smallest(); needed != m_index)
         change(needed);
@@ -162,7 +162,7 @@ private:
   }
 
   template <typename To>
-  void mend(LargeArray<To>& samples) const {
+  void replaceNonFinite(LargeArray<To>& samples) const {
     if constexpr (std::is_floating_point_v<To>) {
       const auto least = converted<To>(m_survey.least);
       const auto greatest = converted<To>(m_survey.greatest);

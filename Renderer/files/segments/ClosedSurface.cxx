@@ -16,7 +16,8 @@ namespace fenestra {
 namespace {
 
 using Path = std::filesystem::path;
-constexpr const char* mend = "export the segmentation in Slicer as a binary labelmap (.seg.nrrd)";
+constexpr const char* exportHint =
+    "export the segmentation in Slicer as a binary labelmap (.seg.nrrd)";
 
 /// Files that a .vtm names. Throws Error (input) for names outside its folder.
 std::vector<Path> blocksOf(const Path& path) {
@@ -25,18 +26,18 @@ std::vector<Path> blocksOf(const Path& path) {
   const bool read = static_cast<bool>(document.load_buffer(text.data(), text.size()));
   const pugi::xml_node file = document.child("VTKFile");
   if (!read || std::string_view(file.attribute("type").value()) != "vtkMultiBlockDataSet")
-    throw inputError(path, "is damaged or no multi-block file; ", mend);
+    throw inputError(path, "is damaged or no multi-block file; ", exportHint);
   constexpr std::size_t mostBlocks = 4096;
   std::vector<Path> blocks;
   for (const auto& block : file.child("vtkMultiBlockDataSet").children("DataSet")) {
     const Path name = Path(block.attribute("file").value()).lexically_normal();
     if (name.empty() || name.is_absolute() || *name.begin() == ".." || blocks.size() == mostBlocks)
       throw inputError(path, "DataSet: file=\"", shown(name.string()),
-                       "\" is not in the folder of the .vtm; ", mend);
+                       "\" is not in the folder of the .vtm; ", exportHint);
     blocks.push_back(path.parent_path() / name);
   }
   if (blocks.empty())
-    throw inputError(path, "holds no segment; ", mend);
+    throw inputError(path, "holds no segment; ", exportHint);
   return blocks;
 }
 
@@ -73,7 +74,7 @@ std::vector<Surface> surfacesOf(const Path& path) {
     if (shape.triangles.empty() && shape.hasLines)
       throw inputError(
           block, "Segmentation_MasterRepresentation: holds planar contours, not a closed surface; ",
-          mend);
+          exportHint);
     surfaces.push_back({infoOf(shape, surfaces.size()), std::move(shape)});
   }
   return surfaces;
@@ -127,7 +128,7 @@ public:
       constexpr std::int64_t most = std::int64_t{1} << 31;
       const std::int64_t size = m_size.prod() * static_cast<std::int64_t>(++count);
       if (size > most)
-        throw inputError(m_path, "overlaps in too many layers; ", mend);
+        throw inputError(m_path, "overlaps in too many layers; ", exportHint);
       labels.resize(static_cast<std::size_t>(size));
     }
     for (const VoxelRun& run : runs)
@@ -163,7 +164,7 @@ Segmentation readClosedSurfaces(const Path& path, const Grid* reference) {
   std::vector<Surface> surfaces = surfacesOf(path);
   const Box bounds = boundsOf(surfaces, Affine::Identity());
   if (!(bounds.upper.array() >= bounds.lower.array()).all())
-    throw inputError(path, "its surfaces hold no point; ", mend);
+    throw inputError(path, "its surfaces hold no point; ", exportHint);
   const Grid grid = reference ? cropped(*reference, boundsOf(surfaces, reference->worldToIndex))
                               : gridAround(bounds);
   Layers layers(grid.size, path);
@@ -174,7 +175,7 @@ Segmentation readClosedSurfaces(const Path& path, const Grid* reference) {
     const auto runs = voxelRuns(surface.shape.points, surface.shape.triangles, grid.size);
     if (!runs)
       throw inputError(path, "segment \"", shown(surface.info.name),
-                       "\": its surface has holes or is too complex; ", mend);
+                       "\": its surface has holes or is too complex; ", exportHint);
     surface.info.layer = layers.add(*runs, static_cast<Layers::Label>(surface.info.labelValue));
     segments.push_back(surface.info);
   }

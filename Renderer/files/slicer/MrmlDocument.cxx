@@ -163,9 +163,9 @@ Error MrmlDocument::error(const MrmlNode& node, const std::string& what) const {
   return inputError(m_source, node.tag, " ", shown(node), ": ", what);
 }
 
-Complaint MrmlDocument::complaint(const MrmlNode& node, const std::string& subject,
-                                  const std::string& mend) const {
-  return [=, this, &node](const std::string& what) { return error(node, subject + what + mend); };
+MakeError MrmlDocument::errorMaker(const MrmlNode& node, const std::string& subject,
+                                   const std::string& hint) const {
+  return [=, this, &node](const std::string& what) { return error(node, subject + what + hint); };
 }
 
 std::string shown(const MrmlNode& node) {

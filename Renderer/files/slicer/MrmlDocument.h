@@ -59,8 +59,8 @@ public:
   /// Error (input) that names the file and the node.
   Error error(const MrmlNode& node, const std::string& what) const;
   /// Maker of such errors for a check: `subject` before the fault, `mend` behind it.
-  Complaint complaint(const MrmlNode& node, const std::string& subject = "",
-                      const std::string& mend = "") const;
+  MakeError errorMaker(const MrmlNode& node, const std::string& subject = "",
+                       const std::string& hint = "") const;
 
 private:
   std::string m_source, m_version;

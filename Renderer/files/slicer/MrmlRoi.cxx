@@ -10,18 +10,20 @@ namespace {
 constexpr double largest = 1e9; ///< mm
 
 /// Map of [-1, 1]^3 to a box with `halfEdges` along the columns of `axes`. Throws for a flat box.
-Affine boxMap(const Vec3& center, const Mat3& axes, const Vec3& halfEdges, const Complaint& fail) {
+Affine boxMap(const Vec3& center, const Mat3& axes, const Vec3& halfEdges,
+              const MakeError& makeError) {
   if (!(halfEdges.array() > 0.0).all())
-    throw fail("its size must be above 0 in every axis; mend it in the Markups module");
+    throw makeError("its size must be above 0 in every axis; mend it in the Markups module");
   if (!(std::abs(axes.determinant()) > 1e-6))
-    throw fail("its axes do not span space; mend it in the Markups module");
+    throw makeError("its axes do not span space; mend it in the Markups module");
   return Affine(axes * Mat3::Diagonal(halfEdges), center);
 }
 
-void refuseInsideOut(bool insideOut, const Complaint& fail) {
+void refuseInsideOut(bool insideOut, const MakeError& makeError) {
   if (insideOut)
-    throw fail("is inside out, which crops everything in Slicer, too; turn that off in the Markups "
-               "module");
+    throw makeError(
+        "is inside out, which crops everything in Slicer, too; turn that off in the Markups "
+        "module");
 }
 
 // ---- .mrk.json
@@ -43,11 +45,11 @@ Affine readMarkupsJson(const std::filesystem::path& path) {
   if (elements.empty())
     throw markups.error("is empty; save the region of interest again");
   const JsonNode& roi = elements.front();
-  const auto fail = [&roi](const std::string& what) { return roi.error(what); };
+  const auto makeError = [&roi](const std::string& what) { return roi.error(what); };
   if (roi.at("type").text() != "ROI")
     throw roi.at("type").error("must be \"ROI\"; name a region of interest");
   if (const auto insideOut = roi.find("insideOut"))
-    refuseInsideOut(insideOut->boolean(), fail);
+    refuseInsideOut(insideOut->boolean(), makeError);
 
   const Vec3 center = roi.at("center").triple(-largest, largest);
   Mat3 axes = Mat3::Identity();
@@ -59,22 +61,23 @@ Affine readMarkupsJson(const std::filesystem::path& path) {
     };
     axes = Mat3::FromRows(row(0), row(3), row(6));
   }
-  const Affine box = boxMap(center, axes, 0.5 * roi.at("size").triple(-largest, largest), fail);
+  const Affine box =
+      boxMap(center, axes, 0.5 * roi.at("size").triple(-largest, largest), makeError);
   return lps ? Affine(lpsToRas) * box : box;
 }
 
 // ---- older forms: centre and half edges, RAS
 
-Affine axisAligned(const std::vector<double>& centerAndRadius, const Complaint& fail) {
+Affine axisAligned(const std::vector<double>& centerAndRadius, const MakeError& makeError) {
   if (centerAndRadius.size() != 6)
-    throw fail("needs a centre and a radius, three numbers each; save it again");
+    throw makeError("needs a centre and a radius, three numbers each; save it again");
   const std::vector<double>& n = centerAndRadius;
-  return boxMap({n[0], n[1], n[2]}, Mat3::Identity(), {n[3], n[4], n[5]}, fail);
+  return boxMap({n[0], n[1], n[2]}, Mat3::Identity(), {n[3], n[4], n[5]}, makeError);
 }
 
 /// Annotation files: two lines "point|x|y|z|...".
 Affine readAnnotation(const std::filesystem::path& path) {
-  const auto fail = [&path](const std::string& what) { return inputError(path, what); };
+  const auto makeError = [&path](const std::string& what) { return inputError(path, what); };
   std::vector<double> numbers;
   for (const std::string& line : split(readText(path), '\n')) {
     const std::vector<std::string> cells = split(line, '|');
@@ -83,11 +86,11 @@ Affine readAnnotation(const std::filesystem::path& path) {
     for (std::size_t axis = 1; axis < std::min<std::size_t>(4, cells.size()); ++axis) {
       const auto number = parseNumbers(cells[axis]);
       if (!number || number->size() != 1)
-        throw fail("point: must have three numbers; save it again");
+        throw makeError("point: must have three numbers; save it again");
       numbers.push_back(number->front());
     }
   }
-  return axisAligned(numbers, fail);
+  return axisAligned(numbers, makeError);
 }
 
 Affine inlineRoi(const MrmlScene& scene, const MrmlNode& roi) {
@@ -96,11 +99,11 @@ Affine inlineRoi(const MrmlScene& scene, const MrmlNode& roi) {
     text = roi.text("xyz") + roi.text("XYZ") + " " + roi.text("radiusXYZ") + roi.text("RadiusXYZ");
   std::replace(text.begin(), text.end(), '|', ' ');
   return axisAligned(parseNumbers(text).value_or(std::vector<double>()),
-                     scene.document.complaint(roi));
+                     scene.document.errorMaker(roi));
 }
 
 Affine boxInNode(MrmlScene& scene, const MrmlNode& roi) {
-  refuseInsideOut(roi.flag("insideOut", false), scene.document.complaint(roi));
+  refuseInsideOut(roi.flag("insideOut", false), scene.document.errorMaker(roi));
   const std::vector<std::string> names = storedFiles(scene, roi);
   if (names.empty())
     return inlineRoi(scene, roi);
@@ -113,9 +116,9 @@ Affine boxInNode(MrmlScene& scene, const MrmlNode& roi) {
 } // namespace
 
 CropBox readSceneRoi(MrmlScene& scene, const MrmlNode& roi) {
-  return CropBox(checkedMap(
+  return CropBox(checkAffine(
       toWorld(scene, roi) * boxInNode(scene, roi),
-      scene.document.complaint(roi, "its box in the world ", "; mend it in the Markups module")));
+      scene.document.errorMaker(roi, "its box in the world ", "; mend it in the Markups module")));
 }
 
 } // namespace fenestra

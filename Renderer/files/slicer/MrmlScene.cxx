@@ -32,9 +32,9 @@ Grid placed(const MrmlNode* storage, const Grid& fromFile) {
 /// Grid of a node in the world.
 Grid placedGrid(const MrmlScene& scene, const MrmlNode& node, const Affine& above,
                 const Grid& grid) {
-  return {grid.size, checkedMap(above * grid.indexToWorld,
-                                scene.document.complaint(node, "its place in the world ",
-                                                         "; mend the transforms above it"))};
+  return {grid.size, checkAffine(above * grid.indexToWorld,
+                                 scene.document.errorMaker(node, "its place in the world ",
+                                                           "; mend the transforms above it"))};
 }
 
 /// Names of the files that hold a node's data. Throws Error (input) where there are none.

@@ -18,17 +18,17 @@ std::optional<Affine> matrixOf(const MrmlScene& scene, const MrmlNode& node,
   if (!node.find(attribute))
     return std::nullopt;
   const auto numbers = node.numbers(attribute);
-  const Complaint refuse =
-      scene.document.complaint(node, attribute + ": ", "; mend it in the Transforms module");
+  const MakeError makeError =
+      scene.document.errorMaker(node, attribute + ": ", "; mend it in the Transforms module");
   if (!numbers || numbers->size() != 16)
-    throw refuse("must be 16 numbers");
+    throw makeError("must be 16 numbers");
   const auto row = [&numbers](std::size_t i) { // first three of the row's four
     return Vec3((*numbers)[4 * i], (*numbers)[4 * i + 1], (*numbers)[4 * i + 2]);
   };
   if (row(3) != Vec3::Zero() || numbers->back() != 1.0)
-    throw refuse("its last row must be 0 0 0 1");
+    throw makeError("its last row must be 0 0 0 1");
   const Vec3 translation((*numbers)[3], (*numbers)[7], (*numbers)[11]);
-  return checkedMap(Affine(Mat3::FromRows(row(0), row(1), row(2)), translation), refuse);
+  return checkAffine(Affine(Mat3::FromRows(row(0), row(1), row(2)), translation), makeError);
 }
 
 /// True if a node's file maps to the parent, as some old scenes say; linear transforms said so the
@@ -101,9 +101,9 @@ Affine toWorld(MrmlScene& scene, const MrmlNode& node) {
                                        "mend them in the Transforms module");
     result = toParent(scene, *above) * result;
   }
-  return checkedMap(result,
-                    scene.document.complaint(node, "the product of the transforms above it ",
-                                             "; mend them in the Transforms module"));
+  return checkAffine(result,
+                     scene.document.errorMaker(node, "the product of the transforms above it ",
+                                               "; mend them in the Transforms module"));
 }
 
 CameraPose readSceneCamera(MrmlScene& scene, const MrmlNode& camera) {
@@ -137,7 +137,7 @@ CameraPose readSceneCamera(MrmlScene& scene, const MrmlNode& camera) {
     pose.target = since * pose.target;
     pose.up = since.linear() * pose.up;
   }
-  return checkedPose(pose, scene.document.complaint(camera, "looks nowhere: ", "; give --view"));
+  return checkedPose(pose, scene.document.errorMaker(camera, "looks nowhere: ", "; give --view"));
 }
 
 } // namespace fenestra

@@ -114,7 +114,7 @@ SceneArchive::SceneArchive(const std::filesystem::path& path) : m_source(path.st
   errno = 0;
   zip_t* zip = zip_open(path.c_str(), ZIP_RDONLY, &failure);
   if (!zip && (failure == ZIP_ER_OPEN || failure == ZIP_ER_READ) && errno != 0)
-    throw readingError(path, errno, "check its permissions");
+    throw readError(path, errno, "check its permissions");
   if (!zip)
     throw inputError(m_source, "is no whole archive; save the scene again, or name its .mrml");
   m_archive.reset(zip);
@@ -148,7 +148,7 @@ void SceneArchive::extract(const std::filesystem::path& file,
   const auto cannotUnpack = [&](int code) {
     return outputError(oneLine(destination.string()), oneLine(file.string()),
                        " cannot be unpacked: ", systemMessage(code), "; ",
-                       writingMend(code, "set TMPDIR to another folder"));
+                       writeHint(code, "set TMPDIR to another folder"));
   };
   std::error_code unknown;
   if (size > std::filesystem::space(destination.parent_path(), unknown).available && !unknown)
@@ -265,25 +265,25 @@ bool SceneFiles::holds(const std::string& fileName) const {
 std::filesystem::path SceneFiles::locate(const std::string& fileName) {
   const std::filesystem::path name = decodedUrl(fileName);
   std::filesystem::path file = resolved(fileName);
-  const auto refused = [this](const std::filesystem::path& named, const std::string& why) {
+  const auto makeError = [this](const std::filesystem::path& named, const std::string& why) {
     return inputError(m_source, "names ", oneLine(named.string()), ", which ", why);
   };
   if (!m_archive) {
     std::error_code failed;
     const bool isThere = std::filesystem::exists(file, failed);
     if (failed)
-      throw refused(file,
-                    textOf("cannot be read: ", systemMessage(failed.value()), "; ",
-                           readingMend(failed.value(), "check the permissions of its folder")));
+      throw makeError(file,
+                      textOf("cannot be read: ", systemMessage(failed.value()), "; ",
+                             readHint(failed.value(), "check the permissions of its folder")));
     if (!isThere)
-      throw refused(file, "is not there; put it back, or save the scene again");
+      throw makeError(file, "is not there; put it back, or save the scene again");
     m_read.insert(file);
     return file;
   }
   if (name.is_absolute() || *file.begin() == "..")
-    throw refused(name, "is outside the archive; save the scene again");
+    throw makeError(name, "is outside the archive; save the scene again");
   if (!m_archive->files().contains(file))
-    throw refused(file, "it does not hold; save the scene again");
+    throw makeError(file, "it does not hold; save the scene again");
   std::filesystem::path place = unpacked(file);
   const std::filesystem::path root = m_unpacked->path().lexically_normal();
   for (const std::filesystem::path& part : filesNamedBy(place))

@@ -149,7 +149,7 @@ const SandboxJob transformJob("transform", handleTransformRequest, {.seconds = 3
 
 // ---- in this process: what the answer means
 
-constexpr const char* hardened =
+constexpr const char* hardenHint =
     "harden it in Slicer (Data module, Harden transform) and save again";
 constexpr std::uint64_t largestFile = 64 << 20;
 constexpr std::uint64_t largestTextFile = 1 << 20; ///< room for hundreds of matrices
@@ -187,7 +187,7 @@ std::string linearType(const Path& path, const std::string& name) {
   const bool isSimple =
       type == "CompositeTransform" || type == "IdentityTransform" || type == "TranslationTransform";
   if (!isSimple && !matrixTransform(type))
-    throw inputError(path, "Transform: ", shown(name), " is not linear; ", hardened);
+    throw inputError(path, "Transform: ", shown(name), " is not linear; ", hardenHint);
   if (name != type + "_double_3_3") // ITK's readers turn _float_ into _double_
     throw inputError(path, "Transform: ", shown(name),
                      " is not a transform of three axes; save one that is");
@@ -257,7 +257,7 @@ void checkExtension(const Path& path) {
   static const std::set<std::string> known = {".tfm", ".txt", ".h5", ".hdf5", ".mat"},
                                      images = {".nrrd", ".nhdr", ".nii", ".gz", ".mha", ".mhd"};
   if (images.contains(extension))
-    throw inputError(path, "is a displacement field, which is not linear; ", hardened);
+    throw inputError(path, "is a displacement field, which is not linear; ", hardenHint);
   if (!known.contains(extension))
     throw inputError(
         path, "has no known extension of a transform; name a .tfm, .txt, .h5, .hdf5 or .mat file");
@@ -279,7 +279,7 @@ Affine readLinearTransform(const Path& path) {
   const std::uint64_t largest = isText ? largestTextFile : largestFile;
   if (std::filesystem::file_size(path) > largest)
     throw inputError(path, "is larger than ", largest >> 20, " MB, so it is no linear transform; ",
-                     hardened);
+                     hardenHint);
   checkExtension(path);
   checkNamesNoFile(path);
   // Starting a child takes longer than reading a transform: each thread keeps its child.
@@ -291,7 +291,7 @@ Affine parseTransformReply(const Path& path, std::string_view reply) {
   try {
     const Quiet quiet;
     const Affine map =
-        checkedMap(composed(path, recordsIn(path, reply)), [&path](const std::string& what) {
+        checkAffine(composed(path, recordsIn(path, reply)), [&path](const std::string& what) {
           return inputError(path, "Parameters: the map ", what, "; save another one");
         });
     return Affine(lpsToRas * map.linear() * lpsToRas, lpsToRas * map.translation());

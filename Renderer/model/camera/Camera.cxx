@@ -9,14 +9,14 @@ Vec3 sideOf(const Vec3& forward, const Vec3& up) {
 
 } // namespace
 
-CameraPose checkedPose(const CameraPose& pose, const Complaint& complaint) {
+CameraPose checkedPose(const CameraPose& pose, const MakeError& makeError) {
   constexpr double farthest = 1e12; // mm
   const auto isPlace = [&](const Vec3& p) { return (p.array().abs() <= farthest).all(); };
   const Vec3 view = pose.target - pose.position;
   if (!isPlace(pose.position) || !isPlace(pose.target) || !(view.norm() > 0.0))
-    throw complaint("position and target must be two different points within 1e12 mm");
+    throw makeError("position and target must be two different points within 1e12 mm");
   if (!(sideOf(view / view.norm(), pose.up).norm() > 1e-12))
-    throw complaint("up must not be zero or along the viewing direction");
+    throw makeError("up must not be zero or along the viewing direction");
   return pose;
 }
 

@@ -20,7 +20,7 @@ struct CameraPose {
 
 /// Returns `pose` if valid: position and target differ and lie within 1e12 mm, and up is neither
 /// zero nor along the view. Throws otherwise.
-CameraPose checkedPose(const CameraPose& pose, const Complaint& complaint);
+CameraPose checkedPose(const CameraPose& pose, const MakeError& makeError);
 
 /// Pose of a turntable: turns the eye about the axis through the target along `up`,
 /// counter-clockwise seen from the tip of `up`. Distance and height of the eye stay. 0 degrees

@@ -197,9 +197,9 @@ void check(const VolumeProperty& p, const std::string& source) {
   checkNodes(p.color, "color", source);
   if (!p.gradientOpacity.empty())
     checkNodes(p.gradientOpacity, "gradient opacity", source);
-  const auto require = [&](bool isUsable, const char* field, const char* mend) {
+  const auto require = [&](bool isUsable, const char* field, const char* hint) {
     if (!isUsable)
-      throw inputError(source, field, ": ", mend);
+      throw inputError(source, field, ": ", hint);
   };
   require(p.unitDistance > 0.0 && std::isfinite(p.unitDistance), "scalarOpacityUnitDistance",
           "must be a length above 0 mm");

@@ -24,12 +24,12 @@ using Node = vtkMRMLFenestraRenderNode;
 const auto folder = std::filesystem::temp_directory_path(); // no data pass through it here
 
 /// Message about missing data; empty: nothing is missing.
-std::string complaint(vtkSlicerFenestraLogic* logic, Node* node) {
+std::string getSnapshotError(vtkSlicerFenestraLogic* logic, Node* node) {
   try {
     logic->Snapshot(node, folder);
     return {};
-  } catch (const SlicerExport::Complaint& said) {
-    return said.what();
+  } catch (const SlicerExport::UserError& error) {
+    return error.what();
   }
 }
 
@@ -67,10 +67,10 @@ int testCamera(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, Node* setting
 }
 
 int testSubject(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, Node* settings) {
-  CHECK_BOOL(has(complaint(logic, settings), "no volume"), true);
+  CHECK_BOOL(has(getSnapshotError(logic, settings), "no volume"), true);
   vtkMRMLScalarVolumeNode* volume = FenestraTesting::addVolume(scene);
   settings->SetNodeReferenceID(Node::VolumeRole, volume->GetID());
-  CHECK_STD_STRING(complaint(logic, settings), "");
+  CHECK_STD_STRING(getSnapshotError(logic, settings), "");
   SlicerExport::Contents contents = logic->Snapshot(settings, folder);
   CHECK_STD_STRING(contents.volume.type, "int16");
   CHECK_BOOL(contents.volume.data.get() == volume->GetImageData()->GetScalarPointer(), true);
@@ -105,7 +105,7 @@ int testSubject(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, Node* settin
     CHECK_DOUBLE(one.color[0], 0.25);
   }
   settings->SetFocus({"gone"});
-  CHECK_BOOL(has(complaint(logic, settings), "gone"), true);
+  CHECK_BOOL(has(getSnapshotError(logic, settings), "gone"), true);
   settings->SetFocus({ids[0]});
 
   vtkNew<vtkMatrix4x4> shift;
@@ -117,7 +117,7 @@ int testSubject(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, Node* settin
   CHECK_DOUBLE(logic->Snapshot(settings, folder).segmentation.toWorld[3], 12.5);
   auto* bending = scene->AddNewNodeByClass("vtkMRMLBSplineTransformNode", "Bending");
   volume->SetAndObserveTransformNodeID(bending->GetID());
-  CHECK_BOOL(has(complaint(logic, settings), "Harden"), true);
+  CHECK_BOOL(has(getSnapshotError(logic, settings), "Harden"), true);
   volume->SetAndObserveTransformNodeID(nullptr);
   return EXIT_SUCCESS;
 }
