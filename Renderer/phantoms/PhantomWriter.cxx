@@ -147,7 +147,7 @@ std::vector<std::string> writePhantom(const Phantom& phantom,
   const std::filesystem::path archive = directory / (name + ".mrb");
   files.push_back({name + ".mrb", encodeArchive(phantom, archive, name, files)});
 
-  const MadeFolders folders(directory);
+  const CreatedFolders folders(directory);
   Outputs outputs;
   const bool isPhantoms = beginsWith(directory / (name + ".nrrd"), withoutMark(nrrdText(header))) &&
                           holds(directory / (name + ".mrml"), withoutMark(scene));

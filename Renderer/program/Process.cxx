@@ -70,9 +70,9 @@ int finishOutput(int status) {
 
 /// Retries the removal of temporary files, and names those that the user has to remove.
 int removeRest(int status) {
-  removeLeftovers();
+  removeAllTempFiles();
   try {
-    for (const std::filesystem::path& path : remainingLeftovers()) {
+    for (const std::filesystem::path& path : remainingTempFiles()) {
       print("fenestra: warning: temporary file left: ");
       print(path.native());
       print("; remove it\n");
@@ -89,7 +89,7 @@ void runProcess(int argc, char** argv, DispatchFunction dispatch) {
   openStandardStreams();
   serveSandbox(argc, argv); // the child does not return
   handleStops();
-  removeAbandonedFolders();
+  removeStaleFolders();
   const int status = removeRest(finishOutput(run(argc, argv, dispatch)));
   // Everything is written. Destructors of libraries' static objects do no useful work, take a tenth
   // of a short command's time, and print if memory fails (HDF5's).

@@ -45,7 +45,7 @@ void end() {
     say("fenestra: stopped on request\n");
   else
     say("fenestra: stopped on request; nothing was written\n");
-  removeLeftovers();
+  removeAllTempFiles();
   ::_exit(stopStatus());
 }
 
@@ -58,9 +58,9 @@ void onSignal(int signal) {
     if (stop)
       *stop = true;
     else
-      endWhenPossible(end);
+      endWhenUnblocked(end);
   } else if (!stop || !isEcho()) {
-    endWhenPossible(end);
+    endWhenUnblocked(end);
   }
   errno = before;
 }
@@ -91,8 +91,8 @@ int stopStatus() {
 void endProcess(int status) {
   static std::atomic<int> last;
   last = status;
-  endWhenPossible([] {
-    removeLeftovers();
+  endWhenUnblocked([] {
+    removeAllTempFiles();
     ::_exit(last);
   });
   for (;;)

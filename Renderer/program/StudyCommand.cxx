@@ -256,7 +256,7 @@ int studyCommand(int argc, char** argv, int first) {
       (results.table.parent_path() / results.table.stem()).string());
   results.rows = readStudyTable(results.table, givenToAllRows(*values));
   results.outcomes.resize(results.rows.size());
-  const MadeFolders made(results.folder);
+  const CreatedFolders made(results.folder);
   Outputs outputs;
   const bool isWhole = options.share.parts == 1; // one of several machines knows its own rows only
   if (isWhole)

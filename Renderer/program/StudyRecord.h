@@ -54,7 +54,7 @@ private:
 
   const StudyRow& m_row;
   std::filesystem::path m_folder; ///< of the row
-  MadeFolders m_made;
+  CreatedFolders m_made;
   std::vector<std::filesystem::path> m_pictures;
   std::filesystem::path m_film;
   bool m_goesOn = false; ///< from the film

@@ -281,14 +281,15 @@ TEST_F(OutputFiles, CleanupLeavesFilesOfACommittingRun) {
   file.write("new");
   file.finish(Durability::none);
   file.place();
-  removeAbandoned(folder.path(), temporaryFilePrefix, Leftover::Kind::file); // as in another run
+  removeStaleTempFiles(folder.path(), tempFilePrefix,
+                       TempFileGuard::Kind::file); // as in another run
   file.takeBack();
   EXPECT_EQ(bytesOf(folder / "a"), "old");
 }
 
 TEST_F(OutputFiles, NextRunRemovesFilesOfKilledRuns) {
-  const std::string left = temporaryName(temporaryFilePrefix);
-  const std::string inUse = temporaryName(temporaryFilePrefix);
+  const std::string left = makeTempName(tempFilePrefix);
+  const std::string inUse = makeTempName(tempFilePrefix);
   folder.write(left, "left");
   for (const char* name : {".fenestra-notes", ".fenestra-0123456789ab"})
     folder.write(name, "somebody's");
@@ -303,7 +304,7 @@ TEST_F(OutputFiles, NextRunRemovesFilesOfKilledRuns) {
 }
 
 TEST_F(OutputFiles, NamesOfTemporaryFilesAreRefused) {
-  const fs::path path = folder / temporaryName(temporaryFilePrefix);
+  const fs::path path = folder / makeTempName(tempFilePrefix);
   EXPECT_NE(refusal(ErrorKind::usage, [&] { outputs.add(path); }).find("choose another"),
             std::string::npos);
 }
@@ -338,7 +339,7 @@ TEST_F(OutputFiles, NameLockIsHeldByOneAtATime) {
     EXPECT_TRUE(first.isHeld());
     EXPECT_FALSE(NameLock(name).isHeld());
     EXPECT_TRUE(NameLock(folder / "others.turntable.json").isHeld());
-    removeAbandoned(folder.path(), temporaryFilePrefix, Leftover::Kind::file);
+    removeStaleTempFiles(folder.path(), tempFilePrefix, TempFileGuard::Kind::file);
     EXPECT_FALSE(NameLock(name).isHeld()) << "after another run has looked for abandoned files";
     EXPECT_EQ(fileCount(), 1u);
   }
@@ -349,14 +350,15 @@ TEST_F(OutputFiles, NameLockIsHeldByOneAtATime) {
 
 /// Names as long as a path in an archive may be.
 TEST_F(OutputFiles, OverlongNameIsNoLeftover) {
-  { const Leftover file(folder / std::string(300, 'x'), Leftover::Kind::file); }
-  EXPECT_EQ(remainingLeftovers(), std::vector<fs::path>());
+  { const TempFileGuard file(folder / std::string(300, 'x'), TempFileGuard::Kind::file); }
+  EXPECT_EQ(remainingTempFiles(), std::vector<fs::path>());
 }
 
 TEST_F(OutputFiles, LockedTemporaryFileIsNotRemoved) {
   const TemporaryFile file(folder / "a");
-  removeAbandoned(folder.path(), temporaryFilePrefix,
-                  Leftover::Kind::file); // another descriptor and lock, as in another process
+  removeStaleTempFiles(
+      folder.path(), tempFilePrefix,
+      TempFileGuard::Kind::file); // another descriptor and lock, as in another process
   EXPECT_EQ(fileCount(), 1u);
 }
 
@@ -395,11 +397,11 @@ TEST(PrivateFolders, NextRunRemovesFoldersOfKilledRuns) {
   const TemporaryFolder temporary;
   const std::string before = std::getenv("TMPDIR") ? std::getenv("TMPDIR") : "/tmp";
   ::setenv("TMPDIR", temporary.path().c_str(), 1);
-  const std::string left = temporaryName("fenestra-scene-");
+  const std::string left = makeTempName("fenestra-scene-");
   fs::create_directories(temporary / left / "Data");
   fs::permissions(temporary / left, fs::perms::owner_all);
   temporary.write(left + "/Data/patient.nrrd", "left");
-  const std::string shared = temporaryName("fenestra-scene-");
+  const std::string shared = makeTempName("fenestra-scene-");
   const std::vector<std::string> others = {"fenestra-others", "fenestra-scene-of-mine",
                                            "fenestra-scene-0123456789ab", shared};
   for (const std::string& name : others) {
@@ -409,7 +411,7 @@ TEST(PrivateFolders, NextRunRemovesFoldersOfKilledRuns) {
   }
   PrivateFolder living;
   const fs::path file = living.add("Data/a.nrrd");
-  removeAbandonedFolders();
+  removeStaleFolders();
   EXPECT_FALSE(fs::exists(temporary / left));
   EXPECT_TRUE(fs::exists(file));
   for (const std::string& name : others)

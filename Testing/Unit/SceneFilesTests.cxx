@@ -105,7 +105,7 @@ TEST(SceneFiles, UnpacksAFileOnRequestOnly) {
     EXPECT_TRUE(std::filesystem::is_empty(temporary.path()));
     files.locate("big");
     EXPECT_FALSE(std::filesystem::is_empty(temporary.path()));
-    removeLeftovers(); // as a signal's handler does
+    removeAllTempFiles(); // as a signal's handler does
     EXPECT_TRUE(std::filesystem::is_empty(temporary.path()));
   }
   unsetenv("TMPDIR");

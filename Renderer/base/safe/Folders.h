@@ -12,15 +12,15 @@ namespace fenestra {
 
 /// Makes `folder`, for results, and the missing folders above it. The destructor removes those of
 /// them that are still empty. Throws Error (output).
-class MadeFolders {
+class CreatedFolders {
 public:
-  explicit MadeFolders(const std::filesystem::path& folder);
-  ~MadeFolders();
-  MadeFolders(const MadeFolders&) = delete;
-  MadeFolders& operator=(const MadeFolders&) = delete;
+  explicit CreatedFolders(const std::filesystem::path& folder);
+  ~CreatedFolders();
+  CreatedFolders(const CreatedFolders&) = delete;
+  CreatedFolders& operator=(const CreatedFolders&) = delete;
 
 private:
-  std::list<Leftover> m_made; ///< the outermost first
+  std::list<TempFileGuard> m_created; ///< the outermost first
 };
 
 /// Temporary folder, readable by this user alone; removed after SIGKILL by a later run.
@@ -43,11 +43,11 @@ private:
   bool makeLocked(const std::filesystem::path& folder);
 
   Descriptor m_lock;
-  std::list<Leftover> m_entries; ///< the folder, then its content as made
+  std::list<TempFileGuard> m_entries; ///< the folder, then its content as made
 };
 
 /// Removes the private folders that killed runs of this user have left: no process has them locked.
 /// Ignores failures.
-void removeAbandonedFolders();
+void removeStaleFolders();
 
 } // namespace fenestra

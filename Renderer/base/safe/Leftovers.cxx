@@ -31,62 +31,62 @@ std::string hashDigits(std::string_view text, std::size_t count) {
   return result;
 }
 
-std::string withCheck(const std::string& name) {
+std::string appendChecksum(const std::string& name) {
   return name + '-' + hashDigits("made by Fenestra: " + name, checkCount) + ".tmp";
 }
 
 /// True for error codes that mean that no such file exists. No file has a name that is too long.
-bool saysNothingIsThere(int code) {
+bool isNotFound(int code) {
   return code == ENOENT || code == ENOTDIR || code == ENAMETOOLONG;
 }
 
 /// Lock on a file of this user, or on a folder accessible to this user alone, that no process has
 /// locked; not open: there is none.
-Descriptor lockAbandoned(const std::filesystem::path& path, Leftover::Kind kind) {
+Descriptor lockStaleFile(const std::filesystem::path& path, TempFileGuard::Kind kind) {
   Descriptor file(::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   struct stat status = {};
   if (::fstat(*file, &status) != 0 || status.st_uid != ::geteuid())
     return Descriptor();
   const bool isPrivate = S_ISDIR(status.st_mode) && (status.st_mode & 0777) == S_IRWXU;
-  const bool isRight = kind == Leftover::Kind::file ? S_ISREG(status.st_mode) : isPrivate;
-  return isRight && ::flock(*file, LOCK_EX | LOCK_NB) == 0 ? std::move(file) : Descriptor();
+  const bool isCandidate = kind == TempFileGuard::Kind::file ? S_ISREG(status.st_mode) : isPrivate;
+  return isCandidate && ::flock(*file, LOCK_EX | LOCK_NB) == 0 ? std::move(file) : Descriptor();
 }
 
 static_assert(std::atomic<void*>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
-std::atomic<int> uninterrupted = 0;             ///< number of threads that are Uninterrupted
+std::atomic<int> blockingThreads = 0;           ///< number of threads that are Uninterrupted
 std::atomic<void (*)()> endRequested = nullptr; ///< set by a signal handler; null: none
 thread_local int depth = 0;                     ///< number of nested Uninterrupted in this thread
 
-void leave() {
-  if (--uninterrupted == 0)
+void unblock() {
+  if (--blockingThreads == 0)
     if (void (*end)() = endRequested)
       end();
 }
 
 } // namespace
 
-std::string temporaryName(std::string_view prefix) {
+std::string makeTempName(std::string_view prefix) {
   std::random_device random;
-  return temporaryNameOf(prefix, textOf(random(), ' ', random()));
+  return hashTempName(prefix, textOf(random(), ' ', random()));
 }
 
-std::string temporaryNameOf(std::string_view prefix, std::string_view what) {
-  return withCheck(std::string(prefix) + hashDigits(what, digitCount));
+std::string hashTempName(std::string_view prefix, std::string_view what) {
+  return appendChecksum(std::string(prefix) + hashDigits(what, digitCount));
 }
 
-bool isTemporaryName(std::string_view name, std::string_view prefix) {
+bool isTempName(std::string_view name, std::string_view prefix) {
   return name.starts_with(prefix) &&
-         name == withCheck(std::string(name.substr(0, prefix.size() + digitCount)));
+         name == appendChecksum(std::string(name.substr(0, prefix.size() + digitCount)));
 }
 
 /// Entry of the list. Entries are reused, never freed: a signal handler may walk the list at any
 /// time.
-struct Leftover::Entry {
+struct TempFileGuard::Entry {
   std::filesystem::path path; ///< constant while listed
   Kind kind = Kind::file;
   std::atomic<bool> isTaken = false;
-  std::atomic<bool> isListed = false;
+  std::atomic<bool> isRegistered = false;
   Entry* next = nullptr;
 
   static std::atomic<Entry*> first;
@@ -107,46 +107,46 @@ struct Leftover::Entry {
   bool remove() const {
     return (kind == Kind::folder ? ::rmdir(path.c_str()) : ::unlink(path.c_str())) == 0;
   }
-  bool isThere() const { return ::access(path.c_str(), F_OK) == 0 || !saysNothingIsThere(errno); }
+  bool exists() const { return ::access(path.c_str(), F_OK) == 0 || !isNotFound(errno); }
 };
 
-std::atomic<Leftover::Entry*> Leftover::Entry::first = nullptr;
+std::atomic<TempFileGuard::Entry*> TempFileGuard::Entry::first = nullptr;
 
-Leftover::Leftover(const std::filesystem::path& path, Kind kind) {
+TempFileGuard::TempFileGuard(const std::filesystem::path& path, Kind kind) {
   std::filesystem::path copy = path; // may throw, before an entry is taken
   m_entry = Entry::take();
   m_entry->path = std::move(copy);
   m_entry->kind = kind;
-  m_entry->isListed = true;
+  m_entry->isRegistered = true;
 }
 
-Leftover::~Leftover() {
-  if (m_entry->isListed && !m_entry->remove() && !saysNothingIsThere(errno))
+TempFileGuard::~TempFileGuard() {
+  if (m_entry->isRegistered && !m_entry->remove() && !isNotFound(errno))
     return; // the name stays listed: the end of the process tries again
-  m_entry->isListed = false;
+  m_entry->isRegistered = false;
   m_entry->isTaken = false;
 }
 
-const std::filesystem::path& Leftover::path() const {
+const std::filesystem::path& TempFileGuard::path() const {
   return m_entry->path;
 }
 
-void Leftover::keep() {
-  m_entry->isListed = false;
+void TempFileGuard::release() {
+  m_entry->isRegistered = false;
 }
 
-void removeAbandoned(const std::filesystem::path& folder, std::string_view prefix,
-                     Leftover::Kind kind) {
+void removeStaleTempFiles(const std::filesystem::path& folder, std::string_view prefix,
+                          TempFileGuard::Kind kind) {
   // std::filesystem's iterator ends the process where memory fails.
   const std::unique_ptr<DIR, int (*)(DIR*)> names(::opendir(folder.c_str()), ::closedir);
   while (const dirent* const entry = names ? ::readdir(names.get()) : nullptr)
     try {
-      if (!isTemporaryName(entry->d_name, prefix))
+      if (!isTempName(entry->d_name, prefix))
         continue;
       const std::filesystem::path path = folder / entry->d_name;
-      const Descriptor lock = lockAbandoned(path, kind);
+      const Descriptor lock = lockStaleFile(path, kind);
       std::error_code ignored;
-      if (lock.isOpen() && kind == Leftover::Kind::file)
+      if (lock.isOpen() && kind == TempFileGuard::Kind::file)
         ::unlink(path.c_str());
       else if (lock.isOpen())
         std::filesystem::remove_all(path, ignored);
@@ -155,45 +155,45 @@ void removeAbandoned(const std::filesystem::path& folder, std::string_view prefi
     }
 }
 
-void removeLeftovers() {
-  for (const auto* entry = Leftover::Entry::first.load(); entry; entry = entry->next)
-    if (entry->isListed && entry->kind == Leftover::Kind::file)
+void removeAllTempFiles() {
+  for (const auto* entry = TempFileGuard::Entry::first.load(); entry; entry = entry->next)
+    if (entry->isRegistered && entry->kind == TempFileGuard::Kind::file)
       entry->remove();
   for (bool isDone = false; !isDone;) { // nested folders: repeat until none can be removed
     isDone = true;
-    for (const auto* entry = Leftover::Entry::first.load(); entry; entry = entry->next)
-      if (entry->isListed && entry->kind == Leftover::Kind::folder && entry->remove())
+    for (const auto* entry = TempFileGuard::Entry::first.load(); entry; entry = entry->next)
+      if (entry->isRegistered && entry->kind == TempFileGuard::Kind::folder && entry->remove())
         isDone = false;
   }
 }
 
-std::vector<std::filesystem::path> remainingLeftovers() {
+std::vector<std::filesystem::path> remainingTempFiles() {
   std::vector<std::filesystem::path> paths;
-  for (const auto* entry = Leftover::Entry::first.load(); entry; entry = entry->next)
-    if (entry->isListed && entry->isThere())
+  for (const auto* entry = TempFileGuard::Entry::first.load(); entry; entry = entry->next)
+    if (entry->isRegistered && entry->exists())
       paths.push_back(entry->path);
   return paths;
 }
 
-Uninterrupted::Uninterrupted() {
+SignalBlocker::SignalBlocker() {
   if (depth++ > 0)
     return;
-  ++uninterrupted;
+  ++blockingThreads;
   if (!endRequested)
     return;
-  leave();
+  unblock();
   for (;;) // another thread ends the process
     ::pause();
 }
 
-Uninterrupted::~Uninterrupted() {
+SignalBlocker::~SignalBlocker() {
   if (--depth == 0)
-    leave();
+    unblock();
 }
 
-void endWhenPossible(void (*end)()) {
+void endWhenUnblocked(void (*end)()) {
   endRequested = end;
-  if (uninterrupted == 0)
+  if (blockingThreads == 0)
     end();
 }
 

@@ -10,36 +10,36 @@
 namespace fenestra {
 
 /// Prefix of files that are made beside results.
-inline constexpr std::string_view temporaryFilePrefix = ".fenestra-";
+inline constexpr std::string_view tempFilePrefix = ".fenestra-";
 
 /// Name of `prefix`, 12 random digits and a checksum, like ".fenestra-0123456789ab-89abcdef.tmp".
 /// Files with such names are removed; the checksum keeps a user's file from having one by chance.
-std::string temporaryName(std::string_view prefix);
+std::string makeTempName(std::string_view prefix);
 /// Temporary name whose digits are a hash of `what`, and so the same in every process.
-std::string temporaryNameOf(std::string_view prefix, std::string_view what);
-bool isTemporaryName(std::string_view name, std::string_view prefix);
+std::string hashTempName(std::string_view prefix, std::string_view what);
+bool isTempName(std::string_view name, std::string_view prefix);
 
 /// A temporary file or folder: removed with this object, or by the signal that ends the process.
-class Leftover {
+class TempFileGuard {
 public:
   enum class Kind { file, folder };
 
   /// Lists `path`, which need not exist yet. Throws std::bad_alloc, before the caller makes the
   /// file.
-  Leftover(const std::filesystem::path& path, Kind kind);
+  TempFileGuard(const std::filesystem::path& path, Kind kind);
   /// Removes the file, or the folder if empty.
-  ~Leftover();
-  Leftover(const Leftover&) = delete;
-  Leftover& operator=(const Leftover&) = delete;
+  ~TempFileGuard();
+  TempFileGuard(const TempFileGuard&) = delete;
+  TempFileGuard& operator=(const TempFileGuard&) = delete;
 
   const std::filesystem::path& path() const;
   /// Unlists the name: the file stays.
-  void keep();
+  void release();
 
 private:
   struct Entry;
-  friend void removeLeftovers();
-  friend std::vector<std::filesystem::path> remainingLeftovers();
+  friend void removeAllTempFiles();
+  friend std::vector<std::filesystem::path> remainingTempFiles();
 
   Entry* m_entry;
 };
@@ -47,28 +47,28 @@ private:
 /// Removes what killed runs of this user have left in `folder`: files, or folders accessible to
 /// this user alone, that have temporary names and that no process has locked. Stops silently where
 /// the folder cannot be read or memory fails: a later run handles the rest.
-void removeAbandoned(const std::filesystem::path& folder, std::string_view prefix,
-                     Leftover::Kind kind);
+void removeStaleTempFiles(const std::filesystem::path& folder, std::string_view prefix,
+                          TempFileGuard::Kind kind);
 
 /// Removes every listed name: files, then folders from the inside out. Async-signal-safe: system
 /// calls only.
-void removeLeftovers();
+void removeAllTempFiles();
 
 /// Listed names that still exist, for a message to the user.
-std::vector<std::filesystem::path> remainingLeftovers();
+std::vector<std::filesystem::path> remainingTempFiles();
 
 /// Section in which no signal may end the process, as from listing a name to making its file.
 /// Nests.
-class Uninterrupted {
+class SignalBlocker {
 public:
-  Uninterrupted();
-  ~Uninterrupted();
-  Uninterrupted(const Uninterrupted&) = delete;
-  Uninterrupted& operator=(const Uninterrupted&) = delete;
+  SignalBlocker();
+  ~SignalBlocker();
+  SignalBlocker(const SignalBlocker&) = delete;
+  SignalBlocker& operator=(const SignalBlocker&) = delete;
 };
 
 /// Calls `end`, which ends the process: at once, or, after this function has returned, as soon as
 /// no thread is Uninterrupted. For a signal handler.
-void endWhenPossible(void (*end)());
+void endWhenUnblocked(void (*end)());
 
 } // namespace fenestra

@@ -42,7 +42,7 @@ std::vector<Descriptor> lockFolders(const std::set<std::filesystem::path>& folde
 NameLock::NameLock(const std::filesystem::path& path) {
   constexpr double longest = 0.2; // s; removeAbandoned locks files for much less
   const std::filesystem::path lock =
-      path.parent_path() / temporaryNameOf(temporaryFilePrefix, path.filename().string());
+      path.parent_path() / hashTempName(tempFilePrefix, path.filename().string());
   const Stopwatch waited;
   for (take(lock, path); !isHeld() && waited.seconds() < longest; take(lock, path))
     waitABit();
@@ -51,8 +51,8 @@ NameLock::NameLock(const std::filesystem::path& path) {
 /// Fails where another process has removed the file after it was opened: no other process would see
 /// that lock.
 void NameLock::take(const std::filesystem::path& lock, const std::filesystem::path& path) {
-  const Uninterrupted making;
-  m_name.emplace(lock, Leftover::Kind::file);
+  const SignalBlocker blocker;
+  m_name.emplace(lock, TempFileGuard::Kind::file);
   Descriptor file(repeated(
       [&] { return ::open(lock.c_str(), O_RDONLY | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644); }));
   const int code = errno;
@@ -60,7 +60,7 @@ void NameLock::take(const std::filesystem::path& lock, const std::filesystem::pa
     m_file = std::move(file);
     return;
   }
-  m_name->keep(); // the file is another process's, or missing
+  m_name->release(); // the file is another process's, or missing
   m_name.reset();
   if (!file.isOpen())
     throw writeError(path, code);

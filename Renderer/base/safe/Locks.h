@@ -32,7 +32,7 @@ private:
   void take(const std::filesystem::path& lock, const std::filesystem::path& path);
 
   Descriptor m_file;
-  std::optional<Leftover> m_name; ///< removed before the lock is released
+  std::optional<TempFileGuard> m_name; ///< removed before the lock is released
 };
 
 } // namespace fenestra

@@ -182,7 +182,7 @@ void Outputs::add(const fs::path& path, const IsOurs& isOurs) {
   if (!result->stream) {
     result->target = targetOf(path);
     requireReplaceable(path, result->target);
-    if (isTemporaryName(result->target.filename().string(), temporaryFilePrefix))
+    if (isTempName(result->target.filename().string(), tempFilePrefix))
       throw usageError(
           path,
           ": is a name for Fenestra's temporary files, which the next run removes; choose another");
@@ -194,7 +194,7 @@ void Outputs::add(const fs::path& path, const IsOurs& isOurs) {
       (id && !m_files.insert(*id).second))
     throw writtenTwice(path);
   if (!result->stream && m_folders.insert(result->target.parent_path()).second) {
-    removeAbandoned(result->target.parent_path(), temporaryFilePrefix, Leftover::Kind::file);
+    removeStaleTempFiles(result->target.parent_path(), tempFilePrefix, TempFileGuard::Kind::file);
     const TemporaryFile room(result->target); // throws where none can be made
   }
   result->isOurs = isOurs;
@@ -234,7 +234,7 @@ void Outputs::place(const std::vector<Result*>& files, Durability durability) {
   for (const Result* result : files)
     folders.insert(result->target.parent_path());
   std::vector<Descriptor> locks = lockFolders(folders);
-  const Uninterrupted replacing;
+  const SignalBlocker replacing;
   std::size_t placed = 0;
   std::set<FileId> taken; // placed files; two names may be one file where a disk ignores case
   try {

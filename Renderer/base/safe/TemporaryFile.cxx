@@ -11,7 +11,7 @@ namespace fenestra {
 namespace {
 
 std::filesystem::path shortNameBeside(const std::filesystem::path& target) {
-  return target.parent_path() / temporaryName(temporaryFilePrefix);
+  return target.parent_path() / makeTempName(tempFilePrefix);
 }
 
 /// Mode of a new file: 0666 less umask. Queried before threads start, since umask is the process's.
@@ -53,13 +53,13 @@ TemporaryFile::TemporaryFile(const std::filesystem::path& target) : m_target(tar
 /// abandoned.
 void TemporaryFile::open() {
   for (;;) {
-    const Uninterrupted making;
-    m_name.emplace(shortNameBeside(m_target), Leftover::Kind::file);
+    const SignalBlocker making;
+    m_name.emplace(shortNameBeside(m_target), TempFileGuard::Kind::file);
     m_file = Descriptor(repeated([this] {
       return ::open(m_name->path().c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
     }));
     if (!m_file.isOpen() && errno == EEXIST)
-      m_name->keep(); // somebody else's
+      m_name->release(); // somebody else's
     else if (!m_file.isOpen() || (tryLock(m_file) && hasName(m_file)))
       return;
   }
@@ -110,7 +110,7 @@ void TemporaryFile::place() {
 /// Places the file on disks that cannot exchange names, with a hard link to the earlier file.
 /// Without hard links placing cannot be undone.
 void TemporaryFile::placeByLink() {
-  m_before.emplace(shortNameBeside(m_target), Leftover::Kind::file);
+  m_before.emplace(shortNameBeside(m_target), TempFileGuard::Kind::file);
   const bool isKept = ::link(m_target.c_str(), m_before->path().c_str()) == 0;
   const bool isFresh = !isKept && errno == ENOENT;
   if (repeated([&] { return ::rename(m_name->path().c_str(), m_target.c_str()); }) != 0)

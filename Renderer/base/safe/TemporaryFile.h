@@ -44,7 +44,7 @@ private:
   Descriptor m_file;
   Descriptor m_replaced; ///< the earlier file, locked while its name is temporary
   /// Names, removed before their locks are released; m_before: the earlier file (placeByLink).
-  std::optional<Leftover> m_name, m_before;
+  std::optional<TempFileGuard> m_name, m_before;
   Placed m_placed = Placed::no;
 };
 
