@@ -124,10 +124,10 @@ std::string phantomScene(const Phantom& phantom, const std::string& name, const 
       if (*attribute.value() == '@')
         attribute = texts.at(attribute.value()).c_str();
   document.append_child(pugi::node_comment)
-      .set_value((" " + std::string(unsealedMark) + " ").c_str());
+      .set_value((" " + std::string(blankProvenanceTag) + " ").c_str());
   TextWriter stream;
   document.save(stream, " ");
-  return sealed(stream.str());
+  return sealProvenanceTag(stream.str());
 }
 
 std::string phantomRoi(const Phantom& phantom) {
@@ -137,7 +137,7 @@ std::string phantomRoi(const Phantom& phantom) {
       (lpsToRas * grid.indexToWorld.linear()).normalizedColumns() + Mat3::Zero(); // no "-0"
   const Vec3 center = (lpsToRas * grid.worldCenter()).array() + 0.0;
   Json file = Json::parse(embeddedResource("phantoms/roi.mrk.json"));
-  file["generator"] = unsealedMark;
+  file["generator"] = blankProvenanceTag;
   Json& roi = file["markups"][0];
   Json& point = roi["controlPoints"][0];
   roi["center"] = point["position"] = center;
@@ -146,7 +146,7 @@ std::string phantomRoi(const Phantom& phantom) {
     for (int column = 0; column < 3; ++column)
       roi["orientation"].push_back(axes(row, column));
   point["orientation"] = roi["orientation"];
-  return sealed(file.dump(4) + "\n");
+  return sealProvenanceTag(file.dump(4) + "\n");
 }
 
 } // namespace fenestra

@@ -64,8 +64,8 @@ NrrdFields segmentationFields(const Phantom& phantom) {
   return fields;
 }
 
-NrrdFields marked(NrrdFields fields = {}) {
-  fields.emplace_back("Software", unsealedMark);
+NrrdFields addProvenance(NrrdFields fields = {}) {
+  fields.emplace_back("Software", blankProvenanceTag);
   return fields;
 }
 
@@ -79,14 +79,14 @@ std::string encodeSegmentation(const Phantom& phantom) {
                           .leadingCount = count,
                           .size = labels.size,
                           .indexToWorld = indexToWorld,
-                          .fields = marked(segmentationFields(phantom))};
+                          .fields = addProvenance(segmentationFields(phantom))};
   if (count == 1)
-    return sealed(encodeNrrd(header, memoryOf(labels.layers.front())));
+    return sealProvenanceTag(encodeNrrd(header, memoryOf(labels.layers.front())));
   std::vector<std::uint8_t> interleaved(count * labels.layers.front().size());
   for (std::size_t layer = 0; layer < count; ++layer)
     for (std::size_t i = 0; i < labels.layers[layer].size(); ++i)
       interleaved[i * count + layer] = labels.layers[layer][i];
-  return sealed(encodeNrrd(header, memoryOf(interleaved)));
+  return sealProvenanceTag(encodeNrrd(header, memoryOf(interleaved)));
 }
 
 struct PhantomFile {
@@ -102,7 +102,7 @@ std::string encodeArchive(const Phantom& phantom, const std::filesystem::path& p
   for (const PhantomFile& file : files)
     if (file.isOfScene)
       entries.push_back({name + "/Data/" + file.name, file.content});
-  return sealed(encodeZip(entries, std::string(unsealedMark), path));
+  return sealProvenanceTag(encodeZip(entries, std::string(blankProvenanceTag), path));
 }
 
 /// True if the file begins with `text`.
@@ -119,7 +119,7 @@ bool holds(const std::filesystem::path& path, const std::string& content) {
 }
 
 /// Text as written before there were marks.
-std::string withoutMark(std::string text) {
+std::string removeProvenance(std::string text) {
   const std::size_t at = text.find("Written by Fenestra");
   const std::size_t line = text.rfind('\n', at) + 1;
   return text.erase(line, text.find('\n', at) + 1 - line);
@@ -135,10 +135,10 @@ std::vector<std::string> writePhantom(const Phantom& phantom,
   const NrrdHeader header{.type = "short",
                           .size = volume.grid.size,
                           .indexToWorld = volume.grid.indexToWorld,
-                          .fields = marked()};
+                          .fields = addProvenance()};
   const std::string scene = phantomScene(phantom, name);
   std::vector<PhantomFile> files = {
-      {name + ".nrrd", sealed(encodeNrrd(header, memoryOf(voxels))), true},
+      {name + ".nrrd", sealProvenanceTag(encodeNrrd(header, memoryOf(voxels))), true},
       {name + ".seg.nrrd", encodeSegmentation(phantom), true},
       {name + ".vp.json", propertyJson(phantom.property, volume.minimum, volume.maximum)},
       {name + ".vp", propertyVp(phantom.property), true},
@@ -149,11 +149,12 @@ std::vector<std::string> writePhantom(const Phantom& phantom,
 
   const CreatedFolders folders(directory);
   Outputs outputs;
-  const bool isPhantoms = beginsWith(directory / (name + ".nrrd"), withoutMark(nrrdText(header))) &&
-                          holds(directory / (name + ".mrml"), withoutMark(scene));
+  const bool isPhantoms =
+      beginsWith(directory / (name + ".nrrd"), removeProvenance(nrrdText(header))) &&
+      holds(directory / (name + ".mrml"), removeProvenance(scene));
   for (const PhantomFile& file : files)
     outputs.add(directory / file.name, [&](const std::filesystem::path& path) {
-      return isPhantoms || bearsMark(path) || holds(path, file.content);
+      return isPhantoms || hasProvenanceTag(path) || holds(path, file.content);
     });
   std::vector<std::string> written;
   for (const PhantomFile& file : files) {

@@ -220,32 +220,34 @@ TEST_F(OutputFiles, ModeAndOwnerOfAReplacedFileAreKept) {
 
 TEST_F(OutputFiles, DefaultNameReplacesOnlySealedFiles) {
   folder.write("theirs", "somebody else made this");
-  const std::string ours = sealed("x " + std::string(unsealedMark) + "12345 y");
+  const std::string ours = sealProvenanceTag("x " + std::string(blankProvenanceTag) + "12345 y");
   folder.write("ours", ours);
-  folder.write("ours.end", sealed(std::string(1 << 20, 'x') + std::string(unsealedMark)));
+  folder.write("ours.end",
+               sealProvenanceTag(std::string(1 << 20, 'x') + std::string(blankProvenanceTag)));
   for (const std::size_t before : {9U, 19U, 25U}) // across block ends, if blocks are 1 MB
     folder.write("ours." + std::to_string(before),
-                 sealed(std::string((1 << 20) - before, 'x') + std::string(unsealedMark) + "1 2"));
+                 sealProvenanceTag(std::string((1 << 20) - before, 'x') +
+                                   std::string(blankProvenanceTag) + "1 2"));
   folder.write("edited", "an" + ours);
   folder.write("edited.end", ours + " and more");
-  folder.write("claimed", std::string(unsealedMark));
+  folder.write("claimed", std::string(blankProvenanceTag));
   std::string many; // each mark would need a checksum of the whole file
   for (int i = 0; i < 100; ++i)
-    many += unsealedMark;
+    many += blankProvenanceTag;
   folder.write("many", many);
   for (const char* name : {"theirs", "edited", "edited.end", "claimed", "many"})
-    EXPECT_NE(refusal(ErrorKind::usage, [&] { outputs.add(folder / name, bearsMark); })
+    EXPECT_NE(refusal(ErrorKind::usage, [&] { outputs.add(folder / name, hasProvenanceTag); })
                   .find("Fenestra did not write it"),
               std::string::npos);
-  outputs.add(folder / "ours", bearsMark);
-  outputs.add(folder / "ours.end", bearsMark);
+  outputs.add(folder / "ours", hasProvenanceTag);
+  outputs.add(folder / "ours.end", hasProvenanceTag);
   for (const char* name : {"ours.9", "ours.19", "ours.25"})
-    outputs.add(folder / name, bearsMark);
-  outputs.add(folder / "new", bearsMark);
+    outputs.add(folder / name, hasProvenanceTag);
+  outputs.add(folder / "new", hasProvenanceTag);
 }
 
 TEST_F(OutputFiles, FileCreatedMeanwhileIsNotReplaced) {
-  outputs.add(folder / "a", bearsMark);
+  outputs.add(folder / "a", hasProvenanceTag);
   outputs.write(folder / "a", "new");
   folder.write("a", "somebody else's");
   refusal(ErrorKind::usage, [&] { outputs.commit(); });

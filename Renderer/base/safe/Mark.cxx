@@ -12,23 +12,25 @@
 namespace fenestra {
 namespace {
 
-constexpr std::size_t checksumDigits = 8, behind = 4;
-constexpr std::string_view markText = unsealedMark.substr(0, unsealedMark.size() - checksumDigits);
+constexpr std::size_t checksumDigits = 8, trailingBytes = 4;
+constexpr std::string_view tagText =
+    blankProvenanceTag.substr(0, blankProvenanceTag.size() - checksumDigits);
 
-uLong checksumOf(uLong before, std::string_view bytes) {
+uLong updateChecksum(uLong before, std::string_view bytes) {
   return crc32_z(before, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
 }
 
-std::string digitsOf(uLong sum) {
+std::string formatChecksum(uLong sum) {
   char digits[checksumDigits + 1];
   std::snprintf(digits, sizeof digits, "%08lx", sum);
   return digits;
 }
 
 /// Checksum of `content` without the digits at `at` and the `behind` bytes after them.
-std::string checksum(std::string_view content, std::size_t at) {
-  const std::size_t rest = std::min(content.size(), at + checksumDigits + behind);
-  return digitsOf(checksumOf(checksumOf(0, content.substr(0, at)), content.substr(rest)));
+std::string computeChecksum(std::string_view content, std::size_t at) {
+  const std::size_t rest = std::min(content.size(), at + checksumDigits + trailingBytes);
+  return formatChecksum(
+      updateChecksum(updateChecksum(0, content.substr(0, at)), content.substr(rest)));
 }
 
 /// Passes the bytes from `begin` to `end`, or to the file's own end, to `take` block by block.
@@ -47,46 +49,46 @@ void readBlocks(std::istream& file, std::uint64_t begin, std::uint64_t end,
 
 /// Offsets of the digits of the last marks. A file of ours has its own mark last, after the marks
 /// of files that it contains.
-std::vector<std::uint64_t> marksIn(std::istream& file) {
-  constexpr std::ptrdiff_t mostMarks = 4; // each costs a pass through the file
-  std::vector<std::uint64_t> marks;
+std::vector<std::uint64_t> findTags(std::istream& file) {
+  constexpr std::ptrdiff_t maxTags = 4; // each costs a pass through the file
+  std::vector<std::uint64_t> tags;
   std::string text; // tail of the previous block, too short to hold a mark, then the current block
   std::uint64_t textBegin = 0;
   readBlocks(file, 0, UINT64_MAX, [&](std::string_view block) {
     text += block;
-    for (std::size_t at = text.find(markText); at != std::string::npos;
-         at = text.find(markText, at + 1))
-      marks.push_back(textBegin + at + markText.size());
-    marks.erase(marks.begin(),
-                marks.end() - std::min<std::ptrdiff_t>(mostMarks, std::ssize(marks)));
-    const std::size_t done = text.size() - std::min(text.size(), markText.size() - 1);
+    for (std::size_t at = text.find(tagText); at != std::string::npos;
+         at = text.find(tagText, at + 1))
+      tags.push_back(textBegin + at + tagText.size());
+    tags.erase(tags.begin(), tags.end() - std::min<std::ptrdiff_t>(maxTags, std::ssize(tags)));
+    const std::size_t done = text.size() - std::min(text.size(), tagText.size() - 1);
     text.erase(0, done);
     textBegin += done;
   });
-  return marks;
+  return tags;
 }
 
 /// True if the digits at `at` equal the checksum.
-bool isSealed(std::istream& file, std::uint64_t at) {
+bool isTagValid(std::istream& file, std::uint64_t at) {
   uLong sum = 0;
   std::string digits;
-  const auto add = [&sum](std::string_view block) { sum = checksumOf(sum, block); };
+  const auto add = [&sum](std::string_view block) { sum = updateChecksum(sum, block); };
   readBlocks(file, 0, at, add);
   readBlocks(file, at, at + checksumDigits, [&](std::string_view block) { digits += block; });
-  readBlocks(file, at + checksumDigits + behind, UINT64_MAX, add);
-  return digits == digitsOf(sum);
+  readBlocks(file, at + checksumDigits + trailingBytes, UINT64_MAX, add);
+  return digits == formatChecksum(sum);
 }
 
 } // namespace
 
-std::string sealed(std::string content) {
-  const std::size_t at = content.rfind(unsealedMark) + markText.size();
-  return content.replace(at, checksumDigits, checksum(content, at));
+std::string sealProvenanceTag(std::string content) {
+  const std::size_t at = content.rfind(blankProvenanceTag) + tagText.size();
+  return content.replace(at, checksumDigits, computeChecksum(content, at));
 }
 
-bool bearsMark(const std::filesystem::path& path) {
+bool hasProvenanceTag(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
-  return std::ranges::any_of(marksIn(file), [&](std::uint64_t at) { return isSealed(file, at); });
+  return std::ranges::any_of(findTags(file),
+                             [&](std::uint64_t at) { return isTagValid(file, at); });
 }
 
 } // namespace fenestra

@@ -150,7 +150,7 @@ struct Outputs::Result {
   fs::path target;                     ///< path of the file, links followed
   std::unique_ptr<TemporaryFile> file; ///< content written, not yet in place
 
-  IsOurs isOurs; ///< empty: the user named the result
+  IsOwnFile isOwnFile; ///< empty: the user named the result
   std::optional<ContentState> written;
 
   std::optional<FileId> id() const {
@@ -158,10 +158,11 @@ struct Outputs::Result {
       return fileId(*stream);
     return fileId(stream ? named : target);
   }
-  void requireOurs() const {
+  void requireOwnFile() const {
     std::error_code failed;
     // An empty file holds nobody's data.
-    if (isOurs && fs::exists(target, failed) && !fs::is_empty(target, failed) && !isOurs(target))
+    if (isOwnFile && fs::exists(target, failed) && !fs::is_empty(target, failed) &&
+        !isOwnFile(target))
       throw usageError(
           named,
           ": is there, and Fenestra did not write it; move it away, or choose another --output");
@@ -175,7 +176,7 @@ Outputs::~Outputs() {
     forgetResult(result->target);
 }
 
-void Outputs::add(const fs::path& path, const IsOurs& isOurs) {
+void Outputs::add(const fs::path& path, const IsOwnFile& isOwnFile) {
   auto result = std::make_unique<Result>();
   result->named = path;
   result->stream = streamNamed(path);
@@ -197,9 +198,9 @@ void Outputs::add(const fs::path& path, const IsOurs& isOurs) {
     removeStaleTempFiles(result->target.parent_path(), tempFilePrefix, TempFileGuard::Kind::file);
     const TemporaryFile room(result->target); // throws where none can be made
   }
-  result->isOurs = isOurs;
+  result->isOwnFile = isOwnFile;
   m_results[path] = std::move(result);
-  m_results[path]->requireOurs();
+  m_results[path]->requireOwnFile();
 }
 
 void Outputs::checkInputs() const {
@@ -244,7 +245,7 @@ void Outputs::place(const std::vector<Result*>& files, Durability durability) {
       if (before && taken.contains(*before))
         throw writtenTwice(result->named);
       requireReplaceable(result->named, result->target);
-      result->requireOurs();
+      result->requireOwnFile();
       result->file->place();
       ++placed;
       if (const auto after = result->id())

@@ -39,14 +39,14 @@ public:
   Outputs& operator=(const Outputs&) = delete;
 
   /// True if Fenestra wrote the existing file, which may then be replaced unasked.
-  using IsOurs = std::function<bool(const std::filesystem::path&)>;
+  using IsOwnFile = std::function<bool(const std::filesystem::path&)>;
 
   /// Declares a result that the user has named, or, with `isOurs`, one that Fenestra names. Links
   /// are followed; /dev/stdout, /dev/fd/N and pipes are streams, written after all files. Throws
   /// Error: usage where `path` is a file that was read (base/safe/Inputs), another result or a
   /// temporary file's name; output where `path` is a folder, a device or write-protected, or no
   /// file can be made in its folder; usage where `path` is a file that is neither ours nor empty.
-  void add(const std::filesystem::path& path, const IsOurs& isOurs = {});
+  void add(const std::filesystem::path& path, const IsOwnFile& isOwnFile = {});
 
   /// Repeats add's check against the ledger of inputs, after more files were read. Throws Error
   /// (usage).

@@ -73,9 +73,9 @@ std::string propertyJson(const VolumeProperty& property, double minimum, double 
   const Json file = {{"@schema",
                       "https://raw.githubusercontent.com/Slicer/Slicer/main/Modules/Loadable/"
                       "VolumeRendering/Resources/Schema/volume-property-schema-v1.0.0.json#"},
-                     {"generator", unsealedMark},
+                     {"generator", blankProvenanceTag},
                      {"volumeProperties", Json::array({node})}};
-  return sealed(file.dump(2) + "\n");
+  return sealProvenanceTag(file.dump(2) + "\n");
 }
 
 PropertyTexts propertyTexts(const VolumeProperty& property) {

@@ -44,7 +44,7 @@ std::string encodeExr(const Image& image) {
   Imf::addChromaticities(header, Imf::Chromaticities()); // Rec. 709
   for (const auto& [key, value] : image.header)
     header.insert("fenestra." + key, Imf::StringAttribute(value));
-  header.insert("software", Imf::StringAttribute(std::string(unsealedMark)));
+  header.insert("software", Imf::StringAttribute(std::string(blankProvenanceTag)));
   Imf::FrameBuffer frame;
   for (const auto& [name, plane] : image.channels) {
     header.channels().insert(name, Imf::Channel(Imf::FLOAT));
@@ -60,7 +60,7 @@ std::string encodeExr(const Image& image) {
   }
   std::string bytes = stream.str();
   requireComplete(bytes);
-  return sealed(std::move(bytes));
+  return sealProvenanceTag(std::move(bytes));
 }
 
 bool isOpaque(const std::vector<float>& rgba) {
@@ -113,10 +113,10 @@ std::string withTexts(std::string png, const std::string& comment) {
     png.insert(afterHeader, chunk);
     closeChunk(png, afterHeader, chunk.size());
   }
-  const std::string mark = textChunk("Software", unsealedMark);
-  png.insert(afterHeader, mark);
-  png = sealed(std::move(png));
-  closeChunk(png, afterHeader, mark.size());
+  const std::string tag = textChunk("Software", blankProvenanceTag);
+  png.insert(afterHeader, tag);
+  png = sealProvenanceTag(std::move(png));
+  closeChunk(png, afterHeader, tag.size());
   return png;
 }
 
@@ -164,7 +164,7 @@ void setTiffFields(TIFF* tiff, const Image& image, bool opaque, const std::strin
   TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, TIFFDefaultStripSize(tiff, 0));
   if (!comment.empty())
     TIFFSetField(tiff, TIFFTAG_IMAGEDESCRIPTION, comment.c_str());
-  TIFFSetField(tiff, TIFFTAG_SOFTWARE, std::string(unsealedMark).c_str());
+  TIFFSetField(tiff, TIFFTAG_SOFTWARE, std::string(blankProvenanceTag).c_str());
 }
 
 std::string encodeTiff(const Image& image, const std::vector<float>& rgba,
@@ -181,7 +181,7 @@ std::string encodeTiff(const Image& image, const std::vector<float>& rgba,
                              static_cast<std::uint32_t>(row)) == 1;
   if (!good || TIFFFlush(tiff.get()) != 1)
     throw outputError("picture as TIFF", "does not fit into memory; write it as .exr");
-  return sealed(stream.str());
+  return sealProvenanceTag(stream.str());
 }
 
 /// Index to world of the slice, which is as thick as a pixel is wide; right-handed, so that Slicer
@@ -201,8 +201,8 @@ std::string encodeSlice(const Image& image, const ImagePlane& plane,
                           .size = {image.width, image.height, 1},
                           .indexToWorld = sliceToWorld(plane),
                           .encoding = NrrdHeader::Encoding::raw,
-                          .fields = {{"Software", std::string(unsealedMark)}}};
-  return sealed(encodeNrrd(header, memoryOf(values)));
+                          .fields = {{"Software", std::string(blankProvenanceTag)}}};
+  return sealProvenanceTag(encodeNrrd(header, memoryOf(values)));
 }
 
 /// Channels R, G, B and A whose names begin with `prefix`.
@@ -234,9 +234,9 @@ std::vector<std::string> gridLines(const std::filesystem::path& path) {
 
 /// True if Fenestra wrote the depth picture: by its mark, or (files older than marks) by the grid
 /// that it shares with the colours.
-bool isOurDepth(const std::filesystem::path& depth, const std::filesystem::path& colour) {
+bool isFenestraDepth(const std::filesystem::path& depth, const std::filesystem::path& colour) {
   const std::vector<std::string> lines = gridLines(depth);
-  return bearsMark(depth) || (lines.size() == 3 && lines == gridLines(colour));
+  return hasProvenanceTag(depth) || (lines.size() == 3 && lines == gridLines(colour));
 }
 
 ImageFormat checkedFormat(const std::filesystem::path& path) {
@@ -286,12 +286,13 @@ void declareImage(const std::filesystem::path& path, Outputs& outputs, NamedBy n
   if (namedBy == NamedBy::user)
     outputs.add(path);
   else
-    outputs.add(path, bearsMark);
+    outputs.add(path, hasProvenanceTag);
   if (format != ImageFormat::nrrd)
     return;
-  outputs.add(besidePath(path, "Z"), [path](const auto& depth) { return isOurDepth(depth, path); });
+  outputs.add(besidePath(path, "Z"),
+              [path](const auto& depth) { return isFenestraDepth(depth, path); });
   if (filtered == Filtered::yes)
-    outputs.add(besidePath(path, "denoised"), bearsMark);
+    outputs.add(besidePath(path, "denoised"), hasProvenanceTag);
 }
 
 } // namespace fenestra
