@@ -29,15 +29,15 @@ private:
 // Parts of the line as in textOf: texts, paths, whole numbers.
 template <typename... Parts>
 Error usageError(const Parts&... line) {
-  return {ErrorKind::usage, textOf(line...)};
+  return {ErrorKind::usage, concat(line...)};
 }
 template <typename File, typename... Parts>
 Error inputError(const File& file, const Parts&... what) {
-  return {ErrorKind::input, textOf(file, ": ", what...)};
+  return {ErrorKind::input, concat(file, ": ", what...)};
 }
 template <typename File, typename... Parts>
 Error outputError(const File& file, const Parts&... what) {
-  return {ErrorKind::output, textOf(file, ": ", what...)};
+  return {ErrorKind::output, concat(file, ": ", what...)};
 }
 
 } // namespace fenestra

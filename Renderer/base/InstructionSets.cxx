@@ -36,7 +36,7 @@ void useInstructionSet(const std::string& name) {
       return hwy::SetSupportedTargetsForTest(left & -left);
   throw usageError("FENESTRA_INSTRUCTIONS: " + name +
                    " is no instruction set of this machine, which has " +
-                   joined(instructionSets(), ", "));
+                   join(instructionSets(), ", "));
 }
 
 } // namespace fenestra

@@ -13,7 +13,7 @@ enum class Sampling {
   independent ///< no two samples share anything
 };
 
-constexpr const char* nameOf(Sampling sampling) {
+constexpr const char* toString(Sampling sampling) {
   return sampling == Sampling::stratified ? "strata" : "independent";
 }
 

@@ -7,49 +7,49 @@
 
 namespace fenestra {
 
-std::string numberText(double x, int digits) {
+std::string toString(double x, int digits) {
   std::array<char, 64> text;
   const auto [end, failure] =
       std::to_chars(text.data(), text.data() + text.size(), x, std::chars_format::general, digits);
   return {text.data(), end};
 }
 
-std::string lower(std::string_view text) {
+std::string toLower(std::string_view text) {
   std::string result(text);
   std::transform(result.begin(), result.end(), result.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return result;
 }
 
-std::string_view trimmed(std::string_view text, std::string_view blanks) {
-  const std::size_t first = std::min(text.find_first_not_of(blanks), text.size());
-  return text.substr(first, text.find_last_not_of(blanks) + 1 - first);
+std::string_view trim(std::string_view text, std::string_view whitespace) {
+  const std::size_t first = std::min(text.find_first_not_of(whitespace), text.size());
+  return text.substr(first, text.find_last_not_of(whitespace) + 1 - first);
 }
 
-std::vector<std::string> words(std::string_view text) {
-  constexpr std::string_view blanks = " \t\r\n";
+std::vector<std::string> splitWords(std::string_view text) {
+  constexpr std::string_view whitespace = " \t\r\n";
   std::vector<std::string> found;
-  for (text = trimmed(text); !text.empty(); text = trimmed(text)) {
-    const std::size_t end = std::min(text.find_first_of(blanks), text.size());
+  for (text = trim(text); !text.empty(); text = trim(text)) {
+    const std::size_t end = std::min(text.find_first_of(whitespace), text.size());
     found.emplace_back(text.substr(0, end));
     text.remove_prefix(end);
   }
   return found;
 }
 
-std::vector<std::string> nameWords(std::string_view name, std::string_view kept) {
-  constexpr std::size_t longest = 1000;
+std::vector<std::string> splitName(std::string_view name, std::string_view extra) {
+  constexpr std::size_t maxLength = 1000;
   const auto isUpper = [](char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; };
   std::vector<std::string> found;
   char before = ' ';
-  for (const char c : name.substr(0, longest)) {
+  for (const char c : name.substr(0, maxLength)) {
     const bool inWord = std::isalnum(static_cast<unsigned char>(c)) != 0 || (c & 0x80) != 0 ||
-                        kept.find(c) != std::string_view::npos;
+                        extra.find(c) != std::string_view::npos;
     const bool begins = before == ' ' || (isUpper(c) && !isUpper(before));
     if (inWord && begins)
       found.emplace_back();
     if (inWord)
-      found.back() += lower({&c, 1});
+      found.back() += toLower({&c, 1});
     before = inWord ? c : ' ';
   }
   return found;
@@ -65,7 +65,7 @@ std::vector<std::string> split(std::string_view text, char separator) {
   return parts;
 }
 
-std::string wrapped(std::string_view text, std::size_t width) {
+std::string wrapLines(std::string_view text, std::size_t width) {
   std::string lines;
   std::size_t used = 0;
   for (const std::string& word : split(text, ' ')) {
@@ -78,7 +78,7 @@ std::string wrapped(std::string_view text, std::size_t width) {
   return lines;
 }
 
-std::string replacedAll(std::string_view text, std::string_view from, std::string_view to) {
+std::string replaceAll(std::string_view text, std::string_view from, std::string_view to) {
   std::string result;
   for (std::size_t at = text.find(from); at != std::string_view::npos; at = text.find(from)) {
     result.append(text.substr(0, at)).append(to);

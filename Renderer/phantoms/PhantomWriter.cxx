@@ -81,12 +81,12 @@ std::string encodeSegmentation(const Phantom& phantom) {
                           .indexToWorld = indexToWorld,
                           .fields = addProvenance(segmentationFields(phantom))};
   if (count == 1)
-    return sealProvenanceTag(encodeNrrd(header, memoryOf(labels.layers.front())));
+    return sealProvenanceTag(encodeNrrd(header, asBytes(labels.layers.front())));
   std::vector<std::uint8_t> interleaved(count * labels.layers.front().size());
   for (std::size_t layer = 0; layer < count; ++layer)
     for (std::size_t i = 0; i < labels.layers[layer].size(); ++i)
       interleaved[i * count + layer] = labels.layers[layer][i];
-  return sealProvenanceTag(encodeNrrd(header, memoryOf(interleaved)));
+  return sealProvenanceTag(encodeNrrd(header, asBytes(interleaved)));
 }
 
 struct PhantomFile {
@@ -138,7 +138,7 @@ std::vector<std::string> writePhantom(const Phantom& phantom,
                           .fields = addProvenance()};
   const std::string scene = phantomScene(phantom, name);
   std::vector<PhantomFile> files = {
-      {name + ".nrrd", sealProvenanceTag(encodeNrrd(header, memoryOf(voxels))), true},
+      {name + ".nrrd", sealProvenanceTag(encodeNrrd(header, asBytes(voxels))), true},
       {name + ".seg.nrrd", encodeSegmentation(phantom), true},
       {name + ".vp.json", propertyJson(phantom.property, volume.minimum, volume.maximum)},
       {name + ".vp", propertyVp(phantom.property), true},

@@ -35,7 +35,7 @@ ordered_json toldFlags(const OptionValues& flags, const fs::path& folder, IsTold
 std::string toldValues(const json& flags, const std::string& name) {
   if (!flags.contains(name))
     return "not given";
-  return joined(flags.at(name), " ", [](const json& value) {
+  return join(flags.at(name), " ", [](const json& value) {
     return value.is_string() ? value.get<std::string>() : value.dump();
   });
 }
@@ -48,7 +48,7 @@ std::string flagDifference(const json& there, const json& here) {
       names.insert(name);
   for (const std::string& name : names)
     if (there.value(name, json()) != here.value(name, json()))
-      return textOf(name == "INPUT" ? "" : "--", name, " was ", toldValues(there, name), ", is ",
+      return concat(name == "INPUT" ? "" : "--", name, " was ", toldValues(there, name), ", is ",
                     toldValues(here, name));
   return "";
 }
@@ -70,7 +70,7 @@ bool shapesSamples(const Option& flag) {
 
 ordered_json madeWith(const OptionValues& given, const OptionValues& flags,
                       const fs::path& folder) {
-  return {{"version", textOf(versionText, " on ", processorText)},
+  return {{"version", concat(versionText, " on ", processorText)},
           {"given", toldFlags(given, folder, isImageOption)},
           {"settings", toldFlags(flags, folder, shapesSamples)}};
 }
@@ -117,7 +117,7 @@ std::string firstDifference(const json& there, const json& here, const std::stri
       const std::string now = missingFile(value, before);
       return (now.empty() ? missingFile(before, value) : now) + " has changed since";
     }
-    return textOf(key, " was ", node.at(key).text(), ", is ", value.get<std::string>());
+    return concat(key, " was ", node.at(key).text(), ", is ", value.get<std::string>());
   }
   return "";
 }
@@ -130,7 +130,7 @@ Error Checkpoint::otherRender(const std::string& difference) const {
 }
 
 std::string partText(const Shard& shard) {
-  return textOf(shard.index + 1, '/', shard.count);
+  return concat(shard.index + 1, '/', shard.count);
 }
 
 Checkpoint::Checkpoint(const PictureRequest& job, const OptionValues& given, Warn warn)
@@ -148,7 +148,7 @@ Checkpoint::Checkpoint(const PictureRequest& job, const OptionValues& given, War
     for (const char* key : {"version", "settings"})
       requireSame(film, key);
     if (const Shard& here = job.options.settings.shard; film.shard() != here)
-      throw otherRender(textOf("--shard was ", partText(film.shard()), ", is ", partText(here)));
+      throw otherRender(concat("--shard was ", partText(film.shard()), ", is ", partText(here)));
     forgetInput(*fileId(m_path)); // it is written again
   }
   m_outputs.add(m_path);
@@ -191,7 +191,7 @@ std::optional<RenderResult> Checkpoint::begun(const PreparedScene& scene,
   const FilmFile& first = m_films.front();
   requireSame(first, "inputs");
   if (const std::string here = targetOf(scene.view(), settings); first.target() != here)
-    throw otherRender(textOf("its instruction set was ", first.target(), ", is ", here,
+    throw otherRender(concat("its instruction set was ", first.target(), ", is ", here,
                              " (the environment variable FENESTRA_INSTRUCTIONS chooses)"));
   const RenderRequest& request = m_job.options.scene;
   if (first.width() != request.width || first.height() != request.height)

@@ -23,12 +23,12 @@ constexpr std::size_t page = 80, column = 30; ///< characters of a help line, an
 /// Line of a name and its explanation, in two columns.
 std::string formatEntry(std::string_view name, std::string_view text) {
   const std::string margin(column, ' ');
-  std::string head = textOf("  ", name);
+  std::string head = concat("  ", name);
   if (head.size() < column)
     head.resize(column, ' ');
   else
     head.append("\n").append(margin);
-  return textOf(head, replacedAll(wrapped(text, page - column), "\n", "\n" + margin), "\n");
+  return concat(head, replaceAll(wrapLines(text, page - column), "\n", "\n" + margin), "\n");
 }
 
 /// Summary, positional arguments and flags by group.
@@ -38,7 +38,7 @@ std::string formatHelp(const CommandSyntax& syntax) {
     usage += " " + positional.name + (positional.canRepeat ? "..." : "");
     names += formatEntry(positional.name, positional.description);
   }
-  std::string text = textOf(wrapped(syntax.summary, page), "\n\n", usage, " [FLAGS]\n\n", names);
+  std::string text = concat(wrapLines(syntax.summary, page), "\n\n", usage, " [FLAGS]\n\n", names);
   for (const Option& option : commonOptions)
     text += formatEntry("--" + option.name, option.description);
   std::string group;
@@ -46,14 +46,14 @@ std::string formatHelp(const CommandSyntax& syntax) {
     if (option.group != group)
       text += "\n" + option.group + ":\n";
     group = option.group;
-    text += formatEntry(textOf("--", option.name, option.isSwitch() ? "" : " ", option.placeholder),
+    text += formatEntry(concat("--", option.name, option.isSwitch() ? "" : " ", option.placeholder),
                         option.help());
   }
   return text;
 }
 
 std::string helpHint(const CommandSyntax& syntax) {
-  return textOf(" (fenestra ", syntax.name, " --help lists what there is)");
+  return concat(" (fenestra ", syntax.name, " --help lists what there is)");
 }
 
 Error unknownOption(const CommandSyntax& syntax, std::string_view given) {
@@ -61,15 +61,15 @@ Error unknownOption(const CommandSyntax& syntax, std::string_view given) {
   std::vector<std::string> names = listNames(commonOptions);
   std::ranges::copy(listNames(listOptions(syntax)), std::back_inserter(names));
   const std::string_view word = given.substr(std::min(given.find_first_not_of('-'), given.size()));
-  const std::string likely = findNearest(lower(word), names);
+  const std::string likely = findNearest(toLower(word), names);
   return usageError(given, ": no such flag",
-                    likely.empty() ? "" : textOf("; did you mean --", likely, "?"),
+                    likely.empty() ? "" : concat("; did you mean --", likely, "?"),
                     helpHint(syntax));
 }
 
 Error extraArgument(const CommandSyntax& syntax, std::string_view given) {
   return usageError("'", given, "': one argument too many after ",
-                    joined(syntax.positionals, " and ", std::mem_fn(&Positional::name)),
+                    join(syntax.positionals, " and ", std::mem_fn(&Positional::name)),
                     "; quote names with blanks", helpHint(syntax));
 }
 

@@ -41,7 +41,7 @@ Comparison compared(const OptionValues& values, const Image& a, const Image& b) 
     return compareImages(a, b);
   } catch (const Error& error) {
     throw Error(error.kind(),
-                textOf(*values.text("A"), ", ", *values.text("B"), ": ", error.what()));
+                concat(*values.text("A"), ", ", *values.text("B"), ": ", error.what()));
   }
 }
 

@@ -14,7 +14,7 @@ struct Offer {
   bool files = false;
 
   bool operator==(const Offer&) const = default;
-  std::string text() const { return joined(words, " "); }
+  std::string text() const { return join(words, " "); }
 };
 
 Offer offerFor(const Option& flag) {
@@ -32,7 +32,7 @@ std::string nameOf(const Command& command) {
 }
 
 std::string commandNames() {
-  return joined(commands(), " ", nameOf);
+  return join(commands(), " ", nameOf);
 }
 
 /// Flags of a command, the common ones first.
@@ -84,7 +84,7 @@ complete -F _fenestra fenestra
 
 /// Assignments of an offer to the script's variables.
 std::string bashOffer(const Offer& offer) {
-  return textOf("words='", offer.text(), "' files=", offer.files ? "yes" : "");
+  return concat("words='", offer.text(), "' files=", offer.files ? "yes" : "");
 }
 
 /// Case of a command: all its flags, and the offer for the value of each.
@@ -102,11 +102,11 @@ std::string bashCase(const CommandSyntax& syntax) {
       known->second += " | --" + flag.name;
   }
   const auto name = [](const Option& flag) { return "--" + flag.name; };
-  std::string text = textOf("    ", syntax.name, ")\n      flags='", joined(flags, " ", name),
+  std::string text = concat("    ", syntax.name, ")\n      flags='", join(flags, " ", name),
                             "'\n      case $before in\n");
   for (const auto& [offer, names] : cases)
-    text += textOf("        ", names, ") ", bashOffer(offer), " ;;\n");
-  return textOf(text, "        *) ", bashOffer(offerFor(syntax.positionals.front())),
+    text += concat("        ", names, ") ", bashOffer(offer), " ;;\n");
+  return concat(text, "        *) ", bashOffer(offerFor(syntax.positionals.front())),
                 " value= ;;\n      esac\n      ;;\n");
 }
 
@@ -144,7 +144,7 @@ _fenestra "$@"
 
 /// Text in single quotes, for zsh.
 std::string zshQuoted(std::string_view text) {
-  return textOf("'", replacedAll(text, "'", "'\\''"), "'");
+  return concat("'", replaceAll(text, "'", "'\\''"), "'");
 }
 
 /// Text in which `marks` are escaped by a backslash.
@@ -158,24 +158,24 @@ std::string escaped(std::string_view text, std::string_view marks) {
 std::string zshAction(const Offer& offer) {
   if (offer.words.empty())
     return offer.files ? "_files" : " ";
-  return offer.files ? textOf(" _fenestra_either ", offer.text()) : textOf("(", offer.text(), ")");
+  return offer.files ? concat(" _fenestra_either ", offer.text()) : concat("(", offer.text(), ")");
 }
 
 std::string zshCase(const CommandSyntax& syntax) {
-  std::string text = textOf("    ", syntax.name, ")\n      _arguments");
+  std::string text = concat("    ", syntax.name, ")\n      _arguments");
   const auto add = [&text](const std::string& specification) {
-    text += textOf(" \\\n        ", zshQuoted(specification));
+    text += concat(" \\\n        ", zshQuoted(specification));
   };
   for (const Option& flag : allFlags(syntax)) {
-    const std::string help = textOf("[", escaped(flag.help(), "\\]"), "]");
+    const std::string help = concat("[", escaped(flag.help(), "\\]"), "]");
     if (flag.isSwitch())
-      add(textOf("--", flag.name, help));
+      add(concat("--", flag.name, help));
     else
-      add(textOf("*--", flag.name, "=", help, ":", escaped(flag.placeholder, "\\:"), ":",
+      add(concat("*--", flag.name, "=", help, ":", escaped(flag.placeholder, "\\:"), ":",
                  zshAction(offerFor(flag))));
   }
   for (const Positional& positional : syntax.positionals)
-    add(textOf(":", positional.name, ":", zshAction(offerFor(positional))));
+    add(concat(":", positional.name, ":", zshAction(offerFor(positional))));
   return text + "\n      ;;\n";
 }
 
@@ -202,13 +202,13 @@ complete -c fenestra -f
 
 std::string fishLine(const std::string& condition, const std::string& rest,
                      std::string_view text = "") {
-  return textOf("complete -c fenestra -n '__fenestra_is", condition, "'", rest,
-                text.empty() ? "" : textOf(" -d '", escaped(text, "\\'"), "'"), "\n");
+  return concat("complete -c fenestra -n '__fenestra_is", condition, "'", rest,
+                text.empty() ? "" : concat(" -d '", escaped(text, "\\'"), "'"), "\n");
 }
 
 std::string fishOffer(const Offer& offer) {
-  return textOf(offer.files ? " -F" : "",
-                offer.words.empty() ? "" : textOf(" -a '", offer.text(), "'"));
+  return concat(offer.files ? " -F" : "",
+                offer.words.empty() ? "" : concat(" -a '", offer.text(), "'"));
 }
 
 bool takes(const Command& command, const Option& flag) {
@@ -226,10 +226,10 @@ std::string fishFlags(std::size_t which) {
       continue;
     for (const Command& command : commands())
       if (isTaker(command))
-        takers += textOf(" ", nameOf(command));
+        takers += concat(" ", nameOf(command));
     const Offer offer = offerFor(flag);
     const char* const value = flag.isSwitch() ? "" : offer.files ? " -r" : " -x";
-    lines += fishLine(takers, textOf(" -l ", flag.name, value, fishOffer(offer)), flag.help());
+    lines += fishLine(takers, concat(" -l ", flag.name, value, fishOffer(offer)), flag.help());
   }
   return lines;
 }
@@ -237,7 +237,7 @@ std::string fishFlags(std::size_t which) {
 } // namespace
 
 std::string bashCompletions() {
-  std::string text = replacedAll(bashBegin, "@COMMANDS@", commandNames());
+  std::string text = replaceAll(bashBegin, "@COMMANDS@", commandNames());
   for (const Command& command : commands())
     text += bashCase(command.syntax());
   return text + bashEnd;
@@ -248,14 +248,14 @@ std::string zshCompletions() {
   std::string cases;
   for (const Command& command : commands()) {
     const CommandSyntax& syntax = command.syntax();
-    names += textOf("    ", zshQuoted(textOf(syntax.name, ":", firstClause(syntax.summary))), "\n");
+    names += concat("    ", zshQuoted(concat(syntax.name, ":", firstClause(syntax.summary))), "\n");
     cases += zshCase(syntax);
   }
-  return replacedAll(zshBegin, "@COMMANDS@", names) + cases + zshEnd;
+  return replaceAll(zshBegin, "@COMMANDS@", names) + cases + zshEnd;
 }
 
 std::string fishCompletions() {
-  std::string text = replacedAll(fishBegin, "@COMMANDS@", commandNames());
+  std::string text = replaceAll(fishBegin, "@COMMANDS@", commandNames());
   for (std::size_t i = 0; i < commands().size(); ++i) {
     const CommandSyntax& syntax = commands()[i].syntax();
     text += fishLine("", " -a " + syntax.name, firstClause(syntax.summary));

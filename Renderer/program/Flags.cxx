@@ -11,7 +11,7 @@ namespace {
 
 /// Finite number, perhaps between blanks.
 std::optional<double> parseFinite(std::string_view text) {
-  const auto value = parsed<double>(trimmed(text, " "));
+  const auto value = parseNumber<double>(trim(text, " "));
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
@@ -41,8 +41,7 @@ Number requireInRange(std::optional<Number> value, const Option& option, const s
     return *value;
   const char* const kind = std::is_integral_v<Number> ? "a whole number from " : "a number from ";
   throw invalidValue(option.name,
-                     textOf(kind, numberText(least), " to ", numberText(greatest), alternative),
-                     given);
+                     concat(kind, toString(least), " to ", toString(greatest), alternative), given);
 }
 
 } // namespace
@@ -101,7 +100,8 @@ bool OptionValues::hasNoEffect(const std::string& name) const {
 
 std::optional<std::uint64_t> OptionValues::integer(const std::string& name) const {
   const auto given = text(name);
-  return given ? std::optional(requireInRange(parsed<std::uint64_t>(*given), option(name), *given))
+  return given ? std::optional(
+                     requireInRange(parseNumber<std::uint64_t>(*given), option(name), *given))
                : std::nullopt;
 }
 

@@ -90,7 +90,7 @@ struct ValueSpec {
     ValueSpec spec = bind(
         target, [](const auto& options, const auto& name, Target& at) { options.read(name, at); });
     if constexpr (std::is_arithmetic_v<Target>)
-      spec.defaultValue = numberText(static_cast<double>(target));
+      spec.defaultValue = toString(static_cast<double>(target));
     else if constexpr (std::is_same_v<Target, std::string>)
       spec.defaultValue = target;
     return spec;

@@ -49,7 +49,7 @@ std::string clipped(std::string text, std::size_t most) {
 /// Texts that are not empty, in one.
 std::string listed(Row texts, const char* between = ", ") {
   std::erase(texts, "");
-  return joined(texts, between);
+  return join(texts, between);
 }
 
 std::string number(double x, const char* format = "%.6g") {
@@ -99,9 +99,9 @@ std::string files(const Json& list) {
                                      [](const Json& file) { return file["there"] == false; });
   std::string shown = text(list[0], "name", longestFile - 10);
   if (list.size() > 1)
-    shown += textOf(" and ", list.size() - 1, " more");
+    shown += concat(" and ", list.size() - 1, " more");
   if (missing > 0)
-    shown += list.size() == 1 ? " (missing)" : textOf(" (", missing, " missing)");
+    shown += list.size() == 1 ? " (missing)" : concat(" (", missing, " missing)");
   return shown;
 }
 
@@ -202,8 +202,8 @@ std::string line(const std::string& text) {
 
 /// Wrapped text; the first line starts with `label`, the others are indented by its width.
 std::string paragraph(const std::string& label, const std::string& text) {
-  const std::string lines = wrapped(oneLine(text), width - characters(label));
-  return label + replacedAll(lines, "\n", "\n" + std::string(characters(label), ' ')) + "\n";
+  const std::string lines = wrapLines(oneLine(text), width - characters(label));
+  return label + replaceAll(lines, "\n", "\n" + std::string(characters(label), ' ')) + "\n";
 }
 
 /// Rows as lines; a column is as wide as its widest cell, and aligned right if right[i] is '>'.
@@ -224,8 +224,8 @@ std::vector<std::string> aligned(std::vector<Row> rows, const std::string& right
 
 std::string table(const std::string& indent, const std::vector<Row>& rows,
                   const std::string& right) {
-  return joined(aligned(rows, right), "",
-                [&indent](const std::string& row) { return line(indent + row); });
+  return join(aligned(rows, right), "",
+              [&indent](const std::string& row) { return line(indent + row); });
 }
 
 // ---- sections
@@ -256,7 +256,7 @@ std::string segmentTable(const Json& segments) {
   if (segments.size() > count) {
     rows.push_back(Row(rows.front().size()));
     rows.back()[0] = "...";
-    rows.back()[5] = textOf(segments.size() - count, " more (--json lists them all)");
+    rows.back()[5] = concat(segments.size() - count, " more (--json lists them all)");
   }
   return table("      ", rows, ">> >>");
 }
@@ -301,7 +301,7 @@ std::string otherLines(const Json& others) {
 }
 
 std::string listLines(const Json& list) {
-  return joined(list, "", [](const Json& line) { return paragraph("  - ", line); });
+  return join(list, "", [](const Json& line) { return paragraph("  - ", line); });
 }
 
 std::string renderLines(const Json& use) {

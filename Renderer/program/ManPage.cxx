@@ -17,18 +17,20 @@ std::string writtenDate(const std::string& date) {
                                  "May",       "June",     "July",     "August",
                                  "September", "October",  "November", "December"};
   const std::vector<std::string> parts = split(date, '-');
-  const auto number = [&parts](std::size_t i) { return parsed<std::size_t>(parts.at(i)).value(); };
-  return textOf(months.at(number(1) - 1), " ", number(2), ", ", parts[0]);
+  const auto number = [&parts](std::size_t i) {
+    return parseNumber<std::size_t>(parts.at(i)).value();
+  };
+  return concat(months.at(number(1) - 1), " ", number(2), ", ", parts[0]);
 }
 
 /// Running text: dashes of flags stay dashes, a sentence begins a line, no line begins a macro.
 std::string prose(std::string_view text) {
   constexpr std::size_t width = 76;
-  const std::string plain = replacedAll(replacedAll(text, "\\", "\\e"), "--", "\\-\\-");
+  const std::string plain = replaceAll(replaceAll(text, "\\", "\\e"), "--", "\\-\\-");
   std::string lines;
-  for (const std::string& sentence : split(replacedAll(plain, ". ", ".\n"), '\n'))
-    for (const std::string& line : split(wrapped(sentence, width), '\n'))
-      lines += textOf(line.starts_with('.') || line.starts_with('\'') ? "\\&" : "", line, "\n");
+  for (const std::string& sentence : split(replaceAll(plain, ". ", ".\n"), '\n'))
+    for (const std::string& line : split(wrapLines(sentence, width), '\n'))
+      lines += concat(line.starts_with('.') || line.starts_with('\'') ? "\\&" : "", line, "\n");
   return lines;
 }
 
@@ -45,17 +47,17 @@ bool isOfRender(const Option& flag) {
 }
 
 std::string commandEntry(const CommandSyntax& syntax, bool isRender) {
-  std::string text = textOf(".It Nm Cm ", syntax.name, argumentsOf(syntax), " Op Ar FLAGS\n",
+  std::string text = concat(".It Nm Cm ", syntax.name, argumentsOf(syntax), " Op Ar FLAGS\n",
                             prose(syntax.summary));
   if (isRender || !std::ranges::equal(syntax.positionals, commands().front().syntax().positionals,
                                       {}, &Positional::description, &Positional::description))
     for (const Positional& positional : syntax.positionals)
-      text += textOf(".Pp\n.Ar ", positional.name, " :\n", prose(positional.description));
+      text += concat(".Pp\n.Ar ", positional.name, " :\n", prose(positional.description));
   return text;
 }
 
 std::string flagEntry(const Option& flag) {
-  return textOf(".It Fl Fl ", flag.name, flag.isSwitch() ? "" : " Ar ", flag.placeholder, "\n",
+  return concat(".It Fl Fl ", flag.name, flag.isSwitch() ? "" : " Ar ", flag.placeholder, "\n",
                 prose(flag.help()));
 }
 
@@ -70,7 +72,7 @@ std::string flagLists(const CommandSyntax& syntax, bool isRender) {
     if (!isRender && isOfRender(flag))
       continue;
     if (flag.group != group)
-      text += textOf(group.empty() ? "" : listEnd, ".Ss ", syntax.name,
+      text += concat(group.empty() ? "" : listEnd, ".Ss ", syntax.name,
                      isRender ? ": " + flag.group : "", "\n", listBegin);
     group = flag.group;
     text += flagEntry(flag);
@@ -122,7 +124,7 @@ std::string manPage() {
   for (const Command& command : commands()) {
     const CommandSyntax& syntax = command.syntax();
     const bool isFirst = &command == &commands().front();
-    synopsis += textOf(".Nm\n", isFirst ? ".Op Cm " : ".Cm ", syntax.name, "\n.", //
+    synopsis += concat(".Nm\n", isFirst ? ".Op Cm " : ".Cm ", syntax.name, "\n.", //
                        argumentsOf(syntax).substr(1), "\n.Op Ar FLAGS\n");
     entries += commandEntry(syntax, isFirst);
     lists += flagLists(syntax, isFirst);
@@ -130,7 +132,7 @@ std::string manPage() {
   std::string common;
   for (const Option& flag : commonOptions)
     common += flagEntry(flag);
-  return textOf(".\\\" Made by fenestra describe man.\n.Dd ", writtenDate(commitDate),
+  return concat(".\\\" Made by fenestra describe man.\n.Dd ", writtenDate(commitDate),
                 "\n.Dt FENESTRA 1\n.Os\n.Sh NAME\n.Nm fenestra\n.Nd ", descriptionText,
                 "\n.Sh SYNOPSIS\n", synopsis, ".Sh DESCRIPTION\n", listBegin, entries, listEnd,
                 ".Sh FLAGS\nEvery command takes:\n", listBegin, common, listEnd, lists, rest,

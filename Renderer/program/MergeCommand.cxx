@@ -29,18 +29,18 @@ void requireTogether(const FilmFile& one, const FilmFile& other) {
     return usageError(other.path(), ": ", what, "; merge parts of one picture");
   };
   if (one.shard().count != other.shard().count)
-    throw refuse(textOf("is part ", partText(other.shard()), ", and ", one.path(), " is ",
+    throw refuse(concat("is part ", partText(other.shard()), ", and ", one.path(), " is ",
                         partText(one.shard())));
   for (const char* key : {"version", "settings", "inputs"}) {
     const nlohmann::json here = {
         {key, JsonNode(other.made(), other.path().string()).at(key).value()}};
     const std::string difference = firstDifference(one.made(), here, one.path().string());
     if (!difference.empty())
-      throw refuse(textOf("is not of the picture of ", one.path(), ": ", difference));
+      throw refuse(concat("is not of the picture of ", one.path(), ": ", difference));
   }
   if (one.target() != other.target())
     throw refuse(
-        textOf("has samples by ", other.target(), ", and ", one.path(), " by ", one.target()));
+        concat("has samples by ", other.target(), ", and ", one.path(), " by ", one.target()));
   if (one.finishedSamples() != other.finishedSamples())
     throw usageError(other.path(), ": has ", other.finishedSamples(), " samples a pixel, and ",
                      one.path(), " has ", one.finishedSamples(),
@@ -71,8 +71,8 @@ std::vector<FilmFile> wholePicture(const std::vector<std::string>& names) {
   constexpr std::size_t mostNamed = 10;
   if (!missing.empty())
     throw usageError("PART: of ", count, " parts, number ",
-                     joined(
-                         missing, ", ", [](int i) { return textOf(i); }, mostNamed),
+                     join(
+                         missing, ", ", [](int i) { return concat(i); }, mostNamed),
                      missing.size() == 1 ? " is" : " are", " missing; add ",
                      missing.size() == 1 ? "it" : "them");
   return films;

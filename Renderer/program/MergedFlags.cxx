@@ -84,7 +84,7 @@ void addFocus(const OrganPreset& preset, const SegmentNames& names, OptionValues
     throw inputError(names.source, "--preset ", preset.name, ": none of its segments is one (",
                      listedNames(names.segments), "); give --focus A,B,..., or another preset");
   for (const SegmentInfo& segment : focus)
-    values.add("focus", replacedAll(segment.id, ",", "\\,"));
+    values.add("focus", replaceAll(segment.id, ",", "\\,"));
 }
 
 // ---- a scene's flags
@@ -199,7 +199,7 @@ SceneOptions mergeSceneOptions(const OptionValues& given, const Input& input) {
     if (const std::string reason = rejectionReason(input, name, value); reason.empty())
       addStoredValue(option, value, merged);
     else
-      result.ignored.push_back(textOf(node.tag, ' ', shown(node), ": ", name, " \"", shown(value),
+      result.ignored.push_back(concat(node.tag, ' ', shown(node), ": ", name, " \"", shown(value),
                                       "\" ", reason, "; give --", name, ' ', shown(value)));
   }
   const bool hasMaterials = merged.text("materials").value_or(noMaterials) != noMaterials;

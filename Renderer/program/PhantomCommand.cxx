@@ -17,12 +17,12 @@ const Option phantomFlags[] = {
     {"output", "DIR", phantomGroup,
      "Folder for KIND.mrml, KIND.mrb, KIND.nrrd and the others [KIND]"},
     {"size", "WxHxD", phantomGroup,
-     textOf("Voxels over the same field of view; N for the cube [knee ", numbersText(kneeSize, "x"),
-            ", foot ", numbersText(footSize, "x"), ", fetus ", numbersText(fetusSize, "x"),
+     concat("Voxels over the same field of view; N for the cube [knee ", joinNumbers(kneeSize, "x"),
+            ", foot ", joinNumbers(footSize, "x"), ", fetus ", joinNumbers(fetusSize, "x"),
             ", cube ", CubeOptions().size, "]"),
      ValueSpec{.least = 16, .greatest = 1024}}, // range of the cube's N
     {"edge", "MM", phantomGroup, "The cube's edge",
-     ValueSpec::number(1e-3, 1e5).withDefault(numberText(CubeOptions().edge))},
+     ValueSpec::number(1e-3, 1e5).withDefault(toString(CubeOptions().edge))},
 };
 
 /// Size WxHxD in voxels; without --size: `standard`.
@@ -83,7 +83,7 @@ int phantomCommand(int argc, char** argv, int first) {
   useMachine(*values);
   const Phantom phantom = makePhantom(kind, *values);
   const std::vector<std::string> files = writePhantom(phantom, folder, kind);
-  std::cout << oneLine(textOf(folder, ": ", joined(files, " "))) << ", " << phantom.segments.size()
+  std::cout << oneLine(concat(folder, ": ", join(files, " "))) << ", " << phantom.segments.size()
             << " segments" << std::endl;
   return 0;
 }

@@ -24,18 +24,18 @@ std::string quoted(const std::string& argument) {
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
   if (!argument.empty() && argument.find_first_not_of(plain) == std::string::npos)
     return argument;
-  return textOf("'", replacedAll(argument, "'", "'\\''"), "'");
+  return concat("'", replaceAll(argument, "'", "'\\''"), "'");
 }
 
 /// Flags that reproduce the camera.
 std::string cameraFlags(const CameraPose& pose) {
   constexpr int exact = 17; // significant digits
   const bool perspective = pose.projection == Projection::perspective;
-  return textOf("--projection ", perspective ? "perspective --angle " : "orthographic --scale ",
-                numberText(perspective ? pose.angle : pose.scale, exact),
-                " --position=", numbersText(pose.position, ",", exact),
-                " --target=", numbersText(pose.target, ",", exact),
-                " --up=", numbersText(pose.up, ",", exact));
+  return concat("--projection ", perspective ? "perspective --angle " : "orthographic --scale ",
+                toString(perspective ? pose.angle : pose.scale, exact),
+                " --position=", joinNumbers(pose.position, ",", exact),
+                " --target=", joinNumbers(pose.target, ",", exact),
+                " --up=", joinNumbers(pose.up, ",", exact));
 }
 
 std::map<std::string, std::string> header(const PreparedScene& scene, const RenderOptions& options,
@@ -45,13 +45,13 @@ std::map<std::string, std::string> header(const PreparedScene& scene, const Rend
   const std::vector<std::string> arguments = relativeArguments(words, renderSyntax.options, folder);
   std::map<std::string, std::string> entries = {
       {"version", versionText},
-      {"target", textOf(processorText, "-", result.target)},
-      {"seed", textOf(options.settings.seed)},
-      {"sampling", nameOf(options.settings.sampling)},
-      {"samples", textOf(result.finishedSamples)},
+      {"target", concat(processorText, "-", result.target)},
+      {"seed", concat(options.settings.seed)},
+      {"sampling", toString(options.settings.sampling)},
+      {"samples", concat(result.finishedSamples)},
       {"camera", cameraFlags(scene.camera().pose())},
       {"look", relativeName(scene.look(), folder)},
-      {"command", textOf("fenestra ", joined(arguments, " ", quoted))}};
+      {"command", concat("fenestra ", join(arguments, " ", quoted))}};
   if (options.preset)
     entries["preset"] = relativeName(*options.preset, folder);
   return entries;
@@ -60,10 +60,9 @@ std::map<std::string, std::string> header(const PreparedScene& scene, const Rend
 /// Sentence of a picture's header on its filter.
 std::string filterText(const std::optional<FilteredPicture>& filtered) {
   const std::optional<double> noise = filteredNoise(filtered);
-  return textOf("filtered for the eye by least squares in windows, version ", filterVersion,
+  return concat("filtered for the eye by least squares in windows, version ", filterVersion,
                 ", on expected albedo, normal, depth and light; told error ",
-                noise ? numberText(*noise, 3) : "unknown",
-                "; --denoise off leaves the picture raw");
+                noise ? toString(*noise, 3) : "unknown", "; --denoise off leaves the picture raw");
 }
 
 /// Adds the filtered channels that the layers name; R, G, B and A stay as they are.
@@ -75,7 +74,7 @@ void addFilterChannels(const RenderOptions& options, const PreparedScene& scene,
     return;
   addDenoised(image, filtered);
   image.header["filter"] =
-      textOf("channels denoised.* are ", filterText(filtered), "; R, G, B and A are not filtered");
+      concat("channels denoised.* are ", filterText(filtered), "; R, G, B and A are not filtered");
 }
 
 } // namespace
@@ -113,8 +112,8 @@ void checkMemory(const RenderRequest& scene) {
   if (needed <= there)
     return;
   throw outputError("--size", "a picture of ", scene.width, "x", scene.height, " pixels takes ",
-                    numberText(needed / gigabyte, 3), " GB of memory, this machine has ",
-                    numberText(there / gigabyte, 3), "; choose a smaller one");
+                    toString(needed / gigabyte, 3), " GB of memory, this machine has ",
+                    toString(there / gigabyte, 3), "; choose a smaller one");
 }
 
 RenderSettings PictureFilter::settings() {

@@ -72,7 +72,7 @@ std::vector<std::string> Progress::reached() const {
   const double noise = m_monitor.noise;
   std::vector<std::string> fields;
   if (m_frames > 1)
-    fields.push_back(textOf("frame ", std::min(m_finished + 1, m_frames), " of ", m_frames));
+    fields.push_back(concat("frame ", std::min(m_finished + 1, m_frames), " of ", m_frames));
   fields.push_back(
       formatted(samples < 10.0 ? "%.1f samples a pixel" : "%.0f samples a pixel", samples));
   if (noise < infinity)

@@ -64,7 +64,7 @@ void ProgressView::erase() const {
 
 void ProgressView::showTags(const std::vector<std::string>& reached, bool last) const {
   std::printf("<filter-progress>%.4f</filter-progress>\n<filter-comment>%s</filter-comment>\n",
-              m_fraction, joined(reached, ", ").c_str());
+              m_fraction, join(reached, ", ").c_str());
   if (last)
     std::printf("<filter-end>\n<filter-name>fenestra</filter-name>\n<filter-time>%.2f"
                 "</filter-time>\n</filter-end>\n",

@@ -62,7 +62,7 @@ std::string elementsBeyond(const json& some, const json& others) {
   for (const json& element : some)
     if (std::ranges::find(others, element) == others.end())
       names.push_back(element.is_string() ? element.get<std::string>() : element.value("file", ""));
-  return joined(names, " ");
+  return join(names, " ");
 }
 
 /// Text of the difference between two requests in the value of `key`.

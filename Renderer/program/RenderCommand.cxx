@@ -140,7 +140,7 @@ std::string makeStatsJson(const RenderStats& stats, const RenderOptions& options
   json["gradients"] = c.gradients;
   json["cells"] = {{"all", majorants.size()}, {"empty", majorants.emptyCount()}};
   json["emptyPixels"] = samples.deterministicPixels;
-  json["sampling"] = nameOf(options.settings.sampling);
+  json["sampling"] = toString(options.settings.sampling);
   json["samplesPerPixel"] = {{"min", samples.min}, {"mean", samples.mean}, {"max", samples.max}};
   json["noise"] = result.film.noise(); // null: infinite
   if (scene.features())
@@ -188,19 +188,19 @@ std::vector<std::string> findStaleFiles(const RenderOptions& options, const Outp
 
 void report(const RenderOptions& options, const RenderResult& result,
             const std::optional<double>& filtered, double seconds) {
-  const auto files = joined(options.outputs, ", ", [](const auto& path) { return path.string(); });
+  const auto files = join(options.outputs, ", ", [](const auto& path) { return path.string(); });
   const SampleCounts counts = result.film.sampleCounts();
   const double noise = result.film.noise();
   std::string line =
-      textOf(files, ": ", options.scene.width, "x", options.scene.height, " pixels, ",
+      concat(files, ": ", options.scene.width, "x", options.scene.height, " pixels, ",
              result.finishedSamples, result.finishedSamples == 1 ? " sample" : " samples");
   line += counts.min == counts.max ? " each"
-                                   : textOf(" a pixel (", counts.min, " to ", counts.max, ")");
+                                   : concat(" a pixel (", counts.min, " to ", counts.max, ")");
   if (noise < infinity)
-    line += ", noise " + numberText(noise, 3);
+    line += ", noise " + toString(noise, 3);
   if (filtered)
-    line += ", filtered " + numberText(*filtered, 3);
-  line += ", " + numberText(seconds, 3) + " s";
+    line += ", filtered " + toString(*filtered, 3);
+  line += ", " + toString(seconds, 3) + " s";
   if (result.reason == StopReason::request)
     line += options.checkpoint ? " (stopped on request; the same command goes on)"
                                : " (stopped on request)";
@@ -218,11 +218,11 @@ int finishShard(const RenderOptions& options, const RenderResult& result, Checkp
                 double seconds) {
   checkpoint.write(result);
   const bool isStopped = result.reason == StopReason::request;
-  std::cout << oneLine(textOf(*options.checkpoint, ": part ", partText(options.settings.shard),
+  std::cout << oneLine(concat(*options.checkpoint, ": part ", partText(options.settings.shard),
                               " of ", options.scene.width, "x", options.scene.height, " pixels, ",
                               result.finishedSamples,
                               result.finishedSamples == 1 ? " sample" : " samples", " each, ",
-                              numberText(seconds, 3), " s",
+                              toString(seconds, 3), " s",
                               isStopped ? " (stopped on request; the same command goes on)" : ""))
             << std::endl;
   return isStopped ? stopStatus() : 0;

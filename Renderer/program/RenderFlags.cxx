@@ -149,8 +149,8 @@ struct RenderOptionTable {
        "repeated",
        ValueSpec::list().bind(scene.focus), OverrideGroup::focus},
       {"preset", "NAME|FILE|auto", sceneGroup,
-       textOf(
-           "Focus, look, view and clip of an anatomy in one: ", joined(ownPresets("presets"), ", "),
+       concat(
+           "Focus, look, view and clip of an anatomy in one: ", join(ownPresets("presets"), ", "),
            ", a .json, or auto (by the segments' names); other flags win over it"),
        ValueSpec::text().bind(options.preset).withNamedValues(presetNames("presets", {"auto"}))},
       {"output", "FILE", sceneGroup,

@@ -31,9 +31,8 @@ std::string valueText(const std::string& name, const json& value) {
 
 /// Items separated by commas; commas within an item are escaped.
 std::string listText(const std::string& name, const json& list) {
-  return joined(list, ",", [&name](const json& item) {
-    return replacedAll(valueText(name, item), ",", "\\,");
-  });
+  return join(list, ",",
+              [&name](const json& item) { return replaceAll(valueText(name, item), ",", "\\,"); });
 }
 
 } // namespace
@@ -72,7 +71,7 @@ OptionValues changedFlags(const json& change, const OptionValues& flags) {
     if (!flag) {
       const std::string likely = findNearest(name, listNames(renderSyntax.options));
       throw usageError(oneLine(name), ": no such flag",
-                       likely.empty() ? "" : textOf("; did you mean ", likely, "?"));
+                       likely.empty() ? "" : concat("; did you mean ", likely, "?"));
     }
     if (!isImageOption(*flag))
       throw usageError(name, ": cannot change while serving; start another server");

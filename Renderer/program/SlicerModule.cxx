@@ -41,8 +41,8 @@ void addConstraints(pugi::xml_node parameter, const ValueSpec& takes) {
       takes.greatest - takes.least > widest)
     return;
   pugi::xml_node constraints = parameter.append_child("constraints");
-  addText(constraints, "minimum", numberText(takes.least));
-  addText(constraints, "maximum", numberText(takes.greatest));
+  addText(constraints, "minimum", toString(takes.least));
+  addText(constraints, "maximum", toString(takes.greatest));
   addText(constraints, "step", takes.type == "integer" ? "1" : "0.01");
 }
 
@@ -124,7 +124,7 @@ std::string returnValuesText(const std::vector<double>& values) {
   std::string lines;
   for (std::size_t i = 0; i < values.size(); ++i)
     if (std::isfinite(values[i]))
-      lines += textOf(returnValues[i].name, " = ", numberText(values[i]), "\n");
+      lines += concat(returnValues[i].name, " = ", toString(values[i]), "\n");
   return lines;
 }
 

@@ -144,14 +144,14 @@ private:
   /// Last line that the process wrote which is no warning.
   static std::string errorLine(const Child& child) {
     if (child.status() > 128)
-      return textOf("ended by signal ", child.status() - 128, " (",
+      return concat("ended by signal ", child.status() - 128, " (",
                     ::strsignal(child.status() - 128), ")");
     std::string last;
     constexpr std::string_view program = "fenestra: ";
     for (const std::string& line : split(child.errors(), '\n'))
       if (line.starts_with(program) && !line.starts_with("fenestra: warning: "))
         last = line.substr(program.size());
-    return last.empty() ? textOf("ended with status ", child.status()) : oneLine(last);
+    return last.empty() ? concat("ended with status ", child.status()) : oneLine(last);
   }
 
   /// Keeps what came of a row, and prints it.
@@ -166,7 +166,7 @@ private:
     if (outcome.state == State::failed)
       std::cerr << "fenestra: warning: " << oneLine(name + ": " + outcome.error) << '\n';
     else if (outcome.state == State::done)
-      std::cout << oneLine(name) << ": " << numberText(outcome.seconds, 3) << " s" << std::endl;
+      std::cout << oneLine(name) << ": " << toString(outcome.seconds, 3) << " s" << std::endl;
   }
 
   /// Asks running processes once to end: they write what they have reached.
@@ -192,9 +192,9 @@ private:
 
   std::vector<std::string> reached() const {
     std::vector<std::string> fields = {
-        textOf("row ", std::min(m_kept + m_rendered + 1, m_rows.size()), " of ", m_rows.size())};
+        concat("row ", std::min(m_kept + m_rendered + 1, m_rows.size()), " of ", m_rows.size())};
     if (failed() > 0)
-      fields.push_back(textOf(failed(), " failed"));
+      fields.push_back(concat(failed(), " failed"));
     return fields;
   }
 
@@ -267,9 +267,9 @@ int studyCommand(int argc, char** argv, int first) {
   if (isWhole)
     writeResults(results, outputs);
   outputs.commit();
-  std::cout << oneLine(textOf(results.folder, ": ", results.count(State::done), " of ",
+  std::cout << oneLine(concat(results.folder, ": ", results.count(State::done), " of ",
                               study.rows(), " rows done, ", study.rendered(), " rendered now, ",
-                              numberText(watch.seconds(), 3), " s",
+                              toString(watch.seconds(), 3), " s",
                               study.isStopped() ? " (stopped on request; the same command goes on)"
                                                 : ""))
             << std::endl;
@@ -280,7 +280,7 @@ int studyCommand(int argc, char** argv, int first) {
       const bool isKnown = outcome.status == static_cast<int>(ErrorKind::usage) ||
                            outcome.status == static_cast<int>(ErrorKind::input);
       throw Error(isKnown ? static_cast<ErrorKind>(outcome.status) : ErrorKind::output,
-                  textOf(results.table, ": ", study.failed(), " of ", study.rows(),
+                  concat(results.table, ": ", study.failed(), " of ", study.rows(),
                          " rows failed, the first ", results.rows[row].name, ": ", outcome.error));
     }
   return 0;

@@ -36,7 +36,7 @@ std::vector<std::string> recordedArguments(const StudyRow& row, const fs::path& 
                                            const std::vector<std::string>& formats) {
   std::vector<std::string> arguments = row.flags;
   if (!formats.empty())
-    arguments.push_back("--formats=" + joined(formats, ","));
+    arguments.push_back("--formats=" + join(formats, ","));
   arguments.push_back(row.input);
   return relativeArguments(arguments, renderSyntax.options, folder / row.name);
 }
@@ -150,10 +150,10 @@ std::vector<std::string> StudyRecord::arguments(int threads) const {
   std::vector<std::string> words = {"render"};
   words.insert(words.end(), m_row.flags.begin(), m_row.flags.end());
   for (const fs::path& picture : m_pictures)
-    words.push_back(textOf("--output=", picture));
-  words.push_back(textOf("--stats=", rowStats(m_row, m_folder.parent_path())));
-  words.push_back(textOf("--checkpoint=", m_film));
-  words.push_back(textOf("--threads=", threads));
+    words.push_back(concat("--output=", picture));
+  words.push_back(concat("--stats=", rowStats(m_row, m_folder.parent_path())));
+  words.push_back(concat("--checkpoint=", m_film));
+  words.push_back(concat("--threads=", threads));
   words.insert(words.end(), {"--progress=none", "--", m_row.input});
   return words;
 }

@@ -33,7 +33,7 @@ fs::path summaryPath(const StudyResults& results) {
 std::vector<fs::path> sheetPaths(const StudyResults& results) {
   std::vector<fs::path> paths = {results.folder / "study.png"};
   while (paths.size() * mostOnSheet < results.rows.size())
-    paths.push_back(results.folder / textOf("study-", paths.size() + 1, ".png"));
+    paths.push_back(results.folder / concat("study-", paths.size() + 1, ".png"));
   return paths;
 }
 
@@ -53,7 +53,7 @@ using Measures = std::map<std::string, double>;
 
 void addMeasures(const nlohmann::json& json, const std::string& place, Measures& measures) {
   for (const auto& [key, value] : json.items()) {
-    const std::string name = place.empty() ? key : textOf(place, ".", key);
+    const std::string name = place.empty() ? key : concat(place, ".", key);
     if (value.is_number())
       measures[name] = value.get<double>();
     else if (value.is_object())
@@ -88,13 +88,13 @@ std::string summary(const StudyResults& results, const std::vector<Measures>& me
     std::vector<std::string> fields = {
         results.rows[i].name,
         nameOf(outcome.state),
-        outcome.state == State::missing ? "" : textOf(outcome.status),
+        outcome.state == State::missing ? "" : concat(outcome.status),
         outcome.error,
         outcome.state == State::done ? picture.lexically_relative(results.folder).string() : "",
-        outcome.state == State::missing ? "" : numberText(outcome.seconds)};
+        outcome.state == State::missing ? "" : toString(outcome.seconds)};
     for (const std::string& column : columns) {
       const auto found = measures[i].find(column);
-      fields.push_back(found == measures[i].end() ? "" : numberText(found->second, 9));
+      fields.push_back(found == measures[i].end() ? "" : toString(found->second, 9));
     }
     text += csvLine(fields);
   }
@@ -107,18 +107,18 @@ SheetEntry entryOf(const StudyRow& row, const RowOutcome& outcome, const Measure
   if (outcome.state == State::done)
     entry.picture = rowPicture(row, folder);
   if (outcome.state != State::done)
-    entry.problem = textOf(nameOf(outcome.state), outcome.error.empty() ? "" : ": ", outcome.error);
+    entry.problem = concat(nameOf(outcome.state), outcome.error.empty() ? "" : ": ", outcome.error);
   std::vector<std::string> told;
   const auto measure = [&measures](const char* name) {
     const auto found = measures.find(name);
     return found == measures.end() ? std::optional<double>() : found->second;
   };
   if (const auto coverage = measure("focusCoverage"))
-    told.push_back(textOf(std::lround(100.0 * *coverage), " % of the focus seen"));
+    told.push_back(concat(std::lround(100.0 * *coverage), " % of the focus seen"));
   if (const auto filtered = measure("noiseFiltered");
       const auto noise = filtered ? filtered : measure("noise"))
-    told.push_back("noise " + numberText(*noise, 2));
-  entry.lines.push_back(joined(told, ", "));
+    told.push_back("noise " + toString(*noise, 2));
+  entry.lines.push_back(join(told, ", "));
   return entry;
 }
 
@@ -146,12 +146,12 @@ void writeResults(const StudyResults& results, Outputs& outputs) {
   outputs.write(summaryPath(results), summary(results, measures));
   const std::vector<fs::path> paths = sheetPaths(results);
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    std::string told = textOf(results.rows.size(), " cases");
+    std::string told = concat(results.rows.size(), " cases");
     for (const State state : {State::done, State::failed, State::stopped, State::missing})
       if (const std::size_t count = results.count(state); count > 0)
-        told += textOf(", ", count, " ", nameOf(state));
+        told += concat(", ", count, " ", nameOf(state));
     if (paths.size() > 1)
-      told += textOf(", sheet ", i + 1, " of ", paths.size());
+      told += concat(", sheet ", i + 1, " of ", paths.size());
     const std::size_t first = i * mostOnSheet;
     const auto shown =
         std::span(entries).subspan(first, std::min(mostOnSheet, entries.size() - first));

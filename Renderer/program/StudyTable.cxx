@@ -63,7 +63,7 @@ std::vector<const Option*> columnsOf(const CsvRecord& head, const std::string& s
   for (const std::string& name : head.fields) {
     const Option* const flag = findOption(renderSyntax.options, name);
     if (std::ranges::find(known, name) == known.end()) {
-      const std::string likely = findNearest(lower(name), known);
+      const std::string likely = findNearest(toLower(name), known);
       throw inputError(source, "line ", head.line, ": '", fenestra::shown(name),
                        "' is no column of a study",
                        likely.empty() ? "; columns are name, input and flags of fenestra render"
@@ -102,21 +102,21 @@ public:
         m_common(common) {}
 
   StudyRow row(const CsvRecord& record) {
-    const std::string place = textOf("line ", record.line);
+    const std::string place = concat("line ", record.line);
     if (record.fields.size() != m_columns.size())
       throw inputError(m_source, place, ": has ", record.fields.size(), " fields, the first line ",
                        m_columns.size(), "; quote fields with commas, or add what is missing");
     StudyRow row;
     OptionValues others = m_common;
     for (std::size_t i = 0; i < m_columns.size(); ++i) {
-      const std::string cell(trimmed(record.fields[i]));
+      const std::string cell(trim(record.fields[i]));
       if (!cell.empty())
         add(row, others, i, cell, place);
     }
     requireFolderName(row.name, m_source, place);
     if (row.input.empty())
       throw inputError(m_source, place, ": names no input; fill in the column");
-    if (const auto [known, isNew] = m_lines.emplace(lower(row.name), record.line); !isNew)
+    if (const auto [known, isNew] = m_lines.emplace(toLower(row.name), record.line); !isNew)
       throw inputError(m_source, place, ": has the name of line ", known->second, ", '", row.name,
                        "'; rename one");
     const std::vector<std::string> rest = others.arguments();
@@ -137,7 +137,7 @@ private:
       row.input = (m_folder / cell).string();
     else {
       const bool namesFile = flag->canNameFile();
-      row.flags.push_back(textOf("--", flag->name, "=", namesFile ? fileOf(cell, m_folder) : cell));
+      row.flags.push_back(concat("--", flag->name, "=", namesFile ? fileOf(cell, m_folder) : cell));
       others.remove(flag->name);
       if (!namesFile || cell.find_first_of("./") == cell.npos)
         row.shown += (row.shown.empty() ? "" : ", ") + cell;
@@ -192,7 +192,7 @@ std::vector<StudyRow> readStudyTable(const fs::path& path, const OptionValues& c
   TableReader reader(path, records.front(), common);
   std::vector<StudyRow> rows;
   for (const CsvRecord& record : records) {
-    const auto isEmpty = [](const std::string& field) { return trimmed(field).empty(); };
+    const auto isEmpty = [](const std::string& field) { return trim(field).empty(); };
     if (&record != &records.front() && !std::ranges::all_of(record.fields, isEmpty))
       rows.push_back(reader.row(record));
   }

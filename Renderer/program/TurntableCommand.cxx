@@ -178,10 +178,10 @@ private:
 
   void report() const {
     const bool isWhole = finished() == frames();
-    std::cout << oneLine(textOf(m_options.pictures(m_options.first()).front(), " to ",
+    std::cout << oneLine(concat(m_options.pictures(m_options.first()).front(), " to ",
                                 m_options.pictures(m_options.end() - 1).front().filename(), ": ",
                                 finished(), " of ", frames(), " frames, ", rendered(),
-                                " rendered now, ", numberText(m_total.seconds(), 3), " s",
+                                " rendered now, ", toString(m_total.seconds(), 3), " s",
                                 isWhole ? "" : " (stopped on request; the same command goes on)"))
               << std::endl;
   }

@@ -24,7 +24,7 @@ std::vector<std::string> requestedArguments(const OptionValues& flags, const fs:
 }
 
 std::uint64_t digest(const auto& voxels) {
-  return stateOf(memoryOf(voxels)).digest;
+  return stateOf(asBytes(voxels)).digest;
 }
 
 constexpr const char* changeKey = "surfaceChange";
@@ -96,8 +96,8 @@ std::string TurntableRecord::warningBeyond() {
     return {};
   constexpr const char* whose = " of the turntable that was there before; remove ";
   if (beyond.size() == 1)
-    return textOf(*beyond.begin(), ": is", whose, "it");
-  return textOf(*beyond.begin(), " to ", beyond.rbegin()->filename(), ": ", beyond.size(),
+    return concat(*beyond.begin(), ": is", whose, "it");
+  return concat(*beyond.begin(), " to ", beyond.rbegin()->filename(), ": ", beyond.size(),
                 " files are", whose, "them");
 }
 

@@ -166,7 +166,7 @@ void Lender::help(RenderMonitor& monitor) {
                        m_pass = &pass;
                        m_result = &result;
                      },
-                     [this](const RenderMonitor& watched) { return settle(watched); }};
+                     [this](const RenderMonitor& watched) { return join(watched); }};
   m_thread = std::jthread([this](const std::stop_token& end) { serve(end); });
 }
 
@@ -242,7 +242,7 @@ Message Lender::loanFor(Borrower& worker) {
   return message;
 }
 
-Counters Lender::settle(const RenderMonitor& monitor) {
+Counters Lender::join(const RenderMonitor& monitor) {
   for (const Rests poller;;) {
     {
       const std::lock_guard lock(m_mutex);

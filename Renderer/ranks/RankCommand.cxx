@@ -44,9 +44,9 @@ std::string describeScene(const PreparedScene& scene, const RenderSettings& sett
   const CameraPose& pose = scene.camera().pose();
   const MajorantGrid& majorants = scene.view().majorants;
   return textOf(
-      targetOf(scene.view(), settings), "; voxels ", numberText(scene.volume().minimum, exact),
-      " to ", numberText(scene.volume().maximum, exact), "; camera at ",
-      numbersText(pose.position, ",", exact), " toward ", numbersText(pose.target, ",", exact),
+      targetOf(scene.view(), settings), "; voxels ", toString(scene.volume().minimum, exact),
+      " to ", toString(scene.volume().maximum, exact), "; camera at ",
+      joinNumbers(pose.position, ",", exact), " toward ", joinNumbers(pose.target, ",", exact),
       "; ", majorants.size(), " cells, ", majorants.emptyCount(), " of them empty");
 }
 

@@ -85,9 +85,9 @@ std::string told(const FocusContrast& chosen) {
   if (!chosen.contrast)
     return "";
   const std::string paled =
-      chosen.saturation < 1.0 ? "; surroundings paled to " + numberText(chosen.saturation, 3) : "";
-  return textOf(numberText(chosen.contrast->deltaE[0], 3), " (colour-blind ",
-                numberText(chosen.contrast->colorBlind(), 3), paled, ")");
+      chosen.saturation < 1.0 ? "; surroundings paled to " + toString(chosen.saturation, 3) : "";
+  return concat(toString(chosen.contrast->deltaE[0], 3), " (colour-blind ",
+                toString(chosen.contrast->colorBlind(), 3), paled, ")");
 }
 
 } // namespace fenestra

@@ -80,16 +80,16 @@ std::string filmContent(const RenderResult& result, const Shard& shard, const or
   const Film& film = result.film;
   const std::string header = jsonText(headerOf(result, shard, made), -1) + '\n';
   const std::vector<float>& plan = result.last.plan.noise();
-  std::string content = textOf(filmFormat, header.size(), '\n', header);
+  std::string content = concat(filmFormat, header.size(), '\n', header);
   content.reserve(content.size() +
                   sizeof(PixelWords) * pixelsOf(film.width(), film.height(), shard) +
                   plan.size() * sizeof(float) + sizeof(std::uint64_t));
   forPixels(film, shard,
-            [&](int column, int row) { content += memoryOf(wordsOf(film.at(column, row))); });
-  content += memoryOf(plan);
+            [&](int column, int row) { content += asBytes(wordsOf(film.at(column, row))); });
+  content += asBytes(plan);
   Digest digest;
   digest.add(content);
-  return content += memoryOf(std::array{digest.value()});
+  return content += asBytes(std::array{digest.value()});
 }
 
 FilmFile::FilmFile(const fs::path& path) : m_path(path) {
@@ -101,7 +101,7 @@ FilmFile::FilmFile(const fs::path& path) : m_path(path) {
   const std::size_t end = line.find('\n');
   const auto bytes =
       line.starts_with(filmFormat) && end != line.npos
-          ? parsed<std::uint64_t>(line.substr(filmFormat.size(), end - filmFormat.size()))
+          ? parseNumber<std::uint64_t>(line.substr(filmFormat.size(), end - filmFormat.size()))
           : std::nullopt;
   if (!bytes)
     throw inputError(path, "is no film of this version of Fenestra; name another file, or move it "

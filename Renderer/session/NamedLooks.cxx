@@ -21,7 +21,7 @@ std::string_view ownPreset(const std::string& kind, const std::string& name) {
 }
 
 std::string listed(const std::vector<std::string>& names) {
-  return joined(names, ", ", [](const std::string& name) { return shown(name); });
+  return join(names, ", ", [](const std::string& name) { return shown(name); });
 }
 
 bool isFoundAsFile(const std::string& name) {

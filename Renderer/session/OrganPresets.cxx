@@ -23,8 +23,8 @@ bool modalitiesDiffer(const Fits& fits) {
 }
 
 std::string listedFits(const Fits& fits, const std::vector<SegmentInfo>& segments) {
-  return joined(fits, ", ", [&](const OrganPreset* preset) {
-    return textOf(preset->name, " (", listedNames(focusOf(preset->focus, segments)), ")");
+  return join(fits, ", ", [&](const OrganPreset* preset) {
+    return concat(preset->name, " (", listedNames(focusOf(preset->focus, segments)), ")");
   });
 }
 
@@ -34,7 +34,7 @@ std::vector<SegmentInfo> focusOf(const SegmentPatterns& patterns,
                                  const std::vector<SegmentInfo>& segments) {
   std::vector<SegmentInfo> focus;
   std::ranges::copy_if(segments, std::back_inserter(focus), [&](const SegmentInfo& segment) {
-    const std::vector<std::string> name = nameWords(segment.name);
+    const std::vector<std::string> name = splitName(segment.name);
     return (firstMatch(patterns.names, name) || hasAny(patterns.codes, segment)) &&
            !firstMatch(patterns.except, name);
   });
@@ -45,8 +45,8 @@ std::string listedNames(const std::vector<SegmentInfo>& segments) {
   constexpr std::size_t most = 12;
   const auto first = std::span(segments).first(std::min(most, segments.size()));
   const std::string text =
-      joined(first, ", ", [](const SegmentInfo& segment) { return shown(segment.name); });
-  return segments.size() > most ? textOf(text, " and ", segments.size() - most, " more") : text;
+      join(first, ", ", [](const SegmentInfo& segment) { return shown(segment.name); });
+  return segments.size() > most ? concat(text, " and ", segments.size() - most, " more") : text;
 }
 
 const OrganPreset& fittingPreset(const std::vector<OrganPreset>& presets,

@@ -144,22 +144,22 @@ std::string PreparedScene::choices() const {
   if (m_segments.result() && !m_segments->segmentation.namesFrom().empty())
     labels.push_back("names from " + m_segments->segmentation.namesFrom());
   if (m_focus->mask && m_focus->mask->smoothing > 0.0)
-    labels.push_back("smoothed " + numberText(m_focus->mask->smoothing, 3) + " mm");
+    labels.push_back("smoothed " + toString(m_focus->mask->smoothing, 3) + " mm");
   if (!labels.empty())
-    parts.push_back("labels: " + joined(labels, ", "));
+    parts.push_back("labels: " + join(labels, ", "));
   if (tint()) {
     const std::size_t colors = tint()->albedo.size() - 1;
-    parts.push_back(textOf("materials: ", m_materials->source, ", ", colors,
+    parts.push_back(concat("materials: ", m_materials->source, ", ", colors,
                            colors == 1 ? " colour" : " colours",
                            m_plan->hasFoundSkin() ? ", skin found" : ""));
   }
   const double softness = std::visit([](const auto& kind) { return kind.edge.softness; }, clip());
   if (softness > 0.0)
-    parts.push_back("cut: soft over " + numberText(softness, 3) + " mm");
+    parts.push_back("cut: soft over " + toString(softness, 3) + " mm");
   if (const std::string text = tintContrast() ? told(*tintContrast()) : told(contrast());
       !text.empty())
     parts.push_back("contrast: " + text);
-  return joined(parts, "; ");
+  return join(parts, "; ");
 }
 
 std::vector<std::string> PreparedScene::warnings() const {

@@ -44,7 +44,7 @@ Found findMatch(const MaterialRule& rule, const SegmentInfo& segment,
                 const std::vector<std::string>& words) {
   Found found = findCode(rule, segment);
   if (holds(rule.values, segment.labelValue))
-    found = {Match::value, textOf("by value ", segment.labelValue)};
+    found = {Match::value, concat("by value ", segment.labelValue)};
   if (found.by == Match::none)
     if (const NamePattern* pattern = firstMatch(rule.patterns.names, words))
       found = {Match::name, "by name '" + pattern->text + "'"};
@@ -54,7 +54,7 @@ Found findMatch(const MaterialRule& rule, const SegmentInfo& segment,
 }
 
 std::optional<SegmentMaterial> byRule(const SegmentInfo& segment, const MaterialTable& table) {
-  const std::vector<std::string> words = nameWords(segment.name);
+  const std::vector<std::string> words = splitName(segment.name);
   const MaterialRule* best = nullptr;
   Found bestFound;
   const auto rank = [](const MaterialRule& rule, const Found& found) {

@@ -100,7 +100,7 @@ Look lookFor(const Volume& volume, const Handle<NamedTransfer>& named,
     return {fitted(named->look, volume), named->source, warnings};
   if (named)
     warnings.push_back(
-        textOf("the preset's transfer function is made for ",
+        concat("the preset's transfer function is made for ",
                modalities[static_cast<std::size_t>(*madeFor)],
                ", which this volume does not seem to be; the volume gets a look of its own, "
                "or name one with --transfer"));
@@ -217,7 +217,7 @@ std::vector<std::string> focusWarnings(const Read& volume, const Focus& focus,
   const double fraction = transparentFraction(*focus->mask, volume->volume, look->transfer);
   if (fraction <= most)
     return {};
-  return {textOf("the look ", look->name, " leaves ", std::lround(100.0 * fraction),
+  return {concat("the look ", look->name, " leaves ", std::lround(100.0 * fraction),
                  " % of the focus transparent; name one made for it with --transfer or --preset")};
 }
 

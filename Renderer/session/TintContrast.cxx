@@ -302,19 +302,19 @@ std::string told(const TintContrast& chosen) {
     return "";
   const Contrast& contrast = *chosen.contrast;
   const ColorAdjustment &adjustment = chosen.adjustment, neutral;
-  std::vector<std::string> parts = {"colour-blind " + numberText(contrast.colorBlind(), 3)};
+  std::vector<std::string> parts = {"colour-blind " + toString(contrast.colorBlind(), 3)};
   const auto add = [&](const std::string& what, double ColorAdjustment::*member) {
     if (adjustment.*member != neutral.*member)
-      parts.push_back(what + numberText(adjustment.*member, 3));
+      parts.push_back(what + toString(adjustment.*member, 3));
   };
   add("surroundings' colour x ", &ColorAdjustment::contextSaturation);
   add("lightness evened by ", &ColorAdjustment::contextLightness);
   add("focus's lightness + ", &ColorAdjustment::focusLightness);
   add("colour x ", &ColorAdjustment::focusChroma);
-  add(textOf("toward ", accentColors[adjustment.accent].name, " by "),
+  add(concat("toward ", accentColors[adjustment.accent].name, " by "),
       &ColorAdjustment::focusAccent);
-  return textOf(numberText(contrast.deltaE[0], 3), " of ", shown(chosen.segment), " to ",
-                shown(chosen.neighbour), " (", joined(parts, ", "), ")");
+  return concat(toString(contrast.deltaE[0], 3), " of ", shown(chosen.segment), " to ",
+                shown(chosen.neighbour), " (", join(parts, ", "), ")");
 }
 
 Tint applyAdjustment(const Tint& tint, const TintPlan& plan, const ColorAdjustment& adjustment,

@@ -114,7 +114,7 @@ TEST_F(DescribeCommand, WhatACommandRefusesIsNotOffered) {
        {Pair("serve", "--stats"), Pair("serve", "--checkpoint"), Pair("turntable", "--surface"),
         Pair("turntable", "--checkpoint")}) {
     expectRefused({{flag, {command, "volume.nrrd", flag, "a.json"}, 2, flag}}, folder.path());
-    EXPECT_EQ(run({command, "--help"}, folder.path()).out.find(textOf("\n  ", flag, " ")),
+    EXPECT_EQ(run({command, "--help"}, folder.path()).out.find(concat("\n  ", flag, " ")),
               std::string::npos);
   }
   EXPECT_NE(run({"render", "--help"}, folder.path()).out.find("\n  --checkpoint "),

@@ -9,7 +9,7 @@ FENESTRA_FUZZ(Film, input) {
   fenestra::Digest digest;
   digest.add(input);
   std::string content(input);
-  content += fenestra::memoryOf(std::array{digest.value()});
+  content += fenestra::asBytes(std::array{digest.value()});
   const auto path = fenestra::fuzzing::asFile(content, "a.film");
   fenestra::fuzzing::readOrRefuse([&] {
     const fenestra::FilmFile film(path);

@@ -7,7 +7,7 @@
 FENESTRA_FUZZ(Preset, input) {
   const fenestra::OrganPreset preset = fenestra::parsePreset(input, "preset.json");
   for (const fenestra::NamePattern& pattern : preset.focus.names)
-    if (!pattern.matches(fenestra::nameWords(pattern.text)) && !pattern.words.empty() &&
+    if (!pattern.matches(fenestra::splitName(pattern.text)) && !pattern.words.empty() &&
         pattern.text.find_first_of("*?") == pattern.text.npos)
       throw std::logic_error("a name that is not itself");
 }

@@ -104,7 +104,7 @@ std::string withDigest(std::string content) {
   content.resize(content.size() - sizeof(std::uint64_t));
   Digest digest;
   digest.add(content);
-  return content += memoryOf(std::array{digest.value()});
+  return content += asBytes(std::array{digest.value()});
 }
 
 /// `content` with a text in its header replaced by one of the same length, and a right digest.

@@ -19,7 +19,7 @@ std::string labelXml(const LabelNames& names) {
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?> <CaretExtension> <VolumeInformation "
       "Index=\"0\">   <LabelTable>\n";
   for (const auto& [value, label] : names)
-    xml += textOf("<Label Key=\"", value,
+    xml += concat("<Label Key=\"", value,
                   "\" Red=\"1.0\" Green=\"0.5\" Blue=\"0.0\" Alpha=\"1\"><![CDATA[", label.name,
                   "]]></Label>\n");
   return xml + "</LabelTable> </VolumeInformation></CaretExtension>\n        ";

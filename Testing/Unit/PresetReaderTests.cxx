@@ -65,7 +65,7 @@ TEST(PresetReader, ErrorNamesTheField) {
 }
 
 bool matchesName(const std::string& pattern, const std::string& name) {
-  return NamePattern(pattern).matches(nameWords(name));
+  return NamePattern(pattern).matches(splitName(name));
 }
 
 TEST(PresetReader, MatchesWordsInAnyCaseAndSpelling) {

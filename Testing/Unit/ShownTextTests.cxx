@@ -40,9 +40,9 @@ TEST(ShownText, IsCutBetweenCharacters) {
 }
 
 TEST(ShownText, ReplacedAllReplacesEveryOccurrence) {
-  EXPECT_EQ(replacedAll("aXXbX", "X", "yy"), "ayyyybyy");
-  EXPECT_EQ(replacedAll("abc", "X", "y"), "abc");
-  EXPECT_EQ(replacedAll("%2525", "%25", "%"), "%25");
+  EXPECT_EQ(replaceAll("aXXbX", "X", "yy"), "ayyyybyy");
+  EXPECT_EQ(replaceAll("abc", "X", "y"), "abc");
+  EXPECT_EQ(replaceAll("%2525", "%25", "%"), "%25");
 }
 
 } // namespace

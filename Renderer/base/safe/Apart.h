@@ -72,7 +72,7 @@ public:
     const std::uint64_t size = text.size();
     m_bytes.append(reinterpret_cast<const char*>(&size), sizeof size).append(text);
   }
-  void put(const std::vector<double>& numbers) { put(memoryOf(numbers)); }
+  void put(const std::vector<double>& numbers) { put(asBytes(numbers)); }
   const std::string& bytes() const { return m_bytes; }
 
 private:

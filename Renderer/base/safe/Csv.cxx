@@ -25,7 +25,7 @@ public:
     std::vector<CsvRecord> records;
     while (m_at < m_text.size()) {
       CsvRecord record = next();
-      if (record.fields.size() > 1 || !trimmed(record.fields[0]).empty())
+      if (record.fields.size() > 1 || !trim(record.fields[0]).empty())
         records.push_back(std::move(record));
     }
     return records;
@@ -94,13 +94,13 @@ std::vector<CsvRecord> parseCsv(std::string_view text, const std::string& source
 std::string csvLine(const std::vector<std::string>& fields) {
   const auto written = [](std::string field) {
     constexpr std::string_view formulas = "=+-@\t";
-    if (!field.empty() && formulas.find(field[0]) != formulas.npos && !parsed<double>(field))
+    if (!field.empty() && formulas.find(field[0]) != formulas.npos && !parseNumber<double>(field))
       field.insert(0, 1, '\'');
     if (field.find_first_of(",;\"\r\n") == field.npos)
       return field;
-    return textOf('"', replacedAll(field, "\"", "\"\""), '"');
+    return concat('"', replaceAll(field, "\"", "\"\""), '"');
   };
-  return joined(fields, ",", written) + "\r\n";
+  return join(fields, ",", written) + "\r\n";
 }
 
 } // namespace fenestra

@@ -41,7 +41,7 @@ inline void checkMillimetres(const std::filesystem::path& path, const std::strin
       "micron",     "microns",     "meter",      "meters",      "metre",      "metres",
       "centimeter", "centimeters", "centimetre", "centimetres", "micrometer", "micrometers",
       "micrometre", "micrometres", "foot",       "feet"};
-  if (others.contains(lower(unit)))
+  if (others.contains(toLower(unit)))
     throw inputError(path, field, ": \"", unit, "\" is not read; scale the geometry to \"mm\"");
 }
 

@@ -168,8 +168,8 @@ void forgetResult(const std::filesystem::path& path) {
   ledger().results.erase(path);
 }
 
-std::string lowerExtension(const std::filesystem::path& path) {
-  return lower(path.extension().string());
+std::string lowercaseExtension(const std::filesystem::path& path) {
+  return toLower(path.extension().string());
 }
 
 } // namespace fenestra

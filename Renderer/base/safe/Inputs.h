@@ -67,6 +67,6 @@ void enterResult(const std::filesystem::path& path);
 void forgetResult(const std::filesystem::path& path);
 
 /// The last extension with its dot, in lower case: ".GZ" of "a.nii.GZ" is ".gz".
-std::string lowerExtension(const std::filesystem::path& path);
+std::string lowercaseExtension(const std::filesystem::path& path);
 
 } // namespace fenestra

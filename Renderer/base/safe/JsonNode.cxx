@@ -86,7 +86,7 @@ std::size_t JsonNode::oneOf(const std::vector<std::string>& words) const {
     return static_cast<std::size_t>(found - words.begin());
   const auto quoted = [](const std::string& word) { return "\"" + word + "\""; };
   const std::span but(words.begin(), words.end() - 1);
-  throw error("must be " + joined(but, ", ", quoted) + " or " + quoted(words.back()));
+  throw error("must be " + join(but, ", ", quoted) + " or " + quoted(words.back()));
 }
 
 double JsonNode::number() const {
@@ -103,7 +103,7 @@ double JsonNode::numberIn(double low, double high) const {
 
 std::vector<double> JsonNode::numbers(std::size_t count, double low, double high) const {
   if (m_value->is_array() && m_value->size() != count)
-    throw error(textOf("must have ", count, " numbers, not ", m_value->size()));
+    throw error(concat("must have ", count, " numbers, not ", m_value->size()));
   std::vector<double> result;
   for (const JsonNode& node : elements())
     result.push_back(node.numberIn(low, high));
@@ -113,7 +113,7 @@ std::vector<double> JsonNode::numbers(std::size_t count, double low, double high
 std::vector<JsonNode> JsonNode::elements() const {
   std::vector<JsonNode> nodes;
   for (const nlohmann::json& value : checked(m_value->is_array(), "must be an array"))
-    nodes.push_back({value, m_source, textOf(m_place, '[', nodes.size(), ']')});
+    nodes.push_back({value, m_source, concat(m_place, '[', nodes.size(), ']')});
   return nodes;
 }
 
@@ -147,7 +147,7 @@ void JsonNode::allowOnly(std::initializer_list<std::string_view> keys) const {
     if (std::find(keys.begin(), keys.end(), key) == keys.end()) {
       const std::string shown =
           nlohmann::json(key).dump(-1, ' ', true); // one line, whatever the key holds
-      throw error("unknown key " + shown.substr(0, 80) + "; known ones are " + joined(keys, ", "));
+      throw error("unknown key " + shown.substr(0, 80) + "; known ones are " + join(keys, ", "));
     }
 }
 

@@ -68,7 +68,7 @@ void unblock() {
 
 std::string makeTempName(std::string_view prefix) {
   std::random_device random;
-  return hashTempName(prefix, textOf(random(), ' ', random()));
+  return hashTempName(prefix, concat(random(), ' ', random()));
 }
 
 std::string hashTempName(std::string_view prefix, std::string_view what) {

@@ -19,7 +19,7 @@ constexpr std::size_t longestLine = 500, longestPath = 900;
 
 /// Key of the field `name`, as in NrrdHeaderText.
 std::string keyOf(std::string_view name) {
-  std::string key = lower(name);
+  std::string key = toLower(name);
   std::erase(key, ' ');
   return key;
 }
@@ -27,13 +27,13 @@ std::string keyOf(std::string_view name) {
 /// Checks dimension and sizes. ITK keeps sizes in 32 bits and passes teem a buffer of those; teem
 /// has room for 16 axes, and writes one more where there are too many sizes.
 void checkNrrdSizes(const std::filesystem::path& path, const Fields& fields) {
-  const auto axes = wholeNumber(valueOf(fields, "dimension"));
+  const auto axes = parseInteger(valueOf(fields, "dimension"));
   if (!axes || *axes < 1 || *axes > 10)
     throw inputError(path, "dimension: must be a whole number from 1 to 10");
   if (!fields.contains("sizes"))
     throw damaged(path, "NRRD");
-  for (const std::string& word : words(fields.at("sizes")))
-    if (const auto size = wholeNumber(word); !size || *size < 1 || *size > INT32_MAX)
+  for (const std::string& word : splitWords(fields.at("sizes")))
+    if (const auto size = parseInteger(word); !size || *size < 1 || *size > INT32_MAX)
       throw inputError(path, "sizes: each must be a whole number from 1 to 2147483647");
 }
 
@@ -60,11 +60,11 @@ std::optional<std::vector<double>> vectorLengths(const std::string& text) {
 /// Number of axes that ITK places in space: all but lists, vectors and colours.
 std::size_t placedAxes(const Fields& fields) {
   if (!fields.contains("kinds"))
-    return words(fields.at("sizes")).size();
+    return splitWords(fields.at("sizes")).size();
   std::size_t placed = 0;
-  for (const std::string& kind : words(fields.at("kinds")))
+  for (const std::string& kind : splitWords(fields.at("kinds")))
     for (const char* known : {"domain", "space", "time", "???", "none"})
-      placed += lower(kind) == known;
+      placed += toLower(kind) == known;
   return placed;
 }
 
@@ -107,7 +107,7 @@ void checkNrrdAxes(const std::filesystem::path& path, const Fields& fields) {
 }
 
 void checkNrrdKinds(const std::filesystem::path& path, const Fields& fields) {
-  const std::string name = lower(valueOf(fields, "space"));
+  const std::string name = toLower(valueOf(fields, "space"));
   const bool hasTime = name.ends_with("-time") || name.ends_with("st"); // RAST and its like
   if (name.empty() || hasTime)
     return;
@@ -119,7 +119,7 @@ void checkNrrdKinds(const std::filesystem::path& path, const Fields& fields) {
 /// Checks the geometry; refuses NaN, for which ITK silently takes its default.
 void checkNrrdGeometry(const std::filesystem::path& path, const Fields& fields) {
   for (const char* name : {"space directions", "space origin", "spacings"})
-    if (lower(valueOf(fields, keyOf(name))).find("nan") != std::string::npos)
+    if (toLower(valueOf(fields, keyOf(name))).find("nan") != std::string::npos)
       throw inputError(path, name, ": is not a number; mend the header");
   checkNrrdVectors(path, fields);
   checkNrrdAxes(path, fields);
@@ -173,7 +173,7 @@ Fields readNrrdFields(const std::filesystem::path& path, NrrdLines& lines) {
     if (colon == std::string_view::npos || line->starts_with('#') || NrrdLines::isKeyValue(*line))
       continue;
     const std::string key = keyOf(line->substr(0, colon));
-    const auto [field, isNew] = fields.emplace(key, trimmed(line->substr(colon + 2)));
+    const auto [field, isNew] = fields.emplace(key, trim(line->substr(colon + 2)));
     if (!isNew) // whichever value teem would take
       throw inputError(path, key.substr(0, 40), ": is there twice; remove one");
     if (key == "datafile" && field->second.starts_with("LIST"))
@@ -219,9 +219,9 @@ NrrdHeaderText readNrrdHeader(const std::filesystem::path& path) {
   header.end = lines.position();
   if (valueOf(header.fields, "datafile").starts_with("LIST"))
     for (auto line = lines.next(); line; line = lines.next()) {
-      if (trimmed(*line).empty()) // teem takes it for a file name
+      if (trim(*line).empty()) // teem takes it for a file name
         throw inputError(path, "data file: its LIST has an empty line; remove that");
-      header.files.emplace_back(trimmed(*line));
+      header.files.emplace_back(trim(*line));
     }
   return header;
 }

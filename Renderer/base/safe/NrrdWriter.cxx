@@ -17,7 +17,7 @@ static_assert(std::endian::native == std::endian::little, "samples are written a
 /// "(x,y,z)" in LPS, whose first two axes are RAS negated; "+ 0.0" for no "-0" in the header.
 std::string lpsText(const Vec3& ras) {
   const Vec3 lps(-ras.x() + 0.0, -ras.y() + 0.0, ras.z() + 0.0);
-  return '(' + numbersText(lps, ",", 17) + ')';
+  return '(' + joinNumbers(lps, ",", 17) + ')';
 }
 
 /// Appends `samples` as one gzip stream without name and time.
@@ -48,20 +48,20 @@ void appendDeflated(std::string_view samples, std::string& file) {
 std::string nrrdText(const NrrdHeader& header) {
   const bool leads = !header.leadingKind.empty();
   const Mat3& axes = header.indexToWorld.linear();
-  std::string text = textOf(
+  std::string text = concat(
       "NRRD0004\n# Complete NRRD file format specification at:\n"
       "# http://teem.sourceforge.net/nrrd/format.html\ntype: ",
       header.type, "\ndimension: ", leads ? 4 : 3,
-      "\nspace: left-posterior-superior\nsizes: ", leads ? textOf(header.leadingCount, ' ') : "",
-      numbersText(header.size, " "), "\nspace directions:", leads ? " none" : "");
+      "\nspace: left-posterior-superior\nsizes: ", leads ? concat(header.leadingCount, ' ') : "",
+      joinNumbers(header.size, " "), "\nspace directions:", leads ? " none" : "");
   for (int axis = 0; axis < 3; ++axis)
     text += ' ' + lpsText(axes.col(axis));
-  text += textOf("\nkinds:", leads ? " " + header.leadingKind : "",
+  text += concat("\nkinds:", leads ? " " + header.leadingKind : "",
                  " domain domain domain\nendian: little\nencoding: ",
                  header.encoding == NrrdHeader::Encoding::gzip ? "gzip" : "raw",
                  "\nspace origin: ", lpsText(header.indexToWorld.translation()), '\n');
   for (const auto& [key, value] : header.fields)
-    text += textOf(key, ":=", value, '\n');
+    text += concat(key, ":=", value, '\n');
   return text + '\n';
 }
 

@@ -94,7 +94,7 @@ std::optional<int> descriptorNumber(const std::string& path) {
     return STDERR_FILENO;
   for (const std::string_view folder : {"/dev/fd/", "/proc/self/fd/"}) {
     const auto number =
-        path.starts_with(folder) ? parsed<int>(path.substr(folder.size())) : std::nullopt;
+        path.starts_with(folder) ? parseNumber<int>(path.substr(folder.size())) : std::nullopt;
     if (number && *number >= 0)
       return number;
   }

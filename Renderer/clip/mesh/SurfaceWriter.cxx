@@ -31,7 +31,7 @@ std::string dataArray(const char* name, const char* type, int components,
   append(bytes, std::uint64_t{items.size() * sizeof(Item)});
   for (const Item& item : items)
     append(bytes, item);
-  return textOf("<DataArray type=\"", type, "\" Name=\"", name, "\" NumberOfComponents=\"",
+  return concat("<DataArray type=\"", type, "\" Name=\"", name, "\" NumberOfComponents=\"",
                 components, "\" format=\"binary\">", toBase64(bytes), "</DataArray>\n");
 }
 
@@ -39,7 +39,7 @@ std::string encodeVtp(const SurfaceMesh& surface) {
   std::vector<std::int32_t> ends;
   for (std::size_t i = 1; i <= surface.triangles.size(); ++i)
     ends.push_back(static_cast<std::int32_t>(3 * i));
-  return textOf(
+  return concat(
       "<?xml version=\"1.0\"?>\n",
       "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" ",
       "header_type=\"UInt64\">\n<PolyData>\n<FieldData>\n",
@@ -55,7 +55,7 @@ std::string encodeVtp(const SurfaceMesh& surface) {
 
 std::string encodePly(const SurfaceMesh& surface) {
   std::string bytes =
-      textOf("ply\nformat binary_little_endian 1.0\ncomment SPACE=RAS\n", "element vertex ",
+      concat("ply\nformat binary_little_endian 1.0\ncomment SPACE=RAS\n", "element vertex ",
              surface.points.size(), "\nproperty float x\nproperty float y\n",
              "property float z\nproperty float depth\nelement face ", surface.triangles.size(),
              "\nproperty list uchar int vertex_indices\nend_header\n");
@@ -90,7 +90,7 @@ using Encoder = std::string (*)(const SurfaceMesh&);
 Encoder encoderFor(const std::filesystem::path& path) {
   static const std::map<std::string, Encoder> encoders = {
       {".vtp", encodeVtp}, {".ply", encodePly}, {".stl", encodeStl}};
-  const auto it = encoders.find(lowerExtension(path));
+  const auto it = encoders.find(lowercaseExtension(path));
   if (it == encoders.end())
     throw usageError("--surface ", path,
                      ": has no known extension; name a file .vtp, .ply or .stl");

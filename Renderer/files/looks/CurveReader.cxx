@@ -42,7 +42,7 @@ ColorFunction readColors(const JsonNode& rows) {
     colors.push_back({finite(parts[0]), readHexColor(parts[1])});
   }
   if (colors.empty() || colors.size() > mostColors)
-    throw rows.error(textOf("has ", colors.size(), " points; give from 1 to ", mostColors));
+    throw rows.error(concat("has ", colors.size(), " points; give from 1 to ", mostColors));
   return ColorFunction(std::move(colors));
 }
 
@@ -61,7 +61,7 @@ double readMeanCosine(const JsonNode& object, double fallback, ColorKind kind) {
     throw node->error("must be between -1 and 1, both excluded");
   if (kind == ColorKind::seen && !(g >= 0.0 && g <= greatestColorG))
     throw object.at("g").error(
-        textOf("must be from 0 to ", numberText(greatestColorG), " with \"color\""));
+        concat("must be from 0 to ", toString(greatestColorG), " with \"color\""));
   return g;
 }
 

@@ -170,7 +170,7 @@ bool namesFiles(std::string_view json, const std::string& source) {
 }
 
 EnvironmentMap readEnvironmentMap(const std::filesystem::path& path) {
-  if (lowerExtension(path) != ".exr")
+  if (lowercaseExtension(path) != ".exr")
     throw inputError(path, "is no environment map; name a .exr file");
   const Image image = readImage(path);
   EnvironmentMap map{image.width, image.height, {}};

@@ -96,7 +96,7 @@ std::string readMaterialName(const JsonNode& node, const std::map<std::string, M
   if (!known.contains(name))
     throw node.error(
         "there is no material \"" + shown(name) + "\"; name one of \"materials\", or of " +
-        joined(
+        join(
             known, ", ", [](const auto& one) { return shown(one.first); }, mostListed));
   return name;
 }
@@ -148,7 +148,7 @@ ContextColors readContext(const JsonNode& node) {
 
 /// Value of "key=value" as JSON: yes, no, a number, or a text.
 nlohmann::json valueOf(const std::string& text) {
-  if (const auto number = parsed<double>(text))
+  if (const auto number = parseNumber<double>(text))
     return *number;
   if (text == "yes" || text == "no")
     return text == "yes";
@@ -204,20 +204,20 @@ MaterialTable parseMaterials(std::string_view json, const std::string& source,
 
 MaterialChange parseMaterialChange(const std::string& text, const MaterialTable& table) {
   const std::size_t colon = text.rfind(':');
-  MaterialChange change{std::string(trimmed(text.substr(0, std::min(colon, text.size())))),
+  MaterialChange change{std::string(trim(text.substr(0, std::min(colon, text.size())))),
                         nlohmann::json::object()};
   if (colon == std::string::npos || change.selector.empty())
     throw inputError("--material " + shown(text),
                      "must name a segment and what to change, as in \"Liver: color=#963e2e\"");
   for (const std::string& field : split(oneLine(text.substr(colon + 1)), ',')) {
     const std::size_t equals = field.find('=');
-    const std::string key(trimmed(field.substr(0, std::min(equals, field.size()))));
+    const std::string key(trim(field.substr(0, std::min(equals, field.size()))));
     if (equals == std::string::npos || key.empty())
       throw inputError(sourceOf(change), "\"", shown(field), "\" must be a key and a value, as in ",
                        "density=2");
     if (change.fields.contains(key))
       throw inputError(sourceOf(change), shown(key), ": is given twice; give one");
-    change.fields[key] = valueOf(std::string(trimmed(field.substr(equals + 1))));
+    change.fields[key] = valueOf(std::string(trim(field.substr(equals + 1))));
   }
   if (change.fields.empty())
     throw inputError(sourceOf(change), "changes nothing; add a key and a value, as in density=2");

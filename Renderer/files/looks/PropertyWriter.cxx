@@ -34,8 +34,8 @@ Json colorTransfer(const std::vector<ColorNode>& nodes) {
 }
 
 std::string countedNumbers(const std::vector<double>& numbers) {
-  return textOf(numbers.size(), numbers.empty() ? "" : " ",
-                numbersText(numbers, " ", std::numeric_limits<double>::digits10));
+  return concat(numbers.size(), numbers.empty() ? "" : " ",
+                joinNumbers(numbers, " ", std::numeric_limits<double>::digits10));
 }
 
 std::string opacityText(const std::vector<OpacityNode>& nodes, double unitsPerMm) {
@@ -91,8 +91,8 @@ std::string propertyVp(const VolumeProperty& property) {
   const std::initializer_list<double> numbers = {property.shade ? 1.0 : 0.0, property.diffuse,
                                                  ambientLight, property.specular,
                                                  property.specularPower};
-  return textOf("1\n", // linear interpolation
-                numbersText(numbers, "\n"), '\n', texts.scalarOpacity, '\n', texts.gradientOpacity,
+  return concat("1\n", // linear interpolation
+                joinNumbers(numbers, "\n"), '\n', texts.scalarOpacity, '\n', texts.gradientOpacity,
                 '\n', texts.color, '\n');
 }
 

@@ -13,7 +13,7 @@ std::string patternText(const JsonNode& node) {
   constexpr std::size_t longest = 200;
   std::string text = node.text();
   if (text.empty() || text.size() > longest)
-    throw node.error(textOf("must have 1 to ", longest, " characters"));
+    throw node.error(concat("must have 1 to ", longest, " characters"));
   return text;
 }
 
@@ -69,7 +69,7 @@ SegmentPatterns readPatterns(const JsonNode& node) {
 }
 
 NamePattern::NamePattern(std::string text)
-    : text(std::move(text)), words(nameWords(this->text, "*?")) {}
+    : text(std::move(text)), words(splitName(this->text, "*?")) {}
 
 bool NamePattern::matches(const std::vector<std::string>& name) const {
   return !words.empty() && std::search(name.begin(), name.end(), words.begin(), words.end(),

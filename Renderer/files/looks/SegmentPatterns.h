@@ -18,7 +18,7 @@ struct NamePattern {
   std::string text;
   std::vector<std::string> words; ///< in lower case
 
-  /// `name`: its words (nameWords).
+  /// `name`: its words (splitName).
   bool matches(const std::vector<std::string>& name) const;
   bool operator==(const NamePattern&) const = default;
 };

@@ -133,7 +133,7 @@ public:
     const auto all = numbers(field);
     if (all.empty() || all[0] != static_cast<double>(all.size() - 1) ||
         (all.size() - 1) % width != 0)
-      throw error(field, textOf("must be a count and that many numbers, ", width, " a point"));
+      throw error(field, concat("must be a count and that many numbers, ", width, " a point"));
     std::vector<std::vector<double>> rows;
     for (auto it = all.begin() + 1; it != all.end(); it += static_cast<long>(width)) {
       rows.emplace_back(it, it + static_cast<long>(width));
@@ -229,7 +229,7 @@ TransferFunction parseTransferFunction(const std::map<std::string, std::string>&
 
 TransferLook readTransferLook(const std::filesystem::path& path) {
   const std::string source = path.string();
-  const std::string extension = lowerExtension(path);
+  const std::string extension = lowercaseExtension(path);
   if (extension != ".vp" && extension != ".json")
     throw inputError(source, "is no transfer function; name a .vp, .vp.json or .json file");
   const std::string text = readText(path);

@@ -169,9 +169,8 @@ DicomHeader dicomHeader(std::string_view reply) {
   for (bool* flag : {&header.image, &header.compressed, &header.isComplete})
     *flag = texts.text() == "1";
   for (const HeaderField& field : dicomFields)
-    std::visit(
-        [&](auto member) { keep(std::string(trimmed(texts.text(), padding)), header.*member); },
-        field.member);
+    std::visit([&](auto member) { keep(std::string(trim(texts.text(), padding)), header.*member); },
+               field.member);
   return header;
 }
 

@@ -51,11 +51,11 @@ std::string described(const DicomSeries& series) {
     text += "\"" + shown(series.description) + "\" ";
   text += series.modality.empty() ? "" : shown(series.modality) + " ";
   const std::size_t count = series.files.size();
-  return textOf(text, shown(series.uid), " (", count, count == 1 ? " file)" : " files)");
+  return concat(text, shown(series.uid), " (", count, count == 1 ? " file)" : " files)");
 }
 
 std::string listed(const std::vector<DicomSeries>& series) {
-  return joined(series, "; ", described, 40);
+  return join(series, "; ", described, 40);
 }
 
 } // namespace

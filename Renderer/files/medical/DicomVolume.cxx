@@ -21,7 +21,7 @@ struct Slice {
 };
 
 std::string millimetres(double length) {
-  return numberText(length, 4) + " mm";
+  return toString(length, 4) + " mm";
 }
 
 // ---- one file
@@ -139,7 +139,7 @@ Vec3 stepOf(const std::vector<Slice>& slices, const Axes& axes, const std::strin
     most = std::max(most, off.norm());
   }
   if (most > 0.02 * step.norm())
-    warnings.push_back(textOf(name, ": slices lie up to ", millimetres(most), " off even steps of ",
+    warnings.push_back(concat(name, ": slices lie up to ", millimetres(most), " off even steps of ",
                               millimetres(step.norm()), ", which are taken for theirs"));
   return step;
 }

@@ -67,14 +67,14 @@ bool isGzip(const std::string& encoding) {
 
 /// Refuses encodings, dimensions and byte skips that ITK does not read, before it fails.
 void checkNrrdKind(const std::filesystem::path& path, Fields& fields) {
-  const std::string encoding = lower(fields["encoding"]);
+  const std::string encoding = toLower(fields["encoding"]);
   if (!isGzip(encoding) && !isOneOf(encoding, {"raw", "hex", "ascii", "text", "txt"}))
     throw inputError(path, "encoding: \"", shown(encoding), "\" is not read; write raw or gzip");
-  if (const auto axes = wholeNumber(fields["dimension"]); axes && *axes < 3)
+  if (const auto axes = parseInteger(fields["dimension"]); axes && *axes < 3)
     throw inputError(path, "is a picture of ", *axes, " axes, not a volume; name one of three");
   constexpr std::int64_t mostSkipped = 1 << 20; // teem inflates skipped bytes one by one
   if (isGzip(encoding) && fields.contains("byteskip")) {
-    const auto skipped = wholeNumber(fields["byteskip"]);
+    const auto skipped = parseInteger(fields["byteskip"]);
     if (!skipped || *skipped < 0 || *skipped > mostSkipped)
       throw inputError(path, "byte skip: must be from 0 to ", mostSkipped,
                        " in compressed data; write the samples without it");
@@ -87,7 +87,7 @@ StoredSamples locateNrrd(const std::filesystem::path& path) {
   checkNrrdKind(path, fields);
   StoredSamples stored;
   stored.hasSpacing = saysSpacing(header);
-  const std::string encoding = lower(fields["encoding"]);
+  const std::string encoding = toLower(fields["encoding"]);
   stored.compressed = encoding != "raw" && encoding != "hex"; // a digit of text can be 8 bytes
   locateNrrdFiles(path, header, stored);
   for (const std::filesystem::path& file : stored.files) {
@@ -99,9 +99,9 @@ StoredSamples locateNrrd(const std::filesystem::path& path) {
   const bool simple = stored.files.size() == 1 && !skips;
   stored.isRaw = simple && encoding == "raw";
   stored.isStream = simple && isGzip(encoding);
-  const std::string kind = lower(fields["kinds"]);
+  const std::string kind = toLower(fields["kinds"]);
   stored.isListFirst = kind.starts_with("list") || kind.starts_with("vector");
-  if (const std::string order = lower(fields["endian"]); order == "little" || order == "big")
+  if (const std::string order = toLower(fields["endian"]); order == "little" || order == "big")
     stored.order = order == "big" ? std::endian::big : std::endian::little;
   return stored;
 }
@@ -119,7 +119,7 @@ void checkMetaField(const std::filesystem::path& path, const std::string& key,
   if (key.size() > 200 || value.size() > longest)
     throw inputError(path, key.substr(0, 40), ": has more than ", longest,
                      " characters; shorten it");
-  const auto numbers = static_cast<std::int64_t>(words(value).size());
+  const auto numbers = static_cast<std::int64_t>(splitWords(value).size());
   const std::int64_t needed = isVector ? dimension : isMatrix ? dimension * dimension : 0;
   if (numbers < needed)
     throw inputError(path, key, ": has ", numbers, " numbers; give it ", needed);
@@ -140,8 +140,8 @@ void checkMetaMeaning(const std::filesystem::path& path, const std::string& key,
   else if (key == "DistanceUnits")
     checkMillimetres(path, key, value);
   else if (key == "DimSize")
-    for (const std::string& word : words(value))
-      if (const auto size = wholeNumber(word); !size || *size < 1 || *size > INT32_MAX)
+    for (const std::string& word : splitWords(value))
+      if (const auto size = parseInteger(word); !size || *size < 1 || *size > INT32_MAX)
         throw inputError(path, "DimSize: each must be a whole number from 1 to 2147483647");
 }
 
@@ -151,15 +151,15 @@ Fields readMetaFields(const std::filesystem::path& path, HeaderLines& lines) {
   while (!fields.contains("ElementDataFile")) {
     const auto line = lines.next();
     const std::size_t equals = line ? line->find('=') : std::string_view::npos;
-    if (equals == std::string_view::npos || hasControls(trimmed(*line)))
+    if (equals == std::string_view::npos || hasControls(trim(*line)))
       throw damaged(path, "MetaImage");
     const std::string_view name = line->substr(0, equals);
     if (name.find(':') != std::string_view::npos) // MetaIO takes a colon for an equals sign
       throw damaged(path, "MetaImage");
-    const std::string key(trimmed(name));
-    fields[key] = trimmed(line->substr(equals + 1));
+    const std::string key(trim(name));
+    fields[key] = trim(line->substr(equals + 1));
     if (key == "NDims") {
-      dimension = wholeNumber(fields[key]).value_or(0);
+      dimension = parseInteger(fields[key]).value_or(0);
       if (dimension < 1 || dimension > 10)
         throw inputError(path, "NDims: must be a whole number from 1 to 10");
     }
@@ -175,7 +175,7 @@ StoredSamples locateMeta(const std::filesystem::path& path) {
   HeaderLines lines(path);
   Fields fields = readMetaFields(path, lines);
   const auto isTrue = [&fields](const char* key) {
-    const std::string value = lower(fields[key]);
+    const std::string value = toLower(fields[key]);
     return value.starts_with('t') || value.starts_with('1') || value.starts_with('y');
   };
   if (fields.contains("BinaryData") && !isTrue("BinaryData"))
@@ -184,7 +184,7 @@ StoredSamples locateMeta(const std::filesystem::path& path) {
   if (name.starts_with("LIST") || name.find('%') != std::string::npos)
     throw inputError(
         path, "ElementDataFile: series of files are not read; write the volume into one file");
-  const bool local = lower(name) == "local";
+  const bool local = toLower(name) == "local";
   StoredSamples stored;
   stored.hasSpacing = fields.contains("ElementSpacing") || fields.contains("ElementSize");
   stored.compressed = stored.isStream = isTrue("CompressedData");
@@ -193,7 +193,7 @@ StoredSamples locateMeta(const std::filesystem::path& path) {
     if (fields.contains(key))
       stored.order = isTrue(key) ? std::endian::big : std::endian::little;
   addFile(path, local ? path.filename().string() : name, stored);
-  const std::int64_t header = wholeNumber(fields["HeaderSize"]).value_or(0);
+  const std::int64_t header = parseInteger(fields["HeaderSize"]).value_or(0);
   // A negative HeaderSize means: the samples end where the file ends.
   stored.isRaw = !stored.compressed && (header == 0 || (header > 0 && !local));
   skip(path,
@@ -206,7 +206,7 @@ StoredSamples locateMeta(const std::filesystem::path& path) {
 
 StoredSamples locateNifti(const std::filesystem::path& path) {
   StoredSamples stored;
-  stored.compressed = lowerExtension(path) == ".gz";
+  stored.compressed = lowercaseExtension(path) == ".gz";
   addFile(path, path.filename().string(), stored);
   if (!stored.compressed)
     skip(path, niftiHeaderBytes, stored);
@@ -216,7 +216,7 @@ StoredSamples locateNifti(const std::filesystem::path& path) {
 } // namespace
 
 std::optional<MedicalFormat> medicalFormat(const std::filesystem::path& path) {
-  const std::string name = lower(path.filename().string());
+  const std::string name = toLower(path.filename().string());
   if (name.ends_with(".nrrd") || name.ends_with(".nhdr"))
     return MedicalFormat::nrrd;
   if (name.ends_with(".nii") || name.ends_with(".nii.gz"))

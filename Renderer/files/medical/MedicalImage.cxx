@@ -204,7 +204,7 @@ void readMedicalImage(const std::filesystem::path& path, Components allowed,
                       const TakeSamples& take) {
   requireFile(path, "name a volume file in it");
   const auto format = medicalFormat(path);
-  if (lowerExtension(path) == ".vtm")
+  if (lowercaseExtension(path) == ".vtm")
     throw inputError(path, "is a segmentation; name its volume, and this file as --segmentation");
   if (!format)
     throw inputError(

@@ -36,7 +36,7 @@ void addSeries(const fs::path& folder, std::string_view pattern, Paths& files) {
     return;
   const fs::path named = folder / pattern.substr(0, percent);
   const std::string start = named.filename().string();
-  const std::string end = words(pattern.substr(conversion)).front().substr(1);
+  const std::string end = splitWords(pattern.substr(conversion)).front().substr(1);
   const fs::path within = named.has_parent_path() ? named.parent_path() : ".";
   std::error_code failed;
   for (fs::directory_iterator entry(within, failed), last;
@@ -51,8 +51,8 @@ void addNamed(const fs::path& header, std::string_view value, HeaderLines& lines
   const fs::path folder = header.parent_path();
   if (value.starts_with("LIST")) {
     for (auto line = lines.next(); line && files.size() < mostFiles; line = lines.next())
-      if (!trimmed(*line).empty())
-        files.push_back(folder / trimmed(*line));
+      if (!trim(*line).empty())
+        files.push_back(folder / trim(*line));
     return;
   }
   if (!value.empty())
@@ -69,10 +69,10 @@ Paths namedInHeader(const fs::path& path, std::string_view separator, std::strin
     const std::size_t end = line->find(separator);
     if (end == std::string_view::npos)
       continue;
-    std::string found = lower(line->substr(0, end));
+    std::string found = toLower(line->substr(0, end));
     std::erase(found, ' ');
     if (found == key) {
-      addNamed(path, trimmed(line->substr(end + separator.size())), lines, files);
+      addNamed(path, trim(line->substr(end + separator.size())), lines, files);
       break;
     }
   }
@@ -96,7 +96,7 @@ std::vector<fs::path> filesNamedBy(const fs::path& path) {
   std::error_code failed;
   if (!fs::is_regular_file(path, failed))
     return {};
-  const std::string extension = lowerExtension(path);
+  const std::string extension = lowercaseExtension(path);
   if (extension == ".nrrd" || extension == ".nhdr")
     return namedInHeader(path, ": ", "datafile");
   if (extension == ".mha" || extension == ".mhd")

@@ -109,7 +109,7 @@ Affine ofSform(const NiftiFields& fields, const Vec3& pixdim) {
   for (int column = 0; column < 3; ++column)
     turned = std::max(turned, (axes.col(column) - nearest.col(column)).norm());
   if (!(turned < mostTurned))
-    throw inputError(fields.path(), "srow: shears, by ", numberText(turned, 2),
+    throw inputError(fields.path(), "srow: shears, by ", toString(turned, 2),
                      " of an axis; resample the image onto axes at right angles");
   // Where pixdim says the same, it says it without the rounding of the rows.
   Vec3 spacing = linear.columnNorms();

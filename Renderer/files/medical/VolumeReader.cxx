@@ -13,7 +13,7 @@ Volume makeVolume(const std::string& name, const Grid& grid, VoxelStore&& sample
   const auto warn = [&](std::size_t count, const char* what, const char* replacement) {
     if (count > 0)
       volume.warnings.push_back(
-          textOf(name, ": ", count, " voxels are ", what, " and count as ", replacement));
+          concat(name, ": ", count, " voxels are ", what, " and count as ", replacement));
   };
   warn(s.notANumber, "not a number", "the least finite value");
   warn(s.infinite, "infinite", "the least or greatest finite value");

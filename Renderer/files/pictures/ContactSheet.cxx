@@ -163,7 +163,7 @@ void draw(Canvas& sheet, int left, int top, int boxHeight, const Thumbnail& thum
   int line = top + margin;
   const auto fits = static_cast<std::size_t>((boxWidth - 2 * margin) / (letterWidth * textDot));
   if (!thumbnail.problem.empty())
-    for (const std::string& text : split(wrapped(thumbnail.problem, fits), '\n')) {
+    for (const std::string& text : split(wrapLines(thumbnail.problem, fits), '\n')) {
       if (line + textLine > top + boxHeight)
         break;
       sheet.write(left + margin, line, text, textDot, alarm, boxWidth - 2 * margin);

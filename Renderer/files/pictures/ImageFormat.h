@@ -18,7 +18,7 @@ inline std::optional<ImageFormat> imageFormat(const std::filesystem::path& path)
                                                              {".png", ImageFormat::png},
                                                              {".tif", ImageFormat::tiff},
                                                              {".tiff", ImageFormat::tiff}};
-  const auto it = formats.find(lowerExtension(path));
+  const auto it = formats.find(lowercaseExtension(path));
   return it == formats.end() ? std::nullopt : std::optional(it->second);
 }
 

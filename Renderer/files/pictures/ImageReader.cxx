@@ -34,7 +34,7 @@ constexpr std::int64_t mostSamples = std::int64_t{1} << 28;
 /// files.
 void checkSize(const std::filesystem::path& path, std::int64_t width, std::int64_t height,
                std::int64_t channels) {
-  const std::string size = textOf(width, 'x', height);
+  const std::string size = concat(width, 'x', height);
   if (width < 1 || height < 1 || width > largestSide || height > largestSide)
     throw inputError(path, "is ", size, " pixels; each side must be 1 to ", largestSide);
   const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(path));

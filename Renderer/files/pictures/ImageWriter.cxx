@@ -126,7 +126,7 @@ std::string commentOf(const Image& image, const Display& display) {
   std::string comment;
   if (display.view != DisplayView::standard)
     comment =
-        textOf("tone ", nameOf(display.view), ", exposure ", numberText(display.exposure), " EV");
+        concat("tone ", nameOf(display.view), ", exposure ", toString(display.exposure), " EV");
   if (const auto found = image.header.find("filter"); found != image.header.end())
     comment += (comment.empty() ? "" : "; ") + found->second;
   return comment;
@@ -202,7 +202,7 @@ std::string encodeSlice(const Image& image, const ImagePlane& plane,
                           .indexToWorld = sliceToWorld(plane),
                           .encoding = NrrdHeader::Encoding::raw,
                           .fields = {{"Software", std::string(blankProvenanceTag)}}};
-  return sealProvenanceTag(encodeNrrd(header, memoryOf(values)));
+  return sealProvenanceTag(encodeNrrd(header, asBytes(values)));
 }
 
 /// Channels R, G, B and A whose names begin with `prefix`.

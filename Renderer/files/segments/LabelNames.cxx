@@ -58,9 +58,9 @@ void forLines(const std::string& text,
   std::size_t number = 0;
   for (const std::string& line : split(text, '\n')) {
     ++number;
-    const std::string_view content = trimmed(line);
+    const std::string_view content = trim(line);
     if (!content.empty() && content.front() != '#')
-      use(textOf("line ", number), content);
+      use(concat("line ", number), content);
   }
 }
 
@@ -69,7 +69,7 @@ std::optional<Rgb> colorOf(const std::vector<std::string>& parts, std::size_t fi
   Rgb color;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto byte =
-        first + i < parts.size() ? parsed<double>(parts[first + i]) : std::optional<double>();
+        first + i < parts.size() ? parseNumber<double>(parts[first + i]) : std::optional<double>();
     if (!byte)
       return std::nullopt;
     color[static_cast<int>(i)] = *byte / 255.0;
@@ -80,17 +80,17 @@ std::optional<Rgb> colorOf(const std::vector<std::string>& parts, std::size_t fi
 /// Slicer writes blanks in names as underscores, and says nothing of it: names stay as they are.
 void readColorTable(const std::string& text, TableBuilder& table) {
   forLines(text, [&](const std::string& place, std::string_view line) {
-    const std::vector<std::string> parts = words(line);
-    table.add(place, wholeNumber(parts[0]), parts.size() > 1 ? parts[1] : "", colorOf(parts, 2));
+    const std::vector<std::string> parts = splitWords(line);
+    table.add(place, parseInteger(parts[0]), parts.size() > 1 ? parts[1] : "", colorOf(parts, 2));
   });
 }
 
 void readSnapTable(const std::string& text, TableBuilder& table) {
   forLines(text, [&](const std::string& place, std::string_view line) {
     const std::size_t open = line.find('"'), close = line.rfind('"');
-    const std::vector<std::string> parts = words(line.substr(0, open));
+    const std::vector<std::string> parts = splitWords(line.substr(0, open));
     const bool isQuoted = open != std::string_view::npos && close > open;
-    table.add(place, parts.empty() ? std::nullopt : wholeNumber(parts[0]),
+    table.add(place, parts.empty() ? std::nullopt : parseInteger(parts[0]),
               isQuoted ? std::string(line.substr(open + 1, close - open - 1)) : "",
               colorOf(parts, 1));
   });
@@ -101,20 +101,20 @@ void readCsv(const std::string& text, TableBuilder& table) {
   bool isFirst = true;
   for (CsvRecord& record : parseCsv(text, table.source())) {
     std::vector<std::string>& fields = record.fields;
-    const std::string place = textOf("line ", record.line);
+    const std::string place = concat("line ", record.line);
     for (std::string& field : fields)
-      field = trimmed(field, " \t\"");
+      field = trim(field, " \t\"");
     if (fields[0].starts_with('#'))
       continue;
     const auto columnOf = [&](std::initializer_list<std::string_view> titles) {
       return static_cast<std::size_t>(
           std::ranges::find_if(fields,
                                [&](const std::string& field) {
-                                 return std::ranges::find(titles, lower(field)) != titles.end();
+                                 return std::ranges::find(titles, toLower(field)) != titles.end();
                                }) -
           fields.begin());
     };
-    if (std::exchange(isFirst, false) && !wholeNumber(fields[0])) {
+    if (std::exchange(isFirst, false) && !parseInteger(fields[0])) {
       value = columnOf({"label", "value", "id", "index", "labelvalue"});
       name = columnOf({"name", "label_name", "labelname", "structure", "segment"});
       if (value >= fields.size() || name >= fields.size())
@@ -123,7 +123,7 @@ void readCsv(const std::string& text, TableBuilder& table) {
       continue;
     }
     const auto field = [&](std::size_t i) { return i < fields.size() ? fields[i] : std::string(); };
-    table.add(place, wholeNumber(field(value)), field(name));
+    table.add(place, parseInteger(field(value)), field(name));
   }
 }
 
@@ -132,12 +132,12 @@ void readJsonTable(std::string_view text, TableBuilder& table) {
   const JsonNode root(document, table.source());
   if (root.isObject()) {
     for (const auto& [key, name] : root.members())
-      table.add(textOf('"', shown(key), '"'), wholeNumber(key), name.text());
+      table.add(concat('"', shown(key), '"'), parseInteger(key), name.text());
     return;
   }
   std::size_t number = 0;
   for (const JsonNode& entry : root.elements())
-    table.add(textOf('[', number++, ']'),
+    table.add(concat('[', number++, ']'),
               static_cast<std::int64_t>(entry.at("label").numberIn(-2147483648.0, 2147483647.0)),
               entry.at("name").text());
 }
@@ -152,7 +152,7 @@ LabelNames readLabelNames(const std::filesystem::path& path) {
       {".label", readSnapTable},
       {".csv", readCsv},
       {".json", [](const std::string& text, TableBuilder& table) { readJsonTable(text, table); }}};
-  const auto reader = readers.find(lowerExtension(path));
+  const auto reader = readers.find(lowercaseExtension(path));
   if (reader == readers.end())
     throw inputError(path.string(), "is no table of labels by its extension; name a .ctbl, .txt, "
                                     ".label, .json or .csv");
@@ -189,8 +189,8 @@ std::optional<LabelNames> labelNamesInXml(std::string_view xml, const std::strin
   for (const pugi::xpath_node& found : document.select_nodes("//LabelTable/Label")) {
     const pugi::xml_node label = found.node();
     const auto part = [&](const char* key) { return label.attribute(key).as_double(-1.0); };
-    table.add("label table in its header extension", wholeNumber(label.attribute("Key").value()),
-              std::string(trimmed(label.child_value())),
+    table.add("label table in its header extension", parseInteger(label.attribute("Key").value()),
+              std::string(trim(label.child_value())),
               Rgb(part("Red"), part("Green"), part("Blue")));
   }
   return table.take();

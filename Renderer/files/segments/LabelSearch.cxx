@@ -12,7 +12,7 @@ namespace {
 
 std::filesystem::path stemOf(const std::filesystem::path& path) {
   const std::filesystem::path stem = path.stem();
-  return path.parent_path() / (lowerExtension(path) == ".gz" ? stem.stem() : stem);
+  return path.parent_path() / (lowercaseExtension(path) == ".gz" ? stem.stem() : stem);
 }
 
 struct Beside {
@@ -64,7 +64,7 @@ FoundNames wantedNames(const std::filesystem::path& path, const std::string& ext
     return {*table, wanted};
   if (!isThere(wanted))
     throw usageError("--labels ", shown(wanted), ": is no file, and none of totalsegmentator, ",
-                     joined(compiledLabelTables(), ", "));
+                     join(compiledLabelTables(), ", "));
   const InputsWithin anywhere(std::nullopt);
   return {readLabelNames(wanted), wanted};
 }
@@ -79,7 +79,7 @@ FoundNames namesBeside(const std::filesystem::path& path, const std::set<std::in
                         (!table.isExact || names.size() == values.size());
       if (fits)
         return {std::move(names), file, std::move(found.warnings)};
-      found.warnings.push_back(textOf(file, ": names other values than ", path.filename(),
+      found.warnings.push_back(concat(file, ": names other values than ", path.filename(),
                                       " holds, and is not used; --labels ", file, " uses it"));
     } catch (const Error& error) {
       found.warnings.push_back(std::string(error.what()) + " (it is not used)");
@@ -106,8 +106,8 @@ FoundNames findLabelNames(const std::filesystem::path& path, const std::set<std:
   FoundNames found = wantedNames(path, extensions, *wanted);
   if (!values.empty() && countNamed(found.names, values) == 0)
     throw inputError(path, "--labels ", shown(*wanted), " names none of its values (",
-                     joined(
-                         values, ", ", [](std::int32_t value) { return textOf(value); }, 8),
+                     join(
+                         values, ", ", [](std::int32_t value) { return concat(value); }, 8),
                      "); is it another label map's table?");
   return found;
 }

@@ -231,15 +231,15 @@ Box worldBounds(const Grid& grid, const VoxelExtent& extent) {
 std::string listed(const std::vector<SegmentInfo>& segments) {
   const auto named = [](const SegmentInfo& segment) {
     const std::string id = shown(segment.id);
-    return segment.name == segment.id ? id : textOf(id, " (", shown(segment.name), ')');
+    return segment.name == segment.id ? id : concat(id, " (", shown(segment.name), ')');
   };
-  return joined(segments, ", ", named, 12);
+  return join(segments, ", ", named, 12);
 }
 
 /// True if each word of the selector, without a final s, begins a word of the name: "Kidneys" means
 /// kidney_left, and "left kidney" as well.
 bool isMeant(const std::string& selector, const std::string& name) {
-  const std::vector<std::string> in = nameWords(name), wanted = nameWords(selector);
+  const std::vector<std::string> in = splitName(name), wanted = splitName(selector);
   return !wanted.empty() && std::ranges::all_of(wanted, [&](std::string word) {
     if (word.size() > 3 && word.back() == 's')
       word.pop_back();
@@ -255,20 +255,20 @@ std::string meantInstead(const std::string& selector, const std::vector<SegmentI
   std::ranges::copy_if(segments, std::back_inserter(meant),
                        [&](const SegmentInfo& one) { return isMeant(selector, one.name); });
   if (!meant.empty())
-    return textOf("did you mean ",
-                  joined(
+    return concat("did you mean ",
+                  join(
                       meant, ", ", [](const auto& s) { return shown(s.name); }, 12),
                   "?");
   const bool unnamed = std::ranges::all_of(segments, [](const SegmentInfo& segment) {
-    return segment.name == textOf("Segment_", segment.labelValue);
+    return segment.name == concat("Segment_", segment.labelValue);
   });
-  return textOf("it has ", listed(segments), unnamed ? "; --labels gives the values names" : "");
+  return concat("it has ", listed(segments), unnamed ? "; --labels gives the values names" : "");
 }
 
 } // namespace
 
 std::size_t Segmentation::find(const std::string& selector) const {
-  const auto value = parsed<std::int32_t>(selector);
+  const auto value = parseNumber<std::int32_t>(selector);
   const std::array<std::function<bool(const SegmentInfo&)>, 3> ways = {
       [&](const SegmentInfo& segment) { return segment.id == selector; },
       [&](const SegmentInfo& segment) { return segment.name == selector; },
@@ -283,7 +283,7 @@ std::size_t Segmentation::find(const std::string& selector) const {
       return static_cast<std::size_t>(std::ranges::find_if(m_segments, matches) -
                                       m_segments.begin());
   }
-  if (const std::string_view bare = trimmed(selector); bare.size() < selector.size())
+  if (const std::string_view bare = trim(selector); bare.size() < selector.size())
     return find(std::string(bare));
   throw inputError(m_source, "has no segment \"", shown(selector), "\"; ",
                    meantInstead(selector, m_segments));

@@ -55,7 +55,7 @@ std::set<std::int32_t> valuesOf(const Segmentation::Labels& labels, const std::s
 std::vector<SegmentInfo> segmentsOf(const std::set<std::int32_t>& values, const LabelNames& names) {
   std::vector<SegmentInfo> segments;
   for (const std::int32_t value : values) {
-    const std::string id = textOf("Segment_", value);
+    const std::string id = concat("Segment_", value);
     SegmentInfo info{.id = id, .name = id, .labelValue = value};
     if (const auto named = names.find(value); named != names.end()) {
       info.name = named->second.name;
@@ -81,8 +81,8 @@ Grid placed(const Grid& grid, const Fields& fields, const std::string& source) {
   if (extent == fields.end())
     return grid;
   std::vector<double> numbers; // i0 i1 j0 j1 k0 k1
-  for (const std::string& word : words(extent->second))
-    numbers.push_back(parsed<std::int32_t>(word).value_or(infinity));
+  for (const std::string& word : splitWords(extent->second))
+    numbers.push_back(parseNumber<std::int32_t>(word).value_or(infinity));
   if (numbers.size() != 6 || std::ranges::count(numbers, infinity) > 0)
     throw inputError(source, "Segmentation_Extent: must be six whole numbers");
   const Vec3 first(numbers[0], numbers[2], numbers[4]);
@@ -124,7 +124,7 @@ public:
 private:
   std::int32_t number(const std::string& field, std::int32_t fallback) const {
     const std::string* text = find(field);
-    const auto value = text ? parsed<std::int32_t>(*text) : fallback;
+    const auto value = text ? parseNumber<std::int32_t>(*text) : fallback;
     if (!value)
       throw inputError(m_source, m_prefix, field, ": must be a whole number");
     return *value;
@@ -157,7 +157,7 @@ std::vector<SegmentInfo> segmentsNamed(const Fields& fields, const std::string& 
                        "in Slicer as a binary labelmap (.seg.nrrd)");
   std::vector<SegmentInfo> segments;
   while (segments.size() < mostSegments) {
-    const SegmentFields of(fields, source, textOf("Segment", segments.size(), '_'));
+    const SegmentFields of(fields, source, concat("Segment", segments.size(), '_'));
     if (!of.find("ID"))
       break;
     segments.push_back(of.segment(segments.size(), layerCount));
@@ -199,7 +199,7 @@ Segmentation::Labels interleaved(Segmentation::Labels layers, std::size_t count)
 
 std::vector<SegmentInfo> readSegmentInfos(const std::filesystem::path& path,
                                           const std::optional<std::string>& labels) {
-  if (lowerExtension(path) == ".vtm")
+  if (lowercaseExtension(path) == ".vtm")
     return readClosedSurfaceInfos(path);
   const std::string source = path.string();
   std::vector<SegmentInfo> segments;
@@ -217,7 +217,7 @@ std::vector<SegmentInfo> readSegmentInfos(const std::filesystem::path& path,
 Segmentation readSegmentation(const std::filesystem::path& path, const Grid* reference,
                               const std::optional<std::string>& wanted) {
   const std::string source = path.string();
-  if (lowerExtension(path) == ".vtm") {
+  if (lowercaseExtension(path) == ".vtm") {
     refuseLabels(source, wanted);
     return readClosedSurfaces(path, reference);
   }

@@ -151,7 +151,7 @@ std::vector<double> numbersOf(const pugi::xml_node& array, const Coding& coding)
 }
 
 /// First string of an array.
-std::string textOf(const pugi::xml_node& array, const Coding& coding) {
+std::string readString(const pugi::xml_node& array, const Coding& coding) {
   std::string text;
   if (std::string_view(array.attribute("format").value()) == "ascii")
     for (const double code : numbersOf(array, coding))
@@ -229,7 +229,7 @@ VtkSurface surfaceOf(const pugi::xml_document& document, const std::set<std::str
     if (!fieldData.contains(name))
       continue;
     if (std::string_view(array.name()) == "Array")
-      surface.texts[name] = textOf(array, coding);
+      surface.texts[name] = readString(array, coding);
     else
       surface.numbers[name] = numbersOf(array, coding);
   }

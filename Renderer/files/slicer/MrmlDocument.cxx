@@ -35,7 +35,7 @@ void readReferences(const std::string& text, MrmlNode& node) {
     const std::size_t colon = entry.find(':');
     if (colon == std::string::npos || colon == 0)
       continue;
-    std::vector<std::string> ids = words(entry.substr(colon + 1));
+    std::vector<std::string> ids = splitWords(entry.substr(colon + 1));
     std::erase_if(
         ids, [](const std::string& word) { return word.find_first_of("{}") != std::string::npos; });
     if (!ids.empty())
@@ -51,7 +51,7 @@ MrmlNode readNode(const pugi::xml_node& element) {
   node.name = node.text("name");
   readReferences(node.text("references"), node);
   for (const auto& [attribute, role] : legacyRoles)
-    if (std::vector<std::string> ids = words(node.text(attribute)); !ids.empty())
+    if (std::vector<std::string> ids = splitWords(node.text(attribute)); !ids.empty())
       node.references.try_emplace(role, std::move(ids));
   return node;
 }

@@ -109,7 +109,7 @@ Affine boxInNode(MrmlScene& scene, const MrmlNode& roi) {
     return inlineRoi(scene, roi);
   return scene.files.read({names.front()}, [](const auto& files) {
     const std::filesystem::path& file = files.front();
-    return lowerExtension(file) == ".acsv" ? readAnnotation(file) : readMarkupsJson(file);
+    return lowercaseExtension(file) == ".acsv" ? readAnnotation(file) : readMarkupsJson(file);
   });
 }
 

@@ -142,7 +142,8 @@ std::map<std::string, bool> segmentVisibility(const MrmlScene& scene, const Mrml
   if (!display)
     return visible;
   for (const std::string& segment : split(display->text("SegmentationDisplayProperties"), '|'))
-    if (const std::vector<std::string> parts = words(segment); !parts.empty()) // id, then settings
+    if (const std::vector<std::string> parts = splitWords(segment);
+        !parts.empty()) // id, then settings
       visible[decodedUrl(parts.front())] =
           std::none_of(parts.begin() + 1, parts.end(), [](const std::string& setting) {
             return setting == "Visible:false" || setting == "Visible3D:false";
@@ -152,7 +153,7 @@ std::map<std::string, bool> segmentVisibility(const MrmlScene& scene, const Mrml
 
 TransferFunction propertyIn(const MrmlDocument& document, const MrmlNode& property) {
   return parseTransferFunction(property.attributes,
-                               textOf(document.source(), ": ", property.tag, ' ', shown(property)));
+                               concat(document.source(), ": ", property.tag, ' ', shown(property)));
 }
 
 std::vector<std::string> propertyNames(const MrmlDocument& document) {

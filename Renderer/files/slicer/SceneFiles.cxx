@@ -169,7 +169,7 @@ std::string SceneArchive::text(const std::filesystem::path& file, std::uint64_t 
   const std::uint64_t entry = m_files.at(file);
   const std::uint64_t size = stat(entry, file).size;
   if (size > most)
-    throw error(file, textOf("is larger than ", most >> 20, " MB; save a smaller scene"));
+    throw error(file, concat("is larger than ", most >> 20, " MB; save a smaller scene"));
   std::string text;
   read(entry, file, size, [&](std::string_view chunk) { text += chunk; });
   return text;
@@ -192,7 +192,7 @@ bool isTooLong(const std::filesystem::path& path) {
 std::filesystem::path mainScene(const SceneArchive& archive, const std::filesystem::path& path) {
   std::vector<std::filesystem::path> closest;
   for (const auto& [file, entry] : archive.files())
-    if (lowerExtension(file) == ".mrml")
+    if (lowercaseExtension(file) == ".mrml")
       closest.push_back(file);
   if (closest.empty())
     throw inputError(path, "holds no .mrml, so it is no scene; save it again from Slicer");
@@ -207,7 +207,7 @@ std::filesystem::path mainScene(const SceneArchive& archive, const std::filesyst
   if (named.size() == 1)
     return named.front();
   const std::string listed =
-      joined(closest, ", ", [](const auto& file) { return oneLine(file.string()); });
+      join(closest, ", ", [](const auto& file) { return oneLine(file.string()); });
   throw inputError(path, "holds several scenes (", listed.substr(0, 300),
                    "); unpack it and name one of them");
 }
@@ -219,18 +219,18 @@ std::string decodedUrl(std::string text) {
   constexpr std::pair<std::string_view, std::string_view> escapes[] = {
       {"%22", "\""}, {"%3C", "<"}, {"%3E", ">"}, {"%27", "'"}, {"%20", " "}, {"%25", "%"}};
   for (const auto& [escape, character] : escapes)
-    text = replacedAll(text, escape, character);
+    text = replaceAll(text, escape, character);
   return text;
 }
 
 bool isSceneFile(const std::filesystem::path& path) {
-  const std::string extension = lowerExtension(path);
+  const std::string extension = lowercaseExtension(path);
   return extension == ".mrml" || extension == ".mrb";
 }
 
 SceneFiles::SceneFiles(const std::filesystem::path& path) : m_source(path.string()) {
   requireFile(path, "name the .mrml or .mrb in it");
-  if (lowerExtension(path) == ".mrb") {
+  if (lowercaseExtension(path) == ".mrb") {
     m_archive = std::make_unique<SceneArchive>(path);
     const std::filesystem::path scene = mainScene(*m_archive, path);
     m_sceneText = m_archive->text(scene, largestScene);
@@ -273,7 +273,7 @@ std::filesystem::path SceneFiles::locate(const std::string& fileName) {
     const bool isThere = std::filesystem::exists(file, failed);
     if (failed)
       throw makeError(file,
-                      textOf("cannot be read: ", systemMessage(failed.value()), "; ",
+                      concat("cannot be read: ", systemMessage(failed.value()), "; ",
                              readHint(failed.value(), "check the permissions of its folder")));
     if (!isThere)
       throw makeError(file, "is not there; put it back, or save the scene again");
@@ -317,7 +317,7 @@ std::vector<std::string> SceneFiles::filesRead() const {
 
 std::string SceneFiles::asKnown(std::string message) const {
   if (m_unpacked)
-    message = replacedAll(message, m_unpacked->path().string(), m_source);
+    message = replaceAll(message, m_unpacked->path().string(), m_source);
   return oneLine(std::move(message));
 }
 

@@ -25,7 +25,7 @@ Nodes nodesThat(const MrmlDocument& document, Matches&& matches) {
 }
 
 std::string listed(const Nodes& nodes) {
-  return joined(
+  return join(
       nodes, ", ", [](const MrmlNode* node) { return shown(*node); }, 20, "...");
 }
 

@@ -127,7 +127,7 @@ std::vector<double> firstOf(const Parameters& parameters) {
 }
 
 std::string handleTransformRequest(const std::string& request) {
-  const std::string extension = lowerExtension(request);
+  const std::string extension = lowercaseExtension(request);
   if ((extension == ".h5" || extension == ".hdf5") && !holdsAllItsParts(request))
     return {};
   const auto reader = readerOf(extension);
@@ -253,7 +253,7 @@ Affine composed(const Path& path, const std::vector<Record>& records) {
 }
 
 void checkExtension(const Path& path) {
-  const std::string extension = lowerExtension(path);
+  const std::string extension = lowercaseExtension(path);
   static const std::set<std::string> known = {".tfm", ".txt", ".h5", ".hdf5", ".mat"},
                                      images = {".nrrd", ".nhdr", ".nii", ".gz", ".mha", ".mhd"};
   if (images.contains(extension))
@@ -274,7 +274,7 @@ void checkNamesNoFile(const Path& path) {
 
 Affine readLinearTransform(const Path& path) {
   requireFile(path, "name a transform file in it");
-  const std::string extension = lowerExtension(path);
+  const std::string extension = lowercaseExtension(path);
   const bool isText = extension == ".tfm" || extension == ".txt";
   const std::uint64_t largest = isText ? largestTextFile : largestFile;
   if (std::filesystem::file_size(path) > largest)

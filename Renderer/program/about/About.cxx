@@ -36,11 +36,11 @@ std::string aboutText() {
   const nlohmann::ordered_json all = facts();
   const auto fact = [&all](const char* key) { return all[key].get<std::string>(); };
   const auto library = [](const auto& named) { return named.first + " " + named.second; };
-  return textOf("fenestra ", versionText,                                  //
-                "\ncommit: ", fact("commit"), ", ", fact("date"),          //
-                "\nbuild: ", fact("compiler"), ", ", fact("system"),       //
-                "\ninstruction set: ", fact("instructions"),               //
-                "\nlibraries: ", joined(libraryVersions(), ", ", library), //
+  return concat("fenestra ", versionText,                                //
+                "\ncommit: ", fact("commit"), ", ", fact("date"),        //
+                "\nbuild: ", fact("compiler"), ", ", fact("system"),     //
+                "\ninstruction set: ", fact("instructions"),             //
+                "\nlibraries: ", join(libraryVersions(), ", ", library), //
                 "\nlicence: ", fact("license"), "\n");
 }
 

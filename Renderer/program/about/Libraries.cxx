@@ -25,18 +25,18 @@ namespace fenestra {
 namespace {
 
 std::string dotted(std::initializer_list<std::size_t> parts) {
-  return numbersText(parts, ".");
+  return joinNumbers(parts, ".");
 }
 
 std::string hdf5Version() {
   std::array<unsigned, 3> parts = {};
   H5get_libversion(&parts[0], &parts[1], &parts[2]);
-  return numbersText(parts, ".");
+  return joinNumbers(parts, ".");
 }
 
 /// Third word of "LIBTIFF, Version 4.5.0".
 std::string tiffVersion() {
-  const std::vector<std::string> all = words(TIFFGetVersion());
+  const std::vector<std::string> all = splitWords(TIFFGetVersion());
   return all.size() < 3 ? "" : all[2];
 }
 

@@ -56,7 +56,7 @@ QByteArray radianceOf(Node* render) {
 qSlicerFenestraTour::qSlicerFenestraTour(const QString& report) : qSlicerFenestraUser(report) {}
 
 bool qSlicerFenestraTour::run() {
-  settle(1000);
+  join(1000);
   photograph("1-start");
   struct Step {
     const char* name;
@@ -95,7 +95,7 @@ bool qSlicerFenestraTour::loadPhantom() {
     return false;
   auto* fenestra = qSlicerApplication::application()->moduleLogic("Fenestra");
   vtkSlicerFenestraLogic::SafeDownCast(fenestra)->ShowNewestVolume(); // like the sample's button
-  settle(2000);
+  join(2000);
   photograph("2-loaded");
   return true;
 }
@@ -103,7 +103,7 @@ bool qSlicerFenestraTour::loadPhantom() {
 bool qSlicerFenestraTour::seeModule() {
   if (!openModule() || !waitFor([this] { return m_previews > 0; }))
     return false;
-  settle(1500);
+  join(1500);
   photograph("3-opened");
   return true;
 }
@@ -128,7 +128,7 @@ bool qSlicerFenestraTour::chooseCartilage() {
   if (!waitFor([&] { return m_previews > before; }))
     return false;
   m_figures["previewAfterFocusMs"] = static_cast<int>(watch.elapsed());
-  settle(3000);
+  join(3000);
   m_figures["longestPauseWhilePreviewingMs"] = m_pulse.longest();
   photograph("4-focus");
   return true;
@@ -142,7 +142,7 @@ bool qSlicerFenestraTour::turnCamera() {
   showVolumeRendering(true);
   const int beside = slowestTurn();
   m_figures["previewAfterTurnBesideVolumeRenderingMs"] = beside;
-  settle(3000);
+  join(3000);
   photograph("5-turned");
   return alone >= 0 && beside >= 0;
 }
@@ -153,7 +153,7 @@ void qSlicerFenestraTour::showVolumeRendering(bool visible) {
       "vtkMRMLVolumeRenderingDisplayNode", displays);
   for (vtkMRMLNode* display : displays)
     vtkMRMLDisplayNode::SafeDownCast(display)->SetVisibility(visible);
-  settle(1000);
+  join(1000);
 }
 
 int qSlicerFenestraTour::slowestTurn() {
@@ -161,7 +161,7 @@ int qSlicerFenestraTour::slowestTurn() {
       qSlicerApplication::application()->mrmlScene()->GetFirstNodeByClass("vtkMRMLCameraNode"));
   int slowest = 0;
   for (int turn = 0; turn < 5; ++turn) {
-    settle(300);
+    join(300);
     const int before = m_previews;
     QElapsedTimer watch;
     watch.start();
@@ -177,16 +177,16 @@ int qSlicerFenestraTour::slowestTurn() {
 bool qSlicerFenestraTour::render() {
   if (auto* quality = m_panel->findChild<QComboBox*>("QualityBox"))
     quality->setCurrentIndex(qEnvironmentVariableIntValue("FENESTRA_TOUR_QUALITY"));
-  settle(1000);
+  join(1000);
   const int before = m_ended;
   if (!click("RenderButton"))
     return false;
-  settle(1500);
+  join(1500);
   photograph("6-rendering");
   if (!waitFor([&] { return m_ended > before; }, 300000))
     return false;
   m_figures["render"] = m_panel->findChild<QLabel*>("StateLabel")->text();
-  settle(8000); // volume rendering of a new view is slow without a graphics card
+  join(8000); // volume rendering of a new view is slow without a graphics card
   photograph("7-result");
   return lastRender() && !radianceOf(lastRender()).isEmpty();
 }
@@ -204,7 +204,7 @@ bool qSlicerFenestraTour::stopRender() {
   m_pulse.start();
   if (!click("RenderButton"))
     return false;
-  settle(3000);
+  join(3000);
   m_figures["longestPauseWhileRenderingMs"] = m_pulse.longest();
   m_pulse.start();
   QElapsedTimer watch;
@@ -217,7 +217,7 @@ bool qSlicerFenestraTour::stopRender() {
     return false;
   QObject::disconnect(heard);
   m_figures["stoppedAfterMs"] = after;
-  settle(1000);
+  join(1000);
   m_figures["longestPauseWithResultMs"] = m_pulse.longest();
   settings->SetFlags(flags);
   showVolumeRendering(true);
@@ -241,7 +241,7 @@ bool qSlicerFenestraTour::changeClipping() {
     details->setCollapsed(false);
     const bool chosen = choose("ClipBox", "");
     set("contextsaturationBox", 30.0);
-    settle(300);
+    join(300);
     scrollTo("ClipDetails");
     return chosen;
   });
@@ -273,10 +273,10 @@ bool qSlicerFenestraTour::renderMeasured() {
   const int before = m_ended;
   if (!click("RenderButton") || !waitFor([&] { return m_ended > before; }, 300000))
     return false;
-  settle(2000);
+  join(2000);
   fold("View and light", true);
   scrollTo("SaveButton");
-  settle(500);
+  join(500);
   photograph("16-measures");
   auto* measures = m_panel->findChild<QLabel*>("MeasuresLabel");
   m_figures["measures"] = measures->text();
@@ -292,17 +292,17 @@ bool qSlicerFenestraTour::renderTurntable() {
   settings()->SetFlag("size", "256x256");
   m_panel->findChild<QSpinBox*>("FramesBox")->setValue(8);
   set("DegreesBox", 120.0);
-  settle(300);
+  join(300);
   scrollTo("StateLabel");
   scrollTo("TurnButton");
   const int before = m_ended;
   if (!click("TurnButton"))
     return false;
-  settle(3000);
+  join(3000);
   photograph("17-turning");
   if (!waitFor([&] { return m_ended > before; }, 300000))
     return false;
-  settle(3000);
+  join(3000);
   fold("Turntable", true);
   scrollTo("SaveButton");
   auto* slider = m_panel->findChild<QSlider*>("FrameSlider");
@@ -314,7 +314,7 @@ bool qSlicerFenestraTour::renderTurntable() {
   click("PlayButton");
   QObject::disconnect(heard);
   slider->setValue(5);
-  settle(1000);
+  join(1000);
   photograph("18-turntable");
   m_figures["turntable"] = m_panel->findChild<QLabel*>("DescriptionLabel")->text();
   settings()->SetFlags(flags);
@@ -336,7 +336,7 @@ bool qSlicerFenestraTour::saveAndRepeat() {
   if (!io->saveNodes("SceneFile", properties))
     return false;
   scene->Clear(false);
-  settle(1000);
+  join(1000);
   photograph("8-closed");
   for (const char* words : {"StateLabel", "PreviewStateLabel", "DescriptionLabel"})
     if (!m_panel->findChild<QLabel*>(words)->text().isEmpty())
@@ -344,7 +344,7 @@ bool qSlicerFenestraTour::saveAndRepeat() {
   const int previews = m_previews;
   if (!io->loadScene(file) || !waitFor([&] { return m_previews > previews; }))
     return false;
-  settle(2000);
+  join(2000);
   auto* again = Node::SafeDownCast(scene->GetFirstNodeByName(name.c_str()));
   if (!again)
     return false;
@@ -354,12 +354,12 @@ bool qSlicerFenestraTour::saveAndRepeat() {
     if (!m_panel->findChild<qMRMLNodeComboBox*>(subject)->currentNode())
       return false;
   m_panel->findChild<qMRMLNodeComboBox*>("RendersBox")->setCurrentNode(again);
-  settle(2000);
+  join(2000);
   photograph("9-reloaded");
   const int ended = m_ended;
   if (!click("RepeatButton") || !waitFor([&] { return m_ended > ended; }, 300000))
     return false;
-  settle(2000);
+  join(2000);
   photograph("10-repeated");
   m_figures["repeatedBitForBit"] = radianceOf(lastRender()) == before;
   return m_figures["repeatedBitForBit"].toBool() && m_figures["readBack"].toBool();
@@ -386,12 +386,12 @@ bool qSlicerFenestraTour::runCommand() {
   node->SetParameterAsInt("samples", 16);
   node->SetParameterAsString("size", "512x512");
   m_window->findChild<qSlicerModuleSelectorToolBar*>()->selectModule("FenestraCommand");
-  settle(500);
+  join(500);
   auto* panel = m_window->findChild<qSlicerCLIModuleWidget*>();
   if (!panel)
     return false;
   panel->setCurrentCommandLineModuleNode(node);
-  settle(500);
+  join(500);
   auto* apply = panel->findChild<QAbstractButton*>("ApplyPushButton");
   if (!apply || !apply->isEnabled())
     return false;
@@ -401,9 +401,9 @@ bool qSlicerFenestraTour::runCommand() {
   };
   if (!waitFor(over, 300000))
     return false;
-  settle(1000);
+  join(1000);
   faceOutput(output);
-  settle(1000);
+  join(1000);
   photograph("11-command");
   m_figures["commandLineModule"] = node->GetStatusString();
   vtkImageData* image = output->GetImageData();

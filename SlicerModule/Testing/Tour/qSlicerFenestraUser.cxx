@@ -54,7 +54,7 @@ bool qSlicerFenestraUser::openModule() {
   if (!selector)
     return false;
   selector->selectModule("Fenestra");
-  settle(500);
+  join(500);
   m_panel = m_window->findChild<qSlicerFenestraModuleWidget*>();
   if (!m_panel)
     return false;
@@ -70,7 +70,7 @@ bool qSlicerFenestraUser::click(const char* button) {
   if (!found || !found->isEnabled())
     return false;
   QTest::mousePress(found, Qt::LeftButton);
-  settle(50); // like a finger
+  join(50); // like a finger
   QTest::mouseRelease(found, Qt::LeftButton);
   return true;
 }
@@ -96,7 +96,7 @@ void qSlicerFenestraUser::scrollTo(const char* widget) {
 
 void qSlicerFenestraUser::fold(const char* section, bool folded) {
   m_panel->findChild<ctkCollapsibleButton*>(section)->setCollapsed(folded);
-  settle(300); // time for the new layout
+  join(300); // time for the new layout
 }
 
 /// Photographs the preview after a change.
@@ -104,7 +104,7 @@ bool qSlicerFenestraUser::photographPreview(const char* name, const std::functio
   const int before = m_previews;
   if (!action() || !waitFor([&] { return m_previews > before; }))
     return false;
-  settle(4000);
+  join(4000);
   photograph(name);
   return m_panel->findChild<QLabel*>("PreviewStateLabel")->text().startsWith("Preview:");
 }
@@ -117,7 +117,7 @@ bool qSlicerFenestraUser::waitFor(const std::function<bool()>& condition, int mi
   return condition();
 }
 
-void qSlicerFenestraUser::settle(int milliseconds) {
+void qSlicerFenestraUser::join(int milliseconds) {
   QElapsedTimer watch;
   watch.start();
   while (watch.elapsed() / patience() < milliseconds)
