@@ -16,7 +16,7 @@ using nlohmann::json;
 namespace fs = std::filesystem;
 
 /// Name, size and time of each file, in the names' order.
-json fileStates(const std::set<fs::path>& files, const fs::path& folder) {
+json listFileStates(const std::set<fs::path>& files, const fs::path& folder) {
   std::map<std::string, json> states; // one, however many names a file has in `files`
   std::error_code failed;
   for (const fs::path& file : files) // a member of an archive changes with the archive
@@ -35,7 +35,7 @@ json fileStates(const std::set<fs::path>& files, const fs::path& folder) {
 /// True if a piece's file is as recorded; false if missing or empty: to be made again. Throws Error
 /// (usage) for any other file: pieces are placed whole, so a shorter one is no torn piece but
 /// somebody's work.
-bool isAsRecorded(const fs::path& path, const JsonNode& recorded, const std::string& word) {
+bool isAsRecorded(const fs::path& path, const JsonNode& recorded, const std::string& itemKey) {
   std::error_code failed;
   const std::uintmax_t bytes = fs::file_size(path, failed);
   if (failed || bytes == 0)
@@ -43,12 +43,12 @@ bool isAsRecorded(const fs::path& path, const JsonNode& recorded, const std::str
   if (recorded.at("bytes").json() == std::to_string(bytes) &&
       recorded.at("digest").json() == std::to_string(digestOf(path)))
     return true;
-  throw usageError(path, ": is not the ", word,
+  throw usageError(path, ": is not the ", itemKey,
                    " that was recorded; move it away, and the same command renders it again");
 }
 
 /// True for a record of any work of any version of Fenestra.
-bool isRecord(const fs::path& path) {
+bool isManifest(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   const json document = json::parse(file, nullptr, false);
   return document.contains("/finished"_json_pointer) &&
@@ -57,7 +57,7 @@ bool isRecord(const fs::path& path) {
 }
 
 /// Elements of `some` missing from `others`, separated by blanks: arguments, or names of inputs.
-std::string elementsBeyond(const json& some, const json& others) {
+std::string listMissing(const json& some, const json& others) {
   std::vector<std::string> names;
   for (const json& element : some)
     if (std::ranges::find(others, element) == others.end())
@@ -66,19 +66,19 @@ std::string elementsBeyond(const json& some, const json& others) {
 }
 
 /// Text of the difference between two requests in the value of `key`.
-std::string differenceIn(const std::string& key, const json& there, const json& here) {
+std::string describeDifference(const std::string& key, const json& stored, const json& current) {
   if (key == "version")
-    return "made by fenestra " + there.dump();
-  const std::string now = key == "voxels" ? "" : elementsBeyond(here, there);
+    return "made by fenestra " + stored.dump();
+  const std::string now = key == "voxels" ? "" : listMissing(current, stored);
   if (key != "arguments")
     return (now.empty() ? "the volume or the focus" : now) + " has changed since";
-  const std::string before = elementsBeyond(there, here);
+  const std::string before = listMissing(stored, current);
   return before + (before.empty() || now.empty() ? "" : " there, ") + now +
          (now.empty() ? " there" : " here");
 }
 
 /// Throws Error (input), naming file and field, unless a record's request has the structure that
-/// `differenceIn` relies on.
+/// `describeDifference` relies on.
 void checkRequest(const JsonNode& request) {
   request.allowOnly({"version", "arguments", "inputs", "voxels"});
   request.at("version").text();
@@ -90,16 +90,16 @@ void checkRequest(const JsonNode& request) {
 
 } // namespace
 
-Record::Record(fs::path path, std::string word, const std::vector<std::string>& arguments)
+Manifest::Manifest(fs::path path, std::string itemKey, const std::vector<std::string>& arguments)
     : m_path(std::move(path)),
-      m_word(std::move(word)),
+      m_itemKey(std::move(itemKey)),
       m_request{{"version", versionText}, {"arguments", arguments}} {}
 
-void Record::requireInputs(const std::set<fs::path>& files) {
-  require("inputs", fileStates(files, folder()));
+void Manifest::addInputs(const std::set<fs::path>& files) {
+  addRequest("inputs", listFileStates(files, folder()));
 }
 
-void Record::readRequest(int mostFiles) {
+void Manifest::readRequest(int mostFiles) {
   // Values and keys of a file and its piece; bytes, with a name of 255 letters, all escaped.
   constexpr int parts = 23, bytes = 2100;
   const std::string text =
@@ -110,7 +110,7 @@ void Record::readRequest(int mostFiles) {
   m_recorded = request.value();
 }
 
-std::set<fs::path> Record::recordedInputs() const {
+std::set<fs::path> Manifest::recordedInputs() const {
   std::set<fs::path> files;
   if (hasRequest())
     for (const json& input : m_recorded.at("inputs"))
@@ -118,30 +118,30 @@ std::set<fs::path> Record::recordedInputs() const {
   return files;
 }
 
-std::optional<std::string> Record::difference() const {
+std::optional<std::string> Manifest::findDifference() const {
   if (hasRequest())
-    for (const auto& [key, here] : m_request.items())
-      if (const json there = m_recorded.value(key, json()); there != here)
-        return differenceIn(key, there, here);
+    for (const auto& [key, current] : m_request.items())
+      if (const json stored = m_recorded.value(key, json()); stored != current)
+        return describeDifference(key, stored, current);
   return std::nullopt;
 }
 
-void Record::readPieces(int count, const FilesOf& filesOf,
-                        const std::function<json(const JsonNode&)>& moreOf) {
+void Manifest::readItems(int count, const ListFiles& listFiles,
+                         const std::function<json(const JsonNode&)>& readExtra) {
   const JsonNode root(m_document, m_path.string());
   for (const JsonNode& entry : root.at("finished").elements()) {
-    const auto piece = static_cast<int>(entry.at(m_word).numberIn(0, count - 1));
+    const auto item = static_cast<int>(entry.at(m_itemKey).numberIn(0, count - 1));
     const auto files = entry.find("files"); // absent in files of older versions
-    const auto isWhole = [this](const fs::path& path, const JsonNode& recorded) {
-      return isAsRecorded(path, recorded, m_word);
+    const auto isUnchanged = [this](const fs::path& path, const JsonNode& recorded) {
+      return isAsRecorded(path, recorded, m_itemKey);
     };
-    if (files && std::ranges::equal(filesOf(piece), files->elements(), isWhole))
-      m_finished[piece] = {files->value(), moreOf(entry)};
+    if (files && std::ranges::equal(listFiles(item), files->elements(), isUnchanged))
+      m_finished[item] = {files->value(), readExtra(entry)};
   }
 }
 
-std::set<fs::path> Record::recordedFiles() const {
-  std::set<fs::path> there;
+std::set<fs::path> Manifest::recordedFiles() const {
+  std::set<fs::path> unchanged;
   const JsonNode root(m_document, m_path.string());
   for (const JsonNode& entry : root.at("finished").elements())
     for (const JsonNode& file : entry.at("files").elements()) {
@@ -149,28 +149,28 @@ std::set<fs::path> Record::recordedFiles() const {
       std::error_code failed;
       const std::uintmax_t bytes = fs::file_size(path, failed);
       if (!failed && file.at("bytes").json() == std::to_string(bytes))
-        there.insert(path);
+        unchanged.insert(path);
     }
-  return there;
+  return unchanged;
 }
 
-void Record::declare(Outputs& outputs) const {
-  outputs.add(m_path, isRecord);
+void Manifest::declare(Outputs& outputs) const {
+  outputs.add(m_path, isManifest);
 }
 
-void Record::write(Outputs& outputs) const {
+void Manifest::write(Outputs& outputs) const {
   nlohmann::ordered_json finished = nlohmann::ordered_json::array();
-  for (const auto& [number, piece] : m_finished) {
-    finished.push_back({{m_word, number}, {"files", piece.files}});
-    if (!piece.more.is_null())
-      finished.back().update(piece.more);
+  for (const auto& [number, item] : m_finished) {
+    finished.push_back({{m_itemKey, number}, {"files", item.files}});
+    if (!item.extra.is_null())
+      finished.back().update(item.extra);
   }
   outputs.write(m_path, jsonText({{"request", m_request}, {"finished", finished}}, 1));
   outputs.commit();
 }
 
-void Record::finish(int piece, const WrittenFiles& files, const json& more, Outputs& outputs) {
-  Piece& finished = m_finished[piece] = {json::array(), more};
+void Manifest::finish(int item, const WrittenFiles& files, const json& extra, Outputs& outputs) {
+  Item& finished = m_finished[item] = {json::array(), extra};
   for (const auto& [file, state] : files)
     finished.files.push_back({{"file", file.filename().string()}, // beside the record
                               {"bytes", state.bytes},

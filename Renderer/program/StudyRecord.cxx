@@ -121,14 +121,14 @@ void StudyRecord::read(bool restart) {
   }
   m_record.readRequest(mostRowFiles);
   forgetInput(*there); // the record is rewritten, so it is no input
-  m_record.requireInputs(m_record.recordedInputs());
-  m_record.readPieces(
+  m_record.addInputs(m_record.recordedInputs());
+  m_record.readItems(
       1, [this](int) { return files(); }, checkedOutcome);
-  const bool isSame = !m_record.difference();
+  const bool isSame = !m_record.findDifference();
   if (const auto& pieces = m_record.finished();
-      isSame && pieces.contains(0) && pieces.at(0).more.at("status") == 0)
-    m_finished = {RowOutcome::State::done, 0, pieces.at(0).more.at("seconds")};
-  m_record.forgetPieces();
+      isSame && pieces.contains(0) && pieces.at(0).extra.at("status") == 0)
+    m_finished = {RowOutcome::State::done, 0, pieces.at(0).extra.at("seconds")};
+  m_record.clearItems();
   m_goesOn = isSame && !m_finished && isThere(m_film);
   if (m_finished)
     removeFilm();
@@ -159,7 +159,7 @@ std::vector<std::string> StudyRecord::arguments(int threads) const {
 }
 
 void StudyRecord::begin() {
-  m_record.requireInputs({});
+  m_record.addInputs({});
   m_record.write(m_outputs);
   if (!m_goesOn)
     removeFilm();
@@ -185,9 +185,9 @@ void StudyRecord::finish(const RowOutcome& outcome) {
   json more = {{"status", outcome.status}, {"seconds", outcome.seconds}};
   if (!outcome.error.empty())
     more["error"] = outcome.error;
-  Record::WrittenFiles written;
+  Manifest::WrittenFiles written;
   if (outcome.state == RowOutcome::State::done) {
-    m_record.requireInputs(inputsOf(m_row, rowStats(m_row, m_folder.parent_path())));
+    m_record.addInputs(inputsOf(m_row, rowStats(m_row, m_folder.parent_path())));
     for (const fs::path& file : files())
       written.emplace_back(file, stateOfFile(file));
   }

@@ -59,7 +59,7 @@ private:
   std::filesystem::path m_film;
   bool m_goesOn = false; ///< from the film
   NameLock m_lock;
-  Record m_record;
+  Manifest m_record;
   Outputs m_outputs;
   std::optional<RowOutcome> m_finished;
 };

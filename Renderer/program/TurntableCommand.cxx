@@ -28,10 +28,10 @@ namespace {
 class Turntable {
 public:
   /// `words`: arguments of the process, for the headers of the pictures.
-  Turntable(const TurntableOptions& options, const Input& input, TurntableRecord& record,
+  Turntable(const TurntableOptions& options, const Input& input, TurntableManifest& manifest,
             Outputs& outputs, std::vector<std::string> words)
       : m_options(options),
-        m_record(record),
+        m_manifest(manifest),
         m_outputs(outputs),
         m_words(std::move(words)),
         m_before(finished()),
@@ -42,10 +42,10 @@ public:
   int run() {
     const StopInstead stopInstead(m_monitor.stop); // the frame under way is discarded
     m_outputs.checkInputs();                       // now also files that the scene refers to
-    m_record.setInputs(m_view.scene);
-    m_record.write(m_outputs);
-    if (!m_record.warning().empty())
-      warn(m_record.warning());
+    m_manifest.setInputs(m_view.scene);
+    m_manifest.write(m_outputs);
+    if (!m_manifest.warning().empty())
+      warn(m_manifest.warning());
     renderFrames();
     const bool isWhole = finished() == frames();
     const auto& stats = m_options.render.stats;
@@ -69,7 +69,7 @@ private:
 
   /// Number of frames of this part.
   int frames() const { return m_options.end() - m_options.first(); }
-  int finished() const { return static_cast<int>(m_record.finished().size()); }
+  int finished() const { return static_cast<int>(m_manifest.finished().size()); }
   int rendered() const { return finished() - m_before; }
 
   /// Prints each distinct warning once.
@@ -81,7 +81,7 @@ private:
   void renderFrames() {
     Progress progress(m_options.render, m_monitor, m_before, frames());
     for (int frame = m_options.first(); frame < m_options.end(); ++frame) {
-      if (m_record.finished().contains(frame))
+      if (m_manifest.finished().contains(frame))
         continue;
       if (!renderFrame(frame))
         return;
@@ -104,7 +104,7 @@ private:
       return false;
     writePictures(options, m_view.scene, result, filter.of(result), m_words, m_outputs);
     m_outputs.commit();
-    m_record.finish(frame, m_view.change, m_outputs);
+    m_manifest.finish(frame, m_view.change, m_outputs);
     return true;
   }
 
@@ -158,7 +158,7 @@ private:
                                    {"rendered", rendered()},
                                    {"degrees", m_options.degrees},
                                    {"seconds", m_total.seconds()}};
-    const std::vector<SurfaceChange> changes = m_record.changes();
+    const std::vector<SurfaceChange> changes = m_manifest.changes();
     SurfaceChange all;
     double excess = 0.0;
     for (const SurfaceChange& change : changes) {
@@ -169,7 +169,7 @@ private:
       excess = std::max(excess, change.excess());
     }
     if (!changes.empty()) {
-      json["surfaceChangeMmPerDegree"] = changeJson(all);
+      json["surfaceChangeMmPerDegree"] = toJson(all);
       json["surfaceChangeMmPerDegree"]["excess"] = excess;
     }
     json["warnings"] = m_warnings;
@@ -187,7 +187,7 @@ private:
   }
 
   const TurntableOptions& m_options;
-  TurntableRecord& m_record;
+  TurntableManifest& m_manifest;
   Outputs& m_outputs;
   std::vector<std::string> m_words;
   int m_before; ///< frames finished by earlier runs
@@ -201,17 +201,17 @@ private:
 
 /// Declares all results before the long work. When resuming, an unfinished frame may replace only
 /// Fenestra's own files: other files in its place were put there since.
-void declareFrames(const TurntableOptions& options, const TurntableRecord& record,
+void declareFrames(const TurntableOptions& options, const TurntableManifest& manifest,
                    Outputs& outputs) {
   for (int frame = options.first(); frame < options.end(); ++frame) {
-    const bool isOurs = !options.restart && !record.finished().contains(frame);
+    const bool isOurs = !options.restart && !manifest.finished().contains(frame);
     for (const std::filesystem::path& path : options.pictures(frame))
       declareImage(path, outputs, isOurs ? NamedBy::standard : options.render.outputNaming,
                    options.render.filteredFiles());
   }
   if (options.render.stats)
     outputs.add(*options.render.stats);
-  record.declare(outputs);
+  manifest.declare(outputs);
 }
 
 /// Locks, to be held while the frames are written. Throws Error: usage if another process holds
@@ -254,11 +254,11 @@ int turntableCommand(int argc, char** argv, int first) {
   for (const std::filesystem::path& input : options.render.inputs)
     expectInput(input); // --restart replaces no input
   const auto locks = lockFrames(options);
-  TurntableRecord record(options, job.flags);
+  TurntableManifest manifest(options, job.flags);
   Outputs outputs;
-  declareFrames(options, record, outputs);
+  declareFrames(options, manifest, outputs);
   checkMemory(options.render.scene);
-  Turntable turntable(options, job.input, record, outputs, {argv + 1, argv + argc});
+  Turntable turntable(options, job.input, manifest, outputs, {argv + 1, argv + argc});
   return turntable.run();
 }
 

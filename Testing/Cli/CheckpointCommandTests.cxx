@@ -49,8 +49,8 @@ TEST_F(CheckpointCommand, FinishedFilmGivesThePictureAgain) {
   EXPECT_TRUE(bytesOf(folder / "a.film") == checkpoint);
   EXPECT_EQ(keep().status, 0);
   EXPECT_TRUE(bytesOf(folder / "a.exr") == picture);
-  EXPECT_EQ(filesIn(folder.path()), (std::set<std::string>{"a.exr", "a.film", "a.png",
-                                                           "segments.seg.nrrd", "volume.nrrd"}));
+  EXPECT_EQ(listFiles(folder.path()), (std::set<std::string>{"a.exr", "a.film", "a.png",
+                                                             "segments.seg.nrrd", "volume.nrrd"}));
 }
 
 TEST_F(CheckpointCommand, StoppedRenderGoesOnToTheSameBits) {

@@ -119,7 +119,7 @@ inline void expectRefused(const std::vector<ExcludedOptions>& refusals,
     EXPECT_TRUE(outcome.err.ends_with('\n')) << outcome.err;
     EXPECT_NE(outcome.err.find(refusal.text), std::string::npos) << outcome.err;
     EXPECT_EQ(outcome.out, "");
-    EXPECT_EQ(filesIn(folder), before);
+    EXPECT_EQ(listFiles(folder), before);
   }
 }
 

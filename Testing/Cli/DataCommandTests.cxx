@@ -183,7 +183,7 @@ TEST_P(RealFiles, RenderOrAreRefusedForTheStatedReason) {
   EXPECT_EQ(outcome.status, 3);
   EXPECT_NE(outcome.err.find(GetParam().refusal), std::string::npos) << outcome.err;
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-  EXPECT_TRUE(filesIn(folder.path()).empty());
+  EXPECT_TRUE(listFiles(folder.path()).empty());
 }
 
 INSTANTIATE_TEST_SUITE_P(All, RealFiles, ::testing::ValuesIn(expectations()),

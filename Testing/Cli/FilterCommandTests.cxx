@@ -55,7 +55,7 @@ TEST_F(FilterCommand, OnAddsChannelsBesideTheRawOnes) {
         "expected.albedo.R", "expected.normal.X", "expected.Z"})
     EXPECT_TRUE(image.find(name)) << name;
   EXPECT_NE(image.header.at("filter").find("R, G, B and A are not filtered"), std::string::npos);
-  EXPECT_EQ(filesIn(folder.path()),
+  EXPECT_EQ(listFiles(folder.path()),
             (std::set<std::string>{"a.exr", "a.nrrd", "a-Z.nrrd", "a-denoised.nrrd"}));
   EXPECT_EQ(*readImage(folder / "a-denoised.nrrd").find("R"), *image.find("denoised.R"));
   EXPECT_EQ(*readImage(folder / "a.nrrd").find("R"), *image.find("R"));

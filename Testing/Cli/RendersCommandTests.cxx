@@ -37,7 +37,7 @@ TEST_F(RendersCommand, DefaultNameIsThatOfTheInputInTheCurrentFolder) {
   const Image image = readImage(folder / "volume.png");
   EXPECT_EQ(image.width, 16);
   EXPECT_EQ(image.height, 8);
-  EXPECT_EQ(filesIn(folder.path()),
+  EXPECT_EQ(listFiles(folder.path()),
             (std::set<std::string>{"data", "data/volume.nrrd", "segments.seg.nrrd", "volume.png"}));
 }
 

@@ -219,7 +219,7 @@ TEST_F(ServeCommand, EndOfInputEndsWithStatus0) {
     EXPECT_EQ(outcome.status, 0);
     EXPECT_EQ(outcome.err, "");
     EXPECT_LT(outcome.seconds, soon);
-    EXPECT_EQ(filesIn(folder.path()).size(), 3u); // two inputs and the picture
+    EXPECT_EQ(listFiles(folder.path()).size(), 3u); // two inputs and the picture
   }
 }
 
@@ -231,7 +231,7 @@ TEST_F(ServeCommand, SignalEndsWithStatus5) {
     const Outcome outcome = process.wait();
     EXPECT_EQ(outcome.status, 5);
     EXPECT_LT(outcome.seconds, soon);
-    EXPECT_EQ(filesIn(folder.path()).size(), 3u);
+    EXPECT_EQ(listFiles(folder.path()).size(), 3u);
   }
 }
 

@@ -42,7 +42,7 @@ TEST_P(SignalsCommand, FirstSignalWritesFinishedPasses) {
     EXPECT_GE(count, static_cast<float>(samples));
   EXPECT_EQ(readImage(folder / "a.png").width, 64);
   EXPECT_EQ(nlohmann::json::parse(bytesOf(folder / "a.json"))["samplesPerPixel"]["min"], samples);
-  EXPECT_EQ(filesIn(folder.path()).size(), 5u); // two inputs, three results
+  EXPECT_EQ(listFiles(folder.path()).size(), 5u); // two inputs, three results
 }
 
 TEST_P(SignalsCommand, SecondSignalEndsAtOnceWithoutWriting) {
@@ -62,7 +62,7 @@ TEST_P(SignalsCommand, SecondSignalEndsAtOnceWithoutWriting) {
   EXPECT_LT(outcome.seconds, soon);
   EXPECT_EQ(bytesOf(folder / "a.exr"), "old");
   std::filesystem::remove(folder / "dense.json");
-  EXPECT_EQ(filesIn(folder.path()), before);
+  EXPECT_EQ(listFiles(folder.path()), before);
 }
 
 TEST_P(SignalsCommand, SignalIgnoredAtStartStaysIgnored) {
@@ -106,7 +106,7 @@ TEST_P(SignalsCommand, SignalBeforeTheFirstPassWritesNothing) {
   EXPECT_LT(outcome.seconds, soon);
   EXPECT_EQ(outcome.err,
             "fenestra: stopped on request before the first pass; no picture was written\n");
-  EXPECT_EQ(filesIn(kneeFolder().path()), before);
+  EXPECT_EQ(listFiles(kneeFolder().path()), before);
 }
 
 TEST_P(SignalsCommand, SignalWhileLoadingWritesNothing) {
@@ -123,7 +123,7 @@ TEST_P(SignalsCommand, SignalWhileLoadingWritesNothing) {
   EXPECT_EQ(outcome.status, 5) << outcome.err;
   EXPECT_LT(outcome.seconds, soon);
   EXPECT_EQ(outcome.err, "fenestra: stopped on request; nothing was written\n");
-  EXPECT_EQ(filesIn(folder.path()), before);
+  EXPECT_EQ(listFiles(folder.path()), before);
 }
 
 TEST_P(SignalsCommand, SignalLeavesNoPartOfAPhantom) {
@@ -134,7 +134,7 @@ TEST_P(SignalsCommand, SignalLeavesNoPartOfAPhantom) {
   const Outcome outcome = process.wait();
   EXPECT_EQ(outcome.status, 5) << outcome.err;
   EXPECT_LT(outcome.seconds, soon);
-  EXPECT_EQ(filesIn(folder.path()), before);
+  EXPECT_EQ(listFiles(folder.path()), before);
 }
 
 class BrokenPipe : public SmallScene {};
@@ -149,7 +149,7 @@ TEST_F(BrokenPipe, EndsTheRenderWithStatus4) {
   EXPECT_EQ(outcome.status, 4) << outcome.err;
   EXPECT_LT(outcome.seconds, 10 * soon);
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-  EXPECT_EQ(filesIn(folder.path()), before);
+  EXPECT_EQ(listFiles(folder.path()), before);
 }
 
 } // namespace

@@ -70,7 +70,7 @@ TEST_F(StudyCommand, RowsEqualThoseOfRender) {
   EXPECT_NE(summaryOf("\"Bone, left\"").find("done,0,,\"Bone, left/Bone, left.png\","),
             std::string::npos);
   EXPECT_GT(readImage(folder / "out/study.png").width, 16);
-  EXPECT_EQ(filesIn(folder / "out").size(), 2U + 2 * (1 + 4)) << "four files in each folder";
+  EXPECT_EQ(listFiles(folder / "out").size(), 2U + 2 * (1 + 4)) << "four files in each folder";
 }
 
 TEST_F(StudyCommand, AFailingRowEndsNoOther) {
@@ -153,7 +153,7 @@ TEST_F(StudyCommand, GoesOnAfterAKillWithTheSameFiles) {
   EXPECT_EQ(rest.out.find("6 rendered now"), std::string::npos) << rest.out;
   for (const auto& [row, stats] : before)
     EXPECT_EQ(bytes(row + "/" + row + ".json"), stats) << "a row is made twice";
-  EXPECT_EQ(filesIn(folder / "out").size(), 2U + 6 * (1 + 3)) << "something is left";
+  EXPECT_EQ(listFiles(folder / "out").size(), 2U + 6 * (1 + 3)) << "something is left";
 }
 
 TEST_F(StudyCommand, ALongRowGoesOnFromItsFilm) {
@@ -179,7 +179,7 @@ TEST_F(StudyCommand, ALongRowGoesOnFromItsFilm) {
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_NE(outcome.out.find("1 of 1 rows done, 1 rendered now"), std::string::npos)
         << outcome.out;
-    EXPECT_EQ(filesIn(folder / output / "a").size(), 4U) << "something is left";
+    EXPECT_EQ(listFiles(folder / output / "a").size(), 4U) << "something is left";
     return nlohmann::json::parse(bytesOf(folder / output / "a/a.json")).value("pathsFromFilm", 0);
   };
   EXPECT_GT(pathsFromFilm("out", "300"), 0);

@@ -61,7 +61,7 @@ TEST_P(SurfaceCommand, WritesTheSameMeshInEveryFormat) {
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(outcome.err, "");
   }
-  EXPECT_EQ(filesIn(folder.path()), (std::set<std::string>{"a.exr", "a.ply", "a.vtp", "a.STL"}));
+  EXPECT_EQ(listFiles(folder.path()), (std::set<std::string>{"a.exr", "a.ply", "a.vtp", "a.STL"}));
 
   const PlyContent ply = readPly(folder / "a.ply");
   EXPECT_GT(ply.faces, 100u);

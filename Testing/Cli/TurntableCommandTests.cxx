@@ -82,7 +82,7 @@ TEST_F(TurntableCommand, FramesEqualThoseOfRender) {
   const auto stats = nlohmann::json::parse(bytesOf(folder / "all.json"));
   EXPECT_EQ(stats["rendered"], 4);
   EXPECT_GT(stats["surfaceChangeMmPerDegree"]["max"], 0.0);
-  EXPECT_EQ(filesIn(folder.path()).size(),
+  EXPECT_EQ(listFiles(folder.path()).size(),
             2U + 4 * 4 + 3); // inputs, frames, one picture, two .json
 }
 
@@ -136,7 +136,7 @@ TEST_F(TurntableCommand, ResumesAfterAnInterruptionBitForBit) {
   const auto finished = record()["finished"].size();
   ASSERT_GE(finished, 1U);
   ASSERT_LT(finished, 4U);
-  EXPECT_EQ(filesIn(folder.path()).size(), 2 + finished + 1) << "no frame is left half-written";
+  EXPECT_EQ(listFiles(folder.path()).size(), 2 + finished + 1) << "no frame is left half-written";
   std::map<int, std::string> before;
   for (int i = 0; i < static_cast<int>(finished); ++i)
     before[i] = bytesOf(folder / frame(i));
@@ -262,7 +262,7 @@ TEST_F(TurntableCommand, StopsWithinASurface) {
   EXPECT_LT(outcome.seconds, frame / 4.0);
   EXPECT_NE(outcome.out.find("1 of 4 frames, 1 rendered now"), std::string::npos) << outcome.out;
   EXPECT_EQ(nlohmann::json::parse(bytesOf(folder / "all.json"))["finished"], 1);
-  EXPECT_EQ(filesIn(folder.path()).size(), 2U + 3) << "inputs, a frame, and two .json";
+  EXPECT_EQ(listFiles(folder.path()).size(), 2U + 3) << "inputs, a frame, and two .json";
 }
 
 TEST_F(TurntableCommand, RefusesFlagsForASinglePicture) {

@@ -20,9 +20,9 @@ FENESTRA_FUZZ(Study, input) {
   }
   Record record(path, "row", {"--seed=7"});
   record.readRequest(4);
-  record.requireInputs(record.recordedInputs());
+  record.addInputs(record.recordedInputs());
   record.difference();
-  record.readPieces(
+  record.readItems(
       3, [&path](int) { return std::vector{path}; },
       [](const JsonNode&) { return nlohmann::json(); });
 }

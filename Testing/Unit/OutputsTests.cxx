@@ -298,7 +298,7 @@ TEST_F(OutputFiles, NextRunRemovesFilesOfKilledRuns) {
   const int living = ::open(folder.write(inUse, "in use").c_str(), O_RDONLY);
   ASSERT_EQ(::flock(living, LOCK_EX), 0);
   outputs.add(folder / "a");
-  EXPECT_FALSE(fs::exists(folder / left));
+  EXPECT_FALSE(fs::exists(folder / stale));
   EXPECT_TRUE(fs::exists(folder / inUse));
   for (const char* name : {".fenestra-notes", ".fenestra-0123456789ab"})
     EXPECT_TRUE(fs::exists(folder / name)) << name;
@@ -414,7 +414,7 @@ TEST(PrivateFolders, NextRunRemovesFoldersOfKilledRuns) {
   PrivateFolder living;
   const fs::path file = living.add("Data/a.nrrd");
   removeStaleFolders();
-  EXPECT_FALSE(fs::exists(temporary / left));
+  EXPECT_FALSE(fs::exists(temporary / stale));
   EXPECT_TRUE(fs::exists(file));
   for (const std::string& name : others)
     EXPECT_TRUE(fs::exists(temporary / name));

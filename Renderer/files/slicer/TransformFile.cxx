@@ -154,7 +154,7 @@ constexpr const char* hardenHint =
 constexpr std::uint64_t largestFile = 64 << 20;
 constexpr std::uint64_t largestTextFile = 1 << 20; ///< room for hundreds of matrices
 
-struct Record {
+struct TransformRecord {
   std::string type;               ///< ITK's name without scalar type and axes: "AffineTransform"
   std::vector<double> parameters; ///< in the order of ITK's class of that name
   std::vector<double> fixed;      ///< fixed parameters: mostly the centre
@@ -195,8 +195,8 @@ std::string linearType(const Path& path, const std::string& name) {
 }
 
 /// Records in the answer, which is untrusted. Throws std::runtime_error where it is malformed.
-std::vector<Record> recordsIn(const Path& path, std::string_view reply) {
-  std::vector<Record> records;
+std::vector<TransformRecord> recordsIn(const Path& path, std::string_view reply) {
+  std::vector<TransformRecord> records;
   for (ReplyReader reader(reply); !reader.isAtEnd();)
     records.push_back({linearType(path, reader.text()), reader.numbers(), reader.numbers()});
   return records;
@@ -204,7 +204,7 @@ std::vector<Record> recordsIn(const Path& path, std::string_view reply) {
 
 /// Map of a record, in the file's own space and sense. Throws ITK's exceptions for values that the
 /// type forbids (a rigid matrix that is not orthogonal).
-Affine mapOf(const Path& path, const Record& record) {
+Affine mapOf(const Path& path, const TransformRecord& record) {
   if (record.type == "IdentityTransform")
     return Affine::Identity();
   const std::vector<double>&numbers = record.parameters, &fixed = record.fixed;
@@ -237,7 +237,7 @@ Affine mapOf(const Path& path, const Record& record) {
 }
 
 /// Product of the file's transforms, in LPS, in the file's own sense.
-Affine composed(const Path& path, const std::vector<Record>& records) {
+Affine composed(const Path& path, const std::vector<TransformRecord>& records) {
   if (records.empty())
     throwDamaged(path);
   if (records.front().type != "CompositeTransform") {
