@@ -20,41 +20,42 @@ using nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 /// Values of the given flags that `isTold`, by name; names of files relative to `folder`.
-template <typename IsTold>
-ordered_json toldFlags(const OptionValues& flags, const fs::path& folder, IsTold&& isTold) {
-  ordered_json told = {{"INPUT", {relativeName(*flags.text("INPUT"), folder)}}};
-  for (const Option& flag : renderSyntax.options) {
-    if (!flags.has(flag.name) || !isTold(flag))
+template <typename Predicate>
+ordered_json collectOptions(const OptionValues& options, const fs::path& folder,
+                            Predicate&& isIncluded) {
+  ordered_json collected = {{"INPUT", {relativeName(*options.text("INPUT"), folder)}}};
+  for (const Option& option : renderSyntax.options) {
+    if (!options.has(option.name) || !isIncluded(option))
       continue;
-    for (const std::string& value : flags.texts(flag.name))
-      told[flag.name].push_back(flag.canNameFile() ? relativeName(value, folder) : value);
+    for (const std::string& value : options.texts(option.name))
+      collected[option.name].push_back(option.canNameFile() ? relativeName(value, folder) : value);
   }
-  return told;
+  return collected;
 }
 
-std::string toldValues(const json& flags, const std::string& name) {
-  if (!flags.contains(name))
+std::string joinValues(const json& options, const std::string& name) {
+  if (!options.contains(name))
     return "not given";
-  return join(flags.at(name), " ", [](const json& value) {
+  return join(options.at(name), " ", [](const json& value) {
     return value.is_string() ? value.get<std::string>() : value.dump();
   });
 }
 
 /// First flag in which two objects of flags differ; empty: none.
-std::string flagDifference(const json& there, const json& here) {
+std::string findOptionDifference(const json& stored, const json& current) {
   std::set<std::string> names;
-  for (const json* flags : {&there, &here})
-    for (const auto& [name, values] : flags->items())
+  for (const json* options : {&stored, &current})
+    for (const auto& [name, values] : options->items())
       names.insert(name);
   for (const std::string& name : names)
-    if (there.value(name, json()) != here.value(name, json()))
-      return concat(name == "INPUT" ? "" : "--", name, " was ", toldValues(there, name), ", is ",
-                    toldValues(here, name));
+    if (stored.value(name, json()) != current.value(name, json()))
+      return concat(name == "INPUT" ? "" : "--", name, " was ", joinValues(stored, name), ", is ",
+                    joinValues(current, name));
   return "";
 }
 
 /// First file of `some` that `others` lack, with its content; empty: none.
-std::string missingFile(const json& some, const json& others) {
+std::string findMissingFile(const json& some, const json& others) {
   for (const json& file : some)
     if (std::ranges::find(others, file) == others.end())
       return file.value("file", "");
@@ -63,73 +64,74 @@ std::string missingFile(const json& some, const json& others) {
 
 } // namespace
 
-bool shapesSamples(const Option& flag) {
-  const bool isShown = flag.name == "exposure" || flag.name == "tone" || flag.name == "denoise";
-  return isImageOption(flag) && flag.overrideGroup != OverrideGroup::stop && !isShown;
+bool isSampleOption(const Option& option) {
+  const bool affectsDisplay =
+      option.name == "exposure" || option.name == "tone" || option.name == "denoise";
+  return isImageOption(option) && option.overrideGroup != OverrideGroup::stop && !affectsDisplay;
 }
 
-ordered_json madeWith(const OptionValues& given, const OptionValues& flags,
-                      const fs::path& folder) {
+ordered_json makeProvenance(const OptionValues& given, const OptionValues& options,
+                            const fs::path& folder) {
   return {{"version", concat(versionText, " on ", processorText)},
-          {"given", toldFlags(given, folder, isImageOption)},
-          {"settings", toldFlags(flags, folder, shapesSamples)}};
+          {"given", collectOptions(given, folder, isImageOption)},
+          {"settings", collectOptions(options, folder, isSampleOption)}};
 }
 
-std::vector<fs::path> filesOf(const PreparedScene& scene, const RenderOptions& options) {
+std::vector<fs::path> listInputFiles(const PreparedScene& scene, const RenderOptions& options) {
   std::set<fs::path> files(options.inputs.begin(), options.inputs.end());
   for (const std::string& file : scene.files())
     files.insert(file);
   for (const fs::path& file : std::set(files))
-    for (const fs::path& part : filesNamedBy(file))
-      files.insert(part);
-  std::vector<fs::path> there;
+    for (const fs::path& named : filesNamedBy(file))
+      files.insert(named);
+  std::vector<fs::path> existing;
   std::error_code failed;
-  std::ranges::copy_if(files, std::back_inserter(there), [&](const fs::path& file) {
+  std::ranges::copy_if(files, std::back_inserter(existing), [&](const fs::path& file) {
     return fs::is_regular_file(file, failed); // a member of an archive changes with the archive
   });
-  return there;
+  return existing;
 }
 
-ordered_json inputsOf(const PreparedScene& scene, const RenderOptions& options,
-                      const fs::path& folder) {
+ordered_json digestInputs(const PreparedScene& scene, const RenderOptions& options,
+                          const fs::path& folder) {
   ordered_json inputs = ordered_json::array();
-  for (const fs::path& file : filesOf(scene, options))
+  for (const fs::path& file : listInputFiles(scene, options))
     inputs.push_back({{"file", relativeName(file.string(), folder)},
                       {"bytes", fs::file_size(file)},
                       {"digest", digestOf(file)}});
   return inputs;
 }
 
-std::string firstDifference(const json& there, const json& here, const std::string& source) {
-  const JsonNode node(there, source);
-  for (const auto& [key, value] : here.items()) {
+std::string findDifference(const json& stored, const json& current, const std::string& source) {
+  const JsonNode node(stored, source);
+  for (const auto& [key, value] : current.items()) {
     const json& before = node.at(key).value();
     if (before == value)
       continue;
     if (key == "settings") {
       if (!before.is_object())
         throw node.at(key).error("must be an object");
-      return flagDifference(before, value);
+      return findOptionDifference(before, value);
     }
     if (key == "inputs") {
       for (const JsonNode& file : node.at(key).elements())
         file.at("file").text();
-      const std::string now = missingFile(value, before);
-      return (now.empty() ? missingFile(before, value) : now) + " has changed since";
+      const std::string now = findMissingFile(value, before);
+      return (now.empty() ? findMissingFile(before, value) : now) + " has changed since";
     }
     return concat(key, " was ", node.at(key).text(), ", is ", value.get<std::string>());
   }
   return "";
 }
 
-Error Checkpoint::otherRender(const std::string& difference) const {
+Error Checkpoint::mismatchError(const std::string& difference) const {
   return usageError(m_path, ": is of another render: ", difference,
                     m_isMerge ? "; put inputs and films back as they were, or render anew"
                               : "; choose another --checkpoint, or move this one away to begin "
                                 "anew");
 }
 
-std::string partText(const Shard& shard) {
+std::string formatShard(const Shard& shard) {
   return concat(shard.index + 1, '/', shard.count);
 }
 
@@ -138,41 +140,44 @@ Checkpoint::Checkpoint(const PictureRequest& job, const OptionValues& given, War
       m_path(*job.options.checkpoint),
       m_warn(std::move(warn)),
       m_lock(m_path),
-      m_made(madeWith(given, job.flags, m_path.parent_path())) {
+      m_provenance(makeProvenance(given, job.flags, m_path.parent_path())) {
   if (!m_lock->isHeld())
     throw usageError(m_path, ": another process is writing this film; wait for it, or choose "
                              "another --checkpoint");
   std::error_code failed;
   if (isThere(m_path) && !(fs::is_regular_file(m_path, failed) && fs::is_empty(m_path, failed))) {
-    const FilmFile& film = m_films.emplace_back(m_path);
+    const CheckpointFile& film = m_files.emplace_back(m_path);
     for (const char* key : {"version", "settings"})
       requireSame(film, key);
     if (const Shard& here = job.options.settings.shard; film.shard() != here)
-      throw otherRender(concat("--shard was ", partText(film.shard()), ", is ", partText(here)));
+      throw mismatchError(
+          concat("--shard was ", formatShard(film.shard()), ", is ", formatShard(here)));
     forgetInput(*fileId(m_path)); // it is written again
   }
   m_outputs.add(m_path);
 }
 
 Checkpoint::Checkpoint(const PictureRequest& job, const OptionValues& given,
-                       std::vector<FilmFile> parts)
+                       std::vector<CheckpointFile> shards)
     : m_job(job),
-      m_path(parts.front().path()),
-      m_films(std::move(parts)),
+      m_path(shards.front().path()),
+      m_files(std::move(shards)),
       m_isMerge(true),
-      m_made(madeWith(given, job.flags, m_path.parent_path())) {
+      m_provenance(makeProvenance(given, job.flags, m_path.parent_path())) {
   for (const char* key : {"version", "settings"})
-    requireSame(m_films.front(), key);
+    requireSame(m_files.front(), key);
 }
 
-void Checkpoint::requireSame(const FilmFile& film, const std::string& key) const {
-  const auto difference = firstDifference(film.made(), {{key, m_made.at(key)}}, m_path.string());
+void Checkpoint::requireSame(const CheckpointFile& film, const std::string& key) const {
+  const auto difference =
+      findDifference(film.metadata(), {{key, m_provenance.at(key)}}, m_path.string());
   if (!difference.empty())
-    throw otherRender(difference);
+    throw mismatchError(difference);
 }
 
 /// Samples are never taken back, nor dealt out anew.
-void Checkpoint::requireRoom(const RenderResult& result, const RenderSettings& settings) const {
+void Checkpoint::checkSampleCounts(const RenderResult& result,
+                                   const RenderSettings& settings) const {
   if (settings.samples < result.begunSamples)
     throw usageError("--samples: ", m_path, " has up to ", result.begunSamples,
                      " samples a pixel; ask for as many, or choose another --checkpoint");
@@ -183,62 +188,62 @@ void Checkpoint::requireRoom(const RenderResult& result, const RenderSettings& s
                      wasPlanned ? "give one" : "drop it", ", or choose another --checkpoint");
 }
 
-std::optional<RenderResult> Checkpoint::begun(const PreparedScene& scene,
-                                              const RenderSettings& settings) {
-  m_made["inputs"] = inputsOf(scene, m_job.options, m_path.parent_path());
-  if (m_films.empty())
+std::optional<RenderResult> Checkpoint::load(const PreparedScene& scene,
+                                             const RenderSettings& settings) {
+  m_provenance["inputs"] = digestInputs(scene, m_job.options, m_path.parent_path());
+  if (m_files.empty())
     return std::nullopt;
-  const FilmFile& first = m_films.front();
+  const CheckpointFile& first = m_files.front();
   requireSame(first, "inputs");
   if (const std::string here = targetOf(scene.view(), settings); first.target() != here)
-    throw otherRender(concat("its instruction set was ", first.target(), ", is ", here,
-                             " (the environment variable FENESTRA_INSTRUCTIONS chooses)"));
+    throw mismatchError(concat("its instruction set was ", first.target(), ", is ", here,
+                               " (the environment variable FENESTRA_INSTRUCTIONS chooses)"));
   const RenderRequest& request = m_job.options.scene;
   if (first.width() != request.width || first.height() != request.height)
     throw inputError(m_path, "has another size than its settings say; render it again");
-  RenderResult result = first.begun();
+  RenderResult result = first.readProgress();
   if (!m_isMerge)
-    requireRoom(result, settings);
+    checkSampleCounts(result, settings);
   result.counters = {};
-  for (const FilmFile& film : m_films) {
-    film.read(result.film);
+  for (const CheckpointFile& film : m_files) {
+    film.readPixels(result.film);
     result.counters += film.counters();
   }
-  m_films.clear();
-  m_paths = result.counters.paths;
+  m_files.clear();
+  m_savedPaths = result.counters.paths;
   return result;
 }
 
-void Checkpoint::watch(RenderMonitor& monitor) {
+void Checkpoint::attach(RenderMonitor& monitor) {
   if (m_isMerge)
     return;
   m_watch = Stopwatch();
-  monitor.isCheckpointDue = [this] { return m_watch.seconds() >= m_due; };
-  monitor.onCheckpoint = [this](const RenderResult& result) { keep(result); };
+  monitor.isCheckpointDue = [this] { return m_watch.seconds() >= m_dueTime; };
+  monitor.onCheckpoint = [this](const RenderResult& result) { trySave(result); };
 }
 
-void Checkpoint::keep(const RenderResult& result) {
-  constexpr double share = 0.01, longest = 60.0; // of the time; s
+void Checkpoint::trySave(const RenderResult& result) {
+  constexpr double fraction = 0.01, longest = 60.0; // of the time; s
   const Stopwatch cost;
   std::string failure;
   try {
-    write(result);
+    save(result);
   } catch (const Error& error) {
     failure = error.what();
   } catch (const std::bad_alloc&) {
     failure = m_path.string() + ": there is no memory to write it";
   }
-  if (!failure.empty() && !std::exchange(m_isWarned, true))
+  if (!failure.empty() && !std::exchange(m_hasWarned, true))
     m_warn(failure + " (the render goes on without this film)");
-  m_due = m_watch.seconds() + std::min(cost.seconds() / share, longest);
+  m_dueTime = m_watch.seconds() + std::min(cost.seconds() / fraction, longest);
 }
 
-void Checkpoint::write(const RenderResult& result) {
-  if (result.counters.paths == m_paths)
+void Checkpoint::save(const RenderResult& result) {
+  if (result.counters.paths == m_savedPaths)
     return;
-  m_outputs.write(m_path, filmContent(result, m_job.options.settings.shard, m_made));
+  m_outputs.write(m_path, encodeCheckpoint(result, m_job.options.settings.shard, m_provenance));
   m_outputs.commit();
-  m_paths = result.counters.paths;
+  m_savedPaths = result.counters.paths;
 }
 
 } // namespace fenestra

@@ -11,27 +11,27 @@ namespace fenestra {
 
 /// True if a sample depends on the flag; false if only when to stop, how a picture is shown, and
 /// where.
-bool shapesSamples(const Option& flag);
+bool isSampleOption(const Option& option);
 
 /// Facts that a film is made with: the version, the flags as given and those that shape its
 /// samples, by name, and the content of all files read; names are relative to `folder`.
-nlohmann::ordered_json madeWith(const OptionValues& given, const OptionValues& flags,
-                                const std::filesystem::path& folder);
+nlohmann::ordered_json makeProvenance(const OptionValues& given, const OptionValues& options,
+                                      const std::filesystem::path& folder);
 /// All files that the scene was made from; an archive, not its members.
-std::vector<std::filesystem::path> filesOf(const PreparedScene& scene,
-                                           const RenderOptions& options);
+std::vector<std::filesystem::path> listInputFiles(const PreparedScene& scene,
+                                                  const RenderOptions& options);
 /// Name, size and digest of every file that the scene was made from.
-nlohmann::ordered_json inputsOf(const PreparedScene& scene, const RenderOptions& options,
-                                const std::filesystem::path& folder);
+nlohmann::ordered_json digestInputs(const PreparedScene& scene, const RenderOptions& options,
+                                    const std::filesystem::path& folder);
 
 /// First difference between what two films, or a film and a command, are made with, as "--seed was
 /// 1, is 2"; empty: none. `there` may be damaged, and is the film that `source` names; a key that
 /// `here` lacks is not compared. Throws Error (input).
-std::string firstDifference(const nlohmann::json& there, const nlohmann::json& here,
-                            const std::string& source);
+std::string findDifference(const nlohmann::json& stored, const nlohmann::json& current,
+                           const std::string& source);
 
 /// "2/3" for the second of three parts.
-std::string partText(const Shard& shard);
+std::string formatShard(const Shard& shard);
 
 class Checkpoint {
 public:
@@ -43,40 +43,41 @@ public:
   Checkpoint(const PictureRequest& job, const OptionValues& given, Warn warn);
 
   /// The parts of one picture, in their order (wholePicture), which are read and never written.
-  Checkpoint(const PictureRequest& job, const OptionValues& given, std::vector<FilmFile> parts);
+  Checkpoint(const PictureRequest& job, const OptionValues& given,
+             std::vector<CheckpointFile> shards);
 
   /// Result to go on from; nothing: from the beginning. Throws Error: usage where the film belongs
   /// to other inputs, another instruction set, or more samples than the settings allow; input.
-  std::optional<RenderResult> begun(const PreparedScene& scene, const RenderSettings& settings);
+  std::optional<RenderResult> load(const PreparedScene& scene, const RenderSettings& settings);
 
   /// Lets a render be kept: first after a second, then so often that writing takes 1 % of the time,
   /// or each minute if it takes more.
-  void watch(RenderMonitor& monitor);
+  void attach(RenderMonitor& monitor);
 
   /// Writes the film, if there is more than in the one on disk. A failure is one warning, however
   /// often: the earlier film stays.
-  void keep(const RenderResult& result);
+  void trySave(const RenderResult& result);
 
   /// Writes the film, which is the command's result. Throws Error (output).
-  void write(const RenderResult& result);
+  void save(const RenderResult& result);
 
 private:
-  Error otherRender(const std::string& difference) const;
-  void requireSame(const FilmFile& film, const std::string& key) const;
-  void requireRoom(const RenderResult& result, const RenderSettings& settings) const;
+  Error mismatchError(const std::string& difference) const;
+  void requireSame(const CheckpointFile& film, const std::string& key) const;
+  void checkSampleCounts(const RenderResult& result, const RenderSettings& settings) const;
 
   const PictureRequest& m_job;
   const std::filesystem::path m_path;
   Warn m_warn;
   std::optional<NameLock> m_lock;
-  std::vector<FilmFile> m_films; ///< as they were at the start
+  std::vector<CheckpointFile> m_files; ///< as they were at the start
   bool m_isMerge = false;
-  nlohmann::ordered_json m_made;
+  nlohmann::ordered_json m_provenance;
   Outputs m_outputs;
-  std::optional<std::uint64_t> m_paths; ///< in the film on disk
+  std::optional<std::uint64_t> m_savedPaths; ///< in the film on disk
   Stopwatch m_watch;
-  double m_due = 1.0; ///< s by m_watch
-  bool m_isWarned = false;
+  double m_dueTime = 1.0; ///< s by m_watch
+  bool m_hasWarned = false;
 };
 
 } // namespace fenestra

@@ -19,22 +19,22 @@ namespace fs = std::filesystem;
 bool isOfMerge(const Option& flag) {
   constexpr std::string_view others[] = {
       "checkpoint", "shard", "xml", "echo", "returnparameterfile", "processinformationaddress"};
-  return !shapesSamples(flag) && flag.overrideGroup != OverrideGroup::stop &&
+  return !isSampleOption(flag) && flag.overrideGroup != OverrideGroup::stop &&
          std::ranges::find(others, flag.name) == std::end(others);
 }
 
 /// Throws Error (usage) unless both are parts of one picture with the same samples.
-void requireTogether(const FilmFile& one, const FilmFile& other) {
+void requireTogether(const CheckpointFile& one, const CheckpointFile& other) {
   const auto refuse = [&](const std::string& what) {
     return usageError(other.path(), ": ", what, "; merge parts of one picture");
   };
   if (one.shard().count != other.shard().count)
-    throw refuse(concat("is part ", partText(other.shard()), ", and ", one.path(), " is ",
-                        partText(one.shard())));
+    throw refuse(concat("is part ", formatShard(other.shard()), ", and ", one.path(), " is ",
+                        formatShard(one.shard())));
   for (const char* key : {"version", "settings", "inputs"}) {
     const nlohmann::json here = {
-        {key, JsonNode(other.made(), other.path().string()).at(key).value()}};
-    const std::string difference = firstDifference(one.made(), here, one.path().string());
+        {key, JsonNode(other.metadata(), other.path().string()).at(key).value()}};
+    const std::string difference = findDifference(one.metadata(), here, one.path().string());
     if (!difference.empty())
       throw refuse(concat("is not of the picture of ", one.path(), ": ", difference));
   }
@@ -49,19 +49,19 @@ void requireTogether(const FilmFile& one, const FilmFile& other) {
 
 /// Films in the order of their parts. Throws Error: usage where one is missing, doubled, not
 /// finished, or of another picture; input where one is damaged.
-std::vector<FilmFile> wholePicture(const std::vector<std::string>& names) {
-  std::vector<FilmFile> films;
+std::vector<CheckpointFile> wholePicture(const std::vector<std::string>& names) {
+  std::vector<CheckpointFile> films;
   for (const std::string& name : names) {
-    const FilmFile& film = films.emplace_back(name);
+    const CheckpointFile& film = films.emplace_back(name);
     requireTogether(films.front(), film);
     if (film.finishedSamples() == 0 || film.begunSamples() != film.finishedSamples())
       throw usageError(film.path(), ": is not finished; run its command again");
   }
-  std::ranges::sort(films, {}, [](const FilmFile& film) { return film.shard().index; });
+  std::ranges::sort(films, {}, [](const CheckpointFile& film) { return film.shard().index; });
   const auto twice = std::ranges::adjacent_find(
-      films, {}, [](const FilmFile& film) { return film.shard().index; });
+      films, {}, [](const CheckpointFile& film) { return film.shard().index; });
   if (twice != films.end())
-    throw usageError(twice->path(), ": is part ", partText(twice->shard()), ", as is ",
+    throw usageError(twice->path(), ": is part ", formatShard(twice->shard()), ", as is ",
                      std::next(twice)->path(), "; drop one");
   std::vector<int> missing;
   const int count = films.front().shard().count;
@@ -80,9 +80,9 @@ std::vector<FilmFile> wholePicture(const std::vector<std::string>& names) {
 
 /// Flags with which a film was rendered, whose names of files are relative to the film. Throws
 /// Error (input).
-OptionValues renderedWith(const FilmFile& film) {
+OptionValues renderedWith(const CheckpointFile& film) {
   OptionValues flags(renderSyntax.options);
-  const JsonNode given = JsonNode(film.made(), film.path().string()).at("given");
+  const JsonNode given = JsonNode(film.metadata(), film.path().string()).at("given");
   const fs::path folder = film.path().parent_path();
   for (const auto& [name, values] : given.members()) {
     const Option* const flag = findOption(renderSyntax.options, name);
@@ -128,7 +128,7 @@ int mergeCommand(int argc, char** argv, int first) {
   if (!given)
     return 0;
   useMachine(*given);
-  std::vector<FilmFile> films = wholePicture(given->texts("PART"));
+  std::vector<CheckpointFile> films = wholePicture(given->texts("PART"));
   OptionValues flags = renderedWith(films.front());
   for (const Option& flag : mergeSyntax().options)
     if (given->has(flag.name)) {

@@ -216,9 +216,9 @@ void warn(const RenderOptions& options, const std::vector<std::string>& warnings
 /// Puts the film of a part in place. Returns the exit status.
 int finishShard(const RenderOptions& options, const RenderResult& result, Checkpoint& checkpoint,
                 double seconds) {
-  checkpoint.write(result);
+  checkpoint.save(result);
   const bool isStopped = result.reason == StopReason::request;
-  std::cout << oneLine(concat(*options.checkpoint, ": part ", partText(options.settings.shard),
+  std::cout << oneLine(concat(*options.checkpoint, ": part ", formatShard(options.settings.shard),
                               " of ", options.scene.width, "x", options.scene.height, " pixels, ",
                               result.finishedSamples,
                               result.finishedSamples == 1 ? " sample" : " samples", " each, ",
@@ -251,8 +251,8 @@ RenderResult renderFilm(const RenderOptions& options, const PreparedScene& scene
                         RenderStats& stats) {
   std::optional<RenderResult> begun;
   if (checkpoint) {
-    begun = checkpoint->begun(scene, settings);
-    checkpoint->watch(monitor);
+    begun = checkpoint->load(scene, settings);
+    checkpoint->attach(monitor);
   }
   if (begun)
     stats.checkpointPaths = begun->counters.paths;
@@ -263,7 +263,7 @@ RenderResult renderFilm(const RenderOptions& options, const PreparedScene& scene
     return render(scene.view(), settings, monitor, std::move(begun));
   }();
   if (options.checkpoint && !options.isShard)
-    checkpoint->keep(result);
+    checkpoint->trySave(result);
   return result;
 }
 

@@ -15,13 +15,13 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-constexpr std::string_view filmFormat = "fenestra film 1 ";
-constexpr std::size_t longestFirstLine = 40;
-constexpr double mostFilmSamples = 0x1p62; ///< sums of a few such counts fit 64 bits
+constexpr std::string_view magic = "fenestra film 1 ";
+constexpr std::size_t maxFirstLine = 40;
+constexpr double maxSamples = 0x1p62; ///< sums of a few such counts fit 64 bits
 
 /// Calls visit(index of the pixel in the film) for the pixels of a part, in the order of the file.
 template <typename Visit>
-void forPixels(const Film& film, const Shard& shard, Visit&& visit) {
+void forEachPixel(const Film& film, const Shard& shard, Visit&& visit) {
   const Tiles tiles(film.width(), film.height());
   for (const int number : tiles.of(shard)) {
     const Tiles::Tile tile = tiles.at(number);
@@ -31,7 +31,7 @@ void forPixels(const Film& film, const Shard& shard, Visit&& visit) {
   }
 }
 
-std::uint64_t pixelsOf(int width, int height, const Shard& shard) {
+std::uint64_t countPixels(int width, int height, const Shard& shard) {
   const Tiles tiles(width, height);
   std::uint64_t pixels = 0;
   for (const int number : tiles.of(shard)) {
@@ -57,7 +57,8 @@ constexpr NamedCount namedCounts[] = {
     {"gradients", &Counters::gradients},
 };
 
-ordered_json headerOf(const RenderResult& result, const Shard& shard, const ordered_json& made) {
+ordered_json makeHeader(const RenderResult& result, const Shard& shard,
+                        const ordered_json& metadata) {
   ordered_json header = {{"size", {result.film.width(), result.film.height()}},
                          {"part", {shard.index, shard.count}},
                          {"block", result.film.pixels().front().blockSize},
@@ -68,7 +69,7 @@ ordered_json headerOf(const RenderResult& result, const Shard& shard, const orde
                          {"lastNoise", result.last.noise}, // null: infinite
                          {"hasPlan", !result.last.plan.noise().empty()},
                          {"counts", ordered_json::object()},
-                         {"made", made}};
+                         {"made", metadata}};
   for (const auto& [name, count] : namedCounts)
     header["counts"][name] = result.counters.*count;
   return header;
@@ -76,43 +77,43 @@ ordered_json headerOf(const RenderResult& result, const Shard& shard, const orde
 
 } // namespace
 
-std::string filmContent(const RenderResult& result, const Shard& shard, const ordered_json& made) {
+std::string encodeCheckpoint(const RenderResult& result, const Shard& shard,
+                             const ordered_json& metadata) {
   const Film& film = result.film;
-  const std::string header = jsonText(headerOf(result, shard, made), -1) + '\n';
+  const std::string header = jsonText(makeHeader(result, shard, metadata), -1) + '\n';
   const std::vector<float>& plan = result.last.plan.noise();
-  std::string content = concat(filmFormat, header.size(), '\n', header);
+  std::string content = concat(magic, header.size(), '\n', header);
   content.reserve(content.size() +
-                  sizeof(PixelWords) * pixelsOf(film.width(), film.height(), shard) +
+                  sizeof(PixelWords) * countPixels(film.width(), film.height(), shard) +
                   plan.size() * sizeof(float) + sizeof(std::uint64_t));
-  forPixels(film, shard,
-            [&](int column, int row) { content += asBytes(wordsOf(film.at(column, row))); });
+  forEachPixel(film, shard,
+               [&](int column, int row) { content += asBytes(wordsOf(film.at(column, row))); });
   content += asBytes(plan);
   Digest digest;
   digest.add(content);
   return content += asBytes(std::array{digest.value()});
 }
 
-FilmFile::FilmFile(const fs::path& path) : m_path(path) {
+CheckpointFile::CheckpointFile(const fs::path& path) : m_path(path) {
   requireFile(path, "name a film");
   std::ifstream file = open(0);
-  std::string line(longestFirstLine, '\0');
+  std::string line(maxFirstLine, '\0');
   file.read(line.data(), static_cast<std::streamsize>(line.size()));
   line.resize(static_cast<std::size_t>(file.gcount()));
   const std::size_t end = line.find('\n');
-  const auto bytes =
-      line.starts_with(filmFormat) && end != line.npos
-          ? parseNumber<std::uint64_t>(line.substr(filmFormat.size(), end - filmFormat.size()))
-          : std::nullopt;
+  const auto bytes = line.starts_with(magic) && end != line.npos
+                         ? parseNumber<std::uint64_t>(line.substr(magic.size(), end - magic.size()))
+                         : std::nullopt;
   if (!bytes)
     throw inputError(path, "is no film of this version of Fenestra; name another file, or move it "
                            "away to begin anew");
   const std::uint64_t size = fs::file_size(path);
   std::array<std::uint64_t, 1> digest = {};
   if (*bytes > largestText || size < end + 1 + *bytes + sizeof digest)
-    throw damaged();
+    throw makeDamageError();
   open(size - sizeof digest).read(reinterpret_cast<char*>(digest.data()), sizeof digest);
   if (digestOf(path, size - sizeof digest) != digest.front())
-    throw damaged();
+    throw makeDamageError();
   std::string text(*bytes, '\0');
   open(end + 1).read(text.data(), static_cast<std::streamsize>(text.size()));
   m_header = parseJson(text, path.string());
@@ -125,43 +126,43 @@ FilmFile::FilmFile(const fs::path& path) : m_path(path) {
   m_shard = {static_cast<int>(part[0]), static_cast<int>(part[1])};
   m_hasPlan = header.at("hasPlan").boolean();
   if (m_shard.index >= m_shard.count || !header.at("made").isObject())
-    throw damaged();
+    throw makeDamageError();
   m_pixelsBegin = end + 1 + *bytes;
-  m_planBegin = m_pixelsBegin + sizeof(PixelWords) * pixelsOf(m_width, m_height, m_shard);
+  m_planBegin = m_pixelsBegin + sizeof(PixelWords) * countPixels(m_width, m_height, m_shard);
   const std::uint64_t all =
       static_cast<std::uint64_t>(m_width) * static_cast<std::uint64_t>(m_height);
   if (size != m_planBegin + (m_hasPlan ? all * sizeof(float) : 0) + sizeof digest)
-    throw damaged();
+    throw makeDamageError();
 }
 
-Error FilmFile::damaged() const {
+Error CheckpointFile::makeDamageError() const {
   return inputError(m_path, "is a damaged film; remove it, and render it anew");
 }
 
-std::ifstream FilmFile::open(std::uint64_t position) const {
+std::ifstream CheckpointFile::open(std::uint64_t position) const {
   std::ifstream file(m_path, std::ios::binary);
   file.seekg(static_cast<std::streamoff>(position));
   return file;
 }
 
-std::string FilmFile::target() const {
+std::string CheckpointFile::target() const {
   return JsonNode(m_header, m_path.string()).at("target").text();
 }
 
-std::uint64_t FilmFile::samplesOf(const char* key) const {
-  const double samples = JsonNode(m_header, m_path.string()).at(key).numberIn(0.0, mostFilmSamples);
+std::uint64_t CheckpointFile::readCount(const char* key) const {
+  const double samples = JsonNode(m_header, m_path.string()).at(key).numberIn(0.0, maxSamples);
   return static_cast<std::uint64_t>(samples);
 }
 
-Counters FilmFile::counters() const {
+Counters CheckpointFile::counters() const {
   const JsonNode counts = JsonNode(m_header, m_path.string()).at("counts");
   Counters counters;
   for (const auto& [name, count] : namedCounts)
-    counters.*count = static_cast<std::uint64_t>(counts.at(name).numberIn(0.0, mostFilmSamples));
+    counters.*count = static_cast<std::uint64_t>(counts.at(name).numberIn(0.0, maxSamples));
   return counters;
 }
 
-RenderResult FilmFile::begun() const {
+RenderResult CheckpointFile::readProgress() const {
   const JsonNode header(m_header, m_path.string());
   constexpr double largestBlock = 1024.0;
   const auto block = static_cast<std::uint32_t>(header.at("block").numberIn(1.0, largestBlock));
@@ -170,7 +171,7 @@ RenderResult FilmFile::begun() const {
   result.counters = counters();
   result.finishedSamples = finishedSamples();
   result.begunSamples = begunSamples();
-  result.last.samples = samplesOf("lastPass");
+  result.last.samples = readCount("lastPass");
   if (header.at("lastNoise").isNumber())
     result.last.noise = header.at("lastNoise").numberIn(0.0, infinity);
   if (!m_hasPlan)
@@ -180,20 +181,20 @@ RenderResult FilmFile::begun() const {
       .read(reinterpret_cast<char*>(plan.data()),
             static_cast<std::streamsize>(plan.size() * sizeof(float)));
   if (!std::ranges::all_of(plan, [](float s) { return s >= 0.0F && std::isfinite(s); }))
-    throw damaged();
+    throw makeDamageError();
   result.last.plan = SamplePlan(std::move(plan));
   return result;
 }
 
-void FilmFile::read(Film& film) const {
+void CheckpointFile::readPixels(Film& film) const {
   std::ifstream file = open(m_pixelsBegin);
   PixelWords words = {};
-  forPixels(film, m_shard, [&](int column, int row) {
+  forEachPixel(film, m_shard, [&](int column, int row) {
     file.read(reinterpret_cast<char*>(words.data()), sizeof words);
     setWords(words, film.at(column, row));
   });
   if (!file)
-    throw damaged();
+    throw makeDamageError();
 }
 
 } // namespace fenestra

@@ -21,38 +21,38 @@
 namespace fenestra {
 
 /// Content of a film's file. `made`: an object that tells what the film was made with.
-std::string filmContent(const RenderResult& result, const Shard& shard,
-                        const nlohmann::ordered_json& made);
+std::string encodeCheckpoint(const RenderResult& result, const Shard& shard,
+                             const nlohmann::ordered_json& metadata);
 
 /// Film in a file, which may be damaged or come from strangers: sizes and digest are checked before
 /// anything is believed, or memory taken.
-class FilmFile {
+class CheckpointFile {
 public:
   /// Reads all but the pixels. Throws Error (input).
-  explicit FilmFile(const std::filesystem::path& path);
+  explicit CheckpointFile(const std::filesystem::path& path);
 
   const std::filesystem::path& path() const { return m_path; }
   int width() const { return m_width; }
   int height() const { return m_height; }
   const Shard& shard() const { return m_shard; }
   /// Facts that the film was made with: an object.
-  const nlohmann::json& made() const { return m_header.at("made"); }
+  const nlohmann::json& metadata() const { return m_header.at("made"); }
   /// Arithmetic of the samples (RenderResult::target).
   std::string target() const;
   /// RenderResult::finishedSamples and begunSamples.
-  std::uint64_t finishedSamples() const { return samplesOf("finished"); }
-  std::uint64_t begunSamples() const { return samplesOf("begun"); }
+  std::uint64_t finishedSamples() const { return readCount("finished"); }
+  std::uint64_t begunSamples() const { return readCount("begun"); }
   /// Counts of this part's work.
   Counters counters() const;
 
   /// Progress, over an empty film. Takes memory for width() x height() pixels.
-  RenderResult begun() const;
+  RenderResult readProgress() const;
   /// Puts the pixels of this part into a film of the same size. Throws Error (input).
-  void read(Film& film) const;
+  void readPixels(Film& film) const;
 
 private:
-  std::uint64_t samplesOf(const char* key) const;
-  Error damaged() const;
+  std::uint64_t readCount(const char* key) const;
+  Error makeDamageError() const;
   std::ifstream open(std::uint64_t position) const;
 
   std::filesystem::path m_path;

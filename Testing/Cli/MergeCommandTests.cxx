@@ -138,13 +138,13 @@ TEST_F(MergeCommand, FewerSamplesOrAChangedInputAreNamed) {
   const Arguments films = parts(2);
   std::filesystem::remove(folder / films[1]);
   ASSERT_EQ(run({"volume.nrrd", "--size", "64x64", "--samples", "4", "--segmentation",
-                 "segments.seg.nrrd", "--focus", "A", "--shard", "2/2", "--checkpoint", films[1]},
+                 "segments.seg.nrrd", "--focus", "A", "--shard", "2/2", "--checkpoint", shards[1]},
                 folder.path())
                 .status,
             0);
   const Outcome fewer = merge(films, {"--output", "merged.exr"});
   EXPECT_EQ(fewer.status, 2);
-  EXPECT_NE(fewer.err.find(films[1] + ": has 4 samples a pixel"), std::string::npos) << fewer.err;
+  EXPECT_NE(fewer.err.find(shards[1] + ": has 4 samples a pixel"), std::string::npos) << fewer.err;
   std::filesystem::remove(folder / films[1]);
   part(2, 2);
   std::string samples = ramp();

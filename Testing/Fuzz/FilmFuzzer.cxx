@@ -12,9 +12,9 @@ FENESTRA_FUZZ(Film, input) {
   content += fenestra::asBytes(std::array{digest.value()});
   const auto path = fenestra::fuzzing::asFile(content, "a.film");
   fenestra::fuzzing::readOrRefuse([&] {
-    const fenestra::FilmFile film(path);
+    const fenestra::CheckpointFile film(path);
     const nlohmann::json here = {{"settings", {{"seed", {"1"}}}}, {"inputs", {{{"file", "a"}}}}};
-    fenestra::firstDifference(film.made(), here, path.string());
+    fenestra::findDifference(film.made(), here, path.string());
     constexpr int most =
         64; // pixels of a row and a column: a command knows the size, and checks it
     if (film.width() > most || film.height() > most)

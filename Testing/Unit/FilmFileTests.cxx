@@ -9,12 +9,12 @@
 #include <array>
 #include <random>
 
-namespace fenestra::testing::FilmFileTests {
+namespace fenestra::testing::CheckpointFileTests {
 namespace {
 
-const nlohmann::ordered_json madeForTest = {{"version", "1"}, {"settings", {{"seed", {"1"}}}}};
+const nlohmann::ordered_json testMetadata = {{"version", "1"}, {"settings", {{"seed", {"1"}}}}};
 
-RenderResult someResult(int width, int height, double noise) {
+RenderResult renderResult(int width, int height, double noise) {
   RenderSettings settings;
   settings.samples = 21;
   settings.noise = noise;
@@ -22,81 +22,82 @@ RenderResult someResult(int width, int height, double noise) {
   return wavyScene(width, height).render(settings);
 }
 
-RenderResult readFrom(const std::filesystem::path& path) {
-  const FilmFile file(path);
-  RenderResult result = file.begun();
-  file.read(result.film);
+RenderResult readCheckpoint(const std::filesystem::path& path) {
+  const CheckpointFile file(path);
+  RenderResult result = file.readProgress();
+  file.readPixels(result.film);
   return result;
 }
 
 /// Makes certain pixels certain again, which the scene says, not the film.
-void copyCertainty(const Film& from, Film& to) {
+void copyDeterministic(const Film& from, Film& to) {
   for (int row = 0; row < to.height(); ++row)
     for (int column = 0; column < to.width(); ++column)
       to.at(column, row).isDeterministic = from.at(column, row).isDeterministic;
 }
 
-TEST(FilmFile, RoundTripKeepsEveryBit) {
+TEST(CheckpointFile, RoundTripKeepsEveryBit) {
   const TemporaryFolder folder;
   for (const double noise : {-1.0, 0.01}) {
-    const RenderResult result = someResult(80, 72, noise);
+    const RenderResult result = renderResult(80, 72, noise);
     EXPECT_EQ(result.last.plan.noise().empty(), noise < 0.0);
-    const auto path = folder.write("a.film", filmContent(result, {}, madeForTest));
-    EXPECT_EQ(FilmFile(path).made(), nlohmann::json(madeForTest));
-    RenderResult again = readFrom(path);
-    copyCertainty(result.film, again.film);
-    expectIdentical(result.film, again.film);
-    EXPECT_EQ(again.film.hasIndependentHalves(), result.film.hasIndependentHalves());
-    EXPECT_EQ(again.finishedSamples, result.finishedSamples);
-    EXPECT_EQ(again.begunSamples, result.begunSamples);
-    EXPECT_EQ(again.last.samples, result.last.samples);
-    EXPECT_EQ(again.last.noise, result.last.noise);
-    EXPECT_EQ(again.last.plan.noise(), result.last.plan.noise());
-    EXPECT_EQ(again.target, result.target);
-    EXPECT_EQ(again.counters.paths, result.counters.paths);
-    EXPECT_EQ(again.counters.gradients, result.counters.gradients);
+    const auto path = folder.write("a.film", encodeCheckpoint(result, {}, testMetadata));
+    EXPECT_EQ(CheckpointFile(path).metadata(), nlohmann::json(testMetadata));
+    RenderResult loaded = readCheckpoint(path);
+    copyDeterministic(result.film, loaded.film);
+    expectIdentical(result.film, loaded.film);
+    EXPECT_EQ(loaded.film.hasIndependentHalves(), result.film.hasIndependentHalves());
+    EXPECT_EQ(loaded.finishedSamples, result.finishedSamples);
+    EXPECT_EQ(loaded.begunSamples, result.begunSamples);
+    EXPECT_EQ(loaded.last.samples, result.last.samples);
+    EXPECT_EQ(loaded.last.noise, result.last.noise);
+    EXPECT_EQ(loaded.last.plan.noise(), result.last.plan.noise());
+    EXPECT_EQ(loaded.target, result.target);
+    EXPECT_EQ(loaded.counters.paths, result.counters.paths);
+    EXPECT_EQ(loaded.counters.gradients, result.counters.gradients);
   }
 }
 
-TEST(FilmFile, PartsHoldTheirTilesAlone) {
+TEST(CheckpointFile, PartsHoldTheirTilesAlone) {
   const TemporaryFolder folder;
-  const RenderResult result = someResult(33, 21, -1.0);
-  Film sum = readFrom(folder.write("a.film", filmContent(result, {}, madeForTest))).film;
-  const Film whole = sum;
+  const RenderResult result = renderResult(33, 21, -1.0);
+  Film sum =
+      readCheckpoint(folder.write("a.film", encodeCheckpoint(result, {}, testMetadata))).film;
+  const Film full = sum;
   std::size_t bytes = 0;
   sum = Film(33, 21, true, result.film.pixels().front().blockSize);
   for (int index = 0; index < 4; ++index) {
-    const auto path = folder.write("p.film", filmContent(result, {index, 4}, madeForTest));
+    const auto path = folder.write("p.film", encodeCheckpoint(result, {index, 4}, testMetadata));
     bytes += bytesOf(path).size();
-    EXPECT_EQ(FilmFile(path).shard(), (Shard{index, 4}));
-    FilmFile(path).read(sum);
+    EXPECT_EQ(CheckpointFile(path).shard(), (Shard{index, 4}));
+    CheckpointFile(path).readPixels(sum);
   }
-  expectIdentical(whole, sum);
+  expectIdentical(full, sum);
   EXPECT_LT(bytes, bytesOf(folder / "a.film").size() + 4000);
 }
 
-TEST(FilmFile, DamagedByteAnywhereIsRefused) {
+TEST(CheckpointFile, DamagedByteAnywhereIsRefused) {
   const TemporaryFolder folder;
-  const std::string content = filmContent(someResult(8, 8, -1.0), {}, madeForTest);
-  ASSERT_NO_THROW(readFrom(folder.write("a.film", content)));
+  const std::string content = encodeCheckpoint(renderResult(8, 8, -1.0), {}, testMetadata);
+  ASSERT_NO_THROW(readCheckpoint(folder.write("a.film", content)));
   std::mt19937 random(1);
   for (std::size_t at = 0; at < content.size(); at += 1 + random() % (at < 700 ? 5 : 90)) {
     std::string damaged = content;
     damaged[at] = static_cast<char>(damaged[at] ^ 1 << random() % 8);
     const auto path = folder.write("a.film", damaged);
-    expectRefused(path, "film", [&] { readFrom(path); });
+    expectRefused(path, "film", [&] { readCheckpoint(path); });
   }
 }
 
-TEST(FilmFile, TruncatedOrLongerFileIsRefused) {
+TEST(CheckpointFile, TruncatedOrLongerFileIsRefused) {
   const TemporaryFolder folder;
-  const std::string content = filmContent(someResult(8, 8, -1.0), {}, madeForTest);
+  const std::string content = encodeCheckpoint(renderResult(8, 8, -1.0), {}, testMetadata);
   for (std::size_t size = 0; size < content.size(); size += size < 700 ? 23 : 1009) {
     const auto path = folder.write("a.film", content.substr(0, size));
-    expectRefused(path, "film", [&] { readFrom(path); });
+    expectRefused(path, "film", [&] { readCheckpoint(path); });
   }
   const auto path = folder.write("a.film", content + '\0');
-  expectRefused(path, "damaged", [&] { readFrom(path); });
+  expectRefused(path, "damaged", [&] { readCheckpoint(path); });
 }
 
 /// `content` with the digest that it should have.
@@ -108,17 +109,18 @@ std::string withDigest(std::string content) {
 }
 
 /// `content` with a text in its header replaced by one of the same length, and a right digest.
-std::string forged(std::string content, const std::string& text, const std::string& by) {
-  EXPECT_EQ(text.size(), by.size());
+std::string replaceText(std::string content, const std::string& text,
+                        const std::string& replacement) {
+  EXPECT_EQ(text.size(), replacement.size());
   const std::size_t at = content.find(text);
   EXPECT_NE(at, content.npos) << text;
-  return withDigest(content.replace(at, text.size(), by));
+  return withDigest(content.replace(at, text.size(), replacement));
 }
 
-TEST(FilmFile, ForgedHeaderIsRefused) {
+TEST(CheckpointFile, ForgedHeaderIsRefused) {
   const TemporaryFolder folder;
-  const std::string content = filmContent(someResult(8, 8, -1.0), {}, madeForTest);
-  ASSERT_NO_THROW(readFrom(folder.write("a.film", forged(content, "[8,8]", "[8,8]"))));
+  const std::string content = encodeCheckpoint(renderResult(8, 8, -1.0), {}, testMetadata);
+  ASSERT_NO_THROW(readCheckpoint(folder.write("a.film", replaceText(content, "[8,8]", "[8,8]"))));
   const std::pair<const char*, const char*> forgeries[] = {
       {"[8,8]", "[9,8]"},
       {"[8,8]", "[0,8]"},
@@ -131,15 +133,15 @@ TEST(FilmFile, ForgedHeaderIsRefused) {
       {"false", "true "},
       {"\"made\"", "\"mode\""},
   };
-  for (const auto& [text, by] : forgeries) {
-    const auto path = folder.write("a.film", forged(content, text, by));
-    expectRefused(path, "", [&] { readFrom(path); });
+  for (const auto& [text, replacement] : forgeries) {
+    const auto path = folder.write("a.film", replaceText(content, text, replacement));
+    expectRefused(path, "", [&] { readCheckpoint(path); });
   }
 }
 
-TEST(FilmFile, ChangedFilmOfARightDigestIsReadOrRefused) {
+TEST(CheckpointFile, ChangedFilmOfARightDigestIsReadOrRefused) {
   const TemporaryFolder folder;
-  const std::string content = filmContent(someResult(2, 2, -1.0), {}, madeForTest);
+  const std::string content = encodeCheckpoint(renderResult(2, 2, -1.0), {}, testMetadata);
   std::mt19937 random(2);
   int read = 0;
   for (int i = 0; i < 500; ++i) {
@@ -148,7 +150,7 @@ TEST(FilmFile, ChangedFilmOfARightDigestIsReadOrRefused) {
       changed[random() % 420] = static_cast<char>(random() % 4 ? '0' + random() % 10 : random());
     const auto path = folder.write("a.film", withDigest(changed));
     try {
-      readFrom(path);
+      readCheckpoint(path);
       ++read;
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::input) << error.what();
@@ -159,4 +161,4 @@ TEST(FilmFile, ChangedFilmOfARightDigestIsReadOrRefused) {
 }
 
 } // namespace
-} // namespace fenestra::testing::FilmFileTests
+} // namespace fenestra::testing::CheckpointFileTests

@@ -154,7 +154,7 @@ TEST_F(NrrdFiles, ForeignDepthFileIsNotReplaced) {
   store(path("view-Z.nrrd"), depth.erase(mark, depth.find('\n', mark) + 1 - mark));
   written(image, "view.nrrd"); // format of earlier versions: the same grid
   store(path("view-Z.nrrd"), "somebody else's");
-  EXPECT_EQ(kindOf([&] { written(image, "view.nrrd"); }, "view-Z.nrrd"), ErrorKind::usage);
+  EXPECT_EQ(kindOf([&] { save(image, "view.nrrd"); }, "view-Z.nrrd"), ErrorKind::usage);
   EXPECT_EQ(contentOf(path("view-Z.nrrd")), "somebody else's");
 }
 
@@ -214,11 +214,11 @@ TEST_F(DisplayFiles, KnownValuesHaveStraightAlpha) {
 
 TEST_F(DisplayFiles, AlphaIsWrittenOnlyWithTransparency) {
   Image image = renderedImage();
-  EXPECT_EQ(readImage(written(image, "opaque.png")).channels.count("A"), 0u);
-  EXPECT_EQ(readImage(written(image, "opaque.tiff")).channels.count("A"), 0u);
+  EXPECT_EQ(readImage(save(image, "opaque.png")).channels.count("A"), 0u);
+  EXPECT_EQ(readImage(save(image, "opaque.tiff")).channels.count("A"), 0u);
   image.channels["A"][3] = 0.75f;
-  EXPECT_EQ(readImage(written(image, "clear.png")).channels.count("A"), 1u);
-  EXPECT_EQ(readImage(written(image, "clear.TIF")).channels.count("A"), 1u);
+  EXPECT_EQ(readImage(save(image, "clear.png")).channels.count("A"), 1u);
+  EXPECT_EQ(readImage(save(image, "clear.TIF")).channels.count("A"), 1u);
 }
 
 TEST_F(DisplayFiles, TopRowStaysOnTop) {
