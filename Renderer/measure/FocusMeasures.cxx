@@ -144,7 +144,7 @@ std::optional<double> contextRemoved(const SceneView& scene, const Mask& focus,
   });
 }
 
-std::optional<FocusReport> measureFocus(const SceneView& scene, const CellRanges& ranges,
+std::optional<FocusReport> measureFocus(const SceneView& scene, const MinMaxGrid& ranges,
                                         const Mask& focus, const std::vector<double>& depth,
                                         std::uint64_t seed, const StopFlag& stop) {
   const Clip noClip = ClipNone();

@@ -45,7 +45,7 @@ struct FocusReport {
 
 /// All measures above of a scene. `ranges`: those of its majorants. `depth`: as for focusPoints.
 /// Nothing: stopped.
-std::optional<FocusReport> measureFocus(const SceneView& scene, const CellRanges& ranges,
+std::optional<FocusReport> measureFocus(const SceneView& scene, const MinMaxGrid& ranges,
                                         const Mask& focus, const std::vector<double>& depth,
                                         std::uint64_t seed, const StopFlag& stop);
 

@@ -15,7 +15,7 @@ constexpr Command subcommands[] = {
     {[]() -> const CommandSyntax& { return renderSyntax; }, renderCommand},
     {inspectSyntax, inspectCommand},
     {turntableSyntax, turntableCommand},
-    {studySyntax, studyCommand},
+    {batchSyntax, batchCommand},
     {mergeSyntax, mergeCommand},
     {serveSyntax, serveCommand},
     {compareSyntax, compareCommand},

@@ -33,7 +33,7 @@ int compareCommand(int argc, char** argv, int first);
 int phantomCommand(int argc, char** argv, int first);
 int mergeCommand(int argc, char** argv, int first);
 int serveCommand(int argc, char** argv, int first);
-int studyCommand(int argc, char** argv, int first);
+int batchCommand(int argc, char** argv, int first);
 int turntableCommand(int argc, char** argv, int first);
 int describeCommand(int argc, char** argv, int first);
 

@@ -25,31 +25,31 @@ namespace fs = std::filesystem;
 using State = RowOutcome::State;
 
 /// Part K of N of the rows, from 0.
-struct RowShare {
-  std::size_t part = 0, parts = 1;
+struct RowShard {
+  std::size_t index = 0, count = 1;
 
-  bool has(std::size_t row) const { return row % parts == part; }
+  bool has(std::size_t row) const { return row % count == index; }
 };
 
-struct StudyOptions {
+struct BatchOptions {
   std::vector<std::string> formats; ///< beside .png
   int workers = 1;
   int threads = 1; ///< of all workers together
-  RowShare share;
+  RowShard shard;
   bool restart = false;
   ProgressMode progress = ProgressMode::automatic;
 };
 
 /// Renders the rows that are not finished, some at once.
-class Study {
+class Batch {
 public:
-  Study(const StudyOptions& options, StudyResults& results)
+  Batch(const BatchOptions& options, BatchResults& results)
       : m_options(options),
         m_results(results),
         m_view(options.progress, "Study"),
         m_workers(static_cast<std::size_t>(options.workers)) {
     for (std::size_t row = 0; row < results.rows.size(); ++row)
-      if (options.share.has(row))
+      if (options.shard.has(row))
         m_rows.push_back(row);
   }
 
@@ -59,16 +59,16 @@ public:
     while (hasWork()) {
       for (std::size_t i = 0; i < m_workers.size(); ++i) {
         if (m_workers[i] && m_workers[i]->child.hasEnded())
-          end(i);
+          finishWorker(i);
         while (!m_workers[i] && m_next < m_rows.size() && !m_stop)
-          begin(m_rows[m_next++], i);
+          beginRow(m_rows[m_next++], i);
       }
       if (m_stop)
-        askToStop();
-      m_view.show(fraction(), reached(), false);
+        requestStop();
+      m_view.show(fraction(), statusFields(), false);
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
-    m_view.show(m_stop ? fraction() : 1.0, reached(), true);
+    m_view.show(m_stop ? fraction() : 1.0, statusFields(), true);
   }
 
   std::size_t rows() const { return m_rows.size(); }
@@ -80,7 +80,7 @@ private:
   /// Row under way.
   struct Worker {
     std::size_t row;
-    std::unique_ptr<StudyRecord> record;
+    std::unique_ptr<RowManifest> manifest;
     Child child;
     Stopwatch watch = {};
   };
@@ -91,58 +91,59 @@ private:
   }
 
   /// Threads of a worker: all of them, shared out.
-  int threadsOf(std::size_t worker) const {
+  int workerThreads(std::size_t worker) const {
     const int share = m_options.threads / m_options.workers;
     const int rest = m_options.threads % m_options.workers;
     return std::max(1, share + (static_cast<int>(worker) < rest ? 1 : 0));
   }
 
-  void begin(std::size_t row, std::size_t worker) {
+  void beginRow(std::size_t row, std::size_t worker) {
     try {
-      auto record = std::make_unique<StudyRecord>(m_results.rows[row], m_results.folder,
-                                                  m_options.formats, m_options.restart);
-      if (record->finished()) {
-        ++m_kept;
-        m_results.outcomes[row] = *record->finished();
+      auto manifest = std::make_unique<RowManifest>(m_results.rows[row], m_results.folder,
+                                                    m_options.formats, m_options.restart);
+      if (manifest->finished()) {
+        ++m_skipped;
+        m_results.outcomes[row] = *manifest->finished();
         return;
       }
-      record->begin();
-      start(row, std::move(record), worker);
+      manifest->begin();
+      startWorker(row, std::move(manifest), worker);
     } catch (const Error& error) {
-      tell(row, {State::failed, error.exitStatus(), 0.0, error.what()});
+      reportOutcome(row, {State::failed, error.exitStatus(), 0.0, error.what()});
     }
   }
 
   /// Throws Error (output).
-  void start(std::size_t row, std::unique_ptr<StudyRecord> record, std::size_t worker) {
-    auto arguments = record->arguments(threadsOf(worker));
-    m_workers[worker].reset(new Worker{row, std::move(record), Child(std::move(arguments))});
+  void startWorker(std::size_t row, std::unique_ptr<RowManifest> manifest, std::size_t worker) {
+    auto arguments = manifest->arguments(workerThreads(worker));
+    m_workers[worker].reset(new Worker{row, std::move(manifest), Child(std::move(arguments))});
   }
 
-  void end(std::size_t index) {
+  void finishWorker(std::size_t index) {
     const std::unique_ptr<Worker> worker = std::move(m_workers[index]);
     const Child& child = worker->child;
     RowOutcome outcome{State::done, child.status(), worker->watch.seconds()};
-    const bool wasYoung = m_asked && outcome.status == 128 + SIGTERM; // without a handler yet
+    const bool wasYoung =
+        m_hasRequestedStop && outcome.status == 128 + SIGTERM; // without a handler yet
     if (wasYoung || outcome.status == stoppedStatus) {
       outcome.state = State::stopped;
       outcome.status = stoppedStatus;
     } else if (outcome.status != 0) {
       outcome.state = State::failed;
-      outcome.error = errorLine(child);
+      outcome.error = findErrorLine(child);
     }
     try {
-      if (!m_stop && worker->record->beginsAnew(outcome))
-        return start(worker->row, std::move(worker->record), index);
-      worker->record->finish(outcome);
+      if (!m_stop && worker->manifest->discardCheckpoint(outcome))
+        return startWorker(worker->row, std::move(worker->manifest), index);
+      worker->manifest->finish(outcome);
     } catch (const Error& error) {
       outcome = {State::failed, error.exitStatus(), outcome.seconds, error.what()};
     }
-    tell(worker->row, outcome);
+    reportOutcome(worker->row, outcome);
   }
 
   /// Last line that the process wrote which is no warning.
-  static std::string errorLine(const Child& child) {
+  static std::string findErrorLine(const Child& child) {
     if (child.status() > 128)
       return concat("ended by signal ", child.status() - 128, " (",
                     ::strsignal(child.status() - 128), ")");
@@ -155,7 +156,7 @@ private:
   }
 
   /// Keeps what came of a row, and prints it.
-  void tell(std::size_t row, const RowOutcome& outcome) {
+  void reportOutcome(std::size_t row, const RowOutcome& outcome) {
     m_results.outcomes[row] = outcome;
     ++m_rendered;
     m_seconds += outcome.seconds;
@@ -170,8 +171,8 @@ private:
   }
 
   /// Asks running processes once to end: they write what they have reached.
-  void askToStop() {
-    if (std::exchange(m_asked, true))
+  void requestStop() {
+    if (std::exchange(m_hasRequestedStop, true))
       return;
     for (const auto& worker : m_workers)
       if (worker)
@@ -181,7 +182,7 @@ private:
   /// Finished share of the rows that were to be made, in [0, 1]; of a row under way by the mean
   /// seconds of rows so far.
   double fraction() const {
-    const double toDo = static_cast<double>(m_rows.size() - m_kept);
+    const double toDo = static_cast<double>(m_rows.size() - m_skipped);
     double done = static_cast<double>(m_rendered);
     for (const auto& worker : m_workers)
       if (worker && m_seconds > 0.0)
@@ -190,26 +191,27 @@ private:
     return toDo > 0.0 ? std::min(1.0, done / toDo) : 1.0;
   }
 
-  std::vector<std::string> reached() const {
+  std::vector<std::string> statusFields() const {
     std::vector<std::string> fields = {
-        concat("row ", std::min(m_kept + m_rendered + 1, m_rows.size()), " of ", m_rows.size())};
+        concat("row ", std::min(m_skipped + m_rendered + 1, m_rows.size()), " of ", m_rows.size())};
     if (failed() > 0)
       fields.push_back(concat(failed(), " failed"));
     return fields;
   }
 
-  const StudyOptions& m_options;
-  StudyResults& m_results;
+  const BatchOptions& m_options;
+  BatchResults& m_results;
   ProgressView m_view;
   std::vector<std::size_t> m_rows; ///< of this run
   std::vector<std::unique_ptr<Worker>> m_workers;
-  std::size_t m_next = 0, m_kept = 0, m_rendered = 0; ///< rows: to begin, of earlier runs, of this
-  double m_seconds = 0.0;                             ///< of the rows of this run
+  std::size_t m_next = 0, m_skipped = 0,
+              m_rendered = 0; ///< rows: to begin, of earlier runs, of this
+  double m_seconds = 0.0;     ///< of the rows of this run
   std::atomic<bool> m_stop = false;
-  bool m_asked = false;
+  bool m_hasRequestedStop = false;
 };
 
-RowShare shareOf(const OptionValues& values) {
+RowShard parseRowShard(const OptionValues& values) {
   const std::string text = values.text("rows").value_or("1/1");
   std::size_t part = 0, parts = 0;
   char rest = 0;
@@ -219,26 +221,26 @@ RowShare shareOf(const OptionValues& values) {
   return {part - 1, parts};
 }
 
-StudyOptions studyOptions(const OptionValues& values) {
-  StudyOptions options;
+BatchOptions makeBatchOptions(const OptionValues& values) {
+  BatchOptions options;
   options.formats = values.list("formats");
   for (const std::string& format : options.formats)
     if (format != "exr" && format != "nrrd" && format != "tif")
       throw usageError("--formats: expected exr, nrrd or tif, got '", oneLine(format), "'");
   options.threads = threadCount(values);
   options.workers = static_cast<int>(values.integer("workers").value_or(1));
-  options.share = shareOf(values);
+  options.shard = parseRowShard(values);
   options.restart = values.has("restart");
   options.progress = readOptions(values).progress;
   return options;
 }
 
 /// Flags of all rows, without the study's own.
-OptionValues givenToAllRows(const OptionValues& values) {
+OptionValues commonValues(const OptionValues& values) {
   OptionValues common = values;
-  for (const Option& flag : studySyntax().options)
-    if (!isImageOption(flag) && flag.name != "layers")
-      common.remove(flag.name);
+  for (const Option& option : batchSyntax().options)
+    if (!isImageOption(option) && option.name != "layers")
+      common.remove(option.name);
   for (const char* name : {"TABLE", "output", "workers", "formats", "rows", "restart"})
     common.remove(name);
   return common;
@@ -246,41 +248,42 @@ OptionValues givenToAllRows(const OptionValues& values) {
 
 } // namespace
 
-int studyCommand(int argc, char** argv, int first) {
-  const std::optional<OptionValues> values = parseCommandLine(studySyntax(), argc, argv, first);
+int batchCommand(int argc, char** argv, int first) {
+  const std::optional<OptionValues> values = parseCommandLine(batchSyntax(), argc, argv, first);
   if (!values)
     return 0;
-  const StudyOptions options = studyOptions(*values);
-  StudyResults results{*values->text("TABLE"), {}, {}, {}};
+  const BatchOptions options = makeBatchOptions(*values);
+  BatchResults results{*values->text("TABLE"), {}, {}, {}};
   results.folder = values->text("output").value_or(
       (results.table.parent_path() / results.table.stem()).string());
-  results.rows = readStudyTable(results.table, givenToAllRows(*values));
+  results.rows = readBatchTable(results.table, commonValues(*values));
   results.outcomes.resize(results.rows.size());
   const CreatedFolders made(results.folder);
   Outputs outputs;
-  const bool isWhole = options.share.parts == 1; // one of several machines knows its own rows only
-  if (isWhole)
+  const bool isComplete =
+      options.shard.count == 1; // one of several machines knows its own rows only
+  if (isComplete)
     declareResults(results, outputs);
   const Stopwatch watch;
-  Study study(options, results);
-  study.run();
-  if (isWhole)
+  Batch batch(options, results);
+  batch.run();
+  if (isComplete)
     writeResults(results, outputs);
   outputs.commit();
   std::cout << oneLine(concat(results.folder, ": ", results.count(State::done), " of ",
-                              study.rows(), " rows done, ", study.rendered(), " rendered now, ",
+                              batch.rows(), " rows done, ", batch.rendered(), " rendered now, ",
                               toString(watch.seconds(), 3), " s",
-                              study.isStopped() ? " (stopped on request; the same command goes on)"
+                              batch.isStopped() ? " (stopped on request; the same command goes on)"
                                                 : ""))
             << std::endl;
-  if (study.isStopped())
+  if (batch.isStopped())
     return stopStatus();
   for (std::size_t row = 0; row < results.rows.size(); ++row)
     if (const RowOutcome& outcome = results.outcomes[row]; outcome.state == State::failed) {
       const bool isKnown = outcome.status == static_cast<int>(ErrorKind::usage) ||
                            outcome.status == static_cast<int>(ErrorKind::input);
       throw Error(isKnown ? static_cast<ErrorKind>(outcome.status) : ErrorKind::output,
-                  concat(results.table, ": ", study.failed(), " of ", study.rows(),
+                  concat(results.table, ": ", batch.failed(), " of ", batch.rows(),
                          " rows failed, the first ", results.rows[row].name, ": ", outcome.error));
     }
   return 0;

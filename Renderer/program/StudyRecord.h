@@ -21,13 +21,13 @@ struct RowOutcome {
 /// Folder, files and record of a row, held against other studies of these names during the
 /// object's life. Until the row is done its film lies there, too, from which a row that was
 /// interrupted goes on.
-class StudyRecord {
+class RowManifest {
 public:
   /// Makes the folder. Reads the record of the row, if any; with `restart`, nothing counts as
   /// finished. `formats`: extensions of pictures beside .png. Throws Error: usage if another
   /// process makes this row, or if a file is there that is not as recorded; input if the record is
   /// damaged; output.
-  StudyRecord(const StudyRow& row, const std::filesystem::path& folder,
+  RowManifest(const BatchRow& row, const std::filesystem::path& folder,
               const std::vector<std::string>& formats, bool restart);
 
   /// Outcome of an earlier run with the same flags and inputs that was done; nullopt: none.
@@ -41,7 +41,7 @@ public:
   /// True if the film may be why the row's process refused to begin (files or machine have
   /// changed, or the film is damaged): it is removed, and the row has to be made from nothing.
   /// Throws Error (output).
-  bool beginsAnew(const RowOutcome& outcome);
+  bool discardCheckpoint(const RowOutcome& outcome);
   /// Records what came of the row; of one that is done, files and inputs. Throws Error.
   void finish(const RowOutcome& outcome);
 
@@ -50,22 +50,22 @@ private:
   /// Files that the row has.
   std::vector<std::filesystem::path> files() const;
   /// Throws Error (output).
-  void removeFilm() const;
+  void removeCheckpoint() const;
 
-  const StudyRow& m_row;
+  const BatchRow& m_row;
   std::filesystem::path m_folder; ///< of the row
   CreatedFolders m_made;
-  std::vector<std::filesystem::path> m_pictures;
-  std::filesystem::path m_film;
-  bool m_goesOn = false; ///< from the film
+  std::vector<std::filesystem::path> m_images;
+  std::filesystem::path m_checkpoint;
+  bool m_isResumed = false; ///< from the film
   NameLock m_lock;
-  Manifest m_record;
+  Manifest m_manifest;
   Outputs m_outputs;
   std::optional<RowOutcome> m_finished;
 };
 
 /// Files of a row in its folder: NAME.png, and its statistics.
-std::filesystem::path rowPicture(const StudyRow& row, const std::filesystem::path& folder);
-std::filesystem::path rowStats(const StudyRow& row, const std::filesystem::path& folder);
+std::filesystem::path rowImagePath(const BatchRow& row, const std::filesystem::path& folder);
+std::filesystem::path rowStatsPath(const BatchRow& row, const std::filesystem::path& folder);
 
 } // namespace fenestra

@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 using State = RowOutcome::State;
 
-const char* nameOf(State state) {
+const char* stateName(State state) {
   switch (state) {
   case State::done:
     return "done";
@@ -26,11 +26,11 @@ const char* nameOf(State state) {
   }
 }
 
-fs::path summaryPath(const StudyResults& results) {
+fs::path summaryPath(const BatchResults& results) {
   return results.folder / "study.csv";
 }
 
-std::vector<fs::path> sheetPaths(const StudyResults& results) {
+std::vector<fs::path> sheetPaths(const BatchResults& results) {
   std::vector<fs::path> paths = {results.folder / "study.png"};
   while (paths.size() * mostOnSheet < results.rows.size())
     paths.push_back(results.folder / concat("study-", paths.size() + 1, ".png"));
@@ -62,10 +62,10 @@ void addMeasures(const nlohmann::json& json, const std::string& place, Measures&
 }
 
 /// Empty without statistics.
-Measures measuresOf(const StudyRow& row, const fs::path& folder) {
+Measures readMeasures(const BatchRow& row, const fs::path& folder) {
   Measures measures;
   try {
-    const fs::path path = rowStats(row, folder);
+    const fs::path path = rowStatsPath(row, folder);
     addMeasures(parseJson(readText(path), path.string()), "", measures);
   } catch (const Error&) { // the row has none, or they are damaged
     measures.clear();
@@ -73,7 +73,7 @@ Measures measuresOf(const StudyRow& row, const fs::path& folder) {
   return measures;
 }
 
-std::string summary(const StudyResults& results, const std::vector<Measures>& measures) {
+std::string formatSummary(const BatchResults& results, const std::vector<Measures>& measures) {
   std::vector<std::string> columns = {"noise", "noiseFiltered", "focusCoverage"};
   for (const Measures& row : measures)
     for (const auto& [name, value] : row)
@@ -84,10 +84,10 @@ std::string summary(const StudyResults& results, const std::vector<Measures>& me
   std::string text = csvLine(head);
   for (std::size_t i = 0; i < results.rows.size(); ++i) {
     const RowOutcome& outcome = results.outcomes[i];
-    const fs::path picture = rowPicture(results.rows[i], results.folder);
+    const fs::path picture = rowImagePath(results.rows[i], results.folder);
     std::vector<std::string> fields = {
         results.rows[i].name,
-        nameOf(outcome.state),
+        stateName(outcome.state),
         outcome.state == State::missing ? "" : concat(outcome.status),
         outcome.error,
         outcome.state == State::done ? picture.lexically_relative(results.folder).string() : "",
@@ -101,61 +101,63 @@ std::string summary(const StudyResults& results, const std::vector<Measures>& me
   return text;
 }
 
-SheetEntry entryOf(const StudyRow& row, const RowOutcome& outcome, const Measures& measures,
-                   const fs::path& folder) {
-  SheetEntry entry{.name = row.name, .lines = {row.shown}};
+SheetEntry makeSheetEntry(const BatchRow& row, const RowOutcome& outcome, const Measures& measures,
+                          const fs::path& folder) {
+  SheetEntry entry{.name = row.name, .lines = {row.label}};
   if (outcome.state == State::done)
-    entry.picture = rowPicture(row, folder);
+    entry.picture = rowImagePath(row, folder);
   if (outcome.state != State::done)
-    entry.problem = concat(nameOf(outcome.state), outcome.error.empty() ? "" : ": ", outcome.error);
-  std::vector<std::string> told;
+    entry.problem =
+        concat(stateName(outcome.state), outcome.error.empty() ? "" : ": ", outcome.error);
+  std::vector<std::string> facts;
   const auto measure = [&measures](const char* name) {
     const auto found = measures.find(name);
     return found == measures.end() ? std::optional<double>() : found->second;
   };
   if (const auto coverage = measure("focusCoverage"))
-    told.push_back(concat(std::lround(100.0 * *coverage), " % of the focus seen"));
+    facts.push_back(concat(std::lround(100.0 * *coverage), " % of the focus seen"));
   if (const auto filtered = measure("noiseFiltered");
       const auto noise = filtered ? filtered : measure("noise"))
-    told.push_back("noise " + toString(*noise, 2));
-  entry.lines.push_back(join(told, ", "));
+    facts.push_back("noise " + toString(*noise, 2));
+  entry.lines.push_back(join(facts, ", "));
   return entry;
 }
 
 } // namespace
 
-std::size_t StudyResults::count(State state) const {
+std::size_t BatchResults::count(State state) const {
   return static_cast<std::size_t>(std::ranges::count(outcomes, state, &RowOutcome::state));
 }
 
-void declareResults(const StudyResults& results, Outputs& outputs) {
+void declareResults(const BatchResults& results, Outputs& outputs) {
   outputs.add(summaryPath(results), isSummary);
   for (const fs::path& path : sheetPaths(results))
     declareImage(path, outputs, NamedBy::standard);
 }
 
-void writeResults(const StudyResults& results, Outputs& outputs) {
+void writeResults(const BatchResults& results, Outputs& outputs) {
   std::vector<Measures> measures;
   std::vector<SheetEntry> entries;
   for (std::size_t i = 0; i < results.rows.size(); ++i) {
-    const StudyRow& row = results.rows[i];
+    const BatchRow& row = results.rows[i];
     const RowOutcome& outcome = results.outcomes[i];
-    measures.push_back(outcome.state == State::done ? measuresOf(row, results.folder) : Measures());
-    entries.push_back(entryOf(row, outcome, measures.back(), results.folder));
+    measures.push_back(outcome.state == State::done ? readMeasures(row, results.folder)
+                                                    : Measures());
+    entries.push_back(makeSheetEntry(row, outcome, measures.back(), results.folder));
   }
-  outputs.write(summaryPath(results), summary(results, measures));
+  outputs.write(summaryPath(results), formatSummary(results, measures));
   const std::vector<fs::path> paths = sheetPaths(results);
   for (std::size_t i = 0; i < paths.size(); ++i) {
-    std::string told = concat(results.rows.size(), " cases");
+    std::string facts = concat(results.rows.size(), " cases");
     for (const State state : {State::done, State::failed, State::stopped, State::missing})
       if (const std::size_t count = results.count(state); count > 0)
-        told += concat(", ", count, " ", nameOf(state));
+        facts += concat(", ", count, " ", stateName(state));
     if (paths.size() > 1)
-      told += concat(", sheet ", i + 1, " of ", paths.size());
+      facts += concat(", sheet ", i + 1, " of ", paths.size());
     const std::size_t first = i * mostOnSheet;
     const auto shown =
         std::span(entries).subspan(first, std::min(mostOnSheet, entries.size() - first));
-    writeImage(contactSheet(results.table.stem().string(), told, shown), {}, paths[i], outputs,
+    writeImage(contactSheet(results.table.stem().string(), facts, shown), {}, paths[i], outputs,
                {DisplayView::standard});
   }
 }

@@ -14,21 +14,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* studyGroup = "Study";
+constexpr const char* batchGroup = "Study";
 constexpr const char* nameColumn = "name";
 constexpr const char* inputColumn = "input";
 
-const Option studyFlags[] = {
-    {"output", "DIR", studyGroup,
+const Option batchTable[] = {
+    {"output", "DIR", batchGroup,
      "Folder for a folder of each row, study.csv and study.png [the table's name without .csv]"},
-    {"workers", "N", studyGroup, "Rows at once, 1 to 256; they share out the threads",
+    {"workers", "N", batchGroup, "Rows at once, 1 to 256; they share out the threads",
      ValueSpec::integer(1, 256).withDefault("1")},
-    {"formats", "L,...", studyGroup, "Pictures of each row beside the .png: exr, nrrd, tif [none]",
+    {"formats", "L,...", batchGroup, "Pictures of each row beside the .png: exr, nrrd, tif [none]",
      ValueSpec::list()},
-    {"rows", "K/N", studyGroup,
+    {"rows", "K/N", batchGroup,
      "Only the K-th of N parts of the rows, dealt out in turn, for several machines; the same "
      "command without --rows then makes study.csv and study.png [all]"},
-    {"restart", "", studyGroup, "Make all rows again, in place of whatever has their names"},
+    {"restart", "", batchGroup, "Make all rows again, in place of whatever has their names"},
 };
 
 /// Throws Error (input) unless the name can be a folder's on every system, and is no formula of a
@@ -48,20 +48,20 @@ void requireFolderName(const std::string& name, const std::string& source,
 }
 
 /// True if several cells may give the flag.
-bool isRepeatable(const Option& flag) {
-  return flag.spec.canRepeat || flag.spec.type == "string-vector";
+bool canHaveColumns(const Option& option) {
+  return option.spec.canRepeat || option.spec.type == "string-vector";
 }
 
 /// Flags of the columns; null: name, input. Throws Error (input).
-std::vector<const Option*> columnsOf(const CsvRecord& head, const std::string& source) {
+std::vector<const Option*> parseColumns(const CsvRecord& head, const std::string& source) {
   std::vector<std::string> known = {nameColumn, inputColumn};
-  for (const Option& flag : renderSyntax.options)
-    if (isImageOption(flag))
-      known.push_back(flag.name);
+  for (const Option& option : renderSyntax.options)
+    if (isImageOption(option))
+      known.push_back(option.name);
   std::vector<const Option*> columns;
   std::set<std::string> names;
   for (const std::string& name : head.fields) {
-    const Option* const flag = findOption(renderSyntax.options, name);
+    const Option* const option = findOption(renderSyntax.options, name);
     if (std::ranges::find(known, name) == known.end()) {
       const std::string likely = findNearest(toLower(name), known);
       throw inputError(source, "line ", head.line, ": '", fenestra::shown(name),
@@ -69,10 +69,10 @@ std::vector<const Option*> columnsOf(const CsvRecord& head, const std::string& s
                        likely.empty() ? "; columns are name, input and flags of fenestra render"
                                       : "; did you mean " + likely + "?");
     }
-    if (!names.insert(name).second && !(flag && isRepeatable(*flag)))
+    if (!names.insert(name).second && !(option && canHaveColumns(*option)))
       throw inputError(source, "line ", head.line, ": has the column '", name,
                        "' twice; remove one");
-    columns.push_back(flag);
+    columns.push_back(option);
   }
   for (const char* required : {nameColumn, inputColumn})
     if (!names.contains(required))
@@ -82,7 +82,7 @@ std::vector<const Option*> columnsOf(const CsvRecord& head, const std::string& s
 
 /// The file that a cell names, from the working folder; the cell itself where it names none. What
 /// looks like a file's name and is not beside the table is no file of the working folder either.
-std::string fileOf(const std::string& cell, const fs::path& folder) {
+std::string resolveFile(const std::string& cell, const fs::path& folder) {
   std::error_code failed;
   const fs::path beside = folder / cell;
   const bool isName = cell.find_first_of("./") == cell.npos;
@@ -98,15 +98,15 @@ public:
       : m_folder(path.parent_path()),
         m_source(path.string()),
         m_head(head),
-        m_columns(columnsOf(head, m_source)),
+        m_columns(parseColumns(head, m_source)),
         m_common(common) {}
 
-  StudyRow row(const CsvRecord& record) {
+  BatchRow row(const CsvRecord& record) {
     const std::string place = concat("line ", record.line);
     if (record.fields.size() != m_columns.size())
       throw inputError(m_source, place, ": has ", record.fields.size(), " fields, the first line ",
                        m_columns.size(), "; quote fields with commas, or add what is missing");
-    StudyRow row;
+    BatchRow row;
     OptionValues others = m_common;
     for (std::size_t i = 0; i < m_columns.size(); ++i) {
       const std::string cell(trim(record.fields[i]));
@@ -120,27 +120,28 @@ public:
       throw inputError(m_source, place, ": has the name of line ", known->second, ", '", row.name,
                        "'; rename one");
     const std::vector<std::string> rest = others.arguments();
-    row.flags.insert(row.flags.end(), rest.begin(), rest.end());
+    row.arguments.insert(row.arguments.end(), rest.begin(), rest.end());
     return row;
   }
 
 private:
-  void add(StudyRow& row, OptionValues& others, std::size_t column, const std::string& cell,
+  void add(BatchRow& row, OptionValues& others, std::size_t column, const std::string& cell,
            const std::string& place) {
     if (oneLine(cell) != cell)
       throw inputError(m_source, place, ", ", m_head.fields[column],
                        ": holds a line's end or no UTF-8; write it on one line");
-    const Option* const flag = m_columns[column];
-    if (!flag && m_head.fields[column] == nameColumn)
+    const Option* const option = m_columns[column];
+    if (!option && m_head.fields[column] == nameColumn)
       row.name = cell;
-    else if (!flag)
+    else if (!option)
       row.input = (m_folder / cell).string();
     else {
-      const bool namesFile = flag->canNameFile();
-      row.flags.push_back(concat("--", flag->name, "=", namesFile ? fileOf(cell, m_folder) : cell));
-      others.remove(flag->name);
+      const bool namesFile = option->canNameFile();
+      row.arguments.push_back(
+          concat("--", option->name, "=", namesFile ? resolveFile(cell, m_folder) : cell));
+      others.remove(option->name);
       if (!namesFile || cell.find_first_of("./") == cell.npos)
-        row.shown += (row.shown.empty() ? "" : ", ") + cell;
+        row.label += (row.label.empty() ? "" : ", ") + cell;
     }
   }
 
@@ -154,13 +155,13 @@ private:
 
 } // namespace
 
-const CommandSyntax& studySyntax() {
-  static const std::vector<Option> flags = [] {
-    std::vector<Option> all(std::begin(studyFlags), std::end(studyFlags));
-    for (const Option& flag : renderSyntax.options)
-      if (isImageOption(flag) || flag.name == "layers" || flag.name == "threads" ||
-          flag.name == "progress")
-        all.push_back(flag);
+const CommandSyntax& batchSyntax() {
+  static const std::vector<Option> options = [] {
+    std::vector<Option> all(std::begin(batchTable), std::end(batchTable));
+    for (const Option& option : renderSyntax.options)
+      if (isImageOption(option) || option.name == "layers" || option.name == "threads" ||
+          option.name == "progress")
+        all.push_back(option);
     return all;
   }();
   static const CommandSyntax syntax = {
@@ -176,12 +177,12 @@ const CommandSyntax& studySyntax() {
       "beyond 36 there are further sheets. Flags of fenestra render are for all rows whose cell is "
       "empty.",
       {{"TABLE", "Table of the rows (.csv), the first line naming the columns"}},
-      flags,
+      options,
   };
   return syntax;
 }
 
-std::vector<StudyRow> readStudyTable(const fs::path& path, const OptionValues& common) {
+std::vector<BatchRow> readBatchTable(const fs::path& path, const OptionValues& common) {
   constexpr std::size_t mostRows = 10'000;
   const std::vector<CsvRecord> records = parseCsv(readText(path), path.string());
   if (records.size() < 2)
@@ -190,7 +191,7 @@ std::vector<StudyRow> readStudyTable(const fs::path& path, const OptionValues& c
   if (records.size() > mostRows + 1)
     throw inputError(path, "holds more than ", mostRows, " rows; split it");
   TableReader reader(path, records.front(), common);
-  std::vector<StudyRow> rows;
+  std::vector<BatchRow> rows;
   for (const CsvRecord& record : records) {
     const auto isEmpty = [](const std::string& field) { return trim(field).empty(); };
     if (&record != &records.front() && !std::ranges::all_of(record.fields, isEmpty))

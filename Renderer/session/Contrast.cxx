@@ -84,10 +84,10 @@ FocusContrast chosenContrast(const std::optional<double>& asked, const Mask& foc
 std::string told(const FocusContrast& chosen) {
   if (!chosen.contrast)
     return "";
-  const std::string paled =
+  const std::string desaturated =
       chosen.saturation < 1.0 ? "; surroundings paled to " + toString(chosen.saturation, 3) : "";
   return concat(toString(chosen.contrast->deltaE[0], 3), " (colour-blind ",
-                toString(chosen.contrast->colorBlind(), 3), paled, ")");
+                toString(chosen.contrast->colorBlind(), 3), desaturated, ")");
 }
 
 } // namespace fenestra

@@ -61,7 +61,7 @@ public:
   const TintContrast* tintContrast() const { return m_tintContrast.result().get(); }
   /// Clip with its measures, and the depth of the focus.
   const ClipResult& clipResult() const { return *m_clip; }
-  const CellRanges& ranges() const { return *m_ranges; }
+  const MinMaxGrid& ranges() const { return *m_ranges; }
   /// Null unless the request asks for features.
   const FeatureBuffers* features() const { return m_features.result().get(); }
   StageSeconds seconds() const;

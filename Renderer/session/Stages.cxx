@@ -227,7 +227,7 @@ ViewDirection bestView(const Read& volume, const Settings& settings, const Focus
       ViewScorer(volume->volume, domainOf(volume, settings), look->transfer, *focus->mask));
 }
 
-Box findOccupiedBounds(const Read& volume, const Handle<CellRanges>& ranges,
+Box findOccupiedBounds(const Read& volume, const Handle<MinMaxGrid>& ranges,
                        const Handle<Look>& look) {
   return MajorantGrid(volume->volume.grid, *ranges, look->transfer, ClipNone()).occupiedBounds();
 }
@@ -274,7 +274,7 @@ ClipResult builtClip(const ClipRequest& request, bool measure, double steadyDegr
   return planeOrNone(request, measure, domain, focus, *camera);
 }
 
-CellRanges rangesOf(const Read& volume, int apron) {
+MinMaxGrid rangesOf(const Read& volume, int apron) {
   return {volume->volume, apron};
 }
 
@@ -318,7 +318,7 @@ ContextStyle styleAround(const Focus& focus, double extinction, double saturatio
   return {{focus, &*focus->mask}, extinction, saturation};
 }
 
-MajorantGrid majorantsOf(const Read& volume, const Handle<CellRanges>& ranges,
+MajorantGrid majorantsOf(const Read& volume, const Handle<MinMaxGrid>& ranges,
                          const Handle<Look>& look, const Handle<ClipResult>& clip,
                          const Handle<ContextStyle>& style, const Handle<Mixture>& mixture) {
   return {volume->volume.grid, *ranges, look->transfer, clip->clip, style.get(), mixture.get()};

@@ -55,7 +55,7 @@ ViewDirection bestView(const Read& volume, const Settings& settings, const Focus
                        const Handle<Look>& look);
 
 /// Box, in index space, of the cells that hold matter under the transfer function, before any clip.
-Box findOccupiedBounds(const Read& volume, const Handle<CellRanges>& ranges,
+Box findOccupiedBounds(const Read& volume, const Handle<MinMaxGrid>& ranges,
                        const Handle<Look>& look);
 
 /// `matter`: framed without a scene's camera; by value, so that a look that fills the same cells
@@ -94,7 +94,7 @@ ClipResult builtClip(const ClipRequest& request, bool measure, double steadyDegr
                      const Handle<Camera>& camera);
 
 /// `apron`: MajorantGrid::apronFor.
-CellRanges rangesOf(const Read& volume, int apron);
+MinMaxGrid rangesOf(const Read& volume, int apron);
 
 /// Skin without a segment: what lies within 2.5 mm of the air around the body (outerLayer()).
 Mask skinOf(const Read& volume);
@@ -123,7 +123,7 @@ FocusContrast contrastOf(const Read& volume, const Focus& focus, const Handle<Lo
 ContextStyle styleAround(const Focus& focus, double extinction, double saturation);
 
 /// `style`: null if the context is unchanged; `mixture`: null if there is none.
-MajorantGrid majorantsOf(const Read& volume, const Handle<CellRanges>& ranges,
+MajorantGrid majorantsOf(const Read& volume, const Handle<MinMaxGrid>& ranges,
                          const Handle<Look>& look, const Handle<ClipResult>& clip,
                          const Handle<ContextStyle>& style, const Handle<Mixture>& mixture);
 

@@ -98,7 +98,7 @@ private:
   Camera m_camera{{}, 1, 1};
   Clip m_clip;
   LightSet m_lights{{}, m_volume.grid, m_camera};
-  MajorantGrid m_majorants{m_volume.grid, CellRanges(m_volume, 0), m_transfer, m_clip};
+  MajorantGrid m_majorants{m_volume.grid, MinMaxGrid(m_volume, 0), m_transfer, m_clip};
   SceneView m_scene{m_volume,
                     m_transfer,
                     m_majorants,

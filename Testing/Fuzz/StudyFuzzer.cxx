@@ -6,13 +6,13 @@
 
 #include <set>
 
-FENESTRA_FUZZ(Study, input) {
+FENESTRA_FUZZ(Batch, input) {
   using namespace fenestra;
   const std::string name = fuzzing::chooseName(input, std::array{"t.csv", "record.json"});
   const std::filesystem::path path = fuzzing::asFile(input, name);
   if (name == "t.csv") {
     std::set<std::string> names;
-    for (const StudyRow& row : readStudyTable(path, OptionValues(studySyntax().flags)))
+    for (const BatchRow& row : readBatchTable(path, OptionValues(batchSyntax().flags)))
       if (row.name.find('/') != row.name.npos || row.input.empty() ||
           !names.insert(row.name).second)
         throw std::logic_error("a row that has no folder of its own, or no input");

@@ -58,7 +58,7 @@ TEST_P(CroppedTransmittance, IsExponentialAlongTheChord) {
   Affine box = turnedBox({0.3, -0.4, 0.2}, {3.0, 5.0, 4.0}, 0.7);
   if (GetParam()) // sheared, as by a transform above the box
     box = Affine(Mat3::FromRows({1.0, 0.3, 0.0}, {0.0, 1.0, -0.2}, {0.1, 0.0, 0.8})) * box;
-  const MajorantGrid majorants(volume.grid, CellRanges(volume, 0), looser, ClipNone{});
+  const MajorantGrid majorants(volume.grid, MinMaxGrid(volume, 0), looser, ClipNone{});
   const Medium<float> medium(volume.grid, std::get<LargeArray<float>>(volume.voxels), transfer);
   const Clip clip;
   const Tracker<float> tracker(Domain(volume.grid, CropBox(box)), medium, majorants, clip);

@@ -28,7 +28,7 @@ TEST(RatioTracking, ShadowThroughASlabIsExponential) {
   const double depth = 2.0;
   const TestScene scene = slab(100.0, depth, Rgb::Zero());
   const Camera camera(scene.pose, 8, 8);
-  const CellRanges ranges(scene.volume, 0);
+  const MinMaxGrid ranges(scene.volume, 0);
   const MajorantGrid majorants(scene.volume.grid, ranges, scene.transfer, ClipNone{});
   const auto& voxels = std::get<LargeArray<float>>(scene.volume.voxels);
   // Majorant twice the extinction, so that not all ratios are 0: a scaled grid.

@@ -276,7 +276,7 @@ std::unique_ptr<Follower> followerOf(const Subject& subject, const MajorantGrid&
 class Tracking : public ::testing::TestWithParam<std::tuple<int, std::string>> {
 protected:
   void SetUp() override {
-    m_majorants.emplace(m_subject.volume.grid, CellRanges(m_subject.volume, 0), m_subject.transfer,
+    m_majorants.emplace(m_subject.volume.grid, MinMaxGrid(m_subject.volume, 0), m_subject.transfer,
                         m_clip);
     m_follower = followerOf(m_subject, *m_majorants, m_clip, std::get<1>(GetParam()));
     if (!m_follower)
@@ -375,7 +375,7 @@ TEST_P(SeamTracking, TransmittanceBesideTheFocusFollowsTheExactSurface) {
     options.offset = 0.3;
     const Clip clip = buildClippingSurface(camera, Domain(grid), ball, options).clip;
     const auto& depth = std::get<ClipDepth>(clip);
-    const MajorantGrid majorants(grid, CellRanges(fog.volume, 0), fog.transfer, clip);
+    const MajorantGrid majorants(grid, MinMaxGrid(fog.volume, 0), fog.transfer, clip);
     const auto follower = followerOf(fog, majorants, clip, GetParam());
     if (!follower)
       GTEST_SKIP() << "this machine has no " << GetParam();

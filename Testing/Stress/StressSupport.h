@@ -85,7 +85,7 @@ class RayProbe {
 public:
   RayProbe(const Volume& volume, TransferFunction transfer)
       : m_transfer(std::move(transfer)),
-        m_majorants(volume.grid, CellRanges(volume, MajorantGrid::apronFor(m_transfer)), m_transfer,
+        m_majorants(volume.grid, MinMaxGrid(volume, MajorantGrid::apronFor(m_transfer)), m_transfer,
                     m_clip),
         m_medium(volume.grid, std::get<LargeArray<Voxel>>(volume.voxels), m_transfer),
         m_tracker(volume.grid, m_medium, m_majorants, m_clip),

@@ -133,13 +133,13 @@ TEST(Tiles, PartsAreEvenAndScattered) {
     std::vector<int> owners(static_cast<std::size_t>(tiles.count()), 0);
     for (int index = 0; index < count; ++index) {
       const std::vector<int> shard = tiles.of({index, count});
-      EXPECT_NEAR(static_cast<double>(part.size()), 1.0 * tiles.count() / count, 1.0);
+      EXPECT_NEAR(static_cast<double>(shard.size()), 1.0 * tiles.count() / count, 1.0);
       int left = 0;
       for (const int tile : shard) {
         ++owners[static_cast<std::size_t>(tile)];
         left += tiles.at(tile).left < 250 ? 1 : 0;
       }
-      EXPECT_NEAR(left, 0.5 * static_cast<double>(part.size()), 0.06 * 63 * 38 / count);
+      EXPECT_NEAR(left, 0.5 * static_cast<double>(shard.size()), 0.06 * 63 * 38 / count);
     }
     EXPECT_EQ(std::ranges::count(owners, 1), tiles.count());
   }

@@ -46,10 +46,10 @@ TEST(ColorVision, LabOfPrimaries) {
 
 TEST(ColorVision, DichromatsSeeGreysAsTheyAreAndLoseOneHue) {
   const Rgb red(0.5, 0.1, 0.1), olive(0.22, 0.2, 0.1), blue(0.1, 0.1, 0.5), teal(0.02, 0.18, 0.2);
-  const auto difference = [](ColorSight sight, const Rgb& x, const Rgb& y) {
-    return deltaE2000(labOf(seenBy(sight, x)), labOf(seenBy(sight, y)));
+  const auto difference = [](ColorSight vision, const Rgb& x, const Rgb& y) {
+    return deltaE2000(labOf(seenBy(vision, x)), labOf(seenBy(vision, y)));
   };
-  for (const ColorSight sight : colorSights)
+  for (const ColorSight vision : colorSights)
     for (const double grey : {0.0, 0.2, 1.0})
       EXPECT_LT(deltaE76(labOf(seenBy(sight, Rgb::Constant(grey))), labOf(Rgb::Constant(grey))),
                 0.01);
@@ -63,14 +63,14 @@ TEST(ColorVision, DichromatsSeeGreysAsTheyAreAndLoseOneHue) {
 constexpr double inside = 60.0, outside = 20.0, air = -1000.0;
 
 /// Ball of radius 6 mm in other matter up to `radius`, then air.
-Volume ballVolume(double radius) {
+Volume makeBallVolume(double radius) {
   return makeVolume<float>(centredGrid({40, 40, 40}, Vec3::Ones()), [radius](const Vec3& index) {
     const double distance = (index - Vec3::Constant(19.5)).norm();
     return distance <= 6.0 ? inside : distance <= radius ? outside : air;
   });
 }
 
-Mask ballMask() {
+Mask makeBallMask() {
   const Grid grid = centredGrid({16, 16, 16}, Vec3::Ones());
   Mask mask{grid, {}, 0, {"ball"}};
   for (int z = 0; z < 16; ++z)
@@ -83,72 +83,78 @@ Mask ballMask() {
 }
 
 /// Air is transparent; the two kinds of matter have these albedos.
-TransferFunction twoColors(const Rgb& context, const Rgb& focus) {
+TransferFunction makeTransfer(const Rgb& context, const Rgb& focus) {
   return {ScalarFunction({knot(-500.0, 0.0), knot(0.0, 1.0)}),
           ColorFunction({{outside, context}, {inside, focus}})};
 }
 
 TEST(Contrast, TakesScalarsOfBothSidesOfTheBorder) {
-  const TransferFunction transfer = twoColors(Rgb(0.9, 0.5, 0.4), Rgb(0.9, 0.9, 0.9));
+  const TransferFunction transfer = makeTransfer(Rgb(0.9, 0.5, 0.4), Rgb(0.9, 0.9, 0.9));
   const auto mean = [](const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   };
-  const BorderScalars border = borderScalars(ballMask(), ballVolume(8.0), transfer);
-  EXPECT_EQ(mean(border.focus), inside);
-  EXPECT_EQ(mean(border.context), outside) << "air beyond does not count";
-  EXPECT_TRUE(borderScalars(ballMask(), ballVolume(6.0), transfer).context.empty()) << "air alone";
+  const BorderScalars scalars = borderScalars(makeBallMask(), makeBallVolume(8.0), transfer);
+  EXPECT_EQ(mean(scalars.focus), inside);
+  EXPECT_EQ(mean(scalars.context), outside) << "air beyond does not count";
+  EXPECT_TRUE(borderScalars(makeBallMask(), makeBallVolume(6.0), transfer).context.empty())
+      << "air alone";
 }
 
 /// Surroundings of the focus's own red lose it; of another colour they do not; what is asked for is
 /// done.
 TEST(Contrast, PalesSurroundingsThatLookLikeTheFocus) {
   const Rgb red(0.9, 0.4, 0.35), cream(0.99, 0.97, 0.9);
-  const Volume volume = ballVolume(15.0);
-  const FocusContrast same = chosenContrast({}, ballMask(), volume, twoColors(red, red));
+  const Volume volume = makeBallVolume(15.0);
+  const FocusContrast same = chosenContrast({}, makeBallMask(), volume, makeTransfer(red, red));
   EXPECT_EQ(same.saturation, grey);
   ASSERT_TRUE(same.contrast);
   EXPECT_GT(same.contrast->deltaE[0], 20.0);
   EXPECT_LT(same.contrast->deltaE[1], same.contrast->deltaE[0]);
-  const FocusContrast other = chosenContrast({}, ballMask(), volume, twoColors(red, cream));
+  const FocusContrast other = chosenContrast({}, makeBallMask(), volume, makeTransfer(red, cream));
   EXPECT_EQ(other.saturation, 1.0);
   EXPECT_TRUE(other.contrast && other.contrast->share() > 1.0);
-  const FocusContrast asked = chosenContrast(1.0, ballMask(), volume, twoColors(red, red));
+  const FocusContrast requested =
+      chosenContrast(1.0, makeBallMask(), volume, makeTransfer(red, red));
   EXPECT_EQ(asked.saturation, 1.0);
   EXPECT_EQ(asked.contrast->deltaE[0], 0.0);
   EXPECT_EQ(asked.contrast->deltaL, 0.0);
-  const FocusContrast alone = chosenContrast({}, ballMask(), ballVolume(6.0), twoColors(red, red));
-  EXPECT_EQ(alone.saturation, 1.0);
-  EXPECT_FALSE(alone.contrast);
+  const FocusContrast isolated =
+      chosenContrast({}, makeBallMask(), makeBallVolume(6.0), makeTransfer(red, red));
+  EXPECT_EQ(isolated.saturation, 1.0);
+  EXPECT_FALSE(isolated.contrast);
 }
 
 /// Surroundings of a colour near the focus's stay as colourful as they can: pale where that is
 /// enough, grey where it is not, be that enough or not.
 TEST(Contrast, PalesNoMoreThanIsNeeded) {
-  const Volume volume = ballVolume(15.0);
+  const Volume volume = makeBallVolume(15.0);
   const auto chosen = [&volume](const Rgb& context, const Rgb& focus) {
-    const auto albedoOf = [](const Rgb& encoded) { return albedoFor(decodeSrgb(encoded), 0.0); };
-    return chosenContrast({}, ballMask(), volume, twoColors(albedoOf(context), albedoOf(focus)));
+    const auto decodeAlbedo = [](const Rgb& encoded) {
+      return albedoFor(decodeSrgb(encoded), 0.0);
+    };
+    return chosenContrast({}, makeBallMask(), volume,
+                          makeTransfer(decodeAlbedo(context), decodeAlbedo(focus)));
   };
   const Rgb yellow(0.9, 0.75, 0.25), orange(0.9, 0.5, 0.3), red(0.78, 0.49, 0.43);
-  const FocusContrast pales = chosen(orange, yellow), greys = chosen(yellow, yellow),
-                      hides = chosen(red, red);
+  const FocusContrast muted = chosen(orange, yellow), grayed = chosen(yellow, yellow),
+                      insufficient = chosen(red, red);
   EXPECT_EQ(pales.saturation, pale);
   EXPECT_GT(pales.contrast->share(), 1.0);
-  EXPECT_EQ(greys.saturation, grey);
-  EXPECT_GT(greys.contrast->share(), 1.0);
-  EXPECT_EQ(hides.saturation, grey);
-  EXPECT_LT(hides.contrast->share(), 1.0);
+  EXPECT_EQ(grayed.saturation, grey);
+  EXPECT_GT(grayed.contrast->share(), 1.0);
+  EXPECT_EQ(insufficient.saturation, grey);
+  EXPECT_LT(insufficient.contrast->share(), 1.0);
 }
 
 /// Purple around grey-blue: paled, normal sight tells them apart better, and the colour-blind no
 /// longer do.
 TEST(Contrast, TakesNothingFromTheColorBlind) {
-  const auto albedoOf = [](const Rgb& encoded) { return albedoFor(decodeSrgb(encoded), 0.0); };
+  const auto decodeAlbedo = [](const Rgb& encoded) { return albedoFor(decodeSrgb(encoded), 0.0); };
   const TransferFunction transfer =
-      twoColors(albedoOf(Rgb(0.82, 0.486, 0.918)), albedoOf(Rgb(0.435, 0.506, 0.545)));
-  const Volume volume = ballVolume(15.0);
-  const Contrast paled = *chosenContrast(pale, ballMask(), volume, transfer).contrast;
-  const FocusContrast chosen = chosenContrast({}, ballMask(), volume, transfer);
+      makeTransfer(decodeAlbedo(Rgb(0.82, 0.486, 0.918)), decodeAlbedo(Rgb(0.435, 0.506, 0.545)));
+  const Volume volume = makeBallVolume(15.0);
+  const Contrast muted = *chosenContrast(pale, makeBallMask(), volume, transfer).contrast;
+  const FocusContrast chosen = chosenContrast({}, makeBallMask(), volume, transfer);
   EXPECT_EQ(chosen.saturation, 1.0);
   EXPECT_GT(paled.deltaE[0], chosen.contrast->deltaE[0]);
   EXPECT_LT(paled.deltaE[1], chosen.contrast->deltaE[1]);

@@ -37,7 +37,7 @@ struct Cube {
   double coverage(const Clip& clip) const {
     const Camera camera(scene.pose, scene.width, scene.height);
     const LightSet lights(scene.lights, scene.volume.grid, camera);
-    const CellRanges ranges(scene.volume, 0);
+    const MinMaxGrid ranges(scene.volume, 0);
     const MajorantGrid majorants(scene.volume.grid, ranges, scene.transfer, clip);
     const SceneView clipped{scene.volume, scene.transfer, majorants, lights, camera, clip};
     return focusCoverage(clipped, focusPoints(clipped, std::vector<double>(256, focusDepth)), 1);
@@ -65,7 +65,7 @@ TEST(Render, StopsWithinALongPath) {
   scene.transfer = linearTransfer(20000.0, Rgb::Ones()); // no absorption, and almost no escape
   const Camera camera(scene.pose, scene.width, scene.height);
   const LightSet lights(scene.lights, scene.volume.grid, camera);
-  const CellRanges ranges(scene.volume, 0);
+  const MinMaxGrid ranges(scene.volume, 0);
   const MajorantGrid majorants(scene.volume.grid, ranges, scene.transfer, scene.clip);
   RenderMonitor monitor;
   std::thread stopper([&] {

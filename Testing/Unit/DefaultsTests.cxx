@@ -133,9 +133,10 @@ TEST(TransparentShare, CountsVoxelsOfTheFocusWithoutExtinction) {
         ScalarFunction({{value, ScalarFunction::Value(0.0)}, {100.0, ScalarFunction::Value(1.0)}}),
         ColorFunction({{0.0, Rgb(1, 1, 1)}})};
   };
-  EXPECT_EQ(transparentFraction(focus, volume, from(-1.0)), 0.0);
-  EXPECT_NEAR(transparentFraction(focus, volume, from(4.5)), 0.25, 1e-12) << "0 to 4 of 0 to 19";
-  EXPECT_EQ(transparentFraction(focus, volume, from(50.0)), 1.0);
+  EXPECT_EQ(transparentFraction(focus, volume, makeTransfer(-1.0)), 0.0);
+  EXPECT_NEAR(transparentFraction(focus, volume, makeTransfer(4.5)), 0.25, 1e-12)
+      << "0 to 4 of 0 to 19";
+  EXPECT_EQ(transparentFraction(focus, volume, makeTransfer(50.0)), 1.0);
 }
 
 TEST(DefaultTransfer, HounsfieldRangeGivesACtPreset) {

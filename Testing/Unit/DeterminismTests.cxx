@@ -35,7 +35,7 @@ TEST(Render, StopOnRequestReturnsFinishedSamples) {
   const TestScene s = wavyScene();
   const Camera camera(s.pose, s.width, s.height);
   const LightSet lights(s.lights, s.volume.grid, camera);
-  const CellRanges ranges(s.volume, 0);
+  const MinMaxGrid ranges(s.volume, 0);
   const MajorantGrid majorants(s.volume.grid, ranges, s.transfer, s.clip);
   RenderMonitor monitor;
   monitor.stop = true;

@@ -54,7 +54,7 @@ void expectConservative(const TransferFunction& transfer, double low, double hig
   const Grid grid(Size3(29, 17, 11), map);
   Volume volume{grid, noise<Voxel>(grid.size, low, high), 0.0, 0.0, "noise", {}};
   computeRange(volume);
-  const CellRanges ranges(volume, MajorantGrid::apronFor(transfer));
+  const MinMaxGrid ranges(volume, MajorantGrid::apronFor(transfer));
   const MajorantGrid majorants(grid, ranges, transfer, ClipNone{});
   const Medium<Voxel> medium(grid, std::get<LargeArray<Voxel>>(volume.voxels), transfer);
 
@@ -98,9 +98,9 @@ TEST(MajorantGrid, MatterBoxHoldsAllMatterAndAtMostACellMore) {
   const auto boxFrom = [&](double threshold) {
     const TransferFunction transfer{ScalarFunction({knot(threshold, 0), knot(threshold + 1, 1)}),
                                     grey};
-    return MajorantGrid(grid, CellRanges(volume, 0), transfer, ClipNone{}).occupiedBounds();
+    return MajorantGrid(grid, MinMaxGrid(volume, 0), transfer, ClipNone{}).occupiedBounds();
   };
-  const Vec3 edge = CellRanges::edgeFor(grid).cast<double>();
+  const Vec3 edge = MinMaxGrid::edgeFor(grid).cast<double>();
   const Box box = boxFrom(100.0);
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_LE(box.lower[axis], first[axis] - 0.5);
@@ -138,7 +138,7 @@ double emptyFraction(const MajorantGrid& grid) {
 TEST(MajorantGrid, ClippedCellsAreEmptyAndCutOnesMarked) {
   const Grid grid(Size3(32, 32, 32), Affine::Identity());
   Volume volume{grid, LargeArray<float>(32768, 1.0F), 1.0, 1.0, "ones", {}};
-  const CellRanges ranges(volume, 0);
+  const MinMaxGrid ranges(volume, 0);
   const TransferFunction opaque{ScalarFunction({knot(0, 0), knot(1, 2)}), grey};
   CameraPose pose;
   pose.position = {16, 16, 100};
@@ -173,7 +173,7 @@ TEST(MajorantGrid, ClipAndStyleAreBoundedInTheStripAroundACell) {
   for (std::size_t i = 0; i < 24 * 24 * 11 + 24 * 9; ++i)
     focus->voxels[i] = 1;
   const ContextStyle style{.focus = focus, .extinction = 0.25};
-  const MajorantGrid majorants(grid, CellRanges(volume, 0), opaque, plane, &style);
+  const MajorantGrid majorants(grid, MinMaxGrid(volume, 0), opaque, plane, &style);
   const Medium<float> medium(grid, std::get<LargeArray<float>>(volume.voxels), opaque, &style);
   const Box box = grid.indexBox();
   for (int i = 0; i < briefly(200000); ++i) {
@@ -192,22 +192,22 @@ TEST(MajorantGrid, ClipAndStyleAreBoundedInTheStripAroundACell) {
   }
 }
 
-TEST(CellRanges, ThickSlicesMakeNoLongCells) {
+TEST(MinMaxGrid, ThickSlicesMakeNoLongCells) {
   Affine map = Affine::Identity();
   map.linear() = Mat3::Diagonal({0.5, 0.5, 5.0});
   const Grid grid(Size3(512, 512, 60), map);
-  const Size3 edge = CellRanges::edgeFor(grid);
+  const Size3 edge = MinMaxGrid::edgeFor(grid);
   EXPECT_EQ(edge.z(), 1);
   EXPECT_EQ(edge.x(), edge.y());
   EXPECT_NEAR(0.5 * static_cast<double>(edge.x()), 5.0, 2.5);
-  EXPECT_EQ(CellRanges::edgeFor(Grid(Size3(1, 1, 1), map)), Size3(1, 1, 1));
+  EXPECT_EQ(MinMaxGrid::edgeFor(Grid(Size3(1, 1, 1), map)), Size3(1, 1, 1));
 }
 
-TEST(CellRanges, CellsSpanAtLeastOneVoxel) {
+TEST(MinMaxGrid, CellsSpanAtLeastOneVoxel) {
   for (const double scale : {1e-300, 1.0, 1e308}) {
     Affine map = Affine::Identity();
     map.linear()(0, 1) = scale;
-    EXPECT_TRUE((CellRanges::edgeFor(Grid({3, 4, 2}, map)).array() >= 1).all());
+    EXPECT_TRUE((MinMaxGrid::edgeFor(Grid({3, 4, 2}, map)).array() >= 1).all());
   }
 }
 

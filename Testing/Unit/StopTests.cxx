@@ -32,7 +32,7 @@ TestScene endlessScene() {
 template <typename Work>
 void alongEndlessRay(Work&& work) {
   const TestScene s = endlessScene();
-  const MajorantGrid majorants(s.volume.grid, CellRanges(s.volume, 0), s.transfer, s.clip);
+  const MajorantGrid majorants(s.volume.grid, MinMaxGrid(s.volume, 0), s.transfer, s.clip);
   work(s, majorants, Ray{Vec3(-1.2e8, -1e9, -1.2e8), Vec3::UnitY()});
 }
 
@@ -75,7 +75,7 @@ TEST(Stop, EndsMeasuresOfEndlessWalks) {
   const TestScene s = endlessScene();
   const Camera camera(s.pose, s.width, s.height);
   const LightSet lights(s.lights, s.volume.grid, camera);
-  const MajorantGrid majorants(s.volume.grid, CellRanges(s.volume, 0), s.transfer, s.clip);
+  const MajorantGrid majorants(s.volume.grid, MinMaxGrid(s.volume, 0), s.transfer, s.clip);
   const SceneView scene{s.volume, s.transfer, majorants, lights, camera, s.clip};
   const auto pixels = static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.height);
   const FocusPoints behind = focusPoints(scene, std::vector<double>(pixels, 2e9));
@@ -89,7 +89,7 @@ TEST(Stop, EndsARenderOfEndlessPaths) {
   const TestScene s = endlessScene();
   const Camera camera(s.pose, s.width, s.height);
   const LightSet lights(s.lights, s.volume.grid, camera);
-  const MajorantGrid majorants(s.volume.grid, CellRanges(s.volume, 0), s.transfer, s.clip);
+  const MajorantGrid majorants(s.volume.grid, MinMaxGrid(s.volume, 0), s.transfer, s.clip);
   for (const Integrator transport : {Integrator::scalar, Integrator::simd}) {
     RenderMonitor monitor;
     RenderSettings settings;

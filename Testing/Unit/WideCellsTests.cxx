@@ -26,7 +26,7 @@ MajorantGrid makeMajorants(Extinction extinction, const Clip& clip = ClipNone{})
       {{0.0, ScalarFunction::Value(0.0)}, {1e6, ScalarFunction::Value(1e6)}});
   const TransferFunction transfer{.extinction = identity,
                                   .albedo = ColorFunction({{0.0, Rgb::Ones()}})};
-  return {grid, CellRanges(volume, 0), transfer, clip};
+  return {grid, MinMaxGrid(volume, 0), transfer, clip};
 }
 
 /// Contents of a code, as lanes decode it.
@@ -134,7 +134,7 @@ TEST(SimdMajorants, CellsOfFewVoxelsAreMergedAndOthersNot) {
   const TransferFunction thin{
       ScalarFunction({{0.0, ScalarFunction::Value(0.1)}, {1.0, ScalarFunction::Value(0.1)}}),
       ColorFunction({{0.0, Rgb::Ones()}})};
-  const SimdMajorants simd(MajorantGrid(grid, CellRanges(volume, 0), thin, ClipNone{}));
+  const SimdMajorants simd(MajorantGrid(grid, MinMaxGrid(volume, 0), thin, ClipNone{}));
   EXPECT_EQ(simd.merged, 1) << "4^3 voxels";
   EXPECT_EQ(simd.count, Size3(64, 64, 64));
 }

@@ -67,7 +67,7 @@ struct Fog {
       ScalarFunction({{0.0, ScalarFunction::Value(0.0)}, {1.0, ScalarFunction::Value(0.1)}}),
       ColorFunction({{0.0, Rgb::Ones()}})};
   Domain domain{volume.grid, std::nullopt};
-  MajorantGrid majorants{volume.grid, CellRanges(volume, 0), transfer, ClipNone{}};
+  MajorantGrid majorants{volume.grid, MinMaxGrid(volume, 0), transfer, ClipNone{}};
   Clip clip = ClipNone{};
   SimdTracker tracker{volume, domain, transfer, majorants, clip};
   LightSet lights;

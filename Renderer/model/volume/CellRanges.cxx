@@ -31,7 +31,7 @@ void addRow(const Voxel* row, std::vector<Voxel>& lows, std::vector<Voxel>& high
 
 } // namespace
 
-CellRanges::CellRanges(const Volume& volume, int apron)
+MinMaxGrid::MinMaxGrid(const Volume& volume, int apron)
     : m_apron(apron),
       m_edge(edgeFor(volume.grid)),
       m_cellCount((volume.grid.size.array() + m_edge.array() - 1) / m_edge.array()),
@@ -40,7 +40,7 @@ CellRanges::CellRanges(const Volume& volume, int apron)
   std::visit([&](const auto& voxels) { fill(volume.grid, voxels); }, volume.voxels);
 }
 
-Size3 CellRanges::edgeFor(const Grid& grid) {
+Size3 MinMaxGrid::edgeFor(const Grid& grid) {
   constexpr double wantedCells = 1 << 18;
   const Vec3 spacing = grid.spacing();
   const Vec3 size = grid.size.cast<double>();
@@ -75,7 +75,7 @@ Size3 CellRanges::edgeFor(const Grid& grid) {
 }
 
 template <typename Voxel>
-void CellRanges::fill(const Grid& grid, const LargeArray<Voxel>& voxels) {
+void MinMaxGrid::fill(const Grid& grid, const LargeArray<Voxel>& voxels) {
   // A row of cells is first reduced to one row of voxels, elementwise: memory is read in order,
   // with vector instructions.
   const auto fillSlab = [&](std::int64_t cz) {

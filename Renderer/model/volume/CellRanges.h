@@ -8,9 +8,9 @@ namespace fenestra {
 /// Cell c spans [c, c + 1] * edge - 0.5 in index space, in each axis. The cell's range covers every
 /// voxel that trilinear interpolation inside the cell can touch, plus `apron` voxels on every side
 /// (1 for central differences).
-class CellRanges {
+class MinMaxGrid {
 public:
-  CellRanges(const Volume& volume, int apron);
+  MinMaxGrid(const Volume& volume, int apron);
 
   /// Edges of a cell, voxels per axis. About 2^18 cells, as near to cubes in mm as whole voxels
   /// allow: thick slices must not make long cells with loose bounds.

@@ -120,7 +120,7 @@ public:
         m_medium.mixture ? evaluateMixture(which, p, scalar) : evaluateSingle(which, p, scalar);
     Float3 albedo = mean.albedo;
     if (m_medium.context)
-      albedo = paled(*m_medium.context, p, albedo);
+      albedo = desaturate(*m_medium.context, p, albedo);
     m_albedo = m_albedo + probability * albedo;
     const Float3 difference = differenceAt<Voxel>(m_medium.field, p);
     Float3 gradient = mapDirection(m_shading.indexDifferenceToGradient, difference);

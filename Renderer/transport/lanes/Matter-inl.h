@@ -33,10 +33,10 @@ HWY_INLINE Float3 albedoAt(const SimdShading& shading, LaneMask which, const Flo
 }
 
 /// ContextStyle::paled, outside the focus.
-HWY_INLINE Float3 paled(const SimdMedium::Context& context, const Float3& index,
-                        const Float3& albedo) {
-  const Float grey = dot(albedo, {0.2126F, 0.7152F, 0.0722F});
-  const auto channel = [&](Float x) { return lerp(grey, x, context.saturation); };
+HWY_INLINE Float3 desaturate(const SimdMedium::Context& context, const Float3& index,
+                             const Float3& albedo) {
+  const Float gray = dot(albedo, {0.2126F, 0.7152F, 0.0722F});
+  const auto channel = [&](Float x) { return lerp(gray, x, context.saturation); };
   return select(isFocus(context, index), albedo,
                 Float3{channel(albedo.x), channel(albedo.y), channel(albedo.z)});
 }

@@ -144,7 +144,7 @@ private:
       at.albedo = albedoAt(m_shading, going, index, at.scalar);
     }
     if (m_medium.context)
-      at.albedo = paled(*m_medium.context, index, at.albedo);
+      at.albedo = desaturate(*m_medium.context, index, at.albedo);
     if (m_shading.hybrid) {
       at.gradient = gradientAt(index);
       m_gradients += going.count();

@@ -103,7 +103,7 @@ CellBound mixtureBound(const Mixture& mixture, const Grid& grid, const Corners& 
 
 } // namespace
 
-MajorantGrid::MajorantGrid(const Grid& grid, const CellRanges& ranges,
+MajorantGrid::MajorantGrid(const Grid& grid, const MinMaxGrid& ranges,
                            const TransferFunction& transfer, const Clip& clip,
                            const ContextStyle* style, const Mixture* mixture)
     : m_cellCount(ranges.cellCount()), m_edge(ranges.edge()), m_cells(ranges.size()) {

@@ -22,15 +22,15 @@ public:
   /// opacity that the range allows, times the greatest keep and the style's greatest factor in the
   /// cell. Of a mixture it is the greatest over the components that have a share in the cell, since
   /// shares sum to 1. `ranges` needs the apron of apronFor().
-  MajorantGrid(const Grid& grid, const CellRanges& ranges, const TransferFunction& transfer,
+  MajorantGrid(const Grid& grid, const MinMaxGrid& ranges, const TransferFunction& transfer,
                const Clip& clip, const ContextStyle* style = nullptr,
                const Mixture* mixture = nullptr);
 
   /// Width, voxels, of the strip around a cell in which its bound holds, too: lanes may walk that
-  /// far beyond a face. Scalars are bounded half a voxel beyond (CellRanges).
+  /// far beyond a face. Scalars are bounded half a voxel beyond (MinMaxGrid).
   static constexpr double margin = 0.125;
 
-  /// Apron of CellRanges, voxels: central differences read one voxel further.
+  /// Apron of MinMaxGrid, voxels: central differences read one voxel further.
   static int apronFor(const TransferFunction& transfer) { return transfer.gradientOpacity ? 1 : 0; }
 
   const Size3& cellCount() const { return m_cellCount; }
