@@ -4,10 +4,10 @@ namespace fenestra {
 
 double Mat3::determinant() const {
   const Mat3& m = *this;
-  const auto part = [&m](int a, int b, int c) {
+  const auto cofactor = [&m](int a, int b, int c) {
     return m(0, a) * (m(1, b) * m(2, c) - m(1, c) * m(2, b));
   };
-  return part(0, 1, 2) - part(1, 0, 2) + part(2, 0, 1);
+  return cofactor(0, 1, 2) - cofactor(1, 0, 2) + cofactor(2, 0, 1);
 }
 
 Mat3 Mat3::inverse() const {
@@ -28,7 +28,7 @@ Affine Affine::inverse() const {
 }
 
 /// Rodrigues' formula.
-Affine rotationBy(double angle, const Vec3& axis) {
+Affine makeRotation(double angle, const Vec3& axis) {
   const Vec3 s = std::sin(angle) * axis, c = (1.0 - std::cos(angle)) * axis;
   const double xy = c.x() * axis.y(), xz = c.x() * axis.z(), yz = c.y() * axis.z();
   const Vec3 diagonal = c.cwiseProduct(axis) + Vec3::Constant(std::cos(angle));

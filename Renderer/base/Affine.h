@@ -119,13 +119,13 @@ constexpr Affine operator*(const Affine& a, const Affine& b) {
 /// LPS (DICOM, ITK) to RAS; its own inverse.
 inline constexpr Mat3 lpsToRas = Mat3::Diagonal({-1.0, -1.0, 1.0});
 
-constexpr Affine translationBy(const Vec3& by) {
+constexpr Affine makeTranslation(const Vec3& by) {
   return Affine(Mat3::Identity(), by);
 }
-constexpr Affine scalingBy(const Vec3& factors) {
+constexpr Affine makeScaling(const Vec3& factors) {
   return Affine(Mat3::Diagonal(factors));
 }
 /// Right-handed rotation about a unit axis through the origin; radians.
-Affine rotationBy(double angle, const Vec3& axis);
+Affine makeRotation(double angle, const Vec3& axis);
 
 } // namespace fenestra

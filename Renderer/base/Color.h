@@ -13,7 +13,7 @@ inline double luminance(const Rgb& color) {
 }
 
 /// Components, 0 to 1, of a colour 0xrrggbb.
-inline Rgb colorOf(std::uint32_t color) {
+inline Rgb hexToRgb(std::uint32_t color) {
   const auto byte = [color](unsigned shift) {
     return static_cast<double>((color >> shift) & 0xffU);
   };

@@ -10,7 +10,7 @@ namespace fenestra {
 struct Distribution {
   double mean = 0.0, p95 = 0.0, max = 0.0;
 
-  static Distribution of(std::vector<double> values) {
+  static Distribution compute(std::vector<double> values) {
     if (values.empty())
       return {};
     std::ranges::sort(values);

@@ -11,16 +11,16 @@ namespace {
 
 /// Bits of the instruction sets of both program and machine, pinned or not; the best has the
 /// lowest.
-std::int64_t knownSets() {
-  static const std::int64_t known = hwy::SupportedTargets() & HWY_TARGETS;
-  return known;
+std::int64_t supportedSets() {
+  static const std::int64_t supported = hwy::SupportedTargets() & HWY_TARGETS;
+  return supported;
 }
 
 } // namespace
 
 std::vector<std::string> instructionSets() {
   std::vector<std::string> names;
-  for (std::int64_t left = knownSets(); left != 0; left &= left - 1)
+  for (std::int64_t left = supportedSets(); left != 0; left &= left - 1)
     names.emplace_back(hwy::TargetName(left & -left));
   return names;
 }
@@ -31,7 +31,7 @@ std::string instructionSet() {
 }
 
 void useInstructionSet(const std::string& name) {
-  for (std::int64_t left = knownSets(); left != 0; left &= left - 1)
+  for (std::int64_t left = supportedSets(); left != 0; left &= left - 1)
     if (name == hwy::TargetName(left & -left))
       return hwy::SetSupportedTargetsForTest(left & -left);
   throw usageError("FENESTRA_INSTRUCTIONS: " + name +

@@ -11,17 +11,17 @@ namespace {
 /// Size of a large page of x86-64, and of ARM with small pages of 4 KiB; bytes.
 constexpr std::size_t largePage = std::size_t{2} << 20;
 /// Alignment of small arrays, bytes: a line of the cache.
-constexpr std::size_t line = 64;
+constexpr std::size_t cacheLine = 64;
 
-std::size_t roundedUp(std::size_t bytes, std::size_t to) {
+std::size_t roundUp(std::size_t bytes, std::size_t to) {
   return (bytes + to - 1) / to * to;
 }
 
 } // namespace
 
 void* allocateInLargePages(std::size_t bytes) {
-  const std::size_t alignment = bytes < largePage ? line : largePage;
-  const std::size_t size = roundedUp(std::max<std::size_t>(bytes, 1), alignment);
+  const std::size_t alignment = bytes < largePage ? cacheLine : largePage;
+  const std::size_t size = roundUp(std::max<std::size_t>(bytes, 1), alignment);
   void* const memory = std::aligned_alloc(alignment, size);
   if (memory == nullptr)
     throw std::bad_alloc();

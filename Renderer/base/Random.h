@@ -23,18 +23,18 @@ constexpr std::uint32_t mixBits32(std::uint32_t x) {
 }
 
 /// Uniform in [0, 1) from random bits: 0 occurs, the largest value is 1 - 2^-53.
-constexpr double uniformOf(std::uint64_t bits) {
+constexpr double toUniform(std::uint64_t bits) {
   return static_cast<double>(bits >> 11) * 0x1p-53;
 }
 
 /// Two from one, of 32 bits each.
-inline Vec2 uniform2Of(std::uint64_t bits) {
+inline Vec2 toUniform2(std::uint64_t bits) {
   return {static_cast<double>(bits >> 32) * 0x1p-32,
           static_cast<double>(bits & 0xffffffffU) * 0x1p-32};
 }
 
 /// Exponential with mean 1 from a uniform number of [0, 1); finite for every number, 0 included.
-inline double exponentialOf(double uniform) {
+inline double toExponential(double uniform) {
   return -std::log1p(-uniform);
 }
 
@@ -51,20 +51,20 @@ public:
 
   std::uint64_t bits() { return mixBits(m_state += gamma); }
 
-  double uniform() { return uniformOf(bits()); }
+  double uniform() { return toUniform(bits()); }
   Vec2 uniform2() {
     const double u = uniform();
     return {u, uniform()};
   }
 
-  double exponential() { return exponentialOf(uniform()); }
+  double exponential() { return toExponential(uniform()); }
 
 private:
   std::uint64_t m_state;
 };
 
 /// Uniform on the unit sphere.
-inline Vec3 uniformDirection(const Vec2& u) {
+inline Vec3 sampleUniformSphere(const Vec2& u) {
   const double z = 1.0 - 2.0 * u.x();
   const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
   return {r * std::cos(2.0 * pi * u.y()), r * std::sin(2.0 * pi * u.y()), z};

@@ -20,12 +20,12 @@ constexpr const char* toString(Sampling sampling) {
 /// Random bits of one sample, independent of each other: eight numbers that decide most, and the
 /// seed of all others.
 struct PrimarySamples {
-  std::uint64_t position;                 ///< in the pixel: uniform2Of
+  std::uint64_t position;                 ///< in the pixel: toUniform2
   std::uint64_t opticalDepth, acceptance; ///< optical depth to the eye ray's first tentative
-                                          ///< collision, and whether that one is real: uniformOf
-  std::uint64_t direction; ///< the first scattered direction: uniform2Of
+                                          ///< collision, and whether that one is real: toUniform
+  std::uint64_t direction; ///< the first scattered direction: toUniform2
   std::uint64_t choices;   ///< whether the first collision is a surface's, and the light
-                           ///< that is looked at there: uniform2Of
+                           ///< that is looked at there: toUniform2
   std::uint64_t pathSeed;
 };
 

@@ -10,15 +10,16 @@
 namespace fenestra {
 
 template <typename Stream>
-class Throwing : public Stream {
+class ThrowingStream : public Stream {
 public:
   template <typename... Arguments>
-  explicit Throwing(Arguments&&... arguments) : Stream(std::forward<Arguments>(arguments)...) {
+  explicit ThrowingStream(Arguments&&... arguments)
+      : Stream(std::forward<Arguments>(arguments)...) {
     this->exceptions(std::ios::badbit);
   }
 };
 
-using TextWriter = Throwing<std::ostringstream>;
-using TextReader = Throwing<std::istringstream>;
+using TextWriter = ThrowingStream<std::ostringstream>;
+using TextReader = ThrowingStream<std::istringstream>;
 
 } // namespace fenestra

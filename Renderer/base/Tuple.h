@@ -92,10 +92,10 @@ public:
   }
 
   constexpr Self cwiseMax(const Self& o) const {
-    return with(o, [](T a, T b) { return std::max(a, b); });
+    return combine(o, [](T a, T b) { return std::max(a, b); });
   }
   constexpr Self cwiseMin(const Self& o) const {
-    return with(o, [](T a, T b) { return std::min(a, b); });
+    return combine(o, [](T a, T b) { return std::min(a, b); });
   }
   constexpr Self cwiseMax(T o) const { return cwiseMax(Constant(o)); }
   constexpr Self cwiseMin(T o) const { return cwiseMin(Constant(o)); }
@@ -112,10 +112,10 @@ public:
   constexpr Self& operator/=(T divisor) & { return self() = self() / divisor; }
 
   friend constexpr Self operator+(const Self& a, const Self& b) {
-    return a.with(b, [](T p, T q) { return T(p + q); });
+    return a.combine(b, [](T p, T q) { return T(p + q); });
   }
   friend constexpr Self operator-(const Self& a, const Self& b) {
-    return a.with(b, [](T p, T q) { return T(p - q); });
+    return a.combine(b, [](T p, T q) { return T(p - q); });
   }
   friend constexpr Self operator*(const Self& a, T factor) {
     return a.unaryExpr([factor](T part) { return T(part * factor); });
@@ -135,7 +135,7 @@ protected:
   }
 
   template <typename F>
-  constexpr auto with(const Self& o, F&& f) const {
+  constexpr auto combine(const Self& o, F&& f) const {
     Kind<decltype(f(m_parts[0], o[0])), N> result;
     for (int i = 0; i < N; ++i)
       result[i] = f(m_parts[i], o[i]);
@@ -201,26 +201,26 @@ public:
   constexpr Array& operator/=(const Array& o) & { return *this = *this / o; }
 
   friend constexpr Array operator*(const Array& a, const Array& b) {
-    return a.with(b, [](T p, T q) { return T(p * q); });
+    return a.combine(b, [](T p, T q) { return T(p * q); });
   }
   friend constexpr Array operator/(const Array& a, const Array& b) {
-    return a.with(b, [](T p, T q) { return T(p / q); });
+    return a.combine(b, [](T p, T q) { return T(p / q); });
   }
 
-  using Truths = Array<bool, N>;
-  friend constexpr Truths operator<(const Array& a, const Array& b) {
-    return a.with(b, [](T p, T q) { return p < q; });
+  using Bools = Array<bool, N>;
+  friend constexpr Bools operator<(const Array& a, const Array& b) {
+    return a.combine(b, [](T p, T q) { return p < q; });
   }
-  friend constexpr Truths operator<=(const Array& a, const Array& b) {
-    return a.with(b, [](T p, T q) { return p <= q; });
+  friend constexpr Bools operator<=(const Array& a, const Array& b) {
+    return a.combine(b, [](T p, T q) { return p <= q; });
   }
-  friend constexpr Truths operator>(const Array& a, const Array& b) { return b < a; }
-  friend constexpr Truths operator>=(const Array& a, const Array& b) { return b <= a; }
+  friend constexpr Bools operator>(const Array& a, const Array& b) { return b < a; }
+  friend constexpr Bools operator>=(const Array& a, const Array& b) { return b <= a; }
   friend constexpr bool operator==(const Array& a, const Array& b) {
-    return a.with(b, [](T p, T q) { return p == q; }).all();
+    return a.combine(b, [](T p, T q) { return p == q; }).all();
   }
-  friend constexpr Truths operator&&(const Array& a, const Array& b) {
-    return a.with(b, [](T p, T q) { return p && q; });
+  friend constexpr Bools operator&&(const Array& a, const Array& b) {
+    return a.combine(b, [](T p, T q) { return p && q; });
   }
 };
 
@@ -265,9 +265,9 @@ public:
   }
   /// normalized() for lengths whose squares overflow or vanish.
   Vector stableNormalized() const {
-    const T greatest = this->cwiseAbs().maxCoeff();
-    const T square = (*this / greatest).squaredNorm();
-    return square > T(0) ? *this / (std::sqrt(square) * greatest) : *this;
+    const T largest = this->cwiseAbs().maxCoeff();
+    const T square = (*this / largest).squaredNorm();
+    return square > T(0) ? *this / (std::sqrt(square) * largest) : *this;
   }
   constexpr Vector cross(const Vector& o) const requires(N == 3) {
     const Vector& a = *this;
@@ -275,10 +275,10 @@ public:
   }
 
   constexpr Vector cwiseProduct(const Vector& o) const {
-    return this->with(o, [](T p, T q) { return T(p * q); });
+    return this->combine(o, [](T p, T q) { return T(p * q); });
   }
   constexpr Vector cwiseQuotient(const Vector& o) const {
-    return this->with(o, [](T p, T q) { return T(p / q); });
+    return this->combine(o, [](T p, T q) { return T(p / q); });
   }
   constexpr Vector cwiseInverse() const {
     return this->unaryExpr([](T part) { return T(1) / part; });

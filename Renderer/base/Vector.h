@@ -26,11 +26,11 @@ struct Interval {
   double begin = 0.0;
   double end = infinity;
 
-  bool empty() const { return !(begin < end); }
+  bool isEmpty() const { return !(begin < end); }
 };
 
 /// Shortest stretch that holds both. {infinity, -infinity} joins nothing.
-inline Interval joined(const Interval& a, const Interval& b) {
+inline Interval enclose(const Interval& a, const Interval& b) {
   return {std::min(a.begin, b.begin), std::max(a.end, b.end)};
 }
 
@@ -49,7 +49,7 @@ struct Ray {
   Vec3 at(double t) const { return origin + t * direction; }
 };
 
-inline Ray transformed(const Affine& map, const Ray& ray) {
+inline Ray transformRay(const Affine& map, const Ray& ray) {
   return {map * ray.origin, map.linear() * ray.direction};
 }
 
@@ -61,7 +61,7 @@ struct Box {
   bool operator==(const Box&) const = default;
 
   /// Holds no point; grows by extend.
-  static Box nothing() { return {Vec3::Constant(infinity), Vec3::Constant(-infinity)}; }
+  static Box makeEmpty() { return {Vec3::Constant(infinity), Vec3::Constant(-infinity)}; }
   void extend(const Vec3& point) {
     lower = lower.cwiseMin(point);
     upper = upper.cwiseMax(point);

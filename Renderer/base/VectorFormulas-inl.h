@@ -4,12 +4,12 @@
 FENESTRA_INLINE Float lerp(Float a, Float b, Float f) {
   return fma(b - a, f, a);
 }
-FENESTRA_INLINE Float notBelow0(Float x) {
+FENESTRA_INLINE Float clampZero(Float x) {
   return max(x, 0.0F);
 }
 /// sqrt(max(x, 0)): rounding may have made x negative.
-FENESTRA_INLINE Float root(Float x) {
-  return sqrt(notBelow0(x));
+FENESTRA_INLINE Float safeSqrt(Float x) {
+  return sqrt(clampZero(x));
 }
 FENESTRA_INLINE Float square(Float x) {
   return x * x;
@@ -48,21 +48,21 @@ FENESTRA_INLINE Float dot(const Float3& a, const Float3& b) {
 FENESTRA_INLINE Float3 cross(const Float3& a, const Float3& b) {
   return {fms(a.y, b.z, a.z * b.y), fms(a.z, b.x, a.x * b.z), fms(a.x, b.y, a.y * b.x)};
 }
-FENESTRA_INLINE Float greatest(const Float3& v) {
+FENESTRA_INLINE Float maxComponent(const Float3& v) {
   return max(max(v.x, v.y), v.z);
 }
-FENESTRA_INLINE Float3 normalized(const Float3& v) {
+FENESTRA_INLINE Float3 normalize(const Float3& v) {
   return 1.0F / sqrt(dot(v, v)) * v;
 }
 FENESTRA_INLINE Float3 select(LaneMask which, const Float3& yes, const Float3& no) {
   return {select(which, yes.x, no.x), select(which, yes.y, no.y), select(which, yes.z, no.z)};
 }
-FENESTRA_INLINE Float3 orZero(LaneMask which, const Float3& v) {
+FENESTRA_INLINE Float3 zeroUnless(LaneMask which, const Float3& v) {
   return {zeroUnless(which, v.x), zeroUnless(which, v.y), zeroUnless(which, v.z)};
 }
 
 /// -v where x < 0, else v.
-FENESTRA_INLINE Float3 turnedBelow0(Float x, const Float3& v) {
+FENESTRA_INLINE Float3 flipIfNegative(Float x, const Float3& v) {
   return select(x < 0.0F, -v, v);
 }
 

@@ -34,8 +34,8 @@ double contextAt(const Clip& clip, const Domain& volume, const Vec2& position) {
   const Camera& camera = *cameraOf(clip);
   const Ray ray = camera.rayThrough(position);
   const Interval part =
-      volume.clip(transformed(volume.grid().worldToIndex, ray), behindSurface(clip, ray));
-  return part.empty() ? infinity : part.begin * camera.depthPerLength(ray);
+      volume.clip(transformRay(volume.grid().worldToIndex, ray), behindSurface(clip, ray));
+  return part.isEmpty() ? infinity : part.begin * camera.depthPerLength(ray);
 }
 
 double focusAt(const FocusDepth& focus, std::int64_t column, std::int64_t row) {
@@ -144,8 +144,8 @@ BoundaryMeasures measureBoundary(const Clip& clip, const Domain& volume, const M
   if (measures.crossings > 0)
     measures.depthJumpFraction =
         1.0 - static_cast<double>(gaps.size()) / static_cast<double>(measures.crossings);
-  measures.gap = Distribution::of(std::move(gaps));
-  measures.slopeJump = Distribution::of(std::move(slopeJumps));
+  measures.gap = Distribution::compute(std::move(gaps));
+  measures.slopeJump = Distribution::compute(std::move(slopeJumps));
   return measures;
 }
 

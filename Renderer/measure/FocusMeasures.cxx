@@ -52,8 +52,8 @@ FocusPoints focusPoints(const SceneView& scene, const std::vector<double>& depth
     const Interval behind = behindSurface(scene.clip, ray);
     const double deepest =
         deepestAround(depth, width, column, row) / scene.camera.depthPerLength(ray);
-    const bool isKept =
-        !behind.empty() && behind.begin <= deepest + rounding && behind.end >= distance - rounding;
+    const bool isKept = !behind.isEmpty() && behind.begin <= deepest + rounding &&
+                        behind.end >= distance - rounding;
     points.push_back({ray, distance, isKept, pixel});
   }
   return points;

@@ -33,7 +33,7 @@ SeenSurface seenSurface(const ClipDepth& clip, const std::vector<double>& focusD
   for (int row = 0; row < camera.height(); ++row)
     for (int column = 0; column < camera.width(); ++column, ++pixel) {
       const Ray ray = camera.ray(column + 0.5, row + 0.5);
-      const bool isInside = !volume.clip(transformed(volume.grid().worldToIndex, ray)).empty();
+      const bool isInside = !volume.clip(transformRay(volume.grid().worldToIndex, ray)).isEmpty();
       const bool isFocus = focusDepth[pixel] < infinity;
       surface.regions.push_back(isFocus    ? Region::focus
                                 : isInside ? Region::context

@@ -58,7 +58,7 @@ Solid joined(const Solid& before, const Anatomy& part) {
 } // namespace
 
 Anatomy anatomyOf(const std::string& subject) {
-  return Anatomy::parse(embeddedResource("phantoms/" + subject + ".json"));
+  return Anatomy::parse(findResource("phantoms/" + subject + ".json"));
 }
 
 void from_json(const Anatomy& parts, Solid& solid) {

@@ -110,7 +110,7 @@ public:
     const Interval range{-length, length * static_cast<double>(count)};
     std::vector<const Layer*> layers;
     for (const Layer& layer : m_subject.layers())
-      if (!expanded(layer.box, boundaryReach()).clip(row, range).empty())
+      if (!expanded(layer.box, boundaryReach()).clip(row, range).isEmpty())
         layers.push_back(&layer);
     return layers;
   }

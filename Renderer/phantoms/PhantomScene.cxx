@@ -117,7 +117,7 @@ std::string phantomScene(const Phantom& phantom, const std::string& name, const 
 
   throwWithoutMemory();
   pugi::xml_document document;
-  const std::string_view scene = embeddedResource("phantoms/scene.mrml");
+  const std::string_view scene = findResource("phantoms/scene.mrml");
   document.load_buffer(scene.data(), scene.size(), pugi::parse_default | pugi::parse_declaration);
   for (const pugi::xml_node node : document.child("MRML"))
     for (pugi::xml_attribute attribute : node.attributes())
@@ -136,7 +136,7 @@ std::string phantomRoi(const Phantom& phantom) {
   const Mat3 axes =
       (lpsToRas * grid.indexToWorld.linear()).normalizedColumns() + Mat3::Zero(); // no "-0"
   const Vec3 center = (lpsToRas * grid.worldCenter()).array() + 0.0;
-  Json file = Json::parse(embeddedResource("phantoms/roi.mrk.json"));
+  Json file = Json::parse(findResource("phantoms/roi.mrk.json"));
   file["generator"] = blankProvenanceTag;
   Json& roi = file["markups"][0];
   Json& point = roi["controlPoints"][0];

@@ -150,7 +150,7 @@ std::vector<std::string> writePhantom(const Phantom& phantom,
   const CreatedFolders folders(directory);
   Outputs outputs;
   const bool isPhantoms =
-      beginsWith(directory / (name + ".nrrd"), removeProvenance(nrrdText(header))) &&
+      beginsWith(directory / (name + ".nrrd"), removeProvenance(formatNrrdHeader(header))) &&
       holds(directory / (name + ".mrml"), removeProvenance(scene));
   for (const PhantomFile& file : files)
     outputs.add(directory / file.name, [&](const std::filesystem::path& path) {

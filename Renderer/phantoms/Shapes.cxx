@@ -46,7 +46,7 @@ Box united(const Box& a, const Box& b) {
 
 /// Box around a box mapped affinely.
 Box mapped(const Affine& map, const Box& box) {
-  Box result = Box::nothing();
+  Box result = Box::makeEmpty();
   for (int i = 0; i < 8; ++i)
     result.extend(map * box.corner(i));
   return result;
@@ -123,7 +123,7 @@ Solid block(const Vec3& halfSize, double radius) {
 }
 
 Solid loft(const std::vector<LoftSection>& sections, double squareness, double capBlend) {
-  Box box = Box::nothing();
+  Box box = Box::makeEmpty();
   for (const LoftSection& section : sections)
     for (const double way : {-1.0, 1.0}) {
       const Vec2 corner = section.center + way * section.radii;
@@ -141,7 +141,7 @@ Solid loft(const std::vector<LoftSection>& sections, double squareness, double c
 }
 
 Solid tube(const std::vector<TubeNode>& nodes, const Vec3& stretch) {
-  Box box = Box::nothing();
+  Box box = Box::makeEmpty();
   std::vector<TubeNode> axis = refined(nodes); // in the space divided by the stretch
   for (TubeNode& node : axis) {
     box.extend(node.point - node.radius * stretch);

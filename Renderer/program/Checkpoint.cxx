@@ -98,7 +98,7 @@ ordered_json digestInputs(const PreparedScene& scene, const RenderOptions& optio
   for (const fs::path& file : listInputFiles(scene, options))
     inputs.push_back({{"file", relativeName(file.string(), folder)},
                       {"bytes", fs::file_size(file)},
-                      {"digest", digestOf(file)}});
+                      {"digest", computeDigest(file)}});
   return inputs;
 }
 
@@ -145,7 +145,8 @@ Checkpoint::Checkpoint(const PictureRequest& job, const OptionValues& given, War
     throw usageError(m_path, ": another process is writing this film; wait for it, or choose "
                              "another --checkpoint");
   std::error_code failed;
-  if (isThere(m_path) && !(fs::is_regular_file(m_path, failed) && fs::is_empty(m_path, failed))) {
+  if (fileExists(m_path) &&
+      !(fs::is_regular_file(m_path, failed) && fs::is_empty(m_path, failed))) {
     const CheckpointFile& film = m_files.emplace_back(m_path);
     for (const char* key : {"version", "settings"})
       requireSame(film, key);

@@ -30,7 +30,7 @@ Image readWithError(const OptionValues& values, const char* name, const char* er
 void declareOutput(const OptionValues& values, Outputs& outputs) {
   for (const char* name : {"A", "B", "errora", "errorb"})
     if (const auto input = values.text(name))
-      expectInput(*input);
+      registerInput(*input);
   if (const auto output = values.text("output"))
     declareImage(*output, outputs);
 }

@@ -37,7 +37,7 @@ int describeCommand(int argc, char** argv, int first) {
   const std::string kind = *values->text("KIND");
   const auto description = descriptions.find(kind);
   if (description == descriptions.end())
-    throw usageError("KIND: '", oneLine(kind), "' is unknown; use man, bash, zsh or fish");
+    throw usageError("KIND: '", toOneLine(kind), "' is unknown; use man, bash, zsh or fish");
   std::cout << description->second() << std::flush;
   return 0;
 }

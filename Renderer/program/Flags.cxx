@@ -29,7 +29,7 @@ std::vector<std::string> splitAtCommas(const std::string& text) {
 }
 
 Error invalidValue(const std::string& option, const std::string& expected, const std::string& got) {
-  return usageError("--", option, ": expected ", expected, ", got '", oneLine(got), "'");
+  return usageError("--", option, ": expected ", expected, ", got '", toOneLine(got), "'");
 }
 
 /// Throws Error (usage) unless there is a value, and in the flag's range.
@@ -148,7 +148,7 @@ std::string OptionValues::echo() const {
   std::string lines;
   for (const auto& [name, values] : m_values)
     for (const std::string& value : values)
-      lines += name + ": " + (value.empty() ? "yes" : oneLine(value)) + '\n';
+      lines += name + ": " + (value.empty() ? "yes" : toOneLine(value)) + '\n';
   return lines;
 }
 

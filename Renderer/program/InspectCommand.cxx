@@ -36,7 +36,7 @@ std::size_t characters(const std::string& text) {
 
 /// `text`, or its first characters and "...": at most `most` characters.
 std::string clipped(std::string text, std::size_t most) {
-  text = oneLine(std::move(text));
+  text = toOneLine(std::move(text));
   if (characters(text) <= most)
     return text;
   std::size_t end = 0;
@@ -202,7 +202,7 @@ std::string line(const std::string& text) {
 
 /// Wrapped text; the first line starts with `label`, the others are indented by its width.
 std::string paragraph(const std::string& label, const std::string& text) {
-  const std::string lines = wrapLines(oneLine(text), width - characters(label));
+  const std::string lines = wrapLines(toOneLine(text), width - characters(label));
   return label + replaceAll(lines, "\n", "\n" + std::string(characters(label), ' ')) + "\n";
 }
 
@@ -422,7 +422,7 @@ int inspectCommand(int argc, char** argv, int first) {
   const Inspection leftOut = stored.ignored;
   Inspection& warnings = inspection["warnings"];
   warnings.insert(warnings.begin(), leftOut.begin(), leftOut.end());
-  std::cout << (values->has("json") ? jsonText(inspection) : inspectionText(inspection))
+  std::cout << (values->has("json") ? dumpJson(inspection) : inspectionText(inspection))
             << std::flush;
   return 0;
 }

@@ -199,8 +199,9 @@ SceneOptions mergeSceneOptions(const OptionValues& given, const Input& input) {
     if (const std::string reason = rejectionReason(input, name, value); reason.empty())
       addStoredValue(option, value, merged);
     else
-      result.ignored.push_back(concat(node.tag, ' ', shown(node), ": ", name, " \"", shown(value),
-                                      "\" ", reason, "; give --", name, ' ', shown(value)));
+      result.ignored.push_back(concat(node.tag, ' ', shown(node), ": ", name, " \"",
+                                      sanitize(value), "\" ", reason, "; give --", name, ' ',
+                                      sanitize(value)));
   }
   const bool hasMaterials = merged.text("materials").value_or(noMaterials) != noMaterials;
   if (!hasMaterials && !given.has("material")) // changes of what was not taken

@@ -83,7 +83,7 @@ int phantomCommand(int argc, char** argv, int first) {
   useMachine(*values);
   const Phantom phantom = makePhantom(kind, *values);
   const std::vector<std::string> files = writePhantom(phantom, folder, kind);
-  std::cout << oneLine(concat(folder, ": ", join(files, " "))) << ", " << phantom.segments.size()
+  std::cout << toOneLine(concat(folder, ": ", join(files, " "))) << ", " << phantom.segments.size()
             << " segments" << std::endl;
   return 0;
 }

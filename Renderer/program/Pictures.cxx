@@ -90,7 +90,7 @@ PictureRequest pictureRequest(const OptionValues& given) {
 
 void declareOutputs(const RenderOptions& options, Outputs& outputs) {
   for (const std::filesystem::path& input : options.inputs)
-    expectInput(input);
+    registerInput(input);
   for (const std::filesystem::path& path : options.outputs)
     declareImage(path, outputs, options.outputNaming, options.filteredFiles());
   if (options.surface)

@@ -41,7 +41,7 @@ bool isAsRecorded(const fs::path& path, const JsonNode& recorded, const std::str
   if (failed || bytes == 0)
     return false;
   if (recorded.at("bytes").json() == std::to_string(bytes) &&
-      recorded.at("digest").json() == std::to_string(digestOf(path)))
+      recorded.at("digest").json() == std::to_string(computeDigest(path)))
     return true;
   throw usageError(path, ": is not the ", itemKey,
                    " that was recorded; move it away, and the same command renders it again");
@@ -103,8 +103,8 @@ void Manifest::readRequest(int mostFiles) {
   // Values and keys of a file and its piece; bytes, with a name of 255 letters, all escaped.
   constexpr int parts = 23, bytes = 2100;
   const std::string text =
-      readText(m_path, largestText + std::uint64_t{bytes} * static_cast<unsigned>(mostFiles));
-  m_document = parseJson(text, m_path.string(), mostJsonParts + parts * mostFiles);
+      readText(m_path, maxTextBytes + std::uint64_t{bytes} * static_cast<unsigned>(mostFiles));
+  m_document = parseJson(text, m_path.string(), maxJsonNodes + parts * mostFiles);
   const JsonNode request = JsonNode(m_document, m_path.string()).at("request");
   checkRequest(request);
   m_recorded = request.value();
@@ -130,7 +130,7 @@ void Manifest::readItems(int count, const ListFiles& listFiles,
                          const std::function<json(const JsonNode&)>& readExtra) {
   const JsonNode root(m_document, m_path.string());
   for (const JsonNode& entry : root.at("finished").elements()) {
-    const auto item = static_cast<int>(entry.at(m_itemKey).numberIn(0, count - 1));
+    const auto item = static_cast<int>(entry.at(m_itemKey).number(0, count - 1));
     const auto files = entry.find("files"); // absent in files of older versions
     const auto isUnchanged = [this](const fs::path& path, const JsonNode& recorded) {
       return isAsRecorded(path, recorded, m_itemKey);
@@ -165,7 +165,7 @@ void Manifest::write(Outputs& outputs) const {
     if (!item.extra.is_null())
       finished.back().update(item.extra);
   }
-  outputs.write(m_path, jsonText({{"request", m_request}, {"finished", finished}}, 1));
+  outputs.write(m_path, dumpJson({{"request", m_request}, {"finished", finished}}, 1));
   outputs.commit();
 }
 

@@ -26,7 +26,7 @@ public:
     nlohmann::json files; ///< name, bytes and digest of each
     nlohmann::json extra; ///< further members of its entry; null: none
   };
-  using WrittenFiles = std::vector<std::pair<std::filesystem::path, ContentState>>;
+  using WrittenFiles = std::vector<std::pair<std::filesystem::path, ContentDigest>>;
   using ListFiles = std::function<std::vector<std::filesystem::path>(int item)>;
 
   /// `word`: what a piece is called, in the file and in messages. `arguments`: those on which the

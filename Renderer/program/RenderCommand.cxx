@@ -155,7 +155,7 @@ std::string makeStatsJson(const RenderStats& stats, const RenderOptions& options
                       {"bytes", tint->weights->bytes()}};
   addContrast(json, scene);
   addSources(json, stats, options, scene);
-  return jsonText(json);
+  return dumpJson(json);
 }
 
 // ---- the command
@@ -180,9 +180,9 @@ std::vector<std::string> findStaleFiles(const RenderOptions& options, const Outp
   std::error_code failed;
   for (const std::filesystem::path& path : options.outputs)
     for (const std::filesystem::path& file : imageFiles(path))
-      if (!outputs.written(file) && std::filesystem::exists(file, failed))
-        warnings.push_back(oneLine(file.string()) + ": is of an earlier picture than " +
-                           oneLine(path.filename().string()) + "; remove it");
+      if (!outputs.writtenDigest(file) && std::filesystem::exists(file, failed))
+        warnings.push_back(toOneLine(file.string()) + ": is of an earlier picture than " +
+                           toOneLine(path.filename().string()) + "; remove it");
   return warnings;
 }
 
@@ -204,13 +204,13 @@ void report(const RenderOptions& options, const RenderResult& result,
   if (result.reason == StopReason::request)
     line += options.checkpoint ? " (stopped on request; the same command goes on)"
                                : " (stopped on request)";
-  std::cout << oneLine(line) << std::endl;
+  std::cout << toOneLine(line) << std::endl;
 }
 
 void warn(const RenderOptions& options, const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings)
     (options.returnValues ? std::cout : std::cerr)
-        << "fenestra: warning: " << oneLine(warning) << '\n';
+        << "fenestra: warning: " << toOneLine(warning) << '\n';
 }
 
 /// Puts the film of a part in place. Returns the exit status.
@@ -218,12 +218,12 @@ int finishShard(const RenderOptions& options, const RenderResult& result, Checkp
                 double seconds) {
   checkpoint.save(result);
   const bool isStopped = result.reason == StopReason::request;
-  std::cout << oneLine(concat(*options.checkpoint, ": part ", formatShard(options.settings.shard),
-                              " of ", options.scene.width, "x", options.scene.height, " pixels, ",
-                              result.finishedSamples,
-                              result.finishedSamples == 1 ? " sample" : " samples", " each, ",
-                              toString(seconds, 3), " s",
-                              isStopped ? " (stopped on request; the same command goes on)" : ""))
+  std::cout << toOneLine(concat(*options.checkpoint, ": part ", formatShard(options.settings.shard),
+                                " of ", options.scene.width, "x", options.scene.height, " pixels, ",
+                                result.finishedSamples,
+                                result.finishedSamples == 1 ? " sample" : " samples", " each, ",
+                                toString(seconds, 3), " s",
+                                isStopped ? " (stopped on request; the same command goes on)" : ""))
             << std::endl;
   return isStopped ? stopStatus() : 0;
 }
@@ -278,7 +278,7 @@ int renderScene(const PictureRequest& job, const std::vector<std::string>& argum
   outputs.checkInputs(); // now also files that the scene refers to
   warn(options, scene.warnings());
   if (options.progress != ProgressMode::none && options.progress != ProgressMode::xml)
-    std::cerr << oneLine(scene.choices()) << '\n';
+    std::cerr << toOneLine(scene.choices()) << '\n';
 
   RenderMonitor monitor;
   const StopInstead stopInstead(monitor.stop);

@@ -51,7 +51,7 @@ Rgb parseLinearColor(const OptionValues& values, const std::string& name,
                              : Rgb(values.triple(name).array());
   if (value.minCoeff() < 0.0 || value.maxCoeff() > brightest)
     throw usageError("--", name, ": expected R,G,B, or one number for grey, from 0 to 1e12, or ",
-                     alternatives, ", got '", oneLine(text), "'");
+                     alternatives, ", got '", toOneLine(text), "'");
   return value;
 }
 
@@ -85,7 +85,7 @@ void readSize(const OptionValues& values, const std::string& name, RenderRequest
   if (parts != 2 || std::min(scene.width, scene.height) < 1 ||
       std::max(scene.width, scene.height) > largest)
     throw usageError("--", name, ": expected WIDTHxHEIGHT in pixels, each from 1 to ", largest,
-                     ", got '", oneLine(text), "'");
+                     ", got '", toOneLine(text), "'");
 }
 
 void readShard(const OptionValues& values, const std::string& name, RenderOptions& options) {
@@ -95,7 +95,7 @@ void readShard(const OptionValues& values, const std::string& name, RenderOption
   if (std::sscanf(text.c_str(), "%d/%d%c", &number, &count, &rest) != 2 || number < 1 ||
       number > count || count > mostShards)
     throw usageError("--", name, ": expected K/N, the K-th of N parts, from 1/1 to ", mostShards,
-                     "/", mostShards, ", got '", oneLine(text), "'");
+                     "/", mostShards, ", got '", toOneLine(text), "'");
   options.settings.shard = {number - 1, count};
   options.isShard = true;
 }

@@ -57,7 +57,7 @@ private:
       m_complete = false;
       return true;
     } catch (const Error& error) {
-      m_outputs.forgetRefused();
+      m_outputs.forgetInputs();
       if (changes.size() == 1)
         answerError(changes.front().id, error.what());
     }

@@ -39,7 +39,7 @@ std::string listText(const std::string& name, const json& list) {
 
 void answer(const nlohmann::ordered_json& content) {
   static std::mutex mutex;
-  const std::string line = jsonText(content, -1);
+  const std::string line = dumpJson(content, -1);
   const std::lock_guard lock(mutex);
   if (std::fwrite(line.data(), 1, line.size(), stdout) == line.size() && std::fflush(stdout) == 0)
     return;
@@ -70,7 +70,7 @@ OptionValues changedFlags(const json& change, const OptionValues& flags) {
     const Option* flag = findOption(renderSyntax.options, name);
     if (!flag) {
       const std::string likely = findNearest(name, listNames(renderSyntax.options));
-      throw usageError(oneLine(name), ": no such flag",
+      throw usageError(toOneLine(name), ": no such flag",
                        likely.empty() ? "" : concat("; did you mean ", likely, "?"));
     }
     if (!isImageOption(*flag))

@@ -41,7 +41,7 @@ void say(std::string_view line) {
 void end() {
   if (firstSignal == SIGPIPE)
     say("fenestra: standard output: nobody reads it any more\n");
-  else if (resultsWerePlaced())
+  else if (hasPlacedResults())
     say("fenestra: stopped on request\n");
   else
     say("fenestra: stopped on request; nothing was written\n");

@@ -81,7 +81,7 @@ private:
   struct Worker {
     std::size_t row;
     std::unique_ptr<RowManifest> manifest;
-    Child child;
+    ChildProcess child;
     Stopwatch watch = {};
   };
 
@@ -116,12 +116,13 @@ private:
   /// Throws Error (output).
   void startWorker(std::size_t row, std::unique_ptr<RowManifest> manifest, std::size_t worker) {
     auto arguments = manifest->arguments(workerThreads(worker));
-    m_workers[worker].reset(new Worker{row, std::move(manifest), Child(std::move(arguments))});
+    m_workers[worker].reset(
+        new Worker{row, std::move(manifest), ChildProcess(std::move(arguments))});
   }
 
   void finishWorker(std::size_t index) {
     const std::unique_ptr<Worker> worker = std::move(m_workers[index]);
-    const Child& child = worker->child;
+    const ChildProcess& child = worker->child;
     RowOutcome outcome{State::done, child.status(), worker->watch.seconds()};
     const bool wasYoung =
         m_hasRequestedStop && outcome.status == 128 + SIGTERM; // without a handler yet
@@ -143,7 +144,7 @@ private:
   }
 
   /// Last line that the process wrote which is no warning.
-  static std::string findErrorLine(const Child& child) {
+  static std::string findErrorLine(const ChildProcess& child) {
     if (child.status() > 128)
       return concat("ended by signal ", child.status() - 128, " (",
                     ::strsignal(child.status() - 128), ")");
@@ -152,7 +153,7 @@ private:
     for (const std::string& line : split(child.errors(), '\n'))
       if (line.starts_with(program) && !line.starts_with("fenestra: warning: "))
         last = line.substr(program.size());
-    return last.empty() ? concat("ended with status ", child.status()) : oneLine(last);
+    return last.empty() ? concat("ended with status ", child.status()) : toOneLine(last);
   }
 
   /// Keeps what came of a row, and prints it.
@@ -165,9 +166,9 @@ private:
     m_view.erase();
     const std::string& name = m_results.rows[row].name;
     if (outcome.state == State::failed)
-      std::cerr << "fenestra: warning: " << oneLine(name + ": " + outcome.error) << '\n';
+      std::cerr << "fenestra: warning: " << toOneLine(name + ": " + outcome.error) << '\n';
     else if (outcome.state == State::done)
-      std::cout << oneLine(name) << ": " << toString(outcome.seconds, 3) << " s" << std::endl;
+      std::cout << toOneLine(name) << ": " << toString(outcome.seconds, 3) << " s" << std::endl;
   }
 
   /// Asks running processes once to end: they write what they have reached.
@@ -217,7 +218,7 @@ RowShard parseRowShard(const OptionValues& values) {
   char rest = 0;
   if (std::sscanf(text.c_str(), "%zu/%zu%c", &part, &parts, &rest) != 2 || part < 1 ||
       parts < part || parts > 100'000)
-    throw usageError("--rows: expected K/N, K from 1 to N, got '", oneLine(text), "'");
+    throw usageError("--rows: expected K/N, K from 1 to N, got '", toOneLine(text), "'");
   return {part - 1, parts};
 }
 
@@ -226,7 +227,7 @@ BatchOptions makeBatchOptions(const OptionValues& values) {
   options.formats = values.list("formats");
   for (const std::string& format : options.formats)
     if (format != "exr" && format != "nrrd" && format != "tif")
-      throw usageError("--formats: expected exr, nrrd or tif, got '", oneLine(format), "'");
+      throw usageError("--formats: expected exr, nrrd or tif, got '", toOneLine(format), "'");
   options.threads = threadCount(values);
   options.workers = static_cast<int>(values.integer("workers").value_or(1));
   options.shard = parseRowShard(values);
@@ -270,11 +271,11 @@ int batchCommand(int argc, char** argv, int first) {
   if (isComplete)
     writeResults(results, outputs);
   outputs.commit();
-  std::cout << oneLine(concat(results.folder, ": ", results.count(State::done), " of ",
-                              batch.rows(), " rows done, ", batch.rendered(), " rendered now, ",
-                              toString(watch.seconds(), 3), " s",
-                              batch.isStopped() ? " (stopped on request; the same command goes on)"
-                                                : ""))
+  std::cout << toOneLine(concat(
+                   results.folder, ": ", results.count(State::done), " of ", batch.rows(),
+                   " rows done, ", batch.rendered(), " rendered now, ",
+                   toString(watch.seconds(), 3), " s",
+                   batch.isStopped() ? " (stopped on request; the same command goes on)" : ""))
             << std::endl;
   if (batch.isStopped())
     return stopStatus();

@@ -62,18 +62,18 @@ std::set<fs::path> listRowInputs(const BatchRow& row, const fs::path& stats) {
 }
 
 /// Throws Error (input).
-ContentState readFileState(const fs::path& path) {
+ContentDigest readFileState(const fs::path& path) {
   std::error_code failed;
   const std::uintmax_t bytes = fs::file_size(path, failed);
   if (failed)
     throw readError(path, failed.value(), "check its disk");
-  return {bytes, digestOf(path)};
+  return {bytes, computeDigest(path)};
 }
 
 /// Outcome in the record's entry. Throws Error (input).
 json checkedOutcome(const JsonNode& entry) {
-  json more = {{"status", entry.at("status").numberIn(0, 255)},
-               {"seconds", entry.at("seconds").numberIn(0.0, 1e12)}};
+  json more = {{"status", entry.at("status").number(0, 255)},
+               {"seconds", entry.at("seconds").number(0.0, 1e12)}};
   if (const auto error = entry.find("error"))
     more["error"] = error->text();
   return more;
@@ -111,7 +111,7 @@ void RowManifest::read(bool restart) {
   const std::optional<FileId> there = fileId(m_manifest.path());
   if (!there) {
     std::vector<fs::path> unknown = files();
-    if (isThere(m_checkpoint))
+    if (fileExists(m_checkpoint))
       unknown.push_back(m_checkpoint);
     for (const fs::path& file : unknown)
       throw usageError(file, ": is there, and no ", m_manifest.path().filename(),
@@ -128,7 +128,7 @@ void RowManifest::read(bool restart) {
       isSame && pieces.contains(0) && pieces.at(0).extra.at("status") == 0)
     m_finished = {RowOutcome::State::done, 0, pieces.at(0).extra.at("seconds")};
   m_manifest.clearItems();
-  m_isResumed = isSame && !m_finished && isThere(m_checkpoint);
+  m_isResumed = isSame && !m_finished && fileExists(m_checkpoint);
   if (m_finished)
     removeCheckpoint();
 }

@@ -44,7 +44,7 @@ const std::vector<std::string> firstColumns = {"name",  "status",  "exitStatus",
 bool isSummary(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::string line;
-  const std::string head = csvLine(firstColumns);
+  const std::string head = formatCsvLine(firstColumns);
   return std::getline(file, line) && line.starts_with(head.substr(0, head.size() - 2));
 }
 
@@ -81,7 +81,7 @@ std::string formatSummary(const BatchResults& results, const std::vector<Measure
         columns.push_back(name);
   std::vector<std::string> head = firstColumns;
   head.insert(head.end(), columns.begin(), columns.end());
-  std::string text = csvLine(head);
+  std::string text = formatCsvLine(head);
   for (std::size_t i = 0; i < results.rows.size(); ++i) {
     const RowOutcome& outcome = results.outcomes[i];
     const fs::path picture = rowImagePath(results.rows[i], results.folder);
@@ -96,7 +96,7 @@ std::string formatSummary(const BatchResults& results, const std::vector<Measure
       const auto found = measures[i].find(column);
       fields.push_back(found == measures[i].end() ? "" : toString(found->second, 9));
     }
-    text += csvLine(fields);
+    text += formatCsvLine(fields);
   }
   return text;
 }

@@ -37,12 +37,12 @@ void requireFolderName(const std::string& name, const std::string& source,
                        const std::string& place) {
   constexpr std::size_t longest = 100; // bytes; extensions and temporary names have to fit as well
   constexpr std::string_view notFirst = ".-=+@ '", notLast = ". ";
-  const bool isPortable = !name.empty() && name.size() <= longest && oneLine(name) == name &&
+  const bool isPortable = !name.empty() && name.size() <= longest && toOneLine(name) == name &&
                           name.find_first_of("/\\:*?\"<>|") == name.npos &&
                           notFirst.find(name.front()) == notFirst.npos &&
                           notLast.find(name.back()) == notLast.npos;
   if (!isPortable)
-    throw inputError(source, place, ": '", fenestra::shown(name),
+    throw inputError(source, place, ": '", fenestra::sanitize(name),
                      "' cannot be a folder's name; use at most 100 letters, digits, blanks, dots, "
                      "- and _, a letter, digit or _ first");
 }
@@ -64,7 +64,7 @@ std::vector<const Option*> parseColumns(const CsvRecord& head, const std::string
     const Option* const option = findOption(renderSyntax.options, name);
     if (std::ranges::find(known, name) == known.end()) {
       const std::string likely = findNearest(toLower(name), known);
-      throw inputError(source, "line ", head.line, ": '", fenestra::shown(name),
+      throw inputError(source, "line ", head.line, ": '", fenestra::sanitize(name),
                        "' is no column of a study",
                        likely.empty() ? "; columns are name, input and flags of fenestra render"
                                       : "; did you mean " + likely + "?");
@@ -127,7 +127,7 @@ public:
 private:
   void add(BatchRow& row, OptionValues& others, std::size_t column, const std::string& cell,
            const std::string& place) {
-    if (oneLine(cell) != cell)
+    if (toOneLine(cell) != cell)
       throw inputError(m_source, place, ", ", m_head.fields[column],
                        ": holds a line's end or no UTF-8; write it on one line");
     const Option* const option = m_columns[column];

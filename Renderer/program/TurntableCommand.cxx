@@ -75,7 +75,7 @@ private:
   /// Prints each distinct warning once.
   void warn(const std::string& warning) {
     if (m_warnings.insert(warning).second)
-      std::cerr << "fenestra: warning: " << oneLine(warning) << '\n';
+      std::cerr << "fenestra: warning: " << toOneLine(warning) << '\n';
   }
 
   void renderFrames() {
@@ -173,16 +173,16 @@ private:
       json["surfaceChangeMmPerDegree"]["excess"] = excess;
     }
     json["warnings"] = m_warnings;
-    return jsonText(json);
+    return dumpJson(json);
   }
 
   void report() const {
     const bool isWhole = finished() == frames();
-    std::cout << oneLine(concat(m_options.pictures(m_options.first()).front(), " to ",
-                                m_options.pictures(m_options.end() - 1).front().filename(), ": ",
-                                finished(), " of ", frames(), " frames, ", rendered(),
-                                " rendered now, ", toString(m_total.seconds(), 3), " s",
-                                isWhole ? "" : " (stopped on request; the same command goes on)"))
+    std::cout << toOneLine(concat(m_options.pictures(m_options.first()).front(), " to ",
+                                  m_options.pictures(m_options.end() - 1).front().filename(), ": ",
+                                  finished(), " of ", frames(), " frames, ", rendered(),
+                                  " rendered now, ", toString(m_total.seconds(), 3), " s",
+                                  isWhole ? "" : " (stopped on request; the same command goes on)"))
               << std::endl;
   }
 
@@ -252,7 +252,7 @@ int turntableCommand(int argc, char** argv, int first) {
     throw usageError("--shard: ", options.shard.count, " parts are more than the ", options.frames,
                      " frames; ask for fewer parts");
   for (const std::filesystem::path& input : options.render.inputs)
-    expectInput(input); // --restart replaces no input
+    registerInput(input); // --restart replaces no input
   const auto locks = lockFrames(options);
   TurntableManifest manifest(options, job.flags);
   Outputs outputs;

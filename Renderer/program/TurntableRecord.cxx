@@ -24,13 +24,13 @@ std::vector<std::string> listArguments(const OptionValues& values, const fs::pat
 }
 
 std::uint64_t digest(const auto& voxels) {
-  return stateOf(asBytes(voxels)).digest;
+  return digestContent(asBytes(voxels)).digest;
 }
 
 constexpr const char* changeKey = "surfaceChange";
 
 SurfaceChange readChange(const JsonNode& node) {
-  const auto number = [&](const char* name) { return node.at(name).numberIn(0.0, 1e30); };
+  const auto number = [&](const char* name) { return node.at(name).number(0.0, 1e30); };
   return {number("mean"), number("p95"), number("max"), number("focus")};
 }
 
@@ -62,7 +62,7 @@ int TurntableManifest::maxFiles() const {
 void TurntableManifest::rejectUnknownFrames() const {
   for (int frame = m_options.first(); frame < m_options.end(); ++frame)
     for (const fs::path& file : m_options.files(frame))
-      if (const auto id = fileId(file); id && !inputNamed(*id)) // inputs have their own refusal
+      if (const auto id = fileId(file); id && !findInput(*id)) // inputs have their own refusal
         throw usageError(file, ": is there, and no ", m_manifest.path(),
                          " tells what it is of; choose another --output, or add --restart to "
                          "replace it");
@@ -133,7 +133,7 @@ void TurntableManifest::finish(int frame, const std::optional<SurfaceChange>& ch
                                Outputs& outputs) {
   Manifest::WrittenFiles files;
   for (const fs::path& file : m_options.files(frame))
-    if (const auto state = outputs.written(file))
+    if (const auto state = outputs.writtenDigest(file))
       files.emplace_back(file, *state);
   m_manifest.finish(frame, files, change ? json{{changeKey, toJson(*change)}} : json(), outputs);
 }

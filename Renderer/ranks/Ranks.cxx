@@ -85,7 +85,7 @@ bool Ranks::hasMessage() {
 }
 
 void Ranks::abort(std::string_view line, int status) {
-  std::cerr << oneLine(textOf("fenestra: rank ", m_rank, ": ", line)) << std::endl;
+  std::cerr << toOneLine(textOf("fenestra: rank ", m_rank, ": ", line)) << std::endl;
   MPI_Abort(MPI_COMM_WORLD, status); // other threads may be inside a call: no lock
   ::_exit(status);
 }

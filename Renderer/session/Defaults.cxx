@@ -80,7 +80,7 @@ Vec3 ofUsualLength(const Vec3& v) {
 
 /// Centre of a domain's bounding box along its grid, world mm.
 Vec3 centerOf(const Domain& domain) {
-  Box box = Box::nothing();
+  Box box = Box::makeEmpty();
   for (const Vec3& corner : domain.indexCorners())
     box.extend(corner);
   return domain.grid().indexToWorld * box.center();

@@ -80,7 +80,7 @@ ordered_json makeHeader(const RenderResult& result, const Shard& shard,
 std::string encodeCheckpoint(const RenderResult& result, const Shard& shard,
                              const ordered_json& metadata) {
   const Film& film = result.film;
-  const std::string header = jsonText(makeHeader(result, shard, metadata), -1) + '\n';
+  const std::string header = dumpJson(makeHeader(result, shard, metadata), -1) + '\n';
   const std::vector<float>& plan = result.last.plan.noise();
   std::string content = concat(magic, header.size(), '\n', header);
   content.reserve(content.size() +
@@ -109,10 +109,10 @@ CheckpointFile::CheckpointFile(const fs::path& path) : m_path(path) {
                            "away to begin anew");
   const std::uint64_t size = fs::file_size(path);
   std::array<std::uint64_t, 1> digest = {};
-  if (*bytes > largestText || size < end + 1 + *bytes + sizeof digest)
+  if (*bytes > maxTextBytes || size < end + 1 + *bytes + sizeof digest)
     throw makeDamageError();
   open(size - sizeof digest).read(reinterpret_cast<char*>(digest.data()), sizeof digest);
-  if (digestOf(path, size - sizeof digest) != digest.front())
+  if (computeDigest(path, size - sizeof digest) != digest.front())
     throw makeDamageError();
   std::string text(*bytes, '\0');
   open(end + 1).read(text.data(), static_cast<std::streamsize>(text.size()));
@@ -150,7 +150,7 @@ std::string CheckpointFile::target() const {
 }
 
 std::uint64_t CheckpointFile::readCount(const char* key) const {
-  const double samples = JsonNode(m_header, m_path.string()).at(key).numberIn(0.0, maxSamples);
+  const double samples = JsonNode(m_header, m_path.string()).at(key).number(0.0, maxSamples);
   return static_cast<std::uint64_t>(samples);
 }
 
@@ -158,14 +158,14 @@ Counters CheckpointFile::counters() const {
   const JsonNode counts = JsonNode(m_header, m_path.string()).at("counts");
   Counters counters;
   for (const auto& [name, count] : namedCounts)
-    counters.*count = static_cast<std::uint64_t>(counts.at(name).numberIn(0.0, maxSamples));
+    counters.*count = static_cast<std::uint64_t>(counts.at(name).number(0.0, maxSamples));
   return counters;
 }
 
 RenderResult CheckpointFile::readProgress() const {
   const JsonNode header(m_header, m_path.string());
   constexpr double largestBlock = 1024.0;
-  const auto block = static_cast<std::uint32_t>(header.at("block").numberIn(1.0, largestBlock));
+  const auto block = static_cast<std::uint32_t>(header.at("block").number(1.0, largestBlock));
   RenderResult result{Film(m_width, m_height, Sampler::hasIndependentHalfBuffers, block)};
   result.target = target();
   result.counters = counters();
@@ -173,7 +173,7 @@ RenderResult CheckpointFile::readProgress() const {
   result.begunSamples = begunSamples();
   result.last.samples = readCount("lastPass");
   if (header.at("lastNoise").isNumber())
-    result.last.noise = header.at("lastNoise").numberIn(0.0, infinity);
+    result.last.noise = header.at("lastNoise").number(0.0, infinity);
   if (!m_hasPlan)
     return result;
   std::vector<float> plan(result.film.pixelCount());

@@ -35,7 +35,7 @@ std::optional<SegmentNames> namesInFile(const InputChoice& choice) {
 
 /// Labels with the files that they were read from.
 SegmentsInput segmentsFrom(Segmentation segmentation, FilesRead files) {
-  if (isThere(segmentation.namesFrom()))
+  if (fileExists(segmentation.namesFrom()))
     files.push_back(segmentation.namesFrom());
   return {std::move(segmentation), std::move(files)};
 }
@@ -149,7 +149,7 @@ SegmentsInput Input::segments(const InputChoice& choice, const Grid& volume) con
     return inFile();
   return m_opened->with([&](MrmlScene& scene) {
     const ScenePlan plan = planFor(scene, choice, true);
-    if (!plan.segmentation && isThere(*choice.segmentation))
+    if (!plan.segmentation && fileExists(*choice.segmentation))
       return inFile();
     if (!plan.segmentation)
       throw inputError(scene.document.source(),

@@ -17,11 +17,11 @@ namespace {
 
 /// Text of the preset `name` under Resources/<kind>/; empty: none.
 std::string_view ownPreset(const std::string& kind, const std::string& name) {
-  return embeddedResource(kind + "/" + name + ".json");
+  return findResource(kind + "/" + name + ".json");
 }
 
 std::string listed(const std::vector<std::string>& names) {
-  return join(names, ", ", [](const std::string& name) { return shown(name); });
+  return join(names, ", ", [](const std::string& name) { return sanitize(name); });
 }
 
 bool isFoundAsFile(const std::string& name) {
@@ -75,7 +75,7 @@ private:
 
 std::vector<std::string> ownPresets(const std::string& kind) {
   std::vector<std::string> names;
-  for (const std::string& path : embeddedResourceNames(kind + "/"))
+  for (const std::string& path : listResources(kind + "/"))
     if (path.ends_with(".json"))
       names.push_back(std::filesystem::path(path).stem());
   return names;

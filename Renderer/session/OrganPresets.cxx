@@ -45,7 +45,7 @@ std::string listedNames(const std::vector<SegmentInfo>& segments) {
   constexpr std::size_t most = 12;
   const auto first = std::span(segments).first(std::min(most, segments.size()));
   const std::string text =
-      join(first, ", ", [](const SegmentInfo& segment) { return shown(segment.name); });
+      join(first, ", ", [](const SegmentInfo& segment) { return sanitize(segment.name); });
   return segments.size() > most ? concat(text, " and ", segments.size() - most, " more") : text;
 }
 

@@ -22,7 +22,7 @@ Plane clipPlane(const Camera& camera, const Clip& clip) {
     for (int column = 0; column < camera.width(); ++column) {
       const Ray ray = camera.ray(column + 0.5, row + 0.5);
       const Interval range = behindSurface(clip, ray);
-      const double start = range.empty() ? infinity : range.begin * camera.depthPerLength(ray);
+      const double start = range.isEmpty() ? infinity : range.begin * camera.depthPerLength(ray);
       result.push_back(static_cast<float>(start));
     }
   return result;

@@ -99,8 +99,8 @@ constexpr std::array<std::uint32_t, 20> palette = {
 const MaterialTable& materialLibrary() {
   static const MaterialTable library = [] {
     MaterialTable all;
-    for (const std::string& file : embeddedResourceNames("materials/")) {
-      MaterialTable table = parseMaterials(embeddedResource(file), file);
+    for (const std::string& file : listResources("materials/")) {
+      MaterialTable table = parseMaterials(findResource(file), file);
       all.materials.merge(table.materials);
       std::ranges::move(table.rules, std::back_inserter(all.rules));
     }
@@ -119,7 +119,7 @@ std::vector<SegmentMaterial> materialsOf(const std::vector<SegmentInfo>& segment
     else if (!isDefault(segment.color))
       materials.push_back(colored(segment.color, "by its own colour"));
     else {
-      materials.push_back(colored(colorOf(palette[unknown++ % palette.size()]), "by palette"));
+      materials.push_back(colored(hexToRgb(palette[unknown++ % palette.size()]), "by palette"));
       materials.back().isOfPalette = true;
     }
   }

@@ -109,7 +109,7 @@ public:
     const double own = mean([](const BorderColors& part) { return labOf(part.focus).L; });
     AdjustmentSearch best = *this;
     for (std::size_t i = 0; i < accentColors.size() && m_share < enoughShare; ++i) {
-      if (std::abs(labOf(decodeSrgb(colorOf(accentColors[i].color))).L - own) > mostApart)
+      if (std::abs(labOf(decodeSrgb(hexToRgb(accentColors[i].color))).L - own) > mostApart)
         continue;
       AdjustmentSearch turned = *this;
       turned.m_adjustment.accent = i;
@@ -196,7 +196,7 @@ Rgb adjustContext(const Rgb& seen, const ColorAdjustment& adjustment) {
 
 Rgb adjustFocus(const Rgb& seen, const ColorAdjustment& adjustment) {
   const Lab lab = labOf(seen),
-            accent = labOf(decodeSrgb(colorOf(accentColors[adjustment.accent].color)));
+            accent = labOf(decodeSrgb(hexToRgb(accentColors[adjustment.accent].color)));
   const auto mix = [&](double own, double other) {
     return own + adjustment.focusAccent * (other - own);
   };
@@ -313,8 +313,8 @@ std::string told(const TintContrast& chosen) {
   add("colour x ", &ColorAdjustment::focusChroma);
   add(concat("toward ", accentColors[adjustment.accent].name, " by "),
       &ColorAdjustment::focusAccent);
-  return concat(toString(contrast.deltaE[0], 3), " of ", shown(chosen.segment), " to ",
-                shown(chosen.neighbour), " (", join(parts, ", "), ")");
+  return concat(toString(contrast.deltaE[0], 3), " of ", sanitize(chosen.segment), " to ",
+                sanitize(chosen.neighbour), " (", join(parts, ", "), ")");
 }
 
 Tint applyAdjustment(const Tint& tint, const TintPlan& plan, const ColorAdjustment& adjustment,

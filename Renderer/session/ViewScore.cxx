@@ -92,10 +92,10 @@ private:
   void add(FocusRays& batch, const Vec2& across) const {
     const Vec3 start = m_center + m_frame.toWorld({across.x(), across.y(), m_half.z()});
     const Ray world{start, -m_frame.normal};
-    const Interval inDomain = m_domain.clip(transformed(m_domain.grid().worldToIndex, world));
-    const Ray ray = transformed(m_cells.worldToCell(), world);
+    const Interval inDomain = m_domain.clip(transformRay(m_domain.grid().worldToIndex, world));
+    const Ray ray = transformRay(m_cells.worldToCell(), world);
     const Interval range = m_cells.box().clip(ray, inDomain);
-    if (!range.empty())
+    if (!range.isEmpty())
       batch.add(ray, range);
   }
 

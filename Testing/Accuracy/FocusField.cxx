@@ -101,7 +101,7 @@ FocusField::FocusField(const Indicator& indicator) {
         m_fractions.push_back(voxel(x, y, z) / indicator.full);
   m_lower = Vec3::Constant(-0.5);
   m_upper = m_size.cast<double>() - Vec3::Constant(0.5);
-  m_worldToIndex = (indicator.indexToWorld * translationBy(low.cast<double>())).inverse();
+  m_worldToIndex = (indicator.indexToWorld * makeTranslation(low.cast<double>())).inverse();
   markLowness();
   m_longestEdge = indicator.indexToWorld.linear().columnNorms().maxCoeff();
 }

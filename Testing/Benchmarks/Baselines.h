@@ -16,11 +16,11 @@ struct Crossing {
 
   Crossing(const Domain& domain, const Ray& ray, const Interval& range) {
     const Affine& worldToIndex = domain.grid().worldToIndex;
-    const Interval inside = domain.clip(transformed(worldToIndex, ray), range);
+    const Interval inside = domain.clip(transformRay(worldToIndex, ray), range);
     start = inside.begin;
-    length = inside.empty() ? 0.0 : inside.end - inside.begin;
+    length = inside.isEmpty() ? 0.0 : inside.end - inside.begin;
     world = {length > 0.0 ? ray.at(start) : ray.origin, ray.direction};
-    index = transformed(worldToIndex, world);
+    index = transformRay(worldToIndex, world);
   }
 };
 
@@ -37,7 +37,7 @@ public:
   double sampleCollision(const Ray& ray, const Interval& range, const Vec2& first, Random& random,
                          Counters& counters) const {
     const auto walk = [&](auto&& visit) {
-      visitTentative(ray, range, exponentialOf(first.x()), random, counters, visit);
+      visitTentative(ray, range, toExponential(first.x()), random, counters, visit);
     };
     return firstRealCollision(walk, first.y(), random);
   }
@@ -100,7 +100,7 @@ public:
 
   double sampleCollision(const Ray& ray, const Interval& range, const Vec2& first, Random& random,
                          Counters& counters) const {
-    const double wanted = exponentialOf(first.x());
+    const double wanted = toExponential(first.x());
     double distance = infinity;
     march(ray, range, random, counters, [&](double t, double opticalDepth) {
       if (opticalDepth < wanted)
@@ -160,7 +160,7 @@ Film tracePicture(const SceneView& scene, const RenderSettings& settings,
       for (int column = 0; column < film.width(); ++column)
         for (std::uint64_t sample = 0; sample < settings.samples; ++sample) {
           const PrimarySamples numbers = source.generate(film.index(column, row), sample);
-          const Vec2 jitter = uniform2Of(numbers.position);
+          const Vec2 jitter = toUniform2(numbers.position);
           film.at(column, row)
               .add(*estimator.trace(column + jitter.x(), row + jitter.y(), numbers, counters));
         }

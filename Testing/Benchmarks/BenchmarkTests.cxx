@@ -105,7 +105,7 @@ private:
                     m_lights,
                     m_camera,
                     m_clip,
-                    CropBox(Affine(scalingBy({4.0, 4.0, 0.125})))};
+                    CropBox(Affine(makeScaling({4.0, 4.0, 0.125})))};
   Medium<float> m_medium{m_volume.grid, std::get<LargeArray<float>>(m_volume.voxels), m_transfer};
 };
 

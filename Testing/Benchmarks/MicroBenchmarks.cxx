@@ -76,7 +76,7 @@ struct Probe {
       if (t < infinity) {
         collisions.push_back(ray.at(t));
         inside.push_back(subject.scene.volume().grid.worldToIndex * ray.at(t));
-        scattered.push_back({ray.at(t), uniformDirection(random.uniform2())});
+        scattered.push_back({ray.at(t), sampleUniformSphere(random.uniform2())});
       }
       const Vec2 u = random.uniform2();
       anywhere.push_back(size.cwiseProduct(Vec3(u.x(), u.y(), random.uniform())));

@@ -72,7 +72,7 @@ Image byProduct(const PreparedScene& scene, RenderSettings settings,
 
 /// Lights from a file, or from a preset.
 std::vector<Light> lightsOf(const std::string& name) {
-  const std::string_view preset = embeddedResource("lights/" + name + ".json");
+  const std::string_view preset = findResource("lights/" + name + ".json");
   return preset.empty() ? readLights(name) : parseLights(preset, name);
 }
 

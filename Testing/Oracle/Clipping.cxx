@@ -50,7 +50,7 @@ DepthHit searchRay(const FocusField& focus, const Medium& matter, const Ray& ray
     return DepthHit{inside, 0.5};
   };
   const double step = 0.04 * focus.shortestEdge();
-  double before = 0.0, here = part.empty() ? 0.0 : level(part.begin);
+  double before = 0.0, here = part.isEmpty() ? 0.0 : level(part.begin);
   if (here >= 0.5)
     return {part.begin, 0.5};
   DepthHit best{part.begin, 0.0};
@@ -218,7 +218,7 @@ FocusField::FocusField(const Mask& mask)
 }
 
 Interval FocusField::inBox(const Ray& ray) const {
-  return partIn({m_lower, m_upper}, transformed(m_worldToIndex, ray));
+  return partIn({m_lower, m_upper}, transformRay(m_worldToIndex, ray));
 }
 
 double FocusField::at(const Vec3& world) const {

@@ -114,7 +114,7 @@ double Medium::surfaceProbability(const TransferFunction& transfer, const Vec3& 
 
 Interval Medium::boxInterval(const Vec3& origin, const Vec3& direction) const {
   const Box box{Vec3::Constant(-0.5), m_size.cast<double>() - Vec3::Constant(0.5)};
-  return partIn(box, transformed(m_worldToIndex, {origin, direction}));
+  return partIn(box, transformRay(m_worldToIndex, {origin, direction}));
 }
 
 Interval partIn(const Box& box, const Ray& ray) {

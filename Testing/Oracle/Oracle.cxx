@@ -86,7 +86,7 @@ private:
   /// every tentative collision is tested at its place.
   double collision(const Ray& ray, Generator& generator) const {
     const Interval part = m_matter.boxInterval(ray.origin, ray.direction);
-    if (part.empty() || m_majorant == 0.0)
+    if (part.isEmpty() || m_majorant == 0.0)
       return infinity;
     double t = part.begin;
     for (;;) {

@@ -19,7 +19,7 @@ Segments::Segments(const ComponentsDescription& description)
       m_worldToIndex(description.segments.front().mask.grid.indexToWorld.inverse()) {
   if (description.components.size() > maxComponents)
     throw std::invalid_argument("the oracle has no more than 16 components");
-  Box box = Box::nothing();
+  Box box = Box::makeEmpty();
   for (const auto& segment : description.segments) {
     const Vec3 first = findFirst(segment.mask, m_worldToIndex);
     box.extend(first);

@@ -46,7 +46,7 @@ const Mat3 straight = Mat3::Identity();
 
 /// Rotation by 20 degrees about an axis oblique to the world's axes.
 Mat3 tilted() {
-  return rotationBy(0.35, Vec3(1.0, 2.0, -1.5).normalized()).linear();
+  return makeRotation(0.35, Vec3(1.0, 2.0, -1.5).normalized()).linear();
 }
 
 // ---- samples

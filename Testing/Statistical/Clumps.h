@@ -10,7 +10,7 @@ namespace fenestra::testing {
 /// about 2 mm in radius; a third of the incident light passes.
 inline TestScene clumps(const Rgb& dark, const Rgb& bright, double g) {
   Grid grid = centredGrid({5, 4, 6}, {0.5, 0.7, 0.4});
-  const Affine turn(rotationBy(0.5, Vec3(1.0, -2.0, 1.5).normalized()));
+  const Affine turn(makeRotation(0.5, Vec3(1.0, -2.0, 1.5).normalized()));
   grid = Grid(grid.size, turn * grid.indexToWorld);
   Random random(91, 0, 0);
   TestScene scene{makeVolume(grid, [&](const Vec3&) { return random.uniform(); }),

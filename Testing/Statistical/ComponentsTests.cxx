@@ -16,7 +16,7 @@ constexpr Integrator transports[] = {Integrator::simd, Integrator::scalar};
 Mask ball(const Vec3& center, double radius, bool isSoft) {
   const Grid flat = centredGrid(Size3::Constant(23), Vec3::Constant(1.0));
   const Grid grid(flat.size,
-                  rotationBy(0.4, Vec3(1.0, 2.0, -0.5).normalized()) * flat.indexToWorld);
+                  makeRotation(0.4, Vec3(1.0, 2.0, -0.5).normalized()) * flat.indexToWorld);
   Mask mask;
   mask.grid = grid;
   mask.full = isSoft ? 255 : 1;

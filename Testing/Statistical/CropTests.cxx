@@ -13,8 +13,8 @@ Volume ones(const Grid& grid) {
 
 /// Map of [-1, 1]^3 onto a rotated box of half edges `half` around `center`.
 Affine turnedBox(const Vec3& center, const Vec3& half, double angle) {
-  return translationBy(center) * rotationBy(angle, Vec3(1.0, -2.0, 0.5).normalized()) *
-         scalingBy(half);
+  return makeTranslation(center) * makeRotation(angle, Vec3(1.0, -2.0, 0.5).normalized()) *
+         makeScaling(half);
 }
 
 /// Length of a ray, t >= 0, inside a parallelepiped: on the inner side of all six planes.
@@ -68,8 +68,8 @@ TEST_P(CroppedTransmittance, IsExponentialAlongTheChord) {
     Random random(31, i, 0);
     // Origins outside the volume, between the boxes, and inside the crop.
     const double distance = i % 3 == 0 ? 40.0 : i % 3 == 1 ? 9.0 : 2.0;
-    const Vec3 origin = distance * uniformDirection(random.uniform2());
-    const Vec3 through = 4.0 * uniformDirection(random.uniform2());
+    const Vec3 origin = distance * sampleUniformSphere(random.uniform2());
+    const Vec3 through = 4.0 * sampleUniformSphere(random.uniform2());
     const Ray ray{origin, (through - origin).normalized()};
     const double expected = std::exp(-sigma_t * chord(box, ray));
     passed.add(tracker.transmittance(ray, {}, random, counters), expected);
@@ -114,7 +114,7 @@ TEST_P(CroppedPicture, EqualsThePictureOfAVolumeOfThatShape) {
   const Affine box = turnedBox({1.0, 0.0, -1.0}, half, GetParam().angle);
   // Grid of 10 x 8 x 6 voxels of 1 mm that fills the box.
   const Affine indexToWorld =
-      box * scalingBy(Vec3(half.cwiseInverse())) * translationBy(Vec3(-4.5, -3.5, -2.5));
+      box * makeScaling(Vec3(half.cwiseInverse())) * makeTranslation(Vec3(-4.5, -3.5, -2.5));
   const TestScene cut = litScene(ones(Grid({10, 8, 6}, indexToWorld)), GetParam());
   TestScene cropped = litScene(ones(centredGrid({24, 24, 24}, {1.0, 1.0, 1.0})), GetParam());
   cropped.crop = CropBox(box);

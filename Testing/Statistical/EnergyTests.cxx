@@ -43,8 +43,8 @@ RgbEstimate scatteredAround(TestScene& scene, const Vec3& light, std::uint64_t s
       const std::uint64_t picture = seed + static_cast<std::uint64_t>(2 * part + i);
       Random random(picture, 0, 1);
       const Vec2 u = random.uniform2();
-      const Vec3 way =
-          uniformDirection({(part / columns + u.x()) / rows, (part % columns + u.y()) / columns});
+      const Vec3 way = sampleUniformSphere(
+          {(part / columns + u.x()) / rows, (part % columns + u.y()) / columns});
       seen[i] = scatteredOut(scene, light, -frame.toWorld(way), budget(12UL), picture).mean;
     }
     sum.mean += 0.5 * (seen[0] + seen[1]);

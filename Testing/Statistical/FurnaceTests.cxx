@@ -47,9 +47,9 @@ Mask ball() {
 
 /// Rotated crop that cuts the ball and two of the volume's corners.
 CropBox turnedCrop() {
-  return CropBox(translationBy({0.5, -2.0, 1.0}) *
-                 rotationBy(0.5, Vec3(1.0, 1.0, -2.0).normalized()) *
-                 scalingBy(Vec3(7.0, 5.0, 12.0)));
+  return CropBox(makeTranslation({0.5, -2.0, 1.0}) *
+                 makeRotation(0.5, Vec3(1.0, 1.0, -2.0).normalized()) *
+                 makeScaling(Vec3(7.0, 5.0, 12.0)));
 }
 
 Clip clipOf(ClipKind kind, const Camera& camera, const Domain& volume) {

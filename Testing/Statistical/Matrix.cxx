@@ -97,7 +97,8 @@ Grid gridOf(const Combination& c, Generator& generator) {
   case GridFactor::thickSlices:
     return centred({24, 17, 4}, scaled(0.5, 0.7, 3.0));
   case GridFactor::turned: {
-    const Mat3 turn = rotationBy(uniform(generator, 0.0, 6.0), randomDirection(generator)).linear();
+    const Mat3 turn =
+        makeRotation(uniform(generator, 0.0, 6.0), randomDirection(generator)).linear();
     return centred({14, 10, 12}, turn * scaled(0.8, 1.2, 1.0));
   }
   case GridFactor::shearedMirrored: {
@@ -332,7 +333,7 @@ CameraPose poseOf(const Combination& c, Generator& generator) {
 
 Affine cropOf(Generator& generator) {
   Affine crop = Affine::Identity();
-  crop.linear() = rotationBy(uniform(generator, 0.0, 6.0), randomDirection(generator)).linear() *
+  crop.linear() = makeRotation(uniform(generator, 0.0, 6.0), randomDirection(generator)).linear() *
                   Mat3(Mat3::Diagonal({6.5, 4.5, 7.0}));
   crop.translation() = 0.5 * randomDirection(generator);
   return crop;

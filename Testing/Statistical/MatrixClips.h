@@ -16,7 +16,7 @@ inline double uniform(Generator& generator, double low, double high) {
 
 inline Vec3 randomDirection(Generator& generator) {
   const double u = uniform(generator, 0.0, 1.0);
-  return uniformDirection({u, uniform(generator, 0.0, 1.0)});
+  return sampleUniformSphere({u, uniform(generator, 0.0, 1.0)});
 }
 
 /// Requires the scene's camera, volume and crop.

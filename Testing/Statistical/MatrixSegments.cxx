@@ -98,8 +98,9 @@ void placeSegments(const Combination& c, Generator& generator, MatrixScene& scen
   if (c.segmentCount == 0)
     return;
   Grid labels = centredGrid(Size3::Constant(17), Vec3(0.7, 0.6, 0.8));
-  labels = Grid(labels.size, rotationBy(uniform(generator, 0.0, 6.0), randomDirection(generator)) *
-                                 labels.indexToWorld);
+  labels =
+      Grid(labels.size, makeRotation(uniform(generator, 0.0, 6.0), randomDirection(generator)) *
+                            labels.indexToWorld);
   const TransferFunction& volume = scene.product.transfer;
   std::vector<LabelWeights::Part> parts;
   Tint tint{{}, {std::nullopt}};

@@ -57,7 +57,7 @@ TEST(NiftiOrder, EveryOrderAndSignOfAxesGivesThePictureWithinItsErrors) {
           continue;
         NiftiFile file = reordered(size, spacing, origin, valueOf, order, reversed, map);
         file.setQform(map);
-        file.setSform(sform == 2 && qform == 1 ? translationBy({99.0, 0.0, 0.0}) : map);
+        file.setSform(sform == 2 && qform == 1 ? makeTranslation({99.0, 0.0, 0.0}) : map);
         file.qformCode = static_cast<std::int16_t>(qform);
         file.sformCode = static_cast<std::int16_t>(sform);
         const Image image =

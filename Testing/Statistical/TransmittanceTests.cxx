@@ -40,7 +40,7 @@ Volume ramp() {
 
 /// Rotated grid of unequal spacing.
 Volume turned(Volume volume) {
-  const Affine turn(rotationBy(0.7, Vec3(1.0, 2.0, -0.5).normalized()));
+  const Affine turn(makeRotation(0.7, Vec3(1.0, 2.0, -0.5).normalized()));
   volume.grid = Grid(volume.grid.size, turn * volume.grid.indexToWorld);
   return volume;
 }
@@ -71,7 +71,7 @@ Ray randomRay(const Volume& volume, Random& random) {
   };
   const Vec3 target = inside();
   const Vec3 origin =
-      random.uniform() < 0.3 ? inside() : Vec3(20.0 * uniformDirection(random.uniform2()));
+      random.uniform() < 0.3 ? inside() : Vec3(20.0 * sampleUniformSphere(random.uniform2()));
   return {origin, (target - origin).normalized()};
 }
 

@@ -36,7 +36,7 @@ std::vector<PathSample> samplesOf(const TestScene& scene, int column, int row, s
     const auto pixel = static_cast<std::uint64_t>(row * scene.width + column);
     for (std::uint64_t i = first; i < first + count; ++i) {
       const PrimarySamples numbers = source.generate(pixel, i);
-      const Vec2 jitter = uniform2Of(numbers.position);
+      const Vec2 jitter = toUniform2(numbers.position);
       samples.push_back(*estimator.trace(column + jitter.x(), row + jitter.y(), numbers, counters));
     }
   });

@@ -36,7 +36,8 @@ TestScene moved(TestScene scene, const Affine& map) {
 }
 
 Affine turn(double angle, const Vec3& translation = Vec3::Zero()) {
-  return Affine(translationBy(translation) * rotationBy(angle, Vec3(1.0, -2.0, 0.5).normalized()));
+  return Affine(makeTranslation(translation) *
+                makeRotation(angle, Vec3(1.0, -2.0, 0.5).normalized()));
 }
 
 struct Place {
@@ -68,8 +69,8 @@ TEST_P(Placed, IndexRoundTripKeepsVoxelPrecision) {
 
 INSTANTIATE_TEST_SUITE_P(
     Places, Placed,
-    ::testing::Values(Place{"far", Affine(translationBy({1e6, -1e6, 1e6}))},
-                      Place{"farther", Affine(translationBy({-1e9, 7e8, 1e9}))},
+    ::testing::Values(Place{"far", Affine(makeTranslation({1e6, -1e6, 1e6}))},
+                      Place{"farther", Affine(makeTranslation({-1e9, 7e8, 1e9}))},
                       Place{"turned", turn(1.0)}, Place{"turnedFar", turn(2.0, {1e6, 1e6, -1e6})},
                       Place{"turnedLittle", turn(1e-9)}, Place{"halfTurn", turn(pi)}),
     [](const auto& info) { return std::string(info.param.name); });
@@ -101,7 +102,7 @@ TestScene linearScene(const Size3& size, const Mat3& axes) {
   };
   TestScene scene = bumpScene();
   scene.volume = makeVolume(grid, field);
-  scene.crop = CropBox(turn(0.4) * Affine(scalingBy(Vec3(4.0, 3.0, 3.5))));
+  scene.crop = CropBox(turn(0.4) * Affine(makeScaling(Vec3(4.0, 3.0, 3.5))));
   scene.pose.scale = 6.0;
   return scene;
 }
@@ -117,7 +118,7 @@ TEST(ShearedAxes, PictureIsUnchanged) {
   // The flat parallelepiped holds only a small part of the crop; the part common to both is
   // compared by eye rays through an even smaller crop.
   TestScene small = straight;
-  small.crop = CropBox(Affine(scalingBy(Vec3(0.01, 0.01, 0.5))));
+  small.crop = CropBox(Affine(makeScaling(Vec3(0.01, 0.01, 0.5))));
   small.pose.scale = 0.3;
   small.transfer = linearTransfer(5.0, Rgb::Constant(0.8));
   TestScene smallFlat = linearScene({101, 101, 9}, flat);

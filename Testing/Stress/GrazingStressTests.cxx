@@ -14,15 +14,15 @@ struct GrazedGrid {
 
 std::vector<GrazedGrid> grids() {
   const auto turned = [](const Grid& grid) {
-    const Affine turn(translationBy({5.0, -3.0, 2.0}) *
-                      rotationBy(0.7, Vec3(1.0, 2.0, -0.5).normalized()));
+    const Affine turn(makeTranslation({5.0, -3.0, 2.0}) *
+                      makeRotation(0.7, Vec3(1.0, 2.0, -0.5).normalized()));
     return Grid(grid.size, turn * grid.indexToWorld);
   };
   const Grid unit = centredGrid({6, 5, 4}, Vec3::Ones());
   return {{"unit", unit},
           {"uneven", centredGrid({6, 5, 4}, {0.3, 0.7, 1.1})},
           {"turned", turned(unit)},
-          {"far", Grid(unit.size, Affine(translationBy({1e6, 1e6, 1e6})) * unit.indexToWorld)}};
+          {"far", Grid(unit.size, Affine(makeTranslation({1e6, 1e6, 1e6})) * unit.indexToWorld)}};
 }
 
 Volume ones(const Grid& grid) {

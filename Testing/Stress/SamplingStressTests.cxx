@@ -49,7 +49,7 @@ TEST(RandomEnds, CoordinatesBeyond32BitsDoNotWrap) {
 
 TEST(DirectionEnds, DirectionIsUnit) {
   for (const Vec2& u : corners())
-    EXPECT_NEAR(uniformDirection(u).norm(), 1.0, 4e-16);
+    EXPECT_NEAR(sampleUniformSphere(u).norm(), 1.0, 4e-16);
 }
 
 // ---- phase function

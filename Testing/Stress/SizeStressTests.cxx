@@ -54,7 +54,7 @@ protected:
     const Size3 size(GetParam()[0], GetParam()[1], GetParam()[2]);
     // Rotated volume of about 6 mm along each axis.
     Grid grid = centredGrid(size, Vec3(6.0, 5.0, 7.0).cwiseQuotient(size.cast<double>()));
-    grid = Grid(size, rotationBy(0.6, Vec3(1, 2, 3).normalized()) * grid.indexToWorld);
+    grid = Grid(size, makeRotation(0.6, Vec3(1, 2, 3).normalized()) * grid.indexToWorld);
     m_volume = makeVolume(grid, [](const Vec3& p) {
       return 0.5 + 0.5 * std::sin(1.7 * p.x() + 0.5) * std::cos(2.1 * p.y() - p.z());
     });
@@ -239,7 +239,7 @@ TEST(HugeVolume, VoxelsBeyond31BitsAreSeen) {
   scene.pose.scale = 1.5;
   constexpr std::int64_t part = 32;
   const Grid corner({part, part, part},
-                    volume.grid.indexToWorld * translationBy(Vec3::Constant(side - part)));
+                    volume.grid.indexToWorld * makeTranslation(Vec3::Constant(side - part)));
   const TestScene small{
       makeVolume<std::uint8_t>(
           corner, [](const Vec3& p) { return p.minCoeff() >= part - 16 ? 200.0 : 0.0; }),

@@ -120,8 +120,8 @@ public:
   /// Length of the ray covered by the walk over majorant cells, mm; expects no gaps or overlaps.
   double walkedLength(const Ray& ray) const {
     const Interval inside =
-        m_domain.clip(transformed(m_domain.grid().worldToIndex, ray), Interval{});
-    GridWalk walk(transformed(m_majorants.worldToCell(), ray), inside, m_majorants.cellCount());
+        m_domain.clip(transformRay(m_domain.grid().worldToIndex, ray), Interval{});
+    GridWalk walk(transformRay(m_majorants.worldToCell(), ray), inside, m_majorants.cellCount());
     if (walk.done())
       return 0.0;
     const double begin = walk.interval().begin;

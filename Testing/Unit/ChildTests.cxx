@@ -18,37 +18,37 @@ std::vector<std::string> playing(const std::string& part) {
   return {"--gtest_also_run_disabled_tests", "--gtest_filter=Child.DISABLED_" + part};
 }
 
-void waitFor(Child& child) {
+void waitFor(ChildProcess& child) {
   const Stopwatch watch;
   while (!child.hasEnded() && watch.seconds() < 30.0)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
-TEST(Child, DISABLED_Speaks) {
+TEST(ChildProcess, DISABLED_Speaks) {
   std::cerr << "said by the child\n";
 }
-TEST(Child, DISABLED_Fails) {
+TEST(ChildProcess, DISABLED_Fails) {
   FAIL();
 }
-TEST(Child, DISABLED_Crashes) {
+TEST(ChildProcess, DISABLED_Crashes) {
   std::cerr << std::string(70'000, 'x') << "the end\n";
   ::kill(::getpid(), SIGKILL);
 }
-TEST(Child, DISABLED_Sleeps) {
+TEST(ChildProcess, DISABLED_Sleeps) {
   std::this_thread::sleep_for(std::chrono::minutes(1));
 }
 /// Standard input is empty, and no file of the parent is open.
-TEST(Child, DISABLED_HasNoFileOfTheParent) {
+TEST(ChildProcess, DISABLED_HasNoFileOfTheParent) {
   EXPECT_EQ(std::cin.get(), EOF);
   for (int file = 3; file < 64; ++file)
     EXPECT_LT(::fcntl(file, F_GETFD), 0) << file;
 }
 
-TEST(Child, TellsHowItEnded) {
+TEST(ChildProcess, TellsHowItEnded) {
   const std::vector<std::pair<std::string, int>> ends = {
       {"Speaks", 0}, {"Fails", 1}, {"Crashes", 128 + SIGKILL}, {"HasNoFileOfTheParent", 0}};
   for (const auto& [part, status] : ends) {
-    Child child(playing(part));
+    ChildProcess child(playing(part));
     waitFor(child);
     EXPECT_EQ(child.status(), status) << part << child.errors();
     if (part == "Speaks") {
@@ -61,13 +61,13 @@ TEST(Child, TellsHowItEnded) {
   }
 }
 
-TEST(Child, EndsBySignalAndWithItsObject) {
+TEST(ChildProcess, EndsBySignalAndWithItsObject) {
   const Stopwatch watch;
-  Child child(playing("Sleeps"));
+  ChildProcess child(playing("Sleeps"));
   child.send(SIGTERM);
   waitFor(child);
   EXPECT_EQ(child.status(), 128 + SIGTERM);
-  { const Child other(playing("Sleeps")); }
+  { const ChildProcess other(playing("Sleeps")); }
   EXPECT_LT(watch.seconds(), 30.0);
 }
 

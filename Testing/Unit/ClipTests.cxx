@@ -71,8 +71,8 @@ TEST(Clip, PlaneRemovesTheSideOfItsNormal) {
 TEST(Clip, PlaneParallelToARayRemovesAllOrNothing) {
   const Camera camera = anteriorCamera(Projection::orthographic, 100, 50, 8, 8);
   const Ray ray{{0, -100, 0}, {0, 1, 0}};
-  EXPECT_TRUE(visible(ClipPlane{camera, {-1, 0, 0}, {1, 0, 0}}, ray).empty());
-  EXPECT_FALSE(visible(ClipPlane{camera, {1, 0, 0}, {1, 0, 0}}, ray).empty());
+  EXPECT_TRUE(visible(ClipPlane{camera, {-1, 0, 0}, {1, 0, 0}}, ray).isEmpty());
+  EXPECT_FALSE(visible(ClipPlane{camera, {1, 0, 0}, {1, 0, 0}}, ray).isEmpty());
 }
 
 TEST(Clip, PerspectiveRemovesPointsBehindTheEyeInEveryMode) {
@@ -96,7 +96,7 @@ TEST(Clip, EyeRaysStartWhereKeepBegins) {
           const Ray ray = camera.ray(uniform(random, 0, 96), uniform(random, 0, 96));
           const Interval seen = visible(clip, ray);
           const double step = 1e-6 * (1.0 + 1e-4 * distance);
-          if (!seen.empty()) {
+          if (!seen.isEmpty()) {
             // Next to a distant eye (x, y) has lost its digits.
             const double inside =
                 std::min(seen.begin > 0.0 ? step : 1e-3 * distance, 0.5 * (seen.end - seen.begin));
@@ -128,7 +128,7 @@ TEST(Clip, KeptInHoldsForPointsOfTheBox) {
           const Vec3 half =
               Vec3::Constant(0.2) + std::pow(random.uniform(), 4) * randomPoint(random, 0, 20);
           const Mat3 turn =
-              rotationBy(random.uniform(), randomPoint(random, -1, 1).normalized()).linear();
+              makeRotation(random.uniform(), randomPoint(random, -1, 1).normalized()).linear();
           const Box box{-half, half};
           Corners corners;
           for (int i = 0; i < 8; ++i)

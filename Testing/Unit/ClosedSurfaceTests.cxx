@@ -170,7 +170,7 @@ Path writeSegments(const TemporaryFolder& folder, const std::vector<Shape>& shap
 Grid volumeGrid() {
   Affine map = Affine::Identity();
   map.linear() =
-      rotationBy(0.5, Vec3(1, 1, 2).normalized()).linear() * Mat3::Diagonal({0.5, 0.75, 1.0});
+      makeRotation(0.5, Vec3(1, 1, 2).normalized()).linear() * Mat3::Diagonal({0.5, 0.75, 1.0});
   map.translation() = Vec3(-20, 5, 3);
   return {Size3(40, 32, 24), map};
 }

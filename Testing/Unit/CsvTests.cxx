@@ -53,8 +53,8 @@ TEST(Csv, RefusalsNameTheLine) {
 
 TEST(Csv, WrittenLinesAreReadAgain) {
   const Fields fields = {"a", "1,2", "say \"b\"", "", "two\nlines", "-7.5", "x;y"};
-  EXPECT_EQ(fieldsOf(csvLine(fields)), std::vector<Fields>{fields});
-  EXPECT_EQ(csvLine({"=1+2", "-x", "-3"}), "'=1+2,'-x,-3\r\n") << "no formula";
+  EXPECT_EQ(fieldsOf(formatCsvLine(fields)), std::vector<Fields>{fields});
+  EXPECT_EQ(formatCsvLine({"=1+2", "-x", "-3"}), "'=1+2,'-x,-3\r\n") << "no formula";
 }
 
 } // namespace

@@ -74,8 +74,8 @@ TEST(FrameView, AFocusNearAnEndOfTheScanIsFramedWithoutWhatLiesBeyond) {
   const Grid grid = ramp(0, 1).grid; // 40 mm high
   const auto focusAt = [&](double height, int voxels) {
     const Vec3 place = grid.worldCenter() + Vec3(0.0, 0.0, height);
-    const Affine moved =
-        Affine(translationBy(place)) * Affine(translationBy(Vec3::Constant(0.5 - 0.5 * voxels)));
+    const Affine moved = Affine(makeTranslation(place)) *
+                         Affine(makeTranslation(Vec3::Constant(0.5 - 0.5 * voxels)));
     return Mask{Grid({voxels, voxels, voxels}, moved), {}, 0, {"A"}};
   };
   const auto framed = [&](const Mask& focus, const Domain& matter, const ViewRequest& view = {}) {
@@ -103,8 +103,8 @@ TEST(FrameView, AFocusNearAnEndOfTheScanIsFramedWithoutWhatLiesBeyond) {
 TEST(FrameView, CroppedVolumeIsFramed) {
   const Grid grid = ramp(0, 1).grid; // 80 x 60 x 40 mm
   // Rotated box that reaches beyond the volume's right face.
-  const CropBox crop(translationBy(grid.worldCenter() + Vec3(30, 0, 0)) *
-                     rotationBy(pi / 4, Vec3::UnitY()) * scalingBy(Vec3::Constant(10.0)));
+  const CropBox crop(makeTranslation(grid.worldCenter() + Vec3(30, 0, 0)) *
+                     makeRotation(pi / 4, Vec3::UnitY()) * makeScaling(Vec3::Constant(10.0)));
   const Camera camera(frameView({}, Domain(grid, crop), nullptr, 64, 64), 64, 64);
   // Width: from the rotated box's corner to the volume's face, 24.14 mm; height: 28.28 mm.
   const double across = 10.0 * std::numbers::sqrt2 + 10.0;
@@ -112,7 +112,7 @@ TEST(FrameView, CroppedVolumeIsFramed) {
   EXPECT_LT((camera.pose().target - center).norm(), 1e-6);
   EXPECT_NEAR(camera.pose().scale, 1.05 * 10.0 * std::numbers::sqrt2, 1e-6);
 
-  const CropBox beside(Affine(translationBy({500, 0, 0})));
+  const CropBox beside(Affine(makeTranslation({500, 0, 0})));
   EXPECT_EQ(frameView({}, Domain(grid, beside), nullptr, 64, 64).scale,
             frameView({}, grid, nullptr, 64, 64).scale)
       << "nothing is left: the volume is framed";

@@ -111,7 +111,8 @@ double valueAt(const Volume& volume, std::int64_t x, std::int64_t y, std::int64_
 }
 
 Mat3 oblique() {
-  return (rotationBy(0.4, Vec3(1, 2, 3).normalized()) * rotationBy(0.3, Vec3::UnitX())).linear();
+  return (makeRotation(0.4, Vec3(1, 2, 3).normalized()) * makeRotation(0.3, Vec3::UnitX()))
+      .linear();
 }
 
 TEST(DicomSeries, SortsSlicesAlongTheirNormal) {

@@ -21,8 +21,8 @@ TEST(Digest, DependsOnTheBytesAloneNotOnTheirPieces) {
   for (const std::size_t step : {1U, 3U, 7U, 8U, 9U, 64U})
     EXPECT_EQ(valueOf(text, step), valueOf(text, text.size()));
   const TemporaryFolder folder;
-  EXPECT_EQ(digestOf(folder.write("a", text)), valueOf(text, 1));
-  EXPECT_EQ(digestOf(folder / "a", 77), valueOf(text.substr(0, 77), 1));
+  EXPECT_EQ(computeDigest(folder.write("a", text)), valueOf(text, 1));
+  EXPECT_EQ(computeDigest(folder / "a", 77), valueOf(text.substr(0, 77), 1));
 }
 
 TEST(Digest, NoticesEveryBitAndTheLength) {
@@ -43,7 +43,7 @@ TEST(Digest, StaysAsItIs) { // films and records of earlier runs hold it
 TEST(Digest, MissingFileIsRefused) {
   const TemporaryFolder folder;
   const std::filesystem::path path = folder / "none";
-  expectRefused(path, "cannot be read", [&] { digestOf(path); });
+  expectRefused(path, "cannot be read", [&] { computeDigest(path); });
 }
 
 } // namespace

@@ -23,7 +23,7 @@ Affine randomMap(Random& random, double size) {
   const Mat3 anything(randomPoint(random, 1), randomPoint(random, 1), randomPoint(random, 1));
   const Mat3 shear = Mat3::Identity() + 0.3 * anything;
   map.linear() =
-      rotationBy(uniform(random, -3, 3), randomPoint(random, 1).normalized()).linear() * shear *
+      makeRotation(uniform(random, -3, 3), randomPoint(random, 1).normalized()).linear() * shear *
       Mat3::Diagonal({size, uniform(random, 0.2, 1) * size, uniform(random, 0.2, 1) * size});
   if (random.uniform() < 0.5)
     map.linear().col(0) *= -1.0;
@@ -34,7 +34,7 @@ Affine randomMap(Random& random, double size) {
 Grid randomGrid(Random& random) {
   const Size3 size(5, 9, 7);
   return {size, randomMap(random, 1.0) *
-                    translationBy(-0.5 * (size.array() - 1).cast<double>().matrix())};
+                    makeTranslation(-0.5 * (size.array() - 1).cast<double>().matrix())};
 }
 
 /// Distance of a world point outside the domain, in the boxes' own units; 0: on the surface,
@@ -61,17 +61,17 @@ TEST(Domain, ClipIsTheIntersectionOfGridAndCrop) {
     else if (trial % 3 == 1)
       ray.direction = (trial % 2 ? crop.boxToWorld : grid.indexToWorld).linear().col(trial % 9 / 3);
     const Interval range{uniform(random, -4.0, 4.0), uniform(random, 4.0, 20.0)};
-    const Interval inside = Domain(grid, crop).clip(transformed(grid.worldToIndex, ray), range);
-    hits += inside.empty() ? 0 : 1;
+    const Interval inside = Domain(grid, crop).clip(transformRay(grid.worldToIndex, ray), range);
+    hits += inside.isEmpty() ? 0 : 1;
     for (int i = 0; i < 200; ++i) {
       const double t = range.begin + (i + 0.5) / 200.0 * (range.end - range.begin);
       const double beyond = outside(grid, crop, ray.at(t));
       if (std::abs(beyond) > 1e-9) {
-        ASSERT_EQ(beyond < 0.0, !inside.empty() && t >= inside.begin && t <= inside.end)
+        ASSERT_EQ(beyond < 0.0, !inside.isEmpty() && t >= inside.begin && t <= inside.end)
             << "trial " << trial << " at " << t;
       }
     }
-    if (inside.empty())
+    if (inside.isEmpty())
       continue;
     for (const double end : {inside.begin, inside.end}) {
       if (end != range.begin && end != range.end) {
@@ -87,8 +87,8 @@ TEST(Domain, WithoutACropEqualsTheGrid) {
   Random random(22, 0, 0);
   for (int trial = 0; trial < 200; ++trial) {
     const Grid grid = randomGrid(random);
-    const Ray ray = transformed(grid.worldToIndex,
-                                {randomPoint(random, 6.0), randomPoint(random, 1.0).normalized()});
+    const Ray ray = transformRay(grid.worldToIndex,
+                                 {randomPoint(random, 6.0), randomPoint(random, 1.0).normalized()});
     const Interval expected = grid.indexBox().clip(ray, {0.5, 9.0});
     const Interval inside = Domain(grid).clip(ray, {0.5, 9.0});
     EXPECT_EQ(inside.begin, expected.begin);
@@ -107,8 +107,8 @@ TEST(Domain, RayInAFaceIsInside) {
     EXPECT_EQ(along.begin, 5.0);
     EXPECT_EQ(along.end, 7.0);
   }
-  EXPECT_TRUE(domain.clip({Vec3(-4, std::nextafter(3.0, 4.0), 2), Vec3::UnitX()}).empty());
-  EXPECT_TRUE(domain.clip({Vec3(-4, 2, 2), -Vec3::UnitX()}).empty()) << "behind the ray";
+  EXPECT_TRUE(domain.clip({Vec3(-4, std::nextafter(3.0, 4.0), 2), Vec3::UnitX()}).isEmpty());
+  EXPECT_TRUE(domain.clip({Vec3(-4, 2, 2), -Vec3::UnitX()}).isEmpty()) << "behind the ray";
   EXPECT_EQ(domain.clip({Vec3(2, 2, 2), Vec3::UnitZ()}).begin, 0.0) << "from inside";
 }
 
@@ -118,8 +118,8 @@ TEST(Domain, CornersSpanTheDomain) {
   for (int trial = 0; trial < 200; ++trial) {
     const Grid grid = randomGrid(random);
     const CropBox crop(trial % 4 ? randomMap(random, 3.0) // else exactly the grid's own box
-                                 : grid.indexToWorld * translationBy({2, 4, 3}) *
-                                       scalingBy(Vec3(2.5, 4.5, 3.5)));
+                                 : grid.indexToWorld * makeTranslation({2, 4, 3}) *
+                                       makeScaling(Vec3(2.5, 4.5, 3.5)));
     const std::vector<Vec3> corners = Domain(grid, crop).indexCorners();
     for (const Vec3& corner : corners)
       ASSERT_LT(outside(grid, crop, grid.indexToWorld * corner), 1e-7);
@@ -151,7 +151,7 @@ TEST(Domain, CropBesideTheGridLeavesNothing) {
   map.translation() = Vec3(20, 0, 0);
   const Domain domain(Grid({8, 8, 8}, Affine::Identity()), CropBox(map));
   EXPECT_TRUE(domain.indexCorners().empty());
-  EXPECT_TRUE(domain.clip({Vec3(-4, 0, 0), Vec3::UnitX()}).empty());
+  EXPECT_TRUE(domain.clip({Vec3(-4, 0, 0), Vec3::UnitX()}).isEmpty());
 }
 
 } // namespace

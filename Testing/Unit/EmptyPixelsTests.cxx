@@ -11,7 +11,7 @@ namespace {
 /// Small opaque ball off the centre of an empty box, rotated against the view.
 TestScene ballScene(Projection projection, double distance) {
   Affine map = Affine::Identity();
-  map.linear() = rotationBy(0.4, Vec3(1, 2, 3).normalized()).linear() * 1.5;
+  map.linear() = makeRotation(0.4, Vec3(1, 2, 3).normalized()).linear() * 1.5;
   const Vec3 middle(30.0, 22.0, 12.0);
   TestScene scene{makeVolume(Grid({40, 36, 32}, map),
                              [&](const Vec3& p) { return (p - middle).norm() < 5.0 ? 1.0 : 0.0; }),

@@ -52,7 +52,7 @@ struct RandomRays {
     while (worldRays.size() < 50) {
       const Vec3 origin = randomPoint(random, -4.0, 6.0);
       const Ray world{origin, (randomPoint(random, -0.5, 2.5) - origin).normalized()};
-      const Ray ray = transformed(cells.worldToCell(), world);
+      const Ray ray = transformRay(cells.worldToCell(), world);
       const Interval inside = cells.box().clip(ray, {});
       for (std::size_t axis = 0; axis < 3; ++axis) {
         cellRays.origin[axis][cellRays.size] = ray.origin[static_cast<int>(axis)];
@@ -230,7 +230,7 @@ void compareWithMarching(const Camera& camera, const Domain& volume, const Mask&
   for (std::int64_t row = 0; row < focus.depth.rows(); ++row)
     for (std::int64_t column = 0; column < focus.depth.columns(); ++column) {
       const Ray ray = camera.rayThrough(focus.depth.position(column, row));
-      const Interval inside = volume.clip(transformed(volume.grid().worldToIndex, ray));
+      const Interval inside = volume.clip(transformRay(volume.grid().worldToIndex, ray));
       const double hit =
           focus.depth.at(focus.depth.sample(column, row)) / camera.depthPerLength(ray);
       if (hit < infinity) {
@@ -283,7 +283,7 @@ TEST(FocusDepth, AgreesWithMarchingInObliqueGridsAndViews) {
   for (int trial = 0; trial < std::max(2, briefly(6)); ++trial) {
     Affine map = Affine::Identity();
     map.linear() =
-        rotationBy(random.uniform() * 6, randomPoint(random, -1, 1).normalized()).linear() *
+        makeRotation(random.uniform() * 6, randomPoint(random, -1, 1).normalized()).linear() *
         (Mat3::Identity() + 0.2 * Mat3(randomPoint(random, -1, 1), randomPoint(random, -1, 1),
                                        randomPoint(random, -1, 1)));
     map.translation() = map.linear() * Vec3::Constant(-10.0);
@@ -297,8 +297,8 @@ TEST(FocusDepth, AgreesWithMarchingInObliqueGridsAndViews) {
     pose.target = Vec3::Zero();
     pose.scale = 10.0;
     compareWithMarching({pose, 24, 20}, grid, mask);
-    const CropBox crop(Affine(rotationBy(0.4, randomPoint(random, -1, 1).normalized())) *
-                       scalingBy(Vec3(6.0, 7.0, 5.0)));
+    const CropBox crop(Affine(makeRotation(0.4, randomPoint(random, -1, 1).normalized())) *
+                       makeScaling(Vec3(6.0, 7.0, 5.0)));
     compareWithMarching({pose, 24, 20}, {grid, crop}, mask);
   }
 }
@@ -319,22 +319,22 @@ TEST(FocusDepth, RegionIsWhatItsRayMeets) {
     pose.scale = std::pow(10.0, uniform(random, 0, 2));
     pose.angle = uniform(random, 2, 120);
     const Camera camera(pose, 1 + static_cast<int>(random.uniform() * 40), 21);
-    const CropBox crop(Affine(translationBy(randomPoint(random, -6, 6)) *
-                              rotationBy(trial, randomPoint(random, -1, 1).normalized())) *
-                       scalingBy(randomPoint(random, 1, 15)));
+    const CropBox crop(Affine(makeTranslation(randomPoint(random, -6, 6)) *
+                              makeRotation(trial, randomPoint(random, -1, 1).normalized())) *
+                       makeScaling(randomPoint(random, 1, 15)));
     const Domain volume = trial % 5 < 2 ? Domain(grid, crop) : Domain(grid);
     const FocusDepth focus = FocusTracer(camera, volume, mask).depths();
     const std::int64_t stride = 1 + focus.depth.rows() / 40;
     for (std::int64_t row = 0; row < focus.depth.rows(); row += stride)
       for (std::int64_t column = 0; column < focus.depth.columns(); column += stride) {
         const Ray ray = camera.rayThrough(focus.depth.position(column, row));
-        const Interval inside = volume.clip(transformed(grid.worldToIndex, ray));
+        const Interval inside = volume.clip(transformRay(grid.worldToIndex, ray));
         bool isFocus = false;
         for (double t = inside.begin; t < inside.end && !isFocus; t += 0.1)
           isFocus = indicator(mask, ray.at(t)) > 0.5 + 1e-9;
         const Region region =
             focus.regions[static_cast<std::size_t>(focus.depth.sample(column, row))];
-        ASSERT_EQ(region == Region::outside, inside.empty()) << trial;
+        ASSERT_EQ(region == Region::outside, inside.isEmpty()) << trial;
         ASSERT_TRUE(!isFocus || region == Region::focus) << trial;
         ASSERT_EQ(region == Region::focus,
                   focus.depth.at(focus.depth.sample(column, row)) < infinity);
@@ -363,8 +363,8 @@ TEST(FocusDepth, CropCutsTheFocusAndItsContext) {
   const Mask mask = sphereMask(volume, 10.0);
   // Crop that keeps matter behind a plane through the origin, whose depth grows 1 mm per mm to the
   // right.
-  const CropBox crop(rotationBy(-pi / 4, Vec3::UnitZ()) * translationBy({0.0, 30.0, 0.0}) *
-                     scalingBy(Vec3(60.0, 30.0, 18.0)));
+  const CropBox crop(makeRotation(-pi / 4, Vec3::UnitZ()) * makeTranslation({0.0, 30.0, 0.0}) *
+                     makeScaling(Vec3(60.0, 30.0, 18.0)));
   const Camera camera = anteriorCamera(Projection::orthographic, 50.0, 20.0, 40, 40);
   const FocusDepth focus = FocusTracer(camera, {volume, crop}, mask).depths();
   const auto region = [&](const Vec2& at) {

@@ -17,7 +17,7 @@ Mask makeDust(const Grid& grid) {
   Mask mask = sphereMask(grid, 20.3);
   Random random(7, 0, 0);
   for (std::uint8_t& voxel : mask.voxels)
-    if (uniformOf(random.bits()) < 0.99)
+    if (toUniform(random.bits()) < 0.99)
       voxel = 0;
   return mask;
 }
@@ -63,7 +63,7 @@ TEST(Footprints, ReachesHoldTheFocusWhicheverCellsAreAskedFor) {
     for (const double probability : {0.001, 0.05, 0.6}) {
       std::vector<std::uint8_t> requested(range.size());
       for (std::uint8_t& flag : requested)
-        flag = uniformOf(random.bits()) < probability ? 1 : 0;
+        flag = toUniform(random.bits()) < probability ? 1 : 0;
       const std::vector<Interval> bounds = computeBounds(requested);
       for (std::size_t i = 0; i < requested.size(); ++i) {
         const Interval expected = requested[i] != 0 ? all[i] : Interval{infinity, -infinity};

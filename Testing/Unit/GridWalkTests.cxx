@@ -46,7 +46,7 @@ Walked checkedWalk(const Ray& ray, const Interval& range, const Size3& cells) {
       return walked;
     }
   }
-  if (!inside.empty())
+  if (!inside.isEmpty())
     EXPECT_EQ(reached, inside.end);
   else
     EXPECT_EQ(walked.cells, 0);

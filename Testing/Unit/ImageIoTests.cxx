@@ -55,10 +55,10 @@ using NrrdFiles = ImageFiles;
 using DisplayFiles = ImageFiles;
 
 TEST(EmbeddedResources, HoldTheColourConfiguration) {
-  EXPECT_TRUE(embeddedResource("color/fenestra.ocio").starts_with("ocio_profile_version"));
-  EXPECT_TRUE(embeddedResource("color/other.ocio").empty());
-  EXPECT_EQ(embeddedResourceNames("color/"), std::vector<std::string>{"color/fenestra.ocio"});
-  EXPECT_TRUE(embeddedResourceNames("nothing/").empty());
+  EXPECT_TRUE(findResource("color/fenestra.ocio").starts_with("ocio_profile_version"));
+  EXPECT_TRUE(findResource("color/other.ocio").empty());
+  EXPECT_EQ(listResources("color/"), std::vector<std::string>{"color/fenestra.ocio"});
+  EXPECT_TRUE(listResources("nothing/").empty());
 }
 
 TEST_F(ExrFiles, RoundTripKeepsChannelsBitForBitAndTheHeader) {
@@ -116,8 +116,8 @@ TEST_F(ImageFiles, EqualPicturesGiveEqualBytes) {
   for (const char* extension : {".exr", ".nrrd", ".png", ".tif"}) {
     const auto first = written(renderedImage(), std::string("first") + extension);
     const auto second = written(renderedImage(), std::string("second") + extension);
-    EXPECT_EQ(contentOf(first), contentOf(second)) << extension;
-    EXPECT_GT(contentOf(first).size(), 100u) << extension;
+    EXPECT_EQ(readContent(first), readContent(second)) << extension;
+    EXPECT_GT(readContent(first).size(), 100u) << extension;
   }
 }
 
@@ -155,7 +155,7 @@ TEST_F(NrrdFiles, ForeignDepthFileIsNotReplaced) {
   written(image, "view.nrrd"); // format of earlier versions: the same grid
   store(path("view-Z.nrrd"), "somebody else's");
   EXPECT_EQ(kindOf([&] { save(image, "view.nrrd"); }, "view-Z.nrrd"), ErrorKind::usage);
-  EXPECT_EQ(contentOf(path("view-Z.nrrd")), "somebody else's");
+  EXPECT_EQ(readContent(path("view-Z.nrrd")), "somebody else's");
 }
 
 TEST_F(DisplayFiles, DefaultNameReplacesOnlyFilesOfFenestra) {
@@ -272,7 +272,7 @@ TEST_F(ImageFiles, FailedWriteKeepsTheFormerFile) {
       EXPECT_EQ(::testing::internal::GetCapturedStderr(), "") << name << " " << limit;
     }
     EXPECT_EQ(fileCount(), count) << name;
-    EXPECT_EQ(contentOf(path(name)), before) << name;
+    EXPECT_EQ(readContent(path(name)), before) << name;
     EXPECT_EQ(kindOf([&] { writeImage(image, {}, path("missing/" + name)); }, name),
               ErrorKind::output);
   }

@@ -203,14 +203,14 @@ TEST(LightReader, RefusesBadEnvironmentMaps) {
 }
 
 TEST(LightReader, ReadsEveryPreset) {
-  const auto names = embeddedResourceNames("lights/");
+  const auto names = listResources("lights/");
   EXPECT_FALSE(names.empty());
   for (const std::string& name : names)
-    EXPECT_NO_THROW(parseLights(embeddedResource(name), name)) << name;
+    EXPECT_NO_THROW(parseLights(findResource(name), name)) << name;
 }
 
 TEST(LightReader, CinemasKeyIsAboutFourTimesItsFillAndSky) {
-  const auto lights = parseLights(embeddedResource("lights/cinema.json"), "cinema");
+  const auto lights = parseLights(findResource("lights/cinema.json"), "cinema");
   ASSERT_EQ(lights.size(), 4u);
   const Grid grid({10, 10, 10}, Affine::Identity());
   const Camera camera({}, 8, 8);

@@ -110,7 +110,7 @@ TEST(MajorantGrid, MatterBoxHoldsAllMatterAndAtMostACellMore) {
   }
   EXPECT_EQ(boxFrom(5.0).lower, grid.indexBox().lower);
   EXPECT_TRUE((boxFrom(5.0).upper.array() >= grid.indexBox().upper.array()).all());
-  EXPECT_EQ(boxFrom(250.0), Box::nothing());
+  EXPECT_EQ(boxFrom(250.0), Box::makeEmpty());
   EXPECT_GT(edge.minCoeff(), 1.0) << "cells of several voxels";
 }
 

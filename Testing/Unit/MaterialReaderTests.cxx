@@ -234,12 +234,12 @@ TEST(MaterialReader, ErrorNamesTheFieldOfAChange) {
 /// Each file stands alone, no name or code says two things, and all colours are constant: scalars
 /// of MR have no unit.
 TEST(MaterialReader, ReadsTheLibrary) {
-  const auto files = embeddedResourceNames("materials/");
+  const auto files = listResources("materials/");
   EXPECT_GE(files.size(), 8u);
   std::set<std::string> names, codes;
   for (const std::string& file : files) {
     SCOPED_TRACE(file);
-    const MaterialTable table = parseMaterials(embeddedResource(file), file);
+    const MaterialTable table = parseMaterials(findResource(file), file);
     for (const auto& [name, material] : table.materials) {
       EXPECT_TRUE(names.insert(name).second) << name;
       EXPECT_EQ(material.kind, MaterialKind::tint) << name;

@@ -45,7 +45,7 @@ TEST(NiftiHeader, EveryOrderAndSignOfAxesGivesTheSameVolume) {
   std::array<int, 3> order = {0, 1, 2};
   do {
     for (int reversed = 0; reversed < 8; ++reversed) {
-      Affine map, elsewhere = translationBy({500.0, 0.0, 0.0});
+      Affine map, elsewhere = makeTranslation({500.0, 0.0, 0.0});
       NiftiFile file = reordered(referenceSize, referenceSpacing, referenceOrigin, referenceValue,
                                  order, reversed, map);
       // Codes of qform and sform; the second pair of maps is of no effect.

@@ -285,7 +285,7 @@ TEST_F(OutputFiles, CleanupLeavesFilesOfACommittingRun) {
   file.place();
   removeStaleTempFiles(folder.path(), tempFilePrefix,
                        TempFileGuard::Kind::file); // as in another run
-  file.takeBack();
+  file.undoPlace();
   EXPECT_EQ(bytesOf(folder / "a"), "old");
 }
 
@@ -330,8 +330,8 @@ TEST_F(OutputFiles, WrittenReturnsTheStateAtTheCommit) {
   outputs.write(folder / "a", "new");
   outputs.commit();
   folder.write("a", "another's");
-  EXPECT_EQ(outputs.written(folder / "a"), stateOf("new"));
-  EXPECT_EQ(outputs.written(folder / "b"), std::nullopt);
+  EXPECT_EQ(outputs.writtenDigest(folder / "a"), digestContent("new"));
+  EXPECT_EQ(outputs.writtenDigest(folder / "b"), std::nullopt);
 }
 
 TEST_F(OutputFiles, NameLockIsHeldByOneAtATime) {
@@ -368,7 +368,7 @@ TEST(Inputs, FilesOutsideTheArchivesFolderAreRefused) {
   const TemporaryFolder inside, outside;
   const fs::path member = inside.write("member", "1"), secret = outside.write("secret", "2");
   fs::create_symlink(secret, inside / "link");
-  const InputsWithin within(inside.path());
+  const InputConfinement within(inside.path());
   requireFile(member, "");
   for (const fs::path& path :
        {secret, inside / "link", inside / ".." / secret.parent_path().filename() / "secret"})
@@ -388,8 +388,8 @@ TEST_F(OutputFiles, ZeroByteInANameIsRefused) {
   const fs::path file = read("a");
   const std::string zero(1, '\0');
   const fs::path inFolder = folder.path().native() + zero;
-  expectInput(inFolder);
-  expectInput(inFolder / "a");
+  registerInput(inFolder);
+  registerInput(inFolder / "a");
   const std::string line =
       refusal(ErrorKind::input, [&] { requireFile(file.native() + zero + "b", ""); });
   EXPECT_EQ(line.find(file.string() + ": is followed by a zero byte"), 0u) << line;

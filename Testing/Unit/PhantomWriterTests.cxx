@@ -166,7 +166,7 @@ TEST_F(PhantomFiles, EditedFilesAreNotReplaced) {
     const std::string edited = contentOf(folder / name) + "\n";
     std::ofstream(folder / name, std::ios::binary) << edited;
     EXPECT_THROW(writePhantom(phantom, folder, "knee"), Error) << name;
-    EXPECT_EQ(contentOf(folder / name), edited);
+    EXPECT_EQ(readContent(folder / name), edited);
     std::filesystem::remove(folder / name);
   }
 }
@@ -184,7 +184,7 @@ TEST_F(PhantomFiles, ForeignFilesAreNotReplaced) {
       EXPECT_EQ(error.kind(), ErrorKind::usage);
       EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << error.what();
     }
-    EXPECT_EQ(contentOf(folder / name), "somebody else's");
+    EXPECT_EQ(readContent(folder / name), "somebody else's");
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
   }
 }

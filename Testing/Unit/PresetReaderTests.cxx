@@ -98,20 +98,20 @@ TEST(PresetReader, PatternOfManyStarsMatchesQuickly) {
 }
 
 TEST(PresetReader, ReadsEveryBuiltInPreset) {
-  const auto files = embeddedResourceNames("presets/");
+  const auto files = listResources("presets/");
   EXPECT_GE(files.size(), 9u);
   for (const std::string& file : files) {
     SCOPED_TRACE(file);
-    const OrganPreset preset = parsePreset(embeddedResource(file), file);
+    const OrganPreset preset = parsePreset(findResource(file), file);
     EXPECT_FALSE(preset.title.empty());
     EXPECT_FALSE(preset.tested.empty());
     for (const std::string& other : preset.before)
-      EXPECT_FALSE(embeddedResource("presets/" + other + ".json").empty()) << other;
+      EXPECT_FALSE(findResource("presets/" + other + ".json").empty()) << other;
     for (const auto& [flag, value] : preset.options)
       if (flag == "transfer") {
         // Scalars of MR and ultrasound are unknown in advance.
         const TransferLook look =
-            parseTransferLook(embeddedResource("transfer/" + value + ".json"), value);
+            parseTransferLook(findResource("transfer/" + value + ".json"), value);
         EXPECT_EQ(look.relative, preset.modality != Modality::ct);
       }
   }

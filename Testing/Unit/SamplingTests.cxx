@@ -18,13 +18,13 @@ using Dimensions = std::array<double, dimensionCount>;
 
 /// The eight numbers that have strata, in pairs.
 Dimensions toDimensions(const PrimarySamples& numbers) {
-  const Vec2 position = uniform2Of(numbers.position);
-  const Vec2 scattered = uniform2Of(numbers.direction);
-  const Vec2 choices = uniform2Of(numbers.choices);
+  const Vec2 position = toUniform2(numbers.position);
+  const Vec2 scattered = toUniform2(numbers.direction);
+  const Vec2 choices = toUniform2(numbers.choices);
   return {position.x(),
           position.y(),
-          uniformOf(numbers.opticalDepth),
-          uniformOf(numbers.acceptance),
+          toUniform(numbers.opticalDepth),
+          toUniform(numbers.acceptance),
           scattered.x(),
           scattered.y(),
           choices.x(),
@@ -153,8 +153,8 @@ TEST(Strata, NeighboursAndSeedsShareNothing) {
     const Sampler b(Sampling::stratified, otherSeed ? 2 : 1);
     expectJointlyUniform(
         [&](std::uint64_t pixel) {
-          return std::array{uniformOf(a.generate(pixel, 4).opticalDepth),
-                            uniformOf(b.generate(pixel + (otherSeed ? 0 : 1), 4).opticalDepth)};
+          return std::array{toUniform(a.generate(pixel, 4).opticalDepth),
+                            toUniform(b.generate(pixel + (otherSeed ? 0 : 1), 4).opticalDepth)};
         },
         size, otherSeed ? "seeds" : "neighbours");
   }
@@ -191,9 +191,9 @@ TEST(Strata, TheRestIsAsWithoutThem) {
 
 TEST(Numbers, EndsOfTheUnitIntervalAreFinite) {
   for (const std::uint64_t bits : {std::uint64_t{0}, ~std::uint64_t{0}}) {
-    const double u = uniformOf(bits);
+    const double u = toUniform(bits);
     EXPECT_TRUE(u >= 0.0 && u < 1.0);
-    EXPECT_TRUE((uniform2Of(bits).array() >= 0.0).all() && (uniform2Of(bits).array() < 1.0).all());
+    EXPECT_TRUE((toUniform2(bits).array() >= 0.0).all() && (toUniform2(bits).array() < 1.0).all());
     EXPECT_TRUE(std::isfinite(toExponential(u)) && toExponential(u) >= 0.0);
   }
   EXPECT_NEAR(toExponential(0x1p-50) / 0x1p-50, 1.0, 1e-12) << "precise near 0";

@@ -131,7 +131,7 @@ TEST(SilhouetteCells, KeepEqualsThatOfTheFullSurface) {
       options.boundary = Boundary::exact;
       options.offset = softness;
       options.edge = {0.25, softness};
-      const CropBox crop(translationBy({0.0, 10.0, 4.0}) * scalingBy({30.0, 22.0, 20.0}));
+      const CropBox crop(makeTranslation({0.0, 10.0, 4.0}) * makeScaling({30.0, 22.0, 20.0}));
       const ClippingSurface surface =
           buildClippingSurface(ball.camera, Domain(ball.volume.grid(), crop), ball.focus, options);
       const auto& clip = std::get<ClipDepth>(surface.clip);

@@ -10,7 +10,7 @@ namespace fenestra::SegmentationReaderTests {
 namespace {
 
 Grid unitGrid(const Size3& size, const Vec3& origin = Vec3::Zero(), double spacing = 1.0) {
-  return {size, translationBy(origin) * scalingBy(Vec3::Constant(spacing))};
+  return {size, makeTranslation(origin) * makeScaling(Vec3::Constant(spacing))};
 }
 
 std::int64_t index(const Grid& grid, std::int64_t x, std::int64_t y, std::int64_t z) {
@@ -97,7 +97,7 @@ TEST(SegmentationReader, FlippedGridSharesFacesAndObliqueDoesNot) {
   // Grid that fills the labelmap's box, with permuted axes.
   const Affine flipped(Mat3({0, 1, 0}, {0, 0, -1}, {-1, 0, 0}), {5, 0, 5});
   EXPECT_EQ(at(s.mask({"1"}, Grid({6, 6, 6}, flipped)), {-1, 3, 3}), 1);
-  const Affine oblique = rotationBy(0.4, Vec3::UnitZ());
+  const Affine oblique = makeRotation(0.4, Vec3::UnitZ());
   EXPECT_EQ(at(s.mask({"1"}, Grid({6, 6, 6}, oblique)), {-1, 3, 3}), 0);
 }
 

@@ -8,10 +8,10 @@ namespace fenestra::ShownTextTests {
 namespace {
 
 TEST(ShownText, IsValidUtf8OnOneLine) {
-  EXPECT_EQ(oneLine("Schädel, 頭, 🦴"), "Schädel, 頭, 🦴");
-  EXPECT_EQ(oneLine(std::string("a\nb\0c\x7f"
-                                "d",
-                                7)),
+  EXPECT_EQ(toOneLine("Schädel, 頭, 🦴"), "Schädel, 頭, 🦴");
+  EXPECT_EQ(toOneLine(std::string("a\nb\0c\x7f"
+                                  "d",
+                                  7)),
             "a b c d");
   const std::pair<const char*, const char*> bad[] = {
       {"Sch\xe4"
@@ -29,14 +29,14 @@ TEST(ShownText, IsValidUtf8OnOneLine) {
       {"\xc3\n", "? "},             // and a control character
   };
   for (const auto& [text, shownAs] : bad)
-    EXPECT_EQ(oneLine(text), expected);
+    EXPECT_EQ(toOneLine(text), expected);
 }
 
 TEST(ShownText, IsCutBetweenCharacters) {
   const std::string text = std::string(79, 'x') + "ä";
-  EXPECT_EQ(shown(text), std::string(79, 'x'));
-  EXPECT_EQ(shown(std::string(78, 'x') + "ä"), std::string(78, 'x') + "ä");
-  EXPECT_EQ(shown(std::string(200, '\x80')), std::string(77, '?'));
+  EXPECT_EQ(sanitize(text), std::string(79, 'x'));
+  EXPECT_EQ(sanitize(std::string(78, 'x') + "ä"), std::string(78, 'x') + "ä");
+  EXPECT_EQ(sanitize(std::string(200, '\x80')), std::string(77, '?'));
 }
 
 TEST(ShownText, ReplacedAllReplacesEveryOccurrence) {

@@ -14,7 +14,7 @@ namespace fenestra::testing::TintContrastTests {
 namespace {
 
 Rgb hexToLinear(std::uint32_t rgb) {
-  return decodeSrgb(fenestra::colorOf(rgb));
+  return decodeSrgb(fenestra::hexToRgb(rgb));
 }
 
 const Rgb liver = hexToLinear(0x963e2e), muscle = hexToLinear(0xa03e38),
@@ -52,7 +52,7 @@ TEST(TintContrast, KnobsChangeWhatTheySay) {
   const Lab focus = labOf(adjustFocus(liver, {.focusLightness = -5.0, .focusChroma = 1.1}));
   EXPECT_NEAR(focus.L, before.L - 5.0, 1e-6);
   EXPECT_NEAR(focus.a, 1.1 * before.a, 1e-6);
-  const Lab lesion = labOf(decodeSrgb(fenestra::colorOf(accentColors[0].color)));
+  const Lab lesion = labOf(decodeSrgb(fenestra::hexToRgb(accentColors[0].color)));
   const Lab half =
       labOf(adjustFocus(liver, {.focusLightness = 2.0, .focusAccent = 0.5, .accent = 0}));
   EXPECT_NEAR(half.L, 0.5 * (before.L + 2.0 + lesion.L), 1e-6);

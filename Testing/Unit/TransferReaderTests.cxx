@@ -162,12 +162,12 @@ TEST(TransferReader, OmitsGradientOpacityWithoutEffect) {
   for (const char* component :
        {"", R"("gradientOpacity": {"points": [{"x": 0, "y": 1}, {"x": 9, "y": 1}]}, )",
         R"("disableGradientOpacity": true, "gradientOpacity": {"points": [{"x": 0, "y": 0}]}, )"})
-    EXPECT_FALSE(parsed(slicer("", component)).gradientOpacity);
+    EXPECT_FALSE(parse(slicer("", component)).gradientOpacity);
 }
 
 TEST(TransferReader, ClampsAnisotropyBelowOne) {
-  EXPECT_EQ(parsed(slicer(R"("scatteringAnisotropy": 1, )", "")).g, 0.999);
-  EXPECT_EQ(parsed(slicer(R"("scatteringAnisotropy": -1, )", "")).g, -0.999);
+  EXPECT_EQ(parse(slicer(R"("scatteringAnisotropy": 1, )", "")).g, 0.999);
+  EXPECT_EQ(parse(slicer(R"("scatteringAnisotropy": -1, )", "")).g, -0.999);
   expectRefusal(slicer(R"("scatteringAnisotropy": 1.01, )", ""),
                 "volumeProperties[0].scatteringAnisotropy: is 1.01; it must be from -1 to 1");
 }

@@ -11,7 +11,7 @@ namespace {
 Grid obliqueGrid(const Size3& size) {
   Affine map = Affine::Identity();
   map.linear() =
-      (rotationBy(0.4, Vec3(1, 2, 3).normalized()).linear()) * Mat3::Diagonal({0.5, 2.0, -1.25});
+      (makeRotation(0.4, Vec3(1, 2, 3).normalized()).linear()) * Mat3::Diagonal({0.5, 2.0, -1.25});
   map.translation() = Vec3(10, -20, 30);
   return {size, map};
 }
@@ -54,15 +54,15 @@ TEST(Box, ClipsRaysAlongFacesAndAxes) {
   const Box box{Vec3::Zero(), Vec3::Ones()};
   EXPECT_EQ(box.clip({{-1, 0.5, 0.5}, {1, 0, 0}}).begin, 1.0);
   EXPECT_EQ(box.clip({{-1, 0.5, 0.5}, {1, 0, 0}}).end, 2.0);
-  EXPECT_FALSE(box.clip({{-1, 1.0, 0.5}, {1, 0, 0}}).empty()) << "in a face";
-  EXPECT_TRUE(box.clip({{-1, 1.5, 0.5}, {1, 0, 0}}).empty());
-  EXPECT_TRUE(box.clip({{2, 0.5, 0.5}, {1, 0, 0}}).empty()) << "behind";
+  EXPECT_FALSE(box.clip({{-1, 1.0, 0.5}, {1, 0, 0}}).isEmpty()) << "in a face";
+  EXPECT_TRUE(box.clip({{-1, 1.5, 0.5}, {1, 0, 0}}).isEmpty());
+  EXPECT_TRUE(box.clip({{2, 0.5, 0.5}, {1, 0, 0}}).isEmpty()) << "behind";
 }
 
 TEST(Frame, IsOrthonormalAndRightHanded) {
   Random random(4, 0, 0);
   for (int i = 0; i < 1000; ++i) {
-    const Frame f(uniformDirection(random.uniform2()));
+    const Frame f(sampleUniformSphere(random.uniform2()));
     ASSERT_NEAR(f.tangent.dot(f.normal), 0.0, 1e-12);
     ASSERT_TRUE(isApprox(f.tangent.cross(f.bitangent), f.normal, 1e-12));
   }

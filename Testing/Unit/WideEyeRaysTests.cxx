@@ -31,7 +31,7 @@ CameraPose makePose(Projection projection, const Vec3& position, double extent) 
 }
 
 std::vector<View> makeViews() {
-  const Affine box = rotationBy(0.4, Vec3(1.0, 2.0, 2.0) / 3.0);
+  const Affine box = makeRotation(0.4, Vec3(1.0, 2.0, 2.0) / 3.0);
   const CameraPose near = makePose(Projection::perspective, {-30.0, -80.0, 20.0}, 30.0);
   const CropBox crop(Affine(15.0 * box.linear(), Vec3(2.0, 1.0, 0.0)));
   return {{"orthographic", makePose(Projection::orthographic, {-60.0, -80.0, 20.0}, 40.0)},
@@ -103,11 +103,11 @@ TEST_P(SimdCameraRays, NumbersAreThoseOfTheSource) {
           ASSERT_EQ(paths->rays.acceptance[i], toUnitFloat(numbers.acceptance >> 32)) << i;
           ASSERT_EQ(paths->uDirection[0][i], toUnitFloat(numbers.direction >> 32)) << i;
           ASSERT_EQ(paths->uDirection[1][i], toUnitFloat(numbers.direction)) << i;
-          const Vec2 choices = uniform2Of(numbers.choices);
+          const Vec2 choices = toUniform2(numbers.choices);
           ASSERT_NEAR(double{paths->uChoices[0][i]}, choices.x(), 2e-7) << i;
           ASSERT_NEAR(double{paths->uChoices[1][i]}, choices.y(), 2e-7) << i;
           ASSERT_EQ(std::uint64_t{paths->counter[i]} << 32 | paths->key[i], numbers.pathSeed) << i;
-          const Vec2 jitter = uniform2Of(numbers.position);
+          const Vec2 jitter = toUniform2(numbers.position);
           const std::uint64_t pixel = 400 + i;
           ASSERT_NEAR(double{samples->column[i]} + 0.5 * width, double(pixel % width) + jitter.x(),
                       2e-6);

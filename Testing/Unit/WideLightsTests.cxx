@@ -225,7 +225,7 @@ TEST_P(SimdLights, MeanOfRadianceOverDensityIsTheIntegral) {
     std::vector<Vec3> directions;
     for (std::size_t i = 0; i < count; ++i) {
       Random random(7, i, 0);
-      directions.push_back(uniformDirection(random.uniform2()));
+      directions.push_back(sampleUniformSphere(random.uniform2()));
     }
     Rgb sum = Rgb::Zero(), squares = Rgb::Zero(), expected = fog.lights.tables().constant;
     for (const ShadowSample& sample : sampleLights(fog, 8, count)) {
@@ -251,7 +251,7 @@ TEST_P(SimdLights, EscapingRaysMeetTheScalarLights) {
   std::vector<Vec3> directions = {{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {0, 1, 0}};
   for (std::size_t i = 0; i < 100000; ++i) {
     Random random(6, i, 0);
-    directions.push_back(uniformDirection(random.uniform2()));
+    directions.push_back(sampleUniformSphere(random.uniform2()));
   }
   for (const LightCase& s : makeLightCases()) {
     SCOPED_TRACE(s.name);

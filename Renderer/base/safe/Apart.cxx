@@ -38,7 +38,7 @@ constexpr std::uint64_t maxRequestBytes = 1 << 16; // bytes; less than a socket 
 bool sendAll(int connection, std::string_view bytes) {
   while (!bytes.empty()) {
     const auto sent =
-        repeated([&] { return ::send(connection, bytes.data(), bytes.size(), MSG_NOSIGNAL); });
+        retryOnEintr([&] { return ::send(connection, bytes.data(), bytes.size(), MSG_NOSIGNAL); });
     if (sent < 0)
       return false;
     bytes.remove_prefix(static_cast<std::size_t>(sent));
@@ -73,7 +73,7 @@ bool receiveAll(int connection, char* to, std::uint64_t size,
     if (!waitReadable(connection, deadline))
       return false;
     const auto count =
-        repeated([&] { return ::recv(connection, to, static_cast<std::size_t>(size), 0); });
+        retryOnEintr([&] { return ::recv(connection, to, static_cast<std::size_t>(size), 0); });
     if (count <= 0)
       return false;
     to += count;
@@ -184,7 +184,7 @@ std::vector<const SandboxJob*>& registeredJobs() {
 /// Starts the child for `job`, which has no file but its end of the connection, and default signal
 /// handlers. Returns the process id, or 0: failed.
 pid_t spawn(const std::string& job, int connection) {
-  const OwnArguments arguments({subcommand, job, std::to_string(::getpid())});
+  const SelfArguments arguments({subcommand, job, std::to_string(::getpid())});
   posix_spawn_file_actions_t files;
   ::posix_spawn_file_actions_init(&files);
   ::posix_spawn_file_actions_adddup2(&files, connection, childConnection);
@@ -203,7 +203,7 @@ pid_t spawn(const std::string& job, int connection) {
                                               POSIX_SPAWN_SETPGROUP);
   pid_t child = 0;
   const int failed =
-      ::posix_spawn(&child, ownProgram, &files, &attributes, arguments.get(), environ);
+      ::posix_spawn(&child, selfExecutable, &files, &attributes, arguments.get(), environ);
   ::posix_spawnattr_destroy(&attributes);
   ::posix_spawn_file_actions_destroy(&files);
   return failed ? 0 : child;
@@ -233,7 +233,7 @@ void SandboxedReader::start() {
 void SandboxedReader::end() {
   if (m_child != 0) {
     ::kill(m_child, SIGKILL);
-    repeated([this] { return ::waitpid(m_child, nullptr, 0); });
+    retryOnEintr([this] { return ::waitpid(m_child, nullptr, 0); });
   }
   m_child = 0;
   m_connection = Descriptor();

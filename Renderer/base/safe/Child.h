@@ -14,14 +14,14 @@ namespace fenestra {
 /// Child process with default signal handlers, no files of this process, no standard input,
 /// standard output discarded and standard error kept. Signals of the terminal do not reach the
 /// child; the kernel kills the child when the thread that made it ends.
-class Child {
+class ChildProcess {
 public:
   /// Runs `fenestra arguments…`. Throws Error (output) where no process can be started.
-  explicit Child(std::vector<std::string> arguments);
+  explicit ChildProcess(std::vector<std::string> arguments);
   /// Kills the process if it still runs.
-  ~Child();
-  Child(const Child&) = delete;
-  Child& operator=(const Child&) = delete;
+  ~ChildProcess();
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
 
   /// True once the process has ended. Does not wait.
   bool hasEnded();

@@ -7,7 +7,7 @@
 namespace fenestra {
 namespace {
 
-constexpr std::size_t mostFields = 1'000'000;
+constexpr std::size_t maxFields = 1'000'000;
 
 /// Reads a table field by field.
 class CsvParser {
@@ -21,10 +21,10 @@ public:
       m_separator = ';';
   }
 
-  std::vector<CsvRecord> records() {
+  std::vector<CsvRecord> parse() {
     std::vector<CsvRecord> records;
     while (m_at < m_text.size()) {
-      CsvRecord record = next();
+      CsvRecord record = readRecord();
       if (record.fields.size() > 1 || !trim(record.fields[0]).empty())
         records.push_back(std::move(record));
     }
@@ -35,33 +35,33 @@ private:
   bool isAt(char c) const { return m_at < m_text.size() && m_text[m_at] == c; }
   bool isAtLineEnd() const { return m_at == m_text.size() || isAt('\n') || isAt('\r'); }
 
-  CsvRecord next() {
+  CsvRecord readRecord() {
     CsvRecord record{m_line, {}};
     for (;;) {
-      if (++m_fields > mostFields)
-        throw inputError(m_source, "holds more than ", mostFields, " fields; split it");
-      record.fields.push_back(isAt('"') ? quoted() : plain());
+      if (++m_fields > maxFields)
+        throw inputError(m_source, "holds more than ", maxFields, " fields; split it");
+      record.fields.push_back(isAt('"') ? readQuotedField() : readPlainField());
       if (!isAt(m_separator))
         break;
       ++m_at;
     }
-    takeLineEnd();
+    skipLineEnd();
     return record;
   }
 
-  std::string plain() {
+  std::string readPlainField() {
     const std::size_t begin = m_at;
     while (!isAtLineEnd() && !isAt(m_separator))
       ++m_at;
     return std::string(m_text.substr(begin, m_at - begin));
   }
 
-  std::string quoted() {
-    const std::size_t opened = m_line;
+  std::string readQuotedField() {
+    const std::size_t firstLine = m_line;
     std::string field;
     for (++m_at; !isAt('"') || m_text.substr(m_at).starts_with("\"\""); ++m_at) {
       if (m_at == m_text.size())
-        throw inputError(m_source, "line ", opened, ": its quotes do not close; close them");
+        throw inputError(m_source, "line ", firstLine, ": its quotes do not close; close them");
       m_at += isAt('"') ? 1 : 0; // the first of two, which stand for one
       m_line += isAt('\n') ? 1 : 0;
       field += m_text[m_at];
@@ -73,7 +73,7 @@ private:
     return field;
   }
 
-  void takeLineEnd() {
+  void skipLineEnd() {
     m_at += isAt('\r') ? 1 : 0;
     m_at += isAt('\n') ? 1 : 0;
     ++m_line;
@@ -88,19 +88,20 @@ private:
 } // namespace
 
 std::vector<CsvRecord> parseCsv(std::string_view text, const std::string& source) {
-  return CsvParser(text, source).records();
+  return CsvParser(text, source).parse();
 }
 
-std::string csvLine(const std::vector<std::string>& fields) {
-  const auto written = [](std::string field) {
-    constexpr std::string_view formulas = "=+-@\t";
-    if (!field.empty() && formulas.find(field[0]) != formulas.npos && !parseNumber<double>(field))
+std::string formatCsvLine(const std::vector<std::string>& fields) {
+  const auto format = [](std::string field) {
+    constexpr std::string_view formulaStarts = "=+-@\t";
+    if (!field.empty() && formulaStarts.find(field[0]) != formulaStarts.npos &&
+        !parseNumber<double>(field))
       field.insert(0, 1, '\'');
     if (field.find_first_of(",;\"\r\n") == field.npos)
       return field;
     return concat('"', replaceAll(field, "\"", "\"\""), '"');
   };
-  return join(fields, ",", written) + "\r\n";
+  return join(fields, ",", format) + "\r\n";
 }
 
 } // namespace fenestra

@@ -23,6 +23,6 @@ std::vector<CsvRecord> parseCsv(std::string_view text, const std::string& source
 
 /// Line of a table, with its end. A text that a spreadsheet would take for a formula is preceded by
 /// an apostrophe.
-std::string csvLine(const std::vector<std::string>& fields);
+std::string formatCsvLine(const std::vector<std::string>& fields);
 
 } // namespace fenestra

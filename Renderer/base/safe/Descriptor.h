@@ -33,16 +33,17 @@ private:
 
 /// Calls `call` until no signal interrupts the call (EINTR); returns its result.
 template <typename Call>
-auto repeated(Call&& call) {
-  auto result = call();
+auto retryOnEintr(Call&& systemCall) {
+  auto result = systemCall();
   while (result < 0 && errno == EINTR)
-    result = call();
+    result = systemCall();
   return result;
 }
 
 /// Tries to lock a file. False: another process holds the lock. True also on a disk without locks.
 inline bool tryLock(const Descriptor& file) {
-  return repeated([&] { return ::flock(*file, LOCK_EX | LOCK_NB); }) == 0 || errno != EWOULDBLOCK;
+  return retryOnEintr([&] { return ::flock(*file, LOCK_EX | LOCK_NB); }) == 0 ||
+         errno != EWOULDBLOCK;
 }
 
 /// False if the file has no name any more.

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t wordBytes = 8;
 static_assert(std::endian::native == std::endian::little, "words are taken as they lie in memory");
 
-std::uint64_t withWord(std::uint64_t state, const char* bytes) {
+std::uint64_t mixWord(std::uint64_t state, const char* bytes) {
   std::uint64_t word = 0;
   std::memcpy(&word, bytes, wordBytes);
   return mixBits((state ^ word) + Random::gamma);
@@ -31,21 +31,21 @@ void Digest::add(std::string_view bytes) {
     bytes.remove_prefix(taken);
     if (m_rest.size() < wordBytes)
       return;
-    m_state = withWord(m_state, m_rest.data());
+    m_state = mixWord(m_state, m_rest.data());
     m_rest.clear();
   }
   for (; bytes.size() >= wordBytes; bytes.remove_prefix(wordBytes))
-    m_state = withWord(m_state, bytes.data());
+    m_state = mixWord(m_state, bytes.data());
   m_rest = bytes;
 }
 
 std::uint64_t Digest::value() const {
   std::string last = m_rest;
   last.resize(wordBytes, '\0');
-  return mixBits(withWord(m_state, last.data()) ^ m_size);
+  return mixBits(mixWord(m_state, last.data()) ^ m_size);
 }
 
-std::uint64_t digestOf(const std::filesystem::path& file, std::uint64_t bytes) {
+std::uint64_t computeDigest(const std::filesystem::path& file, std::uint64_t bytes) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream)
     throw readError(file, errno, "check its permissions");

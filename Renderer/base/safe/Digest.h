@@ -24,6 +24,6 @@ private:
 
 /// Digest of the first `bytes` bytes of a file, or of all if it is shorter, read block by block.
 /// Throws Error (input) where the file cannot be read.
-std::uint64_t digestOf(const std::filesystem::path& file, std::uint64_t bytes = UINT64_MAX);
+std::uint64_t computeDigest(const std::filesystem::path& file, std::uint64_t bytes = UINT64_MAX);
 
 } // namespace fenestra

@@ -9,9 +9,9 @@ namespace fenestra {
 
 /// Text of the file at `name`, a path under Resources/ like "color/fenestra.ocio". Empty: no such
 /// file (`name` may come from a user).
-std::string_view embeddedResource(std::string_view name);
+std::string_view findResource(std::string_view name);
 
 /// Paths under Resources/ that start with `prefix`, like "transfer/", sorted.
-std::vector<std::string> embeddedResourceNames(std::string_view prefix);
+std::vector<std::string> listResources(std::string_view prefix);
 
 } // namespace fenestra

@@ -17,23 +17,23 @@
 
 namespace fenestra::header {
 
-inline constexpr std::size_t longestHeader = 16 << 20;
+inline constexpr std::size_t maxHeaderBytes = 16 << 20;
 
 using Fields = std::map<std::string, std::string>;
 
 /// Value of a field; empty: missing.
-inline std::string valueOf(const Fields& fields, const std::string& key) {
+inline std::string findValue(const Fields& fields, const std::string& key) {
   const auto found = fields.find(key);
   return found == fields.end() ? std::string() : found->second;
 }
 
-inline Error damaged(const std::filesystem::path& path, const std::string& format) {
+inline Error damagedError(const std::filesystem::path& path, const std::string& format) {
   return inputError(path, "is not a ", format, " file, or its header is damaged; write it again");
 }
 
 /// Throws Error (input) where `unit` is a length other than mm: all readers take lengths as mm.
 /// Units of other quantities, such as time, pass.
-inline void checkMillimetres(const std::filesystem::path& path, const std::string& field,
+inline void checkMillimeters(const std::filesystem::path& path, const std::string& field,
                              const std::string& unit) {
   static const std::set<std::string> others = {
       "m",          "cm",          "dm",         "km",          "um",         "µm",
@@ -47,7 +47,7 @@ inline void checkMillimetres(const std::filesystem::path& path, const std::strin
 
 /// Finds control characters other than a tab. Libraries end a line at a zero byte or a lone \r, and
 /// would read another header than this code.
-inline bool hasControls(std::string_view line) {
+inline bool hasControlCharacter(std::string_view line) {
   return std::any_of(line.begin(), line.end(),
                      [](unsigned char c) { return (c < 0x20 && c != '\t') || c == 0x7f; });
 }
@@ -57,12 +57,12 @@ class HeaderLines {
 public:
   explicit HeaderLines(const std::filesystem::path& path) : m_file(path, std::ios::binary) {
     std::error_code unknown; // file_size of a pipe fails and returns the largest number
-    m_limit = std::min<std::uint64_t>(std::filesystem::file_size(path, unknown), longestHeader);
+    m_limit = std::min<std::uint64_t>(std::filesystem::file_size(path, unknown), maxHeaderBytes);
     m_text = std::make_unique_for_overwrite<char[]>(m_limit + 1);
   }
 
   /// Next line, without its line end; valid as long as this object. nullopt: end of the file, or a
-  /// line that goes beyond longestHeader.
+  /// line that goes beyond maxHeaderBytes.
   std::optional<std::string_view> next() {
     char* const begin = m_text.get() + m_position;
     if (!m_file.getline(begin, static_cast<std::streamsize>(m_limit + 1 - m_position)))

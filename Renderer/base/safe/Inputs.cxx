@@ -14,29 +14,29 @@
 namespace fenestra {
 namespace {
 
-struct Ledger {
+struct Registry {
   std::mutex mutex;
   std::map<FileId, std::filesystem::path> inputs;
   std::map<std::filesystem::path, FileId> results;
 };
 
-Ledger& ledger() {
-  static Ledger ledger;
-  return ledger;
+Registry& registry() {
+  static Registry registry;
+  return registry;
 }
 
-void enter(const FileId& file, const std::filesystem::path& path) {
-  const std::lock_guard lock(ledger().mutex);
-  ledger().inputs.try_emplace(file, path);
+void addInput(const FileId& file, const std::filesystem::path& path) {
+  const std::lock_guard lock(registry().mutex);
+  registry().inputs.try_emplace(file, path);
 }
 
 bool isResult(const FileId& file) {
-  const std::lock_guard lock(ledger().mutex);
-  return std::any_of(ledger().results.begin(), ledger().results.end(),
+  const std::lock_guard lock(registry().mutex);
+  return std::any_of(registry().results.begin(), registry().results.end(),
                      [&file](const auto& result) { return result.second == file; });
 }
 
-std::optional<FileId> idOf(int folder, const char* path, int flags) {
+std::optional<FileId> getFileId(int folder, const char* path, int flags) {
   struct statx status = {};
   if (::statx(folder, path, flags, STATX_INO | STATX_BTIME, &status) != 0)
     return std::nullopt;
@@ -58,7 +58,7 @@ bool isWithin(const std::filesystem::path& path, const std::filesystem::path& fo
                         folder.end();
 }
 
-std::filesystem::file_type typeOf(const std::filesystem::path& path) {
+std::filesystem::file_type getFileType(const std::filesystem::path& path) {
   std::error_code failed;
   const std::filesystem::file_type type = std::filesystem::status(path, failed).type();
   if (type == std::filesystem::file_type::none)
@@ -74,22 +74,23 @@ bool hasZeroByte(const std::filesystem::path& path) {
 } // namespace
 
 std::optional<FileId> fileId(const std::filesystem::path& path) {
-  return idOf(AT_FDCWD, path.c_str(), 0);
+  return getFileId(AT_FDCWD, path.c_str(), 0);
 }
 
 std::optional<FileId> fileId(int descriptor) {
-  return idOf(descriptor, "", AT_EMPTY_PATH);
+  return getFileId(descriptor, "", AT_EMPTY_PATH);
 }
 
-bool isThere(const std::filesystem::path& path) {
-  return typeOf(path) != std::filesystem::file_type::not_found;
+bool fileExists(const std::filesystem::path& path) {
+  return getFileType(path) != std::filesystem::file_type::not_found;
 }
 
 bool isFolder(const std::filesystem::path& path) {
-  return typeOf(path) == std::filesystem::file_type::directory;
+  return getFileType(path) == std::filesystem::file_type::directory;
 }
 
-void requireFile(const std::filesystem::path& path, const std::string& hint, std::uint64_t most) {
+void requireFile(const std::filesystem::path& path, const std::string& hint,
+                 std::uint64_t maxBytes) {
   if (hasZeroByte(path))
     throw inputError(path.c_str(),
                      "is followed by a zero byte, which no name holds; write it again");
@@ -107,65 +108,65 @@ void requireFile(const std::filesystem::path& path, const std::string& hint, std
     throw inputError(path, "is a folder; ", hint);
   if (!S_ISREG(status.st_mode))
     throw inputError(path, "is not a file that can be read; ", hint);
-  if (static_cast<std::uint64_t>(status.st_size) > most)
-    throw inputError(path, "has more than ", most >> 20, " MB; name a smaller file");
+  if (static_cast<std::uint64_t>(status.st_size) > maxBytes)
+    throw inputError(path, "has more than ", maxBytes >> 20, " MB; name a smaller file");
   if (::faccessat(AT_FDCWD, path.c_str(), R_OK, AT_EACCESS) != 0)
     throw readError(path, errno, "check its permissions");
   const std::optional<FileId> file = fileId(path);
   if (file && isResult(*file))
     throw inputError(path, "is a result of this command; name another file");
   if (file)
-    enter(*file, path);
+    addInput(*file, path);
 }
 
-void expectInput(const std::filesystem::path& path) {
-  const auto enterFile = [](const std::filesystem::path& file) {
+void registerInput(const std::filesystem::path& path) {
+  const auto addFile = [](const std::filesystem::path& file) {
     if (const std::optional<FileId> id = fileId(file))
-      enter(*id, file);
+      addInput(*id, file);
   };
   if (hasZeroByte(path))
     return;
   std::error_code failed;
   const auto type = std::filesystem::status(path, failed).type();
   if (type == std::filesystem::file_type::regular)
-    enterFile(path);
+    addFile(path);
   else if (type == std::filesystem::file_type::directory)
     for (std::filesystem::directory_iterator entry(path, failed), end; !failed && entry != end;
          entry.increment(failed))
       if (entry->is_regular_file(failed))
-        enterFile(entry->path());
+        addFile(entry->path());
 }
 
-InputsWithin::InputsWithin(const std::optional<std::filesystem::path>& folder) {
+InputConfinement::InputConfinement(const std::optional<std::filesystem::path>& folder) {
   if (folder)
     m_folder = std::filesystem::canonical(*folder);
   m_before = std::exchange(confinement, m_folder ? &*m_folder : nullptr);
 }
 
-InputsWithin::~InputsWithin() {
+InputConfinement::~InputConfinement() {
   confinement = m_before;
 }
 
-std::optional<std::filesystem::path> inputNamed(const FileId& file) {
-  const std::lock_guard lock(ledger().mutex);
-  const auto found = ledger().inputs.find(file);
-  return found == ledger().inputs.end() ? std::nullopt : std::optional(found->second);
+std::optional<std::filesystem::path> findInput(const FileId& file) {
+  const std::lock_guard lock(registry().mutex);
+  const auto found = registry().inputs.find(file);
+  return found == registry().inputs.end() ? std::nullopt : std::optional(found->second);
 }
 
 void forgetInput(const FileId& file) {
-  const std::lock_guard lock(ledger().mutex);
-  ledger().inputs.erase(file);
+  const std::lock_guard lock(registry().mutex);
+  registry().inputs.erase(file);
 }
 
-void enterResult(const std::filesystem::path& path) {
-  const std::lock_guard lock(ledger().mutex);
+void registerResult(const std::filesystem::path& path) {
+  const std::lock_guard lock(registry().mutex);
   if (const auto file = fileId(path))
-    ledger().results[path] = *file;
+    registry().results[path] = *file;
 }
 
-void forgetResult(const std::filesystem::path& path) {
-  const std::lock_guard lock(ledger().mutex);
-  ledger().results.erase(path);
+void unregisterResult(const std::filesystem::path& path) {
+  const std::lock_guard lock(registry().mutex);
+  registry().results.erase(path);
 }
 
 std::string lowercaseExtension(const std::filesystem::path& path) {

@@ -12,17 +12,17 @@
 namespace fenestra {
 namespace {
 
-constexpr int deepest = 64;
+constexpr int maxDepth = 64;
 
-std::string shortNumber(double x) {
+std::string formatNumber(double x) {
   std::string text = nlohmann::json(x).dump();
   return text.ends_with(".0") ? text.substr(0, text.size() - 2) : text;
 }
 
 } // namespace
 
-std::string readText(const std::filesystem::path& path, std::uint64_t most) {
-  requireFile(path, "name a file in it", most);
+std::string readText(const std::filesystem::path& path, std::uint64_t maxBytes) {
+  requireFile(path, "name a file in it", maxBytes);
   std::string text(static_cast<std::size_t>(std::filesystem::file_size(path)), '\0');
   errno = 0;
   std::ifstream file(path, std::ios::binary);
@@ -31,16 +31,16 @@ std::string readText(const std::filesystem::path& path, std::uint64_t most) {
   return text;
 }
 
-nlohmann::json parseJson(std::string_view text, const std::string& source, int mostParts) {
+nlohmann::json parseJson(std::string_view text, const std::string& source, int maxNodes) {
   using Event = nlohmann::json::parse_event_t;
-  int parts = 0;
+  int nodes = 0;
   const auto count = [&](int depth, Event event, const nlohmann::json&) {
-    const bool opens = event == Event::object_start || event == Event::array_start;
-    if (opens && depth >= deepest)
-      throw inputError(source, "is nested deeper than ", deepest,
+    const bool isContainer = event == Event::object_start || event == Event::array_start;
+    if (isContainer && depth >= maxDepth)
+      throw inputError(source, "is nested deeper than ", maxDepth,
                        " levels; Fenestra writes no such file");
-    if ((opens || event == Event::key || event == Event::value) && ++parts > mostParts)
-      throw inputError(source, "holds more than ", mostParts,
+    if ((isContainer || event == Event::key || event == Event::value) && ++nodes > maxNodes)
+      throw inputError(source, "holds more than ", maxNodes,
                        " values; Fenestra writes no such file");
     return true;
   };
@@ -54,50 +54,50 @@ nlohmann::json parseJson(std::string_view text, const std::string& source, int m
   }
 }
 
-std::string jsonText(const nlohmann::ordered_json& json, int indent) {
+std::string dumpJson(const nlohmann::ordered_json& json, int indent) {
   return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 Error JsonNode::error(const std::string& hint) const {
-  return inputError(m_source, m_place.empty() ? hint : m_place + ": " + hint);
+  return inputError(m_source, m_path.empty() ? hint : m_path + ": " + hint);
 }
 
-const nlohmann::json& JsonNode::checked(bool isRight, const char* hint) const {
-  if (!isRight)
+const nlohmann::json& JsonNode::require(bool isValid, const char* hint) const {
+  if (!isValid)
     throw error(hint);
   return *m_value;
 }
 
 const nlohmann::json& JsonNode::object() const {
-  return checked(m_value->is_object(), "must be an object, {…}");
+  return require(m_value->is_object(), "must be an object, {…}");
 }
 
 bool JsonNode::boolean() const {
-  return checked(m_value->is_boolean(), "must be true or false").get<bool>();
+  return require(m_value->is_boolean(), "must be true or false").get<bool>();
 }
 
 std::string JsonNode::text() const {
-  return checked(m_value->is_string(), "must be a string").get<std::string>();
+  return require(m_value->is_string(), "must be a string").get<std::string>();
 }
 
-std::size_t JsonNode::oneOf(const std::vector<std::string>& words) const {
+std::size_t JsonNode::choice(const std::vector<std::string>& words) const {
   const auto found = std::find(words.begin(), words.end(), text());
   if (found != words.end())
     return static_cast<std::size_t>(found - words.begin());
   const auto quoted = [](const std::string& word) { return "\"" + word + "\""; };
-  const std::span but(words.begin(), words.end() - 1);
-  throw error("must be " + join(but, ", ", quoted) + " or " + quoted(words.back()));
+  const std::span allButLast(words.begin(), words.end() - 1);
+  throw error("must be " + join(allButLast, ", ", quoted) + " or " + quoted(words.back()));
 }
 
 double JsonNode::number() const {
-  return checked(m_value->is_number(), "must be a number").get<double>();
+  return require(m_value->is_number(), "must be a number").get<double>();
 }
 
-double JsonNode::numberIn(double low, double high) const {
+double JsonNode::number(double low, double high) const {
   const double x = number();
   if (!(x >= low && x <= high))
-    throw error("is " + shortNumber(x) + "; it must be from " + shortNumber(low) + " to " +
-                shortNumber(high));
+    throw error("is " + formatNumber(x) + "; it must be from " + formatNumber(low) + " to " +
+                formatNumber(high));
   return x;
 }
 
@@ -106,14 +106,14 @@ std::vector<double> JsonNode::numbers(std::size_t count, double low, double high
     throw error(concat("must have ", count, " numbers, not ", m_value->size()));
   std::vector<double> result;
   for (const JsonNode& node : elements())
-    result.push_back(node.numberIn(low, high));
+    result.push_back(node.number(low, high));
   return result;
 }
 
 std::vector<JsonNode> JsonNode::elements() const {
   std::vector<JsonNode> nodes;
-  for (const nlohmann::json& value : checked(m_value->is_array(), "must be an array"))
-    nodes.push_back({value, m_source, concat(m_place, '[', nodes.size(), ']')});
+  for (const nlohmann::json& value : require(m_value->is_array(), "must be an array"))
+    nodes.push_back({value, m_source, concat(m_path, '[', nodes.size(), ']')});
   return nodes;
 }
 
@@ -121,7 +121,7 @@ std::optional<JsonNode> JsonNode::find(const std::string& key) const {
   const auto it = object().find(key);
   if (it == m_value->end())
     return std::nullopt;
-  return JsonNode(*it, m_source, placeOf(key));
+  return JsonNode(*it, m_source, memberPath(key));
 }
 
 JsonNode JsonNode::at(const std::string& key) const {
@@ -134,7 +134,7 @@ JsonNode JsonNode::at(const std::string& key) const {
 std::vector<std::pair<std::string, JsonNode>> JsonNode::members() const {
   std::vector<std::pair<std::string, JsonNode>> nodes;
   for (const auto& [key, value] : object().items())
-    nodes.emplace_back(key, JsonNode(value, m_source, placeOf(shown(key))));
+    nodes.emplace_back(key, JsonNode(value, m_source, memberPath(sanitize(key))));
   return nodes;
 }
 
@@ -145,9 +145,10 @@ std::string JsonNode::json() const {
 void JsonNode::allowOnly(std::initializer_list<std::string_view> keys) const {
   for (const auto& [key, value] : object().items())
     if (std::find(keys.begin(), keys.end(), key) == keys.end()) {
-      const std::string shown =
+      const std::string quotedKey =
           nlohmann::json(key).dump(-1, ' ', true); // one line, whatever the key holds
-      throw error("unknown key " + shown.substr(0, 80) + "; known ones are " + join(keys, ", "));
+      throw error("unknown key " + quotedKey.substr(0, 80) + "; known ones are " +
+                  join(keys, ", "));
     }
 }
 

@@ -16,22 +16,22 @@
 namespace fenestra {
 
 /// Largest text file, bytes, but for Slicer's scenes. Parsed JSON takes some 25 times as many.
-inline constexpr std::uint64_t largestText = std::uint64_t{4} << 20;
+inline constexpr std::uint64_t maxTextBytes = std::uint64_t{4} << 20;
 
 /// The content of a text file. Throws Error (input) where it cannot be read or exceeds `most`
 /// bytes.
-std::string readText(const std::filesystem::path& path, std::uint64_t most = largestText);
+std::string readText(const std::filesystem::path& path, std::uint64_t maxBytes = maxTextBytes);
 
 /// Most values and keys of a JSON text.
-inline constexpr int mostJsonParts = 200'000;
+inline constexpr int maxJsonNodes = 200'000;
 
 /// Parses one JSON value. Throws Error (input) for other text, for nesting deeper than 64, and for
-/// more than `mostParts` values and keys.
+/// more than `maxNodes` values and keys.
 nlohmann::json parseJson(std::string_view text, const std::string& source,
-                         int mostParts = mostJsonParts);
+                         int maxNodes = maxJsonNodes);
 
 /// JSON as a file's content, or a line with `indent` -1; bytes that are not UTF-8 are replaced.
-std::string jsonText(const nlohmann::ordered_json& json, int indent = 2);
+std::string dumpJson(const nlohmann::ordered_json& json, int indent = 2);
 
 /// View of a JSON value, with its place in the document, like "lights[2].radiance". The document
 /// must outlive the view. Accessors throw Error (input) for a value of another type or range.
@@ -47,9 +47,9 @@ public:
   bool boolean() const;
   std::string text() const;
   /// Index of the text among `words`, at least two.
-  std::size_t oneOf(const std::vector<std::string>& words) const;
+  std::size_t choice(const std::vector<std::string>& words) const;
   double number() const;
-  double numberIn(double low, double high) const;
+  double number(double low, double high) const;
   /// An array of exactly `count` numbers from low to high.
   std::vector<double> numbers(std::size_t count, double low, double high) const;
   Vec3 triple(double low, double high) const {
@@ -75,17 +75,17 @@ public:
 
 private:
   JsonNode(const nlohmann::json& value, std::string source, std::string place)
-      : m_value(&value), m_source(std::move(source)), m_place(std::move(place)) {}
+      : m_value(&value), m_source(std::move(source)), m_path(std::move(place)) {}
 
   /// Returns the value. Throws Error (input) unless `isRight`.
-  const nlohmann::json& checked(bool isRight, const char* hint) const;
+  const nlohmann::json& require(bool isValid, const char* hint) const;
   const nlohmann::json& object() const;
-  std::string placeOf(const std::string& key) const {
-    return m_place.empty() ? key : m_place + "." + key;
+  std::string memberPath(const std::string& key) const {
+    return m_path.empty() ? key : m_path + "." + key;
   }
 
   const nlohmann::json* m_value;
-  std::string m_source, m_place;
+  std::string m_source, m_path;
 };
 
 } // namespace fenestra

@@ -29,7 +29,7 @@ public:
   bool isHeld() const { return m_file.isOpen(); }
 
 private:
-  void take(const std::filesystem::path& lock, const std::filesystem::path& path);
+  void tryTake(const std::filesystem::path& lock, const std::filesystem::path& path);
 
   Descriptor m_file;
   std::optional<TempFileGuard> m_name; ///< removed before the lock is released

@@ -21,7 +21,7 @@ struct NrrdHeaderText {
 NrrdHeaderText readNrrdHeader(const std::filesystem::path& path);
 
 /// True if the header states the distances between voxels; otherwise ITK assumes 1 mm.
-bool saysSpacing(const NrrdHeaderText& header);
+bool hasNrrdSpacing(const NrrdHeaderText& header);
 
 /// Throws Error (input) where the path may exceed teem's message buffer.
 void checkNrrdPath(const std::filesystem::path& path);

@@ -15,13 +15,13 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "samples are written as they lie");
 
 /// "(x,y,z)" in LPS, whose first two axes are RAS negated; "+ 0.0" for no "-0" in the header.
-std::string lpsText(const Vec3& ras) {
+std::string formatLps(const Vec3& ras) {
   const Vec3 lps(-ras.x() + 0.0, -ras.y() + 0.0, ras.z() + 0.0);
   return '(' + joinNumbers(lps, ",", 17) + ')';
 }
 
 /// Appends `samples` as one gzip stream without name and time.
-void appendDeflated(std::string_view samples, std::string& file) {
+void appendGzip(std::string_view samples, std::string& file) {
   constexpr int level = 6, gzipWindow = 15 + 16, memory = 8;
   z_stream stream = {};
   if (deflateInit2(&stream, level, Z_DEFLATED, gzipWindow, memory, Z_DEFAULT_STRATEGY) != Z_OK)
@@ -45,30 +45,31 @@ void appendDeflated(std::string_view samples, std::string& file) {
 
 } // namespace
 
-std::string nrrdText(const NrrdHeader& header) {
-  const bool leads = !header.leadingKind.empty();
+std::string formatNrrdHeader(const NrrdHeader& header) {
+  const bool hasLeadingAxis = !header.leadingKind.empty();
   const Mat3& axes = header.indexToWorld.linear();
-  std::string text = concat(
-      "NRRD0004\n# Complete NRRD file format specification at:\n"
-      "# http://teem.sourceforge.net/nrrd/format.html\ntype: ",
-      header.type, "\ndimension: ", leads ? 4 : 3,
-      "\nspace: left-posterior-superior\nsizes: ", leads ? concat(header.leadingCount, ' ') : "",
-      joinNumbers(header.size, " "), "\nspace directions:", leads ? " none" : "");
+  std::string text =
+      concat("NRRD0004\n# Complete NRRD file format specification at:\n"
+             "# http://teem.sourceforge.net/nrrd/format.html\ntype: ",
+             header.type, "\ndimension: ", hasLeadingAxis ? 4 : 3,
+             "\nspace: left-posterior-superior\nsizes: ",
+             hasLeadingAxis ? concat(header.leadingCount, ' ') : "", joinNumbers(header.size, " "),
+             "\nspace directions:", hasLeadingAxis ? " none" : "");
   for (int axis = 0; axis < 3; ++axis)
-    text += ' ' + lpsText(axes.col(axis));
-  text += concat("\nkinds:", leads ? " " + header.leadingKind : "",
+    text += ' ' + formatLps(axes.col(axis));
+  text += concat("\nkinds:", hasLeadingAxis ? " " + header.leadingKind : "",
                  " domain domain domain\nendian: little\nencoding: ",
                  header.encoding == NrrdHeader::Encoding::gzip ? "gzip" : "raw",
-                 "\nspace origin: ", lpsText(header.indexToWorld.translation()), '\n');
+                 "\nspace origin: ", formatLps(header.indexToWorld.translation()), '\n');
   for (const auto& [key, value] : header.fields)
     text += concat(key, ":=", value, '\n');
   return text + '\n';
 }
 
 std::string encodeNrrd(const NrrdHeader& header, std::string_view samples) {
-  std::string file = nrrdText(header);
+  std::string file = formatNrrdHeader(header);
   if (header.encoding == NrrdHeader::Encoding::gzip)
-    appendDeflated(samples, file);
+    appendGzip(samples, file);
   else
     file += samples;
   return file;

@@ -27,7 +27,7 @@ struct NrrdHeader {
 };
 
 /// Header lines up to the empty one, inclusive.
-std::string nrrdText(const NrrdHeader& header);
+std::string formatNrrdHeader(const NrrdHeader& header);
 
 /// Content of the whole file. `samples`: bytes in memory order, little endian.
 std::string encodeNrrd(const NrrdHeader& header, std::string_view samples);

@@ -24,17 +24,17 @@ namespace fs = std::filesystem;
 
 constexpr int namedPipe = -1; ///< stream that is opened when its content is sent
 
-std::atomic<bool> anyIsPlaced = false;
+std::atomic<bool> anyPlaced = false;
 
 /// File that writing to `path` would change: links are followed, dangling ones as well. The folder
 /// is canonical, so that one file has one name. Throws Error (output).
-fs::path targetOf(const fs::path& path) {
-  constexpr int mostLinks = 40; // Linux's limit
+fs::path resolveTarget(const fs::path& path) {
+  constexpr int maxLinks = 40; // Linux's limit
   std::error_code failed;
   fs::path target = fs::absolute(path, failed);
   if (failed)
     throw writeError(path, failed.value());
-  for (int links = 0; fs::is_symlink(target, failed) && links < mostLinks; ++links)
+  for (int links = 0; fs::is_symlink(target, failed) && links < maxLinks; ++links)
     target = target.parent_path() / fs::read_symlink(target);
   const fs::path folder = fs::canonical(target.parent_path(), failed);
   if (failed)
@@ -44,7 +44,7 @@ fs::path targetOf(const fs::path& path) {
 
 /// True if this process may not rename over the file: in a sticky folder, as /tmp, only the owners
 /// of the file and of the folder may (rename(2), EPERM).
-bool isKeptByItsOwner(const struct stat& file, const fs::path& folder) {
+bool isSticky(const struct stat& file, const fs::path& folder) {
   struct stat status = {};
   const uid_t user = ::geteuid();
   return ::stat(folder.c_str(), &status) == 0 && (status.st_mode & S_ISVTX) != 0 && user != 0 &&
@@ -64,18 +64,18 @@ void requireReplaceable(const fs::path& path, const fs::path& target) {
     throw outputError(path, "is a folder or a device; name a file");
   if ((status.st_mode & 0222) == 0 || ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0)
     throw outputError(path, "is write-protected; choose another name, or chmod u+w it");
-  if (isKeptByItsOwner(status, target.parent_path()))
+  if (isSticky(status, target.parent_path()))
     throw outputError(path, "belongs to somebody else, in a folder where only owners may replace "
                             "files; choose another name or folder");
 }
 
 void requireNoInput(const fs::path& path, const std::optional<FileId>& file) {
-  if (const auto input = file ? inputNamed(*file) : std::nullopt)
+  if (const auto input = file ? findInput(*file) : std::nullopt)
     throw usageError(path, ": would replace an input file",
                      (*input == path ? "" : " (" + input->string() + ")"), "; choose another name");
 }
 
-Error writtenTwice(const fs::path& path) {
+Error duplicateError(const fs::path& path) {
   return usageError(path, ": would be written twice; give each result a name of its own");
 }
 
@@ -104,7 +104,7 @@ std::optional<int> descriptorNumber(const std::string& path) {
 /// Descriptor of a result that is no file: /dev/stdout, /dev/stderr, /dev/fd/N, /proc/self/fd/N, or
 /// `namedPipe`; nullopt: other paths. Throws Error (output) where the descriptor is not open for
 /// writing.
-std::optional<int> streamNamed(const fs::path& path) {
+std::optional<int> findStream(const fs::path& path) {
   if (const auto number = descriptorNumber(path.lexically_normal().string())) {
     const int flags = ::fcntl(*number, F_GETFL);
     if (flags < 0 || (flags & O_ACCMODE) == O_RDONLY)
@@ -117,7 +117,7 @@ std::optional<int> streamNamed(const fs::path& path) {
 }
 
 /// Throws Error (output), also where no process reads the pipe.
-void sendTo(int stream, const std::string& content, const fs::path& path) {
+void sendContent(int stream, const std::string& content, const fs::path& path) {
   if (stream != namedPipe) {
     std::cout.flush(); // earlier output comes first
     std::fflush(stdout);
@@ -133,30 +133,30 @@ void sendTo(int stream, const std::string& content, const fs::path& path) {
 
 } // namespace
 
-ContentState stateOf(std::string_view content) {
+ContentDigest digestContent(std::string_view content) {
   Digest digest;
   digest.add(content);
   return {content.size(), digest.value()};
 }
 
-bool resultsWerePlaced() {
-  return anyIsPlaced;
+bool hasPlacedResults() {
+  return anyPlaced;
 }
 
 struct Outputs::Result {
-  fs::path named;
-  std::optional<int> stream;           ///< as of streamNamed
-  std::string unsent;                  ///< content of the stream
+  fs::path path;
+  std::optional<int> stream;           ///< as of findStream
+  std::string pending;                 ///< content of the stream
   fs::path target;                     ///< path of the file, links followed
   std::unique_ptr<TemporaryFile> file; ///< content written, not yet in place
 
   IsOwnFile isOwnFile; ///< empty: the user named the result
-  std::optional<ContentState> written;
+  std::optional<ContentDigest> written;
 
   std::optional<FileId> id() const {
     if (stream && *stream != namedPipe)
       return fileId(*stream);
-    return fileId(stream ? named : target);
+    return fileId(stream ? path : target);
   }
   void requireOwnFile() const {
     std::error_code failed;
@@ -164,7 +164,7 @@ struct Outputs::Result {
     if (isOwnFile && fs::exists(target, failed) && !fs::is_empty(target, failed) &&
         !isOwnFile(target))
       throw usageError(
-          named,
+          path,
           ": is there, and Fenestra did not write it; move it away, or choose another --output");
   }
 };
@@ -173,15 +173,15 @@ Outputs::Outputs() = default;
 
 Outputs::~Outputs() {
   for (const auto& [path, result] : m_results)
-    forgetResult(result->target);
+    unregisterResult(result->target);
 }
 
 void Outputs::add(const fs::path& path, const IsOwnFile& isOwnFile) {
   auto result = std::make_unique<Result>();
-  result->named = path;
-  result->stream = streamNamed(path);
+  result->path = path;
+  result->stream = findStream(path);
   if (!result->stream) {
-    result->target = targetOf(path);
+    result->target = resolveTarget(path);
     requireReplaceable(path, result->target);
     if (isTempName(result->target.filename().string(), tempFilePrefix))
       throw usageError(
@@ -193,10 +193,10 @@ void Outputs::add(const fs::path& path, const IsOwnFile& isOwnFile) {
   const std::optional<FileId> parent = fileId(result->target.parent_path());
   if ((parent && !m_targets.emplace(*parent, result->target.filename().string()).second) ||
       (id && !m_files.insert(*id).second))
-    throw writtenTwice(path);
+    throw duplicateError(path);
   if (!result->stream && m_folders.insert(result->target.parent_path()).second) {
     removeStaleTempFiles(result->target.parent_path(), tempFilePrefix, TempFileGuard::Kind::file);
-    const TemporaryFile room(result->target); // throws where none can be made
+    const TemporaryFile probe(result->target); // throws where none can be made
   }
   result->isOwnFile = isOwnFile;
   m_results[path] = std::move(result);
@@ -208,7 +208,7 @@ void Outputs::checkInputs() const {
     requireNoInput(path, result->id());
 }
 
-void Outputs::forgetRefused() const {
+void Outputs::forgetInputs() const {
   for (const auto& [path, result] : m_results)
     if (const auto file = result->id())
       forgetInput(*file);
@@ -216,16 +216,16 @@ void Outputs::forgetRefused() const {
 
 void Outputs::write(const fs::path& path, std::string_view content) {
   Result& result = *m_results.at(path);
-  result.written = stateOf(content);
+  result.written = digestContent(content);
   if (result.stream) {
-    result.unsent = content;
+    result.pending = content;
     return;
   }
   result.file = std::make_unique<TemporaryFile>(result.target);
   result.file->write(content);
 }
 
-std::optional<ContentState> Outputs::written(const fs::path& path) const {
+std::optional<ContentDigest> Outputs::writtenDigest(const fs::path& path) const {
   const auto result = m_results.find(path);
   return result == m_results.end() ? std::nullopt : result->second->written;
 }
@@ -235,29 +235,29 @@ void Outputs::place(const std::vector<Result*>& files, Durability durability) {
   for (const Result* result : files)
     folders.insert(result->target.parent_path());
   std::vector<Descriptor> locks = lockFolders(folders);
-  const SignalBlocker replacing;
+  const SignalBlocker blocker;
   std::size_t placed = 0;
   std::set<FileId> taken; // placed files; two names may be one file where a disk ignores case
   try {
     for (Result* result : files) {
       const std::optional<FileId> before = result->id();
-      requireNoInput(result->named, before);
+      requireNoInput(result->path, before);
       if (before && taken.contains(*before))
-        throw writtenTwice(result->named);
-      requireReplaceable(result->named, result->target);
+        throw duplicateError(result->path);
+      requireReplaceable(result->path, result->target);
       result->requireOwnFile();
       result->file->place();
       ++placed;
       if (const auto after = result->id())
         taken.insert(*after);
-      enterResult(result->target);
+      registerResult(result->target);
     }
   } catch (...) {
     while (placed > 0)
-      files[--placed]->file->takeBack();
+      files[--placed]->file->undoPlace();
     throw;
   }
-  anyIsPlaced = anyIsPlaced || placed > 0;
+  anyPlaced = anyPlaced || placed > 0;
   locks.clear();
   for (Result* result : files)
     result->file.reset();
@@ -274,8 +274,8 @@ void Outputs::commit(Durability durability) {
     }
   place(files, durability);
   for (const auto& [path, result] : m_results)
-    if (!result->unsent.empty())
-      sendTo(*result->stream, std::exchange(result->unsent, {}), result->named);
+    if (!result->pending.empty())
+      sendContent(*result->stream, std::exchange(result->pending, {}), result->path);
 }
 
 } // namespace fenestra

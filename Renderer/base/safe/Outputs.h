@@ -21,15 +21,15 @@
 namespace fenestra {
 
 /// Size and digest (Digest.h) of a content, which identify a result.
-struct ContentState {
+struct ContentDigest {
   std::uint64_t bytes = 0, digest = 0;
 
-  friend bool operator==(const ContentState&, const ContentState&) = default;
+  friend bool operator==(const ContentDigest&, const ContentDigest&) = default;
 };
-ContentState stateOf(std::string_view content);
+ContentDigest digestContent(std::string_view content);
 
 /// True once this process has put a result in place. Async-signal-safe.
-bool resultsWerePlaced();
+bool hasPlacedResults();
 
 class Outputs {
 public:
@@ -53,13 +53,13 @@ public:
   void checkInputs() const;
   /// Removes the results from the ledger of inputs, after a request that reads a result was
   /// refused.
-  void forgetRefused() const;
+  void forgetInputs() const;
 
   /// Writes the whole content of a declared result to the disk, not yet in place. Callable from any
   /// thread. Throws Error (output), a full disk included.
   void write(const std::filesystem::path& path, std::string_view content);
   /// State of the content written last; nullopt: none, or no declared result.
-  std::optional<ContentState> written(const std::filesystem::path& path) const;
+  std::optional<ContentDigest> writtenDigest(const std::filesystem::path& path) const;
 
   /// Puts all content written since the last commit in place, all or nothing: after a failure the
   /// results placed before are taken back. Two processes with the same results place theirs one

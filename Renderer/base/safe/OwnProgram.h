@@ -9,30 +9,30 @@
 namespace fenestra {
 
 /// File to run: the same build, even if the program's file has been replaced.
-inline constexpr const char* ownProgram = "/proc/self/exe";
+inline constexpr const char* selfExecutable = "/proc/self/exe";
 
 /// Arguments with which it is this program with `words`. Where a loader was called with the
 /// program's file (an archive brings its own), /proc/self/exe is that loader: the kernel has no
 /// base of an interpreter then, and the loader says the file (glibc: AT_EXECFN). It is told again
 /// to keep away from the system's libraries, as the archive's launcher tells it.
-class OwnArguments {
+class SelfArguments {
 public:
-  explicit OwnArguments(std::vector<std::string> words) : m_words(std::move(words)) {
+  explicit SelfArguments(std::vector<std::string> args) : m_args(std::move(args)) {
     if (::getauxval(AT_BASE) == 0)
-      m_words.insert(m_words.begin(),
-                     {"--inhibit-cache", reinterpret_cast<const char*>(::getauxval(AT_EXECFN))});
-    m_words.insert(m_words.begin(), "fenestra");
-    for (std::string& word : m_words)
-      m_pointers.push_back(word.data());
+      m_args.insert(m_args.begin(),
+                    {"--inhibit-cache", reinterpret_cast<const char*>(::getauxval(AT_EXECFN))});
+    m_args.insert(m_args.begin(), "fenestra");
+    for (std::string& arg : m_args)
+      m_pointers.push_back(arg.data());
     m_pointers.push_back(nullptr);
   }
-  OwnArguments(const OwnArguments&) = delete;
-  OwnArguments& operator=(const OwnArguments&) = delete;
+  SelfArguments(const SelfArguments&) = delete;
+  SelfArguments& operator=(const SelfArguments&) = delete;
 
   char* const* get() const { return m_pointers.data(); }
 
 private:
-  std::vector<std::string> m_words;
+  std::vector<std::string> m_args;
   std::vector<char*> m_pointers; ///< into m_words, and a null
 };
 

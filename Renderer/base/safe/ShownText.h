@@ -40,18 +40,18 @@ inline void makeOneLine(std::span<char> text) {
     at += std::max<std::size_t>(size, 1);
   }
 }
-inline std::string oneLine(std::string text) {
+inline std::string toOneLine(std::string text) {
   makeOneLine(text);
   return text;
 }
 
 /// First 80 bytes at most, cut between characters, on one line.
-inline std::string shown(const std::string& text) {
+inline std::string sanitize(const std::string& text) {
   std::size_t end = std::min<std::size_t>(text.size(), 80);
   for (int i = 0; i < 3 && end < text.size() && end > 0; ++i)
     if ((static_cast<unsigned char>(text[end]) & 0xc0U) == 0x80U)
       --end;
-  return oneLine(text.substr(0, end));
+  return toOneLine(text.substr(0, end));
 }
 
 } // namespace fenestra

@@ -62,7 +62,8 @@ inline Error readError(const std::filesystem::path& path, int code, const std::s
 /// Writes all of `content` to the descriptor `file`. Throws Error (output), which names `path`.
 inline void writeAll(int file, std::string_view content, const std::filesystem::path& path) {
   while (!content.empty()) {
-    const auto written = repeated([&] { return ::write(file, content.data(), content.size()); });
+    const auto written =
+        retryOnEintr([&] { return ::write(file, content.data(), content.size()); });
     if (written < 0)
       throw writeError(path, errno);
     content.remove_prefix(static_cast<std::size_t>(written));

@@ -10,12 +10,12 @@
 namespace fenestra {
 namespace {
 
-std::filesystem::path shortNameBeside(const std::filesystem::path& target) {
+std::filesystem::path makeSiblingName(const std::filesystem::path& target) {
   return target.parent_path() / makeTempName(tempFilePrefix);
 }
 
 /// Mode of a new file: 0666 less umask. Queried before threads start, since umask is the process's.
-const mode_t usualMode = [] {
+const mode_t defaultMode = [] {
   const mode_t mask = ::umask(077);
   ::umask(mask);
   return 0666 & ~mask;
@@ -33,7 +33,7 @@ bool copyAccessList(const std::filesystem::path& from, int to) {
 
 /// Mode of the earlier file; where its group could not be kept, the group's rights are cut to those
 /// that others have.
-mode_t keptMode(const struct stat& before, bool isOfItsGroup) {
+mode_t inheritMode(const struct stat& before, bool isOfItsGroup) {
   const mode_t mode = before.st_mode & 0777;
   const mode_t groupAsOthers = (mode & 07) << 3;
   return isOfItsGroup ? mode : (mode & ~mode_t{070}) | (mode & groupAsOthers);
@@ -53,9 +53,9 @@ TemporaryFile::TemporaryFile(const std::filesystem::path& target) : m_target(tar
 /// abandoned.
 void TemporaryFile::open() {
   for (;;) {
-    const SignalBlocker making;
-    m_name.emplace(shortNameBeside(m_target), TempFileGuard::Kind::file);
-    m_file = Descriptor(repeated([this] {
+    const SignalBlocker blocker;
+    m_name.emplace(makeSiblingName(m_target), TempFileGuard::Kind::file);
+    m_file = Descriptor(retryOnEintr([this] {
       return ::open(m_name->path().c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
     }));
     if (!m_file.isOpen() && errno == EEXIST)
@@ -70,20 +70,20 @@ void TemporaryFile::write(std::string_view content) {
 }
 
 void TemporaryFile::finish(Durability durability) {
-  mode_t mode = usualMode;
+  mode_t mode = defaultMode;
   struct stat before = {};
   const bool isThere = ::lstat(m_target.c_str(), &before) == 0;
   if (isThere) {
     const bool isOwned = ::fchown(*m_file, before.st_uid, before.st_gid) == 0;
     const bool isOfItsGroup = isOwned || ::fchown(*m_file, uid_t(-1), before.st_gid) == 0;
-    mode = keptMode(before, isOfItsGroup);
+    mode = inheritMode(before, isOfItsGroup);
   }
-  if (repeated([&] { return ::fchmod(*m_file, mode); }) != 0)
+  if (retryOnEintr([&] { return ::fchmod(*m_file, mode); }) != 0)
     throw writeError(m_target, errno);
-  const mode_t ownersAlone = mode & 0700; // without the list its mask, the group's bits, is void
-  if (isThere && !copyAccessList(m_target, *m_file) && ::fchmod(*m_file, ownersAlone) != 0)
+  const mode_t ownerOnly = mode & 0700; // without the list its mask, the group's bits, is void
+  if (isThere && !copyAccessList(m_target, *m_file) && ::fchmod(*m_file, ownerOnly) != 0)
     throw writeError(m_target, errno);
-  if (durability == Durability::synced && repeated([&] { return ::fsync(*m_file); }) != 0 &&
+  if (durability == Durability::synced && retryOnEintr([&] { return ::fsync(*m_file); }) != 0 &&
       errno != EINVAL)
     throw writeError(m_target, errno);
 }
@@ -95,7 +95,7 @@ void TemporaryFile::place() {
   if (m_replaced.isOpen()) // locked where readable: other runs must not take it for abandoned
     ::flock(*m_replaced, LOCK_SH | LOCK_NB);
   const auto rename = [&](unsigned flags) {
-    return repeated([&] { return ::renameat2(AT_FDCWD, name, AT_FDCWD, target, flags); }) == 0;
+    return retryOnEintr([&] { return ::renameat2(AT_FDCWD, name, AT_FDCWD, target, flags); }) == 0;
   };
   if (rename(RENAME_NOREPLACE))
     m_placed = Placed::fresh;
@@ -110,29 +110,29 @@ void TemporaryFile::place() {
 /// Places the file on disks that cannot exchange names, with a hard link to the earlier file.
 /// Without hard links placing cannot be undone.
 void TemporaryFile::placeByLink() {
-  m_before.emplace(shortNameBeside(m_target), TempFileGuard::Kind::file);
-  const bool isKept = ::link(m_target.c_str(), m_before->path().c_str()) == 0;
-  const bool isFresh = !isKept && errno == ENOENT;
-  if (repeated([&] { return ::rename(m_name->path().c_str(), m_target.c_str()); }) != 0)
+  m_before.emplace(makeSiblingName(m_target), TempFileGuard::Kind::file);
+  const bool hasBackup = ::link(m_target.c_str(), m_before->path().c_str()) == 0;
+  const bool isFresh = !hasBackup && errno == ENOENT;
+  if (retryOnEintr([&] { return ::rename(m_name->path().c_str(), m_target.c_str()); }) != 0)
     throw writeError(m_target, errno);
-  m_placed = isFresh ? Placed::fresh : isKept ? Placed::linked : Placed::no;
+  m_placed = isFresh ? Placed::fresh : hasBackup ? Placed::linked : Placed::no;
 }
 
-void TemporaryFile::takeBack() noexcept {
+void TemporaryFile::undoPlace() noexcept {
   if (fileId(m_target) != fileId(*m_file)) // another run has since placed a result of this name
     m_placed = Placed::no;
   const char* const name = m_name->path().c_str();
   const char* const target = m_target.c_str();
-  const auto again = [](auto&& call) { // retries once: a failure may be temporary
+  const auto retryOnce = [](auto&& call) { // retries once: a failure may be temporary
     if (call() != 0)
       static_cast<void>(call());
   };
   if (m_placed == Placed::exchanged)
-    again([&] { return ::renameat2(AT_FDCWD, name, AT_FDCWD, target, RENAME_EXCHANGE); });
+    retryOnce([&] { return ::renameat2(AT_FDCWD, name, AT_FDCWD, target, RENAME_EXCHANGE); });
   else if (m_placed == Placed::fresh)
-    again([&] { return ::unlink(target); });
+    retryOnce([&] { return ::unlink(target); });
   else if (m_placed == Placed::linked)
-    again([&] { return ::rename(m_before->path().c_str(), target); });
+    retryOnce([&] { return ::rename(m_before->path().c_str(), target); });
   m_placed = Placed::no;
 }
 

@@ -32,7 +32,7 @@ public:
   /// with this object. Throws Error (output), and then has changed nothing.
   void place();
   /// Undoes place(), after another file of the group could not be placed.
-  void takeBack() noexcept;
+  void undoPlace() noexcept;
 
 private:
   enum class Placed { no, fresh, exchanged, linked };

@@ -17,7 +17,7 @@ Error zipError(const std::filesystem::path& path, const std::string& reason) {
   return outputError(path, "cannot be made: ", reason, "; close other programs");
 }
 
-std::string contentOf(zip_source_t* source, const std::filesystem::path& path) {
+std::string readContent(zip_source_t* source, const std::filesystem::path& path) {
   zip_stat_t stat;
   if (zip_source_stat(source, &stat) != 0 || zip_source_open(source) != 0)
     throw zipError(path, zip_error_strerror(zip_source_error(source)));
@@ -63,7 +63,7 @@ std::string encodeZip(const std::vector<ZipEntry>& entries, const std::string& c
                                   static_cast<zip_uint16_t>(comment.size())) == 0);
   require(zip_close(archive.get()) == 0);
   static_cast<void>(archive.release()); // closed: freed
-  return contentOf(source.get(), path);
+  return readContent(source.get(), path);
 }
 
 } // namespace fenestra

@@ -123,7 +123,7 @@ std::uint8_t valuesOf(const Voxels& voxels, const Size3& block,
 FocusCells::FocusCells(const Mask& mask)
     : m_count(mask.grid.size.array() + 1),
       m_blocks((m_count.array() + blockSize - 1) / blockSize),
-      m_worldToCell(translationBy(Vec3::Ones()) * mask.grid.worldToIndex),
+      m_worldToCell(makeTranslation(Vec3::Ones()) * mask.grid.worldToIndex),
       m_perValue(1.0 / mask.full) {
   const std::int64_t bytes = m_blocks.prod() * static_cast<std::int64_t>(sizeof(BlockValues));
   if (bytes > std::numeric_limits<std::int32_t>::max())

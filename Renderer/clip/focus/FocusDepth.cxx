@@ -55,7 +55,7 @@ bool isInside(const FocusCells& cells, const Domain& volume) {
 
 /// Part of a world ray in the volume's domain.
 Interval inVolume(const Domain& volume, const Ray& ray) {
-  return volume.clip(transformed(volume.grid().worldToIndex, ray));
+  return volume.clip(transformRay(volume.grid().worldToIndex, ray));
 }
 
 } // namespace
@@ -82,7 +82,7 @@ FocusDepth FocusTracer::depths() const {
   const DomainFootprint domainFootprint(m_camera, m_volume);
 
   const auto meetsVolume = [&](std::int64_t column, std::int64_t row) {
-    return !inVolume(m_volume, m_camera.rayThrough(depth.position(column, row))).empty();
+    return !inVolume(m_volume, m_camera.rayThrough(depth.position(column, row))).isEmpty();
   };
   tbb::parallel_for(std::int64_t{0}, depth.rows(), [&](std::int64_t row) {
     // The domain is convex: all samples between two that meet the domain meet it.
@@ -97,7 +97,7 @@ FocusDepth FocusTracer::depths() const {
       const std::int64_t sample = depth.sample(column, row);
       result.regions[static_cast<std::size_t>(sample)] = Region::context;
       const Interval depths = focusFootprint.depths(column, row);
-      if (depths.empty())
+      if (depths.isEmpty())
         continue;
       samples.push_back(sample);
       glances.push_back({depth.position(column, row), depths});
@@ -162,7 +162,7 @@ void FocusTracer::follow(std::span<const Glance> glances, std::span<Sight> sight
     range.begin = std::max(range.begin, glances[i].depths.begin / perLength);
     range.end = std::min(range.end, glances[i].depths.end / perLength);
     const Interval inside = m_cells->box().clip(ray, range);
-    if (inside.empty())
+    if (inside.isEmpty())
       continue;
     sightOf[rays.size] = &sights[i];
     depthPerLength[rays.size] = perLength;

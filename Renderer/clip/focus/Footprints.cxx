@@ -22,7 +22,7 @@ template <typename Function>
 void visitSeen(const Camera& camera, const DepthBuffer& buffer, const FocusCells& cells,
                const Function& function) {
   const BoxProjection blocks(camera, cells.cellToWorld() *
-                                         scalingBy(Vec3::Constant(FocusCells::blockSize)));
+                                         makeScaling(Vec3::Constant(FocusCells::blockSize)));
   cells.visitOccupied([&](const Size3& block) {
     const auto [depths, lower, upper] = blocks.of(block);
     if (depths.end >= 0.0)
@@ -111,7 +111,7 @@ FocusFootprint::FocusFootprint(const Camera& camera, const DepthBuffer& buffer,
                 for (std::int64_t column = seen.left / tileSize; column <= seen.right / tileSize;
                      ++column) {
                   Interval& tile = m_tiles[static_cast<std::size_t>(column + row * m_across)];
-                  tile = joined(tile, depths);
+                  tile = enclose(tile, depths);
                 }
             });
 }
@@ -142,7 +142,7 @@ std::vector<Interval> computeDepthBounds(const Camera& camera, const DepthBuffer
       for (std::int64_t column = seen.left; column < seen.right; ++column) {
         const std::size_t at = range.at(column, row);
         if (isAskedFor[at])
-          bounds[at] = joined(bounds[at], depths);
+          bounds[at] = enclose(bounds[at], depths);
       }
   };
   visitSeen(camera, buffer, cells, [&](const Size3& block, const Interval&, const CellRange& seen) {

@@ -90,14 +90,14 @@ Kept keptBox(const ClipPlane& clip, const Corners& corners) {
   Interval behind{infinity, -infinity}, depths = behind;
   for (const Vec3& corner : corners) {
     const double ofCorner = clip.behind(corner), depth = clip.camera.toView(corner).z();
-    behind = joined(behind, {ofCorner, ofCorner});
-    depths = joined(depths, {depth, depth});
+    behind = enclose(behind, {ofCorner, ofCorner});
+    depths = enclose(depths, {depth, depth});
   }
   return keptBehind(clip.edge, behind, inFrontOfEye(clip.camera, depths));
 }
 
 Kept keptBox(const ClipDepth& clip, const Corners& corners) {
-  Box box = Box::nothing(); // (x, y) and depths
+  Box box = Box::makeEmpty(); // (x, y) and depths
   for (const Vec3& corner : corners)
     box.extend(toBuffer(clip.camera, corner));
   const Side side = inFrontOfEye(clip.camera, {box.lower.z(), box.upper.z()});

@@ -15,8 +15,8 @@ DepthPyramid::Level DepthPyramid::halved(std::int64_t columns, std::int64_t rows
     const std::int64_t lower = std::min(row + 1, rows - 1) * columns;
     for (std::int64_t column = 0; column < columns; column += 2) {
       const std::int64_t next = std::min(column + 1, columns - 1);
-      level.extremes.push_back(joined(joined(below(upper + column), below(upper + next)),
-                                      joined(below(lower + column), below(lower + next))));
+      level.extremes.push_back(enclose(enclose(below(upper + column), below(upper + next)),
+                                       enclose(below(lower + column), below(lower + next))));
     }
   }
   return level;

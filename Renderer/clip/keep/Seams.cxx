@@ -93,7 +93,7 @@ SilhouetteCells::SilhouetteCells(std::shared_ptr<const FocusTracer> tracer, cons
   for (std::int64_t row = range.top; row < range.bottom; ++row)
     for (std::int64_t column = range.left; column < range.right; ++column) {
       const std::size_t cell = range.at(column, row);
-      if (isOuter[cell] && outer[cell].empty())
+      if (isOuter[cell] && outer[cell].isEmpty())
         continue;
       m_indices[static_cast<std::size_t>(focus.depth.sample(column, row))] =
           static_cast<std::int32_t>(m_depthBounds.size());
@@ -113,7 +113,7 @@ Interval SilhouetteCells::joinDepthBounds(const DepthBuffer& buffer, std::int64_
   for (const std::int64_t r : {std::max<std::int64_t>(row, 1) - 1, row})
     for (const std::int64_t c : {std::max<std::int64_t>(column, 1) - 1, column})
       if (const DepthBounds* const bounds = findDepthBounds(buffer.sample(c, r)))
-        depths = joined(depths, {m_reference + bounds->min, m_reference + bounds->max});
+        depths = enclose(depths, {m_reference + bounds->min, m_reference + bounds->max});
   return depths;
 }
 
@@ -127,7 +127,7 @@ void SilhouetteCells::findHalo(const FocusDepth& focus, const CellRange& range) 
       if (focus.regions[static_cast<std::size_t>(sample)] != Region::context)
         continue;
       const Interval depths = joinDepthBounds(buffer, column, row);
-      if (depths.empty())
+      if (depths.isEmpty())
         continue;
       m_halo.push_back({sample, 0.0});
       glances.push_back({buffer.position(column, row), depths});

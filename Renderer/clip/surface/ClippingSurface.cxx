@@ -52,7 +52,7 @@ Distribution mismatchOf(const ThinPlateSpline& spline, const std::vector<Control
   misses.reserve(samples.size());
   for (const ControlPoint& sample : samples)
     misses.push_back(std::abs(spline(sample.site) - sample.depth));
-  return Distribution::of(std::move(misses));
+  return Distribution::compute(std::move(misses));
 }
 
 /// Fills samples outside the focus from the spline, in tiles, which are halved if many sites are

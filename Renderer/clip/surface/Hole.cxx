@@ -26,7 +26,7 @@ double farSide(const Camera& camera, const Vec2& at, const Vec3& center, double 
 }
 
 void fillBowl(DepthBuffer& buffer, const FocusDepth& focus, const Camera& camera, double margin) {
-  Box box = Box::nothing();
+  Box box = Box::makeEmpty();
   focus.visitFocus([&](const Vec3& at) { box.extend(fromBuffer(camera, at)); });
   const Vec3 center = box.center();
   double radius = 0.0;
@@ -42,7 +42,7 @@ void fillHole(DepthBuffer& buffer, const FocusDepth& focus, const Camera& camera
               const HoleOptions& options) {
   if (options.shape == HoleShape::sphere)
     return fillBowl(buffer, focus, camera, options.margin);
-  Box extent = Box::nothing();
+  Box extent = Box::makeEmpty();
   focus.visitFocus([&](const Vec3& at) { extent.extend(at); });
   const Vec2 center = extent.center().head<2>();
   const Vec2 half = (0.5 * (extent.upper - extent.lower)).head<2>();

@@ -9,7 +9,7 @@
 namespace fenestra {
 
 double finite(const JsonNode& node) {
-  return node.numberIn(-largestValue, largestValue);
+  return node.number(-largestValue, largestValue);
 }
 
 template <int Channels>

@@ -36,14 +36,14 @@ Rgb readRadiance(const JsonNode& light, const std::string& key) {
   const Rgb tint = readHexColor(*color);
   if (tint.isZero(0.0))
     throw color->error("is black, which no light is; use a radiance of 0 for a light that is off");
-  return tint * (value.numberIn(0.0, largest) / luminance(tint));
+  return tint * (value.number(0.0, largest) / luminance(tint));
 }
 
 /// File name without zero bytes and line breaks, fit for a message of one line.
 std::string readFileName(const JsonNode& node) {
   std::string name = node.text();
   if (name.find_first_of(std::string_view("\0\n\r", 3)) != std::string::npos)
-    throw node.error("\"" + shown(name) + "\" is no file name; give one without line breaks");
+    throw node.error("\"" + sanitize(name) + "\" is no file name; give one without line breaks");
   return name;
 }
 
@@ -60,7 +60,7 @@ Light readEnvironment(const JsonNode& node, const std::filesystem::path& folder)
 
 /// Frame of a light that has a place.
 LightFrame readFrame(const JsonNode& node) {
-  return static_cast<LightFrame>(node.oneOf({"world", "camera", "focus"}));
+  return static_cast<LightFrame>(node.choice({"world", "camera", "focus"}));
 }
 
 Light readSky(const JsonNode& node) {
@@ -70,7 +70,7 @@ Light readSky(const JsonNode& node) {
   light.middle = readTriple(node.at("middle"));
   light.bottom = readTriple(node.at("bottom"));
   if (const auto frame = node.find("frame"))
-    light.frame = static_cast<LightFrame>(frame->oneOf({"world", "camera"}));
+    light.frame = static_cast<LightFrame>(frame->choice({"world", "camera"}));
   if (const auto up = node.find("up"))
     light.up = readDirection(*up);
   else if (light.frame == LightFrame::world)
@@ -88,7 +88,7 @@ Vec2 readSize(const JsonNode& node, AreaLight::Shape shape) {
   const bool disk = shape == AreaLight::Shape::disk;
   std::vector<double> size;
   if (disk && node.isNumber())
-    size.assign(2, node.numberIn(0.0, largest));
+    size.assign(2, node.number(0.0, largest));
   else
     size = node.numbers(2, 0.0, largest);
   if (size[0] == 0.0 || size[1] == 0.0)
@@ -118,7 +118,7 @@ Light readSphere(const JsonNode& node) {
   SphereLight light;
   light.center = node.at("center").triple(-largest, largest);
   const JsonNode diameter = node.at("diameter");
-  light.diameter = diameter.numberIn(0.0, largest);
+  light.diameter = diameter.number(0.0, largest);
   if (light.diameter == 0.0)
     throw diameter.error("must be above 0");
   light.radiance = readRadiance(node, "radiance");

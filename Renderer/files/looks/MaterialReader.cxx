@@ -17,7 +17,7 @@ constexpr double greatestDensity = 1000.0; ///< as --density
 template <typename Value>
 void readIfThere(const JsonNode& object, const char* key, double low, double high, Value& value) {
   if (const auto node = object.find(key))
-    value = node->numberIn(low, high);
+    value = node->number(low, high);
 }
 
 /// "#rrggbb", or rows over the scalar.
@@ -40,7 +40,7 @@ std::optional<ScalarFunction> readExtinction(const JsonNode& node) {
   if (node.isArray())
     return readCurve<1>(node, largestValue);
   if (node.isNumber())
-    return ScalarFunction({{0.0, ScalarFunction::Value(node.numberIn(0.0, largestValue))}});
+    return ScalarFunction({{0.0, ScalarFunction::Value(node.number(0.0, largestValue))}});
   if (!node.value().is_string() || node.text() != "base")
     throw node.error("must be \"base\", a number per mm, or [[scalar, number], …]");
   return std::nullopt;
@@ -54,7 +54,7 @@ void readKind(const JsonNode& object, Material& material) {
       material.kind = MaterialKind::medium;
   }
   if (kind)
-    material.kind = static_cast<MaterialKind>(kind->oneOf({"tint", "matter"}));
+    material.kind = static_cast<MaterialKind>(kind->choice({"tint", "matter"}));
   if (material.kind == MaterialKind::tint && material.extinction)
     throw kind->error("is \"tint\", which keeps the volume's extinction; leave out \"extinction\", "
                       "or make it \"matter\"");
@@ -83,7 +83,7 @@ void readMaterial(const JsonNode& object, Material& material) {
 
 /// A whole number from low to high.
 std::int32_t readWhole(const JsonNode& node, double low, double high) {
-  const double value = node.numberIn(low, high);
+  const double value = node.number(low, high);
   if (value != std::floor(value))
     throw node.error("must be a whole number");
   return static_cast<std::int32_t>(value);
@@ -95,9 +95,9 @@ std::string readMaterialName(const JsonNode& node, const std::map<std::string, M
   std::string name = node.text();
   if (!known.contains(name))
     throw node.error(
-        "there is no material \"" + shown(name) + "\"; name one of \"materials\", or of " +
+        "there is no material \"" + sanitize(name) + "\"; name one of \"materials\", or of " +
         join(
-            known, ", ", [](const auto& one) { return shown(one.first); }, mostListed));
+            known, ", ", [](const auto& one) { return sanitize(one.first); }, mostListed));
   return name;
 }
 
@@ -165,7 +165,7 @@ void apply(const JsonNode& fields, const MaterialTable& table, SegmentMedium& me
 }
 
 std::string sourceOf(const MaterialChange& change) {
-  return "--material " + shown(change.selector);
+  return "--material " + sanitize(change.selector);
 }
 
 } // namespace
@@ -207,16 +207,16 @@ MaterialChange parseMaterialChange(const std::string& text, const MaterialTable&
   MaterialChange change{std::string(trim(text.substr(0, std::min(colon, text.size())))),
                         nlohmann::json::object()};
   if (colon == std::string::npos || change.selector.empty())
-    throw inputError("--material " + shown(text),
+    throw inputError("--material " + sanitize(text),
                      "must name a segment and what to change, as in \"Liver: color=#963e2e\"");
-  for (const std::string& field : split(oneLine(text.substr(colon + 1)), ',')) {
+  for (const std::string& field : split(toOneLine(text.substr(colon + 1)), ',')) {
     const std::size_t equals = field.find('=');
     const std::string key(trim(field.substr(0, std::min(equals, field.size()))));
     if (equals == std::string::npos || key.empty())
-      throw inputError(sourceOf(change), "\"", shown(field), "\" must be a key and a value, as in ",
-                       "density=2");
+      throw inputError(sourceOf(change), "\"", sanitize(field),
+                       "\" must be a key and a value, as in ", "density=2");
     if (change.fields.contains(key))
-      throw inputError(sourceOf(change), shown(key), ": is given twice; give one");
+      throw inputError(sourceOf(change), sanitize(key), ": is given twice; give one");
     change.fields[key] = valueOf(std::string(trim(field.substr(equals + 1))));
   }
   if (change.fields.empty())

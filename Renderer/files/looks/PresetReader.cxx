@@ -39,7 +39,7 @@ OrganPreset parsePreset(std::string_view json, const std::string& source) {
   root.allowOnly({"title", "modality", "focus", "before", "flags", "tested"});
   OrganPreset preset{.name = std::filesystem::path(source).stem().string(),
                      .title = root.at("title").text(),
-                     .modality = modalities[root.at("modality").oneOf({"CT", "MR", "US"})],
+                     .modality = modalities[root.at("modality").choice({"CT", "MR", "US"})],
                      .focus = readFocus(root.at("focus")),
                      .before = readPatternTexts(root, "before")};
   for (const auto& [flag, value] : root.at("flags").members())

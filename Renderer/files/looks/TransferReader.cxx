@@ -18,15 +18,15 @@ constexpr double mostForward = 0.999; ///< g = 1 would never scatter
 std::optional<SurfaceShading> readShading(const JsonNode& root, double g) {
   const auto specular = root.find("specular"), roughness = root.find("roughness");
   const auto shading = root.find("shading");
-  if (!shading || shading->oneOf({"volume", "hybrid"}) == 0) {
+  if (!shading || shading->choice({"volume", "hybrid"}) == 0) {
     if (const auto& lobe = specular ? specular : roughness)
       throw lobe->error("is of surfaces; add \"shading\": \"hybrid\"");
     return std::nullopt;
   }
   if (!specular && !roughness && !root.find("color"))
     return SurfaceShading();
-  return SurfaceShading::coat(specular ? specular->numberIn(0.0, 1.0) : 0.2,
-                              roughness ? roughness->numberIn(0.05, 1.0) : 0.4, g);
+  return SurfaceShading::coat(specular ? specular->number(0.0, 1.0) : 0.2,
+                              roughness ? roughness->number(0.05, 1.0) : 0.4, g);
 }
 
 TransferLook readOwn(const JsonNode& root) {
@@ -43,7 +43,7 @@ TransferLook readOwn(const JsonNode& root) {
   transfer.g = g;
   transfer.shading = readShading(root, g);
   const auto scalars = root.find("scalars");
-  return {std::move(transfer), scalars && scalars->oneOf({"absolute", "relative"}) == 1};
+  return {std::move(transfer), scalars && scalars->choice({"absolute", "relative"}) == 1};
 }
 
 // ---- Slicer's .vp.json
@@ -64,7 +64,7 @@ std::vector<Node> readPoints(const JsonNode& function) {
     readIfThere(point, "midpoint", node.midpoint);
     readIfThere(point, "sharpness", node.sharpness);
     if constexpr (std::is_same_v<Node, OpacityNode>)
-      node.value = point.at("y").numberIn(0.0, 1.0);
+      node.value = point.at("y").number(0.0, 1.0);
     else
       node.value = point.at("color").triple(0.0, 1.0).array();
   }
@@ -99,7 +99,7 @@ VolumeProperty readSlicer(const JsonNode& root) {
     readIfThere(*lighting, "specularPower", property.specularPower);
   }
   if (const auto g = slicer.find("scatteringAnisotropy"))
-    property.anisotropy = std::clamp(g->numberIn(-1.0, 1.0), -mostForward, mostForward);
+    property.anisotropy = std::clamp(g->number(-1.0, 1.0), -mostForward, mostForward);
   return property;
 }
 

@@ -46,12 +46,12 @@ Paths candidates(const Path& folder) {
 }
 
 std::string described(const DicomSeries& series) {
-  std::string text = series.number.empty() ? "" : "number " + shown(series.number) + " ";
+  std::string text = series.number.empty() ? "" : "number " + sanitize(series.number) + " ";
   if (!series.description.empty())
-    text += "\"" + shown(series.description) + "\" ";
-  text += series.modality.empty() ? "" : shown(series.modality) + " ";
+    text += "\"" + sanitize(series.description) + "\" ";
+  text += series.modality.empty() ? "" : sanitize(series.modality) + " ";
   const std::size_t count = series.files.size();
-  return concat(text, shown(series.uid), " (", count, count == 1 ? " file)" : " files)");
+  return concat(text, sanitize(series.uid), " (", count, count == 1 ? " file)" : " files)");
 }
 
 std::string listed(const std::vector<DicomSeries>& series) {
@@ -99,11 +99,11 @@ DicomSeries chooseSeries(const std::vector<DicomSeries>& series,
     if (found.size() == 1)
       return found.front();
     if (found.size() > 1)
-      throw inputError(folder, "--volume \"", shown(*selector), "\" can be any of ", listed(found),
-                       "; pick one by its uid");
+      throw inputError(folder, "--volume \"", sanitize(*selector), "\" can be any of ",
+                       listed(found), "; pick one by its uid");
   }
-  throw inputError(folder, "--volume \"", shown(*selector), "\" names no DICOM series; there are ",
-                   listed(series));
+  throw inputError(folder, "--volume \"", sanitize(*selector),
+                   "\" names no DICOM series; there are ", listed(series));
 }
 
 } // namespace fenestra

@@ -46,7 +46,7 @@ void locateNrrdFiles(const std::filesystem::path& path, const NrrdHeaderText& he
     addFile(path, path.filename().string(), stored);
     return skip(path, header.end, stored);
   }
-  const std::string name = valueOf(header.fields, "datafile");
+  const std::string name = findValue(header.fields, "datafile");
   if (name.starts_with("LIST")) {
     for (const std::string& file : header.files)
       addFile(path, file, stored);
@@ -69,7 +69,7 @@ bool isGzip(const std::string& encoding) {
 void checkNrrdKind(const std::filesystem::path& path, Fields& fields) {
   const std::string encoding = toLower(fields["encoding"]);
   if (!isGzip(encoding) && !isOneOf(encoding, {"raw", "hex", "ascii", "text", "txt"}))
-    throw inputError(path, "encoding: \"", shown(encoding), "\" is not read; write raw or gzip");
+    throw inputError(path, "encoding: \"", sanitize(encoding), "\" is not read; write raw or gzip");
   if (const auto axes = parseInteger(fields["dimension"]); axes && *axes < 3)
     throw inputError(path, "is a picture of ", *axes, " axes, not a volume; name one of three");
   constexpr std::int64_t mostSkipped = 1 << 20; // teem inflates skipped bytes one by one
@@ -86,7 +86,7 @@ StoredSamples locateNrrd(const std::filesystem::path& path) {
   Fields& fields = header.fields;
   checkNrrdKind(path, fields);
   StoredSamples stored;
-  stored.hasSpacing = saysSpacing(header);
+  stored.hasSpacing = hasNrrdSpacing(header);
   const std::string encoding = toLower(fields["encoding"]);
   stored.compressed = encoding != "raw" && encoding != "hex"; // a digit of text can be 8 bytes
   locateNrrdFiles(path, header, stored);
@@ -138,7 +138,7 @@ void checkMetaMeaning(const std::filesystem::path& path, const std::string& key,
   else if (key == "ElementToIntensityFunctionOffset")
     refuseUnless(0.0);
   else if (key == "DistanceUnits")
-    checkMillimetres(path, key, value);
+    checkMillimeters(path, key, value);
   else if (key == "DimSize")
     for (const std::string& word : splitWords(value))
       if (const auto size = parseInteger(word); !size || *size < 1 || *size > INT32_MAX)
@@ -151,11 +151,11 @@ Fields readMetaFields(const std::filesystem::path& path, HeaderLines& lines) {
   while (!fields.contains("ElementDataFile")) {
     const auto line = lines.next();
     const std::size_t equals = line ? line->find('=') : std::string_view::npos;
-    if (equals == std::string_view::npos || hasControls(trim(*line)))
-      throw damaged(path, "MetaImage");
+    if (equals == std::string_view::npos || hasControlCharacter(trim(*line)))
+      throw damagedError(path, "MetaImage");
     const std::string_view name = line->substr(0, equals);
     if (name.find(':') != std::string_view::npos) // MetaIO takes a colon for an equals sign
-      throw damaged(path, "MetaImage");
+      throw damagedError(path, "MetaImage");
     const std::string key(trim(name));
     fields[key] = trim(line->substr(equals + 1));
     if (key == "NDims") {
@@ -167,7 +167,7 @@ Fields readMetaFields(const std::filesystem::path& path, HeaderLines& lines) {
     checkMetaMeaning(path, key, fields[key]);
   }
   if (dimension == 0)
-    throw damaged(path, "MetaImage");
+    throw damagedError(path, "MetaImage");
   return fields;
 }
 

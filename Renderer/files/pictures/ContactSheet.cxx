@@ -72,7 +72,7 @@ public:
   }
 
 private:
-  static Rgb linearOf(std::uint32_t color) { return decodeSrgb(colorOf(color)); }
+  static Rgb linearOf(std::uint32_t color) { return decodeSrgb(hexToRgb(color)); }
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(m_width) +
            static_cast<std::size_t>(x);

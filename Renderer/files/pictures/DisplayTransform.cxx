@@ -20,7 +20,7 @@ constexpr float brightest = 65504.0f;
 
 ocio::ConstConfigRcPtr loadConfig() {
   ocio::SetLoggingFunction([](const char*) {}); // silent on standard error: failures are thrown
-  TextReader text{std::string(embeddedResource("color/fenestra.ocio"))};
+  TextReader text{std::string(findResource("color/fenestra.ocio"))};
   return ocio::Config::CreateFromStream(text);
 }
 

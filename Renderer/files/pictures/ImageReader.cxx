@@ -108,7 +108,7 @@ bool fillsItsSize(const std::string& type, const std::string& value) {
 /// exactly. OpenEXR takes memory for an attribute of any size before it reads the bytes, and reads
 /// most types without regard to their size, misreading all that follows.
 void checkExrAttributes(const std::filesystem::path& path) {
-  Throwing<std::ifstream> file(path, std::ios::binary);
+  ThrowingStream<std::ifstream> file(path, std::ios::binary);
   const auto length = static_cast<std::int64_t>(std::filesystem::file_size(path));
   file.seekg(5); // flags of the version field
   const bool severalParts = (file.get() & 0x10) != 0;

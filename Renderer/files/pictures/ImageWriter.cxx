@@ -224,7 +224,7 @@ std::filesystem::path besidePath(const std::filesystem::path& path, const char* 
 /// Header lines of a NRRD that give its geometry: space, directions, origin.
 std::vector<std::string> gridLines(const std::filesystem::path& path) {
   std::vector<std::string> lines;
-  Throwing<std::ifstream> file(path, std::ios::binary);
+  ThrowingStream<std::ifstream> file(path, std::ios::binary);
   for (std::string line; std::getline(file, line) && !line.empty() && lines.size() < 3;)
     for (const char* field : {"space: ", "space directions: ", "space origin: "})
       if (line.starts_with(field))

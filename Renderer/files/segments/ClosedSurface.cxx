@@ -32,7 +32,7 @@ std::vector<Path> blocksOf(const Path& path) {
   for (const auto& block : file.child("vtkMultiBlockDataSet").children("DataSet")) {
     const Path name = Path(block.attribute("file").value()).lexically_normal();
     if (name.empty() || name.is_absolute() || *name.begin() == ".." || blocks.size() == mostBlocks)
-      throw inputError(path, "DataSet: file=\"", shown(name.string()),
+      throw inputError(path, "DataSet: file=\"", sanitize(name.string()),
                        "\" is not in the folder of the .vtm; ", exportHint);
     blocks.push_back(path.parent_path() / name);
   }
@@ -174,7 +174,7 @@ Segmentation readClosedSurfaces(const Path& path, const Grid* reference) {
       point = grid.worldToIndex * point;
     const auto runs = voxelRuns(surface.shape.points, surface.shape.triangles, grid.size);
     if (!runs)
-      throw inputError(path, "segment \"", shown(surface.info.name),
+      throw inputError(path, "segment \"", sanitize(surface.info.name),
                        "\": its surface has holes or is too complex; ", exportHint);
     surface.info.layer = layers.add(*runs, static_cast<Layers::Label>(surface.info.labelValue));
     segments.push_back(surface.info);

@@ -36,7 +36,7 @@ public:
     const auto [entry, isNew] = m_names.insert({key, {std::move(name), color}});
     if (!isNew)
       throw inputError(m_source, place, ": names the value ", key, " again, which is \"",
-                       shown(entry->second.name), "\" already");
+                       sanitize(entry->second.name), "\" already");
   }
 
   LabelNames take() {
@@ -132,13 +132,13 @@ void readJsonTable(std::string_view text, TableBuilder& table) {
   const JsonNode root(document, table.source());
   if (root.isObject()) {
     for (const auto& [key, name] : root.members())
-      table.add(concat('"', shown(key), '"'), parseInteger(key), name.text());
+      table.add(concat('"', sanitize(key), '"'), parseInteger(key), name.text());
     return;
   }
   std::size_t number = 0;
   for (const JsonNode& entry : root.elements())
     table.add(concat('[', number++, ']'),
-              static_cast<std::int64_t>(entry.at("label").numberIn(-2147483648.0, 2147483647.0)),
+              static_cast<std::int64_t>(entry.at("label").number(-2147483648.0, 2147483647.0)),
               entry.at("name").text());
 }
 
@@ -162,7 +162,7 @@ LabelNames readLabelNames(const std::filesystem::path& path) {
 }
 
 std::optional<LabelNames> compiledLabelNames(const std::string& name) {
-  const std::string_view text = embeddedResource("labels/" + name + ".json");
+  const std::string_view text = findResource("labels/" + name + ".json");
   if (text.empty())
     return std::nullopt;
   TableBuilder table(name);
@@ -172,7 +172,7 @@ std::optional<LabelNames> compiledLabelNames(const std::string& name) {
 
 std::vector<std::string> compiledLabelTables() {
   std::vector<std::string> tables;
-  for (const std::string& file : embeddedResourceNames("labels/"))
+  for (const std::string& file : listResources("labels/"))
     tables.push_back(std::filesystem::path(file).stem().string());
   return tables;
 }

@@ -27,7 +27,7 @@ std::vector<Beside> tablesBeside(const std::filesystem::path& path) {
   for (const char* extension : {".ctbl", ".label", ".json", ".csv"})
     tables.push_back({stem.string() + extension, false});
   tables.push_back({path.parent_path() / "seg_labels.json", true});
-  std::erase_if(tables, [](const Beside& table) { return !isThere(table.file); });
+  std::erase_if(tables, [](const Beside& table) { return !fileExists(table.file); });
   return tables;
 }
 
@@ -62,10 +62,10 @@ FoundNames wantedNames(const std::filesystem::path& path, const std::string& ext
   }
   if (auto table = compiledLabelNames(wanted))
     return {*table, wanted};
-  if (!isThere(wanted))
-    throw usageError("--labels ", shown(wanted), ": is no file, and none of totalsegmentator, ",
+  if (!fileExists(wanted))
+    throw usageError("--labels ", sanitize(wanted), ": is no file, and none of totalsegmentator, ",
                      join(compiledLabelTables(), ", "));
-  const InputsWithin anywhere(std::nullopt);
+  const InputConfinement anywhere(std::nullopt);
   return {readLabelNames(wanted), wanted};
 }
 
@@ -105,7 +105,7 @@ FoundNames findLabelNames(const std::filesystem::path& path, const std::set<std:
   }
   FoundNames found = wantedNames(path, extensions, *wanted);
   if (!values.empty() && countNamed(found.names, values) == 0)
-    throw inputError(path, "--labels ", shown(*wanted), " names none of its values (",
+    throw inputError(path, "--labels ", sanitize(*wanted), " names none of its values (",
                      join(
                          values, ", ", [](std::int32_t value) { return concat(value); }, 8),
                      "); is it another label map's table?");

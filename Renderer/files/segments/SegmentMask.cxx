@@ -220,7 +220,7 @@ void countVoxels(const LargeArray<Label>& labels, const Size3& size, std::size_t
 Box worldBounds(const Grid& grid, const VoxelExtent& extent) {
   const Box voxels{extent.lower.cast<double>().array() - 0.5,
                    extent.upper.cast<double>().array() + 0.5};
-  Box bounds = Box::nothing();
+  Box bounds = Box::makeEmpty();
   for (int i = 0; i < 8; ++i)
     bounds.extend(grid.indexToWorld * voxels.corner(i));
   return bounds;
@@ -230,8 +230,8 @@ Box worldBounds(const Grid& grid, const VoxelExtent& extent) {
 
 std::string listed(const std::vector<SegmentInfo>& segments) {
   const auto named = [](const SegmentInfo& segment) {
-    const std::string id = shown(segment.id);
-    return segment.name == segment.id ? id : concat(id, " (", shown(segment.name), ')');
+    const std::string id = sanitize(segment.id);
+    return segment.name == segment.id ? id : concat(id, " (", sanitize(segment.name), ')');
   };
   return join(segments, ", ", named, 12);
 }
@@ -257,7 +257,7 @@ std::string meantInstead(const std::string& selector, const std::vector<SegmentI
   if (!meant.empty())
     return concat("did you mean ",
                   join(
-                      meant, ", ", [](const auto& s) { return shown(s.name); }, 12),
+                      meant, ", ", [](const auto& s) { return sanitize(s.name); }, 12),
                   "?");
   const bool unnamed = std::ranges::all_of(segments, [](const SegmentInfo& segment) {
     return segment.name == concat("Segment_", segment.labelValue);
@@ -277,15 +277,15 @@ std::size_t Segmentation::find(const std::string& selector) const {
     std::vector<SegmentInfo> found;
     std::ranges::copy_if(m_segments, std::back_inserter(found), matches);
     if (found.size() > 1)
-      throw inputError(m_source, "segment \"", shown(selector), "\" can be any of ", listed(found),
-                       "; name one by its id");
+      throw inputError(m_source, "segment \"", sanitize(selector), "\" can be any of ",
+                       listed(found), "; name one by its id");
     if (!found.empty())
       return static_cast<std::size_t>(std::ranges::find_if(m_segments, matches) -
                                       m_segments.begin());
   }
   if (const std::string_view bare = trim(selector); bare.size() < selector.size())
     return find(std::string(bare));
-  throw inputError(m_source, "has no segment \"", shown(selector), "\"; ",
+  throw inputError(m_source, "has no segment \"", sanitize(selector), "\"; ",
                    meantInstead(selector, m_segments));
 }
 

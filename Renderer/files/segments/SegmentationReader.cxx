@@ -86,7 +86,7 @@ Grid placed(const Grid& grid, const Fields& fields, const std::string& source) {
   if (numbers.size() != 6 || std::ranges::count(numbers, infinity) > 0)
     throw inputError(source, "Segmentation_Extent: must be six whole numbers");
   const Vec3 first(numbers[0], numbers[2], numbers[4]);
-  return {grid.size, Affine(lpsToRas) * grid.indexToWorld * translationBy(first)};
+  return {grid.size, Affine(lpsToRas) * grid.indexToWorld * makeTranslation(first)};
 }
 
 /// Fields of one segment: those that begin with `prefix`, like "Segment0_".
@@ -151,7 +151,7 @@ std::vector<SegmentInfo> segmentsNamed(const Fields& fields, const std::string& 
                                        std::size_t layerCount) {
   for (const char* field :
        {"Segmentation_MasterRepresentation", "Segmentation_SourceRepresentation"})
-    if (header::valueOf(fields, field).starts_with("Fractional"))
+    if (header::findValue(fields, field).starts_with("Fractional"))
       throw inputError(source, field,
                        ": is a fractional labelmap, which is not read; export the segmentation "
                        "in Slicer as a binary labelmap (.seg.nrrd)");

@@ -169,9 +169,9 @@ MakeError MrmlDocument::errorMaker(const MrmlNode& node, const std::string& subj
 }
 
 std::string shown(const MrmlNode& node) {
-  std::string text = shown(node.name);
+  std::string text = sanitize(node.name);
   if (!node.id.empty())
-    text.append(text.empty() ? "(" : " (").append(shown(node.id)).append(")");
+    text.append(text.empty() ? "(" : " (").append(sanitize(node.id)).append(")");
   return text;
 }
 

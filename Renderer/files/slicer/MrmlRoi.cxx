@@ -34,7 +34,7 @@ bool isLps(const JsonNode& markup) {
     return true;          // Slicer's default
   if (system->isNumber()) // in the first files: vtkMRMLStorageNode's enumeration
     return system->number() != 0.0;
-  return system->oneOf({"LPS", "RAS"}) == 0;
+  return system->choice({"LPS", "RAS"}) == 0;
 }
 
 Affine readMarkupsJson(const std::filesystem::path& path) {

@@ -62,7 +62,7 @@ private:
   using Chunk = std::function<void(std::string_view)>;
 
   Error error(const std::filesystem::path& file, const std::string& what) const {
-    return inputError(m_source, oneLine(file.string()), " in it ", what);
+    return inputError(m_source, toOneLine(file.string()), " in it ", what);
   }
   Error damaged(const std::filesystem::path& file) const {
     return error(file, "is damaged; save the scene again");
@@ -130,7 +130,7 @@ SceneArchive::SceneArchive(const std::filesystem::path& path) : m_source(path.st
     const std::filesystem::path file = name;
     if (leadsOut(file))
       throw inputError(m_source, "holds an entry that leads out of the archive (",
-                       shown(file.string()),
+                       sanitize(file.string()),
                        "); Slicer writes no such archive, so do not trust it");
     if (!file.empty() && file.has_filename())
       m_files.try_emplace(file.lexically_normal(), entry);
@@ -146,7 +146,7 @@ void SceneArchive::extract(const std::filesystem::path& file,
                       "an archive of this size; save the scene again, or unpack it yourself");
   m_unpackable -= size;
   const auto cannotUnpack = [&](int code) {
-    return outputError(oneLine(destination.string()), oneLine(file.string()),
+    return outputError(toOneLine(destination.string()), toOneLine(file.string()),
                        " cannot be unpacked: ", systemMessage(code), "; ",
                        writeHint(code, "set TMPDIR to another folder"));
   };
@@ -207,7 +207,7 @@ std::filesystem::path mainScene(const SceneArchive& archive, const std::filesyst
   if (named.size() == 1)
     return named.front();
   const std::string listed =
-      join(closest, ", ", [](const auto& file) { return oneLine(file.string()); });
+      join(closest, ", ", [](const auto& file) { return toOneLine(file.string()); });
   throw inputError(path, "holds several scenes (", listed.substr(0, 300),
                    "); unpack it and name one of them");
 }
@@ -251,9 +251,9 @@ void SceneFiles::expect(const std::string& fileName) const {
   if (m_archive)
     return;
   const std::filesystem::path file = resolved(fileName);
-  expectInput(file);
+  registerInput(file);
   for (const std::filesystem::path& part : filesNamedBy(file))
-    expectInput(part);
+    registerInput(part);
 }
 
 bool SceneFiles::holds(const std::string& fileName) const {
@@ -266,7 +266,7 @@ std::filesystem::path SceneFiles::locate(const std::string& fileName) {
   const std::filesystem::path name = decodedUrl(fileName);
   std::filesystem::path file = resolved(fileName);
   const auto makeError = [this](const std::filesystem::path& named, const std::string& why) {
-    return inputError(m_source, "names ", oneLine(named.string()), ", which ", why);
+    return inputError(m_source, "names ", toOneLine(named.string()), ", which ", why);
   };
   if (!m_archive) {
     std::error_code failed;
@@ -300,7 +300,7 @@ std::filesystem::path SceneFiles::unpacked(const std::filesystem::path& file) {
   if (!m_unpacked)
     m_unpacked.emplace();
   if (isTooLong(m_unpacked->path() / file))
-    throw inputError(m_source, "names ", shown(file.string()),
+    throw inputError(m_source, "names ", sanitize(file.string()),
                      ", which is too long for a file's name; save the scene again under shorter "
                      "ones");
   const std::filesystem::path destination = m_unpacked->add(file);
@@ -318,7 +318,7 @@ std::vector<std::string> SceneFiles::filesRead() const {
 std::string SceneFiles::asKnown(std::string message) const {
   if (m_unpacked)
     message = replaceAll(message, m_unpacked->path().string(), m_source);
-  return oneLine(std::move(message));
+  return toOneLine(std::move(message));
 }
 
 } // namespace fenestra

@@ -58,7 +58,7 @@ public:
     for (const std::string& fileName : fileNames)
       paths.push_back(locate(fileName));
     return knowingly([&] {
-      std::optional<InputsWithin> within;
+      std::optional<InputConfinement> within;
       if (m_unpacked) // an archive's files may name only files in it
         within.emplace(m_unpacked->path());
       return reader(paths);

@@ -187,9 +187,9 @@ std::string linearType(const Path& path, const std::string& name) {
   const bool isSimple =
       type == "CompositeTransform" || type == "IdentityTransform" || type == "TranslationTransform";
   if (!isSimple && !matrixTransform(type))
-    throw inputError(path, "Transform: ", shown(name), " is not linear; ", hardenHint);
+    throw inputError(path, "Transform: ", sanitize(name), " is not linear; ", hardenHint);
   if (name != type + "_double_3_3") // ITK's readers turn _float_ into _double_
-    throw inputError(path, "Transform: ", shown(name),
+    throw inputError(path, "Transform: ", sanitize(name),
                      " is not a transform of three axes; save one that is");
   return type;
 }
@@ -209,7 +209,7 @@ Affine mapOf(const Path& path, const TransformRecord& record) {
     return Affine::Identity();
   const std::vector<double>&numbers = record.parameters, &fixed = record.fixed;
   if (record.type == "TranslationTransform" && numbers.size() == 3)
-    return translationBy({numbers[0], numbers[1], numbers[2]});
+    return makeTranslation({numbers[0], numbers[1], numbers[2]});
   const auto transform = matrixTransform(record.type);
   if (!transform) // a composite within a composite
     throwDamaged(path);

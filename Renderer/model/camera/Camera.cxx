@@ -22,7 +22,7 @@ CameraPose checkedPose(const CameraPose& pose, const MakeError& makeError) {
 
 CameraPose turnedAroundTarget(const CameraPose& pose, double degrees) {
   CameraPose turned = pose;
-  const Mat3 turn = rotationBy(degrees * pi / 180.0, pose.up.stableNormalized()).linear();
+  const Mat3 turn = makeRotation(degrees * pi / 180.0, pose.up.stableNormalized()).linear();
   if (degrees != 0.0)
     turned.position = pose.target + turn * (pose.position - pose.target);
   return turned;

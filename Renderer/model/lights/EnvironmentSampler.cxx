@@ -85,7 +85,7 @@ double EnvironmentSampler::pdf(const Vec3& direction) const {
 
 Vec3 EnvironmentSampler::sample(const Vec2& u) const {
   if (constant())
-    return uniformDirection(u);
+    return sampleUniformSphere(u);
   const int width = m_light.map.width;
   const int height = m_light.map.height;
   const Pick row = pick(m_rowCdf, u.x());

@@ -72,7 +72,7 @@ FENESTRA_INLINE void samplePoint(const Lights::Sphere& light, LaneMask mine, con
   const Float3 axis = select(apart, (1.0F / distance) * d, Float3{0.0F, 0.0F, 1.0F});
   const Float3 local{sine * phi.cosine, sine * phi.sine, cosine};
   const Float far = distanceTo(light, distance2, distance * cosine, distance2 * sine2);
-  samples.direction = select(mine, normalized(Frames(axis).toWorld(local)), samples.direction);
+  samples.direction = select(mine, normalize(Frames(axis).toWorld(local)), samples.direction);
   samples.radiance = select(mine, Float3(light.radiance), samples.radiance);
   samples.distance = select(mine, far, samples.distance);
   samples.pdf = select(mine, densityOf(light, spread), samples.pdf);

@@ -125,7 +125,7 @@ private:
   /// Value of all of the mask's voxels that the block is made from; nothing: they differ.
   std::optional<std::uint8_t> onlyValue(const Size3& begin, const Size3& end) const {
     const Box block{begin.cast<double>(), (end.array() - 1).cast<double>()};
-    Box box = Box::nothing();
+    Box box = Box::makeEmpty();
     for (int i = 0; i < 8; ++i)
       box.extend(m_toMask * block.corner(i));
     const Vec3 most = (m_mask.grid.size.array() - 1).cast<double>();
@@ -171,7 +171,7 @@ Mask outerLayer(const Volume& volume, double airBelow, double depth) {
 }
 
 Mask onLattice(const Mask& layer, const Grid& labels, const Grid& volume) {
-  Box box = Box::nothing();
+  Box box = Box::makeEmpty();
   for (int i = 0; i < 8; ++i)
     box.extend(labels.worldToIndex * volume.worldCorner(i));
   const Vec3 first = box.lower.array().floor(),

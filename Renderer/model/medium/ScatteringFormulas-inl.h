@@ -20,7 +20,7 @@ template <typename Number>
 class PhaseLobe {
 public:
   FENESTRA_INLINE PhaseLobe(Number g, const Float3& incoming, const Float3& albedo)
-      : m_g(abs(g)), m_peak(turnedBelow0(g, incoming)), m_albedo(albedo) {}
+      : m_g(abs(g)), m_peak(flipIfNegative(g, incoming)), m_albedo(albedo) {}
 
   FENESTRA_INLINE ScatterEval toward(const Float3& outgoing) const {
     const Float3 chord = outgoing - m_peak;
@@ -32,7 +32,7 @@ public:
     const CosineSine phi = cosSinTurns(v);
     if (isAllEqual(m_g, 0.0F)) {
       const Float z = fnma(2.0F, u, 1.0F);
-      const Float r = root(fnma(z, z, 1.0F));
+      const Float r = safeSqrt(fnma(z, z, 1.0F));
       return {{r * phi.cosine, r * phi.sine, z}, m_albedo, perSphere};
     }
     // cos = (1 + g^2 - ((1 - g^2) / (1 + g - 2 g u))^2) / (2 g), as 1 - cos for accuracy near 1:
@@ -43,9 +43,9 @@ public:
     const Float rest = fma(g, 1.0F - u, 1.0F);
     const Float oneMinusCosine = min(part * rest / square(a), 2.0F);
     const Float cosine = 1.0F - oneMinusCosine;
-    const Float sine = root(oneMinusCosine * (1.0F + cosine));
+    const Float sine = safeSqrt(oneMinusCosine * (1.0F + cosine));
     const Float3 local{sine * phi.cosine, sine * phi.sine, cosine};
-    return {normalized(Frames(m_peak).toWorld(local)), m_albedo, density(2.0F * oneMinusCosine)};
+    return {normalize(Frames(m_peak).toWorld(local)), m_albedo, density(2.0F * oneMinusCosine)};
   }
 
 private:
@@ -82,14 +82,14 @@ public:
         m_roughness(bsdf.roughness),
         m_isCoated(bsdf.isCoated),
         m_coat(bsdf.coat),
-        m_frame(normalized(select(dot(incoming, gradient) >= 0.0F, -gradient, gradient))),
+        m_frame(normalize(select(dot(incoming, gradient) >= 0.0F, -gradient, gradient))),
         m_viewer(m_frame.toLocal(-incoming)),
         m_diffuse(bsdf.diffuse * albedo) {
     if (!isAllEqual(bsdf.odds, 1.0F))
       m_diffuse = bsdf.diffuse * ofOdds(bsdf.odds, albedo);
     if (m_isCoated)
       m_diffuse = belowCoat(m_viewer.z) * m_diffuse;
-    const Float lambert = greatest(m_diffuse);
+    const Float lambert = maxComponent(m_diffuse);
     const Float sum = fma(m_specular, fresnel(m_viewer.z), lambert);
     const LaneMask some = sum > 0.0F;
     m_lambertPmf = select(some, lambert / sum, 1.0F);
@@ -103,23 +103,23 @@ public:
   FENESTRA_INLINE ScatterSamples sample(Float choice, Float u, Float v) const {
     const CosineSine phi = cosSinTurns(v);
     const Float r = sqrt(u);
-    const Float3 lambert{r * phi.cosine, r * phi.sine, root(1.0F - u)};
+    const Float3 lambert{r * phi.cosine, r * phi.sine, safeSqrt(1.0F - u)};
     Float3 local = lambert;
     if (!isAllEqual(m_specular, 0.0F)) {
       const Float3 h = visibleNormal(r, phi);
       const Float3 glossy = (2.0F * dot(m_viewer, h)) * h - m_viewer;
       local = select(choice < m_lambertPmf, lambert, glossy);
     }
-    const Float3 outgoing = normalized(m_frame.toWorld(local));
+    const Float3 outgoing = normalize(m_frame.toWorld(local));
     const ScatterEval s = toward(outgoing);
     const LaneMask possible = s.pdf > 0.0F;
-    return {outgoing, orZero(possible, (1.0F / s.pdf) * s.factor), s.pdf};
+    return {outgoing, zeroUnless(possible, (1.0F / s.pdf) * s.factor), s.pdf};
   }
 
 private:
   /// Schlick 1994.
   FENESTRA_INLINE Float fresnel(Float cosine) const {
-    const Float x = notBelow0(min(1.0F - cosine, 1.0F));
+    const Float x = clampZero(min(1.0F - cosine, 1.0F));
     return fma(1.0F - m_f0, square(square(x)) * x, m_f0);
   }
   /// Albedo whose odds are `odds` times those of the given one.
@@ -129,7 +129,7 @@ private:
   }
   /// Share of light that passes the coat.
   FENESTRA_INLINE Float belowCoat(Float cosine) const {
-    const Float x = notBelow0(min(1.0F - cosine, 1.0F));
+    const Float x = clampZero(min(1.0F - cosine, 1.0F));
     const Float x2 = square(x), x4 = square(x2);
     const Float high = fma(m_coat[3], x4, m_coat[2]);
     const Float low = fma(m_coat[1], x2, m_coat[0]);
@@ -139,13 +139,13 @@ private:
   /// The glossy lobe is D F G / (4 cos cos) times the outgoing cosine, G separable (Smith); its
   /// density is Heitz 2018, eq. 17.
   FENESTRA_INLINE ScatterEval towardLocal(const Float3& l) const {
-    const Float lambertPdf = notBelow0(l.z) * static_cast<Real>(1.0 / pi);
+    const Float lambertPdf = clampZero(l.z) * static_cast<Real>(1.0 / pi);
     ScatterEval s{lambertPdf * m_diffuse, m_lambertPmf * lambertPdf};
     if (isAllEqual(m_specular, 0.0F))
       return s;
     if (m_isCoated)
       s.factor = belowCoat(l.z) * s.factor;
-    const Float3 h = normalized(l + m_viewer);
+    const Float3 h = normalize(l + m_viewer);
     const Float perViewer = masking(m_viewer) * normalDensity(h) / (4.0F * m_viewer.z);
     const LaneMask facing = (l.z > 0.0F) & (m_viewer.z > 0.0F);
     const Float pdf = zeroUnless(facing, perViewer);
@@ -173,7 +173,7 @@ private:
   /// Heitz 2018, listing 1; `r`, `phi`: polar coordinates of a point in the unit disc.
   FENESTRA_INLINE Float3 visibleNormal(Float r, const CosineSine& phi) const {
     const Float a = m_roughness;
-    const Float3 stretched = normalized({a * m_viewer.x, a * m_viewer.y, m_viewer.z});
+    const Float3 stretched = normalize({a * m_viewer.x, a * m_viewer.y, m_viewer.z});
     const Float length2 = fma(stretched.x, stretched.x, square(stretched.y));
     const LaneMask slanted = length2 > 0.0F;
     const Float perLength = 1.0F / sqrt(select(slanted, length2, 1.0F));
@@ -182,10 +182,10 @@ private:
     const Float3 other = cross(stretched, side);
     const Float p1 = r * phi.cosine;
     const Float s = 0.5F * (1.0F + stretched.z);
-    const Float p2 = lerp(root(fnma(p1, p1, 1.0F)), r * phi.sine, s);
-    const Float p3 = root(fnma(p1, p1, fnma(p2, p2, 1.0F)));
+    const Float p2 = lerp(safeSqrt(fnma(p1, p1, 1.0F)), r * phi.sine, s);
+    const Float p3 = safeSqrt(fnma(p1, p1, fnma(p2, p2, 1.0F)));
     const Float3 n = p1 * side + p2 * other + p3 * stretched;
-    return normalized({a * n.x, a * n.y, max(n.z, std::numeric_limits<Real>::min())});
+    return normalize({a * n.x, a * n.y, max(n.z, std::numeric_limits<Real>::min())});
   }
 
   Number m_specular, m_f0, m_roughness;

@@ -16,8 +16,8 @@ void addEdgeEnds(const Box& box, const Box& other, const Affine& toOther, const 
         continue; // each edge once, from its lower end
       const Vec3 from = box.corner(corner);
       const Ray edge{from, box.corner(corner | 1 << axis) - from};
-      const Interval inside = grown.clip(transformed(toOther, edge), {0.0, 1.0});
-      if (inside.empty())
+      const Interval inside = grown.clip(transformRay(toOther, edge), {0.0, 1.0});
+      if (inside.isEmpty())
         continue;
       points.push_back(toIndex * edge.at(inside.begin));
       points.push_back(toIndex * edge.at(inside.end));

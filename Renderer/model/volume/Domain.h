@@ -33,7 +33,7 @@ public:
   /// are convex. A ray that lies exactly in a face counts as inside.
   Interval clip(const Ray& indexRay, const Interval& range = {}) const {
     const Interval inside = m_box.clip(indexRay, range);
-    return m_crop ? m_crop->box.clip(transformed(m_crop->fromIndex, indexRay), inside) : inside;
+    return m_crop ? m_crop->box.clip(transformRay(m_crop->fromIndex, indexRay), inside) : inside;
   }
 
   /// True if a point (index space) lies strictly inside the domain, not in a face.

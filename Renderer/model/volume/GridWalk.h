@@ -26,7 +26,7 @@ public:
     const Box box{Vec3::Zero(), cellCount.cast<double>()};
     const Interval inside = box.clip(ray, range);
     m_interval = {inside.begin, inside.begin};
-    m_end = inside.empty() ? inside.begin : inside.end;
+    m_end = inside.isEmpty() ? inside.begin : inside.end;
     if (done())
       return;
     for (int axis = 0; axis < 3; ++axis)

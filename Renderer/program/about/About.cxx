@@ -45,7 +45,7 @@ std::string aboutText() {
 }
 
 std::string aboutJson() {
-  return jsonText(facts());
+  return dumpJson(facts());
 }
 
 } // namespace fenestra

@@ -153,7 +153,7 @@ inline Float3 cutGradient(const SimdMedium& medium, const Float3& p, LaneMask wh
     return {0.0F, 0.0F, 0.0F};
   const Float length = medium.cutSlope;
   if (medium.clipKind != SimdMedium::ClipKind::depthLinear)
-    return orZero(isCut, length * Float3(medium.cutNormal));
+    return zeroUnless(isCut, length * Float3(medium.cutNormal));
   const Float3 gradient = behindGradient(medium, view, surfaceAt(medium, view));
-  return orZero(isCut, length * normalized(mapDirection(medium.fromView, gradient)));
+  return zeroUnless(isCut, length * normalize(mapDirection(medium.fromView, gradient)));
 }

@@ -35,7 +35,7 @@ HWY_INLINE TexelSample sampleTexel(const MapTables& map, UInt u, UInt v) {
   const auto [upper, lower] =
       loadPairs(map.falls.data(), Indices(select(isSouth, fromSouth, row.index)));
   const Float fall = lerp(upper, lower, row.place);
-  const Float sine = root(fall * (2.0F - fall));
+  const Float sine = safeSqrt(fall * (2.0F - fall));
   const float perWidth = 1.0F / static_cast<float>(map.width);
   const CosineSine phi = cosSinTurns((toFloat(column.index) + column.place) * perWidth);
   const Float z = 1.0F - fall;
@@ -45,7 +45,7 @@ HWY_INLINE TexelSample sampleTexel(const MapTables& map, UInt u, UInt v) {
 
 HWY_INLINE Int texelToward(const MapTables& map, const Float3& d) {
   const auto cell = [](Float place, std::int32_t count) { // NaN, too, gets one that is there
-    return toInt(notBelow0(min(place, static_cast<float>(count - 1))));
+    return toInt(clampZero(min(place, static_cast<float>(count - 1))));
   };
   const Float sine = sqrt(square(d.x) + square(d.y));
   const auto width = static_cast<float>(map.width), height = static_cast<float>(map.height);

@@ -49,7 +49,7 @@ void beginAll(const SimdMedium& medium, const CameraTable& camera, const CameraS
     const Float3 world = depthPerLength * toward;
     const Float3 direction = mapDirection(camera.toIndex, world);
     const Float3 point = at(camera.point, camera.pointPerColumn, camera.pointPerRow);
-    Stretches inside{notBelow0(load(&samples.from[i])), load(&samples.to[i])};
+    Stretches inside{clampZero(load(&samples.from[i])), load(&samples.to[i])};
     inside.clip(medium, point, direction);
     const LaneMask some = inside.begin < inside.end;
     const Float before = zeroUnless(some, inside.begin);

@@ -17,7 +17,7 @@ HWY_INLINE LaneEmitterHit environment(const SimdShading& shading, const Float3& 
   for (const MapTables& map : shading.maps) {
     const Float3 radiance = radianceOf(map, texelOf(map));
     sum.radiance = sum.radiance + radiance;
-    sum.pdf = sum.pdf + map.perBrightness * greatest(radiance);
+    sum.pdf = sum.pdf + map.perBrightness * maxComponent(radiance);
   }
   return sum;
 }
@@ -61,15 +61,15 @@ inline Float3 emittedAlongRay(const SimdShading& shading, LaneMask which, const 
   intersectLights(shading.lights, which, origin, direction, distance,
                   [&](LaneMask hits, const Float3& radiance, Float pdf) {
                     const Float weight = scatterPdf / (scatterPdf + pdf);
-                    sum = sum + orZero(hits, weight * radiance);
+                    sum = sum + zeroUnless(hits, weight * radiance);
                   });
   const LaneMask escaped = which & (distance == std::numeric_limits<float>::infinity());
   if (shading.maps.empty())
-    return sum + orZero(escaped, around(shading.lights, direction));
+    return sum + zeroUnless(escaped, around(shading.lights, direction));
   if (!escaped.any())
     return sum;
   const LaneEmitterHit far = environment(
       shading, direction, [&](const MapTables& map) { return texelToward(map, direction); });
   const Float weight = scatterPdf / (scatterPdf + far.pdf);
-  return sum + orZero(escaped, weight * far.radiance);
+  return sum + zeroUnless(escaped, weight * far.radiance);
 }

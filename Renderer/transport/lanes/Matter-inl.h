@@ -54,7 +54,7 @@ HWY_INLINE Float3 differenceAt(const SimdField& field, const Float3& p) {
 /// gradient along the ray, or a number of its sign.
 HWY_INLINE Float3 normalOf(const Float3& gradient, Float along, Float weight) {
   const Float slope = sqrt(dot(gradient, gradient));
-  return orZero(slope > 0.0F, select(along < 0.0F, weight, -weight) / slope * gradient);
+  return zeroUnless(slope > 0.0F, select(along < 0.0F, weight, -weight) / slope * gradient);
 }
 
 /// 1 - e^-x.

@@ -84,7 +84,7 @@ HWY_INLINE Segment segmentOf(const SimdTable& table, Float s) {
 HWY_INLINE Float valueIn(const SimdTable::Channel& channel, const Segment& at) {
   const auto [value, slope] = loadPairs(&channel[0].value, Indices(shiftLeft<1>(at.index)));
   // Constant segments may begin at -infinity.
-  return notBelow0(value + select(slope == 0.0F, 0.0F, at.beyondStart * slope));
+  return clampZero(value + select(slope == 0.0F, 0.0F, at.beyondStart * slope));
 }
 
 HWY_INLINE Float valueOf(const SimdTable& table, Float s) {
@@ -102,7 +102,7 @@ HWY_INLINE ByLines byLines(const SimdLines& table, Int first, Float s) {
   const Float line = floor(place);
   const auto [value, rise] =
       loadPairs(&table.lines[0].value, Indices(shiftLeft<1>(first + wholeToInt(line))));
-  return {notBelow0(fma(place - line, rise, value)), ~(rise == rise)};
+  return {clampZero(fma(place - line, rise, value)), ~(rise == rise)};
 }
 
 /// Extinction (mm^-1) of a scalar, without a mixture.
@@ -165,7 +165,7 @@ HWY_INLINE Float lengthInside(const SimdMedium& medium, const Float3& origin,
                               const Float3& direction) {
   Stretches inside{0.0F, std::numeric_limits<float>::infinity()};
   inside.clip(medium, origin, direction);
-  return notBelow0(inside.end);
+  return clampZero(inside.end);
 }
 
 /// Lanes whose point (index space) lies in the focus, where a style changes nothing.

@@ -82,12 +82,12 @@ template SimdTable::SimdTable(const PiecewiseLinear<3>&);
 SimdLines::SimdLines(const std::vector<const ScalarFunction*>& functions) {
   Interval bins{infinity, -infinity};
   for (const ScalarFunction* function : functions)
-    bins = joined(bins, {function->knots().front().position, function->knots().back().position});
+    bins = enclose(bins, {function->knots().front().position, function->knots().back().position});
   start = narrow(bins.begin);
   perUnit = perUnitOf(lineCount, bins.end - bins.begin);
   for (const ScalarFunction* function : functions) {
     segments.emplace_back(*function);
-    if (bins.empty() || perUnit > 0.0F)
+    if (bins.isEmpty() || perUnit > 0.0F)
       append(lines, *function, bins);
     else
       lines.push_back({0.0F, std::numeric_limits<float>::quiet_NaN()});

@@ -208,7 +208,7 @@ private:
     const ScatterEval scattered = toward(light.direction);
     const Float pdf = light.pdf + select(light.delta, 0.0F, scattered.pdf);
     const Float3 radiance = (1.0F / pdf) * (at.throughput * scattered.factor * light.radiance);
-    const LaneMask arrives = at.going & (greatest(radiance) > 0.0F);
+    const LaneMask arrives = at.going & (maxComponent(radiance) > 0.0F);
     const std::size_t count = arrives.count();
     const UInt depth = draws.nextBits();
     const Float acceptance = draws.uniform();
@@ -237,7 +237,7 @@ private:
     const Float size = sqrt((1.0F / 3.0F) * dot(throughput, throughput));
     const Float chance = min(size * (1.0F / below), 1.0F);
     const LaneMask survives = draws.uniform() <= chance;
-    throughput = orZero(survives, (1.0F / chance) * throughput);
+    throughput = zeroUnless(survives, (1.0F / chance) * throughput);
     store3(throughput, m_paths.throughput, i);
     store(sampled.pdf, &m_paths.scatterPdf[i]);
     store3(sampled.outgoing, m_paths.direction, i);
@@ -248,7 +248,7 @@ private:
     store(draws.nextBits(), &m_paths.rays.depth[i]);
     store(draws.uniform(), &m_paths.rays.acceptance[i]);
     store(draws.counter, &m_paths.counter[i]);
-    return at.going & (greatest(throughput) > 0.0F);
+    return at.going & (maxComponent(throughput) > 0.0F);
   }
 
   const SimdMedium& m_medium;

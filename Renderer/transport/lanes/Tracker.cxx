@@ -144,7 +144,7 @@ private:
     m_counter.setIf(hit, counter);
     if constexpr (wantRatio) {
       constexpr float rouletteBelow = 0.4F;
-      const Float thinned = m_ratio * notBelow0(1.0F - extinction / m_majorant);
+      const Float thinned = m_ratio * clampZero(1.0F - extinction / m_majorant);
       const Float survived = zeroUnless(u * rouletteBelow < thinned, rouletteBelow);
       m_ratio.setIf(hit, select(thinned < rouletteBelow, survived, thinned));
       m_busy = m_busy.without(hit & (m_ratio <= 0.0F));

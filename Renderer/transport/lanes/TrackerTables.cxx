@@ -104,9 +104,9 @@ void setContext(SimdMedium& medium, const ContextStyle& style, const Grid& grid)
 double setInside(RayBatch& rays, std::size_t i, const Domain& domain, const Ray& ray,
                  const Interval& range) {
   const Affine& worldToIndex = domain.grid().worldToIndex;
-  const Ray indexRay = transformed(worldToIndex, ray);
+  const Ray indexRay = transformRay(worldToIndex, ray);
   const Interval inside = domain.clip(indexRay, range);
-  if (inside.empty()) {
+  if (inside.isEmpty()) {
     rays.set(i, {Vec3::Zero(), Vec3::Ones()}, 0.0);
     return 0.0;
   }

@@ -55,7 +55,7 @@ bool meetsMask(const Mask& mask, const Box& box) {
 
 /// Greatest factor of a style on the extinction among the corners of a cell.
 double greatestFactor(const ContextStyle& style, const Corners& corners) {
-  Box box = Box::nothing();
+  Box box = Box::makeEmpty();
   for (const Vec3& corner : corners)
     box.extend(style.focus->grid.worldToIndex * corner);
   return meetsMask(*style.focus, box) ? 1.0 : style.extinction;
@@ -89,7 +89,7 @@ CellBound mixtureBound(const Mixture& mixture, const Grid& grid, const Corners& 
                        double high) {
   // Shares sum to 1 but for rounding.
   constexpr double rounding = 1.0 + 64.0 * std::numeric_limits<double>::epsilon();
-  Box box = Box::nothing();
+  Box box = Box::makeEmpty();
   for (const Vec3& corner : corners)
     box.extend(mixture.weights->grid().worldToIndex * corner);
   CellBound bound;
@@ -107,8 +107,8 @@ MajorantGrid::MajorantGrid(const Grid& grid, const MinMaxGrid& ranges,
                            const TransferFunction& transfer, const Clip& clip,
                            const ContextStyle* style, const Mixture* mixture)
     : m_cellCount(ranges.cellCount()), m_edge(ranges.edge()), m_cells(ranges.size()) {
-  m_worldToCell = scalingBy(ranges.edge().cast<double>().cwiseInverse()) *
-                  (translationBy(Vec3::Constant(0.5)) * grid.worldToIndex);
+  m_worldToCell = makeScaling(ranges.edge().cast<double>().cwiseInverse()) *
+                  (makeTranslation(Vec3::Constant(0.5)) * grid.worldToIndex);
   const Affine cellToWorld = m_worldToCell.inverse();
 
   const Vec3 strip = margin * ranges.edge().cast<double>().cwiseInverse();
@@ -135,7 +135,7 @@ std::size_t MajorantGrid::emptyCount() const {
 }
 
 Box MajorantGrid::occupiedBounds() const {
-  Box box = Box::nothing(); // in cells
+  Box box = Box::makeEmpty(); // in cells
   std::size_t next = 0;
   for (std::int64_t z = 0; z < m_cellCount.z(); ++z)
     for (std::int64_t y = 0; y < m_cellCount.y(); ++y)

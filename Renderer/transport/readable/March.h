@@ -84,11 +84,11 @@ private:
 
   std::optional<Part> clipToDomain(const Ray& ray, const Interval& range) const {
     const Affine& worldToIndex = m_domain.grid().worldToIndex;
-    const Interval inside = m_domain.clip(transformed(worldToIndex, ray), range);
-    if (inside.empty())
+    const Interval inside = m_domain.clip(transformRay(worldToIndex, ray), range);
+    if (inside.isEmpty())
       return std::nullopt;
     const Ray entering{ray.at(inside.begin), ray.direction};
-    return Part{entering, transformed(worldToIndex, entering), inside.begin,
+    return Part{entering, transformRay(worldToIndex, entering), inside.begin,
                 inside.end - inside.begin};
   }
 
@@ -97,7 +97,7 @@ private:
   void forEachStep(const Part& part, double stepScale, Visit&& visit) const {
     constexpr double maxSteps = 64.0; // in a cell
     const double voxels = MarchAccuracy::minVoxels / part.indexRay.direction.norm();
-    GridWalk cells(transformed(m_majorants.worldToCell(), part.ray), {0.0, part.length},
+    GridWalk cells(transformRay(m_majorants.worldToCell(), part.ray), {0.0, part.length},
                    m_majorants.cellCount());
     for (; !cells.done(); cells.next()) {
       const MajorantGrid::Cell& cell = m_majorants.cell(cells.cell());

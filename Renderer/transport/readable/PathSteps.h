@@ -69,9 +69,9 @@ public:
   /// Begins a path through raster position (column, row).
   Path begin(double column, double row, const PrimarySamples& numbers) const {
     const Ray ray = m_cameraRays.ray(column, row);
-    const Vec2 flight{uniformOf(numbers.opticalDepth), uniformOf(numbers.acceptance)};
-    return {Random(numbers.pathSeed),    flight, uniform2Of(numbers.direction),
-            uniform2Of(numbers.choices), row,    ray,
+    const Vec2 flight{toUniform(numbers.opticalDepth), toUniform(numbers.acceptance)};
+    return {Random(numbers.pathSeed),    flight, toUniform2(numbers.direction),
+            toUniform2(numbers.choices), row,    ray,
             m_cameraRays.range(ray)};
   }
 

@@ -57,7 +57,7 @@ public:
   double sampleCollision(const Ray& ray, const Interval& range, const Vec2& first, Random& random,
                          Counters& counters) const {
     const auto walk = [&](auto&& visit) {
-      walkTentative(ray, range, exponentialOf(first.x()), random, counters, visit);
+      walkTentative(ray, range, toExponential(first.x()), random, counters, visit);
     };
     return firstRealCollision(walk, first.y(), random);
   }
@@ -80,14 +80,14 @@ private:
                      Counters& counters, Visit&& visit) const {
     const Affine& worldToIndex = m_domain.grid().worldToIndex;
     // Cells may reach beyond the volume and its crop: the domain itself bounds the walk.
-    const Interval inside = m_domain.clip(transformed(worldToIndex, ray), range);
-    if (inside.empty())
+    const Interval inside = m_domain.clip(transformRay(worldToIndex, ray), range);
+    if (inside.isEmpty())
       return;
     // Lengths count from the entry into the domain: free paths keep their digits, however far away
     // the ray's origin is.
     const Ray entering{ray.at(inside.begin), ray.direction};
-    const Ray indexRay = transformed(worldToIndex, entering);
-    GridWalk walk(transformed(m_majorants.worldToCell(), entering),
+    const Ray indexRay = transformRay(worldToIndex, entering);
+    GridWalk walk(transformRay(m_majorants.worldToCell(), entering),
                   {0.0, inside.end - inside.begin}, m_majorants.cellCount());
     std::uint32_t steps = 0;
     for (; !walk.done(); walk.next()) {

@@ -212,7 +212,7 @@ FeatureBuffers marchFeatures(const SceneView& scene, const Medium<Voxel>& medium
                              const March& march) {
   const Raster raster = marchPixels(scene.camera, march);
   FeatureBuffers features = toFeatures(raster);
-  features.light = DirectLight<Voxel, March>(scene, medium, march).of(raster);
+  features.light = DirectLight<Voxel, March>(scene, medium, march).compute(raster);
   return features;
 }
 

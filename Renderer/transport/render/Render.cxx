@@ -33,7 +33,7 @@ struct ScalarTracer {
       for (std::size_t i = 0; i < samples->size; ++i) {
         const PrimarySamples numbers =
             source.numbers().generate({samples->start[i], samples->key[i]}, samples->number[i]);
-        const Vec2 place = uniform2Of(numbers.position) + Vec2(samples->column[i], samples->row[i]);
+        const Vec2 place = toUniform2(numbers.position) + Vec2(samples->column[i], samples->row[i]);
         const std::optional<PathSample> sample =
             estimator.trace(place.x(), place.y(), numbers, counters);
         if (!sample)

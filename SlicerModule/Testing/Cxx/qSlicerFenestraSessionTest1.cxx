@@ -216,13 +216,13 @@ int checkScript(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, qSlicerFenes
   CHECK_BOOL(told > 0, true);
   CHECK_INT(ends, 1);
   CHECK_STD_STRING(render->GetProblem(), "");
-  Node* waited = logic->Render(settings, true);
-  CHECK_NOT_NULL(waited);
-  CHECK_NOT_NULL(waited->GetNodeReference(Node::PictureRole));
+  Node* watch = logic->Render(settings, true);
+  CHECK_NOT_NULL(watch);
+  CHECK_NOT_NULL(watch->GetNodeReference(Node::PictureRole));
   // Results go with their render.
-  const std::string picture = waited->GetNodeReferenceID(Node::PictureRole);
-  const std::string depth = waited->GetNodeReferenceID(Node::DepthRole);
-  scene->RemoveNode(waited);
+  const std::string picture = watch->GetNodeReferenceID(Node::PictureRole);
+  const std::string depth = watch->GetNodeReferenceID(Node::DepthRole);
+  scene->RemoveNode(watch);
   CHECK_NULL(scene->GetNodeByID(picture));
   CHECK_NULL(scene->GetNodeByID(depth));
   return EXIT_SUCCESS;
