@@ -63,7 +63,7 @@ qSlicerFenestraClipping::qSlicerFenestraClipping(qMRMLNodeComboBox* planeNode, Q
   for (QComboBox* box : {m_clip, m_plane}) // also if no flag changes
     connect(box, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
             &qSlicerFenestraClipping::showMode);
-  for (QComboBox* box : {m_clip, m_boundary, m_hole, m_plane})
+  for (QComboBox* box : {m_clip, m_boundary, m_innerRadius, m_plane})
     connect(box, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
             &qSlicerFenestraClipping::changed);
   connect(m_planeNode, SIGNAL(currentNodeChanged(vtkMRMLNode*)), this, SIGNAL(changed()));
@@ -87,9 +87,10 @@ void qSlicerFenestraClipping::buildMode(QFormLayout* form) {
   form->addRow(tr("Edge of the focus:"), m_boundary);
   addNumber(form, "ghost", tr("Left in front:"), 0.01, 10.0, {"ghost"},
             tr("Share of its density that tissue in front of the surface keeps"));
-  m_hole = choices("HoleBox", {{tr("Cylinder"), ""}, {tr("Box"), "box"}, {tr("Sphere"), "sphere"}},
-                   tr("The hole leads from the eye to the focus"));
-  form->addRow(tr("Shape:"), m_hole);
+  m_innerRadius =
+      choices("HoleBox", {{tr("Cylinder"), ""}, {tr("Box"), "box"}, {tr("Sphere"), "sphere"}},
+              tr("The hole leads from the eye to the focus"));
+  form->addRow(tr("Shape:"), m_innerRadius);
   addNumber(form, "holemargin", tr("Wider by:"), 1.0, 5.0, {"hole"},
             tr("How much wider than the focus"));
   m_plane = choices("PlaneBox", {}, tr("Where the plane lies"));
@@ -157,7 +158,7 @@ void qSlicerFenestraClipping::showMode() {
   m_clip->setItemText(0, m_byPreset ? tr("As the anatomy preset")
                                     : tr("Smooth surface through the focus"));
   showRow(m_form, m_boundary, surface);
-  showRow(m_form, m_hole, now == "hole");
+  showRow(m_form, m_innerRadius, now == "hole");
   showRow(m_form, m_plane, now == "plane");
   showRow(m_form, m_planeNode, now == "plane" && plane() == Plane::node);
   for (const Number& number : m_numbers) {
@@ -187,7 +188,7 @@ void qSlicerFenestraClipping::show(const Flags& flags, Plane plane,
   if (clips && (now == "surface" || now == "ghost")) // the renderer's default, not the panel's
     choose(m_boundary, flags.count("boundary") > 0 ? flagOf(flags, "boundary") : "spline");
   if (now == "hole")
-    choose(m_hole, flagOf(flags, "hole"));
+    choose(m_innerRadius, flagOf(flags, "hole"));
   if (now == "plane") {
     const int fixed = m_plane->findData(int(Plane::fixed));
     if (plane == Plane::fixed && fixed < 0)
@@ -216,7 +217,7 @@ void qSlicerFenestraClipping::show(const Flags& flags, Plane plane,
 
 void qSlicerFenestraClipping::reset() {
   const QSignalBlocker unheard(this);
-  for (QComboBox* box : {m_clip, m_boundary, m_hole, m_plane})
+  for (QComboBox* box : {m_clip, m_boundary, m_innerRadius, m_plane})
     box->setCurrentIndex(0);
   for (Number& number : m_numbers) {
     number.shown.clear();
@@ -242,7 +243,7 @@ void qSlicerFenestraClipping::take(Flags& flags, const std::string& plane, bool 
   flags["boundary"] = clips && surface ? word(m_boundary) : "";
   if (flags["boundary"] != "spline")
     flags["controlpoints"] = flags["smoothing"] = ""; // flags of the spline only
-  flags["hole"] = clips && now == "hole" ? word(m_hole) : "";
+  flags["hole"] = clips && now == "hole" ? word(m_innerRadius) : "";
   flags["margin"] = hasFocus ? m_margins->flag().toStdString() : "";
   for (const Number& number : m_numbers) {
     const bool matters = hasFocus && (number.modes.isEmpty() || number.modes.contains(now));

@@ -65,7 +65,7 @@ private:
 
   QComboBox* m_clip;
   QComboBox* m_boundary;
-  QComboBox* m_hole;
+  QComboBox* m_innerRadius;
   QComboBox* m_plane;
   qMRMLNodeComboBox* m_planeNode;
   qSlicerFenestraMargins* m_margins;

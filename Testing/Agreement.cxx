@@ -17,7 +17,7 @@ struct Estimates {
   const std::vector<float>* samples;
 
   explicit Estimates(const Image& image)
-      : means(colours(image)),
+      : means(findColors(image)),
         errors(findPlanes(image, errorNames)),
         samples(image.find("samples.N")) {
     if (!isComplete(errors))
@@ -118,7 +118,7 @@ Image tileMeans(const Image& image, int size) {
       TileSums sums;
       for (std::size_t c = 0; c < 3; ++c) {
         sums = sumTile(image, estimates, c, column * size, row * size, size);
-        result.channels[colourNames[c]].push_back(static_cast<float>(sums.mean / sums.pixels));
+        result.channels[colorNames[c]].push_back(static_cast<float>(sums.mean / sums.pixels));
         result.channels[errorNames[c]].push_back(
             static_cast<float>(std::sqrt(sums.variance) / sums.pixels));
       }
@@ -136,7 +136,7 @@ double agreementProbability(const Image& a, const Image& b) {
   double least = 1.0, count = 0.0;
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < pair.pixels; ++i) {
-      if (pair.saysNothing(c, i) && pair.agrees(c, i))
+      if (pair.isUninformative(c, i) && pair.isEqual(c, i))
         continue;
       const double p = differenceProbability(estimatesA, estimatesB, c, i);
       least = std::isnan(p) ? 0.0 : std::min(least, p); // NaN: exact, or not finite

@@ -15,8 +15,8 @@ Image tileMeans(const Image& image, int size);
 /// renders, corrected for the number of values (Šidák 1967). A mean of few bright paths is skewed
 /// like a count: the degrees of freedom are at most mean^2 / se^2 of the render with fewer samples,
 /// which is the number of its paths if all are equally bright; fewer degrees give heavier tails. 0
-/// if exact values (ImagePair::saysNothing) differ or a value is not finite. Throws like tileMeans,
-/// and for a missing samples.N or different sizes.
+/// if exact values (ImagePair::isUninformative) differ or a value is not finite. Throws like
+/// tileMeans, and for a missing samples.N or different sizes.
 double agreementProbability(const Image& a, const Image& b);
 
 /// P(|T| >= |t|) for Student's t with `freedom` degrees of freedom (> 0, whole or not).

@@ -23,12 +23,12 @@ void sumRow(const float* in, float* out, int count, int radius) {
 }
 
 /// Columns that are summed together: neighbours in memory.
-constexpr std::size_t columnsAtOnce = 64;
+constexpr std::size_t columnBlock = 64;
 
 /// Running sums along `columns` columns; `row`: length of a row.
 void sumColumns(const float* in, float* out, std::size_t columns, std::size_t row, int height,
                 int radius) {
-  std::array<double, columnsAtOnce> sums = {};
+  std::array<double, columnBlock> sums = {};
   const auto add = [&](int y, double sign) {
     const float* from = in + static_cast<std::size_t>(y) * row;
     for (std::size_t x = 0; x < columns; ++x)
@@ -49,37 +49,41 @@ void sumColumns(const float* in, float* out, std::size_t columns, std::size_t ro
 
 } // namespace
 
-Plane boxSum(const Plane& plane, int width, int height, int radius) {
-  Plane across(plane.size()), sums(plane.size());
+Plane computeBoxSums(const Plane& plane, int width, int height, int radius) {
+  Plane rowSums(plane.size()), sums(plane.size());
   const auto row = static_cast<std::size_t>(width);
   tbb::parallel_for(0, height, [&](int y) {
     const std::size_t start = static_cast<std::size_t>(y) * row;
-    sumRow(&plane[start], &across[start], width, radius);
+    sumRow(&plane[start], &rowSums[start], width, radius);
   });
-  const std::size_t blocks = (row + columnsAtOnce - 1) / columnsAtOnce;
+  const std::size_t blocks = (row + columnBlock - 1) / columnBlock;
   tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
-    const std::size_t start = block * columnsAtOnce;
-    sumColumns(&across[start], &sums[start], std::min(columnsAtOnce, row - start), row, height,
+    const std::size_t start = block * columnBlock;
+    sumColumns(&rowSums[start], &sums[start], std::min(columnBlock, row - start), row, height,
                radius);
   });
   return sums;
 }
 
-OpenMean::OpenMean(const Plane& open, int width, int height, int radius, int hole)
-    : m_width(width), m_height(height), m_radius(radius), m_hole(hole), m_count(sum(open)) {}
+MaskedMean::MaskedMean(const Plane& active, int width, int height, int radius, int innerRadius)
+    : m_width(width),
+      m_height(height),
+      m_radius(radius),
+      m_innerRadius(innerRadius),
+      m_count(sum(active)) {}
 
-Plane OpenMean::operator()(const Plane& plane) const {
+Plane MaskedMean::operator()(const Plane& plane) const {
   Plane means = sum(plane);
   for (std::size_t i = 0; i < means.size(); ++i)
     means[i] = m_count[i] > 0.5F ? means[i] / m_count[i] : 0.0F;
   return means;
 }
 
-Plane OpenMean::sum(const Plane& plane) const {
-  Plane sums = boxSum(plane, m_width, m_height, m_radius);
-  if (m_hole < 0)
+Plane MaskedMean::sum(const Plane& plane) const {
+  Plane sums = computeBoxSums(plane, m_width, m_height, m_radius);
+  if (m_innerRadius < 0)
     return sums;
-  const Plane middle = boxSum(plane, m_width, m_height, m_hole);
+  const Plane middle = computeBoxSums(plane, m_width, m_height, m_innerRadius);
   for (std::size_t i = 0; i < sums.size(); ++i)
     sums[i] -= middle[i];
   return sums;

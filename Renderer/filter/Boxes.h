@@ -7,13 +7,13 @@ namespace fenestra {
 
 /// Sums over the windows of 2 radius + 1 pixels around each pixel, cut off at the picture's edges.
 /// Independent of threads.
-Plane boxSum(const Plane& plane, int width, int height, int radius);
+Plane computeBoxSums(const Plane& plane, int width, int height, int radius);
 
 /// Means over the open pixels of such windows; 0 where none is open.
-class OpenMean {
+class MaskedMean {
 public:
   /// `hole`: radius of the window in the middle that is left out; negative: none.
-  OpenMean(const Plane& open, int width, int height, int radius, int hole = -1);
+  MaskedMean(const Plane& active, int width, int height, int radius, int innerRadius = -1);
 
   /// Means of `plane`, which is 0 where a pixel is closed.
   Plane operator()(const Plane& plane) const;
@@ -21,7 +21,7 @@ public:
 private:
   Plane sum(const Plane& plane) const;
 
-  int m_width, m_height, m_radius, m_hole;
+  int m_width, m_height, m_radius, m_innerRadius;
   Plane m_count;
 };
 

@@ -16,44 +16,44 @@ namespace {
 constexpr int levels = 4;      ///< half-widths 2, 4, 8, 16
 constexpr int singleLevel = 2; ///< of pictures without halves
 
-using Fitted = std::vector<Plane>;
+using FittedPlanes = std::vector<Plane>;
 
 /// True if no pixel that takes part is even a little transparent: alpha needs no fit.
 bool isOpaque(const FilterInput& input) {
   for (std::size_t i = 0; i < input.pixelCount(); ++i)
-    if (input.isOpen[i] &&
+    if (input.isActive[i] &&
         !(input.even[3][i] == 1.0F && (!input.hasHalfBuffers || input.odd[3][i] == 1.0F)))
       return false;
   return true;
 }
 
 /// 1: the pixel takes part, and all that the fit reads of it is finite.
-Plane openPixels(const FilterInput& input, const Fitted& color) {
-  Plane open(input.pixelCount());
-  for (std::size_t i = 0; i < open.size(); ++i)
-    open[i] = input.isOpen[i] ? 1.0F : 0.0F;
-  const auto close = [&open](const Plane& plane) {
-    for (std::size_t i = 0; i < open.size(); ++i)
+Plane findActivePixels(const FilterInput& input, const FittedPlanes& color) {
+  Plane active(input.pixelCount());
+  for (std::size_t i = 0; i < active.size(); ++i)
+    active[i] = input.isActive[i] ? 1.0F : 0.0F;
+  const auto deactivate = [&active](const Plane& plane) {
+    for (std::size_t i = 0; i < active.size(); ++i)
       if (!std::isfinite(plane[i]))
-        open[i] = 0.0F;
+        active[i] = 0.0F;
   };
-  std::ranges::for_each(color, close);
-  std::ranges::for_each(input.features, close);
-  return open;
+  std::ranges::for_each(color, deactivate);
+  std::ranges::for_each(input.features, deactivate);
+  return active;
 }
 
 /// Gives the feature mean 0 and deviation 1 over the open pixels, and 0 elsewhere; false if it is
 /// constant there.
-bool standardise(Plane& feature, const Plane& open) {
+bool standardize(Plane& feature, const Plane& active) {
   double count = 0.0, sum = 0.0, squares = 0.0;
   for (std::size_t i = 0; i < feature.size(); ++i)
-    if (open[i] > 0.0F) {
+    if (active[i] > 0.0F) {
       count += 1.0;
       sum += static_cast<double>(feature[i]);
     }
   const double mean = sum / std::max(count, 1.0);
   for (std::size_t i = 0; i < feature.size(); ++i)
-    if (open[i] > 0.0F) {
+    if (active[i] > 0.0F) {
       const double off = static_cast<double>(feature[i]) - mean;
       squares += off * off;
     }
@@ -62,26 +62,26 @@ bool standardise(Plane& feature, const Plane& open) {
     return false;
   const double scale = 1.0 / deviation;
   for (std::size_t i = 0; i < feature.size(); ++i)
-    feature[i] = open[i] > 0.0F
+    feature[i] = active[i] > 0.0F
                      ? static_cast<float>((static_cast<double>(feature[i]) - mean) * scale)
                      : 0.0F;
   return true;
 }
 
-FitInput prepared(FilterInput& input, std::size_t channels) {
+FitInput prepareInput(FilterInput& input, std::size_t channels) {
   FitInput fit{input.width, input.height, {}, {}, {}};
   for (std::size_t c = 0; c < channels; ++c)
     fit.color.push_back(std::move(input.even[c]));
   for (std::size_t c = 0; c < channels && input.hasHalfBuffers; ++c)
     fit.color.push_back(std::move(input.odd[c]));
-  fit.open = openPixels(input, fit.color);
+  fit.active = findActivePixels(input, fit.color);
   for (Plane& plane : fit.color)
     for (std::size_t i = 0; i < plane.size(); ++i)
-      if (fit.open[i] == 0.0F)
+      if (fit.active[i] == 0.0F)
         plane[i] = 0.0F;
   std::vector<char> isUsed(input.features.size());
   tbb::parallel_for(std::size_t{0}, isUsed.size(),
-                    [&](std::size_t i) { isUsed[i] = standardise(input.features[i], fit.open); });
+                    [&](std::size_t i) { isUsed[i] = standardize(input.features[i], fit.active); });
   for (std::size_t i = 0; i < isUsed.size(); ++i)
     if (isUsed[i])
       fit.features.push_back(std::move(input.features[i]));
@@ -90,12 +90,12 @@ FitInput prepared(FilterInput& input, std::size_t channels) {
 
 /// Weights of the choice: relative to a slightly blurred picture of small windows, which hardly
 /// knows the pixel's own noise.
-Plane choiceWeight(const FitInput& fit, const Fitted& small, std::size_t channel) {
-  const OpenMean blur(fit.open, fit.width, fit.height, 1);
+Plane computeSelectionWeight(const FitInput& fit, const FittedPlanes& small, std::size_t channel) {
+  const MaskedMean blur(fit.active, fit.width, fit.height, 1);
   const Plane &even = small[channel], &odd = small[small.size() / 2 + channel];
-  Plane mean(fit.open.size());
+  Plane mean(fit.active.size());
   for (std::size_t i = 0; i < mean.size(); ++i)
-    mean[i] = 0.5F * fit.open[i] * (even[i] + odd[i]);
+    mean[i] = 0.5F * fit.active[i] * (even[i] + odd[i]);
   Plane weight = blur(mean);
   for (float& w : weight)
     w = relativeWeight(w);
@@ -107,18 +107,18 @@ Plane choiceWeight(const FitInput& fit, const Fitted& small, std::size_t channel
 /// choice.
 class Judge {
 public:
-  Judge(const FitInput& fit, const Fitted& small)
-      : m_fit(fit), m_mean(fit.open, fit.width, fit.height, 10, 2) {
+  Judge(const FitInput& fit, const FittedPlanes& small)
+      : m_fit(fit), m_mean(fit.active, fit.width, fit.height, 10, 2) {
     for (std::size_t c = 0; c < 3; ++c)
-      m_weight[c] = choiceWeight(fit, small, c);
+      m_weight[c] = computeSelectionWeight(fit, small, c);
   }
 
   Plane raw(const std::array<Plane, 3>& variance) const {
-    return averaged([&](std::size_t c, std::size_t i) { return variance[c][i]; });
+    return average([&](std::size_t c, std::size_t i) { return variance[c][i]; });
   }
-  Plane of(const Fitted& fitted) const {
+  Plane of(const FittedPlanes& fitted) const {
     const std::size_t other = fitted.size() / 2;
-    return averaged([&](std::size_t c, std::size_t i) {
+    return average([&](std::size_t c, std::size_t i) {
       const Told told = toldError(fitted[c][i], fitted[other + c][i], m_fit.color[c][i],
                                   m_fit.color[other + c][i]);
       return told.variance + told.bias;
@@ -127,17 +127,17 @@ public:
 
 private:
   template <typename Error>
-  Plane averaged(const Error& error) const {
-    Plane sum(m_fit.open.size(), 0.0F);
+  Plane average(const Error& error) const {
+    Plane sum(m_fit.active.size(), 0.0F);
     for (std::size_t c = 0; c < 3; ++c)
       for (std::size_t i = 0; i < sum.size(); ++i)
-        if (m_fit.open[i] > 0.0F)
+        if (m_fit.active[i] > 0.0F)
           sum[i] += m_weight[c][i] * error(c, i);
     return m_mean(sum);
   }
 
   const FitInput& m_fit;
-  OpenMean m_mean;
+  MaskedMean m_mean;
   std::array<Plane, 3> m_weight;
 };
 
@@ -151,17 +151,19 @@ public:
   }
 
   std::size_t count() const { return m_fitted.size() + 1; }
-  const Fitted& smallest() const { return m_fitted.front(); }
-  const Fitted& operator[](std::size_t k) const { return k == 0 ? m_fit.color : m_fitted[k - 1]; }
+  const FittedPlanes& smallest() const { return m_fitted.front(); }
+  const FittedPlanes& operator[](std::size_t k) const {
+    return k == 0 ? m_fit.color : m_fitted[k - 1];
+  }
 
 private:
   const FitInput& m_fit;
-  std::vector<Fitted> m_fitted;
+  std::vector<FittedPlanes> m_fitted;
 };
 
 /// Number of the candidate of least told error, by pixel.
-std::vector<std::uint8_t> choices(const FitInput& fit, const Candidates& candidates,
-                                  const std::array<Plane, 3>& variance) {
+std::vector<std::uint8_t> chooseCandidates(const FitInput& fit, const Candidates& candidates,
+                                           const std::array<Plane, 3>& variance) {
   const Judge judge(fit, candidates.smallest());
   Plane least = judge.raw(variance);
   std::vector<std::uint8_t> choice(least.size(), 0);
@@ -177,14 +179,14 @@ std::vector<std::uint8_t> choices(const FitInput& fit, const Candidates& candida
 }
 
 /// Candidates blended by their share of the choices in the 5x5 pixels around.
-Fitted blended(const FitInput& fit, const Candidates& candidates,
-               const std::vector<std::uint8_t>& choice) {
-  const OpenMean mean(fit.open, fit.width, fit.height, 2);
-  Fitted blend(fit.color.size(), Plane(choice.size(), 0.0F));
+FittedPlanes blendCandidates(const FitInput& fit, const Candidates& candidates,
+                             const std::vector<std::uint8_t>& choice) {
+  const MaskedMean mean(fit.active, fit.width, fit.height, 2);
+  FittedPlanes blend(fit.color.size(), Plane(choice.size(), 0.0F));
   Plane chosen(choice.size());
   for (std::size_t k = 0; k < candidates.count(); ++k) {
     for (std::size_t i = 0; i < choice.size(); ++i)
-      chosen[i] = choice[i] == k ? fit.open[i] : 0.0F;
+      chosen[i] = choice[i] == k ? fit.active[i] : 0.0F;
     const Plane fraction = mean(chosen);
     tbb::parallel_for(std::size_t{0}, blend.size(), [&](std::size_t c) {
       const Plane& candidate = candidates[k][c];
@@ -196,7 +198,7 @@ Fitted blended(const FitInput& fit, const Candidates& candidates,
 }
 
 /// Colours as the samples have them.
-FourPlanes rawColors(const FilterInput& input) {
+FourPlanes averageHalves(const FilterInput& input) {
   FourPlanes color = input.even;
   for (std::size_t c = 0; c < color.size() && input.hasHalfBuffers; ++c)
     for (std::size_t i = 0; i < color[c].size(); ++i)
@@ -205,54 +207,54 @@ FourPlanes rawColors(const FilterInput& input) {
 }
 
 /// Adds the error of closed pixels, which is that of their samples: 0 where they are certain.
-void tellClosed(const std::array<Plane, 3>& variance, const Plane& open, FilteredPicture& picture) {
+void tellClosed(const std::array<Plane, 3>& variance, const Plane& active, FilteredImage& image) {
   double sum = 0.0;
   for (std::size_t c = 0; c < 3; ++c)
-    for (std::size_t i = 0; i < open.size(); ++i) {
-      if (open[i] > 0.0F)
+    for (std::size_t i = 0; i < active.size(); ++i) {
+      if (active[i] > 0.0F)
         continue;
-      picture.error[c][i] = std::sqrt(variance[c][i]);
-      const float relative = variance[c][i] * relativeWeight(picture.color[c][i]);
+      image.error[c][i] = std::sqrt(variance[c][i]);
+      const float relative = variance[c][i] * relativeWeight(image.color[c][i]);
       sum += std::isfinite(relative) ? static_cast<double>(relative) : 0.0;
     }
-  picture.toldError += sum / (3.0 * static_cast<double>(open.size()));
+  image.toldError += sum / (3.0 * static_cast<double>(active.size()));
 }
 
-void clampColors(FilteredPicture& picture) {
-  for (Plane& plane : picture.color)
+void clampColors(FilteredImage& image) {
+  for (Plane& plane : image.color)
     for (float& value : plane)
       value = std::max(value, 0.0F);
-  for (float& alpha : picture.color[3])
+  for (float& alpha : image.color[3])
     alpha = std::min(alpha, 1.0F);
 }
 
 } // namespace
 
-Fitted chosenWindows(const FitInput& fit, const std::array<Plane, 3>& variance) {
+FittedPlanes filterAdaptively(const FitInput& fit, const std::array<Plane, 3>& variance) {
   const Candidates candidates(fit);
-  return blended(fit, candidates, choices(fit, candidates, variance));
+  return blendCandidates(fit, candidates, chooseCandidates(fit, candidates, variance));
 }
 
-FilteredPicture filtered(FilterInput input) {
-  if (input.features.size() > SumLayout::mostFeatures)
+FilteredImage filterImage(FilterInput input) {
+  if (input.features.size() > SumLayout::maxFeatures)
     throw std::logic_error("more features than the filter has room for");
-  FilteredPicture picture;
-  picture.color = rawColors(input); // closed pixels stay so
+  FilteredImage image;
+  image.color = averageHalves(input); // closed pixels stay so
   const std::size_t channels = isOpaque(input) ? 3 : 4;
-  const FitInput fit = prepared(input, channels);
-  const Fitted chosen =
-      input.hasHalfBuffers ? chosenWindows(fit, input.variance) : fitWindows(fit, singleLevel);
+  const FitInput fit = prepareInput(input, channels);
+  const FittedPlanes chosen =
+      input.hasHalfBuffers ? filterAdaptively(fit, input.variance) : fitWindows(fit, singleLevel);
   const std::size_t other = input.hasHalfBuffers ? channels : 0;
   for (std::size_t c = 0; c < channels; ++c)
-    for (std::size_t i = 0; i < fit.open.size(); ++i)
-      if (fit.open[i] > 0.0F)
-        picture.color[c][i] = 0.5F * (chosen[c][i] + chosen[other + c][i]);
+    for (std::size_t i = 0; i < fit.active.size(); ++i)
+      if (fit.active[i] > 0.0F)
+        image.color[c][i] = 0.5F * (chosen[c][i] + chosen[other + c][i]);
   if (input.hasHalfBuffers) {
-    tellErrors(fit, chosen, picture);
-    tellClosed(input.variance, fit.open, picture);
+    tellErrors(fit, chosen, image);
+    tellClosed(input.variance, fit.active, image);
   }
-  clampColors(picture);
-  return picture;
+  clampColors(image);
+  return image;
 }
 
 } // namespace fenestra

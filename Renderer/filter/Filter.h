@@ -12,10 +12,10 @@ inline constexpr int filterVersion = 1; ///< changes whenever filtered pictures 
 /// Filters both halves, each by itself, with the same features; the picture is their mean. Raw is
 /// one of the candidates. Without halves windows have one size, and the errors are empty.
 /// Independent of threads.
-FilteredPicture filtered(FilterInput input);
+FilteredImage filterImage(FilterInput input);
 
 /// fit.color, filtered by windows of the sizes that tell the least error, pixel by pixel.
 /// `variance`: of the mean of both halves.
-std::vector<Plane> chosenWindows(const FitInput& fit, const std::array<Plane, 3>& variance);
+std::vector<Plane> filterAdaptively(const FitInput& fit, const std::array<Plane, 3>& variance);
 
 } // namespace fenestra

@@ -8,7 +8,7 @@
 namespace fenestra {
 namespace {
 
-double sumOf(const Plane& plane) {
+double sumPlane(const Plane& plane) {
   double sum = 0.0;
   for (const float value : plane)
     sum += static_cast<double>(value);
@@ -19,20 +19,19 @@ struct Parts {
   std::array<Plane, 3> variance, bias; ///< relative
 };
 
-Parts partsOf(const FitInput& fit, const std::vector<Plane>& filtered,
-              const FilteredPicture& picture) {
+Parts partsOf(const FitInput& fit, const std::vector<Plane>& filtered, const FilteredImage& image) {
   Parts parts;
   const std::size_t other = fit.color.size() / 2;
   for (std::size_t c = 0; c < 3; ++c) {
-    parts.variance[c].resize(fit.open.size());
-    parts.bias[c].resize(fit.open.size());
-    for (std::size_t i = 0; i < fit.open.size(); ++i) {
-      if (fit.open[i] == 0.0F)
+    parts.variance[c].resize(fit.active.size());
+    parts.bias[c].resize(fit.active.size());
+    for (std::size_t i = 0; i < fit.active.size(); ++i) {
+      if (fit.active[i] == 0.0F)
         continue; // its colours may be infinite
       const Told told = toldError(filtered[c][i], filtered[other + c][i], fit.color[c][i],
                                   fit.color[other + c][i]);
       // Where windows cross black, the error is at most all that is there.
-      const float weight = std::min(relativeWeight(picture.color[c][i]), 1.0F / told.variance);
+      const float weight = std::min(relativeWeight(image.color[c][i]), 1.0F / told.variance);
       parts.variance[c][i] = weight * told.variance;
       parts.bias[c][i] = weight * told.bias;
     }
@@ -67,41 +66,42 @@ Bias biasOf(const Parts& parts, double variance, double count) {
 
 } // namespace
 
-void tellErrors(const FitInput& fit, const std::vector<Plane>& filtered, FilteredPicture& picture) {
-  const Plane& open = fit.open;
-  const double count = std::max(sumOf(open), 1.0);
-  const Parts parts = partsOf(fit, filtered, picture);
+void tellErrors(const FitInput& fit, const std::vector<Plane>& filtered, FilteredImage& image) {
+  const Plane& active = fit.active;
+  const double count = std::max(sumPlane(active), 1.0);
+  const Parts parts = partsOf(fit, filtered, image);
   double variance = 0.0;
   for (const Plane& plane : parts.variance)
-    variance += sumOf(plane) / (3.0 * count);
+    variance += sumPlane(plane) / (3.0 * count);
   const Bias bias = biasOf(parts, variance, count);
 
-  const OpenMean near(open, fit.width, fit.height, 3), wide(open, fit.width, fit.height, 10);
+  const MaskedMean near(active, fit.width, fit.height, 3), wide(active, fit.width, fit.height, 10);
   std::array<Plane, 3> local;
   double nearSum = 0.0, wideSum = 0.0;
   for (std::size_t c = 0; c < 3; ++c) {
-    picture.error[c] = near(parts.variance[c]);
+    image.error[c] = near(parts.variance[c]);
     local[c] = wide(parts.bias[c]);
-    for (std::size_t i = 0; i < open.size(); ++i) {
-      local[c][i] = std::max(local[c][i], 0.0F) * open[i];
-      picture.error[c][i] *= open[i];
+    for (std::size_t i = 0; i < active.size(); ++i) {
+      local[c][i] = std::max(local[c][i], 0.0F) * active[i];
+      image.error[c][i] *= active[i];
     }
-    nearSum += sumOf(picture.error[c]) / (3.0 * count);
-    wideSum += sumOf(local[c]) / (3.0 * count);
+    nearSum += sumPlane(image.error[c]) / (3.0 * count);
+    wideSum += sumPlane(local[c]) / (3.0 * count);
   }
   const double byVariance = nearSum > 0.0 ? (wideSum > 0.0 ? 0.5 : 1.0) * bias.mean / nearSum : 0.0;
   const double byBias = wideSum > 0.0 ? (nearSum > 0.0 ? 0.5 : 1.0) * bias.mean / wideSum : 0.0;
   for (std::size_t c = 0; c < 3; ++c)
-    for (std::size_t i = 0; i < open.size(); ++i) {
-      const float told = picture.error[c][i] * static_cast<float>(1.0 + byVariance) +
+    for (std::size_t i = 0; i < active.size(); ++i) {
+      const float told = image.error[c][i] * static_cast<float>(1.0 + byVariance) +
                          local[c][i] * static_cast<float>(byBias);
-      picture.error[c][i] =
-          open[i] > 0.0F ? std::sqrt(std::max(told, 0.0F) / relativeWeight(picture.color[c][i]))
-                         : 0.0F;
+      image.error[c][i] = active[i] > 0.0F
+                              ? std::sqrt(std::max(told, 0.0F) / relativeWeight(image.color[c][i]))
+                              : 0.0F;
     }
-  const double fraction = sumOf(open) / static_cast<double>(std::max<std::size_t>(open.size(), 1));
-  picture.toldError = fraction * (variance + bias.mean);
-  picture.toldDeviation = fraction * bias.deviation;
+  const double fraction =
+      sumPlane(active) / static_cast<double>(std::max<std::size_t>(active.size(), 1));
+  image.toldError = fraction * (variance + bias.mean);
+  image.toldDeviation = fraction * bias.deviation;
 }
 
 } // namespace fenestra

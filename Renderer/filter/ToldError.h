@@ -33,6 +33,6 @@ inline float relativeWeight(float x) {
 /// The bias part is too noisy for that: its sum over the picture is drawn toward a prior, 0.65 of
 /// the variance (measured where windows suit a picture: 0.3 to 2), by its own standard error, and
 /// spread half by its mean over 21x21 pixels, half by the variance part.
-void tellErrors(const FitInput& fit, const std::vector<Plane>& filtered, FilteredPicture& picture);
+void tellErrors(const FitInput& fit, const std::vector<Plane>& filtered, FilteredImage& image);
 
 } // namespace fenestra

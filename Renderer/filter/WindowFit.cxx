@@ -18,9 +18,9 @@ namespace fenestra::HWY_NAMESPACE {
 namespace {
 
 /// Rows of several planes; a ring keeps the last ones.
-class Rows {
+class RowRing {
 public:
-  Rows(std::size_t rows, std::size_t planes, std::size_t width)
+  RowRing(std::size_t rows, std::size_t planes, std::size_t width)
       : m_rows(rows), m_planes(planes), m_width(width), m_values(rows * planes * width, 0.0F) {}
 
   float* at(std::int64_t row, std::size_t plane) {
@@ -63,12 +63,12 @@ public:
         m_row(row),
         m_out(out),
         m_fit(m_layout),
-        m_sums(Rows::window, m_layout.sums(), width),
-        m_fits(Rows::window, m_layout.coefficients(), width),
+        m_sums(RowRing::window, m_layout.sums(), width),
+        m_fits(RowRing::window, m_layout.coefficients(), width),
         m_means(2, m_layout.coefficients(), width),
         m_rowSum(width),
         m_windowSums(m_layout.sums() * width),
-        m_between(m_layout.coefficients() * width) {}
+        m_interpolated(m_layout.coefficients() * width) {}
 
   HWY_ATTR void run() {
     // A mean needs fits two rows further, and a fit sums two rows further; one row of means more on
@@ -81,7 +81,7 @@ public:
       if (row >= first + 4)
         averageRow(row - 4);
       if (row >= first + 5)
-        evaluateBetween(row - 5);
+        evaluateRows(row - 5);
     }
   }
 
@@ -112,16 +112,16 @@ private:
       }
       pool(m_sums.at(row, plane) + at);
     };
-    add(0, m_input.open, m_input.open);
+    add(0, m_input.active, m_input.active);
     for (std::size_t i = 0; i < m_layout.features; ++i) {
-      add(m_layout.feature(i), m_input.features[i], m_input.open);
+      add(m_layout.feature(i), m_input.features[i], m_input.active);
       for (std::size_t j = i; j < m_layout.features; ++j)
         add(m_layout.product(i, j), m_input.features[i], m_input.features[j]);
       for (std::size_t c = 0; c < m_layout.colors; ++c)
         add(m_layout.featureColor(i, c), m_input.features[i], m_input.color[c]);
     }
     for (std::size_t c = 0; c < m_layout.colors; ++c)
-      add(m_layout.color(c), m_input.color[c], m_input.open);
+      add(m_layout.color(c), m_input.color[c], m_input.active);
   }
   HWY_INLINE void addProducts(const float* a, const float* b) {
     float* out = m_products.data();
@@ -152,7 +152,7 @@ private:
       for (std::size_t plane = 0; plane < m_layout.sums(); ++plane) {
         const float* in = &m_windowSums[plane * width + x];
         Lanes& out = m_blockSums[plane];
-        each([&](std::size_t l) {
+        forEachLane([&](std::size_t l) {
           out.v[l] = ((in[l] + in[l + 1]) + (in[l + 2] + in[l + 3])) + in[l + 4];
         });
         if (plane == 0)
@@ -186,7 +186,7 @@ private:
 
   /// Pixels whose centres lie between those of cell rows `row` and `row` + 1; row `row` itself
   /// where cells are pixels.
-  HWY_INLINE void evaluateBetween(std::int64_t row) {
+  HWY_INLINE void evaluateRows(std::int64_t row) {
     const std::int64_t begin = row * m_cell + m_cell / 2;
     const std::int64_t end = std::min(
         {begin + m_cell, (m_row + rows) * m_cell, static_cast<std::int64_t>(m_input.height)});
@@ -199,9 +199,9 @@ private:
   HWY_INLINE void evaluate(std::int64_t y, std::int64_t row, float down) {
     for (std::size_t plane = 0; plane < m_means.planes(); ++plane) {
       const float *upper = m_means.at(row, plane), *lower = m_means.at(row + 1, plane);
-      float* between = &m_between[plane * width];
+      float* interpolated = &m_interpolated[plane * width];
       for (std::size_t x = 0; x < width; ++x)
-        between[x] = upper[x] + down * (lower[x] - upper[x]);
+        interpolated[x] = upper[x] + down * (lower[x] - upper[x]);
     }
     const std::int64_t first = m_column * m_cell;
     const std::int64_t end = std::min<std::int64_t>((m_column + edge) * m_cell, m_input.width);
@@ -216,14 +216,14 @@ private:
       const std::int64_t place = m_cell > 1 ? before : 1;
       const float across =
           m_cell > 1 ? (static_cast<float>(phase) + 0.5F) / static_cast<float>(m_cell) : 0.0F;
-      evaluateEvery(static_cast<std::size_t>(y * m_input.width + x),
-                    static_cast<std::size_t>(place), across);
+      evaluateStrided(static_cast<std::size_t>(y * m_input.width + x),
+                      static_cast<std::size_t>(place), across);
     }
   }
 
   /// Pixels from `start` on, m_cell apart; the first lies `across` of the way from place `place` of
   /// the means to the next.
-  HWY_INLINE void evaluateEvery(std::size_t start, std::size_t place, float across) {
+  HWY_INLINE void evaluateStrided(std::size_t start, std::size_t place, float across) {
     const auto step = static_cast<std::size_t>(m_cell);
     for (std::size_t i = 0; i < m_layout.features; ++i)
       for (std::size_t x = 0; x < m_count; ++x)
@@ -234,13 +234,13 @@ private:
       interpolate(m_layout.intercept(c), place, across, pixels);
       for (std::size_t i = 0; i < m_layout.features; ++i) {
         const float* f = m_features[i].data();
-        const float* slope = &m_between[m_layout.slope(c, i) * width + place];
+        const float* slope = &m_interpolated[m_layout.slope(c, i) * width + place];
         for (std::size_t x = 0; x < m_count; ++x)
           pixels[x] += (slope[x] + across * (slope[x + 1] - slope[x])) * f[x];
       }
       for (std::size_t x = 0; x < m_count; ++x) {
         const std::size_t at = start + x * step;
-        if (m_input.open[at] > 0.0F && weights[x] > 0.0F)
+        if (m_input.active[at] > 0.0F && weights[x] > 0.0F)
           m_out[c][at] = pixels[x] / weights[x];
       }
     }
@@ -248,7 +248,7 @@ private:
 
   HWY_INLINE void interpolate(std::size_t plane, std::size_t place, float across,
                               std::array<float, edge + 1>& out) const {
-    const float* in = &m_between[plane * width + place];
+    const float* in = &m_interpolated[plane * width + place];
     for (std::size_t x = 0; x < m_count; ++x)
       out[x] = in[x] + across * (in[x + 1] - in[x]);
   }
@@ -260,9 +260,9 @@ private:
   std::int64_t m_column, m_row;
   std::vector<Plane>& m_out;
   LocalFit m_fit;
-  Rows m_sums, m_fits, m_means;
-  std::vector<float> m_rowSum, m_windowSums, m_products, m_between;
-  std::array<std::array<float, edge + 1>, SumLayout::mostFeatures> m_features;
+  RowRing m_sums, m_fits, m_means;
+  std::vector<float> m_rowSum, m_windowSums, m_products, m_interpolated;
+  std::array<std::array<float, edge + 1>, SumLayout::maxFeatures> m_features;
   std::size_t m_count = 0; ///< pixels that are evaluated together
   std::vector<Lanes> m_blockSums, m_blockFits;
 };

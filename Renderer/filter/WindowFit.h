@@ -13,7 +13,7 @@ namespace fenestra {
 /// Planes as the fit takes them: 0 where the pixel is not open.
 struct FitInput {
   int width = 0, height = 0;
-  Plane open;                  ///< 1 or 0
+  Plane active;                ///< 1 or 0
   std::vector<Plane> features; ///< mean 0 and deviation 1 over the open pixels
   std::vector<Plane> color;    ///< channels of one half, then those of the other
 };

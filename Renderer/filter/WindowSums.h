@@ -6,7 +6,7 @@
 namespace fenestra {
 
 struct SumLayout {
-  static constexpr std::size_t mostFeatures = 12;
+  static constexpr std::size_t maxFeatures = 12;
   std::size_t features; ///< k
   std::size_t colors;   ///< m
 

@@ -13,12 +13,12 @@ constexpr Mat3 toXyz =
     Mat3::FromRows({0.4124, 0.3576, 0.1805}, {0.2126, 0.7152, 0.0722}, {0.0193, 0.1192, 0.9505});
 constexpr Vec3 white(0.9505, 1.0, 1.089);
 
-double degreesOf(double y, double x) {
+double angleInDegrees(double y, double x) {
   const double angle = std::atan2(y, x) * 180.0 / pi;
   return angle < 0.0 ? angle + 360.0 : angle;
 }
 
-double cosineOf(double degrees) {
+double cosDegrees(double degrees) {
   return std::cos(degrees * pi / 180.0);
 }
 
@@ -27,19 +27,19 @@ double pow7(double x) {
 }
 
 /// Chroma and hue with a* stretched so that greys are rounder (eq. 2 to 7).
-struct Stretched {
+struct AdjustedHue {
   double C, h;
 
-  Stretched(const Lab& lab, double meanChroma) {
+  AdjustedHue(const Lab& lab, double meanChroma) {
     const double g = 0.5 * (1.0 - std::sqrt(pow7(meanChroma) / (pow7(meanChroma) + pow7(25.0))));
     const double a = (1.0 + g) * lab.a;
     C = std::hypot(a, lab.b);
-    h = C > 0.0 ? degreesOf(lab.b, a) : 0.0;
+    h = C > 0.0 ? angleInDegrees(lab.b, a) : 0.0;
   }
 };
 
 /// Difference and mean of two hues, the short way round, degrees (eq. 10 and 14).
-std::array<double, 2> hueDifferenceAndMean(const Stretched& x, const Stretched& y) {
+std::array<double, 2> hueDifferenceAndMean(const AdjustedHue& x, const AdjustedHue& y) {
   if (x.C * y.C == 0.0)
     return {0.0, x.h + y.h};
   double difference = y.h - x.h, mean = 0.5 * (x.h + y.h);
@@ -52,18 +52,18 @@ std::array<double, 2> hueDifferenceAndMean(const Stretched& x, const Stretched& 
 
 } // namespace
 
-Rgb seenBy(ColorSight sight, const Rgb& linear) {
+Rgb simulateVision(ColorVision vision, const Rgb& linear) {
   using Rows = std::array<Vec3, 3>;
-  static const std::array<Rows, 3> dichromats = {
+  static const std::array<Rows, 3> matrices = {
       Rows{Vec3(0.152286, 1.052583, -0.204868), Vec3(0.114503, 0.786281, 0.099216),
            Vec3(-0.003882, -0.048116, 1.051998)},
       Rows{Vec3(0.367322, 0.860646, -0.227968), Vec3(0.280085, 0.672501, 0.047413),
            Vec3(-0.011820, 0.042940, 0.968881)},
       Rows{Vec3(1.255528, -0.076749, -0.178779), Vec3(-0.078411, 0.930809, 0.147602),
            Vec3(0.004733, 0.691367, 0.303900)}};
-  if (sight == ColorSight::normal)
+  if (vision == ColorVision::normal)
     return linear;
-  const Rows& rows = dichromats[static_cast<std::size_t>(sight) - 1];
+  const Rows& rows = matrices[static_cast<std::size_t>(vision) - 1];
   const Vec3 color(linear[0], linear[1], linear[2]);
   Rgb seen;
   for (int c = 0; c < 3; ++c)
@@ -71,7 +71,7 @@ Rgb seenBy(ColorSight sight, const Rgb& linear) {
   return seen;
 }
 
-Lab labOf(const Rgb& linear) {
+Lab toLab(const Rgb& linear) {
   const Vec3 xyz = toXyz * Vec3(linear[0], linear[1], linear[2]);
   const double x = xyz.x() / white.x(), y = xyz.y(), z = xyz.z() / white.z();
   const auto f = [](double t) {
@@ -80,7 +80,7 @@ Lab labOf(const Rgb& linear) {
   return {116.0 * f(y) - 16.0, 500.0 * (f(x) - f(y)), 200.0 * (f(y) - f(z))};
 }
 
-Rgb linearOf(const Lab& lab) {
+Rgb toLinear(const Lab& lab) {
   const auto t = [](double f) {
     return f > 6.0 / 29.0 ? f * f * f : (116.0 * f - 16.0) * 27.0 / 24389.0;
   };
@@ -97,17 +97,17 @@ double deltaE76(const Lab& x, const Lab& y) {
 
 double deltaE2000(const Lab& x, const Lab& y) {
   const double chroma = 0.5 * (std::hypot(x.a, x.b) + std::hypot(y.a, y.b));
-  const Stretched first(x, chroma), second(y, chroma);
+  const AdjustedHue first(x, chroma), second(y, chroma);
   const auto [hue, meanHue] = hueDifferenceAndMean(first, second);
   const double dL = y.L - x.L, dC = second.C - first.C;
   const double dH = 2.0 * std::sqrt(first.C * second.C) * std::sin(0.5 * hue * pi / 180.0);
   const double meanC = 0.5 * (first.C + second.C);
   const double offL2 = std::pow(0.5 * (x.L + y.L) - 50.0, 2.0);
-  const double t = 1.0 - 0.17 * cosineOf(meanHue - 30.0) + 0.24 * cosineOf(2.0 * meanHue) +
-                   0.32 * cosineOf(3.0 * meanHue + 6.0) - 0.20 * cosineOf(4.0 * meanHue - 63.0);
-  const double turn = 30.0 * std::exp(-std::pow((meanHue - 275.0) / 25.0, 2.0));
+  const double t = 1.0 - 0.17 * cosDegrees(meanHue - 30.0) + 0.24 * cosDegrees(2.0 * meanHue) +
+                   0.32 * cosDegrees(3.0 * meanHue + 6.0) - 0.20 * cosDegrees(4.0 * meanHue - 63.0);
+  const double rotation = 30.0 * std::exp(-std::pow((meanHue - 275.0) / 25.0, 2.0));
   const double rC = 2.0 * std::sqrt(pow7(meanC) / (pow7(meanC) + pow7(25.0)));
-  const double rT = -std::sin(2.0 * turn * pi / 180.0) * rC;
+  const double rT = -std::sin(2.0 * rotation * pi / 180.0) * rC;
   const double l = dL / (1.0 + 0.015 * offL2 / std::sqrt(20.0 + offL2));
   const double c = dC / (1.0 + 0.045 * meanC), h = dH / (1.0 + 0.015 * meanC * t);
   return std::sqrt(std::max(0.0, l * l + c * c + h * h + rT * c * h));

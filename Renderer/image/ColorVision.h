@@ -8,14 +8,14 @@
 namespace fenestra {
 
 /// Normal sight, and dichromacy: no working cones for long, middle, or short waves.
-enum class ColorSight { normal, protan, deutan, tritan };
-inline constexpr std::array colorSights = {ColorSight::normal, ColorSight::protan,
-                                           ColorSight::deutan, ColorSight::tritan};
+enum class ColorVision { normal, protan, deutan, tritan };
+inline constexpr std::array colorVisions = {ColorVision::normal, ColorVision::protan,
+                                            ColorVision::deutan, ColorVision::tritan};
 
 /// Linear Rec. 709 that looks to normal sight as `linear` does to this one: Machado, Oliveira,
 /// Fernandes 2009 ("A Physiologically-based Model for Simulation of Color Vision Deficiency"),
 /// severity 1. Clamped to [0, 1].
-Rgb seenBy(ColorSight sight, const Rgb& linear);
+Rgb simulateVision(ColorVision vision, const Rgb& linear);
 
 /// CIELAB, D65, 2 degrees.
 struct Lab {
@@ -23,9 +23,9 @@ struct Lab {
 };
 
 /// CIELAB of linear Rec. 709, in which 1 is the display's white.
-Lab labOf(const Rgb& linear);
+Lab toLab(const Rgb& linear);
 /// Its inverse; beyond [0, 1] where the display has no such colour.
-Rgb linearOf(const Lab& lab);
+Rgb toLinear(const Lab& lab);
 
 /// Colour difference of 1976: the distance in CIELAB.
 double deltaE76(const Lab& x, const Lab& y);

@@ -6,9 +6,9 @@
 namespace fenestra {
 namespace {
 
-constexpr double fullColourZ = 5.0;
+constexpr double fullColorZ = 5.0;
 
-std::string sizeOf(const Image& image) {
+std::string formatSize(const Image& image) {
   return std::to_string(image.width) + "x" + std::to_string(image.height);
 }
 
@@ -18,8 +18,8 @@ void accumulate(const ImagePair& pair, std::size_t c, Comparison& result) {
   for (std::size_t i = 0; i < pair.pixels; ++i) {
     const double b = (*pair.b[c])[i];
     const double d = pair.difference(c, i);
-    const double own = hasErrorB ? square((*pair.errorB[c])[i]) : 0.0;
-    result.relMse += (square(d) - own) / (square(b) + 0.01);
+    const double referenceVariance = hasErrorB ? square((*pair.errorB[c])[i]) : 0.0;
+    result.relMse += (square(d) - referenceVariance) / (square(b) + 0.01);
     result.rmse += square(d);
     if (!(std::abs(d) <= result.maxDifference) && !std::isnan(result.maxDifference))
       result.maxDifference = std::abs(d);
@@ -29,7 +29,7 @@ void accumulate(const ImagePair& pair, std::size_t c, Comparison& result) {
   }
 }
 
-ZStatistics zStatistics(const ImagePair& pair, int width) {
+ZStatistics computeZStatistics(const ImagePair& pair, int width) {
   ZStatistics z;
   double squares = 0.0, above = 0.0;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -38,7 +38,7 @@ ZStatistics zStatistics(const ImagePair& pair, int width) {
       const double d = pair.difference(c, i), v = pair.variance(c, i);
       sum += d;
       variance += v;
-      if (pair.saysNothing(c, i))
+      if (pair.isUninformative(c, i))
         continue;
       const double value = d / std::sqrt(v);
       ++z.count;
@@ -49,7 +49,7 @@ ZStatistics zStatistics(const ImagePair& pair, int width) {
         z.largest = std::abs(value);
         z.column = static_cast<int>(i) % width;
         z.row = static_cast<int>(i) / width;
-        z.channel = colourNames[c][0];
+        z.channel = colorNames[c][0];
       }
     }
     z.imageMean[static_cast<int>(c)] = sum == 0.0 ? 0.0 : sum / std::sqrt(variance);
@@ -63,11 +63,11 @@ ZStatistics zStatistics(const ImagePair& pair, int width) {
 }
 
 /// z of largest modulus among a pixel's channels; a channel that says nothing counts as 0.
-double largestZ(const ImagePair& pair, std::size_t i) {
+double findLargestZ(const ImagePair& pair, std::size_t i) {
   double largest = 0.0;
   for (std::size_t c = 0; c < 3; ++c) {
     const double z =
-        pair.saysNothing(c, i) ? 0.0 : pair.difference(c, i) / std::sqrt(pair.variance(c, i));
+        pair.isUninformative(c, i) ? 0.0 : pair.difference(c, i) / std::sqrt(pair.variance(c, i));
     if (!(std::abs(z) <= std::abs(largest)))
       largest = z;
   }
@@ -79,11 +79,11 @@ double meanDifference(const ImagePair& pair, std::size_t i) {
 }
 
 /// Signed values to show, with full colour at modulus 1.
-std::vector<double> signedDifferences(const ImagePair& pair) {
+std::vector<double> computeDifferences(const ImagePair& pair) {
   std::vector<double> values(pair.pixels);
-  double scale = pair.hasErrors() ? fullColourZ : 0.0;
+  double scale = pair.hasErrors() ? fullColorZ : 0.0;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    values[i] = pair.hasErrors() ? largestZ(pair, i) : meanDifference(pair, i);
+    values[i] = pair.hasErrors() ? findLargestZ(pair, i) : meanDifference(pair, i);
     if (!pair.hasErrors() && std::isfinite(values[i]))
       scale = std::max(scale, std::abs(values[i]));
   }
@@ -93,7 +93,7 @@ std::vector<double> signedDifferences(const ImagePair& pair) {
   return values;
 }
 
-Rgb divergingColour(double t) {
+Rgb divergingColor(double t) {
   if (!std::isfinite(t))
     return Rgb::Zero();
   const double fade = 1.0 - std::min(std::abs(t), 1.0);
@@ -106,8 +106,8 @@ Planes findPlanes(const Image& image, const std::array<const char*, 3>& names) {
   return {image.find(names[0]), image.find(names[1]), image.find(names[2])};
 }
 
-Planes colours(const Image& image) {
-  const Planes planes = findPlanes(image, colourNames);
+Planes findColors(const Image& image) {
+  const Planes planes = findPlanes(image, colorNames);
   if (!isComplete(planes))
     throw inputError("pictures", "one has no channels R, G and B; compare pictures in colour");
   return planes;
@@ -115,8 +115,8 @@ Planes colours(const Image& image) {
 
 void requireSameSize(const Image& a, const Image& b) {
   if (a.width != b.width || a.height != b.height)
-    throw inputError("pictures", "are of different sizes, " + sizeOf(a) + " and " + sizeOf(b) +
-                                     "; compare pictures of one size");
+    throw inputError("pictures", "are of different sizes, " + formatSize(a) + " and " +
+                                     formatSize(b) + "; compare pictures of one size");
 }
 
 Comparison compareImages(const Image& a, const Image& b) {
@@ -131,26 +131,26 @@ Comparison compareImages(const Image& a, const Image& b) {
   result.meanA /= pixels;
   result.meanB /= pixels;
   if (pair.hasErrors())
-    result.z = zStatistics(pair, a.width);
+    result.z = computeZStatistics(pair, a.width);
   return result;
 }
 
 Image differenceImage(const Image& a, const Image& b) {
   const ImagePair pair(a, b);
-  const std::vector<double> values = signedDifferences(pair);
+  const std::vector<double> values = computeDifferences(pair);
   Image image{a.width, a.height, {}, {}};
   for (std::size_t c = 0; c < 3; ++c) {
-    auto& plane = image.channels[colourNames[c]];
+    auto& plane = image.channels[colorNames[c]];
     plane.resize(pair.pixels);
     for (std::size_t i = 0; i < pair.pixels; ++i)
-      plane[i] = static_cast<float>(divergingColour(values[i])[static_cast<int>(c)]);
+      plane[i] = static_cast<float>(divergingColor(values[i])[static_cast<int>(c)]);
   }
   return image;
 }
 
 void attachError(Image& image, const Image& error) {
   requireSameSize(image, error);
-  const Planes planes = colours(error);
+  const Planes planes = findColors(error);
   for (std::size_t c = 0; c < 3; ++c)
     image.channels[errorNames[c]] = *planes[c];
 }

@@ -7,7 +7,7 @@
 
 namespace fenestra {
 
-inline constexpr std::array<const char*, 3> colourNames = {"R", "G", "B"};
+inline constexpr std::array<const char*, 3> colorNames = {"R", "G", "B"};
 inline constexpr std::array<const char*, 3> errorNames = {"error.R", "error.G", "error.B"};
 
 /// Three planes of a picture; null: missing.
@@ -20,7 +20,7 @@ inline bool isComplete(const Planes& planes) {
 }
 
 /// Planes of R, G and B. Throws Error (input) where one is missing.
-Planes colours(const Image& image);
+Planes findColors(const Image& image);
 
 /// Throws Error (input) for different sizes.
 void requireSameSize(const Image& a, const Image& b);
@@ -36,8 +36,8 @@ struct ImagePair {
 
   /// Throws Error (input) for different sizes or missing colours.
   ImagePair(const Image& imageA, const Image& imageB)
-      : a(colours(imageA)),
-        b(colours(imageB)),
+      : a(findColors(imageA)),
+        b(findColors(imageB)),
         errorA(findPlanes(imageA, errorNames)),
         errorB(findPlanes(imageB, errorNames)),
         pixels(a[0]->size()) {
@@ -55,16 +55,16 @@ struct ImagePair {
     return 0x1p-24 * std::max(std::abs((*a[c])[i]), std::abs((*b[c])[i]));
   }
   /// True if the values are equal to the rounding of a float.
-  bool agrees(std::size_t c, std::size_t i) const {
+  bool isEqual(std::size_t c, std::size_t i) const {
     return std::abs(difference(c, i)) <= 2.0 * rounding(c, i);
   }
   /// True if the value carries no statistical information: both errors are 0, or one is 0 and the
   /// values are equal (background, whatever error one renderer states); "0" and "equal" mean to the
   /// rounding of a float. Excluded from z.
-  bool saysNothing(std::size_t c, std::size_t i) const {
+  bool isUninformative(std::size_t c, std::size_t i) const {
     const bool exactA = std::abs((*errorA[c])[i]) <= rounding(c, i);
     const bool exactB = std::abs((*errorB[c])[i]) <= rounding(c, i);
-    return (exactA && exactB) || ((exactA || exactB) && agrees(c, i));
+    return (exactA && exactB) || ((exactA || exactB) && isEqual(c, i));
   }
 };
 

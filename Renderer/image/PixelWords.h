@@ -8,14 +8,14 @@
 
 namespace fenestra {
 
-inline constexpr std::size_t pixelWords = 30;
+inline constexpr std::size_t wordsPerPixel = 30;
 
-using PixelWords = std::array<std::uint64_t, pixelWords>;
+using PixelWords = std::array<std::uint64_t, wordsPerPixel>;
 
 /// Calls `each` for every number of a pixel, in the order of the words; PixelSums::block and
 /// isCertain belong to the film and to the scene.
 template <typename Sums, typename Each>
-void forNumbers(Sums& p, Each&& each) {
+void forEachNumber(Sums& p, Each&& each) {
   const auto colors = [&](auto& color) {
     for (int c = 0; c < 3; ++c)
       each(color[c]);
@@ -36,17 +36,18 @@ void forNumbers(Sums& p, Each&& each) {
   colors(p.blockM2);
 }
 
-inline PixelWords wordsOf(const PixelSums& pixel) {
+inline PixelWords toWords(const PixelSums& pixel) {
   PixelWords words = {};
   std::size_t i = 0;
-  forNumbers(pixel, [&](const auto& number) { words[i++] = std::bit_cast<std::uint64_t>(number); });
+  forEachNumber(pixel,
+                [&](const auto& number) { words[i++] = std::bit_cast<std::uint64_t>(number); });
   return words;
 }
 
 inline void setWords(const PixelWords& words, PixelSums& pixel) {
   std::size_t i = 0;
-  forNumbers(pixel,
-             [&]<typename Number>(Number& number) { number = std::bit_cast<Number>(words[i++]); });
+  forEachNumber(
+      pixel, [&]<typename Number>(Number& number) { number = std::bit_cast<Number>(words[i++]); });
 }
 
 } // namespace fenestra

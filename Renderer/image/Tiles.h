@@ -9,12 +9,12 @@ namespace fenestra {
 struct Shard {
   int index = 0, count = 1;
 
-  bool isWhole() const { return count == 1; }
+  bool isComplete() const { return count == 1; }
 
   bool operator==(const Shard&) const = default;
 };
 
-inline constexpr int mostShards = 10000;
+inline constexpr int maxShards = 10000;
 
 /// Squares of `size` pixels, cut off at the right and lower border; numbered row by row.
 class Tiles {
@@ -28,14 +28,14 @@ public:
 
   Tiles(int width, int height);
 
-  int count() const { return m_across * m_down; }
+  int count() const { return m_columns * m_rows; }
   Tile at(int index) const;
   /// Numbers of a part's tiles, ascending. Successive tiles of a Morton curve (Morton 1966) belong
   /// to successive parts: each part has tiles from everywhere, and costs about the same.
-  std::vector<int> of(const Shard& shard) const;
+  std::vector<int> select(const Shard& shard) const;
 
 private:
-  int m_width, m_height, m_across, m_down;
+  int m_width, m_height, m_columns, m_rows;
 };
 
 } // namespace fenestra

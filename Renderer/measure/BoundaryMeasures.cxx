@@ -8,7 +8,7 @@ namespace fenestra {
 namespace {
 
 /// Camera of the clip; null for ClipNone.
-const Camera* cameraOf(const Clip& clip) {
+const Camera* findCamera(const Clip& clip) {
   if (const auto* plane = std::get_if<ClipPlane>(&clip))
     return &plane->camera;
   if (const auto* depth = std::get_if<ClipDepth>(&clip))
@@ -22,66 +22,68 @@ bool hasSteps(const Clip& clip) {
 }
 
 /// Crossing of the outline: two samples on the inner side, two beyond.
-struct Edge {
+struct OutlineEdge {
   Vec2 inside, outside; ///< last focus sample and first beyond, mm
-  double own, inner;    ///< focus depths at `inside` and one sample before, mm; infinity: no focus
-  double near, far;     ///< context depths at `outside` and one sample further, mm
-  bool jumps;           ///< true: the focus's depth jumps at `inside`
+  double focusDepth,
+      innerDepth;    ///< focus depths at `inside` and one sample before, mm; infinity: no focus
+  double near, far;  ///< context depths at `outside` and one sample further, mm
+  bool hasDepthJump; ///< true: the focus's depth jumps at `inside`
 };
 
 /// Depth, mm, at which the remaining volume begins on the ray through `position`; infinity: none.
-double contextAt(const Clip& clip, const Domain& volume, const Vec2& position) {
-  const Camera& camera = *cameraOf(clip);
+double findContextDepth(const Clip& clip, const Domain& volume, const Vec2& position) {
+  const Camera& camera = *findCamera(clip);
   const Ray ray = camera.rayThrough(position);
   const Interval part =
-      volume.clip(transformRay(volume.grid().worldToIndex, ray), behindSurface(clip, ray));
+      volume.clip(transformRay(volume.grid().worldToIndex, ray), intervalBehindSurface(clip, ray));
   return part.isEmpty() ? infinity : part.begin * camera.depthPerLength(ray);
 }
 
-double focusAt(const FocusDepth& focus, std::int64_t column, std::int64_t row) {
+double findFocusDepth(const FocusDepth& focus, std::int64_t column, std::int64_t row) {
   return focus.isFocus(column, row) ? focus.depth.at(focus.depth.sample(column, row)) : infinity;
 }
 
-bool jumps(const FocusDepth& focus, std::int64_t column, std::int64_t row) {
-  const double own = focusAt(focus, column, row);
+bool hasDepthJump(const FocusDepth& focus, std::int64_t column, std::int64_t row) {
+  const double own = findFocusDepth(focus, column, row);
   for (std::int64_t y = row - 1; y <= row + 1; ++y)
     for (std::int64_t x = column - 1; x <= column + 1; ++x)
-      if (const double other = focusAt(focus, x, y);
+      if (const double other = findFocusDepth(focus, x, y);
           other < infinity && std::abs(other - own) > depthJump)
         return true;
   return false;
 }
 
 /// Edge at a crossing; nothing: no context beyond.
-std::optional<Edge> edgeAt(const Crossing& crossing, const Clip& clip, const Domain& volume,
-                           const FocusDepth& focus) {
+std::optional<OutlineEdge> findEdge(const Crossing& crossing, const Clip& clip,
+                                    const Domain& volume, const FocusDepth& focus) {
   const DepthBuffer& buffer = focus.depth;
   const std::int64_t column = crossing.column, row = crossing.row;
-  const auto [x, y] = outward(crossing);
+  const auto [x, y] = outwardStep(crossing);
   const std::int64_t farColumn = column + std::int64_t{2} * x, farRow = row + std::int64_t{2} * y;
   const bool isSample =
       farColumn >= 0 && farRow >= 0 && farColumn < buffer.columns() && farRow < buffer.rows();
   if (!isSample || focus.isFocus(farColumn, farRow))
     return std::nullopt;
   const Vec2 outside = buffer.position(column + x, row + y);
-  const double near = contextAt(clip, volume, outside);
-  const double far = contextAt(clip, volume, buffer.position(farColumn, farRow));
+  const double near = findContextDepth(clip, volume, outside);
+  const double far = findContextDepth(clip, volume, buffer.position(farColumn, farRow));
   if (!(near < infinity && far < infinity))
     return std::nullopt;
-  return Edge{buffer.position(column, row),
-              outside,
-              focusAt(focus, column, row),
-              focusAt(focus, column - x, row - y),
-              near,
-              far,
-              jumps(focus, column, row)};
+  return OutlineEdge{buffer.position(column, row),
+                     outside,
+                     findFocusDepth(focus, column, row),
+                     findFocusDepth(focus, column - x, row - y),
+                     near,
+                     far,
+                     hasDepthJump(focus, column, row)};
 }
 
-std::vector<Edge> outlineEdges(const Clip& clip, const Domain& volume, const FocusDepth& focus) {
-  std::vector<Edge> edges;
+std::vector<OutlineEdge> findOutlineEdges(const Clip& clip, const Domain& volume,
+                                          const FocusDepth& focus) {
+  std::vector<OutlineEdge> edges;
   for (const Contour& contour : traceContours(focus))
     for (const Crossing& crossing : contour)
-      if (const auto edge = edgeAt(crossing, clip, volume, focus))
+      if (const auto edge = findEdge(crossing, clip, volume, focus))
         edges.push_back(*edge);
   return edges;
 }
@@ -89,27 +91,28 @@ std::vector<Edge> outlineEdges(const Clip& clip, const Domain& volume, const Foc
 /// Point at which the focus ends.
 struct OutlinePoint {
   double depth; ///< of the focus just inside, mm
-  Vec2 beyond;  ///< just outside
+  Vec2 outside; ///< just outside
 };
 
 /// Outline points between `inside` and `outside`, to 2^-24 of the distance.
-std::vector<OutlinePoint> outlinePoints(const FocusTracer& tracer, const std::vector<Edge>& edges) {
+std::vector<OutlinePoint> findOutlinePoints(const FocusTracer& tracer,
+                                            const std::vector<OutlineEdge>& edges) {
   std::vector<OutlinePoint> points;
   std::vector<Vec2> in, middle(edges.size());
-  for (const Edge& edge : edges) {
+  for (const OutlineEdge& edge : edges) {
     in.push_back(edge.inside);
-    points.push_back({edge.own, edge.outside});
+    points.push_back({edge.focusDepth, edge.outside});
   }
-  for (int halving = 0; halving < 24; ++halving) {
+  for (int step = 0; step < 24; ++step) {
     for (std::size_t i = 0; i < edges.size(); ++i)
-      middle[i] = 0.5 * (in[i] + points[i].beyond);
-    const std::vector<double> depths = tracer.depthsAt(middle);
+      middle[i] = 0.5 * (in[i] + points[i].outside);
+    const std::vector<double> depths = tracer.findDepths(middle);
     for (std::size_t i = 0; i < edges.size(); ++i)
       if (depths[i] < infinity) {
         in[i] = middle[i];
         points[i].depth = depths[i];
       } else {
-        points[i].beyond = middle[i];
+        points[i].outside = middle[i];
       }
   }
   return points;
@@ -117,36 +120,36 @@ std::vector<OutlinePoint> outlinePoints(const FocusTracer& tracer, const std::ve
 
 } // namespace
 
-BoundaryMeasures measureBoundary(const Clip& clip, const Domain& volume, const Mask& focus,
-                                 const FocusDepth& depths) {
-  BoundaryMeasures measures;
-  if (!cameraOf(clip))
-    return measures;
-  const std::vector<Edge> edges = outlineEdges(clip, volume, depths);
+BoundaryMetrics measureBoundary(const Clip& clip, const Domain& volume, const Mask& focus,
+                                const FocusDepth& depths) {
+  BoundaryMetrics metrics;
+  if (!findCamera(clip))
+    return metrics;
+  const std::vector<OutlineEdge> edges = findOutlineEdges(clip, volume, depths);
   const std::vector<OutlinePoint> points =
-      outlinePoints(FocusTracer(*cameraOf(clip), volume, focus), edges);
+      findOutlinePoints(FocusTracer(*findCamera(clip), volume, focus), edges);
   std::vector<double> gaps, slopeJumps;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Edge& edge = edges[i];
-    ++measures.crossings;
+    const OutlineEdge& edge = edges[i];
+    ++metrics.crossings;
     // A steep fall of the focus before its end is a jump as well.
-    if (edge.jumps || std::abs(points[i].depth - edge.own) > depthJump)
+    if (edge.hasDepthJump || std::abs(points[i].depth - edge.focusDepth) > depthJump)
       continue;
-    const double context = contextAt(clip, volume, points[i].beyond);
+    const double context = findContextDepth(clip, volume, points[i].outside);
     if (hasSteps(clip))
-      gaps.push_back(std::abs(2.0 * edge.near - edge.far - edge.own));
+      gaps.push_back(std::abs(2.0 * edge.near - edge.far - edge.focusDepth));
     else if (context < infinity)
       gaps.push_back(std::abs(context - points[i].depth));
-    if (edge.inner < infinity)
-      slopeJumps.push_back(std::abs((edge.far - edge.near) - (edge.own - edge.inner)) /
+    if (edge.innerDepth < infinity)
+      slopeJumps.push_back(std::abs((edge.far - edge.near) - (edge.focusDepth - edge.innerDepth)) /
                            (edge.outside - edge.inside).norm());
   }
-  if (measures.crossings > 0)
-    measures.depthJumpFraction =
-        1.0 - static_cast<double>(gaps.size()) / static_cast<double>(measures.crossings);
-  measures.gap = Distribution::compute(std::move(gaps));
-  measures.slopeJump = Distribution::compute(std::move(slopeJumps));
-  return measures;
+  if (metrics.crossings > 0)
+    metrics.depthJumpFraction =
+        1.0 - static_cast<double>(gaps.size()) / static_cast<double>(metrics.crossings);
+  metrics.gap = Distribution::compute(std::move(gaps));
+  metrics.slopeJump = Distribution::compute(std::move(slopeJumps));
+  return metrics;
 }
 
 } // namespace fenestra

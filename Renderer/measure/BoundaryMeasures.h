@@ -13,7 +13,7 @@ namespace fenestra {
 /// a focus sample and a neighbour outside the focus. Context depth: where the context begins just
 /// beyond the outline, at the clip's surface or where the eye ray enters the volume. For clips with
 /// steps (cutaway, hole): extrapolated linearly from the two samples beyond.
-struct BoundaryMeasures {
+struct BoundaryMetrics {
   Distribution gap; ///< |context depth - focus depth|, mm, without depth jumps
   /// Difference of the slopes of two samples on each side, mm of depth per mm, without depth jumps.
   Distribution slopeJump;
@@ -26,7 +26,7 @@ constexpr double depthJump = 2.0;
 
 /// Measures `clip` along the outline of `focus`, whose `depths` are seen from the clip's camera.
 /// All measures are 0 for ClipNone.
-BoundaryMeasures measureBoundary(const Clip& clip, const Domain& volume, const Mask& focus,
-                                 const FocusDepth& depths);
+BoundaryMetrics measureBoundary(const Clip& clip, const Domain& volume, const Mask& focus,
+                                const FocusDepth& depths);
 
 } // namespace fenestra

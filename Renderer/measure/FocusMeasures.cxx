@@ -13,13 +13,13 @@ double sum(const std::vector<double>& values) {
 }
 
 /// Handle that does not own the mask.
-std::shared_ptr<const Mask> shared(const Mask& mask) {
+std::shared_ptr<const Mask> nonOwning(const Mask& mask) {
   return {std::shared_ptr<void>(), &mask};
 }
 
 /// Greatest depth of the focus at a pixel and its neighbours.
-double deepestAround(const std::vector<double>& depth, std::size_t width, std::size_t column,
-                     std::size_t row) {
+double findDeepest(const std::vector<double>& depth, std::size_t width, std::size_t column,
+                   std::size_t row) {
   double deepest = -infinity;
   for (std::size_t y = row > 0 ? row - 1 : 0; y <= row + 1 && y * width < depth.size(); ++y)
     for (std::size_t x = column > 0 ? column - 1 : 0; x <= column + 1 && x < width; ++x)
@@ -38,7 +38,7 @@ double keptShare(const FocusPoints& points) {
 
 } // namespace
 
-FocusPoints focusPoints(const SceneView& scene, const std::vector<double>& depth) {
+FocusPoints findFocusPoints(const SceneView& scene, const std::vector<double>& depth) {
   FocusPoints points;
   const auto width = static_cast<std::size_t>(scene.camera.width());
   const double rounding = 0.5 * scene.camera.pixelPitch();
@@ -49,9 +49,9 @@ FocusPoints focusPoints(const SceneView& scene, const std::vector<double>& depth
     const Ray ray =
         scene.camera.ray(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
     const double distance = depth[pixel] / scene.camera.depthPerLength(ray);
-    const Interval behind = behindSurface(scene.clip, ray);
+    const Interval behind = intervalBehindSurface(scene.clip, ray);
     const double deepest =
-        deepestAround(depth, width, column, row) / scene.camera.depthPerLength(ray);
+        findDeepest(depth, width, column, row) / scene.camera.depthPerLength(ray);
     const bool isKept = !behind.isEmpty() && behind.begin <= deepest + rounding &&
                         behind.end >= distance - rounding;
     points.push_back({ray, distance, isKept, pixel});
@@ -59,8 +59,8 @@ FocusPoints focusPoints(const SceneView& scene, const std::vector<double>& depth
   return points;
 }
 
-double focusCoverage(const SceneView& scene, const FocusPoints& points, std::uint64_t seed,
-                     const StopFlag& stop) {
+double measureCoverage(const SceneView& scene, const FocusPoints& points, std::uint64_t seed,
+                       const StopFlag& stop) {
   if (points.empty())
     return 0.0;
   const auto measure = [&](const auto&, const auto& tracker) {
@@ -69,7 +69,7 @@ double focusCoverage(const SceneView& scene, const FocusPoints& points, std::uin
       const FocusPoint& point = points[i];
       if (!point.isKept)
         return;
-      const Interval range = visible(scene.clip, point.ray);
+      const Interval range = visibleInterval(scene.clip, point.ray);
       Random random(seed, point.pixel, 0);
       Counters counters;
       shown[i] = tracker.transmittance(point.ray, {range.begin, point.distance}, random, counters);
@@ -79,23 +79,23 @@ double focusCoverage(const SceneView& scene, const FocusPoints& points, std::uin
   return withMedium(scene, measure, stop);
 }
 
-std::optional<double> focusLight(const SceneView& scene, const SceneView& alone,
-                                 const FocusPoints& focus, std::uint64_t seed,
-                                 const StopFlag& stop) {
-  constexpr std::size_t most = 4096; // kept points
-  constexpr std::uint64_t lightsEach = 4;
+std::optional<double> measureLight(const SceneView& scene, const SceneView& focusOnly,
+                                   const FocusPoints& focus, std::uint64_t seed,
+                                   const StopFlag& stop) {
+  constexpr std::size_t maxPoints = 4096; // kept points
+  constexpr std::uint64_t samplesPerPoint = 4;
   std::vector<const FocusPoint*> points;
   for (const FocusPoint& point : focus)
     if (point.isKept)
       points.push_back(&point);
-  const std::size_t stride = points.size() / most + 1;
-  const auto arriving = [&](const SceneView& through) {
-    const auto sumOfLight = [&](const auto&, const auto& tracker) {
+  const std::size_t stride = points.size() / maxPoints + 1;
+  const auto sumLight = [&](const SceneView& through) {
+    const auto sumSamples = [&](const auto&, const auto& tracker) {
       std::vector<double> light(points.size() / stride + 1, 0.0);
       tbb::parallel_for(std::size_t{0}, points.size() / stride, [&](std::size_t i) {
         const FocusPoint& point = *points[i * stride];
         const Vec3 position = point.ray.at(point.distance);
-        for (std::uint64_t k = 0; k < lightsEach; ++k) {
+        for (std::uint64_t k = 0; k < samplesPerPoint; ++k) {
           Random random(seed, point.pixel, k);
           const std::optional<LightSample> sample = scene.lights.sample(position, random);
           if (!sample)
@@ -108,18 +108,18 @@ std::optional<double> focusLight(const SceneView& scene, const SceneView& alone,
       });
       return sum(light);
     };
-    return withMedium(through, sumOfLight, stop);
+    return withMedium(through, sumSamples, stop);
   };
-  const double unhindered = arriving(alone);
-  if (!(unhindered > 0.0))
+  const double unoccluded = sumLight(focusOnly);
+  if (!(unoccluded > 0.0))
     return std::nullopt;
-  return arriving(scene) / unhindered;
+  return sumLight(scene) / unoccluded;
 }
 
-std::optional<double> contextRemoved(const SceneView& scene, const Mask& focus,
-                                     std::uint64_t seed) {
+std::optional<double> measureContextRemoved(const SceneView& scene, const Mask& focus,
+                                            std::uint64_t seed) {
   constexpr std::int64_t strata = 64; // along each axis
-  const ContextStyle style{shared(focus)};
+  const ContextStyle style{nonOwning(focus)};
   const StyledContext where(style, scene.volume.grid);
   const Domain domain(scene.volume.grid, scene.crop);
   const Box box = scene.volume.grid.indexBox();
@@ -151,23 +151,25 @@ std::optional<FocusReport> measureFocus(const SceneView& scene, const MinMaxGrid
   const auto majorantsFor = [&](const ContextStyle* style) {
     return MajorantGrid(scene.volume.grid, ranges, scene.transfer, noClip, style);
   };
-  const auto unclipped = [&](const MajorantGrid& majorants, const ContextStyle* style) {
+  const auto makeUnclipped = [&](const MajorantGrid& majorants, const ContextStyle* style) {
     return SceneView{scene.volume, scene.transfer, majorants, scene.lights, scene.camera,
                      noClip,       scene.crop,     style,     scene.tint};
   };
-  const ContextStyle nothingElse{shared(focus), 0.0, 1.0};
-  const MajorantGrid whole = majorantsFor(scene.style), alone = majorantsFor(&nothingElse);
-  const SceneView wholeScene = unclipped(whole, scene.style);
+  const ContextStyle focusOnlyStyle{nonOwning(focus), 0.0, 1.0};
+  const MajorantGrid allMajorants = majorantsFor(scene.style),
+                     focusOnly = majorantsFor(&focusOnlyStyle);
+  const SceneView unclippedScene = makeUnclipped(allMajorants, scene.style);
 
-  const FocusPoints points = focusPoints(scene, depth);
+  const FocusPoints points = findFocusPoints(scene, depth);
   FocusReport report;
   report.kept = keptShare(points);
-  report.coverage = focusCoverage(scene, points, seed, stop);
-  report.withoutClip = focusCoverage(wholeScene, focusPoints(wholeScene, depth), seed, stop);
-  report.light = focusLight(scene, unclipped(alone, &nothingElse), points, seed, stop);
+  report.coverage = measureCoverage(scene, points, seed, stop);
+  report.withoutClip =
+      measureCoverage(unclippedScene, findFocusPoints(unclippedScene, depth), seed, stop);
+  report.light = measureLight(scene, makeUnclipped(focusOnly, &focusOnlyStyle), points, seed, stop);
   if (stop)
     return std::nullopt;
-  report.contextRemoved = contextRemoved(scene, focus, seed);
+  report.contextRemoved = measureContextRemoved(scene, focus, seed);
   return report;
 }
 

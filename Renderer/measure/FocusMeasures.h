@@ -15,24 +15,25 @@ struct FocusPoint {
 using FocusPoints = std::vector<FocusPoint>;
 
 /// `depth`: mm in view space, row by row from the top; infinity: the ray misses the focus.
-FocusPoints focusPoints(const SceneView& scene, const std::vector<double>& depth);
+FocusPoints findFocusPoints(const SceneView& scene, const std::vector<double>& depth);
 
 /// Share of the focus's pixels shown unoccluded: mean transmittance from the start of the eye ray
 /// to the focus's points, 0 for points that clipping removes. Once `stop` is true walks are
 /// abandoned and results are meaningless, here and below.
-double focusCoverage(const SceneView& scene, const FocusPoints& focus, std::uint64_t seed,
-                     const StopFlag& stop = neverStopped);
+double measureCoverage(const SceneView& scene, const FocusPoints& focus, std::uint64_t seed,
+                       const StopFlag& stop = neverStopped);
 
 /// Direct light at the points that clipping leaves, relative to direct light in `alone`, the same
 /// scene of nothing but the focus. At most 4096 points, four light samples each, the same for
 /// both scenes. Empty if no light arrives in `alone`.
-std::optional<double> focusLight(const SceneView& scene, const SceneView& alone,
-                                 const FocusPoints& focus, std::uint64_t seed,
-                                 const StopFlag& stop = neverStopped);
+std::optional<double> measureLight(const SceneView& scene, const SceneView& focusOnly,
+                                   const FocusPoints& focus, std::uint64_t seed,
+                                   const StopFlag& stop = neverStopped);
 
 /// Share of the context's matter (extinction > 0) that clipping removes, from 2^18 points: to about
 /// 0.001. Empty if no point meets such matter.
-std::optional<double> contextRemoved(const SceneView& scene, const Mask& focus, std::uint64_t seed);
+std::optional<double> measureContextRemoved(const SceneView& scene, const Mask& focus,
+                                            std::uint64_t seed);
 
 /// Quality of a picture's clip, for the stats.
 struct FocusReport {
@@ -43,8 +44,8 @@ struct FocusReport {
   std::optional<double> contextRemoved = {}; ///< removed share of the context's matter
 };
 
-/// All measures above of a scene. `ranges`: those of its majorants. `depth`: as for focusPoints.
-/// Nothing: stopped.
+/// All measures above of a scene. `ranges`: those of its majorants. `depth`: as for
+/// findFocusPoints. Nothing: stopped.
 std::optional<FocusReport> measureFocus(const SceneView& scene, const MinMaxGrid& ranges,
                                         const Mask& focus, const std::vector<double>& depth,
                                         std::uint64_t seed, const StopFlag& stop);

@@ -7,9 +7,9 @@ namespace fenestra {
 namespace {
 
 /// Greatest distance of a visible point of the focus from the axis, mm.
-double focusRadius(const SeenSurface& surface, const Vec3& axis) {
+double focusRadius(const VisibleSurface& surface, const Vec3& axis) {
   const Camera& camera = surface.camera;
-  const Vec3 along = axis.stableNormalized();
+  const Vec3 direction = axis.stableNormalized();
   double radius = 0.0;
   std::size_t pixel = 0;
   for (int row = 0; row < camera.height(); ++row)
@@ -18,17 +18,17 @@ double focusRadius(const SeenSurface& surface, const Vec3& axis) {
         continue;
       const Vec2 at = camera.toPlane(column + 0.5, row + 0.5);
       const Vec3 point = fromBuffer(camera, {at.x(), at.y(), surface.depths[pixel]});
-      radius = std::max(radius, (point - camera.pose().target).cross(along).norm());
+      radius = std::max(radius, (point - camera.pose().target).cross(direction).norm());
     }
   return radius;
 }
 
 } // namespace
 
-SeenSurface seenSurface(const ClipDepth& clip, const std::vector<double>& focusDepth,
-                        const Domain& volume) {
+VisibleSurface makeVisibleSurface(const ClipDepth& clip, const std::vector<double>& focusDepth,
+                                  const Domain& volume) {
   const Camera& camera = clip.camera;
-  SeenSurface surface{camera, {}, {}};
+  VisibleSurface surface{camera, {}, {}};
   std::size_t pixel = 0;
   for (int row = 0; row < camera.height(); ++row)
     for (int column = 0; column < camera.width(); ++column, ++pixel) {
@@ -43,8 +43,8 @@ SeenSurface seenSurface(const ClipDepth& clip, const std::vector<double>& focusD
   return surface;
 }
 
-SurfaceChange changeBetween(const SeenSurface& before, const SeenSurface& after, const Vec3& axis,
-                            double degrees) {
+SurfaceChange measureChange(const VisibleSurface& before, const VisibleSurface& after,
+                            const Vec3& axis, double degrees) {
   std::vector<double> changes;
   for (std::size_t i = 0; i < before.depths.size(); ++i)
     if (before.regions[i] == Region::context && after.regions[i] == Region::context)

@@ -10,15 +10,15 @@
 namespace fenestra {
 
 /// Clipping surface at a picture's pixels, row by row from the top.
-struct SeenSurface {
+struct VisibleSurface {
   Camera camera;
   std::vector<Region> regions;
   std::vector<double> depths; ///< of the surface, mm; in the region focus: of the focus
 };
 
 /// `focusDepth`: depth of the focus at each pixel, mm; infinity: missed.
-SeenSurface seenSurface(const ClipDepth& clip, const std::vector<double>& focusDepth,
-                        const Domain& volume);
+VisibleSurface makeVisibleSurface(const ClipDepth& clip, const std::vector<double>& focusDepth,
+                                  const Domain& volume);
 
 /// Changes per degree of turn, mm.
 struct SurfaceChange {
@@ -32,7 +32,7 @@ struct SurfaceChange {
 };
 
 /// Change between two cameras with one target, `degrees` apart around `axis` through the target.
-SurfaceChange changeBetween(const SeenSurface& before, const SeenSurface& after, const Vec3& axis,
-                            double degrees);
+SurfaceChange measureChange(const VisibleSurface& before, const VisibleSurface& after,
+                            const Vec3& axis, double degrees);
 
 } // namespace fenestra

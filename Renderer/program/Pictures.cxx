@@ -58,7 +58,7 @@ std::map<std::string, std::string> header(const PreparedScene& scene, const Rend
 }
 
 /// Sentence of a picture's header on its filter.
-std::string filterText(const std::optional<FilteredPicture>& filtered) {
+std::string filterText(const std::optional<FilteredImage>& filtered) {
   const std::optional<double> noise = filteredNoise(filtered);
   return concat("filtered for the eye by least squares in windows, version ", filterVersion,
                 ", on expected albedo, normal, depth and light; told error ",
@@ -67,7 +67,7 @@ std::string filterText(const std::optional<FilteredPicture>& filtered) {
 
 /// Adds the filtered channels that the layers name; R, G, B and A stay as they are.
 void addFilterChannels(const RenderOptions& options, const PreparedScene& scene,
-                       const FilteredPicture& filtered, Image& image) {
+                       const FilteredImage& filtered, Image& image) {
   if (options.hasFilterLayer("expected"))
     addExpected(image, *scene.features());
   if (!options.hasFilterLayer("denoised"))
@@ -128,7 +128,7 @@ RenderSettings PictureFilter::settings() {
   return settings;
 }
 
-std::optional<FilteredPicture> PictureFilter::of(const RenderResult& result) const {
+std::optional<FilteredImage> PictureFilter::of(const RenderResult& result) const {
   if (!m_scene.features())
     return std::nullopt;
   if (result.reason == StopReason::noise && m_seenSamples == result.finishedSamples)
@@ -136,14 +136,14 @@ std::optional<FilteredPicture> PictureFilter::of(const RenderResult& result) con
   return denoised(result.film, m_scene);
 }
 
-std::optional<double> filteredNoise(const std::optional<FilteredPicture>& filtered) {
+std::optional<double> filteredNoise(const std::optional<FilteredImage>& filtered) {
   if (!filtered || filtered->error[0].empty())
     return std::nullopt;
   return std::sqrt(filtered->toldError);
 }
 
 void writePictures(const RenderOptions& options, const PreparedScene& scene,
-                   const RenderResult& result, const std::optional<FilteredPicture>& filtered,
+                   const RenderResult& result, const std::optional<FilteredImage>& filtered,
                    const std::vector<std::string>& words, Outputs& outputs) {
   const bool isRawWanted = !filtered || !std::ranges::all_of(options.outputs, isDisplayFile);
   Image raw{options.scene.width, options.scene.height, {}, header(scene, options, result, words)};

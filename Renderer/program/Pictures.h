@@ -33,23 +33,23 @@ public:
   /// Settings of the render; looks at the noise of filtered pictures are kept here.
   RenderSettings settings();
   /// The film filtered, if the scene has features; else nothing.
-  std::optional<FilteredPicture> of(const RenderResult& result) const;
+  std::optional<FilteredImage> of(const RenderResult& result) const;
 
 private:
   const RenderOptions& m_options;
   const PreparedScene& m_scene;
-  FilteredPicture m_seen;          ///< at the last look
+  FilteredImage m_seen;            ///< at the last look
   std::uint64_t m_seenSamples = 0; ///< samples a pixel then; 0: no look yet
 };
 
 /// Error that the filter tells of itself, as Film::noise(); nothing if it tells none.
-std::optional<double> filteredNoise(const std::optional<FilteredPicture>& filtered);
+std::optional<double> filteredNoise(const std::optional<FilteredImage>& filtered);
 
 /// Writes all of options.outputs; the caller commits them. Each header has the data that reproduce
 /// the picture, `fenestra words…` among them; a picture that is `filtered` says so. Throws Error
 /// (output).
 void writePictures(const RenderOptions& options, const PreparedScene& scene,
-                   const RenderResult& result, const std::optional<FilteredPicture>& filtered,
+                   const RenderResult& result, const std::optional<FilteredImage>& filtered,
                    const std::vector<std::string>& words, Outputs& outputs);
 
 } // namespace fenestra

@@ -111,7 +111,7 @@ void addSources(Json& json, const RenderStats& stats, const RenderOptions& optio
 
 /// Content of options.stats, which must be set, as JSON text. emptyPixels: certain from one sample,
 /// and not in samplesPerPixel; cells: of the majorant grid; focusVoxels: of the cropped labelmap;
-/// controlPoints: column and row in the picture. Measures of the clip: see BoundaryMeasures and
+/// controlPoints: column and row in the picture. Measures of the clip: see BoundaryMetrics and
 /// FocusReport. Names of files are relative to the statistics' folder.
 std::string makeStatsJson(const RenderStats& stats, const RenderOptions& options,
                           const PreparedScene& scene, const RenderResult& result) {
@@ -168,8 +168,8 @@ std::future<void> startSurfaceWriter(const RenderOptions& options, const Prepare
     return std::async(std::launch::deferred, [] {});
   return std::async([&options, &scene, &outputs] {
     const auto& clip = std::get<ClipDepth>(scene.clip());
-    writeSurface(surfaceMesh(clip, scene.domain(), surfaceTolerance(clip.camera)), *options.surface,
-                 outputs);
+    writeSurface(buildSurfaceMesh(clip, scene.domain(), surfaceTolerance(clip.camera)),
+                 *options.surface, outputs);
   });
 }
 
@@ -297,7 +297,7 @@ int renderScene(const PictureRequest& job, const std::vector<std::string>& argum
     return stopStatus();
   }
   watch.lap();
-  const std::optional<FilteredPicture> filtered = filter.of(result);
+  const std::optional<FilteredImage> filtered = filter.of(result);
   stats.filtered = filteredNoise(filtered);
   stats.filter = watch.lap();
   writePictures(options, scene, result, filtered, arguments, outputs);

@@ -93,9 +93,9 @@ void readShard(const OptionValues& values, const std::string& name, RenderOption
   int number = 0, count = 0;
   char rest = 0;
   if (std::sscanf(text.c_str(), "%d/%d%c", &number, &count, &rest) != 2 || number < 1 ||
-      number > count || count > mostShards)
-    throw usageError("--", name, ": expected K/N, the K-th of N parts, from 1/1 to ", mostShards,
-                     "/", mostShards, ", got '", toOneLine(text), "'");
+      number > count || count > maxShards)
+    throw usageError("--", name, ": expected K/N, the K-th of N parts, from 1/1 to ", maxShards,
+                     "/", maxShards, ", got '", toOneLine(text), "'");
   options.settings.shard = {number - 1, count};
   options.isShard = true;
 }

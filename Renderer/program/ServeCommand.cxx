@@ -93,7 +93,7 @@ private:
   void publish(const RenderResult& result, const PictureFilter& filter, bool last) {
     const Stopwatch watch;
     try {
-      const std::optional<FilteredPicture> filtered = filter.of(result);
+      const std::optional<FilteredImage> filtered = filter.of(result);
       writePictures(m_options, *m_scene, result, filtered, m_flags.arguments(), m_outputs);
       m_outputs.commit(Durability::none); // the next picture follows soon
       tell(result, filteredNoise(filtered), last);

@@ -63,7 +63,7 @@ private:
   struct View {
     int frame; ///< -2: none, the scene is as requested
     PreparedScene scene;
-    std::optional<SeenSurface> surface = {};
+    std::optional<VisibleSurface> surface = {};
     std::optional<SurfaceChange> change = {}; ///< since the preceding frame
   };
 
@@ -140,16 +140,16 @@ private:
       return view;
     const bool isNext = m_view.frame == frame - 1;
     if (const auto before = isNext ? m_view.surface : seen(sceneAt(angle - step)))
-      view.change = changeBetween(*before, *view.surface, m_start.up, step);
+      view.change = measureChange(*before, *view.surface, m_start.up, step);
     return view;
   }
 
   /// Visible part of the clipping surface; nullopt: the clip is no surface.
-  static std::optional<SeenSurface> seen(const PreparedScene& scene) {
+  static std::optional<VisibleSurface> seen(const PreparedScene& scene) {
     const auto* clip = std::get_if<ClipDepth>(&scene.clip());
     if (!clip || clip->lookup != ClipDepth::Lookup::linear)
       return std::nullopt;
-    return seenSurface(*clip, scene.clipResult().focusDepth, scene.domain());
+    return makeVisibleSurface(*clip, scene.clipResult().focusDepth, scene.domain());
   }
 
   std::string statsJson() const {

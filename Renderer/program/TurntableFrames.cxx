@@ -84,7 +84,8 @@ std::vector<std::filesystem::path> TurntableOptions::files(int frame) const {
 
 std::filesystem::path recordPath(const std::filesystem::path& output, const Shard& shard) {
   std::filesystem::path path = output;
-  const std::string part = shard.isWhole() ? "" : concat(".", shard.index + 1, "of", shard.count);
+  const std::string part =
+      shard.isComplete() ? "" : concat(".", shard.index + 1, "of", shard.count);
   return path.replace_filename(output.stem().string() + part + ".turntable.json");
 }
 

@@ -49,9 +49,9 @@ void forEachTilePixel(std::span<const int> tiles, Film& film, Each&& each) {
 void writeTiles(std::span<const int> tiles, Film& film, Message& message) {
   message.push_back(tiles.size());
   message.insert(message.end(), tiles.begin(), tiles.end());
-  message.reserve(message.size() + tiles.size() * Tiles::size * Tiles::size * pixelWords);
+  message.reserve(message.size() + tiles.size() * Tiles::size * Tiles::size * wordsPerPixel);
   forEachTilePixel(tiles, film, [&](const PixelSums& pixel) {
-    const PixelWords words = wordsOf(pixel);
+    const PixelWords words = toWords(pixel);
     message.insert(message.end(), words.begin(), words.end());
   });
 }

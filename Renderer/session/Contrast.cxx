@@ -40,10 +40,10 @@ double Contrast::share() const {
 Contrast shownContrast(const Rgb& focus, const Rgb& context,
                        double (*difference)(const Lab&, const Lab&)) {
   Contrast contrast = {};
-  for (const ColorSight sight : colorSights)
+  for (const ColorVision sight : colorVisions)
     contrast.deltaE[static_cast<std::size_t>(sight)] =
-        difference(labOf(seenBy(sight, focus)), labOf(seenBy(sight, context)));
-  contrast.deltaL = std::abs(labOf(focus).L - labOf(context).L);
+        difference(toLab(simulateVision(sight, focus)), toLab(simulateVision(sight, context)));
+  contrast.deltaL = std::abs(toLab(focus).L - toLab(context).L);
   return contrast;
 }
 

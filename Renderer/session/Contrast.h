@@ -13,7 +13,7 @@ namespace fenestra {
 
 /// Differences of the colours in which the focus and its surroundings are shown.
 struct Contrast {
-  std::array<double, 4> deltaE; ///< by ColorSight
+  std::array<double, 4> deltaE; ///< by ColorVision
   double deltaL;                ///< of CIELAB lightness, in absolute value
 
   /// Least share of what normal sight and the two frequent kinds of colour blindness need, 20, 12

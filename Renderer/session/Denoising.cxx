@@ -37,7 +37,7 @@ void fillHalfBuffers(const Film& film, FilterInput& input) {
     const PixelSums& pixel = film.pixels()[i];
     const double alpha =
         pixel.alpha / static_cast<double>(std::max<std::uint64_t>(pixel.samples, 1));
-    const HalfMeans half = input.hasHalfBuffers && input.isOpen[i]
+    const HalfMeans half = input.hasHalfBuffers && input.isActive[i]
                                ? pixel.halfMeans()
                                : HalfMeans{pixel.mean, pixel.mean, alpha, alpha};
     const Rgb variance = pixel.standardError().square();
@@ -118,7 +118,7 @@ FilterInput filterInput(const Film& film, const PreparedScene& scene) {
   if (!film.hasIndependentHalves())
     throw std::logic_error("a film without independent halves cannot be filtered");
   FilterInput input{film.width(), film.height(), {}, {}, {}, {}, {}, hasHalfBuffers(film)};
-  input.isOpen = openPixels(film, *scene.features());
+  input.isActive = openPixels(film, *scene.features());
   fillHalfBuffers(film, input);
   addFeatures(scene, *scene.features(), input);
   return input;

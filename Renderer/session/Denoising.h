@@ -14,8 +14,8 @@ namespace fenestra {
 /// would be wrong.
 FilterInput filterInput(const Film& film, const PreparedScene& scene);
 
-inline FilteredPicture denoised(const Film& film, const PreparedScene& scene) {
-  return filtered(filterInput(film, scene));
+inline FilteredImage denoised(const Film& film, const PreparedScene& scene) {
+  return filterImage(filterInput(film, scene));
 }
 
 } // namespace fenestra

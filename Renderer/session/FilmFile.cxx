@@ -23,7 +23,7 @@ constexpr double maxSamples = 0x1p62; ///< sums of a few such counts fit 64 bits
 template <typename Visit>
 void forEachPixel(const Film& film, const Shard& shard, Visit&& visit) {
   const Tiles tiles(film.width(), film.height());
-  for (const int number : tiles.of(shard)) {
+  for (const int number : tiles.select(shard)) {
     const Tiles::Tile tile = tiles.at(number);
     for (int row = tile.top; row < tile.bottom; ++row)
       for (int column = tile.left; column < tile.right; ++column)
@@ -34,7 +34,7 @@ void forEachPixel(const Film& film, const Shard& shard, Visit&& visit) {
 std::uint64_t countPixels(int width, int height, const Shard& shard) {
   const Tiles tiles(width, height);
   std::uint64_t pixels = 0;
-  for (const int number : tiles.of(shard)) {
+  for (const int number : tiles.select(shard)) {
     const Tiles::Tile tile = tiles.at(number);
     pixels += static_cast<std::uint64_t>(tile.right - tile.left) *
               static_cast<std::uint64_t>(tile.bottom - tile.top);
@@ -87,7 +87,7 @@ std::string encodeCheckpoint(const RenderResult& result, const Shard& shard,
                   sizeof(PixelWords) * countPixels(film.width(), film.height(), shard) +
                   plan.size() * sizeof(float) + sizeof(std::uint64_t));
   forEachPixel(film, shard,
-               [&](int column, int row) { content += asBytes(wordsOf(film.at(column, row))); });
+               [&](int column, int row) { content += asBytes(toWords(film.at(column, row))); });
   content += asBytes(plan);
   Digest digest;
   digest.add(content);
@@ -120,7 +120,7 @@ CheckpointFile::CheckpointFile(const fs::path& path) : m_path(path) {
   const JsonNode header(m_header, path.string());
   constexpr int largest = 1 << 14; // of --size
   const std::vector<double> pixels = header.at("size").numbers(2, 1, largest),
-                            part = header.at("part").numbers(2, 0, mostShards);
+                            part = header.at("part").numbers(2, 0, maxShards);
   m_width = static_cast<int>(pixels[0]);
   m_height = static_cast<int>(pixels[1]);
   m_shard = {static_cast<int>(part[0]), static_cast<int>(part[1])};

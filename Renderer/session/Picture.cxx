@@ -21,7 +21,7 @@ Plane clipPlane(const Camera& camera, const Clip& clip) {
   for (int row = 0; row < camera.height(); ++row)
     for (int column = 0; column < camera.width(); ++column) {
       const Ray ray = camera.ray(column + 0.5, row + 0.5);
-      const Interval range = behindSurface(clip, ray);
+      const Interval range = intervalBehindSurface(clip, ray);
       const double start = range.isEmpty() ? infinity : range.begin * camera.depthPerLength(ray);
       result.push_back(static_cast<float>(start));
     }
@@ -63,7 +63,7 @@ Image picture(const Film& film, const Camera& camera, const Clip& clip, const La
   return image;
 }
 
-void addDenoised(Image& image, const FilteredPicture& filtered) {
+void addDenoised(Image& image, const FilteredImage& filtered) {
   for (std::size_t c = 0; c < 4; ++c)
     image.channels[std::string("denoised.") + "RGBA"[c]] = filtered.color[c];
   for (std::size_t c = 0; c < 3 && !filtered.error[c].empty(); ++c)
@@ -81,7 +81,7 @@ void addExpected(Image& image, const FeatureBuffers& features) {
                                            : std::numeric_limits<float>::infinity());
 }
 
-Image filteredColors(const FilteredPicture& filtered, int width, int height) {
+Image filteredColors(const FilteredImage& filtered, int width, int height) {
   Image image{width, height, {}, {}};
   for (std::size_t c = 0; c < 4; ++c)
     image.channels[std::string(1, "RGBA"[c])] = filtered.color[c];

@@ -23,12 +23,12 @@ LayerSet layerSet(const std::vector<std::string>& names);
 Image picture(const Film& film, const Camera& camera, const Clip& clip, const LayerSet& layers);
 
 /// Adds the channels denoised.* and denoised.error.*.
-void addDenoised(Image& image, const FilteredPicture& filtered);
+void addDenoised(Image& image, const FilteredImage& filtered);
 /// Adds the channels expected.*: albedo and normal over all rays, as Film's; Z, like the channel Z,
 /// over those that meet something, and infinity where none does.
 void addExpected(Image& image, const FeatureBuffers& features);
 /// R, G, B and A of the filtered picture.
-Image filteredColors(const FilteredPicture& filtered, int width, int height);
+Image filteredColors(const FilteredImage& filtered, int width, int height);
 
 /// Depth at which the eye ray of each pixel's centre passes the clip's surface, mm; infinity:
 /// nothing lies behind the surface.

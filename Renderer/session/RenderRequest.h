@@ -29,7 +29,7 @@ struct PlaneRequest {
 
 struct ClipRequest {
   std::optional<ClipMode> mode = {}; ///< by default `surface` when there is a focus, else `none`
-  std::optional<PlaneRequest> plane = {}; ///< by default the focus's own (focusPlane)
+  std::optional<PlaneRequest> plane = {}; ///< by default the focus's own (fitFocusPlane)
   double ghost = 0.1; ///< share of the extinction left in front of the surface, in mode `ghost`
   /// mm behind the cut over which matter comes back; nothing: as far as the focus's labels are
   /// uncertain (automaticSmoothing) in the modes surface, hole and cutaway, else 0.

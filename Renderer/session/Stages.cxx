@@ -118,7 +118,7 @@ ClipPlane placedPlane(const ClipRequest& request, const Camera& camera, const Fo
   if (!request.plane)
     requireVisible(*depth, *maskOf(focus));
   ClipPlane plane = request.plane ? ClipPlane{camera, request.plane->origin, request.plane->normal}
-                                  : focusPlane(camera, *depth);
+                                  : fitFocusPlane(camera, *depth);
   plane.point += request.surface.offset * camera.forward();
   plane.edge = {0.0, request.softness.value_or(0.0)};
   return plane;
@@ -131,7 +131,7 @@ ClipResult planeOrNone(const ClipRequest& request, bool measure, const Domain& d
   std::optional<FocusDepth> depth;
   if (focus->mask && ((isPlane && !request.plane) || measure)) {
     const Stopwatch watch;
-    depth = FocusTracer(camera, domain, *focus->mask).depths();
+    depth = FocusTracer(camera, domain, *focus->mask).traceDepths();
     result.focusDepth = viewportDepths(*depth, camera);
     result.focusSeconds = watch.seconds();
   }

@@ -84,8 +84,8 @@ struct ClipResult {
   /// mm by which the spline misses the focus's boundary, or an exact surface if measured; nothing
   /// in the other clip modes.
   std::optional<Distribution> mismatch = {};
-  std::optional<BoundaryMeasures> boundary = {}; ///< nothing: not measured
-  std::vector<ControlPoint> controlPoints = {};  ///< of a spline; empty for other clips
+  std::optional<BoundaryMetrics> boundary = {}; ///< nothing: not measured
+  std::vector<ControlPoint> controlPoints = {}; ///< of a spline; empty for other clips
   std::vector<std::string> warnings = {};
   double focusSeconds = 0.0, splineSeconds = 0.0, fillSeconds = 0.0;
 };

@@ -20,7 +20,7 @@ bool isInGamut(const Rgb& color) {
 Rgb reduceToGamut(const Lab& lab) {
   constexpr int bisections = 20;
   const auto withChroma = [&](double fraction) {
-    return linearOf({lab.L, fraction * lab.a, fraction * lab.b});
+    return toLinear({lab.L, fraction * lab.a, fraction * lab.b});
   };
   double least = 0.0, most = 1.0;
   if (isInGamut(withChroma(most)))
@@ -42,9 +42,9 @@ constexpr std::array contextShading = {-3.0, 4.0};
 /// leave less than half of the differences in lightness.
 Rgb pictured(const Rgb& seen, double shade) {
   constexpr double darkest = 29.0, lightness = 0.43, saturation = 0.62;
-  const Lab lab = labOf(seen);
+  const Lab lab = toLab(seen);
   const double L = darkest + lightness * lab.L, chroma = saturation * L / std::max(lab.L, 1.0);
-  return linearOf({L - shade, chroma * lab.a, chroma * lab.b}).max(0.0).min(1.0);
+  return toLinear({L - shade, chroma * lab.a, chroma * lab.b}).max(0.0).min(1.0);
 }
 
 /// Albedo of a component over the scalar.
@@ -106,10 +106,10 @@ public:
   /// about as light as itself: a pale organ in dark red would be taken for muscle.
   void addAccent(double farthest) {
     constexpr double mostApart = 40.0;
-    const double own = mean([](const BorderColors& part) { return labOf(part.focus).L; });
+    const double own = mean([](const BorderColors& part) { return toLab(part.focus).L; });
     AdjustmentSearch best = *this;
     for (std::size_t i = 0; i < accentColors.size() && m_share < enoughShare; ++i) {
-      if (std::abs(labOf(decodeSrgb(hexToRgb(accentColors[i].color))).L - own) > mostApart)
+      if (std::abs(toLab(decodeSrgb(hexToRgb(accentColors[i].color))).L - own) > mostApart)
         continue;
       AdjustmentSearch turned = *this;
       turned.m_adjustment.accent = i;
@@ -164,8 +164,8 @@ private:
   /// Difference of the colours from their own, both sides together.
   double change() const {
     return mean([&](const BorderColors& part) {
-      return deltaE76(labOf(part.focus), labOf(adjustFocus(part.focus, m_adjustment))) +
-             deltaE76(labOf(part.context), labOf(adjustContext(part.context, m_adjustment)));
+      return deltaE76(toLab(part.focus), toLab(adjustFocus(part.focus, m_adjustment))) +
+             deltaE76(toLab(part.context), toLab(adjustContext(part.context, m_adjustment)));
     });
   }
 
@@ -188,15 +188,15 @@ std::vector<ComponentBorder> selectMajor(std::vector<ComponentBorder> borders) {
 } // namespace
 
 Rgb adjustContext(const Rgb& seen, const ColorAdjustment& adjustment) {
-  const Lab lab = labOf(seen);
+  const Lab lab = toLab(seen);
   return reduceToGamut({lab.L + adjustment.contextLightness * (adjustment.contextGoal - lab.L),
                         adjustment.contextSaturation * lab.a,
                         adjustment.contextSaturation * lab.b});
 }
 
 Rgb adjustFocus(const Rgb& seen, const ColorAdjustment& adjustment) {
-  const Lab lab = labOf(seen),
-            accent = labOf(decodeSrgb(hexToRgb(accentColors[adjustment.accent].color)));
+  const Lab lab = toLab(seen),
+            accent = toLab(decodeSrgb(hexToRgb(accentColors[adjustment.accent].color)));
   const auto mix = [&](double own, double other) {
     return own + adjustment.focusAccent * (other - own);
   };

@@ -74,7 +74,7 @@ private:
     for (std::size_t next = 0; next < rays;) {
       FocusRays batch;
       std::array<Vec2, FocusRays::capacity> across;
-      for (; next < rays && !batch.full(); ++next) {
+      for (; next < rays && !batch.isFull(); ++next) {
         const Vec2 even = 2.0 * evenPoint(next) - Vec2::Ones();
         const Vec2 at = even.cwiseProduct(m_half.head<2>());
         across[batch.size] = at;

@@ -332,11 +332,11 @@ void vtkSlicerFenestraSnapshot::TakeSegmentation(vtkMRMLSegmentationNode* node,
   for (const std::string& name : focus) { // a script's names, the panel's ids
     const std::string named = segmentation->GetSegmentIdBySegmentName(name);
     const std::string id = segmentation->GetSegment(name) ? name : named;
-    const auto isIt = [&id](const Segment& segment) { return segment.id == id; };
+    const auto isEqual = [&id](const Segment& segment) { return segment.id == id; };
     vtkSegment* segment = segmentation->GetSegment(id);
     if (!segment)
       throw UserError("The segment \"" + name + "\" is gone. Choose another focus.");
-    if (std::none_of(taken.segments.begin(), taken.segments.end(), isIt))
+    if (std::none_of(taken.segments.begin(), taken.segments.end(), isEqual))
       throw UserError("The segment \"" + std::string(segment->GetName()) +
                       "\" is empty. Paint it, or choose another focus.");
   }

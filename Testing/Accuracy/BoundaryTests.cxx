@@ -20,15 +20,15 @@ TEST(FocusField, FirstMeetingWithABallEqualsClosedForm) {
       for (int x = 0; x < 50; ++x)
         ball.voxels.push_back((Vec3(x, y, z) - centre).norm() <= 20.0 ? 1 : 0);
   const FocusField field(ball);
-  EXPECT_LT((field.centre() - centre).norm(), 1e-12);
+  EXPECT_LT((field.center() - center).norm(), 1e-12);
   EXPECT_NEAR(field.radius(), 20.0, 1e-12);
   for (int i = -24; i <= 24; ++i) {
     const double height = i;
     const double met = field.firstMeeting({-100.0, 25.0, 26.0 + height}, Vec3::UnitX());
     if (std::abs(height) > 21.0) {
-      EXPECT_EQ(met, infinity);
+      EXPECT_EQ(distance, infinity);
     } else if (std::abs(height) < 19.0) {
-      EXPECT_NEAR(met, 124.0 - std::sqrt(400.0 - height * height), 1.0);
+      EXPECT_NEAR(distance, 124.0 - std::sqrt(400.0 - height * height), 1.0);
     }
   }
 }

@@ -118,7 +118,7 @@ Surface clippingSurface(const Subject& subject, const View& view, const std::str
   const auto scene = std::make_shared<const PreparedScene>(request);
   return [scene](const Vec2& raster) {
     return std::get<ClipDepth>(scene->clip())
-        .surface(scene->camera().toPlane(raster.x(), raster.y()));
+        .surfaceDepth(scene->camera().toPlane(raster.x(), raster.y()));
   };
 }
 

@@ -62,7 +62,7 @@ Row measured(const PreparedScene& scene, const RenderSettings& settings, const I
         return render(scene.view(), settings, monitor).film;
       },
       row.render);
-  const FilteredPicture picture = timed([&] { return denoised(film, scene); }, row.filter);
+  const FilteredImage picture = timed([&] { return denoised(film, scene); }, row.filter);
   row.raw = compareImages(imageOf(film, scene), reference).relMse;
   row.filtered =
       compareImages(filteredColors(picture, film.width(), film.height()), reference).relMse;

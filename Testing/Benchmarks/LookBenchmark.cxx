@@ -65,7 +65,7 @@ void printSpread(const std::vector<float>& rgba) {
     MeanColor one;
     one.add(&rgba[i]);
     mean.add(&rgba[i]);
-    const double lightness = labOf(one.linear()).L;
+    const double lightness = toLab(one.linear()).L;
     sum += lightness;
     squares += lightness * lightness;
     count += 1.0;
@@ -117,13 +117,13 @@ void printContrast(const PreparedScene& scene, const std::vector<float>& rgba) {
       if (isOpaque(pixel) && distance >= nearest && distance <= farthest)
         (edge.isFocus(column, row) ? inside : outside).add(pixel);
     }
-  const auto seen = [&](const MeanColor& color, ColorSight sight) {
-    return labOf(seenBy(sight, color.linear()));
+  const auto seen = [&](const MeanColor& color, ColorVision sight) {
+    return toLab(simulateVision(sight, color.linear()));
   };
   std::cout << "| ";
-  for (const ColorSight sight : {ColorSight::normal, ColorSight::protan, ColorSight::deutan})
+  for (const ColorVision sight : {ColorVision::normal, ColorVision::protan, ColorVision::deutan})
     std::cout << "| " << deltaE76(seen(inside, sight), seen(outside, sight)) << ' ';
-  std::cout << "| " << std::abs(labOf(inside.linear()).L - labOf(outside.linear()).L) << " | ";
+  std::cout << "| " << std::abs(toLab(inside.linear()).L - toLab(outside.linear()).L) << " | ";
   if (const TintContrast* tint = scene.tintContrast())
     std::cout << told(*tint);
   else

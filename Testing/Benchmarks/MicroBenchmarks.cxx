@@ -71,8 +71,8 @@ struct Probe {
       const Vec2 pixel = pictureSize * random.uniform2();
       const Ray ray = parts.camera.ray(pixel.x(), pixel.y());
       cameraRays.push_back(ray);
-      const double t = tracker.sampleCollision(ray, visible(parts.clip, ray), random.uniform2(),
-                                               random, counters);
+      const double t = tracker.sampleCollision(ray, visibleInterval(parts.clip, ray),
+                                               random.uniform2(), random, counters);
       if (t < infinity) {
         collisions.push_back(ray.at(t));
         inside.push_back(subject.scene.volume().grid.worldToIndex * ray.at(t));
@@ -103,8 +103,8 @@ void addTracking(Probe& p) {
   };
   add("flight/eye ray", p.cameraRays.size(), [&p](std::size_t i) {
     const Ray& ray = p.cameraRays[i];
-    return p.tracker.sampleCollision(ray, visible(p.parts.clip, ray), p.random.uniform2(), p.random,
-                                     p.counters);
+    return p.tracker.sampleCollision(ray, visibleInterval(p.parts.clip, ray), p.random.uniform2(),
+                                     p.random, p.counters);
   });
   add("flight/scattered ray", Probe::count, [&p](std::size_t i) {
     return p.tracker.sampleCollision(p.scattered[i], {}, p.random.uniform2(), p.random, p.counters);

@@ -48,7 +48,7 @@ TEST_F(CheckpointCommand, FinishedFilmGivesThePictureAgain) {
   EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_TRUE(bytesOf(folder / "a.film") == checkpoint);
   EXPECT_EQ(keep().status, 0);
-  EXPECT_TRUE(bytesOf(folder / "a.exr") == picture);
+  EXPECT_TRUE(bytesOf(folder / "a.exr") == image);
   EXPECT_EQ(listFiles(folder.path()), (std::set<std::string>{"a.exr", "a.film", "a.png",
                                                              "segments.seg.nrrd", "volume.nrrd"}));
 }

@@ -310,7 +310,7 @@ TEST_F(TurntableCommand, AutomaticViewShowsKneeCartilageFromAnterior) {
   for (const char* projection : {"orthographic", "perspective"}) {
     ASSERT_EQ(
         run({"knee/knee.mrml", "--focus", "FemoralCartilage,TibialCartilage", "--view", "auto",
-             "--projection", projection, "--size", "16x16", "--samples", "1", "--output", picture},
+             "--projection", projection, "--size", "16x16", "--samples", "1", "--output", image},
             kneeFolder().path())
             .status,
         0);

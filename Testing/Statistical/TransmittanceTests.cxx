@@ -385,7 +385,7 @@ TEST_P(SeamTracking, TransmittanceBesideTheFocusFollowsTheExactSurface) {
       Random random(seeded(10), i, 0);
       const double angle = 2.0 * pi * random.uniform(), radius = 8.5 + 3.0 * random.uniform();
       const Vec2 at(radius * std::cos(angle), radius * std::sin(angle));
-      const double surface = depth.surface(at), linear = depth.buffer->depth(at);
+      const double surface = depth.surfaceDepth(at), linear = depth.buffer->depth(at);
       if (std::abs(surface - linear) < 0.2)
         continue;
       const Ray ray = camera.rayThrough(at);

@@ -118,7 +118,7 @@ TEST(SplineStress, NearlyCoincidentSitesAreExact) {
   for (const double apart : {1e-3, 1e-6, 1e-9, 1e-12})
     for (const double jump : {0.0, 1e-3, 500.0})
       for (const double smoothing : {0.0, 0.5, 1.0 - 1e-6, 1.0 - 1e-13, 1.0}) {
-        SCOPED_TRACE(std::to_string(jump) + " mm over " + std::to_string(1e12 * apart) +
+        SCOPED_TRACE(std::to_string(jump) + " mm over " + std::to_string(1e12 * distance) +
                      "e-12 mm, p " + std::to_string(smoothing));
         Random random(4, 0, 0);
         SplineData data = scattered(random, 20, 60.0, {0.0, 0.0}, 40.0);

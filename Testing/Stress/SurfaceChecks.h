@@ -35,8 +35,8 @@ inline void expectBounded(double depth, const ClippingSurface& surface, const Vi
       greatest = std::max(greatest, focus);
     }
   const double reach = 2.0 * view.volume.boundingRadius();
-  ASSERT_GE(depth, least - reach);
-  ASSERT_LE(depth, greatest + reach);
+  ASSERT_GE(depth, least - distance);
+  ASSERT_LE(depth, greatest + distance);
 }
 
 /// Expects focus samples to keep their depth, and other samples to have the spline's depth, or some
@@ -82,11 +82,11 @@ inline void expectDepths(const View& view, const ClippingSurface& surface,
 inline void expectControlPoints(const ClippingSurface& surface, const SurfaceOptions& options) {
   const auto asked = static_cast<std::size_t>(options.controlPoints);
   EXPECT_GE(surface.controlPoints.size(), 1U);
-  EXPECT_LE(surface.controlPoints.size(), asked);
+  EXPECT_LE(surface.controlPoints.size(), requested);
   std::set<std::pair<double, double>> sites;
   for (const ControlPoint& point : surface.controlPoints) {
     EXPECT_TRUE(sites.insert({point.site.x(), point.site.y()}).second);
-    EXPECT_EQ(surface.focus.depth.nearest(point.site), point.depth);
+    EXPECT_EQ(surface.focus.depth.nearestDepth(point.site), point.depth);
   }
   const Distribution& mismatch = surface.mismatch.value();
   EXPECT_GE(mismatch.mean, 0.0);
@@ -96,7 +96,7 @@ inline void expectControlPoints(const ClippingSurface& surface, const SurfaceOpt
   const std::string flat = "the focus covers hardly a pixel: the clipping surface is flat; choose "
                            "a larger --size, or a view that frames the focus";
   EXPECT_EQ(std::ranges::count(surface.warnings, flat),
-            surface.controlPoints.size() < std::min<std::size_t>(3, asked) ? 1 : 0);
+            surface.controlPoints.size() < std::min<std::size_t>(3, requested) ? 1 : 0);
 }
 
 /// Expects 0 or 1 in and around the volume, up to double's limits, and where projection fails.
@@ -130,7 +130,7 @@ inline void expectVisible(const View& view, const Clip& clip) {
   for (int i = 0; i < 500; ++i) {
     const Ray ray =
         camera.ray(uniform(random, 0, camera.width()), uniform(random, 0, camera.height()));
-    const Interval seen = visible(clip, ray);
+    const Interval seen = visibleInterval(clip, ray);
     ASSERT_TRUE(std::isfinite(seen.begin) && seen.begin >= 0.0);
     ASSERT_EQ(seen.end, infinity);
     // Rounding of a position times the surface's slope is an error of depth.

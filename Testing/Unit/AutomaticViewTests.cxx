@@ -61,7 +61,7 @@ TEST_F(ViewOfCube, ScoreOfABallEqualsClosedForm) {
   const double context = std::pow(edge, 3.0) - 4.0 / 3.0 * disc * radius;
   for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0, 0, 1)}) {
     const ViewScore seen = score(axis, 16384);
-    EXPECT_NEAR(result.area, disc, 0.02 * disc) << "of voxels";
+    EXPECT_NEAR(result.area, disk, 0.02 * disk) << "of voxels";
     EXPECT_NEAR(result.removedFraction, (inFront + beside) / context, 0.01);
   }
   const double front = score(Vec3::UnitY(), 16384).score;
@@ -77,7 +77,7 @@ TEST_F(ViewOfCube, SlabIsShownFromTheNearestFace) {
         return height > 20.0 && height < 24.0 && (p - p[axis] * Vec3::Unit(axis)).norm() < 15.0;
       });
       const ViewDirection view = viewOf(slab);
-      EXPECT_LT(degreesBetween(view.fromTarget, side * Vec3::Unit(axis)), 8.0)
+      EXPECT_LT(angleInDegrees(view.fromTarget, side * Vec3::Unit(axis)), 8.0)
           << "axis " << axis << ", side " << side << ": " << view.fromTarget;
       EXPECT_EQ(view.up, axis == 2 ? Vec3::UnitY() : Vec3::UnitZ());
       EXPECT_NEAR(view.fromTarget.norm(), 1.0, 1e-12);
@@ -90,7 +90,7 @@ TEST_F(ViewOfCube, DiscIsShownFlatOnFromTheUsualSide) {
     const Mask disc = focusWhere([&](const Vec3& p) {
       return std::abs(p.dot(unit)) < 2.0 && (p - p.dot(unit) * unit).norm() < 20.0;
     });
-    EXPECT_LT(degreesBetween(viewOf(disc).fromTarget, unit), 10.0) << normal;
+    EXPECT_LT(angleInDegrees(viewOf(disk).fromTarget, unit), 10.0) << normal;
   }
 }
 

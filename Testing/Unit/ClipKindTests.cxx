@@ -54,8 +54,8 @@ TEST(ClipEdge, GhostIsVisibleFromTheEyeOn) {
   EXPECT_EQ(ball.keepAt(clip, 0, 0, 95.0), 1.0);
   EXPECT_EQ(keep(clip, ball.camera.pose().position - ball.camera.forward()), 0.0);
   const Ray ray = ball.camera.rayThrough({0.0, 0.0});
-  EXPECT_EQ(visible(clip, ray).begin, 0.0);
-  EXPECT_NEAR(behindSurface(clip, ray).begin, 88.0, 0.3);
+  EXPECT_EQ(visibleInterval(clip, ray).begin, 0.0);
+  EXPECT_NEAR(intervalBehindSurface(clip, ray).begin, 88.0, 0.3);
 }
 
 TEST(ClipEdge, KeptInBoundsKeepOfEveryPoint) {
@@ -161,7 +161,7 @@ TEST_P(Holes, SphereLeavesABowl) {
   // its bottom along three rays.
   const auto& depth = std::get<ClipDepth>(clip);
   const auto bottom = [&](double x, double y) {
-    return fromBuffer(ball.camera, Vec3(x, y, depth.surface({x, y})));
+    return fromBuffer(ball.camera, Vec3(x, y, depth.surfaceDepth({x, y})));
   };
   const Vec3 a = bottom(14.0, 0), b = bottom(-14.0, 0), c = bottom(0, 15.0), d = bottom(0, -16.0);
   const Mat3 chords = Mat3::FromRows(b - a, c - a, d - a);
@@ -186,7 +186,7 @@ TEST(FocusPlane, FlatFocusGivesItsOwnPlane) {
   });
   for (const Projection projection : projections) {
     const Camera camera = anteriorCamera(projection, 150, 40, 128, 128);
-    const ClipPlane plane = focusPlane(camera, FocusTracer(camera, volume, focus).depths());
+    const ClipPlane plane = fitFocusPlane(camera, FocusTracer(camera, volume, focus).traceDepths());
     EXPECT_GT(plane.normal.dot(normal), std::cos(4.0 * pi / 180.0));
     // The plane is the slab's side toward the eye, to half a voxel.
     EXPECT_NEAR(plane.point.dot(normal), 4.0, 0.6);
@@ -198,7 +198,7 @@ TEST(FocusPlane, OneSampleGivesAPlaneFacingTheEye) {
   const Camera camera = anteriorCamera(Projection::orthographic, 150, 40, 3, 3);
   const Grid volume = centredGrid({80, 80, 80});
   const Mask focus = boxMask(volume, {-3, -3, -3}, {3, 3, 3});
-  const ClipPlane plane = focusPlane(camera, FocusTracer(camera, volume, focus).depths());
+  const ClipPlane plane = fitFocusPlane(camera, FocusTracer(camera, volume, focus).traceDepths());
   EXPECT_LT((plane.normal + camera.forward()).norm(), 1e-9);
 }
 
@@ -209,56 +209,56 @@ struct Cuboid {
   Camera camera = anteriorCamera(Projection::orthographic, 100, 40, 160, 160);
 };
 
-TEST(BoundaryMeasures, CutawayGapIsTheHeightOfItsCliffs) {
+TEST(BoundaryMetrics, CutawayGapIsTheHeightOfItsCliffs) {
   const Cuboid model;
   const ClippingSurface surface =
       buildClippingSurface(model.camera, model.volume, model.focus, {.mode = SurfaceMode::cutaway});
-  const BoundaryMeasures measures =
+  const BoundaryMetrics measures =
       measureBoundary(surface.clip, model.volume, model.focus, surface.focus);
   const DepthBuffer& depth = surface.focus.depth;
   const double front = depth.at(depth.viewportSample(80, 80));
   // The cuboid's edges are rounded by half a voxel.
-  EXPECT_NEAR(measures.gap.mean, front - 60.0, 0.5);
-  EXPECT_NEAR(measures.gap.max, front - 60.0, 0.5);
-  EXPECT_LT(measures.slopeJump.mean, 0.5);
-  EXPECT_EQ(measures.depthJumpFraction, 0.0);
-  EXPECT_GT(measures.crossings, 100U);
+  EXPECT_NEAR(metrics.gap.mean, front - 60.0, 0.5);
+  EXPECT_NEAR(metrics.gap.max, front - 60.0, 0.5);
+  EXPECT_LT(metrics.slopeJump.mean, 0.5);
+  EXPECT_EQ(metrics.depthJumpFraction, 0.0);
+  EXPECT_GT(metrics.crossings, 100U);
 }
 
-TEST(BoundaryMeasures, AreZeroOnAPlanarFocus) {
+TEST(BoundaryMetrics, AreZeroOnAPlanarFocus) {
   const Cuboid model;
   for (const Boundary boundary : {Boundary::spline, Boundary::exact}) {
     SurfaceOptions options;
     options.boundary = boundary;
     const ClippingSurface surface =
         buildClippingSurface(model.camera, model.volume, model.focus, options);
-    const BoundaryMeasures measures =
+    const BoundaryMetrics measures =
         measureBoundary(surface.clip, model.volume, model.focus, surface.focus);
-    EXPECT_LT(measures.gap.max, 0.5) << "the cuboid's edges are rounded by half a voxel";
-    EXPECT_LT(measures.gap.mean, boundary == Boundary::exact ? 0.15 : 0.4);
-    EXPECT_LT(measures.slopeJump.mean, 0.5);
+    EXPECT_LT(metrics.gap.max, 0.5) << "the cuboid's edges are rounded by half a voxel";
+    EXPECT_LT(metrics.gap.mean, boundary == Boundary::exact ? 0.15 : 0.4);
+    EXPECT_LT(metrics.slopeJump.mean, 0.5);
   }
 }
 
-TEST(BoundaryMeasures, TiltedPlaneGapEqualsItsDistance) {
+TEST(BoundaryMetrics, TiltedPlaneGapEqualsItsDistance) {
   const Cuboid model;
-  const FocusDepth focus = FocusTracer(model.camera, model.volume, model.focus).depths();
+  const FocusDepth focus = FocusTracer(model.camera, model.volume, model.focus).traceDepths();
   const double front = focus.depth.at(focus.depth.viewportSample(80, 80));
   // Depth front + 0.25 x over the view: gaps of 0 to 4 mm along the face's outline.
   const Vec3 through = fromBuffer(model.camera, Vec3(0, 0, front));
   const Vec3 normal = 0.25 * model.camera.right() - model.camera.forward();
   const Clip clip = ClipPlane{model.camera, through, normal.normalized()};
-  const BoundaryMeasures measures = measureBoundary(clip, model.volume, model.focus, focus);
+  const BoundaryMetrics measures = measureBoundary(clip, model.volume, model.focus, focus);
   // The cuboid's edges are rounded by half a voxel, where the surface falls away.
-  EXPECT_NEAR(measures.gap.max, 4.0, 0.6);
-  EXPECT_NEAR(measures.gap.mean, 0.5 * (4.0 + 2.0), 0.4) << "4 on two sides, 0 to 4 on the others";
-  const BoundaryMeasures flat =
+  EXPECT_NEAR(metrics.gap.max, 4.0, 0.6);
+  EXPECT_NEAR(metrics.gap.mean, 0.5 * (4.0 + 2.0), 0.4) << "4 on two sides, 0 to 4 on the others";
+  const BoundaryMetrics flat =
       measureBoundary(Clip(ClipPlane{model.camera, through, -model.camera.forward()}), model.volume,
                       model.focus, focus);
-  EXPECT_NEAR(measures.slopeJump.max, flat.slopeJump.max + 0.25, 1e-3);
+  EXPECT_NEAR(metrics.slopeJump.max, flat.slopeJump.max + 0.25, 1e-3);
 }
 
-TEST(BoundaryMeasures, JumpsWithinTheFocusAreCountedSeparately) {
+TEST(BoundaryMetrics, JumpsWithinTheFocusAreCountedSeparately) {
   const Grid volume = centredGrid({80, 80, 80});
   // The right half lies 10 mm deeper.
   const Mask focus = maskOf(volume, [](const Vec3& p) {
@@ -269,11 +269,11 @@ TEST(BoundaryMeasures, JumpsWithinTheFocusAreCountedSeparately) {
   SurfaceOptions options;
   options.boundary = Boundary::exact;
   const ClippingSurface surface = buildClippingSurface(camera, volume, focus, options);
-  const BoundaryMeasures measures = measureBoundary(surface.clip, volume, focus, surface.focus);
+  const BoundaryMetrics measures = measureBoundary(surface.clip, volume, focus, surface.focus);
   // Two samples on each side of the jump, at its top and its bottom.
-  EXPECT_NEAR(measures.depthJumpFraction * static_cast<double>(measures.crossings), 4.0, 4.0);
-  EXPECT_GT(measures.depthJumpFraction, 0.0);
-  EXPECT_LT(measures.gap.max, 3.0);
+  EXPECT_NEAR(metrics.depthJumpFraction * static_cast<double>(metrics.crossings), 4.0, 4.0);
+  EXPECT_GT(metrics.depthJumpFraction, 0.0);
+  EXPECT_LT(metrics.gap.max, 3.0);
 }
 
 } // namespace

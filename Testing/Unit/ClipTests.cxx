@@ -53,8 +53,8 @@ std::vector<Clip> everyClip(const Camera& camera) {
 
 TEST(Clip, NoneKeepsEverything) {
   EXPECT_EQ(keep(Clip{}, {1e9, -1e9, 0.0}), 1.0);
-  EXPECT_EQ(visible(Clip{}, {}).begin, 0.0);
-  EXPECT_EQ(visible(Clip{}, {}).end, infinity);
+  EXPECT_EQ(visibleInterval(Clip{}, {}).begin, 0.0);
+  EXPECT_EQ(visibleInterval(Clip{}, {}).end, infinity);
 }
 
 TEST(Clip, PlaneRemovesTheSideOfItsNormal) {
@@ -63,7 +63,7 @@ TEST(Clip, PlaneRemovesTheSideOfItsNormal) {
   EXPECT_EQ(keep(clip, {0, -6, 0}), 0.0);
   EXPECT_EQ(keep(clip, {0, -4, 0}), 1.0);
   EXPECT_EQ(keep(clip, {0, -200, 0}), 0.0);
-  const Interval seen = visible(clip, {{0, -100, 0}, {0, 1, 0}});
+  const Interval seen = visibleInterval(clip, {{0, -100, 0}, {0, 1, 0}});
   EXPECT_NEAR(seen.begin, 95.0, 1e-12);
   EXPECT_EQ(seen.end, infinity);
 }
@@ -71,8 +71,8 @@ TEST(Clip, PlaneRemovesTheSideOfItsNormal) {
 TEST(Clip, PlaneParallelToARayRemovesAllOrNothing) {
   const Camera camera = anteriorCamera(Projection::orthographic, 100, 50, 8, 8);
   const Ray ray{{0, -100, 0}, {0, 1, 0}};
-  EXPECT_TRUE(visible(ClipPlane{camera, {-1, 0, 0}, {1, 0, 0}}, ray).isEmpty());
-  EXPECT_FALSE(visible(ClipPlane{camera, {1, 0, 0}, {1, 0, 0}}, ray).isEmpty());
+  EXPECT_TRUE(visibleInterval(ClipPlane{camera, {-1, 0, 0}, {1, 0, 0}}, ray).isEmpty());
+  EXPECT_FALSE(visibleInterval(ClipPlane{camera, {1, 0, 0}, {1, 0, 0}}, ray).isEmpty());
 }
 
 TEST(Clip, PerspectiveRemovesPointsBehindTheEyeInEveryMode) {
@@ -94,7 +94,7 @@ TEST(Clip, EyeRaysStartWhereKeepBegins) {
       for (const Clip& clip : everyClip(camera))
         for (int i = 0; i < fenestra::testing::budget(3000); ++i) {
           const Ray ray = camera.ray(uniform(random, 0, 96), uniform(random, 0, 96));
-          const Interval seen = visible(clip, ray);
+          const Interval seen = visibleInterval(clip, ray);
           const double step = 1e-6 * (1.0 + 1e-4 * distance);
           if (!seen.isEmpty()) {
             // Next to a distant eye (x, y) has lost its digits.
@@ -318,7 +318,7 @@ TEST(ClippingSurface, OnePixelFocusGivesALevelSurface) {
   const ClippingSurface surface = buildClippingSurface({pose, 16, 16}, volume, dot, {});
   EXPECT_EQ(surface.controlPoints.size(), 1U);
   EXPECT_EQ(surface.warnings.size(), 1U);
-  EXPECT_NEAR(std::get<ClipDepth>(surface.clip).surface({9.0, -9.0}), 99.5, 1e-4);
+  EXPECT_NEAR(std::get<ClipDepth>(surface.clip).surfaceDepth({9.0, -9.0}), 99.5, 1e-4);
 }
 
 } // namespace

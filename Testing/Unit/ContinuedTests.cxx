@@ -132,7 +132,7 @@ TEST(Tiles, PartsAreEvenAndScattered) {
   for (const int count : {1, 3, 7, 16}) {
     std::vector<int> owners(static_cast<std::size_t>(tiles.count()), 0);
     for (int index = 0; index < count; ++index) {
-      const std::vector<int> shard = tiles.of({index, count});
+      const std::vector<int> shard = tiles.select({index, count});
       EXPECT_NEAR(static_cast<double>(shard.size()), 1.0 * tiles.count() / count, 1.0);
       int left = 0;
       for (const int tile : shard) {

@@ -193,7 +193,7 @@ TEST(ControlPoints, DepthIsThatOfTheSampleAndSitesAreUnique) {
     EXPECT_TRUE(sites.insert({point.site.x(), point.site.y()}).second);
     EXPECT_NEAR(point.depth, point.site.x() + 69.5 + 10.0 * (49.5 - point.site.y()), 1e-4);
   }
-  EXPECT_LE(points.size(), boundarySamples(focus, contours).size());
+  EXPECT_LE(points.size(), findBoundarySamples(focus, contours).size());
 }
 
 TEST(ControlPoints, BoundarySamplesAreTheFocusSamplesWithAnOutsideNeighbour) {
@@ -206,7 +206,7 @@ TEST(ControlPoints, BoundarySamplesAreTheFocusSamplesWithAnOutsideNeighbour) {
                             focus.isFocus(column, row + 1) && focus.isFocus(column, row - 1)
                         ? 0
                         : 1;
-  EXPECT_EQ(boundarySamples(focus, traceContours(focus)).size(), expected);
+  EXPECT_EQ(findBoundarySamples(focus, traceContours(focus)).size(), expected);
 }
 
 } // namespace

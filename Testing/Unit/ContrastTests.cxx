@@ -34,30 +34,32 @@ TEST(ColorVision, DeltaE2000OfPublishedPairs) {
 }
 
 TEST(ColorVision, LabOfPrimaries) {
-  const Lab white = labOf(Rgb::Ones()), red = labOf(Rgb(1.0, 0.0, 0.0));
+  const Lab white = toLab(Rgb::Ones()), red = toLab(Rgb(1.0, 0.0, 0.0));
   EXPECT_NEAR(white.L, 100.0, 0.01);
   EXPECT_NEAR(std::hypot(white.a, white.b), 0.0, 0.02);
   EXPECT_NEAR(red.L, 53.24, 0.02);
   EXPECT_NEAR(red.a, 80.09, 0.05);
   EXPECT_NEAR(red.b, 67.20, 0.05);
-  EXPECT_NEAR(labOf(Rgb::Constant(0.001)).L, 0.9033, 1e-3) << "the line near black";
+  EXPECT_NEAR(toLab(Rgb::Constant(0.001)).L, 0.9033, 1e-3) << "the line near black";
   EXPECT_NEAR(deltaE76(white, red), 114.57, 0.1);
 }
 
 TEST(ColorVision, DichromatsSeeGreysAsTheyAreAndLoseOneHue) {
   const Rgb red(0.5, 0.1, 0.1), olive(0.22, 0.2, 0.1), blue(0.1, 0.1, 0.5), teal(0.02, 0.18, 0.2);
-  const auto difference = [](ColorSight vision, const Rgb& x, const Rgb& y) {
-    return deltaE2000(labOf(seenBy(vision, x)), labOf(seenBy(vision, y)));
+  const auto difference = [](ColorVision vision, const Rgb& x, const Rgb& y) {
+    return deltaE2000(toLab(simulateVision(vision, x)), toLab(simulateVision(vision, y)));
   };
-  for (const ColorSight vision : colorSights)
+  for (const ColorVision vision : colorVisions)
     for (const double grey : {0.0, 0.2, 1.0})
-      EXPECT_LT(deltaE76(labOf(seenBy(sight, Rgb::Constant(grey))), labOf(Rgb::Constant(grey))),
-                0.01);
-  EXPECT_LT(difference(ColorSight::deutan, red, olive),
-            0.5 * difference(ColorSight::normal, red, olive));
-  EXPECT_GT(difference(ColorSight::tritan, red, olive), difference(ColorSight::deutan, red, olive));
-  EXPECT_LT(difference(ColorSight::tritan, blue, teal),
-            0.6 * difference(ColorSight::normal, blue, teal));
+      EXPECT_LT(
+          deltaE76(toLab(simulateVision(vision, Rgb::Constant(grey))), toLab(Rgb::Constant(grey))),
+          0.01);
+  EXPECT_LT(difference(ColorVision::deutan, red, olive),
+            0.5 * difference(ColorVision::normal, red, olive));
+  EXPECT_GT(difference(ColorVision::tritan, red, olive),
+            difference(ColorVision::deutan, red, olive));
+  EXPECT_LT(difference(ColorVision::tritan, blue, teal),
+            0.6 * difference(ColorVision::normal, blue, teal));
 }
 
 constexpr double inside = 60.0, outside = 20.0, air = -1000.0;
@@ -115,9 +117,9 @@ TEST(Contrast, PalesSurroundingsThatLookLikeTheFocus) {
   EXPECT_TRUE(other.contrast && other.contrast->share() > 1.0);
   const FocusContrast requested =
       chosenContrast(1.0, makeBallMask(), volume, makeTransfer(red, red));
-  EXPECT_EQ(asked.saturation, 1.0);
-  EXPECT_EQ(asked.contrast->deltaE[0], 0.0);
-  EXPECT_EQ(asked.contrast->deltaL, 0.0);
+  EXPECT_EQ(requested.saturation, 1.0);
+  EXPECT_EQ(requested.contrast->deltaE[0], 0.0);
+  EXPECT_EQ(requested.contrast->deltaL, 0.0);
   const FocusContrast isolated =
       chosenContrast({}, makeBallMask(), makeBallVolume(6.0), makeTransfer(red, red));
   EXPECT_EQ(isolated.saturation, 1.0);

@@ -40,7 +40,8 @@ struct Cube {
     const MinMaxGrid ranges(scene.volume, 0);
     const MajorantGrid majorants(scene.volume.grid, ranges, scene.transfer, clip);
     const SceneView clipped{scene.volume, scene.transfer, majorants, lights, camera, clip};
-    return focusCoverage(clipped, focusPoints(clipped, std::vector<double>(256, focusDepth)), 1);
+    return measureCoverage(clipped, findFocusPoints(clipped, std::vector<double>(256, focusDepth)),
+                           1);
   }
 };
 

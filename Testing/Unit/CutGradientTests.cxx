@@ -148,12 +148,12 @@ TEST(CutGradient, MakesASurfaceOfHomogeneousMatter) {
   };
   const double opacity = 1.0 - std::exp(-0.8);
   const double expected = opacity * (1.0 - std::exp(-25.0 * 0.216 * 0.5 / 4.0));
-  EXPECT_NEAR(at(2.0).surfaceProbability, expected, 1e-12);
-  EXPECT_LT((at(2.0).gradient - 100.0 * 0.125 * Vec3::UnitY()).norm(), 1e-12);
-  EXPECT_EQ(at(4.5).surfaceProbability, 0.0);
-  EXPECT_EQ(at(-0.5).surfaceProbability, 0.0);
+  EXPECT_NEAR(sample(2.0).surfaceProbability, expected, 1e-12);
+  EXPECT_LT((sample(2.0).gradient - 100.0 * 0.125 * Vec3::UnitY()).norm(), 1e-12);
+  EXPECT_EQ(sample(4.5).surfaceProbability, 0.0);
+  EXPECT_EQ(sample(-0.5).surfaceProbability, 0.0);
   transfer.shading.reset();
-  EXPECT_EQ(at(2.0, true).gradient, Vec3::Zero());
+  EXPECT_EQ(sample(2.0, true).gradient, Vec3::Zero());
 }
 
 } // namespace

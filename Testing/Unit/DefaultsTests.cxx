@@ -113,7 +113,7 @@ TEST(FrameView, CroppedVolumeIsFramed) {
   EXPECT_NEAR(camera.pose().scale, 1.05 * 10.0 * std::numbers::sqrt2, 1e-6);
 
   const CropBox beside(Affine(makeTranslation({500, 0, 0})));
-  EXPECT_EQ(frameView({}, Domain(grid, beside), nullptr, 64, 64).scale,
+  EXPECT_EQ(frameView({}, Domain(grid, outside), nullptr, 64, 64).scale,
             frameView({}, grid, nullptr, 64, 64).scale)
       << "nothing is left: the volume is framed";
 }

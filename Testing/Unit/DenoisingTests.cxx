@@ -54,9 +54,9 @@ TEST_F(Denoising, ClosedAreEmptyPixelsWhateverTheSamplesMet) {
   for (std::size_t i = 0; i < film.pixelCount(); ++i) {
     const PixelSums& pixel = film.pixels()[i];
     const bool isEmpty = pixel.isDeterministic || scene.features()->hit[i] == 0.0F;
-    EXPECT_TRUE(isEmpty || input.isOpen[i] != 0);
-    EXPECT_FALSE(pixel.isDeterministic && input.isOpen[i] != 0);
-    without += input.isOpen[i] != 0 && pixel.collidedSamples == 0;
+    EXPECT_TRUE(isEmpty || input.isActive[i] != 0);
+    EXPECT_FALSE(pixel.isDeterministic && input.isActive[i] != 0);
+    without += input.isActive[i] != 0 && pixel.collidedSamples == 0;
     certain += pixel.isDeterministic;
   }
   EXPECT_GT(without, 100U);
@@ -86,7 +86,7 @@ TEST_F(Denoising, HalvesAverageToThePicture) {
                 film.pixels()[i].mean[1], 1e-6);
 }
 
-double errorOf(const FilteredPicture& picture, const Film& truth) {
+double errorOf(const FilteredImage& picture, const Film& truth) {
   double sum = 0.0;
   for (std::size_t i = 0; i < truth.pixelCount(); ++i)
     sum += std::pow(static_cast<double>(picture.color[0][i]) - truth.pixels()[i].mean[0], 2.0);
@@ -96,7 +96,7 @@ double errorOf(const FilteredPicture& picture, const Film& truth) {
 TEST_F(Denoising, FilteredPictureIsNearerToTheTruth) {
   const PreparedScene scene(request);
   const Film truth = picture(scene, 9, 512), film = picture(scene, 1, 4);
-  const FilteredPicture filtered = denoised(film, scene);
+  const FilteredImage filtered = denoised(film, scene);
   double raw = 0.0;
   for (std::size_t i = 0; i < film.pixelCount(); ++i)
     raw += std::pow(film.pixels()[i].mean[0] - truth.pixels()[i].mean[0], 2.0);
@@ -108,10 +108,10 @@ TEST_F(Denoising, ClosedPixelsKeepTheirRawColourAtAnyCount) {
   const PreparedScene scene(request);
   const Film film = picture(scene, 4, 3);
   const FilterInput input = filterInput(film, scene);
-  const FilteredPicture filtered = denoised(film, scene);
+  const FilteredImage filtered = denoised(film, scene);
   for (std::size_t i = 0; i < film.pixelCount(); ++i) {
     const auto mean = static_cast<float>(film.pixels()[i].mean[1]);
-    ASSERT_TRUE(input.isOpen[i] != 0 || filtered.color[1][i] == mean);
+    ASSERT_TRUE(input.isActive[i] != 0 || filtered.color[1][i] == mean);
   }
 }
 

@@ -108,10 +108,10 @@ TEST(DepthBuffer, NearestReturnsTheSampleOfThePixel) {
   DepthBuffer buffer(camera, centredGrid({2, 2, 2}));
   for (std::int64_t i = 0; i < buffer.size(); ++i)
     buffer.set(i, static_cast<double>(i));
-  EXPECT_EQ(buffer.nearest({-3.9, 3.9}), 0.0);
-  EXPECT_EQ(buffer.nearest({-2.1, 3.1}), 1.0);
-  EXPECT_EQ(buffer.nearest({-2.1, 2.9}), 9.0);
-  EXPECT_EQ(buffer.nearest({99.0, -99.0}), 63.0);
+  EXPECT_EQ(buffer.nearestDepth({-3.9, 3.9}), 0.0);
+  EXPECT_EQ(buffer.nearestDepth({-2.1, 3.1}), 1.0);
+  EXPECT_EQ(buffer.nearestDepth({-2.1, 2.9}), 9.0);
+  EXPECT_EQ(buffer.nearestDepth({99.0, -99.0}), 63.0);
 }
 
 TEST(DepthBuffer, RefusesAPictureWithoutExtent) {
@@ -153,9 +153,9 @@ TEST(DepthPyramid, BoundsHoldForEveryDepthInARectangle) {
       for (int i = 0; i < 50; ++i) {
         const Vec2 p(uniform(random, a.x(), b.x()), uniform(random, a.y(), b.y()));
         ASSERT_LE(bounds.begin, buffer.depth(p) + 1e-9);
-        ASSERT_LE(bounds.begin, buffer.nearest(p));
+        ASSERT_LE(bounds.begin, buffer.nearestDepth(p));
         ASSERT_GE(bounds.end, buffer.depth(p) - 1e-9);
-        ASSERT_GE(bounds.end, buffer.nearest(p));
+        ASSERT_GE(bounds.end, buffer.nearestDepth(p));
       }
     }
   }

@@ -67,7 +67,7 @@ TEST(Domain, ClipIsTheIntersectionOfGridAndCrop) {
       const double t = range.begin + (i + 0.5) / 200.0 * (range.end - range.begin);
       const double beyond = outside(grid, crop, ray.at(t));
       if (std::abs(beyond) > 1e-9) {
-        ASSERT_EQ(beyond < 0.0, !inside.isEmpty() && t >= inside.begin && t <= inside.end)
+        ASSERT_EQ(distance < 0.0, !inside.isEmpty() && t >= inside.begin && t <= inside.end)
             << "trial " << trial << " at " << t;
       }
     }

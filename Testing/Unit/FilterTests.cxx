@@ -91,7 +91,7 @@ Errors errorsOf(
       for (std::size_t i = 0; i < subject.count(); ++i)
         raw[c][i] = 0.5F * (input.even[c][i] + input.odd[c][i]);
     spoil(input);
-    const FilteredPicture picture = filtered(input);
+    const FilteredImage picture = filterImage(input);
     errors.told += picture.toldError / draws;
     errors.truth += subject.relativeError(picture.color) / draws;
     errors.raw += subject.relativeError(raw) / draws;
@@ -101,9 +101,9 @@ Errors errorsOf(
 
 TEST(Filter, PictureThatIsLinearInItsFeaturesStays) {
   const Subject subject{.unknown = 0.0, .noise = 0.0};
-  const FilteredPicture picture = filtered(subject.input(1));
-  EXPECT_LT(std::sqrt(subject.relativeError(picture.color)), 1e-3);
-  EXPECT_LT(picture.toldError, 1e-6);
+  const FilteredImage picture = filterImage(subject.input(1));
+  EXPECT_LT(std::sqrt(subject.relativeError(image.color)), 1e-3);
+  EXPECT_LT(image.toldError, 1e-6);
 }
 
 TEST(Filter, ErrorFallsAndTheToldErrorIsTrueInTheMean) {
@@ -145,7 +145,7 @@ TEST(ToldError, OfTheChosenWindowsIsUnbiased) {
       fit.color.push_back(c < 3 ? input.even[c] : input.odd[c - 3]);
     subject.fill(fit.features.emplace_back(), [](int x, int) { return Subject::band(x); });
     subject.fill(fit.features.emplace_back(), Subject::wave);
-    const auto chosen = chosenWindows(fit, input.variance);
+    const auto chosen = filterAdaptively(fit, input.variance);
     for (int y = 0; y < subject.height; ++y)
       for (int x = 0; x < subject.width; ++x) {
         const std::size_t i = subject.at(x, y);
@@ -174,14 +174,14 @@ TEST(Filter, FeaturesWithTheSamplesOwnNoiseMakeTheToldErrorALie) {
 
 TEST(Filter, ToldErrorsOfPixelsAverageToThePictures) {
   const Subject subject;
-  const FilteredPicture picture = filtered(subject.input(3));
+  const FilteredImage picture = filterImage(subject.input(3));
   double sum = 0.0;
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < subject.count(); ++i) {
       const double x = static_cast<double>(picture.color[c][i]);
       sum += std::pow(static_cast<double>(picture.error[c][i]), 2) / (x * x + 0.01);
     }
-  EXPECT_NEAR(sum / (3.0 * static_cast<double>(subject.count())) / picture.toldError, 1.0, 0.02);
+  EXPECT_NEAR(sum / (3.0 * static_cast<double>(subject.count())) / image.toldError, 1.0, 0.02);
 }
 
 TEST(Filter, BitsAreTheSameForOneTwoAndSevenThreads) {
@@ -189,7 +189,7 @@ TEST(Filter, BitsAreTheSameForOneTwoAndSevenThreads) {
   std::vector<FourPlanes> pictures;
   for (const std::size_t threads : {1U, 2U, 7U}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    pictures.push_back(filtered(input).color);
+    pictures.push_back(filterImage(input).color);
   }
   EXPECT_EQ(pictures[0], pictures[1]);
   EXPECT_EQ(pictures[0], pictures[2]);
@@ -207,7 +207,7 @@ TEST(Filter, NothingIsInventedInNoiseAroundAConstant) {
     remove(input.even[c], c);
     remove(input.odd[c], c);
   }
-  const FilteredPicture picture = filtered(input);
+  const FilteredImage picture = filterImage(input);
   const double rawError = noisy.noise / std::sqrt(2.0);
   double beyond = 0.0, farthest = 0.0;
   for (std::size_t c = 0; c < 3; ++c)
@@ -219,7 +219,7 @@ TEST(Filter, NothingIsInventedInNoiseAroundAConstant) {
   EXPECT_LT(farthest, 2.0) << "raw standard errors";
   const double share = beyond / (3.0 * static_cast<double>(noisy.count()));
   std::cout << "beyond five told errors: " << 100.0 * share << " %\n";
-  EXPECT_LT(share, 0.05);
+  EXPECT_LT(fraction, 0.05);
 }
 
 TEST(Filter, FireflyIsNoWorseThanRaw) {
@@ -235,23 +235,23 @@ TEST(Filter, FireflyIsNoWorseThanRaw) {
 TEST(Filter, ClosedAndUnusualPixelsStayRaw) {
   const Subject subject{.width = 40, .height = 30};
   FilterInput input = subject.input(1);
-  input.isOpen[100] = 0;
+  input.isActive[100] = 0;
   input.features[1][200] = std::numeric_limits<float>::quiet_NaN();
   input.even[2][300] = std::numeric_limits<float>::infinity();
-  const FilteredPicture picture = filtered(input);
+  const FilteredImage picture = filterImage(input);
   for (const std::size_t pixel : {100U, 200U})
     for (std::size_t c = 0; c < 3; ++c) {
-      EXPECT_EQ(picture.color[c][pixel], 0.5F * (input.even[c][pixel] + input.odd[c][pixel]));
-      EXPECT_EQ(picture.error[c][pixel], std::sqrt(input.variance[c][pixel]));
+      EXPECT_EQ(image.color[c][pixel], 0.5F * (input.even[c][pixel] + input.odd[c][pixel]));
+      EXPECT_EQ(image.error[c][pixel], std::sqrt(input.variance[c][pixel]));
     }
   for (const std::size_t pixel : {101U, 201U, 301U})
-    EXPECT_TRUE(std::isfinite(picture.color[2][pixel]));
+    EXPECT_TRUE(std::isfinite(image.color[2][pixel]));
   FilterInput closed = subject.input(1);
-  std::ranges::fill(closed.isOpen, std::uint8_t{0});
-  EXPECT_GT(filtered(closed).toldError, 0.1); // of the samples
+  std::ranges::fill(closed.isActive, std::uint8_t{0});
+  EXPECT_GT(filterImage(closed).toldError, 0.1); // of the samples
   for (Plane& plane : closed.variance)
     std::ranges::fill(plane, 0.0F); // certain
-  EXPECT_EQ(filtered(closed).toldError, 0.0);
+  EXPECT_EQ(filterImage(closed).toldError, 0.0);
 }
 
 TEST(Filter, AnySizeOfPicture) {
@@ -262,9 +262,9 @@ TEST(Filter, AnySizeOfPicture) {
       input.hasHalfBuffers = hasHalves;
       if (!hasHalves)
         input.odd = {};
-      const FilteredPicture picture = filtered(input);
-      EXPECT_TRUE(std::isfinite(subject.relativeError(picture.color))) << width << 'x' << height;
-      EXPECT_EQ(picture.error[0].size(), hasHalfBuffers ? subject.count() : 0U);
+      const FilteredImage picture = filterImage(input);
+      EXPECT_TRUE(std::isfinite(subject.relativeError(image.color))) << width << 'x' << height;
+      EXPECT_EQ(image.error[0].size(), hasHalfBuffers ? subject.count() : 0U);
     }
   }
 }
@@ -283,7 +283,7 @@ TEST(Filter, BlackBesideBrightTellsAFiniteErrorThatCanBeReached) {
         input.odd[c][i] *= scale;
         input.variance[c][i] *= scale * scale;
       }
-  const FilteredPicture picture = filtered(input);
+  const FilteredImage picture = filterImage(input);
   double told = 0.0, left = 0.0; // squares, over the black half
   for (std::size_t c = 0; c < 3; ++c)
     for (int y = 0; y < subject.height; ++y)
@@ -294,7 +294,7 @@ TEST(Filter, BlackBesideBrightTellsAFiniteErrorThatCanBeReached) {
         told += x < 40 ? error * error : 0.0;
         left += x < 40 ? std::pow(static_cast<double>(picture.color[c][i]), 2) : 0.0;
       }
-  EXPECT_LT(picture.toldError, 1.0);
+  EXPECT_LT(image.toldError, 1.0);
   EXPECT_GT(told, 0.25 * remaining) << "told standard errors at least half of what is there";
 }
 

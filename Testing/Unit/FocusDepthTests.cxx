@@ -40,7 +40,7 @@ double indicator(const Mask& mask, const Vec3& world) {
 }
 
 double findDepth(const FocusDepth& focus, const Vec2& position) {
-  return focus.depth.nearest(position);
+  return focus.depth.nearestDepth(position);
 }
 
 /// Rays through and beside a mask of 3^3 voxels, in its cells and in the world.
@@ -171,7 +171,7 @@ TEST(CellCubic, FirstRootEqualsBruteForce) {
                  uniform(random, -8, 8)}};
     cubic.c[trial % 5 == 0 ? 3 : 0] *= trial % 5 == 0 ? 0.0 : 1.0;
     cubic.c[trial % 10 == 0 ? 2 : 0] *= trial % 10 == 0 ? 1e-18 : 1.0;
-    const double root = firstNonNegative(cubic);
+    const double root = findFirstNonNegative(cubic);
     const int samples = 400;
     for (int i = 0; i <= samples; ++i) {
       const double s = static_cast<double>(i) / samples;
@@ -189,11 +189,11 @@ TEST(CellCubic, FirstRootEqualsBruteForce) {
 }
 
 TEST(CellCubic, TouchingConstantAndLinearRootsAreFound) {
-  EXPECT_EQ(firstNonNegative({{-1, 0, 0, 0}}), infinity);
-  EXPECT_EQ(firstNonNegative({{0, -1, 0, 0}}), 0.0);
-  EXPECT_NEAR(firstNonNegative({{-0.25, 1, 0, 0}}), 0.25, 1e-15);
-  EXPECT_NEAR(firstNonNegative({{-0.25, 1, -1, 0}}), 0.5, 1e-7); // a double root
-  EXPECT_NEAR(firstNonNegative({{-1, 0, 0, 1}}), 1.0, 1e-15);
+  EXPECT_EQ(findFirstNonNegative({{-1, 0, 0, 0}}), infinity);
+  EXPECT_EQ(findFirstNonNegative({{0, -1, 0, 0}}), 0.0);
+  EXPECT_NEAR(findFirstNonNegative({{-0.25, 1, 0, 0}}), 0.25, 1e-15);
+  EXPECT_NEAR(findFirstNonNegative({{-0.25, 1, -1, 0}}), 0.5, 1e-7); // a double root
+  EXPECT_NEAR(findFirstNonNegative({{-1, 0, 0, 1}}), 1.0, 1e-15);
 }
 
 TEST(FocusDepth, BoxFacesLieAtTheVoxelsFaces) {
@@ -201,11 +201,11 @@ TEST(FocusDepth, BoxFacesLieAtTheVoxelsFaces) {
   const Mask mask = boxMask(grid, {-10.1, -7.1, -13.1}, {10.1, 7.1, 13.1});
   for (const auto projection : {Projection::orthographic, Projection::perspective}) {
     const Camera camera = anteriorCamera(projection, 200.0, 30.0, 64, 48);
-    const FocusDepth focus = FocusTracer(camera, grid, mask).depths();
+    const FocusDepth focus = FocusTracer(camera, grid, mask).traceDepths();
     const double face = 200.0 - 0.7 * 10.0; // ten voxels to each side of the origin
-    EXPECT_NEAR(depthAt(focus, {0.3, 0.3}), face, 1e-5);
-    EXPECT_NEAR(depthAt(focus, {-8.0, 11.0}), face, 1e-5);
-    EXPECT_EQ(depthAt(focus, {13.0, 0.0}), infinity);
+    EXPECT_NEAR(findDepth(focus, {0.3, 0.3}), face, 1e-5);
+    EXPECT_NEAR(findDepth(focus, {-8.0, 11.0}), face, 1e-5);
+    EXPECT_EQ(findDepth(focus, {13.0, 0.0}), infinity);
   }
 }
 
@@ -213,7 +213,7 @@ TEST(FocusDepth, RegionsCountFocusContextAndOutside) {
   const Grid grid = centredGrid({20, 20, 20});
   const Mask mask = boxMask(grid, Vec3::Constant(-4), Vec3::Constant(4));
   const Camera camera = anteriorCamera(Projection::orthographic, 50.0, 20.0, 40, 40);
-  const FocusDepth focus = FocusTracer(camera, grid, mask).depths();
+  const FocusDepth focus = FocusTracer(camera, grid, mask).traceDepths();
   std::array<int, 3> count{};
   for (const Region region : focus.regions)
     ++count[static_cast<std::size_t>(region)];
@@ -224,7 +224,7 @@ TEST(FocusDepth, RegionsCountFocusContextAndOutside) {
 
 /// Expects every hit on the level 0.5, with no focus in front.
 void compareWithMarching(const Camera& camera, const Domain& volume, const Mask& mask) {
-  const FocusDepth focus = FocusTracer(camera, volume, mask).depths();
+  const FocusDepth focus = FocusTracer(camera, volume, mask).traceDepths();
   const double step = 0.02;
   int hits = 0;
   for (std::int64_t row = 0; row < focus.depth.rows(); ++row)
@@ -265,7 +265,7 @@ TEST(FocusDepth, IsTheSameInEveryInstructionSet) {
     for (std::int64_t left = hwy::SupportedTargets() & HWY_TARGETS; left != 0; left &= left - 1) {
       SCOPED_TRACE(hwy::TargetName(left & -left));
       hwy::SetSupportedTargetsForTest(left & -left);
-      const FocusDepth focus = FocusTracer(camera, grid, mask).depths();
+      const FocusDepth focus = FocusTracer(camera, grid, mask).traceDepths();
       if (!first)
         first = focus;
       EXPECT_EQ(focus.regions, first->regions);
@@ -323,7 +323,7 @@ TEST(FocusDepth, RegionIsWhatItsRayMeets) {
                               makeRotation(trial, randomPoint(random, -1, 1).normalized())) *
                        makeScaling(randomPoint(random, 1, 15)));
     const Domain volume = trial % 5 < 2 ? Domain(grid, crop) : Domain(grid);
-    const FocusDepth focus = FocusTracer(camera, volume, mask).depths();
+    const FocusDepth focus = FocusTracer(camera, volume, mask).traceDepths();
     const std::int64_t stride = 1 + focus.depth.rows() / 40;
     for (std::int64_t row = 0; row < focus.depth.rows(); row += stride)
       for (std::int64_t column = 0; column < focus.depth.columns(); column += stride) {
@@ -348,14 +348,14 @@ TEST(FocusDepth, RayThatStartsInsideMeetsTheFocusAtZero) {
   const Grid grid = centredGrid({20, 20, 20});
   const Mask mask = sphereMask(grid, 6.0);
   const Camera camera = anteriorCamera(Projection::perspective, 1.0, 1.0, 8, 8);
-  EXPECT_EQ(depthAt(FocusTracer(camera, grid, mask).depths(), {0.0, 0.0}), 0.0);
+  EXPECT_EQ(findDepth(FocusTracer(camera, grid, mask).traceDepths(), {0.0, 0.0}), 0.0);
 }
 
 TEST(FocusDepth, FocusBeyondTheVolumeIsCutAtItsFace) {
   const Grid volume = centredGrid({20, 20, 20});
   const Mask mask = sphereMask(centredGrid({40, 40, 40}), 15.0);
   const Camera camera = anteriorCamera(Projection::orthographic, 50.0, 8.0, 16, 16);
-  EXPECT_NEAR(depthAt(FocusTracer(camera, volume, mask).depths(), {0.0, 0.0}), 40.0, 1e-5);
+  EXPECT_NEAR(findDepth(FocusTracer(camera, volume, mask).traceDepths(), {0.0, 0.0}), 40.0, 1e-5);
 }
 
 TEST(FocusDepth, CropCutsTheFocusAndItsContext) {
@@ -366,7 +366,7 @@ TEST(FocusDepth, CropCutsTheFocusAndItsContext) {
   const CropBox crop(makeRotation(-pi / 4, Vec3::UnitZ()) * makeTranslation({0.0, 30.0, 0.0}) *
                      makeScaling(Vec3(60.0, 30.0, 18.0)));
   const Camera camera = anteriorCamera(Projection::orthographic, 50.0, 20.0, 40, 40);
-  const FocusDepth focus = FocusTracer(camera, {volume, crop}, mask).depths();
+  const FocusDepth focus = FocusTracer(camera, {volume, crop}, mask).traceDepths();
   const auto region = [&](const Vec2& at) {
     for (std::int64_t row = 0; row < focus.depth.rows(); ++row)
       for (std::int64_t column = 0; column < focus.depth.columns(); ++column)
@@ -374,10 +374,10 @@ TEST(FocusDepth, CropCutsTheFocusAndItsContext) {
           return focus.regions[static_cast<std::size_t>(focus.depth.sample(column, row))];
     return Region::outside;
   };
-  EXPECT_NEAR(depthAt(focus, {4.5, 0.5}), 50.0 - 4.5, 1e-5) << "met in the crop's face";
-  EXPECT_NEAR(depthAt(focus, {-4.5, 0.5}), 50.0 + 4.5, 1e-5);
+  EXPECT_NEAR(findDepth(focus, {4.5, 0.5}), 50.0 - 4.5, 1e-5) << "met in the crop's face";
+  EXPECT_NEAR(findDepth(focus, {-4.5, 0.5}), 50.0 + 4.5, 1e-5);
   EXPECT_EQ(region({-4.5, 0.5}), Region::focus);
-  EXPECT_EQ(depthAt(focus, {-8.5, 0.5}), infinity) << "the crop begins behind the sphere";
+  EXPECT_EQ(findDepth(focus, {-8.5, 0.5}), infinity) << "the crop begins behind the sphere";
   EXPECT_EQ(region({-8.5, 0.5}), Region::context);
   EXPECT_EQ(region({0.5, 17.5}), Region::context);
   EXPECT_EQ(region({0.5, 18.5}), Region::outside) << "above the crop, inside the volume";
@@ -387,9 +387,9 @@ TEST(FocusDepth, MaskWithoutMarginEndsHalfAVoxelBeyondItsCentres) {
   const Grid volume = centredGrid({20, 20, 20});
   const Mask mask = maskOf(centredGrid({2, 1, 2}, {2, 2, 2}), [](const Vec3&) { return true; });
   const Camera camera = anteriorCamera(Projection::orthographic, 50.0, 8.0, 64, 64);
-  const FocusDepth focus = FocusTracer(camera, volume, mask).depths();
-  EXPECT_NEAR(depthAt(focus, {0.1, 0.1}), 49.0, 1e-5);
-  EXPECT_EQ(depthAt(focus, {2.2, 0.1}), infinity);
+  const FocusDepth focus = FocusTracer(camera, volume, mask).traceDepths();
+  EXPECT_NEAR(findDepth(focus, {0.1, 0.1}), 49.0, 1e-5);
+  EXPECT_EQ(findDepth(focus, {2.2, 0.1}), infinity);
 }
 
 TEST(FocusDepth, FarEyeKeepsThePrecision) {
@@ -397,7 +397,8 @@ TEST(FocusDepth, FarEyeKeepsThePrecision) {
   const Mask mask = boxMask(grid, Vec3::Constant(-10), Vec3::Constant(10));
   for (const auto projection : {Projection::orthographic, Projection::perspective}) {
     const Camera camera = anteriorCamera(projection, 1e6, 30.0, 32, 32);
-    EXPECT_NEAR(depthAt(FocusTracer(camera, grid, mask).depths(), {1.0, 1.0}) - 1e6, -10.0, 1e-5);
+    EXPECT_NEAR(findDepth(FocusTracer(camera, grid, mask).traceDepths(), {1.0, 1.0}) - 1e6, -10.0,
+                1e-5);
   }
 }
 

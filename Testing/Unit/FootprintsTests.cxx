@@ -29,7 +29,7 @@ void expectHitsInBounds(const FocusTracer& tracer, const DepthBuffer& buffer,
   std::vector<Vec2> positions(5000);
   for (Vec2& position : positions)
     position = Vec2(uniform(random, -22, 22), uniform(random, -22, 22));
-  const std::vector<double> depths = tracer.depthsAt(positions);
+  const std::vector<double> depths = tracer.findDepths(positions);
   int hits = 0;
   for (std::size_t i = 0; i < positions.size(); ++i)
     if (depths[i] < infinity) {
@@ -51,9 +51,9 @@ TEST(Footprints, ReachesHoldTheFocusWhicheverCellsAreAskedFor) {
   for (const int pixels : {8, 100}) {
     const Camera camera = anteriorCamera(Projection::perspective, 200.0, 30.0, pixels, pixels);
     const FocusTracer tracer(camera, Domain(grid), focus);
-    const DepthBuffer buffer = tracer.depths().depth;
+    const DepthBuffer buffer = tracer.traceDepths().depth;
     const FocusCells& cells = tracer.cells();
-    const CellRange range = focusRange(camera, buffer, cells);
+    const CellRange range = findFocusRange(camera, buffer, cells);
     const auto computeBounds = [&](const std::vector<std::uint8_t>& isRequested) {
       return computeDepthBounds(camera, buffer, cells, range, isRequested);
     };

@@ -68,8 +68,8 @@ TEST(LabelSearch, TableInTheFileOfEachVersionIsTaken) {
          {std::optional<std::string>(), std::optional<std::string>("totalsegmentator")}) {
       const Segmentation named = readSegmentation(map, nullptr, wanted);
       EXPECT_EQ(nameOf(named, 7), organ);
-      EXPECT_EQ(named.namesFrom(), wanted ? version : map.string());
-      EXPECT_EQ(readSegmentInfos(map, wanted).size(), 2u);
+      EXPECT_EQ(named.namesFrom(), requested ? version : map.string());
+      EXPECT_EQ(readSegmentInfos(map, requested).size(), 2u);
     }
   }
   const auto plain = folder.write("plain.nii", labelMap());

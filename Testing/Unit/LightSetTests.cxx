@@ -197,8 +197,8 @@ TEST(LightSet, SmallFarAndNearSpheresKeepTheirDigits) {
     EXPECT_NEAR(near->pdf * 2.0 * pi, gap > 0.0 ? 1.0 : 0.5, 1e-4);
   }
   const auto center = sampled(1.0, 0.0, {0.3, 0.7});
-  ASSERT_TRUE(centre);
-  EXPECT_NEAR(centre->distance, 1.0, 1e-12);
+  ASSERT_TRUE(center);
+  EXPECT_NEAR(center->distance, 1.0, 1e-12);
 }
 
 TEST(LightSet, ARayMeetsASphereOnceAndOnlyAhead) {

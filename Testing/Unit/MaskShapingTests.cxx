@@ -76,7 +76,7 @@ TEST(MaskShaping, UnionCountsTheVoxelsOfBothMasks) {
 /// Range of the visible surface's distances from a sphere of `radius`, over its central part, mm.
 double stairs(const Mask& mask, double radius) {
   const Camera camera = anteriorCamera(Projection::orthographic, 100, 20, 128, 128);
-  const FocusDepth focus = FocusTracer(camera, volume, mask).depths();
+  const FocusDepth focus = FocusTracer(camera, volume, mask).traceDepths();
   std::vector<double> misses;
   for (std::int64_t row = 0; row < focus.depth.rows(); ++row)
     for (std::int64_t column = 0; column < focus.depth.columns(); ++column) {
@@ -104,7 +104,7 @@ TEST(MaskShaping, SmoothingKeepsAFlatFace) {
   const Mask box = boxMask(centredGrid({60, 60, 40}), {-20, -9, -15}, {20, 9, 15});
   const Camera camera = anteriorCamera(Projection::orthographic, 100, 20, 64, 64);
   const auto depth = [&](const Mask& mask) {
-    const FocusDepth focus = FocusTracer(camera, volume, mask).depths();
+    const FocusDepth focus = FocusTracer(camera, volume, mask).traceDepths();
     return focus.depth.at(focus.depth.viewportSample(32, 32));
   };
   EXPECT_NEAR(depth(smoothed(box, 1.0, volume)), depth(box), 0.01) << "a byte's rounding";
@@ -113,7 +113,7 @@ TEST(MaskShaping, SmoothingKeepsAFlatFace) {
 /// Range of the visible surface's distances from y = slope z along its normal, mm.
 double stairsOfASlope(const Mask& mask, double slope) {
   const Camera camera = anteriorCamera(Projection::orthographic, 100, 5, 128, 128);
-  const FocusDepth focus = FocusTracer(camera, volume, mask).depths();
+  const FocusDepth focus = FocusTracer(camera, volume, mask).traceDepths();
   std::vector<double> misses;
   for (std::int64_t row = 0; row < focus.depth.rows(); ++row)
     for (std::int64_t column = 0; column < focus.depth.columns(); ++column) {

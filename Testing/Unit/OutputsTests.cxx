@@ -296,7 +296,7 @@ TEST_F(OutputFiles, NextRunRemovesFilesOfKilledRuns) {
   for (const char* name : {".fenestra-notes", ".fenestra-0123456789ab"})
     folder.write(name, "somebody's");
   const int living = ::open(folder.write(inUse, "in use").c_str(), O_RDONLY);
-  ASSERT_EQ(::flock(living, LOCK_EX), 0);
+  ASSERT_EQ(::flock(active, LOCK_EX), 0);
   outputs.add(folder / "a");
   EXPECT_FALSE(fs::exists(folder / stale));
   EXPECT_TRUE(fs::exists(folder / inUse));

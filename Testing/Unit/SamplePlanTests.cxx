@@ -52,7 +52,7 @@ TEST(SamplePlan, SharesAreProportionalToTheNoise) {
   const auto left = static_cast<double>(stage.count(64 * 30 + 10));
   const auto right = static_cast<double>(stage.count(64 * 30 + 50));
   EXPECT_NEAR(left / right, 4.0, 0.02);
-  EXPECT_NEAR(stage.greatestShare(), left / 1000.0, 0.01);
+  EXPECT_NEAR(stage.maxRatio(), left / 1000.0, 0.01);
 }
 
 TEST(SamplePlan, CostlyPathsGetFewerSamples) {
@@ -97,7 +97,7 @@ TEST(SamplePlan, OwnSamplesDoNotDecideOnTheirNumber) {
 TEST(SamplePlan, QuietAndTinyPicturesAreSampledUniformly) {
   const SamplePlan quiet(pilotOf(64, 64, [](int, int) { return 0.0; }));
   EXPECT_EQ(quiet.at(100).count(5), 100U);
-  EXPECT_EQ(quiet.at(100).greatestShare(), 1.0);
+  EXPECT_EQ(quiet.at(100).maxRatio(), 1.0);
   for (const int size : {1, 2, 32}) {
     const SamplePlan tiny(pilotOf(size, size, [](int column, int) { return 0.1 + column; }));
     EXPECT_EQ(tiny.at(100).count(0), 100U);

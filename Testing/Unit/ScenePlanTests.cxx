@@ -129,22 +129,22 @@ std::string cameraOf(const std::string& nodes) {
 TEST(ScenePlan, PairsTheCameraWithItsView) {
   const std::string cameras =
       R"(<Camera id="c2" singletonTag="2"/><Camera id="c1" singletonTag="1"/>)";
-  EXPECT_EQ(cameraOf(cameras + R"(<View id="w1" layoutName="1"/>)"), "w1 c1");
-  EXPECT_EQ(cameraOf(cameras + R"(<View id="w1" singletonTag="1"/>)"), "w1 c1");
-  EXPECT_EQ(cameraOf(R"(<Camera id="c2" activetag="w2"/><Camera id="c1" activetag="w1"/>
+  EXPECT_EQ(findCamera(cameras + R"(<View id="w1" layoutName="1"/>)"), "w1 c1");
+  EXPECT_EQ(findCamera(cameras + R"(<View id="w1" singletonTag="1"/>)"), "w1 c1");
+  EXPECT_EQ(findCamera(R"(<Camera id="c2" activetag="w2"/><Camera id="c1" activetag="w1"/>
                         <View id="w1"/>)"),
             "w1 c1");
-  EXPECT_EQ(cameraOf(R"(<Camera id="c" singletonTag="x"/><View id="w" layoutName="1"/>)"), "w c");
-  EXPECT_EQ(cameraOf(cameras + R"(<View id="w" layoutName="3"/>)"), "w none");
-  EXPECT_EQ(cameraOf(R"(<Camera id="c"/>)"), "none c");
+  EXPECT_EQ(findCamera(R"(<Camera id="c" singletonTag="x"/><View id="w" layoutName="1"/>)"), "w c");
+  EXPECT_EQ(findCamera(cameras + R"(<View id="w" layoutName="3"/>)"), "w none");
+  EXPECT_EQ(findCamera(R"(<Camera id="c"/>)"), "none c");
 }
 
 TEST(ScenePlan, ChoosesTheViewOfTheRendering) {
   const std::string both = R"(<View id="w1" layoutName="1"/><View id="w2" layoutName="2")";
-  EXPECT_EQ(cameraOf(both + "/>"), "w1 none");
-  EXPECT_EQ(cameraOf(both + R"( active="true"/>)"), "w2 none");
-  EXPECT_EQ(cameraOf(both + R"( attributes="MappedInLayout:1"/>)"), "w2 none");
-  EXPECT_EQ(cameraOf(both + R"(/><GPURayCastVolumeRendering id="d" viewNodeRef="w2"/>)"),
+  EXPECT_EQ(findCamera(both + "/>"), "w1 none");
+  EXPECT_EQ(findCamera(both + R"( active="true"/>)"), "w2 none");
+  EXPECT_EQ(findCamera(both + R"( attributes="MappedInLayout:1"/>)"), "w2 none");
+  EXPECT_EQ(findCamera(both + R"(/><GPURayCastVolumeRendering id="d" viewNodeRef="w2"/>)"),
             "w2 none");
 }
 

@@ -59,7 +59,7 @@ OutlinePoint findOutlinePoint(const FocusTracer& tracer, const Vec2& direction) 
   double inner = 17.0, outer = 22.0;
   while (outer - inner > 1e-7) {
     const double middle = 0.5 * (inner + outer);
-    (tracer.depthsAt({middle * direction})[0] < infinity ? inner : outer) = middle;
+    (tracer.findDepths({middle * direction})[0] < infinity ? inner : outer) = middle;
   }
   return {inner * direction, outer * direction};
 }
@@ -75,7 +75,7 @@ TEST(SilhouetteCells, DepthBetweenSamplesIsThatOfTheFocus) {
       const double angle = uniform(random, 0.0, 2.0 * pi);
       const Vec2 at = uniform(random, 18.0, 21.0) * Vec2(std::cos(angle), std::sin(angle));
       if (const double depth = findFocusDepth(ball, at); depth < infinity)
-        differences.push_back(std::abs(depth - clip.surface(at)));
+        differences.push_back(std::abs(depth - clip.surfaceDepth(at)));
     }
     std::ranges::sort(differences);
     EXPECT_LT(differences[399], 0.02) << "a step of this test's search";
@@ -92,9 +92,9 @@ TEST(SilhouetteCells, DepthContinuesAtTheEdgeOfTheFocus) {
     for (int i = 0; i < 200; ++i) {
       const OutlinePoint outline =
           findOutlinePoint(tracer, {std::cos(0.0314 * i), std::sin(0.0314 * i)});
-      const double depth = tracer.depthsAt({outline.inside})[0];
-      EXPECT_NEAR(clip.surface(outline.inside), depth, 1e-4);
-      steps.push_back(std::abs(clip.surface(outline.outside) - depth));
+      const double depth = tracer.findDepths({outline.inside})[0];
+      EXPECT_NEAR(clip.surfaceDepth(outline.inside), depth, 1e-4);
+      steps.push_back(std::abs(clip.surfaceDepth(outline.outside) - depth));
     }
     std::ranges::sort(steps);
     EXPECT_LT(steps[190], 1e-3);
@@ -114,7 +114,8 @@ TEST(SilhouetteCells, DepthJoinsTheSamplesWithoutASteepSlope) {
     const double outline = findOutlinePoint(tracer, direction).outside.norm();
     for (double r = outline; r < outline + 3.0; r += step)
       slopes.push_back(
-          std::abs(clip.surface((r + step) * direction) - clip.surface(r * direction)) / step);
+          std::abs(clip.surfaceDepth((r + step) * direction) - clip.surfaceDepth(r * direction)) /
+          step);
   }
   std::ranges::sort(slopes);
   EXPECT_LT(slopes[slopes.size() * 9 / 10], 2.0);
@@ -139,15 +140,15 @@ TEST(SilhouetteCells, KeepEqualsThatOfTheFullSurface) {
       int partialCount = 0;
       for (int i = 0; i < 5000; ++i) {
         const Vec2 position(uniform(random, -22.0, 22.0), uniform(random, -22.0, 22.0));
-        const double depth = clip.surface(position) + uniform(random, -4.0, 4.0);
+        const double depth = clip.surfaceDepth(position) + uniform(random, -4.0, 4.0);
         const Vec3 world = fromBuffer(ball.camera, {position.x(), position.y(), depth});
         const Vec3 at = toBuffer(ball.camera, world);
-        const double expected = clip.edge(at.z() - clip.surface(at.head<2>()));
+        const double expected = clip.edge(at.z() - clip.surfaceDepth(at.head<2>()));
         partialCount += expected > 0.25 && expected < 1.0;
         ASSERT_NEAR(keep(clip, world), expected, 1e-6) << position << ' ' << depth;
         const auto bounds = clip.pyramid->bounds(*clip.buffer, position, position);
-        ASSERT_GE(clip.surface(position), bounds.begin - 1e-4);
-        ASSERT_LE(clip.surface(position), bounds.end + 1e-4);
+        ASSERT_GE(clip.surfaceDepth(position), bounds.begin - 1e-4);
+        ASSERT_LE(clip.surfaceDepth(position), bounds.end + 1e-4);
       }
       EXPECT_EQ(partialCount > 250, softness > 0.0);
     }
@@ -172,9 +173,9 @@ TEST(SilhouetteCells, DepthMeetsASmoothedFocus) {
     const OutlinePoint outline =
         findOutlinePoint(tracer, {std::cos(0.0628 * i), std::sin(0.0628 * i)});
     EXPECT_NEAR(outline.inside.norm(), 20.3, 0.05);
-    EXPECT_NEAR(clip.surface(outline.outside), 200.0, 1.0) << "the ball ends in its middle";
-    EXPECT_NEAR(clip.surface(outline.outside), clip.surface(outline.inside), 0.01);
-    EXPECT_NEAR(clip.surface(1.02 * outline.outside), 200.0, 1.0);
+    EXPECT_NEAR(clip.surfaceDepth(outline.outside), 200.0, 1.0) << "the ball ends in its middle";
+    EXPECT_NEAR(clip.surfaceDepth(outline.outside), clip.surfaceDepth(outline.inside), 0.01);
+    EXPECT_NEAR(clip.surfaceDepth(1.02 * outline.outside), 200.0, 1.0);
   }
 }
 
@@ -191,7 +192,7 @@ TEST(SilhouetteCells, SelfHidingFocusHasTheFartherDepthBetween) {
   const auto& clip = std::get<ClipDepth>(surface.clip);
   int partialCount = 0;
   for (double x = -3.0; x < 3.0; x += 0.01) {
-    const double depth = clip.surface({x, 0.3});
+    const double depth = clip.surfaceDepth({x, 0.3});
     partialCount += depth > 95.0 && depth < 103.0;
   }
   EXPECT_LT(partialCount * 0.01, 1.0) << "mm; the voxels' own slope";
@@ -208,8 +209,8 @@ TEST(SilhouetteCells, OffsetMovesTheDepth) {
   Random random(2, 0, 0);
   for (int i = 0; i < 1000; ++i) {
     const Vec2 at(uniform(random, -25, 25), uniform(random, -25, 25));
-    EXPECT_NEAR(std::get<ClipDepth>(moved.clip).surface(at),
-                std::get<ClipDepth>(plain.clip).surface(at) + 3.0, 1e-4);
+    EXPECT_NEAR(std::get<ClipDepth>(moved.clip).surfaceDepth(at),
+                std::get<ClipDepth>(plain.clip).surfaceDepth(at) + 3.0, 1e-4);
   }
 }
 

@@ -182,7 +182,7 @@ TEST(SegmentMaterials, UnknownSegmentsKeepTheirColorOrGetOneOfThePalette) {
   std::vector<Lab> palette;
   for (const SegmentMaterial& material : found)
     if (material.why == "by palette")
-      palette.push_back(labOf((*material.medium.material.color)(0)));
+      palette.push_back(toLab((*material.medium.material.color)(0)));
   ASSERT_EQ(palette.size(), 21u);
   for (std::size_t i = 0; i < 20; ++i)
     for (std::size_t j = 0; j < i; ++j)

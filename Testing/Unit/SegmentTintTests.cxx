@@ -94,7 +94,7 @@ TEST(SegmentTint, AutoColoursOnlyWhatIsKnown) {
   EXPECT_EQ(planOf(segments, library).components.size(), 4U);
   EXPECT_EQ(planOf(segments, automatic).components.size(), 2U);
   const TintPlan asked = planOf(segments, automatic, {"Thing: color=#00ff00"});
-  EXPECT_EQ(asked.components.size(), 3U);
+  EXPECT_EQ(requested.components.size(), 3U);
 }
 
 TEST(SegmentTint, RestColoursWhatNoSegmentCovers) {

@@ -62,7 +62,7 @@ TEST_P(StraightEdge, FillEqualsThePlateUnderTension) {
       (sheet.isFocus(column) ? edge : end) = sheet.at(column).x();
     const double range = (end - edge) / length;
     fillSmoothly(sheet.buffer, sheet.regions, length);
-    const double given = std::clamp(slope, -steepestBoundary, steepestBoundary);
+    const double given = std::clamp(slope, -maxBoundarySlope, maxBoundarySlope);
     double worst = 0.0;
     for (std::int64_t sample = 0; sample < sheet.buffer.size(); ++sample) {
       const double x = (sheet.at(sample).x() - edge) / length;

@@ -78,10 +78,10 @@ TEST(Stop, EndsMeasuresOfEndlessWalks) {
   const MajorantGrid majorants(s.volume.grid, MinMaxGrid(s.volume, 0), s.transfer, s.clip);
   const SceneView scene{s.volume, s.transfer, majorants, lights, camera, s.clip};
   const auto pixels = static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.height);
-  const FocusPoints behind = focusPoints(scene, std::vector<double>(pixels, 2e9));
+  const FocusPoints behind = findFocusPoints(scene, std::vector<double>(pixels, 2e9));
   const StopFlag stop = true;
-  EXPECT_GE(focusCoverage(scene, behind, 1, stop), 0.0);
-  focusLight(scene, scene, behind, 1, stop);
+  EXPECT_GE(measureCoverage(scene, behind, 1, stop), 0.0);
+  measureLight(scene, scene, behind, 1, stop);
 }
 
 /// A stopped path is dropped, together with its tile; tiles whose paths have all ended count whole.

@@ -25,35 +25,35 @@ TEST(Turn, GoesAroundTheTargetCounterClockwiseAsSeenFromAbove) {
 }
 
 /// Picture of 4 x 4 pixels of 1 mm with a level surface at the target's depth, all context.
-SeenSurface levelSurface() {
+VisibleSurface levelSurface() {
   const Camera camera = anteriorCamera(Projection::orthographic, 100.0, 2.0, 4, 4);
   return {camera, std::vector<Region>(16, Region::context), std::vector<double>(16, 100.0)};
 }
 
 TEST(SurfaceChange, ChangeIsPerDegreeOverPixelsThatStayContext) {
-  SeenSurface before = levelSurface(), after = levelSurface();
+  VisibleSurface before = levelSurface(), after = levelSurface();
   for (std::size_t pixel = 0; pixel < 16; ++pixel)
     after.depths[pixel] += pixel < 4 ? 3.0 : -1.0;
   before.regions[4] = Region::focus;
   after.regions[5] = Region::outside;
   after.depths[4] = after.depths[5] = 1e6; // neither counts
-  const SurfaceChange change = changeBetween(before, after, Vec3::UnitZ(), -2.0);
+  const SurfaceChange change = measureChange(before, after, Vec3::UnitZ(), -2.0);
   EXPECT_DOUBLE_EQ(change.mean, (4 * 1.5 + 10 * 0.5) / 14.0);
   EXPECT_DOUBLE_EQ(change.p95, 1.5);
   EXPECT_DOUBLE_EQ(change.max, 1.5);
 }
 
 TEST(SurfaceChange, ExcessIsRelativeToTheSpeedOfTheFocus) {
-  SeenSurface before = levelSurface(), after = levelSurface();
+  VisibleSurface before = levelSurface(), after = levelSurface();
   after.regions[3] = Region::focus; // the top right pixel, 1.5 mm to the right and above
   after.depths[3] = 98.0;           // and 2 mm nearer to the eye: 2.5 mm from the axis
   after.depths[8] = 101.0;
-  const SurfaceChange change = changeBetween(before, after, Vec3(0, 0, 7), 1.0);
+  const SurfaceChange change = measureChange(before, after, Vec3(0, 0, 7), 1.0);
   EXPECT_NEAR(change.focus, 2.5 * pi / 180.0, 1e-12);
   EXPECT_DOUBLE_EQ(change.max, 1.0);
   EXPECT_DOUBLE_EQ(change.excess(), 1.0 - change.focus);
-  EXPECT_EQ(changeBetween(before, before, Vec3::UnitZ(), 1.0).excess(), 0.0);
-  EXPECT_EQ(changeBetween(before, before, Vec3::UnitZ(), 1.0).focus, 0.0) << "no focus is seen";
+  EXPECT_EQ(measureChange(before, before, Vec3::UnitZ(), 1.0).excess(), 0.0);
+  EXPECT_EQ(measureChange(before, before, Vec3::UnitZ(), 1.0).focus, 0.0) << "no focus is seen";
 }
 
 /// Balls of 7 and 5 mm that emerge from behind each other, in a block, with cameras around.
@@ -72,21 +72,21 @@ protected:
   ClippingSurface surfaceAt(double degrees, double steady) const {
     return buildSteadySurface(cameraAt(degrees), grid, balls, options, steady);
   }
-  SeenSurface seenAt(double degrees, double steady) const {
+  VisibleSurface seenAt(double degrees, double steady) const {
     const ClippingSurface surface = surfaceAt(degrees, steady);
     std::vector<double> focus;
     for (int row = 0; row < 60; ++row)
       for (int column = 0; column < 60; ++column)
         focus.push_back(surface.focus.depth.at(surface.focus.depth.viewportSample(column, row)));
-    return seenSurface(std::get<ClipDepth>(surface.clip), focus, grid);
+    return makeVisibleSurface(std::get<ClipDepth>(surface.clip), focus, grid);
   }
   double greatestP95(double steady) const {
     constexpr double step = 4.0;
     double greatest = 0.0;
-    SeenSurface before = seenAt(0.0, steady);
+    VisibleSurface before = seenAt(0.0, steady);
     for (double degrees = step; degrees <= 40.0; degrees += step) {
-      SeenSurface after = seenAt(degrees, steady);
-      greatest = std::max(greatest, changeBetween(before, after, Vec3::UnitZ(), step).p95);
+      VisibleSurface after = seenAt(degrees, steady);
+      greatest = std::max(greatest, measureChange(before, after, Vec3::UnitZ(), step).p95);
       before = std::move(after);
     }
     return greatest;
@@ -94,7 +94,7 @@ protected:
 };
 
 TEST_F(TurnedBalls, SeenDepthsAreThoseOfTheSurface) {
-  const SeenSurface seen = seenAt(0.0, 0.0);
+  const VisibleSurface seen = seenAt(0.0, 0.0);
   // Foremost point of the near ball in the picture's centre, and no focus near the left edge.
   EXPECT_EQ(seen.regions[30 * 60 + 30], Region::focus);
   EXPECT_NEAR(seen.depths[30 * 60 + 30], 200.0 - 14.0 - 7.0, 0.5);

@@ -100,7 +100,7 @@ TEST(SurfaceMesh, PlaneSeenAlongAnAxisLiesInItsPlace) {
   const Camera camera = anteriorCamera(Projection::orthographic, 300.0, 8.0, 24, 16);
   const Grid volume = centredGrid({20, 30, 10}); // in R, A and S: narrower than the viewport
   const auto plane = [](const Vec2& p) { return 290.0 + 0.25 * p.x() - 0.5 * p.y(); };
-  const SurfaceMesh mesh = surfaceMesh(clipOf(camera, volume, plane), volume, 0.0);
+  const SurfaceMesh mesh = buildSurfaceMesh(clipOf(camera, volume, plane), volume, 0.0);
   expectWellMade(mesh, camera);
   Vec3 lower = Vec3::Constant(infinity), upper = -lower;
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
@@ -124,7 +124,7 @@ TEST(SurfaceMesh, PointsProjectToTheirSamplesAndHaveTheirDepths) {
     const Camera camera = slantedCamera(projection);
     const Grid volume = centredGrid({60, 50, 40});
     const ClipDepth clip = clipOf(camera, volume, [&](const Vec2& p) { return waves(camera, p); });
-    const SurfaceMesh mesh = surfaceMesh(clip, volume, 1e-3);
+    const SurfaceMesh mesh = buildSurfaceMesh(clip, volume, 1e-3);
     expectWellMade(mesh, camera);
     std::set<std::pair<long, long>> samples;
     for (std::size_t i = 0; i < mesh.points.size(); ++i) {
@@ -133,7 +133,7 @@ TEST(SurfaceMesh, PointsProjectToTheirSamplesAndHaveTheirDepths) {
       const double row = clip.buffer->yAxis().index(at.y());
       ASSERT_NEAR(column, std::round(column), 1e-9);
       ASSERT_NEAR(row, std::round(row), 1e-9);
-      ASSERT_NEAR(at.z(), clip.buffer->nearest(at.head<2>()), 1e-9);
+      ASSERT_NEAR(at.z(), clip.buffer->nearestDepth(at.head<2>()), 1e-9);
       ASSERT_NEAR(mesh.depths[i], at.z(), 1e-4);
       EXPECT_TRUE(samples.emplace(std::lround(column), std::lround(row)).second);
     }
@@ -146,7 +146,7 @@ TEST(SurfaceMesh, CoversTheVolumesProjection) {
     const Grid volume = centredGrid({60, 50, 40});
     const ClipDepth clip =
         clipOf(camera, volume, [&](const Vec2&) { return camera.targetDepth(); });
-    const SurfaceMesh mesh = surfaceMesh(clip, volume, 1e-3);
+    const SurfaceMesh mesh = buildSurfaceMesh(clip, volume, 1e-3);
     double area = 0.0;
     for (const auto& triangle : mesh.triangles)
       area += 0.5 * normalOf(mesh, triangle).norm();
@@ -173,7 +173,7 @@ TEST(SurfaceMesh, OmitsSamplesWithoutDepthOrBehindTheEye) {
   const Grid volume = centredGrid({40, 40, 40});
   const Camera parallel = anteriorCamera(Projection::orthographic, 300.0, 10.0, 40, 40);
   const auto disk = [](const Vec2& p) { return p.norm() < 6.0 ? 290.0 : -infinity; };
-  const SurfaceMesh cutaway = surfaceMesh(clipOf(parallel, volume, disk), volume, 1e-3);
+  const SurfaceMesh cutaway = buildSurfaceMesh(clipOf(parallel, volume, disk), volume, 1e-3);
   expectWellMade(cutaway, parallel);
   double area = 0.0;
   for (const auto& triangle : cutaway.triangles)
@@ -183,7 +183,7 @@ TEST(SurfaceMesh, OmitsSamplesWithoutDepthOrBehindTheEye) {
 
   const Camera inside = anteriorCamera(Projection::perspective, 10.0, 10.0, 40, 40);
   const auto ramp = [](const Vec2& p) { return 3.0 + 0.5 * p.x(); };
-  const SurfaceMesh mesh = surfaceMesh(clipOf(inside, volume, ramp), volume, 1e-3);
+  const SurfaceMesh mesh = buildSurfaceMesh(clipOf(inside, volume, ramp), volume, 1e-3);
   expectWellMade(mesh, inside);
   for (const float depth : mesh.depths)
     EXPECT_GT(depth, 0.0f);
@@ -191,9 +191,9 @@ TEST(SurfaceMesh, OmitsSamplesWithoutDepthOrBehindTheEye) {
   const auto dot = [](const Vec2& p) {
     return (p - Vec2(0.25, 0.25)).norm() < 0.1 ? 290.0 : -infinity;
   };
-  EXPECT_TRUE(surfaceMesh(clipOf(parallel, volume, dot), volume, 1e-3).points.empty());
+  EXPECT_TRUE(buildSurfaceMesh(clipOf(parallel, volume, dot), volume, 1e-3).points.empty());
   const auto none = [](const Vec2&) { return -infinity; };
-  EXPECT_TRUE(surfaceMesh(clipOf(parallel, volume, none), volume, 1e-3).points.empty());
+  EXPECT_TRUE(buildSurfaceMesh(clipOf(parallel, volume, none), volume, 1e-3).points.empty());
 }
 
 /// Greatest depth difference between samples and mesh, and number of triangles over each sample,
@@ -279,7 +279,7 @@ TEST(SurfaceMesh, ErrorAtSamplesIsWithinTheTolerance) {
         std::size_t before = 0;
         for (const double tolerance : {1.0, 0.1, 0.01}) {
           SCOPED_TRACE(name + " to " + std::to_string(tolerance) + " mm");
-          const SurfaceMesh mesh = surfaceMesh(clip, volume, tolerance);
+          const SurfaceMesh mesh = buildSurfaceMesh(clip, volume, tolerance);
           expectWellMade(mesh, camera);
           expectNoCracks(mesh, camera);
           const MeshError error = errorOf(mesh, clip);
@@ -308,7 +308,7 @@ TEST(SurfaceMesh, CoversEveryCellWithThreeDepths) {
         const Vec2 edges = buffer.position(column + 1, row + 1) - buffer.position(column, row);
         cells += 0.5 * std::max(0, corners - 2) * std::abs(edges.x() * edges.y());
       }
-    const SurfaceMesh mesh = surfaceMesh(clip, volume, 0.05);
+    const SurfaceMesh mesh = buildSurfaceMesh(clip, volume, 0.05);
     double area = 0.0;
     for (const auto& [a, b, c] : mesh.triangles)
       area += flatArea(toBuffer(camera, mesh.points[a]).head<2>(),
@@ -332,7 +332,7 @@ TEST(SurfaceMesh, PlaneHasTwoTrianglesAndNoiseAllOfThem) {
     const ClipDepth flat = clipOf(camera, volume, plane);
     const double tolerance = surfaceTolerance(camera);
     EXPECT_DOUBLE_EQ(tolerance, 0.015);
-    const SurfaceMesh two = surfaceMesh(flat, volume, tolerance);
+    const SurfaceMesh two = buildSurfaceMesh(flat, volume, tolerance);
     EXPECT_EQ(two.triangles.size(), 2u);
     EXPECT_EQ(two.points.size(), 4u);
     EXPECT_LE(errorOf(two, flat).maximum, tolerance);
@@ -340,11 +340,11 @@ TEST(SurfaceMesh, PlaneHasTwoTrianglesAndNoiseAllOfThem) {
     // A step costs as many triangles as its own edge needs; noise needs every sample, but no more.
     const auto step = [&](const Vec2& p) { return plane(p) + (p.x() < 0.31 * p.y() ? 0.0 : 9.0); };
     const auto columns = static_cast<std::size_t>(flat.buffer->columns());
-    EXPECT_LT(surfaceMesh(clipOf(camera, volume, step), volume, tolerance).triangles.size(),
+    EXPECT_LT(buildSurfaceMesh(clipOf(camera, volume, step), volume, tolerance).triangles.size(),
               14 * columns);
     const ClipDepth noise = clipOf(camera, volume, shapes(camera).at("noise"));
-    const std::size_t most = surfaceMesh(noise, volume, 0.0).triangles.size();
-    EXPECT_GT(surfaceMesh(noise, volume, tolerance).triangles.size(), most * 95 / 100);
+    const std::size_t most = buildSurfaceMesh(noise, volume, 0.0).triangles.size();
+    EXPECT_GT(buildSurfaceMesh(noise, volume, tolerance).triangles.size(), most * 95 / 100);
     EXPECT_LE(most, 2 * static_cast<std::size_t>(flat.buffer->size()));
   }
 }
@@ -358,8 +358,9 @@ TEST(SurfaceMesh, TriangleCountDoesNotDependOnTheSubjectsSize) {
     const auto bump = [&](const Vec2& p) {
       return 5.0 * size - 0.3 * size * std::exp(-9.0 * p.squaredNorm() / (size * size));
     };
-    triangles.push_back(surfaceMesh(clipOf(camera, volume, bump), volume, surfaceTolerance(camera))
-                            .triangles.size());
+    triangles.push_back(
+        buildSurfaceMesh(clipOf(camera, volume, bump), volume, surfaceTolerance(camera))
+            .triangles.size());
   }
   EXPECT_NEAR(static_cast<double>(triangles[0]), static_cast<double>(triangles[1]), 8.0);
   EXPECT_GT(triangles[0], 100u);

@@ -182,13 +182,13 @@ TEST(LocalExpansion, EqualsTheSumOfItsTermsOrIsNone) {
   const double radius = 0.4;
   std::vector<KernelTerm> terms;
   for (int i = 0; i < 40; ++i) {
-    const double angle = 6.0 * random.uniform(), nearest = radius / LocalExpansion::farthest;
+    const double angle = 6.0 * random.uniform(), nearest = radius / LocalExpansion::maxRatio;
     const double distance = nearest * (i == 0 ? 1.0 : uniform(random, 1, 5));
     terms.push_back(
         {center + distance * Vec2(std::cos(angle), std::sin(angle)), uniform(random, -1, 1)});
   }
   for (const double tolerance : {1e-2, 1e-6, 1e-10}) {
-    const auto expansion = LocalExpansion::of(terms, center, radius, tolerance);
+    const auto expansion = LocalExpansion::make(terms, center, radius, tolerance);
     ASSERT_TRUE(expansion);
     double greatest = 0.0;
     for (int i = 0; i < 1000; ++i) {
@@ -205,9 +205,9 @@ TEST(LocalExpansion, EqualsTheSumOfItsTermsOrIsNone) {
     EXPECT_LE(maximum, tolerance);
     EXPECT_GE(maximum, 1e-5 * tolerance) << "longer than it need be";
   }
-  EXPECT_FALSE(LocalExpansion::of(terms, center, radius, 1e-16));
+  EXPECT_FALSE(LocalExpansion::make(terms, center, radius, 1e-16));
   terms[0].weight = 1e12;
-  EXPECT_FALSE(LocalExpansion::of(terms, center, radius, 1e-6));
+  EXPECT_FALSE(LocalExpansion::make(terms, center, radius, 1e-6));
 }
 
 TEST(ThinPlateSpline, FewCoincidentOrCollinearSitesGiveMeanOrLine) {

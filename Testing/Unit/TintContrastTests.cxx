@@ -37,24 +37,24 @@ double computeScore(const ColorAdjustment& adjustment, const BorderColors& color
 
 TEST(TintContrast, LinearIsTheInverseOfLab) {
   for (const Rgb& color : {liver, bone, teal, Rgb(Rgb::Zero()), Rgb(1e-3, 2e-3, 5e-4)})
-    EXPECT_LT((linearOf(labOf(color)) - color).abs().maxCoeff(), 1e-9);
+    EXPECT_LT((toLinear(toLab(color)) - color).abs().maxCoeff(), 1e-9);
 }
 
 TEST(TintContrast, KnobsChangeWhatTheySay) {
   EXPECT_LT((adjustContext(liver, {}) - liver).abs().maxCoeff(), 1e-9);
   EXPECT_LT((adjustFocus(liver, {}) - liver).abs().maxCoeff(), 1e-9);
-  const Lab before = labOf(liver);
+  const Lab before = toLab(liver);
   const Lab context =
-      labOf(adjustContext(liver, {.contextSaturation = 0.5, .contextLightness = 0.25}));
+      toLab(adjustContext(liver, {.contextSaturation = 0.5, .contextLightness = 0.25}));
   EXPECT_NEAR(context.L, before.L + 0.25 * (72.0 - before.L), 1e-6);
   EXPECT_NEAR(context.a, 0.5 * before.a, 1e-6);
   EXPECT_NEAR(context.b, 0.5 * before.b, 1e-6);
-  const Lab focus = labOf(adjustFocus(liver, {.focusLightness = -5.0, .focusChroma = 1.1}));
+  const Lab focus = toLab(adjustFocus(liver, {.focusLightness = -5.0, .focusChroma = 1.1}));
   EXPECT_NEAR(focus.L, before.L - 5.0, 1e-6);
   EXPECT_NEAR(focus.a, 1.1 * before.a, 1e-6);
-  const Lab lesion = labOf(decodeSrgb(fenestra::hexToRgb(accentColors[0].color)));
+  const Lab lesion = toLab(decodeSrgb(fenestra::hexToRgb(accentColors[0].color)));
   const Lab half =
-      labOf(adjustFocus(liver, {.focusLightness = 2.0, .focusAccent = 0.5, .accent = 0}));
+      toLab(adjustFocus(liver, {.focusLightness = 2.0, .focusAccent = 0.5, .accent = 0}));
   EXPECT_NEAR(half.L, 0.5 * (before.L + 2.0 + lesion.L), 1e-6);
   EXPECT_NEAR(half.a, 0.5 * (before.a + lesion.a), 1e-6);
   EXPECT_NEAR(half.b, 0.5 * (before.b + lesion.b), 1e-6);
@@ -64,9 +64,9 @@ TEST(TintContrast, KnobsChangeWhatTheySay) {
 
 /// An artery's red has no darker and more colourful one: it loses chroma, not its lightness or hue.
 TEST(TintContrast, ColoursBeyondTheDisplayKeepLightnessAndHue) {
-  const Lab before = labOf(artery);
+  const Lab before = toLab(artery);
   const Rgb color = adjustFocus(artery, {.focusLightness = -12.0, .focusChroma = 1.4});
-  const Lab after = labOf(color);
+  const Lab after = toLab(color);
   EXPECT_GE(color.minCoeff(), 0.0);
   EXPECT_NEAR(after.L, before.L - 12.0, 1e-3);
   EXPECT_NEAR(after.b / after.a, before.b / before.a, 1e-3);
@@ -181,7 +181,7 @@ TEST(TintContrast, WhatIsNotNeededIsTurnedBack) {
       ColorAdjustment reduced = adjustment;
       reduced.*member += 0.05 * (initial.*member - reduced.*member);
       if (!(reduced == adjustment)) {
-        EXPECT_LT(shareOf(reduced, colors), required) << labOf(colors.focus).L;
+        EXPECT_LT(shareOf(reduced, colors), required) << toLab(colors.focus).L;
       }
     }
   }
@@ -190,7 +190,7 @@ TEST(TintContrast, WhatIsNotNeededIsTurnedBack) {
 /// Greys differ by lightness alone, of which pictures have 43 %, less by 4 where a dark focus
 /// shades what is around it, and by 3 where that is in more light than a light focus.
 TEST(TintContrast, EdgesAreShownInTheLightAndInAGroove) {
-  const Rgb dark = linearOf({40.0, 0.0, 0.0}), light = linearOf({80.0, 0.0, 0.0});
+  const Rgb dark = toLinear({40.0, 0.0, 0.0}), light = toLinear({80.0, 0.0, 0.0});
   for (const auto& [colors, loss] : {std::pair(BorderColors{dark, light, 1.0}, 4.0),
                                      std::pair(BorderColors{light, dark, 1.0}, 3.0)}) {
     const Contrast contrast = contrastUnder({}, colors, 1.0, 0.0);
@@ -198,7 +198,7 @@ TEST(TintContrast, EdgesAreShownInTheLightAndInAGroove) {
     EXPECT_NEAR(contrast.deltaE[0], contrast.deltaL, 0.1);
   }
   const Lab red{50.0, 40.0, 10.0};
-  const BorderColors hues{linearOf(red), linearOf({50.0, 0.0, 0.0}), 1.0};
+  const BorderColors hues{toLinear(red), toLinear({50.0, 0.0, 0.0}), 1.0};
   const double chroma = 0.62 * (29.0 + 0.43 * 50.0) / 50.0 * std::hypot(red.a, red.b);
   EXPECT_NEAR(contrastUnder({}, hues, 1.0, 0.0).deltaE[0], std::hypot(chroma, 4.0), 0.1);
 }
@@ -240,9 +240,9 @@ TEST(TintContrast, WhatTheUserSetsIsNotTurned) {
 
 /// Most of the border decides.
 TEST(TintContrast, PartsCountByTheirArea) {
-  const Lab own = labOf(skin);
-  const BorderColors dark{skin, linearOf({own.L + 12.0, own.a, own.b}), 1.0},
-      light{skin, linearOf({own.L - 12.0, own.a, own.b}), 1.0};
+  const Lab own = toLab(skin);
+  const BorderColors dark{skin, toLinear({own.L + 12.0, own.a, own.b}), 1.0},
+      light{skin, toLinear({own.L - 12.0, own.a, own.b}), 1.0};
   const auto chooseLightness = [&](double darkArea, double lightArea) {
     BorderColors first = dark, second = light;
     first.area = darkArea;
@@ -338,10 +338,10 @@ TEST_F(InterfaceTests, SmallOnesDoNotCount) {
                           1.0);
   };
   EXPECT_EQ(at(4.0).adjustment, muted);
-  EXPECT_EQ(at(4.0).neighbour, "the rest");
+  EXPECT_EQ(at(4.0).neighbor, "the rest");
   EXPECT_NE(at(6.0).adjustment, muted);
   EXPECT_EQ(at(6.0).segment, "focus");
-  EXPECT_EQ(at(6.0).neighbour, "neighbour");
+  EXPECT_EQ(at(6.0).neighbor, "neighbour");
   EXPECT_FALSE(adjustContrast({}, plan, tint, table, all, 1.0).contrast);
 
   Tint unknown = tint;
@@ -356,7 +356,7 @@ TEST_F(InterfaceTests, SmallOnesDoNotCount) {
 
   const Tint adjusted = applyAdjustment(tint, plan, {.contextSaturation = 0.0}, all);
   const auto chroma = [&](std::size_t i) {
-    const Lab lab = labOf(reflectance(Rgb((*adjusted.albedo[i])(0.0)), 0.0));
+    const Lab lab = toLab(reflectance(Rgb((*adjusted.albedo[i])(0.0)), 0.0));
     return std::hypot(lab.a, lab.b);
   };
   EXPECT_LT(chroma(0), 0.5);

@@ -78,9 +78,9 @@ TEST(VolumeProperty, ColoursFollowTheCurveOfOpacity) {
   const std::vector<OpacityNode> red = {{0, 0, 0.3, 0.4}, {10, 1}};
   for (double x = -1; x < 12; x += 0.1) {
     const double share = curveAt(red, x);
-    EXPECT_NEAR(curveAt(nodes, x)[0], share, 1e-14);
-    EXPECT_NEAR(curveAt(nodes, x)[1], 0.5 - 0.25 * share, 1e-14);
-    EXPECT_NEAR(curveAt(nodes, x)[2], 1.0 - 0.5 * share, 1e-14);
+    EXPECT_NEAR(curveAt(nodes, x)[0], fraction, 1e-14);
+    EXPECT_NEAR(curveAt(nodes, x)[1], 0.5 - 0.25 * fraction, 1e-14);
+    EXPECT_NEAR(curveAt(nodes, x)[2], 1.0 - 0.5 * fraction, 1e-14);
   }
 }
 

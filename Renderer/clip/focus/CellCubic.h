@@ -17,7 +17,7 @@ struct Cubic {
 };
 
 /// Values of s in (0, 1) where the cubic's slope changes sign, ascending; 1: none.
-inline std::array<double, 2> turningPoints(const Cubic& cubic) {
+inline std::array<double, 2> findTurningPoints(const Cubic& cubic) {
   const double a = 3.0 * cubic.c[3], halfB = cubic.c[2], c = cubic.c[1];
   const double discriminant = halfB * halfB - a * c;
   if (!(discriminant > 0.0))
@@ -30,7 +30,7 @@ inline std::array<double, 2> turningPoints(const Cubic& cubic) {
 
 /// Root of a cubic that rises monotonically, with cubic(low) < 0 <= cubic(high): Newton's steps
 /// from the chord's root, bisection wherever a step leaves the bracket.
-inline double rootBetween(const Cubic& cubic, double low, double high) {
+inline double findRoot(const Cubic& cubic, double low, double high) {
   constexpr double rounding = 1e-15; // of s in [0, 1]
   const double atLow = cubic(low);
   double s = low + (high - low) * (atLow / (atLow - cubic(high)));
@@ -46,7 +46,7 @@ inline double rootBetween(const Cubic& cubic, double low, double high) {
 }
 
 /// Least s in [0, 1] with cubic(s) >= 0; infinity: none.
-inline double firstNonNegative(const Cubic& cubic) {
+inline double findFirstNonNegative(const Cubic& cubic) {
   const std::array<double, 4>& c = cubic.c;
   if (c[0] >= 0.0)
     return 0.0;
@@ -55,12 +55,12 @@ inline double firstNonNegative(const Cubic& cubic) {
   if (std::max({b1, b2, b3}) < 0.0)
     return infinity;
   if (c[0] <= b1 && b1 <= b2 && b2 <= b3)
-    return rootBetween(cubic, 0.0, 1.0);
+    return findRoot(cubic, 0.0, 1.0);
   double low = 0.0;
-  const auto [first, second] = turningPoints(cubic);
+  const auto [first, second] = findTurningPoints(cubic);
   for (const double high : {first, second, 1.0}) { // between these the cubic is monotone
     if (cubic(high) >= 0.0)
-      return rootBetween(cubic, low, high);
+      return findRoot(cubic, low, high);
     low = high;
   }
   return infinity;

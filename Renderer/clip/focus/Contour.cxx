@@ -10,31 +10,31 @@ namespace {
 /// Steps toward the neighbour on each side; side + 1 turns from columns to rows.
 constexpr std::array<SampleStep, 4> steps{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
 
-constexpr std::uint8_t turned(int side, int quarters) {
+constexpr std::uint8_t rotateSide(int side, int quarters) {
   return static_cast<std::uint8_t>((side + quarters) & 3);
 }
 
 /// Next crossing on the contour, decided by the two farther samples of the square ahead, whose
 /// nearer two are the focus sample and its outside neighbour.
-Crossing following(const FocusDepth& focus, const Crossing& crossing) {
-  const SampleStep out = outward(crossing);
-  const SampleStep ahead = steps[turned(crossing.side, 1)];
+Crossing findNextCrossing(const FocusDepth& focus, const Crossing& crossing) {
+  const SampleStep out = outwardStep(crossing);
+  const SampleStep ahead = steps[rotateSide(crossing.side, 1)];
   const std::int32_t column = crossing.column + ahead.column;
   const std::int32_t row = crossing.row + ahead.row;
   if (focus.isFocus(column + out.column, row + out.row)) // joins diagonal touches
-    return {column + out.column, row + out.row, turned(crossing.side, 3)};
+    return {column + out.column, row + out.row, rotateSide(crossing.side, 3)};
   if (focus.isFocus(column, row))
     return {column, row, crossing.side};
-  return {crossing.column, crossing.row, turned(crossing.side, 1)};
+  return {crossing.column, crossing.row, rotateSide(crossing.side, 1)};
 }
 
-std::int64_t sampleOf(const DepthBuffer& buffer, const Crossing& crossing) {
+std::int64_t sampleIndex(const DepthBuffer& buffer, const Crossing& crossing) {
   return buffer.sample(crossing.column, crossing.row);
 }
 
 /// Control points of the crossings' samples, each sample once, in the order of the buffer.
-std::vector<ControlPoint> distinctSamples(const DepthBuffer& buffer, Contour crossings) {
-  const auto sample = [&](const Crossing& crossing) { return sampleOf(buffer, crossing); };
+std::vector<ControlPoint> collectDistinctSamples(const DepthBuffer& buffer, Contour crossings) {
+  const auto sample = [&](const Crossing& crossing) { return sampleIndex(buffer, crossing); };
   std::ranges::sort(crossings, {}, sample);
   const auto isSame = [&](const Crossing& a, const Crossing& b) { return sample(a) == sample(b); };
   crossings.erase(std::unique(crossings.begin(), crossings.end(), isSame), crossings.end());
@@ -58,7 +58,7 @@ void visitSegments(const DepthBuffer& buffer, const std::vector<Contour>& contou
 
 } // namespace
 
-SampleStep outward(const Crossing& crossing) {
+SampleStep outwardStep(const Crossing& crossing) {
   return steps[crossing.side];
 }
 
@@ -66,7 +66,7 @@ std::vector<Contour> traceContours(const FocusDepth& focus) {
   const DepthBuffer& buffer = focus.depth;
   std::vector<std::uint8_t> visited(static_cast<std::size_t>(buffer.size())); // a bit for each side
   const auto visit = [&](const Crossing& crossing) { // false: visited before
-    std::uint8_t& sides = visited[static_cast<std::size_t>(sampleOf(buffer, crossing))];
+    std::uint8_t& sides = visited[static_cast<std::size_t>(sampleIndex(buffer, crossing))];
     const bool isNew = !(sides >> crossing.side & 1U);
     sides = static_cast<std::uint8_t>(sides | 1U << crossing.side);
     return isNew;
@@ -81,7 +81,7 @@ std::vector<Contour> traceContours(const FocusDepth& focus) {
         if (focus.isFocus(column + steps[side].column, row + steps[side].row))
           continue;
         Contour contour;
-        for (Crossing at{column, row, side}; visit(at); at = following(focus, at))
+        for (Crossing at{column, row, side}; visit(at); at = findNextCrossing(focus, at))
           contour.push_back(at);
         if (!contour.empty())
           contours.push_back(std::move(contour));
@@ -91,7 +91,7 @@ std::vector<Contour> traceContours(const FocusDepth& focus) {
 }
 
 Vec2 position(const DepthBuffer& buffer, const Crossing& crossing) {
-  const SampleStep out = outward(crossing);
+  const SampleStep out = outwardStep(crossing);
   return 0.5 * (buffer.position(crossing.column, crossing.row) +
                 buffer.position(crossing.column + out.column, crossing.row + out.row));
 }
@@ -114,15 +114,15 @@ std::vector<ControlPoint> placeControlPoints(const FocusDepth& focus,
                     chosen.push_back(next() < 0.5 * length ? from : to);
                   reached += length;
                 });
-  return distinctSamples(focus.depth, std::move(chosen));
+  return collectDistinctSamples(focus.depth, std::move(chosen));
 }
 
-std::vector<ControlPoint> boundarySamples(const FocusDepth& focus,
-                                          const std::vector<Contour>& contours) {
+std::vector<ControlPoint> findBoundarySamples(const FocusDepth& focus,
+                                              const std::vector<Contour>& contours) {
   Contour all;
   for (const Contour& contour : contours)
     all.insert(all.end(), contour.begin(), contour.end());
-  return distinctSamples(focus.depth, std::move(all));
+  return collectDistinctSamples(focus.depth, std::move(all));
 }
 
 } // namespace fenestra

@@ -22,7 +22,7 @@ struct SampleStep {
 };
 
 /// Step toward the neighbour on a crossing's side.
-SampleStep outward(const Crossing& crossing);
+SampleStep outwardStep(const Crossing& crossing);
 
 /// Closed loop: each crossing is followed by its neighbour on the contour, the last by the first.
 using Contour = std::vector<Crossing>;
@@ -46,7 +46,7 @@ std::vector<ControlPoint> placeControlPoints(const FocusDepth& focus,
                                              const std::vector<Contour>& contours, int count);
 
 /// All focus samples that a contour touches, each once.
-std::vector<ControlPoint> boundarySamples(const FocusDepth& focus,
-                                          const std::vector<Contour>& contours);
+std::vector<ControlPoint> findBoundarySamples(const FocusDepth& focus,
+                                              const std::vector<Contour>& contours);
 
 } // namespace fenestra

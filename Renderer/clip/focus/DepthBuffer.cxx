@@ -17,7 +17,7 @@ struct Rectangle {
 };
 
 /// Bounds of the volume's projection on the plane through the target, mm.
-Rectangle projection(const Camera& camera, const Grid& volume) {
+Rectangle projectVolume(const Camera& camera, const Grid& volume) {
   const Vec2 limit = Vec2::Constant(camera.targetDepth() * std::tan(75.0 * pi / 180.0));
   Rectangle rectangle;
   for (int i = 0; i < 8; ++i) {
@@ -35,16 +35,16 @@ Rectangle projection(const Camera& camera, const Grid& volume) {
 }
 
 /// Sets `before` and `after` of the axis such that its samples reach from a to b, mm.
-void spread(DepthAxis& axis, double factor, double a, double b) {
+void extendAxis(DepthAxis& axis, double factor, double a, double b) {
   const double first = std::min(a / axis.pitch, b / axis.pitch) - axis.start;
   const double last = std::max(a / axis.pitch, b / axis.pitch) - axis.start;
-  const auto beyond = [factor](double pixels) {
-    constexpr double most = 1e9; // more than any buffer has; the square does not overflow
-    return static_cast<std::int64_t>(std::ceil(std::clamp(pixels / factor, 0.0, most)));
+  const auto countSamples = [factor](double pixels) {
+    constexpr double limit = 1e9; // more than any buffer has; the square does not overflow
+    return static_cast<std::int64_t>(std::ceil(std::clamp(pixels / factor, 0.0, limit)));
   };
   axis.factor = factor;
-  axis.before = beyond(-first);
-  axis.after = beyond(last - static_cast<double>(axis.inside - 1));
+  axis.before = countSamples(-first);
+  axis.after = countSamples(last - static_cast<double>(axis.inside - 1));
 }
 
 /// Axis along which pixel i's centre is at (i + 1/2 - pixels / 2) pitch, as in Camera::toPlane.
@@ -63,7 +63,7 @@ DepthBuffer::DepthBuffer(const Camera& camera, const Grid& volume)
       m_y(viewportAxis(-camera.pixelPitch(), camera.height())),
       m_reference(camera.targetDepth()) {
   const double pitch = camera.pixelPitch();
-  const Rectangle span = projection(camera, volume);
+  const Rectangle span = projectVolume(camera, volume);
   const double farthest = span.lower.cwiseAbs().cwiseMax(span.upper.cwiseAbs()).maxCoeff();
   if (!(pitch > 0.0) || !std::isfinite(pitch) || !(farthest / pitch < 1e15) ||
       std::min(camera.width(), camera.height()) < 1)
@@ -72,8 +72,8 @@ DepthBuffer::DepthBuffer(const Camera& camera, const Grid& volume)
   const std::int64_t limit = std::max<std::int64_t>(
       {4 << 20, m_x.inside * m_y.inside * 5 / 4, (m_x.inside + 2) * (m_y.inside + 2)});
   const auto fits = [&](double factor) {
-    spread(m_x, factor, span.lower.x(), span.upper.x());
-    spread(m_y, factor, span.lower.y(), span.upper.y());
+    extendAxis(m_x, factor, span.lower.x(), span.upper.x());
+    extendAxis(m_y, factor, span.lower.y(), span.upper.y());
     return size() <= limit;
   };
   double fitting = 1.0;

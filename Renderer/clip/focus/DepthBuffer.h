@@ -45,7 +45,7 @@ struct DepthAxis {
   /// Coordinate of a sample, mm; extrapolated for indices out of range.
   double coordinate(std::int64_t sample) const {
     const auto pixel = static_cast<double>(sample - before);
-    const double fine = inViewport(pixel);
+    const double fine = clampToViewport(pixel);
     return pitch * (start + fine + factor * (pixel - fine));
   }
 
@@ -59,24 +59,24 @@ struct DepthAxis {
   /// Continuous index of a coordinate (mm), clamped to [0, size - 1].
   double index(double coordinate) const {
     const double pixel = coordinate / pitch - start;
-    const double fine = inViewport(pixel);
+    const double fine = clampToViewport(pixel);
     const double index = static_cast<double>(before) + fine + (pixel - fine) / factor;
     return std::max(0.0, std::min(static_cast<double>(size() - 1), index)); // NaN: size - 1
   }
 
   /// Samples that interpolation between two coordinates (mm) reads, and those that `slack` samples
   /// more on both sides add.
-  struct Samples {
+  struct SampleRange {
     std::int64_t first, last;
   };
-  Samples samplesBetween(double a, double b, double slack) const {
+  SampleRange sampleRange(double a, double b, double slack) const {
     const auto [low, high] = std::minmax({index(a), index(b)});
     return {static_cast<std::int64_t>(std::max(0.0, low - slack)),
             std::min(size() - 1, static_cast<std::int64_t>(std::ceil(high + slack)))};
   }
 
 private:
-  double inViewport(double pixel) const {
+  double clampToViewport(double pixel) const {
     return std::clamp(pixel, 0.0, static_cast<double>(inside - 1));
   }
 };
@@ -126,13 +126,13 @@ public:
     Vec2 fraction;                    ///< of the place, from first to last, 0 to 1
   };
   Cell cell(const Vec2& position) const {
-    const Neighbours x = neighbours(m_x, position.x());
-    const Neighbours y = neighbours(m_y, position.y());
+    const Neighbors x = neighbors(m_x, position.x());
+    const Neighbors y = neighbors(m_y, position.y());
     return {x.low, y.low, x.high, y.high, Vec2(x.fraction, y.fraction)};
   }
 
   /// Depth, bilinear between the four samples, which must be finite.
-  double depthIn(const Cell& cell) const {
+  double interpolate(const Cell& cell) const {
     const auto lerp = [](double a, double b, double f) { return a + (b - a) * f; };
     const auto row = [&](std::int64_t r) {
       return lerp(m_depths[index(sample(cell.column, r))],
@@ -140,11 +140,11 @@ public:
     };
     return m_reference + lerp(row(cell.row), row(cell.nextRow), cell.fraction.y());
   }
-  double depth(const Vec2& position) const { return depthIn(cell(position)); }
+  double depth(const Vec2& position) const { return interpolate(cell(position)); }
 
-  /// Derivatives of depthIn along x and y, mm per mm; 0 along an axis at whose end the cell lies
-  /// with its place: beyond the samples the depth is constant.
-  Vec2 slopeIn(const Cell& cell) const {
+  /// Derivatives of interpolate along x and y, mm per mm; 0 along an axis at whose end the cell
+  /// lies with its place: beyond the samples the depth is constant.
+  Vec2 gradient(const Cell& cell) const {
     const auto depth = [&](std::int64_t column, std::int64_t row) {
       return static_cast<double>(m_depths[index(sample(column, row))]);
     };
@@ -154,29 +154,30 @@ public:
     const Vec2& f = cell.fraction;
     const double alongX = (1.0 - f.y()) * (right - first) + f.y() * (last - below);
     const double alongY = (1.0 - f.x()) * (below - first) + f.x() * (last - right);
-    return {alongX * perLength(m_x, cell.column, f.x()), alongY * perLength(m_y, cell.row, f.y())};
+    return {alongX * samplesPerMm(m_x, cell.column, f.x()),
+            alongY * samplesPerMm(m_y, cell.row, f.y())};
   }
 
   /// Depth of the nearest sample.
-  double nearest(const Vec2& position) const {
+  double nearestDepth(const Vec2& position) const {
     const auto column = static_cast<std::int64_t>(m_x.index(position.x()) + 0.5);
     const auto row = static_cast<std::int64_t>(m_y.index(position.y()) + 0.5);
     return at(sample(column, row));
   }
 
 private:
-  struct Neighbours {
+  struct Neighbors {
     std::int64_t low, high;
     double fraction;
   };
 
-  static Neighbours neighbours(const DepthAxis& axis, double coordinate) {
+  static Neighbors neighbors(const DepthAxis& axis, double coordinate) {
     const double x = axis.index(coordinate);
     const auto low = static_cast<std::int64_t>(x);
     return {low, std::min(low + 1, axis.size() - 1), x - static_cast<double>(low)};
   }
   /// Samples per mm in the cell that begins with sample `low`; 0 at the axis's ends.
-  static double perLength(const DepthAxis& axis, std::int64_t low, double fraction) {
+  static double samplesPerMm(const DepthAxis& axis, std::int64_t low, double fraction) {
     const bool isEnd = low + 1 >= axis.size() || (low == 0 && fraction == 0.0);
     return isEnd ? 0.0 : 1.0 / (axis.coordinate(low + 1) - axis.coordinate(low));
   }

@@ -33,28 +33,28 @@ HWY_INLINE D all(double x) {
 HWY_INLINE I allInts(std::int64_t x) {
   return hn::Set(ints, static_cast<std::int32_t>(x));
 }
-HWY_INLINE M isNot0(I x) {
+HWY_INLINE M isNonZero(I x) {
   return hn::Ne(hn::PromoteTo(doubles, x), hn::Zero(doubles));
 }
 
 /// One axis of the rays' walk, mirrored for rays of negative direction, so that all rays go up. The
 /// cells' number is rounded up to whole blocks.
-struct Axis {
+struct FocusAxis {
   D origin, direction; ///< direction >= 0
-  D inverse;           ///< 1 / direction; infinity: no motion along this axis
+  D inverseDirection;  ///< 1 / direction; infinity: no motion along this axis
   D cell;              ///< current cells of the rays
   D face;              ///< next face ahead: of the cell, or of the block if empty
-  M mirrored;
-  double cells; ///< number of cells, a multiple of blockSize
+  M isMirrored;
+  double cellCount; ///< number of cells, a multiple of blockSize
 
-  Axis(D o, D d, D t, std::int64_t blocks)
+  FocusAxis(D o, D d, D t, std::int64_t blocks)
       : direction(hn::Abs(d)),
-        inverse(hn::Div(all(1.0), direction)),
+        inverseDirection(hn::Div(all(1.0), direction)),
         face(hn::Zero(doubles)),
-        mirrored(hn::Lt(d, hn::Zero(doubles))),
-        cells(static_cast<double>(blocks * FocusCells::blockSize)) {
-    origin = hn::IfThenElse(mirrored, hn::Sub(all(cells), o), o);
-    cell = hn::Max(hn::Min(cellAt(t), all(cells - 1.0)), hn::Zero(doubles));
+        isMirrored(hn::Lt(d, hn::Zero(doubles))),
+        cellCount(static_cast<double>(blocks * FocusCells::blockSize)) {
+    origin = hn::IfThenElse(isMirrored, hn::Sub(all(cellCount), o), o);
+    cell = hn::Max(hn::Min(findCell(t), all(cellCount - 1.0)), hn::Zero(doubles));
   }
 
   /// t of the next face; infinity: the last face (the range ends the walk).
@@ -63,34 +63,34 @@ struct Axis {
     const D block = hn::Floor(hn::Mul(cell, all(1.0 / edge)));
     face = hn::IfThenElse(emptyBlock, hn::MulAdd(block, all(edge), all(edge)),
                           hn::Add(cell, all(1.0)));
-    const M inner = hn::And(hn::Lt(face, all(cells)), hn::Lt(inverse, all(infinity)));
-    return hn::IfThenElse(inner, hn::Mul(hn::Sub(face, origin), inverse), all(infinity));
+    const M inner = hn::And(hn::Lt(face, all(cellCount)), hn::Lt(inverseDirection, all(infinity)));
+    return hn::IfThenElse(inner, hn::Mul(hn::Sub(face, origin), inverseDirection), all(infinity));
   }
 
   /// Moves the walks of `which` to t: into the cell beyond the face for `through`, else at most up
   /// to the face; never back.
-  HWY_INLINE void advance(M which, M through, D t) {
-    const D before = hn::Min(hn::Max(cellAt(t), cell), hn::Sub(face, all(1.0)));
-    cell = hn::IfThenElse(which, hn::IfThenElse(through, face, before), cell);
+  HWY_INLINE void advance(M which, M crosses, D t) {
+    const D before = hn::Min(hn::Max(findCell(t), cell), hn::Sub(face, all(1.0)));
+    cell = hn::IfThenElse(which, hn::IfThenElse(crosses, face, before), cell);
   }
 
   /// Cell's number, not mirrored.
-  HWY_INLINE D number() const {
-    return hn::IfThenElse(mirrored, hn::Sub(all(cells - 1.0), cell), cell);
+  HWY_INLINE D cellIndex() const {
+    return hn::IfThenElse(isMirrored, hn::Sub(all(cellCount - 1.0), cell), cell);
   }
   /// Ray's position in the cell, 0 to 1, and its way along this axis in `length`; not mirrored.
-  HWY_INLINE D fractionAt(D t) const {
+  HWY_INLINE D fraction(D t) const {
     const D f = hn::Sub(position(t), cell);
-    return hn::IfThenElse(mirrored, hn::Sub(all(1.0), f), f);
+    return hn::IfThenElse(isMirrored, hn::Sub(all(1.0), f), f);
   }
-  HWY_INLINE D along(D length) const {
+  HWY_INLINE D displacement(D length) const {
     const D d = hn::Mul(direction, length);
-    return hn::IfThenElse(mirrored, hn::Neg(d), d);
+    return hn::IfThenElse(isMirrored, hn::Neg(d), d);
   }
 
 private:
   HWY_INLINE D position(D t) const { return hn::Add(origin, hn::Mul(t, direction)); }
-  HWY_INLINE D cellAt(D t) const { return hn::Floor(position(t)); }
+  HWY_INLINE D findCell(D t) const { return hn::Floor(position(t)); }
 };
 
 } // namespace

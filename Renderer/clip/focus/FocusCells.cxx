@@ -11,10 +11,10 @@ namespace fenestra {
 namespace {
 
 constexpr std::int64_t edge = FocusCells::blockSize;
-constexpr std::int64_t corners = edge + 1; ///< voxels along an edge of a block
+constexpr std::int64_t cornersPerEdge = edge + 1; ///< voxels along an edge of a block
 
 /// Least value of a voxel above the foothill.
-std::uint8_t leastVoxel(const Mask& mask) {
+std::uint8_t voxelThreshold(const Mask& mask) {
   return static_cast<std::uint8_t>(std::floor(FocusCells::captureThreshold * mask.full) + 1.0);
 }
 
@@ -22,95 +22,97 @@ std::uint8_t leastVoxel(const Mask& mask) {
 class Voxels {
 public:
   explicit Voxels(const Mask& mask)
-      : m_voxels(mask.voxels.data()), m_size(mask.grid.size), m_least(leastVoxel(mask)) {}
+      : m_voxels(mask.voxels.data()), m_size(mask.grid.size), m_threshold(voxelThreshold(mask)) {}
 
   /// One byte per cell for the four cells of a block's row, first cell lowest. Bits 0 and 1: the
   /// cell's two neighbours along x, in the row of voxels `y`, `z`, are above the foothill. 0
   /// outside the mask.
-  std::uint32_t pairs(std::int64_t blockX, std::int64_t y, std::int64_t z) const {
+  std::uint32_t neighborPairs(std::int64_t blockX, std::int64_t y, std::int64_t z) const {
     if (y < 0 || z < 0 || y >= m_size.y() || z >= m_size.z())
       return 0;
     const std::int64_t first = blockX * edge - 1;
     const std::uint8_t* row = m_voxels + m_size.x() * (y + m_size.y() * z);
     std::uint64_t word = 0; // little-endian bytes, 0 or 1
-    if (m_least == 1 && first >= 0 && first + 8 <= m_size.x()) {
+    if (m_threshold == 1 && first >= 0 && first + 8 <= m_size.x()) {
       std::memcpy(&word, row + first, sizeof(word));
     } else {
-      const std::int64_t end = std::min(first + corners, m_size.x());
+      const std::int64_t end = std::min(first + cornersPerEdge, m_size.x());
       for (std::int64_t x = std::max<std::int64_t>(first, 0); x < end; ++x)
-        word |= std::uint64_t{row[x] >= m_least} << (8 * (x - first));
+        word |= std::uint64_t{row[x] >= m_threshold} << (8 * (x - first));
     }
     return static_cast<std::uint32_t>(word | word >> 7);
   }
 
   std::uint8_t at(std::int64_t x, std::int64_t y, std::int64_t z) const {
     const Size3 voxel(x, y, z);
-    const bool isThere = (voxel.array() >= 0).all() && (voxel.array() < m_size.array()).all();
-    return isThere ? m_voxels[x + m_size.x() * (y + m_size.y() * z)] : std::uint8_t{0};
+    const bool isInside = (voxel.array() >= 0).all() && (voxel.array() < m_size.array()).all();
+    return isInside ? m_voxels[x + m_size.x() * (y + m_size.y() * z)] : std::uint8_t{0};
   }
 
 private:
   const std::uint8_t* m_voxels;
   Size3 m_size;
-  std::uint8_t m_least;
+  std::uint8_t m_threshold;
 };
 
 /// Blocks of a layer, x fastest: 1 for a voxel above the foothill at any corner of the block's
 /// cells. Computed from the greatest voxel per x over the rows around each row of blocks.
-std::vector<std::uint8_t> occupied(const Mask& mask, const Size3& blocks, std::int64_t blockZ) {
+std::vector<std::uint8_t> findOccupied(const Mask& mask, const Size3& blocks, std::int64_t blockZ) {
   const Size3& size = mask.grid.size;
   const auto range = [&](std::int64_t block, int axis) { // first and end
     return std::pair(std::max<std::int64_t>(0, block * edge - 1),
                      std::min(size[axis], (block + 1) * edge));
   };
   std::vector<std::uint8_t> result(static_cast<std::size_t>(blocks.x() * blocks.y()));
-  std::vector<std::uint8_t> most(static_cast<std::size_t>(size.x()));
+  std::vector<std::uint8_t> maxima(static_cast<std::size_t>(size.x()));
   const auto [firstZ, endZ] = range(blockZ, 2);
   for (std::int64_t by = 0; by < blocks.y(); ++by) {
-    std::ranges::fill(most, std::uint8_t{0});
+    std::ranges::fill(maxima, std::uint8_t{0});
     const auto [firstY, endY] = range(by, 1);
     for (std::int64_t z = firstZ; z < endZ; ++z)
       for (std::int64_t y = firstY; y < endY; ++y)
-        std::transform(most.begin(), most.end(), mask.voxels.data() + size.x() * (y + size.y() * z),
-                       most.begin(), [](std::uint8_t a, std::uint8_t b) { return std::max(a, b); });
+        std::transform(maxima.begin(), maxima.end(),
+                       mask.voxels.data() + size.x() * (y + size.y() * z), maxima.begin(),
+                       [](std::uint8_t a, std::uint8_t b) { return std::max(a, b); });
     for (std::int64_t bx = 0; bx < blocks.x(); ++bx) {
       const auto [first, end] = range(bx, 0);
       result[static_cast<std::size_t>(bx + blocks.x() * by)] =
-          std::any_of(most.begin() + first, most.begin() + end,
-                      [&](std::uint8_t voxel) { return voxel >= leastVoxel(mask); });
+          std::any_of(maxima.begin() + first, maxima.begin() + end,
+                      [&](std::uint8_t voxel) { return voxel >= voxelThreshold(mask); });
     }
   }
   return result;
 }
 
 /// Fills the corners of a block's cells; true if all bits are set.
-bool cornersOf(const Voxels& voxels, const Size3& block,
-               std::array<std::uint8_t, edge * edge * edge>& result) {
-  std::array<std::array<std::uint32_t, corners>, corners> pairs;
-  for (std::int64_t k = 0; k < corners; ++k)
-    for (std::int64_t j = 0; j < corners; ++j)
-      pairs[static_cast<std::size_t>(k)][static_cast<std::size_t>(j)] =
-          voxels.pairs(block.x(), block.y() * edge + j - 1, block.z() * edge + k - 1);
-  bool isWhole = true;
+bool fillCorners(const Voxels& voxels, const Size3& block,
+                 std::array<std::uint8_t, edge * edge * edge>& result) {
+  std::array<std::array<std::uint32_t, cornersPerEdge>, cornersPerEdge> neighborPairs;
+  for (std::int64_t k = 0; k < cornersPerEdge; ++k)
+    for (std::int64_t j = 0; j < cornersPerEdge; ++j)
+      neighborPairs[static_cast<std::size_t>(k)][static_cast<std::size_t>(j)] =
+          voxels.neighborPairs(block.x(), block.y() * edge + j - 1, block.z() * edge + k - 1);
+  bool isFull = true;
   for (std::size_t k = 0; k < edge; ++k)
     for (std::size_t j = 0; j < edge; ++j) {
       const std::uint32_t both = 0x03030303U;
-      const std::uint32_t row = (pairs[k][j] & both) | (pairs[k][j + 1] & both) << 2 |
-                                (pairs[k + 1][j] & both) << 4 | (pairs[k + 1][j + 1] & both) << 6;
-      isWhole = isWhole && row == 0xffffffffU;
+      const std::uint32_t row =
+          (neighborPairs[k][j] & both) | (neighborPairs[k][j + 1] & both) << 2 |
+          (neighborPairs[k + 1][j] & both) << 4 | (neighborPairs[k + 1][j + 1] & both) << 6;
+      isFull = isFull && row == 0xffffffffU;
       std::memcpy(&result[edge * (j + edge * k)], &row, sizeof(row));
     }
-  return isWhole;
+  return isFull;
 }
 
 /// Fills the voxels around a block's cells and returns the least.
-std::uint8_t valuesOf(const Voxels& voxels, const Size3& block,
-                      std::array<std::uint8_t, 128>& result) {
+std::uint8_t fillValues(const Voxels& voxels, const Size3& block,
+                        std::array<std::uint8_t, 128>& result) {
   std::uint8_t least = 255;
   std::size_t i = 0;
-  for (std::int64_t z = 0; z < corners; ++z)
-    for (std::int64_t y = 0; y < corners; ++y)
-      for (std::int64_t x = 0; x < corners; ++x) {
+  for (std::int64_t z = 0; z < cornersPerEdge; ++z)
+    for (std::int64_t y = 0; y < cornersPerEdge; ++y)
+      for (std::int64_t x = 0; x < cornersPerEdge; ++x) {
         const Size3 voxel = edge * block + Size3(x, y, z) - Size3::Ones();
         result[i] = voxels.at(voxel.x(), voxel.y(), voxel.z());
         least = std::min(least, result[i++]);
@@ -124,31 +126,31 @@ FocusCells::FocusCells(const Mask& mask)
     : m_count(mask.grid.size.array() + 1),
       m_blocks((m_count.array() + blockSize - 1) / blockSize),
       m_worldToCell(makeTranslation(Vec3::Ones()) * mask.grid.worldToIndex),
-      m_perValue(1.0 / mask.full) {
+      m_valueScale(1.0 / mask.full) {
   const std::int64_t bytes = m_blocks.prod() * static_cast<std::int64_t>(sizeof(BlockValues));
   if (bytes > std::numeric_limits<std::int32_t>::max())
     throw inputError("focus", "its segments span more than 2^30 voxels; crop the segmentation");
-  m_blockCorners.resize(static_cast<std::size_t>(m_blocks.prod()), noBlock);
+  m_blockCorners.resize(static_cast<std::size_t>(m_blocks.prod()), emptyBlock);
   m_corners.resize(2);
-  m_corners[noBlock].fill(0);
-  m_corners[wholeBlock].fill(0xff);
+  m_corners[emptyBlock].fill(0);
+  m_corners[fullBlock].fill(0xff);
   const bool isSmooth = mask.full != 1;
   if (isSmooth) {
     m_values.resize(2);
-    m_values[noBlock].fill(0);
-    m_values[wholeBlock].fill(mask.full);
+    m_values[emptyBlock].fill(0);
+    m_values[fullBlock].fill(mask.full);
   }
   std::vector<std::vector<Block>> layers(static_cast<std::size_t>(m_blocks.z()));
   tbb::parallel_for(std::int64_t{0}, m_blocks.z(), [&](std::int64_t z) {
-    layers[static_cast<std::size_t>(z)] = blocksOfLayer(mask, z);
+    layers[static_cast<std::size_t>(z)] = buildLayer(mask, z);
   });
   const std::size_t perLayer = static_cast<std::size_t>(m_blocks.x() * m_blocks.y());
   for (std::size_t z = 0; z < layers.size(); ++z) {
     // Numbers so far count the layer's own mixed blocks: -1, -2 and so on.
-    const auto before = static_cast<std::int32_t>(m_corners.size());
+    const auto firstIndex = static_cast<std::int32_t>(m_corners.size());
     for (std::size_t i = z * perLayer; i < (z + 1) * perLayer; ++i)
       if (m_blockCorners[i] < 0)
-        m_blockCorners[i] = before - 1 - m_blockCorners[i];
+        m_blockCorners[i] = firstIndex - 1 - m_blockCorners[i];
     for (const Block& block : layers[z]) {
       m_corners.push_back(block.corners);
       if (isSmooth)
@@ -172,8 +174,9 @@ double FocusCells::indicator(const Vec3& point) const {
       return static_cast<double>(
           m_corners[which][static_cast<std::size_t>(at)] >> (x + 2 * y + 4 * z) & 1);
     }
-    const std::int64_t at = local.x() + x + corners * (local.y() + y + corners * (local.z() + z));
-    return m_perValue * m_values[which][static_cast<std::size_t>(at)];
+    const std::int64_t at =
+        local.x() + x + cornersPerEdge * (local.y() + y + cornersPerEdge * (local.z() + z));
+    return m_valueScale * m_values[which][static_cast<std::size_t>(at)];
   };
   const auto row = [&](std::int64_t y, std::int64_t z) {
     return corner(0, y, z) + f.x() * (corner(1, y, z) - corner(0, y, z));
@@ -185,13 +188,13 @@ double FocusCells::indicator(const Vec3& point) const {
 
 FocusCells::Layout FocusCells::layout() const {
   return {m_blockCorners.data(), m_corners.front().data(), m_blocks,
-          m_values.empty() ? nullptr : m_values.front().data(), m_perValue};
+          m_values.empty() ? nullptr : m_values.front().data(), m_valueScale};
 }
 
 /// Mixed blocks of a layer; m_blockCorners numbers them -1, -2 and so on within the layer.
-std::vector<FocusCells::Block> FocusCells::blocksOfLayer(const Mask& mask, std::int64_t z) {
+std::vector<FocusCells::Block> FocusCells::buildLayer(const Mask& mask, std::int64_t z) {
   const Voxels voxels(mask);
-  const std::vector<std::uint8_t> isOccupied = occupied(mask, m_blocks, z);
+  const std::vector<std::uint8_t> isOccupied = findOccupied(mask, m_blocks, z);
   std::vector<Block> result;
   for (std::int64_t y = 0; y < m_blocks.y(); ++y)
     for (std::int64_t x = 0; x < m_blocks.x(); ++x) {
@@ -199,12 +202,12 @@ std::vector<FocusCells::Block> FocusCells::blocksOfLayer(const Mask& mask, std::
       if (!isOccupied[static_cast<std::size_t>(x + m_blocks.x() * y)])
         continue;
       Block block{};
-      bool isWhole = cornersOf(voxels, at, block.corners);
+      bool isFull = fillCorners(voxels, at, block.corners);
       if (mask.full != 1)
-        isWhole = valuesOf(voxels, at, block.values) >= mask.half();
+        isFull = fillValues(voxels, at, block.values) >= mask.half();
       std::int32_t& where = m_blockCorners[static_cast<std::size_t>(blockIndex(at))];
-      if (isWhole) {
-        where = wholeBlock;
+      if (isFull) {
+        where = fullBlock;
       } else {
         result.push_back(block);
         where = -static_cast<std::int32_t>(result.size());

@@ -24,7 +24,7 @@ struct FocusRays {
   /// Summit's t, and the indicator there; only from findHitsAndMaxima, for rays that miss the mask.
   alignas(64) SoaArray maximumT, maximum;
 
-  bool full() const { return size == capacity; }
+  bool isFull() const { return size == capacity; }
 
   void add(const Ray& ray, const Interval& range) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -74,7 +74,7 @@ public:
     const std::uint8_t* corners; ///< BlockCorners, 64 bytes each
     Size3 blockCount;
     const std::uint8_t* values; ///< BlockValues, 128 bytes each; null: voxels are 0 and 1 only
-    double perValue;            ///< indicator per unit of a value
+    double valueScale;          ///< indicator per unit of a value
   };
 
   /// Calls back with each block that is not empty; block (i, j, k) fills [i, i + 1]... of cell
@@ -85,7 +85,7 @@ public:
     for (std::int64_t z = 0; z < m_blocks.z(); ++z)
       for (std::int64_t y = 0; y < m_blocks.y(); ++y)
         for (std::int64_t x = 0; x < m_blocks.x(); ++x)
-          if (m_blockCorners[block++] != noBlock)
+          if (m_blockCorners[block++] != emptyBlock)
             visit(Size3(x, y, z));
   }
 
@@ -106,7 +106,7 @@ private:
   /// One byte per cell of a block, x fastest; bit i is set if corner i of the cell, x fastest, is
   /// above the foothill. 0: the walks skip the cell.
   using BlockCorners = std::array<std::uint8_t, blockSize * blockSize * blockSize>;
-  static constexpr std::int32_t noBlock = 0, wholeBlock = 1; ///< numbers in m_corners
+  static constexpr std::int32_t emptyBlock = 0, fullBlock = 1; ///< numbers in m_corners
   /// Voxels at the corners of a block's cells, 5^3, x fastest, padded to two lines of the cache.
   using BlockValues = std::array<std::uint8_t, 128>;
 
@@ -114,7 +114,7 @@ private:
     BlockCorners corners;
     BlockValues values; ///< of a smoothed mask only
   };
-  std::vector<Block> blocksOfLayer(const Mask& mask, std::int64_t z);
+  std::vector<Block> buildLayer(const Mask& mask, std::int64_t z);
   Layout layout() const;
   std::int64_t blockIndex(const Size3& block) const {
     return block.x() + m_blocks.x() * (block.y() + m_blocks.y() * block.z());
@@ -126,7 +126,7 @@ private:
   std::vector<std::int32_t> m_blockCorners; ///< per block: index into m_corners
   std::vector<BlockCorners> m_corners;
   std::vector<BlockValues> m_values; ///< parallel to m_corners; empty: voxels are 0 and 1 only
-  double m_perValue;
+  double m_valueScale;
 };
 
 } // namespace fenestra

@@ -26,7 +26,7 @@ public:
     double depthPerLength;
   };
   /// Camera::rayThrough in cell space.
-  CameraRay through(const Vec2& plane) const {
+  CameraRay makeRay(const Vec2& plane) const {
     const Vec3 offset = plane.x() * m_right + plane.y() * m_up;
     if (m_orthographic)
       return {{m_position + offset, m_forward}, 1.0};
@@ -54,7 +54,7 @@ bool isInside(const FocusCells& cells, const Domain& volume) {
 }
 
 /// Part of a world ray in the volume's domain.
-Interval inVolume(const Domain& volume, const Ray& ray) {
+Interval clipToVolume(const Domain& volume, const Ray& ray) {
   return volume.clip(transformRay(volume.grid().worldToIndex, ray));
 }
 
@@ -65,16 +65,16 @@ FocusTracer::FocusTracer(const Camera& camera, const Domain& volume, const Mask&
       m_volume(volume),
       m_cells(std::make_unique<const FocusCells>(focus)),
       m_rays(std::make_unique<const CellRays>(m_camera, *m_cells)),
-      m_isWhole(isInside(*m_cells, volume)) {}
+      m_isInside(isInside(*m_cells, volume)) {}
 
 FocusTracer::~FocusTracer() = default;
 
 /// Part of an eye ray in which the ray can meet the focus inside the volume's domain.
-Interval FocusTracer::inDomain(const Vec2& position) const {
-  return m_isWhole ? Interval{} : inVolume(m_volume, m_camera.rayThrough(position));
+Interval FocusTracer::clipToDomain(const Vec2& position) const {
+  return m_isInside ? Interval{} : clipToVolume(m_volume, m_camera.rayThrough(position));
 }
 
-FocusDepth FocusTracer::depths() const {
+FocusDepth FocusTracer::traceDepths() const {
   FocusDepth result{DepthBuffer(m_camera, m_volume.grid()), {}};
   DepthBuffer& depth = result.depth;
   result.regions.assign(static_cast<std::size_t>(depth.size()), Region::outside);
@@ -82,7 +82,7 @@ FocusDepth FocusTracer::depths() const {
   const DomainFootprint domainFootprint(m_camera, m_volume);
 
   const auto meetsVolume = [&](std::int64_t column, std::int64_t row) {
-    return !inVolume(m_volume, m_camera.rayThrough(depth.position(column, row))).isEmpty();
+    return !clipToVolume(m_volume, m_camera.rayThrough(depth.position(column, row))).isEmpty();
   };
   tbb::parallel_for(std::int64_t{0}, depth.rows(), [&](std::int64_t row) {
     // The domain is convex: all samples between two that meet the domain meet it.
@@ -113,7 +113,7 @@ FocusDepth FocusTracer::depths() const {
   return result;
 }
 
-std::vector<double> FocusTracer::depthsAt(const std::vector<Vec2>& positions) const {
+std::vector<double> FocusTracer::findDepths(const std::vector<Vec2>& positions) const {
   std::vector<double> depths(positions.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, positions.size()), [&](const auto& range) {
     std::vector<Glance> glances;
@@ -128,12 +128,12 @@ std::vector<double> FocusTracer::depthsAt(const std::vector<Vec2>& positions) co
 }
 
 bool FocusTracer::isFocus(const Vec2& position, double depth) const {
-  const auto [ray, depthPerLength] = m_rays->through(position);
+  const auto [ray, depthPerLength] = m_rays->makeRay(position);
   const double t = depth / depthPerLength;
   if (!(m_cells->indicator(ray.at(t)) >= 0.5))
     return false;
   const Affine& worldToIndex = m_volume.grid().worldToIndex;
-  return m_isWhole || m_volume.contains(worldToIndex * m_camera.rayThrough(position).at(t));
+  return m_isInside || m_volume.contains(worldToIndex * m_camera.rayThrough(position).at(t));
 }
 
 template <bool withMaxima>
@@ -144,7 +144,7 @@ void FocusTracer::follow(std::span<const Glance> glances, std::span<Sight> sight
   FocusRays rays; // traced together
   std::array<Sight*, FocusRays::capacity> sightOf;
   FocusRays::SoaArray depthPerLength;
-  const auto trace = [&] {
+  const auto flush = [&] {
     if constexpr (withMaxima)
       m_cells->findHitsAndMaxima(rays);
     else
@@ -157,8 +157,8 @@ void FocusTracer::follow(std::span<const Glance> glances, std::span<Sight> sight
     rays.size = 0;
   };
   for (std::size_t i = 0; i < glances.size(); ++i) {
-    const auto [ray, perLength] = m_rays->through(glances[i].position);
-    Interval range = inDomain(glances[i].position);
+    const auto [ray, perLength] = m_rays->makeRay(glances[i].position);
+    Interval range = clipToDomain(glances[i].position);
     range.begin = std::max(range.begin, glances[i].depths.begin / perLength);
     range.end = std::min(range.end, glances[i].depths.end / perLength);
     const Interval inside = m_cells->box().clip(ray, range);
@@ -167,10 +167,10 @@ void FocusTracer::follow(std::span<const Glance> glances, std::span<Sight> sight
     sightOf[rays.size] = &sights[i];
     depthPerLength[rays.size] = perLength;
     rays.add(ray, inside);
-    if (rays.full())
-      trace();
+    if (rays.isFull())
+      flush();
   }
-  trace();
+  flush();
 }
 
 void FocusTracer::meet(std::span<const Glance> glances, std::span<Sight> sights) const {

@@ -63,10 +63,10 @@ public:
   /// volume's domain and in front of the eye: exact, to rounding. A ray that starts, or enters the
   /// domain, inside the focus meets the focus there. The buffer spans the whole volume, cropped or
   /// not.
-  FocusDepth depths() const;
+  FocusDepth traceDepths() const;
 
   /// Depths of the focus on the rays through these (x, y), mm; infinity: missed.
-  std::vector<double> depthsAt(const std::vector<Vec2>& positions) const;
+  std::vector<double> findDepths(const std::vector<Vec2>& positions) const;
 
   /// Fills sights[i] for glances[i]. `meet`: meetings only (cheaper); `look`: summits as well. Not
   /// threaded inside: to be called in parallel.
@@ -80,7 +80,7 @@ public:
   const FocusCells& cells() const { return *m_cells; }
 
 private:
-  Interval inDomain(const Vec2& position) const;
+  Interval clipToDomain(const Vec2& position) const;
   template <bool withMaxima>
   void follow(std::span<const Glance> glances, std::span<Sight> sights) const;
 
@@ -88,7 +88,7 @@ private:
   Domain m_volume;
   std::unique_ptr<const FocusCells> m_cells;
   std::unique_ptr<const CellRays> m_rays;
-  bool m_isWhole; ///< true: the domain contains the focus's whole grid
+  bool m_isInside; ///< true: the domain contains the focus's whole grid
 };
 
 } // namespace fenestra

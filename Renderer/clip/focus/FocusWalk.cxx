@@ -38,7 +38,7 @@ public:
     ++m_size;
   }
 
-  /// Writes rays.meeting from the roots, found as by rootBetween(cubic, 0, 1).
+  /// Writes rays.meeting from the roots, found as by findRoot(cubic, 0, 1).
   void solveAll(FocusRays& rays) {
     for (std::size_t i = m_size; i % hn::Lanes(doubles) != 0; ++i)
       for (Column* column : {&m_c[0], &m_c[1], &m_c[2], &m_c[3], &m_begin, &m_length})
@@ -131,7 +131,7 @@ public:
 
   bool isBusy() const { return !hn::AllFalse(doubles, m_busy); }
 
-  Axis axis(std::size_t a) const {
+  FocusAxis axis(std::size_t a) const {
     return {hn::Load(doubles, &m_rays.origin[a][m_first]),
             hn::Load(doubles, &m_rays.direction[a][m_first]), m_t,
             m_cells.blockCount[static_cast<int>(a)]};
@@ -139,9 +139,9 @@ public:
 
   /// Steps into the next cell or block.
   HWY_INLINE void step() {
-    const I x = hn::DemoteTo(ints, m_axes[0].number());
-    const I y = hn::DemoteTo(ints, m_axes[1].number());
-    const I z = hn::DemoteTo(ints, m_axes[2].number());
+    const I x = hn::DemoteTo(ints, m_axes[0].cellIndex());
+    const I y = hn::DemoteTo(ints, m_axes[1].cellIndex());
+    const I z = hn::DemoteTo(ints, m_axes[2].cellIndex());
     const auto linear = [](I a, I b, I c, std::int64_t countA, std::int64_t countB) {
       return hn::Add(a, hn::Mul(allInts(countA), hn::Add(b, hn::Mul(allInts(countB), c))));
     };
@@ -149,7 +149,7 @@ public:
         hn::GatherIndex(ints, m_cells.blocks,
                         linear(hn::ShiftRight<2>(x), hn::ShiftRight<2>(y), hn::ShiftRight<2>(z),
                                m_cells.blockCount.x(), m_cells.blockCount.y()));
-    const M isOccupied = isNot0(block);
+    const M isOccupied = isNonZero(block);
     const M isEmpty = hn::Not(isOccupied);
     const D toX = m_axes[0].findFace(isEmpty);
     const D toY = m_axes[1].findFace(isEmpty);
@@ -164,7 +164,8 @@ public:
       const I corners = hn::And(
           hn::GatherOffset(ints, reinterpret_cast<const std::int32_t*>(m_cells.corners), at),
           allInts(0xff));
-      if (const M occupied = hn::And(candidates, isNot0(corners)); !hn::AllFalse(doubles, occupied))
+      if (const M occupied = hn::And(candidates, isNonZero(corners));
+          !hn::AllFalse(doubles, occupied))
         intersect(occupied, corners,
                   hn::Add(hn::ShiftLeft<7>(block),
                           linear(hn::And(x, three), hn::And(y, three), hn::And(z, three), 5, 5)),
@@ -188,9 +189,9 @@ private:
   HWY_INLINE void intersect(M which, I corners, I values, D exit) {
     const std::array<D, 8> v = m_cells.values ? smoothCorners(values) : binaryCorners(corners);
     const D length = hn::Sub(exit, m_t);
-    const D x = m_axes[0].fractionAt(m_t), u = m_axes[0].along(length);
-    const D y = m_axes[1].fractionAt(m_t), w = m_axes[1].along(length);
-    const D z = m_axes[2].fractionAt(m_t), q = m_axes[2].along(length);
+    const D x = m_axes[0].fraction(m_t), u = m_axes[0].displacement(length);
+    const D y = m_axes[1].fraction(m_t), w = m_axes[1].displacement(length);
+    const D z = m_axes[2].fraction(m_t), q = m_axes[2].displacement(length);
 
     // The indicator is a + x bx + y by + z bz + x y cxy + x z cxz + y z cyz + x y z d, and along
     // the ray x becomes x + s u, y + s w, z + s q with s in [0, 1].
@@ -238,14 +239,14 @@ private:
   HWY_INLINE static std::array<D, 8> binaryCorners(I corners) {
     const auto value = [&](std::int32_t i) {
       const I bit = hn::And(corners, allInts(1 << i));
-      return hn::IfThenElse(isNot0(bit), all(0.5), all(-0.5));
+      return hn::IfThenElse(isNonZero(bit), all(0.5), all(-0.5));
     };
     return {value(0), value(1), value(2), value(3), value(4), value(5), value(6), value(7)};
   }
   HWY_INLINE std::array<D, 8> smoothCorners(I first) const {
     const auto value = [&](I byte) {
       const D whole = hn::PromoteTo(doubles, hn::And(byte, allInts(0xff)));
-      return hn::MulSub(whole, all(m_cells.perValue), all(0.5));
+      return hn::MulSub(whole, all(m_cells.valueScale), all(0.5));
     };
     std::array<D, 8> v;
     std::size_t i = 0;
@@ -273,7 +274,7 @@ private:
       const auto lane = static_cast<std::size_t>(std::countr_zero(left));
       const Cubic cubic{{lanes[0][lane], lanes[1][lane], lanes[2][lane], lanes[3][lane]}};
       const bool isRising = rising >> lane & 1;
-      const double s = isRising ? 0.0 : firstNonNegative(cubic);
+      const double s = isRising ? 0.0 : findFirstNonNegative(cubic);
       if (s == infinity) {
         if constexpr (withMaxima)
           updateMaximum(lane, cubic, lanes[4][lane], lanes[5][lane]);
@@ -290,7 +291,7 @@ private:
 
   /// Updates the summit in a cell without a meeting.
   void updateMaximum(std::size_t lane, const Cubic& cubic, double begin, double length) {
-    const std::array<double, 2> turns = turningPoints(cubic);
+    const std::array<double, 2> turns = findTurningPoints(cubic);
     bool isOnRidge = begin - m_ridgeEnds[lane] < plateauTolerance;
     for (const double s : {0.0, turns[0], turns[1], 1.0}) { // between these the cubic is monotone
       const double height = cubic(s);
@@ -323,7 +324,7 @@ private:
   std::size_t m_first;
   D m_t, m_end;
   M m_busy;
-  std::array<Axis, 3> m_axes;
+  std::array<FocusAxis, 3> m_axes;
   LaneDoubles m_maxima, m_maximaT; ///< so far: indicator - 1/2, and t
   LaneDoubles m_ridgeEnds;         ///< t at which the summit's ridge ends
 };

@@ -10,46 +10,46 @@ namespace {
 constexpr double sampleSlack = 0.01;
 
 /// Cells of the buffer between two positions, with slack.
-CellRange cellsBetween(const DepthBuffer& buffer, const Vec2& lower, const Vec2& upper) {
-  const auto [left, right] = buffer.xAxis().samplesBetween(lower.x(), upper.x(), sampleSlack);
-  const auto [top, bottom] = buffer.yAxis().samplesBetween(lower.y(), upper.y(), sampleSlack);
+CellRange findCells(const DepthBuffer& buffer, const Vec2& lower, const Vec2& upper) {
+  const auto [left, right] = buffer.xAxis().sampleRange(lower.x(), upper.x(), sampleSlack);
+  const auto [top, bottom] = buffer.yAxis().sampleRange(lower.y(), upper.y(), sampleSlack);
   return {left, right, top, bottom};
 }
 
 /// Calls function(block, depths, seen) for each block of the focus's cells that is not behind the
 /// eye. `depths`: of the block, mm. `seen`: cells of the buffer whose rays can pass the block.
 template <typename Function>
-void visitSeen(const Camera& camera, const DepthBuffer& buffer, const FocusCells& cells,
-               const Function& function) {
+void visitVisibleBlocks(const Camera& camera, const DepthBuffer& buffer, const FocusCells& cells,
+                        const Function& function) {
   const BoxProjection blocks(camera, cells.cellToWorld() *
                                          makeScaling(Vec3::Constant(FocusCells::blockSize)));
   cells.visitOccupied([&](const Size3& block) {
     const auto [depths, lower, upper] = blocks.of(block);
     if (depths.end >= 0.0)
-      function(block, depths, cellsBetween(buffer, lower, upper));
+      function(block, depths, findCells(buffer, lower, upper));
   });
 }
 
 /// Number of cells that are asked for above and left of each cell (Crow 1984): what a rectangle
 /// holds of them takes four look-ups.
-class AskedSums {
+class SummedAreaTable {
 public:
-  AskedSums(const CellRange& range, const std::vector<std::uint8_t>& isAskedFor)
+  SummedAreaTable(const CellRange& range, const std::vector<std::uint8_t>& isRequested)
       : m_range(range),
-        m_across(range.columns() + 1),
-        m_sums(static_cast<std::size_t>(m_across * (range.rows() + 1)), 0) {
+        m_stride(range.columns() + 1),
+        m_sums(static_cast<std::size_t>(m_stride * (range.rows() + 1)), 0) {
     std::size_t cell = 0;
     for (std::int64_t row = range.top; row < range.bottom; ++row) {
       std::uint32_t inRow = 0;
       for (std::int64_t column = range.left; column < range.right; ++column) {
-        inRow += isAskedFor[cell++] != 0 ? 1U : 0U;
+        inRow += isRequested[cell++] != 0 ? 1U : 0U;
         m_sums[at(column + 1, row + 1)] = m_sums[at(column + 1, row)] + inRow;
       }
     }
   }
 
   /// True if any cell of the rectangle, which lies in the range, is asked for.
-  bool any(const CellRange& cells) const {
+  bool hasAny(const CellRange& cells) const {
     return cells.left < cells.right && cells.top < cells.bottom &&
            m_sums[at(cells.right, cells.bottom)] + m_sums[at(cells.left, cells.top)] !=
                m_sums[at(cells.left, cells.bottom)] + m_sums[at(cells.right, cells.top)];
@@ -57,11 +57,11 @@ public:
 
 private:
   std::size_t at(std::int64_t column, std::int64_t row) const {
-    return static_cast<std::size_t>(column - m_range.left + m_across * (row - m_range.top));
+    return static_cast<std::size_t>(column - m_range.left + m_stride * (row - m_range.top));
   }
 
   CellRange m_range;
-  std::int64_t m_across;
+  std::int64_t m_stride;
   std::vector<std::uint32_t> m_sums; ///< modulo 2^32
 };
 
@@ -88,67 +88,69 @@ DomainFootprint::Columns DomainFootprint::columns(const DepthBuffer& buffer,
       if (a.y() > b.y() || a.y() > high || b.y() < low)
         continue;
       for (const double y : {std::max(low, a.y()), std::min(high, b.y())}) {
-        const double along = b.y() > a.y() ? (y - a.y()) / (b.y() - a.y()) : 0.0;
-        const double x = a.x() + along * (b.x() - a.x());
+        const double fraction = b.y() > a.y() ? (y - a.y()) / (b.y() - a.y()) : 0.0;
+        const double x = a.x() + fraction * (b.x() - a.x());
         first = std::min({first, x, b.y() > a.y() ? x : b.x()});
         last = std::max({last, x, b.y() > a.y() ? x : b.x()});
       }
     }
   if (!(first <= last))
     return {0, 0};
-  const auto [begin, end] = buffer.xAxis().samplesBetween(first, last, sampleSlack);
+  const auto [begin, end] = buffer.xAxis().sampleRange(first, last, sampleSlack);
   return {begin, end + 1};
 }
 
 FocusFootprint::FocusFootprint(const Camera& camera, const DepthBuffer& buffer,
                                const FocusCells& cells)
-    : m_across((buffer.columns() + tileSize - 1) / tileSize) {
+    : m_tilesPerRow((buffer.columns() + tileSize - 1) / tileSize) {
   const std::int64_t down = (buffer.rows() + tileSize - 1) / tileSize;
-  m_tiles.assign(static_cast<std::size_t>(m_across * down), {infinity, -infinity});
-  visitSeen(camera, buffer, cells,
-            [&](const Size3&, const Interval& depths, const CellRange& seen) {
-              for (std::int64_t row = seen.top / tileSize; row <= seen.bottom / tileSize; ++row)
-                for (std::int64_t column = seen.left / tileSize; column <= seen.right / tileSize;
-                     ++column) {
-                  Interval& tile = m_tiles[static_cast<std::size_t>(column + row * m_across)];
-                  tile = enclose(tile, depths);
-                }
-            });
+  m_tiles.assign(static_cast<std::size_t>(m_tilesPerRow * down), {infinity, -infinity});
+  visitVisibleBlocks(
+      camera, buffer, cells, [&](const Size3&, const Interval& depths, const CellRange& footprint) {
+        for (std::int64_t row = footprint.top / tileSize; row <= footprint.bottom / tileSize; ++row)
+          for (std::int64_t column = footprint.left / tileSize;
+               column <= footprint.right / tileSize; ++column) {
+            Interval& tile = m_tiles[static_cast<std::size_t>(column + row * m_tilesPerRow)];
+            tile = enclose(tile, depths);
+          }
+      });
 }
 
-CellRange focusRange(const Camera& camera, const DepthBuffer& buffer, const FocusCells& cells) {
+CellRange findFocusRange(const Camera& camera, const DepthBuffer& buffer, const FocusCells& cells) {
   CellRange range{buffer.columns(), 0, buffer.rows(), 0};
-  visitSeen(camera, buffer, cells, [&](const Size3&, const Interval&, const CellRange& seen) {
-    range = {std::min(range.left, seen.left), std::max(range.right, seen.right),
-             std::min(range.top, seen.top), std::max(range.bottom, seen.bottom)};
-  });
+  visitVisibleBlocks(
+      camera, buffer, cells, [&](const Size3&, const Interval&, const CellRange& footprint) {
+        range = {std::min(range.left, footprint.left), std::max(range.right, footprint.right),
+                 std::min(range.top, footprint.top), std::max(range.bottom, footprint.bottom)};
+      });
   return range.left < range.right && range.top < range.bottom ? range : CellRange{};
 }
 
 std::vector<Interval> computeDepthBounds(const Camera& camera, const DepthBuffer& buffer,
                                          const FocusCells& cells, const CellRange& range,
-                                         const std::vector<std::uint8_t>& isAskedFor) {
+                                         const std::vector<std::uint8_t>& isRequested) {
   std::vector<Interval> bounds(range.size(), {infinity, -infinity});
-  const AskedSums asked(range, isAskedFor);
+  const SummedAreaTable requested(range, isRequested);
   const BoxProjection boxes(camera, cells.cellToWorld());
   const auto extendBounds = [&](const Size3& cell) {
     const auto [depths, lower, upper] = boxes.of(cell);
     if (depths.end < 0.0)
       return;
-    const CellRange seen = cellsBetween(buffer, lower, upper);
-    if (!asked.any(seen))
+    const CellRange footprint = findCells(buffer, lower, upper);
+    if (!requested.hasAny(footprint))
       return;
-    for (std::int64_t row = seen.top; row < seen.bottom; ++row)
-      for (std::int64_t column = seen.left; column < seen.right; ++column) {
+    for (std::int64_t row = footprint.top; row < footprint.bottom; ++row)
+      for (std::int64_t column = footprint.left; column < footprint.right; ++column) {
         const std::size_t at = range.at(column, row);
-        if (isAskedFor[at])
+        if (isRequested[at])
           bounds[at] = enclose(bounds[at], depths);
       }
   };
-  visitSeen(camera, buffer, cells, [&](const Size3& block, const Interval&, const CellRange& seen) {
-    if (asked.any(seen))
-      cells.visitCells(block, extendBounds);
-  });
+  visitVisibleBlocks(camera, buffer, cells,
+                     [&](const Size3& block, const Interval&, const CellRange& footprint) {
+                       if (requested.hasAny(footprint))
+                         cells.visitCells(block, extendBounds);
+                     });
   return bounds;
 }
 

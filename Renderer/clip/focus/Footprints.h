@@ -34,13 +34,13 @@ public:
 
   /// Range for a sample's tile, mm; empty: no block of the focus is seen.
   Interval depths(std::int64_t column, std::int64_t row) const {
-    return m_tiles[static_cast<std::size_t>(column / tileSize + row / tileSize * m_across)];
+    return m_tiles[static_cast<std::size_t>(column / tileSize + row / tileSize * m_tilesPerRow)];
   }
 
 private:
   static constexpr std::int64_t tileSize = 4; ///< samples
 
-  std::int64_t m_across; ///< tiles in a row
+  std::int64_t m_tilesPerRow; ///< tiles in a row
   std::vector<Interval> m_tiles;
 };
 
@@ -59,12 +59,12 @@ struct CellRange {
 };
 
 /// Rectangle that holds all cells whose rays can meet the focus or have a summit (FocusCells).
-CellRange focusRange(const Camera& camera, const DepthBuffer& buffer, const FocusCells& cells);
+CellRange findFocusRange(const Camera& camera, const DepthBuffer& buffer, const FocusCells& cells);
 
 /// Per cell of `range`: depths, mm, between which the cell's rays can meet the focus or have a
-/// summit; empty: none, or isAskedFor is 0.
+/// summit; empty: none, or isRequested is 0.
 std::vector<Interval> computeDepthBounds(const Camera& camera, const DepthBuffer& buffer,
                                          const FocusCells& cells, const CellRange& range,
-                                         const std::vector<std::uint8_t>& isAskedFor);
+                                         const std::vector<std::uint8_t>& isRequested);
 
 } // namespace fenestra

@@ -10,11 +10,11 @@ namespace {
 /// rounding, far below visibility.
 constexpr double slack = 1e-6;
 
-Interval behindPart(const ClipNone&, const Ray&) {
+Interval findUnclipped(const ClipNone&, const Ray&) {
   return {};
 }
 
-Interval behindPart(const ClipPlane& clip, const Ray& cameraRay) {
+Interval findUnclipped(const ClipPlane& clip, const Ray& cameraRay) {
   const double above = (cameraRay.origin - clip.point).dot(clip.normal); // the removed side is > 0
   const double slope = cameraRay.direction.dot(clip.normal);
   if (slope > 0.0)
@@ -24,33 +24,33 @@ Interval behindPart(const ClipPlane& clip, const Ray& cameraRay) {
   return above > 0.0 ? Interval{0.0, 0.0} : Interval{};
 }
 
-Interval behindPart(const ClipDepth& clip, const Ray& cameraRay) {
+Interval findUnclipped(const ClipDepth& clip, const Ray& cameraRay) {
   const double depthPerLength = clip.camera.depthPerLength(cameraRay);
   // All points of the ray have the same (x, y); at the target's depth rounding matters least.
   const Vec3 point = cameraRay.at(clip.camera.targetDepth() / depthPerLength);
-  const double depth = clip.surface(toBuffer(clip.camera, point).head<2>());
+  const double depth = clip.surfaceDepth(toBuffer(clip.camera, point).head<2>());
   return {std::max(0.0, depth / depthPerLength), infinity};
 }
 
-Vec3 cutOf(const ClipNone&, const Vec3&) {
+Vec3 evaluateCut(const ClipNone&, const Vec3&) {
   return Vec3::Zero();
 }
 
-Vec3 cutOf(const ClipPlane& clip, const Vec3& world) {
+Vec3 evaluateCut(const ClipPlane& clip, const Vec3& world) {
   if (isBehindCamera(clip.camera, clip.camera.toView(world).z()) ||
-      !clip.edge.isRamp(clip.behind(world)))
+      !clip.edge.isRamp(clip.signedDistance(world)))
     return Vec3::Zero();
   return -cutShading / clip.edge.softness * clip.normal;
 }
 
-Vec3 cutOf(const ClipDepth& clip, const Vec3& world) {
+Vec3 evaluateCut(const ClipDepth& clip, const Vec3& world) {
   const Camera& camera = clip.camera;
   const Vec3 at = toBuffer(camera, world);
-  if (isBehindCamera(camera, at.z()) || !clip.edge.isRamp(clip.behind(at)))
+  if (isBehindCamera(camera, at.z()) || !clip.edge.isRamp(clip.signedDistance(at)))
     return Vec3::Zero();
   Vec2 slope = Vec2::Zero();
   if (clip.lookup == ClipDepth::Lookup::linear)
-    slope = clip.buffer->slopeIn(clip.buffer->cell(at.head<2>()));
+    slope = clip.buffer->gradient(clip.buffer->cell(at.head<2>()));
   double forward = 1.0;
   if (camera.pose().projection == Projection::perspective) {
     forward += slope.dot(at.head<2>()) / at.z();
@@ -65,12 +65,12 @@ Vec3 cutOf(const ClipDepth& clip, const Vec3& world) {
 enum class Side { inside, across, outside };
 
 /// Bound for a box over a range of distances behind the surface, mm.
-Kept keptBehind(const ClipEdge& edge, const Interval& behind, Side inFrontOfEye) {
+Kept keptBehind(const ClipEdge& edge, const Interval& distances, Side inFrontOfEye) {
   if (inFrontOfEye == Side::outside)
     return Kept::none;
-  if (inFrontOfEye == Side::inside && behind.begin > edge.softness + slack)
+  if (inFrontOfEye == Side::inside && distances.begin > edge.softness + slack)
     return Kept::all;
-  if (behind.end < -slack)
+  if (distances.end < -slack)
     return {edge.ghost, inFrontOfEye == Side::inside || edge.isHard()};
   return Kept::some;
 }
@@ -87,13 +87,13 @@ Kept keptBox(const ClipNone&, const Corners&) {
 }
 
 Kept keptBox(const ClipPlane& clip, const Corners& corners) {
-  Interval behind{infinity, -infinity}, depths = behind;
+  Interval distances{infinity, -infinity}, depths = distances;
   for (const Vec3& corner : corners) {
-    const double ofCorner = clip.behind(corner), depth = clip.camera.toView(corner).z();
-    behind = enclose(behind, {ofCorner, ofCorner});
+    const double distance = clip.signedDistance(corner), depth = clip.camera.toView(corner).z();
+    distances = enclose(distances, {distance, distance});
     depths = enclose(depths, {depth, depth});
   }
-  return keptBehind(clip.edge, behind, inFrontOfEye(clip.camera, depths));
+  return keptBehind(clip.edge, distances, inFrontOfEye(clip.camera, depths));
 }
 
 Kept keptBox(const ClipDepth& clip, const Corners& corners) {
@@ -115,7 +115,7 @@ Kept keptBox(const ClipDepth& clip, const Corners& corners) {
 } // namespace
 
 double ClipDepth::refineAtSilhouette(const DepthBuffer::Cell& cell, const Vec2& position,
-                                     double linear, const Interval& between) const {
+                                     double linear, const Interval& queryRange) const {
   const std::int32_t silhouetteCell =
       silhouette->indices()[static_cast<std::size_t>(buffer->sample(cell.column, cell.row))];
   if (silhouetteCell < 0)
@@ -123,11 +123,11 @@ double ClipDepth::refineAtSilhouette(const DepthBuffer::Cell& cell, const Vec2& 
   const SilhouetteCells::DepthBounds& bounds =
       silhouette->depthBounds()[static_cast<std::size_t>(silhouetteCell)];
   const double reference = buffer->reference();
-  if (between.end < std::min(linear, reference + bounds.min) ||
-      between.begin > std::max(linear, reference + bounds.max))
+  if (queryRange.end < std::min(linear, reference + bounds.min) ||
+      queryRange.begin > std::max(linear, reference + bounds.max))
     return linear;
   SilhouetteCells::Query query{silhouetteCell, position, linear - reference,
-                               between.begin - reference};
+                               queryRange.begin - reference};
   silhouette->evaluate({&query, 1});
   return reference + query.depth;
 }
@@ -135,18 +135,18 @@ double ClipDepth::refineAtSilhouette(const DepthBuffer::Cell& cell, const Vec2& 
 Vec3 cutGradient(const Clip& clip, const Vec3& world) {
   return std::visit(
       [&](const auto& kind) -> Vec3 {
-        return kind.edge.softness > 0.0 ? cutOf(kind, world) : Vec3::Zero();
+        return kind.edge.softness > 0.0 ? evaluateCut(kind, world) : Vec3::Zero();
       },
       clip);
 }
 
-Interval behindSurface(const Clip& clip, const Ray& cameraRay) {
-  return std::visit([&](const auto& kind) { return behindPart(kind, cameraRay); }, clip);
+Interval intervalBehindSurface(const Clip& clip, const Ray& cameraRay) {
+  return std::visit([&](const auto& kind) { return findUnclipped(kind, cameraRay); }, clip);
 }
 
-Interval visible(const Clip& clip, const Ray& cameraRay) {
+Interval visibleInterval(const Clip& clip, const Ray& cameraRay) {
   const bool isHard = std::visit([](const auto& kind) { return kind.edge.isHard(); }, clip);
-  return isHard ? behindSurface(clip, cameraRay) : Interval{};
+  return isHard ? intervalBehindSurface(clip, cameraRay) : Interval{};
 }
 
 Kept keptIn(const Clip& clip, const Corners& corners) {

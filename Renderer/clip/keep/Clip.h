@@ -19,13 +19,13 @@ struct ClipEdge {
   double softness = 0.0; ///< mm behind the surface over which keep rises linearly to 1
 
   /// keep at `behind` mm behind the surface; negative: in front.
-  double operator()(double behind) const {
-    if (behind < 0.0)
+  double operator()(double distance) const {
+    if (distance < 0.0)
       return ghost;
-    return behind < softness ? ghost + (1.0 - ghost) * (behind / softness) : 1.0;
+    return distance < softness ? ghost + (1.0 - ghost) * (distance / softness) : 1.0;
   }
   /// True: keep rises at `behind`.
-  bool isRamp(double behind) const { return behind >= 0.0 && behind < softness; }
+  bool isRamp(double distance) const { return distance >= 0.0 && distance < softness; }
   /// True: keep = 0 in front of the surface.
   bool isHard() const { return ghost == 0.0; }
 
@@ -44,7 +44,7 @@ struct ClipPlane {
   ClipEdge edge = {};
 
   /// Signed distance behind the plane, mm if the normal is unit.
-  double behind(const Vec3& world) const { return (point - world).dot(normal); }
+  double signedDistance(const Vec3& world) const { return (point - world).dot(normal); }
 };
 
 /// Removes all points nearer to the eye than the surface of a depth buffer.
@@ -60,27 +60,29 @@ struct ClipDepth {
       nullptr; ///< null unless the boundary is exact
 
   /// Surface depth at (x, y), mm: points of smaller depth are removed.
-  double surface(const Vec2& position) const { return surfaceFor(position, {-infinity, infinity}); }
+  double surfaceDepth(const Vec2& position) const {
+    return surfaceDepth(position, {-infinity, infinity});
+  }
 
   /// Surface depth at `position`, mm. If it lies outside `between`, only the side is guaranteed,
   /// not the value.
-  double surfaceFor(const Vec2& position, const Interval& between) const {
+  double surfaceDepth(const Vec2& position, const Interval& queryRange) const {
     if (lookup == Lookup::nearest)
-      return buffer->nearest(position);
+      return buffer->nearestDepth(position);
     const DepthBuffer::Cell cell = buffer->cell(position);
-    const double linear = buffer->depthIn(cell);
-    return silhouette ? refineAtSilhouette(cell, position, linear, between) : linear;
+    const double linear = buffer->interpolate(cell);
+    return silhouette ? refineAtSilhouette(cell, position, linear, queryRange) : linear;
   }
 
   /// Depth of a point behind the surface, mm; negative: in front. Exact in the edge's ramp; beyond
   /// it only the side is guaranteed. `at`: as toBuffer returns it.
-  double behind(const Vec3& at) const {
-    return at.z() - surfaceFor(at.head<2>(), {at.z() - edge.softness, at.z()});
+  double signedDistance(const Vec3& at) const {
+    return at.z() - surfaceDepth(at.head<2>(), {at.z() - edge.softness, at.z()});
   }
 
 private:
   double refineAtSilhouette(const DepthBuffer::Cell& cell, const Vec2& position, double linear,
-                            const Interval& between) const;
+                            const Interval& queryRange) const;
 };
 
 using Clip = std::variant<ClipNone, ClipPlane, ClipDepth>;
@@ -94,14 +96,14 @@ inline double keep(const ClipNone&, const Vec3&) {
 inline double keep(const ClipPlane& clip, const Vec3& world) {
   if (isBehindCamera(clip.camera, clip.camera.toView(world).z()))
     return 0.0;
-  return clip.edge(clip.behind(world));
+  return clip.edge(clip.signedDistance(world));
 }
 
 inline double keep(const ClipDepth& clip, const Vec3& world) {
   const Vec3 at = toBuffer(clip.camera, world);
   if (isBehindCamera(clip.camera, at.z()))
     return 0.0;
-  return clip.edge(clip.behind(at));
+  return clip.edge(clip.signedDistance(at));
 }
 
 inline double keep(const Clip& clip, const Vec3& world) {
@@ -125,11 +127,11 @@ Vec3 cutGradient(const Clip& clip, const Vec3& world);
 
 /// Part of an eye ray, t >= 0, behind the clip's surface: one interval for every kind of clip. With
 /// a hard edge keep = 0 on the rest of the ray.
-Interval behindSurface(const Clip& clip, const Ray& cameraRay);
+Interval intervalBehindSurface(const Clip& clip, const Ray& cameraRay);
 
 /// Interval of an eye ray, t >= 0, outside of which keep = 0: paths may start at its begin, and end
 /// at its end.
-Interval visible(const Clip& clip, const Ray& cameraRay);
+Interval visibleInterval(const Clip& clip, const Ray& cameraRay);
 
 /// World corners of a box, in any order.
 using Corners = std::array<Vec3, 8>;

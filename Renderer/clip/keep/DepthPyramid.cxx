@@ -6,8 +6,8 @@ namespace fenestra {
 
 /// Level above one of columns * rows entries; below(i): its entry i.
 template <typename Below>
-DepthPyramid::Level DepthPyramid::halved(std::int64_t columns, std::int64_t rows,
-                                         const Below& below) {
+DepthPyramid::Level DepthPyramid::buildCoarser(std::int64_t columns, std::int64_t rows,
+                                               const Below& below) {
   Level level{(columns + 1) / 2, (rows + 1) / 2, {}};
   level.extremes.reserve(static_cast<std::size_t>(level.columns * level.rows));
   for (std::int64_t row = 0; row < rows; row += 2) {
@@ -24,16 +24,16 @@ DepthPyramid::Level DepthPyramid::halved(std::int64_t columns, std::int64_t rows
 
 DepthPyramid::DepthPyramid(const DepthBuffer& buffer, const SilhouetteCells* silhouette) {
   const std::vector<float>& depths = buffer.depthsFromReference();
-  m_levels.push_back(halved(buffer.columns(), buffer.rows(), [&](std::int64_t sample) {
+  m_levels.push_back(buildCoarser(buffer.columns(), buffer.rows(), [&](std::int64_t sample) {
     const float depth = depths[static_cast<std::size_t>(sample)];
     const SilhouetteCells::DepthBounds own{depth, depth};
     const SilhouetteCells::DepthBounds* const bounds =
         silhouette ? silhouette->findDepthBounds(sample) : nullptr;
-    return bounds ? joined(own, *bounds) : own;
+    return bounds ? enclose(own, *bounds) : own;
   }));
   while (m_levels.back().extremes.size() > 1) {
     const Level& below = m_levels.back();
-    m_levels.push_back(halved(below.columns, below.rows, [&](std::int64_t entry) {
+    m_levels.push_back(buildCoarser(below.columns, below.rows, [&](std::int64_t entry) {
       return below.extremes[static_cast<std::size_t>(entry)];
     }));
   }
@@ -41,8 +41,8 @@ DepthPyramid::DepthPyramid(const DepthBuffer& buffer, const SilhouetteCells* sil
 
 Interval DepthPyramid::bounds(const DepthBuffer& buffer, const Vec2& a, const Vec2& b) const {
   constexpr double slack = 1e-3; // samples; more than rounding
-  const DepthAxis::Samples columns = buffer.xAxis().samplesBetween(a.x(), b.x(), slack);
-  const DepthAxis::Samples rows = buffer.yAxis().samplesBetween(a.y(), b.y(), slack);
+  const DepthAxis::SampleRange columns = buffer.xAxis().sampleRange(a.x(), b.x(), slack);
+  const DepthAxis::SampleRange rows = buffer.yAxis().sampleRange(a.y(), b.y(), slack);
   // An entry of m_levels[l - 1] spans 2^l samples. Level l is chosen so that the range spans at
   // most 5 x 5 entries, and the entries reach little beyond the range.
   const auto longest = std::max(columns.last - columns.first, rows.last - rows.first);
@@ -55,7 +55,7 @@ Interval DepthPyramid::bounds(const DepthBuffer& buffer, const Vec2& a, const Ve
   for (std::int64_t row = rows.first >> l; row <= rows.last >> l; ++row)
     for (std::int64_t column = columns.first >> l; column <= columns.last >> l; ++column)
       extremes =
-          joined(extremes, level.extremes[static_cast<std::size_t>(row * level.columns + column)]);
+          enclose(extremes, level.extremes[static_cast<std::size_t>(row * level.columns + column)]);
   return {buffer.reference() + extremes.min, buffer.reference() + extremes.max};
 }
 

@@ -25,7 +25,7 @@ private:
   };
 
   template <typename Below>
-  static Level halved(std::int64_t columns, std::int64_t rows, const Below& below);
+  static Level buildCoarser(std::int64_t columns, std::int64_t rows, const Below& below);
 
   std::vector<Level> m_levels;
 };

@@ -13,7 +13,7 @@ namespace fenestra {
 namespace {
 
 /// Per cell of `range`: 0: all four samples around the cell are focus; 1: the focus may end there.
-std::vector<std::uint8_t> outerCells(const FocusDepth& focus, const CellRange& range) {
+std::vector<std::uint8_t> findOuterCells(const FocusDepth& focus, const CellRange& range) {
   std::vector<std::uint8_t> isOuter(range.size());
   const auto outside = [&](std::int64_t sample) {
     return static_cast<std::uint8_t>(focus.regions[static_cast<std::size_t>(sample)] !=
@@ -33,15 +33,15 @@ std::vector<std::uint8_t> outerCells(const FocusDepth& focus, const CellRange& r
 /// may be deeper than its samples. mm, relative to the target.
 std::vector<SilhouetteCells::DepthBounds> boundNeighborhoods(const DepthBuffer& buffer,
                                                              const CellRange& range) {
-  constexpr std::int64_t across = 4;
+  constexpr std::int64_t width = 4;
   constexpr float noDepth = std::numeric_limits<float>::infinity();
   const auto columns = static_cast<std::size_t>(range.columns());
-  std::vector<float> row(columns + across - 1);
+  std::vector<float> row(columns + width - 1);
   // Ranges of four neighbours in a row, then of four such rows.
   std::vector<SilhouetteCells::DepthBounds> sights(
-      columns * static_cast<std::size_t>(range.rows() + across - 1));
+      columns * static_cast<std::size_t>(range.rows() + width - 1));
   auto sight = sights.begin();
-  for (std::int64_t r = range.top - 1; r < range.bottom + across - 2; ++r) {
+  for (std::int64_t r = range.top - 1; r < range.bottom + width - 2; ++r) {
     for (std::size_t i = 0; i < row.size(); ++i)
       row[i] = buffer.depthsFromReference()[static_cast<std::size_t>(
           buffer.sample(std::clamp<std::int64_t>(range.left - 1 + static_cast<std::int64_t>(i), 0,
@@ -51,12 +51,12 @@ std::vector<SilhouetteCells::DepthBounds> boundNeighborhoods(const DepthBuffer& 
       return SilhouetteCells::DepthBounds{row[i], row[i] < noDepth ? row[i] : -noDepth};
     };
     for (std::size_t i = 0; i < columns; ++i)
-      *sight++ = joined(joined(at(i), at(i + 1)), joined(at(i + 2), at(i + 3)));
+      *sight++ = enclose(enclose(at(i), at(i + 1)), enclose(at(i + 2), at(i + 3)));
   }
   for (std::size_t i = 0; i < range.size(); ++i) {
     const auto& [least, greatest] =
-        joined(joined(sights[i], sights[i + columns]),
-               joined(sights[i + 2 * columns], sights[i + 3 * columns]));
+        enclose(enclose(sights[i], sights[i + columns]),
+                enclose(sights[i + 2 * columns], sights[i + 3 * columns]));
     sights[i] = {least, 2.0F * greatest - least};
   }
   return sights;
@@ -85,8 +85,8 @@ SilhouetteCells::SilhouetteCells(std::shared_ptr<const FocusTracer> tracer, cons
       m_indices(focus.regions.size(), -1) {
   const Camera& camera = m_tracer->camera();
   const FocusCells& cells = m_tracer->cells();
-  const CellRange range = focusRange(camera, focus.depth, cells);
-  const std::vector<std::uint8_t> isOuter = outerCells(focus, range);
+  const CellRange range = findFocusRange(camera, focus.depth, cells);
+  const std::vector<std::uint8_t> isOuter = findOuterCells(focus, range);
   const std::vector<Interval> outer =
       computeDepthBounds(camera, focus.depth, cells, range, isOuter);
   const std::vector<DepthBounds> inner = boundNeighborhoods(focus.depth, range);

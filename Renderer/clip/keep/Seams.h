@@ -45,7 +45,7 @@ public:
     float min, max;
 
     /// Shortest range that holds both.
-    friend DepthBounds joined(const DepthBounds& a, const DepthBounds& b) {
+    friend DepthBounds enclose(const DepthBounds& a, const DepthBounds& b) {
       return {std::min(a.min, b.min), std::max(a.max, b.max)};
     }
   };

@@ -33,7 +33,7 @@ public:
     for (std::int64_t row = 0; row < m_rows; ++row) {
       m_y.push_back(m_buffer.yAxis().coordinate(m_firstRow + row));
       for (std::int64_t column = 0; column < m_columns; ++column)
-        m_depths.push_back(depthOf(m_firstColumn + column, m_firstRow + row));
+        m_depths.push_back(findDepth(m_firstColumn + column, m_firstRow + row));
     }
     for (std::int64_t column = 0; column < m_columns; ++column)
       m_x.push_back(m_buffer.xAxis().coordinate(m_firstColumn + column));
@@ -48,7 +48,7 @@ public:
   double depth(std::int64_t column, std::int64_t row) const {
     return m_depths[sample(column, row)];
   }
-  const double* depthsOfRow(std::int64_t row) const { return m_depths.data() + sample(0, row); }
+  const double* rowDepths(std::int64_t row) const { return m_depths.data() + sample(0, row); }
   Vec2 position(std::int64_t column, std::int64_t row) const {
     return {x()[column], m_y[static_cast<std::size_t>(row)]};
   }
@@ -92,15 +92,15 @@ private:
 
   /// Depth of a sample of the buffer, mm; NaN: the sample has none, or is no corner of a cell in
   /// the footprint.
-  double depthOf(std::int64_t column, std::int64_t row) const {
-    DomainFootprint::Columns around{m_buffer.columns(), 0};
+  double findDepth(std::int64_t column, std::int64_t row) const {
+    DomainFootprint::Columns nearby{m_buffer.columns(), 0};
     for (std::int64_t near = std::max(std::int64_t{0}, row - 1);
          near < std::min(m_buffer.rows(), row + 2); ++near) {
       const DomainFootprint::Columns seen = m_footprint[static_cast<std::size_t>(near)];
       if (seen.first < seen.end)
-        around = {std::min(around.first, seen.first), std::max(around.end, seen.end)};
+        nearby = {std::min(nearby.first, seen.first), std::max(nearby.end, seen.end)};
     }
-    const bool isCorner = column + 1 >= around.first && column <= around.end;
+    const bool isCorner = column + 1 >= nearby.first && column <= nearby.end;
     return isCorner && hasDepth(column, row) ? m_buffer.at(m_buffer.sample(column, row)) : noDepth;
   }
 
@@ -131,7 +131,7 @@ struct Pair {
 
 /// Square (column, row) among squares of edge `side`. Its diagonal starts at the corner that is
 /// also the midpoint of the parent square, so that halved triangles nest.
-Pair squarePair(std::int64_t column, std::int64_t row, std::int64_t side) {
+Pair makeSquarePair(std::int64_t column, std::int64_t row, std::int64_t side) {
   const bool isLeft = column % 2 != 0, isUpper = row % 2 != 0;
   const std::int64_t left = column * side, upper = row * side;
   const Corner odd{isLeft ? left : left + side, isUpper ? upper : upper + side};
@@ -140,7 +140,7 @@ Pair squarePair(std::int64_t column, std::int64_t row, std::int64_t side) {
 }
 
 /// Triangles on both sides of the squares' edge of length 2 s around `middle`.
-Pair edgePair(const Corner& middle, std::int64_t s) {
+Pair makeEdgePair(const Corner& middle, std::int64_t s) {
   const Corner left{middle.column - s, middle.row}, right{middle.column + s, middle.row};
   const Corner upper{middle.column, middle.row - s}, lower{middle.column, middle.row + s};
   return middle.column / s % 2 != 0 ? Pair{left, right, {upper, lower}}
@@ -181,9 +181,9 @@ private:
   double m_height;
 };
 
-class MeshMaker {
+class MeshBuilder {
 public:
-  MeshMaker(const MeshSamples& samples, double tolerance)
+  MeshBuilder(const MeshSamples& samples, double tolerance)
       : m_samples(samples),
         m_tolerance(tolerance),
         m_lastColumn(samples.columns() - 1),
@@ -192,48 +192,48 @@ public:
             std::bit_ceil(static_cast<std::uint64_t>(std::min(m_lastColumn, m_lastRow))))),
         m_squaresAcross((m_lastColumn + m_side - 1) / m_side),
         m_squaresDown((m_lastRow + m_side - 1) / m_side),
-        m_isHalved(static_cast<std::size_t>((m_squaresAcross * m_side + 1) *
-                                            (m_squaresDown * m_side + 1))),
-        m_numbers(samples.sample(0, samples.rows()), unnumbered) {}
+        m_isSplit(static_cast<std::size_t>((m_squaresAcross * m_side + 1) *
+                                           (m_squaresDown * m_side + 1))),
+        m_pointIndices(samples.sample(0, samples.rows()), noPoint) {}
 
-  SurfaceMesh mesh() {
-    chooseHalved();
+  SurfaceMesh build() {
+    markSplits();
     for (std::int64_t row = 0; row < m_squaresDown; ++row)
       for (std::int64_t column = 0; column < m_squaresAcross; ++column) {
-        const auto [a, b, apexes] = squarePair(column, row, m_side);
+        const auto [a, b, apexes] = makeSquarePair(column, row, m_side);
         for (const Corner& apex : apexes)
-          addHalves(area({a, b, apex}) > 0 ? Triangle{a, b, apex} : Triangle{b, a, apex});
+          addTriangles(area({a, b, apex}) > 0 ? Triangle{a, b, apex} : Triangle{b, a, apex});
       }
     return std::move(m_mesh);
   }
 
 private:
-  static constexpr auto unnumbered = std::numeric_limits<std::uint32_t>::max();
+  static constexpr auto noPoint = std::numeric_limits<std::uint32_t>::max();
 
   /// Marks the pairs to halve, from the smallest to the largest: every pair that must be, and every
   /// pair whose half contains a marked one.
-  void chooseHalved() {
+  void markSplits() {
     for (std::int64_t s = 1; s < m_side; s *= 2) {
       for (std::int64_t row = 0; row - s < m_lastRow; row += s)
         for (std::int64_t column = row / s % 2 == 0 ? s : 0; column - s < m_lastColumn;
              column += 2 * s)
-          choose({column, row}, edgePair({column, row}, s));
+          markSplit({column, row}, makeEdgePair({column, row}, s));
       for (std::int64_t row = 0; 2 * s * row < m_lastRow; ++row)
         for (std::int64_t column = 0; 2 * s * column < m_lastColumn; ++column)
-          choose({(2 * column + 1) * s, (2 * row + 1) * s}, squarePair(column, row, 2 * s));
+          markSplit({(2 * column + 1) * s, (2 * row + 1) * s}, makeSquarePair(column, row, 2 * s));
     }
   }
 
-  void choose(const Corner& middle, const Pair& pair) {
-    const auto mustBeHalved = [&](const Corner& apex) {
-      return isInside(apex) && !isGood({pair.a, pair.b, apex});
+  void markSplit(const Corner& middle, const Pair& pair) {
+    const auto mustSplit = [&](const Corner& apex) {
+      return isInside(apex) && !isAccurate({pair.a, pair.b, apex});
     };
-    if (!isHalved(middle) && !std::ranges::any_of(pair.apexes, mustBeHalved))
+    if (!isSplit(middle) && !std::ranges::any_of(pair.apexes, mustSplit))
       return;
-    m_isHalved[index(middle)] = true;
+    m_isSplit[index(middle)] = true;
     for (const Corner& apex : pair.apexes) // an apex is the middle of the parent pair
       if (isInside(apex))
-        m_isHalved[index(apex)] = true;
+        m_isSplit[index(apex)] = true;
   }
 
   /// True if the corner lies in the squares, which may reach beyond the samples.
@@ -244,16 +244,16 @@ private:
   std::size_t index(const Corner& corner) const {
     return static_cast<std::size_t>(corner.row * (m_squaresAcross * m_side + 1) + corner.column);
   }
-  bool isHalved(const Corner& middle) const { return m_isHalved[index(middle)]; }
+  bool isSplit(const Corner& middle) const { return m_isSplit[index(middle)]; }
 
-  Corner onSamples(const Corner& corner) const {
+  Corner clampToSamples(const Corner& corner) const {
     return {std::min(corner.column, m_lastColumn), std::min(corner.row, m_lastRow)};
   }
-  Triangle onSamples(const Triangle& t) const {
-    return {onSamples(t.a), onSamples(t.b), onSamples(t.apex)};
+  Triangle clampToSamples(const Triangle& t) const {
+    return {clampToSamples(t.a), clampToSamples(t.b), clampToSamples(t.apex)};
   }
   double depth(const Corner& corner) const {
-    const Corner sample = onSamples(corner);
+    const Corner sample = clampToSamples(corner);
     return m_samples.depth(sample.column, sample.row);
   }
   /// Twice the area, in samples; > 0: counter-clockwise as seen from the eye.
@@ -263,8 +263,8 @@ private:
   }
 
   /// True if the triangle may stay whole: all samples are within tolerance, or none has a depth.
-  bool isGood(const Triangle& triangle) const {
-    const auto [a, b, apex] = onSamples(triangle);
+  bool isAccurate(const Triangle& triangle) const {
+    const auto [a, b, apex] = clampToSamples(triangle);
     if (area({a, b, apex}) == 0)
       return true;
     std::array corners{a, b, apex};
@@ -281,52 +281,54 @@ private:
     const MeshPlane plane(points, m_samples.isPerspective());
     for (std::int64_t row = corners[0].row; row <= corners[2].row; ++row) {
       const double y = m_samples.position(0, row).y();
-      const auto [first, end] = columnsAt(points, y);
-      const double* depths = m_samples.depthsOfRow(row);
-      const bool isGoodRow =
+      const auto [first, end] = findColumns(points, y);
+      const double* depths = m_samples.rowDepths(row);
+      const bool isRowAccurate =
           missing == 0
               ? plane.isNear(m_samples.x() + first, depths + first, end - first, y, m_tolerance)
               : std::all_of(depths + first, depths + end, [](double d) { return std::isnan(d); });
-      if (!isGoodRow)
+      if (!isRowAccurate)
         return false;
     }
     return true;
   }
 
   /// Columns [first, end) in and on a triangle at y. `points`: sorted by row.
-  std::pair<std::int64_t, std::int64_t> columnsAt(const std::array<Vec3, 3>& points,
-                                                  double y) const {
+  std::pair<std::int64_t, std::int64_t> findColumns(const std::array<Vec3, 3>& points,
+                                                    double y) const {
     constexpr double rounding = 1e-6; // of a column
-    const auto along = [&](const Vec3& from, const Vec3& to) {
+    const auto interpolateX = [&](const Vec3& from, const Vec3& to) {
       const double height = to.y() - from.y();
       return height == 0.0 ? from.x() : from.x() + (to.x() - from.x()) * (y - from.y()) / height;
     };
-    const double whole = along(points[0], points[2]);
+    const double longEdge = interpolateX(points[0], points[2]);
     const bool isUpper = std::abs(y - points[0].y()) < std::abs(points[1].y() - points[0].y());
-    const double part = isUpper ? along(points[0], points[1]) : along(points[1], points[2]);
-    return {
-        static_cast<std::int64_t>(std::ceil(m_samples.column(std::min(whole, part)) - rounding)),
-        static_cast<std::int64_t>(std::floor(m_samples.column(std::max(whole, part)) + rounding)) +
-            1};
+    const double shortEdge =
+        isUpper ? interpolateX(points[0], points[1]) : interpolateX(points[1], points[2]);
+    return {static_cast<std::int64_t>(
+                std::ceil(m_samples.column(std::min(longEdge, shortEdge)) - rounding)),
+            static_cast<std::int64_t>(
+                std::floor(m_samples.column(std::max(longEdge, shortEdge)) + rounding)) +
+                1};
   }
 
-  void addHalves(const Triangle& triangle) {
+  void addTriangles(const Triangle& triangle) {
     const auto& [a, b, apex] = triangle;
     const bool isSmallest = std::abs(a.column - b.column) == 1;
     const Corner middle{(a.column + b.column) / 2, (a.row + b.row) / 2};
-    if (!isSmallest && isHalved(middle)) {
-      addHalves({apex, a, middle});
-      addHalves({b, apex, middle});
+    if (!isSmallest && isSplit(middle)) {
+      addTriangles({apex, a, middle});
+      addTriangles({b, apex, middle});
     } else if (!std::isnan(depth(a)) && !std::isnan(depth(b)) && !std::isnan(depth(apex))) {
       add(triangle);
     } else if (isSmallest) {
-      addAcross(triangle);
+      addCornerTriangle(triangle);
     }
   }
 
   /// Adds the one triangle of a cell whose diagonal has a depth at one end only: that end and the
   /// two apexes. Called for both halves of the cell; the upper half adds the triangle.
-  void addAcross(const Triangle& half) {
+  void addCornerTriangle(const Triangle& half) {
     const auto& [a, b, apex] = half;
     const Corner opposite{a.column + b.column - apex.column, a.row + b.row - apex.row};
     if (apex.row > opposite.row || std::isnan(depth(apex)) || std::isnan(depth(opposite)))
@@ -338,20 +340,21 @@ private:
   }
 
   void add(const Triangle& triangle) {
-    if (area(onSamples(triangle)) != 0)
-      m_mesh.triangles.push_back({number(triangle.a), number(triangle.b), number(triangle.apex)});
+    if (area(clampToSamples(triangle)) != 0)
+      m_mesh.triangles.push_back(
+          {pointIndex(triangle.a), pointIndex(triangle.b), pointIndex(triangle.apex)});
   }
 
   /// Number of the corner's point, which is added on first use.
-  std::uint32_t number(const Corner& corner) {
-    const Corner sample = onSamples(corner);
-    std::uint32_t& number = m_numbers[m_samples.sample(sample.column, sample.row)];
-    if (number == unnumbered) {
-      number = static_cast<std::uint32_t>(m_mesh.points.size());
+  std::uint32_t pointIndex(const Corner& corner) {
+    const Corner sample = clampToSamples(corner);
+    std::uint32_t& point = m_pointIndices[m_samples.sample(sample.column, sample.row)];
+    if (point == noPoint) {
+      point = static_cast<std::uint32_t>(m_mesh.points.size());
       m_mesh.points.push_back(m_samples.point(sample.column, sample.row));
       m_mesh.depths.push_back(static_cast<float>(depth(sample)));
     }
-    return number;
+    return point;
   }
 
   const MeshSamples& m_samples;
@@ -359,18 +362,18 @@ private:
   std::int64_t m_lastColumn, m_lastRow;
   std::int64_t m_side; ///< samples, edge of the first squares (one row or column), a power of two
   std::int64_t m_squaresAcross, m_squaresDown;
-  std::vector<bool> m_isHalved;         ///< per middle of a pair
-  std::vector<std::uint32_t> m_numbers; ///< per sample: number of its point
+  std::vector<bool> m_isSplit;               ///< per middle of a pair
+  std::vector<std::uint32_t> m_pointIndices; ///< per sample: number of its point
   SurfaceMesh m_mesh;
 };
 
 } // namespace
 
-SurfaceMesh surfaceMesh(const ClipDepth& clip, const Domain& volume, double tolerance) {
+SurfaceMesh buildSurfaceMesh(const ClipDepth& clip, const Domain& volume, double tolerance) {
   const MeshSamples samples(clip, volume);
   if (samples.columns() < 2 || samples.rows() < 2)
     return {};
-  return MeshMaker(samples, tolerance).mesh();
+  return MeshBuilder(samples, tolerance).build();
 }
 
 } // namespace fenestra

@@ -17,8 +17,8 @@ struct SurfaceMesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Tolerance for surfaceMesh(), mm: a tenth of a pixel on the plane through the target. Across the
-/// view the surface is known to a pixel only, so no picture of this resolution, from any side,
+/// Tolerance for buildSurfaceMesh(), mm: a tenth of a pixel on the plane through the target. Across
+/// the view the surface is known to a pixel only, so no picture of this resolution, from any side,
 /// would show a smaller error in depth.
 inline double surfaceTolerance(const Camera& camera) {
   return 0.1 * camera.pixelPitch();
@@ -30,6 +30,6 @@ inline double surfaceTolerance(const Camera& camera) {
 /// Triangles meet at whole edges, without cracks: neighbouring samples are joined however their
 /// depths differ; only samples without a depth leave gaps. A cell between four samples, one of them
 /// without a depth, gives one triangle. Empty if no three samples span a triangle.
-SurfaceMesh surfaceMesh(const ClipDepth& clip, const Domain& volume, double tolerance);
+SurfaceMesh buildSurfaceMesh(const ClipDepth& clip, const Domain& volume, double tolerance);
 
 } // namespace fenestra

@@ -25,8 +25,8 @@ void appendFloats(std::string& bytes, const Vec3& v) {
 
 /// VTK's <DataArray> with inline bytes.
 template <typename Item>
-std::string dataArray(const char* name, const char* type, int components,
-                      const std::vector<Item>& items) {
+std::string encodeDataArray(const char* name, const char* type, int components,
+                            const std::vector<Item>& items) {
   std::string bytes;
   append(bytes, std::uint64_t{items.size() * sizeof(Item)});
   for (const Item& item : items)
@@ -39,18 +39,19 @@ std::string encodeVtp(const SurfaceMesh& surface) {
   std::vector<std::int32_t> ends;
   for (std::size_t i = 1; i <= surface.triangles.size(); ++i)
     ends.push_back(static_cast<std::int32_t>(3 * i));
-  return concat(
-      "<?xml version=\"1.0\"?>\n",
-      "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" ",
-      "header_type=\"UInt64\">\n<PolyData>\n<FieldData>\n",
-      "<Array type=\"String\" Name=\"SPACE\" NumberOfTuples=\"1\" format=\"ascii\">",
-      "82 65 83 0</Array>\n</FieldData>\n", "<Piece NumberOfPoints=\"", surface.points.size(),
-      "\" NumberOfVerts=\"0\" ", "NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"",
-      surface.triangles.size(), "\">\n<PointData Scalars=\"depth\">\n",
-      dataArray("depth", "Float32", 1, surface.depths), "</PointData>\n<Points>\n",
-      dataArray("Points", "Float64", 3, surface.points), "</Points>\n<Polys>\n",
-      dataArray("connectivity", "Int32", 1, surface.triangles),
-      dataArray("offsets", "Int32", 1, ends), "</Polys>\n</Piece>\n</PolyData>\n</VTKFile>\n");
+  return concat("<?xml version=\"1.0\"?>\n",
+                "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" ",
+                "header_type=\"UInt64\">\n<PolyData>\n<FieldData>\n",
+                "<Array type=\"String\" Name=\"SPACE\" NumberOfTuples=\"1\" format=\"ascii\">",
+                "82 65 83 0</Array>\n</FieldData>\n", "<Piece NumberOfPoints=\"",
+                surface.points.size(), "\" NumberOfVerts=\"0\" ",
+                "NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"",
+                surface.triangles.size(), "\">\n<PointData Scalars=\"depth\">\n",
+                encodeDataArray("depth", "Float32", 1, surface.depths), "</PointData>\n<Points>\n",
+                encodeDataArray("Points", "Float64", 3, surface.points), "</Points>\n<Polys>\n",
+                encodeDataArray("connectivity", "Int32", 1, surface.triangles),
+                encodeDataArray("offsets", "Int32", 1, ends),
+                "</Polys>\n</Piece>\n</PolyData>\n</VTKFile>\n");
 }
 
 std::string encodePly(const SurfaceMesh& surface) {
@@ -87,7 +88,7 @@ std::string encodeStl(const SurfaceMesh& surface) {
 
 using Encoder = std::string (*)(const SurfaceMesh&);
 
-Encoder encoderFor(const std::filesystem::path& path) {
+Encoder findEncoder(const std::filesystem::path& path) {
   static const std::map<std::string, Encoder> encoders = {
       {".vtp", encodeVtp}, {".ply", encodePly}, {".stl", encodeStl}};
   const auto it = encoders.find(lowercaseExtension(path));
@@ -100,11 +101,11 @@ Encoder encoderFor(const std::filesystem::path& path) {
 } // namespace
 
 void writeSurface(const SurfaceMesh& surface, const std::filesystem::path& path, Outputs& outputs) {
-  outputs.write(path, encoderFor(path)(surface));
+  outputs.write(path, findEncoder(path)(surface));
 }
 
 void declareSurface(const std::filesystem::path& path, Outputs& outputs) {
-  encoderFor(path);
+  findEncoder(path);
   outputs.add(path);
 }
 

@@ -13,21 +13,21 @@ namespace fenestra {
 
 namespace {
 
-void check(const SurfaceOptions& options) {
+void checkOptions(const SurfaceOptions& options) {
   if (options.controlPoints < 1 || options.controlPoints > 1000)
     throw usageError("--controlpoints: must be from 1 to 1000");
   if (!(options.smoothing >= 0.0 && options.smoothing <= 1.0))
     throw usageError("--smoothing: must be from 0 to 1");
 }
 
-std::string nameOf(const Mask& focus) {
+std::string describeFocus(const Mask& focus) {
   std::string names = "focus";
   for (const std::string& name : focus.names)
     names += (names == "focus" ? " " : ", ") + name;
   return names;
 }
 
-bool inPicture(const FocusDepth& focus) {
+bool isInViewport(const FocusDepth& focus) {
   const DepthAxis& x = focus.depth.xAxis();
   const DepthAxis& y = focus.depth.yAxis();
   for (std::int64_t row = y.before; row < y.before + y.inside; ++row)
@@ -37,7 +37,7 @@ bool inPicture(const FocusDepth& focus) {
   return false;
 }
 
-ThinPlateSpline splineThrough(const std::vector<ControlPoint>& points, double smoothing) {
+ThinPlateSpline fitSpline(const std::vector<ControlPoint>& points, double smoothing) {
   std::vector<Vec2> sites;
   std::vector<double> depths;
   for (const ControlPoint& point : points) {
@@ -47,12 +47,13 @@ ThinPlateSpline splineThrough(const std::vector<ControlPoint>& points, double sm
   return {sites, depths, smoothing};
 }
 
-Distribution mismatchOf(const ThinPlateSpline& spline, const std::vector<ControlPoint>& samples) {
-  std::vector<double> misses;
-  misses.reserve(samples.size());
+Distribution measureMismatch(const ThinPlateSpline& spline,
+                             const std::vector<ControlPoint>& samples) {
+  std::vector<double> errors;
+  errors.reserve(samples.size());
   for (const ControlPoint& sample : samples)
-    misses.push_back(std::abs(spline(sample.site) - sample.depth));
-  return Distribution::compute(std::move(misses));
+    errors.push_back(std::abs(spline(sample.site) - sample.depth));
+  return Distribution::compute(std::move(errors));
 }
 
 /// Fills samples outside the focus from the spline, in tiles, which are halved if many sites are
@@ -67,12 +68,13 @@ public:
         m_y(buffer.yAxis().coordinates()) {}
 
   void fill() const {
-    const std::int64_t across = (m_buffer.columns() + widest - 1) / widest;
-    const std::int64_t down = (m_buffer.rows() + widest - 1) / widest;
-    tbb::parallel_for(std::int64_t{0}, across * down, [&](std::int64_t tile) {
-      const std::int64_t column = tile % across * widest, row = tile / across * widest;
-      fill({column, row, std::min(widest, m_buffer.columns() - column),
-            std::min(widest, m_buffer.rows() - row)});
+    const std::int64_t tilesPerRow = (m_buffer.columns() + maxTileSize - 1) / maxTileSize;
+    const std::int64_t down = (m_buffer.rows() + maxTileSize - 1) / maxTileSize;
+    tbb::parallel_for(std::int64_t{0}, tilesPerRow * down, [&](std::int64_t tile) {
+      const std::int64_t column = tile % tilesPerRow * maxTileSize,
+                         row = tile / tilesPerRow * maxTileSize;
+      fill({column, row, std::min(maxTileSize, m_buffer.columns() - column),
+            std::min(maxTileSize, m_buffer.rows() - row)});
     });
   }
 
@@ -82,10 +84,10 @@ private:
     std::int64_t column, row, columns, rows;
   };
 
-  static constexpr std::int64_t widest = ThinPlateSpline::mostColumns;
-  static constexpr std::int64_t narrowest = 8;
+  static constexpr std::int64_t maxTileSize = ThinPlateSpline::maxColumns;
+  static constexpr std::int64_t minTileSize = 8;
   /// Number of kernels that cost, one by one, about as much as four tiles' expansions.
-  static constexpr std::int64_t mostKernels = 2048;
+  static constexpr std::int64_t maxKernels = 2048;
   /// mm; below the rounding of floats 10 mm from the target (measured over phantoms and scans: all
   /// depths differ from evaluateRow's by at most one unit of a float's last place).
   static constexpr double tolerance = 1e-6;
@@ -95,10 +97,10 @@ private:
       return;
     const std::span x = std::span(m_x).subspan(index(tile.column), index(tile.columns));
     const std::span y = std::span(m_y).subspan(index(tile.row), index(tile.rows));
-    const bool isHalvable = tile.columns > narrowest || tile.rows > narrowest;
-    if (isHalvable && m_spline.termsNear(x, y) * tile.columns * tile.rows > mostKernels)
-      return fillHalves(tile);
-    std::array<double, widest * widest> depths;
+    const bool canSplit = tile.columns > minTileSize || tile.rows > minTileSize;
+    if (canSplit && m_spline.countNearTerms(x, y) * tile.columns * tile.rows > maxKernels)
+      return fillSplit(tile);
+    std::array<double, maxTileSize * maxTileSize> depths;
     m_spline.evaluateTile(x, y, tolerance, depths);
     for (std::int64_t row = 0; row < tile.rows; ++row)
       for (std::int64_t column = 0; column < tile.columns; ++column) {
@@ -108,7 +110,7 @@ private:
       }
   }
 
-  void fillHalves(const Tile& tile) const {
+  void fillSplit(const Tile& tile) const {
     Tile first = tile, second = tile;
     if (tile.columns > tile.rows) {
       first.columns = tile.columns / 2;
@@ -142,7 +144,7 @@ private:
 
 /// Length, mm, over which a surface with an exact boundary loses the focus's slope: a share of the
 /// volume's size that keeps the surface inside the volume's depths.
-double levellingLength(const Domain& volume) {
+double levelingLength(const Domain& volume) {
   return 0.05 * (volume.grid().worldCorner(7) - volume.grid().worldCorner(0)).norm();
 }
 
@@ -168,10 +170,10 @@ void fillFromHalo(DepthBuffer& buffer, const FocusDepth& focus, const Silhouette
 ThinPlateSpline fitOutline(ClippingSurface& surface, const SurfaceOptions& options) {
   const std::vector<Contour> contours = traceContours(surface.focus);
   surface.controlPoints = placeControlPoints(surface.focus, contours, options.controlPoints);
-  ThinPlateSpline spline = splineThrough(surface.controlPoints, options.smoothing);
-  surface.mismatch = mismatchOf(spline, boundarySamples(surface.focus, contours));
-  const auto asked = static_cast<std::size_t>(options.controlPoints);
-  if (surface.controlPoints.size() < std::min<std::size_t>(3, asked))
+  ThinPlateSpline spline = fitSpline(surface.controlPoints, options.smoothing);
+  surface.mismatch = measureMismatch(spline, findBoundarySamples(surface.focus, contours));
+  const auto requested = static_cast<std::size_t>(options.controlPoints);
+  if (surface.controlPoints.size() < std::min<std::size_t>(3, requested))
     surface.warnings.push_back("the focus covers hardly a pixel: the clipping surface is flat; "
                                "choose a larger --size, or a view that frames the focus");
   return spline;
@@ -182,21 +184,22 @@ ThinPlateSpline fitOutline(ClippingSurface& surface, const SurfaceOptions& optio
 void requireVisible(const FocusDepth& focus, const Mask& mask) {
   if (std::ranges::find(focus.regions, Region::focus) == focus.regions.end())
     throw inputError(
-        nameOf(mask),
+        describeFocus(mask),
         "cannot be seen: it lies outside the volume or its cropping box, behind the eye, or "
         "is smaller than a pixel; choose another --focus or view");
 }
 
 ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume, const Mask& focus,
                                      const SurfaceOptions& options) {
-  check(options);
+  checkOptions(options);
   Stopwatch stopwatch;
   const auto tracer = std::make_shared<const FocusTracer>(camera, volume, focus);
-  ClippingSurface surface{.clip = {}, .focus = tracer->depths()};
+  ClippingSurface surface{.clip = {}, .focus = tracer->traceDepths()};
   requireVisible(surface.focus, focus);
-  if (!inPicture(surface.focus))
-    surface.warnings.push_back(nameOf(focus) + " lies outside the picture; choose another --view, "
-                                               "--target or --scale");
+  if (!isInViewport(surface.focus))
+    surface.warnings.push_back(describeFocus(focus) +
+                               " lies outside the picture; choose another --view, "
+                               "--target or --scale");
   surface.focusSeconds = stopwatch.lap();
 
   auto buffer = std::make_shared<DepthBuffer>(surface.focus.depth);
@@ -207,7 +210,7 @@ ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume,
     fillHole(*buffer, surface.focus, camera, options.hole);
   } else if (options.boundary == Boundary::exact) {
     silhouette = std::make_shared<SilhouetteCells>(tracer, surface.focus);
-    fillFromHalo(*buffer, surface.focus, *silhouette, levellingLength(volume));
+    fillFromHalo(*buffer, surface.focus, *silhouette, levelingLength(volume));
   } else {
     const ThinPlateSpline spline = fitOutline(surface, options);
     surface.splineSeconds = stopwatch.lap();

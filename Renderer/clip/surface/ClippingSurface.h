@@ -53,7 +53,7 @@ void requireVisible(const FocusDepth& focus, const Mask& mask);
 /// Least-squares plane, in depth, through the visible points of the focus, never seen edge-on. The
 /// normal points towards the eye. Needs at least one focus sample; with too few samples to
 /// determine a tilt the plane faces the eye.
-ClipPlane focusPlane(const Camera& camera, const FocusDepth& focus);
+ClipPlane fitFocusPlane(const Camera& camera, const FocusDepth& focus);
 
 /// Throws Error (usage) for options out of range and Error (input) where no ray meets the focus.
 ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume, const Mask& focus,

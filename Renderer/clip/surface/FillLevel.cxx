@@ -10,7 +10,7 @@ namespace {
 
 /// Calls back with each row, in parallel; short rows share a thread.
 template <typename Function>
-void forRows(const FillLevel& level, const Function& function) {
+void forEachRow(const FillLevel& level, const Function& function) {
   const std::size_t grain = 1 + 32768 / level.columns();
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, level.rows(), grain),
                     [&](const auto& range) {
@@ -22,57 +22,57 @@ void forRows(const FillLevel& level, const Function& function) {
 } // namespace
 
 void FillLevel::trimFocus() {
-  const std::vector<float> whole = m_covered;
-  for (std::size_t at = m_stride + 1; at + m_stride + 1 < whole.size(); ++at)
-    if (whole[at] > 0.0f) {
+  const std::vector<float> untrimmed = m_coverage;
+  for (std::size_t at = m_stride + 1; at + m_stride + 1 < untrimmed.size(); ++at)
+    if (untrimmed[at] > 0.0f) {
       float corners = 0.0f;
       for (const std::size_t row : {at - m_stride, at + m_stride})
         for (const std::size_t column : {at - 1, at + 1})
-          corners += whole[row] * whole[column] * whole[row + column - at];
-      m_covered[at] = std::max(0.25f * corners, 0.1f);
+          corners += untrimmed[row] * untrimmed[column] * untrimmed[row + column - at];
+      m_coverage[at] = std::max(0.25f * corners, 0.1f);
     }
 }
 
-FillLevel FillLevel::halved() const {
-  FillLevel coarse(m_x.halved(), m_y.halved());
+FillLevel FillLevel::coarsen() const {
+  FillLevel coarse(m_x.coarsen(), m_y.coarsen());
   for (std::size_t row = 0; row < coarse.rows(); ++row)
     for (std::size_t column = 0; column < coarse.columns(); ++column) {
       const std::size_t i[] = {2 * column, std::min(2 * column + 1, columns() - 1)};
       const std::size_t j[] = {2 * row, std::min(2 * row + 1, rows() - 1)};
-      float depths = 0.0f, covered = 0.0f;
+      float depths = 0.0f, coverage = 0.0f;
       for (const std::size_t r : j)
         for (const std::size_t c : i) {
           depths += 0.25f * depth(c, r);
-          covered += 0.25f * m_covered[index(c, r)];
+          coverage += 0.25f * m_coverage[index(c, r)];
         }
-      coarse.set(column, row, depths, covered);
+      coarse.set(column, row, depths, coverage);
     }
   return coarse;
 }
 
-void FillLevel::continueBoundary(double length) {
+void FillLevel::extendBoundary(double length) {
   const std::vector<float> own = m_depth;
   std::vector<std::uint8_t> known(m_depth.size(), 0);
   findBoundary();
   std::vector<std::size_t> front, next;
   for (const float free : {0.0f, 1.0f}) { // inward first: the outward pass reads those slopes
     front.clear();
-    for (const Edge& edge : m_edges) {
-      known[edge.at] = 1;
-      front.push_back(edge.at);
+    for (const BoundarySample& sample : m_boundary) {
+      known[sample.at] = 1;
+      front.push_back(sample.at);
     }
     for (double reached = 0.0; reached < length && !front.empty(); reached += pitch()) {
       next.clear();
       for (const std::size_t from : front)
-        forNeighbours(from, [&](const Neighbour& neighbour) {
-          const std::size_t at = neighbour.at;
+        forEachNeighbor(from, [&](const Neighbor& neighbor) {
+          const std::size_t at = neighbor.at;
           if (known[at] == 0 && m_free[at] == free) {
             known[at] = 2; // found in this step
             next.push_back(at);
           }
         });
       for (const std::size_t at : next)
-        m_depth[at] = continued(at, own, known, length);
+        m_depth[at] = extrapolate(at, own, known, length);
       for (const std::size_t at : next)
         known[at] = 1;
       std::swap(front, next);
@@ -80,14 +80,14 @@ void FillLevel::continueBoundary(double length) {
   }
 }
 
-float FillLevel::continued(std::size_t at, const std::vector<float>& own,
-                           const std::vector<std::uint8_t>& known, double length) const {
+float FillLevel::extrapolate(std::size_t at, const std::vector<float>& own,
+                             const std::vector<std::uint8_t>& known, double length) const {
   float sum = 0.0f, count = 0.0f;
-  forNeighbours(at, [&](const Neighbour& neighbour) {
-    const auto [side, from, distance, weight] = neighbour;
+  forEachNeighbor(at, [&](const Neighbor& neighbor) {
+    const auto [side, from, distance, weight] = neighbor;
     if (known[from] != 1)
       return;
-    const auto limit = static_cast<float>(steepestBoundary * distance);
+    const auto limit = static_cast<float>(maxBoundarySlope * distance);
     const std::size_t before = from + static_cast<std::size_t>(offsets()[side]);
     float rise = 0.0f;
     if (m_free[at] == 0.0f)
@@ -100,13 +100,13 @@ float FillLevel::continued(std::size_t at, const std::vector<float>& own,
   return sum / count;
 }
 
-void FillLevel::start(const FillLevel& coarse) {
+void FillLevel::prolongate(const FillLevel& coarse) {
   // Weights of four neighbouring coarse samples, for a fine sample in the first half of its
   // coarse one; mirrored for the second half.
   constexpr float weights[] = {-5.0f / 128, 35.0f / 128, 105.0f / 128, -7.0f / 128};
-  forRows(*this, [&](std::size_t row) {
+  forEachRow(*this, [&](std::size_t row) {
     const std::size_t count = coarse.columns();
-    const auto beside = [](std::size_t i, std::ptrdiff_t step, std::size_t size) {
+    const auto clampIndex = [](std::size_t i, std::ptrdiff_t step, std::size_t size) {
       const auto at = static_cast<std::ptrdiff_t>(i) + step;
       return static_cast<std::size_t>(
           std::clamp<std::ptrdiff_t>(at, 0, static_cast<std::ptrdiff_t>(size) - 1));
@@ -116,7 +116,7 @@ void FillLevel::start(const FillLevel& coarse) {
       const std::ptrdiff_t step = row % 2 == 0 ? i - 2 : 2 - i;
       const float weight = weights[i];
       const float* const from =
-          &coarse.m_depth[coarse.index(0, beside(row / 2, step, coarse.rows()))];
+          &coarse.m_depth[coarse.index(0, clampIndex(row / 2, step, coarse.rows()))];
       for (std::size_t k = 0; k < count; ++k)
         across[k + 2] += weight * from[k];
     }
@@ -144,32 +144,32 @@ void FillLevel::findBoundary() {
     const float* free = &m_free[index(0, row)];
     for (std::size_t column = 0; column < columns(); ++column, ++free)
       if (free[0] == 0.0f && free[-1] + free[1] + free[-stride] + free[stride] > 0.0f)
-        m_edges.push_back({index(column, row)});
+        m_boundary.push_back({index(column, row)});
   }
 }
 
-void FillLevel::stiffen(float stiffness) {
-  if (m_edges.empty())
+void FillLevel::computeBoundary(float stiffness) {
+  if (m_boundary.empty())
     findBoundary();
-  for (Edge& each : m_edges)
-    each = edge(each.at, stiffness);
+  for (BoundarySample& sample : m_boundary)
+    sample = makeBoundarySample(sample.at, stiffness);
 }
 
-FillLevel::Edge FillLevel::edge(std::size_t at, float stiffness) const {
-  Edge edge{at};
+FillLevel::BoundarySample FillLevel::makeBoundarySample(std::size_t at, float stiffness) const {
+  BoundarySample sample{at};
   // Only the part of the sample's square outside the focus is bent.
-  const float bend = 1.0f / std::max(1.0f - m_covered[at], 1.0f / stiffness);
-  forNeighbours(at, [&](const Neighbour& neighbour) {
-    const float weight = bend * neighbour.weight;
-    if (m_free[neighbour.at] != 0.0f) {
-      edge.weights[neighbour.side] = weight;
-      edge.fixed -= weight * m_depth[at];
+  const float bend = 1.0f / std::max(1.0f - m_coverage[at], 1.0f / stiffness);
+  forEachNeighbor(at, [&](const Neighbor& neighbor) {
+    const float weight = bend * neighbor.weight;
+    if (m_free[neighbor.at] != 0.0f) {
+      sample.weights[neighbor.side] = weight;
+      sample.fixed -= weight * m_depth[at];
     } else {
-      const auto limit = static_cast<float>(steepestBoundary * neighbour.distance);
-      edge.fixed += weight * std::clamp(m_depth[neighbour.at] - m_depth[at], -limit, limit);
+      const auto limit = static_cast<float>(maxBoundarySlope * neighbor.distance);
+      sample.fixed += weight * std::clamp(m_depth[neighbor.at] - m_depth[at], -limit, limit);
     }
   });
-  return edge;
+  return sample;
 }
 
 } // namespace fenestra

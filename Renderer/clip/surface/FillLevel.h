@@ -30,14 +30,14 @@ public:
       m_before.push_back(weight(width * before));
       m_after.push_back(weight(width * after));
       m_width.push_back(width > 0.0 ? width : 1.0);
-      m_greatest = std::max(m_greatest, double{m_before[i]} + m_after[i]);
+      m_maxWeightSum = std::max(m_maxWeightSum, double{m_before[i]} + m_after[i]);
     }
   }
 
   std::size_t size() const { return m_at.size(); }
   /// Distance from sample i to the next, mm.
   double spacing(std::size_t i) const { return std::abs(m_at[i + 1] - m_at[i]); }
-  FillAxis halved() const {
+  FillAxis coarsen() const {
     std::vector<double> coarse;
     for (std::size_t i = 0; i < m_at.size(); i += 2)
       coarse.push_back(0.5 * (m_at[i] + m_at[std::min(i + 1, m_at.size() - 1)]));
@@ -47,7 +47,7 @@ public:
   Stencil stencil(std::size_t i) const { return {m_before[i], m_after[i]}; }
   const float* before() const { return m_before.data(); }
   const float* after() const { return m_after.data(); }
-  double greatest() const { return m_greatest; }           ///< before + after of a stencil
+  double maxWeightSum() const { return m_maxWeightSum; }   ///< before + after of a stencil
   double width(std::size_t i) const { return m_width[i]; } ///< of sample i, mm
 
 private:
@@ -55,7 +55,7 @@ private:
 
   std::vector<double> m_at, m_width;
   std::vector<float> m_before, m_after; ///< of the stencils
-  double m_greatest = 0.0;
+  double m_maxWeightSum = 0.0;
 };
 
 /// Depths over a grid of samples, some of them free. A margin of one sample surrounds the stored
@@ -68,7 +68,7 @@ public:
         m_stride(m_x.size() + 2),
         m_depth(m_stride * (m_y.size() + 2), 0.0f),
         m_free(m_depth.size(), 0.0f),
-        m_covered(m_depth.size(), 0.0f) {}
+        m_coverage(m_depth.size(), 0.0f) {}
 
   std::size_t columns() const { return m_x.size(); }
   std::size_t rows() const { return m_y.size(); }
@@ -76,31 +76,33 @@ public:
   /// True if `solve` takes little time and memory.
   bool isSolvable() const { return columns() * rows() <= 8192; }
   /// Least distance of samples, mm.
-  double pitch() const { return 1.0 / std::sqrt(0.5 * std::max(m_x.greatest(), m_y.greatest())); }
+  double pitch() const {
+    return 1.0 / std::sqrt(0.5 * std::max(m_x.maxWeightSum(), m_y.maxWeightSum()));
+  }
 
   float& depth(std::size_t column, std::size_t row) { return m_depth[index(column, row)]; }
   float depth(std::size_t column, std::size_t row) const { return m_depth[index(column, row)]; }
   bool isFree(std::size_t column, std::size_t row) const { return m_free[index(column, row)] != 0; }
   /// `covered`: share of the sample's square that is focus, 0 to 1; 0: free sample, else focus.
-  void set(std::size_t column, std::size_t row, float depth, float covered) {
+  void set(std::size_t column, std::size_t row, float depth, float coverage) {
     const std::size_t at = index(column, row);
     m_depth[at] = depth;
-    m_covered[at] = covered;
-    m_free[at] = covered > 0.0f ? 0.0f : 1.0f;
+    m_coverage[at] = coverage;
+    m_free[at] = coverage > 0.0f ? 0.0f : 1.0f;
   }
   /// Trims `covered` so that the focus ends at the centres of its outermost samples.
   void trimFocus();
 
   /// Level of half the resolution: a sample is the mean of four, and focus if any of the four is.
-  FillLevel halved() const;
+  FillLevel coarsen() const;
 
   /// Continues the boundary's depths by `length`, step by step: into the focus with the focus's own
-  /// slopes, limited to steepestBoundary, and out of the focus with slopes that decay. Coarser
+  /// slopes, limited to maxBoundarySlope, and out of the focus with slopes that decay. Coarser
   /// levels need both: their samples do not end where the focus ends.
-  void continueBoundary(double length);
+  void extendBoundary(double length);
 
   /// Fills the free samples, cubic between the centres of the coarser samples.
-  void start(const FillLevel& coarse);
+  void prolongate(const FillLevel& coarse);
 
   /// `steps` of Chebyshev's iteration for  L L u - L u / length² = 0  at the free samples near the
   /// boundary: elsewhere the coarser level's surface is as good.
@@ -112,37 +114,37 @@ public:
 private:
   /// Focus sample beside free ones: L there is `fixed`, from the sample itself and its focus
   /// neighbours (limited in slope), plus weights times the depths of its free neighbours.
-  struct Edge {
+  struct BoundarySample {
     std::size_t at;
     float fixed = 0.0f;
     std::array<float, 4> weights{}; ///< per side of the sample
   };
 
   template <typename Function>
-  void forFree(const Function& function) const {
+  void forEachFree(const Function& function) const {
     for (std::size_t at = 0; at < m_free.size(); ++at)
       if (m_free[at] != 0.0f)
         function(at);
   }
 
-  struct Neighbour {
+  struct Neighbor {
     std::size_t side, at;
     double distance; ///< mm
     float weight;    ///< in L
   };
   /// Calls back with each neighbour of a sample.
   template <typename Function>
-  void forNeighbours(std::size_t at, const Function& function) const {
+  void forEachNeighbor(std::size_t at, const Function& function) const {
     const std::size_t column = at % m_stride - 1, row = at / m_stride - 1;
     const Stencil x = m_x.stencil(column), y = m_y.stencil(row);
     if (column > 0)
-      function(Neighbour{0, at - 1, m_x.spacing(column - 1), x.before});
+      function(Neighbor{0, at - 1, m_x.spacing(column - 1), x.before});
     if (column + 1 < columns())
-      function(Neighbour{1, at + 1, m_x.spacing(column), x.after});
+      function(Neighbor{1, at + 1, m_x.spacing(column), x.after});
     if (row > 0)
-      function(Neighbour{2, at - m_stride, m_y.spacing(row - 1), y.before});
+      function(Neighbor{2, at - m_stride, m_y.spacing(row - 1), y.before});
     if (row + 1 < rows())
-      function(Neighbour{3, at + m_stride, m_y.spacing(row), y.after});
+      function(Neighbor{3, at + m_stride, m_y.spacing(row), y.after});
   }
 
   /// Offsets in memory to the neighbours on the four sides.
@@ -152,8 +154,8 @@ private:
   }
 
   /// Depth continued from the known neighbours (mean).
-  float continued(std::size_t at, const std::vector<float>& own,
-                  const std::vector<std::uint8_t>& known, double length) const;
+  float extrapolate(std::size_t at, const std::vector<float>& own,
+                    const std::vector<std::uint8_t>& known, double length) const;
 
   std::size_t index(std::size_t column, std::size_t row) const {
     return (row + 1) * m_stride + column + 1;
@@ -163,24 +165,24 @@ private:
   void findBoundary();
 
   /// Computes m_edges. `stiffness`: upper limit of the ratio (boundary weight / plate weight).
-  void stiffen(float stiffness);
+  void computeBoundary(float stiffness);
 
-  Edge edge(std::size_t at, float stiffness) const;
+  BoundarySample makeBoundarySample(std::size_t at, float stiffness) const;
 
   /// Computes the curvature L u along `runs` and at the boundary.
-  void curve(const std::vector<SampleRun>& runs, float* curvature) const;
+  void applyLaplacian(const std::vector<SampleRun>& runs, float* laplacian) const;
 
-  void move(const std::vector<SampleRun>& runs, const float* curvature, float* change,
-            float tension, float keep, float step);
+  void updateDepths(const std::vector<SampleRun>& runs, const float* laplacian, float* change,
+                    float tension, float momentum, float step);
 
   RowStencil rowStencil(const SampleRun& run) const;
 
   FillAxis m_x, m_y;
   std::size_t m_stride;
-  std::vector<float> m_depth;   ///< mm, less the buffer's reference
-  std::vector<float> m_free;    ///< 1; 0: focus, margin
-  std::vector<float> m_covered; ///< share of each sample's square that is focus
-  std::vector<Edge> m_edges;
+  std::vector<float> m_depth;    ///< mm, less the buffer's reference
+  std::vector<float> m_free;     ///< 1; 0: focus, margin
+  std::vector<float> m_coverage; ///< share of each sample's square that is focus
+  std::vector<BoundarySample> m_boundary;
 };
 
 } // namespace fenestra

@@ -40,7 +40,7 @@ public:
         m_marks(m_across * ((rows + edge - 1) / edge), 0) {}
 
   /// Marks the sample's tile and the tiles around it.
-  void markAround(std::size_t column, std::size_t row) {
+  void markNeighborhood(std::size_t column, std::size_t row) {
     const std::size_t x = column / edge, y = row / edge;
     for (std::size_t j = y > 0 ? y - 1 : 0; j < std::min(y + 2, m_marks.size() / m_across); ++j)
       for (std::size_t i = x > 0 ? x - 1 : 0; i < std::min(x + 2, m_across); ++i)
@@ -78,25 +78,25 @@ private:
 };
 
 /// Stiffness in `relax`: more only slows convergence.
-constexpr float stiffest = 3.0f;
+constexpr float maxStiffness = 3.0f;
 
-void curveRow(const RowStencil& l, const float* in, float* __restrict out) {
+void applyLaplacianRow(const RowStencil& l, const float* in, float* __restrict out) {
   for (std::size_t i = 0; i < l.count; ++i)
     out[i] = l(in, i);
 }
 
 /// One step of the iteration along a row: updates the depths u from their curvature L u.
-void moveRow(const RowStencil& l, const float* curvature, const float* free, float tension,
-             float keep, float step, float* __restrict change, float* __restrict depth) {
+void updateRow(const RowStencil& l, const float* laplacian, const float* free, float tension,
+               float momentum, float step, float* __restrict change, float* __restrict depth) {
   for (std::size_t i = 0; i < l.count; ++i) {
-    change[i] = keep * change[i] + free[i] * step * (tension * curvature[i] - l(curvature, i));
+    change[i] = momentum * change[i] + free[i] * step * (tension * laplacian[i] - l(laplacian, i));
     depth[i] += change[i];
   }
 }
 
 /// Calls back with each run, in parallel; runs are short and share a thread.
 template <typename Function>
-void forRuns(const std::vector<SampleRun>& runs, const Function& function) {
+void forEachRun(const std::vector<SampleRun>& runs, const Function& function) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, runs.size(), 256), [&](const auto& range) {
     for (std::size_t i = range.begin(); i != range.end(); ++i)
       function(runs[i]);
@@ -105,26 +105,26 @@ void forRuns(const std::vector<SampleRun>& runs, const Function& function) {
 
 } // namespace
 
-void FillLevel::curve(const std::vector<SampleRun>& runs, float* curvature) const {
+void FillLevel::applyLaplacian(const std::vector<SampleRun>& runs, float* laplacian) const {
   const std::array<std::ptrdiff_t, 4> offsets = this->offsets();
-  forRuns(runs, [&](const SampleRun& run) {
+  forEachRun(runs, [&](const SampleRun& run) {
     const std::size_t first = index(run.begin, run.row);
-    curveRow(rowStencil(run), &m_depth[first], curvature + first);
+    applyLaplacianRow(rowStencil(run), &m_depth[first], laplacian + first);
   });
-  for (const Edge& edge : m_edges) {
-    const float* const depth = &m_depth[edge.at];
-    curvature[edge.at] = edge.fixed;
+  for (const BoundarySample& sample : m_boundary) {
+    const float* const depth = &m_depth[sample.at];
+    laplacian[sample.at] = sample.fixed;
     for (std::size_t side = 0; side < 4; ++side)
-      curvature[edge.at] += edge.weights[side] * depth[offsets[side]];
+      laplacian[sample.at] += sample.weights[side] * depth[offsets[side]];
   }
 }
 
-void FillLevel::move(const std::vector<SampleRun>& runs, const float* curvature, float* change,
-                     float tension, float keep, float step) {
-  forRuns(runs, [&](const SampleRun& run) {
+void FillLevel::updateDepths(const std::vector<SampleRun>& runs, const float* laplacian,
+                             float* change, float tension, float momentum, float step) {
+  forEachRun(runs, [&](const SampleRun& run) {
     const std::size_t first = index(run.begin, run.row);
-    moveRow(rowStencil(run), curvature + first, &m_free[first], tension, keep, step, change + first,
-            &m_depth[first]);
+    updateRow(rowStencil(run), laplacian + first, &m_free[first], tension, momentum, step,
+              change + first, &m_depth[first]);
   });
 }
 
@@ -134,61 +134,62 @@ RowStencil FillLevel::rowStencil(const SampleRun& run) const {
 }
 
 void FillLevel::relax(double length, int steps) {
-  stiffen(stiffest);
+  computeBoundary(maxStiffness);
   SampleTiles tiles(columns(), rows());
-  for (const Edge& edge : m_edges)
-    tiles.markAround(edge.at % m_stride - 1, edge.at / m_stride - 1);
-  const std::vector<SampleRun> moved = tiles.runs(0), curved = tiles.runs(1);
+  for (const BoundarySample& sample : m_boundary)
+    tiles.markNeighborhood(sample.at % m_stride - 1, sample.at / m_stride - 1);
+  const std::vector<SampleRun> updatedRuns = tiles.runs(0), laplacianRuns = tiles.runs(1);
   const double tension = 1.0 / (length * length);
-  const double most = 2.0 * (m_x.greatest() + m_y.greatest());
-  const double high = stiffest * most * (most + tension); // bounds the operator's eigenvalues
+  const double maxWeightSum = 2.0 * (m_x.maxWeightSum() + m_y.maxWeightSum());
+  const double high =
+      maxStiffness * maxWeightSum * (maxWeightSum + tension); // bounds the operator's eigenvalues
   const double low = high / (0.25 * steps * steps);
-  const double centre = 0.5 * (high + low), radius = 0.5 * (high - low);
+  const double center = 0.5 * (high + low), radius = 0.5 * (high - low);
   // Memory away from the boundary is never touched.
-  const auto curvature = std::make_unique_for_overwrite<float[]>(m_depth.size());
+  const auto laplacian = std::make_unique_for_overwrite<float[]>(m_depth.size());
   const auto change = std::make_unique_for_overwrite<float[]>(m_depth.size());
-  for (const SampleRun& run : curved) // stencils reach a sample further
+  for (const SampleRun& run : laplacianRuns) // stencils reach a sample further
     for (const std::size_t row : {run.row, run.row + 1, run.row + 2}) {
       const std::size_t first = row * m_stride + run.begin;
-      std::fill_n(&curvature[first], run.end - run.begin + 2, 0.0f);
+      std::fill_n(&laplacian[first], run.end - run.begin + 2, 0.0f);
       std::fill_n(&change[first], run.end - run.begin + 2, 0.0f);
     }
-  double rho = radius / centre;
-  double keep = 0.0, step = 1.0 / centre;
+  double rho = radius / center;
+  double momentum = 0.0, step = 1.0 / center;
   for (int i = 0; i < steps; ++i) {
-    curve(curved, curvature.get());
-    move(moved, curvature.get(), change.get(), static_cast<float>(tension),
-         static_cast<float>(keep), static_cast<float>(step));
-    const double next = 1.0 / (2.0 * centre / radius - rho);
-    keep = next * rho;
+    applyLaplacian(laplacianRuns, laplacian.get());
+    updateDepths(updatedRuns, laplacian.get(), change.get(), static_cast<float>(tension),
+                 static_cast<float>(momentum), static_cast<float>(step));
+    const double next = 1.0 / (2.0 * center / radius - rho);
+    momentum = next * rho;
     step = 2.0 * next / radius;
     rho = next;
   }
 }
 
 void FillLevel::solve(double length) {
-  stiffen(1e6f);
+  computeBoundary(1e6f);
   std::vector<int> unknown(m_depth.size(), -1);
   int count = 0;
-  forFree([&](std::size_t at) { unknown[at] = count++; });
+  forEachFree([&](std::size_t at) { unknown[at] = count++; });
   if (count == 0)
     return;
-  std::vector<const Edge*> edgeAt(m_depth.size(), nullptr);
-  for (const Edge& edge : m_edges)
-    edgeAt[edge.at] = &edge;
+  std::vector<const BoundarySample*> boundaryBySample(m_depth.size(), nullptr);
+  for (const BoundarySample& sample : m_boundary)
+    boundaryBySample[sample.at] = &sample;
   Eigen::VectorXd right = Eigen::VectorXd::Zero(count);
   std::vector<Eigen::Triplet<double>> entries;
   // Adds `factor` times the curvature at a sample to an equation; of the symmetric matrix only
   // the lower half.
-  const auto addCurvature = [&](int row, std::size_t at, double factor) {
-    const auto add = [&](std::size_t neighbour, double weight) {
-      if (unknown[neighbour] >= 0) {
-        if (unknown[neighbour] <= row)
-          entries.emplace_back(row, unknown[neighbour], factor * weight);
+  const auto addLaplacian = [&](int row, std::size_t at, double factor) {
+    const auto add = [&](std::size_t neighbor, double weight) {
+      if (unknown[neighbor] >= 0) {
+        if (unknown[neighbor] <= row)
+          entries.emplace_back(row, unknown[neighbor], factor * weight);
       } else
-        right[row] -= factor * weight * m_depth[neighbour];
+        right[row] -= factor * weight * m_depth[neighbor];
     };
-    if (const Edge* const edge = edgeAt[at]) {
+    if (const BoundarySample* const edge = boundaryBySample[at]) {
       right[row] -= factor * edge->fixed;
       for (std::size_t side = 0; side < 4; ++side)
         if (edge->weights[side] != 0.0f)
@@ -196,27 +197,27 @@ void FillLevel::solve(double length) {
       return;
     }
     double sum = 0.0;
-    forNeighbours(at, [&](const Neighbour& neighbour) {
-      add(neighbour.at, double{neighbour.weight});
-      sum += double{neighbour.weight};
+    forEachNeighbor(at, [&](const Neighbor& neighbor) {
+      add(neighbor.at, double{neighbor.weight});
+      sum += double{neighbor.weight};
     });
     add(at, -sum);
   };
-  forFree([&](std::size_t at) {
+  forEachFree([&](std::size_t at) {
     // Area of the sample, mm²; area * L is symmetric.
     const double area = m_x.width(at % m_stride - 1) * m_y.width(at / m_stride - 1);
     double sum = 1.0 / (length * length);
-    forNeighbours(at, [&](const Neighbour& neighbour) {
-      addCurvature(unknown[at], neighbour.at, area * double{neighbour.weight});
-      sum += double{neighbour.weight};
+    forEachNeighbor(at, [&](const Neighbor& neighbor) {
+      addLaplacian(unknown[at], neighbor.at, area * double{neighbor.weight});
+      sum += double{neighbor.weight};
     });
-    addCurvature(unknown[at], at, -area * sum);
+    addLaplacian(unknown[at], at, -area * sum);
   });
   Eigen::SparseMatrix<double> matrix(count, count);
   matrix.setFromTriplets(entries.begin(), entries.end());
   const Eigen::VectorXd depths =
       Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(matrix).solve(right);
-  forFree([&](std::size_t at) { m_depth[at] = static_cast<float>(depths[unknown[at]]); });
+  forEachFree([&](std::size_t at) { m_depth[at] = static_cast<float>(depths[unknown[at]]); });
 }
 
 } // namespace fenestra

@@ -6,7 +6,7 @@ namespace {
 
 /// Shortest x with the least |S x - r|. S = (xx, xy; xy, yy) has eigenvalues >= 0, and r is a sum
 /// of S's columns.
-Vec2 shortestSolution(double xx, double xy, double yy, const Vec2& r) {
+Vec2 solveMinimumNorm(double xx, double xy, double yy, const Vec2& r) {
   constexpr double singular = 1e-12; // ratio of eigenvalues: samples on one line
   const double trace = xx + yy, determinant = xx * yy - xy * xy;
   if (determinant > singular * trace * trace)
@@ -16,7 +16,7 @@ Vec2 shortestSolution(double xx, double xy, double yy, const Vec2& r) {
 
 } // namespace
 
-ClipPlane focusPlane(const Camera& camera, const FocusDepth& focus) {
+ClipPlane fitFocusPlane(const Camera& camera, const FocusDepth& focus) {
   std::vector<Vec3> points; // visible points of the focus, in view space
   Vec3 center = Vec3::Zero();
   focus.visitFocus([&](const Vec3& at) {
@@ -33,7 +33,7 @@ ClipPlane focusPlane(const Camera& camera, const FocusDepth& focus) {
     yy += from.y() * from.y();
     rise += from.head<2>() * from.z();
   }
-  const Vec2 slope = shortestSolution(xx, xy, yy, rise);
+  const Vec2 slope = solveMinimumNorm(xx, xy, yy, rise);
   const Vec3 toward = slope.x() * camera.right() + slope.y() * camera.up() - camera.forward();
   const Vec3 world = camera.pose().position + center.x() * camera.right() +
                      center.y() * camera.up() + center.z() * camera.forward();

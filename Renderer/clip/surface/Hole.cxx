@@ -16,16 +16,16 @@ void fillContext(DepthBuffer& buffer, const FocusDepth& focus, const Bottom& bot
 }
 
 /// Depth at which the eye ray through (x, y) leaves a ball, mm; -infinity: missed.
-double farSide(const Camera& camera, const Vec2& at, const Vec3& center, double radius) {
+double findFarSide(const Camera& camera, const Vec2& at, const Vec3& center, double radius) {
   const Ray ray = camera.rayThrough(at);
   const double nearest = (center - ray.origin).dot(ray.direction);
-  const double missed = (ray.at(nearest) - center).squaredNorm();
-  if (missed > radius * radius)
+  const double distanceSquared = (ray.at(nearest) - center).squaredNorm();
+  if (distanceSquared > radius * radius)
     return -infinity;
-  return (nearest + std::sqrt(radius * radius - missed)) * camera.depthPerLength(ray);
+  return (nearest + std::sqrt(radius * radius - distanceSquared)) * camera.depthPerLength(ray);
 }
 
-void fillBowl(DepthBuffer& buffer, const FocusDepth& focus, const Camera& camera, double margin) {
+void fillSphere(DepthBuffer& buffer, const FocusDepth& focus, const Camera& camera, double margin) {
   Box box = Box::makeEmpty();
   focus.visitFocus([&](const Vec3& at) { box.extend(fromBuffer(camera, at)); });
   const Vec3 center = box.center();
@@ -33,7 +33,7 @@ void fillBowl(DepthBuffer& buffer, const FocusDepth& focus, const Camera& camera
   focus.visitFocus(
       [&](const Vec3& at) { radius = std::max(radius, (fromBuffer(camera, at) - center).norm()); });
   fillContext(buffer, focus,
-              [&](const Vec2& at) { return farSide(camera, at, center, radius + margin); });
+              [&](const Vec2& at) { return findFarSide(camera, at, center, radius + margin); });
 }
 
 } // namespace
@@ -41,7 +41,7 @@ void fillBowl(DepthBuffer& buffer, const FocusDepth& focus, const Camera& camera
 void fillHole(DepthBuffer& buffer, const FocusDepth& focus, const Camera& camera,
               const HoleOptions& options) {
   if (options.shape == HoleShape::sphere)
-    return fillBowl(buffer, focus, camera, options.margin);
+    return fillSphere(buffer, focus, camera, options.margin);
   Box extent = Box::makeEmpty();
   focus.visitFocus([&](const Vec3& at) { extent.extend(at); });
   const Vec2 center = extent.center().head<2>();

@@ -23,8 +23,8 @@ constexpr Doubles doubles{};
 
 /// values[i] = function(x[i], values[i]), in vectors of lanes.
 template <typename Function>
-HWY_INLINE void transform(std::span<const double> x, std::span<double> values,
-                          Function&& function) {
+HWY_INLINE void mapVectors(std::span<const double> x, std::span<double> values,
+                           Function&& function) {
   const std::size_t lanes = hn::Lanes(doubles);
   std::size_t i = 0;
   for (; i + lanes <= x.size(); i += lanes)
@@ -45,7 +45,7 @@ void addKernelsSimd(std::span<const KernelTerm> terms, std::span<const double> u
                     std::span<double> sums) {
   // Keeps the logarithm finite at a site, where its factor is 0.
   const D tiny = hn::Set(doubles, 1e-300);
-  transform(u, sums, [&](D x, D sum) {
+  mapVectors(u, sums, [&](D x, D sum) {
     for (const KernelTerm& term : terms) {
       const double dy = v - term.site.y();
       const D dx = hn::Sub(x, hn::Set(doubles, term.site.x()));
@@ -59,7 +59,7 @@ void addKernelsSimd(std::span<const KernelTerm> terms, std::span<const double> u
 
 void evaluatePolynomialSimd(std::span<const double> coefficients, double scale,
                             std::span<const double> x, std::span<double> values) {
-  transform(x, values, [&](D here, D) {
+  mapVectors(x, values, [&](D here, D) {
     const D tau = hn::Mul(here, hn::Set(doubles, scale));
     D sum = hn::Set(doubles, coefficients.back());
     for (std::size_t k = coefficients.size() - 1; k-- > 0;)

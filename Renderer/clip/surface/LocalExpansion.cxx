@@ -10,14 +10,14 @@ namespace {
 using Complex = std::complex<double>;
 
 /// Terms of the longest expansion: 3^-24 is about the rounding of a sum.
-constexpr Eigen::Index longest = 24;
+constexpr Eigen::Index maxTerms = 24;
 
 /// Rounding of a sum, relative to the sum of its terms' sizes.
 constexpr double rounding = 64.0 * std::numeric_limits<double>::epsilon();
 
 constexpr auto binomials = [] {
-  std::array<std::array<double, longest + 1>, longest + 1> rows{};
-  for (std::size_t k = 0; k <= longest; ++k) {
+  std::array<std::array<double, maxTerms + 1>, maxTerms + 1> rows{};
+  for (std::size_t k = 0; k <= maxTerms; ++k) {
     rows[k][0] = 1.0;
     for (std::size_t b = 1; b <= k; ++b)
       rows[k][b] = rows[k - 1][b - 1] + rows[k - 1][b];
@@ -60,7 +60,7 @@ std::optional<Polynomials> expand(const Terms& terms, double radius, double tole
   const Eigen::ArrayXd size = radius / squared.sqrt();                                    // |e|
   Eigen::ArrayXd rest = 2.0 * moment.abs() * size.square() * (1.0 + size) / (1.0 - size);
   Eigen::ArrayXd re = ex, im = ey, old; // e^k
-  for (Eigen::Index k = 1; k <= longest; ++k) {
+  for (Eigen::Index k = 1; k <= maxTerms; ++k) {
     const auto scale = 2.0 / static_cast<double>(k * (k + 1));
     if (0.5 * scale * rest.sum() <= 0.5 * tolerance)
       return result;
@@ -76,16 +76,16 @@ std::optional<Polynomials> expand(const Terms& terms, double radius, double tole
 }
 
 /// Re(i^power z).
-double realOfTurned(const Complex& z, Eigen::Index power) {
-  const double part = power & 1 ? -z.imag() : z.real();
-  return power & 2 ? -part : part;
+double rotatedReal(const Complex& z, Eigen::Index power) {
+  const double value = power & 1 ? -z.imag() : z.real();
+  return power & 2 ? -value : value;
 }
 
 } // namespace
 
-std::optional<LocalExpansion> LocalExpansion::of(std::span<const KernelTerm> terms,
-                                                 const Vec2& center, double radius,
-                                                 double tolerance) {
+std::optional<LocalExpansion> LocalExpansion::make(std::span<const KernelTerm> terms,
+                                                   const Vec2& center, double radius,
+                                                   double tolerance) {
   const auto polynomials = expand({terms, center}, radius, tolerance);
   if (!polynomials)
     return {};
@@ -97,9 +97,9 @@ std::optional<LocalExpansion> LocalExpansion::of(std::span<const KernelTerm> ter
     const Complex& q = polynomials->q[static_cast<std::size_t>(k)];
     for (Eigen::Index b = 0; b <= k; ++b) {
       const double binomial = binomials[static_cast<std::size_t>(k)][static_cast<std::size_t>(b)];
-      coefficients(k - b, b) += binomial * realOfTurned(p, b);
-      coefficients(k - b + 1, b) += binomial * realOfTurned(q, b);
-      coefficients(k - b, b + 1) -= binomial * realOfTurned(q, b + 1); // -i y of conj(tau)
+      coefficients(k - b, b) += binomial * rotatedReal(p, b);
+      coefficients(k - b + 1, b) += binomial * rotatedReal(q, b);
+      coefficients(k - b, b + 1) -= binomial * rotatedReal(q, b + 1); // -i y of conj(tau)
     }
   }
   return LocalExpansion(std::move(coefficients), radius);
@@ -113,12 +113,12 @@ void LocalExpansion::addPlane(double atCenter, double alongX, double alongY) {
 
 void LocalExpansion::evaluateRow(std::span<const double> x, double y,
                                  std::span<double> values) const {
-  const double perRadius = m_radius > 0.0 ? 1.0 / m_radius : 0.0;
+  const double invRadius = m_radius > 0.0 ? 1.0 / m_radius : 0.0;
   const Eigen::Index length = m_coefficients.cols();
-  Eigen::Array<double, Eigen::Dynamic, 1, 0, longest + 2, 1> row = m_coefficients.col(length - 1);
+  Eigen::Array<double, Eigen::Dynamic, 1, 0, maxTerms + 2, 1> row = m_coefficients.col(length - 1);
   for (Eigen::Index b = length - 2; b >= 0; --b)
-    row = row * (y * perRadius) + m_coefficients.col(b);
-  evaluatePolynomial({row.data(), static_cast<std::size_t>(length)}, perRadius, x, values);
+    row = row * (y * invRadius) + m_coefficients.col(b);
+  evaluatePolynomial({row.data(), static_cast<std::size_t>(length)}, invRadius, x, values);
 }
 
 } // namespace fenestra

@@ -24,12 +24,12 @@ namespace fenestra {
 class LocalExpansion {
 public:
   /// Greatest |e| of expanded terms: a compromise between their number and the expansion's length.
-  static constexpr double farthest = 1.0 / 3.0;
+  static constexpr double maxRatio = 1.0 / 3.0;
 
   /// Expansion within `tolerance` of the terms' sum all over the disc, rounding included; nothing
   /// if double precision cannot reach `tolerance`. Every |e| has to be at most `farthest`.
-  static std::optional<LocalExpansion> of(std::span<const KernelTerm> terms, const Vec2& center,
-                                          double radius, double tolerance);
+  static std::optional<LocalExpansion> make(std::span<const KernelTerm> terms, const Vec2& center,
+                                            double radius, double tolerance);
 
   void addPlane(double atCenter, double alongX, double alongY);
 

@@ -6,7 +6,7 @@ namespace fenestra {
 
 namespace {
 
-FillLevel finest(const DepthBuffer& buffer, const std::vector<Region>& regions) {
+FillLevel makeFinestLevel(const DepthBuffer& buffer, const std::vector<Region>& regions) {
   FillLevel level(FillAxis(buffer.xAxis().coordinates()), FillAxis(buffer.yAxis().coordinates()));
   std::size_t sample = 0;
   for (std::size_t row = 0; row < level.rows(); ++row)
@@ -22,18 +22,18 @@ FillLevel finest(const DepthBuffer& buffer, const std::vector<Region>& regions) 
 
 void fillSmoothly(DepthBuffer& buffer, const std::vector<Region>& regions, double length) {
   std::vector<FillLevel> levels;
-  levels.push_back(finest(buffer, regions));
+  levels.push_back(makeFinestLevel(buffer, regions));
   levels.back().trimFocus();
-  levels.back().continueBoundary(length);
+  levels.back().extendBoundary(length);
   // Coarser levels would not resolve the plate's bending.
   while (!levels.back().isSmall() &&
          (levels.back().pitch() < 0.25 * length || !levels.back().isSolvable()))
-    levels.push_back(levels.back().halved());
-  constexpr int fewest = 24;
+    levels.push_back(levels.back().coarsen());
+  constexpr int minSteps = 24;
   levels.back().solve(length);
   for (std::size_t i = levels.size() - 1; i-- > 0;) {
-    levels[i].start(levels[i + 1]);
-    levels[i].relax(length, fewest << i);
+    levels[i].prolongate(levels[i + 1]);
+    levels[i].relax(length, minSteps << i);
   }
   const FillLevel& level = levels.front();
   std::int64_t sample = 0;

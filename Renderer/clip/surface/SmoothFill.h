@@ -7,7 +7,7 @@
 // plate spline would run on. (Smith and Wessel 1990, "Gridding with continuous curvature splines in
 // tension", without their interpolation error: the data are the boundary itself.) Boundary values:
 // the depth of every sample of the focus and its rim (Seams.h), and the slope across the boundary,
-// limited to steepestBoundary, for the slope of a rounded silhouette is unbounded. Where the
+// limited to maxBoundarySlope, for the slope of a rounded silhouette is unbounded. Where the
 // boundary's depth jumps, between components or where the focus hides a part of itself, u falls
 // from one depth to the other within about a sample at the boundary and ever more gently away from
 // the boundary; tension keeps u from ringing.
@@ -26,7 +26,7 @@
 namespace fenestra {
 
 /// Greatest slope of u across the boundary: mm of depth per mm on the plane through the target.
-constexpr double steepestBoundary = 1.0;
+constexpr double maxBoundarySlope = 1.0;
 
 /// Fills the samples of `buffer` that are not focus. At least one sample has to be focus. `length`:
 /// distance of levelling, mm.

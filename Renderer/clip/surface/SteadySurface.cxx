@@ -8,15 +8,14 @@ namespace {
 
 /// Distance of each sample from the nearest focus sample, mm: along steps to the eight neighbours,
 /// at most 8 % too long.
-std::vector<double> distancesFromFocus(const FocusDepth& focus) {
+std::vector<double> computeFocusDistances(const FocusDepth& focus) {
   const DepthBuffer& buffer = focus.depth;
   std::vector<double> distances;
   for (const Region region : focus.regions)
     distances.push_back(region == Region::focus ? 0.0 : infinity);
   // Row by row from the top, then from the bottom, from neighbours visited before.
-  for (const std::int64_t way : {1, -1}) {
-    const auto shorten = [&](std::int64_t column, std::int64_t row, std::int64_t x,
-                             std::int64_t y) {
+  for (const std::int64_t direction : {1, -1}) {
+    const auto relax = [&](std::int64_t column, std::int64_t row, std::int64_t x, std::int64_t y) {
       if (x < 0 || y < 0 || x >= buffer.columns() || y >= buffer.rows())
         return;
       double& distance = distances[static_cast<std::size_t>(buffer.sample(column, row))];
@@ -26,11 +25,11 @@ std::vector<double> distancesFromFocus(const FocusDepth& focus) {
     };
     for (std::int64_t j = 0; j < buffer.rows(); ++j)
       for (std::int64_t i = 0; i < buffer.columns(); ++i) {
-        const std::int64_t row = way > 0 ? j : buffer.rows() - 1 - j;
-        const std::int64_t column = way > 0 ? i : buffer.columns() - 1 - i;
-        shorten(column, row, column - way, row);
+        const std::int64_t row = direction > 0 ? j : buffer.rows() - 1 - j;
+        const std::int64_t column = direction > 0 ? i : buffer.columns() - 1 - i;
+        relax(column, row, column - direction, row);
         for (const std::int64_t x : {-1, 0, 1})
-          shorten(column, row, column + x, row - way);
+          relax(column, row, column + x, row - direction);
       }
   }
   return distances;
@@ -43,22 +42,22 @@ ClippingSurface buildSteadySurface(const Camera& camera, const Domain& volume, c
   ClippingSurface surface = buildClippingSurface(camera, volume, focus, options);
   if (degrees == 0.0 || options.mode != SurfaceMode::surface)
     return surface;
-  struct Neighbour {
-    double turn, weight;
+  struct Neighbor {
+    double angle, weight;
   };
-  static constexpr Neighbour neighbours[] = {
+  static constexpr Neighbor neighbors[] = {
       {-1.0, 1.0 / 16.0}, {-0.5, 4.0 / 16.0}, {0.5, 4.0 / 16.0}, {1.0, 1.0 / 16.0}};
   const auto& own = std::get<ClipDepth>(surface.clip);
   const double width = focus.grid.boundingRadius() * std::abs(degrees) * pi / 180.0;
-  std::vector<double> blends = distancesFromFocus(surface.focus);
+  std::vector<double> blends = computeFocusDistances(surface.focus);
   for (double& blend : blends) // of the mean: 0 at the focus, 1 at distances >= `width`
     blend = smoothStep(0.0, width, blend);
 
   auto buffer = std::make_shared<DepthBuffer>(*own.buffer);
-  for (const auto& [turn, weight] : neighbours) {
-    const Camera turned(turnedAroundTarget(camera.pose(), turn * degrees), camera.width(),
-                        camera.height());
-    const ClippingSurface other = buildClippingSurface(turned, volume, focus, options);
+  for (const auto& [angle, weight] : neighbors) {
+    const Camera rotated(turnedAroundTarget(camera.pose(), angle * degrees), camera.width(),
+                         camera.height());
+    const ClippingSurface other = buildClippingSurface(rotated, volume, focus, options);
     const DepthBuffer& depths = *std::get<ClipDepth>(other.clip).buffer;
     for (std::int64_t row = 0; row < buffer->rows(); ++row)
       for (std::int64_t column = 0; column < buffer->columns(); ++column) {

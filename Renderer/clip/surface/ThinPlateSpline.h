@@ -40,14 +40,14 @@ public:
   /// f at (x[i], y[j]) for every i and j, row by row, to within `tolerance` mm beyond the rounding
   /// of f itself, at a small part of evaluateRow's cost: terms far from the tile are summed as one
   /// polynomial. Equals evaluateRow if double precision cannot reach `tolerance`, or all terms are
-  /// near. At most mostColumns of x; x and y each ascend or descend.
+  /// near. At most maxColumns of x; x and y each ascend or descend.
   void evaluateTile(std::span<const double> x, std::span<const double> y, double tolerance,
                     std::span<double> values) const;
 
   /// Number of terms that evaluateTile computes one by one: the cost of a tile.
-  std::int64_t termsNear(std::span<const double> x, std::span<const double> y) const;
+  std::int64_t countNearTerms(std::span<const double> x, std::span<const double> y) const;
 
-  static constexpr Eigen::Index mostColumns = 64; ///< fits the first cache
+  static constexpr Eigen::Index maxColumns = 64; ///< fits the first cache
 
   /// Solution of the system: sites in the unit disc with their weights w' (empty if there was no
   /// system), and lambda / s^2.
@@ -55,36 +55,36 @@ public:
   double lambda() const { return m_lambda; }
 
 private:
-  using Points = Eigen::Array<double, Eigen::Dynamic, 1, 0, mostColumns, 1>; ///< of a row
+  using Points = Eigen::Array<double, Eigen::Dynamic, 1, 0, maxColumns, 1>; ///< of a row
 
   /// Chooses the unit disc and returns the sites in it.
-  std::vector<Vec2> toUnitDisc(std::span<const Vec2> sites);
+  std::vector<Vec2> toUnitDisk(std::span<const Vec2> sites);
   void fit(const std::vector<Vec2>& sites, const Eigen::VectorXd& values);
 
-  struct Disc {
+  struct Disk {
     Vec2 center; ///< in the unit disc
     double radius;
 
     bool isFar(const KernelTerm& term) const {
-      return (term.site - center).norm() * LocalExpansion::farthest > radius;
+      return (term.site - center).norm() * LocalExpansion::maxRatio > radius;
     }
   };
 
   /// Conversion from mm to the unit disc.
-  double toDiscX(double x) const { return (x - m_origin.x()) * m_perScale - m_centroid.x(); }
-  double toDiscY(double y) const { return (y - m_origin.y()) * m_perScale - m_centroid.y(); }
+  double toDiskX(double x) const { return (x - m_origin.x()) * m_invScale - m_centroid.x(); }
+  double toDiskY(double y) const { return (y - m_origin.y()) * m_invScale - m_centroid.y(); }
   /// Disc around a tile.
-  Disc discAround(std::span<const double> x, std::span<const double> y) const;
+  Disk boundTile(std::span<const double> x, std::span<const double> y) const;
 
   /// Sum of w'_i phi(|u - u_i|) for |u| > 1, where the terms are as large as |u|^2 ln |u|^2 and
   /// nearly cancel. With e_i = |u - u_i|^2 - |u|^2 and P' w' = 0 the sum is m ln |u|^2 +
   /// sum w'_i (|u|^2 + e_i) ln(1 + e_i / |u|^2), m being the moment, and its terms are no larger
   /// than 4 |u|.
-  Points farTerms(const Points& u, double v) const;
+  Points evaluateFarTerms(const Points& u, double v) const;
 
   Vec2 m_origin = Vec2::Zero();    ///< mm, one of the sites: differences from it do not round
   Vec2 m_centroid = Vec2::Zero();  ///< from the origin, in radii: c = origin + s centroid
-  double m_perScale = 1.0;         ///< 1 / s, mm^-1
+  double m_invScale = 1.0;         ///< 1 / s, mm^-1
   double m_lambda = 0.0;           ///< lambda / s^2
   Vec3 m_plane = Vec3::Zero();     ///< a', in the unit disc
   double m_moment = 0.0;           ///< sum of w'_i |u_i|^2

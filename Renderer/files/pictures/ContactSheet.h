@@ -21,7 +21,7 @@ struct SheetEntry {
 inline constexpr std::size_t mostOnSheet = 36;
 
 /// Sheet in linear Rec. 709, channels R, G, B: title, subtitle, and the entries in their order, row
-/// by row, in at most `mostColumns` columns, each picture scaled into the same box. A picture that
+/// by row, in at most `maxColumns` columns, each picture scaled into the same box. A picture that
 /// cannot be read is a problem of its entry. At most 2200 pixels wide.
 Image contactSheet(const std::string& title, const std::string& subtitle,
                    std::span<const SheetEntry> entries, int mostColumns = 6);

@@ -163,7 +163,7 @@ private:
 
 template <int Channels, typename Node, typename Map>
 PiecewiseLinear<Channels> tabulated(const std::vector<Node>& nodes, Map map) {
-  return Tabulator<Channels, Node, Map>(nodes, std::move(map)).table();
+  return Tabulator<Channels, Node, Map>(nodes, std::move(map)).build();
 }
 
 bool inUnitRange(double x) {

@@ -83,7 +83,7 @@ inline Float querySilhouettes(const SilhouetteCells& silhouettes, LaneMask isQue
   return load(surfaces.data());
 }
 
-/// ClipDepth::surfaceFor: exact in seams for the lanes of `which`, else `surface`.
+/// ClipDepth::surfaceDepth: exact in seams for the lanes of `which`, else `surface`.
 HWY_INLINE Float refineAtSilhouette(const SimdMedium& medium, LaneMask which, const Surface& linear,
                                     const InView& at) {
   const Float surface = linear.depth;

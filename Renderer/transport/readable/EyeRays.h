@@ -34,7 +34,7 @@ public:
   /// True if clipping leaves every eye ray whole.
   bool isUnclipped() const { return std::holds_alternative<ClipNone>(m_clip); }
   /// Part of an eye ray that clipping leaves.
-  Interval range(const Ray& ray) const { return visible(m_clip, ray); }
+  Interval range(const Ray& ray) const { return visibleInterval(m_clip, ray); }
   /// View-space depth at `distance` along an eye ray; mm.
   double depth(const Ray& ray, double distance) const {
     return distance * m_camera.depthPerLength(ray);

@@ -34,8 +34,8 @@ public:
   void integrateHits(std::span<const RasterPoint> points, PrimaryHit* out) const {
     for (const RasterPoint& point : points) {
       const Ray ray = m_scene.camera.ray(point.column, point.row);
-      const ExpectedHit first =
-          m_march.integrateHits(ray, visible(cameraRayClip(m_scene.clip, m_scene.mixture), ray));
+      const ExpectedHit first = m_march.integrateHits(
+          ray, visibleInterval(cameraRayClip(m_scene.clip, m_scene.mixture), ray));
       PrimaryHit primary{narrow(first.hit),
                          narrow(first.distance * m_scene.camera.depthPerLength(ray))};
       primary.albedo = narrow3(first.albedo.matrix());
@@ -77,7 +77,7 @@ public:
       for (std::size_t i = 0; i < count; ++i) {
         const Ray ray = m_scene.camera.ray(points[from + i].column, points[from + i].row);
         before[i] = setInside(batch->rays, i, m_domain, ray,
-                              visible(cameraRayClip(m_scene.clip, m_scene.mixture), ray));
+                              visibleInterval(cameraRayClip(m_scene.clip, m_scene.mixture), ray));
         perLength[i] = m_scene.camera.depthPerLength(ray);
       }
       marchCameraRays(m_medium, m_shading, *batch);

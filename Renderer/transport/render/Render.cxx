@@ -272,7 +272,7 @@ RenderResult renderPasses(const Tracer& tracer, const std::string& arithmetic,
   result.target = arithmetic;
   if (!settings.plansByNoise())
     result.last = {result.last.samples}; // a plan made by the pilot is not followed
-  const PassSource source{Tiles(result.film.width(), result.film.height()).of(settings.shard),
+  const PassSource source{Tiles(result.film.width(), result.film.height()).select(settings.shard),
                           emptyPixels(scene, settings, result.film), numbers};
   monitor.paths = result.finishedSamples * result.film.pixelCount() /
                   static_cast<std::size_t>(settings.shard.count);
