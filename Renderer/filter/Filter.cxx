@@ -54,8 +54,8 @@ bool standardize(Plane& feature, const Plane& active) {
   const double mean = sum / std::max(count, 1.0);
   for (std::size_t i = 0; i < feature.size(); ++i)
     if (active[i] > 0.0F) {
-      const double off = static_cast<double>(feature[i]) - mean;
-      squares += off * off;
+      const double difference = static_cast<double>(feature[i]) - mean;
+      squares += difference * difference;
     }
   const double deviation = std::sqrt(squares / std::max(count, 1.0));
   if (!(deviation > 1e-6 * std::abs(mean)) || !std::isfinite(deviation))
@@ -90,9 +90,10 @@ FitInput prepareInput(FilterInput& input, std::size_t channels) {
 
 /// Weights of the choice: relative to a slightly blurred picture of small windows, which hardly
 /// knows the pixel's own noise.
-Plane computeSelectionWeight(const FitInput& fit, const FittedPlanes& small, std::size_t channel) {
+Plane computeSelectionWeight(const FitInput& fit, const FittedPlanes& smallest,
+                             std::size_t channel) {
   const MaskedMean blur(fit.active, fit.width, fit.height, 1);
-  const Plane &even = small[channel], &odd = small[small.size() / 2 + channel];
+  const Plane &even = smallest[channel], &odd = smallest[smallest.size() / 2 + channel];
   Plane mean(fit.active.size());
   for (std::size_t i = 0; i < mean.size(); ++i)
     mean[i] = 0.5F * fit.active[i] * (even[i] + odd[i]);
@@ -105,23 +106,23 @@ Plane computeSelectionWeight(const FitInput& fit, const FittedPlanes& small, std
 /// Mean over colours of the told error, relative, averaged over 21x21 pixels around each pixel but
 /// not over the 5x5 that its own noise reaches: noise that helped to choose would flatter the
 /// choice.
-class Judge {
+class CandidateScorer {
 public:
-  Judge(const FitInput& fit, const FittedPlanes& small)
+  CandidateScorer(const FitInput& fit, const FittedPlanes& smallest)
       : m_fit(fit), m_mean(fit.active, fit.width, fit.height, 10, 2) {
     for (std::size_t c = 0; c < 3; ++c)
-      m_weight[c] = computeSelectionWeight(fit, small, c);
+      m_weight[c] = computeSelectionWeight(fit, smallest, c);
   }
 
-  Plane raw(const std::array<Plane, 3>& variance) const {
+  Plane scoreRaw(const std::array<Plane, 3>& variance) const {
     return average([&](std::size_t c, std::size_t i) { return variance[c][i]; });
   }
-  Plane of(const FittedPlanes& fitted) const {
+  Plane score(const FittedPlanes& fitted) const {
     const std::size_t other = fitted.size() / 2;
     return average([&](std::size_t c, std::size_t i) {
-      const Told told = toldError(fitted[c][i], fitted[other + c][i], m_fit.color[c][i],
-                                  m_fit.color[other + c][i]);
-      return told.variance + told.bias;
+      const ErrorEstimate estimate = estimateError(fitted[c][i], fitted[other + c][i],
+                                                   m_fit.color[c][i], m_fit.color[other + c][i]);
+      return estimate.variance + estimate.bias;
     });
   }
 
@@ -164,14 +165,14 @@ private:
 /// Number of the candidate of least told error, by pixel.
 std::vector<std::uint8_t> chooseCandidates(const FitInput& fit, const Candidates& candidates,
                                            const std::array<Plane, 3>& variance) {
-  const Judge judge(fit, candidates.smallest());
-  Plane least = judge.raw(variance);
+  const CandidateScorer scorer(fit, candidates.smallest());
+  Plane least = scorer.scoreRaw(variance);
   std::vector<std::uint8_t> choice(least.size(), 0);
   for (std::size_t k = 1; k < candidates.count(); ++k) {
-    const Plane told = judge.of(candidates[k]);
-    for (std::size_t i = 0; i < told.size(); ++i)
-      if (told[i] < least[i]) {
-        least[i] = told[i];
+    const Plane score = scorer.score(candidates[k]);
+    for (std::size_t i = 0; i < score.size(); ++i)
+      if (score[i] < least[i]) {
+        least[i] = score[i];
         choice[i] = static_cast<std::uint8_t>(k);
       }
   }
@@ -207,7 +208,8 @@ FourPlanes averageHalves(const FilterInput& input) {
 }
 
 /// Adds the error of closed pixels, which is that of their samples: 0 where they are certain.
-void tellClosed(const std::array<Plane, 3>& variance, const Plane& active, FilteredImage& image) {
+void addInactiveErrors(const std::array<Plane, 3>& variance, const Plane& active,
+                       FilteredImage& image) {
   double sum = 0.0;
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < active.size(); ++i) {
@@ -217,7 +219,7 @@ void tellClosed(const std::array<Plane, 3>& variance, const Plane& active, Filte
       const float relative = variance[c][i] * relativeWeight(image.color[c][i]);
       sum += std::isfinite(relative) ? static_cast<double>(relative) : 0.0;
     }
-  image.toldError += sum / (3.0 * static_cast<double>(active.size()));
+  image.estimatedError += sum / (3.0 * static_cast<double>(active.size()));
 }
 
 void clampColors(FilteredImage& image) {
@@ -250,8 +252,8 @@ FilteredImage filterImage(FilterInput input) {
       if (fit.active[i] > 0.0F)
         image.color[c][i] = 0.5F * (chosen[c][i] + chosen[other + c][i]);
   if (input.hasHalfBuffers) {
-    tellErrors(fit, chosen, image);
-    tellClosed(input.variance, fit.active, image);
+    estimateErrors(fit, chosen, image);
+    addInactiveErrors(input.variance, fit.active, image);
   }
   clampColors(image);
   return image;

@@ -32,7 +32,7 @@ struct FilteredImage {
   FourPlanes color;           ///< colours not below 0, alpha in [0, 1]
   std::array<Plane, 3> error; ///< told standard error of red, green and blue
   /// Told mean over pixels and channels of error^2 / (x^2 + 0.01), and the standard error of that.
-  double toldError = 0.0, toldDeviation = 0.0;
+  double estimatedError = 0.0, errorUncertainty = 0.0;
 };
 
 } // namespace fenestra

@@ -15,12 +15,12 @@
 namespace fenestra {
 
 /// Told error of one pixel and channel in its two parts.
-struct Told {
+struct ErrorEstimate {
   float variance, bias;
 };
-inline Told toldError(float fittedEven, float fittedOdd, float even, float odd) {
-  const float apart = fittedEven - fittedOdd;
-  return {0.25F * apart * apart, (fittedEven - even) * (fittedOdd - odd)};
+inline ErrorEstimate estimateError(float fittedEven, float fittedOdd, float even, float odd) {
+  const float difference = fittedEven - fittedOdd;
+  return {0.25F * difference * difference, (fittedEven - even) * (fittedOdd - odd)};
 }
 
 /// Weight of a squared error, 1 / (x^2 + 0.01): errors are relative, except in the dark.
@@ -28,11 +28,11 @@ inline float relativeWeight(float x) {
   return 1.0F / (x * x + 0.01F);
 }
 
-/// Fills error, toldError and toldDeviation of a picture whose colours are those before clamping.
-/// `filtered`: the halves of fit.color, filtered. The variance part is averaged over 7x7 pixels.
-/// The bias part is too noisy for that: its sum over the picture is drawn toward a prior, 0.65 of
-/// the variance (measured where windows suit a picture: 0.3 to 2), by its own standard error, and
-/// spread half by its mean over 21x21 pixels, half by the variance part.
-void tellErrors(const FitInput& fit, const std::vector<Plane>& filtered, FilteredImage& image);
+/// Fills error, toldError and errorUncertainty of a picture whose colours are those before
+/// clamping. `filtered`: the halves of fit.color, filtered. The variance part is averaged over 7x7
+/// pixels. The bias part is too noisy for that: its sum over the picture is drawn toward a prior,
+/// 0.65 of the variance (measured where windows suit a picture: 0.3 to 2), by its own standard
+/// error, and spread half by its mean over 21x21 pixels, half by the variance part.
+void estimateErrors(const FitInput& fit, const std::vector<Plane>& filtered, FilteredImage& image);
 
 } // namespace fenestra

@@ -123,7 +123,7 @@ RenderSettings PictureFilter::settings() {
       m_seen = denoised(film, m_scene);
       m_seenSamples = film.sampleCounts().max;
       // Twice its standard error more, lest luck ends the render.
-      return std::sqrt(m_seen.toldError + 2.0 * m_seen.toldDeviation);
+      return std::sqrt(m_seen.estimatedError + 2.0 * m_seen.errorUncertainty);
     };
   return settings;
 }
@@ -139,7 +139,7 @@ std::optional<FilteredImage> PictureFilter::of(const RenderResult& result) const
 std::optional<double> filteredNoise(const std::optional<FilteredImage>& filtered) {
   if (!filtered || filtered->error[0].empty())
     return std::nullopt;
-  return std::sqrt(filtered->toldError);
+  return std::sqrt(filtered->estimatedError);
 }
 
 void writePictures(const RenderOptions& options, const PreparedScene& scene,

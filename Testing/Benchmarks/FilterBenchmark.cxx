@@ -42,13 +42,13 @@ auto timed(const Work& work, double& seconds) {
 /// Means over the seeds of a count.
 struct Row {
   double raw = 0.0, filtered = 0.0;  ///< relMSE
-  double told = 0.0;                 ///< relMSE that the filter tells
+  double estimated = 0.0;            ///< relMSE that the filter tells
   double render = 0.0, filter = 0.0; ///< CPU seconds
 
   void add(const Row& other, double weight) {
     raw += weight * other.raw;
     filtered += weight * other.filtered;
-    told += weight * other.told;
+    estimated += weight * other.estimated;
     render += weight * other.render;
     filter += weight * other.filter;
   }
@@ -66,7 +66,7 @@ Row measured(const PreparedScene& scene, const RenderSettings& settings, const I
   row.raw = compareImages(imageOf(film, scene), reference).relMse;
   row.filtered =
       compareImages(filteredColors(picture, film.width(), film.height()), reference).relMse;
-  row.told = picture.toldError;
+  row.estimated = picture.estimatedError;
   return row;
 }
 
@@ -75,8 +75,8 @@ void print(const std::string& scene, std::uint64_t samples, const Row& row, doub
       row.raw * row.render / (row.filtered * (row.render + row.filter + march));
   std::cout << std::setprecision(3) << "| " << scene << " | " << samples << " | " << row.raw
             << " | " << row.filtered << " | " << row.raw / row.filtered << " | ";
-  if (row.told > 0.0)
-    std::cout << row.told / row.filtered;
+  if (row.estimated > 0.0)
+    std::cout << row.estimated / row.filtered;
   std::cout << " | " << efficiency << " | " << row.render << " | " << march << " | " << row.filter
             << " |" << std::endl;
 }

@@ -14,9 +14,9 @@ struct ErrorRatio {
 
 /// Ratio in the green channel, which should be everywhere as noisy. `settings.seed` is the first
 /// seed.
-inline ErrorRatio errorRatio(const TestScene& scene, RenderSettings settings, int seeds) {
+inline ErrorRatio measureErrorRatio(const TestScene& scene, RenderSettings settings, int seeds) {
   struct Pixel {
-    double mean = 0.0, deviation = 0.0, told = 0.0;
+    double mean = 0.0, m2 = 0.0, estimated = 0.0;
   };
   std::vector<Pixel> pixels(static_cast<std::size_t>(scene.width * scene.height));
   for (int n = 1; n <= seeds; ++n, ++settings.seed) {
@@ -26,29 +26,30 @@ inline ErrorRatio errorRatio(const TestScene& scene, RenderSettings settings, in
       const PixelSums& sums = film.pixels()[i];
       const double before = sums.mean[1] - pixel.mean;
       pixel.mean += before / n;
-      pixel.deviation += before * (sums.mean[1] - pixel.mean) / (seeds - 1.0);
-      pixel.told += std::pow(sums.standardError()[1], 2.0) / seeds;
+      pixel.m2 += before * (sums.mean[1] - pixel.mean) / (seeds - 1.0);
+      pixel.estimated += std::pow(sums.standardError()[1], 2.0) / seeds;
     }
   }
-  double told = 0.0, real = 0.0, squares = 0.0;
+  double estimatedSum = 0.0, measuredSum = 0.0, squares = 0.0;
   for (const Pixel& pixel : pixels) {
-    told += pixel.told;
-    real += pixel.deviation;
+    estimatedSum += pixel.estimated;
+    measuredSum += pixel.m2;
   }
-  const double ratio = told / real;
+  const double ratio = estimatedSum / measuredSum;
   for (const Pixel& pixel : pixels)
-    squares += std::pow(pixel.told - ratio * pixel.deviation, 2.0);
-  return {ratio, std::sqrt(squares) / real, real / static_cast<double>(pixels.size())};
+    squares += std::pow(pixel.estimated - ratio * pixel.m2, 2.0);
+  return {ratio, std::sqrt(squares) / measuredSum,
+          measuredSum / static_cast<double>(pixels.size())};
 }
 
 /// Fog between the eye and an environment: most of the noise lies in the first collision and the
 /// first direction.
-inline TestScene fogScene() {
+inline TestScene makeFogScene() {
   const Grid grid = centredGrid({16, 16, 16}, {1.0, 1.0, 1.0});
-  const Vec3 centre(7.5, 7.5, 7.5);
+  const Vec3 center(7.5, 7.5, 7.5);
   TestScene scene{makeVolume(grid,
                              [&](const Vec3& p) {
-                               return std::max(0.0, 1.0 - 0.02 * (p - centre).squaredNorm()) *
+                               return std::max(0.0, 1.0 - 0.02 * (p - center).squaredNorm()) *
                                       (0.7 + 0.3 * std::sin(p.x()) * std::cos(p.z()));
                              }),
                   linearTransfer(0.5, Rgb(0.6, 0.6, 0.9), 0.3),

@@ -80,7 +80,7 @@ double toldErrorProbability(Integrator transport) {
   RenderSettings settings;
   settings.samples = 16;
   settings.integrator = transport;
-  const ErrorRatio told = errorRatio(fogScene(), settings, 200);
+  const ErrorRatio told = measureErrorRatio(makeFogScene(), settings, 200);
   return normalTail((told.ratio - 1.0) / told.error);
 }
 

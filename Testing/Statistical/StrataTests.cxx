@@ -28,7 +28,7 @@ RenderSettings makeSettings(const Mode& mode, std::uint64_t samples, std::uint64
 
 /// Numbers of samples that leave blocks incomplete, too.
 TEST(Strata, MeansAreThoseOfIndependentSamples) {
-  const TestScene scene = fogScene();
+  const TestScene scene = makeFogScene();
   const int seeds = budget(80);
   for (const std::uint64_t samples : {3U, 8U, 24U}) {
     std::vector<Rgb> means;
@@ -58,12 +58,12 @@ TEST(Strata, MeansAreThoseOfIndependentSamples) {
 class EstimatedErrors : public ::testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(EstimatedErrors, AreThoseOverSeeds) {
-  const TestScene scene = fogScene();
+  const TestScene scene = makeFogScene();
   const std::uint64_t samples = GetParam();
   for (const Mode& mode : modes) {
     const int seeds = std::max(20, budget(mode.integrator == Integrator::simd ? 2400 : 800) /
                                        static_cast<int>(samples + 10));
-    const ErrorRatio measured = errorRatio(scene, makeSettings(mode, samples, 5000), seeds);
+    const ErrorRatio measured = measureErrorRatio(scene, makeSettings(mode, samples, 5000), seeds);
     std::printf("%d samples, %s, %s: ratio of variances %.4f +- %.4f\n", static_cast<int>(samples),
                 mode.sampling == Sampling::stratified ? "strata" : "plain",
                 mode.integrator == Integrator::simd ? "fast" : "readable", measured.ratio,
@@ -78,13 +78,13 @@ TEST_P(EstimatedErrors, AreThoseOverSeeds) {
 INSTANTIATE_TEST_SUITE_P(Samples, EstimatedErrors, ::testing::Values(2, 8, 16, 17, 64));
 
 TEST(Strata, TakeNoiseAway) {
-  const TestScene scene = fogScene();
+  const TestScene scene = makeFogScene();
   for (const std::size_t first : {0U, 2U}) {
     const int seeds = budget(240);
     const double stratified =
-        errorRatio(scene, makeSettings(modes[first], 16, 9000), seeds).variance;
+        measureErrorRatio(scene, makeSettings(modes[first], 16, 9000), seeds).variance;
     const double independent =
-        errorRatio(scene, makeSettings(modes[first + 1], 16, 9000), seeds).variance;
+        measureErrorRatio(scene, makeSettings(modes[first + 1], 16, 9000), seeds).variance;
     std::printf("variance of independent samples / of strata: %.3f\n", independent / stratified);
     EXPECT_GT(independent / stratified, 1.15);
   }

@@ -403,7 +403,8 @@ TEST_P(SeamTracking, TransmittanceBesideTheFocusFollowsTheExactSurface) {
     }
     // Lanes in float see the outline slightly displaced: some of a thousand rays lie on its other
     // side.
-    EXPECT_NEAR(apart, 0.0, 4.0 * std::sqrt(squares) + 2e-3 * static_cast<double>(passed.size()));
+    EXPECT_NEAR(difference, 0.0,
+                4.0 * std::sqrt(squares) + 2e-3 * static_cast<double>(passed.size()));
   }
 }
 

@@ -157,9 +157,9 @@ TEST(DifferenceImage, PositiveIsRedAndNegativeIsBlue) {
   for (const char* name : {"R", "G", "B"})
     a.channels[name] = {1.0f, 1.5f, 0.75f};
   const Image shown = differenceImage(a, b);
-  EXPECT_EQ(shown.channels.at("R"), (std::vector<float>{1.0f, 1.0f, 0.5f}));
-  EXPECT_EQ(shown.channels.at("G"), (std::vector<float>{1.0f, 0.0f, 0.5f}));
-  EXPECT_EQ(shown.channels.at("B"), (std::vector<float>{1.0f, 0.0f, 1.0f}));
+  EXPECT_EQ(difference.channels.at("R"), (std::vector<float>{1.0f, 1.0f, 0.5f}));
+  EXPECT_EQ(difference.channels.at("G"), (std::vector<float>{1.0f, 0.0f, 0.5f}));
+  EXPECT_EQ(difference.channels.at("B"), (std::vector<float>{1.0f, 0.0f, 1.0f}));
 }
 
 TEST(DifferenceImage, KnownErrorsShowTheLargestZOfAPixel) {
@@ -168,11 +168,11 @@ TEST(DifferenceImage, KnownErrorsShowTheLargestZOfAPixel) {
   a.channels["G"] = {1.0f, 2.25f, 1.0f}; // z 2.5, half of full colour
   a.channels["B"] = {1.0f, 1.5f, std::numeric_limits<float>::quiet_NaN()};
   const Image shown = differenceImage(a, b);
-  EXPECT_NEAR(shown.channels.at("R")[1], 1.0, 1e-6);
-  EXPECT_NEAR(shown.channels.at("B")[1], 0.5, 1e-6);
-  EXPECT_EQ(shown.channels.at("R")[0], 1.0f);
-  EXPECT_EQ(shown.channels.at("R")[2], 0.0f);
-  EXPECT_EQ(shown.channels.at("B")[2], 0.0f);
+  EXPECT_NEAR(difference.channels.at("R")[1], 1.0, 1e-6);
+  EXPECT_NEAR(difference.channels.at("B")[1], 0.5, 1e-6);
+  EXPECT_EQ(difference.channels.at("R")[0], 1.0f);
+  EXPECT_EQ(difference.channels.at("R")[2], 0.0f);
+  EXPECT_EQ(difference.channels.at("B")[2], 0.0f);
 }
 
 TEST(AttachError, PictureOfErrorsBecomesErrorChannels) {

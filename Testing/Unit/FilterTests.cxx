@@ -19,40 +19,40 @@ namespace {
 
 /// Picture of three bands and waves: a linear function of its features, plus `unknown` times a
 /// pattern that no feature knows.
-struct Subject {
+struct TestImage {
   int width = 96, height = 80;
-  double unknown = 0.3, noise = 0.5; ///< noise: deviation of a half's pixel
+  double unexplained = 0.3, noise = 0.5; ///< noise: deviation of a half's pixel
 
   std::size_t count() const { return static_cast<std::size_t>(width * height); }
   static double band(int x) { return x < 30 ? 0.2 : x < 60 ? 1.0 : 0.5; }
   static double wave(int x, int y) { return std::sin(0.11 * x) * std::cos(0.17 * y); }
   static double pattern(int x, int y) { return std::sin(0.05 * x + 0.21 * y); }
 
-  double truth(std::size_t channel, int x, int y) const {
+  double exact(std::size_t channel, int x, int y) const {
     const double scale = 1.0 - 0.2 * static_cast<double>(channel);
-    return scale * (1.0 + 0.8 * band(x) + 0.4 * wave(x, y) + unknown * pattern(x, y));
+    return scale * (1.0 + 0.8 * band(x) + 0.4 * wave(x, y) + unexplained * pattern(x, y));
   }
-  std::size_t at(int x, int y) const { return static_cast<std::size_t>(y * width + x); }
+  std::size_t index(int x, int y) const { return static_cast<std::size_t>(y * width + x); }
 
   void fill(Plane& plane, const std::function<double(int, int)>& value) const {
     plane.resize(count());
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x)
-        plane[at(x, y)] = static_cast<float>(value(x, y));
+        plane[index(x, y)] = static_cast<float>(value(x, y));
   }
 
-  FilterInput input(std::uint64_t draw) const {
+  FilterInput input(std::uint64_t seed) const {
     FilterInput in{width, height, {}, {}, {}, {}, std::vector<std::uint8_t>(count(), 1)};
     const auto gaussian = [&](std::size_t stream, int x, int y) {
-      Random random(draw, at(x, y), stream);
+      Random random(seed, index(x, y), stream);
       const Vec2 u = random.uniform2();
       return std::sqrt(-2.0 * std::log1p(-u.x())) * std::cos(2.0 * pi * u.y());
     };
     for (std::size_t c = 0; c < 4; ++c) {
       fill(in.even[c],
-           [&](int x, int y) { return truth(c, x, y) + noise * gaussian(2 * c, x, y); });
+           [&](int x, int y) { return exact(c, x, y) + noise * gaussian(2 * c, x, y); });
       fill(in.odd[c],
-           [&](int x, int y) { return truth(c, x, y) + noise * gaussian(2 * c + 1, x, y); });
+           [&](int x, int y) { return exact(c, x, y) + noise * gaussian(2 * c + 1, x, y); });
       if (c < 3)
         fill(in.variance[c], [&](int, int) { return 0.5 * noise * noise; });
     }
@@ -68,8 +68,8 @@ struct Subject {
     for (std::size_t c = 0; c < 3; ++c)
       for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
-          const double t = truth(c, x, y);
-          sum += std::pow(static_cast<double>(color[c][at(x, y)]) - t, 2) / (t * t + 0.01);
+          const double t = exact(c, x, y);
+          sum += std::pow(static_cast<double>(color[c][index(x, y)]) - t, 2) / (t * t + 0.01);
         }
     return sum / (3.0 * static_cast<double>(count()));
   }
@@ -77,168 +77,170 @@ struct Subject {
 
 /// Told and true error, and the raw picture's, as means over several draws.
 struct Errors {
-  double told = 0.0, truth = 0.0, raw = 0.0;
+  double estimated = 0.0, exact = 0.0, raw = 0.0;
 };
 
-Errors errorsOf(
-    const Subject& subject, int draws,
-    const std::function<void(FilterInput&)>& spoil = [](FilterInput&) {}) {
+Errors measureErrors(
+    const TestImage& subject, int runs,
+    const std::function<void(FilterInput&)>& modify = [](FilterInput&) {}) {
   Errors errors;
-  for (int draw = 0; draw < draws; ++draw) {
-    FilterInput input = subject.input(static_cast<std::uint64_t>(draw) + 1);
+  for (int seed = 0; seed < runs; ++seed) {
+    FilterInput input = subject.input(static_cast<std::uint64_t>(seed) + 1);
     FourPlanes raw = input.even;
     for (std::size_t c = 0; c < 4; ++c)
       for (std::size_t i = 0; i < subject.count(); ++i)
         raw[c][i] = 0.5F * (input.even[c][i] + input.odd[c][i]);
-    spoil(input);
-    const FilteredImage picture = filterImage(input);
-    errors.told += picture.toldError / draws;
-    errors.truth += subject.relativeError(picture.color) / draws;
-    errors.raw += subject.relativeError(raw) / draws;
+    modify(input);
+    const FilteredImage image = filterImage(input);
+    errors.estimated += image.estimatedError / runs;
+    errors.exact += subject.relativeError(image.color) / runs;
+    errors.raw += subject.relativeError(raw) / runs;
   }
   return errors;
 }
 
 TEST(Filter, PictureThatIsLinearInItsFeaturesStays) {
-  const Subject subject{.unknown = 0.0, .noise = 0.0};
-  const FilteredImage picture = filterImage(subject.input(1));
+  const TestImage subject{.unexplained = 0.0, .noise = 0.0};
+  const FilteredImage image = filterImage(subject.input(1));
   EXPECT_LT(std::sqrt(subject.relativeError(image.color)), 1e-3);
-  EXPECT_LT(image.toldError, 1e-6);
+  EXPECT_LT(image.estimatedError, 1e-6);
 }
 
 TEST(Filter, ErrorFallsAndTheToldErrorIsTrueInTheMean) {
-  const Errors errors = errorsOf({.width = 192, .height = 160}, 12);
+  const Errors errors = measureErrors({.width = 192, .height = 160}, 12);
   EXPECT_GT(errors.raw / errors.exact, 10.0);
-  EXPECT_NEAR(errors.told / errors.exact, 1.0, 0.15);
+  EXPECT_NEAR(errors.estimated / errors.exact, 1.0, 0.15);
 }
 
 TEST(ToldError, OfOneWindowIsUnbiased) {
-  const Subject subject{.width = 384, .height = 320};
-  const int draws = 8;
-  double told = 0.0, truth = 0.0;
-  for (int draw = 0; draw < draws; ++draw) {
-    const FilterInput input = subject.input(static_cast<std::uint64_t>(draw) + 100);
+  const TestImage subject{.width = 384, .height = 320};
+  const int runs = 8;
+  double estimated = 0.0, exact = 0.0;
+  for (int seed = 0; seed < runs; ++seed) {
+    const FilterInput input = subject.input(static_cast<std::uint64_t>(seed) + 100);
     FitInput fit{subject.width, subject.height, Plane(subject.count(), 1.0F), {}, {}};
     fit.color = {input.even[0], input.odd[0]};
-    subject.fill(fit.features.emplace_back(), [](int x, int) { return Subject::band(x); });
-    const auto fitted = fitWindows(fit, 0);
+    subject.fill(fit.features.emplace_back(), [](int x, int) { return TestImage::band(x); });
+    const auto fits = fitWindows(fit, 0);
     for (int y = 0; y < subject.height; ++y)
       for (int x = 0; x < subject.width; ++x) {
-        const std::size_t i = subject.at(x, y);
-        const Told parts = toldError(fitted[0][i], fitted[1][i], fit.color[0][i], fit.color[1][i]);
-        told += static_cast<double>(parts.variance + parts.bias);
-        const double mean = 0.5 * static_cast<double>(fitted[0][i] + fitted[1][i]);
-        truth += std::pow(mean - subject.truth(0, x, y), 2);
+        const std::size_t i = subject.index(x, y);
+        const ErrorEstimate estimate =
+            estimateError(fits[0][i], fits[1][i], fit.color[0][i], fit.color[1][i]);
+        estimated += static_cast<double>(estimate.variance + estimate.bias);
+        const double mean = 0.5 * static_cast<double>(fits[0][i] + fits[1][i]);
+        exact += std::pow(mean - subject.exact(0, x, y), 2);
       }
   }
-  EXPECT_NEAR(told / exact, 1.0, 0.15) << "four standard errors";
+  EXPECT_NEAR(estimated / exact, 1.0, 0.15) << "four standard errors";
 }
 
 /// The choice must not know the noise of the pixel that it is made for: the hole of Judge.
 TEST(ToldError, OfTheChosenWindowsIsUnbiased) {
-  const Subject subject{.width = 192, .height = 160, .unknown = 0.6, .noise = 1.0};
-  double told = 0.0, truth = 0.0;
-  for (std::uint64_t draw = 0; draw < 16; ++draw) {
-    FilterInput input = subject.input(draw + 500);
+  const TestImage subject{.width = 192, .height = 160, .unexplained = 0.6, .noise = 1.0};
+  double estimated = 0.0, exact = 0.0;
+  for (std::uint64_t seed = 0; seed < 16; ++seed) {
+    FilterInput input = subject.input(seed + 500);
     FitInput fit{subject.width, subject.height, Plane(subject.count(), 1.0F), {}, {}};
     for (std::size_t c = 0; c < 6; ++c)
       fit.color.push_back(c < 3 ? input.even[c] : input.odd[c - 3]);
-    subject.fill(fit.features.emplace_back(), [](int x, int) { return Subject::band(x); });
-    subject.fill(fit.features.emplace_back(), Subject::wave);
-    const auto chosen = filterAdaptively(fit, input.variance);
+    subject.fill(fit.features.emplace_back(), [](int x, int) { return TestImage::band(x); });
+    subject.fill(fit.features.emplace_back(), TestImage::wave);
+    const auto filtered = filterAdaptively(fit, input.variance);
     for (int y = 0; y < subject.height; ++y)
       for (int x = 0; x < subject.width; ++x) {
-        const std::size_t i = subject.at(x, y);
+        const std::size_t i = subject.index(x, y);
         const auto mean = [i](const std::vector<Plane>& color, std::size_t first) {
           return (color[first][i] + color[first + 1][i] + color[first + 2][i]) / 3.0F;
         };
-        const float even = mean(chosen, 0), odd = mean(chosen, 3);
-        const Told parts = toldError(even, odd, mean(fit.color, 0), mean(fit.color, 3));
-        told += static_cast<double>(parts.variance + parts.bias);
+        const float even = mean(filtered, 0), odd = mean(filtered, 3);
+        const ErrorEstimate estimate =
+            estimateError(even, odd, mean(fit.color, 0), mean(fit.color, 3));
+        estimated += static_cast<double>(estimate.variance + estimate.bias);
         const double m =
-            (subject.truth(0, x, y) + subject.truth(1, x, y) + subject.truth(2, x, y)) / 3.0;
-        truth += std::pow(0.5 * static_cast<double>(even + odd) - m, 2);
+            (subject.exact(0, x, y) + subject.exact(1, x, y) + subject.exact(2, x, y)) / 3.0;
+        exact += std::pow(0.5 * static_cast<double>(even + odd) - m, 2);
       }
   }
-  std::cout << "told / true " << told / truth << "\n";
-  EXPECT_NEAR(told / exact, 1.0, 0.1);
+  std::cout << "told / true " << estimated / exact << "\n";
+  EXPECT_NEAR(estimated / exact, 1.0, 0.1);
 }
 
 TEST(Filter, FeaturesWithTheSamplesOwnNoiseMakeTheToldErrorALie) {
-  const Errors errors = errorsOf({}, 4, [](FilterInput& input) {
+  const Errors errors = measureErrors({}, 4, [](FilterInput& input) {
     for (std::size_t i = 0; i < input.pixelCount(); ++i)
       input.features[0][i] = 0.5F * (input.even[0][i] + input.odd[0][i]);
   });
-  EXPECT_LT(errors.told / errors.exact, 0.7);
+  EXPECT_LT(errors.estimated / errors.exact, 0.7);
 }
 
 TEST(Filter, ToldErrorsOfPixelsAverageToThePictures) {
-  const Subject subject;
-  const FilteredImage picture = filterImage(subject.input(3));
+  const TestImage subject;
+  const FilteredImage image = filterImage(subject.input(3));
   double sum = 0.0;
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < subject.count(); ++i) {
-      const double x = static_cast<double>(picture.color[c][i]);
-      sum += std::pow(static_cast<double>(picture.error[c][i]), 2) / (x * x + 0.01);
+      const double x = static_cast<double>(image.color[c][i]);
+      sum += std::pow(static_cast<double>(image.error[c][i]), 2) / (x * x + 0.01);
     }
-  EXPECT_NEAR(sum / (3.0 * static_cast<double>(subject.count())) / image.toldError, 1.0, 0.02);
+  EXPECT_NEAR(sum / (3.0 * static_cast<double>(subject.count())) / image.estimatedError, 1.0, 0.02);
 }
 
 TEST(Filter, BitsAreTheSameForOneTwoAndSevenThreads) {
-  const FilterInput input = Subject{.width = 200, .height = 150}.input(2);
-  std::vector<FourPlanes> pictures;
+  const FilterInput input = TestImage{.width = 200, .height = 150}.input(2);
+  std::vector<FourPlanes> images;
   for (const std::size_t threads : {1U, 2U, 7U}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    pictures.push_back(filterImage(input).color);
+    images.push_back(filterImage(input).color);
   }
   EXPECT_EQ(pictures[0], pictures[1]);
   EXPECT_EQ(pictures[0], pictures[2]);
 }
 
 TEST(Filter, NothingIsInventedInNoiseAroundAConstant) {
-  const Subject noisy{.unknown = 0.0};
+  const TestImage noisy{.unexplained = 0.0};
   FilterInput input = noisy.input(5);
-  const auto remove = [&](Plane& plane, std::size_t c) {
+  const auto removeSignal = [&](Plane& plane, std::size_t c) {
     for (int y = 0; y < noisy.height; ++y)
       for (int x = 0; x < noisy.width; ++x)
-        plane[noisy.at(x, y)] += static_cast<float>(2.0 - noisy.truth(c, x, y));
+        plane[noisy.index(x, y)] += static_cast<float>(2.0 - noisy.exact(c, x, y));
   };
   for (std::size_t c = 0; c < 4; ++c) {
-    remove(input.even[c], c);
-    remove(input.odd[c], c);
+    removeSignal(input.even[c], c);
+    removeSignal(input.odd[c], c);
   }
-  const FilteredImage picture = filterImage(input);
+  const FilteredImage image = filterImage(input);
   const double rawError = noisy.noise / std::sqrt(2.0);
-  double beyond = 0.0, farthest = 0.0;
+  double outliers = 0.0, worst = 0.0;
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < noisy.count(); ++i) {
-      const double off = std::abs(static_cast<double>(picture.color[c][i]) - 2.0);
-      farthest = std::max(farthest, off / rawError);
-      beyond += off > 5.0 * static_cast<double>(picture.error[c][i]);
+      const double difference = std::abs(static_cast<double>(image.color[c][i]) - 2.0);
+      worst = std::max(worst, difference / rawError);
+      outliers += difference > 5.0 * static_cast<double>(image.error[c][i]);
     }
-  EXPECT_LT(farthest, 2.0) << "raw standard errors";
-  const double share = beyond / (3.0 * static_cast<double>(noisy.count()));
-  std::cout << "beyond five told errors: " << 100.0 * share << " %\n";
+  EXPECT_LT(worst, 2.0) << "raw standard errors";
+  const double fraction = outliers / (3.0 * static_cast<double>(noisy.count()));
+  std::cout << "beyond five told errors: " << 100.0 * fraction << " %\n";
   EXPECT_LT(fraction, 0.05);
 }
 
 TEST(Filter, FireflyIsNoWorseThanRaw) {
-  const Errors errors = errorsOf({}, 1, [](FilterInput& input) {
+  const Errors errors = measureErrors({}, 1, [](FilterInput& input) {
     input.even[0][4000] += 1e6F;
     input.variance[0][4000] = 0.25e12F;
   });
-  const double firefly = std::pow(0.5e6, 2) / (3.0 * static_cast<double>(Subject().count()));
+  const double firefly = std::pow(0.5e6, 2) / (3.0 * static_cast<double>(TestImage().count()));
   EXPECT_LT(errors.exact, 1.02 * firefly);
-  EXPECT_TRUE(std::isfinite(errors.told));
+  EXPECT_TRUE(std::isfinite(errors.estimated));
 }
 
 TEST(Filter, ClosedAndUnusualPixelsStayRaw) {
-  const Subject subject{.width = 40, .height = 30};
+  const TestImage subject{.width = 40, .height = 30};
   FilterInput input = subject.input(1);
   input.isActive[100] = 0;
   input.features[1][200] = std::numeric_limits<float>::quiet_NaN();
   input.even[2][300] = std::numeric_limits<float>::infinity();
-  const FilteredImage picture = filterImage(input);
+  const FilteredImage image = filterImage(input);
   for (const std::size_t pixel : {100U, 200U})
     for (std::size_t c = 0; c < 3; ++c) {
       EXPECT_EQ(image.color[c][pixel], 0.5F * (input.even[c][pixel] + input.odd[c][pixel]));
@@ -246,23 +248,23 @@ TEST(Filter, ClosedAndUnusualPixelsStayRaw) {
     }
   for (const std::size_t pixel : {101U, 201U, 301U})
     EXPECT_TRUE(std::isfinite(image.color[2][pixel]));
-  FilterInput closed = subject.input(1);
-  std::ranges::fill(closed.isActive, std::uint8_t{0});
-  EXPECT_GT(filterImage(closed).toldError, 0.1); // of the samples
-  for (Plane& plane : closed.variance)
+  FilterInput inactive = subject.input(1);
+  std::ranges::fill(inactive.isActive, std::uint8_t{0});
+  EXPECT_GT(filterImage(inactive).estimatedError, 0.1); // of the samples
+  for (Plane& plane : inactive.variance)
     std::ranges::fill(plane, 0.0F); // certain
-  EXPECT_EQ(filterImage(closed).toldError, 0.0);
+  EXPECT_EQ(filterImage(inactive).estimatedError, 0.0);
 }
 
 TEST(Filter, AnySizeOfPicture) {
   for (const auto& [width, height] : {std::pair(1, 1), {1, 50}, {70, 1}, {3, 2}, {65, 129}}) {
-    const Subject subject{.width = width, .height = height};
-    for (const bool hasHalves : {true, false}) {
+    const TestImage subject{.width = width, .height = height};
+    for (const bool hasHalfBuffers : {true, false}) {
       FilterInput input = subject.input(1);
-      input.hasHalfBuffers = hasHalves;
-      if (!hasHalves)
+      input.hasHalfBuffers = hasHalfBuffers;
+      if (!hasHalfBuffers)
         input.odd = {};
-      const FilteredImage picture = filterImage(input);
+      const FilteredImage image = filterImage(input);
       EXPECT_TRUE(std::isfinite(subject.relativeError(image.color))) << width << 'x' << height;
       EXPECT_EQ(image.error[0].size(), hasHalfBuffers ? subject.count() : 0U);
     }
@@ -272,34 +274,35 @@ TEST(Filter, AnySizeOfPicture) {
 /// Half of the picture is black without noise, the other a million times as bright: windows reach
 /// over, and sums that ought to be 0 keep a rounding error.
 TEST(Filter, BlackBesideBrightTellsAFiniteErrorThatCanBeReached) {
-  const Subject subject;
+  const TestImage subject;
   FilterInput input = subject.input(8);
   for (std::size_t c = 0; c < 3; ++c)
     for (int y = 0; y < subject.height; ++y)
       for (int x = 0; x < subject.width; ++x) {
-        const std::size_t i = subject.at(x, y);
+        const std::size_t i = subject.index(x, y);
         const float scale = x < 40 ? 0.0F : 1e6F;
         input.even[c][i] *= scale;
         input.odd[c][i] *= scale;
         input.variance[c][i] *= scale * scale;
       }
-  const FilteredImage picture = filterImage(input);
-  double told = 0.0, left = 0.0; // squares, over the black half
+  const FilteredImage image = filterImage(input);
+  double estimated = 0.0, remaining = 0.0; // squares, over the black half
   for (std::size_t c = 0; c < 3; ++c)
     for (int y = 0; y < subject.height; ++y)
       for (int x = 0; x < subject.width; ++x) {
-        const std::size_t i = subject.at(x, y);
-        const auto error = static_cast<double>(picture.error[c][i]);
+        const std::size_t i = subject.index(x, y);
+        const auto error = static_cast<double>(image.error[c][i]);
         ASSERT_TRUE(error >= 0.0 && std::isfinite(error));
-        told += x < 40 ? error * error : 0.0;
-        left += x < 40 ? std::pow(static_cast<double>(picture.color[c][i]), 2) : 0.0;
+        estimated += x < 40 ? error * error : 0.0;
+        remaining += x < 40 ? std::pow(static_cast<double>(image.color[c][i]), 2) : 0.0;
       }
-  EXPECT_LT(image.toldError, 1.0);
-  EXPECT_GT(told, 0.25 * remaining) << "told standard errors at least half of what is there";
+  EXPECT_LT(image.estimatedError, 1.0);
+  EXPECT_GT(estimated, 0.25 * remaining) << "told standard errors at least half of what is there";
 }
 
 TEST(Filter, PictureWithoutFeaturesIsFilteredByMeans) {
-  const Errors errors = errorsOf({.unknown = 0.0}, 1, [](FilterInput& in) { in.features.clear(); });
+  const Errors errors =
+      measureErrors({.unexplained = 0.0}, 1, [](FilterInput& in) { in.features.clear(); });
   EXPECT_LT(errors.exact, errors.raw);
 }
 
