@@ -29,10 +29,10 @@ double findDeepest(const std::vector<double>& depth, std::size_t width, std::siz
 }
 
 /// Share of the points that clipping leaves; 0 without points.
-double keptShare(const FocusPoints& points) {
+double unclippedFraction(const FocusPoints& points) {
   if (points.empty())
     return 0.0;
-  const auto count = std::ranges::count_if(points, &FocusPoint::isKept);
+  const auto count = std::ranges::count_if(points, &FocusPoint::isUnclipped);
   return static_cast<double>(count) / static_cast<double>(points.size());
 }
 
@@ -52,9 +52,9 @@ FocusPoints findFocusPoints(const SceneView& scene, const std::vector<double>& d
     const Interval behind = intervalBehindSurface(scene.clip, ray);
     const double deepest =
         findDeepest(depth, width, column, row) / scene.camera.depthPerLength(ray);
-    const bool isKept = !behind.isEmpty() && behind.begin <= deepest + rounding &&
-                        behind.end >= distance - rounding;
-    points.push_back({ray, distance, isKept, pixel});
+    const bool isUnclipped = !behind.isEmpty() && behind.begin <= deepest + rounding &&
+                             behind.end >= distance - rounding;
+    points.push_back({ray, distance, isUnclipped, pixel});
   }
   return points;
 }
@@ -67,7 +67,7 @@ double measureCoverage(const SceneView& scene, const FocusPoints& points, std::u
     std::vector<double> shown(points.size(), 0.0);
     tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
       const FocusPoint& point = points[i];
-      if (!point.isKept)
+      if (!point.isUnclipped)
         return;
       const Interval range = visibleInterval(scene.clip, point.ray);
       Random random(seed, point.pixel, 0);
@@ -86,7 +86,7 @@ std::optional<double> measureLight(const SceneView& scene, const SceneView& focu
   constexpr std::uint64_t samplesPerPoint = 4;
   std::vector<const FocusPoint*> points;
   for (const FocusPoint& point : focus)
-    if (point.isKept)
+    if (point.isUnclipped)
       points.push_back(&point);
   const std::size_t stride = points.size() / maxPoints + 1;
   const auto sumLight = [&](const SceneView& through) {
@@ -136,7 +136,7 @@ std::optional<double> measureContextRemoved(const SceneView& scene, const Mask& 
           if (!domain.contains(index) || where.isFocus(index) || !(medium.extinction(index) > 0.0))
             continue;
           occupied[static_cast<std::size_t>(z)] += 1.0;
-          removed[static_cast<std::size_t>(z)] += 1.0 - keep(scene.clip, world);
+          removed[static_cast<std::size_t>(z)] += 1.0 - clipWeight(scene.clip, world);
         }
     });
     const double all = sum(occupied);
@@ -162,7 +162,7 @@ std::optional<FocusReport> measureFocus(const SceneView& scene, const MinMaxGrid
 
   const FocusPoints points = findFocusPoints(scene, depth);
   FocusReport report;
-  report.kept = keptShare(points);
+  report.unclipped = unclippedFraction(points);
   report.coverage = measureCoverage(scene, points, seed, stop);
   report.withoutClip =
       measureCoverage(unclippedScene, findFocusPoints(unclippedScene, depth), seed, stop);

@@ -7,9 +7,9 @@ namespace fenestra {
 
 /// Point in which the eye ray through a pixel's centre meets the focus.
 struct FocusPoint {
-  Ray ray;         ///< eye ray
-  double distance; ///< mm along `ray`
-  bool isKept;     ///< clipping leaves the point, to the precision of the focus's depth in a pixel
+  Ray ray;          ///< eye ray
+  double distance;  ///< mm along `ray`
+  bool isUnclipped; ///< clipping leaves the point, to the precision of the focus's depth in a pixel
   std::size_t pixel;
 };
 using FocusPoints = std::vector<FocusPoint>;
@@ -37,7 +37,7 @@ std::optional<double> measureContextRemoved(const SceneView& scene, const Mask& 
 
 /// Quality of a picture's clip, for the stats.
 struct FocusReport {
-  double kept = 0.0;        ///< share of the focus's pixels whose focus point clipping leaves
+  double unclipped = 0.0;   ///< share of the focus's pixels whose focus point clipping leaves
   double coverage = 0.0;    ///< share of the focus's pixels shown unoccluded
   double withoutClip = 0.0; ///< coverage without a clip
   std::optional<double> light = {};          ///< relative to the focus alone

@@ -84,7 +84,7 @@ void addClip(Json& json, const PreparedScene& scene, const std::optional<FocusRe
   if (!focus)
     return;
   json["focusCoverage"] = focus->coverage;
-  json["focusKept"] = focus->kept;
+  json["focusKept"] = focus->unclipped;
   json["focusCoverageUnclipped"] = focus->withoutClip;
   if (focus->light)
     json["focusLight"] = *focus->light;

@@ -68,7 +68,7 @@ private:
       return;
     for (double t = opticalDepth / m_majorant; t < crossing.length;
          t += random.exponential() / m_majorant) {
-      double extinction = keep(m_clip, crossing.world.at(t));
+      double extinction = clipWeight(m_clip, crossing.world.at(t));
       if (extinction > 0.0) {
         ++counters.lookups;
         extinction *= m_medium.extinction(crossing.index.at(t));
@@ -130,7 +130,7 @@ private:
     const Crossing crossing(m_domain, ray, range);
     double opticalDepth = 0.0;
     for (double t = random.uniform() * m_step; t < crossing.length; t += m_step) {
-      if (!(keep(m_clip, crossing.world.at(t)) > 0.0))
+      if (!(clipWeight(m_clip, crossing.world.at(t)) > 0.0))
         continue;
       ++counters.lookups;
       const double extinction = m_medium.extinction(crossing.index.at(t));

@@ -122,7 +122,7 @@ void addTracking(Probe& p) {
   add("gradient/collisions", Probe::count,
       [&p](std::size_t i) { return p.field.gradient(p.inside[i]); });
   add("clip test/collisions", Probe::count,
-      [&p](std::size_t i) { return keep(p.parts.clip, p.collisions[i]); });
+      [&p](std::size_t i) { return clipWeight(p.parts.clip, p.collisions[i]); });
 }
 
 void addFirstPass(const Subject& subject) {

@@ -174,7 +174,7 @@ std::vector<double> computeDepths(const DepthClip& clip, const FocusField& focus
   return depths;
 }
 
-double kept(const Edge& edge, double behind) {
+double edgeWeight(const Edge& edge, double behind) {
   if (behind < 0.0)
     return edge.ghost;
   if (edge.softness == 0.0)
@@ -267,21 +267,22 @@ double Clipping::linearSurface(const Vec2& at) const {
                        x.fraction * sampleDepth(x.before + 1, y.before + 1));
 }
 
-double Clipping::keepAtDepth(double here, const Vec2& at) const {
+double Clipping::depthClipWeight(double here, const Vec2& at) const {
   const auto& clip = std::get<DepthClip>(m_description);
   const SamplePosition x = locateSample(clip.columns, at.x()), y = locateSample(clip.rows, at.y());
-  const auto keptBehind = [&](double surface) { return kept(clip.edge, here - surface); };
+  const auto weightBehind = [&](double surface) { return edgeWeight(clip.edge, here - surface); };
   if (clip.hasSteps())
-    return keptBehind(sampleDepth(x.before + (x.fraction >= 0.5), y.before + (y.fraction >= 0.5)));
+    return weightBehind(
+        sampleDepth(x.before + (x.fraction >= 0.5), y.before + (y.fraction >= 0.5)));
   const double between = linearSurface(at);
   const auto cell = clip.silhouettes.find(y.before * clip.columns.size() + x.before);
   if (cell == clip.silhouettes.end())
-    return keptBehind(between);
+    return weightBehind(between);
   // The surface lies between two depths. What is kept alike behind both is kept so behind it.
-  const double least = keptBehind(std::max(between, cell->second.greatest));
-  if (least == keptBehind(std::min(between, cell->second.least)))
+  const double least = weightBehind(std::max(between, cell->second.greatest));
+  if (least == weightBehind(std::min(between, cell->second.least)))
     return least;
-  return keptBehind(silhouetteSurface(cell->second, at, between));
+  return weightBehind(silhouetteSurface(cell->second, at, between));
 }
 
 double Clipping::silhouetteSurface(const DepthClip::SilhouetteCell& cell, const Vec2& at,
@@ -301,14 +302,14 @@ double Clipping::silhouetteSurface(const DepthClip::SilhouetteCell& cell, const 
   return between + fraction * (std::min(depth, cell.greatest) - between);
 }
 
-double Clipping::keep(const Vec3& world) const {
+double Clipping::clipWeight(const Vec3& world) const {
   if (std::holds_alternative<std::monostate>(m_description))
     return 1.0;
   if (m_view.isPerspective && m_view.depth(world) <= 0.0)
     return 0.0;
   if (const auto* plane = std::get_if<PlaneClip>(&m_description))
-    return kept(plane->edge, (plane->point - world).dot(plane->normal));
-  return keepAtDepth(m_view.depth(world), m_view.toPlane(world));
+    return edgeWeight(plane->edge, (plane->point - world).dot(plane->normal));
+  return depthClipWeight(m_view.depth(world), m_view.toPlane(world));
 }
 
 Vec3 Clipping::cutGradient(const Vec3& world) const {
@@ -317,7 +318,7 @@ Vec3 Clipping::cutGradient(const Vec3& world) const {
   if (!plane && !depth)
     return Vec3::Zero();
   const Edge& edge = plane ? plane->edge : depth->edge;
-  const double weight = keep(world);
+  const double weight = clipWeight(world);
   if (!(weight > edge.ghost && weight < 1.0)) // not within the softness
     return Vec3::Zero();
   Vec3 inward = m_view.forward;

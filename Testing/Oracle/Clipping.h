@@ -31,7 +31,7 @@ public:
   Clipping(const ClipDescription& description, const View& view, const Medium& matter);
 
   /// Share of the extinction that the clip leaves, 0 to 1.
-  double keep(const Vec3& world) const;
+  double clipWeight(const Vec3& world) const;
 
   /// Gradient that a soft cut adds to matter's, spans of the transfer function per mm: from 0 to
   /// `softness` behind the cut half a span over `softness`, along the cut's normal, into the
@@ -43,7 +43,7 @@ public:
   const std::vector<double>& depths() const { return m_depths; }
 
 private:
-  double keepAtDepth(double here, const Vec2& at) const;
+  double depthClipWeight(double here, const Vec2& at) const;
   /// Depth of sample (column, row), or of the last one.
   double sampleDepth(std::size_t column, std::size_t row) const;
   /// Depth of a surface without steps, linear between samples.

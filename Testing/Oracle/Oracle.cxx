@@ -107,11 +107,11 @@ private:
     Segments::Weights fractions{1.0};
     if (isMixed())
       fractions = m_segments->at(point);
-    const double keep = m_clipping.keep(point), thin = thinning(point);
+    const double weight = m_clipping.clipWeight(point), thin = thinning(point);
     const double scalar = m_matter.scalar(point);
     for (std::size_t c = 0; c < m_components.size(); ++c)
       if (fractions[c] > 0.0)
-        all[c] = (m_components[c].isClipped ? keep : 1.0) * thin * fractions[c] *
+        all[c] = (m_components[c].isClipped ? weight : 1.0) * thin * fractions[c] *
                  m_matter.extinction(m_components[c].transfer, point, scalar);
     return all;
   }

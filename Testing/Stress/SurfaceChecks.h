@@ -1,6 +1,7 @@
 #pragma once
 // Properties of every clipping surface, whatever its focus and view: every depth is finite, the
-// focus keeps its own depth, keep is defined everywhere and agrees with visible and keptIn.
+// focus keeps its own depth, keep is defined everywhere and agrees with visible and
+// boundClipWeight.
 
 #include "Unit/ClippingTesting.h"
 #include "clip/surface/ClippingSurface.h"
@@ -115,7 +116,7 @@ inline void expectKeepEverywhere(const View& view, const Clip& clip) {
     for (int i = 0; i < 200; ++i)
       points.push_back(center + reach * view.volume.boundingRadius() * randomPoint(random, -1, 1));
   for (const Vec3& point : points) {
-    const double kept = keep(clip, point);
+    const double kept = clipWeight(clip, point);
     ASSERT_TRUE(weight == 0.0 || weight == 1.0) << point;
     if (isBehindCamera(camera, camera.toView(point).z())) {
       ASSERT_EQ(weight, 0.0);
@@ -135,11 +136,11 @@ inline void expectVisible(const View& view, const Clip& clip) {
     ASSERT_EQ(seen.end, infinity);
     // Rounding of a position times the surface's slope is an error of depth.
     const double step = 1e-9 * (ray.origin.norm() + seen.begin + camera.targetDepth()) + 1e-6;
-    ASSERT_EQ(keep(clip, ray.at(seen.begin + step)), 1.0) << seen.begin;
-    ASSERT_EQ(keep(clip, ray.at(2.0 * seen.begin + 1e3)), 1.0) << seen.begin;
+    ASSERT_EQ(clipWeight(clip, ray.at(seen.begin + step)), 1.0) << seen.begin;
+    ASSERT_EQ(clipWeight(clip, ray.at(2.0 * seen.begin + 1e3)), 1.0) << seen.begin;
     if (seen.begin > 2.0 * step) {
-      ASSERT_EQ(keep(clip, ray.at(seen.begin - step)), 0.0) << seen.begin;
-      ASSERT_EQ(keep(clip, ray.at(seen.begin * random.uniform() * 0.999)), 0.0) << seen.begin;
+      ASSERT_EQ(clipWeight(clip, ray.at(seen.begin - step)), 0.0) << seen.begin;
+      ASSERT_EQ(clipWeight(clip, ray.at(seen.begin * random.uniform() * 0.999)), 0.0) << seen.begin;
     }
   }
 }
@@ -155,11 +156,11 @@ inline void expectBoxes(const View& view, const Clip& clip) {
     Corners corners;
     for (int corner = 0; corner < 8; ++corner)
       corners[static_cast<std::size_t>(corner)] = box.corner(corner);
-    const Kept verdict = keptIn(clip, corners);
+    const ClipBounds verdict = boundClipWeight(clip, corners);
     for (int point = 0; point < 16; ++point) {
-      const double kept = keep(clip, center + half.cwiseProduct(randomPoint(random, -1, 1)));
-      ASSERT_FALSE(bounds == Kept::none && weight > 0.0);
-      ASSERT_FALSE(bounds == Kept::all && weight < 1.0);
+      const double kept = clipWeight(clip, center + half.cwiseProduct(randomPoint(random, -1, 1)));
+      ASSERT_FALSE(bounds == ClipBounds::none && weight > 0.0);
+      ASSERT_FALSE(bounds == ClipBounds::all && weight < 1.0);
     }
   }
 }
@@ -176,9 +177,9 @@ inline void expectFocusShown(const View& view, const ClippingSurface& surface, B
       const Ray ray = view.camera.ray(column + 0.5, row + 0.5);
       const double begin = buffer.at(sample) / view.camera.depthPerLength(ray);
       const double step = 1e-6 * (std::abs(begin) + ray.origin.norm() + view.camera.targetDepth());
-      ASSERT_EQ(keep(surface.clip, ray.at(begin - step)), 0.0);
+      ASSERT_EQ(clipWeight(surface.clip, ray.at(begin - step)), 0.0);
       if (boundary == Boundary::spline) {
-        ASSERT_EQ(keep(surface.clip, ray.at(begin + step)), 1.0);
+        ASSERT_EQ(clipWeight(surface.clip, ray.at(begin + step)), 1.0);
       }
     }
 }
@@ -213,15 +214,15 @@ inline void expectEdges(const View& view) {
         Corners corners;
         for (int corner = 0; corner < 8; ++corner)
           corners[static_cast<std::size_t>(corner)] = box.corner(corner);
-        const Kept verdict = keptIn(clip, corners);
+        const ClipBounds verdict = boundClipWeight(clip, corners);
         for (int point = 0; point < 8; ++point) {
           const Vec3 at =
               lower + Vec3(box.upper - lower).cwiseProduct(randomPoint(random, 0.0, 1.0));
-          const double kept = keep(clip, at);
+          const double kept = clipWeight(clip, at);
           const bool isBehind = isBehindCamera(view.camera, view.camera.toView(at).z());
           ASSERT_GE(weight, isBehind ? 0.0 : edge.ghost);
-          ASSERT_LE(weight, bounds.most);
-          ASSERT_TRUE(!bounds.isUniform || weight == bounds.most);
+          ASSERT_LE(weight, bounds.max);
+          ASSERT_TRUE(!bounds.isUniform || weight == bounds.max);
         }
       }
     }

@@ -26,8 +26,8 @@ struct Ball {
     return buildClippingSurface(camera, volume, focus, options);
   }
   /// keep at a depth on the eye ray through (x, y) on the plane through the target.
-  double keepAt(const Clip& clip, double x, double y, double depth) const {
-    return keep(clip, fromBuffer(camera, Vec3(x, y, depth)));
+  double rayClipWeight(const Clip& clip, double x, double y, double depth) const {
+    return clipWeight(clip, fromBuffer(camera, Vec3(x, y, depth)));
   }
 };
 
@@ -50,9 +50,9 @@ TEST(ClipEdge, GhostIsVisibleFromTheEyeOn) {
   SurfaceOptions options;
   options.edge.ghost = 0.125;
   const Clip clip = ball.surface(options).clip;
-  EXPECT_EQ(ball.keepAt(clip, 0, 0, 50.0), 0.125);
-  EXPECT_EQ(ball.keepAt(clip, 0, 0, 95.0), 1.0);
-  EXPECT_EQ(keep(clip, ball.camera.pose().position - ball.camera.forward()), 0.0);
+  EXPECT_EQ(ball.rayClipWeight(clip, 0, 0, 50.0), 0.125);
+  EXPECT_EQ(ball.rayClipWeight(clip, 0, 0, 95.0), 1.0);
+  EXPECT_EQ(clipWeight(clip, ball.camera.pose().position - ball.camera.forward()), 0.0);
   const Ray ray = ball.camera.rayThrough({0.0, 0.0});
   EXPECT_EQ(visibleInterval(clip, ray).begin, 0.0);
   EXPECT_NEAR(intervalBehindSurface(clip, ray).begin, 88.0, 0.3);
@@ -73,28 +73,28 @@ TEST(ClipEdge, KeptInBoundsKeepOfEveryPoint) {
       }
     }
     for (const Clip& clip : clips) {
-      int below1 = 0, uniformly = 0;
+      int reducedBoxes = 0, uniformBoxes = 0;
       for (int trial = 0; trial < 2000; ++trial) {
         const Vec3 lower = randomPoint(random, -40, 36);
         const Box box{lower, lower + std::pow(random.uniform(), 3) * randomPoint(random, 0, 30)};
         Corners corners;
         for (int i = 0; i < 8; ++i)
           corners[static_cast<std::size_t>(i)] = box.corner(i);
-        const Kept verdict = keptIn(clip, corners);
+        const ClipBounds bounds = boundClipWeight(clip, corners);
         for (int i = 0; i < 30; ++i) {
-          const Vec3 share = randomPoint(random, 0, 1);
-          const double kept =
-              keep(clip, box.lower + share.cwiseProduct(Vec3(box.upper - box.lower)));
-          ASSERT_LE(weight, bounds.most);
-          if (verdict.isUniform) {
-            ASSERT_EQ(weight, bounds.most);
+          const Vec3 fraction = randomPoint(random, 0, 1);
+          const double weight =
+              clipWeight(clip, box.lower + fraction.cwiseProduct(Vec3(box.upper - box.lower)));
+          ASSERT_LE(weight, bounds.max);
+          if (bounds.isUniform) {
+            ASSERT_EQ(weight, bounds.max);
           }
         }
-        below1 += verdict.most < 1.0;
-        uniformly += verdict.isUniform;
+        reducedBoxes += bounds.max < 1.0;
+        uniformBoxes += bounds.isUniform;
       }
-      EXPECT_GT(below1, 30) << "not merely cautious";
-      EXPECT_GT(uniformly, 200);
+      EXPECT_GT(reducedBoxes, 30) << "not merely cautious";
+      EXPECT_GT(uniformBoxes, 200);
     }
   }
 }
@@ -126,8 +126,8 @@ TEST_P(Holes, BoxIsFlatAtTheFarthestVisiblePointAndWiderByItsMargin) {
         bottom = std::max(bottom, depth.at(depth.sample(column, row)));
       }
   EXPECT_NEAR(half, 12.0, 0.6);
-  const auto below = [&](double x, double y, double z) {
-    return ball.keepAt(surface.clip, x, y, z);
+  const auto weight = [&](double x, double y, double z) {
+    return ball.rayClipWeight(surface.clip, x, y, z);
   };
   const double inside = half + 5.0, outside = half + 7.0;
   for (const double sign : {-1.0, 1.0}) {
@@ -146,9 +146,9 @@ TEST_P(Holes, CylinderIsRound) {
   options.mode = SurfaceMode::hole;
   options.hole = {HoleShape::cylinder, 6.0};
   const Clip clip = ball.surface(options).clip;
-  EXPECT_EQ(ball.keepAt(clip, 17.0, 0, 80.0), 0.0);
-  EXPECT_EQ(ball.keepAt(clip, 13.0, 13.0, 80.0), 1.0);
-  EXPECT_EQ(ball.keepAt(clip, 19.5, 0, 80.0), 1.0);
+  EXPECT_EQ(ball.rayClipWeight(clip, 17.0, 0, 80.0), 0.0);
+  EXPECT_EQ(ball.rayClipWeight(clip, 13.0, 13.0, 80.0), 1.0);
+  EXPECT_EQ(ball.rayClipWeight(clip, 19.5, 0, 80.0), 1.0);
 }
 
 TEST_P(Holes, SphereLeavesABowl) {
@@ -165,15 +165,15 @@ TEST_P(Holes, SphereLeavesABowl) {
   };
   const Vec3 a = bottom(14.0, 0), b = bottom(-14.0, 0), c = bottom(0, 15.0), d = bottom(0, -16.0);
   const Mat3 chords = Mat3::FromRows(b - a, c - a, d - a);
-  const Vec3 right(0.5 * (b.squaredNorm() - a.squaredNorm()),
-                   0.5 * (c.squaredNorm() - a.squaredNorm()),
-                   0.5 * (d.squaredNorm() - a.squaredNorm()));
-  const Vec3 center = chords.inverse() * right;
+  const Vec3 rhs(0.5 * (b.squaredNorm() - a.squaredNorm()),
+                 0.5 * (c.squaredNorm() - a.squaredNorm()),
+                 0.5 * (d.squaredNorm() - a.squaredNorm()));
+  const Vec3 center = chords.inverse() * rhs;
   EXPECT_NEAR(center.x(), 0.0, 0.5);
   EXPECT_NEAR(center.z(), 0.0, 0.5);
   EXPECT_GT((a - center).norm(), 12.0 + 7.0);
   EXPECT_LT((a - center).norm(), 15.0 + 8.0);
-  EXPECT_EQ(ball.keepAt(clip, 30.0, 0, 70.0), 1.0);
+  EXPECT_EQ(ball.rayClipWeight(clip, 30.0, 0, 70.0), 1.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Projections, Holes, ::testing::ValuesIn(projections));
@@ -213,7 +213,7 @@ TEST(BoundaryMetrics, CutawayGapIsTheHeightOfItsCliffs) {
   const Cuboid model;
   const ClippingSurface surface =
       buildClippingSurface(model.camera, model.volume, model.focus, {.mode = SurfaceMode::cutaway});
-  const BoundaryMetrics measures =
+  const BoundaryMetrics metrics =
       measureBoundary(surface.clip, model.volume, model.focus, surface.focus);
   const DepthBuffer& depth = surface.focus.depth;
   const double front = depth.at(depth.viewportSample(80, 80));
@@ -232,7 +232,7 @@ TEST(BoundaryMetrics, AreZeroOnAPlanarFocus) {
     options.boundary = boundary;
     const ClippingSurface surface =
         buildClippingSurface(model.camera, model.volume, model.focus, options);
-    const BoundaryMetrics measures =
+    const BoundaryMetrics metrics =
         measureBoundary(surface.clip, model.volume, model.focus, surface.focus);
     EXPECT_LT(metrics.gap.max, 0.5) << "the cuboid's edges are rounded by half a voxel";
     EXPECT_LT(metrics.gap.mean, boundary == Boundary::exact ? 0.15 : 0.4);
@@ -248,7 +248,7 @@ TEST(BoundaryMetrics, TiltedPlaneGapEqualsItsDistance) {
   const Vec3 through = fromBuffer(model.camera, Vec3(0, 0, front));
   const Vec3 normal = 0.25 * model.camera.right() - model.camera.forward();
   const Clip clip = ClipPlane{model.camera, through, normal.normalized()};
-  const BoundaryMetrics measures = measureBoundary(clip, model.volume, model.focus, focus);
+  const BoundaryMetrics metrics = measureBoundary(clip, model.volume, model.focus, focus);
   // The cuboid's edges are rounded by half a voxel, where the surface falls away.
   EXPECT_NEAR(metrics.gap.max, 4.0, 0.6);
   EXPECT_NEAR(metrics.gap.mean, 0.5 * (4.0 + 2.0), 0.4) << "4 on two sides, 0 to 4 on the others";
@@ -269,7 +269,7 @@ TEST(BoundaryMetrics, JumpsWithinTheFocusAreCountedSeparately) {
   SurfaceOptions options;
   options.boundary = Boundary::exact;
   const ClippingSurface surface = buildClippingSurface(camera, volume, focus, options);
-  const BoundaryMetrics measures = measureBoundary(surface.clip, volume, focus, surface.focus);
+  const BoundaryMetrics metrics = measureBoundary(surface.clip, volume, focus, surface.focus);
   // Two samples on each side of the jump, at its top and its bottom.
   EXPECT_NEAR(metrics.depthJumpFraction * static_cast<double>(metrics.crossings), 4.0, 4.0);
   EXPECT_GT(metrics.depthJumpFraction, 0.0);

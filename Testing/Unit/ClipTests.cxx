@@ -1,4 +1,4 @@
-// keep, visible and keptIn agree; the surface meets the focus; errors name their remedy.
+// keep, visible and boundClipWeight agree; the surface meets the focus; errors name their remedy.
 
 #include "ClippingTesting.h"
 #include "RunSettings.h"
@@ -32,7 +32,7 @@ struct Shell {
   });
 };
 
-Camera obliqueCamera(Projection projection, double distance, int side) {
+Camera makeObliqueCamera(Projection projection, double distance, int side) {
   CameraPose pose;
   pose.projection = projection;
   pose.position = distance * Vec3(0.5, -1.0, 0.3).normalized();
@@ -42,7 +42,7 @@ Camera obliqueCamera(Projection projection, double distance, int side) {
   return {pose, side, side};
 }
 
-std::vector<Clip> everyClip(const Camera& camera) {
+std::vector<Clip> makeClips(const Camera& camera) {
   const Shell shell;
   std::vector<Clip> clips{ClipNone{}, ClipPlane{camera, {2.0, -3.0, 1.0}, {0.4, -2.0, 0.3}},
                           ClipPlane{camera, {2.0, -3.0, 1.0}, {-0.4, 2.0, -0.3}}};
@@ -52,7 +52,7 @@ std::vector<Clip> everyClip(const Camera& camera) {
 }
 
 TEST(Clip, NoneKeepsEverything) {
-  EXPECT_EQ(keep(Clip{}, {1e9, -1e9, 0.0}), 1.0);
+  EXPECT_EQ(clipWeight(Clip{}, {1e9, -1e9, 0.0}), 1.0);
   EXPECT_EQ(visibleInterval(Clip{}, {}).begin, 0.0);
   EXPECT_EQ(visibleInterval(Clip{}, {}).end, infinity);
 }
@@ -60,10 +60,10 @@ TEST(Clip, NoneKeepsEverything) {
 TEST(Clip, PlaneRemovesTheSideOfItsNormal) {
   const Clip clip =
       ClipPlane{anteriorCamera(Projection::orthographic, 100, 50, 8, 8), {0, -5, 0}, {0, -3, 0}};
-  EXPECT_EQ(keep(clip, {0, -6, 0}), 0.0);
-  EXPECT_EQ(keep(clip, {0, -4, 0}), 1.0);
-  EXPECT_EQ(keep(clip, {0, -200, 0}), 0.0);
-  const Interval seen = visibleInterval(clip, {{0, -100, 0}, {0, 1, 0}});
+  EXPECT_EQ(clipWeight(clip, {0, -6, 0}), 0.0);
+  EXPECT_EQ(clipWeight(clip, {0, -4, 0}), 1.0);
+  EXPECT_EQ(clipWeight(clip, {0, -200, 0}), 0.0);
+  const Interval visible = visibleInterval(clip, {{0, -100, 0}, {0, 1, 0}});
   EXPECT_NEAR(seen.begin, 95.0, 1e-12);
   EXPECT_EQ(seen.end, infinity);
 }
@@ -76,13 +76,13 @@ TEST(Clip, PlaneParallelToARayRemovesAllOrNothing) {
 }
 
 TEST(Clip, PerspectiveRemovesPointsBehindTheEyeInEveryMode) {
-  const Camera camera = obliqueCamera(Projection::perspective, 10.0, 32);
+  const Camera camera = makeObliqueCamera(Projection::perspective, 10.0, 32);
   const Vec3 behind = camera.pose().position - 3.0 * camera.forward();
-  const auto clips = everyClip(camera);
-  EXPECT_EQ(keep(clips[0], behind), 1.0);
+  const auto clips = makeClips(camera);
+  EXPECT_EQ(clipWeight(clips[0], behind), 1.0);
   for (std::size_t i = 1; i < clips.size(); ++i) {
-    EXPECT_EQ(keep(clips[i], behind), 0.0);
-    EXPECT_EQ(keep(clips[i], camera.pose().position), 0.0);
+    EXPECT_EQ(clipWeight(clips[i], behind), 0.0);
+    EXPECT_EQ(clipWeight(clips[i], camera.pose().position), 0.0);
   }
 }
 
@@ -90,26 +90,27 @@ TEST(Clip, EyeRaysStartWhereKeepBegins) {
   Random random(1, 0, 0);
   for (const auto projection : projections)
     for (const double distance : {12.0, 120.0, 1e5}) {
-      const Camera camera = obliqueCamera(projection, distance, 96);
-      for (const Clip& clip : everyClip(camera))
+      const Camera camera = makeObliqueCamera(projection, distance, 96);
+      for (const Clip& clip : makeClips(camera))
         for (int i = 0; i < fenestra::testing::budget(3000); ++i) {
           const Ray ray = camera.ray(uniform(random, 0, 96), uniform(random, 0, 96));
-          const Interval seen = visibleInterval(clip, ray);
+          const Interval visible = visibleInterval(clip, ray);
           const double step = 1e-6 * (1.0 + 1e-4 * distance);
-          if (!seen.isEmpty()) {
+          if (!visible.isEmpty()) {
             // Next to a distant eye (x, y) has lost its digits.
-            const double inside =
-                std::min(seen.begin > 0.0 ? step : 1e-3 * distance, 0.5 * (seen.end - seen.begin));
-            ASSERT_EQ(keep(clip, ray.at(seen.begin + inside)), 1.0);
-            ASSERT_EQ(keep(clip, ray.at(seen.begin + 0.9 * std::min(seen.end - seen.begin, 50.0))),
-                      1.0);
+            const double inside = std::min(visible.begin > 0.0 ? step : 1e-3 * distance,
+                                           0.5 * (visible.end - visible.begin));
+            ASSERT_EQ(clipWeight(clip, ray.at(seen.begin + inside)), 1.0);
+            ASSERT_EQ(
+                clipWeight(clip, ray.at(seen.begin + 0.9 * std::min(seen.end - seen.begin, 50.0))),
+                1.0);
           }
-          if (seen.begin > 2.0 * step) {
-            ASSERT_EQ(keep(clip, ray.at(seen.begin - step)), 0.0);
-            ASSERT_EQ(keep(clip, ray.at(seen.begin * random.uniform() * 0.999)), 0.0);
+          if (visible.begin > 2.0 * step) {
+            ASSERT_EQ(clipWeight(clip, ray.at(seen.begin - step)), 0.0);
+            ASSERT_EQ(clipWeight(clip, ray.at(seen.begin * random.uniform() * 0.999)), 0.0);
           }
-          if (seen.end < infinity) {
-            ASSERT_EQ(keep(clip, ray.at(seen.end + step)), 0.0);
+          if (visible.end < infinity) {
+            ASSERT_EQ(clipWeight(clip, ray.at(seen.end + step)), 0.0);
           }
         }
     }
@@ -119,38 +120,38 @@ TEST(Clip, KeptInHoldsForPointsOfTheBox) {
   Random random(2, 0, 0);
   for (const auto projection : projections)
     for (const double distance : {12.0, 120.0}) {
-      const Camera camera = obliqueCamera(projection, distance, 64);
-      const auto clips = everyClip(camera);
+      const Camera camera = makeObliqueCamera(projection, distance, 64);
+      const auto clips = makeClips(camera);
       for (std::size_t c = 0; c < clips.size(); ++c) {
-        int found = 0, empty = 0, foundWhole = 0, whole = 0;
+        int foundEmpty = 0, empty = 0, foundFull = 0, full = 0;
         for (int trial = 0; trial < fenestra::testing::budget(20000); ++trial) {
           const Vec3 center = randomPoint(random, -35, 35);
           const Vec3 half =
               Vec3::Constant(0.2) + std::pow(random.uniform(), 4) * randomPoint(random, 0, 20);
-          const Mat3 turn =
+          const Mat3 rotation =
               makeRotation(random.uniform(), randomPoint(random, -1, 1).normalized()).linear();
           const Box box{-half, half};
           Corners corners;
           for (int i = 0; i < 8; ++i)
-            corners[static_cast<std::size_t>(i)] = center + turn * box.corner(i);
-          int kept = 0;
+            corners[static_cast<std::size_t>(i)] = center + rotation * box.corner(i);
+          int visiblePoints = 0;
           for (int i = 0; i < 60; ++i) {
             const Vec3 p =
                 i < 8 ? corners[static_cast<std::size_t>(i)]
-                      : Vec3(center + turn * half.cwiseProduct(randomPoint(random, -1, 1)));
-            kept += keep(clips[c], p) > 0.0;
+                      : Vec3(center + rotation * half.cwiseProduct(randomPoint(random, -1, 1)));
+            visiblePoints += clipWeight(clips[c], p) > 0.0;
           }
-          const Kept verdict = keptIn(clips[c], corners);
-          ASSERT_FALSE(bounds == Kept::none && kept > 0);
-          ASSERT_FALSE(bounds == Kept::all && kept < 60);
-          found += verdict == Kept::none;
-          empty += kept == 0;
-          foundWhole += verdict == Kept::all;
-          whole += kept == 60;
+          const ClipBounds bounds = boundClipWeight(clips[c], corners);
+          ASSERT_FALSE(bounds == ClipBounds::none && visiblePoints > 0);
+          ASSERT_FALSE(bounds == ClipBounds::all && visiblePoints < 60);
+          foundEmpty += bounds == ClipBounds::none;
+          empty += visiblePoints == 0;
+          foundFull += bounds == ClipBounds::all;
+          full += visiblePoints == 60;
         }
         // Not merely conservative: small boxes that are removed, or kept, are recognised.
-        EXPECT_GE(found, c == 0 ? 0 : c == 3 ? empty / 3 : empty * 3 / 4) << "clip " << c;
-        EXPECT_GE(foundWhole, full / 3) << "clip " << c;
+        EXPECT_GE(foundEmpty, c == 0 ? 0 : c == 3 ? empty / 3 : empty * 3 / 4) << "clip " << c;
+        EXPECT_GE(foundFull, full / 3) << "clip " << c;
       }
     }
 }
@@ -162,7 +163,7 @@ TEST(Clip, BoxAcrossTheEyesPlaneCountsEveryDirection) {
   for (std::int64_t i = 0; i < buffer->size(); ++i)
     buffer->set(i, buffer->xAxis().coordinate(i % buffer->columns()) > 100.0 ? -1.0 : 20.0);
   const Clip clip = ClipDepth{camera, buffer, std::make_shared<DepthPyramid>(*buffer)};
-  const auto viewBox = [&](const Vec3& lower, const Vec3& upper) {
+  const auto makeCorners = [&](const Vec3& lower, const Vec3& upper) {
     Corners corners;
     for (int i = 0; i < 8; ++i) {
       const Vec3 view = Box{lower, upper}.corner(i);
@@ -171,10 +172,14 @@ TEST(Clip, BoxAcrossTheEyesPlaneCountsEveryDirection) {
     }
     return corners;
   };
-  EXPECT_EQ(keptIn(clip, viewBox({1.0, -1.0, 5.0}, {3.0, 1.0, 10.0})), Kept::none);
-  EXPECT_EQ(keptIn(clip, viewBox({1.0, -1.0, -0.5}, {3.0, 1.0, 10.0})), Kept::some);
-  EXPECT_EQ(keptIn(clip, viewBox({1.0, -1.0, -0.5}, {3.0, 1.0, -0.1})), Kept::none);
-  EXPECT_EQ(keptIn(clip, viewBox({1.0, -1.0, 21.0}, {3.0, 1.0, 22.0})), Kept::all);
+  EXPECT_EQ(boundClipWeight(clip, makeCorners({1.0, -1.0, 5.0}, {3.0, 1.0, 10.0})),
+            ClipBounds::none);
+  EXPECT_EQ(boundClipWeight(clip, makeCorners({1.0, -1.0, -0.5}, {3.0, 1.0, 10.0})),
+            ClipBounds::some);
+  EXPECT_EQ(boundClipWeight(clip, makeCorners({1.0, -1.0, -0.5}, {3.0, 1.0, -0.1})),
+            ClipBounds::none);
+  EXPECT_EQ(boundClipWeight(clip, makeCorners({1.0, -1.0, 21.0}, {3.0, 1.0, 22.0})),
+            ClipBounds::all);
 }
 
 TEST(ClippingSurface, DepthAtFocusSamplesIsThatOfTheFocus) {
@@ -188,9 +193,10 @@ TEST(ClippingSurface, DepthAtFocusSamplesIsThatOfTheFocus) {
         if (surface.focus.regions[static_cast<std::size_t>(i)] == Region::focus) {
           ASSERT_EQ(clip.buffer->at(i), surface.focus.depth.at(i));
         }
-      EXPECT_EQ(keep(surface.clip, {0.3, -16.1, 0.2}), 0.0);
-      EXPECT_EQ(keep(surface.clip, {0.3, -15.9, 0.2}), 1.0);
-      EXPECT_EQ(keep(surface.clip, {25.0, -30.0, 0.2}), mode == SurfaceMode::cutaway ? 1.0 : 0.0);
+      EXPECT_EQ(clipWeight(surface.clip, {0.3, -16.1, 0.2}), 0.0);
+      EXPECT_EQ(clipWeight(surface.clip, {0.3, -15.9, 0.2}), 1.0);
+      EXPECT_EQ(clipWeight(surface.clip, {25.0, -30.0, 0.2}),
+                mode == SurfaceMode::cutaway ? 1.0 : 0.0);
       EXPECT_TRUE(surface.warnings.empty());
     }
 }
@@ -216,13 +222,13 @@ TEST(ClippingSurface, FlatFocusContinuesAsItsPlane) {
 TEST(ClippingSurface, ExactBoundaryGapIsSmallerThanTheSplines) {
   const Shell shell;
   for (const auto projection : projections) {
-    const Camera camera = obliqueCamera(projection, 120.0, 160);
-    const auto missOf = [&](Boundary boundary) {
+    const Camera camera = makeObliqueCamera(projection, 120.0, 160);
+    const auto measureGap = [&](Boundary boundary) {
       const ClippingSurface surface =
           buildClippingSurface(camera, shell.volume, shell.focus, {.boundary = boundary});
       return measureBoundary(surface.clip, shell.volume, shell.focus, surface.focus).gap;
     };
-    const Distribution spline = missOf(Boundary::spline), exact = missOf(Boundary::exact);
+    const Distribution spline = measureGap(Boundary::spline), exact = measureGap(Boundary::exact);
     EXPECT_LT(exact.mean, spline.mean);
     EXPECT_LT(exact.p95, spline.p95);
   }
@@ -231,7 +237,7 @@ TEST(ClippingSurface, ExactBoundaryGapIsSmallerThanTheSplines) {
 TEST(ClippingSurface, JumpAtTheFocusIsWithinTheStatedMismatch) {
   const Shell shell;
   for (const auto projection : projections) {
-    const Camera camera = obliqueCamera(projection, 120.0, 160);
+    const Camera camera = makeObliqueCamera(projection, 120.0, 160);
     const ClippingSurface surface = buildClippingSurface(camera, shell.volume, shell.focus, {});
     EXPECT_LE(surface.mismatch->mean, surface.mismatch->p95);
     EXPECT_LE(surface.mismatch->p95, surface.mismatch->max);
@@ -243,11 +249,11 @@ TEST(ClippingSurface, JumpAtTheFocusIsWithinTheStatedMismatch) {
       for (std::int64_t column = 1; column < buffer.columns(); ++column) {
         const double change = std::abs(buffer.at(buffer.sample(column, row)) -
                                        buffer.at(buffer.sample(column - 1, row)));
-        const bool in = surface.focus.isFocus(column, row);
-        const bool wasIn = surface.focus.isFocus(column - 1, row);
-        if (in != wasIn)
+        const bool isFocus = surface.focus.isFocus(column, row);
+        const bool wasFocus = surface.focus.isFocus(column - 1, row);
+        if (isFocus != wasFocus)
           worst = std::max(worst, change);
-        else if (!in)
+        else if (!isFocus)
           slope = std::max(slope, change);
       }
     EXPECT_LE(worst, surface.mismatch->max + 2.0 * slope);
@@ -264,7 +270,7 @@ TEST(ClippingSurface, DoesNotDependOnFraming) {
   int different = 0;
   for (int i = 0; i < 20000; ++i) {
     const Vec3 p = randomPoint(random, -30, 30);
-    different += keep(a, p) != keep(b, p);
+    different += clipWeight(a, p) != clipWeight(b, p);
   }
   EXPECT_LT(different, 20); // samples coincide; the contour's start does not matter
 }
@@ -284,12 +290,12 @@ TEST(ClippingSurface, WarnsOfAFocusOutsideThePicture) {
 TEST(ClippingSurface, FocusThatNoRayMeetsIsAnInputError) {
   const Model model;
   const Camera camera = anteriorCamera(Projection::orthographic, 200.0, 40.0, 40, 40);
-  Affine aside = model.focus.grid.indexToWorld;
-  aside.translation() += Vec3(500, 0, 0);
+  Affine shifted = model.focus.grid.indexToWorld;
+  shifted.translation() += Vec3(500, 0, 0);
   Mask outside = model.focus;
-  outside.grid = Grid(outside.grid.size, aside);
-  Mask nothing = maskOf(model.volume, [](const Vec3&) { return false; });
-  for (const Mask& mask : {outside, nothing})
+  outside.grid = Grid(outside.grid.size, shifted);
+  Mask emptyMask = maskOf(model.volume, [](const Vec3&) { return false; });
+  for (const Mask& mask : {outside, emptyMask})
     try {
       buildClippingSurface(camera, model.volume, mask, {});
       ADD_FAILURE();

@@ -14,7 +14,7 @@ namespace {
 
 constexpr ClipEdge edge{0.2, 4.0};
 
-Camera obliqueCamera(Projection projection) {
+Camera makeObliqueCamera(Projection projection) {
   CameraPose pose;
   pose.projection = projection;
   pose.position = {50.0, -100.0, 30.0};
@@ -25,7 +25,7 @@ Camera obliqueCamera(Projection projection) {
 }
 
 /// Surface of a bent shell: partly on the shell, partly filled.
-Clip softSurface(Projection projection, Boundary boundary = Boundary::spline) {
+Clip makeSoftSurface(Projection projection, Boundary boundary = Boundary::spline) {
   const Grid volume = centredGrid({40, 36, 30}, {1.0, 1.2, 1.5});
   const Mask focus = maskOf(volume, [](const Vec3& p) {
     return std::abs(p.norm() - 12.0) < 2.0 && p.x() + 2.0 * p.y() < 6.0;
@@ -33,36 +33,36 @@ Clip softSurface(Projection projection, Boundary boundary = Boundary::spline) {
   SurfaceOptions options;
   options.edge = edge;
   options.boundary = boundary;
-  return buildClippingSurface(obliqueCamera(projection), volume, focus, options).clip;
+  return buildClippingSurface(makeObliqueCamera(projection), volume, focus, options).clip;
 }
 
 bool isNearCellBorder(const ClipDepth& clip, const Vec3& world) {
-  const Vec2 place = clip.buffer->cell(toBuffer(clip.camera, world).head<2>()).fraction;
-  return (place.array() - 0.5).abs().maxCoeff() > 0.49;
+  const Vec2 fraction = clip.buffer->cell(toBuffer(clip.camera, world).head<2>()).fraction;
+  return (fraction.array() - 0.5).abs().maxCoeff() > 0.49;
 }
 
 /// Central differences of keep, mm^-1.
-Vec3 keepGradient(const Clip& clip, const Vec3& world) {
+Vec3 estimateGradient(const Clip& clip, const Vec3& world) {
   constexpr double step = 1e-4;
   Vec3 gradient;
   for (int axis = 0; axis < 3; ++axis) {
     const Vec3 to = step * Vec3::Unit(axis);
-    gradient[axis] = (keep(clip, world + to) - keep(clip, world - to)) / (2.0 * step);
+    gradient[axis] = (clipWeight(clip, world + to) - clipWeight(clip, world - to)) / (2.0 * step);
   }
   return gradient;
 }
 
-bool isRamp(const Clip& clip, const Vec3& world) {
-  const double share = keep(clip, world);
-  return share > edge.ghost + 1e-3 && share < 1.0 - 1e-3;
+bool isInRamp(const Clip& clip, const Vec3& world) {
+  const double weight = clipWeight(clip, world);
+  return weight > edge.ghost + 1e-3 && weight < 1.0 - 1e-3;
 }
 
 TEST(CutGradient, PointsAlongTheGradientOfKeep) {
   const Vec3 normal = Vec3(0.4, -2.0, 0.3).normalized();
   std::vector<Clip> clips;
   for (const Projection projection : {Projection::orthographic, Projection::perspective}) {
-    clips.push_back(ClipPlane{obliqueCamera(projection), {2.0, -3.0, 1.0}, normal, edge});
-    clips.push_back(softSurface(projection));
+    clips.push_back(ClipPlane{makeObliqueCamera(projection), {2.0, -3.0, 1.0}, normal, edge});
+    clips.push_back(makeSoftSurface(projection));
   }
   Random random(1, 2, 3);
   for (const Clip& clip : clips) {
@@ -70,28 +70,28 @@ TEST(CutGradient, PointsAlongTheGradientOfKeep) {
     for (int i = 0; i < 4000; ++i) {
       const Vec3 point = randomPoint(random, -17.0, 17.0);
       const auto* depth = std::get_if<ClipDepth>(&clip);
-      if (!isRamp(clip, point) || (depth && isNearCellBorder(*depth, point)))
+      if (!isInRamp(clip, point) || (depth && isNearCellBorder(*depth, point)))
         continue;
       ++inside;
       const Vec3 cut = cutGradient(clip, point);
       ASSERT_NEAR(cut.norm(), cutShading / edge.softness, 1e-12);
-      ASSERT_NEAR(cut.normalized().dot(keepGradient(clip, point).normalized()), 1.0, 1e-6);
+      ASSERT_NEAR(cut.normalized().dot(estimateGradient(clip, point).normalized()), 1.0, 1e-6);
     }
     EXPECT_GT(inside, 200) << clip.index();
   }
 }
 
 TEST(CutGradient, IsThatOfTheLinearSurfaceInSeams) {
-  const Clip exact = softSurface(Projection::perspective, Boundary::exact);
+  const Clip exact = makeSoftSurface(Projection::perspective, Boundary::exact);
   ClipDepth linear = std::get<ClipDepth>(exact);
   linear.silhouette = nullptr;
   Random random(4, 5, 6);
   int differing = 0;
   for (int i = 0; i < 4000; ++i) {
     const Vec3 point = randomPoint(random, -17.0, 17.0);
-    if (!isRamp(exact, point) || !isRamp(linear, point))
+    if (!isInRamp(exact, point) || !isInRamp(linear, point))
       continue;
-    differing += keep(exact, point) != keep(linear, point) ? 1 : 0;
+    differing += clipWeight(exact, point) != clipWeight(linear, point) ? 1 : 0;
     ASSERT_EQ(cutGradient(exact, point), cutGradient(linear, point));
   }
   EXPECT_GT(differing, 20);
@@ -109,8 +109,8 @@ TEST(CutGradient, IsNothingBesideTheRamp) {
   EXPECT_EQ(cutGradient(plane(edge), {1.0, 4.0, 2.0}), Vec3::Zero());
   EXPECT_EQ(cutGradient(plane({}), {1.0, 0.0, 2.0}), Vec3::Zero());
   EXPECT_EQ(cutGradient(ClipNone{}, {1.0, 0.0, 2.0}), Vec3::Zero());
-  const ClipPlane turned{camera, Vec3(0.0, -102.0, 0.0), Vec3::UnitY(), edge};
-  EXPECT_EQ(cutGradient(turned, {0.0, -103.0, 0.0}), Vec3::Zero()); // behind the eye
+  const ClipPlane flipped{camera, Vec3(0.0, -102.0, 0.0), Vec3::UnitY(), edge};
+  EXPECT_EQ(cutGradient(flipped, {0.0, -103.0, 0.0}), Vec3::Zero()); // behind the eye
 }
 
 TEST(CutGradient, OfStepsIsTheViewsAxisAndNothingWhereNothingIsRemoved) {
@@ -140,7 +140,7 @@ TEST(CutGradient, MakesASurfaceOfHomogeneousMatter) {
       ScalarFunction({{0.0, ScalarFunction::Value(0.0)}, {100.0, ScalarFunction::Value(2.0)}}),
       ColorFunction({{0.0, Rgb::Constant(0.5)}})};
   transfer.shading = SurfaceShading{0.8, 0.3, 12.0, 0.6};
-  const auto at = [&](double y, bool wantGradient = false) {
+  const auto sample = [&](double y, bool wantGradient = false) {
     const Vec3 point(1.0, y, 2.0);
     Random random(0);
     return sampleMedium(Medium<float>(grid, voxels, transfer), clip, point,

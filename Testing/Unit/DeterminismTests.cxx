@@ -93,7 +93,7 @@ TEST(Render, StopsBySeenNoiseAtFixedCountsAlikeInAllPixels) {
     EXPECT_EQ(result.reason, StopReason::noise);
     EXPECT_EQ(looks, (std::vector<std::uint64_t>{4, 8, 16}));
     EXPECT_EQ(result.film.sampleCounts().min, 16U);
-    EXPECT_EQ(result.film.sampleCounts().greatest, 16U);
+    EXPECT_EQ(result.film.sampleCounts().max, 16U);
   }
 }
 

@@ -95,7 +95,7 @@ TEST(PixelSums, ErrorComesFromBlocks) {
       const double expected = errorOf(values, block);
       ASSERT_TRUE(std::isfinite(expected));
       EXPECT_NEAR(sums.standardError()[0], expected, 1e-12) << i + 1 << " samples";
-      EXPECT_NEAR(far.standardError()[0], expected, 1e-6) << i + 1 << " samples";
+      EXPECT_NEAR(shifted.standardError()[0], expected, 1e-6) << i + 1 << " samples";
     }
   }
 }

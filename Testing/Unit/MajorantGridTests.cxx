@@ -186,7 +186,7 @@ TEST(MajorantGrid, ClipAndStyleAreBoundedInTheStripAroundACell) {
     }
     const MajorantGrid::Cell& cell = majorants.cell(cellOf(majorants, grid, p));
     const Vec3 q = inStripAround(p, box, random);
-    const double kept = keep(plane, q);
+    const double kept = clipWeight(plane, q);
     ASSERT_LE(weight * medium.extinction(q), static_cast<double>(cell.majorant)) << "at " << q;
     ASSERT_TRUE(cell.cut || cell.majorant == 0.0F || weight == 1.0) << "at " << q;
   }

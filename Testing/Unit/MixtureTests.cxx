@@ -44,10 +44,11 @@ TEST(Mixture, PartsAreSharesOfEachExtinction) {
 
   mixture.components[1].isClipped = false;
   const MixedField open(mixture, mixture.weights->grid());
-  EXPECT_TRUE(open.hasFree());
+  EXPECT_TRUE(unclipped.hasFree());
   EXPECT_FALSE(field.hasFree());
-  EXPECT_NEAR(open.extinction({point.index, 0.5, 0.25}), 0.25 * parts.at(0) + parts.at(1), 1e-12);
-  EXPECT_EQ(partsAt(open, {point.index, 0.5, 0.0}).count(0), 0U) << "a part of 0 is none";
+  EXPECT_NEAR(unclipped.extinction({point.index, 0.5, 0.25}), 0.25 * parts.at(0) + parts.at(1),
+              1e-12);
+  EXPECT_EQ(partsAt(unclipped, {point.index, 0.5, 0.0}).count(0), 0U) << "a part of 0 is none";
 }
 
 TEST(Mixture, ComponentsAreDrawnByTheirExtinction) {

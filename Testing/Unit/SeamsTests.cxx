@@ -145,7 +145,7 @@ TEST(SilhouetteCells, KeepEqualsThatOfTheFullSurface) {
         const Vec3 at = toBuffer(ball.camera, world);
         const double expected = clip.edge(at.z() - clip.surfaceDepth(at.head<2>()));
         partialCount += expected > 0.25 && expected < 1.0;
-        ASSERT_NEAR(keep(clip, world), expected, 1e-6) << position << ' ' << depth;
+        ASSERT_NEAR(clipWeight(clip, world), expected, 1e-6) << position << ' ' << depth;
         const auto bounds = clip.pyramid->bounds(*clip.buffer, position, position);
         ASSERT_GE(clip.surfaceDepth(position), bounds.begin - 1e-4);
         ASSERT_LE(clip.surfaceDepth(position), bounds.end + 1e-4);
@@ -209,7 +209,7 @@ TEST(SilhouetteCells, OffsetMovesTheDepth) {
   Random random(2, 0, 0);
   for (int i = 0; i < 1000; ++i) {
     const Vec2 at(uniform(random, -25, 25), uniform(random, -25, 25));
-    EXPECT_NEAR(std::get<ClipDepth>(moved.clip).surfaceDepth(at),
+    EXPECT_NEAR(std::get<ClipDepth>(shifted.clip).surfaceDepth(at),
                 std::get<ClipDepth>(plain.clip).surfaceDepth(at) + 3.0, 1e-4);
   }
 }

@@ -15,13 +15,13 @@ Interval findUnclipped(const ClipNone&, const Ray&) {
 }
 
 Interval findUnclipped(const ClipPlane& clip, const Ray& cameraRay) {
-  const double above = (cameraRay.origin - clip.point).dot(clip.normal); // the removed side is > 0
+  const double height = (cameraRay.origin - clip.point).dot(clip.normal); // the removed side is > 0
   const double slope = cameraRay.direction.dot(clip.normal);
   if (slope > 0.0)
-    return {0.0, std::max(0.0, -above / slope)};
+    return {0.0, std::max(0.0, -height / slope)};
   if (slope < 0.0)
-    return {std::max(0.0, -above / slope), infinity};
-  return above > 0.0 ? Interval{0.0, 0.0} : Interval{};
+    return {std::max(0.0, -height / slope), infinity};
+  return height > 0.0 ? Interval{0.0, 0.0} : Interval{};
 }
 
 Interval findUnclipped(const ClipDepth& clip, const Ray& cameraRay) {
@@ -62,54 +62,55 @@ Vec3 evaluateCut(const ClipDepth& clip, const Vec3& world) {
 }
 
 /// Position of a box relative to a part of space.
-enum class Side { inside, across, outside };
+enum class Side { inside, straddling, outside };
 
 /// Bound for a box over a range of distances behind the surface, mm.
-Kept keptBehind(const ClipEdge& edge, const Interval& distances, Side inFrontOfEye) {
-  if (inFrontOfEye == Side::outside)
-    return Kept::none;
-  if (inFrontOfEye == Side::inside && distances.begin > edge.softness + slack)
-    return Kept::all;
+ClipBounds boundFromDistance(const ClipEdge& edge, const Interval& distances, Side side) {
+  if (side == Side::outside)
+    return ClipBounds::none;
+  if (side == Side::inside && distances.begin > edge.softness + slack)
+    return ClipBounds::all;
   if (distances.end < -slack)
-    return {edge.ghost, inFrontOfEye == Side::inside || edge.isHard()};
-  return Kept::some;
+    return {edge.ghost, side == Side::inside || edge.isHard()};
+  return ClipBounds::some;
 }
 
 /// Position of a stretch of depths, mm, relative to the space in front of the eye.
-Side inFrontOfEye(const Camera& camera, const Interval& depths) {
+Side classifyDepths(const Camera& camera, const Interval& depths) {
   if (isBehindCamera(camera, depths.end + slack))
     return Side::outside;
-  return isBehindCamera(camera, depths.begin - slack) ? Side::across : Side::inside;
+  return isBehindCamera(camera, depths.begin - slack) ? Side::straddling : Side::inside;
 }
 
-Kept keptBox(const ClipNone&, const Corners&) {
-  return Kept::all;
+ClipBounds boundBox(const ClipNone&, const Corners&) {
+  return ClipBounds::all;
 }
 
-Kept keptBox(const ClipPlane& clip, const Corners& corners) {
+ClipBounds boundBox(const ClipPlane& clip, const Corners& corners) {
   Interval distances{infinity, -infinity}, depths = distances;
   for (const Vec3& corner : corners) {
     const double distance = clip.signedDistance(corner), depth = clip.camera.toView(corner).z();
     distances = enclose(distances, {distance, distance});
     depths = enclose(depths, {depth, depth});
   }
-  return keptBehind(clip.edge, distances, inFrontOfEye(clip.camera, depths));
+  return boundFromDistance(clip.edge, distances, classifyDepths(clip.camera, depths));
 }
 
-Kept keptBox(const ClipDepth& clip, const Corners& corners) {
+ClipBounds boundBox(const ClipDepth& clip, const Corners& corners) {
   Box box = Box::makeEmpty(); // (x, y) and depths
   for (const Vec3& corner : corners)
     box.extend(toBuffer(clip.camera, corner));
-  const Side side = inFrontOfEye(clip.camera, {box.lower.z(), box.upper.z()});
+  const Side side = classifyDepths(clip.camera, {box.lower.z(), box.upper.z()});
   if (side == Side::outside)
-    return Kept::none;
+    return ClipBounds::none;
   Vec2 lower = box.lower.head<2>(), upper = box.upper.head<2>();
-  if (side == Side::across) { // the box's projection is unbounded
+  if (side == Side::straddling) { // the box's projection is unbounded
     lower = Vec2::Constant(-infinity);
     upper = Vec2::Constant(infinity);
   }
   const Interval surface = clip.pyramid->bounds(*clip.buffer, lower, upper);
-  return keptBehind(clip.edge, {box.lower.z() - surface.end, box.upper.z() - surface.begin}, side);
+  return boundFromDistance(clip.edge, {box.lower.z() - surface.end, box.upper.z() - surface.begin},
+                           side);
 }
 
 } // namespace
@@ -149,8 +150,8 @@ Interval visibleInterval(const Clip& clip, const Ray& cameraRay) {
   return isHard ? intervalBehindSurface(clip, cameraRay) : Interval{};
 }
 
-Kept keptIn(const Clip& clip, const Corners& corners) {
-  return std::visit([&](const auto& kind) { return keptBox(kind, corners); }, clip);
+ClipBounds boundClipWeight(const Clip& clip, const Corners& corners) {
+  return std::visit([&](const auto& kind) { return boundBox(kind, corners); }, clip);
 }
 
 } // namespace fenestra

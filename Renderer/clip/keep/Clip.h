@@ -89,25 +89,25 @@ using Clip = std::variant<ClipNone, ClipPlane, ClipDepth>;
 
 /// Share of the extinction that remains at a world point, 0 to 1; behind the eye 0 for every clip
 /// but ClipNone.
-inline double keep(const ClipNone&, const Vec3&) {
+inline double clipWeight(const ClipNone&, const Vec3&) {
   return 1.0;
 }
 
-inline double keep(const ClipPlane& clip, const Vec3& world) {
+inline double clipWeight(const ClipPlane& clip, const Vec3& world) {
   if (isBehindCamera(clip.camera, clip.camera.toView(world).z()))
     return 0.0;
   return clip.edge(clip.signedDistance(world));
 }
 
-inline double keep(const ClipDepth& clip, const Vec3& world) {
+inline double clipWeight(const ClipDepth& clip, const Vec3& world) {
   const Vec3 at = toBuffer(clip.camera, world);
   if (isBehindCamera(clip.camera, at.z()))
     return 0.0;
   return clip.edge(clip.signedDistance(at));
 }
 
-inline double keep(const Clip& clip, const Vec3& world) {
-  return std::visit([&](const auto& kind) { return keep(kind, world); }, clip);
+inline double clipWeight(const Clip& clip, const Vec3& world) {
+  return std::visit([&](const auto& kind) { return clipWeight(kind, world); }, clip);
 }
 
 /// Weight of a soft cut among the gradients that make surfaces.
@@ -137,16 +137,17 @@ Interval visibleInterval(const Clip& clip, const Ray& cameraRay);
 using Corners = std::array<Vec3, 8>;
 
 /// Bound of keep over the convex hull of some corners.
-struct Kept {
-  double most;    ///< keep <= most
+struct ClipBounds {
+  double max;     ///< keep <= most
   bool isUniform; ///< true: keep = most everywhere; false: unknown
 
-  static const Kept none, some, all;
+  static const ClipBounds none, some, all;
 
-  bool operator==(const Kept&) const = default;
+  bool operator==(const ClipBounds&) const = default;
 };
-inline constexpr Kept Kept::none{0.0, true}, Kept::some{1.0, false}, Kept::all{1.0, true};
+inline constexpr ClipBounds ClipBounds::none{0.0, true}, ClipBounds::some{1.0, false},
+    ClipBounds::all{1.0, true};
 
-Kept keptIn(const Clip& clip, const Corners& corners);
+ClipBounds boundClipWeight(const Clip& clip, const Corners& corners);
 
 } // namespace fenestra

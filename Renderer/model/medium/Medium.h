@@ -39,17 +39,19 @@ public:
   }
 
   /// True if the extinction may be above 0 where a clip keeps `kept`.
-  bool canCollide(double kept) const { return kept > 0.0 || (m_mixed && m_mixed->hasFree()); }
+  bool canCollide(double clipWeight) const {
+    return clipWeight > 0.0 || (m_mixed && m_mixed->hasFree());
+  }
   /// Extinction, mm^-1, of which the clip keeps `kept`.
-  double extinction(const Vec3& index, double kept = 1.0) const {
+  double extinction(const Vec3& index, double clipWeight = 1.0) const {
     if (m_mixed)
-      return thinning(index) * m_mixed->extinction(at(index, kept));
+      return thinning(index) * m_mixed->extinction(at(index, clipWeight));
     double sigma_t = m_transfer.extinction(m_field.value(index)).value();
     if (sigma_t != 0.0)
       sigma_t *= thinning(index);
     if (sigma_t != 0.0 && m_transfer.gradientOpacity)
       sigma_t *= (*m_transfer.gradientOpacity)(m_field.gradient(index).norm()).value();
-    return kept * sigma_t;
+    return clipWeight * sigma_t;
   }
 
   bool needsGradient(bool wantGradient) const { return wantGradient || m_transfer.shading; }
@@ -82,9 +84,9 @@ public:
                       border + (component.isClipped ? cut : Vec3::Zero()));
   }
   /// A point with what a mixture's parts there depend on.
-  MixedPoint at(const Vec3& index, double kept) const {
+  MixedPoint at(const Vec3& index, double clipWeight) const {
     const double slope = m_mixed->needsGradient() ? m_field.gradient(index).norm() : 0.0;
-    return {index, m_field.value(index), kept, slope};
+    return {index, m_field.value(index), clipWeight, slope};
   }
 
 private:

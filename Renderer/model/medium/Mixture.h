@@ -60,7 +60,7 @@ struct MixturePart {
 struct MixedPoint {
   Vec3 index;
   double scalar;
-  double kept;        ///< keep of the clip there
+  double clipWeight;  ///< keep of the clip there
   double slope = 0.0; ///< |gradient|, scalar units per mm; 0 unless needsGradient()
 };
 
@@ -82,7 +82,7 @@ public:
   void forEachPart(const MixedPoint& point, Visit&& visit) const {
     m_mixture.weights->at(m_toWeights * point.index, [&](std::uint8_t number, double weight) {
       const Component& component = m_mixture.components[number];
-      double extinction = (component.isClipped ? point.kept : 1.0) * weight *
+      double extinction = (component.isClipped ? point.clipWeight : 1.0) * weight *
                           component.transfer.extinction(point.scalar).value();
       if (component.transfer.gradientOpacity)
         extinction *= (*component.transfer.gradientOpacity)(point.slope).value();

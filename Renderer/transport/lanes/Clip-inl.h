@@ -123,13 +123,13 @@ HWY_INLINE Float behindSurface(const SimdMedium& medium, const Float3& p, const 
 }
 
 /// keep for every kind of clip, for the lanes of `which`.
-inline Float keep(const SimdMedium& medium, const Float3& p, LaneMask which) {
+inline Float clipWeight(const SimdMedium& medium, const Float3& p, LaneMask which) {
   const InView view = inView(medium, p);
   const Float behind = behindSurface(medium, p, view, which);
   const Float ghost = medium.ghost;
   const Float rise = medium.perSoftness > 0.0F ? min(behind * medium.perSoftness, 1.0F) : 1.0F;
-  const Float share = select(behind < 0.0F, ghost, lerp(ghost, 1.0F, rise));
-  return select(view.isBehindCamera, 0.0F, share);
+  const Float weight = select(behind < 0.0F, ghost, lerp(ghost, 1.0F, rise));
+  return select(view.isBehindCamera, 0.0F, weight);
 }
 
 /// Gradient of the depth behind a surface, along the view's axes.

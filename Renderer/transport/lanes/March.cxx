@@ -83,7 +83,7 @@ private:
     if (m_usesClip) {
       const LaneMask cut = filled & cell.cut;
       if (cut.any())
-        all.clipped.setIf(cut, all.clipped * keep(m_medium, p, cut));
+        all.clipped.setIf(cut, all.clipped * clipWeight(m_medium, p, cut));
     }
     const Float extinction = all.clipped + all.free;
     const Float passed = exp(-(extinction * length));
@@ -151,15 +151,16 @@ public:
   }
 
   Mean evaluateMixture(LaneMask which, const Float3& p, Float scalar) const {
-    const Float kept = keptOfParts(m_medium, which, p);
+    const Float weight = mixtureClipWeight(m_medium, which, p);
     Mean sums{{0.0F, 0.0F, 0.0F}, 0.0F};
     Float all = 0.0F;
-    forEachPart(m_medium, which, p, scalar, kept, [&](LaneMask lanes, Int components, Float part) {
-      const Float extinction = extinctionOf(m_medium.extinctions, lanes, components, scalar);
-      all = all + part;
-      sums.albedo = sums.albedo + part * albedoIn(m_shading, lanes, components, scalar);
-      sums.opacity = sums.opacity + part * missing(extinction);
-    });
+    forEachPart(
+        m_medium, which, p, scalar, weight, [&](LaneMask lanes, Int components, Float part) {
+          const Float extinction = extinctionOf(m_medium.extinctions, lanes, components, scalar);
+          all = all + part;
+          sums.albedo = sums.albedo + part * albedoIn(m_shading, lanes, components, scalar);
+          sums.opacity = sums.opacity + part * missing(extinction);
+        });
     const Float scale = zeroUnless(all > 0.0F, 1.0F / all);
     return {scale * sums.albedo, scale * sums.opacity};
   }

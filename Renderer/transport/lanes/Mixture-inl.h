@@ -22,11 +22,11 @@ HWY_INLINE LaneMask freeIn(const SimdMixture& mixture, LaneMask which, Int compo
 /// the clip.
 template <typename Visit>
 HWY_INLINE void forEachPart(const SimdMedium& medium, LaneMask which, const Float3& index,
-                            Float scalar, Float kept, Visit&& visit) {
+                            Float scalar, Float weight, Visit&& visit) {
   const auto part = [&](LaneMask lanes, Int components, Float fraction) {
     const Float full = fraction * extinctionOf(medium.extinctions, lanes, components, scalar);
     const LaneMask free = freeIn(*medium.mixture, lanes, components);
-    visit(lanes, components, select(free, full, kept * full));
+    visit(lanes, components, select(free, full, weight * full));
   };
   LaneLabelWeights(medium.mixture->weights, index).forEach(which, part);
 }
@@ -65,23 +65,23 @@ HWY_INLINE LaneExtinctions extinctionsAt(const SimdMedium& medium, LaneMask whic
 }
 
 /// Keep of the clip where a mixture's components differ in it; else 1.
-inline Float keptOfParts(const SimdMedium& medium, LaneMask which, const Float3& index) {
+inline Float mixtureClipWeight(const SimdMedium& medium, LaneMask which, const Float3& index) {
   return medium.mixture->hasFree && medium.clipKind != SimdMedium::ClipKind::none
-             ? keep(medium, index, which)
+             ? clipWeight(medium, index, which)
              : Float(1.0F);
 }
 
 /// Components that collisions of the lanes of `which` meet (MixedField::draw); 0 in others.
 inline Int sampleComponents(const SimdMedium& medium, LaneMask which, const Float3& index,
                             Float scalar, Float uniform) {
-  const Float kept = keptOfParts(medium, which, index);
+  const Float weight = mixtureClipWeight(medium, which, index);
   Float sum = 0.0F;
-  forEachPart(medium, which, index, scalar, kept,
+  forEachPart(medium, which, index, scalar, weight,
               [&](LaneMask, Int, Float part) { sum = sum + part; });
   Float left = uniform * sum;
   LaneMask undecided = which;
   Int sampled = 0;
-  forEachPart(medium, which, index, scalar, kept, [&](LaneMask, Int components, Float part) {
+  forEachPart(medium, which, index, scalar, weight, [&](LaneMask, Int components, Float part) {
     const LaneMask some = undecided & (part > 0.0F);
     sampled = select(some, components, sampled); // the last one, if rounding leaves all
     undecided = undecided.without(some & (left < part));

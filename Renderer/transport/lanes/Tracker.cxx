@@ -178,7 +178,7 @@ private:
       cut = cut & (u * m_majorant < (isMixed ? extinction + all.free : extinction));
     }
     if (cut.any())
-      extinction.setIf(cut, extinction * keep(m_medium, at, cut));
+      extinction.setIf(cut, extinction * clipWeight(m_medium, at, cut));
     return extinction;
   }
 

@@ -70,10 +70,11 @@ struct CellBound {
 /// A cell's majorant under the clip and the style.
 MajorantGrid::Cell cellOf(const CellBound& bound, const Corners& corners, const Clip& clip,
                           const ContextStyle* style) {
-  const Kept kept = std::holds_alternative<ClipNone>(clip) ? Kept::all : keptIn(clip, corners);
-  const double majorant = std::max(bound.clipped * kept.most, bound.free) *
+  const ClipBounds bounds =
+      std::holds_alternative<ClipNone>(clip) ? ClipBounds::all : boundClipWeight(clip, corners);
+  const double majorant = std::max(bound.clipped * bounds.max, bound.free) *
                           (style ? greatestFactor(*style, corners) : 1.0);
-  const bool isCut = majorant > 0.0 && !(kept.isUniform && kept.most == 1.0);
+  const bool isCut = majorant > 0.0 && !(bounds.isUniform && bounds.max == 1.0);
   return {roundedUp(majorant), isCut};
 }
 

@@ -17,7 +17,7 @@ Vec3 findCutGradient(const Medium<Voxel>& medium, const Clip& clip, const Vec3& 
 template <typename Voxel>
 MixedPoint makeMixturePoint(const Medium<Voxel>& medium, const Clip& clip, const Vec3& world,
                             const Vec3& index) {
-  return medium.at(index, medium.mixed()->hasFree() ? keep(clip, world) : 1.0);
+  return medium.at(index, medium.mixed()->hasFree() ? clipWeight(clip, world) : 1.0);
 }
 
 /// Matter that a collision meets; of a mixture one component, drawn.

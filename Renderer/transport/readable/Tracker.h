@@ -106,11 +106,11 @@ private:
           break;
         }
         t += opticalDepth / majorant;
-        const double kept = cell.cut ? keep(m_clip, entering.at(t)) : 1.0;
+        const double weight = cell.cut ? clipWeight(m_clip, entering.at(t)) : 1.0;
         double extinction = 0.0;
-        if (m_medium.canCollide(kept)) {
+        if (m_medium.canCollide(weight)) {
           ++counters.lookups;
-          extinction = m_medium.extinction(indexRay.at(t), kept);
+          extinction = m_medium.extinction(indexRay.at(t), weight);
         }
         if (!visit(inside.begin + t, extinction / majorant))
           return;
