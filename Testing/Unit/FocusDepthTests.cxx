@@ -86,7 +86,7 @@ TEST(FocusCells, RayMeetsThemWhereTheIndicatorFirstReachesAHalf) {
       }
     }
   }
-  EXPECT_GT(met, briefly(500));
+  EXPECT_GT(hits, briefly(500));
 }
 
 /// Tolerance within which the near end of a ridge may be returned as its summit.

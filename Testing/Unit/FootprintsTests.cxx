@@ -35,13 +35,13 @@ void expectHitsInBounds(const FocusTracer& tracer, const DepthBuffer& buffer,
     if (depths[i] < infinity) {
       const DepthBuffer::Cell cell = buffer.cell(positions[i]);
       const Interval& bound = bounds[range.at(cell.column, cell.row)];
-      ASSERT_LE(reach.begin, depths[i])
+      ASSERT_LE(bound.begin, depths[i])
           << "at x = " << positions[i].x() << ", y = " << positions[i].y();
-      ASSERT_GE(reach.end, depths[i])
+      ASSERT_GE(bound.end, depths[i])
           << "at x = " << positions[i].x() << ", y = " << positions[i].y();
       ++hits;
     }
-  EXPECT_GT(met, 200);
+  EXPECT_GT(hits, 200);
 }
 
 /// Pixels both wider and narrower than the focus's cells.

@@ -160,7 +160,7 @@ TEST_P(SimdCameraRays, RaysAreThoseInDouble) {
           ASSERT_NEAR(cameraRays.depth(ray, 1.0), paths->depthPerLength[at], 2e-7);
         }
       }
-      EXPECT_GT(met, 100U);
+      EXPECT_GT(hits, 100U);
     });
   }
 }

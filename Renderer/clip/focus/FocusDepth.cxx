@@ -92,7 +92,7 @@ FocusDepth FocusTracer::traceDepths() const {
     while (first < end && !meetsVolume(end - 1, row))
       --end;
     std::vector<std::int64_t> samples;
-    std::vector<Glance> glances;
+    std::vector<DepthQuery> queries;
     for (std::int64_t column = first; column < end; ++column) {
       const std::int64_t sample = depth.sample(column, row);
       result.regions[static_cast<std::size_t>(sample)] = Region::context;
@@ -100,13 +100,13 @@ FocusDepth FocusTracer::traceDepths() const {
       if (depths.isEmpty())
         continue;
       samples.push_back(sample);
-      glances.push_back({depth.position(column, row), depths});
+      queries.push_back({depth.position(column, row), depths});
     }
-    std::vector<Sight> sights(glances.size());
-    meet(glances, sights);
-    for (std::size_t i = 0; i < sights.size(); ++i)
-      if (sights[i].depth < infinity) {
-        depth.set(samples[i], sights[i].depth);
+    std::vector<DepthHit> hits(queries.size());
+    findHits(queries, hits);
+    for (std::size_t i = 0; i < hits.size(); ++i)
+      if (hits[i].depth < infinity) {
+        depth.set(samples[i], hits[i].depth);
         result.regions[static_cast<std::size_t>(samples[i])] = Region::focus;
       }
   });
@@ -116,13 +116,13 @@ FocusDepth FocusTracer::traceDepths() const {
 std::vector<double> FocusTracer::findDepths(const std::vector<Vec2>& positions) const {
   std::vector<double> depths(positions.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, positions.size()), [&](const auto& range) {
-    std::vector<Glance> glances;
+    std::vector<DepthQuery> queries;
     for (std::size_t i = range.begin(); i < range.end(); ++i)
-      glances.push_back({positions[i]});
-    std::vector<Sight> sights(glances.size());
-    meet(glances, sights);
-    for (std::size_t i = 0; i < sights.size(); ++i)
-      depths[range.begin() + i] = sights[i].depth;
+      queries.push_back({positions[i]});
+    std::vector<DepthHit> hits(queries.size());
+    findHits(queries, hits);
+    for (std::size_t i = 0; i < hits.size(); ++i)
+      depths[range.begin() + i] = hits[i].depth;
   });
   return depths;
 }
@@ -137,12 +137,12 @@ bool FocusTracer::isFocus(const Vec2& position, double depth) const {
 }
 
 template <bool withMaxima>
-void FocusTracer::follow(std::span<const Glance> glances, std::span<Sight> sights) const {
-  if (glances.empty())
+void FocusTracer::trace(std::span<const DepthQuery> queries, std::span<DepthHit> hits) const {
+  if (queries.empty())
     return;
-  std::ranges::fill(sights, Sight{});
+  std::ranges::fill(hits, DepthHit{});
   FocusRays rays; // traced together
-  std::array<Sight*, FocusRays::capacity> sightOf;
+  std::array<DepthHit*, FocusRays::capacity> hitOfRay;
   FocusRays::SoaArray depthPerLength;
   const auto flush = [&] {
     if constexpr (withMaxima)
@@ -151,20 +151,20 @@ void FocusTracer::follow(std::span<const Glance> glances, std::span<Sight> sight
       m_cells->findHits(rays);
     for (std::size_t i = 0; i < rays.size; ++i)
       if (rays.hitT[i] < infinity)
-        *sightOf[i] = {rays.hitT[i] * depthPerLength[i], 0.5};
+        *hitOfRay[i] = {rays.hitT[i] * depthPerLength[i], 0.5};
       else if (withMaxima && rays.maximum[i] > FocusCells::captureThreshold)
-        *sightOf[i] = {rays.maximumT[i] * depthPerLength[i], rays.maximum[i]};
+        *hitOfRay[i] = {rays.maximumT[i] * depthPerLength[i], rays.maximum[i]};
     rays.size = 0;
   };
-  for (std::size_t i = 0; i < glances.size(); ++i) {
-    const auto [ray, perLength] = m_rays->makeRay(glances[i].position);
-    Interval range = clipToDomain(glances[i].position);
-    range.begin = std::max(range.begin, glances[i].depths.begin / perLength);
-    range.end = std::min(range.end, glances[i].depths.end / perLength);
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    const auto [ray, perLength] = m_rays->makeRay(queries[i].position);
+    Interval range = clipToDomain(queries[i].position);
+    range.begin = std::max(range.begin, queries[i].depths.begin / perLength);
+    range.end = std::min(range.end, queries[i].depths.end / perLength);
     const Interval inside = m_cells->box().clip(ray, range);
     if (inside.isEmpty())
       continue;
-    sightOf[rays.size] = &sights[i];
+    hitOfRay[rays.size] = &hits[i];
     depthPerLength[rays.size] = perLength;
     rays.add(ray, inside);
     if (rays.isFull())
@@ -173,12 +173,13 @@ void FocusTracer::follow(std::span<const Glance> glances, std::span<Sight> sight
   flush();
 }
 
-void FocusTracer::meet(std::span<const Glance> glances, std::span<Sight> sights) const {
-  follow<false>(glances, sights);
+void FocusTracer::findHits(std::span<const DepthQuery> queries, std::span<DepthHit> hits) const {
+  trace<false>(queries, hits);
 }
 
-void FocusTracer::look(std::span<const Glance> glances, std::span<Sight> sights) const {
-  follow<true>(glances, sights);
+void FocusTracer::findHitsAndMaxima(std::span<const DepthQuery> queries,
+                                    std::span<DepthHit> hits) const {
+  trace<true>(queries, hits);
 }
 
 } // namespace fenestra

@@ -40,13 +40,13 @@ class CellRays;
 class FocusCells;
 
 /// Stretch of an eye ray to search.
-struct Glance {
+struct DepthQuery {
   Vec2 position;        ///< (x, y) of the ray, mm
   Interval depths = {}; ///< mm
 };
 
 /// Result for a glance.
-struct Sight {
+struct DepthHit {
   /// mm, where the ray meets the focus, else at the ray's summit (FocusCells); infinity: neither.
   /// Continuous from ray to ray across the outline of the focus.
   double depth = infinity;
@@ -70,8 +70,8 @@ public:
 
   /// Fills sights[i] for glances[i]. `meet`: meetings only (cheaper); `look`: summits as well. Not
   /// threaded inside: to be called in parallel.
-  void meet(std::span<const Glance> glances, std::span<Sight> sights) const;
-  void look(std::span<const Glance> glances, std::span<Sight> sights) const;
+  void findHits(std::span<const DepthQuery> queries, std::span<DepthHit> hits) const;
+  void findHitsAndMaxima(std::span<const DepthQuery> queries, std::span<DepthHit> hits) const;
 
   /// True if the ray through (x, y) is in focus and domain at this depth, mm.
   bool isFocus(const Vec2& position, double depth) const;
@@ -82,7 +82,7 @@ public:
 private:
   Interval clipToDomain(const Vec2& position) const;
   template <bool withMaxima>
-  void follow(std::span<const Glance> glances, std::span<Sight> sights) const;
+  void trace(std::span<const DepthQuery> queries, std::span<DepthHit> hits) const;
 
   Camera m_camera;
   Domain m_volume;

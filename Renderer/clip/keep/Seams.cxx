@@ -38,9 +38,9 @@ std::vector<SilhouetteCells::DepthBounds> boundNeighborhoods(const DepthBuffer& 
   const auto columns = static_cast<std::size_t>(range.columns());
   std::vector<float> row(columns + width - 1);
   // Ranges of four neighbours in a row, then of four such rows.
-  std::vector<SilhouetteCells::DepthBounds> sights(
+  std::vector<SilhouetteCells::DepthBounds> bounds(
       columns * static_cast<std::size_t>(range.rows() + width - 1));
-  auto sight = sights.begin();
+  auto bound = bounds.begin();
   for (std::int64_t r = range.top - 1; r < range.bottom + width - 2; ++r) {
     for (std::size_t i = 0; i < row.size(); ++i)
       row[i] = buffer.depthsFromReference()[static_cast<std::size_t>(
@@ -51,30 +51,30 @@ std::vector<SilhouetteCells::DepthBounds> boundNeighborhoods(const DepthBuffer& 
       return SilhouetteCells::DepthBounds{row[i], row[i] < noDepth ? row[i] : -noDepth};
     };
     for (std::size_t i = 0; i < columns; ++i)
-      *sight++ = enclose(enclose(at(i), at(i + 1)), enclose(at(i + 2), at(i + 3)));
+      *bound++ = enclose(enclose(at(i), at(i + 1)), enclose(at(i + 2), at(i + 3)));
   }
   for (std::size_t i = 0; i < range.size(); ++i) {
     const auto& [least, greatest] =
-        enclose(enclose(sights[i], sights[i + columns]),
-                enclose(sights[i + 2 * columns], sights[i + 3 * columns]));
-    sights[i] = {least, 2.0F * greatest - least};
+        enclose(enclose(bounds[i], bounds[i + columns]),
+                enclose(bounds[i + 2 * columns], bounds[i + 3 * columns]));
+    bounds[i] = {least, 2.0F * greatest - least};
   }
-  return sights;
+  return bounds;
 }
 
 /// Questions that are traced together.
 struct QueryBatch {
   std::size_t size = 0;
   std::array<SilhouetteCells::Query*, SilhouetteCells::maxQueries> queries;
-  std::array<Glance, SilhouetteCells::maxQueries> glance;
-  std::array<Sight, SilhouetteCells::maxQueries> sight;
+  std::array<DepthQuery, SilhouetteCells::maxQueries> requests;
+  std::array<DepthHit, SilhouetteCells::maxQueries> results;
 
   void add(SilhouetteCells::Query& query, const Interval& depths) {
     queries[size] = &query;
-    glance[size++] = {query.position, depths};
+    requests[size++] = {query.position, depths};
   }
-  std::span<const Glance> glances() const { return std::span(glance).first(size); }
-  std::span<Sight> sights() { return std::span(sight).first(size); }
+  std::span<const DepthQuery> depthQueries() const { return std::span(requests).first(size); }
+  std::span<DepthHit> hits() { return std::span(results).first(size); }
 };
 
 } // namespace
@@ -119,7 +119,7 @@ Interval SilhouetteCells::joinDepthBounds(const DepthBuffer& buffer, std::int64_
 
 void SilhouetteCells::findHalo(const FocusDepth& focus, const CellRange& range) {
   const DepthBuffer& buffer = focus.depth;
-  std::vector<Glance> glances;
+  std::vector<DepthQuery> depthQueries;
   for (std::int64_t row = range.top; row <= std::min(range.bottom, buffer.rows() - 1); ++row)
     for (std::int64_t column = range.left; column <= std::min(range.right, buffer.columns() - 1);
          ++column) {
@@ -130,17 +130,18 @@ void SilhouetteCells::findHalo(const FocusDepth& focus, const CellRange& range) 
       if (depths.isEmpty())
         continue;
       m_halo.push_back({sample, 0.0});
-      glances.push_back({buffer.position(column, row), depths});
+      depthQueries.push_back({buffer.position(column, row), depths});
     }
-  std::vector<Sight> sights(glances.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, glances.size(), 256), [&](const auto& part) {
-    m_tracer->look(std::span(glances).subspan(part.begin(), part.size()),
-                   std::span(sights).subspan(part.begin(), part.size()));
-  });
+  std::vector<DepthHit> hits(depthQueries.size());
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, depthQueries.size(), 256), [&](const auto& part) {
+        m_tracer->findHitsAndMaxima(std::span(depthQueries).subspan(part.begin(), part.size()),
+                                    std::span(hits).subspan(part.begin(), part.size()));
+      });
   std::size_t found = 0;
   for (std::size_t i = 0; i < m_halo.size(); ++i)
-    if (sights[i].indicator > FocusCells::captureThreshold)
-      m_halo[found++] = {m_halo[i].sample, sights[i].depth};
+    if (hits[i].indicator > FocusCells::captureThreshold)
+      m_halo[found++] = {m_halo[i].sample, hits[i].depth};
   m_halo.resize(found);
 }
 
@@ -170,19 +171,19 @@ void SilhouetteCells::evaluate(std::span<Query> queries) const {
     else
       addToRest(query);
   }
-  m_tracer->meet(inner.glances(), inner.sights());
+  m_tracer->findHits(inner.depthQueries(), inner.hits());
   for (std::size_t i = 0; i < inner.size; ++i)
-    if (inner.sight[i].indicator > 0.0)
-      inner.queries[i]->depth = inner.sight[i].depth - toFocus;
+    if (inner.results[i].indicator > 0.0)
+      inner.queries[i]->depth = inner.results[i].depth - toFocus;
     else
       addToRest(*inner.queries[i]);
-  m_tracer->look(rest.glances(), rest.sights());
+  m_tracer->findHitsAndMaxima(rest.depthQueries(), rest.hits());
   for (std::size_t i = 0; i < rest.size; ++i)
-    if (const Sight& sight = rest.sight[i]; sight.indicator > FocusCells::captureThreshold) {
+    if (const DepthHit& hit = rest.results[i]; hit.indicator > FocusCells::captureThreshold) {
       Query& query = *rest.queries[i];
-      const double depth = std::min(sight.depth, findBounds(query).end) - toFocus;
+      const double depth = std::min(hit.depth, findBounds(query).end) - toFocus;
       const double blend =
-          (sight.indicator - FocusCells::captureThreshold) / (0.5 - FocusCells::captureThreshold);
+          (hit.indicator - FocusCells::captureThreshold) / (0.5 - FocusCells::captureThreshold);
       query.depth += blend * (depth - query.depth);
     }
 }
