@@ -14,7 +14,7 @@ Value curveAt(const std::vector<CurveNode<Value>>& nodes, double x) {
   const CurveNode<Value>& before = *(next - 1);
   const double u = std::clamp((x - before.x) / (next->x - before.x), 0.0, 1.0);
   return before.value +
-         (next->value - before.value) * curveProgress(u, before.midpoint, before.sharpness);
+         (next->value - before.value) * evaluateCurve(u, before.midpoint, before.sharpness);
 }
 
 } // namespace fenestra

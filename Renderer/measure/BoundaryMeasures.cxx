@@ -33,7 +33,7 @@ struct OutlineEdge {
 /// Depth, mm, at which the remaining volume begins on the ray through `position`; infinity: none.
 double findContextDepth(const Clip& clip, const Domain& volume, const Vec2& position) {
   const Camera& camera = *findCamera(clip);
-  const Ray ray = camera.rayThrough(position);
+  const Ray ray = camera.makePlaneRay(position);
   const Interval part =
       volume.clip(transformRay(volume.grid().worldToIndex, ray), intervalBehindSurface(clip, ray));
   return part.isEmpty() ? infinity : part.begin * camera.depthPerLength(ray);

@@ -47,7 +47,7 @@ FocusPoints findFocusPoints(const SceneView& scene, const std::vector<double>& d
       continue;
     const std::size_t row = pixel / width, column = pixel - row * width;
     const Ray ray =
-        scene.camera.ray(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
+        scene.camera.makeRay(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
     const double distance = depth[pixel] / scene.camera.depthPerLength(ray);
     const Interval behind = intervalBehindSurface(scene.clip, ray);
     const double deepest =
@@ -120,7 +120,7 @@ std::optional<double> measureContextRemoved(const SceneView& scene, const Mask& 
                                             std::uint64_t seed) {
   constexpr std::int64_t strata = 64; // along each axis
   const ContextStyle style{nonOwning(focus)};
-  const StyledContext where(style, scene.volume.grid);
+  const ContextField where(style, scene.volume.grid);
   const Domain domain(scene.volume.grid, scene.crop);
   const Box box = scene.volume.grid.indexBox();
   return withMedium(scene, [&](const auto& medium, const auto&) {

@@ -32,7 +32,7 @@ VisibleSurface makeVisibleSurface(const ClipDepth& clip, const std::vector<doubl
   std::size_t pixel = 0;
   for (int row = 0; row < camera.height(); ++row)
     for (int column = 0; column < camera.width(); ++column, ++pixel) {
-      const Ray ray = camera.ray(column + 0.5, row + 0.5);
+      const Ray ray = camera.makeRay(column + 0.5, row + 0.5);
       const bool isInside = !volume.clip(transformRay(volume.grid().worldToIndex, ray)).isEmpty();
       const bool isFocus = focusDepth[pixel] < infinity;
       surface.regions.push_back(isFocus    ? Region::focus

@@ -23,15 +23,15 @@ static void from_json(const Anatomy& numbers, TubeNode& node) {
 
 namespace {
 
-Solid shapeOf(const Anatomy& part) {
+Solid makeShape(const Anatomy& part) {
   if (part.contains("ellipsoid"))
-    return ellipsoid(part["ellipsoid"].at(0), part["ellipsoid"].at(1));
+    return makeEllipsoid(part["ellipsoid"].at(0), part["ellipsoid"].at(1));
   if (part.contains("block"))
-    return block(part["block"], part.at("rounding"));
+    return makeBlock(part["block"], part.at("rounding"));
   if (part.contains("loft"))
-    return loft(part["loft"], part.value("squareness", 0.25), part.value("cap", 5.0));
+    return makeLoft(part["loft"], part.value("squareness", 0.25), part.value("cap", 5.0));
   if (part.contains("tube"))
-    return tube(part["tube"], part.value("stretch", Vec3(Vec3::Ones())));
+    return makeTube(part["tube"], part.value("stretch", Vec3(Vec3::Ones())));
   if (part.contains("parts"))
     return part["parts"];
   const double floor = part.at("above");
@@ -39,17 +39,18 @@ Solid shapeOf(const Anatomy& part) {
           {{-infinity, -infinity, floor}, Vec3::Constant(infinity)}};
 }
 
-Solid placedShapeOf(const Anatomy& part) {
-  Solid solid = shapeOf(part);
+Solid makePlacedShape(const Anatomy& part) {
+  Solid solid = makeShape(part);
   if (part.contains("frame"))
-    solid = placed(toShape(part["frame"].at(0), part["frame"].at(1), part["frame"].at(2)), solid);
-  return part.value("paired", false) ? paired(solid) : solid;
+    solid =
+        placeSolid(toShape(part["frame"].at(0), part["frame"].at(1), part["frame"].at(2)), solid);
+  return part.value("paired", false) ? mirrorPair(solid) : solid;
 }
 
-Solid joined(const Solid& before, const Anatomy& part) {
-  const Solid solid = placedShapeOf(part);
+Solid combineSolids(const Solid& before, const Anatomy& part) {
+  const Solid solid = makePlacedShape(part);
   if (part.contains("cut"))
-    return without(before, solid, part["cut"]);
+    return subtract(before, solid, part["cut"]);
   if (part.contains("intersect"))
     return intersect(before, solid, part["intersect"]);
   return unite(before, solid, part.at("unite"));
@@ -57,18 +58,18 @@ Solid joined(const Solid& before, const Anatomy& part) {
 
 } // namespace
 
-Anatomy anatomyOf(const std::string& subject) {
+Anatomy loadAnatomy(const std::string& subject) {
   return Anatomy::parse(findResource("phantoms/" + subject + ".json"));
 }
 
 void from_json(const Anatomy& parts, Solid& solid) {
   if (!parts.is_array()) {
-    solid = placedShapeOf(parts);
+    solid = makePlacedShape(parts);
     return;
   }
-  solid = placedShapeOf(parts.at(0));
+  solid = makePlacedShape(parts.at(0));
   for (std::size_t i = 1; i < parts.size(); ++i)
-    solid = joined(solid, parts[i]);
+    solid = combineSolids(solid, parts[i]);
 }
 
 } // namespace fenestra

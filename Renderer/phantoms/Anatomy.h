@@ -11,7 +11,7 @@ namespace fenestra {
 using Anatomy = nlohmann::json;
 
 /// Content of Resources/phantoms/`subject`.json.
-Anatomy anatomyOf(const std::string& subject);
+Anatomy loadAnatomy(const std::string& subject);
 
 void from_json(const Anatomy& numbers, Vec2& vector);
 void from_json(const Anatomy& numbers, Vec3& vector);

@@ -7,12 +7,12 @@ namespace {
 
 constexpr std::int64_t publishedSize = 512;
 const Size3 publishedFocus{255, 255, 391};
-constexpr int greatest = 255; ///< largest scalar
+constexpr int maxScalar = 255; ///< largest scalar
 
 std::int16_t sliceScalar(std::int64_t slice, std::int64_t count) {
   const auto last = static_cast<double>(count - 1);
   return static_cast<std::int16_t>(
-      std::lround(greatest * (2.0 * static_cast<double>(slice) - last) / last));
+      std::lround(maxScalar * (2.0 * static_cast<double>(slice) - last) / last));
 }
 
 /// Opaque within edge / 100, blue at -255 through purple to red at 255; no shading, since the only
@@ -20,11 +20,11 @@ std::int16_t sliceScalar(std::int64_t slice, std::int64_t count) {
 /// an edge far below 100 mm: there Fenestra's cap on opacity leaves 9.2 per mm.
 VolumeProperty cubeProperty(double edge) {
   VolumeProperty property;
-  property.scalarOpacity = {{-greatest, 0.99}, {greatest, 0.99}};
+  property.scalarOpacity = {{-maxScalar, 0.99}, {maxScalar, 0.99}};
   property.gradientOpacity = {{0, 1}, {255, 1}};
   // Not pure: a component of 0 would lose all light scattered more than once.
   property.color = {
-      {-greatest, {0.15, 0.25, 1.0}}, {0, {0.80, 0.50, 0.85}}, {greatest, {1.0, 0.20, 0.15}}};
+      {-maxScalar, {0.15, 0.25, 1.0}}, {0, {0.80, 0.50, 0.85}}, {maxScalar, {1.0, 0.20, 0.15}}};
   property.unitDistance = edge / 100.0;
   property.shade = false;
   return property;
@@ -39,15 +39,15 @@ Phantom makeCubePhantom(const CubeOptions& options) {
 
   Phantom phantom;
   phantom.volume.grid =
-      phantomGrid(size, Vec3::Constant(options.edge), Mat3::Identity(), Vec3::Zero());
+      makePhantomGrid(size, Vec3::Constant(options.edge), Mat3::Identity(), Vec3::Zero());
   LargeArray<std::int16_t> voxels(static_cast<std::size_t>(size.prod()));
   const std::int64_t sliceVoxels = size.x() * size.y();
   for (std::int64_t k = 0; k < size.z(); ++k)
     std::fill_n(voxels.begin() + k * sliceVoxels, sliceVoxels, sliceScalar(k, size.z()));
   phantom.volume.voxels = std::move(voxels);
   phantom.volume.name = "cube";
-  phantom.volume.minimum = -greatest;
-  phantom.volume.maximum = greatest;
+  phantom.volume.minimum = -maxScalar;
+  phantom.volume.maximum = maxScalar;
 
   PhantomLabels& labels = phantom.labels;
   labels.size = (publishedFocus * options.size).unaryExpr([](std::int64_t x) {

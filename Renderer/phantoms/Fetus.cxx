@@ -25,28 +25,30 @@ double uterineWall(const Vec3& p) {
 }
 
 /// The fetus in its fluid.
-class FetusSubject : public LayeredSubject<PaintedPlace> {
+class FetusSubject : public LayeredSubject<PaintSite> {
 public:
   static constexpr double background = 6.0; ///< fluid
 
   FetusSubject() : LayeredSubject(0.0) {
-    const Anatomy anatomy = anatomyOf("fetus");
+    const Anatomy anatomy = loadAnatomy("fetus");
     constexpr double skin = 2.2; // mm
-    const auto face = segment("face", "Fetal face and hand", {0.93, 0.72, 0.58});
+    const auto face = addSegment("face", "Fetal face and hand", {0.93, 0.72, 0.58});
     for (const Solid part : {anatomy.at("head"), anatomy.at("hand")}) {
-      layer(face, insideEcho, part.box, [part](const Vec3& p) { return part.distance(p) + skin; });
-      layer(face, constant(165.0), part.box, part.distance);
+      addLayer(face, insideEcho, part.box,
+               [part](const Vec3& p) { return part.distance(p) + skin; });
+      addLayer(face, makeConstant(165.0), part.box, part.distance);
     }
     const Solid cord = anatomy.at("cord");
-    layer(segment("cord", "Umbilical cord", {0.75, 0.55, 0.62}), constant(130.0), cord.box,
-          cord.distance);
-    layer(segment("wall", "Uterine wall", {0.72, 0.36, 0.32}), wallEcho, everywhere, uterineWall);
+    addLayer(addSegment("cord", "Umbilical cord", {0.75, 0.55, 0.62}), makeConstant(130.0),
+             cord.box, cord.distance);
+    addLayer(addSegment("wall", "Uterine wall", {0.72, 0.36, 0.32}), wallEcho, everywhere,
+             uterineWall);
   }
 
-  PaintedPlace site(const Vec3& point) const { return {point, -infinity}; } // no outside in view
+  PaintSite makeSite(const Vec3& point) const { return {point, -infinity}; } // no outside in view
 
   /// Applies speckle of pulse size, attenuation with depth, and noise.
-  std::int16_t acquired(double signal, const Vec3& point, std::uint64_t voxel) const {
+  std::int16_t acquire(double signal, const Vec3& point, std::uint64_t voxel) const {
     const double speckle =
         1.0 + 0.24 * valueNoise(point / 1.3, 21) + 0.14 * valueNoise(point / 0.7, 22);
     const double depth =
@@ -75,7 +77,7 @@ VolumeProperty fetusProperty() {
 Phantom makeFetusPhantom(const Size3& size) {
   constexpr Mat3 axes({-1, 0, 0}, {0, -1, 0}, {0, 0, 1}); // columns: left, posterior, superior
   Phantom phantom = paintPhantom(
-      FetusSubject(), phantomGrid(size, fetusFieldOfView, axes, fetusFieldCenter), "fetus");
+      FetusSubject(), makePhantomGrid(size, fetusFieldOfView, axes, fetusFieldCenter), "fetus");
   phantom.property = fetusProperty();
   phantom.towardViewer = {0.35, 1.0, 0.15};
   return phantom;

@@ -31,13 +31,13 @@ double footFasciaDepth(const Vec3& p) {
   return 2.8 + 3.2 * plantar + 4.5 * heel + 1.6 * leg + 0.4 * valueNoise(p / 14.0, 262);
 }
 
-double footTendon(const Vec3& p) {
+double footTendonSignal(const Vec3& p) {
   return 105.0 + 10.0 * valueNoise(p / 2.0, 273);
 }
-double footMuscle(const Vec3& p) {
+double footMuscleSignal(const Vec3& p) {
   return 55.0 + 12.0 * valueNoise(p.cwiseQuotient(Vec3{3.0, 9.0, 3.0}), 274);
 }
-double footFat(const Vec3& p) {
+double footFatSignal(const Vec3& p) {
   return -105.0 + 12.0 * valueNoise(p / 5.0, 275);
 }
 
@@ -70,11 +70,11 @@ VolumeProperty footProperty() {
 
 } // namespace
 
-double footCortex(const FootSite& s) {
+double footCortexSignal(const FootSite& s) {
   return std::lerp(820.0, 1450.0, s.shaft) + 90.0 * valueNoise(s.point / 3.0, 272);
 }
 
-double footMarrow(const FootSite& s) {
+double footMarrowSignal(const FootSite& s) {
   return std::lerp(s.spongiosa + trabeculae(s.point), -40.0, s.shaft);
 }
 
@@ -94,100 +94,101 @@ FootSubject::FootSubject() : LayeredSubject(1.5) {
   addSoftTissue();
 }
 
-double FootSubject::outline(const Vec3& p) const {
+double FootSubject::outlineDistance(const Vec3& p) const {
   double surface = smoothUnion(m_leg.distance(p), m_body.distance(p), 16.0);
   for (const Solid& toe : m_toes) {
     constexpr double blend = 5.0;
-    if (contains(expanded(toe.box, blend + 1.0), p))
+    if (contains(expandBox(toe.box, blend + 1.0), p))
       surface = smoothUnion(surface, toe.distance(p), blend);
   }
   return surface + 0.3 * valueNoise(p / 12.0, 261);
 }
 
-double FootSubject::surface(const Vec3& p, double nearestBone) const {
+double FootSubject::skinDistance(const Vec3& p, double nearestBone) const {
   constexpr double overBone = 4.2, overTendon = 2.6, blend = 5.0;
-  double surface = smoothUnion(outline(p), nearestBone - overBone, blend);
+  double surface = smoothUnion(outlineDistance(p), nearestBone - overBone, blend);
   for (const Solid& tendon : m_superficial)
-    if (contains(expanded(tendon.box, overTendon + 2.0 * blend), p))
+    if (contains(expandBox(tendon.box, overTendon + 2.0 * blend), p))
       surface = smoothUnion(surface, tendon.distance(p) - overTendon, blend);
   return surface;
 }
 
-FootSite FootSubject::site(const Vec3& p) const {
+FootSite FootSubject::makeSite(const Vec3& p) const {
   FootSite s{};
   s.point = p;
   s.bones = m_bones.distances(p);
   const auto nearest = std::min_element(s.bones.begin(), s.bones.end());
   s.nearest = static_cast<std::size_t>(nearest - s.bones.begin());
-  s.second = FootBones::beyond;
+  s.second = FootBones::maxDistance;
   for (std::size_t i = 0; i < s.bones.size(); ++i)
     if (i != s.nearest)
       s.second = std::min(s.second, s.bones[i]);
-  s.shaft = m_bones.shaft(s.nearest, p);
+  s.shaft = m_bones.shaftPosition(s.nearest, p);
   s.spongiosa = m_bones.bones()[s.nearest].spongiosa;
-  s.surface = surface(p, *nearest);
+  s.surface = skinDistance(p, *nearest);
   s.fascia = s.surface + footFasciaDepth(p);
   return s;
 }
 
-std::int16_t FootSubject::acquired(double signal, const Vec3&, std::uint64_t voxel) const {
+std::int16_t FootSubject::acquire(double signal, const Vec3&, std::uint64_t voxel) const {
   const double noisy = std::clamp(signal + footNoise * normalNoise(voxel), -1024.0, 3071.0);
   return static_cast<std::int16_t>(std::lround(noisy));
 }
 
-void FootSubject::shapes(std::uint8_t label, const Field& signal, const std::vector<Solid>& shapes,
-                         double depth) {
+void FootSubject::addShapes(std::uint8_t label, const Field& signal,
+                            const std::vector<Solid>& shapes, double depth) {
   for (const Solid& shape : shapes)
-    layer(label, signal, shape.box, both(shape.distance, under(depth)));
+    addLayer(label, signal, shape.box, makeIntersection(shape.distance, makeInset(depth)));
 }
 
 void FootSubject::addBones() {
   for (std::size_t i = 0; i < FootBones::count; ++i) {
     const FootBone& bone = m_bones.bones()[i];
-    const auto label = segment(bone.id, bone.name, boneColor);
+    const auto label = addSegment(bone.id, bone.name, boneColor);
     const double ends = bone.cortex, middle = bone.shaftCortex;
-    layer(label, footMarrow, bone.shape.box, [=](const FootSite& s) {
+    addLayer(label, footMarrowSignal, bone.shape.box, [=](const FootSite& s) {
       const double thickness = i == s.nearest ? std::lerp(ends, middle, s.shaft) : ends;
       return s.bones[i] + thickness + 0.15 * valueNoise(s.point / 4.0, 276);
     });
-    layer(label, footCortex, bone.shape.box, [i](const FootSite& s) { return s.bones[i]; });
+    addLayer(label, footCortexSignal, bone.shape.box,
+             [i](const FootSite& s) { return s.bones[i]; });
   }
 }
 
 void FootSubject::addSoftTissue() {
-  const Field underSkin = under(footSkinThickness);
+  const Field underSkin = makeInset(footSkinThickness);
   const Field capsules = [](const FootSite& s) {
     constexpr double halfWidth = 2.3; // mm; half of the gap that a capsule bridges
     return 0.5 * (s.bones[s.nearest] + s.second) - halfWidth;
   };
-  layer(segment("joints", "Joint cartilage and capsules", cartilageColor), constant(85.0),
-        everywhere, both(capsules, underSkin));
+  addLayer(addSegment("joints", "Joint cartilage and capsules", cartilageColor), makeConstant(85.0),
+           everywhere, makeIntersection(capsules, underSkin));
   const std::vector<Solid> achilles = m_anatomy.at("achilles tendon");
   m_anatomy.at("extensor tendons").get_to(m_superficial);
   m_superficial.insert(m_superficial.end(), achilles.begin(), achilles.end());
-  shapes(segment("achilles_tendon", "Achilles tendon", tendonColor), footTendon, achilles,
-         footSkinThickness + 0.5);
-  const auto tendons = segment("tendons", "Tendons", tendonColor);
+  addShapes(addSegment("achilles_tendon", "Achilles tendon", tendonColor), footTendonSignal,
+            achilles, footSkinThickness + 0.5);
+  const auto tendons = addSegment("tendons", "Tendons", tendonColor);
   for (const char* kind : {"extensor tendons", "flexor tendons"})
-    shapes(tendons, footTendon, m_anatomy.at(kind), footSkinThickness + 0.5);
-  shapes(segment("plantar_aponeurosis", "Plantar aponeurosis", tendonColor), footTendon,
-         m_anatomy.at("plantar aponeurosis"), footSkinThickness + 2.0);
-  shapes(segment("vessels", "Vessels", vesselColor), constant(45.0), m_anatomy.at("vessels"),
-         footSkinThickness + 0.4);
-  const auto muscles = segment("muscles", "Muscles", muscleColor);
+    addShapes(tendons, footTendonSignal, m_anatomy.at(kind), footSkinThickness + 0.5);
+  addShapes(addSegment("plantar_aponeurosis", "Plantar aponeurosis", tendonColor), footTendonSignal,
+            m_anatomy.at("plantar aponeurosis"), footSkinThickness + 2.0);
+  addShapes(addSegment("vessels", "Vessels", vesselColor), makeConstant(45.0),
+            m_anatomy.at("vessels"), footSkinThickness + 0.4);
+  const auto muscles = addSegment("muscles", "Muscles", muscleColor);
   for (const Solid belly : m_anatomy.at("muscles"))
-    layer(muscles, footMuscle, belly.box, [belly](const FootSite& s) {
+    addLayer(muscles, footMuscleSignal, belly.box, [belly](const FootSite& s) {
       const double shape = belly.distance(s.point) + 0.6 * valueNoise(s.point / 6.0, 277);
       return std::max(shape, s.fascia);
     });
-  layer(segment("fat", "Fat", fatColor), footFat, everywhere, underSkin);
-  layer(segment("skin", "Skin", skinColor), constant(35.0), everywhere, under(0.0));
+  addLayer(addSegment("fat", "Fat", fatColor), footFatSignal, everywhere, underSkin);
+  addLayer(addSegment("skin", "Skin", skinColor), makeConstant(35.0), everywhere, makeInset(0.0));
 }
 
 Phantom makeFootPhantom(const Size3& size) {
   constexpr Mat3 axes({0, 1, 0}, {-1, 0, 0}, {0, 0, 1}); // columns: anterior, left, superior
-  Phantom phantom = paintPhantom(FootSubject(),
-                                 phantomGrid(size, footFieldOfView, axes, footFieldCenter), "foot");
+  Phantom phantom = paintPhantom(
+      FootSubject(), makePhantomGrid(size, footFieldOfView, axes, footFieldCenter), "foot");
   addThresholdedBones(phantom);
   phantom.property = footProperty();
   phantom.towardViewer = {-0.9, 0.75, 0.75};

@@ -8,7 +8,7 @@
 namespace fenestra {
 
 /// A place with the distances that most layers need.
-struct FootSite : PaintedPlace {
+struct FootSite : PaintSite {
   double fascia;              ///< mm to the bottom of the subcutaneous fat
   FootBones::Distances bones; ///< mm
   std::size_t nearest;        ///< index of the nearest bone
@@ -18,8 +18,8 @@ struct FootSite : PaintedPlace {
 };
 
 // Hounsfield units with the tissue's own texture.
-double footCortex(const FootSite& site);
-double footMarrow(const FootSite& site);
+double footCortexSignal(const FootSite& site);
+double footMarrowSignal(const FootSite& site);
 
 class FootSubject : public LayeredSubject<FootSite> {
 public:
@@ -27,22 +27,22 @@ public:
 
   FootSubject();
 
-  FootSite site(const Vec3& point) const;
+  FootSite makeSite(const Vec3& point) const;
   /// Adds noise, and clips to 12 bits like a scanner.
-  std::int16_t acquired(double signal, const Vec3& point, std::uint64_t voxel) const;
+  std::int16_t acquire(double signal, const Vec3& point, std::uint64_t voxel) const;
 
 private:
   /// Adds shapes, cut off `depth` mm under the skin's surface.
-  void shapes(std::uint8_t label, const Field& signal, const std::vector<Solid>& shapes,
-              double depth);
+  void addShapes(std::uint8_t label, const Field& signal, const std::vector<Solid>& shapes,
+                 double depth);
 
   void addBones();
   void addSoftTissue();
   /// Distance to the skin, mm, without and with the bulges over bones and raised tendons.
-  double outline(const Vec3& point) const;
-  double surface(const Vec3& point, double nearestBone) const;
+  double outlineDistance(const Vec3& point) const;
+  double skinDistance(const Vec3& point, double nearestBone) const;
 
-  Anatomy m_anatomy = anatomyOf("foot");
+  Anatomy m_anatomy = loadAnatomy("foot");
   FootBones m_bones;
   Solid m_leg = m_anatomy.at("leg");
   Solid m_body;

@@ -12,11 +12,11 @@
 namespace fenestra {
 
 struct FootBone {
-  std::string id;                      ///< "calcaneus", "metatarsal_1", "proximal_phalanx_1", ...
-  std::string name;                    ///< display name
-  Solid shape;                         ///< before the joints of its neighbours are cut out
-  std::vector<std::size_t> neighbours; ///< earlier bones, kept `gap` mm away
-  double gap = 2.0;                    ///< mm; joint width
+  std::string id;                     ///< "calcaneus", "metatarsal_1", "proximal_phalanx_1", ...
+  std::string name;                   ///< display name
+  Solid shape;                        ///< before the joints of its neighbours are cut out
+  std::vector<std::size_t> neighbors; ///< earlier bones, kept `gap` mm away
+  double gap = 2.0;                   ///< mm; joint width
   Vec3 base = Vec3::Zero(), head = Vec3::Zero(); ///< ends of a long bone; equal in others
   double cortex = 1.0, shaftCortex = 1.0;        ///< mm; thickness at the ends and mid-shaft
   double spongiosa = 300.0;                      ///< HU between the trabeculae at the ends
@@ -26,7 +26,7 @@ class FootBones {
 public:
   static constexpr std::size_t count = 28;
   /// mm; distances farther than this are not computed.
-  static constexpr double beyond = 12.0;
+  static constexpr double maxDistance = 12.0;
   using Distances = std::array<double, count>;
 
   FootBones();
@@ -39,7 +39,7 @@ public:
   Distances distances(const Vec3& point) const;
 
   /// Position of `point` along a long bone's shaft: 0 at the ends, 1 in the middle.
-  double shaft(std::size_t bone, const Vec3& point) const;
+  double shaftPosition(std::size_t bone, const Vec3& point) const;
 
 private:
   std::vector<FootBone> m_bones;

@@ -14,11 +14,11 @@ const Vec3 kneeFieldCenter{0.0, -2.0, 6.8};      ///< world
 
 constexpr double kneeSkinThickness = 1.5;
 constexpr double fasciaThickness = 0.6;
-constexpr double film = 0.7; ///< mm; fluid on the joint's faces
+constexpr double fluidFilm = 0.7; ///< mm; fluid on the joint's faces
 constexpr double fasciaSignal = 210.0;
 
 /// A place with the distances that most layers need.
-struct KneeSite : PaintedPlace {
+struct KneeSite : PaintSite {
   double fascia;                        ///< mm to the sheath around muscles and joint
   double femur, tibia, fibula, patella; ///< mm to the bones' surfaces
   double femoralCartilage, intactFemoralCartilage, tibialCartilage, patellarCartilage; ///< mm
@@ -102,8 +102,8 @@ double suprapatellarRecess(const Vec3& p) {
 
 /// Distance to the surface of a bone with its cartilage, `extra` mm thicker; `beyond` where there
 /// is no cartilage.
-double cover(double bone, double cartilage, double extra) {
-  return cartilage > 0.05 ? bone - cartilage - extra : KneeBones::beyond;
+double coverDistance(double bone, double cartilage, double extra) {
+  return cartilage > 0.05 ? bone - cartilage - extra : KneeBones::maxDistance;
 }
 
 double deepFatSignal(const Vec3& p) {
@@ -116,16 +116,16 @@ public:
 
   KneeSubject();
 
-  KneeSite site(const Vec3& point) const;
-  std::int16_t acquired(double signal, const Vec3& point, std::uint64_t voxel) const {
+  KneeSite makeSite(const Vec3& point) const;
+  std::int16_t acquire(double signal, const Vec3& point, std::uint64_t voxel) const {
     const double noisy = ricianNoise(signal * biasField(point), noiseSigma, voxel);
     return static_cast<std::int16_t>(std::lround(noisy));
   }
 
 private:
   /// Adds a layer, cut off at the fascia.
-  void deepLayer(std::uint8_t label, Field signal, const Box& box, Field distance) {
-    layer(label, std::move(signal), box, both(std::move(distance), underFascia));
+  void addDeepLayer(std::uint8_t label, Field signal, const Box& box, Field distance) {
+    addLayer(label, std::move(signal), box, makeIntersection(std::move(distance), underFascia));
   }
   static double underFascia(const KneeSite& s) { return s.fascia + fasciaThickness; }
 
@@ -136,7 +136,7 @@ private:
   void addStructures(const char* kind, const Rgb& color, const AddShape& addShape) {
     for (const Anatomy& entry : m_anatomy.at(kind)) {
       const Vec3 own = entry.value("color", Vec3(color.x(), color.y(), color.z()));
-      const auto label = segment(entry.at("id"), entry.at("name"), own.array());
+      const auto label = addSegment(entry.at("id"), entry.at("name"), own.array());
       for (const Solid shape : entry.at("shapes"))
         addShape(label, shape);
     }
@@ -151,7 +151,7 @@ private:
   void addMuscles();
   void addCovers();
 
-  Anatomy m_anatomy = anatomyOf("knee");
+  Anatomy m_anatomy = loadAnatomy("knee");
   KneeBones m_bones;
   Solid m_trunk = m_anatomy.at("leg");
   std::uint8_t m_deepFat = 0; ///< label of the deep fat
@@ -163,13 +163,13 @@ KneeSubject::KneeSubject() : LayeredSubject(1.5) {
   addLigaments();
   addMenisci();
   addJointSpace();
-  addVessels("vessels", constant(45.0));
+  addVessels("vessels", makeConstant(45.0));
   addVessels("nerves", nerveSignal);
   addMuscles();
   addCovers();
 }
 
-KneeSite KneeSubject::site(const Vec3& p) const {
+KneeSite KneeSubject::makeSite(const Vec3& p) const {
   KneeSite s{};
   s.point = p;
   s.surface = legOutline(m_trunk, p);
@@ -178,25 +178,26 @@ KneeSite KneeSubject::site(const Vec3& p) const {
   s.tibia = m_bones.tibia(p);
   s.fibula = m_bones.fibula(p);
   s.patella = m_bones.patella(p);
-  const auto nearBone = [](double distance) { return distance > -2.0 && distance < 5.0; };
-  if (nearBone(s.femur)) {
+  const auto isNearBone = [](double distance) { return distance > -2.0 && distance < 5.0; };
+  if (isNearBone(s.femur)) {
     s.intactFemoralCartilage = m_bones.intactFemoralCartilage(p);
     s.femoralCartilage = m_bones.femoralCartilage(p);
   }
-  if (nearBone(s.tibia))
+  if (isNearBone(s.tibia))
     s.tibialCartilage = m_bones.tibialCartilage(p);
-  if (nearBone(s.patella))
+  if (isNearBone(s.patella))
     s.patellarCartilage = m_bones.patellarCartilage(p);
   return s;
 }
 
 void KneeSubject::addBones() {
   const auto bone = [this](const char* id, const char* name, double KneeSite::*surface) {
-    const auto label = segment(id, name, boneColor);
-    layer(label, marrowSignal, everywhere, [surface](const KneeSite& s) {
-      return s.*surface < 1.0 ? s.*surface + cortexThickness(s.point) : KneeBones::beyond;
+    const auto label = addSegment(id, name, boneColor);
+    addLayer(label, marrowSignal, everywhere, [surface](const KneeSite& s) {
+      return s.*surface < 1.0 ? s.*surface + cortexThickness(s.point) : KneeBones::maxDistance;
     });
-    layer(label, constant(66.0), everywhere, [surface](const KneeSite& s) { return s.*surface; });
+    addLayer(label, makeConstant(66.0), everywhere,
+             [surface](const KneeSite& s) { return s.*surface; });
   };
   bone("Femur", "Femur", &KneeSite::femur);
   bone("Tibia", "Tibia", &KneeSite::tibia);
@@ -207,8 +208,9 @@ void KneeSubject::addBones() {
 void KneeSubject::addCartilage() {
   const auto cartilage = [this](const char* id, const char* name, double KneeSite::*bone,
                                 double KneeSite::*thickness) {
-    layer(segment(id, name, cartilageColor), cartilageSignal, everywhere,
-          [bone, thickness](const KneeSite& s) { return cover(s.*bone, s.*thickness, 0.0); });
+    addLayer(
+        addSegment(id, name, cartilageColor), cartilageSignal, everywhere,
+        [bone, thickness](const KneeSite& s) { return coverDistance(s.*bone, s.*thickness, 0.0); });
   };
   cartilage("FemoralCartilage", "Femoral cartilage", &KneeSite::femur, &KneeSite::femoralCartilage);
   cartilage("TibialCartilage", "Tibial cartilage", &KneeSite::tibia, &KneeSite::tibialCartilage);
@@ -218,7 +220,7 @@ void KneeSubject::addCartilage() {
 
 void KneeSubject::addLigaments() {
   addStructures("ligaments", tendonColor, [this](std::uint8_t label, const Solid& shape) {
-    deepLayer(label, ligamentSignal, shape.box, shape.distance);
+    addDeepLayer(label, ligamentSignal, shape.box, shape.distance);
   });
 }
 
@@ -226,29 +228,29 @@ void KneeSubject::addMenisci() {
   const auto meniscus = [this](const char* id, const char* name, const MeniscusRing& ring) {
     const Vec3 center{ring.center.x(), ring.center.y(), 2.0};
     const Vec3 reach{ring.outerRadii.x(), ring.outerRadii.y(), 6.0};
-    layer(segment(id, name, {0.663, 0.784, 0.702}), meniscusSignal,
-          {center - reach, center + reach}, [ring](const KneeSite& s) {
-            const double above = s.femoralCartilage + 0.25 - s.femur;
-            const double below = s.tibialCartilage + 0.15 - s.tibia;
-            return std::max({ring.distance(s.point), above, below});
-          });
+    addLayer(addSegment(id, name, {0.663, 0.784, 0.702}), meniscusSignal,
+             {center - reach, center + reach}, [ring](const KneeSite& s) {
+               const double above = s.femoralCartilage + 0.25 - s.femur;
+               const double below = s.tibialCartilage + 0.15 - s.tibia;
+               return std::max({ring.distance(s.point), above, below});
+             });
   };
   meniscus("MedialMeniscus", "Medial meniscus", medialMeniscus);
   meniscus("LateralMeniscus", "Lateral meniscus", lateralMeniscus);
 }
 
 void KneeSubject::addJointSpace() {
-  const auto fluid = segment("JointFluid", "Joint fluid", {0.667, 0.980, 0.980});
-  layer(fluid, constant(215.0), everywhere, [](const KneeSite& s) {
-    return std::min({cover(s.femur, s.intactFemoralCartilage, film),
-                     cover(s.tibia, s.tibialCartilage, film),
-                     cover(s.patella, s.patellarCartilage, film)});
+  const auto fluid = addSegment("JointFluid", "Joint fluid", {0.667, 0.980, 0.980});
+  addLayer(fluid, makeConstant(215.0), everywhere, [](const KneeSite& s) {
+    return std::min({coverDistance(s.femur, s.intactFemoralCartilage, fluidFilm),
+                     coverDistance(s.tibia, s.tibialCartilage, fluidFilm),
+                     coverDistance(s.patella, s.patellarCartilage, fluidFilm)});
   });
-  layer(fluid, constant(215.0), {{-17, 25, 45}, {19, 38, 75}}, suprapatellarRecess);
-  deepLayer(segment("Retinaculum", "Patellar retinaculum", tendonColor), constant(fasciaSignal),
-            {{-46, 0, -14}, {49, 46, 62}}, patellarRetinaculum);
-  deepLayer(
-      segment("InfrapatellarFatPad", "Infrapatellar fat pad", {0.882, 0.902, 0.588}),
+  addLayer(fluid, makeConstant(215.0), {{-17, 25, 45}, {19, 38, 75}}, suprapatellarRecess);
+  addDeepLayer(addSegment("Retinaculum", "Patellar retinaculum", tendonColor),
+               makeConstant(fasciaSignal), {{-46, 0, -14}, {49, 46, 62}}, patellarRetinaculum);
+  addDeepLayer(
+      addSegment("InfrapatellarFatPad", "Infrapatellar fat pad", {0.882, 0.902, 0.588}),
       [](const Vec3& p) { return fatSignal(p, 300.0) - 15.0; }, {{-35, 6, -25}, {39, 48, 30}},
       infrapatellarFatPad);
 }
@@ -257,31 +259,31 @@ void KneeSubject::addJointSpace() {
 void KneeSubject::addVessels(const char* kind, const Field& signal) {
   const auto underSkin = [](const KneeSite& s) { return s.surface + kneeSkinThickness + 0.5; };
   addStructures(kind, vesselColor, [&](std::uint8_t label, const Solid& shape) {
-    layer(label, signal, shape.box, both(shape.distance, underSkin));
+    addLayer(label, signal, shape.box, makeIntersection(shape.distance, underSkin));
   });
 }
 
 /// Adds each muscle with a layer of fat, which separates neighbouring muscles.
 void KneeSubject::addMuscles() {
-  m_deepFat = segment("IntermuscularFat", "Intermuscular fat", fatColor);
+  m_deepFat = addSegment("IntermuscularFat", "Intermuscular fat", fatColor);
   addStructures("muscles", muscleColor, [this](std::uint8_t label, const Solid& belly) {
     const auto shape = [belly](const Vec3& p) {
       return belly.distance(p) + 0.9 * valueNoise(p / 8.0, 92);
     };
-    deepLayer(label, muscleSignal, belly.box, shape);
-    deepLayer(m_deepFat, deepFatSignal, belly.box,
-              [shape](const Vec3& p) { return shape(p) - 0.8; });
+    addDeepLayer(label, muscleSignal, belly.box, shape);
+    addDeepLayer(m_deepFat, deepFatSignal, belly.box,
+                 [shape](const Vec3& p) { return shape(p) - 0.8; });
   });
 }
 
 void KneeSubject::addCovers() {
-  layer(m_deepFat, deepFatSignal, everywhere, underFascia);
-  layer(segment("Fascia", "Fascia", tendonColor), constant(fasciaSignal), everywhere,
-        [](const KneeSite& s) { return s.fascia; });
-  layer(
-      segment("SubcutaneousFat", "Subcutaneous fat", fatColor),
-      [](const Vec3& p) { return fatSignal(p, 190.0); }, everywhere, under(kneeSkinThickness));
-  layer(segment("Skin", "Skin", skinColor), constant(410.0), everywhere, under(0.0));
+  addLayer(m_deepFat, deepFatSignal, everywhere, underFascia);
+  addLayer(addSegment("Fascia", "Fascia", tendonColor), makeConstant(fasciaSignal), everywhere,
+           [](const KneeSite& s) { return s.fascia; });
+  addLayer(
+      addSegment("SubcutaneousFat", "Subcutaneous fat", fatColor),
+      [](const Vec3& p) { return fatSignal(p, 190.0); }, everywhere, makeInset(kneeSkinThickness));
+  addLayer(addSegment("Skin", "Skin", skinColor), makeConstant(410.0), everywhere, makeInset(0.0));
 }
 
 /// Natural colours: pearly cartilage, yellow fat and marrow, red muscle.
@@ -309,8 +311,8 @@ VolumeProperty kneeProperty() {
 
 Phantom makeKneePhantom(const Size3& size) {
   constexpr Mat3 axes({0, -1, 0}, {0, 0, -1}, {1, 0, 0}); // columns: posterior, inferior, right
-  Phantom phantom = paintPhantom(KneeSubject(),
-                                 phantomGrid(size, kneeFieldOfView, axes, kneeFieldCenter), "knee");
+  Phantom phantom = paintPhantom(
+      KneeSubject(), makePhantomGrid(size, kneeFieldOfView, axes, kneeFieldCenter), "knee");
   phantom.property = kneeProperty();
   return phantom;
 }

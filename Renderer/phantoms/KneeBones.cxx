@@ -50,7 +50,7 @@ double profileAtDegrees(double degrees) {
 struct Walls {
   double medial, lateral;
 };
-Walls walls(const Vec3& p) {
+Walls computeWalls(const Vec3& p) {
   const double distal = std::max(0.0, 20.0 - p.z());
   const double narrowing = 0.003 * distal * distal;
   const double back = p.y() < 0.0 ? 0.0035 * p.y() * p.y() : 0.0;
@@ -103,7 +103,7 @@ double surfaceNoise(const Vec3& p, std::uint64_t seed) {
 } // namespace
 
 KneeBones::KneeBones() {
-  const Anatomy anatomy = anatomyOf("knee");
+  const Anatomy anatomy = loadAnatomy("knee");
   anatomy.at("femoral shaft").get_to(m_femoralShaft);
   anatomy.at("tibial shaft").get_to(m_tibialShaft);
   anatomy.at("fibula").get_to(m_fibula);
@@ -138,7 +138,7 @@ double KneeBones::wheelField(const Vec3& p) const {
 }
 
 double KneeBones::femurField(const Vec3& p) const {
-  const Walls wall = walls(p);
+  const Walls wall = computeWalls(p);
   const double sides = std::max(wall.medial - p.x(), p.x() - wall.lateral);
   double bone = smoothIntersection(wheelField(p), sides, 9.0);
   const double medialEpicondyle = ellipsoidDistance(p, {-35, -3, 25}, {5.5, 11, 11});
@@ -175,8 +175,8 @@ double KneeBones::patellaField(const Vec3& p) const {
 
 double KneeBones::distance(const Box& box, double (KneeBones::*field)(const Vec3&) const,
                            std::uint64_t seed, const Vec3& point) const {
-  if (!contains(expanded(box, beyond), point))
-    return beyond;
+  if (!contains(expandBox(box, maxDistance), point))
+    return maxDistance;
   return firstOrderDistance([&](const Vec3& p) { return (this->*field)(p); }, point) +
          surfaceNoise(point, seed);
 }
@@ -190,9 +190,9 @@ double KneeBones::tibia(const Vec3& point) const {
 }
 
 double KneeBones::fibula(const Vec3& point) const {
-  return contains(expanded(m_fibula.box, beyond), point)
+  return contains(expandBox(m_fibula.box, maxDistance), point)
              ? m_fibula.distance(point) + surfaceNoise(point, 31)
-             : beyond;
+             : maxDistance;
 }
 
 double KneeBones::patella(const Vec3& point) const {
@@ -220,7 +220,7 @@ double lesionFactor(const CartilageLesion& lesion, const Vec3& p) {
 }
 
 /// Thickness `margin` mm inside the cartilage's border: rises from 0 to `thickness`.
-double tapered(double thickness, double margin) {
+double taperThickness(double thickness, double margin) {
   return thickness * smoothStep(-1.0, 3.2, margin);
 }
 
@@ -232,7 +232,7 @@ double KneeBones::intactFemoralCartilage(const Vec3& p) const {
   const double rear = smoothStep(5.0, -20.0, p.y());
   const double front = 45.0 - 0.005 * std::pow(p.x() - 2.0, 2);
   const double top = std::lerp(front, 34.0, rear) - p.z();
-  const Walls wall = walls(p);
+  const Walls wall = computeWalls(p);
   const double sides = std::min(wall.lateral - p.x(), p.x() - wall.medial) - 2.5 - 2.0 * rear;
   const double corners = smoothUnion(top, sides, std::lerp(3.0, 9.0, rear));
   const double margin = smoothUnion(corners, notchField(p) - 2.3, 4.0);
@@ -241,7 +241,7 @@ double KneeBones::intactFemoralCartilage(const Vec3& p) const {
   const double trochlea = trochleaWeight(angle, -0.9, 0.1);
   const double bearing = std::exp(-std::pow((angle + 1.35) / 0.6, 2));
   const double thickness = 1.75 + 0.65 * trochlea + 0.55 * bearing + 0.22 * valueNoise(p / 9.0, 52);
-  return tapered(std::clamp(thickness, 1.4, 2.65), margin);
+  return taperThickness(std::clamp(thickness, 1.4, 2.65), margin);
 }
 
 double KneeBones::femoralCartilage(const Vec3& p) const {
@@ -252,7 +252,7 @@ double KneeBones::femoralCartilage(const Vec3& p) const {
 }
 
 double KneeBones::tibialCartilage(const Vec3& p) const {
-  if (std::abs(p.z()) > beyond)
+  if (std::abs(p.z()) > maxDistance)
     return 0.0;
   const auto oval = [&](double x, double y, double rx, double ry) {
     return -ellipsoidDistance({p.x(), p.y(), 0}, {x, y, 0}, {rx, ry, 1});
@@ -264,7 +264,7 @@ double KneeBones::tibialCartilage(const Vec3& p) const {
     return 0.0;
   const double center = smoothStep(3.0, 14.0, margin);
   const double thickness = 1.7 + 0.75 * center + 0.2 * valueNoise(p / 8.0, 53);
-  return tapered(std::clamp(thickness, 1.4, 2.65), margin);
+  return taperThickness(std::clamp(thickness, 1.4, 2.65), margin);
 }
 
 double KneeBones::patellarCartilage(const Vec3& p) const {
@@ -274,7 +274,7 @@ double KneeBones::patellarCartilage(const Vec3& p) const {
     return 0.0;
   const double ridge = std::exp(-std::pow((p.x() - 2.0) / 7.0, 2));
   const double thickness = 2.0 + 0.5 * ridge + 0.2 * valueNoise(p / 8.0, 54);
-  return tapered(std::clamp(thickness, 1.4, 2.65), margin);
+  return taperThickness(std::clamp(thickness, 1.4, 2.65), margin);
 }
 
 } // namespace fenestra

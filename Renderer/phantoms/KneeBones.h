@@ -34,7 +34,7 @@ public:
   double tibia(const Vec3& point) const;
   double fibula(const Vec3& point) const;
   double patella(const Vec3& point) const;
-  static constexpr double beyond = 8.0;
+  static constexpr double maxDistance = 8.0;
 
   /// Thickness of the cartilage, mm, on the bone's surface near `point`; 0 off the joint's faces;
   /// lesions included.

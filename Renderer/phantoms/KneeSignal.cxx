@@ -28,10 +28,10 @@ double physis(const Vec3& p) {
 } // namespace
 
 double muscleSignal(const Vec3& p) {
-  const double fibres = 20.0 * valueNoise(p.cwiseQuotient(Vec3{1.2, 1.2, 10.0}), 71);
+  const double fibers = 20.0 * valueNoise(p.cwiseQuotient(Vec3{1.2, 1.2, 10.0}), 71);
   const double bundles = 16.0 * valueNoise(p.cwiseQuotient(Vec3{4.0, 4.0, 20.0}), 72);
   const double fat = 0.5 * septa(p, {5.5, 5.5, 25.0}, 0.12, 73);
-  return std::lerp(350.0 + fibres + bundles, 780.0, fat);
+  return std::lerp(350.0 + fibers + bundles, 780.0, fat);
 }
 
 double fatSignal(const Vec3& p, double strands) {

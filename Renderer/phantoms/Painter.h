@@ -11,7 +11,7 @@
 namespace fenestra {
 
 /// Place in a subject.
-struct PaintedPlace {
+struct PaintSite {
   Vec3 point;     ///< world
   double surface; ///< mm to the subject's outside
 
@@ -22,7 +22,7 @@ struct PaintedPlace {
 inline const Box everywhere{Vec3::Constant(-infinity), Vec3::Constant(infinity)};
 
 /// Base of a subject: its segments, and its layers front to back, each of which hides the later
-/// ones. `S`: a PaintedPlace with the data that the layers need.
+/// ones. `S`: a PaintSite with the data that the layers need.
 template <typename S>
 class LayeredSubject {
 public:
@@ -44,26 +44,26 @@ protected:
   explicit LayeredSubject(double margin) : m_margin(margin) {}
 
   /// Adds a segment; returns its label.
-  std::uint8_t segment(const std::string& id, const std::string& name, const Rgb& color) {
+  std::uint8_t addSegment(const std::string& id, const std::string& name, const Rgb& color) {
     const auto label = static_cast<std::uint8_t>(m_segments.size() + 1);
     m_segments.push_back({id, name, color, label, 0});
     return label;
   }
 
   /// Adds a layer behind the others.
-  void layer(std::uint8_t label, Field signal, const Box& box, Field distance) {
-    m_layers.push_back({label, std::move(signal), expanded(box, m_margin), std::move(distance)});
+  void addLayer(std::uint8_t label, Field signal, const Box& box, Field distance) {
+    m_layers.push_back({label, std::move(signal), expandBox(box, m_margin), std::move(distance)});
   }
 
-  static Field constant(double signal) {
+  static Field makeConstant(double signal) {
     return [signal](const Site&) { return signal; };
   }
   /// Distance to the surface `depth` mm under the subject's outside.
-  static Field under(double depth) {
+  static Field makeInset(double depth) {
     return [depth](const Site& site) { return site.surface + depth; };
   }
   /// Distance to the intersection of two shapes.
-  static Field both(Field a, Field b) {
+  static Field makeIntersection(Field a, Field b) {
     return [a = std::move(a), b = std::move(b)](const Site& s) { return std::max(a(s), b(s)); };
   }
 
@@ -94,7 +94,7 @@ public:
   struct Sample {
     double signal = 0.0;
     std::uint8_t label = 0;
-    double border = infinity; ///< mm to the nearest border in a visible layer
+    double boundaryDistance = infinity; ///< mm to the nearest border in a visible layer
   };
 
   Painter(const Subject& subject, const Grid& grid)
@@ -104,22 +104,22 @@ public:
         m_softness(0.6 * std::cbrt(grid.spacing().prod())) {}
 
   /// Layers that a row of voxels along the first axis can meet.
-  std::vector<const Layer*> layersOfRow(const Vec3& start, std::int64_t count) const {
+  std::vector<const Layer*> findRowLayers(const Vec3& start, std::int64_t count) const {
     const double length = m_rowStep.norm();
     const Ray row{start, m_rowStep / length};
     const Interval range{-length, length * static_cast<double>(count)};
     std::vector<const Layer*> layers;
     for (const Layer& layer : m_subject.layers())
-      if (!expanded(layer.box, boundaryReach()).clip(row, range).isEmpty())
+      if (!expandBox(layer.box, boundaryReach()).clip(row, range).isEmpty())
         layers.push_back(&layer);
     return layers;
   }
 
   /// Mean over the slice's thickness, which equals the slice distance; near a border from three
   /// places, elsewhere from the middle alone.
-  Sample voxel(const std::vector<const Layer*>& row, const Vec3& center) const {
+  Sample paintVoxel(const std::vector<const Layer*>& row, const Vec3& center) const {
     Sample middle = paint(row, center);
-    if (middle.border > boundaryReach())
+    if (middle.boundaryDistance > boundaryReach())
       return middle;
     for (const double offset : {-1.0 / 3.0, 1.0 / 3.0})
       middle.signal += paint(row, center + offset * m_sliceStep).signal;
@@ -132,19 +132,19 @@ private:
   double boundaryReach() const { return m_softness + m_sliceStep.norm() / 3.0; }
 
   Sample paint(const std::vector<const Layer*>& row, const Vec3& point) const {
-    const auto site = m_subject.site(point);
+    const auto site = m_subject.makeSite(point);
     Sample sample;
     sample.signal = m_subject.background;
-    sample.border = std::abs(site.surface);
+    sample.boundaryDistance = std::abs(site.surface);
     if (site.surface > m_softness)
       return sample;
     sample.signal = 0.0;
     double visible = 1.0; // share of the voxel not yet covered
     for (const Layer* layer : row) {
-      if (!contains(expanded(layer->box, m_softness), point))
+      if (!contains(expandBox(layer->box, m_softness), point))
         continue;
       const double distance = layer->distance(site);
-      sample.border = std::min(sample.border, std::abs(distance));
+      sample.boundaryDistance = std::min(sample.boundaryDistance, std::abs(distance));
       // A voxel on a border holds a share of either side: the partial volume effect.
       const double coverage = smoothStep(m_softness, -m_softness, distance);
       if (coverage == 0.0)
@@ -177,12 +177,12 @@ Phantom paintPhantom(const Subject& subject, const Grid& grid, const std::string
   tbb::parallel_for(std::int64_t{0}, size.z(), [&](std::int64_t k) {
     for (std::int64_t j = 0; j < size.y(); ++j) {
       const Vec3 start = grid.indexToWorld * Size3{0, j, k}.cast<double>();
-      const auto row = painter.layersOfRow(start, size.x());
+      const auto row = painter.findRowLayers(start, size.x());
       for (std::int64_t i = 0; i < size.x(); ++i) {
         const Vec3 point = grid.indexToWorld * Size3{i, j, k}.cast<double>();
-        const auto sample = painter.voxel(row, point);
+        const auto sample = painter.paintVoxel(row, point);
         const auto at = static_cast<std::size_t>(i + size.x() * (j + size.y() * k));
-        voxels[at] = subject.acquired(sample.signal, point, at);
+        voxels[at] = subject.acquire(sample.signal, point, at);
         labels[at] = sample.label;
       }
     }

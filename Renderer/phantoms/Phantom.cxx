@@ -4,7 +4,8 @@
 
 namespace fenestra {
 
-Grid phantomGrid(const Size3& size, const Vec3& fieldOfView, const Mat3& axes, const Vec3& center) {
+Grid makePhantomGrid(const Size3& size, const Vec3& fieldOfView, const Mat3& axes,
+                     const Vec3& center) {
   if ((size.array() < 16).any() || (size.array() > 1024).any())
     throw usageError("--size: each number of voxels is to lie between 16 and 1024");
   const Vec3 spacing = fieldOfView.cwiseQuotient(size.cast<double>());

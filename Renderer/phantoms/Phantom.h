@@ -38,6 +38,7 @@ struct Phantom {
 /// Grid of `size` voxels around `center` (world). `fieldOfView`: mm along the voxel axes, whose
 /// unit directions in the world are the columns of `axes`. Throws Error (usage) unless each axis
 /// has 16 to 1024 voxels.
-Grid phantomGrid(const Size3& size, const Vec3& fieldOfView, const Mat3& axes, const Vec3& center);
+Grid makePhantomGrid(const Size3& size, const Vec3& fieldOfView, const Mat3& axes,
+                     const Vec3& center);
 
 } // namespace fenestra

@@ -27,7 +27,7 @@ void throwWithoutMemory() {
 
 /// Encodes a file name or segment id as Slicer does in attributes: all but letters, digits and
 /// "-_./" become %XX.
-std::string urlEncoded(const std::string& text) {
+std::string urlEncode(const std::string& text) {
   TextWriter encoded;
   encoded << std::hex << std::uppercase;
   for (const char c : text) {
@@ -42,11 +42,11 @@ std::string urlEncoded(const std::string& text) {
 }
 
 /// Texts for the places of Resources/phantoms/scene.mrml.
-using SceneTexts = std::map<std::string, std::string>;
+using ScenePlaceholders = std::map<std::string, std::string>;
 
 /// Pose of a parallel camera that frames the volume's box in a square, with a margin of a
 /// twentieth.
-void addCamera(SceneTexts& texts, const Phantom& phantom) {
+void addCamera(ScenePlaceholders& texts, const Phantom& phantom) {
   const Grid& grid = phantom.volume.grid;
   const Vec3 center = grid.worldCenter();
   const Vec3 backward = phantom.towardViewer.normalized();
@@ -61,56 +61,57 @@ void addCamera(SceneTexts& texts, const Phantom& phantom) {
   const auto rounded = [&](const Vec3& v) { // no 1e-17 where 0 is meant
     return Vec3(v.unaryExpr([&](double x) { return std::abs(x) < 1e-9 * distance ? 0.0 : x; }));
   };
-  texts["@position@"] = spaced(rounded(center + distance * backward));
-  texts["@center@"] = spaced(rounded(center));
-  texts["@up@"] = spaced(up);
-  texts["@scale@"] = spaced(scale);
+  texts["@position@"] = joinSpaced(rounded(center + distance * backward));
+  texts["@center@"] = joinSpaced(rounded(center));
+  texts["@up@"] = joinSpaced(up);
+  texts["@scale@"] = joinSpaced(scale);
 }
 
-void addGeometry(SceneTexts& texts, const Grid& grid) {
+void addGeometry(ScenePlaceholders& texts, const Grid& grid) {
   const Mat3 directions = grid.indexToWorld.linear().normalizedColumns() + Mat3::Zero(); // no "-0"
-  texts["@spacing@"] = spaced(grid.spacing());
-  texts["@origin@"] = spaced(Vec3(grid.indexToWorld.translation()));
-  texts["@directions@"] = spaced(directions.row(0), directions.row(1), directions.row(2)) + " ";
+  texts["@spacing@"] = joinSpaced(grid.spacing());
+  texts["@origin@"] = joinSpaced(Vec3(grid.indexToWorld.translation()));
+  texts["@directions@"] = joinSpaced(directions.row(0), directions.row(1), directions.row(2)) + " ";
   const Vec3 center = grid.worldCenter();
-  texts["@handles@"] = "1 0 0 " + spaced(center.x()) + "  0 1 0 " + spaced(center.y()) +
-                       "  0 0 1 " + spaced(center.z()) + "  0 0 0 1";
+  texts["@handles@"] = "1 0 0 " + joinSpaced(center.x()) + "  0 1 0 " + joinSpaced(center.y()) +
+                       "  0 0 1 " + joinSpaced(center.z()) + "  0 0 0 1";
 }
 
-void addLooks(SceneTexts& texts, const Phantom& phantom) {
+void addLooks(ScenePlaceholders& texts, const Phantom& phantom) {
   const Volume& volume = phantom.volume;
-  texts["@window@"] = spaced(volume.maximum - volume.minimum);
-  texts["@level@"] = spaced(0.5 * (volume.maximum + volume.minimum));
+  texts["@window@"] = joinSpaced(volume.maximum - volume.minimum);
+  texts["@level@"] = joinSpaced(0.5 * (volume.maximum + volume.minimum));
   std::string& displays = texts["@segment displays@"];
   for (const PhantomSegment& segment : phantom.segments)
-    displays += urlEncoded(segment.id) +
+    displays += urlEncode(segment.id) +
                 " OverrideColorR:-1 OverrideColorG:-1 OverrideColorB:-1 Visible:true "
                 "Visible3D:true Visible2DFill:true Visible2DOutline:true Opacity3D:1 "
                 "Opacity2DFill:1 Opacity2DOutline:1|";
   const VolumeProperty& property = phantom.property;
   const PropertyTexts functions = propertyTexts(property);
   texts["@shade@"] = property.shade ? "1" : "0";
-  texts["@diffuse@"] = spaced(property.diffuse);
-  texts["@ambient@"] = spaced(ambientLight);
-  texts["@specular@"] = spaced(property.specular);
-  texts["@specular power@"] = spaced(property.specularPower);
+  texts["@diffuse@"] = joinSpaced(property.diffuse);
+  texts["@ambient@"] = joinSpaced(ambientLight);
+  texts["@specular@"] = joinSpaced(property.specular);
+  texts["@specular power@"] = joinSpaced(property.specularPower);
   texts["@scalar opacity@"] = functions.scalarOpacity;
   texts["@gradient opacity@"] = functions.gradientOpacity;
   texts["@color@"] = functions.color;
-  texts["@range@"] = spaced(volume.minimum, volume.maximum);
+  texts["@range@"] = joinSpaced(volume.minimum, volume.maximum);
 }
 
 } // namespace
 
-std::string phantomScene(const Phantom& phantom, const std::string& name, const std::string& data) {
-  const std::string files = urlEncoded(data + name);
-  SceneTexts texts = {{"@volume@", name},
-                      {"@segmentation@", name + " segments"},
-                      {"@property@", name + " property"},
-                      {"@volume file@", files + ".nrrd"},
-                      {"@segmentation file@", files + ".seg.nrrd"},
-                      {"@property file@", files + ".vp"},
-                      {"@roi file@", files + "-roi.mrk.json"}};
+std::string makePhantomScene(const Phantom& phantom, const std::string& name,
+                             const std::string& data) {
+  const std::string files = urlEncode(data + name);
+  ScenePlaceholders texts = {{"@volume@", name},
+                             {"@segmentation@", name + " segments"},
+                             {"@property@", name + " property"},
+                             {"@volume file@", files + ".nrrd"},
+                             {"@segmentation file@", files + ".seg.nrrd"},
+                             {"@property file@", files + ".vp"},
+                             {"@roi file@", files + "-roi.mrk.json"}};
   addCamera(texts, phantom);
   addGeometry(texts, phantom.volume.grid);
   addLooks(texts, phantom);
@@ -130,7 +131,7 @@ std::string phantomScene(const Phantom& phantom, const std::string& name, const 
   return sealProvenanceTag(stream.str());
 }
 
-std::string phantomRoi(const Phantom& phantom) {
+std::string makePhantomRoi(const Phantom& phantom) {
   using Json = nlohmann::ordered_json;
   const Grid& grid = phantom.volume.grid;
   const Mat3 axes =

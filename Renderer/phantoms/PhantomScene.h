@@ -13,15 +13,15 @@ namespace fenestra {
 /// view 1 with its parallel camera, which frames the volume seen from Phantom::towardViewer. World
 /// is RAS; numbers have six digits, as Slicer's. `data`: path of the scene's files from the scene,
 /// empty or with a / at its end.
-std::string phantomScene(const Phantom& phantom, const std::string& name,
-                         const std::string& data = "");
+std::string makePhantomScene(const Phantom& phantom, const std::string& name,
+                             const std::string& data = "");
 
 /// Text of the region of interest's .mrk.json: the box that the volume's voxels fill, LPS mm.
-std::string phantomRoi(const Phantom& phantom);
+std::string makePhantomRoi(const Phantom& phantom);
 
 /// Numbers as Slicer writes them: a stream's six digits, separated by blanks.
 template <typename... Numbers>
-std::string spaced(const Numbers&... numbers) {
+std::string joinSpaced(const Numbers&... numbers) {
   TextWriter stream;
   const char* separator = "";
   ((stream << std::exchange(separator, " ") << numbers), ...);

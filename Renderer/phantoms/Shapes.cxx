@@ -15,7 +15,7 @@ T catmullRom(const T& a, const T& b, const T& c, const T& d, double t) {
 
 constexpr int tubePieces = 6; ///< per pair of nodes: enough to hide the corners
 
-std::vector<TubeNode> refined(const std::vector<TubeNode>& nodes) {
+std::vector<TubeNode> refineTube(const std::vector<TubeNode>& nodes) {
   std::vector<TubeNode> result;
   const auto last = nodes.size() - 1;
   for (std::size_t i = 0; i < last; ++i) {
@@ -40,19 +40,19 @@ double ellipseDistance(const Vec2& offset, const Vec2& radii, double squareness)
   return (level - 1.0) / std::max(slope, 1e-9);
 }
 
-Box united(const Box& a, const Box& b) {
+Box uniteBoxes(const Box& a, const Box& b) {
   return {a.lower.cwiseMin(b.lower), a.upper.cwiseMax(b.upper)};
 }
 
 /// Box around a box mapped affinely.
-Box mapped(const Affine& map, const Box& box) {
+Box mapBox(const Affine& map, const Box& box) {
   Box result = Box::makeEmpty();
   for (int i = 0; i < 8; ++i)
     result.extend(map * box.corner(i));
   return result;
 }
 
-LoftSection sectionAt(const std::vector<LoftSection>& sections, double z) {
+LoftSection findSection(const std::vector<LoftSection>& sections, double z) {
   const std::size_t last = sections.size() - 1;
   std::size_t i = 0;
   while (i + 1 < last && z > sections[i + 1].z)
@@ -101,7 +101,7 @@ double ellipsoidDistance(const Vec3& point, const Vec3& center, const Vec3& radi
   return (level - 1.0) / std::max(slope, 1e-9);
 }
 
-Box expanded(const Box& box, double margin) {
+Box expandBox(const Box& box, double margin) {
   return {box.lower.array() - margin, box.upper.array() + margin};
 }
 
@@ -109,12 +109,12 @@ bool contains(const Box& box, const Vec3& point) {
   return (point.array() >= box.lower.array()).all() && (point.array() <= box.upper.array()).all();
 }
 
-Solid ellipsoid(const Vec3& center, const Vec3& radii) {
+Solid makeEllipsoid(const Vec3& center, const Vec3& radii) {
   return {[=](const Vec3& p) { return ellipsoidDistance(p, center, radii); },
           {center - radii, center + radii}};
 }
 
-Solid block(const Vec3& halfSize, double radius) {
+Solid makeBlock(const Vec3& halfSize, double radius) {
   return {[=](const Vec3& p) {
             const Vec3 beyond = p.cwiseAbs().array() - halfSize.array() + radius;
             return beyond.cwiseMax(0.0).norm() + std::min(beyond.maxCoeff(), 0.0) - radius;
@@ -122,27 +122,27 @@ Solid block(const Vec3& halfSize, double radius) {
           {-halfSize, halfSize}};
 }
 
-Solid loft(const std::vector<LoftSection>& sections, double squareness, double capBlend) {
+Solid makeLoft(const std::vector<LoftSection>& sections, double squareness, double capBlend) {
   Box box = Box::makeEmpty();
   for (const LoftSection& section : sections)
-    for (const double way : {-1.0, 1.0}) {
-      const Vec2 corner = section.center + way * section.radii;
+    for (const double sign : {-1.0, 1.0}) {
+      const Vec2 corner = section.center + sign * section.radii;
       box.extend({corner.x(), corner.y(), section.z});
     }
   const double bottom = sections.front().z, top = sections.back().z;
   const double overshoot = 2.0; // mm; of a Catmull-Rom curve over its nodes
   return {[=](const Vec3& p) {
-            const LoftSection section = sectionAt(sections, p.z());
+            const LoftSection section = findSection(sections, p.z());
             const double side =
                 ellipseDistance(p.head<2>() - section.center, section.radii, squareness);
             return smoothIntersection(side, std::max(bottom - p.z(), p.z() - top), capBlend);
           },
-          expanded(box, overshoot)};
+          expandBox(box, overshoot)};
 }
 
-Solid tube(const std::vector<TubeNode>& nodes, const Vec3& stretch) {
+Solid makeTube(const std::vector<TubeNode>& nodes, const Vec3& stretch) {
   Box box = Box::makeEmpty();
-  std::vector<TubeNode> axis = refined(nodes); // in the space divided by the stretch
+  std::vector<TubeNode> axis = refineTube(nodes); // in the space divided by the stretch
   for (TubeNode& node : axis) {
     box.extend(node.point - node.radius * stretch);
     box.extend(node.point + node.radius * stretch);
@@ -158,15 +158,15 @@ Affine toShape(const Vec3& origin, const Vec3& axis, const Vec3& up) {
   return Affine(linear, -(linear * origin));
 }
 
-Solid placed(const Affine& toShape, const Solid& solid) {
+Solid placeSolid(const Affine& toShape, const Solid& solid) {
   return {[=](const Vec3& p) { return solid.distance(toShape * p); },
-          mapped(toShape.inverse(), solid.box)};
+          mapBox(toShape.inverse(), solid.box)};
 }
 
 /// The box grows by blend / 4, the reach of a blend.
 Solid unite(const Solid& a, const Solid& b, double blend) {
   return {[=](const Vec3& p) { return smoothUnion(a.distance(p), b.distance(p), blend); },
-          expanded(united(a.box, b.box), 0.25 * blend)};
+          expandBox(uniteBoxes(a.box, b.box), 0.25 * blend)};
 }
 
 Solid intersect(const Solid& a, const Solid& b, double blend) {
@@ -174,16 +174,16 @@ Solid intersect(const Solid& a, const Solid& b, double blend) {
           {a.box.lower.cwiseMax(b.box.lower), a.box.upper.cwiseMin(b.box.upper)}};
 }
 
-Solid without(const Solid& solid, const Solid& removed, double blend) {
+Solid subtract(const Solid& solid, const Solid& removed, double blend) {
   return {[=](const Vec3& p) {
             return smoothDifference(solid.distance(p), removed.distance(p), blend);
           },
           solid.box};
 }
 
-Solid paired(const Solid& right) {
+Solid mirrorPair(const Solid& right) {
   const Affine mirror(Mat3::Diagonal({-1.0, 1.0, 1.0}), Vec3::Zero());
-  return unite(right, placed(mirror, right), 0.1);
+  return unite(right, placeSolid(mirror, right), 0.1);
 }
 
 } // namespace fenestra

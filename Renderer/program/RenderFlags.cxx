@@ -71,7 +71,7 @@ void readBackground(const OptionValues& values, const std::string& name,
   else if (text == "environment")
     background = Background{Background::Kind::environment};
   else if (text == "gradient")
-    background = Background::standard();
+    background = Background::makeDefault();
   else
     background = Background{Background::Kind::color,
                             parseLinearColor(values, name, "gradient, transparent or environment")};

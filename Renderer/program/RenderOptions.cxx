@@ -200,7 +200,7 @@ RenderOptions makeRenderOptions(const OptionValues& values) {
 
 RenderSettings makeSettings(const RenderOptions& options, const std::optional<Background>& scene) {
   RenderSettings settings = options.settings;
-  settings.path.background = options.background.value_or(scene.value_or(Background::standard()));
+  settings.path.background = options.background.value_or(scene.value_or(Background::makeDefault()));
   return settings;
 }
 

@@ -120,7 +120,7 @@ private:
 
   /// Scene for the eye of m_start turned around its target.
   PreparedScene sceneAt(double degrees) const {
-    const CameraPose pose = turnedAroundTarget(m_start, degrees);
+    const CameraPose pose = rotateAroundTarget(m_start, degrees);
     RenderRequest request = m_options.render.scene;
     request.view = {.projection = pose.projection,
                     .position = pose.position,

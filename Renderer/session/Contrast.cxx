@@ -16,7 +16,7 @@ template <typename AlbedoOf>
 Rgb meanColor(const std::vector<double>& scalars, double g, const AlbedoOf& albedoOf) {
   Rgb sum = Rgb::Zero();
   for (const double scalar : scalars)
-    sum += reflectance(Rgb(albedoOf(scalar)), g);
+    sum += toReflectance(Rgb(albedoOf(scalar)), g);
   return sum / static_cast<double>(scalars.size());
 }
 
@@ -56,7 +56,7 @@ Contrast contrastAt(const BorderScalars& border, const TransferFunction& transfe
   const ContextStyle style{.focus = nullptr, .saturation = saturation};
   return contrastBetween(meanColor(border.focus, transfer.g, transfer.albedo),
                          meanColor(border.context, transfer.g, [&](double scalar) {
-                           return style.paled(transfer.albedo(scalar));
+                           return style.desaturate(transfer.albedo(scalar));
                          }));
 }
 

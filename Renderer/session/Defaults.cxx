@@ -153,7 +153,7 @@ double transparentFraction(const Mask& focus, const Volume& volume,
     const std::size_t stride = focus.voxels.size() / 1'000'000 + 1;
     double all = 0.0, transparent = 0.0;
     for (std::size_t i = 0; i < focus.voxels.size(); i += stride) {
-      if (focus.voxels[i] < focus.half())
+      if (focus.voxels[i] < focus.threshold())
         continue;
       const auto at = static_cast<std::int64_t>(i);
       const Size3 voxel(at % size.x(), at / size.x() % size.y(), at / size.x() / size.y());
@@ -185,15 +185,15 @@ TransferFunction relativeTransfer(const Volume& volume) {
   const double start = background - 0.35 * (background - low);
   return {ScalarFunction({knot(start, 0.0), knot(background, 0.8 * unit),
                           knot(between(0.3), 2.5 * unit), knot(high, 5.0 * unit)}),
-          albedoFor(ColorFunction({{at(0.05), decodeSrgb(Rgb(0.816, 0.643, 0.580))},
-                                   {at(0.15), decodeSrgb(Rgb(0.769, 0.565, 0.502))},
-                                   {at(0.35), decodeSrgb(Rgb(0.729, 0.525, 0.455))},
-                                   {at(0.6), decodeSrgb(Rgb(0.808, 0.627, 0.541))},
-                                   {at(1.0), decodeSrgb(Rgb(0.925, 0.831, 0.745))}}),
-                    0.0),
+          toAlbedo(ColorFunction({{at(0.05), decodeSrgb(Rgb(0.816, 0.643, 0.580))},
+                                  {at(0.15), decodeSrgb(Rgb(0.769, 0.565, 0.502))},
+                                  {at(0.35), decodeSrgb(Rgb(0.729, 0.525, 0.455))},
+                                  {at(0.6), decodeSrgb(Rgb(0.808, 0.627, 0.541))},
+                                  {at(1.0), decodeSrgb(Rgb(0.925, 0.831, 0.745))}}),
+                   0.0),
           {},
           0.0,
-          SurfaceShading::coat(0.2, 0.45)};
+          SurfaceShading::makeCoated(0.2, 0.45)};
 }
 
 CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* focus, int width,

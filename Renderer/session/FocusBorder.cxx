@@ -80,7 +80,7 @@ private:
     for (int axis = 0; axis < 3; ++axis)
       if (voxel[axis] < 0 || voxel[axis] >= m_focus.grid.size[axis])
         return false;
-    return m_focus.voxels[numberOf(voxel, m_focus.grid.size)] >= m_focus.half();
+    return m_focus.voxels[linearIndex(voxel, m_focus.grid.size)] >= m_focus.threshold();
   }
 
   template <typename Visit>
@@ -122,12 +122,13 @@ public:
   std::optional<std::uint8_t> at(const Size3& voxel, bool focusSide) const {
     std::optional<std::uint8_t> greatest;
     double most = 0.0;
-    m_weights.at(m_toWeights * voxel.cast<double>(), [&](std::uint8_t component, double weight) {
-      if (m_isFocus[component] == focusSide && weight > most) {
-        greatest = component;
-        most = weight;
-      }
-    });
+    m_weights.forEachWeight(m_toWeights * voxel.cast<double>(),
+                            [&](std::uint8_t component, double weight) {
+                              if (m_isFocus[component] == focusSide && weight > most) {
+                                greatest = component;
+                                most = weight;
+                              }
+                            });
     return greatest;
   }
 

@@ -101,7 +101,7 @@ SceneSettings Input::settings(const std::optional<std::string>& volume, bool fol
       settings.camera = readSceneCamera(scene, *plan.camera);
     if (plan.view) {
       const auto [bottom, top] = viewBackground(*plan.view);
-      settings.background = Background::gradient(bottom, top);
+      settings.background = Background::makeGradient(bottom, top);
     }
     settings.warnings = plan.warnings;
     settings.files = scene.files.filesRead();

@@ -88,7 +88,7 @@ Json materialJson(const SegmentMaterial& material) {
   const SegmentMedium& medium = material.medium;
   return {{"name", orNull(material.name)},
           {"kind", kindText(medium.material)},
-          {"color", colorJson(seenColor(medium.material))},
+          {"color", colorJson(toReflectanceColor(medium.material))},
           {"priority", medium.priority},
           {"clip", medium.isClipped},
           {"density", medium.density},
@@ -99,8 +99,9 @@ Json materialJson(const SegmentMaterial& material) {
 Json libraryJson() {
   Json all = Json::array();
   for (const auto& [name, material] : materialLibrary().materials)
-    all.push_back(
-        {{"name", name}, {"kind", kindText(material)}, {"color", colorJson(seenColor(material))}});
+    all.push_back({{"name", name},
+                   {"kind", kindText(material)},
+                   {"color", colorJson(toReflectanceColor(material))}});
   return all;
 }
 

@@ -32,7 +32,7 @@ struct ClipRequest {
   std::optional<PlaneRequest> plane = {}; ///< by default the focus's own (fitFocusPlane)
   double ghost = 0.1; ///< share of the extinction left in front of the surface, in mode `ghost`
   /// mm behind the cut over which matter comes back; nothing: as far as the focus's labels are
-  /// uncertain (automaticSmoothing) in the modes surface, hole and cutaway, else 0.
+  /// uncertain (chooseSmoothing) in the modes surface, hole and cutaway, else 0.
   std::optional<double> softness = {};
   /// A plane takes its offset; `mode` and `softness` decide its mode and its edge.
   SurfaceOptions surface = {};

@@ -91,7 +91,7 @@ private:
   template <typename Self>
   static auto stages(Self& s) {
     return std::tie(s.m_namedLights, s.m_namedTransfer, s.m_volume, s.m_settings, s.m_segments,
-                    s.m_focus, s.m_sceneLook, s.m_look, s.m_materials, s.m_segmentsThere, s.m_skin,
+                    s.m_focus, s.m_sceneLook, s.m_look, s.m_materials, s.m_hasVoxels, s.m_skin,
                     s.m_plan, s.m_labelWeights, s.m_tint, s.m_borders, s.m_tintContrast,
                     s.m_contrastedTint, s.m_mixture, s.m_focusWarnings, s.m_view, s.m_ranges,
                     s.m_occupiedBounds, s.m_camera, s.m_lights, s.m_clip, s.m_contrast, s.m_style,

@@ -67,8 +67,8 @@ bool isSame(const SegmentMedium& a, const SegmentMedium& b) {
     return false;
   return m.kind == MaterialKind::tint ||
          (m.extinction == n.extinction &&
-          std::tie(m.g, m.diffuse, m.specular, m.roughness, m.border) ==
-              std::tie(n.g, n.diffuse, n.specular, n.roughness, n.border));
+          std::tie(m.g, m.diffuse, m.specular, m.roughness, m.interfaceWeight) ==
+              std::tie(n.g, n.diffuse, n.specular, n.roughness, n.interfaceWeight));
 }
 
 /// Component of the matter, a new one if there is none. `segment`: its name.
@@ -108,7 +108,7 @@ std::vector<bool> focusOf(const Segmentation& segmentation, const NamedMaterials
 /// not shown in a mixture of its colour with the context's.
 void fill(Mask& mask) {
   for (std::uint8_t& voxel : mask.voxels)
-    voxel = static_cast<std::uint8_t>(std::min(2 * voxel, int{mask.full}));
+    voxel = static_cast<std::uint8_t>(std::min(2 * voxel, int{mask.maxValue}));
 }
 
 /// Parts without those of component 0 that leave to others what they cover.
@@ -130,7 +130,7 @@ void takeMaterial(const Material& material, Component& component) {
   TransferFunction& transfer = component.transfer;
   if (!material.colorIsAlbedo)
     transfer.albedo = transfer.albedo.withKnots([&](ColorFunction::Knot& knot) {
-      knot.value = albedoFor(reflectance(Rgb(knot.value), transfer.g), material.g);
+      knot.value = toAlbedo(toReflectance(Rgb(knot.value), transfer.g), material.g);
     });
   transfer.g = material.g;
   if (material.extinction) {
@@ -139,11 +139,12 @@ void takeMaterial(const Material& material, Component& component) {
   }
   if (transfer.shading) {
     const double gamma = transfer.shading->gamma;
-    transfer.shading = SurfaceShading::coat(material.specular, material.roughness, material.g);
+    transfer.shading =
+        SurfaceShading::makeCoated(material.specular, material.roughness, material.g);
     transfer.shading->diffuse = material.diffuse;
     transfer.shading->gamma = gamma;
   }
-  component.border = material.border;
+  component.interfaceWeight = material.interfaceWeight;
 }
 
 } // namespace
@@ -195,7 +196,8 @@ LabelWeights computeLabelWeights(const Handle<SegmentsInput>& input,
   const auto partAt = [&](std::size_t number) -> LabelWeights::Part {
     const TintPart& part = parts[number];
     if (part.segments.empty())
-      return {onLattice(*skin, labels.value_or(skin->grid), volume), part.priority, part.component};
+      return {resampleMask(*skin, labels.value_or(skin->grid), volume), part.priority,
+              part.component};
     std::vector<SegmentInfo> segments;
     for (const std::size_t i : part.segments)
       segments.push_back(segmentation.segments()[i]);
@@ -213,7 +215,7 @@ Tint tintOf(const Handle<TintPlan>& plan, const Handle<LabelWeights>& weights, d
   for (const SegmentMedium& component : plan->components) {
     const std::optional<ColorFunction>& color = component.material.color;
     const bool isAlbedo = component.material.colorIsAlbedo;
-    tint.albedo.push_back(!color || isAlbedo ? color : std::optional(albedoFor(*color, g)));
+    tint.albedo.push_back(!color || isAlbedo ? color : std::optional(toAlbedo(*color, g)));
   }
   return tint;
 }
@@ -234,7 +236,7 @@ Mixture mixtureOf(const TintPlan& plan, const Tint& tint, const TransferFunction
       component.transfer.albedo = *tint.albedo[i];
     if (medium.material.kind == MaterialKind::medium)
       takeMaterial(medium.material, component);
-    component.transfer = component.transfer.scaled(medium.density);
+    component.transfer = component.transfer.withDensity(medium.density);
     mixture.components.push_back(std::move(component));
   }
   return mixture;

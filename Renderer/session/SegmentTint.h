@@ -49,7 +49,7 @@ TintPlan tintPlan(const Handle<SegmentsInput>& segments, const Handle<std::vecto
                   const std::vector<std::string>& focus, const Handle<Mask>& skin);
 
 /// Shares of the components. `smoothing`: MaskShaping's. Skin that is no
-/// segment is put on the labels' voxels (onLattice()).
+/// segment is put on the labels' voxels (resampleMask()).
 LabelWeights computeLabelWeights(const Handle<SegmentsInput>& segments,
                                  const std::vector<TintPart>& parts, const Handle<Mask>& skin,
                                  const std::optional<double>& smoothing, const Grid& volume);

@@ -151,7 +151,7 @@ ClipResult depthClip(const ClipRequest& request, ClipMode mode, const Domain& do
   if (mode == ClipMode::ghost)
     options.edge.ghost = double{static_cast<float>(request.ghost)};
   options.edge.softness =
-      request.softness.value_or(mode == ClipMode::ghost ? 0.0 : automaticSmoothing(focus.grid));
+      request.softness.value_or(mode == ClipMode::ghost ? 0.0 : chooseSmoothing(focus.grid));
   ClippingSurface surface = buildSteadySurface(camera, domain, focus, options, steadyDegrees);
   ClipResult result{.clip = std::move(surface.clip),
                     .focusDepth = viewportDepths(surface.focus, camera),
@@ -200,7 +200,7 @@ Look chosenLook(const Read& read, const Handle<NamedTransfer>& named,
                 double shift, double density) {
   const Volume& volume = read->volume;
   Look look = lookFor(volume, named, scene, madeFor);
-  look.transfer = look.transfer.shifted(shift).scaled(density);
+  look.transfer = look.transfer.withShift(shift).withDensity(density);
   checkExtinction(look.transfer, volume, named ? look.name : volume.name);
   if (look.transfer.shading && volume.minimum == volume.maximum)
     throw inputError(volume.name,
@@ -238,7 +238,7 @@ Camera placedCamera(const ViewRequest& view, int width, int height, const Read& 
   if (settings->camera)
     return {adjustedView(view, *settings->camera), width, height};
   const Domain whole = domainOf(volume, settings);
-  const Domain part = whole.within(bounds);
+  const Domain part = whole.intersect(bounds);
   const bool isEmpty = part.indexCorners().empty();
   return {frameView(view, isEmpty ? whole : part, maskOf(focus), width, height, best.get()), width,
           height};
@@ -281,7 +281,7 @@ MinMaxGrid rangesOf(const Read& volume, int apron) {
 Mask skinOf(const Read& volume) {
   constexpr double depth = 2.5; // mm
   const std::optional<double> air = airLevel(volume->volume);
-  return air ? outerLayer(volume->volume, *air, depth) : Mask();
+  return air ? findOuterLayer(volume->volume, *air, depth) : Mask();
 }
 
 TintBorders bordersOf(const Read& volume, const Focus& focus, const Handle<Look>& look,

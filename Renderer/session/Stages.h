@@ -96,7 +96,7 @@ ClipResult builtClip(const ClipRequest& request, bool measure, double steadyDegr
 /// `apron`: MajorantGrid::apronFor.
 MinMaxGrid rangesOf(const Read& volume, int apron);
 
-/// Skin without a segment: what lies within 2.5 mm of the air around the body (outerLayer()).
+/// Skin without a segment: what lies within 2.5 mm of the air around the body (findOuterLayer()).
 Mask skinOf(const Read& volume);
 
 /// Where the focus's components meet the others. `isFocus`: TintPlan's.

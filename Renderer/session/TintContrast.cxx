@@ -13,7 +13,7 @@ namespace fenestra {
 namespace {
 
 bool isInGamut(const Rgb& color) {
-  return color.minCoeff() >= 0.0 && color.maxCoeff() <= whitest;
+  return color.minCoeff() >= 0.0 && color.maxCoeff() <= maxReflectance;
 }
 
 /// Colour, linear, with as much of its chroma as the display has.
@@ -29,7 +29,7 @@ Rgb reduceToGamut(const Lab& lab) {
     const double middle = 0.5 * (least + most);
     (isInGamut(withChroma(middle)) ? least : most) = middle;
   }
-  return withChroma(least).max(0.0).min(whitest);
+  return withChroma(least).max(0.0).min(maxReflectance);
 }
 
 /// Loss of L* of a context at the edge: where it faces the light, and in a groove
@@ -217,8 +217,8 @@ Contrast contrastUnder(const ColorAdjustment& adjustment, const BorderColors& co
                        double saturation, double g) {
   const ContextStyle style{.focus = nullptr, .saturation = saturation};
   const Rgb focus = adjustFocus(colors.focus, adjustment),
-            context = reflectance(
-                Rgb(style.paled(albedoFor(adjustContext(colors.context, adjustment), g))), g);
+            context = toReflectance(
+                Rgb(style.desaturate(toAlbedo(adjustContext(colors.context, adjustment), g))), g);
   const auto in = [&](double shade) {
     return shownContrast(pictured(focus, 0.0), pictured(context, shade), deltaE76);
   };
@@ -272,7 +272,7 @@ TintContrast adjustContrast(const std::vector<ComponentBorder>& borders, const T
                             const TransferFunction& transfer, double saturation) {
   const double g = transfer.g;
   const auto seen = [&](std::uint8_t component, double scalar) {
-    return reflectance(Rgb(albedoOf(tint.albedo[component], transfer)(scalar)), g);
+    return toReflectance(Rgb(albedoOf(tint.albedo[component], transfer)(scalar)), g);
   };
   const std::vector<ComponentBorder> parts = selectMajor(borders);
   std::vector<BorderColors> colors;
@@ -326,7 +326,7 @@ Tint applyAdjustment(const Tint& tint, const TintPlan& plan, const ColorAdjustme
     const auto adjust = plan.isFocus[i] ? adjustFocus : adjustContext;
     result.albedo[i] = albedoOf(tint.albedo[i], transfer).withKnots([&](ColorFunction::Knot& knot) {
       knot.value =
-          albedoFor(adjust(reflectance(Rgb(knot.value), transfer.g), adjustment), transfer.g);
+          toAlbedo(adjust(toReflectance(Rgb(knot.value), transfer.g), adjustment), transfer.g);
     });
   }
   return result;

@@ -20,7 +20,7 @@ bool isFocus(const Mask& focus, const Vec3& world) {
   const Size3& size = focus.grid.size;
   if ((nearest.array() < 0.0).any() || (nearest.array() >= size.cast<double>().array()).any())
     return false;
-  return focus.voxels[numberOf(nearest.cast<std::int64_t>(), size)] >= focus.half();
+  return focus.voxels[linearIndex(nearest.cast<std::int64_t>(), size)] >= focus.threshold();
 }
 
 } // namespace

@@ -49,7 +49,7 @@ RenderRequest requestFor(const Subject& subject) {
 Indicator smoothedIndicator(const Subject& subject) {
   const PreparedScene scene(requestFor(subject));
   const Mask& mask = *scene.focus();
-  return {mask.grid.size, mask.grid.indexToWorld, mask.voxels, static_cast<double>(mask.full)};
+  return {mask.grid.size, mask.grid.indexToWorld, mask.voxels, static_cast<double>(mask.maxValue)};
 }
 
 } // namespace

@@ -69,7 +69,7 @@ struct Probe {
     const Vec3 size = subject.scene.volume().grid.size.cast<double>();
     while (collisions.size() < count) {
       const Vec2 pixel = pictureSize * random.uniform2();
-      const Ray ray = parts.camera.ray(pixel.x(), pixel.y());
+      const Ray ray = parts.camera.makeRay(pixel.x(), pixel.y());
       cameraRays.push_back(ray);
       const double t = tracker.sampleCollision(ray, visibleInterval(parts.clip, ray),
                                                random.uniform2(), random, counters);

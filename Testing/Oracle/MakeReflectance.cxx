@@ -20,7 +20,7 @@
 
 namespace {
 
-using fenestra::greatestColorG;
+using fenestra::maxReflectanceG;
 using fenestra::oracle::Generator;
 using fenestra::oracle::uniform;
 
@@ -101,7 +101,7 @@ int main() {
               "inline constexpr float ratios[rows][columns] = {\n",
               rows, columns);
   for (int r = 0; r < rows; ++r) {
-    const double g = greatestColorG * r / (rows - 1.0);
+    const double g = maxReflectanceG * r / (rows - 1.0);
     const Counts shares = leaving(g, static_cast<std::uint64_t>(r) + 1);
     std::printf("    {");
     for (int c = 0; c < columns; ++c) {

@@ -103,7 +103,7 @@ Rgb Scatterer::f(const Vec3& outgoing) const {
     Rgb base = m_albedo;
     for (int c = 0; c < 3; ++c)
       if (base[c] > 0.0)
-        base[c] = 1.0 / (1.0 + (1.0 / m_albedo[c] - 1.0) / m_shading->odds);
+        base[c] = 1.0 / (1.0 + (1.0 / m_albedo[c] - 1.0) / m_shading->oddsFactor);
     return (m_shading->diffuse * base / pi * through / everywhere + w * glossy) * cosOut;
   }
   const double excess = std::max(1.0, m_shading->diffuse + m_shading->specular);

@@ -76,7 +76,7 @@ Segments::Weights Segments::voxel(const Vec3& at) const {
         return 0.0;
     const Vec3 strides(1.0, static_cast<double>(size[0]), static_cast<double>(size[0] * size[1]));
     const auto number = static_cast<std::size_t>(from.dot(strides));
-    return 255.0 * segment.mask.voxels[number] / segment.mask.full;
+    return 255.0 * segment.mask.voxels[number] / segment.mask.maxValue;
   };
   std::set<int, std::greater<>> priorities;
   for (const auto& segment : m_description.segments)

@@ -18,7 +18,7 @@ class SeenColor : public ::testing::TestWithParam<double> {};
 TEST_P(SeenColor, IsRenderedByVolumeShading) {
   const double g = GetParam();
   for (const Rgb& color : {Rgb(0.05, 0.1, 0.2), Rgb(0.35, 0.5, 0.65), Rgb(0.8, 0.9, 0.05)}) {
-    TestScene scene = endlessSlab(deepFor(g), albedoFor(color, g));
+    TestScene scene = endlessSlab(deepFor(g), toAlbedo(color, g));
     scene.transfer.g = g;
     expectMean(seen(scene, 400, 41), color, 0.02, 0.03);
   }
@@ -56,7 +56,7 @@ TestScene step(const Rgb& color, double ramp, const SurfaceShading& shading) {
   TestScene scene = endlessSlab(400.0 * ramp, Rgb::Zero());
   scene.volume = makeVolume(grid, [](const Vec3& index) { return index.z() < 396.0 ? 1.0 : 0.0; });
   scene.transfer = {ScalarFunction({knot(0.0, 0.0), knot(1.0, 3.0)}),
-                    ColorFunction({{0.0, albedoFor(color, 0.0)}}),
+                    ColorFunction({{0.0, toAlbedo(color, 0.0)}}),
                     {},
                     0.0,
                     shading};
@@ -64,7 +64,7 @@ TestScene step(const Rgb& color, double ramp, const SurfaceShading& shading) {
 }
 
 TEST(SeenColor, IsNearlyRenderedByHybridShading) {
-  const SurfaceShading skin = SurfaceShading::coat(0.2, 0.4);
+  const SurfaceShading skin = SurfaceShading::makeCoated(0.2, 0.4);
   for (const double ramp : {1.0, 3.0})
     for (const Rgb& color : {Rgb(0.05, 0.1, 0.2), Rgb(0.35, 0.5, 0.65), Rgb(0.8, 0.9, 0.05)}) {
       const RgbEstimate estimate = seen(step(color, ramp, skin), 400, 43);
@@ -77,7 +77,7 @@ TEST(SeenColor, IsNearlyRenderedByHybridShading) {
 
 /// Diffuse 1 without a coat: nothing is lost at any surface.
 TEST(Furnace, IsOneForAWhiteSurface) {
-  TestScene scene = step(Rgb::Ones(), 0.5, SurfaceShading::coat(0.0, 0.4));
+  TestScene scene = step(Rgb::Ones(), 0.5, SurfaceShading::makeCoated(0.0, 0.4));
   scene.transfer.albedo = ColorFunction({{0.0, Rgb::Ones()}});
   const RgbEstimate estimate = seen(scene, 400, 47);
   EXPECT_NEAR(estimate.mean[0], 1.0, 4.0 * estimate.error[0] + 1e-6); // lanes are float
@@ -86,7 +86,7 @@ TEST(Furnace, IsOneForAWhiteSurface) {
 
 /// Coat and base return what arrives but for a few thousandths, by both transports.
 TEST(Furnace, IsNearlyOneForAWhiteSurfaceUnderACoat) {
-  TestScene scene = step(Rgb::Ones(), 0.5, SurfaceShading::coat(0.5, 0.4));
+  TestScene scene = step(Rgb::Ones(), 0.5, SurfaceShading::makeCoated(0.5, 0.4));
   scene.transfer.albedo = ColorFunction({{0.0, Rgb::Ones()}});
   for (const Integrator transport : {Integrator::simd, Integrator::scalar}) {
     RenderSettings settings;

@@ -19,14 +19,14 @@ Mask ball(const Vec3& center, double radius, bool isSoft) {
                   makeRotation(0.4, Vec3(1.0, 2.0, -0.5).normalized()) * flat.indexToWorld);
   Mask mask;
   mask.grid = grid;
-  mask.full = isSoft ? 255 : 1;
+  mask.maxValue = isSoft ? 255 : 1;
   for (std::int64_t z = 0; z < grid.size.z(); ++z)
     for (std::int64_t y = 0; y < grid.size.y(); ++y)
       for (std::int64_t x = 0; x < grid.size.x(); ++x) {
         const Vec3 p = grid.indexToWorld * Size3(x, y, z).cast<double>();
         const double inside = radius - (p - center).norm();
         const double share = isSoft ? std::clamp(0.5 + inside / 2.0, 0.0, 1.0) : inside > 0.0;
-        mask.voxels.push_back(static_cast<std::uint8_t>(share * mask.full));
+        mask.voxels.push_back(static_cast<std::uint8_t>(share * mask.maxValue));
       }
   return mask;
 }
@@ -67,7 +67,7 @@ TestScene hills(const TransferFunction& transfer) {
 
 TransferFunction coated() {
   TransferFunction transfer = linearTransfer(0.6, Rgb(0.9, 0.6, 0.3), 0.4);
-  transfer.shading = SurfaceShading::coat(0.5, 0.3, transfer.g);
+  transfer.shading = SurfaceShading::makeCoated(0.5, 0.3, transfer.g);
   return transfer;
 }
 
@@ -129,7 +129,7 @@ Mask wideMask(const Column& column) {
   const auto n = static_cast<std::int64_t>(column.size());
   Mask mask;
   mask.grid = centredGrid({2, 2, n}, {10000.0, 10000.0, 1.0});
-  mask.full = 255;
+  mask.maxValue = 255;
   for (const std::uint8_t voxel : column)
     mask.voxels.insert(mask.voxels.end(), 4, voxel);
   return mask;
@@ -241,7 +241,7 @@ std::vector<Component> whiteMatter(bool isHybrid) {
     if (i % 3 == 2)
       transfer.extinction = ScalarFunction({knot(0.0, 0.8 - 0.05 * i)});
     if (isHybrid) {
-      transfer.shading = SurfaceShading::coat(0.0, 0.1 + 0.05 * i, transfer.g);
+      transfer.shading = SurfaceShading::makeCoated(0.0, 0.1 + 0.05 * i, transfer.g);
       transfer.shading->diffuse = 1.0;
     }
     all.push_back({transfer, i % 4 != 3});

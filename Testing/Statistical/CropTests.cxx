@@ -54,7 +54,7 @@ TEST_P(CroppedTransmittance, IsExponentialAlongTheChord) {
   const Volume volume = ones(centredGrid({30, 30, 30}, {1.0, 1.0, 1.0}));
   const double sigma_t = 0.2;
   const TransferFunction transfer = linearTransfer(sigma_t, Rgb::Zero());
-  const TransferFunction looser = transfer.scaled(2.0); // not every collision is real
+  const TransferFunction looser = transfer.withDensity(2.0); // not every collision is real
   Affine box = turnedBox({0.3, -0.4, 0.2}, {3.0, 5.0, 4.0}, 0.7);
   if (GetParam()) // sheared, as by a transform above the box
     box = Affine(Mat3::FromRows({1.0, 0.3, 0.0}, {0.0, 1.0, -0.2}, {0.1, 0.0, 0.8})) * box;

@@ -241,8 +241,8 @@ TransferFunction transferOf(const Combination& c) {
   if (c.transfer == TransferFactor::steepGradientOpacity)
     transfer.gradientOpacity = overGradient({{0.0, 0.0}, {0.1, 0.0}, {0.1, 1.0}, {0.3, 0.4}});
   if (c.isHybrid)
-    transfer.shading =
-        c.isCoated ? SurfaceShading::coat(0.6, 0.35, c.g) : SurfaceShading{0.8, 0.3, 12.0, 0.6};
+    transfer.shading = c.isCoated ? SurfaceShading::makeCoated(0.6, 0.35, c.g)
+                                  : SurfaceShading{0.8, 0.3, 12.0, 0.6};
   return transfer;
 }
 

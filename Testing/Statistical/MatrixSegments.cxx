@@ -35,13 +35,13 @@ Mask maskOf(const Ball& ball, const Grid& labels, bool isSoft) {
   map.translate(first.cast<double>());
   Mask mask;
   mask.grid = Grid(end - first, map);
-  mask.full = isSoft ? 255 : 1;
+  mask.maxValue = isSoft ? 255 : 1;
   for (std::int64_t z = first.z(); z < end.z(); ++z)
     for (std::int64_t y = first.y(); y < end.y(); ++y)
       for (std::int64_t x = first.x(); x < end.x(); ++x) {
         const double inside = ball.radius - (Size3(x, y, z).cast<double>() - ball.center).norm();
         const double share = isSoft ? std::clamp(0.5 + inside / 2.0, 0.0, 1.0) : inside > 0.0;
-        mask.voxels.push_back(static_cast<std::uint8_t>(share * mask.full));
+        mask.voxels.push_back(static_cast<std::uint8_t>(share * mask.maxValue));
       }
   return mask;
 }
@@ -76,14 +76,14 @@ Component matterOf(const Combination& c, std::size_t number, const TransferFunct
   transfer.albedo = colorsOf(volume.extinction, generator);
   transfer.g = anisotropies[generator() % 4];
   if (number % 3 == 0) {
-    transfer = transfer.scaled(uniform(generator, 0.5, 2.0));
+    transfer = transfer.withDensity(uniform(generator, 0.5, 2.0));
   } else {
     transfer.extinction = extinctionOf(volume.extinction, number % 3 == 1, generator);
     transfer.gradientOpacity.reset();
   }
   if (transfer.shading) {
-    transfer.shading = SurfaceShading::coat(uniform(generator, 0.0, 1.0),
-                                            uniform(generator, 0.05, 0.95), transfer.g);
+    transfer.shading = SurfaceShading::makeCoated(uniform(generator, 0.0, 1.0),
+                                                  uniform(generator, 0.05, 0.95), transfer.g);
     transfer.shading->gamma = volume.shading->gamma; // the same for all
     transfer.shading->diffuse = uniform(generator, 0.0, 1.0);
   }

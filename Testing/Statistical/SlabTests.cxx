@@ -32,7 +32,7 @@ TEST(RatioTracking, ShadowThroughASlabIsExponential) {
   const MajorantGrid majorants(scene.volume.grid, ranges, scene.transfer, ClipNone{});
   const auto& voxels = std::get<LargeArray<float>>(scene.volume.voxels);
   // Majorant twice the extinction, so that not all ratios are 0: a scaled grid.
-  const TransferFunction doubled = scene.transfer.scaled(2.0);
+  const TransferFunction doubled = scene.transfer.withDensity(2.0);
   const MajorantGrid loose(scene.volume.grid, ranges, doubled, ClipNone{});
   const Medium<float> medium(scene.volume.grid, voxels, scene.transfer);
   const Clip clip;
@@ -44,7 +44,7 @@ TEST(RatioTracking, ShadowThroughASlabIsExponential) {
     constexpr int n = 200000;
     for (int i = 0; i < n; ++i) {
       Random random(5, static_cast<std::uint64_t>(i), 0);
-      const double t = tracker.transmittance(camera.ray(4, 4), {}, random, counters);
+      const double t = tracker.transmittance(camera.makeRay(4, 4), {}, random, counters);
       sum += t;
       squares += t * t;
     }

@@ -388,7 +388,7 @@ TEST_P(SeamTracking, TransmittanceBesideTheFocusFollowsTheExactSurface) {
       const double surface = depth.surfaceDepth(at), linear = depth.buffer->depth(at);
       if (std::abs(surface - linear) < 0.2)
         continue;
-      const Ray ray = camera.rayThrough(at);
+      const Ray ray = camera.makePlaneRay(at);
       const double perLength = camera.depthPerLength(ray);
       const Interval way{std::min(surface, linear) / perLength,
                          std::max(surface, linear) / perLength};

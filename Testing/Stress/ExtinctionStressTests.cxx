@@ -169,7 +169,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(HalfSpace, LanesServeDepthsUpToTheirLimit) {
   const Volume volume = layers(depthVoxels, 0.0005, 0.4);
   EXPECT_TRUE(SimdTracker::serves(volume, deep(Rgb::Ones())));
-  EXPECT_FALSE(SimdTracker::serves(volume, deep(Rgb::Ones()).scaled(1.2)));
+  EXPECT_FALSE(SimdTracker::serves(volume, deep(Rgb::Ones()).withDensity(1.2)));
   EXPECT_FALSE(SimdTracker::serves(volume, stepped(Rgb::Ones())));
 }
 
@@ -212,11 +212,11 @@ using SceneMaker = TestScene (*)(double unit);
 /// Scene with lengths multiplied and extinctions divided by `unit`. Powers of two change no bit.
 TestScene rampScene(double unit) {
   return cornerScene(diagonalRamp(0.002 * unit),
-                     logarithmicRamp(1.0, 64, Rgb(0.9, 0.5, 0.0)).scaled(1.0 / unit));
+                     logarithmicRamp(1.0, 64, Rgb(0.9, 0.5, 0.0)).withDensity(1.0 / unit));
 }
 TestScene checkerScene(double unit) {
   return cornerScene(checkerboard(0.002 * unit),
-                     contrast(densest, Rgb(0.9, 0.5, 0.0)).scaled(1.0 / unit));
+                     contrast(densest, Rgb(0.9, 0.5, 0.0)).withDensity(1.0 / unit));
 }
 TestScene homogeneousScene(double unit) {
   return cornerScene(
@@ -257,7 +257,7 @@ TEST(ExtremeContrast, NumberOfCollisionsIsBounded) {
     for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(budget(64)); ++i) {
       Random random(9, i, 0);
       Counters counters;
-      const Ray ray = camera.ray(8.0 * random.uniform(), 8.0 * random.uniform());
+      const Ray ray = camera.makeRay(8.0 * random.uniform(), 8.0 * random.uniform());
       probe.tracker().transmittance(ray, {}, random, counters);
       worst = std::max(worst, counters.lookups);
     }

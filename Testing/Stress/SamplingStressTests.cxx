@@ -250,7 +250,7 @@ TEST(LightEnds, LightInTheVolumesCentreLeavesUsableShares) {
   light.center = unitGrid.worldCenter();
   const EnvironmentLight sky{Rgb::Ones(), {2, 1, std::vector<float>(6, 1.0F)}};
   const LightSet set({light, sky}, unitGrid, camera());
-  EXPECT_NEAR(set.environment(Vec3::UnitX()).pdf, 0.5 * 0.25 / pi, 1e-12);
+  EXPECT_NEAR(set.evaluateEnvironment(Vec3::UnitX()).pdf, 0.5 * 0.25 / pi, 1e-12);
 }
 
 // ---- distances and whole paths, which take a Random: each of its draws in turn is at an end

@@ -136,7 +136,7 @@ TEST(MajorantCells, AnyShapeHasAboutAQuarterOfAMillionCells) {
         Shape{{40000, 1, 40000}, {0.001, 100, 0.001}}, Shape{{1, 2000000000, 1}, {1, 1, 1}},
         Shape{{2000000000, 1, 1}, {1, 0.001, 1000}}, Shape{{1300, 1300, 1300}, {0.01, 0.01, 100}},
         Shape{{2000, 2000, 3}, {0.01, 0.01, 100}}, Shape{{3000000, 3, 5}, {1, 2, 0.1}}}) {
-    const Size3 edge = MinMaxGrid::edgeFor(centredGrid(size, spacing));
+    const Size3 edge = MinMaxGrid::chooseCellSize(centredGrid(size, spacing));
     const Size3 cells = (size.array() + edge.array() - 1) / edge.array();
     EXPECT_TRUE((edge.array() >= 1).all() && (edge.array() <= size.array()).all());
     EXPECT_LT(cells.cast<double>().prod(), 4.0 * wanted) << size;
@@ -149,7 +149,7 @@ TEST(MajorantCells, PrimeSizesTransmitExpOfIntegral) {
       centredGrid({127, 131, 113}, Vec3::Constant(0.05)), [](const Vec3& p) {
         return 127.5 + 127.5 * std::sin(0.3 * p.x()) * std::cos(0.2 * p.y() + 0.25 * p.z());
       });
-  ASSERT_EQ(MinMaxGrid::edgeFor(volume.grid), Size3(2, 2, 2));
+  ASSERT_EQ(MinMaxGrid::chooseCellSize(volume.grid), Size3(2, 2, 2));
   constexpr double sigma = 0.3 / 255.0;
   const RayProbe<std::uint8_t> probe(volume,
                                      {ScalarFunction({knot(0.0, 0.0), knot(255.0, 255.0 * sigma)}),
@@ -220,7 +220,7 @@ TEST(HugeVolume, VoxelsBeyond31BitsAreSeen) {
   const MinMaxGrid ranges(volume, 0);
   EXPECT_EQ(ranges.high(0), 100.0);
   EXPECT_EQ(ranges.high(ranges.size() - 1), 200.0);
-  EXPECT_EQ(ranges.low(ranges.size() - 1), 200.0 * (ranges.edge().x() < 16 ? 1 : 0));
+  EXPECT_EQ(ranges.low(ranges.size() - 1), 200.0 * (ranges.cellSize().x() < 16 ? 1 : 0));
   EXPECT_EQ(ranges.high(ranges.size() / 2), 0.0);
 
   const RayProbe<std::uint8_t> probe(scene.volume, scene.transfer);

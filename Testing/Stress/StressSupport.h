@@ -122,11 +122,11 @@ public:
     const Interval inside =
         m_domain.clip(transformRay(m_domain.grid().worldToIndex, ray), Interval{});
     GridWalk walk(transformRay(m_majorants.worldToCell(), ray), inside, m_majorants.cellCount());
-    if (walk.done())
+    if (walk.isDone())
       return 0.0;
     const double begin = walk.interval().begin;
     double reached = begin;
-    for (; !walk.done(); walk.next()) {
+    for (; !walk.isDone(); walk.next()) {
       EXPECT_EQ(walk.interval().begin, reached);
       EXPECT_LE(walk.interval().begin, walk.interval().end);
       reached = walk.interval().end;

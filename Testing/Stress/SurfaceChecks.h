@@ -130,7 +130,7 @@ inline void expectVisible(const View& view, const Clip& clip) {
   const Camera& camera = view.camera;
   for (int i = 0; i < 500; ++i) {
     const Ray ray =
-        camera.ray(uniform(random, 0, camera.width()), uniform(random, 0, camera.height()));
+        camera.makeRay(uniform(random, 0, camera.width()), uniform(random, 0, camera.height()));
     const Interval seen = visibleInterval(clip, ray);
     ASSERT_TRUE(std::isfinite(seen.begin) && seen.begin >= 0.0);
     ASSERT_EQ(seen.end, infinity);
@@ -174,7 +174,7 @@ inline void expectFocusShown(const View& view, const ClippingSurface& surface, B
       const std::int64_t sample = buffer.viewportSample(column, row);
       if (!(buffer.at(sample) < infinity))
         continue;
-      const Ray ray = view.camera.ray(column + 0.5, row + 0.5);
+      const Ray ray = view.camera.makeRay(column + 0.5, row + 0.5);
       const double begin = buffer.at(sample) / view.camera.depthPerLength(ray);
       const double step = 1e-6 * (std::abs(begin) + ray.origin.norm() + view.camera.targetDepth());
       ASSERT_EQ(clipWeight(surface.clip, ray.at(begin - step)), 0.0);

@@ -53,7 +53,7 @@ TEST(ClipEdge, GhostIsVisibleFromTheEyeOn) {
   EXPECT_EQ(ball.rayClipWeight(clip, 0, 0, 50.0), 0.125);
   EXPECT_EQ(ball.rayClipWeight(clip, 0, 0, 95.0), 1.0);
   EXPECT_EQ(clipWeight(clip, ball.camera.pose().position - ball.camera.forward()), 0.0);
-  const Ray ray = ball.camera.rayThrough({0.0, 0.0});
+  const Ray ray = ball.camera.makePlaneRay({0.0, 0.0});
   EXPECT_EQ(visibleInterval(clip, ray).begin, 0.0);
   EXPECT_NEAR(intervalBehindSurface(clip, ray).begin, 88.0, 0.3);
 }

@@ -93,7 +93,7 @@ TEST(Clip, EyeRaysStartWhereKeepBegins) {
       const Camera camera = makeObliqueCamera(projection, distance, 96);
       for (const Clip& clip : makeClips(camera))
         for (int i = 0; i < fenestra::testing::budget(3000); ++i) {
-          const Ray ray = camera.ray(uniform(random, 0, 96), uniform(random, 0, 96));
+          const Ray ray = camera.makeRay(uniform(random, 0, 96), uniform(random, 0, 96));
           const Interval visible = visibleInterval(clip, ray);
           const double step = 1e-6 * (1.0 + 1e-4 * distance);
           if (!visible.isEmpty()) {

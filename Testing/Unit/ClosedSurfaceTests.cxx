@@ -250,7 +250,7 @@ TEST(ClosedSurface, WithoutAVolumeChoosesItsOwnGrid) {
 /// Rows through edges and corners count each crossing once.
 TEST(ClosedSurface, CrossingsAtEdgesCountOnce) {
   const Shape onPlanes = box(Vec3(2, 2, 2), Vec3(6, 6, 6));
-  const auto runs = voxelRuns(onPlanes.points, onPlanes.triangles, Size3(10, 10, 10));
+  const auto runs = voxelizeSurface(onPlanes.points, onPlanes.triangles, Size3(10, 10, 10));
   ASSERT_TRUE(runs);
   EXPECT_EQ(runs->size(), 16u); // the last of five planes is outside, in y and z
   std::mt19937 random(3);
@@ -259,7 +259,7 @@ TEST(ClosedSurface, CrossingsAtEdgesCountOnce) {
     for (Vec3& point : shape.points) // corners on rows, flat triangles, reversed triangles
       point = (point * (i % 2 ? 1.0 : 2.0)).array().round() / (i % 2 ? 1.0 : 2.0) +
               (i % 5 == 0 ? static_cast<double>(random() % 3) : 0.0);
-    EXPECT_TRUE(voxelRuns(shape.points, shape.triangles, Size3(20, 20, 20))) << i;
+    EXPECT_TRUE(voxelizeSurface(shape.points, shape.triangles, Size3(20, 20, 20))) << i;
   }
 }
 

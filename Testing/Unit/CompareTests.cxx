@@ -148,7 +148,7 @@ TEST(CompareImages, RefusesDifferentSizesAndMissingChannels) {
             ErrorKind::input);
   Image grey = constantImage(2, 3, 1.0f);
   grey.channels.erase("B");
-  EXPECT_EQ(kindOfComparing(grey, constantImage(2, 3, 1.0f)), ErrorKind::input);
+  EXPECT_EQ(kindOfComparing(gray, constantImage(2, 3, 1.0f)), ErrorKind::input);
 }
 
 TEST(DifferenceImage, PositiveIsRedAndNegativeIsBlue) {

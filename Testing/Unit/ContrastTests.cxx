@@ -131,9 +131,7 @@ TEST(Contrast, PalesSurroundingsThatLookLikeTheFocus) {
 TEST(Contrast, PalesNoMoreThanIsNeeded) {
   const Volume volume = makeBallVolume(15.0);
   const auto chosen = [&volume](const Rgb& context, const Rgb& focus) {
-    const auto decodeAlbedo = [](const Rgb& encoded) {
-      return albedoFor(decodeSrgb(encoded), 0.0);
-    };
+    const auto decodeAlbedo = [](const Rgb& encoded) { return toAlbedo(decodeSrgb(encoded), 0.0); };
     return chosenContrast({}, makeBallMask(), volume,
                           makeTransfer(decodeAlbedo(context), decodeAlbedo(focus)));
   };
@@ -151,7 +149,7 @@ TEST(Contrast, PalesNoMoreThanIsNeeded) {
 /// Purple around grey-blue: paled, normal sight tells them apart better, and the colour-blind no
 /// longer do.
 TEST(Contrast, TakesNothingFromTheColorBlind) {
-  const auto decodeAlbedo = [](const Rgb& encoded) { return albedoFor(decodeSrgb(encoded), 0.0); };
+  const auto decodeAlbedo = [](const Rgb& encoded) { return toAlbedo(decodeSrgb(encoded), 0.0); };
   const TransferFunction transfer =
       makeTransfer(decodeAlbedo(Rgb(0.82, 0.486, 0.918)), decodeAlbedo(Rgb(0.435, 0.506, 0.545)));
   const Volume volume = makeBallVolume(15.0);

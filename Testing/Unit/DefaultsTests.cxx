@@ -89,7 +89,7 @@ TEST(FrameView, AFocusNearAnEndOfTheScanIsFramedWithoutWhatLiesBeyond) {
     EXPECT_NEAR(seen.x(), side * 12.0, 1e-9) << "up to the end";
     Box matter = grid.indexBox();
     (side > 0.0 ? matter.upper : matter.lower).z() -= side * 1.0;
-    EXPECT_NEAR(framed(near, Domain(grid).within(occupied)).x(), side * 15.0, 1e-9)
+    EXPECT_NEAR(framed(near, Domain(grid).intersect(occupied)).x(), side * 15.0, 1e-9)
         << "matter ends before the scan";
     ViewRequest view;
     view.scale = 8.0;

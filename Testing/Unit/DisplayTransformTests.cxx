@@ -233,7 +233,7 @@ TEST(DisplayTransform, HandlesEveryPixelAlike) {
     many.insert(many.end(), {0.3f, 0.3f, 0.3f, 1.0f});
   const std::vector<float> display = toDisplay(many, {photographic});
   for (std::size_t i = 0; i < display.size(); ++i)
-    EXPECT_EQ(display[i], i % 4 == 3 ? 1.0f : grey);
+    EXPECT_EQ(display[i], i % 4 == 3 ? 1.0f : gray);
   EXPECT_TRUE(toDisplay({}, {photographic}).empty());
 }
 

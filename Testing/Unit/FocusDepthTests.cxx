@@ -98,7 +98,7 @@ double findMaximum(const Mask& mask, const Ray& ray, double begin, double end) {
   double best = 0.0, before = 0.0, here = 0.0;
   bool isOnRidge = false;
   for (double t = begin; t < end + 2.0 * step; t += step) {
-    const double next = t < end ? indicator(mask, ray.at(t)) / mask.full : 0.0;
+    const double next = t < end ? indicator(mask, ray.at(t)) / mask.maxValue : 0.0;
     const bool isMaximum = here >= before && here >= next && here > FocusCells::captureThreshold;
     const bool isHidden = !isOnRidge && 0.5 - here >= FocusCells::replaceRatio * (0.5 - best);
     if (isMaximum && (best == 0.0 || !isHidden))
@@ -117,7 +117,7 @@ TEST(FocusCells, SummitOfAMissingRayEqualsDenseSampling) {
   for (const std::uint8_t maxValue : {std::uint8_t{1}, std::uint8_t{200}})
     for (int trial = 0; trial < briefly(40); ++trial) {
       Mask mask = maskOf(grid, [&](const Vec3&) { return random.uniform() < 0.3; });
-      mask.full = maxValue;
+      mask.maxValue = maxValue;
       for (std::uint8_t& voxel : mask.voxels)
         voxel = static_cast<std::uint8_t>(maxValue == 1 ? voxel : 200.0 * random.uniform());
       const FocusCells cells(mask);
@@ -142,7 +142,7 @@ TEST(FocusCells, SummitOfAMissingRayEqualsDenseSampling) {
           EXPECT_GE(rays.maximum[i], maximum - ridgeTolerance);
         }
         const Vec3 summit = worldRays[i].at(rays.maximumT[i]);
-        EXPECT_NEAR(indicator(mask, summit) / full, rays.maximum[i], 1e-9);
+        EXPECT_NEAR(indicator(mask, summit) / maxValue, rays.maximum[i], 1e-9);
         EXPECT_NEAR(cells.indicator(cells.worldToCell() * summit), rays.maximum[i], 1e-9);
       }
     }
@@ -229,7 +229,7 @@ void compareWithMarching(const Camera& camera, const Domain& volume, const Mask&
   int hits = 0;
   for (std::int64_t row = 0; row < focus.depth.rows(); ++row)
     for (std::int64_t column = 0; column < focus.depth.columns(); ++column) {
-      const Ray ray = camera.rayThrough(focus.depth.position(column, row));
+      const Ray ray = camera.makePlaneRay(focus.depth.position(column, row));
       const Interval inside = volume.clip(transformRay(volume.grid().worldToIndex, ray));
       const double hit =
           focus.depth.at(focus.depth.sample(column, row)) / camera.depthPerLength(ray);
@@ -327,7 +327,7 @@ TEST(FocusDepth, RegionIsWhatItsRayMeets) {
     const std::int64_t stride = 1 + focus.depth.rows() / 40;
     for (std::int64_t row = 0; row < focus.depth.rows(); row += stride)
       for (std::int64_t column = 0; column < focus.depth.columns(); column += stride) {
-        const Ray ray = camera.rayThrough(focus.depth.position(column, row));
+        const Ray ray = camera.makePlaneRay(focus.depth.position(column, row));
         const Interval inside = volume.clip(transformRay(grid.worldToIndex, ray));
         bool isFocus = false;
         for (double t = inside.begin; t < inside.end && !isFocus; t += 0.1)

@@ -24,7 +24,7 @@ Walked checkedWalk(const Ray& ray, const Interval& range, const Size3& cells) {
   const Interval inside = Box{Vec3::Zero(), cells.cast<double>()}.clip(ray, range);
   double reached = inside.begin;
   Size3 before = Size3::Constant(-1);
-  for (GridWalk walk(ray, range, cells); !walk.done(); walk.next()) {
+  for (GridWalk walk(ray, range, cells); !walk.isDone(); walk.next()) {
     const Size3& c = walk.coordinates();
     const Interval interval = walk.interval();
     const bool inGrid = (c.array() >= 0).all() && (c.array() < cells.array()).all();
@@ -93,19 +93,19 @@ TEST(GridWalk, VisitsTheCellsOfAnAxisInOrder) {
   const Ray ray{{-1.0, 0.5, 1.5}, {2.0, 0.0, 0.0}};
   GridWalk walk(ray, {}, {3, 1, 2});
   for (int i = 0; i < 3; ++i, walk.next()) {
-    ASSERT_FALSE(walk.done());
+    ASSERT_FALSE(walk.isDone());
     EXPECT_EQ(walk.cell(), 3 + i);
     EXPECT_DOUBLE_EQ(walk.interval().begin, 0.5 + 0.5 * i);
     EXPECT_DOUBLE_EQ(walk.interval().end, 1.0 + 0.5 * i);
   }
-  EXPECT_TRUE(walk.done());
+  EXPECT_TRUE(walk.isDone());
 }
 
 TEST(GridWalk, MissesAndEmptyRangesAreDoneAtOnce) {
   const Size3 cells(4, 4, 4);
-  EXPECT_TRUE(GridWalk({{5.0, 1.0, 1.0}, {1.0, 0.0, 0.0}}, {}, cells).done());
-  EXPECT_TRUE(GridWalk({{-1.0, 9.0, 1.0}, {1.0, 0.1, 0.0}}, {}, cells).done());
-  EXPECT_TRUE(GridWalk({{1.0, 1.0, 1.0}, {1.0, 0.0, 0.0}}, {2.0, 2.0}, cells).done());
+  EXPECT_TRUE(GridWalk({{5.0, 1.0, 1.0}, {1.0, 0.0, 0.0}}, {}, cells).isDone());
+  EXPECT_TRUE(GridWalk({{-1.0, 9.0, 1.0}, {1.0, 0.1, 0.0}}, {}, cells).isDone());
+  EXPECT_TRUE(GridWalk({{1.0, 1.0, 1.0}, {1.0, 0.0, 0.0}}, {2.0, 2.0}, cells).isDone());
 }
 
 TEST(GridWalk, StartOnAFaceIsInTheCellAhead) {
@@ -134,7 +134,7 @@ TEST(GridWalk, AgreesWithDenseSamplingOfTheRay) {
     const Vec3 b(9 * random.uniform(), 9 * random.uniform(), 9 * random.uniform());
     const Ray ray{a, (b - a).normalized()};
     std::set<std::int64_t> walked;
-    for (GridWalk walk(ray, {}, cells); !walk.done(); walk.next())
+    for (GridWalk walk(ray, {}, cells); !walk.isDone(); walk.next())
       walked.insert(walk.cell());
     for (int i = 0; i < 200; ++i) {
       const Vec3 p = ray.at(0.15 * (i + random.uniform()));

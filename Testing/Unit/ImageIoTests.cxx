@@ -127,9 +127,9 @@ TEST_F(NrrdFiles, RoundTripKeepsColourAndDepth) {
   image.channels["Z"][3] = infinite;
   image.channels["R"][2] = -7.5f;
   const Image colour = readImage(written(image, "view.nrrd"));
-  EXPECT_EQ(colour.channels.size(), 4u);
+  EXPECT_EQ(color.channels.size(), 4u);
   for (const char* name : {"R", "G", "B", "A"})
-    EXPECT_EQ(colour.channels.at(name), image.channels.at(name)) << name;
+    EXPECT_EQ(color.channels.at(name), image.channels.at(name)) << name;
   const Image depth = readImage(path("view-Z.nrrd"));
   EXPECT_EQ(depth.channels.size(), 1u);
   EXPECT_EQ(depth.channels.at("Z"), image.channels.at("Z"));
@@ -141,7 +141,7 @@ TEST_F(NrrdFiles, MissingAlphaIsOpaqueAndMissingDepthWritesOneFile) {
   image.channels.erase("A");
   image.channels.erase("Z");
   const Image colour = readImage(written(image, "view.nrrd"));
-  EXPECT_EQ(colour.channels.at("A"), std::vector<float>(image.channels["R"].size(), 1.0f));
+  EXPECT_EQ(color.channels.at("A"), std::vector<float>(image.channels["R"].size(), 1.0f));
   EXPECT_EQ(fileCount(), 1u);
 }
 

@@ -87,7 +87,7 @@ TEST(LightReader, ColorIsThatOfAWhiteSurfaceInTheLight) {
     {"type": "sphere", "center": [0, 0, 0], "diameter": 2, "color": "#6c5048", "radiance": 2}]})",
                                   "test");
   const Rgb grey = std::get<EnvironmentLight>(lights.at(0)).radiance;
-  EXPECT_LT((grey - 0.5).abs().maxCoeff(), 1e-15) << "luminance 0.5";
+  EXPECT_LT((gray - 0.5).abs().maxCoeff(), 1e-15) << "luminance 0.5";
   const Rgb red = std::get<DirectionalLight>(lights.at(1)).irradiance;
   EXPECT_LT((red - Rgb(3.0 / 0.2126, 0.0, 0.0)).abs().maxCoeff(), 1e-12);
   const Rgb linear(0.686685312, 0.351532600, 0.278894261); // of 216, 160, 144 by IEC 61966-2-1

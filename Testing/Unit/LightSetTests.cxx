@@ -61,10 +61,10 @@ void expectConsistent(const std::vector<Light>& lights, const Vec3& point, int f
   const LightSet set(lights, grid, makeCamera());
   const auto sampleDirection = [&](Random& r) -> Vec3 {
     const auto sample = set.sample(point, r);
-    return sample && !sample->delta ? sample->direction : Vec3(Vec3::Zero());
+    return sample && !sample->isDelta ? sample->direction : Vec3(Vec3::Zero());
   };
   const auto pdf = [&](const Vec3& d) {
-    double density = set.environment(d).pdf;
+    double density = set.evaluateEnvironment(d).pdf;
     set.sumEmitterHits({point, d}, infinity, [&](const EmitterHit& hit) {
       density += hit.pdf;
       return Rgb(Rgb::Zero());
@@ -242,7 +242,7 @@ Rgb measureSkyIrradiance(const LightSet& set, const Vec3& normal) {
   Rgb sum = Rgb::Zero();
   for (int channel = 0; channel < 3; ++channel) {
     const auto integrand = [&](const Vec3& d) {
-      return set.environment(d).radiance[channel] * std::max(0.0, normal.dot(d));
+      return set.evaluateEnvironment(d).radiance[channel] * std::max(0.0, normal.dot(d));
     };
     for (const double part : binIntegrals(integrand, 16))
       sum[channel] += part / pi;
@@ -259,7 +259,7 @@ TEST(LightSet, SkyLightsAPlaneByTwoThirdsOfItsEndAndOneThirdOfItsMiddle) {
             2e-3);
   EXPECT_LT((measureSkyIrradiance(set, -up) - (2 * sky.bottom + sky.middle) / 3).abs().maxCoeff(),
             2e-3);
-  EXPECT_EQ(set.environment(up).pdf, 0.0) << "never sampled";
+  EXPECT_EQ(set.evaluateEnvironment(up).pdf, 0.0) << "never sampled";
   Random random(1, 1, 1);
   EXPECT_FALSE(set.sample(Vec3::Zero(), random));
 }
@@ -269,19 +269,19 @@ TEST(LightSet, SkyOfTheCameraTurnsWithTheCamera) {
   sky.bottom = Rgb::Zero();
   sky.middle = Rgb::Constant(0.5);
   const LightSet up({sky}, grid, makeCamera());
-  EXPECT_NEAR(up.environment(Vec3::UnitZ()).radiance[0], 1.0, 1e-12) << "the camera's up";
-  EXPECT_NEAR(up.environment(-Vec3::UnitZ()).radiance[0], 0.0, 1e-12);
+  EXPECT_NEAR(up.evaluateEnvironment(Vec3::UnitZ()).radiance[0], 1.0, 1e-12) << "the camera's up";
+  EXPECT_NEAR(up.evaluateEnvironment(-Vec3::UnitZ()).radiance[0], 0.0, 1e-12);
   sky.up = Vec3::UnitZ();
   const LightSet toViewer({sky}, grid, makeCamera());
-  EXPECT_NEAR(toViewer.environment(-Vec3::UnitY()).radiance[0], 1.0, 1e-12);
-  EXPECT_NEAR(toViewer.environment(Vec3::UnitX()).radiance[0], 0.5, 1e-12);
+  EXPECT_NEAR(toViewer.evaluateEnvironment(-Vec3::UnitY()).radiance[0], 1.0, 1e-12);
+  EXPECT_NEAR(toViewer.evaluateEnvironment(Vec3::UnitX()).radiance[0], 0.5, 1e-12);
 }
 
 TEST(LightSet, WithoutLightsNothingIsDrawn) {
   const LightSet set({}, grid, makeCamera());
   Random random(1, 1, 1);
   EXPECT_FALSE(set.sample(Vec3::Zero(), random));
-  EXPECT_EQ(set.environment(Vec3::UnitX()).pdf, 0.0);
+  EXPECT_EQ(set.evaluateEnvironment(Vec3::UnitX()).pdf, 0.0);
 }
 
 } // namespace

@@ -100,7 +100,7 @@ TEST(MajorantGrid, MatterBoxHoldsAllMatterAndAtMostACellMore) {
                                     grey};
     return MajorantGrid(grid, MinMaxGrid(volume, 0), transfer, ClipNone{}).occupiedBounds();
   };
-  const Vec3 edge = MinMaxGrid::edgeFor(grid).cast<double>();
+  const Vec3 edge = MinMaxGrid::chooseCellSize(grid).cast<double>();
   const Box box = boxFrom(100.0);
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_LE(box.lower[axis], first[axis] - 0.5);
@@ -196,18 +196,18 @@ TEST(MinMaxGrid, ThickSlicesMakeNoLongCells) {
   Affine map = Affine::Identity();
   map.linear() = Mat3::Diagonal({0.5, 0.5, 5.0});
   const Grid grid(Size3(512, 512, 60), map);
-  const Size3 edge = MinMaxGrid::edgeFor(grid);
+  const Size3 edge = MinMaxGrid::chooseCellSize(grid);
   EXPECT_EQ(edge.z(), 1);
   EXPECT_EQ(edge.x(), edge.y());
   EXPECT_NEAR(0.5 * static_cast<double>(edge.x()), 5.0, 2.5);
-  EXPECT_EQ(MinMaxGrid::edgeFor(Grid(Size3(1, 1, 1), map)), Size3(1, 1, 1));
+  EXPECT_EQ(MinMaxGrid::chooseCellSize(Grid(Size3(1, 1, 1), map)), Size3(1, 1, 1));
 }
 
 TEST(MinMaxGrid, CellsSpanAtLeastOneVoxel) {
   for (const double scale : {1e-300, 1.0, 1e308}) {
     Affine map = Affine::Identity();
     map.linear()(0, 1) = scale;
-    EXPECT_TRUE((MinMaxGrid::edgeFor(Grid({3, 4, 2}, map)).array() >= 1).all());
+    EXPECT_TRUE((MinMaxGrid::chooseCellSize(Grid({3, 4, 2}, map)).array() >= 1).all());
   }
 }
 

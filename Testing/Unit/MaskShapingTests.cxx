@@ -30,7 +30,7 @@ double ballOf(double radius) {
 
 TEST(MaskShaping, BallGrowsByItsMargin) {
   for (const double margin : {1.5, 4.0, 9.0}) {
-    const Mask grownBall = grown(ball(10.0), margin, volume);
+    const Mask grownBall = applyMargin(ball(10.0), margin, volume);
     // Voxels whose centres lie within the margin of focus centres: uncertain by half a voxel.
     EXPECT_GT(millimetres3(grownBall), ballOf(10.0 + margin - 0.7));
     EXPECT_LT(millimetres3(grownBall), ballOf(10.0 + margin + 0.5));
@@ -39,14 +39,14 @@ TEST(MaskShaping, BallGrowsByItsMargin) {
 }
 
 TEST(MaskShaping, BallShrinksByItsMargin) {
-  const Mask shrunk = grown(ball(10.0), -3.0, volume);
+  const Mask shrunk = applyMargin(ball(10.0), -3.0, volume);
   EXPECT_GT(millimetres3(shrunk), ballOf(10.0 - 3.0 - 1.0));
   EXPECT_LT(millimetres3(shrunk), ballOf(10.0 - 3.0 + 0.7));
-  EXPECT_EQ(grown(ball(10.0), -30.0, volume).count, 0);
+  EXPECT_EQ(applyMargin(ball(10.0), -30.0, volume).count, 0);
 }
 
 TEST(MaskShaping, LargeMarginEndsAtMostTwoVoxelsBeyondTheVolume) {
-  const Mask all = grown(ball(10.0), 1000.0, volume);
+  const Mask all = applyMargin(ball(10.0), 1000.0, volume);
   EXPECT_TRUE((all.grid.size.array() <= volume.size.array() + 4).all());
   EXPECT_EQ(all.count, all.grid.voxelCount());
 }
@@ -56,7 +56,7 @@ TEST(MaskShaping, ShrinkingKeepsAFocusWholeWhereTheVolumeCutsIt) {
   const Mask slab = maskOf(centredGrid({61, 21, 21}), [](const Vec3& p) {
     return std::abs(p.y()) < 6.5 && std::abs(p.z()) < 6.5;
   });
-  const Mask shrunk = grown(slab, -2.0, volume);
+  const Mask shrunk = applyMargin(slab, -2.0, volume);
   EXPECT_EQ(shrunk.count, 61 * 9 * 9);
 }
 
@@ -65,12 +65,12 @@ TEST(MaskShaping, UnionCountsTheVoxelsOfBothMasks) {
     const Grid whole = centredGrid({40, 40, 40});
     return boxMask(whole, lower, upper);
   };
-  const Mask a = grown(box({-10, -10, -10}, {-5, -5, -5}), 1.0, volume);
+  const Mask a = applyMargin(box({-10, -10, -10}, {-5, -5, -5}), 1.0, volume);
   const Mask b = box({5, 5, 5}, {9, 9, 9});
-  const Mask both = united({a, b});
+  const Mask both = uniteMasks({a, b});
   EXPECT_EQ(both.count, a.count + b.count);
   EXPECT_EQ(both.names.size(), 2U);
-  EXPECT_EQ(united({a, a}).count, a.count);
+  EXPECT_EQ(uniteMasks({a, a}).count, a.count);
 }
 
 /// Range of the visible surface's distances from a sphere of `radius`, over its central part, mm.
@@ -91,8 +91,8 @@ double stairs(const Mask& mask, double radius) {
 
 TEST(MaskShaping, SmoothingRemovesStairsAndKeepsTheRadius) {
   const double radius = 12.0;
-  const Mask steps = ball(radius), smooth = smoothed(steps, 1.2, volume);
-  EXPECT_EQ(smooth.full, 255);
+  const Mask steps = ball(radius), smooth = smoothMask(steps, 1.2, volume);
+  EXPECT_EQ(smooth.maxValue, 255);
   EXPECT_GT(stairs(steps, radius), 0.5);
   EXPECT_LT(stairs(smooth, radius), 0.6 * stairs(steps, radius));
   // A ball shrinks by deviation^2 / radius.
@@ -107,7 +107,7 @@ TEST(MaskShaping, SmoothingKeepsAFlatFace) {
     const FocusDepth focus = FocusTracer(camera, volume, mask).traceDepths();
     return focus.depth.at(focus.depth.viewportSample(32, 32));
   };
-  EXPECT_NEAR(depth(smoothed(box, 1.0, volume)), depth(box), 0.01) << "a byte's rounding";
+  EXPECT_NEAR(depth(smoothMask(box, 1.0, volume)), depth(box), 0.01) << "a byte's rounding";
 }
 
 /// Range of the visible surface's distances from y = slope z along its normal, mm.
@@ -131,8 +131,8 @@ TEST(MaskShaping, SurfaceThatLeansAcrossThickSlicesIsASlope) {
   for (const double slope : {1.0, 2.0}) { // 2 and 4 mm from slice to slice
     const Mask steps = maskOf(centredGrid({41, 121, 21}, {0.5, 0.5, 2.0}),
                               [&](const Vec3& p) { return p.y() >= slope * p.z() + 0.1; });
-    EXPECT_GT(stairsOfASlope(smoothed(steps, 0.6, volume), slope), 0.3);
-    EXPECT_LT(stairsOfASlope(smoothed(betweenSlices(steps), 0.6, volume), slope), 0.12);
+    EXPECT_GT(stairsOfASlope(smoothMask(steps, 0.6, volume), slope), 0.3);
+    EXPECT_LT(stairsOfASlope(smoothMask(interpolateSlices(steps), 0.6, volume), slope), 0.12);
   }
 }
 
@@ -142,12 +142,12 @@ TEST(MaskShaping, SmoothingIsASampledGaussian) {
     return p.x() + p.y() > 0.3 && std::abs(p.z() - 2.0) < 14.0;
   });
   const double deviation = 1.3;
-  const Mask smooth = smoothed(mask, deviation, volume);
-  EXPECT_EQ(smooth.smoothing, deviation);
+  const Mask smooth = smoothMask(mask, deviation, volume);
+  EXPECT_EQ(smooth.smoothing, sigma);
   const Vec3 spacing = mask.grid.spacing();
   const auto at = [&](const Size3& voxel) {
     const Size3 nearest = voxel.cwiseMax(0).cwiseMin((mask.grid.size.array() - 1).matrix());
-    return mask.voxels[numberOf(nearest, mask.grid.size)];
+    return mask.voxels[linearIndex(nearest, mask.grid.size)];
   };
   for (const Vec3& place : {Vec3(0, 0, 0), Vec3(2, 1, -20), Vec3(-4, 2.5, 15), Vec3(3, -1, 16.5)}) {
     const Size3 voxel = (mask.grid.worldToIndex * place).array().round().cast<std::int64_t>();
@@ -162,16 +162,16 @@ TEST(MaskShaping, SmoothingIsASampledGaussian) {
         }
     const Vec3 there = smooth.grid.worldToIndex * (mask.grid.indexToWorld * voxel.cast<double>());
     const Size3 same = there.array().round().cast<std::int64_t>();
-    EXPECT_NEAR(smooth.voxels[numberOf(same, smooth.grid.size)], 255.0 * sum / weights, 1.0);
+    EXPECT_NEAR(smooth.voxels[linearIndex(same, smooth.grid.size)], 255.0 * sum / weights, 1.0);
   }
 }
 
 TEST(MaskShaping, AutomaticSmoothingGoesByTheLongestEdge) {
-  EXPECT_NEAR(automaticSmoothing(centredGrid({9, 9, 9}, {1.0, 0.5, 1.5})), 0.9, 1e-12);
+  EXPECT_NEAR(chooseSmoothing(centredGrid({9, 9, 9}, {1.0, 0.5, 1.5})), 0.9, 1e-12);
   const Grid thick = centredGrid({9, 9, 9}, {0.9, 0.5, 5.0}); // five slices in place of one
-  EXPECT_NEAR(automaticSmoothing(thick), 0.6, 1e-12);
+  EXPECT_NEAR(chooseSmoothing(thick), 0.6, 1e-12);
   Mask mask = maskOf(thick, [](const Vec3& p) { return p.norm() < 4.0; });
-  EXPECT_NEAR(automaticSmoothing(betweenSlices(mask).grid), 0.6, 1e-12);
+  EXPECT_NEAR(chooseSmoothing(interpolateSlices(mask).grid), 0.6, 1e-12);
 }
 
 /// Parts that vanish stay as labelled, also beside others that do not.
@@ -182,26 +182,26 @@ TEST(MaskShaping, AutomaticSmoothingKeepsThinParts) {
   });
   const auto valueAt = [](const Mask& of, const Vec3& p) {
     const Vec3 index = of.grid.worldToIndex * p;
-    return of.voxels[numberOf(index.array().round().cast<std::int64_t>(), of.grid.size)];
+    return of.voxels[linearIndex(index.array().round().cast<std::int64_t>(), of.grid.size)];
   };
-  const Mask smooth = smoothedAutomatically(mask, volume), plain = smoothed(mask, 0.6, volume);
+  const Mask smooth = smoothMaskAuto(mask, volume), plain = smoothMask(mask, 0.6, volume);
   EXPECT_NEAR(smooth.smoothing, 0.6, 1e-12);
-  EXPECT_LT(valueAt(plain, Vec3(-15.0, 0.0, 3.0)), plain.half());
+  EXPECT_LT(valueAt(plain, Vec3(-15.0, 0.0, 3.0)), plain.threshold());
   EXPECT_EQ(valueAt(smooth, Vec3(-15.0, 0.0, 3.0)), 255);
   EXPECT_EQ(smooth.count, plain.count + 27) << "27 voxels of a line";
   EXPECT_EQ(valueAt(smooth, Vec3(11.0, 0.0, 0.0)), valueAt(plain, Vec3(11.0, 0.0, 0.0)));
   const Mask flakes = maskOf(centredGrid({9, 9, 9}, {1.0, 1.0, 0.01}),
                              [](const Vec3& p) { return std::abs(p.x()) < 2.5; });
-  EXPECT_EQ(smoothedAutomatically(flakes, volume).full, 1) << "as labelled";
+  EXPECT_EQ(smoothMaskAuto(flakes, volume).maxValue, 1) << "as labelled";
 }
 
 TEST(MaskShaping, WideSmoothingTakesTimeThatItsWidthDoesNotChange) {
   const Mask mask = maskOf(centredGrid({21, 21, 21}, {1.0, 1.0, 0.02}),
                            [](const Vec3& p) { return std::abs(p.x()) < 4.5; });
-  const Mask smooth = smoothed(mask, 1.0, volume);
+  const Mask smooth = smoothMask(mask, 1.0, volume);
   const auto at = [&](int x) {
     const Vec3 index = smooth.grid.worldToIndex * Vec3(x, 0.0, 0.0);
-    return smooth.voxels[numberOf(index.array().round().cast<std::int64_t>(), smooth.grid.size)];
+    return smooth.voxels[linearIndex(index.array().round().cast<std::int64_t>(), smooth.grid.size)];
   };
   EXPECT_GT(at(0), 250);
   EXPECT_GT(at(4), 128);
@@ -216,7 +216,7 @@ TEST(MaskShaping, InterpolationKeepsThickSlicesAndTheVolumeOfABall) {
     spacing[axis] = 1.25;
     size[axis] = 19;
     const Mask ball = sphereMask(centredGrid(size, spacing), radius);
-    const Mask fine = betweenSlices(ball);
+    const Mask fine = interpolateSlices(ball);
     Size3 fineSize = size;
     fineSize[axis] = 55;
     ASSERT_EQ(fine.grid.size, fineSize);
@@ -237,7 +237,7 @@ TEST(MaskShaping, InterpolationKeepsThickSlicesAndTheVolumeOfABall) {
 
 TEST(MaskShaping, NearlyCubicVoxelsAreNotInterpolated) {
   const Mask mask = ball(10.0);
-  EXPECT_EQ(betweenSlices(mask).voxels, mask.voxels);
+  EXPECT_EQ(interpolateSlices(mask).voxels, mask.voxels);
 }
 
 TEST(MaskShaping, OneMarginShrinksTouchingSegmentsAsOne) {

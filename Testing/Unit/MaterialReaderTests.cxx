@@ -44,7 +44,7 @@ TEST(MaterialReader, ReadsEveryFieldOfAMaterial) {
   EXPECT_EQ(liver.diffuse, 1.0) << "the default";
   EXPECT_EQ(liver.specular, 0.25);
   EXPECT_EQ(liver.roughness, 0.35);
-  EXPECT_EQ(liver.border, 0.1);
+  EXPECT_EQ(liver.interfaceWeight, 0.1);
   const Material& lesion = materials.at("lesion");
   EXPECT_EQ(lesion.kind, MaterialKind::medium) << "extinction of its own";
   EXPECT_TRUE(lesion.colorIsAlbedo);
@@ -102,10 +102,10 @@ TEST(MaterialReader, AFileStandsOnTheTableBeneath) {
 TEST(MaterialReader, SeenColorOfAnAlbedoIsItsReflectance) {
   const auto materials = parseMaterials(organs, "test").materials;
   const Material& lesion = materials.at("lesion");
-  EXPECT_NEAR((*seenColor(lesion))(0)[0], reflectance(0.9, -0.5), 1e-12);
+  EXPECT_NEAR((*toReflectanceColor(lesion))(0)[0], toReflectance(0.9, -0.5), 1e-12);
   const Material& bone = materials.at("bone");
-  EXPECT_EQ((*seenColor(bone))(0)[0], 1.0);
-  EXPECT_FALSE(seenColor(materials.at("tissue")));
+  EXPECT_EQ((*toReflectanceColor(bone))(0)[0], 1.0);
+  EXPECT_FALSE(toReflectanceColor(materials.at("tissue")));
 }
 
 void refuse(const std::string& json, const std::string& text) {

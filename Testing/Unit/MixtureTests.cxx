@@ -26,7 +26,7 @@ Mixture rampMixture() {
   return {shares, {componentOf(1.0, Rgb::Ones()), componentOf(3.0, Rgb::Ones())}};
 }
 
-std::map<int, double> partsAt(const MixedField& field, const MixedPoint& point) {
+std::map<int, double> partsAt(const MixtureField& field, const MixturePoint& point) {
   std::map<int, double> parts;
   field.forEachPart(point, [&](const MixturePart& p) { parts[p.component] += p.extinction; });
   return parts;
@@ -34,8 +34,8 @@ std::map<int, double> partsAt(const MixedField& field, const MixedPoint& point) 
 
 TEST(Mixture, PartsAreSharesOfEachExtinction) {
   Mixture mixture = rampMixture();
-  const MixedField field(mixture, mixture.weights->grid());
-  const MixedPoint point{Vec3(2.0, 0.5, 0.5), 0.5, 1.0};
+  const MixtureField field(mixture, mixture.weights->grid());
+  const MixturePoint point{Vec3(2.0, 0.5, 0.5), 0.5, 1.0};
   const double share = 64.0 / 255.0;
   const std::map<int, double> parts = partsAt(field, point);
   EXPECT_NEAR(parts.at(0), 0.5 * (1.0 - weight), 1e-12);
@@ -43,9 +43,9 @@ TEST(Mixture, PartsAreSharesOfEachExtinction) {
   EXPECT_NEAR(field.extinction(point), parts.at(0) + parts.at(1), 1e-12);
 
   mixture.components[1].isClipped = false;
-  const MixedField open(mixture, mixture.weights->grid());
-  EXPECT_TRUE(unclipped.hasFree());
-  EXPECT_FALSE(field.hasFree());
+  const MixtureField open(mixture, mixture.weights->grid());
+  EXPECT_TRUE(unclipped.hasUnclipped());
+  EXPECT_FALSE(field.hasUnclipped());
   EXPECT_NEAR(unclipped.extinction({point.index, 0.5, 0.25}), 0.25 * parts.at(0) + parts.at(1),
               1e-12);
   EXPECT_EQ(partsAt(unclipped, {point.index, 0.5, 0.0}).count(0), 0U) << "a part of 0 is none";
@@ -53,8 +53,8 @@ TEST(Mixture, PartsAreSharesOfEachExtinction) {
 
 TEST(Mixture, ComponentsAreDrawnByTheirExtinction) {
   const Mixture mixture = rampMixture();
-  const MixedField field(mixture, mixture.weights->grid());
-  const MixedPoint point{Vec3(3.0, 0.5, 0.5), 0.5, 1.0};
+  const MixtureField field(mixture, mixture.weights->grid());
+  const MixturePoint point{Vec3(3.0, 0.5, 0.5), 0.5, 1.0};
   Random random(5, 0, 0);
   constexpr int draws = 40000;
   int second = 0;
@@ -73,7 +73,7 @@ TEST(Mixture, ComponentsAreDrawnByTheirExtinction) {
 
 TEST(Mixture, GradientsOfSharesAreInTheWorld) {
   const Mixture mixture = rampMixture();
-  const MixedField field(mixture, mixture.weights->grid());
+  const MixtureField field(mixture, mixture.weights->grid());
   const Vec3 gradient = field.weightGradient(1, Vec3(4.0, 0.5, 0.5));
   EXPECT_LT((gradient - Vec3(0.25, 0.0, 0.0)).norm(), 1e-2) << "1/8 a voxel of 0.5 mm";
   EXPECT_LT((field.weightGradient(0, Vec3(4.0, 0.5, 0.5)) + gradient).norm(), 1e-12);
@@ -92,7 +92,7 @@ TestScene mixedScene(bool isHybrid) {
         ScalarFunction({knot(0.25, 0.1 * i), knot(0.4 + 0.01 * i, 0.2 + 0.3 * i)});
     component.isClipped = i % 3 != 2;
     if (isHybrid)
-      component.transfer.shading = SurfaceShading::coat(0.1 * i, 0.2 + 0.1 * i);
+      component.transfer.shading = SurfaceShading::makeCoated(0.1 * i, 0.2 + 0.1 * i);
     mixture.components.push_back(component);
   }
   scene.mixture = std::move(mixture);
@@ -164,7 +164,7 @@ TEST(Mixture, TheClipLeavesWhatIsFree) {
 
 TEST(Mixture, BordersAsSurfacesAreTheScalarEstimators) {
   TestScene scene = mixedScene(true);
-  scene.mixture->components[3].border = 0.5;
+  scene.mixture->components[3].interfaceWeight = 0.5;
   scene.with([](const SceneView& all) { EXPECT_FALSE(lanesServe(all)); });
 }
 

@@ -26,7 +26,7 @@ Volume ctOf(const Grid& grid, const IsWater& isWater) {
 
 double at(const Mask& mask, const Vec3& world) {
   return Field<std::uint8_t>(mask.grid, mask.voxels).value(mask.grid.worldToIndex * world) /
-         mask.full;
+         mask.maxValue;
 }
 
 /// Grids of several spacings, the axes of the last one turned and mirrored.
@@ -41,7 +41,7 @@ std::vector<Grid> grids() {
 TEST(OuterLayer, IsAsDeepAsAsked) {
   for (const Grid& grid : grids()) {
     const Mask skin =
-        outerLayer(ctOf(grid, [](const Vec3& p) { return p.norm() < radius; }), -300.0, depth);
+        findOuterLayer(ctOf(grid, [](const Vec3& p) { return p.norm() < radius; }), -300.0, depth);
     ASSERT_GT(skin.count, 0);
     for (const Vec3& way : {Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0.6, 0.64, 0.48), Vec3(0, 0, 1)}) {
       EXPECT_EQ(at(skin, (radius + 2.0) * direction), 1.0) << way.x();
@@ -61,7 +61,7 @@ TEST(OuterLayer, LiesAtTheAirAround) {
       const bool isInFold = p.x() < -10.0 && std::abs(p.y()) < 3.0;
       return std::hypot(p.x(), p.y()) < radius && !isInLung && !isInFold;
     };
-    const Mask skin = outerLayer(ctOf(grid, isWater), -300.0, depth);
+    const Mask skin = findOuterLayer(ctOf(grid, isWater), -300.0, depth);
     EXPECT_EQ(at(skin, Vec3(10, 0, 0)), 0.0);
     EXPECT_EQ(at(skin, Vec3(10, 0, 39)), 0.0);
     EXPECT_EQ(at(skin, Vec3(-15, 0, 0)), 1.0);
@@ -71,10 +71,10 @@ TEST(OuterLayer, LiesAtTheAirAround) {
 
 TEST(OuterLayer, IsNothingWithoutAirOrBody) {
   const Grid grid = grids().front();
-  EXPECT_EQ(outerLayer(ctOf(grid, [](const Vec3&) { return true; }), -300.0, depth).count, 0);
-  EXPECT_EQ(outerLayer(ctOf(grid, [](const Vec3&) { return false; }), -300.0, depth).count, 0);
+  EXPECT_EQ(findOuterLayer(ctOf(grid, [](const Vec3&) { return true; }), -300.0, depth).count, 0);
+  EXPECT_EQ(findOuterLayer(ctOf(grid, [](const Vec3&) { return false; }), -300.0, depth).count, 0);
   const auto inside = [](const Vec3& p) { return p.norm() > 5.0; };
-  EXPECT_EQ(outerLayer(ctOf(grid, inside), -300.0, depth).count, 0) << "a bubble";
+  EXPECT_EQ(findOuterLayer(ctOf(grid, inside), -300.0, depth).count, 0) << "a bubble";
 }
 
 TEST(OuterLayer, TakesVoxelsOfAnySize) {
@@ -82,7 +82,7 @@ TEST(OuterLayer, TakesVoxelsOfAnySize) {
     for (const Size3& size : {Size3(1, 1, 1), Size3(9, 1, 4), Size3(9, 9, 9)}) {
       const Grid grid = centredGrid(size, Vec3(spacing, 1.0, spacing));
       const auto isWater = [&](const Vec3& p) { return p.x() > 0.0; };
-      const Mask skin = outerLayer(ctOf(grid, isWater), -300.0, depth);
+      const Mask skin = findOuterLayer(ctOf(grid, isWater), -300.0, depth);
       EXPECT_LE(skin.voxels.size(), 729U);
     }
 }
@@ -90,10 +90,10 @@ TEST(OuterLayer, TakesVoxelsOfAnySize) {
 TEST(OuterLayer, LiesOnTheVoxelsOfLabels) {
   const Grid volume = grids().front();
   const Mask skin =
-      outerLayer(ctOf(volume, [](const Vec3& p) { return p.norm() < radius; }), -300.0, depth);
+      findOuterLayer(ctOf(volume, [](const Vec3& p) { return p.norm() < radius; }), -300.0, depth);
   const Mat3 turn = Mat3::FromRows(Vec3(0.8, -0.6, 0), Vec3(0.6, 0.8, 0), Vec3(0, 0, 1.7));
   const Grid labels({7, 5, 3}, Affine(turn, Vec3(3, 4, 5)));
-  const Mask onLabels = onLattice(skin, labels, volume);
+  const Mask onLabels = resampleMask(skin, labels, volume);
   const Vec3 origin = labels.worldToIndex * onLabels.grid.indexToWorld.translation();
   EXPECT_LT((origin - origin.array().round().matrix()).norm(), 1e-9);
   const Box box = onLabels.grid.indexBox();
@@ -106,14 +106,15 @@ TEST(OuterLayer, LiesOnTheVoxelsOfLabels) {
     for (std::int64_t y = 0; y < onLabels.grid.size.y(); ++y)
       for (std::int64_t x = 0; x < onLabels.grid.size.x(); ++x) {
         const Size3 voxel(x, y, z);
-        const double value = onLabels.voxels[numberOf(voxel, onLabels.grid.size)] / 255.0;
+        const double value = onLabels.voxels[linearIndex(voxel, onLabels.grid.size)] / 255.0;
         greatest =
             std::max(greatest,
                      std::abs(value - at(skin, onLabels.grid.indexToWorld * voxel.cast<double>())));
       }
   EXPECT_LT(greatest, 0.501 / 255.0);
   const Grid tiny({7, 5, 3}, Affine(0.01 * Mat3::Identity()));
-  EXPECT_EQ(onLattice(skin, tiny, volume).voxels, std::vector<std::uint8_t>{0}) << "10^12 voxels";
+  EXPECT_EQ(resampleMask(skin, tiny, volume).voxels, std::vector<std::uint8_t>{0})
+      << "10^12 voxels";
 }
 
 } // namespace

@@ -12,7 +12,7 @@ namespace {
 /// Rows of zeros, of one value, of values that all differ, and of stretches of 1 to 300 voxels.
 Mask rows(std::int64_t columns) {
   Mask mask;
-  mask.full = 255;
+  mask.maxValue = 255;
   mask.grid = Grid(Size3(columns, 4, 3), Affine::Identity());
   Random random(3, static_cast<std::uint64_t>(columns), 0);
   const auto whole = [&](double most) { return static_cast<std::size_t>(random.uniform() * most); };
@@ -35,12 +35,12 @@ TEST(PackedMask, GivesBackEveryRow) {
   for (const std::int64_t columns : {1, 2, 3, 127, 128, 129, 130, 255, 256, 257, 1000}) {
     const Mask mask = rows(columns);
     const PackedMask packed(mask);
-    EXPECT_EQ(packed.full(), 255);
+    EXPECT_EQ(packed.maxValue(), 255);
     std::size_t first = 0;
     for (std::int64_t z = 0; z < 3; ++z)
       for (std::int64_t y = 0; y < 4; ++y, first += static_cast<std::size_t>(columns)) {
         std::vector<std::uint8_t> row(static_cast<std::size_t>(columns) + 1, 77);
-        const bool isWritten = packed.unpack(y, z, row.data());
+        const bool isWritten = packed.unpackRow(y, z, row.data());
         EXPECT_EQ(isWritten, mask.voxels[first] != 0 || y == 3) << "row " << y;
         EXPECT_EQ(row.back(), 77) << "beyond the row";
         row.pop_back();

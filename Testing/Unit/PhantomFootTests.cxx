@@ -150,7 +150,7 @@ TEST(PhantomFoot, JointsAreNarrowGaps) {
         const auto distances = bones.distances({x, y, z});
         for (const auto& [a, b] : joints) {
           const std::size_t i = index(a), j = index(b);
-          if (distances[i] == FootBones::beyond || distances[j] == FootBones::beyond)
+          if (distances[i] == FootBones::maxDistance || distances[j] == FootBones::maxDistance)
             continue;
           auto& least = width.try_emplace({i, j}, infinity).first->second;
           least = std::min(least, distances[i] + distances[j]);
@@ -195,9 +195,9 @@ TEST(PhantomFoot, TissuesHaveTheirHounsfieldUnits) {
   EXPECT_NEAR(medianOf(foot, "achilles_tendon"), 100.0, 20.0);
   EXPECT_GT(medianOf(foot, "talus"), 300.0);
   const FootSubject layers;
-  const FootSite shaft = layers.site({-14.0, 168.0, 39.0});
-  EXPECT_LT(footMarrow(shaft), 0.0) << "a metatarsal's canal holds fat";
-  EXPECT_GT(footCortex(shaft), 1200.0);
+  const FootSite shaft = layers.makeSite({-14.0, 168.0, 39.0});
+  EXPECT_LT(footMarrowSignal(shaft), 0.0) << "a metatarsal's canal holds fat";
+  EXPECT_GT(footCortexSignal(shaft), 1200.0);
   EXPECT_NEAR(voxelsOf(foot).front(), -1000.0, 60.0) << "air";
 }
 
@@ -207,7 +207,7 @@ TEST(PhantomFoot, SkinCoversEveryBone) {
   for (double x = -54; x <= 52; x += 2.0)
     for (double y = 0; y <= 268; y += 2.0)
       for (double z = 2; z <= 130; z += 2.0) {
-        const FootSite s = layers.site({x, y, z});
+        const FootSite s = layers.makeSite({x, y, z});
         if (s.bones[s.nearest] < 0.0)
           thinnest = std::min(thinnest, -s.surface);
       }

@@ -355,7 +355,7 @@ TEST_F(PhantomSceneFiles, FilesAreTheSameOnEveryRun) {
 TEST(PhantomScene, EscapesCharactersReservedByXmlAndAddresses) {
   Phantom phantom = makeCubePhantom({1.0, 16});
   phantom.segments[0].id = "a b|c";
-  const std::string text = phantomScene(phantom, "R&D <\"1\">", "my file%1/");
+  const std::string text = makePhantomScene(phantom, "R&D <\"1\">", "my file%1/");
   pugi::xml_document document;
   ASSERT_TRUE(document.load_string(text.c_str()));
   const pugi::xml_node scene = document.child("MRML");
@@ -370,7 +370,7 @@ TEST(PhantomScene, EscapesCharactersReservedByXmlAndAddresses) {
 
 TEST(PhantomScene, PropertyHoldsOpacitiesOfAMillimetre) {
   const auto opacityOf = [](double edge) {
-    const std::string text = phantomScene(makeCubePhantom({edge, 16}), "cube");
+    const std::string text = makePhantomScene(makeCubePhantom({edge, 16}), "cube");
     pugi::xml_document document;
     EXPECT_TRUE(document.load_string(text.c_str()));
     return numbers(document.child("MRML").child("VolumeProperty"), "scalarOpacity").at(2);

@@ -17,7 +17,7 @@ TEST(PhantomShapes, BlendsEqualTheSharpOperationAwayFromTheSeam) {
 }
 
 TEST(PhantomShapes, TubeDistanceIsThatOfItsAxisLessItsRadius) {
-  const Solid solid = tube({{{0, 0, -10}, 2.0}, {{0, 0, 0}, 2.0}, {{0, 0, 10}, 2.0}});
+  const Solid solid = makeTube({{{0, 0, -10}, 2.0}, {{0, 0, 0}, 2.0}, {{0, 0, 10}, 2.0}});
   EXPECT_NEAR(solid.distance({5, 0, 1}), 3.0, 1e-12);
   EXPECT_NEAR(solid.distance({0, 0, 0.3}), -2.0, 1e-12);
   EXPECT_NEAR(solid.distance({0, 0, 14}), 2.0, 1e-12);
@@ -25,14 +25,14 @@ TEST(PhantomShapes, TubeDistanceIsThatOfItsAxisLessItsRadius) {
 }
 
 TEST(PhantomShapes, BandIsStretchedAcrossButNotAlongItsThickness) {
-  const Solid band = tube({{{0, 0, 0}, 1.5}, {{0, 0, 20}, 1.5}}, {4, 1, 1});
+  const Solid band = makeTube({{{0, 0, 0}, 1.5}, {{0, 0, 20}, 1.5}}, {4, 1, 1});
   EXPECT_NEAR(band.distance({0, 1.5, 10}), 0.0, 1e-12);
   EXPECT_NEAR(band.distance({6, 0, 10}), 0.0, 1e-12);
 }
 
 TEST(PhantomShapes, LoftOfEqualCirclesIsACylinder) {
   const Solid cylinder =
-      loft({{-20, {1, 2}, {5, 5}}, {0, {1, 2}, {5, 5}}, {20, {1, 2}, {5, 5}}}, 0.0, 1.0);
+      makeLoft({{-20, {1, 2}, {5, 5}}, {0, {1, 2}, {5, 5}}, {20, {1, 2}, {5, 5}}}, 0.0, 1.0);
   EXPECT_NEAR(cylinder.distance({9, 2, 3}), 3.0, 1e-9);
   EXPECT_NEAR(cylinder.distance({1, 5, -3}), -2.0, 1e-9);
   EXPECT_NEAR(cylinder.distance({1, 2.5, 24}), 4.0, 1e-9);
@@ -41,7 +41,7 @@ TEST(PhantomShapes, LoftOfEqualCirclesIsACylinder) {
 TEST(PhantomShapes, LoftPassesThroughItsSections) {
   const std::vector<LoftSection> sections = {
       {-10, {0, 0}, {4, 6}}, {0, {2, 1}, {7, 5}}, {15, {3, -1}, {5, 3}}, {30, {0, 0}, {2, 2}}};
-  const Solid solid = loft(sections, 0.6, 1.0);
+  const Solid solid = makeLoft(sections, 0.6, 1.0);
   for (std::size_t i = 1; i + 1 < sections.size(); ++i) {
     const LoftSection& s = sections[i];
     EXPECT_NEAR(solid.distance({s.center.x() + s.radii.x(), s.center.y(), s.z}), 0.0, 1e-9);
@@ -52,7 +52,7 @@ TEST(PhantomShapes, LoftPassesThroughItsSections) {
 TEST(PhantomShapes, BlockIsABoxWithRoundEdgesInItsOwnAxes) {
   // Axes across, up and along: x, z and y of the world.
   const Solid solid =
-      placed(toShape({1, 2, 3}, Vec3::UnitY(), Vec3::UnitZ()), block({4, 5, 6}, 2.0));
+      placeSolid(toShape({1, 2, 3}, Vec3::UnitY(), Vec3::UnitZ()), makeBlock({4, 5, 6}, 2.0));
   EXPECT_NEAR(solid.distance({1, 2, 3}), -4.0, 1e-12);
   EXPECT_NEAR(solid.distance({8, 2, 3}), 3.0, 1e-12);
   EXPECT_NEAR(solid.distance({1, 2, 9}), 1.0, 1e-12);
@@ -63,8 +63,8 @@ TEST(PhantomShapes, BlockIsABoxWithRoundEdgesInItsOwnAxes) {
 }
 
 TEST(PhantomShapes, PlacedLoftRunsAlongItsAxis) {
-  const Solid upright = loft({{0, {0, 0}, {2, 3}}, {10, {0, 0}, {2, 3}}}, 0.0, 1.0);
-  const Solid solid = placed(toShape({0, 5, 0}, Vec3::UnitY(), Vec3::UnitZ()), upright);
+  const Solid upright = makeLoft({{0, {0, 0}, {2, 3}}, {10, {0, 0}, {2, 3}}}, 0.0, 1.0);
+  const Solid solid = placeSolid(toShape({0, 5, 0}, Vec3::UnitY(), Vec3::UnitZ()), upright);
   EXPECT_NEAR(solid.distance({2, 10, 0}), 0.0, 1e-9);
   EXPECT_NEAR(solid.distance({0, 10, 3}), 0.0, 1e-9);
   EXPECT_NEAR(solid.distance({0, 17, 0}), 2.0, 1e-9);

@@ -13,27 +13,27 @@ namespace {
 /// Reflectance of a half-space of isotropic scattering, to 5e-5: 1 - sqrt(1 - a) H(1) with
 /// Chandrasekhar's H.
 TEST(Reflectance, EqualsChandrasekharsForIsotropicScattering) {
-  EXPECT_NEAR(reflectance(0.5, 0.0), 0.1152, 0.01 * 0.1152);
-  EXPECT_NEAR(reflectance(0.9, 0.0), 0.4149, 0.01 * 0.4149);
-  EXPECT_NEAR(reflectance(0.99, 0.0), 0.7527, 0.01 * 0.7527);
+  EXPECT_NEAR(toReflectance(0.5, 0.0), 0.1152, 0.01 * 0.1152);
+  EXPECT_NEAR(toReflectance(0.9, 0.0), 0.4149, 0.01 * 0.4149);
+  EXPECT_NEAR(toReflectance(0.99, 0.0), 0.7527, 0.01 * 0.7527);
 }
 
 TEST(Reflectance, EndsAtBlackAndWhite) {
   for (const double g : {-0.5, 0.0, 0.6, 0.95, 0.999}) {
-    EXPECT_EQ(reflectance(0.0, g), 0.0);
-    EXPECT_NEAR(reflectance(1.0, g), 1.0, 1e-12);
-    EXPECT_EQ(albedoFor(0.0, g), 0.0);
-    EXPECT_EQ(albedoFor(-1.0, g), 0.0);
-    EXPECT_EQ(albedoFor(1.0, g), albedoFor(whitest, g));
-    EXPECT_LT(albedoFor(1.0, g), 1.0);
+    EXPECT_EQ(toReflectance(0.0, g), 0.0);
+    EXPECT_NEAR(toReflectance(1.0, g), 1.0, 1e-12);
+    EXPECT_EQ(toAlbedo(0.0, g), 0.0);
+    EXPECT_EQ(toAlbedo(-1.0, g), 0.0);
+    EXPECT_EQ(toAlbedo(1.0, g), toAlbedo(maxReflectance, g));
+    EXPECT_LT(toAlbedo(1.0, g), 1.0);
   }
 }
 
 TEST(Reflectance, IsInvertedByItsAlbedo) {
   for (const double g : {0.0, 0.3, 0.5, 0.9, 0.95})
-    for (double r = 0.01; r <= whitest; r += 0.01) {
-      EXPECT_NEAR(reflectance(albedoFor(r, g), g), r, 1e-9) << r << " " << g;
-      EXPECT_GT(albedoFor(r + 0.004, g), albedoFor(r, g));
+    for (double r = 0.01; r <= maxReflectance; r += 0.01) {
+      EXPECT_NEAR(toReflectance(toAlbedo(r, g), g), r, 1e-9) << r << " " << g;
+      EXPECT_GT(toAlbedo(r + 0.004, g), toAlbedo(r, g));
     }
 }
 
@@ -41,23 +41,23 @@ TEST(Reflectance, IsInvertedByItsAlbedo) {
 TEST(Reflectance, FallsWithG) {
   for (double a = 0.1; a < 1.0; a += 0.1)
     for (double g = 0.0; g < 0.9; g += 0.1)
-      EXPECT_GT(reflectance(a, g), reflectance(a, g + 0.05)) << a << " " << g;
+      EXPECT_GT(toReflectance(a, g), toReflectance(a, g + 0.05)) << a << " " << g;
 }
 
 TEST(SeenColors, AreLinearBetweenKnots) {
   const Rgb dark(0.1, 0.2, 0.05), light(0.9, 0.6, 0.95);
   for (const double g : {0.0, 0.5}) {
     const ColorFunction albedo =
-        albedoFor(ColorFunction({{10.0, dark}, {30.0, light}, {30.0, dark}, {40.0, dark}}), g);
+        toAlbedo(ColorFunction({{10.0, dark}, {30.0, light}, {30.0, dark}, {40.0, dark}}), g);
     for (double s = 10.0; s < 30.0; s += 0.25) {
       const Rgb color = dark + (s - 10.0) / 20.0 * (light - dark);
       for (int c = 0; c < 3; ++c)
-        EXPECT_NEAR(reflectance(albedo(s)[c], g), color[c],
+        EXPECT_NEAR(toReflectance(albedo(s)[c], g), color[c],
                     (g > 0.0 ? 0.1 : 0.02) * color[c] + 0.003)
             << s;
     }
-    EXPECT_TRUE(isApprox(albedo(30.0), albedoFor(dark, g), 1e-12)) << "a step stays one";
-    EXPECT_TRUE(isApprox(albedo(50.0), albedoFor(dark, g), 1e-12));
+    EXPECT_TRUE(isApprox(albedo(30.0), toAlbedo(dark, g), 1e-12)) << "a step stays one";
+    EXPECT_TRUE(isApprox(albedo(50.0), toAlbedo(dark, g), 1e-12));
   }
 }
 

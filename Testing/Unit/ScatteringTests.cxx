@@ -125,9 +125,9 @@ INSTANTIATE_TEST_SUITE_P(Lobes, Surface,
                                            SurfaceCase{0.1, {0.0, 1.0, 4.0, 0.5}},
                                            SurfaceCase{0.3, {2.0, 1.0, 1.0, 0.5}},
                                            SurfaceCase{0.8, {1.0, 0.0, 10.0, 0.5}},
-                                           SurfaceCase{1.0, SurfaceShading::coat(0.2, 0.4)},
-                                           SurfaceCase{0.5, SurfaceShading::coat(1.0, 0.2)},
-                                           SurfaceCase{0.1, SurfaceShading::coat(0.7, 1.0)}));
+                                           SurfaceCase{1.0, SurfaceShading::makeCoated(0.2, 0.4)},
+                                           SurfaceCase{0.5, SurfaceShading::makeCoated(1.0, 0.2)},
+                                           SurfaceCase{0.1, SurfaceShading::makeCoated(0.7, 1.0)}));
 
 SurfaceScattering seenAt(double cosine, const SurfaceShading& shading, const Rgb& albedo) {
   const Vec3 toViewer(std::sqrt(1.0 - cosine * cosine), 0.0, cosine);
@@ -147,16 +147,17 @@ double whiteness(const SurfaceScattering& surface) {
 
 TEST(Coat, LeavesAWhiteSurfaceWhite) {
   for (const double cosine : {1.0, 0.5}) {
-    const double coated = whiteness(seenAt(cosine, SurfaceShading::coat(0.2, 0.3), Rgb::Ones()));
+    const double coated =
+        whiteness(seenAt(cosine, SurfaceShading::makeCoated(0.2, 0.3), Rgb::Ones()));
     EXPECT_GT(coated, 0.999);
     EXPECT_LE(coated, 1.0);
-    EXPECT_NEAR(whiteness(makeSurface(cosine, SurfaceShading::coat(0.0, 0.3), Rgb::Ones())), 1.0,
-                1e-9);
+    EXPECT_NEAR(whiteness(makeSurface(cosine, SurfaceShading::makeCoated(0.0, 0.3), Rgb::Ones())),
+                1.0, 1e-9);
   }
 }
 
 TEST(Coat, IsReciprocal) {
-  const SurfaceShading shading = SurfaceShading::coat(0.8, 0.3);
+  const SurfaceShading shading = SurfaceShading::makeCoated(0.8, 0.3);
   const Vec3 a(0.6, 0.0, 0.8), b(0.0, std::sqrt(0.99), 0.1);
   const Rgb albedo(0.9, 0.6, 0.3);
   const Rgb there = SurfaceScattering(-a, -Vec3::UnitZ(), shading, albedo).evaluate(b) / b.z();

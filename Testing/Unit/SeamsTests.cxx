@@ -28,7 +28,7 @@ struct Ball {
 
 /// Depth of a ray in the focus, by stepping.
 double findFocusDepth(const Ball& ball, const Vec2& at) {
-  const Ray ray = ball.camera.rayThrough(at);
+  const Ray ray = ball.camera.makePlaneRay(at);
   const Mask& mask = ball.focus;
   const auto inside = [&](double t) {
     const Vec3 index = mask.grid.worldToIndex * ray.at(t);
@@ -157,7 +157,7 @@ TEST(SilhouetteCells, KeepEqualsThatOfTheFullSurface) {
 TEST(SilhouetteCells, DepthMeetsASmoothedFocus) {
   Ball ball(Projection::orthographic);
   ball.focus = maskOf(ball.volume.grid(), [](const Vec3&) { return false; });
-  ball.focus.full = 255;
+  ball.focus.maxValue = 255;
   for (std::size_t i = 0; i < ball.focus.voxels.size(); ++i) {
     const auto n = static_cast<std::int64_t>(i);
     const Vec3 p = ball.volume.grid().indexToWorld * Vec3(static_cast<double>(n % 60),

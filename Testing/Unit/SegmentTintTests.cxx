@@ -145,7 +145,7 @@ TEST(SegmentTint, MixturesHaveTheMatterOfTheirMaterials) {
   const Mixture mixture =
       mixtureOf(*plan, *std::make_shared<Tint>(tintOf(plan, shares, own.g)), own);
   ASSERT_EQ(mixture.components.size(), 5U);
-  EXPECT_TRUE(mixture.hasFree());
+  EXPECT_TRUE(mixture.hasUnclipped());
   const auto extinctionAt = [&](std::size_t i, double scalar) {
     return mixture.components[i].transfer.extinction(scalar).value();
   };
@@ -163,9 +163,9 @@ TEST(SegmentTint, MixturesHaveTheMatterOfTheirMaterials) {
   EXPECT_FALSE(spleen.transfer.gradientOpacity) << "of the base's extinction";
   EXPECT_TRUE(mixture.components[3].transfer.gradientOpacity);
   EXPECT_EQ(spleen.transfer.g, 0.6);
-  EXPECT_EQ(spleen.border, 0.5);
+  EXPECT_EQ(spleen.interfaceWeight, 0.5);
   const double grey = decodeSrgb(Rgb::Constant(128.0 / 255.0)).x();
-  EXPECT_NEAR(reflectance(spleen.transfer.albedo(0.0).x(), 0.6), grey, 1e-3);
+  EXPECT_NEAR(toReflectance(spleen.transfer.albedo(0.0).x(), 0.6), gray, 1e-3);
   EXPECT_EQ(spleen.transfer.shading->diffuse, 0.7);
   EXPECT_EQ(spleen.transfer.shading->specular, 0.4);
   EXPECT_EQ(spleen.transfer.shading->gamma, 0.7) << "the base's";
@@ -218,10 +218,10 @@ TEST(SegmentTint, SharesAndColoursLieWhereTheLabelsAre) {
   const Rgb own(0.1, 0.2, 0.3);
   for (const double g : {0.0, 0.5}) {
     const Tint tint = tintOf(plan, shares, g);
-    const TintedField field(tint, grid);
+    const TintField field(tint, grid);
     const auto seen = [&](double x) {
       return Rgb(field.albedo(Vec3(x, 0, 0), 7.0, own).unaryExpr([g](double albedo) {
-        return reflectance(albedo, g);
+        return toReflectance(albedo, g);
       }));
     };
     for (const std::size_t i : {0U, 1U}) {
@@ -235,8 +235,9 @@ TEST(SegmentTint, SharesAndColoursLieWhereTheLabelsAre) {
   const auto liverIn = [&](const std::vector<TintPart>& parts) {
     const LabelWeights smooth = computeLabelWeights(segments, parts, {}, 1.0, grid);
     double liver = 0.0;
-    smooth.at(smooth.grid().worldToIndex * Vec3(2, 0, 0),
-              [&](std::uint8_t component, double share) { liver += component == 1 ? share : 0.0; });
+    smooth.forEachWeight(
+        smooth.grid().worldToIndex * Vec3(2, 0, 0),
+        [&](std::uint8_t component, double share) { liver += component == 1 ? share : 0.0; });
     return liver;
   };
   const double liver = liverIn(plan->parts);
@@ -266,8 +267,9 @@ TEST(SegmentTint, SkinNeedsNoSegment) {
   const LabelWeights shares = computeLabelWeights(segments, plan.parts, skinOf(grid), 0.0, grid);
   const auto skinAt = [&](double x) {
     double skin = 0.0;
-    shares.at(shares.grid().worldToIndex * Vec3(x, 0, 0),
-              [&](std::uint8_t component, double share) { skin += component == 3 ? share : 0.0; });
+    shares.forEachWeight(
+        shares.grid().worldToIndex * Vec3(x, 0, 0),
+        [&](std::uint8_t component, double share) { skin += component == 3 ? share : 0.0; });
     return skin;
   };
   EXPECT_EQ(skinAt(0.0), 1.0);

@@ -15,7 +15,7 @@ Mask makeMask(const Size3& first, const Size3& size, const Value& value) {
   map.translate(first.cast<double>());
   Mask mask;
   mask.grid = Grid(size, map);
-  mask.full = 255;
+  mask.maxValue = 255;
   for (std::int64_t z = 0; z < size.z(); ++z)
     for (std::int64_t y = 0; y < size.y(); ++y)
       for (std::int64_t x = 0; x < size.x(); ++x)

@@ -13,8 +13,9 @@ namespace {
 using WeightMap = std::map<int, double>;
 WeightMap getWeights(const LabelWeights& weights, const Vec3& world) {
   WeightMap sums;
-  weights.at(weights.grid().worldToIndex * world,
-             [&](std::uint8_t component, double labelWeight) { sums[component] += labelWeight; });
+  weights.forEachWeight(
+      weights.grid().worldToIndex * world,
+      [&](std::uint8_t component, double labelWeight) { sums[component] += labelWeight; });
   return sums;
 }
 
@@ -29,7 +30,7 @@ WeightMap computeExpected(const std::vector<LabelWeights::Part>& parts, const Ve
       const bool inside =
           (voxel.array() >= 0).all() && (voxel.array() < part.mask.grid.size.array()).all();
       return inside && part.priority == priority
-                 ? part.mask.voxels[numberOf(voxel, part.mask.grid.size)] / 255.0
+                 ? part.mask.voxels[linearIndex(voxel, part.mask.grid.size)] / 255.0
                  : 0.0;
     };
     double sum = 0.0;
@@ -115,7 +116,7 @@ TEST(LabelWeights, WhatPlanesLeaveIsNothingWhereOthersHaveAll) {
   Random random(3, 0, 0);
   for (int i = 0; i < 2000; ++i) { // in bricks that have all three
     const Vec3 at(4.0 + 3.0 * random.uniform(), 8.0 * random.uniform(), 8.0 * random.uniform());
-    weights.at(at, [&](std::uint8_t component, double) { ASSERT_LT(component, 3); });
+    weights.forEachWeight(at, [&](std::uint8_t component, double) { ASSERT_LT(component, 3); });
   }
   EXPECT_EQ(getWeights(weights, weights.grid().indexToWorld * Vec3(8, 3, 3)),
             (WeightMap{{3, 1.0}}));

@@ -17,11 +17,11 @@ TEST(Turn, GoesAroundTheTargetCounterClockwiseAsSeenFromAbove) {
   pose.target = {1, 2, 3};
   pose.position = {1, 102, 43}; // anterior, and above
   pose.up = {0, 0, 2};
-  EXPECT_TRUE(isApprox(turnedAroundTarget(pose, 90.0).position, Vec3(-99, 2, 43)));
-  EXPECT_TRUE(isApprox(turnedAroundTarget(pose, -180.0).position, Vec3(1, -98, 43)));
-  EXPECT_EQ(turnedAroundTarget(pose, 0.0).position, pose.position);
-  EXPECT_EQ(turnedAroundTarget(pose, 77.0).target, pose.target);
-  EXPECT_EQ(turnedAroundTarget(pose, 77.0).up, pose.up);
+  EXPECT_TRUE(isApprox(rotateAroundTarget(pose, 90.0).position, Vec3(-99, 2, 43)));
+  EXPECT_TRUE(isApprox(rotateAroundTarget(pose, -180.0).position, Vec3(1, -98, 43)));
+  EXPECT_EQ(rotateAroundTarget(pose, 0.0).position, pose.position);
+  EXPECT_EQ(rotateAroundTarget(pose, 77.0).target, pose.target);
+  EXPECT_EQ(rotateAroundTarget(pose, 77.0).up, pose.up);
 }
 
 /// Picture of 4 x 4 pixels of 1 mm with a level surface at the target's depth, all context.
@@ -67,7 +67,7 @@ protected:
 
   static Camera cameraAt(double degrees) {
     const Camera first = anteriorCamera(Projection::orthographic, 200.0, 30.0, 60, 60);
-    return {turnedAroundTarget(first.pose(), degrees), 60, 60};
+    return {rotateAroundTarget(first.pose(), degrees), 60, 60};
   }
   ClippingSurface surfaceAt(double degrees, double steady) const {
     return buildSteadySurface(cameraAt(degrees), grid, balls, options, steady);

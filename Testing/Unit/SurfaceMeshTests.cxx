@@ -226,7 +226,7 @@ MeshError errorOf(const SurfaceMesh& mesh, const ClipDepth& clip) {
                               area;
         if (inside < -1e-7)
           continue;
-        const Ray ray = clip.camera.rayThrough(p);
+        const Ray ray = clip.camera.makePlaneRay(p);
         const double t =
             (mesh.points[triangle[0]] - ray.origin).dot(normal) / ray.direction.dot(normal);
         const double depth = t * clip.camera.depthPerLength(ray);
@@ -325,7 +325,7 @@ TEST(SurfaceMesh, PlaneHasTwoTrianglesAndNoiseAllOfThem) {
     // Plane, whose depth in perspective is not linear over the picture.
     const auto plane = [&](const Vec2& p) {
       const Vec3 normal(0.3, 1.0, -0.2);
-      const Ray ray = camera.rayThrough(p);
+      const Ray ray = camera.makePlaneRay(p);
       const double t = (Vec3(0, -12, 0) - ray.origin).dot(normal) / ray.direction.dot(normal);
       return t * camera.depthPerLength(ray);
     };

@@ -59,7 +59,7 @@ TEST(TintContrast, KnobsChangeWhatTheySay) {
   EXPECT_NEAR(half.a, 0.5 * (before.a + lesion.a), 1e-6);
   EXPECT_NEAR(half.b, 0.5 * (before.b + lesion.b), 1e-6);
   const Rgb white = adjustFocus(Rgb::Constant(0.94), {.focusLightness = 12.0});
-  EXPECT_EQ(white.maxCoeff(), whitest) << "no whiter than matter can be";
+  EXPECT_EQ(white.maxCoeff(), maxReflectance) << "no whiter than matter can be";
 }
 
 /// An artery's red has no darker and more colourful one: it loses chroma, not its lightness or hue.
@@ -77,12 +77,12 @@ TEST(TintContrast, ColoursBeyondTheDisplayKeepLightnessAndHue) {
 // ---- knobs
 
 TEST(TintContrast, LeavesColoursThatDiffer) {
-  EXPECT_EQ(chosen({{spleen, bone, 1.0}}), muted);
+  EXPECT_EQ(choose({{spleen, bone, 1.0}}), muted);
   EXPECT_EQ(shareOf({}, {spleen, bone, 1.0}), 1.0);
 }
 
 TEST(TintContrast, FocusWithoutNeighboursStaysAsItIs) {
-  EXPECT_EQ(chosen({}), ColorAdjustment());
+  EXPECT_EQ(choose({}), ColorAdjustment());
 }
 
 /// Expects that `knob` alone is turned, in the middle of its range, and that a twentieth of the
@@ -257,9 +257,9 @@ TEST(TintContrast, PartsCountByTheirArea) {
 TEST(TintContrast, KnowsHowFarTheContextIsPaled) {
   const BorderColors colors{liver, teal, 1.0};
   const Contrast gray = contrastUnder({}, colors, 0.0, 0.0);
-  const double own = luminance(albedoFor(teal, 0.0));
-  const BorderColors same{liver, Rgb::Constant(reflectance(own, 0.0)), 1.0};
-  EXPECT_NEAR(grey.deltaE[0], contrastUnder({}, same, 1.0, 0.0).deltaE[0], 0.05);
+  const double own = luminance(toAlbedo(teal, 0.0));
+  const BorderColors same{liver, Rgb::Constant(toReflectance(own, 0.0)), 1.0};
+  EXPECT_NEAR(gray.deltaE[0], contrastUnder({}, same, 1.0, 0.0).deltaE[0], 0.05);
 }
 
 // ---- borders
@@ -307,8 +307,8 @@ TEST_F(InterfaceTests, AreMeasuredInSquareMillimetres) {
   EXPECT_EQ(found[1].context, 2);
   EXPECT_NEAR(found[1].area, x, 1e-6);
   for (const ComponentBorder& interface : found) {
-    EXPECT_EQ(border.focus, 1);
-    EXPECT_EQ(border.focusScalar, 20.0);
+    EXPECT_EQ(interface.focus, 1);
+    EXPECT_EQ(interface.focusScalar, 20.0);
   }
   EXPECT_EQ(found[0].contextScalar, 10.0);
   EXPECT_EQ(found[1].contextScalar, 30.0);
@@ -330,7 +330,7 @@ TEST_F(InterfaceTests, SmallOnesDoNotCount) {
                       .isFocus = {false, true, false}};
   Tint tint{nullptr, {}};
   for (const Rgb& color : {bone, spleen, spleen})
-    tint.albedo.emplace_back(albedoFor(ColorFunction({{0.0, color}}), 0.0));
+    tint.albedo.emplace_back(toAlbedo(ColorFunction({{0.0, color}}), 0.0));
   MaterialTable table;
   table.hasContrast = true;
   const auto at = [&](double area) {
@@ -356,7 +356,7 @@ TEST_F(InterfaceTests, SmallOnesDoNotCount) {
 
   const Tint adjusted = applyAdjustment(tint, plan, {.contextSaturation = 0.0}, all);
   const auto chroma = [&](std::size_t i) {
-    const Lab lab = toLab(reflectance(Rgb((*adjusted.albedo[i])(0.0)), 0.0));
+    const Lab lab = toLab(toReflectance(Rgb((*adjusted.albedo[i])(0.0)), 0.0));
     return std::hypot(lab.a, lab.b);
   };
   EXPECT_LT(chroma(0), 0.5);
@@ -367,7 +367,7 @@ TEST_F(InterfaceTests, SmallOnesDoNotCount) {
 /// Colours that are the volume's own are changed over the scalar, knot by knot.
 TEST_F(InterfaceTests, OwnColoursAreChangedToo) {
   TransferFunction transfer = all;
-  transfer.albedo = ColorFunction({{0.0, albedoFor(skin, 0.0)}, {9.0, albedoFor(liver, 0.0)}});
+  transfer.albedo = ColorFunction({{0.0, toAlbedo(skin, 0.0)}, {9.0, toAlbedo(liver, 0.0)}});
   const TintPlan plan{.parts = {}, .components = {{}}, .names = {"the rest"}, .isFocus = {false}};
   const Tint own{nullptr, {std::nullopt}};
   EXPECT_FALSE(applyAdjustment(own, plan, {}, transfer).albedo[0]);
@@ -375,7 +375,7 @@ TEST_F(InterfaceTests, OwnColoursAreChangedToo) {
   const Tint adjusted = applyAdjustment(own, plan, adjustment, transfer);
   for (const auto& [scalar, color] : {std::pair(0.0, skin), std::pair(9.0, liver)})
     EXPECT_LT(
-        (reflectance(Rgb((*adjusted.albedo[0])(scalar)), 0.0) - adjustContext(color, adjustment))
+        (toReflectance(Rgb((*adjusted.albedo[0])(scalar)), 0.0) - adjustContext(color, adjustment))
             .abs()
             .maxCoeff(),
         1e-3);

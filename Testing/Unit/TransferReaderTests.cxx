@@ -58,15 +58,15 @@ TEST(TransferReader, ColorIsWhatIsSeen) {
       parsed("{" + e + R"(, "color": [[100, "#bcbcbc"], [0, "#000000"]], "g": 0.5})");
   const double grey = std::pow((188.0 / 255.0 + 0.055) / 1.055, 2.4);
   for (int c = 0; c < 3; ++c) {
-    EXPECT_NEAR(reflectance(f.albedo(100)[c], 0.5), grey, 1e-6);
-    EXPECT_NEAR(reflectance(f.albedo(50)[c], 0.5), 0.5 * grey, 0.01);
+    EXPECT_NEAR(toReflectance(f.albedo(100)[c], 0.5), gray, 1e-6);
+    EXPECT_NEAR(toReflectance(f.albedo(50)[c], 0.5), 0.5 * gray, 0.01);
     EXPECT_EQ(f.albedo(0)[c], 0.0);
   }
   ASSERT_TRUE(f.shading && f.shading->coated);
   EXPECT_EQ(f.shading->diffuse, 1.0);
   EXPECT_EQ(f.shading->specular, 0.2);
   EXPECT_NEAR(f.shading->power, 2.0 / 0.16 - 2.0, 1e-12);
-  EXPECT_NEAR(f.shading->odds, 0.235, 1e-12);
+  EXPECT_NEAR(f.shading->oddsFactor, 0.235, 1e-12);
   const TransferFunction wet = parsed("{" + e + R"(, "albedo": [[0, 0.5, 0.5, 0.5]],
       "specular": 0.5, "roughness": 0.1})");
   EXPECT_EQ(wet.albedo(0)[0], 0.5) << "albedo stays what it is";
@@ -75,7 +75,7 @@ TEST(TransferReader, ColorIsWhatIsSeen) {
   EXPECT_NEAR(wet.shading->power, 198.0, 1e-9);
   const TransferFunction old = parsed("{" + e + R"(, "albedo": [[0, 0.5, 0.5, 0.5]]})");
   EXPECT_FALSE(old.shading->coated);
-  EXPECT_EQ(old.shading->odds, 1.0);
+  EXPECT_EQ(old.shading->oddsFactor, 1.0);
 }
 
 void expectRefusal(const std::string& json, const std::string& text) {

@@ -56,7 +56,7 @@ struct MajorantPair {
     return merged;
   }
   DecodedCell cell(const Size3& c) const {
-    const std::int32_t code = simd.codes[numberOf(c.array() + 1, count.array() + 2)];
+    const std::int32_t code = simd.codes[linearIndex(c.array() + 1, count.array() + 2)];
     return {std::bit_cast<float>(code & SimdMajorants::majorantBits),
             code & SimdMajorants::radiusBits, code < 0};
   }
@@ -90,8 +90,8 @@ void expectBounds(const MajorantPair& pair) {
     }
     const Size3 radius = Size3::Constant(cell.skipRadius);
     pair.forEach(c - radius, c + radius, [&](const Size3& other) {
-      ASSERT_GE(cell.majorant, walk.mergeCells(other).majorant) << c << ", " << other;
-      ASSERT_TRUE(other == c || !walk.mergeCells(other).cut) << c << ", " << other;
+      ASSERT_GE(cell.majorant, pair.mergeCells(other).majorant) << c << ", " << other;
+      ASSERT_TRUE(other == c || !pair.mergeCells(other).cut) << c << ", " << other;
     });
   });
 }
@@ -106,8 +106,8 @@ double ballInMist(const Vec3& p) {
 TEST(SimdMajorants, MajorantBoundsEveryCellInReach) {
   const MajorantPair pair{makeMajorants(ballInMist)};
   expectBounds(pair);
-  EXPECT_GT(walk.cell(Size3::Constant(4)).skipRadius, 3) << "mist";
-  EXPECT_EQ(walk.cell(walk.count / 2).skipRadius, 0) << "the ball";
+  EXPECT_GT(pair.cell(Size3::Constant(4)).skipRadius, 3) << "mist";
+  EXPECT_EQ(pair.cell(pair.count / 2).skipRadius, 0) << "the ball";
   const DecodedCell above = pair.cell({5, 5, pair.count.z() - 2});
   EXPECT_EQ(above.majorant, 0.0F);
   EXPECT_GT(above.skipRadius, 0);
@@ -122,7 +122,7 @@ TEST(SimdMajorants, ReachIsZeroInCutCells) {
   int isCut = 0;
   pair.forEach([&](const Size3& c) {
     isCut += pair.cell(c).isCut ? 1 : 0;
-    EXPECT_TRUE(!walk.cell(c).cut || walk.cell(c).skipRadius == 0) << c;
+    EXPECT_TRUE(!pair.cell(c).cut || pair.cell(c).skipRadius == 0) << c;
   });
   EXPECT_GT(cut, 100);
 }

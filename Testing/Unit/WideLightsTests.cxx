@@ -162,7 +162,7 @@ std::vector<Rgb> collectEmitted(const Fog& fog, const std::vector<Vec3>& directi
 /// Light of the scalar lights for a scattering with density 1 / 4 pi in that direction: both of
 /// sampling and of meeting the light, for both have the same estimate.
 Rgb computeExpected(const LightSet& lights, const Vec3& direction) {
-  const EmitterHit hit = lights.environment(direction);
+  const EmitterHit hit = lights.evaluateEnvironment(direction);
   return hit.radiance * (0.25 / pi / (0.25 / pi + hit.pdf));
 }
 
@@ -237,7 +237,7 @@ TEST_P(SimdLights, MeanOfRadianceOverDensityIsTheIntegral) {
       squares += sample.square();
     }
     for (const PlacedEnvironment& each : fog.lights.environments())
-      if (!each.sampler.constant())
+      if (!each.sampler.isConstant())
         expected += each.sampler.mean();
     for (const auto& sky : fog.lights.tables().skies) // linear in the cosine
       expected += sky.middle + 0.25 * (sky.toTop + sky.toBottom);

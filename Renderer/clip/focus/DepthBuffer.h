@@ -21,7 +21,7 @@ inline Vec3 toBuffer(const Camera& camera, const Vec3& world) {
 
 /// Inverse of toBuffer: the world point at depth at.z(), mm, on the eye ray through (x, y).
 inline Vec3 fromBuffer(const Camera& camera, const Vec3& at) {
-  const Ray ray = camera.rayThrough(at.head<2>());
+  const Ray ray = camera.makePlaneRay(at.head<2>());
   return ray.at(at.z() / camera.depthPerLength(ray));
 }
 

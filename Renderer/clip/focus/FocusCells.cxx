@@ -15,7 +15,7 @@ constexpr std::int64_t cornersPerEdge = edge + 1; ///< voxels along an edge of a
 
 /// Least value of a voxel above the foothill.
 std::uint8_t voxelThreshold(const Mask& mask) {
-  return static_cast<std::uint8_t>(std::floor(FocusCells::captureThreshold * mask.full) + 1.0);
+  return static_cast<std::uint8_t>(std::floor(FocusCells::captureThreshold * mask.maxValue) + 1.0);
 }
 
 /// Access to the mask's voxels around blocks of cells.
@@ -126,7 +126,7 @@ FocusCells::FocusCells(const Mask& mask)
     : m_count(mask.grid.size.array() + 1),
       m_blocks((m_count.array() + blockSize - 1) / blockSize),
       m_worldToCell(makeTranslation(Vec3::Ones()) * mask.grid.worldToIndex),
-      m_valueScale(1.0 / mask.full) {
+      m_valueScale(1.0 / mask.maxValue) {
   const std::int64_t bytes = m_blocks.prod() * static_cast<std::int64_t>(sizeof(BlockValues));
   if (bytes > std::numeric_limits<std::int32_t>::max())
     throw inputError("focus", "its segments span more than 2^30 voxels; crop the segmentation");
@@ -134,11 +134,11 @@ FocusCells::FocusCells(const Mask& mask)
   m_corners.resize(2);
   m_corners[emptyBlock].fill(0);
   m_corners[fullBlock].fill(0xff);
-  const bool isSmooth = mask.full != 1;
+  const bool isSmooth = mask.maxValue != 1;
   if (isSmooth) {
     m_values.resize(2);
     m_values[emptyBlock].fill(0);
-    m_values[fullBlock].fill(mask.full);
+    m_values[fullBlock].fill(mask.maxValue);
   }
   std::vector<std::vector<Block>> layers(static_cast<std::size_t>(m_blocks.z()));
   tbb::parallel_for(std::int64_t{0}, m_blocks.z(), [&](std::int64_t z) {
@@ -203,8 +203,8 @@ std::vector<FocusCells::Block> FocusCells::buildLayer(const Mask& mask, std::int
         continue;
       Block block{};
       bool isFull = fillCorners(voxels, at, block.corners);
-      if (mask.full != 1)
-        isFull = fillValues(voxels, at, block.values) >= mask.half();
+      if (mask.maxValue != 1)
+        isFull = fillValues(voxels, at, block.values) >= mask.threshold();
       std::int32_t& where = m_blockCorners[static_cast<std::size_t>(blockIndex(at))];
       if (isFull) {
         where = fullBlock;

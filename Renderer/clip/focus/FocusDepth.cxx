@@ -25,7 +25,7 @@ public:
     Ray ray; ///< in cell space, its parameter in world mm
     double depthPerLength;
   };
-  /// Camera::rayThrough in cell space.
+  /// Camera::makePlaneRay in cell space.
   CameraRay makeRay(const Vec2& plane) const {
     const Vec3 offset = plane.x() * m_right + plane.y() * m_up;
     if (m_orthographic)
@@ -71,7 +71,7 @@ FocusTracer::~FocusTracer() = default;
 
 /// Part of an eye ray in which the ray can meet the focus inside the volume's domain.
 Interval FocusTracer::clipToDomain(const Vec2& position) const {
-  return m_isInside ? Interval{} : clipToVolume(m_volume, m_camera.rayThrough(position));
+  return m_isInside ? Interval{} : clipToVolume(m_volume, m_camera.makePlaneRay(position));
 }
 
 FocusDepth FocusTracer::traceDepths() const {
@@ -82,7 +82,7 @@ FocusDepth FocusTracer::traceDepths() const {
   const DomainFootprint domainFootprint(m_camera, m_volume);
 
   const auto meetsVolume = [&](std::int64_t column, std::int64_t row) {
-    return !clipToVolume(m_volume, m_camera.rayThrough(depth.position(column, row))).isEmpty();
+    return !clipToVolume(m_volume, m_camera.makePlaneRay(depth.position(column, row))).isEmpty();
   };
   tbb::parallel_for(std::int64_t{0}, depth.rows(), [&](std::int64_t row) {
     // The domain is convex: all samples between two that meet the domain meet it.
@@ -133,7 +133,7 @@ bool FocusTracer::isFocus(const Vec2& position, double depth) const {
   if (!(m_cells->indicator(ray.at(t)) >= 0.5))
     return false;
   const Affine& worldToIndex = m_volume.grid().worldToIndex;
-  return m_isInside || m_volume.contains(worldToIndex * m_camera.rayThrough(position).at(t));
+  return m_isInside || m_volume.contains(worldToIndex * m_camera.makePlaneRay(position).at(t));
 }
 
 template <bool withMaxima>

@@ -24,7 +24,7 @@ void visitVisibleBlocks(const Camera& camera, const DepthBuffer& buffer, const F
   const BoxProjection blocks(camera, cells.cellToWorld() *
                                          makeScaling(Vec3::Constant(FocusCells::blockSize)));
   cells.visitOccupied([&](const Size3& block) {
-    const auto [depths, lower, upper] = blocks.of(block);
+    const auto [depths, lower, upper] = blocks.project(block);
     if (depths.end >= 0.0)
       function(block, depths, findCells(buffer, lower, upper));
   });
@@ -133,7 +133,7 @@ std::vector<Interval> computeDepthBounds(const Camera& camera, const DepthBuffer
   const SummedAreaTable requested(range, isRequested);
   const BoxProjection boxes(camera, cells.cellToWorld());
   const auto extendBounds = [&](const Size3& cell) {
-    const auto [depths, lower, upper] = boxes.of(cell);
+    const auto [depths, lower, upper] = boxes.project(cell);
     if (depths.end < 0.0)
       return;
     const CellRange footprint = findCells(buffer, lower, upper);

@@ -17,7 +17,7 @@ void fillContext(DepthBuffer& buffer, const FocusDepth& focus, const Bottom& bot
 
 /// Depth at which the eye ray through (x, y) leaves a ball, mm; -infinity: missed.
 double findFarSide(const Camera& camera, const Vec2& at, const Vec3& center, double radius) {
-  const Ray ray = camera.rayThrough(at);
+  const Ray ray = camera.makePlaneRay(at);
   const double nearest = (center - ray.origin).dot(ray.direction);
   const double distanceSquared = (ray.at(nearest) - center).squaredNorm();
   if (distanceSquared > radius * radius)

@@ -55,7 +55,7 @@ ClippingSurface buildSteadySurface(const Camera& camera, const Domain& volume, c
 
   auto buffer = std::make_shared<DepthBuffer>(*own.buffer);
   for (const auto& [angle, weight] : neighbors) {
-    const Camera rotated(turnedAroundTarget(camera.pose(), angle * degrees), camera.width(),
+    const Camera rotated(rotateAroundTarget(camera.pose(), angle * degrees), camera.width(),
                          camera.height());
     const ClippingSurface other = buildClippingSurface(rotated, volume, focus, options);
     const DepthBuffer& depths = *std::get<ClipDepth>(other.clip).buffer;

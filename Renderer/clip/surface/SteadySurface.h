@@ -12,7 +12,7 @@
 
 namespace fenestra {
 
-/// Surface of five cameras, from `degrees` before to `degrees` after (turnedAroundTarget), with
+/// Surface of five cameras, from `degrees` before to `degrees` after (rotateAroundTarget), with
 /// binomial weights. For 0 degrees, and in modes other than `surface`: the result of
 /// buildClippingSurface.
 ClippingSurface buildSteadySurface(const Camera& camera, const Domain& volume, const Mask& focus,

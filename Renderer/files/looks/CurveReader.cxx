@@ -59,9 +59,9 @@ double readMeanCosine(const JsonNode& object, double fallback, ColorKind kind) {
   const double g = node ? node->number() : fallback;
   if (!(std::abs(g) < 1.0))
     throw node->error("must be between -1 and 1, both excluded");
-  if (kind == ColorKind::seen && !(g >= 0.0 && g <= greatestColorG))
+  if (kind == ColorKind::seen && !(g >= 0.0 && g <= maxReflectanceG))
     throw object.at("g").error(
-        concat("must be from 0 to ", toString(greatestColorG), " with \"color\""));
+        concat("must be from 0 to ", toString(maxReflectanceG), " with \"color\""));
   return g;
 }
 

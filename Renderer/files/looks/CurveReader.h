@@ -25,8 +25,8 @@ enum class ColorKind { none, seen, albedo };
 /// Refuses both in one object.
 ColorKind colorKind(const JsonNode& object);
 
-/// Member "g" of an object, `fallback` without one: above -1, below 1, and from 0 to greatestColorG
-/// with colours that are seen.
+/// Member "g" of an object, `fallback` without one: above -1, below 1, and from 0 to
+/// maxReflectanceG with colours that are seen.
 double readMeanCosine(const JsonNode& object, double fallback, ColorKind kind);
 
 } // namespace fenestra

@@ -76,7 +76,7 @@ void readMaterial(const JsonNode& object, Material& material) {
   readIfThere(object, "diffuse", 0.0, 1.0, material.diffuse);
   readIfThere(object, "specular", 0.0, 1.0, material.specular);
   readIfThere(object, "roughness", 0.05, 1.0, material.roughness);
-  readIfThere(object, "border", 0.0, greatestBorder, material.border);
+  readIfThere(object, "border", 0.0, greatestBorder, material.interfaceWeight);
 }
 
 // ---- rules

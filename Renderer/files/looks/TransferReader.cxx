@@ -25,8 +25,8 @@ std::optional<SurfaceShading> readShading(const JsonNode& root, double g) {
   }
   if (!specular && !roughness && !root.find("color"))
     return SurfaceShading();
-  return SurfaceShading::coat(specular ? specular->number(0.0, 1.0) : 0.2,
-                              roughness ? roughness->number(0.05, 1.0) : 0.4, g);
+  return SurfaceShading::makeCoated(specular ? specular->number(0.0, 1.0) : 0.2,
+                                    roughness ? roughness->number(0.05, 1.0) : 0.4, g);
 }
 
 TransferLook readOwn(const JsonNode& root) {
@@ -38,7 +38,7 @@ TransferLook readOwn(const JsonNode& root) {
   if (kind == ColorKind::none)
     throw root.error("has no \"albedo\" and no \"color\"; give one");
   TransferFunction transfer{std::move(extinction), kind == ColorKind::seen
-                                                       ? albedoFor(readColors(root.at("color")), g)
+                                                       ? toAlbedo(readColors(root.at("color")), g)
                                                        : readCurve<3>(root.at("albedo"), 1.0)};
   transfer.g = g;
   transfer.shading = readShading(root, g);

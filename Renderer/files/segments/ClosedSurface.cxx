@@ -172,7 +172,7 @@ Segmentation readClosedSurfaces(const Path& path, const Grid* reference) {
   for (Surface& surface : surfaces) {
     for (Vec3& point : surface.shape.points)
       point = grid.worldToIndex * point;
-    const auto runs = voxelRuns(surface.shape.points, surface.shape.triangles, grid.size);
+    const auto runs = voxelizeSurface(surface.shape.points, surface.shape.triangles, grid.size);
     if (!runs)
       throw inputError(path, "segment \"", sanitize(surface.info.name),
                        "\": its surface has holes or is too complex; ", exportHint);

@@ -140,7 +140,7 @@ private:
 
   /// Labels of a row, its voxels' layers together.
   const Label* rowAt(std::int64_t y, std::int64_t z) const {
-    return m_labels.data() + numberOf({0, y, z}, m_grid.size) * m_layerCount;
+    return m_labels.data() + linearIndex({0, y, z}, m_grid.size) * m_layerCount;
   }
 
   bool isChosen(const Label* row, std::int64_t x) const {
@@ -344,8 +344,8 @@ Mask Segmentation::maskOf(const std::vector<SegmentInfo>& chosen, const Grid& vo
   const auto shaped = [&](const std::vector<SegmentInfo>& segments, double margin) {
     Mask mask = labelled(segments);
     if (shaping.smoothing != 0.0)
-      mask = betweenSlices(std::move(mask));
-    return grown(std::move(mask), margin, volume);
+      mask = interpolateSlices(std::move(mask));
+    return applyMargin(std::move(mask), margin, volume);
   };
   std::vector<Mask> masks;
   if (shaping.margins.size() <= 1) // the union first: no gaps where segments touch
@@ -353,9 +353,9 @@ Mask Segmentation::maskOf(const std::vector<SegmentInfo>& chosen, const Grid& vo
   else
     for (std::size_t i = 0; i < chosen.size(); ++i)
       masks.push_back(shaped({chosen[i]}, shaping.margins[i]));
-  const Mask all = united(std::move(masks));
-  return shaping.smoothing ? smoothed(all, *shaping.smoothing, volume)
-                           : smoothedAutomatically(all, volume);
+  const Mask all = uniteMasks(std::move(masks));
+  return shaping.smoothing ? smoothMask(all, *shaping.smoothing, volume)
+                           : smoothMaskAuto(all, volume);
 }
 
 } // namespace fenestra

@@ -137,7 +137,7 @@ CameraPose readSceneCamera(MrmlScene& scene, const MrmlNode& camera) {
     pose.target = since * pose.target;
     pose.up = since.linear() * pose.up;
   }
-  return checkedPose(pose, scene.document.errorMaker(camera, "looks nowhere: ", "; give --view"));
+  return validatePose(pose, scene.document.errorMaker(camera, "looks nowhere: ", "; give --view"));
 }
 
 } // namespace fenestra

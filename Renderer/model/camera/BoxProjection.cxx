@@ -13,7 +13,7 @@ BoxProjection::BoxProjection(const Camera& camera, const Affine& boxesToWorld)
            Vec3::Constant(1e-12 * m_boxesToView.translation().norm());
 }
 
-BoxProjection::Bounds BoxProjection::of(const Size3& box) const {
+BoxProjection::Bounds BoxProjection::project(const Size3& box) const {
   const Vec3 center = m_boxesToView * (box.cast<double>().array() + 0.5).matrix();
   Bounds bounds{{center.z() - m_half.z(), center.z() + m_half.z()},
                 center.head<2>() - m_half.head<2>(),
@@ -24,10 +24,10 @@ BoxProjection::Bounds BoxProjection::of(const Size3& box) const {
     return {{infinity, -infinity}, Vec2::Constant(infinity), Vec2::Constant(-infinity)};
   if (!(bounds.depths.begin > 0.0))
     return {bounds.depths, Vec2::Constant(-infinity), Vec2::Constant(infinity)};
-  const double atBegin = m_targetDepth / bounds.depths.begin;
-  const double atEnd = m_targetDepth / bounds.depths.end;
-  bounds.lower = (bounds.lower * atBegin).cwiseMin(bounds.lower * atEnd);
-  bounds.upper = (bounds.upper * atBegin).cwiseMax(bounds.upper * atEnd);
+  const double beginScale = m_targetDepth / bounds.depths.begin;
+  const double endScale = m_targetDepth / bounds.depths.end;
+  bounds.lower = (bounds.lower * beginScale).cwiseMin(bounds.lower * endScale);
+  bounds.upper = (bounds.upper * beginScale).cwiseMax(bounds.upper * endScale);
   return bounds;
 }
 

@@ -17,7 +17,7 @@ public:
     Interval depths;
     Vec2 lower, upper;
   };
-  Bounds of(const Size3& box) const;
+  Bounds project(const Size3& box) const;
 
 private:
   bool m_perspective;

@@ -20,16 +20,16 @@ struct CameraPose {
 
 /// Returns `pose` if valid: position and target differ and lie within 1e12 mm, and up is neither
 /// zero nor along the view. Throws otherwise.
-CameraPose checkedPose(const CameraPose& pose, const MakeError& makeError);
+CameraPose validatePose(const CameraPose& pose, const MakeError& makeError);
 
 /// Pose of a turntable: turns the eye about the axis through the target along `up`,
 /// counter-clockwise seen from the tip of `up`. Distance and height of the eye stay. 0 degrees
 /// returns `pose`, bit for bit.
-CameraPose turnedAroundTarget(const CameraPose& pose, double degrees);
+CameraPose rotateAroundTarget(const CameraPose& pose, double degrees);
 
 class Camera {
 public:
-  /// Throws Error (usage) if checkedPose() refuses `pose`.
+  /// Throws Error (usage) if validatePose() refuses `pose`.
   Camera(const CameraPose& pose, int width, int height);
 
   int width() const { return m_width; }
@@ -45,7 +45,7 @@ public:
 
   /// The eye ray through raster position (column, row), both continuous, (0, 0) the top left corner
   /// of the top left pixel. Unit direction, in world space; starts at depth 0.
-  Ray ray(double column, double row) const { return rayThrough(toPlane(column, row)); }
+  Ray makeRay(double column, double row) const { return makePlaneRay(toPlane(column, row)); }
 
   /// Point (x, y) in which the eye ray through a raster position meets the target plane, mm.
   Vec2 toPlane(double column, double row) const {
@@ -58,7 +58,7 @@ public:
   }
 
   /// Eye ray through (x, y) of the target plane.
-  Ray rayThrough(const Vec2& plane) const {
+  Ray makePlaneRay(const Vec2& plane) const {
     const Vec3 offset = plane.x() * m_right + plane.y() * m_up;
     if (m_pose.projection == Projection::orthographic)
       return {m_pose.position + offset, m_forward};

@@ -5,14 +5,14 @@
 namespace fenestra {
 namespace {
 
-struct Pick {
+struct CdfSample {
   int index;
   double remainder; ///< position inside the picked bin, [0, 1)
 };
 
 /// Picks the bin that contains u from a cumulative table (0 first, 1 last); bins of probability 0
 /// are never picked.
-Pick pick(const std::vector<double>& cdf, double u) {
+CdfSample sampleCdf(const std::vector<double>& cdf, double u) {
   auto above = std::ranges::upper_bound(cdf, u);
   if (above == cdf.end()) // only by rounding: the last bin of probability > 0
     above = std::ranges::lower_bound(cdf, cdf.back());
@@ -23,7 +23,7 @@ Pick pick(const std::vector<double>& cdf, double u) {
 }
 
 /// Makes a cumulative table of weight(bin), 0 first and 1 last; returns the sum of the weights.
-double accumulate(std::vector<double>& cdf, int bins, const auto& weight) {
+double buildCdf(std::vector<double>& cdf, int bins, const auto& weight) {
   cdf = {0.0};
   for (int i = 0; i < bins; ++i)
     cdf.push_back(cdf.back() + weight(i));
@@ -37,7 +37,7 @@ double accumulate(std::vector<double>& cdf, int bins, const auto& weight) {
 } // namespace
 
 EnvironmentSampler::EnvironmentSampler(EnvironmentLight light) : m_light(std::move(light)) {
-  if (constant()) {
+  if (isConstant()) {
     m_mean = m_light.radiance;
     return;
   }
@@ -51,9 +51,9 @@ EnvironmentSampler::EnvironmentSampler(EnvironmentLight light) : m_light(std::mo
       m_mean += value * (solidAngle / (4.0 * pi));
       return brightness(value);
     };
-    return accumulate(m_columnCdf.emplace_back(), width, texelWeight) * solidAngle;
+    return buildCdf(m_columnCdf.emplace_back(), width, texelWeight) * solidAngle;
   };
-  m_total = accumulate(m_rowCdf, height, rowWeight);
+  m_integral = buildCdf(m_rowCdf, height, rowWeight);
 }
 
 Rgb EnvironmentSampler::texel(std::size_t index) const {
@@ -62,7 +62,7 @@ Rgb EnvironmentSampler::texel(std::size_t index) const {
 }
 
 /// Design, section 1: u = 1/2 + atan2(d_R, d_A) / 2 pi, v = acos(d_S) / pi from the top.
-std::size_t EnvironmentSampler::texelToward(const Vec3& d) const {
+std::size_t EnvironmentSampler::findTexel(const Vec3& d) const {
   const int width = m_light.map.width;
   const int height = m_light.map.height;
   const double u = 0.5 + std::atan2(d.x(), d.y()) / (2.0 * pi);
@@ -72,24 +72,24 @@ std::size_t EnvironmentSampler::texelToward(const Vec3& d) const {
 }
 
 double EnvironmentSampler::texelPdf(std::size_t index) const {
-  return m_total > 0.0 ? brightness(texel(index)) / m_total : 0.0;
+  return m_integral > 0.0 ? brightness(texel(index)) / m_integral : 0.0;
 }
 
 Rgb EnvironmentSampler::radiance(const Vec3& direction) const {
-  return constant() ? m_light.radiance : texel(texelToward(direction));
+  return isConstant() ? m_light.radiance : texel(findTexel(direction));
 }
 
 double EnvironmentSampler::pdf(const Vec3& direction) const {
-  return constant() ? 0.25 / pi : texelPdf(texelToward(direction));
+  return isConstant() ? 0.25 / pi : texelPdf(findTexel(direction));
 }
 
 Vec3 EnvironmentSampler::sample(const Vec2& u) const {
-  if (constant())
+  if (isConstant())
     return sampleUniformSphere(u);
   const int width = m_light.map.width;
   const int height = m_light.map.height;
-  const Pick row = pick(m_rowCdf, u.x());
-  const Pick column = pick(m_columnCdf[static_cast<std::size_t>(row.index)], u.y());
+  const CdfSample row = sampleCdf(m_rowCdf, u.x());
+  const CdfSample column = sampleCdf(m_columnCdf[static_cast<std::size_t>(row.index)], u.y());
 
   // Uniform in solid angle inside the texel: uniform in cos(theta) and phi.
   const double top = std::cos(pi * row.index / height);

@@ -19,22 +19,22 @@ public:
 
   const EnvironmentLight& light() const { return m_light; }
   /// Integral of a map's brightness over the sphere; 0 of a constant.
-  double total() const { return m_total; }
+  double integral() const { return m_integral; }
   /// Sums of the rows' probabilities: 0, ..., 1; all 0 if the map is black.
-  const std::vector<double>& rows() const { return m_rowCdf; }
+  const std::vector<double>& rowCdf() const { return m_rowCdf; }
   /// Sums of the probabilities of a row's texels, in the same way.
-  const std::vector<double>& columns(int row) const {
+  const std::vector<double>& columnCdf(int row) const {
     return m_columnCdf[static_cast<std::size_t>(row)];
   }
 
-  bool constant() const { return m_light.map.width == 0; }
+  bool isConstant() const { return m_light.map.width == 0; }
 
 private:
   std::size_t texelIndex(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(m_light.map.width) +
            static_cast<std::size_t>(column);
   }
-  std::size_t texelToward(const Vec3& direction) const;
+  std::size_t findTexel(const Vec3& direction) const;
   Rgb texel(std::size_t index) const;
   double texelPdf(std::size_t index) const;
 
@@ -42,7 +42,7 @@ private:
   Rgb m_mean = Rgb::Zero();
   std::vector<double> m_rowCdf;                 ///< height + 1 entries, last 1
   std::vector<std::vector<double>> m_columnCdf; ///< width + 1 entries for each row
-  double m_total = 0.0;
+  double m_integral = 0.0;
 };
 
 } // namespace fenestra

@@ -8,7 +8,7 @@ struct LightSamples {
   Float3 direction, radiance;
   Float distance;
   Float pdf;
-  LaneMask delta;
+  LaneMask isDelta;
 };
 
 /// Draws for the lanes of `mine`, seen from `point`.
@@ -28,8 +28,8 @@ FENESTRA_INLINE void samplePoint(const Lights::Area& light, LaneMask mine, const
   const Float3 direction = (1.0F / distance) * d;
   const Float cosine = -dot(Float3(light.normal), direction);
   // False behind the light, in its plane, and on the light: no direction.
-  const LaneMask apart = distance2 >= std::numeric_limits<Real>::min();
-  const LaneMask lit = mine & apart & (cosine > 0.0F);
+  const LaneMask isSeparate = distance2 >= std::numeric_limits<Real>::min();
+  const LaneMask lit = mine & isSeparate & (cosine > 0.0F);
   const Float pdf = light.pmf * distance2 / (light.area * cosine);
   samples.direction = select(lit, direction, samples.direction);
   samples.radiance = select(lit, Float3(light.radiance), samples.radiance);
@@ -39,17 +39,17 @@ FENESTRA_INLINE void samplePoint(const Lights::Area& light, LaneMask mine, const
 
 /// 1 - cos of half the angle that a sphere subtends, as sin^2 / (1 + cos), which keeps the digits
 /// of narrow cones; 2 from inside: all directions. The solid angle is 2 pi of that.
-FENESTRA_INLINE Float spreadOf(const Lights::Sphere& light, Float distance2) {
+FENESTRA_INLINE Float computeSpread(const Lights::Sphere& light, Float distance2) {
   const Float sine2 = light.radius2 / distance2; // NaN at the centre of one without a square
   const Float cosine = sqrt(max(1.0F - sine2, 0.0F));
   return select(sine2 < 1.0F, sine2 / (1.0F + cosine), 2.0F);
 }
-FENESTRA_INLINE Float densityOf(const Lights::Sphere& light, Float spread) {
+FENESTRA_INLINE Float computePdf(const Lights::Sphere& light, Float spread) {
   return light.pmf / (static_cast<Real>(2.0 * pi) * spread);
 }
 /// Distance to a sphere whose centre is `along` ahead, and aside by the square root of `across2`.
-FENESTRA_INLINE Float distanceTo(const Lights::Sphere& light, Float distance2, Float along,
-                                 Float across2) {
+FENESTRA_INLINE Float computeDistance(const Lights::Sphere& light, Float distance2, Float along,
+                                      Float across2) {
   const Float outside = distance2 - light.radius2;
   const Float half = sqrt(max(light.radius2 - across2, 0.0F)); // of the chord
   const Float far = along + half;
@@ -62,20 +62,20 @@ FENESTRA_INLINE void samplePoint(const Lights::Sphere& light, LaneMask mine, con
   const Float3 d = Float3(light.center) - point;
   const Float distance2 = dot(d, d);
   const Float distance = sqrt(distance2);
-  const Float spread = spreadOf(light, distance2);
+  const Float spread = computeSpread(light, distance2);
   const Float fall = spread * u; // 1 - cos of the angle to the axis
   const Float cosine = 1.0F - fall;
   const Float sine2 = max(fall * (2.0F - fall), 0.0F);
   const Float sine = sqrt(sine2);
   const CosineSine phi = cosSinTurns(v);
-  const LaneMask apart = distance > 0.0F;
-  const Float3 axis = select(apart, (1.0F / distance) * d, Float3{0.0F, 0.0F, 1.0F});
+  const LaneMask isSeparate = distance > 0.0F;
+  const Float3 axis = select(isSeparate, (1.0F / distance) * d, Float3{0.0F, 0.0F, 1.0F});
   const Float3 local{sine * phi.cosine, sine * phi.sine, cosine};
-  const Float far = distanceTo(light, distance2, distance * cosine, distance2 * sine2);
+  const Float far = computeDistance(light, distance2, distance * cosine, distance2 * sine2);
   samples.direction = select(mine, normalize(Frames(axis).toWorld(local)), samples.direction);
   samples.radiance = select(mine, Float3(light.radiance), samples.radiance);
   samples.distance = select(mine, far, samples.distance);
-  samples.pdf = select(mine, densityOf(light, spread), samples.pdf);
+  samples.pdf = select(mine, computePdf(light, spread), samples.pdf);
 }
 
 /// Draws one light for each lane of `which`, seen from `point`. `choice` selects it by the lights'
@@ -84,26 +84,26 @@ FENESTRA_INLINE LightSamples sampleLights(const Lights& lights, LaneMask& which,
                                           const Float3& point, Float& choice, Float u, Float v) {
   const Float far = std::numeric_limits<Real>::infinity();
   LightSamples samples{{0.0F, 0.0F, 1.0F}, {0.0F, 0.0F, 0.0F}, far, 1.0F, LaneMask::none()};
-  const auto chosen = [&](Real pmf) {
+  const auto choose = [&](Real pmf) {
     const LaneMask mine = which & sampleBernoulli(pmf, choice);
     which = which.without(mine);
     choice = choice - pmf;
     return mine;
   };
   for (const Lights::Area& light : lights.areas) {
-    const LaneMask mine = chosen(light.pmf);
+    const LaneMask mine = choose(light.pmf);
     if (mine.any())
       samplePoint(light, mine, point, u, v, samples);
   }
   for (const Lights::Directional& light : lights.directionals) {
-    const LaneMask mine = chosen(light.pmf);
+    const LaneMask mine = choose(light.pmf);
     samples.direction = select(mine, Float3(light.toward), samples.direction);
     samples.radiance = select(mine, Float3(light.irradiance), samples.radiance);
     samples.pdf = select(mine, light.pmf, samples.pdf);
-    samples.delta = mine | samples.delta;
+    samples.isDelta = mine | samples.isDelta;
   }
   for (const Lights::Sphere& light : lights.spheres) {
-    const LaneMask mine = chosen(light.pmf);
+    const LaneMask mine = choose(light.pmf);
     if (mine.any())
       samplePoint(light, mine, point, u, v, samples);
   }
@@ -143,11 +143,11 @@ FENESTRA_INLINE LightHits intersect(const Lights::Sphere& light, LaneMask which,
   const Float radius2 = light.radius2;
   const LaneMask ahead = (along > 0.0F) & (across2 <= radius2);
   const LaneMask hits = LaneMask(distance2 <= radius2) | ahead;
-  const Float far = distanceTo(light, distance2, along, across2);
+  const Float far = computeDistance(light, distance2, along, across2);
   const LaneMask hit = which & hits & (far < end);
   if (!hit.any())
     return {hit, 0.0F};
-  return {hit, densityOf(light, spreadOf(light, distance2))};
+  return {hit, computePdf(light, computeSpread(light, distance2))};
 }
 
 /// Calls visit(lanes, radiance, pdf) for the area lights and spheres that rays of the lanes of
@@ -167,7 +167,7 @@ FENESTRA_INLINE void intersectLights(const Lights& lights, LaneMask which, const
 }
 
 /// Radiance of constant environments and skies.
-FENESTRA_INLINE Float3 around(const Lights& lights, const Float3& direction) {
+FENESTRA_INLINE Float3 evaluateSkies(const Lights& lights, const Float3& direction) {
   Float3 sum = Float3(lights.constant);
   for (const Lights::Sky& sky : lights.skies) {
     const Float t = min(max(dot(Float3(sky.up), direction), -1.0F), 1.0F);

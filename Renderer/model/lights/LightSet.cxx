@@ -12,10 +12,10 @@ constexpr double minPmf = 0.05;
 LightSet::LightSet(const std::vector<Light>& lights, const Grid& volume, const Camera& camera,
                    const Vec3& focus) {
   const Mat3 cameraAxes(camera.right(), camera.up(), -camera.forward());
-  const FrameInWorld frames[] = {// as in LightFrame
-                                 {},
-                                 {cameraAxes, volume.worldCenter(), volume.boundingRadius()},
-                                 {Mat3::Identity(), focus, 1.0}};
+  const WorldFrame frames[] = {// as in LightFrame
+                               {},
+                               {cameraAxes, volume.worldCenter(), volume.boundingRadius()},
+                               {Mat3::Identity(), focus, 1.0}};
   const auto placeKind = [&](const auto& light) {
     if constexpr (requires { light.frame; })
       place(light, frames[static_cast<std::size_t>(light.frame)]);
@@ -29,7 +29,7 @@ LightSet::LightSet(const std::vector<Light>& lights, const Grid& volume, const C
 
 void LightSet::place(const EnvironmentLight& light) {
   m_environments.push_back({EnvironmentSampler(light), 0.0});
-  if (m_environments.back().sampler.constant())
+  if (m_environments.back().sampler.isConstant())
     m_tables.constant += light.radiance;
 }
 
@@ -37,12 +37,12 @@ void LightSet::place(const DirectionalLight& light) {
   m_tables.directionals.push_back({-light.direction.normalized(), light.irradiance, 0.0});
 }
 
-void LightSet::place(const SkyLight& light, const FrameInWorld& frame) {
+void LightSet::place(const SkyLight& light, const WorldFrame& frame) {
   m_tables.skies.push_back({(frame.axes * light.up).normalized(), light.middle,
                             light.top - light.middle, light.bottom - light.middle});
 }
 
-void LightSet::place(const AreaLight& light, const FrameInWorld& frame) {
+void LightSet::place(const AreaLight& light, const WorldFrame& frame) {
   const bool isDisk = light.shape == AreaLight::Shape::disk;
   const Vec3 center = frame.origin + frame.unit * (frame.axes * light.center);
   const Vec3 normal = (frame.axes * light.normal).normalized();
@@ -57,7 +57,7 @@ void LightSet::place(const AreaLight& light, const FrameInWorld& frame) {
                             light.radiance, 0.0});
 }
 
-void LightSet::place(const SphereLight& light, const FrameInWorld& frame) {
+void LightSet::place(const SphereLight& light, const WorldFrame& frame) {
   const double radius = 0.5 * frame.unit * light.diameter;
   m_tables.spheres.push_back({frame.origin + frame.unit * (frame.axes * light.center),
                               radius * radius, light.radiance, 0.0});
@@ -67,7 +67,7 @@ void LightSet::place(const SphereLight& light, const FrameInWorld& frame) {
 void LightSet::computePmfs(const Vec3& center) {
   std::vector<double*> pmfs;
   for (PlacedEnvironment& environment : m_environments) {
-    if (!(environment.sampler.total() > 0.0)) // constant, or black: nothing to draw
+    if (!(environment.sampler.integral() > 0.0)) // constant, or black: nothing to draw
       continue;
     environment.pmf = pi * brightness(environment.sampler.mean());
     pmfs.push_back(&environment.pmf);
@@ -101,16 +101,16 @@ void LightSet::computePmfs(const Vec3& center) {
 }
 
 std::optional<LightSample> LightSet::sample(const Vec3& point, double choice, const Vec2& u) const {
-  scalar::ScalarMask left = true;
+  scalar::ScalarMask unsampled = true;
   const scalar::LightSamples lightSample =
-      scalar::sampleLights(m_tables, left, point, choice, u.x(), u.y());
-  if (left.any())
+      scalar::sampleLights(m_tables, unsampled, point, choice, u.x(), u.y());
+  if (unsampled.any())
     return sampleEnvironment(choice, u);
   const Rgb radiance = toColor(lightSample.radiance);
   if (!(radiance.maxCoeff() > 0.0))
     return std::nullopt;
   return LightSample{toVector(lightSample.direction), lightSample.distance, radiance,
-                     lightSample.pdf, lightSample.delta.value};
+                     lightSample.pdf, lightSample.isDelta.value};
 }
 
 std::optional<LightSample> LightSet::sampleEnvironment(double choice, const Vec2& u) const {
@@ -126,16 +126,16 @@ std::optional<LightSample> LightSet::sampleEnvironment(double choice, const Vec2
   if (chosen == nullptr)
     return std::nullopt;
   const Vec3 direction = chosen->sampler.sample(u);
-  const EmitterHit hit = environment(direction);
+  const EmitterHit hit = evaluateEnvironment(direction);
   if (!(hit.pdf > 0.0))
     return std::nullopt;
   return LightSample{direction, infinity, hit.radiance, hit.pdf, false};
 }
 
-EmitterHit LightSet::environment(const Vec3& direction) const {
-  EmitterHit sum{toColor(scalar::around(m_tables, direction)), 0.0};
+EmitterHit LightSet::evaluateEnvironment(const Vec3& direction) const {
+  EmitterHit sum{toColor(scalar::evaluateSkies(m_tables, direction)), 0.0};
   for (const PlacedEnvironment& environment : m_environments) {
-    if (environment.sampler.constant())
+    if (environment.sampler.isConstant())
       continue;
     sum.radiance += environment.sampler.radiance(direction);
     sum.pdf += environment.pmf * environment.sampler.pdf(direction);
@@ -144,7 +144,7 @@ EmitterHit LightSet::environment(const Vec3& direction) const {
 }
 
 bool LightSet::hasMaps() const {
-  return std::ranges::any_of(m_environments, [](const auto& e) { return !e.sampler.constant(); });
+  return std::ranges::any_of(m_environments, [](const auto& e) { return !e.sampler.isConstant(); });
 }
 
 } // namespace fenestra

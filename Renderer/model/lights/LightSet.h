@@ -26,7 +26,7 @@ struct LightSample {
   Rgb radiance;    ///< arriving; for a directional light its irradiance
   double pdf;      ///< per steradian, the choice of the light included; for a directional light
                    ///< the probability of that choice alone
-  bool delta;      ///< true for a directional light: scattering never draws its direction
+  bool isDelta;    ///< true for a directional light: scattering never draws its direction
 };
 
 /// Radiance arriving from a direction, and the density of sample() for that direction.
@@ -58,7 +58,7 @@ public:
   std::optional<LightSample> sample(const Vec3& point, double choice, const Vec2& u) const;
 
   /// Radiance and density of all environments and skies together.
-  EmitterHit environment(const Vec3& direction) const;
+  EmitterHit evaluateEnvironment(const Vec3& direction) const;
 
   /// Sum of weigh(arrival) over all area lights and spheres that the ray meets before `end` (mm).
   template <typename Weigh>
@@ -83,16 +83,16 @@ private:
   std::optional<LightSample> sampleEnvironment(double choice, const Vec2& u) const;
 
   /// A frame's axes, its origin (mm) and its unit of length (mm) in the world.
-  struct FrameInWorld {
+  struct WorldFrame {
     Mat3 axes = Mat3::Identity();
     Vec3 origin = Vec3::Zero();
     double unit = 1.0;
   };
   void place(const EnvironmentLight& light);
   void place(const DirectionalLight& light);
-  void place(const SkyLight& light, const FrameInWorld& frame);
-  void place(const AreaLight& light, const FrameInWorld& frame);
-  void place(const SphereLight& light, const FrameInWorld& frame);
+  void place(const SkyLight& light, const WorldFrame& frame);
+  void place(const AreaLight& light, const WorldFrame& frame);
+  void place(const SphereLight& light, const WorldFrame& frame);
   void computePmfs(const Vec3& center);
 
   LightTables<double> m_tables;

@@ -9,12 +9,12 @@ namespace fenestra {
 namespace {
 
 /// Weights from the centre on, w[0] + 2 (w[1] + ...) = 1.
-std::vector<float> halfKernel(double deviation) {
-  const auto radius = static_cast<int>(std::ceil(3.0 * deviation));
+std::vector<float> makeHalfKernel(double sigma) {
+  const auto radius = static_cast<int>(std::ceil(3.0 * sigma));
   std::vector<double> weights;
   double sum = 0.0;
   for (int k = 0; k <= radius; ++k) {
-    weights.push_back(k == 0 ? 1.0 : std::exp(-0.5 * k * k / (deviation * deviation)));
+    weights.push_back(k == 0 ? 1.0 : std::exp(-0.5 * k * k / (sigma * sigma)));
     sum += k == 0 ? weights.back() : 2.0 * weights.back();
   }
   std::vector<float> kernel;
@@ -40,16 +40,16 @@ struct Plane {
 
 class Blur {
 public:
-  Blur(const Mask& mask, const Size3& first, const Size3& size, const Vec3& deviations)
+  Blur(const Mask& mask, const Size3& first, const Size3& size, const Vec3& sigmas)
       : m_mask(mask),
         m_first(first),
         m_size(size),
-        m_kernels{halfKernel(deviations[0]), halfKernel(deviations[1]), halfKernel(deviations[2])} {
+        m_kernels{makeHalfKernel(sigmas[0]), makeHalfKernel(sigmas[1]), makeHalfKernel(sigmas[2])} {
   }
 
   /// Slices [begin, end) into `to`, the whole part's voxels. Each needs the slices around it, of
   /// which a ring is kept.
-  void slices(std::int64_t begin, std::int64_t end, std::uint8_t* to) const {
+  void blurSlices(std::int64_t begin, std::int64_t end, std::uint8_t* to) const {
     const std::int64_t radius = kernelRadius(2), ringSize = 2 * radius + 1;
     std::vector<Plane> ring(static_cast<std::size_t>(ringSize), Plane(m_size.x(), m_size.y()));
     Plane raw(m_size.x(), m_size.y());
@@ -71,7 +71,7 @@ private:
   }
 
   /// Nearest coordinate in the mask's grid of one in the part.
-  std::int64_t inMask(int axis, std::int64_t coordinate) const {
+  std::int64_t clampToMask(int axis, std::int64_t coordinate) const {
     return std::clamp<std::int64_t>(m_first[axis] + coordinate, 0, m_mask.grid.size[axis] - 1);
   }
 
@@ -82,7 +82,7 @@ private:
     for (std::int64_t y = 0; y < m_size.y(); ++y) {
       char& isEmpty = to.isEmpty[static_cast<std::size_t>(y)] = 1;
       float* const row = to.values.data() + y * m_size.x();
-      forKernel(1, [&](std::int64_t k, float weight) {
+      forEachTap(1, [&](std::int64_t k, float weight) {
         const std::int64_t other = std::clamp<std::int64_t>(y + k, 0, m_size.y() - 1);
         addTo(row, isEmpty, raw, other, weight);
       });
@@ -90,28 +90,28 @@ private:
   }
 
   void blurAlongRow(std::int64_t z, std::int64_t y, Plane& to) const {
-    const Size3 start(0, inMask(1, y), inMask(2, z));
-    const std::uint8_t* const from = m_mask.voxels.data() + numberOf(start, m_mask.grid.size);
+    const Size3 start(0, clampToMask(1, y), clampToMask(2, z));
+    const std::uint8_t* const from = m_mask.voxels.data() + linearIndex(start, m_mask.grid.size);
     const std::int64_t columns = m_mask.grid.size.x(), radius = kernelRadius(0);
     char& isEmpty = to.isEmpty[static_cast<std::size_t>(y)];
     isEmpty = std::all_of(from, from + columns, [](std::uint8_t value) { return value == 0; });
     if (isEmpty)
       return;
     std::vector<float> padded(static_cast<std::size_t>(m_size.x() + 2 * radius));
-    const float perFull = 1.0F / static_cast<float>(m_mask.full);
+    const float perMaxValue = 1.0F / static_cast<float>(m_mask.maxValue);
     for (std::int64_t x = 0; x < m_size.x() + 2 * radius; ++x)
       padded[static_cast<std::size_t>(x)] =
-          perFull * static_cast<float>(from[inMask(0, x - radius)]);
+          perMaxValue * static_cast<float>(from[clampToMask(0, x - radius)]);
     float* const row = to.values.data() + y * m_size.x();
     std::fill_n(row, m_size.x(), 0.0F);
-    forKernel(0, [&](std::int64_t k, float weight) {
+    forEachTap(0, [&](std::int64_t k, float weight) {
       addRow(weight, padded.data() + radius + k, m_size.x(), row);
     });
   }
 
   /// Calls visit(offset, weight) for each sample of an axis' kernel.
   template <typename Visit>
-  void forKernel(std::size_t axis, const Visit& visit) const {
+  void forEachTap(std::size_t axis, const Visit& visit) const {
     for (std::int64_t k = -kernelRadius(axis); k <= kernelRadius(axis); ++k)
       visit(k, m_kernels[axis][static_cast<std::size_t>(std::abs(k))]);
   }
@@ -130,7 +130,7 @@ private:
   void writeRow(const PlaneAt& at, std::int64_t z, std::int64_t y, std::uint8_t* to) const {
     std::vector<float> row(static_cast<std::size_t>(m_size.x()));
     char isEmpty = 1;
-    forKernel(
+    forEachTap(
         2, [&](std::int64_t k, float weight) { addTo(row.data(), isEmpty, at(z + k), y, weight); });
     if (!isEmpty)
       for (std::size_t x = 0; x < row.size(); ++x)
@@ -144,14 +144,14 @@ private:
 
 } // namespace
 
-std::vector<std::uint8_t> blurred(const Mask& mask, const Size3& first, const Size3& size,
-                                  const Vec3& deviations) {
+std::vector<std::uint8_t> blurMask(const Mask& mask, const Size3& first, const Size3& size,
+                                   const Vec3& sigmas) {
   std::vector<std::uint8_t> result(static_cast<std::size_t>(size.prod()));
-  const Blur blur(mask, first, size, deviations);
-  constexpr std::int64_t together = 32; // slices: those around are blurred anew for each block
-  const std::int64_t blocks = (size.z() + together - 1) / together;
+  const Blur blur(mask, first, size, sigmas);
+  constexpr std::int64_t blockSize = 32; // slices: those around are blurred anew for each block
+  const std::int64_t blocks = (size.z() + blockSize - 1) / blockSize;
   tbb::parallel_for(std::int64_t{0}, blocks, [&](std::int64_t block) {
-    blur.slices(block * together, std::min((block + 1) * together, size.z()), result.data());
+    blur.blurSlices(block * blockSize, std::min((block + 1) * blockSize, size.z()), result.data());
   });
   return result;
 }

@@ -13,17 +13,17 @@
 namespace fenestra {
 namespace {
 
-using Pixels = itk::Image<float, 3>;
+using ItkImage = itk::Image<float, 3>;
 
 /// Part of a mask's index space, in whole voxels.
-struct Part {
+struct Region {
   Size3 first, size;
 
   Size3 end() const { return first + size; }
 };
 
 /// Part of the mask and `reach` mm around it, at most a voxel beyond the volume.
-Part around(const Mask& mask, double padding, const Grid& volume) {
+Region padRegion(const Mask& mask, double padding, const Grid& volume) {
   const Affine toMask = mask.grid.worldToIndex * volume.indexToWorld;
   Vec3 lower = Vec3::Constant(infinity), upper = -lower;
   for (int i = 0; i < 8; ++i) {
@@ -45,96 +45,96 @@ Part around(const Mask& mask, double padding, const Grid& volume) {
 
 /// Calls visit(voxel in `part`, its number there) for each voxel.
 template <typename Visitor>
-void forVoxels(const Part& part, const Visitor& visit) {
+void forEachVoxel(const Region& region, const Visitor& visit) {
   std::size_t number = 0;
-  for (std::int64_t z = part.first.z(); z < part.end().z(); ++z)
-    for (std::int64_t y = part.first.y(); y < part.end().y(); ++y)
-      for (std::int64_t x = part.first.x(); x < part.end().x(); ++x)
+  for (std::int64_t z = region.first.z(); z < region.end().z(); ++z)
+    for (std::int64_t y = region.first.y(); y < region.end().y(); ++y)
+      for (std::int64_t x = region.first.x(); x < region.end().x(); ++x)
         visit(Size3(x, y, z), number++);
 }
 
 /// Indicator over a part of the mask's index space, with spacing in mm; outside the mask that of
 /// the nearest voxel in it.
-Pixels::Pointer pixelsOf(const Mask& mask, const Part& part) {
-  const auto image = Pixels::New();
-  Pixels::SizeType size;
-  Pixels::SpacingType spacing;
+ItkImage::Pointer toItkImage(const Mask& mask, const Region& region) {
+  const auto image = ItkImage::New();
+  ItkImage::SizeType size;
+  ItkImage::SpacingType spacing;
   for (unsigned axis = 0; axis < 3; ++axis) {
-    size[axis] = static_cast<Pixels::SizeValueType>(part.size[axis]);
+    size[axis] = static_cast<ItkImage::SizeValueType>(region.size[axis]);
     spacing[axis] = mask.grid.spacing()[axis];
   }
   image->SetRegions(size);
   image->SetSpacing(spacing);
   image->Allocate();
   float* const to = image->GetBufferPointer();
-  forVoxels(part, [&](const Size3& voxel, std::size_t number) {
+  forEachVoxel(region, [&](const Size3& voxel, std::size_t number) {
     const Size3 inside = voxel.cwiseMax(0).cwiseMin((mask.grid.size.array() - 1).matrix());
-    const std::uint8_t value = mask.voxels[numberOf(inside, mask.grid.size)];
-    to[number] = static_cast<float>(value) / static_cast<float>(mask.full);
+    const std::uint8_t value = mask.voxels[linearIndex(inside, mask.grid.size)];
+    to[number] = static_cast<float>(value) / static_cast<float>(mask.maxValue);
   });
   return image;
 }
 
 /// Mask of the same segments on a part of the grid.
-Mask maskOf(const Mask& from, const Part& part, std::uint8_t full,
-            std::vector<std::uint8_t> voxels) {
+Mask makeRegionMask(const Mask& from, const Region& region, std::uint8_t maxValue,
+                    std::vector<std::uint8_t> voxels) {
   Affine indexToWorld = from.grid.indexToWorld;
-  indexToWorld.translate(part.first.cast<double>());
-  Mask mask{{part.size, indexToWorld}, std::move(voxels), 0, from.names, full};
+  indexToWorld.translate(region.first.cast<double>());
+  Mask mask{{region.size, indexToWorld}, std::move(voxels), 0, from.names, maxValue};
   mask.count = std::ranges::count_if(
-      mask.voxels, [half = mask.half()](std::uint8_t voxel) { return voxel >= half; });
+      mask.voxels, [half = mask.threshold()](std::uint8_t voxel) { return voxel >= half; });
   return mask;
 }
 
 } // namespace
 
-Mask grown(Mask mask, double margin, const Grid& volume) {
+Mask applyMargin(Mask mask, double margin, const Grid& volume) {
   if (margin == 0.0)
     return mask;
-  const Part part =
-      margin > 0.0 ? around(mask, margin, volume) : Part{Size3::Zero(), mask.grid.size};
+  const Region region =
+      margin > 0.0 ? padRegion(mask, margin, volume) : Region{Size3::Zero(), mask.grid.size};
   // Distances, mm, from the outermost voxels of the mask (margin < 0: of its complement): 0 there,
   // positive outside.
-  const Pixels::Pointer pixels = pixelsOf(mask, part);
+  const ItkImage::Pointer pixels = toItkImage(mask, region);
   if (margin < 0.0)
     std::transform(pixels->GetBufferPointer(),
                    pixels->GetBufferPointer() + pixels->GetBufferedRegion().GetNumberOfPixels(),
                    pixels->GetBufferPointer(), [](float inside) { return 1.0F - inside; });
-  const auto distance = itk::SignedMaurerDistanceMapImageFilter<Pixels, Pixels>::New();
+  const auto distance = itk::SignedMaurerDistanceMapImageFilter<ItkImage, ItkImage>::New();
   distance->SetInput(pixels);
   distance->SetUseImageSpacing(true);
   distance->SetSquaredDistance(false);
   distance->Update();
   const float* const from = distance->GetOutput()->GetBufferPointer();
   const auto radius = static_cast<float>(std::abs(margin) * (1.0 + 1e-6)); // rounding
-  std::vector<std::uint8_t> voxels(static_cast<std::size_t>(part.size.prod()));
+  std::vector<std::uint8_t> voxels(static_cast<std::size_t>(region.size.prod()));
   std::transform(from, from + voxels.size(), voxels.begin(), [&](float away) -> std::uint8_t {
     return margin > 0.0 ? away <= radius : away > radius;
   });
-  return maskOf(mask, part, 1, std::move(voxels));
+  return makeRegionMask(mask, region, 1, std::move(voxels));
 }
 
-Mask united(std::vector<Mask> masks) {
+Mask uniteMasks(std::vector<Mask> masks) {
   if (masks.size() == 1)
     return std::move(masks.front());
   const Mask& first = masks.front();
   // Place of a mask in the first mask's voxels.
-  const auto placeOf = [&](const Mask& mask) {
+  const auto findRegion = [&](const Mask& mask) {
     const Vec3 place = first.grid.worldToIndex * mask.grid.indexToWorld.translation();
-    return Part{place.array().round().cast<std::int64_t>(), mask.grid.size};
+    return Region{place.array().round().cast<std::int64_t>(), mask.grid.size};
   };
-  Part all = placeOf(first);
+  Region all = findRegion(first);
   for (const Mask& mask : masks) {
-    const Part part = placeOf(mask);
-    const Size3 lower = all.first.cwiseMin(part.first), end = all.end().cwiseMax(part.end());
+    const Region region = findRegion(mask);
+    const Size3 lower = all.first.cwiseMin(region.first), end = all.end().cwiseMax(region.end());
     all = {lower, end - lower};
   }
-  Mask result =
-      maskOf(first, all, 1, std::vector<std::uint8_t>(static_cast<std::size_t>(all.size.prod())));
+  Mask result = makeRegionMask(
+      first, all, 1, std::vector<std::uint8_t>(static_cast<std::size_t>(all.size.prod())));
   for (const Mask& mask : masks) {
-    const Part part = placeOf(mask);
-    forVoxels(part, [&](const Size3& voxel, std::size_t number) {
-      std::uint8_t& to = result.voxels[numberOf(voxel - all.first, all.size)];
+    const Region region = findRegion(mask);
+    forEachVoxel(region, [&](const Size3& voxel, std::size_t number) {
+      std::uint8_t& to = result.voxels[linearIndex(voxel - all.first, all.size)];
       result.count += to < mask.voxels[number];
       to = std::max(to, mask.voxels[number]);
     });
@@ -148,15 +148,15 @@ namespace {
 
 /// Widest deviation that is blurred by a kernel, voxels; the time of ITK's recursive filter does
 /// not grow with it.
-constexpr double widestKernel = 8.0;
+constexpr double maxKernelSigma = 8.0;
 
-std::vector<std::uint8_t> blurredRecursively(const Mask& mask, const Part& part, double deviation) {
-  const auto gaussian = itk::SmoothingRecursiveGaussianImageFilter<Pixels, Pixels>::New();
-  gaussian->SetInput(pixelsOf(mask, part));
-  gaussian->SetSigma(deviation); // mm
+std::vector<std::uint8_t> blurRecursively(const Mask& mask, const Region& region, double sigma) {
+  const auto gaussian = itk::SmoothingRecursiveGaussianImageFilter<ItkImage, ItkImage>::New();
+  gaussian->SetInput(toItkImage(mask, region));
+  gaussian->SetSigma(sigma); // mm
   gaussian->Update();
   const float* const from = gaussian->GetOutput()->GetBufferPointer();
-  std::vector<std::uint8_t> result(static_cast<std::size_t>(part.size.prod()));
+  std::vector<std::uint8_t> result(static_cast<std::size_t>(region.size.prod()));
   std::transform(from, from + result.size(), result.begin(), [](float value) {
     return static_cast<std::uint8_t>(value > 0.0F ? std::min(value, 1.0F) * 255.0F + 0.5F : 0.0F);
   });
@@ -164,14 +164,14 @@ std::vector<std::uint8_t> blurredRecursively(const Mask& mask, const Part& part,
 }
 
 /// Voxels of a mask around which nothing is left of it once smoothed.
-class Vanished {
+class ErasedVoxels {
 public:
   /// `first`: voxel of the mask at which `smooth` begins.
-  Vanished(const Mask& mask, const Mask& smooth, const Size3& first)
+  ErasedVoxels(const Mask& mask, const Mask& smooth, const Size3& first)
       : m_mask(mask), m_smooth(smooth), m_first(first) {}
 
   /// Their numbers in the smoothed mask.
-  std::vector<std::size_t> all() const {
+  std::vector<std::size_t> find() const {
     const Size3& size = m_mask.grid.size;
     std::vector<std::vector<std::size_t>> slices(static_cast<std::size_t>(size.z()));
     tbb::parallel_for(std::int64_t{0}, size.z(), [&](std::int64_t z) {
@@ -187,26 +187,26 @@ public:
 
 private:
   void addRow(const Size3& start, std::vector<std::size_t>& found) const {
-    const std::uint8_t* const row = &m_mask.voxels[numberOf(start, m_mask.grid.size)];
-    const std::size_t there = numberOf(start - m_first, m_smooth.grid.size);
-    const std::uint8_t half = m_mask.half(), left = m_smooth.half();
+    const std::uint8_t* const row = &m_mask.voxels[linearIndex(start, m_mask.grid.size)];
+    const std::size_t there = linearIndex(start - m_first, m_smooth.grid.size);
+    const std::uint8_t threshold = m_mask.threshold(), smoothThreshold = m_smooth.threshold();
     for (std::int64_t x = 0; x < m_mask.grid.size.x(); ++x) {
       const std::size_t voxel = there + static_cast<std::size_t>(x);
-      if (row[x] >= half && m_smooth.voxels[voxel] < left &&
-          isAloneAt(start + Size3(x, 0, 0) - m_first))
+      if (row[x] >= threshold && m_smooth.voxels[voxel] < smoothThreshold &&
+          isEmptyAround(start + Size3(x, 0, 0) - m_first))
         found.push_back(voxel);
     }
   }
 
   /// True if nothing is left among the voxels around.
-  bool isAloneAt(const Size3& at) const {
+  bool isEmptyAround(const Size3& at) const {
     const Size3& size = m_smooth.grid.size;
     const Size3 lower = (at - Size3::Constant(1)).cwiseMax(0);
     const Size3 upper = (at + Size3::Constant(1)).cwiseMin((size.array() - 1).matrix());
     for (std::int64_t z = lower.z(); z <= upper.z(); ++z)
       for (std::int64_t y = lower.y(); y <= upper.y(); ++y)
         for (std::int64_t x = lower.x(); x <= upper.x(); ++x)
-          if (m_smooth.voxels[numberOf({x, y, z}, size)] >= m_smooth.half())
+          if (m_smooth.voxels[linearIndex({x, y, z}, size)] >= m_smooth.threshold())
             return false;
     return true;
   }
@@ -217,30 +217,30 @@ private:
 
 } // namespace
 
-Mask smoothed(const Mask& mask, double deviation, const Grid& volume) {
-  if (deviation == 0.0)
+Mask smoothMask(const Mask& mask, double sigma, const Grid& volume) {
+  if (sigma == 0.0)
     return mask;
-  constexpr double farthest = 3.0; // deviations
-  const Part part = around(mask, farthest * deviation, volume);
-  const Vec3 deviations = deviation * mask.grid.spacing().cwiseInverse();
-  Mask result = maskOf(mask, part, 255,
-                       deviations.maxCoeff() > widestKernel
-                           ? blurredRecursively(mask, part, deviation)
-                           : blurred(mask, part.first, part.size, deviations));
-  result.smoothing = deviation;
+  constexpr double maxSigmas = 3.0; // deviations
+  const Region region = padRegion(mask, maxSigmas * sigma, volume);
+  const Vec3 sigmas = sigma * mask.grid.spacing().cwiseInverse();
+  Mask result = makeRegionMask(mask, region, 255,
+                               sigmas.maxCoeff() > maxKernelSigma
+                                   ? blurRecursively(mask, region, sigma)
+                                   : blurMask(mask, region.first, region.size, sigmas));
+  result.smoothing = sigma;
   return result;
 }
 
-Mask smoothedAutomatically(const Mask& mask, const Grid& volume) {
-  const double deviation = automaticSmoothing(mask.grid);
-  if (deviation > widestKernel * mask.grid.spacing().minCoeff())
+Mask smoothMaskAuto(const Mask& mask, const Grid& volume) {
+  const double sigma = chooseSmoothing(mask.grid);
+  if (sigma > maxKernelSigma * mask.grid.spacing().minCoeff())
     return mask; // voxels like needles, or flakes
-  Mask result = smoothed(mask, deviation, volume);
+  Mask result = smoothMask(mask, sigma, volume);
   const Vec3 first = mask.grid.worldToIndex * result.grid.indexToWorld.translation();
-  const std::vector<std::size_t> vanished =
-      Vanished(mask, result, first.array().round().cast<std::int64_t>()).all();
-  for (const std::size_t voxel : vanished) {
-    result.voxels[voxel] = result.full;
+  const std::vector<std::size_t> erased =
+      ErasedVoxels(mask, result, first.array().round().cast<std::int64_t>()).find();
+  for (const std::size_t voxel : erased) {
+    result.voxels[voxel] = result.maxValue;
     ++result.count;
   }
   return result;

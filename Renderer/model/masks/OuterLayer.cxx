@@ -11,11 +11,11 @@
 namespace fenestra {
 namespace {
 
-constexpr double coarse = 2.0;       ///< mm: of the voxels so many are passed over
-constexpr double mostPerVoxel = 8.0; ///< voxels of another lattice, for each of the volume's
+constexpr double coarseSpacing = 2.0; ///< mm: of the voxels so many are passed over
+constexpr double maxPerVoxel = 8.0;   ///< voxels of another lattice, for each of the volume's
 
 /// Grid whose voxel i lies where voxel i `stride` of `fine` does.
-Grid thinned(const Grid& fine, const Size3& stride) {
+Grid subsampleGrid(const Grid& fine, const Size3& stride) {
   const Affine& map = fine.indexToWorld;
   return {(fine.size.array() - 1) / stride.array() + 1,
           Affine(map.linear() * Mat3::Diagonal(stride.cast<double>()), map.translation())};
@@ -28,11 +28,12 @@ int longAxis(const Grid& grid) {
 }
 
 /// Voxels that a front reaches from the sides, through those that are air.
-class Flood {
+class FloodFill {
 public:
-  Flood(const Size3& size, std::vector<std::uint8_t>& voxels) : m_size(size), m_voxels(voxels) {}
+  FloodFill(const Size3& size, std::vector<std::uint8_t>& voxels)
+      : m_size(size), m_voxels(voxels) {}
 
-  void fromSides(int longAxis) {
+  void fillFromSides(int longAxis) {
     for (int axis = 0; axis < 3; ++axis)
       if (axis != longAxis) {
         enterSide(axis, 0);
@@ -62,7 +63,7 @@ private:
   void enter(const Size3& voxel) {
     if ((voxel.array() < 0).any() || (voxel.array() >= m_size.array()).any())
       return;
-    std::uint8_t& value = m_voxels[numberOf(voxel, m_size)];
+    std::uint8_t& value = m_voxels[linearIndex(voxel, m_size)];
     if (value != air)
       return;
     value = outside;
@@ -75,55 +76,56 @@ private:
 };
 
 /// Air around the body: every stride-th voxel, 255 or 0.
-Mask outsideAir(const Volume& volume, double airBelow, const Size3& stride) {
-  Mask mask{thinned(volume.grid, stride), {}, 0, {}, 255};
+Mask findOutsideAir(const Volume& volume, double airBelow, const Size3& stride) {
+  Mask mask{subsampleGrid(volume.grid, stride), {}, 0, {}, 255};
   const Size3& size = mask.grid.size;
   mask.voxels.resize(static_cast<std::size_t>(size.prod()));
   const auto classify = [&](const auto& voxels) {
     tbb::parallel_for(std::int64_t{0}, size.z(), [&](std::int64_t z) {
-      std::uint8_t* to = &mask.voxels[numberOf({0, 0, z}, size)];
+      std::uint8_t* to = &mask.voxels[linearIndex({0, 0, z}, size)];
       for (std::int64_t y = 0; y < size.y(); ++y) {
         const Size3 row = Size3(0, y, z).array() * stride.array();
-        const auto* const from = &voxels[numberOf(row, volume.grid.size)];
+        const auto* const from = &voxels[linearIndex(row, volume.grid.size)];
         for (std::int64_t x = 0; x < size.x(); ++x)
-          *to++ = static_cast<double>(from[x * stride.x()]) < airBelow ? Flood::air : Flood::body;
+          *to++ = static_cast<double>(from[x * stride.x()]) < airBelow ? FloodFill::air
+                                                                       : FloodFill::body;
       }
     });
   };
   std::visit(classify, volume.voxels);
-  Flood(size, mask.voxels).fromSides(longAxis(mask.grid));
+  FloodFill(size, mask.voxels).fillFromSides(longAxis(mask.grid));
   for (std::uint8_t& voxel : mask.voxels) {
-    voxel = voxel == Flood::outside ? mask.full : 0;
+    voxel = voxel == FloodFill::outside ? mask.maxValue : 0;
     mask.count += voxel > 0;
   }
   return mask;
 }
 
 /// A mask at the voxels of another grid.
-class Resampled {
+class MaskResampler {
 public:
   /// `toMask`: from the other grid's index space to the mask's.
-  Resampled(const Mask& mask, const Affine& toMask)
+  MaskResampler(const Mask& mask, const Affine& toMask)
       : m_mask(mask), m_field(mask.grid, mask.voxels), m_toMask(toMask) {}
 
   /// Writes the voxels [begin, end) of the other grid.
-  void block(const Size3& begin, const Size3& end, Mask& to) const {
-    const std::optional<std::uint8_t> all = onlyValue(begin, end);
+  void writeBlock(const Size3& begin, const Size3& end, Mask& to) const {
+    const std::optional<std::uint8_t> all = findUniformValue(begin, end);
     for (std::int64_t z = begin.z(); z < end.z(); ++z)
       for (std::int64_t y = begin.y(); y < end.y(); ++y) {
-        std::uint8_t* voxel = &to.voxels[numberOf({begin.x(), y, z}, to.grid.size)];
+        std::uint8_t* voxel = &to.voxels[linearIndex({begin.x(), y, z}, to.grid.size)];
         for (std::int64_t x = begin.x(); x < end.x(); ++x)
-          *voxel++ = all ? *all : at({x, y, z});
+          *voxel++ = all ? *all : sample({x, y, z});
       }
   }
 
 private:
-  std::uint8_t at(const Size3& voxel) const {
+  std::uint8_t sample(const Size3& voxel) const {
     return static_cast<std::uint8_t>(0.5 + m_field.value(m_toMask * voxel.cast<double>()));
   }
 
   /// Value of all of the mask's voxels that the block is made from; nothing: they differ.
-  std::optional<std::uint8_t> onlyValue(const Size3& begin, const Size3& end) const {
+  std::optional<std::uint8_t> findUniformValue(const Size3& begin, const Size3& end) const {
     const Box block{begin.cast<double>(), (end.array() - 1).cast<double>()};
     Box box = Box::makeEmpty();
     for (int i = 0; i < 8; ++i)
@@ -132,11 +134,11 @@ private:
     const auto inside = [&](const Vec3& v) { return v.cwiseMax(0.0).cwiseMin(most); };
     const Size3 first = inside(box.lower.array().floor()).cast<std::int64_t>(),
                 last = inside(box.upper.array().ceil()).cast<std::int64_t>();
-    const std::uint8_t value = m_mask.voxels[numberOf(first, m_mask.grid.size)];
+    const std::uint8_t value = m_mask.voxels[linearIndex(first, m_mask.grid.size)];
     for (std::int64_t z = first.z(); z <= last.z(); ++z)
       for (std::int64_t y = first.y(); y <= last.y(); ++y)
         for (std::int64_t x = first.x(); x <= last.x(); ++x)
-          if (m_mask.voxels[numberOf({x, y, z}, m_mask.grid.size)] != value)
+          if (m_mask.voxels[linearIndex({x, y, z}, m_mask.grid.size)] != value)
             return std::nullopt;
     return value;
   }
@@ -148,52 +150,52 @@ private:
 
 } // namespace
 
-Mask outerLayer(const Volume& volume, double airBelow, double depth) {
-  const Size3 stride = (coarse * volume.grid.spacing().cwiseInverse())
+Mask findOuterLayer(const Volume& volume, double airBelow, double depth) {
+  const Size3 stride = (coarseSpacing * volume.grid.spacing().cwiseInverse())
                            .cwiseMin(volume.grid.size.cast<double>())
                            .cwiseMax(1.0)
                            .cast<std::int64_t>();
-  Mask layer = outsideAir(volume, airBelow, stride);
+  Mask layer = findOutsideAir(volume, airBelow, stride);
   if (layer.count == 0 || layer.count == layer.grid.voxelCount())
     return {};
   // Half space blurred by a Gaussian: 0.1 of it is left 1.2816 deviations beyond its face.
-  const Vec3 deviations = ((depth / 1.2816) * layer.grid.spacing().cwiseInverse())
-                              .cwiseMin(layer.grid.size.cast<double>());
-  layer.voxels = blurred(layer, Size3::Zero(), layer.grid.size, deviations);
+  const Vec3 sigmas = ((depth / 1.2816) * layer.grid.spacing().cwiseInverse())
+                          .cwiseMin(layer.grid.size.cast<double>());
+  layer.voxels = blurMask(layer, Size3::Zero(), layer.grid.size, sigmas);
   std::array<std::uint8_t, 256> remapped; // by what is left
   for (std::size_t left = 0; left < remapped.size(); ++left) {
     const double indicator = std::clamp((static_cast<double>(left) / 255.0 - 0.05) / 0.1, 0.0, 1.0);
-    remapped[left] = static_cast<std::uint8_t>(std::lround(indicator * layer.full));
+    remapped[left] = static_cast<std::uint8_t>(std::lround(indicator * layer.maxValue));
   }
   for (std::uint8_t& voxel : layer.voxels)
     voxel = remapped[voxel];
   return layer;
 }
 
-Mask onLattice(const Mask& layer, const Grid& labels, const Grid& volume) {
+Mask resampleMask(const Mask& layer, const Grid& labels, const Grid& volume) {
   Box box = Box::makeEmpty();
   for (int i = 0; i < 8; ++i)
     box.extend(labels.worldToIndex * volume.worldCorner(i));
   const Vec3 first = box.lower.array().floor(),
              size3 = box.upper.array().ceil() + 1.0 - first.array();
   Affine indexToWorld = labels.indexToWorld;
-  const double most = std::max(0x1p24, mostPerVoxel * static_cast<double>(volume.voxelCount()));
+  const double most = std::max(0x1p24, maxPerVoxel * static_cast<double>(volume.voxelCount()));
   if (!(size3.prod() <= most))
-    return {{Size3::Ones(), indexToWorld}, {0}, 0, {}, layer.full};
+    return {{Size3::Ones(), indexToWorld}, {0}, 0, {}, layer.maxValue};
   indexToWorld.translate(first);
-  Mask mask{{size3.cast<std::int64_t>(), indexToWorld}, {}, 0, {}, layer.full};
+  Mask mask{{size3.cast<std::int64_t>(), indexToWorld}, {}, 0, {}, layer.maxValue};
   const Size3& size = mask.grid.size;
   mask.voxels.resize(static_cast<std::size_t>(size.prod()));
-  const Resampled resampled(layer, layer.grid.worldToIndex * indexToWorld);
+  const MaskResampler resampler(layer, layer.grid.worldToIndex * indexToWorld);
   constexpr std::int64_t edge = 8;
   tbb::parallel_for(std::int64_t{0}, (size.z() + edge - 1) / edge, [&](std::int64_t layers) {
     for (std::int64_t y = 0; y < size.y(); y += edge)
       for (std::int64_t x = 0; x < size.x(); x += edge) {
         const Size3 begin(x, y, edge * layers);
-        resampled.block(begin, (begin.array() + edge).min(size.array()), mask);
+        resampler.writeBlock(begin, (begin.array() + edge).min(size.array()), mask);
       }
   });
-  mask.count = std::ranges::count_if(mask.voxels, [&](auto v) { return v >= mask.half(); });
+  mask.count = std::ranges::count_if(mask.voxels, [&](auto v) { return v >= mask.threshold(); });
   return mask;
 }
 

@@ -12,10 +12,10 @@ namespace fenestra {
 /// side of the volume. Its two ends along the patient's longest axis (S) are no sides, for lungs
 /// and bowel are cut open there. On voxels of its own, about 2 mm wide, so that it is small beside
 /// the volume; count is 0, and no voxel held, where no air or nothing else is found.
-Mask outerLayer(const Volume& volume, double airBelow, double depth);
+Mask findOuterLayer(const Volume& volume, double airBelow, double depth);
 
 /// Mask on the lattice of `labels`, in a grid that covers `volume`; a single voxel of 0 where that
 /// grid has more than 2^24 voxels and eight for each of the volume's.
-Mask onLattice(const Mask& layer, const Grid& labels, const Grid& volume);
+Mask resampleMask(const Mask& layer, const Grid& labels, const Grid& volume);
 
 } // namespace fenestra

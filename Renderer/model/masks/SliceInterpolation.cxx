@@ -10,12 +10,12 @@ namespace {
 
 /// Axis along which voxels are longest, and the number of slices in place of one across it: odd, so
 /// that no voxel lies half-way between two straight outlines, neither inside nor outside.
-struct Division {
+struct Subdivision {
   int axis;
   std::int64_t parts;
 };
 
-Division divisionOf(const Grid& grid) {
+Subdivision computeSubdivision(const Grid& grid) {
   constexpr double most = 9.0; // bounds memory: more would be guesses
   const Vec3 edges = grid.spacing();
   const int axis = static_cast<int>(std::max_element(edges.begin(), edges.end()) - edges.begin());
@@ -29,7 +29,7 @@ class Slices {
 public:
   explicit Slices(const Mask& mask) : m_mask(mask) {
     const Vec3 spacing = mask.grid.spacing();
-    m_axis = divisionOf(mask.grid).axis;
+    m_axis = computeSubdivision(mask.grid).axis;
     m_thickness = spacing[m_axis];
     const int column = m_axis == 0 ? 1 : 0, row = m_axis == 2 ? 1 : 2;
     const Size3& size = mask.grid.size;
@@ -44,15 +44,15 @@ public:
 
   bool isInside(std::int64_t column, std::int64_t row, std::int64_t slice) const {
     return m_mask.voxels[static_cast<std::size_t>(column * m_step[0] + row * m_step[1] +
-                                                  slice * m_step[2])] >= m_mask.half();
+                                                  slice * m_step[2])] >= m_mask.threshold();
   }
 
   /// Signed distance of each pixel to the slice's outline, negative inside, bounded by farthest():
   /// half a pixel less than to the nearest pixel of the other kind.
-  std::vector<float> distances(std::int64_t slice) const {
+  std::vector<float> computeDistances(std::int64_t slice) const {
     const double half = 0.5 * std::min(m_edge[0], m_edge[1]);
-    const std::vector<double> toInside = squaresTo(true, slice),
-                              toOutside = squaresTo(false, slice);
+    const std::vector<double> toInside = squaredDistances(true, slice),
+                              toOutside = squaredDistances(false, slice);
     std::vector<float> result(toInside.size());
     std::ranges::transform(toInside, toOutside, result.begin(), [&](double inside, double outside) {
       return static_cast<float>(inside > 0.0 ? std::sqrt(inside) - half
@@ -62,23 +62,23 @@ public:
   }
 
 private:
-  double farthest() const { return 2.0 * m_thickness; }
+  double maxDistance() const { return 2.0 * m_thickness; }
 
   /// Distances along rows to the nearest pixel that is inside (false: outside).
-  std::vector<double> alongRows(bool inside, std::int64_t slice) const {
+  std::vector<double> rowDistances(bool inside, std::int64_t slice) const {
     const auto [columns, rows, slices] = m_count;
     std::vector<double> result(static_cast<std::size_t>(columns * rows));
     for (std::int64_t row = 0; row < rows; ++row) {
       double* const to = result.data() + columns * row;
-      double distance = farthest();
-      const auto passed = [&](std::int64_t column) {
+      double distance = maxDistance();
+      const auto advance = [&](std::int64_t column) {
         return distance = isInside(column, row, slice) == inside ? 0.0 : distance + m_edge[0];
       };
       for (std::int64_t column = 0; column < columns; ++column)
-        to[column] = std::min(farthest(), passed(column));
-      distance = farthest();
+        to[column] = std::min(maxDistance(), advance(column));
+      distance = maxDistance();
       for (std::int64_t column = columns; column-- > 0;)
-        to[column] = std::min(to[column], passed(column));
+        to[column] = std::min(to[column], advance(column));
     }
     return result;
   }
@@ -93,21 +93,21 @@ private:
 
   /// Squared distances of each pixel to the nearest pixel that is inside; false: of each that is
   /// inside to the nearest that is outside.
-  std::vector<double> squaresTo(bool inside, std::int64_t slice) const {
+  std::vector<double> squaredDistances(bool inside, std::int64_t slice) const {
     const auto [columns, rows, slices] = m_count;
-    std::vector<std::uint8_t> isSome(static_cast<std::size_t>(rows));
+    std::vector<std::uint8_t> hasInsidePixel(static_cast<std::size_t>(rows));
     for (std::int64_t row = 0; row < rows; ++row)
-      isSome[static_cast<std::size_t>(row)] = hasInside(row, slice);
-    const std::vector<double> along = alongRows(inside, slice);
-    std::vector<double> result(along.size(), farthest() * farthest());
-    const auto rowRange = static_cast<std::int64_t>(farthest() / m_edge[1]);
+      hasInsidePixel[static_cast<std::size_t>(row)] = hasInside(row, slice);
+    const std::vector<double> along = rowDistances(inside, slice);
+    std::vector<double> result(along.size(), maxDistance() * maxDistance());
+    const auto rowRange = static_cast<std::int64_t>(maxDistance() / m_edge[1]);
     for (std::int64_t row = 0; row < rows; ++row) {
-      if (!inside && !isSome[static_cast<std::size_t>(row)])
+      if (!inside && !hasInsidePixel[static_cast<std::size_t>(row)])
         continue;
       double* const to = result.data() + columns * row;
       const std::int64_t end = std::min(row + rowRange + 1, rows);
       for (std::int64_t other = std::max<std::int64_t>(row - rowRange, 0); other < end; ++other) {
-        if (inside && !isSome[static_cast<std::size_t>(other)])
+        if (inside && !hasInsidePixel[static_cast<std::size_t>(other)])
           continue;
         const double across = static_cast<double>(other - row) * m_edge[1];
         const double* const from = along.data() + columns * other;
@@ -128,7 +128,7 @@ private:
 };
 
 /// Place between two slices.
-struct Between {
+struct SlicePair {
   const float *before, *after; ///< their distances
   float fraction;              ///< of the way from one to the other, 0 to 1
 
@@ -138,7 +138,7 @@ struct Between {
 };
 
 /// Grid with `parts` times as many steps along an axis, between the same outermost centres.
-Grid divided(const Grid& grid, int axis, std::int64_t parts) {
+Grid subdivideGrid(const Grid& grid, int axis, std::int64_t parts) {
   Size3 size = grid.size;
   size[axis] = (size[axis] - 1) * parts + 1;
   Affine indexToWorld = grid.indexToWorld;
@@ -148,45 +148,46 @@ Grid divided(const Grid& grid, int axis, std::int64_t parts) {
 
 } // namespace
 
-double automaticSmoothing(const Grid& labels) {
+double chooseSmoothing(const Grid& labels) {
   Grid grid = labels;
-  for (Division division = divisionOf(grid); division.parts > 1; division = divisionOf(grid))
-    grid = divided(grid, division.axis, division.parts);
+  for (Subdivision division = computeSubdivision(grid); division.parts > 1;
+       division = computeSubdivision(grid))
+    grid = subdivideGrid(grid, division.axis, division.parts);
   return 0.6 * grid.spacing().maxCoeff();
 }
 
-Mask betweenSlices(Mask mask) {
-  const std::int64_t parts = divisionOf(mask.grid).parts;
+Mask interpolateSlices(Mask mask) {
+  const std::int64_t parts = computeSubdivision(mask.grid).parts;
   if (parts == 1)
     return mask;
   const Slices slices(mask);
   std::vector<std::vector<float>> distances(static_cast<std::size_t>(slices.count()));
   tbb::parallel_for(std::size_t{0}, distances.size(), [&](std::size_t slice) {
-    distances[slice] = slices.distances(static_cast<std::int64_t>(slice));
+    distances[slice] = slices.computeDistances(static_cast<std::int64_t>(slice));
   });
   const int axis = slices.axis();
-  Mask result{divided(mask.grid, axis, parts), {}, 0, mask.names};
+  Mask result{subdivideGrid(mask.grid, axis, parts), {}, 0, mask.names};
   const Size3& size = result.grid.size;
   result.voxels.resize(static_cast<std::size_t>(result.grid.voxelCount()));
-  const auto around = [&](std::int64_t at) {
+  const auto findPair = [&](std::int64_t at) {
     const auto before = static_cast<std::size_t>(at / parts);
     const std::size_t after = std::min(before + 1, distances.size() - 1);
     const float fraction = static_cast<float>(at % parts) / static_cast<float>(parts);
-    return Between{distances[before].data(), distances[after].data(), fraction};
+    return SlicePair{distances[before].data(), distances[after].data(), fraction};
   };
   const std::int64_t columns = axis == 0 ? size.y() : size.x();
   tbb::parallel_for(std::int64_t{0}, size.z(), [&](std::int64_t z) {
     for (std::int64_t y = 0; y < size.y(); ++y) {
-      std::uint8_t* const to = result.voxels.data() + numberOf(Size3(0, y, z), size);
+      std::uint8_t* const to = result.voxels.data() + linearIndex(Size3(0, y, z), size);
       if (axis == 0) {
         for (std::int64_t x = 0; x < size.x(); ++x)
-          to[x] = around(x).isInside(y + columns * z);
+          to[x] = findPair(x).isInside(y + columns * z);
         continue;
       }
-      const Between between = around(axis == 1 ? y : z);
+      const SlicePair pair = findPair(axis == 1 ? y : z);
       const std::int64_t first = columns * (axis == 1 ? z : y);
       for (std::int64_t x = 0; x < size.x(); ++x)
-        to[x] = between.isInside(first + x);
+        to[x] = pair.isInside(first + x);
     }
   });
   result.count = std::ranges::count(result.voxels, std::uint8_t{1});

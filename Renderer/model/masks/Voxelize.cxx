@@ -33,7 +33,8 @@ int edgeSide(const Vec3& a, const Vec3& b, double area) {
 }
 
 /// First and last integer in [least, greatest] and in [0, size - 1]; first > last: none.
-std::pair<std::int64_t, std::int64_t> integers(double least, double greatest, std::int64_t size) {
+std::pair<std::int64_t, std::int64_t> integerRange(double least, double greatest,
+                                                   std::int64_t size) {
   const auto last = static_cast<double>(size - 1);
   return {static_cast<std::int64_t>(std::clamp(std::ceil(least), 0.0, last + 1.0)),
           static_cast<std::int64_t>(std::clamp(std::floor(greatest), -1.0, last))};
@@ -43,17 +44,17 @@ class Crossings {
 public:
   explicit Crossings(const Size3& size) : m_size(size) {}
 
-  /// Adds a triangle's crossings. False: mostWork is exceeded.
+  /// Adds a triangle's crossings. False: maxWork is exceeded.
   bool add(const Vec3& a, const Vec3& b, const Vec3& c) {
     const auto [y0, y1] =
-        integers(std::min({a.y(), b.y(), c.y()}), std::max({a.y(), b.y(), c.y()}), m_size.y());
+        integerRange(std::min({a.y(), b.y(), c.y()}), std::max({a.y(), b.y(), c.y()}), m_size.y());
     const auto [z0, z1] =
-        integers(std::min({a.z(), b.z(), c.z()}), std::max({a.z(), b.z(), c.z()}), m_size.z());
+        integerRange(std::min({a.z(), b.z(), c.z()}), std::max({a.z(), b.z(), c.z()}), m_size.z());
     if (y1 < y0 || z1 < z0)
       return true;
-    constexpr std::int64_t mostWork = 1'000'000'000;
+    constexpr std::int64_t maxWork = 1'000'000'000;
     m_work += (y1 - y0 + 1) * (z1 - z0 + 1);
-    if (m_work > mostWork)
+    if (m_work > maxWork)
       return false;
     for (std::int64_t z = z0; z <= z1; ++z)
       for (std::int64_t y = y0; y <= y1; ++y)
@@ -66,12 +67,14 @@ public:
 private:
   void addRow(const Vec3& a, const Vec3& b, const Vec3& c, std::int64_t row, std::int64_t slice) {
     const auto y = static_cast<double>(row), z = static_cast<double>(slice);
-    const double ofC = edgeArea(a, b, y, z), ofA = edgeArea(b, c, y, z), ofB = edgeArea(c, a, y, z);
-    const int side = edgeSide(a, b, ofC);
-    if (side == 0 || edgeSide(b, c, ofA) != side || edgeSide(c, a, ofB) != side)
+    const double weightC = edgeArea(a, b, y, z), weightA = edgeArea(b, c, y, z),
+                 weightB = edgeArea(c, a, y, z);
+    const int side = edgeSide(a, b, weightC);
+    if (side == 0 || edgeSide(b, c, weightA) != side || edgeSide(c, a, weightB) != side)
       return;
-    const double area = ofA + ofB + ofC;
-    const double x = area == 0.0 ? a.x() : (ofA * a.x() + ofB * b.x() + ofC * c.x()) / area;
+    const double area = weightA + weightB + weightC;
+    const double x =
+        area == 0.0 ? a.x() : (weightA * a.x() + weightB * b.x() + weightC * c.x()) / area;
     m_all.push_back({row + m_size.y() * slice, x});
   }
 
@@ -83,8 +86,8 @@ private:
 } // namespace
 
 std::optional<std::vector<VoxelRun>>
-voxelRuns(const std::vector<Vec3>& points,
-          const std::vector<std::array<std::uint32_t, 3>>& triangles, const Size3& size) {
+voxelizeSurface(const std::vector<Vec3>& points,
+                const std::vector<std::array<std::uint32_t, 3>>& triangles, const Size3& size) {
   Crossings crossings(size);
   for (const auto& [a, b, c] : triangles)
     if (!crossings.add(points[a], points[b], points[c]))
@@ -97,7 +100,7 @@ voxelRuns(const std::vector<Vec3>& points,
   for (std::size_t i = 0; i < all.size(); i += 2) {
     if (i + 1 == all.size() || all[i + 1].row != all[i].row)
       return std::nullopt;
-    const auto [first, last] = integers(all[i].x, all[i + 1].x, size.x());
+    const auto [first, last] = integerRange(all[i].x, all[i + 1].x, size.x());
     if (first <= last)
       runs.push_back({all[i].row % size.y(), all[i].row / size.y(), first, last + 1});
   }

@@ -21,7 +21,7 @@ struct VoxelRun {
 /// crossing counts once (Edelsbrunner and Mücke 1990, "Simulation of simplicity"). nullopt: the
 /// surface has a hole in some row, or more than 10^9 pairs of row and triangle would be tested.
 std::optional<std::vector<VoxelRun>>
-voxelRuns(const std::vector<Vec3>& points,
-          const std::vector<std::array<std::uint32_t, 3>>& triangles, const Size3& size);
+voxelizeSurface(const std::vector<Vec3>& points,
+                const std::vector<std::array<std::uint32_t, 3>>& triangles, const Size3& size);
 
 } // namespace fenestra

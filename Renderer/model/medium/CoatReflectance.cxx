@@ -8,7 +8,7 @@ namespace fenestra {
 namespace {
 
 /// Mean weight of GGX's samples, spread evenly.
-double reflectedBy(const SurfaceShading& ggx, double cosine) {
+double estimateReflectance(const SurfaceShading& ggx, double cosine) {
   constexpr int strata = 32;
   const Vec3 incoming(-std::sqrt(1.0 - cosine * cosine), 0.0, -cosine);
   const SurfaceScattering surface(incoming, -Vec3::UnitZ(), ggx, Rgb::Zero());
@@ -21,7 +21,7 @@ double reflectedBy(const SurfaceShading& ggx, double cosine) {
 
 } // namespace
 
-CoatReflectance coatReflectance(double roughness) {
+CoatReflectance fitCoatReflectance(double roughness) {
   constexpr int angles = 40;
   const SurfaceShading ggx{.diffuse = 0.0,
                            .specular = 1.0,
@@ -31,7 +31,7 @@ CoatReflectance coatReflectance(double roughness) {
   Eigen::Vector<double, angles> reflected, weights;
   for (int i = 0; i < angles; ++i) {
     const double cosine = (i + 0.5) / angles, x = 1.0 - cosine;
-    reflected[i] = reflectedBy(ggx, cosine);
+    reflected[i] = estimateReflectance(ggx, cosine);
     powers.row(i) << 1.0, std::pow(x, 2), std::pow(x, 4), std::pow(x, 8);
     weights[i] = std::sqrt(cosine);
   }

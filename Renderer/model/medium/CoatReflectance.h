@@ -20,12 +20,12 @@ struct CoatReflectance {
   }
   /// Over a hemisphere, weighted by the cosine: the integral of 2 cosine times this.
   double mean() const { return constant + x2 / 6.0 + x4 / 15.0 + x8 / 45.0; }
-  CoatReflectance scaled(double f) const { return {f * constant, f * x2, f * x4, f * x8}; }
+  CoatReflectance withScale(double f) const { return {f * constant, f * x2, f * x4, f * x8}; }
 };
 
 /// Reflectance of GGX with tissue's F0: least squares over the cosine, raised until it is nowhere
 /// less, so that a coat and what lies below never reflect more than arrives. Too much by 0.005 at
 /// most from a roughness of 0.2 on, by 0.07 at 0.05 and glancing angles.
-CoatReflectance coatReflectance(double roughness);
+CoatReflectance fitCoatReflectance(double roughness);
 
 } // namespace fenestra

@@ -17,20 +17,20 @@ struct ContextStyle {
   double saturation = 1.0;           ///< of the albedo; 0: grey, 1: unchanged
 
   /// Albedo of reduced saturation and unchanged luminance.
-  Rgb paled(const Rgb& albedo) const {
-    const double grey = luminance(albedo);
-    return grey + saturation * (albedo - grey);
+  Rgb desaturate(const Rgb& albedo) const {
+    const double gray = luminance(albedo);
+    return gray + saturation * (albedo - gray);
   }
 };
 
 /// Tests a volume's points for a style's focus. A view: the style must outlive the object.
-class StyledContext {
+class ContextField {
 public:
-  StyledContext(const ContextStyle& style, const Grid& volume)
+  ContextField(const ContextStyle& style, const Grid& volume)
       : m_style(style),
         m_toMask(style.focus->grid.worldToIndex * volume.indexToWorld),
         m_field(style.focus->grid, style.focus->voxels),
-        m_level(0.5 * style.focus->full) {}
+        m_level(0.5 * style.focus->maxValue) {}
 
   const ContextStyle& style() const { return m_style; }
   /// True if a point (the volume's index space) lies in the focus: indicator >= 1/2. Beyond the

@@ -4,12 +4,12 @@
 
 namespace fenestra {
 
-std::optional<ColorFunction> seenColor(const Material& material) {
+std::optional<ColorFunction> toReflectanceColor(const Material& material) {
   if (!material.color || !material.colorIsAlbedo)
     return material.color;
   return material.color->withKnots([&](ColorFunction::Knot& knot) {
     knot.value =
-        knot.value.unaryExpr([&](double albedo) { return reflectance(albedo, material.g); });
+        knot.value.unaryExpr([&](double albedo) { return toReflectance(albedo, material.g); });
   });
 }
 

@@ -38,11 +38,11 @@ struct Material {
   double diffuse = 1.0, specular = 0.2, roughness = 0.4; ///< lobes, as SurfaceShading's
   /// Weight of the border as a surface: of the gradient of the segment's share, per mm, beside that
   /// of the scalar over its span.
-  double border = 0.0;
+  double interfaceWeight = 0.0;
 };
 
 /// Colour that an eye sees; nullopt: the transfer function's.
-std::optional<ColorFunction> seenColor(const Material& material);
+std::optional<ColorFunction> toReflectanceColor(const Material& material);
 
 /// A segment's matter.
 struct SegmentMedium {

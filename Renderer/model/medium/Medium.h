@@ -33,22 +33,22 @@ public:
     if (style)
       m_context.emplace(*style, grid);
     if (tint)
-      m_tinted.emplace(*tint, grid);
+      m_tint.emplace(*tint, grid);
     if (mixture)
-      m_mixed.emplace(*mixture, grid);
+      m_mixture.emplace(*mixture, grid);
   }
 
   /// True if the extinction may be above 0 where a clip keeps `kept`.
   bool canCollide(double clipWeight) const {
-    return clipWeight > 0.0 || (m_mixed && m_mixed->hasFree());
+    return clipWeight > 0.0 || (m_mixture && m_mixture->hasUnclipped());
   }
   /// Extinction, mm^-1, of which the clip keeps `kept`.
   double extinction(const Vec3& index, double clipWeight = 1.0) const {
-    if (m_mixed)
-      return thinning(index) * m_mixed->extinction(at(index, clipWeight));
+    if (m_mixture)
+      return contextFactor(index) * m_mixture->extinction(makePoint(index, clipWeight));
     double sigma_t = m_transfer.extinction(m_field.value(index)).value();
     if (sigma_t != 0.0)
-      sigma_t *= thinning(index);
+      sigma_t *= contextFactor(index);
     if (sigma_t != 0.0 && m_transfer.gradientOpacity)
       sigma_t *= (*m_transfer.gradientOpacity)(m_field.gradient(index).norm()).value();
     return clipWeight * sigma_t;
@@ -57,41 +57,42 @@ public:
   bool needsGradient(bool wantGradient) const { return wantGradient || m_transfer.shading; }
   const TransferFunction& transfer() const { return m_transfer; }
   /// Null: the volume's transfer function is all of the matter.
-  const MixedField* mixed() const { return m_mixed ? &*m_mixed : nullptr; }
-  const Mixture* mixture() const { return m_mixed ? &m_mixed->mixture() : nullptr; }
+  const MixtureField* mixtureField() const { return m_mixture ? &*m_mixture : nullptr; }
+  const Mixture* mixture() const { return m_mixture ? &m_mixture->mixture() : nullptr; }
 
   /// Matter without a mixture. `wantGradient`: fills the gradient even without shading. `cut`:
   /// gradient that a cut adds where there is shading, spans of the transfer function per mm, world
   /// axes; it changes surfaces, not the extinction.
   MediumSample evaluate(const Vec3& index, bool wantGradient,
                         const Vec3& cut = Vec3::Zero()) const {
-    const bool oneAlbedo = m_transfer.albedo.knots().size() == 1 && !m_tinted;
+    const bool oneAlbedo = m_transfer.albedo.knots().size() == 1 && !m_tint;
     const double scalar = oneAlbedo && !m_transfer.shading ? 0.0 : m_field.value(index);
     Rgb albedo = m_transfer.albedo(scalar);
-    if (m_tinted)
-      albedo = m_tinted->albedo(index, scalar, albedo);
+    if (m_tint)
+      albedo = m_tint->albedo(index, scalar, albedo);
     return makeSample(m_transfer, albedo, index, scalar, wantGradient, cut);
   }
   /// Matter of a mixture's component.
-  MediumSample evaluate(std::uint8_t number, const MixedPoint& point, bool wantGradient,
+  MediumSample evaluate(std::uint8_t number, const MixturePoint& point, bool wantGradient,
                         const Vec3& cut = Vec3::Zero()) const {
-    const Component& component = m_mixed->mixture().components[number];
-    const Vec3 border = component.border > 0.0 && component.transfer.shading
-                            ? Vec3(component.border * m_mixed->weightGradient(number, point.index))
-                            : Vec3::Zero();
+    const Component& component = m_mixture->mixture().components[number];
+    const Vec3 interface =
+        component.interfaceWeight > 0.0 && component.transfer.shading
+            ? Vec3(component.interfaceWeight * m_mixture->weightGradient(number, point.index))
+            : Vec3::Zero();
     return makeSample(component.transfer, component.transfer.albedo(point.scalar), point.index,
                       point.scalar, wantGradient,
-                      border + (component.isClipped ? cut : Vec3::Zero()));
+                      interface + (component.isClipped ? cut : Vec3::Zero()));
   }
   /// A point with what a mixture's parts there depend on.
-  MixedPoint at(const Vec3& index, double clipWeight) const {
-    const double slope = m_mixed->needsGradient() ? m_field.gradient(index).norm() : 0.0;
+  MixturePoint makePoint(const Vec3& index, double clipWeight) const {
+    const double slope = m_mixture->needsGradient() ? m_field.gradient(index).norm() : 0.0;
     return {index, m_field.value(index), clipWeight, slope};
   }
 
 private:
   /// Factor of the context's style on the extinction.
-  double thinning(const Vec3& index) const {
+  double contextFactor(const Vec3& index) const {
     return m_context && m_context->style().extinction != 1.0 && !m_context->isFocus(index)
                ? m_context->style().extinction
                : 1.0;
@@ -99,10 +100,10 @@ private:
 
   /// `added`: to the scalar's gradient, spans of the volume's own extinction per mm.
   MediumSample makeSample(const TransferFunction& transfer, const Rgb& albedo, const Vec3& index,
-                          double scalar, bool wantGradient, const Vec3& added) const {
+                          double scalar, bool wantGradient, const Vec3& extraGradient) const {
     MediumSample m{albedo, Vec3::Zero(), 0.0, &transfer};
     if (m_context && !m_context->isFocus(index))
-      m.albedo = m_context->style().paled(m.albedo);
+      m.albedo = m_context->style().desaturate(m.albedo);
     if (wantGradient || transfer.shading)
       m.gradient = m_field.gradient(index);
     if (transfer.shading) {
@@ -110,17 +111,17 @@ private:
       double sigma_t = transfer.extinction(scalar).value();
       if (transfer.gradientOpacity)
         sigma_t *= (*transfer.gradientOpacity)(slope).value();
-      if (!added.isZero(0.0))
-        m.gradient += m_transfer.extinction.span() * added;
+      if (!extraGradient.isZero(0.0))
+        m.gradient += m_transfer.extinction.span() * extraGradient;
       m.surfaceProbability =
-          surfaceProbability(transfer.shading->gamma, sigma_t, m.gradient.norm());
+          computeSurfaceProbability(transfer.shading->gamma, sigma_t, m.gradient.norm());
     }
     return m;
   }
 
   /// Kroes, Post, Botha 2012, with opacity and gradient over 1 mm:
   /// P = o (1 - exp(-25 gamma^3 m)).
-  double surfaceProbability(double gamma, double sigma_t, double gradientMagnitude) const {
+  double computeSurfaceProbability(double gamma, double sigma_t, double gradientMagnitude) const {
     const double span = m_transfer.extinction.span();
     if (!(span > 0.0))
       return 0.0; // one knot: no scale to call a gradient large
@@ -131,9 +132,9 @@ private:
 
   Field<Voxel> m_field;
   const TransferFunction& m_transfer;
-  std::optional<StyledContext> m_context;
-  std::optional<TintedField> m_tinted;
-  std::optional<MixedField> m_mixed;
+  std::optional<ContextField> m_context;
+  std::optional<TintField> m_tint;
+  std::optional<MixtureField> m_mixture;
 };
 
 template <typename Voxels, typename... More>

@@ -30,7 +30,7 @@ struct Component {
   bool isClipped = true;     ///< false: stays where the clip removes all else
   /// Weight of the border as a surface: of the share's gradient, per mm, beside the scalar's, in
   /// spans of the volume's own extinction per mm.
-  double border = 0.0;
+  double interfaceWeight = 0.0;
 };
 
 struct Mixture {
@@ -41,7 +41,7 @@ struct Mixture {
   std::vector<Component> components;
 
   /// True if the clip leaves some component.
-  bool hasFree() const { return !std::ranges::all_of(components, &Component::isClipped); }
+  bool hasUnclipped() const { return !std::ranges::all_of(components, &Component::isClipped); }
   /// True if some extinction depends on the gradient.
   bool hasGradientOpacity() const {
     return std::ranges::any_of(components, [](const Component& component) {
@@ -57,7 +57,7 @@ struct MixturePart {
 };
 
 /// A point of the volume (its index space) with what a mixture's parts there depend on.
-struct MixedPoint {
+struct MixturePoint {
   Vec3 index;
   double scalar;
   double clipWeight;  ///< keep of the clip there
@@ -65,34 +65,35 @@ struct MixedPoint {
 };
 
 /// A volume's mixture at its points. A view: the mixture must outlive the object.
-class MixedField {
+class MixtureField {
 public:
-  MixedField(const Mixture& mixture, const Grid& volume)
+  MixtureField(const Mixture& mixture, const Grid& volume)
       : m_mixture(mixture),
         m_toWeights(mixture.weights->grid().worldToIndex * volume.indexToWorld),
-        m_hasFree(mixture.hasFree()),
+        m_hasUnclipped(mixture.hasUnclipped()),
         m_needsGradient(mixture.hasGradientOpacity()) {}
 
   const Mixture& mixture() const { return m_mixture; }
-  bool hasFree() const { return m_hasFree; }
+  bool hasUnclipped() const { return m_hasUnclipped; }
   bool needsGradient() const { return m_needsGradient; }
 
   /// Calls visit(part) for the parts at a point, each component once.
   template <typename Visit>
-  void forEachPart(const MixedPoint& point, Visit&& visit) const {
-    m_mixture.weights->at(m_toWeights * point.index, [&](std::uint8_t number, double weight) {
-      const Component& component = m_mixture.components[number];
-      double extinction = (component.isClipped ? point.clipWeight : 1.0) * weight *
-                          component.transfer.extinction(point.scalar).value();
-      if (component.transfer.gradientOpacity)
-        extinction *= (*component.transfer.gradientOpacity)(point.slope).value();
-      if (extinction > 0.0)
-        visit(MixturePart{number, extinction});
-    });
+  void forEachPart(const MixturePoint& point, Visit&& visit) const {
+    m_mixture.weights->forEachWeight(
+        m_toWeights * point.index, [&](std::uint8_t number, double weight) {
+          const Component& component = m_mixture.components[number];
+          double extinction = (component.isClipped ? point.clipWeight : 1.0) * weight *
+                              component.transfer.extinction(point.scalar).value();
+          if (component.transfer.gradientOpacity)
+            extinction *= (*component.transfer.gradientOpacity)(point.slope).value();
+          if (extinction > 0.0)
+            visit(MixturePart{number, extinction});
+        });
   }
 
   /// sigma_t, mm^-1.
-  double extinction(const MixedPoint& point) const {
+  double extinction(const MixturePoint& point) const {
     double sum = 0.0;
     forEachPart(point, [&](const MixturePart& part) { sum += part.extinction; });
     return sum;
@@ -100,7 +101,7 @@ public:
 
   /// Component that a collision meets, with probability sigma_j / sigma_t. Draws a number where
   /// there are several; component 0 where the extinction is 0.
-  std::uint8_t sampleComponent(const MixedPoint& point, Random& random) const {
+  std::uint8_t sampleComponent(const MixturePoint& point, Random& random) const {
     double sum = 0.0;
     std::uint8_t last = 0;
     int count = 0;
@@ -111,12 +112,12 @@ public:
     });
     if (count < 2)
       return last;
-    double left = random.uniform() * sum;
+    double rest = random.uniform() * sum;
     std::optional<std::uint8_t> sampled;
     forEachPart(point, [&](const MixturePart& part) {
-      if (!sampled && left < part.extinction)
+      if (!sampled && rest < part.extinction)
         sampled = part.component;
-      left -= part.extinction;
+      rest -= part.extinction;
     });
     return sampled.value_or(last);
   }
@@ -127,7 +128,7 @@ public:
     const Vec3 middle = m_toWeights * index;
     const auto findWeight = [&](const Vec3& at) {
       double sum = 0.0;
-      m_mixture.weights->at(
+      m_mixture.weights->forEachWeight(
           at, [&](std::uint8_t other, double weight) { sum += other == number ? weight : 0.0; });
       return sum;
     };
@@ -142,7 +143,7 @@ public:
 private:
   const Mixture& m_mixture;
   Affine m_toWeights;
-  bool m_hasFree, m_needsGradient;
+  bool m_hasUnclipped, m_needsGradient;
 };
 
 } // namespace fenestra

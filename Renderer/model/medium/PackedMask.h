@@ -14,9 +14,9 @@ public:
   explicit PackedMask(const Mask& mask);
 
   const Grid& grid() const { return m_grid; }
-  std::uint8_t full() const { return m_full; } ///< Mask::full
+  std::uint8_t maxValue() const { return m_maxValue; } ///< Mask::full
   /// Writes the voxels of a row to `to`, size.x() of them; false: all are 0, and none is written.
-  bool unpack(std::int64_t y, std::int64_t z, std::uint8_t* to) const;
+  bool unpackRow(std::int64_t y, std::int64_t z, std::uint8_t* to) const;
 
 private:
   /// Packed rows, one after the other: a byte n < 128 before n + 1 voxels, or n >= 128 before one
@@ -27,7 +27,7 @@ private:
   };
 
   Grid m_grid;
-  std::uint8_t m_full;
+  std::uint8_t m_maxValue;
   std::vector<Slice> m_slices;
 };
 

@@ -29,7 +29,7 @@ public:
       return m_knots.front().value;
     if (s >= m_knots.back().position)
       return m_knots.back().value;
-    const std::size_t i = segment(s);
+    const std::size_t i = findSegment(s);
     const Knot& a = m_knots[i];
     const Knot& b = m_knots[i + 1];
     return a.value + (b.value - a.value) * ((s - a.position) / (b.position - a.position));
@@ -54,7 +54,7 @@ public:
 private:
   /// Segment i with position[i] <= s < position[i + 1], for s strictly inside the knots. A table of
   /// equal bins over the span gives the first candidate.
-  std::size_t segment(double s) const {
+  std::size_t findSegment(double s) const {
     const auto bin = static_cast<std::size_t>((s - m_knots.front().position) * m_binsPerUnit);
     std::size_t i = m_firstSegment[std::min(bin, m_firstSegment.size() - 1)];
     while (s >= m_knots[i + 1].position)

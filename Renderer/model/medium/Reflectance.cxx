@@ -7,15 +7,15 @@ namespace {
 
 /// Reflectance by similarity parameter s = sqrt((1 - a) / (1 - g a)), with which media of different
 /// g look nearly alike (van de Hulst 1980): the closed form for g = 0, corrected by the table.
-double reflectanceOf(double s, double g) {
-  using namespace seen;
-  const double row = std::clamp(g / greatestColorG, 0.0, 1.0) * (rows - 1),
+double lookUpReflectance(double s, double g) {
+  using namespace reflectanceTable;
+  const double row = std::clamp(g / maxReflectanceG, 0.0, 1.0) * (rows - 1),
                column = s * (columns - 1);
   const int r = std::min(static_cast<int>(row), rows - 2);
   const int c = std::min(static_cast<int>(column), columns - 2);
-  const auto across = [&](int of) {
-    const double left = static_cast<double>(ratios[of][c]),
-                 right = static_cast<double>(ratios[of][c + 1]);
+  const auto across = [&](int tableRow) {
+    const double left = static_cast<double>(ratios[tableRow][c]),
+                 right = static_cast<double>(ratios[tableRow][c + 1]);
     return left + (column - c) * (right - left);
   };
   const double ratio = across(r) + (row - r) * (across(r + 1) - across(r));
@@ -24,36 +24,36 @@ double reflectanceOf(double s, double g) {
 
 } // namespace
 
-double reflectance(double albedo, double g) {
-  const double a = std::clamp(albedo, 0.0, 1.0), forward = std::clamp(g, 0.0, greatestColorG);
-  return reflectanceOf(std::sqrt((1.0 - a) / (1.0 - forward * a)), forward);
+double toReflectance(double albedo, double g) {
+  const double a = std::clamp(albedo, 0.0, 1.0), forward = std::clamp(g, 0.0, maxReflectanceG);
+  return lookUpReflectance(std::sqrt((1.0 - a) / (1.0 - forward * a)), forward);
 }
 
-double albedoFor(double reflectance, double g) {
-  const double wanted = std::clamp(reflectance, 0.0, whitest);
-  const double forward = std::clamp(g, 0.0, greatestColorG);
+double toAlbedo(double color, double g) {
+  const double wanted = std::clamp(color, 0.0, maxReflectance);
+  const double forward = std::clamp(g, 0.0, maxReflectanceG);
   double least = 0.0, greatest = 1.0; // of s: reflectance falls with it
   for (int i = 0; i < 50; ++i) {
     const double s = 0.5 * (least + greatest);
-    (reflectanceOf(s, forward) > wanted ? least : greatest) = s;
+    (lookUpReflectance(s, forward) > wanted ? least : greatest) = s;
   }
   const double s2 = greatest * greatest;
   return (1.0 - s2) / (1.0 - forward * s2);
 }
 
-ColorFunction albedoFor(const ColorFunction& colors, double g) {
-  constexpr int between = 16;
+ColorFunction toAlbedo(const ColorFunction& colors, double g) {
+  constexpr int steps = 16;
   const auto& given = colors.knots();
   std::vector<ColorFunction::Knot> knots;
   for (std::size_t i = 0; i + 1 < given.size(); ++i) {
     const double from = given[i].position, to = given[i + 1].position;
-    for (int k = 0; k < (to > from ? between : 1); ++k) {
-      const double fraction = static_cast<double>(k) / between;
+    for (int k = 0; k < (to > from ? steps : 1); ++k) {
+      const double fraction = static_cast<double>(k) / steps;
       const Rgb color = given[i].value + fraction * (given[i + 1].value - given[i].value);
-      knots.push_back({from + fraction * (to - from), albedoFor(color, g)});
+      knots.push_back({from + fraction * (to - from), toAlbedo(color, g)});
     }
   }
-  knots.push_back({given.back().position, albedoFor(given.back().value, g)});
+  knots.push_back({given.back().position, toAlbedo(given.back().value, g)});
   return ColorFunction(std::move(knots));
 }
 

@@ -1,8 +1,8 @@
 #pragma once
-// Made by Testing/Oracle/MakeReflectance.cxx. Rows: g from 0 to greatestColorG; columns: s from 0
+// Made by Testing/Oracle/MakeReflectance.cxx. Rows: g from 0 to maxReflectanceG; columns: s from 0
 // to 1; values: reflectance / ((1 - s) / (1 + 2 s)).
 
-namespace fenestra::seen {
+namespace fenestra::reflectanceTable {
 
 inline constexpr int rows = 16, columns = 32;
 inline constexpr float ratios[rows][columns] = {
@@ -71,4 +71,4 @@ inline constexpr float ratios[rows][columns] = {
      0.7782F, 0.7527F, 0.7262F, 0.6988F, 0.6706F, 0.6416F, 0.6120F, 0.5818F,
      0.5512F, 0.5203F, 0.4893F, 0.4584F, 0.4278F, 0.3978F, 0.3682F, 0.3339F}};
 
-} // namespace fenestra::seen
+} // namespace fenestra::reflectanceTable

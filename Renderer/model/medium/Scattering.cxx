@@ -6,25 +6,25 @@ namespace fenestra {
 namespace {
 
 /// Roughness limit: a narrower lobe is finer than directions in double, and its density overflows.
-constexpr double leastRoughness = 1e-6;
+constexpr double minRoughness = 1e-6;
 
-ScatterSample sampleOf(const scalar::ScatterSamples& sample) {
+ScatterSample toSample(const scalar::ScatterSamples& sample) {
   return {toVector(sample.outgoing), toColor(sample.weight), sample.pdf};
 }
 
 } // namespace
 
-SurfaceShading SurfaceShading::coat(double specular, double roughness, double g) {
+SurfaceShading SurfaceShading::makeCoated(double specular, double roughness, double g) {
   return {.diffuse = 1.0,
           .specular = specular,
           .power = 2.0 / (roughness * roughness) - 2.0,
-          .coated = coatReflectance(roughness),
-          .odds = 0.47 * (1.0 - std::clamp(g, 0.0, greatestColorG))};
+          .coated = fitCoatReflectance(roughness),
+          .oddsFactor = 0.47 * (1.0 - std::clamp(g, 0.0, maxReflectanceG))};
 }
 
 SurfaceShading::Lobes SurfaceShading::lobes() const {
   if (coated) {
-    const CoatReflectance coat = coated->scaled(specular);
+    const CoatReflectance coat = coated->withScale(specular);
     return {diffuse / (1.0 - coat.mean()), specular, tissueF0, coat};
   }
   const double total = std::max(1.0, diffuse + specular);
@@ -39,19 +39,19 @@ BsdfParameters<double> makeBsdfParameters(double g, const std::optional<SurfaceS
   bsdf.diffuse = lambert;
   bsdf.specular = glossy;
   bsdf.f0 = f0;
-  bsdf.odds = shading->odds;
-  bsdf.roughness = std::max(leastRoughness, std::sqrt(2.0 / (shading->power + 2.0)));
+  bsdf.oddsFactor = shading->oddsFactor;
+  bsdf.roughness = std::max(minRoughness, std::sqrt(2.0 / (shading->power + 2.0)));
   bsdf.isCoated = shading->coated.has_value();
   bsdf.coat = {coat.constant, coat.x2, coat.x4, coat.x8};
   return bsdf;
 }
 
 Rgb PhaseScattering::evaluate(const Vec3& outgoing) const {
-  return toColor(m_lobe.toward(outgoing).factor);
+  return toColor(m_lobe.evaluate(outgoing).factor);
 }
 
 ScatterSample PhaseScattering::sample(const Vec2& u) const {
-  return sampleOf(m_lobe.sample(u.x(), u.y()));
+  return toSample(m_lobe.sample(u.x(), u.y()));
 }
 
 SurfaceScattering::SurfaceScattering(const Vec3& incoming, const Vec3& gradient,
@@ -59,15 +59,15 @@ SurfaceScattering::SurfaceScattering(const Vec3& incoming, const Vec3& gradient,
     : m_lobes(makeBsdfParameters(0.0, shading), incoming, gradient, albedo) {}
 
 double SurfaceScattering::pdf(const Vec3& outgoing) const {
-  return m_lobes.toward(outgoing).pdf;
+  return m_lobes.evaluate(outgoing).pdf;
 }
 
 Rgb SurfaceScattering::evaluate(const Vec3& outgoing) const {
-  return toColor(m_lobes.toward(outgoing).factor);
+  return toColor(m_lobes.evaluate(outgoing).factor);
 }
 
 ScatterSample SurfaceScattering::sample(double choice, const Vec2& u) const {
-  return sampleOf(m_lobes.sample(choice, u.x(), u.y()));
+  return toSample(m_lobes.sample(choice, u.x(), u.y()));
 }
 
 } // namespace fenestra

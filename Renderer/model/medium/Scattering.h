@@ -28,7 +28,7 @@ public:
   PhaseScattering(const Vec3& incoming, double g, const Rgb& albedo)
       : m_lobe(g, incoming, albedo) {}
 
-  double pdf(const Vec3& outgoing) const { return m_lobe.toward(outgoing).pdf; }
+  double pdf(const Vec3& outgoing) const { return m_lobe.evaluate(outgoing).pdf; }
   Rgb evaluate(const Vec3& outgoing) const;
   ScatterSample sample(const Vec2& u) const;
 
@@ -55,14 +55,14 @@ private:
 
 using Scattering = std::variant<PhaseScattering, SurfaceScattering>;
 
-inline double scatterPdf(const Scattering& s, const Vec3& outgoing) {
+inline double scatteringPdf(const Scattering& s, const Vec3& outgoing) {
   return std::visit([&](const auto& kind) { return kind.pdf(outgoing); }, s);
 }
-inline Rgb scatterEvaluate(const Scattering& s, const Vec3& outgoing) {
+inline Rgb evaluateScattering(const Scattering& s, const Vec3& outgoing) {
   return std::visit([&](const auto& kind) { return kind.evaluate(outgoing); }, s);
 }
 /// `u` gives the direction, `random` the choice of a lobe.
-inline ScatterSample scatterSample(const Scattering& s, const Vec2& u, Random& random) {
+inline ScatterSample sampleScattering(const Scattering& s, const Vec2& u, Random& random) {
   if (const auto* surface = std::get_if<SurfaceScattering>(&s))
     return surface->sample(random.uniform(), u);
   return std::get<PhaseScattering>(s).sample(u);

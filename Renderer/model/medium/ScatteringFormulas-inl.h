@@ -13,7 +13,7 @@ struct ScatterSamples {
 };
 
 /// Density of the uniform distribution over directions.
-inline constexpr Real perSphere = static_cast<Real>(0.25 / pi);
+inline constexpr Real uniformPdf = static_cast<Real>(0.25 / pi);
 
 /// Henyey-Greenstein 1941, times the albedo. `Number`: of g, Real or Float.
 template <typename Number>
@@ -22,9 +22,9 @@ public:
   FENESTRA_INLINE PhaseLobe(Number g, const Float3& incoming, const Float3& albedo)
       : m_g(abs(g)), m_peak(flipIfNegative(g, incoming)), m_albedo(albedo) {}
 
-  FENESTRA_INLINE ScatterEval toward(const Float3& outgoing) const {
+  FENESTRA_INLINE ScatterEval evaluate(const Float3& outgoing) const {
     const Float3 chord = outgoing - m_peak;
-    const Float pdf = density(dot(chord, chord));
+    const Float pdf = evaluatePdf(dot(chord, chord));
     return {pdf * m_albedo, pdf};
   }
 
@@ -33,7 +33,7 @@ public:
     if (isAllEqual(m_g, 0.0F)) {
       const Float z = fnma(2.0F, u, 1.0F);
       const Float r = safeSqrt(fnma(z, z, 1.0F));
-      return {{r * phi.cosine, r * phi.sine, z}, m_albedo, perSphere};
+      return {{r * phi.cosine, r * phi.sine, z}, m_albedo, uniformPdf};
     }
     // cos = (1 + g^2 - ((1 - g^2) / (1 + g - 2 g u))^2) / (2 g), as 1 - cos for accuracy near 1:
     // with a = 1 + g - 2 g u, 1 - cos = 2 u (1 - g)^2 (1 + g (1 - u)) / a^2.
@@ -45,18 +45,18 @@ public:
     const Float cosine = 1.0F - oneMinusCosine;
     const Float sine = safeSqrt(oneMinusCosine * (1.0F + cosine));
     const Float3 local{sine * phi.cosine, sine * phi.sine, cosine};
-    return {normalize(Frames(m_peak).toWorld(local)), m_albedo, density(2.0F * oneMinusCosine)};
+    return {normalize(Frames(m_peak).toWorld(local)), m_albedo, evaluatePdf(2.0F * oneMinusCosine)};
   }
 
 private:
   /// Density of a direction; chord2: squared distance of that unit vector from the lobe's peak.
   /// 1 + g^2 - 2 g cos, written so that nothing cancels where g and cos are near 1: with unit
   /// vectors 2 (1 - cos) is the squared chord.
-  FENESTRA_INLINE Float density(Float chord2) const {
+  FENESTRA_INLINE Float evaluatePdf(Float chord2) const {
     if (isAllEqual(m_g, 0.0F))
-      return perSphere;
+      return uniformPdf;
     const Float d = fma(m_g, chord2, (1.0F - m_g) * (1.0F - m_g));
-    return (perSphere * (1.0F - m_g) * (1.0F + m_g)) / (d * sqrt(d));
+    return (uniformPdf * (1.0F - m_g) * (1.0F + m_g)) / (d * sqrt(d));
   }
 
   Number m_g;    ///< |g|
@@ -85,18 +85,18 @@ public:
         m_frame(normalize(select(dot(incoming, gradient) >= 0.0F, -gradient, gradient))),
         m_viewer(m_frame.toLocal(-incoming)),
         m_diffuse(bsdf.diffuse * albedo) {
-    if (!isAllEqual(bsdf.odds, 1.0F))
-      m_diffuse = bsdf.diffuse * ofOdds(bsdf.odds, albedo);
+    if (!isAllEqual(bsdf.oddsFactor, 1.0F))
+      m_diffuse = bsdf.diffuse * scaleOdds(bsdf.oddsFactor, albedo);
     if (m_isCoated)
-      m_diffuse = belowCoat(m_viewer.z) * m_diffuse;
+      m_diffuse = coatTransmittance(m_viewer.z) * m_diffuse;
     const Float lambert = maxComponent(m_diffuse);
     const Float sum = fma(m_specular, fresnel(m_viewer.z), lambert);
     const LaneMask some = sum > 0.0F;
     m_lambertPmf = select(some, lambert / sum, 1.0F);
   }
 
-  FENESTRA_INLINE ScatterEval toward(const Float3& outgoing) const {
-    return towardLocal(m_frame.toLocal(outgoing));
+  FENESTRA_INLINE ScatterEval evaluate(const Float3& outgoing) const {
+    return evaluateLocal(m_frame.toLocal(outgoing));
   }
 
   /// `choice` selects the lobe.
@@ -106,12 +106,12 @@ public:
     const Float3 lambert{r * phi.cosine, r * phi.sine, safeSqrt(1.0F - u)};
     Float3 local = lambert;
     if (!isAllEqual(m_specular, 0.0F)) {
-      const Float3 h = visibleNormal(r, phi);
+      const Float3 h = sampleVisibleNormal(r, phi);
       const Float3 glossy = (2.0F * dot(m_viewer, h)) * h - m_viewer;
       local = select(choice < m_lambertPmf, lambert, glossy);
     }
     const Float3 outgoing = normalize(m_frame.toWorld(local));
-    const ScatterEval s = toward(outgoing);
+    const ScatterEval s = evaluate(outgoing);
     const LaneMask possible = s.pdf > 0.0F;
     return {outgoing, zeroUnless(possible, (1.0F / s.pdf) * s.factor), s.pdf};
   }
@@ -123,12 +123,14 @@ private:
     return fma(1.0F - m_f0, square(square(x)) * x, m_f0);
   }
   /// Albedo whose odds are `odds` times those of the given one.
-  static FENESTRA_INLINE Float3 ofOdds(Number odds, const Float3& albedo) {
-    const auto channel = [odds](Float a) { return odds * a / fnma(1.0F - odds, a, 1.0F); };
+  static FENESTRA_INLINE Float3 scaleOdds(Number oddsFactor, const Float3& albedo) {
+    const auto channel = [oddsFactor](Float a) {
+      return oddsFactor * a / fnma(1.0F - oddsFactor, a, 1.0F);
+    };
     return {channel(albedo.x), channel(albedo.y), channel(albedo.z)};
   }
   /// Share of light that passes the coat.
-  FENESTRA_INLINE Float belowCoat(Float cosine) const {
+  FENESTRA_INLINE Float coatTransmittance(Float cosine) const {
     const Float x = clampZero(min(1.0F - cosine, 1.0F));
     const Float x2 = square(x), x4 = square(x2);
     const Float high = fma(m_coat[3], x4, m_coat[2]);
@@ -138,40 +140,40 @@ private:
 
   /// The glossy lobe is D F G / (4 cos cos) times the outgoing cosine, G separable (Smith); its
   /// density is Heitz 2018, eq. 17.
-  FENESTRA_INLINE ScatterEval towardLocal(const Float3& l) const {
+  FENESTRA_INLINE ScatterEval evaluateLocal(const Float3& l) const {
     const Float lambertPdf = clampZero(l.z) * static_cast<Real>(1.0 / pi);
     ScatterEval s{lambertPdf * m_diffuse, m_lambertPmf * lambertPdf};
     if (isAllEqual(m_specular, 0.0F))
       return s;
     if (m_isCoated)
-      s.factor = belowCoat(l.z) * s.factor;
+      s.factor = coatTransmittance(l.z) * s.factor;
     const Float3 h = normalize(l + m_viewer);
-    const Float perViewer = masking(m_viewer) * normalDensity(h) / (4.0F * m_viewer.z);
+    const Float perViewer = smithG1(m_viewer) * evaluateNdf(h) / (4.0F * m_viewer.z);
     const LaneMask facing = (l.z > 0.0F) & (m_viewer.z > 0.0F);
     const Float pdf = zeroUnless(facing, perViewer);
     s.pdf = fma(1.0F - m_lambertPmf, pdf, s.pdf);
-    const Float glossy = m_specular * fresnel(dot(l, h)) * masking(l);
+    const Float glossy = m_specular * fresnel(dot(l, h)) * smithG1(l);
     const Float value = zeroUnless(facing, glossy * perViewer);
     s.factor = s.factor + Float3{value, value, value};
     return s;
   }
 
   /// Smith's G1.
-  FENESTRA_INLINE Float masking(const Float3& v) const {
+  FENESTRA_INLINE Float smithG1(const Float3& v) const {
     const Float sine2 = fma(v.x, v.x, square(v.y));
     const Float cosine = abs(v.z);
     const Float slope = sqrt(fma(m_roughness * m_roughness, sine2, square(cosine)));
     return 2.0F * cosine / (cosine + slope);
   }
 
-  FENESTRA_INLINE Float normalDensity(const Float3& h) const {
+  FENESTRA_INLINE Float evaluateNdf(const Float3& h) const {
     const Float a2 = (m_roughness * m_roughness);
     const Float d = fma(h.x, h.x, fma(h.y, h.y, a2 * square(h.z)));
     return a2 / (static_cast<Real>(pi) * square(d));
   }
 
   /// Heitz 2018, listing 1; `r`, `phi`: polar coordinates of a point in the unit disc.
-  FENESTRA_INLINE Float3 visibleNormal(Float r, const CosineSine& phi) const {
+  FENESTRA_INLINE Float3 sampleVisibleNormal(Float r, const CosineSine& phi) const {
     const Float a = m_roughness;
     const Float3 stretched = normalize({a * m_viewer.x, a * m_viewer.y, m_viewer.z});
     const Float length2 = fma(stretched.x, stretched.x, square(stretched.y));

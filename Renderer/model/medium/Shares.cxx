@@ -14,14 +14,14 @@ namespace fenestra {
 namespace {
 
 /// A number for each voxel of a brick, in 255ths: whole numbers add up alike in any order.
-using InBrick = std::array<float, LabelWeights::voxelsInBrick>;
+using BrickValues = std::array<float, LabelWeights::voxelsInBrick>;
 constexpr float maxWeight = 255.0F;
 
 /// Voxels of a brick along an axis, and its rows.
-constexpr std::int64_t width = LabelWeights::edge + 1, rowsInBrick = width * width;
+constexpr std::int64_t width = LabelWeights::brickEdge + 1, rowsInBrick = width * width;
 
 /// A part in the common grid.
-struct Placed {
+struct PlacedPart {
   PackedMask mask;
   int priority;
   std::uint8_t component;
@@ -29,11 +29,11 @@ struct Placed {
 };
 
 /// Parts in the grid of the first one, whatever that one's extent is.
-std::vector<Placed> placed(std::size_t count,
-                           const std::function<LabelWeights::Part(std::size_t)>& partAt) {
-  std::vector<Placed> all;
+std::vector<PlacedPart> placeParts(std::size_t count,
+                                   const std::function<LabelWeights::Part(std::size_t)>& getPart) {
+  std::vector<PlacedPart> all;
   for (std::size_t i = 0; i < count; ++i) {
-    const LabelWeights::Part part = partAt(i);
+    const LabelWeights::Part part = getPart(i);
     const Grid& reference = all.empty() ? part.mask.grid : all.front().mask.grid();
     const Vec3 origin = reference.worldToIndex * part.mask.grid.indexToWorld.translation();
     const Size3 first = origin.array().round().cast<std::int64_t>();
@@ -44,12 +44,12 @@ std::vector<Placed> placed(std::size_t count,
 }
 
 /// Part of a brick that a segment covers.
-enum class Cover { none, some, whole };
+enum class Coverage { none, some, all };
 
 /// Indicators of a part in the voxels of a row of bricks along x.
 class PartRows {
 public:
-  PartRows(const Placed& part, const Size3& grid)
+  PartRows(const PlacedPart& part, const Size3& grid)
       : m_part(part), m_last(grid.array() - 1), m_stride(grid.x() + padding) {
     m_voxels.resize(static_cast<std::size_t>(m_stride * rowsInBrick));
   }
@@ -58,20 +58,20 @@ public:
   std::uint8_t component() const { return m_part.component; }
 
   /// Takes the bricks whose first voxels have these y and z.
-  void take(std::int64_t y, std::int64_t z) {
-    if (m_hasSome)
+  void loadRow(std::int64_t y, std::int64_t z) {
+    if (m_hasVoxels)
       std::ranges::fill(m_voxels, std::uint8_t{0});
-    m_hasSome = false;
+    m_hasVoxels = false;
     std::uint8_t* row = m_voxels.data();
     for (std::int64_t k = 0; k < width; ++k)
       for (std::int64_t j = 0; j < width; ++j, row += m_stride)
-        takeRow(std::min(y + j, m_last.y()), std::min(z + k, m_last.z()), row);
+        loadVoxels(std::min(y + j, m_last.y()), std::min(z + k, m_last.z()), row);
   }
 
   /// Indicators in the brick whose first voxel has this x; not written for none.
-  Cover at(std::int64_t x, InBrick& values) const {
-    if (!m_hasSome || x >= m_part.end.x() || x + width <= m_part.first.x())
-      return Cover::none;
+  Coverage readBrick(std::int64_t x, BrickValues& values) const {
+    if (!m_hasVoxels || x >= m_part.end.x() || x + width <= m_part.first.x())
+      return Coverage::none;
     const std::uint8_t* row = m_voxels.data() + x;
     std::uint64_t some = 0, all = ~some; // of the eight voxels from x on; padding has them all
     for (std::int64_t i = 0; i < rowsInBrick; ++i) {
@@ -81,75 +81,75 @@ public:
       all &= eight;
     }
     if (some == 0)
-      return Cover::none;
-    if (all == ~std::uint64_t{0} && m_part.mask.full() == maxWeight) {
+      return Coverage::none;
+    if (all == ~std::uint64_t{0} && m_part.mask.maxValue() == maxWeight) {
       values.fill(maxWeight);
-      return Cover::whole;
+      return Coverage::all;
     }
-    const float scale = maxWeight / static_cast<float>(m_part.mask.full());
+    const float scale = maxWeight / static_cast<float>(m_part.mask.maxValue());
     float* to = values.data();
-    bool isAny = false;
+    bool hasAny = false;
     for (std::int64_t i = 0; i < rowsInBrick; ++i, row += m_stride)
       for (std::int64_t k = 0; k < width; ++k, ++to) {
         *to = scale * static_cast<float>(row[k]);
-        isAny = isAny || row[k] > 0;
+        hasAny = hasAny || row[k] > 0;
       }
-    return isAny ? Cover::some : Cover::none;
+    return hasAny ? Coverage::some : Coverage::none;
   }
 
 private:
   static constexpr std::int64_t padding = 8;
 
-  void takeRow(std::int64_t y, std::int64_t z, std::uint8_t* row) {
+  void loadVoxels(std::int64_t y, std::int64_t z, std::uint8_t* row) {
     const Size3 at(0, y - m_part.first.y(), z - m_part.first.z());
     const Size3& size = m_part.mask.grid().size;
     if (at.minCoeff() < 0 || at.y() >= size.y() || at.z() >= size.z() ||
-        !m_part.mask.unpack(at.y(), at.z(), row + m_part.first.x()))
+        !m_part.mask.unpackRow(at.y(), at.z(), row + m_part.first.x()))
       return;
-    m_hasSome = true;
+    m_hasVoxels = true;
     std::fill_n(row + m_last.x() + 1, padding - 1, row[m_last.x()]);
   }
 
-  const Placed& m_part;
+  const PlacedPart& m_part;
   Size3 m_last;
   std::int64_t m_stride;
   std::vector<std::uint8_t> m_voxels; ///< x fastest, then y, then z
-  bool m_hasSome = false;
+  bool m_hasVoxels = false;
 };
 
 /// Shares of a brick's components, in their order, each once.
 class BrickWeights {
 public:
   /// Takes the parts, by priority, in the brick whose first voxel has this x.
-  void take(const std::vector<PartRows>& parts, std::int64_t x) {
+  void compute(const std::vector<PartRows>& parts, std::int64_t x) {
     m_weights.clear();
-    m_left.fill(maxWeight);
-    for (auto p = parts.begin(); p != parts.end() && isLeft();) {
-      m_class.clear();
+    m_rest.fill(maxWeight);
+    for (auto p = parts.begin(); p != parts.end() && hasRest();) {
+      m_parts.clear();
       const int priority = p->priority();
-      Cover cover = Cover::none;
+      Coverage cover = Coverage::none;
       for (; p != parts.end() && p->priority() == priority; ++p) {
-        InBrick values;
-        const Cover one = p->at(x, values);
-        if (one != Cover::none) {
-          m_class.push_back({p->component(), values});
+        BrickValues values;
+        const Coverage one = p->readBrick(x, values);
+        if (one != Coverage::none) {
+          m_parts.push_back({p->component(), values});
           cover = one;
         }
       }
-      if (m_weights.empty() && m_class.size() == 1 && cover == Cover::whole) {
-        m_weights.swap(m_class);
+      if (m_weights.empty() && m_parts.size() == 1 && cover == Coverage::all) {
+        m_weights.swap(m_parts);
         return;
       }
-      if (!m_class.empty())
+      if (!m_parts.empty())
         distributeRest();
     }
-    if (isLeft())
-      add(0, m_left);
+    if (hasRest())
+      add(0, m_rest);
     std::ranges::sort(m_weights, {}, &Component::component);
   }
 
   /// Component of the whole brick; nothing: several.
-  std::optional<std::uint8_t> pure() const {
+  std::optional<std::uint8_t> pureComponent() const {
     return m_weights.size() == 1 ? std::optional(m_weights.front().component) : std::nullopt;
   }
   std::size_t planeCount() const { return m_weights.size() - 1; }
@@ -167,14 +167,14 @@ public:
 private:
   struct Component {
     std::uint8_t component;
-    InBrick weight;
+    BrickValues weight;
   };
 
-  bool isLeft() const {
-    return std::ranges::any_of(m_left, [](float left) { return left > 0.0F; });
+  bool hasRest() const {
+    return std::ranges::any_of(m_rest, [](float left) { return left > 0.0F; });
   }
 
-  void add(std::uint8_t component, const InBrick& weight) {
+  void add(std::uint8_t component, const BrickValues& weight) {
     const auto found = std::ranges::find(m_weights, component, &Component::component);
     if (found == m_weights.end()) {
       m_weights.push_back({component, weight});
@@ -186,15 +186,15 @@ private:
 
   /// Gives what is left to the parts of one priority.
   void distributeRest() {
-    InBrick factor;
+    BrickValues factor;
     for (std::size_t i = 0; i < factor.size(); ++i) {
       float sum = 0.0F;
-      for (const Component& part : m_class)
+      for (const Component& part : m_parts)
         sum += part.weight[i];
-      factor[i] = sum > m_left[i] ? m_left[i] / sum : 1.0F;
-      m_left[i] -= std::min(sum, m_left[i]);
+      factor[i] = sum > m_rest[i] ? m_rest[i] / sum : 1.0F;
+      m_rest[i] -= std::min(sum, m_rest[i]);
     }
-    for (Component& part : m_class) {
+    for (Component& part : m_parts) {
       for (std::size_t i = 0; i < factor.size(); ++i)
         part.weight[i] *= factor[i];
       add(part.component, part.weight);
@@ -219,28 +219,28 @@ private:
           static_cast<std::uint8_t>(planes[greatest].weights[voxel] + left);
   }
 
-  InBrick m_left;
-  std::vector<Component> m_class, m_weights;
+  BrickValues m_rest;
+  std::vector<Component> m_parts, m_weights;
 };
 
 } // namespace
 
-LabelWeights::LabelWeights(std::size_t count, const std::function<Part(std::size_t)>& partAt) {
-  std::vector<Placed> parts = placed(count, partAt);
+LabelWeights::LabelWeights(std::size_t count, const std::function<Part(std::size_t)>& getPart) {
+  std::vector<PlacedPart> parts = placeParts(count, getPart);
   Size3 first = parts.front().first, end = parts.front().end;
-  for (const Placed& part : parts) {
+  for (const PlacedPart& part : parts) {
     first = first.cwiseMin(part.first);
     end = end.cwiseMax(part.end);
   }
   Affine indexToWorld = parts.front().mask.grid().indexToWorld;
   indexToWorld.translate(first.cast<double>());
-  for (Placed& part : parts) {
+  for (PlacedPart& part : parts) {
     part.first -= first;
     part.end -= first;
   }
-  std::ranges::stable_sort(parts, std::greater{}, &Placed::priority);
+  std::ranges::stable_sort(parts, std::greater{}, &PlacedPart::priority);
   m_grid = Grid(end - first, indexToWorld);
-  m_brickCount = ((m_grid.size.array() - 1).max(1) + edge - 1) / edge;
+  m_brickCount = ((m_grid.size.array() - 1).max(1) + brickEdge - 1) / brickEdge;
   m_bricks.resize(static_cast<std::size_t>(m_brickCount.prod()));
 
   std::vector<std::vector<Plane>> layers(static_cast<std::size_t>(m_brickCount.z()));
@@ -248,16 +248,16 @@ LabelWeights::LabelWeights(std::size_t count, const std::function<Part(std::size
     std::vector<Plane>& planes = layers[static_cast<std::size_t>(z)];
     BrickWeights weights;
     std::vector<PartRows> rows;
-    for (const Placed& part : parts)
-      if (part.first.z() < edge * z + width && part.end.z() > edge * z)
+    for (const PlacedPart& part : parts)
+      if (part.first.z() < brickEdge * z + width && part.end.z() > brickEdge * z)
         rows.emplace_back(part, m_grid.size);
     for (std::int64_t y = 0; y < m_brickCount.y(); ++y) {
       for (PartRows& part : rows)
-        part.take(edge * y, edge * z);
+        part.loadRow(brickEdge * y, brickEdge * z);
       for (std::int64_t x = 0; x < m_brickCount.x(); ++x) {
-        weights.take(rows, edge * x);
-        std::int32_t& code = m_bricks[numberOf(Size3(x, y, z), m_brickCount)];
-        if (const std::optional<std::uint8_t> pure = weights.pure()) {
+        weights.compute(rows, brickEdge * x);
+        std::int32_t& code = m_bricks[linearIndex(Size3(x, y, z), m_brickCount)];
+        if (const std::optional<std::uint8_t> pure = weights.pureComponent()) {
           code = *pure;
           continue;
         }

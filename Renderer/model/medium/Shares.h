@@ -27,8 +27,8 @@ public:
     std::uint8_t component; ///< 0: what is in no segment
   };
 
-  static constexpr std::int64_t edge = 4; ///< cells of a brick along each axis
-  static constexpr std::size_t voxelsInBrick = (edge + 1) * (edge + 1) * (edge + 1);
+  static constexpr std::int64_t brickEdge = 4; ///< cells of a brick along each axis
+  static constexpr std::size_t voxelsInBrick = (brickEdge + 1) * (brickEdge + 1) * (brickEdge + 1);
 
   /// A component of a mixed brick. Its size lets lanes read 32 bits from any voxel on, and the
   /// three numbers behind the shares in one load.
@@ -45,7 +45,7 @@ public:
   /// component 0 gets the rest. Rounded to 255ths that sum to 255. Parts of one priority may come
   /// in any order, and be of different components. `count`: of parts, at least one; one at a time
   /// is held.
-  LabelWeights(std::size_t count, const std::function<Part(std::size_t)>& partAt);
+  LabelWeights(std::size_t count, const std::function<Part(std::size_t)>& getPart);
 
   /// Voxels that the parts' masks cover. Beyond them the outermost voxels repeat.
   const Grid& grid() const { return m_grid; }
@@ -61,17 +61,17 @@ public:
 
   /// Calls visit(component) for the components of a brick, given by its number in bricks().
   template <typename Visit>
-  void forEachOf(std::size_t brick, Visit&& visit) const;
+  void forEachInBrick(std::size_t brick, Visit&& visit) const;
 
   /// Calls visit(component) for all components that may have a share in a box (the grid's index
   /// space); some more than once.
   template <typename Visit>
-  void forEachIn(const Box& box, Visit&& visit) const;
+  void forEachInBox(const Box& box, Visit&& visit) const;
 
   /// Calls visit(component, share) for the components at a point (the grid's index space): shares
   /// are trilinear between voxels, > 0, and sum to 1. Each comes once, by number.
   template <typename Visit>
-  void at(const Vec3& index, Visit&& visit) const;
+  void forEachWeight(const Vec3& index, Visit&& visit) const;
 
 private:
   Grid m_grid;
@@ -81,7 +81,7 @@ private:
 };
 
 template <typename Visit>
-void LabelWeights::forEachOf(std::size_t brick, Visit&& visit) const {
+void LabelWeights::forEachInBrick(std::size_t brick, Visit&& visit) const {
   const std::int32_t code = m_bricks[brick];
   if (code >= 0) {
     visit(static_cast<std::uint8_t>(code));
@@ -95,40 +95,40 @@ void LabelWeights::forEachOf(std::size_t brick, Visit&& visit) const {
 }
 
 template <typename Visit>
-void LabelWeights::forEachIn(const Box& box, Visit&& visit) const {
+void LabelWeights::forEachInBox(const Box& box, Visit&& visit) const {
   const Vec3 last = (m_brickCount.array() - 1).cast<double>();
-  const auto brickOf = [&](const Vec3& index) -> Size3 {
-    const Vec3 brick = (index / static_cast<double>(edge)).array().floor();
+  const auto findBrick = [&](const Vec3& index) -> Size3 {
+    const Vec3 brick = (index / static_cast<double>(brickEdge)).array().floor();
     return brick.cwiseMax(0.0).cwiseMin(last).cast<std::int64_t>();
   };
-  const Size3 first = brickOf(box.lower), end = brickOf(box.upper).array() + 1;
+  const Size3 first = findBrick(box.lower), end = findBrick(box.upper).array() + 1;
   for (std::int64_t z = first.z(); z < end.z(); ++z)
     for (std::int64_t y = first.y(); y < end.y(); ++y)
       for (std::int64_t x = first.x(); x < end.x(); ++x)
-        forEachOf(numberOf(Size3(x, y, z), m_brickCount), visit);
+        forEachInBrick(linearIndex(Size3(x, y, z), m_brickCount), visit);
 }
 
 template <typename Visit>
-void LabelWeights::at(const Vec3& index, Visit&& visit) const {
+void LabelWeights::forEachWeight(const Vec3& index, Visit&& visit) const {
   const Vec3 last = (m_grid.size.array() - 1).cast<double>();
   const Vec3 inside = index.cwiseMax(0.0).cwiseMin(last);
   const Size3 cell =
       inside.cast<std::int64_t>().cwiseMin((m_grid.size.array() - 2).max(0).matrix());
-  const Size3 brick = cell.array() / edge;
-  const std::int32_t code = m_bricks[numberOf(brick, m_brickCount)];
+  const Size3 brick = cell.array() / brickEdge;
+  const std::int32_t code = m_bricks[linearIndex(brick, m_brickCount)];
   if (code >= 0) {
     visit(static_cast<std::uint8_t>(code), 1.0);
     return;
   }
   const Vec3 f = inside - cell.cast<double>();
   const std::size_t first =
-      numberOf(cell.array() - edge * brick.array(), Size3::Constant(edge + 1));
+      linearIndex(cell.array() - brickEdge * brick.array(), Size3::Constant(brickEdge + 1));
   // Whole numbers at the eight voxels around the point.
-  constexpr std::size_t up = edge + 1, deep = up * up;
+  constexpr std::size_t up = brickEdge + 1, deep = up * up;
   constexpr std::array<std::size_t, 8> corners = {0,    1,        up,        up + 1,
                                                   deep, deep + 1, deep + up, deep + up + 1};
-  using AtCorners = std::array<int, 8>;
-  const auto give = [&](std::uint8_t component, const AtCorners& values) {
+  using CornerValues = std::array<int, 8>;
+  const auto visitOne = [&](std::uint8_t component, const CornerValues& values) {
     const auto row = [&](std::size_t i) {
       const double a = values[i], b = values[i + 1];
       return a + f.x() * (b - a);
@@ -137,17 +137,17 @@ void LabelWeights::at(const Vec3& index, Visit&& visit) const {
     if (const double weight = (slice(0) + f.z() * (slice(4) - slice(0))) / 255.0; weight > 0.0)
       visit(component, weight);
   };
-  AtCorners left;
-  left.fill(255);
+  CornerValues rest;
+  rest.fill(255);
   for (auto plane = m_planes.begin() + ~code;; ++plane) {
-    AtCorners values;
+    CornerValues values;
     for (std::size_t i = 0; i < values.size(); ++i) {
       values[i] = plane->weights[first + corners[i]];
-      left[i] -= values[i];
+      rest[i] -= values[i];
     }
-    give(plane->component, values);
+    visitOne(plane->component, values);
     if (plane->isLast)
-      return give(plane->rest, left);
+      return visitOne(plane->rest, rest);
   }
 }
 

@@ -18,18 +18,18 @@ struct Tint {
 };
 
 /// A volume's tint at its points. A view: the tint must outlive the object.
-class TintedField {
+class TintField {
 public:
-  TintedField(const Tint& tint, const Grid& volume)
+  TintField(const Tint& tint, const Grid& volume)
       : m_tint(tint), m_toWeights(tint.weights->grid().worldToIndex * volume.indexToWorld) {}
 
   /// Mean of the components' albedo at a point (the volume's index space), weighted by their
   /// shares; `own`: of the transfer function.
-  Rgb albedo(const Vec3& index, double scalar, const Rgb& own) const {
+  Rgb albedo(const Vec3& index, double scalar, const Rgb& transferAlbedo) const {
     Rgb sum = Rgb::Zero();
-    m_tint.weights->at(m_toWeights * index, [&](std::uint8_t component, double weight) {
+    m_tint.weights->forEachWeight(m_toWeights * index, [&](std::uint8_t component, double weight) {
       const std::optional<ColorFunction>& albedo = m_tint.albedo[component];
-      sum += weight * (albedo ? Rgb((*albedo)(scalar)) : own);
+      sum += weight * (albedo ? Rgb((*albedo)(scalar)) : transferAlbedo);
     });
     return sum;
   }

@@ -20,14 +20,14 @@ struct SurfaceShading {
   /// is tissue's. Else the lobes stand side by side, and F0 is 0.04.
   std::optional<CoatReflectance> coated = {};
   /// Factor on the odds a / (1 - a) of the albedo a, for the Lambert lobe.
-  double odds = 1.0;
+  double oddsFactor = 1.0;
 
   /// Lobes of matter whose colour is given: `specular` from 0 to 1, `roughness` above 0, to 1; g:
   /// of the phase function. A surface sends light back at once, so that with the matter's own
   /// albedo it would look brighter than the matter. With 0.47 of its odds a half-space of surfaces
   /// alone looks like one of isotropic scattering (within 2 % of 1 - a; measured, 300,000 paths),
   /// and 1 - g brings anisotropic scattering to isotropic (similarity, van de Hulst 1980).
-  static SurfaceShading coat(double specular, double roughness, double g = 0.0);
+  static SurfaceShading makeCoated(double specular, double roughness, double g = 0.0);
 
   /// Weights of the lobes, and F0: reflectance at normal incidence, of refractive index 1.4 or 1.5.
   struct Lobes {
@@ -48,7 +48,7 @@ struct TransferFunction {
 
   /// This function of (s - offset): every knot of extinction and albedo moved by `offset` scalar
   /// units.
-  TransferFunction shifted(double offset) const {
+  TransferFunction withShift(double offset) const {
     const auto move = [offset](auto& knot) { knot.position += offset; };
     TransferFunction result = *this;
     result.extinction = extinction.withKnots(move);
@@ -56,7 +56,7 @@ struct TransferFunction {
     return result;
   }
   /// Extinction multiplied by `factor` >= 0.
-  TransferFunction scaled(double factor) const {
+  TransferFunction withDensity(double factor) const {
     TransferFunction result = *this;
     result.extinction = extinction.withKnots([factor](auto& knot) { knot.value *= factor; });
     return result;

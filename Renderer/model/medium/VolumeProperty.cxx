@@ -16,14 +16,14 @@ constexpr std::size_t maxNodes = 2000; ///< in one curve
 constexpr std::size_t maxKnots = 6000; ///< in one table, besides the nodes
 
 /// VTK keeps the midpoint off the ends.
-double usedMidpoint(double midpoint) {
+double clampMidpoint(double midpoint) {
   return std::clamp(midpoint, 1e-5, 1.0 - 1e-5);
 }
 
 template <typename Value>
-Value between(const CurveNode<Value>& a, const CurveNode<Value>& b, double x) {
+Value evaluateSegment(const CurveNode<Value>& a, const CurveNode<Value>& b, double x) {
   const double u = std::clamp((x - a.x) / (b.x - a.x), 0.0, 1.0);
-  return a.value + (b.value - a.value) * curveProgress(u, a.midpoint, a.sharpness);
+  return a.value + (b.value - a.value) * evaluateCurve(u, a.midpoint, a.sharpness);
 }
 
 /// Knots for map(curve), where `map` converts nodes' values to the table's. Pieces without kinks
@@ -43,22 +43,23 @@ public:
     m_floor = relativeFloor * greatest;
   }
 
-  Function table() {
+  Function build() {
     for (std::size_t i = 0; i + 1 < m_nodes.size(); ++i)
       addSegment(i);
-    emit(m_nodes.size() - 1, m_nodes.back().x, m_map(m_nodes.back().value));
+    addKnot(m_nodes.size() - 1, m_nodes.back().x, m_map(m_nodes.back().value));
     refine();
     for (; !m_chords.empty(); m_chords.pop())
-      emit(m_chords.top());
+      addKnot(m_chords.top());
     // Chords come in any order; a stable sort keeps the order of a step's two knots.
-    std::stable_sort(m_knots.begin(), m_knots.end(), [](const Ordered& a, const Ordered& b) {
-      return std::pair(a.segment, a.knot.position) < std::pair(b.segment, b.knot.position);
-    });
+    std::stable_sort(
+        m_knots.begin(), m_knots.end(), [](const SegmentKnot& a, const SegmentKnot& b) {
+          return std::pair(a.segment, a.knot.position) < std::pair(b.segment, b.knot.position);
+        });
     std::vector<Knot> knots;
-    for (const Ordered& ordered : m_knots)
-      if (knots.empty() || knots.back().position != ordered.knot.position ||
-          knots.back().value != ordered.knot.value)
-        knots.push_back(ordered.knot);
+    for (const SegmentKnot& segmentKnot : m_knots)
+      if (knots.empty() || knots.back().position != segmentKnot.knot.position ||
+          knots.back().value != segmentKnot.knot.value)
+        knots.push_back(segmentKnot.knot);
     return Function(std::move(knots));
   }
 
@@ -67,52 +68,52 @@ private:
   struct Chord {
     std::size_t segment;
     double begin, end;
-    Value atBegin, atEnd;
+    Value beginValue, endValue;
     double error = 0.0;
 
     bool operator<(const Chord& other) const { return error < other.error; }
   };
-  struct Ordered {
+  struct SegmentKnot {
     std::size_t segment;
     Knot knot;
   };
 
-  Value at(std::size_t segment, double x) const {
-    return m_map(between(m_nodes[segment], m_nodes[segment + 1], x));
+  Value evaluate(std::size_t segment, double x) const {
+    return m_map(evaluateSegment(m_nodes[segment], m_nodes[segment + 1], x));
   }
 
-  void emit(std::size_t segment, double position, const Value& value) {
+  void addKnot(std::size_t segment, double position, const Value& value) {
     m_knots.push_back({segment, {position, value}});
   }
-  void emit(const Chord& chord) { emit(chord.segment, chord.begin, chord.atBegin); }
+  void addKnot(const Chord& chord) { addKnot(chord.segment, chord.begin, chord.beginValue); }
 
   void addSegment(std::size_t i) {
     const Node& a = m_nodes[i];
     const Node& b = m_nodes[i + 1];
-    emit(i, a.x, m_map(a.value));
-    const double middle = a.x + usedMidpoint(a.midpoint) * (b.x - a.x);
+    addKnot(i, a.x, m_map(a.value));
+    const double middle = a.x + clampMidpoint(a.midpoint) * (b.x - a.x);
     if (!(b.x > a.x)) // a step
-      emit(i, b.x, m_map(b.value));
+      addKnot(i, b.x, m_map(b.value));
     else if (a.sharpness > 0.99) {
-      emit(i, middle, m_map(a.value));
-      emit(i, middle, m_map(b.value));
-      emit(i, b.x, m_map(b.value));
+      addKnot(i, middle, m_map(a.value));
+      addKnot(i, middle, m_map(b.value));
+      addKnot(i, b.x, m_map(b.value));
     } else
       addPieces(i, middle);
   }
 
   void addPieces(std::size_t i, double middle) {
-    std::vector<double> ends = {m_nodes[i].x, middle, capCrossing(i), m_nodes[i + 1].x};
+    std::vector<double> ends = {m_nodes[i].x, middle, findCapCrossing(i), m_nodes[i + 1].x};
     std::sort(ends.begin(), ends.end());
     for (std::size_t k = 0; k + 1 < ends.size(); ++k)
       if (ends[k] < ends[k + 1])
-        push(i, ends[k], ends[k + 1], at(i, ends[k]), at(i, ends[k + 1]));
-    emit(i, m_nodes[i + 1].x, m_map(m_nodes[i + 1].value));
+        addChord(i, ends[k], ends[k + 1], evaluate(i, ends[k]), evaluate(i, ends[k + 1]));
+    addKnot(i, m_nodes[i + 1].x, m_map(m_nodes[i + 1].value));
   }
 
   /// Position at which opacity crosses its cap within a segment (bisection: opacity is monotonic
   /// there); the segment's begin without a crossing, and for colours.
-  double capCrossing(std::size_t i) const {
+  double findCapCrossing(std::size_t i) const {
     double low = m_nodes[i].x, high = m_nodes[i + 1].x;
     if constexpr (std::is_same_v<Node, OpacityNode>) {
       const bool cappedLow = m_nodes[i].value > opacityCap;
@@ -120,23 +121,23 @@ private:
         return low;
       for (int step = 0; step < 100; ++step) {
         const double middle = 0.5 * (low + high);
-        const bool capped = between(m_nodes[i], m_nodes[i + 1], middle) > opacityCap;
+        const bool capped = evaluateSegment(m_nodes[i], m_nodes[i + 1], middle) > opacityCap;
         (capped == cappedLow ? low : high) = middle;
       }
     }
     return low;
   }
 
-  void push(std::size_t segment, double begin, double end, const Value& atBegin,
-            const Value& atEnd) {
-    Chord chord{segment, begin, end, atBegin, atEnd};
+  void addChord(std::size_t segment, double begin, double end, const Value& beginValue,
+                const Value& endValue) {
+    Chord chord{segment, begin, end, beginValue, endValue};
     constexpr int probes = 8;
     for (int k = 1; k < probes; ++k) {
       const double t = static_cast<double>(k) / probes;
-      const Value exact = at(segment, begin + t * (end - begin));
-      const Value miss = (atBegin + (atEnd - atBegin) * t - exact).abs();
-      if ((miss > m_floor).any())
-        chord.error = std::max(chord.error, Value(miss / (exact.abs() + m_floor)).maxCoeff());
+      const Value exact = evaluate(segment, begin + t * (end - begin));
+      const Value difference = (beginValue + (endValue - beginValue) * t - exact).abs();
+      if ((difference > m_floor).any())
+        chord.error = std::max(chord.error, Value(difference / (exact.abs() + m_floor)).maxCoeff());
     }
     m_chords.push(chord);
   }
@@ -148,9 +149,9 @@ private:
       if (worst.error <= 0.5 * tolerance || !(worst.begin < middle && middle < worst.end))
         return;
       m_chords.pop();
-      const Value atMiddle = at(worst.segment, middle);
-      push(worst.segment, worst.begin, middle, worst.atBegin, atMiddle);
-      push(worst.segment, middle, worst.end, atMiddle, worst.atEnd);
+      const Value middleValue = evaluate(worst.segment, middle);
+      addChord(worst.segment, worst.begin, middle, worst.beginValue, middleValue);
+      addChord(worst.segment, middle, worst.end, middleValue, worst.endValue);
     }
   }
 
@@ -158,11 +159,11 @@ private:
   Map m_map;
   double m_floor = 0.0;
   std::priority_queue<Chord> m_chords;
-  std::vector<Ordered> m_knots;
+  std::vector<SegmentKnot> m_knots;
 };
 
 template <int Channels, typename Node, typename Map>
-PiecewiseLinear<Channels> tabulated(const std::vector<Node>& nodes, Map map) {
+PiecewiseLinear<Channels> makeTable(const std::vector<Node>& nodes, Map map) {
   return Tabulator<Channels, Node, Map>(nodes, std::move(map)).build();
 }
 
@@ -213,8 +214,8 @@ void check(const VolumeProperty& p, const std::string& source) {
 
 } // namespace
 
-double curveProgress(double u, double midpoint, double sharpness) {
-  const double m = usedMidpoint(midpoint);
+double evaluateCurve(double u, double midpoint, double sharpness) {
+  const double m = clampMidpoint(midpoint);
   double s = u < m ? 0.5 * u / m : 0.5 + 0.5 * (u - m) / (1.0 - m);
   if (sharpness > 0.99)
     return s < 0.5 ? 0.0 : 1.0;
@@ -234,12 +235,12 @@ TransferFunction tabulate(const VolumeProperty& property, const std::string& sou
   const auto unchanged = [](double opacity) { return ScalarFunction::Value(opacity); };
   const auto isOne = [](const OpacityNode& node) { return node.value == 1.0; };
 
-  TransferFunction result{.extinction = tabulated<1>(property.scalarOpacity, extinction),
-                          .albedo = tabulated<3>(property.color, decodeSrgb),
+  TransferFunction result{.extinction = makeTable<1>(property.scalarOpacity, extinction),
+                          .albedo = makeTable<3>(property.color, decodeSrgb),
                           .g = property.anisotropy};
   const auto& gradient = property.gradientOpacity;
   if (!std::all_of(gradient.begin(), gradient.end(), isOne))
-    result.gradientOpacity = tabulated<1>(gradient, unchanged);
+    result.gradientOpacity = makeTable<1>(gradient, unchanged);
   if (property.shade)
     result.shading = SurfaceShading{.diffuse = property.diffuse,
                                     .specular = property.specular,

@@ -35,7 +35,7 @@ struct VolumeProperty {
 /// way; monotonic. Like vtkPiecewiseFunction::GetTable and vtkColorTransferFunction::GetTable
 /// (RGB): the midpoint bends u, sharpness compresses the result, and a Hermite curve with end
 /// slopes (1 - sharpness) follows.
-double curveProgress(double u, double midpoint, double sharpness);
+double evaluateCurve(double u, double midpoint, double sharpness);
 
 /// Extinction -ln(1 - opacity) / unitDistance with opacity capped at 0.9999, decoded colour as
 /// albedo; both piecewise linear with knots kept and a relative error of at most 1e-4.

@@ -12,9 +12,9 @@ struct Span {
 };
 
 /// Voxels that interpolation within cell `c` of one axis touches.
-Span footprint(std::int64_t c, std::int64_t edge, std::int64_t voxels, int apron) {
-  const std::int64_t first = c * edge - 1 - apron;
-  const std::int64_t last = (c + 1) * edge + apron;
+Span footprint(std::int64_t c, std::int64_t cellSize, std::int64_t voxels, int padding) {
+  const std::int64_t first = c * cellSize - 1 - padding;
+  const std::int64_t last = (c + 1) * cellSize + padding;
   return {std::max<std::int64_t>(first, 0), std::min(last, voxels - 1)};
 }
 
@@ -31,16 +31,16 @@ void addRow(const Voxel* row, std::vector<Voxel>& lows, std::vector<Voxel>& high
 
 } // namespace
 
-MinMaxGrid::MinMaxGrid(const Volume& volume, int apron)
-    : m_apron(apron),
-      m_edge(edgeFor(volume.grid)),
-      m_cellCount((volume.grid.size.array() + m_edge.array() - 1) / m_edge.array()),
+MinMaxGrid::MinMaxGrid(const Volume& volume, int padding)
+    : m_padding(padding),
+      m_cellSize(chooseCellSize(volume.grid)),
+      m_cellCount((volume.grid.size.array() + m_cellSize.array() - 1) / m_cellSize.array()),
       m_low(static_cast<std::size_t>(m_cellCount.prod())),
       m_high(m_low.size()) {
   std::visit([&](const auto& voxels) { fill(volume.grid, voxels); }, volume.voxels);
 }
 
-Size3 MinMaxGrid::edgeFor(const Grid& grid) {
+Size3 MinMaxGrid::chooseCellSize(const Grid& grid) {
   constexpr double wantedCells = 1 << 18;
   const Vec3 spacing = grid.spacing();
   const Vec3 size = grid.size.cast<double>();
@@ -79,18 +79,18 @@ void MinMaxGrid::fill(const Grid& grid, const LargeArray<Voxel>& voxels) {
   // A row of cells is first reduced to one row of voxels, elementwise: memory is read in order,
   // with vector instructions.
   const auto fillSlab = [&](std::int64_t cz) {
-    const Span z = footprint(cz, m_edge.z(), grid.size.z(), m_apron);
+    const Span z = footprint(cz, m_cellSize.z(), grid.size.z(), m_padding);
     std::vector<Voxel> low(static_cast<std::size_t>(grid.size.x())), high(low.size());
     for (std::int64_t cy = 0; cy < m_cellCount.y(); ++cy) {
-      const Span y = footprint(cy, m_edge.y(), grid.size.y(), m_apron);
+      const Span y = footprint(cy, m_cellSize.y(), grid.size.y(), m_padding);
       std::ranges::fill(low, std::numeric_limits<Voxel>::max());
       std::ranges::fill(high, std::numeric_limits<Voxel>::lowest());
       for (std::int64_t k = z.first; k <= z.last; ++k)
         for (std::int64_t j = y.first; j <= y.last; ++j)
           addRow(voxels.data() + grid.size.x() * (j + grid.size.y() * k), low, high);
       for (std::int64_t cx = 0; cx < m_cellCount.x(); ++cx) {
-        const auto [first, last] = footprint(cx, m_edge.x(), grid.size.x(), m_apron);
-        const std::size_t cell = numberOf({cx, cy, cz}, m_cellCount);
+        const auto [first, last] = footprint(cx, m_cellSize.x(), grid.size.x(), m_padding);
+        const std::size_t cell = linearIndex({cx, cy, cz}, m_cellCount);
         m_low[cell] =
             static_cast<float>(*std::min_element(low.begin() + first, low.begin() + last + 1));
         m_high[cell] =

@@ -10,14 +10,14 @@ namespace fenestra {
 /// (1 for central differences).
 class MinMaxGrid {
 public:
-  MinMaxGrid(const Volume& volume, int apron);
+  MinMaxGrid(const Volume& volume, int padding);
 
   /// Edges of a cell, voxels per axis. About 2^18 cells, as near to cubes in mm as whole voxels
   /// allow: thick slices must not make long cells with loose bounds.
-  static Size3 edgeFor(const Grid& grid);
+  static Size3 chooseCellSize(const Grid& grid);
 
-  int apron() const { return m_apron; }
-  const Size3& edge() const { return m_edge; }
+  int padding() const { return m_padding; }
+  const Size3& cellSize() const { return m_cellSize; }
   const Size3& cellCount() const { return m_cellCount; }
   std::size_t size() const { return m_low.size(); }
   double low(std::size_t cell) const { return m_low[cell]; }
@@ -27,8 +27,8 @@ private:
   template <typename Voxel>
   void fill(const Grid& grid, const LargeArray<Voxel>& voxels);
 
-  int m_apron;
-  Size3 m_edge, m_cellCount;
+  int m_padding;
+  Size3 m_cellSize, m_cellCount;
   std::vector<float> m_low, m_high; ///< exact: every storage type fits a float
 };
 

@@ -6,8 +6,8 @@ namespace {
 /// Adds the points (index space) where edges of `box` enter and leave `other`. `toOther` maps from
 /// the space of `box` to that of `other`. `other` is enlarged by 1e-9: otherwise rounding could
 /// lose a corner common to both boxes.
-void addEdgeEnds(const Box& box, const Box& other, const Affine& toOther, const Affine& toIndex,
-                 std::vector<Vec3>& points) {
+void addEdgeIntersections(const Box& box, const Box& other, const Affine& toOther,
+                          const Affine& toIndex, std::vector<Vec3>& points) {
   const Vec3 slack = 1e-9 * (other.upper - other.lower);
   const Box grown{other.lower - slack, other.upper + slack};
   for (int corner = 0; corner < 8; ++corner)
@@ -32,7 +32,7 @@ Domain::Domain(const Grid& grid, const std::optional<CropBox>& crop)
     m_crop = Crop{crop->worldToBox * grid.indexToWorld, grid.worldToIndex * crop->boxToWorld};
 }
 
-Domain Domain::within(const Box& box) const {
+Domain Domain::intersect(const Box& box) const {
   Domain part = *this;
   part.m_box = {m_box.lower.cwiseMax(box.lower), m_box.upper.cwiseMin(box.upper)};
   return part;
@@ -47,8 +47,8 @@ std::vector<Vec3> Domain::indexCorners() const {
       points.push_back(m_box.corner(i));
     return points;
   }
-  addEdgeEnds(m_box, m_crop->box, m_crop->fromIndex, Affine::Identity(), points);
-  addEdgeEnds(m_crop->box, m_box, m_crop->toIndex, m_crop->toIndex, points);
+  addEdgeIntersections(m_box, m_crop->box, m_crop->fromIndex, Affine::Identity(), points);
+  addEdgeIntersections(m_crop->box, m_box, m_crop->toIndex, m_crop->toIndex, points);
   return points;
 }
 

@@ -38,15 +38,15 @@ public:
 
   /// True if a point (index space) lies strictly inside the domain, not in a face.
   bool contains(const Vec3& indexPoint) const {
-    const auto isIn = [](const Box& box, const Vec3& p) {
+    const auto isInside = [](const Box& box, const Vec3& p) {
       return (p.array() > box.lower.array()).all() && (p.array() < box.upper.array()).all();
     };
-    return isIn(m_box, indexPoint) &&
-           (!m_crop || isIn(m_crop->box, m_crop->fromIndex * indexPoint));
+    return isInside(m_box, indexPoint) &&
+           (!m_crop || isInside(m_crop->box, m_crop->fromIndex * indexPoint));
   }
 
   /// Part of the domain inside `box` (index space); may be empty.
-  Domain within(const Box& box) const;
+  Domain intersect(const Box& box) const;
 
   /// Points in index space whose convex hull is the domain (to rounding), with duplicates; empty if
   /// the boxes do not meet, or for an empty part.

@@ -8,7 +8,7 @@
 namespace fenestra {
 
 /// Number of a voxel (or cell) in a grid of `size`: x fastest.
-inline std::size_t numberOf(const Size3& voxel, const Size3& size) {
+inline std::size_t linearIndex(const Size3& voxel, const Size3& size) {
   return static_cast<std::size_t>(voxel.x() + size.x() * (voxel.y() + size.y() * voxel.z()));
 }
 

@@ -27,7 +27,7 @@ public:
     const Interval inside = box.clip(ray, range);
     m_interval = {inside.begin, inside.begin};
     m_end = inside.isEmpty() ? inside.begin : inside.end;
-    if (done())
+    if (isDone())
       return;
     for (int axis = 0; axis < 3; ++axis)
       enter(axis, ray.direction[axis], inside.begin);
@@ -36,7 +36,7 @@ public:
     findEnd();
   }
 
-  bool done() const { return !(m_interval.begin < m_end); }
+  bool isDone() const { return !(m_interval.begin < m_end); }
 
   void next() {
     m_interval.begin = m_interval.end;
@@ -69,9 +69,9 @@ private:
     const bool moves = std::isfinite(inverse); // false for zero and the least subnormals
     m_inverse[axis] = inverse;
     m_step[axis] = up ? 1 : -1;
-    m_ahead[axis] = moves ? (up ? last - m_coordinates[axis] : m_coordinates[axis]) : 0;
+    m_remaining[axis] = moves ? (up ? last - m_coordinates[axis] : m_coordinates[axis]) : 0;
     m_face[axis] = static_cast<double>(m_coordinates[axis] + (up ? 1 : 0));
-    m_next[axis] = faceAt(axis);
+    m_next[axis] = faceDistance(axis);
     const std::int64_t stride = axis == 0 ? 1 : axis == 1 ? m_cells.x() : m_cells.x() * m_cells.y();
     m_stride[axis] = m_step[axis] * stride;
   }
@@ -82,15 +82,15 @@ private:
     m_coordinates[axis] += m_step[axis];
     m_cell += m_stride[axis];
     m_face[axis] += static_cast<double>(m_step[axis]);
-    --m_ahead[axis];
-    m_next[axis] = faceAt(axis);
+    --m_remaining[axis];
+    m_next[axis] = faceDistance(axis);
   }
 
   /// t at the next face of an axis; infinity for the grid's outer faces: the walk ends at m_end, so
   /// rounding cannot lead out of the grid. Computed from the face's coordinate, not by adding up
   /// steps: errors do not grow along the ray.
-  double faceAt(int axis) const {
-    return m_ahead[axis] > 0 ? (m_face[axis] - m_origin[axis]) * m_inverse[axis] : infinity;
+  double faceDistance(int axis) const {
+    return m_remaining[axis] > 0 ? (m_face[axis] - m_origin[axis]) * m_inverse[axis] : infinity;
   }
 
   void findEnd() {
@@ -103,7 +103,7 @@ private:
   Vec3 m_face = Vec3::Zero();    ///< coordinate of the next face in each axis
   Vec3 m_next = Vec3::Zero();    ///< t at m_face
   Size3 m_coordinates = Size3::Zero();
-  Size3 m_ahead = Size3::Zero(); ///< cells still to come in each axis
+  Size3 m_remaining = Size3::Zero(); ///< cells still to come in each axis
   Size3 m_step = Size3::Zero(), m_stride = Size3::Zero();
   std::int64_t m_cell = 0;
   Interval m_interval;

@@ -20,11 +20,11 @@ struct Mask {
   std::vector<std::uint8_t> voxels; ///< 0 to `full`, x fastest
   std::int64_t count = 0;           ///< number of voxels in the segments
   std::vector<std::string> names;   ///< names of the segments, for messages
-  std::uint8_t full = 1;            ///< voxel of indicator 1; 255 in a smoothed mask
+  std::uint8_t maxValue = 1;        ///< voxel of indicator 1; 255 in a smoothed mask
   double smoothing = 0.0;           ///< deviation of the Gaussian that made it, mm; 0: none
 
   /// Least voxel in the focus: full / 2, rounded up.
-  std::uint8_t half() const { return static_cast<std::uint8_t>(full - full / 2); }
+  std::uint8_t threshold() const { return static_cast<std::uint8_t>(maxValue - maxValue / 2); }
 };
 
 } // namespace fenestra

@@ -13,7 +13,7 @@ struct LaneEmitterHit {
 template <typename TexelOf>
 HWY_INLINE LaneEmitterHit environment(const SimdShading& shading, const Float3& direction,
                                       TexelOf&& texelOf) {
-  LaneEmitterHit sum{around(shading.lights, direction), 0.0F};
+  LaneEmitterHit sum{evaluateSkies(shading.lights, direction), 0.0F};
   for (const MapTables& map : shading.maps) {
     const Float3 radiance = radianceOf(map, texelOf(map));
     sum.radiance = sum.radiance + radiance;
@@ -65,7 +65,7 @@ inline Float3 emittedAlongRay(const SimdShading& shading, LaneMask which, const 
                   });
   const LaneMask escaped = which & (distance == std::numeric_limits<float>::infinity());
   if (shading.maps.empty())
-    return sum + zeroUnless(escaped, around(shading.lights, direction));
+    return sum + zeroUnless(escaped, evaluateSkies(shading.lights, direction));
   if (!escaped.any())
     return sum;
   const LaneEmitterHit far = environment(

@@ -13,7 +13,7 @@ struct Bordered {
   Size3 size;
 
   std::size_t count() const { return static_cast<std::size_t>(size.prod()); }
-  std::size_t index(const Size3& cell) const { return numberOf(cell, size); }
+  std::size_t index(const Size3& cell) const { return linearIndex(cell, size); }
   /// Steps from a cell to its neighbours along the axes.
   std::array<std::size_t, 3> strides() const {
     return {index(Size3::UnitX()), index(Size3::UnitY()), index(Size3::UnitZ())};

@@ -19,7 +19,7 @@ HWY_INLINE Float3 albedoIn(const SimdShading& shading, LaneMask which, Int compo
   return albedo;
 }
 
-/// Albedo without a mixture: with a tint TintedField::albedo, for the lanes of `which`.
+/// Albedo without a mixture: with a tint TintField::albedo, for the lanes of `which`.
 HWY_INLINE Float3 albedoAt(const SimdShading& shading, LaneMask which, const Float3& index,
                            Float scalar) {
   if (!shading.tint)

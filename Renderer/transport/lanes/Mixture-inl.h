@@ -18,7 +18,7 @@ HWY_INLINE LaneMask freeIn(const SimdMixture& mixture, LaneMask which, Int compo
 }
 
 /// Calls visit(lanes, components, extinctions) for the parts in the lanes of `which`
-/// (MixedField::forEachPart); extinctions of lanes that are not in `lanes` are 0. `kept`: keep of
+/// (MixtureField::forEachPart); extinctions of lanes that are not in `lanes` are 0. `kept`: keep of
 /// the clip.
 template <typename Visit>
 HWY_INLINE void forEachPart(const SimdMedium& medium, LaneMask which, const Float3& index,
@@ -71,7 +71,7 @@ inline Float mixtureClipWeight(const SimdMedium& medium, LaneMask which, const F
              : Float(1.0F);
 }
 
-/// Components that collisions of the lanes of `which` meet (MixedField::draw); 0 in others.
+/// Components that collisions of the lanes of `which` meet (MixtureField::draw); 0 in others.
 inline Int sampleComponents(const SimdMedium& medium, LaneMask which, const Float3& index,
                             Float scalar, Float uniform) {
   const Float weight = mixtureClipWeight(medium, which, index);
@@ -100,7 +100,7 @@ inline BsdfParameters<Float> gatherBsdfs(const SimdShading& shading, Int compone
           each(first.diffuse),
           each(first.specular),
           each(first.f0),
-          each(first.odds),
+          each(first.oddsFactor),
           each(first.roughness),
           true,
           {each(first.coat[0]), each(first.coat[1]), each(first.coat[2]), each(first.coat[3])}};

@@ -24,7 +24,7 @@ std::vector<std::int32_t> bricksAlike(const Mixture& mixture) {
   for (std::size_t brick = 0; brick < bricks.size(); ++brick) {
     std::int32_t common = -1;
     bool isMixed = false;
-    mixture.weights->forEachOf(brick, [&](std::uint8_t component) {
+    mixture.weights->forEachInBrick(brick, [&](std::uint8_t component) {
       isMixed = isMixed || (common >= 0 && first[component] != common);
       common = first[component];
     });
@@ -38,7 +38,7 @@ std::vector<std::int32_t> bricksAlike(const Mixture& mixture) {
 
 bool SimdMixture::serves(const Mixture& mixture) {
   const auto isServed = [](const Component& component) {
-    return !component.transfer.gradientOpacity && component.border == 0.0;
+    return !component.transfer.gradientOpacity && component.interfaceWeight == 0.0;
   };
   return SimdLabelWeights::serves(*mixture.weights) &&
          std::ranges::all_of(mixture.components, isServed);
@@ -48,7 +48,7 @@ SimdMixture::SimdMixture(const Mixture& mixture, const Grid& volume)
     : weights(*mixture.weights, volume),
       merged(weights),
       mergedBricks(std::make_shared<const std::vector<std::int32_t>>(bricksAlike(mixture))),
-      hasFree(mixture.hasFree()) {
+      hasFree(mixture.hasUnclipped()) {
   merged.bricks = mergedBricks->data();
   for (const Component& component : mixture.components)
     isFree.push_back(component.isClipped ? 0 : 1);

@@ -108,10 +108,10 @@ private:
     };
     if (m_shading.drawsLights)
       sampleLights(i, at, draws, [&](const Float3& toward) {
-        const ScatterEval s = phase.toward(toward);
+        const ScatterEval s = phase.evaluate(toward);
         if (!surfaces)
           return s;
-        const ScatterEval o = surface().toward(toward);
+        const ScatterEval o = surface().evaluate(toward);
         return ScatterEval{select(at.surface, o.factor, s.factor),
                            select(at.surface, o.pdf, s.pdf)};
       });
@@ -206,7 +206,7 @@ private:
     const LightSamples light =
         sampleLightSet(m_shading, at.going, mapPoint(m_shading.toLocal, at.index), choice, u, v);
     const ScatterEval scattered = toward(light.direction);
-    const Float pdf = light.pdf + select(light.delta, 0.0F, scattered.pdf);
+    const Float pdf = light.pdf + select(light.isDelta, 0.0F, scattered.pdf);
     const Float3 radiance = (1.0F / pdf) * (at.throughput * scattered.factor * light.radiance);
     const LaneMask arrives = at.going & (maxComponent(radiance) > 0.0F);
     const std::size_t count = arrives.count();

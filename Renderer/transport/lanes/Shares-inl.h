@@ -45,7 +45,7 @@ private:
     Int brick, voxel; ///< number of the brick; and of the voxel in it
     Float3 fractions; ///< position from there, 0 to 1
   };
-  static constexpr std::int32_t edge = LabelWeights::edge + 1; ///< voxels
+  static constexpr std::int32_t edge = LabelWeights::brickEdge + 1; ///< voxels
   /// Shares of a plane, from voxels on: four of a row and the four behind them; then of the next
   /// slice.
   using Bytes = std::array<Int, 4>;
@@ -60,10 +60,10 @@ private:
     const PlaceAlong x = placeAlong(axes[0], p.x);
     const PlaceAlong y = placeAlong(axes[1], p.y);
     const PlaceAlong z = placeAlong(axes[2], p.z);
-    const auto toBrick = [](Float cell) { return floor(cell * (1.0F / LabelWeights::edge)); };
+    const auto toBrick = [](Float cell) { return floor(cell * (1.0F / LabelWeights::brickEdge)); };
     const Float3 cell{x.lower, y.lower, z.lower};
     const Float3 brick{toBrick(cell.x), toBrick(cell.y), toBrick(cell.z)};
-    const Float3 inside = cell - float{LabelWeights::edge} * brick;
+    const Float3 inside = cell - float{LabelWeights::brickEdge} * brick;
     const Float voxel = fma(fma(inside.z, float{edge}, inside.y), float{edge}, inside.x);
     return {offsetOf(axes, brick.x, brick.y, brick.z),
             wholeToInt(voxel),

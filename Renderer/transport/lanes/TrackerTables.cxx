@@ -95,7 +95,7 @@ void setContext(SimdMedium& medium, const ContextStyle& style, const Grid& grid)
   const Mask& focus = *style.focus;
   medium.context = {fieldOf(focus.voxels.data(), focus.grid),
                     affineRows(focus.grid.worldToIndex * grid.indexToWorld),
-                    0.5F * static_cast<float>(focus.full), narrow(style.extinction),
+                    0.5F * static_cast<float>(focus.maxValue), narrow(style.extinction),
                     narrow(style.saturation)};
 }
 

@@ -15,7 +15,7 @@ namespace fenestra {
 /// stand in front of its surface.
 inline const Clip& cameraRayClip(const Clip& clip, const Mixture* mixture) {
   static const Clip none = ClipNone();
-  return mixture && mixture->hasFree() ? none : clip;
+  return mixture && mixture->hasUnclipped() ? none : clip;
 }
 
 /// A view: camera, clip (cameraRayClip), lights and background must outlive the object.
@@ -26,11 +26,11 @@ public:
       : m_camera(camera), m_clip(clip), m_lights(lights), m_background(background) {
     if (background.kind == Background::Kind::gradient)
       for (int row = 0; row < camera.height(); ++row)
-        m_gradient.push_back(background.at(1.0 - (row + 0.5) / camera.height()));
+        m_gradient.push_back(background.evaluate(1.0 - (row + 0.5) / camera.height()));
   }
 
   /// Eye ray through raster position (column, row).
-  Ray ray(double column, double row) const { return m_camera.ray(column, row); }
+  Ray ray(double column, double row) const { return m_camera.makeRay(column, row); }
   /// True if clipping leaves every eye ray whole.
   bool isUnclipped() const { return std::holds_alternative<ClipNone>(m_clip); }
   /// Part of an eye ray that clipping leaves.
@@ -55,7 +55,7 @@ public:
       sample.alpha = 0.0;
       break;
     case Background::Kind::environment:
-      sample.radiance = m_lights.environment(direction).radiance;
+      sample.radiance = m_lights.evaluateEnvironment(direction).radiance;
       break;
     }
     return sample;

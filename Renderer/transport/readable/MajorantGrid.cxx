@@ -47,7 +47,7 @@ bool meetsMask(const Mask& mask, const Box& box) {
     for (std::int64_t y = first.y(); y < end.y(); ++y) {
       const auto row = mask.voxels.begin() + size.x() * (y + size.y() * z);
       if (std::any_of(row + first.x(), row + end.x(),
-                      [&](std::uint8_t voxel) { return voxel >= mask.half(); }))
+                      [&](std::uint8_t voxel) { return voxel >= mask.threshold(); }))
         return true;
     }
   return false;
@@ -94,7 +94,7 @@ CellBound mixtureBound(const Mixture& mixture, const Grid& grid, const Corners& 
   for (const Vec3& corner : corners)
     box.extend(mixture.weights->grid().worldToIndex * corner);
   CellBound bound;
-  mixture.weights->forEachIn(box, [&](std::uint8_t number) {
+  mixture.weights->forEachInBox(box, [&](std::uint8_t number) {
     const Component& component = mixture.components[number];
     double& most = component.isClipped ? bound.clipped : bound.free;
     most = std::max(most, rounding * greatest(component.transfer, grid, low, high));
@@ -107,12 +107,12 @@ CellBound mixtureBound(const Mixture& mixture, const Grid& grid, const Corners& 
 MajorantGrid::MajorantGrid(const Grid& grid, const MinMaxGrid& ranges,
                            const TransferFunction& transfer, const Clip& clip,
                            const ContextStyle* style, const Mixture* mixture)
-    : m_cellCount(ranges.cellCount()), m_edge(ranges.edge()), m_cells(ranges.size()) {
-  m_worldToCell = makeScaling(ranges.edge().cast<double>().cwiseInverse()) *
+    : m_cellCount(ranges.cellCount()), m_edge(ranges.cellSize()), m_cells(ranges.size()) {
+  m_worldToCell = makeScaling(ranges.cellSize().cast<double>().cwiseInverse()) *
                   (makeTranslation(Vec3::Constant(0.5)) * grid.worldToIndex);
   const Affine cellToWorld = m_worldToCell.inverse();
 
-  const Vec3 strip = margin * ranges.edge().cast<double>().cwiseInverse();
+  const Vec3 strip = margin * ranges.cellSize().cast<double>().cwiseInverse();
   tbb::parallel_for(std::int64_t{0}, m_cellCount.z(), [&](std::int64_t z) {
     for (std::int64_t y = 0; y < m_cellCount.y(); ++y)
       for (std::int64_t x = 0; x < m_cellCount.x(); ++x) {

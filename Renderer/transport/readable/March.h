@@ -99,7 +99,7 @@ private:
     const double voxels = MarchAccuracy::minVoxels / part.indexRay.direction.norm();
     GridWalk cells(transformRay(m_majorants.worldToCell(), part.ray), {0.0, part.length},
                    m_majorants.cellCount());
-    for (; !cells.done(); cells.next()) {
+    for (; !cells.isDone(); cells.next()) {
       const MajorantGrid::Cell& cell = m_majorants.cell(cells.cell());
       if (cell.majorant == 0.0F)
         continue;

@@ -15,9 +15,10 @@ Vec3 findCutGradient(const Medium<Voxel>& medium, const Clip& clip, const Vec3& 
 
 /// Parts of a mixture; what a clip keeps matters where it does not keep as much of all.
 template <typename Voxel>
-MixedPoint makeMixturePoint(const Medium<Voxel>& medium, const Clip& clip, const Vec3& world,
-                            const Vec3& index) {
-  return medium.at(index, medium.mixed()->hasFree() ? clipWeight(clip, world) : 1.0);
+MixturePoint makeMixturePoint(const Medium<Voxel>& medium, const Clip& clip, const Vec3& world,
+                              const Vec3& index) {
+  return medium.makePoint(index,
+                          medium.mixtureField()->hasUnclipped() ? clipWeight(clip, world) : 1.0);
 }
 
 /// Matter that a collision meets; of a mixture one component, drawn.
@@ -25,10 +26,11 @@ template <typename Voxel>
 MediumSample sampleMedium(const Medium<Voxel>& medium, const Clip& clip, const Vec3& world,
                           const Vec3& index, bool wantGradient, Random& random) {
   const Vec3 cut = findCutGradient(medium, clip, world);
-  if (!medium.mixed())
+  if (!medium.mixtureField())
     return medium.evaluate(index, wantGradient, cut);
-  const MixedPoint point = makeMixturePoint(medium, clip, world, index);
-  return medium.evaluate(medium.mixed()->sampleComponent(point, random), point, wantGradient, cut);
+  const MixturePoint point = makeMixturePoint(medium, clip, world, index);
+  return medium.evaluate(medium.mixtureField()->sampleComponent(point, random), point, wantGradient,
+                         cut);
 }
 
 /// Calls visit(matter, probability) for all matter that a collision may meet.
@@ -36,13 +38,13 @@ template <typename Voxel, typename Visit>
 void forEachMediumSample(const Medium<Voxel>& medium, const Clip& clip, const Vec3& world,
                          const Vec3& index, bool wantGradient, Visit&& visit) {
   const Vec3 cut = findCutGradient(medium, clip, world);
-  if (!medium.mixed()) {
+  if (!medium.mixtureField()) {
     visit(medium.evaluate(index, wantGradient, cut), 1.0);
     return;
   }
-  const MixedPoint point = makeMixturePoint(medium, clip, world, index);
-  const double all = medium.mixed()->extinction(point);
-  medium.mixed()->forEachPart(point, [&](const MixturePart& part) {
+  const MixturePoint point = makeMixturePoint(medium, clip, world, index);
+  const double all = medium.mixtureField()->extinction(point);
+  medium.mixtureField()->forEachPart(point, [&](const MixturePart& part) {
     visit(medium.evaluate(part.component, point, wantGradient, cut), part.extinction / all);
   });
 }

@@ -99,7 +99,7 @@ public:
       recordFirst(path, distance, medium);
     const Scattering scattering = chooseScattering(path.ray.direction, medium, path.uChoices.x());
     std::optional<ShadowRay> light = sampledLight(point, scattering, path);
-    const ScatterSample scattered = scatterSample(scattering, path.uDirection, path.random);
+    const ScatterSample scattered = sampleScattering(scattering, path.uDirection, path.random);
     path.uDirection = path.random.uniform2();
     path.uChoices = path.random.uniform2();
     path.throughput *= scattered.weight;
@@ -142,10 +142,11 @@ private:
         m_lights.sample(point, path.uChoices.y(), path.random.uniform2());
     if (!light)
       return std::nullopt;
-    const Rgb factor = scatterEvaluate(scattering, light->direction);
+    const Rgb factor = evaluateScattering(scattering, light->direction);
     if (!(factor.maxCoeff() > 0.0) || !(light->radiance.maxCoeff() > 0.0))
       return std::nullopt;
-    const double other = light->delta ? 0.0 : fenestra::scatterPdf(scattering, light->direction);
+    const double other =
+        light->isDelta ? 0.0 : fenestra::scatteringPdf(scattering, light->direction);
     const Rgb radiance = path.throughput * factor * light->radiance / (light->pdf + other);
     return ShadowRay{{point, light->direction}, light->distance, radiance};
   }
@@ -157,7 +158,7 @@ private:
     };
     Rgb sum = m_lights.sumEmitterHits(ray, distance, weigh);
     if (distance == infinity)
-      sum += weigh(m_lights.environment(ray.direction));
+      sum += weigh(m_lights.evaluateEnvironment(ray.direction));
     return sum;
   }
 

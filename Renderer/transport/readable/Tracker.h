@@ -90,7 +90,7 @@ private:
     GridWalk walk(transformRay(m_majorants.worldToCell(), entering),
                   {0.0, inside.end - inside.begin}, m_majorants.cellCount());
     std::uint32_t steps = 0;
-    for (; !walk.done(); walk.next()) {
+    for (; !walk.isDone(); walk.next()) {
       const MajorantGrid::Cell& cell = m_majorants.cell(walk.cell());
       const double majorant = cell.majorant;
       ++counters.cells;

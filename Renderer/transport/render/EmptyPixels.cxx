@@ -51,7 +51,7 @@ EmptyPixels::EmptyPixels(const Camera& camera, const MajorantGrid& majorants)
     for (std::int64_t y = 0; y < count.y(); ++y)
       for (std::int64_t x = 0; x < count.x(); ++x)
         if (majorants.cell(cell++).majorant > 0.0F)
-          fill(cells.of({x, y, z}), isFull);
+          fill(cells.project({x, y, z}), isFull);
   });
   m_isFull.resize(tiles);
   parts.combine_each([&](const std::vector<std::uint8_t>& part) {

@@ -136,7 +136,7 @@ private:
       const PrimaryHit& primary = raster.pixels[pixel];
       if (!(primary.hit > least))
         continue;
-      const Ray cameraRay = m_scene.camera.ray(column + 0.5, row + 0.5);
+      const Ray cameraRay = m_scene.camera.makeRay(column + 0.5, row + 0.5);
       const double depth = static_cast<double>(primary.depth / primary.hit);
       const Vec3 point = cameraRay.at(depth / m_scene.camera.depthPerLength(cameraRay));
       const Vec3 index = m_scene.volume.grid.worldToIndex * point;

@@ -33,7 +33,7 @@ public:
 
   void integrateHits(std::span<const RasterPoint> points, PrimaryHit* out) const {
     for (const RasterPoint& point : points) {
-      const Ray ray = m_scene.camera.ray(point.column, point.row);
+      const Ray ray = m_scene.camera.makeRay(point.column, point.row);
       const ExpectedHit first = m_march.integrateHits(
           ray, visibleInterval(cameraRayClip(m_scene.clip, m_scene.mixture), ray));
       PrimaryHit primary{narrow(first.hit),
@@ -75,7 +75,7 @@ public:
       const std::size_t count = std::min(points.size() - from, RayBatch::capacity);
       batch->rays.size = count;
       for (std::size_t i = 0; i < count; ++i) {
-        const Ray ray = m_scene.camera.ray(points[from + i].column, points[from + i].row);
+        const Ray ray = m_scene.camera.makeRay(points[from + i].column, points[from + i].row);
         before[i] = setInside(batch->rays, i, m_domain, ray,
                               visibleInterval(cameraRayClip(m_scene.clip, m_scene.mixture), ray));
         perLength[i] = m_scene.camera.depthPerLength(ray);
