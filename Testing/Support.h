@@ -78,7 +78,7 @@ struct TestScene {
   auto with(Work&& work) const {
     const Camera camera(pose, width, height);
     const LightSet lightSet(lights, volume.grid, camera);
-    const MinMaxGrid ranges(volume, MajorantGrid::apronFor(transfer));
+    const MinMaxGrid ranges(volume, MajorantGrid::requiredPadding(transfer));
     const ContextStyle* const styled = style ? &*style : nullptr;
     const Mixture* const mixed = mixture ? &*mixture : nullptr;
     const MajorantGrid majorants(volume.grid, ranges, transfer, clip, styled, mixed);

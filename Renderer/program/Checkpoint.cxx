@@ -183,7 +183,7 @@ void Checkpoint::checkSampleCounts(const RenderResult& result,
     throw usageError("--samples: ", m_path, " has up to ", result.begunSamples,
                      " samples a pixel; ask for as many, or choose another --checkpoint");
   const bool wasPlanned = result.last.noise < infinity;
-  if (result.begunSamples > SamplePlan::pilotSamples && wasPlanned != settings.plansByNoise())
+  if (result.begunSamples > SamplePlan::pilotSamples && wasPlanned != settings.isAdaptive())
     throw usageError("--noise: ", m_path, wasPlanned ? " has" : " lacks",
                      " more samples where the picture is noisier, as only a raw --noise asks for; ",
                      wasPlanned ? "give one" : "drop it", ", or choose another --checkpoint");
@@ -196,7 +196,7 @@ std::optional<RenderResult> Checkpoint::load(const PreparedScene& scene,
     return std::nullopt;
   const CheckpointFile& first = m_files.front();
   requireSame(first, "inputs");
-  if (const std::string here = targetOf(scene.view(), settings); first.target() != here)
+  if (const std::string here = findTarget(scene.view(), settings); first.target() != here)
     throw mismatchError(concat("its instruction set was ", first.target(), ", is ", here,
                                " (the environment variable FENESTRA_INSTRUCTIONS chooses)"));
   const RenderRequest& request = m_job.options.scene;

@@ -119,7 +119,7 @@ void checkMemory(const RenderRequest& scene) {
 RenderSettings PictureFilter::settings() {
   RenderSettings settings = makeSettings(m_options, m_scene.background());
   if (m_options.noiseTarget == NoiseTarget::filtered)
-    settings.seenNoise = [this](const Film& film) {
+    settings.displayNoise = [this](const Film& film) {
       m_seen = denoised(film, m_scene);
       m_seenSamples = film.sampleCounts().max;
       // Twice its standard error more, lest luck ends the render.

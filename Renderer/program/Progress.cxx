@@ -24,7 +24,7 @@ Progress::Progress(const RenderOptions& options, RenderMonitor& monitor, int bef
       m_frames(frames) {
   if (m_view.mode() == ProgressMode::none)
     return;
-  m_monitor.isNoiseWatched = true;
+  m_monitor.isNoiseWanted = true;
   try {
     m_thread = std::jthread([this](const std::stop_token& end) { run(end); });
   } catch (const std::system_error&) { // no thread is left; the picture matters more

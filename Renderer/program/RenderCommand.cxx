@@ -109,10 +109,10 @@ void addSources(Json& json, const RenderStats& stats, const RenderOptions& optio
     json["warnings"].push_back(warning);
 }
 
-/// Content of options.stats, which must be set, as JSON text. emptyPixels: certain from one sample,
-/// and not in samplesPerPixel; cells: of the majorant grid; focusVoxels: of the cropped labelmap;
-/// controlPoints: column and row in the picture. Measures of the clip: see BoundaryMetrics and
-/// FocusReport. Names of files are relative to the statistics' folder.
+/// Content of options.stats, which must be set, as JSON text. markEmptyPixels: certain from one
+/// sample, and not in samplesPerPixel; cells: of the majorant grid; focusVoxels: of the cropped
+/// labelmap; controlPoints: column and row in the picture. Measures of the clip: see
+/// BoundaryMetrics and FocusReport. Names of files are relative to the statistics' folder.
 std::string makeStatsJson(const RenderStats& stats, const RenderOptions& options,
                           const PreparedScene& scene, const RenderResult& result) {
   rusage usage = {};

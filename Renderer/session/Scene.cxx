@@ -54,7 +54,7 @@ void PreparedScene::make() {
   m_focusWarnings.get(volume, focus, look);
   if (r.view.isAutomatic() && focus->mask)
     m_view.get(volume, settings, focus, look);
-  const auto ranges = m_ranges.get(volume, MajorantGrid::apronFor(look->transfer));
+  const auto ranges = m_ranges.get(volume, MajorantGrid::requiredPadding(look->transfer));
   const Box bounds = settings->camera ? Box() : *m_occupiedBounds.get(volume, ranges, look);
   const auto camera =
       m_camera.get(r.view, r.width, r.height, volume, settings, bounds, focus, m_view.result());

@@ -93,7 +93,7 @@ ClipResult builtClip(const ClipRequest& request, bool measure, double steadyDegr
                      const Read& volume, const Settings& settings, const Focus& focus,
                      const Handle<Camera>& camera);
 
-/// `apron`: MajorantGrid::apronFor.
+/// `apron`: MajorantGrid::requiredPadding.
 MinMaxGrid rangesOf(const Read& volume, int apron);
 
 /// Skin without a segment: what lies within 2.5 mm of the air around the body (findOuterLayer()).

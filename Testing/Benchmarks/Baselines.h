@@ -39,7 +39,7 @@ public:
     const auto walk = [&](auto&& visit) {
       visitTentative(ray, range, toExponential(first.x()), random, counters, visit);
     };
-    return firstRealCollision(walk, first.y(), random);
+    return findRealCollision(walk, first.y(), random);
   }
 
   double transmittance(const Ray& ray, const Interval& range, Random& random,
@@ -47,7 +47,7 @@ public:
     const auto walk = [&](auto&& visit) {
       visitTentative(ray, range, random.exponential(), random, counters, visit);
     };
-    return ratioTracked(walk, random);
+    return trackRatio(walk, random);
   }
 
 private:

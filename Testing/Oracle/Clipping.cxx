@@ -54,7 +54,7 @@ DepthHit searchRay(const FocusField& focus, const Medium& matter, const Ray& ray
   if (here >= 0.5)
     return {part.begin, 0.5};
   DepthHit best{part.begin, 0.0};
-  const Interval near = focus.inBox(ray);
+  const Interval near = focus.boxInterval(ray);
   for (double t = part.begin; t < part.end && t < near.end + step; t += step) {
     if (t + step < near.begin)
       continue;
@@ -217,8 +217,8 @@ FocusField::FocusField(const Mask& mask)
     }
 }
 
-Interval FocusField::inBox(const Ray& ray) const {
-  return partIn({m_lower, m_upper}, transformRay(m_worldToIndex, ray));
+Interval FocusField::boxInterval(const Ray& ray) const {
+  return intersectBox({m_lower, m_upper}, transformRay(m_worldToIndex, ray));
 }
 
 double FocusField::at(const Vec3& world) const {
@@ -279,9 +279,9 @@ double Clipping::depthClipWeight(double here, const Vec2& at) const {
   if (cell == clip.silhouettes.end())
     return weightBehind(between);
   // The surface lies between two depths. What is kept alike behind both is kept so behind it.
-  const double least = weightBehind(std::max(between, cell->second.greatest));
-  if (least == weightBehind(std::min(between, cell->second.least)))
-    return least;
+  const double weight = weightBehind(std::max(between, cell->second.max));
+  if (weight == weightBehind(std::min(between, cell->second.min)))
+    return weight;
   return weightBehind(silhouetteSurface(cell->second, at, between));
 }
 
@@ -294,12 +294,12 @@ double Clipping::silhouetteSurface(const DepthClip::SilhouetteCell& cell, const 
     return (depth - clip.offset - m_view.depth(ray.at(0.0))) / depthPerLength;
   };
   const DepthHit hit =
-      searchRay(*m_focus, m_matter, ray, {std::max(0.0, lengthTo(cell.least)), infinity});
+      searchRay(*m_focus, m_matter, ray, {std::max(0.0, lengthTo(cell.min)), infinity});
   const double fraction = std::clamp((hit.height - 0.25) / 0.25, 0.0, 1.0);
   if (fraction == 0.0)
     return between;
   const double depth = m_view.depth(ray.at(hit.t)) + clip.offset;
-  return between + fraction * (std::min(depth, cell.greatest) - between);
+  return between + fraction * (std::min(depth, cell.max) - between);
 }
 
 double Clipping::clipWeight(const Vec3& world) const {

@@ -16,7 +16,7 @@ public:
   /// Trilinear indicator at a world point; 0 outside the mask's voxels.
   double at(const Vec3& world) const;
   /// Interval of a world ray, t >= 0, beyond which the indicator is 0; empty: ray misses.
-  Interval inBox(const Ray& ray) const;
+  Interval boxInterval(const Ray& ray) const;
   double shortestEdge() const { return m_mask.grid.spacing().minCoeff(); } ///< of a voxel, mm
 
 private:

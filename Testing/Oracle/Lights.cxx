@@ -17,22 +17,22 @@ double boundingRadius(const Grid& grid, const Vec3& center) {
 }
 
 /// Centre and radius of the volume, origin and unit of the camera's frame.
-struct VolumeBall {
-  Vec3 middle;
+struct BoundingSphere {
+  Vec3 center;
   double radius;
 
-  explicit VolumeBall(const Grid& grid)
-      : middle(grid.indexToWorld * Vec3(0.5 * (grid.size.cast<double>() - Vec3::Ones()))),
-        radius(boundingRadius(grid, middle)) {}
+  explicit BoundingSphere(const Grid& grid)
+      : center(grid.indexToWorld * Vec3(0.5 * (grid.size.cast<double>() - Vec3::Ones()))),
+        radius(boundingRadius(grid, center)) {}
 };
 
-PlacedArea placed(const AreaLight& light, const Grid& grid, const View& view) {
+PlacedArea place(const AreaLight& light, const Grid& grid, const View& view) {
   PlacedArea area{light.shape, light.center, light.normal,  {},
                   light.up,    light.size,   light.radiance};
   if (light.shape == AreaLight::Shape::disk)
     area.size.y() = area.size.x();
   if (light.frame == LightFrame::camera) {
-    const auto [middle, radius] = VolumeBall(grid);
+    const auto [middle, radius] = BoundingSphere(grid);
     const auto turned = [&](const Vec3& v) {
       return Vec3(v.x() * view.right + v.y() * view.up - v.z() * view.forward);
     };
@@ -47,17 +47,17 @@ PlacedArea placed(const AreaLight& light, const Grid& grid, const View& view) {
   return area;
 }
 
-PlacedSphere placed(const SphereLight& light, const Grid& grid, const View& view) {
+PlacedSphere place(const SphereLight& light, const Grid& grid, const View& view) {
   if (light.frame == LightFrame::world)
     return {light.center, 0.5 * light.diameter, light.radiance};
-  const auto [middle, radius] = VolumeBall(grid);
+  const auto [middle, radius] = BoundingSphere(grid);
   const Vec3 from =
       light.center.x() * view.right + light.center.y() * view.up - light.center.z() * view.forward;
   return {middle + radius * from, 0.5 * radius * light.diameter, light.radiance};
 }
 
 /// Uniform point, by rejection.
-Vec3 somewhereOnUnitSphere(Generator& generator) {
+Vec3 sampleUnitSphere(Generator& generator) {
   for (;;) {
     const Vec3 p(2.0 * uniform(generator) - 1.0, 2.0 * uniform(generator) - 1.0,
                  2.0 * uniform(generator) - 1.0);
@@ -66,7 +66,7 @@ Vec3 somewhereOnUnitSphere(Generator& generator) {
   }
 }
 
-Rgb radianceOf(const EnvironmentLight& light, const Vec3& direction) {
+Rgb evaluate(const EnvironmentLight& light, const Vec3& direction) {
   const EnvironmentMap& map = light.map;
   if (map.width == 0)
     return light.radiance;
@@ -79,14 +79,14 @@ Rgb radianceOf(const EnvironmentLight& light, const Vec3& direction) {
 }
 
 /// A sky's direction up in world space.
-SkyLight placed(const SkyLight& light, const View& view) {
+SkyLight place(const SkyLight& light, const View& view) {
   SkyLight sky = light;
   if (light.frame == LightFrame::camera)
     sky.up = light.up.x() * view.right + light.up.y() * view.up - light.up.z() * view.forward;
   return sky;
 }
 
-Rgb radianceOf(const SkyLight& sky, const Vec3& direction) {
+Rgb evaluate(const SkyLight& sky, const Vec3& direction) {
   const double height = direction.normalized().dot(sky.up.normalized());
   if (height >= 0.0)
     return (1.0 - height) * sky.middle + height * sky.top;
@@ -100,22 +100,22 @@ Lights::Lights(const std::vector<Light>& lights, const Grid& volume, const View&
     if (const auto* environment = std::get_if<EnvironmentLight>(&light))
       m_environments.push_back(*environment);
     else if (const auto* sky = std::get_if<SkyLight>(&light))
-      m_skies.push_back(placed(*sky, view));
+      m_skies.push_back(place(*sky, view));
     else if (const auto* directional = std::get_if<DirectionalLight>(&light))
       m_directionals.push_back(*directional);
     else if (const auto* sphere = std::get_if<SphereLight>(&light))
-      m_spheres.push_back(placed(*sphere, volume, view));
+      m_spheres.push_back(place(*sphere, volume, view));
     else
-      m_areas.push_back(placed(std::get<AreaLight>(light), volume, view));
+      m_areas.push_back(place(std::get<AreaLight>(light), volume, view));
   }
 }
 
 Rgb Lights::environment(const Vec3& direction) const {
   Rgb sum = Rgb::Zero();
   for (const EnvironmentLight& light : m_environments)
-    sum += radianceOf(light, direction);
+    sum += evaluate(light, direction);
   for (const SkyLight& sky : m_skies)
-    sum += radianceOf(sky, direction);
+    sum += evaluate(sky, direction);
   return sum;
 }
 
@@ -153,8 +153,8 @@ Rgb Lights::areaRadiance(const Ray& ray, double end) const {
     if (ray.direction.dot(light.normal) < 0.0 && light.intersect(ray) < end)
       sum += light.radiance;
   for (const PlacedSphere& sphere : m_spheres) {
-    const std::vector<double> crossings = sphere.intersections(ray);
-    if (!crossings.empty() && crossings.front() < end)
+    const std::vector<double> hits = sphere.intersections(ray);
+    if (!hits.empty() && hits.front() < end)
       sum += sphere.radiance;
   }
   return sum;
@@ -164,7 +164,7 @@ Vec3 Lights::sampleArea(const Vec3& point, Generator& generator) const {
   const std::size_t which = generator() % (m_areas.size() + m_spheres.size());
   if (which >= m_areas.size()) {
     const PlacedSphere& sphere = m_spheres[which - m_areas.size()];
-    return (sphere.center + sphere.radius * somewhereOnUnitSphere(generator) - point).normalized();
+    return (sphere.center + sphere.radius * sampleUnitSphere(generator) - point).normalized();
   }
   const PlacedArea& light = m_areas[which];
   for (;;) {

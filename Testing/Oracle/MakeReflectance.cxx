@@ -26,15 +26,15 @@ using fenestra::oracle::uniform;
 
 constexpr int rows = 16, columns = 32;
 constexpr int photons = 1 << 20, parts = 64;
-constexpr double followed = 500.0; ///< scatterings, times 1 - g
+constexpr double maxFollowed = 500.0; ///< scatterings, times 1 - g
 
 /// Albedo of similarity parameter s = sqrt((1 - a) / (1 - g a)).
-double albedoOf(double s, double g) {
+double computeAlbedo(double s, double g) {
   return (1.0 - s * s) / (1.0 - g * s * s);
 }
 
 /// Cosine of scattering after Henyey and Greenstein (1941), by inversion.
-double scatteredCosine(double g, double u) {
+double sampleCosine(double g, double u) {
   if (g == 0.0)
     return 2.0 * u - 1.0;
   const double t = (1.0 - g * g) / (1.0 - g + 2.0 * g * u);
@@ -42,13 +42,13 @@ double scatteredCosine(double g, double u) {
 }
 
 /// Number of scatterings until a photon leaves; `most`: it is still inside.
-int scatterings(double g, int most, Generator& generator) {
+int countScatterings(double g, int most, Generator& generator) {
   double depth = 0.0, down = 1.0; // down: cosine to the inner normal
   for (int n = 0; n < most; ++n) {
     depth -= std::log1p(-uniform(generator)) * down;
     if (depth < 0.0)
       return n;
-    const double cosine = scatteredCosine(g, uniform(generator));
+    const double cosine = sampleCosine(g, uniform(generator));
     const double azimuth = 2.0 * fenestra::pi * uniform(generator);
     const double sines = std::sqrt(std::max(0.0, (1.0 - cosine * cosine) * (1.0 - down * down)));
     down = std::clamp(down * cosine + sines * std::cos(azimuth), -1.0, 1.0);
@@ -58,7 +58,7 @@ int scatterings(double g, int most, Generator& generator) {
 
 /// Mean of albedo^n over photons that are still inside after `most` scatterings: a random walk's
 /// first return, of density n^(-3/2), from there on.
-double meanOfTheRest(double albedo, int most) {
+double findTailMean(double albedo, int most) {
   const double x = -std::log(albedo) * most;
   return std::exp(-x) - std::sqrt(fenestra::pi * x) * std::erfc(std::sqrt(x));
 }
@@ -66,25 +66,25 @@ double meanOfTheRest(double albedo, int most) {
 using Counts = std::vector<double>;
 
 /// Share of photons by the number of scatterings after which they leave; last: those still inside.
-Counts leaving(double g, std::uint64_t seed) {
-  const int most = static_cast<int>(followed / (1.0 - g));
-  Counts shares(static_cast<std::size_t>(most) + 1);
+Counts simulateEscapes(double g, std::uint64_t seed) {
+  const int most = static_cast<int>(maxFollowed / (1.0 - g));
+  Counts fractions(static_cast<std::size_t>(most) + 1);
   std::mutex mutex;
   tbb::parallel_for(0, parts, [&](int part) {
     Generator generator(seed * parts + static_cast<std::uint64_t>(part));
-    Counts own(shares.size());
+    Counts own(fractions.size());
     for (int photon = 0; photon < photons / parts; ++photon)
-      own[static_cast<std::size_t>(scatterings(g, most, generator))] += 1.0 / photons;
+      own[static_cast<std::size_t>(countScatterings(g, most, generator))] += 1.0 / photons;
     const std::lock_guard lock(mutex);
-    std::ranges::transform(shares, own, shares.begin(), std::plus());
+    std::ranges::transform(fractions, own, fractions.begin(), std::plus());
   });
-  return shares;
+  return fractions;
 }
 
-double reflectance(const Counts& shares, double albedo) {
-  double sum = shares.back() * meanOfTheRest(albedo, static_cast<int>(shares.size()) - 1);
-  for (std::size_t n = 1; n + 1 < shares.size(); ++n)
-    sum += shares[n] * std::pow(albedo, static_cast<double>(n));
+double reflectance(const Counts& fractions, double albedo) {
+  double sum = fractions.back() * findTailMean(albedo, static_cast<int>(fractions.size()) - 1);
+  for (std::size_t n = 1; n + 1 < fractions.size(); ++n)
+    sum += fractions[n] * std::pow(albedo, static_cast<double>(n));
   return sum;
 }
 
@@ -102,15 +102,15 @@ int main() {
               rows, columns);
   for (int r = 0; r < rows; ++r) {
     const double g = maxReflectanceG * r / (rows - 1.0);
-    const Counts shares = leaving(g, static_cast<std::uint64_t>(r) + 1);
+    const Counts fractions = simulateEscapes(g, static_cast<std::uint64_t>(r) + 1);
     std::printf("    {");
     for (int c = 0; c < columns; ++c) {
       const double s = c / (columns - 1.0);
       double ratio = 1.0;   // s = 0: all photons leave
       if (c == columns - 1) // small albedos a: one scattering, and 1 - s = (1 - g) a / 2
-        ratio = 6.0 * shares[1] / (1.0 - g);
+        ratio = 6.0 * fractions[1] / (1.0 - g);
       else if (c > 0)
-        ratio = reflectance(shares, albedoOf(s, g)) * (1.0 + 2.0 * s) / (1.0 - s);
+        ratio = reflectance(fractions, computeAlbedo(s, g)) * (1.0 + 2.0 * s) / (1.0 - s);
       std::printf("%.4fF%s", ratio, c + 1 < columns ? ", " : "");
     }
     std::puts(r + 1 < rows ? "}," : "}};");

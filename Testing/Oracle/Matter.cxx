@@ -4,7 +4,7 @@ namespace fenestra::oracle {
 namespace {
 
 template <int Channels>
-auto valueOf(const PiecewiseLinear<Channels>& f, double s) {
+auto interpolate(const PiecewiseLinear<Channels>& f, double s) {
   const auto& knots = f.knots();
   std::size_t right = 0; // first knot with position > s
   while (right < knots.size() && knots[right].position <= s)
@@ -15,37 +15,37 @@ auto valueOf(const PiecewiseLinear<Channels>& f, double s) {
     return knots.back().value;
   const auto& a = knots[right - 1];
   const auto& b = knots[right];
-  const double share = (s - a.position) / (b.position - a.position);
-  return typename PiecewiseLinear<Channels>::Value((1.0 - share) * a.value + share * b.value);
+  const double fraction = (s - a.position) / (b.position - a.position);
+  return typename PiecewiseLinear<Channels>::Value((1.0 - fraction) * a.value + fraction * b.value);
 }
 
-double greatestKnot(const ScalarFunction& f) {
+double findMaxKnot(const ScalarFunction& f) {
   double greatest = 0.0;
   for (const auto& knot : f.knots())
     greatest = std::max(greatest, knot.value[0]);
   return greatest;
 }
 
-std::vector<float> asFloats(const Voxels& voxels) {
+std::vector<float> toFloats(const Voxels& voxels) {
   return std::visit([](const auto& v) { return std::vector<float>(v.begin(), v.end()); }, voxels);
 }
 
 } // namespace
 
-Rgb valueAt(const ColorFunction& f, double s) {
-  return valueOf(f, s);
+Rgb evaluate(const ColorFunction& f, double s) {
+  return interpolate(f, s);
 }
 
-double greatestExtinction(const TransferFunction& transfer) {
-  return greatestKnot(transfer.extinction) *
-         (transfer.gradientOpacity ? greatestKnot(*transfer.gradientOpacity) : 1.0);
+double findMaxExtinction(const TransferFunction& transfer) {
+  return findMaxKnot(transfer.extinction) *
+         (transfer.gradientOpacity ? findMaxKnot(*transfer.gradientOpacity) : 1.0);
 }
 
 Medium::Medium(const Volume& volume, const TransferFunction& transfer,
                const std::optional<Affine>& crop)
     : m_size(volume.grid.size),
       m_worldToIndex(volume.grid.indexToWorld.inverse()),
-      m_voxels(asFloats(volume.voxels)),
+      m_voxels(toFloats(volume.voxels)),
       m_transfer(transfer) {
   if (crop)
     m_worldToCrop = crop->inverse();
@@ -62,11 +62,11 @@ bool Medium::contains(const Vec3& world) const {
 /// Trilinear sum of eight voxels; points beyond the outermost voxel centres are clamped to these.
 double Medium::scalarAtIndex(const Vec3& index) const {
   Size3 base;
-  Vec3 share;
+  Vec3 fraction;
   for (int axis = 0; axis < 3; ++axis) {
     const double x = std::min(std::max(index[axis], 0.0), static_cast<double>(m_size[axis] - 1));
     base[axis] = static_cast<std::int64_t>(std::floor(x));
-    share[axis] = x - std::floor(x);
+    fraction[axis] = x - std::floor(x);
   }
   double sum = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
@@ -74,7 +74,7 @@ double Medium::scalarAtIndex(const Vec3& index) const {
     Size3 voxel = base;
     for (int axis = 0; axis < 3; ++axis) {
       const bool upper = corner >> axis & 1;
-      weight *= upper ? share[axis] : 1.0 - share[axis];
+      weight *= upper ? fraction[axis] : 1.0 - fraction[axis];
       voxel[axis] = std::min(base[axis] + upper, m_size[axis] - 1);
     }
     const std::int64_t at = voxel[0] + m_size[0] * (voxel[1] + m_size[1] * voxel[2]);
@@ -85,10 +85,10 @@ double Medium::scalarAtIndex(const Vec3& index) const {
 
 double Medium::extinction(const TransferFunction& transfer, const Vec3& world,
                           double scalar) const {
-  const double sigma_t = valueOf(transfer.extinction, scalar)[0];
+  const double sigma_t = interpolate(transfer.extinction, scalar)[0];
   if (!transfer.gradientOpacity || sigma_t == 0.0)
     return sigma_t;
-  return sigma_t * valueOf(*transfer.gradientOpacity, gradient(world).norm())[0];
+  return sigma_t * interpolate(*transfer.gradientOpacity, gradient(world).norm())[0];
 }
 
 Vec3 Medium::gradient(const Vec3& world) const {
@@ -114,10 +114,10 @@ double Medium::surfaceProbability(const TransferFunction& transfer, const Vec3& 
 
 Interval Medium::boxInterval(const Vec3& origin, const Vec3& direction) const {
   const Box box{Vec3::Constant(-0.5), m_size.cast<double>() - Vec3::Constant(0.5)};
-  return partIn(box, transformRay(m_worldToIndex, {origin, direction}));
+  return intersectBox(box, transformRay(m_worldToIndex, {origin, direction}));
 }
 
-Interval partIn(const Box& box, const Ray& ray) {
+Interval intersectBox(const Box& box, const Ray& ray) {
   Interval part;
   for (int axis = 0; axis < 3; ++axis) {
     const double lower = box.lower[axis] - ray.origin[axis];

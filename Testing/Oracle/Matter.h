@@ -6,13 +6,13 @@
 namespace fenestra::oracle {
 
 /// Value at s of sorted knots; at a step, the value on its right.
-Rgb valueAt(const ColorFunction& f, double s);
+Rgb evaluate(const ColorFunction& f, double s);
 
 /// Greatest extinction, mm^-1, that a transfer function has anywhere.
-double greatestExtinction(const TransferFunction& transfer);
+double findMaxExtinction(const TransferFunction& transfer);
 
 /// Interval of a ray, t >= 0, inside a box; empty: ray misses.
-Interval partIn(const Box& box, const Ray& ray);
+Interval intersectBox(const Box& box, const Ray& ray);
 
 class Medium {
 public:

@@ -19,8 +19,8 @@ public:
   explicit Tracer(const OracleScene& scene)
       : m_scene(scene),
         m_view(scene.pose),
-        m_matter(scene.volume, scene.transfer, scene.crop),
-        m_clipping(scene.clip, m_view, m_matter),
+        m_medium(scene.volume, scene.transfer, scene.crop),
+        m_clipping(scene.clip, m_view, m_medium),
         m_lights(scene.lights, scene.volume.grid, m_view) {
     if (scene.style)
       m_styledFocus.emplace(scene.style->focus);
@@ -31,42 +31,42 @@ public:
     else
       m_components.push_back({scene.transfer});
     for (const Component& component : m_components)
-      m_majorant = std::max(m_majorant, greatestExtinction(component.transfer));
+      m_majorant = std::max(m_majorant, findMaxExtinction(component.transfer));
     if (scene.background.kind == Background::Kind::gradient)
       throw std::invalid_argument("the oracle has no gradient background");
   }
 
   /// Traces one path through a raster position, in pixels from the picture's top left corner.
-  PathEstimate path(double column, double row, Generator& generator) const {
+  PathEstimate tracePath(double column, double row, Generator& generator) const {
     const double pitch = 2.0 * m_view.halfHeight / m_scene.height;
     Ray ray = m_view.makeRay((column - 0.5 * m_scene.width) * pitch,
                              (0.5 * m_scene.height - row) * pitch);
     PathEstimate result;
-    double distance = collision(ray, generator);
+    double distance = findCollision(ray, generator);
     if (distance == infinity)
-      return seenBackground(ray);
+      return sampleBackground(ray);
     result.collides = true;
     result.depth = m_view.depth(ray.at(distance));
-    Met met = meet(ray.at(distance), generator);
-    result.albedo = met.albedo;
+    Collision collision = sampleComponent(ray.at(distance), generator);
+    result.albedo = collision.albedo;
 
     Rgb throughput = Rgb::Ones();
     for (std::uint64_t scattered = 0; scattered < m_scene.bounces; ++scattered) {
       const Vec3 point = ray.at(distance);
-      const Scatterer scatterer = collide(met, point, ray.direction, generator);
-      result.radiance += throughput * (parallelLight(point, scatterer, generator) +
-                                       areaLight(point, scatterer, generator));
+      const Scatterer scatterer = makeScatterer(collision, point, ray.direction, generator);
+      result.radiance += throughput * (estimateParallelLight(point, scatterer, generator) +
+                                       estimateAreaLight(point, scatterer, generator));
       const Vec3 outgoing = scatterer.sample(generator);
       throughput *= scatterer.f(outgoing) / scatterer.pdf(outgoing);
-      if (!survives(throughput, generator))
+      if (!playRoulette(throughput, generator))
         break;
       ray = {point, outgoing};
-      distance = collision(ray, generator);
+      distance = findCollision(ray, generator);
       if (distance == infinity) {
         result.radiance += throughput * m_lights.environment(ray.direction);
         break;
       }
-      met = meet(ray.at(distance), generator);
+      collision = sampleComponent(ray.at(distance), generator);
     }
     return result;
   }
@@ -75,7 +75,7 @@ public:
 
 private:
   /// Matter that a path meets at a collision.
-  struct Met {
+  struct Collision {
     std::size_t component;
     Rgb albedo;
   };
@@ -84,8 +84,8 @@ private:
 
   /// Distance to the next real collision, by delta tracking with one majorant for the whole volume;
   /// every tentative collision is tested at its place.
-  double collision(const Ray& ray, Generator& generator) const {
-    const Interval part = m_matter.boxInterval(ray.origin, ray.direction);
+  double findCollision(const Ray& ray, Generator& generator) const {
+    const Interval part = m_medium.boxInterval(ray.origin, ray.direction);
     if (part.isEmpty() || m_majorant == 0.0)
       return infinity;
     double t = part.begin;
@@ -94,9 +94,9 @@ private:
       if (t >= part.end)
         return infinity;
       const Vec3 point = ray.at(t);
-      if (!m_matter.contains(point))
+      if (!m_medium.contains(point))
         continue;
-      if (uniform(generator) * m_majorant < sumOf(extinctions(point)))
+      if (uniform(generator) * m_majorant < addUp(extinctions(point)))
         return t;
     }
   }
@@ -107,16 +107,16 @@ private:
     Segments::Weights fractions{1.0};
     if (isMixed())
       fractions = m_segments->at(point);
-    const double weight = m_clipping.clipWeight(point), thin = thinning(point);
-    const double scalar = m_matter.scalar(point);
+    const double weight = m_clipping.clipWeight(point), thin = styleFactor(point);
+    const double scalar = m_medium.scalar(point);
     for (std::size_t c = 0; c < m_components.size(); ++c)
       if (fractions[c] > 0.0)
         all[c] = (m_components[c].isClipped ? weight : 1.0) * thin * fractions[c] *
-                 m_matter.extinction(m_components[c].transfer, point, scalar);
+                 m_medium.extinction(m_components[c].transfer, point, scalar);
     return all;
   }
 
-  static double sumOf(const Segments::Weights& all) {
+  static double addUp(const Segments::Weights& all) {
     double sum = 0.0;
     for (const double one : all)
       sum += one;
@@ -124,18 +124,18 @@ private:
   }
 
   /// One component, drawn in proportion to the extinctions.
-  Met meet(const Vec3& point, Generator& generator) const {
+  Collision sampleComponent(const Vec3& point, Generator& generator) const {
     std::size_t drawn = 0;
     if (isMixed()) {
       const Segments::Weights all = extinctions(point);
-      double left = uniform(generator) * sumOf(all);
+      double left = uniform(generator) * addUp(all);
       while (drawn + 1 < m_components.size() && left >= all[drawn])
         left -= all[drawn++];
     }
     return {drawn, albedo(drawn, point)};
   }
 
-  PathEstimate seenBackground(const Ray& ray) const {
+  PathEstimate sampleBackground(const Ray& ray) const {
     PathEstimate result;
     if (m_scene.background.kind == Background::Kind::environment)
       result.radiance = m_lights.environment(ray.direction);
@@ -144,49 +144,51 @@ private:
     return result;
   }
 
-  Scatterer collide(const Met& met, const Vec3& point, const Vec3& incoming,
-                    Generator& generator) const {
-    const Component& component = m_components[met.component];
+  Scatterer makeScatterer(const Collision& collision, const Vec3& point, const Vec3& incoming,
+                          Generator& generator) const {
+    const Component& component = m_components[collision.component];
     if (component.transfer.shading) {
-      Vec3 gradient = m_matter.spansPerMm(point);
+      Vec3 gradient = m_medium.spansPerMm(point);
       if (component.isClipped)
         gradient += m_clipping.cutGradient(point);
-      if (component.border > 0.0)
-        gradient += component.border * m_segments->gradient(met.component, point);
+      if (component.interfaceWeight > 0.0)
+        gradient += component.interfaceWeight * m_segments->gradient(collision.component, point);
       if (uniform(generator) <
-          m_matter.surfaceProbability(component.transfer, point, gradient.norm()))
-        return Scatterer::makeSurface(incoming, met.albedo, gradient, *component.transfer.shading);
+          m_medium.surfaceProbability(component.transfer, point, gradient.norm()))
+        return Scatterer::makeSurface(incoming, collision.albedo, gradient,
+                                      *component.transfer.shading);
     }
-    return Scatterer::makePhase(incoming, met.albedo, component.transfer.g);
+    return Scatterer::makePhase(incoming, collision.albedo, component.transfer.g);
   }
 
   bool isStyled(const Vec3& point) const { return m_styledFocus && m_styledFocus->at(point) < 0.5; }
-  double thinning(const Vec3& point) const {
+  double styleFactor(const Vec3& point) const {
     return isStyled(point) ? m_scene.style->extinction : 1.0;
   }
   /// Albedo of a component; of a tint, the mean of all, weighted by their shares.
   Rgb albedo(std::size_t number, const Vec3& point) const {
-    const double scalar = m_matter.scalar(point);
-    Rgb own = valueAt(m_components[number].transfer.albedo, scalar);
+    const double scalar = m_medium.scalar(point);
+    Rgb own = evaluate(m_components[number].transfer.albedo, scalar);
     if (m_segments && !isMixed()) {
       const Segments::Weights fractions = m_segments->at(point);
       own.setZero();
       for (std::size_t c = 0; c < m_scene.components->components.size(); ++c)
-        own += fractions[c] * valueAt(m_scene.components->components[c].transfer.albedo, scalar);
+        own += fractions[c] * evaluate(m_scene.components->components[c].transfer.albedo, scalar);
     }
     if (!isStyled(point))
       return own;
-    const Rgb grey = Rgb::Constant(own.matrix().dot(Vec3(0.2126, 0.7152, 0.0722)));
-    return m_scene.style->saturation * own + (1.0 - m_scene.style->saturation) * grey;
+    const Rgb gray = Rgb::Constant(own.matrix().dot(Vec3(0.2126, 0.7152, 0.0722)));
+    return m_scene.style->saturation * own + (1.0 - m_scene.style->saturation) * gray;
   }
 
   /// Radiance from parallel lights, scattered toward the eye at a collision: all of a light, or 0
   /// if a flight toward the light collides.
-  Rgb parallelLight(const Vec3& point, const Scatterer& scatterer, Generator& generator) const {
+  Rgb estimateParallelLight(const Vec3& point, const Scatterer& scatterer,
+                            Generator& generator) const {
     Rgb sum = Rgb::Zero();
     for (const DirectionalLight& light : m_lights.directionals()) {
       const Vec3 toward = -light.direction.normalized();
-      if (collision({point, toward}, generator) == infinity)
+      if (findCollision({point, toward}, generator) == infinity)
         sum += scatterer.f(toward) * light.irradiance;
     }
     return sum;
@@ -194,33 +196,33 @@ private:
 
   /// Radiance from area lights by one probe, which goes half the time toward a light and half the
   /// time as the path would, and counts the lights that it hits.
-  Rgb areaLight(const Vec3& point, const Scatterer& scatterer, Generator& generator) const {
+  Rgb estimateAreaLight(const Vec3& point, const Scatterer& scatterer, Generator& generator) const {
     if (!m_lights.hasAreas())
       return Rgb::Zero();
     const bool isToward = uniform(generator) < 0.5;
     const Ray probe{point,
                     isToward ? m_lights.sampleArea(point, generator) : scatterer.sample(generator)};
-    const Rgb light = m_lights.areaRadiance(probe, collision(probe, generator));
+    const Rgb light = m_lights.areaRadiance(probe, findCollision(probe, generator));
     const double density = 0.5 * m_lights.areaPdf(probe) + 0.5 * scatterer.pdf(probe.direction);
     return light * scatterer.f(probe.direction) / density;
   }
 
   /// Russian roulette for paths of low weight. (With analog absorption a dark medium would show too
   /// few bright paths to estimate the error of their mean.)
-  static bool survives(Rgb& throughput, Generator& generator) {
-    constexpr double least = 0.05;
+  static bool playRoulette(Rgb& throughput, Generator& generator) {
+    constexpr double threshold = 0.05;
     const double most = throughput.maxCoeff();
-    if (most >= least)
+    if (most >= threshold)
       return true;
-    if (uniform(generator) * least >= most)
+    if (uniform(generator) * threshold >= most)
       return false;
-    throughput *= least / most;
+    throughput *= threshold / most;
     return true;
   }
 
   const OracleScene& m_scene;
   View m_view;
-  Medium m_matter;
+  Medium m_medium;
   Clipping m_clipping;
   std::optional<FocusField> m_styledFocus;
   std::optional<Segments> m_segments;
@@ -243,7 +245,8 @@ Estimates render(const OracleScene& scene, std::uint64_t samples, std::uint64_t 
     for (std::uint64_t i = 0; i < samples; ++i) {
       const double column = pixel % scene.width + uniform(generator);
       const double row = pixel / scene.width + uniform(generator);
-      estimates.pixels[static_cast<std::size_t>(pixel)].add(tracer.path(column, row, generator));
+      estimates.pixels[static_cast<std::size_t>(pixel)].add(
+          tracer.tracePath(column, row, generator));
     }
   });
   return estimates;

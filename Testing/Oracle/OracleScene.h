@@ -49,7 +49,7 @@ struct DepthClip {
   /// Cell between samples in which the surface is the focus's own depth, keyed by its first sample.
   /// `least`, `greatest`: range of that depth if all samples around are focus, mm, offset included.
   struct SilhouetteCell {
-    double least = -infinity, greatest = infinity;
+    double min = -infinity, max = infinity;
   };
   std::map<std::size_t, SilhouetteCell> silhouettes = {};
   double offset = 0.0; ///< shift of the surface away from the eye, mm
@@ -78,7 +78,7 @@ struct ComponentsDescription {
     TransferFunction transfer; ///< with surfaces where the volume's own has them
     bool isClipped = true;     ///< false: the clip leaves it
     /// Weight of its share's gradient, per mm, beside the scalar's in spans per mm.
-    double border = 0.0;
+    double interfaceWeight = 0.0;
   };
   std::vector<Segment> segments;
   std::vector<Component> components;

@@ -4,34 +4,34 @@ namespace fenestra::oracle {
 namespace {
 
 /// Some unit vector perpendicular to `direction`.
-Vec3 across(const Vec3& direction) {
+Vec3 findPerpendicular(const Vec3& direction) {
   const Vec3 axis = std::abs(direction.x()) < 0.6 ? Vec3::UnitX() : Vec3::UnitY();
   return direction.cross(axis).normalized();
 }
 
 /// Random unit vector at a given cosine to a direction.
-Vec3 about(const Vec3& direction, double cosine, Generator& generator) {
+Vec3 sampleCone(const Vec3& direction, double cosine, Generator& generator) {
   const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
   const double phi = 2.0 * pi * uniform(generator);
-  const Vec3 u = across(direction);
+  const Vec3 u = findPerpendicular(direction);
   const Vec3 v = direction.cross(u);
   return (cosine * direction + sine * std::cos(phi) * u + sine * std::sin(phi) * v).normalized();
 }
 
 /// The inversion below cancels near g = 0; drawing with 0 instead is unbiased, since density() uses
 /// the same g.
-double invertible(double g) {
+double avoidCancellation(double g) {
   return std::abs(g) < 1e-3 ? 0.0 : g;
 }
 
 /// Direction by inversion of Henyey and Greenstein's distribution of the cosine.
-Vec3 drawHenyeyGreenstein(const Vec3& incoming, double g, Generator& generator) {
+Vec3 sampleHenyeyGreenstein(const Vec3& incoming, double g, Generator& generator) {
   const double u = uniform(generator);
   if (g == 0.0)
-    return about(incoming, 2.0 * u - 1.0, generator);
+    return sampleCone(incoming, 2.0 * u - 1.0, generator);
   const double inner = (1.0 - g * g) / (1.0 - g + 2.0 * g * u);
   const double cosine = std::clamp((1.0 + g * g - inner * inner) / (2.0 * g), -1.0, 1.0);
-  return about(incoming, cosine, generator);
+  return sampleCone(incoming, cosine, generator);
 }
 
 /// Square of GGX's roughness for a Blinn-Phong exponent.
@@ -39,7 +39,7 @@ double roughness2(const SurfaceShading& shading) {
   return 2.0 / (shading.power + 2.0);
 }
 
-double coatAt(const CoatReflectance& coat, double cosine) {
+double evaluateCoat(const CoatReflectance& coat, double cosine) {
   const double x = 1.0 - cosine;
   return coat.constant + coat.x2 * std::pow(x, 2) + coat.x4 * std::pow(x, 4) +
          coat.x8 * std::pow(x, 8);
@@ -94,7 +94,9 @@ Rgb Scatterer::f(const Vec3& outgoing) const {
       d * fresnel(h.dot(outgoing)) * smith(cosIn) * smith(cosOut) / (4.0 * cosIn * cosOut);
   const double w = m_shading->specular;
   if (m_shading->coated) {
-    const auto under = [&](double cosine) { return 1.0 - w * coatAt(*m_shading->coated, cosine); };
+    const auto under = [&](double cosine) {
+      return 1.0 - w * evaluateCoat(*m_shading->coated, cosine);
+    };
     const double through = under(cosIn) * under(cosOut);
     double everywhere = 0.0; // 2 x under(x), by the midpoint rule
     constexpr int steps = 64;
@@ -117,18 +119,18 @@ double Scatterer::facetPdf(const Vec3& h) const {
 
 Vec3 Scatterer::sample(Generator& generator) const {
   if (!m_shading)
-    return drawHenyeyGreenstein(m_incoming, invertible(m_g), generator);
+    return sampleHenyeyGreenstein(m_incoming, avoidCancellation(m_g), generator);
   const double u = uniform(generator);
   if (uniform(generator) < 0.5)
-    return about(m_normal, std::sqrt(u), generator);
+    return sampleCone(m_normal, std::sqrt(u), generator);
   const double cosine = std::sqrt((1.0 - u) / (1.0 + (roughness2(*m_shading) - 1.0) * u));
-  const Vec3 h = about(m_normal, cosine, generator);
+  const Vec3 h = sampleCone(m_normal, cosine, generator);
   return m_incoming - 2.0 * m_incoming.dot(h) * h;
 }
 
 double Scatterer::pdf(const Vec3& outgoing) const {
   if (!m_shading)
-    return henyeyGreenstein(m_incoming.dot(outgoing), invertible(m_g));
+    return henyeyGreenstein(m_incoming.dot(outgoing), avoidCancellation(m_g));
   const double lambert = std::max(0.0, outgoing.dot(m_normal)) / pi;
   Vec3 h = (outgoing - m_incoming).normalized();
   if (h.dot(m_normal) < 0.0)

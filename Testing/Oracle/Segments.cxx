@@ -30,7 +30,7 @@ Segments::Segments(const ComponentsDescription& description)
   for (double z = 0.0; z < m_count.z(); ++z)
     for (double y = 0.0; y < m_count.y(); ++y)
       for (double x = 0.0; x < m_count.x(); ++x)
-        m_voxels.push_back(voxel(m_first + Vec3(x, y, z)));
+        m_voxels.push_back(computeVoxel(m_first + Vec3(x, y, z)));
 }
 
 Segments::Weights Segments::atIndex(const Vec3& index) const {
@@ -67,7 +67,7 @@ Vec3 Segments::gradient(std::size_t component, const Vec3& world) const {
   return m_worldToIndex.linear().transpose() * perVoxel; // chain rule
 }
 
-Segments::Weights Segments::voxel(const Vec3& at) const {
+Segments::Weights Segments::computeVoxel(const Vec3& at) const {
   const auto indicator = [&](const ComponentsDescription::Segment& segment) {
     const Size3& size = segment.mask.grid.size;
     const Vec3 from = at - findFirst(segment.mask, m_worldToIndex);

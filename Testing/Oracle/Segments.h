@@ -24,7 +24,7 @@ public:
 private:
   Weights atIndex(const Vec3& index) const;
   /// At a voxel, in 255ths.
-  Weights voxel(const Vec3& at) const;
+  Weights computeVoxel(const Vec3& at) const;
 
   const ComponentsDescription& m_description;
   Affine m_worldToIndex;

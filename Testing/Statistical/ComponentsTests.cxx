@@ -323,7 +323,7 @@ double expectBound(const TestScene& scene) {
             const Vec3 within = (1.0 + 2.0 * strip.array()) * u.array() - strip.array();
             const Vec3 world = toWorld * (Size3(x, y, z).cast<double>() + within);
             const MajorantGrid::Cell& bound = majorants.cell(cell);
-            const double kept = bound.cut ? clipWeight(scene.clip, world) : 1.0;
+            const double kept = bound.isCut ? clipWeight(scene.clip, world) : 1.0;
             const double extinction =
                 bound.majorant > 0.0F
                     ? medium.extinction(scene.volume.grid.worldToIndex * world, kept)

@@ -88,7 +88,7 @@ Component matterOf(const Combination& c, std::size_t number, const TransferFunct
     transfer.shading->diffuse = uniform(generator, 0.0, 1.0);
   }
   if (c.haveBorders && number % 2 == 1)
-    component.border = uniform(generator, 0.2, 1.0);
+    component.interfaceWeight = uniform(generator, 0.2, 1.0);
   return component;
 }
 
@@ -120,7 +120,8 @@ void placeSegments(const Combination& c, Generator& generator, MatrixScene& scen
       component.transfer.albedo = colorsOf(volume.extinction, generator);
       tint.albedo.emplace_back(component.transfer.albedo);
     }
-    mixture.components.push_back({component.transfer, component.isClipped, component.border});
+    mixture.components.push_back(
+        {component.transfer, component.isClipped, component.interfaceWeight});
     all.components.push_back(std::move(component));
   }
   const auto shares = std::make_shared<const LabelWeights>(sharesOf(parts));

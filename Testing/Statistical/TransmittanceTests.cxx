@@ -238,9 +238,9 @@ private:
       begins.clear();
     };
     for (Travel t : travels) {
-      rays.depth[rays.size] = static_cast<std::uint32_t>(t.random.bits() >> 32);
+      rays.depthBits[rays.size] = static_cast<std::uint32_t>(t.random.bits() >> 32);
       rays.acceptance[rays.size] = static_cast<float>(t.random.uniform());
-      begins.push_back(setInside(rays, rays.size++, m_domain, t.ray, t.range));
+      begins.push_back(setDomainRay(rays, rays.size++, m_domain, t.ray, t.range));
       if (rays.size == RayBatch::capacity)
         flush();
     }
@@ -266,7 +266,7 @@ std::unique_ptr<Follower> followerOf(const Subject& subject, const MajorantGrid&
   const std::vector<std::string> known = instructionSets();
   if (std::find(known.begin(), known.end(), name) == known.end())
     return nullptr;
-  EXPECT_TRUE(SimdTracker::serves(subject.volume, subject.transfer));
+  EXPECT_TRUE(SimdTracker::isSupported(subject.volume, subject.transfer));
   useInstructionSet(name);
   EXPECT_EQ(instructionSet(), name);
   return std::make_unique<WideFollower>(subject, majorants, clip);

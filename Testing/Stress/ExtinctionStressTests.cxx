@@ -66,7 +66,7 @@ TEST_P(LogarithmicRamp, TransmittanceEqualsExpOfIntegral) {
   probe.expectTransmittance({place(end), -Vec3::UnitZ()}, range, expected, budget(4000));
 }
 
-INSTANTIATE_TEST_SUITE_P(Stretches, LogarithmicRamp,
+INSTANTIATE_TEST_SUITE_P(LaneIntervals, LogarithmicRamp,
                          ::testing::Values(RampCase{0.0, 0.1}, RampCase{0.0, 1.0},
                                            RampCase{0.0, 3.0}, RampCase{2.0, 1.0},
                                            RampCase{4.0, 0.5}, RampCase{5.0, 2.0},
@@ -168,9 +168,9 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(HalfSpace, LanesServeDepthsUpToTheirLimit) {
   const Volume volume = layers(depthVoxels, 0.0005, 0.4);
-  EXPECT_TRUE(SimdTracker::serves(volume, deep(Rgb::Ones())));
-  EXPECT_FALSE(SimdTracker::serves(volume, deep(Rgb::Ones()).withDensity(1.2)));
-  EXPECT_FALSE(SimdTracker::serves(volume, stepped(Rgb::Ones())));
+  EXPECT_TRUE(SimdTracker::isSupported(volume, deep(Rgb::Ones())));
+  EXPECT_FALSE(SimdTracker::isSupported(volume, deep(Rgb::Ones()).withDensity(1.2)));
+  EXPECT_FALSE(SimdTracker::isSupported(volume, stepped(Rgb::Ones())));
 }
 
 // ---- whole pictures

@@ -85,8 +85,8 @@ class RayProbe {
 public:
   RayProbe(const Volume& volume, TransferFunction transfer)
       : m_transfer(std::move(transfer)),
-        m_majorants(volume.grid, MinMaxGrid(volume, MajorantGrid::apronFor(m_transfer)), m_transfer,
-                    m_clip),
+        m_majorants(volume.grid, MinMaxGrid(volume, MajorantGrid::requiredPadding(m_transfer)),
+                    m_transfer, m_clip),
         m_medium(volume.grid, std::get<LargeArray<Voxel>>(volume.voxels), m_transfer),
         m_tracker(volume.grid, m_medium, m_majorants, m_clip),
         m_domain(volume.grid) {}

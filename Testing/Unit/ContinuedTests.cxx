@@ -96,7 +96,9 @@ TEST(Continued, LimitOfSamplesLeavesThePassesTowardANoiseAsTheyAre) {
 TEST(Continued, LooksAtTheSeenNoiseFallOnTheSameCounts) {
   const TestScene scene = wavyScene();
   RenderSettings settings = makeSettings(1000, 0.05);
-  settings.seenNoise = [](const Film& film) { return film.sampleCounts().max < 32 ? 1.0 : 0.01; };
+  settings.displayNoise = [](const Film& film) {
+    return film.sampleCounts().max < 32 ? 1.0 : 0.01;
+  };
   const RenderResult once = scene.render(settings);
   EXPECT_EQ(once.finishedSamples, 32U);
   for (const RenderResult& checkpoint : collectCheckpoints(scene, settings, 17))

@@ -144,7 +144,7 @@ TEST(DepthPyramid, BoundsHoldForEveryDepthInARectangle) {
       greatest = std::max(greatest, buffer.at(i));
     }
     const auto found = pyramid.bounds(buffer, Vec2::Constant(-infinity), Vec2::Constant(infinity));
-    EXPECT_EQ(found.begin, least);
+    EXPECT_EQ(found.begin, minimum);
     EXPECT_EQ(found.end, maximum);
     for (int trial = 0; trial < 2000; ++trial) {
       const Vec2 a = randomPoint(random, -15, 15).head<2>();
@@ -169,7 +169,7 @@ TEST(DepthPyramid, BoundsAreTightOnASmallRectangle) {
   const DepthPyramid pyramid(buffer);
   for (double x = -20.0; x < 20.0; x += 0.7) {
     const auto [least, greatest] = pyramid.bounds(buffer, {x, 0.0}, {x + 2.0, 2.0});
-    EXPECT_GT(least, 100.0 + x - 5.0);
+    EXPECT_GT(minimum, 100.0 + x - 5.0);
     EXPECT_LT(maximum, 102.0 + x + 5.0);
   }
 }

@@ -52,7 +52,7 @@ TEST(Render, EstimatesNoiseForThoseWhoWatch) {
   settings.samples = 4;
   for (const bool isWatched : {false, true}) {
     RenderMonitor monitor;
-    monitor.isNoiseWatched = isWatched;
+    monitor.isNoiseWanted = isWatched;
     const RenderResult result =
         s.with([&](const SceneView& scene) { return render(scene, settings, monitor); });
     EXPECT_EQ(monitor.noise, isWatched ? result.film.noise() : infinity);
@@ -82,7 +82,7 @@ TEST(Render, StopsBySeenNoiseAtFixedCountsAlikeInAllPixels) {
   settings.samples = 1000;
   settings.noise = 0.5;
   std::vector<std::uint64_t> looks;
-  settings.seenNoise = [&](const Film& film) {
+  settings.displayNoise = [&](const Film& film) {
     looks.push_back(film.sampleCounts().max);
     return looks.size() < 3 ? 0.6 : 0.4;
   };

@@ -109,7 +109,7 @@ TEST(FeatureBuffers, EndsOnAxesOfAMillionVoxels) {
               4,
               4};
   s.with([](const SceneView& scene) {
-    EXPECT_FALSE(lanesServe(scene));
+    EXPECT_FALSE(canUseSimd(scene));
     EXPECT_GT(computeFeatures(scene).hit[5], 0.1F);
   });
 }
@@ -132,7 +132,7 @@ TEST(FeatureBuffers, LanesAgreeWithTheReadableMarch) {
   for (const Clip& clip : clips) {
     s.clip = clip;
     s.with([](const SceneView& scene) {
-      ASSERT_TRUE(lanesServe(scene));
+      ASSERT_TRUE(canUseSimd(scene));
       const FeatureBuffers simd = computeFeatures(scene), scalar = computeScalarFeatures(scene);
       EXPECT_LT(relativeDifference(simd.hit, scalar.hit), 0.01);
       EXPECT_LT(relativeDifference(simd.depth, scalar.depth), 0.01);

@@ -54,7 +54,7 @@ void expectConservative(const TransferFunction& transfer, double low, double hig
   const Grid grid(Size3(29, 17, 11), map);
   Volume volume{grid, noise<Voxel>(grid.size, low, high), 0.0, 0.0, "noise", {}};
   computeRange(volume);
-  const MinMaxGrid ranges(volume, MajorantGrid::apronFor(transfer));
+  const MinMaxGrid ranges(volume, MajorantGrid::requiredPadding(transfer));
   const MajorantGrid majorants(grid, ranges, transfer, ClipNone{});
   const Medium<Voxel> medium(grid, std::get<LargeArray<Voxel>>(volume.voxels), transfer);
 
@@ -151,7 +151,7 @@ TEST(MajorantGrid, ClippedCellsAreEmptyAndCutOnesMarked) {
   EXPECT_NEAR(emptyFraction(clipped), 0.5, layer);
   std::int64_t cut = 0;
   for (std::int64_t i = 0; i < clipped.cellCount().prod(); ++i)
-    cut += clipped.cell(i).cut;
+    cut += clipped.cell(i).isCut;
   EXPECT_EQ(cut, clipped.cellCount().x() * clipped.cellCount().y());
 
   const TransferFunction empty{ScalarFunction({knot(1.5, 0), knot(2, 2)}), grey};
@@ -188,7 +188,7 @@ TEST(MajorantGrid, ClipAndStyleAreBoundedInTheStripAroundACell) {
     const Vec3 q = inStripAround(p, box, random);
     const double kept = clipWeight(plane, q);
     ASSERT_LE(weight * medium.extinction(q), static_cast<double>(cell.majorant)) << "at " << q;
-    ASSERT_TRUE(cell.cut || cell.majorant == 0.0F || weight == 1.0) << "at " << q;
+    ASSERT_TRUE(cell.isCut || cell.majorant == 0.0F || weight == 1.0) << "at " << q;
   }
 }
 

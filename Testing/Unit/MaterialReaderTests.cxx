@@ -49,10 +49,10 @@ TEST(MaterialReader, ReadsEveryFieldOfAMaterial) {
   EXPECT_EQ(lesion.kind, MaterialKind::medium) << "extinction of its own";
   EXPECT_TRUE(lesion.colorIsAlbedo);
   EXPECT_EQ((*lesion.color)(-1000)[2], 0.1);
-  EXPECT_EQ(extinctionOf(lesion, 1e6), 6.0);
+  EXPECT_EQ(evalExtinction(lesion, 1e6), 6.0);
   EXPECT_EQ(lesion.g, -0.5);
   EXPECT_EQ(lesion.diffuse, 0.8);
-  EXPECT_EQ(extinctionOf(materials.at("bone"), 200), 4.0);
+  EXPECT_EQ(evalExtinction(materials.at("bone"), 200), 4.0);
   EXPECT_EQ(materials.at("stone").kind, MaterialKind::medium);
   EXPECT_EQ((*materials.at("stone").color)(0)[1], 0.2);
   EXPECT_FALSE(materials.at("tissue").color) << "the volume's own";
@@ -201,7 +201,7 @@ TEST(MaterialReader, ChangesOneSegment) {
   EXPECT_FALSE(medium.isClipped);
   EXPECT_EQ(medium.priority, 7);
   matter = changed(matter, parseMaterialChange("x: material=lesion, extinction=3", table), table);
-  EXPECT_EQ(extinctionOf(medium.material, 0), 3.0);
+  EXPECT_EQ(evalExtinction(medium.material, 0), 3.0);
   EXPECT_EQ(medium.material.diffuse, 0.8) << "the lesion's";
   EXPECT_EQ(medium.density, 2.5) << "the segment's";
   matter = changed(matter, parseMaterialChange("x: extinction=base, kind=tint", table), table);

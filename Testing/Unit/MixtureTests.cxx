@@ -115,7 +115,7 @@ double meanDepth(const Film& film) {
 TEST(Mixture, LanesAreTheScalarEstimator) {
   for (const bool isHybrid : {false, true}) {
     const TestScene scene = mixedScene(isHybrid);
-    scene.with([](const SceneView& all) { ASSERT_TRUE(lanesServe(all)); });
+    scene.with([](const SceneView& all) { ASSERT_TRUE(canUseSimd(all)); });
     const Film lanes = renderFilm(scene, Integrator::simd);
     const Film scalar = renderFilm(scene, Integrator::scalar);
     const auto albedo = [](const PixelSums& pixel) { return Rgb(pixel.albedo / 64.0); };
@@ -165,7 +165,7 @@ TEST(Mixture, TheClipLeavesWhatIsFree) {
 TEST(Mixture, BordersAsSurfacesAreTheScalarEstimators) {
   TestScene scene = mixedScene(true);
   scene.mixture->components[3].interfaceWeight = 0.5;
-  scene.with([](const SceneView& all) { EXPECT_FALSE(lanesServe(all)); });
+  scene.with([](const SceneView& all) { EXPECT_FALSE(canUseSimd(all)); });
 }
 
 } // namespace

@@ -149,17 +149,17 @@ TEST(SegmentTint, MixturesHaveTheMatterOfTheirMaterials) {
   const auto extinctionAt = [&](std::size_t i, double scalar) {
     return mixture.components[i].transfer.extinction(scalar).value();
   };
-  EXPECT_EQ(extinctionAt(0, 50.0), 1.0);
+  EXPECT_EQ(evalExtinction(0, 50.0), 1.0);
   EXPECT_EQ(mixture.components[0].transfer.albedo(50.0).matrix(), Vec3(0.3, 0.4, 0.5));
-  EXPECT_EQ(extinctionAt(1, 50.0), 3.0);
-  EXPECT_EQ(extinctionAt(2, 50.0), 1.0);
+  EXPECT_EQ(evalExtinction(1, 50.0), 3.0);
+  EXPECT_EQ(evalExtinction(2, 50.0), 1.0);
   EXPECT_FALSE(mixture.components[2].isClipped);
   EXPECT_TRUE(mixture.components[1].isClipped);
   EXPECT_EQ(mixture.components[2].transfer.g, 0.3) << "a tint keeps the volume's scattering";
 
   const Component& spleen = mixture.components[4];
-  EXPECT_EQ(extinctionAt(4, -500.0), 1.5);
-  EXPECT_EQ(extinctionAt(3, 50.0), 1.0) << "the base's";
+  EXPECT_EQ(evalExtinction(4, -500.0), 1.5);
+  EXPECT_EQ(evalExtinction(3, 50.0), 1.0) << "the base's";
   EXPECT_FALSE(spleen.transfer.gradientOpacity) << "of the base's extinction";
   EXPECT_TRUE(mixture.components[3].transfer.gradientOpacity);
   EXPECT_EQ(spleen.transfer.g, 0.6);
@@ -279,8 +279,8 @@ TEST(SegmentTint, SkinNeedsNoSegment) {
   EXPECT_FALSE(planOf(segments, automatic, {}, {"liver"}, std::make_shared<Mask>()).hasFoundSkin());
   EXPECT_FALSE(planOf(segments, automatic, {}, {"liver"}).hasFoundSkin());
   EXPECT_FALSE(
-      planOf(row({"liver", "skin"}), automatic, {}, {"liver"}, skinOf(grid)).hasFoundSkin());
-  EXPECT_TRUE(planOf(row({"body"}), automatic, {}, {}, skinOf(grid)).hasFoundSkin());
+      planOf(makeRow({"liver", "skin"}), automatic, {}, {"liver"}, skinOf(grid)).hasFoundSkin());
+  EXPECT_TRUE(planOf(makeRow({"body"}), automatic, {}, {}, skinOf(grid)).hasFoundSkin());
 }
 
 TEST(SegmentTint, AlbedoIsTakenAsItIs) {

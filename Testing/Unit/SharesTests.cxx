@@ -169,7 +169,7 @@ TEST(Tint, LanesAreTheScalarEstimator) {
 
 TEST(Tint, MarchInLanesIsTheReadableOne) {
   makeTintedScene().with([](const SceneView& scene) {
-    ASSERT_TRUE(lanesServe(scene));
+    ASSERT_TRUE(canUseSimd(scene));
     const FeatureBuffers simd = computeFeatures(scene), scalar = computeScalarFeatures(scene);
     double sum = 0.0;
     for (std::size_t c = 0; c < 3; ++c)

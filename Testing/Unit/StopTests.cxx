@@ -45,9 +45,9 @@ TEST(Stop, EndsAWalkThatMeetsNothing) {
     Random random(1, 2, 3);
     Counters counters;
     tracker.sampleCollision(ray, {}, random.uniform2(), random, counters);
-    EXPECT_EQ(counters.lookups, stepsBetweenLooks);
+    EXPECT_EQ(counters.lookups, stopPollInterval);
     tracker.transmittance(ray, {}, random, counters);
-    EXPECT_EQ(counters.lookups, 2 * stepsBetweenLooks);
+    EXPECT_EQ(counters.lookups, 2 * stopPollInterval);
   });
 }
 
@@ -58,15 +58,15 @@ TEST(Stop, EndsTheLanesOfABatch) {
     const SimdTracker tracker(s.volume, domain, s.transfer, majorants, s.clip, nullptr, stop);
     const auto rays = std::make_unique<RayBatch>();
     for (std::size_t& i = rays->size; i < RayBatch::capacity; ++i) {
-      setInside(*rays, i, domain, ray, {});
-      rays->depth[i] = static_cast<std::uint32_t>(i);
+      setDomainRay(*rays, i, domain, ray, {});
+      rays->depthBits[i] = static_cast<std::uint32_t>(i);
       rays->acceptance[i] = 0.5F;
     }
     Counters counters;
     tracker.sampleCollisions(*rays, counters);
     tracker.estimateTransmittances(*rays, counters);
     constexpr std::uint64_t mostLanes = 2 * 16;
-    EXPECT_LE(counters.lookups, 2 * stepsBetweenLooks * maxLanes);
+    EXPECT_LE(counters.lookups, 2 * stopPollInterval * maxLanes);
   });
 }
 

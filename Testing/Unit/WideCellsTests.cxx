@@ -51,7 +51,7 @@ struct MajorantPair {
       for (std::int64_t y = low.y(); y < high.y(); ++y)
         for (std::int64_t x = low.x(); x < high.x(); ++x) {
           const MajorantGrid::Cell& cell = majorants.cell(x + fine.x() * (y + fine.y() * z));
-          merged = {std::max(merged.majorant, cell.majorant), merged.cut || cell.cut};
+          merged = {std::max(merged.majorant, cell.majorant), merged.isCut || cell.isCut};
         }
     return merged;
   }
@@ -84,14 +84,14 @@ void expectBounds(const MajorantPair& pair) {
     const DecodedCell cell = pair.cell(c);
     const MajorantGrid::Cell exact = pair.mergeCells(c);
     ASSERT_EQ(cell.majorant == 0.0F, exact.majorant == 0.0F) << c;
-    ASSERT_EQ(cell.cut, exact.cut) << c;
+    ASSERT_EQ(cell.isCut, exact.isCut) << c;
     if (cell.skipRadius == 0) { // fifteen bits, rounded up
       ASSERT_LE(cell.majorant, exact.majorant * (1.0F + 0x1p-15F)) << c;
     }
     const Size3 radius = Size3::Constant(cell.skipRadius);
     pair.forEach(c - radius, c + radius, [&](const Size3& other) {
       ASSERT_GE(cell.majorant, pair.mergeCells(other).majorant) << c << ", " << other;
-      ASSERT_TRUE(other == c || !pair.mergeCells(other).cut) << c << ", " << other;
+      ASSERT_TRUE(other == c || !pair.mergeCells(other).isCut) << c << ", " << other;
     });
   });
 }
@@ -122,9 +122,9 @@ TEST(SimdMajorants, ReachIsZeroInCutCells) {
   int isCut = 0;
   pair.forEach([&](const Size3& c) {
     isCut += pair.cell(c).isCut ? 1 : 0;
-    EXPECT_TRUE(!pair.cell(c).cut || pair.cell(c).skipRadius == 0) << c;
+    EXPECT_TRUE(!pair.cell(c).isCut || pair.cell(c).skipRadius == 0) << c;
   });
-  EXPECT_GT(cut, 100);
+  EXPECT_GT(isCut, 100);
 }
 
 TEST(SimdMajorants, CellsOfFewVoxelsAreMergedAndOthersNot) {

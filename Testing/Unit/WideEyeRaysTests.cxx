@@ -99,7 +99,7 @@ TEST_P(SimdCameraRays, NumbersAreThoseOfTheSource) {
         };
         for (std::size_t i = 0; i < samples->size; ++i) {
           const PrimarySamples numbers = source.generate(400 + i, sample + i);
-          ASSERT_EQ(paths->rays.depth[i], numbers.opticalDepth >> 32) << i;
+          ASSERT_EQ(paths->rays.depthBits[i], numbers.opticalDepth >> 32) << i;
           ASSERT_EQ(paths->rays.acceptance[i], toUnitFloat(numbers.acceptance >> 32)) << i;
           ASSERT_EQ(paths->uDirection[0][i], toUnitFloat(numbers.direction >> 32)) << i;
           ASSERT_EQ(paths->uDirection[1][i], toUnitFloat(numbers.direction)) << i;
@@ -142,7 +142,7 @@ TEST_P(SimdCameraRays, RaysAreThoseInDouble) {
           const std::size_t at = i + 3;
           const Ray ray = cameraRays.ray(double{samples->column[i]} + 0.5 * width,
                                          double{samples->row[i]} + 0.5 * height);
-          setInside(*exact, i, domain, ray, cameraRays.range(ray));
+          setDomainRay(*exact, i, domain, ray, cameraRays.range(ray));
           ASSERT_NEAR(exact->length[i], paths->rays.length[at], 2e-4);
           for (std::size_t axis = 0; axis < 3; ++axis)
             ASSERT_NEAR(ray.direction[static_cast<int>(axis)], paths->direction[axis][at], 2e-7);

@@ -113,7 +113,7 @@ void setPath(PathBatch& paths, std::size_t i, const Vec3& direction, const Vec2&
 /// Light drawn by paths that scatter at the origin; those that drew none are left out.
 std::vector<ShadowSample> sampleLights(const Fog& fog, std::uint64_t seed, std::size_t count) {
   const auto paths = std::make_unique<PathBatch>();
-  const auto lights = std::make_unique<LightBatch>();
+  const auto lights = std::make_unique<ShadowBatch>();
   std::vector<ShadowSample> all;
   for (std::size_t from = 0; from < count; from += RayBatch::capacity) {
     paths->rays.size = std::min(RayBatch::capacity, count - from);
@@ -141,7 +141,7 @@ std::vector<ShadowSample> sampleLights(const Fog& fog, std::uint64_t seed, std::
 /// Light that rays scattered with density 1 / 4 pi take from beyond the fog.
 std::vector<Rgb> collectEmitted(const Fog& fog, const std::vector<Vec3>& directions) {
   const auto paths = std::make_unique<PathBatch>();
-  const auto lights = std::make_unique<LightBatch>();
+  const auto lights = std::make_unique<ShadowBatch>();
   std::vector<Rgb> all;
   for (std::size_t from = 0; from < directions.size(); from += RayBatch::capacity) {
     paths->rays.size = std::min(RayBatch::capacity, directions.size() - from);

@@ -26,7 +26,7 @@ struct Lookup {
   double value;
 };
 Lookup lookUp(const SimdLines& table, double scalar) {
-  const float at = (narrow(scalar) - table.start) * table.perUnit;
+  const float at = (narrow(scalar) - table.start) * table.binsPerUnit;
   const float bin = std::max(std::min(at, table.last), 0.0F);
   const SimdTable::Line& line = table.lines[static_cast<std::size_t>(bin)];
   return {!std::isnan(line.slope),

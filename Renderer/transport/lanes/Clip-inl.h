@@ -9,15 +9,15 @@ HWY_INLINE Float depthIndex(const SimdMedium::DepthAxis& axis, Float coordinate)
 }
 
 /// Points in view space.
-struct InView {
+struct ViewPoints {
   Float x, y;              ///< as toBuffer's; 0 for a plane
   Float depth;             ///< from the target, mm
   Float scale;             ///< target's depth / depth; 1 in orthographic views
   LaneMask isBehindCamera; ///< no lane in orthographic views
 };
 
-HWY_INLINE InView inView(const SimdMedium& medium, const Float3& p) {
-  InView at{0.0F, 0.0F, applyRow(medium.toView[2], p), 1.0F, LaneMask::none()};
+HWY_INLINE ViewPoints mapToView(const SimdMedium& medium, const Float3& p) {
+  ViewPoints at{0.0F, 0.0F, applyRow(medium.toView[2], p), 1.0F, LaneMask::none()};
   if (medium.perspective) {
     const Float fromEye = at.depth + medium.targetDepth;
     at.isBehindCamera = fromEye <= 0.0F;
@@ -32,7 +32,7 @@ HWY_INLINE InView inView(const SimdMedium& medium, const Float3& p) {
 
 /// Slope of a surface along one axis of the buffer, mm per mm, from its `rise` over a cell. Beyond
 /// the samples, and at the first of them, 0.
-HWY_INLINE Float slopeAlong(const SimdMedium::DepthAxis& axis, Float index, Float rise) {
+HWY_INLINE Float axisSlope(const SimdMedium::DepthAxis& axis, Float index, Float rise) {
   const Float before = axis.before;
   const LaneMask isFine = (index >= before) & (index < before + axis.lastInside);
   const LaneMask isBetween = (index > 0.0F) & (index < axis.last);
@@ -46,7 +46,7 @@ struct Surface {
   Float depth;          ///< mm from the target
   Float slopeX, slopeY; ///< mm per mm
 };
-HWY_INLINE Surface surfaceAt(const SimdMedium& medium, const InView& view) {
+HWY_INLINE Surface interpolateSurface(const SimdMedium& medium, const ViewPoints& view) {
   const Float column = depthIndex(medium.depthX, view.x);
   const Float row = depthIndex(medium.depthY, view.y);
   const Int columns = medium.depthColumns;
@@ -60,13 +60,13 @@ HWY_INLINE Surface surfaceAt(const SimdMedium& medium, const InView& view) {
   const Float upLeft = at(c0, r0), upRight = at(c1, r0);
   const Float downLeft = at(c0, r1), downRight = at(c1, r1);
   return {r0 * columns + c0, lerp(lerp(upLeft, upRight, fc), lerp(downLeft, downRight, fc), fr),
-          slopeAlong(medium.depthX, column, lerp(upRight - upLeft, downRight - downLeft, fr)),
-          slopeAlong(medium.depthY, row, lerp(downLeft - upLeft, downRight - upRight, fc))};
+          axisSlope(medium.depthX, column, lerp(upRight - upLeft, downRight - downLeft, fr)),
+          axisSlope(medium.depthY, row, lerp(downLeft - upLeft, downRight - upRight, fc))};
 }
 
 /// Exact surface depth in seams for the lanes of `isQueried`; `surface` for the others.
 inline Float querySilhouettes(const SilhouetteCells& silhouettes, LaneMask isQueried, Int cell,
-                              const InView& at, double softness, Float surface) {
+                              const ViewPoints& at, double softness, Float surface) {
   static_assert(laneCount <= SilhouetteCells::maxQueries);
   const LaneArray<std::int32_t> numbers(cell);
   const LaneArray<float> xs(at.x), ys(at.y), depths(at.depth);
@@ -85,7 +85,7 @@ inline Float querySilhouettes(const SilhouetteCells& silhouettes, LaneMask isQue
 
 /// ClipDepth::surfaceDepth: exact in seams for the lanes of `which`, else `surface`.
 HWY_INLINE Float refineAtSilhouette(const SimdMedium& medium, LaneMask which, const Surface& linear,
-                                    const InView& at) {
+                                    const ViewPoints& at) {
   const Float surface = linear.depth;
   const Int cell = gather(medium.silhouette->indices().data(), linear.sample);
   const LaneMask isSilhouette = cell > -1;
@@ -93,9 +93,9 @@ HWY_INLINE Float refineAtSilhouette(const SimdMedium& medium, LaneMask which, co
     return surface;
   const Int first = shiftLeft<1>(max(cell, 0));
   const float* const bounds = &medium.silhouette->depthBounds().data()->min;
-  const Float least = min(surface, gather(bounds, first));
-  const Float greatest = max(surface, gather(bounds + 1, first)); // least and greatest alternate
-  const LaneMask isNear = (at.depth >= least) & (at.depth <= greatest + medium.softness);
+  const Float nearest = min(surface, gather(bounds, first));
+  const Float farthest = max(surface, gather(bounds + 1, first)); // least and greatest alternate
+  const LaneMask isNear = (at.depth >= nearest) & (at.depth <= farthest + medium.softness);
   const LaneMask isQueried = which & isSilhouette & isNear;
   if (!isQueried.any())
     return surface;
@@ -103,7 +103,7 @@ HWY_INLINE Float refineAtSilhouette(const SimdMedium& medium, LaneMask which, co
 }
 
 /// Depth of the nearest sample.
-HWY_INLINE Float nearestDepth(const SimdMedium& medium, const InView& view) {
+HWY_INLINE Float findNearestDepth(const SimdMedium& medium, const ViewPoints& view) {
   const Int c = toInt(depthIndex(medium.depthX, view.x) + 0.5F);
   const Int r = toInt(depthIndex(medium.depthY, view.y) + 0.5F);
   return gather(medium.depths, r * medium.depthColumns + c);
@@ -111,21 +111,21 @@ HWY_INLINE Float nearestDepth(const SimdMedium& medium, const InView& view) {
 
 /// Way of points behind the clip's surface, mm; below 0 in front. In seams exact for the lanes of
 /// `which`.
-HWY_INLINE Float behindSurface(const SimdMedium& medium, const Float3& p, const InView& view,
-                               LaneMask which) {
+HWY_INLINE Float signedDistance(const SimdMedium& medium, const Float3& p, const ViewPoints& view,
+                                LaneMask which) {
   if (medium.clipKind == SimdMedium::ClipKind::plane)
     return -applyRow(medium.toPlane, p);
   if (medium.clipKind == SimdMedium::ClipKind::depthNearest)
-    return view.depth - nearestDepth(medium, view);
-  const Surface surface = surfaceAt(medium, view);
+    return view.depth - findNearestDepth(medium, view);
+  const Surface surface = interpolateSurface(medium, view);
   return view.depth -
          (medium.silhouette ? refineAtSilhouette(medium, which, surface, view) : surface.depth);
 }
 
 /// keep for every kind of clip, for the lanes of `which`.
 inline Float clipWeight(const SimdMedium& medium, const Float3& p, LaneMask which) {
-  const InView view = inView(medium, p);
-  const Float behind = behindSurface(medium, p, view, which);
+  const ViewPoints view = mapToView(medium, p);
+  const Float behind = signedDistance(medium, p, view, which);
   const Float ghost = medium.ghost;
   const Float rise = medium.perSoftness > 0.0F ? min(behind * medium.perSoftness, 1.0F) : 1.0F;
   const Float weight = select(behind < 0.0F, ghost, lerp(ghost, 1.0F, rise));
@@ -133,8 +133,8 @@ inline Float clipWeight(const SimdMedium& medium, const Float3& p, LaneMask whic
 }
 
 /// Gradient of the depth behind a surface, along the view's axes.
-HWY_INLINE Float3 behindGradient(const SimdMedium& medium, const InView& view,
-                                 const Surface& surface) {
+HWY_INLINE Float3 distanceGradient(const SimdMedium& medium, const ViewPoints& view,
+                                   const Surface& surface) {
   const Float x = surface.slopeX, y = surface.slopeY;
   if (!medium.perspective)
     return {-x, -y, 1.0F};
@@ -145,8 +145,8 @@ HWY_INLINE Float3 behindGradient(const SimdMedium& medium, const InView& view,
 
 /// cutGradient, world axes, for the lanes of `which`; 0 in the others. Requires a soft edge.
 inline Float3 cutGradient(const SimdMedium& medium, const Float3& p, LaneMask which) {
-  const InView view = inView(medium, p);
-  const Float behind = behindSurface(medium, p, view, which);
+  const ViewPoints view = mapToView(medium, p);
+  const Float behind = signedDistance(medium, p, view, which);
   const LaneMask isRamp = which & (behind >= 0.0F) & (behind < medium.softness);
   const LaneMask isCut = isRamp.without(view.isBehindCamera);
   if (!isCut.any())
@@ -154,6 +154,6 @@ inline Float3 cutGradient(const SimdMedium& medium, const Float3& p, LaneMask wh
   const Float length = medium.cutSlope;
   if (medium.clipKind != SimdMedium::ClipKind::depthLinear)
     return zeroUnless(isCut, length * Float3(medium.cutNormal));
-  const Float3 gradient = behindGradient(medium, view, surfaceAt(medium, view));
+  const Float3 gradient = distanceGradient(medium, view, interpolateSurface(medium, view));
   return zeroUnless(isCut, length * normalize(mapDirection(medium.fromView, gradient)));
 }

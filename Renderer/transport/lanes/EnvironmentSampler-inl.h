@@ -4,7 +4,7 @@
 /// A bin of an alias table, and a place inside it, uniform in (0, 1].
 struct Bin {
   Int index;
-  Float place;
+  Float fraction;
 };
 
 /// `table`: number of the table among the tables.
@@ -25,7 +25,7 @@ struct TexelSample {
   Float3 direction;
   Int texel;
 };
-HWY_INLINE TexelSample sampleTexel(const MapTables& map, UInt u, UInt v) {
+HWY_INLINE TexelSample sampleTexel(const EnvironmentTables& map, UInt u, UInt v) {
   const Bin row = sampleBin(map.rows, 0, u);
   const Bin column = sampleBin(map.columns, row.index, v);
 
@@ -33,17 +33,17 @@ HWY_INLINE TexelSample sampleTexel(const MapTables& map, UInt u, UInt v) {
   const Int fromSouth = Int(map.height - 1) - row.index;
   const LaneMask isSouth = row.index > fromSouth;
   const auto [upper, lower] =
-      loadPairs(map.falls.data(), Indices(select(isSouth, fromSouth, row.index)));
-  const Float fall = lerp(upper, lower, row.place);
-  const Float sine = safeSqrt(fall * (2.0F - fall));
+      loadPairs(map.oneMinusCos.data(), Indices(select(isSouth, fromSouth, row.index)));
+  const Float oneMinusCos = lerp(upper, lower, row.fraction);
+  const Float sine = safeSqrt(oneMinusCos * (2.0F - oneMinusCos));
   const float perWidth = 1.0F / static_cast<float>(map.width);
-  const CosineSine phi = cosSinTurns((toFloat(column.index) + column.place) * perWidth);
-  const Float z = 1.0F - fall;
+  const CosineSine phi = cosSinTurns((toFloat(column.index) + column.fraction) * perWidth);
+  const Float z = 1.0F - oneMinusCos;
   return {{-sine * phi.sine, -sine * phi.cosine, select(isSouth, -z, z)},
           row.index * map.width + column.index};
 }
 
-HWY_INLINE Int texelToward(const MapTables& map, const Float3& d) {
+HWY_INLINE Int findTexel(const EnvironmentTables& map, const Float3& d) {
   const auto cell = [](Float place, std::int32_t count) { // NaN, too, gets one that is there
     return toInt(clampZero(min(place, static_cast<float>(count - 1))));
   };
@@ -54,7 +54,7 @@ HWY_INLINE Int texelToward(const MapTables& map, const Float3& d) {
   return row * map.width + column;
 }
 
-HWY_INLINE Float3 radianceOf(const MapTables& map, Int texel) {
+HWY_INLINE Float3 loadRadiance(const EnvironmentTables& map, Int texel) {
   const Indices first(texel * 3);
   const auto channel = [&](std::size_t c) {
     return map.tint[c] * bitsAsFloat(loadInts(map.rgb + c, first));

@@ -25,7 +25,7 @@ void sampleAll(const CameraTable& camera, CameraSamples& samples, PathBatch& pat
     store(column + toUniformBelow1(numbers.position[0]), &samples.column[i]);
     store(load(&samples.tile[i]), &paths.tile[to]);
     store(load(&samples.tileSample[i]), &paths.tileSample[to]);
-    store(numbers.collision[0], &paths.rays.depth[to]);
+    store(numbers.collision[0], &paths.rays.depthBits[to]);
     store(toUniformBelow1(numbers.collision[1]), &paths.rays.acceptance[to]);
     for (const std::size_t which : {0U, 1U}) {
       store(toUniformBelow1(numbers.direction[which]), &paths.uDirection[which][to]);
@@ -49,7 +49,7 @@ void beginAll(const SimdMedium& medium, const CameraTable& camera, const CameraS
     const Float3 world = depthPerLength * toward;
     const Float3 direction = mapDirection(camera.toIndex, world);
     const Float3 point = at(camera.point, camera.pointPerColumn, camera.pointPerRow);
-    Stretches inside{clampZero(load(&samples.from[i])), load(&samples.to[i])};
+    LaneIntervals inside{clampZero(load(&samples.from[i])), load(&samples.to[i])};
     inside.clip(medium, point, direction);
     const LaneMask some = inside.begin < inside.end;
     const Float before = zeroUnless(some, inside.begin);

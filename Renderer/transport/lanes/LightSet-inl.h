@@ -9,15 +9,15 @@ struct LaneEmitterHit {
   Float3 radiance;
   Float pdf;
 };
-/// LightSet::environment; texelOf(map): each map's texel in the direction.
+/// LightSet::environment; selectTexel(map): each map's texel in the direction.
 template <typename TexelOf>
-HWY_INLINE LaneEmitterHit environment(const SimdShading& shading, const Float3& direction,
-                                      TexelOf&& texelOf) {
+HWY_INLINE LaneEmitterHit evaluateEnvironment(const SimdShading& shading, const Float3& direction,
+                                              TexelOf&& selectTexel) {
   LaneEmitterHit sum{evaluateSkies(shading.lights, direction), 0.0F};
-  for (const MapTables& map : shading.maps) {
-    const Float3 radiance = radianceOf(map, texelOf(map));
+  for (const EnvironmentTables& map : shading.maps) {
+    const Float3 radiance = loadRadiance(map, selectTexel(map));
     sum.radiance = sum.radiance + radiance;
-    sum.pdf = sum.pdf + map.perBrightness * maxComponent(radiance);
+    sum.pdf = sum.pdf + map.pdfPerBrightness * maxComponent(radiance);
   }
   return sum;
 }
@@ -35,9 +35,10 @@ inline void sampleMaps(const SimdShading& shading, LaneMask which, Float choice,
       toward.direction =
           select(later, sampleTexel(shading.maps[i], u, v).direction, toward.direction);
   }
-  const LaneEmitterHit light = environment(shading, toward.direction, [&](const MapTables& map) {
-    return count == 1 ? toward.texel : texelToward(map, toward.direction);
-  });
+  const LaneEmitterHit light =
+      evaluateEnvironment(shading, toward.direction, [&](const EnvironmentTables& map) {
+        return count == 1 ? toward.texel : findTexel(map, toward.direction);
+      });
   const LaneMask lit = which & (light.pdf > 0.0F);
   sampled.direction = select(lit, toward.direction, sampled.direction);
   sampled.radiance = select(lit, light.radiance, sampled.radiance);
@@ -68,8 +69,8 @@ inline Float3 emittedAlongRay(const SimdShading& shading, LaneMask which, const 
     return sum + zeroUnless(escaped, evaluateSkies(shading.lights, direction));
   if (!escaped.any())
     return sum;
-  const LaneEmitterHit far = environment(
-      shading, direction, [&](const MapTables& map) { return texelToward(map, direction); });
+  const LaneEmitterHit far = evaluateEnvironment(
+      shading, direction, [&](const EnvironmentTables& map) { return findTexel(map, direction); });
   const Float weight = scatterPdf / (scatterPdf + far.pdf);
   return sum + zeroUnless(escaped, weight * far.radiance);
 }

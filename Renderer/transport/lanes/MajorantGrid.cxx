@@ -9,7 +9,7 @@ namespace fenestra {
 namespace {
 
 /// Array of cells with a border one cell wide.
-struct Bordered {
+struct PaddedGrid {
   Size3 size;
 
   std::size_t count() const { return static_cast<std::size_t>(size.prod()); }
@@ -42,7 +42,8 @@ struct Bordered {
 /// Number of empty cells around each empty cell inside the border, -1 for filled cells: two sweeps
 /// (Rosenfeld and Pfaltz 1966), exact for distances that count diagonals as 1. Nothing beyond the
 /// border counts as empty.
-std::vector<std::int32_t> emptyAround(const Bordered& at, const std::vector<float>& majorants) {
+std::vector<std::int32_t> findEmptyRadii(const PaddedGrid& at,
+                                         const std::vector<float>& majorants) {
   constexpr std::int32_t unknown = 1000000;
   std::vector<std::int32_t> cells(at.count(), 0);
   at.forEachInner(
@@ -63,12 +64,12 @@ std::vector<std::int32_t> emptyAround(const Bordered& at, const std::vector<floa
 }
 
 /// Replaces each cell inside the border by the maximum of the 27 cells centred there.
-void dilate(const Bordered& at, std::vector<float>& cells, std::vector<float>& room) {
+void dilate(const PaddedGrid& at, std::vector<float>& cells, std::vector<float>& scratch) {
   for (const std::size_t stride : at.strides()) {
     at.forEachInParallel([&](std::size_t i, const Size3&) {
-      room[i] = std::max({cells[i - stride], cells[i], cells[i + stride]});
+      scratch[i] = std::max({cells[i - stride], cells[i], cells[i + stride]});
     });
-    cells.swap(room);
+    cells.swap(scratch);
   }
 }
 
@@ -81,7 +82,7 @@ struct SkipRadii {
 /// Sums over boxes of cells.
 class BoxSums {
 public:
-  BoxSums(const Bordered& at, const std::vector<float>& cells)
+  BoxSums(const PaddedGrid& at, const std::vector<float>& cells)
       : m_at(at), m_sums(cells.begin(), cells.end()) {
     for (const std::size_t stride : at.strides())
       at.forEachInner([&](std::size_t i, const Size3&) { m_sums[i] += m_sums[i - stride]; });
@@ -103,21 +104,21 @@ public:
   }
 
 private:
-  const Bordered& m_at;
+  const PaddedGrid& m_at;
   std::vector<double> m_sums;
 };
 
 /// Chooses per cell the reach r of least cost per mm, in look-ups: stepCost / (edge (0.7 + r)) for
 /// steps, plus bound_r - mean majorant for null collisions. 0.7 edges: mean chord of a cell.
 /// stepCost: cost of a step relative to a look-up (measured; changes no expectation).
-SkipRadii chooseRadii(const Bordered& at, const std::vector<float>& majorants,
+SkipRadii chooseRadii(const PaddedGrid& at, const std::vector<float>& majorants,
                       const std::vector<bool>& cut, double edge) {
   constexpr double stepCost = 0.15;
   const BoxSums sums(at, majorants);
   SkipRadii best{majorants, std::vector<std::uint8_t>(at.count(), 0)};
-  std::vector<float> least(at.count(), static_cast<float>(stepCost / (edge * 0.7)));
+  std::vector<float> minCosts(at.count(), static_cast<float>(stepCost / (edge * 0.7)));
   std::vector<float> bounds(majorants);
-  std::vector<float> room(at.count(), 0.0F);
+  std::vector<float> scratch(at.count(), 0.0F);
   for (std::size_t i = 0; i < at.count(); ++i)
     if (cut[i]) // cut cells are walked alone
       bounds[i] = std::numeric_limits<float>::infinity();
@@ -125,15 +126,15 @@ SkipRadii chooseRadii(const Bordered& at, const std::vector<float>& majorants,
   std::atomic<bool> some = true;
   for (std::uint32_t radius = 1; some && radius <= SimdMajorants::maxRadius; ++radius) {
     some = false;
-    dilate(at, bounds, room);
+    dilate(at, bounds, scratch);
     const auto step = static_cast<float>(stepCost / (edge * (0.7 + radius)));
     at.forEachInParallel([&](std::size_t i, const Size3& cell) {
       if (majorants[i] == 0.0F || best.radii[i] + 2U < radius)
         return;
       some.store(true, std::memory_order_relaxed);
       const float cost = bounds[i] - sums.mean(cell, radius) + step;
-      if (cost < least[i]) {
-        least[i] = cost;
+      if (cost < minCosts[i]) {
+        minCosts[i] = cost;
         best.bound[i] = bounds[i];
         best.radii[i] = static_cast<std::uint8_t>(radius);
       }
@@ -144,10 +145,10 @@ SkipRadii chooseRadii(const Bordered& at, const std::vector<float>& majorants,
 
 /// Cells of this many voxels at most are merged (measured: looser bounds cost less than more
 /// cells).
-constexpr std::int64_t mostMergedVoxels = 16;
+constexpr std::int64_t maxMergedVoxels = 16;
 
 /// Code of a bound >= majorant, which is not 0.
-std::uint32_t majorantCode(float majorant) {
+std::uint32_t encodeMajorant(float majorant) {
   constexpr auto below = static_cast<std::uint32_t>(SimdMajorants::radiusBits);
   return (std::bit_cast<std::uint32_t>(majorant) + below) & ~below;
 }
@@ -155,9 +156,9 @@ std::uint32_t majorantCode(float majorant) {
 } // namespace
 
 SimdMajorants::SimdMajorants(const MajorantGrid& majorants)
-    : merged(majorants.edge().prod() <= mostMergedVoxels ? 2 : 1),
+    : merged(majorants.edge().prod() <= maxMergedVoxels ? 2 : 1),
       count((majorants.cellCount().array() + merged - 1) / merged) {
-  const Bordered at{count.array() + 2};
+  const PaddedGrid at{count.array() + 2};
   std::vector<float> bound(at.count(), 0.0F);
   std::vector<bool> cut(at.count(), false);
   const Size3& fine = majorants.cellCount();
@@ -168,19 +169,19 @@ SimdMajorants::SimdMajorants(const MajorantGrid& majorants)
         const MajorantGrid::Cell& cell = majorants.cell(next++);
         const std::size_t i = at.index({x / merged + 1, y / merged + 1, z / merged + 1});
         bound[i] = std::max(bound[i], cell.majorant);
-        cut[i] = cut[i] || cell.cut;
+        cut[i] = cut[i] || cell.isCut;
       }
   const double edge = static_cast<double>(merged) *
                       std::cbrt(std::abs(1.0 / majorants.worldToCell().linear().determinant()));
-  const std::vector<std::int32_t> around = emptyAround(at, bound);
+  const std::vector<std::int32_t> emptyRadii = findEmptyRadii(at, bound);
   const SkipRadii skip = chooseRadii(at, bound, cut, edge);
   codes.assign(at.count(), 0);
   for (std::size_t i = 0; i < at.count(); ++i) {
     if (bound[i] > 0.0F)
       codes[i] = static_cast<std::int32_t>((cut[i] ? SimdMajorants::cutBit : 0U) |
-                                           majorantCode(skip.bound[i]) | skip.radii[i]);
+                                           encodeMajorant(skip.bound[i]) | skip.radii[i]);
     else
-      codes[i] = std::min(std::max(around[i], 0), radiusBits);
+      codes[i] = std::min(std::max(emptyRadii[i], 0), radiusBits);
   }
 }
 

@@ -77,15 +77,15 @@ private:
     const Float length = next - m_t;
     const Float middle = fma(0.5F, length, m_t);
     const Float3 p = pointAt(middle);
-    const Float scalar = scalarAt<Voxel>(m_medium.field, p);
-    LaneExtinctions all = m_medium.mixture ? extinctionsAt<true>(m_medium, filled, p, scalar)
-                                           : extinctionsAt<false>(m_medium, filled, p, scalar);
+    const Float scalar = interpolateScalar<Voxel>(m_medium.field, p);
+    LaneExtinctions all = m_medium.mixture ? evalExtinctions<true>(m_medium, filled, p, scalar)
+                                           : evalExtinctions<false>(m_medium, filled, p, scalar);
     if (m_usesClip) {
-      const LaneMask cut = filled & cell.cut;
+      const LaneMask cut = filled & cell.isCut;
       if (cut.any())
         all.clipped.setIf(cut, all.clipped * clipWeight(m_medium, p, cut));
     }
-    const Float extinction = all.clipped + all.free;
+    const Float extinction = all.clipped + all.unclipped;
     const Float passed = exp(-(extinction * length));
     const Float stopped = zeroUnless(filled, m_transmittance * (1.0F - passed));
     m_transmittance = m_transmittance - stopped;
@@ -115,14 +115,14 @@ public:
   void collect(Walk<Voxel>& walk, LaneMask which) {
     const auto [probability, middle] = walk.take(which);
     const Float3 p = walk.pointAt(middle);
-    const Float scalar = scalarAt<Voxel>(m_medium.field, p);
+    const Float scalar = interpolateScalar<Voxel>(m_medium.field, p);
     const Mean mean =
         m_medium.mixture ? evaluateMixture(which, p, scalar) : evaluateSingle(which, p, scalar);
     Float3 albedo = mean.albedo;
     if (m_medium.context)
       albedo = desaturate(*m_medium.context, p, albedo);
     m_albedo = m_albedo + probability * albedo;
-    const Float3 difference = differenceAt<Voxel>(m_medium.field, p);
+    const Float3 difference = centralDifference<Voxel>(m_medium.field, p);
     Float3 gradient = mapDirection(m_shading.indexDifferenceToGradient, difference);
     Float alongRay = dot(walk.direction(), difference); // of the gradient's sign
     if (m_shading.hybrid && m_medium.cutSlope > 0.0F) {
@@ -130,11 +130,11 @@ public:
       alongRay = dot(mapDirection(m_shading.toLocal, walk.direction()), gradient);
     }
     const Float slope = sqrt(dot(gradient, gradient));
-    const Float3 normal = normalOf(gradient, alongRay, probability);
+    const Float3 normal = makeNormal(gradient, alongRay, probability);
     m_normal = m_normal + normal;
     if (m_shading.hybrid)
       m_surfaceNormal =
-          m_surfaceNormal + mean.opacity * missing(m_shading.surfaceRate * slope) * normal;
+          m_surfaceNormal + mean.opacity * oneMinusExp(m_shading.surfaceRate * slope) * normal;
     m_hit = m_hit + probability;
     m_distance = fma(probability, middle, m_distance);
   }
@@ -146,8 +146,8 @@ public:
   };
 
   Mean evaluateSingle(LaneMask which, const Float3& p, Float scalar) const {
-    return {albedoAt(m_shading, which, p, scalar),
-            m_shading.hybrid ? missing(extinctionOf(m_medium.extinctions, scalar)) : 0.0F};
+    return {evalMediumAlbedo(m_shading, which, p, scalar),
+            m_shading.hybrid ? oneMinusExp(evalExtinction(m_medium.extinctions, scalar)) : 0.0F};
   }
 
   Mean evaluateMixture(LaneMask which, const Float3& p, Float scalar) const {
@@ -156,10 +156,11 @@ public:
     Float all = 0.0F;
     forEachPart(
         m_medium, which, p, scalar, weight, [&](LaneMask lanes, Int components, Float part) {
-          const Float extinction = extinctionOf(m_medium.extinctions, lanes, components, scalar);
+          const Float extinction = evalExtinction(m_medium.extinctions, lanes, components, scalar);
           all = all + part;
-          sums.albedo = sums.albedo + part * albedoIn(m_shading, lanes, components, scalar);
-          sums.opacity = sums.opacity + part * missing(extinction);
+          sums.albedo =
+              sums.albedo + part * evalComponentAlbedo(m_shading, lanes, components, scalar);
+          sums.opacity = sums.opacity + part * oneMinusExp(extinction);
         });
     const Float scale = zeroUnless(all > 0.0F, 1.0F / all);
     return {scale * sums.albedo, scale * sums.opacity};
@@ -184,8 +185,8 @@ private:
 void marchCameraAll(const SimdMedium& medium, const SimdShading& shading, MarchBatch& batch) {
   // Eye rays begin behind the surface, where only an edge that is not sharp matters; unless they
   // are whole, for matter that the clip leaves.
-  const bool usesClip =
-      medium.ghost > 0.0F || medium.softness > 0.0F || (medium.mixture && medium.mixture->hasFree);
+  const bool usesClip = medium.ghost > 0.0F || medium.softness > 0.0F ||
+                        (medium.mixture && medium.mixture->hasUnclipped);
   const auto march = [&]<typename Voxel>(const Voxel*) {
     for (std::size_t first = 0; first < batch.rays.size; first += laneCount) {
       Walk<Voxel> walk(medium, batch.rays, first, 1.0, usesClip);

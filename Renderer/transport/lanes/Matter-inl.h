@@ -1,33 +1,33 @@
 // Matter of lanes at points in index space: albedo, with segments' colours, and gradient.
 
-HWY_INLINE Float3 albedoOf(const SimdTable& table, Float scalar) {
+HWY_INLINE Float3 evalAlbedo(const SimdTable& table, Float scalar) {
   const auto& channels = table.channels;
   if (table.position.size() == 3) // 1.0F knot
     return {channels[0][0].value, channels[1][0].value, channels[2][0].value};
-  const Segment segment = segmentOf(table, scalar);
-  return {valueIn(channels[0], segment), valueIn(channels[1], segment),
-          valueIn(channels[2], segment)};
+  const Segment segment = findSegment(table, scalar);
+  return {evalSegment(channels[0], segment), evalSegment(channels[1], segment),
+          evalSegment(channels[2], segment)};
 }
 
 /// Albedo of one component a lane; 0 in lanes that are not of `which`.
-HWY_INLINE Float3 albedoIn(const SimdShading& shading, LaneMask which, Int components,
-                           Float scalar) {
+HWY_INLINE Float3 evalComponentAlbedo(const SimdShading& shading, LaneMask which, Int components,
+                                      Float scalar) {
   Float3 albedo(0.0F, 0.0F, 0.0F);
   forEachComponent(which, components, [&](LaneMask same, std::size_t component) {
-    albedo = select(same, albedoOf(shading.albedos[component], scalar), albedo);
+    albedo = select(same, evalAlbedo(shading.albedos[component], scalar), albedo);
   });
   return albedo;
 }
 
 /// Albedo without a mixture: with a tint TintField::albedo, for the lanes of `which`.
-HWY_INLINE Float3 albedoAt(const SimdShading& shading, LaneMask which, const Float3& index,
-                           Float scalar) {
+HWY_INLINE Float3 evalMediumAlbedo(const SimdShading& shading, LaneMask which, const Float3& index,
+                                   Float scalar) {
   if (!shading.tint)
-    return albedoOf(shading.albedos[0], scalar);
+    return evalAlbedo(shading.albedos[0], scalar);
   Float3 sum(0.0F, 0.0F, 0.0F);
   LaneLabelWeights(*shading.tint, index)
       .forEach(which, [&](LaneMask lanes, Int components, Float fraction) {
-        sum = sum + fraction * albedoIn(shading, lanes, components, scalar);
+        sum = sum + fraction * evalComponentAlbedo(shading, lanes, components, scalar);
       });
   return sum;
 }
@@ -43,21 +43,24 @@ HWY_INLINE Float3 desaturate(const SimdMedium::Context& context, const Float3& i
 
 /// Differences of the scalar over two voxels along each axis.
 template <typename Voxel>
-HWY_INLINE Float3 differenceAt(const SimdField& field, const Float3& p) {
+HWY_INLINE Float3 centralDifference(const SimdField& field, const Float3& p) {
   const auto& [x, y, z] = p;
-  return {scalarAt<Voxel>(field, {x + 1.0F, y, z}) - scalarAt<Voxel>(field, {x - 1.0F, y, z}),
-          scalarAt<Voxel>(field, {x, y + 1.0F, z}) - scalarAt<Voxel>(field, {x, y - 1.0F, z}),
-          scalarAt<Voxel>(field, {x, y, z + 1.0F}) - scalarAt<Voxel>(field, {x, y, z - 1.0F})};
+  return {interpolateScalar<Voxel>(field, {x + 1.0F, y, z}) -
+              interpolateScalar<Voxel>(field, {x - 1.0F, y, z}),
+          interpolateScalar<Voxel>(field, {x, y + 1.0F, z}) -
+              interpolateScalar<Voxel>(field, {x, y - 1.0F, z}),
+          interpolateScalar<Voxel>(field, {x, y, z + 1.0F}) -
+              interpolateScalar<Voxel>(field, {x, y, z - 1.0F})};
 }
 
 /// Unit normal toward a ray's origin, times `weight`; 0 where there is no gradient. `along`: the
 /// gradient along the ray, or a number of its sign.
-HWY_INLINE Float3 normalOf(const Float3& gradient, Float along, Float weight) {
+HWY_INLINE Float3 makeNormal(const Float3& gradient, Float alongRay, Float weight) {
   const Float slope = sqrt(dot(gradient, gradient));
-  return zeroUnless(slope > 0.0F, select(along < 0.0F, weight, -weight) / slope * gradient);
+  return zeroUnless(slope > 0.0F, select(alongRay < 0.0F, weight, -weight) / slope * gradient);
 }
 
 /// 1 - e^-x.
-HWY_INLINE Float missing(Float x) {
+HWY_INLINE Float oneMinusExp(Float x) {
   return -expm1(-x);
 }

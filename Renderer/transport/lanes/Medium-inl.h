@@ -1,25 +1,25 @@
 // Look-ups of lanes at points in index space: scalar, extinction, majorant cells.
 
 /// A point along one axis of voxels or shares, clamped in the outer half voxel.
-struct PlaceAlong {
+struct AxisPosition {
   Float lower;    ///< the lower of the two voxels around it, whole
   Float fraction; ///< position from there, 0 to 1
 };
-HWY_INLINE PlaceAlong placeAlong(const SimdAxis& a, Float x) {
+HWY_INLINE AxisPosition locateOnAxis(const SimdAxis& a, Float x) {
   // This order of min and max maps NaN to 0.
   const Float inside = max(min(x, a.last), 0.0F);
   const Float lower = min(floor(inside), a.lastCell);
   return {lower, inside - lower};
 }
 /// Offset of a voxel or brick.
-HWY_INLINE Int offsetOf(const SimdAxes& axes, Float x, Float y, Float z) {
+HWY_INLINE Int voxelOffset(const SimdAxes& axes, Float x, Float y, Float z) {
   return wholeToInt(x) + wholeToInt(y) * axes[1].stride + wholeToInt(z) * axes[2].stride;
 }
 
 /// Voxels from places on, and their neighbours along x.
 template <typename Voxel>
-HWY_INLINE Pairs voxelsAt(const SimdField& field, Int first, const Indices& index,
-                          std::int32_t offset) {
+HWY_INLINE Pairs loadVoxels(const SimdField& field, Int first, const Indices& index,
+                            std::int32_t offset) {
   const auto* const voxels = static_cast<const Voxel*>(field.voxels);
   if constexpr (std::is_same_v<Voxel, float>) {
     return loadPairs(voxels + offset, index);
@@ -40,18 +40,18 @@ HWY_INLINE Pairs voxelsAt(const SimdField& field, Int first, const Indices& inde
 
 /// The scalar, trilinear between voxel centres.
 template <typename Voxel>
-HWY_INLINE Float scalarAt(const SimdField& field, const Float3& p) {
+HWY_INLINE Float interpolateScalar(const SimdField& field, const Float3& p) {
   const SimdAxes& axes = field.axes;
-  const PlaceAlong x = placeAlong(axes[0], p.x);
-  const PlaceAlong y = placeAlong(axes[1], p.y);
-  const PlaceAlong z = placeAlong(axes[2], p.z);
-  const Int first = offsetOf(axes, x.lower, y.lower, z.lower);
+  const AxisPosition x = locateOnAxis(axes[0], p.x);
+  const AxisPosition y = locateOnAxis(axes[1], p.y);
+  const AxisPosition z = locateOnAxis(axes[2], p.z);
+  const Int first = voxelOffset(axes, x.lower, y.lower, z.lower);
   const Indices index(first);
   const std::int32_t up = axes[1].stride, deep = axes[2].stride;
-  const Pairs near = voxelsAt<Voxel>(field, first, index, 0);
-  const Pairs above = voxelsAt<Voxel>(field, first, index, up);
-  const Pairs behind = voxelsAt<Voxel>(field, first, index, deep);
-  const Pairs last = voxelsAt<Voxel>(field, first, index, deep + up);
+  const Pairs near = loadVoxels<Voxel>(field, first, index, 0);
+  const Pairs above = loadVoxels<Voxel>(field, first, index, up);
+  const Pairs behind = loadVoxels<Voxel>(field, first, index, deep);
+  const Pairs last = loadVoxels<Voxel>(field, first, index, deep + up);
   const Float f = x.fraction;
   const Float low =
       lerp(lerp(near.first, near.second, f), lerp(above.first, above.second, f), y.fraction);
@@ -66,7 +66,7 @@ struct Segment {
   Float beyondStart; ///< scalar units from the segment's start; not finite in the first segment
 };
 
-HWY_INLINE Segment segmentOf(const SimdTable& table, Float s) {
+HWY_INLINE Segment findSegment(const SimdTable& table, Float s) {
   s = min(s, std::numeric_limits<float>::max()); // interpolation can overflow
   const auto lastBin = static_cast<float>(table.binSegment.size() - 1);
   const Float bin = (s - table.binStart) * table.binsPerUnit;
@@ -81,24 +81,24 @@ HWY_INLINE Segment segmentOf(const SimdTable& table, Float s) {
 }
 
 /// Value of a channel in a segment, clamped to >= 0.
-HWY_INLINE Float valueIn(const SimdTable::Channel& channel, const Segment& at) {
+HWY_INLINE Float evalSegment(const SimdTable::Channel& channel, const Segment& at) {
   const auto [value, slope] = loadPairs(&channel[0].value, Indices(shiftLeft<1>(at.index)));
   // Constant segments may begin at -infinity.
   return clampZero(value + select(slope == 0.0F, 0.0F, at.beyondStart * slope));
 }
 
-HWY_INLINE Float valueOf(const SimdTable& table, Float s) {
-  return valueIn(table.channels[0], segmentOf(table, s));
+HWY_INLINE Float evalTable(const SimdTable& table, Float s) {
+  return evalSegment(table.channels[0], findSegment(table, s));
 }
 
 /// Values by lines, one load a lane; not where a lane's bin holds a knot.
-struct ByLines {
+struct LineValue {
   Float value;
-  LaneMask isBent;
+  LaneMask hasKnot;
 };
 /// `first`: number of each lane's first line.
-HWY_INLINE ByLines byLines(const SimdLines& table, Int first, Float s) {
-  const Float place = max(min((s - table.start) * table.perUnit, table.last), 0.0F);
+HWY_INLINE LineValue evalLines(const SimdLines& table, Int first, Float s) {
+  const Float place = max(min((s - table.start) * table.binsPerUnit, table.last), 0.0F);
   const Float line = floor(place);
   const auto [value, rise] =
       loadPairs(&table.lines[0].value, Indices(shiftLeft<1>(first + wholeToInt(line))));
@@ -106,20 +106,20 @@ HWY_INLINE ByLines byLines(const SimdLines& table, Int first, Float s) {
 }
 
 /// Extinction (mm^-1) of a scalar, without a mixture.
-HWY_INLINE Float extinctionOf(const SimdLines& table, Float s) {
-  const auto [value, isBent] = byLines(table, 0, s);
-  return isBent.any() ? select(isBent, valueOf(table.segments[0], s), value) : value;
+HWY_INLINE Float evalExtinction(const SimdLines& table, Float s) {
+  const auto [value, hasKnot] = evalLines(table, 0, s);
+  return hasKnot.any() ? select(hasKnot, evalTable(table.segments[0], s), value) : value;
 }
 
 /// Majorant cells, one a lane (SimdMajorants).
 struct LaneCells {
   Float majorant;   ///< mm^-1
   Float skipRadius; ///< cells
-  LaneMask cut;
+  LaneMask isCut;
 };
 
 /// Cells of these numbers along the axes: whole, -1 and one too many for the border.
-HWY_INLINE LaneCells cellsAt(const SimdMedium& medium, Float x, Float y, Float z) {
+HWY_INLINE LaneCells loadCells(const SimdMedium& medium, Float x, Float y, Float z) {
   const Float place =
       fma(z, medium.axes[2].cellStride, fma(y, medium.axes[1].cellStride, x + medium.firstCell));
   // This order of min and max maps NaN to 0.
@@ -130,7 +130,7 @@ HWY_INLINE LaneCells cellsAt(const SimdMedium& medium, Float x, Float y, Float z
 }
 
 /// Stretches of rays, one a lane, t in mm.
-struct Stretches {
+struct LaneIntervals {
   Float begin, end;
 
   /// Cuts off what is outside the domain (Domain::clip); rays in index space.
@@ -161,14 +161,15 @@ private:
 };
 
 /// Length (mm) of a ray from inside the domain to its end; 0 if rounding put the origin outside.
-HWY_INLINE Float lengthInside(const SimdMedium& medium, const Float3& origin,
-                              const Float3& direction) {
-  Stretches inside{0.0F, std::numeric_limits<float>::infinity()};
+HWY_INLINE Float lengthInDomain(const SimdMedium& medium, const Float3& origin,
+                                const Float3& direction) {
+  LaneIntervals inside{0.0F, std::numeric_limits<float>::infinity()};
   inside.clip(medium, origin, direction);
   return clampZero(inside.end);
 }
 
 /// Lanes whose point (index space) lies in the focus, where a style changes nothing.
 HWY_INLINE LaneMask isFocus(const SimdMedium::Context& context, const Float3& p) {
-  return scalarAt<std::uint8_t>(context.focus, mapPoint(context.toFocus, p)) >= context.level;
+  return interpolateScalar<std::uint8_t>(context.focus, mapPoint(context.toFocus, p)) >=
+         context.level;
 }

@@ -8,8 +8,8 @@ namespace {
 constexpr std::size_t lineCount = 1024;
 
 /// Appends a function's lines over the bins between two scalars.
-void append(std::vector<SimdTable::Line>& lines, const ScalarFunction& function,
-            const Interval& bins) {
+void appendLines(std::vector<SimdTable::Line>& lines, const ScalarFunction& function,
+                 const Interval& bins) {
   const auto& knots = function.knots();
   const double width = (bins.end - bins.begin) / static_cast<double>(lineCount);
   // Rounding of a float.
@@ -37,7 +37,7 @@ void append(std::vector<SimdTable::Line>& lines, const ScalarFunction& function,
 }
 
 /// `count` over a range of scalars, per unit; 0 if none has a width that floats can tell.
-float perUnitOf(std::size_t count, double range) {
+float computeBinsPerUnit(std::size_t count, double range) {
   const float perUnit = range > 0.0 ? narrow(static_cast<double>(count) / range) : 0.0F;
   return std::isfinite(perUnit) ? perUnit : 0.0F;
 }
@@ -66,7 +66,7 @@ SimdTable::SimdTable(const PiecewiseLinear<Channels>& function) {
   const std::size_t bins = 2 * knots.size();
   binStart = narrow(knots.front().position);
   const double span = function.span();
-  binsPerUnit = perUnitOf(bins, span);
+  binsPerUnit = computeBinsPerUnit(bins, span);
   for (std::size_t bin = 0; bin < bins; ++bin) {
     // One bin early: rounding must not lead past a segment.
     const double start = knots.front().position +
@@ -84,11 +84,11 @@ SimdLines::SimdLines(const std::vector<const ScalarFunction*>& functions) {
   for (const ScalarFunction* function : functions)
     bins = enclose(bins, {function->knots().front().position, function->knots().back().position});
   start = narrow(bins.begin);
-  perUnit = perUnitOf(lineCount, bins.end - bins.begin);
+  binsPerUnit = computeBinsPerUnit(lineCount, bins.end - bins.begin);
   for (const ScalarFunction* function : functions) {
     segments.emplace_back(*function);
-    if (bins.isEmpty() || perUnit > 0.0F)
-      append(lines, *function, bins);
+    if (bins.isEmpty() || binsPerUnit > 0.0F)
+      appendLines(lines, *function, bins);
     else
       lines.push_back({0.0F, std::numeric_limits<float>::quiet_NaN()});
   }

@@ -39,7 +39,7 @@ struct SimdLines {
   std::vector<SimdTable::Line> lines;
   std::vector<SimdTable> segments; ///< of each function
   float start = 0.0F;              ///< of the first bin
-  float perUnit = 0.0F;            ///< bins; 0: none have a width that floats can tell
+  float binsPerUnit = 0.0F;        ///< bins; 0: none have a width that floats can tell
   std::int32_t count = 0;
   float last = 0.0F; ///< count - 1
 };

@@ -1,20 +1,20 @@
 // Parts of a mixture at points in index space.
 
 /// Extinction (mm^-1) of one component a lane, as if it had all of the space.
-HWY_INLINE Float extinctionOf(const SimdLines& table, LaneMask which, Int components,
-                              Float scalar) {
-  ByLines at = byLines(table, zeroUnless(which, components * table.count), scalar);
-  forEachComponent(which & at.isBent, components, [&](LaneMask same, std::size_t component) {
-    at.value.setIf(same, valueOf(table.segments[component], scalar));
+HWY_INLINE Float evalExtinction(const SimdLines& table, LaneMask which, Int components,
+                                Float scalar) {
+  LineValue at = evalLines(table, zeroUnless(which, components * table.count), scalar);
+  forEachComponent(which & at.hasKnot, components, [&](LaneMask same, std::size_t component) {
+    at.value.setIf(same, evalTable(table.segments[component], scalar));
   });
   return at.value;
 }
 
 /// Lanes of `which` whose component the clip leaves.
-HWY_INLINE LaneMask freeIn(const SimdMixture& mixture, LaneMask which, Int components) {
-  if (!mixture.hasFree)
+HWY_INLINE LaneMask findUnclipped(const SimdMixture& mixture, LaneMask which, Int components) {
+  if (!mixture.hasUnclipped)
     return LaneMask::none();
-  return gather(mixture.isFree.data(), zeroUnless(which, components)) == 1;
+  return gather(mixture.isUnclipped.data(), zeroUnless(which, components)) == 1;
 }
 
 /// Calls visit(lanes, components, extinctions) for the parts in the lanes of `which`
@@ -24,25 +24,25 @@ template <typename Visit>
 HWY_INLINE void forEachPart(const SimdMedium& medium, LaneMask which, const Float3& index,
                             Float scalar, Float weight, Visit&& visit) {
   const auto part = [&](LaneMask lanes, Int components, Float fraction) {
-    const Float full = fraction * extinctionOf(medium.extinctions, lanes, components, scalar);
-    const LaneMask free = freeIn(*medium.mixture, lanes, components);
-    visit(lanes, components, select(free, full, weight * full));
+    const Float full = fraction * evalExtinction(medium.extinctions, lanes, components, scalar);
+    const LaneMask unclipped = findUnclipped(*medium.mixture, lanes, components);
+    visit(lanes, components, select(unclipped, full, weight * full));
   };
   LaneLabelWeights(medium.mixture->weights, index).forEach(which, part);
 }
 
 /// Extinction (mm^-1) of what a clip may remove, and of what it leaves.
 struct LaneExtinctions {
-  Float clipped, free;
+  Float clipped, unclipped;
 };
-inline LaneExtinctions extinctionsOf(const SimdMedium& medium, LaneMask which, const Float3& index,
-                                     Float scalar) {
+inline LaneExtinctions sumExtinctions(const SimdMedium& medium, LaneMask which, const Float3& index,
+                                      Float scalar) {
   LaneExtinctions sums{0.0F, 0.0F};
   const auto add = [&](LaneMask lanes, Int components, Float fraction) {
-    const Float part = fraction * extinctionOf(medium.extinctions, lanes, components, scalar);
-    const LaneMask free = freeIn(*medium.mixture, lanes, components);
-    sums.free = sums.free + zeroUnless(free, part);
-    sums.clipped = sums.clipped + select(free, 0.0F, part);
+    const Float part = fraction * evalExtinction(medium.extinctions, lanes, components, scalar);
+    const LaneMask unclipped = findUnclipped(*medium.mixture, lanes, components);
+    sums.unclipped = sums.unclipped + zeroUnless(unclipped, part);
+    sums.clipped = sums.clipped + select(unclipped, 0.0F, part);
   };
   LaneLabelWeights(medium.mixture->merged, index).forEach(which, add);
   return sums;
@@ -50,23 +50,23 @@ inline LaneExtinctions extinctionsOf(const SimdMedium& medium, LaneMask which, c
 
 /// Extinctions of all matter at points, under the context's style. `isMixed`: there is a mixture.
 template <bool isMixed>
-HWY_INLINE LaneExtinctions extinctionsAt(const SimdMedium& medium, LaneMask which,
-                                         const Float3& index, Float scalar) {
+HWY_INLINE LaneExtinctions evalExtinctions(const SimdMedium& medium, LaneMask which,
+                                           const Float3& index, Float scalar) {
   LaneExtinctions all{0.0F, 0.0F};
   if constexpr (isMixed)
-    all = extinctionsOf(medium, which, index, scalar);
+    all = sumExtinctions(medium, which, index, scalar);
   else
-    all.clipped = extinctionOf(medium.extinctions, scalar);
+    all.clipped = evalExtinction(medium.extinctions, scalar);
   if (medium.context && medium.context->extinction != 1.0F) {
     const Float factor = select(isFocus(*medium.context, index), 1.0F, medium.context->extinction);
-    all = {all.clipped * factor, all.free * factor};
+    all = {all.clipped * factor, all.unclipped * factor};
   }
   return all;
 }
 
 /// Keep of the clip where a mixture's components differ in it; else 1.
 inline Float mixtureClipWeight(const SimdMedium& medium, LaneMask which, const Float3& index) {
-  return medium.mixture->hasFree && medium.clipKind != SimdMedium::ClipKind::none
+  return medium.mixture->hasUnclipped && medium.clipKind != SimdMedium::ClipKind::none
              ? clipWeight(medium, index, which)
              : Float(1.0F);
 }

@@ -5,7 +5,7 @@ namespace fenestra {
 namespace {
 
 /// For each component the first one of that extinction, clipped alike.
-std::vector<std::int32_t> firstAlike(const std::vector<Component>& components) {
+std::vector<std::int32_t> findFirstAlike(const std::vector<Component>& components) {
   std::vector<std::int32_t> first;
   for (const Component& component : components) {
     const auto isAlike = [&](const Component& other) {
@@ -18,8 +18,8 @@ std::vector<std::int32_t> firstAlike(const std::vector<Component>& components) {
   return first;
 }
 
-std::vector<std::int32_t> bricksAlike(const Mixture& mixture) {
-  const std::vector<std::int32_t> first = firstAlike(mixture.components);
+std::vector<std::int32_t> mergeBricks(const Mixture& mixture) {
+  const std::vector<std::int32_t> first = findFirstAlike(mixture.components);
   std::vector<std::int32_t> bricks = mixture.weights->bricks();
   for (std::size_t brick = 0; brick < bricks.size(); ++brick) {
     std::int32_t common = -1;
@@ -36,22 +36,22 @@ std::vector<std::int32_t> bricksAlike(const Mixture& mixture) {
 
 } // namespace
 
-bool SimdMixture::serves(const Mixture& mixture) {
-  const auto isServed = [](const Component& component) {
+bool SimdMixture::isSupported(const Mixture& mixture) {
+  const auto isUsable = [](const Component& component) {
     return !component.transfer.gradientOpacity && component.interfaceWeight == 0.0;
   };
-  return SimdLabelWeights::serves(*mixture.weights) &&
-         std::ranges::all_of(mixture.components, isServed);
+  return SimdLabelWeights::isSupported(*mixture.weights) &&
+         std::ranges::all_of(mixture.components, isUsable);
 }
 
 SimdMixture::SimdMixture(const Mixture& mixture, const Grid& volume)
     : weights(*mixture.weights, volume),
       merged(weights),
-      mergedBricks(std::make_shared<const std::vector<std::int32_t>>(bricksAlike(mixture))),
-      hasFree(mixture.hasUnclipped()) {
+      mergedBricks(std::make_shared<const std::vector<std::int32_t>>(mergeBricks(mixture))),
+      hasUnclipped(mixture.hasUnclipped()) {
   merged.bricks = mergedBricks->data();
   for (const Component& component : mixture.components)
-    isFree.push_back(component.isClipped ? 0 : 1);
+    isUnclipped.push_back(component.isClipped ? 0 : 1);
 }
 
 } // namespace fenestra

@@ -12,7 +12,7 @@ namespace fenestra {
 /// A view: the mixture must outlive the object.
 struct SimdMixture {
   /// True if lanes support every part of the mixture: no gradient opacity, no borders as surfaces.
-  static bool serves(const Mixture& mixture);
+  static bool isSupported(const Mixture& mixture);
   /// `volume`: whose points are asked for.
   SimdMixture(const Mixture& mixture, const Grid& volume);
 
@@ -21,8 +21,8 @@ struct SimdMixture {
   /// ones of the first such component: flights need not tell them apart.
   SimdLabelWeights merged;
   std::shared_ptr<const std::vector<std::int32_t>> mergedBricks;
-  bool hasFree;                     ///< the clip leaves some component
-  std::vector<std::int32_t> isFree; ///< of each component: 1, or 0
+  bool hasUnclipped;                     ///< the clip leaves some component
+  std::vector<std::int32_t> isUnclipped; ///< of each component: 1, or 0
 };
 
 } // namespace fenestra

@@ -27,21 +27,21 @@ public:
   /// source.deliver(tile, tileSample, sample) for each, in any order. Returns false if `stop`
   /// became true before all had ended.
   template <typename Source>
-  bool trace(Source& source, std::size_t atOnce, Counters& counters) const {
+  bool trace(Source& source, std::size_t maxPaths, Counters& counters) const {
     const auto batch = std::make_unique<Batch>();
-    const std::size_t most = std::min(atOnce, RayBatch::capacity);
+    const std::size_t most = std::min(maxPaths, RayBatch::capacity);
     for (;;) {
-      source.fill(batch->starts, most - batch->paths.rays.size);
-      counters.paths += batch->starts.size;
-      beginPaths(m_tracker.medium(), m_table, m_cameraRays, batch->starts, batch->paths);
+      source.fill(batch->samples, most - batch->paths.rays.size);
+      counters.paths += batch->samples.size;
+      beginPaths(m_tracker.medium(), m_table, m_cameraRays, batch->samples, batch->paths);
       if (batch->paths.rays.size == 0)
         return true;
       m_tracker.sampleCollisions(batch->paths.rays, counters);
-      if (stopped())
+      if (isStopped())
         return false;
-      scatterPaths(m_tracker.medium(), m_shading, batch->paths, batch->lights, counters);
-      look(*batch, counters);
-      if (stopped())
+      scatterPaths(m_tracker.medium(), m_shading, batch->paths, batch->shadowRays, counters);
+      traceShadowRays(*batch, counters);
+      if (isStopped())
         return false;
       deliverEnded(batch->paths, source);
       dropEnded(batch->paths);
@@ -49,20 +49,21 @@ public:
   }
 
 private:
-  bool stopped() const { return m_stop.load(std::memory_order_relaxed); }
+  bool isStopped() const { return m_stop.load(std::memory_order_relaxed); }
 
   struct Batch {
-    CameraSamples starts;
+    CameraSamples samples;
     PathBatch paths;
-    LightBatch lights;
+    ShadowBatch shadowRays;
   };
 
-  void look(Batch& batch, Counters& counters) const {
-    LightBatch& lights = batch.lights;
-    m_tracker.estimateTransmittances(lights.rays, counters);
-    for (std::size_t i = 0; i < lights.rays.size; ++i)
+  void traceShadowRays(Batch& batch, Counters& counters) const {
+    ShadowBatch& shadowRays = batch.shadowRays;
+    m_tracker.estimateTransmittances(shadowRays.rays, counters);
+    for (std::size_t i = 0; i < shadowRays.rays.size; ++i)
       for (std::size_t c = 0; c < 3; ++c)
-        batch.paths.radiance[c][lights.path[i]] += lights.radiance[c][i] * lights.rays.result[i];
+        batch.paths.radiance[c][shadowRays.path[i]] +=
+            shadowRays.radiance[c][i] * shadowRays.rays.result[i];
   }
 
   template <typename Source>
@@ -70,11 +71,11 @@ private:
     for (std::size_t first = 0; first < paths.rays.size; first += 64)
       for (std::uint64_t left = paths.ended[first / 64]; left != 0; left &= left - 1) {
         const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(left));
-        source.deliver(paths.tile[i], paths.tileSample[i], sample(paths, i));
+        source.deliver(paths.tile[i], paths.tileSample[i], makeSample(paths, i));
       }
   }
 
-  PathSample sample(const PathBatch& paths, std::size_t i) const {
+  PathSample makeSample(const PathBatch& paths, std::size_t i) const {
     const auto triple = [&](const SoaArray3& columns) {
       return Rgb(columns[0][i], columns[1][i], columns[2][i]);
     };

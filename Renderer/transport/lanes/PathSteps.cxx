@@ -13,7 +13,7 @@ namespace fenestra::HWY_NAMESPACE {
 namespace {
 
 /// A path's own random numbers: hashes of a counter and a key.
-struct Draws {
+struct PathRandom {
   UInt key, counter;
 
   HWY_INLINE UInt nextBits() {
@@ -25,9 +25,9 @@ struct Draws {
 
 /// One path a lane, at its collision.
 struct Collisions {
-  LaneMask going; ///< lanes that scatter
-  LaneMask first; ///< lanes that scatter for the first time
-  Float3 index;   ///< points, index space
+  LaneMask active; ///< lanes that scatter
+  LaneMask first;  ///< lanes that scatter for the first time
+  Float3 index;    ///< points, index space
   Float scalar;
   Float3 incoming, throughput;
   Float3 albedo = {};
@@ -37,19 +37,20 @@ struct Collisions {
 };
 
 template <typename Voxel>
-class Events {
+class VertexHandler {
 public:
-  Events(const SimdMedium& medium, const SimdShading& shading, PathBatch& paths, LightBatch& lights)
-      : m_medium(medium), m_shading(shading), m_paths(paths), m_out(lights) {}
+  VertexHandler(const SimdMedium& medium, const SimdShading& shading, PathBatch& paths,
+                ShadowBatch& shadowRays)
+      : m_medium(medium), m_shading(shading), m_paths(paths), m_shadowRays(shadowRays) {}
 
   void run(Counters& counters) {
-    m_out.rays.size = 0;
+    m_shadowRays.rays.size = 0;
     m_paths.ended = {};
     for (std::size_t i = 0; i < m_paths.rays.size; i += laneCount)
       step(i);
     counters.collisions += m_collisions;
     counters.gradients += m_gradients;
-    counters.shadowRays += m_out.rays.size;
+    counters.shadowRays += m_shadowRays.rays.size;
   }
 
 private:
@@ -59,23 +60,24 @@ private:
     const Int bounces = load(&m_paths.bounces[i]);
     const LaneMask first = bounces == 0;
     const Float3 origin = load3(m_paths.rays.origin, i);
-    gather(i, there.without(first), origin, distance);
+    addEmitted(i, there.without(first), origin, distance);
 
     const LaneMask escaped = distance == std::numeric_limits<float>::infinity();
-    const LaneMask free = bounces < m_shading.bounces;
-    const LaneMask going = (there & free).without(escaped);
-    m_collisions += going.count();
-    LaneMask alive = going;
-    if (going.any()) {
-      const Int one = zeroUnless(going, 1);
+    const LaneMask canScatter = bounces < m_shading.bounces;
+    const LaneMask active = (there & canScatter).without(escaped);
+    m_collisions += active.count();
+    LaneMask alive = active;
+    if (active.any()) {
+      const Int one = zeroUnless(active, 1);
       store(bounces + one, &m_paths.bounces[i]);
-      alive = collide(i, going, first & going, origin, zeroUnless(going, distance));
+      alive = collide(i, active, first & active, origin, zeroUnless(active, distance));
     }
     m_paths.ended[i / 64] |= there.without(alive).bits() << i % 64;
   }
 
   /// Adds the light that scattered rays met before their collisions, or at infinity.
-  HWY_INLINE void gather(std::size_t i, LaneMask scattered, const Float3& origin, Float distance) {
+  HWY_INLINE void addEmitted(std::size_t i, LaneMask scattered, const Float3& origin,
+                             Float distance) {
     if (!scattered.any())
       return;
     const Float3 light =
@@ -86,27 +88,27 @@ private:
   }
 
   /// Scatters the lanes of `going`; returns the lanes that go on afterwards.
-  LaneMask collide(std::size_t i, LaneMask going, LaneMask first, const Float3& origin,
+  LaneMask collide(std::size_t i, LaneMask active, LaneMask first, const Float3& origin,
                    Float distance) {
-    Draws draws{load(&m_paths.key[i]), load(&m_paths.counter[i])};
+    PathRandom draws{load(&m_paths.key[i]), load(&m_paths.counter[i])};
     const Float3 index = origin + distance * load3(m_paths.rays.direction, i);
-    const Collisions at = lookUpMedium(i, going, first, index, draws);
+    const Collisions at = lookUpMedium(i, active, first, index, draws);
     if (first.any())
-      recordFirst(i, at, distance);
+      recordFirstHit(i, at, distance);
     return m_medium.mixture ? scatter(i, at, draws, gatherBsdfs(m_shading, at.component))
                             : scatter(i, at, draws, m_shading.bsdfs[0]);
   }
 
   /// Scatters lanes by the law; returns those that go on afterwards.
   template <typename Number>
-  HWY_INLINE LaneMask scatter(std::size_t i, const Collisions& at, Draws& draws,
+  HWY_INLINE LaneMask scatter(std::size_t i, const Collisions& at, PathRandom& draws,
                               const BsdfParameters<Number>& law) {
     const PhaseLobe<Number> phase(law.g, at.incoming, at.albedo);
     const bool surfaces = at.surface.any();
     const auto surface = [&] {
       return SurfaceLobes<Number>(law, at.incoming, at.gradient, at.albedo);
     };
-    if (m_shading.drawsLights)
+    if (m_shading.hasSampledLights)
       sampleLights(i, at, draws, [&](const Float3& toward) {
         const ScatterEval s = phase.evaluate(toward);
         if (!surfaces)
@@ -117,8 +119,8 @@ private:
       });
 
     const Float choice = m_shading.hybrid ? draws.uniform() : 0.0F; // independent of neighbours
-    const Float u = givenFirst(at.first, m_paths.uDirection[0], i, draws);
-    const Float v = givenFirst(at.first, m_paths.uDirection[1], i, draws);
+    const Float u = selectGiven(at.first, m_paths.uDirection[0], i, draws);
+    const Float v = selectGiven(at.first, m_paths.uDirection[1], i, draws);
     ScatterSamples sampled = phase.sample(u, v);
     if (surfaces) {
       const ScatterSamples other = surface().sample(choice, u, v);
@@ -126,116 +128,119 @@ private:
                  select(at.surface, other.weight, sampled.weight),
                  select(at.surface, other.pdf, sampled.pdf)};
     }
-    return goOn(i, at, sampled, draws);
+    return continuePath(i, at, sampled, draws);
   }
 
-  HWY_INLINE Collisions lookUpMedium(std::size_t i, LaneMask going, LaneMask first,
-                                     const Float3& index, Draws& draws) {
-    Collisions at{going,
+  HWY_INLINE Collisions lookUpMedium(std::size_t i, LaneMask active, LaneMask first,
+                                     const Float3& index, PathRandom& draws) {
+    Collisions at{active,
                   first,
                   index,
                   load(&m_paths.rays.scalar[i]),
                   load3(m_paths.direction, i),
                   load3(m_paths.throughput, i)};
     if (m_medium.mixture) {
-      at.component = sampleComponents(m_medium, going, index, at.scalar, draws.uniform());
-      at.albedo = albedoIn(m_shading, going, at.component, at.scalar);
+      at.component = sampleComponents(m_medium, active, index, at.scalar, draws.uniform());
+      at.albedo = evalComponentAlbedo(m_shading, active, at.component, at.scalar);
     } else {
-      at.albedo = albedoAt(m_shading, going, index, at.scalar);
+      at.albedo = evalMediumAlbedo(m_shading, active, index, at.scalar);
     }
     if (m_medium.context)
       at.albedo = desaturate(*m_medium.context, index, at.albedo);
     if (m_shading.hybrid) {
-      at.gradient = gradientAt(index);
-      m_gradients += going.count();
+      at.gradient = evalGradient(index);
+      m_gradients += active.count();
       if (m_medium.cutSlope > 0.0F)
-        at.gradient = at.gradient + cutGradient(m_medium, index, removable(at));
+        at.gradient = at.gradient + cutGradient(m_medium, index, findClippable(at));
       const Float slope = sqrt(dot(at.gradient, at.gradient));
-      const Float chance = missing(extinctionOfOne(at)) * missing(m_shading.surfaceRate * slope);
-      at.surface = going & (givenFirst(first, m_paths.uChoices[0], i, draws) < chance);
+      const Float chance =
+          oneMinusExp(evalOwnExtinction(at)) * oneMinusExp(m_shading.surfaceRate * slope);
+      at.surface = active & (selectGiven(first, m_paths.uChoices[0], i, draws) < chance);
     }
     return at;
   }
 
   /// A number of each path at i: of `given` where it scatters for the first time.
-  static HWY_INLINE Float givenFirst(LaneMask first, const SoaArray<float>& given, std::size_t i,
-                                     Draws& draws) {
+  static HWY_INLINE Float selectGiven(LaneMask first, const SoaArray<float>& given, std::size_t i,
+                                      PathRandom& draws) {
     return select(first, load(&given[i]), draws.uniform());
   }
 
   /// Lanes whose matter the clip may remove.
-  HWY_INLINE LaneMask removable(const Collisions& at) const {
-    return m_medium.mixture ? at.going.without(freeIn(*m_medium.mixture, at.going, at.component))
-                            : at.going;
+  HWY_INLINE LaneMask findClippable(const Collisions& at) const {
+    return m_medium.mixture
+               ? at.active.without(findUnclipped(*m_medium.mixture, at.active, at.component))
+               : at.active;
   }
 
   /// Extinction of the matter that collisions meet, as if it had all of the space.
-  HWY_INLINE Float extinctionOfOne(const Collisions& at) const {
-    return m_medium.mixture ? extinctionOf(m_medium.extinctions, at.going, at.component, at.scalar)
-                            : extinctionOf(m_medium.extinctions, at.scalar);
+  HWY_INLINE Float evalOwnExtinction(const Collisions& at) const {
+    return m_medium.mixture
+               ? evalExtinction(m_medium.extinctions, at.active, at.component, at.scalar)
+               : evalExtinction(m_medium.extinctions, at.scalar);
   }
 
-  Float3 gradientAt(const Float3& p) const {
-    const Float3 difference = differenceAt<Voxel>(m_medium.field, p);
+  Float3 evalGradient(const Float3& p) const {
+    const Float3 difference = centralDifference<Voxel>(m_medium.field, p);
     return mapDirection(m_shading.indexDifferenceToGradient, difference);
   }
 
-  void recordFirst(std::size_t i, const Collisions& at, Float distance) {
-    const auto keep = [&](Float now, SoaArray<float>& column) {
+  void recordFirstHit(std::size_t i, const Collisions& at, Float distance) {
+    const auto put = [&](Float now, SoaArray<float>& column) {
       store(select(at.first, now, load(&column[i])), &column[i]);
     };
-    const auto keep3 = [&](const Float3& now, SoaArray3& columns) {
+    const auto put3 = [&](const Float3& now, SoaArray3& columns) {
       store3(select(at.first, now, load3(columns, i)), columns, i);
     };
-    keep(fma(distance, load(&m_paths.depthPerLength[i]), load(&m_paths.depth[i])),
-         m_paths.firstDepth);
-    keep3(at.albedo, m_paths.firstAlbedo);
+    put(fma(distance, load(&m_paths.depthPerLength[i]), load(&m_paths.depth[i])),
+        m_paths.firstDepth);
+    put3(at.albedo, m_paths.firstAlbedo);
     if (!m_shading.wantNormals)
       return;
-    const Float3 gradient = m_shading.hybrid ? at.gradient : gradientAt(at.index);
+    const Float3 gradient = m_shading.hybrid ? at.gradient : evalGradient(at.index);
     m_gradients += m_shading.hybrid ? 0 : at.first.count();
-    keep3(normalOf(gradient, dot(at.incoming, gradient), 1.0F), m_paths.firstNormal);
+    put3(makeNormal(gradient, dot(at.incoming, gradient), 1.0F), m_paths.firstNormal);
   }
 
-  /// PathSteps::sampledLight.
+  /// PathSteps::sampleLight.
   template <typename Toward>
-  void sampleLights(std::size_t i, const Collisions& at, Draws& draws, Toward&& toward) {
-    const Float choice = givenFirst(at.first, m_paths.uChoices[1], i, draws);
+  void sampleLights(std::size_t i, const Collisions& at, PathRandom& draws, Toward&& toward) {
+    const Float choice = selectGiven(at.first, m_paths.uChoices[1], i, draws);
     const UInt u = draws.nextBits();
     const UInt v = draws.nextBits();
     const LightSamples light =
-        sampleLightSet(m_shading, at.going, mapPoint(m_shading.toLocal, at.index), choice, u, v);
+        sampleLightSet(m_shading, at.active, mapPoint(m_shading.toLocal, at.index), choice, u, v);
     const ScatterEval scattered = toward(light.direction);
     const Float pdf = light.pdf + select(light.isDelta, 0.0F, scattered.pdf);
     const Float3 radiance = (1.0F / pdf) * (at.throughput * scattered.factor * light.radiance);
-    const LaneMask arrives = at.going & (maxComponent(radiance) > 0.0F);
+    const LaneMask arrives = at.active & (maxComponent(radiance) > 0.0F);
     const std::size_t count = arrives.count();
     const UInt depth = draws.nextBits();
     const Float acceptance = draws.uniform();
     if (count == 0)
       return;
     const Float3 direction = mapDirection(m_shading.localToIndex, light.direction);
-    const Float length = min(light.distance, lengthInside(m_medium, at.index, direction));
-    const std::size_t to = m_out.rays.size;
+    const Float length = min(light.distance, lengthInDomain(m_medium, at.index, direction));
+    const std::size_t to = m_shadowRays.rays.size;
     const Shuffle pack = Shuffle::compress(arrives);
     const auto put = [&](auto x, auto& column) { store(pack(x), &column[to]); };
-    store3(pack(at.index), m_out.rays.origin, to);
-    store3(pack(direction), m_out.rays.direction, to);
-    put(length, m_out.rays.length);
-    store3(pack(radiance), m_out.radiance, to);
-    put(depth, m_out.rays.depth);
-    put(acceptance, m_out.rays.acceptance);
-    put(UInt(hn::Iota(uints, static_cast<std::uint32_t>(i))), m_out.path);
-    m_out.rays.size += count;
+    store3(pack(at.index), m_shadowRays.rays.origin, to);
+    store3(pack(direction), m_shadowRays.rays.direction, to);
+    put(length, m_shadowRays.rays.length);
+    store3(pack(radiance), m_shadowRays.radiance, to);
+    put(depth, m_shadowRays.rays.depthBits);
+    put(acceptance, m_shadowRays.rays.acceptance);
+    put(UInt(hn::Iota(uints, static_cast<std::uint32_t>(i))), m_shadowRays.path);
+    m_shadowRays.rays.size += count;
   }
 
   /// Sets the paths' weights and new rays. Returns the lanes that survive Russian roulette.
-  HWY_INLINE LaneMask goOn(std::size_t i, const Collisions& at, const ScatterSamples& sampled,
-                           Draws& draws) {
-    constexpr auto below = static_cast<float>(rouletteBelow);
+  HWY_INLINE LaneMask continuePath(std::size_t i, const Collisions& at,
+                                   const ScatterSamples& sampled, PathRandom& draws) {
+    constexpr auto threshold = static_cast<float>(rouletteThreshold);
     Float3 throughput = at.throughput * sampled.weight;
     const Float size = sqrt((1.0F / 3.0F) * dot(throughput, throughput));
-    const Float chance = min(size * (1.0F / below), 1.0F);
+    const Float chance = min(size * (1.0F / threshold), 1.0F);
     const LaneMask survives = draws.uniform() <= chance;
     throughput = zeroUnless(survives, (1.0F / chance) * throughput);
     store3(throughput, m_paths.throughput, i);
@@ -244,33 +249,35 @@ private:
     store3(at.index, m_paths.rays.origin, i);
     const Float3 direction = mapDirection(m_shading.localToIndex, sampled.outgoing);
     store3(direction, m_paths.rays.direction, i);
-    store(lengthInside(m_medium, at.index, direction), &m_paths.rays.length[i]);
-    store(draws.nextBits(), &m_paths.rays.depth[i]);
+    store(lengthInDomain(m_medium, at.index, direction), &m_paths.rays.length[i]);
+    store(draws.nextBits(), &m_paths.rays.depthBits[i]);
     store(draws.uniform(), &m_paths.rays.acceptance[i]);
     store(draws.counter, &m_paths.counter[i]);
-    return at.going & (maxComponent(throughput) > 0.0F);
+    return at.active & (maxComponent(throughput) > 0.0F);
   }
 
   const SimdMedium& m_medium;
   const SimdShading& m_shading;
   PathBatch& m_paths;
-  LightBatch& m_out;
+  ShadowBatch& m_shadowRays;
   std::size_t m_collisions = 0, m_gradients = 0;
 };
 
 void scatterAll(const SimdMedium& medium, const SimdShading& shading, PathBatch& paths,
-                LightBatch& lights, Counters& counters) {
-  std::visit([&]<typename Voxel>(
-                 const Voxel*) { Events<Voxel>(medium, shading, paths, lights).run(counters); },
-             medium.voxels);
+                ShadowBatch& shadowRays, Counters& counters) {
+  std::visit(
+      [&]<typename Voxel>(const Voxel*) {
+        VertexHandler<Voxel>(medium, shading, paths, shadowRays).run(counters);
+      },
+      medium.voxels);
 }
 
 void dropEndedLanes(PathBatch& paths) {
   std::size_t left = 0;
   for (std::size_t i = 0; i < paths.rays.size; i += laneCount) {
     const LaneMask ended = LaneMask::fromBits(paths.ended[i / 64] >> i % 64);
-    const LaneMask going = LaneMask::first(paths.rays.size - i).without(ended);
-    const Shuffle pack = Shuffle::compress(going);
+    const LaneMask active = LaneMask::first(paths.rays.size - i).without(ended);
+    const Shuffle pack = Shuffle::compress(active);
     const auto move = [&](auto&... columns) {
       (store(pack(load(&columns[i])), &columns[left]), ...);
     };
@@ -278,10 +285,10 @@ void dropEndedLanes(PathBatch& paths) {
     if (left != i || ended.any()) { // all that paths need after their first scattering
       move3(paths.rays.origin, paths.rays.direction, paths.direction, paths.throughput,
             paths.radiance, paths.firstAlbedo, paths.firstNormal);
-      move(paths.rays.length, paths.rays.depth, paths.rays.acceptance, paths.scatterPdf,
+      move(paths.rays.length, paths.rays.depthBits, paths.rays.acceptance, paths.scatterPdf,
            paths.bounces, paths.key, paths.counter, paths.tile, paths.tileSample, paths.firstDepth);
     }
-    left += going.count();
+    left += active.count();
   }
   paths.rays.size = left;
 }
@@ -297,8 +304,8 @@ HWY_EXPORT(scatterAll);
 HWY_EXPORT(dropEndedLanes);
 
 void scatterPaths(const SimdMedium& medium, const SimdShading& shading, PathBatch& paths,
-                  LightBatch& lights, Counters& counters) {
-  HWY_DYNAMIC_DISPATCH(scatterAll)(medium, shading, paths, lights, counters);
+                  ShadowBatch& shadowRays, Counters& counters) {
+  HWY_DYNAMIC_DISPATCH(scatterAll)(medium, shading, paths, shadowRays, counters);
 }
 
 void dropEnded(PathBatch& paths) {

@@ -9,7 +9,7 @@
 namespace fenestra {
 
 /// Light sampled for paths: `radiance` times the transmittance of the ray arrives at `path`.
-struct LightBatch {
+struct ShadowBatch {
   RayBatch rays;
   SoaArray3 radiance;
   SoaArray<std::uint32_t> path;
@@ -19,7 +19,7 @@ struct LightBatch {
 /// replaces `lights` by one light for each path that scatters, sets new rays, and marks the paths
 /// that have ended.
 void scatterPaths(const SimdMedium& medium, const SimdShading& shading, PathBatch& paths,
-                  LightBatch& lights, Counters& counters);
+                  ShadowBatch& shadowRays, Counters& counters);
 
 /// Takes the paths that have ended out of the batch.
 void dropEnded(PathBatch& paths);

@@ -4,55 +4,57 @@ namespace fenestra {
 namespace {
 
 /// True if no lobe is narrower than the resolution of directions in float.
-bool isWide(const TransferFunction& transfer) {
-  constexpr double leastRoughness = 1e-2;
-  constexpr double greatestG = 0.9999;
-  return std::abs(transfer.g) <= greatestG &&
-         makeBsdfParameters(transfer.g, transfer.shading).roughness >= leastRoughness;
+bool hasWideLobes(const TransferFunction& transfer) {
+  constexpr double minRoughness = 1e-2;
+  constexpr double maxG = 0.9999;
+  return std::abs(transfer.g) <= maxG &&
+         makeBsdfParameters(transfer.g, transfer.shading).roughness >= minRoughness;
 }
 
 } // namespace
 
-bool SimdShading::serves(const Grid& grid, const TransferFunction& transfer, const LightSet& lights,
-                         const Mixture* mixture) {
-  constexpr double farthest = 1e15; // mm; squares and areas stay far below the greatest float
-  constexpr double brightest = 1e20;
-  constexpr double smallest = 1e-3; // mm; radius of a sphere whose square of the sine is a float
-  constexpr double greatestSphere = 1e6; // mm; distance^2 - radius^2 has digits left in float
+bool SimdShading::isSupported(const Grid& grid, const TransferFunction& transfer,
+                              const LightSet& lights, const Mixture* mixture) {
+  constexpr double maxDistance = 1e15; // mm; squares and areas stay far below the greatest float
+  constexpr double maxRadiance = 1e20;
+  constexpr double minRadius = 1e-3; // mm; radius of a sphere whose square of the sine is a float
+  constexpr double maxRadius = 1e6;  // mm; distance^2 - radius^2 has digits left in float
   const auto isNear = [&](const auto& light, double most) {
     return (light.center - grid.worldCenter()).norm() < most &&
-           light.radiance.maxCoeff() < brightest;
+           light.radiance.maxCoeff() < maxRadiance;
   };
   const auto areaFits = [&](const auto& light) {
-    return isNear(light, farthest) && std::max(light.right.norm(), light.up.norm()) < farthest;
+    return isNear(light, maxDistance) &&
+           std::max(light.right.norm(), light.up.norm()) < maxDistance;
   };
   const auto sphereFits = [&](const auto& light) {
     const double radius = std::sqrt(light.radius2);
-    return isNear(light, greatestSphere) && radius > smallest && radius < greatestSphere;
+    return isNear(light, maxRadius) && radius > minRadius && radius < maxRadius;
   };
   const auto mapFits = [](const PlacedEnvironment& environment) {
-    return MapTables::serves(environment.sampler);
+    return EnvironmentTables::isSupported(environment.sampler);
   };
-  return isWide(transfer) &&
-         (!mixture || std::ranges::all_of(mixture->components, isWide, &Component::transfer)) &&
+  return hasWideLobes(transfer) &&
+         (!mixture ||
+          std::ranges::all_of(mixture->components, hasWideLobes, &Component::transfer)) &&
          std::ranges::all_of(lights.tables().areas, areaFits) &&
          std::ranges::all_of(lights.tables().spheres, sphereFits) &&
          std::ranges::all_of(lights.environments(), mapFits);
 }
 
 SimdShading::SimdShading(const Grid& grid, const TransferFunction& transfer, const LightSet& set,
-                         std::uint64_t mostBounces, bool normalsWanted, const Tint* tinted,
+                         std::uint64_t maxBounces, bool normalsWanted, const Tint* tinted,
                          const Mixture* mixture)
     : hybrid(transfer.shading && transfer.extinction.span() > 0.0),
       surfaceRate(hybrid ? narrow(25.0 * std::pow(transfer.shading->gamma, 3)) : 0.0F),
       wantNormals(normalsWanted || transfer.shading),
       bounces(static_cast<std::int32_t>(
-          std::min<std::uint64_t>(mostBounces, std::numeric_limits<std::int32_t>::max()))),
+          std::min<std::uint64_t>(maxBounces, std::numeric_limits<std::int32_t>::max()))),
       lights(set.tables().cast<float>(grid.worldCenter())) {
-  const auto add = [&](const TransferFunction& matter) {
-    bsdfs.push_back(makeBsdfParameters(matter.g, matter.shading).cast<float>());
+  const auto add = [&](const TransferFunction& function) {
+    bsdfs.push_back(makeBsdfParameters(function.g, function.shading).cast<float>());
     if (!tinted)
-      albedos.emplace_back(matter.albedo);
+      albedos.emplace_back(function.albedo);
   };
   if (tinted) {
     tint.emplace(*tinted->weights, grid);
@@ -76,8 +78,8 @@ SimdShading::SimdShading(const Grid& grid, const TransferFunction& transfer, con
     for (const PlacedEnvironment& environment : set.environments())
       if (environment.pmf > 0.0) // no constant, no black map
         maps.emplace_back(environment.sampler, environment.pmf);
-  drawsLights = !lights.areas.empty() || !lights.directionals.empty() || !lights.spheres.empty() ||
-                !maps.empty();
+  hasSampledLights = !lights.areas.empty() || !lights.directionals.empty() ||
+                     !lights.spheres.empty() || !maps.empty();
 }
 
 } // namespace fenestra

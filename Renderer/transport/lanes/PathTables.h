@@ -19,12 +19,12 @@ namespace fenestra {
 struct SimdShading {
   /// True if floats suffice: no lobe narrower than the resolution of directions in float, and no
   /// light so far away or bright that squares overflow.
-  static bool serves(const Grid& grid, const TransferFunction& transfer, const LightSet& lights,
-                     const Mixture* mixture = nullptr);
+  static bool isSupported(const Grid& grid, const TransferFunction& transfer,
+                          const LightSet& lights, const Mixture* mixture = nullptr);
 
   /// A view of environment maps and tint, which must outlive the object.
   SimdShading(const Grid& grid, const TransferFunction& transfer, const LightSet& lights,
-              std::uint64_t mostBounces, bool normalsWanted, const Tint* tinted = nullptr,
+              std::uint64_t maxBounces, bool normalsWanted, const Tint* tinted = nullptr,
               const Mixture* mixture = nullptr);
 
   std::vector<BsdfParameters<float>> bsdfs; ///< one; or of each component of a mixture
@@ -36,8 +36,8 @@ struct SimdShading {
   std::int32_t bounces; ///< greatest number of scatterings
 
   LightTables<float> lights; ///< local
-  bool drawsLights;          ///< there are lights, or maps, to draw
-  std::vector<MapTables> maps;
+  bool hasSampledLights;     ///< there are lights, or maps, to draw
+  std::vector<EnvironmentTables> maps;
 
   AffineRows toLocal;      ///< points, from index space
   AffineRows localToIndex; ///< directions

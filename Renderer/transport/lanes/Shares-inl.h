@@ -57,15 +57,15 @@ private:
 
   HWY_INLINE Corner findCorner(const Float3& p) const {
     const SimdAxes& axes = m_weights.axes;
-    const PlaceAlong x = placeAlong(axes[0], p.x);
-    const PlaceAlong y = placeAlong(axes[1], p.y);
-    const PlaceAlong z = placeAlong(axes[2], p.z);
+    const AxisPosition x = locateOnAxis(axes[0], p.x);
+    const AxisPosition y = locateOnAxis(axes[1], p.y);
+    const AxisPosition z = locateOnAxis(axes[2], p.z);
     const auto toBrick = [](Float cell) { return floor(cell * (1.0F / LabelWeights::brickEdge)); };
     const Float3 cell{x.lower, y.lower, z.lower};
     const Float3 brick{toBrick(cell.x), toBrick(cell.y), toBrick(cell.z)};
     const Float3 inside = cell - float{LabelWeights::brickEdge} * brick;
     const Float voxel = fma(fma(inside.z, float{edge}, inside.y), float{edge}, inside.x);
-    return {offsetOf(axes, brick.x, brick.y, brick.z),
+    return {voxelOffset(axes, brick.x, brick.y, brick.z),
             wholeToInt(voxel),
             {x.fraction, y.fraction, z.fraction}};
   }

@@ -29,9 +29,9 @@ inline SimdAxes makeSimdAxes(const Size3& voxels, const Size3& counts) {
 /// A view: the shares must outlive the object.
 struct SimdLabelWeights {
   /// True if lanes can number the bytes of all planes.
-  static bool serves(const LabelWeights& weights) {
-    constexpr std::size_t most = std::size_t{1} << 32; // indices of 32 bits
-    return weights.planes().size() <= most / sizeof(LabelWeights::Plane);
+  static bool isSupported(const LabelWeights& weights) {
+    constexpr std::size_t maxCount = std::size_t{1} << 32; // indices of 32 bits
+    return weights.planes().size() <= maxCount / sizeof(LabelWeights::Plane);
   }
   /// `volume`: whose points are asked for.
   SimdLabelWeights(const LabelWeights& weights, const Grid& volume)

@@ -37,7 +37,7 @@ struct RayBatch {
   SoaArray<float> length; ///< mm until the ray ends or leaves the domain
   /// Random numbers of the first tentative collision: bits of the optical depth to it, and whether
   /// it is real, in [0, 1]. All others are hashes of what is counted from these bits.
-  SoaArray<std::uint32_t> depth;
+  SoaArray<std::uint32_t> depthBits;
   SoaArray<float> acceptance;
   SoaArray<float> result; ///< mm to the collision, or infinity; or the transmittance
   SoaArray<float> scalar; ///< at the collision
@@ -55,16 +55,16 @@ struct RayBatch {
 /// Sets ray i to the part of a world-space ray inside the domain and `range`; to a ray of length 0
 /// if that part is empty. Returns the beginning of the part, mm along the ray: lengths count from
 /// there, so that free paths keep their digits, however far away the ray's origin is.
-double setInside(RayBatch& rays, std::size_t i, const Domain& domain, const Ray& ray,
-                 const Interval& range);
+double setDomainRay(RayBatch& rays, std::size_t i, const Domain& domain, const Ray& ray,
+                    const Interval& range);
 
 class SimdTracker {
 public:
   /// True if floats suffice and lanes support every part of the medium: no gradient opacity, at
   /// least two voxels along x, 4 to 2^31 voxels in all, its diagonal at most 2^17 of its smallest
   /// voxels' edges, optical depth across the volume <= 1e5.
-  static bool serves(const Volume& volume, const TransferFunction& transfer,
-                     const Mixture* mixture = nullptr);
+  static bool isSupported(const Volume& volume, const TransferFunction& transfer,
+                          const Mixture* mixture = nullptr);
 
   /// A view: volume, clip, style, mixture and stop must outlive the tracker. Once `stop` is true
   /// rays are abandoned and results are meaningless.

@@ -5,7 +5,7 @@
 namespace fenestra {
 namespace {
 
-SimdMedium::DepthAxis wide(const DepthAxis& axis) {
+SimdMedium::DepthAxis toSimd(const DepthAxis& axis) {
   return {narrow(1.0 / axis.pitch),
           narrow(axis.start),
           static_cast<float>(axis.inside - 1),
@@ -16,24 +16,25 @@ SimdMedium::DepthAxis wide(const DepthAxis& axis) {
 
 /// Affine map of index space: normal . (world point - from) + offset, `normal` and `from` in world
 /// space.
-std::array<float, 4> row(const Grid& grid, const Vec3& normal, const Vec3& from, double offset) {
+std::array<float, 4> makeRow(const Grid& grid, const Vec3& normal, const Vec3& from,
+                             double offset) {
   const Vec3 n = grid.indexToWorld.linear().transpose() * normal;
   const double o = normal.dot(grid.indexToWorld.translation() - from) + offset;
   return {narrow(n.x()), narrow(n.y()), narrow(n.z()), narrow(o)};
 }
 
 /// Greatest number of voxels, along one axis, that 1 mm crosses in any direction.
-double mostVoxelsPerMm(const Grid& grid) {
+double maxVoxelsPerMm(const Grid& grid) {
   return grid.worldToIndex.linear().transpose().columnNorms().maxCoeff();
 }
 
-SimdField fieldOf(const void* voxels, const Grid& grid) {
+SimdField makeField(const void* voxels, const Grid& grid) {
   return {voxels, grid.voxelCount(), makeSimdAxes(grid.size, grid.size)};
 }
 
 /// Extinctions of all matter.
-std::vector<const ScalarFunction*> extinctionsOf(const TransferFunction& transfer,
-                                                 const Mixture* mixture) {
+std::vector<const ScalarFunction*> listExtinctions(const TransferFunction& transfer,
+                                                   const Mixture* mixture) {
   if (!mixture)
     return {&transfer.extinction};
   std::vector<const ScalarFunction*> extinctions;
@@ -55,7 +56,7 @@ void setCells(SimdMedium& medium, const MajorantGrid& majorants, const Grid& gri
     cellStride *= count[axis] + 2;
   }
   medium.lastCell = static_cast<float>(medium.cells.codes.size() - 1);
-  medium.overshoot = narrow(0.5 * MajorantGrid::margin / mostVoxelsPerMm(grid));
+  medium.overshoot = narrow(0.5 * MajorantGrid::margin / maxVoxelsPerMm(grid));
 }
 
 void setClip(SimdMedium& medium, const Clip& clip, const Grid& grid) {
@@ -72,20 +73,20 @@ void setClip(SimdMedium& medium, const Clip& clip, const Grid& grid) {
   const Vec3& eye = camera.pose().position;
   medium.perspective = camera.pose().projection == Projection::perspective;
   medium.targetDepth = narrow(camera.targetDepth());
-  medium.toView = {row(grid, camera.right(), eye, 0.0), row(grid, camera.up(), eye, 0.0),
-                   row(grid, camera.forward(), eye, -camera.targetDepth())};
+  medium.toView = {makeRow(grid, camera.right(), eye, 0.0), makeRow(grid, camera.up(), eye, 0.0),
+                   makeRow(grid, camera.forward(), eye, -camera.targetDepth())};
   medium.fromView = affineRows(Affine(Mat3(camera.right(), camera.up(), camera.forward())));
   if (plane) {
     medium.clipKind = SimdMedium::ClipKind::plane;
     medium.cutNormal = narrow3(-plane->normal.normalized());
-    medium.toPlane = row(grid, plane->normal.normalized(), plane->point, 0.0);
+    medium.toPlane = makeRow(grid, plane->normal.normalized(), plane->point, 0.0);
     return;
   }
   medium.clipKind = depth->lookup == ClipDepth::Lookup::linear ? SimdMedium::ClipKind::depthLinear
                                                                : SimdMedium::ClipKind::depthNearest;
   medium.cutNormal = narrow3(camera.forward());
-  medium.depthX = wide(depth->buffer->xAxis());
-  medium.depthY = wide(depth->buffer->yAxis());
+  medium.depthX = toSimd(depth->buffer->xAxis());
+  medium.depthY = toSimd(depth->buffer->yAxis());
   medium.depths = depth->buffer->depthsFromReference().data();
   medium.depthColumns = static_cast<std::int32_t>(depth->buffer->columns());
   medium.silhouette = depth->silhouette.get();
@@ -93,7 +94,7 @@ void setClip(SimdMedium& medium, const Clip& clip, const Grid& grid) {
 
 void setContext(SimdMedium& medium, const ContextStyle& style, const Grid& grid) {
   const Mask& focus = *style.focus;
-  medium.context = {fieldOf(focus.voxels.data(), focus.grid),
+  medium.context = {makeField(focus.voxels.data(), focus.grid),
                     affineRows(focus.grid.worldToIndex * grid.indexToWorld),
                     0.5F * static_cast<float>(focus.maxValue), narrow(style.extinction),
                     narrow(style.saturation)};
@@ -101,8 +102,8 @@ void setContext(SimdMedium& medium, const ContextStyle& style, const Grid& grid)
 
 } // namespace
 
-double setInside(RayBatch& rays, std::size_t i, const Domain& domain, const Ray& ray,
-                 const Interval& range) {
+double setDomainRay(RayBatch& rays, std::size_t i, const Domain& domain, const Ray& ray,
+                    const Interval& range) {
   const Affine& worldToIndex = domain.grid().worldToIndex;
   const Ray indexRay = transformRay(worldToIndex, ray);
   const Interval inside = domain.clip(indexRay, range);
@@ -115,22 +116,22 @@ double setInside(RayBatch& rays, std::size_t i, const Domain& domain, const Ray&
   return inside.begin;
 }
 
-bool SimdTracker::serves(const Volume& volume, const TransferFunction& transfer,
-                         const Mixture* mixture) {
-  constexpr double deepest = 1e5; // rounding moves a collision by 0.6 % of a free path, at most
+bool SimdTracker::isSupported(const Volume& volume, const TransferFunction& transfer,
+                              const Mixture* mixture) {
+  constexpr double maxDepth = 1e5; // rounding moves a collision by 0.6 % of a free path, at most
   // Voxels in a row; a float's last place is then far below MajorantGrid::margin.
-  constexpr double longest = 1 << 17;
+  constexpr double maxVoxels = 1 << 17;
   const std::int64_t count = volume.grid.voxelCount();
-  constexpr std::int64_t most = std::int64_t{1} << 31; // indices of 32 bits
-  if (transfer.gradientOpacity || volume.grid.size.x() < 2 || count < 4 || count > most ||
-      (mixture && !SimdMixture::serves(*mixture)))
+  constexpr std::int64_t maxCount = std::int64_t{1} << 31; // indices of 32 bits
+  if (transfer.gradientOpacity || volume.grid.size.x() < 2 || count < 4 || count > maxCount ||
+      (mixture && !SimdMixture::isSupported(*mixture)))
     return false;
   const double diagonal = 2.0 * volume.grid.boundingRadius();
   double greatest = 0.0;
-  for (const ScalarFunction* extinction : extinctionsOf(transfer, mixture))
+  for (const ScalarFunction* extinction : listExtinctions(transfer, mixture))
     for (const auto& knot : extinction->knots())
       greatest = std::max(greatest, knot.value[0]);
-  return diagonal * mostVoxelsPerMm(volume.grid) <= longest && greatest * diagonal <= deepest;
+  return diagonal * maxVoxelsPerMm(volume.grid) <= maxVoxels && greatest * diagonal <= maxDepth;
 }
 
 SimdTracker::SimdTracker(const Volume& volume, const Domain& domain,
@@ -140,11 +141,11 @@ SimdTracker::SimdTracker(const Volume& volume, const Domain& domain,
     : m_stop(stop) {
   const auto setVoxels = [&](const auto& voxels) {
     m_medium.voxels = voxels.data();
-    m_medium.field = fieldOf(voxels.data(), volume.grid);
+    m_medium.field = makeField(voxels.data(), volume.grid);
   };
   std::visit(setVoxels, volume.voxels);
   setCells(m_medium, majorants, volume.grid);
-  m_medium.extinctions = SimdLines(extinctionsOf(transfer, mixture));
+  m_medium.extinctions = SimdLines(listExtinctions(transfer, mixture));
   if (mixture)
     m_medium.mixture.emplace(*mixture, volume.grid);
   m_medium.lower = narrow3(domain.box().lower);

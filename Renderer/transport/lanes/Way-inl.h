@@ -41,7 +41,7 @@ HWY_INLINE Float findCellExit(const SimdMedium& scene, const DdaAxis (&axes)[3],
   const Float x = floor(axes[0].at(t));
   const Float y = floor(axes[1].at(t));
   const Float z = floor(axes[2].at(t));
-  cell = cellsAt(scene, x, y, z);
+  cell = loadCells(scene, x, y, z);
   const Float half = cell.skipRadius + 0.5F;
   return min(min(axes[0].exitDistance(x, half), axes[1].exitDistance(y, half)),
              axes[2].exitDistance(z, half));

@@ -9,7 +9,7 @@ namespace {
 
 /// The transfer function's maximum over [low, high], widened by the rounding of interpolation
 /// between two such values.
-double greatest(const ScalarFunction& f, double low, double high) {
+double findMaximum(const ScalarFunction& f, double low, double high) {
   const double rounding =
       4.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(low), std::abs(high));
   return f.range(low - rounding, high + rounding)[1];
@@ -17,17 +17,17 @@ double greatest(const ScalarFunction& f, double low, double high) {
 
 /// Greatest |gradient| (scalar units per mm) if all interpolated values differ by at most `spread`:
 /// every central difference is at most spread / 2 per voxel.
-double gradientBound(const Grid& grid, double spread) {
+double boundGradient(const Grid& grid, double spread) {
   return 0.5 * spread * grid.worldToIndex.linear().transpose().columnNorms().sum();
 }
 
-float roundedUp(double x) {
+float roundUp(double x) {
   const auto f = static_cast<float>(x);
   return static_cast<double>(f) < x ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
 }
 
 /// Corners of a cell with the strip around it, `margin` in cells.
-Corners cornersOf(const Affine& cellToWorld, const Vec3& cell, const Vec3& margin) {
+Corners findCorners(const Affine& cellToWorld, const Vec3& cell, const Vec3& margin) {
   Corners corners;
   const Box box{cell - margin, cell + margin + Vec3::Ones()};
   for (int i = 0; i < 8; ++i)
@@ -37,7 +37,7 @@ Corners cornersOf(const Affine& cellToWorld, const Vec3& cell, const Vec3& margi
 
 /// True if the indicator may reach 1/2 in `box` (the mask's index space): a voxel around the box is
 /// at least half(). Beyond the mask the outermost voxels repeat.
-bool meetsMask(const Mask& mask, const Box& box) {
+bool canReachMask(const Mask& mask, const Box& box) {
   const Vec3 last = (mask.grid.size.array() - 1).cast<double>();
   const auto within = [&](const Vec3& index) { return index.cwiseMax(0.0).cwiseMin(last); };
   const Size3 first = within(box.lower.array().floor()).cast<std::int64_t>();
@@ -54,39 +54,39 @@ bool meetsMask(const Mask& mask, const Box& box) {
 }
 
 /// Greatest factor of a style on the extinction among the corners of a cell.
-double greatestFactor(const ContextStyle& style, const Corners& corners) {
+double findMaximumFactor(const ContextStyle& style, const Corners& corners) {
   Box box = Box::makeEmpty();
   for (const Vec3& corner : corners)
     box.extend(style.focus->grid.worldToIndex * corner);
-  return meetsMask(*style.focus, box) ? 1.0 : style.extinction;
+  return canReachMask(*style.focus, box) ? 1.0 : style.extinction;
 }
 
 /// Greatest extinction, mm^-1, of the matter in a cell that the clip may remove, and of that which
 /// it leaves.
 struct CellBound {
-  double clipped = 0.0, free = 0.0;
+  double clipped = 0.0, unclipped = 0.0;
 };
 
 /// A cell's majorant under the clip and the style.
-MajorantGrid::Cell cellOf(const CellBound& bound, const Corners& corners, const Clip& clip,
-                          const ContextStyle* style) {
+MajorantGrid::Cell makeCell(const CellBound& bound, const Corners& corners, const Clip& clip,
+                            const ContextStyle* style) {
   const ClipBounds bounds =
       std::holds_alternative<ClipNone>(clip) ? ClipBounds::all : boundClipWeight(clip, corners);
-  const double majorant = std::max(bound.clipped * bounds.max, bound.free) *
-                          (style ? greatestFactor(*style, corners) : 1.0);
+  const double majorant = std::max(bound.clipped * bounds.max, bound.unclipped) *
+                          (style ? findMaximumFactor(*style, corners) : 1.0);
   const bool isCut = majorant > 0.0 && !(bounds.isUniform && bounds.max == 1.0);
-  return {roundedUp(majorant), isCut};
+  return {roundUp(majorant), isCut};
 }
 
-double greatest(const TransferFunction& transfer, const Grid& grid, double low, double high) {
-  const double extinction = greatest(transfer.extinction, low, high);
+double findMaximum(const TransferFunction& transfer, const Grid& grid, double low, double high) {
+  const double extinction = findMaximum(transfer.extinction, low, high);
   if (extinction == 0.0 || !transfer.gradientOpacity)
     return extinction;
-  return extinction * greatest(*transfer.gradientOpacity, 0.0, gradientBound(grid, high - low));
+  return extinction * findMaximum(*transfer.gradientOpacity, 0.0, boundGradient(grid, high - low));
 }
 
 /// Bound for a mixture, among the corners of a cell whose scalars lie in [low, high].
-CellBound mixtureBound(const Mixture& mixture, const Grid& grid, const Corners& corners, double low,
+CellBound boundMixture(const Mixture& mixture, const Grid& grid, const Corners& corners, double low,
                        double high) {
   // Shares sum to 1 but for rounding.
   constexpr double rounding = 1.0 + 64.0 * std::numeric_limits<double>::epsilon();
@@ -96,8 +96,8 @@ CellBound mixtureBound(const Mixture& mixture, const Grid& grid, const Corners& 
   CellBound bound;
   mixture.weights->forEachInBox(box, [&](std::uint8_t number) {
     const Component& component = mixture.components[number];
-    double& most = component.isClipped ? bound.clipped : bound.free;
-    most = std::max(most, rounding * greatest(component.transfer, grid, low, high));
+    double& maximum = component.isClipped ? bound.clipped : bound.unclipped;
+    maximum = std::max(maximum, rounding * findMaximum(component.transfer, grid, low, high));
   });
   return bound;
 }
@@ -119,12 +119,12 @@ MajorantGrid::MajorantGrid(const Grid& grid, const MinMaxGrid& ranges,
         const auto cell = static_cast<std::size_t>(x + m_cellCount.x() * (y + m_cellCount.y() * z));
         const double low = ranges.low(cell), high = ranges.high(cell);
         const auto corners = [&] {
-          return cornersOf(cellToWorld, Size3(x, y, z).cast<double>(), strip);
+          return findCorners(cellToWorld, Size3(x, y, z).cast<double>(), strip);
         };
-        const CellBound bound = mixture ? mixtureBound(*mixture, grid, corners(), low, high)
-                                        : CellBound{greatest(transfer, grid, low, high)};
-        m_cells[cell] = bound.clipped > 0.0 || bound.free > 0.0
-                            ? cellOf(bound, corners(), clip, style)
+        const CellBound bound = mixture ? boundMixture(*mixture, grid, corners(), low, high)
+                                        : CellBound{findMaximum(transfer, grid, low, high)};
+        m_cells[cell] = bound.clipped > 0.0 || bound.unclipped > 0.0
+                            ? makeCell(bound, corners(), clip, style)
                             : Cell{0.0F, false};
       }
   });

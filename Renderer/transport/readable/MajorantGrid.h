@@ -14,14 +14,14 @@ class MajorantGrid {
 public:
   struct Cell {
     float majorant; ///< mm^-1
-    bool cut;       ///< clipping may remove part of the cell: query keep
+    bool isCut;     ///< clipping may remove part of the cell: query keep
   };
 
   /// The majorant is the transfer function's greatest value over the cell's whole range of scalars
   /// (not at its maximum: opacity need not grow with the scalar), times the greatest gradient
   /// opacity that the range allows, times the greatest keep and the style's greatest factor in the
   /// cell. Of a mixture it is the greatest over the components that have a share in the cell, since
-  /// shares sum to 1. `ranges` needs the apron of apronFor().
+  /// shares sum to 1. `ranges` needs the apron of requiredPadding().
   MajorantGrid(const Grid& grid, const MinMaxGrid& ranges, const TransferFunction& transfer,
                const Clip& clip, const ContextStyle* style = nullptr,
                const Mixture* mixture = nullptr);
@@ -31,7 +31,9 @@ public:
   static constexpr double margin = 0.125;
 
   /// Apron of MinMaxGrid, voxels: central differences read one voxel further.
-  static int apronFor(const TransferFunction& transfer) { return transfer.gradientOpacity ? 1 : 0; }
+  static int requiredPadding(const TransferFunction& transfer) {
+    return transfer.gradientOpacity ? 1 : 0;
+  }
 
   const Size3& cellCount() const { return m_cellCount; }
   std::size_t size() const { return m_cells.size(); }

@@ -111,7 +111,7 @@ private:
       const double each = length / steps;
       for (double i = 0.5; i < steps; i += 1.0) {
         const double t = interval.begin + i * each;
-        const double weight = cell.cut ? clipWeight(m_clip, part.ray.at(t)) : 1.0;
+        const double weight = cell.isCut ? clipWeight(m_clip, part.ray.at(t)) : 1.0;
         if (m_medium.canCollide(weight) &&
             !visit(t, each, m_medium.extinction(part.indexRay.at(t), weight)))
           return;

@@ -23,7 +23,7 @@ public:
                                   Counters& counters) const {
     ++counters.paths;
     Path path = m_steps.begin(column, row, numbers);
-    while (!PathSteps<Voxel>::ended(path) && !stopped()) {
+    while (!PathSteps<Voxel>::hasEnded(path) && !isStopped()) {
       const double distance =
           m_tracker.sampleCollision(path.ray, path.range, path.uFlight, path.random, counters);
       if (!m_steps.handleVertex(path, distance))
@@ -37,11 +37,11 @@ public:
           light->radiance *
           m_tracker.transmittance(light->ray, {0.0, light->distance}, path.random, counters);
     }
-    return stopped() ? std::nullopt : std::optional(path.sample);
+    return isStopped() ? std::nullopt : std::optional(path.sample);
   }
 
 private:
-  bool stopped() const { return m_stop.load(std::memory_order_relaxed); }
+  bool isStopped() const { return m_stop.load(std::memory_order_relaxed); }
 
   PathSteps<Voxel> m_steps;
   const Distances& m_tracker;

@@ -28,7 +28,7 @@ struct PathSettings {
 };
 
 /// Weight (root mean square of its components) below which paths are subject to Russian roulette.
-inline constexpr double rouletteBelow = 0.5;
+inline constexpr double rouletteThreshold = 0.5;
 
 /// A path under way: its next ray, and the sample gathered so far.
 struct Path {
@@ -96,14 +96,14 @@ public:
     const MediumSample medium =
         sampleMedium(m_medium, m_clip, point, m_worldToIndex * point, wantGradient, path.random);
     if (first)
-      recordFirst(path, distance, medium);
+      recordFirstHit(path, distance, medium);
     const Scattering scattering = chooseScattering(path.ray.direction, medium, path.uChoices.x());
-    std::optional<ShadowRay> light = sampledLight(point, scattering, path);
+    std::optional<ShadowRay> light = sampleLight(point, scattering, path);
     const ScatterSample scattered = sampleScattering(scattering, path.uDirection, path.random);
     path.uDirection = path.random.uniform2();
     path.uChoices = path.random.uniform2();
     path.throughput *= scattered.weight;
-    roulette(path);
+    playRoulette(path);
     path.scatterPdf = scattered.pdf;
     path.ray = {point, scattered.outgoing};
     path.range = {};
@@ -113,10 +113,10 @@ public:
     return light;
   }
 
-  static bool ended(const Path& path) { return !(path.throughput.maxCoeff() > 0.0); }
+  static bool hasEnded(const Path& path) { return !(path.throughput.maxCoeff() > 0.0); }
 
 private:
-  void recordFirst(Path& path, double distance, const MediumSample& medium) const {
+  void recordFirstHit(Path& path, double distance, const MediumSample& medium) const {
     PathSample& sample = path.sample;
     sample.depth = m_cameraRays.depth(path.ray, distance);
     sample.albedo = medium.albedo;
@@ -136,8 +136,8 @@ private:
 
   /// Next-event estimation: one light, to be seen through the volume, weighted against scattering
   /// toward that light.
-  std::optional<ShadowRay> sampledLight(const Vec3& point, const Scattering& scattering,
-                                        Path& path) const {
+  std::optional<ShadowRay> sampleLight(const Vec3& point, const Scattering& scattering,
+                                       Path& path) const {
     const std::optional<LightSample> light =
         m_lights.sample(point, path.uChoices.y(), path.random.uniform2());
     if (!light)
@@ -163,11 +163,11 @@ private:
   }
 
   /// Russian roulette on the path's weight: its square is what the path adds to the variance.
-  static void roulette(Path& path) {
-    const double weight = std::sqrt(path.throughput.square().mean());
-    if (weight >= rouletteBelow)
+  static void playRoulette(Path& path) {
+    const double rms = std::sqrt(path.throughput.square().mean());
+    if (rms >= rouletteThreshold)
       return;
-    const double chance = weight / rouletteBelow;
+    const double chance = rms / rouletteThreshold;
     if (path.random.uniform() < chance)
       path.throughput /= chance;
     else

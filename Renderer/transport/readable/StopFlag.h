@@ -14,6 +14,6 @@ inline const StopFlag neverStopped = false;
 
 /// Steps of a walk between two reads of the flag: a fraction of a millisecond. A read at each step
 /// would cost as much as the step.
-inline constexpr std::uint32_t stepsBetweenLooks = 1024;
+inline constexpr std::uint32_t stopPollInterval = 1024;
 
 } // namespace fenestra

@@ -18,7 +18,7 @@ namespace fenestra {
 /// probability of a real collision) at each tentative collision until visit returns false. The
 /// first one is judged by `acceptance`, uniform in [0, 1).
 template <typename Walk>
-double firstRealCollision(Walk&& walk, double acceptance, Random& random) {
+double findRealCollision(Walk&& walk, double acceptance, Random& random) {
   double distance = infinity;
   walk([&](double t, double realProbability) {
     if (std::exchange(acceptance, random.uniform()) >= realProbability)
@@ -31,13 +31,13 @@ double firstRealCollision(Walk&& walk, double acceptance, Random& random) {
 
 /// Transmittance by ratio tracking (Novak et al. 2014), with Russian roulette below 0.4.
 template <typename Walk>
-double ratioTracked(Walk&& walk, Random& random) {
-  constexpr double rouletteBelow = 0.4;
+double trackRatio(Walk&& walk, Random& random) {
+  constexpr double rouletteThreshold = 0.4;
   double ratio = 1.0;
   walk([&](double, double realProbability) {
     ratio *= std::max(0.0, 1.0 - realProbability);
-    if (ratio < rouletteBelow)
-      ratio = random.uniform() * rouletteBelow < ratio ? rouletteBelow : 0.0;
+    if (ratio < rouletteThreshold)
+      ratio = random.uniform() * rouletteThreshold < ratio ? rouletteThreshold : 0.0;
     return ratio > 0.0;
   });
   return ratio;
@@ -59,7 +59,7 @@ public:
     const auto walk = [&](auto&& visit) {
       walkTentative(ray, range, toExponential(first.x()), random, counters, visit);
     };
-    return firstRealCollision(walk, first.y(), random);
+    return findRealCollision(walk, first.y(), random);
   }
 
   /// Unbiased estimate of the transmittance over `range`.
@@ -68,7 +68,7 @@ public:
     const auto walk = [&](auto&& visit) {
       walkTentative(ray, range, random.exponential(), random, counters, visit);
     };
-    return ratioTracked(walk, random);
+    return trackRatio(walk, random);
   }
 
 private:
@@ -100,13 +100,13 @@ private:
       }
       double t = walk.interval().begin;
       for (;;) {
-        const double toBorder = (walk.interval().end - t) * majorant;
-        if (opticalDepth >= toBorder) {
-          opticalDepth -= toBorder;
+        const double depthToExit = (walk.interval().end - t) * majorant;
+        if (opticalDepth >= depthToExit) {
+          opticalDepth -= depthToExit;
           break;
         }
         t += opticalDepth / majorant;
-        const double weight = cell.cut ? clipWeight(m_clip, entering.at(t)) : 1.0;
+        const double weight = cell.isCut ? clipWeight(m_clip, entering.at(t)) : 1.0;
         double extinction = 0.0;
         if (m_medium.canCollide(weight)) {
           ++counters.lookups;
@@ -114,7 +114,7 @@ private:
         }
         if (!visit(inside.begin + t, extinction / majorant))
           return;
-        if (++steps % stepsBetweenLooks == 0 && m_stop.load(std::memory_order_relaxed))
+        if (++steps % stopPollInterval == 0 && m_stop.load(std::memory_order_relaxed))
           return;
         opticalDepth = random.exponential();
       }

@@ -17,15 +17,16 @@ public:
   EmptyPixels(const Camera& camera, const MajorantGrid& majorants);
 
   bool contains(int column, int row) const {
-    return !m_isFull.empty() && m_isFull[static_cast<std::size_t>(row / tileSize) * m_across +
-                                         static_cast<std::size_t>(column / tileSize)] == 0;
+    return !m_isOccupied.empty() &&
+           m_isOccupied[static_cast<std::size_t>(row / tileSize) * m_tilesPerRow +
+                        static_cast<std::size_t>(column / tileSize)] == 0;
   }
 
 private:
   static constexpr int tileSize = 4; ///< pixels
 
-  std::size_t m_across = 0; ///< tiles in a row
-  std::vector<std::uint8_t> m_isFull;
+  std::size_t m_tilesPerRow = 0; ///< tiles in a row
+  std::vector<std::uint8_t> m_isOccupied;
 };
 
 } // namespace fenestra

@@ -129,12 +129,12 @@ private:
   }
 
   std::vector<Collision> findCollisions(const Raster& raster, int row) const {
-    constexpr float least = 0.02F;
+    constexpr float minHit = 0.02F;
     std::vector<Collision> collisions;
     for (int column = 0; column < raster.width; ++column) {
       const std::size_t pixel = raster.index(column, row);
       const PrimaryHit& primary = raster.pixels[pixel];
-      if (!(primary.hit > least))
+      if (!(primary.hit > minHit))
         continue;
       const Ray cameraRay = m_scene.camera.makeRay(column + 0.5, row + 0.5);
       const double depth = static_cast<double>(primary.depth / primary.hit);
@@ -150,13 +150,13 @@ private:
   /// Matter that a collision meets with the greatest probability.
   std::optional<MediumSample> findLikeliest(const Vec3& point, const Vec3& index) const {
     std::optional<MediumSample> found;
-    double most = 0.0;
+    double best = 0.0;
     forEachMediumSample(m_medium, m_scene.clip, point, index, true,
                         [&](const MediumSample& medium, double probability) {
-                          if (probability <= most)
+                          if (probability <= best)
                             return;
                           found = medium;
-                          most = probability;
+                          best = probability;
                         });
     return found;
   }
@@ -219,7 +219,7 @@ FeatureBuffers marchFeatures(const SceneView& scene, const Medium<Voxel>& medium
 } // namespace
 
 FeatureBuffers computeFeatures(const SceneView& scene) {
-  if (!lanesServe(scene))
+  if (!canUseSimd(scene))
     return computeScalarFeatures(scene);
   return withMedium(scene, [&]<typename Voxel>(const Medium<Voxel>& medium, const Tracker<Voxel>&) {
     return marchFeatures(scene, medium, SimdFeatureMarcher(scene));

@@ -76,8 +76,9 @@ public:
       batch->rays.size = count;
       for (std::size_t i = 0; i < count; ++i) {
         const Ray ray = m_scene.camera.makeRay(points[from + i].column, points[from + i].row);
-        before[i] = setInside(batch->rays, i, m_domain, ray,
-                              visibleInterval(cameraRayClip(m_scene.clip, m_scene.mixture), ray));
+        before[i] =
+            setDomainRay(batch->rays, i, m_domain, ray,
+                         visibleInterval(cameraRayClip(m_scene.clip, m_scene.mixture), ray));
         perLength[i] = m_scene.camera.depthPerLength(ray);
       }
       marchCameraRays(m_medium, m_shading, *batch);
@@ -91,7 +92,7 @@ public:
     for (std::size_t from = 0; from < rays.size(); from += RayBatch::capacity) {
       batch->size = std::min(rays.size() - from, RayBatch::capacity);
       for (std::size_t i = 0; i < batch->size; ++i)
-        setInside(*batch, i, m_domain, rays[from + i].ray, {0.0, rays[from + i].distance});
+        setDomainRay(*batch, i, m_domain, rays[from + i].ray, {0.0, rays[from + i].distance});
       marchShadowRays(m_medium, *batch);
       out = std::copy_n(batch->result.begin(), batch->size, out);
     }

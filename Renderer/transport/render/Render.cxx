@@ -18,7 +18,7 @@ namespace fenestra {
 namespace {
 
 /// Samples per pixel below which a noise estimate is too uncertain to stop by.
-constexpr std::uint64_t leastForNoise = SamplePlan::pilotSamples;
+constexpr std::uint64_t minNoiseSamples = SamplePlan::pilotSamples;
 
 /// Traces one path after the other.
 template <typename Voxel>
@@ -54,26 +54,26 @@ struct PassGrowth {
 /// Samples per pixel of the next pass. Passes grow, so that a picture is there early and overhead
 /// stays small later; sizes are fixed, so that a stop by noise falls on the same sample count on
 /// every machine.
-std::uint64_t passSize(std::uint64_t done, const RenderSettings& settings,
-                       const PassGrowth& growth = {}) {
+std::uint64_t choosePassSize(std::uint64_t done, const RenderSettings& settings,
+                             const PassGrowth& growth = {}) {
   const std::uint64_t grown = std::clamp<std::uint64_t>(done * growth.perSample, 1, growth.largest);
   return settings.passSamples > 0 ? settings.passSamples : grown;
 }
 
-/// Samples per pixel of the next pass toward a noise target. The pilot ends at leastForNoise
+/// Samples per pixel of the next pass toward a noise target. The pilot ends at minNoiseSamples
 /// whatever the passes are. After the pilot passes grow from 1 again, for some pixels may get far
 /// more than the mean; the last pass is as small as the noise so far predicts (variance ~ 1 /
 /// samples).
-std::uint64_t passTowardNoise(const LastPass& last, const RenderSettings& settings) {
+std::uint64_t chooseNoisePassSize(const LastPass& last, const RenderSettings& settings) {
   const std::uint64_t done = last.samples;
-  if (done < leastForNoise)
-    return std::min(passSize(done, settings), leastForNoise - done);
-  constexpr double mostInOnePixel = 256.0;
+  if (done < minNoiseSamples)
+    return std::min(choosePassSize(done, settings), minNoiseSamples - done);
+  constexpr double maxPerPixel = 256.0;
   const double missing =
       static_cast<double>(done) * (std::pow(last.noise / settings.noise, 2.0) - 1.0);
-  const double room = mostInOnePixel / last.plan.at(done + 1).greatestShare();
+  const double room = maxPerPixel / last.plan.at(done + 1).maxRatio();
   const auto most = static_cast<std::uint64_t>(std::max(1.0, std::min(missing, room)));
-  return std::min(passSize(done - leastForNoise, settings), most);
+  return std::min(choosePassSize(done - minNoiseSamples, settings), most);
 }
 
 /// Lets all threads render what is left of a pass, to its end, a pause or a stop; tiles are done
@@ -98,7 +98,7 @@ void renderTiles(const Tracer& tracer, Pass& pass, const Film& film, Counters& t
 }
 
 /// Parts of a render that all its passes share.
-struct PassSource {
+struct PassInputs {
   std::vector<int> tiles;
   EmptyPixels empty;
   Sampler numbers;
@@ -125,28 +125,28 @@ void renderWithWorkers(const Tracer& tracer, Pass& pass, RenderResult& result,
 /// Renders the samples that stage `result.begunSamples` has beyond the film. Returns false if
 /// stopped before all were done.
 template <typename Tracer>
-bool renderPass(const Tracer& tracer, const PassSource& source, RenderResult& result,
+bool renderPass(const Tracer& tracer, const PassInputs& source, RenderResult& result,
                 RenderMonitor& monitor) {
   const SamplePlan& plan = result.last.plan;
   Pass pass(source.tiles, plan.at(result.finishedSamples), plan.at(result.begunSamples),
             source.empty, source.numbers, result.film, monitor.paths);
   for (;;) {
     renderWithWorkers(tracer, pass, result, monitor);
-    if (pass.whole() || monitor.stop)
-      return pass.whole();
+    if (pass.isComplete() || monitor.stop)
+      return pass.isComplete();
     monitor.onCheckpoint(result); // nothing but a rest leaves tiles undone
   }
 }
 
 /// True if all eye rays through one pixel that meet no matter return the same radiance.
-bool isConstantInPixels(const Background& background, const LightSet& lights) {
+bool isConstantPerPixel(const Background& background, const LightSet& lights) {
   return background.kind != Background::Kind::environment ||
          (!lights.hasMaps() && lights.tables().skies.empty());
 }
 
 /// Pixels of which one sample is enough; the film is told.
-EmptyPixels emptyPixels(const SceneView& scene, const RenderSettings& settings, Film& film) {
-  EmptyPixels empty = isConstantInPixels(settings.path.background, scene.lights)
+EmptyPixels markEmptyPixels(const SceneView& scene, const RenderSettings& settings, Film& film) {
+  EmptyPixels empty = isConstantPerPixel(settings.path.background, scene.lights)
                           ? EmptyPixels(scene.camera, scene.majorants)
                           : EmptyPixels();
   for (int row = 0; row < film.height(); ++row)
@@ -156,33 +156,33 @@ EmptyPixels emptyPixels(const SceneView& scene, const RenderSettings& settings, 
 }
 
 /// Duration of passes, and the samples that the time limit still allows.
-class Pace {
+class TimeBudget {
 public:
-  explicit Pace(double secondsInAll) : m_secondsInAll(secondsInAll) {}
+  explicit TimeBudget(double limit) : m_limit(limit) {}
 
-  void passed(std::uint64_t samples) {
+  void addPass(std::uint64_t samples) {
     const double now = m_watch.seconds();
     m_perSample = (now - m_last) / static_cast<double>(samples);
     m_last = now;
   }
   /// Time until now went into a look, not into samples.
-  void looked() { m_last = m_watch.seconds(); }
+  void restartClock() { m_last = m_watch.seconds(); }
   /// Number of samples that the remaining time allows, at the last pass's time per sample.
-  std::uint64_t affordable() const {
-    if (!(m_secondsInAll < infinity) || m_perSample == 0.0)
+  std::uint64_t affordableSamples() const {
+    if (!(m_limit < infinity) || m_perSample == 0.0)
       return std::numeric_limits<std::uint64_t>::max();
-    const double left = m_secondsInAll - m_watch.seconds();
+    const double left = m_limit - m_watch.seconds();
     return static_cast<std::uint64_t>(std::clamp(left / m_perSample, 0.0, 1e9));
   }
 
 private:
-  double m_secondsInAll;
+  double m_limit;
   Stopwatch m_watch;
   double m_last = 0.0, m_perSample = 0.0;
 };
 
 /// Number of samples at which the seen noise is looked at next.
-std::uint64_t nextLook(std::uint64_t done) {
+std::uint64_t nextNoiseCheck(std::uint64_t done) {
   constexpr std::uint64_t first = 4;
   return std::max(first, std::bit_ceil(done + 1));
 }
@@ -195,11 +195,11 @@ public:
 
   /// Samples of the pass after `last`, which no other limit cuts short.
   std::uint64_t nextPass(const LastPass& last) const {
-    if (m_settings.plansByNoise())
-      return passTowardNoise(last, m_settings);
-    const std::uint64_t size = passSize(last.samples, m_settings, m_growth);
-    if (isSeen())
-      return std::min(size, nextLook(last.samples) - last.samples);
+    if (m_settings.isAdaptive())
+      return chooseNoisePassSize(last, m_settings);
+    const std::uint64_t size = choosePassSize(last.samples, m_settings, m_growth);
+    if (hasDisplayNoise())
+      return std::min(size, nextNoiseCheck(last.samples) - last.samples);
     const std::uint64_t left = m_settings.samples - last.samples;
     return left <= size + size / 2 ? left : size; // no short pass for the rest
   }
@@ -211,28 +211,28 @@ public:
     std::atomic<double>& noise = monitor.noise;
     if (!isCut)
       result.last.samples = done;
-    if (isSeen()) {
-      if (nextLook(done - 1) != done)
+    if (hasDisplayNoise()) {
+      if (nextNoiseCheck(done - 1) != done)
         return false;
-      noise = m_settings.seenNoise(result.film);
+      noise = m_settings.displayNoise(result.film);
       return noise <= m_settings.noise;
     }
-    const bool isPlanned = m_settings.plansByNoise();
-    if (isPlanned || monitor.isNoiseWatched)
+    const bool isPlanned = m_settings.isAdaptive();
+    if (isPlanned || monitor.isNoiseWanted)
       noise = result.film.noise();
     if (!isPlanned)
       return false;
     if (!isCut)
       result.last.noise = noise;
-    if (done < leastForNoise)
+    if (done < minNoiseSamples)
       return false;
-    if (done == leastForNoise)
+    if (done == minNoiseSamples)
       result.last.plan = SamplePlan(result.film);
     return noise <= m_settings.noise;
   }
 
 private:
-  bool isSeen() const { return m_settings.noise > 0.0 && m_settings.seenNoise; }
+  bool hasDisplayNoise() const { return m_settings.noise > 0.0 && m_settings.displayNoise; }
 
   const RenderSettings& m_settings;
   const PassGrowth m_growth;
@@ -241,13 +241,13 @@ private:
 /// A short pass costs more a sample: in each one caches meet the whole volume anew, and threads run
 /// out of paths once. So passes grow fourfold where nobody is shown pictures between them; and with
 /// several processes, each of which moves the film, yet faster, and more.
-PassGrowth growthFor(const RenderMonitor& monitor) {
+PassGrowth choosePassGrowth(const RenderMonitor& monitor) {
   const auto processes = static_cast<std::uint64_t>(monitor.workers.count) + 1;
   return {(monitor.onPassEnd ? 1 : 3) * processes, 16 * processes};
 }
 
 /// Result before the first sample.
-RenderResult emptyResult(const Camera& camera, const Sampler& numbers) {
+RenderResult makeEmptyResult(const Camera& camera, const Sampler& numbers) {
   return {Film(camera.width(), camera.height(), Sampler::hasIndependentHalfBuffers,
                numbers.samplesPerBlock())};
 }
@@ -265,33 +265,33 @@ bool isAtLastPass(const RenderResult& result) {
 template <typename Tracer>
 RenderResult renderPasses(const Tracer& tracer, const std::string& arithmetic,
                           const SceneView& scene, const RenderSettings& settings,
-                          RenderMonitor& monitor, std::optional<RenderResult> begun) {
+                          RenderMonitor& monitor, std::optional<RenderResult> resumed) {
   const Sampler numbers(settings.sampling, settings.seed);
-  RenderResult result = begun ? std::move(*begun) : emptyResult(scene.camera, numbers);
+  RenderResult result = resumed ? std::move(*resumed) : makeEmptyResult(scene.camera, numbers);
   result.reason = StopReason::samples;
   result.target = arithmetic;
-  if (!settings.plansByNoise())
+  if (!settings.isAdaptive())
     result.last = {result.last.samples}; // a plan made by the pilot is not followed
-  const PassSource source{Tiles(result.film.width(), result.film.height()).select(settings.shard),
-                          emptyPixels(scene, settings, result.film), numbers};
+  const PassInputs source{Tiles(result.film.width(), result.film.height()).select(settings.shard),
+                          markEmptyPixels(scene, settings, result.film), numbers};
   monitor.paths = result.finishedSamples * result.film.pixelCount() /
                   static_cast<std::size_t>(settings.shard.count);
-  const NoiseLimit target(settings, growthFor(monitor));
-  Pace pace(settings.seconds);
-  const auto looksReached = [&](bool isCut) {
+  const NoiseLimit target(settings, choosePassGrowth(monitor));
+  TimeBudget budget(settings.seconds);
+  const auto checkNoise = [&](bool isCut) {
     const bool isReached = target.isReached(result, isCut, monitor);
     if (isReached)
       result.reason = StopReason::noise;
     return isReached;
   };
-  if (isAtLastPass(result) && looksReached(false))
+  if (isAtLastPass(result) && checkNoise(false))
     return result;
   while (result.finishedSamples < settings.samples) {
     const std::uint64_t done = result.finishedSamples;
-    const std::uint64_t whole =
+    const std::uint64_t passEnd =
         std::max(result.last.samples + target.nextPass(result.last), done + 1);
     const std::uint64_t count =
-        std::min({whole - done, settings.samples - done, pace.affordable()});
+        std::min({passEnd - done, settings.samples - done, budget.affordableSamples()});
     if (count == 0) {
       result.reason = StopReason::seconds;
       return result;
@@ -305,11 +305,11 @@ RenderResult renderPasses(const Tracer& tracer, const std::string& arithmetic,
       result.reason = StopReason::request;
       return result;
     }
-    pace.passed(count);
+    budget.addPass(count);
     result.finishedSamples += count;
-    if (looksReached(result.finishedSamples < whole))
+    if (checkNoise(result.finishedSamples < passEnd))
       return result;
-    pace.looked();
+    budget.restartClock();
   }
   return result;
 }
@@ -319,8 +319,8 @@ void renderEachLease(const Tracer& tracer, const SceneView& scene, const RenderS
                      RenderMonitor& monitor,
                      const std::function<std::optional<TileLease>(RenderResult&)>& next) {
   const Sampler numbers(settings.sampling, settings.seed);
-  RenderResult result = emptyResult(scene.camera, numbers);
-  const EmptyPixels empty = emptyPixels(scene, settings, result.film);
+  RenderResult result = makeEmptyResult(scene.camera, numbers);
+  const EmptyPixels empty = markEmptyPixels(scene, settings, result.film);
   while (const std::optional<TileLease> lease = next(result)) {
     result.counters = {};
     const SamplePlan& plan = result.last.plan;
@@ -360,7 +360,7 @@ auto traceScalar(const SceneView& scene, const RenderSettings& settings, const S
 }
 
 bool isSimdUsed(const SceneView& scene, const RenderSettings& settings) {
-  return settings.integrator == Integrator::simd && lanesServe(scene);
+  return settings.integrator == Integrator::simd && canUseSimd(scene);
 }
 
 /// Calls work(tracer, arithmetic) in the threads that the settings allow.
@@ -377,21 +377,21 @@ auto traceScene(const SceneView& scene, const RenderSettings& settings, const St
 
 } // namespace
 
-bool lanesServe(const SceneView& scene) {
-  return SimdTracker::serves(scene.volume, scene.transfer, scene.mixture) &&
-         SimdShading::serves(scene.volume.grid, scene.transfer, scene.lights, scene.mixture) &&
-         (!scene.tint || SimdLabelWeights::serves(*scene.tint->weights));
+bool canUseSimd(const SceneView& scene) {
+  return SimdTracker::isSupported(scene.volume, scene.transfer, scene.mixture) &&
+         SimdShading::isSupported(scene.volume.grid, scene.transfer, scene.lights, scene.mixture) &&
+         (!scene.tint || SimdLabelWeights::isSupported(*scene.tint->weights));
 }
 
-std::string targetOf(const SceneView& scene, const RenderSettings& settings) {
+std::string findTarget(const SceneView& scene, const RenderSettings& settings) {
   return isSimdUsed(scene, settings) ? instructionSet() : "scalar";
 }
 
 RenderResult render(const SceneView& scene, const RenderSettings& settings, RenderMonitor& monitor,
-                    std::optional<RenderResult> begun) {
+                    std::optional<RenderResult> resumed) {
   return traceScene(
       scene, settings, monitor.stop, [&](const auto& tracer, const std::string& arithmetic) {
-        return renderPasses(tracer, arithmetic, scene, settings, monitor, std::move(begun));
+        return renderPasses(tracer, arithmetic, scene, settings, monitor, std::move(resumed));
       });
 }
 

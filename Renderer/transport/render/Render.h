@@ -61,7 +61,7 @@ struct RenderSettings {
   double noise = -1.0; ///< limit of Film::noise() after a pass, from 16 samples on; negative: none
   /// Noise of the picture as it will be seen, in place of Film::noise(): looked at after 4, 8, 16,
   /// … samples, so that a lucky picture in between ends nothing. Empty: Film::noise().
-  std::function<double(const Film&)> seenNoise = {};
+  std::function<double(const Film&)> displayNoise = {};
   std::uint64_t seed = 0;
   Sampling sampling = Sampling::stratified;
   Integrator integrator = Integrator::simd;
@@ -70,7 +70,7 @@ struct RenderSettings {
   Shard shard = {}; ///< of the picture's tiles; the others stay empty. Not with `noise`.
 
   /// True if noisier pixels get more samples, once the pilot has ended.
-  bool plansByNoise() const { return noise > 0.0 && !seenNoise; }
+  bool isAdaptive() const { return noise > 0.0 && !displayNoise; }
 };
 
 class Pass;
@@ -94,7 +94,7 @@ struct RenderMonitor {
   std::atomic<std::uint64_t> paths = 0; ///< finished so far, as if no pixel were empty
   std::atomic<double> noise = infinity; ///< at the last look
   /// Somebody watches `noise`: it is estimated after each pass, though nothing else needs it.
-  bool isNoiseWatched = false;
+  bool isNoiseWanted = false;
   /// Called between two passes with the result so far; the render waits.
   std::function<void(const RenderResult&)> onPassEnd = {};
   /// Looked at by all threads, often. Once true, they end their tiles, and `keep` is called with
@@ -128,16 +128,16 @@ struct RenderResult {
 };
 
 /// True if SIMD lanes serve the scene (SimdTracker::serves, SimdShading::serves).
-bool lanesServe(const SceneView& scene);
+bool canUseSimd(const SceneView& scene);
 
 /// RenderResult::target of a render.
-std::string targetOf(const SceneView& scene, const RenderSettings& settings);
+std::string findTarget(const SceneView& scene, const RenderSettings& settings);
 
 /// `begun`: result of a render of the same scene and settings to go on from, but for threads and
 /// the limits of samples, time and noise: at least begun->begunSamples samples, and planned by
 /// noise or not as before if that is beyond the pilot.
 RenderResult render(const SceneView& scene, const RenderSettings& settings, RenderMonitor& monitor,
-                    std::optional<RenderResult> begun = {});
+                    std::optional<RenderResult> resumed = {});
 
 /// Tiles that another process lends, and the stages of the plan between which their pixels lack
 /// samples (SamplePlan::at).

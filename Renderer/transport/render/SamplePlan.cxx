@@ -11,8 +11,8 @@ namespace fenestra {
 namespace {
 
 /// Least s of a pixel, relative to the mean s: few samples miss rare bright paths.
-constexpr double leastNoise = 0.25;
-constexpr int reach = 2; ///< pixels to each side in around()
+constexpr double minNoise = 0.25;
+constexpr int radius = 2; ///< pixels to each side in around()
 
 /// Variance of one sample / (x^2 + 0.01), mean over the channels. Strata leave it as it is: what
 /// they take from the variance of a mean differs little from pixel to pixel, and would be known
@@ -25,17 +25,17 @@ double relativeVariance(const PixelSums& pixel) {
 }
 
 /// Cost of a path, in scatterings: `beginning`, plus the mean number of scatterings.
-double cost(const PixelSums& pixel) {
-  constexpr double beginning = 0.15;
-  return beginning + pixel.scatterings / static_cast<double>(pixel.samples);
+double pathCost(const PixelSums& pixel) {
+  constexpr double baseCost = 0.15;
+  return baseCost + pixel.scatterings / static_cast<double>(pixel.samples);
 }
 
 /// Mean of the values of a film's pixels around (column, row), that pixel excluded.
-double around(const Film& film, const std::vector<double>& values, int column, int row) {
+double averageNeighbors(const Film& film, const std::vector<double>& values, int column, int row) {
   double sum = 0.0;
   int count = -1;
-  for (int y = std::max(row - reach, 0); y <= std::min(row + reach, film.height() - 1); ++y)
-    for (int x = std::max(column - reach, 0); x <= std::min(column + reach, film.width() - 1);
+  for (int y = std::max(row - radius, 0); y <= std::min(row + radius, film.height() - 1); ++y)
+    for (int x = std::max(column - radius, 0); x <= std::min(column + radius, film.width() - 1);
          ++x) {
       ++count;
       if (x != column || y != row)
@@ -45,20 +45,20 @@ double around(const Film& film, const std::vector<double>& values, int column, i
 }
 
 /// Uniform in [0, 1), one for each pixel.
-double ditherOf(std::size_t pixel) {
+double dither(std::size_t pixel) {
   return static_cast<double>(mixBits(pixel + 1) >> 11) * 0x1p-53;
 }
 
 } // namespace
 
 SamplePlan::SamplePlan(const Film& pilot) : m_pilot(pilot.sampleCounts().max) {
-  const std::size_t uncertain = pilot.pixelCount() - pilot.sampleCounts().deterministicPixels;
-  if (uncertain < leastPixels)
+  const std::size_t activePixels = pilot.pixelCount() - pilot.sampleCounts().deterministicPixels;
+  if (activePixels < minPixels)
     return;
   std::vector<double> variances, costs;
   for (const PixelSums& pixel : pilot.pixels()) {
     variances.push_back(relativeVariance(pixel));
-    costs.push_back(cost(pixel));
+    costs.push_back(pathCost(pixel));
   }
   m_noise.resize(variances.size());
   tbb::parallel_for(0, pilot.height(), [&](int row) {
@@ -66,7 +66,7 @@ SamplePlan::SamplePlan(const Film& pilot) : m_pilot(pilot.sampleCounts().max) {
       if (pilot.at(column, row).isDeterministic)
         continue;
       const auto here = [&](const std::vector<double>& values) {
-        return around(pilot, values, column, row);
+        return averageNeighbors(pilot, values, column, row);
       };
       m_noise[pilot.index(column, row)] =
           static_cast<float>(std::sqrt(here(variances) / here(costs)));
@@ -79,10 +79,10 @@ SamplePlan::SamplePlan(const Film& pilot) : m_pilot(pilot.sampleCounts().max) {
     m_noise.clear();
     return;
   }
-  const auto least = static_cast<float>(leastNoise * sum / static_cast<double>(uncertain));
+  const auto minimum = static_cast<float>(minNoise * sum / static_cast<double>(activePixels));
   for (std::size_t i = 0; i < m_noise.size(); ++i)
     if (!pilot.pixels()[i].isDeterministic)
-      m_noise[i] = std::max(m_noise[i], least);
+      m_noise[i] = std::max(m_noise[i], minimum);
   sort();
 }
 
@@ -124,21 +124,21 @@ SamplePlan::Stage SamplePlan::at(std::uint64_t mean) const {
     else
       low = k + 1;
   }
-  stage.m_perNoise = perNoise(low);
+  stage.m_samplesPerNoise = perNoise(low);
   return stage;
 }
 
 std::uint64_t SamplePlan::Stage::count(std::size_t pixel) const {
-  if (!(m_perNoise > 0.0))
+  if (!(m_samplesPerNoise > 0.0))
     return m_mean;
-  const double share = m_perNoise * static_cast<double>(m_plan->m_noise[pixel]);
-  return std::max(m_plan->m_pilot, static_cast<std::uint64_t>(share + ditherOf(pixel)));
+  const double planned = m_samplesPerNoise * static_cast<double>(m_plan->m_noise[pixel]);
+  return std::max(m_plan->m_pilot, static_cast<std::uint64_t>(planned + dither(pixel)));
 }
 
-double SamplePlan::Stage::greatestShare() const {
-  if (!(m_perNoise > 0.0))
+double SamplePlan::Stage::maxRatio() const {
+  if (!(m_samplesPerNoise > 0.0))
     return 1.0;
-  const double most = m_perNoise * static_cast<double>(m_plan->m_sorted.back());
+  const double most = m_samplesPerNoise * static_cast<double>(m_plan->m_sorted.back());
   return std::max(1.0, most / static_cast<double>(m_mean));
 }
 

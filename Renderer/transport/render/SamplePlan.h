@@ -12,13 +12,13 @@ namespace fenestra {
 /// A pixel's s is taken from the pilot samples of the pixels around, never from its own: the number
 /// of a pixel's samples does not depend on their values, and their mean, pilot included, is
 /// unbiased. Remaining bias: a pixel influences its own count only through global sums (of s, and
-/// the noise at which rendering stops), O(1 / pixels). Below `leastPixels` the plan is uniform.
+/// the noise at which rendering stops), O(1 / pixels). Below `minPixels` the plan is uniform.
 class SamplePlan {
 public:
   /// Uniform plan.
   SamplePlan() = default;
   /// Number of uncertain pixels below which the plan is uniform.
-  static constexpr std::size_t leastPixels = 2048;
+  static constexpr std::size_t minPixels = 2048;
   /// Samples of a pixel in a render's pilot.
   static constexpr std::uint64_t pilotSamples = 16;
 
@@ -37,13 +37,13 @@ public:
     /// Samples of a pixel; never fewer than in a stage with a smaller mean.
     std::uint64_t count(std::size_t pixel) const;
     /// Greatest count of any pixel / mean; >= 1.
-    double greatestShare() const;
+    double maxRatio() const;
 
   private:
     friend class SamplePlan;
     const SamplePlan* m_plan;
     std::uint64_t m_mean;
-    double m_perNoise = 0.0; ///< samples for s = 1; 0: uniform
+    double m_samplesPerNoise = 0.0; ///< samples for s = 1; 0: uniform
   };
   Stage at(std::uint64_t mean) const;
 
