@@ -68,11 +68,12 @@ QSpinBox* number(const QString& name, int least, int greatest) {
   return box;
 }
 
-QDoubleSpinBox* limit(const QString& name, double greatest, int decimals, const QString& suffix) {
+QDoubleSpinBox* limit(const QString& name, double greatest, int parseDecimals,
+                      const QString& suffix) {
   auto* box = new QDoubleSpinBox;
   box->setObjectName(name);
   box->setRange(0.0, greatest);
-  box->setDecimals(decimals);
+  box->setDecimals(parseDecimals);
   box->setSuffix(suffix);
   box->setSpecialValueText(QObject::tr("no limit"));
   return box;

@@ -23,7 +23,7 @@ inline void writeFile(const std::filesystem::path& path, std::string_view conten
 
 inline void writeImage(const Image& image, const ImagePlane& plane,
                        const std::filesystem::path& path, const Display& display = {}) {
-  for (const std::filesystem::path& file : imageFiles(path))
+  for (const std::filesystem::path& file : listImageFiles(path))
     forgetIfRead(file);
   Outputs outputs;
   declareImage(path, outputs);

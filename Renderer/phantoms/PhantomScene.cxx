@@ -88,7 +88,7 @@ void addLooks(ScenePlaceholders& texts, const Phantom& phantom) {
                 "Visible3D:true Visible2DFill:true Visible2DOutline:true Opacity3D:1 "
                 "Opacity2DFill:1 Opacity2DOutline:1|";
   const VolumeProperty& property = phantom.property;
-  const PropertyTexts functions = propertyTexts(property);
+  const PropertyStrings functions = encodePropertyStrings(property);
   texts["@shade@"] = property.shade ? "1" : "0";
   texts["@diffuse@"] = joinSpaced(property.diffuse);
   texts["@ambient@"] = joinSpaced(ambientLight);

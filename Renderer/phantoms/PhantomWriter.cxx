@@ -141,8 +141,8 @@ std::vector<std::string> writePhantom(const Phantom& phantom,
   std::vector<PhantomFile> files = {
       {name + ".nrrd", sealProvenanceTag(encodeNrrd(header, asBytes(voxels))), true},
       {name + ".seg.nrrd", encodeSegmentation(phantom), true},
-      {name + ".vp.json", propertyJson(phantom.property, volume.minimum, volume.maximum)},
-      {name + ".vp", propertyVp(phantom.property), true},
+      {name + ".vp.json", encodePropertyJson(phantom.property, volume.minimum, volume.maximum)},
+      {name + ".vp", encodePropertyVp(phantom.property), true},
       {name + "-roi.mrk.json", makePhantomRoi(phantom), true},
       {name + ".mrml", scene}};
   const std::filesystem::path archive = directory / (name + ".mrb");

@@ -82,7 +82,7 @@ std::vector<fs::path> listInputFiles(const PreparedScene& scene, const RenderOpt
   for (const std::string& file : scene.files())
     files.insert(file);
   for (const fs::path& file : std::set(files))
-    for (const fs::path& named : filesNamedBy(file))
+    for (const fs::path& named : findReferencedFiles(file))
       files.insert(named);
   std::vector<fs::path> existing;
   std::error_code failed;

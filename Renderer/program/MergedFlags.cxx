@@ -101,7 +101,7 @@ bool isReplaced(const Option& own, const OptionValues& given) {
 /// True if a render would open a file that the value names.
 bool isFile(const std::string& name, const std::string& value, const Input& input) {
   if (name == "environment")
-    return imageFormat(value) == ImageFormat::exr;
+    return findImageFormat(value) == ImageFormat::exr;
   if (name == "preset")
     return isFileName("presets", value);
   if (name == "lights")
@@ -185,7 +185,7 @@ SceneOptions mergeSceneOptions(const OptionValues& given, const Input& input) {
   SceneOptions result{given};
   OptionValues& merged = result.values;
   const MrmlDocument* scene = input.document();
-  const auto nodes = scene ? scene->withTag("FenestraRender") : std::vector<const MrmlNode*>();
+  const auto nodes = scene ? scene->findByTag("FenestraRender") : std::vector<const MrmlNode*>();
   if (nodes.empty())
     return result;
   const MrmlNode& node = *nodes.back();
@@ -193,13 +193,13 @@ SceneOptions mergeSceneOptions(const OptionValues& given, const Input& input) {
   for (const Option& option : renderSyntax.options) {
     const std::string& name = option.name;
     const bool isNode = name == "volume" || name == "segmentation";
-    const std::string value = isNode ? node.referenced(name) : node.text(name);
+    const std::string value = isNode ? node.referenceId(name) : node.text(name);
     if (!isImageOption(option) || value.empty() || isReplaced(option, explicitValues))
       continue;
     if (const std::string reason = rejectionReason(input, name, value); reason.empty())
       addStoredValue(option, value, merged);
     else
-      result.ignored.push_back(concat(node.tag, ' ', shown(node), ": ", name, " \"",
+      result.ignored.push_back(concat(node.tag, ' ', describeNode(node), ": ", name, " \"",
                                       sanitize(value), "\" ", reason, "; give --", name, ' ',
                                       sanitize(value)));
   }

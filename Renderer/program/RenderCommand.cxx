@@ -97,7 +97,7 @@ void addSources(Json& json, const RenderStats& stats, const RenderOptions& optio
                 const PreparedScene& scene) {
   const std::filesystem::path folder = options.stats->parent_path();
   if (std::ranges::any_of(options.outputs, isDisplayFile))
-    json["display"] = {{"tone", nameOf(options.display.view)},
+    json["display"] = {{"tone", toString(options.display.view)},
                        {"exposure", options.display.exposure}};
   if (options.preset)
     json["preset"] = relativeName(*options.preset, folder);
@@ -179,7 +179,7 @@ std::vector<std::string> findStaleFiles(const RenderOptions& options, const Outp
   std::vector<std::string> warnings;
   std::error_code failed;
   for (const std::filesystem::path& path : options.outputs)
-    for (const std::filesystem::path& file : imageFiles(path))
+    for (const std::filesystem::path& file : listImageFiles(path))
       if (!outputs.writtenDigest(file) && std::filesystem::exists(file, failed))
         warnings.push_back(toOneLine(file.string()) + ": is of an earlier picture than " +
                            toOneLine(path.filename().string()) + "; remove it");

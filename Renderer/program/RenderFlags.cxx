@@ -57,7 +57,7 @@ Rgb parseLinearColor(const OptionValues& values, const std::string& name,
 
 void readEnvironment(const OptionValues& values, const std::string& name, RenderRequest& scene) {
   const std::string text = *values.text(name);
-  if (imageFormat(text) == ImageFormat::exr)
+  if (findImageFormat(text) == ImageFormat::exr)
     scene.environmentMap = text;
   else
     scene.environment = parseLinearColor(values, name, "an .exr file");

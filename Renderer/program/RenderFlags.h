@@ -23,7 +23,7 @@ struct RenderOptions {
   std::optional<Background> background = {};  ///< nullopt: the scene's, else the standard
   std::vector<std::filesystem::path> inputs;  ///< input files given as such, without presets
   std::vector<std::filesystem::path> outputs; ///< at least one
-  NamedBy outputNaming = NamedBy::user;
+  NameOrigin outputNaming = NameOrigin::user;
   LayerSet layers = allLayers;
   Display display = {}; ///< of .png and .tif
   Denoise denoise = Denoise::automatic;
@@ -43,8 +43,8 @@ struct RenderOptions {
   bool hasFilterLayer(const std::string& layer) const {
     return denoise == Denoise::on && layers.contains(layer);
   }
-  Filtered filteredFiles() const {
-    return hasFilterLayer("denoised") ? Filtered::yes : Filtered::no;
+  HasDenoised filteredFiles() const {
+    return hasFilterLayer("denoised") ? HasDenoised::yes : HasDenoised::no;
   }
 };
 

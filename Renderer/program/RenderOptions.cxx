@@ -120,13 +120,13 @@ std::vector<std::filesystem::path> listInputFiles(const OptionValues& values) {
 /// Checks the layers against the pictures, and asks for normals if one of these has them.
 void resolveLayers(const OptionValues& values, RenderOptions& options) {
   const auto has = [&options](ImageFormat format) {
-    return std::ranges::count(options.outputs, format, imageFormat) > 0;
+    return std::ranges::count(options.outputs, format, findImageFormat) > 0;
   };
   const bool hasExr = has(ImageFormat::exr);
   if (!hasExr && !has(ImageFormat::nrrd) && values.hasNonDefault("layers"))
     throw usageError("--layers: only .exr and .nrrd have them; add --output FILE.exr");
   for (const std::filesystem::path& path : options.outputs)
-    if (!options.layers.contains("color") && imageFormat(path) != ImageFormat::exr)
+    if (!options.layers.contains("color") && findImageFormat(path) != ImageFormat::exr)
       throw usageError("--layers: ", path, " needs color; add it, or write .exr alone");
   // A film holds all that a later command may write.
   options.settings.path.wantNormals =
@@ -188,7 +188,7 @@ RenderOptions makeRenderOptions(const OptionValues& values) {
     checkShard(values, options);
   } else if (options.outputs.empty()) {
     options.outputs.push_back(makeDefaultOutput(scene.input));
-    options.outputNaming = NamedBy::standard;
+    options.outputNaming = NameOrigin::standard;
   }
   resolveLayers(values, options);
   resolveDenoising(values, options);

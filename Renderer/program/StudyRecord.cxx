@@ -56,7 +56,7 @@ std::set<fs::path> listRowInputs(const BatchRow& row, const fs::path& stats) {
     for (const auto& entry : fs::directory_iterator(row.input, failed))
       files.insert(entry.path());
   for (const fs::path& file : std::set<fs::path>(files))
-    for (const fs::path& named : filesNamedBy(file))
+    for (const fs::path& named : findReferencedFiles(file))
       files.insert(named);
   return files;
 }
@@ -137,7 +137,7 @@ std::vector<fs::path> RowManifest::files() const {
   std::vector<fs::path> files;
   std::error_code failed;
   for (const fs::path& picture : m_images)
-    for (const fs::path& file : imageFiles(picture))
+    for (const fs::path& file : listImageFiles(picture))
       if (fs::exists(file, failed))
         files.push_back(file);
   if (const fs::path stats = rowStatsPath(m_row, m_folder.parent_path()); fs::exists(stats, failed))

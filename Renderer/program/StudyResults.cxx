@@ -32,7 +32,7 @@ fs::path summaryPath(const BatchResults& results) {
 
 std::vector<fs::path> sheetPaths(const BatchResults& results) {
   std::vector<fs::path> paths = {results.folder / "study.png"};
-  while (paths.size() * mostOnSheet < results.rows.size())
+  while (paths.size() * maxSheetEntries < results.rows.size())
     paths.push_back(results.folder / concat("study-", paths.size() + 1, ".png"));
   return paths;
 }
@@ -105,7 +105,7 @@ SheetEntry makeSheetEntry(const BatchRow& row, const RowOutcome& outcome, const 
                           const fs::path& folder) {
   SheetEntry entry{.name = row.name, .lines = {row.label}};
   if (outcome.state == State::done)
-    entry.picture = rowImagePath(row, folder);
+    entry.image = rowImagePath(row, folder);
   if (outcome.state != State::done)
     entry.problem =
         concat(stateName(outcome.state), outcome.error.empty() ? "" : ": ", outcome.error);
@@ -132,7 +132,7 @@ std::size_t BatchResults::count(State state) const {
 void declareResults(const BatchResults& results, Outputs& outputs) {
   outputs.add(summaryPath(results), isSummary);
   for (const fs::path& path : sheetPaths(results))
-    declareImage(path, outputs, NamedBy::standard);
+    declareImage(path, outputs, NameOrigin::standard);
 }
 
 void writeResults(const BatchResults& results, Outputs& outputs) {
@@ -154,10 +154,10 @@ void writeResults(const BatchResults& results, Outputs& outputs) {
         facts += concat(", ", count, " ", stateName(state));
     if (paths.size() > 1)
       facts += concat(", sheet ", i + 1, " of ", paths.size());
-    const std::size_t first = i * mostOnSheet;
+    const std::size_t first = i * maxSheetEntries;
     const auto shown =
-        std::span(entries).subspan(first, std::min(mostOnSheet, entries.size() - first));
-    writeImage(contactSheet(results.table.stem().string(), facts, shown), {}, paths[i], outputs,
+        std::span(entries).subspan(first, std::min(maxSheetEntries, entries.size() - first));
+    writeImage(makeContactSheet(results.table.stem().string(), facts, shown), {}, paths[i], outputs,
                {DisplayView::standard});
   }
 }

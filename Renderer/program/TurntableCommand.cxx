@@ -206,7 +206,7 @@ void declareFrames(const TurntableOptions& options, const TurntableManifest& man
   for (int frame = options.first(); frame < options.end(); ++frame) {
     const bool isOurs = !options.restart && !manifest.finished().contains(frame);
     for (const std::filesystem::path& path : options.pictures(frame))
-      declareImage(path, outputs, isOurs ? NamedBy::standard : options.render.outputNaming,
+      declareImage(path, outputs, isOurs ? NameOrigin::standard : options.render.outputNaming,
                    options.render.filteredFiles());
   }
   if (options.render.stats)

@@ -70,7 +70,7 @@ std::vector<std::filesystem::path> TurntableOptions::pictures(int frame) const {
 std::vector<std::filesystem::path> TurntableOptions::files(int frame) const {
   std::vector<std::filesystem::path> files;
   for (const std::filesystem::path& picture : pictures(frame)) {
-    const std::vector<std::filesystem::path> parts = imageFiles(picture);
+    const std::vector<std::filesystem::path> parts = listImageFiles(picture);
     files.push_back(parts.front());
     if (parts.size() == 1)
       continue;

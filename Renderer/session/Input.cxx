@@ -35,8 +35,8 @@ std::optional<SegmentNames> namesInFile(const InputChoice& choice) {
 
 /// Labels with the files that they were read from.
 SegmentsInput segmentsFrom(Segmentation segmentation, FilesRead files) {
-  if (fileExists(segmentation.namesFrom()))
-    files.push_back(segmentation.namesFrom());
+  if (fileExists(segmentation.namesSource()))
+    files.push_back(segmentation.namesSource());
   return {std::move(segmentation), std::move(files)};
 }
 
@@ -50,7 +50,7 @@ struct Input::Opened {
     const std::lock_guard lock(mutex);
     if (!scene)
       scene.emplace(path);
-    scene->files.beginRead();
+    scene->files.resetUsedFiles();
     return work(*scene);
   }
 
@@ -85,7 +85,7 @@ VolumeInput Input::volume(const std::optional<std::string>& choice) const {
     return volumeInFiles(path(), choice);
   return m_opened->with([&](MrmlScene& scene) {
     Volume volume = readSceneVolume(scene, *planFor(scene, {choice}, false).volume);
-    return VolumeInput{std::move(volume), scene.files.filesRead()};
+    return VolumeInput{std::move(volume), scene.files.usedFiles()};
   });
 }
 
@@ -100,11 +100,11 @@ SceneSettings Input::settings(const std::optional<std::string>& volume, bool fol
     if (plan.camera && followsCamera)
       settings.camera = readSceneCamera(scene, *plan.camera);
     if (plan.view) {
-      const auto [bottom, top] = viewBackground(*plan.view);
+      const auto [bottom, top] = readViewBackground(*plan.view);
       settings.background = Background::makeGradient(bottom, top);
     }
     settings.warnings = plan.warnings;
-    settings.files = scene.files.filesRead();
+    settings.files = scene.files.usedFiles();
     return settings;
   });
 }
@@ -116,12 +116,12 @@ SceneLook Input::look(const std::optional<std::string>& volume,
   return m_opened->with([&](MrmlScene& scene) {
     const ScenePlan plan = planFor(scene, {volume}, false);
     SceneLook look;
-    if (plan.followed)
-      look = {followedDisplay(*plan.rendering, *plan.followed, range),
+    if (plan.sliceDisplay)
+      look = {convertSliceDisplay(*plan.rendering, *plan.sliceDisplay, range),
               "the volume's window and level"};
     if (!look.transfer && plan.property)
       look = {readSceneProperty(scene, *plan.property), plan.property->name};
-    look.files = scene.files.filesRead();
+    look.files = scene.files.usedFiles();
     return look;
   });
 }
@@ -135,7 +135,7 @@ std::optional<SegmentNames> Input::segmentNames(const InputChoice& choice) const
     if (!plan.segmentation)
       return namesInFile(choice);
     return std::optional(
-        SegmentNames{scene.document.source() + ": " + shown(*plan.segmentation),
+        SegmentNames{scene.document.source() + ": " + describeNode(*plan.segmentation),
                      readSceneSegmentInfos(scene, *plan.segmentation, choice.labels)});
   });
 }
@@ -158,8 +158,8 @@ SegmentsInput Input::segments(const InputChoice& choice, const Grid& volume) con
                            "there is");
     Segmentation segmentation =
         readSceneSegmentation(scene, *plan.segmentation, &volume, choice.labels);
-    segmentation.setSource(scene.files.asKnown(segmentation.source()));
-    return segmentsFrom(std::move(segmentation), scene.files.filesRead());
+    segmentation.setSource(scene.files.translatePaths(segmentation.source()));
+    return segmentsFrom(std::move(segmentation), scene.files.usedFiles());
   });
 }
 
@@ -168,16 +168,16 @@ SceneLook Input::property(const std::string& name) const {
     return {};
   return m_opened->with([&](MrmlScene& scene) {
     SceneLook look;
-    for (const MrmlNode* node : scene.document.withTag("VolumeProperty"))
+    for (const MrmlNode* node : scene.document.findByTag("VolumeProperty"))
       if (!look.transfer && (node->name == name || node->id == name))
-        look = {readSceneProperty(scene, *node), node->name, scene.files.filesRead()};
+        look = {readSceneProperty(scene, *node), node->name, scene.files.usedFiles()};
     return look;
   });
 }
 
 std::vector<std::string> Input::propertyNames() const {
   const MrmlDocument* scene = document();
-  return scene ? fenestra::propertyNames(*scene) : std::vector<std::string>();
+  return scene ? fenestra::listPropertyNames(*scene) : std::vector<std::string>();
 }
 
 } // namespace fenestra

@@ -212,8 +212,8 @@ void addSegments(const Segmentation& segmentation, const std::map<std::string, b
   constexpr double cubicMmInMl = 1000.0;
   const Grid& grid = segmentation.grid();
   json["size"] = grid.size;
-  if (!segmentation.namesFrom().empty())
-    json["namesFrom"] = segmentation.namesFrom();
+  if (!segmentation.namesSource().empty())
+    json["namesFrom"] = segmentation.namesSource();
   json["spacing"] = grid.spacing();
   const double milliliters = std::abs(grid.indexToWorld.linear().determinant()) / cubicMmInMl;
   const std::vector<SegmentStatistics> statistics = segmentation.statistics();

@@ -51,9 +51,10 @@ public:
     if (SceneLook look = m_input.property(name); look.transfer)
       return NamedTransfer{{std::move(*look.transfer)}, name, std::move(look.files)};
     if (m_presets)
-      for (const MrmlNode* node : m_presets->withTag("VolumeProperty"))
+      for (const MrmlNode* node : m_presets->findByTag("VolumeProperty"))
         if (node->name == name)
-          return NamedTransfer{{propertyIn(*m_presets, *node)}, name, {m_presets->source()}};
+          return NamedTransfer{
+              {readInlineProperty(*m_presets, *node)}, name, {m_presets->source()}};
     return std::nullopt;
   }
 
@@ -61,7 +62,7 @@ public:
   std::string known() const {
     const std::vector<std::string> inScene = m_input.propertyNames();
     std::string text = inScene.empty() ? "" : "; of the scene " + listed(inScene);
-    text += m_presets ? "; of Slicer " + listed(propertyNames(*m_presets))
+    text += m_presets ? "; of Slicer " + listed(listPropertyNames(*m_presets))
                       : "; Slicer's own presets are known where SLICER_HOME names its folder";
     return text;
   }
@@ -118,13 +119,13 @@ NamedLights namedLights(const std::string& name) {
 }
 
 bool isFileOfLights(const std::string& name) {
-  return isLookText(name) ? namesFiles(name, "--lights") : isFileName("lights", name);
+  return isLookText(name) ? hasFileReference(name, "--lights") : isFileName("lights", name);
 }
 
 NamedMaterials namedMaterials(const std::string& name) {
   if (!isFileOfMaterials(name)) {
     NamedMaterials materials{materialLibrary(), name};
-    materials.table.hasContrast = materials.table.findsSkin = name == autoMaterials;
+    materials.table.hasContrast = materials.table.detectsSkin = name == autoMaterials;
     return materials;
   }
   if (!isFoundAsFile(name))

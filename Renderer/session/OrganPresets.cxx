@@ -35,8 +35,8 @@ std::vector<SegmentInfo> focusOf(const SegmentPatterns& patterns,
   std::vector<SegmentInfo> focus;
   std::ranges::copy_if(segments, std::back_inserter(focus), [&](const SegmentInfo& segment) {
     const std::vector<std::string> name = splitName(segment.name);
-    return (firstMatch(patterns.names, name) || hasAny(patterns.codes, segment)) &&
-           !firstMatch(patterns.except, name);
+    return (findPattern(patterns.names, name) || hasAny(patterns.codes, segment)) &&
+           !findPattern(patterns.except, name);
   });
   return focus;
 }

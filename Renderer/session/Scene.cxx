@@ -85,7 +85,7 @@ void PreparedScene::makeTint(const std::string& name) {
   const auto materials = m_materials.get(name);
   const bool isAdjusted = materials->hasColorAdjustment();
   const auto there = m_segmentsThere.get(m_segments.result());
-  if (materials->table.findsSkin)
+  if (materials->table.detectsSkin)
     m_skin.get(m_volume.result());
   const auto plan = m_plan.get(m_segments.result(), there, materials, r.materialChanges,
                                isAdjusted ? r.focus : std::vector<std::string>(), m_skin.result());
@@ -141,8 +141,8 @@ std::string PreparedScene::choices() const {
   else
     parts.push_back("light: " + (r.lights.starts_with('{') ? "its own" : r.lights));
   std::vector<std::string> labels;
-  if (m_segments.result() && !m_segments->segmentation.namesFrom().empty())
-    labels.push_back("names from " + m_segments->segmentation.namesFrom());
+  if (m_segments.result() && !m_segments->segmentation.namesSource().empty())
+    labels.push_back("names from " + m_segments->segmentation.namesSource());
   if (m_focus->mask && m_focus->mask->smoothing > 0.0)
     labels.push_back("smoothed " + toString(m_focus->mask->smoothing, 3) + " mm");
   if (!labels.empty())

@@ -25,7 +25,7 @@ std::string nameOf(const MrmlNode* node) {
 }
 
 Json backgroundColors(const MrmlNode& view) {
-  const ViewBackground colors = viewBackground(view);
+  const ViewBackground colors = readViewBackground(view);
   return {{"bottom", colors.bottom}, {"top", colors.top}};
 }
 
@@ -54,7 +54,7 @@ private:
 
   /// Plans a render with a focus; if only the focus's segmentation is undecided, one without.
   void plan() {
-    SceneChoice choice{m_request.volume, m_request.segmentation, true};
+    SceneSelection choice{m_request.volume, m_request.segmentation, true};
     const auto planned = [&] { return planRender(document(), choice); };
     Json problem;
     m_plan = attempted(planned, problem);
@@ -105,12 +105,12 @@ private:
   void addVolume(const Volume& volume, const std::string& look, Json& use) {
     m_grid = volume.grid;
     use["volume"] = volumeUse(volume, m_plan->volume->id);
-    use["volume"]["transforms"] = transformsAbove(document(), *m_plan->volume);
+    use["volume"]["transforms"] = listParentTransforms(document(), *m_plan->volume);
     const MrmlNode* property = m_plan->property;
     if (property && look == property->name)
       use["look"] = lookUse("volumeProperty", property->id, property->name);
-    else if (m_plan->followed)
-      use["look"] = lookUse("volumeDisplay", m_plan->followed->id, m_plan->followed->name);
+    else if (m_plan->sliceDisplay)
+      use["look"] = lookUse("volumeDisplay", m_plan->sliceDisplay->id, m_plan->sliceDisplay->name);
     else
       use["look"] = defaultLook(volume);
   }
@@ -131,7 +131,7 @@ private:
       if (node) {
         m_used.insert(node);
         if (node != m_plan->view)
-          for (const std::string& id : transformsAbove(document(), *node))
+          for (const std::string& id : listParentTransforms(document(), *node))
             m_used.insert(document().find(id));
       }
     if (m_plan->property && look.is_object() && look["source"] == "volumeProperty")
@@ -177,8 +177,8 @@ private:
   /// NODE and `more` members.
   Json nodeJson(const MrmlNode& node, const Json& more = Json::object()) const {
     Json json = fenestra::nodeJson(node.id, node.name);
-    for (const std::string& file : storedFiles(m_scene, node))
-      json["files"].push_back({{"name", decodedUrl(file)}, {"there", m_scene.files.holds(file)}});
+    for (const std::string& file : listStorageFiles(m_scene, node))
+      json["files"].push_back({{"name", decodeUrl(file)}, {"there", m_scene.files.contains(file)}});
     json["transform"] = orNull(idOf(document().follow(node, "transform")));
     json["used"] = m_used.contains(&node);
     json.update(more);
@@ -196,7 +196,7 @@ private:
 
   Json segmentationJson(const MrmlNode& node) {
     const MrmlNode* display = document().follow(node, "display");
-    const bool shown = isLabelMap(node) || !display || isShown(*display);
+    const bool shown = isLabelMap(node) || !display || isVisible(*display);
     Json json =
         nodeJson(node, segmentationMembers(isLabelMap(node) ? "labelMap" : "segmentation", shown));
     if (isSkipped("segmentations", json))
@@ -204,22 +204,22 @@ private:
     if (const auto segmentation = attempted(
             [&] { return readSceneSegmentation(m_scene, node, volumeGrid(), m_request.labels); },
             json["problem"]))
-      addSegments(*segmentation, segmentVisibility(m_scene, node), json);
+      addSegments(*segmentation, readSegmentVisibility(m_scene, node), json);
     return json;
   }
 
   Json renderingJson(const MrmlNode& node) const {
     const auto owner = m_owners.find(node.id);
     return nodeJson(node, {{"volume", orNull(owner == m_owners.end() ? "" : owner->second)},
-                           {"property", orNull(node.referenced("volumeProperty"))},
-                           {"roi", orNull(node.referenced("roi"))},
-                           {"cropping", node.flag("croppingEnabled", false)},
-                           {"followsDisplay", node.flag("followVolumeDisplayNode", false)},
-                           {"shown", isShown(node)}});
+                           {"property", orNull(node.referenceId("volumeProperty"))},
+                           {"roi", orNull(node.referenceId("roi"))},
+                           {"cropping", node.boolean("croppingEnabled", false)},
+                           {"followsDisplay", node.boolean("followVolumeDisplayNode", false)},
+                           {"shown", isVisible(node)}});
   }
 
   Json viewJson(const MrmlNode& node) const {
-    return nodeJson(node, {{"layout", orNull(layoutOf(node))},
+    return nodeJson(node, {{"layout", orNull(layoutName(node))},
                            {"technique", orNull(node.text("raycastTechnique"))},
                            {"background", backgroundColors(node)}});
   }
@@ -229,7 +229,7 @@ private:
   }
 
   Json cameraJson(const MrmlNode& node) {
-    Json json = nodeJson(node, {{"layout", orNull(layoutOf(node))}});
+    Json json = nodeJson(node, {{"layout", orNull(layoutName(node))}});
     if (!isSkipped("cameras", json))
       if (const auto pose = readCamera(node, json["problem"]))
         addPose(*pose, json);

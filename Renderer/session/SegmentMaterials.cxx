@@ -46,9 +46,9 @@ Found findMatch(const MaterialRule& rule, const SegmentInfo& segment,
   if (holds(rule.values, segment.labelValue))
     found = {Match::value, concat("by value ", segment.labelValue)};
   if (found.by == Match::none)
-    if (const NamePattern* pattern = firstMatch(rule.patterns.names, words))
+    if (const NamePattern* pattern = findPattern(rule.patterns.names, words))
       found = {Match::name, "by name '" + pattern->text + "'"};
-  if (found.by != Match::none && firstMatch(rule.patterns.except, words))
+  if (found.by != Match::none && findPattern(rule.patterns.except, words))
     return {};
   return found;
 }
@@ -58,7 +58,7 @@ std::optional<SegmentMaterial> byRule(const SegmentInfo& segment, const Material
   const MaterialRule* best = nullptr;
   Found bestFound;
   const auto rank = [](const MaterialRule& rule, const Found& found) {
-    return std::tuple(rule.isOwn, found.by, found.by == Match::name ? rule.priority : 0);
+    return std::tuple(rule.isFromFile, found.by, found.by == Match::name ? rule.priority : 0);
   };
   for (const MaterialRule& rule : table.rules) {
     Found found = findMatch(rule, segment, words);

@@ -30,7 +30,7 @@ std::vector<SegmentMaterial> collectMaterials(const Segmentation& segmentation,
   for (const std::string& text : changes) {
     const MaterialChange change = parseMaterialChange(text, materials.table);
     const std::size_t i = segmentation.find(change.selector);
-    all[i].medium = changed(all[i].medium, change, materials.table);
+    all[i].medium = applyChange(all[i].medium, change, materials.table);
   }
   return all;
 }
@@ -201,7 +201,7 @@ LabelWeights computeLabelWeights(const Handle<SegmentsInput>& input,
     std::vector<SegmentInfo> segments;
     for (const std::size_t i : part.segments)
       segments.push_back(segmentation.segments()[i]);
-    Mask mask = segmentation.maskOf(segments, volume, {.margins = {}, .smoothing = smoothing});
+    Mask mask = segmentation.makeMask(segments, volume, {.margins = {}, .smoothing = smoothing});
     if (part.isFocus)
       fill(mask);
     labels = mask.grid;

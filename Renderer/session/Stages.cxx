@@ -11,10 +11,10 @@ namespace fenestra {
 namespace {
 
 TransferFunction fitted(const TransferLook& look, const Volume& volume) {
-  if (!look.relative)
+  if (!look.isRelative)
     return look.function;
   const auto [low, high] = usualRange(volume);
-  return look.over(low, high);
+  return look.mapRange(low, high);
 }
 
 constexpr std::array modalities = {"CT", "MR", "ultrasound"}; ///< as in Modality
@@ -192,7 +192,7 @@ FocusInput requestedFocus(const Handle<SegmentsInput>& segments,
                           const Grid& volume) {
   if (names.empty())
     return {};
-  return {segments->segmentation.mask(names, volume, shaping)};
+  return {segments->segmentation.makeFocusMask(names, volume, shaping)};
 }
 
 Look chosenLook(const Read& read, const Handle<NamedTransfer>& named,

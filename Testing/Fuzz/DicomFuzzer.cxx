@@ -8,11 +8,11 @@ FENESTRA_FUZZ(Dicom, input) {
   using namespace fenestra;
   const DicomHeader header = [input] {
     try {
-      return dicomHeader(input);
-    } catch (const std::runtime_error&) { // as DicomFiles does
+      return parseDicomHeader(input);
+    } catch (const std::runtime_error&) { // as DicomReader does
       throw inputError("slice.dcm", "is no answer");
     }
   }();
   checkDicomPixels(fuzzing::asFile(input, "slice.dcm"), header);
-  rescaledVoxels(header, std::string(imageBytes(header), '\x5a'));
+  rescaleVoxels(header, std::string(imageBytes(header), '\x5a'));
 }

@@ -10,5 +10,5 @@ FENESTRA_FUZZ(Serve, input) {
   flags.add("INPUT", "volume.nrrd");
   const nlohmann::json change = parseJson(input, "a line");
   idOf(change);
-  checkChange(change, changedFlags(change, flags), Input("volume.nrrd"));
+  checkChange(change, applyChange(change, flags), Input("volume.nrrd"));
 }

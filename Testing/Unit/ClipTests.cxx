@@ -64,8 +64,8 @@ TEST(Clip, PlaneRemovesTheSideOfItsNormal) {
   EXPECT_EQ(clipWeight(clip, {0, -4, 0}), 1.0);
   EXPECT_EQ(clipWeight(clip, {0, -200, 0}), 0.0);
   const Interval visible = visibleInterval(clip, {{0, -100, 0}, {0, 1, 0}});
-  EXPECT_NEAR(seen.begin, 95.0, 1e-12);
-  EXPECT_EQ(seen.end, infinity);
+  EXPECT_NEAR(visible.begin, 95.0, 1e-12);
+  EXPECT_EQ(visible.end, infinity);
 }
 
 TEST(Clip, PlaneParallelToARayRemovesAllOrNothing) {
@@ -100,17 +100,17 @@ TEST(Clip, EyeRaysStartWhereKeepBegins) {
             // Next to a distant eye (x, y) has lost its digits.
             const double inside = std::min(visible.begin > 0.0 ? step : 1e-3 * distance,
                                            0.5 * (visible.end - visible.begin));
-            ASSERT_EQ(clipWeight(clip, ray.at(seen.begin + inside)), 1.0);
-            ASSERT_EQ(
-                clipWeight(clip, ray.at(seen.begin + 0.9 * std::min(seen.end - seen.begin, 50.0))),
-                1.0);
+            ASSERT_EQ(clipWeight(clip, ray.at(visible.begin + inside)), 1.0);
+            ASSERT_EQ(clipWeight(clip, ray.at(visible.begin +
+                                              0.9 * std::min(visible.end - visible.begin, 50.0))),
+                      1.0);
           }
           if (visible.begin > 2.0 * step) {
-            ASSERT_EQ(clipWeight(clip, ray.at(seen.begin - step)), 0.0);
-            ASSERT_EQ(clipWeight(clip, ray.at(seen.begin * random.uniform() * 0.999)), 0.0);
+            ASSERT_EQ(clipWeight(clip, ray.at(visible.begin - step)), 0.0);
+            ASSERT_EQ(clipWeight(clip, ray.at(visible.begin * random.uniform() * 0.999)), 0.0);
           }
           if (visible.end < infinity) {
-            ASSERT_EQ(clipWeight(clip, ray.at(seen.end + step)), 0.0);
+            ASSERT_EQ(clipWeight(clip, ray.at(visible.end + step)), 0.0);
           }
         }
     }

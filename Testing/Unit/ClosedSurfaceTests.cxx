@@ -187,7 +187,7 @@ TEST(ClosedSurface, EveryEncodingMarksTheVoxelsInside) {
     EXPECT_EQ(segmentation.segments()[0].id, "id0");
     EXPECT_EQ(segmentation.segments()[0].name, "ségment 0");
     EXPECT_TRUE(isApprox(segmentation.segments()[0].color, Rgb(0.25, 0.5, 1.0)));
-    const Mask mask = segmentation.mask({"ségment 0"}, grid);
+    const Mask mask = segmentation.makeFocusMask({"ségment 0"}, grid);
     std::int64_t inside = 0, near = 0;
     for (int z = 0; z < grid.size.z(); ++z)
       for (int y = 0; y < grid.size.y(); ++y)
@@ -219,11 +219,11 @@ TEST(ClosedSurface, OverlappingSegmentsGetLayers) {
   EXPECT_EQ(segments[0].layer, 0u);
   EXPECT_EQ(segments[1].layer, 1u);
   EXPECT_EQ(segments[2].layer, 0u);
-  EXPECT_EQ(segmentation.mask({"id0"}, grid).count, 8 * 8 * 8);
-  EXPECT_EQ(segmentation.mask({"id1"}, grid).count, 7 * 7 * 7);
-  EXPECT_EQ(segmentation.mask({"id2"}, grid).count, 2 * 2 * 2);
-  EXPECT_EQ(segmentation.mask({"id0", "id1"}, grid).count, 512 + 343 - 64);
-  EXPECT_THROW(segmentation.mask({"id3"}, grid), Error);
+  EXPECT_EQ(segmentation.makeFocusMask({"id0"}, grid).count, 8 * 8 * 8);
+  EXPECT_EQ(segmentation.makeFocusMask({"id1"}, grid).count, 7 * 7 * 7);
+  EXPECT_EQ(segmentation.makeFocusMask({"id2"}, grid).count, 2 * 2 * 2);
+  EXPECT_EQ(segmentation.makeFocusMask({"id0", "id1"}, grid).count, 512 + 343 - 64);
+  EXPECT_THROW(segmentation.makeFocusMask({"id3"}, grid), Error);
 }
 
 /// A surface is cut at the volume, and the focus continues across the volume's faces.
@@ -231,10 +231,10 @@ TEST(ClosedSurface, SurfaceIsCutAtTheVolume) {
   const TemporaryFolder folder;
   const Grid grid(Size3(10, 10, 10), Affine::Identity());
   const Path path = writeSegments(folder, {box(Vec3(-50, 2.5, 2.5), Vec3(50, 4.5, 4.5))});
-  EXPECT_EQ(readSegmentation(path, &grid).mask({"id0"}, grid).count, 10 * 2 * 2);
+  EXPECT_EQ(readSegmentation(path, &grid).makeFocusMask({"id0"}, grid).count, 10 * 2 * 2);
   const Path away = writeSegments(folder, {box(Vec3(50, 50, 50), Vec3(60, 60, 60))});
   fenestra::expectRefused(away, "the focus has no voxel",
-                          [&] { readSegmentation(away, &grid).mask({"id0"}, grid); });
+                          [&] { readSegmentation(away, &grid).makeFocusMask({"id0"}, grid); });
 }
 
 TEST(ClosedSurface, WithoutAVolumeChoosesItsOwnGrid) {
@@ -243,7 +243,7 @@ TEST(ClosedSurface, WithoutAVolumeChoosesItsOwnGrid) {
   const Segmentation segmentation = readSegmentation(path);
   const Grid& grid = segmentation.grid();
   EXPECT_TRUE(grid.spacing() == Vec3::Constant(0.5));
-  const auto count = static_cast<double>(segmentation.mask({"id0"}, grid).count);
+  const auto count = static_cast<double>(segmentation.makeFocusMask({"id0"}, grid).count);
   EXPECT_NEAR(count / 8.0, 128.0 * 64 * 32, 0.03 * 128 * 64 * 32);
 }
 

@@ -14,26 +14,27 @@
 namespace fenestra::ContactSheetTests {
 namespace {
 
-double inkOf(const Lettering& line) {
-  return std::accumulate(line.ink.begin(), line.ink.end(), 0.0);
+double inkOf(const TextBitmap& line) {
+  return std::accumulate(line.coverage.begin(), line.coverage.end(), 0.0);
 }
 
 TEST(Letters, EveryCharacterHasAShape) {
-  EXPECT_EQ(letters("Müller 3°"), "Muller 3\x7f");
-  EXPECT_EQ(letters("\xff\t"), "\x7f\x7f");
+  EXPECT_EQ(toAscii("Müller 3°"), "Muller 3\x7f");
+  EXPECT_EQ(toAscii("\xff\t"), "\x7f\x7f");
   std::set<std::vector<float>> shapes;
   for (char c = ' '; c < 0x7f; ++c)
-    shapes.insert(lettering(std::string(1, c), 1.0).ink);
+    shapes.insert(rasterizeText(std::string(1, c), 1.0).coverage);
   EXPECT_EQ(shapes.size(), 95U) << "no two alike";
 }
 
 TEST(Letters, InkGrowsWithTheSquareOfTheSize) {
   const std::string text = "Liver, 12";
-  const double one = inkOf(lettering(text, 1.0));
-  EXPECT_EQ(lettering(text, 1.0).width, letterWidth * 9);
-  EXPECT_EQ(lettering(text, 1.0).height, lineHeight);
+  const double one = inkOf(rasterizeText(text, 1.0));
+  EXPECT_EQ(rasterizeText(text, 1.0).width, glyphWidth * 9);
+  EXPECT_EQ(rasterizeText(text, 1.0).height, lineHeight);
   for (const double size : {1.5, 2.0, 3.0})
-    EXPECT_NEAR(inkOf(lettering(text, size)), size * size * one, 0.05 * size * size * one) << size;
+    EXPECT_NEAR(inkOf(rasterizeText(text, size)), size * size * one, 0.05 * size * size * one)
+        << size;
 }
 
 std::filesystem::path written(const std::filesystem::path& path, const Image& image) {
@@ -56,11 +57,11 @@ std::filesystem::path grey(const TemporaryFolder& folder, const std::string& nam
 TEST(ContactSheet, ShowsPicturesInTheirOrderAndTellsWhatIsMissing) {
   const TemporaryFolder folder;
   const std::vector<SheetEntry> entries = {
-      {.name = "large", .lines = {"a"}, .picture = grey(folder, "l.png", 672, 336, 0.25F)},
-      {.name = "small", .lines = {"b"}, .picture = grey(folder, "s.png", 2, 2, 0.75F)},
-      {.name = "lost", .lines = {"c"}, .picture = folder / "lost.png"},
+      {.name = "large", .lines = {"a"}, .image = grey(folder, "l.png", 672, 336, 0.25F)},
+      {.name = "small", .lines = {"b"}, .image = grey(folder, "s.png", 2, 2, 0.75F)},
+      {.name = "lost", .lines = {"c"}, .image = folder / "lost.png"},
   };
-  const Image sheet = contactSheet("Study", "3 cases", entries);
+  const Image sheet = makeContactSheet("Study", "3 cases", entries);
   const Plane& red = sheet.channels.at("R");
   const auto at = [&](int x, int y) {
     return red[static_cast<std::size_t>(y) * static_cast<std::size_t>(sheet.width) +
@@ -85,8 +86,8 @@ TEST(ContactSheet, AveragesInLight) {
   for (const char* channel : {"R", "G", "B"})
     for (int i = 0; i < 672 * 672; ++i)
       stripes.channels[channel].push_back(i % 2 == 0 ? 0.0F : 1.0F);
-  const SheetEntry entry{.name = "a", .picture = written(folder / "stripes.png", stripes)};
-  const Image sheet = contactSheet("", "", std::span(&entry, 1));
+  const SheetEntry entry{.name = "a", .image = written(folder / "stripes.png", stripes)};
+  const Image sheet = makeContactSheet("", "", std::span(&entry, 1));
   EXPECT_NEAR(sheet.channels.at("G")[static_cast<std::size_t>(sheet.width * 200 + 200)], 0.5F,
               0.01F);
 }

@@ -82,12 +82,12 @@ std::vector<Case> cases(const TemporaryFolder& folder) {
                                              }) +
                                     "/></MRML>");
          const auto scene = std::make_shared<MrmlScene>(folder / "s.mrml");
-         return [scene] { storedFiles(*scene, *scene->document.find("n")); };
+         return [scene] { listStorageFiles(*scene, *scene->document.find("n")); };
        }},
       {"escapes of a name", 20000,
        [](int n) {
          const auto name = repeated(n, [](const std::string&) { return "%20"; });
-         return [name] { decodedUrl(name); };
+         return [name] { decodeUrl(name); };
        }},
       {"values of JSON", 20000,
        [](int n) {

@@ -36,7 +36,7 @@ struct SliceFile {
 
 Path write(const Path& path, const SliceFile& slice) {
   const unsigned width = slice.width, height = slice.height;
-  const Quiet quiet; // GDCM warns of missing files
+  const SuppressItkOutput quiet; // GDCM warns of missing files
   const auto io = itk::GDCMImageIO::New();
   io->SetFileName(path.string());
   io->KeepOriginalUIDOn();
@@ -389,7 +389,7 @@ TEST(AirAtZero, OnlyACertainCtIsMoved) {
                      {1060.0, -300.0, false, false}, {100.0, 0.0, false, false}};
   for (const auto& one : cases) {
     Volume volume = ball(one.tissue, one.air);
-    correctAir(volume);
+    correctHounsfieldOffset(volume);
     EXPECT_EQ(valueAt(volume, 8, 8, 4), one.tissue - (one.moves ? 1024.0 : 0.0)) << one.tissue;
     EXPECT_EQ(volume.minimum, one.air - (one.moves ? 1024.0 : 0.0)) << one.tissue;
     EXPECT_EQ(!volume.warnings.empty(), one.warns) << one.tissue << ' ' << one.air;

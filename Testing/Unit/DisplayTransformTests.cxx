@@ -257,10 +257,10 @@ TEST(ToDisplay, ExposureMultipliesRadianceBeforeTheTone) {
     brighter[c] *= 4.0f;
     darker[c] /= 8.0f;
   }
-  EXPECT_EQ(toDisplay(picture, {photographic, 2.0}), toDisplay(brighter, {photographic}));
-  EXPECT_EQ(toDisplay(picture, {photographic, -3.0}), toDisplay(darker, {photographic}));
-  EXPECT_EQ(toDisplay(picture, {DisplayView::standard, 2.0}),
-            toDisplay(picture, {DisplayView::standard}));
+  EXPECT_EQ(toDisplay(pixels, {photographic, 2.0}), toDisplay(brighter, {photographic}));
+  EXPECT_EQ(toDisplay(pixels, {photographic, -3.0}), toDisplay(darker, {photographic}));
+  EXPECT_EQ(toDisplay(pixels, {DisplayView::standard, 2.0}),
+            toDisplay(pixels, {DisplayView::standard}));
   const float bright = toDisplay({infinite, infinite, infinite, 1.0f}, {photographic, -16.0})[0];
   EXPECT_GT(bright, 0.999f);
   EXPECT_EQ(toDisplay({notANumber, 0.0f, 0.0f, 1.0f}, {photographic, 16.0})[0], 0.0f);

@@ -164,7 +164,7 @@ TEST_F(DisplayFiles, DefaultNameReplacesOnlyFilesOfFenestra) {
       store(path("a.png"), "somebody else's");
     const auto declare = [&] {
       Outputs outputs;
-      declareImage(path("a.png"), outputs, NamedBy::standard);
+      declareImage(path("a.png"), outputs, NameOrigin::standard);
     };
     if (isOurs) {
       declare();

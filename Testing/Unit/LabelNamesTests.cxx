@@ -75,16 +75,16 @@ TEST(LabelNames, RefusalsNamePlaceAndReason) {
 }
 
 TEST(LabelNames, CompiledTablesHaveTheirClasses) {
-  EXPECT_EQ(compiledLabelNames("totalsegmentator1")->size(), 104u);
-  EXPECT_EQ(compiledLabelNames("totalsegmentator2")->size(), 117u);
+  EXPECT_EQ(findBuiltInLabelNames("totalsegmentator1")->size(), 104u);
+  EXPECT_EQ(findBuiltInLabelNames("totalsegmentator2")->size(), 117u);
   // One value, two organs: why the version matters.
-  EXPECT_EQ(compiledLabelNames("totalsegmentator1")->at(7).name, "aorta");
-  EXPECT_EQ(compiledLabelNames("totalsegmentator2")->at(7).name, "pancreas");
-  EXPECT_EQ(compiledLabelNames("freesurfer")->at(17).name, "Left-Hippocampus");
-  EXPECT_EQ(compiledLabelNames("freesurfer")->at(2035).name, "ctx-rh-insula");
-  EXPECT_FALSE(compiledLabelNames("totalsegmentator"));
-  EXPECT_FALSE(compiledLabelNames("../presets/liver"));
-  EXPECT_EQ(compiledLabelTables().size(), 3u);
+  EXPECT_EQ(findBuiltInLabelNames("totalsegmentator1")->at(7).name, "aorta");
+  EXPECT_EQ(findBuiltInLabelNames("totalsegmentator2")->at(7).name, "pancreas");
+  EXPECT_EQ(findBuiltInLabelNames("freesurfer")->at(17).name, "Left-Hippocampus");
+  EXPECT_EQ(findBuiltInLabelNames("freesurfer")->at(2035).name, "ctx-rh-insula");
+  EXPECT_FALSE(findBuiltInLabelNames("totalsegmentator"));
+  EXPECT_FALSE(findBuiltInLabelNames("../presets/liver"));
+  EXPECT_EQ(listBuiltInLabelTables().size(), 3u);
 }
 
 TEST(LabelNames, XmlOfAHeaderExtensionGivesNamesAndColors) {
@@ -94,15 +94,15 @@ TEST(LabelNames, XmlOfAHeaderExtensionGivesNamesAndColors) {
       "Alpha=\"1\"><![CDATA[spleen]]>"
       "</Label>\n<Label Key=\"0\"><![CDATA[???]]></Label></LabelTable></VolumeInformation>"
       "</CaretExtension>\n   ";
-  const auto names = labelNamesInXml(xml + std::string(5, '\0'), "a.nii");
+  const auto names = parseLabelNamesXml(xml + std::string(5, '\0'), "a.nii");
   ASSERT_TRUE(names);
   EXPECT_EQ(names->size(), 1u);
   EXPECT_EQ(names->at(1).name, "spleen");
   EXPECT_EQ(*names->at(1).color, Rgb(0.0, 1.0, 0.5));
-  EXPECT_FALSE(labelNamesInXml("<Other/>", "a.nii"));
-  EXPECT_FALSE(labelNamesInXml("", "a.nii"));
-  EXPECT_THROW(labelNamesInXml("<a><LabelTable><Label", "a.nii"), Error);
-  EXPECT_THROW(labelNamesInXml("<a><LabelTable></LabelTable></a>", "a.nii"), Error);
+  EXPECT_FALSE(parseLabelNamesXml("<Other/>", "a.nii"));
+  EXPECT_FALSE(parseLabelNamesXml("", "a.nii"));
+  EXPECT_THROW(parseLabelNamesXml("<a><LabelTable><Label", "a.nii"), Error);
+  EXPECT_THROW(parseLabelNamesXml("<a><LabelTable></LabelTable></a>", "a.nii"), Error);
 }
 
 } // namespace

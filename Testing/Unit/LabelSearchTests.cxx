@@ -49,10 +49,10 @@ TEST(LabelSearch, WantedTableNamesValuesAndLeavesTheRest) {
   const Segmentation named = readSegmentation(map, nullptr, table.string());
   EXPECT_EQ(nameOf(named, 5), "liver");
   EXPECT_EQ(nameOf(named, 7), "Segment_7");
-  EXPECT_EQ(named.namesFrom(), table.string());
+  EXPECT_EQ(named.namesSource(), table.string());
   EXPECT_EQ(nameOf(readSegmentation(map, nullptr, "totalsegmentator1"), 7), "aorta");
   EXPECT_EQ(nameOf(readSegmentation(map, nullptr, "totalsegmentator2"), 7), "pancreas");
-  EXPECT_EQ(named.mask({"liver"}, named.grid()).count, 1);
+  EXPECT_EQ(named.makeFocusMask({"liver"}, named.grid()).count, 1);
   const auto other = folder.write("other.csv", "1,a\n2,b\n");
   expectRefused(map, "names none of its values (5, 7)",
                 [&] { readSegmentation(map, nullptr, other.string()); });
@@ -63,12 +63,12 @@ TEST(LabelSearch, TableInTheFileOfEachVersionIsTaken) {
   const TemporaryFolder folder;
   for (const auto& [version, organ] :
        {std::pair("totalsegmentator1", "aorta"), {"totalsegmentator2", "pancreas"}}) {
-    const auto map = folder.write("map.nii", labelMap(labelXml(*compiledLabelNames(version))));
+    const auto map = folder.write("map.nii", labelMap(labelXml(*findBuiltInLabelNames(version))));
     for (const std::optional<std::string>& wanted :
          {std::optional<std::string>(), std::optional<std::string>("totalsegmentator")}) {
       const Segmentation named = readSegmentation(map, nullptr, wanted);
       EXPECT_EQ(nameOf(named, 7), organ);
-      EXPECT_EQ(named.namesFrom(), requested ? version : map.string());
+      EXPECT_EQ(named.namesSource(), requested ? version : map.string());
       EXPECT_EQ(readSegmentInfos(map, requested).size(), 2u);
     }
   }
@@ -87,7 +87,7 @@ TEST(LabelSearch, TableBesideTheMapIsTakenIfItFits) {
   EXPECT_TRUE(readSegmentInfos(map).empty());
   const auto exact = folder.write("seg_labels.json", R"({"5": "a", "7": "b"})");
   EXPECT_EQ(nameOf(readSegmentation(map), 7), "b");
-  EXPECT_EQ(readSegmentation(map).namesFrom(), exact.string());
+  EXPECT_EQ(readSegmentation(map).namesSource(), exact.string());
   EXPECT_EQ(readSegmentInfos(map).at(0).name, "a");
   // One that names more is another map's; with the map's stem it may.
   folder.write("seg_labels.json", R"({"5": "a", "7": "b", "8": "c"})");

@@ -108,9 +108,9 @@ TEST(MajorantGrid, MatterBoxHoldsAllMatterAndAtMostACellMore) {
     EXPECT_GE(box.upper[axis], std::min(last[axis] + 0.5, grid.indexBox().upper[axis]));
     EXPECT_LE(box.upper[axis], last[axis] + 2.0 + edge[axis]);
   }
-  EXPECT_EQ(boxFrom(5.0).lower, grid.indexBox().lower);
-  EXPECT_TRUE((boxFrom(5.0).upper.array() >= grid.indexBox().upper.array()).all());
-  EXPECT_EQ(boxFrom(250.0), Box::makeEmpty());
+  EXPECT_EQ(computeBounds(5.0).lower, grid.indexBox().lower);
+  EXPECT_TRUE((computeBounds(5.0).upper.array() >= grid.indexBox().upper.array()).all());
+  EXPECT_EQ(computeBounds(250.0), Box::makeEmpty());
   EXPECT_GT(edge.minCoeff(), 1.0) << "cells of several voxels";
 }
 

@@ -251,7 +251,7 @@ TEST(MaskShaping, OneMarginShrinksTouchingSegmentsAsOne) {
       }
   const Segmentation segmentation("test", grid, 1, labels, {{"a", "A", 1}, {"b", "B", 2}});
   const auto count = [&](const MaskShaping& shaping) {
-    return segmentation.mask({"A", "B"}, grid, shaping).count;
+    return segmentation.makeFocusMask({"A", "B"}, grid, shaping).count;
   };
   EXPECT_EQ(count({{-1.0}}), 18 * 8 * 8);
   EXPECT_EQ(count({{-1.0, -1.0}}), 2 * 8 * 8 * 8);
@@ -266,7 +266,7 @@ TEST(MaskShaping, EachSegmentTakesItsOwnMargin) {
         labels.push_back(x == 10 && y == 20 && z == 20 ? 1 : x == 30 && y == 20 && z == 20 ? 2 : 0);
   const Segmentation segmentation("test", grid, 1, labels, {{"a", "A", 1}, {"b", "B", 2}});
   const auto count = [&](const MaskShaping& shaping) {
-    return segmentation.mask({"A", "B"}, grid, shaping).count;
+    return segmentation.makeFocusMask({"A", "B"}, grid, shaping).count;
   };
   EXPECT_EQ(count({}), 2);
   EXPECT_EQ(count({{1.0}}), 14);

@@ -94,8 +94,8 @@ TEST(MaterialReader, AFileStandsOnTheTableBeneath) {
   EXPECT_FALSE(table.materials.at("lesion").extinction) << "replaced whole";
   ASSERT_EQ(table.rules.size(), 3u);
   EXPECT_EQ(table.rules[0].patterns.names, std::vector<NamePattern>{"spleen"});
-  EXPECT_TRUE(table.rules[0].isOwn);
-  EXPECT_FALSE(table.rules[1].isOwn);
+  EXPECT_TRUE(table.rules[0].isFromFile);
+  EXPECT_FALSE(table.rules[1].isFromFile);
   EXPECT_EQ(table.rest, "tissue");
 }
 
@@ -193,18 +193,19 @@ TEST(MaterialReader, ChangesOneSegment) {
       parseMaterialChange("Liver: left : color=#00ff00, density=2.5 ,clip=no,priority=7", table);
   EXPECT_EQ(change.selector, "Liver: left") << "up to the last colon";
   SegmentMedium matter{table.materials.at("liver"), 10, true, 1.0};
-  matter = changed(matter, change, table);
+  matter = applyChange(matter, change, table);
   EXPECT_EQ((*medium.material.color)(0)[1], 1.0);
   EXPECT_EQ((*medium.material.color)(0)[0], 0.0);
   EXPECT_EQ(medium.material.specular, 0.25) << "the liver's, unchanged";
   EXPECT_EQ(medium.density, 2.5);
   EXPECT_FALSE(medium.isClipped);
   EXPECT_EQ(medium.priority, 7);
-  matter = changed(matter, parseMaterialChange("x: material=lesion, extinction=3", table), table);
+  matter =
+      applyChange(matter, parseMaterialChange("x: material=lesion, extinction=3", table), table);
   EXPECT_EQ(evalExtinction(medium.material, 0), 3.0);
   EXPECT_EQ(medium.material.diffuse, 0.8) << "the lesion's";
   EXPECT_EQ(medium.density, 2.5) << "the segment's";
-  matter = changed(matter, parseMaterialChange("x: extinction=base, kind=tint", table), table);
+  matter = applyChange(matter, parseMaterialChange("x: extinction=base, kind=tint", table), table);
   EXPECT_FALSE(medium.material.extinction);
   EXPECT_EQ(medium.material.kind, MaterialKind::tint);
 }
@@ -228,7 +229,7 @@ TEST(MaterialReader, ErrorNamesTheFieldOfAChange) {
   refuseChange("liver: material=stomach", "liver", "material: there is no material \"stomach\"");
   const MaterialChange color = parseMaterialChange("a: color=#ffffff", table);
   const SegmentMedium backward{table.materials.at("lesion")};
-  expectRefused("--material a", "has no \"g\"", [&] { changed(backward, color, table); });
+  expectRefused("--material a", "has no \"g\"", [&] { applyChange(backward, color, table); });
 }
 
 /// Each file stands alone, no name or code says two things, and all colours are constant: scalars

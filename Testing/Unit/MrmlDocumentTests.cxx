@@ -18,8 +18,8 @@ TEST(MrmlDocument, ReadsNodesInTheirOrder) {
     <!-- <Volume id="commented"/> --> <View id="w"/><Volume id="x"/>)");
   ASSERT_EQ(document.nodes().size(), 3U);
   EXPECT_EQ(document.nodes()[0].name, "a & b");
-  ASSERT_EQ(document.withTag("Volume").size(), 2U);
-  EXPECT_EQ(document.withTag("Volume")[1]->id, "x");
+  ASSERT_EQ(document.findByTag("Volume").size(), 2U);
+  EXPECT_EQ(document.findByTag("Volume")[1]->id, "x");
   EXPECT_EQ(document.find("w")->tag, "View");
   EXPECT_FALSE(document.find("nothing"));
   EXPECT_FALSE(document.find(""));
@@ -29,7 +29,7 @@ TEST(MrmlDocument, OmitsCopiesInSceneViews) {
   const MrmlDocument document = parse(R"(
     <SceneView id="sv"><Volume id="v" name="copy"/></SceneView><Volume id="v" name="own"/>
     <SubjectHierarchy id="sh"><SubjectHierarchyItem id="3"/></SubjectHierarchy>)");
-  ASSERT_EQ(document.withTag("Volume").size(), 1U);
+  ASSERT_EQ(document.findByTag("Volume").size(), 1U);
   EXPECT_EQ(document.find("v")->name, "own");
   EXPECT_FALSE(document.find("3"));
 }
@@ -41,7 +41,7 @@ TEST(MrmlDocument, ReadsReferencesOfNewScenes) {
   const MrmlNode& volume = document.nodes()[0];
   EXPECT_EQ(volume.references.at("display"), (std::vector<std::string>{"d1", "d2"}));
   EXPECT_EQ(volume.references.at("storage"), std::vector<std::string>{"s"});
-  EXPECT_EQ(volume.referenced("unit/length"), "u");
+  EXPECT_EQ(volume.referenceId("unit/length"), "u");
   EXPECT_EQ(document.follow(volume, "display")->tag, "D");
   EXPECT_FALSE(document.follow(volume, "transform"));
   EXPECT_FALSE(document.follow(volume, "unit/length")); // names no node of the scene
@@ -54,28 +54,28 @@ TEST(MrmlDocument, ReadsReferencesOfOldScenes) {
          <Selection activeVolumeID="v"/><VolumeDisplay colorNodeID="c"/>)");
   const MrmlNode& volume = document.nodes()[0];
   EXPECT_EQ(volume.references.at("display"), (std::vector<std::string>{"d1", "d2"}));
-  EXPECT_EQ(volume.referenced("storage"), "s");
-  EXPECT_EQ(volume.referenced("transform"), "t");
+  EXPECT_EQ(volume.referenceId("storage"), "s");
+  EXPECT_EQ(volume.referenceId("transform"), "t");
   const MrmlNode& rendering = document.nodes()[1];
-  EXPECT_EQ(rendering.referenced("volumeProperty"), "p");
-  EXPECT_EQ(rendering.referenced("roi"), "r");
-  EXPECT_EQ(rendering.referenced("view"), "w");
-  EXPECT_EQ(document.nodes()[2].referenced("ActiveVolume"), "v");
-  EXPECT_EQ(document.nodes()[3].referenced("color"), "c");
+  EXPECT_EQ(rendering.referenceId("volumeProperty"), "p");
+  EXPECT_EQ(rendering.referenceId("roi"), "r");
+  EXPECT_EQ(rendering.referenceId("view"), "w");
+  EXPECT_EQ(document.nodes()[2].referenceId("ActiveVolume"), "v");
+  EXPECT_EQ(document.nodes()[3].referenceId("color"), "c");
 }
 
 TEST(MrmlDocument, PrefersTheNewFormOfAReference) {
   const MrmlDocument document =
       parse(R"(<Volume displayNodeRef="old" storageNodeRef="s" references="display:new;"/>)");
   EXPECT_EQ(document.nodes()[0].references.at("display"), std::vector<std::string>{"new"});
-  EXPECT_EQ(document.nodes()[0].referenced("storage"), "s");
+  EXPECT_EQ(document.nodes()[0].referenceId("storage"), "s");
 }
 
 TEST(MrmlDocument, SkipsMalformedReferences) {
   const MrmlDocument document =
       parse(R"(<Volume references=";;:x;role;a:;b: ;c:1"/><Volume references=""/>)");
   EXPECT_EQ(document.nodes()[0].references.size(), 1U);
-  EXPECT_EQ(document.nodes()[0].referenced("c"), "1");
+  EXPECT_EQ(document.nodes()[0].referenceId("c"), "1");
 }
 
 TEST(MrmlDocument, ConvertsAttributesToFlagsAndNumbers) {
@@ -83,12 +83,12 @@ TEST(MrmlDocument, ConvertsAttributesToFlagsAndNumbers) {
       parse(R"(<N a="true" b="false" c="1" d="0" e="yes" n=" 1  -2e3 2.2250738585072e-308 "
                   m="1 2x" i="1 inf" o=""/>)");
   const MrmlNode& node = document.nodes()[0];
-  EXPECT_TRUE(node.flag("a", false));
-  EXPECT_FALSE(node.flag("b", true));
-  EXPECT_TRUE(node.flag("c", false));
-  EXPECT_FALSE(node.flag("d", true));
-  EXPECT_TRUE(node.flag("e", true));
-  EXPECT_FALSE(node.flag("missing", false));
+  EXPECT_TRUE(node.boolean("a", false));
+  EXPECT_FALSE(node.boolean("b", true));
+  EXPECT_TRUE(node.boolean("c", false));
+  EXPECT_FALSE(node.boolean("d", true));
+  EXPECT_TRUE(node.boolean("e", true));
+  EXPECT_FALSE(node.boolean("missing", false));
   EXPECT_EQ(*node.numbers("n"), (std::vector<double>{1, -2000, 2.2250738585072e-308}));
   EXPECT_FALSE(node.numbers("m"));
   EXPECT_FALSE(node.numbers("i"));

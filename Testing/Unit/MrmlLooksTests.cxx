@@ -64,7 +64,7 @@ TEST(MrmlLooks, WindowOfTheDisplayBecomesAnOpacityRamp) {
   const auto opacity = [](const TransferFunction& f, double s) {
     return 1.0 - std::exp(-f.extinction(s)[0]);
   };
-  const auto whole = followedDisplay(nodes[0], nodes[2], {0, 400});
+  const auto whole = convertSliceDisplay(nodes[0], nodes[2], {0, 400});
   ASSERT_TRUE(full); // a ramp over the whole range
   EXPECT_NEAR(opacity(*full, 100), 0.25, 1e-3);
   EXPECT_NEAR(opacity(*full, 300), 0.75, 1e-3);
@@ -72,17 +72,17 @@ TEST(MrmlLooks, WindowOfTheDisplayBecomesAnOpacityRamp) {
   EXPECT_NEAR(full->albedo(200)[0], 1.0, 1e-6);
   EXPECT_TRUE(full->shading);
 
-  const auto window = followedDisplay(nodes[1], nodes[2], {0, 400});
+  const auto window = convertSliceDisplay(nodes[1], nodes[2], {0, 400});
   EXPECT_NEAR(opacity(*window, 150), 0.5, 1e-3); // a ramp over the window, opaque beyond
   EXPECT_NEAR(opacity(*window, 99), 0.0, 1e-9);
   EXPECT_GT(opacity(*window, 300), 0.99);
 
-  const auto threshold = followedDisplay(nodes[0], nodes[4], {0, 400});
+  const auto threshold = convertSliceDisplay(nodes[0], nodes[4], {0, 400});
   EXPECT_NEAR(opacity(*threshold, 150), 0.5, 1e-3); // a ramp over the threshold, empty beyond
   EXPECT_NEAR(opacity(*threshold, 300), 0.0, 1e-9);
   EXPECT_NEAR(threshold->albedo(100)[0], 1.0, 1e-6);
 
-  EXPECT_FALSE(followedDisplay(nodes[0], nodes[3], {0, 400})); // another colour table
+  EXPECT_FALSE(convertSliceDisplay(nodes[0], nodes[3], {0, 400})); // another colour table
 }
 
 } // namespace

@@ -129,7 +129,7 @@ TEST(MrmlScene, ReadsVisibilityOfSegments) {
   const SceneFolder folder;
   MrmlScene scene = folder.scene(R"(<Segmentation id="s" displayNodeRef="d"/>
     <SegmentationDisplay id="d" SegmentationDisplayProperties="A%20b OverrideColorR:-1 Visible:true Visible3D:true Opacity3D:1|c Visible:false Visible3D:true|d Visible:true Visible3D:false|"/>)");
-  EXPECT_EQ(segmentVisibility(scene, node(scene, "s")),
+  EXPECT_EQ(readSegmentVisibility(scene, node(scene, "s")),
             (std::map<std::string, bool>{{"A b", true}, {"c", false}, {"d", false}}));
 }
 
@@ -346,10 +346,10 @@ TEST(MrmlScene, ReadsBackgroundOfTheView) {
       R"(<MRML><View backgroundColor="0.1 0.2 0.3" backgroundColor2="0.4 0.5 0.6"/>
          <View backgroundColor="0.1 0.2 0.3"/><View/></MRML>)",
       "test");
-  EXPECT_TRUE(isApprox(viewBackground(document.nodes()[0]).top, Rgb(0.4, 0.5, 0.6)));
-  EXPECT_TRUE(isApprox(viewBackground(document.nodes()[0]).bottom, Rgb(0.1, 0.2, 0.3)));
-  EXPECT_TRUE(isApprox(viewBackground(document.nodes()[1]).top, Rgb(0.1, 0.2, 0.3)));
-  EXPECT_TRUE(viewBackground(document.nodes()[2]).bottom == Rgb::Zero());
+  EXPECT_TRUE(isApprox(readViewBackground(document.nodes()[0]).top, Rgb(0.4, 0.5, 0.6)));
+  EXPECT_TRUE(isApprox(readViewBackground(document.nodes()[0]).bottom, Rgb(0.1, 0.2, 0.3)));
+  EXPECT_TRUE(isApprox(readViewBackground(document.nodes()[1]).top, Rgb(0.1, 0.2, 0.3)));
+  EXPECT_TRUE(readViewBackground(document.nodes()[2]).bottom == Rgb::Zero());
 }
 
 // ---- real files
@@ -364,8 +364,8 @@ TEST(RealScenes, EveryPresetIsRead) {
   for (const char* file : {"slicer_core/presets.xml", "slicer_core/volRender.mrml",
                            "vr_properties/SM_presets.mrml", "vr_properties/US-VrPresets.mrml"}) {
     MrmlScene scene(slicerScenes / file);
-    for (const MrmlNode* property : scene.document.withTag("VolumeProperty")) {
-      SCOPED_TRACE(shown(*property));
+    for (const MrmlNode* property : scene.document.findByTag("VolumeProperty")) {
+      SCOPED_TRACE(describeNode(*property));
       const TransferFunction f = readSceneProperty(scene, *property);
       const auto& knots = f.extinction.knots();
       EXPECT_TRUE(std::any_of(knots.begin(), knots.end(),
@@ -391,14 +391,14 @@ TEST(RealScenes, TransformFileAgreesWithTheMatrixToSixDigits) {
   if (!std::filesystem::exists(file))
     GTEST_SKIP() << file << " is absent";
   MrmlScene scene(file);
-  const MrmlNode& volume = *scene.document.withTag("Volume").at(0);
+  const MrmlNode& volume = *scene.document.findByTag("Volume").at(0);
   const MrmlNode& transform = *scene.document.follow(volume, "transform");
   const auto n = *transform.numbers("matrixTransformToParent");
   const Affine sixDigits =
       affine({n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9], n[10], n[11]});
   expectSame(toWorld(scene, volume), sixDigits, 1e-6);
   EXPECT_GT(normOf(toWorld(scene, volume).linear() - sixDigits.linear()), 1e-8); // has more
-  const Affine roi = readSceneRoi(scene, *scene.document.withTag("MarkupsROI").at(0)).boxToWorld;
+  const Affine roi = readSceneRoi(scene, *scene.document.findByTag("MarkupsROI").at(0)).boxToWorld;
   expectSame(roi, affine({150, 0, 0, 0, 0, 130, 0, -20, 0, 0, 110, -170}), 1e-9);
 }
 

@@ -57,7 +57,7 @@ TEST(MrmlTransform, ChainIsCountedUpTo1000Transforms) {
                     below = "<N id=\"n\" transformNodeRef=\"t\"/>";
   const auto countAbove = [&](const std::string& transforms) {
     const MrmlScene scene = folder.scene(below + transforms);
-    return transformsAbove(scene.document, node(scene, "n")).size();
+    return listParentTransforms(scene.document, node(scene, "n")).size();
   };
   EXPECT_EQ(countAbove(chain(rows, 3)), 3u);
   EXPECT_EQ(countAbove(transform(rows, "t", "u") + transform(rows, "u", "t")), 2u); // a loop

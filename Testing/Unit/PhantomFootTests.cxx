@@ -190,10 +190,10 @@ TEST(PhantomFoot, BonesSegmentHoldsVoxelsFrom200Hounsfield) {
 
 TEST(PhantomFoot, TissuesHaveTheirHounsfieldUnits) {
   const Phantom& foot = smallFoot();
-  EXPECT_NEAR(medianOf(foot, "fat"), -105.0, 15.0);
-  EXPECT_NEAR(medianOf(foot, "muscles"), 52.0, 15.0);
-  EXPECT_NEAR(medianOf(foot, "achilles_tendon"), 100.0, 20.0);
-  EXPECT_GT(medianOf(foot, "talus"), 300.0);
+  EXPECT_NEAR(computeMedian(foot, "fat"), -105.0, 15.0);
+  EXPECT_NEAR(computeMedian(foot, "muscles"), 52.0, 15.0);
+  EXPECT_NEAR(computeMedian(foot, "achilles_tendon"), 100.0, 20.0);
+  EXPECT_GT(computeMedian(foot, "talus"), 300.0);
   const FootSubject layers;
   const FootSite shaft = layers.makeSite({-14.0, 168.0, 39.0});
   EXPECT_LT(footMarrowSignal(shaft), 0.0) << "a metatarsal's canal holds fat";
@@ -235,7 +235,7 @@ TEST(PhantomFoot, BothLayersRoundTripThroughTheFile) {
   const Segmentation segmentation = readSegmentation(folder / "foot.seg.nrrd");
   ASSERT_EQ(segmentation.segments().size(), foot.segments.size());
   for (const char* id : {"calcaneus", "skin", "bones"})
-    EXPECT_EQ(segmentation.mask({id}, foot.volume.grid).count,
+    EXPECT_EQ(segmentation.makeFocusMask({id}, foot.volume.grid).count,
               static_cast<std::int64_t>(voxelsIn(foot, id).size()))
         << id;
 }

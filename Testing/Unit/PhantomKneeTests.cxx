@@ -211,12 +211,12 @@ TEST(PhantomKnee, CartilageSeenFromAnteriorIsNotItsRear) {
 
 TEST(PhantomKnee, MedianSignalsAreThoseOfT1) {
   const Phantom& knee = smallKnee();
-  EXPECT_NEAR(medianOf(knee, "MedialGastrocnemius"), 350.0, 45.0);
-  EXPECT_NEAR(medianOf(knee, "SubcutaneousFat"), 850.0, 80.0);
-  EXPECT_NEAR(medianOf(knee, "Femur"), 820.0, 70.0);
-  EXPECT_NEAR(medianOf(knee, "FemoralCartilage"), 510.0, 60.0);
-  EXPECT_LT(medianOf(knee, "MedialMeniscus"), 200.0);
-  EXPECT_LT(medianOf(knee, "PCL"), 200.0);
+  EXPECT_NEAR(computeMedian(knee, "MedialGastrocnemius"), 350.0, 45.0);
+  EXPECT_NEAR(computeMedian(knee, "SubcutaneousFat"), 850.0, 80.0);
+  EXPECT_NEAR(computeMedian(knee, "Femur"), 820.0, 70.0);
+  EXPECT_NEAR(computeMedian(knee, "FemoralCartilage"), 510.0, 60.0);
+  EXPECT_LT(computeMedian(knee, "MedialMeniscus"), 200.0);
+  EXPECT_LT(computeMedian(knee, "PCL"), 200.0);
   const double snr = muscleSignal({-20, -45, -30}) / noiseSigma;
   EXPECT_GT(snr, 25.0);
   EXPECT_LT(snr, 40.0);

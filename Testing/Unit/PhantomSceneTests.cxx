@@ -173,7 +173,7 @@ TEST_F(PhantomSceneFiles, VolumeNodeHoldsItsGridInRas) {
   expectTexts("Volume", {{"voxelVectorType", "undefined"}, {"name", "knee"}});
   expectTexts("VolumeDisplay",
               {{"colorNodeID", "vtkMRMLColorTableNodeGrey"}, {"applyThreshold", "0"}});
-  EXPECT_EQ(numbers(node("VolumeDisplay"), "window").at(0),
+  EXPECT_EQ(readNumbers(node("VolumeDisplay"), "window").at(0),
             phantom.volume.maximum - phantom.volume.minimum);
 }
 
@@ -218,8 +218,8 @@ TEST_F(PhantomSceneFiles, PropertyIsEqualInTheSceneAndInItsFile) {
     EXPECT_EQ(opacity[2 * i + 1], phantom.property.scalarOpacity[i].x);
     EXPECT_EQ(opacity[2 * i + 2], phantom.property.scalarOpacity[i].value);
   }
-  EXPECT_EQ(numbers(property, "colorTransfer").size(), 4 * phantom.property.color.size() + 1);
-  EXPECT_EQ(numbers(property, "effectiveRange"),
+  EXPECT_EQ(readNumbers(property, "colorTransfer").size(), 4 * phantom.property.color.size() + 1);
+  EXPECT_EQ(readNumbers(property, "effectiveRange"),
             (std::vector<double>{phantom.volume.minimum, phantom.volume.maximum}));
   EXPECT_EQ(text(property, "shade"), "1");
 }
@@ -246,7 +246,7 @@ TEST_F(PhantomSceneFiles, CameraBelongsToTheViewAndFramesTheVolume) {
   EXPECT_NEAR(up.norm(), 1.0, 1e-5);
   EXPECT_GT(up.z(), 0.8);
   const double scale = numbers(camera, "parallelScale").at(0);
-  EXPECT_EQ(numbers(view, "fieldOfView").at(0), scale); // Slicer sets the camera to this value
+  EXPECT_EQ(readNumbers(view, "fieldOfView").at(0), scale); // Slicer sets the camera to this value
   double reach = 0.0;
   for (int i = 0; i < 8; ++i) {
     const Vec3 offset = grid.worldCorner(i) - target;

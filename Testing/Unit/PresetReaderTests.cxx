@@ -112,7 +112,7 @@ TEST(PresetReader, ReadsEveryBuiltInPreset) {
         // Scalars of MR and ultrasound are unknown in advance.
         const TransferLook look =
             parseTransferLook(findResource("transfer/" + value + ".json"), value);
-        EXPECT_EQ(look.relative, preset.modality != Modality::ct);
+        EXPECT_EQ(look.isRelative, preset.modality != Modality::ct);
       }
   }
 }

@@ -18,23 +18,24 @@ TEST(RealSegmentations, SegmentsAndLayersAreRead) {
   const Grid chest = readVolume(data("slicerio_segnrrd/CTChest4.nrrd")).grid;
   const Segmentation single = readSegmentation(data("slicerio_segnrrd/Segmentation.seg.nrrd"));
   EXPECT_EQ(single.segments().size(), 7u);
-  EXPECT_GT(single.mask({"ribs"}, chest).count, 1000);
+  EXPECT_GT(single.makeFocusMask({"ribs"}, chest).count, 1000);
   const Segmentation layered =
       readSegmentation(data("slicerio_segnrrd/SegmentationOverlapping.seg.nrrd"));
   ASSERT_EQ(layered.segments().size(), 8u);
-  EXPECT_EQ(layered.mask({"ribs"}, chest).count, single.mask({"ribs"}, chest).count);
+  EXPECT_EQ(layered.makeFocusMask({"ribs"}, chest).count,
+            single.makeFocusMask({"ribs"}, chest).count);
   const auto inSecondLayer = std::count_if(layered.segments().begin(), layered.segments().end(),
                                            [](const SegmentInfo& s) { return s.layer == 1; });
   EXPECT_GE(inSecondLayer, 1);
   for (const SegmentInfo& s : layered.segments())
-    EXPECT_GT(layered.mask({s.id}, chest).count, 0) << s.name;
+    EXPECT_GT(layered.makeFocusMask({s.id}, chest).count, 0) << s.name;
   const Segmentation knee = readSegmentation(data("spl_knee_atlas_labels/seg.nrrd"));
   EXPECT_EQ(knee.segments().size(), 49u);
-  EXPECT_GT(knee.mask({knee.segments()[0].id}, knee.grid()).count, 0);
+  EXPECT_GT(knee.makeFocusMask({knee.segments()[0].id}, knee.grid()).count, 0);
   const Segmentation legacy = readSegmentation(
       data("slicer_scenes/slicerrt_scenes/EclipseProstate_Expanded_5_5_5_Bladder.seg.nrrd"));
   EXPECT_EQ(legacy.segments().at(0).name, "Expanded_5_5_5_Bladder");
-  EXPECT_EQ(legacy.mask({"Expanded_5_5_5_Bladder"}, legacy.grid()).count, 84024);
+  EXPECT_EQ(legacy.makeFocusMask({"Expanded_5_5_5_Bladder"}, legacy.grid()).count, 84024);
 }
 
 /// Oldest format, against the surfaces of the same patient (EclipseProstate_Structures.seg, RAS):

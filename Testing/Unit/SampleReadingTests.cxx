@@ -112,8 +112,8 @@ TEST(SampleReading, ReplacesNonFiniteSamplesInAnyBlock) {
 TEST(SampleReading, SampleThatNoTypeHoldsIsReported) {
   SampleStore<std::uint8_t, std::int16_t> store(2);
   const std::vector<float> samples = {1.0f, 0.5f};
-  store.append(std::span(samples), survey(std::span(samples)));
-  EXPECT_FALSE(store.holdsAll());
+  store.append(std::span(samples), computeStats(std::span(samples)));
+  EXPECT_FALSE(store.canHoldAll());
 }
 
 // ---- files

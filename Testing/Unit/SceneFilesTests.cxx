@@ -54,7 +54,7 @@ TEST(SceneFiles, FindsFilesInAnArchiveAndCleansUp) {
             std::filesystem::perms::others_all,
         std::filesystem::perms::none);
     const std::string known = archive.string() + "/Study/Data/a b.txt";
-    EXPECT_EQ(files.asKnown(unpacked.string() + ": odd"), known + ": odd");
+    EXPECT_EQ(files.translatePaths(unpacked.string() + ": odd"), known + ": odd");
     expectRefused(known, "is damaged", [&] {
       files.read({"Data/a%20b.txt"}, [](const std::vector<std::filesystem::path>& paths) {
         throw inputError(paths.front().string(), "is damaged");

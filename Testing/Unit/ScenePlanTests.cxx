@@ -16,7 +16,8 @@ std::string volumeOf(const std::string& nodes, const std::optional<std::string>&
   return planRender(document, {.volume = choice}).volume->id;
 }
 
-void refuse(const std::string& nodes, const std::string& because, const SceneChoice& choice = {}) {
+void refuse(const std::string& nodes, const std::string& because,
+            const SceneSelection& choice = {}) {
   const MrmlDocument document = parse(nodes);
   expectRefused("test", because, [&] { planRender(document, choice); });
 }
@@ -71,7 +72,7 @@ TEST(ScenePlan, FollowsTheRenderingToPropertyAndRegion) {
   EXPECT_EQ(plan.rendering->id, "d");
   EXPECT_EQ(plan.property->id, "p");
   EXPECT_EQ(plan.roi->id, "r");
-  EXPECT_FALSE(plan.followed);
+  EXPECT_FALSE(plan.sliceDisplay);
   EXPECT_TRUE(plan.warnings.empty());
 }
 
@@ -92,8 +93,8 @@ TEST(ScenePlan, FollowsTheVolumeDisplayIfTheRenderingDoes) {
     <GPURayCastVolumeRendering id="d" followVolumeDisplayNode=")";
   const MrmlDocument following = parse(nodes + "1\"/>");
   const MrmlDocument own = parse(nodes + "0\"/>");
-  EXPECT_EQ(planRender(following, {}).followed->id, "s");
-  EXPECT_FALSE(planRender(own, {}).followed);
+  EXPECT_EQ(planRender(following, {}).sliceDisplay->id, "s");
+  EXPECT_FALSE(planRender(own, {}).sliceDisplay);
 }
 
 TEST(ScenePlan, WarnsOfAnActiveClipNode) {
@@ -148,14 +149,14 @@ TEST(ScenePlan, ChoosesTheViewOfTheRendering) {
             "w2 none");
 }
 
-std::string segmentationOf(const std::string& nodes, SceneChoice choice) {
+std::string segmentationOf(const std::string& nodes, SceneSelection choice) {
   const MrmlDocument document = parse("<Volume id=\"v\"/>" + nodes);
   const ScenePlan plan = planRender(document, choice);
   return plan.segmentation ? plan.segmentation->id : "none";
 }
 
 TEST(ScenePlan, ChoosesTheVisibleOrNamedSegmentation) {
-  const SceneChoice any{.needsSegmentation = true};
+  const SceneSelection any{.needsSegmentation = true};
   EXPECT_EQ(segmentationOf(R"(<LabelMapVolume id="l"/><Segmentation id="s"/>)", any), "s");
   EXPECT_EQ(segmentationOf(R"(<LabelMapVolume id="l"/>)", any), "l");
   EXPECT_EQ(segmentationOf(R"(<Volume id="m" labelMap="1"/>)", any), "m");

@@ -19,13 +19,14 @@ TEST(SegmentChoice, PrefersIdsToNamesToValues) {
     labels[i] = static_cast<std::uint8_t>(i < 1 ? 1 : i < 3 ? 2 : i < 6 ? 3 : 4);
   writeFile(folder / "s.seg.nrrd", labels, geometry);
   const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
-  EXPECT_EQ(s.mask({"2"}, s.grid()).count, 1);
-  EXPECT_EQ(s.mask({"first"}, s.grid()).count, 2);
-  EXPECT_EQ(s.mask({"3"}, s.grid()).count, 2);
-  EXPECT_EQ(s.mask({"4"}, s.grid()).count, 4);
-  expectRefused(folder / "s.seg.nrrd", "c (twin), d (twin)", [&] { s.mask({"twin"}, s.grid()); });
+  EXPECT_EQ(s.makeFocusMask({"2"}, s.grid()).count, 1);
+  EXPECT_EQ(s.makeFocusMask({"first"}, s.grid()).count, 2);
+  EXPECT_EQ(s.makeFocusMask({"3"}, s.grid()).count, 2);
+  EXPECT_EQ(s.makeFocusMask({"4"}, s.grid()).count, 4);
+  expectRefused(folder / "s.seg.nrrd", "c (twin), d (twin)",
+                [&] { s.makeFocusMask({"twin"}, s.grid()); });
   expectRefused(folder / "s.seg.nrrd", "has no segment \"spleen\"; it has 2 (first)",
-                [&] { s.mask({"spleen"}, s.grid()); });
+                [&] { s.makeFocusMask({"spleen"}, s.grid()); });
 }
 
 TEST(SegmentChoice, RefusesEmptyFocusAndListsTwelveSegments) {
@@ -36,10 +37,10 @@ TEST(SegmentChoice, RefusesEmptyFocusAndListsTwelveSegments) {
   writeFile(folder / "s.seg.nrrd", std::vector<std::uint8_t>(24, 1), geometry);
   const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
   expectRefused(folder / "s.seg.nrrd", "the focus has no voxel",
-                [&] { s.mask({"id3"}, s.grid()); });
-  expectRefused(folder / "s.seg.nrrd", "id11", [&] { s.mask({"x"}, s.grid()); });
-  expectRefused(folder / "s.seg.nrrd", ", …", [&] { s.mask({"x"}, s.grid()); });
-  expectRefused(folder / "s.seg.nrrd", "", [&] { s.mask({}, s.grid()); });
+                [&] { s.makeFocusMask({"id3"}, s.grid()); });
+  expectRefused(folder / "s.seg.nrrd", "id11", [&] { s.makeFocusMask({"x"}, s.grid()); });
+  expectRefused(folder / "s.seg.nrrd", ", …", [&] { s.makeFocusMask({"x"}, s.grid()); });
+  expectRefused(folder / "s.seg.nrrd", "", [&] { s.makeFocusMask({}, s.grid()); });
 }
 
 TEST(SegmentChoice, UnknownSegmentIsAnsweredByThoseThatMayBeMeant) {
@@ -51,13 +52,14 @@ TEST(SegmentChoice, UnknownSegmentIsAnsweredByThoseThatMayBeMeant) {
   writeFile(folder / "s.seg.nrrd", std::vector<std::uint8_t>(24, 1), geometry);
   const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
   const auto answer = [&](const std::string& selector, const std::string& text) {
-    expectRefused(folder / "s.seg.nrrd", text, [&] { s.mask({selector}, s.grid()); });
+    expectRefused(folder / "s.seg.nrrd", text, [&] { s.makeFocusMask({selector}, s.grid()); });
   };
   answer("Kidneys", "\"Kidneys\"; did you mean kidney_left, kidney_right?");
   answer("left kidney", "did you mean kidney_left?");
   answer("lung", "did you mean Right Lung?");
   answer("spleen", "it has a (kidney_left), b (kidney_right), c (Right Lung)");
-  EXPECT_EQ(s.mask({" kidney_left "}, s.grid()).names, std::vector<std::string>{"kidney_left"});
+  EXPECT_EQ(s.makeFocusMask({" kidney_left "}, s.grid()).names,
+            std::vector<std::string>{"kidney_left"});
 }
 
 } // namespace

@@ -105,16 +105,16 @@ TEST(SegmentMaterials, NamesMeanWhatAClinicianMeans) {
 }
 
 TEST(SegmentMaterials, EveryClassOfTheTablesHasAMaterial) {
-  for (const std::string& table : compiledLabelTables()) {
-    const LabelNames labels = *compiledLabelNames(table);
+  for (const std::string& table : listBuiltInLabelTables()) {
+    const LabelNames labels = *findBuiltInLabelNames(table);
     for (const auto& [value, label] : labels) {
       const SegmentMaterial found = materialOf(named(label.name));
       EXPECT_NE(found.name, "") << table << ' ' << label.name << ": " << found.why;
       EXPECT_EQ(found.why.rfind("by name '", 0), 0u) << found.why;
     }
   }
-  EXPECT_EQ(compiledLabelNames("totalsegmentator1")->size(), 104u);
-  EXPECT_EQ(compiledLabelNames("totalsegmentator2")->size(), 117u);
+  EXPECT_EQ(findBuiltInLabelNames("totalsegmentator1")->size(), 104u);
+  EXPECT_EQ(findBuiltInLabelNames("totalsegmentator2")->size(), 117u);
 }
 
 TEST(SegmentMaterials, CodesWinOverNames) {
@@ -122,7 +122,7 @@ TEST(SegmentMaterials, CodesWinOverNames) {
   const auto expect = [](const SegmentInfo& segment, const char* material, const char* why) {
     const SegmentMaterial found = materialOf(segment);
     EXPECT_EQ(found.name, material) << found.why;
-    EXPECT_EQ(found.why, why);
+    EXPECT_EQ(found.why, reason);
   };
   expect(coded(anatomy, "SCT^10200004", "", "spleen"), "liver", "by SCT^10200004");
   expect(coded(anatomy, "SRT^T-62000"), "liver", "by SRT^T-62000");

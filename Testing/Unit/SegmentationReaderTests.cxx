@@ -42,7 +42,7 @@ Segmentation labelmap(const std::vector<std::pair<Size3, int>>& labels, Vec3 ori
 
 TEST(SegmentationReader, MaskIsCroppedToTheExtentPlusAMargin) {
   const Segmentation s = labelmap({{{1, 2, 3}, 1}, {{3, 3, 3}, 2}, {{5, 5, 5}, 3}});
-  const Mask mask = s.mask({"1", "2"}, unitGrid({50, 50, 50}, {-20, -20, -20}));
+  const Mask mask = s.makeFocusMask({"1", "2"}, unitGrid({50, 50, 50}, {-20, -20, -20}));
   EXPECT_EQ(mask.grid.size, Size3(5, 4, 3));
   EXPECT_EQ(mask.count, 2);
   EXPECT_EQ(mask.names, (std::vector<std::string>{"Segment_1", "Segment_2"}));
@@ -56,7 +56,7 @@ TEST(SegmentationReader, MaskIsCroppedToTheExtentPlusAMargin) {
 
 TEST(SegmentationReader, MaskEndsWithZerosInsideTheVolume) {
   const Segmentation s = labelmap({{{0, 0, 0}, 1}});
-  const Mask mask = s.mask({"1"}, unitGrid({50, 50, 50}, {-20, -20, -20}));
+  const Mask mask = s.makeFocusMask({"1"}, unitGrid({50, 50, 50}, {-20, -20, -20}));
   EXPECT_EQ(mask.grid.size, Size3(3, 3, 3));
   EXPECT_EQ(std::count(mask.voxels.begin(), mask.voxels.end(), 1), 1);
 }
@@ -65,14 +65,14 @@ TEST(SegmentationReader, MaskContinuesOverFacesOfTheVolume) {
   const Segmentation s = labelmap({{{0, 0, 5}, 1}, {{1, 0, 5}, 2}});
   // The volume shares the labelmap's lower faces of x and y; its upper z face lies two voxels
   // further in.
-  const Mask mask = s.mask({"1", "2"}, unitGrid({8, 12, 8}, {0, 0, 0}, 1.0));
+  const Mask mask = s.makeFocusMask({"1", "2"}, unitGrid({8, 12, 8}, {0, 0, 0}, 1.0));
   EXPECT_EQ(mask.count, 2);
   EXPECT_EQ(at(mask, {-1, 0, 5}), 1);
   EXPECT_EQ(at(mask, {0, -1, 5}), 1);
   EXPECT_EQ(at(mask, {-1, -1, 5}), 1);
   EXPECT_EQ(at(mask, {0, 0, 6}), 0);
   EXPECT_EQ(at(mask, {-1, -1, 6}), 0);
-  const Mask whole = s.mask({"1", "2"}, unitGrid({6, 6, 6}));
+  const Mask whole = s.makeFocusMask({"1", "2"}, unitGrid({6, 6, 6}));
   EXPECT_EQ(at(full, {0, 0, 6}), 1);
   EXPECT_EQ(full.count, 2);
 }
@@ -80,25 +80,26 @@ TEST(SegmentationReader, MaskContinuesOverFacesOfTheVolume) {
 TEST(SegmentationReader, FacesWithinHalfAVoxelAreShared) {
   const Segmentation s = labelmap({{{0, 3, 3}, 1}});
   const auto continued = [&s](double offset, double spacing = 1.0) {
-    return at(s.mask({"1"}, unitGrid({9, 9, 9}, {offset, -3, -3}, spacing)), {-1, 3, 3}) == 1;
+    return at(s.makeFocusMask({"1"}, unitGrid({9, 9, 9}, {offset, -3, -3}, spacing)), {-1, 3, 3}) ==
+           1;
   };
-  EXPECT_TRUE(continued(0.0));
-  EXPECT_TRUE(continued(0.45));
-  EXPECT_TRUE(continued(-0.45));
-  EXPECT_FALSE(continued(0.6));
-  EXPECT_FALSE(continued(-0.6));
-  EXPECT_TRUE(continued(0.5, 2.0)); // faces at -0.5 and -0.5
+  EXPECT_TRUE(isExtended(0.0));
+  EXPECT_TRUE(isExtended(0.45));
+  EXPECT_TRUE(isExtended(-0.45));
+  EXPECT_FALSE(isExtended(0.6));
+  EXPECT_FALSE(isExtended(-0.6));
+  EXPECT_TRUE(isExtended(0.5, 2.0)); // faces at -0.5 and -0.5
   // A labelmap that touches the volume from outside shares no face.
-  EXPECT_EQ(at(s.mask({"1"}, unitGrid({6, 9, 9}, {-6, -3, -3})), {-1, 3, 3}), 0);
+  EXPECT_EQ(at(s.makeFocusMask({"1"}, makeGrid({6, 9, 9}, {-6, -3, -3})), {-1, 3, 3}), 0);
 }
 
 TEST(SegmentationReader, FlippedGridSharesFacesAndObliqueDoesNot) {
   const Segmentation s = labelmap({{{0, 3, 3}, 1}});
   // Grid that fills the labelmap's box, with permuted axes.
   const Affine flipped(Mat3({0, 1, 0}, {0, 0, -1}, {-1, 0, 0}), {5, 0, 5});
-  EXPECT_EQ(at(s.mask({"1"}, Grid({6, 6, 6}, flipped)), {-1, 3, 3}), 1);
+  EXPECT_EQ(at(s.makeFocusMask({"1"}, Grid({6, 6, 6}, flipped)), {-1, 3, 3}), 1);
   const Affine oblique = makeRotation(0.4, Vec3::UnitZ());
-  EXPECT_EQ(at(s.mask({"1"}, Grid({6, 6, 6}, oblique)), {-1, 3, 3}), 0);
+  EXPECT_EQ(at(s.makeFocusMask({"1"}, Grid({6, 6, 6}, oblique)), {-1, 3, 3}), 0);
 }
 
 TEST(SegmentationReader, ReadsPlainLabelmapsOfEveryFormat) {
@@ -117,8 +118,8 @@ TEST(SegmentationReader, ReadsPlainLabelmapsOfEveryFormat) {
       ASSERT_EQ(s.segments().size(), 2u) << name;
       EXPECT_EQ(s.segments()[0].id, "Segment_-2");
       EXPECT_EQ(s.segments()[1].name, "Segment_300");
-      EXPECT_EQ(s.mask({"300"}, s.grid()).count, 1);
-      EXPECT_EQ(s.mask({"-2", "Segment_300"}, s.grid()).count, 2);
+      EXPECT_EQ(s.makeFocusMask({"300"}, s.grid()).count, 1);
+      EXPECT_EQ(s.makeFocusMask({"-2", "Segment_300"}, s.grid()).count, 2);
     }
 }
 
@@ -132,8 +133,8 @@ TEST(SegmentationReader, ReadsOneLayerWithoutLayerField) {
   labels[7] = labels[8] = 2;
   writeFile(folder / "s.seg.nrrd", labels, geometry);
   const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
-  EXPECT_EQ(s.mask({"liver"}, s.grid()).count, 1);
-  EXPECT_EQ(s.mask({"tumour"}, s.grid()).count, 2);
+  EXPECT_EQ(s.makeFocusMask({"liver"}, s.grid()).count, 1);
+  EXPECT_EQ(s.makeFocusMask({"tumour"}, s.grid()).count, 2);
 }
 
 TEST(SegmentationReader, ReadsOverlappingLayers) {
@@ -152,10 +153,11 @@ TEST(SegmentationReader, ReadsOverlappingLayers) {
     ASSERT_EQ(s.segments().size(), 2u);
     EXPECT_EQ(s.segments()[1].layer, 1u);
     EXPECT_TRUE(s.segments()[0].color == Rgb(0.5, 0.25, 1));
-    EXPECT_EQ(s.mask({"liver"}, s.grid()).count, 3);
-    EXPECT_EQ(s.mask({"b"}, s.grid()).count, 2);
-    EXPECT_EQ(s.mask({"a", "tumour"}, s.grid()).count, 4);
-    expectRefused(folder / "s.seg.nrrd", "a (liver), b (tumour)", [&] { s.mask({"1"}, s.grid()); });
+    EXPECT_EQ(s.makeFocusMask({"liver"}, s.grid()).count, 3);
+    EXPECT_EQ(s.makeFocusMask({"b"}, s.grid()).count, 2);
+    EXPECT_EQ(s.makeFocusMask({"a", "tumour"}, s.grid()).count, 4);
+    expectRefused(folder / "s.seg.nrrd", "a (liver), b (tumour)",
+                  [&] { s.makeFocusMask({"1"}, s.grid()); });
   }
 }
 
@@ -193,7 +195,7 @@ TEST(SegmentationReader, RefusesFilesThatAreNoSegmentation) {
 /// World centre of a segment's voxels.
 Vec3 centroid(const Segmentation& segmentation, const std::string& selector) {
   const Grid elsewhere = unitGrid({1, 1, 1}, Vec3::Constant(1e6)); // shares no face
-  const Mask mask = segmentation.mask({selector}, elsewhere);
+  const Mask mask = segmentation.makeFocusMask({selector}, elsewhere);
   Vec3 sum = Vec3::Zero();
   for (std::int64_t z = 0; z < mask.grid.size.z(); ++z)
     for (std::int64_t y = 0; y < mask.grid.size.y(); ++y)
@@ -226,7 +228,7 @@ TEST(SegmentationReader, IgnoresStatedExtentOfSegments) {
     geometry.fields["Segment0_Extent"] = extent;
     writeFile(folder / "s.seg.nrrd", labels, geometry);
     const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
-    EXPECT_EQ(s.mask({"a"}, s.grid()).count, 3) << extent;
+    EXPECT_EQ(s.makeFocusMask({"a"}, s.grid()).count, 3) << extent;
   }
 }
 
@@ -244,10 +246,11 @@ TEST(SegmentationReader, IgnoresLabelValuesWithoutSegment) {
   labels[11] = labels[13] = -300; // no segment's value
   writeFile(folder / "s.seg.nrrd", labels, geometry);
   const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
-  EXPECT_EQ(s.mask({"liver"}, s.grid()).count, 2);
-  EXPECT_EQ(s.mask({"300"}, s.grid()).count, 2);
-  EXPECT_EQ(s.mask({"a", "b"}, s.grid()).count, 4);
-  expectRefused(folder / "s.seg.nrrd", "has no segment \"5\"", [&] { s.mask({"5"}, s.grid()); });
+  EXPECT_EQ(s.makeFocusMask({"liver"}, s.grid()).count, 2);
+  EXPECT_EQ(s.makeFocusMask({"300"}, s.grid()).count, 2);
+  EXPECT_EQ(s.makeFocusMask({"a", "b"}, s.grid()).count, 4);
+  expectRefused(folder / "s.seg.nrrd", "has no segment \"5\"",
+                [&] { s.makeFocusMask({"5"}, s.grid()); });
   const auto statistics = s.statistics();
   EXPECT_EQ(statistics[0].voxels, 2);
   EXPECT_EQ(statistics[1].voxels, 2);
@@ -290,7 +293,7 @@ TEST(SegmentationReader, IgnoresOtherFieldsWrittenBySlicer) {
   const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
   ASSERT_EQ(s.segments().size(), 1u);
   EXPECT_EQ(s.segments()[0].name, "left lung | upper: lobe; \"A\" = 1");
-  EXPECT_EQ(s.mask({s.segments()[0].name}, s.grid()).count, 24);
+  EXPECT_EQ(s.makeFocusMask({s.segments()[0].name}, s.grid()).count, 24);
 }
 
 TEST(SegmentationReader, PlacesTheOldestFilesByTheirExtent) {
@@ -314,11 +317,11 @@ TEST(SegmentationReader, PlacesTheOldestFilesByTheirExtent) {
   writeFile(folder / "s.seg.nrrd", frames, geometry);
   const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
   ASSERT_EQ(s.segments().size(), 2u);
-  EXPECT_EQ(s.mask({"liver"}, s.grid()).count, 2);
+  EXPECT_EQ(s.makeFocusMask({"liver"}, s.grid()).count, 2);
   EXPECT_TRUE(isApprox(centroid(s, "liver"), Vec3(100 - 10.5 * 2, 200 - 20 * 3, -50 + 5 * 4)));
-  EXPECT_EQ(s.mask({"tumour"}, s.grid()).count, 2);
+  EXPECT_EQ(s.makeFocusMask({"tumour"}, s.grid()).count, 2);
   EXPECT_TRUE(isApprox(centroid(s, "tumour"), Vec3(100 - 11 * 2, 200 - 21.5 * 3, -50 + 5.5 * 4)));
-  EXPECT_EQ(s.mask({"a", "b"}, s.grid()).count, 3);
+  EXPECT_EQ(s.makeFocusMask({"a", "b"}, s.grid()).count, 3);
 
   geometry.fields["Segmentation_Extent"] = "10 12 20 23 5";
   writeFile(folder / "s.seg.nrrd", frames, geometry);

@@ -72,13 +72,13 @@ TEST(SlicerPresets, FoundBesideTheLauncherInThePath) {
 
 TEST(SlicerPresets, PresetsAreVolumePropertiesWithNames) {
   const MrmlDocument presets(presetsText, "presets.xml");
-  EXPECT_EQ(propertyNames(presets), (std::vector<std::string>{"CT-Mine", "Broken"}));
-  const auto properties = presets.withTag("VolumeProperty");
-  const TransferFunction function = propertyIn(presets, *properties.at(0));
+  EXPECT_EQ(listPropertyNames(presets), (std::vector<std::string>{"CT-Mine", "Broken"}));
+  const auto properties = presets.findByTag("VolumeProperty");
+  const TransferFunction function = readInlineProperty(presets, *properties.at(0));
   EXPECT_NEAR(function.extinction(50)[0], -std::log(0.75), 1e-3); // opacity 0.25 over 1 mm
   EXPECT_TRUE(function.shading);
   expectRefused("presets.xml", "VolumeProperty Broken: scalarOpacity",
-                [&] { propertyIn(presets, *properties.at(1)); });
+                [&] { readInlineProperty(presets, *properties.at(1)); });
 }
 
 TEST(SlicerPresets, EveryPresetOfARealSlicerIsRead) {
@@ -87,9 +87,10 @@ TEST(SlicerPresets, EveryPresetOfARealSlicerIsRead) {
   if (!std::filesystem::exists(file))
     GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
   const MrmlDocument presets(readText(file), file.string());
-  EXPECT_EQ(propertyNames(presets).size(), 31u);
-  for (const MrmlNode* node : presets.withTag("VolumeProperty"))
-    EXPECT_GT(propertyIn(presets, *node).extinction.range(-4000, 70000)[1], 0.0) << node->name;
+  EXPECT_EQ(listPropertyNames(presets).size(), 31u);
+  for (const MrmlNode* node : presets.findByTag("VolumeProperty"))
+    EXPECT_GT(readInlineProperty(presets, *node).extinction.range(-4000, 70000)[1], 0.0)
+        << node->name;
 }
 
 } // namespace

@@ -96,9 +96,9 @@ protected:
 TEST_F(TurnedBalls, SeenDepthsAreThoseOfTheSurface) {
   const VisibleSurface seen = seenAt(0.0, 0.0);
   // Foremost point of the near ball in the picture's centre, and no focus near the left edge.
-  EXPECT_EQ(seen.regions[30 * 60 + 30], Region::focus);
-  EXPECT_NEAR(seen.depths[30 * 60 + 30], 200.0 - 14.0 - 7.0, 0.5);
-  EXPECT_EQ(seen.regions[30 * 60 + 2], Region::context);
+  EXPECT_EQ(visible.regions[30 * 60 + 30], Region::focus);
+  EXPECT_NEAR(visible.depths[30 * 60 + 30], 200.0 - 14.0 - 7.0, 0.5);
+  EXPECT_EQ(visible.regions[30 * 60 + 2], Region::context);
 }
 
 TEST_F(TurnedBalls, WithoutSteadyingTheSurfaceIsUnchanged) {

@@ -87,7 +87,7 @@ TEST(SurfaceWriter, VtpKeepsEveryDigitAndTheDepths) {
   const TemporaryFolder folder;
   const SurfaceMesh mesh = roof();
   writeSurface(mesh, folder / "roof.vtp");
-  SurfaceAllowance allowance;
+  MemoryBudget allowance;
   const VtkSurface read = readVtkSurface(folder / "roof.vtp", {"SPACE"}, allowance);
   EXPECT_EQ(read.points, mesh.points);
   EXPECT_EQ(read.triangles, mesh.triangles);
@@ -116,7 +116,7 @@ TEST(SurfaceWriter, PlyHasTheDepthsOfItsVertices) {
         "element face 2", "property list uchar int vertex_indices", "end_header"})
     EXPECT_EQ(file.line(), line);
   for (std::size_t i = 0; i < 4; ++i) {
-    EXPECT_TRUE(near(file.vector(), mesh.points[i])) << i;
+    EXPECT_TRUE(isNear(file.vector(), mesh.points[i])) << i;
     EXPECT_EQ(file.take<float>(), mesh.depths[i]);
   }
   for (const auto& triangle : mesh.triangles) {
@@ -141,7 +141,7 @@ TEST(SurfaceWriter, StlHasUnitNormals) {
     std::array<Vec3, 3> corners;
     for (std::size_t i = 0; i < 3; ++i) {
       corners[i] = file.vector();
-      EXPECT_TRUE(near(corners[i], mesh.points[triangle[i]]));
+      EXPECT_TRUE(isNear(corners[i], mesh.points[triangle[i]]));
     }
     const Vec3 expected = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
     EXPECT_LT((normal - expected).norm(), 1e-5);
@@ -159,7 +159,7 @@ TEST(SurfaceWriter, EqualSurfacesGiveEqualBytesAndEmptyOnesAFile) {
     writeSurface({}, folder / ("none" + ending));
     EXPECT_FALSE(bytesOf(folder / ("none" + ending)).empty());
   }
-  SurfaceAllowance allowance;
+  MemoryBudget allowance;
   EXPECT_TRUE(readVtkSurface(folder / "none.vtp", {}, allowance).points.empty());
 }
 

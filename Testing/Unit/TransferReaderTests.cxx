@@ -34,16 +34,16 @@ TEST(TransferReader, RelativeScalarsAreAShareOfTheUsualRange) {
   const std::string rest =
       R"("extinction": [[0.5, 0], [1, 4]], "albedo": [[0, 0, 0, 0], [1, 1, 1, 1]]})";
   const TransferLook look = parseTransferLook(R"({"scalars": "relative", )" + rest, "test");
-  ASSERT_TRUE(look.relative);
-  const TransferFunction f = look.over(-100, 300);
+  ASSERT_TRUE(look.isRelative);
+  const TransferFunction f = look.mapRange(-100, 300);
   EXPECT_DOUBLE_EQ(f.extinction(100)[0], 0.0);
   EXPECT_DOUBLE_EQ(f.extinction(200)[0], 2.0);
   EXPECT_DOUBLE_EQ(f.extinction(300)[0], 4.0);
   EXPECT_NEAR(f.albedo(0)[1], 0.25, 1e-12);
   for (const std::string& start : {std::string(R"({"scalars": "absolute", )"), std::string("{")}) {
     const TransferLook own = parseTransferLook(start + rest, "test");
-    EXPECT_FALSE(own.relative);
-    EXPECT_DOUBLE_EQ(own.over(-100, 300).extinction(0.75)[0], 2.0);
+    EXPECT_FALSE(own.isRelative);
+    EXPECT_DOUBLE_EQ(own.mapRange(-100, 300).extinction(0.75)[0], 2.0);
   }
   const TemporaryFolder folder;
   const auto file = folder.write("relative.json", R"({"scalars": "relative", )" + rest);

@@ -7,23 +7,23 @@
 
 namespace fenestra {
 
-inline constexpr double largestValue = 1e30; ///< largest scalar and extinction
+inline constexpr double maxMagnitude = 1e30; ///< largest scalar and extinction
 
-/// A number from -largestValue to largestValue: differences stay finite.
-double finite(const JsonNode& node);
+/// A number from -maxMagnitude to maxMagnitude: differences stay finite.
+double readFinite(const JsonNode& node);
 
 /// Rows [scalar, value...], at least one, each value from 0 to `most`. Defined for 1 and 3
 /// channels.
 template <int Channels>
-PiecewiseLinear<Channels> readCurve(const JsonNode& rows, double most);
+PiecewiseLinear<Channels> readCurve(const JsonNode& rows, double maxValue);
 
 /// Rows [scalar, "#rrggbb"], from 1 to 4096: the colours, linear Rec. 709.
 ColorFunction readColors(const JsonNode& rows);
 
 /// Form in which an object gives its colour: "color", as an eye sees it, or "albedo".
-enum class ColorKind { none, seen, albedo };
+enum class ColorKind { none, reflectance, albedo };
 /// Refuses both in one object.
-ColorKind colorKind(const JsonNode& object);
+ColorKind findColorKind(const JsonNode& object);
 
 /// Member "g" of an object, `fallback` without one: above -1, below 1, and from 0 to
 /// maxReflectanceG with colours that are seen.

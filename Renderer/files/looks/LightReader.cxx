@@ -10,18 +10,18 @@
 namespace fenestra {
 namespace {
 
-constexpr double largest = 1e30;   ///< largest radiance and length; products of two stay finite
-constexpr float brightest = 1e12f; ///< largest value of a map, and of colours in flags
+constexpr double maxNumber = 1e30;   ///< largest radiance and length; products of two stay finite
+constexpr float maxMapValue = 1e12f; ///< largest value of a map, and of colours in flags
 
 Vec3 readDirection(const JsonNode& node) {
-  const Vec3 v = node.triple(-largest, largest);
+  const Vec3 v = node.triple(-maxNumber, maxNumber);
   if (v.isZero(0.0))
     throw node.error("is the zero vector; give a direction");
   return v.stableNormalized();
 }
 
 Rgb readTriple(const JsonNode& node) {
-  return node.triple(0.0, largest).array();
+  return node.triple(0.0, maxNumber).array();
 }
 
 /// Radiance, or irradiance, of a light, by `key`: a triple; or with "color" one number, the
@@ -36,7 +36,7 @@ Rgb readRadiance(const JsonNode& light, const std::string& key) {
   const Rgb tint = readHexColor(*color);
   if (tint.isZero(0.0))
     throw color->error("is black, which no light is; use a radiance of 0 for a light that is off");
-  return tint * (value.number(0.0, largest) / luminance(tint));
+  return tint * (value.number(0.0, maxNumber) / luminance(tint));
 }
 
 /// File name without zero bytes and line breaks, fit for a message of one line.
@@ -88,9 +88,9 @@ Vec2 readSize(const JsonNode& node, AreaLight::Shape shape) {
   const bool disk = shape == AreaLight::Shape::disk;
   std::vector<double> size;
   if (disk && node.isNumber())
-    size.assign(2, node.number(0.0, largest));
+    size.assign(2, node.number(0.0, maxNumber));
   else
-    size = node.numbers(2, 0.0, largest);
+    size = node.numbers(2, 0.0, maxNumber);
   if (size[0] == 0.0 || size[1] == 0.0)
     throw node.error("must be above 0");
   if (disk && size[0] != size[1])
@@ -102,7 +102,7 @@ Light readArea(const JsonNode& node, AreaLight::Shape shape) {
   node.allowOnly({"type", "center", "normal", "up", "size", "color", "radiance", "frame"});
   AreaLight light;
   light.shape = shape;
-  light.center = node.at("center").triple(-largest, largest);
+  light.center = node.at("center").triple(-maxNumber, maxNumber);
   light.normal = readDirection(node.at("normal"));
   if (const auto up = node.find("up"))
     light.up = readDirection(*up);
@@ -116,9 +116,9 @@ Light readArea(const JsonNode& node, AreaLight::Shape shape) {
 Light readSphere(const JsonNode& node) {
   node.allowOnly({"type", "center", "diameter", "color", "radiance", "frame"});
   SphereLight light;
-  light.center = node.at("center").triple(-largest, largest);
+  light.center = node.at("center").triple(-maxNumber, maxNumber);
   const JsonNode diameter = node.at("diameter");
-  light.diameter = diameter.number(0.0, largest);
+  light.diameter = diameter.number(0.0, maxNumber);
   if (light.diameter == 0.0)
     throw diameter.error("must be above 0");
   light.radiance = readRadiance(node, "radiance");
@@ -162,7 +162,7 @@ std::vector<Light> parseLights(std::string_view json, const std::string& source,
   return lights;
 }
 
-bool namesFiles(std::string_view json, const std::string& source) {
+bool hasFileReference(std::string_view json, const std::string& source) {
   const nlohmann::json document = parseJson(json, source);
   const std::vector<JsonNode> lights = JsonNode(document, source).at("lights").elements();
   return std::any_of(lights.begin(), lights.end(),
@@ -184,7 +184,7 @@ EnvironmentMap readEnvironmentMap(const std::filesystem::path& path) {
       throw inputError(path, "has no channel ", names[c], "; write R, G and B");
     for (std::size_t i = 0; i < texels; ++i) {
       const float value = (*plane)[i];
-      if (!(value >= 0.0f && value <= brightest))
+      if (!(value >= 0.0f && value <= maxMapValue))
         throw inputError(path, "channel ", names[c], " at pixel ", i % width, ", ", i / width,
                          " is not from 0 to 1e12; mend the map");
       map.rgb[3 * i + c] = value;

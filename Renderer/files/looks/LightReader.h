@@ -20,7 +20,7 @@ std::vector<Light> parseLights(std::string_view json, const std::string& source,
                                const std::filesystem::path& folder = {});
 
 /// True if a JSON text of lights names a file.
-bool namesFiles(std::string_view json, const std::string& source);
+bool hasFileReference(std::string_view json, const std::string& source);
 
 /// Reads R, G, B of a latitude-longitude EXR. Throws Error (input), also for values outside [0,
 /// 1e12].

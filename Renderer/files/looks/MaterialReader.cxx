@@ -9,19 +9,19 @@
 namespace fenestra {
 namespace {
 
-constexpr double highestPriority = 1000.0, greatestBorder = 10.0;
-constexpr double greatestDensity = 1000.0; ///< as --density
+constexpr double maxPriority = 1000.0, maxInterfaceWeight = 10.0;
+constexpr double maxDensity = 1000.0; ///< as --density
 
 // ---- materials
 
 template <typename Value>
-void readIfThere(const JsonNode& object, const char* key, double low, double high, Value& value) {
+void readOptional(const JsonNode& object, const char* key, double low, double high, Value& value) {
   if (const auto node = object.find(key))
     value = node->number(low, high);
 }
 
 /// "#rrggbb", or rows over the scalar.
-ColorFunction readSeen(const JsonNode& node) {
+ColorFunction readReflectance(const JsonNode& node) {
   if (node.isArray())
     return readColors(node);
   return ColorFunction({{0.0, readHexColor(node)}});
@@ -38,9 +38,9 @@ ColorFunction readAlbedo(const JsonNode& node) {
 /// "base", a number per mm, or rows over the scalar.
 std::optional<ScalarFunction> readExtinction(const JsonNode& node) {
   if (node.isArray())
-    return readCurve<1>(node, largestValue);
+    return readCurve<1>(node, maxMagnitude);
   if (node.isNumber())
-    return ScalarFunction({{0.0, ScalarFunction::Value(node.number(0.0, largestValue))}});
+    return ScalarFunction({{0.0, ScalarFunction::Value(node.number(0.0, maxMagnitude))}});
   if (!node.value().is_string() || node.text() != "base")
     throw node.error("must be \"base\", a number per mm, or [[scalar, number], …]");
   return std::nullopt;
@@ -62,27 +62,27 @@ void readKind(const JsonNode& object, Material& material) {
 
 /// Sets what the object says of a material.
 void readMaterial(const JsonNode& object, Material& material) {
-  ColorKind color = colorKind(object);
-  if (color == ColorKind::seen)
-    material.color = readSeen(object.at("color"));
+  ColorKind color = findColorKind(object);
+  if (color == ColorKind::reflectance)
+    material.color = readReflectance(object.at("color"));
   else if (color == ColorKind::albedo)
     material.color = readAlbedo(object.at("albedo"));
   if (color != ColorKind::none)
     material.colorIsAlbedo = color == ColorKind::albedo;
   else if (material.color)
-    color = material.colorIsAlbedo ? ColorKind::albedo : ColorKind::seen;
+    color = material.colorIsAlbedo ? ColorKind::albedo : ColorKind::reflectance;
   material.g = readMeanCosine(object, material.g, color);
   readKind(object, material);
-  readIfThere(object, "diffuse", 0.0, 1.0, material.diffuse);
-  readIfThere(object, "specular", 0.0, 1.0, material.specular);
-  readIfThere(object, "roughness", 0.05, 1.0, material.roughness);
-  readIfThere(object, "border", 0.0, greatestBorder, material.interfaceWeight);
+  readOptional(object, "diffuse", 0.0, 1.0, material.diffuse);
+  readOptional(object, "specular", 0.0, 1.0, material.specular);
+  readOptional(object, "roughness", 0.05, 1.0, material.roughness);
+  readOptional(object, "border", 0.0, maxInterfaceWeight, material.interfaceWeight);
 }
 
 // ---- rules
 
 /// A whole number from low to high.
-std::int32_t readWhole(const JsonNode& node, double low, double high) {
+std::int32_t readInteger(const JsonNode& node, double low, double high) {
   const double value = node.number(low, high);
   if (value != std::floor(value))
     throw node.error("must be a whole number");
@@ -91,13 +91,13 @@ std::int32_t readWhole(const JsonNode& node, double low, double high) {
 
 /// Name of a material, which must be there.
 std::string readMaterialName(const JsonNode& node, const std::map<std::string, Material>& known) {
-  constexpr std::size_t mostListed = 40;
+  constexpr std::size_t maxListed = 40;
   std::string name = node.text();
   if (!known.contains(name))
     throw node.error(
         "there is no material \"" + sanitize(name) + "\"; name one of \"materials\", or of " +
         join(
-            known, ", ", [](const auto& one) { return sanitize(one.first); }, mostListed));
+            known, ", ", [](const auto& one) { return sanitize(one.first); }, maxListed));
   return name;
 }
 
@@ -105,14 +105,14 @@ std::string readMaterialName(const JsonNode& node, const std::map<std::string, M
 template <typename Use>
 void readUse(const JsonNode& object, Use& use) {
   if (const auto priority = object.find("priority"))
-    use.priority = readWhole(*priority, 0.0, highestPriority);
+    use.priority = readInteger(*priority, 0.0, maxPriority);
   if (const auto clip = object.find("clip"))
     use.isClipped = clip->boolean();
-  readIfThere(object, "density", 0.0, greatestDensity, use.density);
+  readOptional(object, "density", 0.0, maxDensity, use.density);
 }
 
 MaterialRule readRule(const JsonNode& node, const std::map<std::string, Material>& known) {
-  constexpr double least = -2147483648.0, greatest = 2147483647.0;
+  constexpr double minValue = -2147483648.0, maxValue = 2147483647.0;
   node.allowOnly({"match", "material", "priority", "clip", "density"});
   const JsonNode match = node.at("match");
   match.allowOnly({"codes", "names", "except", "values", "category"});
@@ -122,7 +122,7 @@ MaterialRule readRule(const JsonNode& node, const std::map<std::string, Material
     rule.category = readCode(*category);
   if (const auto values = match.find("values"))
     for (const JsonNode& value : values->elements()) {
-      rule.values.push_back(readWhole(value, least, greatest));
+      rule.values.push_back(readInteger(value, minValue, maxValue));
       if (rule.values.back() == 0)
         throw value.error("is 0, which is the background; name another value");
     }
@@ -131,7 +131,7 @@ MaterialRule readRule(const JsonNode& node, const std::map<std::string, Material
     throw match.error("has no \"codes\", \"names\", \"values\" or \"category\"; say which segments "
                       "are meant");
   rule.material = readMaterialName(node.at("material"), known);
-  rule.isOwn = true;
+  rule.isFromFile = true;
   readUse(node, rule);
   return rule;
 }
@@ -139,15 +139,15 @@ MaterialRule readRule(const JsonNode& node, const std::map<std::string, Material
 ContextColors readContext(const JsonNode& node) {
   node.allowOnly({"saturation", "lightness"});
   ContextColors context;
-  readIfThere(node, "saturation", 0.0, 1.0, context.saturation);
-  readIfThere(node, "lightness", 0.0, 1.0, context.lightness);
+  readOptional(node, "saturation", 0.0, 1.0, context.saturation);
+  readOptional(node, "lightness", 0.0, 1.0, context.lightness);
   return context;
 }
 
 // ---- changes
 
 /// Value of "key=value" as JSON: yes, no, a number, or a text.
-nlohmann::json valueOf(const std::string& text) {
+nlohmann::json toJsonValue(const std::string& text) {
   if (const auto number = parseNumber<double>(text))
     return *number;
   if (text == "yes" || text == "no")
@@ -155,7 +155,7 @@ nlohmann::json valueOf(const std::string& text) {
   return text;
 }
 
-void apply(const JsonNode& fields, const MaterialTable& table, SegmentMedium& medium) {
+void applyFields(const JsonNode& fields, const MaterialTable& table, SegmentMedium& medium) {
   fields.allowOnly({"material", "color", "albedo", "extinction", "g", "kind", "diffuse", "specular",
                     "roughness", "border", "priority", "clip", "density"});
   if (const auto name = fields.find("material"))
@@ -164,21 +164,21 @@ void apply(const JsonNode& fields, const MaterialTable& table, SegmentMedium& me
   readUse(fields, medium);
 }
 
-std::string sourceOf(const MaterialChange& change) {
+std::string describeSource(const MaterialChange& change) {
   return "--material " + sanitize(change.selector);
 }
 
 } // namespace
 
 MaterialTable parseMaterials(std::string_view json, const std::string& source,
-                             const MaterialTable& beneath) {
+                             const MaterialTable& base) {
   const nlohmann::json document = parseJson(json, source);
   const JsonNode root(document, source);
   root.allowOnly({"version", "materials", "segments", "rest", "context", "contrast"});
   if (const JsonNode version = root.at("version"); version.number() != 1.0)
     throw version.error("must be 1, which is the form that this Fenestra reads");
-  MaterialTable table = beneath;
-  std::ranges::for_each(table.rules, [](MaterialRule& rule) { rule.isOwn = false; });
+  MaterialTable table = base;
+  std::ranges::for_each(table.rules, [](MaterialRule& rule) { rule.isFromFile = false; });
   if (const auto materials = root.find("materials"))
     for (const auto& [name, node] : materials->members()) {
       node.allowOnly({"color", "albedo", "extinction", "g", "kind", "diffuse", "specular",
@@ -186,10 +186,10 @@ MaterialTable parseMaterials(std::string_view json, const std::string& source,
       readMaterial(node, table.materials[name] = {});
     }
   if (const auto segments = root.find("segments")) {
-    std::vector<MaterialRule> own;
+    std::vector<MaterialRule> fileRules;
     for (const JsonNode& node : segments->elements())
-      own.push_back(readRule(node, table.materials));
-    table.rules.insert(table.rules.begin(), own.begin(), own.end());
+      fileRules.push_back(readRule(node, table.materials));
+    table.rules.insert(table.rules.begin(), fileRules.begin(), fileRules.end());
   }
   if (const auto rest = root.find("rest")) {
     rest->allowOnly({"material"});
@@ -213,22 +213,23 @@ MaterialChange parseMaterialChange(const std::string& text, const MaterialTable&
     const std::size_t equals = field.find('=');
     const std::string key(trim(field.substr(0, std::min(equals, field.size()))));
     if (equals == std::string::npos || key.empty())
-      throw inputError(sourceOf(change), "\"", sanitize(field),
+      throw inputError(describeSource(change), "\"", sanitize(field),
                        "\" must be a key and a value, as in ", "density=2");
     if (change.fields.contains(key))
-      throw inputError(sourceOf(change), sanitize(key), ": is given twice; give one");
-    change.fields[key] = valueOf(std::string(trim(field.substr(equals + 1))));
+      throw inputError(describeSource(change), sanitize(key), ": is given twice; give one");
+    change.fields[key] = toJsonValue(std::string(trim(field.substr(equals + 1))));
   }
   if (change.fields.empty())
-    throw inputError(sourceOf(change), "changes nothing; add a key and a value, as in density=2");
-  changed({}, change, table);
+    throw inputError(describeSource(change),
+                     "changes nothing; add a key and a value, as in density=2");
+  applyChange({}, change, table);
   return change;
 }
 
-SegmentMedium changed(const SegmentMedium& medium, const MaterialChange& change,
-                      const MaterialTable& table) {
+SegmentMedium applyChange(const SegmentMedium& medium, const MaterialChange& change,
+                          const MaterialTable& table) {
   SegmentMedium result = medium;
-  apply(JsonNode(change.fields, sourceOf(change)), table, result);
+  applyFields(JsonNode(change.fields, describeSource(change)), table, result);
   return result;
 }
 

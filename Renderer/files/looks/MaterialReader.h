@@ -23,7 +23,7 @@ struct MaterialRule {
   int priority = 10;                ///< and of two rules for one name the greater is taken
   bool isClipped = true;
   double density = 1.0;
-  bool isOwn = false; ///< of the file itself, not of the table beneath
+  bool isFromFile = false; ///< of the file itself, not of the table beneath
 };
 
 /// Colours of what is not focus; nothing: not said.
@@ -38,14 +38,14 @@ struct MaterialTable {
   std::string rest;                ///< material of what is no segment; empty: the volume's own
   ContextColors context;
   bool hasContrast = false; ///< colours are changed until the focus is told from its neighbours
-  bool findsSkin = false;   ///< what is no segment is skin in the outer millimetres of the body
+  bool detectsSkin = false; ///< what is no segment is skin in the outer millimetres of the body
 };
 
 /// Reads a table over the table `beneath`: its materials replace those of the same name, its rules
 /// come first. `source` names the text in messages. Throws Error (input) that names source and
 /// field.
 MaterialTable parseMaterials(std::string_view json, const std::string& source,
-                             const MaterialTable& beneath = {});
+                             const MaterialTable& base = {});
 
 /// Change to the matter of one segment.
 struct MaterialChange {
@@ -59,7 +59,7 @@ MaterialChange parseMaterialChange(const std::string& text, const MaterialTable&
 
 /// Matter with the change: first its "material", then single members. Throws Error (input), where
 /// members contradict those of `matter`.
-SegmentMedium changed(const SegmentMedium& medium, const MaterialChange& change,
-                      const MaterialTable& table);
+SegmentMedium applyChange(const SegmentMedium& medium, const MaterialChange& change,
+                          const MaterialTable& table);
 
 } // namespace fenestra

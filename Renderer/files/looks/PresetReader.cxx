@@ -41,7 +41,7 @@ OrganPreset parsePreset(std::string_view json, const std::string& source) {
                      .title = root.at("title").text(),
                      .modality = modalities[root.at("modality").choice({"CT", "MR", "US"})],
                      .focus = readFocus(root.at("focus")),
-                     .before = readPatternTexts(root, "before")};
+                     .before = readPatternStrings(root, "before")};
   for (const auto& [flag, value] : root.at("flags").members())
     preset.options.emplace_back(flag, readValue(value));
   if (const auto tested = root.find("tested"))

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json piecewiseLinear(const std::vector<OpacityNode>& nodes) {
+Json encodePiecewiseLinear(const std::vector<OpacityNode>& nodes) {
   Json points = Json::array();
   for (const OpacityNode& node : nodes)
     points.push_back({{"x", node.x},
@@ -23,7 +23,7 @@ Json piecewiseLinear(const std::vector<OpacityNode>& nodes) {
   return {{"type", "piecewiseLinearFunction"}, {"points", points}};
 }
 
-Json colorTransfer(const std::vector<ColorNode>& nodes) {
+Json encodeColorTransfer(const std::vector<ColorNode>& nodes) {
   Json points = Json::array();
   for (const ColorNode& node : nodes)
     points.push_back({{"x", node.x},
@@ -33,23 +33,23 @@ Json colorTransfer(const std::vector<ColorNode>& nodes) {
   return {{"type", "colorTransferFunction"}, {"points", points}};
 }
 
-std::string countedNumbers(const std::vector<double>& numbers) {
+std::string encodeNumbers(const std::vector<double>& numbers) {
   return concat(numbers.size(), numbers.empty() ? "" : " ",
                 joinNumbers(numbers, " ", std::numeric_limits<double>::digits10));
 }
 
-std::string opacityText(const std::vector<OpacityNode>& nodes, double unitsPerMm) {
+std::string encodeOpacity(const std::vector<OpacityNode>& nodes, double unitsPerMm) {
   std::vector<double> numbers;
   for (const OpacityNode& node : nodes) {
     const double y = unitsPerMm == 1.0 ? node.value : 1.0 - std::pow(1.0 - node.value, unitsPerMm);
     numbers.insert(numbers.end(), {node.x, y});
   }
-  return countedNumbers(numbers);
+  return encodeNumbers(numbers);
 }
 
 } // namespace
 
-std::string propertyJson(const VolumeProperty& property, double minimum, double maximum) {
+std::string encodePropertyJson(const VolumeProperty& property, double minimum, double maximum) {
   const Json component = {{"componentWeight", 1.0},
                           {"shade", property.shade},
                           {"lighting",
@@ -59,9 +59,9 @@ std::string propertyJson(const VolumeProperty& property, double minimum, double 
                             {"specularPower", property.specularPower}}},
                           {"disableGradientOpacity", false},
                           {"scalarOpacityUnitDistance", property.unitDistance},
-                          {"rgbTransferFunction", colorTransfer(property.color)},
-                          {"scalarOpacity", piecewiseLinear(property.scalarOpacity)},
-                          {"gradientOpacity", piecewiseLinear(property.gradientOpacity)}};
+                          {"rgbTransferFunction", encodeColorTransfer(property.color)},
+                          {"scalarOpacity", encodePiecewiseLinear(property.scalarOpacity)},
+                          {"gradientOpacity", encodePiecewiseLinear(property.gradientOpacity)}};
   const Json node = {{"effectiveRange", {minimum, maximum}},
                      {"isoSurfaceValues", Json::array()},
                      {"independentComponents", true},
@@ -78,22 +78,22 @@ std::string propertyJson(const VolumeProperty& property, double minimum, double 
   return sealProvenanceTag(file.dump(2) + "\n");
 }
 
-PropertyTexts propertyTexts(const VolumeProperty& property) {
+PropertyStrings encodePropertyStrings(const VolumeProperty& property) {
   std::vector<double> color;
   for (const ColorNode& node : property.color)
     color.insert(color.end(), {node.x, node.value.x(), node.value.y(), node.value.z()});
-  return {opacityText(property.scalarOpacity, 1.0 / property.unitDistance),
-          opacityText(property.gradientOpacity, 1.0), countedNumbers(color)};
+  return {encodeOpacity(property.scalarOpacity, 1.0 / property.unitDistance),
+          encodeOpacity(property.gradientOpacity, 1.0), encodeNumbers(color)};
 }
 
-std::string propertyVp(const VolumeProperty& property) {
-  const PropertyTexts texts = propertyTexts(property);
+std::string encodePropertyVp(const VolumeProperty& property) {
+  const PropertyStrings strings = encodePropertyStrings(property);
   const std::initializer_list<double> numbers = {property.shade ? 1.0 : 0.0, property.diffuse,
                                                  ambientLight, property.specular,
                                                  property.specularPower};
   return concat("1\n", // linear interpolation
-                joinNumbers(numbers, "\n"), '\n', texts.scalarOpacity, '\n', texts.gradientOpacity,
-                '\n', texts.color, '\n');
+                joinNumbers(numbers, "\n"), '\n', strings.scalarOpacity, '\n',
+                strings.gradientOpacity, '\n', strings.color, '\n');
 }
 
 } // namespace fenestra

@@ -9,11 +9,11 @@ namespace fenestra {
 namespace {
 
 /// Text of a pattern or a code.
-std::string patternText(const JsonNode& node) {
-  constexpr std::size_t longest = 200;
+std::string readPatternString(const JsonNode& node) {
+  constexpr std::size_t maxLength = 200;
   std::string text = node.text();
-  if (text.empty() || text.size() > longest)
-    throw node.error(concat("must have 1 to ", longest, " characters"));
+  if (text.empty() || text.size() > maxLength)
+    throw node.error(concat("must have 1 to ", maxLength, " characters"));
   return text;
 }
 
@@ -39,17 +39,17 @@ bool matchesGlob(std::string_view glob, std::string_view word) {
 
 } // namespace
 
-std::vector<std::string> readPatternTexts(const JsonNode& parent, const std::string& key) {
+std::vector<std::string> readPatternStrings(const JsonNode& parent, const std::string& key) {
   std::vector<std::string> texts;
   const auto node = parent.find(key);
   for (const JsonNode& element : node ? node->elements() : std::vector<JsonNode>())
-    texts.push_back(patternText(element));
+    texts.push_back(readPatternString(element));
   return texts;
 }
 
 std::string readCode(const JsonNode& node) {
   static const std::regex pattern(R"([^^~]+\^[^^~]+(~[^^]+\^[^^~]+)?)");
-  std::string code = patternText(node);
+  std::string code = readPatternString(node);
   if (!std::regex_match(code, pattern))
     throw node.error(
         "must be a code like \"SCT^39607008\", or with its region \"SCT^4147007~SCT^12738006\"");
@@ -57,11 +57,11 @@ std::string readCode(const JsonNode& node) {
 }
 
 SegmentPatterns readPatterns(const JsonNode& node) {
-  const auto namesAt = [&](const char* key) {
-    const std::vector<std::string> texts = readPatternTexts(node, key);
+  const auto readNames = [&](const char* key) {
+    const std::vector<std::string> texts = readPatternStrings(node, key);
     return std::vector<NamePattern>(texts.begin(), texts.end());
   };
-  SegmentPatterns patterns{namesAt("names"), namesAt("except")};
+  SegmentPatterns patterns{readNames("names"), readNames("except")};
   if (const auto codes = node.find("codes"))
     for (const JsonNode& code : codes->elements())
       patterns.codes.push_back(readCode(code));
@@ -78,8 +78,8 @@ bool NamePattern::matches(const std::vector<std::string>& name) const {
                                        }) != name.end();
 }
 
-const NamePattern* firstMatch(const std::vector<NamePattern>& patterns,
-                              const std::vector<std::string>& name) {
+const NamePattern* findPattern(const std::vector<NamePattern>& patterns,
+                               const std::vector<std::string>& name) {
   const auto found = std::ranges::find_if(
       patterns, [&](const NamePattern& pattern) { return pattern.matches(name); });
   return found == patterns.end() ? nullptr : &*found;

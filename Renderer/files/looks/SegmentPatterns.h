@@ -35,12 +35,12 @@ struct SegmentPatterns {
 /// Throws Error (input).
 SegmentPatterns readPatterns(const JsonNode& node);
 /// Texts of the member `key`, of 1 to 200 bytes each; empty: there is no such member.
-std::vector<std::string> readPatternTexts(const JsonNode& parent, const std::string& key);
+std::vector<std::string> readPatternStrings(const JsonNode& parent, const std::string& key);
 /// A code as in SegmentPatterns::codes.
 std::string readCode(const JsonNode& node);
 
 /// First of the patterns that a name's words match; null: none.
-const NamePattern* firstMatch(const std::vector<NamePattern>& patterns,
-                              const std::vector<std::string>& name);
+const NamePattern* findPattern(const std::vector<NamePattern>& patterns,
+                               const std::vector<std::string>& name);
 
 } // namespace fenestra

@@ -9,7 +9,7 @@
 namespace fenestra {
 namespace {
 
-constexpr double mostForward = 0.999; ///< g = 1 would never scatter
+constexpr double maxAnisotropy = 0.999; ///< g = 1 would never scatter
 
 // ---- Fenestra
 
@@ -29,15 +29,15 @@ std::optional<SurfaceShading> readShading(const JsonNode& root, double g) {
                                     roughness ? roughness->number(0.05, 1.0) : 0.4, g);
 }
 
-TransferLook readOwn(const JsonNode& root) {
+TransferLook readFenestraJson(const JsonNode& root) {
   root.allowOnly(
       {"scalars", "extinction", "albedo", "color", "g", "shading", "specular", "roughness"});
-  const ColorKind kind = colorKind(root);
+  const ColorKind kind = findColorKind(root);
   const double g = readMeanCosine(root, 0.0, kind);
-  ScalarFunction extinction = readCurve<1>(root.at("extinction"), largestValue);
+  ScalarFunction extinction = readCurve<1>(root.at("extinction"), maxMagnitude);
   if (kind == ColorKind::none)
     throw root.error("has no \"albedo\" and no \"color\"; give one");
-  TransferFunction transfer{std::move(extinction), kind == ColorKind::seen
+  TransferFunction transfer{std::move(extinction), kind == ColorKind::reflectance
                                                        ? toAlbedo(readColors(root.at("color")), g)
                                                        : readCurve<3>(root.at("albedo"), 1.0)};
   transfer.g = g;
@@ -49,9 +49,9 @@ TransferLook readOwn(const JsonNode& root) {
 // ---- Slicer's .vp.json
 
 /// Sets `value` to the number of a key, where there is one.
-void readIfThere(const JsonNode& parent, const std::string& key, double& value) {
+void readOptional(const JsonNode& parent, const std::string& key, double& value) {
   if (const auto node = parent.find(key))
-    value = finite(*node);
+    value = readFinite(*node);
 }
 
 /// Points of a function, sorted by x.
@@ -60,9 +60,9 @@ std::vector<Node> readPoints(const JsonNode& function) {
   std::vector<Node> nodes;
   for (const JsonNode& point : function.at("points").elements()) {
     Node& node = nodes.emplace_back();
-    node.x = finite(point.at("x"));
-    readIfThere(point, "midpoint", node.midpoint);
-    readIfThere(point, "sharpness", node.sharpness);
+    node.x = readFinite(point.at("x"));
+    readOptional(point, "midpoint", node.midpoint);
+    readOptional(point, "sharpness", node.sharpness);
     if constexpr (std::is_same_v<Node, OpacityNode>)
       node.value = point.at("y").number(0.0, 1.0);
     else
@@ -72,7 +72,7 @@ std::vector<Node> readPoints(const JsonNode& function) {
   return nodes;
 }
 
-JsonNode first(const JsonNode& parent, const std::string& key) {
+JsonNode readFirst(const JsonNode& parent, const std::string& key) {
   const JsonNode array = parent.at(key);
   const std::vector<JsonNode> elements = array.elements();
   if (elements.empty())
@@ -80,9 +80,9 @@ JsonNode first(const JsonNode& parent, const std::string& key) {
   return elements.front();
 }
 
-VolumeProperty readSlicer(const JsonNode& root) {
-  const JsonNode slicer = first(root, "volumeProperties");
-  const JsonNode component = first(slicer, "components");
+VolumeProperty readVpJson(const JsonNode& root) {
+  const JsonNode slicer = readFirst(root, "volumeProperties");
+  const JsonNode component = readFirst(slicer, "components");
   VolumeProperty property;
   property.scalarOpacity = readPoints<OpacityNode>(component.at("scalarOpacity"));
   property.color = readPoints<ColorNode>(component.at("rgbTransferFunction"));
@@ -90,16 +90,16 @@ VolumeProperty readSlicer(const JsonNode& root) {
   const auto gradient = component.find("gradientOpacity");
   if (gradient && !(disabled && disabled->boolean()))
     property.gradientOpacity = readPoints<OpacityNode>(*gradient);
-  readIfThere(component, "scalarOpacityUnitDistance", property.unitDistance);
+  readOptional(component, "scalarOpacityUnitDistance", property.unitDistance);
   if (const auto shade = component.find("shade"))
     property.shade = shade->boolean();
   if (const auto lighting = component.find("lighting")) {
-    readIfThere(*lighting, "diffuse", property.diffuse);
-    readIfThere(*lighting, "specular", property.specular);
-    readIfThere(*lighting, "specularPower", property.specularPower);
+    readOptional(*lighting, "diffuse", property.diffuse);
+    readOptional(*lighting, "specular", property.specular);
+    readOptional(*lighting, "specularPower", property.specularPower);
   }
   if (const auto g = slicer.find("scatteringAnisotropy"))
-    property.anisotropy = std::clamp(g->number(-1.0, 1.0), -mostForward, mostForward);
+    property.anisotropy = std::clamp(g->number(-1.0, 1.0), -maxAnisotropy, maxAnisotropy);
   return property;
 }
 
@@ -158,7 +158,7 @@ private:
       throw error(field, "is missing; save the volume property again");
     auto all = parseNumbers(text->second);
     if (!all || std::any_of(all->begin(), all->end(),
-                            [](double x) { return !(std::abs(x) <= largestValue); }))
+                            [](double x) { return !(std::abs(x) <= maxMagnitude); }))
       throw error(field, "holds something other than numbers; save the volume property again");
     return std::move(*all);
   }
@@ -189,7 +189,7 @@ VolumeProperty readProperty(const PropertyFields& texts) {
   return property;
 }
 
-VolumeProperty readPropertyLines(std::string_view content, const std::string& source) {
+VolumeProperty readVp(std::string_view content, const std::string& source) {
   std::vector<std::string> lines = split(content, '\n');
   lines.resize(std::size(propertyFields));
   std::map<std::string, std::string> texts;
@@ -203,12 +203,14 @@ VolumeProperty readPropertyLines(std::string_view content, const std::string& so
 
 } // namespace
 
-TransferFunction TransferLook::over(double low, double high) const {
+TransferFunction TransferLook::mapRange(double low, double high) const {
   TransferFunction result = function;
-  if (relative) {
-    const auto stretch = [&](auto& knot) { knot.position = low + knot.position * (high - low); };
-    result.extinction = function.extinction.withKnots(stretch);
-    result.albedo = function.albedo.withKnots(stretch);
+  if (isRelative) {
+    const auto mapPosition = [&](auto& knot) {
+      knot.position = low + knot.position * (high - low);
+    };
+    result.extinction = function.extinction.withKnots(mapPosition);
+    result.albedo = function.albedo.withKnots(mapPosition);
   }
   return result;
 }
@@ -217,8 +219,8 @@ TransferLook parseTransferLook(std::string_view json, const std::string& source)
   const nlohmann::json document = parseJson(json, source);
   const JsonNode root(document, source);
   if (root.find("volumeProperties"))
-    return {tabulate(readSlicer(root), source)};
-  return readOwn(root);
+    return {tabulate(readVpJson(root), source)};
+  return readFenestraJson(root);
 }
 
 TransferFunction parseTransferFunction(const std::map<std::string, std::string>& attributes,
@@ -233,13 +235,13 @@ TransferLook readTransferLook(const std::filesystem::path& path) {
   if (extension != ".vp" && extension != ".json")
     throw inputError(source, "is no transfer function; name a .vp, .vp.json or .json file");
   const std::string text = readText(path);
-  return extension == ".vp" ? TransferLook{tabulate(readPropertyLines(text, source), source)}
+  return extension == ".vp" ? TransferLook{tabulate(readVp(text, source), source)}
                             : parseTransferLook(text, source);
 }
 
 TransferFunction readTransferFunction(const std::filesystem::path& path) {
   TransferLook look = readTransferLook(path);
-  if (look.relative)
+  if (look.isRelative)
     throw inputError(path, "scalars: are relative to a volume; name one of absolute scalars");
   return std::move(look.function);
 }

@@ -15,10 +15,10 @@ struct TransferLook {
   TransferFunction function;
   /// True: scalars without a unit, as in MR and ultrasound; 0 and 1 stand for the least and the
   /// greatest usual value of a volume (see `over`).
-  bool relative = false;
+  bool isRelative = false;
 
   /// Function with 0 moved to `low` and 1 to `high` if relative; unchanged otherwise.
-  TransferFunction over(double low, double high) const;
+  TransferFunction mapRange(double low, double high) const;
 };
 
 /// Reads by extension: `.vp` (Slicer, text), `.vp.json` (Slicer; its first property's first

@@ -8,11 +8,11 @@
 namespace fenestra {
 namespace {
 
-constexpr int airOffset = 1024; ///< HU of a stored 0, negated
+constexpr int hounsfieldOffset = 1024; ///< HU of a stored 0, negated
 
 /// Most frequent value, to 25, of the voxels on the four sides along the slices' edges.
 template <typename Voxel>
-double modeOfSides(const LargeArray<Voxel>& voxels, const Size3& size) {
+double computeSideMode(const LargeArray<Voxel>& voxels, const Size3& size) {
   constexpr double width = 25.0;
   std::map<long, std::size_t> counts;
   for (std::int64_t z = 0; z < size.z(); ++z)
@@ -24,14 +24,14 @@ double modeOfSides(const LargeArray<Voxel>& voxels, const Size3& size) {
         ++counts[std::lround(static_cast<double>(voxels[i]) / width)];
       }
     }
-  const auto most =
+  const auto mode =
       std::ranges::max_element(counts, {}, [](const auto& one) { return one.second; });
-  return width * static_cast<double>(most->first);
+  return width * static_cast<double>(mode->first);
 }
 
 /// Median of the voxels above 200; 0: there are none.
 template <typename Voxel>
-double medianOfTissue(const LargeArray<Voxel>& voxels) {
+double computeTissueMedian(const LargeArray<Voxel>& voxels) {
   std::vector<Voxel> tissue;
   std::ranges::copy_if(voxels, std::back_inserter(tissue), [](Voxel v) { return v > 200; });
   if (tissue.empty())
@@ -43,45 +43,47 @@ double medianOfTissue(const LargeArray<Voxel>& voxels) {
 
 /// Voxels less the offset, in a type that holds them.
 template <typename Voxel>
-Voxels moved(const LargeArray<Voxel>& voxels, double greatest) {
-  const auto as = [&]<typename To>(To) -> Voxels {
+Voxels subtractOffset(const LargeArray<Voxel>& voxels, double maximum) {
+  const auto convert = [&]<typename To>(To) -> Voxels {
     LargeArray<To> to(voxels.size());
     std::ranges::transform(voxels, to.begin(),
-                           [](Voxel v) { return static_cast<To>(v - airOffset); });
+                           [](Voxel v) { return static_cast<To>(v - hounsfieldOffset); });
     return to;
   };
-  return std::integral<Voxel> && greatest - airOffset <= 32767.0 ? as(std::int16_t()) : as(float());
+  return std::integral<Voxel> && maximum - hounsfieldOffset <= 32767.0 ? convert(std::int16_t())
+                                                                       : convert(float());
 }
 
 /// The voxels in Hounsfield units where they are certainly not; warns.
 template <typename Voxel>
-std::optional<Voxels> inHounsfield(const LargeArray<Voxel>& voxels, Volume& volume) {
-  constexpr double nearAir = 50.0, leastTissue = 800.0, mostTissue = 1300.0;
-  if (std::abs(modeOfSides(voxels, volume.grid.size)) > nearAir)
+std::optional<Voxels> toHounsfield(const LargeArray<Voxel>& voxels, Volume& volume) {
+  constexpr double maxAirOffset = 50.0, minTissue = 800.0, maxTissue = 1300.0;
+  if (std::abs(computeSideMode(voxels, volume.grid.size)) > maxAirOffset)
     return std::nullopt;
-  const double tissue = medianOfTissue(voxels);
-  const bool isCertain = tissue >= leastTissue && tissue <= mostTissue;
+  const double tissue = computeTissueMedian(voxels);
+  const bool isHounsfieldShifted = tissue >= minTissue && tissue <= maxTissue;
   volume.warnings.push_back(volume.name +
-                            (isCertain ? ": its air is stored at 0, so 1024 is subtracted and its "
-                                         "values are Hounsfield units; --shift -1024 undoes that"
-                                       : ": may not be in Hounsfield units, for its air is at 0; "
-                                         "--shift 1024 moves a CT's look to it"));
-  return isCertain ? std::optional(moved(voxels, volume.maximum)) : std::nullopt;
+                            (isHounsfieldShifted
+                                 ? ": its air is stored at 0, so 1024 is subtracted and its "
+                                   "values are Hounsfield units; --shift -1024 undoes that"
+                                 : ": may not be in Hounsfield units, for its air is at 0; "
+                                   "--shift 1024 moves a CT's look to it"));
+  return isHounsfieldShifted ? std::optional(subtractOffset(voxels, volume.maximum)) : std::nullopt;
 }
 
 } // namespace
 
-void correctAir(Volume& volume) {
-  constexpr double lowest = -200.0, leastGreatest = 500.0; // less holds no tissue of either kind
-  if (volume.minimum < lowest || volume.maximum < leastGreatest)
+void correctHounsfieldOffset(Volume& volume) {
+  constexpr double minValue = -200.0, minMaximum = 500.0; // less holds no tissue of either kind
+  if (volume.minimum < minValue || volume.maximum < minMaximum)
     return;
   auto hounsfield =
-      std::visit([&](const auto& voxels) { return inHounsfield(voxels, volume); }, volume.voxels);
+      std::visit([&](const auto& voxels) { return toHounsfield(voxels, volume); }, volume.voxels);
   if (!hounsfield)
     return;
   volume.voxels = std::move(*hounsfield);
-  volume.minimum -= airOffset;
-  volume.maximum -= airOffset;
+  volume.minimum -= hounsfieldOffset;
+  volume.maximum -= hounsfieldOffset;
 }
 
 } // namespace fenestra

@@ -9,6 +9,6 @@ namespace fenestra {
 /// minimum >= -200, mode of the voxels on the volume's sides |mode| <= 50 (air), and median of the
 /// voxels above 200 from 800 to 1300 (soft tissue). A warning says so; another one says where only
 /// the air is at 0.
-void correctAir(Volume& volume);
+void correctHounsfieldOffset(Volume& volume);
 
 } // namespace fenestra

@@ -20,34 +20,34 @@ namespace {
 using Path = std::filesystem::path;
 using gdcm::Tag;
 
-constexpr std::uint64_t longestFields = 1 << 20;
+constexpr std::uint64_t maxHeaderBytes = 1 << 20;
 constexpr std::string_view padding(" \0", 2);
 
 // ---- the fields: the child sends their texts in this order
 
 /// Numbers of decimal strings between backslashes; empty: one is not a number.
-std::vector<double> decimals(std::string text) {
+std::vector<double> parseDecimals(std::string text) {
   std::replace(text.begin(), text.end(), '\\', ' ');
   std::erase(text, '+');
   return parseNumbers(text).value_or(std::vector<double>{});
 }
 
-void keep(const std::string& text, std::string& member) {
+void parseField(const std::string& text, std::string& member) {
   member = text;
 }
-void keep(const std::string& text, std::vector<double>& member) {
-  member = decimals(text);
+void parseField(const std::string& text, std::vector<double>& member) {
+  member = parseDecimals(text);
 }
 /// Keeps any number; the default where the field is missing; NaN: not one number.
-void keep(const std::string& text, double& member) {
-  const std::vector<double> numbers = decimals(text);
+void parseField(const std::string& text, double& member) {
+  const std::vector<double> numbers = parseDecimals(text);
   if (!text.empty())
     member = numbers.size() == 1 ? numbers[0] : std::nan("");
 }
 /// Keeps a number from 0 to 2^31; the default where the field is missing; 0: any other text.
-void keep(const std::string& text, unsigned& member) {
+void parseField(const std::string& text, unsigned& member) {
   double number = member;
-  keep(text, number);
+  parseField(text, number);
   member = number >= 0.0 && number <= 0x1p31 ? static_cast<unsigned>(number) : 0;
 }
 
@@ -115,7 +115,7 @@ std::string makeHeaderReply(const std::string& path) {
 }
 
 /// True if the file holds all `bytes` of the voxels: GDCM silently fills up what is cut off.
-bool holdsVoxels(const std::string& path, std::uint64_t bytes) {
+bool hasAllVoxels(const std::string& path, std::uint64_t bytes) {
   const Tag pixelData(0x7fe0, 0x0010);
   gdcm::Reader reader;
   reader.SetFileName(path.c_str());
@@ -131,8 +131,9 @@ std::string makeVoxelsReply(const std::string& path) {
   const gdcm::Pixmap& image = reader.GetPixmap();
   const gdcm::SequenceOfFragments* fragments = image.GetDataElement().GetSequenceOfFragments();
   std::string voxels(image.GetBufferLength(), '\0');
-  const bool whole = holdsVoxels(path, fragments ? fragments->ComputeByteLength() : voxels.size());
-  return whole && image.GetBuffer(voxels.data()) ? voxels : std::string();
+  const bool isComplete =
+      hasAllVoxels(path, fragments ? fragments->ComputeByteLength() : voxels.size());
+  return isComplete && image.GetBuffer(voxels.data()) ? voxels : std::string();
 }
 
 /// First character of a question; a path follows.
@@ -161,29 +162,30 @@ std::int64_t storedValue(const DicomHeader& h, const std::string& voxels, std::s
 
 } // namespace
 
-DicomFiles::DicomFiles() : m_reader(dicomJob) {}
+DicomReader::DicomReader() : m_reader(dicomJob) {}
 
-DicomHeader dicomHeader(std::string_view reply) {
-  ReplyReader texts(reply);
+DicomHeader parseDicomHeader(std::string_view reply) {
+  ReplyReader fields(reply);
   DicomHeader header;
-  for (bool* flag : {&header.image, &header.compressed, &header.isComplete})
-    *flag = texts.text() == "1";
+  for (bool* flag : {&header.isImageObject, &header.isCompressed, &header.isComplete})
+    *flag = fields.text() == "1";
   for (const HeaderField& field : dicomFields)
-    std::visit([&](auto member) { keep(std::string(trim(texts.text(), padding)), header.*member); },
-               field.member);
+    std::visit(
+        [&](auto member) { parseField(std::string(trim(fields.text(), padding)), header.*member); },
+        field.member);
   return header;
 }
 
-std::optional<DicomHeader> DicomFiles::header(const Path& path) {
+std::optional<DicomHeader> DicomReader::readHeader(const Path& path) {
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(path, unknown))
     return std::nullopt;
-  const auto reply = m_reader.request(headerRequest + path.string(), longestFields);
+  const auto reply = m_reader.request(headerRequest + path.string(), maxHeaderBytes);
   if (reply && reply->empty())
     return std::nullopt;
   try {
     if (reply)
-      return dicomHeader(*reply);
+      return parseDicomHeader(*reply);
   } catch (const std::runtime_error&) { // malformed answer
   }
   throw inputError(
@@ -191,12 +193,12 @@ std::optional<DicomHeader> DicomFiles::header(const Path& path) {
       "DICOM header: cannot be read; export the series again, or take the file out of its folder");
 }
 
-std::string DicomFiles::voxels(const Path& path, const DicomHeader& h) {
+std::string DicomReader::readVoxels(const Path& path, const DicomHeader& h) {
   const std::uint64_t size = imageBytes(h);
   auto reply = m_reader.request(voxelsRequest + path.string(), size);
   if (reply && reply->size() == size)
     return std::move(*reply);
-  if (h.compressed)
+  if (h.isCompressed)
     throw inputError(path, "PixelData: cannot be decoded; export the series without compression");
   throw inputError(path, "PixelData: is damaged, truncated or deflated; export the series again");
 }
@@ -205,23 +207,24 @@ void checkDicomPixels(const Path& path, const DicomHeader& h) {
   const auto refuse = [&](const char* what) { throw inputError(path, what); };
   if (h.rows == 0 || h.columns == 0)
     refuse("Rows or Columns: is missing; export the series again");
-  const bool known = h.bits == 8 || h.bits == 16 || h.bits == 32;
-  if (!known || h.bitsStored == 0 || h.highBit >= h.bits || h.bitsStored > h.highBit + 1 ||
+  const bool isSupported = h.bits == 8 || h.bits == 16 || h.bits == 32;
+  if (!isSupported || h.bitsStored == 0 || h.highBit >= h.bits || h.bitsStored > h.highBit + 1 ||
       h.isSigned > 1)
     refuse("BitsAllocated, BitsStored or HighBit: has a value that is not read; save the volume in "
            "Slicer as .nrrd and name that");
   if (!std::isfinite(h.slope) || !std::isfinite(h.intercept))
     refuse("RescaleSlope or RescaleIntercept: is not one finite number; export the series again");
   // Lossless codecs pack an empty picture into next to nothing, and any other 1000 to 1 at most.
-  constexpr std::uint64_t ratio = 1000, emptyPicture = 1 << 24;
+  constexpr std::uint64_t ratio = 1000, emptyImageBytes = 1 << 24;
   const std::uint64_t stored = std::filesystem::file_size(path);
-  const std::uint64_t most = h.compressed ? std::max(emptyPicture, stored * ratio) : stored;
-  if (imageBytes(h) > most)
+  const std::uint64_t maxBytes =
+      h.isCompressed ? std::max(emptyImageBytes, stored * ratio) : stored;
+  if (imageBytes(h) > maxBytes)
     refuse(
         "PixelData: is shorter than Rows, Columns and BitsAllocated say; export the series again");
 }
 
-std::vector<double> rescaledVoxels(const DicomHeader& h, const std::string& voxels) {
+std::vector<double> rescaleVoxels(const DicomHeader& h, const std::string& voxels) {
   std::vector<double> scalars(std::size_t{h.rows} * h.columns);
   for (std::size_t i = 0; i < scalars.size(); ++i)
     scalars[i] = h.slope * static_cast<double>(storedValue(h, voxels, i)) + h.intercept;

@@ -18,7 +18,7 @@ using Path = fs::path;
 using Paths = std::vector<Path>;
 
 /// Files and folders in a folder, sorted. Enters the files into the ledger.
-std::pair<Paths, Paths> contentOf(const Path& folder) {
+std::pair<Paths, Paths> listFolder(const Path& folder) {
   Paths files, folders;
   std::error_code failed;
   for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed)) {
@@ -37,15 +37,15 @@ std::pair<Paths, Paths> contentOf(const Path& folder) {
   return {files, folders};
 }
 
-Paths candidates(const Path& folder) {
-  auto [files, folders] = contentOf(folder);
+Paths listCandidates(const Path& folder) {
+  auto [files, folders] = listFolder(folder);
   if (files.empty())
-    for (const Path& below : folders)
-      std::ranges::move(contentOf(below).first, std::back_inserter(files));
+    for (const Path& subfolder : folders)
+      std::ranges::move(listFolder(subfolder).first, std::back_inserter(files));
   return files;
 }
 
-std::string described(const DicomSeries& series) {
+std::string describeSeries(const DicomSeries& series) {
   std::string text = series.number.empty() ? "" : "number " + sanitize(series.number) + " ";
   if (!series.description.empty())
     text += "\"" + sanitize(series.description) + "\" ";
@@ -54,17 +54,17 @@ std::string described(const DicomSeries& series) {
   return concat(text, sanitize(series.uid), " (", count, count == 1 ? " file)" : " files)");
 }
 
-std::string listed(const std::vector<DicomSeries>& series) {
-  return join(series, "; ", described, 40);
+std::string formatSeries(const std::vector<DicomSeries>& series) {
+  return join(series, "; ", describeSeries, 40);
 }
 
 } // namespace
 
 std::vector<DicomSeries> findDicomSeries(const Path& folder) {
-  DicomFiles files;
+  DicomReader files;
   std::map<std::string, DicomSeries> byUid;
-  for (const Path& file : candidates(folder)) {
-    const auto header = files.header(file);
+  for (const Path& file : listCandidates(folder)) {
+    const auto header = files.readHeader(file);
     if (!header || header->seriesUid.empty() || (header->isComplete && !isImage(*header)))
       continue;
     DicomSeries& series = byUid[header->seriesUid];
@@ -90,7 +90,7 @@ DicomSeries chooseSeries(const std::vector<DicomSeries>& series,
   if (!selector && series.size() == 1)
     return series.front();
   if (!selector)
-    throw inputError(folder, "holds ", series.size(), " DICOM series: ", listed(series),
+    throw inputError(folder, "holds ", series.size(), " DICOM series: ", formatSeries(series),
                      "; pick one with --volume, by uid, number or description");
   for (const auto field : {&DicomSeries::uid, &DicomSeries::number, &DicomSeries::description}) {
     std::vector<DicomSeries> found;
@@ -100,10 +100,10 @@ DicomSeries chooseSeries(const std::vector<DicomSeries>& series,
       return found.front();
     if (found.size() > 1)
       throw inputError(folder, "--volume \"", sanitize(*selector), "\" can be any of ",
-                       listed(found), "; pick one by its uid");
+                       formatSeries(found), "; pick one by its uid");
   }
   throw inputError(folder, "--volume \"", sanitize(*selector),
-                   "\" names no DICOM series; there are ", listed(series));
+                   "\" names no DICOM series; there are ", formatSeries(series));
 }
 
 } // namespace fenestra

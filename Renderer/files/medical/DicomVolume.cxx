@@ -11,7 +11,7 @@ namespace {
 
 using Path = std::filesystem::path;
 
-constexpr double largestLength = 1e9; ///< mm; limit of other files as well
+constexpr double maxLength = 1e9; ///< mm; limit of other files as well
 
 struct Slice {
   Path path;
@@ -20,14 +20,14 @@ struct Slice {
   double depth = 0.0; ///< position along the normal, mm
 };
 
-std::string millimetres(double length) {
+std::string formatMm(double length) {
   return toString(length, 4) + " mm";
 }
 
 // ---- one file
 
-Slice openSlice(DicomFiles& files, const Path& path) {
-  const auto header = files.header(path);
+Slice openSlice(DicomReader& files, const Path& path) {
+  const auto header = files.readHeader(path);
   const auto refuse = [&](const char* what) { throw inputError(path, what); };
   if (!header)
     refuse("is not a DICOM file; name a volume file or a DICOM series");
@@ -48,7 +48,7 @@ Slice openSlice(DicomFiles& files, const Path& path) {
   if (h.pixelSpacing.size() != 2)
     refuse("PixelSpacing: is missing; name another series");
   for (const double spacing : h.pixelSpacing)
-    if (!(spacing > 1.0 / largestLength && spacing < largestLength))
+    if (!(spacing > 1.0 / maxLength && spacing < maxLength))
       refuse("PixelSpacing: must be above 0 mm; export the series again");
   checkDicomPixels(path, h);
   return {path, h, {h.position[0], h.position[1], h.position[2]}};
@@ -62,7 +62,7 @@ struct Axes {
   Vec3 normal() const { return row.cross(column).normalized(); }
 };
 
-Axes axesOf(const Slice& slice) {
+Axes readAxes(const Slice& slice) {
   const std::vector<double>& o = slice.header.orientation;
   const Vec3 row(o[0], o[1], o[2]), column(o[3], o[4], o[5]);
   constexpr double tolerance = 1e-2; // real files round their cosines
@@ -74,9 +74,9 @@ Axes axesOf(const Slice& slice) {
   return {row.normalized(), column.normalized()};
 }
 
-void checkAlike(const std::vector<Slice>& slices) {
+void checkConsistent(const std::vector<Slice>& slices) {
   const Slice& first = slices.front();
-  const auto near = [](const std::vector<double>& a, const std::vector<double>& b, double error) {
+  const auto isNear = [](const std::vector<double>& a, const std::vector<double>& b, double error) {
     return std::ranges::equal(a, b, [=](double x, double y) { return std::abs(x - y) <= error; });
   };
   for (const Slice& slice : slices) {
@@ -87,14 +87,14 @@ void checkAlike(const std::vector<Slice>& slices) {
     const DicomHeader& h = slice.header;
     if (h.rows != first.header.rows || h.columns != first.header.columns)
       refuse("Rows or Columns");
-    if (!near(h.orientation, first.header.orientation, 1e-3))
+    if (!isNear(h.orientation, first.header.orientation, 1e-3))
       refuse("ImageOrientationPatient");
-    if (!near(h.pixelSpacing, first.header.pixelSpacing, 1e-3 * first.header.pixelSpacing[0]))
+    if (!isNear(h.pixelSpacing, first.header.pixelSpacing, 1e-3 * first.header.pixelSpacing[0]))
       refuse("PixelSpacing");
   }
 }
 
-double median(std::vector<double> values) {
+double computeMedian(std::vector<double> values) {
   const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -105,49 +105,51 @@ void checkGaps(const std::vector<Slice>& slices) {
   std::vector<double> gaps;
   for (std::size_t i = 1; i < slices.size(); ++i)
     gaps.push_back(slices[i].depth - slices[i - 1].depth);
-  const double usual = median(gaps);
-  constexpr double least = 1e-3; // mm
+  const double medianGap = computeMedian(gaps);
+  constexpr double minGap = 1e-3; // mm
   for (std::size_t i = 0; i < gaps.size(); ++i) {
-    const std::string between = slices[i + 1].path.filename().string();
-    if (gaps[i] < least)
-      throw inputError(slices[i].path, "ImagePositionPatient: lies where ", between,
+    const std::string nextName = slices[i + 1].path.filename().string();
+    if (gaps[i] < minGap)
+      throw inputError(slices[i].path, "ImagePositionPatient: lies where ", nextName,
                        " does; name a series of one slice a place (not several times or echoes)");
-    if (std::abs(gaps[i] - usual) > 0.5 * usual)
-      throw inputError(slices[i].path, "ImagePositionPatient: is ", millimetres(gaps[i]), " from ",
-                       between, ", others ", millimetres(usual),
+    if (std::abs(gaps[i] - medianGap) > 0.5 * medianGap)
+      throw inputError(slices[i].path, "ImagePositionPatient: is ", formatMm(gaps[i]), " from ",
+                       nextName, ", others ", formatMm(medianGap),
                        "; add the slices that are missing");
   }
 }
 
 /// Step from a slice to the next, LPS mm. Warns of uneven slices of the volume `name`.
-Vec3 stepOf(const std::vector<Slice>& slices, const Axes& axes, const std::string& name,
-            std::vector<std::string>& warnings) {
+Vec3 computeStep(const std::vector<Slice>& slices, const Axes& axes, const std::string& name,
+                 std::vector<std::string>& warnings) {
   if (slices.size() == 1)
     return axes.normal();
   checkGaps(slices);
   Vec3 step =
       (slices.back().position - slices.front().position) / static_cast<double>(slices.size() - 1);
   const std::vector<double>& pixel = slices.front().header.pixelSpacing;
-  double most = 0.0;
+  double maxOffset = 0.0;
   for (std::size_t i = 0; i < slices.size(); ++i) {
-    const Vec3 off = slices[i].position - slices.front().position - double(i) * step;
-    const double along = std::abs(off.dot(axes.normal()));
-    if (along > 0.5 * step.dot(axes.normal()) || std::abs(off.dot(axes.row)) > 0.5 * pixel[1] ||
-        std::abs(off.dot(axes.column)) > 0.5 * pixel[0])
-      throw inputError(slices[i].path, "ImagePositionPatient: is ", millimetres(off.norm()),
+    const Vec3 offset = slices[i].position - slices.front().position - double(i) * step;
+    const double normalOffset = std::abs(offset.dot(axes.normal()));
+    if (normalOffset > 0.5 * step.dot(axes.normal()) ||
+        std::abs(offset.dot(axes.row)) > 0.5 * pixel[1] ||
+        std::abs(offset.dot(axes.column)) > 0.5 * pixel[0])
+      throw inputError(slices[i].path, "ImagePositionPatient: is ", formatMm(offset.norm()),
                        " off even steps; resample the series in Slicer and name the volume file");
-    most = std::max(most, off.norm());
+    maxOffset = std::max(maxOffset, offset.norm());
   }
-  if (most > 0.02 * step.norm())
-    warnings.push_back(concat(name, ": slices lie up to ", millimetres(most), " off even steps of ",
-                              millimetres(step.norm()), ", which are taken for theirs"));
+  if (maxOffset > 0.02 * step.norm())
+    warnings.push_back(concat(name, ": slices lie up to ", formatMm(maxOffset),
+                              " off even steps of ", formatMm(step.norm()),
+                              ", which are taken for theirs"));
   return step;
 }
 
-Grid gridOf(const std::vector<Slice>& slices, const Axes& axes, const Vec3& step) {
+Grid makeGrid(const std::vector<Slice>& slices, const Axes& axes, const Vec3& step) {
   const DicomHeader& h = slices.front().header;
   for (const Slice& slice : slices)
-    if (!(slice.position.array().abs() < largestLength).all())
+    if (!(slice.position.array().abs() < maxLength).all())
       throw inputError(
           slice.path,
           "ImagePositionPatient: is not a place within 1e9 mm; export the series again");
@@ -156,13 +158,13 @@ Grid gridOf(const std::vector<Slice>& slices, const Axes& axes, const Vec3& step
           Affine(lpsToRas * steps, lpsToRas * slices.front().position)};
 }
 
-VoxelStore readAll(DicomFiles& files, const std::vector<Slice>& slices) {
+VoxelStore readAll(DicomReader& files, const std::vector<Slice>& slices) {
   const DicomHeader& first = slices.front().header;
   VoxelStore all(std::size_t{first.rows} * first.columns * slices.size());
   for (const Slice& slice : slices) {
-    const auto scalars = rescaledVoxels(slice.header, files.voxels(slice.path, slice.header));
+    const auto scalars = rescaleVoxels(slice.header, files.readVoxels(slice.path, slice.header));
     const std::span block(scalars);
-    all.append(block, survey(block));
+    all.append(block, computeStats(block));
   }
   return all;
 }
@@ -176,23 +178,23 @@ bool isUnscaledCt(const std::vector<Slice>& slices) {
 }
 
 Volume readSlices(const std::vector<Path>& paths, const std::string& name) {
-  DicomFiles files;
+  DicomReader files;
   std::vector<Slice> slices;
   for (const Path& path : paths)
     slices.push_back(openSlice(files, path));
   if (slices.empty())
     throw inputError(name, "names no DICOM file; name the series' files");
-  checkAlike(slices);
-  const Axes axes = axesOf(slices.front());
+  checkConsistent(slices);
+  const Axes axes = readAxes(slices.front());
   for (Slice& slice : slices)
     slice.depth = slice.position.dot(axes.normal());
   std::ranges::stable_sort(slices, {}, &Slice::depth);
   std::vector<std::string> warnings;
-  const Grid grid = gridOf(slices, axes, stepOf(slices, axes, name, warnings));
+  const Grid grid = makeGrid(slices, axes, computeStep(slices, axes, name, warnings));
   Volume volume = makeVolume(name, grid, readAll(files, slices));
   std::ranges::move(warnings, std::back_inserter(volume.warnings));
   if (isUnscaledCt(slices))
-    correctAir(volume);
+    correctHounsfieldOffset(volume);
   return volume;
 }
 

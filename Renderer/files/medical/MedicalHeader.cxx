@@ -31,7 +31,7 @@ void addFile(const std::filesystem::path& path, std::string_view name, StoredSam
   stored.bytes += std::filesystem::file_size(file);
 }
 
-void skip(const std::filesystem::path& path, std::uint64_t offset, StoredSamples& stored) {
+void setOffset(const std::filesystem::path& path, std::uint64_t offset, StoredSamples& stored) {
   if (offset > stored.bytes)
     throw inputError(path, "is truncated: it ends before its samples begin; copy it again");
   stored.offset = offset;
@@ -44,7 +44,7 @@ void locateNrrdFiles(const std::filesystem::path& path, const NrrdHeaderText& he
                      StoredSamples& stored) {
   if (!header.fields.contains("datafile")) {
     addFile(path, path.filename().string(), stored);
-    return skip(path, header.end, stored);
+    return setOffset(path, header.end, stored);
   }
   const std::string name = findValue(header.fields, "datafile");
   if (name.starts_with("LIST")) {
@@ -66,17 +66,17 @@ bool isGzip(const std::string& encoding) {
 }
 
 /// Refuses encodings, dimensions and byte skips that ITK does not read, before it fails.
-void checkNrrdKind(const std::filesystem::path& path, Fields& fields) {
+void checkNrrdSupport(const std::filesystem::path& path, Fields& fields) {
   const std::string encoding = toLower(fields["encoding"]);
   if (!isGzip(encoding) && !isOneOf(encoding, {"raw", "hex", "ascii", "text", "txt"}))
     throw inputError(path, "encoding: \"", sanitize(encoding), "\" is not read; write raw or gzip");
   if (const auto axes = parseInteger(fields["dimension"]); axes && *axes < 3)
     throw inputError(path, "is a picture of ", *axes, " axes, not a volume; name one of three");
-  constexpr std::int64_t mostSkipped = 1 << 20; // teem inflates skipped bytes one by one
+  constexpr std::int64_t maxSkipped = 1 << 20; // teem inflates skipped bytes one by one
   if (isGzip(encoding) && fields.contains("byteskip")) {
     const auto skipped = parseInteger(fields["byteskip"]);
-    if (!skipped || *skipped < 0 || *skipped > mostSkipped)
-      throw inputError(path, "byte skip: must be from 0 to ", mostSkipped,
+    if (!skipped || *skipped < 0 || *skipped > maxSkipped)
+      throw inputError(path, "byte skip: must be from 0 to ", maxSkipped,
                        " in compressed data; write the samples without it");
   }
 }
@@ -84,11 +84,11 @@ void checkNrrdKind(const std::filesystem::path& path, Fields& fields) {
 StoredSamples locateNrrd(const std::filesystem::path& path) {
   NrrdHeaderText header = readNrrdHeader(path);
   Fields& fields = header.fields;
-  checkNrrdKind(path, fields);
+  checkNrrdSupport(path, fields);
   StoredSamples stored;
   stored.hasSpacing = hasNrrdSpacing(header);
   const std::string encoding = toLower(fields["encoding"]);
-  stored.compressed = encoding != "raw" && encoding != "hex"; // a digit of text can be 8 bytes
+  stored.isCompressed = encoding != "raw" && encoding != "hex"; // a digit of text can be 8 bytes
   locateNrrdFiles(path, header, stored);
   for (const std::filesystem::path& file : stored.files) {
     checkNrrdPath(file);
@@ -96,9 +96,9 @@ StoredSamples locateNrrd(const std::filesystem::path& path) {
       checkNrrdNumbers(file, stored.offset, path);
   }
   const bool skips = fields.contains("lineskip") || fields.contains("byteskip");
-  const bool simple = stored.files.size() == 1 && !skips;
-  stored.isRaw = simple && encoding == "raw";
-  stored.isStream = simple && isGzip(encoding);
+  const bool isSimple = stored.files.size() == 1 && !skips;
+  stored.isRaw = isSimple && encoding == "raw";
+  stored.isStream = isSimple && isGzip(encoding);
   const std::string kind = toLower(fields["kinds"]);
   stored.isListFirst = kind.starts_with("list") || kind.starts_with("vector");
   if (const std::string order = toLower(fields["endian"]); order == "little" || order == "big")
@@ -115,9 +115,9 @@ void checkMetaField(const std::filesystem::path& path, const std::string& key,
   const bool isVector = isOneOf(key, {"DimSize", "ElementSpacing", "ElementSize", "Offset",
                                       "Position", "Origin", "CenterOfRotation"});
   const bool isMatrix = isOneOf(key, {"TransformMatrix", "Rotation", "Orientation"});
-  const std::size_t longest = isMatrix || isVector ? 1000 : 250;
-  if (key.size() > 200 || value.size() > longest)
-    throw inputError(path, key.substr(0, 40), ": has more than ", longest,
+  const std::size_t maxLength = isMatrix || isVector ? 1000 : 250;
+  if (key.size() > 200 || value.size() > maxLength)
+    throw inputError(path, key.substr(0, 40), ": has more than ", maxLength,
                      " characters; shorten it");
   const auto numbers = static_cast<std::int64_t>(splitWords(value).size());
   const std::int64_t needed = isVector ? dimension : isMatrix ? dimension * dimension : 0;
@@ -126,8 +126,8 @@ void checkMetaField(const std::filesystem::path& path, const std::string& key,
 }
 
 /// Refuses values that MetaIO reads but nobody applies, or that it misreads.
-void checkMetaMeaning(const std::filesystem::path& path, const std::string& key,
-                      const std::string& value) {
+void checkMetaValue(const std::filesystem::path& path, const std::string& key,
+                    const std::string& value) {
   const auto refuseUnless = [&](double neutral) {
     if (parseNumbers(value) != std::vector<double>{neutral})
       throw inputError(path, key, ": is not read, unless it is ", static_cast<int>(neutral),
@@ -164,7 +164,7 @@ Fields readMetaFields(const std::filesystem::path& path, HeaderLines& lines) {
         throw inputError(path, "NDims: must be a whole number from 1 to 10");
     }
     checkMetaField(path, key, fields[key], dimension);
-    checkMetaMeaning(path, key, fields[key]);
+    checkMetaValue(path, key, fields[key]);
   }
   if (dimension == 0)
     throw damagedError(path, "MetaImage");
@@ -184,21 +184,22 @@ StoredSamples locateMeta(const std::filesystem::path& path) {
   if (name.starts_with("LIST") || name.find('%') != std::string::npos)
     throw inputError(
         path, "ElementDataFile: series of files are not read; write the volume into one file");
-  const bool local = toLower(name) == "local";
+  const bool isLocal = toLower(name) == "local";
   StoredSamples stored;
   stored.hasSpacing = fields.contains("ElementSpacing") || fields.contains("ElementSize");
-  stored.compressed = stored.isStream = isTrue("CompressedData");
+  stored.isCompressed = stored.isStream = isTrue("CompressedData");
   stored.order = std::endian::native;
   for (const char* key : {"BinaryDataByteOrderMSB", "ElementByteOrderMSB"})
     if (fields.contains(key))
       stored.order = isTrue(key) ? std::endian::big : std::endian::little;
-  addFile(path, local ? path.filename().string() : name, stored);
+  addFile(path, isLocal ? path.filename().string() : name, stored);
   const std::int64_t header = parseInteger(fields["HeaderSize"]).value_or(0);
   // A negative HeaderSize means: the samples end where the file ends.
-  stored.isRaw = !stored.compressed && (header == 0 || (header > 0 && !local));
-  skip(path,
-       local ? lines.position() : static_cast<std::uint64_t>(std::max<std::int64_t>(header, 0)),
-       stored);
+  stored.isRaw = !stored.isCompressed && (header == 0 || (header > 0 && !isLocal));
+  setOffset(path,
+            isLocal ? lines.position()
+                    : static_cast<std::uint64_t>(std::max<std::int64_t>(header, 0)),
+            stored);
   return stored;
 }
 
@@ -206,16 +207,16 @@ StoredSamples locateMeta(const std::filesystem::path& path) {
 
 StoredSamples locateNifti(const std::filesystem::path& path) {
   StoredSamples stored;
-  stored.compressed = lowercaseExtension(path) == ".gz";
+  stored.isCompressed = lowercaseExtension(path) == ".gz";
   addFile(path, path.filename().string(), stored);
-  if (!stored.compressed)
-    skip(path, niftiHeaderBytes, stored);
+  if (!stored.isCompressed)
+    setOffset(path, niftiHeaderBytes, stored);
   return stored;
 }
 
 } // namespace
 
-std::optional<MedicalFormat> medicalFormat(const std::filesystem::path& path) {
+std::optional<MedicalFormat> findMedicalFormat(const std::filesystem::path& path) {
   const std::string name = toLower(path.filename().string());
   if (name.ends_with(".nrrd") || name.ends_with(".nhdr"))
     return MedicalFormat::nrrd;
@@ -232,17 +233,18 @@ StoredSamples locateSamples(const std::filesystem::path& path, MedicalFormat for
   return format == MedicalFormat::metaImage ? locateMeta(path) : locateNifti(path);
 }
 
-std::uint64_t checkedBytes(const std::filesystem::path& path, const StoredSamples& stored,
-                           std::uint64_t count, std::uint64_t sampleBytes, std::uint64_t skipped) {
+std::uint64_t checkDeclaredBytes(const std::filesystem::path& path, const StoredSamples& stored,
+                                 std::uint64_t count, std::uint64_t sampleBytes,
+                                 std::uint64_t skipped) {
   std::uint64_t declared = 0;
   if (__builtin_mul_overflow(count, sampleBytes, &declared) ||
       __builtin_add_overflow(declared, skipped, &declared))
     declared = UINT64_MAX;
-  constexpr std::uint64_t greatestRatio = 1100; // bound of deflate's, 1032
-  if (declared / (stored.compressed ? greatestRatio : 1) > stored.bytes)
+  constexpr std::uint64_t maxRatio = 1100; // bound of deflate's, 1032
+  if (declared / (stored.isCompressed ? maxRatio : 1) > stored.bytes)
     throw inputError(path, "is truncated: its header announces ", declared,
                      " bytes of samples, the file has ", stored.bytes,
-                     (stored.compressed ? " compressed" : ""), "; copy or write it again");
+                     (stored.isCompressed ? " compressed" : ""), "; copy or write it again");
   return declared;
 }
 

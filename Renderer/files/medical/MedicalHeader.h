@@ -17,14 +17,14 @@ enum class MedicalFormat { nrrd, nifti, metaImage };
 inline constexpr std::uint64_t niftiHeaderBytes = 348;
 
 /// Format by extension, in either case: .nrrd .nhdr, .nii .nii.gz, .mha .mhd; nullopt: unknown.
-std::optional<MedicalFormat> medicalFormat(const std::filesystem::path& path);
+std::optional<MedicalFormat> findMedicalFormat(const std::filesystem::path& path);
 
 /// Place and form of stored samples.
 struct StoredSamples {
   std::vector<std::filesystem::path> files; ///< regular files, in order
   std::uint64_t offset = 0;                 ///< first sample's byte in the first file
   std::uint64_t bytes = 0;                  ///< bytes from `offset` on, in all files
-  bool compressed = false;                  ///< or text: one byte may stand for several
+  bool isCompressed = false;                ///< or text: one byte may stand for several
 
   // Forms that SampleStream reads, from `offset` on in one file: samples as they are, or one zlib
   // or gzip stream.
@@ -41,8 +41,8 @@ StoredSamples locateSamples(const std::filesystem::path& path, MedicalFormat for
 /// Bytes of `count` samples of `sampleBytes` each, and of the `skipped` ones before them. Throws
 /// Error (input) if that is more than the stored samples can be: the stored bytes, times deflate's
 /// greatest ratio if compressed.
-std::uint64_t checkedBytes(const std::filesystem::path& path, const StoredSamples& stored,
-                           std::uint64_t count, std::uint64_t sampleBytes,
-                           std::uint64_t skipped = 0);
+std::uint64_t checkDeclaredBytes(const std::filesystem::path& path, const StoredSamples& stored,
+                                 std::uint64_t count, std::uint64_t sampleBytes,
+                                 std::uint64_t skipped = 0);
 
 } // namespace fenestra

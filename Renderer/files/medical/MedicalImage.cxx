@@ -36,17 +36,17 @@ void checkPixels(const std::filesystem::path& path, const itk::ImageIOBase& io,
                      "); convert it to one scalar a voxel");
 }
 
-std::size_t framesOf(const itk::ImageIOBase& io) {
+std::size_t countFrames(const itk::ImageIOBase& io) {
   return io.GetNumberOfDimensions() > 3 ? io.GetDimensions(3) : 1;
 }
 
 /// Size of three axes; a fourth may hold several frames where `allowed`.
-Size3 sizeOf(const std::filesystem::path& path, const itk::ImageIOBase& io, Components allowed) {
+Size3 readSize(const std::filesystem::path& path, const itk::ImageIOBase& io, Components allowed) {
   const unsigned axes = io.GetNumberOfDimensions();
   if (axes < 3)
     throw inputError(path, "is a picture of ", axes, " axes, not a volume; name one of three");
-  const bool frames = allowed == Components::any && io.GetNumberOfComponents() == 1;
-  for (unsigned axis = frames ? 4 : 3; axis < axes; ++axis)
+  const bool allowsFrames = allowed == Components::any && io.GetNumberOfComponents() == 1;
+  for (unsigned axis = allowsFrames ? 4 : 3; axis < axes; ++axis)
     if (io.GetDimensions(axis) != 1)
       throw inputError(path, "has ", axes, " axes, the ", axis + 1, "th with ",
                        io.GetDimensions(axis), " frames; extract one of them");
@@ -61,19 +61,19 @@ Size3 sizeOf(const std::filesystem::path& path, const itk::ImageIOBase& io, Comp
 
 void checkGeometry(const std::filesystem::path& path, const Mat3& directions, const Vec3& spacing,
                    const Vec3& origin) {
-  constexpr double largest = 1e9; // mm; beyond, points lose fractions of a voxel
-  if (!((spacing.array() > 1.0 / largest).all() && (spacing.array() < largest).all()))
+  constexpr double maxLength = 1e9; // mm; beyond, points lose fractions of a voxel
+  if (!((spacing.array() > 1.0 / maxLength).all() && (spacing.array() < maxLength).all()))
     throw inputError(path, "spacing: must be from 1e-9 to 1e9 mm in every axis; mend the header");
-  if (!(origin.array().abs() < largest).all())
+  if (!(origin.array().abs() < maxLength).all())
     throw inputError(path, "origin: is not a place within 1e9 mm; mend the header");
   // The volume of the cell that unit directions span: 1 for orthogonal axes, 0 for coplanar ones.
-  constexpr double flattest = 1e-6;
-  if (!(std::abs(directions.normalizedColumns().determinant()) > flattest))
+  constexpr double minDeterminant = 1e-6;
+  if (!(std::abs(directions.normalizedColumns().determinant()) > minDeterminant))
     throw inputError(path, "directions: the axes do not span space; mend the header");
 }
 
-Grid gridOf(const std::filesystem::path& path, const itk::ImageIOBase& io, Components allowed) {
-  const Size3 size = sizeOf(path, io, allowed);
+Grid readGrid(const std::filesystem::path& path, const itk::ImageIOBase& io, Components allowed) {
+  const Size3 size = readSize(path, io, allowed);
   Mat3 directions;
   Vec3 spacing, origin;
   for (unsigned axis = 0; axis < 3; ++axis) {
@@ -95,7 +95,7 @@ std::uint64_t sampleCount(const itk::ImageIOBase& io) {
   return samples;
 }
 
-SampleType typeOf(const std::filesystem::path& path, const itk::ImageIOBase& io) {
+SampleType findSampleType(const std::filesystem::path& path, const itk::ImageIOBase& io) {
   using Type = itk::IOComponentEnum;
   static const std::map<Type, SampleType> types = {
       {Type::CHAR, std::int8_t()},      {Type::UCHAR, std::uint8_t()},
@@ -125,24 +125,24 @@ std::function<void(void*, std::size_t)> readThroughItk(itk::ImageIOBase& io, std
 }
 
 /// Samples of the files. Throws Error (input) for more than the files can hold.
-SampleSource samplesOf(const std::filesystem::path& path, const StoredSamples& stored,
-                       itk::ImageIOBase& io) {
-  SampleSource source{.type = typeOf(path, io), .count = sampleCount(io)};
-  const std::size_t sampleBytes = bytesOf(source.type);
-  const std::uint64_t declared = checkedBytes(path, stored, source.count, sampleBytes);
+SampleSource makeSampleSource(const std::filesystem::path& path, const StoredSamples& stored,
+                              itk::ImageIOBase& io) {
+  SampleSource source{.type = findSampleType(path, io), .count = sampleCount(io)};
+  const std::size_t sampleBytes = bytesPerSample(source.type);
+  const std::uint64_t declared = checkDeclaredBytes(path, stored, source.count, sampleBytes);
   // ITK brings a voxel's components together where they lie apart.
-  const bool ordered = io.GetNumberOfComponents() == 1 || stored.isListFirst;
-  const bool known = sampleBytes == 1 || stored.order;
-  if (!((stored.isRaw || stored.isStream) && ordered && known)) {
+  const bool isInterleaved = io.GetNumberOfComponents() == 1 || stored.isListFirst;
+  const bool isOrderKnown = sampleBytes == 1 || stored.order;
+  if (!((stored.isRaw || stored.isStream) && isInterleaved && isOrderKnown)) {
     source.read = readThroughItk(io, declared);
     return source;
   }
-  source.swapped = sampleBytes > 1 && *stored.order != std::endian::native;
+  source.isSwapped = sampleBytes > 1 && *stored.order != std::endian::native;
   openStream(path, stored, declared, source);
   return source;
 }
 
-std::map<std::string, std::string> textFields(const itk::ImageIOBase& io) {
+std::map<std::string, std::string> readTextFields(const itk::ImageIOBase& io) {
   const itk::MetaDataDictionary& dictionary = io.GetMetaDataDictionary();
   std::map<std::string, std::string> fields;
   for (const std::string& key : dictionary.GetKeys()) {
@@ -154,32 +154,33 @@ std::map<std::string, std::string> textFields(const itk::ImageIOBase& io) {
 }
 
 /// One volume alone; a list of components would be NRRD's.
-void readNifti(const std::filesystem::path& path, const TakeSamples& take) {
+void readNifti(const std::filesystem::path& path, const SampleConsumer& consume) {
   const NiftiHeader header = readNiftiHeader(path);
   const std::size_t axes = header.size.size();
   if (axes < 3)
     throw inputError(path, "is a picture of ", axes, " axes, not a volume; name one of three");
   for (std::size_t axis = 3; axis < axes; ++axis)
     if (header.size[axis] != 1) { // the fifth axis is a vector's (nifti1.h)
-      const char* const what = axis == 4 ? " components a voxel; convert it to one scalar a voxel"
-                                         : " frames; extract one of them";
+      const char* const problem = axis == 4
+                                      ? " components a voxel; convert it to one scalar a voxel"
+                                      : " frames; extract one of them";
       throw inputError(path, "has ", axes, " axes, the ", axis + 1, "th with ", header.size[axis],
-                       what);
+                       problem);
     }
   const Size3 size(header.size[0], header.size[1], header.size[2]);
   const Mat3& axesToRas = header.indexToRas.linear();
   checkGeometry(path, axesToRas, axesToRas.columnNorms(), header.indexToRas.translation());
   MedicalImage image{.grid = {size, header.indexToRas}, .warnings = header.warnings};
-  image.extensions = niftiExtensions(path, header);
-  take(image, niftiSamples(path, header, static_cast<std::size_t>(size.prod())));
+  image.extensions = readNiftiExtensions(path, header);
+  consume(image, openNiftiSamples(path, header, static_cast<std::size_t>(size.prod())));
 }
 
 void readChecked(const std::filesystem::path& path, MedicalFormat format, Components allowed,
-                 const TakeSamples& take) {
+                 const SampleConsumer& consume) {
   const StoredSamples stored = locateSamples(path, format); // refuses what ITK does not survive
   if (format == MedicalFormat::nifti)
-    return readNifti(path, take);
-  const Quiet quiet;
+    return readNifti(path, consume);
+  const SuppressItkOutput suppress;
   const auto io = makeImageIo(format);
   io->SetFileName(path.string());
   io->ReadImageInformation();
@@ -187,30 +188,30 @@ void readChecked(const std::filesystem::path& path, MedicalFormat format, Compon
   if (format != MedicalFormat::nrrd)
     allowed = Components::one;
   checkPixels(path, *io, allowed);
-  MedicalImage image{.grid = gridOf(path, *io, allowed),
+  MedicalImage image{.grid = readGrid(path, *io, allowed),
                      .components = io->GetNumberOfComponents(),
-                     .frames = framesOf(*io) > 1,
-                     .fields = textFields(*io)};
+                     .hasFrames = countFrames(*io) > 1,
+                     .fields = readTextFields(*io)};
   if (!stored.hasSpacing)
     image.warnings.push_back(path.string() + ": has no spacing; voxels are taken to be 1 mm");
-  if (image.frames)
-    image.components = framesOf(*io);
-  take(image, samplesOf(path, stored, *io));
+  if (image.hasFrames)
+    image.components = countFrames(*io);
+  consume(image, makeSampleSource(path, stored, *io));
 }
 
 } // namespace
 
 void readMedicalImage(const std::filesystem::path& path, Components allowed,
-                      const TakeSamples& take) {
+                      const SampleConsumer& consume) {
   requireFile(path, "name a volume file in it");
-  const auto format = medicalFormat(path);
+  const auto format = findMedicalFormat(path);
   if (lowercaseExtension(path) == ".vtm")
     throw inputError(path, "is a segmentation; name its volume, and this file as --segmentation");
   if (!format)
     throw inputError(
         path, "has no known extension; name a .nrrd, .nhdr, .nii, .nii.gz, .mha or .mhd file");
   try {
-    readChecked(path, *format, allowed, take);
+    readChecked(path, *format, allowed, consume);
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {

@@ -16,7 +16,7 @@ namespace fenestra {
 struct MedicalImage {
   Grid grid = {}; ///< index to RAS mm, whatever the file's space
   std::size_t components = 1;
-  bool frames = false; ///< components: one frame after the other; else by voxel; x fastest
+  bool hasFrames = false; ///< components: one frame after the other; else by voxel; x fastest
   std::map<std::string, std::string> fields = {}; ///< NRRD's key:=value pairs
   std::string extensions = {};                    ///< bytes of NIfTI's header extensions
   std::vector<std::string> warnings = {};         ///< each names the file
@@ -25,13 +25,13 @@ struct MedicalImage {
 enum class Components { one, any };
 
 /// Consumer of the samples, which are read while it runs.
-using TakeSamples = std::function<void(const MedicalImage&, const SampleSource&)>;
+using SampleConsumer = std::function<void(const MedicalImage&, const SampleSource&)>;
 
 /// Calls `take` once, with an image of three axes (further ones of size 1 are dropped) and real
 /// scalars; several per voxel only where `allowed`: a NRRD's list, or the frames along its fourth
 /// axis. Throws Error (input), one line, for other images, missing or damaged files, more samples
 /// than the file can hold (before memory is taken for them), and singular geometry.
 void readMedicalImage(const std::filesystem::path& path, Components allowed,
-                      const TakeSamples& take);
+                      const SampleConsumer& consume);
 
 } // namespace fenestra

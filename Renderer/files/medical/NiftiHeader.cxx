@@ -33,14 +33,14 @@ public:
   Vec3 triple(std::size_t at) const { return {real(at), real(at + 4), real(at + 8)}; }
 
   /// True if `count` numbers from `at` on are finite and below 1e9.
-  bool isSane(std::size_t at, std::size_t count) const {
+  bool hasFiniteNumbers(std::size_t at, std::size_t count) const {
     for (std::size_t end = at + 4 * count; at < end; at += 4)
       if (!(std::abs(real(at)) < 1e9))
         return false;
     return true;
   }
 
-  bool swapped() const { return m_swapped; }
+  bool isSwapped() const { return m_swapped; }
   bool isOnePart() const { return std::memcmp(&m_bytes[344], "n+1", 4) == 0; }
   const std::filesystem::path& path() const { return m_path; }
 
@@ -50,7 +50,7 @@ private:
   bool m_swapped = false;
 };
 
-std::vector<std::int64_t> niftiSize(const NiftiFields& fields) {
+std::vector<std::int64_t> readNiftiSize(const NiftiFields& fields) {
   std::vector<std::int64_t> size;
   const auto axes = fields.number<std::int16_t>(40);
   for (std::size_t axis = 1; axes <= 7 && std::cmp_less_equal(axis, axes); ++axis)
@@ -58,7 +58,7 @@ std::vector<std::int64_t> niftiSize(const NiftiFields& fields) {
   return size;
 }
 
-SampleType niftiType(const NiftiFields& fields) {
+SampleType readNiftiType(const NiftiFields& fields) {
   static const std::map<std::int16_t, SampleType> types = {
       // NIFTI_TYPE_… of nifti1.h
       {2, std::uint8_t()},    {4, std::int16_t()},    {8, std::int32_t()},
@@ -74,7 +74,7 @@ SampleType niftiType(const NiftiFields& fields) {
 }
 
 /// A slope of 0 or NaN: samples as they are.
-std::optional<Rescaling> niftiRescaling(const NiftiFields& fields) {
+std::optional<Rescaling> readNiftiRescaling(const NiftiFields& fields) {
   const double slope = fields.real(112), intercept = fields.real(116);
   if (std::isnan(slope) || slope == 0.0)
     return std::nullopt;
@@ -89,7 +89,7 @@ std::optional<Rescaling> niftiRescaling(const NiftiFields& fields) {
 
 /// Orthogonal matrix nearest to one with unit columns (the polar factor, by Newton's iteration:
 /// Higham, Computing the polar decomposition, 1986).
-Mat3 nearestOrthogonal(Mat3 matrix) {
+Mat3 findNearestOrthogonal(Mat3 matrix) {
   for (int i = 0; i < 12; ++i) {
     const Mat3 inverse = matrix.inverse().transpose();
     for (int column = 0; column < 3; ++column)
@@ -98,18 +98,18 @@ Mat3 nearestOrthogonal(Mat3 matrix) {
   return matrix;
 }
 
-Affine ofSform(const NiftiFields& fields, const Vec3& pixdim) {
+Affine readSform(const NiftiFields& fields, const Vec3& pixdim) {
   const Mat3 linear = Mat3::FromRows(fields.triple(280), fields.triple(296), fields.triple(312));
   const Mat3 axes = linear.normalizedColumns();
-  constexpr double flattest = 1e-6, mostTurned = 1e-3;
-  if (!(std::abs(axes.determinant()) > flattest))
+  constexpr double minDeterminant = 1e-6, maxDeviation = 1e-3;
+  if (!(std::abs(axes.determinant()) > minDeterminant))
     throw inputError(fields.path(), "srow: its axes do not span space; mend the header");
-  const Mat3 nearest = nearestOrthogonal(axes);
-  double turned = 0.0;
+  const Mat3 nearest = findNearestOrthogonal(axes);
+  double deviation = 0.0;
   for (int column = 0; column < 3; ++column)
-    turned = std::max(turned, (axes.col(column) - nearest.col(column)).norm());
-  if (!(turned < mostTurned))
-    throw inputError(fields.path(), "srow: shears, by ", toString(turned, 2),
+    deviation = std::max(deviation, (axes.col(column) - nearest.col(column)).norm());
+  if (!(deviation < maxDeviation))
+    throw inputError(fields.path(), "srow: shears, by ", toString(deviation, 2),
                      " of an axis; resample the image onto axes at right angles");
   // Where pixdim says the same, it says it without the rounding of the rows.
   Vec3 spacing = linear.columnNorms();
@@ -120,7 +120,7 @@ Affine ofSform(const NiftiFields& fields, const Vec3& pixdim) {
                 {fields.real(292), fields.real(308), fields.real(324)});
 }
 
-Affine ofQform(const NiftiFields& fields, const Vec3& pixdim) {
+Affine readQform(const NiftiFields& fields, const Vec3& pixdim) {
   Vec3 v = fields.triple(256);
   double a = 1.0 - v.squaredNorm();
   if (a < 1e-7) { // rounding: a half turn
@@ -133,36 +133,36 @@ Affine ofQform(const NiftiFields& fields, const Vec3& pixdim) {
       Vec3(a * a + b * b - c * c - d * d, 2.0 * (b * c + a * d), 2.0 * (b * d - a * c)),
       Vec3(2.0 * (b * c - a * d), a * a + c * c - b * b - d * d, 2.0 * (c * d + a * b)),
       Vec3(2.0 * (b * d + a * c), 2.0 * (c * d - a * b), a * a + d * d - b * b - c * c));
-  const double side = fields.real(76) < 0.0 ? -1.0 : 1.0;
-  return Affine(rotation * Mat3::Diagonal({pixdim[0], pixdim[1], side * pixdim[2]}),
+  const double handedness = fields.real(76) < 0.0 ? -1.0 : 1.0;
+  return Affine(rotation * Mat3::Diagonal({pixdim[0], pixdim[1], handedness * pixdim[2]}),
                 fields.triple(268));
 }
 
 /// Millimetres of the header's unit of length.
-double unitOf(const NiftiFields& fields) {
+double readUnitMm(const NiftiFields& fields) {
   const int code = fields.number<char>(123) & 7;
   return code == 1 ? 1000.0 : code == 3 ? 0.001 : 1.0;
 }
 
-Affine niftiGeometry(const NiftiFields& fields, std::vector<std::string>& warnings) {
+Affine readNiftiGeometry(const NiftiFields& fields, std::vector<std::string>& warnings) {
   const auto qform = fields.number<std::int16_t>(252), sform = fields.number<std::int16_t>(254);
-  const bool bySform = sform > 0 && (sform == 1 || qform <= 0);
-  if (!fields.isSane(76, 4) || (qform > 0 && !fields.isSane(256, 6)) ||
-      (sform > 0 && !fields.isSane(280, 12)))
+  const bool usesSform = sform > 0 && (sform == 1 || qform <= 0);
+  if (!fields.hasFiniteNumbers(76, 4) || (qform > 0 && !fields.hasFiniteNumbers(256, 6)) ||
+      (sform > 0 && !fields.hasFiniteNumbers(280, 12)))
     throw inputError(fields.path(), "qform, sform or pixdim: holds a number that is not finite or "
                                     "beyond 1e9 mm; write it again");
   Vec3 pixdim = fields.triple(80);
   for (int axis = 0; axis < 3; ++axis)
     pixdim[axis] = pixdim[axis] == 0.0 ? 1.0 : std::abs(pixdim[axis]);
   Affine map(lpsToRas * Mat3::Diagonal(pixdim));
-  if (bySform)
-    map = ofSform(fields, pixdim);
+  if (usesSform)
+    map = readSform(fields, pixdim);
   else if (qform > 0)
-    map = ofQform(fields, pixdim);
+    map = readQform(fields, pixdim);
   else
     warnings.push_back(fields.path().string() +
                        ": has neither qform nor sform; voxels are placed along LPS axes from 0 on");
-  const double unit = unitOf(fields);
+  const double unit = readUnitMm(fields);
   return Affine(map.linear() * Mat3::Diagonal(Vec3::Constant(unit)), unit * map.translation());
 }
 
@@ -171,20 +171,20 @@ Affine niftiGeometry(const NiftiFields& fields, std::vector<std::string>& warnin
 NiftiHeader parseNiftiHeader(const NiftiBytes& bytes, const std::filesystem::path& path) {
   const NiftiFields fields(bytes, path);
   NiftiHeader header;
-  header.size = niftiSize(fields);
-  header.swapped = fields.swapped();
-  constexpr double farthest = 1 << 30;
+  header.size = readNiftiSize(fields);
+  header.isSwapped = fields.isSwapped();
+  constexpr double maxOffset = 1 << 30;
   const double offset = fields.real(108);
   const bool isSized = !header.size.empty() &&
                        std::ranges::all_of(header.size, [](std::int64_t n) { return n >= 1; });
   if (fields.number<std::int32_t>(0) != static_cast<std::int32_t>(bytes.size()) || !isSized ||
-      !fields.isOnePart() || !(offset <= farthest))
+      !fields.isOnePart() || !(offset <= maxOffset))
     throw inputError(path, "is not a NIfTI-1 file of one part; write it again as .nii.gz");
-  header.type = niftiType(fields);
-  header.rescaling = niftiRescaling(fields);
+  header.type = readNiftiType(fields);
+  header.rescaling = readNiftiRescaling(fields);
   // Samples follow the header and four bytes that announce extensions.
   header.offset = static_cast<std::int64_t>(std::max(offset, 352.0));
-  header.indexToRas = niftiGeometry(fields, header.warnings);
+  header.indexToRas = readNiftiGeometry(fields, header.warnings);
   return header;
 }
 

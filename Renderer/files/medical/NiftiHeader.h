@@ -19,7 +19,7 @@ using NiftiBytes = std::array<char, 348>;
 struct NiftiHeader {
   std::vector<std::int64_t> size; ///< voxels along each axis, at least 1
   SampleType type = {};
-  bool swapped = false;      ///< byte order is not the machine's
+  bool isSwapped = false;    ///< byte order is not the machine's
   std::int64_t offset = 352; ///< of the first sample, bytes
   std::optional<Rescaling> rescaling = {};
   Affine indexToRas = Affine::Identity(); ///< RAS mm

@@ -12,14 +12,14 @@
 namespace fenestra {
 namespace {
 
-Error damaged(const std::filesystem::path& path) {
+Error makeDamagedError(const std::filesystem::path& path) {
   return inputError(path, "is damaged or truncated; copy or write it again");
 }
 
 /// Reads plain and compressed files alike.
-class Stream {
+class NiftiStream {
 public:
-  explicit Stream(const std::filesystem::path& path)
+  explicit NiftiStream(const std::filesystem::path& path)
       : m_path(path), m_file(gzopen(path.c_str(), "rb"), gzclose) {
     if (!m_file)
       throw inputError(path, "cannot be read; check its permissions");
@@ -31,7 +31,7 @@ public:
     while (bytes > 0) {
       const auto part = static_cast<unsigned>(std::min<std::size_t>(bytes, 1 << 30));
       if (gzread(m_file.get(), at, part) != static_cast<int>(part))
-        throw damaged(m_path);
+        throw makeDamagedError(m_path);
       at += part;
       bytes -= part;
     }
@@ -39,14 +39,14 @@ public:
 
   void seek(std::int64_t offset) {
     if (gzseek(m_file.get(), offset, SEEK_SET) != offset)
-      throw damaged(m_path);
+      throw makeDamagedError(m_path);
   }
 
   /// Reads on, so that zlib compares checksums if the stream ends within 1024 bytes.
   void checkEnd() {
     std::array<char, 1024> rest;
     if (gzread(m_file.get(), rest.data(), rest.size()) < 0)
-      throw damaged(m_path);
+      throw makeDamagedError(m_path);
   }
 
 private:
@@ -57,32 +57,33 @@ private:
 } // namespace
 
 NiftiHeader readNiftiHeader(const std::filesystem::path& path) {
-  Stream stream(path);
+  NiftiStream stream(path);
   NiftiBytes bytes;
   stream.read(bytes.data(), bytes.size());
   return parseNiftiHeader(bytes, path);
 }
 
-std::string niftiExtensions(const std::filesystem::path& path, const NiftiHeader& header) {
-  constexpr std::int64_t begin = 348, most = std::int64_t{4} << 20;
+std::string readNiftiExtensions(const std::filesystem::path& path, const NiftiHeader& header) {
+  constexpr std::int64_t begin = 348, maxBytes = std::int64_t{4} << 20;
   const std::int64_t bytes = header.offset - begin;
-  std::string text(static_cast<std::size_t>(std::clamp<std::int64_t>(bytes, 0, most)), '\0');
-  Stream stream(path);
+  std::string text(static_cast<std::size_t>(std::clamp<std::int64_t>(bytes, 0, maxBytes)), '\0');
+  NiftiStream stream(path);
   stream.seek(begin);
   stream.read(text.data(), text.size());
   return text.size() > 4 && text[0] != 0 ? text.substr(4) : std::string();
 }
 
-SampleSource niftiSamples(const std::filesystem::path& path, const NiftiHeader& header,
-                          std::size_t count) {
-  const auto stream = std::make_shared<Stream>(path);
-  checkedBytes(path, locateSamples(path, MedicalFormat::nifti), count, bytesOf(header.type),
-               static_cast<std::uint64_t>(header.offset) - sizeof(NiftiBytes));
+SampleSource openNiftiSamples(const std::filesystem::path& path, const NiftiHeader& header,
+                              std::size_t count) {
+  const auto stream = std::make_shared<NiftiStream>(path);
+  checkDeclaredBytes(path, locateSamples(path, MedicalFormat::nifti), count,
+                     bytesPerSample(header.type),
+                     static_cast<std::uint64_t>(header.offset) - sizeof(NiftiBytes));
   stream->seek(header.offset);
   return {
       .type = header.type,
       .count = count,
-      .swapped = header.swapped,
+      .isSwapped = header.isSwapped,
       .rescaling = header.rescaling,
       .read = [stream](void* to, std::size_t bytes) { stream->read(to, bytes); },
       .finish = [stream] { stream->checkEnd(); },

@@ -15,11 +15,11 @@ NiftiHeader readNiftiHeader(const std::filesystem::path& path);
 
 /// Bytes of all header extensions, with their sizes and codes; at most 4 MiB. Throws Error (input)
 /// where the file ends before.
-std::string niftiExtensions(const std::filesystem::path& path, const NiftiHeader& header);
+std::string readNiftiExtensions(const std::filesystem::path& path, const NiftiHeader& header);
 
 /// First `count` samples of the file. Throws Error (input) for more samples than the file can hold;
 /// reading them throws where the file ends before.
-SampleSource niftiSamples(const std::filesystem::path& path, const NiftiHeader& header,
-                          std::size_t count);
+SampleSource openNiftiSamples(const std::filesystem::path& path, const NiftiHeader& header,
+                              std::size_t count);
 
 } // namespace fenestra

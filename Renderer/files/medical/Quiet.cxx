@@ -6,12 +6,12 @@
 
 namespace fenestra {
 
-Quiet::Quiet() : m_before(std::cerr.rdbuf(nullptr)) {
+SuppressItkOutput::SuppressItkOutput() : m_previous(std::cerr.rdbuf(nullptr)) {
   itk::Object::SetGlobalWarningDisplay(false);
 }
 
-Quiet::~Quiet() {
-  std::cerr.rdbuf(m_before);
+SuppressItkOutput::~SuppressItkOutput() {
+  std::cerr.rdbuf(m_previous);
   std::cerr.clear();
 }
 

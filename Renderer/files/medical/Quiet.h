@@ -6,15 +6,15 @@
 namespace fenestra {
 
 /// Discards std::cerr during the object's life, and turns ITK's warnings off for good.
-class Quiet {
+class SuppressItkOutput {
 public:
-  Quiet();
-  ~Quiet();
-  Quiet(const Quiet&) = delete;
-  Quiet& operator=(const Quiet&) = delete;
+  SuppressItkOutput();
+  ~SuppressItkOutput();
+  SuppressItkOutput(const SuppressItkOutput&) = delete;
+  SuppressItkOutput& operator=(const SuppressItkOutput&) = delete;
 
 private:
-  std::streambuf* m_before;
+  std::streambuf* m_previous;
 };
 
 } // namespace fenestra

@@ -21,7 +21,7 @@ using SampleType =
     std::variant<std::int8_t, std::uint8_t, std::int16_t, std::uint16_t, std::int32_t,
                  std::uint32_t, std::int64_t, std::uint64_t, float, double>;
 
-inline std::size_t bytesOf(const SampleType& type) {
+inline std::size_t bytesPerSample(const SampleType& type) {
   return std::visit([](auto sample) { return sizeof sample; }, type);
 }
 
@@ -32,7 +32,7 @@ struct Rescaling {
 struct SampleSource {
   SampleType type = {};
   std::size_t count = 0;
-  bool swapped = false; ///< byte order is not the machine's
+  bool isSwapped = false; ///< byte order is not the machine's
   std::optional<Rescaling> rescaling = {};
   /// Fills memory with the next bytes of the file, fewer than 2^30. Throws where it ends before.
   std::function<void(void*, std::size_t)> read = {};
@@ -60,10 +60,10 @@ public:
   }
 
   void prepare(const SampleSource& source) {
-    if (source.swapped)
+    if (source.isSwapped)
       std::for_each(m_samples.begin(), m_samples.end(), swapBytes<T>);
     if (!source.rescaling) {
-      m_survey = survey(std::span<const T>(m_samples));
+      m_stats = computeStats(std::span<const T>(m_samples));
       return;
     }
     m_rescaled.resize(m_samples.size());
@@ -71,21 +71,21 @@ public:
                    [r = *source.rescaling](T x) {
                      return static_cast<Rescaled>(r.slope * static_cast<double>(x) + r.intercept);
                    });
-    m_survey = survey(std::span<const Rescaled>(m_rescaled));
+    m_stats = computeStats(std::span<const Rescaled>(m_rescaled));
   }
 
   template <typename Store>
   void append(const SampleSource& source, Store& store) const {
     if (source.rescaling)
-      store.append(std::span<const Rescaled>(m_rescaled), m_survey);
+      store.append(std::span<const Rescaled>(m_rescaled), m_stats);
     else
-      store.append(std::span<const T>(m_samples), m_survey);
+      store.append(std::span<const T>(m_samples), m_stats);
   }
 
 private:
   std::vector<T> m_samples;
   std::vector<Rescaled> m_rescaled;
-  SampleSurvey m_survey;
+  SampleStats m_stats;
 };
 
 /// Appends all samples to a SampleStore, in their order. Reading (which inflates), preparing and
@@ -93,21 +93,22 @@ private:
 template <typename Store>
 void readSamples(const SampleSource& source, Store& store) {
   constexpr std::size_t samplesInBlock = 1 << 18;
-  constexpr std::size_t inFlight = 4;
+  constexpr std::size_t blocksInFlight = 4;
   const auto readAs = [&]<typename T>(T) {
     using Block = SampleBlock<T>;
-    std::array<Block, inFlight> blocks; // a token is free again when its block has been appended
-    std::size_t begun = 0;
-    std::size_t left = source.count;
+    std::array<Block, blocksInFlight>
+        blocks; // a token is free again when its block has been appended
+    std::size_t started = 0;
+    std::size_t remaining = source.count;
     const auto read = [&](tbb::flow_control& flow) -> Block* {
-      if (left == 0) {
+      if (remaining == 0) {
         flow.stop();
         return nullptr;
       }
-      Block& block = blocks[begun++ % inFlight];
-      const std::size_t count = std::min(left, samplesInBlock);
+      Block& block = blocks[started++ % blocksInFlight];
+      const std::size_t count = std::min(remaining, samplesInBlock);
       block.read(source, count);
-      left -= count;
+      remaining -= count;
       return &block;
     };
     const auto prepare = [&](Block* block) {
@@ -116,7 +117,7 @@ void readSamples(const SampleSource& source, Store& store) {
     };
     const auto append = [&](const Block* block) { block->append(source, store); };
     using Mode = tbb::filter_mode;
-    tbb::parallel_pipeline(inFlight,
+    tbb::parallel_pipeline(blocksInFlight,
                            tbb::make_filter<void, Block*>(Mode::serial_in_order, read) &
                                tbb::make_filter<Block*, Block*>(Mode::parallel, prepare) &
                                tbb::make_filter<Block*, void>(Mode::serial_in_order, append));

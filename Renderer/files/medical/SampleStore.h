@@ -18,41 +18,41 @@
 namespace fenestra {
 
 /// Range and kind of samples. Doubles suffice: they hold every integer of 32 bits exactly.
-struct SampleSurvey {
-  double least = infinity, greatest = -infinity; ///< range of the finite samples
-  bool whole = true;                             ///< all finite samples are whole numbers
-  std::size_t notANumber = 0, infinite = 0;
+struct SampleStats {
+  double minimum = infinity, maximum = -infinity; ///< range of the finite samples
+  bool isIntegral = true;                         ///< all finite samples are whole numbers
+  std::size_t nanCount = 0, infiniteCount = 0;
 
-  bool finite() const { return notANumber + infinite == 0; }
+  bool isFinite() const { return nanCount + infiniteCount == 0; }
 
-  void add(const SampleSurvey& more) {
-    least = std::min(least, more.least);
-    greatest = std::max(greatest, more.greatest);
-    whole = whole && more.whole;
-    notANumber += more.notANumber;
-    infinite += more.infinite;
+  void add(const SampleStats& more) {
+    minimum = std::min(minimum, more.minimum);
+    maximum = std::max(maximum, more.maximum);
+    isIntegral = isIntegral && more.isIntegral;
+    nanCount += more.nanCount;
+    infiniteCount += more.infiniteCount;
   }
 };
 
 template <typename T>
-SampleSurvey survey(std::span<const T> samples) {
-  SampleSurvey s;
-  T least = std::numeric_limits<T>::max();
-  T greatest = std::numeric_limits<T>::lowest();
+SampleStats computeStats(std::span<const T> samples) {
+  SampleStats s;
+  T minimum = std::numeric_limits<T>::max();
+  T maximum = std::numeric_limits<T>::lowest();
   for (const T x : samples) {
     if constexpr (std::is_floating_point_v<T>) {
       if (!std::isfinite(x)) {
-        ++(std::isnan(x) ? s.notANumber : s.infinite);
+        ++(std::isnan(x) ? s.nanCount : s.infiniteCount);
         continue;
       }
-      s.whole = s.whole && x == std::trunc(x);
+      s.isIntegral = s.isIntegral && x == std::trunc(x);
     }
-    least = std::min(least, x);
-    greatest = std::max(greatest, x);
+    minimum = std::min(minimum, x);
+    maximum = std::max(maximum, x);
   }
-  if (s.notANumber + s.infinite < samples.size()) {
-    s.least = static_cast<double>(least);
-    s.greatest = static_cast<double>(greatest);
+  if (s.nanCount + s.infiniteCount < samples.size()) {
+    s.minimum = static_cast<double>(minimum);
+    s.maximum = static_cast<double>(maximum);
   }
   return s;
 }
@@ -65,72 +65,72 @@ public:
   using Vectors = std::variant<LargeArray<Stored>...>;
 
   /// Reserves room for `count` samples; pages are touched only as samples come.
-  explicit SampleStore(std::size_t count) : m_count(count) { change(0); }
+  explicit SampleStore(std::size_t count) : m_count(count) { setType(0); }
 
   /// Appends a block, whose survey is `s`. Drops all samples once no type holds them.
   template <typename T>
-  void append(std::span<const T> block, const SampleSurvey& s) {
-    m_survey.add(s);
-    if (const std::size_t needed = smallest(); needed != m_index)
-      change(needed);
+  void append(std::span<const T> block, const SampleStats& s) {
+    m_stats.add(s);
+    if (const std::size_t needed = findSmallestType(); needed != m_index)
+      setType(needed);
     if (m_index < sizeof...(Stored))
       std::visit([&](auto& to) { copy(block, to); }, m_samples);
   }
 
-  const SampleSurvey& survey() const { return m_survey; }
-  bool holdsAll() const { return m_index < sizeof...(Stored); }
+  const SampleStats& stats() const { return m_stats; }
+  bool canHoldAll() const { return m_index < sizeof...(Stored); }
 
   /// Least and greatest sample that take() returns.
   std::array<double, 2> range() const {
     return std::visit(
         [this]<typename To>(const LargeArray<To>&) -> std::array<double, 2> {
-          return {static_cast<double>(converted<To>(m_survey.least)),
-                  static_cast<double>(converted<To>(m_survey.greatest))};
+          return {static_cast<double>(convertSample<To>(m_stats.minimum)),
+                  static_cast<double>(convertSample<To>(m_stats.maximum))};
         },
         m_samples);
   }
 
-  /// Moves all samples out; requires holdsAll(). NaN and -infinity become the least finite sample,
-  /// +infinity the greatest.
+  /// Moves all samples out; requires canHoldAll(). NaN and -infinity become the least finite
+  /// sample, +infinity the greatest.
   Vectors take() {
-    if (!m_survey.finite()) {
+    if (!m_stats.isFinite()) {
       std::visit([this](auto& samples) { this->replaceNonFinite(samples); }, m_samples);
-      m_survey.notANumber = m_survey.infinite = 0;
-      if (const std::size_t needed = smallest(); needed != m_index)
-        change(needed);
+      m_stats.nanCount = m_stats.infiniteCount = 0;
+      if (const std::size_t needed = findSmallestType(); needed != m_index)
+        setType(needed);
     }
     return std::move(m_samples);
   }
 
 private:
   template <typename To>
-  bool fits() const {
+  bool canHold() const {
     if constexpr (std::is_floating_point_v<To>)
       return true;
     else
-      return m_survey.finite() && m_survey.whole &&
-             m_survey.least >= static_cast<double>(std::numeric_limits<To>::min()) &&
-             m_survey.greatest <= static_cast<double>(std::numeric_limits<To>::max());
+      return m_stats.isFinite() && m_stats.isIntegral &&
+             m_stats.minimum >= static_cast<double>(std::numeric_limits<To>::min()) &&
+             m_stats.maximum <= static_cast<double>(std::numeric_limits<To>::max());
   }
 
-  std::size_t smallest() const {
-    const std::array<bool, sizeof...(Stored)> fitting = {fits<Stored>()...};
+  std::size_t findSmallestType() const {
+    const std::array<bool, sizeof...(Stored)> fitting = {canHold<Stored>()...};
     return static_cast<std::size_t>(std::find(fitting.begin(), fitting.end(), true) -
                                     fitting.begin());
   }
 
   /// Converts the samples to the type of index `wanted`; drops them if there is no such type.
-  void change(std::size_t wanted) {
-    const Vectors before = std::exchange(m_samples, Vectors());
+  void setType(std::size_t wanted) {
+    const Vectors previous = std::exchange(m_samples, Vectors());
     m_index = wanted;
     std::size_t index = 0;
-    ((index++ == wanted ? convert<LargeArray<Stored>>(before) : void()), ...);
+    ((index++ == wanted ? convertAll<LargeArray<Stored>>(previous) : void()), ...);
   }
   template <typename Samples>
-  void convert(const Vectors& before) {
+  void convertAll(const Vectors& previous) {
     auto& samples = m_samples.template emplace<Samples>();
     samples.reserve(m_count);
-    std::visit([&](const auto& from) { copy(std::span(from), samples); }, before);
+    std::visit([&](const auto& from) { copy(std::span(from), samples); }, previous);
   }
 
   /// Appends in parts: growing fills with zeros, which costs little while a part stays in the
@@ -144,17 +144,17 @@ private:
         const auto part = from.first(std::min<std::size_t>(from.size(), 1 << 16));
         const auto end = static_cast<std::ptrdiff_t>(to.size());
         to.resize(to.size() + part.size());
-        std::transform(part.begin(), part.end(), to.begin() + end, converted<To, T>);
+        std::transform(part.begin(), part.end(), to.begin() + end, convertSample<To, T>);
         from = from.subspan(part.size());
       }
   }
 
   template <typename To, typename T>
-  static To converted(T x) {
+  static To convertSample(T x) {
     if constexpr (std::is_same_v<T, double> && std::is_same_v<To, float>) {
-      constexpr double most = std::numeric_limits<float>::max();
+      constexpr double limit = std::numeric_limits<float>::max();
       return std::isinf(x) ? static_cast<float>(x)
-                           : static_cast<float>(std::clamp(x, -most, most)); // NaN stays
+                           : static_cast<float>(std::clamp(x, -limit, limit)); // NaN stays
     }
     if constexpr (std::is_floating_point_v<To>)
       return static_cast<To>(static_cast<double>(x)); // range() then rounds as samples do
@@ -164,18 +164,18 @@ private:
   template <typename To>
   void replaceNonFinite(LargeArray<To>& samples) const {
     if constexpr (std::is_floating_point_v<To>) {
-      const auto least = converted<To>(m_survey.least);
-      const auto greatest = converted<To>(m_survey.greatest);
+      const auto minimum = convertSample<To>(m_stats.minimum);
+      const auto maximum = convertSample<To>(m_stats.maximum);
       for (To& x : samples)
         if (!std::isfinite(x))
-          x = x > 0 ? greatest : least;
+          x = x > 0 ? maximum : minimum;
     }
   }
 
   std::size_t m_count;
   std::size_t m_index = 0; ///< index of the type; sizeof...(Stored): none
   Vectors m_samples;
-  SampleSurvey m_survey;
+  SampleStats m_stats;
 };
 
 } // namespace fenestra

@@ -24,14 +24,14 @@ public:
 
   void read(void* to, std::size_t bytes) {
     if (inflateTo(to, bytes) < bytes)
-      throw damaged();
+      throw makeDamagedError();
   }
 
   void finish() {
-    char beyond = 0;
-    inflateTo(&beyond, 1);
+    char extra = 0;
+    inflateTo(&extra, 1);
     if (m_status != Z_STREAM_END || m_stream.total_out != m_declared)
-      throw damaged();
+      throw makeDamagedError();
   }
 
 private:
@@ -50,7 +50,7 @@ private:
     return bytes - m_stream.avail_out;
   }
 
-  Error damaged() const {
+  Error makeDamagedError() const {
     return inputError(m_path, "is damaged or truncated: its compressed samples do not give the ",
                       m_declared, " bytes that its header announces; copy or write it again");
   }

@@ -6,8 +6,8 @@
 namespace fenestra {
 
 Volume makeVolume(const std::string& name, const Grid& grid, VoxelStore&& samples) {
-  const SampleSurvey& s = samples.survey();
-  if (s.least > s.greatest)
+  const SampleStats& s = samples.stats();
+  if (s.minimum > s.maximum)
     throw inputError(name, "no voxel is a finite number; write it again");
   Volume volume;
   const auto warn = [&](std::size_t count, const char* what, const char* replacement) {
@@ -15,8 +15,8 @@ Volume makeVolume(const std::string& name, const Grid& grid, VoxelStore&& sample
       volume.warnings.push_back(
           concat(name, ": ", count, " voxels are ", what, " and count as ", replacement));
   };
-  warn(s.notANumber, "not a number", "the least finite value");
-  warn(s.infinite, "infinite", "the least or greatest finite value");
+  warn(s.nanCount, "not a number", "the least finite value");
+  warn(s.infiniteCount, "infinite", "the least or greatest finite value");
   volume.grid = grid;
   volume.name = name;
   volume.minimum = samples.range()[0];

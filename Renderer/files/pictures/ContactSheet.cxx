@@ -13,12 +13,12 @@
 namespace fenestra {
 namespace {
 
-constexpr int boxWidth = 336, mostBoxHeight = 504, leastBoxHeight = 168; ///< pixels
+constexpr int boxWidth = 336, maxBoxHeight = 504, minBoxHeight = 168; ///< pixels
 constexpr int gap = 20;
-constexpr double titleDot = 3.0, nameDot = 2.0, textDot = 1.5; ///< pixels a dot
+constexpr double titleDotSize = 3.0, nameDotSize = 2.0, textDotSize = 1.5; ///< pixels a dot
 
-constexpr std::uint32_t paper = 0x17191b, panel = 0x222527, white = 0xf0f0f0, grey = 0xa2a8ad,
-                        alarm = 0xff9d7a;
+constexpr std::uint32_t sheetColor = 0x17191b, panelColor = 0x222527, white = 0xf0f0f0,
+                        gray = 0xa2a8ad, errorColor = 0xff9d7a;
 
 /// Opaque picture in the making, linear Rec. 709.
 class Canvas {
@@ -35,28 +35,28 @@ public:
   void fill(int left, int top, int width, int height, std::uint32_t color) {
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x)
-        mix(left + x, top + y, linearOf(color), 1.0F);
+        blend(left + x, top + y, toLinear(color), 1.0F);
   }
   /// Text from the left, cut with an ellipsis where wider than `width` pixels.
-  void write(int left, int top, const std::string& text, double dot, std::uint32_t color,
-             int width) {
-    const auto most = static_cast<std::size_t>(std::max(4.0, width / (letterWidth * dot)));
-    std::string shown = letters(text);
-    if (shown.size() > most)
-      shown = shown.substr(0, most - 3) + "...";
-    const Lettering line = lettering(shown, dot);
-    auto ink = line.ink.begin();
+  void drawText(int left, int top, const std::string& text, double dot, std::uint32_t color,
+                int width) {
+    const auto maxLength = static_cast<std::size_t>(std::max(4.0, width / (glyphWidth * dot)));
+    std::string visible = toAscii(text);
+    if (visible.size() > maxLength)
+      visible = visible.substr(0, maxLength - 3) + "...";
+    const TextBitmap line = rasterizeText(visible, dot);
+    auto coverage = line.coverage.begin();
     for (int y = 0; y < line.height; ++y)
       for (int x = 0; x < line.width; ++x)
-        mix(left + x, top + y, linearOf(color), *ink++);
+        blend(left + x, top + y, toLinear(color), *coverage++);
   }
-  void place(int left, int top, const Canvas& picture) {
-    for (int y = 0; y < picture.m_height; ++y)
-      for (int x = 0; x < picture.m_width; ++x)
-        mix(left + x, top + y, picture.at(x, y), 1.0F);
+  void drawImage(int left, int top, const Canvas& source) {
+    for (int y = 0; y < source.m_height; ++y)
+      for (int x = 0; x < source.m_width; ++x)
+        blend(left + x, top + y, source.at(x, y), 1.0F);
   }
   /// Puts `share` of the colour over a pixel.
-  void mix(int x, int y, const Rgb& color, float coverage) {
+  void blend(int x, int y, const Rgb& color, float coverage) {
     if (x < 0 || y < 0 || x >= m_width || y >= m_height)
       return;
     for (std::size_t c = 0; c < m_planes.size(); ++c) {
@@ -72,7 +72,7 @@ public:
   }
 
 private:
-  static Rgb linearOf(std::uint32_t color) { return decodeSrgb(hexToRgb(color)); }
+  static Rgb toLinear(std::uint32_t color) { return decodeSrgb(hexToRgb(color)); }
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(m_width) +
            static_cast<std::size_t>(x);
@@ -88,31 +88,29 @@ private:
 
 /// Picture of display values, with straight alpha over the panel, averaged in light down to the
 /// box, or enlarged to it.
-Canvas scaledToBox(const Image& picture) {
-  const double scale =
-      std::min(1.0 * boxWidth / picture.width, 1.0 * mostBoxHeight / picture.height);
+Canvas scaleToBox(const Image& image) {
+  const double scale = std::min(1.0 * boxWidth / image.width, 1.0 * maxBoxHeight / image.height);
   const auto scaled = [scale](int size) {
     return std::max(1, static_cast<int>(size * scale + 0.5));
   };
-  Canvas canvas(scaled(picture.width), scaled(picture.height), panel);
-  const Plane* const alpha = picture.find("A");
-  const std::array<const Plane*, 3> planes = {picture.find("R"), picture.find("G"),
-                                              picture.find("B")};
+  Canvas canvas(scaled(image.width), scaled(image.height), panelColor);
+  const Plane* const alpha = image.find("A");
+  const std::array<const Plane*, 3> planes = {image.find("R"), image.find("G"), image.find("B")};
   const auto from = [](int at, int size, int all) {
     return static_cast<int>(std::int64_t{at} * all / size);
   };
   for (int y = 0; y < canvas.height(); ++y)
     for (int x = 0; x < canvas.width(); ++x) {
-      const int top = from(y, canvas.height(), picture.height);
-      const int left = from(x, canvas.width(), picture.width);
-      const int bottom = std::max(top + 1, from(y + 1, canvas.height(), picture.height));
-      const int right = std::max(left + 1, from(x + 1, canvas.width(), picture.width));
+      const int top = from(y, canvas.height(), image.height);
+      const int left = from(x, canvas.width(), image.width);
+      const int bottom = std::max(top + 1, from(y + 1, canvas.height(), image.height));
+      const int right = std::max(left + 1, from(x + 1, canvas.width(), image.width));
       Rgb sum = Rgb::Zero();
       double covered = 0.0;
       for (int v = top; v < bottom; ++v)
         for (int u = left; u < right; ++u) {
           const std::size_t i =
-              static_cast<std::size_t>(v) * static_cast<std::size_t>(picture.width) +
+              static_cast<std::size_t>(v) * static_cast<std::size_t>(image.width) +
               static_cast<std::size_t>(u);
           const double weight = alpha ? static_cast<double>((*alpha)[i]) : 1.0;
           sum += weight * decodeSrgb(Rgb((*planes[0])[i], (*planes[1])[i], (*planes[2])[i]));
@@ -120,7 +118,7 @@ Canvas scaledToBox(const Image& picture) {
         }
       const double all = 1.0 * (bottom - top) * (right - left);
       if (covered > 0.0)
-        canvas.mix(x, y, sum / covered, static_cast<float>(covered / all));
+        canvas.blend(x, y, sum / covered, static_cast<float>(covered / all));
     }
   return canvas;
 }
@@ -129,15 +127,15 @@ Canvas scaledToBox(const Image& picture) {
 struct Thumbnail {
   const SheetEntry* entry;
   std::string problem;
-  std::optional<Canvas> picture = {};
+  std::optional<Canvas> image = {};
 };
 
-Thumbnail thumbnailOf(const SheetEntry& entry) {
+Thumbnail makeThumbnail(const SheetEntry& entry) {
   Thumbnail thumbnail{&entry, entry.problem};
-  if (entry.picture.empty())
+  if (entry.image.empty())
     return thumbnail;
   try {
-    thumbnail.picture = scaledToBox(readImage(entry.picture));
+    thumbnail.image = scaleToBox(readImage(entry.image));
   } catch (const Error& error) {
     thumbnail.problem = error.what();
   }
@@ -145,7 +143,7 @@ Thumbnail thumbnailOf(const SheetEntry& entry) {
 }
 
 /// Columns for a sheet somewhat wider than high, with few empty places in the last row.
-int columnsFor(int count) {
+int chooseColumns(int count) {
   const int wide = std::max(1, static_cast<int>(std::ceil(std::sqrt(1.4 * count))));
   const int narrow = std::max(1, wide - 1);
   const auto empty = [count](int columns) { return (columns - count % columns) % columns; };
@@ -153,59 +151,62 @@ int columnsFor(int count) {
 }
 
 /// Draws an entry into its cell.
-void draw(Canvas& sheet, int left, int top, int boxHeight, const Thumbnail& thumbnail) {
-  constexpr int margin = 14, nameLine = static_cast<int>(lineHeight * nameDot),
-                textLine = static_cast<int>(lineHeight * textDot) + 2;
-  sheet.fill(left, top, boxWidth, boxHeight, panel);
-  if (const auto& picture = thumbnail.picture)
-    sheet.place(left + (boxWidth - picture->width()) / 2, top + (boxHeight - picture->height()) / 2,
-                *picture);
+void drawEntry(Canvas& sheet, int left, int top, int boxHeight, const Thumbnail& thumbnail) {
+  constexpr int margin = 14, nameLine = static_cast<int>(lineHeight * nameDotSize),
+                textLine = static_cast<int>(lineHeight * textDotSize) + 2;
+  sheet.fill(left, top, boxWidth, boxHeight, panelColor);
+  if (const auto& picture = thumbnail.image)
+    sheet.drawImage(left + (boxWidth - picture->width()) / 2,
+                    top + (boxHeight - picture->height()) / 2, *picture);
   int line = top + margin;
-  const auto fits = static_cast<std::size_t>((boxWidth - 2 * margin) / (letterWidth * textDot));
+  const auto fits = static_cast<std::size_t>((boxWidth - 2 * margin) / (glyphWidth * textDotSize));
   if (!thumbnail.problem.empty())
     for (const std::string& text : split(wrapLines(thumbnail.problem, fits), '\n')) {
       if (line + textLine > top + boxHeight)
         break;
-      sheet.write(left + margin, line, text, textDot, alarm, boxWidth - 2 * margin);
+      sheet.drawText(left + margin, line, text, textDotSize, errorColor, boxWidth - 2 * margin);
       line += textLine;
     }
   line = top + boxHeight + 8;
-  sheet.write(left, line, thumbnail.entry->name, nameDot, thumbnail.problem.empty() ? white : alarm,
-              boxWidth);
+  sheet.drawText(left, line, thumbnail.entry->name, nameDotSize,
+                 thumbnail.problem.empty() ? white : errorColor, boxWidth);
   line += nameLine;
   for (const std::string& text : thumbnail.entry->lines) {
-    sheet.write(left, line, text, textDot, grey, boxWidth);
+    sheet.drawText(left, line, text, textDotSize, gray, boxWidth);
     line += textLine;
   }
 }
 
 } // namespace
 
-Image contactSheet(const std::string& title, const std::string& subtitle,
-                   std::span<const SheetEntry> entries, int mostColumns) {
+Image makeContactSheet(const std::string& title, const std::string& subtitle,
+                       std::span<const SheetEntry> entries, int maxColumns) {
   std::vector<Thumbnail> thumbnails;
-  int boxHeight = leastBoxHeight;
+  int boxHeight = minBoxHeight;
   std::size_t lines = 0;
   for (const SheetEntry& entry : entries) {
-    thumbnails.push_back(thumbnailOf(entry));
+    thumbnails.push_back(makeThumbnail(entry));
     lines = std::max(lines, entry.lines.size());
-    if (const auto& picture = thumbnails.back().picture)
+    if (const auto& picture = thumbnails.back().image)
       boxHeight = std::max(boxHeight, picture->height());
   }
   const int count = static_cast<int>(entries.size());
-  const int columns = std::min(mostColumns, columnsFor(count));
+  const int columns = std::min(maxColumns, chooseColumns(count));
   const int rows = (count + columns - 1) / columns;
-  const int caption = 8 + static_cast<int>(lineHeight * nameDot) +
-                      static_cast<int>(lines) * (static_cast<int>(lineHeight * textDot) + 2);
-  const int head = static_cast<int>(lineHeight * (titleDot + textDot)) + 2 * gap;
-  const int across = boxWidth + gap, down = boxHeight + caption + gap;
-  Canvas sheet(gap + std::max(columns, 2) * across, head + rows * down + gap / 2, paper);
+  const int captionHeight =
+      8 + static_cast<int>(lineHeight * nameDotSize) +
+      static_cast<int>(lines) * (static_cast<int>(lineHeight * textDotSize) + 2);
+  const int headerHeight = static_cast<int>(lineHeight * (titleDotSize + textDotSize)) + 2 * gap;
+  const int cellWidth = boxWidth + gap, cellHeight = boxHeight + captionHeight + gap;
+  Canvas sheet(gap + std::max(columns, 2) * cellWidth, headerHeight + rows * cellHeight + gap / 2,
+               sheetColor);
   const int width = sheet.width() - 2 * gap;
-  sheet.write(gap, gap, title, titleDot, white, width);
-  sheet.write(gap, gap + static_cast<int>(lineHeight * titleDot), subtitle, textDot, grey, width);
+  sheet.drawText(gap, gap, title, titleDotSize, white, width);
+  sheet.drawText(gap, gap + static_cast<int>(lineHeight * titleDotSize), subtitle, textDotSize,
+                 gray, width);
   for (int i = 0; i < count; ++i)
-    draw(sheet, gap + i % columns * across, head + i / columns * down, boxHeight,
-         thumbnails[static_cast<std::size_t>(i)]);
+    drawEntry(sheet, gap + i % columns * cellWidth, headerHeight + i / columns * cellHeight,
+              boxHeight, thumbnails[static_cast<std::size_t>(i)]);
   return std::move(sheet).image();
 }
 

@@ -12,7 +12,7 @@ namespace fenestra {
 enum class DisplayView { film, photographic, standard };
 
 /// Name of a view, as --tone has it.
-std::string_view nameOf(DisplayView view);
+std::string_view toString(DisplayView view);
 
 /// How radiance is shown.
 struct Display {

@@ -12,7 +12,7 @@ enum class ImageFormat { exr, nrrd, png, tiff };
 inline constexpr const char* imageExtensions = ".exr, .nrrd, .png or .tif";
 
 /// Format by extension, in either case; nullopt: unknown.
-inline std::optional<ImageFormat> imageFormat(const std::filesystem::path& path) {
+inline std::optional<ImageFormat> findImageFormat(const std::filesystem::path& path) {
   static const std::map<std::string, ImageFormat> formats = {{".exr", ImageFormat::exr},
                                                              {".nrrd", ImageFormat::nrrd},
                                                              {".png", ImageFormat::png},
@@ -24,7 +24,7 @@ inline std::optional<ImageFormat> imageFormat(const std::filesystem::path& path)
 
 /// True for a picture for the eye, by its extension.
 inline bool isDisplayFile(const std::filesystem::path& path) {
-  const auto format = imageFormat(path);
+  const auto format = findImageFormat(path);
   return format == ImageFormat::png || format == ImageFormat::tiff;
 }
 

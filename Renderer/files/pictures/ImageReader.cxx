@@ -24,10 +24,10 @@
 namespace fenestra {
 namespace {
 
-constexpr std::int64_t largestSide = 32768;
+constexpr std::int64_t maxSide = 32768;
 /// Most pixels times channels: 1 GiB of floats, so that two pictures to compare, or a map of light
 /// and its picture, take about 2 GiB.
-constexpr std::int64_t mostSamples = std::int64_t{1} << 28;
+constexpr std::int64_t maxSamples = std::int64_t{1} << 28;
 
 /// Checks untrusted sizes before memory is taken. No format packs more than about 4096 samples into
 /// a byte (deflate: 1032 bytes per byte, 1-bit pictures are rare); 2^20 more are allowed for tiny
@@ -35,14 +35,14 @@ constexpr std::int64_t mostSamples = std::int64_t{1} << 28;
 void checkSize(const std::filesystem::path& path, std::int64_t width, std::int64_t height,
                std::int64_t channels) {
   const std::string size = concat(width, 'x', height);
-  if (width < 1 || height < 1 || width > largestSide || height > largestSide)
-    throw inputError(path, "is ", size, " pixels; each side must be 1 to ", largestSide);
+  if (width < 1 || height < 1 || width > maxSide || height > maxSide)
+    throw inputError(path, "is ", size, " pixels; each side must be 1 to ", maxSide);
   const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(path));
   if (channels > ((1 << 20) + 4096 * bytes) / (width * height))
     throw inputError(path, "is too short for ", channels, " channels of ", size,
                      " pixels; write it again");
-  if (channels > mostSamples / (width * height))
-    throw inputError(path, "has ", width * height * channels, " samples; at most ", mostSamples,
+  if (channels > maxSamples / (width * height))
+    throw inputError(path, "has ", width * height * channels, " samples; at most ", maxSamples,
                      " are read, so use fewer pixels or channels");
 }
 
@@ -57,7 +57,7 @@ const std::map<std::string, std::uint32_t> fixedSizes = {
     {"tiledesc", 9}, {"timecode", 8},       {"v2d", 16},        {"v2f", 8},
     {"v2i", 8},      {"v3d", 24},           {"v3f", 12},        {"v3i", 12}};
 
-std::uint32_t littleEndian(const std::string& bytes, std::size_t at) {
+std::uint32_t readLittleEndian(const std::string& bytes, std::size_t at) {
   std::uint32_t value = 0;
   for (std::size_t i = 0; i < 4 && at + i < bytes.size(); ++i)
     value |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[at + i])) << (8 * i);
@@ -77,20 +77,20 @@ bool isChannelList(const std::string& value) {
 bool isStringVector(const std::string& value) {
   std::uint64_t at = 0;
   while (at + 4 <= value.size())
-    at += std::uint64_t{4} + littleEndian(value, at);
+    at += std::uint64_t{4} + readLittleEndian(value, at);
   return at == value.size();
 }
 
 /// True for width, height, and that many pixels of four bytes.
 bool isPreview(const std::string& value) {
-  const std::uint64_t width = littleEndian(value, 0), height = littleEndian(value, 4);
+  const std::uint64_t width = readLittleEndian(value, 0), height = readLittleEndian(value, 4);
   return value.size() >= 8 && width <= value.size() && height <= value.size() &&
          8 + 4 * width * height == value.size();
 }
 
 /// True if `value` is one whole value of `type`. Unknown types pass: OpenEXR reads them by their
 /// size.
-bool fillsItsSize(const std::string& type, const std::string& value) {
+bool hasExactSize(const std::string& type, const std::string& value) {
   if (const auto fixed = fixedSizes.find(type); fixed != fixedSizes.end())
     return value.size() == fixed->second;
   if (type == "chlist")
@@ -111,20 +111,20 @@ void checkExrAttributes(const std::filesystem::path& path) {
   ThrowingStream<std::ifstream> file(path, std::ios::binary);
   const auto length = static_cast<std::int64_t>(std::filesystem::file_size(path));
   file.seekg(5); // flags of the version field
-  const bool severalParts = (file.get() & 0x10) != 0;
+  const bool isMultiPart = (file.get() & 0x10) != 0;
   file.seekg(8);
   std::string name, type, size(4, '\0'), value;
   do { // one header per part, and an empty one after the last
     while (std::getline(file, name, '\0') && !name.empty() && std::getline(file, type, '\0')) {
       file.read(size.data(), 4);
-      if (!file || littleEndian(size, 0) > length - file.tellg())
+      if (!file || readLittleEndian(size, 0) > length - file.tellg())
         throw std::runtime_error("an attribute reaches past the end");
-      value.resize(littleEndian(size, 0));
+      value.resize(readLittleEndian(size, 0));
       file.read(value.data(), static_cast<std::streamsize>(value.size()));
-      if (!fillsItsSize(type, value))
+      if (!hasExactSize(type, value))
         throw std::runtime_error("an attribute does not fill its size");
     }
-  } while (severalParts && file.peek() > 0);
+  } while (isMultiPart && file.peek() > 0);
 }
 
 void checkExr(const std::filesystem::path& path, const Imf::Header& header) {
@@ -139,7 +139,7 @@ void checkExr(const std::filesystem::path& path, const Imf::Header& header) {
             std::int64_t{window.max.y} - window.min.y + 1, channels);
 }
 
-std::map<std::string, std::string> ownAttributes(const Imf::Header& header) {
+std::map<std::string, std::string> readFenestraAttributes(const Imf::Header& header) {
   const std::string prefix = "fenestra.";
   std::map<std::string, std::string> found;
   for (auto it = header.begin(); it != header.end(); ++it) {
@@ -154,7 +154,7 @@ std::map<std::string, std::string> ownAttributes(const Imf::Header& header) {
 Image readExr(const std::filesystem::path& path) {
   // OpenEXR allocates tables of offsets and tiles before it returns the header.
   checkExrAttributes(path);
-  constexpr int side = static_cast<int>(largestSide);
+  constexpr int side = static_cast<int>(maxSide);
   Imf::Header::setMaxImageSize(side, side);
   Imf::Header::setMaxTileSize(4096, 4096);
   Imf::InputFile file(path.c_str());
@@ -165,7 +165,7 @@ Image readExr(const std::filesystem::path& path) {
   Image image;
   image.width = window.max.x - window.min.x + 1;
   image.height = window.max.y - window.min.y + 1;
-  image.header = ownAttributes(file.header());
+  image.header = readFenestraAttributes(file.header());
   const auto width = static_cast<std::size_t>(image.width);
   const auto& channels = file.header().channels();
   Imf::FrameBuffer frame;
@@ -195,8 +195,8 @@ std::vector<std::string> channelNames(ImageFormat format, unsigned components) {
 
 /// Picture of interleaved samples; integers become [0, 1].
 template <typename T>
-Image unpacked(const std::vector<char>& bytes, const std::vector<std::string>& names,
-               std::size_t width, std::size_t height) {
+Image deinterleave(const std::vector<char>& bytes, const std::vector<std::string>& names,
+                   std::size_t width, std::size_t height) {
   const T* const samples = reinterpret_cast<const T*>(bytes.data());
   const auto scale =
       std::is_integral_v<T> ? static_cast<float>(std::numeric_limits<T>::max()) : 1.0f;
@@ -227,8 +227,8 @@ Image readPng(const std::filesystem::path& path) {
   std::vector<char> bytes(PNG_IMAGE_SIZE(png));
   if (!png_image_finish_read(&png, nullptr, bytes.data(), 0, nullptr))
     throw std::runtime_error(png.message);
-  return unpacked<std::uint8_t>(bytes, channelNames(ImageFormat::png, hasAlpha ? 4 : 3), png.width,
-                                png.height);
+  return deinterleave<std::uint8_t>(bytes, channelNames(ImageFormat::png, hasAlpha ? 4 : 3),
+                                    png.width, png.height);
 }
 
 std::uint32_t tiffField(TIFF* tiff, std::uint32_t tag) {
@@ -242,10 +242,11 @@ void checkTiff(const std::filesystem::path& path, TIFF* tiff) {
   const auto bits = tiffField(tiff, TIFFTAG_BITSPERSAMPLE);
   const auto samples = tiffField(tiff, TIFFTAG_SAMPLESPERPIXEL);
   const auto photometric = tiffField(tiff, TIFFTAG_PHOTOMETRIC);
-  const bool known = (bits == 8 || bits == 16) &&
-                     photometric == (samples < 3 ? PHOTOMETRIC_MINISBLACK : PHOTOMETRIC_RGB) &&
-                     tiffField(tiff, TIFFTAG_SAMPLEFORMAT) == SAMPLEFORMAT_UINT;
-  if (!known || samples < 1 || samples > 4 || TIFFIsTiled(tiff) ||
+  const bool isSupported =
+      (bits == 8 || bits == 16) &&
+      photometric == (samples < 3 ? PHOTOMETRIC_MINISBLACK : PHOTOMETRIC_RGB) &&
+      tiffField(tiff, TIFFTAG_SAMPLEFORMAT) == SAMPLEFORMAT_UINT;
+  if (!isSupported || samples < 1 || samples > 4 || TIFFIsTiled(tiff) ||
       tiffField(tiff, TIFFTAG_PLANARCONFIG) != PLANARCONFIG_CONTIG)
     throw inputError(path, "is not grey or RGB of 8 or 16 bit in interleaved rows; convert it");
   if (const auto orientation = tiffField(tiff, TIFFTAG_ORIENTATION);
@@ -276,16 +277,16 @@ Image readTiff(const std::filesystem::path& path) {
   TIFFGetField(tiff.get(), TIFFTAG_IMAGEWIDTH, &width);
   TIFFGetField(tiff.get(), TIFFTAG_IMAGELENGTH, &height);
   const auto samples = tiffField(tiff.get(), TIFFTAG_SAMPLESPERPIXEL);
-  const bool wide = tiffField(tiff.get(), TIFFTAG_BITSPERSAMPLE) == 16;
+  const bool is16Bit = tiffField(tiff.get(), TIFFTAG_BITSPERSAMPLE) == 16;
   checkSize(path, width, height, samples < 3 ? samples + 2 : samples); // grey becomes R, G, B
   const auto bytes =
-      readTiffRows(tiff.get(), std::size_t{width} * samples * (wide ? 2 : 1), height);
-  const auto unpack = wide ? unpacked<std::uint16_t> : unpacked<std::uint8_t>;
+      readTiffRows(tiff.get(), std::size_t{width} * samples * (is16Bit ? 2 : 1), height);
+  const auto unpack = is16Bit ? deinterleave<std::uint16_t> : deinterleave<std::uint8_t>;
   return unpack(bytes, channelNames(ImageFormat::tiff, samples), width, height);
 }
 
 /// True if every axis beyond the second has size 1.
-bool isOnePicture(const itk::ImageIOBase& io) {
+bool isSingleImage(const itk::ImageIOBase& io) {
   bool one = io.GetNumberOfDimensions() >= 2;
   for (unsigned axis = 2; axis < io.GetNumberOfDimensions(); ++axis)
     one = one && io.GetDimensions(axis) == 1;
@@ -299,21 +300,21 @@ Image readNrrd(const std::filesystem::path& path) {
   io->SetFileName(path.string());
   io->ReadImageInformation();
   const auto names = channelNames(ImageFormat::nrrd, io->GetNumberOfComponents());
-  if (!isOnePicture(*io) || names.empty() || io->GetComponentType() != itk::IOComponentEnum::FLOAT)
+  if (!isSingleImage(*io) || names.empty() || io->GetComponentType() != itk::IOComponentEnum::FLOAT)
     throw inputError(path, "is not one slice of 1, 3 or 4 floats a pixel; extract one");
   const std::size_t width = io->GetDimensions(0), height = io->GetDimensions(1);
   checkSize(path, static_cast<std::int64_t>(width), static_cast<std::int64_t>(height),
             io->GetNumberOfComponents());
   std::vector<char> bytes(static_cast<std::size_t>(io->GetImageSizeInBytes()));
   io->Read(bytes.data());
-  return unpacked<float>(bytes, names, width, height);
+  return deinterleave<float>(bytes, names, width, height);
 }
 
 } // namespace
 
 Image readImage(const std::filesystem::path& path) {
   requireFile(path, "name an image");
-  const auto format = imageFormat(path);
+  const auto format = findImageFormat(path);
   if (!format)
     throw inputError(path, "has no known extension; name an image ", imageExtensions);
   try {

@@ -72,7 +72,7 @@ bool isOpaque(const std::vector<float>& rgba) {
 
 /// Integers from 0 to the largest of T for values in [0, 1]; no alpha if all pixels are opaque.
 template <typename T>
-std::vector<T> quantized(const std::vector<float>& rgba) {
+std::vector<T> quantize(const std::vector<float>& rgba) {
   const bool opaque = isOpaque(rgba);
   std::vector<T> values;
   values.reserve(rgba.size());
@@ -83,7 +83,7 @@ std::vector<T> quantized(const std::vector<float>& rgba) {
   return values;
 }
 
-std::string bigEndian(std::uint32_t number) {
+std::string toBigEndian(std::uint32_t number) {
   std::string bytes;
   for (const int shift : {24, 16, 8, 0})
     bytes += static_cast<char>(number >> shift & 0xff);
@@ -91,42 +91,42 @@ std::string bigEndian(std::uint32_t number) {
 }
 
 /// A tEXt chunk (PNG specification, 11.3.4.3), which libpng's simple interface does not write; its
-/// checksum is set by closeChunk.
-std::string textChunk(const std::string& keyword, std::string_view text) {
+/// checksum is set by setChecksum.
+std::string makeTextChunk(const std::string& keyword, std::string_view text) {
   const auto length = static_cast<std::uint32_t>(keyword.size() + 1 + text.size());
-  return bigEndian(length) + "tEXt" + keyword + std::string(1, '\0') + std::string(text) +
-         bigEndian(0);
+  return toBigEndian(length) + "tEXt" + keyword + std::string(1, '\0') + std::string(text) +
+         toBigEndian(0);
 }
 
 /// Sets the checksum of the chunk of `size` bytes at `start`.
-void closeChunk(std::string& png, std::size_t start, std::size_t size) {
+void setChecksum(std::string& png, std::size_t start, std::size_t size) {
   const auto* const bytes = reinterpret_cast<const Bytef*>(png.data()) + start + 4;
   const uLong checksum = crc32(crc32(0, nullptr, 0), bytes, static_cast<uInt>(size - 8));
-  png.replace(start + size - 4, 4, bigEndian(static_cast<std::uint32_t>(checksum)));
+  png.replace(start + size - 4, 4, toBigEndian(static_cast<std::uint32_t>(checksum)));
 }
 
 /// Inserts the mark and, unless empty, a comment after the first chunk, IHDR.
-std::string withTexts(std::string png, const std::string& comment) {
+std::string insertTexts(std::string png, const std::string& comment) {
   constexpr std::size_t afterHeader = 8 + 25; // signature and IHDR
   if (!comment.empty()) {
-    const std::string chunk = textChunk("Comment", comment);
+    const std::string chunk = makeTextChunk("Comment", comment);
     png.insert(afterHeader, chunk);
-    closeChunk(png, afterHeader, chunk.size());
+    setChecksum(png, afterHeader, chunk.size());
   }
-  const std::string tag = textChunk("Software", blankProvenanceTag);
+  const std::string tag = makeTextChunk("Software", blankProvenanceTag);
   png.insert(afterHeader, tag);
   png = sealProvenanceTag(std::move(png));
-  closeChunk(png, afterHeader, tag.size());
+  setChecksum(png, afterHeader, tag.size());
   return png;
 }
 
 /// Comment of a display picture: tone and exposure, and the header's words on a filter;
 /// empty: neither.
-std::string commentOf(const Image& image, const Display& display) {
+std::string makeComment(const Image& image, const Display& display) {
   std::string comment;
   if (display.view != DisplayView::standard)
     comment =
-        concat("tone ", nameOf(display.view), ", exposure ", toString(display.exposure), " EV");
+        concat("tone ", toString(display.view), ", exposure ", toString(display.exposure), " EV");
   if (const auto found = image.header.find("filter"); found != image.header.end())
     comment += (comment.empty() ? "" : "; ") + found->second;
   return comment;
@@ -134,7 +134,7 @@ std::string commentOf(const Image& image, const Display& display) {
 
 std::string encodePng(const Image& image, const std::vector<float>& rgba,
                       const std::string& comment) {
-  const std::vector<std::uint8_t> values = quantized<std::uint8_t>(rgba);
+  const std::vector<std::uint8_t> values = quantize<std::uint8_t>(rgba);
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   png.width = static_cast<png_uint_32>(image.width);
@@ -146,7 +146,7 @@ std::string encodePng(const Image& image, const std::vector<float>& rgba,
   if (!png_image_write_to_memory(&png, content.data(), &size, 0, values.data(), 0, nullptr))
     throw outputError("picture as PNG", png.message, "; write it as .exr");
   content.resize(size);
-  return withTexts(std::move(content), comment);
+  return insertTexts(std::move(content), comment);
 }
 
 void setTiffFields(TIFF* tiff, const Image& image, bool opaque, const std::string& comment) {
@@ -169,7 +169,7 @@ void setTiffFields(TIFF* tiff, const Image& image, bool opaque, const std::strin
 
 std::string encodeTiff(const Image& image, const std::vector<float>& rgba,
                        const std::string& comment) {
-  std::vector<std::uint16_t> values = quantized<std::uint16_t>(rgba);
+  std::vector<std::uint16_t> values = quantize<std::uint16_t>(rgba);
   const std::size_t rowLength = values.size() / static_cast<std::size_t>(image.height);
   TextWriter stream;
   const std::unique_ptr<TIFF, void (*)(TIFF*)> tiff(TIFFStreamOpen("picture", &stream), TIFFClose);
@@ -206,7 +206,7 @@ std::string encodeSlice(const Image& image, const ImagePlane& plane,
 }
 
 /// Channels R, G, B and A whose names begin with `prefix`.
-std::vector<float> interleavedRgba(const Image& image, const std::string& prefix = "") {
+std::vector<float> interleaveRgba(const Image& image, const std::string& prefix = "") {
   const std::size_t count = image.channels.at(prefix + "R").size();
   std::vector<float> values(4 * count, 1.0f);
   for (std::size_t c = 0; c < 4; ++c)
@@ -217,12 +217,12 @@ std::vector<float> interleavedRgba(const Image& image, const std::string& prefix
 }
 
 /// Picture beside a `.nrrd`.
-std::filesystem::path besidePath(const std::filesystem::path& path, const char* part) {
+std::filesystem::path siblingPath(const std::filesystem::path& path, const char* part) {
   return path.parent_path() / (path.stem().string() + "-" + part + ".nrrd");
 }
 
 /// Header lines of a NRRD that give its geometry: space, directions, origin.
-std::vector<std::string> gridLines(const std::filesystem::path& path) {
+std::vector<std::string> readGridLines(const std::filesystem::path& path) {
   std::vector<std::string> lines;
   ThrowingStream<std::ifstream> file(path, std::ios::binary);
   for (std::string line; std::getline(file, line) && !line.empty() && lines.size() < 3;)
@@ -234,18 +234,18 @@ std::vector<std::string> gridLines(const std::filesystem::path& path) {
 
 /// True if Fenestra wrote the depth picture: by its mark, or (files older than marks) by the grid
 /// that it shares with the colours.
-bool isFenestraDepth(const std::filesystem::path& depth, const std::filesystem::path& colour) {
-  const std::vector<std::string> lines = gridLines(depth);
-  return hasProvenanceTag(depth) || (lines.size() == 3 && lines == gridLines(colour));
+bool isFenestraDepth(const std::filesystem::path& depth, const std::filesystem::path& color) {
+  const std::vector<std::string> lines = readGridLines(depth);
+  return hasProvenanceTag(depth) || (lines.size() == 3 && lines == readGridLines(color));
 }
 
-ImageFormat checkedFormat(const std::filesystem::path& path) {
-  if (const auto format = imageFormat(path))
+ImageFormat requireFormat(const std::filesystem::path& path) {
+  if (const auto format = findImageFormat(path))
     return *format;
   throw usageError("--output ", path, ": has no known extension; name a file ", imageExtensions);
 }
 
-void requireColour(const Image& image, const std::filesystem::path& path) {
+void requireColor(const Image& image, const std::filesystem::path& path) {
   for (const char* name : {"R", "G", "B"})
     if (!image.find(name))
       throw usageError(path, ": the picture has no channel ", name, "; write it as .exr");
@@ -255,44 +255,44 @@ void requireColour(const Image& image, const std::filesystem::path& path) {
 
 void writeImage(const Image& image, const ImagePlane& plane, const std::filesystem::path& path,
                 Outputs& outputs, const Display& display) {
-  const ImageFormat format = checkedFormat(path);
+  const ImageFormat format = requireFormat(path);
   if (format == ImageFormat::exr)
     return outputs.write(path, encodeExr(image));
-  requireColour(image, path);
+  requireColor(image, path);
   if (format == ImageFormat::nrrd) {
-    outputs.write(path, encodeSlice(image, plane, interleavedRgba(image)));
+    outputs.write(path, encodeSlice(image, plane, interleaveRgba(image)));
     if (const std::vector<float>* depth = image.find("Z"))
-      outputs.write(besidePath(path, "Z"), encodeSlice(image, plane, *depth));
+      outputs.write(siblingPath(path, "Z"), encodeSlice(image, plane, *depth));
     if (image.find("denoised.R"))
-      outputs.write(besidePath(path, "denoised"),
-                    encodeSlice(image, plane, interleavedRgba(image, "denoised.")));
+      outputs.write(siblingPath(path, "denoised"),
+                    encodeSlice(image, plane, interleaveRgba(image, "denoised.")));
     return;
   }
-  const std::vector<float> shown = toDisplay(interleavedRgba(image), display);
-  const std::string comment = commentOf(image, display);
-  outputs.write(path, format == ImageFormat::png ? encodePng(image, shown, comment)
-                                                 : encodeTiff(image, shown, comment));
+  const std::vector<float> pixels = toDisplay(interleaveRgba(image), display);
+  const std::string comment = makeComment(image, display);
+  outputs.write(path, format == ImageFormat::png ? encodePng(image, pixels, comment)
+                                                 : encodeTiff(image, pixels, comment));
 }
 
-std::vector<std::filesystem::path> imageFiles(const std::filesystem::path& path) {
-  if (checkedFormat(path) == ImageFormat::nrrd)
-    return {path, besidePath(path, "Z"), besidePath(path, "denoised")};
+std::vector<std::filesystem::path> listImageFiles(const std::filesystem::path& path) {
+  if (requireFormat(path) == ImageFormat::nrrd)
+    return {path, siblingPath(path, "Z"), siblingPath(path, "denoised")};
   return {path};
 }
 
-void declareImage(const std::filesystem::path& path, Outputs& outputs, NamedBy namedBy,
-                  Filtered filtered) {
-  const ImageFormat format = checkedFormat(path);
-  if (namedBy == NamedBy::user)
+void declareImage(const std::filesystem::path& path, Outputs& outputs, NameOrigin origin,
+                  HasDenoised hasDenoised) {
+  const ImageFormat format = requireFormat(path);
+  if (origin == NameOrigin::user)
     outputs.add(path);
   else
     outputs.add(path, hasProvenanceTag);
   if (format != ImageFormat::nrrd)
     return;
-  outputs.add(besidePath(path, "Z"),
+  outputs.add(siblingPath(path, "Z"),
               [path](const auto& depth) { return isFenestraDepth(depth, path); });
-  if (filtered == Filtered::yes)
-    outputs.add(besidePath(path, "denoised"), hasProvenanceTag);
+  if (hasDenoised == HasDenoised::yes)
+    outputs.add(siblingPath(path, "denoised"), hasProvenanceTag);
 }
 
 } // namespace fenestra

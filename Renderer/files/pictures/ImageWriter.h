@@ -26,14 +26,14 @@ void writeImage(const Image& image, const ImagePlane& plane, const std::filesyst
 
 /// Files that writeImage may make for this path: itself, and the depth and the filtered colours
 /// beside a `.nrrd`. Throws Error (usage) for another extension.
-std::vector<std::filesystem::path> imageFiles(const std::filesystem::path& path);
+std::vector<std::filesystem::path> listImageFiles(const std::filesystem::path& path);
 
-enum class NamedBy { user, standard };
+enum class NameOrigin { user, standard };
 /// Whether pictures have filtered channels.
-enum class Filtered { no, yes };
-/// Declares the files of imageFiles, before a long render. Pictures beside a `.nrrd`, and a picture
-/// with its standard name, replace only files that Fenestra wrote. Throws as Outputs does.
+enum class HasDenoised { no, yes };
+/// Declares the files of listImageFiles, before a long render. Pictures beside a `.nrrd`, and a
+/// picture with its standard name, replace only files that Fenestra wrote. Throws as Outputs does.
 void declareImage(const std::filesystem::path& path, Outputs& outputs,
-                  NamedBy namedBy = NamedBy::user, Filtered filtered = Filtered::no);
+                  NameOrigin origin = NameOrigin::user, HasDenoised hasDenoised = HasDenoised::no);
 
 } // namespace fenestra

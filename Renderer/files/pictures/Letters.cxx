@@ -9,11 +9,11 @@
 namespace fenestra {
 namespace {
 
-constexpr int dotsWide = 5, dotsHigh = 9;
-constexpr int inBand = 16; ///< letters beside each other in `shapes`
+constexpr int glyphColumns = 5, glyphRows = 9;
+constexpr int glyphsPerBand = 16; ///< letters beside each other in `shapes`
 
 /// Shapes of the characters from blank to DEL, 16 in a band of 9 rows; a line's end comes first.
-constexpr std::string_view shapes = R"(
+constexpr std::string_view glyphs = R"(
 ..... ..#.. .#.#. .#.#. ..#.. ##... .##.. ..#.. ...#. .#... ..... ..... ..... ..... ..... .....
 ..... ..#.. .#.#. .#.#. .#### ##..# #..#. ..#.. ..#.. ..#.. ..#.. ..#.. ..... ..... ..... ....#
 ..... ..#.. .#.#. ##### #.#.. ...#. #.#.. ..#.. .#... ...#. #.#.# ..#.. ..... ..... ..... ...#.
@@ -69,38 +69,38 @@ constexpr std::string_view shapes = R"(
 #.... ....# ..... ..... ..... ..... ..... ..... ..... ....# ..... ..... ..... ..... ..... .....
 #.... ....# ..... ..... ..... ..... ..... ..... ..... .###. ..... ..... ..... ..... ..... .....
 )";
-constexpr std::size_t rowLength = shapes.find('\n', 1); ///< with the line's end
+constexpr std::size_t rowLength = glyphs.find('\n', 1); ///< with the line's end
 
 /// Grid of dots, true where there is ink.
-struct Dots {
+struct DotMatrix {
   int width, height;
-  std::vector<bool> ink;
+  std::vector<bool> isSet;
 
   bool at(int x, int y) const {
     return x >= 0 && y >= 0 && x < width && y < height &&
-           ink[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-               static_cast<std::size_t>(x)];
+           isSet[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                 static_cast<std::size_t>(x)];
   }
 };
 
-Dots dotsOf(const std::string& text) {
-  Dots dots{letterWidth * static_cast<int>(text.size()), lineHeight, {}};
+DotMatrix rasterizeDots(const std::string& text) {
+  DotMatrix dots{glyphWidth * static_cast<int>(text.size()), lineHeight, {}};
   for (int y = 0; y < dots.height; ++y)
     for (int x = 0; x < dots.width; ++x) {
-      const int letter = text[static_cast<std::size_t>(x / letterWidth)] - ' ';
-      const int row = dotsHigh * (letter / inBand) + y;
-      const int column = letterWidth * (letter % inBand) + x % letterWidth;
-      const bool isInside = x % letterWidth < dotsWide && y < dotsHigh;
+      const int letter = text[static_cast<std::size_t>(x / glyphWidth)] - ' ';
+      const int row = glyphRows * (letter / glyphsPerBand) + y;
+      const int column = glyphWidth * (letter % glyphsPerBand) + x % glyphWidth;
+      const bool isInside = x % glyphWidth < glyphColumns && y < glyphRows;
       const std::size_t dot =
           static_cast<std::size_t>(row) * rowLength + static_cast<std::size_t>(column) + 1;
-      dots.ink.push_back(isInside && shapes[dot] == '#');
+      dots.isSet.push_back(isInside && glyphs[dot] == '#');
     }
   return dots;
 }
 
 /// Twice as many dots each way, with smooth diagonals: A. Mazzoleni, Scale2x (2001).
-Dots doubled(const Dots& dots) {
-  Dots twice{2 * dots.width, 2 * dots.height, {}};
+DotMatrix scale2x(const DotMatrix& dots) {
+  DotMatrix twice{2 * dots.width, 2 * dots.height, {}};
   for (int y = 0; y < twice.height; ++y)
     for (int x = 0; x < twice.width; ++x) {
       const int i = x / 2, j = y / 2;
@@ -110,14 +110,14 @@ Dots doubled(const Dots& dots) {
       const bool above = dots.at(i, j + (y % 2 == 0 ? -1 : 1));
       const bool below = dots.at(i, j + (y % 2 == 0 ? 1 : -1));
       const bool isCorner = beside == above && beside != below && above != across;
-      twice.ink.push_back(isCorner ? beside : here);
+      twice.isSet.push_back(isCorner ? beside : here);
     }
   return twice;
 }
 
 } // namespace
 
-std::string letters(std::string_view text) {
+std::string toAscii(std::string_view text) {
   constexpr char box = 0x7f;
   constexpr std::string_view latin1 = // U+00C0 to U+00FF without accents
       "AAAAAAACEEEEIIIIDNOOOOOxOUUUUYTsaaaaaaaceeeeiiiidnooooo/ouuuuyty";
@@ -134,15 +134,15 @@ std::string letters(std::string_view text) {
   return ascii;
 }
 
-Lettering lettering(std::string_view text, double size) {
+TextBitmap rasterizeText(std::string_view text, double dotSize) {
   constexpr int fine = 8; // parts of a dot
-  const Dots dots = doubled(doubled(doubled(dotsOf(letters(text)))));
-  const auto pixels = [size](int parts) {
-    return static_cast<int>(std::ceil(parts * size / fine));
+  const DotMatrix dots = scale2x(scale2x(scale2x(rasterizeDots(toAscii(text)))));
+  const auto pixels = [dotSize](int parts) {
+    return static_cast<int>(std::ceil(parts * dotSize / fine));
   };
-  Lettering result{pixels(dots.width), pixels(dots.height), {}};
-  const auto part = [size](int pixel) {
-    return static_cast<int>(std::lround(pixel * fine / size));
+  TextBitmap result{pixels(dots.width), pixels(dots.height), {}};
+  const auto part = [dotSize](int pixel) {
+    return static_cast<int>(std::lround(pixel * fine / dotSize));
   };
   for (int y = 0; y < result.height; ++y)
     for (int x = 0; x < result.width; ++x) {
@@ -150,7 +150,7 @@ Lettering lettering(std::string_view text, double size) {
       for (int v = part(y); v < part(y + 1); ++v)
         for (int u = part(x); u < part(x + 1); ++u, ++all)
           inked += dots.at(u, v) ? 1 : 0;
-      result.ink.push_back(static_cast<float>(inked) / static_cast<float>(std::max(all, 1)));
+      result.coverage.push_back(static_cast<float>(inked) / static_cast<float>(std::max(all, 1)));
     }
   return result;
 }

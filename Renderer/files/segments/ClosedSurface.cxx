@@ -20,18 +20,18 @@ constexpr const char* exportHint =
     "export the segmentation in Slicer as a binary labelmap (.seg.nrrd)";
 
 /// Files that a .vtm names. Throws Error (input) for names outside its folder.
-std::vector<Path> blocksOf(const Path& path) {
+std::vector<Path> readBlocks(const Path& path) {
   pugi::xml_document document;
   const std::string text = readText(path); // holds names alone
   const bool read = static_cast<bool>(document.load_buffer(text.data(), text.size()));
   const pugi::xml_node file = document.child("VTKFile");
   if (!read || std::string_view(file.attribute("type").value()) != "vtkMultiBlockDataSet")
     throw inputError(path, "is damaged or no multi-block file; ", exportHint);
-  constexpr std::size_t mostBlocks = 4096;
+  constexpr std::size_t maxBlocks = 4096;
   std::vector<Path> blocks;
   for (const auto& block : file.child("vtkMultiBlockDataSet").children("DataSet")) {
     const Path name = Path(block.attribute("file").value()).lexically_normal();
-    if (name.empty() || name.is_absolute() || *name.begin() == ".." || blocks.size() == mostBlocks)
+    if (name.empty() || name.is_absolute() || *name.begin() == ".." || blocks.size() == maxBlocks)
       throw inputError(path, "DataSet: file=\"", sanitize(name.string()),
                        "\" is not in the folder of the .vtm; ", exportHint);
     blocks.push_back(path.parent_path() / name);
@@ -46,7 +46,7 @@ struct Surface {
   VtkSurface shape;
 };
 
-SegmentInfo infoOf(const VtkSurface& surface, std::size_t index) {
+SegmentInfo makeSegmentInfo(const VtkSurface& surface, std::size_t index) {
   const auto text = [&](const char* key, const std::string& fallback) {
     const auto found = surface.texts.find(key);
     return found == surface.texts.end() || found->second.empty() ? fallback : found->second;
@@ -55,7 +55,7 @@ SegmentInfo infoOf(const VtkSurface& surface, std::size_t index) {
   info.name = text("Segment_Name", "Segment " + std::to_string(index));
   info.id = text("Segment_ID", info.name);
   info.labelValue = static_cast<std::int32_t>(index + 1);
-  info.readTerminology(text("Segment_Tags", ""));
+  info.parseTerminology(text("Segment_Tags", ""));
   for (const char* key : {"Segment_DefaultColor", "Segment_Color"}) {
     const auto found = surface.numbers.find(key);
     if (found != surface.numbers.end() && found->second.size() == 3)
@@ -64,24 +64,24 @@ SegmentInfo infoOf(const VtkSurface& surface, std::size_t index) {
   return info;
 }
 
-std::vector<Surface> surfacesOf(const Path& path) {
+std::vector<Surface> readSurfaces(const Path& path) {
   std::vector<Surface> surfaces;
   const std::set<std::string> fieldData = {"Segment_Name", "Segment_ID", "Segment_Tags",
                                            "Segment_DefaultColor", "Segment_Color"};
-  SurfaceAllowance allowance;
-  for (const Path& block : blocksOf(path)) {
-    VtkSurface shape = readVtkSurface(block, fieldData, allowance);
+  MemoryBudget budget;
+  for (const Path& block : readBlocks(path)) {
+    VtkSurface shape = readVtkSurface(block, fieldData, budget);
     if (shape.triangles.empty() && shape.hasLines)
       throw inputError(
           block, "Segmentation_MasterRepresentation: holds planar contours, not a closed surface; ",
           exportHint);
-    surfaces.push_back({infoOf(shape, surfaces.size()), std::move(shape)});
+    surfaces.push_back({makeSegmentInfo(shape, surfaces.size()), std::move(shape)});
   }
   return surfaces;
 }
 
 /// Bounds of the points, in a grid's index space.
-Box boundsOf(const std::vector<Surface>& surfaces, const Affine& worldToIndex) {
+Box computeBounds(const std::vector<Surface>& surfaces, const Affine& worldToIndex) {
   Box bounds{Vec3::Constant(infinity), Vec3::Constant(-infinity)};
   for (const Surface& surface : surfaces)
     for (const Vec3& point : surface.shape.points) {
@@ -92,10 +92,10 @@ Box boundsOf(const std::vector<Surface>& surfaces, const Affine& worldToIndex) {
   return bounds;
 }
 
-Grid gridAround(const Box& bounds) {
-  constexpr double longest = 256.0;
+Grid makeGrid(const Box& bounds) {
+  constexpr double voxelsAlongLongest = 256.0;
   const Vec3 extent = bounds.upper - bounds.lower;
-  const double spacing = std::max(extent.maxCoeff() / longest, 1e-6);
+  const double spacing = std::max(extent.maxCoeff() / voxelsAlongLongest, 1e-6);
   Affine indexToWorld = Affine::Identity();
   indexToWorld.linear() *= spacing;
   indexToWorld.translation() = bounds.lower;
@@ -103,7 +103,7 @@ Grid gridAround(const Box& bounds) {
 }
 
 /// Part of the reference that the surfaces may touch.
-Grid cropped(const Grid& reference, const Box& bounds) {
+Grid cropGrid(const Grid& reference, const Box& bounds) {
   const Vec3 last = reference.size.cast<double>().array() - 1.0;
   const Vec3 lower = bounds.lower.array().floor().max(0.0).min(last.array());
   const Vec3 upper = bounds.upper.array().ceil().max(0.0).min(last.array());
@@ -125,9 +125,9 @@ public:
     while (layer < count && !isFree(layer, runs))
       ++layer;
     if (layer == count) {
-      constexpr std::int64_t most = std::int64_t{1} << 31;
+      constexpr std::int64_t maxLabels = std::int64_t{1} << 31;
       const std::int64_t size = m_size.prod() * static_cast<std::int64_t>(++count);
-      if (size > most)
+      if (size > maxLabels)
         throw inputError(m_path, "overlaps in too many layers; ", exportHint);
       labels.resize(static_cast<std::size_t>(size));
     }
@@ -161,12 +161,13 @@ private:
 
 Segmentation readClosedSurfaces(const Path& path, const Grid* reference) {
   requireFile(path, "name a .vtm file in it");
-  std::vector<Surface> surfaces = surfacesOf(path);
-  const Box bounds = boundsOf(surfaces, Affine::Identity());
+  std::vector<Surface> surfaces = readSurfaces(path);
+  const Box bounds = computeBounds(surfaces, Affine::Identity());
   if (!(bounds.upper.array() >= bounds.lower.array()).all())
     throw inputError(path, "its surfaces hold no point; ", exportHint);
-  const Grid grid = reference ? cropped(*reference, boundsOf(surfaces, reference->worldToIndex))
-                              : gridAround(bounds);
+  const Grid grid = reference
+                        ? cropGrid(*reference, computeBounds(surfaces, reference->worldToIndex))
+                        : makeGrid(bounds);
   Layers layers(grid.size, path);
   std::vector<SegmentInfo> segments;
   for (Surface& surface : surfaces) {
@@ -179,14 +180,14 @@ Segmentation readClosedSurfaces(const Path& path, const Grid* reference) {
     surface.info.layer = layers.add(*runs, static_cast<Layers::Label>(surface.info.labelValue));
     segments.push_back(surface.info);
   }
-  return {path.string(), grid, layers.count, interleaved(std::move(layers.labels), layers.count),
-          std::move(segments)};
+  return {path.string(), grid, layers.count,
+          interleaveLayers(std::move(layers.labels), layers.count), std::move(segments)};
 }
 
 std::vector<SegmentInfo> readClosedSurfaceInfos(const Path& path) {
   requireFile(path, "name a .vtm file in it");
   std::vector<SegmentInfo> infos;
-  for (Surface& surface : surfacesOf(path))
+  for (Surface& surface : readSurfaces(path))
     infos.push_back(std::move(surface.info));
   return infos;
 }

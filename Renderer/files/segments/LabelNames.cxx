@@ -53,8 +53,8 @@ private:
 };
 
 /// Calls `use` with the place and the text of each line that holds something.
-void forLines(const std::string& text,
-              const std::function<void(const std::string& place, std::string_view line)>& use) {
+void forEachLine(const std::string& text,
+                 const std::function<void(const std::string& place, std::string_view line)>& use) {
   std::size_t number = 0;
   for (const std::string& line : split(text, '\n')) {
     ++number;
@@ -65,7 +65,7 @@ void forLines(const std::string& text,
 }
 
 /// Colour of three bytes in words; nullopt: other words.
-std::optional<Rgb> colorOf(const std::vector<std::string>& parts, std::size_t first) {
+std::optional<Rgb> parseColor(const std::vector<std::string>& parts, std::size_t first) {
   Rgb color;
   for (std::size_t i = 0; i < 3; ++i) {
     const auto byte =
@@ -79,20 +79,21 @@ std::optional<Rgb> colorOf(const std::vector<std::string>& parts, std::size_t fi
 
 /// Slicer writes blanks in names as underscores, and says nothing of it: names stay as they are.
 void readColorTable(const std::string& text, TableBuilder& table) {
-  forLines(text, [&](const std::string& place, std::string_view line) {
+  forEachLine(text, [&](const std::string& place, std::string_view line) {
     const std::vector<std::string> parts = splitWords(line);
-    table.add(place, parseInteger(parts[0]), parts.size() > 1 ? parts[1] : "", colorOf(parts, 2));
+    table.add(place, parseInteger(parts[0]), parts.size() > 1 ? parts[1] : "",
+              parseColor(parts, 2));
   });
 }
 
 void readSnapTable(const std::string& text, TableBuilder& table) {
-  forLines(text, [&](const std::string& place, std::string_view line) {
+  forEachLine(text, [&](const std::string& place, std::string_view line) {
     const std::size_t open = line.find('"'), close = line.rfind('"');
     const std::vector<std::string> parts = splitWords(line.substr(0, open));
     const bool isQuoted = open != std::string_view::npos && close > open;
     table.add(place, parts.empty() ? std::nullopt : parseInteger(parts[0]),
               isQuoted ? std::string(line.substr(open + 1, close - open - 1)) : "",
-              colorOf(parts, 1));
+              parseColor(parts, 1));
   });
 }
 
@@ -106,7 +107,7 @@ void readCsv(const std::string& text, TableBuilder& table) {
       field = trim(field, " \t\"");
     if (fields[0].starts_with('#'))
       continue;
-    const auto columnOf = [&](std::initializer_list<std::string_view> titles) {
+    const auto findColumn = [&](std::initializer_list<std::string_view> titles) {
       return static_cast<std::size_t>(
           std::ranges::find_if(fields,
                                [&](const std::string& field) {
@@ -115,8 +116,8 @@ void readCsv(const std::string& text, TableBuilder& table) {
           fields.begin());
     };
     if (std::exchange(isFirst, false) && !parseInteger(fields[0])) {
-      value = columnOf({"label", "value", "id", "index", "labelvalue"});
-      name = columnOf({"name", "label_name", "labelname", "structure", "segment"});
+      value = findColumn({"label", "value", "id", "index", "labelvalue"});
+      name = findColumn({"name", "label_name", "labelname", "structure", "segment"});
       if (value >= fields.size() || name >= fields.size())
         throw inputError(table.source(), place,
                          ": has no columns \"label\" and \"name\"; name them so");
@@ -161,7 +162,7 @@ LabelNames readLabelNames(const std::filesystem::path& path) {
   return table.take();
 }
 
-std::optional<LabelNames> compiledLabelNames(const std::string& name) {
+std::optional<LabelNames> findBuiltInLabelNames(const std::string& name) {
   const std::string_view text = findResource("labels/" + name + ".json");
   if (text.empty())
     return std::nullopt;
@@ -170,14 +171,14 @@ std::optional<LabelNames> compiledLabelNames(const std::string& name) {
   return table.take();
 }
 
-std::vector<std::string> compiledLabelTables() {
+std::vector<std::string> listBuiltInLabelTables() {
   std::vector<std::string> tables;
   for (const std::string& file : listResources("labels/"))
     tables.push_back(std::filesystem::path(file).stem().string());
   return tables;
 }
 
-std::optional<LabelNames> labelNamesInXml(std::string_view xml, const std::string& source) {
+std::optional<LabelNames> parseLabelNamesXml(std::string_view xml, const std::string& source) {
   const std::size_t begin = xml.find('<');
   if (begin == xml.npos || xml.find("<LabelTable>") == xml.npos)
     return std::nullopt;
@@ -188,10 +189,10 @@ std::optional<LabelNames> labelNamesInXml(std::string_view xml, const std::strin
   TableBuilder table(source);
   for (const pugi::xpath_node& found : document.select_nodes("//LabelTable/Label")) {
     const pugi::xml_node label = found.node();
-    const auto part = [&](const char* key) { return label.attribute(key).as_double(-1.0); };
+    const auto component = [&](const char* key) { return label.attribute(key).as_double(-1.0); };
     table.add("label table in its header extension", parseInteger(label.attribute("Key").value()),
               std::string(trim(label.child_value())),
-              Rgb(part("Red"), part("Green"), part("Blue")));
+              Rgb(component("Red"), component("Green"), component("Blue")));
   }
   return table.take();
 }

@@ -33,12 +33,12 @@ LabelNames readLabelNames(const std::filesystem::path& path);
 
 /// Table that is compiled in: totalsegmentator1 (104 classes), totalsegmentator2 (117), freesurfer
 /// (aseg and Desikan-Killiany). nullopt: no such table.
-std::optional<LabelNames> compiledLabelNames(const std::string& name);
-std::vector<std::string> compiledLabelTables();
+std::optional<LabelNames> findBuiltInLabelNames(const std::string& name);
+std::vector<std::string> listBuiltInLabelTables();
 
 /// Names in the label table of a NIfTI header extension (Caret's XML, as TotalSegmentator and
 /// Connectome Workbench write it); nullopt: the text has no such table. Throws Error (input) for a
 /// damaged one; `source` names the file.
-std::optional<LabelNames> labelNamesInXml(std::string_view xml, const std::string& source);
+std::optional<LabelNames> parseLabelNamesXml(std::string_view xml, const std::string& source);
 
 } // namespace fenestra

@@ -10,24 +10,24 @@
 namespace fenestra {
 namespace {
 
-std::filesystem::path stemOf(const std::filesystem::path& path) {
+std::filesystem::path stripExtensions(const std::filesystem::path& path) {
   const std::filesystem::path stem = path.stem();
   return path.parent_path() / (lowercaseExtension(path) == ".gz" ? stem.stem() : stem);
 }
 
-struct Beside {
+struct SiblingTable {
   std::filesystem::path file;
-  bool isExact; ///< it names many label maps' values perhaps: its values must be these
+  bool mustMatchExactly; ///< it names many label maps' values perhaps: its values must be these
 };
 
 /// Tables in the label map's folder that may be its.
-std::vector<Beside> tablesBeside(const std::filesystem::path& path) {
-  std::vector<Beside> tables;
-  const std::filesystem::path stem = stemOf(path);
+std::vector<SiblingTable> findSiblingTables(const std::filesystem::path& path) {
+  std::vector<SiblingTable> tables;
+  const std::filesystem::path stem = stripExtensions(path);
   for (const char* extension : {".ctbl", ".label", ".json", ".csv"})
     tables.push_back({stem.string() + extension, false});
   tables.push_back({path.parent_path() / "seg_labels.json", true});
-  std::erase_if(tables, [](const Beside& table) { return !fileExists(table.file); });
+  std::erase_if(tables, [](const SiblingTable& table) { return !fileExists(table.file); });
   return tables;
 }
 
@@ -37,9 +37,9 @@ std::size_t countNamed(const LabelNames& names, const std::set<std::int32_t>& va
 }
 
 /// Version of TotalSegmentator whose classes the names are; empty: of neither.
-std::string versionOf(const LabelNames& names) {
+std::string findVersion(const LabelNames& names) {
   for (const char* version : {"totalsegmentator2", "totalsegmentator1"}) {
-    const LabelNames table = *compiledLabelNames(version);
+    const LabelNames table = *findBuiltInLabelNames(version);
     if (std::ranges::all_of(names, [&](const auto& one) {
           const auto known = table.find(one.first);
           return known != table.end() && known->second.name == one.second.name;
@@ -49,34 +49,36 @@ std::string versionOf(const LabelNames& names) {
   return {};
 }
 
-FoundNames wantedNames(const std::filesystem::path& path, const std::string& extensions,
-                       const std::string& wanted) {
-  if (wanted == "totalsegmentator") {
-    const auto inFile = labelNamesInXml(extensions, path.string());
-    const std::string version = inFile ? versionOf(*inFile) : "";
+FoundNames readRequestedNames(const std::filesystem::path& path, const std::string& extensions,
+                              const std::string& requested) {
+  if (requested == "totalsegmentator") {
+    const auto inFile = parseLabelNamesXml(extensions, path.string());
+    const std::string version = inFile ? findVersion(*inFile) : "";
     if (version.empty())
       throw inputError(path, "does not say which version of TotalSegmentator made it, and each "
                              "numbers other organs; give --labels totalsegmentator1 or "
                              "totalsegmentator2");
     return {*inFile, version};
   }
-  if (auto table = compiledLabelNames(wanted))
-    return {*table, wanted};
-  if (!fileExists(wanted))
-    throw usageError("--labels ", sanitize(wanted), ": is no file, and none of totalsegmentator, ",
-                     join(compiledLabelTables(), ", "));
+  if (auto table = findBuiltInLabelNames(requested))
+    return {*table, requested};
+  if (!fileExists(requested))
+    throw usageError("--labels ", sanitize(requested),
+                     ": is no file, and none of totalsegmentator, ",
+                     join(listBuiltInLabelTables(), ", "));
   const InputConfinement anywhere(std::nullopt);
-  return {readLabelNames(wanted), wanted};
+  return {readLabelNames(requested), requested};
 }
 
-FoundNames namesBeside(const std::filesystem::path& path, const std::set<std::int32_t>& values) {
+FoundNames readSiblingNames(const std::filesystem::path& path,
+                            const std::set<std::int32_t>& values) {
   FoundNames found;
-  for (const Beside& table : tablesBeside(path)) {
+  for (const SiblingTable& table : findSiblingTables(path)) {
     const std::string file = table.file.string();
     try {
       LabelNames names = readLabelNames(table.file);
       const bool fits = countNamed(names, values) == values.size() &&
-                        (!table.isExact || names.size() == values.size());
+                        (!table.mustMatchExactly || names.size() == values.size());
       if (fits)
         return {std::move(names), file, std::move(found.warnings)};
       found.warnings.push_back(concat(file, ": names other values than ", path.filename(),
@@ -91,21 +93,22 @@ FoundNames namesBeside(const std::filesystem::path& path, const std::set<std::in
 } // namespace
 
 bool hasLabelNames(const std::filesystem::path& path, const std::string& extensions,
-                   const std::optional<std::string>& wanted) {
-  return wanted || extensions.find("<LabelTable>") != std::string::npos ||
-         !tablesBeside(path).empty();
+                   const std::optional<std::string>& requested) {
+  return requested || extensions.find("<LabelTable>") != std::string::npos ||
+         !findSiblingTables(path).empty();
 }
 
 FoundNames findLabelNames(const std::filesystem::path& path, const std::set<std::int32_t>& values,
-                          const std::string& extensions, const std::optional<std::string>& wanted) {
-  if (!wanted) {
-    if (auto inFile = labelNamesInXml(extensions, path.string()))
+                          const std::string& extensions,
+                          const std::optional<std::string>& requested) {
+  if (!requested) {
+    if (auto inFile = parseLabelNamesXml(extensions, path.string()))
       return {*inFile, path.string()};
-    return namesBeside(path, values);
+    return readSiblingNames(path, values);
   }
-  FoundNames found = wantedNames(path, extensions, *wanted);
+  FoundNames found = readRequestedNames(path, extensions, *requested);
   if (!values.empty() && countNamed(found.names, values) == 0)
-    throw inputError(path, "--labels ", sanitize(*wanted), " names none of its values (",
+    throw inputError(path, "--labels ", sanitize(*requested), " names none of its values (",
                      join(
                          values, ", ", [](std::int32_t value) { return concat(value); }, 8),
                      "); is it another label map's table?");

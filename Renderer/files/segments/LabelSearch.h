@@ -21,10 +21,11 @@ struct FoundNames {
 /// warning. Throws Error (input, usage) for wanted names that there are not, or that name none of
 /// the values.
 FoundNames findLabelNames(const std::filesystem::path& path, const std::set<std::int32_t>& values,
-                          const std::string& extensions, const std::optional<std::string>& wanted);
+                          const std::string& extensions,
+                          const std::optional<std::string>& requested);
 
 /// True if findLabelNames would look into the values: there is something to choose.
 bool hasLabelNames(const std::filesystem::path& path, const std::string& extensions,
-                   const std::optional<std::string>& wanted);
+                   const std::optional<std::string>& requested);
 
 } // namespace fenestra

@@ -35,7 +35,7 @@ struct VoxelExtent {
 
 /// True if all corners of the face are within half a voxel of a face of the volume, with the
 /// labelmap on the inner side.
-bool isShared(const Grid& labelmap, const Grid& volume, int axis, int side) {
+bool isOnVolumeFace(const Grid& labelmap, const Grid& volume, int axis, int side) {
   const Affine toVolume = volume.worldToIndex * labelmap.indexToWorld;
   const Box labels = labelmap.indexBox(), box = volume.indexBox();
   const Vec3 center = toVolume * labels.center();
@@ -52,18 +52,18 @@ bool isShared(const Grid& labelmap, const Grid& volume, int axis, int side) {
 }
 
 /// Voxels of the labelmap, and one more beyond each face that lies on a face of the volume.
-VoxelExtent continued(const Grid& labelmap, const Grid& volume) {
+VoxelExtent extendToVolume(const Grid& labelmap, const Grid& volume) {
   VoxelExtent extent{Size3::Zero(), labelmap.size.array() - 1};
   for (int axis = 0; axis < 3; ++axis) {
-    extent.lower[axis] -= isShared(labelmap, volume, axis, 0);
-    extent.upper[axis] += isShared(labelmap, volume, axis, 1);
+    extent.lower[axis] -= isOnVolumeFace(labelmap, volume, axis, 0);
+    extent.upper[axis] += isOnVolumeFace(labelmap, volume, axis, 1);
   }
   return extent;
 }
 
 /// Set of label values, queried at least once for every voxel.
 template <typename Label>
-class ChosenValues {
+class LabelValueSet {
 public:
   void insert(std::int32_t value) {
     if (!std::in_range<Label>(value))
@@ -95,7 +95,7 @@ public:
 
   /// Sets grid, voxels and their count, cropped to the focus; leaves `mask` unchanged without
   /// chosen voxels. Voxels of `continued` beyond the labelmap repeat its outermost ones, uncounted.
-  void fill(Mask& mask, const VoxelExtent& continued) const {
+  void fill(Mask& mask, const VoxelExtent& extendToVolume) const {
     const VoxelExtent extent = this->extent();
     if (extent.empty())
       return;
@@ -110,7 +110,7 @@ public:
       std::uint8_t* to = mask.voxels.data() + size.x() * size.y() * z;
       std::int64_t count = 0;
       for (std::int64_t y = 0; y < size.y(); ++y, to += size.x())
-        count += fillRow(origin + Size3(0, y, z), size.x(), continued, to);
+        count += fillRow(origin + Size3(0, y, z), size.x(), extendToVolume, to);
       total += count;
     });
     mask.count = total;
@@ -119,31 +119,31 @@ public:
 private:
   /// Writes the `count` voxels from `first` on, 0 before; returns how many of the labelmap's own
   /// are chosen.
-  std::int64_t fillRow(const Size3& first, std::int64_t count, const VoxelExtent& continued,
+  std::int64_t fillRow(const Size3& first, std::int64_t count, const VoxelExtent& extendToVolume,
                        std::uint8_t* to) const {
     const Size3 last = m_grid.size.array() - 1, nearest = first.cwiseMax(0).cwiseMin(last);
-    const auto isContinued = [&](int axis, std::int64_t at) {
-      return at >= continued.lower[axis] && at <= continued.upper[axis];
+    const auto isExtended = [&](int axis, std::int64_t at) {
+      return at >= extendToVolume.lower[axis] && at <= extendToVolume.upper[axis];
     };
-    if (!isContinued(1, first.y()) || !isContinued(2, first.z()))
+    if (!isExtended(1, first.y()) || !isExtended(2, first.z()))
       return 0;
-    const bool isOwn = nearest.y() == first.y() && nearest.z() == first.z();
-    const Label* const row = rowAt(nearest.y(), nearest.z());
+    const bool isInLabelmap = nearest.y() == first.y() && nearest.z() == first.z();
+    const Label* const row = labelRow(nearest.y(), nearest.z());
     std::int64_t chosen = 0;
     for (std::int64_t i = 0; i < count; ++i) {
       const std::int64_t x = first.x() + i, inside = std::clamp<std::int64_t>(x, 0, last.x());
-      to[i] = isContinued(0, x) && isChosen(row, inside);
-      chosen += to[i] && isOwn && x == inside;
+      to[i] = isExtended(0, x) && isSelected(row, inside);
+      chosen += to[i] && isInLabelmap && x == inside;
     }
     return chosen;
   }
 
   /// Labels of a row, its voxels' layers together.
-  const Label* rowAt(std::int64_t y, std::int64_t z) const {
+  const Label* labelRow(std::int64_t y, std::int64_t z) const {
     return m_labels.data() + linearIndex({0, y, z}, m_grid.size) * m_layerCount;
   }
 
-  bool isChosen(const Label* row, std::int64_t x) const {
+  bool isSelected(const Label* row, std::int64_t x) const {
     const Label* const voxel = row + static_cast<std::size_t>(x) * m_layerCount;
     for (std::size_t layer = 0; layer < m_layerCount; ++layer)
       if (m_values[layer].contains(voxel[layer]))
@@ -167,14 +167,14 @@ private:
   }
 
   VoxelExtent rowExtent(std::int64_t y, std::int64_t z) const {
-    const Label* const row = rowAt(y, z);
+    const Label* const row = labelRow(y, z);
     std::int64_t first = 0;
     std::int64_t last = m_grid.size.x() - 1;
-    while (first <= last && !isChosen(row, first))
+    while (first <= last && !isSelected(row, first))
       ++first;
     if (first > last)
       return {};
-    while (!isChosen(row, last))
+    while (!isSelected(row, last))
       --last;
     return {{first, y, z}, {last, y, z}};
   }
@@ -182,7 +182,7 @@ private:
   const Grid& m_grid;
   std::size_t m_layerCount;
   const LargeArray<Label>& m_labels;
-  std::vector<ChosenValues<Label>> m_values; ///< chosen values of each layer
+  std::vector<LabelValueSet<Label>> m_values; ///< chosen values of each layer
 };
 
 // ---- statistics
@@ -192,12 +192,12 @@ struct ValueStatistics {
   VoxelExtent extent = {};
 };
 
-using StatisticsOfValues = std::map<std::int32_t, ValueStatistics>;
+using StatisticsByValue = std::map<std::int32_t, ValueStatistics>;
 
 /// Adds one layer's voxels to the statistics of the values in `values`.
 template <typename Label>
 void countVoxels(const LargeArray<Label>& labels, const Size3& size, std::size_t layer,
-                 std::size_t layerCount, StatisticsOfValues& values) {
+                 std::size_t layerCount, StatisticsByValue& values) {
   std::size_t at = layer;
   std::int32_t last = 0; // labels come in runs
   ValueStatistics* counted = nullptr;
@@ -228,7 +228,7 @@ Box worldBounds(const Grid& grid, const VoxelExtent& extent) {
 
 // ---- messages
 
-std::string listed(const std::vector<SegmentInfo>& segments) {
+std::string formatSegments(const std::vector<SegmentInfo>& segments) {
   const auto named = [](const SegmentInfo& segment) {
     const std::string id = sanitize(segment.id);
     return segment.name == segment.id ? id : concat(id, " (", sanitize(segment.name), ')');
@@ -238,47 +238,49 @@ std::string listed(const std::vector<SegmentInfo>& segments) {
 
 /// True if each word of the selector, without a final s, begins a word of the name: "Kidneys" means
 /// kidney_left, and "left kidney" as well.
-bool isMeant(const std::string& selector, const std::string& name) {
-  const std::vector<std::string> in = splitName(name), wanted = splitName(selector);
-  return !wanted.empty() && std::ranges::all_of(wanted, [&](std::string word) {
+bool isLikelyMatch(const std::string& selector, const std::string& name) {
+  const std::vector<std::string> words = splitName(name), selectorWords = splitName(selector);
+  return !selectorWords.empty() && std::ranges::all_of(selectorWords, [&](std::string word) {
     if (word.size() > 3 && word.back() == 's')
       word.pop_back();
-    return std::ranges::any_of(in, [&](const std::string& one) { return one.starts_with(word); });
+    return std::ranges::any_of(words,
+                               [&](const std::string& one) { return one.starts_with(word); });
   });
 }
 
 /// Mend of an unknown selector: the segments that it may mean, else those that there are.
-std::string meantInstead(const std::string& selector, const std::vector<SegmentInfo>& segments) {
+std::string suggestSegments(const std::string& selector, const std::vector<SegmentInfo>& segments) {
   if (segments.empty())
     return "it has none at all";
-  std::vector<SegmentInfo> meant;
-  std::ranges::copy_if(segments, std::back_inserter(meant),
-                       [&](const SegmentInfo& one) { return isMeant(selector, one.name); });
-  if (!meant.empty())
+  std::vector<SegmentInfo> suggested;
+  std::ranges::copy_if(segments, std::back_inserter(suggested),
+                       [&](const SegmentInfo& one) { return isLikelyMatch(selector, one.name); });
+  if (!suggested.empty())
     return concat("did you mean ",
                   join(
-                      meant, ", ", [](const auto& s) { return sanitize(s.name); }, 12),
+                      suggested, ", ", [](const auto& s) { return sanitize(s.name); }, 12),
                   "?");
   const bool unnamed = std::ranges::all_of(segments, [](const SegmentInfo& segment) {
     return segment.name == concat("Segment_", segment.labelValue);
   });
-  return concat("it has ", listed(segments), unnamed ? "; --labels gives the values names" : "");
+  return concat("it has ", formatSegments(segments),
+                unnamed ? "; --labels gives the values names" : "");
 }
 
 } // namespace
 
 std::size_t Segmentation::find(const std::string& selector) const {
   const auto value = parseNumber<std::int32_t>(selector);
-  const std::array<std::function<bool(const SegmentInfo&)>, 3> ways = {
+  const std::array<std::function<bool(const SegmentInfo&)>, 3> matchers = {
       [&](const SegmentInfo& segment) { return segment.id == selector; },
       [&](const SegmentInfo& segment) { return segment.name == selector; },
       [&](const SegmentInfo& segment) { return segment.labelValue == value; }};
-  for (const auto& matches : ways) {
+  for (const auto& matches : matchers) {
     std::vector<SegmentInfo> found;
     std::ranges::copy_if(m_segments, std::back_inserter(found), matches);
     if (found.size() > 1)
       throw inputError(m_source, "segment \"", sanitize(selector), "\" can be any of ",
-                       listed(found), "; name one by its id");
+                       formatSegments(found), "; name one by its id");
     if (!found.empty())
       return static_cast<std::size_t>(std::ranges::find_if(m_segments, matches) -
                                       m_segments.begin());
@@ -286,11 +288,11 @@ std::size_t Segmentation::find(const std::string& selector) const {
   if (const std::string_view bare = trim(selector); bare.size() < selector.size())
     return find(std::string(bare));
   throw inputError(m_source, "has no segment \"", sanitize(selector), "\"; ",
-                   meantInstead(selector, m_segments));
+                   suggestSegments(selector, m_segments));
 }
 
 std::vector<SegmentStatistics> Segmentation::statistics() const {
-  std::vector<StatisticsOfValues> layers(m_layerCount);
+  std::vector<StatisticsByValue> layers(m_layerCount);
   for (const SegmentInfo& segment : m_segments)
     layers[segment.layer][segment.labelValue] = {};
   std::visit(
@@ -309,50 +311,50 @@ std::vector<SegmentStatistics> Segmentation::statistics() const {
   return statistics;
 }
 
-Mask Segmentation::mask(const std::vector<std::string>& selectors, const Grid& volume,
-                        const MaskShaping& shaping) const {
+Mask Segmentation::makeFocusMask(const std::vector<std::string>& selectors, const Grid& volume,
+                                 const MaskShaping& shaping) const {
   if (shaping.margins.size() > 1 && shaping.margins.size() != selectors.size())
     throw usageError("--margin: give one for all segments of --focus, or one each");
   std::vector<SegmentInfo> chosen;
   for (const std::string& selector : selectors)
     chosen.push_back(m_segments[find(selector)]);
-  Mask mask = maskOf(chosen, volume, shaping);
+  Mask mask = makeMask(chosen, volume, shaping);
   if (mask.count == 0)
     throw inputError(m_source, "--margin and --labelsmoothing leave nothing of the focus (",
-                     listed(chosen), "); choose a margin nearer to 0, or less smoothing");
+                     formatSegments(chosen), "); choose a margin nearer to 0, or less smoothing");
   return mask;
 }
 
-Mask Segmentation::maskOf(const std::vector<SegmentInfo>& chosen, const Grid& volume,
-                          const MaskShaping& shaping) const {
-  const auto labelled = [&](const std::vector<SegmentInfo>& segments) {
+Mask Segmentation::makeMask(const std::vector<SegmentInfo>& chosen, const Grid& volume,
+                            const MaskShaping& shaping) const {
+  const auto fillMask = [&](const std::vector<SegmentInfo>& segments) {
     Mask mask;
     for (const SegmentInfo& segment : segments)
       mask.names.push_back(segment.name);
     std::visit(
         [&](const auto& labels) {
-          Focus(m_grid, m_layerCount, labels, segments).fill(mask, continued(m_grid, volume));
+          Focus(m_grid, m_layerCount, labels, segments).fill(mask, extendToVolume(m_grid, volume));
         },
         m_labels);
     if (mask.count == 0)
-      throw inputError(m_source, "the focus has no voxel (", listed(segments),
+      throw inputError(m_source, "the focus has no voxel (", formatSegments(segments),
                        "); choose segments that are not empty");
     return mask;
   };
   if (shaping == MaskShaping())
-    return labelled(chosen);
-  const auto shaped = [&](const std::vector<SegmentInfo>& segments, double margin) {
-    Mask mask = labelled(segments);
+    return fillMask(chosen);
+  const auto shapeMask = [&](const std::vector<SegmentInfo>& segments, double margin) {
+    Mask mask = fillMask(segments);
     if (shaping.smoothing != 0.0)
       mask = interpolateSlices(std::move(mask));
     return applyMargin(std::move(mask), margin, volume);
   };
   std::vector<Mask> masks;
   if (shaping.margins.size() <= 1) // the union first: no gaps where segments touch
-    masks.push_back(shaped(chosen, shaping.margins.empty() ? 0.0 : shaping.margins[0]));
+    masks.push_back(shapeMask(chosen, shaping.margins.empty() ? 0.0 : shaping.margins[0]));
   else
     for (std::size_t i = 0; i < chosen.size(); ++i)
-      masks.push_back(shaped({chosen[i]}, shaping.margins[i]));
+      masks.push_back(shapeMask({chosen[i]}, shaping.margins[i]));
   const Mask all = uniteMasks(std::move(masks));
   return shaping.smoothing ? smoothMask(all, *shaping.smoothing, volume)
                            : smoothMaskAuto(all, volume);

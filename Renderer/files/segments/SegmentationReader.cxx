@@ -18,32 +18,33 @@ namespace {
 
 using header::Fields;
 
-constexpr std::size_t mostSegments = 65536;
+constexpr std::size_t maxSegments = 65536;
 
 // ---- labels
 
 using LabelStore = SampleStore<std::uint8_t, std::int16_t, std::int32_t>;
 
 Segmentation::Labels toLabels(LabelStore&& samples, const std::string& source) {
-  const SampleSurvey& s = samples.survey();
-  if (!s.whole || !s.finite())
+  const SampleStats& s = samples.stats();
+  if (!s.isIntegral || !s.isFinite())
     throw inputError(
         source,
         "holds values that are not whole numbers, so it is no labelmap; name a segmentation");
-  if (!samples.holdsAll())
+  if (!samples.canHoldAll())
     throw inputError(source, "holds label values beyond 32 bits; number its labels again");
   return samples.take();
 }
 
 /// Values of a labelmap other than 0.
-std::set<std::int32_t> valuesOf(const Segmentation::Labels& labels, const std::string& source) {
+std::set<std::int32_t> collectValues(const Segmentation::Labels& labels,
+                                     const std::string& source) {
   std::set<std::int32_t> values;
   std::visit(
       [&](const auto& voxels) {
         std::int32_t last = 0;
         for (const std::int32_t value : voxels)
           if (value != std::exchange(last, value) && value != 0 && values.insert(value).second &&
-              values.size() > mostSegments)
+              values.size() > maxSegments)
             throw inputError(source, "holds more than 65536 different values, so it is no "
                                      "labelmap; name a segmentation");
       },
@@ -52,7 +53,8 @@ std::set<std::int32_t> valuesOf(const Segmentation::Labels& labels, const std::s
 }
 
 /// Segments of a labelmap, one per value, in ascending order.
-std::vector<SegmentInfo> segmentsOf(const std::set<std::int32_t>& values, const LabelNames& names) {
+std::vector<SegmentInfo> makeSegments(const std::set<std::int32_t>& values,
+                                      const LabelNames& names) {
   std::vector<SegmentInfo> segments;
   for (const std::int32_t value : values) {
     const std::string id = concat("Segment_", value);
@@ -66,7 +68,7 @@ std::vector<SegmentInfo> segmentsOf(const std::set<std::int32_t>& values, const 
   return segments;
 }
 
-void refuseLabels(const std::string& source, const std::optional<std::string>& labels) {
+void rejectLabels(const std::string& source, const std::optional<std::string>& labels) {
   if (labels)
     throw inputError(source, "names its segments itself; leave out --labels");
 }
@@ -76,7 +78,7 @@ void refuseLabels(const std::string& source, const std::optional<std::string>& l
 /// Grid of the file's voxels. The oldest files keep the geometry of the whole reference image, in
 /// RAS, and state in Segmentation_Extent which part of it their voxels are. (With this
 /// offset the bladder of such a file lies at the same patient's bladder surface.)
-Grid placed(const Grid& grid, const Fields& fields, const std::string& source) {
+Grid applyExtent(const Grid& grid, const Fields& fields, const std::string& source) {
   const auto extent = fields.find("Segmentation_Extent");
   if (extent == fields.end())
     return grid;
@@ -101,7 +103,7 @@ public:
   }
 
   /// Segment `n` of a file of `layerCount` layers; the fields have an ID.
-  SegmentInfo segment(std::size_t n, std::size_t layerCount) const {
+  SegmentInfo readSegment(std::size_t n, std::size_t layerCount) const {
     SegmentInfo info;
     info.id = *find("ID");
     const std::string* name = find("Name");
@@ -117,7 +119,7 @@ public:
     info.layer = static_cast<std::size_t>(layer);
     readColor(info.color);
     if (const std::string* tags = find("Tags"))
-      info.readTerminology(*tags);
+      info.parseTerminology(*tags);
     return info;
   }
 
@@ -147,8 +149,8 @@ private:
 };
 
 /// Segments that the fields name. Throws Error (input), also for a fractional labelmap.
-std::vector<SegmentInfo> segmentsNamed(const Fields& fields, const std::string& source,
-                                       std::size_t layerCount) {
+std::vector<SegmentInfo> readSegments(const Fields& fields, const std::string& source,
+                                      std::size_t layerCount) {
   for (const char* field :
        {"Segmentation_MasterRepresentation", "Segmentation_SourceRepresentation"})
     if (header::findValue(fields, field).starts_with("Fractional"))
@@ -156,11 +158,11 @@ std::vector<SegmentInfo> segmentsNamed(const Fields& fields, const std::string& 
                        ": is a fractional labelmap, which is not read; export the segmentation "
                        "in Slicer as a binary labelmap (.seg.nrrd)");
   std::vector<SegmentInfo> segments;
-  while (segments.size() < mostSegments) {
-    const SegmentFields of(fields, source, concat("Segment", segments.size(), '_'));
-    if (!of.find("ID"))
+  while (segments.size() < maxSegments) {
+    const SegmentFields segmentFields(fields, source, concat("Segment", segments.size(), '_'));
+    if (!segmentFields.find("ID"))
       break;
-    segments.push_back(of.segment(segments.size(), layerCount));
+    segments.push_back(segmentFields.readSegment(segments.size(), layerCount));
   }
   return segments;
 }
@@ -169,7 +171,7 @@ std::vector<SegmentInfo> segmentsNamed(const Fields& fields, const std::string& 
 
 /// "...|TerminologyEntry:LIST~CATEGORY~TYPE~MODIFIER~LIST~REGION~MODIFIER|...", each
 /// SCHEME^VALUE^MEANING (vtkSegment, vtkSlicerTerminologiesModuleLogic).
-void SegmentInfo::readTerminology(std::string_view tags) {
+void SegmentInfo::parseTerminology(std::string_view tags) {
   constexpr std::string_view key = "TerminologyEntry:";
   const std::size_t at = tags.find(key);
   if (at == std::string_view::npos)
@@ -182,17 +184,17 @@ void SegmentInfo::readTerminology(std::string_view tags) {
       *code = parts[place].substr(0, meaning);
 }
 
-Segmentation::Labels interleaved(Segmentation::Labels layers, std::size_t count) {
+Segmentation::Labels interleaveLayers(Segmentation::Labels layers, std::size_t count) {
   if (count == 1)
     return layers;
   return std::visit(
       [count](const auto& labels) -> Segmentation::Labels {
-        std::decay_t<decltype(labels)> together(labels.size());
+        std::decay_t<decltype(labels)> result(labels.size());
         const std::size_t voxels = labels.size() / count;
         for (std::size_t layer = 0; layer < count; ++layer)
           for (std::size_t voxel = 0; voxel < voxels; ++voxel)
-            together[voxel * count + layer] = labels[layer * voxels + voxel];
-        return together;
+            result[voxel * count + layer] = labels[layer * voxels + voxel];
+        return result;
       },
       layers);
 }
@@ -205,20 +207,20 @@ std::vector<SegmentInfo> readSegmentInfos(const std::filesystem::path& path,
   std::vector<SegmentInfo> segments;
   bool mayBeNamed = false;
   readMedicalImage(path, Components::any, [&](const MedicalImage& image, const SampleSource&) {
-    segments = segmentsNamed(image.fields, source, image.components);
+    segments = readSegments(image.fields, source, image.components);
     mayBeNamed = segments.empty() && hasLabelNames(path, image.extensions, labels);
   });
   if (!mayBeNamed)
     return segments;
   const Segmentation named = readSegmentation(path, nullptr, labels);
-  return named.namesFrom().empty() ? segments : named.segments();
+  return named.namesSource().empty() ? segments : named.segments();
 }
 
 Segmentation readSegmentation(const std::filesystem::path& path, const Grid* reference,
-                              const std::optional<std::string>& wanted) {
+                              const std::optional<std::string>& labelTable) {
   const std::string source = path.string();
   if (lowercaseExtension(path) == ".vtm") {
-    refuseLabels(source, wanted);
+    rejectLabels(source, labelTable);
     return readClosedSurfaces(path, reference);
   }
   MedicalImage image;
@@ -229,23 +231,23 @@ Segmentation readSegmentation(const std::filesystem::path& path, const Grid* ref
     labels = toLabels(std::move(samples), source);
     image = read;
   });
-  if (image.frames)
-    labels = interleaved(std::move(labels), image.components);
-  auto segments = segmentsNamed(image.fields, source, image.components);
+  if (image.hasFrames)
+    labels = interleaveLayers(std::move(labels), image.components);
+  auto segments = readSegments(image.fields, source, image.components);
   if (segments.empty() && image.components > 1)
     throw inputError(source, "has ", image.components,
                      " components a voxel but names no segments; name a segmentation");
   FoundNames found;
   if (!segments.empty()) {
-    refuseLabels(source, wanted);
+    rejectLabels(source, labelTable);
   } else {
-    const std::set<std::int32_t> values = valuesOf(labels, source);
-    found = findLabelNames(path, values, image.extensions, wanted);
-    segments = segmentsOf(values, found.names);
+    const std::set<std::int32_t> values = collectValues(labels, source);
+    found = findLabelNames(path, values, image.extensions, labelTable);
+    segments = makeSegments(values, found.names);
   }
-  Segmentation segmentation(source, placed(image.grid, image.fields, source), image.components,
+  Segmentation segmentation(source, applyExtent(image.grid, image.fields, source), image.components,
                             std::move(labels), std::move(segments));
-  segmentation.setNamesFrom(std::move(found.source), std::move(found.warnings));
+  segmentation.setNamesSource(std::move(found.source), std::move(found.warnings));
   return segmentation;
 }
 

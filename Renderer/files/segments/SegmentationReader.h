@@ -26,7 +26,7 @@ struct SegmentInfo {
   std::string category = {}, type = {}, region = {};
 
   /// Sets category, type and region from Slicer's tags of a segment; ignores malformed ones.
-  void readTerminology(std::string_view tags);
+  void parseTerminology(std::string_view tags);
 };
 
 struct SegmentStatistics {
@@ -56,14 +56,14 @@ public:
   void setSource(std::string source) { m_source = std::move(source); }
   /// Source of the names of a label map's values: a file or a table; empty: they have none, or are
   /// the segmentation's own.
-  const std::string& namesFrom() const { return m_namesFrom; }
+  const std::string& namesSource() const { return m_namesSource; }
   const std::vector<std::string>& warnings() const { return m_warnings; }
-  void setNamesFrom(std::string source, std::vector<std::string> warnings) {
-    m_namesFrom = std::move(source);
+  void setNamesSource(std::string source, std::vector<std::string> warnings) {
+    m_namesSource = std::move(source);
     m_warnings = std::move(warnings);
   }
   /// Replaces the grid by one of the same size.
-  void moveTo(const Grid& grid) { m_grid = grid; }
+  void setGrid(const Grid& grid) { m_grid = grid; }
   const std::vector<SegmentInfo>& segments() const { return m_segments; }
 
   /// Statistics of each segment, in their order: one pass over the labels.
@@ -75,16 +75,16 @@ public:
 
   /// Union of the segments that the selectors name. Throws Error (input) as find and maskOf do, and
   /// where `shaping` leaves no voxel.
-  Mask mask(const std::vector<std::string>& selectors, const Grid& volume,
-            const MaskShaping& shaping = {}) const;
+  Mask makeFocusMask(const std::vector<std::string>& selectors, const Grid& volume,
+                     const MaskShaping& shaping = {}) const;
   /// Union of some of segments(); cropped, and continued over the faces that the labelmap shares
   /// with `volume`, as Mask.h says: faces parallel to a face of the volume, and within half a voxel
   /// of it. Throws Error (input) where no voxel is chosen.
-  Mask maskOf(const std::vector<SegmentInfo>& chosen, const Grid& volume,
-              const MaskShaping& shaping = {}) const;
+  Mask makeMask(const std::vector<SegmentInfo>& chosen, const Grid& volume,
+                const MaskShaping& shaping = {}) const;
 
 private:
-  std::string m_source, m_namesFrom;
+  std::string m_source, m_namesSource;
   std::vector<std::string> m_warnings;
   Grid m_grid;
   std::size_t m_layerCount;
@@ -93,7 +93,7 @@ private:
 };
 
 /// Labels in a Segmentation's order, from `count` layers one after the other.
-Segmentation::Labels interleaved(Segmentation::Labels layers, std::size_t count);
+Segmentation::Labels interleaveLayers(Segmentation::Labels layers, std::size_t count);
 
 /// Reads Slicer's `.seg.nrrd`; a labelmap in any format and geometry that readVolume takes: one
 /// segment "Segment_<value>" for each value other than 0, named by `labels` or what is found

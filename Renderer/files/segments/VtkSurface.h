@@ -24,7 +24,7 @@ struct VtkSurface {
 
 /// Bytes that the texts and numbers of files that belong together may still take: deflated arrays
 /// grow a thousandfold, and one file may be named often.
-struct SurfaceAllowance {
+struct MemoryBudget {
   std::uint64_t bytes = std::uint64_t{1} << 30;
 };
 
@@ -32,6 +32,6 @@ struct SurfaceAllowance {
 /// `allowance`. Throws Error (input) where the file is damaged, of another type, declares more than
 /// its bytes can hold, or exceeds the allowance.
 VtkSurface readVtkSurface(const std::filesystem::path& path, const std::set<std::string>& fieldData,
-                          SurfaceAllowance& allowance);
+                          MemoryBudget& budget);
 
 } // namespace fenestra

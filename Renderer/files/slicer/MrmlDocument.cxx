@@ -9,7 +9,7 @@
 namespace fenestra {
 namespace {
 
-constexpr std::size_t mostNodes = 100'000, mostAttributes = 1'000'000; ///< limits of a scene
+constexpr std::size_t maxNodes = 100'000, maxAttributes = 1'000'000; ///< limits of a scene
 
 /// Attributes that hold references in older files, with the role that they have now; of two with
 /// one role the first wins.
@@ -57,7 +57,7 @@ MrmlNode readNode(const pugi::xml_node& element) {
 }
 
 /// Collects file names from elements at any depth, without recursion.
-struct FileNames final : pugi::xml_tree_walker {
+struct FileNameCollector final : pugi::xml_tree_walker {
   bool for_each(pugi::xml_node& element) override {
     for (const pugi::xml_attribute& attribute : element.attributes()) {
       const std::string_view name = attribute.name();
@@ -82,13 +82,13 @@ std::string MrmlNode::text(const std::string& attribute) const {
   return value ? *value : std::string();
 }
 
-bool MrmlNode::flag(const std::string& attribute, bool otherwise) const {
+bool MrmlNode::boolean(const std::string& attribute, bool fallback) const {
   const std::string* value = find(attribute);
   if (!value)
-    return otherwise;
+    return fallback;
   if (*value == "true" || *value == "false")
     return *value == "true";
-  return number(attribute).value_or(otherwise) != 0.0;
+  return number(attribute).value_or(fallback) != 0.0;
 }
 
 std::optional<std::vector<double>> MrmlNode::numbers(const std::string& attribute) const {
@@ -108,7 +108,7 @@ std::optional<Vec3> MrmlNode::triple(const std::string& attribute) const {
   return Vec3((*all)[0], (*all)[1], (*all)[2]);
 }
 
-std::string MrmlNode::referenced(const std::string& role) const {
+std::string MrmlNode::referenceId(const std::string& role) const {
   const auto it = references.find(role);
   return it == references.end() ? std::string() : it->second.front();
 }
@@ -129,24 +129,24 @@ MrmlDocument::MrmlDocument(std::string_view text, std::string source)
   if (!root)
     throw inputError(m_source, "has no MRML element, so it is no scene; name a .mrml or .mrb");
   m_version = root.attribute("version").value();
-  FileNames names;
+  FileNameCollector names;
   document.traverse(names);
   m_fileNames = std::move(names.found);
   std::size_t attributes = 0;
   for (const pugi::xml_node& element : root.children())
     if (element.type() == pugi::node_element) {
-      if (m_nodes.size() == mostNodes)
+      if (m_nodes.size() == maxNodes)
         throw inputError(m_source, "holds more than 100000 nodes; save a smaller scene");
       m_nodes.push_back(readNode(element));
       attributes += m_nodes.back().attributes.size();
-      if (attributes > mostAttributes)
+      if (attributes > maxAttributes)
         throw inputError(m_source, "holds more than a million attributes; save a smaller scene");
       if (!m_nodes.back().id.empty())
         m_byId.emplace(m_nodes.back().id, m_nodes.size() - 1);
     }
 }
 
-std::vector<const MrmlNode*> MrmlDocument::withTag(std::string_view tag) const {
+std::vector<const MrmlNode*> MrmlDocument::findByTag(std::string_view tag) const {
   std::vector<const MrmlNode*> found;
   for (const MrmlNode& node : m_nodes)
     if (node.tag == tag)
@@ -160,7 +160,7 @@ const MrmlNode* MrmlDocument::find(const std::string& id) const {
 }
 
 Error MrmlDocument::error(const MrmlNode& node, const std::string& what) const {
-  return inputError(m_source, node.tag, " ", shown(node), ": ", what);
+  return inputError(m_source, node.tag, " ", describeNode(node), ": ", what);
 }
 
 MakeError MrmlDocument::errorMaker(const MrmlNode& node, const std::string& subject,
@@ -168,7 +168,7 @@ MakeError MrmlDocument::errorMaker(const MrmlNode& node, const std::string& subj
   return [=, this, &node](const std::string& what) { return error(node, subject + what + hint); };
 }
 
-std::string shown(const MrmlNode& node) {
+std::string describeNode(const MrmlNode& node) {
   std::string text = sanitize(node.name);
   if (!node.id.empty())
     text.append(text.empty() ? "(" : " (").append(sanitize(node.id)).append(")");

@@ -24,7 +24,7 @@ struct MrmlNode {
   const std::string* find(const std::string& attribute) const;
   std::string text(const std::string& attribute) const; ///< empty: missing
   /// True for "true" and numbers other than 0; `otherwise`: missing, or other text.
-  bool flag(const std::string& attribute, bool otherwise) const;
+  bool boolean(const std::string& attribute, bool fallback) const;
   /// Numbers of the attribute; nullopt: missing, or text that is not finite numbers.
   std::optional<std::vector<double>> numbers(const std::string& attribute) const;
   /// The attribute's only number; nullopt: missing, or other text.
@@ -32,7 +32,7 @@ struct MrmlNode {
   /// The attribute's three numbers; nullopt: missing, or other text.
   std::optional<Vec3> triple(const std::string& attribute) const;
   /// First id of a role; empty: none.
-  std::string referenced(const std::string& role) const;
+  std::string referenceId(const std::string& role) const;
 };
 
 class MrmlDocument {
@@ -48,12 +48,12 @@ public:
   const std::vector<MrmlNode>& nodes() const { return m_nodes; }
   /// File names in all elements, scene views included, as written.
   const std::set<std::string>& fileNames() const { return m_fileNames; }
-  std::vector<const MrmlNode*> withTag(std::string_view tag) const;
+  std::vector<const MrmlNode*> findByTag(std::string_view tag) const;
   /// First node with this id; null: none.
   const MrmlNode* find(const std::string& id) const;
   /// First node that the role names; null: the role is empty or names no node.
   const MrmlNode* follow(const MrmlNode& node, const std::string& role) const {
-    return find(node.referenced(role));
+    return find(node.referenceId(role));
   }
 
   /// Error (input) that names the file and the node.
@@ -70,6 +70,6 @@ private:
 };
 
 /// "CT (vtkMRMLScalarVolumeNode1)", on one line and short.
-std::string shown(const MrmlNode& node);
+std::string describeNode(const MrmlNode& node);
 
 } // namespace fenestra

@@ -7,11 +7,11 @@
 namespace fenestra {
 namespace {
 
-constexpr double largest = 1e9; ///< mm
+constexpr double maxLength = 1e9; ///< mm
 
 /// Map of [-1, 1]^3 to a box with `halfEdges` along the columns of `axes`. Throws for a flat box.
-Affine boxMap(const Vec3& center, const Mat3& axes, const Vec3& halfEdges,
-              const MakeError& makeError) {
+Affine makeBoxMap(const Vec3& center, const Mat3& axes, const Vec3& halfEdges,
+                  const MakeError& makeError) {
   if (!(halfEdges.array() > 0.0).all())
     throw makeError("its size must be above 0 in every axis; mend it in the Markups module");
   if (!(std::abs(axes.determinant()) > 1e-6))
@@ -19,7 +19,7 @@ Affine boxMap(const Vec3& center, const Mat3& axes, const Vec3& halfEdges,
   return Affine(axes * Mat3::Diagonal(halfEdges), center);
 }
 
-void refuseInsideOut(bool insideOut, const MakeError& makeError) {
+void rejectInsideOut(bool insideOut, const MakeError& makeError) {
   if (insideOut)
     throw makeError(
         "is inside out, which crops everything in Slicer, too; turn that off in the Markups "
@@ -49,30 +49,30 @@ Affine readMarkupsJson(const std::filesystem::path& path) {
   if (roi.at("type").text() != "ROI")
     throw roi.at("type").error("must be \"ROI\"; name a region of interest");
   if (const auto insideOut = roi.find("insideOut"))
-    refuseInsideOut(insideOut->boolean(), makeError);
+    rejectInsideOut(insideOut->boolean(), makeError);
 
-  const Vec3 center = roi.at("center").triple(-largest, largest);
+  const Vec3 center = roi.at("center").triple(-maxLength, maxLength);
   Mat3 axes = Mat3::Identity();
   const bool lps = isLps(roi);
   if (const auto orientation = roi.find("orientation")) {
-    const auto numbers = orientation->numbers(9, -largest, largest);
+    const auto numbers = orientation->numbers(9, -maxLength, maxLength);
     const auto row = [&numbers](std::size_t i) {
       return Vec3(numbers[i], numbers[i + 1], numbers[i + 2]);
     };
     axes = Mat3::FromRows(row(0), row(3), row(6));
   }
   const Affine box =
-      boxMap(center, axes, 0.5 * roi.at("size").triple(-largest, largest), makeError);
+      makeBoxMap(center, axes, 0.5 * roi.at("size").triple(-maxLength, maxLength), makeError);
   return lps ? Affine(lpsToRas) * box : box;
 }
 
 // ---- older forms: centre and half edges, RAS
 
-Affine axisAligned(const std::vector<double>& centerAndRadius, const MakeError& makeError) {
+Affine makeAlignedBox(const std::vector<double>& centerAndRadius, const MakeError& makeError) {
   if (centerAndRadius.size() != 6)
     throw makeError("needs a centre and a radius, three numbers each; save it again");
   const std::vector<double>& n = centerAndRadius;
-  return boxMap({n[0], n[1], n[2]}, Mat3::Identity(), {n[3], n[4], n[5]}, makeError);
+  return makeBoxMap({n[0], n[1], n[2]}, Mat3::Identity(), {n[3], n[4], n[5]}, makeError);
 }
 
 /// Annotation files: two lines "point|x|y|z|...".
@@ -90,23 +90,23 @@ Affine readAnnotation(const std::filesystem::path& path) {
       numbers.push_back(number->front());
     }
   }
-  return axisAligned(numbers, makeError);
+  return makeAlignedBox(numbers, makeError);
 }
 
-Affine inlineRoi(const MrmlScene& scene, const MrmlNode& roi) {
+Affine readInlineRoi(const MrmlScene& scene, const MrmlNode& roi) {
   std::string text = roi.text("ctrlPtsCoord"); // "x y z|x y z"
   if (text.empty())
     text = roi.text("xyz") + roi.text("XYZ") + " " + roi.text("radiusXYZ") + roi.text("RadiusXYZ");
   std::replace(text.begin(), text.end(), '|', ' ');
-  return axisAligned(parseNumbers(text).value_or(std::vector<double>()),
-                     scene.document.errorMaker(roi));
+  return makeAlignedBox(parseNumbers(text).value_or(std::vector<double>()),
+                        scene.document.errorMaker(roi));
 }
 
-Affine boxInNode(MrmlScene& scene, const MrmlNode& roi) {
-  refuseInsideOut(roi.flag("insideOut", false), scene.document.errorMaker(roi));
-  const std::vector<std::string> names = storedFiles(scene, roi);
+Affine readBox(MrmlScene& scene, const MrmlNode& roi) {
+  rejectInsideOut(roi.boolean("insideOut", false), scene.document.errorMaker(roi));
+  const std::vector<std::string> names = listStorageFiles(scene, roi);
   if (names.empty())
-    return inlineRoi(scene, roi);
+    return readInlineRoi(scene, roi);
   return scene.files.read({names.front()}, [](const auto& files) {
     const std::filesystem::path& file = files.front();
     return lowercaseExtension(file) == ".acsv" ? readAnnotation(file) : readMarkupsJson(file);
@@ -117,7 +117,7 @@ Affine boxInNode(MrmlScene& scene, const MrmlNode& roi) {
 
 CropBox readSceneRoi(MrmlScene& scene, const MrmlNode& roi) {
   return CropBox(checkAffine(
-      toWorld(scene, roi) * boxInNode(scene, roi),
+      toWorld(scene, roi) * readBox(scene, roi),
       scene.document.errorMaker(roi, "its box in the world ", "; mend it in the Markups module")));
 }
 

@@ -15,14 +15,14 @@ namespace {
 using Paths = std::vector<std::filesystem::path>;
 
 /// Grid of a volume's file, changed by the storage node as in vtkITKArchetypeImageSeriesReader.
-Grid placed(const MrmlNode* storage, const Grid& fromFile) {
+Grid applyStorageSettings(const MrmlNode* storage, const Grid& fromFile) {
   if (!storage)
     return fromFile;
   Affine indexToWorld = fromFile.indexToWorld;
-  if (!storage->flag("UseOrientationFromFile", true)) {
+  if (!storage->boolean("UseOrientationFromFile", true)) {
     indexToWorld.linear() = Mat3::Diagonal(fromFile.spacing());
     indexToWorld.translation().setZero();
-  } else if (storage->flag("centerImage", false)) {
+  } else if (storage->boolean("centerImage", false)) {
     const Vec3 middle = fromFile.indexBox().center();
     indexToWorld.translation() = -(fromFile.indexToWorld.linear() * middle);
   }
@@ -30,23 +30,23 @@ Grid placed(const MrmlNode* storage, const Grid& fromFile) {
 }
 
 /// Grid of a node in the world.
-Grid placedGrid(const MrmlScene& scene, const MrmlNode& node, const Affine& above,
-                const Grid& grid) {
-  return {grid.size, checkAffine(above * grid.indexToWorld,
+Grid transformGrid(const MrmlScene& scene, const MrmlNode& node, const Affine& nodeToWorld,
+                   const Grid& grid) {
+  return {grid.size, checkAffine(nodeToWorld * grid.indexToWorld,
                                  scene.document.errorMaker(node, "its place in the world ",
                                                            "; mend the transforms above it"))};
 }
 
 /// Names of the files that hold a node's data. Throws Error (input) where there are none.
-std::vector<std::string> dataFiles(const MrmlScene& scene, const MrmlNode& node) {
-  std::vector<std::string> names = storedFiles(scene, node);
+std::vector<std::string> requireDataFiles(const MrmlScene& scene, const MrmlNode& node) {
+  std::vector<std::string> names = listStorageFiles(scene, node);
   if (names.empty())
     throw scene.document.error(node, "names no file; save its data in Slicer, then the scene");
   return names;
 }
 
-Rgb colorOf(const MrmlNode& node, const std::string& attribute, const Rgb& otherwise) {
-  return node.triple(attribute).value_or(otherwise).array().max(0.0).min(1.0);
+Rgb readColor(const MrmlNode& node, const std::string& attribute, const Rgb& fallback) {
+  return node.triple(attribute).value_or(fallback).array().max(0.0).min(1.0);
 }
 
 } // namespace
@@ -54,11 +54,11 @@ Rgb colorOf(const MrmlNode& node, const std::string& attribute, const Rgb& other
 MrmlScene::MrmlScene(const std::filesystem::path& path)
     : files(path), document(files.sceneText(), files.source()) {
   for (const std::string& fileName : document.fileNames())
-    files.expect(fileName);
+    files.registerInputs(fileName);
 }
 
 bool isLabelMap(const MrmlNode& node) {
-  return node.tag == "LabelMapVolume" || (node.tag == "Volume" && node.flag("labelMap", false));
+  return node.tag == "LabelMapVolume" || (node.tag == "Volume" && node.boolean("labelMap", false));
 }
 
 bool isSegmentation(const MrmlNode& node) {
@@ -76,15 +76,15 @@ bool isVolumeRendering(const MrmlNode& node) {
   return tags.contains(node.tag);
 }
 
-bool isShown(const MrmlNode& display) {
-  return display.flag("visibility", true) && display.flag("visibility3D", true);
+bool isVisible(const MrmlNode& display) {
+  return display.boolean("visibility", true) && display.boolean("visibility3D", true);
 }
 
-std::string layoutOf(const MrmlNode& viewOrCamera) {
+std::string layoutName(const MrmlNode& viewOrCamera) {
   return viewOrCamera.text(viewOrCamera.find("layoutName") ? "layoutName" : "singletonTag");
 }
 
-std::vector<std::string> storedFiles(const MrmlScene& scene, const MrmlNode& node) {
+std::vector<std::string> listStorageFiles(const MrmlScene& scene, const MrmlNode& node) {
   std::vector<std::string> names;
   const MrmlNode* storage = scene.document.follow(node, "storage");
   if (!storage)
@@ -101,42 +101,45 @@ std::vector<std::string> storedFiles(const MrmlScene& scene, const MrmlNode& nod
 }
 
 Volume readSceneVolume(MrmlScene& scene, const MrmlNode& node) {
-  const Affine above = toWorld(scene, node);
-  Volume volume = scene.files.read(dataFiles(scene, node), [&](const Paths& files) {
+  const Affine nodeToWorld = toWorld(scene, node);
+  Volume volume = scene.files.read(requireDataFiles(scene, node), [&](const Paths& files) {
     // A medical image (its samples may be in further files), else DICOM slices.
-    return medicalFormat(files.front()) ? readVolume(files.front())
-                                        : readDicomVolume(files, node.name);
+    return findMedicalFormat(files.front()) ? readVolume(files.front())
+                                            : readDicomVolume(files, node.name);
   });
   for (std::string& warning : volume.warnings)
-    warning = scene.files.asKnown(warning);
-  const Grid grid = placed(scene.document.follow(node, "storage"), volume.grid);
-  volume.grid = placedGrid(scene, node, above, grid);
-  volume.name = node.name.empty() ? scene.files.asKnown(volume.name) : node.name;
+    warning = scene.files.translatePaths(warning);
+  const Grid grid = applyStorageSettings(scene.document.follow(node, "storage"), volume.grid);
+  volume.grid = transformGrid(scene, node, nodeToWorld, grid);
+  volume.name = node.name.empty() ? scene.files.translatePaths(volume.name) : node.name;
   return volume;
 }
 
 Segmentation readSceneSegmentation(MrmlScene& scene, const MrmlNode& node, const Grid* volume,
                                    const std::optional<std::string>& labels) {
-  const Affine above = toWorld(scene, node);
-  std::optional<Grid> inNode;
+  const Affine nodeToWorld = toWorld(scene, node);
+  std::optional<Grid> gridInNodeSpace;
   if (volume)
-    inNode.emplace(volume->size, above.inverse() * volume->indexToWorld);
+    gridInNodeSpace.emplace(volume->size, nodeToWorld.inverse() * volume->indexToWorld);
   const MrmlNode* storage = isLabelMap(node) ? scene.document.follow(node, "storage") : nullptr;
-  Segmentation segmentation = scene.files.read(dataFiles(scene, node), [&](const Paths& files) {
-    return readSegmentation(files.front(), inNode ? &*inNode : nullptr, labels);
-  });
-  segmentation.moveTo(placedGrid(scene, node, above, placed(storage, segmentation.grid())));
+  Segmentation segmentation =
+      scene.files.read(requireDataFiles(scene, node), [&](const Paths& files) {
+        return readSegmentation(files.front(), gridInNodeSpace ? &*gridInNodeSpace : nullptr,
+                                labels);
+      });
+  segmentation.setGrid(
+      transformGrid(scene, node, nodeToWorld, applyStorageSettings(storage, segmentation.grid())));
   return segmentation;
 }
 
 std::vector<SegmentInfo> readSceneSegmentInfos(MrmlScene& scene, const MrmlNode& node,
                                                const std::optional<std::string>& labels) {
-  return scene.files.read(dataFiles(scene, node), [&](const Paths& files) {
+  return scene.files.read(requireDataFiles(scene, node), [&](const Paths& files) {
     return readSegmentInfos(files.front(), labels);
   });
 }
 
-std::map<std::string, bool> segmentVisibility(const MrmlScene& scene, const MrmlNode& node) {
+std::map<std::string, bool> readSegmentVisibility(const MrmlScene& scene, const MrmlNode& node) {
   std::map<std::string, bool> visible;
   const MrmlNode* display = scene.document.follow(node, "display");
   if (!display)
@@ -144,43 +147,44 @@ std::map<std::string, bool> segmentVisibility(const MrmlScene& scene, const Mrml
   for (const std::string& segment : split(display->text("SegmentationDisplayProperties"), '|'))
     if (const std::vector<std::string> parts = splitWords(segment);
         !parts.empty()) // id, then settings
-      visible[decodedUrl(parts.front())] =
+      visible[decodeUrl(parts.front())] =
           std::none_of(parts.begin() + 1, parts.end(), [](const std::string& setting) {
             return setting == "Visible:false" || setting == "Visible3D:false";
           });
   return visible;
 }
 
-TransferFunction propertyIn(const MrmlDocument& document, const MrmlNode& property) {
-  return parseTransferFunction(property.attributes,
-                               concat(document.source(), ": ", property.tag, ' ', shown(property)));
+TransferFunction readInlineProperty(const MrmlDocument& document, const MrmlNode& property) {
+  return parseTransferFunction(property.attributes, concat(document.source(), ": ", property.tag,
+                                                           ' ', describeNode(property)));
 }
 
-std::vector<std::string> propertyNames(const MrmlDocument& document) {
+std::vector<std::string> listPropertyNames(const MrmlDocument& document) {
   std::vector<std::string> names;
-  for (const MrmlNode* node : document.withTag("VolumeProperty"))
+  for (const MrmlNode* node : document.findByTag("VolumeProperty"))
     names.push_back(node->name);
   return names;
 }
 
 TransferFunction readSceneProperty(MrmlScene& scene, const MrmlNode& property) {
-  const std::vector<std::string> names = storedFiles(scene, property);
+  const std::vector<std::string> names = listStorageFiles(scene, property);
   const bool isInline = property.find("scalarOpacity") && property.find("colorTransfer");
   if (names.empty() && !isInline)
     throw scene.document.error(property, "has neither a file nor points of its own; save the "
                                          "volume property, or give --transfer");
   if (names.empty())
-    return propertyIn(scene.document, property);
+    return readInlineProperty(scene.document, property);
   return scene.files.read(names,
                           [](const Paths& files) { return readTransferFunction(files.front()); });
 }
 
-std::optional<TransferFunction> followedDisplay(const MrmlNode& rendering, const MrmlNode& display,
-                                                const std::array<double, 2>& range) {
-  const auto number = [&display](const char* attribute, double otherwise) {
-    return display.number(attribute).value_or(otherwise);
+std::optional<TransferFunction> convertSliceDisplay(const MrmlNode& rendering,
+                                                    const MrmlNode& display,
+                                                    const std::array<double, 2>& range) {
+  const auto number = [&display](const char* attribute, double fallback) {
+    return display.number(attribute).value_or(fallback);
   };
-  const std::string colors = display.referenced("color");
+  const std::string colors = display.referenceId("color");
   if (!display.find("window") || !display.find("level") ||
       (!colors.empty() && colors != "vtkMRMLColorTableNodeGrey"))
     return std::nullopt;
@@ -188,16 +192,16 @@ std::optional<TransferFunction> followedDisplay(const MrmlNode& rendering, const
   const double low = number("level", 0.0) - 0.5 * window;
   const double high = low + window;
 
-  const bool byWindow = rendering.flag("ignoreVolumeDisplayNodeThreshold", false);
+  const bool usesWindow = rendering.boolean("ignoreVolumeDisplayNodeThreshold", false);
   const auto inRange = [&range](double x) { return std::clamp(x, range[0], range[1]); };
-  const double from = inRange(byWindow ? low : number("lowerThreshold", range[0]));
-  const double to = std::max(from, inRange(byWindow ? high : number("upperThreshold", range[1])));
-  const double beyond = byWindow ? 1.0 : 0.0;
+  const double from = inRange(usesWindow ? low : number("lowerThreshold", range[0]));
+  const double to = std::max(from, inRange(usesWindow ? high : number("upperThreshold", range[1])));
+  const double beyond = usesWindow ? 1.0 : 0.0;
 
   VolumeProperty property;
   property.scalarOpacity = {
       {range[0], 0.0}, {from, 0.0}, {to, 1.0}, {to, beyond}, {range[1], beyond}};
-  const bool inverted = display.flag("invertDisplayScalarRange", false);
+  const bool inverted = display.boolean("invertDisplayScalarRange", false);
   const Rgb first = Rgb::Constant(inverted ? 1.0 : 0.0);
   property.color = {{low, first}, {high, 1.0 - first}};
   property.shade = true;
@@ -207,9 +211,9 @@ std::optional<TransferFunction> followedDisplay(const MrmlNode& rendering, const
   return tabulate(property, display.name);
 }
 
-ViewBackground viewBackground(const MrmlNode& view) {
-  const Rgb bottom = colorOf(view, "backgroundColor", Rgb::Zero());
-  return {bottom, colorOf(view, "backgroundColor2", bottom)};
+ViewBackground readViewBackground(const MrmlNode& view) {
+  const Rgb bottom = readColor(view, "backgroundColor", Rgb::Zero());
+  return {bottom, readColor(view, "backgroundColor2", bottom)};
 }
 
 } // namespace fenestra

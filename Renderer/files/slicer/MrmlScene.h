@@ -39,17 +39,17 @@ bool isScalarVolume(const MrmlNode& node);
 /// True for a display node of any volume rendering method.
 bool isVolumeRendering(const MrmlNode& node);
 /// True for a display node that shows its object in 3-D views.
-bool isShown(const MrmlNode& display);
+bool isVisible(const MrmlNode& display);
 
 /// Layout name, by which a view and its camera are paired; older scenes use singletonTag.
-std::string layoutOf(const MrmlNode& viewOrCamera);
+std::string layoutName(const MrmlNode& viewOrCamera);
 
 /// File names of a node's storage, fileName first; empty: no storage.
-std::vector<std::string> storedFiles(const MrmlScene& scene, const MrmlNode& node);
+std::vector<std::string> listStorageFiles(const MrmlScene& scene, const MrmlNode& node);
 
 /// Ids of the transforms above a node, nearest first; each once in a loop, and at most as many as
 /// toWorld follows.
-std::vector<std::string> transformsAbove(const MrmlDocument& document, const MrmlNode& node);
+std::vector<std::string> listParentTransforms(const MrmlDocument& document, const MrmlNode& node);
 
 /// Map from the node's own space to the world, RAS mm: product of the linear transforms above it.
 /// Storage files (all digits) win over the scene's matrices (six digits). Throws Error (input) for
@@ -72,12 +72,12 @@ std::vector<SegmentInfo> readSceneSegmentInfos(MrmlScene& scene, const MrmlNode&
 
 /// Visibility in 3-D by segment id, from the segmentation's display; segments that the map lacks
 /// are visible.
-std::map<std::string, bool> segmentVisibility(const MrmlScene& scene, const MrmlNode& node);
+std::map<std::string, bool> readSegmentVisibility(const MrmlScene& scene, const MrmlNode& node);
 
 /// Transfer function from a volume property node's attributes.
-TransferFunction propertyIn(const MrmlDocument& document, const MrmlNode& property);
+TransferFunction readInlineProperty(const MrmlDocument& document, const MrmlNode& property);
 /// Names of the volume properties, in file order.
-std::vector<std::string> propertyNames(const MrmlDocument& document);
+std::vector<std::string> listPropertyNames(const MrmlDocument& document);
 
 /// Transfer function of a volume property node: from its storage file, else from its attributes.
 TransferFunction readSceneProperty(MrmlScene& scene, const MrmlNode& property);
@@ -86,8 +86,9 @@ TransferFunction readSceneProperty(MrmlScene& scene, const MrmlNode& property);
 /// it (vtkSlicerVolumeRenderingLogic::CopyScalarDisplayToVolumeRenderingDisplayNode): opaque within
 /// threshold or window, grey over the window. `range`: the volume's scalars. nullopt: no window, or
 /// a colour table other than grey; then the saved property applies.
-std::optional<TransferFunction> followedDisplay(const MrmlNode& rendering, const MrmlNode& display,
-                                                const std::array<double, 2>& range);
+std::optional<TransferFunction> convertSliceDisplay(const MrmlNode& rendering,
+                                                    const MrmlNode& display,
+                                                    const std::array<double, 2>& range);
 
 /// Region of interest of any age, in the world.
 CropBox readSceneRoi(MrmlScene& scene, const MrmlNode& roi);
@@ -99,6 +100,6 @@ CameraPose readSceneCamera(MrmlScene& scene, const MrmlNode& camera);
 struct ViewBackground {
   Rgb bottom = Rgb::Zero(), top = Rgb::Zero();
 };
-ViewBackground viewBackground(const MrmlNode& view);
+ViewBackground readViewBackground(const MrmlNode& view);
 
 } // namespace fenestra

@@ -9,12 +9,12 @@
 namespace fenestra {
 namespace {
 
-constexpr std::size_t deepest = 1000; ///< most transforms above a node
+constexpr std::size_t maxDepth = 1000; ///< most transforms above a node
 
 /// Invertible affine map of 16 numbers, row by row; nullopt: attribute missing. Throws Error
 /// (input) for any other value.
-std::optional<Affine> matrixOf(const MrmlScene& scene, const MrmlNode& node,
-                               const std::string& attribute) {
+std::optional<Affine> readMatrix(const MrmlScene& scene, const MrmlNode& node,
+                                 const std::string& attribute) {
   if (!node.find(attribute))
     return std::nullopt;
   const auto numbers = node.numbers(attribute);
@@ -34,14 +34,14 @@ std::optional<Affine> matrixOf(const MrmlScene& scene, const MrmlNode& node,
 /// True if a node's file maps to the parent, as some old scenes say; linear transforms said so the
 /// wrong way round (vtkMRMLLinearTransformNode::ReadXMLAttributes).
 bool isFileToParent(const MrmlNode& node) {
-  const std::string* said = node.find("readWriteAsTransformToParent");
-  return said && (*said == "true") != (node.tag == "LinearTransform");
+  const std::string* value = node.find("readWriteAsTransformToParent");
+  return value && (*value == "true") != (node.tag == "LinearTransform");
 }
 
-std::optional<Affine> inlineMatrix(const MrmlScene& scene, const MrmlNode& node) {
-  if (auto toParent = matrixOf(scene, node, "matrixTransformToParent"))
+std::optional<Affine> readInlineMatrix(const MrmlScene& scene, const MrmlNode& node) {
+  if (auto toParent = readMatrix(scene, node, "matrixTransformToParent"))
     return toParent;
-  if (const auto fromParent = matrixOf(scene, node, "matrixTransformFromParent"))
+  if (const auto fromParent = readMatrix(scene, node, "matrixTransformFromParent"))
     return fromParent->inverse();
   return std::nullopt;
 }
@@ -55,11 +55,11 @@ std::variant<Affine, Error> readOrError(MrmlScene& scene, const std::string& fil
   }
 }
 
-Affine transformInFile(MrmlScene& scene, const std::string& file) {
+Affine loadTransform(MrmlScene& scene, const std::string& file) {
   auto known = scene.transformFiles.find(file);
   if (known == scene.transformFiles.end())
     known = scene.transformFiles.emplace(file, readOrError(scene, file)).first;
-  else if (scene.files.holds(file))
+  else if (scene.files.contains(file))
     scene.files.locate(file); // counts as read again
   if (const Error* error = std::get_if<Error>(&known->second))
     throw *error;
@@ -70,23 +70,23 @@ Affine toParent(MrmlScene& scene, const MrmlNode& node) {
   if (node.tag != "LinearTransform" && node.tag != "Transform")
     throw scene.document.error(
         node, "is not linear; harden it in Slicer (Transforms module), then save the scene");
-  const auto matrix = inlineMatrix(scene, node);
-  const std::vector<std::string> names = storedFiles(scene, node);
+  const auto matrix = readInlineMatrix(scene, node);
+  const std::vector<std::string> names = listStorageFiles(scene, node);
   if (names.empty()) {
     if (!matrix)
       throw scene.document.error(node, "has neither a matrix nor a file; save the transform again");
     return *matrix;
   }
-  const Affine stored = transformInFile(scene, names.front());
+  const Affine stored = loadTransform(scene, names.front());
   return isFileToParent(node) ? stored : stored.inverse();
 }
 
 } // namespace
 
-std::vector<std::string> transformsAbove(const MrmlDocument& document, const MrmlNode& node) {
+std::vector<std::string> listParentTransforms(const MrmlDocument& document, const MrmlNode& node) {
   std::vector<std::string> ids;
   for (const MrmlNode* above = document.follow(node, "transform");
-       above && ids.size() < deepest && std::find(ids.begin(), ids.end(), above->id) == ids.end();
+       above && ids.size() < maxDepth && std::find(ids.begin(), ids.end(), above->id) == ids.end();
        above = document.follow(*above, "transform"))
     ids.push_back(above->id);
   return ids;
@@ -96,7 +96,7 @@ Affine toWorld(MrmlScene& scene, const MrmlNode& node) {
   Affine result = Affine::Identity();
   const MrmlNode* above = scene.document.follow(node, "transform");
   for (std::size_t level = 0; above; above = scene.document.follow(*above, "transform"), ++level) {
-    if (level == deepest)
+    if (level == maxDepth)
       throw scene.document.error(node, "the transforms above it form a loop, or too long a chain; "
                                        "mend them in the Transforms module");
     result = toParent(scene, *above) * result;
@@ -112,16 +112,16 @@ CameraPose readSceneCamera(MrmlScene& scene, const MrmlNode& camera) {
       return *numbers;
     throw scene.document.error(camera, attribute + ": must be three numbers; give --view");
   };
-  const auto number = [&](const std::string& attribute, double otherwise, double most) {
+  const auto number = [&](const std::string& attribute, double fallback, double maxValue) {
     const double number =
-        camera.number(attribute).value_or(camera.find(attribute) ? 0.0 : otherwise);
-    if (!(number > 0.0 && number <= most))
+        camera.number(attribute).value_or(camera.find(attribute) ? 0.0 : fallback);
+    if (!(number > 0.0 && number <= maxValue))
       throw scene.document.error(camera, attribute + ": is not usable; give --view");
     return number;
   };
   CameraPose pose;
-  pose.projection =
-      camera.flag("parallelProjection", false) ? Projection::orthographic : Projection::perspective;
+  pose.projection = camera.boolean("parallelProjection", false) ? Projection::orthographic
+                                                                : Projection::perspective;
   pose.position = triple("position");
   pose.target = triple("focalPoint");
   pose.up = triple("viewUp");
@@ -131,11 +131,12 @@ CameraPose readSceneCamera(MrmlScene& scene, const MrmlNode& camera) {
   // The stored pose is in the world, with `appliedTransform` applied; only later changes of the
   // transforms above still move the camera (vtkMRMLCameraNode::TransformPoints).
   if (camera.references.contains("transform")) {
-    const Affine applied = matrixOf(scene, camera, "appliedTransform").value_or(Affine::Identity());
-    const Affine since = toWorld(scene, camera) * applied.inverse();
-    pose.position = since * pose.position;
-    pose.target = since * pose.target;
-    pose.up = since.linear() * pose.up;
+    const Affine applied =
+        readMatrix(scene, camera, "appliedTransform").value_or(Affine::Identity());
+    const Affine change = toWorld(scene, camera) * applied.inverse();
+    pose.position = change * pose.position;
+    pose.target = change * pose.target;
+    pose.up = change.linear() * pose.up;
   }
   return validatePose(pose, scene.document.errorMaker(camera, "looks nowhere: ", "; give --view"));
 }

@@ -18,19 +18,19 @@
 namespace fenestra {
 namespace {
 
-constexpr std::uint64_t largestScene = std::uint64_t{64} << 20; ///< bytes of a .mrml
-constexpr std::int64_t mostEntries = 1'000'000;
+constexpr std::uint64_t maxSceneBytes = std::uint64_t{64} << 20; ///< bytes of a .mrml
+constexpr std::int64_t maxEntries = 1'000'000;
 
 /// Deflate's greatest ratio, unpacked to packed bytes. No archive of Slicer's claims more.
-constexpr std::uint64_t greatestRatio = 1032;
+constexpr std::uint64_t maxRatio = 1032;
 
 /// Most bytes that all files of an archive may unpack to: a volume of zeros packs better than 100
 /// to 1, a whole scene does not.
-std::uint64_t mostUnpacked(std::uint64_t archiveBytes) {
+std::uint64_t maxUnpackedBytes(std::uint64_t archiveBytes) {
   return (std::uint64_t{1} << 30) + 100 * archiveBytes;
 }
 
-bool leadsOut(const std::filesystem::path& name) {
+bool isOutside(const std::filesystem::path& name) {
   return name.is_absolute() ||
          std::any_of(name.begin(), name.end(), [](const auto& part) { return part == ".."; });
 }
@@ -52,7 +52,7 @@ public:
   void extract(const std::filesystem::path& file, const std::filesystem::path& destination);
   /// Content of one of files(). Throws Error (input) as extract does, and for more than `most`
   /// bytes.
-  std::string text(const std::filesystem::path& file, std::uint64_t most) const;
+  std::string text(const std::filesystem::path& file, std::uint64_t maxBytes) const;
 
 private:
   struct Close {
@@ -64,7 +64,7 @@ private:
   Error error(const std::filesystem::path& file, const std::string& what) const {
     return inputError(m_source, toOneLine(file.string()), " in it ", what);
   }
-  Error damaged(const std::filesystem::path& file) const {
+  Error makeDamagedError(const std::filesystem::path& file) const {
     return error(file, "is damaged; save the scene again");
   }
 
@@ -73,10 +73,10 @@ private:
     zip_stat_init(&stat);
     constexpr zip_uint64_t needed = ZIP_STAT_SIZE | ZIP_STAT_COMP_SIZE | ZIP_STAT_ENCRYPTION_METHOD;
     if (zip_stat_index(m_archive.get(), entry, 0, &stat) != 0 || (stat.valid & needed) != needed)
-      throw damaged(file);
+      throw makeDamagedError(file);
     if (stat.encryption_method != ZIP_EM_NONE)
       throw error(file, "is encrypted; save the scene without a password");
-    if (stat.size / greatestRatio > stat.comp_size)
+    if (stat.size / maxRatio > stat.comp_size)
       throw error(file, "claims more bytes than it can hold; save the scene again");
     return stat;
   }
@@ -84,28 +84,28 @@ private:
   /// Passes the entry's bytes to `take`. Throws Error (input) unless they are `size` bytes with the
   /// right checksum.
   void read(std::uint64_t entry, const std::filesystem::path& file, std::uint64_t size,
-            const Chunk& take) const {
+            const Chunk& consume) const {
     const std::unique_ptr<zip_file_t, Close> stream(zip_fopen_index(m_archive.get(), entry, 0));
     if (!stream)
-      throw damaged(file);
+      throw makeDamagedError(file);
     std::array<char, 1 << 16> buffer;
     std::uint64_t rest = size;
     for (;;) { // to the end of the stream, where the checksum is
       const zip_int64_t count = zip_fread(stream.get(), buffer.data(), buffer.size());
       if (count < 0 || static_cast<std::uint64_t>(count) > rest)
-        throw damaged(file);
+        throw makeDamagedError(file);
       if (count == 0)
         break;
       rest -= static_cast<std::uint64_t>(count);
-      take({buffer.data(), static_cast<std::size_t>(count)});
+      consume({buffer.data(), static_cast<std::size_t>(count)});
     }
     if (rest > 0)
-      throw damaged(file);
+      throw makeDamagedError(file);
   }
 
   std::string m_source;
   std::unique_ptr<zip_t, Close> m_archive;
-  std::uint64_t m_unpackable = 0; ///< bytes that may still be extracted
+  std::uint64_t m_remainingBytes = 0; ///< bytes that may still be extracted
   std::map<std::filesystem::path, std::uint64_t> m_files;
 };
 
@@ -118,9 +118,9 @@ SceneArchive::SceneArchive(const std::filesystem::path& path) : m_source(path.st
   if (!zip)
     throw inputError(m_source, "is no whole archive; save the scene again, or name its .mrml");
   m_archive.reset(zip);
-  m_unpackable = mostUnpacked(std::filesystem::file_size(path));
+  m_remainingBytes = maxUnpackedBytes(std::filesystem::file_size(path));
   const zip_int64_t count = zip_get_num_entries(zip, 0);
-  if (count > mostEntries)
+  if (count > maxEntries)
     throw inputError(m_source, "holds more than a million files; save a smaller scene");
 
   for (std::uint64_t entry = 0; entry < static_cast<std::uint64_t>(count); ++entry) {
@@ -128,7 +128,7 @@ SceneArchive::SceneArchive(const std::filesystem::path& path) : m_source(path.st
     if (!name)
       throw inputError(m_source, "has an entry without a name; save the scene again");
     const std::filesystem::path file = name;
-    if (leadsOut(file))
+    if (isOutside(file))
       throw inputError(m_source, "holds an entry that leads out of the archive (",
                        sanitize(file.string()),
                        "); Slicer writes no such archive, so do not trust it");
@@ -141,35 +141,35 @@ void SceneArchive::extract(const std::filesystem::path& file,
                            const std::filesystem::path& destination) {
   const std::uint64_t entry = m_files.at(file);
   const std::uint64_t size = stat(entry, file).size;
-  if (size > m_unpackable)
+  if (size > m_remainingBytes)
     throw error(file, "and what was unpacked before have more bytes than a scene packs into "
                       "an archive of this size; save the scene again, or unpack it yourself");
-  m_unpackable -= size;
-  const auto cannotUnpack = [&](int code) {
+  m_remainingBytes -= size;
+  const auto makeUnpackError = [&](int code) {
     return outputError(toOneLine(destination.string()), toOneLine(file.string()),
                        " cannot be unpacked: ", systemMessage(code), "; ",
                        writeHint(code, "set TMPDIR to another folder"));
   };
   std::error_code unknown;
   if (size > std::filesystem::space(destination.parent_path(), unknown).available && !unknown)
-    throw cannotUnpack(ENOSPC);
+    throw makeUnpackError(ENOSPC);
   errno = 0;
   // Mode `in`: does not make the file again if the end of the process has removed it.
   std::ofstream out(destination, std::ios::binary | std::ios::in);
   read(entry, file, size, [&](std::string_view chunk) {
     if (!out.write(chunk.data(), static_cast<std::streamsize>(chunk.size())))
-      throw cannotUnpack(errno);
+      throw makeUnpackError(errno);
   });
   out.close();
   if (!out)
-    throw cannotUnpack(errno);
+    throw makeUnpackError(errno);
 }
 
-std::string SceneArchive::text(const std::filesystem::path& file, std::uint64_t most) const {
+std::string SceneArchive::text(const std::filesystem::path& file, std::uint64_t maxBytes) const {
   const std::uint64_t entry = m_files.at(file);
   const std::uint64_t size = stat(entry, file).size;
-  if (size > most)
-    throw error(file, concat("is larger than ", most >> 20, " MB; save a smaller scene"));
+  if (size > maxBytes)
+    throw error(file, concat("is larger than ", maxBytes >> 20, " MB; save a smaller scene"));
   std::string text;
   read(entry, file, size, [&](std::string_view chunk) { text += chunk; });
   return text;
@@ -189,7 +189,8 @@ bool isTooLong(const std::filesystem::path& path) {
 }
 
 /// Scene closest to the root, as in Slicer: deeper ones belong to sequences.
-std::filesystem::path mainScene(const SceneArchive& archive, const std::filesystem::path& path) {
+std::filesystem::path findMainScene(const SceneArchive& archive,
+                                    const std::filesystem::path& path) {
   std::vector<std::filesystem::path> closest;
   for (const auto& [file, entry] : archive.files())
     if (lowercaseExtension(file) == ".mrml")
@@ -206,15 +207,15 @@ std::filesystem::path mainScene(const SceneArchive& archive, const std::filesyst
   });
   if (named.size() == 1)
     return named.front();
-  const std::string listed =
+  const std::string names =
       join(closest, ", ", [](const auto& file) { return toOneLine(file.string()); });
-  throw inputError(path, "holds several scenes (", listed.substr(0, 300),
+  throw inputError(path, "holds several scenes (", names.substr(0, 300),
                    "); unpack it and name one of them");
 }
 
 } // namespace
 
-std::string decodedUrl(std::string text) {
+std::string decodeUrl(std::string text) {
   // Order matters: % was escaped first, so its escape is undone last.
   constexpr std::pair<std::string_view, std::string_view> escapes[] = {
       {"%22", "\""}, {"%3C", "<"}, {"%3E", ">"}, {"%27", "'"}, {"%20", " "}, {"%25", "%"}};
@@ -232,39 +233,39 @@ SceneFiles::SceneFiles(const std::filesystem::path& path) : m_source(path.string
   requireFile(path, "name the .mrml or .mrb in it");
   if (lowercaseExtension(path) == ".mrb") {
     m_archive = std::make_unique<SceneArchive>(path);
-    const std::filesystem::path scene = mainScene(*m_archive, path);
-    m_sceneText = m_archive->text(scene, largestScene);
+    const std::filesystem::path scene = findMainScene(*m_archive, path);
+    m_sceneText = m_archive->text(scene, maxSceneBytes);
     m_folder = scene.parent_path();
   } else {
-    m_sceneText = readText(path, largestScene);
+    m_sceneText = readText(path, maxSceneBytes);
     m_folder = path.parent_path();
   }
 }
 
 SceneFiles::~SceneFiles() = default;
 
-std::filesystem::path SceneFiles::resolved(const std::string& fileName) const {
-  return (m_folder / decodedUrl(fileName)).lexically_normal(); // an absolute name replaces m_folder
+std::filesystem::path SceneFiles::resolve(const std::string& fileName) const {
+  return (m_folder / decodeUrl(fileName)).lexically_normal(); // an absolute name replaces m_folder
 }
 
-void SceneFiles::expect(const std::string& fileName) const {
+void SceneFiles::registerInputs(const std::string& fileName) const {
   if (m_archive)
     return;
-  const std::filesystem::path file = resolved(fileName);
+  const std::filesystem::path file = resolve(fileName);
   registerInput(file);
-  for (const std::filesystem::path& part : filesNamedBy(file))
+  for (const std::filesystem::path& part : findReferencedFiles(file))
     registerInput(part);
 }
 
-bool SceneFiles::holds(const std::string& fileName) const {
+bool SceneFiles::contains(const std::string& fileName) const {
   std::error_code failed;
-  const std::filesystem::path file = resolved(fileName);
+  const std::filesystem::path file = resolve(fileName);
   return m_archive ? m_archive->files().contains(file) : std::filesystem::exists(file, failed);
 }
 
 std::filesystem::path SceneFiles::locate(const std::string& fileName) {
-  const std::filesystem::path name = decodedUrl(fileName);
-  std::filesystem::path file = resolved(fileName);
+  const std::filesystem::path name = decodeUrl(fileName);
+  std::filesystem::path file = resolve(fileName);
   const auto makeError = [this](const std::filesystem::path& named, const std::string& why) {
     return inputError(m_source, "names ", toOneLine(named.string()), ", which ", why);
   };
@@ -277,47 +278,47 @@ std::filesystem::path SceneFiles::locate(const std::string& fileName) {
                              readHint(failed.value(), "check the permissions of its folder")));
     if (!isThere)
       throw makeError(file, "is not there; put it back, or save the scene again");
-    m_read.insert(file);
+    m_usedFiles.insert(file);
     return file;
   }
   if (name.is_absolute() || *file.begin() == "..")
     throw makeError(name, "is outside the archive; save the scene again");
   if (!m_archive->files().contains(file))
     throw makeError(file, "it does not hold; save the scene again");
-  std::filesystem::path place = unpacked(file);
-  const std::filesystem::path root = m_unpacked->path().lexically_normal();
-  for (const std::filesystem::path& part : filesNamedBy(place))
+  std::filesystem::path place = unpack(file);
+  const std::filesystem::path root = m_unpackFolder->path().lexically_normal();
+  for (const std::filesystem::path& part : findReferencedFiles(place))
     if (const auto beside = part.lexically_normal().lexically_relative(root);
         m_archive->files().contains(beside))
-      unpacked(beside);
+      unpack(beside);
   return place;
 }
 
-std::filesystem::path SceneFiles::unpacked(const std::filesystem::path& file) {
-  m_read.insert(file);
-  if (const auto known = m_located.find(file); known != m_located.end())
+std::filesystem::path SceneFiles::unpack(const std::filesystem::path& file) {
+  m_usedFiles.insert(file);
+  if (const auto known = m_unpackedFiles.find(file); known != m_unpackedFiles.end())
     return known->second;
-  if (!m_unpacked)
-    m_unpacked.emplace();
-  if (isTooLong(m_unpacked->path() / file))
+  if (!m_unpackFolder)
+    m_unpackFolder.emplace();
+  if (isTooLong(m_unpackFolder->path() / file))
     throw inputError(m_source, "names ", sanitize(file.string()),
                      ", which is too long for a file's name; save the scene again under shorter "
                      "ones");
-  const std::filesystem::path destination = m_unpacked->add(file);
+  const std::filesystem::path destination = m_unpackFolder->add(file);
   m_archive->extract(file, destination);
-  return m_located[file] = destination;
+  return m_unpackedFiles[file] = destination;
 }
 
-std::vector<std::string> SceneFiles::filesRead() const {
+std::vector<std::string> SceneFiles::usedFiles() const {
   std::vector<std::string> files = {m_source};
-  for (const std::filesystem::path& file : m_read)
+  for (const std::filesystem::path& file : m_usedFiles)
     files.push_back(m_archive ? m_source + "/" + file.string() : file.string());
   return files;
 }
 
-std::string SceneFiles::asKnown(std::string message) const {
-  if (m_unpacked)
-    message = replaceAll(message, m_unpacked->path().string(), m_source);
+std::string SceneFiles::translatePaths(std::string message) const {
+  if (m_unpackFolder)
+    message = replaceAll(message, m_unpackFolder->path().string(), m_source);
   return toOneLine(std::move(message));
 }
 

@@ -21,7 +21,7 @@ class SceneArchive;
 bool isSceneFile(const std::filesystem::path& path);
 
 /// Undoes the six escapes of vtkMRMLNode::URLEncodeString.
-std::string decodedUrl(std::string text);
+std::string decodeUrl(std::string text);
 
 class SceneFiles {
 public:
@@ -41,14 +41,14 @@ public:
   std::filesystem::path locate(const std::string& fileName);
   /// Enters a file that the scene names, and the files that this file names, into the ledger of
   /// inputs, read or not: no result may replace a part of a scene.
-  void expect(const std::string& fileName) const;
+  void registerInputs(const std::string& fileName) const;
   /// True if locate would find the file.
-  bool holds(const std::string& fileName) const;
+  bool contains(const std::string& fileName) const;
 
   /// Starts a new list of files read.
-  void beginRead() { m_read.clear(); }
-  /// Names of the scene and of the files located since beginRead(), as the user knows them.
-  std::vector<std::string> filesRead() const;
+  void resetUsedFiles() { m_usedFiles.clear(); }
+  /// Names of the scene and of the files located since resetUsedFiles(), as the user knows them.
+  std::vector<std::string> usedFiles() const;
 
   /// Result of `reader` on the located paths of these files, with errors as in knowingly. Throws
   /// Error (input) as locate does.
@@ -57,37 +57,38 @@ public:
     std::vector<std::filesystem::path> paths;
     for (const std::string& fileName : fileNames)
       paths.push_back(locate(fileName));
-    return knowingly([&] {
-      std::optional<InputConfinement> within;
-      if (m_unpacked) // an archive's files may name only files in it
-        within.emplace(m_unpacked->path());
+    return translateErrors([&] {
+      std::optional<InputConfinement> confined;
+      if (m_unpackFolder) // an archive's files may name only files in it
+        confined.emplace(m_unpackFolder->path());
       return reader(paths);
     });
   }
   /// Result of `work`; its errors name located files as the user knows them.
   template <typename Work>
-  auto knowingly(Work&& work) const {
+  auto translateErrors(Work&& work) const {
     try {
       return work();
     } catch (const Error& error) {
-      throw Error(error.kind(), asKnown(error.what()));
+      throw Error(error.kind(), translatePaths(error.what()));
     }
   }
   /// Message with paths of unpacked files replaced by names that the user knows, on one line.
-  std::string asKnown(std::string message) const;
+  std::string translatePaths(std::string message) const;
 
 private:
-  std::filesystem::path resolved(const std::string& fileName) const;
+  std::filesystem::path resolve(const std::string& fileName) const;
   /// Path of one of the archive's files, unpacked at the first call.
-  std::filesystem::path unpacked(const std::filesystem::path& file);
+  std::filesystem::path unpack(const std::filesystem::path& file);
 
   std::string m_source;
   std::string m_sceneText;
   std::filesystem::path m_folder; ///< folder of the .mrml; for a .mrb, within the archive
   std::unique_ptr<SceneArchive> m_archive;
-  std::optional<PrivateFolder> m_unpacked;
-  std::map<std::filesystem::path, std::filesystem::path> m_located; ///< unpacked files, by name
-  std::set<std::filesystem::path> m_read;                           ///< names, escapes undone
+  std::optional<PrivateFolder> m_unpackFolder;
+  std::map<std::filesystem::path, std::filesystem::path>
+      m_unpackedFiles;                         ///< unpacked files, by name
+  std::set<std::filesystem::path> m_usedFiles; ///< names, escapes undone
 };
 
 } // namespace fenestra

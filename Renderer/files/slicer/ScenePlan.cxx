@@ -9,7 +9,7 @@ namespace {
 using Nodes = std::vector<const MrmlNode*>;
 
 template <typename Matches>
-Nodes those(const Nodes& nodes, Matches&& matches) {
+Nodes filterNodes(const Nodes& nodes, Matches&& matches) {
   Nodes found;
   std::ranges::copy_if(nodes, std::back_inserter(found),
                        [&](const MrmlNode* node) { return matches(*node); });
@@ -17,38 +17,38 @@ Nodes those(const Nodes& nodes, Matches&& matches) {
 }
 
 template <typename Matches>
-Nodes nodesThat(const MrmlDocument& document, Matches&& matches) {
+Nodes findNodes(const MrmlDocument& document, Matches&& matches) {
   Nodes all;
   for (const MrmlNode& node : document.nodes())
     all.push_back(&node);
-  return those(all, matches);
+  return filterNodes(all, matches);
 }
 
-std::string listed(const Nodes& nodes) {
+std::string formatNodes(const Nodes& nodes) {
   return join(
-      nodes, ", ", [](const MrmlNode* node) { return shown(*node); }, 20, "...");
+      nodes, ", ", [](const MrmlNode* node) { return describeNode(*node); }, 20, "...");
 }
 
 /// Node by id, else by name; null: none. Throws Error (input) where several have the name.
-const MrmlNode* named(const MrmlDocument& document, const Nodes& nodes, const std::string& name,
-                      const std::string& flag) {
-  const Nodes byId = those(nodes, [&](const MrmlNode& node) { return node.id == name; });
+const MrmlNode* findNamed(const MrmlDocument& document, const Nodes& nodes, const std::string& name,
+                          const std::string& flag) {
+  const Nodes byId = filterNodes(nodes, [&](const MrmlNode& node) { return node.id == name; });
   if (!byId.empty())
     return byId.front();
-  const Nodes byName = those(nodes, [&](const MrmlNode& node) { return node.name == name; });
+  const Nodes byName = filterNodes(nodes, [&](const MrmlNode& node) { return node.name == name; });
   if (byName.size() > 1)
-    throw inputError(document.source(), "--", flag, " ", name, " can be any of ", listed(byName),
-                     "; name one by its id");
+    throw inputError(document.source(), "--", flag, " ", name, " can be any of ",
+                     formatNodes(byName), "; name one by its id");
   return byName.empty() ? nullptr : byName.front();
 }
 
 /// Node of the first list that has any; null: none has. Throws Error (input) where that list has
 /// several.
-const MrmlNode* onlyOne(const MrmlDocument& document, std::initializer_list<const Nodes*> lists,
-                        const char* what, const char* flag) {
+const MrmlNode* findSingle(const MrmlDocument& document, std::initializer_list<const Nodes*> lists,
+                           const char* what, const char* flag) {
   for (const Nodes* candidates : lists)
     if (candidates->size() > 1)
-      throw inputError(document.source(), "has several ", what, " (", listed(*candidates),
+      throw inputError(document.source(), "has several ", what, " (", formatNodes(*candidates),
                        "); choose one with --", flag);
     else if (!candidates->empty())
       return candidates->front();
@@ -57,7 +57,8 @@ const MrmlNode* onlyOne(const MrmlDocument& document, std::initializer_list<cons
 
 /// First display of the volume that matches; null: none.
 template <typename Matches>
-const MrmlNode* displayOf(const MrmlDocument& document, const MrmlNode& volume, Matches&& matches) {
+const MrmlNode* findDisplay(const MrmlDocument& document, const MrmlNode& volume,
+                            Matches&& matches) {
   const auto displays = volume.references.find("display");
   if (displays != volume.references.end())
     for (const std::string& id : displays->second)
@@ -67,90 +68,91 @@ const MrmlNode* displayOf(const MrmlDocument& document, const MrmlNode& volume, 
 }
 
 /// Volume rendering display of the volume: a shown one, else the first; null: none.
-const MrmlNode* renderingOf(const MrmlDocument& document, const MrmlNode& volume) {
-  const MrmlNode* visible = displayOf(document, volume, [](const MrmlNode& display) {
-    return isVolumeRendering(display) && isShown(display);
+const MrmlNode* findRendering(const MrmlDocument& document, const MrmlNode& volume) {
+  const MrmlNode* visible = findDisplay(document, volume, [](const MrmlNode& display) {
+    return isVolumeRendering(display) && isVisible(display);
   });
-  return visible ? visible : displayOf(document, volume, isVolumeRendering);
+  return visible ? visible : findDisplay(document, volume, isVolumeRendering);
 }
 
 const MrmlNode* chooseVolume(const MrmlDocument& document,
                              const std::optional<std::string>& choice) {
-  const Nodes volumes = nodesThat(document, isScalarVolume);
+  const Nodes volumes = findNodes(document, isScalarVolume);
   if (volumes.empty())
     throw inputError(document.source(), "holds no scalar volume; add one in Slicer and save again");
   if (choice) {
-    if (const MrmlNode* volume = named(document, volumes, *choice, "volume"))
+    if (const MrmlNode* volume = findNamed(document, volumes, *choice, "volume"))
       return volume;
     throw inputError(document.source(), "has no scalar volume \"", *choice, "\"; it has ",
-                     listed(volumes));
+                     formatNodes(volumes));
   }
   // Candidates in this order: rendered in Slicer, renderable, active in Slicer, all.
-  const Nodes rendered = those(volumes, [&](const MrmlNode& volume) {
-    const MrmlNode* display = renderingOf(document, volume);
-    return display && isShown(*display);
+  const Nodes rendered = filterNodes(volumes, [&](const MrmlNode& volume) {
+    const MrmlNode* display = findRendering(document, volume);
+    return display && isVisible(*display);
   });
-  const Nodes renderable = those(
-      volumes, [&](const MrmlNode& volume) { return renderingOf(document, volume) != nullptr; });
+  const Nodes renderable = filterNodes(
+      volumes, [&](const MrmlNode& volume) { return findRendering(document, volume) != nullptr; });
   std::set<std::string> selected;
-  for (const MrmlNode* selection : document.withTag("Selection"))
-    selected.insert(selection->referenced("ActiveVolume"));
+  for (const MrmlNode* selection : document.findByTag("Selection"))
+    selected.insert(selection->referenceId("ActiveVolume"));
   const Nodes active =
-      those(volumes, [&](const MrmlNode& volume) { return selected.contains(volume.id); });
-  return onlyOne(document, {&rendered, &renderable, &active, &volumes}, "volumes to render",
-                 "volume");
+      filterNodes(volumes, [&](const MrmlNode& volume) { return selected.contains(volume.id); });
+  return findSingle(document, {&rendered, &renderable, &active, &volumes}, "volumes to render",
+                    "volume");
 }
 
-const MrmlNode* chooseSegmentation(const MrmlDocument& document, const SceneChoice& choice) {
-  const Nodes segmentations = document.withTag("Segmentation");
-  const Nodes labelMaps = nodesThat(document, isLabelMap);
+const MrmlNode* chooseSegmentation(const MrmlDocument& document, const SceneSelection& choice) {
+  const Nodes segmentations = document.findByTag("Segmentation");
+  const Nodes labelMaps = findNodes(document, isLabelMap);
   Nodes both = segmentations;
   both.insert(both.end(), labelMaps.begin(), labelMaps.end());
   if (choice.segmentation)
-    return named(document, both, *choice.segmentation, "segmentation");
+    return findNamed(document, both, *choice.segmentation, "segmentation");
   if (!choice.needsSegmentation)
     return nullptr;
-  const Nodes shownOnes = those(segmentations, [&](const MrmlNode& node) {
+  const Nodes visible = filterNodes(segmentations, [&](const MrmlNode& node) {
     const MrmlNode* display = document.follow(node, "display");
-    return !display || isShown(*display);
+    return !display || isVisible(*display);
   });
-  if (const MrmlNode* one = onlyOne(document, {&shownOnes, &segmentations, &labelMaps},
-                                    "segmentations", "segmentation"))
+  if (const MrmlNode* one = findSingle(document, {&visible, &segmentations, &labelMaps},
+                                       "segmentations", "segmentation"))
     return one;
   throw inputError(document.source(),
                    "has no segmentation to find segments in; give --segmentation FILE");
 }
 
 /// Rank of a view: the user most likely looked at the view of the greatest rank.
-int likelihood(const MrmlNode& view) {
+int rankView(const MrmlNode& view) {
   const bool inLayout = view.text("attributes").find("MappedInLayout:1") != std::string::npos;
-  return 4 * view.flag("active", false) + 2 * inLayout + view.flag("visibility", true);
+  return 4 * view.boolean("active", false) + 2 * inLayout + view.boolean("visibility", true);
 }
 
 const MrmlNode* chooseView(const MrmlDocument& document, const MrmlNode* rendering) {
-  Nodes views = document.withTag("View");
+  Nodes views = document.findByTag("View");
   if (rendering && rendering->references.contains("view")) {
     const std::vector<std::string>& inViews = rendering->references.at("view");
     const std::set<std::string> ids(inViews.begin(), inViews.end());
-    const Nodes own = those(views, [&](const MrmlNode& view) { return ids.contains(view.id); });
+    const Nodes own =
+        filterNodes(views, [&](const MrmlNode& view) { return ids.contains(view.id); });
     views = own.empty() ? views : own;
   }
   const auto best =
       std::max_element(views.begin(), views.end(), [](const MrmlNode* a, const MrmlNode* b) {
-        return likelihood(*a) < likelihood(*b);
+        return rankView(*a) < rankView(*b);
       });
   return best == views.end() ? nullptr : *best;
 }
 
 /// Camera of a view: by layout name, in older scenes by the view's id, else the only camera; null:
 /// none.
-const MrmlNode* cameraOf(const MrmlDocument& document, const MrmlNode* view) {
-  const Nodes cameras = document.withTag("Camera");
+const MrmlNode* findCamera(const MrmlDocument& document, const MrmlNode* view) {
+  const Nodes cameras = document.findByTag("Camera");
   if (view) {
-    const std::string layout = layoutOf(*view);
+    const std::string layout = layoutName(*view);
     for (const MrmlNode* camera : cameras) {
       const std::string active = camera->text("activetag");
-      if ((!layout.empty() && layoutOf(*camera) == layout) ||
+      if ((!layout.empty() && layoutName(*camera) == layout) ||
           (!active.empty() && active == view->id))
         return camera;
     }
@@ -159,92 +161,92 @@ const MrmlNode* cameraOf(const MrmlDocument& document, const MrmlNode* view) {
 }
 
 /// Refuses maximum and minimum intensity projections, which have no light to trace.
-void refuseTechnique(const MrmlDocument& document, const MrmlNode* node) {
+void rejectTechnique(const MrmlDocument& document, const MrmlNode* node) {
   if (!node)
     return;
-  static const std::map<std::string, std::string> refused = {
+  static const std::map<std::string, std::string> unsupported = {
       {"MaximumIntensityProjection", "a maximum intensity projection"},
       {"MinimumIntensityProjection", "a minimum intensity projection"},
       {"2", "a maximum intensity projection"}, // number in older scenes
       {"3", "a minimum intensity projection"}};
-  if (const auto technique = refused.find(node->text("raycastTechnique"));
-      technique != refused.end())
+  if (const auto technique = unsupported.find(node->text("raycastTechnique"));
+      technique != unsupported.end())
     throw document.error(*node, "raycastTechnique is " + technique->second +
                                     ", which has no light to trace; set it to Composite (Volume "
                                     "Rendering module), or render the volume's own file");
 }
 
-std::string said(const MrmlNode& node, const std::string& why) {
-  return node.tag + " " + shown(node) + ": " + why;
+std::string explain(const MrmlNode& node, const std::string& why) {
+  return node.tag + " " + describeNode(node) + ": " + why;
 }
 
-void addAll(const Nodes& nodes, const std::string& why, std::vector<std::string>& list) {
-  constexpr std::size_t most = 3; // scenes have hundreds of models
-  if (nodes.size() > most)
+void addReasons(const Nodes& nodes, const std::string& why, std::vector<std::string>& list) {
+  constexpr std::size_t maxListed = 3; // scenes have hundreds of models
+  if (nodes.size() > maxListed)
     list.push_back(std::to_string(nodes.size()) + " nodes " + nodes.front()->tag + ": " + why);
   else
     for (const MrmlNode* node : nodes)
-      list.push_back(said(*node, why));
+      list.push_back(explain(*node, why));
 }
 
 /// Lists settings of the rendering that a path tracer lacks.
-void listRendering(const MrmlDocument& document, ScenePlan& plan) {
+void listRenderingSettings(const MrmlDocument& document, ScenePlan& plan) {
   const MrmlNode& rendering = *plan.rendering;
-  if (!isShown(rendering))
-    plan.ignored.push_back(said(rendering, "is hidden in Slicer; its settings are used anyway"));
+  if (!isVisible(rendering))
+    plan.ignored.push_back(explain(rendering, "is hidden in Slicer; its settings are used anyway"));
   if (const MrmlNode* clip = document.follow(rendering, "ClipNode");
-      clip && rendering.flag("clipping", false))
-    plan.warnings.push_back(said(*clip, "clips the rendering in Slicer, and is ignored here"));
+      clip && rendering.boolean("clipping", false))
+    plan.warnings.push_back(explain(*clip, "clips the rendering in Slicer, and is ignored here"));
   if (const MrmlNode* shader = document.follow(rendering, "shaderProperty"))
-    plan.ignored.push_back(said(*shader, "shaders have no meaning in path tracing"));
+    plan.ignored.push_back(explain(*shader, "shaders have no meaning in path tracing"));
   if (const MrmlNode* roi = document.follow(rendering, "roi"); roi && !plan.roi)
-    plan.ignored.push_back(said(*roi, "cropping is off"));
-  if (!plan.roi && rendering.flag("croppingEnabled", false))
-    plan.warnings.push_back(said(rendering, "cropping is on without a region of interest"));
+    plan.ignored.push_back(explain(*roi, "cropping is off"));
+  if (!plan.roi && rendering.boolean("croppingEnabled", false))
+    plan.warnings.push_back(explain(rendering, "cropping is on without a region of interest"));
 }
 
-void listOthers(const MrmlDocument& document, ScenePlan& plan) {
+void listUnused(const MrmlDocument& document, ScenePlan& plan) {
   const auto list = [&](auto&& matches, const MrmlNode* used, const std::string& why) {
-    addAll(
-        nodesThat(document, [&](const MrmlNode& node) { return &node != used && matches(node); }),
+    addReasons(
+        findNodes(document, [&](const MrmlNode& node) { return &node != used && matches(node); }),
         why, plan.ignored);
   };
-  const auto tagged = [](const char* tag) {
+  const auto hasTag = [](const char* tag) {
     return [tag](const MrmlNode& node) { return node.tag == tag; };
   };
   list(isScalarVolume, plan.volume, "another volume is rendered");
-  list(tagged("View"), plan.view, "another view is rendered");
-  list(tagged("Camera"), plan.camera, "another camera is used");
+  list(hasTag("View"), plan.view, "another view is rendered");
+  list(hasTag("Camera"), plan.camera, "another camera is used");
   for (const char* tag :
        {"VectorVolume", "DiffusionTensorVolume", "DiffusionWeightedVolume", "Sequence"})
-    list(tagged(tag), nullptr, "only scalar volumes are rendered");
+    list(hasTag(tag), nullptr, "only scalar volumes are rendered");
   for (const char* tag : {"Model", "FiberBundle", "MarkupsFiducial", "MarkupsCurve",
                           "MarkupsClosedCurve", "MarkupsLine", "MarkupsAngle", "MarkupsPlane"})
-    list(tagged(tag), nullptr, "surfaces and markups are not rendered");
+    list(hasTag(tag), nullptr, "surfaces and markups are not rendered");
 }
 
 } // namespace
 
-ScenePlan planRender(const MrmlDocument& document, const SceneChoice& choice) {
+ScenePlan planRender(const MrmlDocument& document, const SceneSelection& choice) {
   ScenePlan plan;
   plan.volume = chooseVolume(document, choice.volume);
-  plan.rendering = renderingOf(document, *plan.volume);
+  plan.rendering = findRendering(document, *plan.volume);
   plan.segmentation = chooseSegmentation(document, choice);
   plan.view = chooseView(document, plan.rendering);
-  plan.camera = cameraOf(document, plan.view);
+  plan.camera = findCamera(document, plan.view);
   if (plan.rendering) {
     plan.property = document.follow(*plan.rendering, "volumeProperty");
-    if (plan.rendering->flag("croppingEnabled", false))
+    if (plan.rendering->boolean("croppingEnabled", false))
       plan.roi = document.follow(*plan.rendering, "roi");
-    refuseTechnique(document, plan.view);
-    refuseTechnique(document, plan.rendering);
-    if (plan.rendering->flag("followVolumeDisplayNode", false))
-      plan.followed = displayOf(document, *plan.volume, [](const MrmlNode& display) {
+    rejectTechnique(document, plan.view);
+    rejectTechnique(document, plan.rendering);
+    if (plan.rendering->boolean("followVolumeDisplayNode", false))
+      plan.sliceDisplay = findDisplay(document, *plan.volume, [](const MrmlNode& display) {
         return display.tag == "VolumeDisplay";
       });
-    listRendering(document, plan);
+    listRenderingSettings(document, plan);
   }
-  listOthers(document, plan);
+  listUnused(document, plan);
   return plan;
 }
 

@@ -10,7 +10,7 @@
 namespace fenestra {
 
 /// Nodes that the user chooses, by id or name; nullopt: no choice.
-struct SceneChoice {
+struct SceneSelection {
   std::optional<std::string> volume = {};
   std::optional<std::string> segmentation = {};
   bool needsSegmentation = false; ///< a focus must be found
@@ -21,7 +21,7 @@ struct ScenePlan {
   const MrmlNode* volume = nullptr;       ///< never null
   const MrmlNode* rendering = nullptr;    ///< volume rendering display of the volume
   const MrmlNode* property = nullptr;     ///< volume property of the rendering
-  const MrmlNode* followed = nullptr;     ///< slice display whose window the rendering follows
+  const MrmlNode* sliceDisplay = nullptr; ///< slice display whose window the rendering follows
   const MrmlNode* roi = nullptr;          ///< box that crops the rendering
   const MrmlNode* segmentation = nullptr; ///< segmentation or label map
   const MrmlNode* view = nullptr;
@@ -32,6 +32,6 @@ struct ScenePlan {
 
 /// Throws Error (input) where the choice is ambiguous (the message lists the candidates), names no
 /// volume, or a technique has no equivalent in path tracing.
-ScenePlan planRender(const MrmlDocument& document, const SceneChoice& choice);
+ScenePlan planRender(const MrmlDocument& document, const SceneSelection& choice);
 
 } // namespace fenestra

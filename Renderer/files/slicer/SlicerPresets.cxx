@@ -12,7 +12,7 @@ using Path = std::filesystem::path;
 
 /// presets.xml in share/Slicer-VERSION/qt-loadable-modules (qSlicerLoadableModule's share
 /// directory); of several versions the last by name.
-std::optional<Path> presetsIn(const Path& home) {
+std::optional<Path> findPresets(const Path& home) {
   std::optional<Path> last;
   std::error_code failed;
   for (std::filesystem::directory_iterator entry(home / "share", failed), end;
@@ -27,7 +27,7 @@ std::optional<Path> presetsIn(const Path& home) {
 }
 
 /// Folder of the first Slicer launcher in PATH, links resolved.
-std::optional<Path> homeInPath() {
+std::optional<Path> findHome() {
   const char* const path = std::getenv("PATH");
   for (const std::string& folder : split(path ? path : "", ':')) {
     std::error_code failed;
@@ -42,10 +42,10 @@ std::optional<Path> homeInPath() {
 
 std::optional<Path> findSlicerPresets() {
   if (const char* const home = std::getenv("SLICER_HOME"); home && *home)
-    if (auto presets = presetsIn(home))
+    if (auto presets = findPresets(home))
       return presets;
-  const auto home = homeInPath();
-  return home ? presetsIn(*home) : std::nullopt;
+  const auto home = findHome();
+  return home ? findPresets(*home) : std::nullopt;
 }
 
 } // namespace fenestra

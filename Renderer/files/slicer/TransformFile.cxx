@@ -27,33 +27,33 @@ using Path = std::filesystem::path;
 // ITK's transform files are read by a child process: ITK and HDF5 take memory for whatever sizes a
 // file declares, and abort or go astray on damage.
 
-constexpr std::size_t mostRecords = 256;
-constexpr std::size_t mostNumbers = 64; // more than any linear transform has
-constexpr std::uint64_t longestAnswer = mostRecords * 2048;
+constexpr std::size_t maxRecords = 256;
+constexpr std::size_t maxNumbers = 64; // more than any linear transform has
+constexpr std::uint64_t maxReplyBytes = maxRecords * 2048;
 
 // ---- in the child: whether a file is whole
 
-constexpr herr_t goOn = 0, leaveOff = -1;
+constexpr herr_t proceed = 0, stop = -1;
 
 herr_t visitLink(hid_t, const char*, const H5L_info_t* link, void*) {
-  return link->type == H5L_TYPE_HARD || link->type == H5L_TYPE_SOFT ? goOn : leaveOff;
+  return link->type == H5L_TYPE_HARD || link->type == H5L_TYPE_SOFT ? proceed : stop;
 }
 
 herr_t visitObject(hid_t file, const char* name, const H5O_info_t* object, void*) {
   if (object->type != H5O_TYPE_DATASET)
-    return goOn;
+    return proceed;
   const hid_t data = H5Dopen2(file, name, H5P_DEFAULT);
   const hid_t properties = H5Dget_create_plist(data);
-  const bool isInside =
+  const bool isInFile =
       H5Pget_external_count(properties) == 0 && H5Pget_layout(properties) != H5D_VIRTUAL;
   H5Pclose(properties);
   H5Dclose(data);
-  return isInside ? goOn : leaveOff;
+  return isInFile ? proceed : stop;
 }
 
 /// True if an HDF5 file is self-contained: no link, raw storage or virtual data set lies in another
 /// file, which the library would open unchecked. False where the file cannot be read.
-bool holdsAllItsParts(const std::string& path) {
+bool isSelfContained(const std::string& path) {
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   // Each group and object is visited once, however often it is named.
   const bool isComplete = file >= 0 &&
@@ -93,7 +93,7 @@ private:
 
 /// The only pointer to a new object, which counts one reference from the start.
 template <typename Object>
-itk::SmartPointer<Object> onlyPointer(Object* made) {
+itk::SmartPointer<Object> takeOwnership(Object* made) {
   const itk::SmartPointer<Object> pointer = made;
   made->UnRegister();
   return pointer;
@@ -107,11 +107,11 @@ public:
 
 protected:
   itk::LightObject::Pointer CreateObject(const char* type) override {
-    return onlyPointer(new RecordedTransform(type)).GetPointer();
+    return takeOwnership(new RecordedTransform(type)).GetPointer();
   }
 };
 
-itk::TransformIOBaseTemplate<double>::Pointer readerOf(const std::string& extension) {
+itk::TransformIOBaseTemplate<double>::Pointer makeTransformReader(const std::string& extension) {
   if (extension == ".mat")
     return itk::MatlabTransformIOTemplate<double>::New().GetPointer();
   if (extension == ".h5" || extension == ".hdf5")
@@ -119,27 +119,27 @@ itk::TransformIOBaseTemplate<double>::Pointer readerOf(const std::string& extens
   return itk::TxtTransformIOTemplate<double>::New().GetPointer();
 }
 
-/// First mostNumbers + 1 numbers: one too many shows that there are more.
+/// First maxNumbers + 1 numbers: one too many shows that there are more.
 template <typename Parameters>
-std::vector<double> firstOf(const Parameters& parameters) {
-  const auto count = std::min<std::size_t>(parameters.Size(), mostNumbers + 1);
+std::vector<double> copyFirst(const Parameters& parameters) {
+  const auto count = std::min<std::size_t>(parameters.Size(), maxNumbers + 1);
   return {parameters.data_block(), parameters.data_block() + count};
 }
 
 std::string handleTransformRequest(const std::string& request) {
   const std::string extension = lowercaseExtension(request);
-  if ((extension == ".h5" || extension == ".hdf5") && !holdsAllItsParts(request))
+  if ((extension == ".h5" || extension == ".hdf5") && !isSelfContained(request))
     return {};
-  const auto reader = readerOf(extension);
-  RecordingFactory::RegisterFactory(onlyPointer(new RecordingFactory), // before ITK's own
+  const auto reader = makeTransformReader(extension);
+  RecordingFactory::RegisterFactory(takeOwnership(new RecordingFactory), // before ITK's own
                                     RecordingFactory::InsertionPositionEnum::INSERT_AT_FRONT);
   reader->SetFileName(request);
   reader->Read();
   ReplyWriter reply;
   for (const auto& transform : reader->GetTransformList()) {
     reply.put(transform->GetTransformTypeAsString());
-    reply.put(firstOf(transform->GetParameters()));
-    reply.put(firstOf(transform->GetFixedParameters()));
+    reply.put(copyFirst(transform->GetParameters()));
+    reply.put(copyFirst(transform->GetFixedParameters()));
   }
   return reply.bytes();
 }
@@ -151,8 +151,8 @@ const SandboxJob transformJob("transform", handleTransformRequest, {.seconds = 3
 
 constexpr const char* hardenHint =
     "harden it in Slicer (Data module, Harden transform) and save again";
-constexpr std::uint64_t largestFile = 64 << 20;
-constexpr std::uint64_t largestTextFile = 1 << 20; ///< room for hundreds of matrices
+constexpr std::uint64_t maxFileBytes = 64 << 20;
+constexpr std::uint64_t maxTextFileBytes = 1 << 20; ///< room for hundreds of matrices
 
 struct TransformRecord {
   std::string type;               ///< ITK's name without scalar type and axes: "AffineTransform"
@@ -168,7 +168,7 @@ struct TransformRecord {
 using MatrixTransform = itk::MatrixOffsetTransformBase<double, 3, 3>;
 
 /// ITK's own of this type; null: none.
-MatrixTransform::Pointer matrixTransform(const std::string& type) {
+MatrixTransform::Pointer makeMatrixTransform(const std::string& type) {
   [[maybe_unused]] static const bool known = [] {
     itk::TransformFactoryBase::RegisterDefaultTransforms();
     itk::TransformFactory<itk::Rigid3DTransform<double>>::RegisterTransform();
@@ -182,11 +182,11 @@ MatrixTransform::Pointer matrixTransform(const std::string& type) {
 }
 
 /// "Type" of "Type_scalar_axes_axes". Throws Error (input) unless linear and of three axes.
-std::string linearType(const Path& path, const std::string& name) {
+std::string requireLinearType(const Path& path, const std::string& name) {
   std::string type = name.substr(0, name.find('_'));
   const bool isSimple =
       type == "CompositeTransform" || type == "IdentityTransform" || type == "TranslationTransform";
-  if (!isSimple && !matrixTransform(type))
+  if (!isSimple && !makeMatrixTransform(type))
     throw inputError(path, "Transform: ", sanitize(name), " is not linear; ", hardenHint);
   if (name != type + "_double_3_3") // ITK's readers turn _float_ into _double_
     throw inputError(path, "Transform: ", sanitize(name),
@@ -195,28 +195,28 @@ std::string linearType(const Path& path, const std::string& name) {
 }
 
 /// Records in the answer, which is untrusted. Throws std::runtime_error where it is malformed.
-std::vector<TransformRecord> recordsIn(const Path& path, std::string_view reply) {
+std::vector<TransformRecord> parseRecords(const Path& path, std::string_view reply) {
   std::vector<TransformRecord> records;
   for (ReplyReader reader(reply); !reader.isAtEnd();)
-    records.push_back({linearType(path, reader.text()), reader.numbers(), reader.numbers()});
+    records.push_back({requireLinearType(path, reader.text()), reader.numbers(), reader.numbers()});
   return records;
 }
 
 /// Map of a record, in the file's own space and sense. Throws ITK's exceptions for values that the
 /// type forbids (a rigid matrix that is not orthogonal).
-Affine mapOf(const Path& path, const TransformRecord& record) {
+Affine makeMap(const Path& path, const TransformRecord& record) {
   if (record.type == "IdentityTransform")
     return Affine::Identity();
   const std::vector<double>&numbers = record.parameters, &fixed = record.fixed;
   if (record.type == "TranslationTransform" && numbers.size() == 3)
     return makeTranslation({numbers[0], numbers[1], numbers[2]});
-  const auto transform = matrixTransform(record.type);
+  const auto transform = makeMatrixTransform(record.type);
   if (!transform) // a composite within a composite
     throwDamaged(path);
   // Euler angles may have a fourth fixed parameter, the order of the axes.
-  const std::size_t mostFixed = std::max<std::size_t>(3, transform->GetFixedParameters().size());
+  const std::size_t maxFixed = std::max<std::size_t>(3, transform->GetFixedParameters().size());
   if (numbers.size() != transform->GetNumberOfParameters() ||
-      (!fixed.empty() && (fixed.size() < 3 || fixed.size() > mostFixed)))
+      (!fixed.empty() && (fixed.size() < 3 || fixed.size() > maxFixed)))
     throwDamaged(path);
   const auto fill = [](auto array, const std::vector<double>& values) {
     array.SetSize(static_cast<unsigned>(values.size()));
@@ -237,18 +237,18 @@ Affine mapOf(const Path& path, const TransformRecord& record) {
 }
 
 /// Product of the file's transforms, in LPS, in the file's own sense.
-Affine composed(const Path& path, const std::vector<TransformRecord>& records) {
+Affine compose(const Path& path, const std::vector<TransformRecord>& records) {
   if (records.empty())
     throwDamaged(path);
   if (records.front().type != "CompositeTransform") {
     if (records.size() > 1)
       throw inputError(path, "holds ", records.size(),
                        " transforms and does not say how they combine; save one, or a composite");
-    return mapOf(path, records.front());
+    return makeMap(path, records.front());
   }
   Affine map = Affine::Identity();
   for (std::size_t i = 1; i < records.size(); ++i)
-    map = map * mapOf(path, records[i]);
+    map = map * makeMap(path, records[i]);
   return map;
 }
 
@@ -264,8 +264,8 @@ void checkExtension(const Path& path) {
 }
 
 /// Refuses texts that name further files: ITK would open them.
-void checkNamesNoFile(const Path& path) {
-  if (readText(path, largestFile).find("ComponentTransformFile") != std::string::npos)
+void checkNoFileReference(const Path& path) {
+  if (readText(path, maxFileBytes).find("ComponentTransformFile") != std::string::npos)
     throw inputError(
         path, "ComponentTransformFile: further files are not read; save the composite in one file");
 }
@@ -276,22 +276,22 @@ Affine readLinearTransform(const Path& path) {
   requireFile(path, "name a transform file in it");
   const std::string extension = lowercaseExtension(path);
   const bool isText = extension == ".tfm" || extension == ".txt";
-  const std::uint64_t largest = isText ? largestTextFile : largestFile;
+  const std::uint64_t largest = isText ? maxTextFileBytes : maxFileBytes;
   if (std::filesystem::file_size(path) > largest)
     throw inputError(path, "is larger than ", largest >> 20, " MB, so it is no linear transform; ",
                      hardenHint);
   checkExtension(path);
-  checkNamesNoFile(path);
+  checkNoFileReference(path);
   // Starting a child takes longer than reading a transform: each thread keeps its child.
   thread_local SandboxedReader reader(transformJob);
-  return parseTransformReply(path, reader.request(path.string(), longestAnswer).value_or(""));
+  return parseTransformReply(path, reader.request(path.string(), maxReplyBytes).value_or(""));
 }
 
 Affine parseTransformReply(const Path& path, std::string_view reply) {
   try {
-    const Quiet quiet;
+    const SuppressItkOutput suppress;
     const Affine map =
-        checkAffine(composed(path, recordsIn(path, reply)), [&path](const std::string& what) {
+        checkAffine(compose(path, parseRecords(path, reply)), [&path](const std::string& what) {
           return inputError(path, "Parameters: the map ", what, "; save another one");
         });
     return Affine(lpsToRas * map.linear() * lpsToRas, lpsToRas * map.translation());
