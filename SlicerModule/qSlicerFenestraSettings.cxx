@@ -55,31 +55,32 @@ qSlicerFenestraSettings::qSlicerFenestraSettings(qSlicerFenestraPanel* panel,
 }
 
 void qSlicerFenestraSettings::connectPanel() {
-  using Settings = qSlicerFenestraSettings;
+  using SettingsHandle = qSlicerFenestraSettings;
   const qSlicerFenestraPanel& panel = *m_panel;
   connect(panel.volume, SIGNAL(currentNodeChanged(vtkMRMLNode*)), this,
           SLOT(takeVolume(vtkMRMLNode*)));
   connect(panel.segmentation, SIGNAL(currentNodeChanged(vtkMRMLNode*)), this,
           SLOT(takeSegmentation(vtkMRMLNode*)));
   connect(panel.view3D, SIGNAL(currentNodeChanged(vtkMRMLNode*)), this, SLOT(take()));
-  connect(panel.focus, &QListWidget::itemChanged, this, &Settings::take);
-  connect(panel.clipping, &qSlicerFenestraClipping::changed, this, &Settings::take);
+  connect(panel.focus, &QListWidget::itemChanged, this, &SettingsHandle::take);
+  connect(panel.clipping, &qSlicerFenestraClipping::changed, this, &SettingsHandle::take);
   connect(panel.preset, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
-          &Settings::takePreset);
-  connect(panel.view, QOverload<int>::of(&QComboBox::currentIndexChanged), this, &Settings::take);
-  connect(panel.look, &qSlicerFenestraLook::changed, this, &Settings::take);
-  connect(panel.materials, &qSlicerFenestraMaterials::changed, this, &Settings::take);
+          &SettingsHandle::takePreset);
+  connect(panel.view, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
+          &SettingsHandle::take);
+  connect(panel.look, &qSlicerFenestraLook::changed, this, &SettingsHandle::take);
+  connect(panel.materials, &qSlicerFenestraMaterials::changed, this, &SettingsHandle::take);
   connect(panel.allow, &QPushButton::clicked, this, [this] {
     if (m_node)
       m_node->AllowFiles();
   });
-  connect(panel.follow, &QCheckBox::toggled, this, &Settings::take);
+  connect(panel.follow, &QCheckBox::toggled, this, &SettingsHandle::take);
   connect(panel.quality, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
-          &Settings::takeQuality);
+          &SettingsHandle::takeQuality);
   for (QSpinBox* box : {panel.samples, panel.width, panel.height, panel.frames})
-    connect(box, QOverload<int>::of(&QSpinBox::valueChanged), this, &Settings::take);
+    connect(box, QOverload<int>::of(&QSpinBox::valueChanged), this, &SettingsHandle::take);
   for (QDoubleSpinBox* box : {panel.noise, panel.seconds, panel.degrees, panel.steady})
-    connect(box, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this, &Settings::take);
+    connect(box, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this, &SettingsHandle::take);
 }
 
 // ---- the node

@@ -57,7 +57,7 @@ OrganPreset choosePreset(const OptionValues& given, const Input& input,
                          const std::optional<SegmentNames>& names) {
   const std::string name = *given.text("preset");
   if (name != "auto")
-    return namedPreset(name);
+    return findOrganPreset(name);
   if (!names)
     throw usageError("--preset auto: goes by the names of segments; add --segmentation FILE, or "
                      "name a preset");
@@ -66,12 +66,12 @@ OrganPreset choosePreset(const OptionValues& given, const Input& input,
                                     "them with --labels, or name a preset and give --focus "
                                     "A,B,...");
   std::vector<OrganPreset> presets;
-  for (const std::string& own : ownPresets("presets"))
-    presets.push_back(namedPreset(own));
-  return fittingPreset(presets, selectFocus(given, names->segments), names->source,
-                       [&](Modality modality) {
-                         return suits(modality, input.volume(given.text("volume")).volume);
-                       });
+  for (const std::string& own : listBuiltinPresets("presets"))
+    presets.push_back(findOrganPreset(own));
+  return findMatchingPreset(presets, selectFocus(given, names->segments), names->source,
+                            [&](Modality modality) {
+                              return canSuit(modality, input.volume(given.text("volume")).volume);
+                            });
 }
 
 void addFocus(const OrganPreset& preset, const SegmentNames& names, OptionValues& values) {
@@ -79,10 +79,11 @@ void addFocus(const OrganPreset& preset, const SegmentNames& names, OptionValues
     throw inputError(names.source, "--preset ", preset.name,
                      ": its segments have no names, only values; name them with --labels, or say "
                      "which are meant with --focus A,B,...");
-  const std::vector<SegmentInfo> focus = focusOf(preset.focus, names.segments);
+  const std::vector<SegmentInfo> focus = findFocusSegments(preset.focus, names.segments);
   if (focus.empty())
     throw inputError(names.source, "--preset ", preset.name, ": none of its segments is one (",
-                     listedNames(names.segments), "); give --focus A,B,..., or another preset");
+                     joinSegmentNames(names.segments),
+                     "); give --focus A,B,..., or another preset");
   for (const SegmentInfo& segment : focus)
     values.add("focus", replaceAll(segment.id, ",", "\\,"));
 }
@@ -105,10 +106,10 @@ bool isFile(const std::string& name, const std::string& value, const Input& inpu
   if (name == "preset")
     return isFileName("presets", value);
   if (name == "lights")
-    return isFileOfLights(value);
+    return isLightsFile(value);
   if (name == "materials")
-    return isFileOfMaterials(value);
-  return name == "transfer" && isFileOfTransfer(value, input);
+    return isMaterialsFile(value);
+  return name == "transfer" && isTransferFile(value, input);
 }
 
 /// True beyond the limits of a scene's flags. A text that is no number is refused later, like one
@@ -177,7 +178,7 @@ PresetOptions mergePreset(const OptionValues& given, const Input& input) {
 
 RenderOptions makeRenderOptions(const PresetOptions& merged) {
   RenderOptions options = makeRenderOptions(merged.values);
-  options.scene.transferFor = merged.transferModality;
+  options.scene.transferModality = merged.transferModality;
   return options;
 }
 

@@ -84,7 +84,7 @@ PictureRequest pictureRequest(const OptionValues& given) {
   const SceneOptions stored = mergeSceneOptions(given, input);
   const PresetOptions flags = mergePreset(stored.values, input);
   PictureRequest job{stored.values, flags.values, makeRenderOptions(flags), input};
-  job.options.scene.leftOut = stored.ignored;
+  job.options.scene.omissions = stored.ignored;
   return job;
 }
 
@@ -120,7 +120,7 @@ RenderSettings PictureFilter::settings() {
   RenderSettings settings = makeSettings(m_options, m_scene.background());
   if (m_options.noiseTarget == NoiseTarget::filtered)
     settings.displayNoise = [this](const Film& film) {
-      m_seen = denoised(film, m_scene);
+      m_seen = denoise(film, m_scene);
       m_seenSamples = film.sampleCounts().max;
       // Twice its standard error more, lest luck ends the render.
       return std::sqrt(m_seen.estimatedError + 2.0 * m_seen.errorUncertainty);
@@ -133,7 +133,7 @@ std::optional<FilteredImage> PictureFilter::of(const RenderResult& result) const
     return std::nullopt;
   if (result.reason == StopReason::noise && m_seenSamples == result.finishedSamples)
     return m_seen;
-  return denoised(result.film, m_scene);
+  return denoise(result.film, m_scene);
 }
 
 std::optional<double> filteredNoise(const std::optional<FilteredImage>& filtered) {
@@ -149,11 +149,11 @@ void writePictures(const RenderOptions& options, const PreparedScene& scene,
   Image raw{options.scene.width, options.scene.height, {}, header(scene, options, result, words)};
   Image shown = raw;
   if (isRawWanted) {
-    Image channels = picture(result.film, scene.camera(), scene.clip(), options.layers);
+    Image channels = makeImage(result.film, scene.camera(), scene.clip(), options.layers);
     raw.channels = std::move(channels.channels);
   }
   if (filtered) {
-    shown.channels = filteredColors(*filtered, raw.width, raw.height).channels;
+    shown.channels = makeFilteredImage(*filtered, raw.width, raw.height).channels;
     shown.header["filter"] = filterText(filtered);
     addFilterChannels(options, scene, *filtered, raw);
   }
@@ -162,7 +162,7 @@ void writePictures(const RenderOptions& options, const PreparedScene& scene,
   for (const std::filesystem::path& path : options.outputs) {
     const Image& image = filtered && isDisplayFile(path) ? shown : raw;
     files.push_back(std::async([&image, &scene, &path, &options, &outputs] {
-      writeImage(image, picturePlane(scene.camera()), path, outputs, options.display);
+      writeImage(image, makeImagePlane(scene.camera()), path, outputs, options.display);
     }));
   }
   for (std::future<void>& file : files)

@@ -58,7 +58,7 @@ void addContrast(Json& json, const PreparedScene& scene) {
       {"deltaL", contrast->deltaL},          {"contextSaturation", scene.contrast().saturation}};
   if (tint)
     entry.update(Json{{"segment", tint->segment},
-                      {"neighbour", tint->neighbour},
+                      {"neighbour", tint->neighbor},
                       {"contextSaturation", tint->adjustment.contextSaturation},
                       {"contextLightness", tint->adjustment.contextLightness},
                       {"focusChroma", tint->adjustment.focusChroma},
@@ -237,7 +237,7 @@ void writeStats(const RenderOptions& options, const PreparedScene& scene,
   const Stopwatch watch;
   const std::vector<double>& depth = scene.clipResult().focusDepth;
   if (!depth.empty() && !monitor.stop) // a stop does not wait for measures
-    stats.focus = measureFocus(scene.view(), scene.ranges(), *scene.focus(), depth,
+    stats.focus = measureFocus(scene.view(), scene.minMaxGrid(), *scene.focus(), depth,
                                options.settings.seed, monitor.stop);
   stats.measure = watch.seconds();
   stats.total = total.seconds();

@@ -106,13 +106,13 @@ void readTexts(const OptionValues& values, const std::string& name,
 }
 
 void readLayers(const OptionValues& values, const std::string& name, LayerSet& layers) {
-  layers = layerSet(values.list(name));
+  layers = parseLayers(values.list(name));
 }
 
 /// Names of the program's own presets, and others.
 std::vector<std::string> presetNames(const std::string& kind,
                                      const std::vector<std::string>& others) {
-  std::vector<std::string> names = ownPresets(kind);
+  std::vector<std::string> names = listBuiltinPresets(kind);
   std::ranges::copy(others, std::back_inserter(names));
   return names;
 }
@@ -149,9 +149,9 @@ struct RenderOptionTable {
        "repeated",
        ValueSpec::list().bind(scene.focus), OverrideGroup::focus},
       {"preset", "NAME|FILE|auto", sceneGroup,
-       concat(
-           "Focus, look, view and clip of an anatomy in one: ", join(ownPresets("presets"), ", "),
-           ", a .json, or auto (by the segments' names); other flags win over it"),
+       concat("Focus, look, view and clip of an anatomy in one: ",
+              join(listBuiltinPresets("presets"), ", "),
+              ", a .json, or auto (by the segments' names); other flags win over it"),
        ValueSpec::text().bind(options.preset).withNamedValues(presetNames("presets", {"auto"}))},
       {"output", "FILE", sceneGroup,
        "Picture: .png .tif (display), .exr (all channels), .nrrd (linear RGBA and depth); may be "
@@ -250,7 +250,7 @@ struct RenderOptionTable {
        "Transfer function: .vp, .vp.json, Fenestra .json or its text, a preset such as ct-soft, or "
        "a volume property of the scene or of 3D Slicer by name, such as CT-AAA [the scene's, else "
        "by modality]",
-       ValueSpec::text().bind(scene.transfer).withNamedValues(ownPresets("transfer"))},
+       ValueSpec::text().bind(scene.transfer).withNamedValues(listBuiltinPresets("transfer"))},
       {"shift", "X", appearanceGroup, "Moves the transfer function along the scalar",
        ValueSpec::number(-1e30, 1e30).bind(scene.shift)},
       {"density", "D", appearanceGroup, "Multiplies the extinction, 0 to 1000",
@@ -270,7 +270,7 @@ struct RenderOptionTable {
       {"lights", "FILE|PRESET|JSON", appearanceGroup,
        "Lights: .json, cinema, studio, headlight, soft, amber, or the text of a .json itself, "
        "{...}",
-       ValueSpec::text().bind(scene.lights).withNamedValues(ownPresets("lights")),
+       ValueSpec::text().bind(scene.lights).withNamedValues(listBuiltinPresets("lights")),
        OverrideGroup::lights},
       {"environment", "R,G,B|GREY|FILE", appearanceGroup,
        "Radiance from all around, or a latitude-longitude .exr; replaces the lights' own",

@@ -39,7 +39,7 @@ void checkView(const ViewRequest& view, const RenderRequest& scene) {
   if (view.isAutomatic() && scene.focus.empty())
     throw usageError("--view: auto looks for a focus; add --focus A,B,..., or name a direction");
   // A scene's camera may apply, whose projection is not known yet.
-  if (isSceneFile(scene.input) && !view.projection && view.followsScene())
+  if (isSceneFile(scene.input) && !view.projection && view.isSceneCamera())
     return;
   const bool perspective = view.projection == Projection::perspective;
   if (perspective && view.scale)
@@ -74,7 +74,7 @@ std::string_view findNoEffectReason(Requires requirement, bool hasFocus, bool ha
 void checkClip(const OptionValues& values, const RenderRequest& scene) {
   const ClipRequest& clip = scene.clip;
   const bool hasFocus = values.has("focus"), hasLabels = hasFocus || hasMaterials(scene);
-  const ClipMode mode = clip.modeWith(hasFocus);
+  const ClipMode mode = clip.resolveMode(hasFocus);
   if (!hasFocus && isDepthClip(mode))
     throw usageError("--clip: ", *values.text("clip"), " needs a focus; add --focus");
   if (mode == ClipMode::plane && !clip.plane && !hasFocus)

@@ -48,7 +48,7 @@ private:
         flags = changedFlags(change.flags, flags);
       const RenderOptions options = makeRenderOptions(mergePreset(flags, m_source));
       checkMemory(options.scene);
-      PreparedScene scene = m_scene->changed(options.scene);
+      PreparedScene scene = m_scene->withRequest(options.scene);
       m_outputs.checkInputs();
       m_scene = std::move(scene);
       m_options = options;

@@ -94,11 +94,11 @@ void checkChange(const json& change, const OptionValues& flags, const Input& inp
   const RenderRequest scene = makeRenderOptions(mergePreset(flags, input)).scene;
   const bool isPreset = change.contains("preset"); // may name lights and a transfer function
   if (isPreset || change.contains("lights"))
-    namedLights(scene.lights);
+    findLights(scene.lights);
   if (scene.transfer && (isPreset || change.contains("transfer")))
-    namedTransfer(*scene.transfer, input);
+    findTransfer(*scene.transfer, input);
   if (scene.materials && (isPreset || change.contains("materials")))
-    namedMaterials(*scene.materials);
+    findMaterials(*scene.materials);
   if (scene.environmentMap && change.contains("environment"))
     readEnvironmentMap(*scene.environmentMap);
 }

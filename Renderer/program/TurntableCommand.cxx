@@ -128,7 +128,7 @@ private:
                     .up = pose.up,
                     .scale = pose.scale,
                     .angle = pose.angle};
-    return m_view.scene.changed(request);
+    return m_view.scene.withRequest(request);
   }
 
   View viewOf(int frame) const {

@@ -22,7 +22,7 @@ struct ViewScore {
   double area = 0.0;            ///< of the focus's projection, mm²
   double removedFraction = 0.0; ///< share of the context, 0 to 1
   double score = 0.0;           ///< mm²
-  double met = 0.0;             ///< share of the rays that meet the focus
+  double hitFraction = 0.0;     ///< share of the rays that meet the focus
 };
 
 class ViewScorer {
@@ -63,6 +63,6 @@ struct ViewDirection {
 ///
 /// Up is superior, or anterior if superior is within 15 degrees of the view's axis. A focus that
 /// rays hardly meet is viewed from anterior.
-ViewDirection automaticView(const ViewScorer& score);
+ViewDirection findBestView(const ViewScorer& scorer);
 
 } // namespace fenestra

@@ -13,7 +13,7 @@ namespace {
 
 /// Mean over scalars of the colour that an eye sees of matter with `albedoOf` their albedo.
 template <typename AlbedoOf>
-Rgb meanColor(const std::vector<double>& scalars, double g, const AlbedoOf& albedoOf) {
+Rgb meanReflectance(const std::vector<double>& scalars, double g, const AlbedoOf& albedoOf) {
   Rgb sum = Rgb::Zero();
   for (const double scalar : scalars)
     sum += toReflectance(Rgb(albedoOf(scalar)), g);
@@ -21,7 +21,7 @@ Rgb meanColor(const std::vector<double>& scalars, double g, const AlbedoOf& albe
 }
 
 /// Display light, linear, of matter of that colour.
-Rgb displayed(const Rgb& seen) {
+Rgb toDisplayLight(const Rgb& seen) {
   constexpr double light = 1.1;
   std::vector<float> pixel(4, 1.0F);
   for (int c = 0; c < 3; ++c)
@@ -32,13 +32,13 @@ Rgb displayed(const Rgb& seen) {
 
 } // namespace
 
-double Contrast::share() const {
+double Contrast::score() const {
   constexpr double normal = 20.0, colorBlind = 12.0;
   return std::min({deltaE[0] / normal, deltaE[1] / colorBlind, deltaE[2] / colorBlind});
 }
 
-Contrast shownContrast(const Rgb& focus, const Rgb& context,
-                       double (*difference)(const Lab&, const Lab&)) {
+Contrast measureContrast(const Rgb& focus, const Rgb& context,
+                         double (*difference)(const Lab&, const Lab&)) {
   Contrast contrast = {};
   for (const ColorVision sight : colorVisions)
     contrast.deltaE[static_cast<std::size_t>(sight)] =
@@ -47,47 +47,48 @@ Contrast shownContrast(const Rgb& focus, const Rgb& context,
   return contrast;
 }
 
-Contrast contrastBetween(const Rgb& focus, const Rgb& context) {
-  return shownContrast(displayed(focus), displayed(context), deltaE2000);
+Contrast measureReflectedContrast(const Rgb& focus, const Rgb& context) {
+  return measureContrast(toDisplayLight(focus), toDisplayLight(context), deltaE2000);
 }
 
-Contrast contrastAt(const BorderScalars& border, const TransferFunction& transfer,
-                    double saturation) {
+Contrast measureInterfaceContrast(const InterfaceScalars& interface,
+                                  const TransferFunction& transfer, double saturation) {
   const ContextStyle style{.focus = nullptr, .saturation = saturation};
-  return contrastBetween(meanColor(border.focus, transfer.g, transfer.albedo),
-                         meanColor(border.context, transfer.g, [&](double scalar) {
-                           return style.desaturate(transfer.albedo(scalar));
-                         }));
+  return measureReflectedContrast(
+      meanReflectance(interface.focus, transfer.g, transfer.albedo),
+      meanReflectance(interface.context, transfer.g,
+                      [&](double scalar) { return style.desaturate(transfer.albedo(scalar)); }));
 }
 
-FocusContrast chosenContrast(const std::optional<double>& asked, const Mask& focus,
-                             const Volume& volume, const TransferFunction& transfer) {
-  const BorderScalars border = borderScalars(focus, volume, transfer);
-  if (border.focus.empty() || border.context.empty())
-    return {asked.value_or(1.0)};
+FocusContrast chooseSaturation(const std::optional<double>& requested, const Mask& focus,
+                               const Volume& volume, const TransferFunction& transfer) {
+  const InterfaceScalars interface = sampleInterface(focus, volume, transfer);
+  if (interface.focus.empty() || interface.context.empty())
+    return {requested.value_or(1.0)};
   const auto at = [&](double saturation) {
-    return FocusContrast{saturation, contrastAt(border, transfer, saturation)};
+    return FocusContrast{saturation, measureInterfaceContrast(interface, transfer, saturation)};
   };
-  FocusContrast best = at(asked.value_or(1.0));
-  if (asked)
+  FocusContrast best = at(requested.value_or(1.0));
+  if (requested)
     return best;
-  for (const double saturation : {pale, grey}) {
-    if (best.contrast->share() > 1.0)
+  for (const double saturation : {mutedSaturation, graySaturation}) {
+    if (best.contrast->score() > 1.0)
       break;
-    const FocusContrast paler = at(saturation);
-    if (paler.contrast->share() > best.contrast->share())
-      best = paler;
+    const FocusContrast muted = at(saturation);
+    if (muted.contrast->score() > best.contrast->score())
+      best = muted;
   }
   return best;
 }
 
-std::string told(const FocusContrast& chosen) {
-  if (!chosen.contrast)
+std::string summary(const FocusContrast& contrast) {
+  if (!contrast.contrast)
     return "";
   const std::string desaturated =
-      chosen.saturation < 1.0 ? "; surroundings paled to " + toString(chosen.saturation, 3) : "";
-  return concat(toString(chosen.contrast->deltaE[0], 3), " (colour-blind ",
-                toString(chosen.contrast->colorBlind(), 3), desaturated, ")");
+      contrast.saturation < 1.0 ? "; surroundings paled to " + toString(contrast.saturation, 3)
+                                : "";
+  return concat(toString(contrast.contrast->deltaE[0], 3), " (colour-blind ",
+                toString(contrast.contrast->colorBlind(), 3), desaturated, ")");
 }
 
 } // namespace fenestra

@@ -9,7 +9,7 @@
 namespace fenestra {
 namespace {
 
-ViewDirection namedView(const std::string& name, const ViewDirection* best) {
+ViewDirection findView(const std::string& name, const ViewDirection* best) {
   static const std::map<std::string, ViewDirection> views = {
       {"anterior", {Vec3::UnitY(), Vec3::UnitZ()}}, {"posterior", {-Vec3::UnitY(), Vec3::UnitZ()}},
       {"right", {Vec3::UnitX(), Vec3::UnitZ()}},    {"left", {-Vec3::UnitX(), Vec3::UnitZ()}},
@@ -26,7 +26,7 @@ ViewDirection namedView(const std::string& name, const ViewDirection* best) {
 }
 
 /// Values of at most about a million voxels, spread over the volume.
-std::vector<double> sampledValues(const Volume& volume) {
+std::vector<double> sampleValues(const Volume& volume) {
   const auto sample = [](const auto& voxels) {
     const std::size_t stride = voxels.size() / 1'000'000 + 1;
     std::vector<double> values;
@@ -38,11 +38,11 @@ std::vector<double> sampledValues(const Volume& volume) {
 }
 
 /// Otsu's threshold (1979) of a sample of the values, from a 256-bin histogram of [low, high].
-double backgroundLevel(const Volume& volume, double low, double high) {
+double otsuThreshold(const Volume& volume, double low, double high) {
   constexpr int bins = 256;
   std::array<double, bins> histogram{};
   double total = 0.0, moment = 0.0;
-  for (const double value : sampledValues(volume)) {
+  for (const double value : sampleValues(volume)) {
     const double x = std::clamp((value - low) / (high - low), 0.0, 1.0);
     const auto bin = static_cast<std::size_t>(x * (bins - 1));
     histogram[bin] += 1.0;
@@ -70,7 +70,7 @@ double backgroundLevel(const Volume& volume, double low, double high) {
 
 /// Vector times the power of two that brings its length near 1: squares neither overflow nor
 /// vanish, and the normalized vector has the same digits as without scaling.
-Vec3 ofUsualLength(const Vec3& v) {
+Vec3 scaleNearUnit(const Vec3& v) {
   const double greatest = v.cwiseAbs().maxCoeff();
   if (greatest == 0.0 || !std::isfinite(greatest))
     return v;
@@ -79,7 +79,7 @@ Vec3 ofUsualLength(const Vec3& v) {
 }
 
 /// Centre of a domain's bounding box along its grid, world mm.
-Vec3 centerOf(const Domain& domain) {
+Vec3 boxCenter(const Domain& domain) {
   Box box = Box::makeEmpty();
   for (const Vec3& corner : domain.indexCorners())
     box.extend(corner);
@@ -87,11 +87,11 @@ Vec3 centerOf(const Domain& domain) {
 }
 
 /// Coordinates of the domain along a unit vector in the world, mm.
-Interval extentAlong(const Domain& domain, const Vec3& axis) {
+Interval axisExtent(const Domain& domain, const Vec3& axis) {
   Interval extent{infinity, -infinity};
   for (const Vec3& corner : domain.indexCorners()) {
-    const double at = axis.dot(domain.grid().indexToWorld * corner);
-    extent = {std::min(extent.begin, at), std::max(extent.end, at)};
+    const double position = axis.dot(domain.grid().indexToWorld * corner);
+    extent = {std::min(extent.begin, position), std::max(extent.end, position)};
   }
   return extent;
 }
@@ -99,32 +99,32 @@ Interval extentAlong(const Domain& domain, const Vec3& axis) {
 /// Way along `up`, mm, that takes a frame of `half` above and below `center` from beyond an end of
 /// the scan back over its matter, but no farther than until as much is empty on the other side.
 /// 0 where matter ends inside the scan: what is empty there belongs to the picture.
-double wayFromEnd(const Domain& occupied, const Vec3& up, const Vec3& center, double half) {
-  const Interval seen = extentAlong(occupied, up), scan = extentAlong(occupied.grid(), up);
+double shiftIntoScan(const Domain& occupied, const Vec3& up, const Vec3& center, double half) {
+  const Interval extent = axisExtent(occupied, up), scan = axisExtent(occupied.grid(), up);
   const double at = up.dot(center), rounding = 1e-6 * half;
-  const double above = at + half - seen.end, below = seen.begin - (at - half); // empty
-  const double way = std::min(std::max(above, below), 0.5 * std::abs(above - below));
-  if (way <= 0.0)
+  const double above = at + half - extent.end, below = extent.begin - (at - half); // empty
+  const double shift = std::min(std::max(above, below), 0.5 * std::abs(above - below));
+  if (shift <= 0.0)
     return 0.0;
   if (above > below)
-    return seen.end > scan.end - rounding ? -way : 0.0;
-  return seen.begin < scan.begin + rounding ? way : 0.0;
+    return extent.end > scan.end - rounding ? -shift : 0.0;
+  return extent.begin < scan.begin + rounding ? shift : 0.0;
 }
 
 } // namespace
 
-std::optional<std::string> transferPresetFor(const Volume& volume) {
-  return suits(Modality::ct, volume) ? std::optional<std::string>("ct-soft") : std::nullopt;
+std::optional<std::string> chooseTransferPreset(const Volume& volume) {
+  return canSuit(Modality::ct, volume) ? std::optional<std::string>("ct-soft") : std::nullopt;
 }
 
-bool suits(Modality modality, const Volume& volume) {
+bool canSuit(Modality modality, const Volume& volume) {
   // Air, or padding beyond it (-2000, -8192, -32768 occur), and bone.
   const bool hounsfield = volume.minimum <= -500.0 && volume.maximum >= 200.0;
   return hounsfield == (modality == Modality::ct);
 }
 
-std::array<double, 2> usualRange(const Volume& volume) {
-  std::vector<double> values = sampledValues(volume);
+std::array<double, 2> findRobustRange(const Volume& volume) {
+  std::vector<double> values = sampleValues(volume);
   std::ranges::sort(values);
   const auto quantile = [&values](double f) {
     return values[static_cast<std::size_t>(f * static_cast<double>(values.size() - 1))];
@@ -133,14 +133,14 @@ std::array<double, 2> usualRange(const Volume& volume) {
   return {low, high > low ? high : volume.maximum};
 }
 
-std::optional<double> airLevel(const Volume& volume) {
-  if (suits(Modality::ct, volume))
+std::optional<double> findAirThreshold(const Volume& volume) {
+  if (canSuit(Modality::ct, volume))
     return -300.0;
-  const std::vector<double> values = sampledValues(volume);
+  const std::vector<double> values = sampleValues(volume);
   if (10 * std::ranges::count(values, volume.minimum) >= std::ssize(values))
     return std::nullopt;
-  const auto [low, high] = usualRange(volume);
-  return backgroundLevel(volume, low, high);
+  const auto [low, high] = findRobustRange(volume);
+  return otsuThreshold(volume, low, high);
 }
 
 double transparentFraction(const Mask& focus, const Volume& volume,
@@ -167,16 +167,16 @@ double transparentFraction(const Mask& focus, const Volume& volume,
   return std::visit(count, volume.voxels);
 }
 
-TransferFunction relativeTransfer(const Volume& volume) {
+TransferFunction makeRelativeTransfer(const Volume& volume) {
   const double unit =
       100.0 / volume.grid.boundingRadius(); // extinctions below suit a radius of 100 mm
-  const std::array<double, 2> range = usualRange(volume);
+  const std::array<double, 2> range = findRobustRange(volume);
   const double low = range[0], high = range[1];
   if (!(high > low))
     return {ScalarFunction({{low, ScalarFunction::Value(0.02 * unit)}}),
             ColorFunction({{low, Rgb(0.9, 0.85, 0.8)}})};
 
-  const double background = backgroundLevel(volume, low, high);
+  const double background = otsuThreshold(volume, low, high);
   const auto between = [&](double f) { return background + f * (high - background); };
   const auto at = [&](double f) { return low + f * (high - low); };
   const auto knot = [](double s, double sigma_t) {
@@ -201,25 +201,25 @@ CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* 
   constexpr double surroundings = 1.6; // framed size / size of the focus
   constexpr double margin = 1.05;      // around the whole volume
   constexpr double defaultAngle = 30.0;
-  const ViewDirection named = namedView(view.name.value_or("anterior"), best);
+  const ViewDirection named = findView(view.name.value_or("anterior"), best);
 
   const Grid& grid = domain.grid();
   const Domain volume = domain.indexCorners().empty() ? Domain(grid) : domain;
   CameraPose pose;
   pose.projection = view.projection.value_or(Projection::orthographic);
   pose.angle = view.angle.value_or(defaultAngle);
-  pose.target = view.target.value_or(focus ? focus->grid.worldCenter() : centerOf(volume));
+  pose.target = view.target.value_or(focus ? focus->grid.worldCenter() : boxCenter(volume));
   const Vec3 back =
       view.position ? Vec3((*view.position - pose.target).normalized()) : named.fromTarget;
   pose.up = view.up.value_or(
       std::abs(back.dot(named.up)) > 0.999 * back.norm() ? Vec3(Vec3::UnitY()) : named.up);
-  const Vec3 right = ofUsualLength(pose.up).cross(back).normalized();
+  const Vec3 right = scaleNearUnit(pose.up).cross(back).normalized();
   const Vec3 up = back.cross(right);
 
   // Frames the whole volume, or the focus with its surroundings if smaller.
   const double aspect = static_cast<double>(width) / height;
   const auto halfHeight = [&](const Domain& domain) {
-    const Vec3 center = centerOf(domain);
+    const Vec3 center = boxCenter(domain);
     double half = 0.0;
     for (const Vec3& corner : domain.indexCorners()) {
       const Vec3 d = domain.grid().indexToWorld * corner - center;
@@ -232,7 +232,8 @@ CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* 
     half = std::min(half, surroundings * halfHeight(focus->grid));
   pose.scale = view.scale.value_or(half);
   if (focus && !view.target && !view.position && !view.scale)
-    pose.target += wayFromEnd(volume, up, pose.target, half) * up; // a turntable turns about `up`
+    pose.target +=
+        shiftIntoScan(volume, up, pose.target, half) * up; // a turntable turns about `up`
 
   // The eye stands outside the volume, and in perspective at least as far as pose.angle demands; a
   // farther eye gets a narrower angle.
@@ -244,7 +245,7 @@ CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* 
   return pose;
 }
 
-CameraPose adjustedView(const ViewRequest& view, const CameraPose& scene) {
+CameraPose adjustView(const ViewRequest& view, const CameraPose& scene) {
   CameraPose pose = scene;
   pose.projection = view.projection.value_or(scene.projection);
   const bool perspective = pose.projection == Projection::perspective;

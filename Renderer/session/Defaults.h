@@ -12,20 +12,20 @@
 namespace fenestra {
 
 /// Name of a transfer preset for CT in Hounsfield units; nothing for any other volume.
-std::optional<std::string> transferPresetFor(const Volume& volume);
+std::optional<std::string> chooseTransferPreset(const Volume& volume);
 
 /// True if a transfer function for `modality` can suit the volume: CT suits volumes in Hounsfield
 /// units only, other modalities suit other volumes only.
-bool suits(Modality modality, const Volume& volume);
+bool canSuit(Modality modality, const Volume& volume);
 
 /// Usual range of the voxels: percentiles 0.5 and 99.5, low < high. Constant volume: low = high.
-std::array<double, 2> usualRange(const Volume& volume);
+std::array<double, 2> findRobustRange(const Volume& volume);
 
 /// Scalar below which air lies around a body: -300 HU in CT, else Otsu's threshold (1979) of the
 /// usual range. Nothing where a tenth of a volume other than CT has its least value: its
 /// surroundings are cut off, such as the skull's around a brain, and what is left need not be a
 /// body.
-std::optional<double> airLevel(const Volume& volume);
+std::optional<double> findAirThreshold(const Volume& volume);
 
 /// Share of the focus's voxels, 0 to 1, whose extinction is 0: a look that is made for something
 /// else shows a hole where the focus is. From at most about a million voxels of the mask.
@@ -36,7 +36,7 @@ double transparentFraction(const Mask& focus, const Volume& volume,
 /// at the background's level to opaque at the 99.5th percentile, skin through tissue to ivory.
 /// Extinction is relative to the volume's size. A constant volume gets a uniform haze without
 /// shading.
-TransferFunction relativeTransfer(const Volume& volume);
+TransferFunction makeRelativeTransfer(const Volume& volume);
 
 /// Pose of a view request for this volume and focus: named views look along the patient's axes at
 /// the focus with its surroundings, or at the part of the volume to frame where that is smaller. A
@@ -49,6 +49,6 @@ CameraPose frameView(const ViewRequest& view, const Domain& framed, const Mask* 
 
 /// Scene's camera, changed by the set members of the request. Throws Error (usage) if --scale or
 /// --angle belongs to the other projection.
-CameraPose adjustedView(const ViewRequest& view, const CameraPose& scene);
+CameraPose adjustView(const ViewRequest& view, const CameraPose& scene);
 
 } // namespace fenestra

@@ -11,7 +11,7 @@ namespace {
 /// Openness of pixels: 0 for certain ones, and for those around which the march met nothing, so
 /// that no window spreads a silhouette into the background. Never by what the samples met: a mask
 /// that knows their noise makes the told error a lie.
-std::vector<std::uint8_t> openPixels(const Film& film, const FeatureBuffers& features) {
+std::vector<std::uint8_t> findActivePixels(const Film& film, const FeatureBuffers& features) {
   std::vector<std::uint8_t> isOpen(film.pixelCount());
   for (int row = 0; row < film.height(); ++row)
     for (int column = 0; column < film.width(); ++column) {
@@ -53,7 +53,7 @@ void fillHalfBuffers(const Film& film, FilterInput& input) {
 }
 
 /// Sums of depth as distances from their median, mm: a pixel that meets little has little.
-Plane centredDepth(const FeatureBuffers& features) {
+Plane centerDepth(const FeatureBuffers& features) {
   std::vector<float> depths;
   for (std::size_t i = 0; i < features.hit.size(); ++i)
     if (features.hit[i] > 0.5F)
@@ -69,7 +69,7 @@ Plane centredDepth(const FeatureBuffers& features) {
 }
 
 /// Central differences to the neighbours `step` pixels before and after; 0 at the border.
-Plane slopeOf(const Plane& plane, int width, int height, bool down) {
+Plane computeSlope(const Plane& plane, int width, int height, bool down) {
   Plane slope(plane.size(), 0.0F);
   const auto row = static_cast<std::size_t>(width);
   const std::size_t step = down ? row : 1;
@@ -83,8 +83,8 @@ Plane slopeOf(const Plane& plane, int width, int height, bool down) {
 
 /// Depth of the clip's surface where there is one, else that of the nearest pixel before it in the
 /// row: rays that the clip ends see nothing of it.
-Plane boundedClip(const Camera& camera, const Clip& clip) {
-  Plane plane = clipPlane(camera, clip);
+Plane fillClipDepth(const Camera& camera, const Clip& clip) {
+  Plane plane = makeClipDepth(camera, clip);
   float last = static_cast<float>(camera.targetDepth());
   for (float& depth : plane)
     depth = last = std::isfinite(depth) ? depth : last;
@@ -98,12 +98,12 @@ void addFeatures(const PreparedScene& scene, const FeatureBuffers& features, Fil
   for (const Plane& plane : scene.transfer().shading ? features.surfaceNormal : features.normal)
     input.features.push_back(plane);
   input.features.push_back(features.light);
-  const Plane depth = centredDepth(features);
-  input.features.push_back(slopeOf(depth, input.width, input.height, false));
-  input.features.push_back(slopeOf(depth, input.width, input.height, true));
+  const Plane depth = centerDepth(features);
+  input.features.push_back(computeSlope(depth, input.width, input.height, false));
+  input.features.push_back(computeSlope(depth, input.width, input.height, true));
   input.features.push_back(depth);
   if (!std::holds_alternative<ClipNone>(scene.clip()))
-    input.features.push_back(boundedClip(scene.camera(), scene.clip()));
+    input.features.push_back(fillClipDepth(scene.camera(), scene.clip()));
 }
 
 bool hasHalfBuffers(const Film& film) {
@@ -114,11 +114,11 @@ bool hasHalfBuffers(const Film& film) {
 
 } // namespace
 
-FilterInput filterInput(const Film& film, const PreparedScene& scene) {
+FilterInput makeFilterInput(const Film& film, const PreparedScene& scene) {
   if (!film.hasIndependentHalves())
     throw std::logic_error("a film without independent halves cannot be filtered");
   FilterInput input{film.width(), film.height(), {}, {}, {}, {}, {}, hasHalfBuffers(film)};
-  input.isActive = openPixels(film, *scene.features());
+  input.isActive = findActivePixels(film, *scene.features());
   fillHalfBuffers(film, input);
   addFeatures(scene, *scene.features(), input);
   return input;

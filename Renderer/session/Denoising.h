@@ -12,10 +12,10 @@ namespace fenestra {
 /// are pixels that are certain, and those around which the march met nothing. Throws
 /// std::logic_error for a film whose halves are not independent: the error that the filter tells
 /// would be wrong.
-FilterInput filterInput(const Film& film, const PreparedScene& scene);
+FilterInput makeFilterInput(const Film& film, const PreparedScene& scene);
 
-inline FilteredImage denoised(const Film& film, const PreparedScene& scene) {
-  return filterImage(filterInput(film, scene));
+inline FilteredImage denoise(const Film& film, const PreparedScene& scene) {
+  return filterImage(makeFilterInput(film, scene));
 }
 
 } // namespace fenestra

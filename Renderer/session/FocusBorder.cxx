@@ -7,10 +7,10 @@
 namespace fenestra {
 namespace {
 
-constexpr std::int64_t shell = 3; ///< voxels to either side of a face
+constexpr std::int64_t shellDepth = 3; ///< voxels to either side of a face
 
 /// Every n-th of the values added, n a power of two, so that some ten thousand are left.
-class Thinned {
+class Subsample {
 public:
   void add(double value) {
     if (m_count++ % m_stride != 0)
@@ -40,10 +40,10 @@ private:
 
 /// Faces between voxels of the focus and others, and the volume's samples there.
 template <typename Voxel>
-class Border {
+class InterfaceSampler {
 public:
-  Border(const Mask& focus, const Volume& volume, const LargeArray<Voxel>& voxels,
-         const TransferFunction& transfer)
+  InterfaceSampler(const Mask& focus, const Volume& volume, const LargeArray<Voxel>& voxels,
+                   const TransferFunction& transfer)
       : m_focus(focus),
         m_field(volume.grid, voxels),
         m_box(volume.grid.indexBox()),
@@ -68,10 +68,10 @@ public:
   /// Calls take(voxel, scalar) for shown voxels of the shell from `first` on, up to the first voxel
   /// of the other side.
   template <typename Take>
-  void forShell(const Size3& first, const Size3& step, const Take& take) const {
+  void forEachShellVoxel(const Size3& first, const Size3& step, const Take& take) const {
     const bool side = isInside(first);
-    for (std::int64_t k = 0; k < shell && isInside(first + k * step) == side; ++k)
-      if (const auto scalar = shown(first + k * step))
+    for (std::int64_t k = 0; k < shellDepth && isInside(first + k * step) == side; ++k)
+      if (const auto scalar = visibleScalar(first + k * step))
         take(Size3(first + k * step), *scalar);
   }
 
@@ -86,16 +86,16 @@ private:
   template <typename Visit>
   void visitFaces(const Size3& voxel, const Visit& visit) const {
     for (int axis = 0; axis < 3; ++axis)
-      for (const std::int64_t way : {-1, 1}) {
+      for (const std::int64_t sign : {-1, 1}) {
         Size3 step = Size3::Zero();
-        step[axis] = way;
+        step[axis] = sign;
         if (!isInside(voxel + step))
           visit(voxel, step);
       }
   }
 
   /// Scalar of a voxel; nothing where it is transparent, or outside the volume.
-  std::optional<double> shown(const Size3& voxel) const {
+  std::optional<double> visibleScalar(const Size3& voxel) const {
     const Vec3 index = m_toVolume * voxel.cast<double>();
     if (index != Vec3(index.cwiseMax(m_box.lower).cwiseMin(m_box.upper)))
       return std::nullopt;
@@ -147,15 +147,15 @@ struct Side {
 /// Properties of a part of the border.
 struct Part {
   double area = 0.0;
-  Thinned focus, context;
+  Subsample focus, context;
 };
 
 template <typename Voxel>
-std::vector<ComponentBorder> bordersOf(const Border<Voxel>& border, const Grid& mask,
-                                       const Components& components) {
-  const auto sideOf = [&](const Size3& first, const Size3& step, bool focusSide) {
+std::vector<ComponentInterface> collectInterfaces(const InterfaceSampler<Voxel>& sampler,
+                                                  const Grid& mask, const Components& components) {
+  const auto collectSide = [&](const Size3& first, const Size3& step, bool focusSide) {
     Side side;
-    border.forShell(first, step, [&](const Size3& voxel, double scalar) {
+    sampler.forEachShellVoxel(first, step, [&](const Size3& voxel, double scalar) {
       const auto component = components.at(voxel, focusSide);
       if (side.scalars.empty())
         side.component = component;
@@ -165,8 +165,9 @@ std::vector<ComponentBorder> bordersOf(const Border<Voxel>& border, const Grid& 
     return side;
   };
   std::map<std::pair<std::uint8_t, std::uint8_t>, Part> parts;
-  border.forEachFace([&](const Size3& voxel, const Size3& step) {
-    const Side focus = sideOf(voxel, -step, true), context = sideOf(voxel + step, step, false);
+  sampler.forEachFace([&](const Size3& voxel, const Size3& step) {
+    const Side focus = collectSide(voxel, -step, true),
+               context = collectSide(voxel + step, step, false);
     if (!focus.component || !context.component)
       return;
     Part& part = parts[{*focus.component, *context.component}];
@@ -176,41 +177,43 @@ std::vector<ComponentBorder> bordersOf(const Border<Voxel>& border, const Grid& 
     std::ranges::for_each(focus.scalars, [&](double scalar) { part.focus.add(scalar); });
     std::ranges::for_each(context.scalars, [&](double scalar) { part.context.add(scalar); });
   });
-  std::vector<ComponentBorder> borders;
+  std::vector<ComponentInterface> interfaces;
   for (const auto& [of, part] : parts)
-    borders.push_back({of.first, of.second, part.area, part.focus.median(), part.context.median()});
-  std::ranges::stable_sort(borders, std::greater{}, &ComponentBorder::area);
-  return borders;
+    interfaces.push_back(
+        {of.first, of.second, part.area, part.focus.median(), part.context.median()});
+  std::ranges::stable_sort(interfaces, std::greater{}, &ComponentInterface::area);
+  return interfaces;
 }
 
 } // namespace
 
-BorderScalars borderScalars(const Mask& focus, const Volume& volume,
-                            const TransferFunction& transfer) {
-  Thinned inner, outer;
-  const auto addTo = [](Thinned& side) {
+InterfaceScalars sampleInterface(const Mask& focus, const Volume& volume,
+                                 const TransferFunction& transfer) {
+  Subsample inner, outer;
+  const auto addTo = [](Subsample& side) {
     return [&side](const Size3&, double scalar) { side.add(scalar); };
   };
   std::visit(
       [&](const auto& voxels) {
-        const Border border(focus, volume, voxels, transfer);
-        border.forEachFace([&](const Size3& voxel, const Size3& step) {
-          border.forShell(voxel, -step, addTo(inner));
-          border.forShell(voxel + step, step, addTo(outer));
+        const InterfaceSampler sampler(focus, volume, voxels, transfer);
+        sampler.forEachFace([&](const Size3& voxel, const Size3& step) {
+          sampler.forEachShellVoxel(voxel, -step, addTo(inner));
+          sampler.forEachShellVoxel(voxel + step, step, addTo(outer));
         });
       },
       volume.voxels);
   return {inner.values(), outer.values()};
 }
 
-std::vector<ComponentBorder> componentBorders(const Mask& focus, const Volume& volume,
-                                              const TransferFunction& transfer,
-                                              const LabelWeights& weights,
-                                              const std::vector<bool>& isFocus) {
+std::vector<ComponentInterface> findInterfaces(const Mask& focus, const Volume& volume,
+                                               const TransferFunction& transfer,
+                                               const LabelWeights& weights,
+                                               const std::vector<bool>& isFocus) {
   const Components components(focus.grid, weights, isFocus);
   return std::visit(
       [&](const auto& voxels) {
-        return bordersOf(Border(focus, volume, voxels, transfer), focus.grid, components);
+        return collectInterfaces(InterfaceSampler(focus, volume, voxels, transfer), focus.grid,
+                                 components);
       },
       volume.voxels);
 }

@@ -13,16 +13,16 @@ namespace fenestra {
 
 /// Scalars at the focus's border: of the three voxels to either side of its labels' faces, those
 /// that the transfer function shows; at most some ten thousand of each.
-struct BorderScalars {
+struct InterfaceScalars {
   std::vector<double> focus, context;
 };
 
 /// `focus`: of at least one voxel. A side that is transparent has none.
-BorderScalars borderScalars(const Mask& focus, const Volume& volume,
-                            const TransferFunction& transfer);
+InterfaceScalars sampleInterface(const Mask& focus, const Volume& volume,
+                                 const TransferFunction& transfer);
 
 /// Part of the border, where two components of the medium meet, as far as both are shown.
-struct ComponentBorder {
+struct ComponentInterface {
   std::uint8_t focus, context;
   double area;                       ///< of the voxels' faces, mm^2, but for a common factor
   double focusScalar, contextScalar; ///< medians of the three voxels to either side
@@ -30,9 +30,9 @@ struct ComponentBorder {
 
 /// Parts of the border, the largest first. `isFocus`: by component; a voxel's component is, of its
 /// side's, the one with the greatest share.
-std::vector<ComponentBorder> componentBorders(const Mask& focus, const Volume& volume,
-                                              const TransferFunction& transfer,
-                                              const LabelWeights& weights,
-                                              const std::vector<bool>& isFocus);
+std::vector<ComponentInterface> findInterfaces(const Mask& focus, const Volume& volume,
+                                               const TransferFunction& transfer,
+                                               const LabelWeights& weights,
+                                               const std::vector<bool>& isFocus);
 
 } // namespace fenestra

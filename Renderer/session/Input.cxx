@@ -12,12 +12,12 @@
 namespace fenestra {
 namespace {
 
-ScenePlan planFor(const MrmlScene& scene, const InputChoice& choice, bool needsSegmentation) {
+ScenePlan makePlan(const MrmlScene& scene, const InputChoice& choice, bool needsSegmentation) {
   return planRender(scene.document, {choice.volume, choice.segmentation, needsSegmentation});
 }
 
-VolumeInput volumeInFiles(const std::filesystem::path& path,
-                          const std::optional<std::string>& choice) {
+VolumeInput readVolumeFiles(const std::filesystem::path& path,
+                            const std::optional<std::string>& choice) {
   if (!isFolder(path))
     return {readVolume(path), {path.string()}};
   const DicomSeries series = chooseSeries(findDicomSeries(path), choice, path.string());
@@ -27,14 +27,14 @@ VolumeInput volumeInFiles(const std::filesystem::path& path,
   return input;
 }
 
-std::optional<SegmentNames> namesInFile(const InputChoice& choice) {
+std::optional<SegmentNames> readSegmentNames(const InputChoice& choice) {
   if (!choice.segmentation)
     return std::nullopt;
   return SegmentNames{*choice.segmentation, readSegmentInfos(*choice.segmentation, choice.labels)};
 }
 
 /// Labels with the files that they were read from.
-SegmentsInput segmentsFrom(Segmentation segmentation, FilesRead files) {
+SegmentsInput makeSegments(Segmentation segmentation, InputFiles files) {
   if (fileExists(segmentation.namesSource()))
     files.push_back(segmentation.namesSource());
   return {std::move(segmentation), std::move(files)};
@@ -42,11 +42,11 @@ SegmentsInput segmentsFrom(Segmentation segmentation, FilesRead files) {
 
 } // namespace
 
-struct Input::Opened {
+struct Input::SharedState {
   /// Result of work(scene), which no other thread uses meanwhile. Opens the scene at the first
   /// call.
   template <typename Work>
-  auto with(Work&& work) {
+  auto withScene(Work&& work) {
     const std::lock_guard lock(mutex);
     if (!scene)
       scene.emplace(path);
@@ -60,13 +60,13 @@ struct Input::Opened {
   std::optional<MrmlScene> scene = {};
 };
 
-Input::Input(std::filesystem::path path) : m_opened(std::make_shared<Opened>()) {
-  m_opened->isScene = isSceneFile(path);
-  m_opened->path = std::move(path);
+Input::Input(std::filesystem::path path) : m_state(std::make_shared<SharedState>()) {
+  m_state->isScene = isSceneFile(path);
+  m_state->path = std::move(path);
 }
 
 const std::filesystem::path& Input::path() const {
-  return m_opened->path;
+  return m_state->path;
 }
 
 const MrmlDocument* Input::document() const {
@@ -75,25 +75,25 @@ const MrmlDocument* Input::document() const {
 }
 
 MrmlScene* Input::scene() const {
-  if (!m_opened->isScene)
+  if (!m_state->isScene)
     return nullptr;
-  return m_opened->with([](MrmlScene& scene) { return &scene; });
+  return m_state->withScene([](MrmlScene& scene) { return &scene; });
 }
 
 VolumeInput Input::volume(const std::optional<std::string>& choice) const {
-  if (!m_opened->isScene)
-    return volumeInFiles(path(), choice);
-  return m_opened->with([&](MrmlScene& scene) {
-    Volume volume = readSceneVolume(scene, *planFor(scene, {choice}, false).volume);
+  if (!m_state->isScene)
+    return readVolumeFiles(path(), choice);
+  return m_state->withScene([&](MrmlScene& scene) {
+    Volume volume = readSceneVolume(scene, *makePlan(scene, {choice}, false).volume);
     return VolumeInput{std::move(volume), scene.files.usedFiles()};
   });
 }
 
 SceneSettings Input::settings(const std::optional<std::string>& volume, bool followsCamera) const {
-  if (!m_opened->isScene)
+  if (!m_state->isScene)
     return {};
-  return m_opened->with([&](MrmlScene& scene) {
-    const ScenePlan plan = planFor(scene, {volume}, false);
+  return m_state->withScene([&](MrmlScene& scene) {
+    const ScenePlan plan = makePlan(scene, {volume}, false);
     SceneSettings settings;
     if (plan.roi)
       settings.crop = readSceneRoi(scene, *plan.roi);
@@ -111,10 +111,10 @@ SceneSettings Input::settings(const std::optional<std::string>& volume, bool fol
 
 SceneLook Input::look(const std::optional<std::string>& volume,
                       const std::array<double, 2>& range) const {
-  if (!m_opened->isScene)
+  if (!m_state->isScene)
     return {};
-  return m_opened->with([&](MrmlScene& scene) {
-    const ScenePlan plan = planFor(scene, {volume}, false);
+  return m_state->withScene([&](MrmlScene& scene) {
+    const ScenePlan plan = makePlan(scene, {volume}, false);
     SceneLook look;
     if (plan.sliceDisplay)
       look = {convertSliceDisplay(*plan.rendering, *plan.sliceDisplay, range),
@@ -127,13 +127,13 @@ SceneLook Input::look(const std::optional<std::string>& volume,
 }
 
 std::optional<SegmentNames> Input::segmentNames(const InputChoice& choice) const {
-  if (!m_opened->isScene)
-    return namesInFile(choice);
-  return m_opened->with([&](MrmlScene& scene) {
+  if (!m_state->isScene)
+    return readSegmentNames(choice);
+  return m_state->withScene([&](MrmlScene& scene) {
     const bool hasSegmentation = std::ranges::any_of(scene.document.nodes(), isSegmentation);
-    const ScenePlan plan = planFor(scene, choice, hasSegmentation);
+    const ScenePlan plan = makePlan(scene, choice, hasSegmentation);
     if (!plan.segmentation)
-      return namesInFile(choice);
+      return readSegmentNames(choice);
     return std::optional(
         SegmentNames{scene.document.source() + ": " + describeNode(*plan.segmentation),
                      readSceneSegmentInfos(scene, *plan.segmentation, choice.labels)});
@@ -141,16 +141,16 @@ std::optional<SegmentNames> Input::segmentNames(const InputChoice& choice) const
 }
 
 SegmentsInput Input::segments(const InputChoice& choice, const Grid& volume) const {
-  const auto inFile = [&] {
-    return segmentsFrom(readSegmentation(*choice.segmentation, &volume, choice.labels),
+  const auto readFile = [&] {
+    return makeSegments(readSegmentation(*choice.segmentation, &volume, choice.labels),
                         {*choice.segmentation});
   };
-  if (!m_opened->isScene)
-    return inFile();
-  return m_opened->with([&](MrmlScene& scene) {
-    const ScenePlan plan = planFor(scene, choice, true);
+  if (!m_state->isScene)
+    return readFile();
+  return m_state->withScene([&](MrmlScene& scene) {
+    const ScenePlan plan = makePlan(scene, choice, true);
     if (!plan.segmentation && fileExists(*choice.segmentation))
-      return inFile();
+      return readFile();
     if (!plan.segmentation)
       throw inputError(scene.document.source(),
                        "has no segmentation \"" + *choice.segmentation +
@@ -159,14 +159,14 @@ SegmentsInput Input::segments(const InputChoice& choice, const Grid& volume) con
     Segmentation segmentation =
         readSceneSegmentation(scene, *plan.segmentation, &volume, choice.labels);
     segmentation.setSource(scene.files.translatePaths(segmentation.source()));
-    return segmentsFrom(std::move(segmentation), scene.files.usedFiles());
+    return makeSegments(std::move(segmentation), scene.files.usedFiles());
   });
 }
 
 SceneLook Input::property(const std::string& name) const {
-  if (!m_opened->isScene)
+  if (!m_state->isScene)
     return {};
-  return m_opened->with([&](MrmlScene& scene) {
+  return m_state->withScene([&](MrmlScene& scene) {
     SceneLook look;
     for (const MrmlNode* node : scene.document.findByTag("VolumeProperty"))
       if (!look.transfer && (node->name == name || node->id == name))

@@ -21,11 +21,11 @@ class MrmlDocument;
 struct MrmlScene;
 
 /// Paths of read files, as the user knows them.
-using FilesRead = std::vector<std::string>;
+using InputFiles = std::vector<std::string>;
 
 struct VolumeInput {
   Volume volume;
-  FilesRead files = {};
+  InputFiles files = {};
 };
 
 /// View and crop of a Slicer scene; nothing for other inputs.
@@ -34,19 +34,19 @@ struct SceneSettings {
   std::optional<CameraPose> camera = {};
   std::optional<Background> background = {};
   std::vector<std::string> warnings = {};
-  FilesRead files = {};
+  InputFiles files = {};
 };
 
 /// Transfer function of a Slicer scene; nothing where the scene has none.
 struct SceneLook {
   std::optional<TransferFunction> transfer = {};
   std::string name = {}; ///< of the volume property
-  FilesRead files = {};
+  InputFiles files = {};
 };
 
 struct SegmentsInput {
   Segmentation segmentation;
-  FilesRead files = {};
+  InputFiles files = {};
 };
 
 /// Names of all segments that would be searched for a focus, without labels.
@@ -97,9 +97,9 @@ public:
   bool operator==(const Input& other) const { return path() == other.path(); }
 
 private:
-  struct Opened;
+  struct SharedState;
 
-  std::shared_ptr<Opened> m_opened;
+  std::shared_ptr<SharedState> m_state;
 };
 
 } // namespace fenestra

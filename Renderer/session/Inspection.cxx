@@ -14,24 +14,24 @@ constexpr std::array voxelTypes = {"uint8", "int16", "uint16", "float"}; ///< as
 
 /// True if most pairs of neighbouring voxels above the least value are equal, as in label maps (at
 /// least 59 % in those at hand) and in no scan (at most 8 %).
-bool looksLikeLabels(const Volume& volume) {
+bool isLikelyLabelMap(const Volume& volume) {
   constexpr double most = 0.5;
   if (volume.minimum < 0.0 || std::holds_alternative<LargeArray<float>>(volume.voxels))
     return false;
-  const auto mostAlike = [&](const auto& voxels) {
+  const auto areMostEqual = [&](const auto& voxels) {
     const auto isLeast = [&](auto voxel) { return static_cast<double>(voxel) == volume.minimum; };
-    std::size_t pairs = 0, alike = 0;
+    std::size_t pairs = 0, equal = 0;
     for (std::size_t i = 1; i < voxels.size(); ++i)
       if (!isLeast(voxels[i]) || !isLeast(voxels[i - 1])) {
         ++pairs;
-        alike += voxels[i] == voxels[i - 1];
+        equal += voxels[i] == voxels[i - 1];
       }
-    return static_cast<double>(alike) > most * static_cast<double>(pairs);
+    return static_cast<double>(equal) > most * static_cast<double>(pairs);
   };
-  return std::visit(mostAlike, volume.voxels);
+  return std::visit(areMostEqual, volume.voxels);
 }
 
-bool isNamedSegmentation(const std::filesystem::path& path) {
+bool hasSegmentationName(const std::filesystem::path& path) {
   return path.filename().string().find(".seg.") != std::string::npos;
 }
 
@@ -40,29 +40,29 @@ bool isNamedSegmentation(const std::filesystem::path& path) {
 struct FileVolume {
   std::optional<Grid> grid = {};     ///< nothing: unreadable
   std::optional<Error> failure = {}; ///< of a render; may have come after the volume was read
-  bool looksLikeLabels = false;
+  bool isLikelyLabelMap = false;
 };
 
 /// Adds what a render uses of the input, its refusal and its warnings.
 FileVolume inspectVolume(const RenderRequest& request, const Input& input, Json& report) {
   FileVolume result;
   const auto add = [&](const Volume& volume, const std::vector<std::string>& warnings) {
-    report["render"] = emptyUse();
-    report["render"]["volume"] = volumeUse(volume);
+    report["render"] = makeRenderReport();
+    report["render"]["volume"] = volumeJson(volume);
     report["render"]["look"] = defaultLook(volume);
     report["warnings"] = warnings;
     result.grid = volume.grid;
-    result.looksLikeLabels = looksLikeLabels(volume);
+    result.isLikelyLabelMap = isLikelyLabelMap(volume);
   };
   try {
     const PreparedScene scene(request, input);
     add(scene.volume(), scene.warnings());
-    report["render"]["camera"] = cameraUse(scene.camera().pose());
+    report["render"]["camera"] = poseJson(scene.camera().pose());
   } catch (const Error& error) {
     result.failure = error;
     report["refused"] = error.what();
     Json unused;
-    if (const auto read = attempted([&] { return input.volume(request.volume); }, unused))
+    if (const auto read = tryRead([&] { return input.volume(request.volume); }, unused))
       add(read->volume, read->volume.warnings);
   }
   return result;
@@ -80,19 +80,19 @@ Json colorJson(const std::optional<ColorFunction>& color) {
   return knots;
 }
 
-const char* kindText(const Material& material) {
+const char* kindName(const Material& material) {
   return material.kind == MaterialKind::tint ? "tint" : "matter";
 }
 
 Json materialJson(const SegmentMaterial& material) {
   const SegmentMedium& medium = material.medium;
-  return {{"name", orNull(material.name)},
-          {"kind", kindText(medium.material)},
+  return {{"name", nullIfEmpty(material.name)},
+          {"kind", kindName(medium.material)},
           {"color", colorJson(toReflectanceColor(medium.material))},
           {"priority", medium.priority},
           {"clip", medium.isClipped},
           {"density", medium.density},
-          {"why", material.why}};
+          {"why", material.reason}};
 }
 
 /// The library's materials, by name.
@@ -100,46 +100,46 @@ Json libraryJson() {
   Json all = Json::array();
   for (const auto& [name, material] : materialLibrary().materials)
     all.push_back({{"name", name},
-                   {"kind", kindText(material)},
+                   {"kind", kindName(material)},
                    {"color", colorJson(toReflectanceColor(material))}});
   return all;
 }
 
 Json inspectFiles(const RenderRequest& request, const Input& input) {
   const bool isDicom = isFolder(request.input);
-  Json report = emptyInspection(request, isDicom ? "dicom" : "volume");
+  Json report = makeReport(request, isDicom ? "dicom" : "volume");
   if (isDicom)
     for (const DicomSeries& series : findDicomSeries(request.input))
       report["series"].push_back({{"uid", series.uid},
-                                  {"number", orNull(series.number)},
-                                  {"description", orNull(series.description)},
-                                  {"modality", orNull(series.modality)},
+                                  {"number", nullIfEmpty(series.number)},
+                                  {"description", nullIfEmpty(series.description)},
+                                  {"modality", nullIfEmpty(series.modality)},
                                   {"files", series.files.size()}});
   const FileVolume volume = inspectVolume(request, input, report);
   Json& segmentations = report["segmentations"];
   const Grid* grid = volume.grid ? &*volume.grid : nullptr;
-  if (!isDicom && (!grid || volume.looksLikeLabels || isNamedSegmentation(request.input))) {
-    segmentations.push_back(segmentationFile(request.input, grid, request.labels));
+  if (!isDicom && (!grid || volume.isLikelyLabelMap || hasSegmentationName(request.input))) {
+    segmentations.push_back(inspectSegmentationFile(request.input, grid, request.labels));
     if (!grid && !segmentations.back()["problem"].is_null())
       throw *volume.failure;
     report["kind"] = "segmentation";
   }
   if (request.segmentation) {
-    segmentations.push_back(segmentationFile(*request.segmentation, grid, request.labels));
+    segmentations.push_back(inspectSegmentationFile(*request.segmentation, grid, request.labels));
     segmentations.back()["used"] = true;
     if (grid)
-      report["render"]["segmentation"] = orNull(*request.segmentation);
+      report["render"]["segmentation"] = nullIfEmpty(*request.segmentation);
   }
   return report;
 }
 
 } // namespace
 
-Json orNull(const std::string& text) {
+Json nullIfEmpty(const std::string& text) {
   return text.empty() ? Json(nullptr) : Json(text);
 }
 
-Json emptyInspection(const RenderRequest& request, const char* kind) {
+Json makeReport(const RenderRequest& request, const char* kind) {
   Json report = {{"input", request.input.string()}, {"kind", kind}, {"version", nullptr}};
   for (const char* list : {"volumes", "segmentations", "volumeRenderings", "volumeProperties",
                            "rois", "views", "cameras", "transforms", "series"})
@@ -153,7 +153,7 @@ Json emptyInspection(const RenderRequest& request, const char* kind) {
   return report;
 }
 
-Json emptyUse() {
+Json makeRenderReport() {
   Json use;
   for (const char* part :
        {"volume", "look", "crop", "camera", "background", "segmentation", "segmentationProblem"})
@@ -162,8 +162,8 @@ Json emptyUse() {
   return use;
 }
 
-Json volumeUse(const Volume& volume, const std::string& id) {
-  return {{"id", orNull(id)},
+Json volumeJson(const Volume& volume, const std::string& id) {
+  return {{"id", nullIfEmpty(id)},
           {"name", volume.name},
           {"size", volume.grid.size},
           {"spacing", volume.grid.spacing()},
@@ -174,16 +174,16 @@ Json volumeUse(const Volume& volume, const std::string& id) {
 }
 
 Json lookUse(const char* source, const std::string& id, const std::string& name) {
-  return {{"source", source}, {"id", orNull(id)}, {"name", orNull(name)}};
+  return {{"source", source}, {"id", nullIfEmpty(id)}, {"name", nullIfEmpty(name)}};
 }
 
 Json defaultLook(const Volume& volume) {
-  const std::optional<std::string> preset = transferPresetFor(volume);
+  const std::optional<std::string> preset = chooseTransferPreset(volume);
   return lookUse(preset ? "preset" : "range", "", preset.value_or(""));
 }
 
-Json cameraUse(const CameraPose& pose, const std::string& id, const std::string& name) {
-  Json camera = {{"id", orNull(id)}, {"name", orNull(name)}};
+Json poseJson(const CameraPose& pose, const std::string& id, const std::string& name) {
+  Json camera = {{"id", nullIfEmpty(id)}, {"name", nullIfEmpty(name)}};
   addPose(pose, camera);
   return camera;
 }
@@ -198,8 +198,8 @@ void addPose(const CameraPose& pose, Json& camera) {
 }
 
 Json nodeJson(const std::string& id, const std::string& name) {
-  return {{"id", orNull(id)},     {"name", name},  {"files", Json::array()},
-          {"transform", nullptr}, {"used", false}, {"problem", nullptr}};
+  return {{"id", nullIfEmpty(id)}, {"name", name},  {"files", Json::array()},
+          {"transform", nullptr},  {"used", false}, {"problem", nullptr}};
 }
 
 Json segmentationMembers(const char* kind, bool shown) {
@@ -218,7 +218,7 @@ void addSegments(const Segmentation& segmentation, const std::map<std::string, b
   const double milliliters = std::abs(grid.indexToWorld.linear().determinant()) / cubicMmInMl;
   const std::vector<SegmentStatistics> statistics = segmentation.statistics();
   const std::vector<SegmentMaterial> materials =
-      materialsOf(segmentation.segments(), materialLibrary());
+      assignMaterials(segmentation.segments(), materialLibrary());
   for (std::size_t i = 0; i < statistics.size(); ++i) {
     const SegmentInfo& info = segmentation.segments()[i];
     const auto& [voxels, bounds] = statistics[i];
@@ -239,12 +239,12 @@ void addSegments(const Segmentation& segmentation, const std::map<std::string, b
   }
 }
 
-Json segmentationFile(const std::filesystem::path& path, const Grid* volume,
-                      const std::optional<std::string>& labels) {
+Json inspectSegmentationFile(const std::filesystem::path& path, const Grid* volume,
+                             const std::optional<std::string>& labels) {
   Json json = nodeJson("", path.string());
   json.update(segmentationMembers("file", true));
   if (const auto segmentation =
-          attempted([&] { return readSegmentation(path, volume, labels); }, json["problem"]))
+          tryRead([&] { return readSegmentation(path, volume, labels); }, json["problem"]))
     addSegments(*segmentation, {}, json);
   return json;
 }

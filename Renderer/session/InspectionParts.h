@@ -15,7 +15,7 @@ using Json = nlohmann::ordered_json; ///< a report, or a part of it
 
 /// Result of `read`; nothing: `line` holds the line of the Error thrown.
 template <typename Read>
-auto attempted(Read&& read, Json& line) -> std::optional<decltype(read())> {
+auto tryRead(Read&& read, Json& line) -> std::optional<decltype(read())> {
   try {
     return read();
   } catch (const Error& error) {
@@ -25,17 +25,17 @@ auto attempted(Read&& read, Json& line) -> std::optional<decltype(read())> {
 }
 
 /// Null for the empty text.
-Json orNull(const std::string& text);
+Json nullIfEmpty(const std::string& text);
 
 /// Report with nothing found, and its member `render` with nothing used.
-Inspection emptyInspection(const RenderRequest& request, const char* kind);
-Json emptyUse();
+Inspection makeReport(const RenderRequest& request, const char* kind);
+Json makeRenderReport();
 
-Json volumeUse(const Volume& volume, const std::string& id = "");
+Json volumeJson(const Volume& volume, const std::string& id = "");
 Json lookUse(const char* source, const std::string& id, const std::string& name);
 /// Look of a volume without settings, by modality and range.
 Json defaultLook(const Volume& volume);
-Json cameraUse(const CameraPose& pose, const std::string& id = "", const std::string& name = "");
+Json poseJson(const CameraPose& pose, const std::string& id = "", const std::string& name = "");
 /// Adds a POSE.
 void addPose(const CameraPose& pose, Json& camera);
 
@@ -48,8 +48,8 @@ void addSegments(const Segmentation& segmentation, const std::map<std::string, b
                  Json& json);
 /// Segmentation of a file. `volume`: grid that closed surfaces become labels on; null: none.
 /// `labels`: RenderRequest's.
-Json segmentationFile(const std::filesystem::path& path, const Grid* volume,
-                      const std::optional<std::string>& labels);
+Json inspectSegmentationFile(const std::filesystem::path& path, const Grid* volume,
+                             const std::optional<std::string>& labels);
 
 Inspection inspectScene(const RenderRequest& request, const Input& input);
 

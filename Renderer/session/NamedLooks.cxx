@@ -16,15 +16,15 @@ namespace fenestra {
 namespace {
 
 /// Text of the preset `name` under Resources/<kind>/; empty: none.
-std::string_view ownPreset(const std::string& kind, const std::string& name) {
+std::string_view findBuiltinPreset(const std::string& kind, const std::string& name) {
   return findResource(kind + "/" + name + ".json");
 }
 
-std::string listed(const std::vector<std::string>& names) {
+std::string joinNames(const std::vector<std::string>& names) {
   return join(names, ", ", [](const std::string& name) { return sanitize(name); });
 }
 
-bool isFoundAsFile(const std::string& name) {
+bool isExistingFile(const std::string& name) {
   std::error_code failed;
   return std::filesystem::exists(name, failed);
 }
@@ -59,10 +59,10 @@ public:
   }
 
   /// Known names, for a message.
-  std::string known() const {
+  std::string knownNames() const {
     const std::vector<std::string> inScene = m_input.propertyNames();
-    std::string text = inScene.empty() ? "" : "; of the scene " + listed(inScene);
-    text += m_presets ? "; of Slicer " + listed(listPropertyNames(*m_presets))
+    std::string text = inScene.empty() ? "" : "; of the scene " + joinNames(inScene);
+    text += m_presets ? "; of Slicer " + joinNames(listPropertyNames(*m_presets))
                       : "; Slicer's own presets are known where SLICER_HOME names its folder";
     return text;
   }
@@ -74,7 +74,7 @@ private:
 
 } // namespace
 
-std::vector<std::string> ownPresets(const std::string& kind) {
+std::vector<std::string> listBuiltinPresets(const std::string& kind) {
   std::vector<std::string> names;
   for (const std::string& path : listResources(kind + "/"))
     if (path.ends_with(".json"))
@@ -83,66 +83,68 @@ std::vector<std::string> ownPresets(const std::string& kind) {
 }
 
 bool isFileName(const std::string& kind, const std::string& name) {
-  return ownPreset(kind, name).empty() &&
-         (name.find_first_of("/.") != std::string::npos || isFoundAsFile(name));
+  return findBuiltinPreset(kind, name).empty() &&
+         (name.find_first_of("/.") != std::string::npos || isExistingFile(name));
 }
 
-NamedTransfer namedTransfer(const std::string& name, const Input& input) {
+NamedTransfer findTransfer(const std::string& name, const Input& input) {
   if (isLookText(name))
     return {parseTransferLook(name, "--transfer"), "--transfer"};
-  if (const std::string_view text = ownPreset("transfer", name); !text.empty())
+  if (const std::string_view text = findBuiltinPreset("transfer", name); !text.empty())
     return {parseTransferLook(text, name), name};
-  if (isFoundAsFile(name))
+  if (isExistingFile(name))
     return {readTransferLook(name), name, {name}};
   SlicerTransfers slicer(input);
   if (auto transfer = slicer.find(name))
     return std::move(*transfer);
   throw makeUnknownError("transfer", name,
-                         "a file or one of " + listed(ownPresets("transfer")) + slicer.known());
+                         "a file or one of " + joinNames(listBuiltinPresets("transfer")) +
+                             slicer.knownNames());
 }
 
-bool isFileOfTransfer(const std::string& name, const Input& input) {
+bool isTransferFile(const std::string& name, const Input& input) {
   if (isLookText(name) || !isFileName("transfer", name))
     return false;
-  return name.find('/') != std::string::npos || isFoundAsFile(name) ||
+  return name.find('/') != std::string::npos || isExistingFile(name) ||
          !SlicerTransfers(input).find(name);
 }
 
-NamedLights namedLights(const std::string& name) {
+NamedLights findLights(const std::string& name) {
   if (isLookText(name))
     return {parseLights(name, "--lights"), "--lights"};
-  if (const std::string_view text = ownPreset("lights", name); !text.empty())
+  if (const std::string_view text = findBuiltinPreset("lights", name); !text.empty())
     return {parseLights(text, name), name};
-  if (!isFoundAsFile(name))
-    throw makeUnknownError("lights", name, "a file or one of " + listed(ownPresets("lights")));
+  if (!isExistingFile(name))
+    throw makeUnknownError("lights", name,
+                           "a file or one of " + joinNames(listBuiltinPresets("lights")));
   return {readLights(name), name, {name}};
 }
 
-bool isFileOfLights(const std::string& name) {
+bool isLightsFile(const std::string& name) {
   return isLookText(name) ? hasFileReference(name, "--lights") : isFileName("lights", name);
 }
 
-NamedMaterials namedMaterials(const std::string& name) {
-  if (!isFileOfMaterials(name)) {
+NamedMaterials findMaterials(const std::string& name) {
+  if (!isMaterialsFile(name)) {
     NamedMaterials materials{materialLibrary(), name};
     materials.table.hasContrast = materials.table.detectsSkin = name == autoMaterials;
     return materials;
   }
-  if (!isFoundAsFile(name))
+  if (!isExistingFile(name))
     throw makeUnknownError("materials", name, "none, auto, library, or a file");
   return {parseMaterials(readText(name), name, materialLibrary()), name, {name}};
 }
 
-bool isFileOfMaterials(const std::string& name) {
+bool isMaterialsFile(const std::string& name) {
   return name != noMaterials && name != autoMaterials && name != "library";
 }
 
-OrganPreset namedPreset(const std::string& name) {
-  if (const std::string_view text = ownPreset("presets", name); !text.empty())
+OrganPreset findOrganPreset(const std::string& name) {
+  if (const std::string_view text = findBuiltinPreset("presets", name); !text.empty())
     return parsePreset(text, name);
-  if (!isFoundAsFile(name))
+  if (!isExistingFile(name))
     throw makeUnknownError("preset", name,
-                           "auto, a file, or one of " + listed(ownPresets("presets")));
+                           "auto, a file, or one of " + joinNames(listBuiltinPresets("presets")));
   return parsePreset(readText(name), name);
 }
 

@@ -20,7 +20,7 @@ inline bool isLookText(std::string_view look) {
 }
 
 /// Names of the program's own presets. `kind`: a folder of Resources, e.g. "transfer".
-std::vector<std::string> ownPresets(const std::string& kind);
+std::vector<std::string> listBuiltinPresets(const std::string& kind);
 
 /// True if `name` is no own preset, and has a folder or an ending, or is an existing file.
 bool isFileName(const std::string& kind, const std::string& name);
@@ -33,10 +33,10 @@ struct NamedTransfer {
 /// Transfer function from the JSON itself, else the program's preset of that name, a file, a volume
 /// property of a scene (by name or id), or one of Slicer's presets. Throws Error (input)
 /// that lists the known names.
-NamedTransfer namedTransfer(const std::string& name, const Input& input);
+NamedTransfer findTransfer(const std::string& name, const Input& input);
 
-/// True if namedTransfer would open a file of that name.
-bool isFileOfTransfer(const std::string& name, const Input& input);
+/// True if findTransfer would open a file of that name.
+bool isTransferFile(const std::string& name, const Input& input);
 
 struct NamedLights {
   std::vector<Light> lights;
@@ -45,10 +45,10 @@ struct NamedLights {
 };
 /// Lights from the JSON itself, else the program's preset of that name, or a file. Throws Error
 /// (input).
-NamedLights namedLights(const std::string& name);
+NamedLights findLights(const std::string& name);
 
-/// True if namedLights would open a file: of that name, or named in the JSON.
-bool isFileOfLights(const std::string& name);
+/// True if findLights would open a file: of that name, or named in the JSON.
+bool isLightsFile(const std::string& name);
 
 struct NamedMaterials {
   MaterialTable table;
@@ -62,12 +62,12 @@ struct NamedMaterials {
 };
 /// Materials of the library ("auto": with contrast and skin), or of a file over it. Throws Error
 /// (input).
-NamedMaterials namedMaterials(const std::string& name);
+NamedMaterials findMaterials(const std::string& name);
 
-/// True if namedMaterials would open a file of that name.
-bool isFileOfMaterials(const std::string& name);
+/// True if findMaterials would open a file of that name.
+bool isMaterialsFile(const std::string& name);
 
 /// Organ preset of the program, or from a file. Throws Error (input).
-OrganPreset namedPreset(const std::string& name);
+OrganPreset findOrganPreset(const std::string& name);
 
 } // namespace fenestra

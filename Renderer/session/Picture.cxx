@@ -16,7 +16,7 @@ double meanDepth(const PixelSums& pixel) {
 
 } // namespace
 
-Plane clipPlane(const Camera& camera, const Clip& clip) {
+Plane makeClipDepth(const Camera& camera, const Clip& clip) {
   Plane result;
   for (int row = 0; row < camera.height(); ++row)
     for (int column = 0; column < camera.width(); ++column) {
@@ -28,7 +28,7 @@ Plane clipPlane(const Camera& camera, const Clip& clip) {
   return result;
 }
 
-LayerSet layerSet(const std::vector<std::string>& names) {
+LayerSet parseLayers(const std::vector<std::string>& names) {
   for (const std::string& name : names)
     if (!allLayers.contains(name))
       throw usageError("--layers: '" + name +
@@ -37,15 +37,15 @@ LayerSet layerSet(const std::vector<std::string>& names) {
   return names.empty() ? allLayers : LayerSet(names.begin(), names.end());
 }
 
-Image picture(const Film& film, const Camera& camera, const Clip& clip, const LayerSet& layers) {
+Image makeImage(const Film& film, const Camera& camera, const Clip& clip, const LayerSet& layers) {
   Image image{film.width(), film.height(), {}, {}};
-  const auto add = [&](const char* layer, const std::string& name, auto&& valueOf) {
+  const auto add = [&](const char* layer, const std::string& name, auto&& value) {
     if (!layers.contains(layer))
       return;
     Plane& plane = image.channels[name];
     plane.reserve(film.pixelCount());
     for (const PixelSums& pixel : film.pixels())
-      plane.push_back(static_cast<float>(valueOf(pixel)));
+      plane.push_back(static_cast<float>(value(pixel)));
   };
   using P = PixelSums;
   for (int c = 0; c < 3; ++c) {
@@ -59,15 +59,15 @@ Image picture(const Film& film, const Camera& camera, const Clip& clip, const La
   add("depth", "Z", meanDepth);
   add("samples", "samples.N", [](const P& p) { return static_cast<double>(p.samples); });
   if (layers.contains("clip") && !std::holds_alternative<ClipNone>(clip))
-    image.channels["clip.Z"] = clipPlane(camera, clip);
+    image.channels["clip.Z"] = makeClipDepth(camera, clip);
   return image;
 }
 
-void addDenoised(Image& image, const FilteredImage& filtered) {
+void addDenoised(Image& image, const FilteredImage& result) {
   for (std::size_t c = 0; c < 4; ++c)
-    image.channels[std::string("denoised.") + "RGBA"[c]] = filtered.color[c];
-  for (std::size_t c = 0; c < 3 && !filtered.error[c].empty(); ++c)
-    image.channels[std::string("denoised.error.") + "RGB"[c]] = filtered.error[c];
+    image.channels[std::string("denoised.") + "RGBA"[c]] = result.color[c];
+  for (std::size_t c = 0; c < 3 && !result.error[c].empty(); ++c)
+    image.channels[std::string("denoised.error.") + "RGB"[c]] = result.error[c];
 }
 
 void addExpected(Image& image, const FeatureBuffers& features) {
@@ -81,14 +81,14 @@ void addExpected(Image& image, const FeatureBuffers& features) {
                                            : std::numeric_limits<float>::infinity());
 }
 
-Image filteredColors(const FilteredImage& filtered, int width, int height) {
+Image makeFilteredImage(const FilteredImage& result, int width, int height) {
   Image image{width, height, {}, {}};
   for (std::size_t c = 0; c < 4; ++c)
-    image.channels[std::string(1, "RGBA"[c])] = filtered.color[c];
+    image.channels[std::string(1, "RGBA"[c])] = result.color[c];
   return image;
 }
 
-ImagePlane picturePlane(const Camera& camera) {
+ImagePlane makeImagePlane(const Camera& camera) {
   const Vec3 target = camera.pose().target;
   const Vec2 corner = camera.toPlane(0.5, 0.5);
   return {target + corner.x() * camera.right() + corner.y() * camera.up(),

@@ -18,23 +18,23 @@ inline const LayerSet allLayers = {"color", "depth",   "clip",     "albedo",  "n
                                    "error", "samples", "denoised", "expected"};
 
 /// Layers of these names; empty list: all. Throws Error (usage) for an unknown name.
-LayerSet layerSet(const std::vector<std::string>& names);
+LayerSet parseLayers(const std::vector<std::string>& names);
 
-Image picture(const Film& film, const Camera& camera, const Clip& clip, const LayerSet& layers);
+Image makeImage(const Film& film, const Camera& camera, const Clip& clip, const LayerSet& layers);
 
 /// Adds the channels denoised.* and denoised.error.*.
-void addDenoised(Image& image, const FilteredImage& filtered);
+void addDenoised(Image& image, const FilteredImage& result);
 /// Adds the channels expected.*: albedo and normal over all rays, as Film's; Z, like the channel Z,
 /// over those that meet something, and infinity where none does.
 void addExpected(Image& image, const FeatureBuffers& features);
 /// R, G, B and A of the filtered picture.
-Image filteredColors(const FilteredImage& filtered, int width, int height);
+Image makeFilteredImage(const FilteredImage& result, int width, int height);
 
 /// Depth at which the eye ray of each pixel's centre passes the clip's surface, mm; infinity:
 /// nothing lies behind the surface.
-Plane clipPlane(const Camera& camera, const Clip& clip);
+Plane makeClipDepth(const Camera& camera, const Clip& clip);
 
 /// Place of the picture: on the plane through the target.
-ImagePlane picturePlane(const Camera& camera);
+ImagePlane makeImagePlane(const Camera& camera);
 
 } // namespace fenestra

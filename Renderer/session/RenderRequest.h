@@ -37,8 +37,8 @@ struct ClipRequest {
   /// A plane takes its offset; `mode` and `softness` decide its mode and its edge.
   SurfaceOptions surface = {};
 
-  ClipMode modeWith(bool focus) const {
-    return mode.value_or(focus ? ClipMode::surface : ClipMode::none);
+  ClipMode resolveMode(bool hasFocus) const {
+    return mode.value_or(hasFocus ? ClipMode::surface : ClipMode::none);
   }
 
   bool operator==(const ClipRequest&) const = default;
@@ -66,7 +66,7 @@ struct ViewRequest {
   std::optional<double> angle = {}; ///< perspective: full vertical angle, degrees
 
   /// True: the camera of a Slicer scene applies, changed by the other members set here.
-  bool followsScene() const { return !name && !position; }
+  bool isSceneCamera() const { return !name && !position; }
   bool isAutomatic() const { return name == "auto"; }
 
   bool operator==(const ViewRequest&) const = default;
@@ -106,9 +106,9 @@ struct RenderRequest {
   double steadyDegrees = 0.0;
   /// Modality that `transfer` was made for, if an organ preset chose it. A volume known to be of
   /// another modality gets the look that suits it, and a warning.
-  std::optional<Modality> transferFor = {};
+  std::optional<Modality> transferModality = {};
   /// Requested things that this request leaves out, with reasons: first of the scene's warnings.
-  std::vector<std::string> leftOut = {};
+  std::vector<std::string> omissions = {};
 };
 
 } // namespace fenestra

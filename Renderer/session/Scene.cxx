@@ -18,26 +18,26 @@ PreparedScene::PreparedScene(const RenderRequest& request)
 
 PreparedScene::PreparedScene(const RenderRequest& request, const Input& input)
     : m_request(request), m_input(input) {
-  make();
+  prepare();
 }
 
-PreparedScene PreparedScene::changed(const RenderRequest& request) const {
+PreparedScene PreparedScene::withRequest(const RenderRequest& request) const {
   PreparedScene scene = *this;
   scene.m_request = request;
   if (request.input != m_input.path())
     scene.m_input = Input(request.input);
-  scene.make();
+  scene.prepare();
   return scene;
 }
 
-void PreparedScene::make() {
+void PreparedScene::prepare() {
   const RenderRequest& r = m_request;
   std::apply([](auto&... stage) { (stage.markUnused(), ...); }, stages(*this));
   const auto lights = m_namedLights.get(r.lights, r.environment, r.environmentMap); // errors early
   if (r.transfer)
     m_namedTransfer.get(*r.transfer, m_input);
   const auto volume = m_volume.get(m_input, r.volume);
-  const auto settings = m_settings.get(m_input, r.volume, r.view.followsScene());
+  const auto settings = m_settings.get(m_input, r.volume, r.view.isSceneCamera());
   if (r.materials.value_or(noMaterials) != noMaterials || !r.focus.empty())
     m_segments.get(m_input, {r.volume, r.segmentation, r.labels}, volume->volume.grid);
   const auto focus =
@@ -45,49 +45,49 @@ void PreparedScene::make() {
   if (!r.transfer)
     m_sceneLook.get(m_input, r.volume, {volume->volume.minimum, volume->volume.maximum});
   const auto look = m_look.get(volume, m_namedTransfer.result(), m_sceneLook.result(),
-                               r.transferFor, r.shift, r.density);
-  if (const std::string name = wantedMaterials(m_segments.result()); name != noMaterials) {
+                               r.transferModality, r.shift, r.density);
+  if (const std::string name = resolveMaterials(m_segments.result()); name != noMaterials) {
     makeTint(name);
-    if (!isTint(*m_plan))
-      m_mixture.get(m_plan.result(), tintInUse(), look);
+    if (!isTintOnly(*m_plan))
+      m_mixture.get(m_plan.result(), currentTint(), look);
   }
   m_focusWarnings.get(volume, focus, look);
   if (r.view.isAutomatic() && focus->mask)
     m_view.get(volume, settings, focus, look);
-  const auto ranges = m_ranges.get(volume, MajorantGrid::requiredPadding(look->transfer));
-  const Box bounds = settings->camera ? Box() : *m_occupiedBounds.get(volume, ranges, look);
+  const auto minMaxGrid = m_minMaxGrid.get(volume, MajorantGrid::requiredPadding(look->transfer));
+  const Box bounds = settings->camera ? Box() : *m_occupiedBounds.get(volume, minMaxGrid, look);
   const auto camera =
       m_camera.get(r.view, r.width, r.height, volume, settings, bounds, focus, m_view.result());
   const auto placed = m_lights.get({lights, camera, focus}, volume);
   const auto clip = m_clip.get(r.clip, r.measure, r.steadyDegrees, volume, settings, focus, camera);
   const double extinction = r.focusLook.contextExtinction;
   const double saturation =
-      m_contrast.get(volume, focus, look, tintInUse(), r.focusLook.contextSaturation)->saturation;
+      m_contrast.get(volume, focus, look, currentTint(), r.focusLook.contextSaturation)->saturation;
   if (focus->mask && (extinction != 1.0 || saturation != 1.0))
     m_style.get(focus, extinction, saturation);
   const auto majorants =
-      m_majorants.get(volume, ranges, look, clip, m_style.result(), m_mixture.result());
+      m_majorants.get(volume, minMaxGrid, look, clip, m_style.result(), m_mixture.result());
   if (r.features)
-    m_features.get(volume, settings, look, segmentsShown(), placed, camera, clip, m_style.result(),
+    m_features.get(volume, settings, look, tintOrMixture(), placed, camera, clip, m_style.result(),
                    majorants);
 }
 
-std::string PreparedScene::wantedMaterials(const Handle<SegmentsInput>& segments) const {
+std::string PreparedScene::resolveMaterials(const Handle<SegmentsInput>& segments) const {
   const RenderRequest& r = m_request;
   if (r.materials)
     return *r.materials;
   const bool isAdjusted = !r.focus.empty() && !r.focusLook.contextSaturation;
-  return isAdjusted && isSomeKnown(segments->segmentation, r.focus) ? autoMaterials : noMaterials;
+  return isAdjusted && isAnyKnown(segments->segmentation, r.focus) ? autoMaterials : noMaterials;
 }
 
 void PreparedScene::makeTint(const std::string& name) {
   const RenderRequest& r = m_request;
   const auto materials = m_materials.get(name);
   const bool isAdjusted = materials->hasColorAdjustment();
-  const auto there = m_segmentsThere.get(m_segments.result());
+  const auto hasVoxels = m_hasVoxels.get(m_segments.result());
   if (materials->table.detectsSkin)
     m_skin.get(m_volume.result());
-  const auto plan = m_plan.get(m_segments.result(), there, materials, r.materialChanges,
+  const auto plan = m_plan.get(m_segments.result(), hasVoxels, materials, r.materialChanges,
                                isAdjusted ? r.focus : std::vector<std::string>(), m_skin.result());
   const auto weights = m_labelWeights.get(m_segments.result(), plan->parts, m_skin.result(),
                                           r.focusLook.shaping.smoothing, volume().grid);
@@ -95,10 +95,10 @@ void PreparedScene::makeTint(const std::string& name) {
   const auto tint = m_tint.get(plan, weights, look->transfer.g);
   if (!isAdjusted || !focus())
     return;
-  const auto borders =
-      m_borders.get(m_volume.result(), m_focus.result(), look, weights, plan->isFocus);
+  const auto interfaces =
+      m_interfaces.get(m_volume.result(), m_focus.result(), look, weights, plan->isFocus);
   const auto contrast =
-      m_tintContrast.get(borders, plan, tint, materials, look, r.focusLook.contextSaturation);
+      m_tintContrast.get(interfaces, plan, tint, materials, look, r.focusLook.contextSaturation);
   m_contrastedTint.get(tint, plan, contrast, look);
 }
 
@@ -107,11 +107,11 @@ StageSeconds PreparedScene::seconds() const {
   return {.load = m_namedTransfer.seconds() + m_volume.seconds() + m_settings.seconds() +
                   m_segments.seconds() + m_focus.seconds() + m_sceneLook.seconds() +
                   m_look.seconds(),
-          .materials = m_materials.seconds() + m_segmentsThere.seconds() + m_plan.seconds() +
+          .materials = m_materials.seconds() + m_hasVoxels.seconds() + m_plan.seconds() +
                        m_skin.seconds() + m_labelWeights.seconds() + m_tint.seconds() +
-                       m_borders.seconds() + m_tintContrast.seconds() + m_contrastedTint.seconds() +
-                       m_mixture.seconds(),
-          .classify = m_ranges.seconds() + m_occupiedBounds.seconds() + m_contrast.seconds() +
+                       m_interfaces.seconds() + m_tintContrast.seconds() +
+                       m_contrastedTint.seconds() + m_mixture.seconds(),
+          .classify = m_minMaxGrid.seconds() + m_occupiedBounds.seconds() + m_contrast.seconds() +
                       m_style.seconds() + m_majorants.seconds(),
           .focus = clip.focusSeconds,
           .spline = clip.splineSeconds,
@@ -126,7 +126,7 @@ UpdatedStages PreparedScene::updatedStages() const {
           m_camera.isUpdated(),
           m_lights.isUpdated(),
           m_clip.isUpdated(),
-          m_ranges.isUpdated(),
+          m_minMaxGrid.isUpdated(),
           m_majorants.isUpdated(),
           m_tint.isUpdated() || m_contrastedTint.isUpdated(),
           m_labelWeights.isUpdated()};
@@ -134,7 +134,7 @@ UpdatedStages PreparedScene::updatedStages() const {
 
 std::string PreparedScene::choices() const {
   const RenderRequest& r = m_request;
-  const char* const from = r.transferFor ? " (preset)" : "";
+  const char* const from = r.transferModality ? " (preset)" : "";
   std::vector<std::string> parts = {"look: " + look() + from};
   if (r.environment || r.environmentMap)
     parts.push_back("light: all around");
@@ -151,19 +151,19 @@ std::string PreparedScene::choices() const {
     const std::size_t colors = tint()->albedo.size() - 1;
     parts.push_back(concat("materials: ", m_materials->source, ", ", colors,
                            colors == 1 ? " colour" : " colours",
-                           m_plan->hasFoundSkin() ? ", skin found" : ""));
+                           m_plan->hasDetectedSkin() ? ", skin found" : ""));
   }
   const double softness = std::visit([](const auto& kind) { return kind.edge.softness; }, clip());
   if (softness > 0.0)
     parts.push_back("cut: soft over " + toString(softness, 3) + " mm");
-  if (const std::string text = tintContrast() ? told(*tintContrast()) : told(contrast());
+  if (const std::string text = tintContrast() ? summary(*tintContrast()) : summary(contrast());
       !text.empty())
     parts.push_back("contrast: " + text);
   return join(parts, "; ");
 }
 
 std::vector<std::string> PreparedScene::warnings() const {
-  std::vector<std::string> warnings = m_request.leftOut;
+  std::vector<std::string> warnings = m_request.omissions;
   append(volume().warnings, warnings);
   append(m_settings->warnings, warnings);
   if (m_segments.result())

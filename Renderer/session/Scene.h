@@ -18,7 +18,7 @@ struct StageSeconds {
 /// Stages made for a scene; false: shared with the scene before.
 struct UpdatedStages {
   bool volume = false, focus = false, transfer = false, camera = false, lights = false,
-       clip = false, ranges = false, majorants = false, tint = false, labelWeights = false;
+       clip = false, minMaxGrid = false, majorants = false, tint = false, labelWeights = false;
 
   bool operator==(const UpdatedStages&) const = default;
 };
@@ -32,12 +32,12 @@ public:
 
   /// Scene(request), of which only stages that depend on a difference from this scene's request are
   /// made. Files are assumed unchanged. Throws Error.
-  PreparedScene changed(const RenderRequest& request) const;
+  PreparedScene withRequest(const RenderRequest& request) const;
 
   SceneView view() const {
-    const SegmentsShown segments = segmentsShown();
-    return {volume(), transfer(),       *m_majorants, *m_lights,           *m_camera,
-            clip(),   m_settings->crop, style(),      segments.tint.get(), segments.mixture.get()};
+    const TintOrMixture medium = tintOrMixture();
+    return {volume(), transfer(),       *m_majorants, *m_lights,         *m_camera,
+            clip(),   m_settings->crop, style(),      medium.tint.get(), medium.mixture.get()};
   }
   const Volume& volume() const { return m_volume->volume; }
   /// Volume's box, or its part inside a Slicer scene's cropping box.
@@ -52,7 +52,7 @@ public:
   /// Style of the context; null: unchanged.
   const ContextStyle* style() const { return m_style.result().get(); }
   /// Colours of the segments; null: no materials.
-  const Tint* tint() const { return tintInUse().get(); }
+  const Tint* tint() const { return currentTint().get(); }
   /// Matter of the segments; null: they differ in colour alone, or there are no materials.
   const Mixture* mixture() const { return m_mixture.result().get(); }
   /// Saturation of the context, and the contrast that it leaves; none told with materials.
@@ -61,7 +61,7 @@ public:
   const TintContrast* tintContrast() const { return m_tintContrast.result().get(); }
   /// Clip with its measures, and the depth of the focus.
   const ClipResult& clipResult() const { return *m_clip; }
-  const MinMaxGrid& ranges() const { return *m_ranges; }
+  const MinMaxGrid& minMaxGrid() const { return *m_minMaxGrid; }
   /// Null unless the request asks for features.
   const FeatureBuffers* features() const { return m_features.result().get(); }
   StageSeconds seconds() const;
@@ -77,58 +77,58 @@ public:
 
 private:
   /// Makes all stages that m_request needs, in their order.
-  void make();
+  void prepare();
   /// Name of the materials; `segments`: null without labels.
-  std::string wantedMaterials(const Handle<SegmentsInput>& segments) const;
+  std::string resolveMaterials(const Handle<SegmentsInput>& segments) const;
   void makeTint(const std::string& name);
-  const Handle<Tint>& tintInUse() const {
+  const Handle<Tint>& currentTint() const {
     return m_contrastedTint.result() ? m_contrastedTint.result() : m_tint.result();
   }
-  SegmentsShown segmentsShown() const {
-    return m_mixture.result() ? SegmentsShown{nullptr, m_mixture.result()}
-                              : SegmentsShown{tintInUse(), nullptr};
+  TintOrMixture tintOrMixture() const {
+    return m_mixture.result() ? TintOrMixture{nullptr, m_mixture.result()}
+                              : TintOrMixture{currentTint(), nullptr};
   }
   template <typename Self>
   static auto stages(Self& s) {
     return std::tie(s.m_namedLights, s.m_namedTransfer, s.m_volume, s.m_settings, s.m_segments,
                     s.m_focus, s.m_sceneLook, s.m_look, s.m_materials, s.m_hasVoxels, s.m_skin,
-                    s.m_plan, s.m_labelWeights, s.m_tint, s.m_borders, s.m_tintContrast,
-                    s.m_contrastedTint, s.m_mixture, s.m_focusWarnings, s.m_view, s.m_ranges,
+                    s.m_plan, s.m_labelWeights, s.m_tint, s.m_interfaces, s.m_tintContrast,
+                    s.m_contrastedTint, s.m_mixture, s.m_focusWarnings, s.m_view, s.m_minMaxGrid,
                     s.m_occupiedBounds, s.m_camera, s.m_lights, s.m_clip, s.m_contrast, s.m_style,
                     s.m_majorants, s.m_features);
   }
 
   RenderRequest m_request;
   Input m_input;
-  CachedStage<&requestedLights> m_namedLights;
-  CachedStage<&namedTransfer> m_namedTransfer; ///< unused without --transfer
+  CachedStage<&makeLights> m_namedLights;
+  CachedStage<&findTransfer> m_namedTransfer; ///< unused without --transfer
   CachedStage<&Input::volume> m_volume;
   CachedStage<&Input::settings> m_settings;
   CachedStage<&Input::segments> m_segments; ///< unused without a focus and materials
-  CachedStage<&requestedFocus> m_focus;
+  CachedStage<&makeFocus> m_focus;
   CachedStage<&Input::look> m_sceneLook; ///< unused with --transfer
   CachedStage<&chosenLook> m_look;
-  CachedStage<&namedMaterials> m_materials; ///< this and the next five: unused without materials
-  CachedStage<&segmentsThere> m_segmentsThere;
-  CachedStage<&skinOf> m_skin; ///< unused unless materials find skin
-  CachedStage<&tintPlan> m_plan;
+  CachedStage<&findMaterials> m_materials; ///< this and the next five: unused without materials
+  CachedStage<&findNonEmpty> m_hasVoxels;
+  CachedStage<&findSkin> m_skin; ///< unused unless materials find skin
+  CachedStage<&makeTintPlan> m_plan;
   CachedStage<&computeLabelWeights> m_labelWeights;
-  CachedStage<&tintOf> m_tint;
-  CachedStage<&bordersOf>
-      m_borders; ///< this and the next two: unused unless materials set off a focus
+  CachedStage<&buildTint> m_tint;
+  CachedStage<&findTintInterfaces>
+      m_interfaces; ///< this and the next two: unused unless materials set off a focus
   CachedStage<&adjustTintContrast> m_tintContrast;
   CachedStage<&adjustTint> m_contrastedTint;
   CachedStage<&makeMixture> m_mixture; ///< unused where segments differ in colour alone
-  CachedStage<&focusWarnings> m_focusWarnings;
-  CachedStage<&bestView> m_view; ///< used by automatic views alone
-  CachedStage<&rangesOf> m_ranges;
+  CachedStage<&checkFocus> m_focusWarnings;
+  CachedStage<&chooseView> m_view; ///< used by automatic views alone
+  CachedStage<&makeMinMaxGrid> m_minMaxGrid;
   CachedStage<&findOccupiedBounds> m_occupiedBounds; ///< unused where the scene's camera applies
-  CachedStage<&placedCamera> m_camera;
-  CachedStage<&placedLights> m_lights;
-  CachedStage<&builtClip> m_clip;
-  CachedStage<&contrastOf> m_contrast;
-  CachedStage<&styleAround> m_style; ///< unused if the context is unchanged
-  CachedStage<&majorantsOf> m_majorants;
+  CachedStage<&placeCamera> m_camera;
+  CachedStage<&placeLights> m_lights;
+  CachedStage<&buildClip> m_clip;
+  CachedStage<&chooseContrast> m_contrast;
+  CachedStage<&makeContextStyle> m_style; ///< unused if the context is unchanged
+  CachedStage<&buildMajorants> m_majorants;
   CachedStage<&marchFirstHits> m_features; ///< unused without a filter
 };
 

@@ -16,11 +16,11 @@ bool isRoi(const MrmlNode& node) {
          node.tag == "MRMLROINode";
 }
 
-std::string idOf(const MrmlNode* node) {
+std::string idOrEmpty(const MrmlNode* node) {
   return node ? node->id : std::string();
 }
 
-std::string nameOf(const MrmlNode* node) {
+std::string nameOrEmpty(const MrmlNode* node) {
   return node ? node->name : std::string();
 }
 
@@ -35,12 +35,12 @@ public:
       : m_request(request),
         m_input(input),
         m_scene(*input.scene()),
-        m_report(emptyInspection(request, "scene")) {
-    m_report["version"] = orNull(m_scene.document.version());
+        m_report(makeReport(request, "scene")) {
+    m_report["version"] = nullIfEmpty(m_scene.document.version());
   }
 
   Inspection inspect() {
-    plan();
+    makePlan();
     if (m_plan)
       inspectRender();
     inspectNodes();
@@ -53,14 +53,14 @@ private:
   const Grid* volumeGrid() const { return m_grid ? &*m_grid : nullptr; }
 
   /// Plans a render with a focus; if only the focus's segmentation is undecided, one without.
-  void plan() {
+  void makePlan() {
     SceneSelection choice{m_request.volume, m_request.segmentation, true};
-    const auto planned = [&] { return planRender(document(), choice); };
+    const auto tryPlan = [&] { return planRender(document(), choice); };
     Json problem;
-    m_plan = attempted(planned, problem);
+    m_plan = tryRead(tryPlan, problem);
     if (!m_plan) {
       choice.needsSegmentation = false;
-      m_plan = attempted(planned, m_report["refused"]);
+      m_plan = tryRead(tryPlan, m_report["refused"]);
       if (std::ranges::any_of(document().nodes(), isSegmentation))
         m_segmentationProblem = problem;
     }
@@ -70,41 +70,41 @@ private:
 
   /// Finds volume, look and camera by making a Scene; if the Scene fails, by reading each.
   void inspectRender() {
-    Json use = emptyUse();
+    Json use = makeRenderReport();
     m_report["warnings"] = m_plan->warnings;
     m_report["ignored"] = m_plan->ignored;
     std::optional<CameraPose> pose;
     if (const auto scene =
-            attempted([&] { return std::make_unique<PreparedScene>(m_request, m_input); },
-                      m_report["refused"])) {
+            tryRead([&] { return std::make_unique<PreparedScene>(m_request, m_input); },
+                    m_report["refused"])) {
       addVolume((*scene)->volume(), (*scene)->look(), use);
       pose = (*scene)->camera().pose();
       m_report["warnings"] = (*scene)->warnings();
     } else {
       if (const auto volume =
-              attempted([&] { return readSceneVolume(m_scene, *m_plan->volume); }, m_unused))
-        addVolume(*volume, nameOf(m_plan->property), use);
+              tryRead([&] { return readSceneVolume(m_scene, *m_plan->volume); }, m_unused))
+        addVolume(*volume, nameOrEmpty(m_plan->property), use);
       if (m_plan->camera)
         pose = readCamera(*m_plan->camera, m_unused);
     }
     if (pose)
-      use["camera"] = cameraUse(*pose, idOf(m_plan->camera), nameOf(m_plan->camera));
+      use["camera"] = poseJson(*pose, idOrEmpty(m_plan->camera), nameOrEmpty(m_plan->camera));
     if (m_plan->roi)
-      use["crop"] = cropUse(*m_plan->roi);
+      use["crop"] = cropJson(*m_plan->roi);
     if (m_plan->view) {
-      use["background"] = {{"view", orNull(m_plan->view->id)}};
+      use["background"] = {{"view", nullIfEmpty(m_plan->view->id)}};
       use["background"].update(backgroundColors(*m_plan->view));
     }
-    use["segmentation"] = orNull(idOf(m_plan->segmentation));
+    use["segmentation"] = nullIfEmpty(idOrEmpty(m_plan->segmentation));
     use["segmentationProblem"] = m_segmentationProblem;
-    noteUsed(use["look"]);
+    markUsed(use["look"]);
     m_report["render"] = std::move(use);
   }
 
   /// Adds volume and look. `look`: Scene::look of the render.
   void addVolume(const Volume& volume, const std::string& look, Json& use) {
     m_grid = volume.grid;
-    use["volume"] = volumeUse(volume, m_plan->volume->id);
+    use["volume"] = volumeJson(volume, m_plan->volume->id);
     use["volume"]["transforms"] = listParentTransforms(document(), *m_plan->volume);
     const MrmlNode* property = m_plan->property;
     if (property && look == property->name)
@@ -115,17 +115,17 @@ private:
       use["look"] = defaultLook(volume);
   }
 
-  Json cropUse(const MrmlNode& roi) {
-    const auto box = attempted([&] { return readSceneRoi(m_scene, roi); }, m_unused);
+  Json cropJson(const MrmlNode& roi) {
+    const auto box = tryRead([&] { return readSceneRoi(m_scene, roi); }, m_unused);
     if (!box)
       return nullptr;
-    return {{"id", orNull(roi.id)},
+    return {{"id", nullIfEmpty(roi.id)},
             {"name", roi.name},
             {"edges", Vec3(2.0 * box->boxToWorld.linear().columnNorms())},
             {"center", box->boxToWorld.translation()}};
   }
 
-  void noteUsed(const Json& look) {
+  void markUsed(const Json& look) {
     for (const MrmlNode* node : {m_plan->volume, m_plan->rendering, m_plan->roi,
                                  m_plan->segmentation, m_plan->view, m_plan->camera})
       if (node) {
@@ -179,7 +179,7 @@ private:
     Json json = fenestra::nodeJson(node.id, node.name);
     for (const std::string& file : listStorageFiles(m_scene, node))
       json["files"].push_back({{"name", decodeUrl(file)}, {"there", m_scene.files.contains(file)}});
-    json["transform"] = orNull(idOf(document().follow(node, "transform")));
+    json["transform"] = nullIfEmpty(idOrEmpty(document().follow(node, "transform")));
     json["used"] = m_used.contains(&node);
     json.update(more);
     return json;
@@ -201,7 +201,7 @@ private:
         nodeJson(node, segmentationMembers(isLabelMap(node) ? "labelMap" : "segmentation", shown));
     if (isSkipped("segmentations", json))
       return json;
-    if (const auto segmentation = attempted(
+    if (const auto segmentation = tryRead(
             [&] { return readSceneSegmentation(m_scene, node, volumeGrid(), m_request.labels); },
             json["problem"]))
       addSegments(*segmentation, readSegmentVisibility(m_scene, node), json);
@@ -210,26 +210,26 @@ private:
 
   Json renderingJson(const MrmlNode& node) const {
     const auto owner = m_owners.find(node.id);
-    return nodeJson(node, {{"volume", orNull(owner == m_owners.end() ? "" : owner->second)},
-                           {"property", orNull(node.referenceId("volumeProperty"))},
-                           {"roi", orNull(node.referenceId("roi"))},
+    return nodeJson(node, {{"volume", nullIfEmpty(owner == m_owners.end() ? "" : owner->second)},
+                           {"property", nullIfEmpty(node.referenceId("volumeProperty"))},
+                           {"roi", nullIfEmpty(node.referenceId("roi"))},
                            {"cropping", node.boolean("croppingEnabled", false)},
                            {"followsDisplay", node.boolean("followVolumeDisplayNode", false)},
                            {"shown", isVisible(node)}});
   }
 
   Json viewJson(const MrmlNode& node) const {
-    return nodeJson(node, {{"layout", orNull(layoutName(node))},
-                           {"technique", orNull(node.text("raycastTechnique"))},
+    return nodeJson(node, {{"layout", nullIfEmpty(layoutName(node))},
+                           {"technique", nullIfEmpty(node.text("raycastTechnique"))},
                            {"background", backgroundColors(node)}});
   }
 
   std::optional<CameraPose> readCamera(const MrmlNode& node, Json& problem) {
-    return attempted([&] { return readSceneCamera(m_scene, node); }, problem);
+    return tryRead([&] { return readSceneCamera(m_scene, node); }, problem);
   }
 
   Json cameraJson(const MrmlNode& node) {
-    Json json = nodeJson(node, {{"layout", orNull(layoutName(node))}});
+    Json json = nodeJson(node, {{"layout", nullIfEmpty(layoutName(node))}});
     if (!isSkipped("cameras", json))
       if (const auto pose = readCamera(node, json["problem"]))
         addPose(*pose, json);
@@ -244,7 +244,7 @@ private:
                          .references = {{"transform", {node.id}}}};
     if (isSkipped("transforms", json))
       return json;
-    if (const auto map = attempted([&] { return toWorld(m_scene, below); }, json["problem"])) {
+    if (const auto map = tryRead([&] { return toWorld(m_scene, below); }, json["problem"])) {
       json["linear"] = true;
       for (int row = 0; row < 3; ++row) {
         const Vec3 linear = map->linear().row(row);
@@ -265,9 +265,9 @@ private:
           "--segmentation " + path.string() + ": is neither in the scene nor a file";
       return;
     }
-    Json segmentation = segmentationFile(path, volumeGrid(), m_request.labels);
+    Json segmentation = inspectSegmentationFile(path, volumeGrid(), m_request.labels);
     segmentation["used"] = true;
-    m_report["render"]["segmentation"] = orNull(path.string());
+    m_report["render"]["segmentation"] = nullIfEmpty(path.string());
     m_report["segmentations"].push_back(std::move(segmentation));
   }
 

@@ -16,11 +16,11 @@ namespace {
 enum class Match { none, name, region, category, type, typeAndRegion, value };
 
 struct Found {
-  Match by = Match::none;
-  std::string why;
+  Match match = Match::none;
+  std::string reason;
 };
 
-bool holds(const auto& list, const auto& value) {
+bool hasElement(const auto& list, const auto& value) {
   return std::ranges::find(list, value) != list.end();
 }
 
@@ -28,13 +28,13 @@ bool holds(const auto& list, const auto& value) {
 Found findCode(const MaterialRule& rule, const SegmentInfo& segment) {
   const std::vector<std::string>& codes = rule.patterns.codes;
   const std::string both = segment.type + "~" + segment.region;
-  if (holds(codes, both))
+  if (hasElement(codes, both))
     return {Match::typeAndRegion, "by " + both};
-  if (holds(codes, segment.type))
+  if (hasElement(codes, segment.type))
     return {Match::type, "by " + segment.type};
   if (!rule.category.empty() && rule.category == segment.category)
     return {Match::category, "by category " + segment.category};
-  if (holds(codes, segment.region))
+  if (hasElement(codes, segment.region))
     return {Match::region, "by region " + segment.region};
   return {};
 }
@@ -43,26 +43,26 @@ Found findCode(const MaterialRule& rule, const SegmentInfo& segment) {
 Found findMatch(const MaterialRule& rule, const SegmentInfo& segment,
                 const std::vector<std::string>& words) {
   Found found = findCode(rule, segment);
-  if (holds(rule.values, segment.labelValue))
+  if (hasElement(rule.values, segment.labelValue))
     found = {Match::value, concat("by value ", segment.labelValue)};
-  if (found.by == Match::none)
+  if (found.match == Match::none)
     if (const NamePattern* pattern = findPattern(rule.patterns.names, words))
       found = {Match::name, "by name '" + pattern->text + "'"};
-  if (found.by != Match::none && findPattern(rule.patterns.except, words))
+  if (found.match != Match::none && findPattern(rule.patterns.except, words))
     return {};
   return found;
 }
 
-std::optional<SegmentMaterial> byRule(const SegmentInfo& segment, const MaterialTable& table) {
+std::optional<SegmentMaterial> matchRules(const SegmentInfo& segment, const MaterialTable& table) {
   const std::vector<std::string> words = splitName(segment.name);
   const MaterialRule* best = nullptr;
   Found bestFound;
   const auto rank = [](const MaterialRule& rule, const Found& found) {
-    return std::tuple(rule.isFromFile, found.by, found.by == Match::name ? rule.priority : 0);
+    return std::tuple(rule.isFromFile, found.match, found.match == Match::name ? rule.priority : 0);
   };
   for (const MaterialRule& rule : table.rules) {
     Found found = findMatch(rule, segment, words);
-    if (found.by != Match::none && (!best || rank(rule, found) > rank(*best, bestFound))) {
+    if (found.match != Match::none && (!best || rank(rule, found) > rank(*best, bestFound))) {
       best = &rule;
       bestFound = std::move(found);
     }
@@ -72,17 +72,17 @@ std::optional<SegmentMaterial> byRule(const SegmentInfo& segment, const Material
   return SegmentMaterial{
       {table.materials.at(best->material), best->priority, best->isClipped, best->density},
       best->material,
-      std::move(bestFound.why)};
+      std::move(bestFound.reason)};
 }
 
 /// Grey that Slicer, and this program, give to segments without a colour.
-bool isDefault(const Rgb& color) {
+bool isDefaultGray(const Rgb& color) {
   constexpr double byte = 1.0 / 255.0;
   return ((color - 0.5).abs() < byte).all();
 }
 
-SegmentMaterial colored(const Rgb& encoded, const char* why) {
-  SegmentMaterial result{.why = why};
+SegmentMaterial makeColored(const Rgb& encoded, const char* reason) {
+  SegmentMaterial result{.reason = reason};
   result.medium.material.color = ColorFunction({{0.0, decodeSrgb(encoded)}});
   return result;
 }
@@ -109,27 +109,28 @@ const MaterialTable& materialLibrary() {
   return library;
 }
 
-std::vector<SegmentMaterial> materialsOf(const std::vector<SegmentInfo>& segments,
-                                         const MaterialTable& table) {
+std::vector<SegmentMaterial> assignMaterials(const std::vector<SegmentInfo>& segments,
+                                             const MaterialTable& table) {
   std::vector<SegmentMaterial> materials;
   std::size_t unknown = 0;
   for (const SegmentInfo& segment : segments) {
-    if (auto found = byRule(segment, table))
+    if (auto found = matchRules(segment, table))
       materials.push_back(std::move(*found));
-    else if (!isDefault(segment.color))
-      materials.push_back(colored(segment.color, "by its own colour"));
+    else if (!isDefaultGray(segment.color))
+      materials.push_back(makeColored(segment.color, "by its own colour"));
     else {
-      materials.push_back(colored(hexToRgb(palette[unknown++ % palette.size()]), "by palette"));
-      materials.back().isOfPalette = true;
+      materials.push_back(makeColored(hexToRgb(palette[unknown++ % palette.size()]), "by palette"));
+      materials.back().isFromPalette = true;
     }
   }
   return materials;
 }
 
-bool isSomeKnown(const Segmentation& segmentation, const std::vector<std::string>& selectors) {
-  const std::vector<SegmentMaterial> all = materialsOf(segmentation.segments(), materialLibrary());
+bool isAnyKnown(const Segmentation& segmentation, const std::vector<std::string>& selectors) {
+  const std::vector<SegmentMaterial> all =
+      assignMaterials(segmentation.segments(), materialLibrary());
   return std::ranges::any_of(selectors, [&](const std::string& selector) {
-    return !all[segmentation.find(selector)].isOfPalette;
+    return !all[segmentation.find(selector)].isFromPalette;
   });
 }
 

@@ -13,8 +13,8 @@ struct SegmentMaterial {
   SegmentMedium medium = {};
   std::string name = {}; ///< of the material; empty: none of the table's, but a colour
   /// Reason: "by SCT^10200004", "by name 'liver'", "by value 5", "by its own colour", "by palette".
-  std::string why = {};
-  bool isOfPalette = false; ///< nothing is known of the segment
+  std::string reason = {};
+  bool isFromPalette = false; ///< nothing is known of the segment
 };
 
 /// Materials and rules that are compiled in (Resources/materials).
@@ -28,11 +28,11 @@ const MaterialTable& materialLibrary();
 /// A rule whose exceptions the name matches is passed over. A segment without a rule is tinted in
 /// its own colour, if that is not Slicer's default grey; else in a colour of a palette, so that
 /// no two of the first 20 look alike.
-std::vector<SegmentMaterial> materialsOf(const std::vector<SegmentInfo>& segments,
-                                         const MaterialTable& table);
+std::vector<SegmentMaterial> assignMaterials(const std::vector<SegmentInfo>& segments,
+                                             const MaterialTable& table);
 
 /// True if the library knows one of the segments, or it has a colour of its own. `selectors`: ids,
 /// names or label values. Throws Error (input) for one that is not there.
-bool isSomeKnown(const Segmentation& segmentation, const std::vector<std::string>& selectors);
+bool isAnyKnown(const Segmentation& segmentation, const std::vector<std::string>& selectors);
 
 } // namespace fenestra

@@ -22,10 +22,10 @@ std::vector<SegmentMaterial> collectMaterials(const Segmentation& segmentation,
                                               const NamedMaterials& materials,
                                               const std::vector<std::string>& changes) {
   const std::vector<SegmentInfo>& segments = segmentation.segments();
-  std::vector<SegmentMaterial> all = materialsOf(segments, materials.table);
+  std::vector<SegmentMaterial> all = assignMaterials(segments, materials.table);
   if (materials.table.hasContrast)
     for (SegmentMaterial& material : all)
-      if (material.isOfPalette)
+      if (material.isFromPalette)
         material.medium.material = {};
   for (const std::string& text : changes) {
     const MaterialChange change = parseMaterialChange(text, materials.table);
@@ -37,24 +37,24 @@ std::vector<SegmentMaterial> collectMaterials(const Segmentation& segmentation,
 
 /// Places of the segments by name, then id: components are numbered so, and pictures do not depend
 /// on the order in a file.
-std::vector<std::size_t> byName(const std::vector<SegmentInfo>& segments) {
-  std::vector<std::size_t> places(segments.size());
-  std::iota(places.begin(), places.end(), std::size_t{0});
+std::vector<std::size_t> sortByName(const std::vector<SegmentInfo>& segments) {
+  std::vector<std::size_t> indices(segments.size());
+  std::iota(indices.begin(), indices.end(), std::size_t{0});
   std::ranges::stable_sort(
-      places, {}, [&](std::size_t i) { return std::tie(segments[i].name, segments[i].id); });
-  return places;
+      indices, {}, [&](std::size_t i) { return std::tie(segments[i].name, segments[i].id); });
+  return indices;
 }
 
 /// Material of what no segment covers.
-Material restOf(const NamedMaterials& materials) {
+Material unlabeledMaterial(const NamedMaterials& materials) {
   const MaterialTable& table = materials.table;
   return table.rest.empty() ? Material() : table.materials.at(table.rest);
 }
 
 /// True if a segment that has voxels is skin.
-bool isSkinThere(const std::vector<SegmentMaterial>& all, const std::vector<bool>& there) {
+bool hasSkin(const std::vector<SegmentMaterial>& all, const std::vector<bool>& hasVoxels) {
   for (std::size_t i = 0; i < all.size(); ++i)
-    if (there[i] && all[i].name == skinMaterial)
+    if (hasVoxels[i] && all[i].name == skinMaterial)
       return true;
   return false;
 }
@@ -72,8 +72,8 @@ bool isSame(const SegmentMedium& a, const SegmentMedium& b) {
 }
 
 /// Component of the matter, a new one if there is none. `segment`: its name.
-std::uint8_t componentOf(const SegmentMaterial& material, const std::string& segment, bool isFocus,
-                         TintPlan& plan, const std::string& source) {
+std::uint8_t findComponent(const SegmentMaterial& material, const std::string& segment,
+                           bool isFocus, TintPlan& plan, const std::string& source) {
   const std::string& name = material.name.empty() ? segment : material.name;
   for (std::size_t i = 0; i < plan.components.size(); ++i)
     if (plan.isFocus[i] == isFocus && isSame(material.medium, plan.components[i])) {
@@ -91,8 +91,8 @@ std::uint8_t componentOf(const SegmentMaterial& material, const std::string& seg
 }
 
 /// Segments of the focus, by place; none where materials do not set it off.
-std::vector<bool> focusOf(const Segmentation& segmentation, const NamedMaterials& materials,
-                          const std::vector<std::string>& focus) {
+std::vector<bool> markFocus(const Segmentation& segmentation, const NamedMaterials& materials,
+                            const std::vector<std::string>& focus) {
   const ContextColors& context = materials.table.context;
   if (focus.empty() && (context.saturation || context.lightness))
     throw inputError(materials.source,
@@ -106,13 +106,13 @@ std::vector<bool> focusOf(const Segmentation& segmentation, const NamedMaterials
 
 /// Gives a smoothed part all of what it has half of: the surface of a focus, which lies there, is
 /// not shown in a mixture of its colour with the context's.
-void fill(Mask& mask) {
+void saturate(Mask& mask) {
   for (std::uint8_t& voxel : mask.voxels)
     voxel = static_cast<std::uint8_t>(std::min(2 * voxel, int{mask.maxValue}));
 }
 
 /// Parts without those of component 0 that leave to others what they cover.
-std::vector<TintPart> withoutIdle(std::vector<TintPart> parts) {
+std::vector<TintPart> removeRedundant(std::vector<TintPart> parts) {
   const auto isColored = [](const TintPart& part) { return part.component != 0; };
   int lowest = std::numeric_limits<int>::max();
   for (const TintPart& part : parts)
@@ -126,7 +126,7 @@ std::vector<TintPart> withoutIdle(std::vector<TintPart> parts) {
 
 /// Takes what a material says beside colour; the component is of the volume's own matter, with the
 /// material's albedo for that one's mean cosine.
-void takeMaterial(const Material& material, Component& component) {
+void applyMaterial(const Material& material, Component& component) {
   TransferFunction& transfer = component.transfer;
   if (!material.colorIsAlbedo)
     transfer.albedo = transfer.albedo.withKnots([&](ColorFunction::Knot& knot) {
@@ -149,39 +149,43 @@ void takeMaterial(const Material& material, Component& component) {
 
 } // namespace
 
-std::vector<bool> segmentsThere(const Handle<SegmentsInput>& input) {
-  std::vector<bool> there;
+std::vector<bool> findNonEmpty(const Handle<SegmentsInput>& input) {
+  std::vector<bool> hasVoxels;
   for (const SegmentStatistics& segment : input->segmentation.statistics())
-    there.push_back(segment.voxels > 0);
-  return there;
+    hasVoxels.push_back(segment.voxels > 0);
+  return hasVoxels;
 }
 
-TintPlan tintPlan(const Handle<SegmentsInput>& input, const Handle<std::vector<bool>>& there,
-                  const Handle<NamedMaterials>& materials, const std::vector<std::string>& changes,
-                  const std::vector<std::string>& focus, const Handle<Mask>& skin) {
+TintPlan makeTintPlan(const Handle<SegmentsInput>& input,
+                      const Handle<std::vector<bool>>& hasVoxels,
+                      const Handle<NamedMaterials>& materials,
+                      const std::vector<std::string>& changes,
+                      const std::vector<std::string>& focus, const Handle<Mask>& skin) {
   const Segmentation& segmentation = input->segmentation;
   const std::vector<SegmentMaterial> all = collectMaterials(segmentation, *materials, changes);
-  const std::vector<bool> isFocus = focusOf(segmentation, *materials, focus);
-  TintPlan plan{
-      .parts = {}, .components = {{restOf(*materials)}}, .names = {"the rest"}, .isFocus = {false}};
+  const std::vector<bool> isFocus = markFocus(segmentation, *materials, focus);
+  TintPlan plan{.parts = {},
+                .components = {{unlabeledMaterial(*materials)}},
+                .names = {"the rest"},
+                .isFocus = {false}};
   std::map<std::pair<std::uint8_t, int>, std::vector<std::size_t>> segments;
-  for (const std::size_t i : byName(segmentation.segments()))
-    if ((*there)[i]) {
-      const std::uint8_t component = componentOf(all[i], segmentation.segments()[i].name,
-                                                 isFocus[i], plan, segmentation.source());
+  for (const std::size_t i : sortByName(segmentation.segments()))
+    if ((*hasVoxels)[i]) {
+      const std::uint8_t component = findComponent(all[i], segmentation.segments()[i].name,
+                                                   isFocus[i], plan, segmentation.source());
       segments[{component, all[i].medium.priority}].push_back(i);
     }
-  const bool mayGrow = isTint(plan); // matter stays where its segment is
+  const bool canGrow = isTintOnly(plan); // matter stays where its segment is
   for (auto& [of, places] : segments)
     plan.parts.push_back(
-        {std::move(places), of.second, of.first, mayGrow && plan.isFocus[of.first]});
-  if (skin && skin->count > 0 && !isSkinThere(all, *there)) {
+        {std::move(places), of.second, of.first, canGrow && plan.isFocus[of.first]});
+  if (skin && skin->count > 0 && !hasSkin(all, *hasVoxels)) {
     const Material& material = materials->table.materials.at(skinMaterial);
     const std::uint8_t component =
-        componentOf({{material}, skinMaterial}, skinMaterial, false, plan, segmentation.source());
+        findComponent({{material}, skinMaterial}, skinMaterial, false, plan, segmentation.source());
     plan.parts.push_back({{}, skinPriority, component});
   }
-  plan.parts = withoutIdle(std::move(plan.parts));
+  plan.parts = removeRedundant(std::move(plan.parts));
   if (plan.parts.empty())
     throw inputError(segmentation.source(),
                      "no segment has a voxel, so there is nothing to colour; drop --materials");
@@ -203,14 +207,14 @@ LabelWeights computeLabelWeights(const Handle<SegmentsInput>& input,
       segments.push_back(segmentation.segments()[i]);
     Mask mask = segmentation.makeMask(segments, volume, {.margins = {}, .smoothing = smoothing});
     if (part.isFocus)
-      fill(mask);
+      saturate(mask);
     labels = mask.grid;
     return {std::move(mask), part.priority, part.component};
   };
   return {parts.size(), partAt};
 }
 
-Tint tintOf(const Handle<TintPlan>& plan, const Handle<LabelWeights>& weights, double g) {
+Tint buildTint(const Handle<TintPlan>& plan, const Handle<LabelWeights>& weights, double g) {
   Tint tint{weights, {}};
   for (const SegmentMedium& component : plan->components) {
     const std::optional<ColorFunction>& color = component.material.color;
@@ -220,14 +224,14 @@ Tint tintOf(const Handle<TintPlan>& plan, const Handle<LabelWeights>& weights, d
   return tint;
 }
 
-bool isTint(const TintPlan& plan) {
+bool isTintOnly(const TintPlan& plan) {
   return std::ranges::all_of(plan.components, [](const SegmentMedium& component) {
     return component.material.kind == MaterialKind::tint && component.isClipped &&
            component.density == 1.0;
   });
 }
 
-Mixture mixtureOf(const TintPlan& plan, const Tint& tint, const TransferFunction& transfer) {
+Mixture buildMixture(const TintPlan& plan, const Tint& tint, const TransferFunction& transfer) {
   Mixture mixture{tint.weights, {}};
   for (std::size_t i = 0; i < plan.components.size(); ++i) {
     const SegmentMedium& medium = plan.components[i];
@@ -235,7 +239,7 @@ Mixture mixtureOf(const TintPlan& plan, const Tint& tint, const TransferFunction
     if (tint.albedo[i])
       component.transfer.albedo = *tint.albedo[i];
     if (medium.material.kind == MaterialKind::medium)
-      takeMaterial(medium.material, component);
+      applyMaterial(medium.material, component);
     component.transfer = component.transfer.withDensity(medium.density);
     mixture.components.push_back(std::move(component));
   }

@@ -31,22 +31,24 @@ struct TintPlan {
   std::vector<bool> isFocus;      ///< by component; none is where nothing sets off the focus
 
   /// True if there is skin that is no segment.
-  bool hasFoundSkin() const { return parts.back().segments.empty(); }
+  bool hasDetectedSkin() const { return parts.back().segments.empty(); }
 };
 
 /// By place in Segmentation::segments(): true if the segment has a voxel. Reads all labels.
-std::vector<bool> segmentsThere(const Handle<SegmentsInput>& segments);
+std::vector<bool> findNonEmpty(const Handle<SegmentsInput>& segments);
 
-/// Components of the segments that have voxels (`there`: segmentsThere): one for each matter, and,
+/// Components of the segments that have voxels (`there`: findNonEmpty): one for each matter, and,
 /// where materials set off the focus, those of the focus apart. `changes`: of --material, over the
 /// materials that the table gives; with contrast a segment of which nothing is known keeps the
 /// volume's own colours. `focus`: ids, names or label values. `skin`: skinOf(); null or without
 /// voxels: none; it is left out, too, where a segment is skin. Throws Error (input) for a change to
 /// an unknown segment, for colours of a context without a focus, without any voxel, and for more
 /// than 256 components.
-TintPlan tintPlan(const Handle<SegmentsInput>& segments, const Handle<std::vector<bool>>& there,
-                  const Handle<NamedMaterials>& materials, const std::vector<std::string>& changes,
-                  const std::vector<std::string>& focus, const Handle<Mask>& skin);
+TintPlan makeTintPlan(const Handle<SegmentsInput>& segments,
+                      const Handle<std::vector<bool>>& hasVoxels,
+                      const Handle<NamedMaterials>& materials,
+                      const std::vector<std::string>& changes,
+                      const std::vector<std::string>& focus, const Handle<Mask>& skin);
 
 /// Shares of the components. `smoothing`: MaskShaping's. Skin that is no
 /// segment is put on the labels' voxels (resampleMask()).
@@ -55,13 +57,13 @@ LabelWeights computeLabelWeights(const Handle<SegmentsInput>& segments,
                                  const std::optional<double>& smoothing, const Grid& volume);
 
 /// `g`: mean cosine of whatever scatters, by which albedo makes a colour.
-Tint tintOf(const Handle<TintPlan>& plan, const Handle<LabelWeights>& weights, double g);
+Tint buildTint(const Handle<TintPlan>& plan, const Handle<LabelWeights>& weights, double g);
 
 /// True if components differ in colour alone.
-bool isTint(const TintPlan& plan);
+bool isTintOnly(const TintPlan& plan);
 
 /// Components with the albedo of `tint`, which was made for the mean cosine of `transfer`, the
 /// volume's own.
-Mixture mixtureOf(const TintPlan& plan, const Tint& tint, const TransferFunction& transfer);
+Mixture buildMixture(const TintPlan& plan, const Tint& tint, const TransferFunction& transfer);
 
 } // namespace fenestra

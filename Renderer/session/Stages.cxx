@@ -10,10 +10,10 @@
 namespace fenestra {
 namespace {
 
-TransferFunction fitted(const TransferLook& look, const Volume& volume) {
+TransferFunction fitToVolume(const TransferLook& look, const Volume& volume) {
   if (!look.isRelative)
     return look.function;
-  const auto [low, high] = usualRange(volume);
+  const auto [low, high] = findRobustRange(volume);
   return look.mapRange(low, high);
 }
 
@@ -23,11 +23,11 @@ constexpr std::array modalities = {"CT", "MR", "ultrasound"}; ///< as in Modalit
 /// the greatest extinction, and a file could make paths endless.
 void checkExtinction(const TransferFunction& transfer, const Volume& volume,
                      const std::string& name) {
-  constexpr double thickest = 1e7; // optical depth across the volume
+  constexpr double maxDepth = 1e7; // optical depth across the volume
   double greatest = 0.0;
   for (const auto& knot : transfer.extinction.knots())
     greatest = std::max(greatest, knot.value[0]);
-  const double allowed = thickest / (2.0 * volume.grid.boundingRadius());
+  const double allowed = maxDepth / (2.0 * volume.grid.boundingRadius());
   if (greatest <= allowed)
     return;
   TextWriter line;
@@ -45,22 +45,22 @@ std::vector<double> viewportDepths(const FocusDepth& focus, const Camera& camera
   return depths;
 }
 
-bool isIn(LightFrame frame, const Light& light) {
-  const auto isKindIn = [frame](const auto& kind) {
+bool hasFrame(LightFrame frame, const Light& light) {
+  const auto hasKindFrame = [frame](const auto& kind) {
     if constexpr (requires { kind.frame; })
       return kind.frame == frame;
     else
       return false;
   };
-  return std::visit(isKindIn, light);
+  return std::visit(hasKindFrame, light);
 }
 
-bool someIn(LightFrame frame, const std::vector<Light>& lights) {
-  return std::ranges::any_of(lights, [&](const Light& light) { return isIn(frame, light); });
+bool hasAnyFrame(LightFrame frame, const std::vector<Light>& lights) {
+  return std::ranges::any_of(lights, [&](const Light& light) { return hasFrame(frame, light); });
 }
 
 /// Mean of the voxels' centres, weighted by the indicator, world mm; the focus is not empty.
-Vec3 centroidOf(const Mask& focus) {
+Vec3 computeCentroid(const Mask& focus) {
   const Size3& size = focus.grid.size;
   Vec3 moment = Vec3::Zero();
   double weight = 0.0;
@@ -76,15 +76,15 @@ Vec3 centroidOf(const Mask& focus) {
 }
 
 /// True for light from all around, which --environment replaces.
-bool isAllAround(const Light& light) {
+bool isEnvironment(const Light& light) {
   return std::holds_alternative<EnvironmentLight>(light) || std::holds_alternative<SkyLight>(light);
 }
 
-const Mask* maskOf(const Focus& focus) {
+const Mask* maskOrNull(const FocusHandle& focus) {
   return focus->mask ? &*focus->mask : nullptr;
 }
 
-Domain domainOf(const Read& volume, const Settings& settings) {
+Domain makeDomain(const VolumeHandle& volume, const SettingsHandle& settings) {
   return {volume->volume.grid, settings->crop};
 }
 
@@ -92,12 +92,12 @@ Domain domainOf(const Read& volume, const Settings& settings) {
 Look lookFor(const Volume& volume, const Handle<NamedTransfer>& named,
              const Handle<SceneLook>& scene, const std::optional<Modality>& madeFor) {
   std::vector<std::string> warnings;
-  if (named && !madeFor && named->source.starts_with("ct-") && !suits(Modality::ct, volume))
+  if (named && !madeFor && named->source.starts_with("ct-") && !canSuit(Modality::ct, volume))
     warnings.push_back("the transfer function " + named->source +
                        " is made for CT, which this volume does not seem to be; --shift moves it, "
                        "or name another with --transfer");
-  if (named && (!madeFor || suits(*madeFor, volume)))
-    return {fitted(named->look, volume), named->source, warnings};
+  if (named && (!madeFor || canSuit(*madeFor, volume)))
+    return {fitToVolume(named->look, volume), named->source, warnings};
   if (named)
     warnings.push_back(
         concat("the preset's transfer function is made for ",
@@ -106,17 +106,17 @@ Look lookFor(const Volume& volume, const Handle<NamedTransfer>& named,
                "or name one with --transfer"));
   else if (scene->transfer)
     return {*scene->transfer, scene->name};
-  const std::optional<std::string> preset = transferPresetFor(volume);
+  const std::optional<std::string> preset = chooseTransferPreset(volume);
   if (!preset)
-    return {relativeTransfer(volume), "by the volume's range", warnings};
-  return {namedTransfer(*preset, Input({})).look.function, *preset, warnings};
+    return {makeRelativeTransfer(volume), "by the volume's range", warnings};
+  return {findTransfer(*preset, Input({})).look.function, *preset, warnings};
 }
 
 /// Plane of a request, else the focus's own.
-ClipPlane placedPlane(const ClipRequest& request, const Camera& camera, const Focus& focus,
-                      const std::optional<FocusDepth>& depth) {
+ClipPlane placePlane(const ClipRequest& request, const Camera& camera, const FocusHandle& focus,
+                     const std::optional<FocusDepth>& depth) {
   if (!request.plane)
-    requireVisible(*depth, *maskOf(focus));
+    requireVisible(*depth, *maskOrNull(focus));
   ClipPlane plane = request.plane ? ClipPlane{camera, request.plane->origin, request.plane->normal}
                                   : fitFocusPlane(camera, *depth);
   plane.point += request.surface.offset * camera.forward();
@@ -124,8 +124,8 @@ ClipPlane placedPlane(const ClipRequest& request, const Camera& camera, const Fo
   return plane;
 }
 
-ClipResult planeOrNone(const ClipRequest& request, bool measure, const Domain& domain,
-                       const Focus& focus, const Camera& camera) {
+ClipResult buildPlaneClip(const ClipRequest& request, bool measure, const Domain& domain,
+                          const FocusHandle& focus, const Camera& camera) {
   ClipResult result;
   const bool isPlane = request.mode == ClipMode::plane;
   std::optional<FocusDepth> depth;
@@ -136,14 +136,15 @@ ClipResult planeOrNone(const ClipRequest& request, bool measure, const Domain& d
     result.focusSeconds = watch.seconds();
   }
   if (isPlane)
-    result.clip = placedPlane(request, camera, focus, depth);
+    result.clip = placePlane(request, camera, focus, depth);
   if (isPlane && depth && measure)
     result.boundary = measureBoundary(result.clip, domain, *focus->mask, *depth);
   return result;
 }
 
-ClipResult depthClip(const ClipRequest& request, ClipMode mode, const Domain& domain,
-                     const Mask& focus, const Camera& camera, bool measure, double steadyDegrees) {
+ClipResult buildDepthClip(const ClipRequest& request, ClipMode mode, const Domain& domain,
+                          const Mask& focus, const Camera& camera, bool measure,
+                          double steadyDegrees) {
   SurfaceOptions options = request.surface;
   options.mode = mode == ClipMode::hole      ? SurfaceMode::hole
                  : mode == ClipMode::cutaway ? SurfaceMode::cutaway
@@ -170,12 +171,12 @@ ClipResult depthClip(const ClipRequest& request, ClipMode mode, const Domain& do
 
 } // namespace
 
-NamedLights requestedLights(const std::string& name, const std::optional<Rgb>& environment,
-                            const std::optional<std::filesystem::path>& environmentMap) {
-  NamedLights named = namedLights(name);
+NamedLights makeLights(const std::string& name, const std::optional<Rgb>& environment,
+                       const std::optional<std::filesystem::path>& environmentMap) {
+  NamedLights named = findLights(name);
   if (!environment && !environmentMap)
     return named;
-  std::erase_if(named.lights, isAllAround);
+  std::erase_if(named.lights, isEnvironment);
   EnvironmentLight replacement;
   if (environment) {
     replacement.radiance = *environment;
@@ -187,15 +188,14 @@ NamedLights requestedLights(const std::string& name, const std::optional<Rgb>& e
   return named;
 }
 
-FocusInput requestedFocus(const Handle<SegmentsInput>& segments,
-                          const std::vector<std::string>& names, const MaskShaping& shaping,
-                          const Grid& volume) {
+FocusInput makeFocus(const Handle<SegmentsInput>& segments, const std::vector<std::string>& names,
+                     const MaskShaping& shaping, const Grid& volume) {
   if (names.empty())
     return {};
   return {segments->segmentation.makeFocusMask(names, volume, shaping)};
 }
 
-Look chosenLook(const Read& read, const Handle<NamedTransfer>& named,
+Look chosenLook(const VolumeHandle& read, const Handle<NamedTransfer>& named,
                 const Handle<SceneLook>& scene, const std::optional<Modality>& madeFor,
                 double shift, double density) {
   const Volume& volume = read->volume;
@@ -209,8 +209,8 @@ Look chosenLook(const Read& read, const Handle<NamedTransfer>& named,
   return look;
 }
 
-std::vector<std::string> focusWarnings(const Read& volume, const Focus& focus,
-                                       const Handle<Look>& look) {
+std::vector<std::string> checkFocus(const VolumeHandle& volume, const FocusHandle& focus,
+                                    const Handle<Look>& look) {
   constexpr double most = 0.5;
   if (!focus->mask)
     return {};
@@ -221,84 +221,86 @@ std::vector<std::string> focusWarnings(const Read& volume, const Focus& focus,
                  " % of the focus transparent; name one made for it with --transfer or --preset")};
 }
 
-ViewDirection bestView(const Read& volume, const Settings& settings, const Focus& focus,
-                       const Handle<Look>& look) {
-  return automaticView(
-      ViewScorer(volume->volume, domainOf(volume, settings), look->transfer, *focus->mask));
+ViewDirection chooseView(const VolumeHandle& volume, const SettingsHandle& settings,
+                         const FocusHandle& focus, const Handle<Look>& look) {
+  return findBestView(
+      ViewScorer(volume->volume, makeDomain(volume, settings), look->transfer, *focus->mask));
 }
 
-Box findOccupiedBounds(const Read& volume, const Handle<MinMaxGrid>& ranges,
+Box findOccupiedBounds(const VolumeHandle& volume, const Handle<MinMaxGrid>& minMax,
                        const Handle<Look>& look) {
-  return MajorantGrid(volume->volume.grid, *ranges, look->transfer, ClipNone()).occupiedBounds();
+  return MajorantGrid(volume->volume.grid, *minMax, look->transfer, ClipNone()).occupiedBounds();
 }
 
-Camera placedCamera(const ViewRequest& view, int width, int height, const Read& volume,
-                    const Settings& settings, const Box& bounds, const Focus& focus,
-                    const Handle<ViewDirection>& best) {
+Camera placeCamera(const ViewRequest& view, int width, int height, const VolumeHandle& volume,
+                   const SettingsHandle& settings, const Box& bounds, const FocusHandle& focus,
+                   const Handle<ViewDirection>& best) {
   if (settings->camera)
-    return {adjustedView(view, *settings->camera), width, height};
-  const Domain whole = domainOf(volume, settings);
+    return {adjustView(view, *settings->camera), width, height};
+  const Domain whole = makeDomain(volume, settings);
   const Domain part = whole.intersect(bounds);
   const bool isEmpty = part.indexCorners().empty();
-  return {frameView(view, isEmpty ? whole : part, maskOf(focus), width, height, best.get()), width,
-          height};
+  return {frameView(view, isEmpty ? whole : part, maskOrNull(focus), width, height, best.get()),
+          width, height};
 }
 
 bool FramedLights::operator==(const FramedLights& other) const {
   return lights == other.lights &&
-         (camera == other.camera || !someIn(LightFrame::camera, lights->lights)) &&
-         (focus == other.focus || !someIn(LightFrame::focus, lights->lights));
+         (camera == other.camera || !hasAnyFrame(LightFrame::camera, lights->lights)) &&
+         (focus == other.focus || !hasAnyFrame(LightFrame::focus, lights->lights));
 }
 
-LightSet placedLights(const FramedLights& framed, const Read& volume) {
+LightSet placeLights(const FramedLights& framed, const VolumeHandle& volume) {
   const std::vector<Light>& lights = framed.lights->lights;
   const Grid& grid = volume->volume.grid;
-  if (!someIn(LightFrame::focus, lights))
+  if (!hasAnyFrame(LightFrame::focus, lights))
     return {lights, grid, *framed.camera};
-  if (const Mask* const focus = maskOf(framed.focus))
-    return {lights, grid, *framed.camera, centroidOf(*focus)};
+  if (const Mask* const focus = maskOrNull(framed.focus))
+    return {lights, grid, *framed.camera, computeCentroid(*focus)};
   const auto first = std::ranges::find_if(
-      lights, [](const Light& light) { return isIn(LightFrame::focus, light); });
+      lights, [](const Light& light) { return hasFrame(LightFrame::focus, light); });
   throw inputError(framed.lights->source, "lights[", first - lights.begin(),
                    "].frame: is \"focus\", and there is no focus; name one with --focus, or use "
                    "\"world\" or \"camera\"");
 }
 
-ClipResult builtClip(const ClipRequest& request, bool measure, double steadyDegrees,
-                     const Read& volume, const Settings& settings, const Focus& focus,
-                     const Handle<Camera>& camera) {
-  const Domain domain = domainOf(volume, settings);
-  const ClipMode mode = request.modeWith(focus->mask.has_value());
+ClipResult buildClip(const ClipRequest& request, bool measure, double steadyDegrees,
+                     const VolumeHandle& volume, const SettingsHandle& settings,
+                     const FocusHandle& focus, const Handle<Camera>& camera) {
+  const Domain domain = makeDomain(volume, settings);
+  const ClipMode mode = request.resolveMode(focus->mask.has_value());
   if (isDepthClip(mode))
-    return depthClip(request, mode, domain, *focus->mask, *camera, measure, steadyDegrees);
-  return planeOrNone(request, measure, domain, focus, *camera);
+    return buildDepthClip(request, mode, domain, *focus->mask, *camera, measure, steadyDegrees);
+  return buildPlaneClip(request, measure, domain, focus, *camera);
 }
 
-MinMaxGrid rangesOf(const Read& volume, int apron) {
-  return {volume->volume, apron};
+MinMaxGrid makeMinMaxGrid(const VolumeHandle& volume, int padding) {
+  return {volume->volume, padding};
 }
 
-Mask skinOf(const Read& volume) {
+Mask findSkin(const VolumeHandle& volume) {
   constexpr double depth = 2.5; // mm
-  const std::optional<double> air = airLevel(volume->volume);
+  const std::optional<double> air = findAirThreshold(volume->volume);
   return air ? findOuterLayer(volume->volume, *air, depth) : Mask();
 }
 
-TintBorders bordersOf(const Read& volume, const Focus& focus, const Handle<Look>& look,
-                      const Handle<LabelWeights>& weights, const std::vector<bool>& isFocus) {
-  return componentBorders(*focus->mask, volume->volume, look->transfer, *weights, isFocus);
+TintInterfaces findTintInterfaces(const VolumeHandle& volume, const FocusHandle& focus,
+                                  const Handle<Look>& look, const Handle<LabelWeights>& weights,
+                                  const std::vector<bool>& isFocus) {
+  return findInterfaces(*focus->mask, volume->volume, look->transfer, *weights, isFocus);
 }
 
-TintContrast adjustTintContrast(const Handle<TintBorders>& borders, const Handle<TintPlan>& plan,
-                                const Handle<Tint>& tint, const Handle<NamedMaterials>& materials,
-                                const Handle<Look>& look, const std::optional<double>& saturation) {
-  return adjustContrast(*borders, *plan, *tint, materials->table, look->transfer,
+TintContrast adjustTintContrast(const Handle<TintInterfaces>& interfaces,
+                                const Handle<TintPlan>& plan, const Handle<Tint>& tint,
+                                const Handle<NamedMaterials>& materials, const Handle<Look>& look,
+                                const std::optional<double>& saturation) {
+  return adjustContrast(*interfaces, *plan, *tint, materials->table, look->transfer,
                         saturation.value_or(1.0));
 }
 
 Mixture makeMixture(const Handle<TintPlan>& plan, const Handle<Tint>& tint,
                     const Handle<Look>& look) {
-  return mixtureOf(*plan, *tint, look->transfer);
+  return buildMixture(*plan, *tint, look->transfer);
 }
 
 Tint adjustTint(const Handle<Tint>& tint, const Handle<TintPlan>& plan,
@@ -306,26 +308,27 @@ Tint adjustTint(const Handle<Tint>& tint, const Handle<TintPlan>& plan,
   return applyAdjustment(*tint, *plan, contrast->adjustment, look->transfer);
 }
 
-FocusContrast contrastOf(const Read& volume, const Focus& focus, const Handle<Look>& look,
-                         const Handle<Tint>& tint, const std::optional<double>& saturation) {
+FocusContrast chooseContrast(const VolumeHandle& volume, const FocusHandle& focus,
+                             const Handle<Look>& look, const Handle<Tint>& tint,
+                             const std::optional<double>& saturation) {
   if (tint)
     return {saturation.value_or(1.0)};
-  return focus->mask ? chosenContrast(saturation, *focus->mask, volume->volume, look->transfer)
+  return focus->mask ? chooseSaturation(saturation, *focus->mask, volume->volume, look->transfer)
                      : FocusContrast();
 }
 
-ContextStyle styleAround(const Focus& focus, double extinction, double saturation) {
+ContextStyle makeContextStyle(const FocusHandle& focus, double extinction, double saturation) {
   return {{focus, &*focus->mask}, extinction, saturation};
 }
 
-MajorantGrid majorantsOf(const Read& volume, const Handle<MinMaxGrid>& ranges,
-                         const Handle<Look>& look, const Handle<ClipResult>& clip,
-                         const Handle<ContextStyle>& style, const Handle<Mixture>& mixture) {
-  return {volume->volume.grid, *ranges, look->transfer, clip->clip, style.get(), mixture.get()};
+MajorantGrid buildMajorants(const VolumeHandle& volume, const Handle<MinMaxGrid>& minMax,
+                            const Handle<Look>& look, const Handle<ClipResult>& clip,
+                            const Handle<ContextStyle>& style, const Handle<Mixture>& mixture) {
+  return {volume->volume.grid, *minMax, look->transfer, clip->clip, style.get(), mixture.get()};
 }
 
-FeatureBuffers marchFirstHits(const Read& volume, const Settings& settings,
-                              const Handle<Look>& look, const SegmentsShown& segments,
+FeatureBuffers marchFirstHits(const VolumeHandle& volume, const SettingsHandle& settings,
+                              const Handle<Look>& look, const TintOrMixture& segments,
                               const Handle<LightSet>& lights, const Handle<Camera>& camera,
                               const Handle<ClipResult>& clip, const Handle<ContextStyle>& style,
                               const Handle<MajorantGrid>& majorants) {

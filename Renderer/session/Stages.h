@@ -19,20 +19,19 @@ struct FocusInput {
   std::optional<Mask> mask = {}; ///< nothing: no focus is requested
 };
 
-using Settings = Handle<SceneSettings>;
-using Focus = Handle<FocusInput>;
-using Read = Handle<VolumeInput>;
-using TintBorders = std::vector<ComponentBorder>;
+using SettingsHandle = Handle<SceneSettings>;
+using FocusHandle = Handle<FocusInput>;
+using VolumeHandle = Handle<VolumeInput>;
+using TintInterfaces = std::vector<ComponentInterface>;
 
-/// Lights of that name or JSON (namedLights), with an environment or a map in place of their own
+/// Lights of that name or JSON (findLights), with an environment or a map in place of their own
 /// environments and skies.
-NamedLights requestedLights(const std::string& name, const std::optional<Rgb>& environment,
-                            const std::optional<std::filesystem::path>& environmentMap);
+NamedLights makeLights(const std::string& name, const std::optional<Rgb>& environment,
+                       const std::optional<std::filesystem::path>& environmentMap);
 
 /// Mask of the segments `names`, on the volume's grid; `segments`: null only without names.
-FocusInput requestedFocus(const Handle<SegmentsInput>& segments,
-                          const std::vector<std::string>& names, const MaskShaping& shaping,
-                          const Grid& volume);
+FocusInput makeFocus(const Handle<SegmentsInput>& segments, const std::vector<std::string>& names,
+                     const MaskShaping& shaping, const Grid& volume);
 
 struct Look {
   TransferFunction transfer;
@@ -42,39 +41,39 @@ struct Look {
 /// The transfer function `named` by the request, unless made for another modality than the
 /// volume's, else the scene's, else one that suits the volume; then moved by `shift` and multiplied
 /// by `density`. Throws Error (input) for a function that the volume cannot be rendered with.
-Look chosenLook(const Read& volume, const Handle<NamedTransfer>& named,
+Look chosenLook(const VolumeHandle& volume, const Handle<NamedTransfer>& named,
                 const Handle<SceneLook>& scene, const std::optional<Modality>& madeFor,
                 double shift, double density);
 
 /// Warning of a focus that the look leaves mostly transparent.
-std::vector<std::string> focusWarnings(const Read& volume, const Focus& focus,
-                                       const Handle<Look>& look);
+std::vector<std::string> checkFocus(const VolumeHandle& volume, const FocusHandle& focus,
+                                    const Handle<Look>& look);
 
 /// Direction of the view that shows the focus best (AutomaticView.h).
-ViewDirection bestView(const Read& volume, const Settings& settings, const Focus& focus,
-                       const Handle<Look>& look);
+ViewDirection chooseView(const VolumeHandle& volume, const SettingsHandle& settings,
+                         const FocusHandle& focus, const Handle<Look>& look);
 
 /// Box, in index space, of the cells that hold matter under the transfer function, before any clip.
-Box findOccupiedBounds(const Read& volume, const Handle<MinMaxGrid>& ranges,
+Box findOccupiedBounds(const VolumeHandle& volume, const Handle<MinMaxGrid>& minMax,
                        const Handle<Look>& look);
 
 /// `matter`: framed without a scene's camera; by value, so that a look that fills the same cells
 /// keeps the camera. `best`: null unless the view is automatic.
-Camera placedCamera(const ViewRequest& view, int width, int height, const Read& volume,
-                    const Settings& settings, const Box& bounds, const Focus& focus,
-                    const Handle<ViewDirection>& best);
+Camera placeCamera(const ViewRequest& view, int width, int height, const VolumeHandle& volume,
+                   const SettingsHandle& settings, const Box& bounds, const FocusHandle& focus,
+                   const Handle<ViewDirection>& best);
 
 /// Lights, and the camera and the focus for those in their frames.
 struct FramedLights {
   Handle<NamedLights> lights;
   Handle<Camera> camera;
-  Focus focus;
+  FocusHandle focus;
 
   /// True also for different cameras or focuses if no light is in such a frame.
   bool operator==(const FramedLights& other) const;
 };
 /// Throws Error (input) for a light in the frame of a focus that there is not.
-LightSet placedLights(const FramedLights& framed, const Read& volume);
+LightSet placeLights(const FramedLights& framed, const VolumeHandle& volume);
 
 struct ClipResult {
   Clip clip = ClipNone();
@@ -89,24 +88,26 @@ struct ClipResult {
   std::vector<std::string> warnings = {};
   double focusSeconds = 0.0, splineSeconds = 0.0, fillSeconds = 0.0;
 };
-ClipResult builtClip(const ClipRequest& request, bool measure, double steadyDegrees,
-                     const Read& volume, const Settings& settings, const Focus& focus,
-                     const Handle<Camera>& camera);
+ClipResult buildClip(const ClipRequest& request, bool measure, double steadyDegrees,
+                     const VolumeHandle& volume, const SettingsHandle& settings,
+                     const FocusHandle& focus, const Handle<Camera>& camera);
 
 /// `apron`: MajorantGrid::requiredPadding.
-MinMaxGrid rangesOf(const Read& volume, int apron);
+MinMaxGrid makeMinMaxGrid(const VolumeHandle& volume, int padding);
 
 /// Skin without a segment: what lies within 2.5 mm of the air around the body (findOuterLayer()).
-Mask skinOf(const Read& volume);
+Mask findSkin(const VolumeHandle& volume);
 
 /// Where the focus's components meet the others. `isFocus`: TintPlan's.
-TintBorders bordersOf(const Read& volume, const Focus& focus, const Handle<Look>& look,
-                      const Handle<LabelWeights>& weights, const std::vector<bool>& isFocus);
+TintInterfaces findTintInterfaces(const VolumeHandle& volume, const FocusHandle& focus,
+                                  const Handle<Look>& look, const Handle<LabelWeights>& weights,
+                                  const std::vector<bool>& isFocus);
 
 /// Knobs of the tint. `saturation`: of the request.
-TintContrast adjustTintContrast(const Handle<TintBorders>& borders, const Handle<TintPlan>& plan,
-                                const Handle<Tint>& tint, const Handle<NamedMaterials>& materials,
-                                const Handle<Look>& look, const std::optional<double>& saturation);
+TintContrast adjustTintContrast(const Handle<TintInterfaces>& interfaces,
+                                const Handle<TintPlan>& plan, const Handle<Tint>& tint,
+                                const Handle<NamedMaterials>& materials, const Handle<Look>& look,
+                                const std::optional<double>& saturation);
 
 /// Only where isTint() is false.
 Mixture makeMixture(const Handle<TintPlan>& plan, const Handle<Tint>& tint,
@@ -117,27 +118,28 @@ Tint adjustTint(const Handle<Tint>& tint, const Handle<TintPlan>& plan,
 
 /// `saturation`: of the request. `tint`: null without materials; with them nothing is paled
 /// unasked, and what contrast there is adjustTintContrast tells.
-FocusContrast contrastOf(const Read& volume, const Focus& focus, const Handle<Look>& look,
-                         const Handle<Tint>& tint, const std::optional<double>& saturation);
+FocusContrast chooseContrast(const VolumeHandle& volume, const FocusHandle& focus,
+                             const Handle<Look>& look, const Handle<Tint>& tint,
+                             const std::optional<double>& saturation);
 
-ContextStyle styleAround(const Focus& focus, double extinction, double saturation);
+ContextStyle makeContextStyle(const FocusHandle& focus, double extinction, double saturation);
 
 /// `style`: null if the context is unchanged; `mixture`: null if there is none.
-MajorantGrid majorantsOf(const Read& volume, const Handle<MinMaxGrid>& ranges,
-                         const Handle<Look>& look, const Handle<ClipResult>& clip,
-                         const Handle<ContextStyle>& style, const Handle<Mixture>& mixture);
+MajorantGrid buildMajorants(const VolumeHandle& volume, const Handle<MinMaxGrid>& minMax,
+                            const Handle<Look>& look, const Handle<ClipResult>& clip,
+                            const Handle<ContextStyle>& style, const Handle<Mixture>& mixture);
 
 /// Colours or matter of segments, as transport reads them; null: none.
-struct SegmentsShown {
+struct TintOrMixture {
   Handle<Tint> tint;
   Handle<Mixture> mixture; ///< in place of a tint
 
-  bool operator==(const SegmentsShown&) const = default;
+  bool operator==(const TintOrMixture&) const = default;
 };
 
 /// Features of the filter. `style`: null if unused.
-FeatureBuffers marchFirstHits(const Read& volume, const Settings& settings,
-                              const Handle<Look>& look, const SegmentsShown& segments,
+FeatureBuffers marchFirstHits(const VolumeHandle& volume, const SettingsHandle& settings,
+                              const Handle<Look>& look, const TintOrMixture& segments,
                               const Handle<LightSet>& lights, const Handle<Camera>& camera,
                               const Handle<ClipResult>& clip, const Handle<ContextStyle>& style,
                               const Handle<MajorantGrid>& majorants);

@@ -40,7 +40,7 @@ constexpr std::array contextShading = {-3.0, 4.0};
 
 /// Colour, linear, that pictures show of matter at the edge: shadow and what wet surfaces reflect
 /// leave less than half of the differences in lightness.
-Rgb pictured(const Rgb& seen, double shade) {
+Rgb toImageColor(const Rgb& seen, double shade) {
   constexpr double darkest = 29.0, lightness = 0.43, saturation = 0.62;
   const Lab lab = toLab(seen);
   const double L = darkest + lightness * lab.L, chroma = saturation * L / std::max(lab.L, 1.0);
@@ -58,7 +58,7 @@ const ColorFunction& albedoOf(const std::optional<ColorFunction>& own,
 struct Limits {
   double saturationStart;
   double saturation, lightness, shift, chroma, accent;
-  double worth;
+  double changeScale;
 };
 /// Tissue stays tissue; and, of a focus that would not be told from its like (bowel in bowel, a
 /// vertebra on another), paint.
@@ -68,25 +68,25 @@ constexpr Limits gentle{0.6, 0.5, 0.35, 12.0, 1.4, 0.35, 300.0},
 /// Turns knobs until a border has enough of what is wanted.
 class AdjustmentSearch {
 public:
-  AdjustmentSearch(const std::vector<BorderColors>& colors, const ColorAdjustment& start,
+  AdjustmentSearch(const std::vector<InterfaceColors>& colors, const ColorAdjustment& start,
                    double worth, double saturation, double g)
       : m_colors(&colors),
-        m_worth(worth),
+        m_changeScale(worth),
         m_saturation(saturation),
         m_g(g),
         m_start(start),
         m_adjustment(start),
-        m_share(shareOf(start)) {}
+        m_score(computeScore(start)) {}
 
   const ColorAdjustment& adjustment() const { return m_adjustment; }
-  double share() const { return m_share; }
+  double score() const { return m_score; }
 
   /// Turns a knob from where it is, in steps, to at most `farthest`.
   void increase(double ColorAdjustment::*knob, double farthest) {
     const double first = m_adjustment.*knob;
-    for (int i = 1; i <= steps && m_share < enoughShare; ++i)
+    for (int i = 1; i <= steps && m_score < sufficientScore; ++i)
       tryValue(knob, first + (farthest - first) * i / steps,
-               [this](double fraction) { return fraction > m_share; });
+               [this](double fraction) { return fraction > m_score; });
   }
 
   /// Turns all knobs back toward the start, from the last to the first, as far as that costs
@@ -106,9 +106,9 @@ public:
   /// about as light as itself: a pale organ in dark red would be taken for muscle.
   void addAccent(double farthest) {
     constexpr double mostApart = 40.0;
-    const double own = mean([](const BorderColors& part) { return toLab(part.focus).L; });
+    const double own = mean([](const InterfaceColors& part) { return toLab(part.focus).L; });
     AdjustmentSearch best = *this;
-    for (std::size_t i = 0; i < accentColors.size() && m_share < enoughShare; ++i) {
+    for (std::size_t i = 0; i < accentColors.size() && m_score < sufficientScore; ++i) {
       if (std::abs(toLab(decodeSrgb(hexToRgb(accentColors[i].color))).L - own) > mostApart)
         continue;
       AdjustmentSearch turned = *this;
@@ -118,7 +118,7 @@ public:
         best = turned;
     }
     m_adjustment = best.m_adjustment;
-    m_share = best.m_share;
+    m_score = best.m_score;
   }
 
   /// True if its share is worth its change.
@@ -128,7 +128,7 @@ private:
   static constexpr int steps = 20;
 
   void relax(double ColorAdjustment::*knob) {
-    const double last = m_adjustment.*knob, needed = std::min(m_share, enoughShare);
+    const double last = m_adjustment.*knob, needed = std::min(m_score, sufficientScore);
     for (int i = 1; i <= steps; ++i)
       if (!tryValue(knob, last + (m_start.*knob - last) * i / steps,
                     [needed](double fraction) { return fraction >= needed; }))
@@ -138,51 +138,51 @@ private:
   bool tryValue(double ColorAdjustment::*knob, double value, const auto& isWanted) {
     ColorAdjustment turned = m_adjustment;
     turned.*knob = value;
-    const double share = shareOf(turned);
+    const double share = computeScore(turned);
     if (!isWanted(share))
       return false;
     m_adjustment = turned;
-    m_share = share;
+    m_score = share;
     return true;
   }
 
   /// Mean over the border of a function of its parts.
   double mean(const auto& function) const {
     double sum = 0.0, area = 0.0;
-    for (const BorderColors& part : *m_colors) {
+    for (const InterfaceColors& part : *m_colors) {
       sum += part.area * function(part);
       area += part.area;
     }
     return sum / area;
   }
-  double shareOf(const ColorAdjustment& knobs) const {
-    return mean([&](const BorderColors& part) {
-      return tintShare(contrastUnder(knobs, part, m_saturation, m_g));
+  double computeScore(const ColorAdjustment& knobs) const {
+    return mean([&](const InterfaceColors& part) {
+      return contrastScore(measureAdjustedContrast(knobs, part, m_saturation, m_g));
     });
   }
-  double worth() const { return std::min(m_share, enoughShare) - change() / m_worth; }
+  double worth() const { return std::min(m_score, sufficientScore) - change() / m_changeScale; }
   /// Difference of the colours from their own, both sides together.
   double change() const {
-    return mean([&](const BorderColors& part) {
+    return mean([&](const InterfaceColors& part) {
       return deltaE76(toLab(part.focus), toLab(adjustFocus(part.focus, m_adjustment))) +
              deltaE76(toLab(part.context), toLab(adjustContext(part.context, m_adjustment)));
     });
   }
 
-  const std::vector<BorderColors>* m_colors;
-  double m_worth, m_saturation, m_g;
+  const std::vector<InterfaceColors>* m_colors;
+  double m_changeScale, m_saturation, m_g;
   ColorAdjustment m_start, m_adjustment;
-  double m_share;
+  double m_score;
 };
 
 /// Parts of the border with enough of it to matter.
-std::vector<ComponentBorder> selectMajor(std::vector<ComponentBorder> borders) {
+std::vector<ComponentInterface> selectMajor(std::vector<ComponentInterface> interfaces) {
   constexpr double enough = 0.05;
   double area = 0.0;
-  for (const ComponentBorder& border : borders)
-    area += border.area;
-  std::erase_if(borders, [&](const ComponentBorder& b) { return b.area < enough * area; });
-  return borders;
+  for (const ComponentInterface& part : interfaces)
+    area += part.area;
+  std::erase_if(interfaces, [&](const ComponentInterface& b) { return b.area < enough * area; });
+  return interfaces;
 }
 
 } // namespace
@@ -205,7 +205,7 @@ Rgb adjustFocus(const Rgb& seen, const ColorAdjustment& adjustment) {
                         mix(adjustment.focusChroma * lab.b, accent.b)});
 }
 
-double tintShare(const Contrast& contrast) {
+double contrastScore(const Contrast& contrast) {
   constexpr double normal = 22.0, colorBlind = 13.2, lightness = 8.8;
   return 0.25 * (std::min(1.0, contrast.deltaE[0] / normal) +
                  std::min(1.0, contrast.deltaE[1] / colorBlind) +
@@ -213,20 +213,21 @@ double tintShare(const Contrast& contrast) {
                  std::min(1.0, contrast.deltaL / lightness));
 }
 
-Contrast contrastUnder(const ColorAdjustment& adjustment, const BorderColors& colors,
-                       double saturation, double g) {
+Contrast measureAdjustedContrast(const ColorAdjustment& adjustment, const InterfaceColors& colors,
+                                 double saturation, double g) {
   const ContextStyle style{.focus = nullptr, .saturation = saturation};
   const Rgb focus = adjustFocus(colors.focus, adjustment),
             context = toReflectance(
                 Rgb(style.desaturate(toAlbedo(adjustContext(colors.context, adjustment), g))), g);
-  const auto in = [&](double shade) {
-    return shownContrast(pictured(focus, 0.0), pictured(context, shade), deltaE76);
+  const auto measure = [&](double shade) {
+    return measureContrast(toImageColor(focus, 0.0), toImageColor(context, shade), deltaE76);
   };
-  return std::min(in(contextShading[0]), in(contextShading[1]),
-                  [](const Contrast& x, const Contrast& y) { return tintShare(x) < tintShare(y); });
+  return std::min(
+      measure(contextShading[0]), measure(contextShading[1]),
+      [](const Contrast& x, const Contrast& y) { return contrastScore(x) < contrastScore(y); });
 }
 
-ColorAdjustment chooseAdjustment(const std::vector<BorderColors>& colors,
+ColorAdjustment chooseAdjustment(const std::vector<InterfaceColors>& colors,
                                  const ContextColors& context, Adjustable adjustable,
                                  double saturation, double g) {
   constexpr double white = 100.0, bright = 72.0, dim = 40.0;
@@ -243,10 +244,10 @@ ColorAdjustment chooseAdjustment(const std::vector<BorderColors>& colors,
       start.contextGoal = goal;
     if (!context.saturation && adjustable == Adjustable::both)
       start.contextSaturation = limits.saturationStart;
-    AdjustmentSearch result(colors, start, limits.worth, saturation, g);
+    AdjustmentSearch result(colors, start, limits.changeScale, saturation, g);
     if (!context.saturation)
       result.increase(&ColorAdjustment::contextSaturation,
-                      adjustable == Adjustable::both ? limits.saturation : grey);
+                      adjustable == Adjustable::both ? limits.saturation : graySaturation);
     if (!context.lightness)
       result.increase(&ColorAdjustment::contextLightness, limits.lightness);
     if (adjustable == Adjustable::both) {
@@ -262,42 +263,42 @@ ColorAdjustment chooseAdjustment(const std::vector<BorderColors>& colors,
   const AdjustmentSearch dark = darker(gentle), light = lighter(gentle);
   const bool isLight = light.isBetterThan(dark);
   const AdjustmentSearch& tissue = isLight ? light : dark;
-  if (tissue.share() >= almostEnough)
+  if (tissue.score() >= nearlySufficient)
     return tissue.adjustment();
   return (isLight ? lighter(strong) : darker(strong)).adjustment();
 }
 
-TintContrast adjustContrast(const std::vector<ComponentBorder>& borders, const TintPlan& plan,
+TintContrast adjustContrast(const std::vector<ComponentInterface>& interfaces, const TintPlan& plan,
                             const Tint& tint, const MaterialTable& table,
                             const TransferFunction& transfer, double saturation) {
   const double g = transfer.g;
   const auto seen = [&](std::uint8_t component, double scalar) {
     return toReflectance(Rgb(albedoOf(tint.albedo[component], transfer)(scalar)), g);
   };
-  const std::vector<ComponentBorder> parts = selectMajor(borders);
-  std::vector<BorderColors> colors;
-  for (const ComponentBorder& part : parts)
+  const std::vector<ComponentInterface> parts = selectMajor(interfaces);
+  std::vector<InterfaceColors> colors;
+  for (const ComponentInterface& part : parts)
     colors.push_back(
         {seen(part.focus, part.focusScalar), seen(part.context, part.contextScalar), part.area});
   const bool isKnown = std::ranges::any_of(
-      parts, [&](const ComponentBorder& part) { return tint.albedo[part.focus].has_value(); });
+      parts, [&](const ComponentInterface& part) { return tint.albedo[part.focus].has_value(); });
   const Adjustable adjustable = !table.hasContrast ? Adjustable::nothing
                                 : isKnown          ? Adjustable::both
                                                    : Adjustable::context;
   TintContrast result{.adjustment =
                           chooseAdjustment(colors, table.context, adjustable, saturation, g)};
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const Contrast contrast = contrastUnder(result.adjustment, colors[i], saturation, g);
-    if (result.contrast && tintShare(contrast) >= tintShare(*result.contrast))
+    const Contrast contrast = measureAdjustedContrast(result.adjustment, colors[i], saturation, g);
+    if (result.contrast && contrastScore(contrast) >= contrastScore(*result.contrast))
       continue;
     result.contrast = contrast;
     result.segment = plan.names[parts[i].focus];
-    result.neighbour = plan.names[parts[i].context];
+    result.neighbor = plan.names[parts[i].context];
   }
   return result;
 }
 
-std::string told(const TintContrast& chosen) {
+std::string summary(const TintContrast& chosen) {
   if (!chosen.contrast)
     return "";
   const Contrast& contrast = *chosen.contrast;
@@ -314,7 +315,7 @@ std::string told(const TintContrast& chosen) {
   add(concat("toward ", accentColors[adjustment.accent].name, " by "),
       &ColorAdjustment::focusAccent);
   return concat(toString(contrast.deltaE[0], 3), " of ", sanitize(chosen.segment), " to ",
-                sanitize(chosen.neighbour), " (", join(parts, ", "), ")");
+                sanitize(chosen.neighbor), " (", join(parts, ", "), ")");
 }
 
 Tint applyAdjustment(const Tint& tint, const TintPlan& plan, const ColorAdjustment& adjustment,

@@ -9,7 +9,7 @@ namespace {
 
 /// Point n of a sequence that fills the unit square evenly, not aligned with its axes (Roberts
 /// 2018, "The unreasonable effectiveness of quasirandom sequences").
-Vec2 evenPoint(std::size_t n) {
+Vec2 r2Point(std::size_t n) {
   const auto fraction = [](double x) { return x - std::floor(x); };
   const auto i = static_cast<double>(n) + 0.5;
   return {fraction(i * 0.7548776662466927), fraction(i * 0.5698402909980532)};
@@ -35,15 +35,15 @@ public:
     const Affine cellToWorld = cells.cellToWorld();
     m_center = cellToWorld * box.center();
     for (int i = 0; i < 8; ++i)
-      m_half = m_half.cwiseMax(local(cellToWorld * box.corner(i)).cwiseAbs());
+      m_half = m_half.cwiseMax(toLocal(cellToWorld * box.corner(i)).cwiseAbs());
     trace(rays);
   }
 
   /// Area of the focus's projection, mm².
-  double area() const { return 4.0 * m_half.x() * m_half.y() * met(); }
-  double met() const { return m_meetings / m_rays; }
+  double area() const { return 4.0 * m_half.x() * m_half.y() * hitFraction(); }
+  double hitFraction() const { return m_hitCount / m_rays; }
   /// Depth, mm from the focus's centre, of the clip's surface at a point of `local` coordinates.
-  double surfaceAt(const Vec3& point) const {
+  double surfaceDepth(const Vec3& point) const {
     const Vec2 at = binPosition(point.head<2>());
     if ((at.array() < 0.0).any() || (at.array() >= double{bins}).any())
       return m_mean;
@@ -51,7 +51,7 @@ public:
     return bin.count > 0.0 ? bin.sum / bin.count : m_mean;
   }
   /// Coordinates from the focus's centre, mm: two across the view, and depth along the view.
-  Vec3 local(const Vec3& world) const {
+  Vec3 toLocal(const Vec3& world) const {
     const Vec3 across = m_frame.toLocal(world - m_center);
     return {across.x(), across.y(), -across.z()};
   }
@@ -75,7 +75,7 @@ private:
       FocusRays batch;
       std::array<Vec2, FocusRays::capacity> across;
       for (; next < rays && !batch.isFull(); ++next) {
-        const Vec2 even = 2.0 * evenPoint(next) - Vec2::Ones();
+        const Vec2 even = 2.0 * r2Point(next) - Vec2::Ones();
         const Vec2 at = even.cwiseProduct(m_half.head<2>());
         across[batch.size] = at;
         add(batch, at);
@@ -83,9 +83,9 @@ private:
       m_cells.findHits(batch);
       for (std::size_t i = 0; i < batch.size; ++i)
         if (batch.hitT[i] < infinity)
-          found(across[i], batch.hitT[i] - m_half.z());
+          addHit(across[i], batch.hitT[i] - m_half.z());
     }
-    m_mean = m_meetings > 0.0 ? m_mean / m_meetings : 0.0;
+    m_mean = m_hitCount > 0.0 ? m_mean / m_hitCount : 0.0;
   }
 
   /// Adds the part inside the domain of a ray that starts in front of the focus.
@@ -99,8 +99,8 @@ private:
       batch.add(ray, range);
   }
 
-  void found(const Vec2& across, double depth) {
-    m_meetings += 1.0;
+  void addHit(const Vec2& across, double depth) {
+    m_hitCount += 1.0;
     m_mean += depth;
     Bin& bin = m_bins[binIndex(binPosition(across).cwiseMin(bins - 1e-6).cwiseMax(0.0))];
     bin.sum += depth;
@@ -112,7 +112,7 @@ private:
   Frame m_frame; ///< normal: toward the eye
   Vec3 m_center;
   Vec3 m_half = Vec3::Zero(); ///< half extents of the cells' box, mm
-  double m_rays = 0.0, m_meetings = 0.0;
+  double m_rays = 0.0, m_hitCount = 0.0;
   double m_mean = 0.0; ///< mean depth, mm
   std::array<Bin, std::size_t{bins} * bins> m_bins{};
 };
@@ -153,8 +153,8 @@ ViewScorer::ViewScorer(const Volume& volume, const Domain& domain, const Transfe
 double ViewScorer::removedFraction(const FocusDepths& focus) const {
   double removed = 0.0, all = 0.0;
   for (const ContextCell& cell : m_context) {
-    const Vec3 at = focus.local(cell.center);
-    const double inFront = (focus.surfaceAt(at) - at.z()) / m_cellEdge;
+    const Vec3 at = focus.toLocal(cell.center);
+    const double inFront = (focus.surfaceDepth(at) - at.z()) / m_cellEdge;
     removed += cell.weight * std::clamp(inFront + 0.5, 0.0, 1.0);
     all += cell.weight;
   }
@@ -163,11 +163,11 @@ double ViewScorer::removedFraction(const FocusDepths& focus) const {
 
 ViewScore ViewScorer::operator()(const Vec3& fromTarget, std::size_t rays) const {
   const FocusDepths focus(m_focus, m_domain, fromTarget, rays);
-  ViewScore score{.area = focus.area(), .met = focus.met()};
+  ViewScore score{.area = focus.area(), .hitFraction = focus.hitFraction()};
   if (score.area > 0.0)
     score.removedFraction = removedFraction(focus);
-  const double custom = 1.0 + 0.05 * fromTarget.y() - 0.1 * fromTarget.z() * fromTarget.z();
-  score.score = score.area * (1.0 - score.removedFraction) * custom;
+  const double preference = 1.0 + 0.05 * fromTarget.y() - 0.1 * fromTarget.z() * fromTarget.z();
+  score.score = score.area * (1.0 - score.removedFraction) * preference;
   return score;
 }
 

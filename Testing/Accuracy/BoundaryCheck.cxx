@@ -60,7 +60,7 @@ void sweep(const Subject& subject, int size, int views) {
               figureTitles, figureRule);
   Worst worst[2];
   for (int number = 0; number < views; ++number) {
-    const View view = viewAround(field, number, views, size, subject.elevation);
+    const View view = makeView(field, number, views, size, subject.elevation);
     const FocusView focus(field, view);
     for (std::size_t i = 0; i < 2; ++i) {
       const BoundaryMeasure measure = focus.measure(clippingSurface(subject, view, boundaries[i]));
@@ -78,7 +78,7 @@ void sweep(const Subject& subject, int size, int views) {
 }
 
 /// Subject with smoothed labels, seen from above or below.
-Subject seenSmooth(Subject subject, double smoothing, double elevation) {
+Subject makeSmoothed(Subject subject, double smoothing, double elevation) {
   char name[100];
   std::snprintf(name, sizeof name, "%s, labels smoothed by %g mm, seen from %g° %s",
                 subject.name.c_str(), smoothing, std::abs(elevation),
@@ -99,8 +99,8 @@ void sweepAll(int size, int views) {
                          torso / "seg_totalsegmentator_rtstruct.nii.gz", "1", 1};
   const Subject vertebra = {"vertebra", abdomen / "ct.nii.gz", abdomen / "seg_multiorgan.nii.gz",
                             "20", 20};
-  const Subject subjects[] = {knee, liver, vertebra, seenSmooth(knee, 0.6, 25.0),
-                              seenSmooth(vertebra, 1.0, -25.0)};
+  const Subject subjects[] = {knee, liver, vertebra, makeSmoothed(knee, 0.6, 25.0),
+                              makeSmoothed(vertebra, 1.0, -25.0)};
   for (const Subject& subject : subjects)
     if (std::filesystem::exists(subject.labelmap))
       sweep(subject, size, views);

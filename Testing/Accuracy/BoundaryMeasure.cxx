@@ -34,7 +34,7 @@ struct Cell {
   }
 };
 
-Distances summary(std::vector<double> values) {
+Distances summarize(std::vector<double> values) {
   Distances result;
   if (values.empty())
     return result;
@@ -58,12 +58,12 @@ FocusView::FocusView(const FocusField& field, const View& view)
   traceOutline();
 }
 
-double FocusView::depthThrough(const Vec2& raster) const {
+double FocusView::focusDepth(const Vec2& raster) const {
   const View::CameraRay ray = m_view.cameraRay(raster);
-  return ray.depthPerLength * m_field.firstMeeting(ray.origin, ray.direction);
+  return ray.depthPerLength * m_field.firstHit(ray.origin, ray.direction);
 }
 
-Vec2 FocusView::rayAt(std::size_t ray) const {
+Vec2 FocusView::rasterPosition(std::size_t ray) const {
   const auto column = static_cast<double>(ray % m_across);
   const auto row = static_cast<double>(ray / m_across);
   return Vec2(column + jitter(2 * ray), row + jitter(2 * ray + 1)) / double{raysAcrossPixel};
@@ -71,52 +71,52 @@ Vec2 FocusView::rayAt(std::size_t ray) const {
 
 void FocusView::traceRays() {
   const auto size = static_cast<std::size_t>(m_view.size);
-  m_centres.resize(size * size);
+  m_centers.resize(size * size);
   tbb::parallel_for(std::size_t{0}, size, [&](std::size_t row) {
     for (std::size_t column = 0; column < size; ++column)
-      m_centres[row * size + column] =
-          depthThrough(Vec2(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5));
+      m_centers[row * size + column] =
+          focusDepth(Vec2(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5));
   });
   m_rays.resize(m_across * m_across);
   tbb::parallel_for(std::size_t{0}, m_across, [&](std::size_t row) {
     for (std::size_t ray = row * m_across; ray < (row + 1) * m_across; ++ray)
-      m_rays[ray] = depthThrough(rayAt(ray));
+      m_rays[ray] = focusDepth(rasterPosition(ray));
   });
 }
 
 void FocusView::traceOutline() {
   m_outlineDepths.resize(m_rays.size(), {infinity, -infinity});
-  const auto look = [&](std::size_t a, std::size_t b) {
+  const auto compare = [&](std::size_t a, std::size_t b) {
     const bool aIn = m_rays[a] < infinity, bIn = m_rays[b] < infinity;
     if (aIn == bIn)
       return;
-    m_outline.push_back(aIn ? edgeBetween(a, b) : edgeBetween(b, a));
+    m_outline.push_back(aIn ? findEdge(a, b) : findEdge(b, a));
     const Point& end = m_outline.back().inner;
-    DepthRange& range = m_outlineDepths[rayNear(end.raster)];
+    DepthRange& range = m_outlineDepths[nearestRay(end.raster)];
     range = {std::min(range.least, end.depth), std::max(range.greatest, end.depth)};
   };
   for (std::size_t row = 0; row + 1 < m_across; ++row)
     for (std::size_t column = 0; column + 1 < m_across; ++column) {
       const std::size_t ray = row * m_across + column;
-      look(ray, ray + 1);
-      look(ray, ray + m_across);
+      compare(ray, ray + 1);
+      compare(ray, ray + m_across);
     }
 }
 
 /// Ray whose part of a pixel contains a raster position.
-std::size_t FocusView::rayNear(const Vec2& raster) const {
+std::size_t FocusView::nearestRay(const Vec2& raster) const {
   const auto part = [&](double x) {
     return std::min(static_cast<std::size_t>(x * double{raysAcrossPixel}), m_across - 1);
   };
   return part(raster.y()) * m_across + part(raster.x());
 }
 
-FocusView::Edge FocusView::edgeBetween(std::size_t in, std::size_t out) const {
-  Point inner{rayAt(in), m_rays[in]};
-  Vec2 outer = rayAt(out);
+FocusView::Edge FocusView::findEdge(std::size_t in, std::size_t out) const {
+  Point inner{rasterPosition(in), m_rays[in]};
+  Vec2 outer = rasterPosition(out);
   for (int i = 0; i < 24; ++i) {
     const Vec2 middle = 0.5 * (inner.raster + outer);
-    if (const double depth = depthThrough(middle); depth < infinity)
+    if (const double depth = focusDepth(middle); depth < infinity)
       inner = {middle, depth};
     else
       outer = middle;
@@ -129,7 +129,7 @@ bool FocusView::isAtJump(const Point& point) const {
   const Cell cell(point.raster, m_view.size);
   double least = point.depth, greatest = point.depth;
   for (const std::size_t step : {std::size_t{0}, std::size_t{1}, size, size + 1})
-    if (const double depth = m_centres[cell.first + step]; depth < infinity) {
+    if (const double depth = m_centers[cell.first + step]; depth < infinity) {
       least = std::min(least, depth);
       greatest = std::max(greatest, depth);
     }
@@ -137,7 +137,7 @@ bool FocusView::isAtJump(const Point& point) const {
 }
 
 bool FocusView::isAtOutlineJump(const Point& point) const {
-  const std::size_t ray = rayNear(point.raster);
+  const std::size_t ray = nearestRay(point.raster);
   const std::size_t column = ray % m_across, row = ray / m_across;
   double least = infinity, greatest = -infinity;
   for (std::size_t r = std::max<std::size_t>(row, 1) - 1; r <= std::min(row + 1, m_across - 1); ++r)
@@ -159,18 +159,18 @@ BoundaryMeasure FocusView::measure(const Surface& surface) const {
     }
   result.outlinePoints = static_cast<double>(m_outline.size());
   result.jumpFraction = 1.0 - static_cast<double>(gaps.size()) / result.outlinePoints;
-  result.gap = summary(std::move(gaps));
-  result.cut = summary(std::move(cuts));
+  result.gap = summarize(std::move(gaps));
+  result.cut = summarize(std::move(cuts));
 
   double jumps = 0.0, halfVoxelSmooth = 0.0;
   for (std::size_t ray = 0; ray < m_rays.size(); ++ray)
     if (m_rays[ray] < infinity) {
-      const Vec2 raster = rayAt(ray);
-      const double kept = m_rays[ray] - surface(raster);
+      const Vec2 raster = rasterPosition(ray);
+      const double remaining = m_rays[ray] - surface(raster);
       const bool isJump = isAtJump({raster, m_rays[ray]});
-      const bool isShown = kept <= 0.5 * m_field.longestEdge();
+      const bool isShown = remaining <= 0.5 * m_field.longestEdge();
       result.rays += 1.0;
-      result.strictFraction += kept <= strictTolerance ? 1.0 : 0.0;
+      result.strictFraction += remaining <= strictTolerance ? 1.0 : 0.0;
       result.halfVoxelFraction += isShown ? 1.0 : 0.0;
       jumps += isJump ? 1.0 : 0.0;
       halfVoxelSmooth += isShown && !isJump ? 1.0 : 0.0;
@@ -180,33 +180,33 @@ BoundaryMeasure FocusView::measure(const Surface& surface) const {
   result.halfVoxelSmooth = halfVoxelSmooth / (result.rays - jumps);
   result.rayJumpFraction = jumps / result.rays;
   const auto width = static_cast<std::size_t>(m_view.size);
-  for (std::size_t i = 0; i < m_centres.size(); ++i)
-    if (m_centres[i] < infinity) {
-      const Vec2 centre(static_cast<double>(i % width) + 0.5, static_cast<double>(i / width) + 0.5);
-      result.centreGap = std::max(result.centreGap, m_centres[i] - surface(centre));
+  for (std::size_t i = 0; i < m_centers.size(); ++i)
+    if (m_centers[i] < infinity) {
+      const Vec2 center(static_cast<double>(i % width) + 0.5, static_cast<double>(i / width) + 0.5);
+      result.centerGap = std::max(result.centerGap, m_centers[i] - surface(center));
     }
   return result;
 }
 
-PictureMatch FocusView::match(const std::vector<float>& depths, const Surface& surface) const {
+ImageMatch FocusView::match(const std::vector<float>& depths, const Surface& surface) const {
   constexpr double tolerance = 0.1; // mm: some free paths
-  constexpr double between = 0.25;  // pixels between the examined points
+  constexpr double step = 0.25;     // pixels between the examined points
   const auto size = static_cast<std::size_t>(m_view.size);
-  PictureMatch result;
+  ImageMatch result;
   for (std::size_t row = 1; row + 1 < size; ++row)
     for (std::size_t column = 1; column + 1 < size; ++column) {
       const std::size_t pixel = row * size + column;
-      const bool isBeside = m_centres[pixel - 1] < infinity || m_centres[pixel + 1] < infinity ||
-                            m_centres[pixel - size] < infinity ||
-                            m_centres[pixel + size] < infinity;
+      const bool isBeside = m_centers[pixel - 1] < infinity || m_centers[pixel + 1] < infinity ||
+                            m_centers[pixel - size] < infinity ||
+                            m_centers[pixel + size] < infinity;
       if (!isBeside)
         continue;
       double least = infinity, greatest = -infinity;
-      bool isContext = m_centres[pixel] == infinity;
-      for (double y = 0.0; y <= 1.0 && isContext; y += between)
-        for (double x = 0.0; x <= 1.0; x += between) {
+      bool isContext = m_centers[pixel] == infinity;
+      for (double y = 0.0; y <= 1.0 && isContext; y += step)
+        for (double x = 0.0; x <= 1.0; x += step) {
           const Vec2 raster(static_cast<double>(column) + x, static_cast<double>(row) + y);
-          isContext = isContext && depthThrough(raster) == infinity;
+          isContext = isContext && focusDepth(raster) == infinity;
           least = std::min(least, surface(raster));
           greatest = std::max(greatest, surface(raster));
         }

@@ -40,10 +40,10 @@ struct BoundaryMeasure {
       0.0;                      ///< share unoccluded, to half of the labelmap's longest voxel edge
   double rayJumpFraction = 0.0; ///< share of rays at a depth jump
   double halfVoxelSmooth = 0.0; ///< halfVoxelFraction over the rays without a depth jump
-  double centreGap = 0.0;       ///< greatest mm kept in front of the focus at a pixel centre
+  double centerGap = 0.0;       ///< greatest mm kept in front of the focus at a pixel centre
 };
 
-struct PictureMatch {
+struct ImageMatch {
   double pixels = 0.0;   ///< pixels examined
   double fraction = 0.0; ///< share of these whose depth is within the surface's range there
 };
@@ -58,9 +58,9 @@ public:
 
   BoundaryMeasure measure(const Surface& surface) const;
 
-  /// Compares a picture of depths (depthsInPicture) with the surface that `measure` queries, on the
+  /// Compares a picture of depths (renderDepths) with the surface that `measure` queries, on the
   /// context's pixels beside the focus.
-  PictureMatch match(const std::vector<float>& depths, const Surface& surface) const;
+  ImageMatch match(const std::vector<float>& depths, const Surface& surface) const;
 
 private:
   struct Point {
@@ -73,19 +73,19 @@ private:
     Vec2 outer;
   };
 
-  double depthThrough(const Vec2& raster) const;
-  Vec2 rayAt(std::size_t ray) const;
+  double focusDepth(const Vec2& raster) const;
+  Vec2 rasterPosition(std::size_t ray) const;
   void traceRays();
   void traceOutline();
-  Edge edgeBetween(std::size_t in, std::size_t out) const;
+  Edge findEdge(std::size_t in, std::size_t out) const;
   bool isAtJump(const Point& point) const;
   bool isAtOutlineJump(const Point& point) const;
-  std::size_t rayNear(const Vec2& raster) const;
+  std::size_t nearestRay(const Vec2& raster) const;
 
   const FocusField& m_field;
   View m_view;
   std::size_t m_across;          ///< rays in a row
-  std::vector<double> m_centres; ///< depth of the focus at pixel centres; infinity: ray misses
+  std::vector<double> m_centers; ///< depth of the focus at pixel centres; infinity: ray misses
   std::vector<double> m_rays;    ///< depth of the focus on the rays; infinity: ray misses
   std::vector<Edge> m_outline;
   struct DepthRange {

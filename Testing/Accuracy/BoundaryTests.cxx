@@ -14,17 +14,17 @@ namespace {
 /// Ball of 20 voxels' radius; intersections are known to the accuracy of its voxels.
 TEST(FocusField, FirstMeetingWithABallEqualsClosedForm) {
   Indicator ball{Size3(50, 50, 50), Affine::Identity(), {}};
-  const Vec3 centre(24.0, 25.0, 26.0);
+  const Vec3 center(24.0, 25.0, 26.0);
   for (int z = 0; z < 50; ++z)
     for (int y = 0; y < 50; ++y)
       for (int x = 0; x < 50; ++x)
-        ball.voxels.push_back((Vec3(x, y, z) - centre).norm() <= 20.0 ? 1 : 0);
+        ball.voxels.push_back((Vec3(x, y, z) - center).norm() <= 20.0 ? 1 : 0);
   const FocusField field(ball);
   EXPECT_LT((field.center() - center).norm(), 1e-12);
   EXPECT_NEAR(field.radius(), 20.0, 1e-12);
   for (int i = -24; i <= 24; ++i) {
     const double height = i;
-    const double met = field.firstMeeting({-100.0, 25.0, 26.0 + height}, Vec3::UnitX());
+    const double distance = field.firstHit({-100.0, 25.0, 26.0 + height}, Vec3::UnitX());
     if (std::abs(height) > 21.0) {
       EXPECT_EQ(distance, infinity);
     } else if (std::abs(height) < 19.0) {
@@ -41,12 +41,12 @@ TEST(FocusField, BoxFaceLiesHalfwayBetweenVoxelCentres) {
       for (std::size_t x = 2; x < 6; ++x)
         box.voxels[(z * 8 + y) * 8 + x] = 1;
   const FocusField field(box);
-  EXPECT_NEAR(field.firstMeeting({3.3, 4.2, -10.0}, Vec3::UnitZ()), 11.5, 1e-9);
-  EXPECT_NEAR(field.firstMeeting({3.3, 4.2, 20.0}, -Vec3::UnitZ()), 14.5, 1e-9);
-  EXPECT_EQ(field.firstMeeting({3.3, 6.2, -10.0}, Vec3::UnitZ()), infinity);
+  EXPECT_NEAR(field.firstHit({3.3, 4.2, -10.0}, Vec3::UnitZ()), 11.5, 1e-9);
+  EXPECT_NEAR(field.firstHit({3.3, 4.2, 20.0}, -Vec3::UnitZ()), 14.5, 1e-9);
+  EXPECT_EQ(field.firstHit({3.3, 6.2, -10.0}, Vec3::UnitZ()), infinity);
 }
 
-struct Seen {
+struct ViewCase {
   int number; ///< number of the view, of twelve
   bool isPerspective;
   double smoothing; ///< smoothing of the labels, mm
@@ -56,19 +56,19 @@ struct Seen {
 TEST(Boundary, ExactSurfaceGapIsBelowAThirdOfTheSplines) {
   const TemporaryFolder folder;
   Subject knee = makeKnee(folder.path(), "150x172x60");
-  for (const Seen& seen :
-       {Seen{0, false, 0.0, 0.0}, Seen{1, true, 0.0, 0.0}, Seen{2, false, 0.6, 25.0}}) {
+  for (const ViewCase& seen :
+       {ViewCase{0, false, 0.0, 0.0}, ViewCase{1, true, 0.0, 0.0}, ViewCase{2, false, 0.6, 25.0}}) {
     SCOPED_TRACE(seen.number);
     knee.smoothing = seen.smoothing;
     const FocusField field(readIndicator(knee));
-    View view = viewAround(field, seen.number, 12, 256, seen.elevation);
+    View view = makeView(field, seen.number, 12, 256, seen.elevation);
     view.isPerspective = seen.isPerspective;
     const FocusView focus(field, view);
     const BoundaryMeasure spline = focus.measure(clippingSurface(knee, view, "spline"));
     const BoundaryMeasure exact = focus.measure(clippingSurface(knee, view, "exact"));
     for (const BoundaryMeasure& measure : {spline, exact}) {
       EXPECT_GT(measure.rays, 1e5);
-      EXPECT_LT(measure.centreGap, 1e-3);
+      EXPECT_LT(measure.centerGap, 1e-3);
     }
     EXPECT_LT(exact.gap.mean, 0.3 * spline.gap.mean);
     EXPECT_LT(exact.gap.p95, 0.3 * spline.gap.p95);
@@ -86,12 +86,12 @@ TEST(Boundary, PictureShowsContextAtTheSurfaceDepth) {
   Subject knee = makeKnee(folder.path(), "150x172x60");
   knee.smoothing = 0.6;
   const FocusField field(readIndicator(knee));
-  const View view = viewAround(field, 1, 12, 256, 25.0);
+  const View view = makeView(field, 1, 12, 256, 25.0);
   const FocusView focus(field, view);
   const Surface spline = clippingSurface(knee, view, "spline");
   const Surface exact = clippingSurface(knee, view, "exact");
-  const auto splinePicture = depthsInPicture(knee, view, "spline", folder.path());
-  const auto exactPicture = depthsInPicture(knee, view, "exact", folder.path());
+  const auto splinePicture = renderDepths(knee, view, "spline", folder.path());
+  const auto exactPicture = renderDepths(knee, view, "exact", folder.path());
   EXPECT_GT(focus.match(splinePicture, spline).fraction, 0.999);
   EXPECT_GT(focus.match(exactPicture, exact).fraction, 0.999);
   EXPECT_LT(focus.match(exactPicture, spline).fraction, 0.9);

@@ -14,7 +14,7 @@ constexpr double step = 1.0 / 16.0;   ///< step, in voxels along the ray's faste
 
 /// Boundary between false (t = a) and true (t = b).
 template <typename Predicate>
-double bisected(double a, double b, const Predicate& predicate) {
+double bisect(double a, double b, const Predicate& predicate) {
   for (int i = 0; i < 48; ++i) {
     const double middle = 0.5 * (a + b);
     (predicate(middle) ? b : a) = middle;
@@ -48,7 +48,7 @@ double nextFace(const Vec3& index, const Vec3& direction, double t) {
 }
 
 /// Replaces each value by the least value of its 3 x 3 x 3 neighbourhood.
-void spreadLeast(std::vector<std::uint8_t>& values, const Size3& size) {
+void filterMinimum(std::vector<std::uint8_t>& values, const Size3& size) {
   const std::int64_t strides[] = {1, size.x(), size.x() * size.y()};
   std::vector<std::uint8_t> old;
   for (int axis = 0; axis < 3; ++axis) {
@@ -87,9 +87,9 @@ FocusField::FocusField(const Indicator& indicator) {
   });
   if ((high.array() < 0).any())
     throw std::runtime_error("the focus is empty");
-  m_centre = indicator.indexToWorld * (0.5 * (low + high).cast<double>());
+  m_center = indicator.indexToWorld * (0.5 * (low + high).cast<double>());
   forVoxels([&](const Size3& at) {
-    m_radius = std::max(m_radius, (indicator.indexToWorld * at.cast<double>() - m_centre).norm());
+    m_radius = std::max(m_radius, (indicator.indexToWorld * at.cast<double>() - m_center).norm());
   });
   low = (low - Size3::Constant(2)).cwiseMax(Size3::Zero());
   high = (high + Size3::Constant(2)).cwiseMin(size - Size3::Ones());
@@ -102,12 +102,12 @@ FocusField::FocusField(const Indicator& indicator) {
   m_lower = Vec3::Constant(-0.5);
   m_upper = m_size.cast<double>() - Vec3::Constant(0.5);
   m_worldToIndex = (indicator.indexToWorld * makeTranslation(low.cast<double>())).inverse();
-  markLowness();
+  computeEmptyRadii();
   m_longestEdge = indicator.indexToWorld.linear().columnNorms().maxCoeff();
 }
 
-void FocusField::markLowness() {
-  m_lowness.assign(static_cast<std::size_t>(m_cells.prod()), farthest);
+void FocusField::computeEmptyRadii() {
+  m_emptyRadius.assign(static_cast<std::size_t>(m_cells.prod()), farthest);
   for (std::int64_t z = 0; z < m_cells.z(); ++z)
     for (std::int64_t y = 0; y < m_cells.y(); ++y)
       for (std::int64_t x = 0; x < m_cells.x(); ++x)
@@ -117,15 +117,15 @@ void FocusField::markLowness() {
                                .cwiseMin(m_size - Size3::Ones());
           if (m_fractions[static_cast<std::size_t>((at.z() * m_size.y() + at.y()) * m_size.x() +
                                                    at.x())] >= 0.5)
-            m_lowness[static_cast<std::size_t>((z * m_cells.y() + y) * m_cells.x() + x)] = 0;
+            m_emptyRadius[static_cast<std::size_t>((z * m_cells.y() + y) * m_cells.x() + x)] = 0;
         }
   // After `farthest` rounds each cell knows its distance to the nearest cell that is not low.
-  std::vector<std::uint8_t> reached = m_lowness;
+  std::vector<std::uint8_t> minimum = m_emptyRadius;
   for (std::uint8_t round = 1; round < farthest; ++round) {
-    spreadLeast(reached, m_cells);
-    for (std::size_t i = 0; i < reached.size(); ++i)
-      if (reached[i] == 0 && m_lowness[i] == farthest)
-        m_lowness[i] = round;
+    filterMinimum(minimum, m_cells);
+    for (std::size_t i = 0; i < minimum.size(); ++i)
+      if (minimum[i] == 0 && m_emptyRadius[i] == farthest)
+        m_emptyRadius[i] = round;
   }
 }
 
@@ -152,7 +152,7 @@ double FocusField::at(const Vec3& index) const {
   return (1.0 - f.z()) * layer(low.z()) + f.z() * layer(high.z());
 }
 
-double FocusField::firstMeeting(const Vec3& origin, const Vec3& direction) const {
+double FocusField::firstHit(const Vec3& origin, const Vec3& direction) const {
   const Vec3 o = m_worldToIndex * origin;
   const Vec3 d = m_worldToIndex.linear() * direction;
   double t = 0.0, end = infinity;
@@ -165,7 +165,7 @@ double FocusField::firstMeeting(const Vec3& origin, const Vec3& direction) const
       return infinity;
     }
   const auto value = [&](double s) { return at(o + s * d); };
-  const auto isInAt = [&](double s) { return value(s) >= 0.5; };
+  const auto isInsideAt = [&](double s) { return value(s) >= 0.5; };
   const double voxel = 1.0 / d.cwiseAbs().maxCoeff(); // mm
   const double stride = step * voxel;
   // Steps end at the faces of cells, between which the field is smooth. A field that rises after
@@ -178,17 +178,17 @@ double FocusField::firstMeeting(const Vec3& origin, const Vec3& direction) const
   while (t < end) {
     const Vec3 index = o + t * d;
     const double face = nextFace(index, d, t);
-    if (const std::uint8_t low = m_lowness[cell(o + 0.5 * (t + face) * d)]; low > 0) {
-      t = low > 1 ? t + (low - 1) * voxel : face;
+    if (const std::uint8_t radius = m_emptyRadius[cell(o + 0.5 * (t + face) * d)]; radius > 0) {
+      t = radius > 1 ? t + (radius - 1) * voxel : face;
       here = value(t);
       continue;
     }
     const double next = std::min({t + stride, face, end}), there = value(next);
     if (here > 0.25 && rises(here, t + near) && rises(there, next - near)) // else 1/2 is too far
-      if (const double top = findMaximum(t, next, value); isInAt(top))
-        return bisected(t, top, isInAt);
+      if (const double maximum = findMaximum(t, next, value); isInsideAt(maximum))
+        return bisect(t, maximum, isInsideAt);
     if (there >= 0.5)
-      return bisected(t, next, isInAt);
+      return bisect(t, next, isInsideAt);
     t = next;
     here = there;
   }

@@ -24,19 +24,19 @@ public:
 
   /// Least distance, mm, at which a ray of unit direction is in the focus (trilinear indicator >=
   /// 0.5) and in the volume's box; infinity: ray misses.
-  double firstMeeting(const Vec3& origin, const Vec3& direction) const;
+  double firstHit(const Vec3& origin, const Vec3& direction) const;
 
   /// Centre of the focus's voxels, world mm.
-  Vec3 centre() const { return m_centre; }
+  Vec3 center() const { return m_center; }
   double radius() const { return m_radius; }           ///< mm, bounding sphere around the centre
   double longestEdge() const { return m_longestEdge; } ///< longest edge of a voxel, mm
 
 private:
   /// Trilinear indicator, 0 to 1; constant beyond the outermost voxel centres.
   double at(const Vec3& index) const;
-  bool isIn(const Vec3& index) const { return at(index) >= 0.5; }
+  bool isInside(const Vec3& index) const { return at(index) >= 0.5; }
   std::size_t cell(const Vec3& index) const;
-  void markLowness();
+  void computeEmptyRadii();
 
   /// Cell c lies between the voxel centres c - 1 and c of the stored part: the focus and two voxels
   /// on every side, fewer at the volume's faces.
@@ -46,8 +46,8 @@ private:
   std::vector<double> m_fractions; ///< of the focus in each voxel, 0 to 1
   /// Radius, in cells, of each cell's neighbourhood in which no share reaches 1/2: nor does the
   /// field.
-  std::vector<std::uint8_t> m_lowness;
-  Vec3 m_centre;
+  std::vector<std::uint8_t> m_emptyRadius;
+  Vec3 m_center;
   double m_radius = 0.0, m_longestEdge = 0.0;
 };
 

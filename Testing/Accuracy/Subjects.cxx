@@ -17,25 +17,25 @@ namespace fenestra::accuracy {
 
 namespace {
 
-std::string quoted(const std::string& word) {
+std::string quote(const std::string& word) {
   return "'" + word + "'";
 }
 
 void runFenestra(const std::string& arguments) {
-  const std::string command = quoted(FENESTRA_EXECUTABLE) + " " + arguments + " > /dev/null";
+  const std::string command = quote(FENESTRA_EXECUTABLE) + " " + arguments + " > /dev/null";
   if (std::system(command.c_str()) != 0)
     throw std::runtime_error("failed: " + command);
 }
 
 /// Vector as the value of a flag.
-std::string listed(const Vec3& v) {
+std::string toOptionValue(const Vec3& v) {
   std::ostringstream text;
   text.precision(17);
   text << v.x() << ',' << v.y() << ',' << v.z();
   return text.str();
 }
 
-RenderRequest requestFor(const Subject& subject) {
+RenderRequest makeRequest(const Subject& subject) {
   RenderRequest request;
   request.input = subject.input;
   if (subject.input.extension() != ".mrml")
@@ -47,7 +47,7 @@ RenderRequest requestFor(const Subject& subject) {
 }
 
 Indicator smoothedIndicator(const Subject& subject) {
-  const PreparedScene scene(requestFor(subject));
+  const PreparedScene scene(makeRequest(subject));
   const Mask& mask = *scene.focus();
   return {mask.grid.size, mask.grid.indexToWorld, mask.voxels, static_cast<double>(mask.maxValue)};
 }
@@ -56,7 +56,7 @@ Indicator smoothedIndicator(const Subject& subject) {
 
 Subject makeKnee(const std::filesystem::path& folder, const std::string& size) {
   const std::filesystem::path knee = folder / "knee";
-  runFenestra("phantom knee --output " + quoted(knee.string()) +
+  runFenestra("phantom knee --output " + quote(knee.string()) +
               (size.empty() ? "" : " --size " + size));
   constexpr int femoralCartilage = 5; // number of this segment in the phantom
   return {"knee", knee / "knee.mrml", knee / "knee.seg.nrrd", "FemoralCartilage", femoralCartilage};
@@ -88,11 +88,11 @@ Indicator readIndicator(const Subject& subject) {
   return indicator;
 }
 
-View viewAround(const FocusField& field, int number, int count, int size, double elevation) {
+View makeView(const FocusField& field, int number, int count, int size, double elevation) {
   const double angle = 2.0 * pi * number / count;
   const double height = elevation * pi / 180.0;
   View view;
-  view.target = field.centre();
+  view.target = field.center();
   view.position = view.target + 500.0 * Vec3(std::cos(height) * std::sin(angle),
                                              std::cos(height) * std::cos(angle), std::sin(height));
   view.up = Vec3::UnitZ();
@@ -102,7 +102,7 @@ View viewAround(const FocusField& field, int number, int count, int size, double
 }
 
 Surface clippingSurface(const Subject& subject, const View& view, const std::string& boundary) {
-  RenderRequest request = requestFor(subject);
+  RenderRequest request = makeRequest(subject);
   request.clip.mode = ClipMode::surface;
   request.clip.surface.boundary = boundary == "exact" ? Boundary::exact : Boundary::spline;
   request.view.position = view.position;
@@ -122,22 +122,22 @@ Surface clippingSurface(const Subject& subject, const View& view, const std::str
   };
 }
 
-std::vector<float> depthsInPicture(const Subject& subject, const View& view,
-                                   const std::string& boundary,
-                                   const std::filesystem::path& folder) {
-  const std::filesystem::path picture = folder / (boundary + ".exr");
+std::vector<float> renderDepths(const Subject& subject, const View& view,
+                                const std::string& boundary, const std::filesystem::path& folder) {
+  const std::filesystem::path image = folder / (boundary + ".exr");
   std::ostringstream arguments;
   arguments.precision(17);
-  arguments << quoted(subject.input.string()) << " --focus " << quoted(subject.focus)
+  arguments << quote(subject.input.string()) << " --focus " << quote(subject.focus)
             << " --labelsmoothing " << subject.smoothing << " --soft 0 --boundary " << boundary
-            << " --position=" << listed(view.position) << " --target=" << listed(view.target)
-            << " --up=" << listed(view.up) << " --scale " << view.halfHeight
-            << " --projection orthographic --size " << view.size << 'x' << view.size
+            << " --position=" << toOptionValue(view.position)
+            << " --target=" << toOptionValue(view.target) << " --up=" << toOptionValue(view.up)
+            << " --scale " << view.halfHeight << " --projection orthographic --size " << view.size
+            << 'x' << view.size
             << " --transfer '{\"extinction\": [[0, 100]], \"albedo\": [[0, 0.5, 0.5, 0.5]]}'"
             << " --samples 4 --bounces 1 --layers depth --progress none --output "
-            << quoted(picture.string());
+            << quote(image.string());
   runFenestra(arguments.str());
-  return *readImage(picture).find("Z");
+  return *readImage(image).find("Z");
 }
 
 } // namespace fenestra::accuracy

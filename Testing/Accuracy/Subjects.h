@@ -27,7 +27,7 @@ Indicator readIndicator(const Subject& subject);
 
 /// View `number` of `count` around the patient's superior axis, framing the whole focus; number 0
 /// is from the front. `elevation` in degrees.
-View viewAround(const FocusField& field, int number, int count, int size, double elevation = 0.0);
+View makeView(const FocusField& field, int number, int count, int size, double elevation = 0.0);
 
 /// Clipping surface of `--clip surface --boundary …`, the subject of the check: depth (mm from the
 /// eye's plane) at a raster position.
@@ -36,8 +36,7 @@ Surface clippingSurface(const Subject& subject, const View& view, const std::str
 /// Depth of the visible point at each pixel, mm, row by row from the top, in a clipped picture with
 /// everything opaque. Writes the picture to `folder`. Requires an orthographic view and a Slicer
 /// scene.
-std::vector<float> depthsInPicture(const Subject& subject, const View& view,
-                                   const std::string& boundary,
-                                   const std::filesystem::path& folder);
+std::vector<float> renderDepths(const Subject& subject, const View& view,
+                                const std::string& boundary, const std::filesystem::path& folder);
 
 } // namespace fenestra::accuracy

@@ -32,7 +32,7 @@ public:
       : m_domain(scene.volume.grid, scene.crop),
         m_medium(medium),
         m_clip(scene.clip),
-        m_majorant(greatestExtinction(scene)) {}
+        m_majorant(maxExtinction(scene)) {}
 
   double sampleCollision(const Ray& ray, const Interval& range, const Vec2& first, Random& random,
                          Counters& counters) const {
@@ -52,7 +52,7 @@ public:
 
 private:
   /// Greatest extinction over the volume's range of scalars, mm^-1.
-  static double greatestExtinction(const SceneView& scene) {
+  static double maxExtinction(const SceneView& scene) {
     const TransferFunction& transfer = scene.transfer;
     const double greatest =
         transfer.extinction.range(scene.volume.minimum, scene.volume.maximum)[1];
@@ -100,10 +100,10 @@ public:
 
   double sampleCollision(const Ray& ray, const Interval& range, const Vec2& first, Random& random,
                          Counters& counters) const {
-    const double wanted = toExponential(first.x());
+    const double target = toExponential(first.x());
     double distance = infinity;
     march(ray, range, random, counters, [&](double t, double opticalDepth) {
-      if (opticalDepth < wanted)
+      if (opticalDepth < target)
         return true;
       distance = t;
       return false;
@@ -149,8 +149,7 @@ private:
 /// Renders independent samples of every pixel by the readable estimator, with the tracker from
 /// `makeTracker(medium)`. Stops at settings.samples only.
 template <typename MakeTracker>
-Film tracePicture(const SceneView& scene, const RenderSettings& settings,
-                  MakeTracker&& makeTracker) {
+Film traceImage(const SceneView& scene, const RenderSettings& settings, MakeTracker&& makeTracker) {
   Film film(scene.camera.width(), scene.camera.height());
   const Sampler source(Sampling::independent, settings.seed);
   const std::atomic<bool> stop = false;

@@ -21,36 +21,36 @@ constexpr const char* knee =
     " {phantoms}/knee/knee.mrml --focus FemoralCartilage --materials none --size 32x32 "
     "--background 0,0,0\n";
 
-SceneCase caseOf(const std::string& line) {
+SceneCase makeCase(const std::string& line) {
   const TemporaryFolder folder;
   return readScenes(folder.write("table.txt", line), {"", "", samples}).front();
 }
 
-Image renderBy(const char* mode, const PreparedScene& scene, const RenderOptions& options,
-               std::uint64_t count, std::uint64_t seed) {
+Image renderMode(const char* mode, const PreparedScene& scene, const RenderOptions& options,
+                 std::uint64_t count, std::uint64_t seed) {
   RenderSettings settings = makeSettings(options, scene.background());
   settings.samples = count;
   settings.seed = seed;
-  return imageOf(findMode(mode).render(scene.view(), settings), scene);
+  return toImage(findMode(mode).render(scene.view(), settings), scene);
 }
 
 class UnbiasedMode : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(UnbiasedMode, PictureAgreesWithReadableMode) {
-  const RenderOptions options = caseOf(std::string("knee product") + knee).options();
+  const RenderOptions options = makeCase(std::string("knee product") + knee).options();
   const PreparedScene scene(options.scene);
-  const Image image = renderBy(GetParam(), scene, options, 96, 1);
-  const Image truth = renderBy("readable", scene, options, 96, 2);
+  const Image image = renderMode(GetParam(), scene, options, 96, 1);
+  const Image reference = renderMode("readable", scene, options, 96, 2);
   for (const int tile : {8, 32})
-    EXPECT_GT(agreementProbability(tileMeans(image, tile), tileMeans(truth, tile)), 1e-4);
+    EXPECT_GT(agreementProbability(tileMeans(image, tile), tileMeans(reference, tile)), 1e-4);
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, UnbiasedMode, ::testing::Values("product", "adaptive", "global"),
                          [](const auto& info) { return std::string(info.param); });
 
 /// Mean of R over the picture, relative to another picture's, minus 1; and its standard error.
-std::pair<double, double> biasOf(const Image& image, const Image& truth) {
-  const Image a = tileMeans(image, image.width), b = tileMeans(truth, truth.width);
+std::pair<double, double> measureBias(const Image& image, const Image& reference) {
+  const Image a = tileMeans(image, image.width), b = tileMeans(reference, reference.width);
   const double mean = b.find("R")->front();
   return {a.find("R")->front() / mean - 1.0,
           std::hypot(a.find("error.R")->front(), b.find("error.R")->front()) / mean};
@@ -58,11 +58,13 @@ std::pair<double, double> biasOf(const Image& image, const Image& truth) {
 
 /// Foot in voxels of 6 mm: steps of one voxel miss its skin.
 TEST(Marching, BiasShrinksWithShorterSteps) {
-  const RenderOptions options = caseOf(std::string("foot product") + foot).options();
+  const RenderOptions options = makeCase(std::string("foot product") + foot).options();
   const PreparedScene scene(options.scene);
-  const Image truth = renderBy("readable", scene, options, 128, 1);
-  const auto [whole, error] = biasOf(renderBy("marching", scene, options, 128, 2), truth);
-  const auto [half, halfError] = biasOf(renderBy("marching-half", scene, options, 128, 3), truth);
+  const Image reference = renderMode("readable", scene, options, 128, 1);
+  const auto [whole, error] =
+      measureBias(renderMode("marching", scene, options, 128, 2), reference);
+  const auto [half, halfError] =
+      measureBias(renderMode("marching-half", scene, options, 128, 3), reference);
   EXPECT_GT(std::abs(whole), 4.0 * error) << whole;
   EXPECT_LT(std::abs(half), std::abs(whole)) << half << " ± " << halfError;
 }
@@ -162,7 +164,7 @@ TEST(CurveRecords, MergingReplacesTheSameSceneAndMode) {
   const std::vector<CurveRecord> measured = {
       {"b", "product", "readable", 2e-3, idealCurve({4.0})},
       {"a", "readable", "oracle", 1e-3, idealCurve({5.0, 6.0, 7.0})}};
-  const auto all = merged(readCurves(folder.path()), measured, {"a", "b"});
+  const auto all = mergeCurves(readCurves(folder.path()), measured, {"a", "b"});
   ASSERT_EQ(all.size(), 3U);
   EXPECT_EQ(all[0].mode, "readable");
   EXPECT_EQ(all[0].points.size(), 3U);

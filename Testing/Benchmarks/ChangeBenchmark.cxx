@@ -22,12 +22,17 @@ struct Change {
   std::function<void(RenderRequest&)> apply;
 };
 
-std::string text(const UpdatedStages& made) {
-  const std::pair<const char*, bool> stages[] = {
-      {"volume", made.volume}, {"focus", made.focus},         {"transfer function", made.transfer},
-      {"camera", made.camera}, {"lights", made.lights},       {"clip", made.clip},
-      {"ranges", made.ranges}, {"majorants", made.majorants}, {"labels' shares", made.labelWeights},
-      {"colours", made.tint}};
+std::string listStages(const UpdatedStages& made) {
+  const std::pair<const char*, bool> stages[] = {{"volume", made.volume},
+                                                 {"focus", made.focus},
+                                                 {"transfer function", made.transfer},
+                                                 {"camera", made.camera},
+                                                 {"lights", made.lights},
+                                                 {"clip", made.clip},
+                                                 {"ranges", made.minMaxGrid},
+                                                 {"majorants", made.majorants},
+                                                 {"labels' shares", made.labelWeights},
+                                                 {"colours", made.tint}};
   std::string list;
   for (const auto& [name, isMade] : stages)
     if (isMade)
@@ -36,7 +41,7 @@ std::string text(const UpdatedStages& made) {
 }
 
 /// Seconds for one sample in every pixel.
-double firstSample(const PreparedScene& scene, RenderSettings settings) {
+double timeFirstSample(const PreparedScene& scene, RenderSettings settings) {
   settings.samples = 1;
   settings.noise = -1.0;
   RenderMonitor monitor;
@@ -46,13 +51,13 @@ double firstSample(const PreparedScene& scene, RenderSettings settings) {
 }
 
 /// Makes a scene, prints the row of that change, and returns it.
-PreparedScene tell(const char* change, const RenderSettings& settings,
-                   const std::function<PreparedScene()>& changed) {
+PreparedScene printChange(const char* change, const RenderSettings& settings,
+                          const std::function<PreparedScene()>& prepare) {
   const Stopwatch watch;
-  PreparedScene scene = changed();
+  PreparedScene scene = prepare();
   const double made = watch.seconds();
-  std::cout << "| " << change << " | " << text(scene.updatedStages()) << " | " << made << " | "
-            << made + firstSample(scene, settings) << " |\n";
+  std::cout << "| " << change << " | " << listStages(scene.updatedStages()) << " | " << made
+            << " | " << made + timeFirstSample(scene, settings) << " |\n";
   return scene;
 }
 
@@ -66,12 +71,12 @@ void measure(const std::string& other, const RenderOptions& options) {
   std::cout << "| change | made anew | seconds | and with the first sample |\n|---|---|---|---|\n"
             << std::fixed << std::setprecision(3);
   const RenderSettings& settings = options.settings;
-  const PreparedScene before =
-      tell("nothing, from the start", settings, [&] { return PreparedScene(options.scene); });
+  const PreparedScene before = printChange("nothing, from the start", settings,
+                                           [&] { return PreparedScene(options.scene); });
   for (const Change& change : changes) {
     RenderRequest request = options.scene;
     change.apply(request);
-    tell(change.name, settings, [&] { return before.changed(request); });
+    printChange(change.name, settings, [&] { return before.withRequest(request); });
   }
   if (!before.tint() && !before.mixture())
     return;
@@ -80,9 +85,9 @@ void measure(const std::string& other, const RenderOptions& options) {
     request.materialChanges.push_back(other + ": color=" + color);
     return request;
   };
-  const PreparedScene blue = tell("a segment's colour, for the first time", settings,
-                                  [&] { return before.changed(colored("#3060c0")); });
-  tell("its colour again", settings, [&] { return blue.changed(colored("#c06030")); });
+  const PreparedScene blue = printChange("a segment's colour, for the first time", settings,
+                                         [&] { return before.withRequest(colored("#3060c0")); });
+  printChange("its colour again", settings, [&] { return blue.withRequest(colored("#c06030")); });
 }
 
 } // namespace

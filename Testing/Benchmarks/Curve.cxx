@@ -21,23 +21,23 @@ Sample measure(const Mode& mode, const PreparedScene& scene, const RenderSetting
   const double before = cpuSeconds();
   const Film film = mode.render(scene.view(), settings);
   const double seconds = cpuSeconds() - before;
-  const Image image = imageOf(film, scene);
+  const Image image = toImage(film, scene);
 
   // The whole picture is one tile. Channels of one path are correlated: error of their mean <= mean
   // of their errors.
   const int whole = std::max(image.width, image.height);
-  const Image mean = tileMeans(image, whole), truth = tileMeans(reference, whole);
+  const Image mean = tileMeans(image, whole), referenceMean = tileMeans(reference, whole);
   Sample sample{seconds, compareImages(image, reference).relMse, 0.0, 0.0, 0.0};
   for (const std::string channel : {"R", "G", "B"}) {
-    const double scale = 1.0 / (3.0 * truth.find(channel)->front());
-    sample.bias += scale * (mean.find(channel)->front() - truth.find(channel)->front());
+    const double scale = 1.0 / (3.0 * referenceMean.find(channel)->front());
+    sample.bias += scale * (mean.find(channel)->front() - referenceMean.find(channel)->front());
     sample.ownError += scale * mean.find("error." + channel)->front();
-    sample.referenceError += scale * truth.find("error." + channel)->front();
+    sample.referenceError += scale * referenceMean.find("error." + channel)->front();
   }
   return sample;
 }
 
-Point summarise(std::uint64_t samples, const std::vector<Sample>& renders) {
+Point summarize(std::uint64_t samples, const std::vector<Sample>& renders) {
   const auto n = static_cast<double>(renders.size());
   const auto mean = [&](auto field) {
     return std::transform_reduce(renders.begin(), renders.end(), 0.0, std::plus<>(), field) / n;
@@ -60,24 +60,24 @@ Point summarise(std::uint64_t samples, const std::vector<Sample>& renders) {
 
 std::vector<Point> measureCurve(const Mode& mode, const PreparedScene& scene,
                                 const RenderSettings& settings, const Image& reference,
-                                const CurveSettings& wanted) {
+                                const CurveSettings& limits) {
   std::vector<Point> curve;
   double spent = 0.0;
   RenderSettings used = settings;
-  for (used.samples = wanted.samples;; used.samples *= 2) {
+  for (used.samples = limits.samples;; used.samples *= 2) {
     std::vector<Sample> renders;
-    const auto affordable = [&](double seconds) { return spent + seconds <= wanted.budget; };
+    const auto affordable = [&](double seconds) { return spent + seconds <= limits.budget; };
     if (!curve.empty() && !affordable(2.0 * curve.back().cpuSeconds))
       return curve;
-    for (int seed = 0; seed < wanted.seeds; ++seed) {
+    for (int seed = 0; seed < limits.seeds; ++seed) {
       used.seed = static_cast<std::uint64_t>(seed);
       renders.push_back(measure(mode, scene, used, reference));
       spent += renders.back().cpuSeconds;
       if (!affordable(renders.back().cpuSeconds))
         break;
     }
-    curve.push_back(summarise(used.samples, renders));
-    if (curve.back().relMse < wanted.leastRelMse)
+    curve.push_back(summarize(used.samples, renders));
+    if (curve.back().relMse < limits.leastRelMse)
       return curve;
   }
 }

@@ -32,7 +32,7 @@ struct Point {
 /// Measures a mode's curve. `settings`: the scene's; their samples and seed are ignored.
 std::vector<Point> measureCurve(const Mode& mode, const PreparedScene& scene,
                                 const RenderSettings& settings, const Image& reference,
-                                const CurveSettings& wanted);
+                                const CurveSettings& limits);
 
 /// Efficiency 1 / (relMSE * CPU seconds) near a relMSE: interpolated linearly in logarithms where
 /// the curve crosses that relMSE, else taken from the nearest point. Empty without a positive

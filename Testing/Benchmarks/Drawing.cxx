@@ -13,14 +13,14 @@ constexpr double panelWidth = 360.0, panelHeight = 310.0, legendHeight = 34.0;
 constexpr double left = 52.0, right = 14.0, top = 28.0, bottom = 44.0; ///< margins of a panel
 
 /// Okabe and Ito's colours, which colour-blind readers can distinguish.
-constexpr std::array<const char*, 7> colours = {"#d55e00", "#0072b2", "#009e73", "#e69f00",
-                                                "#cc79a7", "#56b4e9", "#000000"};
+constexpr std::array<const char*, 7> colors = {"#d55e00", "#0072b2", "#009e73", "#e69f00",
+                                               "#cc79a7", "#56b4e9", "#000000"};
 
-const char* colourOf(const std::string& mode) {
+const char* modeColor(const std::string& mode) {
   std::size_t i = 0;
   while (i < modes().size() && mode != modes()[i].name)
     ++i;
-  return colours[i % colours.size()];
+  return colors[i % colors.size()];
 }
 
 /// Logarithmic axis over whole decades.
@@ -44,7 +44,7 @@ struct Panel {
   Axis y{.from = panelHeight - bottom, .to = top};
 };
 
-std::vector<Panel> panelsOf(const std::vector<CurveRecord>& curves) {
+std::vector<Panel> makePanels(const std::vector<CurveRecord>& curves) {
   std::vector<Panel> panels;
   for (const CurveRecord& curve : curves) {
     if (panels.empty() || panels.back().scene != curve.scene)
@@ -61,12 +61,13 @@ std::vector<Panel> panelsOf(const std::vector<CurveRecord>& curves) {
   return panels;
 }
 
-void text(std::ostream& svg, double x, double y, const char* anchor, const std::string& content) {
+void drawText(std::ostream& svg, double x, double y, const char* anchor,
+              const std::string& content) {
   svg << "<text x='" << x << "' y='" << y << "' text-anchor='" << anchor << "'>" << content
       << "</text>\n";
 }
 
-void line(std::ostream& svg, double x1, double y1, double x2, double y2, const char* style) {
+void drawLine(std::ostream& svg, double x1, double y1, double x2, double y2, const char* style) {
   svg << "<line x1='" << x1 << "' y1='" << y1 << "' x2='" << x2 << "' y2='" << y2 << "' " << style
       << "/>\n";
 }
@@ -79,43 +80,45 @@ void drawGrid(std::ostream& svg, const Panel& panel) {
   const char* const faint = "stroke='#dddddd'";
   for (int i = panel.x.first; i <= panel.x.last; ++i) {
     const double x = panel.x.at(std::pow(10.0, i));
-    line(svg, x, panel.y.from, x, panel.y.to, faint);
-    text(svg, x, panel.y.from + 17.0, "middle", powerOfTen(i));
+    drawLine(svg, x, panel.y.from, x, panel.y.to, faint);
+    drawText(svg, x, panel.y.from + 17.0, "middle", powerOfTen(i));
   }
   for (int i = panel.y.first; i <= panel.y.last; ++i) {
     const double y = panel.y.at(std::pow(10.0, i));
-    line(svg, panel.x.from, y, panel.x.to, y, faint);
-    text(svg, panel.x.from - 6.0, y + 4.0, "end", powerOfTen(i));
+    drawLine(svg, panel.x.from, y, panel.x.to, y, faint);
+    drawText(svg, panel.x.from - 6.0, y + 4.0, "end", powerOfTen(i));
   }
   const double quoted = panel.y.at(quotedRelMse);
-  line(svg, panel.x.from, quoted, panel.x.to, quoted, "stroke='#777777' stroke-dasharray='4 3'");
+  drawLine(svg, panel.x.from, quoted, panel.x.to, quoted,
+           "stroke='#777777' stroke-dasharray='4 3'");
 }
 
 void drawCurve(std::ostream& svg, const Panel& panel, const CurveRecord& curve) {
-  const char* const colour = colourOf(curve.mode);
+  const char* const color = modeColor(curve.mode);
   std::ostringstream path, dots;
   for (const Point& point : curve.points) {
     if (!(point.relMse > 0.0))
       continue;
     const double x = panel.x.at(point.cpuSeconds), y = panel.y.at(point.relMse);
     path << x << ',' << y << ' ';
-    dots << "<circle cx='" << x << "' cy='" << y << "' r='2.5' fill='" << colour << "'/>";
+    dots << "<circle cx='" << x << "' cy='" << y << "' r='2.5' fill='" << color << "'/>";
   }
-  svg << "<polyline points='" << path.str() << "' fill='none' stroke='" << colour
+  svg << "<polyline points='" << path.str() << "' fill='none' stroke='" << color
       << "' stroke-width='1.8'/>" << dots.str() << '\n';
 }
 
 void drawPanel(std::ostream& svg, const Panel& panel) {
   const double middle = (panel.x.from + panel.x.to) / 2.0;
-  text(svg, middle, top - 10.0, "middle", "<tspan font-weight='bold'>" + panel.scene + "</tspan>");
+  drawText(svg, middle, top - 10.0, "middle",
+           "<tspan font-weight='bold'>" + panel.scene + "</tspan>");
   if (panel.x.first > panel.x.last)
-    return text(svg, middle, panelHeight / 2.0, "middle", "not present");
+    return drawText(svg, middle, panelHeight / 2.0, "middle", "not present");
   drawGrid(svg, panel);
   for (const CurveRecord* curve : panel.curves)
     drawCurve(svg, panel, *curve);
-  text(svg, middle, panelHeight - 8.0, "middle", "CPU seconds");
+  drawText(svg, middle, panelHeight - 8.0, "middle", "CPU seconds");
   svg << "<g transform='translate(14," << panelHeight / 2.0 << ") rotate(-90)'>";
-  text(svg, 0.0, 0.0, "middle", "relMSE");
+  drawText(svg, 0.0, 0.0, "middle", "relMSE");
   svg << "</g>\n";
 }
 
@@ -123,8 +126,8 @@ void drawLegend(std::ostream& svg) {
   double x = left;
   for (const Mode& mode : modes()) {
     svg << "<line x1='" << x << "' y1='18' x2='" << x + 26.0 << "' y2='18' stroke='"
-        << colourOf(mode.name) << "' stroke-width='3'/>\n";
-    text(svg, x + 32.0, 22.0, "start", mode.name);
+        << modeColor(mode.name) << "' stroke-width='3'/>\n";
+    drawText(svg, x + 32.0, 22.0, "start", mode.name);
     x += 60.0 + 7.5 * static_cast<double>(std::string(mode.name).size());
   }
 }
@@ -132,7 +135,7 @@ void drawLegend(std::ostream& svg) {
 } // namespace
 
 std::string drawCurves(const std::vector<CurveRecord>& curves) {
-  const std::vector<Panel> panels = panelsOf(curves);
+  const std::vector<Panel> panels = makePanels(curves);
   const int count = static_cast<int>(panels.size());
   const int columns = std::clamp(count, 2, panelsPerRow); // at least two, for the legend's width
   const int rows = (count + columns - 1) / columns;

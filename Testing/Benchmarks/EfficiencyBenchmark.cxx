@@ -52,7 +52,7 @@ struct Options {
 };
 
 /// Width and height from --size, "WxH".
-std::optional<std::pair<int, int>> sizeOf(const OptionValues& values) {
+std::optional<std::pair<int, int>> parseSize(const OptionValues& values) {
   const auto text = values.text("size");
   if (!text)
     return std::nullopt;
@@ -62,7 +62,7 @@ std::optional<std::pair<int, int>> sizeOf(const OptionValues& values) {
   return std::pair(width, height);
 }
 
-Options optionsOf(const OptionValues& values) {
+Options parseOptions(const OptionValues& values) {
   const std::filesystem::path build = FENESTRA_BENCHMARK_FOLDER;
   const auto folder = [&](const char* name, const std::filesystem::path& otherwise) {
     return std::filesystem::path(values.text(name).value_or(otherwise.string()));
@@ -85,7 +85,7 @@ Options optionsOf(const OptionValues& values) {
   options.reference.seconds = values.number("limit").value_or(options.reference.seconds);
   options.reference.folder = folder("references", build / "references");
   options.threads = static_cast<int>(values.integer("threads").value_or(0));
-  options.size = sizeOf(values);
+  options.size = parseSize(values);
   options.output = folder("output", build / "report");
   return options;
 }
@@ -115,7 +115,7 @@ std::vector<CurveRecord> measureScene(const SceneCase& sceneCase, const Options&
   return curves;
 }
 
-std::string processor() {
+std::string processorName() {
   std::ifstream file("/proc/cpuinfo");
   for (std::string line; std::getline(file, line);)
     if (line.starts_with("model name"))
@@ -123,9 +123,9 @@ std::string processor() {
   return "an unknown processor";
 }
 
-std::string notes(const Options& options) {
+std::string makeNotes(const Options& options) {
   std::ostringstream out;
-  out << "Last run on " << processor() << ", " << std::thread::hardware_concurrency()
+  out << "Last run on " << processorName() << ", " << std::thread::hardware_concurrency()
       << " threads, with " << options.curve.budget << " CPU seconds a curve and up to "
       << options.curve.seeds << " seeds a point.";
   return out.str();
@@ -135,7 +135,7 @@ int benchmark(int argc, char** argv) {
   const std::optional<OptionValues> values = parseCommandLine(syntax, argc, argv, 1);
   if (!values)
     return 0;
-  const Options options = optionsOf(*values);
+  const Options options = parseOptions(*values);
   std::vector<std::string> names;
   for (const SceneCase& scene : options.table)
     names.push_back(scene.name);
@@ -145,8 +145,8 @@ int benchmark(int argc, char** argv) {
       continue;
     // Written after each scene: a stopped run leaves its finished scenes.
     writeReport(options.output,
-                merged(readCurves(options.output), measureScene(scene, options), names),
-                notes(options));
+                mergeCurves(readCurves(options.output), measureScene(scene, options), names),
+                makeNotes(options));
   }
   std::cout << (options.output / "README.md").string() << std::endl;
   return 0;

@@ -32,7 +32,7 @@ const CommandSyntax syntax = {
 
 /// Result and CPU seconds of some work.
 template <typename Work>
-auto timed(const Work& work, double& seconds) {
+auto timeWork(const Work& work, double& seconds) {
   const double before = cpuSeconds();
   auto result = work();
   seconds = cpuSeconds() - before;
@@ -54,19 +54,20 @@ struct Row {
   }
 };
 
-Row measured(const PreparedScene& scene, const RenderSettings& settings, const Image& reference) {
+Row measureRender(const PreparedScene& scene, const RenderSettings& settings,
+                  const Image& reference) {
   Row row;
-  const Film film = timed(
+  const Film film = timeWork(
       [&] {
         RenderMonitor monitor;
         return render(scene.view(), settings, monitor).film;
       },
       row.render);
-  const FilteredImage picture = timed([&] { return denoised(film, scene); }, row.filter);
-  row.raw = compareImages(imageOf(film, scene), reference).relMse;
+  const FilteredImage denoised = timeWork([&] { return denoise(film, scene); }, row.filter);
+  row.raw = compareImages(toImage(film, scene), reference).relMse;
   row.filtered =
-      compareImages(filteredColors(picture, film.width(), film.height()), reference).relMse;
-  row.estimated = picture.estimatedError;
+      compareImages(makeFilteredImage(denoised, film.width(), film.height()), reference).relMse;
+  row.estimated = denoised.estimatedError;
   return row;
 }
 
@@ -82,7 +83,7 @@ void print(const std::string& scene, std::uint64_t samples, const Row& row, doub
 }
 
 /// Throws Error (usage).
-std::uint64_t countOf(const std::string& text) {
+std::uint64_t parseCount(const std::string& text) {
   std::uint64_t count = 0;
   const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), count);
   if (failed != std::errc() || end != text.data() + text.size() || count == 0)
@@ -90,10 +91,10 @@ std::uint64_t countOf(const std::string& text) {
   return count;
 }
 
-std::vector<std::uint64_t> countsOf(const OptionValues& values) {
+std::vector<std::uint64_t> parseCounts(const OptionValues& values) {
   std::vector<std::uint64_t> counts;
   for (const std::string& text : values.list("counts"))
-    counts.push_back(countOf(text));
+    counts.push_back(parseCount(text));
   return counts.empty() ? std::vector<std::uint64_t>{1, 2, 4, 8, 16, 64, 1024} : counts;
 }
 
@@ -109,13 +110,13 @@ void measureScene(const SceneCase& sceneCase, const OptionValues& values,
   RenderSettings settings = makeSettings(options, scene.background());
   const Reference reference = findReference(sceneCase, scene, settings, wanted);
   double march = 0.0;
-  timed([&] { return computeFeatures(scene.view()); }, march);
-  for (const std::uint64_t count : countsOf(values)) {
+  timeWork([&] { return computeFeatures(scene.view()); }, march);
+  for (const std::uint64_t count : parseCounts(values)) {
     settings.samples = count;
     const std::uint64_t seeds = count < 1024 ? values.integer("seeds").value_or(3) : 1;
     Row mean;
     for (settings.seed = 1; settings.seed <= seeds; ++settings.seed)
-      mean.add(measured(scene, settings, reference.image), 1.0 / static_cast<double>(seeds));
+      mean.add(measureRender(scene, settings, reference.image), 1.0 / static_cast<double>(seeds));
     print(sceneCase.name, count, mean, march);
   }
 }

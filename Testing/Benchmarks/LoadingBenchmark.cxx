@@ -33,7 +33,7 @@ namespace {
 using Path = std::filesystem::path;
 
 /// Body with fat, muscle, lungs and ribs, with noise as in a CT: gzip halves its size.
-std::vector<std::int16_t> body(std::int64_t edge) {
+std::vector<std::int16_t> makeBody(std::int64_t edge) {
   std::vector<std::int16_t> voxels;
   voxels.reserve(static_cast<std::size_t>(edge * edge * edge));
   std::uint64_t state = 1;
@@ -74,7 +74,7 @@ void writeRaw(const Path& path, std::int64_t edge, const std::vector<std::int16_
              static_cast<std::streamsize>(voxels.size() * sizeof(voxels[0])));
 }
 
-void readBare(const std::string& file) {
+void readWithItk(const std::string& file) {
   const auto reader = itk::ImageFileReader<itk::Image<std::int16_t, 3>>::New();
   reader->SetImageIO(itk::NrrdImageIO::New());
   reader->SetFileName(file);
@@ -85,14 +85,14 @@ struct Cost {
   double seconds = infinity, cpuSeconds = infinity; ///< from start to end
   double peakMegabytes = infinity;                  ///< of 10^6 bytes
 
-  void keepLeast(const Cost& other) {
+  void keepMinimum(const Cost& other) {
     seconds = std::min(seconds, other.seconds);
     cpuSeconds = std::min(cpuSeconds, other.cpuSeconds);
     peakMegabytes = std::min(peakMegabytes, other.peakMegabytes);
   }
 };
 
-Cost costOf(const std::vector<std::string>& command) {
+Cost measureCost(const std::vector<std::string>& command) {
   std::vector<char*> arguments;
   for (const std::string& word : command)
     arguments.push_back(const_cast<char*>(word.c_str()));
@@ -128,10 +128,10 @@ void compare(const std::string& self, const Path& folder, const std::string& nam
   Cost bare;
   Cost first;
   for (int run = 0; run < runs; ++run) {
-    bare.keepLeast(costOf({self, "--bare", file}));
-    first.keepLeast(
-        costOf({FENESTRA_EXECUTABLE, file, "--clip", "none", "--size", "64x64", "--samples", "1",
-                "--progress", "none", "--output", folder / "picture.exr"}));
+    bare.keepMinimum(measureCost({self, "--bare", file}));
+    first.keepMinimum(
+        measureCost({FENESTRA_EXECUTABLE, file, "--clip", "none", "--size", "64x64", "--samples",
+                     "1", "--progress", "none", "--output", folder / "picture.exr"}));
   }
   print("ITK " + name, bare);
   print("Fenestra " + name, first);
@@ -143,7 +143,7 @@ void compare(const std::string& self, const Path& folder, const std::string& nam
 void measure(const std::string& self, std::int64_t edge, int runs) {
   const TemporaryFolder folder;
   {
-    const std::vector<std::int16_t> voxels = body(edge);
+    const std::vector<std::int16_t> voxels = makeBody(edge);
     std::cout << edge << "^3 voxels of 16 bits: " << voxels.size() * 2 / 1'000'000 << " MB\n"
               << std::setw(32) << "s" << std::setw(10) << "CPU s" << std::setw(10) << "peak MB"
               << std::endl;
@@ -163,7 +163,7 @@ int main(int count, char** arguments) {
   const std::vector<std::string> words(arguments, arguments + count);
   try {
     if (words.size() == 3 && words[1] == "--bare")
-      fenestra::readBare(words[2]);
+      fenestra::readWithItk(words[2]);
     else
       fenestra::measure(words[0], words.size() > 1 ? std::stoi(words[1]) : 512,
                         words.size() > 2 ? std::stoi(words[2]) : 3);

@@ -28,11 +28,11 @@ const Option flags[] = {
 const CommandSyntax syntax = {"LookBenchmark", "Measures how pictures look.", {}, flags};
 
 /// Filtered picture as displayed, R G B A by pixel, before nothing.
-std::vector<float> displayed(const PreparedScene& scene, RenderSettings settings) {
+std::vector<float> renderDisplay(const PreparedScene& scene, RenderSettings settings) {
   settings.path.background.kind = Background::Kind::transparent;
   RenderMonitor monitor;
   const Film film = render(scene.view(), settings, monitor).film;
-  const Image image = filteredColors(denoised(film, scene), film.width(), film.height());
+  const Image image = makeFilteredImage(denoise(film, scene), film.width(), film.height());
   std::vector<float> rgba;
   for (std::size_t i = 0; i < image.find("A")->size(); ++i)
     for (const char* channel : {"R", "G", "B", "A"})
@@ -117,17 +117,17 @@ void printContrast(const PreparedScene& scene, const std::vector<float>& rgba) {
       if (isOpaque(pixel) && distance >= nearest && distance <= farthest)
         (edge.isFocus(column, row) ? inside : outside).add(pixel);
     }
-  const auto seen = [&](const MeanColor& color, ColorVision sight) {
+  const auto seenLab = [&](const MeanColor& color, ColorVision sight) {
     return toLab(simulateVision(sight, color.linear()));
   };
   std::cout << "| ";
   for (const ColorVision sight : {ColorVision::normal, ColorVision::protan, ColorVision::deutan})
-    std::cout << "| " << deltaE76(seen(inside, sight), seen(outside, sight)) << ' ';
+    std::cout << "| " << deltaE76(seenLab(inside, sight), seenLab(outside, sight)) << ' ';
   std::cout << "| " << std::abs(toLab(inside.linear()).L - toLab(outside.linear()).L) << " | ";
   if (const TintContrast* tint = scene.tintContrast())
-    std::cout << told(*tint);
+    std::cout << summary(*tint);
   else
-    std::cout << told(scene.contrast());
+    std::cout << summary(scene.contrast());
   std::cout << " |" << std::endl;
 }
 
@@ -140,7 +140,7 @@ void measureScene(const SceneCase& sceneCase) {
   RenderOptions options = sceneCase.options();
   options.scene.features = options.scene.measure = true;
   const PreparedScene scene(options.scene);
-  const std::vector<float> rgba = displayed(scene, makeSettings(options, scene.background()));
+  const std::vector<float> rgba = renderDisplay(scene, makeSettings(options, scene.background()));
   if (scene.focus())
     printContrast(scene, rgba);
   else

@@ -15,7 +15,7 @@
 namespace fenestra::benchmarks {
 namespace {
 
-constexpr int pictureSize = 512;
+constexpr int imageSize = 512;
 
 /// Knee with its clip, with access to all parts.
 struct Subject {
@@ -24,24 +24,24 @@ struct Subject {
   PreparedScene scene;
   std::vector<ControlPoint> controlPoints;
 
-  static RenderRequest requestOf(const SceneCase& sceneCase) {
+  static RenderRequest makeRequest(const SceneCase& sceneCase) {
     RenderRequest request = sceneCase.options().scene;
-    request.width = request.height = pictureSize;
+    request.width = request.height = imageSize;
     return request;
   }
 
   explicit Subject(const SceneCase& sceneCase)
       : label(sceneCase.name),
-        request(requestOf(sceneCase)),
+        request(makeRequest(sceneCase)),
         scene(request),
-        controlPoints(surface().controlPoints) {
+        controlPoints(buildSurface().controlPoints) {
     const Size3& size = scene.volume().grid.size;
     label += ", " + std::to_string(size.x()) + "x" + std::to_string(size.y()) + "x" +
              std::to_string(size.z());
   }
 
   Domain domain() const { return {scene.volume().grid, scene.view().crop}; }
-  ClippingSurface surface(Boundary boundary = Boundary::spline) const {
+  ClippingSurface buildSurface(Boundary boundary = Boundary::spline) const {
     return buildClippingSurface(scene.camera(), domain(), *scene.focus(), {.boundary = boundary});
   }
 };
@@ -68,7 +68,7 @@ struct Probe {
   explicit Probe(const Subject& subjectIn) : subject(subjectIn) {
     const Vec3 size = subject.scene.volume().grid.size.cast<double>();
     while (collisions.size() < count) {
-      const Vec2 pixel = pictureSize * random.uniform2();
+      const Vec2 pixel = imageSize * random.uniform2();
       const Ray ray = parts.camera.makeRay(pixel.x(), pixel.y());
       cameraRays.push_back(ray);
       const double t = tracker.sampleCollision(ray, visibleInterval(parts.clip, ray),
@@ -143,9 +143,10 @@ void addFirstPass(const Subject& subject) {
     benchmark::RegisterBenchmark(name,
                                  [&, label, seconds, boundary](benchmark::State& state) {
                                    for (auto _ : state)
-                                     state.SetIterationTime(seconds(subject.surface(boundary)));
-                                   state.SetLabel(label + ", " + std::to_string(pictureSize) + "x" +
-                                                  std::to_string(pictureSize) + " pixels");
+                                     state.SetIterationTime(
+                                         seconds(subject.buildSurface(boundary)));
+                                   state.SetLabel(label + ", " + std::to_string(imageSize) + "x" +
+                                                  std::to_string(imageSize) + " pixels");
                                  })
         ->UseManualTime()
         ->Unit(benchmark::kMillisecond);

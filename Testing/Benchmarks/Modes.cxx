@@ -13,14 +13,14 @@ Film renderProduct(const SceneView& scene, const RenderSettings& settings) {
 }
 
 Film renderGlobal(const SceneView& scene, const RenderSettings& settings) {
-  return tracePicture(scene, settings, [&]<typename Voxel>(const Medium<Voxel>& medium) {
+  return traceImage(scene, settings, [&]<typename Voxel>(const Medium<Voxel>& medium) {
     return GlobalTracker<Voxel>(scene, medium);
   });
 }
 
 /// Renders with steps of `step` voxels.
 Film renderMarching(const SceneView& scene, const RenderSettings& settings, double step) {
-  return tracePicture(scene, settings, [&]<typename Voxel>(const Medium<Voxel>& medium) {
+  return traceImage(scene, settings, [&]<typename Voxel>(const Medium<Voxel>& medium) {
     return MarchingTracker<Voxel>(scene, medium, step);
   });
 }

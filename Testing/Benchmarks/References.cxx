@@ -22,7 +22,7 @@ namespace {
 /// Seeds that no measured render uses.
 constexpr std::uint64_t firstReferenceSeed = std::uint64_t{1} << 40;
 
-constexpr const char* colours[] = {"R", "G", "B"};
+constexpr const char* colors[] = {"R", "G", "B"};
 
 std::vector<float>& channel(Image& image, const std::string& name) {
   return image.channels.at(name);
@@ -30,7 +30,7 @@ std::vector<float>& channel(Image& image, const std::string& name) {
 
 /// Adds one more picture to the mean of `parts` pictures of equal quality.
 void addPart(Image& sum, const Image& part, double parts) {
-  for (const char* name : colours) {
+  for (const char* name : colors) {
     std::vector<float>& mean = channel(sum, name);
     std::vector<float>& error = channel(sum, std::string("error.") + name);
     const std::vector<float>& other = *part.find(name);
@@ -61,29 +61,29 @@ Image accumulate(const ReferenceSettings& wanted, std::uint64_t samples, RenderP
   return sum;
 }
 
-Image byProduct(const PreparedScene& scene, RenderSettings settings,
-                const ReferenceSettings& wanted) {
+Image renderByProduct(const PreparedScene& scene, RenderSettings settings,
+                      const ReferenceSettings& wanted) {
   settings.samples = 16;
   return accumulate(wanted, settings.samples, [&](std::uint64_t seed) {
     settings.seed = seed;
-    return imageOf(findMode("product").render(scene.view(), settings), scene);
+    return toImage(findMode("product").render(scene.view(), settings), scene);
   });
 }
 
 /// Lights from a file, or from a preset.
-std::vector<Light> lightsOf(const std::string& name) {
+std::vector<Light> readPresetLights(const std::string& name) {
   const std::string_view preset = findResource("lights/" + name + ".json");
   return preset.empty() ? readLights(name) : parseLights(preset, name);
 }
 
-Image byOracle(const RenderOptions& options, const PreparedScene& scene,
-               const RenderSettings& settings, const ReferenceSettings& wanted) {
+Image renderByOracle(const RenderOptions& options, const PreparedScene& scene,
+                     const RenderSettings& settings, const ReferenceSettings& wanted) {
   const SceneView parts = scene.view();
   if (!std::holds_alternative<ClipNone>(parts.clip))
     throw inputError("scenes.txt", "asks the oracle for a clipped reference; use product");
   const oracle::OracleScene subject{.volume = parts.volume,
                                     .transfer = parts.transfer,
-                                    .lights = lightsOf(options.scene.lights),
+                                    .lights = readPresetLights(options.scene.lights),
                                     .pose = parts.camera.pose(),
                                     .width = parts.camera.width(),
                                     .height = parts.camera.height(),
@@ -96,19 +96,18 @@ Image byOracle(const RenderOptions& options, const PreparedScene& scene,
   });
 }
 
-std::optional<Image> readIfThere(const std::filesystem::path& path) {
+std::optional<Image> readIfExists(const std::filesystem::path& path) {
   if (path.empty() || !std::filesystem::exists(path))
     return std::nullopt;
   return readImage(path);
 }
 
-std::optional<Reference> independentReference(const SceneCase& sceneCase,
-                                              const PreparedScene& scene) {
+std::optional<Reference> findIndependent(const SceneCase& sceneCase, const PreparedScene& scene) {
   if (sceneCase.maker != ReferenceMaker::independent)
     return std::nullopt;
   const std::string file = sceneCase.independent.string();
-  std::optional<Image> image = readIfThere(file + "_best.exr");
-  const std::optional<Image> errors = readIfThere(file + "_best_se.exr");
+  std::optional<Image> image = readIfExists(file + "_best.exr");
+  const std::optional<Image> errors = readIfExists(file + "_best_se.exr");
   if (!image || !errors || image->width != scene.camera().width() ||
       image->height != scene.camera().height())
     return std::nullopt;
@@ -117,8 +116,8 @@ std::optional<Reference> independentReference(const SceneCase& sceneCase,
 }
 
 /// Text that identifies the request of a cached reference.
-std::string identity(const SceneCase& sceneCase, const PreparedScene& scene,
-                     const ReferenceSettings& wanted) {
+std::string makeCacheKey(const SceneCase& sceneCase, const PreparedScene& scene,
+                         const ReferenceSettings& wanted) {
   std::string text = std::to_string(scene.camera().width()) + "x" +
                      std::to_string(scene.camera().height()) + " noise " +
                      std::to_string(wanted.noise);
@@ -135,7 +134,7 @@ Reference::Reference(Image imageIn, std::string makerIn)
     : image(std::move(imageIn)), maker(std::move(makerIn)) {
   double sum = 0.0;
   std::size_t count = 0;
-  for (const char* name : colours) {
+  for (const char* name : colors) {
     const std::vector<float>& means = *image.find(name);
     const std::vector<float>& errors = *image.find(std::string("error.") + name);
     for (std::size_t i = 0; i < means.size(); ++i)
@@ -147,26 +146,26 @@ Reference::Reference(Image imageIn, std::string makerIn)
 
 Reference findReference(const SceneCase& sceneCase, const PreparedScene& scene,
                         const RenderSettings& settings, const ReferenceSettings& wanted) {
-  if (std::optional<Reference> independent = independentReference(sceneCase, scene))
+  if (std::optional<Reference> independent = findIndependent(sceneCase, scene))
     return *std::move(independent);
   const std::string maker = sceneCase.maker == ReferenceMaker::oracle ? "oracle" : "product";
   const std::filesystem::path path = wanted.folder / (sceneCase.name + ".exr");
-  const std::string command = identity(sceneCase, scene, wanted);
-  if (std::optional<Image> kept = readIfThere(path))
-    if (kept->header["command"] == command && kept->header["maker"] == maker)
-      return Reference(*std::move(kept), maker);
+  const std::string command = makeCacheKey(sceneCase, scene, wanted);
+  if (std::optional<Image> cached = readIfExists(path))
+    if (cached->header["command"] == command && cached->header["maker"] == maker)
+      return Reference(*std::move(cached), maker);
   Image image = sceneCase.maker == ReferenceMaker::oracle
-                    ? byOracle(sceneCase.options(), scene, settings, wanted)
-                    : byProduct(scene, settings, wanted);
+                    ? renderByOracle(sceneCase.options(), scene, settings, wanted)
+                    : renderByProduct(scene, settings, wanted);
   image.header["command"] = command;
   image.header["maker"] = maker;
   std::filesystem::create_directories(wanted.folder);
-  writeImage(image, picturePlane(scene.camera()), path);
+  writeImage(image, makeImagePlane(scene.camera()), path);
   return Reference(std::move(image), maker);
 }
 
-Image imageOf(const Film& film, const PreparedScene& scene) {
-  return picture(film, scene.camera(), scene.clip(), {"color", "error", "samples"});
+Image toImage(const Film& film, const PreparedScene& scene) {
+  return makeImage(film, scene.camera(), scene.clip(), {"color", "error", "samples"});
 }
 
 } // namespace fenestra::benchmarks

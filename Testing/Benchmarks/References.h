@@ -31,6 +31,6 @@ Reference findReference(const SceneCase& sceneCase, const PreparedScene& scene,
                         const RenderSettings& settings, const ReferenceSettings& wanted);
 
 /// Image with R, G, B and their standard errors.
-Image imageOf(const Film& film, const PreparedScene& scene);
+Image toImage(const Film& film, const PreparedScene& scene);
 
 } // namespace fenestra::benchmarks

@@ -16,7 +16,7 @@ constexpr const char* csvHeader =
     "efficiency,bias_percent,bias_error_percent";
 constexpr const char* absent = "not present";
 
-std::string csv(const std::vector<CurveRecord>& curves) {
+std::string toCsv(const std::vector<CurveRecord>& curves) {
   std::ostringstream out;
   out << csvHeader << '\n' << std::setprecision(6);
   for (const CurveRecord& curve : curves) {
@@ -31,7 +31,7 @@ std::string csv(const std::vector<CurveRecord>& curves) {
   return out.str();
 }
 
-std::vector<std::string> cellsOf(const std::string& line) {
+std::vector<std::string> splitCells(const std::string& line) {
   std::vector<std::string> cells;
   std::istringstream stream(line);
   for (std::string cell; std::getline(stream, cell, ',');)
@@ -62,7 +62,7 @@ const CurveRecord* find(const std::vector<CurveRecord>& curves, const std::strin
 }
 
 /// Names of the scenes, each once, in their order.
-std::vector<std::string> scenesOf(const std::vector<CurveRecord>& curves) {
+std::vector<std::string> listScenes(const std::vector<CurveRecord>& curves) {
   std::vector<std::string> scenes;
   for (const CurveRecord& curve : curves)
     if (scenes.empty() || scenes.back() != curve.scene)
@@ -70,25 +70,25 @@ std::vector<std::string> scenesOf(const std::vector<CurveRecord>& curves) {
   return scenes;
 }
 
-std::string scientific(double x) {
+std::string toScientific(double x) {
   std::ostringstream out;
   out << std::setprecision(1) << std::scientific << x;
   return out.str();
 }
 
-std::string efficiencyCell(const CurveRecord& curve) {
+std::string makeEfficiencyCell(const CurveRecord& curve) {
   const std::optional<Efficiency> efficiency = efficiencyNear(curve.points, quotedRelMse);
   if (!efficiency)
     return "no error left";
   std::ostringstream out;
   out << std::setprecision(3) << efficiency->value;
   if (efficiency->relMse != quotedRelMse)
-    out << " at " << scientific(efficiency->relMse);
+    out << " at " << toScientific(efficiency->relMse);
   return out.str();
 }
 
 /// Bias of the point with the most samples.
-std::string biasCell(const CurveRecord& curve) {
+std::string makeBiasCell(const CurveRecord& curve) {
   const Point& point = curve.points.back();
   std::ostringstream out;
   out << std::fixed << std::setprecision(2) << std::showpos << 100.0 * point.bias << " ± "
@@ -106,7 +106,7 @@ void writeTable(std::ostream& out, const std::vector<CurveRecord>& curves, const
   out << "\n|---|---|";
   for (std::size_t i = 0; i < modes().size(); ++i)
     out << "---|";
-  for (const std::string& scene : scenesOf(curves)) {
+  for (const std::string& scene : listScenes(curves)) {
     const auto any = std::ranges::find(curves, scene, &CurveRecord::scene);
     out << "\n| " << scene << " | " << (any->mode.empty() ? absent : first(*any)) << " |";
     for (const Mode& mode : modes()) {
@@ -137,7 +137,7 @@ void writePeers(std::ostream& out, const std::vector<CurveRecord>& curves) {
          "| renderer | S1 | S2 | S2hi |\n|---|---|---|---|\n| Fenestra (above) |";
   for (const char* scene : {"S1", "S2", "S2hi"}) {
     const CurveRecord* curve = find(curves, scene, "product");
-    out << ' ' << (curve ? efficiencyCell(*curve) : "–") << " |";
+    out << ' ' << (curve ? makeEfficiencyCell(*curve) : "–") << " |";
   }
   for (const Peer& peer : peers) {
     out << "\n| " << peer.name << " |";
@@ -155,25 +155,26 @@ double largestSpread(const std::vector<CurveRecord>& curves) {
   return largest;
 }
 
-std::string readme(const std::vector<CurveRecord>& curves, const std::string& notes) {
+std::string makeReadme(const std::vector<CurveRecord>& curves, const std::string& notes) {
   std::ostringstream out;
   out << "# Error against time\n\nMade by `bash Testing/Benchmarks/run.sh`; what is measured and "
          "how: [../README.md](../README.md). Every point: [curves.csv](curves.csv).\n\n"
       << notes << "\n\n![relMSE over CPU seconds, a panel a scene](curves.svg)\n\n"
       << "## Efficiency\n\n1 / (relMSE × CPU seconds) of rendering, where the curve passes relMSE "
-      << scientific(quotedRelMse) << " (interpolated in logarithms); \"at\" another one: the "
+      << toScientific(quotedRelMse) << " (interpolated in logarithms); \"at\" another one: the "
       << "measured point nearest to that.\n\n";
   writeTable(
       out, curves, "reference (its relMSE)",
       [](const CurveRecord& curve) {
-        return curve.reference + " (" + scientific(curve.referenceRelMse) + ")";
+        return curve.reference + " (" + toScientific(curve.referenceRelMse) + ")";
       },
-      efficiencyCell);
+      makeEfficiencyCell);
   writePeers(out, curves);
   out << "## Bias\n\nOf the image mean at the most samples measured, in percent of the "
          "reference's, and one standard error.\n\n";
   writeTable(
-      out, curves, "reference", [](const CurveRecord& curve) { return curve.reference; }, biasCell);
+      out, curves, "reference", [](const CurveRecord& curve) { return curve.reference; },
+      makeBiasCell);
   out << "## Modes\n\n";
   for (const Mode& mode : modes())
     out << "- `" << mode.name << "`: " << mode.description << '\n';
@@ -191,11 +192,11 @@ std::vector<CurveRecord> readCurves(const std::filesystem::path& folder) {
   std::string line;
   if (!file || !std::getline(file, line))
     return curves;
-  const std::size_t columns = cellsOf(csvHeader).size();
+  const std::size_t columns = splitCells(csvHeader).size();
   if (line != csvHeader)
     throw inputError(path.string(), "has other columns; move it away, or name another --output");
   while (std::getline(file, line)) {
-    const std::vector<std::string> cells = cellsOf(line);
+    const std::vector<std::string> cells = splitCells(line);
     if (cells.size() > 1 && cells[1] == absent)
       curves.push_back({cells[0], "", "", 0.0});
     else if (cells.size() == columns)
@@ -206,20 +207,20 @@ std::vector<CurveRecord> readCurves(const std::filesystem::path& folder) {
   return curves;
 }
 
-std::vector<CurveRecord> merged(const std::vector<CurveRecord>& kept,
-                                const std::vector<CurveRecord>& measured,
-                                const std::vector<std::string>& scenes) {
+std::vector<CurveRecord> mergeCurves(const std::vector<CurveRecord>& previous,
+                                     const std::vector<CurveRecord>& measured,
+                                     const std::vector<std::string>& scenes) {
   std::vector<CurveRecord> result;
   for (const std::string& scene : scenes) {
     const std::size_t before = result.size();
     for (const Mode& mode : modes()) {
       const CurveRecord* curve = find(measured, scene, mode.name);
-      curve = curve ? curve : find(kept, scene, mode.name);
+      curve = curve ? curve : find(previous, scene, mode.name);
       if (curve)
         result.push_back(*curve);
     }
     const CurveRecord* missing = find(measured, scene, "");
-    missing = missing ? missing : find(kept, scene, "");
+    missing = missing ? missing : find(previous, scene, "");
     if (missing && result.size() == before)
       result.push_back(*missing);
   }
@@ -229,9 +230,9 @@ std::vector<CurveRecord> merged(const std::vector<CurveRecord>& kept,
 void writeReport(const std::filesystem::path& folder, const std::vector<CurveRecord>& curves,
                  const std::string& notes) {
   std::filesystem::create_directories(folder);
-  writeFile(folder / "curves.csv", csv(curves));
+  writeFile(folder / "curves.csv", toCsv(curves));
   writeFile(folder / "curves.svg", drawCurves(curves));
-  writeFile(folder / "README.md", readme(curves, notes));
+  writeFile(folder / "README.md", makeReadme(curves, notes));
 }
 
 } // namespace fenestra::benchmarks

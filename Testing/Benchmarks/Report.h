@@ -23,9 +23,9 @@ std::vector<CurveRecord> readCurves(const std::filesystem::path& folder);
 
 /// `kept`, with records of the same scene and mode replaced by those in `measured`; ordered by
 /// `scenes`, then modes().
-std::vector<CurveRecord> merged(const std::vector<CurveRecord>& kept,
-                                const std::vector<CurveRecord>& measured,
-                                const std::vector<std::string>& scenes);
+std::vector<CurveRecord> mergeCurves(const std::vector<CurveRecord>& previous,
+                                     const std::vector<CurveRecord>& measured,
+                                     const std::vector<std::string>& scenes);
 
 /// Writes curves.csv, curves.svg and README.md. `notes`: a paragraph on the machine and the run.
 /// Throws Error (output).

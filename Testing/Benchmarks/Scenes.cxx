@@ -45,7 +45,7 @@ public:
       if (words[1] == "=")
         m_names[words[0]] = {words.begin() + 2, words.end()};
       else
-        scenes.push_back(sceneOf(words));
+        scenes.push_back(parseScene(words));
     }
     if (scenes.empty())
       throw inputError(m_path.string(), "has no scenes; it needs lines NAME REFERENCE ARGUMENTS");
@@ -67,7 +67,7 @@ private:
     return words;
   }
 
-  ReferenceMaker maker(const std::string& word) const {
+  ReferenceMaker parseMaker(const std::string& word) const {
     const std::map<std::string, ReferenceMaker> makers = {
         {"independent", ReferenceMaker::independent},
         {"oracle", ReferenceMaker::oracle},
@@ -79,12 +79,12 @@ private:
     return found->second;
   }
 
-  SceneCase sceneOf(const Arguments& words) const {
+  SceneCase parseScene(const Arguments& words) const {
     SceneCase scene;
     scene.name = words[0];
-    scene.maker = maker(words[1]);
+    scene.maker = parseMaker(words[1]);
     for (std::size_t i = 2; i < words.size(); ++i) {
-      const std::string word = placed(words[i], scene);
+      const std::string word = resolvePath(words[i], scene);
       const std::filesystem::path path = word;
       if (path.extension() != ".arguments") {
         scene.arguments.push_back(word);
@@ -98,7 +98,7 @@ private:
   }
 
   /// Word with its folder's path; sets scene.missing if the file does not exist.
-  std::string placed(const std::string& word, SceneCase& scene) const {
+  std::string resolvePath(const std::string& word, SceneCase& scene) const {
     for (const auto& [name, folder] : m_folders)
       if (word.starts_with(name)) {
         const std::string path = folder.string() + word.substr(name.size());

@@ -37,8 +37,8 @@ TestScene slabOfMaterial(const Rgb& color, double g) {
   plan.components[1].density = 2.0;
   const Mask all{scene.volume.grid, std::vector<std::uint8_t>(8, 1), 8, {}};
   const auto shares = std::make_shared<const LabelWeights>(sharesOf({{all, 10, 1}}));
-  const Tint tint = tintOf(std::make_shared<const TintPlan>(plan), shares, scene.transfer.g);
-  scene.mixture = mixtureOf(plan, tint, scene.transfer);
+  const Tint tint = buildTint(std::make_shared<const TintPlan>(plan), shares, scene.transfer.g);
+  scene.mixture = buildMixture(plan, tint, scene.transfer);
   return scene;
 }
 

@@ -36,7 +36,7 @@ Image pictureOf(const std::filesystem::path& file, std::uint64_t seed) {
   settings.seed = seeded(seed);
   RenderMonitor monitor;
   const Film film = render(scene.view(), settings, monitor).film;
-  return picture(film, scene.camera(), scene.clip(), layerSet({}));
+  return makeImage(film, scene.camera(), scene.clip(), parseLayers({}));
 }
 
 TEST(NiftiOrder, EveryOrderAndSignOfAxesGivesThePictureWithinItsErrors) {

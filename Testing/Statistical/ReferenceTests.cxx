@@ -54,7 +54,7 @@ Image renderReference(const ReferenceCase& c) {
   RenderMonitor monitor;
   const RenderResult result =
       render(scene.view(), makeSettings(options, scene.background()), monitor);
-  return picture(result.film, scene.camera(), scene.clip(), options.layers);
+  return makeImage(result.film, scene.camera(), scene.clip(), options.layers);
 }
 
 oracle::Estimates renderOracle(const ReferenceCase& c) {

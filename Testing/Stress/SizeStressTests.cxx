@@ -139,8 +139,8 @@ TEST(MajorantCells, AnyShapeHasAboutAQuarterOfAMillionCells) {
     const Size3 edge = MinMaxGrid::chooseCellSize(centredGrid(size, spacing));
     const Size3 cells = (size.array() + edge.array() - 1) / edge.array();
     EXPECT_TRUE((edge.array() >= 1).all() && (edge.array() <= size.array()).all());
-    EXPECT_LT(cells.cast<double>().prod(), 4.0 * wanted) << size;
-    EXPECT_GT(cells.cast<double>().prod(), 0.25 * wanted) << size;
+    EXPECT_LT(cells.cast<double>().prod(), 4.0 * target) << size;
+    EXPECT_GT(cells.cast<double>().prod(), 0.25 * target) << size;
   }
 }
 

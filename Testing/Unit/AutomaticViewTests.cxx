@@ -34,7 +34,7 @@ protected:
   }
 
   ViewScorer scorer(const Mask& focus) const { return {volume, grid, transfer, focus}; }
-  ViewDirection viewOf(const Mask& focus) const { return automaticView(scorer(focus)); }
+  ViewDirection viewOf(const Mask& focus) const { return findBestView(scorer(focus)); }
 };
 
 double degreesBetween(const Vec3& a, const Vec3& b) {
@@ -90,14 +90,14 @@ TEST_F(ViewOfCube, DiscIsShownFlatOnFromTheUsualSide) {
     const Mask disc = focusWhere([&](const Vec3& p) {
       return std::abs(p.dot(unit)) < 2.0 && (p - p.dot(unit) * unit).norm() < 20.0;
     });
-    EXPECT_LT(angleInDegrees(viewOf(disk).fromTarget, unit), 10.0) << normal;
+    EXPECT_LT(angleInDegrees(findView(disk).fromTarget, unit), 10.0) << normal;
   }
 }
 
 TEST_F(ViewOfCube, ViewThroughAirIsPreferredToTissue) {
   volume = makeVolume(grid, [](const Vec3& index) { return index.y() > 14.5 ? 1.0 : 0.0; });
   const Mask ball = focusWhere([](const Vec3& p) { return p.norm() <= 10.0; });
-  EXPECT_LT(viewOf(ball).fromTarget.y(), -0.7) << "from posterior, against the habit";
+  EXPECT_LT(findView(ball).fromTarget.y(), -0.7) << "from posterior, against the habit";
 }
 
 TEST_F(ViewOfCube, ViewMovesLittleForASimilarFocus) {
@@ -130,14 +130,14 @@ TEST_F(ViewOfCube, ViewIsTheSameForAnyNumberOfThreads) {
   const Mask lump = focusWhere(inLump);
   const Vec3 many = viewOf(lump).fromTarget;
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  EXPECT_EQ(viewOf(lump).fromTarget, expected);
+  EXPECT_EQ(findView(lump).fromTarget, expected);
 }
 
 TEST_F(ViewOfCube, EmptyFocusIsShownFromAnterior) {
   Mask nothing;
   nothing.grid = centredGrid({3, 3, 3}, {1.0, 1.0, 1.0});
   nothing.voxels.assign(27, 0);
-  EXPECT_EQ(viewOf(nothing).fromTarget, Vec3::UnitY());
+  EXPECT_EQ(findView(nothing).fromTarget, Vec3::UnitY());
 }
 
 } // namespace

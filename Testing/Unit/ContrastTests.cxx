@@ -95,10 +95,10 @@ TEST(Contrast, TakesScalarsOfBothSidesOfTheBorder) {
   const auto mean = [](const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   };
-  const BorderScalars scalars = borderScalars(makeBallMask(), makeBallVolume(8.0), transfer);
+  const InterfaceScalars scalars = sampleInterface(makeBallMask(), makeBallVolume(8.0), transfer);
   EXPECT_EQ(mean(scalars.focus), inside);
   EXPECT_EQ(mean(scalars.context), outside) << "air beyond does not count";
-  EXPECT_TRUE(borderScalars(makeBallMask(), makeBallVolume(6.0), transfer).context.empty())
+  EXPECT_TRUE(sampleInterface(makeBallMask(), makeBallVolume(6.0), transfer).context.empty())
       << "air alone";
 }
 
@@ -107,21 +107,22 @@ TEST(Contrast, TakesScalarsOfBothSidesOfTheBorder) {
 TEST(Contrast, PalesSurroundingsThatLookLikeTheFocus) {
   const Rgb red(0.9, 0.4, 0.35), cream(0.99, 0.97, 0.9);
   const Volume volume = makeBallVolume(15.0);
-  const FocusContrast same = chosenContrast({}, makeBallMask(), volume, makeTransfer(red, red));
-  EXPECT_EQ(same.saturation, grey);
+  const FocusContrast same = chooseSaturation({}, makeBallMask(), volume, makeTransfer(red, red));
+  EXPECT_EQ(same.saturation, graySaturation);
   ASSERT_TRUE(same.contrast);
   EXPECT_GT(same.contrast->deltaE[0], 20.0);
   EXPECT_LT(same.contrast->deltaE[1], same.contrast->deltaE[0]);
-  const FocusContrast other = chosenContrast({}, makeBallMask(), volume, makeTransfer(red, cream));
+  const FocusContrast other =
+      chooseSaturation({}, makeBallMask(), volume, makeTransfer(red, cream));
   EXPECT_EQ(other.saturation, 1.0);
-  EXPECT_TRUE(other.contrast && other.contrast->share() > 1.0);
+  EXPECT_TRUE(other.contrast && other.contrast->score() > 1.0);
   const FocusContrast requested =
-      chosenContrast(1.0, makeBallMask(), volume, makeTransfer(red, red));
+      chooseSaturation(1.0, makeBallMask(), volume, makeTransfer(red, red));
   EXPECT_EQ(requested.saturation, 1.0);
   EXPECT_EQ(requested.contrast->deltaE[0], 0.0);
   EXPECT_EQ(requested.contrast->deltaL, 0.0);
   const FocusContrast isolated =
-      chosenContrast({}, makeBallMask(), makeBallVolume(6.0), makeTransfer(red, red));
+      chooseSaturation({}, makeBallMask(), makeBallVolume(6.0), makeTransfer(red, red));
   EXPECT_EQ(isolated.saturation, 1.0);
   EXPECT_FALSE(isolated.contrast);
 }
@@ -132,18 +133,18 @@ TEST(Contrast, PalesNoMoreThanIsNeeded) {
   const Volume volume = makeBallVolume(15.0);
   const auto chosen = [&volume](const Rgb& context, const Rgb& focus) {
     const auto decodeAlbedo = [](const Rgb& encoded) { return toAlbedo(decodeSrgb(encoded), 0.0); };
-    return chosenContrast({}, makeBallMask(), volume,
-                          makeTransfer(decodeAlbedo(context), decodeAlbedo(focus)));
+    return chooseSaturation({}, makeBallMask(), volume,
+                            makeTransfer(decodeAlbedo(context), decodeAlbedo(focus)));
   };
   const Rgb yellow(0.9, 0.75, 0.25), orange(0.9, 0.5, 0.3), red(0.78, 0.49, 0.43);
   const FocusContrast muted = chosen(orange, yellow), grayed = chosen(yellow, yellow),
                       insufficient = chosen(red, red);
-  EXPECT_EQ(pales.saturation, pale);
-  EXPECT_GT(pales.contrast->share(), 1.0);
-  EXPECT_EQ(grayed.saturation, grey);
-  EXPECT_GT(grayed.contrast->share(), 1.0);
-  EXPECT_EQ(insufficient.saturation, grey);
-  EXPECT_LT(insufficient.contrast->share(), 1.0);
+  EXPECT_EQ(muted.saturation, mutedSaturation);
+  EXPECT_GT(muted.contrast->score(), 1.0);
+  EXPECT_EQ(grayed.saturation, graySaturation);
+  EXPECT_GT(grayed.contrast->score(), 1.0);
+  EXPECT_EQ(insufficient.saturation, graySaturation);
+  EXPECT_LT(insufficient.contrast->score(), 1.0);
 }
 
 /// Purple around grey-blue: paled, normal sight tells them apart better, and the colour-blind no
@@ -153,11 +154,12 @@ TEST(Contrast, TakesNothingFromTheColorBlind) {
   const TransferFunction transfer =
       makeTransfer(decodeAlbedo(Rgb(0.82, 0.486, 0.918)), decodeAlbedo(Rgb(0.435, 0.506, 0.545)));
   const Volume volume = makeBallVolume(15.0);
-  const Contrast muted = *chosenContrast(pale, makeBallMask(), volume, transfer).contrast;
-  const FocusContrast chosen = chosenContrast({}, makeBallMask(), volume, transfer);
+  const Contrast muted =
+      *chooseSaturation(mutedSaturation, makeBallMask(), volume, transfer).contrast;
+  const FocusContrast chosen = chooseSaturation({}, makeBallMask(), volume, transfer);
   EXPECT_EQ(chosen.saturation, 1.0);
-  EXPECT_GT(paled.deltaE[0], chosen.contrast->deltaE[0]);
-  EXPECT_LT(paled.deltaE[1], chosen.contrast->deltaE[1]);
+  EXPECT_GT(muted.deltaE[0], chosen.contrast->deltaE[0]);
+  EXPECT_LT(muted.deltaE[1], chosen.contrast->deltaE[1]);
 }
 
 } // namespace

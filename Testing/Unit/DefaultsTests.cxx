@@ -97,7 +97,7 @@ TEST(FrameView, AFocusNearAnEndOfTheScanIsFramedWithoutWhatLiesBeyond) {
     const Mask large = focusAt(side * 4.0, 30);
     EXPECT_NEAR(framed(large, grid).x(), 0.0, 1e-9) << "empty on both sides alike";
   }
-  EXPECT_NEAR(framed(focusAt(3.0, 10), grid).x(), 3.0, 1e-9);
+  EXPECT_NEAR(framed(makeFocus(3.0, 10), grid).x(), 3.0, 1e-9);
 }
 
 TEST(FrameView, CroppedVolumeIsFramed) {
@@ -140,33 +140,33 @@ TEST(TransparentShare, CountsVoxelsOfTheFocusWithoutExtinction) {
 }
 
 TEST(DefaultTransfer, HounsfieldRangeGivesACtPreset) {
-  EXPECT_TRUE(transferPresetFor(ramp(-1000, 1500)));
-  EXPECT_TRUE(transferPresetFor(ramp(-8192, 3071))) << "padded";
-  EXPECT_FALSE(transferPresetFor(ramp(0, 255)));
-  EXPECT_FALSE(transferPresetFor(ramp(0, 4000)));
+  EXPECT_TRUE(chooseTransferPreset(ramp(-1000, 1500)));
+  EXPECT_TRUE(chooseTransferPreset(ramp(-8192, 3071))) << "padded";
+  EXPECT_FALSE(chooseTransferPreset(ramp(0, 255)));
+  EXPECT_FALSE(chooseTransferPreset(ramp(0, 4000)));
 }
 
 TEST(AirLevel, IsThatOfTheModalityAndNothingWhereSurroundingsAreCutOff) {
-  EXPECT_EQ(airLevel(ramp(-1000, 1500)), -300.0);
+  EXPECT_EQ(findAirThreshold(ramp(-1000, 1500)), -300.0);
   const auto head = [](double air) {
     return makeVolume<float>(centredGrid({40, 30, 20}, {2.0, 2.0, 2.0}), [=](const Vec3& p) {
       return p.norm() < 20.0 ? 400.0 + p.x() : air * std::abs(std::sin(100.0 * p.x() + p.y()));
     });
   };
-  const std::optional<double> level = airLevel(head(30.0));
+  const std::optional<double> level = findAirThreshold(head(30.0));
   ASSERT_TRUE(level);
   EXPECT_GT(*level, 30.0);
   EXPECT_LT(*level, 380.0);
-  EXPECT_FALSE(airLevel(head(0.0))) << "masked";
-  EXPECT_FALSE(airLevel(ramp(7, 7))) << "constant";
+  EXPECT_FALSE(findAirThreshold(head(0.0))) << "masked";
+  EXPECT_FALSE(findAirThreshold(ramp(7, 7))) << "constant";
 }
 
 TEST(DefaultTransfer, RangeRunsFromTransparentToOpaqueAndAConstantIsVisible) {
-  const TransferFunction transfer = relativeTransfer(ramp(0, 1000));
+  const TransferFunction transfer = makeRelativeTransfer(ramp(0, 1000));
   EXPECT_EQ(transfer.extinction(0.0).value(), 0.0);
   EXPECT_GT(transfer.extinction(1000.0).value(), 1.0);
   EXPECT_TRUE(transfer.shading);
-  const TransferFunction flat = relativeTransfer(ramp(7, 7));
+  const TransferFunction flat = makeRelativeTransfer(ramp(7, 7));
   EXPECT_GT(flat.extinction(7.0).value(), 0.0);
   EXPECT_FALSE(flat.shading);
 }
@@ -176,7 +176,7 @@ TEST(Picture, PlaneLiesThroughTheTargetWithThePicturesCorners) {
   pose.position = {0, -100, 0};
   pose.target = {0, 0, 0};
   pose.scale = 10.0;
-  const ImagePlane plane = picturePlane(Camera(pose, 40, 20));
+  const ImagePlane plane = makeImagePlane(Camera(pose, 40, 20));
   EXPECT_TRUE(isApprox(plane.topLeft, Vec3(-19.5, 0.0, 9.5)));
   EXPECT_TRUE(isApprox(plane.columnStep, Vec3(1, 0, 0)));
   EXPECT_TRUE(isApprox(plane.rowStep, Vec3(0, 0, -1)));
@@ -194,7 +194,7 @@ TEST(Picture, HasEveryDocumentedChannel) {
   miss.alpha = 0.0;
   film.at(1, 0).add(miss);
   const Image image =
-      picture(film, camera, ClipPlane{camera, Vec3(0, 3, 0), -Vec3::UnitY()}, layerSet({}));
+      makeImage(film, camera, ClipPlane{camera, Vec3(0, 3, 0), -Vec3::UnitY()}, parseLayers({}));
   for (const char* name :
        {"R", "G", "B", "A", "Z", "clip.Z", "albedo.R", "albedo.G", "albedo.B", "normal.X",
         "normal.Y", "normal.Z", "error.R", "error.G", "error.B", "samples.N"})
@@ -202,7 +202,7 @@ TEST(Picture, HasEveryDocumentedChannel) {
   EXPECT_EQ(*image.find("Z"), (std::vector<float>{5.0F, std::numeric_limits<float>::infinity()}));
   EXPECT_EQ(*image.find("A"), (std::vector<float>{1.0F, 0.0F}));
   EXPECT_NEAR((*image.find("clip.Z"))[0], 3.0F, 1e-5);
-  EXPECT_EQ(picture(film, camera, ClipNone{}, layerSet({"depth"})).channels.size(), 1U);
+  EXPECT_EQ(makeImage(film, camera, ClipNone{}, parseLayers({"depth"})).channels.size(), 1U);
 }
 
 } // namespace

@@ -49,7 +49,7 @@ protected:
 TEST_F(Denoising, ClosedAreEmptyPixelsWhateverTheSamplesMet) {
   const PreparedScene scene(request);
   const Film film = picture(scene);
-  const FilterInput input = filterInput(film, scene);
+  const FilterInput input = makeFilterInput(film, scene);
   std::size_t without = 0, certain = 0;
   for (std::size_t i = 0; i < film.pixelCount(); ++i) {
     const PixelSums& pixel = film.pixels()[i];
@@ -65,8 +65,8 @@ TEST_F(Denoising, ClosedAreEmptyPixelsWhateverTheSamplesMet) {
 
 TEST_F(Denoising, FeaturesDoNotDependOnSamples) {
   const PreparedScene scene(request);
-  const FilterInput one = filterInput(picture(scene, 1), scene);
-  const FilterInput other = filterInput(picture(scene, 2), scene);
+  const FilterInput one = makeFilterInput(picture(scene, 1), scene);
+  const FilterInput other = makeFilterInput(picture(scene, 2), scene);
   EXPECT_GE(one.features.size(), 8U);
   EXPECT_EQ(one.features, other.features);
   EXPECT_NE(one.even, other.even);
@@ -74,13 +74,13 @@ TEST_F(Denoising, FeaturesDoNotDependOnSamples) {
 
 TEST_F(Denoising, HalvesThatAreNotIndependentAreRefused) {
   const PreparedScene scene(request);
-  EXPECT_THROW(filterInput(Film(48, 48, false), scene), std::logic_error);
+  EXPECT_THROW(makeFilterInput(Film(48, 48, false), scene), std::logic_error);
 }
 
 TEST_F(Denoising, HalvesAverageToThePicture) {
   const PreparedScene scene(request);
   const Film film = picture(scene, 3, 4);
-  const FilterInput input = filterInput(film, scene);
+  const FilterInput input = makeFilterInput(film, scene);
   for (std::size_t i = 0; i < film.pixelCount(); ++i)
     ASSERT_NEAR(0.5 * static_cast<double>(input.even[1][i] + input.odd[1][i]),
                 film.pixels()[i].mean[1], 1e-6);
@@ -96,19 +96,19 @@ double errorOf(const FilteredImage& picture, const Film& truth) {
 TEST_F(Denoising, FilteredPictureIsNearerToTheTruth) {
   const PreparedScene scene(request);
   const Film truth = picture(scene, 9, 512), film = picture(scene, 1, 4);
-  const FilteredImage filtered = denoised(film, scene);
+  const FilteredImage filtered = denoise(film, scene);
   double raw = 0.0;
   for (std::size_t i = 0; i < film.pixelCount(); ++i)
     raw += std::pow(film.pixels()[i].mean[0] - truth.pixels()[i].mean[0], 2.0);
-  EXPECT_LT(errorOf(filtered, truth), 0.1 * raw);
+  EXPECT_LT(errorOf(filtered, reference), 0.1 * raw);
   EXPECT_EQ(filtered.error[0].size(), film.pixelCount());
 }
 
 TEST_F(Denoising, ClosedPixelsKeepTheirRawColourAtAnyCount) {
   const PreparedScene scene(request);
   const Film film = picture(scene, 4, 3);
-  const FilterInput input = filterInput(film, scene);
-  const FilteredImage filtered = denoised(film, scene);
+  const FilterInput input = makeFilterInput(film, scene);
+  const FilteredImage filtered = denoise(film, scene);
   for (std::size_t i = 0; i < film.pixelCount(); ++i) {
     const auto mean = static_cast<float>(film.pixels()[i].mean[1]);
     ASSERT_TRUE(input.isActive[i] != 0 || filtered.color[1][i] == mean);
@@ -125,11 +125,11 @@ TEST_F(Denoising, OnePixelWithOneSampleLeavesNoHalvesButTheWholePicture) {
   sample.radiance = Rgb::Ones();
   film.at(static_cast<int>(open) % 48, static_cast<int>(open) / 48) = PixelSums();
   film.at(static_cast<int>(open) % 48, static_cast<int>(open) / 48).add(sample);
-  const FilterInput input = filterInput(film, scene);
+  const FilterInput input = makeFilterInput(film, scene);
   EXPECT_FALSE(input.hasHalfBuffers);
   for (std::size_t i = 0; i < film.pixelCount(); ++i)
     ASSERT_EQ(input.even[0][i], static_cast<float>(film.pixels()[i].mean[0]));
-  EXPECT_TRUE(denoised(film, scene).error[0].empty());
+  EXPECT_TRUE(denoise(film, scene).error[0].empty());
 }
 
 } // namespace

@@ -205,7 +205,7 @@ TEST(FeatureBuffers, PartOfAPictureMarchesAsTheWholeDoes) {
   for (int row = 1; row < 19; ++row) // neighbours decide, which the border lacks
     for (int column = 0; column < 40; ++column)
       ASSERT_NEAR(cropped.depth[static_cast<std::size_t>(row * 40 + column)],
-                  whole.depth[static_cast<std::size_t>((row + 10) * 40 + column)], 1e-3)
+                  reference.depth[static_cast<std::size_t>((row + 10) * 40 + column)], 1e-3)
           << column << " " << row;
 }
 

@@ -53,7 +53,7 @@ TEST_F(InputOfAnArchive, IsOpenedOnceForSceneAndChanges) {
   const PreparedScene scene(request, input);
   request.segmentation = "L";
   request.focus = {"5"};
-  const PreparedScene changed = scene.changed(request);
+  const PreparedScene changed = scene.withRequest(request);
   EXPECT_FALSE(changed.updatedStages().volume);
   EXPECT_TRUE(changed.focus());
 }
@@ -62,10 +62,10 @@ TEST_F(InputOfAnArchive, ListsTheFilesOfEachReading) {
   const std::string inArchive = archive.string() + "/a/";
   const Input input(archive);
   const VolumeInput read = input.volume({});
-  EXPECT_EQ(read.files, (FilesRead{archive.string(), inArchive + "ct.nrrd"}));
+  EXPECT_EQ(read.files, (InputFiles{archive.string(), inArchive + "ct.nrrd"}));
   EXPECT_EQ(input.segments({{}, "L"}, read.volume.grid).files,
-            (FilesRead{archive.string(), inArchive + "labels.nrrd"}));
-  EXPECT_EQ(input.settings({}, true).files, FilesRead{archive.string()});
+            (InputFiles{archive.string(), inArchive + "labels.nrrd"}));
+  EXPECT_EQ(input.settings({}, true).files, InputFiles{archive.string()});
 }
 
 TEST(Input, OfAFileHasNoSceneOrSettings) {
@@ -75,7 +75,7 @@ TEST(Input, OfAFileHasNoSceneOrSettings) {
   EXPECT_FALSE(input.property("P").transfer);
   EXPECT_FALSE(input.segmentNames({}));
   EXPECT_FALSE(input.settings({}, true).camera);
-  EXPECT_EQ(input.volume({}).files, FilesRead{(folder / "ct.nrrd").string()});
+  EXPECT_EQ(input.volume({}).files, InputFiles{(folder / "ct.nrrd").string()});
 }
 
 TEST(LookText, BraceTellsTextFromNames) {

@@ -52,7 +52,7 @@ TEST(OrganPresets, FocusTakesSegmentsByNameOrCode) {
                                         segment("B", "SCT^4147007", "SCT^12738006"),
                                         segment("C", "SCT^396070081"),
                                         segment("D", "SCT^4147007")};
-  EXPECT_EQ(listNames(focusOf(patterns, all)), (Texts{"left lung", "Segment_6", "A"}));
+  EXPECT_EQ(listNames(findFocusSegments(patterns, all)), (Texts{"left lung", "Segment_6", "A"}));
 }
 
 TEST(OrganPresets, PresetFitsSegmentsAndModality) {
@@ -63,26 +63,26 @@ TEST(OrganPresets, PresetFitsSegmentsAndModality) {
       preset("head-ct", Modality::ct, {{"brain"}}),
   };
   const auto fit = [&](const Texts& names, Modality known) {
-    return fittingPreset(presets, segments(names), "s.seg.nrrd",
-                         [known](Modality modality) { return modality == known; })
+    return findMatchingPreset(presets, segments(names), "s.seg.nrrd",
+                              [known](Modality modality) { return modality == known; })
         .name;
   };
-  EXPECT_EQ(fit({"Liver", "Spleen"}, Modality::ct), "liver");
-  EXPECT_EQ(fit({"brain"}, Modality::mr), "brain");
-  EXPECT_EQ(fit({"brain"}, Modality::ct), "head-ct");
-  EXPECT_EQ(fit({"brain", "Tumor"}, Modality::mr), "tumour");
+  EXPECT_EQ(match({"Liver", "Spleen"}, Modality::ct), "liver");
+  EXPECT_EQ(match({"brain"}, Modality::mr), "brain");
+  EXPECT_EQ(match({"brain"}, Modality::ct), "head-ct");
+  EXPECT_EQ(match({"brain", "Tumor"}, Modality::mr), "tumour");
   const auto refuse = [&](const Texts& names, const std::string& text) {
     expectRefused("s.seg.nrrd", text, [&] { fit(names, Modality::mr); });
   };
   refuse({"Spleen", "Kidney"}, "no preset knows a segment of it (Spleen, Kidney)");
-  EXPECT_EQ(fit({"brain", "tumour", "liver"}, Modality::mr), "tumour");
+  EXPECT_EQ(match({"brain", "tumour", "liver"}, Modality::mr), "tumour");
 }
 
 TEST(OrganPresets, SeveralFittingPresetsAreListed) {
   const std::vector<OrganPreset> presets = {preset("liver", Modality::ct, {{"liver"}}),
                                             preset("heart", Modality::ct, {{"heart"}})};
   expectRefused("s", "several presets fit, liver (liver), heart (heart)", [&] {
-    fittingPreset(presets, segments({"liver", "heart"}), "s", [](Modality) -> bool {
+    findMatchingPreset(presets, segments({"liver", "heart"}), "s", [](Modality) -> bool {
       throw std::logic_error("the modality says nothing here");
     });
   });
@@ -91,8 +91,8 @@ TEST(OrganPresets, SeveralFittingPresetsAreListed) {
 /// Built-in presets that select the segment as their focus.
 Texts presetsOf(const SegmentInfo& segment) {
   Texts names;
-  for (const std::string& name : ownPresets("presets"))
-    if (!focusOf(namedPreset(name).focus, {segment}).empty())
+  for (const std::string& name : listBuiltinPresets("presets"))
+    if (!findFocusSegments(findOrganPreset(name).focus, {segment}).empty())
       names.push_back(name);
   return names;
 }
@@ -136,11 +136,11 @@ TEST(OrganPresets, RangeDecidesWhetherAVolumeIsCt) {
     return testing::makeVolume<std::int16_t>(
         grid, [&](const Vec3& i) { return low + (high - low) * i.x() / 9.0; });
   };
-  EXPECT_TRUE(suits(Modality::ct, volume(-1000, 1500)));
-  EXPECT_FALSE(suits(Modality::ct, volume(0, 255)));
-  EXPECT_FALSE(suits(Modality::mr, volume(-1000, 1500)));
-  EXPECT_TRUE(suits(Modality::mr, volume(0, 255)));
-  EXPECT_TRUE(suits(Modality::us, volume(0, 255)));
+  EXPECT_TRUE(canSuit(Modality::ct, volume(-1000, 1500)));
+  EXPECT_FALSE(canSuit(Modality::ct, volume(0, 255)));
+  EXPECT_FALSE(canSuit(Modality::mr, volume(-1000, 1500)));
+  EXPECT_TRUE(canSuit(Modality::mr, volume(0, 255)));
+  EXPECT_TRUE(canSuit(Modality::us, volume(0, 255)));
 }
 
 /// 100 000 values, 0 to 99 999, each once: percentiles are known.
@@ -148,7 +148,7 @@ TEST(OrganPresets, UsualRangeLiesBetweenThePercentiles) {
   const Volume volume =
       testing::makeVolume(testing::centredGrid({100, 100, 10}, Vec3::Ones()),
                           [](const Vec3& i) { return i.x() + 100.0 * i.y() + 10000.0 * i.z(); });
-  const auto [low, high] = usualRange(volume);
+  const auto [low, high] = findRobustRange(volume);
   EXPECT_NEAR(low, 500.0, 1.0);
   EXPECT_NEAR(high, 99500.0, 1.0);
 }

@@ -98,15 +98,16 @@ TEST(PhantomFoot, BonesLieAsInARightFoot) {
   const auto at = [&](const char* id) { return centroid(foot, id); };
   for (int ray = 1; ray < 5; ++ray) {
     const std::string inner = std::to_string(ray), outer = std::to_string(ray + 1);
-    EXPECT_LT(centroid(foot, "metatarsal_" + inner).x() + 8.0,
-              centroid(foot, "metatarsal_" + outer).x())
+    EXPECT_LT(computeCentroid(foot, "metatarsal_" + inner).x() + 8.0,
+              computeCentroid(foot, "metatarsal_" + outer).x())
         << "the great toe is medial, to the left in a right foot";
   }
   for (int ray = 1; ray <= 5; ++ray) {
     const std::string n = std::to_string(ray);
-    EXPECT_LT(centroid(foot, "metatarsal_" + n).y(), centroid(foot, "proximal_phalanx_" + n).y());
-    EXPECT_LT(centroid(foot, "proximal_phalanx_" + n).y(),
-              centroid(foot, "distal_phalanx_" + n).y());
+    EXPECT_LT(computeCentroid(foot, "metatarsal_" + n).y(),
+              computeCentroid(foot, "proximal_phalanx_" + n).y());
+    EXPECT_LT(computeCentroid(foot, "proximal_phalanx_" + n).y(),
+              computeCentroid(foot, "distal_phalanx_" + n).y());
   }
   EXPECT_GT(at("talus").z(), at("calcaneus").z() + 15.0);
   EXPECT_GT(at("tibia").z(), at("talus").z() + 20.0);

@@ -66,7 +66,7 @@ TEST_P(SceneChange, RemakesOnlyDependentStages) {
   GetParam().apply(request);
   if (request.lights == "lamp.json")
     request.lights = folder / "lamp.json";
-  const PreparedScene changed = before.changed(request);
+  const PreparedScene changed = before.withRequest(request);
   EXPECT_EQ(changed.updatedStages(), GetParam().made);
 
   const PreparedScene fromNothing(request);
@@ -146,7 +146,7 @@ TEST_F(SceneChange, LampAtTheFocusFollowsIt) {
   EXPECT_LT((lamp(before) - center - Vec3(0, 20, 0)).norm(), 1e-9);
   RenderRequest other = request;
   other.focus = {"2"};
-  const PreparedScene moved = before.changed(other);
+  const PreparedScene moved = before.withRequest(other);
   EXPECT_TRUE(moved.updatedStages().lights);
   EXPECT_GT((lamp(moved) - lamp(before)).norm(), 1.0);
   request.focus.clear();
@@ -161,15 +161,15 @@ TEST_F(SceneChange, AutomaticViewFollowsFocusAndTransferFunction) {
     EXPECT_EQ(changed.camera().pose().position, PreparedScene(request).camera().pose().position);
   };
   request.density = 3.0;
-  const PreparedScene denser = before.changed(request);
+  const PreparedScene denser = before.withRequest(request);
   EXPECT_TRUE(denser.updatedStages().camera);
   expectAsFromNothing(denser);
   request.width = 40;
-  const PreparedScene wider = denser.changed(request);
+  const PreparedScene wider = denser.withRequest(request);
   EXPECT_LT((wider.camera().forward() - denser.camera().forward()).norm(), 1e-12);
   expectAsFromNothing(wider);
   request.focus = {"2"};
-  expectAsFromNothing(wider.changed(request));
+  expectAsFromNothing(wider.withRequest(request));
 }
 
 TEST_F(SceneChange, AutomaticScaleFramesTheMatterAlone) {
@@ -180,13 +180,13 @@ TEST_F(SceneChange, AutomaticScaleFramesTheMatterAlone) {
            R"(, 0], [300, 0.2]], "albedo": [[0, 1, 1, 1]]})";
   };
   request.transfer = seen(149.0);
-  const PreparedScene part = ball.changed(request); // x > 9, and |y - 7.5|, |z - 7.5| < 6
+  const PreparedScene part = ball.withRequest(request); // x > 9, and |y - 7.5|, |z - 7.5| < 6
   EXPECT_TRUE(part.updatedStages().camera);
   const auto [position, scale] = std::pair(part.camera().pose().target, part.camera().pose().scale);
   EXPECT_LT(scale, 0.95 * ball.camera().pose().scale);
   EXPECT_GT((part.volume().grid.worldToIndex * position).x(), 10.0);
   request.transfer = seen(299.0);
-  const PreparedScene nothing = ball.changed(request);
+  const PreparedScene nothing = ball.withRequest(request);
   EXPECT_EQ(nothing.camera().pose().scale, 1.05 * 8.0) << "the whole volume";
 }
 
@@ -204,18 +204,18 @@ TEST_F(SceneChange, LabelsAreReadOnceAndSharedByColours) {
   const PreparedScene before(request);
   std::filesystem::remove(*request.segmentation); // a second reading would fail
   request.materialChanges = {"1: color=#00ff00"};
-  const PreparedScene green = before.changed(request);
+  const PreparedScene green = before.withRequest(request);
   EXPECT_TRUE(green.updatedStages().tint);
   EXPECT_EQ(green.tint()->weights, before.tint()->weights);
   EXPECT_FALSE(green.updatedStages().labelWeights);
   EXPECT_FALSE(green.updatedStages().majorants);
   request.focus = {"2"};
-  EXPECT_TRUE(green.changed(request).updatedStages().focus);
-  EXPECT_FALSE(green.changed(request).updatedStages().tint);
+  EXPECT_TRUE(green.withRequest(request).updatedStages().focus);
+  EXPECT_FALSE(green.withRequest(request).updatedStages().tint);
   request.focusLook.shaping.smoothing = 0.5;
-  EXPECT_NE(green.changed(request).tint()->weights, green.tint()->weights);
+  EXPECT_NE(green.withRequest(request).tint()->weights, green.tint()->weights);
   request.materials = noMaterials;
-  EXPECT_FALSE(green.changed(request).tint());
+  EXPECT_FALSE(green.withRequest(request).tint());
 }
 
 TEST_F(SceneChange, MaterialsLeaveTheContextItsColoursUnlessAsked) {
@@ -231,7 +231,7 @@ TEST_F(SceneChange, NewCameraDoesNotRemakeLightsOfTheWorld) {
   request.lights = folder / "lamp.json";
   const PreparedScene before(request);
   request.view.name = "left";
-  EXPECT_FALSE(before.changed(request).updatedStages().lights);
+  EXPECT_FALSE(before.withRequest(request).updatedStages().lights);
 }
 
 TEST_F(SceneChange, LightsAsTextEqualLightsAsFile) {
@@ -252,9 +252,9 @@ TEST_F(SceneChange, RefusedChangeLeavesTheSceneAsItWas) {
   const Film expected = picture(before);
   RenderRequest refused = request;
   refused.focus = {"9"};
-  EXPECT_THROW(before.changed(refused), Error);
+  EXPECT_THROW(before.withRequest(refused), Error);
   EXPECT_EQ(picture(before).at(8, 8).mean.sum(), expected.at(8, 8).mean.sum());
-  EXPECT_EQ(before.changed(request).updatedStages(), UpdatedStages());
+  EXPECT_EQ(before.withRequest(request).updatedStages(), UpdatedStages());
 }
 
 } // namespace

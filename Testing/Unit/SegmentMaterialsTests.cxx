@@ -25,7 +25,7 @@ SegmentInfo coded(const std::string& category, const std::string& type,
 
 SegmentMaterial materialOf(const SegmentInfo& segment,
                            const MaterialTable& table = materialLibrary()) {
-  return materialsOf({segment}, table).at(0);
+  return assignMaterials({segment}, table).at(0);
 }
 
 /// Spleen, kidneys and so on, with the material of each.
@@ -98,7 +98,7 @@ const std::vector<std::pair<std::string, std::string>> meant = {
 TEST(SegmentMaterials, NamesMeanWhatAClinicianMeans) {
   for (const auto& [name, material] : meant) {
     const SegmentMaterial found = materialOf(named(name));
-    EXPECT_EQ(found.name, material) << name << ": " << found.why;
+    EXPECT_EQ(found.name, material) << name << ": " << found.reason;
   }
   for (const char* none : {"", "Segment_1", "mask", "optic disc", "unknown", "region_7"})
     EXPECT_EQ(materialOf(named(none)).name, "") << none;
@@ -109,8 +109,8 @@ TEST(SegmentMaterials, EveryClassOfTheTablesHasAMaterial) {
     const LabelNames labels = *findBuiltInLabelNames(table);
     for (const auto& [value, label] : labels) {
       const SegmentMaterial found = materialOf(named(label.name));
-      EXPECT_NE(found.name, "") << table << ' ' << label.name << ": " << found.why;
-      EXPECT_EQ(found.why.rfind("by name '", 0), 0u) << found.why;
+      EXPECT_NE(found.name, "") << table << ' ' << label.name << ": " << found.reason;
+      EXPECT_EQ(found.reason.rfind("by name '", 0), 0u) << found.reason;
     }
   }
   EXPECT_EQ(findBuiltInLabelNames("totalsegmentator1")->size(), 104u);
@@ -121,8 +121,8 @@ TEST(SegmentMaterials, CodesWinOverNames) {
   const std::string anatomy = "SCT^123037004", altered = "SCT^49755003";
   const auto expect = [](const SegmentInfo& segment, const char* material, const char* why) {
     const SegmentMaterial found = materialOf(segment);
-    EXPECT_EQ(found.name, material) << found.why;
-    EXPECT_EQ(found.why, reason);
+    EXPECT_EQ(found.name, material) << found.reason;
+    EXPECT_EQ(found.reason, reason);
   };
   expect(coded(anatomy, "SCT^10200004", "", "spleen"), "liver", "by SCT^10200004");
   expect(coded(anatomy, "SRT^T-62000"), "liver", "by SRT^T-62000");
@@ -154,13 +154,13 @@ TEST(SegmentMaterials, RulesOfAFileWinOverTheLibrary) {
   EXPECT_EQ(materialOf(named("liver vessels"), table).name, "vessel") << "excepted";
   EXPECT_EQ(materialOf(named("left liver"), table).name, "b") << "of the greater priority";
   EXPECT_EQ(materialOf(named("spleen"), table).name, "spleen");
-  EXPECT_EQ(materialOf(coded("", "SCT^4147007", "SCT^10200004"), table).why,
+  EXPECT_EQ(materialOf(coded("", "SCT^4147007", "SCT^10200004"), table).reason,
             "by SCT^4147007~SCT^10200004");
   EXPECT_EQ(materialOf(coded("", "SCT^4147007", "SCT^12738006"), table).name, "lesion");
   SegmentInfo seven = named("liver");
   seven.labelValue = 7;
   const SegmentMaterial found = materialOf(seven, table);
-  EXPECT_EQ(found.why, "by value 7");
+  EXPECT_EQ(found.reason, "by value 7");
   EXPECT_FALSE(found.medium.isClipped);
   EXPECT_EQ(found.medium.density, 3.0);
 }
@@ -174,14 +174,14 @@ TEST(SegmentMaterials, ExceptionsHoldForCodes) {
 TEST(SegmentMaterials, UnknownSegmentsKeepTheirColorOrGetOneOfThePalette) {
   std::vector<SegmentInfo> segments(22, named("unknown"));
   segments[1].color = Rgb(0.2, 0.4, 0.6);
-  const std::vector<SegmentMaterial> found = materialsOf(segments, materialLibrary());
-  EXPECT_EQ(found[0].why, "by palette");
-  EXPECT_EQ(found[1].why, "by its own colour");
+  const std::vector<SegmentMaterial> found = assignMaterials(segments, materialLibrary());
+  EXPECT_EQ(found[0].reason, "by palette");
+  EXPECT_EQ(found[1].reason, "by its own colour");
   const Rgb own = encodeSrgb((*found[1].medium.material.color)(0));
   EXPECT_LT((expected - segments[1].color).abs().maxCoeff(), 1e-12);
   std::vector<Lab> palette;
   for (const SegmentMaterial& material : found)
-    if (material.why == "by palette")
+    if (material.reason == "by palette")
       palette.push_back(toLab((*material.medium.material.color)(0)));
   ASSERT_EQ(palette.size(), 21u);
   for (std::size_t i = 0; i < 20; ++i)

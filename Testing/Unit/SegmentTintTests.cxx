@@ -27,17 +27,17 @@ Handle<SegmentsInput> row(const std::vector<std::string>& names) {
 
 Handle<NamedMaterials> materials(const std::string& json) {
   return std::make_shared<NamedMaterials>(
-      NamedMaterials{parseMaterials(json, "m.json", namedMaterials("library").table), "m.json"});
+      NamedMaterials{parseMaterials(json, "m.json", findMaterials("library").table), "m.json"});
 }
 
-const Handle<NamedMaterials> library = std::make_shared<NamedMaterials>(namedMaterials("library"));
-const Handle<NamedMaterials> automatic = std::make_shared<NamedMaterials>(namedMaterials("auto"));
+const Handle<NamedMaterials> library = std::make_shared<NamedMaterials>(findMaterials("library"));
+const Handle<NamedMaterials> automatic = std::make_shared<NamedMaterials>(findMaterials("auto"));
 
 TintPlan planOf(const Handle<SegmentsInput>& segments, const Handle<NamedMaterials>& materials,
                 const std::vector<std::string>& changes = {},
                 const std::vector<std::string>& focus = {}, const Handle<Mask>& skin = {}) {
-  const auto there = std::make_shared<std::vector<bool>>(segmentsThere(segments));
-  return tintPlan(segments, there, materials, changes, focus, skin);
+  const auto there = std::make_shared<std::vector<bool>>(findNonEmpty(segments));
+  return makeTintPlan(segments, there, materials, changes, focus, skin);
 }
 
 using Parts = std::vector<TintPart>;
@@ -84,15 +84,15 @@ TEST(SegmentTint, FocusIsApartWhereItIsSetOff) {
   EXPECT_EQ(both.names, (std::vector<std::string>{"the rest", "aorta", "body", "kidney"}));
   EXPECT_EQ(both.isFocus, (std::vector<bool>{false, false, true, true}));
   EXPECT_FALSE(both.components[2].material.color) << "the volume's own";
-  EXPECT_EQ(planOf(segments, library, {}, {"aorta"}).isFocus, std::vector<bool>(4, false));
+  EXPECT_EQ(makePlan(segments, library, {}, {"aorta"}).isFocus, std::vector<bool>(4, false));
 }
 
 /// A name that says nothing gets a palette's colour from the library, and none beside a focus that
 /// is to stand out.
 TEST(SegmentTint, AutoColoursOnlyWhatIsKnown) {
   const auto segments = row({"liver", "Thing", "Other"});
-  EXPECT_EQ(planOf(segments, library).components.size(), 4U);
-  EXPECT_EQ(planOf(segments, automatic).components.size(), 2U);
+  EXPECT_EQ(makePlan(segments, library).components.size(), 4U);
+  EXPECT_EQ(makePlan(segments, automatic).components.size(), 2U);
   const TintPlan asked = planOf(segments, automatic, {"Thing: color=#00ff00"});
   EXPECT_EQ(requested.components.size(), 3U);
 }
@@ -113,16 +113,16 @@ TEST(SegmentTint, RestColoursWhatNoSegmentCovers) {
 /// Segments of one colour are apart where their matter differs; an empty one is nothing.
 TEST(SegmentTint, MatterMakesAMixture) {
   const auto segments = row({"kidney_left", "kidney_right", "spleen", "empty"});
-  EXPECT_TRUE(isTint(planOf(segments, library)));
-  EXPECT_TRUE(isTint(planOf(segments, library, {"empty: density=2"})));
+  EXPECT_TRUE(isTintOnly(makePlan(segments, library)));
+  EXPECT_TRUE(isTintOnly(makePlan(segments, library, {"empty: density=2"})));
   for (const char* change : {"kidney_right: clip=no", "kidney_right: density=2",
                              "kidney_right: extinction=2", "kidney_right: kind=matter"}) {
     const TintPlan plan = planOf(segments, library, {change});
-    EXPECT_FALSE(isTint(plan)) << change;
+    EXPECT_FALSE(isTintOnly(plan)) << change;
     EXPECT_EQ(plan.parts, (Parts{{{0}, 10, 1}, {{1}, 10, 2}, {{2}, 10, 3}})) << change;
   }
-  EXPECT_EQ(planOf(segments, library, {"id0: density=2", "id1: density=3"}).parts.size(), 3U);
-  EXPECT_EQ(planOf(segments, library, {"id0: density=2", "id1: density=2"}).parts,
+  EXPECT_EQ(makePlan(segments, library, {"id0: density=2", "id1: density=3"}).parts.size(), 3U);
+  EXPECT_EQ(makePlan(segments, library, {"id0: density=2", "id1: density=2"}).parts,
             (Parts{{{0, 1}, 10, 1}, {{2}, 10, 2}}));
 }
 
@@ -143,7 +143,7 @@ TEST(SegmentTint, MixturesHaveTheMatterOfTheirMaterials) {
   const auto shares = std::make_shared<LabelWeights>(
       computeLabelWeights(segments, plan->parts, {}, 0.0, segments->segmentation.grid()));
   const Mixture mixture =
-      mixtureOf(*plan, *std::make_shared<Tint>(tintOf(plan, shares, own.g)), own);
+      buildMixture(*plan, *std::make_shared<Tint>(buildTint(plan, shares, own.g)), own);
   ASSERT_EQ(mixture.components.size(), 5U);
   EXPECT_TRUE(mixture.hasUnclipped());
   const auto extinctionAt = [&](std::size_t i, double scalar) {
@@ -172,7 +172,8 @@ TEST(SegmentTint, MixturesHaveTheMatterOfTheirMaterials) {
   EXPECT_TRUE(spleen.transfer.shading->coated);
 
   own.shading.reset();
-  for (const Component& component : mixtureOf(*plan, tintOf(plan, shares, own.g), own).components)
+  for (const Component& component :
+       buildMixture(*plan, buildTint(plan, shares, own.g), own).components)
     EXPECT_FALSE(component.transfer.shading) << "as the volume's own";
 }
 
@@ -206,7 +207,7 @@ TEST(SegmentTint, RefusesMoreColoursThanAByteCounts) {
         Segmentation("s.nrrd", Grid(Size3(256, 1, 1), Affine::Identity()), 1, labels, segments)});
   };
   expectRefused("s.nrrd", "more than 255 materials", [&] { planOf(inputOf(256), library, {}); });
-  EXPECT_EQ(planOf(inputOf(255), library, {}).components.size(), 256U);
+  EXPECT_EQ(makePlan(inputOf(255), library, {}).components.size(), 256U);
 }
 
 TEST(SegmentTint, SharesAndColoursLieWhereTheLabelsAre) {
@@ -217,7 +218,7 @@ TEST(SegmentTint, SharesAndColoursLieWhereTheLabelsAre) {
       std::make_shared<LabelWeights>(computeLabelWeights(segments, plan->parts, {}, 0.0, grid));
   const Rgb own(0.1, 0.2, 0.3);
   for (const double g : {0.0, 0.5}) {
-    const Tint tint = tintOf(plan, shares, g);
+    const Tint tint = buildTint(plan, shares, g);
     const TintField field(tint, grid);
     const auto seen = [&](double x) {
       return Rgb(field.albedo(Vec3(x, 0, 0), 7.0, own).unaryExpr([g](double albedo) {
@@ -263,7 +264,7 @@ TEST(SegmentTint, SkinNeedsNoSegment) {
   const TintPlan plan = planOf(segments, automatic, {}, {"liver"}, skinOf(grid));
   EXPECT_EQ(plan.parts, (Parts{{{0}, 10, 1, true}, {{1}, 10, 2}, {{}, 1, 3}}));
   EXPECT_EQ(plan.names.back(), "skin");
-  EXPECT_TRUE(plan.hasFoundSkin());
+  EXPECT_TRUE(plan.hasDetectedSkin());
   const LabelWeights shares = computeLabelWeights(segments, plan.parts, skinOf(grid), 0.0, grid);
   const auto skinAt = [&](double x) {
     double skin = 0.0;
@@ -276,11 +277,12 @@ TEST(SegmentTint, SkinNeedsNoSegment) {
   EXPECT_NEAR(skinAt(0.25), 0.75, 0.01);
   EXPECT_EQ(skinAt(1.0), 0.0);
 
-  EXPECT_FALSE(planOf(segments, automatic, {}, {"liver"}, std::make_shared<Mask>()).hasFoundSkin());
-  EXPECT_FALSE(planOf(segments, automatic, {}, {"liver"}).hasFoundSkin());
   EXPECT_FALSE(
-      planOf(makeRow({"liver", "skin"}), automatic, {}, {"liver"}, skinOf(grid)).hasFoundSkin());
-  EXPECT_TRUE(planOf(makeRow({"body"}), automatic, {}, {}, skinOf(grid)).hasFoundSkin());
+      makePlan(segments, automatic, {}, {"liver"}, std::make_shared<Mask>()).hasDetectedSkin());
+  EXPECT_FALSE(makePlan(segments, automatic, {}, {"liver"}).hasDetectedSkin());
+  EXPECT_FALSE(makePlan(makeRow({"liver", "skin"}), automatic, {}, {"liver"}, skinOf(grid))
+                   .hasDetectedSkin());
+  EXPECT_TRUE(makePlan(makeRow({"body"}), automatic, {}, {}, skinOf(grid)).hasDetectedSkin());
 }
 
 TEST(SegmentTint, AlbedoIsTakenAsItIs) {
@@ -290,7 +292,7 @@ TEST(SegmentTint, AlbedoIsTakenAsItIs) {
       {}));
   const auto shares = std::make_shared<LabelWeights>(
       computeLabelWeights(segments, plan->parts, {}, 0.0, segments->segmentation.grid()));
-  EXPECT_EQ((*tintOf(plan, weights, 0.3).albedo[1])(0.0).matrix(), Vec3(0.5, 0.6, 0.7));
+  EXPECT_EQ((*buildTint(plan, weights, 0.3).albedo[1])(0.0).matrix(), Vec3(0.5, 0.6, 0.7));
 }
 
 } // namespace

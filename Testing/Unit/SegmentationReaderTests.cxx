@@ -215,7 +215,7 @@ TEST(SegmentationReader, OriginOfACroppedFileIncludesItsOffset) {
   labels[1] = 1; // voxel 1 0 0
   writeFile(folder / "s.seg.nrrd", labels, geometry);
   const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
-  EXPECT_TRUE(isApprox(centroid(s, "liver"), Vec3(-12, -20, 30)));
+  EXPECT_TRUE(isApprox(computeCentroid(s, "liver"), Vec3(-12, -20, 30)));
 }
 
 TEST(SegmentationReader, IgnoresStatedExtentOfSegments) {
@@ -318,9 +318,11 @@ TEST(SegmentationReader, PlacesTheOldestFilesByTheirExtent) {
   const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
   ASSERT_EQ(s.segments().size(), 2u);
   EXPECT_EQ(s.makeFocusMask({"liver"}, s.grid()).count, 2);
-  EXPECT_TRUE(isApprox(centroid(s, "liver"), Vec3(100 - 10.5 * 2, 200 - 20 * 3, -50 + 5 * 4)));
+  EXPECT_TRUE(
+      isApprox(computeCentroid(s, "liver"), Vec3(100 - 10.5 * 2, 200 - 20 * 3, -50 + 5 * 4)));
   EXPECT_EQ(s.makeFocusMask({"tumour"}, s.grid()).count, 2);
-  EXPECT_TRUE(isApprox(centroid(s, "tumour"), Vec3(100 - 11 * 2, 200 - 21.5 * 3, -50 + 5.5 * 4)));
+  EXPECT_TRUE(
+      isApprox(computeCentroid(s, "tumour"), Vec3(100 - 11 * 2, 200 - 21.5 * 3, -50 + 5.5 * 4)));
   EXPECT_EQ(s.makeFocusMask({"a", "b"}, s.grid()).count, 3);
 
   geometry.fields["Segmentation_Extent"] = "10 12 20 23 5";

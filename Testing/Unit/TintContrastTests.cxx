@@ -23,14 +23,15 @@ const Rgb liver = hexToLinear(0x963e2e), muscle = hexToLinear(0xa03e38),
           artery = hexToLinear(0xd62824), fat = hexToLinear(0xc59685),
           pancreas = hexToLinear(0xecc48a);
 
-ColorAdjustment choose(const std::vector<BorderColors>& colors, const ContextColors& context = {}) {
+ColorAdjustment choose(const std::vector<InterfaceColors>& colors,
+                       const ContextColors& context = {}) {
   return chooseAdjustment(colors, context, Adjustable::both, 1.0, 0.0);
 }
 /// Surroundings of a focus that is tinted, not painted, before a knob is turned.
 constexpr ColorAdjustment muted{.contextSaturation = 0.6};
 
-double computeScore(const ColorAdjustment& adjustment, const BorderColors& colors) {
-  return tintShare(contrastUnder(adjustment, colors, 1.0, 0.0));
+double computeScore(const ColorAdjustment& adjustment, const InterfaceColors& colors) {
+  return contrastScore(measureAdjustedContrast(adjustment, colors, 1.0, 0.0));
 }
 
 // ---- colours
@@ -78,7 +79,7 @@ TEST(TintContrast, ColoursBeyondTheDisplayKeepLightnessAndHue) {
 
 TEST(TintContrast, LeavesColoursThatDiffer) {
   EXPECT_EQ(choose({{spleen, bone, 1.0}}), muted);
-  EXPECT_EQ(shareOf({}, {spleen, bone, 1.0}), 1.0);
+  EXPECT_EQ(computeScore({}, {spleen, bone, 1.0}), 1.0);
 }
 
 TEST(TintContrast, FocusWithoutNeighboursStaysAsItIs) {
@@ -88,16 +89,16 @@ TEST(TintContrast, FocusWithoutNeighboursStaysAsItIs) {
 /// Expects that `knob` alone is turned, in the middle of its range, and that a twentieth of the
 /// range less would not be enough.
 void expectSingleAdjustment(double ColorAdjustment::*member, double limit,
-                            const BorderColors& colors) {
+                            const InterfaceColors& colors) {
   const ColorAdjustment adjustment = choose({colors});
   const double step = (limit - muted.*member) / 20.0,
                adjusted = (adjustment.*member - muted.*member) / step;
   EXPECT_GT(adjusted, 0.5);
   EXPECT_LT(adjusted, 19.5);
-  EXPECT_GE(shareOf(adjustment, colors), enoughShare);
+  EXPECT_GE(computeScore(adjustment, colors), sufficientScore);
   ColorAdjustment reduced = adjustment;
   reduced.*member -= step;
-  EXPECT_LT(shareOf(reduced, colors), enoughShare);
+  EXPECT_LT(computeScore(reduced, colors), sufficientScore);
   reduced.*member = muted.*member;
   EXPECT_EQ(reduced, muted) << "others are turned, too";
 }
@@ -137,12 +138,12 @@ TEST(TintContrast, DarkFociAreDarkenedAndLightOnesSetBeforeDimmerSurroundings) {
 
 /// Turns knobs beyond what tissue looks like, where the focus would not be told from its like.
 TEST(TintContrast, LikeInLikeIsPainted) {
-  const BorderColors colors{hexToLinear(0xe2a08c), fat, 1.0};
+  const InterfaceColors colors{hexToLinear(0xe2a08c), fat, 1.0};
   const ColorAdjustment adjustment = choose({colors});
   EXPECT_GT(adjustment.focusAccent, 0.35);
   EXPECT_LE(adjustment.focusAccent, 0.6);
   EXPECT_EQ(adjustment.accent, 0U) << "yellow: a pale organ in dark red would be taken for muscle";
-  const Contrast contrast = contrastUnder(adjustment, colors, 1.0, 0.0);
+  const Contrast contrast = measureAdjustedContrast(adjustment, colors, 1.0, 0.0);
   EXPECT_GT(contrast.deltaE[0], 20.0);
   EXPECT_GT(contrast.colorBlind(), 12.0);
   EXPECT_GT(contrast.deltaL, 8.0);
@@ -150,7 +151,7 @@ TEST(TintContrast, LikeInLikeIsPainted) {
 
 /// An accent is the last resort, a part of the way alone, and no other would be worth more.
 TEST(TintContrast, AccentComesLast) {
-  const BorderColors colors{pancreas, fat, 1.0};
+  const InterfaceColors colors{pancreas, fat, 1.0};
   const ColorAdjustment adjustment = choose({colors});
   EXPECT_GT(adjustment.focusAccent, 0.0);
   EXPECT_LE(adjustment.focusAccent, 0.35);
@@ -159,7 +160,7 @@ TEST(TintContrast, AccentComesLast) {
   EXPECT_EQ(adjustment.contextLightness, 0.35);
   ColorAdjustment other = adjustment;
   for (other.accent = 1; other.accent < accentColors.size(); ++other.accent)
-    EXPECT_LT(shareOf(other, colors), shareOf(adjustment, colors));
+    EXPECT_LT(computeScore(other, colors), computeScore(adjustment, colors));
 }
 
 /// Every knob that is turned is needed: a twentieth less of any leaves less than there is, or less
@@ -169,19 +170,19 @@ TEST(TintContrast, WhatIsNotNeededIsTurnedBack) {
                                   &ColorAdjustment::contextLightness,
                                   &ColorAdjustment::focusLightness, &ColorAdjustment::focusChroma,
                                   &ColorAdjustment::focusAccent};
-  for (const BorderColors& colors :
-       {BorderColors{pancreas, fat, 1.0}, BorderColors{artery, fat, 1.0},
-        BorderColors{liver, muscle, 1.0},
-        BorderColors{hexToLinear(0x882a2e), hexToLinear(0xbb8375), 1.0}}) {
+  for (const InterfaceColors& colors :
+       {InterfaceColors{pancreas, fat, 1.0}, InterfaceColors{artery, fat, 1.0},
+        InterfaceColors{liver, muscle, 1.0},
+        InterfaceColors{hexToLinear(0x882a2e), hexToLinear(0xbb8375), 1.0}}) {
     const ColorAdjustment adjustment = choose({colors});
     const bool isAccented = adjustment.contextLightness > 0.35 || adjustment.focusAccent > 0.35;
     const ColorAdjustment initial = isAccented ? ColorAdjustment() : muted;
-    const double required = std::min(computeScore(adjustment, colors), enoughShare);
+    const double required = std::min(computeScore(adjustment, colors), sufficientScore);
     for (const auto member : members) {
       ColorAdjustment reduced = adjustment;
       reduced.*member += 0.05 * (initial.*member - reduced.*member);
       if (!(reduced == adjustment)) {
-        EXPECT_LT(shareOf(reduced, colors), required) << toLab(colors.focus).L;
+        EXPECT_LT(computeScore(reduced, colors), required) << toLab(colors.focus).L;
       }
     }
   }
@@ -191,41 +192,41 @@ TEST(TintContrast, WhatIsNotNeededIsTurnedBack) {
 /// shades what is around it, and by 3 where that is in more light than a light focus.
 TEST(TintContrast, EdgesAreShownInTheLightAndInAGroove) {
   const Rgb dark = toLinear({40.0, 0.0, 0.0}), light = toLinear({80.0, 0.0, 0.0});
-  for (const auto& [colors, loss] : {std::pair(BorderColors{dark, light, 1.0}, 4.0),
-                                     std::pair(BorderColors{light, dark, 1.0}, 3.0)}) {
-    const Contrast contrast = contrastUnder({}, colors, 1.0, 0.0);
+  for (const auto& [colors, loss] : {std::pair(InterfaceColors{dark, light, 1.0}, 4.0),
+                                     std::pair(InterfaceColors{light, dark, 1.0}, 3.0)}) {
+    const Contrast contrast = measureAdjustedContrast({}, colors, 1.0, 0.0);
     EXPECT_NEAR(contrast.deltaL, 0.43 * 40.0 - loss, 1e-3);
     EXPECT_NEAR(contrast.deltaE[0], contrast.deltaL, 0.1);
   }
   const Lab red{50.0, 40.0, 10.0};
-  const BorderColors hues{toLinear(red), toLinear({50.0, 0.0, 0.0}), 1.0};
+  const InterfaceColors hues{toLinear(red), toLinear({50.0, 0.0, 0.0}), 1.0};
   const double chroma = 0.62 * (29.0 + 0.43 * 50.0) / 50.0 * std::hypot(red.a, red.b);
-  EXPECT_NEAR(contrastUnder({}, hues, 1.0, 0.0).deltaE[0], std::hypot(chroma, 4.0), 0.1);
+  EXPECT_NEAR(measureAdjustedContrast({}, hues, 1.0, 0.0).deltaE[0], std::hypot(chroma, 4.0), 0.1);
 }
 
 /// Green and red of one lightness: normal sight needs nothing, the red-blind do.
 TEST(TintContrast, MindsTheColourBlindAndGreyPrints) {
   Contrast contrast{{30.0, 15.0, 15.0, 30.0}, 20.0};
-  EXPECT_EQ(tintShare(contrast), 1.0);
+  EXPECT_EQ(contrastScore(contrast), 1.0);
   for (double* value :
        {&contrast.deltaE[0], &contrast.deltaE[1], &contrast.deltaE[2], &contrast.deltaL}) {
     const double before = std::exchange(*value, 1.0);
-    EXPECT_LT(tintShare(contrast), 0.85);
+    EXPECT_LT(contrastScore(contrast), 0.85);
     *value = before;
   }
-  const BorderColors colors{hexToLinear(0xa06848), hexToLinear(0x608048), 1.0};
-  EXPECT_GT(contrastUnder({}, colors, 1.0, 0.0).deltaE[0], 16.0);
+  const InterfaceColors colors{hexToLinear(0xa06848), hexToLinear(0x608048), 1.0};
+  EXPECT_GT(measureAdjustedContrast({}, colors, 1.0, 0.0).deltaE[0], 16.0);
   const ColorAdjustment adjustment = choose({colors});
   EXPECT_NE(adjustment, ColorAdjustment());
-  const Contrast before = contrastUnder({}, colors, 1.0, 0.0),
-                 after = contrastUnder(adjustment, colors, 1.0, 0.0);
+  const Contrast before = measureAdjustedContrast({}, colors, 1.0, 0.0),
+                 after = measureAdjustedContrast(adjustment, colors, 1.0, 0.0);
   EXPECT_GT(std::min(after.deltaE[1], after.deltaE[2]),
             std::min(before.deltaE[1], before.deltaE[2]));
   EXPECT_GT(after.deltaL, before.deltaL);
 }
 
 TEST(TintContrast, WhatTheUserSetsIsNotTurned) {
-  const std::vector<BorderColors> colors = {{liver, muscle, 1.0}};
+  const std::vector<InterfaceColors> colors = {{liver, muscle, 1.0}};
   const ColorAdjustment pale = choose(colors, {.saturation = 0.8, .lightness = {}});
   EXPECT_EQ(pale.contextSaturation, 0.8);
   EXPECT_GT(pale.contextLightness, 0.0);
@@ -241,10 +242,10 @@ TEST(TintContrast, WhatTheUserSetsIsNotTurned) {
 /// Most of the border decides.
 TEST(TintContrast, PartsCountByTheirArea) {
   const Lab own = toLab(skin);
-  const BorderColors dark{skin, toLinear({own.L + 12.0, own.a, own.b}), 1.0},
+  const InterfaceColors dark{skin, toLinear({own.L + 12.0, own.a, own.b}), 1.0},
       light{skin, toLinear({own.L - 12.0, own.a, own.b}), 1.0};
   const auto chooseLightness = [&](double darkArea, double lightArea) {
-    BorderColors first = dark, second = light;
+    InterfaceColors first = dark, second = light;
     first.area = darkArea;
     second.area = lightArea;
     return choose({first, second}).focusLightness;
@@ -255,11 +256,11 @@ TEST(TintContrast, PartsCountByTheirArea) {
 
 /// A context paled by --contextsaturation 0 is grey, whatever its tint.
 TEST(TintContrast, KnowsHowFarTheContextIsPaled) {
-  const BorderColors colors{liver, teal, 1.0};
-  const Contrast gray = contrastUnder({}, colors, 0.0, 0.0);
+  const InterfaceColors colors{liver, teal, 1.0};
+  const Contrast gray = measureAdjustedContrast({}, colors, 0.0, 0.0);
   const double own = luminance(toAlbedo(teal, 0.0));
-  const BorderColors same{liver, Rgb::Constant(toReflectance(own, 0.0)), 1.0};
-  EXPECT_NEAR(gray.deltaE[0], contrastUnder({}, same, 1.0, 0.0).deltaE[0], 0.05);
+  const InterfaceColors same{liver, Rgb::Constant(toReflectance(own, 0.0)), 1.0};
+  EXPECT_NEAR(gray.deltaE[0], measureAdjustedContrast({}, same, 1.0, 0.0).deltaE[0], 0.05);
 }
 
 // ---- borders
@@ -283,7 +284,7 @@ protected:
           mask.count += mask.voxels[i] = isInside(v);
     return mask;
   }
-  std::vector<ComponentBorder> measureInterfaces(const TransferFunction& transfer) const {
+  std::vector<ComponentInterface> measureInterfaces(const TransferFunction& transfer) const {
     const Volume volume = makeVolume<float>(grid, [](const Vec3& index) {
       const Size3 v = index.array().round().cast<std::int64_t>();
       return isCube(v) ? 20.0 : v.x() >= high ? 30.0 : 10.0;
@@ -291,7 +292,7 @@ protected:
     const LabelWeights weights =
         sharesOf({{makeMask(isCube), 10, 1},
                   {makeMask([](const Size3& v) { return v.x() >= high; }), 10, 2}});
-    return componentBorders(makeMask(isCube), volume, transfer, weights, {false, true, false});
+    return findInterfaces(makeMask(isCube), volume, transfer, weights, {false, true, false});
   }
 
   const Grid grid = centredGrid({edge, edge, edge}, Vec3(1.0, 2.0, 4.0));
@@ -299,14 +300,14 @@ protected:
 };
 
 TEST_F(InterfaceTests, AreMeasuredInSquareMillimetres) {
-  const std::vector<ComponentBorder> found = measureInterfaces(all);
+  const std::vector<ComponentInterface> found = measureInterfaces(all);
   ASSERT_EQ(found.size(), 2U);
   const double x = 36 * 8.0, y = 36 * 4.0, z = 36 * 2.0;
   EXPECT_EQ(found[0].context, 0);
   EXPECT_NEAR(found[0].area, x + 2.0 * y + 2.0 * z, 1e-6);
   EXPECT_EQ(found[1].context, 2);
   EXPECT_NEAR(found[1].area, x, 1e-6);
-  for (const ComponentBorder& interface : found) {
+  for (const ComponentInterface& interface : found) {
     EXPECT_EQ(interface.focus, 1);
     EXPECT_EQ(interface.focusScalar, 20.0);
   }
@@ -317,7 +318,7 @@ TEST_F(InterfaceTests, AreMeasuredInSquareMillimetres) {
 TEST_F(InterfaceTests, WhatIsTransparentIsNoNeighbour) {
   TransferFunction transfer = all;
   transfer.extinction = ScalarFunction({knot(10.0, 0.0), knot(20.0, 1.0)});
-  const std::vector<ComponentBorder> found = measureInterfaces(transfer);
+  const std::vector<ComponentInterface> found = measureInterfaces(transfer);
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].context, 2);
 }
