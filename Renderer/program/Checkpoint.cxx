@@ -23,12 +23,13 @@ namespace fs = std::filesystem;
 template <typename Predicate>
 ordered_json collectOptions(const OptionValues& options, const fs::path& folder,
                             Predicate&& isIncluded) {
-  ordered_json collected = {{"INPUT", {relativeName(*options.text("INPUT"), folder)}}};
+  ordered_json collected = {{"INPUT", {toRelativeName(*options.text("INPUT"), folder)}}};
   for (const Option& option : renderSyntax.options) {
     if (!options.has(option.name) || !isIncluded(option))
       continue;
     for (const std::string& value : options.texts(option.name))
-      collected[option.name].push_back(option.canNameFile() ? relativeName(value, folder) : value);
+      collected[option.name].push_back(option.canNameFile() ? toRelativeName(value, folder)
+                                                            : value);
   }
   return collected;
 }
@@ -96,7 +97,7 @@ ordered_json digestInputs(const PreparedScene& scene, const RenderOptions& optio
                           const fs::path& folder) {
   ordered_json inputs = ordered_json::array();
   for (const fs::path& file : listInputFiles(scene, options))
-    inputs.push_back({{"file", relativeName(file.string(), folder)},
+    inputs.push_back({{"file", toRelativeName(file.string(), folder)},
                       {"bytes", fs::file_size(file)},
                       {"digest", computeDigest(file)}});
   return inputs;
@@ -135,12 +136,12 @@ std::string formatShard(const Shard& shard) {
   return concat(shard.index + 1, '/', shard.count);
 }
 
-Checkpoint::Checkpoint(const PictureRequest& job, const OptionValues& given, Warn warn)
+Checkpoint::Checkpoint(const RenderJob& job, const OptionValues& given, Warn warn)
     : m_job(job),
       m_path(*job.options.checkpoint),
       m_warn(std::move(warn)),
       m_lock(m_path),
-      m_provenance(makeProvenance(given, job.flags, m_path.parent_path())) {
+      m_provenance(makeProvenance(given, job.values, m_path.parent_path())) {
   if (!m_lock->isHeld())
     throw usageError(m_path, ": another process is writing this film; wait for it, or choose "
                              "another --checkpoint");
@@ -158,13 +159,13 @@ Checkpoint::Checkpoint(const PictureRequest& job, const OptionValues& given, War
   m_outputs.add(m_path);
 }
 
-Checkpoint::Checkpoint(const PictureRequest& job, const OptionValues& given,
+Checkpoint::Checkpoint(const RenderJob& job, const OptionValues& given,
                        std::vector<CheckpointFile> shards)
     : m_job(job),
       m_path(shards.front().path()),
       m_files(std::move(shards)),
       m_isMerge(true),
-      m_provenance(makeProvenance(given, job.flags, m_path.parent_path())) {
+      m_provenance(makeProvenance(given, job.values, m_path.parent_path())) {
   for (const char* key : {"version", "settings"})
     requireSame(m_files.front(), key);
 }

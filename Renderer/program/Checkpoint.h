@@ -40,11 +40,10 @@ public:
   /// Locks options.checkpoint, which must be set, and reads what is there. The request must outlive
   /// this. Throws Error: usage where another process writes that film, or it belongs to other
   /// settings; input where it is damaged; output where none can be written.
-  Checkpoint(const PictureRequest& job, const OptionValues& given, Warn warn);
+  Checkpoint(const RenderJob& job, const OptionValues& given, Warn warn);
 
-  /// The parts of one picture, in their order (wholePicture), which are read and never written.
-  Checkpoint(const PictureRequest& job, const OptionValues& given,
-             std::vector<CheckpointFile> shards);
+  /// The parts of one picture, in their order (readShards), which are read and never written.
+  Checkpoint(const RenderJob& job, const OptionValues& given, std::vector<CheckpointFile> shards);
 
   /// Result to go on from; nothing: from the beginning. Throws Error: usage where the film belongs
   /// to other inputs, another instruction set, or more samples than the settings allow; input.
@@ -66,7 +65,7 @@ private:
   void requireSame(const CheckpointFile& film, const std::string& key) const;
   void checkSampleCounts(const RenderResult& result, const RenderSettings& settings) const;
 
-  const PictureRequest& m_job;
+  const RenderJob& m_job;
   const std::filesystem::path m_path;
   Warn m_warn;
   std::optional<NameLock> m_lock;

@@ -181,7 +181,7 @@ std::optional<OptionValues> parseCommandLine(const CommandSyntax& syntax, int ar
   if (hasArgument("--help")) {
     std::cout << formatHelp(syntax) << std::flush;
   } else if (hasArgument("--version")) {
-    useInstructions();
+    pinInstructions();
     std::cout << (hasArgument("--json") ? aboutJson() : aboutText()) << std::flush;
   } else {
     return parseArguments(syntax, words);

@@ -24,7 +24,7 @@ constexpr Command subcommands[] = {
 };
 
 /// Throws Error (usage) for a word that names no file and nearly a subcommand.
-void refuseMisspelt(std::string_view word) {
+void rejectMisspelled(std::string_view word) {
   std::vector<std::string> names;
   for (const Command& command : commands())
     names.push_back(command.syntax().name);
@@ -46,7 +46,7 @@ int dispatch(int argc, char** argv) {
   for (const auto& [syntax, run] : commands())
     if (word == syntax().name)
       return run(argc, argv, 2);
-  refuseMisspelt(word);
+  rejectMisspelled(word);
   return renderCommand(argc, argv, 1);
 }
 

@@ -39,14 +39,14 @@ int describeCommand(int argc, char** argv, int first);
 
 /// Pins the instruction set that the environment variable FENESTRA_INSTRUCTIONS names. Throws Error
 /// (usage) if the machine lacks it.
-void useInstructions();
+void pinInstructions();
 
 /// Threads that --threads asks for, at most one a core.
-int threadCount(const OptionValues& flags);
+int threadCount(const OptionValues& options);
 
 /// Limits this process to --threads threads, at most one a core, and starts them before other code
-/// uses threads; pins the instruction set, too. Throws Error: as useInstructions; output if the
+/// uses threads; pins the instruction set, too. Throws Error: as pinInstructions; output if the
 /// threads cannot be started.
-void useMachine(const OptionValues& flags);
+void configureMachine(const OptionValues& options);
 
 } // namespace fenestra

@@ -13,7 +13,7 @@ namespace fenestra {
 namespace {
 
 constexpr const char* compareGroup = "Compare";
-const Option compareFlags[] = {
+const Option compareTable[] = {
     {"errora", "FILE", compareGroup, "Standard errors of A, where A itself has no error channels"},
     {"errorb", "FILE", compareGroup, "Standard errors of B, where B itself has no error channels"},
     {"output", "FILE", compareGroup, "Difference picture: .png .tif .exr .nrrd"},
@@ -36,7 +36,7 @@ void declareOutput(const OptionValues& values, Outputs& outputs) {
 }
 
 /// Adds the file names to an error: compareImages knows pictures only.
-Comparison compared(const OptionValues& values, const Image& a, const Image& b) {
+Comparison compareFiles(const OptionValues& values, const Image& a, const Image& b) {
   try {
     return compareImages(a, b);
   } catch (const Error& error) {
@@ -73,7 +73,7 @@ const CommandSyntax& compareSyntax() {
       "Compares picture A with reference B: error measures, and z statistics where both carry "
       "errors.",
       {{"A", "Picture: .exr .nrrd .png .tif"}, {"B", "Reference of the same size"}},
-      compareFlags,
+      compareTable,
   };
   return syntax;
 }
@@ -86,7 +86,7 @@ int compareCommand(int argc, char** argv, int first) {
   declareOutput(*values, outputs);
   const Image a = readWithError(*values, "A", "errora");
   const Image b = readWithError(*values, "B", "errorb");
-  print(compared(*values, a, b));
+  print(compareFiles(*values, a, b));
   if (const auto output = values->text("output")) {
     writeImage(differenceImage(a, b), {}, *output, outputs, {DisplayView::standard});
     outputs.commit();

@@ -9,37 +9,37 @@ namespace fenestra {
 namespace {
 
 /// Values that a shell can offer for a flag or an argument.
-struct Offer {
+struct Candidates {
   std::vector<std::string> words; ///< of letters, digits and dashes
   bool files = false;
 
-  bool operator==(const Offer&) const = default;
+  bool operator==(const Candidates&) const = default;
   std::string text() const { return join(words, " "); }
 };
 
-Offer offerFor(const Option& flag) {
-  const ValueSpec& takes = flag.spec;
-  return {takes.choices.empty() ? takes.namedValues : takes.choices,
-          flag.canNameFile() || flag.placeholder == "DIR"};
+Candidates findCandidates(const Option& option) {
+  const ValueSpec& hasOption = option.spec;
+  return {hasOption.choices.empty() ? hasOption.namedValues : hasOption.choices,
+          option.canNameFile() || option.placeholder == "DIR"};
 }
 
-Offer offerFor(const Positional& positional) {
+Candidates findCandidates(const Positional& positional) {
   return {positional.choices, positional.choices.empty()};
 }
 
-std::string nameOf(const Command& command) {
+std::string commandName(const Command& command) {
   return command.syntax().name;
 }
 
 std::string commandNames() {
-  return join(commands(), " ", nameOf);
+  return join(commands(), " ", commandName);
 }
 
 /// Flags of a command, the common ones first.
-std::vector<Option> allFlags(const CommandSyntax& syntax) {
-  std::vector<Option> flags(commonOptions.begin(), commonOptions.end());
-  std::ranges::copy(listOptions(syntax), std::back_inserter(flags));
-  return flags;
+std::vector<Option> listAllOptions(const CommandSyntax& syntax) {
+  std::vector<Option> options(commonOptions.begin(), commonOptions.end());
+  std::ranges::copy(listOptions(syntax), std::back_inserter(options));
+  return options;
 }
 
 /// Summary up to its first stop.
@@ -83,30 +83,31 @@ complete -F _fenestra fenestra
 )sh";
 
 /// Assignments of an offer to the script's variables.
-std::string bashOffer(const Offer& offer) {
-  return concat("words='", offer.text(), "' files=", offer.files ? "yes" : "");
+std::string bashCandidates(const Candidates& candidates) {
+  return concat("words='", candidates.text(), "' files=", candidates.files ? "yes" : "");
 }
 
 /// Case of a command: all its flags, and the offer for the value of each.
 std::string bashCase(const CommandSyntax& syntax) {
-  std::vector<std::pair<Offer, std::string>> cases; // with the flags that have it
-  const std::vector<Option> flags = allFlags(syntax);
-  for (const Option& flag : flags) {
-    if (flag.isSwitch())
+  std::vector<std::pair<Candidates, std::string>> cases; // with the flags that have it
+  const std::vector<Option> options = listAllOptions(syntax);
+  for (const Option& option : options) {
+    if (option.isSwitch())
       continue;
-    const Offer offer = offerFor(flag);
-    const auto known = std::ranges::find(cases, offer, &std::pair<Offer, std::string>::first);
+    const Candidates candidates = findCandidates(option);
+    const auto known =
+        std::ranges::find(cases, candidates, &std::pair<Candidates, std::string>::first);
     if (known == cases.end())
-      cases.emplace_back(offer, "--" + flag.name);
+      cases.emplace_back(candidates, "--" + option.name);
     else
-      known->second += " | --" + flag.name;
+      known->second += " | --" + option.name;
   }
-  const auto name = [](const Option& flag) { return "--" + flag.name; };
-  std::string text = concat("    ", syntax.name, ")\n      flags='", join(flags, " ", name),
+  const auto name = [](const Option& option) { return "--" + option.name; };
+  std::string text = concat("    ", syntax.name, ")\n      flags='", join(options, " ", name),
                             "'\n      case $before in\n");
-  for (const auto& [offer, names] : cases)
-    text += concat("        ", names, ") ", bashOffer(offer), " ;;\n");
-  return concat(text, "        *) ", bashOffer(offerFor(syntax.positionals.front())),
+  for (const auto& [candidates, names] : cases)
+    text += concat("        ", names, ") ", bashCandidates(candidates), " ;;\n");
+  return concat(text, "        *) ", bashCandidates(findCandidates(syntax.positionals.front())),
                 " value= ;;\n      esac\n      ;;\n");
 }
 
@@ -143,39 +144,40 @@ _fenestra "$@"
 )sh";
 
 /// Text in single quotes, for zsh.
-std::string zshQuoted(std::string_view text) {
+std::string zshQuote(std::string_view text) {
   return concat("'", replaceAll(text, "'", "'\\''"), "'");
 }
 
 /// Text in which `marks` are escaped by a backslash.
-std::string escaped(std::string_view text, std::string_view marks) {
+std::string escape(std::string_view text, std::string_view marks) {
   std::string result;
   for (const char c : text)
     result.append(marks.find(c) == marks.npos ? 0 : 1, '\\').push_back(c);
   return result;
 }
 
-std::string zshAction(const Offer& offer) {
-  if (offer.words.empty())
-    return offer.files ? "_files" : " ";
-  return offer.files ? concat(" _fenestra_either ", offer.text()) : concat("(", offer.text(), ")");
+std::string zshAction(const Candidates& candidates) {
+  if (candidates.words.empty())
+    return candidates.files ? "_files" : " ";
+  return candidates.files ? concat(" _fenestra_either ", candidates.text())
+                          : concat("(", candidates.text(), ")");
 }
 
 std::string zshCase(const CommandSyntax& syntax) {
   std::string text = concat("    ", syntax.name, ")\n      _arguments");
   const auto add = [&text](const std::string& specification) {
-    text += concat(" \\\n        ", zshQuoted(specification));
+    text += concat(" \\\n        ", zshQuote(specification));
   };
-  for (const Option& flag : allFlags(syntax)) {
-    const std::string help = concat("[", escaped(flag.help(), "\\]"), "]");
-    if (flag.isSwitch())
-      add(concat("--", flag.name, help));
+  for (const Option& option : listAllOptions(syntax)) {
+    const std::string help = concat("[", escape(option.help(), "\\]"), "]");
+    if (option.isSwitch())
+      add(concat("--", option.name, help));
     else
-      add(concat("*--", flag.name, "=", help, ":", escaped(flag.placeholder, "\\:"), ":",
-                 zshAction(offerFor(flag))));
+      add(concat("*--", option.name, "=", help, ":", escape(option.placeholder, "\\:"), ":",
+                 zshAction(findCandidates(option))));
   }
   for (const Positional& positional : syntax.positionals)
-    add(concat(":", positional.name, ":", zshAction(offerFor(positional))));
+    add(concat(":", positional.name, ":", zshAction(findCandidates(positional))));
   return text + "\n      ;;\n";
 }
 
@@ -203,64 +205,67 @@ complete -c fenestra -f
 std::string fishLine(const std::string& condition, const std::string& rest,
                      std::string_view text = "") {
   return concat("complete -c fenestra -n '__fenestra_is", condition, "'", rest,
-                text.empty() ? "" : concat(" -d '", escaped(text, "\\'"), "'"), "\n");
+                text.empty() ? "" : concat(" -d '", escape(text, "\\'"), "'"), "\n");
 }
 
-std::string fishOffer(const Offer& offer) {
-  return concat(offer.files ? " -F" : "",
-                offer.words.empty() ? "" : concat(" -a '", offer.text(), "'"));
+std::string fishCandidates(const Candidates& candidates) {
+  return concat(candidates.files ? " -F" : "",
+                candidates.words.empty() ? "" : concat(" -a '", candidates.text(), "'"));
 }
 
-bool takes(const Command& command, const Option& flag) {
-  return std::ranges::any_of(allFlags(command.syntax()),
-                             [&flag](const Option& own) { return isSameOption(own, flag); });
+bool hasOption(const Command& command, const Option& option) {
+  return std::ranges::any_of(listAllOptions(command.syntax()),
+                             [&option](const Option& own) { return isSameOption(own, option); });
 }
 
 /// Lines of the flags that no earlier command takes, each with all commands that take it.
-std::string fishFlags(std::size_t which) {
+std::string fishOptions(std::size_t which) {
   std::string lines;
-  for (const Option& flag : allFlags(commands()[which].syntax())) {
-    std::string takers;
-    const auto isTaker = [&flag](const Command& command) { return takes(command, flag); };
-    if (std::ranges::any_of(commands().first(which), isTaker))
+  for (const Option& option : listAllOptions(commands()[which].syntax())) {
+    std::string accepting;
+    const auto isAccepting = [&option](const Command& command) {
+      return hasOption(command, option);
+    };
+    if (std::ranges::any_of(commands().first(which), isAccepting))
       continue;
     for (const Command& command : commands())
-      if (isTaker(command))
-        takers += concat(" ", nameOf(command));
-    const Offer offer = offerFor(flag);
-    const char* const value = flag.isSwitch() ? "" : offer.files ? " -r" : " -x";
-    lines += fishLine(takers, concat(" -l ", flag.name, value, fishOffer(offer)), flag.help());
+      if (isAccepting(command))
+        accepting += concat(" ", commandName(command));
+    const Candidates candidates = findCandidates(option);
+    const char* const value = option.isSwitch() ? "" : candidates.files ? " -r" : " -x";
+    lines += fishLine(accepting, concat(" -l ", option.name, value, fishCandidates(candidates)),
+                      option.help());
   }
   return lines;
 }
 
 } // namespace
 
-std::string bashCompletions() {
+std::string makeBashCompletions() {
   std::string text = replaceAll(bashBegin, "@COMMANDS@", commandNames());
   for (const Command& command : commands())
     text += bashCase(command.syntax());
   return text + bashEnd;
 }
 
-std::string zshCompletions() {
+std::string makeZshCompletions() {
   std::string names;
   std::string cases;
   for (const Command& command : commands()) {
     const CommandSyntax& syntax = command.syntax();
-    names += concat("    ", zshQuoted(concat(syntax.name, ":", firstClause(syntax.summary))), "\n");
+    names += concat("    ", zshQuote(concat(syntax.name, ":", firstClause(syntax.summary))), "\n");
     cases += zshCase(syntax);
   }
   return replaceAll(zshBegin, "@COMMANDS@", names) + cases + zshEnd;
 }
 
-std::string fishCompletions() {
+std::string makeFishCompletions() {
   std::string text = replaceAll(fishBegin, "@COMMANDS@", commandNames());
   for (std::size_t i = 0; i < commands().size(); ++i) {
     const CommandSyntax& syntax = commands()[i].syntax();
     text += fishLine("", " -a " + syntax.name, firstClause(syntax.summary));
-    text += fishLine(" " + syntax.name, fishOffer(offerFor(syntax.positionals.front())));
-    text += fishFlags(i);
+    text += fishLine(" " + syntax.name, fishCandidates(findCandidates(syntax.positionals.front())));
+    text += fishOptions(i);
   }
   return text;
 }

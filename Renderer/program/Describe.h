@@ -7,11 +7,11 @@
 namespace fenestra {
 
 /// Manual page in the language mdoc.
-std::string manPage();
+std::string makeManPage();
 
 /// Scripts that a shell reads, by bash 4, zsh and fish 3.
-std::string bashCompletions();
-std::string zshCompletions();
-std::string fishCompletions();
+std::string makeBashCompletions();
+std::string makeZshCompletions();
+std::string makeFishCompletions();
 
 } // namespace fenestra

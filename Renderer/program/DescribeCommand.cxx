@@ -11,10 +11,10 @@ namespace fenestra {
 namespace {
 
 const std::map<std::string, std::string (*)()> descriptions = {
-    {"bash", bashCompletions},
-    {"fish", fishCompletions},
-    {"man", manPage},
-    {"zsh", zshCompletions},
+    {"bash", makeBashCompletions},
+    {"fish", makeFishCompletions},
+    {"man", makeManPage},
+    {"zsh", makeZshCompletions},
 };
 
 } // namespace

@@ -12,12 +12,12 @@ namespace fenestra {
 
 /// `name` relative to `folder`; for a member of an archive, the archive's name, then the member's.
 /// A name without a file is returned unchanged.
-std::string relativeName(const std::string& name, const std::filesystem::path& folder);
+std::string toRelativeName(const std::string& name, const std::filesystem::path& folder);
 
 /// Words of a command line with file names made relative to `folder`: positionals, and values of
 /// flags that take a file.
-std::vector<std::string> relativeArguments(const std::vector<std::string>& words,
-                                           std::span<const Option> flags,
-                                           const std::filesystem::path& folder);
+std::vector<std::string> toRelativeArguments(const std::vector<std::string>& words,
+                                             std::span<const Option> options,
+                                             const std::filesystem::path& folder);
 
 } // namespace fenestra

@@ -22,126 +22,128 @@ using Row = std::vector<std::string>;
 
 constexpr std::size_t width = 100; ///< characters in a line
 constexpr std::size_t longestName = 36, longestId = 48, longestFile = 90;
-constexpr std::size_t mostNodes = 20, mostSegments = 100; ///< listed one by one
+constexpr std::size_t maxNodes = 20, maxSegments = 100; ///< listed one by one
 
 // ---- words
 
-bool startsCharacter(char c) { // in UTF-8
+bool isCharacterStart(char c) { // in UTF-8
   return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U;
 }
 
-std::size_t characters(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), startsCharacter));
+std::size_t countCharacters(const std::string& textMember) {
+  return static_cast<std::size_t>(
+      std::count_if(textMember.begin(), textMember.end(), isCharacterStart));
 }
 
 /// `text`, or its first characters and "...": at most `most` characters.
-std::string clipped(std::string text, std::size_t most) {
-  text = toOneLine(std::move(text));
-  if (characters(text) <= most)
-    return text;
+std::string shorten(std::string textMember, std::size_t most) {
+  textMember = toOneLine(std::move(textMember));
+  if (countCharacters(textMember) <= most)
+    return textMember;
   std::size_t end = 0;
-  for (std::size_t count = 0; end < text.size(); ++end)
-    if (startsCharacter(text[end]) && ++count > most - 3)
+  for (std::size_t count = 0; end < textMember.size(); ++end)
+    if (isCharacterStart(textMember[end]) && ++count > most - 3)
       break;
-  return text.substr(0, end) + "...";
+  return textMember.substr(0, end) + "...";
 }
 
 /// Texts that are not empty, in one.
-std::string listed(Row texts, const char* between = ", ") {
+std::string joinNonEmpty(Row texts, const char* between = ", ") {
   std::erase(texts, "");
   return join(texts, between);
 }
 
-std::string number(double x, const char* format = "%.6g") {
-  char text[32];
-  std::snprintf(text, sizeof text, format, x == 0.0 ? 0.0 : x); // no -0
-  return text;
+std::string formatNumber(double x, const char* format = "%.6g") {
+  char textMember[32];
+  std::snprintf(textMember, sizeof textMember, format, x == 0.0 ? 0.0 : x); // no -0
+  return textMember;
 }
 
 // ---- members of the report
 
 /// Member that is text, clipped; empty: there is none.
-std::string text(const Json& object, const char* key, std::size_t most) {
+std::string textMember(const Json& object, const char* key, std::size_t most) {
   const Json& member = object[key];
-  return member.is_null() ? "" : clipped(member, most);
+  return member.is_null() ? "" : shorten(member, most);
 }
 
 /// Name: a file's in full, a node's clipped.
-std::string nameOf(const Json& node) {
-  return text(node, "name", node["id"].is_null() ? longestFile : longestName);
+std::string nodeName(const Json& node) {
+  return textMember(node, "name", node["id"].is_null() ? longestFile : longestName);
 }
 
 /// "name (id)", or what there is of it.
-std::string named(const Json& node) {
-  const std::string id = text(node, "id", longestId);
-  return listed({nameOf(node), id.empty() ? "" : "(" + id + ")"}, " ");
+std::string nameAndId(const Json& node) {
+  const std::string id = textMember(node, "id", longestId);
+  return joinNonEmpty({nodeName(node), id.empty() ? "" : "(" + id + ")"}, " ");
 }
 
-std::string hex(const Json& color) {
-  std::string text = "#";
+std::string toHex(const Json& color) {
+  std::string textMember = "#";
   for (const Json& part : color) {
     char byte[16];
     std::snprintf(byte, sizeof byte, "%02lx", std::lround(255.0 * part.get<double>()));
-    text += byte;
+    textMember += byte;
   }
-  return text;
+  return textMember;
 }
 
-std::string colors(const Json& background) {
-  const std::string bottom = hex(background["bottom"]), top = hex(background["top"]);
+std::string formatColors(const Json& background) {
+  const std::string bottom = toHex(background["bottom"]), top = toHex(background["top"]);
   return bottom == top ? bottom : bottom + " below to " + top + " above";
 }
 
-std::string files(const Json& list) {
+std::string formatFiles(const Json& list) {
   if (list.empty())
     return "";
   const auto missing = std::count_if(list.begin(), list.end(),
                                      [](const Json& file) { return file["there"] == false; });
-  std::string shown = text(list[0], "name", longestFile - 10);
+  std::string formatValue = textMember(list[0], "name", longestFile - 10);
   if (list.size() > 1)
-    shown += concat(" and ", list.size() - 1, " more");
+    formatValue += concat(" and ", list.size() - 1, " more");
   if (missing > 0)
-    shown += list.size() == 1 ? " (missing)" : concat(" (", missing, " missing)");
-  return shown;
+    formatValue += list.size() == 1 ? " (missing)" : concat(" (", missing, " missing)");
+  return formatValue;
 }
 
 /// Text, number or numbers, colours of a background, or files; empty: null, or anything else.
-std::string shown(const std::string& key, const Json& member) {
+std::string formatValue(const std::string& key, const Json& member) {
   static const std::map<std::string, const char*> separators = {{"size", " x "},
                                                                 {"spacing", " x "},
                                                                 {"edges", " x "},
                                                                 {"range", " to "},
                                                                 {"transforms", ", "}};
   if (member.is_string())
-    return clipped(member, longestId);
+    return shorten(member, longestId);
   if (member.is_number())
-    return number(member);
+    return formatNumber(member);
   if (member.is_object())
-    return colors(member);
+    return formatColors(member);
   if (key == "files")
-    return files(member);
+    return formatFiles(member);
   Row items;
   if (member.is_array())
     for (const Json& item : member)
-      items.push_back(shown("", item));
+      items.push_back(formatValue("", item));
   const auto separator = separators.find(key);
-  return listed(items, separator == separators.end() ? "," : separator->second);
+  return joinNonEmpty(items, separator == separators.end() ? "," : separator->second);
 }
 
 /// Words with the object's members in place of "{key}", and named() in place of "{}"; empty: one of
 /// them is null or missing.
-std::string filled(std::string_view words, const Json& object) {
-  std::string text;
+std::string fillTemplate(std::string_view words, const Json& object) {
+  std::string textMember;
   for (auto open = words.find('{'); open != words.npos; open = words.find('{')) {
     const auto close = words.find('}', open);
     const std::string key(words.substr(open + 1, close - open - 1));
-    const std::string member = key.empty() ? named(object) : shown(key, object.value(key, Json()));
+    const std::string member =
+        key.empty() ? nameAndId(object) : formatValue(key, object.value(key, Json()));
     if (member.empty())
       return "";
-    text.append(words.substr(0, open)).append(member);
+    textMember.append(words.substr(0, open)).append(member);
     words.remove_prefix(close + 1);
   }
-  return text.append(words);
+  return textMember.append(words);
 }
 
 /// Words for a part of the report, whatever its kind. Shown if filled() is not empty, and if the
@@ -153,7 +155,7 @@ struct Phrase {
 };
 
 /// Description of a node, or of a part of a render, for the place behind its name and id.
-std::string descriptionOf(const Json& part) {
+std::string describe(const Json& part) {
   static const Phrase phrases[] = {
       {"label map", "kind", "labelMap"},
       {"hidden", "shown", false},
@@ -185,8 +187,8 @@ std::string descriptionOf(const Json& part) {
   Row texts;
   for (const auto& [words, key, value] : phrases)
     if (!key || (part.contains(key) && part[key] == value))
-      texts.push_back(filled(words, part));
-  return listed(texts);
+      texts.push_back(fillTemplate(words, part));
+  return joinNonEmpty(texts);
 }
 
 // ---- lines
@@ -196,35 +198,35 @@ std::string section(const char* title, const std::string& lines) {
   return lines.empty() ? "" : std::string("\n") + title + "\n" + lines;
 }
 
-std::string line(const std::string& text) {
-  return text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
+std::string line(const std::string& textMember) {
+  return textMember.substr(0, textMember.find_last_not_of(' ') + 1) + "\n";
 }
 
 /// Wrapped text; the first line starts with `label`, the others are indented by its width.
-std::string paragraph(const std::string& label, const std::string& text) {
-  const std::string lines = wrapLines(toOneLine(text), width - characters(label));
-  return label + replaceAll(lines, "\n", "\n" + std::string(characters(label), ' ')) + "\n";
+std::string paragraph(const std::string& label, const std::string& textMember) {
+  const std::string lines = wrapLines(toOneLine(textMember), width - countCharacters(label));
+  return label + replaceAll(lines, "\n", "\n" + std::string(countCharacters(label), ' ')) + "\n";
 }
 
 /// Rows as lines; a column is as wide as its widest cell, and aligned right if right[i] is '>'.
-std::vector<std::string> aligned(std::vector<Row> rows, const std::string& right = "") {
+std::vector<std::string> alignColumns(std::vector<Row> rows, const std::string& right = "") {
   for (std::size_t i = 0; i < (rows.empty() ? 0 : rows[0].size()); ++i) {
     std::size_t columns = 0;
     for (const Row& row : rows)
-      columns = std::max(columns, characters(row[i]));
+      columns = std::max(columns, countCharacters(row[i]));
     for (Row& row : rows)
       row[i].insert(i < right.size() && right[i] == '>' ? 0 : row[i].size(),
-                    columns - characters(row[i]), ' ');
+                    columns - countCharacters(row[i]), ' ');
   }
   Row lines;
   for (const Row& row : rows)
-    lines.push_back(listed(row, "  "));
+    lines.push_back(joinNonEmpty(row, "  "));
   return lines;
 }
 
 std::string table(const std::string& indent, const std::vector<Row>& rows,
                   const std::string& right) {
-  return join(aligned(rows, right), "",
+  return join(alignColumns(rows, right), "",
               [&indent](const std::string& row) { return line(indent + row); });
 }
 
@@ -233,24 +235,25 @@ std::string table(const std::string& indent, const std::vector<Row>& rows,
 /// Cells of a segment's material: name, colour, kind, and why it has it.
 Row materialCells(const Json& material) {
   const Json& color = material["color"];
-  const std::string colors = color.is_null() ? "as it is"
-                             : color[0].is_array()
-                                 ? hex(color[0][1]) + " to " + hex(color.back()[1])
-                                 : hex(color);
-  return {material["name"].is_null() ? "-" : text(material, "name", 24), colors, material["kind"],
-          text(material, "why", 48)};
+  const std::string formatColors = color.is_null() ? "as it is"
+                                   : color[0].is_array()
+                                       ? toHex(color[0][1]) + " to " + toHex(color.back()[1])
+                                       : toHex(color);
+  return {material["name"].is_null() ? "-" : textMember(material, "name", 24), formatColors,
+          material["kind"], textMember(material, "why", 48)};
 }
 
 std::string segmentTable(const Json& segments) {
   std::vector<Row> rows = {
       {"value", "layer", "color", "voxels", "ml", "id", "name", "material", "seen", "kind", "why"}};
-  const std::size_t count = std::min(segments.size(), mostSegments);
+  const std::size_t count = std::min(segments.size(), maxSegments);
   for (std::size_t i = 0; i < count; ++i) {
     const Json& segment = segments[i];
-    rows.push_back({segment["labelValue"].dump(), segment["layer"].dump(), hex(segment["color"]),
-                    segment["voxels"].dump(), number(segment["milliliters"], "%.2f"),
-                    text(segment, "id", 40),
-                    text(segment, "name", 64) + (segment["shown"] == true ? "" : " (hidden)")});
+    rows.push_back(
+        {segment["labelValue"].dump(), segment["layer"].dump(), toHex(segment["color"]),
+         segment["voxels"].dump(), formatNumber(segment["milliliters"], "%.2f"),
+         textMember(segment, "id", 40),
+         textMember(segment, "name", 64) + (segment["shown"] == true ? "" : " (hidden)")});
     std::ranges::move(materialCells(segment["material"]), std::back_inserter(rows.back()));
   }
   if (segments.size() > count) {
@@ -264,17 +267,18 @@ std::string segmentTable(const Json& segments) {
 /// Lines "* name  id  description"; a description that is too long has a line of its own. An
 /// asterisk marks nodes that a render uses.
 std::string nodeLines(const Json& nodes) {
-  const std::size_t count = std::min(nodes.size(), mostNodes);
+  const std::size_t count = std::min(nodes.size(), maxNodes);
   std::vector<Row> names;
   for (std::size_t i = 0; i < count; ++i)
-    names.push_back({(nodes[i]["used"] == true ? "* " : "  ") + nameOf(nodes[i]),
-                     text(nodes[i], "id", longestId)});
-  const Row heads = aligned(names);
+    names.push_back({(nodes[i]["used"] == true ? "* " : "  ") + nodeName(nodes[i]),
+                     textMember(nodes[i], "id", longestId)});
+  const Row heads = alignColumns(names);
   std::string lines;
   for (std::size_t i = 0; i < count; ++i) {
     const Json& node = nodes[i];
-    const std::string more = descriptionOf(node), whole = heads[i] + "  " + more;
-    lines += characters(whole) <= width ? line(whole) : line(heads[i]) + paragraph("      ", more);
+    const std::string more = describe(node), full = heads[i] + "  " + more;
+    lines +=
+        countCharacters(full) <= width ? line(full) : line(heads[i]) + paragraph("      ", more);
     if (!node["problem"].is_null())
       lines += paragraph("      problem: ", node["problem"]);
     if (node.contains("segments") && !node["segments"].empty())
@@ -288,16 +292,17 @@ std::string nodeLines(const Json& nodes) {
 std::string seriesLines(const Json& series) {
   std::vector<Row> rows = {{"number", "files", "modality", "description", "uid"}};
   for (const Json& one : series)
-    rows.push_back({text(one, "number", 8), one["files"].dump(), text(one, "modality", 8),
-                    text(one, "description", 24), text(one, "uid", 64)});
+    rows.push_back({textMember(one, "number", 8), one["files"].dump(),
+                    textMember(one, "modality", 8), textMember(one, "description", 24),
+                    textMember(one, "uid", 64)});
   return series.empty() ? "" : table("  ", rows, ">>");
 }
 
 std::string otherLines(const Json& others) {
   Row tags;
   for (const auto& [tag, count] : others.items())
-    tags.push_back(clipped(tag, longestName) + (count > 1 ? " (" + count.dump() + ")" : ""));
-  return tags.empty() ? "" : paragraph("  ", listed(tags));
+    tags.push_back(shorten(tag, longestName) + (count > 1 ? " (" + count.dump() + ")" : ""));
+  return tags.empty() ? "" : paragraph("  ", joinNonEmpty(tags));
 }
 
 std::string listLines(const Json& list) {
@@ -310,20 +315,23 @@ std::string renderLines(const Json& use) {
     if (const Json& part = use[key]; !part.empty()) // null is empty
       lines += paragraph(label, words(part));
   };
-  const auto withName = [](const Json& part) { return filled("{}: ", part) + descriptionOf(part); };
+  const auto withName = [](const Json& part) {
+    return fillTemplate("{}: ", part) + describe(part);
+  };
   add("  volume        ", "volume", withName);
-  add("  look          ", "look", descriptionOf);
+  add("  look          ", "look", describe);
   add("  crop          ", "crop", withName);
   add("  camera        ", "camera", [&](const Json& camera) {
-    return (named(camera).empty() ? "framed: " : "") + withName(camera);
+    return (nameAndId(camera).empty() ? "framed: " : "") + withName(camera);
   });
   add("  background    ", "background",
-      [](const Json& part) { return colors(part) + filled(", of {view}", part); });
+      [](const Json& part) { return formatColors(part) + fillTemplate(", of {view}", part); });
   add("  segmentation  ", "segmentationProblem",
       [](const std::string& problem) { return "open: " + problem; });
   add("  segmentation  ", "segmentation",
       [](const std::string& segmentation) { return segmentation + ", with --focus"; });
-  add("  as rendered   ", "stored", [](const Row& arguments) { return listed(arguments, " "); });
+  add("  as rendered   ", "stored",
+      [](const Row& arguments) { return joinNonEmpty(arguments, " "); });
   return lines;
 }
 
@@ -334,10 +342,10 @@ std::string inspectionText(const Inspection& inspection) {
                                                     {"segmentation", "segmentation or label map"},
                                                     {"dicom", "DICOM folder"}};
   const bool refused = !inspection["refused"].is_null();
-  std::string text =
+  std::string textMember =
       paragraph("", inspection["input"].get<std::string>() + ": " + kinds.at(inspection["kind"]) +
-                        filled(", version {version}", inspection));
-  text += section("DICOM series", seriesLines(inspection["series"]));
+                        fillTemplate(", version {version}", inspection));
+  textMember += section("DICOM series", seriesLines(inspection["series"]));
   for (const auto& [key, title] : {std::pair("volumes", "Volumes"),
                                    {"segmentations", "Segmentations"},
                                    {"volumeRenderings", "Volume renderings"},
@@ -346,22 +354,23 @@ std::string inspectionText(const Inspection& inspection) {
                                    {"views", "Views"},
                                    {"cameras", "Cameras"},
                                    {"transforms", "Transforms"}})
-    text += section(title, nodeLines(inspection[key]));
-  text += section("Other nodes", otherLines(inspection["others"]));
+    textMember += section(title, nodeLines(inspection[key]));
+  textMember += section("Other nodes", otherLines(inspection["others"]));
   if (refused)
-    text += "\n" +
-            paragraph("", "A render would be refused: " + inspection["refused"].get<std::string>());
+    textMember += "\n" + paragraph("", "A render would be refused: " +
+                                           inspection["refused"].get<std::string>());
   if (const Json& use = inspection["render"]; !use.is_null())
-    text += section(refused ? "It would use, as far as that can be read" : "A render would use",
-                    renderLines(use));
-  return text + section("Warnings", listLines(inspection["warnings"])) +
+    textMember +=
+        section(refused ? "It would use, as far as that can be read" : "A render would use",
+                renderLines(use));
+  return textMember + section("Warnings", listLines(inspection["warnings"])) +
          section("Ignored", listLines(inspection["ignored"]));
 }
 
 // ---- the command
 
 constexpr const char* inspectGroup = "Inspect";
-const Option inspectFlags[] = {
+const Option inspectTable[] = {
     {"volume", "NAME", inspectGroup,
      "As for render: which volume of a scene, or series of a folder"},
     {"segmentation", "FILE|NAME", inspectGroup, "As for render: a file, or a node of the scene"},
@@ -375,7 +384,8 @@ const Option inspectFlags[] = {
 };
 
 /// Arguments of `merged` that are not given.
-std::vector<std::string> argumentsBeyond(const OptionValues& given, const OptionValues& merged) {
+std::vector<std::string> listStoredArguments(const OptionValues& given,
+                                             const OptionValues& merged) {
   std::vector<std::string> arguments = merged.arguments();
   std::erase_if(arguments, [before = given.arguments()](const std::string& argument) {
     return std::ranges::find(before, argument) != before.end();
@@ -392,7 +402,7 @@ const CommandSyntax& inspectSyntax() {
       {{"INPUT",
         "Slicer scene (.mrml .mrb), volume (.nrrd .nhdr .nii .nii.gz .mha .mhd), label map, "
         "segmentation (.seg.nrrd) or DICOM folder"}},
-      inspectFlags,
+      inspectTable,
   };
   return syntax;
 }
@@ -401,24 +411,24 @@ int inspectCommand(int argc, char** argv, int first) {
   const std::optional<OptionValues> values = parseCommandLine(inspectSyntax(), argc, argv, first);
   if (!values)
     return 0;
-  useMachine(*values);
+  configureMachine(*values);
   const Input input(*values->text("INPUT"));
   OptionValues given(renderSyntax.options);
   for (const char* name : {"INPUT", "volume", "segmentation", "labels"})
     if (const auto value = values->text(name))
       given.add(name, *value);
   const SceneOptions stored = mergeSceneOptions(given, input);
-  const OptionValues& flags = stored.values;
+  const OptionValues& merged = stored.values;
   RenderRequest request;
   request.input = input.path();
-  request.volume = flags.text("volume");
-  request.segmentation = flags.text("segmentation");
-  request.labels = flags.text("labels");
+  request.volume = merged.text("volume");
+  request.segmentation = merged.text("segmentation");
+  request.labels = merged.text("labels");
   if (request.volume && !input.document() && !isFolder(input.path()))
     throw usageError("--volume: only a scene or a DICOM folder holds several; drop it");
   Inspection inspection = inspectInput(request, input);
   if (Inspection& use = inspection["render"]; !use.is_null())
-    use["stored"] = argumentsBeyond(given, flags);
+    use["stored"] = listStoredArguments(given, merged);
   const Inspection leftOut = stored.ignored;
   Inspection& warnings = inspection["warnings"];
   warnings.insert(warnings.begin(), leftOut.begin(), leftOut.end());

@@ -38,7 +38,7 @@ void tryThreads(int count) {
 
 } // namespace
 
-void useInstructions() {
+void pinInstructions() {
   if (const char* pinned = std::getenv("FENESTRA_INSTRUCTIONS"))
     useInstructionSet(pinned);
 }
@@ -49,7 +49,7 @@ int threadCount(const OptionValues& options) {
   return wanted > 0 ? std::min(wanted, cores) : cores;
 }
 
-void useMachine(const OptionValues& options) {
+void configureMachine(const OptionValues& options) {
   const int count = threadCount(options);
   // Never destroyed: after its destruction TBB would start more than `count` threads.
   [[maybe_unused]] static const auto* const limit = new tbb::global_control(
@@ -63,7 +63,7 @@ void useMachine(const OptionValues& options) {
                       " cannot be started; allow more processes (ulimit -u), or "
                       "render with --threads 1");
   }
-  useInstructions();
+  pinInstructions();
 }
 
 } // namespace fenestra

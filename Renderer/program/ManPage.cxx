@@ -12,7 +12,7 @@ namespace fenestra {
 namespace {
 
 /// "November 26, 2026" of "2026-11-26".
-std::string writtenDate(const std::string& date) {
+std::string formatDate(const std::string& date) {
   constexpr std::array months = {"January",   "February", "March",    "April",
                                  "May",       "June",     "July",     "August",
                                  "September", "October",  "November", "December"};
@@ -24,7 +24,7 @@ std::string writtenDate(const std::string& date) {
 }
 
 /// Running text: dashes of flags stay dashes, a sentence begins a line, no line begins a macro.
-std::string prose(std::string_view text) {
+std::string formatProse(std::string_view text) {
   constexpr std::size_t width = 76;
   const std::string plain = replaceAll(replaceAll(text, "\\", "\\e"), "--", "\\-\\-");
   std::string lines;
@@ -34,48 +34,48 @@ std::string prose(std::string_view text) {
   return lines;
 }
 
-std::string argumentsOf(const CommandSyntax& syntax) {
+std::string formatArguments(const CommandSyntax& syntax) {
   std::string text;
   for (const Positional& positional : syntax.positionals)
     text += " Ar " + positional.name;
   return text;
 }
 
-bool isOfRender(const Option& flag) {
-  const Option* const other = findOption(commands().front().syntax().options, flag.name);
-  return other && isSameOption(*other, flag);
+bool isRenderOption(const Option& option) {
+  const Option* const other = findOption(commands().front().syntax().options, option.name);
+  return other && isSameOption(*other, option);
 }
 
 std::string commandEntry(const CommandSyntax& syntax, bool isRender) {
-  std::string text = concat(".It Nm Cm ", syntax.name, argumentsOf(syntax), " Op Ar FLAGS\n",
-                            prose(syntax.summary));
+  std::string text = concat(".It Nm Cm ", syntax.name, formatArguments(syntax), " Op Ar FLAGS\n",
+                            formatProse(syntax.summary));
   if (isRender || !std::ranges::equal(syntax.positionals, commands().front().syntax().positionals,
                                       {}, &Positional::description, &Positional::description))
     for (const Positional& positional : syntax.positionals)
-      text += concat(".Pp\n.Ar ", positional.name, " :\n", prose(positional.description));
+      text += concat(".Pp\n.Ar ", positional.name, " :\n", formatProse(positional.description));
   return text;
 }
 
-std::string flagEntry(const Option& flag) {
-  return concat(".It Fl Fl ", flag.name, flag.isSwitch() ? "" : " Ar ", flag.placeholder, "\n",
-                prose(flag.help()));
+std::string optionEntry(const Option& option) {
+  return concat(".It Fl Fl ", option.name, option.isSwitch() ? "" : " Ar ", option.placeholder,
+                "\n", formatProse(option.help()));
 }
 
 constexpr const char* listBegin = ".Bl -tag -width Ds\n";
 constexpr const char* listEnd = ".El\n";
 
 /// Flags of a command by group; those that render has as well are told there.
-std::string flagLists(const CommandSyntax& syntax, bool isRender) {
+std::string optionLists(const CommandSyntax& syntax, bool isRender) {
   std::string text;
   std::string_view group;
-  for (const Option& flag : syntax.options) {
-    if (!isRender && isOfRender(flag))
+  for (const Option& option : syntax.options) {
+    if (!isRender && isRenderOption(option))
       continue;
-    if (flag.group != group)
+    if (option.group != group)
       text += concat(group.empty() ? "" : listEnd, ".Ss ", syntax.name,
-                     isRender ? ": " + flag.group : "", "\n", listBegin);
-    group = flag.group;
-    text += flagEntry(flag);
+                     isRender ? ": " + option.group : "", "\n", listBegin);
+    group = option.group;
+    text += optionEntry(option);
   }
   return text + (group.empty() ? "" : listEnd);
 }
@@ -119,20 +119,20 @@ fenestra inspect scene.mrb
 
 } // namespace
 
-std::string manPage() {
+std::string makeManPage() {
   std::string synopsis, entries, lists;
   for (const Command& command : commands()) {
     const CommandSyntax& syntax = command.syntax();
     const bool isFirst = &command == &commands().front();
     synopsis += concat(".Nm\n", isFirst ? ".Op Cm " : ".Cm ", syntax.name, "\n.", //
-                       argumentsOf(syntax).substr(1), "\n.Op Ar FLAGS\n");
+                       formatArguments(syntax).substr(1), "\n.Op Ar FLAGS\n");
     entries += commandEntry(syntax, isFirst);
-    lists += flagLists(syntax, isFirst);
+    lists += optionLists(syntax, isFirst);
   }
   std::string common;
-  for (const Option& flag : commonOptions)
-    common += flagEntry(flag);
-  return concat(".\\\" Made by fenestra describe man.\n.Dd ", writtenDate(commitDate),
+  for (const Option& option : commonOptions)
+    common += optionEntry(option);
+  return concat(".\\\" Made by fenestra describe man.\n.Dd ", formatDate(commitDate),
                 "\n.Dt FENESTRA 1\n.Os\n.Sh NAME\n.Nm fenestra\n.Nd ", descriptionText,
                 "\n.Sh SYNOPSIS\n", synopsis, ".Sh DESCRIPTION\n", listBegin, entries, listEnd,
                 ".Sh FLAGS\nEvery command takes:\n", listBegin, common, listEnd, lists, rest,

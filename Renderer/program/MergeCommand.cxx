@@ -16,15 +16,15 @@ namespace {
 namespace fs = std::filesystem;
 
 /// True for flags of a picture that is rendered already.
-bool isOfMerge(const Option& flag) {
+bool isMergeOption(const Option& option) {
   constexpr std::string_view others[] = {
       "checkpoint", "shard", "xml", "echo", "returnparameterfile", "processinformationaddress"};
-  return !isSampleOption(flag) && flag.overrideGroup != OverrideGroup::stop &&
-         std::ranges::find(others, flag.name) == std::end(others);
+  return !isSampleOption(option) && option.overrideGroup != OverrideGroup::stop &&
+         std::ranges::find(others, option.name) == std::end(others);
 }
 
 /// Throws Error (usage) unless both are parts of one picture with the same samples.
-void requireTogether(const CheckpointFile& one, const CheckpointFile& other) {
+void requireSameImage(const CheckpointFile& one, const CheckpointFile& other) {
   const auto refuse = [&](const std::string& what) {
     return usageError(other.path(), ": ", what, "; merge parts of one picture");
   };
@@ -49,11 +49,11 @@ void requireTogether(const CheckpointFile& one, const CheckpointFile& other) {
 
 /// Films in the order of their parts. Throws Error: usage where one is missing, doubled, not
 /// finished, or of another picture; input where one is damaged.
-std::vector<CheckpointFile> wholePicture(const std::vector<std::string>& names) {
+std::vector<CheckpointFile> readShards(const std::vector<std::string>& names) {
   std::vector<CheckpointFile> films;
   for (const std::string& name : names) {
     const CheckpointFile& film = films.emplace_back(name);
-    requireTogether(films.front(), film);
+    requireSameImage(films.front(), film);
     if (film.finishedSamples() == 0 || film.begunSamples() != film.finishedSamples())
       throw usageError(film.path(), ": is not finished; run its command again");
   }
@@ -80,34 +80,34 @@ std::vector<CheckpointFile> wholePicture(const std::vector<std::string>& names) 
 
 /// Flags with which a film was rendered, whose names of files are relative to the film. Throws
 /// Error (input).
-OptionValues renderedWith(const CheckpointFile& film) {
-  OptionValues flags(renderSyntax.options);
+OptionValues readRenderOptions(const CheckpointFile& film) {
+  OptionValues options(renderSyntax.options);
   const JsonNode given = JsonNode(film.metadata(), film.path().string()).at("given");
   const fs::path folder = film.path().parent_path();
   for (const auto& [name, values] : given.members()) {
-    const Option* const flag = findOption(renderSyntax.options, name);
-    if (name != "INPUT" && !(flag && isImageOption(*flag)))
+    const Option* const option = findOption(renderSyntax.options, name);
+    if (name != "INPUT" && !(option && isImageOption(*option)))
       throw given.error("\"" + name + "\" is no flag of a picture; render the film again");
     for (const JsonNode& value : values.elements()) {
       const std::string text = value.text();
       std::error_code failed;
       const fs::path file = (folder / text).lexically_normal();
-      const bool isFile = (!flag || flag->canNameFile()) && fs::exists(file, failed);
-      flags.add(name, isFile ? file.string() : text);
+      const bool isFile = (!option || option->canNameFile()) && fs::exists(file, failed);
+      options.add(name, isFile ? file.string() : text);
     }
   }
-  if (flags.texts("INPUT").size() != 1)
+  if (options.texts("INPUT").size() != 1)
     throw given.error("must have one INPUT; render the film again");
-  return flags;
+  return options;
 }
 
 } // namespace
 
 /// Built on first use: renderSyntax is initialised in another source.
 const CommandSyntax& mergeSyntax() {
-  static const std::vector<Option> flags = [] {
+  static const std::vector<Option> options = [] {
     std::vector<Option> all;
-    std::ranges::copy_if(renderSyntax.options, std::back_inserter(all), isOfMerge);
+    std::ranges::copy_if(renderSyntax.options, std::back_inserter(all), isMergeOption);
     return all;
   }();
   static const CommandSyntax syntax = {
@@ -118,7 +118,7 @@ const CommandSyntax& mergeSyntax() {
       {{.name = "PART",
         .description = "Films (.film), all parts of one picture",
         .canRepeat = true}},
-      flags,
+      options,
   };
   return syntax;
 }
@@ -127,27 +127,27 @@ int mergeCommand(int argc, char** argv, int first) {
   const std::optional<OptionValues> given = parseCommandLine(mergeSyntax(), argc, argv, first);
   if (!given)
     return 0;
-  useMachine(*given);
-  std::vector<CheckpointFile> films = wholePicture(given->texts("PART"));
-  OptionValues flags = renderedWith(films.front());
-  for (const Option& flag : mergeSyntax().options)
-    if (given->has(flag.name)) {
-      flags.remove(flag.name);
-      for (const std::string& value : given->texts(flag.name))
-        flags.add(flag.name, value);
+  configureMachine(*given);
+  std::vector<CheckpointFile> films = readShards(given->texts("PART"));
+  OptionValues options = readRenderOptions(films.front());
+  for (const Option& option : mergeSyntax().options)
+    if (given->has(option.name)) {
+      options.remove(option.name);
+      for (const std::string& value : given->texts(option.name))
+        options.add(option.name, value);
     }
-  PictureRequest job = pictureRequest(flags);
+  RenderJob job = makeRenderJob(options);
   RenderSettings& settings = job.options.settings; // nothing is left to render
   settings.samples = films.front().finishedSamples();
   settings.seconds = infinity;
   settings.noise = -1.0;
   job.options.noiseTarget = NoiseTarget::raw;
   std::optional<Checkpoint> checkpoint;
-  checkpoint.emplace(job, flags, std::move(films));
+  checkpoint.emplace(job, options, std::move(films));
   Outputs outputs;
   declareOutputs(job.options, outputs);
   checkMemory(job.options.scene);
-  return renderScene(job, flags.arguments(), checkpoint, outputs);
+  return renderScene(job, options.arguments(), checkpoint, outputs);
 }
 
 } // namespace fenestra

@@ -13,7 +13,7 @@ namespace fenestra {
 namespace {
 
 constexpr const char* phantomGroup = "Phantom";
-const Option phantomFlags[] = {
+const Option phantomTable[] = {
     {"output", "DIR", phantomGroup,
      "Folder for KIND.mrml, KIND.mrb, KIND.nrrd and the others [KIND]"},
     {"size", "WxHxD", phantomGroup,
@@ -26,7 +26,7 @@ const Option phantomFlags[] = {
 };
 
 /// Size WxHxD in voxels; without --size: `standard`.
-Size3 sizeOf(const OptionValues& values, const Size3& standard) {
+Size3 readGridSize(const OptionValues& values, const Size3& standard) {
   const auto text = values.text("size");
   if (!text)
     return standard;
@@ -50,11 +50,11 @@ Phantom makePhantom(const std::string& kind, const OptionValues& values) {
   if (kind != "cube" && values.has("edge"))
     throw usageError("--edge: is for the cube alone; leave it out, or use phantom cube");
   if (kind == "knee")
-    return makeKneePhantom(sizeOf(values, kneeSize));
+    return makeKneePhantom(readGridSize(values, kneeSize));
   if (kind == "foot")
-    return makeFootPhantom(sizeOf(values, footSize));
+    return makeFootPhantom(readGridSize(values, footSize));
   if (kind == "fetus")
-    return makeFetusPhantom(sizeOf(values, fetusSize));
+    return makeFetusPhantom(readGridSize(values, fetusSize));
   if (kind == "cube")
     return makeCube(values);
   throw usageError("KIND: '" + kind + "' is unknown; use knee, foot, fetus or cube");
@@ -69,7 +69,7 @@ const CommandSyntax& phantomSyntax() {
       {{"KIND",
         "knee (MR), foot (CT), fetus (ultrasound) or cube (the scalar is the z index)",
         {"knee", "foot", "fetus", "cube"}}},
-      phantomFlags,
+      phantomTable,
   };
   return syntax;
 }
@@ -80,7 +80,7 @@ int phantomCommand(int argc, char** argv, int first) {
     return 0;
   const std::string kind = *values->text("KIND");
   const std::string folder = values->text("output").value_or(kind);
-  useMachine(*values);
+  configureMachine(*values);
   const Phantom phantom = makePhantom(kind, *values);
   const std::vector<std::string> files = writePhantom(phantom, folder, kind);
   std::cout << toOneLine(concat(folder, ": ", join(files, " "))) << ", " << phantom.segments.size()

@@ -19,7 +19,7 @@ namespace fenestra {
 namespace {
 
 /// Quotes an argument for a shell.
-std::string quoted(const std::string& argument) {
+std::string shellQuote(const std::string& argument) {
   const char* const plain =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
   if (!argument.empty() && argument.find_first_not_of(plain) == std::string::npos)
@@ -28,7 +28,7 @@ std::string quoted(const std::string& argument) {
 }
 
 /// Flags that reproduce the camera.
-std::string cameraFlags(const CameraPose& pose) {
+std::string formatCamera(const CameraPose& pose) {
   constexpr int exact = 17; // significant digits
   const bool perspective = pose.projection == Projection::perspective;
   return concat("--projection ", perspective ? "perspective --angle " : "orthographic --scale ",
@@ -38,52 +38,54 @@ std::string cameraFlags(const CameraPose& pose) {
                 " --up=", joinNumbers(pose.up, ",", exact));
 }
 
-std::map<std::string, std::string> header(const PreparedScene& scene, const RenderOptions& options,
-                                          const RenderResult& result,
-                                          const std::vector<std::string>& words) {
+std::map<std::string, std::string> makeHeader(const PreparedScene& scene,
+                                              const RenderOptions& options,
+                                              const RenderResult& result,
+                                              const std::vector<std::string>& words) {
   const std::filesystem::path folder = options.outputs.front().parent_path();
-  const std::vector<std::string> arguments = relativeArguments(words, renderSyntax.options, folder);
+  const std::vector<std::string> arguments =
+      toRelativeArguments(words, renderSyntax.options, folder);
   std::map<std::string, std::string> entries = {
       {"version", versionText},
       {"target", concat(processorText, "-", result.target)},
       {"seed", concat(options.settings.seed)},
       {"sampling", toString(options.settings.sampling)},
       {"samples", concat(result.finishedSamples)},
-      {"camera", cameraFlags(scene.camera().pose())},
-      {"look", relativeName(scene.look(), folder)},
-      {"command", concat("fenestra ", join(arguments, " ", quoted))}};
+      {"camera", formatCamera(scene.camera().pose())},
+      {"look", toRelativeName(scene.look(), folder)},
+      {"command", concat("fenestra ", join(arguments, " ", shellQuote))}};
   if (options.preset)
-    entries["preset"] = relativeName(*options.preset, folder);
+    entries["preset"] = toRelativeName(*options.preset, folder);
   return entries;
 }
 
 /// Sentence of a picture's header on its filter.
-std::string filterText(const std::optional<FilteredImage>& filtered) {
-  const std::optional<double> noise = filteredNoise(filtered);
+std::string describeDenoising(const std::optional<FilteredImage>& filtered) {
+  const std::optional<double> noise = denoisedNoise(filtered);
   return concat("filtered for the eye by least squares in windows, version ", filterVersion,
                 ", on expected albedo, normal, depth and light; told error ",
                 noise ? toString(*noise, 3) : "unknown", "; --denoise off leaves the picture raw");
 }
 
 /// Adds the filtered channels that the layers name; R, G, B and A stay as they are.
-void addFilterChannels(const RenderOptions& options, const PreparedScene& scene,
-                       const FilteredImage& filtered, Image& image) {
+void addDenoisedChannels(const RenderOptions& options, const PreparedScene& scene,
+                         const FilteredImage& filtered, Image& image) {
   if (options.hasFilterLayer("expected"))
     addExpected(image, *scene.features());
   if (!options.hasFilterLayer("denoised"))
     return;
   addDenoised(image, filtered);
-  image.header["filter"] =
-      concat("channels denoised.* are ", filterText(filtered), "; R, G, B and A are not filtered");
+  image.header["filter"] = concat("channels denoised.* are ", describeDenoising(filtered),
+                                  "; R, G, B and A are not filtered");
 }
 
 } // namespace
 
-PictureRequest pictureRequest(const OptionValues& given) {
+RenderJob makeRenderJob(const OptionValues& given) {
   const Input input(*given.text("INPUT"));
   const SceneOptions stored = mergeSceneOptions(given, input);
-  const PresetOptions flags = mergePreset(stored.values, input);
-  PictureRequest job{stored.values, flags.values, makeRenderOptions(flags), input};
+  const PresetOptions preset = mergePreset(stored.values, input);
+  RenderJob job{stored.values, preset.values, makeRenderOptions(preset), input};
   job.options.scene.omissions = stored.ignored;
   return job;
 }
@@ -107,46 +109,47 @@ void checkMemory(const RenderRequest& scene) {
       2.0 * sizeof(PixelSums) + (scene.features ? filter : 0.0);
   constexpr double gigabyte = 1e9;
   const double needed = bytesPerPixel * scene.width * scene.height;
-  const double there =
+  const double available =
       static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
-  if (needed <= there)
+  if (needed <= available)
     return;
   throw outputError("--size", "a picture of ", scene.width, "x", scene.height, " pixels takes ",
                     toString(needed / gigabyte, 3), " GB of memory, this machine has ",
-                    toString(there / gigabyte, 3), "; choose a smaller one");
+                    toString(available / gigabyte, 3), "; choose a smaller one");
 }
 
-RenderSettings PictureFilter::settings() {
+RenderSettings ImageDenoiser::settings() {
   RenderSettings settings = makeSettings(m_options, m_scene.background());
   if (m_options.noiseTarget == NoiseTarget::filtered)
     settings.displayNoise = [this](const Film& film) {
-      m_seen = denoise(film, m_scene);
-      m_seenSamples = film.sampleCounts().max;
+      m_checked = denoise(film, m_scene);
+      m_checkedSamples = film.sampleCounts().max;
       // Twice its standard error more, lest luck ends the render.
-      return std::sqrt(m_seen.estimatedError + 2.0 * m_seen.errorUncertainty);
+      return std::sqrt(m_checked.estimatedError + 2.0 * m_checked.errorUncertainty);
     };
   return settings;
 }
 
-std::optional<FilteredImage> PictureFilter::of(const RenderResult& result) const {
+std::optional<FilteredImage> ImageDenoiser::apply(const RenderResult& result) const {
   if (!m_scene.features())
     return std::nullopt;
-  if (result.reason == StopReason::noise && m_seenSamples == result.finishedSamples)
-    return m_seen;
+  if (result.reason == StopReason::noise && m_checkedSamples == result.finishedSamples)
+    return m_checked;
   return denoise(result.film, m_scene);
 }
 
-std::optional<double> filteredNoise(const std::optional<FilteredImage>& filtered) {
+std::optional<double> denoisedNoise(const std::optional<FilteredImage>& filtered) {
   if (!filtered || filtered->error[0].empty())
     return std::nullopt;
   return std::sqrt(filtered->estimatedError);
 }
 
-void writePictures(const RenderOptions& options, const PreparedScene& scene,
-                   const RenderResult& result, const std::optional<FilteredImage>& filtered,
-                   const std::vector<std::string>& words, Outputs& outputs) {
+void writeImages(const RenderOptions& options, const PreparedScene& scene,
+                 const RenderResult& result, const std::optional<FilteredImage>& filtered,
+                 const std::vector<std::string>& arguments, Outputs& outputs) {
   const bool isRawWanted = !filtered || !std::ranges::all_of(options.outputs, isDisplayFile);
-  Image raw{options.scene.width, options.scene.height, {}, header(scene, options, result, words)};
+  Image raw{
+      options.scene.width, options.scene.height, {}, makeHeader(scene, options, result, arguments)};
   Image shown = raw;
   if (isRawWanted) {
     Image channels = makeImage(result.film, scene.camera(), scene.clip(), options.layers);
@@ -154,8 +157,8 @@ void writePictures(const RenderOptions& options, const PreparedScene& scene,
   }
   if (filtered) {
     shown.channels = makeFilteredImage(*filtered, raw.width, raw.height).channels;
-    shown.header["filter"] = filterText(filtered);
-    addFilterChannels(options, scene, *filtered, raw);
+    shown.header["filter"] = describeDenoising(filtered);
+    addDenoisedChannels(options, scene, *filtered, raw);
   }
   // All files at once if threads are free: compressing one does not delay another.
   std::vector<std::future<void>> files;

@@ -8,14 +8,14 @@
 
 namespace fenestra {
 
-struct PictureRequest {
+struct RenderJob {
   OptionValues stored; ///< given, and stored in the scene
-  OptionValues flags;  ///< those, and the preset's
+  OptionValues values; ///< those, and the preset's
   RenderOptions options;
   Input input; ///< of options.scene, opened
 };
 /// Throws Error: usage; input for a damaged scene or preset.
-PictureRequest pictureRequest(const OptionValues& given);
+RenderJob makeRenderJob(const OptionValues& given);
 
 /// Declares all results that `options` name, and enters all their inputs into the ledger. Throws
 /// Error: usage or output.
@@ -25,31 +25,31 @@ void declareOutputs(const RenderOptions& options, Outputs& outputs);
 void checkMemory(const RenderRequest& scene);
 
 /// Filter of one render, as the options ask for it. Both must outlive it.
-class PictureFilter {
+class ImageDenoiser {
 public:
-  PictureFilter(const RenderOptions& options, const PreparedScene& scene)
+  ImageDenoiser(const RenderOptions& options, const PreparedScene& scene)
       : m_options(options), m_scene(scene) {}
 
   /// Settings of the render; looks at the noise of filtered pictures are kept here.
   RenderSettings settings();
   /// The film filtered, if the scene has features; else nothing.
-  std::optional<FilteredImage> of(const RenderResult& result) const;
+  std::optional<FilteredImage> apply(const RenderResult& result) const;
 
 private:
   const RenderOptions& m_options;
   const PreparedScene& m_scene;
-  FilteredImage m_seen;            ///< at the last look
-  std::uint64_t m_seenSamples = 0; ///< samples a pixel then; 0: no look yet
+  FilteredImage m_checked;            ///< at the last look
+  std::uint64_t m_checkedSamples = 0; ///< samples a pixel then; 0: no look yet
 };
 
 /// Error that the filter tells of itself, as Film::noise(); nothing if it tells none.
-std::optional<double> filteredNoise(const std::optional<FilteredImage>& filtered);
+std::optional<double> denoisedNoise(const std::optional<FilteredImage>& filtered);
 
 /// Writes all of options.outputs; the caller commits them. Each header has the data that reproduce
 /// the picture, `fenestra words…` among them; a picture that is `filtered` says so. Throws Error
 /// (output).
-void writePictures(const RenderOptions& options, const PreparedScene& scene,
-                   const RenderResult& result, const std::optional<FilteredImage>& filtered,
-                   const std::vector<std::string>& words, Outputs& outputs);
+void writeImages(const RenderOptions& options, const PreparedScene& scene,
+                 const RenderResult& result, const std::optional<FilteredImage>& filtered,
+                 const std::vector<std::string>& arguments, Outputs& outputs);
 
 } // namespace fenestra

@@ -27,7 +27,7 @@ void print(std::string_view text) {
 }
 
 /// Prints an exception's message on one line, without allocating: memory may have run out.
-int fail(int status, std::string_view line) {
+int reportFailure(int status, std::string_view line) {
   static char buffer[8192];
   const std::size_t size = std::min(line.size(), sizeof buffer);
   std::copy_n(line.begin(), size, buffer);
@@ -44,11 +44,11 @@ int run(int argc, char** argv, DispatchFunction dispatch) {
   try {
     return dispatch(argc, argv);
   } catch (const Error& error) {
-    return fail(error.exitStatus(), error.what());
+    return reportFailure(error.exitStatus(), error.what());
   } catch (const std::bad_alloc&) {
-    return fail(outputStatus, "out of memory; use a smaller volume or picture");
+    return reportFailure(outputStatus, "out of memory; use a smaller volume or picture");
   } catch (const std::exception& error) {
-    return fail(outputStatus, error.what());
+    return reportFailure(outputStatus, error.what());
   }
 }
 
@@ -62,14 +62,15 @@ void openStandardStreams() {
 
 /// Fails if standard output cannot be written: printed text is also a result.
 int finishOutput(int status) {
-  const bool isWhole = std::cout.flush() && std::fflush(stdout) == 0 && !std::ferror(stdout);
-  if (isWhole || status != 0)
+  const bool isComplete = std::cout.flush() && std::fflush(stdout) == 0 && !std::ferror(stdout);
+  if (isComplete || status != 0)
     return status;
-  return fail(outputStatus, "standard output: cannot be written; is there room, and a reader?");
+  return reportFailure(outputStatus,
+                       "standard output: cannot be written; is there room, and a reader?");
 }
 
 /// Retries the removal of temporary files, and names those that the user has to remove.
-int removeRest(int status) {
+int removeTempFiles(int status) {
   removeAllTempFiles();
   try {
     for (const std::filesystem::path& path : remainingTempFiles()) {
@@ -88,12 +89,12 @@ int removeRest(int status) {
 void runProcess(int argc, char** argv, DispatchFunction dispatch) {
   openStandardStreams();
   serveSandbox(argc, argv); // the child does not return
-  handleStops();
+  installStopHandlers();
   removeStaleFolders();
-  const int status = removeRest(finishOutput(run(argc, argv, dispatch)));
+  const int status = removeTempFiles(finishOutput(run(argc, argv, dispatch)));
   // Everything is written. Destructors of libraries' static objects do no useful work, take a tenth
   // of a short command's time, and print if memory fails (HDF5's).
-  std::_Exit(status == 0 && stopRequested() ? stopStatus() : status);
+  std::_Exit(status == 0 && isStopRequested() ? stopStatus() : status);
 }
 
 } // namespace fenestra

@@ -6,7 +6,7 @@
 namespace fenestra {
 namespace {
 
-std::string formatted(const char* format, double value) {
+std::string formatNumber(const char* format, double value) {
   char text[64];
   std::snprintf(text, sizeof text, format, value);
   return text;
@@ -14,13 +14,14 @@ std::string formatted(const char* format, double value) {
 
 } // namespace
 
-Progress::Progress(const RenderOptions& options, RenderMonitor& monitor, int before, int frames)
+Progress::Progress(const RenderOptions& options, RenderMonitor& monitor, int finishedBefore,
+                   int frames)
     : m_view(options.progress, "Path tracing"),
       m_settings(options.settings),
       m_pixels(1.0 * options.scene.width * options.scene.height / options.settings.shard.count),
       m_monitor(monitor),
-      m_before(before),
-      m_finished(before),
+      m_finishedBefore(finishedBefore),
+      m_finished(finishedBefore),
       m_frames(frames) {
   if (m_view.mode() == ProgressMode::none)
     return;
@@ -49,8 +50,8 @@ void Progress::run(const std::stop_token& end) {
 }
 
 double Progress::fraction() const {
-  const double toDo = m_frames - m_before, done = m_finished - m_before;
-  return toDo > 0.0 ? std::min(1.0, (done + frameFraction()) / toDo) : 1.0;
+  const double total = m_frames - m_finishedBefore, done = m_finished - m_finishedBefore;
+  return total > 0.0 ? std::min(1.0, (done + frameFraction()) / total) : 1.0;
 }
 
 double Progress::frameFraction() const {
@@ -64,19 +65,19 @@ double Progress::frameFraction() const {
 }
 
 void Progress::show(bool last) {
-  m_view.show(last && !m_monitor.stop ? 1.0 : fraction(), reached(), last);
+  m_view.show(last && !m_monitor.stop ? 1.0 : fraction(), statusFields(), last);
 }
 
-std::vector<std::string> Progress::reached() const {
+std::vector<std::string> Progress::statusFields() const {
   const double samples = static_cast<double>(m_monitor.paths) / m_pixels;
   const double noise = m_monitor.noise;
   std::vector<std::string> fields;
   if (m_frames > 1)
     fields.push_back(concat("frame ", std::min(m_finished + 1, m_frames), " of ", m_frames));
   fields.push_back(
-      formatted(samples < 10.0 ? "%.1f samples a pixel" : "%.0f samples a pixel", samples));
+      formatNumber(samples < 10.0 ? "%.1f samples a pixel" : "%.0f samples a pixel", samples));
   if (noise < infinity)
-    fields.push_back(formatted("noise %.3f", noise));
+    fields.push_back(formatNumber("noise %.3f", noise));
   return fields;
 }
 

@@ -8,7 +8,7 @@
 namespace fenestra {
 namespace {
 
-std::string clock(double seconds) {
+std::string formatTime(double seconds) {
   if (!(seconds < 360000.0))
     return "--:--";
   const int s = static_cast<int>(seconds + 0.5);
@@ -20,13 +20,13 @@ std::string clock(double seconds) {
   return text;
 }
 
-std::string bar(double fraction, std::size_t width) {
+std::string drawBar(double fraction, std::size_t width) {
   const auto full = static_cast<std::size_t>(fraction * static_cast<double>(width));
   return std::string("[") + std::string(full, '#') + std::string(width - full, '.') + "] ";
 }
 
 /// Width of the terminal in characters, queried each time: a user may change it.
-std::size_t columns() {
+std::size_t terminalWidth() {
   winsize size = {};
   const bool known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
   return known ? size.ws_col : 80;
@@ -45,14 +45,14 @@ ProgressView::ProgressView(ProgressMode mode, const char* comment) : m_mode(mode
   std::fflush(stdout);
 }
 
-void ProgressView::show(double fraction, const std::vector<std::string>& reached, bool last) {
+void ProgressView::show(double fraction, const std::vector<std::string>& status, bool last) {
   m_fraction = std::max(m_fraction, fraction); // noise can grow between passes
   if (m_mode == ProgressMode::xml)
-    return showTags(reached, last);
+    return showTags(status, last);
   if (last)
     return erase(); // leaves an empty line for the final report
   if (m_mode == ProgressMode::bar)
-    showBar(reached);
+    showBar(status);
 }
 
 void ProgressView::erase() const {
@@ -62,9 +62,9 @@ void ProgressView::erase() const {
   std::fflush(stderr);
 }
 
-void ProgressView::showTags(const std::vector<std::string>& reached, bool last) const {
+void ProgressView::showTags(const std::vector<std::string>& status, bool last) const {
   std::printf("<filter-progress>%.4f</filter-progress>\n<filter-comment>%s</filter-comment>\n",
-              m_fraction, join(reached, ", ").c_str());
+              m_fraction, join(status, ", ").c_str());
   if (last)
     std::printf("<filter-end>\n<filter-name>fenestra</filter-name>\n<filter-time>%.2f"
                 "</filter-time>\n</filter-end>\n",
@@ -72,24 +72,24 @@ void ProgressView::showTags(const std::vector<std::string>& reached, bool last) 
   std::fflush(stdout);
 }
 
-void ProgressView::showBar(const std::vector<std::string>& reached) const {
+void ProgressView::showBar(const std::vector<std::string>& status) const {
   const double done = m_fraction;
   const double left = done > 0.0 ? m_watch.seconds() * (1.0 - done) / done : infinity;
-  char share[16];
-  std::snprintf(share, sizeof share, "%3.0f %%", 100.0 * done);
-  std::vector<std::string> fields = reached;
-  fields.insert(fields.begin(), {share, clock(left) + " left"});
+  char percent[16];
+  std::snprintf(percent, sizeof percent, "%3.0f %%", 100.0 * done);
+  std::vector<std::string> fields = status;
+  fields.insert(fields.begin(), {percent, formatTime(left) + " left"});
 
   // A wrapped line cannot be erased: fields that do not fit are left out, the bar first.
   constexpr std::size_t longest = 24;
   constexpr std::size_t frame = 3;
-  const std::size_t width = columns() - 1;
+  const std::size_t width = terminalWidth() - 1;
   std::string line;
   for (const std::string& field : fields)
     if (line.size() + 2 + field.size() <= width)
       line += (line.empty() ? "" : "  ") + field;
   if (line.size() + frame + longest / 3 <= width)
-    line = bar(done, std::min(longest, width - line.size() - frame)) + line;
+    line = drawBar(done, std::min(longest, width - line.size() - frame)) + line;
   std::fprintf(stderr, "\r%s\033[K", line.c_str());
   std::fflush(stderr);
 }

@@ -20,13 +20,13 @@ public:
   ProgressMode mode() const { return m_mode; }
   /// Shows the finished share of all the work, in [0, 1], never less than before, the time left,
   /// and texts on what is reached. `last`: for the last time.
-  void show(double fraction, const std::vector<std::string>& reached, bool last);
+  void show(double fraction, const std::vector<std::string>& status, bool last);
   /// Makes room for a line of text; the bar comes back with show.
   void erase() const;
 
 private:
-  void showTags(const std::vector<std::string>& reached, bool last) const;
-  void showBar(const std::vector<std::string>& reached) const;
+  void showTags(const std::vector<std::string>& status, bool last) const;
+  void showBar(const std::vector<std::string>& status) const;
 
   ProgressMode m_mode;
   Stopwatch m_watch;

@@ -21,7 +21,7 @@ json listFileStates(const std::set<fs::path>& files, const fs::path& folder) {
   std::error_code failed;
   for (const fs::path& file : files) // a member of an archive changes with the archive
     if (fs::is_regular_file(file, failed)) {
-      const std::string name = relativeName(file.string(), folder);
+      const std::string name = toRelativeName(file.string(), folder);
       states[name] = {{"file", name},
                       {"bytes", fs::file_size(file, failed)},
                       {"modified", fs::last_write_time(file, failed).time_since_epoch().count()}};

@@ -100,10 +100,10 @@ void addSources(Json& json, const RenderStats& stats, const RenderOptions& optio
     json["display"] = {{"tone", toString(options.display.view)},
                        {"exposure", options.display.exposure}};
   if (options.preset)
-    json["preset"] = relativeName(*options.preset, folder);
+    json["preset"] = toRelativeName(*options.preset, folder);
   json["filesRead"] = Json::array();
   for (const std::string& file : scene.files())
-    json["filesRead"].push_back(relativeName(file, folder));
+    json["filesRead"].push_back(toRelativeName(file, folder));
   json["warnings"] = scene.warnings();
   for (const std::string& warning : stats.warnings)
     json["warnings"].push_back(warning);
@@ -269,7 +269,7 @@ RenderResult renderFilm(const RenderOptions& options, const PreparedScene& scene
 
 } // namespace
 
-int renderScene(const PictureRequest& job, const std::vector<std::string>& arguments,
+int renderScene(const RenderJob& job, const std::vector<std::string>& arguments,
                 std::optional<Checkpoint>& checkpoint, Outputs& outputs,
                 const StartWorkers& startWorkers) {
   const RenderOptions& options = job.options;
@@ -281,11 +281,11 @@ int renderScene(const PictureRequest& job, const std::vector<std::string>& argum
     std::cerr << toOneLine(scene.choices()) << '\n';
 
   RenderMonitor monitor;
-  const StopInstead stopInstead(monitor.stop);
+  const DeferredStop stopInstead(monitor.stop);
   std::future<void> surface = startSurfaceWriter(options, scene, outputs);
   Stopwatch watch;
   RenderStats stats;
-  PictureFilter filter(options, scene);
+  ImageDenoiser filter(options, scene);
   const RenderResult result =
       renderFilm(options, scene, filter.settings(), checkpoint, monitor, startWorkers, stats);
   stats.transport = watch.seconds();
@@ -297,10 +297,10 @@ int renderScene(const PictureRequest& job, const std::vector<std::string>& argum
     return stopStatus();
   }
   watch.lap();
-  const std::optional<FilteredImage> filtered = filter.of(result);
-  stats.filtered = filteredNoise(filtered);
+  const std::optional<FilteredImage> filtered = filter.apply(result);
+  stats.filtered = denoisedNoise(filtered);
   stats.filter = watch.lap();
-  writePictures(options, scene, result, filtered, arguments, outputs);
+  writeImages(options, scene, result, filtered, arguments, outputs);
   outputs.commit();
   stats.write = watch.lap();
   stats.warnings = findStaleFiles(options, outputs);
@@ -310,8 +310,8 @@ int renderScene(const PictureRequest& job, const std::vector<std::string>& argum
   if (options.returnValues)
     outputs.write(
         *options.returnValues,
-        returnValuesText({result.film.sampleCounts().mean,
-                          stats.filtered.value_or(result.film.noise()), stats.transport}));
+        formatReturnValues({result.film.sampleCounts().mean,
+                            stats.filtered.value_or(result.film.noise()), stats.transport}));
   outputs.commit();
   report(options, result, stats.filtered, total.seconds());
   return result.reason == StopReason::request ? stopStatus() : 0;
@@ -323,16 +323,16 @@ int renderCommand(int argc, char** argv, int first) {
 
 int runRender(const StartWorkers& startWorkers, int argc, char** argv, int first) {
   if (std::find(argv + first, argv + argc, std::string_view("--xml")) != argv + argc) {
-    std::cout << slicerDescription(renderSyntax) << std::flush;
+    std::cout << makeSlicerXml(renderSyntax) << std::flush;
     return 0;
   }
   const std::optional<OptionValues> given = parseCommandLine(renderSyntax, argc, argv, first);
   if (!given)
     return 0;
-  useMachine(*given);
-  const PictureRequest job = pictureRequest(*given);
+  configureMachine(*given);
+  const RenderJob job = makeRenderJob(*given);
   if (given->has("echo"))
-    std::cout << job.flags.echo() << std::flush;
+    std::cout << job.values.echo() << std::flush;
   std::optional<Checkpoint> checkpoint;
   if (job.options.checkpoint)
     checkpoint.emplace(job, *given,

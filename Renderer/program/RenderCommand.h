@@ -15,7 +15,7 @@ using StartWorkers = std::function<void(const RenderOptions&, const PreparedScen
 /// Renders the scene, from `checkpoint` on if there is one, puts its pictures in place, then
 /// measures them for the statistics; of a part, puts its film in place. `words`: arguments of the
 /// process, for the pictures' headers. Returns the exit status.
-int renderScene(const PictureRequest& job, const std::vector<std::string>& arguments,
+int renderScene(const RenderJob& job, const std::vector<std::string>& arguments,
                 std::optional<Checkpoint>& checkpoint, Outputs& outputs,
                 const StartWorkers& startWorkers = {});
 

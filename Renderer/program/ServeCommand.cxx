@@ -16,12 +16,12 @@ namespace {
 
 class Server {
 public:
-  Server(const PictureRequest& start, Outputs& outputs)
+  Server(const RenderJob& start, Outputs& outputs)
       : m_source(start.input),
-        m_flags(start.stored),
+        m_values(start.stored),
         m_options(start.options),
         m_outputs(outputs),
-        m_input(m_flags, m_source, m_monitor) {}
+        m_input(m_values, m_source, m_monitor) {}
 
   /// Runs until the process ends. Throws Error if there is no first scene.
   [[noreturn]] void run() {
@@ -31,9 +31,9 @@ public:
       renderPictures();
       do {
         const ServeChanges changes = m_input.next();
-        if (!take(changes))
-          m_input.takeBack(m_flags);
-      } while (m_complete);
+        if (!applyChanges(changes))
+          m_input.revert(m_values);
+      } while (m_isComplete);
     }
   }
 
@@ -41,29 +41,29 @@ private:
   /// Builds the scene of all changes together. If that fails, tries each half separately, down to
   /// single changes; a single change that fails is answered with the error and has no effect.
   /// Returns whether all changes were taken together.
-  bool take(std::span<const ServeChange> changes) {
+  bool applyChanges(std::span<const ServeChange> changes) {
     try {
-      OptionValues flags = m_flags;
+      OptionValues values = m_values;
       for (const ServeChange& change : changes)
-        flags = changedFlags(change.flags, flags);
-      const RenderOptions options = makeRenderOptions(mergePreset(flags, m_source));
+        values = applyChange(change.options, values);
+      const RenderOptions options = makeRenderOptions(mergePreset(values, m_source));
       checkMemory(options.scene);
       PreparedScene scene = m_scene->withRequest(options.scene);
       m_outputs.checkInputs();
       m_scene = std::move(scene);
       m_options = options;
-      m_flags = flags;
+      m_values = values;
       m_change = changes.back();
-      m_complete = false;
+      m_isComplete = false;
       return true;
     } catch (const Error& error) {
       m_outputs.forgetInputs();
       if (changes.size() == 1)
-        answerError(changes.front().id, error.what());
+        writeErrorEvent(changes.front().id, error.what());
     }
     if (changes.size() > 1) {
-      take(changes.first(changes.size() / 2));
-      take(changes.subspan(changes.size() / 2));
+      applyChanges(changes.first(changes.size() / 2));
+      applyChanges(changes.subspan(changes.size() / 2));
     }
     return false;
   }
@@ -71,68 +71,69 @@ private:
   /// Publishes the first picture at once, later ones at most every 0.1 seconds, and such that most
   /// of the time goes to samples.
   void renderPictures() {
-    m_complete = false;
+    m_isComplete = false;
     m_monitor.noise = infinity;
     m_monitor.paths = 0;
     m_published.reset();
     m_failure.clear();
-    PictureFilter filter(m_options, *m_scene);
+    ImageDenoiser filter(m_options, *m_scene);
     m_monitor.onPassEnd = [this, &filter](const RenderResult& result) {
-      const double interval = std::max(0.1, 4.0 * m_publishing);
+      const double interval = std::max(0.1, 4.0 * m_publishSeconds);
       if (!m_monitor.stop && (!m_published || m_published->seconds() >= interval))
         publish(result, filter, false);
     };
     const RenderResult result = render(m_scene->view(), filter.settings(), m_monitor);
-    m_complete = result.reason != StopReason::request;
-    if (m_complete)
+    m_isComplete = result.reason != StopReason::request;
+    if (m_isComplete)
       publish(result, filter, true);
   }
 
   /// Puts the pictures in place and tells them. A failure (a full disk) is told as well, for
   /// intermediate pictures only once each; the next picture may have room again.
-  void publish(const RenderResult& result, const PictureFilter& filter, bool last) {
+  void publish(const RenderResult& result, const ImageDenoiser& filter, bool last) {
     const Stopwatch watch;
     try {
-      const std::optional<FilteredImage> filtered = filter.of(result);
-      writePictures(m_options, *m_scene, result, filtered, m_flags.arguments(), m_outputs);
+      const std::optional<FilteredImage> filtered = filter.apply(result);
+      writeImages(m_options, *m_scene, result, filtered, m_values.arguments(), m_outputs);
       m_outputs.commit(Durability::none); // the next picture follows soon
-      tell(result, filteredNoise(filtered), last);
+      writeImageEvent(result, denoisedNoise(filtered), last);
     } catch (const Error& error) {
       if (last || m_failure != error.what())
-        answerError(m_change.id, error.what());
+        writeErrorEvent(m_change.id, error.what());
       m_failure = error.what();
     }
-    m_publishing = watch.seconds();
+    m_publishSeconds = watch.seconds();
     m_published.emplace();
   }
 
-  void tell(const RenderResult& result, const std::optional<double>& filtered, bool last) {
-    nlohmann::ordered_json told = {{"event", "picture"}, {"id", m_change.id}};
-    told["samples"] = result.finishedSamples;
-    told["noise"] = result.film.noise(); // null: infinite
+  void writeImageEvent(const RenderResult& result, const std::optional<double>& filtered,
+                       bool last) {
+    nlohmann::ordered_json event = {{"event", "picture"}, {"id", m_change.id}};
+    event["samples"] = result.finishedSamples;
+    event["noise"] = result.film.noise(); // null: infinite
     if (filtered)
-      told["noiseFiltered"] = *filtered;
-    told["seconds"] = m_change.since.seconds();
-    told["done"] = last;
+      event["noiseFiltered"] = *filtered;
+    event["seconds"] = m_change.age.seconds();
+    event["done"] = last;
     for (const std::filesystem::path& path : m_options.outputs)
-      told["files"].push_back(path.string());
+      event["files"].push_back(path.string());
     for (const std::string& warning : m_scene->warnings())
       if (m_warned.insert(warning).second)
-        told["warnings"].push_back(warning);
-    answer(told);
+        event["warnings"].push_back(warning);
+    writeEvent(event);
   }
 
-  const Input m_source; ///< of all scenes
-  OptionValues m_flags; ///< flags of the current scene, without a preset's
+  const Input m_source;  ///< of all scenes
+  OptionValues m_values; ///< flags of the current scene, without a preset's
   RenderOptions m_options;
   ServeChange m_change; ///< last one taken
   Outputs& m_outputs;
   RenderMonitor m_monitor;
   ServeInput m_input;
   std::optional<PreparedScene> m_scene;
-  bool m_complete = false;              ///< true: the scene's picture is finished
+  bool m_isComplete = false;            ///< true: the scene's picture is finished
   std::optional<Stopwatch> m_published; ///< time since the scene's last picture; nullopt: none yet
-  double m_publishing = 0.0;            ///< seconds that it took
+  double m_publishSeconds = 0.0;        ///< seconds that it took
   std::string m_failure;                ///< last reported failure to write a picture of this scene
   std::set<std::string> m_warned;
 };
@@ -163,8 +164,8 @@ int serveCommand(int argc, char** argv, int first) {
   const std::optional<OptionValues> given = parseCommandLine(serveSyntax(), argc, argv, first);
   if (!given)
     return 0;
-  useMachine(*given);
-  const PictureRequest start = pictureRequest(*given);
+  configureMachine(*given);
+  const RenderJob start = makeRenderJob(*given);
   // Never destroyed: the reading thread, which lives as long as the process, uses both.
   Outputs& outputs = *new Outputs;
   declareOutputs(start.options, outputs);

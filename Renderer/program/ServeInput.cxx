@@ -37,7 +37,7 @@ std::string listText(const std::string& name, const json& list) {
 
 } // namespace
 
-void answer(const nlohmann::ordered_json& content) {
+void writeEvent(const nlohmann::ordered_json& content) {
   static std::mutex mutex;
   const std::string line = dumpJson(content, -1);
   const std::lock_guard lock(mutex);
@@ -47,11 +47,11 @@ void answer(const nlohmann::ordered_json& content) {
   endProcess(static_cast<int>(ErrorKind::output));
 }
 
-void answerError(const json& id, const std::string& message) {
-  answer({{"event", "error"}, {"id", id}, {"message", message}});
+void writeErrorEvent(const json& id, const std::string& message) {
+  writeEvent({{"event", "error"}, {"id", id}, {"message", message}});
 }
 
-json idOf(const json& change) {
+json readId(const json& change) {
   constexpr std::size_t longest = 256;
   json id = change.is_object() ? change.value("id", json()) : json();
   const bool isShort = id.is_string() && id.get_ref<const std::string&>().size() <= longest;
@@ -60,23 +60,23 @@ json idOf(const json& change) {
   return id;
 }
 
-OptionValues changedFlags(const json& change, const OptionValues& flags) {
+OptionValues applyChange(const json& change, const OptionValues& values) {
   if (!change.is_object())
     throw usageError("expected a JSON object of flags, as {\"view\": \"left\"}");
-  OptionValues result = flags;
+  OptionValues result = values;
   for (const auto& [name, value] : change.items()) {
     if (name == "id")
       continue;
-    const Option* flag = findOption(renderSyntax.options, name);
-    if (!flag) {
+    const Option* option = findOption(renderSyntax.options, name);
+    if (!option) {
       const std::string likely = findNearest(name, listNames(renderSyntax.options));
       throw usageError(toOneLine(name), ": no such flag",
                        likely.empty() ? "" : concat("; did you mean ", likely, "?"));
     }
-    if (!isImageOption(*flag))
+    if (!isImageOption(*option))
       throw usageError(name, ": cannot change while serving; start another server");
     result.remove(name);
-    if (flag->spec.canRepeat && value.is_array()) {
+    if (option->spec.canRepeat && value.is_array()) {
       for (const json& item : value)
         result.add(name, valueText(name, item));
       continue;
@@ -90,8 +90,8 @@ OptionValues changedFlags(const json& change, const OptionValues& flags) {
   return result;
 }
 
-void checkChange(const json& change, const OptionValues& flags, const Input& input) {
-  const RenderRequest scene = makeRenderOptions(mergePreset(flags, input)).scene;
+void checkChange(const json& change, const OptionValues& values, const Input& input) {
+  const RenderRequest scene = makeRenderOptions(mergePreset(values, input)).scene;
   const bool isPreset = change.contains("preset"); // may name lights and a transfer function
   if (isPreset || change.contains("lights"))
     findLights(scene.lights);
@@ -104,22 +104,22 @@ void checkChange(const json& change, const OptionValues& flags, const Input& inp
 }
 
 ServeInput::ServeInput(const OptionValues& start, const Input& input, RenderMonitor& monitor)
-    : m_input(input), m_monitor(monitor), m_wanted(start) {
+    : m_input(input), m_monitor(monitor), m_requested(start) {
   std::thread([this] { read(); }).detach(); // ends with the process only
 }
 
 ServeChanges ServeInput::next() {
   std::unique_lock lock(m_mutex);
-  m_changed.wait(lock, [&] { return !m_new.empty(); });
+  m_changed.wait(lock, [&] { return !m_pending.empty(); });
   m_monitor.stop = false;
-  return std::exchange(m_new, {});
+  return std::exchange(m_pending, {});
 }
 
-void ServeInput::takeBack(const OptionValues& shown) {
+void ServeInput::revert(const OptionValues& shown) {
   const std::lock_guard lock(m_mutex);
-  m_wanted = shown;
-  for (const ServeChange& change : m_new)
-    m_wanted = changedFlags(change.flags, m_wanted);
+  m_requested = shown;
+  for (const ServeChange& change : m_pending)
+    m_requested = applyChange(change.options, m_requested);
 }
 
 void ServeInput::read() {
@@ -131,27 +131,27 @@ void ServeInput::read() {
       continue;
     }
     if (line.size() > longestLine)
-      answerError(nullptr, "a line has more than a million characters; send shorter ones");
+      writeErrorEvent(nullptr, "a line has more than a million characters; send shorter ones");
     else if (line.find_first_not_of(" \t\r") != std::string::npos)
-      takeLine(line);
+      handleLine(line);
     line.clear();
   }
   endProcess(0);
 }
 
-void ServeInput::takeLine(const std::string& line) {
+void ServeInput::handleLine(const std::string& line) {
   ServeChange change;
   try {
-    change.flags = parseJson(line, "a line");
-    change.id = idOf(change.flags);
+    change.options = parseJson(line, "a line");
+    change.id = readId(change.options);
     const std::lock_guard lock(m_mutex);
-    OptionValues wanted = changedFlags(change.flags, m_wanted);
-    checkChange(change.flags, wanted, m_input);
-    m_wanted = std::move(wanted);
-    m_new.push_back(change);
+    OptionValues requested = applyChange(change.options, m_requested);
+    checkChange(change.options, requested, m_input);
+    m_requested = std::move(requested);
+    m_pending.push_back(change);
     m_monitor.stop = true;
   } catch (const Error& error) {
-    answerError(change.id, error.what());
+    writeErrorEvent(change.id, error.what());
   }
   m_changed.notify_one();
 }

@@ -13,7 +13,7 @@ void addText(pugi::xml_node parent, const char* name, const std::string& text) {
 }
 
 /// Label: the flag's own name, so that a panel's field can be matched to a flag.
-std::string labelOf(const std::string& name) {
+std::string makeLabel(const std::string& name) {
   std::string label = name;
   label[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(label[0])));
   return label;
@@ -29,40 +29,40 @@ pugi::xml_node addParameters(pugi::xml_node module, const std::string& label,
 
 /// Slicer's type of a flag. Slicer always passes numbers and words, so that such a flag without a
 /// default is a text.
-std::string typeOf(const ValueSpec& takes) {
-  const bool isPassed = takes.least > -infinity || !takes.choices.empty();
-  return isPassed && takes.defaultValue.empty() ? "string" : takes.type;
+std::string slicerType(const ValueSpec& spec) {
+  const bool isPassed = spec.least > -infinity || !spec.choices.empty();
+  return isPassed && spec.defaultValue.empty() ? "string" : spec.type;
 }
 
 /// Adds a slider if the range is narrow enough to set by hand.
-void addConstraints(pugi::xml_node parameter, const ValueSpec& takes) {
+void addConstraints(pugi::xml_node parameter, const ValueSpec& spec) {
   constexpr double widest = 1e6;
-  if (typeOf(takes) == "string" || takes.defaultValue.empty() ||
-      takes.greatest - takes.least > widest)
+  if (slicerType(spec) == "string" || spec.defaultValue.empty() ||
+      spec.greatest - spec.least > widest)
     return;
   pugi::xml_node constraints = parameter.append_child("constraints");
-  addText(constraints, "minimum", toString(takes.least));
-  addText(constraints, "maximum", toString(takes.greatest));
-  addText(constraints, "step", takes.type == "integer" ? "1" : "0.01");
+  addText(constraints, "minimum", toString(spec.least));
+  addText(constraints, "maximum", toString(spec.greatest));
+  addText(constraints, "step", spec.type == "integer" ? "1" : "0.01");
 }
 
-void addFlag(pugi::xml_node group, const Option& flag) {
-  const ValueSpec& takes = flag.spec;
-  pugi::xml_node parameter = group.append_child(typeOf(takes).c_str());
-  if (!takes.image.empty())
-    parameter.append_attribute("type") = takes.image.c_str();
-  if (!takes.extensions.empty())
-    parameter.append_attribute("fileExtensions") = takes.extensions.c_str();
-  addText(parameter, "name", flag.name);
-  addText(parameter, "longflag", flag.name);
-  addText(parameter, "label", labelOf(flag.name));
-  addText(parameter, "description", flag.help());
-  if (!takes.channel.empty())
-    addText(parameter, "channel", takes.channel);
-  if (!takes.defaultValue.empty())
-    addText(parameter, "default", takes.defaultValue);
-  addConstraints(parameter, takes);
-  for (const std::string& word : takes.choices)
+void addOption(pugi::xml_node group, const Option& option) {
+  const ValueSpec& spec = option.spec;
+  pugi::xml_node parameter = group.append_child(slicerType(spec).c_str());
+  if (!spec.image.empty())
+    parameter.append_attribute("type") = spec.image.c_str();
+  if (!spec.extensions.empty())
+    parameter.append_attribute("fileExtensions") = spec.extensions.c_str();
+  addText(parameter, "name", option.name);
+  addText(parameter, "longflag", option.name);
+  addText(parameter, "label", makeLabel(option.name));
+  addText(parameter, "description", option.help());
+  if (!spec.channel.empty())
+    addText(parameter, "channel", spec.channel);
+  if (!spec.defaultValue.empty())
+    addText(parameter, "default", spec.defaultValue);
+  addConstraints(parameter, spec);
+  for (const std::string& word : spec.choices)
     addText(parameter, "element", word);
 }
 
@@ -81,15 +81,15 @@ void addReturnValues(pugi::xml_node module) {
   for (const ReturnValue& value : returnValues) {
     pugi::xml_node parameter = group.append_child("double");
     addText(parameter, "name", value.name);
-    addText(parameter, "label", labelOf(value.name));
-    addText(parameter, "description", value.text);
+    addText(parameter, "label", makeLabel(value.name));
+    addText(parameter, "description", value.description);
     addText(parameter, "channel", "output");
   }
 }
 
 } // namespace
 
-std::string slicerDescription(const CommandSyntax& syntax) {
+std::string makeSlicerXml(const CommandSyntax& syntax) {
   pugi::xml_document document;
   pugi::xml_node declaration = document.append_child(pugi::node_declaration);
   declaration.append_attribute("version") = "1.0";
@@ -102,17 +102,17 @@ std::string slicerDescription(const CommandSyntax& syntax) {
   addText(module, "contributor", "The Fenestra developers");
   std::string groupName;
   pugi::xml_node group;
-  for (const Option& flag : syntax.options) {
-    if (flag.spec.type.empty())
+  for (const Option& option : syntax.options) {
+    if (option.spec.type.empty())
       continue;
-    if (flag.group != groupName) {
+    if (option.group != groupName) {
       const bool first = groupName.empty();
-      groupName = flag.group;
-      group = addParameters(module, flag.group, flag.group);
+      groupName = option.group;
+      group = addParameters(module, option.group, option.group);
       if (first)
         addInput(group, syntax.positionals.front());
     }
-    addFlag(group, flag);
+    addOption(group, option);
   }
   addReturnValues(module);
   TextWriter text;
@@ -120,7 +120,7 @@ std::string slicerDescription(const CommandSyntax& syntax) {
   return text.str();
 }
 
-std::string returnValuesText(const std::vector<double>& values) {
+std::string formatReturnValues(const std::vector<double>& values) {
   std::string lines;
   for (std::size_t i = 0; i < values.size(); ++i)
     if (std::isfinite(values[i]))

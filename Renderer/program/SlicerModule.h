@@ -12,7 +12,7 @@ namespace fenestra {
 /// Measured result of a render, a number; Slicer shows it under the panel.
 struct ReturnValue {
   const char* name;
-  const char* text;
+  const char* description;
 };
 inline constexpr ReturnValue returnValues[] = {
     {"samplesPerPixel", "Samples a pixel, the mean over the picture"},
@@ -24,9 +24,9 @@ inline constexpr ReturnValue returnValues[] = {
 /// Module description, an XML document: the first positional argument as a volume, then every flag
 /// but Slicer's own, in the table's order, then the return values. A flag without a default is a
 /// text, which Slicer leaves out if empty.
-std::string slicerDescription(const CommandSyntax& syntax);
+std::string makeSlicerXml(const CommandSyntax& syntax);
 
 /// Lines "name = value" in Slicer's form; values[i] belongs to returnValues[i].
-std::string returnValuesText(const std::vector<double>& values);
+std::string formatReturnValues(const std::vector<double>& values);
 
 } // namespace fenestra

@@ -12,7 +12,7 @@
 namespace fenestra {
 namespace {
 
-std::atomic<std::atomic<bool>*> flag = nullptr;
+std::atomic<std::atomic<bool>*> stopFlag = nullptr;
 std::atomic<int> firstSignal = 0;
 std::atomic<std::int64_t> firstTime = 0; ///< of the first signal, ms
 static_assert(std::atomic<std::atomic<bool>*>::is_always_lock_free);
@@ -24,13 +24,13 @@ std::int64_t milliseconds() {
 }
 
 /// True shortly after the first signal: a closed terminal sends HUP twice.
-bool isEcho() {
+bool isRepeat() {
   constexpr std::int64_t together = 300; // ms
   return milliseconds() - firstTime < together;
 }
 
 /// Writes the line to standard error, only on the first call, whichever threads end the process.
-void say(std::string_view line) {
+void printOnce(std::string_view line) {
   static std::atomic<bool> isSaid = false;
   if (isSaid.exchange(true))
     return;
@@ -38,36 +38,36 @@ void say(std::string_view line) {
 }
 
 /// Async-signal-safe.
-void end() {
+void endNow() {
   if (firstSignal == SIGPIPE)
-    say("fenestra: standard output: nobody reads it any more\n");
+    printOnce("fenestra: standard output: nobody reads it any more\n");
   else if (hasPlacedResults())
-    say("fenestra: stopped on request\n");
+    printOnce("fenestra: stopped on request\n");
   else
-    say("fenestra: stopped on request; nothing was written\n");
+    printOnce("fenestra: stopped on request; nothing was written\n");
   removeAllTempFiles();
   ::_exit(stopStatus());
 }
 
 void onSignal(int signal) {
   const int before = errno;
-  std::atomic<bool>* const stop = flag;
+  std::atomic<bool>* const stop = stopFlag;
   if (firstSignal == 0) {
     firstTime = milliseconds();
     firstSignal = signal;
     if (stop)
       *stop = true;
     else
-      endWhenUnblocked(end);
-  } else if (!stop || !isEcho()) {
-    endWhenUnblocked(end);
+      endWhenUnblocked(endNow);
+  } else if (!stop || !isRepeat()) {
+    endWhenUnblocked(endNow);
   }
   errno = before;
 }
 
 } // namespace
 
-void handleStops() {
+void installStopHandlers() {
   struct sigaction action = {};
   action.sa_handler = onSignal;
   action.sa_flags = SA_RESTART;
@@ -80,7 +80,7 @@ void handleStops() {
   }
 }
 
-bool stopRequested() {
+bool isStopRequested() {
   return firstSignal != 0;
 }
 
@@ -99,14 +99,14 @@ void endProcess(int status) {
     ::pause();
 }
 
-StopInstead::StopInstead(std::atomic<bool>& stop) {
-  flag = &stop;
+DeferredStop::DeferredStop(std::atomic<bool>& stop) {
+  stopFlag = &stop;
   if (firstSignal != 0)
     stop = true;
 }
 
-StopInstead::~StopInstead() {
-  flag = nullptr;
+DeferredStop::~DeferredStop() {
+  stopFlag = nullptr;
 }
 
 } // namespace fenestra

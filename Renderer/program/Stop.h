@@ -1,7 +1,7 @@
 #pragma once
 // Signals that ask the process to end: INT, TERM, HUP (terminal closed), QUIT, XCPU, and PIPE
 // (standard output closed). The first ends the process at once; where that would cost finished
-// work (StopInstead), the second. Signals ignored when the process began (nohup) stay ignored.
+// work (DeferredStop), the second. Signals ignored when the process began (nohup) stay ignored.
 
 #include <atomic>
 
@@ -10,10 +10,10 @@ namespace fenestra {
 inline constexpr int stoppedStatus = 5;
 
 /// Installs the handlers. Call before files are read or made.
-void handleStops();
+void installStopHandlers();
 
 /// True once any of those signals has come.
-bool stopRequested();
+bool isStopRequested();
 
 /// Exit status of a command that was asked to stop: stoppedStatus, or the status of an output error
 /// if standard output is closed.
@@ -25,12 +25,12 @@ int stopStatus();
 
 /// Makes the first signal set `stop` instead of ending the process, for the object's lifetime. At
 /// most one instance at a time.
-class StopInstead {
+class DeferredStop {
 public:
-  explicit StopInstead(std::atomic<bool>& stop);
-  ~StopInstead();
-  StopInstead(const StopInstead&) = delete;
-  StopInstead& operator=(const StopInstead&) = delete;
+  explicit DeferredStop(std::atomic<bool>& stop);
+  ~DeferredStop();
+  DeferredStop(const DeferredStop&) = delete;
+  DeferredStop& operator=(const DeferredStop&) = delete;
 };
 
 } // namespace fenestra

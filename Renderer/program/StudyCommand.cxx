@@ -55,7 +55,7 @@ public:
 
   /// Returns once no row is left, or all have ended after a request to stop.
   void run() {
-    const StopInstead stopInstead(m_stop);
+    const DeferredStop stopInstead(m_stop);
     while (hasWork()) {
       for (std::size_t i = 0; i < m_workers.size(); ++i) {
         if (m_workers[i] && m_workers[i]->child.hasEnded())

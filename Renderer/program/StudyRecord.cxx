@@ -38,7 +38,7 @@ std::vector<std::string> listArguments(const BatchRow& row, const fs::path& fold
   if (!formats.empty())
     arguments.push_back("--formats=" + join(formats, ","));
   arguments.push_back(row.input);
-  return relativeArguments(arguments, renderSyntax.options, folder / row.name);
+  return toRelativeArguments(arguments, renderSyntax.options, folder / row.name);
 }
 
 /// Input files of a row that is done: those of its arguments and statistics, what their headers

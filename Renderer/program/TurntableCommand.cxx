@@ -29,33 +29,34 @@ class Turntable {
 public:
   /// `words`: arguments of the process, for the headers of the pictures.
   Turntable(const TurntableOptions& options, const Input& input, TurntableManifest& manifest,
-            Outputs& outputs, std::vector<std::string> words)
+            Outputs& outputs, std::vector<std::string> arguments)
       : m_options(options),
         m_manifest(manifest),
         m_outputs(outputs),
-        m_words(std::move(words)),
-        m_before(finished()),
+        m_arguments(std::move(arguments)),
+        m_finishedBefore(finishedCount()),
         m_view{-2, PreparedScene(options.render.scene, input)},
         m_start(m_view.scene.camera().pose()) {}
 
   /// Returns the exit status.
   int run() {
-    const StopInstead stopInstead(m_monitor.stop); // the frame under way is discarded
-    m_outputs.checkInputs();                       // now also files that the scene refers to
+    const DeferredStop stopInstead(m_monitor.stop); // the frame under way is discarded
+    m_outputs.checkInputs();                        // now also files that the scene refers to
     m_manifest.setInputs(m_view.scene);
     m_manifest.write(m_outputs);
     if (!m_manifest.warning().empty())
       warn(m_manifest.warning());
     renderFrames();
-    const bool isWhole = finished() == frames();
+    const bool isComplete = finishedCount() == frameCount();
     const auto& stats = m_options.render.stats;
-    if (stats && (rendered() > 0 || isWhole)) // otherwise they would describe missing pictures
+    if (stats &&
+        (renderedCount() > 0 || isComplete)) // otherwise they would describe missing pictures
       m_outputs.write(*stats, statsJson());
     m_outputs.commit();
     report();
     if (m_preparing.valid()) // a view is still being built, and will not be used
       endProcess(stopStatus());
-    return isWhole ? 0 : stopStatus();
+    return isComplete ? 0 : stopStatus();
   }
 
 private:
@@ -68,9 +69,9 @@ private:
   };
 
   /// Number of frames of this part.
-  int frames() const { return m_options.end() - m_options.first(); }
-  int finished() const { return static_cast<int>(m_manifest.finished().size()); }
-  int rendered() const { return finished() - m_before; }
+  int frameCount() const { return m_options.end() - m_options.first(); }
+  int finishedCount() const { return static_cast<int>(m_manifest.finished().size()); }
+  int renderedCount() const { return finishedCount() - m_finishedBefore; }
 
   /// Prints each distinct warning once.
   void warn(const std::string& warning) {
@@ -79,7 +80,7 @@ private:
   }
 
   void renderFrames() {
-    Progress progress(m_options.render, m_monitor, m_before, frames());
+    Progress progress(m_options.render, m_monitor, m_finishedBefore, frameCount());
     for (int frame = m_options.first(); frame < m_options.end(); ++frame) {
       if (m_manifest.finished().contains(frame))
         continue;
@@ -97,12 +98,12 @@ private:
     for (const std::string& warning : m_view.scene.warnings())
       warn(warning);
     RenderOptions options = m_options.render;
-    options.outputs = m_options.pictures(frame);
-    PictureFilter filter(options, m_view.scene);
+    options.outputs = m_options.images(frame);
+    ImageDenoiser filter(options, m_view.scene);
     const RenderResult result = render(m_view.scene.view(), filter.settings(), m_monitor);
     if (result.reason == StopReason::request)
       return false;
-    writePictures(options, m_view.scene, result, filter.of(result), m_words, m_outputs);
+    writeImages(options, m_view.scene, result, filter.apply(result), m_arguments, m_outputs);
     m_outputs.commit();
     m_manifest.finish(frame, m_view.change, m_outputs);
     return true;
@@ -111,7 +112,7 @@ private:
   /// Builds the view in another thread if one can start: a stop does not wait for surfaces. Returns
   /// whether the view is ready; false: stopped.
   bool waitForView(int frame) {
-    m_preparing = std::async([this, frame] { return viewOf(frame); });
+    m_preparing = std::async([this, frame] { return buildView(frame); });
     while (m_preparing.wait_for(std::chrono::milliseconds(10)) == std::future_status::timeout)
       if (m_monitor.stop)
         return false;
@@ -119,7 +120,7 @@ private:
   }
 
   /// Scene for the eye of m_start turned around its target.
-  PreparedScene sceneAt(double degrees) const {
+  PreparedScene buildScene(double degrees) const {
     const CameraPose pose = rotateAroundTarget(m_start, degrees);
     RenderRequest request = m_options.render.scene;
     request.view = {.projection = pose.projection,
@@ -131,21 +132,21 @@ private:
     return m_view.scene.withRequest(request);
   }
 
-  View viewOf(int frame) const {
+  View buildView(int frame) const {
     const double step = m_options.angle(1), angle = m_options.angle(frame);
-    View view{frame, sceneAt(angle)};
-    view.surface = seen(view.scene);
+    View view{frame, buildScene(angle)};
+    view.surface = findVisibleSurface(view.scene);
     const bool follows = step != 0.0 && (frame > 0 || m_options.isClosed());
     if (!follows || !view.surface)
       return view;
     const bool isNext = m_view.frame == frame - 1;
-    if (const auto before = isNext ? m_view.surface : seen(sceneAt(angle - step)))
+    if (const auto before = isNext ? m_view.surface : findVisibleSurface(buildScene(angle - step)))
       view.change = measureChange(*before, *view.surface, m_start.up, step);
     return view;
   }
 
   /// Visible part of the clipping surface; nullopt: the clip is no surface.
-  static std::optional<VisibleSurface> seen(const PreparedScene& scene) {
+  static std::optional<VisibleSurface> findVisibleSurface(const PreparedScene& scene) {
     const auto* clip = std::get_if<ClipDepth>(&scene.clip());
     if (!clip || clip->lookup != ClipDepth::Lookup::linear)
       return std::nullopt;
@@ -153,9 +154,9 @@ private:
   }
 
   std::string statsJson() const {
-    nlohmann::ordered_json json = {{"frames", frames()},
-                                   {"finished", finished()},
-                                   {"rendered", rendered()},
+    nlohmann::ordered_json json = {{"frames", frameCount()},
+                                   {"finished", finishedCount()},
+                                   {"rendered", renderedCount()},
                                    {"degrees", m_options.degrees},
                                    {"seconds", m_total.seconds()}};
     const std::vector<SurfaceChange> changes = m_manifest.changes();
@@ -177,20 +178,21 @@ private:
   }
 
   void report() const {
-    const bool isWhole = finished() == frames();
-    std::cout << toOneLine(concat(m_options.pictures(m_options.first()).front(), " to ",
-                                  m_options.pictures(m_options.end() - 1).front().filename(), ": ",
-                                  finished(), " of ", frames(), " frames, ", rendered(),
-                                  " rendered now, ", toString(m_total.seconds(), 3), " s",
-                                  isWhole ? "" : " (stopped on request; the same command goes on)"))
+    const bool isComplete = finishedCount() == frameCount();
+    std::cout << toOneLine(
+                     concat(m_options.images(m_options.first()).front(), " to ",
+                            m_options.images(m_options.end() - 1).front().filename(), ": ",
+                            finishedCount(), " of ", frameCount(), " frames, ", renderedCount(),
+                            " rendered now, ", toString(m_total.seconds(), 3), " s",
+                            isComplete ? "" : " (stopped on request; the same command goes on)"))
               << std::endl;
   }
 
   const TurntableOptions& m_options;
   TurntableManifest& m_manifest;
   Outputs& m_outputs;
-  std::vector<std::string> m_words;
-  int m_before; ///< frames finished by earlier runs
+  std::vector<std::string> m_arguments;
+  int m_finishedBefore; ///< frames finished by earlier runs
   Stopwatch m_total;
   RenderMonitor m_monitor;
   View m_view;        ///< built last
@@ -204,9 +206,9 @@ private:
 void declareFrames(const TurntableOptions& options, const TurntableManifest& manifest,
                    Outputs& outputs) {
   for (int frame = options.first(); frame < options.end(); ++frame) {
-    const bool isOurs = !options.restart && !manifest.finished().contains(frame);
-    for (const std::filesystem::path& path : options.pictures(frame))
-      declareImage(path, outputs, isOurs ? NameOrigin::standard : options.render.outputNaming,
+    const bool mustBeOwn = !options.restart && !manifest.finished().contains(frame);
+    for (const std::filesystem::path& path : options.images(frame))
+      declareImage(path, outputs, mustBeOwn ? NameOrigin::standard : options.render.outputNaming,
                    options.render.filteredFiles());
   }
   if (options.render.stats)
@@ -219,7 +221,7 @@ void declareFrames(const TurntableOptions& options, const TurntableManifest& man
 std::list<NameLock> lockFrames(const TurntableOptions& options) {
   std::map<std::filesystem::path, std::filesystem::path> names; // as given, by canonical path
   for (const std::filesystem::path& output : options.render.outputs) {
-    const std::filesystem::path name = recordPath(output, options.shard),
+    const std::filesystem::path name = manifestPath(output, options.shard),
                                 folder = name.parent_path();
     std::error_code failed;
     const auto known = std::filesystem::canonical(folder.empty() ? "." : folder, failed);
@@ -242,11 +244,11 @@ int turntableCommand(int argc, char** argv, int first) {
   const std::optional<OptionValues> given = parseCommandLine(turntableSyntax(), argc, argv, first);
   if (!given)
     return 0;
-  useMachine(*given);
-  OptionValues flags = *given;
-  flags.remove("shard"); // which deals out frames here, not tiles
-  const PictureRequest job = pictureRequest(flags);
-  TurntableOptions options = turntableOptions(job.flags, job.options);
+  configureMachine(*given);
+  OptionValues values = *given;
+  values.remove("shard"); // which deals out frames here, not tiles
+  const RenderJob job = makeRenderJob(values);
+  TurntableOptions options = makeTurntableOptions(job.values, job.options);
   options.shard = readOptions(*given).settings.shard;
   if (options.first() == options.end())
     throw usageError("--shard: ", options.shard.count, " parts are more than the ", options.frames,
@@ -254,7 +256,7 @@ int turntableCommand(int argc, char** argv, int first) {
   for (const std::filesystem::path& input : options.render.inputs)
     registerInput(input); // --restart replaces no input
   const auto locks = lockFrames(options);
-  TurntableManifest manifest(options, job.flags);
+  TurntableManifest manifest(options, job.values);
   Outputs outputs;
   declareFrames(options, manifest, outputs);
   checkMemory(options.render.scene);

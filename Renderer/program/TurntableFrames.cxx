@@ -10,9 +10,9 @@ namespace {
 
 constexpr const char* turntableGroup = "Turntable";
 
-const Option ownFlags[] = {
+const Option turntableTable[] = {
     {"frames", "N", turntableGroup, "Pictures, 1 to 10000",
-     ValueSpec::integer(1, mostFrames).withDefault("36")},
+     ValueSpec::integer(1, maxFrames).withDefault("36")},
     {"degrees", "D", turntableGroup, "How far the eye goes around; frame i of N stands at i D / N",
      ValueSpec::number(-36000.0, 36000.0).withDefault("360")},
     {"steady", "DEGREES", turntableGroup,
@@ -26,8 +26,8 @@ const Option ownFlags[] = {
 } // namespace
 
 const CommandSyntax& turntableSyntax() {
-  static const std::vector<Option> flags = [] {
-    std::vector<Option> all(std::begin(ownFlags), std::end(ownFlags));
+  static const std::vector<Option> options = [] {
+    std::vector<Option> all(std::begin(turntableTable), std::end(turntableTable));
     all.insert(all.end(), renderSyntax.options.begin(), renderSyntax.options.end());
     return all;
   }();
@@ -39,7 +39,7 @@ const CommandSyntax& turntableSyntax() {
       "on where it was stopped. --samples, --seconds and --noise are for a frame, --stats for all "
       "of them.",
       renderSyntax.positionals,
-      flags,
+      options,
       {{{"surface", "returnparameterfile", "xml", "echo"},
         "is for a single picture; use it with fenestra render, or drop it"},
        {{"checkpoint"}, "a turntable records its frames by itself; drop it"}},
@@ -47,29 +47,29 @@ const CommandSyntax& turntableSyntax() {
   return syntax;
 }
 
-TurntableOptions turntableOptions(const OptionValues& flags, const RenderOptions& render) {
+TurntableOptions makeTurntableOptions(const OptionValues& values, const RenderOptions& render) {
   TurntableOptions options{render};
   options.render.scene.measure = false; // the statistics cover all frames
-  options.frames = static_cast<int>(flags.integer("frames").value_or(36));
-  options.degrees = flags.number("degrees").value_or(options.degrees);
+  options.frames = static_cast<int>(values.integer("frames").value_or(36));
+  options.degrees = values.number("degrees").value_or(options.degrees);
   const double usual = std::min(10.0, 2.0 * std::abs(options.angle(1)));
-  options.render.scene.steadyDegrees = flags.number("steady").value_or(usual);
-  options.restart = flags.has("restart");
+  options.render.scene.steadyDegrees = values.number("steady").value_or(usual);
+  options.restart = values.has("restart");
   return options;
 }
 
-std::vector<std::filesystem::path> TurntableOptions::pictures(int frame) const {
+std::vector<std::filesystem::path> TurntableOptions::images(int frame) const {
   char number[16];
   std::snprintf(number, sizeof number, "_%04d", frame);
-  std::vector<std::filesystem::path> pictures = render.outputs;
-  for (std::filesystem::path& path : pictures)
+  std::vector<std::filesystem::path> images = render.outputs;
+  for (std::filesystem::path& path : images)
     path.replace_filename(path.stem().string() + number + path.extension().string());
-  return pictures;
+  return images;
 }
 
 std::vector<std::filesystem::path> TurntableOptions::files(int frame) const {
   std::vector<std::filesystem::path> files;
-  for (const std::filesystem::path& picture : pictures(frame)) {
+  for (const std::filesystem::path& picture : images(frame)) {
     const std::vector<std::filesystem::path> parts = listImageFiles(picture);
     files.push_back(parts.front());
     if (parts.size() == 1)
@@ -82,7 +82,7 @@ std::vector<std::filesystem::path> TurntableOptions::files(int frame) const {
   return files;
 }
 
-std::filesystem::path recordPath(const std::filesystem::path& output, const Shard& shard) {
+std::filesystem::path manifestPath(const std::filesystem::path& output, const Shard& shard) {
   std::filesystem::path path = output;
   const std::string part =
       shard.isComplete() ? "" : concat(".", shard.index + 1, "of", shard.count);

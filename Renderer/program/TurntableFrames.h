@@ -5,7 +5,7 @@
 
 namespace fenestra {
 
-inline constexpr int mostFrames = 10000; ///< numbers have four digits
+inline constexpr int maxFrames = 10000; ///< numbers have four digits
 
 struct TurntableOptions {
   RenderOptions render; ///< of all frames; view and files differ by frame
@@ -23,7 +23,7 @@ struct TurntableOptions {
   bool isClosed() const { return degrees != 0.0 && std::remainder(degrees, 360.0) == 0.0; }
 
   /// Pictures of a frame, an output each: turn.png's frame 7 is turn_0007.png.
-  std::vector<std::filesystem::path> pictures(int frame) const;
+  std::vector<std::filesystem::path> images(int frame) const;
   /// All files that the image writer makes for a frame.
   std::vector<std::filesystem::path> files(int frame) const;
 };
@@ -32,10 +32,10 @@ struct TurntableOptions {
 const CommandSyntax& turntableSyntax();
 
 /// `render`: options of the same flags. Throws Error (usage).
-TurntableOptions turntableOptions(const OptionValues& flags, const RenderOptions& render);
+TurntableOptions makeTurntableOptions(const OptionValues& values, const RenderOptions& render);
 
 /// Record of the finished frames: turn.png's is turn.turntable.json, that of its second part of
 /// three turn.2of3.turntable.json, so that parts are rendered beside each other.
-std::filesystem::path recordPath(const std::filesystem::path& output, const Shard& shard);
+std::filesystem::path manifestPath(const std::filesystem::path& output, const Shard& shard);
 
 } // namespace fenestra

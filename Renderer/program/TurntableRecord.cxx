@@ -20,7 +20,7 @@ std::vector<std::string> listArguments(const OptionValues& values, const fs::pat
   for (const char* name : {"frames", "degrees"})
     if (!request.has(name))
       request.add(name, findOption(turntableSyntax().options, name)->spec.defaultValue);
-  return relativeArguments(request.arguments(), turntableSyntax().options, folder);
+  return toRelativeArguments(request.arguments(), turntableSyntax().options, folder);
 }
 
 std::uint64_t digest(const auto& voxels) {
@@ -42,7 +42,7 @@ nlohmann::ordered_json toJson(const SurfaceChange& change) {
 
 TurntableManifest::TurntableManifest(const TurntableOptions& options, const OptionValues& values)
     : m_options(options),
-      m_manifest(recordPath(options.render.outputs.front(), options.shard), "frame",
+      m_manifest(manifestPath(options.render.outputs.front(), options.shard), "frame",
                  listArguments(values, options.render.outputs.front().parent_path())) {
   const std::optional<FileId> there = fileId(m_manifest.path());
   if (options.restart && there)
@@ -56,7 +56,7 @@ TurntableManifest::TurntableManifest(const TurntableOptions& options, const Opti
 }
 
 int TurntableManifest::maxFiles() const {
-  return mostFrames * static_cast<int>(std::min<std::size_t>(m_options.files(0).size(), 100));
+  return maxFrames * static_cast<int>(std::min<std::size_t>(m_options.files(0).size(), 100));
 }
 
 void TurntableManifest::rejectUnknownFrames() const {

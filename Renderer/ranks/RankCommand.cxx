@@ -90,11 +90,11 @@ int runFirstRank(int argc, char** argv, Ranks& ranks, const std::vector<std::str
 void runOtherRank(int argc, char** argv, Ranks& ranks) {
   const std::optional<OptionValues> given =
       parseCommandLine(renderSyntax, argc, argv, firstArgument(argc, argv));
-  useMachine(*given);
+  configureMachine(*given);
   std::optional<SharedFiles> files(ranks);
   std::string expected;
   ranks.spread(expected);
-  PictureRequest request = pictureRequest(files->renamed(*given, renderSyntax.flags));
+  RenderJob request = makeRenderJob(files->renamed(*given, renderSyntax.flags));
   RenderRequest& wanted = request.options.scene;
   wanted.features = wanted.measure = false; // what is for rank 0 alone
   checkMemory(wanted);
@@ -105,14 +105,14 @@ void runOtherRank(int argc, char** argv, Ranks& ranks) {
     throw inputError(wanted.input, "is another scene than rank 0 has (", here, ", not ", expected,
                      "); a file that it names may differ between machines");
   RenderMonitor monitor;
-  const StopInstead stopInstead(monitor.stop);
+  const DeferredStop stopInstead(monitor.stop);
   runWorker(ranks, scene.view(), settings, monitor);
 }
 
 } // namespace
 
 int dispatchRank(int argc, char** argv) {
-  useInstructions();
+  pinInstructions();
   Ranks ranks;
   if (ranks.count() == 1)
     return dispatch(argc, argv);

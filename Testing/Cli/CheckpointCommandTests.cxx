@@ -106,7 +106,7 @@ TEST_F(CheckpointCommand, ChangedInputsAreRefused) {
 TEST_F(CheckpointCommand, PlanByNoiseIsNotChangedBeyondThePilot) {
   const Arguments even = {"volume.nrrd",  "--size", "16x16",    "--samples", "20",
                           "--checkpoint", "b.film", "--output", "b.exr"};
-  ASSERT_EQ(run(even, folder.path()).status, 0);
+  ASSERT_EQ(run(arguments, folder.path()).status, 0);
   Arguments planned = even;
   planned.insert(planned.end(), {"--noise", "1e-4"});
   const Outcome outcome = run(planned, folder.path());

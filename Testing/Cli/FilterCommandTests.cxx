@@ -120,7 +120,7 @@ TEST_F(FilterCommand, ThreadsChangeNoBit) {
       bytes.append(reinterpret_cast<const char*>(plane.data()), plane.size() * sizeof(float));
     pictures.insert(bytes);
   }
-  EXPECT_EQ(pictures.size(), 1U);
+  EXPECT_EQ(images.size(), 1U);
 }
 
 TEST_F(FilterCommand, ContradictionsAreRefused) {

@@ -75,12 +75,12 @@ TEST_F(ResultsCommand, PathsInTheHeaderAreRelativeToThePicture) {
           folder.path());
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const std::filesystem::path pictures = folder / "Doe^John_19501231/pictures";
-  EXPECT_EQ(readImage(pictures / "a.exr").header.at("command"),
+  EXPECT_EQ(readImage(images / "a.exr").header.at("command"),
             "fenestra ../dicom/volume.nrrd --size 8x8 --samples=1 --output=a.exr --stats a.json");
-  EXPECT_EQ(nlohmann::json::parse(bytesOf(pictures / "a.json"))["filesRead"],
+  EXPECT_EQ(nlohmann::json::parse(bytesOf(images / "a.json"))["filesRead"],
             nlohmann::json::array({"../dicom/volume.nrrd"}));
   for (const char* file : {"a.exr", "a.json"})
-    EXPECT_EQ(bytesOf(pictures / file).find("Doe^John"), std::string::npos) << file;
+    EXPECT_EQ(bytesOf(images / file).find("Doe^John"), std::string::npos) << file;
 }
 
 TEST_F(ResultsCommand, TurntableRendersAnEmptyFrameAgain) {

@@ -111,7 +111,7 @@ TEST_F(ServeCommand, PictureIsRefinedUntilTheNextChange) {
       "{\"id\": \"left\", \"view\": \"left\"}\n{\"id\": \"up\", \"view\": \"superior\"}\n");
   ASSERT_TRUE(process.waitForOutput("\"picture\",\"id\":\"up\"")) << process.output();
   for (const json& answer : answers(process))
-    EXPECT_EQ(answer["event"], "picture");
+    EXPECT_EQ(event["event"], "picture");
 }
 
 TEST_F(ServeCommand, BadLineIsAnsweredAndChangesNothing) {
@@ -171,7 +171,7 @@ TEST_F(ServeCommand, GoodLinesAroundABadOneApply) {
   }
   std::size_t refused = 0;
   for (const json& answer : answers(process)) {
-    EXPECT_EQ(answer["event"] == "error", answer["id"] == "bad") << answer;
+    EXPECT_EQ(event["event"] == "error", event["id"] == "bad") << answer;
     refused += answer["event"] == "error" ? 1 : 0;
   }
   EXPECT_EQ(refused, bad.size());
@@ -188,7 +188,7 @@ TEST_F(ServeCommand, TurnedViewEndsWithTheFilteredPictureOfRender) {
                 "\n");
   ASSERT_TRUE(waitForPicture(process, "1")) << process.output();
   for (const json& answer : answers(process))
-    EXPECT_EQ(answer.value("noiseFiltered", 0.0) > 0.0, answer["samples"] > 1) << answer;
+    EXPECT_EQ(event.value("noiseFiltered", 0.0) > 0.0, event["samples"] > 1) << answer;
   Arguments render = flags;
   render.insert(render.end(), {"b.png", "--position", "5,60,9"});
   ASSERT_EQ(run(render, folder.path()).status, 0);

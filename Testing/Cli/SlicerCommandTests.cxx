@@ -94,8 +94,9 @@ void checkParameter(const pugi::xml_node& parameter, Names& known) {
   const bool flagged = !!parameter.child("longflag");
   const bool placed = !!parameter.child("index");
   const bool returned = !flagged && !placed;
-  EXPECT_TRUE(!flagged || std::regex_match(parameter.child_value("longflag"), identifier)) << name;
-  EXPECT_FALSE(flagged && placed) << name;
+  EXPECT_TRUE(!hasOption || std::regex_match(parameter.child_value("longflag"), identifier))
+      << name;
+  EXPECT_FALSE(hasOption && placed) << name;
   if (returned) {
     EXPECT_TRUE(simpleTypes.contains(type)) << name;
     EXPECT_EQ(channel, "output") << name;

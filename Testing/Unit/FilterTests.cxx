@@ -193,8 +193,8 @@ TEST(Filter, BitsAreTheSameForOneTwoAndSevenThreads) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     images.push_back(filterImage(input).color);
   }
-  EXPECT_EQ(pictures[0], pictures[1]);
-  EXPECT_EQ(pictures[0], pictures[2]);
+  EXPECT_EQ(images[0], images[1]);
+  EXPECT_EQ(images[0], images[2]);
 }
 
 TEST(Filter, NothingIsInventedInNoiseAroundAConstant) {

@@ -185,8 +185,8 @@ TEST(PhantomFoot, BonesSegmentHoldsVoxelsFrom200Hounsfield) {
   double anatomical = 0.0;
   for (const std::string& id : boneIds())
     anatomical += static_cast<double>(voxelsIn(foot, id).size());
-  EXPECT_GT(whole / anatomical, 0.6);
-  EXPECT_LT(whole / anatomical, 1.1);
+  EXPECT_GT(total / anatomical, 0.6);
+  EXPECT_LT(total / anatomical, 1.1);
 }
 
 TEST(PhantomFoot, TissuesHaveTheirHounsfieldUnits) {

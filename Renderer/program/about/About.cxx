@@ -9,7 +9,7 @@
 namespace fenestra {
 namespace {
 
-nlohmann::ordered_json facts() {
+nlohmann::ordered_json collectFacts() {
   nlohmann::ordered_json all = {
       {"name", "fenestra"},
       {"version", versionText},
@@ -33,7 +33,7 @@ nlohmann::ordered_json facts() {
 } // namespace
 
 std::string aboutText() {
-  const nlohmann::ordered_json all = facts();
+  const nlohmann::ordered_json all = collectFacts();
   const auto fact = [&all](const char* key) { return all[key].get<std::string>(); };
   const auto library = [](const auto& named) { return named.first + " " + named.second; };
   return concat("fenestra ", versionText,                                //
@@ -45,7 +45,7 @@ std::string aboutText() {
 }
 
 std::string aboutJson() {
-  return dumpJson(facts());
+  return dumpJson(collectFacts());
 }
 
 } // namespace fenestra

@@ -24,7 +24,7 @@
 namespace fenestra {
 namespace {
 
-std::string dotted(std::initializer_list<std::size_t> parts) {
+std::string joinVersion(std::initializer_list<std::size_t> parts) {
   return joinNumbers(parts, ".");
 }
 
@@ -44,21 +44,21 @@ std::string tiffVersion() {
 
 std::vector<std::pair<std::string, std::string>> libraryVersions() {
   return {
-      {"Eigen", dotted({EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION})},
+      {"Eigen", joinVersion({EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION})},
       {"GDCM", gdcm::Version::GetVersion()},
       {"glibc", gnu_get_libc_version()},
       {"HDF5", hdf5Version()},
-      {"Highway", dotted({HWY_MAJOR, HWY_MINOR, HWY_PATCH})},
+      {"Highway", joinVersion({HWY_MAJOR, HWY_MINOR, HWY_PATCH})},
       {"ITK", itk::Version::GetITKVersion()},
       {"libpng", png_get_libpng_ver(nullptr)},
       {"libtiff", tiffVersion()},
       {"libzip", zip_libzip_version()},
-      {"nlohmann-json", dotted({NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR,
-                                NLOHMANN_JSON_VERSION_PATCH})},
+      {"nlohmann-json", joinVersion({NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR,
+                                     NLOHMANN_JSON_VERSION_PATCH})},
       {"oneTBB", TBB_runtime_version()},
       {"OpenColorIO", OCIO_NAMESPACE::GetVersion()},
       {"OpenEXR", OPENEXR_VERSION_STRING},
-      {"pugixml", dotted({PUGIXML_VERSION / 1000, PUGIXML_VERSION / 10 % 100})},
+      {"pugixml", joinVersion({PUGIXML_VERSION / 1000, PUGIXML_VERSION / 10 % 100})},
       {"zlib", zlibVersion()},
   };
 }
