@@ -20,7 +20,7 @@ namespace {
 using Flags = qSlicerFenestraClipping::Flags;
 
 constexpr const char* byPresetMode = "preset"; ///< the mode is known only at rendering
-const QStringList& cutting() {
+const QStringList& cuttingModes() {
   static const QStringList modes = {"surface", "ghost", "cutaway", "hole", "plane", byPresetMode};
   return modes;
 }
@@ -72,28 +72,29 @@ qSlicerFenestraClipping::qSlicerFenestraClipping(qMRMLNodeComboBox* planeNode, Q
 }
 
 void qSlicerFenestraClipping::buildMode(QFormLayout* form) {
-  m_clip = choices("ClipBox",
-                   {{tr("Smooth surface through the focus"), ""},
-                    {tr("Surface, tissue in front left faint"), "ghost"},
-                    {tr("All in front of the focus (cut-away)"), "cutaway"},
-                    {tr("Hole toward the focus"), "hole"},
-                    {tr("Flat plane"), "plane"},
-                    {tr("Nothing"), "none"}},
-                   tr("What is taken away, so that the focus shows"));
+  m_clip = makeComboBox("ClipBox",
+                        {{tr("Smooth surface through the focus"), ""},
+                         {tr("Surface, tissue in front left faint"), "ghost"},
+                         {tr("All in front of the focus (cut-away)"), "cutaway"},
+                         {tr("Hole toward the focus"), "hole"},
+                         {tr("Flat plane"), "plane"},
+                         {tr("Nothing"), "none"}},
+                        tr("What is taken away, so that the focus shows"));
   form->addRow(tr("Clip:"), m_clip);
-  m_boundary = choices("BoundaryBox", {{tr("Exact"), "exact"}, {tr("Smoothed (spline)"), "spline"}},
-                       tr("How the surface goes on beside the focus. Exact: from its very edge, "
-                          "without a step or a kink. Smoothed: near it, as in the paper"));
+  m_boundary =
+      makeComboBox("BoundaryBox", {{tr("Exact"), "exact"}, {tr("Smoothed (spline)"), "spline"}},
+                   tr("How the surface goes on beside the focus. Exact: from its very edge, "
+                      "without a step or a kink. Smoothed: near it, as in the paper"));
   form->addRow(tr("Edge of the focus:"), m_boundary);
   addNumber(form, "ghost", tr("Left in front:"), 0.01, 10.0, {"ghost"},
             tr("Share of its density that tissue in front of the surface keeps"));
   m_innerRadius =
-      choices("HoleBox", {{tr("Cylinder"), ""}, {tr("Box"), "box"}, {tr("Sphere"), "sphere"}},
-              tr("The hole leads from the eye to the focus"));
+      makeComboBox("HoleBox", {{tr("Cylinder"), ""}, {tr("Box"), "box"}, {tr("Sphere"), "sphere"}},
+                   tr("The hole leads from the eye to the focus"));
   form->addRow(tr("Shape:"), m_innerRadius);
   addNumber(form, "holemargin", tr("Wider by:"), 1.0, 5.0, {"hole"},
             tr("How much wider than the focus"));
-  m_plane = choices("PlaneBox", {}, tr("Where the plane lies"));
+  m_plane = makeComboBox("PlaneBox", {}, tr("Where the plane lies"));
   m_plane->addItem(tr("Placed by the focus"), int(Plane::automatic));
   m_plane->addItem(tr("A plane of the scene"), int(Plane::node));
   form->addRow(tr("Plane:"), m_plane);
@@ -109,9 +110,9 @@ void qSlicerFenestraClipping::buildDetails(QFormLayout* form) {
   addNumber(form, "labelsmoothing", tr("Smooth labels by:"), 1.0, automatic, anyMode,
             tr("Against stair steps of the segments' voxels. auto, below 0: by the size of the "
                "voxels, or as the anatomy preset"));
-  addNumber(form, "offset", tr("Move the cut by:"), 1.0, 0.0, cutting(),
+  addNumber(form, "offset", tr("Move the cut by:"), 1.0, 0.0, cuttingModes(),
             tr("Away from the eye, into the focus; negative: toward the eye"));
-  addNumber(form, "soft", tr("Soft edge:"), 1.0, automatic, cutting(),
+  addNumber(form, "soft", tr("Soft edge:"), 1.0, automatic, cuttingModes(),
             tr("Tissue comes back gradually over this depth behind the cut. auto, below 0: by the "
                "size of the voxels, or as the anatomy preset"));
   addNumber(form, "contextdensity", tr("Surroundings, density:"), 0.01, 100.0, anyMode,
@@ -122,24 +123,24 @@ void qSlicerFenestraClipping::buildDetails(QFormLayout* form) {
 }
 
 void qSlicerFenestraClipping::addNumber(QFormLayout* form, const char* flag, const QString& label,
-                                        double unit, double standard, const QStringList& modes,
+                                        double unit, double defaultValue, const QStringList& modes,
                                         const QString& help) {
-  const bool share = unit != 1.0;
+  const bool isPercent = unit != 1.0;
   const bool isSigned = flag == std::string("offset");
-  const bool mayBeAutomatic = standard == automatic;
-  const double most = share || flag == std::string("labelsmoothing") ? 100.0 : 1000.0;
+  const bool mayBeAutomatic = defaultValue == automatic;
+  const double maximum = isPercent || flag == std::string("labelsmoothing") ? 100.0 : 1000.0;
   auto* box = mayBeAutomatic ? new AutomaticBox : new QDoubleSpinBox;
   box->setObjectName(QString(flag) + "Box");
-  box->setRange(mayBeAutomatic ? automatic : isSigned ? -most : 0.0, most);
-  box->setDecimals(share ? 1 : 2);
-  box->setSingleStep(share ? 5.0 : 0.5);
-  box->setSuffix(share ? tr(" %") : tr(" mm"));
+  box->setRange(mayBeAutomatic ? automatic : isSigned ? -maximum : 0.0, maximum);
+  box->setDecimals(isPercent ? 1 : 2);
+  box->setSingleStep(isPercent ? 5.0 : 0.5);
+  box->setSuffix(isPercent ? tr(" %") : tr(" mm"));
   box->setToolTip(help);
-  box->setValue(standard);
+  box->setValue(defaultValue);
   form->addRow(label, box);
   connect(box, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this,
           &qSlicerFenestraClipping::changed);
-  m_numbers.append({flag, box, unit, standard, modes, {}, standard});
+  m_numbers.append({flag, box, unit, defaultValue, modes, {}, defaultValue});
 }
 
 qSlicerFenestraClipping::Plane qSlicerFenestraClipping::plane() const {
@@ -174,7 +175,7 @@ void qSlicerFenestraClipping::showMode() {
 
 void qSlicerFenestraClipping::show(const Flags& flags, Plane plane,
                                    const QList<qSlicerFenestraSegment>& focus, bool byPreset) {
-  const QSignalBlocker unheard(this);
+  const QSignalBlocker blocker(this);
   const bool hasFocus = byPreset || !focus.isEmpty();
   const int surface = m_clip->findData("surface");
   if (byPreset && surface < 0)
@@ -183,12 +184,12 @@ void qSlicerFenestraClipping::show(const Flags& flags, Plane plane,
     m_clip->removeItem(surface);
   const bool clips = hasFocus || flags.count("clip") > 0;
   if (clips)
-    choose(m_clip, flagOf(flags, "clip"));
+    selectData(m_clip, findFlag(flags, "clip"));
   const QString now = mode(byPreset);
   if (clips && (now == "surface" || now == "ghost")) // the renderer's default, not the panel's
-    choose(m_boundary, flags.count("boundary") > 0 ? flagOf(flags, "boundary") : "spline");
+    selectData(m_boundary, flags.count("boundary") > 0 ? findFlag(flags, "boundary") : "spline");
   if (now == "hole")
-    choose(m_innerRadius, flagOf(flags, "hole"));
+    selectData(m_innerRadius, findFlag(flags, "hole"));
   if (now == "plane") {
     const int fixed = m_plane->findData(int(Plane::fixed));
     if (plane == Plane::fixed && fixed < 0)
@@ -202,27 +203,27 @@ void qSlicerFenestraClipping::show(const Flags& flags, Plane plane,
   for (Number& number : m_numbers) {
     if (!hasFocus || !(number.modes.isEmpty() || number.modes.contains(now)))
       continue;
-    number.shown = flagOf(flags, number.flag);
+    number.shown = findFlag(flags, number.flag);
     number.box->setValue(number.shown.isEmpty() || number.shown == "auto"
-                             ? number.standard
+                             ? number.defaultValue
                              : number.shown.toDouble() / number.unit);
     number.shownValue = number.box->value();
   }
   if (hasFocus)
-    m_margins->show(flagOf(flags, "margin"), focus);
+    m_margins->show(findFlag(flags, "margin"), focus);
   m_hasFocus = hasFocus;
   m_byPreset = byPreset;
   showMode();
 }
 
 void qSlicerFenestraClipping::reset() {
-  const QSignalBlocker unheard(this);
+  const QSignalBlocker blocker(this);
   for (QComboBox* box : {m_clip, m_boundary, m_innerRadius, m_plane})
     box->setCurrentIndex(0);
   for (Number& number : m_numbers) {
     number.shown.clear();
-    number.box->setValue(number.standard);
-    number.shownValue = number.standard;
+    number.box->setValue(number.defaultValue);
+    number.shownValue = number.defaultValue;
   }
   m_margins->show({}, {});
 }
@@ -246,12 +247,12 @@ void qSlicerFenestraClipping::take(Flags& flags, const std::string& plane, bool 
   flags["hole"] = clips && now == "hole" ? word(m_innerRadius) : "";
   flags["margin"] = hasFocus ? m_margins->flag().toStdString() : "";
   for (const Number& number : m_numbers) {
-    const bool matters = hasFocus && (number.modes.isEmpty() || number.modes.contains(now));
+    const bool isUsed = hasFocus && (number.modes.isEmpty() || number.modes.contains(now));
     const double value = number.box->value();
     QString text =
-        value == number.standard ? QString() : QString::number(value * number.unit, 'g', 10);
+        value == number.defaultValue ? QString() : QString::number(value * number.unit, 'g', 10);
     if (value == number.shownValue)
       text = number.shown;
-    flags[number.flag] = matters ? text.toStdString() : "";
+    flags[number.flag] = isUsed ? text.toStdString() : "";
   }
 }

@@ -49,17 +49,17 @@ private:
   struct Number {
     const char* flag;
     QDoubleSpinBox* box;
-    double unit;       ///< flag value per unit of the box
-    double standard;   ///< default, in the box's units; below 0 may be the word auto
-    QStringList modes; ///< clipping modes that use the flag; empty: all
-    QString shown;     ///< flag text as shown, possibly with more digits than the box
+    double unit;         ///< flag value per unit of the box
+    double defaultValue; ///< default, in the box's units; below 0 may be the word auto
+    QStringList modes;   ///< clipping modes that use the flag; empty: all
+    QString shown;       ///< flag text as shown, possibly with more digits than the box
     double shownValue;
   };
 
   void buildMode(QFormLayout* form);
   void buildDetails(QFormLayout* form);
   void addNumber(QFormLayout* form, const char* flag, const QString& label, double unit,
-                 double standard, const QStringList& modes, const QString& help);
+                 double defaultValue, const QStringList& modes, const QString& help);
   QString mode(bool byPreset) const;
   void showMode();
 

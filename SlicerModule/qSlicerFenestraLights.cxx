@@ -12,7 +12,7 @@ namespace {
 enum Role : std::size_t { key, fill, halo, environment, none };
 
 /// Role of each light.
-std::vector<Role> rolesOf(const QJsonArray& lights) {
+std::vector<Role> assignRoles(const QJsonArray& lights) {
   std::vector<Role> roles;
   Role before = key; // the role of the next light before the volume
   for (const QJsonValue& value : lights) {
@@ -33,7 +33,7 @@ std::vector<Role> rolesOf(const QJsonArray& lights) {
 }
 
 /// Radiance of a light, a number or a triple, times a factor.
-QJsonValue product(const QJsonValue& radiance, double factor) {
+QJsonValue scaleRadiance(const QJsonValue& radiance, double factor) {
   if (!radiance.isArray())
     return radiance.toDouble() * factor;
   QJsonArray triple;
@@ -43,7 +43,7 @@ QJsonValue product(const QJsonValue& radiance, double factor) {
 }
 
 /// Lights of a rig of the renderer; empty: it has no such rig.
-QJsonArray lightsOf(const QString& rig) {
+QJsonArray readRig(const QString& rig) {
   QFile file(":/Lights/" + rig + ".json");
   if (!file.open(QIODevice::ReadOnly))
     return {};
@@ -52,31 +52,32 @@ QJsonArray lightsOf(const QString& rig) {
 
 } // namespace
 
-QJsonArray qSlicerFenestraLights::scaled(const QJsonArray& lights, const Strengths& strengths) {
-  const std::vector<Role> roles = rolesOf(lights);
+QJsonArray qSlicerFenestraLights::scaleLights(const QJsonArray& lights,
+                                              const Strengths& strengths) {
+  const std::vector<Role> roles = assignRoles(lights);
   QJsonArray all;
   for (int i = 0; i < lights.size(); ++i) {
     QJsonObject light = lights[i].toObject();
     const Role role = roles[static_cast<std::size_t>(i)];
     for (const char* name : {"radiance", "top", "middle", "bottom"})
       if (role != none && strengths[role] != 1.0 && light.contains(name))
-        light[name] = product(light[name], strengths[role]);
+        light[name] = scaleRadiance(light[name], strengths[role]);
     all.append(light);
   }
   return all;
 }
 
-QString qSlicerFenestraLights::flag(const QString& rig, const Strengths& strengths) {
-  const QJsonArray lights = lightsOf(rig);
-  const QJsonArray changed = scaled(lights, strengths);
+QString qSlicerFenestraLights::makeFlag(const QString& rig, const Strengths& strengths) {
+  const QJsonArray lights = readRig(rig);
+  const QJsonArray changed = scaleLights(lights, strengths);
   if (changed == lights)
     return rig;
   const QJsonObject document = {{"lights", changed}};
   return QString::fromUtf8(QJsonDocument(document).toJson(QJsonDocument::Compact));
 }
 
-std::array<bool, 4> qSlicerFenestraLights::lightsIn(const QString& rig) {
-  const std::vector<Role> roles = rolesOf(lightsOf(rig));
+std::array<bool, 4> qSlicerFenestraLights::findLights(const QString& rig) {
+  const std::vector<Role> roles = assignRoles(readRig(rig));
   std::array<bool, 4> has{};
   for (std::size_t role = key; role <= environment; ++role)
     has[role] = std::find(roles.begin(), roles.end(), role) != roles.end();

@@ -16,14 +16,14 @@ constexpr Strengths unchanged = {1.0, 1.0, 1.0, 1.0};
 /// Lights in the renderer's form with radiances scaled by what each light is. Of lights with a
 /// place in the camera's frame those behind the volume are rims, the first before it is the key,
 /// the second the fill. All other lights stay as they are: a lamp in the world may stand anywhere.
-QJsonArray scaled(const QJsonArray& lights, const Strengths& strengths);
+QJsonArray scaleLights(const QJsonArray& lights, const Strengths& strengths);
 
 /// `rig`: name of a rig in Resources/lights, or any other value of the flag, which is returned as
 /// it is. Strengths of lights that the rig lacks have no effect.
-QString flag(const QString& rig, const Strengths& strengths);
+QString makeFlag(const QString& rig, const Strengths& strengths);
 
 /// True for each strength that has a light in the rig; an unknown rig has none.
-std::array<bool, 4> lightsIn(const QString& rig);
+std::array<bool, 4> findLights(const QString& rig);
 
 } // namespace qSlicerFenestraLights
 

@@ -17,35 +17,36 @@ using namespace qSlicerFenestraWidgets;
 
 namespace {
 
-constexpr const char* usualTone = "film"; ///< the renderer's default
-constexpr double strongest = 300.0;       ///< per cent
+constexpr const char* defaultTone = "film"; ///< the renderer's default
+constexpr double maxStrength = 300.0;       ///< per cent
 
 } // namespace
 
 qSlicerFenestraLook::qSlicerFenestraLook(QWidget* parent) : QWidget(parent) {
   m_form = new QFormLayout(this);
   m_form->setContentsMargins(0, 0, 0, 0);
-  m_transfer = choices("TransferBox",
-                       {{tr("As in Slicer's volume rendering"), ""},
-                        {tr("CT: skin and soft tissue"), "ct-soft"},
-                        {tr("CT: bones alone"), "ct-bone"},
-                        {tr("CT: bones among muscle"), "ct-skeleton"},
-                        {tr("CT: liver and abdomen"), "ct-liver"},
-                        {tr("CT: heart and vessels"), "ct-heart"},
-                        {tr("CT: lungs and airways"), "ct-lung"},
-                        {tr("MR: brain"), "mr-brain"},
-                        {tr("MR: cartilage of the knee"), "mr-knee"},
-                        {tr("Ultrasound: fetus"), "us-fetal"}},
-                       tr("Colours and opacities; set up your own in the Volume Rendering module"));
+  m_transfer =
+      makeComboBox("TransferBox",
+                   {{tr("As in Slicer's volume rendering"), ""},
+                    {tr("CT: skin and soft tissue"), "ct-soft"},
+                    {tr("CT: bones alone"), "ct-bone"},
+                    {tr("CT: bones among muscle"), "ct-skeleton"},
+                    {tr("CT: liver and abdomen"), "ct-liver"},
+                    {tr("CT: heart and vessels"), "ct-heart"},
+                    {tr("CT: lungs and airways"), "ct-lung"},
+                    {tr("MR: brain"), "mr-brain"},
+                    {tr("MR: cartilage of the knee"), "mr-knee"},
+                    {tr("Ultrasound: fetus"), "us-fetal"}},
+                   tr("Colours and opacities; set up your own in the Volume Rendering module"));
   m_form->addRow(tr("Tissue colours:"), m_transfer);
   buildLights(m_form);
-  m_background = choices("BackgroundBox",
-                         {{tr("Dark gradient"), "gradient"},
-                          {tr("Black"), "0,0,0"},
-                          {tr("Grey"), "0.1,0.1,0.1"},
-                          {tr("White"), "100,100,100"},
-                          {tr("Transparent"), "transparent"}},
-                         tr("Behind the volume"));
+  m_background = makeComboBox("BackgroundBox",
+                              {{tr("Dark gradient"), "gradient"},
+                               {tr("Black"), "0,0,0"},
+                               {tr("Grey"), "0.1,0.1,0.1"},
+                               {tr("White"), "100,100,100"},
+                               {tr("Transparent"), "transparent"}},
+                              tr("Behind the volume"));
   m_form->addRow(tr("Background:"), m_background);
   buildDisplay(m_form);
   for (QComboBox* box : {m_transfer, m_rig, m_background, m_tone})
@@ -58,21 +59,21 @@ qSlicerFenestraLook::qSlicerFenestraLook(QWidget* parent) : QWidget(parent) {
 }
 
 void qSlicerFenestraLook::buildLights(QFormLayout* form) {
-  m_rig = choices("RigBox",
-                  {{tr("By default"), ""},
-                   {tr("Cinema"), "cinema"},
-                   {tr("Studio"), "studio"},
-                   {tr("Headlight"), "headlight"},
-                   {tr("Soft"), "soft"},
-                   {tr("Amber"), "amber"}},
-                  tr("Where light comes from; the default is Cinema"));
+  m_rig = makeComboBox("RigBox",
+                       {{tr("By default"), ""},
+                        {tr("Cinema"), "cinema"},
+                        {tr("Studio"), "studio"},
+                        {tr("Headlight"), "headlight"},
+                        {tr("Soft"), "soft"},
+                        {tr("Amber"), "amber"}},
+                       tr("Where light comes from; the default is Cinema"));
   form->addRow(tr("Lights:"), m_rig);
   const QString names[4] = {tr("Key:"), tr("Fill:"), tr("Rim:"), tr("Environment:")};
   for (int i = 0; i < 4; ++i) {
     auto* slider = new ctkSliderWidget;
     slider->setObjectName(QString("Strength%1").arg(i));
     slider->setToolTip(tr("Strength of a light of the rig that is chosen above"));
-    slider->setRange(0.0, strongest);
+    slider->setRange(0.0, maxStrength);
     slider->setDecimals(0);
     slider->setSuffix(" %");
     slider->setValue(100.0);
@@ -91,14 +92,15 @@ void qSlicerFenestraLook::buildDisplay(QFormLayout* form) {
   m_exposure->setToolTip(tr("Makes the picture brighter or darker; 1 EV is twice the light. Linear "
                             "colours stay as they are"));
   form->addRow(tr("Exposure:"), m_exposure);
-  m_tone = choices("ToneBox", {{tr("Film"), usualTone}, {tr("Photographic"), "photographic"}},
+  m_tone =
+      makeComboBox("ToneBox", {{tr("Film"), defaultTone}, {tr("Photographic"), "photographic"}},
                    tr("Film: more contrast, colours keep their hue. Photographic: dark and middle "
                       "values as they are, for measuring"));
   form->addRow(tr("Tone:"), m_tone);
-  m_shownTone = usualTone;
+  m_shownTone = defaultTone;
 }
 
-void qSlicerFenestraLook::offer(const qFenestraAbilities& abilities) {
+void qSlicerFenestraLook::setCapabilities(const qFenestraCapabilities& abilities) {
   showRow(m_form, m_exposure, abilities.flags.contains("exposure"));
   showRow(m_form, m_tone, abilities.flags.contains("tone"));
 }
@@ -106,17 +108,17 @@ void qSlicerFenestraLook::offer(const qFenestraAbilities& abilities) {
 // ---- flags
 
 void qSlicerFenestraLook::show(const Flags& flags, const QString& rig, bool byPreset) {
-  const QSignalBlocker unheard(this);
+  const QSignalBlocker blocker(this);
   const QString left = tr("As the anatomy preset");
   m_transfer->setItemText(m_transfer->findData(""),
                           byPreset ? left : tr("As in Slicer's volume rendering"));
   m_rig->setItemText(m_rig->findData(""), byPreset ? left : tr("By default"));
-  chooseOrAdd(m_transfer, flagOf(flags, "transfer"));
-  chooseOrAdd(m_background, flagOf(flags, "background"));
-  showLights(flagOf(flags, "lights"), rig);
-  m_exposure->setValue(flagOf(flags, "exposure").toDouble());
+  selectOrAdd(m_transfer, findFlag(flags, "transfer"));
+  selectOrAdd(m_background, findFlag(flags, "background"));
+  showLights(findFlag(flags, "lights"), rig);
+  m_exposure->setValue(findFlag(flags, "exposure").toDouble());
   m_shownExposure = m_exposure->value();
-  choose(m_tone, flagOf(flags, "tone"));
+  selectData(m_tone, findFlag(flags, "tone"));
   m_shownTone = m_tone->currentData().toString();
 }
 
@@ -126,30 +128,30 @@ void qSlicerFenestraLook::showLights(const QString& lights, const QString& rig) 
   for (std::size_t i = 0; i < strengths.size(); ++i) {
     bool isNumber = false;
     const double percent = words.value(static_cast<int>(i) + 1).toDouble(&isNumber);
-    if (isNumber && percent >= 0.0 && percent <= strongest)
+    if (isNumber && percent >= 0.0 && percent <= maxStrength)
       strengths[i] = percent / 100.0;
   }
-  const bool believed =
-      m_rig->findData(words[0]) >= 0 && qSlicerFenestraLights::flag(words[0], strengths) == lights;
-  chooseOrAdd(m_rig, believed ? words[0] : lights);
-  if (!believed)
+  const bool isConsistent = m_rig->findData(words[0]) >= 0 &&
+                            qSlicerFenestraLights::makeFlag(words[0], strengths) == lights;
+  selectOrAdd(m_rig, isConsistent ? words[0] : lights);
+  if (!isConsistent)
     strengths = qSlicerFenestraLights::unchanged;
-  const auto has = qSlicerFenestraLights::lightsIn(m_rig->currentData().toString());
+  const auto has = qSlicerFenestraLights::findLights(m_rig->currentData().toString());
   for (std::size_t i = 0; i < strengths.size(); ++i) {
     m_strengths[i]->setValue(100.0 * strengths[i]);
     m_strengths[i]->setEnabled(has[i]);
   }
 }
 
-void qSlicerFenestraLook::handBack() {
-  const QSignalBlocker unheard(this);
+void qSlicerFenestraLook::resetToPreset() {
+  const QSignalBlocker blocker(this);
   for (QComboBox* box : {m_transfer, m_rig})
-    choose(box, "");
+    selectData(box, "");
 }
 
 QString qSlicerFenestraLook::take(Flags& flags) const {
-  flags["transfer"] = chosenIn(m_transfer);
-  flags["background"] = chosenIn(m_background);
+  flags["transfer"] = selectedData(m_transfer);
+  flags["background"] = selectedData(m_background);
   const QString rig = m_rig->currentData().toString();
   QString stored = rig;
   qSlicerFenestraLights::Strengths strengths{};
@@ -157,10 +159,10 @@ QString qSlicerFenestraLook::take(Flags& flags) const {
     strengths[i] = m_strengths[i]->value() / 100.0;
     stored += QString(" %1").arg(m_strengths[i]->value());
   }
-  flags["lights"] = qSlicerFenestraLights::flag(rig, strengths).toStdString();
+  flags["lights"] = qSlicerFenestraLights::makeFlag(rig, strengths).toStdString();
   if (const double exposure = m_exposure->value(); exposure != m_shownExposure)
     flags["exposure"] = exposure == 0.0 ? "" : QString::number(exposure, 'g', 6).toStdString();
   if (const QString tone = m_tone->currentData().toString(); tone != m_shownTone)
-    flags["tone"] = tone == usualTone ? "" : tone.toStdString();
+    flags["tone"] = tone == defaultTone ? "" : tone.toStdString();
   return stored;
 }

@@ -10,7 +10,7 @@ class ctkSliderWidget;
 class QComboBox;
 class QDoubleSpinBox;
 class QFormLayout;
-struct qFenestraAbilities;
+struct qFenestraCapabilities;
 
 /// \brief How the picture looks: widgets for tissue colours, lights, background, exposure and tone.
 ///
@@ -25,12 +25,12 @@ public:
   explicit qSlicerFenestraLook(QWidget* parent = nullptr);
 
   /// Shows what only newer renderers support.
-  void offer(const qFenestraAbilities& abilities);
+  void setCapabilities(const qFenestraCapabilities& abilities);
   /// Shows the flags. `rig`: rig and strengths as take() returned them; believed only if the flag
   /// of the lights follows from them. `byPreset`: an anatomy preset sets what other flags do not.
   void show(const Flags& flags, const QString& rig, bool byPreset);
   /// Leaves tissue colours and lights to the preset, or to the renderer.
-  void handBack();
+  void resetToPreset();
   /// Sets the look's flags; empty: not passed. Returns rig and strengths, "rig key fill rim
   /// environment", strengths in per cent.
   QString take(Flags& flags) const;

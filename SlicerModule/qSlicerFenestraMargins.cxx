@@ -11,18 +11,18 @@
 
 namespace {
 
-QDoubleSpinBox* millimetres(const QString& name) {
-  constexpr double most = 1000.0; // the renderer's limit
+QDoubleSpinBox* makeMillimeterBox(const QString& name) {
+  constexpr double maximum = 1000.0; // the renderer's limit
   auto* box = new QDoubleSpinBox;
   box->setObjectName(name);
-  box->setRange(-most, most);
+  box->setRange(-maximum, maximum);
   box->setSingleStep(0.5);
   box->setSuffix(QObject::tr(" mm"));
   box->setToolTip(QObject::tr("Grows the segment for the clipping, or shrinks it where negative"));
   return box;
 }
 
-bool same(const QList<qSlicerFenestraSegment>& a, const QList<qSlicerFenestraSegment>& b) {
+bool areEqual(const QList<qSlicerFenestraSegment>& a, const QList<qSlicerFenestraSegment>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](const qSlicerFenestraSegment& one, const qSlicerFenestraSegment& other) {
                       return one.id == other.id && one.name == other.name;
@@ -34,7 +34,7 @@ bool same(const QList<qSlicerFenestraSegment>& a, const QList<qSlicerFenestraSeg
 qSlicerFenestraMargins::qSlicerFenestraMargins(QWidget* parent) : QWidget(parent) {
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
-  m_all = millimetres("MarginBox");
+  m_all = makeMillimeterBox("MarginBox");
   layout->addWidget(m_all);
   m_each = new QCheckBox(tr("another one for each segment"));
   m_each->setObjectName("MarginEachBox");
@@ -54,12 +54,12 @@ qSlicerFenestraMargins::qSlicerFenestraMargins(QWidget* parent) : QWidget(parent
 }
 
 void qSlicerFenestraMargins::show(const QString& flag, const QList<qSlicerFenestraSegment>& focus) {
-  const QSignalBlocker unheard(this);
+  const QSignalBlocker blocker(this);
   const QStringList numbers = flag.split(',');
   build(focus);
   const bool each = numbers.size() > 1 && numbers.size() == focus.size();
   {
-    const QSignalBlocker quiet(m_each); // the numbers are shown below
+    const QSignalBlocker eachBlocker(m_each); // the numbers are shown below
     m_each->setChecked(each);
   }
   if (!each)
@@ -82,7 +82,7 @@ QString qSlicerFenestraMargins::flag() const {
 }
 
 void qSlicerFenestraMargins::build(const QList<qSlicerFenestraSegment>& focus) {
-  if (same(focus, m_focus))
+  if (areEqual(focus, m_focus))
     return;
   m_focus = focus;
   m_boxes.clear();
@@ -90,7 +90,7 @@ void qSlicerFenestraMargins::build(const QList<qSlicerFenestraSegment>& focus) {
     m_rows->removeRow(0);
   for (int i = 0; i < focus.size(); ++i) {
     const QString id = focus[i].id;
-    QDoubleSpinBox* box = millimetres(QString("Margin%1").arg(i));
+    QDoubleSpinBox* box = makeMillimeterBox(QString("Margin%1").arg(i));
     box->setValue(m_margins.value(id, m_all->value()));
     connect(box, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this,
             [this, id](double margin) {

@@ -27,16 +27,16 @@ namespace {
 enum Column { nameColumn, materialColumn, colorColumn, clipColumn, resetColumn, columns };
 
 // Sources of materials: values of --materials, and two that stand for others.
-const QString none = "none", automatically = "auto", library = "library";
-const QString ofFile = "file", byHand = "hand";
+const QString none = "none", automaticSource = "auto", library = "library";
+const QString fileSource = "file", manualSource = "hand";
 
 /// Box that leaves the wheel to the table, which scrolls: no material changes unnoticed.
-class StillBox : public QComboBox {
+class NoWheelComboBox : public QComboBox {
 protected:
   void wheelEvent(QWheelEvent* event) override { event->ignore(); }
 };
 
-QIcon square(const QString& color) {
+QIcon makeSwatch(const QString& color) {
   constexpr int side = 16; // pixels
   QPixmap pixels(side, side);
   pixels.fill(QColor(color));
@@ -44,7 +44,7 @@ QIcon square(const QString& color) {
 }
 
 /// Tool tip that shows the text as it is: names in a scene must not be read as HTML.
-QString plain(const QString& text) {
+QString toPlainToolTip(const QString& text) {
   return "<qt>" + text.toHtmlEscaped() + "</qt>";
 }
 
@@ -60,14 +60,15 @@ qSlicerFenestraMaterials::qSlicerFenestraMaterials(QWidget* parent) : QWidget(pa
 }
 
 void qSlicerFenestraMaterials::buildSource(QFormLayout* form) {
-  m_source = choices("MaterialsBox",
-                     {{tr("By default"), ""},
-                      {tr("None: the volume's colours"), none},
-                      {tr("Automatic: the focus set off"), automatically},
-                      {tr("Library"), library},
-                      {tr("File"), ofFile},
-                      {tr("By hand"), byHand}},
-                     tr("What the segments are made of: their colours, and what the clip leaves"));
+  m_source =
+      makeComboBox("MaterialsBox",
+                   {{tr("By default"), ""},
+                    {tr("None: the volume's colours"), none},
+                    {tr("Automatic: the focus set off"), automaticSource},
+                    {tr("Library"), library},
+                    {tr("File"), fileSource},
+                    {tr("By hand"), manualSource}},
+                   tr("What the segments are made of: their colours, and what the clip leaves"));
   form->addRow(tr("Materials:"), m_source);
   m_fileRow = new QWidget;
   auto* row = new QHBoxLayout(m_fileRow);
@@ -130,7 +131,7 @@ void qSlicerFenestraMaterials::buildRow(int row) {
   auto* name = new QTableWidgetItem;
   name->setFlags(Qt::ItemIsEnabled);
   m_table->setItem(row, nameColumn, name);
-  auto* material = new StillBox;
+  auto* material = new NoWheelComboBox;
   material->setFocusPolicy(Qt::StrongFocus);
   material->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
   m_table->setCellWidget(row, materialColumn, material);
@@ -164,7 +165,7 @@ void qSlicerFenestraMaterials::list(const QList<qSlicerFenestraSegment>& segment
   showRows();
 }
 
-void qSlicerFenestraMaterials::tell(const qFenestraMaterials& known) {
+void qSlicerFenestraMaterials::setKnownMaterials(const qFenestraMaterials& known) {
   m_known = known;
   showRows();
 }
@@ -176,47 +177,47 @@ QString qSlicerFenestraMaterials::source() const {
 /// Flag of the materials that changes are made to, or would be.
 QString qSlicerFenestraMaterials::base() const {
   const QString word = source();
-  return word == byHand ? m_base : word == ofFile ? m_file->text() : word;
+  return word == manualSource ? m_base : word == fileSource ? m_file->text() : word;
 }
 
 /// Changes of a segment that the flags have.
-SlicerExport::MaterialChange qSlicerFenestraMaterials::changeOf(const QString& segment) const {
-  return source() == byHand ? m_changes.value(segment) : Change();
+SlicerExport::MaterialChange qSlicerFenestraMaterials::findChange(const QString& segment) const {
+  return source() == manualSource ? m_changes.value(segment) : Change();
 }
 
 /// Material that the renderer chooses, as far as it is known here: a file of the user's may choose
 /// another one.
-qFenestraMaterial qSlicerFenestraMaterials::automatic(const QString& segment) const {
-  const qFenestraMaterial one = m_known.ofSegments.value(segment);
+qFenestraMaterial qSlicerFenestraMaterials::findAutomatic(const QString& segment) const {
+  const qFenestraMaterial one = m_known.bySegment.value(segment);
   const QString word = base();
   const bool isUnknown = word != library && one.why == "by palette";
   if (word == none || isUnknown)
     return {{}, {}, tr("the volume's own colours"), true};
-  if (!QStringList{"", automatically, library}.contains(word))
+  if (!QStringList{"", automaticSource, library}.contains(word))
     return {{}, {}, tr("as the file says"), true};
   return one;
 }
 
 /// Colour in which the segment is seen; empty: not known, or the volume's own.
-QString qSlicerFenestraMaterials::colorOf(const QString& segment) const {
-  const Change change = changeOf(segment);
+QString qSlicerFenestraMaterials::findColor(const QString& segment) const {
+  const Change change = findChange(segment);
   const QString name = QString::fromStdString(change.field("material"));
   if (const QColor own(QString::fromStdString(change.field("color"))); own.isValid())
     return own.name();
   if (name.isEmpty())
-    return automatic(segment).color;
+    return findAutomatic(segment).color;
   const auto found = std::find_if(m_known.library.begin(), m_known.library.end(),
                                   [&name](const auto& one) { return one.name == name; });
   return found == m_known.library.end() ? QString() : found->color;
 }
 
 void qSlicerFenestraMaterials::showSource() {
-  const QString base = m_base == library         ? tr("the library")
-                       : m_base == automatically ? tr("the automatic choice")
-                                                 : QFileInfo(m_base).fileName();
-  m_source->setItemText(m_source->findData(byHand),
+  const QString base = m_base == library           ? tr("the library")
+                       : m_base == automaticSource ? tr("the automatic choice")
+                                                   : QFileInfo(m_base).fileName();
+  m_source->setItemText(m_source->findData(manualSource),
                         m_base.isEmpty() ? tr("By hand") : tr("By hand, over %1").arg(base));
-  qSlicerFenestraWidgets::showRow(m_form, m_fileRow, source() == ofFile);
+  qSlicerFenestraWidgets::showRow(m_form, m_fileRow, source() == fileSource);
   m_table->setEnabled(source() != none);
   showRows();
 }
@@ -229,8 +230,8 @@ void qSlicerFenestraMaterials::showRows() {
 void qSlicerFenestraMaterials::showRow(int row) {
   const QScopedValueRollback<bool> showing(m_showing, true);
   const auto& [id, name] = m_segments[row];
-  const qFenestraMaterial own = automatic(id);
-  const Change change = changeOf(id);
+  const qFenestraMaterial own = findAutomatic(id);
+  const Change change = findChange(id);
   m_table->item(row, nameColumn)->setText(name);
   auto* material = cell<QComboBox>(row, materialColumn);
   material->setAccessibleName(tr("Material of %1").arg(name));
@@ -238,17 +239,18 @@ void qSlicerFenestraMaterials::showRow(int row) {
     material->clear();
     material->addItem(QString(), QString());
     for (const qFenestraMaterial& one : m_known.library)
-      material->addItem(one.color.isEmpty() ? QIcon() : square(one.color), one.name, one.name);
+      material->addItem(one.color.isEmpty() ? QIcon() : makeSwatch(one.color), one.name, one.name);
     material->view()->setMinimumWidth(material->view()->sizeHintForColumn(0)); // whole names
   }
   material->setItemText(0,
                         own.name.isEmpty() ? tr("Automatic") : tr("%1 (automatic)").arg(own.name));
-  material->setToolTip(own.why.isEmpty() ? QString() : plain(tr("Automatic: %1").arg(own.why)));
-  chooseOrAdd(material, QString::fromStdString(change.field("material")));
+  material->setToolTip(own.why.isEmpty() ? QString()
+                                         : toPlainToolTip(tr("Automatic: %1").arg(own.why)));
+  selectOrAdd(material, QString::fromStdString(change.field("material")));
   auto* color = cell<QToolButton>(row, colorColumn);
   color->setAccessibleName(tr("Colour of %1").arg(name));
-  const QString seen = colorOf(id);
-  color->setIcon(seen.isEmpty() ? QIcon() : square(seen));
+  const QString seen = findColor(id);
+  color->setIcon(seen.isEmpty() ? QIcon() : makeSwatch(seen));
   color->setText(seen.isEmpty() ? tr("...") : QString());
   color->setToolTip(tr("The colour in which the segment is seen, sRGB %1").arg(seen));
   const std::string clip = change.field("clip");
@@ -264,11 +266,11 @@ void qSlicerFenestraMaterials::showRow(int row) {
 /// Changes a row by hand. Changes made before another source was chosen are forgotten then.
 void qSlicerFenestraMaterials::change(int row, const std::map<std::string, QString>& fields) {
   const QString& id = m_segments[row].id;
-  if (source() != byHand) {
+  if (source() != manualSource) {
     const QScopedValueRollback<bool> showing(m_showing, true);
     m_changes.clear();
     m_base = base();
-    m_source->setCurrentIndex(m_source->findData(byHand));
+    m_source->setCurrentIndex(m_source->findData(manualSource));
   }
   Change& change = m_changes[id];
   change.segment = id.toStdString();
@@ -279,10 +281,10 @@ void qSlicerFenestraMaterials::change(int row, const std::map<std::string, QStri
 
 /// Changes need materials beneath them.
 void qSlicerFenestraMaterials::onSource() {
-  if (source() != byHand)
+  if (source() != manualSource)
     m_base = base();
   else if (m_base.isEmpty() || m_base == none)
-    m_base = automatically;
+    m_base = automaticSource;
   showSource();
   emit changed();
 }
@@ -300,7 +302,7 @@ void qSlicerFenestraMaterials::onMaterial(int row) {
 
 void qSlicerFenestraMaterials::onColor(int row) {
   const auto [id, name] = m_segments[row];
-  const QColor color = QColorDialog::getColor(QColor(colorOf(id)), this,
+  const QColor color = QColorDialog::getColor(QColor(findColor(id)), this,
                                               tr("Colour of %1, as it is seen").arg(name));
   const bool isListed = row < m_segments.size() && m_segments[row].id == id; // still
   if (color.isValid() && isListed)
@@ -309,7 +311,7 @@ void qSlicerFenestraMaterials::onColor(int row) {
 
 void qSlicerFenestraMaterials::onClip(int row) {
   const bool isClipped = m_table->item(row, clipColumn)->checkState() == Qt::Checked;
-  const bool isAutomatic = isClipped == automatic(m_segments[row].id).isClipped;
+  const bool isAutomatic = isClipped == findAutomatic(m_segments[row].id).isClipped;
   change(row, {{"clip", isAutomatic ? QString() : isClipped ? "yes" : "no"}});
 }
 
@@ -322,7 +324,7 @@ void qSlicerFenestraMaterials::onReset(int row) {
 // ---- flags
 
 /// Id of the segment that a change means; empty: none that is listed.
-QString qSlicerFenestraMaterials::idOf(const QString& selector) const {
+QString qSlicerFenestraMaterials::findId(const QString& selector) const {
   for (const auto member : {&qSlicerFenestraSegment::id, &qSlicerFenestraSegment::name})
     for (const qSlicerFenestraSegment& one : m_segments)
       if (one.*member == selector)
@@ -330,13 +332,13 @@ QString qSlicerFenestraMaterials::idOf(const QString& selector) const {
   return {};
 }
 
-void qSlicerFenestraMaterials::takeChanges(const std::vector<std::string>& texts) {
+void qSlicerFenestraMaterials::setChanges(const std::vector<std::string>& texts) {
   for (const qSlicerFenestraSegment& one : m_segments)
     m_changes.remove(one.id);
   for (const std::string& text : texts) {
-    Change given = SlicerExport::materialChange(text);
+    Change given = SlicerExport::parseMaterialChange(text);
     const QString selector = QString::fromStdString(given.segment);
-    const QString id = m_segments.isEmpty() ? selector : idOf(selector); // listed later
+    const QString id = m_segments.isEmpty() ? selector : findId(selector); // listed later
     if (id.isEmpty())
       continue;
     given.segment = id.toStdString();
@@ -346,21 +348,23 @@ void qSlicerFenestraMaterials::takeChanges(const std::vector<std::string>& texts
 }
 
 void qSlicerFenestraMaterials::show(const Flags& flags) {
-  const QString given = flagOf(flags, "materials");
-  const auto texts = SlicerExport::textsIn(flagOf(flags, "material").toStdString());
-  const bool isByHand = !texts.empty() || (source() == byHand && given == m_base);
+  const QString given = findFlag(flags, "materials");
+  const auto texts = SlicerExport::splitList(findFlag(flags, "material").toStdString());
+  const bool isByHand = !texts.empty() || (source() == manualSource && given == m_base);
   const bool isFile = !given.isEmpty() && m_source->findData(given) < 0;
-  const bool isNoFileYet = given.isEmpty() && source() == ofFile && m_file->text().isEmpty();
+  const bool isNoFileYet = given.isEmpty() && source() == fileSource && m_file->text().isEmpty();
   const bool isNotPassed = m_segments.isEmpty() && given.isEmpty() && texts.empty();
   if (isNotPassed || (isNoFileYet && !isByHand))
     return;
   const QScopedValueRollback<bool> showing(m_showing, true);
   if (isFile)
     m_file->setText(given);
-  m_source->setCurrentIndex(m_source->findData(isByHand ? byHand : isFile ? ofFile : given));
+  m_source->setCurrentIndex(m_source->findData(isByHand ? manualSource
+                                               : isFile ? fileSource
+                                                        : given));
   m_base = given;
   if (isByHand)
-    takeChanges(texts);
+    setChanges(texts);
   showSource();
 }
 
@@ -376,8 +380,8 @@ void qSlicerFenestraMaterials::reset() {
 void qSlicerFenestraMaterials::take(Flags& flags) const {
   std::vector<std::string> texts;
   for (const qSlicerFenestraSegment& one : m_segments)
-    if (const Change change = changeOf(one.id); !change.fields.empty())
-      texts.push_back(SlicerExport::textOf(change));
+    if (const Change change = findChange(one.id); !change.fields.empty())
+      texts.push_back(SlicerExport::toText(change));
   flags["materials"] = m_segments.isEmpty() ? "" : base().toStdString();
-  flags["material"] = SlicerExport::joined(texts);
+  flags["material"] = SlicerExport::joinList(texts);
 }

@@ -32,7 +32,7 @@ public:
   /// Lists the segments. The changes of one that is gone are no flag, but there again with it.
   void list(const QList<qSlicerFenestraSegment>& segments);
   /// Shows what the renderer chooses by itself, and what it offers.
-  void tell(const qFenestraMaterials& known);
+  void setKnownMaterials(const qFenestraMaterials& known);
   /// Shows the flags. Without segments none is passed: the widgets stay as they are then.
   void show(const Flags& flags);
   /// Sets all widgets to defaults, and forgets all changes.
@@ -52,7 +52,7 @@ private:
   void showSource();
   void showRows();
   void showRow(int row);
-  void takeChanges(const std::vector<std::string>& texts);
+  void setChanges(const std::vector<std::string>& texts);
   void onSource();
   void onFile();
   void onMaterial(int row);
@@ -62,10 +62,10 @@ private:
   void change(int row, const std::map<std::string, QString>& fields);
   QString source() const;
   QString base() const;
-  Change changeOf(const QString& segment) const;
-  QString idOf(const QString& selector) const;
-  qFenestraMaterial automatic(const QString& segment) const;
-  QString colorOf(const QString& segment) const;
+  Change findChange(const QString& segment) const;
+  QString findId(const QString& selector) const;
+  qFenestraMaterial findAutomatic(const QString& segment) const;
+  QString findColor(const QString& segment) const;
   template <typename Widget>
   Widget* cell(int row, int column) const;
 

@@ -8,44 +8,44 @@
 
 namespace {
 
-enum class Unit { share, millimetres, slope, millimetresADegree };
+enum class Unit { fraction, millimeters, slope, millimetersPerDegree };
 
-struct Known {
+struct MeasureInfo {
   const char* key;
   Unit unit;
   QString name, help;
 };
 
 /// Known measures, the most important for a viewer first.
-QList<Known> known() {
+QList<MeasureInfo> knownMeasures() {
   const auto tr = [](const char* text) { return QObject::tr(text); };
   return {
-      {"focusCoverage", Unit::share, tr("Focus seen"),
+      {"focusCoverage", Unit::fraction, tr("Focus seen"),
        tr("Share of the light from the focus that reaches the eye through what lies in front")},
-      {"focusCoverageUnclipped", Unit::share, tr("Focus seen without clipping"),
+      {"focusCoverageUnclipped", Unit::fraction, tr("Focus seen without clipping"),
        tr("Share of the light from the focus that would reach the eye without clipping")},
-      {"focusKept", Unit::share, tr("Focus kept"),
+      {"focusKept", Unit::fraction, tr("Focus kept"),
        tr("Share of the pixels of the focus where clipping leaves the focus itself")},
-      {"focusLight", Unit::share, tr("Light on the focus"),
+      {"focusLight", Unit::fraction, tr("Light on the focus"),
        tr("Direct light on the focus, relative to the focus without surroundings")},
-      {"contextRemoved", Unit::share, tr("Surroundings taken away"),
+      {"contextRemoved", Unit::fraction, tr("Surroundings taken away"),
        tr("Share of the tissue outside the focus that clipping removes")},
-      {"boundaryGapMm", Unit::millimetres, tr("Gap at the edge"),
+      {"boundaryGapMm", Unit::millimeters, tr("Gap at the edge"),
        tr("Difference in depth between the focus and the surface at the edge of the focus")},
-      {"boundaryMismatchMm", Unit::millimetres, tr("Step at the edge"),
+      {"boundaryMismatchMm", Unit::millimeters, tr("Step at the edge"),
        tr("Difference in depth between the outermost pixels of the focus and the surface beside "
           "them")},
       {"boundarySlopeJump", Unit::slope, tr("Kink at the edge"),
        tr("Change of the slope in depth at the edge of the focus, mm a mm")},
-      {"boundaryDepthJumps", Unit::share, tr("Torn edge"),
+      {"boundaryDepthJumps", Unit::fraction, tr("Torn edge"),
        tr("Share of the edge where the focus's own depth jumps, which is not measured")},
-      {"surfaceChangeMmPerDegree", Unit::millimetresADegree, tr("Change while turning"),
+      {"surfaceChangeMmPerDegree", Unit::millimetersPerDegree, tr("Change while turning"),
        tr("Change of the surface's depth from frame to frame")},
   };
 }
 
 QString number(double value, Unit unit) {
-  if (unit == Unit::share) // 99.98 % must not read as 100.0 %
+  if (unit == Unit::fraction) // 99.98 % must not read as 100.0 %
     return QString::number(100.0 * value, 'f', value > 0.99 && value < 1.0 ? 2 : 1);
   if (value < 0.001) // not 4.1e-07 mm
     return QString::number(value, 'f', 3);
@@ -54,11 +54,11 @@ QString number(double value, Unit unit) {
 
 QString suffix(Unit unit) {
   switch (unit) {
-  case Unit::share:
+  case Unit::fraction:
     return QObject::tr(" %");
-  case Unit::millimetres:
+  case Unit::millimeters:
     return QObject::tr(" mm");
-  case Unit::millimetresADegree:
+  case Unit::millimetersPerDegree:
     return QObject::tr(" mm/\u00b0");
   case Unit::slope:
     break;
@@ -67,7 +67,7 @@ QString suffix(Unit unit) {
 }
 
 /// Text of a number, or of a distribution: mean, 95th percentile and maximum.
-QString inWords(const QJsonValue& value, Unit unit) {
+QString toUserText(const QJsonValue& value, Unit unit) {
   if (value.isDouble())
     return number(value.toDouble(), unit) + suffix(unit);
   const QJsonObject object = value.toObject();
@@ -82,9 +82,9 @@ QString inWords(const QJsonValue& value, Unit unit) {
 
 } // namespace
 
-QJsonObject qSlicerFenestraMeasures::kept(const QJsonObject& statistics) {
+QJsonObject qSlicerFenestraMeasures::selectMeasures(const QJsonObject& statistics) {
   QJsonObject measures;
-  for (const Known& one : known()) {
+  for (const MeasureInfo& one : knownMeasures()) {
     const QJsonValue value = statistics[QLatin1String(one.key)];
     if (value.isDouble() || value.isObject())
       measures[QLatin1String(one.key)] = value;
@@ -93,17 +93,17 @@ QJsonObject qSlicerFenestraMeasures::kept(const QJsonObject& statistics) {
 }
 
 QList<qSlicerFenestraMeasures::Measure>
-qSlicerFenestraMeasures::inWords(const QJsonObject& measures) {
+qSlicerFenestraMeasures::toUserText(const QJsonObject& measures) {
   QList<Measure> all;
-  for (const Known& one : known()) {
-    const QString value = ::inWords(measures[QLatin1String(one.key)], one.unit);
+  for (const MeasureInfo& one : knownMeasures()) {
+    const QString value = ::toUserText(measures[QLatin1String(one.key)], one.unit);
     if (!value.isEmpty())
       all.append({one.name, value, one.help});
   }
   return all;
 }
 
-QString qSlicerFenestraMeasures::duration(double seconds) {
+QString qSlicerFenestraMeasures::formatDuration(double seconds) {
   if (seconds < 9.95)
     return QObject::tr("%1 s").arg(seconds, 0, 'f', 1);
   const auto whole = static_cast<int>(std::lround(std::min(seconds, 1e6)));

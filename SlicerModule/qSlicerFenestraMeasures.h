@@ -15,13 +15,13 @@ struct Measure {
 };
 
 /// Statistics to be stored with a picture.
-Q_SLICER_QTMODULES_FENESTRA_EXPORT QJsonObject kept(const QJsonObject& statistics);
+Q_SLICER_QTMODULES_FENESTRA_EXPORT QJsonObject selectMeasures(const QJsonObject& statistics);
 
 /// Existing measures, in words.
-Q_SLICER_QTMODULES_FENESTRA_EXPORT QList<Measure> inWords(const QJsonObject& measures);
+Q_SLICER_QTMODULES_FENESTRA_EXPORT QList<Measure> toUserText(const QJsonObject& measures);
 
 /// Duration as text: "4.2 s", "42 s", "3 min 7 s".
-Q_SLICER_QTMODULES_FENESTRA_EXPORT QString duration(double seconds);
+Q_SLICER_QTMODULES_FENESTRA_EXPORT QString formatDuration(double seconds);
 
 } // namespace qSlicerFenestraMeasures
 

@@ -12,23 +12,23 @@
 qSlicerFenestraModule::qSlicerFenestraModule(QObject* parent) : Superclass(parent) {}
 
 qSlicerFenestraModule::~qSlicerFenestraModule() {
-  if (fenestra())
-    fenestra()->SetRenderer(nullptr);
+  if (fenestraLogic())
+    fenestraLogic()->SetRenderer(nullptr);
   delete m_session; // while the logic that it uses is there
 }
 
-vtkSlicerFenestraLogic* qSlicerFenestraModule::fenestra() {
+vtkSlicerFenestraLogic* qSlicerFenestraModule::fenestraLogic() {
   return vtkSlicerFenestraLogic::SafeDownCast(this->logic());
 }
 
 void qSlicerFenestraModule::setup() {
   Superclass::setup();
-  fenestra()->SetRenderer([this] { return session(); });
+  fenestraLogic()->SetRenderer([this] { return session(); });
 }
 
 qSlicerFenestraSession* qSlicerFenestraModule::session() {
   if (!m_session)
-    m_session = new qSlicerFenestraSession(fenestra(), program(), this);
+    m_session = new qSlicerFenestraSession(fenestraLogic(), program(), this);
   return m_session;
 }
 

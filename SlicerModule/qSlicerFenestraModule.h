@@ -49,7 +49,7 @@ private slots:
 
 private:
   Q_DISABLE_COPY(qSlicerFenestraModule);
-  vtkSlicerFenestraLogic* fenestra();
+  vtkSlicerFenestraLogic* fenestraLogic();
 
   qSlicerFenestraSession* m_session = nullptr;
 };

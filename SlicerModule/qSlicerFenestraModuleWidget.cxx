@@ -38,7 +38,7 @@ using Node = vtkMRMLFenestraRenderNode;
 
 /// Shape of the first 3-D view, in about as many pixels as `side` x `side`; empty: there is no
 /// view.
-std::string shapeOfView(double side) {
+std::string findViewSize(double side) {
   const qSlicerApplication* application = qSlicerApplication::application();
   qSlicerLayoutManager* layout = application ? application->layoutManager() : nullptr;
   const QWidget* view = layout ? layout->threeDWidget(0) : nullptr;
@@ -60,7 +60,7 @@ qSlicerFenestraModuleWidget::~qSlicerFenestraModuleWidget() {
   }
 }
 
-vtkSlicerFenestraLogic* qSlicerFenestraModuleWidget::fenestra() const {
+vtkSlicerFenestraLogic* qSlicerFenestraModuleWidget::fenestraLogic() const {
   return vtkSlicerFenestraLogic::SafeDownCast(this->logic());
 }
 
@@ -69,11 +69,11 @@ void qSlicerFenestraModuleWidget::setup() {
   auto* layout = new QVBoxLayout(this);
   m_panel = new qSlicerFenestraPanel;
   layout->addWidget(m_panel);
-  m_settings = new qSlicerFenestraSettings(m_panel, fenestra(), this);
+  m_settings = new qSlicerFenestraSettings(m_panel, fenestraLogic(), this);
   m_session = dynamic_cast<qSlicerFenestraModule*>(this->module())->session();
   connectPanel();
   connectSession();
-  m_session->learn();
+  m_session->queryCapabilities();
   updateButtons();
 }
 
@@ -94,45 +94,45 @@ void qSlicerFenestraModuleWidget::connectPanel() {
   });
   connect(panel.player, &qSlicerFenestraPlayer::frameChanged, this, [this](int frame) {
     if (chosen())
-      fenestra()->ShowFrame(chosen(), frame);
+      fenestraLogic()->ShowFrame(chosen(), frame);
   });
   connect(panel.stop, &QPushButton::clicked, this, &qSlicerFenestraModuleWidget::stop);
   connect(panel.repeat, &QPushButton::clicked, this, &qSlicerFenestraModuleWidget::repeat);
   connect(panel.show, &QPushButton::clicked, this, [this] {
-    forget();
+    clearStatus();
     showResult(chosen());
   });
-  connect(panel.back, &QPushButton::clicked, this, [this] { fenestra()->ShowLayoutBefore(); });
+  connect(panel.back, &QPushButton::clicked, this, [this] { fenestraLogic()->ShowLayoutBefore(); });
   connect(panel.save, &QPushButton::clicked, this, &qSlicerFenestraModuleWidget::save);
 }
 
 void qSlicerFenestraModuleWidget::connectSession() {
   connect(m_settings, &qSlicerFenestraSettings::changed, this, [this] {
-    m_session->learnMaterials(vtkSlicerFenestraLogic::GetSegments(m_settings->node()));
+    m_session->queryMaterials(vtkSlicerFenestraLogic::GetSegments(m_settings->node()));
     updateButtons();
     preview();
   });
   connect(m_session, &qSlicerFenestraSession::learned, this,
-          [this](const qFenestraAbilities& abilities) {
-            m_panel->offer(abilities);
+          [this](const qFenestraCapabilities& abilities) {
+            m_panel->setCapabilities(abilities);
             m_settings->use(m_settings->node());
           });
   connect(m_session, &qSlicerFenestraSession::materialsTold, m_panel->materials,
-          &qSlicerFenestraMaterials::tell);
+          &qSlicerFenestraMaterials::setKnownMaterials);
   connect(m_session, &qSlicerFenestraSession::previewed, this,
           &qSlicerFenestraModuleWidget::showPicture);
   connect(m_session, &qSlicerFenestraSession::previewRefused, m_panel->previewState,
           &QLabel::setText);
   connect(m_session, &qSlicerFenestraSession::started, this, [this](Node*) {
-    m_reached.clear();
-    m_told.invalidate();
-    say(tr("Rendering..."));
+    m_samplesAndNoise.clear();
+    m_progressAge.invalidate();
+    setStatus(tr("Rendering..."));
     updateButtons();
   });
   connect(m_session, &qSlicerFenestraSession::reached, this,
-          [this](const QString& words) { m_reached = words; });
+          [this](const QString& words) { m_samplesAndNoise = words; });
   connect(m_session, &qSlicerFenestraSession::progressed, this,
-          [this](Node*, double part, double seconds) { onProgress(part, seconds); });
+          [this](Node*, double fraction, double seconds) { onProgress(fraction, seconds); });
   connect(m_session, &qSlicerFenestraSession::ended, this, &qSlicerFenestraModuleWidget::onEnded);
 }
 
@@ -161,7 +161,7 @@ void qSlicerFenestraModuleWidget::exit() {
 /// Drops the messages about the scene, whose session the module ends.
 void qSlicerFenestraModuleWidget::onSceneClosed() {
   m_sceneIsNew = true;
-  forget();
+  clearStatus();
 }
 
 void qSlicerFenestraModuleWidget::onSceneImported() {
@@ -180,12 +180,12 @@ void qSlicerFenestraModuleWidget::useScene() {
     return;
   m_sceneIsNew = false;
   const bool isNew = !this->mrmlScene()->GetSingletonNode("Settings", "vtkMRMLFenestraRenderNode");
-  Node* settings = fenestra()->GetSettings();
-  if (const std::string shape = isNew ? shapeOfView(512.0) : ""; !shape.empty())
+  Node* settings = fenestraLogic()->GetSettings();
+  if (const std::string shape = isNew ? findViewSize(512.0) : ""; !shape.empty())
     settings->SetFlag("size", shape);
   m_settings->use(settings);
   if (!chosen())
-    m_panel->renders->setCurrentNode(fenestra()->GetShownRender());
+    m_panel->renders->setCurrentNode(fenestraLogic()->GetShownRender());
 }
 
 void qSlicerFenestraModuleWidget::preview() {
@@ -214,7 +214,7 @@ void qSlicerFenestraModuleWidget::renderTurntable() {
 void qSlicerFenestraModuleWidget::start(qSlicerFenestraSession::Kind kind) {
   if (!m_settings->node())
     return;
-  forget();
+  clearStatus();
   m_session->render(m_settings->node(), kind);
   updateButtons();
 }
@@ -226,9 +226,9 @@ void qSlicerFenestraModuleWidget::showResult(Node* render, int times) {
   QTimer::singleShot(0, this, [this, shown, times] {
     if (!shown || !shown->GetScene())
       return;
-    fenestra()->ShowResult(shown);
+    fenestraLogic()->ShowResult(shown);
     if (shown == chosen() && shown->IsTurntable())
-      fenestra()->ShowFrame(shown, m_panel->player->frame());
+      fenestraLogic()->ShowFrame(shown, m_panel->player->frame());
     if (times > 1)
       showResult(shown, times - 1);
   });
@@ -237,8 +237,9 @@ void qSlicerFenestraModuleWidget::showResult(Node* render, int times) {
 /// Writing may take long: a second press ends the render without it.
 void qSlicerFenestraModuleWidget::stop() {
   m_session->stop();
-  if (m_session->rendering())
-    say(tr("Stopping: finished samples are being written. Press Stop again to end without them."));
+  if (m_session->isRendering())
+    setStatus(
+        tr("Stopping: finished samples are being written. Press Stop again to end without them."));
 }
 
 void qSlicerFenestraModuleWidget::repeat() {
@@ -247,65 +248,70 @@ void qSlicerFenestraModuleWidget::repeat() {
     return;
   m_settings->copy(render);
   if (render->WithholdsFiles())
-    return say(tr("This picture was made with files that its scene names. Allow them above, then "
-                  "press Render."));
+    return setStatus(
+        tr("This picture was made with files that its scene names. Allow them above, then "
+           "press Render."));
   start(render->IsTurntable() ? qSlicerFenestraSession::Kind::turntable
                               : qSlicerFenestraSession::Kind::picture);
 }
 
-void qSlicerFenestraModuleWidget::showPicture(const QImage& picture, const qFenestraPicture& what) {
+void qSlicerFenestraModuleWidget::showPicture(const QImage& picture,
+                                              const qFenestraPreviewImage& what) {
   m_panel->preview->setPixmap(QPixmap::fromImage(picture));
   const QString noise = what.noise < 0.0 ? QString() : tr(", noise %1").arg(what.noise, 0, 'g', 2);
-  m_panel->previewState->setText(tr("Preview: %1 samples a pixel%2, %3")
-                                     .arg(what.samples)
-                                     .arg(noise, qSlicerFenestraMeasures::duration(what.seconds)));
+  m_panel->previewState->setText(
+      tr("Preview: %1 samples a pixel%2, %3")
+          .arg(what.samples)
+          .arg(noise, qSlicerFenestraMeasures::formatDuration(what.seconds)));
 }
 
 /// Updates at most every `interval`: without a graphics card, Slicer's window redraws slowly.
-void qSlicerFenestraModuleWidget::onProgress(double part, double seconds) {
+void qSlicerFenestraModuleWidget::onProgress(double fraction, double seconds) {
   constexpr int interval = 500; // milliseconds
-  if (m_session->stopping() || (m_told.isValid() && m_told.elapsed() < interval))
+  if (m_session->isStopping() || (m_progressAge.isValid() && m_progressAge.elapsed() < interval))
     return;
-  m_told.start();
+  m_progressAge.start();
   m_panel->progress->show();
-  m_panel->progress->setValue(static_cast<int>(1000.0 * part));
-  QString line = tr("%1 so far").arg(qSlicerFenestraMeasures::duration(seconds));
-  if (part > 0.01)
-    line += tr(", %1 to go").arg(qSlicerFenestraMeasures::duration(seconds * (1.0 - part) / part));
-  if (!m_reached.isEmpty())
-    line += ", " + m_reached;
-  if (m_session->waiting() > 0)
-    line += tr("; %n more waiting", nullptr, m_session->waiting());
-  say(line);
+  m_panel->progress->setValue(static_cast<int>(1000.0 * fraction));
+  QString line = tr("%1 so far").arg(qSlicerFenestraMeasures::formatDuration(seconds));
+  if (fraction > 0.01)
+    line +=
+        tr(", %1 to go")
+            .arg(qSlicerFenestraMeasures::formatDuration(seconds * (1.0 - fraction) / fraction));
+  if (!m_samplesAndNoise.isEmpty())
+    line += ", " + m_samplesAndNoise;
+  if (m_session->waitingCount() > 0)
+    line += tr("; %n more waiting", nullptr, m_session->waitingCount());
+  setStatus(line);
 }
 
-QString qSlicerFenestraModuleWidget::inWords(Node* render, qFenestraOutcome::Kind kind) const {
+QString qSlicerFenestraModuleWidget::toUserText(Node* render, qFenestraOutcome::Kind kind) const {
   using Kind = qFenestraOutcome::Kind;
-  const bool whole = kind == Kind::done;
+  const bool isComplete = kind == Kind::done;
   if (!render)
     return kind == Kind::killed ? tr("Ended at once, without a picture.")
                                 : tr("Stopped before there was a picture.");
   const QString description = QString::fromUtf8(render->GetDescription());
   if (description.isEmpty()) // the statistics were not written
-    return whole ? tr("Done.") : tr("Stopped.");
-  return (whole ? tr("Done: %1.") : tr("Stopped: %1.")).arg(description);
+    return isComplete ? tr("Done.") : tr("Stopped.");
+  return (isComplete ? tr("Done: %1.") : tr("Stopped: %1.")).arg(description);
 }
 
 void qSlicerFenestraModuleWidget::onEnded(Node* render, const qFenestraOutcome& outcome) {
   m_panel->progress->hide();
   if (outcome.kind == qFenestraOutcome::Kind::failed)
-    say(outcome.message, outcome.details);
+    setStatus(outcome.message, outcome.details);
   else
-    say(inWords(render, outcome.kind));
+    setStatus(toUserText(render, outcome.kind));
   if (render) {
-    const QSignalBlocker unheard(m_panel->renders); // shown below
+    const QSignalBlocker blocker(m_panel->renders); // shown below
     m_panel->renders->setCurrentNode(render);
   }
-  showChosen();
+  showSelected();
   showResult(render);
 }
 
-void qSlicerFenestraModuleWidget::say(const QString& message, const QString& details) {
+void qSlicerFenestraModuleWidget::setStatus(const QString& message, const QString& details) {
   m_panel->state->setText(message);
   m_panel->detailsText->setText(details);
   m_panel->details->setVisible(!details.isEmpty());
@@ -313,9 +319,9 @@ void qSlicerFenestraModuleWidget::say(const QString& message, const QString& det
 }
 
 /// Clears the last render's message, once the user has moved on.
-void qSlicerFenestraModuleWidget::forget() {
-  if (!m_session->rendering())
-    say({});
+void qSlicerFenestraModuleWidget::clearStatus() {
+  if (!m_session->isRendering())
+    setStatus({});
 }
 
 void qSlicerFenestraModuleWidget::updateButtons() {
@@ -327,30 +333,31 @@ void qSlicerFenestraModuleWidget::updateButtons() {
     m_panel->preview->setText(tr("Load a volume, or the sample knee"));
     m_panel->previewState->clear();
   }
-  m_panel->stop->setEnabled(m_session->rendering());
+  m_panel->stop->setEnabled(m_session->isRendering());
   Node* render = chosen();
   const bool hasPicture = render && render->GetNodeReference(Node::PictureRole);
   m_panel->show->setEnabled(hasPicture);
   m_panel->save->setEnabled(hasPicture);
-  m_panel->back->setEnabled(fenestra()->GetShownRender() != nullptr);
+  m_panel->back->setEnabled(fenestraLogic()->GetShownRender() != nullptr);
   m_panel->repeat->setEnabled(render != nullptr);
   m_panel->resume->setVisible(m_session->canResume(render));
 }
 
 /// Replaces the picture shown, if any, by the chosen one.
 void qSlicerFenestraModuleWidget::onRenderChosen() {
-  showChosen();
-  if (chosen() && fenestra()->GetShownRender())
+  showSelected();
+  if (chosen() && fenestraLogic()->GetShownRender())
     showResult(chosen());
 }
 
 /// Shows description, player and measures of the chosen picture.
-void qSlicerFenestraModuleWidget::showChosen() {
+void qSlicerFenestraModuleWidget::showSelected() {
   updateButtons();
   Node* render = chosen();
   const char* description = render ? render->GetDescription() : nullptr;
   m_panel->description->setText(QString::fromUtf8(description ? description : ""));
-  const int frames = render && render->IsTurntable() ? fenestra()->GetNumberOfFrames(render) : 0;
+  const int frames =
+      render && render->IsTurntable() ? fenestraLogic()->GetNumberOfFrames(render) : 0;
   m_panel->player->setVisible(frames > 0);
   m_panel->player->setFrames(frames);
   showMeasures(render);
@@ -359,7 +366,7 @@ void qSlicerFenestraModuleWidget::showChosen() {
 void qSlicerFenestraModuleWidget::showMeasures(Node* render) {
   const char* text = render ? render->GetAttribute(Node::MeasuresAttribute) : nullptr;
   const auto measures =
-      qSlicerFenestraMeasures::inWords(QJsonDocument::fromJson(text ? text : "").object());
+      qSlicerFenestraMeasures::toUserText(QJsonDocument::fromJson(text ? text : "").object());
   QString rows, help;
   for (const qSlicerFenestraMeasures::Measure& one : measures) {
     rows += QString("<tr><td>%1:&nbsp;</td><td>%2</td></tr>").arg(one.name, one.value);
@@ -374,37 +381,39 @@ void qSlicerFenestraModuleWidget::showMeasures(Node* render) {
 
 void qSlicerFenestraModuleWidget::save() {
   Node* render = chosen();
-  const bool turns = render->IsTurntable();
-  const QStringList frames = m_session->results().framesOf(render);
-  if (turns ? frames.isEmpty() : m_session->results().fileOf(render, "png").isEmpty())
-    return say(tr("The files of this picture were removed with the session that made it. Press "
-                  "Repeat, then save."));
-  const QString png = turns ? tr("Pictures, numbered (*.png)") : tr("Picture (*.png)");
+  const bool isTurntable = render->IsTurntable();
+  const QStringList frames = m_session->results().findFrames(render);
+  if (isTurntable ? frames.isEmpty() : m_session->results().findFile(render, "png").isEmpty())
+    return setStatus(
+        tr("The files of this picture were removed with the session that made it. Press "
+           "Repeat, then save."));
+  const QString png = isTurntable ? tr("Pictures, numbered (*.png)") : tr("Picture (*.png)");
   const QString exr = tr("Linear colour and depth (*.exr)");
   // Overwriting is confirmed below, for the final names: an ending or a number may be added.
   const QString chosen = QFileDialog::getSaveFileName(
-      this, turns ? tr("Save the frames, numbered") : tr("Save the picture"),
-      QString::fromUtf8(render->GetName()) + ".png", turns ? png : png + ";;" + exr, nullptr,
+      this, isTurntable ? tr("Save the frames, numbered") : tr("Save the picture"),
+      QString::fromUtf8(render->GetName()) + ".png", isTurntable ? png : png + ";;" + exr, nullptr,
       QFileDialog::DontConfirmOverwrite);
   if (chosen.isEmpty())
     return;
   const QString ending = chosen.endsWith(".exr", Qt::CaseInsensitive) ? "exr" : "png";
-  const QString picture = m_session->results().fileOf(render, ending);
-  saveAs(turns ? qFenestraCopies::frames(frames, chosen)
-               : qFenestraCopies::picture(picture, chosen, "." + ending));
+  const QString picture = m_session->results().findFile(render, ending);
+  saveAs(isTurntable ? qFenestraCopies::frames(frames, chosen)
+                     : qFenestraCopies::picture(picture, chosen, "." + ending));
 }
 
 void qSlicerFenestraModuleWidget::saveAs(const qFenestraCopies& copies) {
-  const QStringList lost = copies.existing();
-  const QString question = lost.size() == 1
-                               ? tr("%1 is there already. Replace it?").arg(lost.first())
+  const QStringList replaced = copies.existingTargets();
+  const QString question = replaced.size() == 1
+                               ? tr("%1 is there already. Replace it?").arg(replaced.first())
                                : tr("%n files are there already, %1 the first. Replace them?",
-                                    nullptr, static_cast<int>(lost.size()))
-                                     .arg(lost.value(0));
-  if (!lost.isEmpty() && QMessageBox::question(this, tr("Save"), question) != QMessageBox::Yes)
+                                    nullptr, static_cast<int>(replaced.size()))
+                                     .arg(replaced.value(0));
+  if (!replaced.isEmpty() && QMessageBox::question(this, tr("Save"), question) != QMessageBox::Yes)
     return;
   const QString failed = copies.write();
-  say(failed.isEmpty()
+  setStatus(
+      failed.isEmpty()
           ? tr("Saved as %1.").arg(copies.names())
           : tr("%1 could not be written, and is as it was. Choose another folder.").arg(failed));
 }
@@ -412,12 +421,12 @@ void qSlicerFenestraModuleWidget::saveAs(const qFenestraCopies& copies) {
 void qSlicerFenestraModuleWidget::loadSample() {
   m_session->makeSample([this](const QString& scene, const QString& message) {
     if (scene.isEmpty())
-      return say(tr("The sample could not be made."), message);
+      return setStatus(tr("The sample could not be made."), message);
     qSlicerIO::IOProperties properties;
     properties["fileName"] = scene;
     properties["clear"] = false;
     qSlicerCoreApplication::application()->coreIOManager()->loadNodes("SceneFile", properties);
-    fenestra()->ShowNewestVolume();
-    say(tr("A synthetic knee. Choose a segment as focus."));
+    fenestraLogic()->ShowNewestVolume();
+    setStatus(tr("A synthetic knee. Choose a segment as focus."));
   });
 }

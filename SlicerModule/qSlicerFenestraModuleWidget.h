@@ -52,7 +52,7 @@ private slots:
   void save();
 
 private:
-  vtkSlicerFenestraLogic* fenestra() const;
+  vtkSlicerFenestraLogic* fenestraLogic() const;
   vtkMRMLFenestraRenderNode* chosen() const;
   void connectPanel();
   void connectSession();
@@ -60,15 +60,15 @@ private:
   void preview();
   bool hasVolume() const;
   void updateButtons();
-  void showChosen();
+  void showSelected();
   void start(qSlicerFenestraSession::Kind kind);
   void showMeasures(vtkMRMLFenestraRenderNode* render);
   void saveAs(const qFenestraCopies& copies);
-  void say(const QString& message, const QString& details = {});
-  void forget();
-  void showPicture(const QImage& picture, const qFenestraPicture& what);
-  void onProgress(double part, double seconds);
-  QString inWords(vtkMRMLFenestraRenderNode* render, qFenestraOutcome::Kind kind) const;
+  void setStatus(const QString& message, const QString& details = {});
+  void clearStatus();
+  void showPicture(const QImage& picture, const qFenestraPreviewImage& what);
+  void onProgress(double fraction, double seconds);
+  QString toUserText(vtkMRMLFenestraRenderNode* render, qFenestraOutcome::Kind kind) const;
   void onEnded(vtkMRMLFenestraRenderNode* render, const qFenestraOutcome& outcome);
   void showResult(vtkMRMLFenestraRenderNode* render, int times = 2);
 
@@ -76,8 +76,8 @@ private:
   qSlicerFenestraSettings* m_settings = nullptr;
   QPointer<qSlicerFenestraSession> m_session; ///< of the module, which may end before the panel
   bool m_sceneIsNew = false;                  ///< scene closed or loaded, and not yet used
-  QString m_reached;    ///< samples and noise of the render under way, in words
-  QElapsedTimer m_told; ///< time since progress was last shown
+  QString m_samplesAndNoise;   ///< samples and noise of the render under way, in words
+  QElapsedTimer m_progressAge; ///< time since progress was last shown
 };
 
 #endif

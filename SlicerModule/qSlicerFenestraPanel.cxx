@@ -45,7 +45,7 @@ QList<Choice> anatomies() {
           {tr("Face of a fetus (US)"), "fetal-face"}};
 }
 
-QLabel* words(const QString& name) {
+QLabel* makeLabel(const QString& name) {
   auto* label = new QLabel;
   label->setObjectName(name);
   label->setTextFormat(Qt::PlainText); // texts of a scene must not be read as HTML
@@ -61,15 +61,15 @@ QPushButton* button(const QString& name, const QString& text, const QString& hel
   return one;
 }
 
-QSpinBox* number(const QString& name, int least, int greatest) {
+QSpinBox* makeSpinBox(const QString& name, int least, int greatest) {
   auto* box = new QSpinBox;
   box->setObjectName(name);
   box->setRange(least, greatest);
   return box;
 }
 
-QDoubleSpinBox* limit(const QString& name, double greatest, int parseDecimals,
-                      const QString& suffix) {
+QDoubleSpinBox* makeLimitBox(const QString& name, double greatest, int parseDecimals,
+                             const QString& suffix) {
   auto* box = new QDoubleSpinBox;
   box->setObjectName(name);
   box->setRange(0.0, greatest);
@@ -114,8 +114,8 @@ qSlicerFenestraPanel::qSlicerFenestraPanel(QWidget* parent) : QWidget(parent) {
   nameControls(this);
 }
 
-QFormLayout* qSlicerFenestraPanel::section(QVBoxLayout* layout, const QString& title,
-                                           bool collapsed) {
+QFormLayout* qSlicerFenestraPanel::addSection(QVBoxLayout* layout, const QString& title,
+                                              bool collapsed) {
   auto* one = new ctkCollapsibleButton(title);
   one->setCollapsed(collapsed);
   one->setObjectName(title);
@@ -123,7 +123,7 @@ QFormLayout* qSlicerFenestraPanel::section(QVBoxLayout* layout, const QString& t
   return new QFormLayout(one);
 }
 
-qMRMLNodeComboBox* qSlicerFenestraPanel::nodes(const QString& type, const QString& name) {
+qMRMLNodeComboBox* qSlicerFenestraPanel::makeNodeBox(const QString& type, const QString& name) {
   auto* box = new qMRMLNodeComboBox;
   box->setObjectName(name);
   box->setNodeTypes({type});
@@ -135,22 +135,22 @@ qMRMLNodeComboBox* qSlicerFenestraPanel::nodes(const QString& type, const QStrin
 }
 
 void qSlicerFenestraPanel::buildSubject(QVBoxLayout* layout) {
-  QFormLayout* form = section(layout, tr("What to show"), false);
+  QFormLayout* form = addSection(layout, tr("What to show"), false);
   m_subject = form;
   sample = button("SampleButton", tr("Load a sample knee"),
                   tr("A synthetic knee with its segments, made on this computer"));
   form->addRow(sample);
-  volume = nodes("vtkMRMLScalarVolumeNode", "VolumeBox");
+  volume = makeNodeBox("vtkMRMLScalarVolumeNode", "VolumeBox");
   volume->setNoneEnabled(true);
   volume->setHideChildNodeTypes({"vtkMRMLLabelMapVolumeNode"});
   form->addRow(tr("Volume:"), volume);
-  segmentation = nodes("vtkMRMLSegmentationNode", "SegmentationBox");
+  segmentation = makeNodeBox("vtkMRMLSegmentationNode", "SegmentationBox");
   segmentation->setNoneEnabled(true);
   form->addRow(tr("Segmentation:"), segmentation);
-  preset =
-      choices("PresetBox", {{tr("My own choice"), ""}, {tr("By the segments' names"), "auto"}},
-              tr("Focus, clipping, tissue colours, light and view for an anatomy, in one; what "
-                 "you choose yourself wins over it"));
+  preset = makeComboBox(
+      "PresetBox", {{tr("My own choice"), ""}, {tr("By the segments' names"), "auto"}},
+      tr("Focus, clipping, tissue colours, light and view for an anatomy, in one; what "
+         "you choose yourself wins over it"));
   preset->setIconSize({pictureSide, pictureSide});
   form->addRow(tr("Anatomy:"), preset);
   preset->hide();
@@ -160,24 +160,24 @@ void qSlicerFenestraPanel::buildSubject(QVBoxLayout* layout) {
   focus->setToolTip(tr("Segments that nothing hides"));
   focus->setMaximumHeight(150);
   form->addRow(tr("Focus:"), focus);
-  focusHint = words("FocusHint");
+  focusHint = makeLabel("FocusHint");
   focusHint->setText(tr("With none ticked, the anatomy's segments are found by their names."));
   focusHint->hide();
   form->addRow(focusHint);
-  withheld = words("WithheldLabel");
+  withheld = makeLabel("WithheldLabel");
   allow = button("AllowButton", tr("Open these files"),
                  tr("Files that the scene names are opened only where you trust who made it"));
   for (QWidget* one : {static_cast<QWidget*>(withheld), static_cast<QWidget*>(allow)}) {
     one->hide();
     form->addRow(one);
   }
-  clipping = new qSlicerFenestraClipping(nodes("vtkMRMLMarkupsPlaneNode", "PlaneNodeBox"));
+  clipping = new qSlicerFenestraClipping(makeNodeBox("vtkMRMLMarkupsPlaneNode", "PlaneNodeBox"));
   clipping->setObjectName("Clipping");
   form->addRow(clipping);
 }
 
 void qSlicerFenestraPanel::buildMaterials(QVBoxLayout* layout) {
-  QFormLayout* form = section(layout, tr("Materials"), true);
+  QFormLayout* form = addSection(layout, tr("Materials"), true);
   m_materials = form->parentWidget();
   m_materials->hide();
   materials = new qSlicerFenestraMaterials;
@@ -197,7 +197,7 @@ void qSlicerFenestraPanel::buildPreview(QVBoxLayout* layout) {
   preview->setMinimumSize(256, 256);
   preview->setStyleSheet("background: black; color: gray");
   layout->addWidget(preview);
-  previewState = words("PreviewStateLabel");
+  previewState = makeLabel("PreviewStateLabel");
   layout->addWidget(previewState);
 }
 
@@ -214,7 +214,7 @@ void qSlicerFenestraPanel::buildRender(QVBoxLayout* layout) {
   progress->setRange(0, 1000);
   progress->hide();
   layout->addWidget(progress);
-  state = words("StateLabel");
+  state = makeLabel("StateLabel");
   layout->addWidget(state);
   details = new QToolButton;
   details->setObjectName("DetailsButton");
@@ -222,25 +222,25 @@ void qSlicerFenestraPanel::buildRender(QVBoxLayout* layout) {
   details->setCheckable(true);
   details->hide();
   layout->addWidget(details);
-  detailsText = words("DetailsLabel");
+  detailsText = makeLabel("DetailsLabel");
   detailsText->hide();
   layout->addWidget(detailsText);
   connect(details, &QToolButton::toggled, detailsText, &QLabel::setVisible);
 }
 
 void qSlicerFenestraPanel::buildView(QVBoxLayout* layout) {
-  QFormLayout* form = section(layout, tr("View and light"), false);
-  view = choices("ViewBox",
-                 {{tr("As in the 3D view"), ""},
-                  {tr("From anterior"), "anterior"},
-                  {tr("From posterior"), "posterior"},
-                  {tr("From left"), "left"},
-                  {tr("From right"), "right"},
-                  {tr("From superior"), "superior"},
-                  {tr("From inferior"), "inferior"}},
-                 tr("Where the picture is taken from"));
+  QFormLayout* form = addSection(layout, tr("View and light"), false);
+  view = makeComboBox("ViewBox",
+                      {{tr("As in the 3D view"), ""},
+                       {tr("From anterior"), "anterior"},
+                       {tr("From posterior"), "posterior"},
+                       {tr("From left"), "left"},
+                       {tr("From right"), "right"},
+                       {tr("From superior"), "superior"},
+                       {tr("From inferior"), "inferior"}},
+                      tr("Where the picture is taken from"));
   form->addRow(tr("View:"), view);
-  view3D = nodes("vtkMRMLViewNode", "View3DBox");
+  view3D = makeNodeBox("vtkMRMLViewNode", "View3DBox");
   follow = new QCheckBox(tr("live"));
   follow->setObjectName("FollowBox");
   follow->setChecked(true);
@@ -255,24 +255,24 @@ void qSlicerFenestraPanel::buildView(QVBoxLayout* layout) {
 }
 
 void qSlicerFenestraPanel::buildQuality(QVBoxLayout* layout) {
-  QFormLayout* form = section(layout, tr("Quality"), true);
-  quality = choices("QualityBox",
-                    {{tr("Draft"), "16 0 0"},
-                     {tr("Good"), "256 0.05 0"},
-                     {tr("Final"), "4096 0.015 0"},
-                     {tr("Custom"), ""}},
-                    tr("A render ends at the first of its limits"));
+  QFormLayout* form = addSection(layout, tr("Quality"), true);
+  quality = makeComboBox("QualityBox",
+                         {{tr("Draft"), "16 0 0"},
+                          {tr("Good"), "256 0.05 0"},
+                          {tr("Final"), "4096 0.015 0"},
+                          {tr("Custom"), ""}},
+                         tr("A render ends at the first of its limits"));
   form->addRow(tr("Quality:"), quality);
-  samples = number("SamplesBox", 1, 1000000);
+  samples = makeSpinBox("SamplesBox", 1, 1000000);
   form->addRow(tr("Samples a pixel:"), samples);
-  noise = limit("NoiseBox", 1.0, 3, {});
+  noise = makeLimitBox("NoiseBox", 1.0, 3, {});
   noise->setSingleStep(0.005);
   form->addRow(tr("Noise:"), noise);
-  seconds = limit("SecondsBox", 86400.0, 0, tr(" s"));
+  seconds = makeLimitBox("SecondsBox", 86400.0, 0, tr(" s"));
   form->addRow(tr("Time:"), seconds);
   auto* row = new QHBoxLayout;
-  width = number("WidthBox", 16, 8192);
-  height = number("HeightBox", 16, 8192);
+  width = makeSpinBox("WidthBox", 16, 8192);
+  height = makeSpinBox("HeightBox", 16, 8192);
   row->addWidget(width, 1);
   row->addWidget(new QLabel(QString::fromUtf8("\u00d7")));
   row->addWidget(height, 1);
@@ -280,10 +280,10 @@ void qSlicerFenestraPanel::buildQuality(QVBoxLayout* layout) {
 }
 
 void qSlicerFenestraPanel::buildAnimation(QVBoxLayout* layout) {
-  QFormLayout* form = section(layout, tr("Turntable"), true);
+  QFormLayout* form = addSection(layout, tr("Turntable"), true);
   animation = form->parentWidget();
   animation->hide();
-  frames = number("FramesBox", 1, 3600);
+  frames = makeSpinBox("FramesBox", 1, 3600);
   frames->setValue(36);
   form->addRow(tr("Frames:"), frames);
   degrees = new QDoubleSpinBox;
@@ -310,19 +310,19 @@ void qSlicerFenestraPanel::buildAnimation(QVBoxLayout* layout) {
 }
 
 void qSlicerFenestraPanel::buildResults(QVBoxLayout* layout) {
-  QFormLayout* form = section(layout, tr("Pictures"), false);
-  renders = nodes("vtkMRMLFenestraRenderNode", "RendersBox");
+  QFormLayout* form = addSection(layout, tr("Pictures"), false);
+  renders = makeNodeBox("vtkMRMLFenestraRenderNode", "RendersBox");
   renders->setNoneEnabled(true);
   renders->setRemoveEnabled(true);
   renders->setRenameEnabled(true);
   form->addRow(tr("Picture:"), renders);
-  description = words("DescriptionLabel");
+  description = makeLabel("DescriptionLabel");
   form->addRow(description);
   player = new qSlicerFenestraPlayer;
   player->setObjectName("Player");
   player->hide();
   form->addRow(player);
-  measures = words("MeasuresLabel");
+  measures = makeLabel("MeasuresLabel");
   measures->setTextFormat(Qt::RichText);
   form->addRow(measures);
   auto* row = new QHBoxLayout;
@@ -340,34 +340,34 @@ void qSlicerFenestraPanel::buildResults(QVBoxLayout* layout) {
   form->addRow(row);
 }
 
-void qSlicerFenestraPanel::offer(const qFenestraAbilities& abilities) {
+void qSlicerFenestraPanel::setCapabilities(const qFenestraCapabilities& abilities) {
   const QString best = tr("Best view of the focus");
-  offerChoice(view, 1, {best, "auto"}, abilities.takes("view", "auto"));
+  setChoiceOffered(view, 1, {best, "auto"}, abilities.hasChoice("view", "auto"));
   const bool presets = abilities.flags.contains("preset");
   showRow(m_subject, preset, presets);
   for (Choice anatomy : anatomies()) {
     const QString picture = ":/Icons/preset-" + anatomy.data + ".png";
     if (QFile::exists(picture))
       anatomy.icon = QIcon(picture);
-    offerChoice(preset, preset->count(), anatomy, abilities.names("preset", anatomy.data));
+    setChoiceOffered(preset, preset->count(), anatomy, abilities.mentions("preset", anatomy.data));
   }
-  look->offer(abilities);
+  look->setCapabilities(abilities);
   m_materials->setVisible(abilities.flags.contains("material"));
-  animation->setVisible(abilities.turns());
-  const bool steadies = abilities.turntable.contains("--steady");
-  showRow(qobject_cast<QFormLayout*>(animation->layout()), steady, steadies);
+  animation->setVisible(abilities.hasTurntable());
+  const bool hasSteady = abilities.turntable.contains("--steady");
+  showRow(qobject_cast<QFormLayout*>(animation->layout()), steady, hasSteady);
 }
 
-void qSlicerFenestraPanel::offerPresets(bool chosen) {
-  offerChoice(view, 0, {tr("As the anatomy preset"), "preset"}, chosen);
+void qSlicerFenestraPanel::offerPresetView(bool chosen) {
+  setChoiceOffered(view, 0, {tr("As the anatomy preset"), "preset"}, chosen);
 }
 
 void qSlicerFenestraPanel::showWithheld(const std::map<std::string, std::string>& what,
                                         bool files) {
-  constexpr std::size_t most = 200; // shown characters of a value
+  constexpr std::size_t maxShown = 200; // shown characters of a value
   QStringList lines = {tr("Stored in this scene, but not used:")};
   for (const auto& [name, value] : what)
-    lines << QString::fromStdString(name + ": " + value.substr(0, most));
+    lines << QString::fromStdString(name + ": " + value.substr(0, maxShown));
   withheld->setText(lines.join('\n'));
   withheld->setVisible(!what.empty());
   allow->setVisible(files);

@@ -23,7 +23,7 @@ class QSpinBox;
 class QToolButton;
 class QVBoxLayout;
 class vtkMRMLScene;
-struct qFenestraAbilities;
+struct qFenestraCapabilities;
 
 /// The module's widgets from top to bottom, without behaviour.
 class qSlicerFenestraPanel : public QWidget {
@@ -33,9 +33,9 @@ public:
   explicit qSlicerFenestraPanel(QWidget* parent = nullptr);
 
   /// Adds choices that only newer renderers support.
-  void offer(const qFenestraAbilities& abilities);
+  void setCapabilities(const qFenestraCapabilities& abilities);
   /// Adds or removes the view that the anatomy preset has; data: "preset".
-  void offerPresets(bool chosen);
+  void offerPresetView(bool chosen);
   /// Shows flags of the scene that are withheld, name and value; `files`: some name files.
   void showWithheld(const std::map<std::string, std::string>& what, bool files);
 
@@ -101,8 +101,8 @@ private:
   void buildRender(QVBoxLayout* layout);
   void buildAnimation(QVBoxLayout* layout);
   void buildResults(QVBoxLayout* layout);
-  QFormLayout* section(QVBoxLayout* layout, const QString& title, bool collapsed);
-  qMRMLNodeComboBox* nodes(const QString& type, const QString& name);
+  QFormLayout* addSection(QVBoxLayout* layout, const QString& title, bool collapsed);
+  qMRMLNodeComboBox* makeNodeBox(const QString& type, const QString& name);
 
   QFormLayout* m_subject;
   QWidget* m_materials; ///< section of the materials; hidden if the renderer has none

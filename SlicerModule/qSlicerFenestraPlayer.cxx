@@ -19,8 +19,8 @@ qSlicerFenestraPlayer::qSlicerFenestraPlayer(QWidget* parent) : QWidget(parent) 
   m_slider = new QSlider(Qt::Horizontal);
   m_slider->setObjectName("FrameSlider");
   m_slider->setToolTip(tr("The frame that is shown"));
-  m_where = new QLabel;
-  m_where->setObjectName("FrameLabel");
+  m_position = new QLabel;
+  m_position->setObjectName("FrameLabel");
   m_speed = new QSpinBox;
   m_speed->setObjectName("SpeedBox");
   m_speed->setRange(1, 60);
@@ -29,14 +29,14 @@ qSlicerFenestraPlayer::qSlicerFenestraPlayer(QWidget* parent) : QWidget(parent) 
   m_speed->setToolTip(tr("Frames a second"));
   row->addWidget(m_play);
   row->addWidget(m_slider, 1);
-  row->addWidget(m_where);
+  row->addWidget(m_position);
   row->addWidget(m_speed);
   // The timer restarts after each frame is drawn: a slow screen is not overrun.
   m_timer.setSingleShot(true);
   connect(&m_timer, &QTimer::timeout, this, &qSlicerFenestraPlayer::step);
   connect(m_play, &QToolButton::toggled, this, &qSlicerFenestraPlayer::play);
   connect(m_slider, &QSlider::valueChanged, this, [this](int frame) {
-    m_where->setText(tr("%1 of %2").arg(frame + 1).arg(m_slider->maximum() + 1));
+    m_position->setText(tr("%1 of %2").arg(frame + 1).arg(m_slider->maximum() + 1));
     emit frameChanged(frame);
   });
   play(false);
@@ -45,7 +45,7 @@ qSlicerFenestraPlayer::qSlicerFenestraPlayer(QWidget* parent) : QWidget(parent) 
 void qSlicerFenestraPlayer::setFrames(int count) {
   m_play->setChecked(false);
   m_slider->setRange(0, std::max(0, count - 1));
-  m_where->setText(tr("%1 of %2").arg(frame() + 1).arg(count));
+  m_position->setText(tr("%1 of %2").arg(frame() + 1).arg(count));
 }
 
 int qSlicerFenestraPlayer::frame() const {

@@ -32,7 +32,7 @@ private:
   QToolButton* m_play;
   QSlider* m_slider;
   QSpinBox* m_speed;
-  QLabel* m_where;
+  QLabel* m_position;
   QTimer m_timer;
 };
 

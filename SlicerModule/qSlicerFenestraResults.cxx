@@ -16,7 +16,7 @@ namespace {
 
 using Node = vtkMRMLFenestraRenderNode;
 
-QJsonObject statistics(const QString& folder) {
+QJsonObject readStatistics(const QString& folder) {
   QFile file(folder + "/stats.json");
   if (!file.open(QIODevice::ReadOnly))
     return {};
@@ -29,7 +29,7 @@ QString statsLine(const QJsonObject& stats) {
              : QObject::tr("%1 samples a pixel, noise %2, %3")
                    .arg(stats["samplesPerPixel"].toObject()["mean"].toDouble(), 0, 'f', 0)
                    .arg(stats["noiseFiltered"].toDouble(stats["noise"].toDouble()), 0, 'g', 2)
-                   .arg(qSlicerFenestraMeasures::duration(
+                   .arg(qSlicerFenestraMeasures::formatDuration(
                        stats["seconds"].toObject()["total"].toDouble()));
 }
 
@@ -44,7 +44,7 @@ QString turntableLine(Node* render) {
 void describe(Node* render, const QJsonObject& stats) {
   const QString line = render->IsTurntable() ? turntableLine(render) : statsLine(stats);
   render->SetDescription(line.toUtf8().constData());
-  const QJsonObject measures = qSlicerFenestraMeasures::kept(stats);
+  const QJsonObject measures = qSlicerFenestraMeasures::selectMeasures(stats);
   if (!measures.isEmpty())
     render->SetAttribute(Node::MeasuresAttribute,
                          QJsonDocument(measures).toJson(QJsonDocument::Compact).constData());
@@ -53,31 +53,31 @@ void describe(Node* render, const QJsonObject& stats) {
 } // namespace
 
 void qSlicerFenestraResults::add(Node* render, const QString& folder) {
-  describe(render, statistics(folder));
-  const auto isIts = [render, &folder](const Result& one) {
+  describe(render, readStatistics(folder));
+  const auto isReplaced = [render, &folder](const Result& one) {
     const bool replaced = !one.node || one.node == render;
     if (replaced && one.folder != folder)
       QDir(one.folder).removeRecursively();
     return replaced;
   };
-  m_all.erase(std::remove_if(m_all.begin(), m_all.end(), isIts), m_all.end());
+  m_all.erase(std::remove_if(m_all.begin(), m_all.end(), isReplaced), m_all.end());
   m_all.append({render, folder});
 }
 
-QString qSlicerFenestraResults::folderOf(Node* render) const {
+QString qSlicerFenestraResults::findFolder(Node* render) const {
   const auto found = std::find_if(m_all.begin(), m_all.end(),
                                   [render](const Result& one) { return one.node == render; });
   return render && found != m_all.end() ? found->folder : QString();
 }
 
-QString qSlicerFenestraResults::fileOf(Node* render, const QString& ending) const {
-  const QString folder = folderOf(render);
-  const QString file = folder + "/picture." + ending;
+QString qSlicerFenestraResults::findFile(Node* render, const QString& extension) const {
+  const QString folder = findFolder(render);
+  const QString file = folder + "/picture." + extension;
   return !folder.isEmpty() && QFileInfo::exists(file) ? file : QString();
 }
 
-QStringList qSlicerFenestraResults::framesOf(Node* turntable) const {
-  const QString folder = folderOf(turntable);
+QStringList qSlicerFenestraResults::findFrames(Node* turntable) const {
+  const QString folder = findFolder(turntable);
   QStringList files;
   if (!folder.isEmpty())
     for (const std::string& file : vtkSlicerFenestraLogic::GetFrameFiles(folder.toStdString()))
@@ -86,7 +86,7 @@ QStringList qSlicerFenestraResults::framesOf(Node* turntable) const {
 }
 
 bool qSlicerFenestraResults::lacksFrames(Node* render) const {
-  const QString folder = folderOf(render);
+  const QString folder = findFolder(render);
   return !folder.isEmpty() && render->IsTurntable() && QFileInfo::exists(folder + "/scene.mrml") &&
          vtkSlicerFenestraLogic::GetNumberOfFrames(render) <
              QString::fromStdString(render->GetFlag("frames")).toInt();

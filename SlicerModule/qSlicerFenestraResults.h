@@ -20,11 +20,11 @@ public:
   void clear() { m_all.clear(); }
 
   /// Folder of a render; empty: not made in this session.
-  QString folderOf(vtkMRMLFenestraRenderNode* render) const;
+  QString findFolder(vtkMRMLFenestraRenderNode* render) const;
   /// The picture's file as written; empty: none.
-  QString fileOf(vtkMRMLFenestraRenderNode* render, const QString& ending) const;
+  QString findFile(vtkMRMLFenestraRenderNode* render, const QString& extension) const;
   /// The turntable's frame files; empty: none.
-  QStringList framesOf(vtkMRMLFenestraRenderNode* turntable) const;
+  QStringList findFrames(vtkMRMLFenestraRenderNode* turntable) const;
   /// True for a turntable without all of its frames, whose scene file still exists.
   bool lacksFrames(vtkMRMLFenestraRenderNode* render) const;
 

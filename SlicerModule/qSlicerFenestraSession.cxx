@@ -27,7 +27,7 @@ qFenestraOutcome failure(const QString& message, const QString& details = {}) {
 }
 
 /// The renderer's message, without names of files in this session's folder.
-QString inWords(QString message, const QString& folder) {
+QString toUserText(QString message, const QString& folder) {
   const int colon = message.indexOf(": ");
   if (colon > 0 && message.startsWith(folder))
     message.remove(0, colon + 2);
@@ -37,17 +37,17 @@ QString inWords(QString message, const QString& folder) {
 }
 
 /// Pauses drawing of the views, which then are drawn once, after all additions.
-struct Paused {
-  explicit Paused(vtkMRMLApplicationLogic* logic) : application(logic) {
+struct RenderPause {
+  explicit RenderPause(vtkMRMLApplicationLogic* logic) : application(logic) {
     if (application)
       application->PauseRender();
   }
-  ~Paused() {
+  ~RenderPause() {
     if (application)
       application->ResumeRender();
   }
-  Paused(const Paused&) = delete;
-  Paused& operator=(const Paused&) = delete;
+  RenderPause(const RenderPause&) = delete;
+  RenderPause& operator=(const RenderPause&) = delete;
 
   vtkSmartPointer<vtkMRMLApplicationLogic> application;
 };
@@ -63,32 +63,34 @@ qSlicerFenestraSession::qSlicerFenestraSession(vtkSlicerFenestraLogic* logic,
       m_queue(program) {
   m_worker.setMaxThreadCount(1);
   constexpr int interval = 60; // ms; a drag's changes are merged
-  m_soon.setSingleShot(true);
-  m_soon.setInterval(interval);
+  m_refreshTimer.setSingleShot(true);
+  m_refreshTimer.setInterval(interval);
   m_preview.setDelay(0);
-  connect(&m_soon, &QTimer::timeout, this, &qSlicerFenestraSession::follow);
+  connect(&m_refreshTimer, &QTimer::timeout, this, &qSlicerFenestraSession::updatePreview);
   connect(&m_preview, &qFenestraPreview::refreshed, this, &qSlicerFenestraSession::showPreview);
   connect(&m_preview, &qFenestraPreview::refused, this, [this](const QString& message) {
-    emit previewRefused(inWords(message, m_files->folder.path()));
+    emit previewRefused(toUserText(message, m_files->folder.path()));
   });
   connect(&m_preview, &qFenestraPreview::ended, this, [this](const qFenestraOutcome& outcome) {
     if (outcome.kind == Ended::failed)
-      emit previewRefused(inWords(outcome.message, m_files->folder.path()));
+      emit previewRefused(toUserText(outcome.message, m_files->folder.path()));
   });
   connect(&m_queue, &qFenestraQueue::started, this, [this](int id) {
-    m_watch.start();
+    m_renderTime.start();
     emit started(m_renders[id].node);
   });
-  connect(&m_queue, &qFenestraQueue::progressed, this, [this](int id, double part) {
+  connect(&m_queue, &qFenestraQueue::progressed, this, [this](int id, double fraction) {
     if (Node* node = m_renders[id].node)
-      node->SetProgress(part);
-    emit progressed(m_renders[id].node, part, static_cast<double>(m_watch.elapsed()) / 1000.0);
+      node->SetProgress(fraction);
+    emit progressed(m_renders[id].node, fraction,
+                    static_cast<double>(m_renderTime.elapsed()) / 1000.0);
   });
   connect(&m_queue, &qFenestraQueue::commented, this,
           [this](int, const QString& words) { emit reached(words); });
   connect(&m_queue, &qFenestraQueue::ended, this, &qSlicerFenestraSession::finishRender);
-  connect(&m_question, &qFenestraQuestion::told, this, &qSlicerFenestraSession::learned);
-  connect(&m_materials, &qFenestraMaterialsQuestion::told, this,
+  connect(&m_capabilityQuery, &qFenestraCapabilityQuery::told, this,
+          &qSlicerFenestraSession::learned);
+  connect(&m_materials, &qFenestraMaterialsQuery::told, this,
           &qSlicerFenestraSession::materialsTold);
   connect(this, &qSlicerFenestraSession::ended, this, [](Node*, const qFenestraOutcome& outcome) {
     if (outcome.kind == Ended::failed)
@@ -101,7 +103,7 @@ qSlicerFenestraSession::qSlicerFenestraSession(vtkSlicerFenestraLogic* logic,
 qSlicerFenestraSession::~qSlicerFenestraSession() {
   disconnect(&m_queue, nullptr, this, nullptr);
   disconnect(&m_preview, nullptr, this, nullptr);
-  disconnect(&m_question, nullptr, this, nullptr);
+  disconnect(&m_capabilityQuery, nullptr, this, nullptr);
   disconnect(&m_materials, nullptr, this, nullptr);
   m_preview.stop();
   m_worker.clear();
@@ -113,24 +115,24 @@ void qSlicerFenestraSession::removeFolder(const QString& folder) {
     QDir(folder).removeRecursively();
 }
 
-void qSlicerFenestraSession::learn() {
-  m_question.ask(m_program);
+void qSlicerFenestraSession::queryCapabilities() {
+  m_capabilityQuery.request(m_program);
 }
 
-void qSlicerFenestraSession::learnMaterials(const std::vector<SlicerExport::Segment>& segments) {
-  if (segments == m_asked)
+void qSlicerFenestraSession::queryMaterials(const std::vector<SlicerExport::Segment>& segments) {
+  if (segments == m_queriedSegments)
     return;
-  m_asked = segments;
+  m_queriedSegments = segments;
   if (!segments.empty())
-    m_materials.ask(m_program, segments, m_files->folder.path());
+    m_materials.request(m_program, segments, m_files->folder.path());
 }
 
-void qSlicerFenestraSession::work(const std::function<void()>& job) {
+void qSlicerFenestraSession::runInWorker(const std::function<void()>& job) {
   m_worker.start(QRunnable::create(job));
 }
 
 /// Runs the job in the main thread, unless this object is gone by then.
-void qSlicerFenestraSession::later(const std::function<void()>& job) {
+void qSlicerFenestraSession::runInMainThread(const std::function<void()>& job) {
   QMetaObject::invokeMethod(this, job, Qt::QueuedConnection);
 }
 
@@ -138,14 +140,14 @@ void qSlicerFenestraSession::write(
     const SlicerExport::Contents& contents,
     const std::function<void(const QString& scene, const QString& failure)>& then) {
   const auto shared = std::make_shared<SlicerExport::Contents>(contents);
-  work([this, shared, files = m_files, then] {
+  runInWorker([this, shared, files = m_files, then] {
     QString scene, message;
     try {
       scene = QString::fromStdString(files->writer.write(*shared).string());
     } catch (const std::exception& error) {
       message = QString::fromUtf8(error.what());
     }
-    later([scene, message, then] { then(scene, message); });
+    runInMainThread([scene, message, then] { then(scene, message); });
   });
 }
 
@@ -164,8 +166,9 @@ vtkMRMLFenestraRenderNode* qSlicerFenestraSession::render(Node* settings, Kind k
   }
   m_preview.stop();
   Node* node = m_logic->AddRender(settings, kind == Kind::turntable);
-  node->SetFlags(SlicerExport::withMaterialsOf(contents.segmentation.segments, node->GetFlags()));
-  const int id = ++m_last;
+  node->SetFlags(
+      SlicerExport::filterMaterialFlags(contents.segmentation.segments, node->GetFlags()));
+  const int id = ++m_lastId;
   m_renders[id] = {node, m_files, {}};
   const bool withSurface = vtkSlicerFenestraLogic::HasSurface(node->GetFlags()) &&
                            !contents.segmentation.segments.empty();
@@ -189,9 +192,9 @@ void qSlicerFenestraSession::submit(int id, const SlicerExport::Contents& conten
     try {
       const SlicerExport::Contents now =
           m_logic->Snapshot(render.node, m_files->folder.path().toStdString());
-      const bool isWhole =
+      const bool isUnchanged =
           now.volumeKey == contents.volumeKey && now.segmentationKey == contents.segmentationKey;
-      if (!isWhole && tries > 0)
+      if (!isUnchanged && tries > 0)
         return submit(id, now, withSurface, tries - 1);
     } catch (const SlicerExport::UserError& error) {
       return endRender(id, failure(QString::fromUtf8(error.what())));
@@ -204,7 +207,7 @@ Node* qSlicerFenestraSession::start(Node* settings, bool turntable) {
   return render(settings, turntable ? Kind::turntable : Kind::picture);
 }
 
-bool qSlicerFenestraSession::isUnderWay(Node* node) const {
+bool qSlicerFenestraSession::isActive(Node* node) const {
   return std::any_of(m_renders.begin(), m_renders.end(),
                      [node](const Render& render) { return render.node == node; });
 }
@@ -212,11 +215,11 @@ bool qSlicerFenestraSession::isUnderWay(Node* node) const {
 void qSlicerFenestraSession::waitFor(Node* node) {
   QEventLoop loop;
   connect(this, &qSlicerFenestraSession::ended, &loop, [this, node, &loop] {
-    if (!isUnderWay(node))
+    if (!isActive(node))
       loop.quit();
   });
   connect(this, &QObject::destroyed, &loop, &QEventLoop::quit);
-  if (isUnderWay(node))
+  if (isActive(node))
     loop.exec(QEventLoop::ExcludeUserInputEvents);
 }
 
@@ -230,15 +233,15 @@ QStringList qSlicerFenestraSession::arguments(Node* render, const QString& scene
 }
 
 bool qSlicerFenestraSession::canResume(Node* turntable) const {
-  return m_results.lacksFrames(turntable) && !isUnderWay(turntable);
+  return m_results.lacksFrames(turntable) && !isActive(turntable);
 }
 
 void qSlicerFenestraSession::resume(Node* turntable) {
   if (!canResume(turntable))
     return;
   m_preview.stop();
-  const int id = ++m_last;
-  const QString folder = m_results.folderOf(turntable);
+  const int id = ++m_lastId;
+  const QString folder = m_results.findFolder(turntable);
   m_renders[id] = {turntable, m_files, folder};
   m_queue.add({id, arguments(turntable, folder + "/scene.mrml", false), folder});
 }
@@ -268,13 +271,14 @@ void qSlicerFenestraSession::finishRender(int id, const qFenestraOutcome& outcom
   const QString folder = m_renders[id].folder;
   emit renderStopped();
   Node* node = m_renders[id].node;
-  const bool turns = node && node->IsTurntable(); // finished frames are kept, whatever happens
-  const bool isThere =
-      turns ? !vtkSlicerFenestraLogic::GetFrameFiles(folder.toStdString()).empty()
-            : outcome.kind != Ended::failed && QFileInfo::exists(folder + "/radiance.nrrd");
-  if (!isThere)
+  const bool isTurntable =
+      node && node->IsTurntable(); // finished frames are kept, whatever happens
+  const bool hasFiles =
+      isTurntable ? !vtkSlicerFenestraLogic::GetFrameFiles(folder.toStdString()).empty()
+                  : outcome.kind != Ended::failed && QFileInfo::exists(folder + "/radiance.nrrd");
+  if (!hasFiles)
     return endRender(id, outcome);
-  work([this, id, outcome, folder] {
+  runInWorker([this, id, outcome, folder] {
     const auto result = std::make_shared<FenestraResult>();
     QString message;
     try {
@@ -282,11 +286,11 @@ void qSlicerFenestraSession::finishRender(int id, const qFenestraOutcome& outcom
     } catch (const std::exception& error) {
       message = QString::fromUtf8(error.what());
     }
-    later([this, id, outcome, result, message] {
+    runInMainThread([this, id, outcome, result, message] {
       if (!message.isEmpty())
         return endRender(id,
                          failure(tr("The picture could not be read back. Press Repeat."), message));
-      const auto paused = std::make_shared<Paused>(m_logic->GetMRMLApplicationLogic());
+      const auto paused = std::make_shared<RenderPause>(m_logic->GetMRMLApplicationLogic());
       addResult(id, outcome, [this, result, paused](Node* node, int step) {
         m_logic->AddResult(node, *result, step);
       });
@@ -301,7 +305,8 @@ void qSlicerFenestraSession::addResult(int id, const qFenestraOutcome& outcome,
   const bool open = node && node->GetScene();
   if (open && step < vtkSlicerFenestraLogic::ResultSteps) {
     add(node, step);
-    return later([this, id, outcome, add, step] { addResult(id, outcome, add, step + 1); });
+    return runInMainThread(
+        [this, id, outcome, add, step] { addResult(id, outcome, add, step + 1); });
   }
   if (open) {
     m_results.add(node, m_renders[id].folder);
@@ -312,21 +317,21 @@ void qSlicerFenestraSession::addResult(int id, const qFenestraOutcome& outcome,
 void qSlicerFenestraSession::endRender(int id, const qFenestraOutcome& outcome) {
   const Render render = m_renders.take(id);
   vtkSmartPointer<Node> node = render.node.GetPointer();
-  const bool kept = node && node->GetScene() && node->GetNodeReference(Node::PictureRole);
-  if (!kept || !canResume(node)) // resuming needs these files
+  const bool hasResult = node && node->GetScene() && node->GetNodeReference(Node::PictureRole);
+  if (!hasResult || !canResume(node)) // resuming needs these files
     for (const char* file : {"scene.mrml", "volume.nrrd", "segmentation.seg.nrrd", "roi.mrk.json"})
       if (!render.folder.isEmpty())
         QFile::remove(render.folder + "/" + file);
-  if (!kept)
+  if (!hasResult)
     removeFolder(render.folder);
   if (node)
-    node->EndRender(kept ? std::string() : outcome.message.toStdString());
-  if (node && !kept && node->GetScene())
+    node->EndRender(hasResult ? std::string() : outcome.message.toStdString());
+  if (node && !hasResult && node->GetScene())
     node->GetScene()->RemoveNode(node);
   emit ended(
-      kept ? node.GetPointer() : nullptr,
-      {outcome.kind, inWords(outcome.message, render.files->folder.path()), outcome.details});
-  if (!rendering())
+      hasResult ? node.GetPointer() : nullptr,
+      {outcome.kind, toUserText(outcome.message, render.files->folder.path()), outcome.details});
+  if (!isRendering())
     refresh();
 }
 

@@ -44,7 +44,7 @@ public:
   /// `ended` reports the reason.
   vtkMRMLFenestraRenderNode* render(vtkMRMLFenestraRenderNode* settings, Kind kind = Kind::picture);
   vtkMRMLFenestraRenderNode* start(vtkMRMLFenestraRenderNode* settings, bool turntable) override;
-  bool isUnderWay(vtkMRMLFenestraRenderNode* render) const override;
+  bool isActive(vtkMRMLFenestraRenderNode* render) const override;
   void waitFor(vtkMRMLFenestraRenderNode* render) override;
   /// True if the turntable is incomplete and can be resumed here.
   bool canResume(vtkMRMLFenestraRenderNode* turntable) const;
@@ -53,17 +53,17 @@ public:
   /// Ends the render under way, keeping finished results; a second call discards them.
   void stop() override;
   /// True once the render under way has been asked to end.
-  bool stopping() const { return rendering() && m_renders.first().stopped; }
+  bool isStopping() const { return isRendering() && m_renders.first().stopped; }
   /// Ends all renders and drops results and files of the closed scene.
   void closeScene();
-  bool rendering() const { return !m_renders.isEmpty(); }
-  int waiting() const { return rendering() ? static_cast<int>(m_renders.size()) - 1 : 0; }
+  bool isRendering() const { return !m_renders.isEmpty(); }
+  int waitingCount() const { return isRendering() ? static_cast<int>(m_renders.size()) - 1 : 0; }
 
   /// Asks the renderer what it can do, which `learned` tells.
-  void learn();
+  void queryCapabilities();
   /// Asks what the renderer makes the segments of, which `materialsTold` tells; the same segments
   /// are not asked about again.
-  void learnMaterials(const std::vector<SlicerExport::Segment>& segments);
+  void queryMaterials(const std::vector<SlicerExport::Segment>& segments);
   /// Previews the settings from now on; null: ends the preview.
   void preview(vtkMRMLFenestraRenderNode* settings);
 
@@ -80,14 +80,14 @@ public slots:
 
 signals:
   /// Abilities of the renderer, soon after learn().
-  void learned(const qFenestraAbilities& abilities);
+  void learned(const qFenestraCapabilities& abilities);
   void materialsTold(const qFenestraMaterials& materials);
-  void previewed(const QImage& picture, const qFenestraPicture& what);
+  void previewed(const QImage& picture, const qFenestraPreviewImage& what);
   /// A sentence for the user; the last preview stays.
   void previewRefused(const QString& message);
   void started(vtkMRMLFenestraRenderNode* render);
   /// `part`: finished share, 0 to 1; `seconds`: time so far.
-  void progressed(vtkMRMLFenestraRenderNode* render, double part, double seconds);
+  void progressed(vtkMRMLFenestraRenderNode* render, double fraction, double seconds);
   /// Samples and noise of the render under way, in words.
   void reached(const QString& words);
   /// The process of the render under way has ended; its result is not read yet.
@@ -110,8 +110,8 @@ private:
   };
 
   static void removeFolder(const QString& folder); ///< empty: none
-  void work(const std::function<void()>& job);
-  void later(const std::function<void()>& job);
+  void runInWorker(const std::function<void()>& job);
+  void runInMainThread(const std::function<void()>& job);
   void write(const SlicerExport::Contents& contents,
              const std::function<void(const QString& scene, const QString& failure)>& then);
   QStringList arguments(vtkMRMLFenestraRenderNode* render, const QString& scene,
@@ -122,13 +122,13 @@ private:
                  const std::function<void(vtkMRMLFenestraRenderNode*, int)>& add, int step = 0);
   void endRender(int id, const qFenestraOutcome& outcome);
 
-  void follow();
+  void updatePreview();
   using Flags = std::map<std::string, std::string>;
   void startPreview(const SlicerExport::Contents& contents, const Flags& flags);
   Flags previewFlags(Flags flags, const SlicerExport::Contents& contents) const;
   QString propertyFile(const SlicerExport::Contents& contents) const;
-  void tellPreview(const QJsonObject& flags);
-  void showPreview(const qFenestraPicture& picture);
+  void sendToPreview(const QJsonObject& flags);
+  void showPreview(const qFenestraPreviewImage& picture);
 
   vtkSlicerFenestraLogic* m_logic;
   QString m_program;
@@ -138,21 +138,21 @@ private:
   std::unique_ptr<qFenestraFolder> m_sample;
   QThreadPool m_worker;
 
-  qFenestraQuestion m_question;
-  qFenestraMaterialsQuestion m_materials;
-  std::vector<SlicerExport::Segment> m_asked; ///< segments of the last question
+  qFenestraCapabilityQuery m_capabilityQuery;
+  qFenestraMaterialsQuery m_materials;
+  std::vector<SlicerExport::Segment> m_queriedSegments; ///< segments of the last question
   qFenestraQueue m_queue;
   QMap<int, Render> m_renders; ///< under way and waiting
   qSlicerFenestraResults m_results;
-  QElapsedTimer m_watch;
-  int m_last = 0;
+  QElapsedTimer m_renderTime;
+  int m_lastId = 0;
 
   qFenestraPreview m_preview;
-  QTimer m_soon; ///< merges changes within a short time
+  QTimer m_refreshTimer; ///< merges changes within a short time
   vtkWeakPointer<vtkMRMLFenestraRenderNode> m_previewed;
   std::string m_shownData; ///< data of the preview's scene
   QString m_previewFolder;
-  QJsonObject m_told;
+  QJsonObject m_sentFlags;
   bool m_starting = false;
 };
 

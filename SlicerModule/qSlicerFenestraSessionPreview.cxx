@@ -19,7 +19,7 @@ namespace {
 using Node = vtkMRMLFenestraRenderNode;
 
 /// Data whose change requires a new preview: volume, segmentation, transforms, crop.
-std::string dataOf(const SlicerExport::Contents& contents) {
+std::string makeDataKey(const SlicerExport::Contents& contents) {
   std::ostringstream text;
   text.precision(17);
   text << contents.volumeKey << '\n' << contents.segmentationKey << '\n';
@@ -52,22 +52,22 @@ void qSlicerFenestraSession::preview(Node* settings) {
 }
 
 void qSlicerFenestraSession::refresh() {
-  if (m_previewed && !m_soon.isActive())
-    m_soon.start();
+  if (m_previewed && !m_refreshTimer.isActive())
+    m_refreshTimer.start();
 }
 
-void qSlicerFenestraSession::follow() {
-  if (!m_previewed || !m_previewed->GetScene() || rendering())
+void qSlicerFenestraSession::updatePreview() {
+  if (!m_previewed || !m_previewed->GetScene() || isRendering())
     return;
   if (m_starting)
-    return m_soon.start(); // changes are sent then
+    return m_refreshTimer.start(); // changes are sent then
   try {
     const SlicerExport::Contents contents =
         m_logic->Snapshot(m_previewed, m_files->folder.path().toStdString());
     const Flags flags = previewFlags(m_logic->GetFlags(m_previewed), contents);
-    if (!m_preview.running() || dataOf(contents) != m_shownData)
+    if (!m_preview.running() || makeDataKey(contents) != m_shownData)
       return startPreview(contents, flags);
-    tellPreview(qFenestraPreview::valuesOf(flags));
+    sendToPreview(qFenestraPreview::toJson(flags));
   } catch (const SlicerExport::UserError& error) {
     emit previewRefused(QString::fromUtf8(error.what()));
   }
@@ -76,17 +76,17 @@ void qSlicerFenestraSession::follow() {
 void qSlicerFenestraSession::startPreview(const SlicerExport::Contents& contents,
                                           const Flags& flags) {
   m_starting = true;
-  m_shownData = dataOf(contents);
+  m_shownData = makeDataKey(contents);
   write(contents, [this, flags, files = m_files](const QString& scene, const QString& message) {
     m_starting = false;
     if (!message.isEmpty() || !m_previewed)
       return message.isEmpty() ? void() : emit previewRefused(message);
     QStringList arguments = {scene, "--output=preview.png"};
-    for (const std::string& argument : SlicerExport::argumentsOf(flags))
+    for (const std::string& argument : SlicerExport::toArguments(flags))
       arguments << QString::fromStdString(argument);
-    m_told = qFenestraPreview::valuesOf(flags);
+    m_sentFlags = qFenestraPreview::toJson(flags);
     const QString folder = QFileInfo(scene).absolutePath();
-    if (rendering() || files != m_files) // the scene was closed meanwhile
+    if (isRendering() || files != m_files) // the scene was closed meanwhile
       return removeFolder(folder);
     m_preview.start(m_program, arguments, folder, files);
     removeFolder(m_previewFolder);
@@ -97,7 +97,7 @@ void qSlicerFenestraSession::startPreview(const SlicerExport::Contents& contents
 /// The node's flags, adapted to a preview.
 std::map<std::string, std::string>
 qSlicerFenestraSession::previewFlags(Flags flags, const SlicerExport::Contents& contents) const {
-  flags = SlicerExport::withMaterialsOf(contents.segmentation.segments, std::move(flags));
+  flags = SlicerExport::filterMaterialFlags(contents.segmentation.segments, std::move(flags));
   for (const char* name : {"seconds", "seed", "samples"})
     flags.erase(name);
   for (const std::string& name : Node::GetTurntableFlagNames())
@@ -113,7 +113,7 @@ qSlicerFenestraSession::previewFlags(Flags flags, const SlicerExport::Contents& 
 QString qSlicerFenestraSession::propertyFile(const SlicerExport::Contents& contents) const {
   const QByteArray text = QByteArray::fromStdString(contents.property);
   const QString name = QCryptographicHash::hash(text, QCryptographicHash::Sha1).toHex();
-  QFile file(m_files->folder.filePath(name + QString::fromStdString(contents.propertyEnding)));
+  QFile file(m_files->folder.filePath(name + QString::fromStdString(contents.propertyExtension)));
   if (file.size() != text.size() &&
       (!file.open(QIODevice::WriteOnly) || file.write(text) != text.size()))
     throw SlicerExport::UserError("The transfer function could not be written. Is the disk "
@@ -121,20 +121,20 @@ QString qSlicerFenestraSession::propertyFile(const SlicerExport::Contents& conte
   return file.fileName();
 }
 
-void qSlicerFenestraSession::tellPreview(const QJsonObject& flags) {
+void qSlicerFenestraSession::sendToPreview(const QJsonObject& flags) {
   QJsonObject changed;
-  for (auto flag = m_told.begin(); flag != m_told.end(); ++flag)
+  for (auto flag = m_sentFlags.begin(); flag != m_sentFlags.end(); ++flag)
     if (!flags.contains(flag.key()))
       changed[flag.key()] = QJsonValue::Null; // no longer given
   for (auto flag = flags.begin(); flag != flags.end(); ++flag)
-    if (m_told.value(flag.key()) != flag.value())
+    if (m_sentFlags.value(flag.key()) != flag.value())
       changed[flag.key()] = flag.value();
-  m_told = flags;
+  m_sentFlags = flags;
   if (!changed.isEmpty())
     m_preview.change(changed);
 }
 
-void qSlicerFenestraSession::showPreview(const qFenestraPicture& picture) {
+void qSlicerFenestraSession::showPreview(const qFenestraPreviewImage& picture) {
   const QImage image(m_preview.folder() + "/" + picture.files.value(0));
   if (!image.isNull())
     emit previewed(image, picture);

@@ -38,11 +38,11 @@ using Node = vtkMRMLFenestraRenderNode;
 constexpr const char* rigAttribute = "Fenestra.Lights"; ///< value: "rig key fill rim environment"
 
 /// Flag value of a limit; empty, thus not passed: no limit.
-std::string limit(double value) {
+std::string toLimitFlag(double value) {
   return value > 0.0 ? QString::number(value, 'g', 6).toStdString() : std::string();
 }
 
-const char* idOf(vtkMRMLNode* node) {
+const char* getId(vtkMRMLNode* node) {
   return node ? node->GetID() : nullptr;
 }
 
@@ -144,7 +144,7 @@ QList<qSlicerFenestraSegment> qSlicerFenestraSettings::focusSegments() const {
   return focus;
 }
 
-void qSlicerFenestraSettings::watch(vtkWeakPointer<vtkMRMLNode>& watched, vtkMRMLNode* node) {
+void qSlicerFenestraSettings::observe(vtkWeakPointer<vtkMRMLNode>& watched, vtkMRMLNode* node) {
   if (watched == node)
     return;
   const unsigned long events[] = {vtkCommand::ModifiedEvent,
@@ -160,7 +160,7 @@ void qSlicerFenestraSettings::watch(vtkWeakPointer<vtkMRMLNode>& watched, vtkMRM
   watched = node;
 }
 
-void qSlicerFenestraSettings::watchCamera() {
+void qSlicerFenestraSettings::observeCamera() {
   vtkMRMLCameraNode* camera = m_logic->GetFollowedCamera(m_node);
   if (m_camera == camera)
     return;
@@ -168,7 +168,7 @@ void qSlicerFenestraSettings::watchCamera() {
   m_camera = camera;
 }
 
-void qSlicerFenestraSettings::watchPlane() {
+void qSlicerFenestraSettings::observePlane() {
   vtkMRMLNode* plane = m_node->GetNodeReference(Node::PlaneRole);
   if (m_plane == plane)
     return;
@@ -212,10 +212,10 @@ void qSlicerFenestraSettings::show() {
     vtkMRMLNode* segmentation = m_node->GetNodeReference(Node::SegmentationRole);
     m_panel->volume->setCurrentNode(volume);
     m_panel->segmentation->setCurrentNode(segmentation);
-    watch(m_volume, volume);
-    watch(m_segmentation, segmentation);
-    watchCamera();
-    watchPlane();
+    observe(m_volume, volume);
+    observe(m_segmentation, segmentation);
+    observeCamera();
+    observePlane();
     showSegments();
     showSubject(flags);
     m_panel->materials->show(flags);
@@ -263,10 +263,10 @@ void qSlicerFenestraSettings::showSegments() {
 
 void qSlicerFenestraSettings::showSubject(const Flags& flags) {
   using Plane = qSlicerFenestraClipping::Plane;
-  const QString preset = flagOf(flags, "preset");
-  const auto verdict = SlicerExport::verdictOn("preset", preset.toStdString());
-  (verdict == SlicerExport::Verdict::file ? chooseOrAdd : choose)(m_panel->preset, preset);
-  m_panel->offerPresets(hasPreset());
+  const QString preset = findFlag(flags, "preset");
+  const auto verdict = SlicerExport::checkFlag("preset", preset.toStdString());
+  (verdict == SlicerExport::Verdict::file ? selectOrAdd : selectData)(m_panel->preset, preset);
+  m_panel->offerPresetView(hasPreset());
   m_panel->focusHint->setVisible(hasPreset() && m_node->GetFocus().empty());
   const bool isPlaced = flags.count("plane") > 0;
   m_panel->clipping->show(flags,
@@ -279,8 +279,8 @@ void qSlicerFenestraSettings::showSubject(const Flags& flags) {
 void qSlicerFenestraSettings::showView(const Flags& flags) {
   vtkMRMLNode* view3D = m_node->GetNodeReference(Node::ViewRole);
   const bool byPreset = hasPreset() && !view3D && flags.count("position") == 0;
-  const QString word = flagOf(flags, "view");
-  choose(m_panel->view, word.isEmpty() && byPreset ? "preset" : word);
+  const QString word = findFlag(flags, "view");
+  selectData(m_panel->view, word.isEmpty() && byPreset ? "preset" : word);
   if (auto* model = qobject_cast<QStandardItemModel*>(m_panel->view->model()))
     if (const int best = m_panel->view->findData("auto"); best >= 0)
       model->item(best)->setEnabled(hasPreset() || !m_node->GetFocus().empty());
@@ -293,24 +293,24 @@ void qSlicerFenestraSettings::showView(const Flags& flags) {
 }
 
 void qSlicerFenestraSettings::showQuality(const Flags& flags) {
-  const int samples = flagOf(flags, "samples").toInt();
-  const double noise = flagOf(flags, "noise").toDouble();
-  const double seconds = flagOf(flags, "seconds").toDouble();
+  const int samples = findFlag(flags, "samples").toInt();
+  const double noise = findFlag(flags, "noise").toDouble();
+  const double seconds = findFlag(flags, "seconds").toDouble();
   const int index =
       m_panel->quality->findData(QString("%1 %2 %3").arg(samples).arg(noise).arg(seconds));
   m_panel->quality->setCurrentIndex(index < 0 ? m_panel->quality->count() - 1 : index);
   m_panel->samples->setValue(samples);
   m_panel->noise->setValue(noise);
   m_panel->seconds->setValue(seconds);
-  const QStringList size = flagOf(flags, "size").split('x');
+  const QStringList size = findFlag(flags, "size").split('x');
   m_panel->width->setValue(size.value(0, "512").toInt());
   m_panel->height->setValue(size.value(1, "512").toInt());
   if (flags.count("frames") == 0) // flags of a repeated picture, not of a turntable
     return;
-  m_panel->frames->setValue(flagOf(flags, "frames").toInt());
-  m_panel->degrees->setValue(flags.count("degrees") > 0 ? flagOf(flags, "degrees").toDouble()
+  m_panel->frames->setValue(findFlag(flags, "frames").toInt());
+  m_panel->degrees->setValue(flags.count("degrees") > 0 ? findFlag(flags, "degrees").toDouble()
                                                         : 360.0);
-  m_panel->steady->setValue(flagOf(flags, "steady").toDouble());
+  m_panel->steady->setValue(findFlag(flags, "steady").toDouble());
 }
 
 // ---- from the panel to the node
@@ -325,19 +325,19 @@ void qSlicerFenestraSettings::take() {
       focus.push_back(m_panel->focus->item(i)->data(Qt::UserRole).toString().toStdString());
   m_node->SetFocus(focus);
   Flags flags = m_node->GetFlags();
-  flags["preset"] = chosenIn(m_panel->preset);
+  flags["preset"] = selectedData(m_panel->preset);
   takeClipping(flags);
   takeView(flags);
   m_panel->materials->take(flags);
   m_node->SetAttribute(rigAttribute, m_panel->look->take(flags).toUtf8().constData());
   flags["samples"] = std::to_string(m_panel->samples->value());
-  flags["noise"] = limit(m_panel->noise->value());
-  flags["seconds"] = limit(m_panel->seconds->value());
+  flags["noise"] = toLimitFlag(m_panel->noise->value());
+  flags["seconds"] = toLimitFlag(m_panel->seconds->value());
   flags["size"] =
       std::to_string(m_panel->width->value()) + "x" + std::to_string(m_panel->height->value());
   flags["frames"] = std::to_string(m_panel->frames->value());
   flags["degrees"] = QString::number(m_panel->degrees->value()).toStdString();
-  flags["steady"] = limit(m_panel->steady->value());
+  flags["steady"] = toLimitFlag(m_panel->steady->value());
   m_node->SetFlags(flags);
   m_node->EndModify(wasModifying);
 }
@@ -346,7 +346,7 @@ void qSlicerFenestraSettings::takeClipping(Flags& flags) {
   const qSlicerFenestraClipping& clipping = *m_panel->clipping;
   const bool isNode = clipping.plane() == qSlicerFenestraClipping::Plane::node;
   vtkMRMLNode* plane = isNode ? clipping.planeNode()->currentNode() : nullptr;
-  m_node->SetNodeReferenceID(Node::PlaneRole, idOf(plane));
+  m_node->SetNodeReferenceID(Node::PlaneRole, getId(plane));
   const bool byPreset = !flags["preset"].empty();
   clipping.take(flags, vtkSlicerFenestraLogic::GetPlaneFlag(plane),
                 byPreset || !flags["focus"].empty(), byPreset);
@@ -357,14 +357,14 @@ void qSlicerFenestraSettings::takeClipping(Flags& flags) {
 void qSlicerFenestraSettings::takePreset() {
   if (!m_node || m_showing)
     return;
-  const bool chosen = !chosenIn(m_panel->preset).empty();
+  const bool chosen = !selectedData(m_panel->preset).empty();
   {
     const QScopedValueRollback<bool> showing(m_showing, true);
-    m_panel->offerPresets(chosen);
+    m_panel->offerPresetView(chosen);
     if (chosen != hasPreset()) {
       m_panel->clipping->reset();
-      choose(m_panel->view, chosen ? "preset" : "");
-      m_panel->look->handBack();
+      selectData(m_panel->view, chosen ? "preset" : "");
+      m_panel->look->resetToPreset();
     }
   }
   take();
@@ -372,12 +372,12 @@ void qSlicerFenestraSettings::takePreset() {
 
 /// Takes the flags of the view. A 3-D view's camera is followed, or stored as it is now.
 void qSlicerFenestraSettings::takeView(Flags& flags) {
-  const std::string word = chosenIn(m_panel->view);
+  const std::string word = selectedData(m_panel->view);
   const bool byPreset = word == "preset";
   const bool best = word == "auto" && flags["preset"].empty() && flags["focus"].empty(); // no focus
   const std::string view = byPreset || best ? "" : word;
   m_node->SetNodeReferenceID(Node::ViewRole,
-                             byPreset ? nullptr : idOf(m_panel->view3D->currentNode()));
+                             byPreset ? nullptr : getId(m_panel->view3D->currentNode()));
   const bool frozen = flags.count("position") > 0;
   flags["view"] = view;
   if (view.empty() && !byPreset && !m_panel->follow->isChecked()) {
@@ -406,7 +406,7 @@ void qSlicerFenestraSettings::takeQuality() {
 
 void qSlicerFenestraSettings::takeVolume(vtkMRMLNode* node) {
   if (m_node && !m_showing)
-    m_node->SetNodeReferenceID(Node::VolumeRole, idOf(node));
+    m_node->SetNodeReferenceID(Node::VolumeRole, getId(node));
 }
 
 void qSlicerFenestraSettings::takeSegmentation(vtkMRMLNode* node) {
@@ -414,7 +414,7 @@ void qSlicerFenestraSettings::takeSegmentation(vtkMRMLNode* node) {
     return;
   m_panel->materials->reset();
   const int wasModifying = m_node->StartModify();
-  m_node->SetNodeReferenceID(Node::SegmentationRole, idOf(node));
+  m_node->SetNodeReferenceID(Node::SegmentationRole, getId(node));
   m_node->SetFocus({});
   m_node->SetFlag("material", ""); // changes of the other one's segments
   m_node->EndModify(wasModifying);

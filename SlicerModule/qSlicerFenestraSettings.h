@@ -58,9 +58,9 @@ private:
   void chooseDefaults();
   bool hasPreset() const;
   QList<qSlicerFenestraSegment> focusSegments() const;
-  void watch(vtkWeakPointer<vtkMRMLNode>& watched, vtkMRMLNode* node);
-  void watchCamera();
-  void watchPlane();
+  void observe(vtkWeakPointer<vtkMRMLNode>& watched, vtkMRMLNode* node);
+  void observeCamera();
+  void observePlane();
   void showSubject(const Flags& flags);
   void showView(const Flags& flags);
   void showQuality(const Flags& flags);

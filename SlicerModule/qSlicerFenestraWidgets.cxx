@@ -8,12 +8,12 @@
 
 namespace {
 
-constexpr int addedRole = Qt::UserRole + 1; ///< true: the item was added by chooseOrAdd
+constexpr int addedRole = Qt::UserRole + 1; ///< true: the item was added by selectOrAdd
 
 } // namespace
 
-QComboBox* qSlicerFenestraWidgets::choices(const QString& name, const QList<Choice>& all,
-                                           const QString& help) {
+QComboBox* qSlicerFenestraWidgets::makeComboBox(const QString& name, const QList<Choice>& all,
+                                                const QString& help) {
   auto* box = new QComboBox;
   box->setObjectName(name);
   box->setToolTip(help);
@@ -23,9 +23,9 @@ QComboBox* qSlicerFenestraWidgets::choices(const QString& name, const QList<Choi
   return box;
 }
 
-void qSlicerFenestraWidgets::offerChoice(QComboBox* box, int index, const Choice& choice,
-                                         bool offered) {
-  const QSignalBlocker unheard(box);
+void qSlicerFenestraWidgets::setChoiceOffered(QComboBox* box, int index, const Choice& choice,
+                                              bool offered) {
+  const QSignalBlocker blocker(box);
   const int found = box->findData(choice.data);
   if (offered && found < 0)
     box->insertItem(index, choice.icon, choice.text, choice.data);
@@ -33,12 +33,12 @@ void qSlicerFenestraWidgets::offerChoice(QComboBox* box, int index, const Choice
     box->removeItem(found);
 }
 
-void qSlicerFenestraWidgets::choose(QComboBox* box, const QString& data) {
+void qSlicerFenestraWidgets::selectData(QComboBox* box, const QString& data) {
   const int index = box->findData(data);
   box->setCurrentIndex(index < 0 ? 0 : index);
 }
 
-void qSlicerFenestraWidgets::chooseOrAdd(QComboBox* box, const QString& data) {
+void qSlicerFenestraWidgets::selectOrAdd(QComboBox* box, const QString& data) {
   if (!data.isEmpty() && box->findData(data) < 0) {
     const QString text = data.startsWith('{') ? QObject::tr("As stored (JSON)") : data;
     int at = box->findData(true, addedRole);
@@ -50,10 +50,10 @@ void qSlicerFenestraWidgets::chooseOrAdd(QComboBox* box, const QString& data) {
     box->setItemData(at, data);
     box->setItemData(at, true, addedRole);
   }
-  choose(box, data);
+  selectData(box, data);
 }
 
-std::string qSlicerFenestraWidgets::chosenIn(const QComboBox* box) {
+std::string qSlicerFenestraWidgets::selectedData(const QComboBox* box) {
   return box->currentData().toString().toStdString();
 }
 
@@ -63,8 +63,8 @@ void qSlicerFenestraWidgets::showRow(const QFormLayout* form, QWidget* editor, b
     label->setVisible(shown);
 }
 
-QString qSlicerFenestraWidgets::flagOf(const std::map<std::string, std::string>& flags,
-                                       const char* name) {
+QString qSlicerFenestraWidgets::findFlag(const std::map<std::string, std::string>& flags,
+                                         const char* name) {
   const auto found = flags.find(name);
   return found == flags.end() ? QString() : QString::fromStdString(found->second);
 }

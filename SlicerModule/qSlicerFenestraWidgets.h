@@ -21,19 +21,19 @@ struct Choice {
   QIcon icon = {};
 };
 
-QComboBox* choices(const QString& name, const QList<Choice>& all, const QString& help);
+QComboBox* makeComboBox(const QString& name, const QList<Choice>& all, const QString& help);
 /// Adds or removes a choice at `index`; the selection stays.
-void offerChoice(QComboBox* box, int index, const Choice& choice, bool offered);
+void setChoiceOffered(QComboBox* box, int index, const Choice& choice, bool offered);
 /// Selects the item with `data`, else the first.
-void choose(QComboBox* box, const QString& data);
+void selectData(QComboBox* box, const QString& data);
 /// Selects the item with `data`; adds one where there is none, in place of the last that was added.
-void chooseOrAdd(QComboBox* box, const QString& data);
-std::string chosenIn(const QComboBox* box);
+void selectOrAdd(QComboBox* box, const QString& data);
+std::string selectedData(const QComboBox* box);
 
 void showRow(const QFormLayout* form, QWidget* editor, bool shown);
 
 /// Value of a flag; empty: not given.
-QString flagOf(const std::map<std::string, std::string>& flags, const char* name);
+QString findFlag(const std::map<std::string, std::string>& flags, const char* name);
 
 } // namespace qSlicerFenestraWidgets
 

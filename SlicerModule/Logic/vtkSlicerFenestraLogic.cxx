@@ -25,15 +25,15 @@ vtkStandardNewMacro(vtkSlicerFenestraLogic);
 namespace {
 using Node = vtkMRMLFenestraRenderNode;
 
-std::string number(double value) {
+std::string formatNumber(double value) {
   std::ostringstream text;
   text.precision(17);
   text << value;
   return text.str();
 }
 
-std::string triple(const double* values) {
-  return number(values[0]) + "," + number(values[1]) + "," + number(values[2]);
+std::string formatTriple(const double* values) {
+  return formatNumber(values[0]) + "," + formatNumber(values[1]) + "," + formatNumber(values[2]);
 }
 
 } // namespace
@@ -129,7 +129,7 @@ void vtkSlicerFenestraLogic::StopRender() {
 
 bool vtkSlicerFenestraLogic::IsRendering(Node* render) {
   FenestraRenderer* renderer = this->Renderer ? this->Renderer() : nullptr;
-  return renderer && render && renderer->isUnderWay(render);
+  return renderer && render && renderer->isActive(render);
 }
 
 std::string vtkSlicerFenestraLogic::WriteScene(Node* render, const std::string& folder) {
@@ -174,7 +174,7 @@ std::vector<SlicerExport::Segment> vtkSlicerFenestraLogic::GetSegments(Node* ren
       render
           ? vtkMRMLSegmentationNode::SafeDownCast(render->GetNodeReference(Node::SegmentationRole))
           : nullptr;
-  return segmentation ? vtkSlicerFenestraSnapshot::SegmentsOf(segmentation)
+  return segmentation ? vtkSlicerFenestraSnapshot::ListSegments(segmentation)
                       : std::vector<SlicerExport::Segment>();
 }
 
@@ -205,15 +205,15 @@ std::map<std::string, std::string> vtkSlicerFenestraLogic::GetFlags(Node* render
 
 std::map<std::string, std::string>
 vtkSlicerFenestraLogic::GetCameraFlags(vtkMRMLCameraNode* camera) {
-  std::map<std::string, std::string> flags = {{"position", triple(camera->GetPosition())},
-                                              {"target", triple(camera->GetFocalPoint())},
-                                              {"up", triple(camera->GetViewUp())}};
+  std::map<std::string, std::string> flags = {{"position", formatTriple(camera->GetPosition())},
+                                              {"target", formatTriple(camera->GetFocalPoint())},
+                                              {"up", formatTriple(camera->GetViewUp())}};
   const bool parallel = camera->GetParallelProjection() != 0;
   flags["projection"] = parallel ? "orthographic" : "perspective";
   if (parallel)
-    flags["scale"] = number(camera->GetParallelScale());
+    flags["scale"] = formatNumber(camera->GetParallelScale());
   else
-    flags["angle"] = number(camera->GetViewAngle());
+    flags["angle"] = formatNumber(camera->GetViewAngle());
   return flags;
 }
 
@@ -224,7 +224,7 @@ std::string vtkSlicerFenestraLogic::GetPlaneFlag(vtkMRMLNode* node) {
   double origin[3], normal[3];
   plane->GetOriginWorld(origin);
   plane->GetNormalWorld(normal);
-  return triple(origin) + "," + triple(normal);
+  return formatTriple(origin) + "," + formatTriple(normal);
 }
 
 bool vtkSlicerFenestraLogic::HasSurface(const std::map<std::string, std::string>& flags) {
@@ -251,7 +251,7 @@ std::vector<std::string> vtkSlicerFenestraLogic::GetArguments(Node* render, bool
   const bool isFiltered = denoise == flags.end() || denoise->second != "off";
   if (isFiltered && flags.count("noise") > 0 && flags.count("noisetarget") == 0)
     arguments.push_back("--noisetarget=filtered"); // of the picture that is looked at
-  const std::vector<std::string> own = SlicerExport::argumentsOf(flags);
+  const std::vector<std::string> own = SlicerExport::toArguments(flags);
   arguments.insert(arguments.end(), own.begin(), own.end());
   return arguments;
 }

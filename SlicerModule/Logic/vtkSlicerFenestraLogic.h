@@ -40,7 +40,7 @@ public:
   virtual ~FenestraRenderer() = default;
   /// Adds a node for a render of the settings and queues it; null: the log says why not.
   virtual vtkMRMLFenestraRenderNode* start(vtkMRMLFenestraRenderNode* settings, bool turntable) = 0;
-  virtual bool isUnderWay(vtkMRMLFenestraRenderNode* render) const = 0;
+  virtual bool isActive(vtkMRMLFenestraRenderNode* render) const = 0;
   /// Returns when the render has ended; events are processed meanwhile, user input is not.
   virtual void waitFor(vtkMRMLFenestraRenderNode* render) = 0;
   /// Ends the render under way, keeping what is finished.
@@ -138,9 +138,9 @@ protected:
 private:
   vtkMRMLFenestraRenderNode* Start(vtkMRMLFenestraRenderNode* settings, bool turntable, bool wait);
   vtkMRMLSliceLogic* GetPictureView();
-  SlicerExport::Matrix BesideAnatomy(vtkMRMLFenestraRenderNode* render,
-                                     const SlicerExport::Matrix& ijkToRas);
-  void Own(vtkMRMLFenestraRenderNode* render, vtkMRMLNode* result);
+  SlicerExport::Matrix MoveOutsideVolume(vtkMRMLFenestraRenderNode* render,
+                                         const SlicerExport::Matrix& ijkToRas);
+  void MoveToRenderFolder(vtkMRMLFenestraRenderNode* render, vtkMRMLNode* result);
   void AddSurface(vtkMRMLFenestraRenderNode* render, vtkPolyData* surface);
   void AddFrames(vtkMRMLFenestraRenderNode* render, vtkImageData* frames);
   vtkMRMLVolumeNode* AddVolume(vtkMRMLFenestraRenderNode* render, const char* className,
@@ -148,7 +148,7 @@ private:
                                const SlicerExport::Matrix& ijkToRas);
 
   std::function<FenestraRenderer*()> Renderer;
-  int LayoutBefore = 3; ///< vtkMRMLLayoutNode::SlicerLayoutFourUpView
+  int PreviousLayout = 3; ///< vtkMRMLLayoutNode::SlicerLayoutFourUpView
 };
 
 #endif

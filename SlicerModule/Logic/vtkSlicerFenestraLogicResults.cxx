@@ -77,16 +77,16 @@ vtkSmartPointer<vtkImageData> ReadPictures(const std::vector<std::string>& files
   vtkNew<vtkImageFlip> flip;
   flip->SetInputConnection(reader->GetOutputPort());
   flip->SetFilteredAxis(1);
-  vtkNew<vtkImageExtractComponents> colours;
-  colours->SetInputConnection(flip->GetOutputPort());
-  colours->SetComponents(0, 1, 2);
+  vtkNew<vtkImageExtractComponents> colors;
+  colors->SetInputConnection(flip->GetOutputPort());
+  colors->SetComponents(0, 1, 2);
   flip->Update();
   vtkSmartPointer<vtkImageData> picture = flip->GetOutput();
   if (picture->GetNumberOfScalarComponents() == 4 &&
       picture->GetScalarType() == VTK_UNSIGNED_CHAR && !IsOpaque(picture))
     return picture;
-  colours->Update();
-  return colours->GetOutput();
+  colors->Update();
+  return colors->GetOutput();
 }
 
 std::string FrameFile(const std::string& folder, int frame) {
@@ -96,38 +96,38 @@ std::string FrameFile(const std::string& folder, int frame) {
 }
 
 /// Turns the slice view to the picture as the eye saw it: rows to the right, columns down.
-void FaceFrame(vtkMRMLVolumeNode* picture, int frame, vtkMRMLSliceNode* slice) {
+void AlignSliceWithFrame(vtkMRMLVolumeNode* picture, int frame, vtkMRMLSliceNode* slice) {
   double directions[3][3];
   picture->GetIJKToRASDirections(directions);
   vtkNew<vtkMatrix4x4> ijkToRas;
   picture->GetIJKToRASMatrix(ijkToRas);
   const int* size = picture->GetImageData()->GetDimensions();
   const double middle[4] = {0.5 * (size[0] - 1), 0.5 * (size[1] - 1), double(frame), 1.0};
-  double centre[4];
-  ijkToRas->MultiplyPoint(middle, centre);
+  double center[4];
+  ijkToRas->MultiplyPoint(middle, center);
   vtkNew<vtkMatrix4x4> toRas;
   for (int row = 0; row < 3; ++row) {
     toRas->SetElement(row, 0, directions[row][0]);
     toRas->SetElement(row, 1, -directions[row][1]);
     toRas->SetElement(row, 2, -directions[row][2]);
-    toRas->SetElement(row, 3, centre[row]);
+    toRas->SetElement(row, 3, center[row]);
   }
   slice->GetSliceToRAS()->DeepCopy(toRas);
   slice->UpdateMatrices();
 }
 
-vtkMRMLLayoutNode* LayoutOf(vtkMRMLScene* scene) {
+vtkMRMLLayoutNode* FindLayoutNode(vtkMRMLScene* scene) {
   return !scene ? nullptr
                 : vtkMRMLLayoutNode::SafeDownCast(scene->GetFirstNodeByClass("vtkMRMLLayoutNode"));
 }
 
-bool Shows(vtkMRMLSliceLogic* view, const char* picture) {
+bool IsShowing(vtkMRMLSliceLogic* view, const char* picture) {
   const char* shown = view->GetSliceCompositeNode()->GetBackgroundVolumeID();
   return picture && shown && std::strcmp(picture, shown) == 0;
 }
 
 /// Sets a grey window over the finite values.
-void ShowFinite(vtkMRMLVolumeNode* volume, const SlicerExport::Image& depth) {
+void SetWindowToFiniteRange(vtkMRMLVolumeNode* volume, const SlicerExport::Image& depth) {
   auto* display = vtkMRMLScalarVolumeDisplayNode::SafeDownCast(volume->GetDisplayNode());
   const auto* values = static_cast<const float*>(depth.data.get());
   double least = std::numeric_limits<double>::infinity(), greatest = -least;
@@ -144,7 +144,7 @@ void ShowFinite(vtkMRMLVolumeNode* volume, const SlicerExport::Image& depth) {
 } // namespace
 
 void vtkSlicerFenestraLogic::OnMRMLSceneStartImport() {
-  if (vtkMRMLLayoutNode* layout = LayoutOf(this->GetMRMLScene()))
+  if (vtkMRMLLayoutNode* layout = FindLayoutNode(this->GetMRMLScene()))
     layout->AddLayoutDescription(ResultLayout, ResultLayoutXml);
 }
 
@@ -179,7 +179,7 @@ FenestraResult vtkSlicerFenestraLogic::ReadResult(const std::string& folder) {
 }
 
 /// Puts a result into the subject hierarchy's folder of its render, beside the render's volume.
-void vtkSlicerFenestraLogic::Own(Node* render, vtkMRMLNode* result) {
+void vtkSlicerFenestraLogic::MoveToRenderFolder(Node* render, vtkMRMLNode* result) {
   auto* hierarchy = vtkMRMLSubjectHierarchyNode::GetSubjectHierarchyNode(this->GetMRMLScene());
   if (!hierarchy)
     return;
@@ -238,7 +238,7 @@ vtkMRMLVolumeNode* vtkSlicerFenestraLogic::AddVolume(Node* render, const char* c
   if (vtkMRMLDisplayNode* display = volume->GetDisplayNode())
     display->SetDisplayableOnlyInView(PictureViewId); // no part of the 3D views' bounds
   render->SetNodeReferenceID(role, volume->GetID());
-  this->Own(render, volume);
+  this->MoveToRenderFolder(render, volume);
   return volume;
 }
 
@@ -254,13 +254,13 @@ void vtkSlicerFenestraLogic::AddSurface(Node* render, vtkPolyData* surface) {
   display->SetOpacity(0.5);
   display->SetVisibility(false); // the surface lies in front of the anatomy
   render->SetNodeReferenceID(Node::SurfaceRole, model->GetID());
-  this->Own(render, model);
+  this->MoveToRenderFolder(render, model);
 }
 
 /// Matrix of the picture, moved toward the eye beyond the volume: a slice view in its plane then
 /// shows no segments and models that lie there.
-SlicerExport::Matrix vtkSlicerFenestraLogic::BesideAnatomy(Node* render,
-                                                           const SlicerExport::Matrix& ijkToRas) {
+SlicerExport::Matrix
+vtkSlicerFenestraLogic::MoveOutsideVolume(Node* render, const SlicerExport::Matrix& ijkToRas) {
   auto* volume = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::VolumeRole));
   SlicerExport::Matrix moved = ijkToRas;
   if (!volume)
@@ -297,14 +297,14 @@ void vtkSlicerFenestraLogic::AddResult(Node* render, const FenestraResult& resul
   }
   if (step == 0)
     this->AddVolume(render, "vtkMRMLVectorVolumeNode", Node::PictureRole, result.picture,
-                    this->BesideAnatomy(render, result.radiance.ijkToRas));
+                    this->MoveOutsideVolume(render, result.radiance.ijkToRas));
   if (step == 1)
     this->AddVolume(render, "vtkMRMLVectorVolumeNode", Node::RadianceRole, ToVtk(result.radiance),
                     result.radiance.ijkToRas);
   if (step == 2)
-    ShowFinite(this->AddVolume(render, "vtkMRMLScalarVolumeNode", Node::DepthRole,
-                               ToVtk(result.depth), result.depth.ijkToRas),
-               result.depth);
+    SetWindowToFiniteRange(this->AddVolume(render, "vtkMRMLScalarVolumeNode", Node::DepthRole,
+                                           ToVtk(result.depth), result.depth.ijkToRas),
+                           result.depth);
   if (step == 3 && result.surface && result.surface->GetNumberOfPoints() > 0)
     this->AddSurface(render, result.surface);
 }
@@ -330,20 +330,20 @@ vtkMRMLSliceLogic* vtkSlicerFenestraLogic::GetPictureView() {
 }
 
 void vtkSlicerFenestraLogic::ShowLayoutBefore() {
-  if (vtkMRMLLayoutNode* layout = LayoutOf(this->GetMRMLScene()))
-    layout->SetViewArrangement(this->LayoutBefore);
+  if (vtkMRMLLayoutNode* layout = FindLayoutNode(this->GetMRMLScene()))
+    layout->SetViewArrangement(this->PreviousLayout);
 }
 
 void vtkSlicerFenestraLogic::ShowResult(Node* render) {
   if (!render || !this->GetMRMLScene())
     return;
   auto* picture = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::PictureRole));
-  vtkMRMLLayoutNode* layout = LayoutOf(this->GetMRMLScene());
+  vtkMRMLLayoutNode* layout = FindLayoutNode(this->GetMRMLScene());
   if (!picture || !layout)
     return;
   layout->AddLayoutDescription(ResultLayout, ResultLayoutXml);
   if (layout->GetViewArrangement() != ResultLayout)
-    this->LayoutBefore = layout->GetViewArrangement();
+    this->PreviousLayout = layout->GetViewArrangement();
   layout->SetViewArrangement(ResultLayout);
 
   vtkMRMLSliceLogic* logic = this->GetPictureView();
@@ -354,7 +354,7 @@ void vtkSlicerFenestraLogic::ShowResult(Node* render) {
   composite->SetBackgroundVolumeID(picture->GetID());
   composite->SetForegroundVolumeID(nullptr);
   composite->SetLabelVolumeID(nullptr);
-  FaceFrame(picture, 0, slice);
+  AlignSliceWithFrame(picture, 0, slice);
   const int* view = slice->GetDimensions(); // otherwise the picture's sides are cut off
   logic->FitSliceToBackground(view[0], view[1]);
 }
@@ -362,14 +362,14 @@ void vtkSlicerFenestraLogic::ShowResult(Node* render) {
 Node* vtkSlicerFenestraLogic::GetShownRender() {
   if (!this->GetMRMLScene())
     return nullptr;
-  vtkMRMLLayoutNode* layout = LayoutOf(this->GetMRMLScene());
+  vtkMRMLLayoutNode* layout = FindLayoutNode(this->GetMRMLScene());
   vtkMRMLSliceLogic* logic = this->GetPictureView();
   if (!logic || !layout || layout->GetViewArrangement() != ResultLayout)
     return nullptr;
   std::vector<vtkMRMLNode*> renders;
   this->GetMRMLScene()->GetNodesByClass("vtkMRMLFenestraRenderNode", renders);
   for (vtkMRMLNode* render : renders)
-    if (Shows(logic, render->GetNodeReferenceID(Node::PictureRole)))
+    if (IsShowing(logic, render->GetNodeReferenceID(Node::PictureRole)))
       return Node::SafeDownCast(render);
   return nullptr;
 }
@@ -381,10 +381,10 @@ void vtkSlicerFenestraLogic::ShowFrame(Node* render, int frame) {
   if (!picture || frame < 0 || frame >= GetNumberOfFrames(render))
     return;
   vtkMRMLSliceLogic* logic = this->GetPictureView();
-  if (!logic || !Shows(logic, picture->GetID()))
+  if (!logic || !IsShowing(logic, picture->GetID()))
     this->ShowResult(render);
   if (logic)
-    FaceFrame(picture, frame, logic->GetSliceNode());
+    AlignSliceWithFrame(picture, frame, logic->GetSliceNode());
 }
 
 int vtkSlicerFenestraLogic::GetNumberOfFrames(Node* render) {

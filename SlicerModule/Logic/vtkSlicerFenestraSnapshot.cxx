@@ -32,7 +32,7 @@
 namespace {
 using UserError = SlicerExport::UserError;
 
-std::string Quoted(vtkMRMLNode* node) {
+std::string Quote(vtkMRMLNode* node) {
   return std::string("\"") + (node->GetName() ? node->GetName() : "") + "\"";
 }
 
@@ -76,7 +76,7 @@ SlicerExport::Matrix ToMatrix(vtkMatrix4x4* matrix) {
 
 /// Image that shares the array and keeps it alive. `ijkToRas` is for index 0, which need not be
 /// where the extent begins.
-SlicerExport::Image Shared(vtkImageData* image, vtkMatrix4x4* ijkToRas) {
+SlicerExport::Image ShareImage(vtkImageData* image, vtkMatrix4x4* ijkToRas) {
   SlicerExport::Image shared;
   vtkSmartPointer<vtkDataArray> array = image->GetPointData()->GetScalars();
   int extent[6];
@@ -93,19 +93,19 @@ SlicerExport::Image Shared(vtkImageData* image, vtkMatrix4x4* ijkToRas) {
   return shared;
 }
 
-SlicerExport::Matrix ToWorld(vtkMRMLTransformableNode* node) {
+SlicerExport::Matrix GetWorldMatrix(vtkMRMLTransformableNode* node) {
   vtkMRMLTransformNode* transform = node->GetParentTransformNode();
   if (!transform)
     return SlicerExport::identity;
   if (!transform->IsTransformToWorldLinear())
-    throw UserError(Quoted(node) + " is under a transform that bends space. Harden that transform "
-                                   "(Data module, right click), then try again.");
+    throw UserError(Quote(node) + " is under a transform that bends space. Harden that transform "
+                                  "(Data module, right click), then try again.");
   vtkNew<vtkMatrix4x4> toWorld;
   transform->GetMatrixTransformToWorld(toWorld);
   return ToMatrix(toWorld);
 }
 
-std::string Key(vtkObject* object, const char* id, const SlicerExport::Image& image) {
+std::string MakeKey(vtkObject* object, const char* id, const SlicerExport::Image& image) {
   std::ostringstream key;
   key << id << ' ' << object->GetMTime() << ' ' << image.data.get();
   for (const double element : image.ijkToRas)
@@ -113,7 +113,7 @@ std::string Key(vtkObject* object, const char* id, const SlicerExport::Image& im
   return key.str();
 }
 
-vtkMRMLVolumeRenderingDisplayNode* RenderingOf(vtkMRMLScalarVolumeNode* volume) {
+vtkMRMLVolumeRenderingDisplayNode* FindRenderingDisplay(vtkMRMLScalarVolumeNode* volume) {
   vtkMRMLVolumeRenderingDisplayNode* first = nullptr;
   for (int i = 0; i < volume->GetNumberOfDisplayNodes(); ++i)
     if (auto* display =
@@ -126,43 +126,43 @@ vtkMRMLVolumeRenderingDisplayNode* RenderingOf(vtkMRMLScalarVolumeNode* volume) 
 }
 
 /// File that is removed at the end of scope, also after an exception.
-struct PassingFile {
-  explicit PassingFile(const std::filesystem::path& file) : path(file) {}
-  ~PassingFile() {
+struct ScopedFile {
+  explicit ScopedFile(const std::filesystem::path& file) : path(file) {}
+  ~ScopedFile() {
     std::error_code ignored;
     std::filesystem::remove(path, ignored);
   }
-  PassingFile(const PassingFile&) = delete;
-  PassingFile& operator=(const PassingFile&) = delete;
+  ScopedFile(const ScopedFile&) = delete;
+  ScopedFile& operator=(const ScopedFile&) = delete;
 
   std::filesystem::path path;
 };
 
 /// Text of a property that was taken last: most snapshots are of another camera alone.
-struct TakenProperty {
+struct CachedProperty {
   vtkWeakPointer<vtkMRMLVolumePropertyNode> node;
   vtkMTimeType time = 0;
-  std::string text, ending;
+  std::string text, extension;
 };
 
 /// Takes the property from a file that Slicer writes: Slicer's storage node knows all fields of
 /// this version's properties.
 void TakeProperty(vtkMRMLVolumePropertyNode* property, const std::filesystem::path& folder,
                   SlicerExport::Contents& contents) {
-  static TakenProperty taken; // of the main thread
+  static CachedProperty taken; // of the main thread
   const vtkMTimeType time =
       std::max(property->GetMTime(), property->GetVolumeProperty()->GetMTime());
   if (taken.node == property && taken.time == time) {
     contents.property = taken.text;
-    contents.propertyEnding = taken.ending;
+    contents.propertyExtension = taken.extension;
     return;
   }
   vtkNew<vtkMRMLVolumePropertyNode> copy; // the user's own must not count as saved
   copy->Copy(property);
   const auto storage =
       vtkSmartPointer<vtkMRMLStorageNode>::Take(property->CreateDefaultStorageNode());
-  const std::string ending = std::string(".") + storage->GetDefaultWriteFileExtension();
-  const PassingFile file(folder / ("passing" + ending));
+  const std::string extension = std::string(".") + storage->GetDefaultWriteFileExtension();
+  const ScopedFile file(folder / ("passing" + extension));
   storage->SetFileName(file.path.string().c_str());
   const bool written = storage->WriteData(copy) != 0;
   std::ostringstream text;
@@ -171,8 +171,8 @@ void TakeProperty(vtkMRMLVolumePropertyNode* property, const std::filesystem::pa
     throw UserError("The volume rendering's settings could not be written to the temporary folder. "
                     "Is the disk full?");
   contents.property = text.str();
-  contents.propertyEnding = ending;
-  taken = {property, time, contents.property, ending};
+  contents.propertyExtension = extension;
+  taken = {property, time, contents.property, extension};
 }
 
 void TakeRoi(vtkMRMLVolumeRenderingDisplayNode* display, SlicerExport::Contents& contents) {
@@ -204,7 +204,7 @@ void TakeRoi(vtkMRMLVolumeRenderingDisplayNode* display, SlicerExport::Contents&
 }
 
 /// Segmentation with binary labelmaps; if it has only surfaces, a converted copy outside the scene.
-vtkSmartPointer<vtkSegmentation> WithLabels(vtkMRMLSegmentationNode* node) {
+vtkSmartPointer<vtkSegmentation> GetWithBinaryLabels(vtkMRMLSegmentationNode* node) {
   const std::string labels = vtkSegmentationConverter::GetBinaryLabelmapRepresentationName();
   vtkSmartPointer<vtkSegmentation> segmentation = node->GetSegmentation();
   if (segmentation->ContainsRepresentation(labels))
@@ -212,7 +212,7 @@ vtkSmartPointer<vtkSegmentation> WithLabels(vtkMRMLSegmentationNode* node) {
   const auto copy = vtkSmartPointer<vtkSegmentation>::New();
   copy->DeepCopy(segmentation);
   if (!copy->CreateRepresentation(labels))
-    throw UserError(Quoted(node) +
+    throw UserError(Quote(node) +
                     " could not be made a labelmap. Create its binary labelmap in the "
                     "Segmentations module, then try again.");
   return copy;
@@ -224,7 +224,7 @@ bool IsEmpty(vtkOrientedImageData* labels) {
 }
 
 /// Terminology tag of the segment, which names its anatomy.
-std::string Tags(vtkSegment* segment) {
+std::string GetTerminologyTag(vtkSegment* segment) {
   std::string entry;
   if (!segment->GetTag(vtkSegment::GetTerminologyEntryTagName(), entry) || entry.empty())
     return {};
@@ -237,7 +237,7 @@ SlicerExport::Segment ToSegment(const std::string& id, vtkSegment* segment, size
           segment->GetName() ? segment->GetName() : id,
           segment->GetLabelValue(),
           layer,
-          Tags(segment),
+          GetTerminologyTag(segment),
           {color[0], color[1], color[2]}};
 }
 
@@ -252,7 +252,7 @@ SlicerExport::Layer ToLayer(vtkOrientedImageData* labels, vtkOrientedImageData* 
   vtkNew<vtkMatrix4x4> ijkToRas;
   image->GetImageToWorldMatrix(ijkToRas);
   SlicerExport::Layer layer;
-  layer.labels = Shared(image, ijkToRas);
+  layer.labels = ShareImage(image, ijkToRas);
   int extent[6];
   image->GetExtent(extent);
   layer.begin = {extent[0], extent[2], extent[4]};
@@ -267,24 +267,24 @@ void vtkSlicerFenestraSnapshot::TakeVolume(vtkMRMLScalarVolumeNode* volume,
     throw UserError("There is no volume to render. Load one, or choose one above.");
   vtkImageData* image = volume->GetImageData();
   if (!image || !image->GetPointData()->GetScalars() || image->GetNumberOfPoints() == 0)
-    throw UserError("The volume " + Quoted(volume) + " has no voxels. Choose another one.");
+    throw UserError("The volume " + Quote(volume) + " has no voxels. Choose another one.");
   if (image->GetNumberOfScalarComponents() != 1)
-    throw UserError("The volume " + Quoted(volume) +
+    throw UserError("The volume " + Quote(volume) +
                     " has several values a voxel. Choose one with a single value.");
   vtkNew<vtkMatrix4x4> ijkToRas;
   volume->GetIJKToRASMatrix(ijkToRas);
-  contents.volume = Shared(image, ijkToRas);
+  contents.volume = ShareImage(image, ijkToRas);
   if (contents.volume.type.empty())
-    throw UserError("The volume " + Quoted(volume) +
+    throw UserError("The volume " + Quote(volume) +
                     " has voxels of an unknown type. Convert it in the Cast Scalar Volume module.");
-  contents.volumeKey = Key(image, volume->GetID(), contents.volume);
-  contents.volumeToWorld = ToWorld(volume);
+  contents.volumeKey = MakeKey(image, volume->GetID(), contents.volume);
+  contents.volumeToWorld = GetWorldMatrix(volume);
 }
 
 void vtkSlicerFenestraSnapshot::TakeRendering(vtkMRMLScalarVolumeNode* volume,
                                               const std::filesystem::path& folder,
                                               SlicerExport::Contents& contents) {
-  vtkMRMLVolumeRenderingDisplayNode* display = RenderingOf(volume);
+  vtkMRMLVolumeRenderingDisplayNode* display = FindRenderingDisplay(volume);
   if (!display)
     return;
   if (vtkMRMLVolumePropertyNode* property = display->GetVolumePropertyNode())
@@ -294,7 +294,7 @@ void vtkSlicerFenestraSnapshot::TakeRendering(vtkMRMLScalarVolumeNode* volume,
 }
 
 std::vector<SlicerExport::Segment>
-vtkSlicerFenestraSnapshot::SegmentsOf(vtkMRMLSegmentationNode* node) {
+vtkSlicerFenestraSnapshot::ListSegments(vtkMRMLSegmentationNode* node) {
   vtkSegmentation* segmentation = node->GetSegmentation();
   std::vector<std::string> ids;
   segmentation->GetSegmentIDs(ids);
@@ -308,7 +308,7 @@ void vtkSlicerFenestraSnapshot::TakeSegmentation(vtkMRMLSegmentationNode* node,
                                                  const std::vector<std::string>& focus,
                                                  SlicerExport::Contents& contents) {
   using SlicerExport::Segment;
-  const vtkSmartPointer<vtkSegmentation> segmentation = WithLabels(node);
+  const vtkSmartPointer<vtkSegmentation> segmentation = GetWithBinaryLabels(node);
   const std::string name = vtkSegmentationConverter::GetBinaryLabelmapRepresentationName();
   SlicerExport::Segmentation& taken = contents.segmentation;
   std::ostringstream key;
@@ -323,11 +323,11 @@ void vtkSlicerFenestraSnapshot::TakeSegmentation(vtkMRMLSegmentationNode* node,
       taken.segments.push_back(ToSegment(id, segmentation->GetSegment(id), taken.layers.size()));
       const Segment& last = taken.segments.back();
       key << '\n' << id << ' ' << last.label << ' ' << last.name << ' ' << last.tags;
-      for (const double part : last.color)
-        key << ' ' << part;
+      for (const double component : last.color)
+        key << ' ' << component;
     }
     taken.layers.push_back(ToLayer(labels, first));
-    key << '\n' << Key(labels, "", taken.layers.back().labels);
+    key << '\n' << MakeKey(labels, "", taken.layers.back().labels);
   }
   for (const std::string& name : focus) { // a script's names, the panel's ids
     const std::string named = segmentation->GetSegmentIdBySegmentName(name);
@@ -344,5 +344,5 @@ void vtkSlicerFenestraSnapshot::TakeSegmentation(vtkMRMLSegmentationNode* node,
       segmentation == node->GetSegmentation()
           ? key.str()
           : node->GetID() + (" " + std::to_string(node->GetSegmentation()->GetMTime()));
-  taken.toWorld = ToWorld(node);
+  taken.toWorld = GetWorldMatrix(node);
 }

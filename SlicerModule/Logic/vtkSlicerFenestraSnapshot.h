@@ -22,7 +22,7 @@ void TakeRendering(vtkMRMLScalarVolumeNode* volume, const std::filesystem::path&
 void TakeSegmentation(vtkMRMLSegmentationNode* segmentation, const std::vector<std::string>& focus,
                       SlicerExport::Contents& contents);
 /// All segments, also empty ones, without places of their labels.
-std::vector<SlicerExport::Segment> SegmentsOf(vtkMRMLSegmentationNode* segmentation);
+std::vector<SlicerExport::Segment> ListSegments(vtkMRMLSegmentationNode* segmentation);
 } // namespace vtkSlicerFenestraSnapshot
 
 #endif

@@ -9,10 +9,10 @@
 vtkMRMLNodeNewMacro(vtkMRMLFenestraPictureDisplayNode);
 
 vtkMRMLFenestraPictureDisplayNode::vtkMRMLFenestraPictureDisplayNode() {
-  this->Colours->SetComponents(0, 1, 2);
+  this->Colors->SetComponents(0, 1, 2);
   this->Opacity->SetComponents(3);
-  this->ShiftScale->SetInputConnection(this->Colours->GetOutputPort());
-  this->RGBToHSI->SetInputConnection(this->Colours->GetOutputPort());
+  this->ShiftScale->SetInputConnection(this->Colors->GetOutputPort());
+  this->RGBToHSI->SetInputConnection(this->Colors->GetOutputPort());
   this->AppendComponents->RemoveAllInputs();
   this->AppendComponents->AddInputConnection(0, this->ShiftScale->GetOutputPort());
   this->AppendComponents->AddInputConnection(0, this->Opacity->GetOutputPort());
@@ -21,11 +21,11 @@ vtkMRMLFenestraPictureDisplayNode::vtkMRMLFenestraPictureDisplayNode() {
 vtkMRMLFenestraPictureDisplayNode::~vtkMRMLFenestraPictureDisplayNode() = default;
 
 void vtkMRMLFenestraPictureDisplayNode::SetInputToImageDataPipeline(vtkAlgorithmOutput* picture) {
-  this->Colours->SetInputConnection(picture);
+  this->Colors->SetInputConnection(picture);
   this->Opacity->SetInputConnection(picture);
 }
 
 vtkAlgorithmOutput* vtkMRMLFenestraPictureDisplayNode::GetInputImageDataConnection() {
-  return this->Colours->GetNumberOfInputConnections(0) ? this->Colours->GetInputConnection(0, 0)
-                                                       : nullptr;
+  return this->Colors->GetNumberOfInputConnections(0) ? this->Colors->GetInputConnection(0, 0)
+                                                      : nullptr;
 }

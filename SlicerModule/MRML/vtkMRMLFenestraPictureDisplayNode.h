@@ -31,7 +31,7 @@ protected:
   void SetInputToImageDataPipeline(vtkAlgorithmOutput* picture) override;
 
 private:
-  vtkNew<vtkImageExtractComponents> Colours, Opacity;
+  vtkNew<vtkImageExtractComponents> Colors, Opacity;
 };
 
 #endif

@@ -12,7 +12,7 @@ using SlicerExport::Verdict;
 
 namespace {
 /// Attributes of vtkMRMLNode.
-const std::set<std::string> ofEveryNode = {
+const std::set<std::string> baseAttributes = {
     "attributes", "description", "hideFromEditors", "id",           "name",       "references",
     "selectable", "selected",    "saveWithScene",   "singletonTag", "undoEnabled"};
 } // namespace
@@ -51,7 +51,7 @@ const std::vector<std::string>& vtkMRMLFenestraRenderNode::GetTurntableFlagNames
   static const std::vector<std::string> names = [] {
     std::vector<std::string> own;
     for (const SlicerExport::Flag& flag : SlicerExport::flags())
-      if (flag.ofTurntable)
+      if (flag.turntableOnly)
         own.push_back(flag.name);
     return own;
   }();
@@ -92,14 +92,14 @@ void vtkMRMLFenestraRenderNode::Assign(Values flags, Values withheld, Values unk
 
 bool vtkMRMLFenestraRenderNode::WithholdsFiles() const {
   return std::any_of(this->Withheld.begin(), this->Withheld.end(), [](const auto& one) {
-    return SlicerExport::verdictOn(one.first, one.second) == Verdict::file;
+    return SlicerExport::checkFlag(one.first, one.second) == Verdict::file;
   });
 }
 
 void vtkMRMLFenestraRenderNode::AllowFiles() {
   std::map<std::string, std::string> flags = this->Flags;
   for (const auto& [name, value] : this->Withheld)
-    if (SlicerExport::verdictOn(name, value) == Verdict::file)
+    if (SlicerExport::checkFlag(name, value) == Verdict::file)
       flags[name] = value;
   this->SetFlags(flags);
 }
@@ -109,8 +109,8 @@ void vtkMRMLFenestraRenderNode::CopyFlags(vtkMRMLFenestraRenderNode* node) {
     this->Assign(node->Flags, node->Withheld, node->Unknown);
 }
 
-void vtkMRMLFenestraRenderNode::SetProgress(double part) {
-  this->Progress = part;
+void vtkMRMLFenestraRenderNode::SetProgress(double fraction) {
+  this->Progress = fraction;
   this->InvokeEvent(RenderProgressEvent);
 }
 
@@ -120,11 +120,11 @@ void vtkMRMLFenestraRenderNode::EndRender(const std::string& problem) {
 }
 
 void vtkMRMLFenestraRenderNode::SetFocus(const std::vector<std::string>& segments) {
-  this->SetFlag("focus", SlicerExport::joined(segments));
+  this->SetFlag("focus", SlicerExport::joinList(segments));
 }
 
 std::vector<std::string> vtkMRMLFenestraRenderNode::GetFocus() const {
-  return SlicerExport::textsIn(this->GetFlag("focus"));
+  return SlicerExport::splitList(this->GetFlag("focus"));
 }
 
 void vtkMRMLFenestraRenderNode::ReadXMLAttributes(const char** atts) {
@@ -135,10 +135,10 @@ void vtkMRMLFenestraRenderNode::ReadXMLAttributes(const char** atts) {
   for (; atts[0] && atts[1]; atts += 2) {
     const std::string name = atts[0];
     if (std::find(names.begin(), names.end(), name) == names.end()) {
-      if (ofEveryNode.count(name) == 0)
+      if (baseAttributes.count(name) == 0)
         unknown[name] = atts[1];
     } else if (*atts[1] != '\0') {
-      (SlicerExport::verdictOn(name, atts[1]) == Verdict::good ? flags : withheld)[name] = atts[1];
+      (SlicerExport::checkFlag(name, atts[1]) == Verdict::valid ? flags : withheld)[name] = atts[1];
     }
   }
   this->Assign(flags, withheld, unknown);

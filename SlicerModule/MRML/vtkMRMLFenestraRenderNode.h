@@ -67,7 +67,7 @@ public:
   /// Finished share of the render, 0 to 1. Not saved.
   vtkGetMacro(Progress, double);
   /// Sets the share and invokes RenderProgressEvent.
-  void SetProgress(double part);
+  void SetProgress(double fraction);
   /// Reason, a sentence, why the render ended without a picture; empty: it has one, or goes on.
   const std::string& GetProblem() const { return this->Problem; }
   /// Invokes RenderEndEvent; a render that ended well has an empty problem.

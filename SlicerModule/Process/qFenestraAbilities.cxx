@@ -5,12 +5,13 @@
 #include <QXmlStreamReader>
 
 /// True if the flag's description has `word` as a separate word.
-bool qFenestraAbilities::names(const QString& flag, const QString& word) const {
+bool qFenestraCapabilities::mentions(const QString& flag, const QString& word) const {
   const QRegularExpression alone("(^|[\\s(,])" + QRegularExpression::escape(word) + "([\\s),.]|$)");
   return alone.match(flags.value(flag).text).hasMatch();
 }
 
-QMap<QString, qFenestraAbilities::Flag> qFenestraAbilities::flagsIn(const QString& description) {
+QMap<QString, qFenestraCapabilities::Flag>
+qFenestraCapabilities::parseFlags(const QString& description) {
   QMap<QString, Flag> all;
   QXmlStreamReader xml(description);
   QString name;
@@ -26,35 +27,35 @@ QMap<QString, qFenestraAbilities::Flag> qFenestraAbilities::flagsIn(const QStrin
     else if (xml.name() == QLatin1String("description") && !name.isEmpty())
       flag.text = xml.readElementText();
     else if (xml.name() == QLatin1String("element"))
-      flag.words << xml.readElementText();
+      flag.choices << xml.readElementText();
     if (!name.isEmpty())
       all[name] = flag;
   }
   return xml.hasError() ? QMap<QString, Flag>() : all;
 }
 
-qFenestraQuestion::qFenestraQuestion(QObject* parent) : QObject(parent) {
+qFenestraCapabilityQuery::qFenestraCapabilityQuery(QObject* parent) : QObject(parent) {
   connect(&m_child, &qFenestraProgram::said, this,
-          [this](const QString& line) { m_said += line + '\n'; });
-  connect(&m_child, &qFenestraProgram::ended, this, &qFenestraQuestion::hear);
+          [this](const QString& line) { m_output += line + '\n'; });
+  connect(&m_child, &qFenestraProgram::ended, this, &qFenestraCapabilityQuery::onEnded);
 }
 
-void qFenestraQuestion::ask(const QString& program) {
+void qFenestraCapabilityQuery::request(const QString& program) {
   m_program = program;
   m_child.run(m_program, {"--xml"}, QDir::tempPath());
 }
 
-void qFenestraQuestion::hear(const qFenestraOutcome& outcome) {
+void qFenestraCapabilityQuery::onEnded(const qFenestraOutcome& outcome) {
   const bool good = outcome.kind == qFenestraOutcome::Kind::done;
-  if (!m_described && good) {
-    m_abilities.flags = qFenestraAbilities::flagsIn(m_said);
-    m_described = true;
-    m_said.clear();
+  if (!m_flagsKnown && good) {
+    m_abilities.flags = qFenestraCapabilities::parseFlags(m_output);
+    m_flagsKnown = true;
+    m_output.clear();
     m_child.run(m_program, {"turntable", "--help"}, QDir::tempPath());
     return;
   }
   // Old renderers take "turntable" for a file, and print the help of a render.
-  if (m_described && good && m_said.contains("--frames"))
-    m_abilities.turntable = m_said;
+  if (m_flagsKnown && good && m_output.contains("--frames"))
+    m_abilities.turntable = m_output;
   emit told(m_abilities);
 }

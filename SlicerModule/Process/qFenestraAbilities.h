@@ -5,40 +5,40 @@
 
 #include <QMap>
 
-struct qFenestraAbilities {
+struct qFenestraCapabilities {
   struct Flag {
-    QString text;      ///< description
-    QStringList words; ///< all values of a flag with fixed choices
+    QString text;        ///< description
+    QStringList choices; ///< all values of a flag with fixed choices
   };
   QMap<QString, Flag> flags; ///< flags of a picture, by name
   QString turntable;         ///< help text of `fenestra turntable`; empty: no such command
 
-  bool takes(const QString& flag, const QString& word) const {
-    return flags.value(flag).words.contains(word);
+  bool hasChoice(const QString& flag, const QString& word) const {
+    return flags.value(flag).choices.contains(word);
   }
-  bool names(const QString& flag, const QString& word) const;
-  bool turns() const { return !turntable.isEmpty(); }
+  bool mentions(const QString& flag, const QString& word) const;
+  bool hasTurntable() const { return !turntable.isEmpty(); }
 
   /// Flags in the description for Slicer (XML); none if it is invalid.
-  static QMap<QString, Flag> flagsIn(const QString& description);
+  static QMap<QString, Flag> parseFlags(const QString& description);
 };
 
 /// Queries the renderer once. Without an answer, `told` is emitted with empty abilities.
-class qFenestraQuestion : public QObject {
+class qFenestraCapabilityQuery : public QObject {
   Q_OBJECT
 
 public:
-  explicit qFenestraQuestion(QObject* parent = nullptr);
-  void ask(const QString& program);
+  explicit qFenestraCapabilityQuery(QObject* parent = nullptr);
+  void request(const QString& program);
 
 signals:
-  void told(const qFenestraAbilities& abilities);
+  void told(const qFenestraCapabilities& abilities);
 
 private:
-  void hear(const qFenestraOutcome& outcome);
+  void onEnded(const qFenestraOutcome& outcome);
 
-  QString m_program, m_said;
+  QString m_program, m_output;
   qFenestraProgram m_child;
-  qFenestraAbilities m_abilities;
-  bool m_described = false; ///< the turntable has been queried
+  qFenestraCapabilities m_abilities;
+  bool m_flagsKnown = false; ///< the turntable has been queried
 };

@@ -7,16 +7,16 @@
 
 namespace {
 
-bool copied(const qFenestraCopy& copy) {
+bool copyFile(const qFenestraCopy& copy) {
   QFile in(copy.source);
   QSaveFile out(copy.target);
   // Unbuffered: Qt's commit does not report a failed write of its last buffer.
   if (!in.open(QIODevice::ReadOnly) || !out.open(QIODevice::WriteOnly | QIODevice::Unbuffered))
     return false;
-  constexpr qint64 most = 1 << 20; // bytes per read
+  constexpr qint64 chunkSize = 1 << 20; // bytes per read
   while (!in.atEnd()) {
-    const QByteArray part = in.read(most);
-    if (part.isEmpty() || out.write(part) != part.size())
+    const QByteArray chunk = in.read(chunkSize);
+    if (chunk.isEmpty() || out.write(chunk) != chunk.size())
       return false;
   }
   return out.commit();
@@ -25,26 +25,26 @@ bool copied(const qFenestraCopy& copy) {
 } // namespace
 
 qFenestraCopies qFenestraCopies::picture(const QString& source, const QString& chosen,
-                                         const QString& ending) {
-  const bool has = chosen.endsWith(ending, Qt::CaseInsensitive);
+                                         const QString& extension) {
+  const bool has = chosen.endsWith(extension, Qt::CaseInsensitive);
   qFenestraCopies copies;
-  copies.m_all.append({source, has ? chosen : chosen + ending});
+  copies.m_all.append({source, has ? chosen : chosen + extension});
   return copies;
 }
 
 qFenestraCopies qFenestraCopies::frames(const QStringList& sources, const QString& chosen) {
-  const QString ending = QStringLiteral(".png");
-  const bool has = chosen.endsWith(ending, Qt::CaseInsensitive);
-  const QString stem = has ? chosen.chopped(ending.size()) : chosen;
+  const QString extension = QStringLiteral(".png");
+  const bool has = chosen.endsWith(extension, Qt::CaseInsensitive);
+  const QString stem = has ? chosen.chopped(extension.size()) : chosen;
   qFenestraCopies copies;
   for (const QString& source : sources) {
     const QString number = QFileInfo(source).completeBaseName().section('_', -1);
-    copies.m_all.append({source, stem + "_" + number + ending});
+    copies.m_all.append({source, stem + "_" + number + extension});
   }
   return copies;
 }
 
-QStringList qFenestraCopies::existing() const {
+QStringList qFenestraCopies::existingTargets() const {
   QStringList names;
   for (const qFenestraCopy& copy : m_all)
     if (QFileInfo::exists(copy.target) || QFileInfo(copy.target).isSymLink())
@@ -54,7 +54,7 @@ QStringList qFenestraCopies::existing() const {
 
 QString qFenestraCopies::write() const {
   for (const qFenestraCopy& copy : m_all)
-    if (!copied(copy))
+    if (!copyFile(copy))
       return copy.target;
   return {};
 }

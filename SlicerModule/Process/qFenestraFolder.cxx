@@ -16,7 +16,7 @@ constexpr const char* lockName = "lock";
 
 /// Opens a lock and takes it without waiting; -1: another process holds it, or it belongs to
 /// another user.
-int take(const QString& file, int flags) {
+int acquireLock(const QString& file, int flags) {
   const int lock = ::open(QFile::encodeName(file).constData(),
                           flags | O_RDWR | O_NOFOLLOW | O_CLOEXEC, S_IRUSR | S_IWUSR);
   struct stat status = {};
@@ -29,11 +29,11 @@ int take(const QString& file, int flags) {
 
 /// Removes folders with a free lock. Folders without a lock are kept: just created, and still
 /// empty.
-void removeAbandoned(const QDir& parent, const QString& prefix) {
+void removeStaleFolders(const QDir& parent, const QString& prefix) {
   const QStringList names = parent.entryList({prefix + "*"}, QDir::Dirs | QDir::NoSymLinks);
   for (const QString& name : names) {
     QDir folder(parent.filePath(name));
-    const int lock = take(folder.filePath(lockName), 0);
+    const int lock = acquireLock(folder.filePath(lockName), 0);
     if (lock < 0)
       continue;
     folder.removeRecursively();
@@ -44,12 +44,12 @@ void removeAbandoned(const QDir& parent, const QString& prefix) {
 } // namespace
 
 qFenestraFolder::qFenestraFolder(const QString& parent, const QString& prefix)
-    : QTemporaryDir((removeAbandoned(parent, prefix), parent + "/" + prefix + "XXXXXX")) {
+    : QTemporaryDir((removeStaleFolders(parent, prefix), parent + "/" + prefix + "XXXXXX")) {
   if (!isValid())
     return;
-  const QString young = filePath("lock.young"); // the lock gets its name once it is held
-  m_lock = take(young, O_CREAT | O_EXCL);
-  QFile::rename(young, filePath(lockName));
+  const QString unlocked = filePath("lock.young"); // the lock gets its name once it is held
+  m_lock = acquireLock(unlocked, O_CREAT | O_EXCL);
+  QFile::rename(unlocked, filePath(lockName));
 }
 
 qFenestraFolder::~qFenestraFolder() {

@@ -9,72 +9,72 @@
 namespace {
 
 /// Colour of three numbers in [0, 1]; of the middle one of knots [scalar, colour]; empty: none.
-QString colorIn(const QJsonArray& json) {
+QString parseColor(const QJsonArray& json) {
   if (json.isEmpty() || json.first().isArray())
-    return json.isEmpty() ? QString() : colorIn(json[json.size() / 2].toArray()[1].toArray());
+    return json.isEmpty() ? QString() : parseColor(json[json.size() / 2].toArray()[1].toArray());
   QString text = "#";
   for (const QJsonValue& part : json)
     text += QString("%1").arg(std::lround(255.0 * part.toDouble()), 2, 16, QChar('0'));
   return text;
 }
 
-qFenestraMaterial materialIn(const QJsonObject& json) {
-  return {json["name"].toString(), colorIn(json["color"].toArray()), json["why"].toString(),
+qFenestraMaterial parseMaterial(const QJsonObject& json) {
+  return {json["name"].toString(), parseColor(json["color"].toArray()), json["why"].toString(),
           json["clip"].toBool(true)};
 }
 
 } // namespace
 
-qFenestraMaterials qFenestraMaterials::in(const QByteArray& report) {
+qFenestraMaterials qFenestraMaterials::parseReport(const QByteArray& report) {
   const QJsonObject root = QJsonDocument::fromJson(report).object();
   qFenestraMaterials all;
   const QJsonArray library = root["materials"].toArray();
   for (const QJsonValue& one : library)
-    all.library << materialIn(one.toObject());
+    all.library << parseMaterial(one.toObject());
   const QJsonArray segments =
       root["segmentations"].toArray().first().toObject()["segments"].toArray();
   for (const QJsonValue& one : segments) {
     const QJsonObject segment = one.toObject();
-    all.ofSegments[segment["id"].toString()] = materialIn(segment["material"].toObject());
+    all.bySegment[segment["id"].toString()] = parseMaterial(segment["material"].toObject());
   }
   return all;
 }
 
-qFenestraMaterialsQuestion::qFenestraMaterialsQuestion(QObject* parent) : QObject(parent) {
+qFenestraMaterialsQuery::qFenestraMaterialsQuery(QObject* parent) : QObject(parent) {
   connect(&m_child, &qFenestraProgram::said, this,
-          [this](const QString& line) { m_said += line.toUtf8() + '\n'; });
-  connect(&m_child, &qFenestraProgram::ended, this, &qFenestraMaterialsQuestion::hear);
+          [this](const QString& line) { m_output += line.toUtf8() + '\n'; });
+  connect(&m_child, &qFenestraProgram::ended, this, &qFenestraMaterialsQuery::onEnded);
 }
 
-void qFenestraMaterialsQuestion::ask(const QString& program,
-                                     const std::vector<SlicerExport::Segment>& segments,
-                                     const QString& folder) {
-  if (m_asked)
-    m_next = Question{program, segments, folder};
+void qFenestraMaterialsQuery::request(const QString& program,
+                                      const std::vector<SlicerExport::Segment>& segments,
+                                      const QString& folder) {
+  if (m_running)
+    m_next = Query{program, segments, folder};
   else
     start({program, segments, folder});
 }
 
-void qFenestraMaterialsQuestion::start(const Question& question) {
+void qFenestraMaterialsQuery::start(const Query& question) {
   constexpr const char* name = "names.seg.nrrd";
-  m_said.clear();
+  m_output.clear();
   try {
-    SlicerExport::writeNames(question.segments,
-                             std::filesystem::path(question.folder.toStdString()) / name);
+    SlicerExport::writeSegmentNames(question.segments,
+                                    std::filesystem::path(question.folder.toStdString()) / name);
   } catch (const SlicerExport::FileError&) { // a render tells why
     emit told({});
     return;
   }
-  m_asked = true;
+  m_running = true;
   m_child.run(question.program, {"inspect", name, "--json"}, question.folder);
 }
 
-void qFenestraMaterialsQuestion::hear(const qFenestraOutcome& outcome) {
-  m_asked = false;
-  if (const std::optional<Question> next = std::move(m_next)) {
+void qFenestraMaterialsQuery::onEnded(const qFenestraOutcome& outcome) {
+  m_running = false;
+  if (const std::optional<Query> next = std::move(m_next)) {
     m_next.reset();
     return start(*next);
   }
   const bool good = outcome.kind == qFenestraOutcome::Kind::done;
-  emit told(good ? qFenestraMaterials::in(m_said) : qFenestraMaterials());
+  emit told(good ? qFenestraMaterials::parseReport(m_output) : qFenestraMaterials());
 }

@@ -19,37 +19,37 @@ struct qFenestraMaterial {
 
 struct qFenestraMaterials {
   QList<qFenestraMaterial> library;
-  QMap<QString, qFenestraMaterial> ofSegments; ///< automatic choices, by id
+  QMap<QString, qFenestraMaterial> bySegment; ///< automatic choices, by id
 
   /// Materials in a report of `fenestra inspect --json`; none if it is invalid.
-  static qFenestraMaterials in(const QByteArray& report);
+  static qFenestraMaterials parseReport(const QByteArray& report);
 };
 
 /// Queries the renderer. Without an answer, `told` is emitted with nothing.
-class qFenestraMaterialsQuestion : public QObject {
+class qFenestraMaterialsQuery : public QObject {
   Q_OBJECT
 
 public:
-  explicit qFenestraMaterialsQuestion(QObject* parent = nullptr);
+  explicit qFenestraMaterialsQuery(QObject* parent = nullptr);
   /// Asks about the segments, by names, tags and colours; a question under way is answered first.
   /// `folder`: private, for the question's file.
-  void ask(const QString& program, const std::vector<SlicerExport::Segment>& segments,
-           const QString& folder);
+  void request(const QString& program, const std::vector<SlicerExport::Segment>& segments,
+               const QString& folder);
 
 signals:
   void told(const qFenestraMaterials& materials);
 
 private:
-  struct Question {
+  struct Query {
     QString program;
     std::vector<SlicerExport::Segment> segments;
     QString folder;
   };
-  void start(const Question& question);
-  void hear(const qFenestraOutcome& outcome);
+  void start(const Query& question);
+  void onEnded(const qFenestraOutcome& outcome);
 
   qFenestraProgram m_child;
-  QByteArray m_said;
-  bool m_asked = false;           ///< a question is under way
-  std::optional<Question> m_next; ///< question to be asked then
+  QByteArray m_output;
+  bool m_running = false;      ///< a question is under way
+  std::optional<Query> m_next; ///< question to be asked then
 };

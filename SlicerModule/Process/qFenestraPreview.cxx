@@ -6,25 +6,25 @@
 #include <QJsonDocument>
 
 qFenestraPreview::qFenestraPreview(QObject* parent) : QObject(parent) {
-  constexpr int resting = 60;
-  m_rest.setSingleShot(true);
-  m_rest.setInterval(resting);
-  connect(&m_rest, &QTimer::timeout, this, &qFenestraPreview::tell);
+  constexpr int defaultDelay = 60;
+  m_delay.setSingleShot(true);
+  m_delay.setInterval(defaultDelay);
+  connect(&m_delay, &QTimer::timeout, this, &qFenestraPreview::sendChanges);
 }
 
 void qFenestraPreview::start(const QString& program, const QStringList& arguments,
                              const QString& folder, const std::shared_ptr<const void>& files) {
   stop();
-  m_told = 0;
+  m_lastId = 0;
   m_child = new qFenestraProgram(this);
-  connect(m_child, &qFenestraProgram::said, this, &qFenestraPreview::hear);
+  connect(m_child, &qFenestraProgram::said, this, &qFenestraPreview::readEvent);
   connect(m_child, &qFenestraProgram::ended, this, &qFenestraPreview::ended);
   connect(m_child, &QObject::destroyed, [files] {}); // the connection keeps the files
   m_child->run(program, QStringList{"serve"} + arguments, folder);
 }
 
 void qFenestraPreview::stop() {
-  m_rest.stop();
+  m_delay.stop();
   m_changes = {};
   if (!m_child)
     return;
@@ -34,53 +34,53 @@ void qFenestraPreview::stop() {
   if (child->state() == QProcess::NotRunning)
     return child->deleteLater();
   connect(child, &qFenestraProgram::ended, child, &QObject::deleteLater);
-  constexpr int grace = 150;
+  constexpr int graceMs = 150;
   child->closeWriteChannel(); // a server ends at the end of its input
   child->stop();
-  QTimer::singleShot(grace, child, &qFenestraProgram::stop); // kills: no result is to be kept
+  QTimer::singleShot(graceMs, child, &qFenestraProgram::stop); // kills: no result is to be kept
 }
 
 void qFenestraPreview::change(const QJsonObject& flags) {
   for (auto flag = flags.begin(); flag != flags.end(); ++flag)
     m_changes[flag.key()] = flag.value();
-  m_rest.start();
+  m_delay.start();
 }
 
-QJsonObject qFenestraPreview::valuesOf(const std::map<std::string, std::string>& flags) {
+QJsonObject qFenestraPreview::toJson(const std::map<std::string, std::string>& flags) {
   QJsonObject all;
   for (const auto& [name, value] : flags) {
-    QJsonArray texts;
-    for (const std::string& text : SlicerExport::valuesOf(name, value))
-      texts << QString::fromStdString(text);
+    QJsonArray values;
+    for (const std::string& text : SlicerExport::toArgumentValues(name, value))
+      values << QString::fromStdString(text);
     all[QString::fromStdString(name)] =
-        SlicerExport::repeats(name) ? QJsonValue(texts) : texts.first();
+        SlicerExport::isRepeatable(name) ? QJsonValue(values) : values.first();
   }
   return all;
 }
 
-void qFenestraPreview::tell() {
+void qFenestraPreview::sendChanges() {
   if (!running() || m_changes.isEmpty())
     return;
-  m_changes["id"] = ++m_told;
+  m_changes["id"] = ++m_lastId;
   m_child->write(QJsonDocument(m_changes).toJson(QJsonDocument::Compact) + '\n');
   m_changes = {};
 }
 
-void qFenestraPreview::hear(const QString& line) {
-  const QJsonObject answer = QJsonDocument::fromJson(line.toUtf8()).object();
-  if (answer["id"].toInt(0) != m_told)
+void qFenestraPreview::readEvent(const QString& line) {
+  const QJsonObject reply = QJsonDocument::fromJson(line.toUtf8()).object();
+  if (reply["id"].toInt(0) != m_lastId)
     return;
-  if (answer["event"] == "error")
-    emit refused(answer["message"].toString());
-  if (answer["event"] != "picture")
+  if (reply["event"] == "error")
+    emit refused(reply["message"].toString());
+  if (reply["event"] != "picture")
     return;
-  qFenestraPicture picture;
-  const QJsonArray files = answer["files"].toArray();
+  qFenestraPreviewImage picture;
+  const QJsonArray files = reply["files"].toArray();
   for (const QJsonValue& file : files)
     picture.files << file.toString();
-  picture.samples = answer["samples"].toInt();
-  picture.noise = answer["noiseFiltered"].toDouble(answer["noise"].toDouble(-1.0));
-  picture.seconds = answer["seconds"].toDouble();
-  picture.done = answer["done"].toBool();
+  picture.samples = reply["samples"].toInt();
+  picture.noise = reply["noiseFiltered"].toDouble(reply["noise"].toDouble(-1.0));
+  picture.seconds = reply["seconds"].toDouble();
+  picture.done = reply["done"].toBool();
   emit refreshed(picture);
 }

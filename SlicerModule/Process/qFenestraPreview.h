@@ -11,7 +11,7 @@
 #include <memory>
 #include <string>
 
-struct qFenestraPicture {
+struct qFenestraPreviewImage {
   QStringList files;
   int samples = 0;      ///< samples a pixel
   double noise = -1.0;  ///< relative noise; negative: not known yet
@@ -26,7 +26,7 @@ public:
   explicit qFenestraPreview(QObject* parent = nullptr);
 
   /// Milliseconds without another change before changes are sent.
-  void setDelay(int milliseconds) { m_rest.setInterval(milliseconds); }
+  void setDelay(int milliseconds) { m_delay.setInterval(milliseconds); }
 
   /// Starts `fenestra serve arguments…`, and ends the preview under way. `files` are kept until the
   /// child has ended, also after stop().
@@ -42,21 +42,21 @@ public:
   /// Changes flags, with values as `fenestra serve` takes them; later values win.
   void change(const QJsonObject& flags);
   /// Flags as a server takes them: texts, or a list of them for a flag that may be repeated.
-  static QJsonObject valuesOf(const std::map<std::string, std::string>& flags);
+  static QJsonObject toJson(const std::map<std::string, std::string>& flags);
 
 signals:
   /// Picture of the last change; pictures of earlier changes are dropped.
-  void refreshed(const qFenestraPicture& picture);
+  void refreshed(const qFenestraPreviewImage& picture);
   /// The last change was refused; the last picture stays.
   void refused(const QString& message);
   void ended(const qFenestraOutcome& outcome);
 
 private:
-  void tell();
-  void hear(const QString& line);
+  void sendChanges();
+  void readEvent(const QString& line);
 
   qFenestraProgram* m_child = nullptr; ///< null: no server
-  QTimer m_rest;
+  QTimer m_delay;
   QJsonObject m_changes; ///< not sent yet
-  int m_told = 0;        ///< changes sent so far; also the last change's id
+  int m_lastId = 0;      ///< changes sent so far; also the last change's id
 };

@@ -28,7 +28,7 @@ QString lastLine(const QString& text) {
 } // namespace
 
 qFenestraProgram::qFenestraProgram(QObject* parent) : QProcess(parent) {
-  setProcessEnvironment(isolated(QProcessEnvironment::systemEnvironment()));
+  setProcessEnvironment(removeLibraryPaths(QProcessEnvironment::systemEnvironment()));
 #if QT_VERSION >= QT_VERSION_CHECK(6, 0, 0)
   setChildProcessModifier(endWithParent);
 #endif
@@ -47,7 +47,7 @@ qFenestraProgram::qFenestraProgram(QObject* parent) : QProcess(parent) {
   connect(this, QOverload<int, QProcess::ExitStatus>::of(&QProcess::finished), this,
           [this](int code, QProcess::ExitStatus status) {
             readLines();
-            finish(outcomeOf(code, status));
+            finish(makeOutcome(code, status));
           });
 }
 
@@ -55,9 +55,9 @@ qFenestraProgram::~qFenestraProgram() {
   disconnect();
   if (state() == QProcess::NotRunning)
     return;
-  constexpr int grace = 200;
+  constexpr int graceMs = 200;
   terminate();
-  if (!waitForFinished(grace)) {
+  if (!waitForFinished(graceMs)) {
     kill();
     waitForFinished();
   }
@@ -88,7 +88,7 @@ void qFenestraProgram::stop() {
     terminate();
 }
 
-QProcessEnvironment qFenestraProgram::isolated(QProcessEnvironment environment) {
+QProcessEnvironment qFenestraProgram::removeLibraryPaths(QProcessEnvironment environment) {
   for (const char* name : {"LD_LIBRARY_PATH", "LD_PRELOAD", "DYLD_LIBRARY_PATH", "PYTHONHOME",
                            "PYTHONPATH", "QT_PLUGIN_PATH", "ITK_AUTOLOAD_PATH"})
     environment.remove(name);
@@ -108,7 +108,7 @@ void qFenestraProgram::finish(const qFenestraOutcome& outcome) {
   emit ended(outcome);
 }
 
-qFenestraOutcome qFenestraProgram::outcomeOf(int code, QProcess::ExitStatus status) {
+qFenestraOutcome qFenestraProgram::makeOutcome(int code, QProcess::ExitStatus status) {
   constexpr int stoppedOnRequest = 5; // the renderer's exit status
   using Kind = qFenestraOutcome::Kind;
   const QString errors = QString::fromUtf8(readAllStandardError());

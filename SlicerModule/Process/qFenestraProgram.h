@@ -30,7 +30,7 @@ public:
   void stop();
 
   /// `environment` without the variables that a launcher set for its own program's libraries.
-  static QProcessEnvironment isolated(QProcessEnvironment environment);
+  static QProcessEnvironment removeLibraryPaths(QProcessEnvironment environment);
 
 signals:
   /// One line of the child's standard output, without its line end.
@@ -45,7 +45,7 @@ protected:
 private:
   void readLines();
   void finish(const qFenestraOutcome& outcome);
-  qFenestraOutcome outcomeOf(int code, QProcess::ExitStatus status);
+  qFenestraOutcome makeOutcome(int code, QProcess::ExitStatus status);
 
   bool m_stopped = false, m_killed = false;
   bool m_ended = true;

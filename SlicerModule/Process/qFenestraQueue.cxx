@@ -5,7 +5,7 @@
 namespace {
 
 /// Text inside a line that is one of Slicer's tags; empty for other lines.
-QString inside(const QString& line, const char* tag) {
+QString extractTag(const QString& line, const char* tag) {
   const QString begin = QStringLiteral("<filter-%1>").arg(tag);
   const QString end = QStringLiteral("</filter-%1>").arg(tag);
   if (!line.startsWith(begin) || !line.endsWith(end))
@@ -18,10 +18,10 @@ QString inside(const QString& line, const char* tag) {
 qFenestraQueue::qFenestraQueue(const QString& program, QObject* parent)
     : QObject(parent), m_program(program) {
   connect(&m_child, &qFenestraProgram::said, this, [this](const QString& line) {
-    const double part = progressIn(line);
-    if (part >= 0.0)
-      emit progressed(m_current, part);
-    const QString comment = commentIn(line);
+    const double fraction = parseProgress(line);
+    if (fraction >= 0.0)
+      emit progressed(m_current, fraction);
+    const QString comment = parseComment(line);
     if (!comment.isEmpty())
       emit commented(m_current, comment);
   });
@@ -51,14 +51,14 @@ void qFenestraQueue::stop(int id) {
   emit ended(id, {qFenestraOutcome::Kind::stopped, {}, {}});
 }
 
-double qFenestraQueue::progressIn(const QString& line) {
+double qFenestraQueue::parseProgress(const QString& line) {
   bool isNumber = false;
-  const double part = inside(line, "progress").toDouble(&isNumber);
-  return isNumber && part >= 0.0 ? std::min(part, 1.0) : -1.0;
+  const double fraction = extractTag(line, "progress").toDouble(&isNumber);
+  return isNumber && fraction >= 0.0 ? std::min(fraction, 1.0) : -1.0;
 }
 
-QString qFenestraQueue::commentIn(const QString& line) {
-  return inside(line, "comment");
+QString qFenestraQueue::parseComment(const QString& line) {
+  return extractTag(line, "comment");
 }
 
 void qFenestraQueue::startNext() {

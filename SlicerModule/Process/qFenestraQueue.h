@@ -27,13 +27,13 @@ public:
   int waiting() const { return static_cast<int>(m_waiting.size()); }
 
   /// Finished share in a line of the renderer's output, 0 to 1; -1: another kind of line.
-  static double progressIn(const QString& line);
+  static double parseProgress(const QString& line);
   /// Samples and noise in a line of the renderer's output; empty: another kind of line.
-  static QString commentIn(const QString& line);
+  static QString parseComment(const QString& line);
 
 signals:
   void started(int id);
-  void progressed(int id, double part);
+  void progressed(int id, double fraction);
   void commented(int id, const QString& reached);
   void ended(int id, const qFenestraOutcome& outcome);
 

@@ -7,16 +7,16 @@
 namespace SlicerExport {
 namespace {
 
-constexpr std::size_t longest = 100000; // bytes; an argument of a command may have 131,071
+constexpr std::size_t maxLength = 100000; // bytes; an argument of a command may have 131,071
 
-bool isWhole(const std::string& text) {
+bool isInteger(const std::string& text) {
   constexpr std::size_t digits = 20; // as many as 2^64 has
   return !text.empty() && text.size() <= digits &&
          text.find_first_not_of("0123456789") == std::string::npos;
 }
 
 /// True for numbers of any size that a double holds; infinity and "nan" are not read by streams.
-bool areNumbers(const std::string& text, bool several) {
+bool areNumbers(const std::string& text, bool allowList) {
   std::istringstream in(text);
   in.imbue(std::locale::classic());
   char comma = ',';
@@ -26,7 +26,7 @@ bool areNumbers(const std::string& text, bool several) {
       return false;
     if (!(in >> comma))
       return true;
-    if (!several)
+    if (!allowList)
       return false;
   }
   return false;
@@ -39,45 +39,45 @@ bool isWord(const std::string& text) {
 
 bool isSize(const std::string& text) {
   const std::size_t times = text.find('x');
-  return times != std::string::npos && isWhole(text.substr(0, times)) &&
-         isWhole(text.substr(times + 1));
+  return times != std::string::npos && isInteger(text.substr(0, times)) &&
+         isInteger(text.substr(times + 1));
 }
 
 /// True if a look may name a file. A JSON text opens a file by its member "file"; a backslash may
 /// hide that word. Any other value is a name: without one of / \ . : ~ it can only be a file in the
 /// session's own folder.
-bool namesFile(const std::string& look) {
-  if (look.front() == '{')
-    return look.find("\"file\"") != std::string::npos || look.find('\\') != std::string::npos;
-  return !areNumbers(look, true) && look.find_first_of("/\\.:~") != std::string::npos;
+bool mayNameFile(const std::string& value) {
+  if (value.front() == '{')
+    return value.find("\"file\"") != std::string::npos || value.find('\\') != std::string::npos;
+  return !areNumbers(value, true) && value.find_first_of("/\\.:~") != std::string::npos;
 }
 
-bool isKind(FlagKind kind, const std::string& value) {
+bool matchesKind(FlagKind kind, const std::string& value) {
   switch (kind) {
   case FlagKind::word:
     return isWord(value);
-  case FlagKind::whole:
-    return isWhole(value);
+  case FlagKind::integer:
+    return isInteger(value);
   case FlagKind::number:
     return areNumbers(value, false);
-  case FlagKind::automatic:
+  case FlagKind::numberOrAuto:
     return value == "auto" || areNumbers(value, false);
   case FlagKind::numbers:
     return areNumbers(value, true);
   case FlagKind::size:
     return isSize(value);
-  case FlagKind::colour:
+  case FlagKind::color:
     return isWord(value) || areNumbers(value, true);
   case FlagKind::text:
-  case FlagKind::texts:
-  case FlagKind::look:
+  case FlagKind::textList:
+  case FlagKind::resource:
     break;
   }
   return value.find('\0') == std::string::npos; // a zero byte would end an argument
 }
 
 /// Flag of that name; null: none.
-const Flag* find(const std::string& name) {
+const Flag* findFlag(const std::string& name) {
   const auto flag = std::find_if(flags().begin(), flags().end(),
                                  [&](const Flag& one) { return one.name == name; });
   return flag == flags().end() ? nullptr : &*flag;
@@ -88,21 +88,21 @@ const Flag* find(const std::string& name) {
 const std::vector<Flag>& flags() {
   using Kind = FlagKind;
   static const std::vector<Flag> all = {{"focus", Kind::text},
-                                        {"preset", Kind::look},
+                                        {"preset", Kind::resource},
                                         {"margin", Kind::numbers},
-                                        {"labelsmoothing", Kind::automatic},
+                                        {"labelsmoothing", Kind::numberOrAuto},
                                         {"clip", Kind::word},
                                         {"boundary", Kind::word},
-                                        {"controlpoints", Kind::whole},
+                                        {"controlpoints", Kind::integer},
                                         {"smoothing", Kind::number},
                                         {"plane", Kind::numbers},
                                         {"hole", Kind::word},
                                         {"holemargin", Kind::number},
                                         {"ghost", Kind::number},
                                         {"offset", Kind::number},
-                                        {"soft", Kind::automatic},
+                                        {"soft", Kind::numberOrAuto},
                                         {"contextdensity", Kind::number},
-                                        {"contextsaturation", Kind::automatic},
+                                        {"contextsaturation", Kind::numberOrAuto},
                                         {"view", Kind::word},
                                         {"position", Kind::numbers},
                                         {"target", Kind::numbers},
@@ -110,39 +110,39 @@ const std::vector<Flag>& flags() {
                                         {"projection", Kind::word},
                                         {"scale", Kind::number},
                                         {"angle", Kind::number},
-                                        {"transfer", Kind::look},
+                                        {"transfer", Kind::resource},
                                         {"shift", Kind::number},
                                         {"density", Kind::number},
-                                        {"materials", Kind::look},
-                                        {"material", Kind::texts},
-                                        {"lights", Kind::look},
-                                        {"environment", Kind::look},
-                                        {"background", Kind::colour},
+                                        {"materials", Kind::resource},
+                                        {"material", Kind::textList},
+                                        {"lights", Kind::resource},
+                                        {"environment", Kind::resource},
+                                        {"background", Kind::color},
                                         {"exposure", Kind::number},
                                         {"tone", Kind::word},
                                         {"size", Kind::size},
-                                        {"samples", Kind::whole},
+                                        {"samples", Kind::integer},
                                         {"seconds", Kind::number},
                                         {"noise", Kind::number},
                                         {"noisetarget", Kind::word},
                                         {"denoise", Kind::word},
-                                        {"bounces", Kind::whole},
-                                        {"seed", Kind::whole},
+                                        {"bounces", Kind::integer},
+                                        {"seed", Kind::integer},
                                         {"sampling", Kind::word},
-                                        {"frames", Kind::whole, true},
+                                        {"frames", Kind::integer, true},
                                         {"degrees", Kind::number, true},
                                         {"steady", Kind::number, true}};
   return all;
 }
 
-Verdict verdictOn(const std::string& name, const std::string& value) {
-  const Flag* const flag = find(name);
-  if (!flag || value.empty() || value.size() > longest || !isKind(flag->kind, value))
-    return Verdict::bad;
-  return flag->kind == FlagKind::look && namesFile(value) ? Verdict::file : Verdict::good;
+Verdict checkFlag(const std::string& name, const std::string& value) {
+  const Flag* const flag = findFlag(name);
+  if (!flag || value.empty() || value.size() > maxLength || !matchesKind(flag->kind, value))
+    return Verdict::invalid;
+  return flag->kind == FlagKind::resource && mayNameFile(value) ? Verdict::file : Verdict::valid;
 }
 
-std::string joined(const std::vector<std::string>& texts) {
+std::string joinList(const std::vector<std::string>& texts) {
   std::string value;
   for (const std::string& text : texts) {
     value += value.empty() ? "" : ",";
@@ -152,7 +152,7 @@ std::string joined(const std::vector<std::string>& texts) {
   return value;
 }
 
-std::vector<std::string> textsIn(const std::string& value) {
+std::vector<std::string> splitList(const std::string& value) {
   std::vector<std::string> texts;
   std::string text;
   for (std::size_t i = 0; i < value.size(); ++i) {
@@ -168,19 +168,19 @@ std::vector<std::string> textsIn(const std::string& value) {
   return texts;
 }
 
-bool repeats(const std::string& name) {
-  const Flag* const flag = find(name);
-  return flag && flag->kind == FlagKind::texts;
+bool isRepeatable(const std::string& name) {
+  const Flag* const flag = findFlag(name);
+  return flag && flag->kind == FlagKind::textList;
 }
 
-std::vector<std::string> valuesOf(const std::string& name, const std::string& value) {
-  return repeats(name) ? textsIn(value) : std::vector<std::string>{value};
+std::vector<std::string> toArgumentValues(const std::string& name, const std::string& value) {
+  return isRepeatable(name) ? splitList(value) : std::vector<std::string>{value};
 }
 
-std::vector<std::string> argumentsOf(const std::map<std::string, std::string>& flags) {
+std::vector<std::string> toArguments(const std::map<std::string, std::string>& flags) {
   std::vector<std::string> arguments;
   for (const auto& [name, value] : flags)
-    for (const std::string& one : valuesOf(name, value))
+    for (const std::string& one : toArgumentValues(name, value))
       arguments.push_back("--" + name + "=" + one);
   return arguments;
 }

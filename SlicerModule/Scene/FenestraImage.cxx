@@ -9,7 +9,7 @@
 namespace SlicerExport {
 namespace {
 
-bool littleEndian() {
+bool isLittleEndian() {
   const std::uint16_t one = 1;
   unsigned char first = 0;
   std::memcpy(&first, &one, 1);
@@ -17,20 +17,20 @@ bool littleEndian() {
 }
 
 /// Element of the matrix in LPS, the frame of NRRD; Slicer's is RAS.
-double lps(const Matrix& matrix, std::size_t row, std::size_t column) {
+double toLps(const Matrix& matrix, std::size_t row, std::size_t column) {
   const double value = matrix[4 * row + column];
   return row < 2 && value != 0.0 ? -value : value;
 }
 
-std::string point(const Matrix& matrix, std::size_t column) {
+std::string formatPoint(const Matrix& matrix, std::size_t column) {
   std::ostringstream text;
   text.precision(17);
-  text << '(' << lps(matrix, 0, column) << ',' << lps(matrix, 1, column) << ','
-       << lps(matrix, 2, column) << ')';
+  text << '(' << toLps(matrix, 0, column) << ',' << toLps(matrix, 1, column) << ','
+       << toLps(matrix, 2, column) << ')';
   return text.str();
 }
 
-std::string header(const Image& image) {
+std::string makeHeader(const Image& image) {
   const bool list = image.components > 1;
   std::ostringstream text;
   text << "NRRD0005\ntype: " << image.type << "\ndimension: " << (list ? 4 : 3)
@@ -41,17 +41,17 @@ std::string header(const Image& image) {
     text << ' ' << size;
   text << "\nspace directions:" << (list ? " none" : "");
   for (std::size_t axis = 0; axis < 3; ++axis)
-    text << ' ' << point(image.ijkToRas, axis);
+    text << ' ' << formatPoint(image.ijkToRas, axis);
   text << "\nkinds:" << (list ? " list" : "")
-       << " domain domain domain\nendian: " << (littleEndian() ? "little" : "big")
-       << "\nencoding: raw\nspace origin: " << point(image.ijkToRas, 3) << '\n';
+       << " domain domain domain\nendian: " << (isLittleEndian() ? "little" : "big")
+       << "\nencoding: raw\nspace origin: " << formatPoint(image.ijkToRas, 3) << '\n';
   for (const auto& [key, value] : image.fields)
     text << key << ":=" << value << '\n';
   text << '\n';
   return text.str();
 }
 
-FileError failed(const std::filesystem::path& file, const std::string& why) {
+FileError makeError(const std::filesystem::path& file, const std::string& why) {
   return FileError(file.string() + ": " + why);
 }
 
@@ -68,7 +68,7 @@ void readPoint(const std::string& text, Matrix& matrix, std::size_t column) {
   }
 }
 
-std::vector<std::string> words(const std::string& text) {
+std::vector<std::string> splitWords(const std::string& text) {
   std::istringstream in(text);
   std::vector<std::string> all;
   for (std::string word; in >> word;)
@@ -76,18 +76,18 @@ std::vector<std::string> words(const std::string& text) {
   return all;
 }
 
-std::string field(const std::map<std::string, std::string>& fields, const std::string& name) {
+std::string getField(const std::map<std::string, std::string>& fields, const std::string& name) {
   const auto found = fields.find(name);
   if (found == fields.end())
     throw std::invalid_argument("has no field " + name);
   return found->second;
 }
 
-Image described(const std::map<std::string, std::string>& fields) {
+Image parseHeader(const std::map<std::string, std::string>& fields) {
   Image image;
-  image.type = field(fields, "type") == "float" ? "float" : field(fields, "type");
-  std::vector<std::string> sizes = words(field(fields, "sizes"));
-  std::vector<std::string> directions = words(field(fields, "space directions"));
+  image.type = getField(fields, "type") == "float" ? "float" : getField(fields, "type");
+  std::vector<std::string> sizes = splitWords(getField(fields, "sizes"));
+  std::vector<std::string> directions = splitWords(getField(fields, "space directions"));
   if (sizes.size() == 4 && directions.size() == 4) {
     image.components = std::stoul(sizes.front());
     sizes.erase(sizes.begin());
@@ -100,17 +100,17 @@ Image described(const std::map<std::string, std::string>& fields) {
     image.size[axis] = std::stoul(sizes[axis]);
     readPoint(directions[axis], image.ijkToRas, axis);
   }
-  readPoint(field(fields, "space origin"), image.ijkToRas, 3);
-  const bool order =
-      bytesOf(image.type) == 1 || field(fields, "endian") == (littleEndian() ? "little" : "big");
-  if (field(fields, "encoding") != "raw" || bytesOf(image.type) == 0 || !order)
+  readPoint(getField(fields, "space origin"), image.ijkToRas, 3);
+  const bool order = componentBytes(image.type) == 1 ||
+                     getField(fields, "endian") == (isLittleEndian() ? "little" : "big");
+  if (getField(fields, "encoding") != "raw" || componentBytes(image.type) == 0 || !order)
     throw std::invalid_argument("must be raw samples of a known type in this machine's byte order");
   return image;
 }
 
 } // namespace
 
-std::size_t bytesOf(const std::string& type) {
+std::size_t componentBytes(const std::string& type) {
   static const std::map<std::string, std::size_t> sizes = {
       {"int8", 1},   {"uint8", 1},  {"signed char", 1},  {"unsigned char", 1},  {"uchar", 1},
       {"int16", 2},  {"uint16", 2}, {"short", 2},        {"unsigned short", 2}, {"int32", 4},
@@ -121,7 +121,7 @@ std::size_t bytesOf(const std::string& type) {
 }
 
 std::size_t Image::bytes() const {
-  return bytesOf(type) * components * size[0] * size[1] * size[2];
+  return componentBytes(type) * components * size[0] * size[1] * size[2];
 }
 
 void writeNrrd(const Image& image, const std::filesystem::path& file) {
@@ -129,14 +129,14 @@ void writeNrrd(const Image& image, const std::filesystem::path& file) {
   partial += ".part";
   {
     std::ofstream out(partial, std::ios::binary);
-    out << header(image);
+    out << makeHeader(image);
     out.write(static_cast<const char*>(image.data.get()),
               static_cast<std::streamsize>(image.bytes()));
     out.close();
     if (!out) {
       std::error_code ignored;
       std::filesystem::remove(partial, ignored);
-      throw failed(file, "could not be written; is the disk full?");
+      throw makeError(file, "could not be written; is the disk full?");
     }
   }
   std::filesystem::rename(partial, file);
@@ -146,7 +146,7 @@ Image readNrrd(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::string line;
   if (!std::getline(in, line) || line.compare(0, 4, "NRRD") != 0)
-    throw failed(file, "is not a NRRD file");
+    throw makeError(file, "is not a NRRD file");
   std::map<std::string, std::string> fields;
   while (std::getline(in, line) && !line.empty()) {
     const std::size_t colon = line.find(": ");
@@ -154,7 +154,7 @@ Image readNrrd(const std::filesystem::path& file) {
       fields[line.substr(0, colon)] = line.substr(colon + 2);
   }
   try {
-    Image image = described(fields);
+    Image image = parseHeader(fields);
     const auto begin = in.tellg();
     const std::uintmax_t rest =
         std::filesystem::file_size(file) - static_cast<std::uintmax_t>(begin);
@@ -166,7 +166,7 @@ Image readNrrd(const std::filesystem::path& file) {
     image.data = std::shared_ptr<const void>(data, data.get());
     return image;
   } catch (const std::logic_error& error) { // also texts that are no numbers
-    throw failed(file, error.what());
+    throw makeError(file, error.what());
   }
 }
 

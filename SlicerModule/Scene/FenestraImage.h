@@ -34,7 +34,7 @@ struct Image {
 };
 
 /// Bytes of a component type; 0: no type of NRRD.
-std::size_t bytesOf(const std::string& type);
+std::size_t componentBytes(const std::string& type);
 
 /// Writes raw data in this machine's byte order. Throws FileError; then no file is left.
 void writeNrrd(const Image& image, const std::filesystem::path& file);

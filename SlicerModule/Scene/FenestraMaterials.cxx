@@ -8,7 +8,7 @@
 namespace SlicerExport {
 namespace {
 
-std::string trimmed(const std::string& text) {
+std::string trim(const std::string& text) {
   constexpr const char* blanks = " \t\r\n";
   const std::size_t first = text.find_first_not_of(blanks);
   return first == std::string::npos ? std::string()
@@ -29,20 +29,20 @@ void MaterialChange::set(const std::string& key, const std::string& value) {
     fields[key] = value;
 }
 
-MaterialChange materialChange(const std::string& text) {
+MaterialChange parseMaterialChange(const std::string& text) {
   const std::size_t colon = text.rfind(':');
   MaterialChange change;
   if (colon == std::string::npos)
     return change;
-  change.segment = trimmed(text.substr(0, colon));
+  change.segment = trim(text.substr(0, colon));
   std::istringstream fields(text.substr(colon + 1));
   for (std::string field; std::getline(fields, field, ',');)
     if (const std::size_t equals = field.find('='); equals != std::string::npos)
-      change.set(trimmed(field.substr(0, equals)), trimmed(field.substr(equals + 1)));
+      change.set(trim(field.substr(0, equals)), trim(field.substr(equals + 1)));
   return change;
 }
 
-std::string textOf(const MaterialChange& change) {
+std::string toText(const MaterialChange& change) {
   std::string text = change.segment;
   const char* separator = ": ";
   for (const auto& [key, value] : change.fields) {
@@ -52,10 +52,10 @@ std::string textOf(const MaterialChange& change) {
   return text;
 }
 
-std::map<std::string, std::string> withMaterialsOf(const std::vector<Segment>& segments,
-                                                   std::map<std::string, std::string> flags) {
+std::map<std::string, std::string> filterMaterialFlags(const std::vector<Segment>& segments,
+                                                       std::map<std::string, std::string> flags) {
   const auto isThere = [&segments](const std::string& text) {
-    const std::string selector = materialChange(text).segment;
+    const std::string selector = parseMaterialChange(text).segment;
     return std::any_of(segments.begin(), segments.end(), [&selector](const Segment& one) {
       return one.id == selector || one.name == selector || std::to_string(one.label) == selector;
     });
@@ -65,12 +65,12 @@ std::map<std::string, std::string> withMaterialsOf(const std::vector<Segment>& s
   const auto changes = flags.find("material");
   if (changes == flags.end())
     return flags;
-  std::vector<std::string> kept;
-  for (const std::string& text : textsIn(changes->second))
+  std::vector<std::string> remaining;
+  for (const std::string& text : splitList(changes->second))
     if (isThere(text))
-      kept.push_back(text);
-  changes->second = joined(kept);
-  if (kept.empty())
+      remaining.push_back(text);
+  changes->second = joinList(remaining);
+  if (remaining.empty())
     flags.erase(changes);
   return flags;
 }

@@ -27,12 +27,12 @@ struct MaterialChange {
 };
 
 /// Change in a text such as "Segment_1: clip=no, color=#963e2e"; without fields if it has none.
-MaterialChange materialChange(const std::string& text);
-std::string textOf(const MaterialChange& change);
+MaterialChange parseMaterialChange(const std::string& text);
+std::string toText(const MaterialChange& change);
 
 /// Flags without changes to other segments than these, which the renderer would refuse; without
 /// segments, there are no materials.
-std::map<std::string, std::string> withMaterialsOf(const std::vector<Segment>& segments,
-                                                   std::map<std::string, std::string> flags);
+std::map<std::string, std::string> filterMaterialFlags(const std::vector<Segment>& segments,
+                                                       std::map<std::string, std::string> flags);
 
 } // namespace SlicerExport

@@ -9,7 +9,7 @@
 namespace SlicerExport {
 namespace {
 
-std::string numbers(const Matrix& matrix) {
+std::string formatMatrix(const Matrix& matrix) {
   std::ostringstream text;
   text.precision(17);
   for (std::size_t i = 0; i < matrix.size(); ++i)
@@ -42,7 +42,7 @@ public:
   std::string addTransform(const std::string& id, const Matrix& toWorld) {
     if (toWorld == identity)
       return {};
-    add("LinearTransform", id, {{"matrixTransformToParent", numbers(toWorld)}});
+    add("LinearTransform", id, {{"matrixTransformToParent", formatMatrix(toWorld)}});
     return "transform:" + id + ";";
   }
   std::string text() const {
@@ -62,7 +62,7 @@ void addVolume(Nodes& nodes, const Contents& contents) {
     std::string rendering;
     if (!contents.property.empty()) {
       nodes.add("VolumePropertyStorage", "PropertyStorage",
-                {{"fileName", "property" + contents.propertyEnding}});
+                {{"fileName", "property" + contents.propertyExtension}});
       nodes.add("VolumeProperty", "Property", {{"references", "storage:PropertyStorage;"}});
       rendering = "volumeProperty:Property;";
     }
@@ -79,7 +79,7 @@ void addVolume(Nodes& nodes, const Contents& contents) {
   nodes.add("Volume", "Volume", {{"references", references}});
 }
 
-std::string sceneText(const Contents& contents) {
+std::string makeSceneText(const Contents& contents) {
   Nodes nodes;
   if (!contents.crop.empty()) {
     const std::string transform = nodes.addTransform("RoiToWorld", contents.crop.front().toWorld);
@@ -87,7 +87,7 @@ std::string sceneText(const Contents& contents) {
     nodes.add("MarkupsROI", "Roi", {{"references", transform + "storage:RoiStorage;"}});
   }
   addVolume(nodes, contents);
-  std::string shown = "volume:Volume;";
+  std::string references = "volume:Volume;";
   const Segmentation& segmentation = contents.segmentation;
   if (!segmentation.segments.empty()) {
     const std::string transform = nodes.addTransform("SegmentationToWorld", segmentation.toWorld);
@@ -95,14 +95,14 @@ std::string sceneText(const Contents& contents) {
               {{"fileName", "segmentation.seg.nrrd"}});
     nodes.add("Segmentation", "Segmentation",
               {{"references", transform + "storage:SegmentationStorage;"}});
-    shown += "segmentation:Segmentation;";
+    references += "segmentation:Segmentation;";
   }
-  nodes.add("FenestraRender", "Render", {{"references", shown}});
+  nodes.add("FenestraRender", "Render", {{"references", references}});
   return nodes.text();
 }
 
 /// `text` without line ends, which would end a NRRD field.
-std::string oneLine(std::string text) {
+std::string toOneLine(std::string text) {
   for (char& c : text)
     if (c == '\n' || c == '\r')
       c = ' ';
@@ -110,14 +110,14 @@ std::string oneLine(std::string text) {
 }
 
 /// Colour with six digits, as Slicer saves it: a picture of the saved scene has the same bits.
-std::string colorText(const std::array<double, 3>& color) {
+std::string formatColor(const std::array<double, 3>& color) {
   std::ostringstream text;
   text << color[0] << ' ' << color[1] << ' ' << color[2];
   return text.str();
 }
 
-Image withSegmentFields(const Segmentation& segmentation) {
-  Image image = composed(segmentation.layers);
+Image makeSegmentationImage(const Segmentation& segmentation) {
+  Image image = composeLayers(segmentation.layers);
   image.fields["Segmentation_MasterRepresentation"] = "Binary labelmap";
   std::ostringstream extent;
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -125,21 +125,21 @@ Image withSegmentFields(const Segmentation& segmentation) {
   for (std::size_t i = 0; i < segmentation.segments.size(); ++i) {
     const Segment& segment = segmentation.segments[i];
     const std::string prefix = "Segment" + std::to_string(i) + "_";
-    image.fields[prefix + "ID"] = oneLine(segment.id);
-    image.fields[prefix + "Name"] = oneLine(segment.name);
+    image.fields[prefix + "ID"] = toOneLine(segment.id);
+    image.fields[prefix + "Name"] = toOneLine(segment.name);
     image.fields[prefix + "LabelValue"] = std::to_string(segment.label);
     image.fields[prefix + "Layer"] = std::to_string(segment.layer);
     image.fields[prefix + "Extent"] = extent.str();
-    image.fields[prefix + "Color"] = colorText(segment.color);
+    image.fields[prefix + "Color"] = formatColor(segment.color);
     if (!segment.tags.empty())
-      image.fields[prefix + "Tags"] = oneLine(segment.tags);
+      image.fields[prefix + "Tags"] = toOneLine(segment.tags);
   }
   return image;
 }
 
 /// Copies a layer's values into its component of a larger box.
 template <typename From, typename To>
-void place(const Layer& layer, const Image& box, const std::array<long, 3>& begin, To* out) {
+void copyLayer(const Layer& layer, const Image& box, const std::array<long, 3>& begin, To* out) {
   const auto* in = static_cast<const From*>(layer.labels.data.get());
   std::array<std::size_t, 3> shift{};
   for (std::size_t axis = 0; axis < 3; ++axis)
@@ -155,35 +155,35 @@ void place(const Layer& layer, const Image& box, const std::array<long, 3>& begi
 }
 
 template <typename To>
-void placeAs(const Layer& layer, const Image& box, const std::array<long, 3>& begin, To* out) {
+void copyLayerAs(const Layer& layer, const Image& box, const std::array<long, 3>& begin, To* out) {
   const std::string& type = layer.labels.type;
   if (type == "uint8")
-    place<std::uint8_t>(layer, box, begin, out);
+    copyLayer<std::uint8_t>(layer, box, begin, out);
   else if (type == "int8")
-    place<std::int8_t>(layer, box, begin, out);
+    copyLayer<std::int8_t>(layer, box, begin, out);
   else if (type == "int16")
-    place<std::int16_t>(layer, box, begin, out);
+    copyLayer<std::int16_t>(layer, box, begin, out);
   else if (type == "uint16")
-    place<std::uint16_t>(layer, box, begin, out);
+    copyLayer<std::uint16_t>(layer, box, begin, out);
   else if (type == "int32")
-    place<std::int32_t>(layer, box, begin, out);
+    copyLayer<std::int32_t>(layer, box, begin, out);
   else
     throw FileError("the segmentation: labels must be whole numbers, but are " + type +
                     "; create its binary labelmap again");
 }
 
 template <typename To>
-std::shared_ptr<const void> composedData(const std::vector<Layer>& layers, const Image& box,
-                                         const std::array<long, 3>& begin) {
+std::shared_ptr<const void> composeData(const std::vector<Layer>& layers, const Image& box,
+                                        const std::array<long, 3>& begin) {
   const auto data = std::make_shared<std::vector<To>>(box.bytes() / sizeof(To));
   for (std::size_t i = 0; i < layers.size(); ++i)
-    placeAs(layers[i], box, begin, data->data() + i);
+    copyLayerAs(layers[i], box, begin, data->data() + i);
   return {data, data->data()};
 }
 
 } // namespace
 
-Image composed(const std::vector<Layer>& layers) {
+Image composeLayers(const std::vector<Layer>& layers) {
   if (layers.empty())
     return {};
   if (layers.size() == 1)
@@ -207,12 +207,12 @@ Image composed(const std::vector<Layer>& layers) {
     for (std::size_t row = 0; row < 3; ++row)
       box.ijkToRas[4 * row + 3] += shift * box.ijkToRas[4 * row + axis];
   }
-  box.data = bytes ? composedData<std::uint8_t>(layers, box, begin)
-                   : composedData<std::int32_t>(layers, box, begin);
+  box.data = bytes ? composeData<std::uint8_t>(layers, box, begin)
+                   : composeData<std::int32_t>(layers, box, begin);
   return box;
 }
 
-void writeNames(std::vector<Segment> segments, const std::filesystem::path& file) {
+void writeSegmentNames(std::vector<Segment> segments, const std::filesystem::path& file) {
   Layer layer;
   layer.labels.type = "uint8";
   layer.labels.size = {1, 1, 1};
@@ -222,22 +222,22 @@ void writeNames(std::vector<Segment> segments, const std::filesystem::path& file
     segment.label = ++label;
     segment.layer = 0;
   }
-  writeNrrd(withSegmentFields({{layer}, std::move(segments), identity}), file);
+  writeNrrd(makeSegmentationImage({{layer}, std::move(segments), identity}), file);
 }
 
-void Writer::writeOrLink(const Image& image, const std::string& key, Kept& kept,
+void Writer::writeOrLink(const Image& image, const std::string& key, WrittenFile& last,
                          const std::filesystem::path& file) {
   std::error_code failed;
-  if (!key.empty() && key == kept.key)
-    std::filesystem::create_hard_link(kept.file, file, failed);
-  if (key.empty() || key != kept.key || failed) {
+  if (!key.empty() && key == last.key)
+    std::filesystem::create_hard_link(last.file, file, failed);
+  if (key.empty() || key != last.key || failed) {
     writeNrrd(image, file);
-    kept.key.clear();
+    last.key.clear();
     const std::filesystem::path copy = m_folder / ("kept-" + file.filename().string());
     std::filesystem::remove(copy, failed);
     std::filesystem::create_hard_link(file, copy, failed);
     if (!failed)
-      kept = {key, copy};
+      last = {key, copy};
   }
 }
 
@@ -247,13 +247,13 @@ std::filesystem::path Writer::write(const Contents& contents) {
   std::filesystem::create_directories(folder, failed);
   writeOrLink(contents.volume, contents.volumeKey, m_volume, folder / "volume.nrrd");
   if (!contents.segmentation.segments.empty())
-    writeOrLink(withSegmentFields(contents.segmentation), contents.segmentationKey, m_segmentation,
-                folder / "segmentation.seg.nrrd");
+    writeOrLink(makeSegmentationImage(contents.segmentation), contents.segmentationKey,
+                m_segmentation, folder / "segmentation.seg.nrrd");
   if (!contents.property.empty())
-    writeText(contents.property, folder / ("property" + contents.propertyEnding));
+    writeText(contents.property, folder / ("property" + contents.propertyExtension));
   if (!contents.crop.empty())
     writeText(contents.crop.front().markup, folder / "roi.mrk.json");
-  writeText(sceneText(contents), folder / "scene.mrml");
+  writeText(makeSceneText(contents), folder / "scene.mrml");
   return folder / "scene.mrml";
 }
 

@@ -54,16 +54,16 @@ struct Contents {
   Segmentation segmentation; ///< without segments: none
   std::string segmentationKey;
   std::string property; ///< text of the volume property's file; empty: the renderer chooses
-  std::string propertyEnding = ".vp"; ///< of the property's file
+  std::string propertyExtension = ".vp"; ///< of the property's file
   std::vector<Roi> crop;
 };
 
 /// All layers as components of one image, over the smallest box that holds them.
-Image composed(const std::vector<Layer>& layers);
+Image composeLayers(const std::vector<Layer>& layers);
 
 /// Writes a segmentation (.seg.nrrd) of one voxel in which each segment has a value of its own: for
 /// questions about names, tags and colours. Throws FileError.
-void writeNames(std::vector<Segment> segments, const std::filesystem::path& file);
+void writeSegmentNames(std::vector<Segment> segments, const std::filesystem::path& file);
 
 /// Writes scenes into numbered folders below a private one; files unchanged since the preceding
 /// scene are linked, not written again.
@@ -75,15 +75,15 @@ public:
   std::filesystem::path write(const Contents& contents);
 
 private:
-  struct Kept {
+  struct WrittenFile {
     std::string key;
     std::filesystem::path file;
   };
-  void writeOrLink(const Image& image, const std::string& key, Kept& kept,
+  void writeOrLink(const Image& image, const std::string& key, WrittenFile& last,
                    const std::filesystem::path& file);
 
   std::filesystem::path m_folder;
-  Kept m_volume, m_segmentation;
+  WrittenFile m_volume, m_segmentation;
   int m_written = 0;
 };
 

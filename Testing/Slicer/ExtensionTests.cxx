@@ -15,14 +15,14 @@ namespace {
 
 const std::filesystem::path project = FENESTRA_PROJECT;
 
-std::string textOf(const std::filesystem::path& file) {
+std::string readText(const std::filesystem::path& file) {
   std::ostringstream text;
   text << std::ifstream(project / file, std::ios::binary).rdbuf();
   return text.str();
 }
 
 /// First group of a pattern's first match; empty: no match.
-std::string found(const std::string& text, const std::string& pattern) {
+std::string findMatch(const std::string& text, const std::string& pattern) {
   std::smatch match;
   return std::regex_search(text, match, std::regex(pattern, std::regex::icase)) ? match[1].str()
                                                                                 : std::string();
@@ -30,18 +30,18 @@ std::string found(const std::string& text, const std::string& pattern) {
 
 /// Value of `set(NAME "value")`.
 std::string setting(const std::string& name) {
-  return found(textOf("CMakeLists.txt"), "set\\s*\\(" + name + "\\s*\"([^\"]+)\"\\s*\\)");
+  return findMatch(readText("CMakeLists.txt"), "set\\s*\\(" + name + "\\s*\"([^\"]+)\"\\s*\\)");
 }
 
 TEST(Extension, TopLevelNamesWhatTheIndexReads) {
-  const std::string list = textOf("CMakeLists.txt");
-  EXPECT_EQ(found(list, R"(project\s*\(\s*([^\s\)]+))"), "Fenestra");
+  const std::string list = readText("CMakeLists.txt");
+  EXPECT_EQ(findMatch(list, R"(project\s*\(\s*([^\s\)]+))"), "Fenestra");
   for (const char* name : {"EXTENSION_HOMEPAGE", "EXTENSION_CONTRIBUTORS", "EXTENSION_DESCRIPTION",
                            "EXTENSION_ICONURL", "EXTENSION_SCREENSHOTURLS", "EXTENSION_CATEGORY"})
     EXPECT_NE(setting(name), "") << name;
   for (const char* name : {"EXTENSION_ICONURL", "EXTENSION_SCREENSHOTURLS"}) {
     // A file of this repository, as its host serves it: .../<owner>/<repository>/<branch>/<path>.
-    const std::string path = found(
+    const std::string path = findMatch(
         setting(name), "^https://raw\\.githubusercontent\\.com/[^/]+/[^/]+/main/(.+\\.(png|jpg))$");
     EXPECT_TRUE(!path.empty() && std::filesystem::is_regular_file(project / path)) << name;
   }
@@ -49,12 +49,12 @@ TEST(Extension, TopLevelNamesWhatTheIndexReads) {
 }
 
 TEST(Extension, DescriptionNamesRepositoryAndCategory) {
-  const std::string entry = textOf("SlicerModule/Fenestra.json");
-  const std::string url = found(entry, "\"scm_url\"\\s*:\\s*\"([^\"]+)\"");
+  const std::string entry = readText("SlicerModule/Fenestra.json");
+  const std::string url = findMatch(entry, "\"scm_url\"\\s*:\\s*\"([^\"]+)\"");
   EXPECT_TRUE(std::regex_match(url, std::regex("https://[^/]+/[^/]+/Slicer\\w+\\.git"))) << url;
-  EXPECT_EQ(found(entry, "\"category\"\\s*:\\s*\"([^\"]+)\""), setting("EXTENSION_CATEGORY"));
+  EXPECT_EQ(findMatch(entry, "\"category\"\\s*:\\s*\"([^\"]+)\""), setting("EXTENSION_CATEGORY"));
   EXPECT_EQ(setting("EXTENSION_CATEGORY"), "Rendering"); // one of the index's list
-  EXPECT_NE(textOf("LICENSE"), "");
+  EXPECT_NE(readText("LICENSE"), "");
   EXPECT_EQ(setting("EXTENSION_HOMEPAGE").rfind(url.substr(0, url.size() - 4), 0), 0u);
 }
 
@@ -62,11 +62,11 @@ TEST(Extension, DescriptionNamesRepositoryAndCategory) {
 /// second takes the first one's place.
 TEST(Extension, NamesOfModulesDifferInLowerCase) {
   const std::string loadable =
-      found(textOf("SlicerModule/Extension.cmake"), "set\\(MODULE_NAME (\\w+)\\)");
+      findMatch(readText("SlicerModule/Extension.cmake"), "set\\(MODULE_NAME (\\w+)\\)");
   const std::string command =
-      found(textOf("SlicerModule/Extension.cmake"), "set\\(COMMAND_MODULE_NAME (\\w+)\\)");
-  const std::string tour =
-      found(textOf("SlicerModule/Testing/Tour/CMakeLists.txt"), "set\\(MODULE_NAME (\\w+)\\)");
+      findMatch(readText("SlicerModule/Extension.cmake"), "set\\(COMMAND_MODULE_NAME (\\w+)\\)");
+  const std::string tour = findMatch(readText("SlicerModule/Testing/Tour/CMakeLists.txt"),
+                                     "set\\(MODULE_NAME (\\w+)\\)");
   std::set<std::string> names;
   for (std::string name : {loadable, command, tour}) {
     EXPECT_NE(name, "");

@@ -16,19 +16,19 @@
 namespace fenestra {
 namespace {
 
-QString inQt(const std::filesystem::path& path) {
+QString toQString(const std::filesystem::path& path) {
   return QString::fromStdString(path.string());
 }
 
 /// Another session, in a process that lives until it is killed.
-class Neighbour {
+class OtherSession {
 public:
-  explicit Neighbour(const TemporaryFolder& parent) {
+  explicit OtherSession(const TemporaryFolder& parent) {
     int tell[2];
     EXPECT_EQ(::pipe(tell), 0);
     m_process = ::fork();
     if (m_process == 0) {
-      const qFenestraFolder folder(inQt(parent.path()), "session-");
+      const qFenestraFolder folder(toQString(parent.path()), "session-");
       std::ofstream(folder.filePath("patient.nrrd").toStdString()) << "voxels";
       const std::string path = folder.path().toStdString();
       [[maybe_unused]] const auto written = ::write(tell[1], path.data(), path.size());
@@ -41,9 +41,9 @@ public:
     ::close(tell[0]);
     ::close(tell[1]);
   }
-  ~Neighbour() { crash(); }
-  Neighbour(const Neighbour&) = delete;
-  Neighbour& operator=(const Neighbour&) = delete;
+  ~OtherSession() { crash(); }
+  OtherSession(const OtherSession&) = delete;
+  OtherSession& operator=(const OtherSession&) = delete;
 
   void crash() {
     if (m_process > 0) {
@@ -63,7 +63,7 @@ TEST(SlicerFolder, IsPrivateAndRemovedWithItsSession) {
   const TemporaryFolder parent;
   QString path;
   {
-    const qFenestraFolder folder(inQt(parent.path()), "session-");
+    const qFenestraFolder folder(toQString(parent.path()), "session-");
     path = folder.path();
     ASSERT_TRUE(folder.isValid());
     EXPECT_EQ(std::filesystem::status(path.toStdString()).permissions(),
@@ -76,13 +76,13 @@ TEST(SlicerFolder, IsPrivateAndRemovedWithItsSession) {
 /// A session's process number may differ in another container.
 TEST(SlicerFolder, OnlyFoldersOfCrashedSessionsAreRemoved) {
   const TemporaryFolder parent;
-  Neighbour neighbour(parent);
+  OtherSession other(parent);
   const std::filesystem::path renamed = parent / "session-999999999-a"; // no such process here
-  std::filesystem::rename(neighbour.folder, renamed);
-  { const qFenestraFolder own(inQt(parent.path()), "session-"); }
+  std::filesystem::rename(other.folder, renamed);
+  { const qFenestraFolder own(toQString(parent.path()), "session-"); }
   EXPECT_TRUE(std::filesystem::exists(renamed / "patient.nrrd"));
-  neighbour.crash();
-  { const qFenestraFolder own(inQt(parent.path()), "session-"); }
+  other.crash();
+  { const qFenestraFolder own(toQString(parent.path()), "session-"); }
   EXPECT_FALSE(std::filesystem::exists(renamed));
 }
 
@@ -95,7 +95,7 @@ TEST(SlicerFolder, ForeignFoldersAndLinksAreLeftAlone) {
   std::filesystem::create_directory_symlink(parent / "elsewhere", parent / "session-link");
   std::filesystem::create_directory(parent / "session-trap");
   std::filesystem::create_symlink(parent / "elsewhere/lock", parent / "session-trap/lock");
-  { const qFenestraFolder own(inQt(parent.path()), "session-"); }
+  { const qFenestraFolder own(toQString(parent.path()), "session-"); }
   for (const char* name : {"session-young", "other-a/lock", "elsewhere/lock", "session-trap/lock"})
     EXPECT_TRUE(std::filesystem::exists(parent / name)) << name;
 }
@@ -106,7 +106,7 @@ protected:
     folder.write("new.png", std::string(10000, 'n'));
     folder.write("old.png", "old");
   }
-  QString path(const char* name) const { return inQt(folder / name); }
+  QString path(const char* name) const { return toQString(folder / name); }
 
   TemporaryFolder folder;
 };
@@ -132,16 +132,16 @@ TEST_F(SlicerCopies, FailedCopyKeepsTheOldFileAndLeavesNoOther) {
   ::signal(SIGXFSZ, SIG_DFL);
   EXPECT_EQ(failed.toStdString(), path("old.png").toStdString());
   EXPECT_EQ(bytesOf(folder / "old.png").size(), 3u);
-  EXPECT_EQ(QDir(inQt(folder.path())).entryList(QDir::Files | QDir::Hidden),
+  EXPECT_EQ(QDir(toQString(folder.path())).entryList(QDir::Files | QDir::Hidden),
             (QStringList{"new.png", "old.png"}));
 }
 
 TEST_F(SlicerCopies, ExistingListsTheFilesThatWriteWouldReplace) {
-  EXPECT_EQ(qFenestraCopies::picture(path("new.png"), path("old"), ".png").existing(),
+  EXPECT_EQ(qFenestraCopies::picture(path("new.png"), path("old"), ".png").existingTargets(),
             QStringList{path("old.png")});
-  EXPECT_EQ(qFenestraCopies::picture(path("new.png"), path("old.PNG"), ".png").existing(),
+  EXPECT_EQ(qFenestraCopies::picture(path("new.png"), path("old.PNG"), ".png").existingTargets(),
             QStringList());
-  EXPECT_EQ(qFenestraCopies::picture(path("new.png"), path("old"), ".exr").existing(),
+  EXPECT_EQ(qFenestraCopies::picture(path("new.png"), path("old"), ".exr").existingTargets(),
             QStringList());
 
   const QStringList sources = {path("frame_0000.png"), path("frame_0001.png"),
@@ -152,7 +152,8 @@ TEST_F(SlicerCopies, ExistingListsTheFilesThatWriteWouldReplace) {
   std::filesystem::create_symlink(folder / "nowhere", folder / "turn_0002.png");
   for (const char* chosen : {"turn", "turn.png"}) {
     const qFenestraCopies frames = qFenestraCopies::frames(sources, path(chosen));
-    EXPECT_EQ(frames.existing(), (QStringList{path("turn_0001.png"), path("turn_0002.png")}));
+    EXPECT_EQ(frames.existingTargets(),
+              (QStringList{path("turn_0001.png"), path("turn_0002.png")}));
     EXPECT_EQ(frames.names(), path("turn_0000.png") + " to turn_0002.png");
   }
   EXPECT_EQ(qFenestraCopies::frames(sources, path("turn")).write(), "");

@@ -10,9 +10,9 @@
 namespace fenestra {
 namespace {
 
+using SlicerExport::checkFlag;
 using SlicerExport::FlagKind;
 using SlicerExport::Verdict;
-using SlicerExport::verdictOn;
 
 struct Case {
   const char* name;
@@ -48,7 +48,7 @@ TEST(SlicerFlags, ValuesThatTheRendererTakesAreGood) {
                          {"size", "512x384"},
                          {"seed", "18446744073709551615"},
                          {"degrees", "-90.5"}})
-    EXPECT_EQ(verdictOn(name, value), Verdict::good) << name << ": " << value;
+    EXPECT_EQ(checkFlag(name, value), Verdict::valid) << name << ": " << value;
 }
 
 TEST(SlicerFlags, MalformedValuesAreRejected) {
@@ -82,7 +82,7 @@ TEST(SlicerFlags, MalformedValuesAreRejected) {
                                                      {"lights", std::string(200000, 'a')},
                                                      {"output", "a.png"},
                                                      {"stats", "a.json"}})
-    EXPECT_EQ(verdictOn(name, value), Verdict::bad) << name << ": " << value.substr(0, 40);
+    EXPECT_EQ(checkFlag(name, value), Verdict::invalid) << name << ": " << value.substr(0, 40);
 }
 
 TEST(SlicerFlags, NamesOfFilesAreDetectedAlsoInsideTexts) {
@@ -97,7 +97,7 @@ TEST(SlicerFlags, NamesOfFilesAreDetectedAlsoInsideTexts) {
            {"lights", "C:lights"},
            {"lights", R"({"lights": [{"type": "environment", "file": "/etc/passwd"}]})"},
            {"lights", R"({"lights": [{"type": "environment", "\u0066ile": "/etc/passwd"}]})"}})
-    EXPECT_EQ(verdictOn(name, value), Verdict::file) << name << ": " << value;
+    EXPECT_EQ(checkFlag(name, value), Verdict::file) << name << ": " << value;
 }
 
 /// Reference: the renderer's own description of its numbers and words.
@@ -106,31 +106,32 @@ TEST(SlicerFlags, KindsEqualThoseOfTheRenderer) {
   child.start(FENESTRA_EXECUTABLE, {"--xml"});
   ASSERT_TRUE(child.waitForFinished());
   const QString description = QString::fromUtf8(child.readAllStandardOutput());
-  const auto known = qFenestraAbilities::flagsIn(description);
+  const auto known = qFenestraCapabilities::parseFlags(description);
   for (const SlicerExport::Flag& flag : SlicerExport::flags()) {
-    if (flag.ofTurntable)
+    if (flag.turntableOnly)
       continue;
     const QString name = QString::fromStdString(flag.name);
     ASSERT_TRUE(known.contains(name)) << flag.name;
-    const bool hasWords = !known[name].words.isEmpty();
+    const bool hasWords = !known[name].choices.isEmpty();
     EXPECT_EQ(flag.kind == FlagKind::word, hasWords) << flag.name;
-    const bool maySayAuto = !hasWords && flag.kind != FlagKind::look; // there it is a name
-    EXPECT_EQ(flag.kind == FlagKind::automatic, maySayAuto && known[name].text.contains("auto:"))
+    const bool maySayAuto = !hasWords && flag.kind != FlagKind::resource; // there it is a name
+    EXPECT_EQ(flag.kind == FlagKind::numberOrAuto, maySayAuto && known[name].text.contains("auto:"))
         << flag.name;
-    EXPECT_TRUE(!SlicerExport::repeats(flag.name) || known[name].text.contains("may be repeated"))
+    EXPECT_TRUE(!SlicerExport::isRepeatable(flag.name) ||
+                known[name].text.contains("may be repeated"))
         << flag.name;
-    for (const QString& word : known[name].words)
-      EXPECT_EQ(verdictOn(flag.name, word.toStdString()), Verdict::good) << flag.name;
+    for (const QString& word : known[name].choices)
+      EXPECT_EQ(checkFlag(flag.name, word.toStdString()), Verdict::valid) << flag.name;
   }
 }
 
 TEST(SlicerFlags, TextsSurviveAsOneValue) {
   const std::vector<std::string> texts = {"Liver: color=#963e2e, clip=no", "a\\b, \"c\": clip=no",
                                           "d"};
-  const std::string value = SlicerExport::joined(texts);
-  EXPECT_EQ(SlicerExport::textsIn(value), texts);
-  EXPECT_TRUE(SlicerExport::textsIn("").empty());
-  EXPECT_EQ(SlicerExport::argumentsOf({{"focus", "a,b"}, {"material", value}, {"offset", "-1"}}),
+  const std::string value = SlicerExport::joinList(texts);
+  EXPECT_EQ(SlicerExport::splitList(value), texts);
+  EXPECT_TRUE(SlicerExport::splitList("").empty());
+  EXPECT_EQ(SlicerExport::toArguments({{"focus", "a,b"}, {"material", value}, {"offset", "-1"}}),
             (std::vector<std::string>{"--focus=a,b", "--material=" + texts[0],
                                       "--material=" + texts[1], "--material=d", "--offset=-1"}));
 }
@@ -140,15 +141,15 @@ TEST(SlicerFlags, ChangesOfGoneSegmentsAreLeftOut) {
   using Flags = std::map<std::string, std::string>;
   const std::vector<SlicerExport::Segment> there = {{"S,1", "Liver", 1}, {"S2", "Aorta", 7}};
   const auto change = [](const char* selector) { return std::string(selector) + ": clip=no"; };
-  const std::string value = SlicerExport::joined(
+  const std::string value = SlicerExport::joinList(
       {change("S,1"), change("gone"), change("Aorta"), change("7"), change("8")});
   EXPECT_EQ(
-      SlicerExport::withMaterialsOf(there, {{"materials", "auto"}, {"material", value}}),
+      SlicerExport::filterMaterialFlags(there, {{"materials", "auto"}, {"material", value}}),
       (Flags{{"materials", "auto"},
-             {"material", SlicerExport::joined({change("S,1"), change("Aorta"), change("7")})}}));
-  EXPECT_EQ(SlicerExport::withMaterialsOf({}, {{"materials", "auto"}, {"material", value}}),
+             {"material", SlicerExport::joinList({change("S,1"), change("Aorta"), change("7")})}}));
+  EXPECT_EQ(SlicerExport::filterMaterialFlags({}, {{"materials", "auto"}, {"material", value}}),
             Flags());
-  EXPECT_EQ(SlicerExport::withMaterialsOf({}, {{"view", "left"}}), (Flags{{"view", "left"}}));
+  EXPECT_EQ(SlicerExport::filterMaterialFlags({}, {{"view", "left"}}), (Flags{{"view", "left"}}));
 }
 
 } // namespace

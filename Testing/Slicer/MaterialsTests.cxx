@@ -32,10 +32,10 @@ using Materials = qSlicerFenestraMaterials;
 const QString program = FENESTRA_EXECUTABLE;
 
 bool waitFor(const std::function<bool()>& condition) {
-  const int longest = 30000 * static_cast<int>(testing::brevity()); // milliseconds
+  const int timeoutMs = 30000 * static_cast<int>(testing::brevity()); // milliseconds
   QElapsedTimer watch;
   watch.start();
-  while (!condition() && watch.elapsed() < longest)
+  while (!condition() && watch.elapsed() < timeoutMs)
     QCoreApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 10);
   return condition();
 }
@@ -50,37 +50,37 @@ std::vector<SlicerExport::Segment> segments() {
           {"Segment_3", "Thing", 3, 0, "", {0.2, 0.4, 0.8}}};
 }
 
-QList<qSlicerFenestraSegment> listed(const std::vector<SlicerExport::Segment>& all) {
+QList<qSlicerFenestraSegment> toPanelSegments(const std::vector<SlicerExport::Segment>& all) {
   QList<qSlicerFenestraSegment> list;
   for (const SlicerExport::Segment& one : all)
     list.append({QString::fromStdString(one.id), QString::fromStdString(one.name)});
   return list;
 }
 
-qFenestraMaterials asked(const std::vector<SlicerExport::Segment>& all,
-                         const TemporaryFolder& folder) {
-  qFenestraMaterialsQuestion question;
+qFenestraMaterials queryMaterials(const std::vector<SlicerExport::Segment>& all,
+                                  const TemporaryFolder& folder) {
+  qFenestraMaterialsQuery question;
   std::vector<qFenestraMaterials> told;
-  QObject::connect(&question, &qFenestraMaterialsQuestion::told,
+  QObject::connect(&question, &qFenestraMaterialsQuery::told,
                    [&](const qFenestraMaterials& materials) { told.push_back(materials); });
-  question.ask(program, {}, QString::fromStdString(folder.path().string()));
-  question.ask(program, all, QString::fromStdString(folder.path().string()));
+  question.request(program, {}, QString::fromStdString(folder.path().string()));
+  question.request(program, all, QString::fromStdString(folder.path().string()));
   EXPECT_TRUE(waitFor([&] { return !told.empty(); }));
   EXPECT_EQ(told.size(), 1u) << "an outdated question has no answer";
   return told.empty() ? qFenestraMaterials() : told.back();
 }
 
 /// Answer of the renderer about the segments, asked for once.
-const qFenestraMaterials& known() {
-  static const qFenestraMaterials materials = asked(segments(), TemporaryFolder());
+const qFenestraMaterials& knownMaterials() {
+  static const qFenestraMaterials materials = queryMaterials(segments(), TemporaryFolder());
   return materials;
 }
 
 class SlicerMaterials : public ::testing::Test {
 protected:
   SlicerMaterials() {
-    table.list(listed(segments()));
-    table.tell(known());
+    table.list(toPanelSegments(segments()));
+    table.setKnownMaterials(knownMaterials());
   }
 
   QTableWidget& widget() { return *table.findChild<QTableWidget*>("MaterialsTable"); }
@@ -92,7 +92,7 @@ protected:
   QString text(int row) { return widget().item(row, name)->text(); }
   void choose(const char* word) { source().setCurrentIndex(source().findData(word)); }
   std::string chosen() { return source().currentData().toString().toStdString(); }
-  void make(int row, const char* of) {
+  void setMaterial(int row, const char* of) {
     auto& box = cell<QComboBox>(row, material);
     box.setCurrentIndex(box.findData(of));
   }
@@ -107,7 +107,7 @@ protected:
                                   : button.icon().pixmap(16).toImage().pixelColor(8, 8).name();
   }
   /// Presses the row's button, and chooses in the dialog that opens.
-  void paint(int row, const char* chosen) {
+  void pickColor(int row, const char* chosen) {
     QTimer::singleShot(0, [chosen] {
       auto* dialog = qobject_cast<QColorDialog*>(QApplication::activeModalWidget());
       ASSERT_NE(dialog, nullptr);
@@ -126,7 +126,7 @@ protected:
         given[name] = value;
     return given;
   }
-  std::vector<std::string> arguments() const { return SlicerExport::argumentsOf(taken()); }
+  std::vector<std::string> arguments() const { return SlicerExport::toArguments(taken()); }
 
   Materials table;
 };
@@ -134,15 +134,15 @@ protected:
 using Texts = std::vector<std::string>;
 
 TEST_F(SlicerMaterials, RendererTellsItsChoicesAndItsLibrary) {
-  EXPECT_GE(known().library.size(), 24);
-  for (const qFenestraMaterial& one : known().library)
+  EXPECT_GE(knownMaterials().library.size(), 24);
+  for (const qFenestraMaterial& one : knownMaterials().library)
     EXPECT_FALSE(one.name.isEmpty());
   EXPECT_EQ(cell<QComboBox>(0, material).itemText(0), "liver (automatic)");
   EXPECT_TRUE(cell<QComboBox>(0, material).toolTip().contains("by name"));
   EXPECT_EQ(cell<QComboBox>(1, material).itemText(0), "artery (automatic)");
   EXPECT_EQ(cell<QComboBox>(2, material).itemText(0), "Automatic");
   EXPECT_TRUE(cell<QComboBox>(2, material).toolTip().contains("by its own colour"));
-  EXPECT_EQ(cell<QComboBox>(0, material).count(), known().library.size() + 1);
+  EXPECT_EQ(cell<QComboBox>(0, material).count(), knownMaterials().library.size() + 1);
   EXPECT_EQ(seen(0), "#963e2e");
   EXPECT_EQ(seen(2), "#3366cc"); // the segment's own
 }
@@ -177,13 +177,13 @@ TEST_F(SlicerMaterials, OnlyWhatIsChangedIsAnArgument) {
   EXPECT_EQ(arguments(), (Texts{"--material=" + awkward + ": clip=no", "--materials=auto"}));
   choose("library");
   EXPECT_EQ(arguments(), (Texts{"--materials=library"}));
-  make(0, "spleen");
+  setMaterial(0, "spleen");
   EXPECT_EQ(chosen(), "hand");
-  paint(0, "#ABCDEF");
+  pickColor(0, "#ABCDEF");
   EXPECT_EQ(arguments(),
             (Texts{"--material=Segment_1: color=#abcdef, material=spleen", "--materials=library"}));
   EXPECT_EQ(seen(0), "#abcdef");
-  make(0, "vein");
+  setMaterial(0, "vein");
   const Texts vein = {"--material=Segment_1: material=vein", "--materials=library"};
   EXPECT_EQ(seen(0), "#4668b2") << "a material comes with its colour";
   EXPECT_EQ(arguments(), vein);
@@ -198,9 +198,9 @@ TEST_F(SlicerMaterials, OnlyWhatIsChangedIsAnArgument) {
 
 /// Texts of a scene are neither read as HTML nor as colours.
 TEST_F(SlicerMaterials, TextsOfASceneAreShownAsTheyAre) {
-  qFenestraMaterials hostile = known();
-  hostile.ofSegments["Segment_1"].why = "<img src='file:///etc/passwd'>";
-  table.tell(hostile);
+  qFenestraMaterials hostile = knownMaterials();
+  hostile.bySegment["Segment_1"].why = "<img src='file:///etc/passwd'>";
+  table.setKnownMaterials(hostile);
   EXPECT_TRUE(cell<QComboBox>(0, material).toolTip().contains("&lt;img"));
   table.show({{"materials", "auto"}, {"material", "Segment_1: color=<b>red</b>"}});
   EXPECT_EQ(seen(0), "#963e2e");
@@ -208,9 +208,9 @@ TEST_F(SlicerMaterials, TextsOfASceneAreShownAsTheyAre) {
 }
 
 TEST_F(SlicerMaterials, WhatNobodyKnowsKeepsTheVolumesColours) {
-  qFenestraMaterials palette = known();
-  palette.ofSegments["Segment_3"].why = "by palette";
-  table.tell(palette);
+  qFenestraMaterials palette = knownMaterials();
+  palette.bySegment["Segment_3"].why = "by palette";
+  table.setKnownMaterials(palette);
   choose("library");
   EXPECT_EQ(seen(2), "#3366cc");
   for (const char* word : {"auto", "none"}) {
@@ -220,9 +220,9 @@ TEST_F(SlicerMaterials, WhatNobodyKnowsKeepsTheVolumesColours) {
 }
 
 TEST_F(SlicerMaterials, ClipFollowsTheAutomaticChoice) {
-  qFenestraMaterials standing = known();
-  standing.ofSegments["Segment_1"].isClipped = false;
-  table.tell(standing);
+  qFenestraMaterials standing = knownMaterials();
+  standing.bySegment["Segment_1"].isClipped = false;
+  table.setKnownMaterials(standing);
   EXPECT_FALSE(isClipped(0));
   setClip(0, true);
   EXPECT_EQ(arguments(), (Texts{"--material=Segment_1: clip=yes", "--materials=auto"}));
@@ -238,21 +238,21 @@ TEST_F(SlicerMaterials, CancelledDialogChangesNothing) {
 }
 
 TEST_F(SlicerMaterials, RowsFollowTheSegments) {
-  make(0, "spleen");
+  setMaterial(0, "spleen");
   setClip(1, false);
   auto all = segments();
   all[1].name = "<b>Aorta</b>";
-  table.list(listed(all));
+  table.list(toPanelSegments(all));
   EXPECT_EQ(text(1), "<b>Aorta</b>");
   EXPECT_FALSE(isClipped(1));
   const Texts both = arguments();
   all.erase(all.begin());
-  table.list(listed(all)); // "Liver" is removed
+  table.list(toPanelSegments(all)); // "Liver" is removed
   EXPECT_EQ(widget().rowCount(), 2);
   EXPECT_EQ(text(0), "<b>Aorta</b>");
   EXPECT_FALSE(isClipped(0));
   EXPECT_EQ(arguments(), (Texts{"--material=" + awkward + ": clip=no", "--materials=auto"}));
-  table.list(listed(segments())); // there again, as after Undo
+  table.list(toPanelSegments(segments())); // there again, as after Undo
   EXPECT_EQ(arguments(), both);
   table.list({});
   EXPECT_FALSE(table.isEnabled());
@@ -267,9 +267,9 @@ TEST_F(SlicerMaterials, FlagsAreShownAndMadeAgain) {
            {{"materials", "none"}},
            {{"materials", "library"}},
            {{"materials", "/data/mine.json"}},
-           {{"materials", "auto"}, {"material", SlicerExport::joined({own})}},
-           {{"materials", "/data/mine.json"}, {"material", SlicerExport::joined({other})}},
-           {{"materials", "library"}, {"material", SlicerExport::joined({own, other})}},
+           {{"materials", "auto"}, {"material", SlicerExport::joinList({own})}},
+           {{"materials", "/data/mine.json"}, {"material", SlicerExport::joinList({other})}},
+           {{"materials", "library"}, {"material", SlicerExport::joinList({own, other})}},
            {{"materials", "auto"}, {"material", "Segment_3: material=of a file"}},
            {{"material", "Segment_3: clip=no"}}}) { // what is missing is for the user to say
     table.show(flags);
@@ -284,11 +284,11 @@ TEST_F(SlicerMaterials, FlagsAreShownAndMadeAgain) {
 
 TEST_F(SlicerMaterials, FlagsAreThereBeforeTheSegments) {
   const Flags flags = {{"materials", "library"},
-                       {"material", SlicerExport::joined({awkward + ": clip=no"})}};
+                       {"material", SlicerExport::joinList({awkward + ": clip=no"})}};
   Materials early;
   early.show(flags);
   early.show({}); // nothing is passed without segments
-  early.list(listed(segments()));
+  early.list(toPanelSegments(segments()));
   Flags made;
   early.take(made);
   EXPECT_EQ(made, flags);
@@ -296,7 +296,7 @@ TEST_F(SlicerMaterials, FlagsAreThereBeforeTheSegments) {
 
 TEST_F(SlicerMaterials, ChangesOfScriptsAreFoundByName) {
   table.show({{"materials", "library"},
-              {"material", SlicerExport::joined(
+              {"material", SlicerExport::joinList(
                                {"Liver: clip=no", "Gone: clip=no", "Segment_1: color=#00ff00"})}});
   EXPECT_FALSE(isClipped(0));
   EXPECT_EQ(arguments(),
@@ -326,7 +326,7 @@ protected:
   }
 
   /// Picture with the table's arguments, by the panel's way: the queue of renders.
-  std::string byPanel() const {
+  std::string renderByPanel() const {
     QStringList all = {QString::fromStdString(scene.string()), "--size=24x24", "--samples=4",
                        "--output=panel.nrrd"};
     for (const std::string& argument : arguments())
@@ -342,7 +342,7 @@ protected:
     return bytesOf(folder / "panel.nrrd");
   }
   /// Picture with arguments as they are typed into a shell.
-  std::string byHand(const std::string& typed) const {
+  std::string renderByCommand(const std::string& typed) const {
     const std::string command = "cd '" + folder.path().string() + "' && '" + program.toStdString() +
                                 "' '" + scene.string() +
                                 "' --size 24x24 --samples 4 --output hand.nrrd --progress none " +
@@ -356,41 +356,43 @@ protected:
 };
 
 TEST_F(SlicerMaterialsPicture, IsThatOfTheCommandLineBitForBit) {
-  const std::string none = byPanel();
-  EXPECT_TRUE(none == byHand("")) << "no flag";
+  const std::string none = renderByPanel();
+  EXPECT_TRUE(none == renderByCommand("")) << "no flag";
   choose("library");
-  const std::string library = byPanel();
-  EXPECT_TRUE(library == byHand("--materials library"));
+  const std::string library = renderByPanel();
+  EXPECT_TRUE(library == renderByCommand("--materials library"));
   EXPECT_TRUE(library != none);
-  paint(0, "#22cc44");
-  make(1, "vein");
-  paint(1, "#4466ff");
-  make(2, "muscle");
-  const std::string own = byPanel();
-  EXPECT_TRUE(
-      own == byHand(R"(--materials library --material 'Segment_1: color=#22cc44' )"
-                    R"(--material "a, \"b\": c=d; \$HOME 'e' \\, é: material=vein, color=#4466ff" )"
-                    R"(--material "Thing: material=muscle")"));
+  pickColor(0, "#22cc44");
+  setMaterial(1, "vein");
+  pickColor(1, "#4466ff");
+  setMaterial(2, "muscle");
+  const std::string own = renderByPanel();
+  EXPECT_TRUE(own ==
+              renderByCommand(
+                  R"(--materials library --material 'Segment_1: color=#22cc44' )"
+                  R"(--material "a, \"b\": c=d; \$HOME 'e' \\, é: material=vein, color=#4466ff" )"
+                  R"(--material "Thing: material=muscle")"));
   EXPECT_TRUE(own != library);
   for (int row = 0; row < 3; ++row)
     cell<QToolButton>(row, reset).click();
-  EXPECT_TRUE(byPanel() == library);
+  EXPECT_TRUE(renderByPanel() == library);
 }
 
 /// The extension's scene holds the segments' own colours, which are those of unknown ones.
 TEST_F(SlicerMaterialsPicture, UnknownSegmentHasItsOwnColour) {
   choose("library");
-  EXPECT_TRUE(byPanel() == byHand("--materials library --material 'Segment_3: color=#3366cc'"));
+  EXPECT_TRUE(renderByPanel() ==
+              renderByCommand("--materials library --material 'Segment_3: color=#3366cc'"));
 }
 
 TEST_F(SlicerMaterialsPicture, PreviewTakesTheSameFlags) {
-  make(0, "spleen");
-  make(1, "vein");
+  setMaterial(0, "spleen");
+  setMaterial(1, "vein");
   qFenestraPreview preview;
-  std::vector<qFenestraPicture> pictures;
+  std::vector<qFenestraPreviewImage> pictures;
   QStringList refused;
   QObject::connect(&preview, &qFenestraPreview::refreshed,
-                   [&](const qFenestraPicture& picture) { pictures.push_back(picture); });
+                   [&](const qFenestraPreviewImage& picture) { pictures.push_back(picture); });
   QObject::connect(&preview, &qFenestraPreview::refused,
                    [&](const QString& message) { refused << message; });
   const auto picture = [&] {
@@ -410,12 +412,12 @@ TEST_F(SlicerMaterialsPicture, PreviewTakesTheSameFlags) {
   const std::string first = picture();
   preview.start(program, bare, path);
   EXPECT_TRUE(picture() != first);
-  preview.change(qFenestraPreview::valuesOf(taken()));
+  preview.change(qFenestraPreview::toJson(taken()));
   EXPECT_TRUE(picture() == first);
 }
 
 TEST_F(SlicerMaterials, ResetForgetsAll) {
-  make(0, "spleen");
+  setMaterial(0, "spleen");
   table.reset();
   EXPECT_TRUE(arguments().empty());
   choose("hand");

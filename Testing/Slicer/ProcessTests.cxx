@@ -26,15 +26,15 @@ namespace {
 using Kind = qFenestraOutcome::Kind;
 
 const QString program = FENESTRA_EXECUTABLE;
-const int longest = 30000 * static_cast<int>(testing::brevity()); ///< milliseconds
-const int soon = 1000 * static_cast<int>(testing::brevity());     ///< 200 on an idle machine
+const int timeoutMs = 30000 * static_cast<int>(testing::brevity()); ///< milliseconds
+const int maxStopMs = 1000 * static_cast<int>(testing::brevity());  ///< 200 on an idle machine
 
 /// Runs the event loop until the condition holds; false after `longest`.
 bool waitFor(const std::function<bool()>& condition) {
   QElapsedTimer watch;
   watch.start();
   while (!condition()) {
-    if (watch.elapsed() > longest)
+    if (watch.elapsed() > timeoutMs)
       return false;
     QCoreApplication::processEvents(QEventLoop::AllEvents | QEventLoop::WaitForMoreEvents, 10);
   }
@@ -69,12 +69,12 @@ struct Ended {
 };
 
 /// Reports of a queue.
-struct Heard {
+struct SignalRecorder {
   std::vector<int> started;
   std::vector<double> parts;
   std::vector<Ended> ended;
 
-  explicit Heard(qFenestraQueue& queue) {
+  explicit SignalRecorder(qFenestraQueue& queue) {
     QObject::connect(&queue, &qFenestraQueue::started, [this](int id) { started.push_back(id); });
     QObject::connect(&queue, &qFenestraQueue::progressed,
                      [this](int, double part) { parts.push_back(part); });
@@ -87,40 +87,40 @@ struct Heard {
 
 TEST_F(SlicerProcess, QueueRunsJobsInOrder) {
   qFenestraQueue queue(program);
-  const Heard heard(queue);
+  const SignalRecorder recorder(queue);
   for (int id = 1; id <= 3; ++id)
     queue.add(job(id, {"--samples", "4", "--output", QString("%1.png").arg(id)}));
   EXPECT_EQ(queue.waiting(), 2);
-  ASSERT_TRUE(waitFor([&] { return heard.ended.size() == 3; }));
-  EXPECT_EQ(heard.started, (std::vector<int>{1, 2, 3}));
+  ASSERT_TRUE(waitFor([&] { return recorder.ended.size() == 3; }));
+  EXPECT_EQ(recorder.started, (std::vector<int>{1, 2, 3}));
   for (int id = 1; id <= 3; ++id) {
-    const Ended& ended = heard.ended[static_cast<std::size_t>(id - 1)];
+    const Ended& ended = recorder.ended[static_cast<std::size_t>(id - 1)];
     EXPECT_EQ(ended.id, id);
     EXPECT_EQ(ended.outcome.kind, Kind::done) << ended.outcome.details.toStdString();
     EXPECT_TRUE(exists(QString("%1.png").arg(id).toUtf8().constData()));
   }
-  ASSERT_FALSE(heard.parts.empty());
-  EXPECT_EQ(heard.parts.back(), 1.0);
+  ASSERT_FALSE(recorder.parts.empty());
+  EXPECT_EQ(recorder.parts.back(), 1.0);
 }
 
 TEST_F(SlicerProcess, StopKeepsFinishedPassesAndSkipsWaitingJobs) {
   qFenestraQueue queue(program);
-  const Heard heard(queue);
+  const SignalRecorder recorder(queue);
   queue.add(job(1, {"--samples", "3000000", "--output", "long.png"}));
   queue.add(job(2, {"--output", "never.png"}));
   queue.add(job(3, {"--samples", "1", "--output", "after.png"}));
-  ASSERT_TRUE(waitFor([&] { return !heard.parts.empty() && heard.parts.back() > 0.0; }));
+  ASSERT_TRUE(waitFor([&] { return !recorder.parts.empty() && recorder.parts.back() > 0.0; }));
   queue.stop(2);
   queue.stop(1);
   QElapsedTimer watch;
   watch.start();
-  ASSERT_TRUE(waitFor([&] { return heard.ended.size() >= 2; }));
+  ASSERT_TRUE(waitFor([&] { return recorder.ended.size() >= 2; }));
   std::cout << "stopped within " << watch.elapsed() << " ms\n";
-  EXPECT_LT(watch.elapsed(), soon);
-  ASSERT_TRUE(waitFor([&] { return heard.ended.size() == 3; }));
-  EXPECT_EQ(heard.ended[0].id, 2);
-  EXPECT_EQ(heard.ended[1].id, 1);
-  EXPECT_EQ(heard.ended[1].outcome.kind, Kind::stopped);
+  EXPECT_LT(watch.elapsed(), maxStopMs);
+  ASSERT_TRUE(waitFor([&] { return recorder.ended.size() == 3; }));
+  EXPECT_EQ(recorder.ended[0].id, 2);
+  EXPECT_EQ(recorder.ended[1].id, 1);
+  EXPECT_EQ(recorder.ended[1].outcome.kind, Kind::stopped);
   EXPECT_TRUE(exists("long.png"));
   EXPECT_FALSE(exists("never.png"));
   EXPECT_TRUE(exists("after.png"));
@@ -128,25 +128,25 @@ TEST_F(SlicerProcess, StopKeepsFinishedPassesAndSkipsWaitingJobs) {
 
 TEST_F(SlicerProcess, FailureCarriesTheRenderersMessage) {
   qFenestraQueue queue(program);
-  const Heard heard(queue);
+  const SignalRecorder recorder(queue);
   queue.add({1, {"missing.nrrd"}, path()});
   queue.add(job(2, {"--samples", "none"}));
-  ASSERT_TRUE(waitFor([&] { return heard.ended.size() == 2; }));
-  for (const Ended& ended : heard.ended)
+  ASSERT_TRUE(waitFor([&] { return recorder.ended.size() == 2; }));
+  for (const Ended& ended : recorder.ended)
     EXPECT_EQ(ended.outcome.kind, Kind::failed);
-  EXPECT_TRUE(heard.ended[0].outcome.message.startsWith("missing.nrrd: "))
-      << heard.ended[0].outcome.message.toStdString();
-  EXPECT_TRUE(heard.ended[1].outcome.message.startsWith("--samples: "));
-  EXPECT_TRUE(heard.ended[1].outcome.details.startsWith("fenestra: --samples: "));
+  EXPECT_TRUE(recorder.ended[0].outcome.message.startsWith("missing.nrrd: "))
+      << recorder.ended[0].outcome.message.toStdString();
+  EXPECT_TRUE(recorder.ended[1].outcome.message.startsWith("--samples: "));
+  EXPECT_TRUE(recorder.ended[1].outcome.details.startsWith("fenestra: --samples: "));
 }
 
 TEST_F(SlicerProcess, MissingRendererFailsEachJobOnce) {
   qFenestraQueue queue(path() + "/nowhere/fenestra");
-  const Heard heard(queue);
+  const SignalRecorder recorder(queue);
   queue.add(job(1));
   queue.add(job(2));
-  ASSERT_TRUE(waitFor([&] { return heard.ended.size() == 2; }));
-  for (const Ended& ended : heard.ended) {
+  ASSERT_TRUE(waitFor([&] { return recorder.ended.size() == 2; }));
+  for (const Ended& ended : recorder.ended) {
     EXPECT_EQ(ended.outcome.kind, Kind::failed);
     EXPECT_TRUE(ended.outcome.message.contains("could not be started"));
     EXPECT_TRUE(ended.outcome.details.contains("nowhere"));
@@ -167,18 +167,18 @@ TEST_F(SlicerProcess, KilledRendererIsReportedAsFailed) {
 }
 
 /// Renderer made of a few words of shell that react to the stop signal.
-struct Stopped {
-  explicit Stopped(const TemporaryFolder& folder, const char* whenTold) {
+struct StoppedChild {
+  explicit StoppedChild(const TemporaryFolder& folder, const char* whenTold) {
     QObject::connect(&child, &qFenestraProgram::ended,
                      [this](const qFenestraOutcome& ended) { outcomes.push_back(ended); });
     bool ready = false;
-    const auto heard = QObject::connect(&child, &qFenestraProgram::said, [&] { ready = true; });
+    const auto recorder = QObject::connect(&child, &qFenestraProgram::said, [&] { ready = true; });
     child.run(
         "/bin/sh",
         {"-c", QString("trap '%1' TERM; echo ready; while :; do sleep 0.02; done").arg(whenTold)},
         QString::fromStdString(folder.path().string()));
     EXPECT_TRUE(waitFor([&] { return ready; }));
-    QObject::disconnect(heard);
+    QObject::disconnect(recorder);
     child.stop();
   }
   Kind kind() {
@@ -192,7 +192,7 @@ struct Stopped {
 
 /// Longer than any plausible timeout. The window must respond meanwhile.
 TEST_F(SlicerProcess, StopWaitsForARendererThatWrites) {
-  Stopped stopped(folder, "sleep 2; echo picture >kept.png; exit 5");
+  StoppedChild stopped(folder, "sleep 2; echo picture >kept.png; exit 5");
   bool answered = false;
   QTimer::singleShot(0, [&] { answered = true; });
   QCoreApplication::processEvents();
@@ -203,7 +203,7 @@ TEST_F(SlicerProcess, StopWaitsForARendererThatWrites) {
 }
 
 TEST_F(SlicerProcess, SecondStopKillsTheRenderer) {
-  Stopped stopped(folder, ":");
+  StoppedChild stopped(folder, ":");
   QCoreApplication::processEvents(QEventLoop::AllEvents, 50);
   EXPECT_TRUE(stopped.outcomes.empty());
   stopped.child.stop();
@@ -211,9 +211,9 @@ TEST_F(SlicerProcess, SecondStopKillsTheRenderer) {
 }
 
 TEST_F(SlicerProcess, FailureWhileStoppingIsReported) {
-  EXPECT_EQ(Stopped(folder, "kill -SEGV $$").kind(), Kind::failed);
-  EXPECT_EQ(Stopped(folder, "echo fenestra: full >&2; exit 4").kind(), Kind::failed);
-  EXPECT_EQ(Stopped(folder, "exit 0").kind(), Kind::done); // it was just ready
+  EXPECT_EQ(StoppedChild(folder, "kill -SEGV $$").kind(), Kind::failed);
+  EXPECT_EQ(StoppedChild(folder, "echo fenestra: full >&2; exit 4").kind(), Kind::failed);
+  EXPECT_EQ(StoppedChild(folder, "exit 0").kind(), Kind::done); // it was just ready
 }
 
 TEST_F(SlicerProcess, StopRightAfterTheStartEndsTheProgram) {
@@ -228,38 +228,38 @@ TEST_F(SlicerProcess, StopRightAfterTheStartEndsTheProgram) {
 }
 
 TEST_F(SlicerProcess, ProgressIsReadFromValidTagsOnly) {
-  EXPECT_EQ(qFenestraQueue::progressIn("<filter-progress>0.25</filter-progress>"), 0.25);
-  EXPECT_EQ(qFenestraQueue::progressIn("<filter-progress>7</filter-progress>"), 1.0);
+  EXPECT_EQ(qFenestraQueue::parseProgress("<filter-progress>0.25</filter-progress>"), 0.25);
+  EXPECT_EQ(qFenestraQueue::parseProgress("<filter-progress>7</filter-progress>"), 1.0);
   for (const char* line :
        {"", "0.5", "<filter-progress>", "<filter-progress>x</filter-progress>",
         "<filter-progress>-1</filter-progress>", "<filter-progress>nan</filter-progress>",
         "<filter-progress></filter-progress>", "<filter-start>", "</filter-progress>"})
-    EXPECT_EQ(qFenestraQueue::progressIn(line), -1.0) << line;
+    EXPECT_EQ(qFenestraQueue::parseProgress(line), -1.0) << line;
 }
 
 TEST_F(SlicerProcess, AbilitiesListFlagsAndNamesOfTheRenderer) {
-  qFenestraQuestion question;
-  std::vector<qFenestraAbilities> told;
-  QObject::connect(&question, &qFenestraQuestion::told,
-                   [&](const qFenestraAbilities& abilities) { told.push_back(abilities); });
-  question.ask(program);
+  qFenestraCapabilityQuery question;
+  std::vector<qFenestraCapabilities> told;
+  QObject::connect(&question, &qFenestraCapabilityQuery::told,
+                   [&](const qFenestraCapabilities& abilities) { told.push_back(abilities); });
+  question.request(program);
   ASSERT_TRUE(waitFor([&] { return !told.empty(); }));
-  EXPECT_TRUE(told[0].takes("clip", "hole"));
-  EXPECT_FALSE(told[0].takes("clip", "hol"));
-  EXPECT_TRUE(told[0].names("lights", "studio"));
-  EXPECT_FALSE(told[0].names("lights", "stud"));
+  EXPECT_TRUE(told[0].hasChoice("clip", "hole"));
+  EXPECT_FALSE(told[0].hasChoice("clip", "hol"));
+  EXPECT_TRUE(told[0].mentions("lights", "studio"));
+  EXPECT_FALSE(told[0].mentions("lights", "stud"));
   EXPECT_TRUE(told[0].flags["holemargin"].text.startsWith("How much wider"));
   EXPECT_TRUE(told[0].flags["holemargin"].choices.isEmpty());
-  EXPECT_EQ(told[0].turns(), told[0].turntable.contains("--frames"));
+  EXPECT_EQ(told[0].hasTurntable(), told[0].turntable.contains("--frames"));
 
-  qFenestraQuestion missing;
-  QObject::connect(&missing, &qFenestraQuestion::told,
-                   [&](const qFenestraAbilities& abilities) { told.push_back(abilities); });
-  missing.ask("/nowhere/fenestra");
+  qFenestraCapabilityQuery missing;
+  QObject::connect(&missing, &qFenestraCapabilityQuery::told,
+                   [&](const qFenestraCapabilities& abilities) { told.push_back(abilities); });
+  missing.request("/nowhere/fenestra");
   ASSERT_TRUE(waitFor([&] { return told.size() == 2; }));
   EXPECT_TRUE(told[1].flags.isEmpty());
-  EXPECT_FALSE(told[1].turns());
-  EXPECT_TRUE(qFenestraAbilities::flagsIn("no description").isEmpty());
+  EXPECT_FALSE(told[1].hasTurntable());
+  EXPECT_TRUE(qFenestraCapabilities::parseFlags("no description").isEmpty());
 }
 
 TEST_F(SlicerProcess, EnvironmentOfAChildOmitsLibraryPaths) {
@@ -267,7 +267,7 @@ TEST_F(SlicerProcess, EnvironmentOfAChildOmitsLibraryPaths) {
   slicers.insert("LD_LIBRARY_PATH", "/opt/slicer/lib");
   slicers.insert("QT_PLUGIN_PATH", "/opt/slicer/plugins");
   slicers.insert("HOME", "/home/somebody");
-  const QProcessEnvironment environment = qFenestraProgram::isolated(slicers);
+  const QProcessEnvironment environment = qFenestraProgram::removeLibraryPaths(slicers);
   EXPECT_EQ(environment.keys(), QStringList{"HOME"});
 }
 
@@ -310,7 +310,7 @@ class SlicerPreview : public SlicerProcess {
 protected:
   SlicerPreview() {
     QObject::connect(&preview, &qFenestraPreview::refreshed,
-                     [this](const qFenestraPicture& picture) { pictures.push_back(picture); });
+                     [this](const qFenestraPreviewImage& picture) { pictures.push_back(picture); });
     QObject::connect(&preview, &qFenestraPreview::refused,
                      [this](const QString& message) { refusals << message; });
     QObject::connect(&preview, &qFenestraPreview::ended,
@@ -327,7 +327,7 @@ protected:
   }
 
   qFenestraPreview preview;
-  std::vector<qFenestraPicture> pictures;
+  std::vector<qFenestraPreviewImage> pictures;
   QStringList refusals;
   std::vector<qFenestraOutcome> outcomes;
 };
@@ -346,7 +346,7 @@ TEST_F(SlicerPreview, FastChangesAreSentAsOne) {
   }
   ASSERT_TRUE(waitForDone());
   EXPECT_EQ(pictures.back().samples, 4);
-  for (const qFenestraPicture& picture : pictures)
+  for (const qFenestraPreviewImage& picture : pictures)
     EXPECT_LE(picture.samples, 4);
   EXPECT_TRUE(refusals.isEmpty());
 }
@@ -370,7 +370,7 @@ TEST_F(SlicerPreview, StopReturnsAtOnce) {
   watch.start();
   preview.stop();
   std::cout << "stopped within " << watch.elapsed() << " ms\n";
-  EXPECT_LT(watch.elapsed(), soon);
+  EXPECT_LT(watch.elapsed(), maxStopMs);
   EXPECT_FALSE(preview.running());
   // The child ends by itself, without further reports.
   EXPECT_TRUE(waitFor([this] { return preview.findChildren<qFenestraProgram*>().isEmpty(); }));

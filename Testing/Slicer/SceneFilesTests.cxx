@@ -13,7 +13,7 @@
 namespace fenestra {
 namespace {
 
-SlicerExport::Image ramp(std::array<std::size_t, 3> size) {
+SlicerExport::Image makeRamp(std::array<std::size_t, 3> size) {
   SlicerExport::Image image;
   image.type = "int16";
   image.size = size;
@@ -24,7 +24,7 @@ SlicerExport::Image ramp(std::array<std::size_t, 3> size) {
   return image;
 }
 
-SlicerExport::Layer block(std::array<long, 3> begin, std::uint8_t value) {
+SlicerExport::Layer makeBlock(std::array<long, 3> begin, std::uint8_t value) {
   SlicerExport::Layer layer;
   layer.labels.type = "uint8";
   layer.labels.size = {2, 2, 2};
@@ -38,7 +38,7 @@ SlicerExport::Layer block(std::array<long, 3> begin, std::uint8_t value) {
 
 TEST(SlicerSceneFiles, ImageRoundTripsBitForBit) {
   const TemporaryFolder folder;
-  const SlicerExport::Image image = ramp({3, 4, 5});
+  const SlicerExport::Image image = makeRamp({3, 4, 5});
   SlicerExport::writeNrrd(image, folder / "image.nrrd");
   const SlicerExport::Image again = SlicerExport::readNrrd(folder / "image.nrrd");
   EXPECT_EQ(again.type, image.type);
@@ -50,7 +50,7 @@ TEST(SlicerSceneFiles, ImageRoundTripsBitForBit) {
 
 TEST(SlicerSceneFiles, DamagedNrrdIsRefused) {
   const TemporaryFolder folder;
-  SlicerExport::writeNrrd(ramp({3, 4, 5}), folder / "image.nrrd");
+  SlicerExport::writeNrrd(makeRamp({3, 4, 5}), folder / "image.nrrd");
   std::filesystem::resize_file(folder / "image.nrrd",
                                std::filesystem::file_size(folder / "image.nrrd") - 1);
   EXPECT_THROW(SlicerExport::readNrrd(folder / "image.nrrd"), SlicerExport::FileError);
@@ -58,13 +58,13 @@ TEST(SlicerSceneFiles, DamagedNrrdIsRefused) {
   folder.write("other.nrrd", "NRRD0004\ntype: float\n\n");
   EXPECT_THROW(SlicerExport::readNrrd(folder / "empty.nrrd"), SlicerExport::FileError);
   EXPECT_THROW(SlicerExport::readNrrd(folder / "other.nrrd"), SlicerExport::FileError);
-  EXPECT_THROW(SlicerExport::writeNrrd(ramp({1, 1, 1}), folder / "none" / "image.nrrd"),
+  EXPECT_THROW(SlicerExport::writeNrrd(makeRamp({1, 1, 1}), folder / "none" / "image.nrrd"),
                SlicerExport::FileError);
 }
 
 TEST(SlicerSceneFiles, ComposedLayersKeepTheirPlaces) {
   const SlicerExport::Image both =
-      SlicerExport::composed({block({0, 0, 0}, 1), block({1, -1, 0}, 2)});
+      SlicerExport::composeLayers({makeBlock({0, 0, 0}, 1), makeBlock({1, -1, 0}, 2)});
   EXPECT_EQ(both.components, 2u);
   EXPECT_EQ(both.size, (std::array<std::size_t, 3>{3, 3, 2}));
   EXPECT_EQ(both.ijkToRas[7], -1.0);
@@ -84,7 +84,7 @@ TEST(SlicerSceneFiles, UnchangedVolumeIsLinked) {
   const TemporaryFolder folder;
   SlicerExport::Writer writer(folder.path());
   SlicerExport::Contents contents;
-  contents.volume = ramp({3, 4, 5});
+  contents.volume = makeRamp({3, 4, 5});
   contents.volumeKey = "a";
   const auto first = writer.write(contents);
   const auto second = writer.write(contents);
@@ -99,8 +99,8 @@ TEST(SlicerSceneFiles, UnchangedVolumeIsLinked) {
 TEST(SlicerSceneFiles, TagsOfSegmentsAreWritten) {
   const TemporaryFolder folder;
   SlicerExport::Contents contents;
-  contents.volume = ramp({3, 4, 5});
-  contents.segmentation.layers = {block({0, 0, 0}, 1)};
+  contents.volume = makeRamp({3, 4, 5});
+  contents.segmentation.layers = {makeBlock({0, 0, 0}, 1)};
   contents.segmentation.segments = {{"a", "A", 1, 0, "TerminologyEntry:b~SCT^1^\nc|"},
                                     {"d", "D", 2, 0, ""}};
   const auto scene = SlicerExport::Writer(folder.path()).write(contents);
@@ -115,8 +115,9 @@ TEST(SlicerSceneFiles, TagsOfSegmentsAreWritten) {
 
 TEST(SlicerSceneFiles, ColoursOfSegmentsAreWrittenAsSlicerDoes) {
   const TemporaryFolder folder;
-  SlicerExport::writeNames({{"a", "A", 7, 3, "", {0.9450980392, 0.5, 1.0 / 3.0}}, {"b", "B"}},
-                           folder / "names.seg.nrrd");
+  SlicerExport::writeSegmentNames(
+      {{"a", "A", 7, 3, "", {0.9450980392, 0.5, 1.0 / 3.0}}, {"b", "B"}},
+      folder / "names.seg.nrrd");
   const std::string text = bytesOf(folder / "names.seg.nrrd");
   for (const char* field :
        {"Segment0_Color:=0.945098 0.5 0.333333", "Segment0_LabelValue:=1", "Segment0_Layer:=0",

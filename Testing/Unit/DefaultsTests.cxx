@@ -121,7 +121,7 @@ TEST(FrameView, CroppedVolumeIsFramed) {
 TEST(FrameView, RefusesAnUnknownName) {
   ViewRequest view;
   view.name = "sideways";
-  EXPECT_THROW(frameView(view, ramp(0, 1).grid, nullptr, 8, 8), Error);
+  EXPECT_THROW(frameView(view, makeRamp(0, 1).grid, nullptr, 8, 8), Error);
 }
 
 TEST(TransparentShare, CountsVoxelsOfTheFocusWithoutExtinction) {
@@ -140,14 +140,14 @@ TEST(TransparentShare, CountsVoxelsOfTheFocusWithoutExtinction) {
 }
 
 TEST(DefaultTransfer, HounsfieldRangeGivesACtPreset) {
-  EXPECT_TRUE(chooseTransferPreset(ramp(-1000, 1500)));
-  EXPECT_TRUE(chooseTransferPreset(ramp(-8192, 3071))) << "padded";
-  EXPECT_FALSE(chooseTransferPreset(ramp(0, 255)));
-  EXPECT_FALSE(chooseTransferPreset(ramp(0, 4000)));
+  EXPECT_TRUE(chooseTransferPreset(makeRamp(-1000, 1500)));
+  EXPECT_TRUE(chooseTransferPreset(makeRamp(-8192, 3071))) << "padded";
+  EXPECT_FALSE(chooseTransferPreset(makeRamp(0, 255)));
+  EXPECT_FALSE(chooseTransferPreset(makeRamp(0, 4000)));
 }
 
 TEST(AirLevel, IsThatOfTheModalityAndNothingWhereSurroundingsAreCutOff) {
-  EXPECT_EQ(findAirThreshold(ramp(-1000, 1500)), -300.0);
+  EXPECT_EQ(findAirThreshold(makeRamp(-1000, 1500)), -300.0);
   const auto head = [](double air) {
     return makeVolume<float>(centredGrid({40, 30, 20}, {2.0, 2.0, 2.0}), [=](const Vec3& p) {
       return p.norm() < 20.0 ? 400.0 + p.x() : air * std::abs(std::sin(100.0 * p.x() + p.y()));
@@ -158,7 +158,7 @@ TEST(AirLevel, IsThatOfTheModalityAndNothingWhereSurroundingsAreCutOff) {
   EXPECT_GT(*level, 30.0);
   EXPECT_LT(*level, 380.0);
   EXPECT_FALSE(findAirThreshold(head(0.0))) << "masked";
-  EXPECT_FALSE(findAirThreshold(ramp(7, 7))) << "constant";
+  EXPECT_FALSE(findAirThreshold(makeRamp(7, 7))) << "constant";
 }
 
 TEST(DefaultTransfer, RangeRunsFromTransparentToOpaqueAndAConstantIsVisible) {

@@ -42,7 +42,7 @@ struct Panel {
 
 /// True if exactly one render ends after `action`.
 template <typename Action>
-bool ends(const Panel& panel, Action&& action) {
+bool endsOneRender(const Panel& panel, Action&& action) {
   int ended = 0;
   const auto connection = QObject::connect(panel.widget->session(), &qSlicerFenestraSession::ended,
                                            panel.widget, [&] { ++ended; });

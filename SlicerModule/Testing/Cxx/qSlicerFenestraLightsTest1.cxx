@@ -14,14 +14,14 @@ namespace {
 using namespace qSlicerFenestraLights;
 using Has = std::array<bool, 4>;
 
-QJsonArray lightsOf(const QString& rig) {
+QJsonArray parseLights(const QString& rig) {
   return QJsonDocument::fromJson(rig.toUtf8()).object()["lights"].toArray();
 }
 
 int checkRigs() {
   for (const char* rig : {"cinema", "studio", "headlight", "soft", "amber"}) {
-    CHECK_STD_STRING(flag(rig, unchanged).toStdString(), std::string(rig));
-    const QJsonArray lights = lightsOf(flag(rig, {1.0, 1.0, 1.0, 2.0}));
+    CHECK_STD_STRING(makeFlag(rig, unchanged).toStdString(), std::string(rig));
+    const QJsonArray lights = parseLights(makeFlag(rig, {1.0, 1.0, 1.0, 2.0}));
     CHECK_BOOL(lights.isEmpty(), false);
     CHECK_STD_STRING(lights.last().toObject()["type"].toString().toStdString(),
                      std::string(rig) == "cinema" ? "sky" : "environment");
@@ -32,16 +32,16 @@ int checkRigs() {
                                            {"soft", {false, false, false, true}},
                                            {"nothing", {false, false, false, false}}};
   for (const auto& [rig, has] : expected)
-    CHECK_BOOL(lightsIn(rig) == has, true);
+    CHECK_BOOL(findLights(rig) == has, true);
   const Strengths others = {0.5, 2.0, 0.0, 1.0}; // of lights that these have not
-  CHECK_STD_STRING(flag("soft", others).toStdString(), "soft");
-  CHECK_STD_STRING(flag("my.json", others).toStdString(), "my.json");
+  CHECK_STD_STRING(makeFlag("soft", others).toStdString(), "soft");
+  CHECK_STD_STRING(makeFlag("my.json", others).toStdString(), "my.json");
   return EXIT_SUCCESS;
 }
 
 int checkStrengths() {
   const auto first = [](const Strengths& strengths, int light) {
-    return lightsOf(flag("studio", strengths))[light]
+    return parseLights(makeFlag("studio", strengths))[light]
         .toObject()["radiance"]
         .toArray()[0]
         .toDouble();
@@ -50,7 +50,7 @@ int checkStrengths() {
   CHECK_DOUBLE(first({1.0, 0.5, 1.0, 1.0}, 1), 0.5 * first({2.0, 1.0, 1.0, 1.0}, 1));
   CHECK_DOUBLE(first({1.0, 1.0, 0.0, 1.0}, 2), 0.0);
   const auto cinema = [](const Strengths& strengths, int light, const char* key) {
-    return lightsOf(flag("cinema", strengths))[light].toObject().value(key);
+    return parseLights(makeFlag("cinema", strengths))[light].toObject().value(key);
   };
   const Strengths half = {0.5, 1.0, 1.0, 0.5};
   CHECK_DOUBLE(cinema(half, 0, "radiance").toDouble(),
@@ -64,7 +64,7 @@ int checkStrengths() {
 /// Lights of a rig unlike the renderer's own: a sphere is a key, a rim comes first, and lights that
 /// may stand anywhere, or are more than the strengths, stay as they are.
 int checkOthers() {
-  const QJsonArray lights = lightsOf(R"({"lights": [
+  const QJsonArray lights = parseLights(R"({"lights": [
     {"type": "disk", "frame": "camera", "center": [0, 1, -2], "radiance": 1},
     {"type": "sphere", "frame": "focus", "center": [0, 9, 9], "radiance": [1, 1, 1]},
     {"type": "rectangle", "center": [0, 500, 0], "radiance": 1},
@@ -74,7 +74,7 @@ int checkOthers() {
     {"type": "rectangle", "frame": "camera", "center": [0, 3, 2], "radiance": 1},
     {"type": "glow", "radiance": 1},
     {"type": "sky", "top": [1, 1, 1], "middle": [1, 1, 1], "bottom": [1, 1, 1]}]})");
-  const QJsonArray all = scaled(lights, {2.0, 3.0, 5.0, 7.0});
+  const QJsonArray all = scaleLights(lights, {2.0, 3.0, 5.0, 7.0});
   CHECK_INT(all.size(), lights.size());
   const double expected[] = {5.0, 1.0, 1.0, 1.0, 2.0, 3.0, 1.0, 1.0};
   for (int i = 0; i < 8; ++i) {

@@ -14,10 +14,10 @@ int qSlicerFenestraMeasuresTest1(int, char*[]) {
                                   "boundaryGapMm": {"mean": 0.0123, "p95": 0.05, "max": 1.5},
                                   "boundarySlopeJump": {"mean": 4.1e-7, "p95": 0.00099, "max": 54}})")
           .object();
-  const QJsonObject measures = kept(statistics);
+  const QJsonObject measures = selectMeasures(statistics);
   CHECK_INT(measures.size(), 4);
-  CHECK_INT(kept({}).size(), 0);
-  const QList<Measure> words = inWords(measures);
+  CHECK_INT(selectMeasures({}).size(), 0);
+  const QList<Measure> words = toUserText(measures);
   CHECK_INT(static_cast<int>(words.size()), 4);
   CHECK_STD_STRING(words[0].name.toStdString(), "Focus seen");
   CHECK_STD_STRING(words[0].value.toStdString(), "99.88 %");
@@ -27,9 +27,9 @@ int qSlicerFenestraMeasuresTest1(int, char*[]) {
   for (const Measure& one : words)
     CHECK_BOOL(one.help.isEmpty(), false);
   // Invalid measures are skipped: a scene's attribute may hold any text.
-  CHECK_INT(static_cast<int>(inWords({{"focusCoverage", "x"}, {"boundaryGapMm", 1}}).size()), 1);
+  CHECK_INT(static_cast<int>(toUserText({{"focusCoverage", "x"}, {"boundaryGapMm", 1}}).size()), 1);
   for (const auto& [seconds, text] :
        {std::pair{0.04, "0.0 s"}, {9.96, "10 s"}, {59.7, "1 min 0 s"}, {187.2, "3 min 7 s"}})
-    CHECK_STD_STRING(duration(seconds).toStdString(), text);
+    CHECK_STD_STRING(formatDuration(seconds).toStdString(), text);
   return EXIT_SUCCESS;
 }

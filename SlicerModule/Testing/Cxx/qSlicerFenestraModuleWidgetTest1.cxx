@@ -24,7 +24,7 @@
 
 namespace {
 
-using FenestraTesting::ends;
+using FenestraTesting::endsOneRender;
 using FenestraTesting::Panel;
 using FenestraTesting::waitFor;
 using Node = vtkMRMLFenestraRenderNode;
@@ -251,8 +251,8 @@ int checkPlane(const Panel& panel, vtkMRMLScene* scene) {
 }
 
 /// The panel offers only what the renderer supports.
-int checkPresets(const Panel& panel, const qFenestraAbilities& abilities) {
-  const bool automatic = abilities.flags["view"].words.contains("auto");
+int checkPresets(const Panel& panel, const qFenestraCapabilities& abilities) {
+  const bool automatic = abilities.flags["view"].choices.contains("auto");
   CHECK_BOOL(panel.find<QComboBox>("ViewBox")->findData("auto") >= 0, automatic);
   const bool presets = abilities.flags.contains("preset");
   CHECK_BOOL(panel.withDefault("PresetBox"), presets);
@@ -306,10 +306,10 @@ int checkWithheld(const Panel& panel) {
 }
 
 /// A turntable is rendered, played, stopped in between and resumed.
-int checkTurntable(const Panel& panel, const qFenestraAbilities& abilities) {
-  CHECK_BOOL(panel.withDefault("Turntable"), abilities.turns());
+int checkTurntable(const Panel& panel, const qFenestraCapabilities& abilities) {
+  CHECK_BOOL(panel.withDefault("Turntable"), abilities.hasTurntable());
   CHECK_BOOL(panel.withDefault("Player"), false);
-  if (!abilities.turns())
+  if (!abilities.hasTurntable())
     return EXIT_SUCCESS;
   auto* frames = panel.find<QSpinBox>("FramesBox");
   auto* turn = panel.find<QPushButton>("TurnButton");
@@ -317,7 +317,7 @@ int checkTurntable(const Panel& panel, const qFenestraAbilities& abilities) {
   panel.set("DegreesBox", 30.0);
   CHECK_STD_STRING(panel.flag("frames"), "3");
   CHECK_STD_STRING(panel.flag("degrees"), "30");
-  CHECK_BOOL(ends(panel, [&] { turn->click(); }), true);
+  CHECK_BOOL(endsOneRender(panel, [&] { turn->click(); }), true);
   Node* turntable = panel.picture();
   CHECK_NOT_NULL(turntable);
   CHECK_BOOL(turntable->IsTurntable(), true);
@@ -333,13 +333,14 @@ int checkTurntable(const Panel& panel, const qFenestraAbilities& abilities) {
   panel.find<QToolButton>("PlayButton")->setChecked(false);
 
   frames->setValue(60);
-  const auto heard = QObject::connect(panel.widget->session(), &qSlicerFenestraSession::progressed,
-                                      panel.widget, [&](Node*, double part, double) {
-                                        if (part > 0.1)
-                                          panel.widget->session()->stop();
-                                      });
-  CHECK_BOOL(ends(panel, [&] { turn->click(); }), true);
-  QObject::disconnect(heard);
+  const auto connection =
+      QObject::connect(panel.widget->session(), &qSlicerFenestraSession::progressed, panel.widget,
+                       [&](Node*, double fraction, double) {
+                         if (fraction > 0.1)
+                           panel.widget->session()->stop();
+                       });
+  CHECK_BOOL(endsOneRender(panel, [&] { turn->click(); }), true);
+  QObject::disconnect(connection);
   turntable = panel.picture();
   const int some = vtkSlicerFenestraLogic::GetNumberOfFrames(turntable);
   std::cout << some << " frames when it was stopped\n";
@@ -348,7 +349,7 @@ int checkTurntable(const Panel& panel, const qFenestraAbilities& abilities) {
   turntable->SetFlag("frames", "x"); // an invalid frame count: cannot be resumed
   CHECK_BOOL(panel.widget->session()->canResume(turntable), false);
   turntable->SetFlag("frames", "60");
-  CHECK_BOOL(ends(panel, [&] { panel.find<QPushButton>("ResumeButton")->click(); }), true);
+  CHECK_BOOL(endsOneRender(panel, [&] { panel.find<QPushButton>("ResumeButton")->click(); }), true);
   CHECK_POINTER(panel.picture(), turntable);
   CHECK_INT(vtkSlicerFenestraLogic::GetNumberOfFrames(turntable), 60);
   CHECK_INT(slider->maximum(), 59);
@@ -358,7 +359,7 @@ int checkTurntable(const Panel& panel, const qFenestraAbilities& abilities) {
 
 int checkRenders(const Panel& panel) {
   auto* button = panel.find<QPushButton>("RenderButton");
-  CHECK_BOOL(ends(panel, [&] { button->click(); }), true);
+  CHECK_BOOL(endsOneRender(panel, [&] { button->click(); }), true);
   Node* first = panel.picture();
   CHECK_NOT_NULL(first);
   CHECK_BOOL(panel.find<QLabel>("StateLabel")->text().startsWith("Done: "), true);
@@ -372,7 +373,7 @@ int checkRenders(const Panel& panel) {
   // Repeat restores the settings of the first picture.
   panel.choose("ViewBox", "anterior");
   panel.choose("RigBox", "studio");
-  CHECK_BOOL(ends(panel, [&] { panel.find<QPushButton>("RepeatButton")->click(); }), true);
+  CHECK_BOOL(endsOneRender(panel, [&] { panel.find<QPushButton>("RepeatButton")->click(); }), true);
   CHECK_STD_STRING(panel.settings()->GetFlag("view"), "left");
   CHECK_STD_STRING(panel.chosen("RigBox").toStdString(), "soft");
   CHECK_BOOL(panel.picture() != first, true);
@@ -384,7 +385,7 @@ int checkRenders(const Panel& panel) {
   focus.item(0)->setCheckState(Qt::Unchecked);
   focus.item(1)->setCheckState(Qt::Checked);
   Node* const before = panel.picture();
-  CHECK_BOOL(ends(panel, [&] { button->click(); }), true);
+  CHECK_BOOL(endsOneRender(panel, [&] { button->click(); }), true);
   CHECK_BOOL(panel.find<QLabel>("StateLabel")->text().contains("choose segments"), true);
   CHECK_POINTER(panel.picture(), before);
   panel.find<QPushButton>("ShowButton")->click(); // the user moves on
@@ -408,14 +409,14 @@ int qSlicerFenestraModuleWidgetTest1(int argc, char* argv[]) {
   CHECK_NOT_NULL(widget);
   const QScopedPointer<qSlicerFenestraModuleWidget> owner(widget);
   const Panel panel{widget, vtkSlicerFenestraLogic::SafeDownCast(module.logic())};
-  qFenestraAbilities abilities;
+  qFenestraCapabilities abilities;
   bool learned = false;
   QObject::connect(widget->session(), &qSlicerFenestraSession::learned,
-                   [&](const qFenestraAbilities& told) { abilities = told, learned = true; });
+                   [&](const qFenestraCapabilities& told) { abilities = told, learned = true; });
   widget->enter();
   CHECK_EXIT_SUCCESS(checkEmpty(panel));
   CHECK_BOOL(waitFor([&] { return learned; }), true);
-  CHECK_BOOL(abilities.flags["clip"].words.contains("ghost"), true);
+  CHECK_BOOL(abilities.flags["clip"].choices.contains("ghost"), true);
   widget->exit();
 
   vtkMRMLNode* volume = FenestraTesting::addVolume(scene);

@@ -26,12 +26,12 @@
 
 namespace {
 
-using FenestraTesting::ends;
+using FenestraTesting::endsOneRender;
 using FenestraTesting::Panel;
 using FenestraTesting::waitFor;
 using Node = vtkMRMLFenestraRenderNode;
 
-std::string textOf(const Panel& panel, const char* label) {
+std::string labelText(const Panel& panel, const char* label) {
   return panel.find<QLabel>(label)->text().toStdString();
 }
 
@@ -63,7 +63,7 @@ int chooseMaterial(const Panel& panel) {
 
 int render(const Panel& panel, const char* from) {
   panel.choose("ViewBox", from);
-  CHECK_BOOL(ends(panel, [&] { panel.find<QPushButton>("RenderButton")->click(); }), true);
+  CHECK_BOOL(endsOneRender(panel, [&] { panel.find<QPushButton>("RenderButton")->click(); }), true);
   CHECK_NOT_NULL(panel.picture());
   CHECK_BOOL(waitFor([&] { return panel.logic->GetShownRender() == panel.picture(); }), true);
   return EXIT_SUCCESS;
@@ -72,7 +72,7 @@ int render(const Panel& panel, const char* from) {
 /// No text and no picture of the scene is left.
 int checkClosed(const Panel& panel) {
   for (const char* label : {"StateLabel", "PreviewStateLabel", "DescriptionLabel"})
-    CHECK_STD_STRING(textOf(panel, label), "");
+    CHECK_STD_STRING(labelText(panel, label), "");
   CHECK_BOOL(panel.find<QLabel>("PreviewLabel")->text().startsWith("Load a volume"), true);
   for (const char* widget : {"DetailsButton", "ProgressBar", "MeasuresLabel", "Player"})
     CHECK_BOOL(panel.withDefault(widget), false);
@@ -98,12 +98,13 @@ int checkLoaded(const Panel& panel, vtkMRMLScene* scene) {
   CHECK_STD_STRING(panel.flag("materials"), "auto");
   CHECK_STD_STRING(materialOf(panel, 0)->currentData().toString().toStdString(), "spleen");
   CHECK_BOOL(panel.find<QPushButton>("RenderButton")->isEnabled(), true);
-  CHECK_STD_STRING(textOf(panel, "StateLabel"), "");
+  CHECK_STD_STRING(labelText(panel, "StateLabel"), "");
   CHECK_POINTER(panel.picture(), scene->GetFirstNodeByName("Ball render"));
   CHECK_POINTER(panel.logic->GetShownRender(), panel.picture());
   CHECK_BOOL(panel.find<QLabel>("DescriptionLabel")->text().contains("samples"), true);
-  CHECK_BOOL(waitFor([&] { return textOf(panel, "PreviewStateLabel").rfind("Preview:", 0) == 0; }),
-             true);
+  CHECK_BOOL(
+      waitFor([&] { return labelText(panel, "PreviewStateLabel").rfind("Preview:", 0) == 0; }),
+      true);
   return EXIT_SUCCESS;
 }
 
@@ -112,11 +113,11 @@ int checkEnd(const Panel& panel, vtkMRMLScene* scene, qSlicerFenestraSession* se
   panel.find<QSpinBox>("SamplesBox")->setValue(1000000);
   panel.find<QPushButton>("RenderButton")->click();
   panel.find<QPushButton>("RenderButton")->click();
-  CHECK_INT(session->waiting(), 1);
+  CHECK_INT(session->waitingCount(), 1);
   CHECK_BOOL(waitFor([&] { return panel.withDefault("ProgressBar"); }), true);
   scene->Clear(false);
-  CHECK_BOOL(waitFor([&] { return !session->rendering(); }), true);
-  CHECK_STD_STRING(textOf(panel, "StateLabel"), "Ended at once, without a picture.");
+  CHECK_BOOL(waitFor([&] { return !session->isRendering(); }), true);
+  CHECK_STD_STRING(labelText(panel, "StateLabel"), "Ended at once, without a picture.");
   CHECK_BOOL(panel.withDefault("ProgressBar"), false);
   return EXIT_SUCCESS;
 }
@@ -161,9 +162,10 @@ int qSlicerFenestraReloadTest1(int argc, char* argv[]) {
   CHECK_BOOL(panel.picture() != first, true);
   panel.nodes("RendersBox")->setCurrentNode(first);
   CHECK_BOOL(waitFor([&] { return panel.logic->GetShownRender() == first; }), true);
-  CHECK_BOOL(textOf(panel, "StateLabel").rfind("Done:", 0) == 0, true);
-  CHECK_BOOL(waitFor([&] { return textOf(panel, "PreviewStateLabel").rfind("Preview:", 0) == 0; }),
-             true);
+  CHECK_BOOL(labelText(panel, "StateLabel").rfind("Done:", 0) == 0, true);
+  CHECK_BOOL(
+      waitFor([&] { return labelText(panel, "PreviewStateLabel").rfind("Preview:", 0) == 0; }),
+      true);
   const std::string file = std::string(argv[2]) + "/reload.mrb";
   CHECK_BOOL(scene->WriteToMRB(file.c_str()), true);
 

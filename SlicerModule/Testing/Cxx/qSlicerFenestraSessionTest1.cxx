@@ -32,8 +32,8 @@ using Node = vtkMRMLFenestraRenderNode;
 using Kind = qFenestraOutcome::Kind;
 
 /// Records the signals of a session.
-struct Heard {
-  explicit Heard(qSlicerFenestraSession& session) {
+struct SignalRecorder {
+  explicit SignalRecorder(qSlicerFenestraSession& session) {
     QObject::connect(&session, &qSlicerFenestraSession::ended, &session,
                      [this](Node* node, const qFenestraOutcome& outcome) {
                        ++ended;
@@ -41,7 +41,7 @@ struct Heard {
                        last = outcome;
                      });
     QObject::connect(&session, &qSlicerFenestraSession::previewed, &session,
-                     [this](const QImage& picture, const qFenestraPicture&) {
+                     [this](const QImage& picture, const qFenestraPreviewImage&) {
                        ++previews;
                        preview = picture;
                      });
@@ -115,55 +115,55 @@ int checkResult(vtkMRMLScene* scene, Node* render) {
 
 /// Two renders, one after the other.
 int checkTwoRenders(vtkMRMLScene* scene, qSlicerFenestraSession& session, Node* settings,
-                    Heard& heard) {
+                    SignalRecorder& recorder) {
   Node* first = session.render(settings);
   CHECK_NOT_NULL(first);
   settings->SetFlag("seed", "5");
   CHECK_NOT_NULL(session.render(settings));
-  CHECK_INT(session.waiting(), 1);
-  CHECK_BOOL(waitFor([&] { return heard.ended == 2; }), true);
-  CHECK_INT(static_cast<int>(heard.last.kind), static_cast<int>(Kind::done));
+  CHECK_INT(session.waitingCount(), 1);
+  CHECK_BOOL(waitFor([&] { return recorder.ended == 2; }), true);
+  CHECK_INT(static_cast<int>(recorder.last.kind), static_cast<int>(Kind::done));
   CHECK_EXIT_SUCCESS(checkResult(scene, first));
-  CHECK_BOOL(session.results().fileOf(first, "exr").isEmpty(), false);
+  CHECK_BOOL(session.results().findFile(first, "exr").isEmpty(), false);
   return EXIT_SUCCESS;
 }
 
 /// Finished samples of a stopped render are kept, soon.
-int checkStop(qSlicerFenestraSession& session, Node* settings, Heard& heard) {
+int checkStop(qSlicerFenestraSession& session, Node* settings, SignalRecorder& recorder) {
   settings->SetFlag("samples", "100000000");
   Node* long_ = session.render(settings);
-  heard.progress = 0;
-  CHECK_BOOL(waitFor([&] { return heard.progress > 3; }), true);
+  recorder.progress = 0;
+  CHECK_BOOL(waitFor([&] { return recorder.progress > 3; }), true);
   QElapsedTimer watch;
   watch.start();
   session.stop();
-  CHECK_BOOL(waitFor([&] { return heard.ended == 3; }), true);
+  CHECK_BOOL(waitFor([&] { return recorder.ended == 3; }), true);
   std::cout << "Stopped after " << watch.elapsed() << " ms\n";
-  CHECK_INT(static_cast<int>(heard.last.kind), static_cast<int>(Kind::stopped));
-  CHECK_POINTER(heard.render, long_);
+  CHECK_INT(static_cast<int>(recorder.last.kind), static_cast<int>(Kind::stopped));
+  CHECK_POINTER(recorder.render, long_);
   return EXIT_SUCCESS;
 }
 
 /// Failures leave no node behind. `ids`: of a segment, and of an empty one.
 int checkFailures(vtkSlicerFenestraLogic* logic, qSlicerFenestraSession& session, Node* settings,
-                  const std::vector<std::string>& ids, Heard& heard) {
+                  const std::vector<std::string>& ids, SignalRecorder& recorder) {
   vtkMRMLScene* const scene = settings->GetScene();
   const int nodes = scene->GetNumberOfNodes();
   settings->SetFocus({ids[1]}); // empty
   session.render(settings);
-  CHECK_BOOL(waitFor([&] { return heard.ended == 4; }), true);
-  CHECK_INT(static_cast<int>(heard.last.kind), static_cast<int>(Kind::failed));
-  CHECK_STD_STRING(heard.last.message.toStdString(),
+  CHECK_BOOL(waitFor([&] { return recorder.ended == 4; }), true);
+  CHECK_INT(static_cast<int>(recorder.last.kind), static_cast<int>(Kind::failed));
+  CHECK_STD_STRING(recorder.last.message.toStdString(),
                    "The focus has no voxel (Nothing); choose segments that are not empty");
-  CHECK_NULL(heard.render);
+  CHECK_NULL(recorder.render);
   settings->SetFocus({ids[0]});
   settings->SetFlags({{"size", "0x0"}});
   session.render(settings);
-  CHECK_BOOL(waitFor([&] { return heard.ended == 5; }), true);
-  CHECK_INT(static_cast<int>(heard.last.kind), static_cast<int>(Kind::failed));
+  CHECK_BOOL(waitFor([&] { return recorder.ended == 5; }), true);
+  CHECK_INT(static_cast<int>(recorder.last.kind), static_cast<int>(Kind::failed));
   CHECK_INT(scene->GetNumberOfNodes(), nodes);
   qSlicerFenestraSession without(logic, "/nowhere/fenestra");
-  Heard other(without);
+  SignalRecorder other(without);
   CHECK_NULL(without.render(settings));
   CHECK_BOOL(other.last.message.contains("missing"), true);
   CHECK_INT(scene->GetNumberOfNodes(), nodes);
@@ -173,7 +173,7 @@ int checkFailures(vtkSlicerFenestraLogic* logic, qSlicerFenestraSession& session
 /// Another scene has a node with this render's ID: results of the render are not shown for it.
 int checkAnotherScene(vtkMRMLScene* scene, qSlicerFenestraSession& session, Node* render) {
   const std::string id = render->GetID();
-  const QString file = session.results().fileOf(render, "png");
+  const QString file = session.results().findFile(render, "png");
   CHECK_BOOL(file.isEmpty(), false);
   scene->Clear(false);
   Node* stranger = nullptr;
@@ -181,8 +181,8 @@ int checkAnotherScene(vtkMRMLScene* scene, qSlicerFenestraSession& session, Node
     stranger = Node::SafeDownCast(scene->AddNewNodeByClass("vtkMRMLFenestraRenderNode"));
   CHECK_STD_STRING(std::string(stranger->GetID()), id);
   stranger->SetFlag("frames", "x");
-  CHECK_BOOL(session.results().fileOf(stranger, "png").isEmpty(), true);
-  CHECK_BOOL(session.results().framesOf(stranger).isEmpty(), true);
+  CHECK_BOOL(session.results().findFile(stranger, "png").isEmpty(), true);
+  CHECK_BOOL(session.results().findFrames(stranger).isEmpty(), true);
   CHECK_BOOL(session.canResume(stranger), false);
   session.closeScene(); // like the panel
   CHECK_BOOL(waitFor([&] { return !QFileInfo::exists(file); }), true);
@@ -201,20 +201,20 @@ int checkScript(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, qSlicerFenes
   Node* render = logic->Render(settings);
   CHECK_NOT_NULL(render);
   CHECK_BOOL(logic->IsRendering(render), true);
-  int told = 0, ends = 0;
+  int progressEvents = 0, endEvents = 0;
   vtkNew<vtkCallbackCommand> count;
   count->SetCallback(
       [](vtkObject*, unsigned long, void* data, void*) { ++*static_cast<int*>(data); });
-  count->SetClientData(&told);
+  count->SetClientData(&progressEvents);
   render->AddObserver(Node::RenderProgressEvent, count);
   vtkNew<vtkCallbackCommand> end;
   end->SetCallback(
       [](vtkObject*, unsigned long, void* data, void*) { ++*static_cast<int*>(data); });
-  end->SetClientData(&ends);
+  end->SetClientData(&endEvents);
   render->AddObserver(Node::RenderEndEvent, end);
   session.waitFor(render);
-  CHECK_BOOL(told > 0, true);
-  CHECK_INT(ends, 1);
+  CHECK_BOOL(progressEvents > 0, true);
+  CHECK_INT(endEvents, 1);
   CHECK_STD_STRING(render->GetProblem(), "");
   Node* watch = logic->Render(settings, true);
   CHECK_NOT_NULL(watch);
@@ -259,22 +259,22 @@ int qSlicerFenestraSessionTest1(int argc, char* argv[]) {
   segmentation->GetSegmentation()->GetSegmentIDs(ids);
 
   qSlicerFenestraSession session(logic, program);
-  Heard heard(session);
+  SignalRecorder recorder(session);
   session.preview(settings);
-  CHECK_BOOL(waitFor([&] { return heard.previews > 0; }), true);
-  CHECK_INT(heard.preview.width(), 256); // the picture's aspect
-  CHECK_INT(heard.preview.height(), 213);
-  const int before = heard.previews;
+  CHECK_BOOL(waitFor([&] { return recorder.previews > 0; }), true);
+  CHECK_INT(recorder.preview.width(), 256); // the picture's aspect
+  CHECK_INT(recorder.preview.height(), 213);
+  const int before = recorder.previews;
   settings->SetFocus({ids[0]});
   session.refresh();
-  CHECK_BOOL(waitFor([&] { return heard.previews > before; }), true);
+  CHECK_BOOL(waitFor([&] { return recorder.previews > before; }), true);
 
-  CHECK_EXIT_SUCCESS(checkTwoRenders(scene, session, settings, heard));
-  Node* second = heard.render;
+  CHECK_EXIT_SUCCESS(checkTwoRenders(scene, session, settings, recorder));
+  Node* second = recorder.render;
   CHECK_STD_STRING(second->GetFlag("seed"), "5");
   CHECK_EXIT_SUCCESS(compareWithCommandLine(scene, second, program, folder));
-  CHECK_EXIT_SUCCESS(checkStop(session, settings, heard));
-  CHECK_EXIT_SUCCESS(checkFailures(logic, session, settings, ids, heard));
+  CHECK_EXIT_SUCCESS(checkStop(session, settings, recorder));
+  CHECK_EXIT_SUCCESS(checkFailures(logic, session, settings, ids, recorder));
   CHECK_EXIT_SUCCESS(checkScript(scene, logic, session, settings));
   CHECK_EXIT_SUCCESS(checkAnotherScene(scene, session, second));
   return EXIT_SUCCESS;

@@ -41,7 +41,7 @@ void press(QWidget& widget, int key, const QString& text = {}) {
 }
 
 /// Flags that the widget makes of none, without the empty ones.
-Flags made(const Look& look) {
+Flags takeFlags(const Look& look) {
   Flags flags, given;
   look.take(flags);
   for (const auto& [name, value] : flags)
@@ -53,28 +53,28 @@ Flags made(const Look& look) {
 int checkLookDefaults() {
   Look look;
   const Flags gradient = {{"background", "gradient"}};
-  CHECK_BOOL(made(look) == gradient, true);
+  CHECK_BOOL(takeFlags(look) == gradient, true);
   look.show(gradient, {}, false);
-  CHECK_BOOL(made(look) == gradient, true);
+  CHECK_BOOL(takeFlags(look) == gradient, true);
   for (const char* preset : {"ct-soft", "ct-bone", "ct-skeleton", "ct-liver", "ct-heart", "ct-lung",
                              "mr-brain", "mr-knee", "us-fetal"}) {
     choose(look, "TransferBox", preset);
-    CHECK_STD_STRING(made(look)["transfer"], std::string(preset));
+    CHECK_STD_STRING(takeFlags(look)["transfer"], std::string(preset));
   }
   for (const char* rig : {"cinema", "studio", "headlight", "soft", "amber"}) {
     choose(look, "RigBox", rig);
-    CHECK_STD_STRING(made(look)["lights"], std::string(rig));
+    CHECK_STD_STRING(takeFlags(look)["lights"], std::string(rig));
   }
-  look.handBack();
-  CHECK_BOOL(made(look) == gradient, true);
+  look.resetToPreset();
+  CHECK_BOOL(takeFlags(look) == gradient, true);
   choose(look, "ToneBox", "photographic");
-  CHECK_STD_STRING(made(look)["tone"], "photographic");
+  CHECK_STD_STRING(takeFlags(look)["tone"], "photographic");
   number(look, "ExposureBox").setValue(-0.75);
-  CHECK_STD_STRING(made(look)["exposure"], "-0.75");
+  CHECK_STD_STRING(takeFlags(look)["exposure"], "-0.75");
   look.show({{"exposure", "-0.75"}, {"tone", "photographic"}, {"background", "0,0,0"}}, {}, false);
   choose(look, "ToneBox", "film");
   number(look, "ExposureBox").setValue(0.0);
-  CHECK_BOOL(made(look) == Flags({{"background", "0,0,0"}}), true);
+  CHECK_BOOL(takeFlags(look) == Flags({{"background", "0,0,0"}}), true);
   return EXIT_SUCCESS;
 }
 
@@ -132,11 +132,11 @@ int checkRigs() {
 /// Older renderers have neither exposure nor tone.
 int checkAbilities() {
   Look look;
-  qFenestraAbilities abilities;
-  look.offer(abilities);
+  qFenestraCapabilities abilities;
+  look.setCapabilities(abilities);
   CHECK_BOOL(number(look, "ExposureBox").isHidden(), true);
   abilities.flags["exposure"] = abilities.flags["tone"] = {};
-  look.offer(abilities);
+  look.setCapabilities(abilities);
   CHECK_BOOL(number(look, "ExposureBox").isHidden(), false);
   CHECK_BOOL(box(look, "ToneBox").isHidden(), false);
   return EXIT_SUCCESS;
@@ -145,9 +145,9 @@ int checkAbilities() {
 /// Anatomies are listed with a picture where there is one.
 int checkPictures() {
   qSlicerFenestraPanel panel;
-  qFenestraAbilities abilities;
+  qFenestraCapabilities abilities;
   abilities.flags["preset"].text = "(spine, heart, lungs)";
-  panel.offer(abilities);
+  panel.setCapabilities(abilities);
   QComboBox& anatomies = box(panel, "PresetBox");
   CHECK_INT(anatomies.count(), 5);
   for (const char* name : {"spine", "heart", "lungs"})

@@ -12,22 +12,22 @@ namespace {
 using Node = vtkMRMLFenestraRenderNode;
 
 /// Valid value of a flag of this kind.
-std::string example(SlicerExport::FlagKind kind) {
+std::string makeValue(SlicerExport::FlagKind kind) {
   using Kind = SlicerExport::FlagKind;
   switch (kind) {
   case Kind::text:
     return "a,b c";
   case Kind::word:
     return "word";
-  case Kind::whole:
+  case Kind::integer:
     return "12";
   case Kind::number:
     return "-0.5";
-  case Kind::automatic:
+  case Kind::numberOrAuto:
     return "auto";
   case Kind::size:
     return "8x6";
-  case Kind::look:
+  case Kind::resource:
     return "studio";
   default:
     return "1,-0.5,3";
@@ -35,7 +35,7 @@ std::string example(SlicerExport::FlagKind kind) {
 }
 
 /// Reads a scene's text, and returns its only render node.
-Node* readIn(vtkMRMLScene* scene, const std::string& text) {
+Node* readScene(vtkMRMLScene* scene, const std::string& text) {
   scene->RegisterNodeClass(vtkSmartPointer<Node>::New());
   scene->SetLoadFromXMLString(1);
   scene->SetSceneXMLString(text);
@@ -43,7 +43,7 @@ Node* readIn(vtkMRMLScene* scene, const std::string& text) {
   return Node::SafeDownCast(scene->GetFirstNodeByClass("vtkMRMLFenestraRenderNode"));
 }
 
-std::string written(vtkMRMLScene* scene) {
+std::string writeScene(vtkMRMLScene* scene) {
   scene->SetSaveToXMLString(1);
   scene->Commit();
   return scene->GetSceneXMLString();
@@ -56,7 +56,7 @@ int testUnknown() {
       R"(<MRML version="Slicer 5.12"><FenestraRender id="r" name="r" description="d" )"
       R"(clip="surface" mood="dark &amp; &quot;deep&quot;"></FenestraRender></MRML>)";
   vtkNew<vtkMRMLScene> scene;
-  Node* node = readIn(scene, text);
+  Node* node = readScene(scene, text);
   CHECK_NOT_NULL(node);
   CHECK_STD_STRING(node->GetFlag("mood"), "");
   node->SetFlag("clip", "cutaway");
@@ -83,7 +83,7 @@ int testWithheld() {
       R"(clip="surface" frames="x" transfer="/etc/passwd" seed="-1" soft="auto" )"
       R"(lights="{&quot;file&quot;: &quot;a.exr&quot;}"></FenestraRender></MRML>)";
   vtkNew<vtkMRMLScene> scene;
-  Node* node = readIn(scene, text);
+  Node* node = readScene(scene, text);
   CHECK_NOT_NULL(node);
   CHECK_INT(static_cast<int>(node->GetFlags().size()), 2);
   CHECK_STD_STRING(node->GetFlag("clip"), "surface");
@@ -91,7 +91,7 @@ int testWithheld() {
   CHECK_BOOL(node->WithholdsFiles(), true);
   CHECK_BOOL(node->IsTurntable(), false);
   vtkNew<vtkMRMLScene> again;
-  Node* reread = readIn(again, written(scene));
+  Node* reread = readScene(again, writeScene(scene));
   CHECK_BOOL(reread->GetWithheld() == node->GetWithheld(), true);
   vtkNew<Node> copy;
   copy->Copy(node);
@@ -110,14 +110,14 @@ int testWithheld() {
 int testEveryFlag(Node* read) {
   std::map<std::string, std::string> all;
   for (const SlicerExport::Flag& flag : SlicerExport::flags())
-    all[flag.name] = example(flag.kind);
+    all[flag.name] = makeValue(flag.kind);
   read->SetFlags(all);
   CHECK_BOOL(read->GetFlags() == all, true);
   CHECK_BOOL(read->IsTurntable(), true);
   const std::string measures = R"({"boundaryGapMm":{"max":0.1},"focusCoverage":1})";
   read->SetAttribute(Node::MeasuresAttribute, measures.c_str());
   vtkNew<vtkMRMLScene> third;
-  Node* last = readIn(third, written(read->GetScene()));
+  Node* last = readScene(third, writeScene(read->GetScene()));
   CHECK_NOT_NULL(last);
   CHECK_BOOL(last->GetFlags() == all, true);
   CHECK_STD_STRING(last->GetAttribute(Node::MeasuresAttribute), measures);
@@ -152,10 +152,10 @@ int vtkMRMLFenestraRenderNodeTest1(int, char*[]) {
   CHECK_STD_STRING(first->GetFocus()[2], "d\\e");
   first->SetNodeReferenceID(Node::VolumeRole, volume->GetID());
 
-  const std::string text = written(scene);
+  const std::string text = writeScene(scene);
   std::cout << text;
   vtkNew<vtkMRMLScene> again;
-  Node* read = readIn(again, text);
+  Node* read = readScene(again, text);
   CHECK_NOT_NULL(read);
   CHECK_BOOL(read->GetFlags() == first->GetFlags(), true);
   CHECK_BOOL(read->GetFocus() == first->GetFocus(), true);

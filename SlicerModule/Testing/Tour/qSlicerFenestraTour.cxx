@@ -57,13 +57,13 @@ qSlicerFenestraTour::qSlicerFenestraTour(const QString& report) : qSlicerFenestr
 
 bool qSlicerFenestraTour::run() {
   join(1000);
-  photograph("1-start");
+  takeScreenshot("1-start");
   struct Step {
     const char* name;
     bool (qSlicerFenestraTour::*run)();
   };
   const Step steps[] = {{"load", &qSlicerFenestraTour::loadPhantom},
-                        {"open", &qSlicerFenestraTour::seeModule},
+                        {"open", &qSlicerFenestraTour::showModule},
                         {"choose", &qSlicerFenestraTour::chooseCartilage},
                         {"turn", &qSlicerFenestraTour::turnCamera},
                         {"render", &qSlicerFenestraTour::render},
@@ -78,15 +78,15 @@ bool qSlicerFenestraTour::run() {
   for (const Step& step : steps) {
     good = good && (this->*step.run)();
     if (!good) {
-      m_figures["failed"] = step.name;
-      photograph("failed");
+      m_measurements["failed"] = step.name;
+      takeScreenshot("failed");
       break;
     }
   }
-  m_figures["slicer"] = qSlicerApplication::application()->applicationVersion();
+  m_measurements["slicer"] = qSlicerApplication::application()->applicationVersion();
   QFile file(m_report + "/tour.json");
   if (file.open(QIODevice::WriteOnly))
-    file.write(QJsonDocument(m_figures).toJson());
+    file.write(QJsonDocument(m_measurements).toJson());
   return good;
 }
 
@@ -96,15 +96,15 @@ bool qSlicerFenestraTour::loadPhantom() {
   auto* fenestra = qSlicerApplication::application()->moduleLogic("Fenestra");
   vtkSlicerFenestraLogic::SafeDownCast(fenestra)->ShowNewestVolume(); // like the sample's button
   join(2000);
-  photograph("2-loaded");
+  takeScreenshot("2-loaded");
   return true;
 }
 
-bool qSlicerFenestraTour::seeModule() {
+bool qSlicerFenestraTour::showModule() {
   if (!openModule() || !waitFor([this] { return m_previews > 0; }))
     return false;
   join(1500);
-  photograph("3-opened");
+  takeScreenshot("3-opened");
   return true;
 }
 
@@ -127,10 +127,10 @@ bool qSlicerFenestraTour::chooseCartilage() {
   }
   if (!waitFor([&] { return m_previews > before; }))
     return false;
-  m_figures["previewAfterFocusMs"] = static_cast<int>(watch.elapsed());
+  m_measurements["previewAfterFocusMs"] = static_cast<int>(watch.elapsed());
   join(3000);
-  m_figures["longestPauseWhilePreviewingMs"] = m_pulse.longest();
-  photograph("4-focus");
+  m_measurements["longestPauseWhilePreviewingMs"] = m_pulse.longest();
+  takeScreenshot("4-focus");
   return true;
 }
 
@@ -138,12 +138,12 @@ bool qSlicerFenestraTour::chooseCartilage() {
 bool qSlicerFenestraTour::turnCamera() {
   showVolumeRendering(false);
   const int alone = slowestTurn();
-  m_figures["previewAfterTurnMs"] = alone;
+  m_measurements["previewAfterTurnMs"] = alone;
   showVolumeRendering(true);
   const int beside = slowestTurn();
-  m_figures["previewAfterTurnBesideVolumeRenderingMs"] = beside;
+  m_measurements["previewAfterTurnBesideVolumeRenderingMs"] = beside;
   join(3000);
-  photograph("5-turned");
+  takeScreenshot("5-turned");
   return alone >= 0 && beside >= 0;
 }
 
@@ -182,12 +182,12 @@ bool qSlicerFenestraTour::render() {
   if (!click("RenderButton"))
     return false;
   join(1500);
-  photograph("6-rendering");
+  takeScreenshot("6-rendering");
   if (!waitFor([&] { return m_ended > before; }, 300000))
     return false;
-  m_figures["render"] = m_panel->findChild<QLabel*>("StateLabel")->text();
+  m_measurements["render"] = m_panel->findChild<QLabel*>("StateLabel")->text();
   join(8000); // volume rendering of a new view is slow without a graphics card
-  photograph("7-result");
+  takeScreenshot("7-result");
   return lastRender() && !radianceOf(lastRender()).isEmpty();
 }
 
@@ -205,20 +205,20 @@ bool qSlicerFenestraTour::stopRender() {
   if (!click("RenderButton"))
     return false;
   join(3000);
-  m_figures["longestPauseWhileRenderingMs"] = m_pulse.longest();
+  m_measurements["longestPauseWhileRenderingMs"] = m_pulse.longest();
   m_pulse.start();
   QElapsedTimer watch;
   watch.start();
   auto* session = m_panel->session();
   int after = -1;
-  const auto heard = QObject::connect(session, &qSlicerFenestraSession::renderStopped,
-                                      [&] { after = static_cast<int>(watch.elapsed()); });
+  const auto connection = QObject::connect(session, &qSlicerFenestraSession::renderStopped,
+                                           [&] { after = static_cast<int>(watch.elapsed()); });
   if (!click("StopButton") || !waitFor([&] { return m_ended > before; }))
     return false;
-  QObject::disconnect(heard);
-  m_figures["stoppedAfterMs"] = after;
+  QObject::disconnect(connection);
+  m_measurements["stoppedAfterMs"] = after;
   join(1000);
-  m_figures["longestPauseWithResultMs"] = m_pulse.longest();
+  m_measurements["longestPauseWithResultMs"] = m_pulse.longest();
   settings->SetFlags(flags);
   showVolumeRendering(true);
   return lastRender() != nullptr;
@@ -230,13 +230,13 @@ bool qSlicerFenestraTour::changeClipping() {
   m_panel->findChild<qMRMLNodeComboBox*>("RendersBox")->setCurrentNode(firstRender());
   if (!click("ShowButton"))
     return false;
-  const bool hole = photographPreview("12-hole", [this] {
+  const bool hole = takePreviewScreenshot("12-hole", [this] {
     const bool chosen = choose("ClipBox", "hole");
     set("holemarginBox", 8.0);
     scrollTo("Clipping");
     return chosen;
   });
-  const bool surroundings = photographPreview("13-surroundings", [this] {
+  const bool surroundings = takePreviewScreenshot("13-surroundings", [this] {
     auto* details = m_panel->findChild<ctkCollapsibleGroupBox*>("ClipDetails");
     details->setCollapsed(false);
     const bool chosen = choose("ClipBox", "");
@@ -254,14 +254,14 @@ bool qSlicerFenestraTour::changeClipping() {
 bool qSlicerFenestraTour::changeView() {
   bool good = true;
   if (m_panel->findChild<QComboBox*>("ViewBox")->findData("auto") >= 0)
-    good = photographPreview("14-view", [this] {
+    good = takePreviewScreenshot("14-view", [this] {
       fold("What to show", true);
       scrollTo("PreviewBox");
       return choose("ViewBox", "auto");
     });
   fold("What to show", false);
   if (!m_panel->findChild<QComboBox*>("PresetBox")->isHidden())
-    good = good && photographPreview("15-anatomy", [this] {
+    good = good && takePreviewScreenshot("15-anatomy", [this] {
              scrollTo("PreviewBox");
              return choose("PresetBox", "knee-cartilage");
            });
@@ -277,9 +277,9 @@ bool qSlicerFenestraTour::renderMeasured() {
   fold("View and light", true);
   scrollTo("SaveButton");
   join(500);
-  photograph("16-measures");
+  takeScreenshot("16-measures");
   auto* measures = m_panel->findChild<QLabel*>("MeasuresLabel");
-  m_figures["measures"] = measures->text();
+  m_measurements["measures"] = measures->text();
   return measures->isVisible() && measures->text().contains("Focus seen");
 }
 
@@ -299,7 +299,7 @@ bool qSlicerFenestraTour::renderTurntable() {
   if (!click("TurnButton"))
     return false;
   join(3000);
-  photograph("17-turning");
+  takeScreenshot("17-turning");
   if (!waitFor([&] { return m_ended > before; }, 300000))
     return false;
   join(3000);
@@ -307,16 +307,16 @@ bool qSlicerFenestraTour::renderTurntable() {
   scrollTo("SaveButton");
   auto* slider = m_panel->findChild<QSlider*>("FrameSlider");
   std::set<int> seen;
-  const auto heard =
+  const auto connection =
       QObject::connect(slider, &QSlider::valueChanged, [&seen](int frame) { seen.insert(frame); });
   click("PlayButton");
   const bool played = waitFor([&] { return seen.size() == 8; });
   click("PlayButton");
-  QObject::disconnect(heard);
+  QObject::disconnect(connection);
   slider->setValue(5);
   join(1000);
-  photograph("18-turntable");
-  m_figures["turntable"] = m_panel->findChild<QLabel*>("DescriptionLabel")->text();
+  takeScreenshot("18-turntable");
+  m_measurements["turntable"] = m_panel->findChild<QLabel*>("DescriptionLabel")->text();
   settings()->SetFlags(flags);
   return played && vtkSlicerFenestraLogic::GetNumberOfFrames(lastRender()) == 8;
 }
@@ -337,7 +337,7 @@ bool qSlicerFenestraTour::saveAndRepeat() {
     return false;
   scene->Clear(false);
   join(1000);
-  photograph("8-closed");
+  takeScreenshot("8-closed");
   for (const char* words : {"StateLabel", "PreviewStateLabel", "DescriptionLabel"})
     if (!m_panel->findChild<QLabel*>(words)->text().isEmpty())
       return false;
@@ -348,21 +348,21 @@ bool qSlicerFenestraTour::saveAndRepeat() {
   auto* again = Node::SafeDownCast(scene->GetFirstNodeByName(name.c_str()));
   if (!again)
     return false;
-  m_figures["readBack"] = radianceOf(again) == before &&
-                          vtkSlicerFenestraLogic::GetNumberOfFrames(lastRender()) == frames;
+  m_measurements["readBack"] = radianceOf(again) == before &&
+                               vtkSlicerFenestraLogic::GetNumberOfFrames(lastRender()) == frames;
   for (const char* subject : {"VolumeBox", "SegmentationBox"})
     if (!m_panel->findChild<qMRMLNodeComboBox*>(subject)->currentNode())
       return false;
   m_panel->findChild<qMRMLNodeComboBox*>("RendersBox")->setCurrentNode(again);
   join(2000);
-  photograph("9-reloaded");
+  takeScreenshot("9-reloaded");
   const int ended = m_ended;
   if (!click("RepeatButton") || !waitFor([&] { return m_ended > ended; }, 300000))
     return false;
   join(2000);
-  photograph("10-repeated");
-  m_figures["repeatedBitForBit"] = radianceOf(lastRender()) == before;
-  return m_figures["repeatedBitForBit"].toBool() && m_figures["readBack"].toBool();
+  takeScreenshot("10-repeated");
+  m_measurements["repeatedBitForBit"] = radianceOf(lastRender()) == before;
+  return m_measurements["repeatedBitForBit"].toBool() && m_measurements["readBack"].toBool();
 }
 
 /// Runs the renderer as a command line module, in the panel that Slicer makes of its description.
@@ -404,8 +404,8 @@ bool qSlicerFenestraTour::runCommand() {
   join(1000);
   faceOutput(output);
   join(1000);
-  photograph("11-command");
-  m_figures["commandLineModule"] = node->GetStatusString();
+  takeScreenshot("11-command");
+  m_measurements["commandLineModule"] = node->GetStatusString();
   vtkImageData* image = output->GetImageData();
   return node->GetStatus() == vtkMRMLCommandLineModuleNode::Completed &&
          node->GetErrorText().empty() && image && image->GetDimensions()[0] == 512;

@@ -17,7 +17,7 @@ public:
 
 private:
   bool loadPhantom();
-  bool seeModule();
+  bool showModule();
   bool chooseCartilage();
   bool turnCamera();
   int slowestTurn();
@@ -33,5 +33,5 @@ private:
   void faceOutput(vtkMRMLVolumeNode* output);
 
   qSlicerFenestraPulse m_pulse;
-  QJsonObject m_figures;
+  QJsonObject m_measurements;
 };

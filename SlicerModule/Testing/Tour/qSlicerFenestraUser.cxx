@@ -34,7 +34,7 @@ std::vector<vtkMRMLNode*> renderNodes() {
 }
 
 /// Factor on all waiting times.
-int patience() {
+int timeFactor() {
   return std::max(1, qEnvironmentVariableIntValue("FENESTRA_TOUR_PATIENCE"));
 }
 
@@ -100,19 +100,20 @@ void qSlicerFenestraUser::fold(const char* section, bool folded) {
 }
 
 /// Photographs the preview after a change.
-bool qSlicerFenestraUser::photographPreview(const char* name, const std::function<bool()>& action) {
+bool qSlicerFenestraUser::takePreviewScreenshot(const char* name,
+                                                const std::function<bool()>& action) {
   const int before = m_previews;
   if (!action() || !waitFor([&] { return m_previews > before; }))
     return false;
   join(4000);
-  photograph(name);
+  takeScreenshot(name);
   return m_panel->findChild<QLabel*>("PreviewStateLabel")->text().startsWith("Preview:");
 }
 
 bool qSlicerFenestraUser::waitFor(const std::function<bool()>& condition, int milliseconds) {
   QElapsedTimer watch;
   watch.start();
-  while (!condition() && watch.elapsed() / patience() < milliseconds)
+  while (!condition() && watch.elapsed() / timeFactor() < milliseconds)
     processEvents();
   return condition();
 }
@@ -120,11 +121,11 @@ bool qSlicerFenestraUser::waitFor(const std::function<bool()>& condition, int mi
 void qSlicerFenestraUser::join(int milliseconds) {
   QElapsedTimer watch;
   watch.start();
-  while (watch.elapsed() / patience() < milliseconds)
+  while (watch.elapsed() / timeFactor() < milliseconds)
     processEvents();
 }
 
-void qSlicerFenestraUser::photograph(const char* name) {
+void qSlicerFenestraUser::takeScreenshot(const char* name) {
   m_window->screen()->grabWindow(m_window->winId()).save(QString("%1/%2.png").arg(m_report, name));
   std::cout << "tour: " << name << std::endl;
 }

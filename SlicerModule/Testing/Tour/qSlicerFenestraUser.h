@@ -25,8 +25,8 @@ protected:
   void fold(const char* section, bool folded);
   bool waitFor(const std::function<bool()>& condition, int milliseconds = 60000);
   void join(int milliseconds);
-  void photograph(const char* name);
-  bool photographPreview(const char* name, const std::function<bool()>& action);
+  void takeScreenshot(const char* name);
+  bool takePreviewScreenshot(const char* name, const std::function<bool()>& action);
 
   vtkMRMLFenestraRenderNode* settings() const;
   vtkMRMLFenestraRenderNode* firstRender() const;
