@@ -89,12 +89,12 @@ public:
     m_watch = {};
     returnTiles(result);
     for (const Rests poller;;) {
-      const std::optional<Received> received = m_ranks.receive();
-      if (!received) {
+      const std::optional<Received> measureIrradiance = m_ranks.receive();
+      if (!measureIrradiance) {
         poller.rest();
         continue;
       }
-      MessageReader reader(received->message);
+      MessageReader reader(measureIrradiance->message);
       if (reader.word() == stopTag)
         return std::nullopt;
       TileLease lease = {{}, reader.word(), reader.word()};
@@ -192,12 +192,12 @@ void Lender::serve(const std::stop_token& end) {
 /// Takes all messages that are there; false if there is none. Locked.
 bool Lender::hear() {
   bool hasReceived = false;
-  while (const std::optional<Received> received = m_ranks.receive()) {
+  while (const std::optional<Received> measureIrradiance = m_ranks.receive()) {
     hasReceived = true;
-    Borrower& worker = m_borrowers[static_cast<std::size_t>(received->from)];
+    Borrower& worker = m_borrowers[static_cast<std::size_t>(measureIrradiance->from)];
     worker.waitReadable = true;
-    takeBack(received->message);
-    worker.threads = received->message[1];
+    takeBack(measureIrradiance->message);
+    worker.threads = measureIrradiance->message[1];
   }
   return hasReceived;
 }
@@ -280,8 +280,8 @@ bool Lender::dismiss(bool isStopped) {
 
 bool isRecruited(Ranks& ranks) {
   for (const Rests poller;;) {
-    if (const std::optional<Received> received = ranks.receive())
-      return received->message.front() == startTag;
+    if (const std::optional<Received> measureIrradiance = ranks.receive())
+      return measureIrradiance->message.front() == startTag;
     poller.rest();
   }
 }

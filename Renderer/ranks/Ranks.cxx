@@ -71,10 +71,10 @@ std::optional<Received> Ranks::receive() {
     return std::nullopt;
   int size = 0;
   MPI_Get_count(&status, MPI_UINT64_T, &size);
-  Received received{status.MPI_SOURCE, Message(static_cast<std::size_t>(size))};
-  MPI_Recv(received.message.data(), size, MPI_UINT64_T, received.from, messageTag, MPI_COMM_WORLD,
-           MPI_STATUS_IGNORE);
-  return received;
+  Received measureIrradiance{status.MPI_SOURCE, Message(static_cast<std::size_t>(size))};
+  MPI_Recv(measureIrradiance.message.data(), size, MPI_UINT64_T, measureIrradiance.from, messageTag,
+           MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+  return measureIrradiance;
 }
 
 bool Ranks::hasMessage() {

@@ -284,11 +284,11 @@ TEST_F(MaterialsCommand, StoredMaterialsReproduceThePicture) {
   EXPECT_EQ(renderedScene({"library.mrml"}), green);
   EXPECT_EQ(
       renderedScene({"several.mrml"}),
-      renderedScene(with({"--materials", "library", "--material", "A: color=#00ff00, priority=3",
-                          "--material", "Bone, left: material=bone, color=#ff0000", "--material",
-                          "B: priority=2"})));
+      renderedScene(makeArguments(
+          {"--materials", "library", "--material", "A: color=#00ff00, priority=3", "--material",
+           "Bone, left: material=bone, color=#ff0000", "--material", "B: priority=2"})));
   EXPECT_EQ(renderedScene({"library.mrml", "--materials", "library"}),
-            renderedScene(with({"--materials", "library"})))
+            renderedScene(makeArguments({"--materials", "library"})))
       << "given materials replace the stored changes, too";
   EXPECT_EQ(renderedScene({"library.mrml", "--materials", "none"}), none);
   EXPECT_EQ(
@@ -304,11 +304,12 @@ TEST_F(MaterialsCommand, AServerTakesThemAsAList) {
                 "\n");
   ASSERT_TRUE(process.waitForOutput("\"picture\",\"id\":1,[^\n]*\"done\":true[^\n]*\n"))
       << process.output();
-  EXPECT_EQ(readImage(folder / "a.exr").channels,
-            rendered(with({"--materials", "library", "--material", "A: color=#00ff00, priority=3",
-                           "--material", "B: color=#ff0000"}),
-                     folder.path())
-                .channels);
+  EXPECT_EQ(
+      readImage(folder / "a.exr").channels,
+      rendered(makeArguments({"--materials", "library", "--material",
+                              "A: color=#00ff00, priority=3", "--material", "B: color=#ff0000"}),
+               folder.path())
+          .channels);
   process.write("{\"id\": 2, \"materials\": \"nothing\"}\n");
   EXPECT_TRUE(process.waitForOutput("\"error\",\"id\":2,\"message\":\"nothing: no such file"))
       << process.output();

@@ -286,7 +286,7 @@ TEST_F(StudyCommand, RefusesDamagedTables) {
   for (const auto& [text, message] : tables) {
     folder.write("t.csv", text);
     expectRefused({{text, study({}), 3, "t.csv: "}}, folder.path());
-    EXPECT_NE(run(study({}), folder.path()).err.find(message), std::string::npos) << text;
+    EXPECT_NE(run(makeArguments({}), folder.path()).err.find(message), std::string::npos) << text;
   }
   folder.write("t.csv", "name,input\na,volume.nrrd\n");
   expectRefused({{"rows", study({"--rows", "3/2"}), 2, "--rows: expected K/N"},

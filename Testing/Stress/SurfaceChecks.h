@@ -132,15 +132,16 @@ inline void expectVisible(const View& view, const Clip& clip) {
     const Ray ray =
         camera.makeRay(uniform(random, 0, camera.width()), uniform(random, 0, camera.height()));
     const Interval seen = visibleInterval(clip, ray);
-    ASSERT_TRUE(std::isfinite(seen.begin) && seen.begin >= 0.0);
-    ASSERT_EQ(seen.end, infinity);
+    ASSERT_TRUE(std::isfinite(interval.begin) && interval.begin >= 0.0);
+    ASSERT_EQ(interval.end, infinity);
     // Rounding of a position times the surface's slope is an error of depth.
     const double step = 1e-9 * (ray.origin.norm() + seen.begin + camera.targetDepth()) + 1e-6;
-    ASSERT_EQ(clipWeight(clip, ray.at(seen.begin + step)), 1.0) << seen.begin;
-    ASSERT_EQ(clipWeight(clip, ray.at(2.0 * seen.begin + 1e3)), 1.0) << seen.begin;
+    ASSERT_EQ(clipWeight(clip, ray.at(interval.begin + step)), 1.0) << seen.begin;
+    ASSERT_EQ(clipWeight(clip, ray.at(2.0 * interval.begin + 1e3)), 1.0) << seen.begin;
     if (seen.begin > 2.0 * step) {
-      ASSERT_EQ(clipWeight(clip, ray.at(seen.begin - step)), 0.0) << seen.begin;
-      ASSERT_EQ(clipWeight(clip, ray.at(seen.begin * random.uniform() * 0.999)), 0.0) << seen.begin;
+      ASSERT_EQ(clipWeight(clip, ray.at(interval.begin - step)), 0.0) << seen.begin;
+      ASSERT_EQ(clipWeight(clip, ray.at(interval.begin * random.uniform() * 0.999)), 0.0)
+          << seen.begin;
     }
   }
 }

@@ -8,19 +8,19 @@ namespace {
 
 // ---- the focuses
 
-const Grid cube = centredGrid({32, 32, 32});
+const Grid cube = makeCenteredGrid({32, 32, 32});
 
 /// Tests views from 100 mm in front, `scale` mm up and down at the centre.
 void expectSoundFromFront(const Mask& focus, double scale, const Grid& volume = cube) {
   for (const auto projection : projections)
     for (const auto& [width, height] : {std::pair{40, 30}, std::pair{5, 13}}) {
       SCOPED_TRACE(projection == Projection::perspective ? "perspective" : "orthographic");
-      expectSound({anteriorCamera(projection, 100.0, scale, width, height), volume, focus});
+      expectSound({makeAnteriorCamera(projection, 100.0, scale, width, height), volume, focus});
     }
 }
 
 Mask oneVoxel() {
-  return boxMask(cube, Vec3::Constant(0.1), Vec3::Constant(0.9));
+  return makeBoxMask(cube, Vec3::Constant(0.1), Vec3::Constant(0.9));
 }
 
 TEST(SurfaceStress, OneVoxelGivesASoundSurface) {
@@ -29,7 +29,7 @@ TEST(SurfaceStress, OneVoxelGivesASoundSurface) {
 }
 
 TEST(SurfaceStress, OnePixelGivesAFlatSurfaceAndAWarning) {
-  const Camera camera = anteriorCamera(Projection::orthographic, 100.0, 20.0, 40, 40);
+  const Camera camera = makeAnteriorCamera(Projection::orthographic, 100.0, 20.0, 40, 40);
   const View view{camera, cube, oneVoxel()};
   const ClippingSurface surface = view.surface({});
   EXPECT_EQ(surface.controlPoints.size(), 1U);
@@ -43,25 +43,25 @@ TEST(SurfaceStress, OnePixelGivesAFlatSurfaceAndAWarning) {
 TEST(SurfaceStress, FocusAtTheVolumesBorderIsSound) {
   for (const Vec3& corner : {Vec3(-16, -16, -16), Vec3(16, 16, 16), Vec3(-16, 16, 0)}) {
     const Mask focus =
-        maskOf(cube, [&](const Vec3& p) { return (p - corner).cwiseAbs().maxCoeff() < 9.0; });
+        makeMask(cube, [&](const Vec3& p) { return (p - corner).cwiseAbs().maxCoeff() < 9.0; });
     expectSoundFromFront(focus, 20.0);
     expectSoundFromFront(focus, 10.0);
   }
 }
 
 TEST(SurfaceStress, FocusThatFillsTheViewIsSound) {
-  const Mask everything = maskOf(cube, [](const Vec3&) { return true; });
+  const Mask everything = makeMask(cube, [](const Vec3&) { return true; });
   for (const double scale : {5.0, 15.9, 16.0, 40.0})
     expectSoundFromFront(everything, scale);
   for (const auto projection : projections) { // the face is at -16 for every ray
-    const View view{anteriorCamera(projection, 50.0, 7.0, 20, 20), cube, everything};
+    const View view{makeAnteriorCamera(projection, 50.0, 7.0, 20, 20), cube, everything};
     const FocusDepth focus = view.surface({}).focus;
     for (int pixel = 0; pixel < 400; ++pixel) {
       ASSERT_NEAR(focus.depth.at(focus.depth.viewportSample(pixel % 20, pixel / 20)), 34.0, 1e-4);
     }
   }
-  expectSoundFromFront(boxMask(cube, {-11, -9, -11}, {11, 9, 11}), 8.0);
-  expectSoundFromFront(sphereMask(cube, 14.0), 3.0);
+  expectSoundFromFront(makeBoxMask(cube, {-11, -9, -11}, {11, 9, 11}), 8.0);
+  expectSoundFromFront(makeSphereMask(cube, 14.0), 3.0);
 }
 
 TEST(SurfaceStress, ManyComponentsAreSound) {
@@ -70,16 +70,16 @@ TEST(SurfaceStress, ManyComponentsAreSound) {
     return cell == Vec3(cell.array().floor());
   };
   for (const double n : {2.0, 3.0, 10.0})
-    expectSoundFromFront(maskOf(cube, [&](const Vec3& p) { return every(p, n); }), 17.0);
+    expectSoundFromFront(makeMask(cube, [&](const Vec3& p) { return every(p, n); }), 17.0);
 }
 
 TEST(SurfaceStress, HolesInTheFocusAreSound) {
-  const Mask plate = maskOf(cube, [](const Vec3& p) {
+  const Mask plate = makeMask(cube, [](const Vec3& p) {
     const bool isHole = std::hypot(std::remainder(p.x(), 8.0), std::remainder(p.z(), 8.0)) < 2.5;
     return std::abs(p.y()) < 3.0 && !isHole;
   });
   expectSoundFromFront(plate, 17.0);
-  const Mask ring = maskOf(cube, [](const Vec3& p) {
+  const Mask ring = makeMask(cube, [](const Vec3& p) {
     return std::abs(p.y() - 0.3 * p.x()) < 2.0 && std::abs(std::hypot(p.x(), p.z()) - 10.0) < 1.1;
   });
   expectSoundFromFront(ring, 17.0);
@@ -88,7 +88,7 @@ TEST(SurfaceStress, HolesInTheFocusAreSound) {
 TEST(SurfaceStress, SheetSeenEdgeOnIsSound) {
   // Sheet one voxel thick along the view: exactly parallel, and where the sheet is a staircase.
   for (const double tilt : {0.0, 1e-3, 0.3}) {
-    const Mask sheet = maskOf(cube, [&](const Vec3& p) {
+    const Mask sheet = makeMask(cube, [&](const Vec3& p) {
       const double x = p.x() - tilt * p.y();
       return x >= 0.0 && x < 1.0 && std::abs(p.z()) < 9.0;
     });
@@ -99,17 +99,17 @@ TEST(SurfaceStress, SheetSeenEdgeOnIsSound) {
 
 TEST(SurfaceStress, DepthJumpsAreSound) {
   // Stripes and a chequerboard of plates, two voxels thick each, 500 mm apart.
-  const Grid deep = centredGrid({32, 32, 32}, {1.0, 20.0, 1.0});
+  const Grid deep = makeCenteredGrid({32, 32, 32}, {1.0, 20.0, 1.0});
   const auto plate = [](const Vec3& p, bool isNear) {
     return std::abs(p.y() + (isNear ? 250.0 : -250.0)) < 20.0;
   };
   for (const double width : {1.0, 5.0}) {
     const auto isOdd = [&](double x) { return std::fmod(std::floor(x / width) + 100.0, 2.0) > 0; };
     for (const auto projection : projections) {
-      const Camera camera = anteriorCamera(projection, 700.0, 17.0, 40, 40);
+      const Camera camera = makeAnteriorCamera(projection, 700.0, 17.0, 40, 40);
       expectSound(
-          {camera, deep, maskOf(deep, [&](const Vec3& p) { return plate(p, isOdd(p.x())); })});
-      expectSound({camera, deep, maskOf(deep, [&](const Vec3& p) {
+          {camera, deep, makeMask(deep, [&](const Vec3& p) { return plate(p, isOdd(p.x())); })});
+      expectSound({camera, deep, makeMask(deep, [&](const Vec3& p) {
                      return plate(p, isOdd(p.x()) != isOdd(p.z()));
                    })});
     }
@@ -132,7 +132,7 @@ Camera camera(Projection projection, const Vec3& from, const Vec3& to, double sc
 }
 
 TEST(SurfaceStress, CameraInsideTheVolumeIsSound) {
-  const Mask ball = sphereMask(cube, 6.0);
+  const Mask ball = makeSphereMask(cube, 6.0);
   for (const auto projection : projections)
     for (const Vec3& from : {Vec3(10, -11, 3), Vec3(8, 0, 0), Vec3(-16, -16, -16), Vec3(2, 1, 3)})
       for (const double angle : {20.0, 120.0}) {
@@ -142,7 +142,7 @@ TEST(SurfaceStress, CameraInsideTheVolumeIsSound) {
 }
 
 TEST(SurfaceStress, CameraInsideTheFocusIsSound) {
-  const Mask everything = maskOf(cube, [](const Vec3&) { return true; });
+  const Mask everything = makeMask(cube, [](const Vec3&) { return true; });
   for (const auto projection : projections) {
     const View view{camera(projection, {3, 2, 1}, {-1, 5, 2}, 5.0), cube, everything};
     const ClippingSurface surface = view.surface({});
@@ -161,7 +161,7 @@ TEST(SurfaceStress, CameraInsideTheFocusIsSound) {
 }
 
 TEST(SurfaceStress, ViewsAlongAxesAndDiagonalsAreSound) {
-  const Mask box = boxMask(cube, {-6, -6, -6}, {6, 6, 6}); // voxel centres at half-integers
+  const Mask box = makeBoxMask(cube, {-6, -6, -6}, {6, 6, 6}); // voxel centres at half-integers
   for (const auto projection : projections)
     for (const Vec3& way : {Vec3(1, 0, 0), Vec3(0, 0, -1), Vec3(1, 1, 0), Vec3(1, 1, 1)})
       for (const double offset : {0.0, 0.5}) {
@@ -172,7 +172,7 @@ TEST(SurfaceStress, ViewsAlongAxesAndDiagonalsAreSound) {
 }
 
 TEST(SurfaceStress, ExtremeFieldsOfViewAreSound) {
-  const Mask ball = sphereMask(cube, 9.0);
+  const Mask ball = makeSphereMask(cube, 9.0);
   for (const double angle : {1.0, 150.0, 179.0})
     for (const double distance : {20.0, 60.0}) {
       SCOPED_TRACE(angle);
@@ -186,18 +186,18 @@ TEST(SurfaceStress, ExtremeFieldsOfViewAreSound) {
 }
 
 TEST(SurfaceStress, FlatVoxelsAreSound) {
-  const Grid flat = centredGrid({100, 100, 3}, {0.01, 0.01, 100.0});
-  const Mask focus = boxMask(flat, {-0.2, -0.3, -1.0}, {0.2, 0.3, 1.0});
+  const Grid flat = makeCenteredGrid({100, 100, 3}, {0.01, 0.01, 100.0});
+  const Mask focus = makeBoxMask(flat, {-0.2, -0.3, -1.0}, {0.2, 0.3, 1.0});
   for (const auto projection : projections) {
     expectSound({camera(projection, {0, -30, 0}, Vec3::Zero(), 0.7, 3.0), flat, focus});
     expectSound({camera(projection, {0, -300, 0}, Vec3::Zero(), 160.0, 60.0), flat,
-                 maskOf(flat, [](const Vec3&) { return true; })});
+                 makeMask(flat, [](const Vec3&) { return true; })});
   }
 }
 
 TEST(SurfaceStress, FarFromTheOriginDepthsAreUnchanged) {
   const Vec3 far(1e6, -1e6, 1e6);
-  Mask ball = sphereMask(cube, 9.0);
+  Mask ball = makeSphereMask(cube, 9.0);
   for (const auto projection : projections) {
     const Vec3 from(10, -60, 5);
     const View here{camera(projection, from, Vec3::Zero(), 14.0), cube, ball};
@@ -232,14 +232,14 @@ void expectRefused(const Camera& camera, const Domain& volume, const Mask& focus
 }
 
 TEST(SurfaceStress, FocusThatNoRayMeetsIsRefused) {
-  const Mask ball = sphereMask(cube, 4.0);
-  const Camera ahead = anteriorCamera(Projection::perspective, 100.0, 20.0, 16, 16);
-  expectRefused(ahead, cube, maskOf(cube, [](const Vec3&) { return false; }));
+  const Mask ball = makeSphereMask(cube, 4.0);
+  const Camera ahead = makeAnteriorCamera(Projection::perspective, 100.0, 20.0, 16, 16);
+  expectRefused(ahead, cube, makeMask(cube, [](const Vec3&) { return false; }));
   // Focus behind the eye, and the eye in the volume.
   expectRefused(camera(Projection::perspective, {0, 12, 0}, {0, 20, 0}, 1.0), cube, ball);
   expectRefused(camera(Projection::orthographic, {0, 12, 0}, {0, 20, 0}, 5.0), cube, ball);
   // Focus smaller than a pixel, between the samples.
-  expectRefused(anteriorCamera(Projection::orthographic, 100.0, 1e3, 16, 16), cube, oneVoxel());
+  expectRefused(makeAnteriorCamera(Projection::orthographic, 100.0, 1e3, 16, 16), cube, oneVoxel());
   // Cropped focus, and a crop box that leaves no volume.
   Affine crop = Affine::Identity();
   crop.translation() = Vec3(10, 0, 0);

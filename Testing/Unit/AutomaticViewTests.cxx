@@ -20,7 +20,7 @@ protected:
 
   /// Mask of 1 mm voxels in the cube whose centres satisfy the predicate.
   template <typename Predicate>
-  static Mask focusWhere(const Predicate& predicate) {
+  static Mask makeFocus(const Predicate& predicate) {
     Mask mask;
     mask.grid = centredGrid({60, 60, 60}, {1.0, 1.0, 1.0});
     mask.names = {"A"};
@@ -33,16 +33,16 @@ protected:
     return mask;
   }
 
-  ViewScorer scorer(const Mask& focus) const { return {volume, grid, transfer, focus}; }
-  ViewDirection viewOf(const Mask& focus) const { return findBestView(scorer(focus)); }
+  ViewScorer makeScorer(const Mask& focus) const { return {volume, grid, transfer, focus}; }
+  ViewDirection findView(const Mask& focus) const { return findBestView(makeScorer(focus)); }
 };
 
-double degreesBetween(const Vec3& a, const Vec3& b) {
+double angleInDegrees(const Vec3& a, const Vec3& b) {
   return std::acos(std::clamp(a.dot(b), -1.0, 1.0)) * 180.0 / pi;
 }
 
 /// Three ellipsoids of different sizes, like a bone with its processes.
-bool inLump(const Vec3& p) {
+bool isInLump(const Vec3& p) {
   const auto inside = [&](const Vec3& center, const Vec3& radii) {
     return (p - center).cwiseQuotient(radii).squaredNorm() <= 1.0;
   };
@@ -51,16 +51,16 @@ bool inLump(const Vec3& p) {
 }
 
 TEST_F(ViewOfCube, ScoreOfABallEqualsClosedForm) {
-  constexpr double radius = 15.0, edge = 60.0, disc = pi * radius * radius;
-  const Mask ball = focusWhere([](const Vec3& p) { return p.norm() <= radius; });
-  const ViewScorer score = scorer(ball);
+  constexpr double radius = 15.0, edge = 60.0, disk = pi * radius * radius;
+  const Mask ball = makeFocus([](const Vec3& p) { return p.norm() <= radius; });
+  const ViewScorer score = makeScorer(ball);
   // Context in front of the ball's near half, and beside it in front of the plane at that half's
   // mean depth.
-  const double inFront = disc * (edge / 2.0 - 2.0 / 3.0 * radius);
-  const double beside = (edge * edge - disc) * (edge / 2.0 - 2.0 / 3.0 * radius);
-  const double context = std::pow(edge, 3.0) - 4.0 / 3.0 * disc * radius;
+  const double inFront = disk * (edge / 2.0 - 2.0 / 3.0 * radius);
+  const double beside = (edge * edge - disk) * (edge / 2.0 - 2.0 / 3.0 * radius);
+  const double context = std::pow(edge, 3.0) - 4.0 / 3.0 * disk * radius;
   for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0, 0, 1)}) {
-    const ViewScore seen = score(axis, 16384);
+    const ViewScore result = score(axis, 16384);
     EXPECT_NEAR(result.area, disk, 0.02 * disk) << "of voxels";
     EXPECT_NEAR(result.removedFraction, (inFront + beside) / context, 0.01);
   }
@@ -72,11 +72,11 @@ TEST_F(ViewOfCube, ScoreOfABallEqualsClosedForm) {
 TEST_F(ViewOfCube, SlabIsShownFromTheNearestFace) {
   for (int axis = 0; axis < 3; ++axis)
     for (const double side : {-1.0, 1.0}) {
-      const Mask slab = focusWhere([&](const Vec3& p) {
+      const Mask slab = makeFocus([&](const Vec3& p) {
         const double height = side * p[axis];
         return height > 20.0 && height < 24.0 && (p - p[axis] * Vec3::Unit(axis)).norm() < 15.0;
       });
-      const ViewDirection view = viewOf(slab);
+      const ViewDirection view = findView(slab);
       EXPECT_LT(angleInDegrees(view.fromTarget, side * Vec3::Unit(axis)), 8.0)
           << "axis " << axis << ", side " << side << ": " << view.fromTarget;
       EXPECT_EQ(view.up, axis == 2 ? Vec3::UnitY() : Vec3::UnitZ());
@@ -87,7 +87,7 @@ TEST_F(ViewOfCube, SlabIsShownFromTheNearestFace) {
 TEST_F(ViewOfCube, DiscIsShownFlatOnFromTheUsualSide) {
   for (const Vec3& normal : {Vec3(0, 1, 0), Vec3(1, 2, 0.5), Vec3(-2, 1, 1), Vec3(1, 1, -1)}) {
     const Vec3 unit = normal.normalized();
-    const Mask disc = focusWhere([&](const Vec3& p) {
+    const Mask disk = makeFocus([&](const Vec3& p) {
       return std::abs(p.dot(unit)) < 2.0 && (p - p.dot(unit) * unit).norm() < 20.0;
     });
     EXPECT_LT(angleInDegrees(findView(disk).fromTarget, unit), 10.0) << normal;
@@ -96,19 +96,20 @@ TEST_F(ViewOfCube, DiscIsShownFlatOnFromTheUsualSide) {
 
 TEST_F(ViewOfCube, ViewThroughAirIsPreferredToTissue) {
   volume = makeVolume(grid, [](const Vec3& index) { return index.y() > 14.5 ? 1.0 : 0.0; });
-  const Mask ball = focusWhere([](const Vec3& p) { return p.norm() <= 10.0; });
+  const Mask ball = makeFocus([](const Vec3& p) { return p.norm() <= 10.0; });
   EXPECT_LT(findView(ball).fromTarget.y(), -0.7) << "from posterior, against the habit";
 }
 
 TEST_F(ViewOfCube, ViewMovesLittleForASimilarFocus) {
-  const Vec3 own = viewOf(focusWhere(inLump)).fromTarget;
+  const Vec3 reference = findView(makeFocus(isInLump)).fromTarget;
   const auto angle = [&](const auto& predicate) {
-    return degreesBetween(own, viewOf(focusWhere(predicate)).fromTarget);
+    return angleInDegrees(reference, findView(makeFocus(predicate)).fromTarget);
   };
-  EXPECT_LT(angle([](const Vec3& p) { return inLump(p + Vec3(0.4, -0.3, 0.3)); }), 3.0) << "moved";
-  EXPECT_LT(angle([](const Vec3& p) { return inLump(1.07 * p); }), 3.0) << "smaller";
+  EXPECT_LT(angle([](const Vec3& p) { return isInLump(p + Vec3(0.4, -0.3, 0.3)); }), 3.0)
+      << "moved";
+  EXPECT_LT(angle([](const Vec3& p) { return isInLump(1.07 * p); }), 3.0) << "smaller";
   EXPECT_LT(angle([](const Vec3& p) {
-              return inLump(p) || inLump(p + Vec3::UnitX()) || inLump(p - Vec3::UnitY());
+              return isInLump(p) || isInLump(p + Vec3::UnitX()) || isInLump(p - Vec3::UnitY());
             }),
             4.0)
       << "dilated";
@@ -116,28 +117,28 @@ TEST_F(ViewOfCube, ViewMovesLittleForASimilarFocus) {
               const Vec3 voxel = p + Vec3::Constant(29.5);
               const double number = voxel.x() + 60.0 * voxel.y() + 3600.0 * voxel.z();
               const auto noise = static_cast<std::uint64_t>(number + 0.5);
-              return inLump(p) && mixBits(noise) % 20 != 0;
+              return isInLump(p) && mixBits(noise) % 20 != 0;
             }),
             4.0)
       << "with holes";
   EXPECT_LT(
-      angle([](const Vec3& p) { return inLump(Vec3((p.array() / 2.0).floor() * 2.0 + 1.0)); }),
+      angle([](const Vec3& p) { return isInLump(Vec3((p.array() / 2.0).floor() * 2.0 + 1.0)); }),
       12.0)
       << "at half the resolution, of parts 8 mm wide";
 }
 
 TEST_F(ViewOfCube, ViewIsTheSameForAnyNumberOfThreads) {
-  const Mask lump = focusWhere(inLump);
-  const Vec3 many = viewOf(lump).fromTarget;
+  const Mask lump = makeFocus(isInLump);
+  const Vec3 expected = findView(lump).fromTarget;
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   EXPECT_EQ(findView(lump).fromTarget, expected);
 }
 
 TEST_F(ViewOfCube, EmptyFocusIsShownFromAnterior) {
-  Mask nothing;
-  nothing.grid = centredGrid({3, 3, 3}, {1.0, 1.0, 1.0});
-  nothing.voxels.assign(27, 0);
-  EXPECT_EQ(findView(nothing).fromTarget, Vec3::UnitY());
+  Mask emptyMask;
+  emptyMask.grid = centredGrid({3, 3, 3}, {1.0, 1.0, 1.0});
+  emptyMask.voxels.assign(27, 0);
+  EXPECT_EQ(findView(emptyMask).fromTarget, Vec3::UnitY());
 }
 
 } // namespace

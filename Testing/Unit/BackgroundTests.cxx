@@ -8,7 +8,7 @@ namespace fenestra::testing::BackgroundTests {
 namespace {
 
 /// Picture of 4 x 8 pixels of an empty volume in front of a background.
-Film behindNothing(const Background& background, double sigma_t = 0.0, int threads = 0) {
+Film renderEmptyScene(const Background& background, double sigma_t = 0.0, int threads = 0) {
   TestScene scene{
       makeVolume(centredGrid({4, 4, 4}, {1.0, 1.0, 1.0}), [](const Vec3&) { return 1.0; }),
       linearTransfer(sigma_t, Rgb::Zero()),
@@ -29,7 +29,7 @@ Film behindNothing(const Background& background, double sigma_t = 0.0, int threa
 TEST(Background, GradientIsLinearInDisplayValues) {
   const Rgb bottom(0.756863, 0.764706, 0.909804); // Slicer's own defaults
   const Rgb top(0.454902, 0.470588, 0.745098);
-  const Film film = behindNothing(Background::makeGradient(bottom, top));
+  const Film film = renderEmptyScene(Background::makeGradient(bottom, top));
   for (int row = 0; row < 8; ++row)
     for (int column = 0; column < 4; ++column) {
       const PixelSums& pixel = film.at(column, row);
@@ -76,27 +76,27 @@ TEST(Background, EqualColoursGiveAPlainBackground) {
   EXPECT_EQ(background.kind, Background::Kind::color);
   EXPECT_NEAR(background.color[0], 0.21404114, 1e-8);
   EXPECT_NEAR(background.color[2], 1.0, 1e-15);
-  EXPECT_EQ((behindNothing(background).at(0, 0).mean - background.color).abs().maxCoeff(), 0.0);
+  EXPECT_EQ((renderEmptyScene(background).at(0, 0).mean - background.color).abs().maxCoeff(), 0.0);
 }
 
 TEST(Background, StandardIsDarkGreyAndLighterAtTheTop) {
   const Background background = Background::makeDefault();
   EXPECT_LT((background.evaluate(1.0) - Rgb(0.060, 0.066, 0.078)).abs().maxCoeff(), 1e-12);
   EXPECT_LT((background.evaluate(0.0) - Rgb(0.012, 0.013, 0.016)).abs().maxCoeff(), 1e-12);
-  const Film film = behindNothing(background);
+  const Film film = renderEmptyScene(background);
   for (int row = 1; row < 8; ++row)
     EXPECT_TRUE((film.at(0, row).mean < film.at(0, row - 1).mean).all()) << "row " << row;
 }
 
 TEST(Background, ShowsThroughTheVolumeForAnyNumberOfThreads) {
   const Background background = Background::makeGradient(Rgb(0.1, 0.2, 0.3), Rgb(0.9, 0.8, 0.7));
-  const Film one = behindNothing(background, 0.3, 1);
-  const Film two = behindNothing(background, 0.3, 2);
+  const Film one = renderEmptyScene(background, 0.3, 1);
+  const Film two = renderEmptyScene(background, 0.3, 2);
   for (std::size_t i = 0; i < one.pixelCount(); ++i) {
     EXPECT_TRUE(one.pixels()[i].mean == two.pixels()[i].mean);
     // Black matter of 4 mm: some paths hit the matter, the others show the full background.
     const Rgb behind = background.evaluate((7.5 - static_cast<double>(i / 4)) / 8.0);
-    const double share = one.pixels()[i].mean[0] / behind[0];
+    const double fraction = one.pixels()[i].mean[0] / behind[0];
     EXPECT_NEAR(fraction, std::exp(-1.2), 5.0 * std::sqrt(0.25 / 50.0));
     EXPECT_LT((one.pixels()[i].mean - fraction * behind).abs().maxCoeff(), 1e-12);
   }

@@ -10,12 +10,12 @@
 
 #include <fcntl.h>
 
-namespace fenestra::ChildTests {
+namespace fenestra::ChildProcessTests {
 namespace {
 
 /// Runs one of the disabled cases below.
-std::vector<std::string> playing(const std::string& part) {
-  return {"--gtest_also_run_disabled_tests", "--gtest_filter=Child.DISABLED_" + part};
+std::vector<std::string> makeArguments(const std::string& testCase) {
+  return {"--gtest_also_run_disabled_tests", "--gtest_filter=Child.DISABLED_" + testCase};
 }
 
 void waitFor(ChildProcess& child) {
@@ -45,16 +45,16 @@ TEST(ChildProcess, DISABLED_HasNoFileOfTheParent) {
 }
 
 TEST(ChildProcess, TellsHowItEnded) {
-  const std::vector<std::pair<std::string, int>> ends = {
+  const std::vector<std::pair<std::string, int>> cases = {
       {"Speaks", 0}, {"Fails", 1}, {"Crashes", 128 + SIGKILL}, {"HasNoFileOfTheParent", 0}};
-  for (const auto& [part, status] : ends) {
-    ChildProcess child(playing(part));
+  for (const auto& [testCase, status] : cases) {
+    ChildProcess child(makeArguments(testCase));
     waitFor(child);
-    EXPECT_EQ(child.status(), status) << part << child.errors();
-    if (part == "Speaks") {
+    EXPECT_EQ(child.status(), status) << testCase << child.errors();
+    if (testCase == "Speaks") {
       EXPECT_EQ(child.errors(), "said by the child\n");
     }
-    if (part == "Crashes") {
+    if (testCase == "Crashes") {
       EXPECT_TRUE(child.errors().ends_with("xthe end\n"));
       EXPECT_EQ(child.errors().size(), 1U << 16U);
     }
@@ -63,13 +63,13 @@ TEST(ChildProcess, TellsHowItEnded) {
 
 TEST(ChildProcess, EndsBySignalAndWithItsObject) {
   const Stopwatch watch;
-  ChildProcess child(playing("Sleeps"));
+  ChildProcess child(makeArguments("Sleeps"));
   child.send(SIGTERM);
   waitFor(child);
   EXPECT_EQ(child.status(), 128 + SIGTERM);
-  { const ChildProcess other(playing("Sleeps")); }
+  { const ChildProcess other(makeArguments("Sleeps")); }
   EXPECT_LT(watch.seconds(), 30.0);
 }
 
 } // namespace
-} // namespace fenestra::ChildTests
+} // namespace fenestra::ChildProcessTests

@@ -16,11 +16,12 @@ constexpr std::array projections{Projection::orthographic, Projection::perspecti
 
 /// Ball of radius 12 mm in the centre of a cube of 80 mm, seen from 100 mm in front.
 struct Ball {
-  Grid volume = centredGrid({80, 80, 80});
-  Mask focus = maskOf(volume, [](const Vec3& p) { return p.norm() < 12.0; });
+  Grid volume = makeCenteredGrid({80, 80, 80});
+  Mask focus = makeMask(volume, [](const Vec3& p) { return p.norm() < 12.0; });
   Camera camera;
 
-  explicit Ball(Projection projection) : camera(anteriorCamera(projection, 100, 40, 161, 161)) {}
+  explicit Ball(Projection projection)
+      : camera(makeAnteriorCamera(projection, 100, 40, 161, 161)) {}
 
   ClippingSurface surface(const SurfaceOptions& options) const {
     return buildClippingSurface(camera, volume, focus, options);
@@ -179,13 +180,13 @@ TEST_P(Holes, SphereLeavesABowl) {
 INSTANTIATE_TEST_SUITE_P(Projections, Holes, ::testing::ValuesIn(projections));
 
 TEST(FocusPlane, FlatFocusGivesItsOwnPlane) {
-  const Grid volume = centredGrid({80, 80, 80});
+  const Grid volume = makeCenteredGrid({80, 80, 80});
   const Vec3 normal = Vec3(0.3, -1.0, 0.2).normalized();
-  const Mask focus = maskOf(volume, [&](const Vec3& p) {
+  const Mask focus = makeMask(volume, [&](const Vec3& p) {
     return std::abs(p.dot(normal)) < 4.0 && (p - p.dot(normal) * normal).norm() < 20.0;
   });
   for (const Projection projection : projections) {
-    const Camera camera = anteriorCamera(projection, 150, 40, 128, 128);
+    const Camera camera = makeAnteriorCamera(projection, 150, 40, 128, 128);
     const ClipPlane plane = fitFocusPlane(camera, FocusTracer(camera, volume, focus).traceDepths());
     EXPECT_GT(plane.normal.dot(normal), std::cos(4.0 * pi / 180.0));
     // The plane is the slab's side toward the eye, to half a voxel.
@@ -195,18 +196,18 @@ TEST(FocusPlane, FlatFocusGivesItsOwnPlane) {
 }
 
 TEST(FocusPlane, OneSampleGivesAPlaneFacingTheEye) {
-  const Camera camera = anteriorCamera(Projection::orthographic, 150, 40, 3, 3);
-  const Grid volume = centredGrid({80, 80, 80});
-  const Mask focus = boxMask(volume, {-3, -3, -3}, {3, 3, 3});
+  const Camera camera = makeAnteriorCamera(Projection::orthographic, 150, 40, 3, 3);
+  const Grid volume = makeCenteredGrid({80, 80, 80});
+  const Mask focus = makeBoxMask(volume, {-3, -3, -3}, {3, 3, 3});
   const ClipPlane plane = fitFocusPlane(camera, FocusTracer(camera, volume, focus).traceDepths());
   EXPECT_LT((plane.normal + camera.forward()).norm(), 1e-9);
 }
 
 /// Cuboid focus with its front face at a depth of 84 mm, in a cube with its face at 60 mm.
 struct Cuboid {
-  Grid volume = centredGrid({80, 80, 80});
-  Mask focus = boxMask(volume, {-16, -16, -24}, {16, 16, 24});
-  Camera camera = anteriorCamera(Projection::orthographic, 100, 40, 160, 160);
+  Grid volume = makeCenteredGrid({80, 80, 80});
+  Mask focus = makeBoxMask(volume, {-16, -16, -24}, {16, 16, 24});
+  Camera camera = makeAnteriorCamera(Projection::orthographic, 100, 40, 160, 160);
 };
 
 TEST(BoundaryMetrics, CutawayGapIsTheHeightOfItsCliffs) {
@@ -259,13 +260,13 @@ TEST(BoundaryMetrics, TiltedPlaneGapEqualsItsDistance) {
 }
 
 TEST(BoundaryMetrics, JumpsWithinTheFocusAreCountedSeparately) {
-  const Grid volume = centredGrid({80, 80, 80});
+  const Grid volume = makeCenteredGrid({80, 80, 80});
   // The right half lies 10 mm deeper.
-  const Mask focus = maskOf(volume, [](const Vec3& p) {
+  const Mask focus = makeMask(volume, [](const Vec3& p) {
     return std::abs(p.x()) < 16.0 && std::abs(p.z()) < 16.0 &&
            std::abs(p.y() - (p.x() > 0.0 ? 10.0 : 0.0)) < 6.0;
   });
-  const Camera camera = anteriorCamera(Projection::orthographic, 100, 40, 160, 160);
+  const Camera camera = makeAnteriorCamera(Projection::orthographic, 100, 40, 160, 160);
   SurfaceOptions options;
   options.boundary = Boundary::exact;
   const ClippingSurface surface = buildClippingSurface(camera, volume, focus, options);

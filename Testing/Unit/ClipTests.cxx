@@ -16,8 +16,8 @@ constexpr std::array projections{Projection::orthographic, Projection::perspecti
 
 /// Smaller version of the paper's model: a cuboid focus in the centre of a cube.
 struct Model {
-  Grid volume = centredGrid({64, 64, 64});
-  Mask focus = boxMask(volume, {-16, -16, -24}, {16, 16, 24});
+  Grid volume = makeCenteredGrid({64, 64, 64});
+  Mask focus = makeBoxMask(volume, {-16, -16, -24}, {16, 16, 24});
 
   ClippingSurface surface(const Camera& camera, SurfaceMode mode = SurfaceMode::surface) const {
     return buildClippingSurface(camera, volume, focus, {.mode = mode});
@@ -26,8 +26,8 @@ struct Model {
 
 /// Knee-like focus: a bent thin shell, seen obliquely.
 struct Shell {
-  Grid volume = centredGrid({60, 50, 40}, {1.0, 1.2, 1.5});
-  Mask focus = maskOf(volume, [](const Vec3& p) {
+  Grid volume = makeCenteredGrid({60, 50, 40}, {1.0, 1.2, 1.5});
+  Mask focus = makeMask(volume, [](const Vec3& p) {
     return std::abs(p.norm() - 18.0) < 2.0 && p.x() + 2.0 * p.y() < 8.0;
   });
 };
@@ -58,8 +58,8 @@ TEST(Clip, NoneKeepsEverything) {
 }
 
 TEST(Clip, PlaneRemovesTheSideOfItsNormal) {
-  const Clip clip =
-      ClipPlane{anteriorCamera(Projection::orthographic, 100, 50, 8, 8), {0, -5, 0}, {0, -3, 0}};
+  const Clip clip = ClipPlane{
+      makeAnteriorCamera(Projection::orthographic, 100, 50, 8, 8), {0, -5, 0}, {0, -3, 0}};
   EXPECT_EQ(clipWeight(clip, {0, -6, 0}), 0.0);
   EXPECT_EQ(clipWeight(clip, {0, -4, 0}), 1.0);
   EXPECT_EQ(clipWeight(clip, {0, -200, 0}), 0.0);
@@ -69,7 +69,7 @@ TEST(Clip, PlaneRemovesTheSideOfItsNormal) {
 }
 
 TEST(Clip, PlaneParallelToARayRemovesAllOrNothing) {
-  const Camera camera = anteriorCamera(Projection::orthographic, 100, 50, 8, 8);
+  const Camera camera = makeAnteriorCamera(Projection::orthographic, 100, 50, 8, 8);
   const Ray ray{{0, -100, 0}, {0, 1, 0}};
   EXPECT_TRUE(visibleInterval(ClipPlane{camera, {-1, 0, 0}, {1, 0, 0}}, ray).isEmpty());
   EXPECT_FALSE(visibleInterval(ClipPlane{camera, {1, 0, 0}, {1, 0, 0}}, ray).isEmpty());
@@ -158,8 +158,8 @@ TEST(Clip, KeptInHoldsForPointsOfTheBox) {
 
 TEST(Clip, BoxAcrossTheEyesPlaneCountsEveryDirection) {
   // Depth 20 mm, except far to the right, at the edge of the buffer.
-  const Camera camera = anteriorCamera(Projection::perspective, 30.0, 10.0, 64, 64);
-  auto buffer = std::make_shared<DepthBuffer>(camera, centredGrid({100, 100, 100}));
+  const Camera camera = makeAnteriorCamera(Projection::perspective, 30.0, 10.0, 64, 64);
+  auto buffer = std::make_shared<DepthBuffer>(camera, makeCenteredGrid({100, 100, 100}));
   for (std::int64_t i = 0; i < buffer->size(); ++i)
     buffer->set(i, buffer->xAxis().coordinate(i % buffer->columns()) > 100.0 ? -1.0 : 20.0);
   const Clip clip = ClipDepth{camera, buffer, std::make_shared<DepthPyramid>(*buffer)};
@@ -186,7 +186,7 @@ TEST(ClippingSurface, DepthAtFocusSamplesIsThatOfTheFocus) {
   const Model model;
   for (const auto projection : projections)
     for (const auto mode : {SurfaceMode::cutaway, SurfaceMode::surface}) {
-      const Camera camera = anteriorCamera(projection, 200.0, 40.0, 80, 80);
+      const Camera camera = makeAnteriorCamera(projection, 200.0, 40.0, 80, 80);
       const ClippingSurface surface = model.surface(camera, mode);
       const auto& clip = std::get<ClipDepth>(surface.clip);
       for (std::int64_t i = 0; i < surface.focus.depth.size(); ++i)
@@ -204,7 +204,7 @@ TEST(ClippingSurface, DepthAtFocusSamplesIsThatOfTheFocus) {
 /// A cube seen along its axis has a known surface: the plane of its front face.
 TEST(ClippingSurface, FlatFocusContinuesAsItsPlane) {
   const Model model;
-  const Camera camera = anteriorCamera(Projection::orthographic, 200.0, 40.0, 80, 80);
+  const Camera camera = makeAnteriorCamera(Projection::orthographic, 200.0, 40.0, 80, 80);
   for (const Boundary boundary : {Boundary::spline, Boundary::exact}) {
     const ClippingSurface surface =
         buildClippingSurface(camera, model.volume, model.focus, {.boundary = boundary});
@@ -262,8 +262,8 @@ TEST(ClippingSurface, JumpAtTheFocusIsWithinTheStatedMismatch) {
 
 TEST(ClippingSurface, DoesNotDependOnFraming) {
   const Shell shell;
-  const Camera wide = anteriorCamera(Projection::orthographic, 150.0, 40.0, 160, 160);
-  const Camera narrow = anteriorCamera(Projection::orthographic, 150.0, 10.0, 40, 40);
+  const Camera wide = makeAnteriorCamera(Projection::orthographic, 150.0, 40.0, 160, 160);
+  const Camera narrow = makeAnteriorCamera(Projection::orthographic, 150.0, 10.0, 40, 40);
   const Clip a = buildClippingSurface(wide, shell.volume, shell.focus, {}).clip;
   const Clip b = buildClippingSurface(narrow, shell.volume, shell.focus, {}).clip;
   Random random(3, 0, 0);
@@ -289,12 +289,12 @@ TEST(ClippingSurface, WarnsOfAFocusOutsideThePicture) {
 
 TEST(ClippingSurface, FocusThatNoRayMeetsIsAnInputError) {
   const Model model;
-  const Camera camera = anteriorCamera(Projection::orthographic, 200.0, 40.0, 40, 40);
+  const Camera camera = makeAnteriorCamera(Projection::orthographic, 200.0, 40.0, 40, 40);
   Affine shifted = model.focus.grid.indexToWorld;
   shifted.translation() += Vec3(500, 0, 0);
   Mask outside = model.focus;
   outside.grid = Grid(outside.grid.size, shifted);
-  Mask emptyMask = maskOf(model.volume, [](const Vec3&) { return false; });
+  Mask emptyMask = makeMask(model.volume, [](const Vec3&) { return false; });
   for (const Mask& mask : {outside, emptyMask})
     try {
       buildClippingSurface(camera, model.volume, mask, {});
@@ -307,7 +307,7 @@ TEST(ClippingSurface, FocusThatNoRayMeetsIsAnInputError) {
 
 TEST(ClippingSurface, OptionsOutOfRangeAreUsageErrors) {
   const Model model;
-  const Camera camera = anteriorCamera(Projection::orthographic, 200.0, 40.0, 8, 8);
+  const Camera camera = makeAnteriorCamera(Projection::orthographic, 200.0, 40.0, 8, 8);
   for (const SurfaceOptions& options :
        {SurfaceOptions{.controlPoints = 0}, SurfaceOptions{.controlPoints = 1000001},
         SurfaceOptions{.smoothing = -0.1}, SurfaceOptions{.smoothing = std::nan("")}})
@@ -315,8 +315,8 @@ TEST(ClippingSurface, OptionsOutOfRangeAreUsageErrors) {
 }
 
 TEST(ClippingSurface, OnePixelFocusGivesALevelSurface) {
-  const Grid volume = centredGrid({21, 21, 21});
-  const Mask dot = boxMask(volume, Vec3::Constant(-0.1), Vec3::Constant(0.1));
+  const Grid volume = makeCenteredGrid({21, 21, 21});
+  const Mask dot = makeBoxMask(volume, Vec3::Constant(-0.1), Vec3::Constant(0.1));
   CameraPose pose;
   pose.position = {0.5, -100.0, 0.5};
   pose.target = {0.5, 0.0, 0.5};

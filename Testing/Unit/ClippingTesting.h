@@ -20,7 +20,7 @@ inline Vec3 randomPoint(Random& random, double low, double high) {
 }
 
 /// Grid with voxels of `spacing` mm, centred at the world's origin.
-inline Grid centredGrid(const Size3& size, const Vec3& spacing = Vec3::Ones()) {
+inline Grid makeCenteredGrid(const Size3& size, const Vec3& spacing = Vec3::Ones()) {
   Affine map = Affine::Identity();
   map.linear() = Mat3::Diagonal(spacing);
   map.translation() = -0.5 * spacing.cwiseProduct((size.array() - 1).cast<double>().matrix());
@@ -29,34 +29,34 @@ inline Grid centredGrid(const Size3& size, const Vec3& spacing = Vec3::Ones()) {
 
 /// Mask of the voxels whose centres, world mm, satisfy the predicate.
 template <typename Predicate>
-Mask maskOf(const Grid& grid, const Predicate& predicate) {
+Mask makeMask(const Grid& grid, const Predicate& predicate) {
   Mask mask;
   mask.grid = grid;
   mask.names = {"A"};
   for (std::int64_t z = 0; z < grid.size.z(); ++z)
     for (std::int64_t y = 0; y < grid.size.y(); ++y)
       for (std::int64_t x = 0; x < grid.size.x(); ++x) {
-        const bool in = predicate(Vec3(grid.indexToWorld * Size3(x, y, z).cast<double>()));
-        mask.voxels.push_back(in ? 1 : 0);
-        mask.count += in ? 1 : 0;
+        const bool isInside = predicate(Vec3(grid.indexToWorld * Size3(x, y, z).cast<double>()));
+        mask.voxels.push_back(isInside ? 1 : 0);
+        mask.count += isInside ? 1 : 0;
       }
   return mask;
 }
 
-inline Mask boxMask(const Grid& grid, const Vec3& lower, const Vec3& upper) {
-  return maskOf(grid, [&](const Vec3& p) {
+inline Mask makeBoxMask(const Grid& grid, const Vec3& lower, const Vec3& upper) {
+  return makeMask(grid, [&](const Vec3& p) {
     return (p.array() >= lower.array()).all() && (p.array() <= upper.array()).all();
   });
 }
 
-inline Mask sphereMask(const Grid& grid, double radius) {
-  return maskOf(grid, [&](const Vec3& p) { return p.norm() <= radius; });
+inline Mask makeSphereMask(const Grid& grid, double radius) {
+  return makeMask(grid, [&](const Vec3& p) { return p.norm() <= radius; });
 }
 
 /// Camera that looks along +A (y grows with depth) at the origin from `distance` mm; `scale`: half
 /// the visible height at the origin in either projection, mm.
-inline Camera anteriorCamera(Projection projection, double distance, double scale, int width,
-                             int height) {
+inline Camera makeAnteriorCamera(Projection projection, double distance, double scale, int width,
+                                 int height) {
   CameraPose pose;
   pose.projection = projection;
   pose.position = {0.0, -distance, 0.0};
@@ -67,17 +67,18 @@ inline Camera anteriorCamera(Projection projection, double distance, double scal
 }
 
 /// Focus region drawn with '#'; 1 mm a sample, depth = column + 10 row.
-inline FocusDepth drawnFocus(const std::vector<std::string>& rows) {
+inline FocusDepth makeFocusDepth(const std::vector<std::string>& rows) {
   const auto width = static_cast<int>(rows[0].size());
   const auto height = static_cast<int>(rows.size());
   const Camera camera =
-      anteriorCamera(Projection::orthographic, 100.0, 0.5 * height, width, height);
-  FocusDepth focus{DepthBuffer(camera, centredGrid({1, 1, 1}, Vec3::Constant(1e-3))), {}};
+      makeAnteriorCamera(Projection::orthographic, 100.0, 0.5 * height, width, height);
+  FocusDepth focus{DepthBuffer(camera, makeCenteredGrid({1, 1, 1}, Vec3::Constant(1e-3))), {}};
   for (std::int64_t row = 0; row < height; ++row)
     for (std::int64_t column = 0; column < width; ++column) {
-      const bool in = rows[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)] == '#';
-      focus.regions.push_back(in ? Region::focus : Region::context);
-      if (in)
+      const bool isInside =
+          rows[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)] == '#';
+      focus.regions.push_back(isInside ? Region::focus : Region::context);
+      if (isInside)
         focus.depth.set(focus.depth.sample(column, row), static_cast<double>(column + 10 * row));
     }
   return focus;

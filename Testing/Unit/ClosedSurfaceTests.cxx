@@ -22,7 +22,7 @@ struct Shape {
   Triangles triangles;
 };
 
-Shape box(const Vec3& lower, const Vec3& upper) {
+Shape makeBox(const Vec3& lower, const Vec3& upper) {
   Shape shape;
   for (int i = 0; i < 8; ++i)
     shape.points.push_back(Box{lower, upper}.corner(i));
@@ -32,21 +32,21 @@ Shape box(const Vec3& lower, const Vec3& upper) {
 }
 
 /// Subdivided octahedron with its points moved onto the sphere.
-Shape sphere(const Vec3& center, double radius, int divisions) {
+Shape makeSphere(const Vec3& center, double radius, int divisions) {
   Shape shape{
       {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ(), -Vec3::UnitX(), -Vec3::UnitY(), -Vec3::UnitZ()},
       {{0, 1, 2}, {1, 3, 2}, {3, 4, 2}, {4, 0, 2}, {1, 0, 5}, {3, 1, 5}, {4, 3, 5}, {0, 4, 5}}};
   for (int i = 0; i < divisions; ++i) {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middles;
-    const auto middle = [&](std::uint32_t a, std::uint32_t b) {
-      const auto [it, added] = middles.try_emplace(std::minmax(a, b), shape.points.size());
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> midpoints;
+    const auto midpoint = [&](std::uint32_t a, std::uint32_t b) {
+      const auto [it, added] = midpoints.try_emplace(std::minmax(a, b), shape.points.size());
       if (added)
         shape.points.push_back((shape.points[a] + shape.points[b]).normalized());
       return it->second;
     };
     Triangles finer;
     for (const auto& [a, b, c] : shape.triangles) {
-      const auto ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+      const auto ab = midpoint(a, b), bc = midpoint(b, c), ca = midpoint(c, a);
       for (const auto& triangle : Triangles{{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}})
         finer.push_back(triangle);
     }
@@ -60,7 +60,7 @@ Shape sphere(const Vec3& center, double radius, int divisions) {
 // ---- files
 // --------------------------------------------------------------------------------------
 
-std::string base64(const std::string& bytes) {
+std::string encodeBase64(const std::string& bytes) {
   const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
   for (std::size_t at = 0; at < bytes.size(); at += 3) {
@@ -73,21 +73,21 @@ std::string base64(const std::string& bytes) {
   return text;
 }
 
-enum class Writing { ascii, plain, deflated };
+enum class Encoding { ascii, uncompressed, deflated };
 
 /// Text between an array's tags. Small blocks, hence several.
 template <typename T>
-std::string encoded(const std::vector<T>& values, Writing writing) {
+std::string encodeArray(const std::vector<T>& values, Encoding encoding) {
   std::ostringstream text;
   text.precision(17);
-  if (writing == Writing::ascii) {
+  if (encoding == Encoding::ascii) {
     for (const T value : values)
       text << +value << ' ';
     return text.str();
   }
   const std::string bytes = rawBytes(values);
-  if (writing == Writing::plain)
-    return base64(rawBytes(std::vector<std::uint64_t>{bytes.size()}) + bytes);
+  if (encoding == Encoding::uncompressed)
+    return encodeBase64(rawBytes(std::vector<std::uint64_t>{bytes.size()}) + bytes);
   constexpr std::size_t block = 40;
   std::vector<std::uint64_t> header = {(bytes.size() + block - 1) / block, block,
                                        bytes.size() % block};
@@ -101,26 +101,26 @@ std::string encoded(const std::vector<T>& values, Writing writing) {
     packed += deflated.substr(0, size);
     header.push_back(size);
   }
-  return base64(rawBytes(header)) + base64(packed);
+  return encodeBase64(rawBytes(header)) + encodeBase64(packed);
 }
 
 template <typename T>
-std::string array(const std::string& type, const std::string& name, const std::vector<T>& values,
-                  Writing writing) {
+std::string makeArray(const std::string& type, const std::string& name,
+                      const std::vector<T>& values, Encoding encoding) {
   const std::string tag = type == "String" ? "Array" : "DataArray";
   return "<" + tag + " type=\"" + type + "\" Name=\"" + name + "\" format=\"" +
-         (writing == Writing::ascii ? "ascii" : "binary") + "\">\n  " + encoded(values, writing) +
-         "\n</" + tag + ">\n";
+         (encoding == Encoding::ascii ? "ascii" : "binary") + "\">\n  " +
+         encodeArray(values, encoding) + "\n</" + tag + ">\n";
 }
 
-std::string textArray(const std::string& name, const std::string& text, Writing writing) {
+std::string makeTextArray(const std::string& name, const std::string& text, Encoding encoding) {
   std::vector<signed char> codes(text.begin(), text.end());
   codes.push_back(0);
-  return array("String", name, codes, writing);
+  return makeArray("String", name, codes, encoding);
 }
 
-std::string surfaceText(const Shape& shape, const std::string& id, const std::string& name,
-                        Writing writing) {
+std::string makeSurfaceXml(const Shape& shape, const std::string& id, const std::string& name,
+                           Encoding encoding) {
   std::vector<float> coordinates;
   for (const Vec3& point : shape.points)
     for (const double x : point)
@@ -132,15 +132,16 @@ std::string surfaceText(const Shape& shape, const std::string& id, const std::st
   }
   return "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" "
          "byte_order=\"LittleEndian\" header_type=\"UInt64\"" +
-         std::string(writing == Writing::deflated ? " compressor=\"vtkZLibDataCompressor\"" : "") +
+         std::string(encoding == Encoding::deflated ? " compressor=\"vtkZLibDataCompressor\""
+                                                    : "") +
          ">\n<PolyData>\n<FieldData>\n" +
-         textArray("Segmentation_MasterRepresentation", "Closed surface", writing) +
-         textArray("Segment_ID", id, writing) + textArray("Segment_Name", name, writing) +
-         array("Float64", "Segment_Color", std::vector<double>{0.25, 0.5, 1.0}, writing) +
+         makeTextArray("Segmentation_MasterRepresentation", "Closed surface", encoding) +
+         makeTextArray("Segment_ID", id, encoding) + makeTextArray("Segment_Name", name, encoding) +
+         makeArray("Float64", "Segment_Color", std::vector<double>{0.25, 0.5, 1.0}, encoding) +
          "</FieldData>\n<Piece NumberOfLines=\"0\"><Points>" +
-         array("Float32", "Points", coordinates, writing) + "</Points>\n<Polys>" +
-         array("Int64", "connectivity", corners, writing) +
-         array("Int64", "offsets", offsets, writing) +
+         makeArray("Float32", "Points", coordinates, encoding) + "</Points>\n<Polys>" +
+         makeArray("Int64", "connectivity", corners, encoding) +
+         makeArray("Int64", "offsets", offsets, encoding) +
          "</Polys>\n</Piece>\n</PolyData>\n</VTKFile>\n";
 }
 
@@ -154,12 +155,12 @@ Path writeBlocks(const TemporaryFolder& folder, const std::vector<std::string>& 
 }
 
 Path writeSegments(const TemporaryFolder& folder, const std::vector<Shape>& shapes,
-                   Writing writing = Writing::deflated) {
+                   Encoding encoding = Encoding::deflated) {
   std::vector<std::string> files;
   for (const Shape& shape : shapes) {
     const std::string number = std::to_string(files.size());
     files.push_back("s_" + number + ".vtp");
-    folder.write(files.back(), surfaceText(shape, "id" + number, "ségment " + number, writing));
+    folder.write(files.back(), makeSurfaceXml(shape, "id" + number, "ségment " + number, encoding));
   }
   return writeBlocks(folder, files);
 }
@@ -167,7 +168,7 @@ Path writeSegments(const TemporaryFolder& folder, const std::vector<Shape>& shap
 // ---- tests
 // --------------------------------------------------------------------------------------
 
-Grid volumeGrid() {
+Grid makeVolumeGrid() {
   Affine map = Affine::Identity();
   map.linear() =
       makeRotation(0.5, Vec3(1, 1, 2).normalized()).linear() * Mat3::Diagonal({0.5, 0.75, 1.0});
@@ -177,11 +178,11 @@ Grid volumeGrid() {
 
 TEST(ClosedSurface, EveryEncodingMarksTheVoxelsInside) {
   const TemporaryFolder folder;
-  const Grid grid = volumeGrid();
+  const Grid grid = makeVolumeGrid();
   const Vec3 center = grid.worldCenter() + Vec3(0.3, -0.2, 0.1);
   constexpr double radius = 6.0;
-  for (const Writing writing : {Writing::ascii, Writing::plain, Writing::deflated}) {
-    const Path path = writeSegments(folder, {sphere(center, radius, 5)}, writing);
+  for (const Encoding encoding : {Encoding::ascii, Encoding::uncompressed, Encoding::deflated}) {
+    const Path path = writeSegments(folder, {makeSphere(center, radius, 5)}, encoding);
     const Segmentation segmentation = readSegmentation(path, &grid);
     ASSERT_EQ(segmentation.segments().size(), 1u);
     EXPECT_EQ(segmentation.segments()[0].id, "id0");
@@ -210,9 +211,9 @@ TEST(ClosedSurface, EveryEncodingMarksTheVoxelsInside) {
 TEST(ClosedSurface, OverlappingSegmentsGetLayers) {
   const TemporaryFolder folder;
   const Grid grid(Size3(20, 20, 20), Affine::Identity());
-  const Path path = writeSegments(folder, {box(Vec3(1.5, 1.5, 1.5), Vec3(9.5, 9.5, 9.5)),
-                                           box(Vec3(5.5, 5.5, 5.5), Vec3(12.5, 12.5, 12.5)),
-                                           box(Vec3(14.5, 1.5, 1.5), Vec3(16.5, 3.5, 3.5)),
+  const Path path = writeSegments(folder, {makeBox(Vec3(1.5, 1.5, 1.5), Vec3(9.5, 9.5, 9.5)),
+                                           makeBox(Vec3(5.5, 5.5, 5.5), Vec3(12.5, 12.5, 12.5)),
+                                           makeBox(Vec3(14.5, 1.5, 1.5), Vec3(16.5, 3.5, 3.5)),
                                            {}});
   const Segmentation segmentation = readSegmentation(path, &grid);
   const auto& segments = segmentation.segments();
@@ -230,16 +231,16 @@ TEST(ClosedSurface, OverlappingSegmentsGetLayers) {
 TEST(ClosedSurface, SurfaceIsCutAtTheVolume) {
   const TemporaryFolder folder;
   const Grid grid(Size3(10, 10, 10), Affine::Identity());
-  const Path path = writeSegments(folder, {box(Vec3(-50, 2.5, 2.5), Vec3(50, 4.5, 4.5))});
+  const Path path = writeSegments(folder, {makeBox(Vec3(-50, 2.5, 2.5), Vec3(50, 4.5, 4.5))});
   EXPECT_EQ(readSegmentation(path, &grid).makeFocusMask({"id0"}, grid).count, 10 * 2 * 2);
-  const Path away = writeSegments(folder, {box(Vec3(50, 50, 50), Vec3(60, 60, 60))});
-  fenestra::expectRefused(away, "the focus has no voxel",
-                          [&] { readSegmentation(away, &grid).makeFocusMask({"id0"}, grid); });
+  const Path outside = writeSegments(folder, {makeBox(Vec3(50, 50, 50), Vec3(60, 60, 60))});
+  fenestra::expectRefused(outside, "the focus has no voxel",
+                          [&] { readSegmentation(outside, &grid).makeFocusMask({"id0"}, grid); });
 }
 
 TEST(ClosedSurface, WithoutAVolumeChoosesItsOwnGrid) {
   const TemporaryFolder folder;
-  const Path path = writeSegments(folder, {box(Vec3(-10, 0, 5), Vec3(118, 64, 37))});
+  const Path path = writeSegments(folder, {makeBox(Vec3(-10, 0, 5), Vec3(118, 64, 37))});
   const Segmentation segmentation = readSegmentation(path);
   const Grid& grid = segmentation.grid();
   EXPECT_TRUE(grid.spacing() == Vec3::Constant(0.5));
@@ -249,13 +250,13 @@ TEST(ClosedSurface, WithoutAVolumeChoosesItsOwnGrid) {
 
 /// Rows through edges and corners count each crossing once.
 TEST(ClosedSurface, CrossingsAtEdgesCountOnce) {
-  const Shape onPlanes = box(Vec3(2, 2, 2), Vec3(6, 6, 6));
+  const Shape onPlanes = makeBox(Vec3(2, 2, 2), Vec3(6, 6, 6));
   const auto runs = voxelizeSurface(onPlanes.points, onPlanes.triangles, Size3(10, 10, 10));
   ASSERT_TRUE(runs);
   EXPECT_EQ(runs->size(), 16u); // the last of five planes is outside, in y and z
   std::mt19937 random(3);
   for (int i = 0; i < 50; ++i) {
-    Shape shape = sphere(Vec3(8, 8, 8), 5, 3);
+    Shape shape = makeSphere(Vec3(8, 8, 8), 5, 3);
     for (Vec3& point : shape.points) // corners on rows, flat triangles, reversed triangles
       point = (point * (i % 2 ? 1.0 : 2.0)).array().round() / (i % 2 ? 1.0 : 2.0) +
               (i % 5 == 0 ? static_cast<double>(random() % 3) : 0.0);
@@ -263,19 +264,19 @@ TEST(ClosedSurface, CrossingsAtEdgesCountOnce) {
   }
 }
 
-void expectRefused(const Path& named, const Path& path, const std::string& text) {
-  fenestra::expectRefused(named, text, [&] { readSegmentation(path); });
+void expectRefused(const Path& subject, const Path& path, const std::string& text) {
+  fenestra::expectRefused(subject, text, [&] { readSegmentation(path); });
 }
 
 TEST(ClosedSurface, RefusesOpenSurfaces) {
   const TemporaryFolder folder;
-  Shape open = box(Vec3(0, 0, 0), Vec3(5, 5, 5));
+  Shape open = makeBox(Vec3(0, 0, 0), Vec3(5, 5, 5));
   open.triangles.pop_back();
   const Path path = writeSegments(folder, {open});
   expectRefused(path, path, "segment \"ségment 0\": its surface has holes");
   const Path empty = writeSegments(folder, {{}});
   expectRefused(empty, empty, "its surfaces hold no point");
-  std::string lines = surfaceText({}, "a", "b", Writing::ascii);
+  std::string lines = makeSurfaceXml({}, "a", "b", Encoding::ascii);
   const std::string none = "NumberOfLines=\"0\"";
   lines.replace(lines.find(none), none.size(), "NumberOfLines=\"4\"");
   folder.write("lines.vtp", lines);
@@ -295,21 +296,22 @@ TEST(ClosedSurface, RefusesFilesOutsideItsFolder) {
 TEST(ClosedSurface, DamagedBytesAreReadOrRefused) {
   const TemporaryFolder folder;
   std::mt19937 random(5);
-  int readable = 0;
+  int readCount = 0;
   ::testing::internal::CaptureStderr();
-  for (const Writing writing : {Writing::ascii, Writing::plain, Writing::deflated}) {
-    const std::string whole = surfaceText(sphere(Vec3(0, 0, 0), 5, 1), "id", "name", writing);
+  for (const Encoding encoding : {Encoding::ascii, Encoding::uncompressed, Encoding::deflated}) {
+    const std::string original =
+        makeSurfaceXml(makeSphere(Vec3(0, 0, 0), 5, 1), "id", "name", encoding);
     for (int i = 0; i < 700; ++i) {
-      std::string bytes = whole;
+      std::string bytes = original;
       if (i % 8 == 0)
-        bytes.resize(random() % whole.size());
+        bytes.resize(random() % original.size());
       for (int n = 0; n < 1 + i % 3 && !bytes.empty(); ++n)
         bytes[random() % bytes.size()] = static_cast<char>(random());
-      const std::string name = std::to_string(static_cast<int>(writing) * 1000 + i) + ".vtp";
+      const std::string name = std::to_string(static_cast<int>(encoding) * 1000 + i) + ".vtp";
       folder.write(name, bytes);
       try {
         readSegmentation(writeBlocks(folder, {name}));
-        ++readable;
+        ++readCount;
       } catch (const Error& error) {
         EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
       }
@@ -335,19 +337,21 @@ TEST(ClosedSurface, RefusesArraysThatExpandBeyondTheLimit) {
     header.push_back(size);
     all += packed;
   }
-  const std::string bomb = base64(rawBytes(header)) + base64(all);
-  const std::string whole =
-      surfaceText(box(Vec3(0, 0, 0), Vec3(5, 5, 5)), "id", "name", Writing::deflated);
-  const auto with = [&](const std::string& array) {
-    std::string text = whole;
-    const std::size_t begin = text.find('>', text.find("Name=\"" + array + "\"")) + 1;
+  const std::string bomb = encodeBase64(rawBytes(header)) + encodeBase64(all);
+  const std::string original =
+      makeSurfaceXml(makeBox(Vec3(0, 0, 0), Vec3(5, 5, 5)), "id", "name", Encoding::deflated);
+  const auto replaceArray = [&](const std::string& arrayName) {
+    std::string text = original;
+    const std::size_t begin = text.find('>', text.find("Name=\"" + arrayName + "\"")) + 1;
     return text.replace(begin, text.find('<', begin) - begin, bomb);
   };
-  for (const char* array : {"Points", "connectivity", "offsets", "Segment_Name", "Segment_Color"}) {
-    folder.write("large.vtp", with(array));
+  for (const char* arrayName :
+       {"Points", "connectivity", "offsets", "Segment_Name", "Segment_Color"}) {
+    folder.write("large.vtp", replaceArray(arrayName));
     expectRefused(folder / "large.vtp", writeBlocks(folder, {"large.vtp"}), "more than 1 GiB");
   }
-  folder.write("unused.vtp", with("Segmentation_MasterRepresentation")); // must not be opened
+  folder.write("unused.vtp",
+               replaceArray("Segmentation_MasterRepresentation")); // must not be opened
   EXPECT_EQ(readSegmentation(writeBlocks(folder, {"unused.vtp"})).segments().size(), 1u);
 }
 

@@ -13,7 +13,7 @@
 namespace fenestra::CompareTests {
 namespace {
 
-Image constantImage(int width, int height, float value) {
+Image makeConstantImage(int width, int height, float value) {
   const std::vector<float> plane(static_cast<std::size_t>(width * height), value);
   return {width, height, {{"R", plane}, {"G", plane}, {"B", plane}}, {}};
 }
@@ -25,8 +25,8 @@ Image withError(Image image, float error) {
 }
 
 /// Image of normal values (Box and Muller 1958).
-Image noisyImage(int size, float mean, float deviation, std::uint64_t seed) {
-  Image image = constantImage(size, size, mean);
+Image makeNoisyImage(int size, float mean, float deviation, std::uint64_t seed) {
+  Image image = makeConstantImage(size, size, mean);
   Random random(seed, 0, 0);
   for (auto& [name, plane] : image.channels)
     for (float& value : plane)
@@ -35,7 +35,7 @@ Image noisyImage(int size, float mean, float deviation, std::uint64_t seed) {
   return withError(image, deviation);
 }
 
-ErrorKind kindOfComparing(const Image& a, const Image& b) {
+ErrorKind catchErrorKind(const Image& a, const Image& b) {
   try {
     compareImages(a, b);
   } catch (const Error& error) {
@@ -47,7 +47,7 @@ ErrorKind kindOfComparing(const Image& a, const Image& b) {
 }
 
 TEST(CompareImages, ConstantDifferenceHasKnownMeasures) {
-  const Comparison c = compareImages(constantImage(5, 3, 0.6f), constantImage(5, 3, 0.5f));
+  const Comparison c = compareImages(makeConstantImage(5, 3, 0.6f), makeConstantImage(5, 3, 0.5f));
   EXPECT_NEAR(c.relMse, 0.01 / 0.26, 1e-7);
   EXPECT_NEAR(c.rmse, 0.1, 1e-7);
   EXPECT_NEAR(c.psnr, 20.0, 1e-5);
@@ -59,7 +59,7 @@ TEST(CompareImages, ConstantDifferenceHasKnownMeasures) {
 }
 
 TEST(CompareImages, EqualPicturesHaveNoDifference) {
-  const Image image = constantImage(4, 4, 0.25f);
+  const Image image = makeConstantImage(4, 4, 0.25f);
   const Comparison c = compareImages(image, image);
   EXPECT_EQ(c.relMse, 0.0);
   EXPECT_EQ(c.rmse, 0.0);
@@ -68,20 +68,20 @@ TEST(CompareImages, EqualPicturesHaveNoDifference) {
 }
 
 TEST(CompareImages, RelMseOmitsTheReferencesOwnVariance) {
-  const Image reference = noisyImage(200, 1.0f, 0.01f, 1);
-  const Image exact = constantImage(200, 200, 1.0f);
-  const double own = 1e-4 / 1.01;
+  const Image reference = makeNoisyImage(200, 1.0f, 0.01f, 1);
+  const Image exact = makeConstantImage(200, 200, 1.0f);
+  const double ownVariance = 1e-4 / 1.01;
   // Mean of 120000 squares of normal values.
-  const double tolerance = 5.0 * own * std::sqrt(2.0 / 120000.0);
+  const double tolerance = 5.0 * ownVariance * std::sqrt(2.0 / 120000.0);
   EXPECT_NEAR(compareImages(exact, reference).relMse, 0.0, tolerance);
-  Image silent = reference;
-  silent.channels.erase("error.G");
-  EXPECT_NEAR(compareImages(exact, silent).relMse, own, tolerance);
+  Image withoutErrors = reference;
+  withoutErrors.channels.erase("error.G");
+  EXPECT_NEAR(compareImages(exact, withoutErrors).relMse, ownVariance, tolerance);
 }
 
 TEST(CompareImages, TrueErrorsGiveNormalZ) {
   const Comparison c =
-      compareImages(noisyImage(200, 1.0f, 0.03f, 1), noisyImage(200, 1.0f, 0.04f, 2));
+      compareImages(makeNoisyImage(200, 1.0f, 0.03f, 1), makeNoisyImage(200, 1.0f, 0.04f, 2));
   ASSERT_TRUE(c.z.has_value());
   EXPECT_EQ(c.z->count, 120000u);
   EXPECT_NEAR(c.z->mean, 0.0, 5.0 / std::sqrt(120000.0));
@@ -92,14 +92,14 @@ TEST(CompareImages, TrueErrorsGiveNormalZ) {
 
 TEST(CompareImages, ImageMeanShowsABiasThatNoPixelShows) {
   const Comparison c =
-      compareImages(noisyImage(200, 1.001f, 0.03f, 1), noisyImage(200, 1.0f, 0.04f, 2));
+      compareImages(makeNoisyImage(200, 1.001f, 0.03f, 1), makeNoisyImage(200, 1.0f, 0.04f, 2));
   EXPECT_NEAR(c.z->imageMean.mean(), 0.001 / (0.05 / 200.0), 3.0); // 4 standard errors
   EXPECT_NEAR(c.z->deviation, 1.0, 0.02);
 }
 
 TEST(CompareImages, LargestZHasItsPixelAndChannel) {
-  Image a = withError(constantImage(7, 4, 1.0f), 0.3f);
-  const Image b = withError(constantImage(7, 4, 1.0f), 0.4f);
+  Image a = withError(makeConstantImage(7, 4, 1.0f), 0.3f);
+  const Image b = withError(makeConstantImage(7, 4, 1.0f), 0.4f);
   a.channels["G"][2 * 7 + 5] = -1.0f;
   const Comparison c = compareImages(a, b);
   EXPECT_NEAR(c.z->largest, 4.0, 1e-6);
@@ -111,8 +111,8 @@ TEST(CompareImages, LargestZHasItsPixelAndChannel) {
 }
 
 TEST(CompareImages, ZSkipsOnlyPixelsWithBothErrorsZero) {
-  const Image a = withError(constantImage(2, 1, 1.0f), 0.0f);
-  Image b = withError(constantImage(2, 1, 0.5f), 0.0f);
+  const Image a = withError(makeConstantImage(2, 1, 1.0f), 0.0f);
+  Image b = withError(makeConstantImage(2, 1, 0.5f), 0.0f);
   EXPECT_EQ(compareImages(a, b).z->count, 0u);
   EXPECT_EQ(compareImages(a, b).z->imageMean[0], infinity);
   EXPECT_EQ(compareImages(a, a).z->imageMean[0], 0.0);
@@ -123,15 +123,15 @@ TEST(CompareImages, ZSkipsOnlyPixelsWithBothErrorsZero) {
 }
 
 TEST(CompareImages, ZSkipsEqualValuesWithOneErrorZero) {
-  const Image a = withError(constantImage(2, 1, 0.2f), 0.0f);
-  const Image b = withError(constantImage(2, 1, 0.2f), 5e-4f);
+  const Image a = withError(makeConstantImage(2, 1, 0.2f), 0.0f);
+  const Image b = withError(makeConstantImage(2, 1, 0.2f), 5e-4f);
   EXPECT_EQ(compareImages(a, b).z->count, 0u);
-  const Image c = withError(constantImage(2, 1, 0.2001f), 5e-4f);
+  const Image c = withError(makeConstantImage(2, 1, 0.2001f), 5e-4f);
   EXPECT_EQ(compareImages(a, c).z->count, 6u);
 }
 
 TEST(CompareImages, NonFiniteValuesReachTheMeasures) {
-  const Image b = constantImage(3, 3, 1.0f);
+  const Image b = makeConstantImage(3, 3, 1.0f);
   Image a = b;
   a.channels["G"][4] = std::numeric_limits<float>::quiet_NaN();
   const Comparison withNan = compareImages(a, b);
@@ -144,30 +144,30 @@ TEST(CompareImages, NonFiniteValuesReachTheMeasures) {
 }
 
 TEST(CompareImages, RefusesDifferentSizesAndMissingChannels) {
-  EXPECT_EQ(kindOfComparing(constantImage(2, 3, 1.0f), constantImage(3, 2, 1.0f)),
+  EXPECT_EQ(catchErrorKind(makeConstantImage(2, 3, 1.0f), makeConstantImage(3, 2, 1.0f)),
             ErrorKind::input);
-  Image grey = constantImage(2, 3, 1.0f);
-  grey.channels.erase("B");
-  EXPECT_EQ(kindOfComparing(gray, constantImage(2, 3, 1.0f)), ErrorKind::input);
+  Image gray = makeConstantImage(2, 3, 1.0f);
+  gray.channels.erase("B");
+  EXPECT_EQ(catchErrorKind(gray, makeConstantImage(2, 3, 1.0f)), ErrorKind::input);
 }
 
 TEST(DifferenceImage, PositiveIsRedAndNegativeIsBlue) {
-  const Image b = constantImage(3, 1, 1.0f);
+  const Image b = makeConstantImage(3, 1, 1.0f);
   Image a = b;
   for (const char* name : {"R", "G", "B"})
     a.channels[name] = {1.0f, 1.5f, 0.75f};
-  const Image shown = differenceImage(a, b);
+  const Image difference = differenceImage(a, b);
   EXPECT_EQ(difference.channels.at("R"), (std::vector<float>{1.0f, 1.0f, 0.5f}));
   EXPECT_EQ(difference.channels.at("G"), (std::vector<float>{1.0f, 0.0f, 0.5f}));
   EXPECT_EQ(difference.channels.at("B"), (std::vector<float>{1.0f, 0.0f, 1.0f}));
 }
 
 TEST(DifferenceImage, KnownErrorsShowTheLargestZOfAPixel) {
-  const Image b = withError(constantImage(3, 1, 1.0f), 0.4f);
+  const Image b = withError(makeConstantImage(3, 1, 1.0f), 0.4f);
   Image a = withError(b, 0.3f);
   a.channels["G"] = {1.0f, 2.25f, 1.0f}; // z 2.5, half of full colour
   a.channels["B"] = {1.0f, 1.5f, std::numeric_limits<float>::quiet_NaN()};
-  const Image shown = differenceImage(a, b);
+  const Image difference = differenceImage(a, b);
   EXPECT_NEAR(difference.channels.at("R")[1], 1.0, 1e-6);
   EXPECT_NEAR(difference.channels.at("B")[1], 0.5, 1e-6);
   EXPECT_EQ(difference.channels.at("R")[0], 1.0f);
@@ -176,11 +176,11 @@ TEST(DifferenceImage, KnownErrorsShowTheLargestZOfAPixel) {
 }
 
 TEST(AttachError, PictureOfErrorsBecomesErrorChannels) {
-  Image image = constantImage(2, 2, 1.0f);
-  attachError(image, constantImage(2, 2, 0.125f));
+  Image image = makeConstantImage(2, 2, 1.0f);
+  attachError(image, makeConstantImage(2, 2, 0.125f));
   for (const char* name : {"error.R", "error.G", "error.B"})
     EXPECT_EQ(image.channels.at(name), std::vector<float>(4, 0.125f));
-  EXPECT_THROW(attachError(image, constantImage(1, 4, 0.125f)), Error);
+  EXPECT_THROW(attachError(image, makeConstantImage(1, 4, 0.125f)), Error);
 }
 
 TEST(AttachError, VarianceOfAReferenceIsThatOfItsReadme) {
@@ -189,11 +189,11 @@ TEST(AttachError, VarianceOfAReferenceIsThatOfItsReadme) {
     GTEST_SKIP() << "no reference pictures in " << folder;
   Image reference = readImage(folder / "S1_best.exr");
   attachError(reference, readImage(folder / "S1_best_se.exr"));
-  Image silent = reference;
+  Image withoutErrors = reference;
   for (const char* name : {"error.R", "error.G", "error.B"})
-    silent.channels.erase(name);
+    withoutErrors.channels.erase(name);
   // README of the reference: relative variance 7e-5.
-  const double ownVariance = -compareImages(silent, reference).relMse;
+  const double ownVariance = -compareImages(withoutErrors, reference).relMse;
   EXPECT_GT(ownVariance, 6e-5);
   EXPECT_LT(ownVariance, 8e-5);
 }
@@ -207,8 +207,8 @@ Image withSamples(Image image, float samples) {
 }
 
 /// Render of a constant picture with correct errors, independent for each seed.
-Image render(std::uint64_t seed, float mean = 0.5f) {
-  return withSamples(noisyImage(32, mean, 0.01f, seed), 1e4f);
+Image makeRender(std::uint64_t seed, float mean = 0.5f) {
+  return withSamples(makeNoisyImage(32, mean, 0.01f, seed), 1e4f);
 }
 
 TEST(StudentTail, MatchesClosedForms) {
@@ -223,7 +223,7 @@ TEST(StudentTail, MatchesClosedForms) {
 }
 
 TEST(TileMeans, MeanAndErrorAreThoseOfTheTile) {
-  Image image = withSamples(withError(constantImage(5, 4, 1.0f), 0.2f), 11.0f);
+  Image image = withSamples(withError(makeConstantImage(5, 4, 1.0f), 0.2f), 11.0f);
   image.channels["R"][0] = 5.0f;
   const Image tiles = tileMeans(image, 4);
   ASSERT_EQ(tiles.width, 2);
@@ -234,26 +234,26 @@ TEST(TileMeans, MeanAndErrorAreThoseOfTheTile) {
   EXPECT_FLOAT_EQ(tiles.find("error.G")->at(1), 0.1f);
   EXPECT_FLOAT_EQ(tiles.find("samples.N")->at(0), 176.0f);
   EXPECT_EQ(tileMeans(image, 1000).find("R")->size(), 1u);
-  EXPECT_THROW(tileMeans(constantImage(2, 2, 1.0f), 2), Error);
+  EXPECT_THROW(tileMeans(makeConstantImage(2, 2, 1.0f), 2), Error);
 }
 
 TEST(AgreementProbability, IndependentRendersGiveUniformProbabilities) {
-  int below = 0;
+  int lowCount = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed)
-    below += agreementProbability(render(2 * seed), render(2 * seed + 1)) < 0.1;
-  EXPECT_NEAR(below, 20, 4 * std::sqrt(20 * 0.9));
+    lowCount += agreementProbability(makeRender(2 * seed), makeRender(2 * seed + 1)) < 0.1;
+  EXPECT_NEAR(lowCount, 20, 4 * std::sqrt(20 * 0.9));
 }
 
 TEST(AgreementProbability, OneOutlierGivesNearlyZero) {
-  Image image = render(1);
+  Image image = makeRender(1);
   image.channels["G"][77] += 0.1f; // seven combined errors
-  EXPECT_LT(agreementProbability(image, render(2)), 1e-6);
+  EXPECT_LT(agreementProbability(image, makeRender(2)), 1e-6);
   image.channels["G"][77] = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(agreementProbability(image, render(2)), 0.0);
+  EXPECT_EQ(agreementProbability(image, makeRender(2)), 0.0);
 }
 
 TEST(AgreementProbability, IsOneForIdenticalValuesWithZeroError) {
-  const Image black = withSamples(withError(constantImage(4, 4, 0.0f), 0.0f), 9.0f);
+  const Image black = withSamples(withError(makeConstantImage(4, 4, 0.0f), 0.0f), 9.0f);
   EXPECT_EQ(agreementProbability(black, black), 1.0);
   Image other = black;
   other.channels["B"][3] = 0.5f;
@@ -265,9 +265,9 @@ TEST(AgreementProbability, IsOneForIdenticalValuesWithZeroError) {
 TEST(AgreementProbability, RareBrightPathsAreNoDisagreement) {
   // One path in two hundred is bright, with 100 and 800 samples: among 4096 pixels several have
   // four bright paths of 100, which a normal distribution would exclude.
-  const auto sparse = [](std::uint64_t seed, int samples) {
+  const auto makeSparseImage = [](std::uint64_t seed, int samples) {
     Image image =
-        withSamples(withError(constantImage(64, 64, 0.0f), 0.0f), static_cast<float>(samples));
+        withSamples(withError(makeConstantImage(64, 64, 0.0f), 0.0f), static_cast<float>(samples));
     Random random(seed, 0, 0);
     for (const std::string channel : {"R", "G", "B"})
       for (std::size_t i = 0; i < 4096; ++i) {
@@ -281,9 +281,9 @@ TEST(AgreementProbability, RareBrightPathsAreNoDisagreement) {
       }
     return image;
   };
-  const Image reference = sparse(99, 800);
+  const Image reference = makeSparseImage(99, 800);
   for (std::uint64_t seed = 0; seed < 10; ++seed)
-    EXPECT_GT(agreementProbability(sparse(seed, 100), reference), 0.01);
+    EXPECT_GT(agreementProbability(makeSparseImage(seed, 100), reference), 0.01);
 }
 
 } // namespace

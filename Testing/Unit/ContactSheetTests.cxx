@@ -14,7 +14,7 @@
 namespace fenestra::ContactSheetTests {
 namespace {
 
-double inkOf(const TextBitmap& line) {
+double sumCoverage(const TextBitmap& line) {
   return std::accumulate(line.coverage.begin(), line.coverage.end(), 0.0);
 }
 
@@ -29,15 +29,15 @@ TEST(Letters, EveryCharacterHasAShape) {
 
 TEST(Letters, InkGrowsWithTheSquareOfTheSize) {
   const std::string text = "Liver, 12";
-  const double one = inkOf(rasterizeText(text, 1.0));
+  const double one = sumCoverage(rasterizeText(text, 1.0));
   EXPECT_EQ(rasterizeText(text, 1.0).width, glyphWidth * 9);
   EXPECT_EQ(rasterizeText(text, 1.0).height, lineHeight);
   for (const double size : {1.5, 2.0, 3.0})
-    EXPECT_NEAR(inkOf(rasterizeText(text, size)), size * size * one, 0.05 * size * size * one)
+    EXPECT_NEAR(sumCoverage(rasterizeText(text, size)), size * size * one, 0.05 * size * size * one)
         << size;
 }
 
-std::filesystem::path written(const std::filesystem::path& path, const Image& image) {
+std::filesystem::path writeFile(const std::filesystem::path& path, const Image& image) {
   Outputs outputs;
   declareImage(path, outputs);
   writeImage(image, {}, path, outputs, {DisplayView::standard});
@@ -46,19 +46,19 @@ std::filesystem::path written(const std::filesystem::path& path, const Image& im
 }
 
 /// Grey picture as a file.
-std::filesystem::path grey(const TemporaryFolder& folder, const std::string& name, int width,
-                           int height, float value) {
+std::filesystem::path makeGrayFile(const TemporaryFolder& folder, const std::string& name,
+                                   int width, int height, float value) {
   Image image{width, height, {}, {}};
   for (const char* channel : {"R", "G", "B"})
     image.channels[channel].assign(static_cast<std::size_t>(width * height), value);
-  return written(folder / name, image);
+  return writeFile(folder / name, image);
 }
 
 TEST(ContactSheet, ShowsPicturesInTheirOrderAndTellsWhatIsMissing) {
   const TemporaryFolder folder;
   const std::vector<SheetEntry> entries = {
-      {.name = "large", .lines = {"a"}, .image = grey(folder, "l.png", 672, 336, 0.25F)},
-      {.name = "small", .lines = {"b"}, .image = grey(folder, "s.png", 2, 2, 0.75F)},
+      {.name = "large", .lines = {"a"}, .image = makeGrayFile(folder, "l.png", 672, 336, 0.25F)},
+      {.name = "small", .lines = {"b"}, .image = makeGrayFile(folder, "s.png", 2, 2, 0.75F)},
       {.name = "lost", .lines = {"c"}, .image = folder / "lost.png"},
   };
   const Image sheet = makeContactSheet("Study", "3 cases", entries);
@@ -86,7 +86,7 @@ TEST(ContactSheet, AveragesInLight) {
   for (const char* channel : {"R", "G", "B"})
     for (int i = 0; i < 672 * 672; ++i)
       stripes.channels[channel].push_back(i % 2 == 0 ? 0.0F : 1.0F);
-  const SheetEntry entry{.name = "a", .image = written(folder / "stripes.png", stripes)};
+  const SheetEntry entry{.name = "a", .image = writeFile(folder / "stripes.png", stripes)};
   const Image sheet = makeContactSheet("", "", std::span(&entry, 1));
   EXPECT_NEAR(sheet.channels.at("G")[static_cast<std::size_t>(sheet.width * 200 + 200)], 0.5F,
               0.01F);

@@ -50,7 +50,7 @@ bool isAhead(const RenderResult& result) {
 }
 
 TEST(Continued, EndsAtTheSameBits) {
-  const TestScene scene = wavyScene();
+  const TestScene scene = makeWavyScene();
   const RenderSettings settings = makeSettings(37);
   const RenderResult once = scene.render(settings);
   const auto checkpoints = collectCheckpoints(scene, settings, 5);
@@ -62,13 +62,13 @@ TEST(Continued, EndsAtTheSameBits) {
 }
 
 TEST(Continued, MoreSamplesGoOnWhereFewerEnded) {
-  const TestScene scene = wavyScene();
+  const TestScene scene = makeWavyScene();
   const RenderResult fewer = scene.render(makeSettings(13));
   expectSameEnd(scene.render(makeSettings(40)), resume(scene, makeSettings(40), fewer));
 }
 
 TEST(Continued, PlanByNoiseEndsAtTheSameBits) {
-  const TestScene scene = wavyScene(80, 72);
+  const TestScene scene = makeWavyScene(80, 72);
   const RenderSettings settings = makeSettings(1000, 0.05);
   const RenderResult once = scene.render(settings);
   ASSERT_GT(once.finishedSamples, 2 * SamplePlan::pilotSamples);
@@ -81,7 +81,7 @@ TEST(Continued, PlanByNoiseEndsAtTheSameBits) {
 }
 
 TEST(Continued, LimitOfSamplesLeavesThePassesTowardANoiseAsTheyAre) {
-  const TestScene scene = wavyScene(80, 72);
+  const TestScene scene = makeWavyScene(80, 72);
   const RenderResult once = scene.render(makeSettings(1000, 0.05));
   const std::pair<std::uint64_t, std::uint64_t> limitsAndPasses[] = {
       {5, 4}, {16, 16}, {19, 18}, {25, 24}}; // passes of 1, 1, 2, 4, 8; 1, 1, 2, 4, ...
@@ -94,7 +94,7 @@ TEST(Continued, LimitOfSamplesLeavesThePassesTowardANoiseAsTheyAre) {
 }
 
 TEST(Continued, LooksAtTheSeenNoiseFallOnTheSameCounts) {
-  const TestScene scene = wavyScene();
+  const TestScene scene = makeWavyScene();
   RenderSettings settings = makeSettings(1000, 0.05);
   settings.displayNoise = [](const Film& film) {
     return film.sampleCounts().max < 32 ? 1.0 : 0.01;
@@ -106,7 +106,7 @@ TEST(Continued, LooksAtTheSeenNoiseFallOnTheSameCounts) {
 }
 
 TEST(Shards, AddUpToThePicture) {
-  const TestScene scene = wavyScene();
+  const TestScene scene = makeWavyScene();
   RenderSettings settings = makeSettings(9);
   const RenderResult once = scene.render(settings);
   for (const int count : {1, 3, 7, 40}) { // more parts than tiles

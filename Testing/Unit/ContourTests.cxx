@@ -13,7 +13,7 @@ using namespace testing_clipping;
 
 namespace {
 
-double length(const DepthBuffer& buffer, const Contour& contour) {
+double computeLength(const DepthBuffer& buffer, const Contour& contour) {
   double sum = 0.0;
   for (std::size_t i = 0; i < contour.size(); ++i)
     sum +=
@@ -21,7 +21,7 @@ double length(const DepthBuffer& buffer, const Contour& contour) {
   return sum;
 }
 
-std::vector<std::string> randomPicture(Random& random, int width, int height, double density) {
+std::vector<std::string> makeRandomPattern(Random& random, int width, int height, double density) {
   std::vector<std::string> rows(static_cast<std::size_t>(height));
   for (std::string& row : rows)
     for (int i = 0; i < width; ++i)
@@ -31,33 +31,33 @@ std::vector<std::string> randomPicture(Random& random, int width, int height, do
 
 /// Number of connected parts of one kind of sample, with or without diagonal connections; the
 /// picture has a border of dots.
-int parts(const std::vector<std::string>& rows, char kind, bool diagonal) {
+int countComponents(const std::vector<std::string>& rows, char kind, bool diagonal) {
   const int width = static_cast<int>(rows[0].size()) + 2,
             height = static_cast<int>(rows.size()) + 2;
   const auto at = [&](int x, int y) {
     const bool border = x == 0 || y == 0 || x == width - 1 || y == height - 1;
     return border ? '.' : rows[static_cast<std::size_t>(y - 1)][static_cast<std::size_t>(x - 1)];
   };
-  std::set<std::pair<int, int>> seen;
+  std::set<std::pair<int, int>> visited;
   int count = 0;
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
-      if (at(x, y) != kind || seen.contains({x, y}))
+      if (at(x, y) != kind || visited.contains({x, y}))
         continue;
       ++count;
-      std::vector<std::pair<int, int>> open{{x, y}};
-      seen.insert({x, y});
-      while (!open.empty()) {
-        const auto [cx, cy] = open.back();
-        open.pop_back();
+      std::vector<std::pair<int, int>> stack{{x, y}};
+      visited.insert({x, y});
+      while (!stack.empty()) {
+        const auto [cx, cy] = stack.back();
+        stack.pop_back();
         for (int dy = -1; dy <= 1; ++dy)
           for (int dx = -1; dx <= 1; ++dx) {
             const int nx = cx + dx, ny = cy + dy;
             if ((dx != 0 && dy != 0 && !diagonal) || nx < 0 || ny < 0 || nx >= width ||
                 ny >= height)
               continue;
-            if (at(nx, ny) == kind && seen.insert({nx, ny}).second)
-              open.push_back({nx, ny});
+            if (at(nx, ny) == kind && visited.insert({nx, ny}).second)
+              stack.push_back({nx, ny});
           }
       }
     }
@@ -65,56 +65,57 @@ int parts(const std::vector<std::string>& rows, char kind, bool diagonal) {
 }
 
 TEST(Contour, EmptyFocusHasNoContour) {
-  EXPECT_TRUE(traceContours(drawnFocus({"...", "..."})).empty());
+  EXPECT_TRUE(traceContours(makeFocusDepth({"...", "..."})).empty());
 }
 
 TEST(Contour, SingleSampleGivesADiamond) {
-  const FocusDepth focus = drawnFocus({"...", ".#.", "..."});
+  const FocusDepth focus = makeFocusDepth({"...", ".#.", "..."});
   const auto contours = traceContours(focus);
   ASSERT_EQ(contours.size(), 1U);
   EXPECT_EQ(contours[0].size(), 4U);
-  EXPECT_NEAR(length(focus.depth, contours[0]), 2.0 * std::sqrt(2.0), 1e-12);
+  EXPECT_NEAR(computeLength(focus.depth, contours[0]), 2.0 * std::sqrt(2.0), 1e-12);
 }
 
 TEST(Contour, RectangleIsAsLongAsItsSides) {
-  const FocusDepth focus = drawnFocus({"......", ".####.", ".####.", ".####.", "......"});
+  const FocusDepth focus = makeFocusDepth({"......", ".####.", ".####.", ".####.", "......"});
   const auto contours = traceContours(focus);
   ASSERT_EQ(contours.size(), 1U);
-  EXPECT_NEAR(length(focus.depth, contours[0]), 2 * (3 + 2) + 4 * std::sqrt(0.5), 1e-12);
+  EXPECT_NEAR(computeLength(focus.depth, contours[0]), 2 * (3 + 2) + 4 * std::sqrt(0.5), 1e-12);
 }
 
 TEST(Contour, FocusAtTheEdgeOfTheBufferIsClosedThere) {
-  const FocusDepth focus = drawnFocus({"###", "###"});
+  const FocusDepth focus = makeFocusDepth({"###", "###"});
   const auto contours = traceContours(focus);
   ASSERT_EQ(contours.size(), 1U);
   EXPECT_EQ(contours[0].size(), 10U);
-  EXPECT_NEAR(length(focus.depth, contours[0]), 2 * (2 + 1) + 4 * std::sqrt(0.5), 1e-12);
+  EXPECT_NEAR(computeLength(focus.depth, contours[0]), 2 * (2 + 1) + 4 * std::sqrt(0.5), 1e-12);
 }
 
 TEST(Contour, HolesAndComponentsHaveTheirOwnLoops) {
-  EXPECT_EQ(traceContours(drawnFocus({"###", "#.#", "###"})).size(), 2U);
-  EXPECT_EQ(traceContours(drawnFocus({"#.#", "...", "#.#"})).size(), 4U);
-  EXPECT_EQ(traceContours(drawnFocus({"#####", "#...#", "#.#.#", "#...#", "#####"})).size(), 3U);
+  EXPECT_EQ(traceContours(makeFocusDepth({"###", "#.#", "###"})).size(), 2U);
+  EXPECT_EQ(traceContours(makeFocusDepth({"#.#", "...", "#.#"})).size(), 4U);
+  EXPECT_EQ(traceContours(makeFocusDepth({"#####", "#...#", "#.#.#", "#...#", "#####"})).size(),
+            3U);
 }
 
 TEST(Contour, DiagonalNeighboursAreJoined) {
-  EXPECT_EQ(traceContours(drawnFocus({"#.", ".#"})).size(), 1U);
-  EXPECT_EQ(traceContours(drawnFocus({".#", "#."})).size(), 1U);
+  EXPECT_EQ(traceContours(makeFocusDepth({"#.", ".#"})).size(), 1U);
+  EXPECT_EQ(traceContours(makeFocusDepth({".#", "#."})).size(), 1U);
 }
 
 TEST(Contour, EveryCrossingLiesOnExactlyOneLoop) {
   Random random(1, 0, 0);
   for (int trial = 0; trial < 300; ++trial) {
-    const auto picture =
-        randomPicture(random, 2 + trial % 13, 2 + trial % 11, 0.1 + 0.08 * (trial % 10));
-    const FocusDepth focus = drawnFocus(picture);
+    const auto pattern =
+        makeRandomPattern(random, 2 + trial % 13, 2 + trial % 11, 0.1 + 0.08 * (trial % 10));
+    const FocusDepth focus = makeFocusDepth(pattern);
     const auto contours = traceContours(focus);
-    std::set<std::array<int, 3>> met;
+    std::set<std::array<int, 3>> visited;
     for (const Contour& contour : contours)
       for (std::size_t i = 0; i < contour.size(); ++i) {
         const Crossing& c = contour[i];
         EXPECT_TRUE(focus.isFocus(c.column, c.row));
-        EXPECT_TRUE(met.insert({c.column, c.row, c.side}).second);
+        EXPECT_TRUE(visited.insert({c.column, c.row, c.side}).second);
         const Crossing& next = contour[(i + 1) % contour.size()];
         EXPECT_LT((position(focus.depth, next) - position(focus.depth, c)).norm(), 1.0 + 1e-12);
       }
@@ -124,14 +125,15 @@ TEST(Contour, EveryCrossingLiesOnExactlyOneLoop) {
         if (focus.isFocus(column, row))
           for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
             expected += focus.isFocus(column + dx, row + dy) ? 0 : 1;
-    EXPECT_EQ(met.size(), expected);
-    const int loops = parts(picture, '#', true) + parts(picture, '.', false) - 1;
+    EXPECT_EQ(visited.size(), expected);
+    const int loops =
+        countComponents(pattern, '#', true) + countComponents(pattern, '.', false) - 1;
     EXPECT_EQ(contours.size(), static_cast<std::size_t>(loops));
   }
 }
 
 /// Disc of radius 40 mm with a hole of radius 15 mm, and a small disc beside.
-FocusDepth discs() {
+FocusDepth makeDisks() {
   std::vector<std::string> rows(100, std::string(140, '.'));
   for (std::size_t y = 0; y < rows.size(); ++y)
     for (std::size_t x = 0; x < rows[0].size(); ++x) {
@@ -141,24 +143,24 @@ FocusDepth discs() {
       if ((big <= 40.0 && big > 15.0) || small <= 10.0)
         rows[y][x] = '#';
     }
-  return drawnFocus(rows);
+  return makeFocusDepth(rows);
 }
 
 TEST(ControlPoints, SpreadOverLoopsInProportionToTheirLength) {
-  const FocusDepth focus = discs();
+  const FocusDepth focus = makeDisks();
   const auto contours = traceContours(focus);
   ASSERT_EQ(contours.size(), 3U);
   const auto points = placeControlPoints(focus, contours, 65);
   EXPECT_EQ(points.size(), 65U);
-  std::array<int, 3> on{};
+  std::array<int, 3> counts{};
   for (const ControlPoint& point : points) {
     const Vec2 pixel(point.site.x() + 69.5, 49.5 - point.site.y());
     const double fromBig = (pixel - Vec2(50, 50)).norm();
-    ++on[pixel.x() > 100 ? 2U : fromBig > 27 ? 0U : 1U];
+    ++counts[pixel.x() > 100 ? 2U : fromBig > 27 ? 0U : 1U];
   }
-  EXPECT_NEAR(on[0], 40, 1); // radii 40 : 15 : 10
-  EXPECT_NEAR(on[1], 15, 1);
-  EXPECT_NEAR(on[2], 10, 1);
+  EXPECT_NEAR(counts[0], 40, 1); // radii 40 : 15 : 10
+  EXPECT_NEAR(counts[1], 15, 1);
+  EXPECT_NEAR(counts[2], 10, 1);
 }
 
 TEST(ControlPoints, AreUniformInArcLength) {
@@ -167,7 +169,7 @@ TEST(ControlPoints, AreUniformInArcLength) {
     for (std::size_t x = 0; x < 100; ++x)
       if (std::hypot(static_cast<double>(x) - 50.0, static_cast<double>(y) - 50.0) <= 40.0)
         rows[y][x] = '#';
-  const FocusDepth focus = drawnFocus(rows);
+  const FocusDepth focus = makeFocusDepth(rows);
   const auto points = placeControlPoints(focus, traceContours(focus), 50);
   ASSERT_EQ(points.size(), 50U);
   std::vector<double> angles;
@@ -184,7 +186,7 @@ TEST(ControlPoints, AreUniformInArcLength) {
 }
 
 TEST(ControlPoints, DepthIsThatOfTheSampleAndSitesAreUnique) {
-  const FocusDepth focus = discs();
+  const FocusDepth focus = makeDisks();
   const auto contours = traceContours(focus);
   const auto points = placeControlPoints(focus, contours, 1000);
   EXPECT_LT(points.size(), 1000U);
@@ -197,7 +199,7 @@ TEST(ControlPoints, DepthIsThatOfTheSampleAndSitesAreUnique) {
 }
 
 TEST(ControlPoints, BoundarySamplesAreTheFocusSamplesWithAnOutsideNeighbour) {
-  const FocusDepth focus = discs();
+  const FocusDepth focus = makeDisks();
   std::size_t expected = 0;
   for (std::int64_t row = 0; row < focus.depth.rows(); ++row)
     for (std::int64_t column = 0; column < focus.depth.columns(); ++column)

@@ -22,7 +22,7 @@ namespace {
 constexpr const char* countsVariable = "FENESTRA_COUNTS"; ///< files written by valgrind
 
 /// Instructions of one call.
-double instructions(const std::function<void()>& work) {
+double countInstructions(const std::function<void()>& work) {
   static int dumps = 0;
   CALLGRIND_ZERO_STATS;
   work();
@@ -34,17 +34,17 @@ double instructions(const std::function<void()>& work) {
   throw std::runtime_error("valgrind has counted nothing");
 }
 
-std::string repeated(int n, const std::function<std::string(const std::string&)>& part) {
+std::string repeat(int n, const std::function<std::string(const std::string&)>& item) {
   std::string text;
   for (int i = 0; i < n; ++i)
-    text += part(std::to_string(i));
+    text += item(std::to_string(i));
   return text;
 }
 
 /// Prepares an input of n parts; returns the function that reads the input.
 using Prepare = std::function<std::function<void()>(int n)>;
 
-std::function<void()> planOf(const std::string& nodes) {
+std::function<void()> makePlan(const std::string& nodes) {
   const auto text = std::make_shared<std::string>("<MRML>" + nodes + "</MRML>");
   return [text] {
     const MrmlDocument document(*text, "test");
@@ -58,41 +58,41 @@ struct Case {
   Prepare prepare;
 };
 
-std::vector<Case> cases(const TemporaryFolder& folder) {
+std::vector<Case> makeCases(const TemporaryFolder& folder) {
   return {
       {"volumes of a scene", 2000,
        [](int n) {
-         return planOf(repeated(n, [](const std::string& i) {
+         return makePlan(repeat(n, [](const std::string& i) {
            return "<Volume id='v" + i + "' displayNodeRef='d" + i + "'/><VolumeRendering id='d" +
                   i + "'/><Selection id='s" + i + "' activeVolumeID='v" + i + "'/>";
          }));
        }},
       {"views of a rendering", 2000,
        [](int n) {
-         return planOf("<Volume id='v0' displayNodeRef='d'/><VolumeRendering id='d' viewNodeIDs='" +
-                       repeated(n, [](const std::string& i) { return "w" + i + " "; }) + "'/>" +
-                       repeated(n, [](const std::string& i) { return "<View id='w" + i + "'/>"; }));
+         return makePlan(
+             "<Volume id='v0' displayNodeRef='d'/><VolumeRendering id='d' viewNodeIDs='" +
+             repeat(n, [](const std::string& i) { return "w" + i + " "; }) + "'/>" +
+             repeat(n, [](const std::string& i) { return "<View id='w" + i + "'/>"; }));
        }},
       {"files of a node", 2000,
        [&folder](int n) {
-         folder.write("s.mrml", "<MRML><N id='n' storageNodeRef='s'/><S id='s' " +
-                                    repeated(n,
-                                             [](const std::string& i) {
-                                               return "fileListMember" + i + "='file" + i + "' ";
-                                             }) +
-                                    "/></MRML>");
+         folder.write(
+             "s.mrml",
+             "<MRML><N id='n' storageNodeRef='s'/><S id='s' " + repeat(n, [](const std::string& i) {
+               return "fileListMember" + i + "='file" + i + "' ";
+             }) + "/></MRML>");
          const auto scene = std::make_shared<MrmlScene>(folder / "s.mrml");
          return [scene] { listStorageFiles(*scene, *scene->document.find("n")); };
        }},
       {"escapes of a name", 20000,
        [](int n) {
-         const auto name = repeated(n, [](const std::string&) { return "%20"; });
+         const auto name = repeat(n, [](const std::string&) { return "%20"; });
          return [name] { decodeUrl(name); };
        }},
       {"values of JSON", 20000,
        [](int n) {
          const auto text =
-             "[0" + repeated(n, [](const std::string& i) { return ",[" + i + "]"; }) + "]";
+             "[0" + repeat(n, [](const std::string& i) { return ",[" + i + "]"; }) + "]";
          return [text] { JsonNode(parseJson(text, "test"), "test").elements(); };
        }},
       {"lines of a header", 2000,
@@ -100,14 +100,14 @@ std::vector<Case> cases(const TemporaryFolder& folder) {
          const auto path = folder.write(
              std::string("v").append(std::to_string(n)) + ".nrrd",
              "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 1 1 1\nencoding: raw\n" +
-                 repeated(n, [](const std::string& i) { return "key" + i + ":=value\n"; }) + "\nx");
+                 repeat(n, [](const std::string& i) { return "key" + i + ":=value\n"; }) + "\nx");
          return [path] { locateSamples(path, MedicalFormat::nrrd); };
        }},
   };
 }
 
 /// Runs this test again under valgrind; false if valgrind cannot run.
-bool isCounted(const TemporaryFolder& folder) {
+bool runUnderValgrind(const TemporaryFolder& folder) {
   const std::string counts = folder / "counts";
   const pid_t child = ::fork();
   if (child == 0) {
@@ -129,17 +129,17 @@ bool isCounted(const TemporaryFolder& folder) {
 TEST(Cost, GrowsNoFasterThanNLogN) {
   const TemporaryFolder folder;
   if (!RUNNING_ON_VALGRIND) {
-    if (!isCounted(folder))
+    if (!runUnderValgrind(folder))
       GTEST_SKIP() << "valgrind is not installed";
     return;
   }
-  constexpr double most = 2.5; // 2 (1 + 1 / log2 n) for n log n
-  for (const Case& part : cases(folder)) {
-    const double once = instructions(part.prepare(part.n));
-    const double twice = instructions(part.prepare(2 * part.n));
-    std::cout << part.name << ": " << once / part.n << " instructions each of " << part.n
+  constexpr double maxGrowth = 2.5; // 2 (1 + 1 / log2 n) for n log n
+  for (const Case& item : makeCases(folder)) {
+    const double once = countInstructions(item.prepare(item.n));
+    const double twice = countInstructions(item.prepare(2 * item.n));
+    std::cout << item.name << ": " << once / item.n << " instructions each of " << item.n
               << ", growing by " << twice / once << '\n';
-    EXPECT_LT(twice / once, most) << part.name;
+    EXPECT_LT(twice / once, maxGrowth) << item.name;
   }
 }
 

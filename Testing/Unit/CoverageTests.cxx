@@ -29,12 +29,12 @@ struct Cube {
     scene.pose.scale = 8.0;
   }
 
-  double coverage(const Vec3& origin, const Vec3& normal) const {
+  double computeCoverage(const Vec3& origin, const Vec3& normal) const {
     const Camera camera(scene.pose, scene.width, scene.height);
-    return coverage(ClipPlane{camera, origin, normal});
+    return computeCoverage(ClipPlane{camera, origin, normal});
   }
 
-  double coverage(const Clip& clip) const {
+  double computeCoverage(const Clip& clip) const {
     const Camera camera(scene.pose, scene.width, scene.height);
     const LightSet lights(scene.lights, scene.volume.grid, camera);
     const MinMaxGrid ranges(scene.volume, 0);
@@ -47,18 +47,19 @@ struct Cube {
 
 TEST(FocusCoverage, EqualsTheTransmittanceToTheFocus) {
   // Mean of 256 estimates of exp(-0.5), each 0 or 1.
-  EXPECT_NEAR(Cube().coverage(ClipNone{}), std::exp(-0.5), 4.0 * std::sqrt(0.25 / 256.0));
+  EXPECT_NEAR(Cube().computeCoverage(ClipNone{}), std::exp(-0.5), 4.0 * std::sqrt(0.25 / 256.0));
 }
 
 TEST(FocusCoverage, IsOneIfAPlaneEndsAtTheFocus) {
-  EXPECT_DOUBLE_EQ(Cube().coverage(Vec3(0, 5.0, 0), Vec3::UnitY()), 1.0);
+  EXPECT_DOUBLE_EQ(Cube().computeCoverage(Vec3(0, 5.0, 0), Vec3::UnitY()), 1.0);
 }
 
 TEST(FocusCoverage, IsZeroIfTheFocusIsCutAway) {
   const Cube cube;
-  EXPECT_EQ(cube.coverage(Vec3(0, 3.0, 0), Vec3::UnitY()), 0.0) << "cut from in front";
-  EXPECT_EQ(cube.coverage(Vec3(0, 8.0, 0), -Vec3::UnitY()), 0.0) << "cut from behind";
-  EXPECT_EQ(cube.coverage(Vec3(-50, 0, 0), Vec3::UnitX()), 0.0) << "all gone, plane along the view";
+  EXPECT_EQ(cube.computeCoverage(Vec3(0, 3.0, 0), Vec3::UnitY()), 0.0) << "cut from in front";
+  EXPECT_EQ(cube.computeCoverage(Vec3(0, 8.0, 0), -Vec3::UnitY()), 0.0) << "cut from behind";
+  EXPECT_EQ(cube.computeCoverage(Vec3(-50, 0, 0), Vec3::UnitX()), 0.0)
+      << "all gone, plane along the view";
 }
 
 TEST(Render, StopsWithinALongPath) {

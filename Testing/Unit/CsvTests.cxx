@@ -9,14 +9,14 @@ namespace {
 
 using Fields = std::vector<std::string>;
 
-std::vector<Fields> fieldsOf(const std::string& text) {
+std::vector<Fields> readFields(const std::string& text) {
   std::vector<Fields> all;
   for (const CsvRecord& record : parseCsv(text, "t.csv"))
     all.push_back(record.fields);
   return all;
 }
 
-std::string refusal(const std::string& text) {
+std::string catchError(const std::string& text) {
   try {
     parseCsv(text, "t.csv");
   } catch (const Error& error) {
@@ -26,17 +26,17 @@ std::string refusal(const std::string& text) {
 }
 
 TEST(Csv, ReadsEveryFormOfTheSameTable) {
-  const std::vector<Fields> wanted = {{"name", "input"}, {"a", "b c"}, {"d", ""}};
+  const std::vector<Fields> expected = {{"name", "input"}, {"a", "b c"}, {"d", ""}};
   for (const char* text :
        {"name,input\na,b c\nd,\n", "name,input\r\na,b c\r\nd,", "name,input\ra,b c\rd,\r",
         "\xef\xbb\xbfname,input\n\"a\",\"b c\"\nd,\"\"\n", "name;input\na;b c\nd;\n",
         "\n\nname,input\n  \na,b c\n\nd,\n\n"})
-    EXPECT_EQ(fieldsOf(text), expected) << text;
-  EXPECT_EQ(fieldsOf(""), std::vector<Fields>());
+    EXPECT_EQ(readFields(text), expected) << text;
+  EXPECT_EQ(readFields(""), std::vector<Fields>());
 }
 
 TEST(Csv, QuotedFieldsHoldAnything) {
-  EXPECT_EQ(fieldsOf("a,\"1,2\"\n\"x\r\ny\",\"say \"\"b\"\"\"\nn,5\" disk\n"),
+  EXPECT_EQ(readFields("a,\"1,2\"\n\"x\r\ny\",\"say \"\"b\"\"\"\nn,5\" disk\n"),
             (std::vector<Fields>{{"a", "1,2"}, {"x\r\ny", "say \"b\""}, {"n", "5\" disk"}}));
   const auto records = parseCsv("a\n\"1\n2\n3\"\nb\n", "t.csv");
   EXPECT_EQ(records[1].line, 2U);
@@ -44,16 +44,16 @@ TEST(Csv, QuotedFieldsHoldAnything) {
 }
 
 TEST(Csv, RefusalsNameTheLine) {
-  EXPECT_EQ(refusal("a,b\n1,\"2\n3\n"), "t.csv: line 2: its quotes do not close; close them");
-  EXPECT_EQ(refusal("a\n\"1\"2\n"),
+  EXPECT_EQ(catchError("a,b\n1,\"2\n3\n"), "t.csv: line 2: its quotes do not close; close them");
+  EXPECT_EQ(catchError("a\n\"1\"2\n"),
             "t.csv: line 2: text follows closing quotes; double the quotes within a field");
-  EXPECT_EQ(refusal(std::string(1'000'001, ',')),
+  EXPECT_EQ(catchError(std::string(1'000'001, ',')),
             "t.csv: holds more than 1000000 fields; split it");
 }
 
 TEST(Csv, WrittenLinesAreReadAgain) {
   const Fields fields = {"a", "1,2", "say \"b\"", "", "two\nlines", "-7.5", "x;y"};
-  EXPECT_EQ(fieldsOf(formatCsvLine(fields)), std::vector<Fields>{fields});
+  EXPECT_EQ(readFields(formatCsvLine(fields)), std::vector<Fields>{fields});
   EXPECT_EQ(formatCsvLine({"=1+2", "-x", "-3"}), "'=1+2,'-x,-3\r\n") << "no formula";
 }
 

@@ -26,8 +26,8 @@ Camera makeObliqueCamera(Projection projection) {
 
 /// Surface of a bent shell: partly on the shell, partly filled.
 Clip makeSoftSurface(Projection projection, Boundary boundary = Boundary::spline) {
-  const Grid volume = centredGrid({40, 36, 30}, {1.0, 1.2, 1.5});
-  const Mask focus = maskOf(volume, [](const Vec3& p) {
+  const Grid volume = makeCenteredGrid({40, 36, 30}, {1.0, 1.2, 1.5});
+  const Mask focus = makeMask(volume, [](const Vec3& p) {
     return std::abs(p.norm() - 12.0) < 2.0 && p.x() + 2.0 * p.y() < 6.0;
   });
   SurfaceOptions options;
@@ -98,7 +98,7 @@ TEST(CutGradient, IsThatOfTheLinearSurfaceInSeams) {
 }
 
 TEST(CutGradient, IsNothingBesideTheRamp) {
-  const Camera camera = anteriorCamera(Projection::perspective, 100.0, 20.0, 8, 8);
+  const Camera camera = makeAnteriorCamera(Projection::perspective, 100.0, 20.0, 8, 8);
   const auto plane = [&](const ClipEdge& e) {
     return ClipPlane{camera, Vec3::Zero(), -Vec3::UnitY(), e};
   };
@@ -114,8 +114,8 @@ TEST(CutGradient, IsNothingBesideTheRamp) {
 }
 
 TEST(CutGradient, OfStepsIsTheViewsAxisAndNothingWhereNothingIsRemoved) {
-  const Camera camera = anteriorCamera(Projection::perspective, 100.0, 20.0, 8, 8);
-  auto buffer = std::make_shared<DepthBuffer>(camera, centredGrid({30, 30, 30}));
+  const Camera camera = makeAnteriorCamera(Projection::perspective, 100.0, 20.0, 8, 8);
+  auto buffer = std::make_shared<DepthBuffer>(camera, makeCenteredGrid({30, 30, 30}));
   for (std::int64_t i = 0; i < buffer->size(); ++i)
     buffer->set(i, i % buffer->columns() < buffer->columns() / 2 ? 95.0 : -infinity);
   const auto pyramid = std::make_shared<const DepthPyramid>(*buffer, nullptr);
@@ -132,9 +132,9 @@ TEST(CutGradient, OfStepsIsTheViewsAxisAndNothingWhereNothingIsRemoved) {
 
 /// P = o (1 - exp(-25 gamma^3 m)) with m = 1 mm cutShading / softness: matter has no gradient.
 TEST(CutGradient, MakesASurfaceOfHomogeneousMatter) {
-  const Camera camera = anteriorCamera(Projection::orthographic, 100.0, 20.0, 8, 8);
+  const Camera camera = makeAnteriorCamera(Projection::orthographic, 100.0, 20.0, 8, 8);
   const Clip clip = ClipPlane{camera, Vec3::Zero(), -Vec3::UnitY(), edge};
-  const Grid grid = centredGrid({20, 20, 20});
+  const Grid grid = makeCenteredGrid({20, 20, 20});
   const std::vector<float> voxels(static_cast<std::size_t>(grid.voxelCount()), 40.0F);
   TransferFunction transfer{
       ScalarFunction({{0.0, ScalarFunction::Value(0.0)}, {100.0, ScalarFunction::Value(2.0)}}),

@@ -22,14 +22,14 @@ using DamagedFiles = ImageFiles;
 
 TEST_F(DamagedFiles, TruncatedFileIsRefusedOrComplete) {
   for (const std::string name : {"a.exr", "a.nrrd", "a.png", "a.tif"}) {
-    const Image image = readImage(written(renderedImage(), name));
-    const std::string whole = contentOf(path(name));
-    for (std::size_t length = 0; length < whole.size(); length += 1 + whole.size() / 100) {
-      store(path("cut-" + name), whole.substr(0, length));
+    const Image image = readImage(save(makeTestImage(), name));
+    const std::string original = readContent(path(name));
+    for (std::size_t length = 0; length < original.size(); length += 1 + original.size() / 100) {
+      writeContent(path("cut-" + name), original.substr(0, length));
       try { // a PNG has every pixel before its last bytes
         const Image read = readImage(path("cut-" + name));
-        EXPECT_EQ(read.channels, image.channels) << length << " of " << whole.size();
-        EXPECT_GT(length, whole.size() * 9 / 10) << name;
+        EXPECT_EQ(read.channels, image.channels) << length << " of " << original.size();
+        EXPECT_GT(length, original.size() * 9 / 10) << name;
       } catch (const Error& error) {
         EXPECT_EQ(error.kind(), ErrorKind::input);
       }
@@ -39,13 +39,13 @@ TEST_F(DamagedFiles, TruncatedFileIsRefusedOrComplete) {
 
 TEST_F(DamagedFiles, ChangedByteIsReadOrRefused) {
   for (const std::string name : {"a.exr", "a.nrrd", "a.png", "a.tif"}) {
-    const std::string whole = contentOf(written(renderedImage(), name));
-    const std::size_t step = 1 + whole.size() / 1500;
-    for (std::size_t at = 0; at < whole.size(); at += step)
+    const std::string original = readContent(save(makeTestImage(), name));
+    const std::size_t step = 1 + original.size() / 1500;
+    for (std::size_t at = 0; at < original.size(); at += step)
       for (const char value : {'\0', '\x7f', '\xff'}) {
-        std::string changed = whole;
+        std::string changed = original;
         changed[at] = value;
-        store(path("changed-" + name), changed);
+        writeContent(path("changed-" + name), changed);
         try {
           const Image image = readImage(path("changed-" + name));
           for (const auto& [channel, plane] : image.channels)
@@ -60,47 +60,48 @@ TEST_F(DamagedFiles, ChangedByteIsReadOrRefused) {
 TEST_F(DamagedFiles, ClaimedSizeBeyondTheFileIsRefused) {
   const std::string head = "NRRD0004\ntype: float\ndimension: 3\nencoding: raw\nendian: little\n"
                            "kinds: vector domain domain\n";
-  store(path("a.nrrd"), head + "sizes: 4 30000 30000\n\n1234");
-  EXPECT_EQ(kindOf([&] { readImage(path("a.nrrd")); }, "too short"), ErrorKind::input);
-  store(path("b.nrrd"), head + "sizes: 4 40000 2\n\n1234");
-  EXPECT_EQ(kindOf([&] { readImage(path("b.nrrd")); }, "32768"), ErrorKind::input);
+  writeContent(path("a.nrrd"), head + "sizes: 4 30000 30000\n\n1234");
+  EXPECT_EQ(catchErrorKind([&] { readImage(path("a.nrrd")); }, "too short"), ErrorKind::input);
+  writeContent(path("b.nrrd"), head + "sizes: 4 40000 2\n\n1234");
+  EXPECT_EQ(catchErrorKind([&] { readImage(path("b.nrrd")); }, "32768"), ErrorKind::input);
   // Attribute of 2 GB, right after the magic number and the version.
-  std::string exr = contentOf(written(renderedImage(), "a.exr"));
+  std::string exr = readContent(save(makeTestImage(), "a.exr"));
   exr.replace(8, 0, std::string("note\0string\0\xff\xff\xff\x7f", 16));
-  store(path("a.exr"), exr);
-  EXPECT_EQ(kindOf([&] { readImage(path("a.exr")); }, "attribute"), ErrorKind::input);
+  writeContent(path("a.exr"), exr);
+  EXPECT_EQ(catchErrorKind([&] { readImage(path("a.exr")); }, "attribute"), ErrorKind::input);
   // List of channels that ends before its declared size: OpenEXR would take the following bytes for
   // an attribute.
   exr.replace(8, 16, std::string("c\0chlist\0\x0d\0\0\0\0w\0string\0\xff\xff\xff\x7f", 26));
-  store(path("a.exr"), exr);
-  EXPECT_EQ(kindOf([&] { readImage(path("a.exr")); }, "does not fill"), ErrorKind::input);
+  writeContent(path("a.exr"), exr);
+  EXPECT_EQ(catchErrorKind([&] { readImage(path("a.exr")); }, "does not fill"), ErrorKind::input);
   // Width and height of a PNG are bytes 16 to 23; libpng checks either these or the checksum first.
-  std::string png = contentOf(written(renderedImage(), "a.png"));
+  std::string png = readContent(save(makeTestImage(), "a.png"));
   png.replace(16, 8, std::string("\0\0\x70\0\0\0\x70\0", 8));
-  store(path("a.png"), png);
-  EXPECT_EQ(kindOf([&] { readImage(path("a.png")); }, "a.png"), ErrorKind::input);
+  writeContent(path("a.png"), png);
+  EXPECT_EQ(catchErrorKind([&] { readImage(path("a.png")); }, "a.png"), ErrorKind::input);
 }
 
 TEST_F(DamagedFiles, ClaimedMemoryBeyondTheLimitIsRefused) {
   const std::string head = "NRRD0004\ntype: float\ndimension: 3\nencoding: gzip\nendian: little\n"
                            "kinds: vector domain domain\n";
-  store(path("a.nrrd"), head + "sizes: 4 16384 8192\n\n" + std::string(200'000, '\0'));
-  EXPECT_EQ(kindOf([&] { readImage(path("a.nrrd")); }, "536870912 samples"), ErrorKind::input);
+  writeContent(path("a.nrrd"), head + "sizes: 4 16384 8192\n\n" + std::string(200'000, '\0'));
+  EXPECT_EQ(catchErrorKind([&] { readImage(path("a.nrrd")); }, "536870912 samples"),
+            ErrorKind::input);
   // A writer that stops early leaves zeros in the table of offsets to blocks of lines; the first
   // block follows that table.
-  std::string exr = contentOf(written(renderedImage(40, 70), "a.exr"));
-  constexpr std::size_t places = 8 * ((70 + 15) / 16);
-  const auto placeAt = [&exr](std::size_t at) {
-    std::uint64_t place = 0;
-    std::memcpy(&place, &exr.at(at), sizeof place);
-    return place;
+  std::string exr = readContent(save(makeTestImage(40, 70), "a.exr"));
+  constexpr std::size_t tableBytes = 8 * ((70 + 15) / 16);
+  const auto readOffset = [&exr](std::size_t at) {
+    std::uint64_t offset = 0;
+    std::memcpy(&offset, &exr.at(at), sizeof offset);
+    return offset;
   };
   std::size_t table = 0;
-  while (placeAt(table) != table + places)
+  while (readOffset(table) != table + tableBytes)
     ++table;
-  exr.replace(table + places - 8, 8, std::string(8, '\0'));
-  store(path("cut.exr"), exr.substr(0, exr.size() * 2 / 3));
-  EXPECT_EQ(kindOf([&] { readImage(path("cut.exr")); }, "lacks some of its lines"),
+  exr.replace(table + tableBytes - 8, 8, std::string(8, '\0'));
+  writeContent(path("cut.exr"), exr.substr(0, exr.size() * 2 / 3));
+  EXPECT_EQ(catchErrorKind([&] { readImage(path("cut.exr")); }, "lacks some of its lines"),
             ErrorKind::input);
 }
 
@@ -109,13 +110,14 @@ TEST_F(DamagedFiles, NameOfAnotherFileIsRefused) {
                            "sizes: 4 4\n";
   for (const std::string& line : {"data file: -"s, "datafile: /dev/zero"s, " Data  File:-"s,
                                   "#" + std::string(5000, 'x') + "\ndata file: -"}) {
-    store(path("a.nrrd"), head + line + "\n\n" + std::string(64, '\0'));
-    EXPECT_EQ(kindOf([&] { readImage(path("a.nrrd")); }, "a.nrrd"), ErrorKind::input) << line;
+    writeContent(path("a.nrrd"), head + line + "\n\n" + std::string(64, '\0'));
+    EXPECT_EQ(catchErrorKind([&] { readImage(path("a.nrrd")); }, "a.nrrd"), ErrorKind::input)
+        << line;
   }
   ::mkfifo(path("pipe.exr").c_str(), 0600);
   fs::create_directory(path("folder.png"));
   for (const char* name : {"pipe.exr", "folder.png", "missing.exr", "text.txt"})
-    EXPECT_EQ(kindOf([&] { readImage(path(name)); }, name), ErrorKind::input);
+    EXPECT_EQ(catchErrorKind([&] { readImage(path(name)); }, name), ErrorKind::input);
 }
 
 /// Teem's messages hold 1024 bytes of a line, and its arrays hold sizes of 16 axes.
@@ -127,16 +129,17 @@ TEST_F(DamagedFiles, OverlongHeaderFieldIsRefused) {
         plain + "dimension" + std::string(1000, 'n') + ": 4\n",
         head + "dimension: 17\nsizes: 4 4 1 1 1 1 1 1 1 1 1 1 1 1 1 1 1\n",
         head + "dimension: 2\nsizes: 4 99999999999\n"}) {
-    store(path("a.nrrd"), header + "\n" + std::string(64, '\0'));
-    EXPECT_EQ(kindOf([&] { readImage(path("a.nrrd")); }, "a.nrrd"), ErrorKind::input) << header;
+    writeContent(path("a.nrrd"), header + "\n" + std::string(64, '\0'));
+    EXPECT_EQ(catchErrorKind([&] { readImage(path("a.nrrd")); }, "a.nrrd"), ErrorKind::input)
+        << header;
   }
 }
 
 TEST_F(DamagedFiles, RefusalPrintsNothingToStandardError) {
   ::testing::internal::CaptureStderr();
   for (const std::string name : {"a.exr", "a.nrrd", "a.png", "a.tif"}) {
-    store(path(name), "not a picture at all, whatever the extension says");
-    EXPECT_EQ(kindOf([&] { readImage(path(name)); }, name), ErrorKind::input);
+    writeContent(path(name), "not a picture at all, whatever the extension says");
+    EXPECT_EQ(catchErrorKind([&] { readImage(path(name)); }, name), ErrorKind::input);
   }
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }

@@ -12,19 +12,19 @@
 namespace fenestra::testing::DefaultsTests {
 namespace {
 
-Volume ramp(double low, double high) {
+Volume makeRamp(double low, double high) {
   return makeVolume<float>(centredGrid({40, 30, 20}, {2.0, 2.0, 2.0}),
                            [=](const Vec3& p) { return low + (high - low) * p.x() / 39.0; });
 }
 
-Mask smallFocus() {
+Mask makeSmallFocus() {
   Affine map = Affine::Identity();
   map.translation() = Vec3(10, 5, -8);
   return {Grid({8, 8, 8}, map), std::vector<std::uint8_t>(512, 1), 512, {"A"}};
 }
 
 TEST(FrameView, NamedViewShowsTheWholeVolumeAlongAnAxis) {
-  const Grid grid = ramp(0, 1).grid;
+  const Grid grid = makeRamp(0, 1).grid;
   ViewRequest view;
   view.name = "left";
   const Camera camera(frameView(view, grid, nullptr, 200, 100), 200, 100);
@@ -39,15 +39,15 @@ TEST(FrameView, NamedViewShowsTheWholeVolumeAlongAnAxis) {
 }
 
 TEST(FrameView, UpMayHaveAnyLength) {
-  const Grid grid = ramp(0, 1).grid;
-  const auto framed = [&grid](const Vec3& up) {
+  const Grid grid = makeRamp(0, 1).grid;
+  const auto frame = [&grid](const Vec3& up) {
     ViewRequest view;
     view.up = up;
     return frameView(view, grid, nullptr, 200, 100);
   };
-  const CameraPose usual = framed(Vec3(1, 1, 1));
+  const CameraPose expected = frame(Vec3(1, 1, 1));
   for (const double length : {0x1p-1070, 0x1p-600, 0x1p600, 0x1p1023}) {
-    const CameraPose pose = framed(length * Vec3(1, 1, 1));
+    const CameraPose pose = frame(length * Vec3(1, 1, 1));
     EXPECT_EQ(pose.scale, expected.scale) << length;
     EXPECT_EQ(pose.position, expected.position) << length;
     EXPECT_TRUE(isApprox(Camera(pose, 200, 100).up(), Camera(expected, 200, 100).up(), 1e-15));
@@ -55,15 +55,15 @@ TEST(FrameView, UpMayHaveAnyLength) {
 }
 
 TEST(FrameView, FocusFramingIsEqualInBothProjections) {
-  const Grid grid = ramp(0, 1).grid;
-  const Mask focus = smallFocus();
+  const Grid grid = makeRamp(0, 1).grid;
+  const Mask focus = makeSmallFocus();
   ViewRequest view;
-  const Camera parallel(frameView(view, grid, &focus, 64, 64), 64, 64);
+  const Camera orthographic(frameView(view, grid, &focus, 64, 64), 64, 64);
   view.projection = Projection::perspective;
   const Camera perspective(frameView(view, grid, &focus, 64, 64), 64, 64);
-  EXPECT_TRUE(isApprox(parallel.pose().target, focus.grid.worldCenter()));
-  EXPECT_NEAR(perspective.pixelPitch(), parallel.pixelPitch(), 1e-9);
-  EXPECT_LT(parallel.pose().scale, 10.0) << "the focus, not the volume";
+  EXPECT_TRUE(isApprox(orthographic.pose().target, focus.grid.worldCenter()));
+  EXPECT_NEAR(perspective.pixelPitch(), orthographic.pixelPitch(), 1e-9);
+  EXPECT_LT(orthographic.pose().scale, 10.0) << "the focus, not the volume";
   const Vec3 fromCenter =
       grid.worldToIndex * perspective.pose().position - grid.indexBox().center();
   const Vec3 half = 0.5 * grid.size.cast<double>();
@@ -71,48 +71,48 @@ TEST(FrameView, FocusFramingIsEqualInBothProjections) {
 }
 
 TEST(FrameView, AFocusNearAnEndOfTheScanIsFramedWithoutWhatLiesBeyond) {
-  const Grid grid = ramp(0, 1).grid; // 40 mm high
-  const auto focusAt = [&](double height, int voxels) {
-    const Vec3 place = grid.worldCenter() + Vec3(0.0, 0.0, height);
-    const Affine moved = Affine(makeTranslation(place)) *
+  const Grid grid = makeRamp(0, 1).grid; // 40 mm high
+  const auto makeFocus = [&](double height, int voxels) {
+    const Vec3 center = grid.worldCenter() + Vec3(0.0, 0.0, height);
+    const Affine moved = Affine(makeTranslation(center)) *
                          Affine(makeTranslation(Vec3::Constant(0.5 - 0.5 * voxels)));
     return Mask{Grid({voxels, voxels, voxels}, moved), {}, 0, {"A"}};
   };
-  const auto framed = [&](const Mask& focus, const Domain& matter, const ViewRequest& view = {}) {
-    const CameraPose pose = frameView(view, matter, &focus, 64, 64);
+  const auto frame = [&](const Mask& focus, const Domain& occupied, const ViewRequest& view = {}) {
+    const CameraPose pose = frameView(view, occupied, &focus, 64, 64);
     return Vec2(pose.target.z() - grid.worldCenter().z(), pose.scale);
   };
   for (const double side : {-1.0, 1.0}) {
-    const Mask near = focusAt(side * 15.0, 10);
-    const Vec2 seen = framed(near, grid);
-    EXPECT_NEAR(seen.y(), 8.0, 1e-9) << "as large as elsewhere";
-    EXPECT_NEAR(seen.x(), side * 12.0, 1e-9) << "up to the end";
-    Box matter = grid.indexBox();
-    (side > 0.0 ? matter.upper : matter.lower).z() -= side * 1.0;
-    EXPECT_NEAR(framed(near, Domain(grid).intersect(occupied)).x(), side * 15.0, 1e-9)
+    const Mask near = makeFocus(side * 15.0, 10);
+    const Vec2 framing = frame(near, grid);
+    EXPECT_NEAR(framing.y(), 8.0, 1e-9) << "as large as elsewhere";
+    EXPECT_NEAR(framing.x(), side * 12.0, 1e-9) << "up to the end";
+    Box occupied = grid.indexBox();
+    (side > 0.0 ? occupied.upper : occupied.lower).z() -= side * 1.0;
+    EXPECT_NEAR(frame(near, Domain(grid).intersect(occupied)).x(), side * 15.0, 1e-9)
         << "matter ends before the scan";
     ViewRequest view;
     view.scale = 8.0;
-    EXPECT_NEAR(framed(near, grid, view).x(), side * 15.0, 1e-9);
-    const Mask large = focusAt(side * 4.0, 30);
-    EXPECT_NEAR(framed(large, grid).x(), 0.0, 1e-9) << "empty on both sides alike";
+    EXPECT_NEAR(frame(near, grid, view).x(), side * 15.0, 1e-9);
+    const Mask large = makeFocus(side * 4.0, 30);
+    EXPECT_NEAR(frame(large, grid).x(), 0.0, 1e-9) << "empty on both sides alike";
   }
-  EXPECT_NEAR(framed(makeFocus(3.0, 10), grid).x(), 3.0, 1e-9);
+  EXPECT_NEAR(frame(makeFocus(3.0, 10), grid).x(), 3.0, 1e-9);
 }
 
 TEST(FrameView, CroppedVolumeIsFramed) {
-  const Grid grid = ramp(0, 1).grid; // 80 x 60 x 40 mm
+  const Grid grid = makeRamp(0, 1).grid; // 80 x 60 x 40 mm
   // Rotated box that reaches beyond the volume's right face.
   const CropBox crop(makeTranslation(grid.worldCenter() + Vec3(30, 0, 0)) *
                      makeRotation(pi / 4, Vec3::UnitY()) * makeScaling(Vec3::Constant(10.0)));
   const Camera camera(frameView({}, Domain(grid, crop), nullptr, 64, 64), 64, 64);
   // Width: from the rotated box's corner to the volume's face, 24.14 mm; height: 28.28 mm.
-  const double across = 10.0 * std::numbers::sqrt2 + 10.0;
-  const Vec3 center = grid.worldCenter() + Vec3(40.0 - 0.5 * across, 0.0, 0.0);
+  const double width = 10.0 * std::numbers::sqrt2 + 10.0;
+  const Vec3 center = grid.worldCenter() + Vec3(40.0 - 0.5 * width, 0.0, 0.0);
   EXPECT_LT((camera.pose().target - center).norm(), 1e-6);
   EXPECT_NEAR(camera.pose().scale, 1.05 * 10.0 * std::numbers::sqrt2, 1e-6);
 
-  const CropBox beside(Affine(makeTranslation({500, 0, 0})));
+  const CropBox outside(Affine(makeTranslation({500, 0, 0})));
   EXPECT_EQ(frameView({}, Domain(grid, outside), nullptr, 64, 64).scale,
             frameView({}, grid, nullptr, 64, 64).scale)
       << "nothing is left: the volume is framed";
@@ -125,10 +125,10 @@ TEST(FrameView, RefusesAnUnknownName) {
 }
 
 TEST(TransparentShare, CountsVoxelsOfTheFocusWithoutExtinction) {
-  const Volume volume = ramp(0, 39); // the value is the voxel's number along x
-  const Affine whole = volume.grid.indexToWorld;
-  const Mask focus{Grid({20, 30, 20}, whole), std::vector<std::uint8_t>(12000, 1), 12000, {"A"}};
-  const auto from = [](double value) {
+  const Volume volume = makeRamp(0, 39); // the value is the voxel's number along x
+  const Affine map = volume.grid.indexToWorld;
+  const Mask focus{Grid({20, 30, 20}, map), std::vector<std::uint8_t>(12000, 1), 12000, {"A"}};
+  const auto makeTransfer = [](double value) {
     return TransferFunction{
         ScalarFunction({{value, ScalarFunction::Value(0.0)}, {100.0, ScalarFunction::Value(1.0)}}),
         ColorFunction({{0.0, Rgb(1, 1, 1)}})};
@@ -148,25 +148,25 @@ TEST(DefaultTransfer, HounsfieldRangeGivesACtPreset) {
 
 TEST(AirLevel, IsThatOfTheModalityAndNothingWhereSurroundingsAreCutOff) {
   EXPECT_EQ(findAirThreshold(makeRamp(-1000, 1500)), -300.0);
-  const auto head = [](double air) {
+  const auto makeHead = [](double air) {
     return makeVolume<float>(centredGrid({40, 30, 20}, {2.0, 2.0, 2.0}), [=](const Vec3& p) {
       return p.norm() < 20.0 ? 400.0 + p.x() : air * std::abs(std::sin(100.0 * p.x() + p.y()));
     });
   };
-  const std::optional<double> level = findAirThreshold(head(30.0));
+  const std::optional<double> level = findAirThreshold(makeHead(30.0));
   ASSERT_TRUE(level);
   EXPECT_GT(*level, 30.0);
   EXPECT_LT(*level, 380.0);
-  EXPECT_FALSE(findAirThreshold(head(0.0))) << "masked";
+  EXPECT_FALSE(findAirThreshold(makeHead(0.0))) << "masked";
   EXPECT_FALSE(findAirThreshold(makeRamp(7, 7))) << "constant";
 }
 
 TEST(DefaultTransfer, RangeRunsFromTransparentToOpaqueAndAConstantIsVisible) {
-  const TransferFunction transfer = makeRelativeTransfer(ramp(0, 1000));
+  const TransferFunction transfer = makeRelativeTransfer(makeRamp(0, 1000));
   EXPECT_EQ(transfer.extinction(0.0).value(), 0.0);
   EXPECT_GT(transfer.extinction(1000.0).value(), 1.0);
   EXPECT_TRUE(transfer.shading);
-  const TransferFunction flat = makeRelativeTransfer(ramp(7, 7));
+  const TransferFunction flat = makeRelativeTransfer(makeRamp(7, 7));
   EXPECT_GT(flat.extinction(7.0).value(), 0.0);
   EXPECT_FALSE(flat.shading);
 }

@@ -31,8 +31,8 @@ protected:
     request.features = true;
   }
 
-  static Film picture(const PreparedScene& scene, std::uint64_t seed = 0,
-                      std::uint64_t samples = 2) {
+  static Film renderFilm(const PreparedScene& scene, std::uint64_t seed = 0,
+                         std::uint64_t samples = 2) {
     RenderSettings settings;
     settings.samples = samples;
     settings.seed = seed;
@@ -48,25 +48,25 @@ protected:
 
 TEST_F(Denoising, ClosedAreEmptyPixelsWhateverTheSamplesMet) {
   const PreparedScene scene(request);
-  const Film film = picture(scene);
+  const Film film = renderFilm(scene);
   const FilterInput input = makeFilterInput(film, scene);
-  std::size_t without = 0, certain = 0;
+  std::size_t missed = 0, deterministic = 0;
   for (std::size_t i = 0; i < film.pixelCount(); ++i) {
     const PixelSums& pixel = film.pixels()[i];
     const bool isEmpty = pixel.isDeterministic || scene.features()->hit[i] == 0.0F;
     EXPECT_TRUE(isEmpty || input.isActive[i] != 0);
     EXPECT_FALSE(pixel.isDeterministic && input.isActive[i] != 0);
-    without += input.isActive[i] != 0 && pixel.collidedSamples == 0;
-    certain += pixel.isDeterministic;
+    missed += input.isActive[i] != 0 && pixel.collidedSamples == 0;
+    deterministic += pixel.isDeterministic;
   }
-  EXPECT_GT(without, 100U);
-  EXPECT_GT(certain, 100U);
+  EXPECT_GT(missed, 100U);
+  EXPECT_GT(deterministic, 100U);
 }
 
 TEST_F(Denoising, FeaturesDoNotDependOnSamples) {
   const PreparedScene scene(request);
-  const FilterInput one = makeFilterInput(picture(scene, 1), scene);
-  const FilterInput other = makeFilterInput(picture(scene, 2), scene);
+  const FilterInput one = makeFilterInput(renderFilm(scene, 1), scene);
+  const FilterInput other = makeFilterInput(renderFilm(scene, 2), scene);
   EXPECT_GE(one.features.size(), 8U);
   EXPECT_EQ(one.features, other.features);
   EXPECT_NE(one.even, other.even);
@@ -79,34 +79,34 @@ TEST_F(Denoising, HalvesThatAreNotIndependentAreRefused) {
 
 TEST_F(Denoising, HalvesAverageToThePicture) {
   const PreparedScene scene(request);
-  const Film film = picture(scene, 3, 4);
+  const Film film = renderFilm(scene, 3, 4);
   const FilterInput input = makeFilterInput(film, scene);
   for (std::size_t i = 0; i < film.pixelCount(); ++i)
     ASSERT_NEAR(0.5 * static_cast<double>(input.even[1][i] + input.odd[1][i]),
                 film.pixels()[i].mean[1], 1e-6);
 }
 
-double errorOf(const FilteredImage& picture, const Film& truth) {
+double sumSquaredErrors(const FilteredImage& image, const Film& reference) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < truth.pixelCount(); ++i)
-    sum += std::pow(static_cast<double>(picture.color[0][i]) - truth.pixels()[i].mean[0], 2.0);
+  for (std::size_t i = 0; i < reference.pixelCount(); ++i)
+    sum += std::pow(static_cast<double>(image.color[0][i]) - reference.pixels()[i].mean[0], 2.0);
   return sum;
 }
 
 TEST_F(Denoising, FilteredPictureIsNearerToTheTruth) {
   const PreparedScene scene(request);
-  const Film truth = picture(scene, 9, 512), film = picture(scene, 1, 4);
+  const Film reference = renderFilm(scene, 9, 512), film = renderFilm(scene, 1, 4);
   const FilteredImage filtered = denoise(film, scene);
   double raw = 0.0;
   for (std::size_t i = 0; i < film.pixelCount(); ++i)
-    raw += std::pow(film.pixels()[i].mean[0] - truth.pixels()[i].mean[0], 2.0);
-  EXPECT_LT(errorOf(filtered, reference), 0.1 * raw);
+    raw += std::pow(film.pixels()[i].mean[0] - reference.pixels()[i].mean[0], 2.0);
+  EXPECT_LT(sumSquaredErrors(filtered, reference), 0.1 * raw);
   EXPECT_EQ(filtered.error[0].size(), film.pixelCount());
 }
 
 TEST_F(Denoising, ClosedPixelsKeepTheirRawColourAtAnyCount) {
   const PreparedScene scene(request);
-  const Film film = picture(scene, 4, 3);
+  const Film film = renderFilm(scene, 4, 3);
   const FilterInput input = makeFilterInput(film, scene);
   const FilteredImage filtered = denoise(film, scene);
   for (std::size_t i = 0; i < film.pixelCount(); ++i) {
@@ -117,14 +117,14 @@ TEST_F(Denoising, ClosedPixelsKeepTheirRawColourAtAnyCount) {
 
 TEST_F(Denoising, OnePixelWithOneSampleLeavesNoHalvesButTheWholePicture) {
   const PreparedScene scene(request);
-  Film film = picture(scene, 4, 2);
-  std::size_t open = 0;
-  while (film.pixels()[open].isDeterministic)
-    ++open;
+  Film film = renderFilm(scene, 4, 2);
+  std::size_t first = 0;
+  while (film.pixels()[first].isDeterministic)
+    ++first;
   PathSample sample;
   sample.radiance = Rgb::Ones();
-  film.at(static_cast<int>(open) % 48, static_cast<int>(open) / 48) = PixelSums();
-  film.at(static_cast<int>(open) % 48, static_cast<int>(open) / 48).add(sample);
+  film.at(static_cast<int>(first) % 48, static_cast<int>(first) / 48) = PixelSums();
+  film.at(static_cast<int>(first) % 48, static_cast<int>(first) / 48).add(sample);
   const FilterInput input = makeFilterInput(film, scene);
   EXPECT_FALSE(input.hasHalfBuffers);
   for (std::size_t i = 0; i < film.pixelCount(); ++i)

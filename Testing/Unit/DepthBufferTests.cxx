@@ -11,12 +11,12 @@ using namespace testing_clipping;
 
 namespace {
 
-constexpr std::int64_t most = 4 << 20;
+constexpr std::int64_t maxSamples = 4 << 20;
 
 TEST(DepthBuffer, SamplesAreTheViewportsPixelCentres) {
   for (const auto projection : {Projection::orthographic, Projection::perspective}) {
-    const Camera camera = anteriorCamera(projection, 300.0, 20.0, 37, 22);
-    const DepthBuffer buffer(camera, centredGrid({100, 100, 100}));
+    const Camera camera = makeAnteriorCamera(projection, 300.0, 20.0, 37, 22);
+    const DepthBuffer buffer(camera, makeCenteredGrid({100, 100, 100}));
     EXPECT_GT(buffer.columns(), 37);
     for (int row = 0; row < 22; ++row)
       for (int column = 0; column < 37; ++column) {
@@ -30,8 +30,8 @@ TEST(DepthBuffer, SamplesAreTheViewportsPixelCentres) {
 }
 
 TEST(DepthBuffer, SpansTheVolumesProjection) {
-  const Grid grid = centredGrid({200, 300, 100});
-  const Camera camera = anteriorCamera(Projection::orthographic, 500.0, 10.0, 64, 64);
+  const Grid grid = makeCenteredGrid({200, 300, 100});
+  const Camera camera = makeAnteriorCamera(Projection::orthographic, 500.0, 10.0, 64, 64);
   const DepthBuffer buffer(camera, grid);
   const double pixel = camera.pixelPitch();
   EXPECT_EQ(buffer.xAxis().factor, 1.0);
@@ -43,9 +43,9 @@ TEST(DepthBuffer, SpansTheVolumesProjection) {
 }
 
 TEST(DepthBuffer, LargeVolumeIsCoarserBeyondTheViewport) {
-  const Grid grid = centredGrid({500, 500, 500});
+  const Grid grid = makeCenteredGrid({500, 500, 500});
   for (const double scale : {10.0, 5.0, 0.01, 1e-6}) {
-    const Camera camera = anteriorCamera(Projection::orthographic, 1000.0, scale, 300, 200);
+    const Camera camera = makeAnteriorCamera(Projection::orthographic, 1000.0, scale, 300, 200);
     const DepthBuffer buffer(camera, grid);
     EXPECT_LE(buffer.size(), maxSamples);
     EXPECT_GT(buffer.xAxis().factor, 1.0);
@@ -56,9 +56,9 @@ TEST(DepthBuffer, LargeVolumeIsCoarserBeyondTheViewport) {
 }
 
 TEST(DepthBuffer, CoarseningFactorIsTheLeastPossible) {
-  const Grid grid = centredGrid({500, 500, 500});
+  const Grid grid = makeCenteredGrid({500, 500, 500});
   const auto factor = [&](double scale) {
-    const Camera camera = anteriorCamera(Projection::orthographic, 1000.0, scale, 300, 200);
+    const Camera camera = makeAnteriorCamera(Projection::orthographic, 1000.0, scale, 300, 200);
     return DepthBuffer(camera, grid).xAxis().factor;
   };
   EXPECT_EQ(factor(40.0), 1.0); // 1250^2 samples
@@ -67,8 +67,8 @@ TEST(DepthBuffer, CoarseningFactorIsTheLeastPossible) {
 }
 
 TEST(DepthBuffer, PerspectiveReachesToSeventyFiveDegrees) {
-  const Camera camera = anteriorCamera(Projection::perspective, 30.0, 10.0, 64, 64);
-  const DepthBuffer buffer(camera, centredGrid({100, 100, 100})); // the eye is inside
+  const Camera camera = makeAnteriorCamera(Projection::perspective, 30.0, 10.0, 64, 64);
+  const DepthBuffer buffer(camera, makeCenteredGrid({100, 100, 100})); // the eye is inside
   const double limit = 30.0 * std::tan(75.0 * pi / 180.0);
   const double sample = buffer.xAxis().factor * camera.pixelPitch();
   EXPECT_NEAR(buffer.xAxis().coordinate(0), -limit, sample);
@@ -76,8 +76,8 @@ TEST(DepthBuffer, PerspectiveReachesToSeventyFiveDegrees) {
 }
 
 TEST(DepthBuffer, IndexAndCoordinateAreInverse) {
-  const Camera camera = anteriorCamera(Projection::orthographic, 1000.0, 5.0, 300, 200);
-  const DepthBuffer buffer(camera, centredGrid({500, 500, 500}));
+  const Camera camera = makeAnteriorCamera(Projection::orthographic, 1000.0, 5.0, 300, 200);
+  const DepthBuffer buffer(camera, makeCenteredGrid({500, 500, 500}));
   for (const DepthAxis* axis : {&buffer.xAxis(), &buffer.yAxis()})
     for (std::int64_t i = 0; i < axis->size(); ++i) {
       EXPECT_NEAR(axis->index(axis->coordinate(i)), static_cast<double>(i), 1e-9);
@@ -88,8 +88,8 @@ TEST(DepthBuffer, IndexAndCoordinateAreInverse) {
 }
 
 TEST(DepthBuffer, InterpolatesLinearFunctionsExactlyAcrossBothDensities) {
-  const Camera camera = anteriorCamera(Projection::orthographic, 1e5, 5.0, 300, 200);
-  DepthBuffer buffer(camera, centredGrid({500, 500, 500}));
+  const Camera camera = makeAnteriorCamera(Projection::orthographic, 1e5, 5.0, 300, 200);
+  DepthBuffer buffer(camera, makeCenteredGrid({500, 500, 500}));
   ASSERT_GT(buffer.xAxis().factor, 1.0);
   const auto plane = [](const Vec2& p) { return 1e5 + 0.25 * p.x() - 0.5 * p.y(); };
   for (std::int64_t row = 0; row < buffer.rows(); ++row)
@@ -104,8 +104,8 @@ TEST(DepthBuffer, InterpolatesLinearFunctionsExactlyAcrossBothDensities) {
 }
 
 TEST(DepthBuffer, NearestReturnsTheSampleOfThePixel) {
-  const Camera camera = anteriorCamera(Projection::orthographic, 100.0, 4.0, 8, 8);
-  DepthBuffer buffer(camera, centredGrid({2, 2, 2}));
+  const Camera camera = makeAnteriorCamera(Projection::orthographic, 100.0, 4.0, 8, 8);
+  DepthBuffer buffer(camera, makeCenteredGrid({2, 2, 2}));
   for (std::int64_t i = 0; i < buffer.size(); ++i)
     buffer.set(i, static_cast<double>(i));
   EXPECT_EQ(buffer.nearestDepth({-3.9, 3.9}), 0.0);
@@ -115,16 +115,16 @@ TEST(DepthBuffer, NearestReturnsTheSampleOfThePixel) {
 }
 
 TEST(DepthBuffer, RefusesAPictureWithoutExtent) {
-  const Grid grid = centredGrid({2, 2, 2});
+  const Grid grid = makeCenteredGrid({2, 2, 2});
   for (const double scale : {0.0, -1.0, 1e-30, infinity, std::nan("")}) {
-    EXPECT_THROW(DepthBuffer(anteriorCamera(Projection::orthographic, 100.0, scale, 8, 8), grid),
-                 Error);
+    EXPECT_THROW(
+        DepthBuffer(makeAnteriorCamera(Projection::orthographic, 100.0, scale, 8, 8), grid), Error);
   }
 }
 
 TEST(DepthBuffer, ViewportBeyondTheLimitKeepsItsPixels) {
-  const Camera camera = anteriorCamera(Projection::orthographic, 100.0, 0.5, 1, 5000000);
-  const DepthBuffer buffer(camera, centredGrid({2, 2, 2}));
+  const Camera camera = makeAnteriorCamera(Projection::orthographic, 100.0, 0.5, 1, 5000000);
+  const DepthBuffer buffer(camera, makeCenteredGrid({2, 2, 2}));
   EXPECT_EQ(buffer.xAxis().inside, 1);
   EXPECT_EQ(buffer.yAxis().inside, 5000000);
   EXPECT_LE(buffer.size(), 3 * 5000002);
@@ -133,19 +133,20 @@ TEST(DepthBuffer, ViewportBeyondTheLimitKeepsItsPixels) {
 TEST(DepthPyramid, BoundsHoldForEveryDepthInARectangle) {
   Random random(2, 0, 0);
   for (const auto& [width, height] : {std::pair{1, 1}, {5, 1}, {33, 17}, {64, 64}}) {
-    const Camera camera = anteriorCamera(Projection::orthographic, 100.0, 8.0, width, height);
-    DepthBuffer buffer(camera, centredGrid({20, 20, 20}));
+    const Camera camera = makeAnteriorCamera(Projection::orthographic, 100.0, 8.0, width, height);
+    DepthBuffer buffer(camera, makeCenteredGrid({20, 20, 20}));
     for (std::int64_t i = 0; i < buffer.size(); ++i)
       buffer.set(i, uniform(random, 50, 150));
     const DepthPyramid pyramid(buffer);
-    double least = infinity, greatest = -infinity;
+    double minimum = infinity, maximum = -infinity;
     for (std::int64_t i = 0; i < buffer.size(); ++i) {
-      least = std::min(least, buffer.at(i));
-      greatest = std::max(greatest, buffer.at(i));
+      minimum = std::min(minimum, buffer.at(i));
+      maximum = std::max(maximum, buffer.at(i));
     }
-    const auto found = pyramid.bounds(buffer, Vec2::Constant(-infinity), Vec2::Constant(infinity));
-    EXPECT_EQ(found.begin, minimum);
-    EXPECT_EQ(found.end, maximum);
+    const auto fullRange =
+        pyramid.bounds(buffer, Vec2::Constant(-infinity), Vec2::Constant(infinity));
+    EXPECT_EQ(fullRange.begin, minimum);
+    EXPECT_EQ(fullRange.end, maximum);
     for (int trial = 0; trial < 2000; ++trial) {
       const Vec2 a = randomPoint(random, -15, 15).head<2>();
       const Vec2 b = a + std::pow(random.uniform(), 3) * randomPoint(random, -15, 15).head<2>();
@@ -162,13 +163,13 @@ TEST(DepthPyramid, BoundsHoldForEveryDepthInARectangle) {
 }
 
 TEST(DepthPyramid, BoundsAreTightOnASmallRectangle) {
-  const Camera camera = anteriorCamera(Projection::orthographic, 100.0, 32.0, 64, 64);
-  DepthBuffer buffer(camera, centredGrid({20, 20, 20}));
+  const Camera camera = makeAnteriorCamera(Projection::orthographic, 100.0, 32.0, 64, 64);
+  DepthBuffer buffer(camera, makeCenteredGrid({20, 20, 20}));
   for (std::int64_t i = 0; i < buffer.size(); ++i)
     buffer.set(i, 100.0 + buffer.position(i % 64, i / 64).x());
   const DepthPyramid pyramid(buffer);
   for (double x = -20.0; x < 20.0; x += 0.7) {
-    const auto [least, greatest] = pyramid.bounds(buffer, {x, 0.0}, {x + 2.0, 2.0});
+    const auto [minimum, maximum] = pyramid.bounds(buffer, {x, 0.0}, {x + 2.0, 2.0});
     EXPECT_GT(minimum, 100.0 + x - 5.0);
     EXPECT_LT(maximum, 102.0 + x + 5.0);
   }

@@ -6,7 +6,7 @@ namespace fenestra::testing::DeterminismTests {
 namespace {
 
 TEST(Determinism, ThreadsAndPassesChangeNoBit) {
-  const TestScene s = wavyScene();
+  const TestScene s = makeWavyScene();
   RenderSettings settings;
   settings.samples = 20;
   settings.seed = 5;
@@ -23,7 +23,7 @@ TEST(Determinism, ThreadsAndPassesChangeNoBit) {
 }
 
 TEST(Determinism, DifferentSeedsGiveDifferentPictures) {
-  const TestScene s = wavyScene();
+  const TestScene s = makeWavyScene();
   RenderSettings settings;
   settings.samples = 4;
   const RenderResult a = s.render(settings);
@@ -32,7 +32,7 @@ TEST(Determinism, DifferentSeedsGiveDifferentPictures) {
 }
 
 TEST(Render, StopOnRequestReturnsFinishedSamples) {
-  const TestScene s = wavyScene();
+  const TestScene s = makeWavyScene();
   const Camera camera(s.pose, s.width, s.height);
   const LightSet lights(s.lights, s.volume.grid, camera);
   const MinMaxGrid ranges(s.volume, 0);
@@ -47,20 +47,20 @@ TEST(Render, StopOnRequestReturnsFinishedSamples) {
 }
 
 TEST(Render, EstimatesNoiseForThoseWhoWatch) {
-  const TestScene s = wavyScene();
+  const TestScene s = makeWavyScene();
   RenderSettings settings;
   settings.samples = 4;
-  for (const bool isWatched : {false, true}) {
+  for (const bool isWanted : {false, true}) {
     RenderMonitor monitor;
-    monitor.isNoiseWanted = isWatched;
+    monitor.isNoiseWanted = isWanted;
     const RenderResult result =
         s.with([&](const SceneView& scene) { return render(scene, settings, monitor); });
-    EXPECT_EQ(monitor.noise, isWatched ? result.film.noise() : infinity);
+    EXPECT_EQ(monitor.noise, isWanted ? result.film.noise() : infinity);
   }
 }
 
 TEST(Render, StopsAtTimeLimitAndAtNoiseTarget) {
-  const TestScene s = wavyScene();
+  const TestScene s = makeWavyScene();
   RenderSettings settings;
   settings.samples = 1u << 30;
   settings.seconds = 0.2;
@@ -70,28 +70,28 @@ TEST(Render, StopsAtTimeLimitAndAtNoiseTarget) {
 
   settings.seconds = infinity;
   settings.noise = 0.2;
-  const RenderResult quiet = s.render(settings);
-  EXPECT_EQ(quiet.reason, StopReason::noise);
-  EXPECT_LE(quiet.film.noise(), 0.2);
-  EXPECT_GE(quiet.finishedSamples, 16U);
+  const RenderResult converged = s.render(settings);
+  EXPECT_EQ(converged.reason, StopReason::noise);
+  EXPECT_LE(converged.film.noise(), 0.2);
+  EXPECT_GE(converged.finishedSamples, 16U);
 }
 
 TEST(Render, StopsBySeenNoiseAtFixedCountsAlikeInAllPixels) {
-  const TestScene s = wavyScene();
+  const TestScene s = makeWavyScene();
   RenderSettings settings;
   settings.samples = 1000;
   settings.noise = 0.5;
-  std::vector<std::uint64_t> looks;
+  std::vector<std::uint64_t> counts;
   settings.displayNoise = [&](const Film& film) {
-    looks.push_back(film.sampleCounts().max);
-    return looks.size() < 3 ? 0.6 : 0.4;
+    counts.push_back(film.sampleCounts().max);
+    return counts.size() < 3 ? 0.6 : 0.4;
   };
   for (const std::uint64_t passSamples : {0U, 3U}) {
     settings.passSamples = passSamples;
-    looks.clear();
+    counts.clear();
     const RenderResult result = s.render(settings);
     EXPECT_EQ(result.reason, StopReason::noise);
-    EXPECT_EQ(looks, (std::vector<std::uint64_t>{4, 8, 16}));
+    EXPECT_EQ(counts, (std::vector<std::uint64_t>{4, 8, 16}));
     EXPECT_EQ(result.film.sampleCounts().min, 16U);
     EXPECT_EQ(result.film.sampleCounts().max, 16U);
   }

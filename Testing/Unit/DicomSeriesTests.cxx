@@ -77,15 +77,15 @@ Path write(const Path& path, const SliceFile& slice) {
   io->SetPixelType(itk::IOPixelEnum::SCALAR);
   // GDCM rescales the written values, in float if they have fractions.
   const double intercept = std::stod(slice.intercept), slope = std::stod(slice.slope);
-  std::vector<std::int16_t> whole(width * height);
+  std::vector<std::int16_t> integers(width * height);
   std::vector<float> fractions(width * height);
   for (unsigned i = 0; i < width * height; ++i) {
     fractions[i] = static_cast<float>(slope * (slice.first + static_cast<int>(i)) + intercept);
-    whole[i] = static_cast<std::int16_t>(fractions[i]);
+    integers[i] = static_cast<std::int16_t>(fractions[i]);
   }
-  const bool isWhole = slope == std::trunc(slope);
-  io->SetComponentType(isWhole ? itk::IOComponentEnum::SHORT : itk::IOComponentEnum::FLOAT);
-  io->Write(isWhole ? static_cast<const void*>(whole.data()) : fractions.data());
+  const bool isInteger = slope == std::trunc(slope);
+  io->SetComponentType(isInteger ? itk::IOComponentEnum::SHORT : itk::IOComponentEnum::FLOAT);
+  io->Write(isInteger ? static_cast<const void*>(integers.data()) : fractions.data());
   return path;
 }
 
@@ -99,34 +99,34 @@ void writeStack(const TemporaryFolder& folder, SliceFile slice, int count, doubl
   }
 }
 
-Volume readOnly(const Path& folder) {
+Volume readSingleSeries(const Path& folder) {
   return readDicomVolume(chooseSeries(findDicomSeries(folder), std::nullopt, folder.string()));
 }
 
-double valueAt(const Volume& volume, std::int64_t x, std::int64_t y, std::int64_t z) {
+double getVoxel(const Volume& volume, std::int64_t x, std::int64_t y, std::int64_t z) {
   const auto i =
       static_cast<std::size_t>(x + volume.grid.size.x() * (y + volume.grid.size.y() * z));
   return std::visit([i](const auto& voxels) { return static_cast<double>(voxels[i]); },
                     volume.voxels);
 }
 
-Mat3 oblique() {
+Mat3 makeObliqueAxes() {
   return (makeRotation(0.4, Vec3(1, 2, 3).normalized()) * makeRotation(0.3, Vec3::UnitX()))
       .linear();
 }
 
 TEST(DicomSeries, SortsSlicesAlongTheirNormal) {
   const TemporaryFolder folder;
-  SliceFile slice{.position = {10, -20, 30}, .axes = oblique()};
+  SliceFile slice{.position = {10, -20, 30}, .axes = makeObliqueAxes()};
   writeStack(folder, slice, 5, 2.5);
   folder.write("notes.txt", "not DICOM");
-  const Volume volume = readOnly(folder.path());
+  const Volume volume = readSingleSeries(folder.path());
   EXPECT_EQ(volume.grid.size, Size3(5, 4, 5));
   EXPECT_TRUE(volume.warnings.empty()) << volume.warnings[0];
   for (int z = 0; z < 5; ++z)
     for (int y = 0; y < 4; ++y)
       for (int x = 0; x < 5; ++x) {
-        EXPECT_EQ(valueAt(volume, x, y, z), 100 * z + y * 5 + x);
+        EXPECT_EQ(getVoxel(volume, x, y, z), 100 * z + y * 5 + x);
         const Vec3 lps = slice.position + slice.axes * Vec3(0.5 * x, 2.0 * y, 2.5 * z);
         EXPECT_LT(
             (volume.grid.indexToWorld * Vec3(x, y, z) - Vec3(-lps[0], -lps[1], lps[2])).norm(),
@@ -139,7 +139,7 @@ TEST(DicomSeries, AppliesRescaleAndKeepsGantryTilt) {
   for (int i = 0; i < 3; ++i)
     write(folder / (std::to_string(i) + ".dcm"),
           {.position = Vec3(0, 0.7 * i, 3.0 * i), .intercept = "-1024", .slope = "2"});
-  const Volume volume = readOnly(folder.path());
+  const Volume volume = readSingleSeries(folder.path());
   EXPECT_EQ(volume.minimum, -1024);
   EXPECT_EQ(volume.maximum, -1024 + 2 * 19);
   EXPECT_TRUE(isApprox(volume.grid.indexToWorld.linear().col(2), Vec3(0, -0.7, 3.0)));
@@ -152,10 +152,10 @@ TEST(DicomSeries, SlicesMayDifferInSlope) {
     write(folder / (std::to_string(i) + ".dcm"), {.position = Vec3(0, 0, i), .slope = slope});
     ++i;
   }
-  const Volume volume = readOnly(folder.path());
-  EXPECT_EQ(valueAt(volume, 4, 3, 0), 19.0);
-  EXPECT_EQ(valueAt(volume, 4, 3, 1), 9.5);
-  EXPECT_EQ(valueAt(volume, 4, 3, 2), 4.75);
+  const Volume volume = readSingleSeries(folder.path());
+  EXPECT_EQ(getVoxel(volume, 4, 3, 0), 19.0);
+  EXPECT_EQ(getVoxel(volume, 4, 3, 1), 9.5);
+  EXPECT_EQ(getVoxel(volume, 4, 3, 2), 4.75);
 }
 
 TEST(DicomSeries, DecodesJpeg2000AndRefusesDamagedStreams) {
@@ -166,13 +166,13 @@ TEST(DicomSeries, DecodesJpeg2000AndRefusesDamagedStreams) {
   ASSERT_NE(bytes.find("\xff\x4f\xff\x51"), std::string::npos); // start of a codestream
   const Volume volume = readDicomVolume({file}, "x");
   for (int i = 0; i < 3000; ++i)
-    ASSERT_EQ(valueAt(volume, i % 60, i / 60, 0), i - 3 - 1024);
+    ASSERT_EQ(getVoxel(volume, i % 60, i / 60, 0), i - 3 - 1024);
   std::string wider = bytes; // width in the codestream, greater than declared
   wider[wider.find("\xff\x4f\xff\x51") + 8] = 1;
   folder.write("wider.dcm", wider);
-  const Path half = folder.write("half.dcm", bytes.substr(0, bytes.size() - 40));
-  fenestra::expectRefused(half, "PixelData: cannot be decoded",
-                          [&] { readDicomVolume({half}, "x"); });
+  const Path truncated = folder.write("half.dcm", bytes.substr(0, bytes.size() - 40));
+  fenestra::expectRefused(truncated, "PixelData: cannot be decoded",
+                          [&] { readDicomVolume({truncated}, "x"); });
   fenestra::expectRefused(folder / "wider.dcm", "PixelData: cannot be decoded",
                           [&] { readDicomVolume({folder / "wider.dcm"}, "x"); });
 }
@@ -198,7 +198,7 @@ TEST(DicomSeries, EveryTransferSyntaxGivesTheSameVoxels) {
     ASSERT_TRUE(writer.Write());
     const Volume volume = readDicomVolume({folder / "stored.dcm"}, "x");
     for (int i = 0; i < 3000; ++i)
-      ASSERT_EQ(valueAt(volume, i % 60, i / 60, 0), i - 3) << syntax;
+      ASSERT_EQ(getVoxel(volume, i % 60, i / 60, 0), i - 3) << syntax;
   }
 }
 
@@ -250,14 +250,14 @@ TEST(DicomSeries, SearchesSubfoldersOfAFolderWithoutFiles) {
   std::filesystem::create_directories(folder / "b");
   write(folder / "a/1.dcm", {});
   write(folder / "b/2.dcm", {.position = {0, 0, 4}});
-  EXPECT_EQ(readOnly(folder.path()).grid.size.z(), 2);
+  EXPECT_EQ(readSingleSeries(folder.path()).grid.size.z(), 2);
   folder.write("readme", "");
   fenestra::expectRefused(folder.path(), "holds no DICOM series",
                           [&] { findDicomSeries(folder.path()); });
 }
 
-void expectRefused(const Path& named, const Path& folder, const std::string& text) {
-  fenestra::expectRefused(named, text, [&] { readOnly(folder); });
+void expectRefused(const Path& subject, const Path& folder, const std::string& text) {
+  fenestra::expectRefused(subject, text, [&] { readSingleSeries(folder); });
 }
 
 /// Writes slices at these depths, in files 0.dcm, 1.dcm, ...
@@ -267,11 +267,11 @@ void writeDepths(const TemporaryFolder& folder, const std::vector<double>& depth
 }
 
 TEST(DicomSeries, RefusesMissingAndRepeatedSlices) {
-  const TemporaryFolder gap, twice, drift, sideways;
+  const TemporaryFolder gap, repeated, drift, sideways;
   writeDepths(gap, {0, 2, 4, 8, 10});
   expectRefused(gap / "2.dcm", gap.path(), "is 4 mm from 3.dcm, others 2 mm; add the slices");
-  writeDepths(twice, {0, 2, 4, 2});
-  expectRefused(twice / "1.dcm", twice.path(), "lies where 3.dcm does");
+  writeDepths(repeated, {0, 2, 4, 2});
+  expectRefused(repeated / "1.dcm", repeated.path(), "lies where 3.dcm does");
   writeDepths(drift, {0, 2, 4, 6, 8.9, 11.8, 14.7, 17.6});
   expectRefused(drift / "3.dcm", drift.path(), "off even steps");
   for (int i = 0; i < 3; ++i)
@@ -282,20 +282,21 @@ TEST(DicomSeries, RefusesMissingAndRepeatedSlices) {
 TEST(DicomSeries, WarnsOfUnevenSlices) {
   const TemporaryFolder folder, even;
   writeDepths(folder, {0, 2.1, 4, 6});
-  const Volume volume = readOnly(folder.path());
+  const Volume volume = readSingleSeries(folder.path());
   ASSERT_EQ(volume.warnings.size(), 1u);
   EXPECT_EQ(volume.warnings[0], folder.path().string() + ": slices lie up to 0.1 mm off even steps "
                                                          "of 2 mm, which are taken for theirs");
   EXPECT_NEAR(volume.grid.spacing().z(), 2.0, 1e-12);
   writeDepths(even, {0, 2.01, 4, 6});
-  EXPECT_TRUE(readOnly(even.path()).warnings.empty());
+  EXPECT_TRUE(readSingleSeries(even.path()).warnings.empty());
 }
 
 TEST(DicomSeries, RefusesSlicesOfDifferentGeometry) {
-  const TemporaryFolder turned, spaced;
-  writeDepths(turned, {0, 1});
-  write(turned / "2.dcm", {.position = {0, 0, 2}, .axes = oblique()});
-  expectRefused(turned / "2.dcm", turned.path(), "ImageOrientationPatient: differs from that of 0");
+  const TemporaryFolder rotated, spaced;
+  writeDepths(rotated, {0, 1});
+  write(rotated / "2.dcm", {.position = {0, 0, 2}, .axes = makeObliqueAxes()});
+  expectRefused(rotated / "2.dcm", rotated.path(),
+                "ImageOrientationPatient: differs from that of 0");
   writeDepths(spaced, {0, 1});
   write(spaced / "2.dcm", {.position = {0, 0, 2}, .rowSpacing = 2.1});
   expectRefused(spaced / "2.dcm", spaced.path(), "PixelSpacing: differs");
@@ -329,8 +330,8 @@ TEST(DicomSeries, RefusesFilesThatAreNoGreySlices) {
   expect("\x28\0\x52\x10"s, "x", "RescaleSlope or RescaleIntercept: is not one finite number");
   expect("\x20\0\x32\0"s, "x", "is missing, so nothing says where");
   expect("\x20\0\x37\0"s, "1\\1", "must be two directions");
-  const Path half = folder.write("half.dcm", bytes.substr(0, bytes.size() - 10));
-  fenestra::expectRefused(half, "is damaged, truncated or deflated", read(half));
+  const Path truncated = folder.write("half.dcm", bytes.substr(0, bytes.size() - 10));
+  fenestra::expectRefused(truncated, "is damaged, truncated or deflated", read(truncated));
   const Path none = folder.write("none.dcm", "what");
   fenestra::expectRefused(none, "is not a DICOM file", read(none));
   fenestra::expectRefused(folder / "absent",
@@ -341,20 +342,20 @@ TEST(DicomSeries, RefusesFilesThatAreNoGreySlices) {
 /// Damaged bytes must be read, or refused on one line.
 TEST(DicomSeries, DamagedBytesAreReadOrRefused) {
   const TemporaryFolder folder;
-  const std::string whole = bytesOf(write(folder / "a.dcm", {}));
+  const std::string original = bytesOf(write(folder / "a.dcm", {}));
   std::mt19937 random(11);
-  int readable = 0;
+  int readCount = 0;
   ::testing::internal::CaptureStderr();
   for (int i = 0; i < 100; ++i) {
-    std::string bytes = whole;
+    std::string bytes = original;
     if (i % 8 == 0)
-      bytes.resize(133 + random() % (whole.size() - 133));
+      bytes.resize(133 + random() % (original.size() - 133));
     for (int n = 0; n <= i % 4; ++n)
       bytes[132 + random() % (bytes.size() - 132)] = static_cast<char>(random());
     const Path file = folder.write(std::to_string(i) + ".dcm", bytes);
     try {
       readDicomVolume({file}, "x");
-      ++readable;
+      ++readCount;
     } catch (const Error& error) {
       EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
     }
@@ -364,7 +365,7 @@ TEST(DicomSeries, DamagedBytesAreReadOrRefused) {
 }
 
 /// Ball of soft tissue in air, as stored: values below `tissue` / 2 are air's.
-Volume ball(double tissue, double air) {
+Volume makeBall(double tissue, double air) {
   LargeArray<std::int16_t> voxels;
   for (int z = 0; z < 8; ++z)
     for (int y = 0; y < 16; ++y)
@@ -387,12 +388,13 @@ TEST(AirAtZero, OnlyACertainCtIsMoved) {
                      {1060.0, 100.0, false, false},  {700.0, 0.0, false, true},
                      {1500.0, 0.0, false, true},     {40.0, -1000.0, false, false},
                      {1060.0, -300.0, false, false}, {100.0, 0.0, false, false}};
-  for (const auto& one : cases) {
-    Volume volume = ball(one.tissue, one.air);
+  for (const auto& testCase : cases) {
+    Volume volume = makeBall(testCase.tissue, testCase.air);
     correctHounsfieldOffset(volume);
-    EXPECT_EQ(valueAt(volume, 8, 8, 4), one.tissue - (one.moves ? 1024.0 : 0.0)) << one.tissue;
-    EXPECT_EQ(volume.minimum, one.air - (one.moves ? 1024.0 : 0.0)) << one.tissue;
-    EXPECT_EQ(!volume.warnings.empty(), one.warns) << one.tissue << ' ' << one.air;
+    EXPECT_EQ(getVoxel(volume, 8, 8, 4), testCase.tissue - (testCase.moves ? 1024.0 : 0.0))
+        << testCase.tissue;
+    EXPECT_EQ(volume.minimum, testCase.air - (testCase.moves ? 1024.0 : 0.0)) << testCase.tissue;
+    EXPECT_EQ(!volume.warnings.empty(), testCase.warns) << testCase.tissue << ' ' << testCase.air;
   }
 }
 
@@ -402,19 +404,19 @@ TEST(DicomSeries, RealSeriesEqualsItsNiftiFile) {
   const Path folder = Path(FENESTRA_DATA) / "head_ct_slicer_dicom";
   if (!std::filesystem::exists(folder))
     GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
-  const Volume series = readOnly(folder / "dicom");
+  const Volume series = readSingleSeries(folder / "dicom");
   const Volume expected = readVolume(folder / "ct_hu.nii.gz");
   ASSERT_EQ(series.grid.voxelCount(), expected.grid.voxelCount());
   const Affine toExpected = expected.grid.worldToIndex * series.grid.indexToWorld;
   for (std::int64_t z = 0; z < series.grid.size.z(); ++z)
     for (std::int64_t y = 0; y < series.grid.size.y(); ++y)
       for (std::int64_t x = 0; x < series.grid.size.x(); ++x) {
-        const Vec3 place = toExpected * Size3(x, y, z).cast<double>();
-        const Vec3 voxel = place.array().round();
+        const Vec3 position = toExpected * Size3(x, y, z).cast<double>();
+        const Vec3 voxel = position.array().round();
         ASSERT_LT((position - voxel).norm(), 1e-3);
         const Size3 i = voxel.cast<std::int64_t>();
         ASSERT_TRUE((i.array() >= 0).all() && (i.array() < expected.grid.size.array()).all());
-        ASSERT_EQ(valueAt(series, x, y, z), valueAt(expected, i.x(), i.y(), i.z()));
+        ASSERT_EQ(getVoxel(series, x, y, z), getVoxel(expected, i.x(), i.y(), i.z()));
       }
 }
 

@@ -7,7 +7,7 @@
 namespace fenestra::testing::DigestTests {
 namespace {
 
-std::uint64_t valueOf(const std::string& text, std::size_t step) {
+std::uint64_t digestInSteps(const std::string& text, std::size_t step) {
   Digest digest;
   for (std::size_t at = 0; at < text.size(); at += step)
     digest.add(std::string_view(text).substr(at, step));
@@ -19,10 +19,10 @@ TEST(Digest, DependsOnTheBytesAloneNotOnTheirPieces) {
   for (int i = 0; i < 1000; ++i)
     text += static_cast<char>(i * i);
   for (const std::size_t step : {1U, 3U, 7U, 8U, 9U, 64U})
-    EXPECT_EQ(valueOf(text, step), valueOf(text, text.size()));
+    EXPECT_EQ(digestInSteps(text, step), digestInSteps(text, text.size()));
   const TemporaryFolder folder;
-  EXPECT_EQ(computeDigest(folder.write("a", text)), valueOf(text, 1));
-  EXPECT_EQ(computeDigest(folder / "a", 77), valueOf(text.substr(0, 77), 1));
+  EXPECT_EQ(computeDigest(folder.write("a", text)), digestInSteps(text, 1));
+  EXPECT_EQ(computeDigest(folder / "a", 77), digestInSteps(text.substr(0, 77), 1));
 }
 
 TEST(Digest, NoticesEveryBitAndTheLength) {
@@ -30,14 +30,14 @@ TEST(Digest, NoticesEveryBitAndTheLength) {
   for (std::size_t bit = 0; bit < 8 * text.size(); ++bit) {
     std::string other = text;
     other[bit / 8] = static_cast<char>(1U << bit % 8);
-    EXPECT_NE(valueOf(other, 40), valueOf(text, 40));
+    EXPECT_NE(digestInSteps(other, 40), digestInSteps(text, 40));
   }
-  EXPECT_NE(valueOf(text + '\0', 41), valueOf(text, 40));
-  EXPECT_NE(valueOf("", 1), valueOf(std::string(8, '\0'), 8));
+  EXPECT_NE(digestInSteps(text + '\0', 41), digestInSteps(text, 40));
+  EXPECT_NE(digestInSteps("", 1), digestInSteps(std::string(8, '\0'), 8));
 }
 
 TEST(Digest, StaysAsItIs) { // films and records of earlier runs hold it
-  EXPECT_EQ(valueOf("fenestra", 8), 7811035952669358778ULL);
+  EXPECT_EQ(digestInSteps("fenestra", 8), 7811035952669358778ULL);
 }
 
 TEST(Digest, MissingFileIsRefused) {

@@ -17,40 +17,41 @@ constexpr float infinite = std::numeric_limits<float>::infinity();
 constexpr float notANumber = std::numeric_limits<float>::quiet_NaN();
 
 /// Inverse of the sRGB encoding (IEC 61966-2-1).
-double decodedSrgb(double v) {
+double srgbToLinear(double v) {
   return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
 }
 
 /// Display values of one opaque pixel.
-std::vector<float> shown(DisplayView view, float r, float g, float b) {
+std::vector<float> displayPixel(DisplayView view, float r, float g, float b) {
   return toDisplay({r, g, b, 1.0f}, {view});
 }
 
-float shownGrey(DisplayView view, float value) {
-  const std::vector<float> rgba = shown(view, value, value, value);
+float displayGray(DisplayView view, float value) {
+  const std::vector<float> rgba = displayPixel(view, value, value, value);
   constexpr float rounding = 4e-6f; // a quarter of a 16-bit step
   EXPECT_NEAR(rgba[0], rgba[1], view == DisplayView::film ? rounding : 0.0f);
   EXPECT_NEAR(rgba[0], rgba[2], view == DisplayView::film ? rounding : 0.0f);
   return rgba[0];
 }
 
-double displayLight(DisplayView view, double value) {
-  return decodedSrgb(static_cast<double>(shownGrey(view, static_cast<float>(value))));
+double computeGrayLight(DisplayView view, double value) {
+  return srgbToLinear(static_cast<double>(displayGray(view, static_cast<float>(value))));
 }
 
 constexpr DisplayView photographic = DisplayView::photographic;
 constexpr DisplayView film = DisplayView::film;
 
-using Colour = std::array<double, 3>;
+using Color = std::array<double, 3>;
 
 /// Display light of one opaque pixel.
-Colour lightOf(DisplayView view, const Colour& c) {
-  const std::vector<float> rgba =
-      shown(view, static_cast<float>(c[0]), static_cast<float>(c[1]), static_cast<float>(c[2]));
-  return {decodedSrgb(double{rgba[0]}), decodedSrgb(double{rgba[1]}), decodedSrgb(double{rgba[2]})};
+Color computeLight(DisplayView view, const Color& c) {
+  const std::vector<float> rgba = displayPixel(view, static_cast<float>(c[0]),
+                                               static_cast<float>(c[1]), static_cast<float>(c[2]));
+  return {srgbToLinear(double{rgba[0]}), srgbToLinear(double{rgba[1]}),
+          srgbToLinear(double{rgba[2]})};
 }
 
-double luminance(const Colour& c) {
+double luminance(const Color& c) {
   return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
 }
 
@@ -60,15 +61,15 @@ double shoulder(double x) {
 }
 
 /// Contrast of the film about middle grey, and the gain after which the shoulder keeps that.
-Colour contrasted(Colour c) {
+Color applyContrast(Color c) {
   for (double& x : c)
     x = 1.21058 * 0.18 * std::pow(x / 0.18, 1.15);
   return c;
 }
 
 /// The film as specified: its shoulder by 60 % on luminance, by 40 % on channels.
-Colour blended(const Colour& scene) {
-  Colour c = contrasted(scene);
+Color blendShoulders(const Color& scene) {
+  Color c = applyContrast(scene);
   const double y = luminance(c), scale = y > 0.0 ? shoulder(y) / y : 1.0;
   for (double& x : c)
     x = 0.6 * scale * x + 0.4 * shoulder(x);
@@ -76,8 +77,8 @@ Colour blended(const Colour& scene) {
 }
 
 /// The film as the view says it: 0.4 of the roll-off on luminance, then the rest by channel.
-Colour filmed(const Colour& scene) {
-  Colour c = contrasted(scene);
+Color applyFilmView(const Color& scene) {
+  Color c = applyContrast(scene);
   const double scale = 1.0 / (1.0 + 0.4 * luminance(c));
   for (double& x : c) {
     const double y = x * scale;
@@ -87,7 +88,7 @@ Colour filmed(const Colour& scene) {
 }
 
 /// CIE 1976 L*a*b* of linear Rec. 709 under D65.
-Colour lab(const Colour& c) {
+Color toCieLab(const Color& c) {
   const auto f = [](double t) { return t > 0.008856 ? std::cbrt(t) : 7.787 * t + 16.0 / 116.0; };
   const double x = f((0.4124 * c[0] + 0.3576 * c[1] + 0.1805 * c[2]) / 0.9505);
   const double y = f(luminance(c));
@@ -95,21 +96,21 @@ Colour lab(const Colour& c) {
   return {116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)};
 }
 
-double distance(const Colour& a, const Colour& b) {
+double colorDifference(const Color& a, const Color& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
 /// The sRGB gamut in five steps a channel, from 4 stops under to 4 over.
-std::vector<Colour> exposedGamut() {
-  std::vector<Colour> colours;
+std::vector<Color> makeExposedGamut() {
+  std::vector<Color> colors;
   for (int stops = -4; stops <= 4; ++stops)
     for (int i = 1; i < 216; ++i) {
-      Colour c = {i / 36 / 5.0, i / 6 % 6 / 5.0, i % 6 / 5.0};
+      Color c = {i / 36 / 5.0, i / 6 % 6 / 5.0, i % 6 / 5.0};
       for (double& x : c)
-        x = decodedSrgb(x) * std::exp2(stops);
-      colours.push_back(c);
+        x = srgbToLinear(x) * std::exp2(stops);
+      colors.push_back(c);
     }
-  return colours;
+  return colors;
 }
 
 } // namespace
@@ -118,23 +119,23 @@ TEST(PhotographicView, FollowsItsFormula) {
   const double a = 0.18;
   for (double x = 0.001; x < 4.0; x *= 1.1) {
     const double expected = x <= a ? x : 1.0 - (1.0 - a) * std::exp(-(x - a) / (1.0 - a));
-    EXPECT_NEAR(displayLight(photographic, x), expected, 2e-3) << x;
+    EXPECT_NEAR(computeGrayLight(photographic, x), expected, 2e-3) << x;
   }
 }
 
 TEST(PhotographicView, KeepsBlackAndMiddleGreyAndRollsOffBelowWhite) {
-  EXPECT_EQ(shownGrey(photographic, 0.0f), 0.0f);
-  EXPECT_NEAR(displayLight(photographic, 0.18), 0.18, 1e-3);
-  EXPECT_GT(displayLight(photographic, 4.0), 0.97);
-  EXPECT_LT(displayLight(photographic, 4.0), 0.995);
-  EXPECT_EQ(std::lround(255.0f * shownGrey(photographic, 65504.0f)), 255);
+  EXPECT_EQ(displayGray(photographic, 0.0f), 0.0f);
+  EXPECT_NEAR(computeGrayLight(photographic, 0.18), 0.18, 1e-3);
+  EXPECT_GT(computeGrayLight(photographic, 4.0), 0.97);
+  EXPECT_LT(computeGrayLight(photographic, 4.0), 0.995);
+  EXPECT_EQ(std::lround(255.0f * displayGray(photographic, 65504.0f)), 255);
 }
 
 TEST(PhotographicView, RisesStrictlyUpTo4AndNeverFalls) {
   float previous = 0.0f;
   for (double stops = -12.0; stops < 20.0; stops += 0.01) {
     const double x = 0.18 * std::exp2(stops);
-    const float y = shownGrey(photographic, static_cast<float>(x));
+    const float y = displayGray(photographic, static_cast<float>(x));
     if (x < 4.0) {
       EXPECT_GT(y, previous) << x;
       EXPECT_LT(y, 1.0f) << x;
@@ -146,36 +147,36 @@ TEST(PhotographicView, RisesStrictlyUpTo4AndNeverFalls) {
 }
 
 TEST(PhotographicView, KeepsDarkTissueAndTheOrderOfChannels) {
-  const std::vector<float> dark = shown(photographic, 0.17f, 0.06f, 0.05f);
-  EXPECT_NEAR(decodedSrgb(dark[0]), 0.17, 1e-3);
-  EXPECT_NEAR(decodedSrgb(dark[1]), 0.06, 1e-3);
-  EXPECT_NEAR(decodedSrgb(dark[2]), 0.05, 1e-3);
+  const std::vector<float> dark = displayPixel(photographic, 0.17f, 0.06f, 0.05f);
+  EXPECT_NEAR(srgbToLinear(dark[0]), 0.17, 1e-3);
+  EXPECT_NEAR(srgbToLinear(dark[1]), 0.06, 1e-3);
+  EXPECT_NEAR(srgbToLinear(dark[2]), 0.05, 1e-3);
   for (const float exposure : {0.5f, 1.0f, 2.0f, 4.0f}) {
     const std::vector<float> muscle =
-        shown(photographic, 0.55f * exposure, 0.18f * exposure, 0.14f * exposure);
+        displayPixel(photographic, 0.55f * exposure, 0.18f * exposure, 0.14f * exposure);
     EXPECT_GT(muscle[0], muscle[1]);
     EXPECT_GT(muscle[1], muscle[2]);
   }
 }
 
 TEST(FilmView, FollowsItsFormula) {
-  for (const Colour& c : exposedGamut()) {
-    const Colour light = lightOf(film, c), expected = filmed(c);
+  for (const Color& c : makeExposedGamut()) {
+    const Color light = computeLight(film, c), expected = applyFilmView(c);
     for (std::size_t i = 0; i < 3; ++i)
       EXPECT_NEAR(light[i], expected[i], 2e-3) << c[0] << " " << c[1] << " " << c[2];
   }
 }
 
 TEST(FilmView, ComesNearAShoulderOfLuminanceBlendedWithOneOfChannels) {
-  double sum = 0.0, greatest = 0.0;
+  double sum = 0.0, maximum = 0.0;
   int count = 0;
-  for (const Colour& c : exposedGamut()) {
-    const Colour expected = blended(c);
+  for (const Color& c : makeExposedGamut()) {
+    const Color expected = blendShoulders(c);
     if (std::ranges::max(expected) > 1.0)
       continue; // the blend leaves the gamut
-    const double difference = distance(lab(lightOf(film, c)), lab(expected));
+    const double difference = colorDifference(toCieLab(computeLight(film, c)), toCieLab(expected));
     sum += difference;
-    greatest = std::max(greatest, difference);
+    maximum = std::max(maximum, difference);
     ++count;
   }
   EXPECT_GT(count, 1200);
@@ -184,22 +185,21 @@ TEST(FilmView, ComesNearAShoulderOfLuminanceBlendedWithOneOfChannels) {
 }
 
 TEST(FilmView, KeepsBlackAndMiddleGreyAndWhitesBelowThoseOfPhotographic) {
-  EXPECT_EQ(shown(film, 0.0f, 0.0f, 0.0f), (std::vector<float>{0.0f, 0.0f, 0.0f, 1.0f}));
-  EXPECT_NEAR(displayLight(film, 0.18), 0.18, 1e-3);
-  EXPECT_NEAR(displayLight(film, 1.0), 0.637, 2e-3);
-  EXPECT_NEAR(displayLight(photographic, 1.0), 0.698, 2e-3);
-  EXPECT_LT(displayLight(film, 3.0), 0.995);
-  EXPECT_EQ(std::lround(255.0f * shownGrey(film, 3.3f)), 255);
-  EXPECT_GT(shownGrey(film, 65504.0f), 0.999999f);
+  EXPECT_EQ(displayPixel(film, 0.0f, 0.0f, 0.0f), (std::vector<float>{0.0f, 0.0f, 0.0f, 1.0f}));
+  EXPECT_NEAR(computeGrayLight(film, 0.18), 0.18, 1e-3);
+  EXPECT_NEAR(computeGrayLight(film, 1.0), 0.637, 2e-3);
+  EXPECT_NEAR(computeGrayLight(photographic, 1.0), 0.698, 2e-3);
+  EXPECT_LT(computeGrayLight(film, 3.0), 0.995);
+  EXPECT_EQ(std::lround(255.0f * displayGray(film, 3.3f)), 255);
+  EXPECT_GT(displayGray(film, 65504.0f), 0.999999f);
 }
 
 TEST(FilmView, RisesInEveryChannelAsAColourGetsBrighter) {
-  for (const Colour& hue :
-       {Colour{1, 1, 1}, Colour{1, 0.3, 0.2}, Colour{0, 0, 1}, Colour{0, 1, 0.1}}) {
-    Colour previous = {};
+  for (const Color& hue : {Color{1, 1, 1}, Color{1, 0.3, 0.2}, Color{0, 0, 1}, Color{0, 1, 0.1}}) {
+    Color previous = {};
     for (double stops = -12.0; stops < 20.0; stops += 0.02) {
       const double x = 0.18 * std::exp2(stops);
-      const Colour light = lightOf(film, {x * hue[0], x * hue[1], x * hue[2]});
+      const Color light = computeLight(film, {x * hue[0], x * hue[1], x * hue[2]});
       for (std::size_t i = 0; i < 3; ++i)
         EXPECT_GE(light[i], previous[i] - 4e-6) << x << " " << i;
       EXPECT_TRUE(std::ranges::max(light) > 0.9999 || luminance(light) > luminance(previous)) << x;
@@ -211,23 +211,23 @@ TEST(FilmView, RisesInEveryChannelAsAColourGetsBrighter) {
 TEST(StandardView, IsTheSrgbEncodingWithClipping) {
   constexpr DisplayView view = DisplayView::standard;
   for (const double x : {0.0, 0.001, 0.01, 0.18, 0.5, 0.9, 1.0})
-    EXPECT_NEAR(displayLight(view, x), x, 2e-5) << x;
-  EXPECT_EQ(std::lround(65535.0f * shownGrey(view, 1.5f)), 65535);
-  EXPECT_LE(shownGrey(view, 1.5f), 1.0f);
-  EXPECT_EQ(shownGrey(view, -0.5f), 0.0f);
+    EXPECT_NEAR(computeGrayLight(view, x), x, 2e-5) << x;
+  EXPECT_EQ(std::lround(65535.0f * displayGray(view, 1.5f)), 65535);
+  EXPECT_LE(displayGray(view, 1.5f), 1.0f);
+  EXPECT_EQ(displayGray(view, -0.5f), 0.0f);
 }
 
 TEST(DisplayTransform, ShowsNanAsBlackAndInfinityAsWhite) {
   for (const DisplayView view : {film, photographic, DisplayView::standard}) {
-    EXPECT_EQ(shownGrey(view, notANumber), 0.0f);
-    EXPECT_EQ(shownGrey(view, -infinite), 0.0f);
-    EXPECT_GT(shownGrey(view, infinite), 0.999f);
-    EXPECT_GT(shownGrey(view, std::numeric_limits<float>::max()), 0.999f);
+    EXPECT_EQ(displayGray(view, notANumber), 0.0f);
+    EXPECT_EQ(displayGray(view, -infinite), 0.0f);
+    EXPECT_GT(displayGray(view, infinite), 0.999f);
+    EXPECT_GT(displayGray(view, std::numeric_limits<float>::max()), 0.999f);
   }
 }
 
 TEST(DisplayTransform, HandlesEveryPixelAlike) {
-  const float grey = shownGrey(photographic, 0.3f);
+  const float gray = displayGray(photographic, 0.3f);
   std::vector<float> many;
   for (int i = 0; i < 1000; ++i)
     many.insert(many.end(), {0.3f, 0.3f, 0.3f, 1.0f});
@@ -242,17 +242,17 @@ TEST(DisplayTransform, IgnoresTheEnvironmentAndPrintsNothing) {
   ::setenv("OCIO_ACTIVE_VIEWS", "Standard", 1);
   ::setenv("OCIO_ACTIVE_DISPLAYS", "Cinema", 1);
   ::testing::internal::CaptureStderr();
-  const float shown = shownGrey(photographic, 1.0f);
+  const float displayPixel = displayGray(photographic, 1.0f);
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
-  EXPECT_LT(shown, 0.9f); // photographic: Standard would clip 1 to 1
+  EXPECT_LT(displayPixel, 0.9f); // photographic: Standard would clip 1 to 1
   ::unsetenv("OCIO");
   ::unsetenv("OCIO_ACTIVE_VIEWS");
   ::unsetenv("OCIO_ACTIVE_DISPLAYS");
 }
 
 TEST(ToDisplay, ExposureMultipliesRadianceBeforeTheTone) {
-  const std::vector<float> picture = {0.04f, 0.02f, 0.3f, 0.5f};
-  std::vector<float> brighter = picture, darker = picture;
+  const std::vector<float> pixels = {0.04f, 0.02f, 0.3f, 0.5f};
+  std::vector<float> brighter = pixels, darker = pixels;
   for (std::size_t c = 0; c < 3; ++c) {
     brighter[c] *= 4.0f;
     darker[c] /= 8.0f;

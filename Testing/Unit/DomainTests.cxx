@@ -18,10 +18,10 @@ Vec3 randomPoint(Random& random, double size) {
 }
 
 /// Map that rotates, shears and stretches about the origin, and sometimes mirrors.
-Affine randomMap(Random& random, double size) {
+Affine makeRandomMap(Random& random, double size) {
   Affine map = Affine::Identity();
-  const Mat3 anything(randomPoint(random, 1), randomPoint(random, 1), randomPoint(random, 1));
-  const Mat3 shear = Mat3::Identity() + 0.3 * anything;
+  const Mat3 randomMatrix(randomPoint(random, 1), randomPoint(random, 1), randomPoint(random, 1));
+  const Mat3 shear = Mat3::Identity() + 0.3 * randomMatrix;
   map.linear() =
       makeRotation(uniform(random, -3, 3), randomPoint(random, 1).normalized()).linear() * shear *
       Mat3::Diagonal({size, uniform(random, 0.2, 1) * size, uniform(random, 0.2, 1) * size});
@@ -31,15 +31,15 @@ Affine randomMap(Random& random, double size) {
   return map;
 }
 
-Grid randomGrid(Random& random) {
+Grid makeRandomGrid(Random& random) {
   const Size3 size(5, 9, 7);
-  return {size, randomMap(random, 1.0) *
+  return {size, makeRandomMap(random, 1.0) *
                     makeTranslation(-0.5 * (size.array() - 1).cast<double>().matrix())};
 }
 
 /// Distance of a world point outside the domain, in the boxes' own units; 0: on the surface,
 /// negative: inside.
-double outside(const Grid& grid, const CropBox& crop, const Vec3& world) {
+double distanceOutside(const Grid& grid, const CropBox& crop, const Vec3& world) {
   const Vec3 index = grid.worldToIndex * world;
   const Box box = grid.indexBox();
   const double beyondGrid =
@@ -51,11 +51,11 @@ TEST(Domain, ClipIsTheIntersectionOfGridAndCrop) {
   Random random(21, 0, 0);
   int hits = 0;
   for (int trial = 0; trial < 2000; ++trial) {
-    const Grid grid = randomGrid(random);
-    const CropBox crop(randomMap(random, 3.0));
-    const Vec3 through = crop.boxToWorld * randomPoint(random, 1.0);
+    const Grid grid = makeRandomGrid(random);
+    const CropBox crop(makeRandomMap(random, 3.0));
+    const Vec3 target = crop.boxToWorld * randomPoint(random, 1.0);
     Ray ray{randomPoint(random, 6.0), Vec3::Zero()};
-    ray.direction = (through - ray.origin).normalized();
+    ray.direction = (target - ray.origin).normalized();
     if (trial % 3 == 0) // along an axis of the world, or of a box
       ray.direction = Vec3::Unit(trial % 9 / 3);
     else if (trial % 3 == 1)
@@ -65,8 +65,8 @@ TEST(Domain, ClipIsTheIntersectionOfGridAndCrop) {
     hits += inside.isEmpty() ? 0 : 1;
     for (int i = 0; i < 200; ++i) {
       const double t = range.begin + (i + 0.5) / 200.0 * (range.end - range.begin);
-      const double beyond = outside(grid, crop, ray.at(t));
-      if (std::abs(beyond) > 1e-9) {
+      const double distance = distanceOutside(grid, crop, ray.at(t));
+      if (std::abs(distance) > 1e-9) {
         ASSERT_EQ(distance < 0.0, !inside.isEmpty() && t >= inside.begin && t <= inside.end)
             << "trial " << trial << " at " << t;
       }
@@ -75,7 +75,7 @@ TEST(Domain, ClipIsTheIntersectionOfGridAndCrop) {
       continue;
     for (const double end : {inside.begin, inside.end}) {
       if (end != range.begin && end != range.end) {
-        ASSERT_NEAR(outside(grid, crop, ray.at(end)), 0.0, 1e-9) << "no step, no voxel";
+        ASSERT_NEAR(distanceOutside(grid, crop, ray.at(end)), 0.0, 1e-9) << "no step, no voxel";
       }
     }
   }
@@ -86,7 +86,7 @@ TEST(Domain, ClipIsTheIntersectionOfGridAndCrop) {
 TEST(Domain, WithoutACropEqualsTheGrid) {
   Random random(22, 0, 0);
   for (int trial = 0; trial < 200; ++trial) {
-    const Grid grid = randomGrid(random);
+    const Grid grid = makeRandomGrid(random);
     const Ray ray = transformRay(grid.worldToIndex,
                                  {randomPoint(random, 6.0), randomPoint(random, 1.0).normalized()});
     const Interval expected = grid.indexBox().clip(ray, {0.5, 9.0});
@@ -103,9 +103,9 @@ TEST(Domain, RayInAFaceIsInside) {
   half.translation() = Vec3::Constant(2.0);
   const Domain domain(grid, CropBox(half));
   for (const double face : {1.0, 3.0}) {
-    const Interval along = domain.clip({Vec3(-4, face, 2), Vec3::UnitX()});
-    EXPECT_EQ(along.begin, 5.0);
-    EXPECT_EQ(along.end, 7.0);
+    const Interval interval = domain.clip({Vec3(-4, face, 2), Vec3::UnitX()});
+    EXPECT_EQ(interval.begin, 5.0);
+    EXPECT_EQ(interval.end, 7.0);
   }
   EXPECT_TRUE(domain.clip({Vec3(-4, std::nextafter(3.0, 4.0), 2), Vec3::UnitX()}).isEmpty());
   EXPECT_TRUE(domain.clip({Vec3(-4, 2, 2), -Vec3::UnitX()}).isEmpty()) << "behind the ray";
@@ -116,20 +116,20 @@ TEST(Domain, CornersSpanTheDomain) {
   Random random(23, 0, 0);
   int cut = 0;
   for (int trial = 0; trial < 200; ++trial) {
-    const Grid grid = randomGrid(random);
-    const CropBox crop(trial % 4 ? randomMap(random, 3.0) // else exactly the grid's own box
+    const Grid grid = makeRandomGrid(random);
+    const CropBox crop(trial % 4 ? makeRandomMap(random, 3.0) // else exactly the grid's own box
                                  : grid.indexToWorld * makeTranslation({2, 4, 3}) *
                                        makeScaling(Vec3(2.5, 4.5, 3.5)));
     const std::vector<Vec3> corners = Domain(grid, crop).indexCorners();
     for (const Vec3& corner : corners)
-      ASSERT_LT(outside(grid, crop, grid.indexToWorld * corner), 1e-7);
+      ASSERT_LT(distanceOutside(grid, crop, grid.indexToWorld * corner), 1e-7);
     std::vector<Vec3> inside;
     const Box box = grid.indexBox();
     for (int i = 0; i < 2000; ++i) {
       const Vec3 index(uniform(random, box.lower.x(), box.upper.x()),
                        uniform(random, box.lower.y(), box.upper.y()),
                        uniform(random, box.lower.z(), box.upper.z()));
-      if (outside(grid, crop, grid.indexToWorld * index) < 0.0)
+      if (distanceOutside(grid, crop, grid.indexToWorld * index) < 0.0)
         inside.push_back(index);
     }
     ASSERT_FALSE(corners.empty() && !inside.empty());

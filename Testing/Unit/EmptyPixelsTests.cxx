@@ -9,7 +9,7 @@ namespace fenestra::testing::EmptyPixelsTests {
 namespace {
 
 /// Small opaque ball off the centre of an empty box, rotated against the view.
-TestScene ballScene(Projection projection, double distance) {
+TestScene makeBallScene(Projection projection, double distance) {
   Affine map = Affine::Identity();
   map.linear() = makeRotation(0.4, Vec3(1, 2, 3).normalized()).linear() * 1.5;
   const Vec3 middle(30.0, 22.0, 12.0);
@@ -36,7 +36,7 @@ struct View {
 class EmptyPixelsOf : public ::testing::TestWithParam<View> {};
 
 TEST_P(EmptyPixelsOf, CertainPixelsAreMissedByEverySample) {
-  const TestScene scene = ballScene(GetParam().projection, GetParam().distance);
+  const TestScene scene = makeBallScene(GetParam().projection, GetParam().distance);
   RenderSettings settings;
   settings.samples = 64;
   const Film film = scene.render(settings).film;
@@ -45,19 +45,20 @@ TEST_P(EmptyPixelsOf, CertainPixelsAreMissedByEverySample) {
   settings.path.background.kind = Background::Kind::environment;
   settings.samples = 256;
   const Film all = mapped.render(settings).film;
-  std::size_t certain = 0, missed = 0;
+  std::size_t deterministic = 0, missed = 0;
   for (std::size_t i = 0; i < film.pixelCount(); ++i) {
     const PixelSums& pixel = film.pixels()[i];
     EXPECT_EQ(all.pixels()[i].samples, 256U);
     EXPECT_EQ(pixel.samples, pixel.isDeterministic ? 1U : 64U);
     EXPECT_TRUE(!pixel.isDeterministic || all.pixels()[i].collidedSamples == 0) << "pixel " << i;
-    certain += pixel.isDeterministic ? 1 : 0;
+    deterministic += pixel.isDeterministic ? 1 : 0;
     missed += all.pixels()[i].collidedSamples == 0 ? 1 : 0;
   }
-  EXPECT_EQ(film.sampleCounts().deterministicPixels, certain);
+  EXPECT_EQ(film.sampleCounts().deterministicPixels, deterministic);
   EXPECT_EQ(film.sampleCounts().min, 64U);
   if (GetParam().distance > 50.0) {
-    EXPECT_GT(static_cast<double>(certain), 0.8 * static_cast<double>(missed)) << "of " << missed;
+    EXPECT_GT(static_cast<double>(deterministic), 0.8 * static_cast<double>(missed))
+        << "of " << missed;
   }
 }
 
@@ -68,7 +69,7 @@ INSTANTIATE_TEST_SUITE_P(Views, EmptyPixelsOf,
                          [](const auto& info) { return info.param.name; });
 
 TEST(EmptyPixels, FilledPictureOfOneColumnHasNone) {
-  TestScene scene = ballScene(Projection::orthographic, 100.0);
+  TestScene scene = makeBallScene(Projection::orthographic, 100.0);
   scene.transfer = linearTransfer(0.0, Rgb::Constant(0.7));
   scene.transfer.extinction = ScalarFunction({knot(0.0, 1.0)});
   scene.pose.scale = 5.0;
@@ -85,7 +86,7 @@ TEST(EmptyPixels, DefaultHasNone) {
 }
 
 TEST(EmptyPixels, PictureThatMeetsNothingHasOnlyEmptyPixels) {
-  TestScene scene = ballScene(Projection::orthographic, 100.0);
+  TestScene scene = makeBallScene(Projection::orthographic, 100.0);
   scene.transfer = linearTransfer(0.0, Rgb::Constant(0.7));
   RenderSettings settings;
   settings.noise = 0.1;

@@ -19,7 +19,7 @@ RenderResult renderResult(int width, int height, double noise) {
   settings.samples = 21;
   settings.noise = noise;
   settings.path.wantNormals = true;
-  return wavyScene(width, height).render(settings);
+  return makeWavyScene(width, height).render(settings);
 }
 
 RenderResult readCheckpoint(const std::filesystem::path& path) {

@@ -26,7 +26,7 @@ inline void expectIdentical(const Film& a, const Film& b) {
 }
 
 /// Waves of matter under a sky, a sun and a lamp.
-inline TestScene wavyScene(int width = 33, int height = 21) {
+inline TestScene makeWavyScene(int width = 33, int height = 21) {
   const Grid grid = centredGrid({20, 20, 20}, {1.0, 1.0, 1.0});
   TestScene s{makeVolume<std::int16_t>(
                   grid, [](const Vec3& p) { return 100.0 * std::sin(p.x()) * std::cos(p.y()); }),

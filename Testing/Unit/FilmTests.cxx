@@ -57,7 +57,7 @@ TEST(PixelSums, OneSampleHasNoError) {
 }
 
 /// Standard error of samples in blocks, from its definition.
-double errorOf(const std::vector<double>& values, std::size_t block) {
+double computeError(const std::vector<double>& values, std::size_t block) {
   struct Block {
     double sum = 0.0, size = 0.0;
   };
@@ -79,9 +79,9 @@ double errorOf(const std::vector<double>& values, std::size_t block) {
 
 TEST(PixelSums, ErrorComesFromBlocks) {
   for (const std::uint32_t block : {2U, 4U, 8U}) {
-    PixelSums sums, far;
+    PixelSums sums, shifted;
     sums.blockSize = block;
-    far.blockSize = block;
+    shifted.blockSize = block;
     std::vector<double> values;
     for (std::uint64_t i = 0; i < 70; ++i) {
       values.push_back(Random(3, i, 0).uniform());
@@ -89,10 +89,10 @@ TEST(PixelSums, ErrorComesFromBlocks) {
       sample.radiance = Rgb::Constant(values.back());
       sums.add(sample);
       sample.radiance += 1e6; // sums of squares would cancel
-      far.add(sample);
+      shifted.add(sample);
       if (i == 0)
         continue;
-      const double expected = errorOf(values, block);
+      const double expected = computeError(values, block);
       ASSERT_TRUE(std::isfinite(expected));
       EXPECT_NEAR(sums.standardError()[0], expected, 1e-12) << i + 1 << " samples";
       EXPECT_NEAR(shifted.standardError()[0], expected, 1e-6) << i + 1 << " samples";

@@ -71,7 +71,7 @@ TEST(FocusCells, RayMeetsThemWhereTheIndicatorFirstReachesAHalf) {
   const Grid grid({3, 3, 3}, Affine::Identity());
   int hits = 0;
   for (int trial = 0; trial < briefly(40); ++trial) {
-    const Mask mask = maskOf(grid, [&](const Vec3&) { return random.uniform() < 0.4; });
+    const Mask mask = makeMask(grid, [&](const Vec3&) { return random.uniform() < 0.4; });
     const FocusCells cells(mask);
     auto [rays, worldRays] = RandomRays(random, cells);
     cells.findHits(rays);
@@ -116,7 +116,7 @@ TEST(FocusCells, SummitOfAMissingRayEqualsDenseSampling) {
   int captured = 0, hidden = 0, mismatches = 0;
   for (const std::uint8_t maxValue : {std::uint8_t{1}, std::uint8_t{200}})
     for (int trial = 0; trial < briefly(40); ++trial) {
-      Mask mask = maskOf(grid, [&](const Vec3&) { return random.uniform() < 0.3; });
+      Mask mask = makeMask(grid, [&](const Vec3&) { return random.uniform() < 0.3; });
       mask.maxValue = maxValue;
       for (std::uint8_t& voxel : mask.voxels)
         voxel = static_cast<std::uint8_t>(maxValue == 1 ? voxel : 200.0 * random.uniform());
@@ -197,10 +197,10 @@ TEST(CellCubic, TouchingConstantAndLinearRootsAreFound) {
 }
 
 TEST(FocusDepth, BoxFacesLieAtTheVoxelsFaces) {
-  const Grid grid = centredGrid({40, 40, 40}, {1.0, 0.7, 1.3});
-  const Mask mask = boxMask(grid, {-10.1, -7.1, -13.1}, {10.1, 7.1, 13.1});
+  const Grid grid = makeCenteredGrid({40, 40, 40}, {1.0, 0.7, 1.3});
+  const Mask mask = makeBoxMask(grid, {-10.1, -7.1, -13.1}, {10.1, 7.1, 13.1});
   for (const auto projection : {Projection::orthographic, Projection::perspective}) {
-    const Camera camera = anteriorCamera(projection, 200.0, 30.0, 64, 48);
+    const Camera camera = makeAnteriorCamera(projection, 200.0, 30.0, 64, 48);
     const FocusDepth focus = FocusTracer(camera, grid, mask).traceDepths();
     const double face = 200.0 - 0.7 * 10.0; // ten voxels to each side of the origin
     EXPECT_NEAR(findDepth(focus, {0.3, 0.3}), face, 1e-5);
@@ -210,9 +210,9 @@ TEST(FocusDepth, BoxFacesLieAtTheVoxelsFaces) {
 }
 
 TEST(FocusDepth, RegionsCountFocusContextAndOutside) {
-  const Grid grid = centredGrid({20, 20, 20});
-  const Mask mask = boxMask(grid, Vec3::Constant(-4), Vec3::Constant(4));
-  const Camera camera = anteriorCamera(Projection::orthographic, 50.0, 20.0, 40, 40);
+  const Grid grid = makeCenteredGrid({20, 20, 20});
+  const Mask mask = makeBoxMask(grid, Vec3::Constant(-4), Vec3::Constant(4));
+  const Camera camera = makeAnteriorCamera(Projection::orthographic, 50.0, 20.0, 40, 40);
   const FocusDepth focus = FocusTracer(camera, grid, mask).traceDepths();
   std::array<int, 3> count{};
   for (const Region region : focus.regions)
@@ -250,8 +250,8 @@ void compareWithMarching(const Camera& camera, const Domain& volume, const Mask&
 }
 
 TEST(FocusDepth, IsTheSameInEveryInstructionSet) {
-  const Grid grid = centredGrid({70, 61, 52}, {1.0, 0.7, 1.3});
-  const Mask mask = maskOf(grid, [](const Vec3& p) { // two shells, one inside the other
+  const Grid grid = makeCenteredGrid({70, 61, 52}, {1.0, 0.7, 1.3});
+  const Mask mask = makeMask(grid, [](const Vec3& p) { // two shells, one inside the other
     return std::abs(p.norm() - 18.0) < 2.0 || std::abs((p - Vec3(3, 2, 1)).norm() - 9.0) < 1.5;
   });
   CameraPose pose;
@@ -288,7 +288,7 @@ TEST(FocusDepth, AgreesWithMarchingInObliqueGridsAndViews) {
                                        randomPoint(random, -1, 1)));
     map.translation() = map.linear() * Vec3::Constant(-10.0);
     const Grid grid({21, 21, 21}, map);
-    const Mask mask = maskOf(grid, [&](const Vec3& p) {
+    const Mask mask = makeMask(grid, [&](const Vec3& p) {
       return p.norm() < 5.0 || (p.norm() < 8.0 && random.uniform() < 0.2);
     });
     CameraPose pose;
@@ -306,8 +306,8 @@ TEST(FocusDepth, AgreesWithMarchingInObliqueGridsAndViews) {
 /// Grids, crops and views of every kind: the eye anywhere, the volume anywhere in the picture.
 TEST(FocusDepth, RegionIsWhatItsRayMeets) {
   Random random(4, 0, 0);
-  const Grid grid = centredGrid({20, 24, 16}, {1.0, 0.8, 1.5});
-  const Mask mask = maskOf(grid, [&](const Vec3& p) {
+  const Grid grid = makeCenteredGrid({20, 24, 16}, {1.0, 0.8, 1.5});
+  const Mask mask = makeMask(grid, [&](const Vec3& p) {
     return (p - Vec3(3, 2, -4)).norm() < 4.0 || (p + Vec3(5, 3, -2)).norm() < 1.5;
   });
   std::array<int, 3> count{};
@@ -345,27 +345,27 @@ TEST(FocusDepth, RegionIsWhatItsRayMeets) {
 }
 
 TEST(FocusDepth, RayThatStartsInsideMeetsTheFocusAtZero) {
-  const Grid grid = centredGrid({20, 20, 20});
-  const Mask mask = sphereMask(grid, 6.0);
-  const Camera camera = anteriorCamera(Projection::perspective, 1.0, 1.0, 8, 8);
+  const Grid grid = makeCenteredGrid({20, 20, 20});
+  const Mask mask = makeSphereMask(grid, 6.0);
+  const Camera camera = makeAnteriorCamera(Projection::perspective, 1.0, 1.0, 8, 8);
   EXPECT_EQ(findDepth(FocusTracer(camera, grid, mask).traceDepths(), {0.0, 0.0}), 0.0);
 }
 
 TEST(FocusDepth, FocusBeyondTheVolumeIsCutAtItsFace) {
-  const Grid volume = centredGrid({20, 20, 20});
-  const Mask mask = sphereMask(centredGrid({40, 40, 40}), 15.0);
-  const Camera camera = anteriorCamera(Projection::orthographic, 50.0, 8.0, 16, 16);
+  const Grid volume = makeCenteredGrid({20, 20, 20});
+  const Mask mask = makeSphereMask(makeCenteredGrid({40, 40, 40}), 15.0);
+  const Camera camera = makeAnteriorCamera(Projection::orthographic, 50.0, 8.0, 16, 16);
   EXPECT_NEAR(findDepth(FocusTracer(camera, volume, mask).traceDepths(), {0.0, 0.0}), 40.0, 1e-5);
 }
 
 TEST(FocusDepth, CropCutsTheFocusAndItsContext) {
-  const Grid volume = centredGrid({40, 40, 40});
-  const Mask mask = sphereMask(volume, 10.0);
+  const Grid volume = makeCenteredGrid({40, 40, 40});
+  const Mask mask = makeSphereMask(volume, 10.0);
   // Crop that keeps matter behind a plane through the origin, whose depth grows 1 mm per mm to the
   // right.
   const CropBox crop(makeRotation(-pi / 4, Vec3::UnitZ()) * makeTranslation({0.0, 30.0, 0.0}) *
                      makeScaling(Vec3(60.0, 30.0, 18.0)));
-  const Camera camera = anteriorCamera(Projection::orthographic, 50.0, 20.0, 40, 40);
+  const Camera camera = makeAnteriorCamera(Projection::orthographic, 50.0, 20.0, 40, 40);
   const FocusDepth focus = FocusTracer(camera, {volume, crop}, mask).traceDepths();
   const auto region = [&](const Vec2& at) {
     for (std::int64_t row = 0; row < focus.depth.rows(); ++row)
@@ -384,19 +384,20 @@ TEST(FocusDepth, CropCutsTheFocusAndItsContext) {
 }
 
 TEST(FocusDepth, MaskWithoutMarginEndsHalfAVoxelBeyondItsCentres) {
-  const Grid volume = centredGrid({20, 20, 20});
-  const Mask mask = maskOf(centredGrid({2, 1, 2}, {2, 2, 2}), [](const Vec3&) { return true; });
-  const Camera camera = anteriorCamera(Projection::orthographic, 50.0, 8.0, 64, 64);
+  const Grid volume = makeCenteredGrid({20, 20, 20});
+  const Mask mask =
+      makeMask(makeCenteredGrid({2, 1, 2}, {2, 2, 2}), [](const Vec3&) { return true; });
+  const Camera camera = makeAnteriorCamera(Projection::orthographic, 50.0, 8.0, 64, 64);
   const FocusDepth focus = FocusTracer(camera, volume, mask).traceDepths();
   EXPECT_NEAR(findDepth(focus, {0.1, 0.1}), 49.0, 1e-5);
   EXPECT_EQ(findDepth(focus, {2.2, 0.1}), infinity);
 }
 
 TEST(FocusDepth, FarEyeKeepsThePrecision) {
-  const Grid grid = centredGrid({40, 40, 40});
-  const Mask mask = boxMask(grid, Vec3::Constant(-10), Vec3::Constant(10));
+  const Grid grid = makeCenteredGrid({40, 40, 40});
+  const Mask mask = makeBoxMask(grid, Vec3::Constant(-10), Vec3::Constant(10));
   for (const auto projection : {Projection::orthographic, Projection::perspective}) {
-    const Camera camera = anteriorCamera(projection, 1e6, 30.0, 32, 32);
+    const Camera camera = makeAnteriorCamera(projection, 1e6, 30.0, 32, 32);
     EXPECT_NEAR(findDepth(FocusTracer(camera, grid, mask).traceDepths(), {1.0, 1.0}) - 1e6, -10.0,
                 1e-5);
   }

@@ -14,7 +14,7 @@ namespace {
 
 /// Ball of single voxels, so that what lies under one cell of the buffer tells nothing of the next.
 Mask makeDust(const Grid& grid) {
-  Mask mask = sphereMask(grid, 20.3);
+  Mask mask = makeSphereMask(grid, 20.3);
   Random random(7, 0, 0);
   for (std::uint8_t& voxel : mask.voxels)
     if (toUniform(random.bits()) < 0.99)
@@ -46,10 +46,10 @@ void expectHitsInBounds(const FocusTracer& tracer, const DepthBuffer& buffer,
 
 /// Pixels both wider and narrower than the focus's cells.
 TEST(Footprints, ReachesHoldTheFocusWhicheverCellsAreAskedFor) {
-  const Grid grid = centredGrid({60, 60, 60});
+  const Grid grid = makeCenteredGrid({60, 60, 60});
   const Mask focus = makeDust(grid);
   for (const int pixels : {8, 100}) {
-    const Camera camera = anteriorCamera(Projection::perspective, 200.0, 30.0, pixels, pixels);
+    const Camera camera = makeAnteriorCamera(Projection::perspective, 200.0, 30.0, pixels, pixels);
     const FocusTracer tracer(camera, Domain(grid), focus);
     const DepthBuffer buffer = tracer.traceDepths().depth;
     const FocusCells& cells = tracer.cells();

@@ -13,14 +13,14 @@ using testing::briefly;
 
 namespace {
 
-struct Walked {
+struct WalkResult {
   std::int64_t cells = 0;
   double worstOutside = 0.0; ///< greatest distance of an interval's middle outside its cell, cells
 };
 
 /// Walks the ray and checks the guarantees that hold for every finite ray.
-Walked checkedWalk(const Ray& ray, const Interval& range, const Size3& cells) {
-  Walked walked;
+WalkResult checkWalk(const Ray& ray, const Interval& range, const Size3& cells) {
+  WalkResult walked;
   const Interval inside = Box{Vec3::Zero(), cells.cast<double>()}.clip(ray, range);
   double reached = inside.begin;
   Size3 before = Size3::Constant(-1);
@@ -58,7 +58,7 @@ double signedUniform(Random& random) {
 }
 
 /// Coordinate that is often a face, a corner, zero or an extreme.
-double awkward(Random& random, double extent) {
+double makeAwkwardCoordinate(Random& random, double extent) {
   switch (random.bits() % 6) {
   case 0:
     return std::floor((extent + 1.0) * random.uniform());
@@ -76,7 +76,7 @@ double awkward(Random& random, double extent) {
   }
 }
 
-double awkwardDirection(Random& random) {
+double makeAwkwardDirection(Random& random) {
   switch (random.bits() % 5) {
   case 0:
     return random.bits() % 2 ? 0.0 : -0.0;
@@ -117,12 +117,12 @@ TEST(GridWalk, StartOnAFaceIsInTheCellAhead) {
 
 TEST(GridWalk, RunsAlongOuterFacesInsideTheGrid) {
   const Size3 cells(4, 5, 6);
-  EXPECT_EQ(checkedWalk({{4.0, 5.0, -2.0}, {0.0, 0.0, 1.0}}, {}, cells).cells, 6);
-  EXPECT_EQ(checkedWalk({{0.0, 9.0, 0.0}, {0.0, -1.0, 0.0}}, {}, cells).cells, 5);
+  EXPECT_EQ(checkWalk({{4.0, 5.0, -2.0}, {0.0, 0.0, 1.0}}, {}, cells).cells, 6);
+  EXPECT_EQ(checkWalk({{0.0, 9.0, 0.0}, {0.0, -1.0, 0.0}}, {}, cells).cells, 5);
 }
 
 TEST(GridWalk, RayWithoutDirectionStaysInItsCell) {
-  const Walked walked = checkedWalk({{1.5, 1.5, 1.5}, Vec3::Zero()}, {0.0, infinity}, {3, 3, 3});
+  const WalkResult walked = checkWalk({{1.5, 1.5, 1.5}, Vec3::Zero()}, {0.0, infinity}, {3, 3, 3});
   EXPECT_EQ(walked.cells, 1);
 }
 
@@ -156,8 +156,7 @@ TEST(GridWalk, RandomRaysTileTheirRange) {
         n.cwiseProduct(Vec3(2 * random.uniform(), random.uniform(), -random.uniform()));
     const Vec3 to = n.cwiseProduct(Vec3(random.uniform(), random.uniform(), random.uniform()));
     const Interval range{random.uniform(), 100.0 * random.uniform()};
-    worst =
-        std::max(worst, checkedWalk({from, (to - from).normalized()}, range, cells).worstOutside);
+    worst = std::max(worst, checkWalk({from, (to - from).normalized()}, range, cells).worstOutside);
   }
   EXPECT_LT(worst, 1e-12);
 }
@@ -168,11 +167,11 @@ TEST(GridWalk, AwkwardRaysTileTheirRange) {
     const Size3 cells(1 + random.bits() % 12, 1 + random.bits() % 12, 1 + random.bits() % 12);
     Ray ray;
     for (int axis = 0; axis < 3; ++axis) {
-      ray.origin[axis] = awkward(random, static_cast<double>(cells[axis]));
-      ray.direction[axis] = awkwardDirection(random);
+      ray.origin[axis] = makeAwkwardCoordinate(random, static_cast<double>(cells[axis]));
+      ray.direction[axis] = makeAwkwardDirection(random);
     }
-    const double begin = random.bits() % 4 ? 0.0 : awkward(random, 10.0);
-    checkedWalk(ray, {begin, random.bits() % 2 ? infinity : 20.0 * random.uniform()}, cells);
+    const double begin = random.bits() % 4 ? 0.0 : makeAwkwardCoordinate(random, 10.0);
+    checkWalk(ray, {begin, random.bits() % 2 ? infinity : 20.0 * random.uniform()}, cells);
   }
 }
 
@@ -188,8 +187,8 @@ TEST(GridWalk, RaysThroughCornersTileTheirRange) {
     if (trial % 2)
       to[trial % 3] = 0.0;
     const Ray ray{from, (to - from).normalized()};
-    EXPECT_LT(checkedWalk(ray, {}, cells).worstOutside, 1e-13);
-    EXPECT_LT(checkedWalk(ray, {(to - from).norm(), infinity}, cells).worstOutside, 1e-13);
+    EXPECT_LT(checkWalk(ray, {}, cells).worstOutside, 1e-13);
+    EXPECT_LT(checkWalk(ray, {(to - from).norm(), infinity}, cells).worstOutside, 1e-13);
   }
 }
 
@@ -201,7 +200,7 @@ TEST(GridWalk, FarOriginsKeepTheirCellsToRounding) {
     const Vec3 to = 16.0 * Vec3(random.uniform(), random.uniform(), random.uniform());
     const Vec3 direction =
         Vec3(signedUniform(random), signedUniform(random), signedUniform(random)).normalized();
-    const Walked walked = checkedWalk({to - far * direction, direction}, {}, cells);
+    const WalkResult walked = checkWalk({to - far * direction, direction}, {}, cells);
     EXPECT_LT(walked.worstOutside, 1e-14 * (far + 100.0));
   }
 }

@@ -28,7 +28,7 @@ namespace {
 constexpr float infinite = std::numeric_limits<float>::infinity();
 constexpr float notANumber = std::numeric_limits<float>::quiet_NaN();
 
-Image onePixel(float r, float g, float b, float a) {
+Image makePixel(float r, float g, float b, float a) {
   return {1, 1, {{"R", {r}}, {"G", {g}}, {"B", {b}}, {"A", {a}}}, {}};
 }
 
@@ -62,7 +62,7 @@ TEST(EmbeddedResources, HoldTheColourConfiguration) {
 }
 
 TEST_F(ExrFiles, RoundTripKeepsChannelsBitForBitAndTheHeader) {
-  Image image = renderedImage();
+  Image image = makeTestImage();
   image.channels["Z"][3] = infinite;
   image.channels["R"][0] = notANumber;
   image.channels["G"][1] = -infinite;
@@ -70,7 +70,7 @@ TEST_F(ExrFiles, RoundTripKeepsChannelsBitForBitAndTheHeader) {
   image.channels["A"][2] = std::numeric_limits<float>::denorm_min();
   image.header["empty"] = "";
   image.header["a key of more than thirty-one characters"] = std::string(3000, 'v');
-  const Image read = readImage(written(image, "a.exr"));
+  const Image read = readImage(save(image, "a.exr"));
   EXPECT_EQ(read.width, image.width);
   EXPECT_EQ(read.height, image.height);
   EXPECT_EQ(read.header, image.header);
@@ -114,19 +114,19 @@ TEST_F(ExrFiles, TilesOfHalfFloatAndIntegerWithAnOffsetWindowAreRead) {
 
 TEST_F(ImageFiles, EqualPicturesGiveEqualBytes) {
   for (const char* extension : {".exr", ".nrrd", ".png", ".tif"}) {
-    const auto first = written(renderedImage(), std::string("first") + extension);
-    const auto second = written(renderedImage(), std::string("second") + extension);
+    const auto first = save(makeTestImage(), std::string("first") + extension);
+    const auto second = save(makeTestImage(), std::string("second") + extension);
     EXPECT_EQ(readContent(first), readContent(second)) << extension;
     EXPECT_GT(readContent(first).size(), 100u) << extension;
   }
 }
 
 TEST_F(NrrdFiles, RoundTripKeepsColourAndDepth) {
-  Image image = renderedImage();
+  Image image = makeTestImage();
   image.channels["A"][5] = 0.25f;
   image.channels["Z"][3] = infinite;
   image.channels["R"][2] = -7.5f;
-  const Image colour = readImage(written(image, "view.nrrd"));
+  const Image color = readImage(save(image, "view.nrrd"));
   EXPECT_EQ(color.channels.size(), 4u);
   for (const char* name : {"R", "G", "B", "A"})
     EXPECT_EQ(color.channels.at(name), image.channels.at(name)) << name;
@@ -137,41 +137,41 @@ TEST_F(NrrdFiles, RoundTripKeepsColourAndDepth) {
 }
 
 TEST_F(NrrdFiles, MissingAlphaIsOpaqueAndMissingDepthWritesOneFile) {
-  Image image = renderedImage();
+  Image image = makeTestImage();
   image.channels.erase("A");
   image.channels.erase("Z");
-  const Image colour = readImage(written(image, "view.nrrd"));
+  const Image color = readImage(save(image, "view.nrrd"));
   EXPECT_EQ(color.channels.at("A"), std::vector<float>(image.channels["R"].size(), 1.0f));
   EXPECT_EQ(fileCount(), 1u);
 }
 
 TEST_F(NrrdFiles, ForeignDepthFileIsNotReplaced) {
-  const Image image = renderedImage();
-  written(image, "view.nrrd"); // its depth file bears the mark
-  written(image, "view.nrrd");
-  std::string depth = contentOf(path("view-Z.nrrd"));
-  const std::size_t mark = depth.find("Software:=");
-  store(path("view-Z.nrrd"), depth.erase(mark, depth.find('\n', mark) + 1 - mark));
-  written(image, "view.nrrd"); // format of earlier versions: the same grid
-  store(path("view-Z.nrrd"), "somebody else's");
-  EXPECT_EQ(kindOf([&] { save(image, "view.nrrd"); }, "view-Z.nrrd"), ErrorKind::usage);
+  const Image image = makeTestImage();
+  save(image, "view.nrrd"); // its depth file bears the mark
+  save(image, "view.nrrd");
+  std::string depth = readContent(path("view-Z.nrrd"));
+  const std::size_t tag = depth.find("Software:=");
+  writeContent(path("view-Z.nrrd"), depth.erase(tag, depth.find('\n', tag) + 1 - tag));
+  save(image, "view.nrrd"); // format of earlier versions: the same grid
+  writeContent(path("view-Z.nrrd"), "somebody else's");
+  EXPECT_EQ(catchErrorKind([&] { save(image, "view.nrrd"); }, "view-Z.nrrd"), ErrorKind::usage);
   EXPECT_EQ(readContent(path("view-Z.nrrd")), "somebody else's");
 }
 
 TEST_F(DisplayFiles, DefaultNameReplacesOnlyFilesOfFenestra) {
-  for (const bool isOurs : {true, false}) {
-    if (!isOurs)
-      store(path("a.png"), "somebody else's");
+  for (const bool isOwn : {true, false}) {
+    if (!isOwn)
+      writeContent(path("a.png"), "somebody else's");
     const auto declare = [&] {
       Outputs outputs;
       declareImage(path("a.png"), outputs, NameOrigin::standard);
     };
-    if (isOurs) {
+    if (isOwn) {
       declare();
-      written(renderedImage(), "a.png");
+      save(makeTestImage(), "a.png");
       declare();
     } else {
-      EXPECT_EQ(kindOf(declare, "a.png"), ErrorKind::usage);
+      EXPECT_EQ(catchErrorKind(declare, "a.png"), ErrorKind::usage);
     }
   }
 }
@@ -179,7 +179,7 @@ TEST_F(DisplayFiles, DefaultNameReplacesOnlyFilesOfFenestra) {
 TEST_F(NrrdFiles, HeaderHoldsThePlaneInLps) {
   // View from anterior: the patient's right is on the picture's left, superior is up.
   const ImagePlane plane{{90.0, 100.0, 80.0}, {-0.5, 0.0, 0.0}, {0.0, 0.0, -0.25}};
-  const std::string content = contentOf(written(renderedImage(), "view.nrrd", plane));
+  const std::string content = readContent(save(makeTestImage(), "view.nrrd", plane));
   const std::string header = content.substr(0, content.find("\n\n"));
   for (const char* line : {"space: left-posterior-superior", "sizes: 4 13 7 1", "type: float",
                            "space directions: none (0.5,0,0) (0,0,-0.25) (0,0.5,0)",
@@ -190,7 +190,7 @@ TEST_F(NrrdFiles, HeaderHoldsThePlaneInLps) {
 TEST_F(NrrdFiles, PlaneKeepsThePrecisionOfDoubles) {
   const ImagePlane plane{
       {1.0 / 3.0, 0.0, 0.0}, {0.6 / 7.0, 0.8 / 7.0, 0.0}, {0.0, 0.0, -1.0 / 7.0}};
-  const std::string content = contentOf(written(renderedImage(), "view.nrrd", plane));
+  const std::string content = readContent(save(makeTestImage(), "view.nrrd", plane));
   const auto numberAfter = [&](const std::string& text) {
     return std::stod(content.substr(content.find(text) + text.size()));
   };
@@ -200,11 +200,11 @@ TEST_F(NrrdFiles, PlaneKeepsThePrecisionOfDoubles) {
 
 TEST_F(DisplayFiles, KnownValuesHaveStraightAlpha) {
   // Middle grey is 0.4614 in sRGB: 117.6 of 255.
-  const float grey = 0.18f;
+  const float gray = 0.18f;
   for (const auto& [name, tolerance] :
        {std::pair("a.png", 0.5f / 255.0f), std::pair("a.tif", 0.5f / 65535.0f)}) {
     const Image read = readImage(
-        written(onePixel(grey / 2, grey / 2, grey / 2, 0.5f), name, {}, {DisplayView::standard}));
+        save(makePixel(gray / 2, gray / 2, gray / 2, 0.5f), name, {}, {DisplayView::standard}));
     EXPECT_NEAR(read.channels.at("R")[0], 0.46135f, tolerance + 2e-5f) << name;
     EXPECT_NEAR(read.channels.at("A")[0], 0.5f, tolerance + 2e-5f) << name;
   }
@@ -213,7 +213,7 @@ TEST_F(DisplayFiles, KnownValuesHaveStraightAlpha) {
 }
 
 TEST_F(DisplayFiles, AlphaIsWrittenOnlyWithTransparency) {
-  Image image = renderedImage();
+  Image image = makeTestImage();
   EXPECT_EQ(readImage(save(image, "opaque.png")).channels.count("A"), 0u);
   EXPECT_EQ(readImage(save(image, "opaque.tiff")).channels.count("A"), 0u);
   image.channels["A"][3] = 0.75f;
@@ -226,7 +226,7 @@ TEST_F(DisplayFiles, TopRowStaysOnTop) {
   for (const char* name : {"R", "G", "B"})
     image.channels[name] = {1.0f, 0.5f, 0.0f, 0.0f};
   for (const char* name : {"a.png", "a.tif", "a.exr", "a.nrrd"}) {
-    const Image read = readImage(written(image, name));
+    const Image read = readImage(save(image, name));
     EXPECT_GT(read.channels.at("R")[0], read.channels.at("R")[1]) << name;
     EXPECT_GT(read.channels.at("R")[1], read.channels.at("R")[2]) << name;
     EXPECT_EQ(read.channels.at("R")[2], read.channels.at("R")[3]) << name;
@@ -234,7 +234,7 @@ TEST_F(DisplayFiles, TopRowStaysOnTop) {
 }
 
 TEST_F(DisplayFiles, NanIsBlackAndInfinityIsWhite) {
-  const Image read = readImage(written(onePixel(notANumber, infinite, -infinite, 1.0f), "a.png"));
+  const Image read = readImage(save(makePixel(notANumber, infinite, -infinite, 1.0f), "a.png"));
   EXPECT_EQ(read.channels.at("R")[0], 0.0f);
   EXPECT_EQ(read.channels.at("G")[0], 1.0f);
   EXPECT_EQ(read.channels.at("B")[0], 0.0f);
@@ -244,36 +244,37 @@ TEST_F(ImageFiles, UnknownFormatAndMissingColourAreRefused) {
   const auto write = [](const Image& image, const fs::path& file) {
     return [=] { writeImage(image, {}, file); };
   };
-  EXPECT_EQ(kindOf(write(renderedImage(), path("a.jpg")), ".exr, .nrrd, .png or .tif"),
+  EXPECT_EQ(catchErrorKind(write(makeTestImage(), path("a.jpg")), ".exr, .nrrd, .png or .tif"),
             ErrorKind::usage);
   Outputs outputs;
-  EXPECT_EQ(kindOf([&] { declareImage(path("a"), outputs); }, ".exr, .nrrd, .png or .tif"),
+  EXPECT_EQ(catchErrorKind([&] { declareImage(path("a"), outputs); }, ".exr, .nrrd, .png or .tif"),
             ErrorKind::usage);
   declareImage(path("a.png"), outputs);
-  Image depth = renderedImage();
+  Image depth = makeTestImage();
   depth.channels.erase("G");
-  EXPECT_EQ(kindOf(write(depth, path("a.png")), "a.png"), ErrorKind::usage);
-  EXPECT_EQ(kindOf(write(depth, path("a.nrrd")), "a.nrrd"), ErrorKind::usage);
+  EXPECT_EQ(catchErrorKind(write(depth, path("a.png")), "a.png"), ErrorKind::usage);
+  EXPECT_EQ(catchErrorKind(write(depth, path("a.nrrd")), "a.nrrd"), ErrorKind::usage);
   EXPECT_EQ(fileCount(), 0u);
 }
 
 TEST_F(ImageFiles, FailedWriteKeepsTheFormerFile) {
-  const Image image = renderedImage(300, 200);
+  const Image image = makeTestImage(300, 200);
   for (const std::string name : {"a.exr", "a.nrrd", "a.png", "a.tif"}) {
     writeImage(image, {}, path(name));
-    const std::string before = contentOf(path(name));
+    const std::string before = readContent(path(name));
     const std::size_t count = fileCount();
     // Limits at the start, midway, and within the last block, where a buffered writer no longer
     // checks.
     for (const std::size_t limit : {std::size_t{0}, before.size() / 2, before.size() - 1}) {
       const FullDisk full(limit);
       ::testing::internal::CaptureStderr();
-      EXPECT_EQ(kindOf([&] { writeImage(image, {}, path(name)); }, name), ErrorKind::output);
+      EXPECT_EQ(catchErrorKind([&] { writeImage(image, {}, path(name)); }, name),
+                ErrorKind::output);
       EXPECT_EQ(::testing::internal::GetCapturedStderr(), "") << name << " " << limit;
     }
     EXPECT_EQ(fileCount(), count) << name;
     EXPECT_EQ(readContent(path(name)), before) << name;
-    EXPECT_EQ(kindOf([&] { writeImage(image, {}, path("missing/" + name)); }, name),
+    EXPECT_EQ(catchErrorKind([&] { writeImage(image, {}, path("missing/" + name)); }, name),
               ErrorKind::output);
   }
 }

@@ -16,34 +16,35 @@
 namespace fenestra::testing_images {
 namespace fs = std::filesystem;
 
-inline std::string contentOf(const fs::path& path) {
+inline std::string readContent(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream content;
   content << file.rdbuf();
   return content.str();
 }
 
-inline void store(const fs::path& path, const std::string& content) {
+inline void writeContent(const fs::path& path, const std::string& content) {
   fs::remove(path); // overwriting makes some file systems wait for the disk
   std::ofstream(path, std::ios::binary) << content;
 }
 
 /// Kind of the Error thrown by `action`; expects a text of one line that contains `named`.
-inline ErrorKind kindOf(const std::function<void()>& action, const std::string& named = "") {
+inline ErrorKind catchErrorKind(const std::function<void()>& action,
+                                const std::string& subject = "") {
   try {
     action();
   } catch (const Error& error) {
     const std::string line = error.what();
     EXPECT_EQ(line.find('\n'), std::string::npos) << line;
-    EXPECT_NE(line.find(named), std::string::npos) << line;
+    EXPECT_NE(line.find(subject), std::string::npos) << line;
     return error.kind();
   }
-  ADD_FAILURE() << "nothing thrown for " << named;
+  ADD_FAILURE() << "nothing thrown for " << subject;
   return {};
 }
 
 /// Image with a gradient in every channel of a render.
-inline Image renderedImage(int width = 13, int height = 7) {
+inline Image makeTestImage(int width = 13, int height = 7) {
   Image image{width, height, {}, {{"seed", "7"}, {"command", "fenestra a.nrrd --size 13x7"}}};
   float start = 0.0f;
   for (const char* name :
@@ -73,8 +74,8 @@ protected:
     return static_cast<std::size_t>(
         std::distance(fs::directory_iterator(m_folder), fs::directory_iterator()));
   }
-  fs::path written(const Image& image, const std::string& name, const ImagePlane& plane = {},
-                   const Display& display = {}) const {
+  fs::path save(const Image& image, const std::string& name, const ImagePlane& plane = {},
+                const Display& display = {}) const {
     writeImage(image, plane, path(name), display);
     return path(name);
   }

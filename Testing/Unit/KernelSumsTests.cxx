@@ -11,7 +11,7 @@ using namespace testing_clipping;
 
 namespace {
 
-constexpr std::size_t longest = 37;
+constexpr std::size_t maxLength = 37;
 constexpr double untouched = -7e77;
 
 /// Calls check(row, sums) for rows of every length on every instruction set. `sums` has one number
@@ -22,7 +22,7 @@ void forEachRow(Check&& check) {
   for (std::int64_t left = hwy::SupportedTargets() & HWY_TARGETS; left != 0; left &= left - 1) {
     SCOPED_TRACE(hwy::TargetName(left & -left));
     hwy::SetSupportedTargetsForTest(left & -left);
-    for (std::size_t length = 0; length <= longest; ++length) {
+    for (std::size_t length = 0; length <= maxLength; ++length) {
       std::vector<double> row(length); // exact length: sanitizers detect reads beyond
       for (double& x : row)
         x = uniform(random, -1, 1);

@@ -16,7 +16,7 @@ LabelNames read(const std::string& name, const std::string& text) {
   return readLabelNames(folder.write(name, text));
 }
 
-std::string refusal(const std::string& name, const std::string& text) {
+std::string catchError(const std::string& name, const std::string& text) {
   try {
     read(name, text);
   } catch (const Error& error) {
@@ -59,19 +59,20 @@ TEST(LabelNames, NamesKeepTheirBlanksWhereTheFormatHasThem) {
 }
 
 TEST(LabelNames, RefusalsNamePlaceAndReason) {
-  EXPECT_EQ(refusal("a.ctbl", "x liver 1 2 3 4"),
+  EXPECT_EQ(catchError("a.ctbl", "x liver 1 2 3 4"),
             "a.ctbl: line 1: must begin with a whole number of 32 bits");
-  EXPECT_EQ(refusal("a.ctbl", "1 a 0 0 0 0\n1 b 0 0 0 0"),
+  EXPECT_EQ(catchError("a.ctbl", "1 a 0 0 0 0\n1 b 0 0 0 0"),
             "a.ctbl: line 2: names the value 1 again, which is \"a\" already");
-  EXPECT_EQ(refusal("a.label", "3 0 0 0 1 1 1 liver"),
+  EXPECT_EQ(catchError("a.label", "3 0 0 0 1 1 1 liver"),
             "a.label: line 1: has no name; name the value, or remove it");
-  EXPECT_EQ(refusal("a.csv", "organ,size\n1,2\n"),
+  EXPECT_EQ(catchError("a.csv", "organ,size\n1,2\n"),
             "a.csv: line 1: has no columns \"label\" and \"name\"; name them so");
-  EXPECT_EQ(refusal("a.json", R"({"99999999999": "x"})"),
+  EXPECT_EQ(catchError("a.json", R"({"99999999999": "x"})"),
             "a.json: \"99999999999\": must begin with a whole number of 32 bits");
-  EXPECT_EQ(refusal("a.json", "{}"), "a.json: names no value; is it a table of labels?");
-  EXPECT_NE(refusal("a.json", R"({"1": 2})").find("a.json: 1: "), std::string::npos);
-  EXPECT_NE(refusal("a.xlsx", "").find("no table of labels by its extension"), std::string::npos);
+  EXPECT_EQ(catchError("a.json", "{}"), "a.json: names no value; is it a table of labels?");
+  EXPECT_NE(catchError("a.json", R"({"1": 2})").find("a.json: 1: "), std::string::npos);
+  EXPECT_NE(catchError("a.xlsx", "").find("no table of labels by its extension"),
+            std::string::npos);
 }
 
 TEST(LabelNames, CompiledTablesHaveTheirClasses) {

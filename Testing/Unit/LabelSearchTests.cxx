@@ -14,7 +14,7 @@ using namespace fenestra;
 namespace {
 
 /// Label table as TotalSegmentator writes it into a header extension.
-std::string labelXml(const LabelNames& names) {
+std::string makeLabelXml(const LabelNames& names) {
   std::string xml =
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?> <CaretExtension> <VolumeInformation "
       "Index=\"0\">   <LabelTable>\n";
@@ -26,7 +26,7 @@ std::string labelXml(const LabelNames& names) {
 }
 
 /// Label map of 24 voxels, of the values 0, 5 and 7.
-std::string labelMap(const std::string& extension = {}) {
+std::string makeLabelMap(const std::string& extension = {}) {
   NiftiFile file;
   file.sformCode = 1;
   file.samples[3] = 5;
@@ -35,7 +35,7 @@ std::string labelMap(const std::string& extension = {}) {
   return file.bytes();
 }
 
-std::string nameOf(const Segmentation& segmentation, std::int32_t value) {
+std::string findName(const Segmentation& segmentation, std::int32_t value) {
   for (const SegmentInfo& segment : segmentation.segments())
     if (segment.labelValue == value)
       return segment.name;
@@ -44,14 +44,14 @@ std::string nameOf(const Segmentation& segmentation, std::int32_t value) {
 
 TEST(LabelSearch, WantedTableNamesValuesAndLeavesTheRest) {
   const TemporaryFolder folder;
-  const auto map = folder.write("map.nii", labelMap());
+  const auto map = folder.write("map.nii", makeLabelMap());
   const auto table = folder.write("names.ctbl", "5 liver 1 2 3 255\n9 spleen 1 2 3 255\n");
   const Segmentation named = readSegmentation(map, nullptr, table.string());
-  EXPECT_EQ(nameOf(named, 5), "liver");
-  EXPECT_EQ(nameOf(named, 7), "Segment_7");
+  EXPECT_EQ(findName(named, 5), "liver");
+  EXPECT_EQ(findName(named, 7), "Segment_7");
   EXPECT_EQ(named.namesSource(), table.string());
-  EXPECT_EQ(nameOf(readSegmentation(map, nullptr, "totalsegmentator1"), 7), "aorta");
-  EXPECT_EQ(nameOf(readSegmentation(map, nullptr, "totalsegmentator2"), 7), "pancreas");
+  EXPECT_EQ(findName(readSegmentation(map, nullptr, "totalsegmentator1"), 7), "aorta");
+  EXPECT_EQ(findName(readSegmentation(map, nullptr, "totalsegmentator2"), 7), "pancreas");
   EXPECT_EQ(named.makeFocusMask({"liver"}, named.grid()).count, 1);
   const auto other = folder.write("other.csv", "1,a\n2,b\n");
   expectRefused(map, "names none of its values (5, 7)",
@@ -63,44 +63,45 @@ TEST(LabelSearch, TableInTheFileOfEachVersionIsTaken) {
   const TemporaryFolder folder;
   for (const auto& [version, organ] :
        {std::pair("totalsegmentator1", "aorta"), {"totalsegmentator2", "pancreas"}}) {
-    const auto map = folder.write("map.nii", labelMap(labelXml(*findBuiltInLabelNames(version))));
-    for (const std::optional<std::string>& wanted :
+    const auto map =
+        folder.write("map.nii", makeLabelMap(makeLabelXml(*findBuiltInLabelNames(version))));
+    for (const std::optional<std::string>& requested :
          {std::optional<std::string>(), std::optional<std::string>("totalsegmentator")}) {
-      const Segmentation named = readSegmentation(map, nullptr, wanted);
-      EXPECT_EQ(nameOf(named, 7), organ);
+      const Segmentation named = readSegmentation(map, nullptr, requested);
+      EXPECT_EQ(findName(named, 7), organ);
       EXPECT_EQ(named.namesSource(), requested ? version : map.string());
       EXPECT_EQ(readSegmentInfos(map, requested).size(), 2u);
     }
   }
-  const auto plain = folder.write("plain.nii", labelMap());
+  const auto plain = folder.write("plain.nii", makeLabelMap());
   expectRefused(plain, "does not say which version",
                 [&] { readSegmentation(plain, nullptr, "totalsegmentator"); });
-  const auto own = folder.write("own.nii", labelMap(labelXml({{5, {"tumour"}}})));
-  EXPECT_EQ(nameOf(readSegmentation(own), 5), "tumour");
+  const auto own = folder.write("own.nii", makeLabelMap(makeLabelXml({{5, {"tumour"}}})));
+  EXPECT_EQ(findName(readSegmentation(own), 5), "tumour");
   expectRefused(own, "does not say which version",
                 [&] { readSegmentation(own, nullptr, "totalsegmentator"); });
 }
 
 TEST(LabelSearch, TableBesideTheMapIsTakenIfItFits) {
   const TemporaryFolder folder;
-  const auto map = folder.write("map.nii", labelMap());
+  const auto map = folder.write("map.nii", makeLabelMap());
   EXPECT_TRUE(readSegmentInfos(map).empty());
   const auto exact = folder.write("seg_labels.json", R"({"5": "a", "7": "b"})");
-  EXPECT_EQ(nameOf(readSegmentation(map), 7), "b");
+  EXPECT_EQ(findName(readSegmentation(map), 7), "b");
   EXPECT_EQ(readSegmentation(map).namesSource(), exact.string());
   EXPECT_EQ(readSegmentInfos(map).at(0).name, "a");
   // One that names more is another map's; with the map's stem it may.
   folder.write("seg_labels.json", R"({"5": "a", "7": "b", "8": "c"})");
   const Segmentation unnamed = readSegmentation(map);
-  EXPECT_EQ(nameOf(unnamed, 7), "Segment_7");
+  EXPECT_EQ(findName(unnamed, 7), "Segment_7");
   ASSERT_EQ(unnamed.warnings().size(), 1u);
   EXPECT_NE(unnamed.warnings()[0].find("seg_labels.json: names other values than map.nii holds"),
             std::string::npos);
   EXPECT_TRUE(readSegmentInfos(map).empty());
   folder.write("map.csv", "5,x\n7,y\n8,z\n");
-  EXPECT_EQ(nameOf(readSegmentation(map), 7), "y");
+  EXPECT_EQ(findName(readSegmentation(map), 7), "y");
   folder.write("map.csv", "5,x\n");
-  EXPECT_EQ(nameOf(readSegmentation(map), 5), "Segment_5");
+  EXPECT_EQ(findName(readSegmentation(map), 5), "Segment_5");
   folder.write("map.csv", "damaged");
   EXPECT_EQ(readSegmentation(map).warnings().size(), 2u);
 }

@@ -13,23 +13,23 @@ using namespace fenestra;
 namespace {
 
 /// Flags (VmFlags of /proc/self/smaps) of the mapping that holds an address; empty: none does.
-std::string flagsAt(const void* address) {
+std::string readFlags(const void* address) {
   std::ifstream maps("/proc/self/smaps");
-  const auto wanted = reinterpret_cast<std::uintptr_t>(address);
-  bool isThere = false;
+  const auto target = reinterpret_cast<std::uintptr_t>(address);
+  bool isFound = false;
   for (std::string line; std::getline(maps, line);) {
     std::istringstream words(line);
     std::uintptr_t begin = 0, end = 0;
     char dash = 0;
     if (words >> std::hex >> begin >> dash >> end && dash == '-')
-      isThere = begin <= wanted && wanted < end;
-    else if (isThere && line.starts_with("VmFlags:"))
+      isFound = begin <= target && target < end;
+    else if (isFound && line.starts_with("VmFlags:"))
       return line + ' ';
   }
   return {};
 }
 
-std::uintptr_t placeOf(const void* address) {
+std::uintptr_t toInteger(const void* address) {
   return reinterpret_cast<std::uintptr_t>(address);
 }
 
@@ -38,8 +38,8 @@ std::uintptr_t placeOf(const void* address) {
 TEST(LargePages, AreAskedForWhereAnArrayFillsThem) {
   constexpr std::size_t page = std::size_t{2} << 20;
   const LargeArray<float> large(3 * page / sizeof(float) + 1, 1.0F);
-  EXPECT_EQ(placeOf(large.data()) % page, 0U);
-  const std::string flags = flagsAt(large.data());
+  EXPECT_EQ(toInteger(large.data()) % page, 0U);
+  const std::string flags = readFlags(large.data());
   if (flags.empty())
     GTEST_SKIP() << "no /proc/self/smaps here";
   if (!std::ifstream("/sys/kernel/mm/transparent_hugepage/enabled"))
@@ -49,7 +49,7 @@ TEST(LargePages, AreAskedForWhereAnArrayFillsThem) {
 
 TEST(LargePages, SmallArraysBeginALineOfTheCache) {
   for (const std::size_t size : std::array<std::size_t, 3>{1, 15, 4096})
-    EXPECT_EQ(placeOf(LargeArray<char>(size).data()) % 64, 0U) << size;
+    EXPECT_EQ(toInteger(LargeArray<char>(size).data()) % 64, 0U) << size;
 }
 
 TEST(LargePages, TooLargeArraysAreRefused) {

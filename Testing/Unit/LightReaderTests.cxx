@@ -86,7 +86,7 @@ TEST(LightReader, ColorIsThatOfAWhiteSurfaceInTheLight) {
      "color": "#d8a090", "radiance": 2},
     {"type": "sphere", "center": [0, 0, 0], "diameter": 2, "color": "#6c5048", "radiance": 2}]})",
                                   "test");
-  const Rgb grey = std::get<EnvironmentLight>(lights.at(0)).radiance;
+  const Rgb gray = std::get<EnvironmentLight>(lights.at(0)).radiance;
   EXPECT_LT((gray - 0.5).abs().maxCoeff(), 1e-15) << "luminance 0.5";
   const Rgb red = std::get<DirectionalLight>(lights.at(1)).irradiance;
   EXPECT_LT((red - Rgb(3.0 / 0.2126, 0.0, 0.0)).abs().maxCoeff(), 1e-12);
@@ -214,20 +214,21 @@ TEST(LightReader, CinemasKeyIsAboutFourTimesItsFillAndSky) {
   ASSERT_EQ(lights.size(), 4u);
   const Grid grid({10, 10, 10}, Affine::Identity());
   const Camera camera({}, 8, 8);
-  const auto facing = [&](std::size_t i) { // irradiance over pi of a plane that faces the light
-    const LightSet set({lights[i]}, grid, camera);
-    double sum = 0.0;
-    constexpr int n = 64; // n x n points of the light
-    for (int k = 0; k < n * n; ++k) {
-      const Vec2 u((k % n + 0.5) / n, (k / n + 0.5) / n);
-      const auto sample = set.sample(grid.worldCenter(), 0.0, u);
-      const double cosine = -set.tables().areas.at(0).normal.dot(sample->direction);
-      sum += luminance(sample->radiance) * cosine / (sample->pdf * pi * n * n);
-    }
-    return sum;
-  };
-  EXPECT_NEAR(facing(0), 1.48, 0.01);
-  EXPECT_NEAR(facing(1), 0.17, 0.003);
+  const auto measureIrradiance =
+      [&](std::size_t i) { // irradiance over pi of a plane that faces the light
+        const LightSet set({lights[i]}, grid, camera);
+        double sum = 0.0;
+        constexpr int n = 64; // n x n points of the light
+        for (int k = 0; k < n * n; ++k) {
+          const Vec2 u((k % n + 0.5) / n, (k / n + 0.5) / n);
+          const auto sample = set.sample(grid.worldCenter(), 0.0, u);
+          const double cosine = -set.tables().areas.at(0).normal.dot(sample->direction);
+          sum += luminance(sample->radiance) * cosine / (sample->pdf * pi * n * n);
+        }
+        return sum;
+      };
+  EXPECT_NEAR(measureIrradiance(0), 1.48, 0.01);
+  EXPECT_NEAR(measureIrradiance(1), 0.17, 0.003);
   const auto& sky = std::get<SkyLight>(lights[3]);
   EXPECT_NEAR(luminance((sky.top + 2.0 * sky.middle + sky.bottom) / 4.0), 0.17, 0.003) << "mean";
 }

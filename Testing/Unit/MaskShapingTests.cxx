@@ -12,12 +12,12 @@ using namespace testing_clipping;
 
 namespace {
 
-const Grid volume = centredGrid({61, 61, 41}, {1.0, 1.0, 1.5});
+const Grid volume = makeCenteredGrid({61, 61, 41}, {1.0, 1.0, 1.5});
 
 /// Mask as returned by readers: cropped to the segment plus one voxel.
 Mask ball(double radius) {
-  return maskOf(centredGrid({33, 33, 25}, {1.0, 1.0, 1.5}),
-                [&](const Vec3& p) { return p.norm() <= radius; });
+  return makeMask(makeCenteredGrid({33, 33, 25}, {1.0, 1.0, 1.5}),
+                  [&](const Vec3& p) { return p.norm() <= radius; });
 }
 
 double millimetres3(const Mask& mask) {
@@ -53,7 +53,7 @@ TEST(MaskShaping, LargeMarginEndsAtMostTwoVoxelsBeyondTheVolume) {
 
 TEST(MaskShaping, ShrinkingKeepsAFocusWholeWhereTheVolumeCutsIt) {
   // Outermost voxels along x are focus: the focus continues beyond.
-  const Mask slab = maskOf(centredGrid({61, 21, 21}), [](const Vec3& p) {
+  const Mask slab = makeMask(makeCenteredGrid({61, 21, 21}), [](const Vec3& p) {
     return std::abs(p.y()) < 6.5 && std::abs(p.z()) < 6.5;
   });
   const Mask shrunk = applyMargin(slab, -2.0, volume);
@@ -62,8 +62,8 @@ TEST(MaskShaping, ShrinkingKeepsAFocusWholeWhereTheVolumeCutsIt) {
 
 TEST(MaskShaping, UnionCountsTheVoxelsOfBothMasks) {
   const auto box = [](const Vec3& lower, const Vec3& upper) {
-    const Grid whole = centredGrid({40, 40, 40});
-    return boxMask(whole, lower, upper);
+    const Grid whole = makeCenteredGrid({40, 40, 40});
+    return makeBoxMask(whole, lower, upper);
   };
   const Mask a = applyMargin(box({-10, -10, -10}, {-5, -5, -5}), 1.0, volume);
   const Mask b = box({5, 5, 5}, {9, 9, 9});
@@ -75,7 +75,7 @@ TEST(MaskShaping, UnionCountsTheVoxelsOfBothMasks) {
 
 /// Range of the visible surface's distances from a sphere of `radius`, over its central part, mm.
 double stairs(const Mask& mask, double radius) {
-  const Camera camera = anteriorCamera(Projection::orthographic, 100, 20, 128, 128);
+  const Camera camera = makeAnteriorCamera(Projection::orthographic, 100, 20, 128, 128);
   const FocusDepth focus = FocusTracer(camera, volume, mask).traceDepths();
   std::vector<double> misses;
   for (std::int64_t row = 0; row < focus.depth.rows(); ++row)
@@ -101,8 +101,8 @@ TEST(MaskShaping, SmoothingRemovesStairsAndKeepsTheRadius) {
 }
 
 TEST(MaskShaping, SmoothingKeepsAFlatFace) {
-  const Mask box = boxMask(centredGrid({60, 60, 40}), {-20, -9, -15}, {20, 9, 15});
-  const Camera camera = anteriorCamera(Projection::orthographic, 100, 20, 64, 64);
+  const Mask box = makeBoxMask(makeCenteredGrid({60, 60, 40}), {-20, -9, -15}, {20, 9, 15});
+  const Camera camera = makeAnteriorCamera(Projection::orthographic, 100, 20, 64, 64);
   const auto depth = [&](const Mask& mask) {
     const FocusDepth focus = FocusTracer(camera, volume, mask).traceDepths();
     return focus.depth.at(focus.depth.viewportSample(32, 32));
@@ -112,7 +112,7 @@ TEST(MaskShaping, SmoothingKeepsAFlatFace) {
 
 /// Range of the visible surface's distances from y = slope z along its normal, mm.
 double stairsOfASlope(const Mask& mask, double slope) {
-  const Camera camera = anteriorCamera(Projection::orthographic, 100, 5, 128, 128);
+  const Camera camera = makeAnteriorCamera(Projection::orthographic, 100, 5, 128, 128);
   const FocusDepth focus = FocusTracer(camera, volume, mask).traceDepths();
   std::vector<double> misses;
   for (std::int64_t row = 0; row < focus.depth.rows(); ++row)
@@ -129,8 +129,8 @@ double stairsOfASlope(const Mask& mask, double slope) {
 
 TEST(MaskShaping, SurfaceThatLeansAcrossThickSlicesIsASlope) {
   for (const double slope : {1.0, 2.0}) { // 2 and 4 mm from slice to slice
-    const Mask steps = maskOf(centredGrid({41, 121, 21}, {0.5, 0.5, 2.0}),
-                              [&](const Vec3& p) { return p.y() >= slope * p.z() + 0.1; });
+    const Mask steps = makeMask(makeCenteredGrid({41, 121, 21}, {0.5, 0.5, 2.0}),
+                                [&](const Vec3& p) { return p.y() >= slope * p.z() + 0.1; });
     EXPECT_GT(stairsOfASlope(smoothMask(steps, 0.6, volume), slope), 0.3);
     EXPECT_LT(stairsOfASlope(smoothMask(interpolateSlices(steps), 0.6, volume), slope), 0.12);
   }
@@ -138,7 +138,7 @@ TEST(MaskShaping, SurfaceThatLeansAcrossThickSlicesIsASlope) {
 
 /// Voxels of a smoothed mask against the sum of its definition.
 TEST(MaskShaping, SmoothingIsASampledGaussian) {
-  const Mask mask = maskOf(centredGrid({9, 12, 40}, {1.0, 0.5, 1.5}), [](const Vec3& p) {
+  const Mask mask = makeMask(makeCenteredGrid({9, 12, 40}, {1.0, 0.5, 1.5}), [](const Vec3& p) {
     return p.x() + p.y() > 0.3 && std::abs(p.z() - 2.0) < 14.0;
   });
   const double deviation = 1.3;
@@ -167,16 +167,16 @@ TEST(MaskShaping, SmoothingIsASampledGaussian) {
 }
 
 TEST(MaskShaping, AutomaticSmoothingGoesByTheLongestEdge) {
-  EXPECT_NEAR(chooseSmoothing(centredGrid({9, 9, 9}, {1.0, 0.5, 1.5})), 0.9, 1e-12);
-  const Grid thick = centredGrid({9, 9, 9}, {0.9, 0.5, 5.0}); // five slices in place of one
+  EXPECT_NEAR(chooseSmoothing(makeCenteredGrid({9, 9, 9}, {1.0, 0.5, 1.5})), 0.9, 1e-12);
+  const Grid thick = makeCenteredGrid({9, 9, 9}, {0.9, 0.5, 5.0}); // five slices in place of one
   EXPECT_NEAR(chooseSmoothing(thick), 0.6, 1e-12);
-  Mask mask = maskOf(thick, [](const Vec3& p) { return p.norm() < 4.0; });
+  Mask mask = makeMask(thick, [](const Vec3& p) { return p.norm() < 4.0; });
   EXPECT_NEAR(chooseSmoothing(interpolateSlices(mask).grid), 0.6, 1e-12);
 }
 
 /// Parts that vanish stay as labelled, also beside others that do not.
 TEST(MaskShaping, AutomaticSmoothingKeepsThinParts) {
-  const Mask mask = maskOf(centredGrid({41, 31, 31}), [](const Vec3& p) {
+  const Mask mask = makeMask(makeCenteredGrid({41, 31, 31}), [](const Vec3& p) {
     const bool isLine = std::hypot(p.x() + 15.0, p.y()) < 0.5;
     return (isLine || (p - Vec3(5.0, 0.0, 0.0)).norm() < 6.0) && std::abs(p.z()) < 14.0;
   });
@@ -190,14 +190,14 @@ TEST(MaskShaping, AutomaticSmoothingKeepsThinParts) {
   EXPECT_EQ(valueAt(smooth, Vec3(-15.0, 0.0, 3.0)), 255);
   EXPECT_EQ(smooth.count, plain.count + 27) << "27 voxels of a line";
   EXPECT_EQ(valueAt(smooth, Vec3(11.0, 0.0, 0.0)), valueAt(plain, Vec3(11.0, 0.0, 0.0)));
-  const Mask flakes = maskOf(centredGrid({9, 9, 9}, {1.0, 1.0, 0.01}),
-                             [](const Vec3& p) { return std::abs(p.x()) < 2.5; });
+  const Mask flakes = makeMask(makeCenteredGrid({9, 9, 9}, {1.0, 1.0, 0.01}),
+                               [](const Vec3& p) { return std::abs(p.x()) < 2.5; });
   EXPECT_EQ(smoothMaskAuto(flakes, volume).maxValue, 1) << "as labelled";
 }
 
 TEST(MaskShaping, WideSmoothingTakesTimeThatItsWidthDoesNotChange) {
-  const Mask mask = maskOf(centredGrid({21, 21, 21}, {1.0, 1.0, 0.02}),
-                           [](const Vec3& p) { return std::abs(p.x()) < 4.5; });
+  const Mask mask = makeMask(makeCenteredGrid({21, 21, 21}, {1.0, 1.0, 0.02}),
+                             [](const Vec3& p) { return std::abs(p.x()) < 4.5; });
   const Mask smooth = smoothMask(mask, 1.0, volume);
   const auto at = [&](int x) {
     const Vec3 index = smooth.grid.worldToIndex * Vec3(x, 0.0, 0.0);
@@ -215,7 +215,7 @@ TEST(MaskShaping, InterpolationKeepsThickSlicesAndTheVolumeOfABall) {
     Size3 size = Size3::Constant(45);
     spacing[axis] = 1.25;
     size[axis] = 19;
-    const Mask ball = sphereMask(centredGrid(size, spacing), radius);
+    const Mask ball = makeSphereMask(makeCenteredGrid(size, spacing), radius);
     const Mask fine = interpolateSlices(ball);
     Size3 fineSize = size;
     fineSize[axis] = 55;
@@ -241,7 +241,7 @@ TEST(MaskShaping, NearlyCubicVoxelsAreNotInterpolated) {
 }
 
 TEST(MaskShaping, OneMarginShrinksTouchingSegmentsAsOne) {
-  const Grid grid = centredGrid({40, 40, 40});
+  const Grid grid = makeCenteredGrid({40, 40, 40});
   LargeArray<std::uint8_t> labels;
   for (std::int64_t z = 0; z < 40; ++z)
     for (std::int64_t y = 0; y < 40; ++y)
@@ -258,7 +258,7 @@ TEST(MaskShaping, OneMarginShrinksTouchingSegmentsAsOne) {
 }
 
 TEST(MaskShaping, EachSegmentTakesItsOwnMargin) {
-  const Grid grid = centredGrid({40, 40, 40});
+  const Grid grid = makeCenteredGrid({40, 40, 40});
   LargeArray<std::uint8_t> labels;
   for (std::int64_t z = 0; z < 40; ++z)
     for (std::int64_t y = 0; y < 40; ++y)

@@ -31,8 +31,8 @@ double at(const Mask& mask, const Vec3& world) {
 
 /// Grids of several spacings, the axes of the last one turned and mirrored.
 std::vector<Grid> grids() {
-  std::vector<Grid> all = {centredGrid({81, 81, 81}, Vec3(1.0, 1.0, 1.0)),
-                           centredGrid({121, 121, 41}, Vec3(0.7, 0.7, 2.2))};
+  std::vector<Grid> all = {makeCenteredGrid({81, 81, 81}, Vec3(1.0, 1.0, 1.0)),
+                           makeCenteredGrid({121, 121, 41}, Vec3(0.7, 0.7, 2.2))};
   const Mat3 turn = Mat3::FromRows(Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(0, 1, 0));
   all.push_back({{81, 81, 81}, Affine(turn, -(turn * Vec3::Constant(40.0)))});
   return all;
@@ -80,7 +80,7 @@ TEST(OuterLayer, IsNothingWithoutAirOrBody) {
 TEST(OuterLayer, TakesVoxelsOfAnySize) {
   for (const double spacing : {1e-300, 1e-9, 1e-3, 50.0, 1e9, 1e300})
     for (const Size3& size : {Size3(1, 1, 1), Size3(9, 1, 4), Size3(9, 9, 9)}) {
-      const Grid grid = centredGrid(size, Vec3(spacing, 1.0, spacing));
+      const Grid grid = makeCenteredGrid(size, Vec3(spacing, 1.0, spacing));
       const auto isWater = [&](const Vec3& p) { return p.x() > 0.0; };
       const Mask skin = findOuterLayer(ctOf(grid, isWater), -300.0, depth);
       EXPECT_LE(skin.voxels.size(), 729U);

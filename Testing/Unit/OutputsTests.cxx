@@ -105,7 +105,7 @@ TEST_F(OutputFiles, InputIsNotReplacedUnderAnyName) {
   fs::create_symlink(folder.path(), folder / "here");
   const std::string upAndDown = "../" + folder.path().filename().string() + "/link";
   for (const std::string& name : {"volume"s, "link"s, "hard"s, "here/volume"s, upAndDown})
-    EXPECT_NE(refusal(ErrorKind::usage, [&] { outputs.add(folder / name); }).find("input"),
+    EXPECT_NE(catchError(ErrorKind::usage, [&] { outputs.add(folder / name); }).find("input"),
               std::string::npos)
         << name;
 }
@@ -138,7 +138,7 @@ TEST_F(OutputFiles, SameFileTwiceIsRefused) {
   outputs.add(folder / "a");
   outputs.add(folder / "none");
   for (const char* name : {"a", "hard", "link", "./none"})
-    EXPECT_NE(refusal(ErrorKind::usage, [&] { outputs.add(folder / name); }).find("twice"),
+    EXPECT_NE(catchError(ErrorKind::usage, [&] { outputs.add(folder / name); }).find("twice"),
               std::string::npos);
 }
 
@@ -166,7 +166,7 @@ TEST_F(OutputFiles, FoldersDevicesAndProtectedFilesAreRefused) {
        {folder / "folder.png", folder / "folder.png/", folder / "device.png",
         folder / "missing/a.png", folder / "protected.png",
         folder / (std::string(300, 'n') + ".png"), fs::path("/dev/null"), fs::path("/proc/a.png")})
-    EXPECT_NE(refusal(ErrorKind::output, [&] { outputs.add(path); }).find(path.string()),
+    EXPECT_NE(catchError(ErrorKind::output, [&] { outputs.add(path); }).find(path.string()),
               std::string::npos);
   EXPECT_EQ(fileCount(), 3u);
 }
@@ -181,7 +181,7 @@ TEST_F(OutputFiles, ForeignFileInAStickyFolderIsRefused) {
   ASSERT_EQ(::chown((folder / "theirs.png").c_str(), owner, owner), 0);
   outputs.add(folder / "theirs.png"); // allowed for root
   ASSERT_EQ(::seteuid(other), 0);
-  EXPECT_NE(refusal(ErrorKind::output, [&] { Outputs().add(folder / "theirs.png"); })
+  EXPECT_NE(catchError(ErrorKind::output, [&] { Outputs().add(folder / "theirs.png"); })
                 .find("belongs to somebody else"),
             std::string::npos);
   EXPECT_EQ(::seteuid(0), 0);
@@ -236,7 +236,7 @@ TEST_F(OutputFiles, DefaultNameReplacesOnlySealedFiles) {
     many += blankProvenanceTag;
   folder.write("many", many);
   for (const char* name : {"theirs", "edited", "edited.end", "claimed", "many"})
-    EXPECT_NE(refusal(ErrorKind::usage, [&] { outputs.add(folder / name, hasProvenanceTag); })
+    EXPECT_NE(catchError(ErrorKind::usage, [&] { outputs.add(folder / name, hasProvenanceTag); })
                   .find("Fenestra did not write it"),
               std::string::npos);
   outputs.add(folder / "ours", hasProvenanceTag);
@@ -307,7 +307,7 @@ TEST_F(OutputFiles, NextRunRemovesFilesOfKilledRuns) {
 
 TEST_F(OutputFiles, NamesOfTemporaryFilesAreRefused) {
   const fs::path path = folder / makeTempName(tempFilePrefix);
-  EXPECT_NE(refusal(ErrorKind::usage, [&] { outputs.add(path); }).find("choose another"),
+  EXPECT_NE(catchError(ErrorKind::usage, [&] { outputs.add(path); }).find("choose another"),
             std::string::npos);
 }
 

@@ -253,7 +253,7 @@ TEST_F(SceneChange, RefusedChangeLeavesTheSceneAsItWas) {
   RenderRequest refused = request;
   refused.focus = {"9"};
   EXPECT_THROW(before.withRequest(invalid), Error);
-  EXPECT_EQ(picture(before).at(8, 8).mean.sum(), expected.at(8, 8).mean.sum());
+  EXPECT_EQ(renderFilm(before).at(8, 8).mean.sum(), expected.at(8, 8).mean.sum());
   EXPECT_EQ(before.withRequest(request).updatedStages(), UpdatedStages());
 }
 

@@ -14,12 +14,12 @@ constexpr std::array projections{Projection::orthographic, Projection::perspecti
 
 /// Ball, steep at its outline, seen by pixels smaller than its voxels.
 struct Ball {
-  Domain volume{centredGrid({60, 60, 60})};
-  Mask focus = sphereMask(centredGrid({60, 60, 60}), 20.3);
+  Domain volume{makeCenteredGrid({60, 60, 60})};
+  Mask focus = makeSphereMask(makeCenteredGrid({60, 60, 60}), 20.3);
   Camera camera;
 
   explicit Ball(Projection projection)
-      : camera(anteriorCamera(projection, 200.0, 30.0, 100, 100)) {}
+      : camera(makeAnteriorCamera(projection, 200.0, 30.0, 100, 100)) {}
 
   ClippingSurface surface() const {
     return buildClippingSurface(camera, volume, focus, {.boundary = Boundary::exact});
@@ -156,7 +156,7 @@ TEST(SilhouetteCells, KeepEqualsThatOfTheFullSurface) {
 
 TEST(SilhouetteCells, DepthMeetsASmoothedFocus) {
   Ball ball(Projection::orthographic);
-  ball.focus = maskOf(ball.volume.grid(), [](const Vec3&) { return false; });
+  ball.focus = makeMask(ball.volume.grid(), [](const Vec3&) { return false; });
   ball.focus.maxValue = 255;
   for (std::size_t i = 0; i < ball.focus.voxels.size(); ++i) {
     const auto n = static_cast<std::int64_t>(i);
@@ -181,12 +181,12 @@ TEST(SilhouetteCells, DepthMeetsASmoothedFocus) {
 
 TEST(SilhouetteCells, SelfHidingFocusHasTheFartherDepthBetween) {
   // The right half lies 10 mm deeper.
-  const Grid volume = centredGrid({60, 60, 60});
-  const Mask focus = maskOf(volume, [](const Vec3& p) {
+  const Grid volume = makeCenteredGrid({60, 60, 60});
+  const Mask focus = makeMask(volume, [](const Vec3& p) {
     return std::abs(p.x()) < 16.0 && std::abs(p.z()) < 16.0 &&
            std::abs(p.y() - (p.x() > 0.0 ? 10.0 : 0.0)) < 6.0;
   });
-  const Camera camera = anteriorCamera(Projection::orthographic, 100, 30, 77, 77);
+  const Camera camera = makeAnteriorCamera(Projection::orthographic, 100, 30, 77, 77);
   const ClippingSurface surface =
       buildClippingSurface(camera, volume, focus, {.boundary = Boundary::exact});
   const auto& clip = std::get<ClipDepth>(surface.clip);

@@ -48,9 +48,9 @@ TEST(SegmentationReader, MaskIsCroppedToTheExtentPlusAMargin) {
   EXPECT_EQ(mask.names, (std::vector<std::string>{"Segment_1", "Segment_2"}));
   EXPECT_EQ(mask.voxels.size(), 60u);
   EXPECT_EQ(std::count(mask.voxels.begin(), mask.voxels.end(), 1), 2);
-  EXPECT_EQ(at(mask, {1, 2, 3}), 1);
-  EXPECT_EQ(at(mask, {3, 3, 3}), 1);
-  EXPECT_EQ(at(mask, {5, 5, 5}), 0);
+  EXPECT_EQ(getVoxel(mask, {1, 2, 3}), 1);
+  EXPECT_EQ(getVoxel(mask, {3, 3, 3}), 1);
+  EXPECT_EQ(getVoxel(mask, {5, 5, 5}), 0);
   EXPECT_TRUE(isApprox(mask.grid.indexToWorld * Vec3::Zero(), Vec3(0, 1, 2)));
 }
 
@@ -67,13 +67,13 @@ TEST(SegmentationReader, MaskContinuesOverFacesOfTheVolume) {
   // further in.
   const Mask mask = s.makeFocusMask({"1", "2"}, unitGrid({8, 12, 8}, {0, 0, 0}, 1.0));
   EXPECT_EQ(mask.count, 2);
-  EXPECT_EQ(at(mask, {-1, 0, 5}), 1);
-  EXPECT_EQ(at(mask, {0, -1, 5}), 1);
-  EXPECT_EQ(at(mask, {-1, -1, 5}), 1);
-  EXPECT_EQ(at(mask, {0, 0, 6}), 0);
-  EXPECT_EQ(at(mask, {-1, -1, 6}), 0);
+  EXPECT_EQ(getVoxel(mask, {-1, 0, 5}), 1);
+  EXPECT_EQ(getVoxel(mask, {0, -1, 5}), 1);
+  EXPECT_EQ(getVoxel(mask, {-1, -1, 5}), 1);
+  EXPECT_EQ(getVoxel(mask, {0, 0, 6}), 0);
+  EXPECT_EQ(getVoxel(mask, {-1, -1, 6}), 0);
   const Mask whole = s.makeFocusMask({"1", "2"}, unitGrid({6, 6, 6}));
-  EXPECT_EQ(at(full, {0, 0, 6}), 1);
+  EXPECT_EQ(getVoxel(full, {0, 0, 6}), 1);
   EXPECT_EQ(full.count, 2);
 }
 
@@ -90,16 +90,16 @@ TEST(SegmentationReader, FacesWithinHalfAVoxelAreShared) {
   EXPECT_FALSE(isExtended(-0.6));
   EXPECT_TRUE(isExtended(0.5, 2.0)); // faces at -0.5 and -0.5
   // A labelmap that touches the volume from outside shares no face.
-  EXPECT_EQ(at(s.makeFocusMask({"1"}, makeGrid({6, 9, 9}, {-6, -3, -3})), {-1, 3, 3}), 0);
+  EXPECT_EQ(getVoxel(s.makeFocusMask({"1"}, makeGrid({6, 9, 9}, {-6, -3, -3})), {-1, 3, 3}), 0);
 }
 
 TEST(SegmentationReader, FlippedGridSharesFacesAndObliqueDoesNot) {
   const Segmentation s = labelmap({{{0, 3, 3}, 1}});
   // Grid that fills the labelmap's box, with permuted axes.
   const Affine flipped(Mat3({0, 1, 0}, {0, 0, -1}, {-1, 0, 0}), {5, 0, 5});
-  EXPECT_EQ(at(s.makeFocusMask({"1"}, Grid({6, 6, 6}, flipped)), {-1, 3, 3}), 1);
+  EXPECT_EQ(getVoxel(s.makeFocusMask({"1"}, Grid({6, 6, 6}, flipped)), {-1, 3, 3}), 1);
   const Affine oblique = makeRotation(0.4, Vec3::UnitZ());
-  EXPECT_EQ(at(s.makeFocusMask({"1"}, Grid({6, 6, 6}, oblique)), {-1, 3, 3}), 0);
+  EXPECT_EQ(getVoxel(s.makeFocusMask({"1"}, Grid({6, 6, 6}, oblique)), {-1, 3, 3}), 0);
 }
 
 TEST(SegmentationReader, ReadsPlainLabelmapsOfEveryFormat) {

@@ -22,8 +22,8 @@ struct Sheet {
   using Depth = std::function<std::optional<double>(const Vec2&)>;
 
   Sheet(int pixels, const Depth& focus, double across = 100.0)
-      : camera(anteriorCamera(Projection::orthographic, 300.0, 0.5 * across, pixels, pixels)),
-        buffer(camera, centredGrid({100, 100, 100})),
+      : camera(makeAnteriorCamera(Projection::orthographic, 300.0, 0.5 * across, pixels, pixels)),
+        buffer(camera, makeCenteredGrid({100, 100, 100})),
         regions(static_cast<std::size_t>(buffer.size()), Region::context) {
     for (std::int64_t sample = 0; sample < buffer.size(); ++sample)
       if (const auto depth = focus(at(sample))) {

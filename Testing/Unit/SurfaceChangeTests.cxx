@@ -26,7 +26,7 @@ TEST(Turn, GoesAroundTheTargetCounterClockwiseAsSeenFromAbove) {
 
 /// Picture of 4 x 4 pixels of 1 mm with a level surface at the target's depth, all context.
 VisibleSurface levelSurface() {
-  const Camera camera = anteriorCamera(Projection::orthographic, 100.0, 2.0, 4, 4);
+  const Camera camera = makeAnteriorCamera(Projection::orthographic, 100.0, 2.0, 4, 4);
   return {camera, std::vector<Region>(16, Region::context), std::vector<double>(16, 100.0)};
 }
 
@@ -59,14 +59,14 @@ TEST(SurfaceChange, ExcessIsRelativeToTheSpeedOfTheFocus) {
 /// Balls of 7 and 5 mm that emerge from behind each other, in a block, with cameras around.
 class TurnedBalls : public ::testing::Test {
 protected:
-  const Grid grid = centredGrid({80, 80, 40});
-  const Mask balls = maskOf(grid, [](const Vec3& p) {
+  const Grid grid = makeCenteredGrid({80, 80, 40});
+  const Mask balls = makeMask(grid, [](const Vec3& p) {
     return (p - Vec3(0, -14, 0)).norm() <= 7.0 || (p - Vec3(0, 16, 4)).norm() <= 5.0;
   });
   SurfaceOptions options{.boundary = Boundary::exact};
 
   static Camera cameraAt(double degrees) {
-    const Camera first = anteriorCamera(Projection::orthographic, 200.0, 30.0, 60, 60);
+    const Camera first = makeAnteriorCamera(Projection::orthographic, 200.0, 30.0, 60, 60);
     return {rotateAroundTarget(first.pose(), degrees), 60, 60};
   }
   ClippingSurface surfaceAt(double degrees, double steady) const {

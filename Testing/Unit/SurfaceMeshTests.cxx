@@ -97,8 +97,8 @@ void expectWellMade(const SurfaceMesh& mesh, const Camera& camera) {
 }
 
 TEST(SurfaceMesh, PlaneSeenAlongAnAxisLiesInItsPlace) {
-  const Camera camera = anteriorCamera(Projection::orthographic, 300.0, 8.0, 24, 16);
-  const Grid volume = centredGrid({20, 30, 10}); // in R, A and S: narrower than the viewport
+  const Camera camera = makeAnteriorCamera(Projection::orthographic, 300.0, 8.0, 24, 16);
+  const Grid volume = makeCenteredGrid({20, 30, 10}); // in R, A and S: narrower than the viewport
   const auto plane = [](const Vec2& p) { return 290.0 + 0.25 * p.x() - 0.5 * p.y(); };
   const SurfaceMesh mesh = buildSurfaceMesh(clipOf(camera, volume, plane), volume, 0.0);
   expectWellMade(mesh, camera);
@@ -122,7 +122,7 @@ TEST(SurfaceMesh, PlaneSeenAlongAnAxisLiesInItsPlace) {
 TEST(SurfaceMesh, PointsProjectToTheirSamplesAndHaveTheirDepths) {
   for (const Projection projection : projections) {
     const Camera camera = slantedCamera(projection);
-    const Grid volume = centredGrid({60, 50, 40});
+    const Grid volume = makeCenteredGrid({60, 50, 40});
     const ClipDepth clip = clipOf(camera, volume, [&](const Vec2& p) { return waves(camera, p); });
     const SurfaceMesh mesh = buildSurfaceMesh(clip, volume, 1e-3);
     expectWellMade(mesh, camera);
@@ -143,7 +143,7 @@ TEST(SurfaceMesh, PointsProjectToTheirSamplesAndHaveTheirDepths) {
 TEST(SurfaceMesh, CoversTheVolumesProjection) {
   for (const Projection projection : projections) {
     const Camera camera = slantedCamera(projection);
-    const Grid volume = centredGrid({60, 50, 40});
+    const Grid volume = makeCenteredGrid({60, 50, 40});
     const ClipDepth clip =
         clipOf(camera, volume, [&](const Vec2&) { return camera.targetDepth(); });
     const SurfaceMesh mesh = buildSurfaceMesh(clip, volume, 1e-3);
@@ -170,8 +170,8 @@ TEST(SurfaceMesh, CoversTheVolumesProjection) {
 }
 
 TEST(SurfaceMesh, OmitsSamplesWithoutDepthOrBehindTheEye) {
-  const Grid volume = centredGrid({40, 40, 40});
-  const Camera parallel = anteriorCamera(Projection::orthographic, 300.0, 10.0, 40, 40);
+  const Grid volume = makeCenteredGrid({40, 40, 40});
+  const Camera parallel = makeAnteriorCamera(Projection::orthographic, 300.0, 10.0, 40, 40);
   const auto disk = [](const Vec2& p) { return p.norm() < 6.0 ? 290.0 : -infinity; };
   const SurfaceMesh cutaway = buildSurfaceMesh(clipOf(parallel, volume, disk), volume, 1e-3);
   expectWellMade(cutaway, parallel);
@@ -181,7 +181,7 @@ TEST(SurfaceMesh, OmitsSamplesWithoutDepthOrBehindTheEye) {
   EXPECT_LT(area, pi * 36.0);
   EXPECT_GT(area, pi * 36.0 - 2.0 * pi * 6.0 * parallel.pixelPitch()) << "but its edge's halves";
 
-  const Camera inside = anteriorCamera(Projection::perspective, 10.0, 10.0, 40, 40);
+  const Camera inside = makeAnteriorCamera(Projection::perspective, 10.0, 10.0, 40, 40);
   const auto ramp = [](const Vec2& p) { return 3.0 + 0.5 * p.x(); };
   const SurfaceMesh mesh = buildSurfaceMesh(clipOf(inside, volume, ramp), volume, 1e-3);
   expectWellMade(mesh, inside);
@@ -273,7 +273,7 @@ TEST(SurfaceMesh, ErrorAtSamplesIsWithinTheTolerance) {
   for (const Projection projection : projections)
     for (const auto& [width, height] : {std::pair{48, 36}, {33, 65}, {17, 90}}) {
       const Camera camera = slantedCamera(projection, width, height);
-      const Grid volume = centredGrid({30, 50, 40});
+      const Grid volume = makeCenteredGrid({30, 50, 40});
       for (const auto& [name, shape] : shapes(camera)) {
         const ClipDepth clip = clipOf(camera, volume, shape);
         std::size_t before = 0;
@@ -294,8 +294,9 @@ TEST(SurfaceMesh, ErrorAtSamplesIsWithinTheTolerance) {
 }
 
 TEST(SurfaceMesh, CoversEveryCellWithThreeDepths) {
-  const Camera camera = anteriorCamera(Projection::orthographic, 300.0, 10.0, 37, 50);
-  const Grid volume = centredGrid({60, 60, 60}); // covers the viewport, and is coarser around it
+  const Camera camera = makeAnteriorCamera(Projection::orthographic, 300.0, 10.0, 37, 50);
+  const Grid volume =
+      makeCenteredGrid({60, 60, 60}); // covers the viewport, and is coarser around it
   for (const auto& [name, shape] : shapes(camera)) {
     const ClipDepth clip = clipOf(camera, volume, shape);
     const DepthBuffer& buffer = *clip.buffer;
@@ -319,9 +320,9 @@ TEST(SurfaceMesh, CoversEveryCellWithThreeDepths) {
 }
 
 TEST(SurfaceMesh, PlaneHasTwoTrianglesAndNoiseAllOfThem) {
-  const Grid volume = centredGrid({30, 30, 30});
+  const Grid volume = makeCenteredGrid({30, 30, 30});
   for (const Projection projection : projections) {
-    const Camera camera = anteriorCamera(projection, 300.0, 15.0, 200, 200);
+    const Camera camera = makeAnteriorCamera(projection, 300.0, 15.0, 200, 200);
     // Plane, whose depth in perspective is not linear over the picture.
     const auto plane = [&](const Vec2& p) {
       const Vec3 normal(0.3, 1.0, -0.2);
@@ -353,8 +354,8 @@ TEST(SurfaceMesh, TriangleCountDoesNotDependOnTheSubjectsSize) {
   std::vector<std::size_t> triangles;
   for (const double size : {1.0, 512.0}) {
     const Camera camera =
-        anteriorCamera(Projection::orthographic, 5.0 * size, 0.6 * size, 100, 100);
-    const Grid volume = centredGrid({16, 16, 16}, Vec3::Constant(size / 16.0));
+        makeAnteriorCamera(Projection::orthographic, 5.0 * size, 0.6 * size, 100, 100);
+    const Grid volume = makeCenteredGrid({16, 16, 16}, Vec3::Constant(size / 16.0));
     const auto bump = [&](const Vec2& p) {
       return 5.0 * size - 0.3 * size * std::exp(-9.0 * p.squaredNorm() / (size * size));
     };
