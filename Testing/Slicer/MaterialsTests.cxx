@@ -131,7 +131,7 @@ protected:
   Materials table;
 };
 
-using Texts = std::vector<std::string>;
+using Strings = std::vector<std::string>;
 
 TEST_F(SlicerMaterials, RendererTellsItsChoicesAndItsLibrary) {
   EXPECT_GE(knownMaterials().library.size(), 24);
@@ -151,7 +151,7 @@ TEST_F(SlicerMaterials, SourceIsOneFlagAndNoChange) {
   EXPECT_TRUE(arguments().empty()) << "what nobody has touched is no flag";
   for (const char* word : {"none", "auto", "library"}) {
     choose(word);
-    EXPECT_EQ(arguments(), (Texts{std::string("--materials=") + word}));
+    EXPECT_EQ(arguments(), (Strings{std::string("--materials=") + word}));
     EXPECT_EQ(widget().isEnabled(), word != std::string("none"));
   }
   choose("file");
@@ -160,10 +160,10 @@ TEST_F(SlicerMaterials, SourceIsOneFlagAndNoChange) {
   EXPECT_FALSE(file.isHidden());
   file.setText("/data/my own.json");
   emit file.editingFinished();
-  EXPECT_EQ(arguments(), (Texts{"--materials=/data/my own.json"}));
+  EXPECT_EQ(arguments(), (Strings{"--materials=/data/my own.json"}));
   EXPECT_EQ(seen(0), "...") << "what the file says is not known here";
   choose("hand");
-  EXPECT_EQ(arguments(), (Texts{"--materials=/data/my own.json"}));
+  EXPECT_EQ(arguments(), (Strings{"--materials=/data/my own.json"}));
   choose("");
   EXPECT_TRUE(arguments().empty());
 }
@@ -174,17 +174,17 @@ TEST_F(SlicerMaterials, OnlyWhatIsChangedIsAnArgument) {
   setClip(1, false);
   EXPECT_EQ(changes, 1);
   EXPECT_EQ(chosen(), "hand");
-  EXPECT_EQ(arguments(), (Texts{"--material=" + awkward + ": clip=no", "--materials=auto"}));
+  EXPECT_EQ(arguments(), (Strings{"--material=" + awkward + ": clip=no", "--materials=auto"}));
   choose("library");
-  EXPECT_EQ(arguments(), (Texts{"--materials=library"}));
+  EXPECT_EQ(arguments(), (Strings{"--materials=library"}));
   setMaterial(0, "spleen");
   EXPECT_EQ(chosen(), "hand");
   pickColor(0, "#ABCDEF");
-  EXPECT_EQ(arguments(),
-            (Texts{"--material=Segment_1: color=#abcdef, material=spleen", "--materials=library"}));
+  EXPECT_EQ(arguments(), (Strings{"--material=Segment_1: color=#abcdef, material=spleen",
+                                  "--materials=library"}));
   EXPECT_EQ(seen(0), "#abcdef");
   setMaterial(0, "vein");
-  const Texts vein = {"--material=Segment_1: material=vein", "--materials=library"};
+  const Strings vein = {"--material=Segment_1: material=vein", "--materials=library"};
   EXPECT_EQ(seen(0), "#4668b2") << "a material comes with its colour";
   EXPECT_EQ(arguments(), vein);
   setClip(0, false);
@@ -192,7 +192,7 @@ TEST_F(SlicerMaterials, OnlyWhatIsChangedIsAnArgument) {
   EXPECT_EQ(arguments(), vein);
   EXPECT_FALSE(cell<QToolButton>(1, reset).isEnabled());
   cell<QToolButton>(0, reset).click();
-  EXPECT_EQ(arguments(), (Texts{"--materials=library"}));
+  EXPECT_EQ(arguments(), (Strings{"--materials=library"}));
   EXPECT_EQ(seen(0), "#963e2e");
 }
 
@@ -225,9 +225,9 @@ TEST_F(SlicerMaterials, ClipFollowsTheAutomaticChoice) {
   table.setKnownMaterials(standing);
   EXPECT_FALSE(isClipped(0));
   setClip(0, true);
-  EXPECT_EQ(arguments(), (Texts{"--material=Segment_1: clip=yes", "--materials=auto"}));
+  EXPECT_EQ(arguments(), (Strings{"--material=Segment_1: clip=yes", "--materials=auto"}));
   setClip(0, false);
-  EXPECT_EQ(arguments(), (Texts{"--materials=auto"}));
+  EXPECT_EQ(arguments(), (Strings{"--materials=auto"}));
 }
 
 TEST_F(SlicerMaterials, CancelledDialogChangesNothing) {
@@ -245,13 +245,13 @@ TEST_F(SlicerMaterials, RowsFollowTheSegments) {
   table.list(toPanelSegments(all));
   EXPECT_EQ(text(1), "<b>Aorta</b>");
   EXPECT_FALSE(isClipped(1));
-  const Texts both = arguments();
+  const Strings both = arguments();
   all.erase(all.begin());
   table.list(toPanelSegments(all)); // "Liver" is removed
   EXPECT_EQ(widget().rowCount(), 2);
   EXPECT_EQ(text(0), "<b>Aorta</b>");
   EXPECT_FALSE(isClipped(0));
-  EXPECT_EQ(arguments(), (Texts{"--material=" + awkward + ": clip=no", "--materials=auto"}));
+  EXPECT_EQ(arguments(), (Strings{"--material=" + awkward + ": clip=no", "--materials=auto"}));
   table.list(toPanelSegments(segments())); // there again, as after Undo
   EXPECT_EQ(arguments(), both);
   table.list({});
@@ -279,7 +279,7 @@ TEST_F(SlicerMaterials, FlagsAreShownAndMadeAgain) {
   table.show({{"materials", "auto"}, {"material", "Segment_3: material=of a file"}});
   EXPECT_EQ(cell<QComboBox>(2, material).currentData().toString(), "of a file");
   table.show({{"materials", "auto"}});
-  EXPECT_EQ(arguments(), (Texts{"--materials=auto"}));
+  EXPECT_EQ(arguments(), (Strings{"--materials=auto"}));
 }
 
 TEST_F(SlicerMaterials, FlagsAreThereBeforeTheSegments) {
@@ -300,7 +300,7 @@ TEST_F(SlicerMaterials, ChangesOfScriptsAreFoundByName) {
                                {"Liver: clip=no", "Gone: clip=no", "Segment_1: color=#00ff00"})}});
   EXPECT_FALSE(isClipped(0));
   EXPECT_EQ(arguments(),
-            (Texts{"--material=Segment_1: clip=no, color=#00ff00", "--materials=library"}));
+            (Strings{"--material=Segment_1: clip=no, color=#00ff00", "--materials=library"}));
 }
 
 /// Scene with the segments side by side, as the extension hands it to the renderer.
@@ -421,7 +421,7 @@ TEST_F(SlicerMaterials, ResetForgetsAll) {
   table.reset();
   EXPECT_TRUE(arguments().empty());
   choose("hand");
-  EXPECT_EQ(arguments(), (Texts{"--materials=auto"}));
+  EXPECT_EQ(arguments(), (Strings{"--materials=auto"}));
 }
 
 } // namespace

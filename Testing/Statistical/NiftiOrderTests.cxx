@@ -42,7 +42,7 @@ Image pictureOf(const std::filesystem::path& file, std::uint64_t seed) {
 TEST(NiftiOrder, EveryOrderAndSignOfAxesGivesThePictureWithinItsErrors) {
   const TemporaryFolder folder;
   Affine map;
-  NiftiFile whole = reordered(size, spacing, origin, valueOf, {0, 1, 2}, 0, map);
+  NiftiFile whole = makeReordered(size, spacing, origin, valueOf, {0, 1, 2}, 0, map);
   whole.setSform(map);
   whole.sformCode = 1;
   const Image expected = pictureOf(folder.write("whole.nii", whole.bytes()), 1000);
@@ -55,7 +55,7 @@ TEST(NiftiOrder, EveryOrderAndSignOfAxesGivesThePictureWithinItsErrors) {
         // The short run takes each order and each sign once, and each pair of codes twelve times.
         if (!isLongRun() && number++ % 4 != reversed % 4)
           continue;
-        NiftiFile file = reordered(size, spacing, origin, valueOf, order, reversed, map);
+        NiftiFile file = makeReordered(size, spacing, origin, valueOf, order, reversed, map);
         file.setQform(map);
         file.setSform(sform == 2 && qform == 1 ? makeTranslation({99.0, 0.0, 0.0}) : map);
         file.qformCode = static_cast<std::int16_t>(qform);

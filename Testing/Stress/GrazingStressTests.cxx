@@ -148,7 +148,7 @@ TEST_P(Grazing, RayFromACornerWalksTheChordInwardAndNothingOutward) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Grids, Grazing, ::testing::Range(0, 4), [](const auto& info) {
-  return std::string(grids()[static_cast<std::size_t>(info.param)].name);
+  return std::string(makeGrids()[static_cast<std::size_t>(info.param)].name);
 });
 
 // Faces that are exact in binary: a ray that lies in such a face counts as inside (Box::clip).

@@ -15,7 +15,7 @@ ScalarFunction::Knot knot(double s, double y) {
 }
 
 template <typename Voxel>
-LargeArray<Voxel> noise(const Size3& size, double low, double high) {
+LargeArray<Voxel> makeNoise(const Size3& size, double low, double high) {
   LargeArray<Voxel> voxels;
   for (std::int64_t i = 0; i < size.prod(); ++i) {
     Random random(6, static_cast<std::uint64_t>(i), 0);
@@ -28,7 +28,7 @@ LargeArray<Voxel> noise(const Size3& size, double low, double high) {
 }
 
 /// Index of the cell that holds a point (index space).
-std::int64_t cellOf(const MajorantGrid& majorants, const Grid& grid, const Vec3& p) {
+std::int64_t findCell(const MajorantGrid& majorants, const Grid& grid, const Vec3& p) {
   const Vec3 inCells = majorants.worldToCell() * (grid.indexToWorld * p);
   Size3 cell;
   for (int axis = 0; axis < 3; ++axis)
@@ -38,7 +38,7 @@ std::int64_t cellOf(const MajorantGrid& majorants, const Grid& grid, const Vec3&
 }
 
 /// A point at most MajorantGrid::margin away along each axis, in the box.
-Vec3 inStripAround(const Vec3& p, const Box& box, Random& random) {
+Vec3 randomNeighbor(const Vec3& p, const Box& box, Random& random) {
   Vec3 q;
   for (int axis = 0; axis < 3; ++axis)
     q[axis] = std::clamp(p[axis] + MajorantGrid::margin * (2.0 * random.uniform() - 1.0),
@@ -52,7 +52,7 @@ void expectConservative(const TransferFunction& transfer, double low, double hig
   Affine map = Affine::Identity();
   map.linear() = Mat3::Diagonal({0.3, -1.0, 2.5});
   const Grid grid(Size3(29, 17, 11), map);
-  Volume volume{grid, noise<Voxel>(grid.size, low, high), 0.0, 0.0, "noise", {}};
+  Volume volume{grid, makeNoise<Voxel>(grid.size, low, high), 0.0, 0.0, "noise", {}};
   computeRange(volume);
   const MinMaxGrid ranges(volume, MajorantGrid::requiredPadding(transfer));
   const MajorantGrid majorants(grid, ranges, transfer, ClipNone{});
@@ -68,8 +68,8 @@ void expectConservative(const TransferFunction& transfer, double low, double hig
       if (random.uniform() < 0.3) // often on voxel centres and cell faces
         p[axis] = std::round(2.0 * p[axis]) / 2.0;
     }
-    const std::int64_t index = cellOf(majorants, grid, p);
-    const Vec3 q = inStripAround(p, box, random);
+    const std::int64_t index = findCell(majorants, grid, p);
+    const Vec3 q = randomNeighbor(p, box, random);
     ASSERT_LE(medium.extinction(q), static_cast<double>(majorants.cell(index).majorant))
         << "at " << q << " beside the cell of " << p;
     const double sigma_t = medium.extinction(p);
@@ -79,11 +79,11 @@ void expectConservative(const TransferFunction& transfer, double low, double hig
   EXPECT_LT(tightest, transfer.extinction.range(-1e9, 1e9)[1]) << "some cell must be tighter";
 }
 
-const ColorFunction grey({{0.0, Rgb::Constant(0.5)}});
+const ColorFunction gray({{0.0, Rgb::Constant(0.5)}});
 
 TEST(MajorantGrid, BoundsANonMonotoneFunction) {
   const TransferFunction transfer{
-      ScalarFunction({knot(0, 0), knot(40, 0), knot(50, 8), knot(60, 0), knot(200, 1)}), grey};
+      ScalarFunction({knot(0, 0), knot(40, 0), knot(50, 8), knot(60, 0), knot(200, 1)}), gray};
   expectConservative<std::uint8_t>(transfer, 0, 255);
   expectConservative<float>(transfer, -20, 220);
 }
@@ -95,13 +95,13 @@ TEST(MajorantGrid, MatterBoxHoldsAllMatterAndAtMostACellMore) {
     const bool inside = (p.array() >= first.array()).all() && (p.array() <= last.array()).all();
     return inside ? 200.0 : 10.0;
   });
-  const auto boxFrom = [&](double threshold) {
+  const auto computeBounds = [&](double threshold) {
     const TransferFunction transfer{ScalarFunction({knot(threshold, 0), knot(threshold + 1, 1)}),
-                                    grey};
+                                    gray};
     return MajorantGrid(grid, MinMaxGrid(volume, 0), transfer, ClipNone{}).occupiedBounds();
   };
   const Vec3 edge = MinMaxGrid::chooseCellSize(grid).cast<double>();
-  const Box box = boxFrom(100.0);
+  const Box box = computeBounds(100.0);
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_LE(box.lower[axis], first[axis] - 0.5);
     EXPECT_GE(box.lower[axis], first[axis] - 2.0 - edge[axis]);
@@ -117,12 +117,12 @@ TEST(MajorantGrid, MatterBoxHoldsAllMatterAndAtMostACellMore) {
 TEST(MajorantGrid, BoundsStepsAndSpikes) {
   const TransferFunction transfer{ScalarFunction({knot(0, 0), knot(100, 0), knot(100, 5),
                                                   knot(101, 5), knot(101, 0), knot(1000, 0.1)}),
-                                  grey};
+                                  gray};
   expectConservative<std::int16_t>(transfer, -50, 1000);
 }
 
 TEST(MajorantGrid, BoundsGradientOpacity) {
-  TransferFunction transfer{ScalarFunction({knot(0, 0.5), knot(255, 3)}), grey};
+  TransferFunction transfer{ScalarFunction({knot(0, 0.5), knot(255, 3)}), gray};
   transfer.gradientOpacity = ScalarFunction({knot(0, 0), knot(30, 0.2), knot(60, 1), knot(200, 0)});
   expectConservative<std::uint16_t>(transfer, 0, 255);
 }
@@ -139,7 +139,7 @@ TEST(MajorantGrid, ClippedCellsAreEmptyAndCutOnesMarked) {
   const Grid grid(Size3(32, 32, 32), Affine::Identity());
   Volume volume{grid, LargeArray<float>(32768, 1.0F), 1.0, 1.0, "ones", {}};
   const MinMaxGrid ranges(volume, 0);
-  const TransferFunction opaque{ScalarFunction({knot(0, 0), knot(1, 2)}), grey};
+  const TransferFunction opaque{ScalarFunction({knot(0, 0), knot(1, 2)}), gray};
   CameraPose pose;
   pose.position = {16, 16, 100};
   pose.target = {16, 16, 16};
@@ -154,14 +154,14 @@ TEST(MajorantGrid, ClippedCellsAreEmptyAndCutOnesMarked) {
     cut += clipped.cell(i).isCut;
   EXPECT_EQ(cut, clipped.cellCount().x() * clipped.cellCount().y());
 
-  const TransferFunction empty{ScalarFunction({knot(1.5, 0), knot(2, 2)}), grey};
+  const TransferFunction empty{ScalarFunction({knot(1.5, 0), knot(2, 2)}), gray};
   EXPECT_EQ(emptyFraction(MajorantGrid(grid, ranges, empty, ClipNone{})), 1.0);
 }
 
 TEST(MajorantGrid, ClipAndStyleAreBoundedInTheStripAroundACell) {
   const Grid grid(Size3(24, 24, 24), Affine::Identity());
   Volume volume{grid, LargeArray<float>(13824, 1.0F), 1.0, 1.0, "ones", {}};
-  const TransferFunction opaque{ScalarFunction({knot(0, 0), knot(1, 2)}), grey};
+  const TransferFunction opaque{ScalarFunction({knot(0, 0), knot(1, 2)}), gray};
   CameraPose pose;
   pose.position = {12, 12, 100};
   pose.target = {12, 12, 12};
@@ -184,9 +184,9 @@ TEST(MajorantGrid, ClipAndStyleAreBoundedInTheStripAroundACell) {
       if (random.uniform() < 0.8) // often in a face
         p[axis] = std::floor(p[axis]) + 0.5;
     }
-    const MajorantGrid::Cell& cell = majorants.cell(cellOf(majorants, grid, p));
-    const Vec3 q = inStripAround(p, box, random);
-    const double kept = clipWeight(plane, q);
+    const MajorantGrid::Cell& cell = majorants.cell(findCell(majorants, grid, p));
+    const Vec3 q = randomNeighbor(p, box, random);
+    const double weight = clipWeight(plane, q);
     ASSERT_LE(weight * medium.extinction(q), static_cast<double>(cell.majorant)) << "at " << q;
     ASSERT_TRUE(cell.isCut || cell.majorant == 0.0F || weight == 1.0) << "at " << q;
   }

@@ -20,11 +20,11 @@ Mask ball(double radius) {
                   [&](const Vec3& p) { return p.norm() <= radius; });
 }
 
-double millimetres3(const Mask& mask) {
+double volumeMm3(const Mask& mask) {
   return static_cast<double>(mask.count) * mask.grid.spacing().prod();
 }
 
-double ballOf(double radius) {
+double ballVolume(double radius) {
   return 4.0 / 3.0 * pi * radius * radius * radius;
 }
 
@@ -32,16 +32,16 @@ TEST(MaskShaping, BallGrowsByItsMargin) {
   for (const double margin : {1.5, 4.0, 9.0}) {
     const Mask grownBall = applyMargin(ball(10.0), margin, volume);
     // Voxels whose centres lie within the margin of focus centres: uncertain by half a voxel.
-    EXPECT_GT(millimetres3(grownBall), ballOf(10.0 + margin - 0.7));
-    EXPECT_LT(millimetres3(grownBall), ballOf(10.0 + margin + 0.5));
+    EXPECT_GT(volumeMm3(grownBall), ballVolume(10.0 + margin - 0.7));
+    EXPECT_LT(volumeMm3(grownBall), ballVolume(10.0 + margin + 0.5));
     EXPECT_LT(grownBall.grid.worldCenter().norm(), 1e-9);
   }
 }
 
 TEST(MaskShaping, BallShrinksByItsMargin) {
   const Mask shrunk = applyMargin(ball(10.0), -3.0, volume);
-  EXPECT_GT(millimetres3(shrunk), ballOf(10.0 - 3.0 - 1.0));
-  EXPECT_LT(millimetres3(shrunk), ballOf(10.0 - 3.0 + 0.7));
+  EXPECT_GT(volumeMm3(shrunk), ballVolume(10.0 - 3.0 - 1.0));
+  EXPECT_LT(volumeMm3(shrunk), ballVolume(10.0 - 3.0 + 0.7));
   EXPECT_EQ(applyMargin(ball(10.0), -30.0, volume).count, 0);
 }
 
@@ -62,8 +62,8 @@ TEST(MaskShaping, ShrinkingKeepsAFocusWholeWhereTheVolumeCutsIt) {
 
 TEST(MaskShaping, UnionCountsTheVoxelsOfBothMasks) {
   const auto box = [](const Vec3& lower, const Vec3& upper) {
-    const Grid whole = makeCenteredGrid({40, 40, 40});
-    return makeBoxMask(whole, lower, upper);
+    const Grid grid = makeCenteredGrid({40, 40, 40});
+    return makeBoxMask(grid, lower, upper);
   };
   const Mask a = applyMargin(box({-10, -10, -10}, {-5, -5, -5}), 1.0, volume);
   const Mask b = box({5, 5, 5}, {9, 9, 9});
@@ -74,18 +74,18 @@ TEST(MaskShaping, UnionCountsTheVoxelsOfBothMasks) {
 }
 
 /// Range of the visible surface's distances from a sphere of `radius`, over its central part, mm.
-double stairs(const Mask& mask, double radius) {
+double stepHeight(const Mask& mask, double radius) {
   const Camera camera = makeAnteriorCamera(Projection::orthographic, 100, 20, 128, 128);
   const FocusDepth focus = FocusTracer(camera, volume, mask).traceDepths();
-  std::vector<double> misses;
+  std::vector<double> distances;
   for (std::int64_t row = 0; row < focus.depth.rows(); ++row)
     for (std::int64_t column = 0; column < focus.depth.columns(); ++column) {
       const Vec2 at = focus.depth.position(column, row);
       if (at.norm() < 0.5 * radius)
-        misses.push_back(100.0 - std::sqrt(radius * radius - at.squaredNorm()) -
-                         focus.depth.at(focus.depth.sample(column, row)));
+        distances.push_back(100.0 - std::sqrt(radius * radius - at.squaredNorm()) -
+                            focus.depth.at(focus.depth.sample(column, row)));
     }
-  const auto [least, greatest] = std::ranges::minmax(misses);
+  const auto [least, greatest] = std::ranges::minmax(distances);
   return greatest - least;
 }
 
@@ -93,11 +93,11 @@ TEST(MaskShaping, SmoothingRemovesStairsAndKeepsTheRadius) {
   const double radius = 12.0;
   const Mask steps = ball(radius), smooth = smoothMask(steps, 1.2, volume);
   EXPECT_EQ(smooth.maxValue, 255);
-  EXPECT_GT(stairs(steps, radius), 0.5);
-  EXPECT_LT(stairs(smooth, radius), 0.6 * stairs(steps, radius));
+  EXPECT_GT(stepHeight(steps, radius), 0.5);
+  EXPECT_LT(stepHeight(smooth, radius), 0.6 * stepHeight(steps, radius));
   // A ball shrinks by deviation^2 / radius.
-  EXPECT_NEAR(std::cbrt(millimetres3(smooth) / ballOf(1.0)),
-              std::cbrt(millimetres3(steps) / ballOf(1.0)) - 1.44 / radius, 0.12);
+  EXPECT_NEAR(std::cbrt(volumeMm3(smooth) / ballVolume(1.0)),
+              std::cbrt(volumeMm3(steps) / ballVolume(1.0)) - 1.44 / radius, 0.12);
 }
 
 TEST(MaskShaping, SmoothingKeepsAFlatFace) {
@@ -111,19 +111,19 @@ TEST(MaskShaping, SmoothingKeepsAFlatFace) {
 }
 
 /// Range of the visible surface's distances from y = slope z along its normal, mm.
-double stairsOfASlope(const Mask& mask, double slope) {
+double slopeStepHeight(const Mask& mask, double slope) {
   const Camera camera = makeAnteriorCamera(Projection::orthographic, 100, 5, 128, 128);
   const FocusDepth focus = FocusTracer(camera, volume, mask).traceDepths();
-  std::vector<double> misses;
+  std::vector<double> distances;
   for (std::int64_t row = 0; row < focus.depth.rows(); ++row)
     for (std::int64_t column = 0; column < focus.depth.columns(); ++column) {
       const Vec2 at = focus.depth.position(column, row);
       if (at.cwiseAbs().maxCoeff() < 5.0)
-        misses.push_back(
+        distances.push_back(
             (focus.depth.at(focus.depth.sample(column, row)) - 100.0 - slope * at.y()) /
             std::hypot(1.0, slope));
     }
-  const auto [least, greatest] = std::ranges::minmax(misses);
+  const auto [least, greatest] = std::ranges::minmax(distances);
   return greatest - least;
 }
 
@@ -131,8 +131,8 @@ TEST(MaskShaping, SurfaceThatLeansAcrossThickSlicesIsASlope) {
   for (const double slope : {1.0, 2.0}) { // 2 and 4 mm from slice to slice
     const Mask steps = makeMask(makeCenteredGrid({41, 121, 21}, {0.5, 0.5, 2.0}),
                                 [&](const Vec3& p) { return p.y() >= slope * p.z() + 0.1; });
-    EXPECT_GT(stairsOfASlope(smoothMask(steps, 0.6, volume), slope), 0.3);
-    EXPECT_LT(stairsOfASlope(smoothMask(interpolateSlices(steps), 0.6, volume), slope), 0.12);
+    EXPECT_GT(slopeStepHeight(smoothMask(steps, 0.6, volume), slope), 0.3);
+    EXPECT_LT(slopeStepHeight(smoothMask(interpolateSlices(steps), 0.6, volume), slope), 0.12);
   }
 }
 
@@ -141,8 +141,8 @@ TEST(MaskShaping, SmoothingIsASampledGaussian) {
   const Mask mask = makeMask(makeCenteredGrid({9, 12, 40}, {1.0, 0.5, 1.5}), [](const Vec3& p) {
     return p.x() + p.y() > 0.3 && std::abs(p.z() - 2.0) < 14.0;
   });
-  const double deviation = 1.3;
-  const Mask smooth = smoothMask(mask, deviation, volume);
+  const double sigma = 1.3;
+  const Mask smooth = smoothMask(mask, sigma, volume);
   EXPECT_EQ(smooth.smoothing, sigma);
   const Vec3 spacing = mask.grid.spacing();
   const auto at = [&](const Size3& voxel) {
@@ -155,7 +155,7 @@ TEST(MaskShaping, SmoothingIsASampledGaussian) {
     for (int z = -3; z <= 3; ++z)
       for (int y = -8; y <= 8; ++y)
         for (int x = -4; x <= 4; ++x) {
-          const Vec3 d = Vec3(x, y, z).cwiseProduct(spacing) / deviation;
+          const Vec3 d = Vec3(x, y, z).cwiseProduct(spacing) / sigma;
           const double weight = std::exp(-0.5 * d.squaredNorm());
           weights += weight;
           sum += weight * at(voxel + Size3(x, y, z));
@@ -180,9 +180,9 @@ TEST(MaskShaping, AutomaticSmoothingKeepsThinParts) {
     const bool isLine = std::hypot(p.x() + 15.0, p.y()) < 0.5;
     return (isLine || (p - Vec3(5.0, 0.0, 0.0)).norm() < 6.0) && std::abs(p.z()) < 14.0;
   });
-  const auto valueAt = [](const Mask& of, const Vec3& p) {
-    const Vec3 index = of.grid.worldToIndex * p;
-    return of.voxels[linearIndex(index.array().round().cast<std::int64_t>(), of.grid.size)];
+  const auto valueAt = [](const Mask& labels, const Vec3& p) {
+    const Vec3 index = labels.grid.worldToIndex * p;
+    return labels.voxels[linearIndex(index.array().round().cast<std::int64_t>(), labels.grid.size)];
   };
   const Mask smooth = smoothMaskAuto(mask, volume), plain = smoothMask(mask, 0.6, volume);
   EXPECT_NEAR(smooth.smoothing, 0.6, 1e-12);
@@ -221,7 +221,7 @@ TEST(MaskShaping, InterpolationKeepsThickSlicesAndTheVolumeOfABall) {
     fineSize[axis] = 55;
     ASSERT_EQ(fine.grid.size, fineSize);
     EXPECT_LT(fine.grid.worldCenter().norm(), 1e-9);
-    EXPECT_NEAR(millimetres3(fine) / ballOf(radius), 1.0, 0.02);
+    EXPECT_NEAR(volumeMm3(fine) / ballVolume(radius), 1.0, 0.02);
     std::int64_t differing = 0;
     for (std::int64_t i = 0; i < ball.grid.voxelCount(); ++i) {
       const Size3 at{i % size.x(), i / size.x() % size.y(), i / (size.x() * size.y())};

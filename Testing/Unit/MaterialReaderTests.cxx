@@ -26,7 +26,7 @@ constexpr const char* organs = R"({"version": 1,
   "rest": {"material": "tissue"},
   "context": {"saturation": 0.6, "lightness": 0.15}})";
 
-double extinctionOf(const Material& material, double scalar) {
+double evalExtinction(const Material& material, double scalar) {
   return (*material.extinction)(scalar).value();
 }
 
@@ -85,11 +85,11 @@ TEST(MaterialReader, ReadsEveryFieldOfARule) {
 }
 
 TEST(MaterialReader, AFileStandsOnTheTableBeneath) {
-  const MaterialTable beneath = parseMaterials(organs, "test");
+  const MaterialTable base = parseMaterials(organs, "test");
   const MaterialTable table = parseMaterials(
       R"({"version": 1, "materials": {"lesion": {"color": "#00ff00"}},
           "segments": [{"match": {"names": ["spleen"]}, "material": "liver"}]})",
-      "mine", beneath);
+      "mine", base);
   EXPECT_EQ(table.materials.size(), 5u);
   EXPECT_FALSE(table.materials.at("lesion").extinction) << "replaced whole";
   ASSERT_EQ(table.rules.size(), 3u);
@@ -192,20 +192,20 @@ TEST(MaterialReader, ChangesOneSegment) {
   const MaterialChange change =
       parseMaterialChange("Liver: left : color=#00ff00, density=2.5 ,clip=no,priority=7", table);
   EXPECT_EQ(change.selector, "Liver: left") << "up to the last colon";
-  SegmentMedium matter{table.materials.at("liver"), 10, true, 1.0};
-  matter = applyChange(matter, change, table);
+  SegmentMedium medium{table.materials.at("liver"), 10, true, 1.0};
+  medium = applyChange(medium, change, table);
   EXPECT_EQ((*medium.material.color)(0)[1], 1.0);
   EXPECT_EQ((*medium.material.color)(0)[0], 0.0);
   EXPECT_EQ(medium.material.specular, 0.25) << "the liver's, unchanged";
   EXPECT_EQ(medium.density, 2.5);
   EXPECT_FALSE(medium.isClipped);
   EXPECT_EQ(medium.priority, 7);
-  matter =
-      applyChange(matter, parseMaterialChange("x: material=lesion, extinction=3", table), table);
+  medium =
+      applyChange(medium, parseMaterialChange("x: material=lesion, extinction=3", table), table);
   EXPECT_EQ(evalExtinction(medium.material, 0), 3.0);
   EXPECT_EQ(medium.material.diffuse, 0.8) << "the lesion's";
   EXPECT_EQ(medium.density, 2.5) << "the segment's";
-  matter = applyChange(matter, parseMaterialChange("x: extinction=base, kind=tint", table), table);
+  medium = applyChange(medium, parseMaterialChange("x: extinction=base, kind=tint", table), table);
   EXPECT_FALSE(medium.material.extinction);
   EXPECT_EQ(medium.material.kind, MaterialKind::tint);
 }

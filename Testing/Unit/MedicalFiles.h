@@ -28,8 +28,9 @@ struct FileGeometry {
 };
 
 /// Adds Slicer's fields for segment n.
-inline void describe(FileGeometry& geometry, int n, const std::string& id, const std::string& name,
-                     const std::string& value, const std::string& layer) {
+inline void addSegment(FileGeometry& geometry, int n, const std::string& id,
+                       const std::string& name, const std::string& value,
+                       const std::string& layer) {
   const std::string prefix = "Segment" + std::to_string(n) + "_";
   geometry.fields[prefix + "ID"] = id;
   geometry.fields[prefix + "Name"] = name;

@@ -18,13 +18,13 @@ protected:
     expectRefused(path, text, [&path] { readVolume(path); });
   }
   /// File of 3x4x2 samples; each of `lines` ends with a line break.
-  Path nrrd(const std::string& lines, const std::string& encoding = "raw",
-            const std::string& data = std::string(24, 'x')) const {
+  Path writeNrrd(const std::string& lines, const std::string& encoding = "raw",
+                 const std::string& data = std::string(24, 'x')) const {
     return folder.write("v.nrrd", "NRRD0004\ntype: unsigned char\ndimension: 3\nsizes: 3 4 2\n"
                                   "encoding: " +
                                       encoding + "\n" + lines + "\n" + data);
   }
-  Path meta(const std::string& lines) const {
+  Path writeMeta(const std::string& lines) const {
     return folder.write("v.mha", "ObjectType = Image\nNDims = 3\nElementType = MET_UCHAR\n" +
                                      lines + "ElementDataFile = LOCAL\n" + std::string(24, 'x'));
   }
@@ -38,52 +38,54 @@ const std::string unitDirections = "space directions: (1,0,0) (0,1,0) (0,0,1)\n"
 TEST_F(MedicalHeaders, BadGeometryIsRefused) {
   for (const char* vector :
        {"(0,0,1e200)", "(0,0,2e9)", "(0,0,1e-10)", "(0,0,1e999)", "(0,0,inf)", "(0,0,x)", "(0,0,1"})
-    refuse(nrrd(space + "space directions: (1,0,0) (0,1,0) " + vector + "\n"),
+    refuse(writeNrrd(space + "space directions: (1,0,0) (0,1,0) " + vector + "\n"),
            "space directions: each must be a vector of 1e-9 to 1e9 mm");
-  refuse(nrrd(space + "space directions: (1,0,0) (0,1,0) none\n"),
+  refuse(writeNrrd(space + "space directions: (1,0,0) (0,1,0) none\n"),
          "space directions: has 2 vectors");
-  refuse(nrrd("axis mins: 10 0 0\naxis maxs: 17 7 21\n"), "axis mins: has no spacings with it");
-  refuse(nrrd("axismaxs: 17 7 21\n"), "axis maxs: has no spacings with it");
-  EXPECT_EQ(readVolume(nrrd("spacings: 1 2 3\naxis mins: 10 0 0\n")).grid.spacing(), Vec3(1, 2, 3));
-  refuse(nrrd("spacings: 1 1 1e10\n"), "must be from 1e-9 to 1e9 mm");
-  refuse(nrrd(space + "spacings: 1 1 3\n"), "spacings: are not read beside a space");
+  refuse(writeNrrd("axis mins: 10 0 0\naxis maxs: 17 7 21\n"),
+         "axis mins: has no spacings with it");
+  refuse(writeNrrd("axismaxs: 17 7 21\n"), "axis maxs: has no spacings with it");
+  EXPECT_EQ(readVolume(writeNrrd("spacings: 1 2 3\naxis mins: 10 0 0\n")).grid.spacing(),
+            Vec3(1, 2, 3));
+  refuse(writeNrrd("spacings: 1 1 1e10\n"), "must be from 1e-9 to 1e9 mm");
+  refuse(writeNrrd(space + "spacings: 1 1 3\n"), "spacings: are not read beside a space");
 }
 
 TEST_F(MedicalHeaders, MissingSpacingWarnsAndIsOneMillimetre) {
   for (const std::string& lines : {std::string(), space + "space directions: none none none\n"}) {
-    const Volume volume = readVolume(nrrd(lines));
+    const Volume volume = readVolume(writeNrrd(lines));
     ASSERT_EQ(volume.warnings.size(), 1u) << lines;
     EXPECT_NE(volume.warnings[0].find("has no spacing; voxels are taken to be 1 mm"),
               std::string::npos);
     EXPECT_EQ(volume.grid.spacing(), Vec3(1, 1, 1));
   }
-  EXPECT_TRUE(readVolume(nrrd(space + unitDirections)).warnings.empty());
-  EXPECT_TRUE(readVolume(nrrd("spacings: 1 1 1\n")).warnings.empty());
+  EXPECT_TRUE(readVolume(writeNrrd(space + unitDirections)).warnings.empty());
+  EXPECT_TRUE(readVolume(writeNrrd("spacings: 1 1 1\n")).warnings.empty());
   const std::string size = "DimSize = 3 4 2\n";
-  EXPECT_EQ(readVolume(meta(size)).warnings.size(), 1u);
-  EXPECT_TRUE(readVolume(meta(size + "ElementSpacing = 1 1 1\n")).warnings.empty());
+  EXPECT_EQ(readVolume(writeMeta(size)).warnings.size(), 1u);
+  EXPECT_TRUE(readVolume(writeMeta(size + "ElementSpacing = 1 1 1\n")).warnings.empty());
 }
 
 TEST_F(MedicalHeaders, UnitsOtherThanMillimetresAreRefused) {
   const std::string placed = space + unitDirections;
   for (const char* unit : {"m", "cm", "Inch", "um"})
-    refuse(nrrd(placed + "space units: \"" + unit + "\" \"mm\" \"mm\"\n"),
+    refuse(writeNrrd(placed + "space units: \"" + unit + "\" \"mm\" \"mm\"\n"),
            "space units: \"" + std::string(unit) + "\" is not read");
-  refuse(nrrd("spacings: 1 1 1\nunits: \"cm\" \"cm\" \"cm\"\n"), "units: \"cm\" is not read");
+  refuse(writeNrrd("spacings: 1 1 1\nunits: \"cm\" \"cm\" \"cm\"\n"), "units: \"cm\" is not read");
   for (const char* units : {R"("mm" "mm" "mm")", R"("" "" "")", R"("MM" "millimeters" "?")"})
-    EXPECT_EQ(readVolume(nrrd(placed + "space units: " + units + "\n")).maximum, 'x') << units;
-  refuse(meta("DimSize = 3 4 2\nDistanceUnits = m\n"), "DistanceUnits: \"m\" is not read");
-  EXPECT_EQ(readVolume(meta("DimSize = 3 4 2\nDistanceUnits = mm\n")).maximum, 'x');
+    EXPECT_EQ(readVolume(writeNrrd(placed + "space units: " + units + "\n")).maximum, 'x') << units;
+  refuse(writeMeta("DimSize = 3 4 2\nDistanceUnits = m\n"), "DistanceUnits: \"m\" is not read");
+  EXPECT_EQ(readVolume(writeMeta("DimSize = 3 4 2\nDistanceUnits = mm\n")).maximum, 'x');
 }
 
 TEST_F(MedicalHeaders, UnsupportedRescalingIsRefused) {
   const std::string size = "DimSize = 3 4 2\n";
-  refuse(meta(size + "ElementToIntensityFunctionSlope = 2\n"),
+  refuse(writeMeta(size + "ElementToIntensityFunctionSlope = 2\n"),
          "ElementToIntensityFunctionSlope: is not read, unless it is 1");
-  refuse(meta(size + "ElementToIntensityFunctionOffset = -1024\n"),
+  refuse(writeMeta(size + "ElementToIntensityFunctionOffset = -1024\n"),
          "ElementToIntensityFunctionOffset: is not read, unless it is 0");
-  EXPECT_EQ(readVolume(meta(size + "ElementToIntensityFunctionSlope = 1.0\n"
-                                   "ElementToIntensityFunctionOffset = 0\n"))
+  EXPECT_EQ(readVolume(writeMeta(size + "ElementToIntensityFunctionSlope = 1.0\n"
+                                        "ElementToIntensityFunctionOffset = 0\n"))
                 .maximum,
             'x');
   writeFile(folder / "v.nii", std::vector<std::uint8_t>(24, 'x'));
@@ -107,15 +109,15 @@ TEST_F(MedicalHeaders, ByteSkipInAStreamIsLimited) {
   ASSERT_EQ(deflate(&z, Z_FINISH), Z_STREAM_END);
   stream.resize(z.total_out);
   deflateEnd(&z);
-  EXPECT_EQ(readVolume(nrrd("byte skip: 3\n", "gzip", stream)).minimum, 'x');
+  EXPECT_EQ(readVolume(writeNrrd("byte skip: 3\n", "gzip", stream)).minimum, 'x');
   for (const char* bytes : {"1073741824", "1048577", "99999999999999999999", "-1"})
-    refuse(nrrd(std::string("byte skip: ") + bytes + "\n", "gzip", stream),
+    refuse(writeNrrd(std::string("byte skip: ") + bytes + "\n", "gzip", stream),
            "byte skip: must be from 0 to 1048576 in compressed data");
 }
 
 TEST_F(MedicalHeaders, RefusalNamesTheFieldAndItsCause) {
   for (const char* encoding : {"bzip2", "bz2", "zrl"})
-    refuse(nrrd("spacings: 1 1 1\n", encoding),
+    refuse(writeNrrd("spacings: 1 1 1\n", encoding),
            "encoding: \"" + std::string(encoding) + "\" is not read; write raw or gzip");
   const std::string head = "NRRD0004\ntype: unsigned char\nencoding: raw\n";
   refuse(folder.write("two.nrrd", head + "dimension: 2\nsizes: 3 4\n" + space +
@@ -135,10 +137,11 @@ TEST_F(MedicalHeaders, RefusalNamesTheFieldAndItsCause) {
   refuse(folder.write("v.nhdr", head + "dimension: 3\nsizes: 3 4 2\nspacings: 1 1 1\n"
                                        "data file: LIST\nhalf.raw\nhalf.raw\n\n"),
          "data file: its LIST has an empty line");
-  refuse(nrrd(space + unitDirections + "units: \"mm\" \"mm\" \"mm\"\n"),
+  refuse(writeNrrd(space + unitDirections + "units: \"mm\" \"mm\" \"mm\"\n"),
          "units: are not read beside a space; write space units");
-  refuse(meta("DimSize = -3 4 2\n"), "DimSize: each must be a whole number from 1 to 2147483647");
-  refuse(meta("DimSize = 3 4.5 2\n"), "DimSize: each must be a whole number");
+  refuse(writeMeta("DimSize = -3 4 2\n"),
+         "DimSize: each must be a whole number from 1 to 2147483647");
+  refuse(writeMeta("DimSize = 3 4.5 2\n"), "DimSize: each must be a whole number");
 }
 
 } // namespace

@@ -12,67 +12,68 @@
 namespace fenestra::testing::MixtureTests {
 namespace {
 
-Component componentOf(double extinction, const Rgb& albedo, double g = 0.0) {
+Component makeComponent(double extinction, const Rgb& albedo, double g = 0.0) {
   return {linearTransfer(extinction, albedo, g)};
 }
 
 /// Share of component 1: x / 8 along a row of nine voxels, 0.5 mm apart; the rest is component 0's.
-Mixture rampMixture() {
+Mixture makeRampMixture() {
   const auto value = [](const Size3& voxel) {
     return std::lround(255.0 * static_cast<double>(voxel.x()) / 8.0);
   };
-  const auto shares = std::make_shared<const LabelWeights>(
+  const auto weights = std::make_shared<const LabelWeights>(
       sharesOf({{makeMask({0, 0, 0}, {9, 2, 2}, value), 1, 1}}));
-  return {shares, {componentOf(1.0, Rgb::Ones()), componentOf(3.0, Rgb::Ones())}};
+  return {weights, {makeComponent(1.0, Rgb::Ones()), makeComponent(3.0, Rgb::Ones())}};
 }
 
-std::map<int, double> partsAt(const MixtureField& field, const MixturePoint& point) {
+std::map<int, double> listParts(const MixtureField& field, const MixturePoint& point) {
   std::map<int, double> parts;
   field.forEachPart(point, [&](const MixturePart& p) { parts[p.component] += p.extinction; });
   return parts;
 }
 
 TEST(Mixture, PartsAreSharesOfEachExtinction) {
-  Mixture mixture = rampMixture();
+  Mixture mixture = makeRampMixture();
   const MixtureField field(mixture, mixture.weights->grid());
   const MixturePoint point{Vec3(2.0, 0.5, 0.5), 0.5, 1.0};
-  const double share = 64.0 / 255.0;
-  const std::map<int, double> parts = partsAt(field, point);
+  const double weight = 64.0 / 255.0;
+  const std::map<int, double> parts = listParts(field, point);
   EXPECT_NEAR(parts.at(0), 0.5 * (1.0 - weight), 1e-12);
   EXPECT_NEAR(parts.at(1), 1.5 * weight, 1e-12);
   EXPECT_NEAR(field.extinction(point), parts.at(0) + parts.at(1), 1e-12);
 
   mixture.components[1].isClipped = false;
-  const MixtureField open(mixture, mixture.weights->grid());
+  const MixtureField unclipped(mixture, mixture.weights->grid());
   EXPECT_TRUE(unclipped.hasUnclipped());
   EXPECT_FALSE(field.hasUnclipped());
   EXPECT_NEAR(unclipped.extinction({point.index, 0.5, 0.25}), 0.25 * parts.at(0) + parts.at(1),
               1e-12);
-  EXPECT_EQ(partsAt(unclipped, {point.index, 0.5, 0.0}).count(0), 0U) << "a part of 0 is none";
+  EXPECT_EQ(listParts(unclipped, {point.index, 0.5, 0.0}).count(0), 0U) << "a part of 0 is none";
 }
 
 TEST(Mixture, ComponentsAreDrawnByTheirExtinction) {
-  const Mixture mixture = rampMixture();
+  const Mixture mixture = makeRampMixture();
   const MixtureField field(mixture, mixture.weights->grid());
   const MixturePoint point{Vec3(3.0, 0.5, 0.5), 0.5, 1.0};
   Random random(5, 0, 0);
-  constexpr int draws = 40000;
+  constexpr int samples = 40000;
   int second = 0;
-  for (int i = 0; i < draws; ++i)
+  for (int i = 0; i < samples; ++i)
     second += field.sampleComponent(point, random);
-  const double expected = partsAt(field, point).at(1) / field.extinction(point);
-  const double error = std::sqrt(expected * (1.0 - expected) / draws);
+  const double expected = listParts(field, point).at(1) / field.extinction(point);
+  const double error = std::sqrt(expected * (1.0 - expected) / samples);
   EXPECT_NEAR(second / double{samples}, expected, 4.0 * error);
   EXPECT_GT(expected, 0.62) << "by shares alone it would be 3/8";
 
-  Random alone(5, 0, 0), untouched(5, 0, 0);
-  EXPECT_EQ(field.sampleComponent({Vec3(8.0, 0.0, 0.0), 0.5, 1.0}, alone), 1);
-  EXPECT_EQ(field.sampleComponent({Vec3(3.0, 0.5, 0.5), 0.0, 1.0}, alone), 0) << "nothing is there";
-  EXPECT_EQ(alone.bits(), untouched.bits()) << "one component takes no number";
+  Random single(5, 0, 0), unused(5, 0, 0);
+  EXPECT_EQ(field.sampleComponent({Vec3(8.0, 0.0, 0.0), 0.5, 1.0}, single), 1);
+  EXPECT_EQ(field.sampleComponent({Vec3(3.0, 0.5, 0.5), 0.0, 1.0}, single), 0)
+      << "nothing is there";
+  EXPECT_EQ(single.bits(), unused.bits()) << "one component takes no number";
 }
 
 TEST(Mixture, GradientsOfSharesAreInTheWorld) {
-  const Mixture mixture = rampMixture();
+  const Mixture mixture = makeRampMixture();
   const MixtureField field(mixture, mixture.weights->grid());
   const Vec3 gradient = field.weightGradient(1, Vec3(4.0, 0.5, 0.5));
   EXPECT_LT((gradient - Vec3(0.25, 0.0, 0.0)).norm(), 1e-2) << "1/8 a voxel of 0.5 mm";
@@ -80,14 +81,14 @@ TEST(Mixture, GradientsOfSharesAreInTheWorld) {
 }
 
 /// Dense matter of seven components that differ in all; two of them the clip leaves.
-TestScene mixedScene(bool isHybrid) {
+TestScene makeMixtureScene(bool isHybrid) {
   TestScene scene = makePartsScene();
   if (isHybrid)
     scene.transfer.shading = SurfaceShading{};
   Mixture mixture{std::make_shared<const LabelWeights>(sharesOf(makeRandomParts(12))), {}};
   for (int i = 0; i <= 6; ++i) {
-    Component component =
-        componentOf(0.2 + 0.3 * i, Rgb(0.15 * i, 0.5, 0.9 - 0.1 * i), i < 4 ? 0.0 : 0.15 * i - 0.9);
+    Component component = makeComponent(0.2 + 0.3 * i, Rgb(0.15 * i, 0.5, 0.9 - 0.1 * i),
+                                        i < 4 ? 0.0 : 0.15 * i - 0.9);
     component.transfer.extinction =
         ScalarFunction({knot(0.25, 0.1 * i), knot(0.4 + 0.01 * i, 0.2 + 0.3 * i)});
     component.isClipped = i % 3 != 2;
@@ -114,28 +115,28 @@ double meanDepth(const Film& film) {
 
 TEST(Mixture, LanesAreTheScalarEstimator) {
   for (const bool isHybrid : {false, true}) {
-    const TestScene scene = mixedScene(isHybrid);
+    const TestScene scene = makeMixtureScene(isHybrid);
     scene.with([](const SceneView& all) { ASSERT_TRUE(canUseSimd(all)); });
-    const Film lanes = renderFilm(scene, Integrator::simd);
+    const Film simd = renderFilm(scene, Integrator::simd);
     const Film scalar = renderFilm(scene, Integrator::scalar);
     const auto albedo = [](const PixelSums& pixel) { return Rgb(pixel.albedo / 64.0); };
     EXPECT_LT(computeRmsDifference(simd, scalar, albedo), 0.04) << isHybrid;
     EXPECT_NEAR(meanDepth(simd), meanDepth(scalar), 0.1) << isHybrid;
-    const Estimate a = imageEstimate(lanes), b = imageEstimate(scalar);
+    const Estimate a = imageEstimate(simd), b = imageEstimate(scalar);
     EXPECT_LT(std::abs(a.mean - b.mean), 4.0 * std::hypot(a.error, b.error)) << isHybrid;
   }
 }
 
 TEST(Mixture, MarchInLanesIsTheReadableOne) {
-  mixedScene(true).with([](const SceneView& scene) {
-    const FeatureBuffers lanes = computeFeatures(scene), readable = computeScalarFeatures(scene);
+  makeMixtureScene(true).with([](const SceneView& scene) {
+    const FeatureBuffers simd = computeFeatures(scene), scalar = computeScalarFeatures(scene);
     double albedo = 0.0, hit = 0.0;
-    for (std::size_t i = 0; i < lanes.hit.size(); ++i) {
-      hit += std::pow(static_cast<double>(lanes.hit[i] - readable.hit[i]), 2.0);
+    for (std::size_t i = 0; i < simd.hit.size(); ++i) {
+      hit += std::pow(static_cast<double>(simd.hit[i] - scalar.hit[i]), 2.0);
       for (std::size_t c = 0; c < 3; ++c)
-        albedo += std::pow(static_cast<double>(lanes.albedo[c][i] - readable.albedo[c][i]), 2.0);
+        albedo += std::pow(static_cast<double>(simd.albedo[c][i] - scalar.albedo[c][i]), 2.0);
     }
-    const auto n = static_cast<double>(lanes.hit.size());
+    const auto n = static_cast<double>(simd.hit.size());
     EXPECT_LT(std::sqrt(albedo / (3.0 * n)), 0.02);
     EXPECT_LT(std::sqrt(hit / n), 0.02);
   });
@@ -143,27 +144,27 @@ TEST(Mixture, MarchInLanesIsTheReadableOne) {
 
 /// In front of the clip there is only what it leaves.
 TEST(Mixture, TheClipLeavesWhatIsFree) {
-  TestScene scene = mixedScene(false);
+  TestScene scene = makeMixtureScene(false);
   const Vec3 center = scene.volume.grid.worldCenter();
   const Camera camera(scene.pose, scene.width, scene.height);
-  const auto seen = [&](Integrator transport) {
-    const Film film = renderFilm(scene, transport);
+  const auto countVisible = [&](Integrator integrator) {
+    const Film film = renderFilm(scene, integrator);
     double sum = 0.0;
     for (const PixelSums& pixel : film.pixels())
       sum += static_cast<double>(pixel.collidedSamples);
     return sum / 64.0;
   };
   scene.clip = ClipPlane{camera, center - 100.0 * Vec3::UnitY(), Vec3(0.0, 1.0, 0.0)}; // all of it
-  for (const Integrator transport : {Integrator::simd, Integrator::scalar})
-    EXPECT_GT(seen(integrator), 5.0) << "pixels";
+  for (const Integrator integrator : {Integrator::simd, Integrator::scalar})
+    EXPECT_GT(countVisible(integrator), 5.0) << "pixels";
   for (Component& component : scene.mixture->components)
     component.isClipped = true;
-  for (const Integrator transport : {Integrator::simd, Integrator::scalar})
-    EXPECT_EQ(seen(integrator), 0.0);
+  for (const Integrator integrator : {Integrator::simd, Integrator::scalar})
+    EXPECT_EQ(countVisible(integrator), 0.0);
 }
 
 TEST(Mixture, BordersAsSurfacesAreTheScalarEstimators) {
-  TestScene scene = mixedScene(true);
+  TestScene scene = makeMixtureScene(true);
   scene.mixture->components[3].interfaceWeight = 0.5;
   scene.with([](const SceneView& all) { EXPECT_FALSE(canUseSimd(all)); });
 }

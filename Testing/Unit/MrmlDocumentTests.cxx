@@ -9,8 +9,8 @@ MrmlDocument parse(const std::string& nodes) {
   return {"<MRML>" + nodes + "</MRML>", "test"};
 }
 
-void refuse(const std::string& text, const std::string& because) {
-  expectRefused("test", because, [&] { MrmlDocument(text, "test"); });
+void refuse(const std::string& text, const std::string& reason) {
+  expectRefused("test", reason, [&] { MrmlDocument(text, "test"); });
 }
 
 TEST(MrmlDocument, ReadsNodesInTheirOrder) {

@@ -2,10 +2,10 @@
 
 #include "SceneTesting.h"
 
-namespace fenestra::MrmlLooksTests {
+namespace fenestra::MrmlAppearanceTests {
 namespace {
 
-const MrmlNode& node(const MrmlScene& scene, const std::string& id) {
+const MrmlNode& findNode(const MrmlScene& scene, const std::string& id) {
   return *scene.document.find(id);
 }
 
@@ -13,13 +13,13 @@ const std::string inlineProperty = R"(shade="1" diffuse="0.9" ambient="0.1" spec
   specularPower="10" scalarOpacity="4 0 0 100 0.5" gradientOpacity="4 0 1 255 1"
   colorTransfer="8 0 0 0 0 100 1 1 1" effectiveRange="0 -1")";
 
-double extinctionAt100(const std::string& nodes,
-                       const std::map<std::string, std::string>& files = {}) {
+double readExtinction(const std::string& nodes,
+                      const std::map<std::string, std::string>& files = {}) {
   const SceneFolder folder;
   for (const auto& [name, content] : files)
     folder.write(name, content);
   MrmlScene scene = folder.scene(nodes);
-  return readSceneProperty(scene, node(scene, "p")).extinction(100)[0];
+  return readSceneProperty(scene, findNode(scene, "p")).extinction(100)[0];
 }
 
 TEST(MrmlLooks, PropertyComesFromItsFileElseFromTheScene) {
@@ -33,11 +33,11 @@ TEST(MrmlLooks, PropertyComesFromItsFileElseFromTheScene) {
   const auto property = [](const std::string& attributes) {
     return "<VolumeProperty id=\"p\" " + attributes + "/>";
   };
-  EXPECT_NEAR(extinctionAt100(property(inlineProperty)), std::log(2.0), 1e-4);
-  EXPECT_NEAR(extinctionAt100(property("storageNodeRef=\"s\" " + inlineProperty) + stored,
-                              {{"p.vp", text}}),
-              std::log(4.0), 2e-4);
-  EXPECT_NEAR(extinctionAt100(property("storageNodeRef=\"s\"") + storedJson, {{"p.vp.json", json}}),
+  EXPECT_NEAR(readExtinction(property(inlineProperty)), std::log(2.0), 1e-4);
+  EXPECT_NEAR(
+      readExtinction(property("storageNodeRef=\"s\" " + inlineProperty) + stored, {{"p.vp", text}}),
+      std::log(4.0), 2e-4);
+  EXPECT_NEAR(readExtinction(property("storageNodeRef=\"s\"") + storedJson, {{"p.vp.json", json}}),
               std::log(8.0), 3e-4);
 }
 
@@ -47,9 +47,9 @@ TEST(MrmlLooks, RefusesAPropertyWithoutPoints) {
       <VolumeProperty id="q" scalarOpacity="3 0 0 1" colorTransfer="4 0 1 1 1"/>)");
   MrmlScene scene(path);
   expectRefused(path, "VolumeProperty mine (p): has neither",
-                [&] { readSceneProperty(scene, node(scene, "p")); });
+                [&] { readSceneProperty(scene, findNode(scene, "p")); });
   expectRefused(path, "VolumeProperty (q): scalarOpacity: must be a count",
-                [&] { readSceneProperty(scene, node(scene, "q")); });
+                [&] { readSceneProperty(scene, findNode(scene, "q")); });
 }
 
 TEST(MrmlLooks, WindowOfTheDisplayBecomesAnOpacityRamp) {
@@ -64,7 +64,7 @@ TEST(MrmlLooks, WindowOfTheDisplayBecomesAnOpacityRamp) {
   const auto opacity = [](const TransferFunction& f, double s) {
     return 1.0 - std::exp(-f.extinction(s)[0]);
   };
-  const auto whole = convertSliceDisplay(nodes[0], nodes[2], {0, 400});
+  const auto full = convertSliceDisplay(nodes[0], nodes[2], {0, 400});
   ASSERT_TRUE(full); // a ramp over the whole range
   EXPECT_NEAR(opacity(*full, 100), 0.25, 1e-3);
   EXPECT_NEAR(opacity(*full, 300), 0.75, 1e-3);
@@ -86,4 +86,4 @@ TEST(MrmlLooks, WindowOfTheDisplayBecomesAnOpacityRamp) {
 }
 
 } // namespace
-} // namespace fenestra::MrmlLooksTests
+} // namespace fenestra::MrmlAppearanceTests

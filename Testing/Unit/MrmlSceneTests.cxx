@@ -6,7 +6,7 @@
 namespace fenestra::MrmlSceneTests {
 namespace {
 
-const MrmlNode& node(const MrmlScene& scene, const std::string& id) {
+const MrmlNode& findNode(const MrmlScene& scene, const std::string& id) {
   return *scene.document.find(id);
 }
 
@@ -16,7 +16,7 @@ void expectSame(const Affine& a, const Affine& b, double tolerance = 1e-12) {
   EXPECT_LT((a.translation() - b.translation()).cwiseAbs().maxCoeff(), tolerance);
 }
 
-Affine affine(std::initializer_list<double> rows) {
+Affine makeAffine(std::initializer_list<double> rows) {
   Affine map;
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 4; ++column)
@@ -31,30 +31,30 @@ Affine affine(std::initializer_list<double> rows) {
 TEST(MrmlScene, GeometryComesFromTheFileNotFromTheScene) {
   const SceneFolder folder;
   MrmlScene scene = folder.scene(volumeNode);
-  const Volume volume = readSceneVolume(scene, node(scene, "vol1"));
+  const Volume volume = readSceneVolume(scene, findNode(scene, "vol1"));
   EXPECT_EQ(volume.grid.size, Size3(3, 4, 2));
-  expectSame(volume.grid.indexToWorld, affine({-1, 0, 0, -10, 0, -2, 0, -20, 0, 0, 3, 30}));
+  expectSame(volume.grid.indexToWorld, makeAffine({-1, 0, 0, -10, 0, -2, 0, -20, 0, 0, 3, 30}));
   EXPECT_EQ(volume.maximum, 230);
   EXPECT_EQ(volume.name, "CT");
 }
 
-Grid gridWith(const SceneFolder& folder, const std::string& attributes) {
+Grid readGrid(const SceneFolder& folder, const std::string& attributes) {
   MrmlScene scene = folder.scene(R"(<Volume id="v" storageNodeRef="s"/>
     <VolumeArchetypeStorage id="s" fileName="ct.nrrd" )" +
                                  attributes + "/>");
-  return readSceneVolume(scene, node(scene, "v")).grid;
+  return readSceneVolume(scene, findNode(scene, "v")).grid;
 }
 
 TEST(MrmlScene, StorageAttributesCentreOrReorientTheVolume) {
   const SceneFolder folder;
-  const Affine fromFile = affine({-1, 0, 0, -10, 0, -2, 0, -20, 0, 0, 3, 30});
-  expectSame(gridWith(folder, R"(centerImage="0" UseOrientationFromFile="1")").indexToWorld,
+  const Affine fromFile = makeAffine({-1, 0, 0, -10, 0, -2, 0, -20, 0, 0, 3, 30});
+  expectSame(readGrid(folder, R"(centerImage="0" UseOrientationFromFile="1")").indexToWorld,
              fromFile);
-  const Grid centred = gridWith(folder, R"(centerImage="1")");
-  expectSame(Affine(centred.indexToWorld.linear()), Affine(fromFile.linear()));
-  EXPECT_TRUE(centred.worldCenter().isZero(1e-12));
-  expectSame(gridWith(folder, R"(UseOrientationFromFile="0" centerImage="1")").indexToWorld,
-             affine({1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 3, 0}));
+  const Grid centered = readGrid(folder, R"(centerImage="1")");
+  expectSame(Affine(centered.indexToWorld.linear()), Affine(fromFile.linear()));
+  EXPECT_TRUE(centered.worldCenter().isZero(1e-12));
+  expectSame(readGrid(folder, R"(UseOrientationFromFile="0" centerImage="1")").indexToWorld,
+             makeAffine({1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 3, 0}));
 }
 
 TEST(MrmlScene, ErrorNamesTheNodeOfAMissingFile) {
@@ -63,9 +63,9 @@ TEST(MrmlScene, ErrorNamesTheNodeOfAMissingFile) {
     <VolumeArchetypeStorage id="s" fileName="gone.nrrd"/><Volume id="w" name="MR"/>)");
   MrmlScene scene(path);
   expectRefused(path, "gone.nrrd, which is not there",
-                [&] { readSceneVolume(scene, node(scene, "v")); });
+                [&] { readSceneVolume(scene, findNode(scene, "v")); });
   expectRefused(path, "Volume MR (w): names no file",
-                [&] { readSceneVolume(scene, node(scene, "w")); });
+                [&] { readSceneVolume(scene, findNode(scene, "w")); });
 }
 
 TEST(MrmlScene, WarningNamesAVolumeByItsPathInTheArchive) {
@@ -78,7 +78,7 @@ TEST(MrmlScene, WarningNamesAVolumeByItsPathInTheArchive) {
     <VolumeArchetypeStorage id="s" fileName="odd.nrrd"/></MRML>)"},
                          {"a/odd.nrrd", bytesOf(folder / "odd.nrrd")}});
   MrmlScene scene(archive);
-  const Volume volume = readSceneVolume(scene, node(scene, "v"));
+  const Volume volume = readSceneVolume(scene, findNode(scene, "v"));
   EXPECT_EQ(volume.name, archive.string() + "/a/odd.nrrd");
   ASSERT_EQ(volume.warnings.size(), 1U);
   EXPECT_EQ(volume.warnings[0].find(archive.string() + "/a/odd.nrrd: 1 voxels"), 0U)
@@ -100,9 +100,9 @@ TEST(MrmlScene, SegmentationAndLabelMapLieInTheWorld) {
     <LabelMapVolume id="l" storageNodeRef="ls"/>
     <VolumeArchetypeStorage id="ls" fileName="labels.nrrd" UseOrientationFromFile="0"/>)");
   EXPECT_TRUE(
-      isApprox(readSceneSegmentation(scene, node(scene, "s")).grid().indexToWorld.translation(),
+      isApprox(readSceneSegmentation(scene, findNode(scene, "s")).grid().indexToWorld.translation(),
                Vec3(90, -20, 30)));
-  const Segmentation labelMap = readSceneSegmentation(scene, node(scene, "l"));
+  const Segmentation labelMap = readSceneSegmentation(scene, findNode(scene, "l"));
   EXPECT_TRUE(labelMap.grid().indexToWorld.translation().isZero());
   EXPECT_EQ(labelMap.segments().at(0).labelValue, 5);
 }
@@ -120,7 +120,7 @@ TEST(MrmlScene, LabelMapOfAnArchiveTakesNamesFromTheUsersFile) {
                            {"a/labels.nrrd", bytesOf(folder / "labels.nrrd")},
                            {"a/labels.ctbl", tableInside}});
     MrmlScene scene(archive);
-    return readSceneSegmentation(scene, node(scene, "l"), nullptr, table);
+    return readSceneSegmentation(scene, findNode(scene, "l"), nullptr, table);
   };
   EXPECT_EQ(readWith("5 kidney 0 0 0 255").segments().at(0).name, "liver");
 }
@@ -129,37 +129,37 @@ TEST(MrmlScene, ReadsVisibilityOfSegments) {
   const SceneFolder folder;
   MrmlScene scene = folder.scene(R"(<Segmentation id="s" displayNodeRef="d"/>
     <SegmentationDisplay id="d" SegmentationDisplayProperties="A%20b OverrideColorR:-1 Visible:true Visible3D:true Opacity3D:1|c Visible:false Visible3D:true|d Visible:true Visible3D:false|"/>)");
-  EXPECT_EQ(readSegmentVisibility(scene, node(scene, "s")),
+  EXPECT_EQ(readSegmentVisibility(scene, findNode(scene, "s")),
             (std::map<std::string, bool>{{"A b", true}, {"c", false}, {"d", false}}));
 }
 
 // ---- transforms
 // ----------------------------------------------------------------------------------
 
-const std::string turned = "0 -1 0 5  1 0 0 6  0 0 1 7  0 0 0 1";
-const Affine turnedMap = affine({0, -1, 0, 5, 1, 0, 0, 6, 0, 0, 1, 7});
+const std::string rotation = "0 -1 0 5  1 0 0 6  0 0 1 7  0 0 0 1";
+const Affine rotationMap = makeAffine({0, -1, 0, 5, 1, 0, 0, 6, 0, 0, 1, 7});
 
 TEST(MrmlScene, AppliesTransformsUpTheChain) {
   const SceneFolder folder;
   MrmlScene scene =
       folder.scene(R"(
     <LinearTransform id="outer" matrixTransformToParent=")" +
-                   turned + R"("/>
+                   rotation + R"("/>
     <LinearTransform id="inner" references="transform:outer;"
       matrixTransformToParent="2 0 0 10  0 1 0 0  0 0 1 0  0 0 0 1"/>)" +
                    R"(<Volume id="v" references="storage:store1;transform:inner;"/>)" + volumeNode);
-  const Affine expected = turnedMap * affine({2, 0, 0, 10, 0, 1, 0, 0, 0, 0, 1, 0});
-  expectSame(toWorld(scene, node(scene, "v")), expected);
-  const Grid grid = readSceneVolume(scene, node(scene, "v")).grid;
-  expectSame(grid.indexToWorld, expected * affine({-1, 0, 0, -10, 0, -2, 0, -20, 0, 0, 3, 30}));
+  const Affine expected = rotationMap * makeAffine({2, 0, 0, 10, 0, 1, 0, 0, 0, 0, 1, 0});
+  expectSame(toWorld(scene, findNode(scene, "v")), expected);
+  const Grid grid = readSceneVolume(scene, findNode(scene, "v")).grid;
+  expectSame(grid.indexToWorld, expected * makeAffine({-1, 0, 0, -10, 0, -2, 0, -20, 0, 0, 3, 30}));
 }
 
 TEST(MrmlScene, ReadsMatrixTransformFromParent) {
   const SceneFolder folder;
   MrmlScene scene = folder.scene(R"(<N id="n" transformNodeRef="t"/>
     <LinearTransform id="t" matrixTransformFromParent=")" +
-                                 turned + "\"/>");
-  expectSame(toWorld(scene, node(scene, "n")), turnedMap.inverse());
+                                 rotation + "\"/>");
+  expectSame(toWorld(scene, findNode(scene, "n")), rotationMap.inverse());
 }
 
 /// ITK text transform that shifts by (1, 2, 3) in LPS.
@@ -167,49 +167,49 @@ const std::string shiftFile = "#Insight Transform File V1.0\n#Transform 0\n"
                               "Transform: TranslationTransform_double_3_3\n"
                               "Parameters: 1 2 3.0000000001\nFixedParameters:\n";
 
-Affine shifted(const std::string& tag, const std::string& attributes) {
+Affine readShift(const std::string& tag, const std::string& attributes) {
   const SceneFolder folder;
   folder.write("shift.tfm", shiftFile);
   MrmlScene scene = folder.scene("<N id=\"n\" transformNodeRef=\"t\"/><" + tag +
                                  " id=\"t\" storageNodeRef=\"s\" " + attributes +
                                  "/><TransformStorage id=\"s\" fileName=\"shift.tfm\"/>");
-  return toWorld(scene, node(scene, "n"));
+  return toWorld(scene, findNode(scene, "n"));
 }
 
 TEST(MrmlScene, PrefersTheTransformFileToTheMatrixInTheScene) {
   const Vec3 toParent(1, 2, -3.0000000001); // LPS, from the parent
-  EXPECT_EQ(shifted("Transform", "").translation(), toParent);
+  EXPECT_EQ(readShift("Transform", "").translation(), toParent);
   EXPECT_EQ(
-      shifted("LinearTransform", R"(matrixTransformToParent="1 0 0 1 0 1 0 2 0 0 1 -3 0 0 0 1")")
+      readShift("LinearTransform", R"(matrixTransformToParent="1 0 0 1 0 1 0 2 0 0 1 -3 0 0 0 1")")
           .translation(),
       toParent);
 }
 
 TEST(MrmlScene, AttributeOfOldScenesSetsTheSenseOfTheFile) {
   const Vec3 toParent(1, 2, -3.0000000001);
-  EXPECT_EQ(shifted("Transform", R"(readWriteAsTransformToParent="false")").translation(),
+  EXPECT_EQ(readShift("Transform", R"(readWriteAsTransformToParent="false")").translation(),
             toParent);
-  EXPECT_EQ(shifted("Transform", R"(readWriteAsTransformToParent="true")").translation(),
+  EXPECT_EQ(readShift("Transform", R"(readWriteAsTransformToParent="true")").translation(),
             -toParent);
-  EXPECT_EQ(shifted("LinearTransform", R"(readWriteAsTransformToParent="true")").translation(),
+  EXPECT_EQ(readShift("LinearTransform", R"(readWriteAsTransformToParent="true")").translation(),
             toParent); // Slicer wrote the inverse
-  EXPECT_EQ(shifted("LinearTransform", R"(readWriteAsTransformToParent="false")").translation(),
+  EXPECT_EQ(readShift("LinearTransform", R"(readWriteAsTransformToParent="false")").translation(),
             -toParent);
 }
 
 TEST(MrmlScene, RefusesNonlinearAndLoopingTransforms) {
   const SceneFolder folder;
-  const auto refuse = [&](const std::string& transforms, const std::string& because) {
+  const auto refuse = [&](const std::string& transforms, const std::string& reason) {
     const auto path = folder.writeScene("<N id=\"n\" transformNodeRef=\"t\"/>" + transforms);
     MrmlScene scene(path);
-    expectRefused(path, because, [&] { toWorld(scene, node(scene, "n")); });
+    expectRefused(path, reason, [&] { toWorld(scene, findNode(scene, "n")); });
   };
   refuse(R"(<BSplineTransform id="t" name="warp"/>)", "BSplineTransform warp (t): is not linear");
   refuse(R"(<GridTransform id="t"/>)", "is not linear");
   refuse(R"(<Transform id="t"/>)", "neither a matrix nor a file");
-  refuse(R"(<LinearTransform id="t" transformNodeRef="u" matrixTransformToParent=")" + turned +
+  refuse(R"(<LinearTransform id="t" transformNodeRef="u" matrixTransformToParent=")" + rotation +
              R"("/><LinearTransform id="u" transformNodeRef="t" matrixTransformToParent=")" +
-             turned + "\"/>",
+             rotation + "\"/>",
          "loop");
   refuse(R"(<LinearTransform id="t" matrixTransformToParent="1 0 0 0 0 1 0 0 0 0 0 0 0 0 0 1"/>)",
          "cannot be inverted");
@@ -221,18 +221,18 @@ TEST(MrmlScene, RefusesNonlinearAndLoopingTransforms) {
 // ---- cropping boxes
 // ------------------------------------------------------------------------------
 
-Affine boxOf(const std::string& nodes, const std::map<std::string, std::string>& files = {}) {
+Affine readBox(const std::string& nodes, const std::map<std::string, std::string>& files = {}) {
   const SceneFolder folder;
   for (const auto& [name, content] : files)
     folder.write(name, content);
   MrmlScene scene = folder.scene(nodes);
-  return readSceneRoi(scene, node(scene, "r")).boxToWorld;
+  return readSceneRoi(scene, findNode(scene, "r")).boxToWorld;
 }
 
 const std::string roiNode = R"(<MarkupsROI id="r" storageNodeRef="s"/>
   <MarkupsROIJsonStorage id="s" fileName="my%20roi.mrk.json" coordinateSystem="LPS"/>)";
 
-std::string roiJson(const std::string& system, const std::string& more = "") {
+std::string makeRoiJson(const std::string& system, const std::string& more = "") {
   return R"({"markups": [{"type": "ROI", )" + system + R"("center": [10, 20, 30],
     "orientation": [0, -1, 0, 1, 0, 0, 0, 0, 1], "size": [2, 4, 6])" +
          more + "}]}";
@@ -240,10 +240,10 @@ std::string roiJson(const std::string& system, const std::string& more = "") {
 
 TEST(MrmlScene, ReadsRegionInLpsAndRas) {
   // Object axes are the columns of the orientation; LPS negates its first two rows.
-  const Affine ras = affine({0, -2, 0, 10, 1, 0, 0, 20, 0, 0, 3, 30});
-  const Affine lps = affine({0, 2, 0, -10, -1, 0, 0, -20, 0, 0, 3, 30});
+  const Affine ras = makeAffine({0, -2, 0, 10, 1, 0, 0, 20, 0, 0, 3, 30});
+  const Affine lps = makeAffine({0, 2, 0, -10, -1, 0, 0, -20, 0, 0, 3, 30});
   const auto read = [](const std::string& system) {
-    return boxOf(roiNode, {{"my roi.mrk.json", roiJson(system)}});
+    return readBox(roiNode, {{"my roi.mrk.json", makeRoiJson(system)}});
   };
   expectSame(read(R"("coordinateSystem": "RAS", )"), ras);
   expectSame(read(R"("coordinateSystem": "LPS", )"), lps);
@@ -253,87 +253,87 @@ TEST(MrmlScene, ReadsRegionInLpsAndRas) {
 }
 
 TEST(MrmlScene, RegionIsMovedByItsTransform) {
-  const Affine box = boxOf(R"(<MarkupsROI id="r" references="storage:s;transform:t;"/>
+  const Affine box = readBox(R"(<MarkupsROI id="r" references="storage:s;transform:t;"/>
       <MarkupsROIJsonStorage id="s" fileName="roi.mrk.json"/>
       <LinearTransform id="t" matrixTransformToParent=")" +
-                               turned + "\"/>",
-                           {{"roi.mrk.json", roiJson(R"("coordinateSystem": "RAS", )")}});
-  expectSame(box, turnedMap * affine({0, -2, 0, 10, 1, 0, 0, 20, 0, 0, 3, 30}));
+                                 rotation + "\"/>",
+                             {{"roi.mrk.json", makeRoiJson(R"("coordinateSystem": "RAS", )")}});
+  expectSame(box, rotationMap * makeAffine({0, -2, 0, 10, 1, 0, 0, 20, 0, 0, 3, 30}));
 }
 
 TEST(MrmlScene, ReadsAnnotationAndLegacyRegions) {
-  const Affine expected = affine({4, 0, 0, 1, 0, 5, 0, 2, 0, 0, 6, 3}); // radii, RAS
-  expectSame(boxOf(R"(<AnnotationROI id="r" storageNodeRef="s"/>
+  const Affine expected = makeAffine({4, 0, 0, 1, 0, 5, 0, 2, 0, 0, 6, 3}); // radii, RAS
+  expectSame(readBox(R"(<AnnotationROI id="r" storageNodeRef="s"/>
                       <AnnotationStorage id="s" fileName="roi.acsv"/>)",
-                   {{"roi.acsv", "# comment\npoint|1|2|3|1|1\npoint|4|5|6|1|1\nline|0|1|1|1\n"}}),
+                     {{"roi.acsv", "# comment\npoint|1|2|3|1|1\npoint|4|5|6|1|1\nline|0|1|1|1\n"}}),
              expected);
-  expectSame(boxOf(R"(<AnnotationROI id="r" ctrlPtsCoord="1 2 3|4 5 6"/>)"), expected);
-  expectSame(boxOf(R"(<ROI id="r" xyz="1 2 3" radiusXYZ="4 5 6"/>)"), expected);
-  expectSame(boxOf(R"(<ROI id="r" XYZ="1 2 3" RadiusXYZ="4 5 6"/>)"), expected);
+  expectSame(readBox(R"(<AnnotationROI id="r" ctrlPtsCoord="1 2 3|4 5 6"/>)"), expected);
+  expectSame(readBox(R"(<ROI id="r" xyz="1 2 3" radiusXYZ="4 5 6"/>)"), expected);
+  expectSame(readBox(R"(<ROI id="r" XYZ="1 2 3" RadiusXYZ="4 5 6"/>)"), expected);
 }
 
 TEST(MrmlScene, RefusesMalformedRegions) {
   const SceneFolder folder;
-  const auto refuseJson = [&](const std::string& json, const std::string& because) {
+  const auto refuseJson = [&](const std::string& json, const std::string& reason) {
     const auto file = folder.write("my roi.mrk.json", json);
     MrmlScene scene = folder.scene(roiNode);
-    expectRefused(file, because, [&] { readSceneRoi(scene, node(scene, "r")); });
+    expectRefused(file, reason, [&] { readSceneRoi(scene, findNode(scene, "r")); });
   };
-  refuseJson(roiJson("", R"(, "insideOut": true)"), "inside out");
+  refuseJson(makeRoiJson("", R"(, "insideOut": true)"), "inside out");
   refuseJson(R"({"markups": [{"type": "Fiducial"}]})", "must be \"ROI\"");
   refuseJson(R"({"markups": []})", "is empty");
   refuseJson(R"({"markups": [{"type": "ROI", "center": [0, 0, 0], "size": [1, 0, 1]}]})",
              "size must be above 0");
   refuseJson(R"({"markups": [{"type": "ROI", "center": [0, 0, 0]}]})", "has no \"size\"");
-  refuseJson(roiJson(R"("coordinateSystem": "XYZ", )"), "must be \"LPS\" or \"RAS\"");
+  refuseJson(makeRoiJson(R"("coordinateSystem": "XYZ", )"), "must be \"LPS\" or \"RAS\"");
   const auto path = folder.writeScene(R"(<AnnotationROI id="r" ctrlPtsCoord="1 2 3"/>)");
   MrmlScene scene(path);
   expectRefused(path, "AnnotationROI (r): needs a centre and a radius",
-                [&] { readSceneRoi(scene, node(scene, "r")); });
+                [&] { readSceneRoi(scene, findNode(scene, "r")); });
 }
 
 // ---- cameras and views
 // ---------------------------------------------------------------------------
 
-CameraPose poseOf(const std::string& attributes, const std::string& more = "") {
+CameraPose readPose(const std::string& attributes, const std::string& more = "") {
   const SceneFolder folder;
   MrmlScene scene =
       folder.scene("<Camera id=\"c\" position=\"1 2 3\" focalPoint=\"1 102 3\" viewUp=\"0 0 1\" " +
                    attributes + "/>" + more);
-  return readSceneCamera(scene, node(scene, "c"));
+  return readSceneCamera(scene, findNode(scene, "c"));
 }
 
 TEST(MrmlScene, ReadsParallelAndPerspectiveCameras) {
   const CameraPose parallel =
-      poseOf(R"(parallelProjection="true" parallelScale="80" viewAngle="20")");
+      readPose(R"(parallelProjection="true" parallelScale="80" viewAngle="20")");
   EXPECT_EQ(parallel.projection, Projection::orthographic);
   EXPECT_EQ(parallel.scale, 80.0); // half the height, as in Fenestra
   EXPECT_EQ(parallel.position, Vec3(1, 2, 3));
   EXPECT_EQ(parallel.target, Vec3(1, 102, 3));
   EXPECT_EQ(parallel.up, Vec3(0, 0, 1));
-  const CameraPose perspective = poseOf(R"(parallelProjection="false" viewAngle="20")");
+  const CameraPose perspective = readPose(R"(parallelProjection="false" viewAngle="20")");
   EXPECT_EQ(perspective.projection, Projection::perspective);
   EXPECT_EQ(perspective.angle, 20.0);
-  EXPECT_EQ(poseOf("").angle, 30.0); // VTK's default
+  EXPECT_EQ(readPose("").angle, 30.0); // VTK's default
 }
 
 TEST(MrmlScene, AppliedTransformDoesNotMoveACameraAgain) {
   const std::string transform =
-      "<LinearTransform id=\"t\" matrixTransformToParent=\"" + turned + "\"/>";
+      "<LinearTransform id=\"t\" matrixTransformToParent=\"" + rotation + "\"/>";
   const CameraPose applied =
-      poseOf("transformNodeRef=\"t\" appliedTransform=\"" + turned + "\"", transform);
+      readPose("transformNodeRef=\"t\" appliedTransform=\"" + rotation + "\"", transform);
   EXPECT_TRUE(isApprox(applied.position, Vec3(1, 2, 3)));
-  const CameraPose notYet = poseOf("transformNodeRef=\"t\"", transform);
-  EXPECT_TRUE(isApprox(notYet.position, turnedMap * Vec3(1, 2, 3)));
+  const CameraPose notYet = readPose("transformNodeRef=\"t\"", transform);
+  EXPECT_TRUE(isApprox(notYet.position, rotationMap * Vec3(1, 2, 3)));
   EXPECT_TRUE(isApprox(notYet.up, Vec3(0, 0, 1)));
 }
 
 TEST(MrmlScene, RefusesCamerasThatLookNowhere) {
   const SceneFolder folder;
-  const auto refuse = [&](const std::string& attributes, const std::string& because) {
+  const auto refuse = [&](const std::string& attributes, const std::string& reason) {
     const auto path = folder.writeScene("<Camera id=\"c\" " + attributes + "/>");
     MrmlScene scene(path);
-    expectRefused(path, because, [&] { readSceneCamera(scene, node(scene, "c")); });
+    expectRefused(path, reason, [&] { readSceneCamera(scene, findNode(scene, "c")); });
   };
   refuse(R"(position="1 2 3" focalPoint="1 2 3" viewUp="0 0 1")", "looks nowhere");
   refuse(R"(position="1 2 3" focalPoint="1 2 9" viewUp="0 0 1")", "looks nowhere");
@@ -380,10 +380,10 @@ TEST(RealScenes, RegionOfAnAnnotationIsRead) {
   const auto file = slicerScenes / "slicer_core/AnnotationROI.acsv";
   if (!std::filesystem::exists(file))
     GTEST_SKIP() << file << " is absent";
-  expectSame(boxOf("<AnnotationROI id=\"r\" storageNodeRef=\"s\"/><AnnotationStorage id=\"s\" "
-                   "fileName=\"" +
-                   file.string() + "\"/>"),
-             affine({56.6131, 0, 0, -26.5869, 0, 121.875, 0, 0, 0, 0, 121.875, 0}));
+  expectSame(readBox("<AnnotationROI id=\"r\" storageNodeRef=\"s\"/><AnnotationStorage id=\"s\" "
+                     "fileName=\"" +
+                     file.string() + "\"/>"),
+             makeAffine({56.6131, 0, 0, -26.5869, 0, 121.875, 0, 0, 0, 0, 121.875, 0}));
 }
 
 TEST(RealScenes, TransformFileAgreesWithTheMatrixToSixDigits) {
@@ -395,11 +395,11 @@ TEST(RealScenes, TransformFileAgreesWithTheMatrixToSixDigits) {
   const MrmlNode& transform = *scene.document.follow(volume, "transform");
   const auto n = *transform.numbers("matrixTransformToParent");
   const Affine sixDigits =
-      affine({n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9], n[10], n[11]});
+      makeAffine({n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9], n[10], n[11]});
   expectSame(toWorld(scene, volume), sixDigits, 1e-6);
   EXPECT_GT(normOf(toWorld(scene, volume).linear() - sixDigits.linear()), 1e-8); // has more
   const Affine roi = readSceneRoi(scene, *scene.document.findByTag("MarkupsROI").at(0)).boxToWorld;
-  expectSame(roi, affine({150, 0, 0, 0, 0, 130, 0, -20, 0, 0, 110, -170}), 1e-9);
+  expectSame(roi, makeAffine({150, 0, 0, 0, 0, 130, 0, -20, 0, 0, 110, -170}), 1e-9);
 }
 
 } // namespace

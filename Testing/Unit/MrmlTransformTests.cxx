@@ -6,62 +6,63 @@
 namespace fenestra::MrmlTransformTests {
 namespace {
 
-const MrmlNode& node(const MrmlScene& scene, const std::string& id) {
+const MrmlNode& findNode(const MrmlScene& scene, const std::string& id) {
   return *scene.document.find(id);
 }
 
 /// Node t of three rows of four numbers, under the node `above`.
-std::string transform(const std::string& rows, const std::string& id = "t",
-                      const std::string& above = "") {
-  return "<LinearTransform id=\"" + id + "\" transformNodeRef=\"" + above +
+std::string makeTransform(const std::string& rows, const std::string& id = "t",
+                          const std::string& parent = "") {
+  return "<LinearTransform id=\"" + id + "\" transformNodeRef=\"" + parent +
          "\" matrixTransformToParent=\"" + rows + " 0 0 0 1\"/>";
 }
 
 /// Nodes t, t1, t2, ...: each under the next.
-std::string chain(const std::string& rows, int count) {
+std::string makeChain(const std::string& rows, int count) {
   const auto name = [](int i) { return std::string("t").append(std::to_string(i)); };
-  std::string nodes = transform(rows, "t", "t1");
+  std::string nodes = makeTransform(rows, "t", "t1");
   for (int i = 1; i < count; ++i)
-    nodes += transform(rows, name(i), name(i + 1));
+    nodes += makeTransform(rows, name(i), name(i + 1));
   return nodes;
 }
 
 /// Maps under which a point loses the precision of a voxel, or paths never end.
 TEST(MrmlTransform, RefusesMapsThatCannotBeInverted) {
   const SceneFolder folder;
-  const auto refuse = [&](const std::string& transforms, const std::string& because) {
+  const auto refuse = [&](const std::string& transforms, const std::string& reason) {
     const auto path = folder.writeScene("<N id=\"n\" transformNodeRef=\"t\"/>" + transforms);
     MrmlScene scene(path);
-    expectRefused(path, because, [&] { toWorld(scene, node(scene, "n")); });
+    expectRefused(path, reason, [&] { toWorld(scene, findNode(scene, "n")); });
   };
   for (const char* rows : {"1e60 0 0 0  0 1e60 0 0  0 0 1e60 0", "1.1 1e308 0 0  0 1 0 0  0 0 1 0",
                            "1 0 0 1e300  0 1 0 0  0 0 1 0", "1e8 0 0 0  0 1e-10 0 0  0 0 1 0",
                            "1 1e15 0 0  0 1 0 0  0 0 1 0", "1e-60 0 0 0  0 1e-60 0 0  0 0 1e-60 0"})
-    refuse(transform(rows), "matrixTransformToParent: cannot be inverted");
+    refuse(makeTransform(rows), "matrixTransformToParent: cannot be inverted");
   const std::string product = "the product of the transforms above it cannot be inverted";
-  refuse(chain("100 0 0 0  0 100 0 0  0 0 100 0", 5), product);
-  refuse(chain("1e8 0 0 0  0 1e8 0 0  0 0 1e8 0", 900), product);
-  refuse(chain("1 0 0 5e8  0 1 0 0  0 0 1 0", 3), product);
+  refuse(makeChain("100 0 0 0  0 100 0 0  0 0 100 0", 5), product);
+  refuse(makeChain("1e8 0 0 0  0 1e8 0 0  0 0 1e8 0", 900), product);
+  refuse(makeChain("1 0 0 5e8  0 1 0 0  0 0 1 0", 3), product);
 }
 
 TEST(MrmlTransform, AcceptsAnyUsefulScale) {
   const SceneFolder folder;
   MrmlScene scene = folder.scene("<N id=\"n\" transformNodeRef=\"t\"/>" +
-                                 transform("1e-5 0 0 0  0 1e-5 0 0  0 0 1e-5 0"));
-  EXPECT_EQ(toWorld(scene, node(scene, "n")).linear()(0, 0), 1e-5);
+                                 makeTransform("1e-5 0 0 0  0 1e-5 0 0  0 0 1e-5 0"));
+  EXPECT_EQ(toWorld(scene, findNode(scene, "n")).linear()(0, 0), 1e-5);
 }
 
 TEST(MrmlTransform, ChainIsCountedUpTo1000Transforms) {
   const SceneFolder folder;
   const std::string rows = "1 0 0 0  0 1 0 0  0 0 1 0",
-                    below = "<N id=\"n\" transformNodeRef=\"t\"/>";
+                    child = "<N id=\"n\" transformNodeRef=\"t\"/>";
   const auto countAbove = [&](const std::string& transforms) {
-    const MrmlScene scene = folder.scene(below + transforms);
-    return listParentTransforms(scene.document, node(scene, "n")).size();
+    const MrmlScene scene = folder.scene(child + transforms);
+    return listParentTransforms(scene.document, findNode(scene, "n")).size();
   };
-  EXPECT_EQ(countAbove(chain(rows, 3)), 3u);
-  EXPECT_EQ(countAbove(transform(rows, "t", "u") + transform(rows, "u", "t")), 2u); // a loop
-  EXPECT_EQ(countAbove(chain(rows, 2000)), 1000u);
+  EXPECT_EQ(countAbove(makeChain(rows, 3)), 3u);
+  EXPECT_EQ(countAbove(makeTransform(rows, "t", "u") + makeTransform(rows, "u", "t")),
+            2u); // a loop
+  EXPECT_EQ(countAbove(makeChain(rows, 2000)), 1000u);
 }
 
 /// A scene can name a slow file many times.
@@ -75,14 +76,15 @@ TEST(MrmlTransform, ReadsEachFileOnce) {
                            "Transform: TranslationTransform_double_3_3\nParameters: ";
   folder.write("t.tfm", text + "1 2 3\nFixedParameters: \n");
   MrmlScene scene = folder.scene(nodes);
-  const Affine read = toWorld(scene, node(scene, "n"));
+  const Affine read = toWorld(scene, findNode(scene, "n"));
   EXPECT_TRUE(isApprox(read.translation(), Vec3(2, 4, -6))); // applied twice; inverse, in LPS
   folder.write("t.tfm", "damaged");
-  EXPECT_TRUE(isApprox(toWorld(scene, node(scene, "n")), read));
+  EXPECT_TRUE(isApprox(toWorld(scene, findNode(scene, "n")), read));
 
   MrmlScene damaged = folder.scene(nodes);
   const auto refuse = [&] {
-    expectRefused(folder / "t.tfm", "is damaged", [&] { toWorld(damaged, node(damaged, "n")); });
+    expectRefused(folder / "t.tfm", "is damaged",
+                  [&] { toWorld(damaged, findNode(damaged, "n")); });
   };
   refuse();
   folder.write("t.tfm", text + "1 2 3\nFixedParameters: \n");
@@ -92,7 +94,7 @@ TEST(MrmlTransform, ReadsEachFileOnce) {
 TEST(MrmlTransform, RefusesPlacesBeyondTheInvertibleRange) {
   const SceneFolder folder;
   writeFile(folder / "v.nrrd", std::vector<std::uint8_t>(24, 1), {.spacing = {1e5, 1e5, 1e5}});
-  const auto path = folder.writeScene(transform("1e5 0 0 0  0 1e5 0 0  0 0 1e5 0") +
+  const auto path = folder.writeScene(makeTransform("1e5 0 0 0  0 1e5 0 0  0 0 1e5 0") +
                                       R"(<Volume id="v" storageNodeRef="s" transformNodeRef="t"/>
       <LabelMapVolume id="l" storageNodeRef="s" transformNodeRef="t"/>
       <VolumeArchetypeStorage id="s" fileName="v.nrrd"/>
@@ -100,13 +102,13 @@ TEST(MrmlTransform, RefusesPlacesBeyondTheInvertibleRange) {
       <Camera id="c" position="0 0 0" focalPoint="0 1e9 0" viewUp="0 0 1" transformNodeRef="t"/>)");
   MrmlScene scene(path);
   expectRefused(path, "its place in the world cannot be inverted",
-                [&] { readSceneVolume(scene, node(scene, "v")); });
+                [&] { readSceneVolume(scene, findNode(scene, "v")); });
   expectRefused(path, "its place in the world cannot be inverted",
-                [&] { readSceneSegmentation(scene, node(scene, "l")); });
+                [&] { readSceneSegmentation(scene, findNode(scene, "l")); });
   expectRefused(path, "its box in the world cannot be inverted",
-                [&] { readSceneRoi(scene, node(scene, "r")); });
+                [&] { readSceneRoi(scene, findNode(scene, "r")); });
   expectRefused(path, "looks nowhere: position and target",
-                [&] { readSceneCamera(scene, node(scene, "c")); });
+                [&] { readSceneCamera(scene, findNode(scene, "c")); });
 }
 
 } // namespace

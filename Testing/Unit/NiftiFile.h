@@ -94,8 +94,8 @@ struct NiftiFile {
     put(268, quaternionOffset);
     put(280, rows);
     std::memcpy(&header[344], "n+1", 4);
-    const std::string announced(extension.empty() ? "\0\0\0\0" : "\1\0\0\0", 4);
-    return header + announced + block +
+    const std::string extensionFlag(extension.empty() ? "\0\0\0\0" : "\1\0\0\0", 4);
+    return header + extensionFlag + block +
            std::string(reinterpret_cast<const char*>(samples.data()), 2 * samples.size());
   }
 };
@@ -103,16 +103,16 @@ struct NiftiFile {
 /// Volume along RAS axes with its voxels stored in another order of axes, those of the bits of
 /// `reversed` from their other end. `map` becomes index to RAS; the file has neither form yet.
 template <typename Value>
-NiftiFile reordered(const Size3& size, const Vec3& spacing, const Vec3& origin, Value&& valueOf,
-                    const std::array<int, 3>& order, int reversed, Affine& map) {
+NiftiFile makeReordered(const Size3& size, const Vec3& spacing, const Vec3& origin, Value&& valueOf,
+                        const std::array<int, 3>& order, int reversed, Affine& map) {
   NiftiFile file;
   map = Affine(Mat3::Zero(), origin);
   for (int axis = 0; axis < 3; ++axis) {
     const int world = order[std::size_t(axis)];
-    const double side = reversed >> axis & 1 ? -1.0 : 1.0;
+    const double sign = reversed >> axis & 1 ? -1.0 : 1.0;
     file.size[std::size_t(axis)] = static_cast<std::int16_t>(size[world]);
-    map.linear()(world, axis) = side * spacing[world];
-    if (side < 0.0)
+    map.linear()(world, axis) = sign * spacing[world];
+    if (sign < 0.0)
       map.translation()[world] += spacing[world] * double(size[world] - 1);
     file.pixdim[std::size_t(axis) + 1] = static_cast<float>(spacing[world]);
   }

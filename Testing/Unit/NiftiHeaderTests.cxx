@@ -24,20 +24,20 @@ std::int16_t referenceValue(const Size3& voxel) {
 /// True if each voxel of the volume has the reference's value at its place.
 bool isReference(const Volume& volume) {
   const Size3& size = volume.grid.size;
-  bool isIt = size.prod() == referenceSize.prod();
-  const auto valueOf = [&](std::int64_t i) {
+  bool isEqual = size.prod() == referenceSize.prod();
+  const auto findValue = [&](std::int64_t i) {
     return std::visit([i](const auto& all) { return static_cast<double>(all[std::size_t(i)]); },
                       volume.voxels);
   };
   for (std::int64_t i = 0; i < size.prod(); ++i) {
     const Size3 voxel(i % size[0], i / size[0] % size[1], i / size[0] / size[1]);
     const Vec3 world = volume.grid.indexToWorld * voxel.cast<double>();
-    const Vec3 place = (world - referenceOrigin).array() / referenceSpacing.array();
-    const Vec3 nearest = place.array().round();
-    isIt &= (place - nearest).norm() < 1e-5 && (nearest.array() >= 0.0).all() &&
-            valueOf(i) == referenceValue(nearest.cast<std::int64_t>());
+    const Vec3 position = (world - referenceOrigin).array() / referenceSpacing.array();
+    const Vec3 nearest = position.array().round();
+    isEqual &= (position - nearest).norm() < 1e-5 && (nearest.array() >= 0.0).all() &&
+               findValue(i) == referenceValue(nearest.cast<std::int64_t>());
   }
-  return isIt;
+  return isEqual;
 }
 
 TEST(NiftiHeader, EveryOrderAndSignOfAxesGivesTheSameVolume) {
@@ -46,25 +46,25 @@ TEST(NiftiHeader, EveryOrderAndSignOfAxesGivesTheSameVolume) {
   do {
     for (int reversed = 0; reversed < 8; ++reversed) {
       Affine map, elsewhere = makeTranslation({500.0, 0.0, 0.0});
-      NiftiFile file = reordered(referenceSize, referenceSpacing, referenceOrigin, referenceValue,
-                                 order, reversed, map);
+      NiftiFile file = makeReordered(referenceSize, referenceSpacing, referenceOrigin,
+                                     referenceValue, order, reversed, map);
       // Codes of qform and sform; the second pair of maps is of no effect.
       struct {
         std::int16_t qform, sform;
         const Affine &ofQform, &ofSform;
       } const cases[] = {{0, 2, elsewhere, map}, {1, 0, map, elsewhere}, {1, 1, map, map},
                          {2, 2, map, map},       {1, 2, map, elsewhere}, {2, 1, elsewhere, map}};
-      for (const auto& one : cases) {
+      for (const auto& test : cases) {
         const std::array<float, 4> pixdim = file.pixdim;
-        file.setQform(one.ofQform);
-        if (&one.ofQform == &elsewhere)
+        file.setQform(test.ofQform);
+        if (&test.ofQform == &elsewhere)
           file.pixdim = pixdim;
-        file.setSform(one.ofSform);
-        file.qformCode = one.qform;
-        file.sformCode = one.sform;
+        file.setSform(test.ofSform);
+        file.qformCode = test.qform;
+        file.sformCode = test.sform;
         EXPECT_TRUE(isReference(readVolume(folder.write("v.nii", file.bytes()))))
             << order[0] << order[1] << order[2] << " reversed " << reversed << " codes "
-            << one.qform << one.sform;
+            << test.qform << test.sform;
       }
     }
   } while (std::next_permutation(order.begin(), order.end()));
@@ -96,12 +96,12 @@ TEST(NiftiHeader, ShearedSformIsRefused) {
   const TemporaryFolder folder;
   NiftiFile file;
   file.sformCode = 1;
-  const auto shearedBy = [&](float shear) {
+  const auto writeSheared = [&](float shear) {
     file.rows[1] = shear;
     return folder.write("v.nii", file.bytes());
   };
-  EXPECT_NO_THROW(readVolume(shearedBy(1e-3f)));
-  const auto sheared = shearedBy(3e-3f);
+  EXPECT_NO_THROW(readVolume(writeSheared(1e-3f)));
+  const auto sheared = writeSheared(3e-3f);
   expectRefused(sheared, "srow: shears", [&] { readVolume(sheared); });
   file.rows = {};
   const auto flat = folder.write("v.nii", file.bytes());
@@ -133,9 +133,9 @@ TEST(NiftiHeader, FileWithoutFormsIsPlacedWithAWarning) {
 /// Found by fuzzing: converted before it was bounded.
 TEST(NiftiHeader, OffsetBeforeTheSamplesIsTheirs) {
   const TemporaryFolder folder;
-  const std::string whole = NiftiFile().bytes();
+  const std::string original = NiftiFile().bytes();
   for (const float offset : {-1e38f, -std::numeric_limits<float>::infinity(), 0.0f, 351.9f}) {
-    std::string bytes = whole;
+    std::string bytes = original;
     std::memcpy(&bytes[108], &offset, sizeof offset);
     EXPECT_EQ(readVolume(folder.write("v.nii", bytes)).grid.size, Size3(3, 4, 2)) << offset;
   }

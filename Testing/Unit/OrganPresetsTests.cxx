@@ -11,7 +11,7 @@
 namespace fenestra::OrganPresetsTests {
 namespace {
 
-using Texts = std::vector<std::string>;
+using Strings = std::vector<std::string>;
 
 SegmentInfo segment(const std::string& name, const std::string& type = "",
                     const std::string& region = "") {
@@ -22,22 +22,22 @@ SegmentInfo segment(const std::string& name, const std::string& type = "",
   return info;
 }
 
-std::vector<SegmentInfo> segments(const Texts& names) {
+std::vector<SegmentInfo> segments(const Strings& names) {
   std::vector<SegmentInfo> infos;
   for (const std::string& name : names)
     infos.push_back(segment(name));
   return infos;
 }
 
-Texts namesOf(const std::vector<SegmentInfo>& infos) {
-  Texts names;
+Strings listNames(const std::vector<SegmentInfo>& infos) {
+  Strings names;
   for (const SegmentInfo& info : infos)
     names.push_back(info.name);
   return names;
 }
 
 OrganPreset preset(const std::string& name, Modality modality, const SegmentPatterns& focus,
-                   const Texts& before = {}) {
+                   const Strings& before = {}) {
   return {.name = name, .title = name, .modality = modality, .focus = focus, .before = before};
 }
 
@@ -52,7 +52,7 @@ TEST(OrganPresets, FocusTakesSegmentsByNameOrCode) {
                                         segment("B", "SCT^4147007", "SCT^12738006"),
                                         segment("C", "SCT^396070081"),
                                         segment("D", "SCT^4147007")};
-  EXPECT_EQ(listNames(findFocusSegments(patterns, all)), (Texts{"left lung", "Segment_6", "A"}));
+  EXPECT_EQ(listNames(findFocusSegments(patterns, all)), (Strings{"left lung", "Segment_6", "A"}));
 }
 
 TEST(OrganPresets, PresetFitsSegmentsAndModality) {
@@ -62,7 +62,7 @@ TEST(OrganPresets, PresetFitsSegmentsAndModality) {
       preset("tumour", Modality::mr, {{"tumo*r"}}, {"brain"}),
       preset("head-ct", Modality::ct, {{"brain"}}),
   };
-  const auto fit = [&](const Texts& names, Modality known) {
+  const auto match = [&](const Strings& names, Modality known) {
     return findMatchingPreset(presets, segments(names), "s.seg.nrrd",
                               [known](Modality modality) { return modality == known; })
         .name;
@@ -71,8 +71,8 @@ TEST(OrganPresets, PresetFitsSegmentsAndModality) {
   EXPECT_EQ(match({"brain"}, Modality::mr), "brain");
   EXPECT_EQ(match({"brain"}, Modality::ct), "head-ct");
   EXPECT_EQ(match({"brain", "Tumor"}, Modality::mr), "tumour");
-  const auto refuse = [&](const Texts& names, const std::string& text) {
-    expectRefused("s.seg.nrrd", text, [&] { fit(names, Modality::mr); });
+  const auto refuse = [&](const Strings& names, const std::string& text) {
+    expectRefused("s.seg.nrrd", text, [&] { match(names, Modality::mr); });
   };
   refuse({"Spleen", "Kidney"}, "no preset knows a segment of it (Spleen, Kidney)");
   EXPECT_EQ(match({"brain", "tumour", "liver"}, Modality::mr), "tumour");
@@ -89,8 +89,8 @@ TEST(OrganPresets, SeveralFittingPresetsAreListed) {
 }
 
 /// Built-in presets that select the segment as their focus.
-Texts presetsOf(const SegmentInfo& segment) {
-  Texts names;
+Strings listPresets(const SegmentInfo& segment) {
+  Strings names;
   for (const std::string& name : listBuiltinPresets("presets"))
     if (!findFocusSegments(findOrganPreset(name).focus, {segment}).empty())
       names.push_back(name);
@@ -99,7 +99,7 @@ Texts presetsOf(const SegmentInfo& segment) {
 
 /// Names used by TotalSegmentator, by Slicer's terminology and in common label lists.
 TEST(OrganPresets, BuiltInPresetsMatchUsualNames) {
-  const std::vector<std::pair<std::string, Texts>> meant = {
+  const std::vector<std::pair<std::string, Strings>> expected = {
       {"liver", {"liver", "Liver", "Liver_1"}},
       {"heart", {"heart", "heart_myocardium", "heart_atrium_left", "Left Ventricle"}},
       {"spine", {"vertebrae_L5", "vertebrae_C1", "lumbar vertebral column", "sacrum"}},
@@ -111,23 +111,23 @@ TEST(OrganPresets, BuiltInPresetsMatchUsualNames) {
       {"brain-tumour", {"tumor", "Tumour core", "enhancing_tumor", "Glioblastoma"}},
       {"fetal-face", {"Fetal face", "face", "fetus"}},
   };
-  for (const auto& [name, organs] : meant)
+  for (const auto& [name, organs] : expected)
     for (const std::string& organ : organs)
-      EXPECT_EQ(presetsOf(segment(organ)), Texts{name}) << organ;
+      EXPECT_EQ(listPresets(segment(organ)), Strings{name}) << organ;
   for (const char* none :
        {"spinal_cord", "brainstem", "liver_vessels", "lung_nodule", "rib_left_7", "skin",
         "costal_cartilages", "phalanges_hand", "portal_vein_and_splenic_vein", "iliac_vena_left",
         "hip_left", "lateral ventricle", "carotid_artery"})
-    EXPECT_EQ(presetsOf(segment(none)), Texts{}) << none;
+    EXPECT_EQ(listPresets(segment(none)), Strings{}) << none;
 }
 
 /// A segment's code alone is sufficient.
 TEST(OrganPresets, BuiltInPresetsMatchSlicerCodes) {
-  EXPECT_EQ(presetsOf(segment("S", "SCT^10200004")), Texts{"liver"});
-  EXPECT_EQ(presetsOf(segment("S", "SCT^39607008", "SCT^1")), Texts{"lungs"});
-  EXPECT_EQ(presetsOf(segment("S", "SCT^122496007")), Texts{"spine"});
-  EXPECT_EQ(presetsOf(segment("S", "SCT^4147007", "SCT^12738006")), Texts{"brain-tumour"});
-  EXPECT_EQ(presetsOf(segment("S", "SCT^4147007", "SCT^10200004")), Texts{});
+  EXPECT_EQ(listPresets(segment("S", "SCT^10200004")), Strings{"liver"});
+  EXPECT_EQ(listPresets(segment("S", "SCT^39607008", "SCT^1")), Strings{"lungs"});
+  EXPECT_EQ(listPresets(segment("S", "SCT^122496007")), Strings{"spine"});
+  EXPECT_EQ(listPresets(segment("S", "SCT^4147007", "SCT^12738006")), Strings{"brain-tumour"});
+  EXPECT_EQ(listPresets(segment("S", "SCT^4147007", "SCT^10200004")), Strings{});
 }
 
 TEST(OrganPresets, RangeDecidesWhetherAVolumeIsCt) {

@@ -15,7 +15,7 @@ constexpr double radius = 30.0, depth = 2.5; // mm
 
 /// CT of what is water where isWater(world) says so, else air.
 template <typename IsWater>
-Volume ctOf(const Grid& grid, const IsWater& isWater) {
+Volume makeCt(const Grid& grid, const IsWater& isWater) {
   LargeArray<std::int16_t> voxels;
   for (std::int64_t z = 0; z < grid.size.z(); ++z)
     for (std::int64_t y = 0; y < grid.size.y(); ++y)
@@ -24,30 +24,31 @@ Volume ctOf(const Grid& grid, const IsWater& isWater) {
   return {grid, std::move(voxels), -1000.0, 0.0, "ct", {}};
 }
 
-double at(const Mask& mask, const Vec3& world) {
+double evalMask(const Mask& mask, const Vec3& world) {
   return Field<std::uint8_t>(mask.grid, mask.voxels).value(mask.grid.worldToIndex * world) /
          mask.maxValue;
 }
 
 /// Grids of several spacings, the axes of the last one turned and mirrored.
-std::vector<Grid> grids() {
+std::vector<Grid> makeGrids() {
   std::vector<Grid> all = {makeCenteredGrid({81, 81, 81}, Vec3(1.0, 1.0, 1.0)),
                            makeCenteredGrid({121, 121, 41}, Vec3(0.7, 0.7, 2.2))};
-  const Mat3 turn = Mat3::FromRows(Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(0, 1, 0));
-  all.push_back({{81, 81, 81}, Affine(turn, -(turn * Vec3::Constant(40.0)))});
+  const Mat3 rotation = Mat3::FromRows(Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(0, 1, 0));
+  all.push_back({{81, 81, 81}, Affine(rotation, -(rotation * Vec3::Constant(40.0)))});
   return all;
 }
 
 TEST(OuterLayer, IsAsDeepAsAsked) {
-  for (const Grid& grid : grids()) {
-    const Mask skin =
-        findOuterLayer(ctOf(grid, [](const Vec3& p) { return p.norm() < radius; }), -300.0, depth);
+  for (const Grid& grid : makeGrids()) {
+    const Mask skin = findOuterLayer(makeCt(grid, [](const Vec3& p) { return p.norm() < radius; }),
+                                     -300.0, depth);
     ASSERT_GT(skin.count, 0);
-    for (const Vec3& way : {Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0.6, 0.64, 0.48), Vec3(0, 0, 1)}) {
-      EXPECT_EQ(at(skin, (radius + 2.0) * direction), 1.0) << way.x();
-      EXPECT_GT(at(skin, (radius - 0.5) * direction), 0.7) << way.x();
-      EXPECT_LT(at(skin, (radius - depth - 2.5) * direction), 0.2) << way.x();
-      EXPECT_EQ(at(skin, 0.5 * radius * direction), 0.0);
+    for (const Vec3& direction :
+         {Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0.6, 0.64, 0.48), Vec3(0, 0, 1)}) {
+      EXPECT_EQ(evalMask(skin, (radius + 2.0) * direction), 1.0) << direction.x();
+      EXPECT_GT(evalMask(skin, (radius - 0.5) * direction), 0.7) << direction.x();
+      EXPECT_LT(evalMask(skin, (radius - depth - 2.5) * direction), 0.2) << direction.x();
+      EXPECT_EQ(evalMask(skin, 0.5 * radius * direction), 0.0);
     }
   }
 }
@@ -55,26 +56,27 @@ TEST(OuterLayer, IsAsDeepAsAsked) {
 /// Air in the body is not around it, though it be cut open where the scan ends; a fold from the
 /// side is.
 TEST(OuterLayer, LiesAtTheAirAround) {
-  for (const Grid& grid : grids()) {
+  for (const Grid& grid : makeGrids()) {
     const auto isWater = [](const Vec3& p) {
       const bool isInLung = std::hypot(p.x() - 10.0, p.y()) < 6.0;
       const bool isInFold = p.x() < -10.0 && std::abs(p.y()) < 3.0;
       return std::hypot(p.x(), p.y()) < radius && !isInLung && !isInFold;
     };
-    const Mask skin = findOuterLayer(ctOf(grid, isWater), -300.0, depth);
-    EXPECT_EQ(at(skin, Vec3(10, 0, 0)), 0.0);
-    EXPECT_EQ(at(skin, Vec3(10, 0, 39)), 0.0);
-    EXPECT_EQ(at(skin, Vec3(-15, 0, 0)), 1.0);
-    EXPECT_GT(at(skin, Vec3(-9.5, 0, 0)), 0.7);
+    const Mask skin = findOuterLayer(makeCt(grid, isWater), -300.0, depth);
+    EXPECT_EQ(evalMask(skin, Vec3(10, 0, 0)), 0.0);
+    EXPECT_EQ(evalMask(skin, Vec3(10, 0, 39)), 0.0);
+    EXPECT_EQ(evalMask(skin, Vec3(-15, 0, 0)), 1.0);
+    EXPECT_GT(evalMask(skin, Vec3(-9.5, 0, 0)), 0.7);
   }
 }
 
 TEST(OuterLayer, IsNothingWithoutAirOrBody) {
-  const Grid grid = grids().front();
-  EXPECT_EQ(findOuterLayer(ctOf(grid, [](const Vec3&) { return true; }), -300.0, depth).count, 0);
-  EXPECT_EQ(findOuterLayer(ctOf(grid, [](const Vec3&) { return false; }), -300.0, depth).count, 0);
+  const Grid grid = makeGrids().front();
+  EXPECT_EQ(findOuterLayer(makeCt(grid, [](const Vec3&) { return true; }), -300.0, depth).count, 0);
+  EXPECT_EQ(findOuterLayer(makeCt(grid, [](const Vec3&) { return false; }), -300.0, depth).count,
+            0);
   const auto inside = [](const Vec3& p) { return p.norm() > 5.0; };
-  EXPECT_EQ(findOuterLayer(ctOf(grid, inside), -300.0, depth).count, 0) << "a bubble";
+  EXPECT_EQ(findOuterLayer(makeCt(grid, inside), -300.0, depth).count, 0) << "a bubble";
 }
 
 TEST(OuterLayer, TakesVoxelsOfAnySize) {
@@ -82,17 +84,17 @@ TEST(OuterLayer, TakesVoxelsOfAnySize) {
     for (const Size3& size : {Size3(1, 1, 1), Size3(9, 1, 4), Size3(9, 9, 9)}) {
       const Grid grid = makeCenteredGrid(size, Vec3(spacing, 1.0, spacing));
       const auto isWater = [&](const Vec3& p) { return p.x() > 0.0; };
-      const Mask skin = findOuterLayer(ctOf(grid, isWater), -300.0, depth);
+      const Mask skin = findOuterLayer(makeCt(grid, isWater), -300.0, depth);
       EXPECT_LE(skin.voxels.size(), 729U);
     }
 }
 
 TEST(OuterLayer, LiesOnTheVoxelsOfLabels) {
-  const Grid volume = grids().front();
-  const Mask skin =
-      findOuterLayer(ctOf(volume, [](const Vec3& p) { return p.norm() < radius; }), -300.0, depth);
-  const Mat3 turn = Mat3::FromRows(Vec3(0.8, -0.6, 0), Vec3(0.6, 0.8, 0), Vec3(0, 0, 1.7));
-  const Grid labels({7, 5, 3}, Affine(turn, Vec3(3, 4, 5)));
+  const Grid volume = makeGrids().front();
+  const Mask skin = findOuterLayer(makeCt(volume, [](const Vec3& p) { return p.norm() < radius; }),
+                                   -300.0, depth);
+  const Mat3 rotation = Mat3::FromRows(Vec3(0.8, -0.6, 0), Vec3(0.6, 0.8, 0), Vec3(0, 0, 1.7));
+  const Grid labels({7, 5, 3}, Affine(rotation, Vec3(3, 4, 5)));
   const Mask onLabels = resampleMask(skin, labels, volume);
   const Vec3 origin = labels.worldToIndex * onLabels.grid.indexToWorld.translation();
   EXPECT_LT((origin - origin.array().round().matrix()).norm(), 1e-9);
@@ -107,9 +109,8 @@ TEST(OuterLayer, LiesOnTheVoxelsOfLabels) {
       for (std::int64_t x = 0; x < onLabels.grid.size.x(); ++x) {
         const Size3 voxel(x, y, z);
         const double value = onLabels.voxels[linearIndex(voxel, onLabels.grid.size)] / 255.0;
-        greatest =
-            std::max(greatest,
-                     std::abs(value - at(skin, onLabels.grid.indexToWorld * voxel.cast<double>())));
+        greatest = std::max(greatest, std::abs(value - evalMask(skin, onLabels.grid.indexToWorld *
+                                                                          voxel.cast<double>())));
       }
   EXPECT_LT(greatest, 0.501 / 255.0);
   const Grid tiny({7, 5, 3}, Affine(0.01 * Mat3::Identity()));

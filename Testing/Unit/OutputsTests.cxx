@@ -29,7 +29,7 @@ class OutputFiles : public ::testing::Test {
 protected:
   /// Message of the Error thrown by `action`, which must be of `kind` and on one line.
   template <typename Action>
-  static std::string refusal(ErrorKind kind, Action&& action) {
+  static std::string catchError(ErrorKind kind, Action&& action) {
     try {
       action();
     } catch (const Error& error) {
@@ -48,7 +48,7 @@ protected:
     requireFile(folder.write(name, content), "");
     return folder / name;
   }
-  static mode_t modeOf(const fs::path& path) {
+  static mode_t readMode(const fs::path& path) {
     struct stat status = {};
     EXPECT_EQ(::lstat(path.c_str(), &status), 0) << path;
     return status.st_mode & 07777;
@@ -75,10 +75,10 @@ TEST_F(OutputFiles, CommitPlacesAllFilesTogether) {
 TEST_F(OutputFiles, WithoutACommitNothingIsLeft) {
   folder.write("a", "old");
   {
-    Outputs given;
-    given.add(folder / "a");
+    Outputs uncommitted;
+    uncommitted.add(folder / "a");
     EXPECT_EQ(fileCount(), 1u);
-    given.write(folder / "a", "half");
+    uncommitted.write(folder / "a", "half");
   }
   EXPECT_EQ(bytesOf(folder / "a"), "old");
   EXPECT_EQ(fileCount(), 1u);
@@ -92,7 +92,7 @@ TEST_F(OutputFiles, FailedCommitRestoresTheFormerFiles) {
   for (const char* name : {"a", "b", "c"})
     outputs.write(folder / name, "new");
   fs::create_directory(folder / "c");
-  refusal(ErrorKind::output, [&] { outputs.commit(); });
+  catchError(ErrorKind::output, [&] { outputs.commit(); });
   EXPECT_EQ(bytesOf(folder / "a"), "old");
   EXPECT_FALSE(fs::exists(folder / "b"));
   EXPECT_TRUE(fs::is_directory(folder / "c"));
@@ -115,9 +115,9 @@ TEST_F(OutputFiles, FileThatBecameAnInputIsNotReplaced) {
   outputs.add(folder / "a");
   outputs.checkInputs();
   read("a", "old");
-  refusal(ErrorKind::usage, [&] { outputs.checkInputs(); });
+  catchError(ErrorKind::usage, [&] { outputs.checkInputs(); });
   outputs.write(folder / "a", "new");
-  refusal(ErrorKind::usage, [&] { outputs.commit(); });
+  catchError(ErrorKind::usage, [&] { outputs.commit(); });
   EXPECT_EQ(bytesOf(folder / "a"), "old");
 }
 
@@ -125,7 +125,7 @@ TEST_F(OutputFiles, OwnOutputIsRefusedAsInput) {
   outputs.add(folder / "a");
   outputs.write(folder / "a", "new");
   outputs.commit();
-  refusal(ErrorKind::input, [&] { requireFile(folder / "a", ""); });
+  catchError(ErrorKind::input, [&] { requireFile(folder / "a", ""); });
   fs::remove(folder / "a"); // its inode number is free for others
   folder.write("a", "another one");
   requireFile(folder / "a", "");
@@ -207,7 +207,7 @@ TEST_F(OutputFiles, ModeAndOwnerOfAReplacedFileAreKept) {
     outputs.write(folder / name, "new");
   }
   outputs.commit();
-  EXPECT_EQ(modeOf(folder / "private"), 0600u);
+  EXPECT_EQ(readMode(folder / "private"), 0600u);
   struct stat status = {};
   ASSERT_EQ(::stat((folder / "private").c_str(), &status), 0);
   if (isRoot) {
@@ -215,7 +215,7 @@ TEST_F(OutputFiles, ModeAndOwnerOfAReplacedFileAreKept) {
     EXPECT_EQ(status.st_gid, 1235u);
   }
   const fs::path usual = folder.write("usual", "");
-  EXPECT_EQ(modeOf(folder / "fresh"), modeOf(usual));
+  EXPECT_EQ(readMode(folder / "fresh"), readMode(usual));
 }
 
 TEST_F(OutputFiles, DefaultNameReplacesOnlySealedFiles) {
@@ -250,7 +250,7 @@ TEST_F(OutputFiles, FileCreatedMeanwhileIsNotReplaced) {
   outputs.add(folder / "a", hasProvenanceTag);
   outputs.write(folder / "a", "new");
   folder.write("a", "somebody else's");
-  refusal(ErrorKind::usage, [&] { outputs.commit(); });
+  catchError(ErrorKind::usage, [&] { outputs.commit(); });
   EXPECT_EQ(bytesOf(folder / "a"), "somebody else's");
 }
 
@@ -273,8 +273,8 @@ TEST_F(OutputFiles, DescriptorsAndPipesAreWrittenAtTheCommit) {
   ::close(reader);
   ::close(file);
   outputs.write(pipe, "nobody reads");
-  refusal(ErrorKind::output, [&] { outputs.commit(); });
-  refusal(ErrorKind::output, [&] { outputs.add("/dev/fd/987"); });
+  catchError(ErrorKind::output, [&] { outputs.commit(); });
+  catchError(ErrorKind::output, [&] { outputs.add("/dev/fd/987"); });
 }
 
 TEST_F(OutputFiles, CleanupLeavesFilesOfACommittingRun) {
@@ -290,19 +290,19 @@ TEST_F(OutputFiles, CleanupLeavesFilesOfACommittingRun) {
 }
 
 TEST_F(OutputFiles, NextRunRemovesFilesOfKilledRuns) {
-  const std::string left = makeTempName(tempFilePrefix);
+  const std::string stale = makeTempName(tempFilePrefix);
   const std::string inUse = makeTempName(tempFilePrefix);
-  folder.write(left, "left");
+  folder.write(stale, "left");
   for (const char* name : {".fenestra-notes", ".fenestra-0123456789ab"})
     folder.write(name, "somebody's");
-  const int living = ::open(folder.write(inUse, "in use").c_str(), O_RDONLY);
+  const int active = ::open(folder.write(inUse, "in use").c_str(), O_RDONLY);
   ASSERT_EQ(::flock(active, LOCK_EX), 0);
   outputs.add(folder / "a");
   EXPECT_FALSE(fs::exists(folder / stale));
   EXPECT_TRUE(fs::exists(folder / inUse));
   for (const char* name : {".fenestra-notes", ".fenestra-0123456789ab"})
     EXPECT_TRUE(fs::exists(folder / name)) << name;
-  ::close(living);
+  ::close(active);
 }
 
 TEST_F(OutputFiles, NamesOfTemporaryFilesAreRefused) {
@@ -347,7 +347,7 @@ TEST_F(OutputFiles, NameLockIsHeldByOneAtATime) {
   }
   EXPECT_EQ(fileCount(), 0u);
   EXPECT_TRUE(NameLock(name).isHeld());
-  refusal(ErrorKind::output, [&] { NameLock(folder / "nowhere/a"); });
+  catchError(ErrorKind::output, [&] { NameLock(folder / "nowhere/a"); });
 }
 
 /// Names as long as a path in an archive may be.
@@ -391,7 +391,7 @@ TEST_F(OutputFiles, ZeroByteInANameIsRefused) {
   registerInput(inFolder);
   registerInput(inFolder / "a");
   const std::string line =
-      refusal(ErrorKind::input, [&] { requireFile(file.native() + zero + "b", ""); });
+      catchError(ErrorKind::input, [&] { requireFile(file.native() + zero + "b", ""); });
   EXPECT_EQ(line.find(file.string() + ": is followed by a zero byte"), 0u) << line;
 }
 
@@ -399,10 +399,10 @@ TEST(PrivateFolders, NextRunRemovesFoldersOfKilledRuns) {
   const TemporaryFolder temporary;
   const std::string before = std::getenv("TMPDIR") ? std::getenv("TMPDIR") : "/tmp";
   ::setenv("TMPDIR", temporary.path().c_str(), 1);
-  const std::string left = makeTempName("fenestra-scene-");
-  fs::create_directories(temporary / left / "Data");
-  fs::permissions(temporary / left, fs::perms::owner_all);
-  temporary.write(left + "/Data/patient.nrrd", "left");
+  const std::string stale = makeTempName("fenestra-scene-");
+  fs::create_directories(temporary / stale / "Data");
+  fs::permissions(temporary / stale, fs::perms::owner_all);
+  temporary.write(stale + "/Data/patient.nrrd", "left");
   const std::string shared = makeTempName("fenestra-scene-");
   const std::vector<std::string> others = {"fenestra-others", "fenestra-scene-of-mine",
                                            "fenestra-scene-0123456789ab", shared};
@@ -411,8 +411,8 @@ TEST(PrivateFolders, NextRunRemovesFoldersOfKilledRuns) {
     if (name != shared)
       fs::permissions(temporary / name, fs::perms::owner_all);
   }
-  PrivateFolder living;
-  const fs::path file = living.add("Data/a.nrrd");
+  PrivateFolder active;
+  const fs::path file = active.add("Data/a.nrrd");
   removeStaleFolders();
   EXPECT_FALSE(fs::exists(temporary / stale));
   EXPECT_TRUE(fs::exists(file));

@@ -10,19 +10,21 @@ namespace fenestra::PackedMaskTests {
 namespace {
 
 /// Rows of zeros, of one value, of values that all differ, and of stretches of 1 to 300 voxels.
-Mask rows(std::int64_t columns) {
+Mask makeRows(std::int64_t columns) {
   Mask mask;
   mask.maxValue = 255;
   mask.grid = Grid(Size3(columns, 4, 3), Affine::Identity());
   Random random(3, static_cast<std::uint64_t>(columns), 0);
-  const auto whole = [&](double most) { return static_cast<std::size_t>(random.uniform() * most); };
+  const auto randomInt = [&](double most) {
+    return static_cast<std::size_t>(random.uniform() * most);
+  };
   for (std::int64_t row = 0; row < 12; ++row) {
     std::vector<std::uint8_t> voxels(static_cast<std::size_t>(columns), row % 4 == 1 ? 200 : 0);
     if (row % 4 == 2)
       std::iota(voxels.begin(), voxels.end(), std::uint8_t{1});
     for (std::size_t x = 0; row % 4 == 3 && x < voxels.size();) {
-      const std::size_t length = whole(2.0) == 0 ? 1 + whole(4.0) : 1 + whole(300.0);
-      const auto value = static_cast<std::uint8_t>(whole(256.0));
+      const std::size_t length = randomInt(2.0) == 0 ? 1 + randomInt(4.0) : 1 + randomInt(300.0);
+      const auto value = static_cast<std::uint8_t>(randomInt(256.0));
       for (const std::size_t end = std::min(x + length, voxels.size()); x < end; ++x)
         voxels[x] = value;
     }
@@ -33,7 +35,7 @@ Mask rows(std::int64_t columns) {
 
 TEST(PackedMask, GivesBackEveryRow) {
   for (const std::int64_t columns : {1, 2, 3, 127, 128, 129, 130, 255, 256, 257, 1000}) {
-    const Mask mask = rows(columns);
+    const Mask mask = makeRows(columns);
     const PackedMask packed(mask);
     EXPECT_EQ(packed.maxValue(), 255);
     std::size_t first = 0;

@@ -7,15 +7,15 @@
 namespace fenestra::PhantomCubeTests {
 namespace {
 
-const LargeArray<std::int16_t>& voxelsOf(const Phantom& phantom) {
+const LargeArray<std::int16_t>& getVoxels(const Phantom& phantom) {
   return std::get<LargeArray<std::int16_t>>(phantom.volume.voxels);
 }
 
-std::vector<int> slicesOf(const Phantom& cube) {
+std::vector<int> listSlices(const Phantom& cube) {
   const Size3& size = cube.volume.grid.size;
   std::vector<int> slices;
   for (std::int64_t k = 0; k < size.z(); ++k)
-    slices.push_back(voxelsOf(cube)[static_cast<std::size_t>(k * size.x() * size.y())]);
+    slices.push_back(getVoxels(cube)[static_cast<std::size_t>(k * size.x() * size.y())]);
   return slices;
 }
 
@@ -24,7 +24,7 @@ std::vector<int> slicesOf(const Phantom& cube) {
 TEST(PhantomCube, PublishedCubeCountsSlicesFromTheMiddle) {
   const Phantom cube = makeCubePhantom();
   EXPECT_EQ(cube.volume.grid.size, Size3(512, 512, 512));
-  const std::vector<int> slices = slicesOf(cube);
+  const std::vector<int> slices = listSlices(cube);
   for (int k = 0; k < 512; ++k)
     EXPECT_EQ(slices[static_cast<std::size_t>(k)], k < 256 ? k - 255 : k - 256);
   EXPECT_EQ(cube.labels.size, Size3(255, 255, 391));
@@ -35,13 +35,13 @@ TEST(PhantomCube, PublishedCubeCountsSlicesFromTheMiddle) {
 
 TEST(PhantomCube, SmallCubeKeepsRangeAndProportions) {
   const Phantom cube = makeCubePhantom({1.0, 24});
-  const std::vector<int> slices = slicesOf(cube);
+  const std::vector<int> slices = listSlices(cube);
   EXPECT_EQ(slices.front(), -255);
   EXPECT_EQ(slices.back(), 255);
   for (std::size_t k = 0; k < 24; ++k)
     EXPECT_EQ(slices[k], -slices[23 - k]);
-  for (std::size_t i = 0; i < voxelsOf(cube).size(); ++i)
-    ASSERT_EQ(voxelsOf(cube)[i], slices[i / 576]);
+  for (std::size_t i = 0; i < getVoxels(cube).size(); ++i)
+    ASSERT_EQ(getVoxels(cube)[i], slices[i / 576]);
   EXPECT_EQ(cube.labels.size, Size3(12, 12, 18));
   EXPECT_EQ(cube.labels.offset, Size3(6, 6, 3));
   ASSERT_EQ(cube.labels.layers.size(), 1u);

@@ -14,17 +14,17 @@ const Phantom& smallFetus() {
   return fetus;
 }
 
-const LargeArray<std::int16_t>& voxelsOf(const Phantom& phantom) {
+const LargeArray<std::int16_t>& getVoxels(const Phantom& phantom) {
   return std::get<LargeArray<std::int16_t>>(phantom.volume.voxels);
 }
 
-std::size_t countOf(int label) {
+std::size_t countVoxels(int label) {
   const auto& labels = smallFetus().labels.layers.front();
   return static_cast<std::size_t>(std::count(labels.begin(), labels.end(), label));
 }
 
 TEST(PhantomFetus, ValuesAreEightBitsOfUltrasound) {
-  const auto& voxels = voxelsOf(smallFetus());
+  const auto& voxels = getVoxels(smallFetus());
   EXPECT_GE(*std::min_element(voxels.begin(), voxels.end()), 0);
   EXPECT_LE(*std::max_element(voxels.begin(), voxels.end()), 255);
   EXPECT_GT(*std::max_element(voxels.begin(), voxels.end()), 150);
@@ -34,12 +34,12 @@ TEST(PhantomFetus, ValuesAreEightBitsOfUltrasound) {
 TEST(PhantomFetus, SegmentsHaveAnatomicalVolumes) {
   const double voxel = std::pow(112.0 / 64.0, 3.0) / 1000.0; // ml
   ASSERT_EQ(smallFetus().segments.size(), 3u);
-  const double head = voxel * static_cast<double>(countOf(1));
+  const double head = voxel * static_cast<double>(countVoxels(1));
   EXPECT_GT(head, 220.0);
   EXPECT_LT(head, 420.0);
   for (const int label : {2, 3})
-    EXPECT_GT(countOf(label), 100u) << label;
-  EXPECT_GT(countOf(0), countOf(1) / 2); // fluid around it
+    EXPECT_GT(countVoxels(label), 100u) << label;
+  EXPECT_GT(countVoxels(0), countVoxels(1) / 2); // fluid around it
 }
 
 /// A ray from the front to any part of the face meets the uterine wall first.
@@ -69,7 +69,7 @@ TEST(PhantomFetus, WallHidesTheFace) {
 TEST(PhantomFetus, SpeckleIsSmallerThanTheSignalOfTissue) {
   const Phantom& fetus = smallFetus();
   const auto& labels = fetus.labels.layers.front();
-  const auto& voxels = voxelsOf(fetus);
+  const auto& voxels = getVoxels(fetus);
   double sum = 0.0;
   double squares = 0.0;
   double fluid = 0.0;
@@ -80,10 +80,10 @@ TEST(PhantomFetus, SpeckleIsSmallerThanTheSignalOfTissue) {
     } else if (labels[i] == 0) {
       fluid += voxels[i];
     }
-  const auto count = static_cast<double>(countOf(1));
+  const auto count = static_cast<double>(countVoxels(1));
   const double mean = sum / count;
-  const double deviation = std::sqrt(squares / count - mean * mean);
-  EXPECT_GT(mean, 5.0 * fluid / static_cast<double>(countOf(0)));
+  const double sigma = std::sqrt(squares / count - mean * mean);
+  EXPECT_GT(mean, 5.0 * fluid / static_cast<double>(countVoxels(0)));
   EXPECT_GT(sigma, 0.1 * mean);
   EXPECT_LT(sigma, 0.6 * mean);
 }
@@ -91,7 +91,7 @@ TEST(PhantomFetus, SpeckleIsSmallerThanTheSignalOfTissue) {
 TEST(PhantomFetus, IsTheSameOnEveryRunAndAnyNumberOfThreads) {
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   const Phantom again = makeFetusPhantom({64, 64, 64});
-  EXPECT_EQ(voxelsOf(again), voxelsOf(smallFetus()));
+  EXPECT_EQ(getVoxels(again), getVoxels(smallFetus()));
   EXPECT_EQ(again.labels.layers, smallFetus().labels.layers);
 }
 

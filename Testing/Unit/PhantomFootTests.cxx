@@ -21,19 +21,19 @@ const Phantom& smallFoot() {
   return foot;
 }
 
-const LargeArray<std::int16_t>& voxelsOf(const Phantom& phantom) {
+const LargeArray<std::int16_t>& getVoxels(const Phantom& phantom) {
   return std::get<LargeArray<std::int16_t>>(phantom.volume.voxels);
 }
 
-const PhantomSegment& segmentOf(const Phantom& phantom, const std::string& id) {
+const PhantomSegment& findSegment(const Phantom& phantom, const std::string& id) {
   for (const PhantomSegment& segment : phantom.segments)
     if (segment.id == id)
       return segment;
   throw std::runtime_error("no segment " + id);
 }
 
-std::vector<std::size_t> voxelsIn(const Phantom& phantom, const std::string& id) {
-  const PhantomSegment& segment = segmentOf(phantom, id);
+std::vector<std::size_t> findVoxels(const Phantom& phantom, const std::string& id) {
+  const PhantomSegment& segment = findSegment(phantom, id);
   const auto& labels = phantom.labels.layers.at(segment.layer);
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < labels.size(); ++i)
@@ -42,31 +42,31 @@ std::vector<std::size_t> voxelsIn(const Phantom& phantom, const std::string& id)
   return found;
 }
 
-Vec3 placeOf(const Grid& grid, std::size_t voxel) {
+Vec3 voxelPosition(const Grid& grid, std::size_t voxel) {
   const auto at = static_cast<std::int64_t>(voxel);
   const Size3 index(at % grid.size.x(), at / grid.size.x() % grid.size.y(),
                     at / (grid.size.x() * grid.size.y()));
   return grid.indexToWorld * Vec3(index.cast<double>());
 }
 
-Vec3 centroid(const Phantom& phantom, const std::string& id) {
+Vec3 computeCentroid(const Phantom& phantom, const std::string& id) {
   Vec3 sum = Vec3::Zero();
-  const auto voxels = voxelsIn(phantom, id);
+  const auto voxels = findVoxels(phantom, id);
   for (const std::size_t voxel : voxels)
-    sum += placeOf(phantom.volume.grid, voxel);
+    sum += voxelPosition(phantom.volume.grid, voxel);
   return sum / static_cast<double>(voxels.size());
 }
 
-double medianOf(const Phantom& phantom, const std::string& id) {
+double computeMedian(const Phantom& phantom, const std::string& id) {
   std::vector<std::int16_t> values;
-  for (const std::size_t voxel : voxelsIn(phantom, id))
-    values.push_back(voxelsOf(phantom)[voxel]);
+  for (const std::size_t voxel : findVoxels(phantom, id))
+    values.push_back(getVoxels(phantom)[voxel]);
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
 
-std::vector<std::string> boneIds() {
+std::vector<std::string> listBoneIds() {
   std::vector<std::string> ids;
   const FootBones foot;
   for (const FootBone& bone : foot.bones())
@@ -77,7 +77,7 @@ std::vector<std::string> boneIds() {
 } // namespace
 
 TEST(PhantomFoot, HasTheTwentySixBonesAndTwoStumps) {
-  const std::vector<std::string> ids = boneIds();
+  const std::vector<std::string> ids = listBoneIds();
   ASSERT_EQ(ids.size(), 28u);
   const auto count = [&](const std::string& part) {
     return std::count_if(ids.begin(), ids.end(),
@@ -90,12 +90,12 @@ TEST(PhantomFoot, HasTheTwentySixBonesAndTwoStumps) {
   EXPECT_EQ(count("_phalanx_"), 14);
   EXPECT_EQ(count("middle_phalanx_1"), 0);
   for (const std::string& id : ids)
-    EXPECT_GT(voxelsIn(smallFoot(), id).size(), 15u) << id;
+    EXPECT_GT(findVoxels(smallFoot(), id).size(), 15u) << id;
 }
 
 TEST(PhantomFoot, BonesLieAsInARightFoot) {
   const Phantom& foot = smallFoot();
-  const auto at = [&](const char* id) { return centroid(foot, id); };
+  const auto at = [&](const char* id) { return computeCentroid(foot, id); };
   for (int ray = 1; ray < 5; ++ray) {
     const std::string inner = std::to_string(ray), outer = std::to_string(ray + 1);
     EXPECT_LT(computeCentroid(foot, "metatarsal_" + inner).x() + 8.0,
@@ -169,22 +169,22 @@ TEST(PhantomFoot, JointsAreNarrowGaps) {
 
 TEST(PhantomFoot, BonesSegmentHoldsVoxelsFrom200Hounsfield) {
   const Phantom& foot = smallFoot();
-  const PhantomSegment& bones = segmentOf(foot, "bones");
+  const PhantomSegment& bones = findSegment(foot, "bones");
   EXPECT_EQ(bones.layer, 1u);
   const FootBones skeleton;
-  for (std::size_t i = 0; i < voxelsOf(foot).size(); ++i) {
+  for (std::size_t i = 0; i < getVoxels(foot).size(); ++i) {
     const bool found = foot.labels.layers[1][i] == bones.label;
-    ASSERT_EQ(found, voxelsOf(foot)[i] >= 200) << i;
+    ASSERT_EQ(found, getVoxels(foot)[i] >= 200) << i;
     if (!found || foot.labels.layers[0][i] <= FootBones::count)
       continue;
-    const auto distances = skeleton.distances(placeOf(foot.volume.grid, i));
+    const auto distances = skeleton.distances(voxelPosition(foot.volume.grid, i));
     EXPECT_LT(*std::min_element(distances.begin(), distances.end()), 1.6)
         << "soft tissue, and no bone shares the voxel";
   }
-  const auto whole = static_cast<double>(voxelsIn(foot, "bones").size());
+  const auto total = static_cast<double>(findVoxels(foot, "bones").size());
   double anatomical = 0.0;
-  for (const std::string& id : boneIds())
-    anatomical += static_cast<double>(voxelsIn(foot, id).size());
+  for (const std::string& id : listBoneIds())
+    anatomical += static_cast<double>(findVoxels(foot, id).size());
   EXPECT_GT(total / anatomical, 0.6);
   EXPECT_LT(total / anatomical, 1.1);
 }
@@ -199,7 +199,7 @@ TEST(PhantomFoot, TissuesHaveTheirHounsfieldUnits) {
   const FootSite shaft = layers.makeSite({-14.0, 168.0, 39.0});
   EXPECT_LT(footMarrowSignal(shaft), 0.0) << "a metatarsal's canal holds fat";
   EXPECT_GT(footCortexSignal(shaft), 1200.0);
-  EXPECT_NEAR(voxelsOf(foot).front(), -1000.0, 60.0) << "air";
+  EXPECT_NEAR(getVoxels(foot).front(), -1000.0, 60.0) << "air";
 }
 
 TEST(PhantomFoot, SkinCoversEveryBone) {
@@ -224,7 +224,7 @@ TEST(PhantomFoot, PlaceDoesNotDependOnSizeNorVoxelsOnThreads) {
   EXPECT_GT(grid.indexToWorld.linear().determinant(), 0.0) << "right-handed";
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   const Phantom single = makeFootPhantom(size);
-  EXPECT_EQ(voxelsOf(many), voxelsOf(single));
+  EXPECT_EQ(getVoxels(many), getVoxels(single));
   EXPECT_EQ(many.labels.layers, single.labels.layers);
   EXPECT_THROW(makeFootPhantom({48, 15, 28}), Error);
 }
@@ -237,7 +237,7 @@ TEST(PhantomFoot, BothLayersRoundTripThroughTheFile) {
   ASSERT_EQ(segmentation.segments().size(), foot.segments.size());
   for (const char* id : {"calcaneus", "skin", "bones"})
     EXPECT_EQ(segmentation.makeFocusMask({id}, foot.volume.grid).count,
-              static_cast<std::int64_t>(voxelsIn(foot, id).size()))
+              static_cast<std::int64_t>(findVoxels(foot, id).size()))
         << id;
 }
 

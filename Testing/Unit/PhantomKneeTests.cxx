@@ -18,15 +18,15 @@ const Phantom& smallKnee() {
   return knee;
 }
 
-const LargeArray<std::int16_t>& voxelsOf(const Phantom& phantom) {
+const LargeArray<std::int16_t>& getVoxels(const Phantom& phantom) {
   return std::get<LargeArray<std::int16_t>>(phantom.volume.voxels);
 }
 
-const std::vector<std::uint8_t>& labelsOf(const Phantom& phantom) {
+const std::vector<std::uint8_t>& getLabels(const Phantom& phantom) {
   return phantom.labels.layers.at(0);
 }
 
-std::uint8_t labelOf(const Phantom& phantom, const std::string& id) {
+std::uint8_t findLabel(const Phantom& phantom, const std::string& id) {
   for (const PhantomSegment& segment : phantom.segments)
     if (segment.id == id)
       return segment.label;
@@ -34,12 +34,12 @@ std::uint8_t labelOf(const Phantom& phantom, const std::string& id) {
   return 0;
 }
 
-double medianOf(const Phantom& phantom, const std::string& id) {
-  const std::uint8_t label = labelOf(phantom, id);
+double computeMedian(const Phantom& phantom, const std::string& id) {
+  const std::uint8_t label = findLabel(phantom, id);
   std::vector<std::int16_t> values;
-  for (std::size_t i = 0; i < labelsOf(phantom).size(); ++i)
-    if (labelsOf(phantom)[i] == label)
-      values.push_back(voxelsOf(phantom)[i]);
+  for (std::size_t i = 0; i < getLabels(phantom).size(); ++i)
+    if (getLabels(phantom)[i] == label)
+      values.push_back(getVoxels(phantom)[i]);
   if (values.empty())
     return 0.0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -48,7 +48,7 @@ double medianOf(const Phantom& phantom, const std::string& id) {
 }
 
 /// Thickness of the cartilage along the bone's normal, mm.
-double thicknessAbove(const KneeBones& bones, const Vec3& surface) {
+double measureThickness(const KneeBones& bones, const Vec3& surface) {
   constexpr double h = 0.05;
   const Vec3 normal =
       Vec3(bones.femur(surface + Vec3(h, 0, 0)) - bones.femur(surface - Vec3(h, 0, 0)),
@@ -65,8 +65,8 @@ double thicknessAbove(const KneeBones& bones, const Vec3& surface) {
   return t;
 }
 
-double thicknessAt(const KneeBones& bones, double x, double angle) {
-  return thicknessAbove(bones, bones.femoralSurface(x, angle));
+double measureThickness(const KneeBones& bones, double x, double angle) {
+  return measureThickness(bones, bones.femoralSurface(x, angle));
 }
 
 } // namespace
@@ -74,7 +74,7 @@ double thicknessAt(const KneeBones& bones, double x, double angle) {
 TEST(PhantomKnee, EverySegmentHasVoxelsAndANameOfItsOwn) {
   const Phantom& knee = smallKnee();
   std::map<int, std::int64_t> count;
-  for (const std::uint8_t label : labelsOf(knee))
+  for (const std::uint8_t label : getLabels(knee))
     ++count[label];
   std::map<std::string, int> names;
   for (std::size_t i = 0; i < knee.segments.size(); ++i) {
@@ -92,8 +92,8 @@ TEST(PhantomKnee, IsTheSameOnOneThreadAndOnMany) {
   const Phantom many = makeKneePhantom(size);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   const Phantom single = makeKneePhantom(size);
-  EXPECT_EQ(voxelsOf(many), voxelsOf(single));
-  EXPECT_EQ(labelsOf(many), labelsOf(single));
+  EXPECT_EQ(getVoxels(many), getVoxels(single));
+  EXPECT_EQ(getLabels(many), getLabels(single));
 }
 
 TEST(PhantomKnee, KeepsItsPlaceAtEverySize) {
@@ -145,7 +145,7 @@ TEST(PhantomKnee, FemoralCartilageHasAnatomicalThickness) {
       const double intact = bones.intactFemoralCartilage(surface);
       if (bones.femoralCartilage(surface) < intact)
         continue; // a lesion
-      const double thickness = thicknessAbove(bones, surface);
+      const double thickness = measureThickness(bones, surface);
       sum += thickness;
       thinnest = std::min(thinnest, thickness);
       thickest = std::max(thickest, thickness);
@@ -170,11 +170,11 @@ TEST(PhantomKnee, OneLesionReachesTheBoneAndOneGoesHalfway) {
     }
     return 0.1 * missing;
   };
-  EXPECT_EQ(thicknessAt(bones, fullThicknessLesion.x, fullThicknessLesion.angle), 0.0);
+  EXPECT_EQ(measureThickness(bones, fullThicknessLesion.x, fullThicknessLesion.angle), 0.0);
   EXPECT_NEAR(width(fullThicknessLesion), 8.0, 1.2);
 
   const Vec3 floor = bones.femoralSurface(partialThicknessLesion.x, partialThicknessLesion.angle);
-  EXPECT_NEAR(thicknessAbove(bones, floor) / bones.intactFemoralCartilage(floor), 0.5, 0.1);
+  EXPECT_NEAR(measureThickness(bones, floor) / bones.intactFemoralCartilage(floor), 0.5, 0.1);
   EXPECT_NEAR(width(partialThicknessLesion), 9.0, 1.2);
 }
 
@@ -193,11 +193,11 @@ TEST(PhantomKnee, LesionsFaceInferiorAndAnterior) {
 // condyles, beside the trochlea and behind the lesion.
 TEST(PhantomKnee, CartilageSeenFromAnteriorIsNotItsRear) {
   const Phantom& knee = smallKnee();
-  const std::uint8_t label = labelOf(knee, "FemoralCartilage");
+  const std::uint8_t label = findLabel(knee, "FemoralCartilage");
   const Grid& grid = knee.volume.grid;
   int columns = 0;
   for (std::int64_t row = 0; row < grid.size.y() * grid.size.z(); ++row) {
-    const auto begin = labelsOf(knee).begin() + row * grid.size.x(); // from anterior to posterior
+    const auto begin = getLabels(knee).begin() + row * grid.size.x(); // from anterior to posterior
     const auto end = begin + grid.size.x();
     const auto first = std::find(begin, end, label);
     if (first == end)

@@ -17,7 +17,7 @@
 namespace fenestra::PhantomSceneTests {
 namespace {
 
-std::vector<double> numbers(const pugi::xml_node& node, const char* attribute) {
+std::vector<double> readNumbers(const pugi::xml_node& node, const char* attribute) {
   std::istringstream text(node.attribute(attribute).value());
   std::vector<double> values;
   for (double x; text >> x;)
@@ -26,8 +26,8 @@ std::vector<double> numbers(const pugi::xml_node& node, const char* attribute) {
   return values;
 }
 
-Vec3 triple(const pugi::xml_node& node, const char* attribute) {
-  const std::vector<double> values = numbers(node, attribute);
+Vec3 readVec3(const pugi::xml_node& node, const char* attribute) {
+  const std::vector<double> values = readNumbers(node, attribute);
   EXPECT_EQ(values.size(), 3u) << attribute;
   return values.size() == 3 ? Vec3(values[0], values[1], values[2]) : Vec3(Vec3::Zero());
 }
@@ -57,14 +57,15 @@ struct PhantomSceneFiles : ::testing::Test {
     return node.attribute(attribute).value();
   }
 
-  void expectTexts(const char* tag,
-                   const std::vector<std::pair<const char*, const char*>>& attributes) const {
+  void expectAttributes(const char* tag,
+                        const std::vector<std::pair<const char*, const char*>>& attributes) const {
     for (const auto& [name, value] : attributes)
       EXPECT_EQ(text(node(tag), name), value) << tag << ' ' << name;
   }
 
   /// Ids in a node's `references` for one role.
-  static std::vector<std::string> referred(const pugi::xml_node& node, const std::string& role) {
+  static std::vector<std::string> readReferences(const pugi::xml_node& node,
+                                                 const std::string& role) {
     std::istringstream roles(node.attribute("references").value());
     for (std::string entry; std::getline(roles, entry, ';');)
       if (entry.starts_with(role + ":")) {
@@ -131,7 +132,7 @@ TEST_F(PhantomSceneFiles, EveryReferenceLeadsToItsNode) {
       std::vector<std::string> ids;
       for (const std::string& target : targets)
         ids.push_back(text(node(target.c_str()), "id"));
-      EXPECT_EQ(referred(node(tag.c_str()), role), ids) << tag << ' ' << role;
+      EXPECT_EQ(readReferences(node(tag.c_str()), role), ids) << tag << ' ' << role;
       ++found;
     }
   std::size_t written = 0;
@@ -154,34 +155,36 @@ TEST_F(PhantomSceneFiles, StorageNodesNameExistingFiles) {
     EXPECT_EQ(text(node(tag.c_str()), "fileName"), file.first);
     EXPECT_EQ(text(node(tag.c_str()), "defaultWriteFileExtension"), file.second);
     EXPECT_TRUE(std::filesystem::exists(folder / file.first));
-    expectTexts(tag.c_str(), {{"useCompression", "1"}, {"readState", "0"}, {"writeState", "4"}});
+    expectAttributes(tag.c_str(),
+                     {{"useCompression", "1"}, {"readState", "0"}, {"writeState", "4"}});
   }
-  expectTexts("VolumeArchetypeStorage", {{"centerImage", "0"}, {"UseOrientationFromFile", "1"}});
-  expectTexts("SegmentationStorage", {{"CropToMinimumExtent", "false"}});
-  expectTexts("MarkupsROIJsonStorage", {{"coordinateSystem", "LPS"}});
+  expectAttributes("VolumeArchetypeStorage",
+                   {{"centerImage", "0"}, {"UseOrientationFromFile", "1"}});
+  expectAttributes("SegmentationStorage", {{"CropToMinimumExtent", "false"}});
+  expectAttributes("MarkupsROIJsonStorage", {{"coordinateSystem", "LPS"}});
 }
 
 TEST_F(PhantomSceneFiles, VolumeNodeHoldsItsGridInRas) {
   const pugi::xml_node volume = node("Volume");
   const Grid& grid = phantom.volume.grid;
-  EXPECT_TRUE(isApprox(triple(volume, "spacing"), grid.spacing(), 1e-5));
-  EXPECT_TRUE(isApprox(triple(volume, "origin"), grid.indexToWorld.translation(), 1e-5));
-  const std::vector<double> directions = numbers(volume, "ijkToRASDirections");
+  EXPECT_TRUE(isApprox(readVec3(volume, "spacing"), grid.spacing(), 1e-5));
+  EXPECT_TRUE(isApprox(readVec3(volume, "origin"), grid.indexToWorld.translation(), 1e-5));
+  const std::vector<double> directions = readNumbers(volume, "ijkToRASDirections");
   EXPECT_EQ(directions, (std::vector<double>{0, 0, 1, -1, 0, 0, 0, -1, 0})) << "P, I, R in columns";
   EXPECT_EQ(text(volume, "ijkToRASDirections").find('-'),
             text(volume, "ijkToRASDirections").find("-1"));
-  expectTexts("Volume", {{"voxelVectorType", "undefined"}, {"name", "knee"}});
-  expectTexts("VolumeDisplay",
-              {{"colorNodeID", "vtkMRMLColorTableNodeGrey"}, {"applyThreshold", "0"}});
+  expectAttributes("Volume", {{"voxelVectorType", "undefined"}, {"name", "knee"}});
+  expectAttributes("VolumeDisplay",
+                   {{"colorNodeID", "vtkMRMLColorTableNodeGrey"}, {"applyThreshold", "0"}});
   EXPECT_EQ(readNumbers(node("VolumeDisplay"), "window").at(0),
             phantom.volume.maximum - phantom.volume.minimum);
 }
 
 TEST_F(PhantomSceneFiles, SegmentationIsALabelmapForOldAndNewSlicers) {
-  expectTexts("Segmentation", {{"MasterRepresentationName", "Binary labelmap"},
-                               {"SourceRepresentationName", "Binary labelmap"},
-                               {"segmentListFilterEnabled", "false"}});
-  expectTexts("SegmentationDisplay", {{"Visibility2DFill", "true"}, {"Opacity2DFill", "0.5"}});
+  expectAttributes("Segmentation", {{"MasterRepresentationName", "Binary labelmap"},
+                                    {"SourceRepresentationName", "Binary labelmap"},
+                                    {"segmentListFilterEnabled", "false"}});
+  expectAttributes("SegmentationDisplay", {{"Visibility2DFill", "true"}, {"Opacity2DFill", "0.5"}});
   std::istringstream properties(text(node("SegmentationDisplay"), "SegmentationDisplayProperties"));
   std::size_t count = 0;
   for (std::string entry; std::getline(properties, entry, '|'); ++count) {
@@ -193,11 +196,11 @@ TEST_F(PhantomSceneFiles, SegmentationIsALabelmapForOldAndNewSlicers) {
 }
 
 TEST_F(PhantomSceneFiles, RenderingIsNotCropped) {
-  expectTexts("GPURayCastVolumeRendering", {{"croppingEnabled", "0"},
-                                            {"visibility", "true"},
-                                            {"followVolumeDisplayNode", "0"},
-                                            {"ignoreVolumeDisplayNodeThreshold", "0"},
-                                            {"useSingleVolumeProperty", "0"}});
+  expectAttributes("GPURayCastVolumeRendering", {{"croppingEnabled", "0"},
+                                                 {"visibility", "true"},
+                                                 {"followVolumeDisplayNode", "0"},
+                                                 {"ignoreVolumeDisplayNodeThreshold", "0"},
+                                                 {"useSingleVolumeProperty", "0"}});
 }
 
 TEST_F(PhantomSceneFiles, PropertyIsEqualInTheSceneAndInItsFile) {
@@ -211,7 +214,7 @@ TEST_F(PhantomSceneFiles, PropertyIsEqualInTheSceneAndInItsFile) {
     EXPECT_EQ(text(property, attribute), line) << attribute;
   }
   EXPECT_EQ(file.peek(), EOF);
-  const std::vector<double> opacity = numbers(property, "scalarOpacity");
+  const std::vector<double> opacity = readNumbers(property, "scalarOpacity");
   ASSERT_EQ(opacity.size(), 2 * phantom.property.scalarOpacity.size() + 1);
   EXPECT_EQ(opacity[0], static_cast<double>(opacity.size() - 1));
   for (std::size_t i = 0; i < phantom.property.scalarOpacity.size(); ++i) {
@@ -228,15 +231,15 @@ TEST_F(PhantomSceneFiles, CameraBelongsToTheViewAndFramesTheVolume) {
   const pugi::xml_node camera = node("Camera"), view = node("View");
   EXPECT_EQ(text(camera, "singletonTag"), text(view, "layoutName"));
   EXPECT_EQ(text(view, "singletonTag"), text(view, "layoutName"));
-  expectTexts("View", {{"layoutName", "1"},
-                       {"attributes", "MappedInLayout:1"},
-                       {"raycastTechnique", "Composite"},
-                       {"renderMode", "Orthographic"}});
-  expectTexts("Camera", {{"parallelProjection", "true"},
-                         {"viewAngle", "30"},
-                         {"appliedTransform", "1 0 0 0  0 1 0 0  0 0 1 0  0 0 0 1"}});
-  const Vec3 position = triple(camera, "position"), target = triple(camera, "focalPoint");
-  const Vec3 up = triple(camera, "viewUp");
+  expectAttributes("View", {{"layoutName", "1"},
+                            {"attributes", "MappedInLayout:1"},
+                            {"raycastTechnique", "Composite"},
+                            {"renderMode", "Orthographic"}});
+  expectAttributes("Camera", {{"parallelProjection", "true"},
+                              {"viewAngle", "30"},
+                              {"appliedTransform", "1 0 0 0  0 1 0 0  0 0 1 0  0 0 0 1"}});
+  const Vec3 position = readVec3(camera, "position"), target = readVec3(camera, "focalPoint");
+  const Vec3 up = readVec3(camera, "viewUp");
   const Grid& grid = phantom.volume.grid;
   EXPECT_TRUE(isApprox(target, grid.worldCenter(), 1e-5));
   const Vec3 backward = (position - target).normalized();
@@ -245,12 +248,12 @@ TEST_F(PhantomSceneFiles, CameraBelongsToTheViewAndFramesTheVolume) {
   EXPECT_NEAR(up.dot(backward), 0.0, 1e-5);
   EXPECT_NEAR(up.norm(), 1.0, 1e-5);
   EXPECT_GT(up.z(), 0.8);
-  const double scale = numbers(camera, "parallelScale").at(0);
+  const double scale = readNumbers(camera, "parallelScale").at(0);
   EXPECT_EQ(readNumbers(view, "fieldOfView").at(0), scale); // Slicer sets the camera to this value
-  double reach = 0.0;
+  double extent = 0.0;
   for (int i = 0; i < 8; ++i) {
     const Vec3 offset = grid.worldCorner(i) - target;
-    reach = std::max({reach, std::abs(offset.dot(up)), std::abs(offset.dot(up.cross(backward)))});
+    extent = std::max({extent, std::abs(offset.dot(up)), std::abs(offset.dot(up.cross(backward)))});
     EXPECT_LT(offset.dot(backward), (position - target).norm()) << "in front of the camera";
   }
   EXPECT_NEAR(extent / scale, 1.0 / 1.05, 1e-4) << "half the viewport's height";
@@ -369,15 +372,15 @@ TEST(PhantomScene, EscapesCharactersReservedByXmlAndAddresses) {
 }
 
 TEST(PhantomScene, PropertyHoldsOpacitiesOfAMillimetre) {
-  const auto opacityOf = [](double edge) {
+  const auto readOpacity = [](double edge) {
     const std::string text = makePhantomScene(makeCubePhantom({edge, 16}), "cube");
     pugi::xml_document document;
     EXPECT_TRUE(document.load_string(text.c_str()));
-    return numbers(document.child("MRML").child("VolumeProperty"), "scalarOpacity").at(2);
+    return readNumbers(document.child("MRML").child("VolumeProperty"), "scalarOpacity").at(2);
   };
-  EXPECT_NEAR(opacityOf(100.0), 0.99, 1e-12); // the unit is 1/100 of the edge
-  EXPECT_NEAR(opacityOf(200.0), 1.0 - std::sqrt(0.01), 1e-12);
-  EXPECT_NEAR(opacityOf(50.0), 0.9999, 1e-12);
+  EXPECT_NEAR(readOpacity(100.0), 0.99, 1e-12); // the unit is 1/100 of the edge
+  EXPECT_NEAR(readOpacity(200.0), 1.0 - std::sqrt(0.01), 1e-12);
+  EXPECT_NEAR(readOpacity(50.0), 0.9999, 1e-12);
 }
 
 } // namespace

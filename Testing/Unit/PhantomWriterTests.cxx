@@ -41,14 +41,14 @@ std::vector<T> read(itk::NrrdImageIO& io) {
   return values;
 }
 
-std::string field(const itk::NrrdImageIO& io, const std::string& key) {
+std::string readField(const itk::NrrdImageIO& io, const std::string& key) {
   std::string value;
   itk::ExposeMetaData<std::string>(io.GetMetaDataDictionary(), key, value);
   return value;
 }
 
 /// Position of a voxel as stated in the file, converted from LPS to RAS.
-Vec3 worldOf(const itk::NrrdImageIO& io, const Vec3& index) {
+Vec3 voxelPosition(const itk::NrrdImageIO& io, const Vec3& index) {
   Vec3 lps;
   for (unsigned axis = 0; axis < 3; ++axis)
     lps[axis] = io.GetOrigin(axis);
@@ -60,10 +60,11 @@ Vec3 worldOf(const itk::NrrdImageIO& io, const Vec3& index) {
 
 TEST_F(PhantomFiles, VolumeRoundTripsVoxelForVoxelInItsPlace) {
   const auto io = open("knee.nrrd");
-  EXPECT_EQ(field(*io, "NRRD_space"), "left-posterior-superior");
+  EXPECT_EQ(readField(*io, "NRRD_space"), "left-posterior-superior");
   for (int corner = 0; corner < 8; ++corner) {
     const Vec3 index = Box{Vec3::Zero(), phantom.volume.grid.size.cast<double>()}.corner(corner);
-    EXPECT_TRUE(isApprox(worldOf(*io, index), phantom.volume.grid.indexToWorld * index, 1e-9));
+    EXPECT_TRUE(
+        isApprox(voxelPosition(*io, index), phantom.volume.grid.indexToWorld * index, 1e-9));
   }
   EXPECT_TRUE(std::ranges::equal(read<std::int16_t>(*io),
                                  std::get<LargeArray<std::int16_t>>(phantom.volume.voxels)));
@@ -73,37 +74,37 @@ TEST_F(PhantomFiles, SegmentationHasSlicersFieldsForEverySegment) {
   const auto io = open("knee.seg.nrrd");
   const std::vector<std::uint8_t> labels = read<std::uint8_t>(*io);
   EXPECT_EQ(labels, phantom.labels.layers.at(0));
-  EXPECT_TRUE(
-      isApprox(worldOf(*io, {1, 2, 3}), phantom.volume.grid.indexToWorld * Vec3(1, 2, 3), 1e-9));
-  EXPECT_EQ(field(*io, "Segmentation_MasterRepresentation"), "Binary labelmap");
+  EXPECT_TRUE(isApprox(voxelPosition(*io, {1, 2, 3}),
+                       phantom.volume.grid.indexToWorld * Vec3(1, 2, 3), 1e-9));
+  EXPECT_EQ(readField(*io, "Segmentation_MasterRepresentation"), "Binary labelmap");
   for (std::size_t i = 0; i < phantom.segments.size(); ++i) {
     const std::string prefix = "Segment" + std::to_string(i) + "_";
-    EXPECT_EQ(field(*io, prefix + "ID"), phantom.segments[i].id);
-    EXPECT_EQ(field(*io, prefix + "Name"), phantom.segments[i].name);
-    EXPECT_EQ(field(*io, prefix + "LabelValue"), std::to_string(phantom.segments[i].label));
-    EXPECT_EQ(field(*io, prefix + "Layer"), "0");
-    EXPECT_FALSE(field(*io, prefix + "Tags").empty());
+    EXPECT_EQ(readField(*io, prefix + "ID"), phantom.segments[i].id);
+    EXPECT_EQ(readField(*io, prefix + "Name"), phantom.segments[i].name);
+    EXPECT_EQ(readField(*io, prefix + "LabelValue"), std::to_string(phantom.segments[i].label));
+    EXPECT_EQ(readField(*io, prefix + "Layer"), "0");
+    EXPECT_FALSE(readField(*io, prefix + "Tags").empty());
   }
-  EXPECT_EQ(field(*io, "Segment" + std::to_string(phantom.segments.size()) + "_ID"), "");
+  EXPECT_EQ(readField(*io, "Segment" + std::to_string(phantom.segments.size()) + "_ID"), "");
 }
 
 // Slicer crops a whole layer to the extent of its first segment.
 TEST_F(PhantomFiles, ExtentOfASegmentHoldsItsLayer) {
-  const std::string first = field(*open("knee.seg.nrrd"), "Segment0_Extent");
-  EXPECT_EQ(field(*open("knee.seg.nrrd"), "Segment3_Extent"), first);
+  const std::string first = readField(*open("knee.seg.nrrd"), "Segment0_Extent");
+  EXPECT_EQ(readField(*open("knee.seg.nrrd"), "Segment3_Extent"), first);
   std::istringstream text(first);
   std::array<std::int64_t, 6> extent;
   for (std::int64_t& value : extent)
     text >> value;
-  Size3 held[2] = {phantom.volume.grid.size, Size3::Zero()}; // first and last
-  const auto hold = [&held](const Size3& voxel) {
-    held[0] = held[0].cwiseMin(voxel);
-    held[1] = held[1].cwiseMax(voxel);
+  Size3 bounds[2] = {phantom.volume.grid.size, Size3::Zero()}; // first and last
+  const auto extend = [&bounds](const Size3& voxel) {
+    bounds[0] = bounds[0].cwiseMin(voxel);
+    bounds[1] = bounds[1].cwiseMax(voxel);
   };
   const Size3& size = phantom.volume.grid.size;
   for (std::int64_t at = 0; at < size.prod(); ++at)
     if (phantom.labels.layers[0][static_cast<std::size_t>(at)] != 0)
-      hold({at % size.x(), at / size.x() % size.y(), at / (size.x() * size.y())});
+      extend({at % size.x(), at / size.x() % size.y(), at / (size.x() * size.y())});
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_EQ(extent[2 * static_cast<std::size_t>(axis)], bounds[0][axis]);
     EXPECT_EQ(extent[2 * static_cast<std::size_t>(axis) + 1], bounds[1][axis]);
@@ -134,20 +135,20 @@ TEST_F(PhantomFiles, OnlySevenFilesAreLeft) {
   EXPECT_EQ(count, 7u);
 }
 
-std::string contentOf(const std::filesystem::path& path) {
+std::string readContent(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
 /// Removes the marks, which earlier versions did not write.
-void removeMarks(const std::filesystem::path& folder) {
+void removeTags(const std::filesystem::path& folder) {
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    std::string text = contentOf(entry.path());
-    const std::size_t mark = text.find("Written by Fenestra");
-    if (mark == std::string::npos)
+    std::string text = readContent(entry.path());
+    const std::size_t tag = text.find("Written by Fenestra");
+    if (tag == std::string::npos)
       continue;
-    const std::size_t line = text.rfind('\n', mark) + 1;
-    text.erase(line, text.find('\n', mark) + 1 - line);
+    const std::size_t line = text.rfind('\n', tag) + 1;
+    text.erase(line, text.find('\n', tag) + 1 - line);
     std::ofstream(entry.path(), std::ios::binary) << text;
   }
 }
@@ -156,14 +157,14 @@ TEST_F(PhantomFiles, FilesOfEarlierPhantomsAreReplaced) {
   writePhantom(phantom, folder, "knee");
   writePhantom(makeKneePhantom({24, 28, 16}), folder, "knee"); // recognised by the marks
   writePhantom(phantom, folder, "knee");
-  removeMarks(folder);
+  removeTags(folder);
   writePhantom(phantom, folder, "knee"); // recognised by volume and scene
 }
 
 TEST_F(PhantomFiles, EditedFilesAreNotReplaced) {
   for (const char* name : {"knee.vp.json", "knee-roi.mrk.json", "knee.mrml"}) {
     writePhantom(phantom, folder, "knee");
-    const std::string edited = contentOf(folder / name) + "\n";
+    const std::string edited = readContent(folder / name) + "\n";
     std::ofstream(folder / name, std::ios::binary) << edited;
     EXPECT_THROW(writePhantom(phantom, folder, "knee"), Error) << name;
     EXPECT_EQ(readContent(folder / name), edited);

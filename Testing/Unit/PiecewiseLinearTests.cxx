@@ -14,7 +14,7 @@ ScalarFunction::Knot knot(double s, double y) {
 }
 
 /// Value by definition: linear search.
-double plain(const Knots& knots, double s) {
+double evalReference(const Knots& knots, double s) {
   if (s < knots.front().position)
     return knots.front().value.value();
   for (std::size_t i = knots.size() - 1; i > 0; --i)
@@ -43,7 +43,7 @@ TEST(PiecewiseLinear, EqualsItsDefinitionOnRandomKnots) {
     for (int i = 0; i < 500 && count > 1; ++i) {
       const double x = i < count ? knots[static_cast<std::size_t>(i)].position
                                  : -12.0 + random.uniform() * (s + 14.0);
-      ASSERT_NEAR(f(x).value(), plain(knots, x), 1e-12) << "at " << x;
+      ASSERT_NEAR(f(x).value(), evalReference(knots, x), 1e-12) << "at " << x;
     }
   }
 }

@@ -10,7 +10,7 @@
 namespace fenestra::PresetReaderTests {
 namespace {
 
-using Texts = std::vector<std::string>;
+using Strings = std::vector<std::string>;
 
 TEST(PresetReader, ReadsEveryField) {
   const OrganPreset preset = parsePreset(
@@ -24,10 +24,10 @@ TEST(PresetReader, ReadsEveryField) {
   EXPECT_EQ(preset.modality, Modality::ct);
   EXPECT_EQ(preset.focus.names, std::vector<NamePattern>{"spleen"});
   EXPECT_EQ(preset.focus.except, std::vector<NamePattern>{"accessory"});
-  EXPECT_EQ(preset.focus.codes, Texts{"SCT^78961009"});
-  EXPECT_EQ(preset.before, Texts{"liver"});
+  EXPECT_EQ(preset.focus.codes, Strings{"SCT^78961009"});
+  EXPECT_EQ(preset.before, Strings{"liver"});
   EXPECT_EQ(preset.tested, "no");
-  const std::vector<std::pair<std::string, std::string>> flags = {
+  const std::vector<std::pair<std::string, std::string>> options = {
       {"background", "0.5,1,0"},
       {"density", "2.5"},
       {"transfer", R"({"albedo":[[0,1,1,1]],"extinction":[[0,1]]})"},
@@ -107,10 +107,10 @@ TEST(PresetReader, ReadsEveryBuiltInPreset) {
     EXPECT_FALSE(preset.tested.empty());
     for (const std::string& other : preset.before)
       EXPECT_FALSE(findResource("presets/" + other + ".json").empty()) << other;
-    for (const auto& [flag, value] : preset.options)
-      if (flag == "transfer") {
+    for (const auto& [option, value] : preset.options)
+      if (option == "transfer") {
         // Scalars of MR and ultrasound are unknown in advance.
-        const TransferLook look =
+        const TransferLook transfer =
             parseTransferLook(findResource("transfer/" + value + ".json"), value);
         EXPECT_EQ(look.isRelative, preset.modality != Modality::ct);
       }

@@ -8,19 +8,19 @@
 namespace fenestra::RealSegmentationsTests {
 namespace {
 
-std::filesystem::path data(const std::string& name) {
+std::filesystem::path findData(const std::string& name) {
   return std::filesystem::path(FENESTRA_DATA) / name;
 }
 
 TEST(RealSegmentations, SegmentsAndLayersAreRead) {
-  if (!std::filesystem::exists(data("slicerio_segnrrd")))
+  if (!std::filesystem::exists(findData("slicerio_segnrrd")))
     GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
-  const Grid chest = readVolume(data("slicerio_segnrrd/CTChest4.nrrd")).grid;
-  const Segmentation single = readSegmentation(data("slicerio_segnrrd/Segmentation.seg.nrrd"));
+  const Grid chest = readVolume(findData("slicerio_segnrrd/CTChest4.nrrd")).grid;
+  const Segmentation single = readSegmentation(findData("slicerio_segnrrd/Segmentation.seg.nrrd"));
   EXPECT_EQ(single.segments().size(), 7u);
   EXPECT_GT(single.makeFocusMask({"ribs"}, chest).count, 1000);
   const Segmentation layered =
-      readSegmentation(data("slicerio_segnrrd/SegmentationOverlapping.seg.nrrd"));
+      readSegmentation(findData("slicerio_segnrrd/SegmentationOverlapping.seg.nrrd"));
   ASSERT_EQ(layered.segments().size(), 8u);
   EXPECT_EQ(layered.makeFocusMask({"ribs"}, chest).count,
             single.makeFocusMask({"ribs"}, chest).count);
@@ -29,11 +29,11 @@ TEST(RealSegmentations, SegmentsAndLayersAreRead) {
   EXPECT_GE(inSecondLayer, 1);
   for (const SegmentInfo& s : layered.segments())
     EXPECT_GT(layered.makeFocusMask({s.id}, chest).count, 0) << s.name;
-  const Segmentation knee = readSegmentation(data("spl_knee_atlas_labels/seg.nrrd"));
+  const Segmentation knee = readSegmentation(findData("spl_knee_atlas_labels/seg.nrrd"));
   EXPECT_EQ(knee.segments().size(), 49u);
   EXPECT_GT(knee.makeFocusMask({knee.segments()[0].id}, knee.grid()).count, 0);
   const Segmentation legacy = readSegmentation(
-      data("slicer_scenes/slicerrt_scenes/EclipseProstate_Expanded_5_5_5_Bladder.seg.nrrd"));
+      findData("slicer_scenes/slicerrt_scenes/EclipseProstate_Expanded_5_5_5_Bladder.seg.nrrd"));
   EXPECT_EQ(legacy.segments().at(0).name, "Expanded_5_5_5_Bladder");
   EXPECT_EQ(legacy.makeFocusMask({"Expanded_5_5_5_Bladder"}, legacy.grid()).count, 84024);
 }
@@ -41,7 +41,7 @@ TEST(RealSegmentations, SegmentsAndLayersAreRead) {
 /// Oldest format, against the surfaces of the same patient (EclipseProstate_Structures.seg, RAS):
 /// the bladder expanded by 5 mm, and its union with the target volume.
 TEST(RealSegmentations, OldFormatLiesAtTheSurfacesOfThePatient) {
-  const std::filesystem::path folder = data("slicer_scenes/slicerrt_scenes");
+  const std::filesystem::path folder = findData("slicer_scenes/slicerrt_scenes");
   if (!std::filesystem::exists(folder))
     GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
   const Box bladder{Vec3(-24.8, -16.8, -60.0), Vec3(31.3, 55.6, -10.0)};

@@ -10,10 +10,10 @@ namespace {
 TEST(SegmentChoice, PrefersIdsToNamesToValues) {
   const TemporaryFolder folder;
   FileGeometry geometry;
-  describe(geometry, 0, "2", "first", "1", "0");
-  describe(geometry, 1, "first", "3", "2", "0");
-  describe(geometry, 2, "c", "twin", "3", "0");
-  describe(geometry, 3, "d", "twin", "4", "0");
+  addSegment(geometry, 0, "2", "first", "1", "0");
+  addSegment(geometry, 1, "first", "3", "2", "0");
+  addSegment(geometry, 2, "c", "twin", "3", "0");
+  addSegment(geometry, 3, "d", "twin", "4", "0");
   std::vector<std::uint8_t> labels(24, 0);
   for (std::size_t i = 0; i < 10; ++i) // 1 once, 2 twice, 3 three times, 4 four times
     labels[i] = static_cast<std::uint8_t>(i < 1 ? 1 : i < 3 ? 2 : i < 6 ? 3 : 4);
@@ -33,7 +33,7 @@ TEST(SegmentChoice, RefusesEmptyFocusAndListsTwelveSegments) {
   const TemporaryFolder folder;
   FileGeometry geometry;
   for (int n = 0; n < 60; ++n)
-    describe(geometry, n, "id" + std::to_string(n), "name\nof two lines", "7", "0");
+    addSegment(geometry, n, "id" + std::to_string(n), "name\nof two lines", "7", "0");
   writeFile(folder / "s.seg.nrrd", std::vector<std::uint8_t>(24, 1), geometry);
   const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
   expectRefused(folder / "s.seg.nrrd", "the focus has no voxel",
@@ -46,9 +46,9 @@ TEST(SegmentChoice, RefusesEmptyFocusAndListsTwelveSegments) {
 TEST(SegmentChoice, UnknownSegmentIsAnsweredByThoseThatMayBeMeant) {
   const TemporaryFolder folder;
   FileGeometry geometry;
-  describe(geometry, 0, "a", "kidney_left", "1", "0");
-  describe(geometry, 1, "b", "kidney_right", "2", "0");
-  describe(geometry, 2, "c", "Right Lung", "3", "0");
+  addSegment(geometry, 0, "a", "kidney_left", "1", "0");
+  addSegment(geometry, 1, "b", "kidney_right", "2", "0");
+  addSegment(geometry, 2, "c", "Right Lung", "3", "0");
   writeFile(folder / "s.seg.nrrd", std::vector<std::uint8_t>(24, 1), geometry);
   const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
   const auto answer = [&](const std::string& selector, const std::string& text) {

@@ -35,9 +35,10 @@ void expectRoundTrip(const std::vector<T>& samples) {
       writeFile(path, samples, {.compress = compress});
       const Volume volume = readVolume(path);
       ASSERT_TRUE(std::holds_alternative<LargeArray<Stored>>(volume.voxels)) << name;
-      ASSERT_EQ(as<Stored>(volume).size(), samples.size());
+      ASSERT_EQ(getVoxels<Stored>(volume).size(), samples.size());
       for (std::size_t i = 0; i < samples.size(); ++i)
-        ASSERT_EQ(static_cast<double>(as<Stored>(volume)[i]), static_cast<double>(samples[i]))
+        ASSERT_EQ(static_cast<double>(getVoxels<Stored>(volume)[i]),
+                  static_cast<double>(samples[i]))
             << name;
       const auto [low, high] = std::minmax_element(samples.begin(), samples.end());
       EXPECT_EQ(volume.minimum, static_cast<double>(*low));
@@ -73,7 +74,7 @@ TEST(VolumeReader, RoundsDoublesToFloats) {
   samples[4] = -1e300;
   writeFile(folder / "v.nrrd", samples);
   const Volume volume = readVolume(folder / "v.nrrd");
-  EXPECT_EQ(as<float>(volume)[0], 0.1f);
+  EXPECT_EQ(getVoxels<float>(volume)[0], 0.1f);
   EXPECT_EQ(volume.maximum, double(std::numeric_limits<float>::max()));
   EXPECT_EQ(volume.minimum, -double(std::numeric_limits<float>::max()));
 }
@@ -410,7 +411,7 @@ TEST(VolumeReader, AppliesTheRescalingOfNifti) {
   bytes.replace(116, 4, rawBytes(std::vector<float>{intercept}));
   const Volume volume = readVolume(folder.write("scaled.nii", bytes));
   EXPECT_EQ(volume.minimum, -1000.0);
-  EXPECT_EQ(as<std::int16_t>(volume)[23], -954);
+  EXPECT_EQ(getVoxels<std::int16_t>(volume)[23], -954);
 }
 
 // ---- real data
