@@ -53,35 +53,36 @@ TileSums sumTile(const Image& image, const Estimates& estimates, std::size_t c, 
   return sums;
 }
 
-/// p-value of one channel of one pixel (see agreementProbability).
-double differenceProbability(const Estimates& a, const Estimates& b, std::size_t c, std::size_t i) {
+/// p-value of one channel of one pixel (see computeAgreement).
+double computePValue(const Estimates& a, const Estimates& b, std::size_t c, std::size_t i) {
   const double nA = a.count(i), nB = b.count(i);
   const double mean = (nA * a.mean(c, i) + nB * b.mean(c, i)) / (nA + nB);
-  const double perSample =
+  const double perSampleVariance =
       (square(nA) * a.variance(c, i) + square(nB) * b.variance(c, i)) / (nA + nB);
-  const double paths = std::min(nA, nB) * std::min(1.0, square(mean) / perSample);
-  const double t = (a.mean(c, i) - b.mean(c, i)) / std::sqrt(perSample * (1.0 / nA + 1.0 / nB));
-  return studentTail(t, paths);
+  const double dof = std::min(nA, nB) * std::min(1.0, square(mean) / perSampleVariance);
+  const double t =
+      (a.mean(c, i) - b.mean(c, i)) / std::sqrt(perSampleVariance * (1.0 / nA + 1.0 / nB));
+  return studentTail(t, dof);
 }
 
 /// The continued fraction of the incomplete beta function (DLMF 8.17.22), evaluated as Lentz does
 /// (modified: Thompson and Barnett 1986). It converges fast for x < (a + 1) / (a + b + 2).
 double betaFraction(double a, double b, double x) {
-  constexpr double tiny = 1e-300, enough = 1e-14;
-  const auto kept = [](double value) { return std::abs(value) < tiny ? tiny : value; };
-  double c = 1.0, d = 1.0 / kept(1.0 - (a + b) * x / (a + 1.0));
+  constexpr double tiny = 1e-300, tolerance = 1e-14;
+  const auto avoidZero = [](double value) { return std::abs(value) < tiny ? tiny : value; };
+  double c = 1.0, d = 1.0 / avoidZero(1.0 - (a + b) * x / (a + 1.0));
   double fraction = d;
   for (int m = 1; m <= 10000; ++m) {
     const double even = m * (b - m) * x / ((a + 2 * m - 1.0) * (a + 2 * m));
     const double odd = -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1.0));
     double step = 1.0;
     for (const double coefficient : {even, odd}) {
-      d = 1.0 / kept(1.0 + coefficient * d);
-      c = kept(1.0 + coefficient / c);
+      d = 1.0 / avoidZero(1.0 + coefficient * d);
+      c = avoidZero(1.0 + coefficient / c);
       step = c * d;
       fraction *= step;
     }
-    if (std::abs(step - 1.0) < enough)
+    if (std::abs(step - 1.0) < tolerance)
       break;
   }
   return fraction;
@@ -100,16 +101,16 @@ double regularizedBeta(double x, double y, double a, double b) {
 
 } // namespace
 
-double studentTail(double t, double freedom) {
-  if (std::isnan(t) || std::isnan(freedom))
+double studentTail(double t, double dof) {
+  if (std::isnan(t) || std::isnan(dof))
     return std::numeric_limits<double>::quiet_NaN();
   if (std::isinf(t))
     return 0.0;
-  const double sum = freedom + t * t;
-  return regularizedBeta(freedom / sum, t * t / sum, 0.5 * freedom, 0.5); // DLMF 8.17(ii)
+  const double sum = dof + t * t;
+  return regularizedBeta(dof / sum, t * t / sum, 0.5 * dof, 0.5); // DLMF 8.17(ii)
 }
 
-Image tileMeans(const Image& image, int size) {
+Image computeTileMeans(const Image& image, int size) {
   const Estimates estimates(image);
   size = std::min(size, std::max(image.width, image.height));
   Image result{(image.width + size - 1) / size, (image.height + size - 1) / size, {}, {}};
@@ -128,21 +129,21 @@ Image tileMeans(const Image& image, int size) {
   return result;
 }
 
-double agreementProbability(const Image& a, const Image& b) {
+double computeAgreement(const Image& a, const Image& b) {
   const ImagePair pair(a, b);
   const Estimates estimatesA(a), estimatesB(b);
   if (!estimatesA.samples || !estimatesB.samples)
     throw inputError("pictures", "one has no channel samples.N; compare renders with all layers");
-  double least = 1.0, count = 0.0;
+  double minP = 1.0, count = 0.0;
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < pair.pixels; ++i) {
       if (pair.isUninformative(c, i) && pair.isEqual(c, i))
         continue;
-      const double p = differenceProbability(estimatesA, estimatesB, c, i);
-      least = std::isnan(p) ? 0.0 : std::min(least, p); // NaN: exact, or not finite
+      const double p = computePValue(estimatesA, estimatesB, c, i);
+      minP = std::isnan(p) ? 0.0 : std::min(minP, p); // NaN: exact, or not finite
       ++count;
     }
-  return count == 0.0 ? 1.0 : -std::expm1(count * std::log1p(-least)); // 1 - (1 - p)^count
+  return count == 0.0 ? 1.0 : -std::expm1(count * std::log1p(-minP)); // 1 - (1 - p)^count
 }
 
 } // namespace fenestra

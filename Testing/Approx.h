@@ -7,7 +7,7 @@ namespace fenestra {
 
 template <template <typename, int> class Kind, typename T, int N>
 bool allFinite(const Tuple<Kind, T, N>& v) {
-  return std::all_of(v.begin(), v.end(), [](T part) { return std::isfinite(part); });
+  return std::all_of(v.begin(), v.end(), [](T x) { return std::isfinite(x); });
 }
 inline bool allFinite(const Mat3& m) {
   return allFinite(m.col(0)) && allFinite(m.col(1)) && allFinite(m.col(2));
@@ -17,11 +17,11 @@ inline bool allFinite(const Affine& map) {
 }
 
 /// Root of the sum of squares.
-inline double normOf(const Mat3& m) {
+inline double frobeniusNorm(const Mat3& m) {
   return std::hypot(m.col(0).norm(), m.col(1).norm(), m.col(2).norm());
 }
-inline double normOf(const Affine& map) {
-  return std::hypot(normOf(map.linear()), map.translation().norm());
+inline double frobeniusNorm(const Affine& map) {
+  return std::hypot(frobeniusNorm(map.linear()), map.translation().norm());
 }
 
 /// True if |a - b| <= relative * min(|a|, |b|).
@@ -36,11 +36,11 @@ bool isApprox(const Tuple<Kind, T, N>& a, const Kind<T, N>& b, T relative = T(1e
   return difference <= relative * relative * std::min(norm, other);
 }
 inline bool isApprox(const Mat3& a, const Mat3& b, double relative = 1e-12) {
-  return normOf(a - b) <= relative * std::min(normOf(a), normOf(b));
+  return frobeniusNorm(a - b) <= relative * std::min(frobeniusNorm(a), frobeniusNorm(b));
 }
 inline bool isApprox(const Affine& a, const Affine& b, double relative = 1e-12) {
   const Affine difference(a.linear() - b.linear(), a.translation() - b.translation());
-  return normOf(difference) <= relative * std::min(normOf(a), normOf(b));
+  return frobeniusNorm(difference) <= relative * std::min(frobeniusNorm(a), frobeniusNorm(b));
 }
 
 } // namespace fenestra

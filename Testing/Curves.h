@@ -7,7 +7,7 @@
 namespace fenestra {
 
 template <typename Value>
-Value curveAt(const std::vector<CurveNode<Value>>& nodes, double x) {
+Value interpolateCurve(const std::vector<CurveNode<Value>>& nodes, double x) {
   const auto next = std::ranges::upper_bound(nodes, x, {}, &CurveNode<Value>::x);
   if (next == nodes.begin() || next == nodes.end())
     return next == nodes.begin() ? nodes.front().value : nodes.back().value;

@@ -8,17 +8,17 @@
 namespace fenestra::testing {
 
 /// Pins the instruction set of that number, the best first; skips where the machine has fewer.
-class OnInstructionSet : public ::testing::TestWithParam<std::size_t> {
+class InstructionSetTest : public ::testing::TestWithParam<std::size_t> {
 protected:
   void SetUp() override {
-    const std::vector<std::string> known = instructionSets();
-    if (GetParam() >= known.size())
+    const std::vector<std::string> available = instructionSets();
+    if (GetParam() >= available.size())
       GTEST_SKIP() << "this machine has fewer";
-    useInstructionSet(known[GetParam()]);
+    useInstructionSet(available[GetParam()]);
   }
   void TearDown() override { useInstructionSet(instructionSets().front()); }
 };
 
-inline const auto eachInstructionSet = ::testing::Range<std::size_t>(0, 4);
+inline const auto allInstructionSets = ::testing::Range<std::size_t>(0, 4);
 
 } // namespace fenestra::testing

@@ -15,13 +15,13 @@ struct SphereBins {
   static constexpr int columns = 16; ///< equal in phi
   static constexpr int count = rows * columns;
 
-  static int of(const Vec3& d) {
+  static int index(const Vec3& d) {
     const int row = std::min(static_cast<int>(0.5 * (1.0 - d.z()) * rows), rows - 1);
     const double phi = std::atan2(d.y(), d.x()) / (2.0 * pi) + 0.5;
     return std::min(static_cast<int>(phi * columns), columns - 1) + columns * std::max(row, 0);
   }
 
-  static Vec3 direction(double row, double column) {
+  static Vec3 toDirection(double row, double column) {
     const double z = 1.0 - 2.0 * row / rows;
     const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
     const double phi = 2.0 * pi * (column / columns - 0.5);
@@ -31,22 +31,23 @@ struct SphereBins {
 
 /// Integral of pdf(direction) over each bin: midpoint rule on `fine` x `fine` points.
 template <typename Pdf>
-std::vector<double> binIntegrals(Pdf&& pdf, int fine) {
+std::vector<double> integrateBins(Pdf&& pdf, int resolution) {
   std::vector<double> expected(SphereBins::count, 0.0);
-  const double cell = 4.0 * pi / (SphereBins::count * fine * fine);
+  const double pointArea = 4.0 * pi / (SphereBins::count * resolution * resolution);
   for (int bin = 0; bin < SphereBins::count; ++bin)
-    for (int i = 0; i < fine; ++i)
-      for (int j = 0; j < fine; ++j)
+    for (int i = 0; i < resolution; ++i)
+      for (int j = 0; j < resolution; ++j)
         expected[static_cast<std::size_t>(bin)] +=
-            cell * pdf(SphereBins::direction(bin / SphereBins::columns + (i + 0.5) / fine,
-                                             bin % SphereBins::columns + (j + 0.5) / fine));
+            pointArea *
+            pdf(SphereBins::toDirection(bin / SphereBins::columns + (i + 0.5) / resolution,
+                                        bin % SphereBins::columns + (j + 0.5) / resolution));
   return expected;
 }
 
 /// Pearson's chi-squared of observed against expected counts (bins with fewer than 10 expected are
 /// pooled), as a standard normal deviate (Wilson and Hilferty 1931).
-inline double chiSquaredDeviate(const std::vector<double>& observed,
-                                const std::vector<double>& expected) {
+inline double chiSquaredZScore(const std::vector<double>& observed,
+                               const std::vector<double>& expected) {
   double chi2 = 0.0;
   double pooledObserved = 0.0;
   double pooledExpected = 0.0;
@@ -64,16 +65,16 @@ inline double chiSquaredDeviate(const std::vector<double>& observed,
     chi2 += std::pow(pooledObserved - pooledExpected, 2.0) / pooledExpected;
     ++bins;
   }
-  const double freedom = std::max(1, bins - 1);
-  const double a = 2.0 / (9.0 * freedom);
-  return (std::cbrt(chi2 / freedom) - (1.0 - a)) / std::sqrt(a);
+  const double dof = std::max(1, bins - 1);
+  const double a = 2.0 / (9.0 * dof);
+  return (std::cbrt(chi2 / dof) - (1.0 - a)) / std::sqrt(a);
 }
 
 /// `draw(random)`: a direction, or zero if the draw ended without one. `pdf`: per steradian,
 /// integrates to `mass` (1 if every draw has a direction).
-template <typename Draw, typename Pdf>
-void expectSamplingMatchesPdf(Draw&& draw, Pdf&& pdf, double mass = 1.0, int fine = 60) {
-  const std::vector<double> integrals = binIntegrals(pdf, fine);
+template <typename Sample, typename Pdf>
+void expectSamplingMatchesPdf(Sample&& sample, Pdf&& pdf, double mass = 1.0, int resolution = 60) {
+  const std::vector<double> integrals = integrateBins(pdf, resolution);
   double total = 0.0;
   for (const double x : integrals)
     total += x;
@@ -86,11 +87,11 @@ void expectSamplingMatchesPdf(Draw&& draw, Pdf&& pdf, double mass = 1.0, int fin
     x *= n;
   for (int i = 0; i < n; ++i) {
     Random random(31, static_cast<std::uint64_t>(i), 0);
-    const Vec3 d = draw(random);
+    const Vec3 d = sample(random);
     if (d.squaredNorm() > 0.0)
-      observed[static_cast<std::size_t>(SphereBins::of(d))] += 1.0;
+      observed[static_cast<std::size_t>(SphereBins::index(d))] += 1.0;
   }
-  EXPECT_LT(chiSquaredDeviate(observed, expected), 4.5);
+  EXPECT_LT(chiSquaredZScore(observed, expected), 4.5);
 }
 
 } // namespace fenestra::testing

@@ -22,43 +22,44 @@ inline bool isLongRun() {
   return isLong;
 }
 
-inline std::optional<std::uint64_t> numberFromEnvironment(const char* name) {
+inline std::optional<std::uint64_t> readEnvironmentNumber(const char* name) {
   const char* text = std::getenv(name);
   return text ? std::optional<std::uint64_t>(std::stoull(text)) : std::nullopt;
 }
 
-inline std::uint64_t brevity() {
-  static const std::uint64_t brevity =
-      std::max<std::uint64_t>(1, numberFromEnvironment("FENESTRA_BRIEF").value_or(1));
-  return brevity;
+inline std::uint64_t sampleDivisor() {
+  static const std::uint64_t sampleDivisor =
+      std::max<std::uint64_t>(1, readEnvironmentNumber("FENESTRA_BRIEF").value_or(1));
+  return sampleDivisor;
 }
 
 /// Sample count of a test that has no long version.
 template <typename Count>
-Count briefly(Count samples) {
-  const auto whole = static_cast<std::uint64_t>(samples);
-  return static_cast<Count>((whole + brevity() - 1) / brevity());
+Count reduceSamples(Count samples) {
+  const auto count = static_cast<std::uint64_t>(samples);
+  return static_cast<Count>((count + sampleDivisor() - 1) / sampleDivisor());
 }
 
 /// Sample count of a test: 16 times as many in the long version, for a quarter of the error.
 template <typename Count>
-Count budget(Count samples) {
-  return static_cast<Count>(briefly(static_cast<std::uint64_t>(samples) * (isLongRun() ? 16 : 1)));
+Count scaleSamples(Count samples) {
+  return static_cast<Count>(
+      reduceSamples(static_cast<std::uint64_t>(samples) * (isLongRun() ? 16 : 1)));
 }
 
 /// Greatest standard error with which a test still finds errors; wider in a brief run.
-inline double allowedError(double error) {
-  return error * std::sqrt(static_cast<double>(brevity()));
+inline double relaxError(double error) {
+  return error * std::sqrt(static_cast<double>(sampleDivisor()));
 }
 
 /// FENESTRA_SEED; 1 if unset.
 inline std::uint64_t seedBase() {
-  static const std::uint64_t base = numberFromEnvironment("FENESTRA_SEED").value_or(1);
+  static const std::uint64_t base = readEnvironmentNumber("FENESTRA_SEED").value_or(1);
   return base;
 }
 
 /// Seed of a test, shifted by the seed base.
-inline std::uint64_t seeded(std::uint64_t seed) {
+inline std::uint64_t shiftSeed(std::uint64_t seed) {
   return seed + 1000003 * (seedBase() - 1);
 }
 

@@ -29,7 +29,7 @@ public:
       system[i][n + 2] = system[n + 2][i] = Scalar(m_sites[i].y());
       system[i][n + 3] = Scalar(values[i]);
     }
-    m_solution = solved(std::move(system));
+    m_solution = solve(std::move(system));
   }
 
   /// f(x), computed in Scalar and rounded at the end.
@@ -46,7 +46,7 @@ private:
   using Row = std::vector<Scalar>;
 
   /// Solution of A x = b; each row holds a row of A, then its entry of b.
-  static Row solved(std::vector<Row> rows) {
+  static Row solve(std::vector<Row> rows) {
     using std::abs;
     const std::size_t count = rows.size();
     for (std::size_t k = 0; k < count; ++k) {

@@ -7,7 +7,7 @@ namespace fenestra::testing_clipping {
 
 using Solver = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
 
-double conditionNumber(const ThinPlateSpline& spline) {
+double computeConditionNumber(const ThinPlateSpline& spline) {
   const auto n = std::ssize(spline.terms());
   if (n == 0)
     return 1.0;
@@ -29,7 +29,7 @@ double conditionNumber(const ThinPlateSpline& spline) {
   return spectrum.eigenvalues().maxCoeff() / spectrum.eigenvalues().minCoeff();
 }
 
-double conditionByEigenvectors(const std::vector<Vec2>& sites, double lambda) {
+double computeConditionByEigenvectors(const std::vector<Vec2>& sites, double lambda) {
   const auto n = std::ssize(sites);
   Vec2 center = Vec2::Zero();
   for (const Vec2& site : sites)

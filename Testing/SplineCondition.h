@@ -7,10 +7,10 @@ namespace fenestra::testing_clipping {
 
 /// Condition number in the 2-norm of K' + lambda / s^2 I on the null space of P'; 1 without a
 /// system.
-double conditionNumber(const ThinPlateSpline& spline);
+double computeConditionNumber(const ThinPlateSpline& spline);
 
 /// Condition number from independently rebuilt matrices, with another basis of the null space:
 /// eigenvectors of P P'. Sites in the xy plane, mm.
-double conditionByEigenvectors(const std::vector<Vec2>& sites, double lambda);
+double computeConditionByEigenvectors(const std::vector<Vec2>& sites, double lambda);
 
 } // namespace fenestra::testing_clipping

@@ -21,7 +21,7 @@ inline const bool instructionSetIsPinned = [] {
 }();
 
 /// A grid centred at the origin, axes along RAS.
-inline Grid centredGrid(const Size3& size, const Vec3& spacing) {
+inline Grid makeCenteredGrid(const Size3& size, const Vec3& spacing) {
   Affine map = Affine::Identity();
   map.linear() = Mat3::Diagonal(spacing);
   map.translation() = -0.5 * spacing.cwiseProduct((size.array() - 1).matrix().cast<double>());
@@ -42,12 +42,12 @@ Volume makeVolume(const Grid& grid, Function&& value) {
   return volume;
 }
 
-inline ScalarFunction::Knot knot(double s, double sigma_t) {
+inline ScalarFunction::Knot makeKnot(double s, double sigma_t) {
   return {s, ScalarFunction::Value(sigma_t)};
 }
 
 /// Extinction sigma_t * s (mm^-1, s: scalar) and one albedo for all scalars.
-inline TransferFunction linearTransfer(double sigma_t, const Rgb& albedo, double g = 0.0) {
+inline TransferFunction makeLinearTransfer(double sigma_t, const Rgb& albedo, double g = 0.0) {
   TransferFunction transfer{
       ScalarFunction({{0.0, ScalarFunction::Value(0.0)}, {1.0, ScalarFunction::Value(sigma_t)}}),
       ColorFunction({{0.0, albedo}})};
@@ -56,7 +56,7 @@ inline TransferFunction linearTransfer(double sigma_t, const Rgb& albedo, double
 }
 
 /// Shares of parts that all lie in memory.
-inline LabelWeights sharesOf(const std::vector<LabelWeights::Part>& parts) {
+inline LabelWeights makeLabelWeights(const std::vector<LabelWeights::Part>& parts) {
   return {parts.size(), [&](std::size_t i) { return parts[i]; }};
 }
 
@@ -75,20 +75,21 @@ struct TestScene {
 
   /// work(SceneView).
   template <typename Work>
-  auto with(Work&& work) const {
+  auto visitView(Work&& work) const {
     const Camera camera(pose, width, height);
     const LightSet lightSet(lights, volume.grid, camera);
     const MinMaxGrid ranges(volume, MajorantGrid::requiredPadding(transfer));
-    const ContextStyle* const styled = style ? &*style : nullptr;
-    const Mixture* const mixed = mixture ? &*mixture : nullptr;
-    const MajorantGrid majorants(volume.grid, ranges, transfer, clip, styled, mixed);
-    return work(SceneView{volume, transfer, majorants, lightSet, camera, clip, crop, styled,
-                          tint ? &*tint : nullptr, mixed});
+    const ContextStyle* const contextStyle = style ? &*style : nullptr;
+    const Mixture* const sceneMixture = mixture ? &*mixture : nullptr;
+    const MajorantGrid majorants(volume.grid, ranges, transfer, clip, contextStyle, sceneMixture);
+    return work(SceneView{volume, transfer, majorants, lightSet, camera, clip, crop, contextStyle,
+                          tint ? &*tint : nullptr, sceneMixture});
   }
 
   RenderResult render(const RenderSettings& settings) const {
     RenderMonitor monitor;
-    return with([&](const SceneView& scene) { return fenestra::render(scene, settings, monitor); });
+    return visitView(
+        [&](const SceneView& scene) { return fenestra::render(scene, settings, monitor); });
   }
 };
 
@@ -98,7 +99,7 @@ struct Estimate {
   double mean = 0.0, error = 0.0;
 };
 
-inline Estimate imageEstimate(const Film& film) {
+inline Estimate estimateMean(const Film& film) {
   Estimate estimate;
   double variance = 0.0;
   for (const PixelSums& pixel : film.pixels()) {

@@ -35,7 +35,7 @@ private:
   std::filesystem::path m_path;
 };
 
-inline std::string bytesOf(const std::filesystem::path& path) {
+inline std::string readBytes(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
 }

@@ -42,7 +42,8 @@ TEST_P(UnbiasedMode, PictureAgreesWithReadableMode) {
   const Image image = renderMode(GetParam(), scene, options, 96, 1);
   const Image reference = renderMode("readable", scene, options, 96, 2);
   for (const int tile : {8, 32})
-    EXPECT_GT(agreementProbability(tileMeans(image, tile), tileMeans(reference, tile)), 1e-4);
+    EXPECT_GT(computeAgreement(computeTileMeans(image, tile), computeTileMeans(reference, tile)),
+              1e-4);
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, UnbiasedMode, ::testing::Values("product", "adaptive", "global"),
@@ -50,7 +51,8 @@ INSTANTIATE_TEST_SUITE_P(Modes, UnbiasedMode, ::testing::Values("product", "adap
 
 /// Mean of R over the picture, relative to another picture's, minus 1; and its standard error.
 std::pair<double, double> measureBias(const Image& image, const Image& reference) {
-  const Image a = tileMeans(image, image.width), b = tileMeans(reference, reference.width);
+  const Image a = computeTileMeans(image, image.width),
+              b = computeTileMeans(reference, reference.width);
   const double mean = b.find("R")->front();
   return {a.find("R")->front() / mean - 1.0,
           std::hypot(a.find("error.R")->front(), b.find("error.R")->front()) / mean};
@@ -94,9 +96,9 @@ public:
   }
 
 private:
-  Volume m_volume = testing::makeVolume(testing::centredGrid({8, 8, 8}, Vec3::Ones()),
+  Volume m_volume = testing::makeVolume(testing::makeCenteredGrid({8, 8, 8}, Vec3::Ones()),
                                         [](const Vec3&) { return 1; });
-  TransferFunction m_transfer = testing::linearTransfer(sigma_t, Rgb::Ones());
+  TransferFunction m_transfer = testing::makeLinearTransfer(sigma_t, Rgb::Ones());
   Camera m_camera{{}, 1, 1};
   Clip m_clip;
   LightSet m_lights{{}, m_volume.grid, m_camera};
@@ -206,9 +208,9 @@ TEST_F(WholeRun, ReportHasARowForEverySceneAndMode) {
   }
   EXPECT_EQ(curves[0].reference, "oracle");
   EXPECT_TRUE(std::filesystem::exists(folder / "references" / "foot.exr"));
-  EXPECT_NE(bytesOf(folder / "report" / "README.md").find("| absent | not present |"),
+  EXPECT_NE(readBytes(folder / "report" / "README.md").find("| absent | not present |"),
             std::string::npos);
-  EXPECT_TRUE(bytesOf(folder / "report" / "curves.svg").ends_with("</svg>\n"));
+  EXPECT_TRUE(readBytes(folder / "report" / "curves.svg").ends_with("</svg>\n"));
 }
 
 } // namespace

@@ -26,7 +26,8 @@ Sample measure(const Mode& mode, const PreparedScene& scene, const RenderSetting
   // The whole picture is one tile. Channels of one path are correlated: error of their mean <= mean
   // of their errors.
   const int whole = std::max(image.width, image.height);
-  const Image mean = tileMeans(image, whole), referenceMean = tileMeans(reference, whole);
+  const Image mean = computeTileMeans(image, whole),
+              referenceMean = computeTileMeans(reference, whole);
   Sample sample{seconds, compareImages(image, reference).relMse, 0.0, 0.0, 0.0};
   for (const std::string channel : {"R", "G", "B"}) {
     const double scale = 1.0 / (3.0 * referenceMean.find(channel)->front());

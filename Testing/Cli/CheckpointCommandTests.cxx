@@ -43,12 +43,12 @@ TEST_F(CheckpointCommand, MoreSamplesGoOnFromTheFilm) {
 }
 
 TEST_F(CheckpointCommand, FinishedFilmGivesThePictureAgain) {
-  const std::string film = bytesOf(folder / "a.film"), picture = bytesOf(folder / "a.exr");
+  const std::string film = readBytes(folder / "a.film"), picture = readBytes(folder / "a.exr");
   const Outcome again = keep({"--output", "a.png", "--denoise", "on"});
   EXPECT_EQ(again.status, 0) << again.err;
-  EXPECT_TRUE(bytesOf(folder / "a.film") == checkpoint);
+  EXPECT_TRUE(readBytes(folder / "a.film") == checkpoint);
   EXPECT_EQ(keep().status, 0);
-  EXPECT_TRUE(bytesOf(folder / "a.exr") == image);
+  EXPECT_TRUE(readBytes(folder / "a.exr") == image);
   EXPECT_EQ(listFiles(folder.path()), (std::set<std::string>{"a.exr", "a.film", "a.png",
                                                              "segments.seg.nrrd", "volume.nrrd"}));
 }
@@ -123,7 +123,7 @@ TEST_F(CheckpointCommand, OtherInstructionSetIsRefused) {
 }
 
 TEST_F(CheckpointCommand, DamagedFilmIsRefusedAndKept) {
-  const std::string film = bytesOf(folder / "a.film");
+  const std::string film = readBytes(folder / "a.film");
   for (const std::size_t at : {std::size_t{3}, film.size() / 2, film.size() - 2}) {
     std::string damaged = film;
     damaged[at] = static_cast<char>(damaged[at] ^ 4);
@@ -131,14 +131,14 @@ TEST_F(CheckpointCommand, DamagedFilmIsRefusedAndKept) {
     const Outcome outcome = keep();
     EXPECT_EQ(outcome.status, 3);
     EXPECT_NE(outcome.err.find("a.film: is "), std::string::npos) << outcome.err;
-    EXPECT_TRUE(bytesOf(folder / "a.film") == damaged);
+    EXPECT_TRUE(readBytes(folder / "a.film") == damaged);
   }
   folder.write("a.film", "somebody's notes");
   EXPECT_EQ(keep().status, 3);
-  EXPECT_EQ(bytesOf(folder / "a.film"), "somebody's notes");
+  EXPECT_EQ(readBytes(folder / "a.film"), "somebody's notes");
   folder.write("a.film", "");
   EXPECT_EQ(keep().status, 0);
-  EXPECT_EQ(bytesOf(folder / "a.film").size(), checkpoint.size());
+  EXPECT_EQ(readBytes(folder / "a.film").size(), checkpoint.size());
 }
 
 TEST_F(CheckpointCommand, FilmOfARunningRenderIsRefused) {

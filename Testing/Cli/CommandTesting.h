@@ -45,7 +45,7 @@ inline std::string gzipped(const std::string& bytes, const TemporaryFolder& fold
   const gzFile file = gzopen(path.c_str(), "wb");
   gzwrite(file, bytes.data(), static_cast<unsigned>(bytes.size()));
   gzclose(file);
-  const std::string result = bytesOf(path);
+  const std::string result = readBytes(path);
   std::filesystem::remove(path);
   return result;
 }
@@ -111,13 +111,13 @@ inline void expectRefused(const std::vector<ExcludedOptions>& refusals,
                           const std::filesystem::path& folder) {
   const std::set<std::string> before = filesIn(folder);
   for (const ExcludedOptions& refusal : refusals) {
-    SCOPED_TRACE(refusal.name);
+    SCOPED_TRACE(error.name);
     const Outcome outcome = run(refusal.arguments, folder);
-    EXPECT_EQ(outcome.status, refusal.status) << outcome.err;
+    EXPECT_EQ(outcome.status, error.status) << outcome.err;
     EXPECT_TRUE(outcome.err.starts_with("fenestra: ")) << outcome.err;
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
     EXPECT_TRUE(outcome.err.ends_with('\n')) << outcome.err;
-    EXPECT_NE(outcome.err.find(refusal.text), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find(error.text), std::string::npos) << outcome.err;
     EXPECT_EQ(outcome.out, "");
     EXPECT_EQ(listFiles(folder), before);
   }

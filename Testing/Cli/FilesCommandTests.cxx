@@ -194,11 +194,11 @@ TEST_F(FilesCommand, AbsoluteNamesWorkInADeletedFolder) {
            8;
   };
   EXPECT_EQ(inNowhere(there + "/volume.nrrd --output " + there + "/a.png"), 0)
-      << bytesOf(folder / "said");
+      << readBytes(folder / "said");
   EXPECT_EQ(inNowhere(there + "/volume.nrrd"), 4);
-  EXPECT_NE(bytesOf(folder / "said").find("volume.png: cannot be written: No such file"),
+  EXPECT_NE(readBytes(folder / "said").find("volume.png: cannot be written: No such file"),
             std::string::npos)
-      << bytesOf(folder / "said");
+      << readBytes(folder / "said");
 }
 
 TEST_F(FilesCommand, RefusesUnwritableOutputs) {

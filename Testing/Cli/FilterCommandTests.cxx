@@ -24,7 +24,7 @@ protected:
     const Outcome outcome = knee(arguments);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
   }
-  nlohmann::json stats() const { return nlohmann::json::parse(bytesOf(folder / "s.json")); }
+  nlohmann::json stats() const { return nlohmann::json::parse(readBytes(folder / "s.json")); }
 
   TemporaryFolder folder;
 };
@@ -65,7 +65,7 @@ TEST_F(FilterCommand, AutoFiltersPicturesForTheEyeAndSaysSo) {
   const Arguments all = {"--samples", "2",        "--output", "a.png",   "--output",
                          "a.tif",     "--output", "a.exr",    "--stats", "s.json"};
   render(all);
-  const std::string png = bytesOf(folder / "a.png"), tiff = bytesOf(folder / "a.tif");
+  const std::string png = readBytes(folder / "a.png"), tiff = readBytes(folder / "a.tif");
   EXPECT_NE(png.find("filtered for the eye"), std::string::npos);
   EXPECT_NE(tiff.find("filtered for the eye"), std::string::npos);
   const Image exr = readImage(folder / "a.exr");
@@ -77,8 +77,8 @@ TEST_F(FilterCommand, AutoFiltersPicturesForTheEyeAndSaysSo) {
   Arguments off = all;
   off.insert(off.end(), {"--denoise", "off"});
   render(off);
-  EXPECT_EQ(bytesOf(folder / "a.png").find("filtered for the eye"), std::string::npos);
-  EXPECT_NE(bytesOf(folder / "a.png"), png);
+  EXPECT_EQ(readBytes(folder / "a.png").find("filtered for the eye"), std::string::npos);
+  EXPECT_NE(readBytes(folder / "a.png"), png);
   EXPECT_FALSE(stats().contains("noiseFiltered"));
   EXPECT_EQ(stats()["seconds"]["features"], 0.0);
 }

@@ -40,7 +40,7 @@ void expectOnlyColors(Arguments arguments, const std::string& materials = "libra
       EXPECT_NE(tinted.channels.at(name), plane) << name << " is not tinted";
     else
       EXPECT_EQ(tinted.channels.at(name), plane) << name;
-  const auto stats = nlohmann::json::parse(bytesOf(folder / "s.json"));
+  const auto stats = nlohmann::json::parse(readBytes(folder / "s.json"));
   EXPECT_GE(stats.at("/labels/components"_json_pointer), 3);
   EXPECT_GT(stats.at("/labels/pureFraction"_json_pointer), 0.1);
   EXPECT_GT(stats.at("/labels/bytes"_json_pointer), 0);
@@ -164,7 +164,7 @@ TEST_F(MaterialsCommand, ContextOfAFileIsAppliedAroundAFocus) {
     const Outcome outcome = run(arguments, folder.path());
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_NE(outcome.choices.find("; contrast: "), std::string::npos) << outcome.choices;
-    return nlohmann::json::parse(bytesOf(folder / "s.json")).at("contrast");
+    return nlohmann::json::parse(readBytes(folder / "s.json")).at("contrast");
   };
   for (const char* file : {"given.json", "contrast.json"}) {
     EXPECT_EQ(told(file).at("contextSaturation"), 0.7) << file;

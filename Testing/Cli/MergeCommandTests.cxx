@@ -69,7 +69,7 @@ TEST_F(MergeCommand, PartsInAnyOrderGiveThePictureOfOneMachine) {
     ASSERT_EQ(merged.status, 0) << merged.err;
     expectSamePicture(folder / "once.exr", folder / "merged.exr");
     expectSamePicture(folder / "once.png", folder / "merged.png");
-    EXPECT_TRUE(bytesOf(folder / "once.ply") == bytesOf(folder / "merged.ply"));
+    EXPECT_TRUE(readBytes(folder / "once.ply") == readBytes(folder / "merged.ply"));
     EXPECT_EQ(readImage(folder / "merged.exr").header.at("command").find("fenestra volume.nrrd"),
               0U);
   }
@@ -102,7 +102,7 @@ TEST_F(MergeCommand, PartsThatDoNotBelongTogetherAreNamed) {
   const Arguments films = parts(3);
   const std::string foreign = part(1, 2);
   std::filesystem::copy(folder / films[1], folder / "copy.film");
-  folder.write("cut.film", bytesOf(folder / films[1]).substr(0, 5000));
+  folder.write("cut.film", readBytes(folder / films[1]).substr(0, 5000));
   const auto other = [&](const char* name, const Arguments& more) {
     std::filesystem::rename(folder / films[1], folder / "kept.film");
     part(2, 3, more);

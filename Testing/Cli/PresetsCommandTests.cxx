@@ -53,7 +53,7 @@ TEST(PresetsCommand, PresetSetsFocusLookViewAndClip) {
   const Image byPreset = picture();
   EXPECT_EQ(byPreset.header.at("preset"), "knee-cartilage");
   EXPECT_EQ(byPreset.header.at("look"), "mr-knee");
-  const auto stats = nlohmann::json::parse(bytesOf(kneeFolder() / "s.json"));
+  const auto stats = nlohmann::json::parse(readBytes(kneeFolder() / "s.json"));
   EXPECT_EQ(stats.at("preset"), "knee-cartilage");
 
   Arguments written = {"--focus", "FemoralCartilage,TibialCartilage"};
@@ -179,7 +179,7 @@ TEST(PresetsCommand, RefusesUnknownAndDamagedPresets) {
 /// Preset on the command line against flags stored with a scene.
 TEST(PresetsCommand, GivenPresetOverridesFlagsStoredInTheScene) {
   const TemporaryFolder& folder = kneeFolder();
-  const std::string scene = bytesOf(folder / "knee/knee.mrml");
+  const std::string scene = readBytes(folder / "knee/knee.mrml");
   const auto stored = [&](const std::string& flags) {
     std::string text = scene;
     text.insert(text.find("</MRML>"), "<FenestraRender id=\"f1\" " + flags + "/>");

@@ -20,7 +20,7 @@ namespace {
 
 /// Time limit of a process, seconds.
 double longest() {
-  return 30.0 * static_cast<double>(testing::brevity());
+  return 30.0 * static_cast<double>(testing::sampleDivisor());
 }
 
 /// Content by a separate file position: child and reader would share a position otherwise.

@@ -22,7 +22,7 @@ protected:
   }
 
   nlohmann::json stats(const std::string& name) const {
-    return nlohmann::json::parse(bytesOf(folder / name));
+    return nlohmann::json::parse(readBytes(folder / name));
   }
 };
 
@@ -83,7 +83,7 @@ TEST_F(RendersCommand, ExposureAndToneChangePicturesForTheEyeAlone) {
     EXPECT_EQ(renderWith(arguments).status, 0);
     return readImage(folder / (name + ".exr")).channels;
   };
-  const auto file = [&](const std::string& name) { return bytesOf(folder / name); };
+  const auto file = [&](const std::string& name) { return readBytes(folder / name); };
   const auto raw = with({}, "a");
   for (const auto& [flag, value, told] :
        {std::array{"--exposure", "2", "tone film, exposure 2 EV"},
@@ -174,14 +174,14 @@ TEST_F(RendersCommand, StatsCountOnlyFilesAndRaysThatTheSceneNeeds) {
   };
   const nlohmann::json little = counted(
       {"--lights", "sky.json", "--background", "0,0,0", "--view", "anterior", "--scale", "40"});
-  EXPECT_EQ(little["filesRead"], (nlohmann::json{"haze.json", "sky.json", "volume.nrrd"}));
-  EXPECT_EQ(little["shadowRays"], 0);
-  EXPECT_EQ(little["gradients"], 0);
-  EXPECT_FALSE(little.contains("focusVoxels"));
-  EXPECT_GT(little["emptyPixels"], 0);
-  EXPECT_EQ(little["samplesPerPixel"]["min"], 2);
-  EXPECT_EQ(little["paths"].get<int>(), 2 * 256 - little["emptyPixels"].get<int>());
-  EXPECT_EQ(little["cells"]["empty"], 0);
+  EXPECT_EQ(minimal["filesRead"], (nlohmann::json{"haze.json", "sky.json", "volume.nrrd"}));
+  EXPECT_EQ(minimal["shadowRays"], 0);
+  EXPECT_EQ(minimal["gradients"], 0);
+  EXPECT_FALSE(minimal.contains("focusVoxels"));
+  EXPECT_GT(minimal["emptyPixels"], 0);
+  EXPECT_EQ(minimal["samplesPerPixel"]["min"], 2);
+  EXPECT_EQ(minimal["paths"].get<int>(), 2 * 256 - minimal["emptyPixels"].get<int>());
+  EXPECT_EQ(minimal["cells"]["empty"], 0);
 
   const nlohmann::json lit = counted({"--layers", "normal"});
   EXPECT_EQ(lit["filesRead"], (nlohmann::json{"haze.json", "volume.nrrd"}));
@@ -332,7 +332,7 @@ TEST_F(RendersCommand, FileNamesMayLookLikeFlagsOrSubcommands) {
 }
 
 TEST_F(RendersCommand, DefaultNameReplacesOnlyItsOwnPictures) {
-  const std::string volume = bytesOf(folder / "volume.nrrd");
+  const std::string volume = readBytes(folder / "volume.nrrd");
   folder.write("named.png", "somebody's picture");
   ASSERT_EQ(renderWith({"--output", "named.png"}).status, 0);
   EXPECT_EQ(readImage(folder / "named.png").width, 16);
@@ -345,8 +345,8 @@ TEST_F(RendersCommand, DefaultNameReplacesOnlyItsOwnPictures) {
   EXPECT_NE(refused.err.find("volume.png: is there, and Fenestra did not write it"),
             std::string::npos)
       << refused.err;
-  EXPECT_EQ(bytesOf(folder / "volume.png"), "somebody's picture");
-  EXPECT_EQ(bytesOf(folder / "volume.nrrd"), volume);
+  EXPECT_EQ(readBytes(folder / "volume.png"), "somebody's picture");
+  EXPECT_EQ(readBytes(folder / "volume.nrrd"), volume);
 }
 
 } // namespace

@@ -77,26 +77,26 @@ TEST_F(ResultsCommand, PathsInTheHeaderAreRelativeToThePicture) {
   const std::filesystem::path pictures = folder / "Doe^John_19501231/pictures";
   EXPECT_EQ(readImage(images / "a.exr").header.at("command"),
             "fenestra ../dicom/volume.nrrd --size 8x8 --samples=1 --output=a.exr --stats a.json");
-  EXPECT_EQ(nlohmann::json::parse(bytesOf(images / "a.json"))["filesRead"],
+  EXPECT_EQ(nlohmann::json::parse(readBytes(images / "a.json"))["filesRead"],
             nlohmann::json::array({"../dicom/volume.nrrd"}));
   for (const char* file : {"a.exr", "a.json"})
-    EXPECT_EQ(bytesOf(images / file).find("Doe^John"), std::string::npos) << file;
+    EXPECT_EQ(readBytes(images / file).find("Doe^John"), std::string::npos) << file;
 }
 
 TEST_F(ResultsCommand, TurntableRendersAnEmptyFrameAgain) {
   ASSERT_EQ(turn().status, 0);
-  const std::string whole = bytesOf(folder / "turn_0000.png");
+  const std::string whole = readBytes(folder / "turn_0000.png");
   std::filesystem::resize_file(folder / "turn_0000.png", 0);
   const Outcome again = turn();
   ASSERT_EQ(again.status, 0) << again.err;
   EXPECT_NE(again.out.find("1 rendered now"), std::string::npos) << again.out;
-  EXPECT_EQ(bytesOf(folder / "turn_0000.png"), complete);
+  EXPECT_EQ(readBytes(folder / "turn_0000.png"), complete);
 }
 
 /// Frames replaced by a longer file, a cut file, and an unrelated file.
 TEST_F(ResultsCommand, TurntableRefusesToReplaceAnEditedFrame) {
   ASSERT_EQ(turn().status, 0);
-  const std::string whole = bytesOf(folder / "turn_0000.png");
+  const std::string whole = readBytes(folder / "turn_0000.png");
   for (const std::string& edited : {whole + "edited", whole.substr(0, 50), std::string("mine")}) {
     folder.write("turn_0000.png", edited);
     const Outcome again = turn();
@@ -104,7 +104,7 @@ TEST_F(ResultsCommand, TurntableRefusesToReplaceAnEditedFrame) {
     EXPECT_NE(again.err.find("turn_0000.png: is not the frame that was recorded; move it away"),
               std::string::npos)
         << again.err;
-    EXPECT_EQ(bytesOf(folder / "turn_0000.png"), edited);
+    EXPECT_EQ(readBytes(folder / "turn_0000.png"), edited);
   }
 }
 
@@ -114,7 +114,7 @@ TEST_F(ResultsCommand, TurntableRefusesALinkInPlaceOfAFrame) {
   std::filesystem::remove(folder / "turn_0001.png");
   std::filesystem::create_symlink("mine.txt", folder / "turn_0001.png");
   EXPECT_EQ(turn().status, 2);
-  EXPECT_EQ(bytesOf(folder / "mine.txt"), "mine");
+  EXPECT_EQ(readBytes(folder / "mine.txt"), "mine");
 }
 
 /// A run killed between a frame and its record leaves a frame that bears the mark.
@@ -124,13 +124,13 @@ TEST_F(ResultsCommand, ResumedTurntableReplacesOnlyItsOwnUnrecordedFrames) {
                                  "1",         "--frames",    "2",      "--output", "go" + ending};
     std::filesystem::remove(folder / "go.turntable.json");
     ASSERT_EQ(run(arguments, folder.path()).status, 0);
-    const std::string whole = bytesOf(folder / ("go_0001" + ending));
-    auto record = nlohmann::json::parse(bytesOf(folder / "go.turntable.json"));
+    const std::string whole = readBytes(folder / ("go_0001" + ending));
+    auto record = nlohmann::json::parse(readBytes(folder / "go.turntable.json"));
     record["finished"].erase(1);
     folder.write("go.turntable.json", record.dump());
     const Outcome again = run(arguments, folder.path());
     EXPECT_EQ(again.status, 0) << again.err;
-    EXPECT_EQ(bytesOf(folder / ("go_0001" + ending)), complete);
+    EXPECT_EQ(readBytes(folder / ("go_0001" + ending)), complete);
 
     folder.write("go.turntable.json", record.dump());
     folder.write("go_0001" + ending, "mine");
@@ -141,7 +141,7 @@ TEST_F(ResultsCommand, ResumedTurntableReplacesOnlyItsOwnUnrecordedFrames) {
                                "move it away"),
               std::string::npos)
         << refused.err;
-    EXPECT_EQ(bytesOf(folder / ("go_0001" + ending)), "mine");
+    EXPECT_EQ(readBytes(folder / ("go_0001" + ending)), "mine");
   }
 }
 
@@ -151,7 +151,7 @@ TEST_F(ResultsCommand, SecondTurntableOfTheSameFramesIsRefused) {
                    "2", "--output", "turn.png", "--progress", "xml"},
                   folder.path());
     ASSERT_TRUE(first.waitForOutput("<filter-progress>0\\.0*[1-9]"));
-    const std::string record = bytesOf(folder / "turn.turntable.json");
+    const std::string record = readBytes(folder / "turn.turntable.json");
     for (const Arguments& arguments : {Arguments{}, {"--restart"}, {"--output", "turn.exr"}}) {
       const Outcome second = turn(arguments);
       EXPECT_EQ(second.status, 2) << second.err;
@@ -159,7 +159,7 @@ TEST_F(ResultsCommand, SecondTurntableOfTheSameFramesIsRefused) {
                 std::string::npos)
           << second.err;
     }
-    EXPECT_EQ(bytesOf(folder / "turn.turntable.json"), record);
+    EXPECT_EQ(readBytes(folder / "turn.turntable.json"), record);
     EXPECT_EQ(run({"turntable", "volume.nrrd", "--size", "8x8", "--samples", "1", "--frames", "2",
                    "--output", "other.png"},
                   folder.path())
@@ -178,7 +178,7 @@ TEST_F(ResultsCommand, WarnsOfDepthFileLeftByAnEarlierPicture) {
   EXPECT_EQ(colour.status, 0);
   const std::string warning = "a-Z.nrrd: is of an earlier picture than a.nrrd; remove it";
   EXPECT_EQ(colour.err, "fenestra: warning: " + warning + "\n");
-  EXPECT_EQ(nlohmann::json::parse(bytesOf(folder / "s"))["warnings"],
+  EXPECT_EQ(nlohmann::json::parse(readBytes(folder / "s"))["warnings"],
             nlohmann::json::array({warning}));
   EXPECT_TRUE(std::filesystem::exists(folder / "a-Z.nrrd"));
   EXPECT_EQ(renderWith({"--output", "a.nrrd"}).err, "");
@@ -198,7 +198,7 @@ TEST_F(ResultsCommand, RestartRefusesAFileThatIsNoRecord) {
   folder.write("turn.turntable.json", "somebody's notes");
   const Outcome outcome = turn({"--restart"});
   EXPECT_EQ(outcome.status, 2) << outcome.err;
-  EXPECT_EQ(bytesOf(folder / "turn.turntable.json"), "somebody's notes");
+  EXPECT_EQ(readBytes(folder / "turn.turntable.json"), "somebody's notes");
   folder.write("turn.turntable.json", // format of earlier versions
                R"({"request": {"version": "0.1", "arguments": []}, "finished": []})");
   EXPECT_EQ(turn({"--restart"}).status, 0);

@@ -14,7 +14,7 @@ namespace {
 using nlohmann::json;
 
 /// Seconds; an idle machine takes about 0.1, slow builds more.
-const double soon = 2.0 * static_cast<double>(testing::brevity());
+const double soon = 2.0 * static_cast<double>(testing::sampleDivisor());
 
 class ServeCommand : public SmallScene {
 protected:
@@ -192,7 +192,7 @@ TEST_F(ServeCommand, TurnedViewEndsWithTheFilteredPictureOfRender) {
   Arguments render = flags;
   render.insert(render.end(), {"b.png", "--position", "5,60,9"});
   ASSERT_EQ(run(render, folder.path()).status, 0);
-  EXPECT_EQ(bytesOf(folder / "a.png"), bytesOf(folder / "b.png"));
+  EXPECT_EQ(readBytes(folder / "a.png"), readBytes(folder / "b.png"));
 }
 
 /// A failing write, as on a full disk: the current render and the server go on.

@@ -15,7 +15,7 @@ namespace fenestra::SignalsCommandTests {
 namespace {
 
 /// Seconds; an idle machine takes about 0.1, slow builds more.
-const double soon = 2.0 * static_cast<double>(testing::brevity());
+const double soon = 2.0 * static_cast<double>(testing::sampleDivisor());
 
 class SignalsCommand : public SmallScene, public ::testing::WithParamInterface<int> {};
 
@@ -41,7 +41,7 @@ TEST_P(SignalsCommand, FirstSignalWritesFinishedPasses) {
   for (const float count : *image.find("samples.N"))
     EXPECT_GE(count, static_cast<float>(samples));
   EXPECT_EQ(readImage(folder / "a.png").width, 64);
-  EXPECT_EQ(nlohmann::json::parse(bytesOf(folder / "a.json"))["samplesPerPixel"]["min"], samples);
+  EXPECT_EQ(nlohmann::json::parse(readBytes(folder / "a.json"))["samplesPerPixel"]["min"], samples);
   EXPECT_EQ(listFiles(folder.path()).size(), 5u); // two inputs, three results
 }
 
@@ -60,7 +60,7 @@ TEST_P(SignalsCommand, SecondSignalEndsAtOnceWithoutWriting) {
   const Outcome outcome = process.wait();
   EXPECT_EQ(outcome.status, 5) << outcome.err;
   EXPECT_LT(outcome.seconds, soon);
-  EXPECT_EQ(bytesOf(folder / "a.exr"), "old");
+  EXPECT_EQ(readBytes(folder / "a.exr"), "old");
   std::filesystem::remove(folder / "dense.json");
   EXPECT_EQ(listFiles(folder.path()), before);
 }

@@ -182,7 +182,7 @@ TEST_F(SlicerCommand, TableOfTheReadmeEqualsTheXml) {
              parameter.child_value("description") + " | " +
              (start.empty() ? "" : "`" + start + "`") + " |\n";
   }
-  const std::string readme = bytesOf(FENESTRA_README);
+  const std::string readme = readBytes(FENESTRA_README);
   const std::size_t begin = readme.find("<!-- flags: ");
   const std::size_t end = readme.find("<!-- end of flags -->");
   ASSERT_TRUE(begin < end && end != std::string::npos);
@@ -194,7 +194,7 @@ TEST_F(SlicerCommand, TableOfTheReadmeEqualsTheXml) {
 TEST_F(SlicerCommand, FileBesideTheExecutableEqualsTheXml) {
   const std::filesystem::path sibling =
       std::filesystem::path(FENESTRA_EXECUTABLE).replace_extension(".xml");
-  EXPECT_EQ(bytesOf(sibling), run({"--xml"}, folder.path()).out);
+  EXPECT_EQ(readBytes(sibling), run({"--xml"}, folder.path()).out);
 }
 
 TEST_F(SlicerCommand, ArgumentsOfAnUntouchedPanelRender) {
@@ -218,7 +218,7 @@ TEST_F(SlicerCommand, ArgumentsOfAnUntouchedPanelRender) {
     EXPECT_NE(outcome.out.find("<filter-progress>1"), std::string::npos) << outcome.out;
     EXPECT_TRUE(std::filesystem::exists(folder / "picture.nrrd"));
     EXPECT_FALSE(std::filesystem::exists(folder / "picture-Z.nrrd")); // Slicer would not find it
-    const std::string values = bytesOf(folder / "values.params");
+    const std::string values = readBytes(folder / "values.params");
     EXPECT_TRUE(values.starts_with("samplesPerPixel = 2\n")) << values;
     EXPECT_NE(values.find("\nrenderSeconds = "), std::string::npos) << values;
   }

@@ -24,7 +24,7 @@ protected:
     return all;
   }
   Outcome made(const Arguments& more = {}) const { return run(study(more), folder.path()); }
-  std::string bytes(const std::string& file) const { return bytesOf(folder / ("out/" + file)); }
+  std::string bytes(const std::string& file) const { return readBytes(folder / ("out/" + file)); }
   nlohmann::json record(const std::string& row) const {
     return nlohmann::json::parse(bytes(row + "/" + row + ".study.json"));
   }
@@ -62,7 +62,7 @@ TEST_F(StudyCommand, RowsEqualThoseOfRender) {
     EXPECT_EQ(readImage(folder / (base + ".exr")).channels,
               readImage(folder / "single.exr").channels)
         << name;
-    EXPECT_EQ(bytesOf(folder / (base + ".png")), bytesOf(folder / "single.png")) << name;
+    EXPECT_EQ(readBytes(folder / (base + ".png")), readBytes(folder / "single.png")) << name;
   }
   EXPECT_EQ(readImage(folder / "out/left/left.exr").header.at("command").find(folder.path()),
             std::string::npos)
@@ -180,7 +180,7 @@ TEST_F(StudyCommand, ALongRowGoesOnFromItsFilm) {
     EXPECT_NE(outcome.out.find("1 of 1 rows done, 1 rendered now"), std::string::npos)
         << outcome.out;
     EXPECT_EQ(listFiles(folder / output / "a").size(), 4U) << "something is left";
-    return nlohmann::json::parse(bytesOf(folder / output / "a/a.json")).value("pathsFromFilm", 0);
+    return nlohmann::json::parse(readBytes(folder / output / "a/a.json")).value("pathsFromFilm", 0);
   };
   EXPECT_GT(pathsFromFilm("out", "300"), 0);
   ASSERT_EQ(run({"volume.nrrd", "--size", "96x96", "--samples", "300", "--output", "alone.exr"},

@@ -29,7 +29,7 @@ struct PlyContent {
 };
 
 PlyContent readPly(const std::filesystem::path& path) {
-  const std::string bytes = bytesOf(path);
+  const std::string bytes = readBytes(path);
   const auto numberAfter = [&](const std::string& words) {
     return std::stoul(bytes.substr(bytes.find(words) + words.size(), 9));
   };

@@ -56,7 +56,7 @@ protected:
     return (vectorOf(file, "--position=") - vectorOf(file, "--target=")).normalized();
   }
   nlohmann::json record() const {
-    return nlohmann::json::parse(bytesOf(folder / "turn.turntable.json"));
+    return nlohmann::json::parse(readBytes(folder / "turn.turntable.json"));
   }
 };
 
@@ -79,7 +79,7 @@ TEST_F(TurntableCommand, FramesEqualThoseOfRender) {
     EXPECT_EQ(single.header.at("camera"), turned.header.at("camera"));
   }
   EXPECT_NE(readImage(folder / frame(0)).channels, readImage(folder / frame(1)).channels);
-  const auto stats = nlohmann::json::parse(bytesOf(folder / "all.json"));
+  const auto stats = nlohmann::json::parse(readBytes(folder / "all.json"));
   EXPECT_EQ(stats["rendered"], 4);
   EXPECT_GT(stats["surfaceChangeMmPerDegree"]["max"], 0.0);
   EXPECT_EQ(listFiles(folder.path()).size(),
@@ -139,13 +139,13 @@ TEST_F(TurntableCommand, ResumesAfterAnInterruptionBitForBit) {
   EXPECT_EQ(listFiles(folder.path()).size(), 2 + finished + 1) << "no frame is left half-written";
   std::map<int, std::string> before;
   for (int i = 0; i < static_cast<int>(finished); ++i)
-    before[i] = bytesOf(folder / frame(i));
+    before[i] = readBytes(folder / frame(i));
 
   const Outcome rest = run(arguments, folder.path());
   ASSERT_EQ(rest.status, 0) << rest.err;
   EXPECT_NE(rest.out.find(std::to_string(4 - finished) + " rendered now"), std::string::npos);
   for (const auto& [i, bytes] : before)
-    EXPECT_EQ(bytesOf(folder / frame(i)), bytes) << i;
+    EXPECT_EQ(readBytes(folder / frame(i)), bytes) << i;
   const nlohmann::json resumed = record();
   Arguments whole = arguments;
   *std::find(whole.begin(), whole.end(), "turn.exr") = "whole.exr";
@@ -155,7 +155,7 @@ TEST_F(TurntableCommand, ResumesAfterAnInterruptionBitForBit) {
               readImage(folder / frame(i)).channels)
         << i;
   // The files differ in their headers, by the command.
-  const nlohmann::json atOnce = nlohmann::json::parse(bytesOf(folder / "whole.turntable.json"));
+  const nlohmann::json atOnce = nlohmann::json::parse(readBytes(folder / "whole.turntable.json"));
   for (std::size_t i = 0; i < 4; ++i)
     EXPECT_EQ(atOnce["finished"][i]["surfaceChange"], resumed["finished"][i]["surfaceChange"]);
 }
@@ -261,12 +261,12 @@ TEST_F(TurntableCommand, StopsWithinASurface) {
   EXPECT_EQ(outcome.status, 5) << outcome.err;
   EXPECT_LT(outcome.seconds, frame / 4.0);
   EXPECT_NE(outcome.out.find("1 of 4 frames, 1 rendered now"), std::string::npos) << outcome.out;
-  EXPECT_EQ(nlohmann::json::parse(bytesOf(folder / "all.json"))["finished"], 1);
+  EXPECT_EQ(nlohmann::json::parse(readBytes(folder / "all.json"))["finished"], 1);
   EXPECT_EQ(listFiles(folder.path()).size(), 2U + 3) << "inputs, a frame, and two .json";
 }
 
 TEST_F(TurntableCommand, RefusesFlagsForASinglePicture) {
-  folder.write("volume_0002.nrrd", bytesOf(folder / "volume.nrrd"));
+  folder.write("volume_0002.nrrd", readBytes(folder / "volume.nrrd"));
   expectRefused(
       {
           {"surface", turntable({"--surface", "a.vtp"}), 2, "--surface: is for a single picture"},

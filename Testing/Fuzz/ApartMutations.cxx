@@ -23,7 +23,7 @@ struct Seed {
 std::vector<Seed> seedsOf(const Path& folder) {
   std::vector<Seed> seeds;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
-    seeds.push_back({entry.path().extension(), bytesOf(entry.path())});
+    seeds.push_back({entry.path().extension(), readBytes(entry.path())});
   std::sort(seeds.begin(), seeds.end(), [](const Seed& a, const Seed& b) {
     return std::pair(a.extension, a.bytes) < std::pair(b.extension, b.bytes);
   });

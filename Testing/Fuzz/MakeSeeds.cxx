@@ -62,13 +62,13 @@ void makeVolumes(const fs::path& corpus, const fs::path& traps) {
   for (const auto& entry : fs::directory_iterator(traps)) {
     const std::string name = entry.path().filename().string();
     if (name == "detached.nhdr") {
-      std::string text = bytesOf(entry.path());
+      std::string text = readBytes(entry.path());
       text.replace(text.find("detached.raw"), 12, "samples.raw");
       save(corpus / "Volume", name, "1" + text);
     } else if (name.ends_with(".seg.nrrd") || name == "labels.nrrd")
-      save(corpus / "Segmentation", name, bytesOf(entry.path()));
+      save(corpus / "Segmentation", name, readBytes(entry.path()));
     else if (name.ends_with(".nrrd"))
-      save(corpus / "Volume", name, "0" + bytesOf(entry.path()));
+      save(corpus / "Volume", name, "0" + readBytes(entry.path()));
   }
   save(corpus / "Volume", "volume.nii", "2" + nifti());
   save(corpus / "Volume", "volume.mha", "4" + metaImage());
@@ -85,7 +85,7 @@ void makePictures(const fs::path& corpus) {
                                     {"2", "picture.tif"},
                                     {"3", "picture.nrrd"}}) {
     writeImage(image, {}, folder / name);
-    save(corpus / "Picture", name, digit + bytesOf(folder / name));
+    save(corpus / "Picture", name, digit + readBytes(folder / name));
   }
 }
 
@@ -100,7 +100,7 @@ void makeTransforms(const fs::path& corpus) {
     writer->SetTransformIO(io);
     writer->SetInput(transform);
     writer->Update();
-    fenestra::save(corpus / "../Apart/Transform", name, bytesOf(folder / name));
+    fenestra::save(corpus / "../Apart/Transform", name, readBytes(folder / name));
   };
   save("affine.h5", itk::HDF5TransformIOTemplate<double>::New());
   save("affine.mat", itk::MatlabTransformIOTemplate<double>::New());
@@ -156,7 +156,7 @@ void makeSlices(const fs::path& corpus) {
 /// Writes the scene of Corpus/Scene with its files. deflated.mrb holds the same, packed by
 /// Info-ZIP.
 void makeArchive(const fs::path& corpus) {
-  std::string scene = bytesOf(corpus / "Scene/new.mrml");
+  std::string scene = readBytes(corpus / "Scene/new.mrml");
   const std::string attribute = "fileName=\"";
   for (std::size_t at = 0; (at = scene.find(attribute, at)) != std::string::npos;)
     scene.insert(at += attribute.size(), "Data/");

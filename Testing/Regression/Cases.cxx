@@ -90,10 +90,9 @@ double Agreement::probability() const {
 
 Agreement agreement(const Image& image, const Image& baseline) {
   const auto over = [&](int size) {
-    return agreementProbability(tileMeans(image, size), tileMeans(baseline, size));
+    return computeAgreement(computeTileMeans(image, size), computeTileMeans(baseline, size));
   };
-  return {agreementProbability(image, baseline), over(8),
-          over(std::max(image.width, image.height))};
+  return {computeAgreement(image, baseline), over(8), over(std::max(image.width, image.height))};
 }
 
 } // namespace fenestra::testing

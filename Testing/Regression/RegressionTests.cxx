@@ -42,7 +42,7 @@ TEST_P(Regression, AgreesWithItsBaseline) {
   const RegressionCase& c = GetParam();
   const std::filesystem::path folder = resultFolder(c);
   const Image image =
-      renderCase(c, seedBase(), briefly(c.samples), dataFolder(), folder / "render.exr");
+      renderCase(c, seedBase(), reduceSamples(c.samples), dataFolder(), folder / "render.exr");
   const Image baseline = readImage(baselinePath(c));
   const Agreement result = agreement(image, baseline);
   std::cout << c.name << ": " << shown(result) << std::endl;
@@ -57,7 +57,7 @@ INSTANTIATE_TEST_SUITE_P(Cases, Regression, ::testing::ValuesIn(readCases()),
 
 /// Replaces a text that occurs once in a file.
 void replaceIn(const std::filesystem::path& path, const std::string& from, const std::string& to) {
-  std::string bytes = bytesOf(path);
+  std::string bytes = readBytes(path);
   const std::size_t at = bytes.find(from);
   ASSERT_NE(at, std::string::npos) << from;
   bytes.replace(at, from.size(), to);
@@ -107,7 +107,7 @@ void PrintTo(const Fault& fault, std::ostream* out) {
 class PlantedFault : public ::testing::TestWithParam<Fault> {};
 
 TEST_P(PlantedFault, DiffersFromTheBaseline) {
-  if (brevity() > 1)
+  if (sampleDivisor() > 1)
     GTEST_SKIP() << "a brief run has too few samples to find it";
   const std::vector<RegressionCase> cases = readCases();
   const auto it = std::find_if(cases.begin(), cases.end(),

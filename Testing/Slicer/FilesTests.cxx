@@ -113,13 +113,13 @@ protected:
 
 TEST_F(SlicerCopies, CompleteCopyReplacesTheFile) {
   EXPECT_EQ(qFenestraCopies::picture(path("new.png"), path("old.png"), ".png").write(), "");
-  EXPECT_EQ(bytesOf(folder / "old.png").size(), 10000u);
+  EXPECT_EQ(readBytes(folder / "old.png").size(), 10000u);
 }
 
 TEST_F(SlicerCopies, FailedCopyKeepsTheOldFileAndLeavesNoOther) {
   EXPECT_EQ(qFenestraCopies::picture(path("gone.png"), path("old.png"), ".png").write(),
             path("old.png"));
-  EXPECT_EQ(bytesOf(folder / "old.png"), "old");
+  EXPECT_EQ(readBytes(folder / "old.png"), "old");
 
   struct rlimit before = {};
   ::getrlimit(RLIMIT_FSIZE, &before);
@@ -131,7 +131,7 @@ TEST_F(SlicerCopies, FailedCopyKeepsTheOldFileAndLeavesNoOther) {
   ::setrlimit(RLIMIT_FSIZE, &before);
   ::signal(SIGXFSZ, SIG_DFL);
   EXPECT_EQ(failed.toStdString(), path("old.png").toStdString());
-  EXPECT_EQ(bytesOf(folder / "old.png").size(), 3u);
+  EXPECT_EQ(readBytes(folder / "old.png").size(), 3u);
   EXPECT_EQ(QDir(toQString(folder.path())).entryList(QDir::Files | QDir::Hidden),
             (QStringList{"new.png", "old.png"}));
 }
@@ -157,7 +157,7 @@ TEST_F(SlicerCopies, ExistingListsTheFilesThatWriteWouldReplace) {
     EXPECT_EQ(frames.names(), path("turn_0000.png") + " to turn_0002.png");
   }
   EXPECT_EQ(qFenestraCopies::frames(sources, path("turn")).write(), "");
-  EXPECT_EQ(bytesOf(folder / "turn_0001.png"), "frame");
+  EXPECT_EQ(readBytes(folder / "turn_0001.png"), "frame");
 }
 
 } // namespace

@@ -32,7 +32,7 @@ using Materials = qSlicerFenestraMaterials;
 const QString program = FENESTRA_EXECUTABLE;
 
 bool waitFor(const std::function<bool()>& condition) {
-  const int timeoutMs = 30000 * static_cast<int>(testing::brevity()); // milliseconds
+  const int timeoutMs = 30000 * static_cast<int>(testing::sampleDivisor()); // milliseconds
   QElapsedTimer watch;
   watch.start();
   while (!condition() && watch.elapsed() < timeoutMs)
@@ -339,7 +339,7 @@ protected:
     EXPECT_TRUE(waitFor([&] { return !ended.empty(); }));
     for (const qFenestraOutcome& one : ended)
       EXPECT_EQ(one.kind, qFenestraOutcome::Kind::done) << one.details.toStdString();
-    return bytesOf(folder / "panel.nrrd");
+    return readBytes(folder / "panel.nrrd");
   }
   /// Picture with arguments as they are typed into a shell.
   std::string renderByCommand(const std::string& typed) const {
@@ -348,7 +348,7 @@ protected:
                                 "' --size 24x24 --samples 4 --output hand.nrrd --progress none " +
                                 typed + " >/dev/null";
     EXPECT_EQ(std::system(command.c_str()), 0) << command;
-    return bytesOf(folder / "hand.nrrd");
+    return readBytes(folder / "hand.nrrd");
   }
 
   TemporaryFolder folder;
@@ -400,7 +400,7 @@ TEST_F(SlicerMaterialsPicture, PreviewTakesTheSameFlags) {
     EXPECT_TRUE(
         waitFor([&] { return !refused.isEmpty() || (!pictures.empty() && pictures.back().done); }));
     EXPECT_TRUE(refused.isEmpty()) << refused.join('\n').toStdString();
-    return bytesOf(folder / "preview.png");
+    return readBytes(folder / "preview.png");
   };
   QStringList all = {QString::fromStdString(scene.string()), "--size=24x24", "--samples=2",
                      "--output=preview.png"};

@@ -26,8 +26,8 @@ namespace {
 using Kind = qFenestraOutcome::Kind;
 
 const QString program = FENESTRA_EXECUTABLE;
-const int timeoutMs = 30000 * static_cast<int>(testing::brevity()); ///< milliseconds
-const int maxStopMs = 1000 * static_cast<int>(testing::brevity());  ///< 200 on an idle machine
+const int timeoutMs = 30000 * static_cast<int>(testing::sampleDivisor()); ///< milliseconds
+const int maxStopMs = 1000 * static_cast<int>(testing::sampleDivisor()); ///< 200 on an idle machine
 
 /// Runs the event loop until the condition holds; false after `longest`.
 bool waitFor(const std::function<bool()>& condition) {

@@ -118,7 +118,7 @@ TEST(SlicerSceneFiles, ColoursOfSegmentsAreWrittenAsSlicerDoes) {
   SlicerExport::writeSegmentNames(
       {{"a", "A", 7, 3, "", {0.9450980392, 0.5, 1.0 / 3.0}}, {"b", "B"}},
       folder / "names.seg.nrrd");
-  const std::string text = bytesOf(folder / "names.seg.nrrd");
+  const std::string text = readBytes(folder / "names.seg.nrrd");
   for (const char* field :
        {"Segment0_Color:=0.945098 0.5 0.333333", "Segment0_LabelValue:=1", "Segment0_Layer:=0",
         "Segment1_Color:=0.5 0.5 0.5", "Segment1_LabelValue:=2"})

@@ -12,11 +12,11 @@ namespace {
 /// Small bright light beside a ball in the dark: few paths find the light by chance, which makes
 /// the samples of a pixel very skewed.
 TestScene skewedScene() {
-  const Grid grid = centredGrid({12, 12, 12}, {1.0, 1.0, 1.0});
+  const Grid grid = makeCenteredGrid({12, 12, 12}, {1.0, 1.0, 1.0});
   const Vec3 centre(5.5, 5.5, 5.5);
   TestScene s{
       makeVolume(grid, [&](const Vec3& p) { return (p - centre).norm() < 4.0 ? 1.0 : 0.0; }),
-      linearTransfer(1.0, Rgb(0.95, 0.6, 0.3), 0.7),
+      makeLinearTransfer(1.0, Rgb(0.95, 0.6, 0.3), 0.7),
       {EnvironmentLight{.radiance = Rgb::Constant(0.05)},
        AreaLight{.center = {0, 0, 8},
                  .normal = -Vec3::UnitZ(),
@@ -50,7 +50,7 @@ std::vector<Moments> tilesOver(const TestScene& scene, RenderSettings settings, 
                                std::uint64_t firstSeed) {
   std::vector<Moments> tiles(static_cast<std::size_t>(scene.width * scene.height / (tile * tile)));
   for (int seed = 0; seed < seeds; ++seed) {
-    settings.seed = seeded(firstSeed + static_cast<std::uint64_t>(seed));
+    settings.seed = shiftSeed(firstSeed + static_cast<std::uint64_t>(seed));
     const Film film = scene.render(settings).film;
     std::size_t i = 0;
     for (int top = 0; top < film.height(); top += tile)
@@ -66,12 +66,12 @@ std::vector<Moments> tilesOver(const TestScene& scene, RenderSettings settings, 
 
 TEST(AdaptiveSampling, MeanEqualsThatOfUniformSampling) {
   const TestScene scene = skewedScene();
-  const int seeds = std::max(8, budget(24)); // fewer seeds estimate their spread badly
+  const int seeds = std::max(8, scaleSamples(24)); // fewer seeds estimate their spread badly
   RenderSettings adaptive;
   adaptive.samples = 1U << 20;
-  adaptive.noise = allowedError(0.05);
+  adaptive.noise = relaxError(0.05);
   RenderSettings uniform;
-  uniform.samples = budget(40U);
+  uniform.samples = scaleSamples(40U);
   const std::vector<Moments> a = tilesOver(scene, adaptive, seeds, 0);
   const std::vector<Moments> b = tilesOver(scene, uniform, seeds, 100000);
   double difference = 0.0, variance = 0.0;
@@ -88,7 +88,7 @@ TEST(AdaptiveSampling, MeanEqualsThatOfUniformSampling) {
 TEST(AdaptiveSampling, StopsAtItsTargetWithUnequalCounts) {
   RenderSettings settings;
   settings.samples = 1U << 20;
-  settings.noise = allowedError(0.03);
+  settings.noise = relaxError(0.03);
   const RenderResult result = skewedScene().render(settings);
   EXPECT_EQ(result.reason, StopReason::noise);
   EXPECT_LE(result.film.noise(), settings.noise);

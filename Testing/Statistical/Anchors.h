@@ -39,7 +39,7 @@ inline void expectMean(const RgbEstimate& estimate, const Rgb& expected, double 
     const double tolerance = 4.0 * estimate.error[c] + known * expected[c];
     EXPECT_NEAR(estimate.mean[c], expected[c], tolerance)
         << "channel " << c << ", z = " << (estimate.mean[c] - expected[c]) / estimate.error[c];
-    EXPECT_LT(estimate.error[c], allowedError(sharpness * expected[c])) << "channel " << c;
+    EXPECT_LT(estimate.error[c], relaxError(sharpness * expected[c])) << "channel " << c;
   }
 }
 

@@ -9,13 +9,14 @@ namespace fenestra::testing {
 /// Volume with albedo `dark` at scalar 0 and `bright` at 1, on a rotated grid of unequal spacing,
 /// about 2 mm in radius; a third of the incident light passes.
 inline TestScene clumps(const Rgb& dark, const Rgb& bright, double g) {
-  Grid grid = centredGrid({5, 4, 6}, {0.5, 0.7, 0.4});
+  Grid grid = makeCenteredGrid({5, 4, 6}, {0.5, 0.7, 0.4});
   const Affine turn(makeRotation(0.5, Vec3(1.0, -2.0, 1.5).normalized()));
   grid = Grid(grid.size, turn * grid.indexToWorld);
   Random random(91, 0, 0);
   TestScene scene{makeVolume(grid, [&](const Vec3&) { return random.uniform(); }),
-                  {ScalarFunction({knot(0.0, 0.0), knot(0.3, 0.1), knot(0.45, 6.0), knot(0.5, 0.4),
-                                   knot(0.7, 0.3), knot(0.7, 1.5), knot(1.0, 0.0)}),
+                  {ScalarFunction({makeKnot(0.0, 0.0), makeKnot(0.3, 0.1), makeKnot(0.45, 6.0),
+                                   makeKnot(0.5, 0.4), makeKnot(0.7, 0.3), makeKnot(0.7, 1.5),
+                                   makeKnot(1.0, 0.0)}),
                    ColorFunction({{0.0, dark}, {1.0, bright}})},
                   {},
                   {},

@@ -32,11 +32,11 @@ TestScene slabOfMaterial(const Rgb& color, double g) {
   Material& material = plan.components[1].material;
   material.kind = MaterialKind::medium;
   material.color = ColorFunction({{0.0, color}});
-  material.extinction = ScalarFunction({knot(0.0, 0.5)});
+  material.extinction = ScalarFunction({makeKnot(0.0, 0.5)});
   material.g = g;
   plan.components[1].density = 2.0;
   const Mask all{scene.volume.grid, std::vector<std::uint8_t>(8, 1), 8, {}};
-  const auto shares = std::make_shared<const LabelWeights>(sharesOf({{all, 10, 1}}));
+  const auto shares = std::make_shared<const LabelWeights>(makeLabelWeights({{all, 10, 1}}));
   const Tint tint = buildTint(std::make_shared<const TintPlan>(plan), shares, scene.transfer.g);
   scene.mixture = buildMixture(plan, tint, scene.transfer);
   return scene;
@@ -52,10 +52,10 @@ INSTANTIATE_TEST_SUITE_P(Anisotropies, SeenColor, ::testing::Values(0.0, 0.5, 0.
 /// Matter of `color` below air, where hybrid shading finds a surface: the scalar goes from 0 to 1
 /// within `ramp` mm.
 TestScene step(const Rgb& color, double ramp, const SurfaceShading& shading) {
-  const Grid grid = centredGrid({2, 2, 400}, {10000.0, 10000.0, ramp});
+  const Grid grid = makeCenteredGrid({2, 2, 400}, {10000.0, 10000.0, ramp});
   TestScene scene = endlessSlab(400.0 * ramp, Rgb::Zero());
   scene.volume = makeVolume(grid, [](const Vec3& index) { return index.z() < 396.0 ? 1.0 : 0.0; });
-  scene.transfer = {ScalarFunction({knot(0.0, 0.0), knot(1.0, 3.0)}),
+  scene.transfer = {ScalarFunction({makeKnot(0.0, 0.0), makeKnot(1.0, 3.0)}),
                     ColorFunction({{0.0, toAlbedo(color, 0.0)}}),
                     {},
                     0.0,

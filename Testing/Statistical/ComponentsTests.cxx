@@ -14,7 +14,7 @@ constexpr Integrator transports[] = {Integrator::simd, Integrator::scalar};
 
 /// Ball in a labelmap of one voxel a mm, turned against the volumes, and smooth over 2 mm or hard.
 Mask ball(const Vec3& center, double radius, bool isSoft) {
-  const Grid flat = centredGrid(Size3::Constant(23), Vec3::Constant(1.0));
+  const Grid flat = makeCenteredGrid(Size3::Constant(23), Vec3::Constant(1.0));
   const Grid grid(flat.size,
                   makeRotation(0.4, Vec3(1.0, 2.0, -0.5).normalized()) * flat.indexToWorld);
   Mask mask;
@@ -44,12 +44,12 @@ std::vector<LabelWeights::Part> balls(int count, bool isSoft) {
 }
 
 Mixture mixtureOf(const std::vector<LabelWeights::Part>& parts, std::vector<Component> components) {
-  return {std::make_shared<const LabelWeights>(sharesOf(parts)), std::move(components)};
+  return {std::make_shared<const LabelWeights>(makeLabelWeights(parts)), std::move(components)};
 }
 
 /// Hills of scalars from 0 to 1, seen from the front.
 TestScene hills(const TransferFunction& transfer) {
-  TestScene scene{makeVolume(centredGrid({20, 24, 18}, {1.0, 0.8, 1.3}),
+  TestScene scene{makeVolume(makeCenteredGrid({20, 24, 18}, {1.0, 0.8, 1.3}),
                              [](const Vec3& p) {
                                return 0.5 + 0.5 * std::sin(0.9 * p.x()) *
                                                 std::cos(0.7 * p.y() + 0.3 * p.z());
@@ -66,7 +66,7 @@ TestScene hills(const TransferFunction& transfer) {
 }
 
 TransferFunction coated() {
-  TransferFunction transfer = linearTransfer(0.6, Rgb(0.9, 0.6, 0.3), 0.4);
+  TransferFunction transfer = makeLinearTransfer(0.6, Rgb(0.9, 0.6, 0.3), 0.4);
   transfer.shading = SurfaceShading::makeCoated(0.5, 0.3, transfer.g);
   return transfer;
 }
@@ -74,8 +74,8 @@ TransferFunction coated() {
 RenderSettings settingsOf(Integrator transport, std::uint64_t samples, std::uint64_t seed) {
   RenderSettings settings;
   settings.integrator = transport;
-  settings.samples = budget(samples);
-  settings.seed = seeded(seed);
+  settings.samples = scaleSamples(samples);
+  settings.seed = shiftSeed(seed);
   settings.path.background.kind = Background::Kind::environment;
   return settings;
 }
@@ -108,7 +108,7 @@ void expectSame(const Film& a, const Film& b) {
 /// Segments of the volume's own matter change nothing but random numbers.
 TEST(OneMatter, IsThatOfEverySegment) {
   TransferFunction steep = coated();
-  steep.gradientOpacity = ScalarFunction({knot(0.0, 0.1), knot(0.3, 1.0)});
+  steep.gradientOpacity = ScalarFunction({makeKnot(0.0, 0.1), makeKnot(0.3, 1.0)});
   for (const TransferFunction& transfer : {coated(), steep})
     for (const Integrator transport : transports) {
       const TestScene alone = hills(transfer);
@@ -128,7 +128,7 @@ using Column = std::vector<std::uint8_t>;
 Mask wideMask(const Column& column) {
   const auto n = static_cast<std::int64_t>(column.size());
   Mask mask;
-  mask.grid = centredGrid({2, 2, n}, {10000.0, 10000.0, 1.0});
+  mask.grid = makeCenteredGrid({2, 2, n}, {10000.0, 10000.0, 1.0});
   mask.maxValue = 255;
   for (const std::uint8_t voxel : column)
     mask.voxels.insert(mask.voxels.end(), 4, voxel);
@@ -153,7 +153,7 @@ TestScene slabOfTwo(int lowerPriority, int upperPriority) {
   scene.pose.scale = 1.0;
   const auto dense = [&](double sigma_t) {
     TransferFunction transfer = scene.transfer;
-    transfer.extinction = ScalarFunction({knot(0.0, sigma_t)});
+    transfer.extinction = ScalarFunction({makeKnot(0.0, sigma_t)});
     return transfer;
   };
   scene.mixture =
@@ -188,7 +188,7 @@ void expectTransmittance(TestScene scene, double depth, std::uint64_t seed) {
       SCOPED_TRACE(mu);
       look(scene, downward(mu, 0.3));
       const RenderSettings settings = settingsOf(transport, 500, seed++);
-      const Estimate estimate = imageEstimate(scene.render(settings).film);
+      const Estimate estimate = estimateMean(scene.render(settings).film);
       const double expected = std::exp(-depth / mu);
       // Every sample is 0 or 1.
       const double error =
@@ -237,9 +237,10 @@ TEST(SlabOfComponents, LosesToAClipWhatIsClipped) {
 std::vector<Component> whiteMatter(bool isHybrid) {
   std::vector<Component> all;
   for (int i = 0; i < 15; ++i) {
-    TransferFunction transfer = linearTransfer(1.7 - 0.1 * i, Rgb::Ones(), 0.12 * (i % 8) - 0.2);
+    TransferFunction transfer =
+        makeLinearTransfer(1.7 - 0.1 * i, Rgb::Ones(), 0.12 * (i % 8) - 0.2);
     if (i % 3 == 2)
-      transfer.extinction = ScalarFunction({knot(0.0, 0.8 - 0.05 * i)});
+      transfer.extinction = ScalarFunction({makeKnot(0.0, 0.8 - 0.05 * i)});
     if (isHybrid) {
       transfer.shading = SurfaceShading::makeCoated(0.0, 0.1 + 0.05 * i, transfer.g);
       transfer.shading->diffuse = 1.0;
@@ -269,9 +270,9 @@ TEST(FurnaceOfComponents, IsOne) {
         }
         const RenderResult result = scene.render(settingsOf(transport, 128, 71));
         EXPECT_GT(result.counters.collisions, 10000U) << "the medium must matter";
-        const Estimate estimate = imageEstimate(result.film);
+        const Estimate estimate = estimateMean(result.film);
         EXPECT_NEAR(estimate.mean, 1.0, 4.0 * estimate.error + 1e-5); // lanes are float
-        EXPECT_LT(estimate.error, allowedError(0.01));
+        EXPECT_LT(estimate.error, relaxError(0.01));
         if (isCutaway) {
           for (const PixelSums& pixel : result.film.pixels())
             EXPECT_NEAR(pixel.mean[0], 1.0, 4.0 * pixel.standardError()[0] + 1e-5);
@@ -305,20 +306,20 @@ TEST(OrderOfSegments, ChangesNoBit) {
 /// in which the bound holds; returns the greatest share of a majorant that was met.
 double expectBound(const TestScene& scene) {
   double greatest = 0.0;
-  scene.with([&](const SceneView& parts) {
+  scene.visitView([&](const SceneView& parts) {
     const MajorantGrid& majorants = parts.majorants;
     const auto& voxels = std::get<LargeArray<float>>(scene.volume.voxels);
     const Medium<float> medium(scene.volume.grid, voxels, scene.transfer, parts.style, nullptr,
                                parts.mixture);
     const Affine toWorld = majorants.worldToCell().inverse();
     const Vec3 strip = MajorantGrid::margin * majorants.edge().cast<double>().cwiseInverse();
-    Random random(seeded(91), 0, 0);
+    Random random(shiftSeed(91), 0, 0);
     const Size3& count = majorants.cellCount();
     std::int64_t cell = 0;
     for (std::int64_t z = 0; z < count.z(); ++z)
       for (std::int64_t y = 0; y < count.y(); ++y)
         for (std::int64_t x = 0; x < count.x(); ++x, ++cell)
-          for (int i = 0; i < budget(4); ++i) {
+          for (int i = 0; i < scaleSamples(4); ++i) {
             const Vec3 u(random.uniform(), random.uniform(), random.uniform());
             const Vec3 within = (1.0 + 2.0 * strip.array()) * u.array() - strip.array();
             const Vec3 world = toWorld * (Size3(x, y, z).cast<double>() + within);
@@ -344,7 +345,8 @@ TEST(MajorantOfComponents, IsNeverExceeded) {
       for (const bool isThin : {false, true}) {
         TransferFunction own = coated();
         if (isSteep)
-          own.gradientOpacity = ScalarFunction({knot(0.0, 0.1), knot(0.3, 1.0), knot(0.6, 0.2)});
+          own.gradientOpacity =
+              ScalarFunction({makeKnot(0.0, 0.1), makeKnot(0.3, 1.0), makeKnot(0.6, 0.2)});
         TestScene scene = hills(own);
         std::vector<Component> components = whiteMatter(true);
         components[0].transfer = components[3].transfer = own;

@@ -51,9 +51,9 @@ struct Differences {
 class CroppedTransmittance : public ::testing::TestWithParam<bool> {};
 
 TEST_P(CroppedTransmittance, IsExponentialAlongTheChord) {
-  const Volume volume = ones(centredGrid({30, 30, 30}, {1.0, 1.0, 1.0}));
+  const Volume volume = ones(makeCenteredGrid({30, 30, 30}, {1.0, 1.0, 1.0}));
   const double sigma_t = 0.2;
-  const TransferFunction transfer = linearTransfer(sigma_t, Rgb::Zero());
+  const TransferFunction transfer = makeLinearTransfer(sigma_t, Rgb::Zero());
   const TransferFunction looser = transfer.withDensity(2.0); // not every collision is real
   Affine box = turnedBox({0.3, -0.4, 0.2}, {3.0, 5.0, 4.0}, 0.7);
   if (GetParam()) // sheared, as by a transform above the box
@@ -93,7 +93,7 @@ class CroppedPicture : public ::testing::TestWithParam<Shape> {};
 
 TestScene litScene(Volume volume, const Shape& shape) {
   TestScene scene{std::move(volume),
-                  linearTransfer(0.5, Rgb(0.9, 0.8, 0.7), 0.3),
+                  makeLinearTransfer(0.5, Rgb(0.9, 0.8, 0.7), 0.3),
                   {EnvironmentLight{.radiance = Rgb::Constant(0.3), .map = {}},
                    DirectionalLight{.direction = {0.3, 1.0, -0.5}}},
                   {},
@@ -116,7 +116,7 @@ TEST_P(CroppedPicture, EqualsThePictureOfAVolumeOfThatShape) {
   const Affine indexToWorld =
       box * makeScaling(Vec3(half.cwiseInverse())) * makeTranslation(Vec3(-4.5, -3.5, -2.5));
   const TestScene cut = litScene(ones(Grid({10, 8, 6}, indexToWorld)), GetParam());
-  TestScene cropped = litScene(ones(centredGrid({24, 24, 24}, {1.0, 1.0, 1.0})), GetParam());
+  TestScene cropped = litScene(ones(makeCenteredGrid({24, 24, 24}, {1.0, 1.0, 1.0})), GetParam());
   cropped.crop = CropBox(box);
 
   RenderSettings settings;

@@ -45,7 +45,7 @@ RgbEstimate scatteredAround(TestScene& scene, const Vec3& light, std::uint64_t s
       const Vec2 u = random.uniform2();
       const Vec3 way = sampleUniformSphere(
           {(part / columns + u.x()) / rows, (part % columns + u.y()) / columns});
-      seen[i] = scatteredOut(scene, light, -frame.toWorld(way), budget(12UL), picture).mean;
+      seen[i] = scatteredOut(scene, light, -frame.toWorld(way), scaleSamples(12UL), picture).mean;
     }
     sum.mean += 0.5 * (seen[0] + seen[1]);
     variance += 0.25 * (seen[0] - seen[1]).square();
@@ -103,7 +103,7 @@ Rgb absorbedOf(const TestScene& scene, const StraightIntegral& medium, Ray ray, 
 RgbEstimate absorbed(const TestScene& scene, const Vec3& light, std::uint64_t seed) {
   const StraightIntegral medium(scene.volume, scene.transfer);
   const double half = scene.volume.grid.boundingRadius();
-  const std::uint64_t walks = budget(200000UL);
+  const std::uint64_t walks = scaleSamples(200000UL);
   Rgb sum = Rgb::Zero();
   Rgb squares = Rgb::Zero();
   for (std::uint64_t i = 0; i < walks; ++i) {
@@ -135,14 +135,14 @@ TEST_P(Energy, WithoutAbsorptionOutgoingEqualsIncoming) {
   EXPECT_NEAR(stopped(scene, lightWay, 2 * lines) / in, 1.0, known);
   const double silhouette = 4.0 * std::pow(scene.volume.grid.boundingRadius(), 2.0);
   EXPECT_GT(in, 0.1 * silhouette) << "the medium must matter";
-  expectMean(scatteredAround(scene, lightWay, seeded(7000)), Rgb::Constant(in), 0.01, known);
+  expectMean(scatteredAround(scene, lightWay, shiftSeed(7000)), Rgb::Constant(in), 0.01, known);
 }
 
 TEST_P(Energy, OutgoingPlusAbsorbedEqualsIncoming) {
   TestScene scene = clumps(Rgb(0.95, 0.7, 0.9), Rgb(0.8, 0.95, 0.4), GetParam());
   const double in = stopped(scene, lightWay, lines);
-  const RgbEstimate out = scatteredAround(scene, lightWay, seeded(8000));
-  const RgbEstimate kept = absorbed(scene, lightWay, seeded(8500));
+  const RgbEstimate out = scatteredAround(scene, lightWay, shiftSeed(8000));
+  const RgbEstimate kept = absorbed(scene, lightWay, shiftSeed(8500));
   EXPECT_GT((out.mean / kept.mean).minCoeff(), 0.2) << "both must matter";
   EXPECT_LT((out.mean / kept.mean).maxCoeff(), 5.0) << "both must matter";
   expectMean(out + kept, Rgb::Constant(in), 0.01, known);

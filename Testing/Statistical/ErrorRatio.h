@@ -45,14 +45,14 @@ inline ErrorRatio measureErrorRatio(const TestScene& scene, RenderSettings setti
 /// Fog between the eye and an environment: most of the noise lies in the first collision and the
 /// first direction.
 inline TestScene makeFogScene() {
-  const Grid grid = centredGrid({16, 16, 16}, {1.0, 1.0, 1.0});
+  const Grid grid = makeCenteredGrid({16, 16, 16}, {1.0, 1.0, 1.0});
   const Vec3 center(7.5, 7.5, 7.5);
   TestScene scene{makeVolume(grid,
                              [&](const Vec3& p) {
                                return std::max(0.0, 1.0 - 0.02 * (p - center).squaredNorm()) *
                                       (0.7 + 0.3 * std::sin(p.x()) * std::cos(p.z()));
                              }),
-                  linearTransfer(0.5, Rgb(0.6, 0.6, 0.9), 0.3),
+                  makeLinearTransfer(0.5, Rgb(0.6, 0.6, 0.9), 0.3),
                   {},
                   {},
                   16,

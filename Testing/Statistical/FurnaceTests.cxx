@@ -16,7 +16,7 @@ enum class ClipKind { none, plane, cutaway, surface };
 using Case = std::tuple<MediumKind, Projection, ClipKind, double, bool>;
 
 Volume volumeOf(MediumKind kind) {
-  const Grid grid = centredGrid({20, 24, 18}, {1.0, 0.8, 1.3});
+  const Grid grid = makeCenteredGrid({20, 24, 18}, {1.0, 0.8, 1.3});
   return makeVolume(grid, [kind](const Vec3& p) {
     if (kind == MediumKind::homogeneous)
       return 1.0;
@@ -26,14 +26,15 @@ Volume volumeOf(MediumKind kind) {
 
 /// Non-monotone extinction: 0 at both ends of the range, dense in a thin band between.
 TransferFunction spikes() {
-  return {ScalarFunction({knot(0.0, 0.0), knot(0.45, 0.0), knot(0.5, 4.0), knot(0.55, 0.0),
-                          knot(0.9, 0.0), knot(0.9, 1.5), knot(1.0, 0.2)}),
+  return {ScalarFunction({makeKnot(0.0, 0.0), makeKnot(0.45, 0.0), makeKnot(0.5, 4.0),
+                          makeKnot(0.55, 0.0), makeKnot(0.9, 0.0), makeKnot(0.9, 1.5),
+                          makeKnot(1.0, 0.2)}),
           ColorFunction({{0.0, Rgb::Ones()}})};
 }
 
 /// Ball of radius 4 mm, off-centre.
 Mask ball() {
-  const Grid grid = centredGrid({16, 16, 16}, {1.0, 1.0, 1.0});
+  const Grid grid = makeCenteredGrid({16, 16, 16}, {1.0, 1.0, 1.0});
   Mask mask{grid, {}, 0, {"ball"}};
   for (int k = 0; k < 16; ++k)
     for (int j = 0; j < 16; ++j)
@@ -71,7 +72,8 @@ class Furnace : public ::testing::TestWithParam<Case> {};
 TEST_P(Furnace, RadianceIsOne) {
   const auto [mediumKind, projection, clipKind, g, isCropped] = GetParam();
   TestScene scene{volumeOf(mediumKind),
-                  mediumKind == MediumKind::spikes ? spikes() : linearTransfer(0.4, Rgb::Ones()),
+                  mediumKind == MediumKind::spikes ? spikes()
+                                                   : makeLinearTransfer(0.4, Rgb::Ones()),
                   {EnvironmentLight{}},
                   {},
                   24,
@@ -91,7 +93,7 @@ TEST_P(Furnace, RadianceIsOne) {
   settings.seed = 11;
   settings.path.background.kind = Background::Kind::environment;
   const RenderResult result = scene.render(settings);
-  const Estimate estimate = imageEstimate(result.film);
+  const Estimate estimate = estimateMean(result.film);
   EXPECT_GT(result.counters.collisions, 10000U) << "the medium must matter";
   EXPECT_NEAR(estimate.mean, 1.0, 4.0 * estimate.error);
   EXPECT_LT(estimate.error, 0.02);
@@ -116,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(Cropped, Furnace,
 TEST(SkyOfOneColour, EqualsAConstantEnvironment) {
   const Rgb color(0.9, 0.6, 0.3);
   TestScene scene{volumeOf(MediumKind::heterogeneous),
-                  linearTransfer(0.4, Rgb(0.9, 0.7, 0.5)),
+                  makeLinearTransfer(0.4, Rgb(0.9, 0.7, 0.5)),
                   {EnvironmentLight{color, {}}},
                   {}};
   scene.pose.position = {5.0, 40.0, 12.0};
@@ -129,10 +131,10 @@ TEST(SkyOfOneColour, EqualsAConstantEnvironment) {
     settings.integrator = transport;
     settings.seed = 21;
     scene.lights = {EnvironmentLight{color, {}}};
-    const Estimate constant = imageEstimate(scene.render(settings).film);
+    const Estimate constant = estimateMean(scene.render(settings).film);
     settings.seed = 22;
     scene.lights = {SkyLight{color, color, color}};
-    const Estimate sky = imageEstimate(scene.render(settings).film);
+    const Estimate sky = estimateMean(scene.render(settings).film);
     EXPECT_NEAR(sky.mean, constant.mean, 4.0 * std::hypot(sky.error, constant.error));
     EXPECT_LT(sky.error, 0.005 * constant.mean);
   }

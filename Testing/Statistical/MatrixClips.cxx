@@ -7,7 +7,7 @@ namespace {
 
 /// Two balls, one of which has a hole right through.
 Mask focusOf() {
-  const Grid grid = centredGrid({17, 17, 17}, Vec3::Constant(0.75));
+  const Grid grid = makeCenteredGrid({17, 17, 17}, Vec3::Constant(0.75));
   Mask mask{grid, {}, 0, {"balls"}};
   for (int k = 0; k < 17; ++k)
     for (int j = 0; j < 17; ++j)

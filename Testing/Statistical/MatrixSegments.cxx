@@ -97,7 +97,7 @@ Component matterOf(const Combination& c, std::size_t number, const TransferFunct
 void placeSegments(const Combination& c, Generator& generator, MatrixScene& scene) {
   if (c.segmentCount == 0)
     return;
-  Grid labels = centredGrid(Size3::Constant(17), Vec3(0.7, 0.6, 0.8));
+  Grid labels = makeCenteredGrid(Size3::Constant(17), Vec3(0.7, 0.6, 0.8));
   labels =
       Grid(labels.size, makeRotation(uniform(generator, 0.0, 6.0), randomDirection(generator)) *
                             labels.indexToWorld);
@@ -124,7 +124,7 @@ void placeSegments(const Combination& c, Generator& generator, MatrixScene& scen
         {component.transfer, component.isClipped, component.interfaceWeight});
     all.components.push_back(std::move(component));
   }
-  const auto shares = std::make_shared<const LabelWeights>(sharesOf(parts));
+  const auto shares = std::make_shared<const LabelWeights>(makeLabelWeights(parts));
   tint.weights = mixture.weights = shares;
   if (c.areMatter)
     scene.product.mixture = std::move(mixture);

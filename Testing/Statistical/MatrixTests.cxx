@@ -42,7 +42,7 @@ class Matrix : public ::testing::TestWithParam<Integrator> {};
 TEST_P(Matrix, AgreesWithTheOracle) {
   const MatrixSettings settings{isLongRun() ? 512U : 128U, seedBase(), GetParam()};
   const std::vector<Combination> all =
-      combinations(static_cast<int>(numberFromEnvironment("FENESTRA_COMBINATIONS")
+      combinations(static_cast<int>(readEnvironmentNumber("FENESTRA_COMBINATIONS")
                                         .value_or(isLongRun() ? longCount : shortCount)));
   std::vector<Outcome> outcomes;
   for (const Combination& c : all) {

@@ -32,8 +32,8 @@ Image pictureOf(const std::filesystem::path& file, std::uint64_t seed) {
   request.width = request.height = 24;
   const PreparedScene scene(request);
   RenderSettings settings;
-  settings.samples = budget(std::uint64_t{64});
-  settings.seed = seeded(seed);
+  settings.samples = scaleSamples(std::uint64_t{64});
+  settings.seed = shiftSeed(seed);
   RenderMonitor monitor;
   const Film film = render(scene.view(), settings, monitor).film;
   return makeImage(film, scene.camera(), scene.clip(), parseLayers({}));
@@ -62,7 +62,7 @@ TEST(NiftiOrder, EveryOrderAndSignOfAxesGivesThePictureWithinItsErrors) {
         file.sformCode = static_cast<std::int16_t>(sform);
         const Image image =
             pictureOf(folder.write("v.nii", file.bytes()), std::uint64_t(++compared));
-        EXPECT_GT(agreementProbability(image, expected), 1e-3 / 192.0)
+        EXPECT_GT(computeAgreement(image, expected), 1e-3 / 192.0)
             << order[0] << order[1] << order[2] << " reversed " << reversed << " codes " << qform
             << sform;
       }

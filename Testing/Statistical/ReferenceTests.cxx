@@ -94,8 +94,8 @@ void expectAgreement(const Image& image, const ReferenceCase& c, const Bounds& b
   const std::string name = c.name;
   Image reference = readImage(name + "_best.exr");
   attachError(reference, readImage(name + "_best_se.exr"));
-  const Image tiles = tileMeans(image, bounds.tile);
-  reference = tileMeans(reference, bounds.tile);
+  const Image tiles = computeTileMeans(image, bounds.tile);
+  reference = computeTileMeans(reference, bounds.tile);
   const Comparison comparison = compareImages(tiles, reference);
   ASSERT_TRUE(comparison.z);
   EXPECT_NEAR(comparison.z->mean, 0.0, bounds.mean);
@@ -115,15 +115,15 @@ TEST_P(Reference, PictureAgreesWithinStatistics) {
     GTEST_SKIP() << "no reference pictures at " << FENESTRA_REFERENCE;
   // Near the thin shells of S2 a pixel's samples are so skewed that its z needs thousands of
   // samples for mean 0; a tile's z needs hundreds.
-  const Bounds bounds = brevity() > 1 ? Bounds{16, 0.3, 0.2}
-                        : isLongRun() ? Bounds{1, 0.02, 0.03}
-                                      : Bounds{4, 0.07, 0.05};
+  const Bounds bounds = sampleDivisor() > 1 ? Bounds{16, 0.3, 0.2}
+                        : isLongRun()       ? Bounds{1, 0.02, 0.03}
+                                            : Bounds{4, 0.07, 0.05};
   expectAgreement(renderReference(GetParam()), GetParam(), bounds,
                   std::string("product, ") + GetParam().name);
 }
 
 std::uint64_t samples(std::uint64_t few, std::uint64_t many) {
-  return brevity() > 1 ? 8 : isLongRun() ? many : few;
+  return sampleDivisor() > 1 ? 8 : isLongRun() ? many : few;
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Reference,
@@ -144,9 +144,9 @@ TEST_P(NoiseTarget, TrueErrorIsWithinAFifthOfTheTarget) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, NoiseTarget,
-                         ::testing::Values(ReferenceCase{"S1", 1U << 20, allowedError(0.1)},
-                                           ReferenceCase{"S1", 1U << 20, allowedError(0.07)},
-                                           ReferenceCase{"S2", 1U << 20, allowedError(0.05)}));
+                         ::testing::Values(ReferenceCase{"S1", 1U << 20, relaxError(0.1)},
+                                           ReferenceCase{"S1", 1U << 20, relaxError(0.07)},
+                                           ReferenceCase{"S2", 1U << 20, relaxError(0.05)}));
 
 class OracleReference : public ::testing::TestWithParam<ReferenceCase> {};
 
@@ -174,7 +174,7 @@ TEST(OracleReferenceFurnace, S3hetIsOneEverywhere) {
 TEST(ReferenceFurnace, S3hetIsOneEverywhere) {
   if (!present())
     GTEST_SKIP() << "no reference scenes at " << FENESTRA_REFERENCE;
-  const Image image = renderReference({"S3het", budget(32U)});
+  const Image image = renderReference({"S3het", scaleSamples(32U)});
   double mean = 0.0;
   double variance = 0.0;
   for (const char* channel : {"R", "G", "B"}) {
@@ -187,7 +187,7 @@ TEST(ReferenceFurnace, S3hetIsOneEverywhere) {
   }
   const double n = 3.0 * image.width * image.height;
   EXPECT_NEAR(mean / n, 1.0, 4.0 * std::sqrt(variance) / n);
-  EXPECT_LT(std::sqrt(variance) / n, allowedError(0.001));
+  EXPECT_LT(std::sqrt(variance) / n, relaxError(0.001));
 }
 
 } // namespace

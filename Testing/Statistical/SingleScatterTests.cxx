@@ -80,7 +80,7 @@ TEST(SingleScatterOfLights, DrawnFromStrataAddUp) {
       RenderSettings settings;
       settings.integrator = transport;
       settings.samples = samples;
-      settings.seed = seeded(5900 + samples);
+      settings.seed = shiftSeed(5900 + samples);
       settings.path.bounces = 1;
       expectMean(meanOfPixels(scene.render(settings).film), expected, 0.03);
     }

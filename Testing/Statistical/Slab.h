@@ -8,9 +8,9 @@ namespace fenestra::testing {
 
 /// Slab of side x side x thickness mm of one medium, seen from above, z down.
 inline TestScene slab(double side, double thickness, const Rgb& albedo, double sigma_t = 1.0) {
-  const Grid grid = centredGrid({2, 2, 2}, {side / 2.0, side / 2.0, thickness / 2.0});
+  const Grid grid = makeCenteredGrid({2, 2, 2}, {side / 2.0, side / 2.0, thickness / 2.0});
   TestScene scene{makeVolume(grid, [](const Vec3&) { return 1.0; }),
-                  linearTransfer(sigma_t, albedo),
+                  makeLinearTransfer(sigma_t, albedo),
                   {EnvironmentLight{}},
                   {},
                   8,
@@ -46,8 +46,8 @@ inline void look(TestScene& scene, const Vec3& direction) {
 inline RgbEstimate seen(const TestScene& scene, std::uint64_t samples, std::uint64_t seed,
                         std::uint64_t bounces = PathSettings().bounces) {
   RenderSettings settings;
-  settings.samples = budget(samples);
-  settings.seed = seeded(seed);
+  settings.samples = scaleSamples(samples);
+  settings.seed = shiftSeed(seed);
   settings.path.bounces = bounces;
   return pictureEstimate(scene.render(settings).film);
 }

@@ -15,7 +15,7 @@ TEST_P(SlabTransmittance, EqualsExpOfMinusDepth) {
   RenderSettings settings;
   settings.samples = 2000;
   settings.path.background.kind = Background::Kind::environment;
-  const Estimate estimate = imageEstimate(scene.render(settings).film);
+  const Estimate estimate = estimateMean(scene.render(settings).film);
   const double expected = std::exp(-depth);
   // Every sample is exactly 0 or 1: the binomial error is known even if no sample passed.
   const double error = std::sqrt(expected * (1.0 - expected) / (64.0 * 2000.0));
@@ -95,7 +95,7 @@ TEST_P(HalfSpace, ReflectanceEqualsChandrasekhars) {
   TestScene scene = slab(140.0, 70.0, Rgb::Constant(albedo)); // half-width 70, thickness 70
   RenderSettings settings;
   settings.samples = albedo > 0.95 ? 400 : 1000;
-  const Estimate estimate = imageEstimate(scene.render(settings).film);
+  const Estimate estimate = estimateMean(scene.render(settings).film);
   EXPECT_NEAR(estimate.mean, reflectance, 4.0 * estimate.error + 5e-5); // four digits given
   EXPECT_LT(estimate.error, 0.004);
 }

@@ -22,14 +22,14 @@ RenderSettings makeSettings(const Mode& mode, std::uint64_t samples, std::uint64
   settings.samples = samples;
   settings.sampling = mode.sampling;
   settings.integrator = mode.integrator;
-  settings.seed = seeded(seed);
+  settings.seed = shiftSeed(seed);
   return settings;
 }
 
 /// Numbers of samples that leave blocks incomplete, too.
 TEST(Strata, MeansAreThoseOfIndependentSamples) {
   const TestScene scene = makeFogScene();
-  const int seeds = budget(80);
+  const int seeds = scaleSamples(80);
   for (const std::uint64_t samples : {3U, 8U, 24U}) {
     std::vector<Rgb> means;
     std::vector<Rgb> variances;
@@ -61,7 +61,7 @@ TEST_P(EstimatedErrors, AreThoseOverSeeds) {
   const TestScene scene = makeFogScene();
   const std::uint64_t samples = GetParam();
   for (const Mode& mode : modes) {
-    const int seeds = std::max(20, budget(mode.integrator == Integrator::simd ? 2400 : 800) /
+    const int seeds = std::max(20, scaleSamples(mode.integrator == Integrator::simd ? 2400 : 800) /
                                        static_cast<int>(samples + 10));
     const ErrorRatio measured = measureErrorRatio(scene, makeSettings(mode, samples, 5000), seeds);
     std::printf("%d samples, %s, %s: ratio of variances %.4f +- %.4f\n", static_cast<int>(samples),
@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(Samples, EstimatedErrors, ::testing::Values(2, 8, 16, 1
 TEST(Strata, TakeNoiseAway) {
   const TestScene scene = makeFogScene();
   for (const std::size_t first : {0U, 2U}) {
-    const int seeds = budget(240);
+    const int seeds = scaleSamples(240);
     const double stratified =
         measureErrorRatio(scene, makeSettings(modes[first], 16, 9000), seeds).variance;
     const double independent =

@@ -28,14 +28,15 @@ TransferFunction table(const std::vector<std::pair<double, double>>& knots) {
 template <typename Voxel = float>
 Volume noise(const Size3& size, const Vec3& spacing, double greatest = 1.0) {
   Random random(77, static_cast<std::uint64_t>(size.prod()), 0);
-  return makeVolume<Voxel>(centredGrid(size, spacing),
+  return makeVolume<Voxel>(makeCenteredGrid(size, spacing),
                            [&](const Vec3&) { return greatest * random.uniform(); });
 }
 
 /// Scalar equal to the index along x, 0 to 5; extinction proportional to the scalar.
 constexpr double rampSlope = 0.12;
 Volume ramp() {
-  return makeVolume(centredGrid({6, 4, 5}, {1.3, 0.7, 0.9}), [](const Vec3& p) { return p.x(); });
+  return makeVolume(makeCenteredGrid({6, 4, 5}, {1.3, 0.7, 0.9}),
+                    [](const Vec3& p) { return p.x(); });
 }
 
 /// Rotated grid of unequal spacing.
@@ -293,8 +294,8 @@ protected:
 
 TEST_P(Tracking, MeanTransmittanceEqualsExpOfIntegral) {
   std::vector<Travel> travels;
-  for (std::uint64_t i = 0; i < budget(100000UL); ++i) {
-    Random random(seeded(6), i, 0);
+  for (std::uint64_t i = 0; i < scaleSamples(100000UL); ++i) {
+    Random random(shiftSeed(6), i, 0);
     const Ray ray = randomRay(m_subject.volume, random);
     // Range up to a near light, or infinite.
     const Interval inside = m_integral.inside(ray);
@@ -318,15 +319,15 @@ TEST_P(Tracking, MeanTransmittanceEqualsExpOfIntegral) {
 /// that pass get a random share above that of all their collisions.
 TEST_P(Tracking, CollisionsFollowTheExactDistribution) {
   std::vector<Travel> travels;
-  for (std::uint64_t i = 0; i < budget(100000UL); ++i) {
-    Random random(seeded(7), i, 0);
+  for (std::uint64_t i = 0; i < scaleSamples(100000UL); ++i) {
+    Random random(shiftSeed(7), i, 0);
     const Ray ray = randomRay(m_subject.volume, random);
     travels.push_back({ray, {}, random});
   }
   const std::vector<double> distances = m_follower->collisions(travels);
   std::vector<double> shares;
   for (std::size_t i = 0; i < travels.size(); ++i) {
-    Random random(seeded(8), i, 0);
+    Random random(shiftSeed(8), i, 0);
     const double passes = std::exp(-m_integral.opticalDepth(travels[i].ray, {0.0, distances[i]}));
     shares.push_back(1.0 - (distances[i] < infinity ? passes : random.uniform() * passes));
   }
@@ -358,7 +359,7 @@ protected:
 /// Short segments of eye rays where the surface between samples differs from the samples: past the
 /// edge of a ball, in fog that little light passes.
 TEST_P(SeamTracking, TransmittanceBesideTheFocusFollowsTheExactSurface) {
-  const Grid grid = centredGrid({40, 40, 40}, Vec3::Ones());
+  const Grid grid = makeCenteredGrid({40, 40, 40}, Vec3::Ones());
   const Subject fog{"fog", makeVolume(grid, [](const Vec3&) { return 1.0; }),
                     table({{0.0, 0.0}, {1.0, 8.0}})};
   Mask ball{grid, {}, 0, {"ball"}};
@@ -381,8 +382,8 @@ TEST_P(SeamTracking, TransmittanceBesideTheFocusFollowsTheExactSurface) {
       GTEST_SKIP() << "this machine has no " << GetParam();
     std::vector<Travel> travels;
     std::vector<double> expected;
-    for (std::uint64_t i = 0; travels.size() < budget(20000UL); ++i) {
-      Random random(seeded(10), i, 0);
+    for (std::uint64_t i = 0; travels.size() < scaleSamples(20000UL); ++i) {
+      Random random(shiftSeed(10), i, 0);
       const double angle = 2.0 * pi * random.uniform(), radius = 8.5 + 3.0 * random.uniform();
       const Vec2 at(radius * std::cos(angle), radius * std::sin(angle));
       const double surface = depth.surfaceDepth(at), linear = depth.buffer->depth(at);

@@ -9,9 +9,9 @@ constexpr std::uint64_t million = 1'000'000;
 
 /// 2x2 pixels of a small scattering volume, brighter on one side.
 TestScene smallScene() {
-  TestScene scene{makeVolume(centredGrid({3, 3, 3}, Vec3::Ones()),
+  TestScene scene{makeVolume(makeCenteredGrid({3, 3, 3}, Vec3::Ones()),
                              [](const Vec3& p) { return 0.4 + 0.1 * p.x(); }),
-                  linearTransfer(0.4, Rgb(0.9, 0.5, 0.1)),
+                  makeLinearTransfer(0.4, Rgb(0.9, 0.5, 0.1)),
                   {EnvironmentLight{}},
                   {},
                   2,

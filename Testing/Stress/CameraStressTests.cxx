@@ -10,8 +10,8 @@ constexpr double sigma = 0.25;
 
 /// 6x5x4 mm, absorbing, in an environment of 1.
 TestScene absorber(const CameraPose& pose, int width, int height) {
-  return {makeVolume(centredGrid({6, 5, 4}, Vec3::Ones()), [](const Vec3&) { return 1.0; }),
-          linearTransfer(sigma, Rgb::Zero()),
+  return {makeVolume(makeCenteredGrid({6, 5, 4}, Vec3::Ones()), [](const Vec3&) { return 1.0; }),
+          makeLinearTransfer(sigma, Rgb::Zero()),
           {EnvironmentLight{}},
           pose,
           width,
@@ -96,16 +96,16 @@ TEST(CameraInsideVolume, TransmittanceIsThatOfTheChordAhead) {
                               direction[axis] * position[axis] > 0.0);
         SCOPED_TRACE((std::ostringstream() << position << " | " << direction).str());
         if (leaves && projection == Projection::orthographic && direction.cwiseAbs().sum() == 1.0)
-          ASSERT_EQ(imageEstimate(renderIn(scene, 4).film).mean, 1.0); // nothing ahead
+          ASSERT_EQ(estimateMean(renderIn(scene, 4).film).mean, 1.0); // nothing ahead
         else if (!leaves)
-          expectChords(scene, budget(200));
+          expectChords(scene, scaleSamples(200));
       }
 }
 
 TEST(CameraInsideVolume, FurnaceIsOne) {
   TestScene scene = absorber(pose(Projection::perspective, {0.5, 0.5, 0.5}, {1, 1, 1}), 12, 12);
-  scene.transfer = linearTransfer(2.0, Rgb::Ones());
-  expectOne(renderIn(scene, budget(100)));
+  scene.transfer = makeLinearTransfer(2.0, Rgb::Ones());
+  expectOne(renderIn(scene, scaleSamples(100)));
 }
 
 TEST(FieldOfView, MillionthOfADegreeEqualsOrthographic) {
@@ -122,10 +122,10 @@ TEST(FieldOfView, MillionthOfADegreeEqualsOrthographic) {
   scene.volume = makeVolume(scene.volume.grid, [](const Vec3& p) {
     return 0.5 + 0.5 * std::sin(0.9 * p.x()) * std::cos(0.7 * p.y() + 0.3 * p.z());
   });
-  scene.transfer = linearTransfer(1.5, Rgb::Constant(0.8), 0.4);
-  const RenderResult expected = renderIn(scene, budget(300), 1);
+  scene.transfer = makeLinearTransfer(1.5, Rgb::Constant(0.8), 0.4);
+  const RenderResult expected = renderIn(scene, scaleSamples(300), 1);
   scene.pose = far;
-  expectSamePicture(expected.film, renderIn(scene, budget(300), 2).film);
+  expectSamePicture(expected.film, renderIn(scene, scaleSamples(300), 2).film);
 }
 
 TEST(FieldOfView, ExtremeAnglesSeeTheChordAhead) {
@@ -133,7 +133,7 @@ TEST(FieldOfView, ExtremeAnglesSeeTheChordAhead) {
     for (const Vec3& position : {Vec3(-3.5, 0.2, 0.1), Vec3(0.1, 0.0, 0.0), Vec3(-3.0, 0.0, 0.0)}) {
       CameraPose wide = pose(Projection::perspective, position, {1.0, 0.03, 0.02});
       wide.angle = angle;
-      expectChords(absorber(wide, 16, 16), budget(400));
+      expectChords(absorber(wide, 16, 16), scaleSamples(400));
     }
 }
 
@@ -143,10 +143,10 @@ TEST(PictureSize, OnePixelOrOneRowSeesTheChordAhead) {
        {std::pair(1, 1), std::pair(1, 4096), std::pair(4096, 1), std::pair(3, 17)}) {
     CameraPose fitted = outside;
     fitted.scale = width > height ? 3.0 / 4096.0 : 2.0; // pixels are square
-    expectChords(absorber(fitted, width, height), budget(width * height == 1 ? 20000 : 100));
+    expectChords(absorber(fitted, width, height), scaleSamples(width * height == 1 ? 20000 : 100));
     fitted.projection = Projection::perspective;
     fitted.angle = width > height ? 0.02 : 40.0;
-    expectChords(absorber(fitted, width, height), budget(width * height == 1 ? 20000 : 100));
+    expectChords(absorber(fitted, width, height), scaleSamples(width * height == 1 ? 20000 : 100));
   }
 }
 
@@ -155,8 +155,8 @@ TEST(PictureSize, OnePixelOrOneRowSeesTheChordAhead) {
 TEST(SharpScattering, FurnaceIsOneInABoundedNumberOfCollisions) {
   for (const double g : {-0.9999, 0.9999, -0.9999999999, 0.9999999999}) {
     TestScene scene = absorber(pose(Projection::orthographic, {-9, 1, 2}, {9, -1, -2}), 12, 12);
-    scene.transfer = linearTransfer(1.0, Rgb::Ones(), g);
-    const RenderResult result = renderIn(scene, budget(200));
+    scene.transfer = makeLinearTransfer(1.0, Rgb::Ones(), g);
+    const RenderResult result = renderIn(scene, scaleSamples(200));
     expectOne(result);
     // Scattering straight on or straight back in 4 mm on average: a walk in one dimension.
     const double collisions = static_cast<double>(result.counters.collisions) /
@@ -170,23 +170,23 @@ TestScene mirrors(double power) {
   scene.volume = makeVolume(scene.volume.grid, [](const Vec3& p) {
     return 0.5 + 0.5 * std::sin(2.0 * p.x()) * std::cos(1.5 * p.y() + p.z());
   });
-  scene.transfer = linearTransfer(20.0, Rgb::Ones());
+  scene.transfer = makeLinearTransfer(20.0, Rgb::Ones());
   scene.transfer.shading = SurfaceShading{0.3, 0.7, power, 5.0}; // surfaces almost everywhere
   return scene;
 }
 
 TEST(SharpScattering, MirrorsReflectNoMoreThanArrives) {
   for (const double power : {0.0, 1e4, 1e8, 1e16, 1e300}) {
-    const Estimate estimate = imageEstimate(renderIn(mirrors(power), budget(100)).film);
+    const Estimate estimate = estimateMean(renderIn(mirrors(power), scaleSamples(100)).film);
     EXPECT_LT(estimate.mean, 1.0 + 4.0 * estimate.error) << power;
     EXPECT_GT(estimate.mean, 0.1) << power; // 0.3 diffuse, seen once, and the background
   }
 }
 
 TEST(SharpScattering, MirrorsConvergeWithGrowingPower) {
-  const Film sharp = renderIn(mirrors(1e6), budget(300), 1).film; // lobes 1/1000 wide
-  expectSamePicture(sharp, renderIn(mirrors(1e16), budget(300), 2).film);
-  expectSamePicture(sharp, renderIn(mirrors(1e300), budget(300), 3).film);
+  const Film sharp = renderIn(mirrors(1e6), scaleSamples(300), 1).film; // lobes 1/1000 wide
+  expectSamePicture(sharp, renderIn(mirrors(1e16), scaleSamples(300), 2).film);
+  expectSamePicture(sharp, renderIn(mirrors(1e300), scaleSamples(300), 3).film);
 }
 
 } // namespace

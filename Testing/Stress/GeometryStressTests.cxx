@@ -12,9 +12,9 @@ double bump(const Vec3& p) {
 
 /// 12x10x8 voxels of 1 x 1.2 x 1.5 mm around the origin, seen from a corner.
 TestScene bumpScene() {
-  const Grid grid = centredGrid({12, 10, 8}, {1.0, 1.2, 1.5});
+  const Grid grid = makeCenteredGrid({12, 10, 8}, {1.0, 1.2, 1.5});
   TestScene scene{makeVolume(grid, bump),
-                  linearTransfer(0.6, Rgb::Constant(0.8), 0.4),
+                  makeLinearTransfer(0.6, Rgb::Constant(0.8), 0.4),
                   {EnvironmentLight{}},
                   {},
                   16,
@@ -50,7 +50,7 @@ class Placed : public ::testing::TestWithParam<Place> {};
 TEST_P(Placed, PictureIsUnchanged) {
   const TestScene scene = bumpScene();
   const TestScene elsewhere = moved(scene, GetParam().map);
-  const int samples = budget(400);
+  const int samples = scaleSamples(400);
   expectSamePicture(renderIn(scene, samples, 1).film, renderIn(elsewhere, samples, 2).film);
 }
 
@@ -86,7 +86,7 @@ TEST(MirroredAxes, PictureIsUnchanged) {
     mirrored.volume = makeVolume(Grid(size, scene.volume.grid.indexToWorld * flip),
                                  [&](const Vec3& p) { return bump(flip * p); });
     EXPECT_LT(mirrored.volume.grid.indexToWorld.linear().determinant(), 0.0);
-    const int samples = budget(400);
+    const int samples = scaleSamples(400);
     expectSamePicture(renderIn(scene, samples, 3).film, renderIn(mirrored, samples, 4).film);
   }
 }
@@ -112,7 +112,7 @@ TEST(ShearedAxes, PictureIsUnchanged) {
   const Mat3 sheared = Mat3::FromRows({1.0, 0.9, 0.3}, {0.0, 0.8, -0.7}, {0.0, 0.0, 1.1});
   const Mat3 flat = // two axes nearly parallel
       Mat3::FromRows({0.5, 0.5, 0.1}, {0.5, 0.5 - 1e-3, 0.0}, {0.0, 0.2, 1.0});
-  const int samples = budget(400);
+  const int samples = scaleSamples(400);
   const RenderResult expected = renderIn(straight, samples, 5);
   expectSamePicture(expected.film, renderIn(linearScene({50, 50, 30}, sheared), samples, 6).film);
   // The flat parallelepiped holds only a small part of the crop; the part common to both is
@@ -120,7 +120,7 @@ TEST(ShearedAxes, PictureIsUnchanged) {
   TestScene small = straight;
   small.crop = CropBox(Affine(makeScaling(Vec3(0.01, 0.01, 0.5))));
   small.pose.scale = 0.3;
-  small.transfer = linearTransfer(5.0, Rgb::Constant(0.8));
+  small.transfer = makeLinearTransfer(5.0, Rgb::Constant(0.8));
   TestScene smallFlat = linearScene({101, 101, 9}, flat);
   smallFlat.crop = small.crop;
   smallFlat.pose = small.pose;
@@ -140,14 +140,14 @@ Volume needles(bool resampled) {
     const double f = std::clamp((z + 50.0) / 100.0, 0.0, 1.0);
     return (1.0 - f) * needleValue(p.x(), p.y(), -50.0) + f * needleValue(p.x(), p.y(), 50.0);
   };
-  const Grid grid = resampled ? centredGrid({24, 24, 10}, {0.01, 0.01, 20.0})
-                              : centredGrid({24, 24, 2}, {0.01, 0.01, 100.0});
+  const Grid grid = resampled ? makeCenteredGrid({24, 24, 10}, {0.01, 0.01, 20.0})
+                              : makeCenteredGrid({24, 24, 2}, {0.01, 0.01, 100.0});
   return makeVolume(grid, [&](const Vec3& p) { return value(p, (grid.indexToWorld * p).z()); });
 }
 
 TestScene needleScene(bool resampled, const Rgb& albedo) {
   TestScene scene{
-      needles(resampled), linearTransfer(0.01, albedo), {EnvironmentLight{}}, {}, 12, 12};
+      needles(resampled), makeLinearTransfer(0.01, albedo), {EnvironmentLight{}}, {}, 12, 12};
   scene.pose.position = {0.0, 0.0, 200.0};
   scene.pose.target = {0.02, 0.01, 0.0}; // nearly along the needles
   scene.pose.up = Vec3::UnitY();
@@ -156,20 +156,20 @@ TestScene needleScene(bool resampled, const Rgb& albedo) {
 }
 
 TEST(NeedleVoxels, PictureEqualsThatOfSlicesOfTheSameField) {
-  const int samples = budget(1000);
+  const int samples = scaleSamples(1000);
   const Rgb albedo = Rgb::Constant(0.5);
   expectSamePicture(renderIn(needleScene(false, albedo), samples, 1).film,
                     renderIn(needleScene(true, albedo), samples, 2).film);
 }
 
 TEST(NeedleVoxels, FurnaceIsOne) {
-  expectOne(renderIn(needleScene(false, Rgb::Ones()), budget(100)));
+  expectOne(renderIn(needleScene(false, Rgb::Ones()), scaleSamples(100)));
 }
 
 TEST(NeedleVoxels, DiagonalTransmittanceEqualsExpOfIntegral) {
   const Volume volume = needles(false);
   constexpr double sigma = 0.01;
-  const RayProbe<> probe(volume, linearTransfer(sigma, Rgb::Zero()));
+  const RayProbe<> probe(volume, makeLinearTransfer(sigma, Rgb::Zero()));
   for (int i = 0; i < 4; ++i) {
     const Vec3 from = volume.grid.worldCorner(i);
     const Vec3 to = volume.grid.worldCorner(7 - i);
@@ -195,7 +195,7 @@ TEST(NeedleVoxels, DiagonalTransmittanceEqualsExpOfIntegral) {
       };
       depth += sigma * ((1.0 - f) * across(0) + f * across(1)) * length / steps;
     }
-    probe.expectTransmittance(ray, {}, std::exp(-depth), budget(20000));
+    probe.expectTransmittance(ray, {}, std::exp(-depth), scaleSamples(20000));
   }
 }
 

@@ -18,9 +18,9 @@ std::vector<GrazedGrid> grids() {
                       makeRotation(0.7, Vec3(1.0, 2.0, -0.5).normalized()));
     return Grid(grid.size, turn * grid.indexToWorld);
   };
-  const Grid unit = centredGrid({6, 5, 4}, Vec3::Ones());
+  const Grid unit = makeCenteredGrid({6, 5, 4}, Vec3::Ones());
   return {{"unit", unit},
-          {"uneven", centredGrid({6, 5, 4}, {0.3, 0.7, 1.1})},
+          {"uneven", makeCenteredGrid({6, 5, 4}, {0.3, 0.7, 1.1})},
           {"turned", turned(unit)},
           {"far", Grid(unit.size, Affine(makeTranslation({1e6, 1e6, 1e6})) * unit.indexToWorld)}};
 }
@@ -58,7 +58,7 @@ protected:
 constexpr double slopes[] = {0.0, -0.0, 5e-324, -5e-324, 1e-300, -1e-300, 1e-17, -1e-17};
 
 TEST_P(Grazing, RayAlongAFaceOrEdgeWalksAllOrNothing) {
-  const RayProbe<> probe(m_volume, linearTransfer(sigma, Rgb::Zero()));
+  const RayProbe<> probe(m_volume, makeLinearTransfer(sigma, Rgb::Zero()));
   const Box box = m_grid.indexBox();
   int inside = 0, outside = 0;
   for (int along = 0; along < 3; ++along)
@@ -87,7 +87,7 @@ TEST_P(Grazing, RayAlongAFaceOrEdgeWalksAllOrNothing) {
 }
 
 TEST_P(Grazing, RayNextToAFaceWalksTheChord) {
-  const RayProbe<> probe(m_volume, linearTransfer(sigma, Rgb::Zero()));
+  const RayProbe<> probe(m_volume, makeLinearTransfer(sigma, Rgb::Zero()));
   const Box box = m_grid.indexBox();
   for (int along = 0; along < 3; ++along)
     for (const bool upper : {false, true})
@@ -117,7 +117,7 @@ std::vector<Vec3> latticeDirections() {
 }
 
 TEST_P(Grazing, RayThroughCentresAndCornersOfVoxelsWalksTheChord) {
-  const RayProbe<> probe(m_volume, linearTransfer(sigma, Rgb::Zero()));
+  const RayProbe<> probe(m_volume, makeLinearTransfer(sigma, Rgb::Zero()));
   double greatest = 0.0;
   for (const Vec3& offset : {Vec3(0, 0, 0), Vec3(0.5, 0, 0), Vec3(0.5, 0.5, 0), Vec3(0.5, 0.5, 0.5),
                              Vec3(0.5, std::nextafter(0.5, 1.0), std::nextafter(0.5, 0.0))})
@@ -129,13 +129,13 @@ TEST_P(Grazing, RayThroughCentresAndCornersOfVoxelsWalksTheChord) {
         EXPECT_NEAR(probe.walkedLength(ray), expected, rounding()) << start << " | " << direction;
         greatest = std::max(greatest, expected);
         if (back == 0.0 && offset.y() == 0.5 && direction.cwiseAbs().maxCoeff() == 1.0)
-          probe.expectTransmittance(ray, {}, std::exp(-sigma * expected), budget(1000));
+          probe.expectTransmittance(ray, {}, std::exp(-sigma * expected), scaleSamples(1000));
       }
   EXPECT_GT(greatest, 2.0);
 }
 
 TEST_P(Grazing, RayFromACornerWalksTheChordInwardAndNothingOutward) {
-  const RayProbe<> probe(m_volume, linearTransfer(sigma, Rgb::Zero()));
+  const RayProbe<> probe(m_volume, makeLinearTransfer(sigma, Rgb::Zero()));
   const Box box = m_grid.indexBox();
   for (int corner = 0; corner < 8; ++corner) {
     const Vec3 at = box.corner(corner);
@@ -153,9 +153,9 @@ INSTANTIATE_TEST_SUITE_P(Grids, Grazing, ::testing::Range(0, 4), [](const auto& 
 
 // Faces that are exact in binary: a ray that lies in such a face counts as inside (Box::clip).
 TEST(ExactFaces, RayInAFaceCountsAsInside) {
-  const Grid grid = centredGrid({6, 4, 2}, Vec3::Ones());
+  const Grid grid = makeCenteredGrid({6, 4, 2}, Vec3::Ones());
   const Volume volume = ones(grid);
-  const RayProbe<> probe(volume, linearTransfer(sigma, Rgb::Zero()));
+  const RayProbe<> probe(volume, makeLinearTransfer(sigma, Rgb::Zero()));
   for (const double zero : {0.0, -0.0}) {
     EXPECT_EQ(probe.walkedLength({{-9.0, 2.0, 1.0}, {1.0, zero, zero}}), 6.0);
     EXPECT_EQ(probe.walkedLength({{-9.0, -2.0, -1.0}, {1.0, zero, zero}}), 6.0);
@@ -163,7 +163,7 @@ TEST(ExactFaces, RayInAFaceCountsAsInside) {
     EXPECT_EQ(probe.walkedLength({{3.0, 0.0, 9.0}, {zero, zero, -1.0}}), 2.0);
   }
   const Ray inFace{{-9.0, 2.0, 1.0}, Vec3::UnitX()};
-  probe.expectTransmittance(inFace, {}, std::exp(-sigma * 6.0), budget(10000));
+  probe.expectTransmittance(inFace, {}, std::exp(-sigma * 6.0), scaleSamples(10000));
 }
 
 } // namespace

@@ -258,14 +258,14 @@ TEST(LightEnds, LightInTheVolumesCentreLeavesUsableShares) {
 constexpr std::uint64_t endBits[] = {0, ~std::uint64_t{0}};
 
 Volume bumps() {
-  return makeVolume(centredGrid({9, 8, 7}, {1.0, 1.0, 1.0}), [](const Vec3& p) {
+  return makeVolume(makeCenteredGrid({9, 8, 7}, {1.0, 1.0, 1.0}), [](const Vec3& p) {
     return 0.5 + 0.5 * std::sin(1.3 * p.x()) * std::cos(0.9 * p.y() + p.z());
   });
 }
 
 TEST(TrackingEnds, CollisionsStayInTheRange) {
   const Volume volume = bumps();
-  const RayProbe<> probe(volume, linearTransfer(2.0, Rgb::Ones()));
+  const RayProbe<> probe(volume, makeLinearTransfer(2.0, Rgb::Ones()));
   const Interval range{1.0, 12.0};
   for (const std::uint64_t bits : endBits)
     for (int draw = 1; draw <= 40; ++draw)
@@ -294,7 +294,7 @@ TEST(PathEnds, RadianceIsBoundedByTheNumberOfCollisions) {
   for (const bool hybrid : {false, true})
     for (const double g : {-0.9999, 0.0, 0.9999}) {
       TestScene scene{
-          bumps(), linearTransfer(5.0, Rgb(1.0, 0.9, 0.0), g), {EnvironmentLight{}}, {}};
+          bumps(), makeLinearTransfer(5.0, Rgb(1.0, 0.9, 0.0), g), {EnvironmentLight{}}, {}};
       scene.pose.position = {0.0, -20.0, 0.0};
       scene.pose.target = Vec3::Zero();
       if (hybrid)

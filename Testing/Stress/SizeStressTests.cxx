@@ -53,7 +53,7 @@ protected:
   SmallSizes() {
     const Size3 size(GetParam()[0], GetParam()[1], GetParam()[2]);
     // Rotated volume of about 6 mm along each axis.
-    Grid grid = centredGrid(size, Vec3(6.0, 5.0, 7.0).cwiseQuotient(size.cast<double>()));
+    Grid grid = makeCenteredGrid(size, Vec3(6.0, 5.0, 7.0).cwiseQuotient(size.cast<double>()));
     grid = Grid(size, makeRotation(0.6, Vec3(1, 2, 3).normalized()) * grid.indexToWorld);
     m_volume = makeVolume(grid, [](const Vec3& p) {
       return 0.5 + 0.5 * std::sin(1.7 * p.x() + 0.5) * std::cos(2.1 * p.y() - p.z());
@@ -65,7 +65,7 @@ protected:
 
 TEST_P(SmallSizes, TransmittanceEqualsExpOfIntegral) {
   constexpr double sigma = 0.3;
-  const RayProbe<> probe(m_volume, linearTransfer(sigma, Rgb::Zero()));
+  const RayProbe<> probe(m_volume, makeLinearTransfer(sigma, Rgb::Zero()));
   const Grid& grid = m_volume.grid;
   for (int i = 0; i < 6; ++i) {
     Random random(2, static_cast<std::uint64_t>(i), 0);
@@ -75,12 +75,12 @@ TEST_P(SmallSizes, TransmittanceEqualsExpOfIntegral) {
     EXPECT_NEAR(probe.walkedLength(ray), chord(grid, ray), 1e-12);
     const Interval range{0.0, (b - a).norm()};
     const double depth = sigma * fieldIntegral<float>(m_volume, a, b, 4000);
-    probe.expectTransmittance(ray, range, std::exp(-depth), budget(4000));
+    probe.expectTransmittance(ray, range, std::exp(-depth), scaleSamples(4000));
   }
 }
 
 TEST_P(SmallSizes, GradientIsZeroAlongSingleVoxels) {
-  const RayProbe<> probe(m_volume, linearTransfer(1.0, Rgb::Zero()));
+  const RayProbe<> probe(m_volume, makeLinearTransfer(1.0, Rgb::Zero()));
   const Grid& grid = m_volume.grid;
   for (int i = 0; i < 20; ++i) {
     Random random(3, static_cast<std::uint64_t>(i), 0);
@@ -99,13 +99,14 @@ TEST_P(SmallSizes, GradientIsZeroAlongSingleVoxels) {
 
 TEST_P(SmallSizes, FurnaceIsOne) {
   for (const bool hybrid : {false, true}) {
-    TestScene scene{m_volume, linearTransfer(0.8, Rgb::Ones()), {EnvironmentLight{}}, {}, 12, 12};
+    TestScene scene{m_volume, makeLinearTransfer(0.8, Rgb::Ones()), {EnvironmentLight{}}, {}, 12,
+                    12};
     scene.pose.position = {3.0, -20.0, 6.0};
     scene.pose.target = Vec3::Zero();
     scene.pose.scale = 6.0;
     if (hybrid)
       scene.transfer.shading = SurfaceShading{1.0, 0.0, 10.0, 0.5}; // Lambert alone loses no energy
-    expectOne(renderIn(scene, budget(50)));
+    expectOne(renderIn(scene, scaleSamples(50)));
   }
 }
 
@@ -136,7 +137,7 @@ TEST(MajorantCells, AnyShapeHasAboutAQuarterOfAMillionCells) {
         Shape{{40000, 1, 40000}, {0.001, 100, 0.001}}, Shape{{1, 2000000000, 1}, {1, 1, 1}},
         Shape{{2000000000, 1, 1}, {1, 0.001, 1000}}, Shape{{1300, 1300, 1300}, {0.01, 0.01, 100}},
         Shape{{2000, 2000, 3}, {0.01, 0.01, 100}}, Shape{{3000000, 3, 5}, {1, 2, 0.1}}}) {
-    const Size3 edge = MinMaxGrid::chooseCellSize(centredGrid(size, spacing));
+    const Size3 edge = MinMaxGrid::chooseCellSize(makeCenteredGrid(size, spacing));
     const Size3 cells = (size.array() + edge.array() - 1) / edge.array();
     EXPECT_TRUE((edge.array() >= 1).all() && (edge.array() <= size.array()).all());
     EXPECT_LT(cells.cast<double>().prod(), 4.0 * target) << size;
@@ -146,19 +147,20 @@ TEST(MajorantCells, AnyShapeHasAboutAQuarterOfAMillionCells) {
 
 TEST(MajorantCells, PrimeSizesTransmitExpOfIntegral) {
   const Volume volume = makeVolume<std::uint8_t>(
-      centredGrid({127, 131, 113}, Vec3::Constant(0.05)), [](const Vec3& p) {
+      makeCenteredGrid({127, 131, 113}, Vec3::Constant(0.05)), [](const Vec3& p) {
         return 127.5 + 127.5 * std::sin(0.3 * p.x()) * std::cos(0.2 * p.y() + 0.25 * p.z());
       });
   ASSERT_EQ(MinMaxGrid::chooseCellSize(volume.grid), Size3(2, 2, 2));
   constexpr double sigma = 0.3 / 255.0;
-  const RayProbe<std::uint8_t> probe(volume,
-                                     {ScalarFunction({knot(0.0, 0.0), knot(255.0, 255.0 * sigma)}),
-                                      ColorFunction({{0.0, Rgb::Zero()}})});
+  const RayProbe<std::uint8_t> probe(
+      volume, {ScalarFunction({makeKnot(0.0, 0.0), makeKnot(255.0, 255.0 * sigma)}),
+               ColorFunction({{0.0, Rgb::Zero()}})});
   for (int i = 0; i < 4; ++i) {
     const Vec3 from = volume.grid.worldCorner(i);
     const Vec3 to = volume.grid.worldCorner(7 - i);
     const double depth = sigma * fieldIntegral<std::uint8_t>(volume, from, to);
-    probe.expectTransmittance({from, (to - from).normalized()}, {}, std::exp(-depth), budget(4000));
+    probe.expectTransmittance({from, (to - from).normalized()}, {}, std::exp(-depth),
+                              scaleSamples(4000));
   }
 }
 
@@ -195,7 +197,7 @@ Volume hugeVolume(std::int64_t side) {
         voxels[near] = 100;
         voxels[voxels.size() - 1 - near] = 200;
       }
-  return {centredGrid({side, side, side}, Vec3::Constant(0.1)),
+  return {makeCenteredGrid({side, side, side}, Vec3::Constant(0.1)),
           std::move(voxels),
           0.0,
           200.0,
@@ -209,7 +211,7 @@ TEST(HugeVolume, VoxelsBeyond31BitsAreSeen) {
   constexpr std::int64_t side = 1300;
   // 1 mm of the far block has an optical depth of 1.
   TestScene scene{hugeVolume(side),
-                  {ScalarFunction({knot(0.0, 0.0), knot(200.0, 1.0)}),
+                  {ScalarFunction({makeKnot(0.0, 0.0), makeKnot(200.0, 1.0)}),
                    ColorFunction({{0.0, Rgb::Constant(0.5)}})},
                   {EnvironmentLight{}},
                   {},
@@ -231,7 +233,7 @@ TEST(HugeVolume, VoxelsBeyond31BitsAreSeen) {
     const double depth = fieldIntegral<std::uint8_t>(volume, from, last) / 200.0;
     EXPECT_GT(depth, 1.0);
     probe.expectTransmittance({from, direction.normalized()}, {0.0, (last - from).norm()},
-                              std::exp(-depth), budget(4000));
+                              std::exp(-depth), scaleSamples(4000));
   }
   // The far block must look like a small volume that equals the last corner.
   scene.pose.position = last + Vec3(3, 4, 5);
@@ -248,7 +250,8 @@ TEST(HugeVolume, VoxelsBeyond31BitsAreSeen) {
       scene.pose,
       4,
       4};
-  expectSamePicture(renderIn(scene, budget(500), 1).film, renderIn(small, budget(500), 2).film);
+  expectSamePicture(renderIn(scene, scaleSamples(500), 1).film,
+                    renderIn(small, scaleSamples(500), 2).film);
 }
 
 } // namespace

@@ -84,7 +84,7 @@ double greatestError(const F& f, const G& g, const std::vector<Vec2>& places, do
 
 /// Bound promised in ThinPlateSpline.h, at least 1e-9.
 inline double splineBound(const ThinPlateSpline& spline) {
-  return std::max(1e-9, 1e-14 * conditionNumber(spline));
+  return std::max(1e-9, 1e-14 * computeConditionNumber(spline));
 }
 
 } // namespace fenestra::testing_clipping

@@ -1,6 +1,6 @@
 // Thin plate spline against its solution in 50 digits, on ordinary and on adversarial sites;
 // against the functions that degenerate sites determine; against itself in other units, places and
-// orders. Errors are relative to |f| and the range of the values (greatestError).
+// orders. Errors are relative to |f| and the range of the values (maxError).
 
 #include "SplineStress.h"
 
@@ -28,9 +28,9 @@ double aboveZero(double smoothing) {
 void expectExact(const SplineData& data, const SplineData& same, double smoothing) {
   Random random(7, 0, 0);
   const ThinPlateSpline spline = data.spline(smoothing);
-  EXPECT_LE(greatestError(spline, same.exact(aboveZero(smoothing)), places(random, data, 8),
-                          data.range()),
-            splineBound(spline));
+  EXPECT_LE(
+      maxError(spline, same.exact(aboveZero(smoothing)), places(random, data, 8), data.range()),
+      splineBound(spline));
 }
 
 void expectExact(const SplineData& data) {
@@ -58,7 +58,7 @@ TEST(SplineStress, RandomSitesEqualTheFiftyDigitSolution) {
         greatestError(spline, data.exact(p), places(random, data, 6), data.range());
     EXPECT_LE(error, 1e-9) << count << " sites, radius " << radius << ", p " << p;
     worst = std::max(worst, error);
-    worstCondition = std::max(worstCondition, conditionNumber(spline));
+    worstCondition = std::max(worstCondition, computeConditionNumber(spline));
   }
   std::printf("%d cases: worst relative error %.1e, worst condition number %.1e\n", cases, worst,
               worstCondition);
@@ -72,8 +72,7 @@ TEST(SplineStress, ThousandSitesEqualTheSaddleSystem) {
   const double p = 1.0 / (1.0 + 1e-4); // equals p = 0.5 in a disc of 100 mm
   const ThinPlateSpline spline = data.spline(p);
   const SaddleSpline<long double> exact(data.sites, data.values, p);
-  EXPECT_LE(greatestError(spline, exact, places(random, data, 50), data.range()),
-            splineBound(spline));
+  EXPECT_LE(maxError(spline, exact, places(random, data, 50), data.range()), splineBound(spline));
   const ThinPlateSpline through = data.spline(1.0);
   double miss = 0.0;
   for (std::size_t i = 0; i < data.sites.size(); ++i)
@@ -154,7 +153,7 @@ TEST(SplineStress, NoSitesGiveZero) {
   for (const double smoothing : smoothings) {
     const ThinPlateSpline spline = SplineData{}.spline(smoothing);
     EXPECT_EQ(spline({1e4, -3.0}), 0.0);
-    EXPECT_EQ(conditionNumber(spline), 1.0);
+    EXPECT_EQ(computeConditionNumber(spline), 1.0);
   }
 }
 
@@ -243,7 +242,7 @@ void expectSame(const SplineData& data, double p, const SplineData& moved, doubl
   Random random(9, 0, 0);
   const ThinPlateSpline a = data.spline(p), b = moved.spline(movedP);
   const auto atMoved = [&](const Vec2& x) { return b(map(x)); };
-  EXPECT_LE(greatestError(atMoved, a, places(random, data, 50), data.range()), bound);
+  EXPECT_LE(maxError(atMoved, a, places(random, data, 50), data.range()), bound);
 }
 
 template <typename Map>
@@ -328,8 +327,9 @@ TEST(SplineStress, ConditionNumberEqualsTheRatioOfEigenvalues) {
   Random random(14, 0, 0);
   for (const SplineData& data : {outline(50, 60.0), scattered(random, 30, 5.0, {10, 20}, 1.0)}) {
     for (const double lambda : {0.0, 1.0}) {
-      const double expected = conditionByEigenvectors(data.sites, lambda);
-      EXPECT_NEAR(conditionNumber(data.spline(1.0 / (1.0 + lambda))), expected, 1e-6 * expected);
+      const double expected = computeConditionByEigenvectors(data.sites, lambda);
+      EXPECT_NEAR(computeConditionNumber(data.spline(1.0 / (1.0 + lambda))), expected,
+                  1e-6 * expected);
     }
   }
 }
@@ -344,9 +344,9 @@ TEST(SplineStress, ConditionNumberStaysSmall) {
         return *layout == 'o' ? outline(count, radius)
                               : scattered(random, count, radius, Vec2::Zero(), 1.0);
       };
-      const std::array conditions{conditionNumber(sites(1.0).spline(0.5)),
-                                  conditionNumber(sites(100.0).spline(0.5)),
-                                  conditionNumber(sites(100.0).spline(1.0))};
+      const std::array conditions{computeConditionNumber(sites(1.0).spline(0.5)),
+                                  computeConditionNumber(sites(100.0).spline(0.5)),
+                                  computeConditionNumber(sites(100.0).spline(1.0))};
       std::printf("%10s %6d %10.1e %10.1e %10.1e\n", layout, count, conditions[0], conditions[1],
                   conditions[2]);
       RecordProperty(layout + std::to_string(count), std::to_string(conditions[1]));

@@ -15,7 +15,7 @@ constexpr double highest = 300.0;
 
 /// Volume of 11 layers of 1 mm along z.
 Volume scalarRamp() {
-  return makeVolume<std::int16_t>(centredGrid({2, 2, 11}, Vec3::Ones()), [](const Vec3& p) {
+  return makeVolume<std::int16_t>(makeCenteredGrid({2, 2, 11}, Vec3::Ones()), [](const Vec3& p) {
     return lowest + (highest - lowest) * p.z() / 10.0;
   });
 }
@@ -67,31 +67,32 @@ const double next = std::nextafter(50.0, 51.0);
 
 std::vector<TransferCase> transferCases() {
   return {
-      {"oneKnot", {knot(50, 0.1)}},
-      {"oneKnotFarOutside", {knot(1e30, 0.1)}},
-      {"allZero", {knot(-100, 0), knot(0, 0), knot(100, 0)}},
-      {"step", {knot(50, 0.05), knot(50, 0.3)}},
-      {"stepWithThreeKnots", {knot(50, 0.05), knot(50, 0.9), knot(50, 0.3)}},
-      {"stepDown", {knot(-100, 0.4), knot(50, 0.4), knot(50, 0), knot(100, 0)}},
+      {"oneKnot", {makeKnot(50, 0.1)}},
+      {"oneKnotFarOutside", {makeKnot(1e30, 0.1)}},
+      {"allZero", {makeKnot(-100, 0), makeKnot(0, 0), makeKnot(100, 0)}},
+      {"step", {makeKnot(50, 0.05), makeKnot(50, 0.3)}},
+      {"stepWithThreeKnots", {makeKnot(50, 0.05), makeKnot(50, 0.9), makeKnot(50, 0.3)}},
+      {"stepDown", {makeKnot(-100, 0.4), makeKnot(50, 0.4), makeKnot(50, 0), makeKnot(100, 0)}},
       {"stepsInOneVoxel",
-       {knot(20, 0), knot(20, 1), knot(25, 1), knot(25, 0), knot(30, 0), knot(30, 2), knot(32, 2),
-        knot(32, 0)}},
-      {"stepAtTheLeastScalar", {knot(lowest, 0.8), knot(lowest, 0.1)}},
-      {"stepAtTheGreatestScalar", {knot(highest, 0.1), knot(highest, 0.4)}},
-      {"stepAtAVoxel", {knot(100, 0.0), knot(100, 0.2)}},
-      {"oneUlpWide", {knot(50, 0.05), knot(next, 0.3)}},
-      {"leastSpan", {knot(0, 0.05), knot(5e-324, 0.3)}},
-      {"subnormalSpan", {knot(0, 0.05), knot(1e-310, 0.2), knot(2e-310, 0.3)}},
-      {"below", {knot(-5000, 0), knot(-4000, 0.2)}},
-      {"above", {knot(4000, 0.1), knot(5000, 0.9)}},
-      {"around", {knot(-1e30, 0.2), knot(1e30, 0.0)}},
-      {"aroundWithSpike", {knot(-1e30, 0), knot(40, 0), knot(50, 1), knot(60, 0), knot(1e30, 0)}},
-      {"descending", {knot(-200, 0.4), knot(0, 0.1), knot(300, 0)}},
-      {"negativeScalars", {knot(-150, 0), knot(-120, 0.6), knot(-50, 0)}},
+       {makeKnot(20, 0), makeKnot(20, 1), makeKnot(25, 1), makeKnot(25, 0), makeKnot(30, 0),
+        makeKnot(30, 2), makeKnot(32, 2), makeKnot(32, 0)}},
+      {"stepAtTheLeastScalar", {makeKnot(lowest, 0.8), makeKnot(lowest, 0.1)}},
+      {"stepAtTheGreatestScalar", {makeKnot(highest, 0.1), makeKnot(highest, 0.4)}},
+      {"stepAtAVoxel", {makeKnot(100, 0.0), makeKnot(100, 0.2)}},
+      {"oneUlpWide", {makeKnot(50, 0.05), makeKnot(next, 0.3)}},
+      {"leastSpan", {makeKnot(0, 0.05), makeKnot(5e-324, 0.3)}},
+      {"subnormalSpan", {makeKnot(0, 0.05), makeKnot(1e-310, 0.2), makeKnot(2e-310, 0.3)}},
+      {"below", {makeKnot(-5000, 0), makeKnot(-4000, 0.2)}},
+      {"above", {makeKnot(4000, 0.1), makeKnot(5000, 0.9)}},
+      {"around", {makeKnot(-1e30, 0.2), makeKnot(1e30, 0.0)}},
+      {"aroundWithSpike",
+       {makeKnot(-1e30, 0), makeKnot(40, 0), makeKnot(50, 1), makeKnot(60, 0), makeKnot(1e30, 0)}},
+      {"descending", {makeKnot(-200, 0.4), makeKnot(0, 0.1), makeKnot(300, 0)}},
+      {"negativeScalars", {makeKnot(-150, 0), makeKnot(-120, 0.6), makeKnot(-50, 0)}},
       {"narrowSpikes",
-       {knot(-37.51, 0), knot(-37.5, 100), knot(-37.49, 0), knot(212.4, 0), knot(212.5, 40),
-        knot(212.6, 0)}},
-      {"tiny", {knot(0, 1e-300), knot(100, 1e-310)}}};
+       {makeKnot(-37.51, 0), makeKnot(-37.5, 100), makeKnot(-37.49, 0), makeKnot(212.4, 0),
+        makeKnot(212.5, 40), makeKnot(212.6, 0)}},
+      {"tiny", {makeKnot(0, 1e-300), makeKnot(100, 1e-310)}}};
 }
 
 class TransferExtremes : public ::testing::TestWithParam<TransferCase> {};
@@ -107,7 +108,7 @@ TEST_P(TransferExtremes, TransmittanceEqualsExpOfIntegral) {
         volume, {ScalarFunction(knots), ColorFunction({{0.0, Rgb::Zero()}})});
     for (const double sign : {1.0, -1.0})
       probe.expectTransmittance({{0.2, -0.3, -20.0 * sign}, sign * Vec3::UnitZ()}, {}, expected,
-                                budget(6000));
+                                scaleSamples(6000));
   }
 }
 
@@ -121,7 +122,7 @@ TEST_P(TransferExtremes, FurnaceIsOne) {
   scene.pose.position = {10.0, -10.0, 8.0};
   scene.pose.target = Vec3::Zero();
   scene.pose.scale = 5.0;
-  const RenderResult result = renderIn(scene, budget(60));
+  const RenderResult result = renderIn(scene, scaleSamples(60));
   expectOne(result);
   if (std::string(GetParam().name) == "allZero") {
     EXPECT_EQ(result.counters.lookups, 0U);
@@ -154,13 +155,13 @@ TEST_P(PropertyExtremes, TransmittanceEqualsTheFormula) {
   constexpr int steps = 20000;
   for (int k = 0; k < steps; ++k) {
     const double s = 50.0 + 50.0 * ((k + 0.5) / steps - 0.5) * 0.5;
-    const double opacity = std::min(curveAt(property.scalarOpacity, s), 0.9999);
+    const double opacity = std::min(interpolateCurve(property.scalarOpacity, s), 0.9999);
     depth -= std::log1p(-opacity) / property.unitDistance * 0.5 / steps;
   }
   // The table's relative error is <= 1e-4.
   ASSERT_LT(depth, 8.0);
   probe.expectTransmittance({{0.2, -0.3, -0.25}, Vec3::UnitZ()}, {0.0, 0.5}, std::exp(-depth),
-                            budget(20000));
+                            scaleSamples(20000));
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -182,14 +183,14 @@ INSTANTIATE_TEST_SUITE_P(
 
 template <typename Voxel>
 void expectConstantIs(double value, double sigma_t) {
-  const Volume volume =
-      makeVolume<Voxel>(centredGrid({5, 4, 3}, Vec3::Ones()), [=](const Vec3&) { return value; });
-  const TransferFunction transfer{
-      ScalarFunction({knot(-1000, 0.1), knot(0, 0.2), knot(0, 0.3), knot(300, 0.4)}),
-      ColorFunction({{0.0, Rgb::Ones()}})};
+  const Volume volume = makeVolume<Voxel>(makeCenteredGrid({5, 4, 3}, Vec3::Ones()),
+                                          [=](const Vec3&) { return value; });
+  const TransferFunction transfer{ScalarFunction({makeKnot(-1000, 0.1), makeKnot(0, 0.2),
+                                                  makeKnot(0, 0.3), makeKnot(300, 0.4)}),
+                                  ColorFunction({{0.0, Rgb::Ones()}})};
   const RayProbe<Voxel> probe(volume, transfer);
   probe.expectTransmittance({{-9, 0, 0}, Vec3::UnitX()}, {}, std::exp(-5.0 * sigma_t),
-                            budget(10000));
+                            scaleSamples(10000));
   TestScene scene{volume, transfer, {EnvironmentLight{}}, {}, 8, 8};
   scene.pose.position = {10.0, -10.0, 8.0};
   scene.pose.target = Vec3::Zero();
@@ -197,7 +198,7 @@ void expectConstantIs(double value, double sigma_t) {
   for (const bool hybrid : {false, true}) { // no gradient: never a surface
     if (hybrid)
       scene.transfer.shading = SurfaceShading{};
-    expectOne(renderIn(scene, budget(60)));
+    expectOne(renderIn(scene, scaleSamples(60)));
   }
 }
 

@@ -51,7 +51,7 @@ Film filmOf(RenderRequest request, int samples) {
   request.height = 8;
   const PreparedScene scene(request);
   RenderSettings settings;
-  settings.samples = static_cast<std::uint64_t>(budget(samples));
+  settings.samples = static_cast<std::uint64_t>(scaleSamples(samples));
   RenderMonitor monitor;
   return render(scene.view(), settings, monitor).film;
 }
@@ -189,7 +189,7 @@ TEST(ExtinctionLimit, OpticalDepthAboveTenMillionIsRefused) {
   }
   const auto look = folder.write("at.json", denseLook(0.999 * limit));
   // Every eye ray meets a half-space of albedo 0.9 head-on: Chandrasekhar's reflectance.
-  const Estimate estimate = imageEstimate(pictureOf(folder / "v.nrrd", look));
+  const Estimate estimate = estimateMean(pictureOf(folder / "v.nrrd", look));
   EXPECT_GT(estimate.mean, 0.25); // rays beside the volume show black
   RenderRequest request;
   request.input = folder / "v.nrrd";
@@ -208,9 +208,9 @@ TEST(ExtinctionLimit, ReflectanceEqualsChandrasekhars) {
   request.lights = folder.write("lights.json", R"({"lights": [{"type": "environment",
                                                     "radiance": [1, 1, 1]}]})");
   request.view.scale = 1.5; // inside the silhouette, seen head-on
-  const Estimate estimate = imageEstimate(filmOf(request, 250));
+  const Estimate estimate = estimateMean(filmOf(request, 250));
   EXPECT_NEAR(estimate.mean, 0.4149, 4.0 * estimate.error + 5e-5);
-  EXPECT_LT(estimate.error, allowedError(0.005));
+  EXPECT_LT(estimate.error, relaxError(0.005));
 }
 
 } // namespace

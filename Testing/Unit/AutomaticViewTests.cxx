@@ -14,15 +14,15 @@ namespace {
 /// Cube of 60 mm filled by a transparent context.
 class ViewOfCube : public ::testing::Test {
 protected:
-  const Grid grid = centredGrid({30, 30, 30}, {2.0, 2.0, 2.0});
-  const TransferFunction transfer = linearTransfer(0.01, Rgb::Constant(0.8));
+  const Grid grid = makeCenteredGrid({30, 30, 30}, {2.0, 2.0, 2.0});
+  const TransferFunction transfer = makeLinearTransfer(0.01, Rgb::Constant(0.8));
   Volume volume = makeVolume(grid, [](const Vec3&) { return 1.0; });
 
   /// Mask of 1 mm voxels in the cube whose centres satisfy the predicate.
   template <typename Predicate>
   static Mask makeFocus(const Predicate& predicate) {
     Mask mask;
-    mask.grid = centredGrid({60, 60, 60}, {1.0, 1.0, 1.0});
+    mask.grid = makeCenteredGrid({60, 60, 60}, {1.0, 1.0, 1.0});
     mask.names = {"A"};
     for (std::int64_t z = 0; z < 60; ++z)
       for (std::int64_t y = 0; y < 60; ++y)
@@ -136,7 +136,7 @@ TEST_F(ViewOfCube, ViewIsTheSameForAnyNumberOfThreads) {
 
 TEST_F(ViewOfCube, EmptyFocusIsShownFromAnterior) {
   Mask emptyMask;
-  emptyMask.grid = centredGrid({3, 3, 3}, {1.0, 1.0, 1.0});
+  emptyMask.grid = makeCenteredGrid({3, 3, 3}, {1.0, 1.0, 1.0});
   emptyMask.voxels.assign(27, 0);
   EXPECT_EQ(findView(emptyMask).fromTarget, Vec3::UnitY());
 }

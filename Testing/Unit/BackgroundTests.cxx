@@ -10,8 +10,8 @@ namespace {
 /// Picture of 4 x 8 pixels of an empty volume in front of a background.
 Film renderEmptyScene(const Background& background, double sigma_t = 0.0, int threads = 0) {
   TestScene scene{
-      makeVolume(centredGrid({4, 4, 4}, {1.0, 1.0, 1.0}), [](const Vec3&) { return 1.0; }),
-      linearTransfer(sigma_t, Rgb::Zero()),
+      makeVolume(makeCenteredGrid({4, 4, 4}, {1.0, 1.0, 1.0}), [](const Vec3&) { return 1.0; }),
+      makeLinearTransfer(sigma_t, Rgb::Zero()),
       {},
       {},
       4,
@@ -45,8 +45,8 @@ TEST(Background, GradientIsLinearInDisplayValues) {
 
 TEST(Background, ShowsASkyAcrossEachPixel) {
   TestScene scene{
-      makeVolume(centredGrid({4, 4, 4}, {1.0, 1.0, 1.0}), [](const Vec3&) { return 0.0; }),
-      linearTransfer(0.0, Rgb::Zero()),
+      makeVolume(makeCenteredGrid({4, 4, 4}, {1.0, 1.0, 1.0}), [](const Vec3&) { return 0.0; }),
+      makeLinearTransfer(0.0, Rgb::Zero()),
       {SkyLight{Rgb(1, 2, 3), Rgb(0.5, 0.5, 0.5), Rgb(3, 2, 1)}},
       {},
       1,

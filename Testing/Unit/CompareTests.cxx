@@ -225,7 +225,7 @@ TEST(StudentTail, MatchesClosedForms) {
 TEST(TileMeans, MeanAndErrorAreThoseOfTheTile) {
   Image image = withSamples(withError(makeConstantImage(5, 4, 1.0f), 0.2f), 11.0f);
   image.channels["R"][0] = 5.0f;
-  const Image tiles = tileMeans(image, 4);
+  const Image tiles = computeTileMeans(image, 4);
   ASSERT_EQ(tiles.width, 2);
   ASSERT_EQ(tiles.height, 1);
   EXPECT_FLOAT_EQ(tiles.find("R")->at(0), 1.25f);
@@ -233,33 +233,33 @@ TEST(TileMeans, MeanAndErrorAreThoseOfTheTile) {
   EXPECT_FLOAT_EQ(tiles.find("error.G")->at(0), 0.05f);
   EXPECT_FLOAT_EQ(tiles.find("error.G")->at(1), 0.1f);
   EXPECT_FLOAT_EQ(tiles.find("samples.N")->at(0), 176.0f);
-  EXPECT_EQ(tileMeans(image, 1000).find("R")->size(), 1u);
-  EXPECT_THROW(tileMeans(makeConstantImage(2, 2, 1.0f), 2), Error);
+  EXPECT_EQ(computeTileMeans(image, 1000).find("R")->size(), 1u);
+  EXPECT_THROW(computeTileMeans(makeConstantImage(2, 2, 1.0f), 2), Error);
 }
 
 TEST(AgreementProbability, IndependentRendersGiveUniformProbabilities) {
   int lowCount = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed)
-    lowCount += agreementProbability(makeRender(2 * seed), makeRender(2 * seed + 1)) < 0.1;
+    lowCount += computeAgreement(makeRender(2 * seed), makeRender(2 * seed + 1)) < 0.1;
   EXPECT_NEAR(lowCount, 20, 4 * std::sqrt(20 * 0.9));
 }
 
 TEST(AgreementProbability, OneOutlierGivesNearlyZero) {
   Image image = makeRender(1);
   image.channels["G"][77] += 0.1f; // seven combined errors
-  EXPECT_LT(agreementProbability(image, makeRender(2)), 1e-6);
+  EXPECT_LT(computeAgreement(image, makeRender(2)), 1e-6);
   image.channels["G"][77] = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_EQ(agreementProbability(image, makeRender(2)), 0.0);
+  EXPECT_EQ(computeAgreement(image, makeRender(2)), 0.0);
 }
 
 TEST(AgreementProbability, IsOneForIdenticalValuesWithZeroError) {
   const Image black = withSamples(withError(makeConstantImage(4, 4, 0.0f), 0.0f), 9.0f);
-  EXPECT_EQ(agreementProbability(black, black), 1.0);
+  EXPECT_EQ(computeAgreement(black, black), 1.0);
   Image other = black;
   other.channels["B"][3] = 0.5f;
-  EXPECT_EQ(agreementProbability(black, other), 0.0);
+  EXPECT_EQ(computeAgreement(black, other), 0.0);
   other.channels["error.B"][3] = 0.5f; // one of few samples hit something
-  EXPECT_GT(agreementProbability(black, other), 0.05);
+  EXPECT_GT(computeAgreement(black, other), 0.05);
 }
 
 TEST(AgreementProbability, RareBrightPathsAreNoDisagreement) {
@@ -283,7 +283,7 @@ TEST(AgreementProbability, RareBrightPathsAreNoDisagreement) {
   };
   const Image reference = makeSparseImage(99, 800);
   for (std::uint64_t seed = 0; seed < 10; ++seed)
-    EXPECT_GT(agreementProbability(makeSparseImage(seed, 100), reference), 0.01);
+    EXPECT_GT(computeAgreement(makeSparseImage(seed, 100), reference), 0.01);
 }
 
 } // namespace

@@ -28,14 +28,15 @@ std::vector<RenderResult> collectCheckpoints(const TestScene& scene, const Rende
     checkpoints.push_back(result);
     polls = 0;
   };
-  scene.with([&](const SceneView& s) { return render(s, settings, monitor); });
+  scene.visitView([&](const SceneView& s) { return render(s, settings, monitor); });
   return checkpoints;
 }
 
 RenderResult resume(const TestScene& scene, const RenderSettings& settings,
                     const RenderResult& checkpoint) {
   RenderMonitor monitor;
-  return scene.with([&](const SceneView& s) { return render(s, settings, monitor, checkpoint); });
+  return scene.visitView(
+      [&](const SceneView& s) { return render(s, settings, monitor, checkpoint); });
 }
 
 void expectSameEnd(const RenderResult& once, const RenderResult& again) {

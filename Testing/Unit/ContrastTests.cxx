@@ -66,14 +66,15 @@ constexpr double inside = 60.0, outside = 20.0, air = -1000.0;
 
 /// Ball of radius 6 mm in other matter up to `radius`, then air.
 Volume makeBallVolume(double radius) {
-  return makeVolume<float>(centredGrid({40, 40, 40}, Vec3::Ones()), [radius](const Vec3& index) {
-    const double distance = (index - Vec3::Constant(19.5)).norm();
-    return distance <= 6.0 ? inside : distance <= radius ? outside : air;
-  });
+  return makeVolume<float>(makeCenteredGrid({40, 40, 40}, Vec3::Ones()),
+                           [radius](const Vec3& index) {
+                             const double distance = (index - Vec3::Constant(19.5)).norm();
+                             return distance <= 6.0 ? inside : distance <= radius ? outside : air;
+                           });
 }
 
 Mask makeBallMask() {
-  const Grid grid = centredGrid({16, 16, 16}, Vec3::Ones());
+  const Grid grid = makeCenteredGrid({16, 16, 16}, Vec3::Ones());
   Mask mask{grid, {}, 0, {"ball"}};
   for (int z = 0; z < 16; ++z)
     for (int y = 0; y < 16; ++y)
@@ -86,7 +87,7 @@ Mask makeBallMask() {
 
 /// Air is transparent; the two kinds of matter have these albedos.
 TransferFunction makeTransfer(const Rgb& context, const Rgb& focus) {
-  return {ScalarFunction({knot(-500.0, 0.0), knot(0.0, 1.0)}),
+  return {ScalarFunction({makeKnot(-500.0, 0.0), makeKnot(0.0, 1.0)}),
           ColorFunction({{outside, context}, {inside, focus}})};
 }
 

@@ -15,8 +15,8 @@ namespace {
 /// the focus 5 mm behind the cube's face.
 struct Cube {
   TestScene scene{
-      makeVolume(centredGrid({10, 10, 10}, {2.0, 2.0, 2.0}), [](const Vec3&) { return 1.0; }),
-      linearTransfer(0.1, Rgb::Ones()),
+      makeVolume(makeCenteredGrid({10, 10, 10}, {2.0, 2.0, 2.0}), [](const Vec3&) { return 1.0; }),
+      makeLinearTransfer(0.1, Rgb::Ones()),
       {EnvironmentLight{}},
       {},
       16,
@@ -64,7 +64,7 @@ TEST(FocusCoverage, IsZeroIfTheFocusIsCutAway) {
 
 TEST(Render, StopsWithinALongPath) {
   TestScene scene = Cube().scene;
-  scene.transfer = linearTransfer(20000.0, Rgb::Ones()); // no absorption, and almost no escape
+  scene.transfer = makeLinearTransfer(20000.0, Rgb::Ones()); // no absorption, and almost no escape
   const Camera camera(scene.pose, scene.width, scene.height);
   const LightSet lights(scene.lights, scene.volume.grid, camera);
   const MinMaxGrid ranges(scene.volume, 0);

@@ -13,7 +13,7 @@ namespace fenestra::testing::DefaultsTests {
 namespace {
 
 Volume makeRamp(double low, double high) {
-  return makeVolume<float>(centredGrid({40, 30, 20}, {2.0, 2.0, 2.0}),
+  return makeVolume<float>(makeCenteredGrid({40, 30, 20}, {2.0, 2.0, 2.0}),
                            [=](const Vec3& p) { return low + (high - low) * p.x() / 39.0; });
 }
 
@@ -149,7 +149,7 @@ TEST(DefaultTransfer, HounsfieldRangeGivesACtPreset) {
 TEST(AirLevel, IsThatOfTheModalityAndNothingWhereSurroundingsAreCutOff) {
   EXPECT_EQ(findAirThreshold(makeRamp(-1000, 1500)), -300.0);
   const auto makeHead = [](double air) {
-    return makeVolume<float>(centredGrid({40, 30, 20}, {2.0, 2.0, 2.0}), [=](const Vec3& p) {
+    return makeVolume<float>(makeCenteredGrid({40, 30, 20}, {2.0, 2.0, 2.0}), [=](const Vec3& p) {
       return p.norm() < 20.0 ? 400.0 + p.x() : air * std::abs(std::sin(100.0 * p.x() + p.y()));
     });
   };

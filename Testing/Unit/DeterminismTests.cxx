@@ -54,7 +54,7 @@ TEST(Render, EstimatesNoiseForThoseWhoWatch) {
     RenderMonitor monitor;
     monitor.isNoiseWanted = isWanted;
     const RenderResult result =
-        s.with([&](const SceneView& scene) { return render(scene, settings, monitor); });
+        s.visitView([&](const SceneView& scene) { return render(scene, settings, monitor); });
     EXPECT_EQ(monitor.noise, isWanted ? result.film.noise() : infinity);
   }
 }

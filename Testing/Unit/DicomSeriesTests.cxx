@@ -162,7 +162,7 @@ TEST(DicomSeries, DecodesJpeg2000AndRefusesDamagedStreams) {
   const TemporaryFolder folder;
   SliceFile slice{.width = 60, .height = 50, .intercept = "-1024", .first = -3, .compress = true};
   const Path file = write(folder / "one.dcm", slice);
-  const std::string bytes = bytesOf(file);
+  const std::string bytes = readBytes(file);
   ASSERT_NE(bytes.find("\xff\x4f\xff\x51"), std::string::npos); // start of a codestream
   const Volume volume = readDicomVolume({file}, "x");
   for (int i = 0; i < 3000; ++i)
@@ -314,7 +314,7 @@ TEST(DicomSeries, RefusesFilesThatAreNoGreySlices) {
   const Path colored = write(folder / "rgb.dcm", {.components = 3});
   const auto read = [](const Path& file) { return [file] { readDicomVolume({file}, "x"); }; };
   fenestra::expectRefused(colored, "of one scalar a voxel", read(colored));
-  const std::string bytes = bytesOf(write(folder / "a.dcm", {}));
+  const std::string bytes = readBytes(write(folder / "a.dcm", {}));
   const auto expect = [&](const std::string& tag, const std::string& value, const char* text) {
     std::string changed = bytes;
     replace(changed, tag, value);
@@ -342,7 +342,7 @@ TEST(DicomSeries, RefusesFilesThatAreNoGreySlices) {
 /// Damaged bytes must be read, or refused on one line.
 TEST(DicomSeries, DamagedBytesAreReadOrRefused) {
   const TemporaryFolder folder;
-  const std::string original = bytesOf(write(folder / "a.dcm", {}));
+  const std::string original = readBytes(write(folder / "a.dcm", {}));
   std::mt19937 random(11);
   int readCount = 0;
   ::testing::internal::CaptureStderr();

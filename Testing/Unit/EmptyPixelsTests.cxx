@@ -15,7 +15,7 @@ TestScene makeBallScene(Projection projection, double distance) {
   const Vec3 middle(30.0, 22.0, 12.0);
   TestScene scene{makeVolume(Grid({40, 36, 32}, map),
                              [&](const Vec3& p) { return (p - middle).norm() < 5.0 ? 1.0 : 0.0; }),
-                  linearTransfer(2.0, Rgb::Constant(0.7)),
+                  makeLinearTransfer(2.0, Rgb::Constant(0.7)),
                   {EnvironmentLight{}},
                   {},
                   64,
@@ -70,8 +70,8 @@ INSTANTIATE_TEST_SUITE_P(Views, EmptyPixelsOf,
 
 TEST(EmptyPixels, FilledPictureOfOneColumnHasNone) {
   TestScene scene = makeBallScene(Projection::orthographic, 100.0);
-  scene.transfer = linearTransfer(0.0, Rgb::Constant(0.7));
-  scene.transfer.extinction = ScalarFunction({knot(0.0, 1.0)});
+  scene.transfer = makeLinearTransfer(0.0, Rgb::Constant(0.7));
+  scene.transfer.extinction = ScalarFunction({makeKnot(0.0, 1.0)});
   scene.pose.scale = 5.0;
   for (const auto& [width, height] : {std::pair(1, 1), std::pair(1, 5), std::pair(5, 1)}) {
     scene.width = width;
@@ -87,7 +87,7 @@ TEST(EmptyPixels, DefaultHasNone) {
 
 TEST(EmptyPixels, PictureThatMeetsNothingHasOnlyEmptyPixels) {
   TestScene scene = makeBallScene(Projection::orthographic, 100.0);
-  scene.transfer = linearTransfer(0.0, Rgb::Constant(0.7));
+  scene.transfer = makeLinearTransfer(0.0, Rgb::Constant(0.7));
   RenderSettings settings;
   settings.noise = 0.1;
   const RenderResult result = scene.render(settings);

@@ -11,14 +11,14 @@ namespace fenestra::testing::FeatureBuffersTests {
 namespace {
 
 FeatureBuffers renderFeatures(const TestScene& s) {
-  return s.with([](const SceneView& scene) { return computeFeatures(scene); });
+  return s.visitView([](const SceneView& scene) { return computeFeatures(scene); });
 }
 
 /// Slab of 10 mm with one extinction, seen face on by parallel rays that start 50 mm before it.
 TestScene makeSlab(double extinction) {
   TestScene s{
-      makeVolume(centredGrid({10, 40, 40}, {1.0, 1.0, 1.0}), [](const Vec3&) { return 1.0; }),
-      linearTransfer(extinction, Rgb(0.9, 0.5, 0.1)),
+      makeVolume(makeCenteredGrid({10, 40, 40}, {1.0, 1.0, 1.0}), [](const Vec3&) { return 1.0; }),
+      makeLinearTransfer(extinction, Rgb(0.9, 0.5, 0.1)),
       {},
       {.position = {-55, 0, 0}, .target = Vec3::Zero(), .scale = 8.0}};
   return s;
@@ -26,12 +26,12 @@ TestScene makeSlab(double extinction) {
 
 /// Waves of matter under hybrid shading, partly beside the frame.
 TestScene makeWaves() {
-  TestScene s{makeVolume<std::int16_t>(centredGrid({24, 24, 24}, {1.0, 1.0, 1.5}),
+  TestScene s{makeVolume<std::int16_t>(makeCenteredGrid({24, 24, 24}, {1.0, 1.0, 1.5}),
                                        [](const Vec3& p) {
                                          return 100.0 * std::sin(0.5 * p.x()) *
                                                 std::cos(0.4 * p.y() + 0.3 * p.z());
                                        }),
-              {ScalarFunction({knot(-20.0, 0.0), knot(100.0, 0.8)}),
+              {ScalarFunction({makeKnot(-20.0, 0.0), makeKnot(100.0, 0.8)}),
                ColorFunction({{0.0, Rgb(0.9, 0.8, 0.7)}, {100.0, Rgb(0.2, 0.3, 0.9)}}),
                {},
                0.4,
@@ -101,14 +101,14 @@ TEST(FeatureBuffers, RaysThatMeetNothingGiveZeros) {
 
 /// An axis on which half a voxel is less than a float's last place: nothing for lanes.
 TEST(FeatureBuffers, EndsOnAxesOfAMillionVoxels) {
-  const Grid grid = centredGrid({2, 2, 600'000}, {1.0, 1.0, 1.0});
+  const Grid grid = makeCenteredGrid({2, 2, 600'000}, {1.0, 1.0, 1.0});
   TestScene s{makeVolume<std::uint8_t>(grid, [](const Vec3& p) { return p.z() < 3.0 ? 1 : 0; }),
-              linearTransfer(0.1, Rgb(0.9, 0.5, 0.1)),
+              makeLinearTransfer(0.1, Rgb(0.9, 0.5, 0.1)),
               {DirectionalLight{}},
               {.position = {0, 0, 4e5}, .target = Vec3::Zero(), .up = Vec3::UnitY(), .scale = 1.5},
               4,
               4};
-  s.with([](const SceneView& scene) {
+  s.visitView([](const SceneView& scene) {
     EXPECT_FALSE(canUseSimd(scene));
     EXPECT_GT(computeFeatures(scene).hit[5], 0.1F);
   });
@@ -131,7 +131,7 @@ TEST(FeatureBuffers, LanesAgreeWithTheReadableMarch) {
       ClipPlane{Camera(s.pose, s.width, s.height), Vec3(0, 2, 0), -Vec3::UnitY(), {0.0, 3.0}});
   for (const Clip& clip : clips) {
     s.clip = clip;
-    s.with([](const SceneView& scene) {
+    s.visitView([](const SceneView& scene) {
       ASSERT_TRUE(canUseSimd(scene));
       const FeatureBuffers simd = computeFeatures(scene), scalar = computeScalarFeatures(scene);
       EXPECT_LT(relativeDifference(simd.hit, scalar.hit), 0.01);
@@ -157,7 +157,7 @@ TEST(FeatureBuffers, FacesTheSoftCutOfHomogeneousMatter) {
     const double probability = opacity * (1.0 - std::exp(-25.0 * 0.125 * cutShading / 3.0));
     const std::size_t middle = static_cast<std::size_t>(s.width * s.height / 2 + s.width / 2);
     const Vec3 normal = -cutGradient(s.clip, Vec3(1.0, 0.0, 0.0)).normalized();
-    s.with([&](const SceneView& scene) {
+    s.visitView([&](const SceneView& scene) {
       for (const FeatureBuffers& features : {computeFeatures(scene), computeScalarFeatures(scene)})
         for (std::size_t c = 0; c < 3; ++c) {
           const double hit = static_cast<double>(features.hit[middle]);

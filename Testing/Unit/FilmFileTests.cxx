@@ -68,12 +68,12 @@ TEST(CheckpointFile, PartsHoldTheirTilesAlone) {
   sum = Film(33, 21, true, result.film.pixels().front().blockSize);
   for (int index = 0; index < 4; ++index) {
     const auto path = folder.write("p.film", encodeCheckpoint(result, {index, 4}, testMetadata));
-    bytes += bytesOf(path).size();
+    bytes += readBytes(path).size();
     EXPECT_EQ(CheckpointFile(path).shard(), (Shard{index, 4}));
     CheckpointFile(path).readPixels(sum);
   }
   expectIdentical(full, sum);
-  EXPECT_LT(bytes, bytesOf(folder / "a.film").size() + 4000);
+  EXPECT_LT(bytes, readBytes(folder / "a.film").size() + 4000);
 }
 
 TEST(CheckpointFile, DamagedByteAnywhereIsRefused) {

@@ -27,10 +27,10 @@ inline void expectIdentical(const Film& a, const Film& b) {
 
 /// Waves of matter under a sky, a sun and a lamp.
 inline TestScene makeWavyScene(int width = 33, int height = 21) {
-  const Grid grid = centredGrid({20, 20, 20}, {1.0, 1.0, 1.0});
+  const Grid grid = makeCenteredGrid({20, 20, 20}, {1.0, 1.0, 1.0});
   TestScene s{makeVolume<std::int16_t>(
                   grid, [](const Vec3& p) { return 100.0 * std::sin(p.x()) * std::cos(p.y()); }),
-              linearTransfer(0.01, Rgb(0.9, 0.8, 0.7), 0.4),
+              makeLinearTransfer(0.01, Rgb(0.9, 0.8, 0.7), 0.4),
               {EnvironmentLight{}, DirectionalLight{},
                AreaLight{.center = {0, 0, 30}, .normal = -Vec3::UnitZ(), .size = {10, 10}}},
               {},

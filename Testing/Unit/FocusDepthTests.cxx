@@ -13,7 +13,7 @@
 
 namespace fenestra::FocusDepthTests {
 using namespace testing_clipping;
-using testing::briefly;
+using testing::reduceSamples;
 
 namespace {
 
@@ -70,7 +70,7 @@ TEST(FocusCells, RayMeetsThemWhereTheIndicatorFirstReachesAHalf) {
   Random random(5, 0, 0);
   const Grid grid({3, 3, 3}, Affine::Identity());
   int hits = 0;
-  for (int trial = 0; trial < briefly(40); ++trial) {
+  for (int trial = 0; trial < reduceSamples(40); ++trial) {
     const Mask mask = makeMask(grid, [&](const Vec3&) { return random.uniform() < 0.4; });
     const FocusCells cells(mask);
     auto [rays, worldRays] = RandomRays(random, cells);
@@ -86,7 +86,7 @@ TEST(FocusCells, RayMeetsThemWhereTheIndicatorFirstReachesAHalf) {
       }
     }
   }
-  EXPECT_GT(hits, briefly(500));
+  EXPECT_GT(hits, reduceSamples(500));
 }
 
 /// Tolerance within which the near end of a ridge may be returned as its summit.
@@ -115,7 +115,7 @@ TEST(FocusCells, SummitOfAMissingRayEqualsDenseSampling) {
   const Grid grid({3, 3, 3}, Affine::Identity());
   int captured = 0, hidden = 0, mismatches = 0;
   for (const std::uint8_t maxValue : {std::uint8_t{1}, std::uint8_t{200}})
-    for (int trial = 0; trial < briefly(40); ++trial) {
+    for (int trial = 0; trial < reduceSamples(40); ++trial) {
       Mask mask = makeMask(grid, [&](const Vec3&) { return random.uniform() < 0.3; });
       mask.maxValue = maxValue;
       for (std::uint8_t& voxel : mask.voxels)
@@ -146,8 +146,8 @@ TEST(FocusCells, SummitOfAMissingRayEqualsDenseSampling) {
         EXPECT_NEAR(cells.indicator(cells.worldToCell() * summit), rays.maximum[i], 1e-9);
       }
     }
-  EXPECT_GT(captured, briefly(200));
-  EXPECT_GT(hidden, briefly(20));
+  EXPECT_GT(captured, reduceSamples(200));
+  EXPECT_GT(hidden, reduceSamples(20));
   EXPECT_LT(mismatches, 3);
 }
 
@@ -280,7 +280,7 @@ TEST(FocusDepth, IsTheSameInEveryInstructionSet) {
 
 TEST(FocusDepth, AgreesWithMarchingInObliqueGridsAndViews) {
   Random random(3, 0, 0);
-  for (int trial = 0; trial < std::max(2, briefly(6)); ++trial) {
+  for (int trial = 0; trial < std::max(2, reduceSamples(6)); ++trial) {
     Affine map = Affine::Identity();
     map.linear() =
         makeRotation(random.uniform() * 6, randomPoint(random, -1, 1).normalized()).linear() *

@@ -9,7 +9,7 @@
 #include <set>
 
 namespace fenestra::GridWalkTests {
-using testing::briefly;
+using testing::reduceSamples;
 
 namespace {
 
@@ -128,7 +128,7 @@ TEST(GridWalk, RayWithoutDirectionStaysInItsCell) {
 
 TEST(GridWalk, AgreesWithDenseSamplingOfTheRay) {
   Random random(1, 2, 3);
-  for (int trial = 0; trial < briefly(20000); ++trial) {
+  for (int trial = 0; trial < reduceSamples(20000); ++trial) {
     const Size3 cells(1 + random.bits() % 9, 1 + random.bits() % 9, 1 + random.bits() % 9);
     const Vec3 a(9 * signedUniform(random), 9 * signedUniform(random), 9 * signedUniform(random));
     const Vec3 b(9 * random.uniform(), 9 * random.uniform(), 9 * random.uniform());
@@ -149,7 +149,7 @@ TEST(GridWalk, AgreesWithDenseSamplingOfTheRay) {
 TEST(GridWalk, RandomRaysTileTheirRange) {
   Random random(4, 5, 6);
   double worst = 0.0;
-  for (int trial = 0; trial < briefly(1000000) && !HasFailure(); ++trial) {
+  for (int trial = 0; trial < reduceSamples(1000000) && !HasFailure(); ++trial) {
     const Size3 cells(1 + random.bits() % 40, 1 + random.bits() % 40, 1 + random.bits() % 40);
     const Vec3 n = cells.cast<double>();
     const Vec3 from =
@@ -163,7 +163,7 @@ TEST(GridWalk, RandomRaysTileTheirRange) {
 
 TEST(GridWalk, AwkwardRaysTileTheirRange) {
   Random random(7, 8, 9);
-  for (int trial = 0; trial < briefly(3000000) && !HasFailure(); ++trial) {
+  for (int trial = 0; trial < reduceSamples(3000000) && !HasFailure(); ++trial) {
     const Size3 cells(1 + random.bits() % 12, 1 + random.bits() % 12, 1 + random.bits() % 12);
     Ray ray;
     for (int axis = 0; axis < 3; ++axis) {
@@ -178,7 +178,7 @@ TEST(GridWalk, AwkwardRaysTileTheirRange) {
 TEST(GridWalk, RaysThroughCornersTileTheirRange) {
   Random random(13, 14, 15);
   const Size3 cells(9, 10, 11);
-  for (int trial = 0; trial < briefly(500000) && !HasFailure(); ++trial) {
+  for (int trial = 0; trial < reduceSamples(500000) && !HasFailure(); ++trial) {
     Vec3 from, to; // half of the corners lie on the grid's surface, where the walk begins
     for (int axis = 0; axis < 3; ++axis) {
       from[axis] = 30.0 * signedUniform(random);
@@ -194,7 +194,7 @@ TEST(GridWalk, RaysThroughCornersTileTheirRange) {
 
 TEST(GridWalk, FarOriginsKeepTheirCellsToRounding) {
   Random random(10, 11, 12);
-  for (int trial = 0; trial < briefly(200000) && !HasFailure(); ++trial) {
+  for (int trial = 0; trial < reduceSamples(200000) && !HasFailure(); ++trial) {
     const double far = std::pow(10.0, 8.0 * random.uniform());
     const Size3 cells(16, 16, 16);
     const Vec3 to = 16.0 * Vec3(random.uniform(), random.uniform(), random.uniform());

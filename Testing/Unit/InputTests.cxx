@@ -22,8 +22,8 @@ protected:
                               <VolumeProperty id="p" name="P"
                                 scalarOpacity="4 0 0 200 1" colorTransfer="8 0 1 1 1 200 1 1 1"/>
                               </MRML>)"},
-                           {"a/ct.nrrd", bytesOf(folder / "ct.nrrd")},
-                           {"a/labels.nrrd", bytesOf(folder / "labels.nrrd")}});
+                           {"a/ct.nrrd", readBytes(folder / "ct.nrrd")},
+                           {"a/labels.nrrd", readBytes(folder / "labels.nrrd")}});
   }
 
   const SceneFolder folder;

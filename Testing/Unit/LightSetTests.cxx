@@ -161,7 +161,7 @@ std::array<double, 2> measureIrradiance(const LightSet& set, const Vec3& point,
     return set.sumEmitterHits({point, d}, infinity, radiance)[0] * std::max(0.0, normal.dot(d));
   };
   double integrated = 0.0;
-  for (const double part : binIntegrals(integrand, 60))
+  for (const double part : integrateBins(integrand, 60))
     integrated += part / pi;
   return {sampled, integrated};
 }
@@ -244,7 +244,7 @@ Rgb measureSkyIrradiance(const LightSet& set, const Vec3& normal) {
     const auto integrand = [&](const Vec3& d) {
       return set.evaluateEnvironment(d).radiance[channel] * std::max(0.0, normal.dot(d));
     };
-    for (const double part : binIntegrals(integrand, 16))
+    for (const double part : integrateBins(integrand, 16))
       sum[channel] += part / pi;
   }
   return sum;

@@ -60,7 +60,7 @@ void expectConservative(const TransferFunction& transfer, double low, double hig
 
   const Box box = grid.indexBox();
   double tightest = infinity;
-  for (int i = 0; i < briefly(300000); ++i) {
+  for (int i = 0; i < reduceSamples(300000); ++i) {
     Random random(7, static_cast<std::uint64_t>(i), 0);
     Vec3 p;
     for (int axis = 0; axis < 3; ++axis) {
@@ -176,7 +176,7 @@ TEST(MajorantGrid, ClipAndStyleAreBoundedInTheStripAroundACell) {
   const MajorantGrid majorants(grid, MinMaxGrid(volume, 0), opaque, plane, &style);
   const Medium<float> medium(grid, std::get<LargeArray<float>>(volume.voxels), opaque, &style);
   const Box box = grid.indexBox();
-  for (int i = 0; i < briefly(200000); ++i) {
+  for (int i = 0; i < reduceSamples(200000); ++i) {
     Random random(8, static_cast<std::uint64_t>(i), 0);
     Vec3 p;
     for (int axis = 0; axis < 3; ++axis) {

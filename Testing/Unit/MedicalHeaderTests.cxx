@@ -90,7 +90,7 @@ TEST_F(MedicalHeaders, UnsupportedRescalingIsRefused) {
             'x');
   writeFile(folder / "v.nii", std::vector<std::uint8_t>(24, 'x'));
   for (const std::size_t at : {112u, 116u}) { // slope, intercept
-    std::string bytes = bytesOf(folder / "v.nii");
+    std::string bytes = readBytes(folder / "v.nii");
     bytes.replace(112, 4, rawBytes(std::vector<float>{2.0f}));
     bytes.replace(at, 4, rawBytes(std::vector<float>{std::numeric_limits<float>::infinity()}));
     refuse(folder.write("inf.nii", bytes), "scl_slope or scl_inter: is not finite");

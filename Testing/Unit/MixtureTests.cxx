@@ -13,7 +13,7 @@ namespace fenestra::testing::MixtureTests {
 namespace {
 
 Component makeComponent(double extinction, const Rgb& albedo, double g = 0.0) {
-  return {linearTransfer(extinction, albedo, g)};
+  return {makeLinearTransfer(extinction, albedo, g)};
 }
 
 /// Share of component 1: x / 8 along a row of nine voxels, 0.5 mm apart; the rest is component 0's.
@@ -22,7 +22,7 @@ Mixture makeRampMixture() {
     return std::lround(255.0 * static_cast<double>(voxel.x()) / 8.0);
   };
   const auto weights = std::make_shared<const LabelWeights>(
-      sharesOf({{makeMask({0, 0, 0}, {9, 2, 2}, value), 1, 1}}));
+      makeLabelWeights({{makeMask({0, 0, 0}, {9, 2, 2}, value), 1, 1}}));
   return {weights, {makeComponent(1.0, Rgb::Ones()), makeComponent(3.0, Rgb::Ones())}};
 }
 
@@ -85,12 +85,12 @@ TestScene makeMixtureScene(bool isHybrid) {
   TestScene scene = makePartsScene();
   if (isHybrid)
     scene.transfer.shading = SurfaceShading{};
-  Mixture mixture{std::make_shared<const LabelWeights>(sharesOf(makeRandomParts(12))), {}};
+  Mixture mixture{std::make_shared<const LabelWeights>(makeLabelWeights(makeRandomParts(12))), {}};
   for (int i = 0; i <= 6; ++i) {
     Component component = makeComponent(0.2 + 0.3 * i, Rgb(0.15 * i, 0.5, 0.9 - 0.1 * i),
                                         i < 4 ? 0.0 : 0.15 * i - 0.9);
     component.transfer.extinction =
-        ScalarFunction({knot(0.25, 0.1 * i), knot(0.4 + 0.01 * i, 0.2 + 0.3 * i)});
+        ScalarFunction({makeKnot(0.25, 0.1 * i), makeKnot(0.4 + 0.01 * i, 0.2 + 0.3 * i)});
     component.isClipped = i % 3 != 2;
     if (isHybrid)
       component.transfer.shading = SurfaceShading::makeCoated(0.1 * i, 0.2 + 0.1 * i);
@@ -116,19 +116,19 @@ double meanDepth(const Film& film) {
 TEST(Mixture, LanesAreTheScalarEstimator) {
   for (const bool isHybrid : {false, true}) {
     const TestScene scene = makeMixtureScene(isHybrid);
-    scene.with([](const SceneView& all) { ASSERT_TRUE(canUseSimd(all)); });
+    scene.visitView([](const SceneView& all) { ASSERT_TRUE(canUseSimd(all)); });
     const Film simd = renderFilm(scene, Integrator::simd);
     const Film scalar = renderFilm(scene, Integrator::scalar);
     const auto albedo = [](const PixelSums& pixel) { return Rgb(pixel.albedo / 64.0); };
     EXPECT_LT(computeRmsDifference(simd, scalar, albedo), 0.04) << isHybrid;
     EXPECT_NEAR(meanDepth(simd), meanDepth(scalar), 0.1) << isHybrid;
-    const Estimate a = imageEstimate(simd), b = imageEstimate(scalar);
+    const Estimate a = estimateMean(simd), b = estimateMean(scalar);
     EXPECT_LT(std::abs(a.mean - b.mean), 4.0 * std::hypot(a.error, b.error)) << isHybrid;
   }
 }
 
 TEST(Mixture, MarchInLanesIsTheReadableOne) {
-  makeMixtureScene(true).with([](const SceneView& scene) {
+  makeMixtureScene(true).visitView([](const SceneView& scene) {
     const FeatureBuffers simd = computeFeatures(scene), scalar = computeScalarFeatures(scene);
     double albedo = 0.0, hit = 0.0;
     for (std::size_t i = 0; i < simd.hit.size(); ++i) {
@@ -166,7 +166,7 @@ TEST(Mixture, TheClipLeavesWhatIsFree) {
 TEST(Mixture, BordersAsSurfacesAreTheScalarEstimators) {
   TestScene scene = makeMixtureScene(true);
   scene.mixture->components[3].interfaceWeight = 0.5;
-  scene.with([](const SceneView& all) { EXPECT_FALSE(canUseSimd(all)); });
+  scene.visitView([](const SceneView& all) { EXPECT_FALSE(canUseSimd(all)); });
 }
 
 } // namespace

@@ -18,7 +18,7 @@ double readExtinction(const std::string& nodes,
   const SceneFolder folder;
   for (const auto& [name, content] : files)
     folder.write(name, content);
-  MrmlScene scene = folder.scene(nodes);
+  MrmlScene scene = folder.makeScene(nodes);
   return readSceneProperty(scene, findNode(scene, "p")).extinction(100)[0];
 }
 

@@ -30,7 +30,7 @@ Affine makeAffine(std::initializer_list<double> rows) {
 
 TEST(MrmlScene, GeometryComesFromTheFileNotFromTheScene) {
   const SceneFolder folder;
-  MrmlScene scene = folder.scene(volumeNode);
+  MrmlScene scene = folder.makeScene(volumeNode);
   const Volume volume = readSceneVolume(scene, findNode(scene, "vol1"));
   EXPECT_EQ(volume.grid.size, Size3(3, 4, 2));
   expectSame(volume.grid.indexToWorld, makeAffine({-1, 0, 0, -10, 0, -2, 0, -20, 0, 0, 3, 30}));
@@ -39,9 +39,9 @@ TEST(MrmlScene, GeometryComesFromTheFileNotFromTheScene) {
 }
 
 Grid readGrid(const SceneFolder& folder, const std::string& attributes) {
-  MrmlScene scene = folder.scene(R"(<Volume id="v" storageNodeRef="s"/>
+  MrmlScene scene = folder.makeScene(R"(<Volume id="v" storageNodeRef="s"/>
     <VolumeArchetypeStorage id="s" fileName="ct.nrrd" )" +
-                                 attributes + "/>");
+                                     attributes + "/>");
   return readSceneVolume(scene, findNode(scene, "v")).grid;
 }
 
@@ -76,7 +76,7 @@ TEST(MrmlScene, WarningNamesAVolumeByItsPathInTheArchive) {
   const auto archive = folder / "a.mrb";
   writeArchive(archive, {{"a/a.mrml", R"(<MRML><Volume id="v" storageNodeRef="s"/>
     <VolumeArchetypeStorage id="s" fileName="odd.nrrd"/></MRML>)"},
-                         {"a/odd.nrrd", bytesOf(folder / "odd.nrrd")}});
+                         {"a/odd.nrrd", readBytes(folder / "odd.nrrd")}});
   MrmlScene scene(archive);
   const Volume volume = readSceneVolume(scene, findNode(scene, "v"));
   EXPECT_EQ(volume.name, archive.string() + "/a/odd.nrrd");
@@ -93,7 +93,7 @@ TEST(MrmlScene, SegmentationAndLabelMapLieInTheWorld) {
   geometry.origin = {10, 20, 30};
   geometry.spacing = {1, 2, 3};
   writeFile(folder / "labels.nrrd", labels, geometry);
-  MrmlScene scene = folder.scene(R"(
+  MrmlScene scene = folder.makeScene(R"(
     <LinearTransform id="t" matrixTransformToParent="1 0 0 100 0 1 0 0 0 0 1 0 0 0 0 1"/>
     <Segmentation id="s" storageNodeRef="ss" transformNodeRef="t"/>
     <SegmentationStorage id="ss" fileName="labels.nrrd"/>
@@ -117,7 +117,7 @@ TEST(MrmlScene, LabelMapOfAnArchiveTakesNamesFromTheUsersFile) {
   const auto readWith = [&](const std::string& tableInside) {
     writeArchive(archive, {{"a/a.mrml", R"(<MRML><LabelMapVolume id="l" storageNodeRef="s"/>
       <VolumeArchetypeStorage id="s" fileName="labels.nrrd"/></MRML>)"},
-                           {"a/labels.nrrd", bytesOf(folder / "labels.nrrd")},
+                           {"a/labels.nrrd", readBytes(folder / "labels.nrrd")},
                            {"a/labels.ctbl", tableInside}});
     MrmlScene scene(archive);
     return readSceneSegmentation(scene, findNode(scene, "l"), nullptr, table);
@@ -127,7 +127,7 @@ TEST(MrmlScene, LabelMapOfAnArchiveTakesNamesFromTheUsersFile) {
 
 TEST(MrmlScene, ReadsVisibilityOfSegments) {
   const SceneFolder folder;
-  MrmlScene scene = folder.scene(R"(<Segmentation id="s" displayNodeRef="d"/>
+  MrmlScene scene = folder.makeScene(R"(<Segmentation id="s" displayNodeRef="d"/>
     <SegmentationDisplay id="d" SegmentationDisplayProperties="A%20b OverrideColorR:-1 Visible:true Visible3D:true Opacity3D:1|c Visible:false Visible3D:true|d Visible:true Visible3D:false|"/>)");
   EXPECT_EQ(readSegmentVisibility(scene, findNode(scene, "s")),
             (std::map<std::string, bool>{{"A b", true}, {"c", false}, {"d", false}}));
@@ -141,13 +141,13 @@ const Affine rotationMap = makeAffine({0, -1, 0, 5, 1, 0, 0, 6, 0, 0, 1, 7});
 
 TEST(MrmlScene, AppliesTransformsUpTheChain) {
   const SceneFolder folder;
-  MrmlScene scene =
-      folder.scene(R"(
+  MrmlScene scene = folder.makeScene(
+      R"(
     <LinearTransform id="outer" matrixTransformToParent=")" +
-                   rotation + R"("/>
+      rotation + R"("/>
     <LinearTransform id="inner" references="transform:outer;"
       matrixTransformToParent="2 0 0 10  0 1 0 0  0 0 1 0  0 0 0 1"/>)" +
-                   R"(<Volume id="v" references="storage:store1;transform:inner;"/>)" + volumeNode);
+      R"(<Volume id="v" references="storage:store1;transform:inner;"/>)" + volumeNode);
   const Affine expected = rotationMap * makeAffine({2, 0, 0, 10, 0, 1, 0, 0, 0, 0, 1, 0});
   expectSame(toWorld(scene, findNode(scene, "v")), expected);
   const Grid grid = readSceneVolume(scene, findNode(scene, "v")).grid;
@@ -156,9 +156,9 @@ TEST(MrmlScene, AppliesTransformsUpTheChain) {
 
 TEST(MrmlScene, ReadsMatrixTransformFromParent) {
   const SceneFolder folder;
-  MrmlScene scene = folder.scene(R"(<N id="n" transformNodeRef="t"/>
+  MrmlScene scene = folder.makeScene(R"(<N id="n" transformNodeRef="t"/>
     <LinearTransform id="t" matrixTransformFromParent=")" +
-                                 rotation + "\"/>");
+                                     rotation + "\"/>");
   expectSame(toWorld(scene, findNode(scene, "n")), rotationMap.inverse());
 }
 
@@ -170,9 +170,9 @@ const std::string shiftFile = "#Insight Transform File V1.0\n#Transform 0\n"
 Affine readShift(const std::string& tag, const std::string& attributes) {
   const SceneFolder folder;
   folder.write("shift.tfm", shiftFile);
-  MrmlScene scene = folder.scene("<N id=\"n\" transformNodeRef=\"t\"/><" + tag +
-                                 " id=\"t\" storageNodeRef=\"s\" " + attributes +
-                                 "/><TransformStorage id=\"s\" fileName=\"shift.tfm\"/>");
+  MrmlScene scene = folder.makeScene("<N id=\"n\" transformNodeRef=\"t\"/><" + tag +
+                                     " id=\"t\" storageNodeRef=\"s\" " + attributes +
+                                     "/><TransformStorage id=\"s\" fileName=\"shift.tfm\"/>");
   return toWorld(scene, findNode(scene, "n"));
 }
 
@@ -225,7 +225,7 @@ Affine readBox(const std::string& nodes, const std::map<std::string, std::string
   const SceneFolder folder;
   for (const auto& [name, content] : files)
     folder.write(name, content);
-  MrmlScene scene = folder.scene(nodes);
+  MrmlScene scene = folder.makeScene(nodes);
   return readSceneRoi(scene, findNode(scene, "r")).boxToWorld;
 }
 
@@ -276,7 +276,7 @@ TEST(MrmlScene, RefusesMalformedRegions) {
   const SceneFolder folder;
   const auto refuseJson = [&](const std::string& json, const std::string& reason) {
     const auto file = folder.write("my roi.mrk.json", json);
-    MrmlScene scene = folder.scene(roiNode);
+    MrmlScene scene = folder.makeScene(roiNode);
     expectRefused(file, reason, [&] { readSceneRoi(scene, findNode(scene, "r")); });
   };
   refuseJson(makeRoiJson("", R"(, "insideOut": true)"), "inside out");
@@ -297,9 +297,9 @@ TEST(MrmlScene, RefusesMalformedRegions) {
 
 CameraPose readPose(const std::string& attributes, const std::string& more = "") {
   const SceneFolder folder;
-  MrmlScene scene =
-      folder.scene("<Camera id=\"c\" position=\"1 2 3\" focalPoint=\"1 102 3\" viewUp=\"0 0 1\" " +
-                   attributes + "/>" + more);
+  MrmlScene scene = folder.makeScene(
+      "<Camera id=\"c\" position=\"1 2 3\" focalPoint=\"1 102 3\" viewUp=\"0 0 1\" " + attributes +
+      "/>" + more);
   return readSceneCamera(scene, findNode(scene, "c"));
 }
 
@@ -397,7 +397,7 @@ TEST(RealScenes, TransformFileAgreesWithTheMatrixToSixDigits) {
   const Affine sixDigits =
       makeAffine({n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9], n[10], n[11]});
   expectSame(toWorld(scene, volume), sixDigits, 1e-6);
-  EXPECT_GT(normOf(toWorld(scene, volume).linear() - sixDigits.linear()), 1e-8); // has more
+  EXPECT_GT(frobeniusNorm(toWorld(scene, volume).linear() - sixDigits.linear()), 1e-8); // has more
   const Affine roi = readSceneRoi(scene, *scene.document.findByTag("MarkupsROI").at(0)).boxToWorld;
   expectSame(roi, makeAffine({150, 0, 0, 0, 0, 130, 0, -20, 0, 0, 110, -170}), 1e-9);
 }

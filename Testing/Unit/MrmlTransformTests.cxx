@@ -46,8 +46,8 @@ TEST(MrmlTransform, RefusesMapsThatCannotBeInverted) {
 
 TEST(MrmlTransform, AcceptsAnyUsefulScale) {
   const SceneFolder folder;
-  MrmlScene scene = folder.scene("<N id=\"n\" transformNodeRef=\"t\"/>" +
-                                 makeTransform("1e-5 0 0 0  0 1e-5 0 0  0 0 1e-5 0"));
+  MrmlScene scene = folder.makeScene("<N id=\"n\" transformNodeRef=\"t\"/>" +
+                                     makeTransform("1e-5 0 0 0  0 1e-5 0 0  0 0 1e-5 0"));
   EXPECT_EQ(toWorld(scene, findNode(scene, "n")).linear()(0, 0), 1e-5);
 }
 
@@ -56,7 +56,7 @@ TEST(MrmlTransform, ChainIsCountedUpTo1000Transforms) {
   const std::string rows = "1 0 0 0  0 1 0 0  0 0 1 0",
                     child = "<N id=\"n\" transformNodeRef=\"t\"/>";
   const auto countAbove = [&](const std::string& transforms) {
-    const MrmlScene scene = folder.scene(child + transforms);
+    const MrmlScene scene = folder.makeScene(child + transforms);
     return listParentTransforms(scene.document, findNode(scene, "n")).size();
   };
   EXPECT_EQ(countAbove(makeChain(rows, 3)), 3u);
@@ -75,13 +75,13 @@ TEST(MrmlTransform, ReadsEachFileOnce) {
   const std::string text = "#Insight Transform File V1.0\n#Transform 0\n"
                            "Transform: TranslationTransform_double_3_3\nParameters: ";
   folder.write("t.tfm", text + "1 2 3\nFixedParameters: \n");
-  MrmlScene scene = folder.scene(nodes);
+  MrmlScene scene = folder.makeScene(nodes);
   const Affine read = toWorld(scene, findNode(scene, "n"));
   EXPECT_TRUE(isApprox(read.translation(), Vec3(2, 4, -6))); // applied twice; inverse, in LPS
   folder.write("t.tfm", "damaged");
   EXPECT_TRUE(isApprox(toWorld(scene, findNode(scene, "n")), read));
 
-  MrmlScene damaged = folder.scene(nodes);
+  MrmlScene damaged = folder.makeScene(nodes);
   const auto refuse = [&] {
     expectRefused(folder / "t.tfm", "is damaged",
                   [&] { toWorld(damaged, findNode(damaged, "n")); });

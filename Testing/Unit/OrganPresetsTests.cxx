@@ -131,7 +131,7 @@ TEST(OrganPresets, BuiltInPresetsMatchSlicerCodes) {
 }
 
 TEST(OrganPresets, RangeDecidesWhetherAVolumeIsCt) {
-  const Grid grid = testing::centredGrid({10, 10, 10}, Vec3::Ones());
+  const Grid grid = testing::makeCenteredGrid({10, 10, 10}, Vec3::Ones());
   const auto volume = [&](double low, double high) {
     return testing::makeVolume<std::int16_t>(
         grid, [&](const Vec3& i) { return low + (high - low) * i.x() / 9.0; });
@@ -146,7 +146,7 @@ TEST(OrganPresets, RangeDecidesWhetherAVolumeIsCt) {
 /// 100 000 values, 0 to 99 999, each once: percentiles are known.
 TEST(OrganPresets, UsualRangeLiesBetweenThePercentiles) {
   const Volume volume =
-      testing::makeVolume(testing::centredGrid({100, 100, 10}, Vec3::Ones()),
+      testing::makeVolume(testing::makeCenteredGrid({100, 100, 10}, Vec3::Ones()),
                           [](const Vec3& i) { return i.x() + 100.0 * i.y() + 10000.0 * i.z(); });
   const auto [low, high] = findRobustRange(volume);
   EXPECT_NEAR(low, 500.0, 1.0);

@@ -64,11 +64,11 @@ TEST_F(OutputFiles, CommitPlacesAllFilesTogether) {
   outputs.add(folder / "b");
   outputs.write(folder / "a", "new");
   outputs.write(folder / "b", "new");
-  EXPECT_EQ(bytesOf(folder / "a"), "old");
+  EXPECT_EQ(readBytes(folder / "a"), "old");
   EXPECT_FALSE(fs::exists(folder / "b"));
   outputs.commit();
-  EXPECT_EQ(bytesOf(folder / "a"), "new");
-  EXPECT_EQ(bytesOf(folder / "b"), "new");
+  EXPECT_EQ(readBytes(folder / "a"), "new");
+  EXPECT_EQ(readBytes(folder / "b"), "new");
   EXPECT_EQ(fileCount(), 2u);
 }
 
@@ -80,7 +80,7 @@ TEST_F(OutputFiles, WithoutACommitNothingIsLeft) {
     EXPECT_EQ(fileCount(), 1u);
     uncommitted.write(folder / "a", "half");
   }
-  EXPECT_EQ(bytesOf(folder / "a"), "old");
+  EXPECT_EQ(readBytes(folder / "a"), "old");
   EXPECT_EQ(fileCount(), 1u);
 }
 
@@ -93,7 +93,7 @@ TEST_F(OutputFiles, FailedCommitRestoresTheFormerFiles) {
     outputs.write(folder / name, "new");
   fs::create_directory(folder / "c");
   catchError(ErrorKind::output, [&] { outputs.commit(); });
-  EXPECT_EQ(bytesOf(folder / "a"), "old");
+  EXPECT_EQ(readBytes(folder / "a"), "old");
   EXPECT_FALSE(fs::exists(folder / "b"));
   EXPECT_TRUE(fs::is_directory(folder / "c"));
 }
@@ -118,7 +118,7 @@ TEST_F(OutputFiles, FileThatBecameAnInputIsNotReplaced) {
   catchError(ErrorKind::usage, [&] { outputs.checkInputs(); });
   outputs.write(folder / "a", "new");
   catchError(ErrorKind::usage, [&] { outputs.commit(); });
-  EXPECT_EQ(bytesOf(folder / "a"), "old");
+  EXPECT_EQ(readBytes(folder / "a"), "old");
 }
 
 TEST_F(OutputFiles, OwnOutputIsRefusedAsInput) {
@@ -153,8 +153,8 @@ TEST_F(OutputFiles, LinksAreWrittenThroughAndKept) {
   outputs.commit();
   EXPECT_TRUE(fs::is_symlink(folder / "link"));
   EXPECT_TRUE(fs::is_symlink(folder / "dangling"));
-  EXPECT_EQ(bytesOf(folder / "real"), "new");
-  EXPECT_EQ(bytesOf(folder / "later"), "new");
+  EXPECT_EQ(readBytes(folder / "real"), "new");
+  EXPECT_EQ(readBytes(folder / "later"), "new");
 }
 
 TEST_F(OutputFiles, FoldersDevicesAndProtectedFilesAreRefused) {
@@ -192,7 +192,7 @@ TEST_F(OutputFiles, NameOf255BytesIsWritten) {
   outputs.add(folder / name);
   outputs.write(folder / name, "new");
   outputs.commit();
-  EXPECT_EQ(bytesOf(folder / name), "new");
+  EXPECT_EQ(readBytes(folder / name), "new");
 }
 
 TEST_F(OutputFiles, ModeAndOwnerOfAReplacedFileAreKept) {
@@ -251,7 +251,7 @@ TEST_F(OutputFiles, FileCreatedMeanwhileIsNotReplaced) {
   outputs.write(folder / "a", "new");
   folder.write("a", "somebody else's");
   catchError(ErrorKind::usage, [&] { outputs.commit(); });
-  EXPECT_EQ(bytesOf(folder / "a"), "somebody else's");
+  EXPECT_EQ(readBytes(folder / "a"), "somebody else's");
 }
 
 TEST_F(OutputFiles, DescriptorsAndPipesAreWrittenAtTheCommit) {
@@ -264,12 +264,12 @@ TEST_F(OutputFiles, DescriptorsAndPipesAreWrittenAtTheCommit) {
   outputs.add(descriptor);
   outputs.write(pipe, "piped");
   outputs.write(descriptor, "described");
-  EXPECT_EQ(bytesOf(folder / "open"), "");
+  EXPECT_EQ(readBytes(folder / "open"), "");
   outputs.commit();
   char text[16] = {};
   EXPECT_EQ(::read(reader, text, sizeof text), 5);
   EXPECT_STREQ(text, "piped");
-  EXPECT_EQ(bytesOf(folder / "open"), "described");
+  EXPECT_EQ(readBytes(folder / "open"), "described");
   ::close(reader);
   ::close(file);
   outputs.write(pipe, "nobody reads");
@@ -286,7 +286,7 @@ TEST_F(OutputFiles, CleanupLeavesFilesOfACommittingRun) {
   removeStaleTempFiles(folder.path(), tempFilePrefix,
                        TempFileGuard::Kind::file); // as in another run
   file.undoPlace();
-  EXPECT_EQ(bytesOf(folder / "a"), "old");
+  EXPECT_EQ(readBytes(folder / "a"), "old");
 }
 
 TEST_F(OutputFiles, NextRunRemovesFilesOfKilledRuns) {
@@ -321,7 +321,7 @@ TEST_F(OutputFiles, CommitWaitsForTheLockOfTheFolder) {
   EXPECT_FALSE(fs::exists(folder / "a"));
   ::close(other);
   commit.get();
-  EXPECT_EQ(bytesOf(folder / "a"), "new");
+  EXPECT_EQ(readBytes(folder / "a"), "new");
 }
 
 TEST_F(OutputFiles, WrittenReturnsTheStateAtTheCommit) {

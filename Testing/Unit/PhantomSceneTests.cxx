@@ -77,7 +77,7 @@ struct PhantomSceneFiles : ::testing::Test {
 };
 
 TEST_F(PhantomSceneFiles, RootHasSlicersVersion) {
-  EXPECT_TRUE(bytesOf(folder / "knee.mrml")
+  EXPECT_TRUE(readBytes(folder / "knee.mrml")
                   .starts_with("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<MRML "));
   EXPECT_EQ(text(scene, "version"), "Slicer 5.2.2 31383");
   EXPECT_EQ(text(scene, "userTags"), "");
@@ -205,7 +205,7 @@ TEST_F(PhantomSceneFiles, RenderingIsNotCropped) {
 
 TEST_F(PhantomSceneFiles, PropertyIsEqualInTheSceneAndInItsFile) {
   const pugi::xml_node property = node("VolumeProperty");
-  std::istringstream file(bytesOf(folder / "knee.vp"));
+  std::istringstream file(readBytes(folder / "knee.vp"));
   for (const char* attribute :
        {"interpolation", "shade", "diffuse", "ambient", "specular", "specularPower",
         "scalarOpacity", "gradientOpacity", "colorTransfer"}) {
@@ -260,7 +260,7 @@ TEST_F(PhantomSceneFiles, CameraBelongsToTheViewAndFramesTheVolume) {
 }
 
 TEST_F(PhantomSceneFiles, RegionOfInterestIsTheVolumesBoxInLps) {
-  const auto json = nlohmann::json::parse(bytesOf(folder / "knee-roi.mrk.json"));
+  const auto json = nlohmann::json::parse(readBytes(folder / "knee-roi.mrk.json"));
   EXPECT_NE(json.at("@schema").get<std::string>().find("markups-schema-v1.0.3.json#"),
             std::string::npos);
   const auto& roi = json.at("markups").at(0);
@@ -319,7 +319,7 @@ TEST_F(PhantomSceneFiles, ArchiveHoldsTheSceneAndItsDataInSlicersLayout) {
                                                    "knee/Data/knee.seg.nrrd", "knee/Data/knee.vp",
                                                    "knee/Data/knee-roi.mrk.json"}));
   for (const char* name : {"knee.nrrd", "knee.seg.nrrd", "knee.vp", "knee-roi.mrk.json"})
-    EXPECT_EQ(zip.read(std::string("knee/Data/") + name), bytesOf(folder / name)) << name;
+    EXPECT_EQ(zip.read(std::string("knee/Data/") + name), readBytes(folder / name)) << name;
   pugi::xml_document archived;
   ASSERT_TRUE(archived.load_string(zip.read("knee/knee.mrml").c_str()));
   std::size_t same = 0;
@@ -352,7 +352,7 @@ TEST_F(PhantomSceneFiles, FilesAreTheSameOnEveryRun) {
   writePhantom(phantom, again.path(), "knee");
   EXPECT_EQ(files.size(), 7u);
   for (const std::string& file : files)
-    EXPECT_EQ(bytesOf(folder / file), bytesOf(again / file)) << file;
+    EXPECT_EQ(readBytes(folder / file), readBytes(again / file)) << file;
 }
 
 TEST(PhantomScene, EscapesCharactersReservedByXmlAndAddresses) {

@@ -26,7 +26,7 @@ void expectRefused(const std::filesystem::path& path, const std::string& text, C
     line = std::string("(another exception) ") + error.what();
   }
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "") << path;
-  EXPECT_EQ(line.find(path.string() + ": "), 0u) << line << "\n" << bytesOf(path).substr(0, 300);
+  EXPECT_EQ(line.find(path.string() + ": "), 0u) << line << "\n" << readBytes(path).substr(0, 300);
   EXPECT_NE(line.find(text), std::string::npos) << line;
   EXPECT_EQ(line.find('\n'), std::string::npos) << line;
 }

@@ -10,15 +10,15 @@ namespace {
 constexpr std::uint64_t pilotSamples = SamplePlan::pilotSamples;
 
 /// Pilot with pixels of mean 0.5 and standard deviation `deviation(column, row)`.
-template <typename Deviation>
-Film pilotOf(int width, int height, Deviation&& deviation, double scatterings = 1.0) {
+template <typename Sigma>
+Film makePilot(int width, int height, Sigma&& sigma, double scatterings = 1.0) {
   Film film(width, height);
   for (int row = 0; row < height; ++row)
     for (int column = 0; column < width; ++column)
       for (std::uint64_t i = 0; i < pilotSamples; ++i) {
         PathSample sample;
-        const double side = i % 2 == 0 ? 1.0 : -1.0;
-        sample.radiance = Rgb::Constant(0.5 + side * deviation(column, row));
+        const double sign = i % 2 == 0 ? 1.0 : -1.0;
+        sample.radiance = Rgb::Constant(0.5 + sign * sigma(column, row));
         sample.scatterings = scatterings;
         film.at(column, row).add(sample);
       }
@@ -26,11 +26,11 @@ Film pilotOf(int width, int height, Deviation&& deviation, double scatterings = 
 }
 
 /// Deviation: noisy on the left, quiet on the right.
-double leftDeviation(int column, int) {
+double leftNoise(int column, int) {
   return column < 32 ? 0.4 : 0.1;
 }
 
-double meanCount(const SamplePlan::Stage& stage, std::size_t pixels) {
+double computeMeanCount(const SamplePlan::Stage& stage, std::size_t pixels) {
   double sum = 0.0;
   for (std::size_t i = 0; i < pixels; ++i)
     sum += static_cast<double>(stage.count(i));
@@ -45,10 +45,10 @@ TEST(SamplePlan, WithoutAPilotAllPixelsGetTheSame) {
 }
 
 TEST(SamplePlan, SharesAreProportionalToTheNoise) {
-  const Film pilot = pilotOf(64, 64, leftDeviation);
+  const Film pilot = makePilot(64, 64, leftNoise);
   const SamplePlan plan(pilot);
   const SamplePlan::Stage stage = plan.at(1000);
-  EXPECT_NEAR(meanCount(stage, pilot.pixelCount()), 1000.0, 1.0);
+  EXPECT_NEAR(computeMeanCount(stage, pilot.pixelCount()), 1000.0, 1.0);
   const auto left = static_cast<double>(stage.count(64 * 30 + 10));
   const auto right = static_cast<double>(stage.count(64 * 30 + 50));
   EXPECT_NEAR(left / right, 4.0, 0.02);
@@ -56,7 +56,7 @@ TEST(SamplePlan, SharesAreProportionalToTheNoise) {
 }
 
 TEST(SamplePlan, CostlyPathsGetFewerSamples) {
-  Film pilot = pilotOf(64, 64, [](int, int) { return 0.3; });
+  Film pilot = makePilot(64, 64, [](int, int) { return 0.3; });
   for (int row = 0; row < 64; ++row)
     for (int column = 0; column < 32; ++column)
       pilot.at(column, row).scatterings *= 4.0;
@@ -66,7 +66,7 @@ TEST(SamplePlan, CostlyPathsGetFewerSamples) {
 }
 
 TEST(SamplePlan, EveryPixelGetsThePilotAndCountsNeverFall) {
-  const Film pilot = pilotOf(64, 64, leftDeviation);
+  const Film pilot = makePilot(64, 64, leftNoise);
   const SamplePlan plan(pilot);
   for (const std::uint64_t mean : {1U, 7U, 16U})
     EXPECT_EQ(plan.at(mean).count(0), mean) << "a stage of the pilot";
@@ -83,23 +83,23 @@ TEST(SamplePlan, EveryPixelGetsThePilotAndCountsNeverFall) {
 
 /// A pixel's own samples influence its count only through all pixels' noise together.
 TEST(SamplePlan, OwnSamplesDoNotDecideOnTheirNumber) {
-  const SamplePlan plain(pilotOf(64, 64, leftDeviation));
-  const SamplePlan other(pilotOf(64, 64, [](int column, int row) {
-    return column == 10 && row == 30 ? 4.0 : leftDeviation(column, row);
+  const SamplePlan plain(makePilot(64, 64, leftNoise));
+  const SamplePlan other(makePilot(64, 64, [](int column, int row) {
+    return column == 10 && row == 30 ? 4.0 : leftNoise(column, row);
   }));
   const std::size_t pixel = 64 * 30 + 10;
-  const auto own = static_cast<double>(plain.at(1000).count(pixel));
+  const auto expected = static_cast<double>(plain.at(1000).count(pixel));
   EXPECT_NEAR(static_cast<double>(other.at(1000).count(pixel)), expected, 0.03 * expected);
   EXPECT_GT(static_cast<double>(other.at(1000).count(pixel + 1)), 1.2 * expected)
       << "its neighbour's";
 }
 
 TEST(SamplePlan, QuietAndTinyPicturesAreSampledUniformly) {
-  const SamplePlan quiet(pilotOf(64, 64, [](int, int) { return 0.0; }));
-  EXPECT_EQ(quiet.at(100).count(5), 100U);
-  EXPECT_EQ(quiet.at(100).maxRatio(), 1.0);
+  const SamplePlan noiseless(makePilot(64, 64, [](int, int) { return 0.0; }));
+  EXPECT_EQ(noiseless.at(100).count(5), 100U);
+  EXPECT_EQ(noiseless.at(100).maxRatio(), 1.0);
   for (const int size : {1, 2, 32}) {
-    const SamplePlan tiny(pilotOf(size, size, [](int column, int) { return 0.1 + column; }));
+    const SamplePlan tiny(makePilot(size, size, [](int column, int) { return 0.1 + column; }));
     EXPECT_EQ(tiny.at(100).count(0), 100U);
   }
 }

@@ -24,21 +24,21 @@ using Store = SampleStore<std::uint8_t, std::int16_t, std::uint16_t, float>;
 
 /// Small integers, except for one sample near the end.
 template <typename T>
-std::vector<T> samplesWith(T odd) {
+std::vector<T> makeSamples(T outlier) {
   std::vector<T> samples(count);
   for (std::size_t i = 0; i < count; ++i)
     samples[i] = static_cast<T>(i % 200);
-  samples[count - 100] = odd;
+  samples[count - 100] = outlier;
   return samples;
 }
 
 template <typename T>
-Store::Vectors stored(const std::vector<T>& samples) {
-  std::size_t at = 0;
+Store::Vectors storeSamples(const std::vector<T>& samples) {
+  std::size_t position = 0;
   const SampleSource source{
       .type = T(), .count = samples.size(), .read = [&](void* to, std::size_t bytes) {
-        std::memcpy(to, samples.data() + at, bytes);
-        at += bytes / sizeof(T);
+        std::memcpy(to, samples.data() + position, bytes);
+        position += bytes / sizeof(T);
       }};
   Store store(source.count);
   readSamples(source, store);
@@ -54,49 +54,49 @@ Store::Vectors stored(const std::vector<T>& samples) {
   return vectors;
 }
 
-template <typename Kept, typename T>
-void expectKeptAs(T odd) {
-  const std::vector<T> samples = samplesWith(odd);
-  const Store::Vectors vectors = stored(samples);
-  ASSERT_TRUE(std::holds_alternative<LargeArray<Kept>>(vectors)) << odd;
-  const auto& kept = std::get<LargeArray<Kept>>(vectors);
+template <typename Stored, typename T>
+void expectStoredAs(T outlier) {
+  const std::vector<T> samples = makeSamples(outlier);
+  const Store::Vectors vectors = storeSamples(samples);
+  ASSERT_TRUE(std::holds_alternative<LargeArray<Stored>>(vectors)) << outlier;
+  const auto& stored = std::get<LargeArray<Stored>>(vectors);
   ASSERT_EQ(kept.size(), samples.size());
   for (std::size_t i = 0; i < count; ++i)
-    ASSERT_EQ(static_cast<double>(kept[i]), static_cast<double>(static_cast<Kept>(samples[i])))
+    ASSERT_EQ(static_cast<double>(kept[i]), static_cast<double>(static_cast<Stored>(samples[i])))
         << i;
 }
 
 TEST(SampleReading, LateSampleWidensEarlierBlocks) {
-  expectKeptAs<std::uint8_t, std::int32_t>(255);
-  expectKeptAs<std::int16_t, std::int32_t>(-1);
-  expectKeptAs<std::int16_t, std::int32_t>(32767);
-  expectKeptAs<std::uint16_t, std::int32_t>(32768);
-  expectKeptAs<float, std::int32_t>(65536);
-  expectKeptAs<float, std::int64_t>(std::int64_t{1} << 40);
-  expectKeptAs<std::uint8_t, float>(255.0f);
-  expectKeptAs<float, float>(0.5f);
-  expectKeptAs<float, double>(0.1);
+  expectStoredAs<std::uint8_t, std::int32_t>(255);
+  expectStoredAs<std::int16_t, std::int32_t>(-1);
+  expectStoredAs<std::int16_t, std::int32_t>(32767);
+  expectStoredAs<std::uint16_t, std::int32_t>(32768);
+  expectStoredAs<float, std::int32_t>(65536);
+  expectStoredAs<float, std::int64_t>(std::int64_t{1} << 40);
+  expectStoredAs<std::uint8_t, float>(255.0f);
+  expectStoredAs<float, float>(0.5f);
+  expectStoredAs<float, double>(0.1);
 }
 
 TEST(SampleReading, WidensMoreThanOnce) {
-  std::vector<std::int32_t> samples = samplesWith<std::int32_t>(-7);
+  std::vector<std::int32_t> samples = makeSamples<std::int32_t>(-7);
   samples[300'000] = 40'000; // to uint16, then to float for the negative sample
-  const Store::Vectors vectors = stored(samples);
-  const auto& kept = std::get<LargeArray<float>>(vectors);
+  const Store::Vectors vectors = storeSamples(samples);
+  const auto& stored = std::get<LargeArray<float>>(vectors);
   EXPECT_TRUE(std::equal(kept.begin(), kept.end(), samples.begin(), samples.end(),
                          [](float a, std::int32_t b) { return a == static_cast<float>(b); }));
 }
 
 TEST(SampleReading, ReplacesNonFiniteSamplesInAnyBlock) {
-  for (const float odd : {0.5f, 7.0f}) { // stays float; becomes integers
-    std::vector<float> samples = samplesWith(odd);
+  for (const float outlier : {0.5f, 7.0f}) { // stays float; becomes integers
+    std::vector<float> samples = makeSamples(outlier);
     samples[3] = std::numeric_limits<float>::quiet_NaN();
     samples[400'000] = std::numeric_limits<float>::infinity();
     samples[count - 1] = -std::numeric_limits<float>::infinity();
-    const Store::Vectors vectors = stored(samples);
-    EXPECT_EQ(vectors.index(), odd == 0.5f ? 3u : 0u);
+    const Store::Vectors vectors = storeSamples(samples);
+    EXPECT_EQ(vectors.index(), outlier == 0.5f ? 3u : 0u);
     std::visit(
-        [&](const auto& kept) {
+        [&](const auto& stored) {
           ASSERT_EQ(kept.size(), count);
           for (std::size_t i = 0; i < count; ++i) {
             const float expected = std::isnan(samples[i])   ? 0.0f
@@ -119,7 +119,7 @@ TEST(SampleReading, SampleThatNoTypeHoldsIsReported) {
 // ---- files
 // ---------------------------------------------------------------------------------------
 
-std::string compressed(const std::string& bytes, int windowBits) {
+std::string deflateBytes(const std::string& bytes, int windowBits) {
   z_stream stream{};
   deflateInit2(&stream, 1, Z_DEFLATED, windowBits, 8, Z_DEFAULT_STRATEGY);
   std::string out(deflateBound(&stream, uLong(bytes.size())) + 32, '\0');
@@ -135,24 +135,24 @@ std::string compressed(const std::string& bytes, int windowBits) {
 }
 
 std::string zlib(const std::string& bytes) {
-  return compressed(bytes, 15);
+  return deflateBytes(bytes, 15);
 }
 std::string gzip(const std::string& bytes) {
-  return compressed(bytes, 15 + 16);
+  return deflateBytes(bytes, 15 + 16);
 }
 
-std::string nrrd(const std::string& encoding, const std::string& endian) {
+std::string makeNrrdHeader(const std::string& encoding, const std::string& endian) {
   return "NRRD0004\ntype: short\ndimension: 3\nsizes: " + sizes + "\nencoding: " + encoding +
          "\nendian: " + endian + "\n\n";
 }
 
-std::string meta(const std::string& fields) {
+std::string makeMetaHeader(const std::string& fields) {
   return "ObjectType = Image\nNDims = 3\nDimSize = " + sizes + "\n" + fields +
          "ElementType = MET_SHORT\nElementDataFile = LOCAL\n";
 }
 
 TEST(SampleReading, ReadsBothByteOrdersInEveryStorage) {
-  const std::vector<std::int16_t> samples = samplesWith<std::int16_t>(-1000);
+  const std::vector<std::int16_t> samples = makeSamples<std::int16_t>(-1000);
   std::vector<std::int16_t> swapped = samples;
   for (std::int16_t& x : swapped)
     x = static_cast<std::int16_t>(__builtin_bswap16(static_cast<std::uint16_t>(x)));
@@ -161,17 +161,20 @@ TEST(SampleReading, ReadsBothByteOrdersInEveryStorage) {
   const std::string big = rawBytes(isLittle ? swapped : samples);
   const TemporaryFolder folder;
   for (const auto& path : {
-           folder.write("raw-little.nrrd", nrrd("raw", "little") + little),
-           folder.write("raw-big.nrrd", nrrd("raw", "big") + big),
-           folder.write("gzip-little.nrrd", nrrd("gzip", "little") + gzip(little)),
-           folder.write("gzip-big.nrrd", nrrd("gzip", "big") + gzip(big)),
-           folder.write("raw-little.mha", meta("BinaryDataByteOrderMSB = False\n") + little),
-           folder.write("raw-big.mha", meta("ElementByteOrderMSB = True\n") + big),
-           folder.write("raw-native.mha", meta("") + rawBytes(samples)),
+           folder.write("raw-little.nrrd", makeNrrdHeader("raw", "little") + little),
+           folder.write("raw-big.nrrd", makeNrrdHeader("raw", "big") + big),
+           folder.write("gzip-little.nrrd", makeNrrdHeader("gzip", "little") + gzip(little)),
+           folder.write("gzip-big.nrrd", makeNrrdHeader("gzip", "big") + gzip(big)),
+           folder.write("raw-little.mha",
+                        makeMetaHeader("BinaryDataByteOrderMSB = False\n") + little),
+           folder.write("raw-big.mha", makeMetaHeader("ElementByteOrderMSB = True\n") + big),
+           folder.write("raw-native.mha", makeMetaHeader("") + rawBytes(samples)),
            folder.write("zlib-little.mha",
-                        meta("BinaryDataByteOrderMSB = 0\nCompressedData = True\n") + zlib(little)),
+                        makeMetaHeader("BinaryDataByteOrderMSB = 0\nCompressedData = True\n") +
+                            zlib(little)),
            folder.write("zlib-big.mha",
-                        meta("BinaryDataByteOrderMSB = 1\nCompressedData = True\n") + zlib(big)),
+                        makeMetaHeader("BinaryDataByteOrderMSB = 1\nCompressedData = True\n") +
+                            zlib(big)),
        }) {
     const Volume volume = readVolume(path);
     EXPECT_TRUE(std::ranges::equal(std::get<LargeArray<std::int16_t>>(volume.voxels), samples))
@@ -183,20 +186,21 @@ TEST(SampleReading, ReadsBothByteOrdersInEveryStorage) {
 
 TEST(SampleReading, RefusesStreamsOfAnotherLength) {
   const TemporaryFolder folder;
-  const std::string samples = rawBytes(samplesWith<std::int16_t>(-1000));
+  const std::string samples = rawBytes(makeSamples<std::int16_t>(-1000));
   const auto refuse = [&](const std::string& name, const std::string& content) {
     const auto path = folder.write(name, content);
     expectRefused(path, "is damaged or truncated", [&] { readVolume(path); });
   };
-  const std::string zipped = gzip(samples);
-  const std::string head = nrrd("gzip", "little");
+  const std::string compressed = gzip(samples);
+  const std::string head = makeNrrdHeader("gzip", "little");
   refuse("short.nrrd", head + gzip(samples.substr(2)));
   refuse("long.nrrd", head + gzip(samples + "x"));
-  refuse("cut.nrrd", head + zipped.substr(0, zipped.size() - 3));
-  std::string wrong = zipped;
-  wrong[wrong.size() - 8] = static_cast<char>(~wrong[wrong.size() - 8]); // byte of the checksum
-  refuse("checksum.nrrd", head + wrong);
-  refuse("cut.mha", meta("CompressedData = True\n") + zlib(samples).substr(0, 5000));
+  refuse("cut.nrrd", head + compressed.substr(0, compressed.size() - 3));
+  std::string corrupted = compressed;
+  corrupted[corrupted.size() - 8] =
+      static_cast<char>(~corrupted[corrupted.size() - 8]); // byte of the checksum
+  refuse("checksum.nrrd", head + corrupted);
+  refuse("cut.mha", makeMetaHeader("CompressedData = True\n") + zlib(samples).substr(0, 5000));
 }
 
 } // namespace

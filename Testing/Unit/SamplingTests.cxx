@@ -45,7 +45,7 @@ void expectUniform(const std::vector<double>& counts, const std::string& what) {
   for (const double count : counts)
     sum += count;
   const std::vector<double> expected(counts.size(), sum / static_cast<double>(counts.size()));
-  EXPECT_LT(std::abs(chiSquaredDeviate(counts, expected)), 4.5) << what;
+  EXPECT_LT(std::abs(chiSquaredZScore(counts, expected)), 4.5) << what;
 }
 
 /// Counts of `cells` x `cells` cells of two numbers, drawn by draw(pixel).

@@ -8,7 +8,7 @@ namespace {
 
 const Vec3 incoming = Vec3(0.3, -0.5, 0.81).normalized();
 
-ScatterSample sampled(const SurfaceScattering& surface, Random& random) {
+ScatterSample sampleSurface(const SurfaceScattering& surface, Random& random) {
   const double choice = random.uniform();
   return surface.sample(choice, random.uniform2());
 }
@@ -83,18 +83,18 @@ TEST_P(Surface, SamplingMatchesPdf) {
   const SurfaceScattering s = surface();
   // Directions below the surface have no density: the missing mass is their share of the glossy
   // lobe.
-  double below = 0.0;
+  double lostMass = 0.0;
   constexpr int n = 200000;
   for (int i = 0; i < n; ++i) {
     Random random(77, static_cast<std::uint64_t>(i), 0);
-    below += sampled(s, random).pdf > 0.0 ? 0.0 : 1.0 / n;
+    lostMass += sampleSurface(s, random).pdf > 0.0 ? 0.0 : 1.0 / n;
   }
   expectSamplingMatchesPdf(
       [&](Random& r) {
-        const ScatterSample sample = sampled(s, r);
+        const ScatterSample sample = sampleSurface(s, r);
         return sample.pdf > 0.0 ? sample.outgoing : Vec3(Vec3::Zero());
       },
-      [&](const Vec3& d) { return s.pdf(d); }, 1.0 - below, 100);
+      [&](const Vec3& d) { return s.pdf(d); }, 1.0 - lostMass, 100);
 }
 
 TEST_P(Surface, ReflectsNoMoreThanArrives) {
@@ -103,20 +103,20 @@ TEST_P(Surface, ReflectsNoMoreThanArrives) {
   constexpr int n = 200000;
   for (int i = 0; i < n; ++i) {
     Random random(5, static_cast<std::uint64_t>(i), 0);
-    reflected += sampled(s, random).weight / n;
+    reflected += sampleSurface(s, random).weight / n;
   }
-  const Rgb direct = [&] { // reference: midpoint rule
+  const Rgb expected = [&] { // reference: midpoint rule
     Rgb sum = Rgb::Zero();
-    const int fine = 400;
-    for (int i = 0; i < fine; ++i)
-      for (int j = 0; j < fine; ++j)
-        sum += s.evaluate(SphereBins::direction((i + 0.5) / fine * SphereBins::rows,
-                                                (j + 0.5) / fine * SphereBins::columns)) *
-               (4.0 * pi / (fine * fine));
+    const int resolution = 400;
+    for (int i = 0; i < resolution; ++i)
+      for (int j = 0; j < resolution; ++j)
+        sum += s.evaluate(SphereBins::toDirection((i + 0.5) / resolution * SphereBins::rows,
+                                                  (j + 0.5) / resolution * SphereBins::columns)) *
+               (4.0 * pi / (resolution * resolution));
     return sum;
   }();
   EXPECT_LE(reflected.maxCoeff(), 1.0);
-  EXPECT_TRUE(isApprox(reflected, expected, 0.01)) << reflected << "\n" << direct;
+  EXPECT_TRUE(isApprox(reflected, expected, 0.01)) << reflected << "\n" << expected;
 }
 
 INSTANTIATE_TEST_SUITE_P(Lobes, Surface,
@@ -129,30 +129,31 @@ INSTANTIATE_TEST_SUITE_P(Lobes, Surface,
                                            SurfaceCase{0.5, SurfaceShading::makeCoated(1.0, 0.2)},
                                            SurfaceCase{0.1, SurfaceShading::makeCoated(0.7, 1.0)}));
 
-SurfaceScattering seenAt(double cosine, const SurfaceShading& shading, const Rgb& albedo) {
+SurfaceScattering makeSurface(double cosine, const SurfaceShading& shading, const Rgb& albedo) {
   const Vec3 toViewer(std::sqrt(1.0 - cosine * cosine), 0.0, cosine);
   return {-toViewer, -Vec3::UnitZ(), shading, albedo};
 }
 
 /// Share of the light of a uniform environment that goes to the viewer.
-double whiteness(const SurfaceScattering& surface) {
+double estimateAlbedo(const SurfaceScattering& surface) {
   double sum = 0.0;
   constexpr int n = 100000;
   for (int i = 0; i < n; ++i) {
     Random random(6, static_cast<std::uint64_t>(i), 0);
-    sum += sampled(surface, random).weight.maxCoeff() / n;
+    sum += sampleSurface(surface, random).weight.maxCoeff() / n;
   }
   return sum;
 }
 
 TEST(Coat, LeavesAWhiteSurfaceWhite) {
   for (const double cosine : {1.0, 0.5}) {
-    const double coated =
-        whiteness(seenAt(cosine, SurfaceShading::makeCoated(0.2, 0.3), Rgb::Ones()));
-    EXPECT_GT(coated, 0.999);
-    EXPECT_LE(coated, 1.0);
-    EXPECT_NEAR(whiteness(makeSurface(cosine, SurfaceShading::makeCoated(0.0, 0.3), Rgb::Ones())),
-                1.0, 1e-9);
+    const double albedo =
+        estimateAlbedo(makeSurface(cosine, SurfaceShading::makeCoated(0.2, 0.3), Rgb::Ones()));
+    EXPECT_GT(albedo, 0.999);
+    EXPECT_LE(albedo, 1.0);
+    EXPECT_NEAR(
+        estimateAlbedo(makeSurface(cosine, SurfaceShading::makeCoated(0.0, 0.3), Rgb::Ones())), 1.0,
+        1e-9);
   }
 }
 
@@ -160,9 +161,9 @@ TEST(Coat, IsReciprocal) {
   const SurfaceShading shading = SurfaceShading::makeCoated(0.8, 0.3);
   const Vec3 a(0.6, 0.0, 0.8), b(0.0, std::sqrt(0.99), 0.1);
   const Rgb albedo(0.9, 0.6, 0.3);
-  const Rgb there = SurfaceScattering(-a, -Vec3::UnitZ(), shading, albedo).evaluate(b) / b.z();
-  const Rgb back = SurfaceScattering(-b, -Vec3::UnitZ(), shading, albedo).evaluate(a) / a.z();
-  EXPECT_TRUE(isApprox(there, back, 1e-12)) << there << "\n" << back;
+  const Rgb forward = SurfaceScattering(-a, -Vec3::UnitZ(), shading, albedo).evaluate(b) / b.z();
+  const Rgb backward = SurfaceScattering(-b, -Vec3::UnitZ(), shading, albedo).evaluate(a) / a.z();
+  EXPECT_TRUE(isApprox(forward, backward, 1e-12)) << forward << "\n" << backward;
 }
 
 TEST(SurfaceNormal, FacesTheIncomingPath) {

@@ -13,11 +13,11 @@ namespace {
 struct Change {
   std::string name;
   std::function<void(RenderRequest&)> apply;
-  UpdatedStages made;
+  UpdatedStages updated;
 };
 
 /// Ball in a box of 16^3 voxels, and two labels in the ball.
-constexpr const char* lampAtTheFocus =
+constexpr const char* focusLamp =
     R"({"lights": [{"type": "sphere", "center": [0, 20, 0], "diameter": 5, "radiance": [9, 9, 9],
                     "frame": "focus"}]})";
 
@@ -49,7 +49,7 @@ protected:
     request.width = request.height = 16;
   }
 
-  static Film picture(const PreparedScene& scene) {
+  static Film renderFilm(const PreparedScene& scene) {
     RenderSettings settings;
     settings.samples = 2;
     RenderMonitor monitor;
@@ -67,18 +67,18 @@ TEST_P(SceneChange, RemakesOnlyDependentStages) {
   if (request.lights == "lamp.json")
     request.lights = folder / "lamp.json";
   const PreparedScene changed = before.withRequest(request);
-  EXPECT_EQ(changed.updatedStages(), GetParam().made);
+  EXPECT_EQ(changed.updatedStages(), GetParam().updated);
 
-  const PreparedScene fromNothing(request);
+  const PreparedScene fresh(request);
   const bool isTinted = request.materials != noMaterials;
-  EXPECT_EQ(fromNothing.updatedStages(),
+  EXPECT_EQ(fresh.updatedStages(),
             (UpdatedStages{true, true, true, true, true, true, true, true, isTinted, isTinted}));
-  EXPECT_EQ(changed.files(), fromNothing.files());
-  EXPECT_EQ(changed.warnings(), fromNothing.warnings());
-  EXPECT_EQ(changed.look(), fromNothing.look());
-  EXPECT_EQ(changed.clipResult().focusDepth, fromNothing.clipResult().focusDepth);
-  const Film expected = picture(fromNothing);
-  const Film film = picture(changed);
+  EXPECT_EQ(changed.files(), fresh.files());
+  EXPECT_EQ(changed.warnings(), fresh.warnings());
+  EXPECT_EQ(changed.look(), fresh.look());
+  EXPECT_EQ(changed.clipResult().focusDepth, fresh.clipResult().focusDepth);
+  const Film expected = renderFilm(fresh);
+  const Film film = renderFilm(changed);
   for (std::size_t i = 0; i < film.pixelCount(); ++i)
     ASSERT_TRUE(film.pixels()[i].mean == expected.pixels()[i].mean) << "pixel " << i;
 }
@@ -117,9 +117,8 @@ INSTANTIATE_TEST_SUITE_P(
                  r.lights = R"({"lights": [{"type": "environment", "radiance": [1, 2, 1]}]})";
                },
                {.lights = true}},
-        Change{"LightsAtTheFocus",
-               [](RenderRequest& r) { r.lights = lampAtTheFocus; },
-               {.lights = true}},
+        Change{
+            "LightsAtTheFocus", [](RenderRequest& r) { r.lights = focusLamp; }, {.lights = true}},
         Change{"Environment",
                [](RenderRequest& r) { r.environment = Rgb(1.0, 0.5, 0.2); },
                {.lights = true}},
@@ -135,20 +134,20 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return info.param.name; });
 
 TEST_F(SceneChange, LampAtTheFocusFollowsIt) {
-  request.lights = lampAtTheFocus;
+  request.lights = focusLamp;
   request.view.position = Vec3(0, -100, 0); // the camera stays where it is
   request.view.target = Vec3::Zero();
   const PreparedScene before(request);
-  const auto lamp = [](const PreparedScene& scene) {
+  const auto findLamp = [](const PreparedScene& scene) {
     return scene.view().lights.tables().spheres.at(0).center;
   };
   const Vec3 center = before.volume().grid.indexToWorld * Vec3::Constant(7.5);
-  EXPECT_LT((lamp(before) - center - Vec3(0, 20, 0)).norm(), 1e-9);
+  EXPECT_LT((findLamp(before) - center - Vec3(0, 20, 0)).norm(), 1e-9);
   RenderRequest other = request;
   other.focus = {"2"};
   const PreparedScene moved = before.withRequest(other);
   EXPECT_TRUE(moved.updatedStages().lights);
-  EXPECT_GT((lamp(moved) - lamp(before)).norm(), 1.0);
+  EXPECT_GT((findLamp(moved) - findLamp(before)).norm(), 1.0);
   request.focus.clear();
   expectRefused("--lights", "lights[0].frame: is \"focus\", and there is no focus; name one",
                 [&] { PreparedScene{request}; });
@@ -157,37 +156,38 @@ TEST_F(SceneChange, LampAtTheFocusFollowsIt) {
 TEST_F(SceneChange, AutomaticViewFollowsFocusAndTransferFunction) {
   request.view.name = "auto";
   const PreparedScene before(request);
-  const auto expectAsFromNothing = [&](const PreparedScene& changed) {
+  const auto expectSameAsFresh = [&](const PreparedScene& changed) {
     EXPECT_EQ(changed.camera().pose().position, PreparedScene(request).camera().pose().position);
   };
   request.density = 3.0;
   const PreparedScene denser = before.withRequest(request);
   EXPECT_TRUE(denser.updatedStages().camera);
-  expectAsFromNothing(denser);
+  expectSameAsFresh(denser);
   request.width = 40;
   const PreparedScene wider = denser.withRequest(request);
   EXPECT_LT((wider.camera().forward() - denser.camera().forward()).norm(), 1e-12);
-  expectAsFromNothing(wider);
+  expectSameAsFresh(wider);
   request.focus = {"2"};
-  expectAsFromNothing(wider.withRequest(request));
+  expectSameAsFresh(wider.withRequest(request));
 }
 
 TEST_F(SceneChange, AutomaticScaleFramesTheMatterAlone) {
   request.focus.clear();
   const PreparedScene ball(request); // of radius 6 among 16 voxels
-  const auto seen = [](double from) {
+  const auto makeTransfer = [](double from) {
     return R"({"extinction": [[)" + std::to_string(from) +
            R"(, 0], [300, 0.2]], "albedo": [[0, 1, 1, 1]]})";
   };
-  request.transfer = seen(149.0);
-  const PreparedScene part = ball.withRequest(request); // x > 9, and |y - 7.5|, |z - 7.5| < 6
-  EXPECT_TRUE(part.updatedStages().camera);
-  const auto [position, scale] = std::pair(part.camera().pose().target, part.camera().pose().scale);
+  request.transfer = makeTransfer(149.0);
+  const PreparedScene partial = ball.withRequest(request); // x > 9, and |y - 7.5|, |z - 7.5| < 6
+  EXPECT_TRUE(partial.updatedStages().camera);
+  const auto [position, scale] =
+      std::pair(partial.camera().pose().target, partial.camera().pose().scale);
   EXPECT_LT(scale, 0.95 * ball.camera().pose().scale);
-  EXPECT_GT((part.volume().grid.worldToIndex * position).x(), 10.0);
-  request.transfer = seen(299.0);
-  const PreparedScene nothing = ball.withRequest(request);
-  EXPECT_EQ(nothing.camera().pose().scale, 1.05 * 8.0) << "the whole volume";
+  EXPECT_GT((partial.volume().grid.worldToIndex * position).x(), 10.0);
+  request.transfer = makeTransfer(299.0);
+  const PreparedScene empty = ball.withRequest(request);
+  EXPECT_EQ(empty.camera().pose().scale, 1.05 * 8.0) << "the whole volume";
 }
 
 TEST_F(SceneChange, LookThatLeavesTheFocusTransparentIsWarnedOf) {
@@ -237,9 +237,9 @@ TEST_F(SceneChange, NewCameraDoesNotRemakeLightsOfTheWorld) {
 TEST_F(SceneChange, LightsAsTextEqualLightsAsFile) {
   request.lights = folder / "lamp.json";
   const PreparedScene file(request);
-  request.lights = bytesOf(request.lights);
+  request.lights = readBytes(request.lights);
   const PreparedScene text(request);
-  const Film expected = picture(file), film = picture(text);
+  const Film expected = renderFilm(file), film = renderFilm(text);
   for (std::size_t i = 0; i < film.pixelCount(); ++i)
     ASSERT_TRUE(film.pixels()[i].mean == expected.pixels()[i].mean) << "pixel " << i;
   std::vector<std::string> files = file.files();
@@ -249,9 +249,9 @@ TEST_F(SceneChange, LightsAsTextEqualLightsAsFile) {
 
 TEST_F(SceneChange, RefusedChangeLeavesTheSceneAsItWas) {
   const PreparedScene before(request);
-  const Film expected = picture(before);
-  RenderRequest refused = request;
-  refused.focus = {"9"};
+  const Film expected = renderFilm(before);
+  RenderRequest invalid = request;
+  invalid.focus = {"9"};
   EXPECT_THROW(before.withRequest(invalid), Error);
   EXPECT_EQ(renderFilm(before).at(8, 8).mean.sum(), expected.at(8, 8).mean.sum());
   EXPECT_EQ(before.withRequest(request).updatedStages(), UpdatedStages());

@@ -7,8 +7,8 @@
 namespace fenestra::SceneFilesTests {
 namespace {
 
-std::string located(SceneFiles& files, const std::string& name) {
-  return bytesOf(files.locate(name));
+std::string readLocated(SceneFiles& files, const std::string& name) {
+  return readBytes(files.locate(name));
 }
 
 TEST(SceneFiles, FindsFilesBesideTheScene) {
@@ -22,13 +22,13 @@ TEST(SceneFiles, FindsFilesBesideTheScene) {
   const auto scene = folder.write("sub/scene.MRML", "<MRML/>");
   SceneFiles files(scene);
   EXPECT_EQ(files.sceneText(), "<MRML/>");
-  EXPECT_EQ(located(files, "../a%20b.txt"), "escaped");
-  EXPECT_EQ(located(files, "../a b.txt"), "escaped");
-  EXPECT_EQ(located(files, "../50%25.txt"), "percent");
-  EXPECT_EQ(located(files, "../%2520.txt"), "an escape of the escape");
-  EXPECT_EQ(located(files, "../it%27s%20%3C%22x%22%3E.txt"), "all six");
-  EXPECT_EQ(located(files, "../plus+%41.txt"), "no other escapes");
-  EXPECT_EQ(located(files, (folder / "a b.txt").string()), "escaped"); // absolute
+  EXPECT_EQ(readLocated(files, "../a%20b.txt"), "escaped");
+  EXPECT_EQ(readLocated(files, "../a b.txt"), "escaped");
+  EXPECT_EQ(readLocated(files, "../50%25.txt"), "percent");
+  EXPECT_EQ(readLocated(files, "../%2520.txt"), "an escape of the escape");
+  EXPECT_EQ(readLocated(files, "../it%27s%20%3C%22x%22%3E.txt"), "all six");
+  EXPECT_EQ(readLocated(files, "../plus+%41.txt"), "no other escapes");
+  EXPECT_EQ(readLocated(files, (folder / "a b.txt").string()), "escaped"); // absolute
   expectRefused(scene, "nowhere.nrrd, which is not there", [&] { files.locate("nowhere.nrrd"); });
 }
 
@@ -45,10 +45,10 @@ TEST(SceneFiles, FindsFilesInAnArchiveAndCleansUp) {
     SceneFiles files(archive);
     EXPECT_EQ(files.sceneText(), "<MRML/>");
     unpacked = files.locate("Data/a%20b.txt");
-    EXPECT_EQ(bytesOf(unpacked), "inside");
+    EXPECT_EQ(readBytes(unpacked), "inside");
     EXPECT_EQ(unpacked.filename(), "a b.txt"); // readers depend on extensions
     EXPECT_EQ(files.locate("Data/a%20b.txt"), unpacked);
-    EXPECT_EQ(located(files, "../other.txt"), "beside");
+    EXPECT_EQ(readLocated(files, "../other.txt"), "beside");
     EXPECT_EQ(
         std::filesystem::status(unpacked.parent_path().parent_path().parent_path()).permissions() &
             std::filesystem::perms::others_all,
@@ -78,9 +78,9 @@ TEST(SceneFiles, UnpacksFilesThatAHeaderNames) {
                          {"s/b.vtm", "<VTKFile><DataSet file=\"b/1.vtp\"/></VTKFile>"},
                          {"s/b/1.vtp", "surface"}});
   SceneFiles files(archive);
-  EXPECT_EQ(bytesOf(files.locate("v.nhdr").parent_path() / "Data/v.raw"), "samples");
+  EXPECT_EQ(readBytes(files.locate("v.nhdr").parent_path() / "Data/v.raw"), "samples");
   EXPECT_EQ(files.locate("Data/v.raw"), files.locate("v.nhdr").parent_path() / "Data/v.raw");
-  EXPECT_EQ(bytesOf(files.locate("b.vtm").parent_path() / "b/1.vtp"), "surface");
+  EXPECT_EQ(readBytes(files.locate("b.vtm").parent_path() / "b/1.vtp"), "surface");
   files.locate("w.nhdr"); // refused later by its reader
 }
 
@@ -113,37 +113,37 @@ TEST(SceneFiles, UnpacksAFileOnRequestOnly) {
 
 TEST(SceneFiles, ChoosesTheMainSceneAsSlicerDoes) {
   const TemporaryFolder folder;
-  const auto mainOf = [&](const std::map<std::string, std::string>& files) {
+  const auto readMainScene = [&](const std::map<std::string, std::string>& files) {
     writeArchive(folder / "case.mrb", files);
     return SceneFiles(folder / "case.mrb").sceneText();
   };
-  EXPECT_EQ(mainOf({{"a/deep/z.mrml", "deep"}, {"z/main.mrml", "main"}}), "main");
-  EXPECT_EQ(mainOf({{"x/case.mrml", "named"}, {"x/other.mrml", "other"}}), "named");
-  EXPECT_EQ(mainOf({{"x/x.mrml", "like its folder"}, {"x/other.mrml", "other"}}),
+  EXPECT_EQ(readMainScene({{"a/deep/z.mrml", "deep"}, {"z/main.mrml", "main"}}), "main");
+  EXPECT_EQ(readMainScene({{"x/case.mrml", "named"}, {"x/other.mrml", "other"}}), "named");
+  EXPECT_EQ(readMainScene({{"x/x.mrml", "like its folder"}, {"x/other.mrml", "other"}}),
             "like its folder");
   expectRefused(folder / "case.mrb", "several scenes (x/a.mrml, x/b.mrml)", [&] {
-    mainOf({{"x/a.mrml", ""}, {"x/b.mrml", ""}});
+    readMainScene({{"x/a.mrml", ""}, {"x/b.mrml", ""}});
   });
-  expectRefused(folder / "case.mrb", "holds no .mrml", [&] { mainOf({{"x/a.txt", ""}}); });
+  expectRefused(folder / "case.mrb", "holds no .mrml", [&] { readMainScene({{"x/a.txt", ""}}); });
 }
 
 TEST(SceneFiles, RefusesDamagedAndEscapingArchives) {
   const TemporaryFolder folder;
   const auto refuse = [&](const std::map<std::string, std::string>& files,
-                          const std::string& because) {
+                          const std::string& reason) {
     writeArchive(folder / "bad.mrb", files);
-    expectRefused(folder / "bad.mrb", because, [&] { SceneFiles(folder / "bad.mrb"); });
+    expectRefused(folder / "bad.mrb", reason, [&] { SceneFiles(folder / "bad.mrb"); });
   };
   refuse({{"a.mrml", "<MRML/>"}, {"../../evil", "x"}}, "leads out of the archive");
   refuse({{"a.mrml", "<MRML/>"}, {"/etc/evil", "x"}}, "leads out of the archive");
   refuse({{"a.mrml", "<MRML/>"}, {"x/../../evil", "x"}}, "leads out of the archive");
 
-  const auto words = folder.write("words.mrb", "not an archive");
-  expectRefused(words, "no whole archive", [&] { SceneFiles files(words); });
+  const auto textFile = folder.write("words.mrb", "not an archive");
+  expectRefused(textFile, "no whole archive", [&] { SceneFiles files(textFile); });
   writeArchive(folder / "whole.mrb", {{"a.mrml", "<MRML/>" + std::string(5000, ' ')}});
-  const std::string bytes = bytesOf(folder / "whole.mrb");
-  const auto half = folder.write("half.mrb", bytes.substr(0, bytes.size() / 2));
-  expectRefused(half, "no whole archive", [&] { SceneFiles files(half); });
+  const std::string bytes = readBytes(folder / "whole.mrb");
+  const auto truncated = folder.write("half.mrb", bytes.substr(0, bytes.size() / 2));
+  expectRefused(truncated, "no whole archive", [&] { SceneFiles files(truncated); });
 }
 
 TEST(SceneFiles, RefusesOverlongNames) {
@@ -165,7 +165,7 @@ TEST(SceneFiles, RefusesEntriesBeyondTheSizeLimit) {
   for (char& byte : noise)
     byte = static_cast<char>(random());
   writeArchive(folder / "a.mrb", {{"a.mrml", "<MRML/>"}, {"big", noise}});
-  std::string bytes = bytesOf(folder / "a.mrb");
+  std::string bytes = readBytes(folder / "a.mrb");
   const std::size_t entry = bytes.rfind("PK\1\2"); // of the last file in the central directory
   ASSERT_EQ(bytes.substr(entry + 46, 3), "big");
   for (const char* size : {"\0\0\0\x60", "\0\0\0\x70"}) { // 1.6 and 1.9 GB
@@ -182,7 +182,7 @@ TEST(SceneFiles, RefusesDamagedAndBoundlessEntries) {
   std::string noise(4000, ' '); // incompressible, hence stored
   std::generate(noise.begin(), noise.end(), [&] { return static_cast<char>(random() & 0xff); });
   writeArchive(folder / "a.mrb", {{"a.mrml", "<MRML/>"}, {"data", noise}});
-  std::string bytes = bytesOf(folder / "a.mrb");
+  std::string bytes = readBytes(folder / "a.mrb");
   const std::size_t at = bytes.find(noise.substr(2000, 8));
   ASSERT_NE(at, std::string::npos);
   bytes[at] = static_cast<char>(bytes[at] ^ 1);
@@ -191,14 +191,14 @@ TEST(SceneFiles, RefusesDamagedAndBoundlessEntries) {
   expectRefused(damaged, "data in it is damaged", [&] { files.locate("data"); });
 
   // Uncompressed size in the central directory, set to 4 GB less one.
-  bytes = bytesOf(folder / "a.mrb");
+  bytes = readBytes(folder / "a.mrb");
   const std::size_t directory = bytes.find("PK\x01\x02", bytes.find("PK\x01\x02") + 4);
   ASSERT_NE(directory, std::string::npos);
   bytes.replace(directory + 24, 4, "\xfe\xff\xff\xff");
   const auto boundless = folder.write("boundless.mrb", bytes);
   expectRefused(boundless, "", [&] {
-    SceneFiles claimed(boundless);
-    claimed.locate("data");
+    SceneFiles archive(boundless);
+    archive.locate("data");
   });
 }
 

@@ -11,15 +11,15 @@ MrmlDocument parse(const std::string& nodes) {
   return {"<MRML>" + nodes + "</MRML>", "test"};
 }
 
-std::string volumeOf(const std::string& nodes, const std::optional<std::string>& choice = {}) {
+std::string findVolume(const std::string& nodes, const std::optional<std::string>& choice = {}) {
   const MrmlDocument document = parse(nodes);
   return planRender(document, {.volume = choice}).volume->id;
 }
 
-void refuse(const std::string& nodes, const std::string& because,
+void refuse(const std::string& nodes, const std::string& reason,
             const SceneSelection& choice = {}) {
   const MrmlDocument document = parse(nodes);
-  expectRefused("test", because, [&] { planRender(document, choice); });
+  expectRefused("test", reason, [&] { planRender(document, choice); });
 }
 
 const std::string threeVolumes = R"(
@@ -28,23 +28,23 @@ const std::string threeVolumes = R"(
   <Volume id="v3" name="three"/><VolumeDisplay id="s2"/>)";
 
 TEST(ScenePlan, ChoosesTheVolumeRenderedInSlicer) {
-  EXPECT_EQ(volumeOf(threeVolumes + R"(<GPURayCastVolumeRendering id="d1" visibility="false"/>
+  EXPECT_EQ(findVolume(threeVolumes + R"(<GPURayCastVolumeRendering id="d1" visibility="false"/>
                                        <GPURayCastVolumeRendering id="d2" visibility="true"/>)"),
             "v2");
-  EXPECT_EQ(volumeOf(threeVolumes + R"(<CPURayCastVolumeRendering id="d2" visibility="false"/>)"),
+  EXPECT_EQ(findVolume(threeVolumes + R"(<CPURayCastVolumeRendering id="d2" visibility="false"/>)"),
             "v2"); // the only volume with settings
-  EXPECT_EQ(volumeOf(threeVolumes + R"(<Selection references="ActiveVolume:v3;"/>)"), "v3");
-  EXPECT_EQ(volumeOf(threeVolumes + R"(<Selection activeVolumeID="v1"/>)"), "v1");
-  EXPECT_EQ(volumeOf(R"(<Volume id="v"/><LabelMapVolume id="l"/><Volume id="m" labelMap="1"/>
+  EXPECT_EQ(findVolume(threeVolumes + R"(<Selection references="ActiveVolume:v3;"/>)"), "v3");
+  EXPECT_EQ(findVolume(threeVolumes + R"(<Selection activeVolumeID="v1"/>)"), "v1");
+  EXPECT_EQ(findVolume(R"(<Volume id="v"/><LabelMapVolume id="l"/><Volume id="m" labelMap="1"/>
                         <VectorVolume id="x"/>)"),
             "v");
 }
 
 TEST(ScenePlan, ChoosesTheVolumeThatTheUserNames) {
   const std::string rendered = threeVolumes + R"(<GPURayCastVolumeRendering id="d1"/>)";
-  EXPECT_EQ(volumeOf(rendered, "v3"), "v3");
-  EXPECT_EQ(volumeOf(rendered, "three"), "v3");
-  EXPECT_EQ(volumeOf(R"(<Volume id="a" name="b"/><Volume id="b" name="a"/>)", "a"),
+  EXPECT_EQ(findVolume(rendered, "v3"), "v3");
+  EXPECT_EQ(findVolume(rendered, "three"), "v3");
+  EXPECT_EQ(findVolume(R"(<Volume id="a" name="b"/><Volume id="b" name="a"/>)", "a"),
             "a"); // ids first
   refuse(rendered, "has no scalar volume \"four\"; it has one (v1), two (v2), three (v3)",
          {.volume = "four"});
@@ -83,9 +83,9 @@ TEST(ScenePlan, CropsOnlyIfCroppingIsOn) {
   const ScenePlan plan = planRender(document, {});
   EXPECT_FALSE(plan.roi);
   EXPECT_EQ(plan.ignored, std::vector<std::string>{"MarkupsROI (r): cropping is off"});
-  const MrmlDocument lost = parse(R"(<Volume id="v" displayNodeRef="d"/>
+  const MrmlDocument withoutRoi = parse(R"(<Volume id="v" displayNodeRef="d"/>
     <GPURayCastVolumeRendering id="d" croppingEnabled="1"/>)");
-  ASSERT_EQ(planRender(lost, {}).warnings.size(), 1U);
+  ASSERT_EQ(planRender(withoutRoi, {}).warnings.size(), 1U);
 }
 
 TEST(ScenePlan, FollowsTheVolumeDisplayIfTheRenderingDoes) {
@@ -111,17 +111,17 @@ TEST(ScenePlan, WarnsOfAnActiveClipNode) {
 TEST(ScenePlan, RefusesIntensityProjections) {
   const std::string volume = R"(<Volume id="v" displayNodeRef="d"/>)";
   const std::string rendering = R"(<GPURayCastVolumeRendering id="d")";
-  const auto inView = [&](const std::string& technique) {
+  const auto makeScene = [&](const std::string& technique) {
     return volume + rendering + "/><View id=\"w\" raycastTechnique=\"" + technique + "\"/>";
   };
-  refuse(inView("MaximumIntensityProjection"), "maximum intensity projection");
-  refuse(inView("MinimumIntensityProjection"), "minimum intensity projection");
+  refuse(makeScene("MaximumIntensityProjection"), "maximum intensity projection");
+  refuse(makeScene("MinimumIntensityProjection"), "minimum intensity projection");
   refuse(volume + rendering + " raycastTechnique=\"2\"/>", "maximum intensity projection");
-  const MrmlDocument composite = parse(inView("Composite"));
+  const MrmlDocument composite = parse(makeScene("Composite"));
   EXPECT_EQ(planRender(composite, {}).view->id, "w");
 }
 
-std::string cameraOf(const std::string& nodes) {
+std::string findCamera(const std::string& nodes) {
   const MrmlDocument document = parse("<Volume id=\"v\" displayNodeRef=\"d\"/>" + nodes);
   const ScenePlan plan = planRender(document, {});
   return (plan.view ? plan.view->id : "none") + " " + (plan.camera ? plan.camera->id : "none");
@@ -141,15 +141,15 @@ TEST(ScenePlan, PairsTheCameraWithItsView) {
 }
 
 TEST(ScenePlan, ChoosesTheViewOfTheRendering) {
-  const std::string both = R"(<View id="w1" layoutName="1"/><View id="w2" layoutName="2")";
-  EXPECT_EQ(findCamera(both + "/>"), "w1 none");
-  EXPECT_EQ(findCamera(both + R"( active="true"/>)"), "w2 none");
-  EXPECT_EQ(findCamera(both + R"( attributes="MappedInLayout:1"/>)"), "w2 none");
-  EXPECT_EQ(findCamera(both + R"(/><GPURayCastVolumeRendering id="d" viewNodeRef="w2"/>)"),
+  const std::string views = R"(<View id="w1" layoutName="1"/><View id="w2" layoutName="2")";
+  EXPECT_EQ(findCamera(views + "/>"), "w1 none");
+  EXPECT_EQ(findCamera(views + R"( active="true"/>)"), "w2 none");
+  EXPECT_EQ(findCamera(views + R"( attributes="MappedInLayout:1"/>)"), "w2 none");
+  EXPECT_EQ(findCamera(views + R"(/><GPURayCastVolumeRendering id="d" viewNodeRef="w2"/>)"),
             "w2 none");
 }
 
-std::string segmentationOf(const std::string& nodes, SceneSelection choice) {
+std::string findSegmentation(const std::string& nodes, SceneSelection choice) {
   const MrmlDocument document = parse("<Volume id=\"v\"/>" + nodes);
   const ScenePlan plan = planRender(document, choice);
   return plan.segmentation ? plan.segmentation->id : "none";
@@ -157,17 +157,17 @@ std::string segmentationOf(const std::string& nodes, SceneSelection choice) {
 
 TEST(ScenePlan, ChoosesTheVisibleOrNamedSegmentation) {
   const SceneSelection any{.needsSegmentation = true};
-  EXPECT_EQ(segmentationOf(R"(<LabelMapVolume id="l"/><Segmentation id="s"/>)", any), "s");
-  EXPECT_EQ(segmentationOf(R"(<LabelMapVolume id="l"/>)", any), "l");
-  EXPECT_EQ(segmentationOf(R"(<Volume id="m" labelMap="1"/>)", any), "m");
-  EXPECT_EQ(segmentationOf(R"(<Segmentation id="s" displayNodeRef="d"/><Segmentation id="t"/>
+  EXPECT_EQ(findSegmentation(R"(<LabelMapVolume id="l"/><Segmentation id="s"/>)", any), "s");
+  EXPECT_EQ(findSegmentation(R"(<LabelMapVolume id="l"/>)", any), "l");
+  EXPECT_EQ(findSegmentation(R"(<Volume id="m" labelMap="1"/>)", any), "m");
+  EXPECT_EQ(findSegmentation(R"(<Segmentation id="s" displayNodeRef="d"/><Segmentation id="t"/>
                               <SegmentationDisplay id="d" visibility="false"/>)",
-                           any),
+                             any),
             "t");
-  EXPECT_EQ(segmentationOf(R"(<Segmentation id="s"/><LabelMapVolume id="l" name="brain"/>)",
-                           {.segmentation = "brain", .needsSegmentation = true}),
+  EXPECT_EQ(findSegmentation(R"(<Segmentation id="s"/><LabelMapVolume id="l" name="brain"/>)",
+                             {.segmentation = "brain", .needsSegmentation = true}),
             "l");
-  EXPECT_EQ(segmentationOf("", {.segmentation = "file.nrrd", .needsSegmentation = true}), "none");
+  EXPECT_EQ(findSegmentation("", {.segmentation = "file.nrrd", .needsSegmentation = true}), "none");
   refuse("<Volume id=\"v\"/><Segmentation id=\"s\"/><Segmentation id=\"t\"/>",
          "several segmentations ((s), (t)); choose one with --segmentation", any);
   refuse("<Volume id=\"v\"/>", "no segmentation to find segments in", any);

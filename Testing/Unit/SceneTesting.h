@@ -28,7 +28,7 @@ public:
                            "</MRML>");
   }
 
-  MrmlScene scene(const std::string& nodes) const { return MrmlScene(writeScene(nodes)); }
+  MrmlScene makeScene(const std::string& nodes) const { return MrmlScene(writeScene(nodes)); }
 };
 
 inline const std::string volumeNode = R"(

@@ -51,13 +51,13 @@ TEST(SegmentChoice, UnknownSegmentIsAnsweredByThoseThatMayBeMeant) {
   addSegment(geometry, 2, "c", "Right Lung", "3", "0");
   writeFile(folder / "s.seg.nrrd", std::vector<std::uint8_t>(24, 1), geometry);
   const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
-  const auto answer = [&](const std::string& selector, const std::string& text) {
+  const auto expectMessage = [&](const std::string& selector, const std::string& text) {
     expectRefused(folder / "s.seg.nrrd", text, [&] { s.makeFocusMask({selector}, s.grid()); });
   };
-  answer("Kidneys", "\"Kidneys\"; did you mean kidney_left, kidney_right?");
-  answer("left kidney", "did you mean kidney_left?");
-  answer("lung", "did you mean Right Lung?");
-  answer("spleen", "it has a (kidney_left), b (kidney_right), c (Right Lung)");
+  expectMessage("Kidneys", "\"Kidneys\"; did you mean kidney_left, kidney_right?");
+  expectMessage("left kidney", "did you mean kidney_left?");
+  expectMessage("lung", "did you mean Right Lung?");
+  expectMessage("spleen", "it has a (kidney_left), b (kidney_right), c (Right Lung)");
   EXPECT_EQ(s.makeFocusMask({" kidney_left "}, s.grid()).names,
             std::vector<std::string>{"kidney_left"});
 }

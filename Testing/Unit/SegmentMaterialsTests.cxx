@@ -10,26 +10,27 @@
 namespace fenestra::SegmentMaterialsTests {
 namespace {
 
-SegmentInfo named(const std::string& name) {
+SegmentInfo makeSegment(const std::string& name) {
   return {.id = name, .name = name};
 }
 
-SegmentInfo coded(const std::string& category, const std::string& type,
-                  const std::string& region = "", const std::string& name = "Segment_1") {
-  SegmentInfo info = named(name);
+SegmentInfo makeCodedSegment(const std::string& category, const std::string& type,
+                             const std::string& region = "",
+                             const std::string& name = "Segment_1") {
+  SegmentInfo info = makeSegment(name);
   info.category = category;
   info.type = type;
   info.region = region;
   return info;
 }
 
-SegmentMaterial materialOf(const SegmentInfo& segment,
-                           const MaterialTable& table = materialLibrary()) {
+SegmentMaterial findMaterial(const SegmentInfo& segment,
+                             const MaterialTable& table = materialLibrary()) {
   return assignMaterials({segment}, table).at(0);
 }
 
 /// Spleen, kidneys and so on, with the material of each.
-const std::vector<std::pair<std::string, std::string>> meant = {
+const std::vector<std::pair<std::string, std::string>> expectedMaterials = {
     // TotalSegmentator
     {"spleen", "spleen"},
     {"kidney_left", "kidney"},
@@ -96,19 +97,19 @@ const std::vector<std::pair<std::string, std::string>> meant = {
 };
 
 TEST(SegmentMaterials, NamesMeanWhatAClinicianMeans) {
-  for (const auto& [name, material] : meant) {
-    const SegmentMaterial found = materialOf(named(name));
+  for (const auto& [name, material] : expectedMaterials) {
+    const SegmentMaterial found = findMaterial(makeSegment(name));
     EXPECT_EQ(found.name, material) << name << ": " << found.reason;
   }
-  for (const char* none : {"", "Segment_1", "mask", "optic disc", "unknown", "region_7"})
-    EXPECT_EQ(materialOf(named(none)).name, "") << none;
+  for (const char* unknown : {"", "Segment_1", "mask", "optic disc", "unknown", "region_7"})
+    EXPECT_EQ(findMaterial(makeSegment(unknown)).name, "") << unknown;
 }
 
 TEST(SegmentMaterials, EveryClassOfTheTablesHasAMaterial) {
   for (const std::string& table : listBuiltInLabelTables()) {
     const LabelNames labels = *findBuiltInLabelNames(table);
     for (const auto& [value, label] : labels) {
-      const SegmentMaterial found = materialOf(named(label.name));
+      const SegmentMaterial found = findMaterial(makeSegment(label.name));
       EXPECT_NE(found.name, "") << table << ' ' << label.name << ": " << found.reason;
       EXPECT_EQ(found.reason.rfind("by name '", 0), 0u) << found.reason;
     }
@@ -119,24 +120,26 @@ TEST(SegmentMaterials, EveryClassOfTheTablesHasAMaterial) {
 
 TEST(SegmentMaterials, CodesWinOverNames) {
   const std::string anatomy = "SCT^123037004", altered = "SCT^49755003";
-  const auto expect = [](const SegmentInfo& segment, const char* material, const char* why) {
-    const SegmentMaterial found = materialOf(segment);
+  const auto expect = [](const SegmentInfo& segment, const char* material, const char* reason) {
+    const SegmentMaterial found = findMaterial(segment);
     EXPECT_EQ(found.name, material) << found.reason;
     EXPECT_EQ(found.reason, reason);
   };
-  expect(coded(anatomy, "SCT^10200004", "", "spleen"), "liver", "by SCT^10200004");
-  expect(coded(anatomy, "SRT^T-62000"), "liver", "by SRT^T-62000");
-  expect(coded("", "FMA^7197"), "liver", "by FMA^7197");
-  expect(coded(altered, "SCT^4147007", "SCT^10200004"), "lesion", "by SCT^4147007");
-  expect(coded(altered, "SCT^367643001", "SCT^64033007"), "cyst", "by SCT^367643001");
-  expect(coded(altered, "SCT^1", "SCT^10200004", "liver"), "lesion", "by category SCT^49755003");
-  expect(coded("SCT^85756007", "SCT^85756007", "SCT^10200004"), "liver", "by region SCT^10200004");
-  expect(coded("SCT^260787004", "SCT^19227008", "", "overlapping sphere"), "metal",
+  expect(makeCodedSegment(anatomy, "SCT^10200004", "", "spleen"), "liver", "by SCT^10200004");
+  expect(makeCodedSegment(anatomy, "SRT^T-62000"), "liver", "by SRT^T-62000");
+  expect(makeCodedSegment("", "FMA^7197"), "liver", "by FMA^7197");
+  expect(makeCodedSegment(altered, "SCT^4147007", "SCT^10200004"), "lesion", "by SCT^4147007");
+  expect(makeCodedSegment(altered, "SCT^367643001", "SCT^64033007"), "cyst", "by SCT^367643001");
+  expect(makeCodedSegment(altered, "SCT^1", "SCT^10200004", "liver"), "lesion",
+         "by category SCT^49755003");
+  expect(makeCodedSegment("SCT^85756007", "SCT^85756007", "SCT^10200004"), "liver",
+         "by region SCT^10200004");
+  expect(makeCodedSegment("SCT^260787004", "SCT^19227008", "", "overlapping sphere"), "metal",
          "by SCT^19227008");
-  expect(coded(anatomy, "SCT^2", "SCT^3", "left lung"), "lung", "by name 'lung*'");
+  expect(makeCodedSegment(anatomy, "SCT^2", "SCT^3", "left lung"), "lung", "by name 'lung*'");
 }
 
-MaterialTable tableOf(const std::string& rules) {
+MaterialTable parseRules(const std::string& rules) {
   return parseMaterials(R"({"version": 1, "materials": {"a": {"color": "#ff0000"}, "b": {}},
                            "segments": [)" +
                             rules + "]}",
@@ -144,22 +147,23 @@ MaterialTable tableOf(const std::string& rules) {
 }
 
 TEST(SegmentMaterials, RulesOfAFileWinOverTheLibrary) {
-  const MaterialTable table = tableOf(
+  const MaterialTable table = parseRules(
       R"({"match": {"names": ["liver"], "except": ["vessel*"]}, "material": "a", "priority": 1},
          {"match": {"values": [7]}, "material": "b", "clip": false, "density": 3},
          {"match": {"names": ["left liver"]}, "material": "b", "priority": 2},
          {"match": {"codes": ["SCT^4147007~SCT^10200004"]}, "material": "b"})");
-  EXPECT_EQ(materialOf(named("Liver"), table).name, "a");
-  EXPECT_EQ(materialOf(coded("", "SCT^10200004", "", "Liver"), table).name, "a");
-  EXPECT_EQ(materialOf(named("liver vessels"), table).name, "vessel") << "excepted";
-  EXPECT_EQ(materialOf(named("left liver"), table).name, "b") << "of the greater priority";
-  EXPECT_EQ(materialOf(named("spleen"), table).name, "spleen");
-  EXPECT_EQ(materialOf(coded("", "SCT^4147007", "SCT^10200004"), table).reason,
+  EXPECT_EQ(findMaterial(makeSegment("Liver"), table).name, "a");
+  EXPECT_EQ(findMaterial(makeCodedSegment("", "SCT^10200004", "", "Liver"), table).name, "a");
+  EXPECT_EQ(findMaterial(makeSegment("liver vessels"), table).name, "vessel") << "excepted";
+  EXPECT_EQ(findMaterial(makeSegment("left liver"), table).name, "b") << "of the greater priority";
+  EXPECT_EQ(findMaterial(makeSegment("spleen"), table).name, "spleen");
+  EXPECT_EQ(findMaterial(makeCodedSegment("", "SCT^4147007", "SCT^10200004"), table).reason,
             "by SCT^4147007~SCT^10200004");
-  EXPECT_EQ(materialOf(coded("", "SCT^4147007", "SCT^12738006"), table).name, "lesion");
-  SegmentInfo seven = named("liver");
+  EXPECT_EQ(findMaterial(makeCodedSegment("", "SCT^4147007", "SCT^12738006"), table).name,
+            "lesion");
+  SegmentInfo seven = makeSegment("liver");
   seven.labelValue = 7;
-  const SegmentMaterial found = materialOf(seven, table);
+  const SegmentMaterial found = findMaterial(seven, table);
   EXPECT_EQ(found.reason, "by value 7");
   EXPECT_FALSE(found.medium.isClipped);
   EXPECT_EQ(found.medium.density, 3.0);
@@ -167,17 +171,17 @@ TEST(SegmentMaterials, RulesOfAFileWinOverTheLibrary) {
 
 /// Names that a rule excepts are excepted whatever their code.
 TEST(SegmentMaterials, ExceptionsHoldForCodes) {
-  EXPECT_EQ(materialOf(coded("", "SCT^10200004", "", "hepatic vein")).name, "vein");
-  EXPECT_EQ(materialOf(coded("", "SCT^10200004", "", "liver mass")).name, "lesion");
+  EXPECT_EQ(findMaterial(makeCodedSegment("", "SCT^10200004", "", "hepatic vein")).name, "vein");
+  EXPECT_EQ(findMaterial(makeCodedSegment("", "SCT^10200004", "", "liver mass")).name, "lesion");
 }
 
 TEST(SegmentMaterials, UnknownSegmentsKeepTheirColorOrGetOneOfThePalette) {
-  std::vector<SegmentInfo> segments(22, named("unknown"));
+  std::vector<SegmentInfo> segments(22, makeSegment("unknown"));
   segments[1].color = Rgb(0.2, 0.4, 0.6);
   const std::vector<SegmentMaterial> found = assignMaterials(segments, materialLibrary());
   EXPECT_EQ(found[0].reason, "by palette");
   EXPECT_EQ(found[1].reason, "by its own colour");
-  const Rgb own = encodeSrgb((*found[1].medium.material.color)(0));
+  const Rgb expected = encodeSrgb((*found[1].medium.material.color)(0));
   EXPECT_LT((expected - segments[1].color).abs().maxCoeff(), 1e-12);
   std::vector<Lab> palette;
   for (const SegmentMaterial& material : found)
@@ -191,7 +195,9 @@ TEST(SegmentMaterials, UnknownSegmentsKeepTheirColorOrGetOneOfThePalette) {
 }
 
 TEST(SegmentMaterials, PriorityIsThatOfTheKind) {
-  const auto priority = [](const char* name) { return materialOf(named(name)).medium.priority; };
+  const auto priority = [](const char* name) {
+    return findMaterial(makeSegment(name)).medium.priority;
+  };
   EXPECT_EQ(priority("liver tumour"), 30);
   EXPECT_EQ(priority("aorta"), 15);
   EXPECT_EQ(priority("liver"), 10);

@@ -10,7 +10,7 @@ namespace {
 
 /// Labelmap of one row, a voxel a segment (value i + 1 at voxel 2 i + 2, names as given); of the
 /// segment "empty" there is none.
-Handle<SegmentsInput> row(const std::vector<std::string>& names) {
+Handle<SegmentsInput> makeRow(const std::vector<std::string>& names) {
   std::vector<SegmentInfo> segments;
   LargeArray<std::uint8_t> labels(2 * names.size() + 3);
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -25,7 +25,7 @@ Handle<SegmentsInput> row(const std::vector<std::string>& names) {
       SegmentsInput{Segmentation("row.seg.nrrd", grid, 1, labels, segments)});
 }
 
-Handle<NamedMaterials> materials(const std::string& json) {
+Handle<NamedMaterials> makeMaterials(const std::string& json) {
   return std::make_shared<NamedMaterials>(
       NamedMaterials{parseMaterials(json, "m.json", findMaterials("library").table), "m.json"});
 }
@@ -33,54 +33,54 @@ Handle<NamedMaterials> materials(const std::string& json) {
 const Handle<NamedMaterials> library = std::make_shared<NamedMaterials>(findMaterials("library"));
 const Handle<NamedMaterials> automatic = std::make_shared<NamedMaterials>(findMaterials("auto"));
 
-TintPlan planOf(const Handle<SegmentsInput>& segments, const Handle<NamedMaterials>& materials,
-                const std::vector<std::string>& changes = {},
-                const std::vector<std::string>& focus = {}, const Handle<Mask>& skin = {}) {
-  const auto there = std::make_shared<std::vector<bool>>(findNonEmpty(segments));
-  return makeTintPlan(segments, there, materials, changes, focus, skin);
+TintPlan makePlan(const Handle<SegmentsInput>& segments, const Handle<NamedMaterials>& materials,
+                  const std::vector<std::string>& changes = {},
+                  const std::vector<std::string>& focus = {}, const Handle<Mask>& skin = {}) {
+  const auto isNonEmpty = std::make_shared<std::vector<bool>>(findNonEmpty(segments));
+  return makeTintPlan(segments, isNonEmpty, materials, changes, focus, skin);
 }
 
 using Parts = std::vector<TintPart>;
 
 TEST(SegmentTint, OnePartAColourAndPriority) {
-  const auto segments = row({"kidney_left", "empty", "aorta", "kidney_right", "body_trunc"});
-  const TintPlan plan = planOf(segments, library, {});
+  const auto segments = makeRow({"kidney_left", "empty", "aorta", "kidney_right", "body_trunc"});
+  const TintPlan plan = makePlan(segments, library, {});
   EXPECT_EQ(plan.components.size(), 3U) << "the volume's own, kidney, artery";
   EXPECT_EQ(plan.parts, (Parts{{{2}, 15, 1}, {{0, 3}, 10, 2}}))
       << "the body has the volume's own look, and no priority over anything";
-  const TintPlan lifted = planOf(segments, library, {"aorta: priority=3"});
-  EXPECT_EQ(lifted.parts, (Parts{{{4}, 5, 0}, {{2}, 3, 1}, {{0, 3}, 10, 2}}))
+  const TintPlan raised = makePlan(segments, library, {"aorta: priority=3"});
+  EXPECT_EQ(raised.parts, (Parts{{{4}, 5, 0}, {{2}, 3, 1}, {{0, 3}, 10, 2}}))
       << "the body takes from the aorta what both cover";
 }
 
 TEST(SegmentTint, OrderInAFileMakesNoDifference) {
-  const TintPlan one = planOf(row({"spleen", "aorta", "liver"}), automatic, {}, {"liver"}),
-                 other = planOf(row({"liver", "spleen", "aorta"}), automatic, {}, {"liver"});
+  const TintPlan one = makePlan(makeRow({"spleen", "aorta", "liver"}), automatic, {}, {"liver"}),
+                 other = makePlan(makeRow({"liver", "spleen", "aorta"}), automatic, {}, {"liver"});
   EXPECT_EQ(one.names, other.names);
   EXPECT_EQ(one.isFocus, other.isFocus);
 }
 
 TEST(SegmentTint, ChangesOfASegmentMakeItAComponentOfItsOwn) {
-  const auto segments = row({"kidney_left", "kidney_right", "spleen"});
-  const TintPlan red = planOf(segments, library, {"kidney_left: color=#ff0000"});
+  const auto segments = makeRow({"kidney_left", "kidney_right", "spleen"});
+  const TintPlan red = makePlan(segments, library, {"kidney_left: color=#ff0000"});
   EXPECT_EQ(red.parts, (Parts{{{0}, 10, 1}, {{1}, 10, 2}, {{2}, 10, 3}}));
   const TintPlan blue =
-      planOf(segments, library, {"id0: color=#ff0000", "1: color=#0000ff, priority=12"});
+      makePlan(segments, library, {"id0: color=#ff0000", "1: color=#0000ff, priority=12"});
   EXPECT_EQ(blue.parts, (Parts{{{0}, 12, 1}, {{1}, 10, 2}, {{2}, 10, 3}}));
   EXPECT_EQ(blue.components[1].material.color->knots()[0].value.z(), 1.0);
-  const TintPlan same = planOf(segments, library, {"spleen: material=kidney"});
+  const TintPlan same = makePlan(segments, library, {"spleen: material=kidney"});
   EXPECT_EQ(same.parts, (Parts{{{0, 1, 2}, 10, 1}}));
 }
 
 /// Set off, the focus has components of its own, be they of the context's colour or of the rest's.
 TEST(SegmentTint, FocusIsApartWhereItIsSetOff) {
-  const auto segments = row({"kidney_left", "kidney_right", "aorta", "body", "Thing"});
-  const TintPlan one = planOf(segments, automatic, {}, {"kidney_right"});
+  const auto segments = makeRow({"kidney_left", "kidney_right", "aorta", "body", "Thing"});
+  const TintPlan one = makePlan(segments, automatic, {}, {"kidney_right"});
   EXPECT_EQ(one.names,
             (std::vector<std::string>{"the rest", "aorta", "kidney_left", "kidney_right"}));
   EXPECT_EQ(one.isFocus, (std::vector<bool>{false, false, false, true}));
   EXPECT_EQ(one.parts, (Parts{{{4}, 10, 0}, {{2}, 15, 1}, {{0}, 10, 2}, {{1}, 10, 3, true}}));
-  const TintPlan both = planOf(segments, automatic, {}, {"1", "body", "id1"});
+  const TintPlan both = makePlan(segments, automatic, {}, {"1", "body", "id1"});
   EXPECT_EQ(both.names, (std::vector<std::string>{"the rest", "aorta", "body", "kidney"}));
   EXPECT_EQ(both.isFocus, (std::vector<bool>{false, false, true, true}));
   EXPECT_FALSE(both.components[2].material.color) << "the volume's own";
@@ -90,34 +90,34 @@ TEST(SegmentTint, FocusIsApartWhereItIsSetOff) {
 /// A name that says nothing gets a palette's colour from the library, and none beside a focus that
 /// is to stand out.
 TEST(SegmentTint, AutoColoursOnlyWhatIsKnown) {
-  const auto segments = row({"liver", "Thing", "Other"});
+  const auto segments = makeRow({"liver", "Thing", "Other"});
   EXPECT_EQ(makePlan(segments, library).components.size(), 4U);
   EXPECT_EQ(makePlan(segments, automatic).components.size(), 2U);
-  const TintPlan asked = planOf(segments, automatic, {"Thing: color=#00ff00"});
+  const TintPlan requested = makePlan(segments, automatic, {"Thing: color=#00ff00"});
   EXPECT_EQ(requested.components.size(), 3U);
 }
 
 TEST(SegmentTint, RestColoursWhatNoSegmentCovers) {
-  const auto segments = row({"liver", "body"});
+  const auto segments = makeRow({"liver", "body"});
   const TintPlan plan =
-      planOf(segments, materials(R"({"version": 1, "materials": {"red": {"color": "#ff0000"}},
+      makePlan(segments, makeMaterials(R"({"version": 1, "materials": {"red": {"color": "#ff0000"}},
                               "rest": {"material": "red"}})"),
-             {});
+               {});
   ASSERT_EQ(plan.components.size(), 3U);
   EXPECT_EQ(plan.components[0].material.color->knots()[0].value.x(), 1.0);
   EXPECT_FALSE(plan.components[1].material.color) << "the body's: the volume's own, not the rest's";
-  const TintPlan bare = planOf(row({"body"}), library, {});
-  EXPECT_EQ(bare.parts, (Parts{{{0}, 5, 0}})) << "nothing is coloured, and there is a part";
+  const TintPlan bodyOnly = makePlan(makeRow({"body"}), library, {});
+  EXPECT_EQ(bodyOnly.parts, (Parts{{{0}, 5, 0}})) << "nothing is coloured, and there is a part";
 }
 
 /// Segments of one colour are apart where their matter differs; an empty one is nothing.
 TEST(SegmentTint, MatterMakesAMixture) {
-  const auto segments = row({"kidney_left", "kidney_right", "spleen", "empty"});
+  const auto segments = makeRow({"kidney_left", "kidney_right", "spleen", "empty"});
   EXPECT_TRUE(isTintOnly(makePlan(segments, library)));
   EXPECT_TRUE(isTintOnly(makePlan(segments, library, {"empty: density=2"})));
   for (const char* change : {"kidney_right: clip=no", "kidney_right: density=2",
                              "kidney_right: extinction=2", "kidney_right: kind=matter"}) {
-    const TintPlan plan = planOf(segments, library, {change});
+    const TintPlan plan = makePlan(segments, library, {change});
     EXPECT_FALSE(isTintOnly(plan)) << change;
     EXPECT_EQ(plan.parts, (Parts{{{0}, 10, 1}, {{1}, 10, 2}, {{2}, 10, 3}})) << change;
   }
@@ -127,7 +127,7 @@ TEST(SegmentTint, MatterMakesAMixture) {
 }
 
 TEST(SegmentTint, MixturesHaveTheMatterOfTheirMaterials) {
-  const auto segments = row({"kidney_left", "kidney_right", "liver", "spleen"});
+  const auto segments = makeRow({"kidney_left", "kidney_right", "liver", "spleen"});
   TransferFunction own{
       ScalarFunction({{0.0, ScalarFunction::Value(0.0)}, {100.0, ScalarFunction::Value(2.0)}}),
       ColorFunction({{0.0, Rgb(0.3, 0.4, 0.5)}})};
@@ -135,18 +135,18 @@ TEST(SegmentTint, MixturesHaveTheMatterOfTheirMaterials) {
   own.gradientOpacity = own.extinction;
   own.shading = SurfaceShading{0.8, 0.3, 12.0, 0.7};
   const auto plan = std::make_shared<TintPlan>(
-      planOf(segments, library,
-             {"kidney_left: density=3", "kidney_right: clip=no",
-              "spleen: color=#808080, extinction=1.5, g=0.6, specular=0.4, roughness=0.25, "
-              "diffuse=0.7, border=0.5",
-              "liver: kind=matter"}));
-  const auto shares = std::make_shared<LabelWeights>(
+      makePlan(segments, library,
+               {"kidney_left: density=3", "kidney_right: clip=no",
+                "spleen: color=#808080, extinction=1.5, g=0.6, specular=0.4, roughness=0.25, "
+                "diffuse=0.7, border=0.5",
+                "liver: kind=matter"}));
+  const auto weights = std::make_shared<LabelWeights>(
       computeLabelWeights(segments, plan->parts, {}, 0.0, segments->segmentation.grid()));
   const Mixture mixture =
-      buildMixture(*plan, *std::make_shared<Tint>(buildTint(plan, shares, own.g)), own);
+      buildMixture(*plan, *std::make_shared<Tint>(buildTint(plan, weights, own.g)), own);
   ASSERT_EQ(mixture.components.size(), 5U);
   EXPECT_TRUE(mixture.hasUnclipped());
-  const auto extinctionAt = [&](std::size_t i, double scalar) {
+  const auto evalExtinction = [&](std::size_t i, double scalar) {
     return mixture.components[i].transfer.extinction(scalar).value();
   };
   EXPECT_EQ(evalExtinction(0, 50.0), 1.0);
@@ -164,7 +164,7 @@ TEST(SegmentTint, MixturesHaveTheMatterOfTheirMaterials) {
   EXPECT_TRUE(mixture.components[3].transfer.gradientOpacity);
   EXPECT_EQ(spleen.transfer.g, 0.6);
   EXPECT_EQ(spleen.interfaceWeight, 0.5);
-  const double grey = decodeSrgb(Rgb::Constant(128.0 / 255.0)).x();
+  const double gray = decodeSrgb(Rgb::Constant(128.0 / 255.0)).x();
   EXPECT_NEAR(toReflectance(spleen.transfer.albedo(0.0).x(), 0.6), gray, 1e-3);
   EXPECT_EQ(spleen.transfer.shading->diffuse, 0.7);
   EXPECT_EQ(spleen.transfer.shading->specular, 0.4);
@@ -173,19 +173,19 @@ TEST(SegmentTint, MixturesHaveTheMatterOfTheirMaterials) {
 
   own.shading.reset();
   for (const Component& component :
-       buildMixture(*plan, buildTint(plan, shares, own.g), own).components)
+       buildMixture(*plan, buildTint(plan, weights, own.g), own).components)
     EXPECT_FALSE(component.transfer.shading) << "as the volume's own";
 }
 
 TEST(SegmentTint, RefusesWhatItCannotShow) {
-  const auto segments = row({"liver", "empty"});
+  const auto segments = makeRow({"liver", "empty"});
   expectRefused("row.seg.nrrd", "has no segment \"live\"; did you mean liver?",
-                [&] { planOf(segments, library, {"live: color=#ffffff"}); });
+                [&] { makePlan(segments, library, {"live: color=#ffffff"}); });
   expectRefused("row.seg.nrrd", "no segment has a voxel, so there is nothing to colour",
-                [&] { planOf(row({"empty"}), library, {}); });
+                [&] { makePlan(makeRow({"empty"}), library, {}); });
   const auto refuseTable = [&](const std::string& members, const std::string& text) {
-    const auto table = materials(R"({"version": 1, )" + members + "}");
-    expectRefused("m.json", text, [&] { planOf(segments, table, {}); });
+    const auto table = makeMaterials(R"({"version": 1, )" + members + "}");
+    expectRefused("m.json", text, [&] { makePlan(segments, table, {}); });
   };
   refuseTable(R"("context": {"saturation": 0.5})", "context: is what is not focus; add --focus");
   refuseTable(R"("context": {"lightness": 0})", "context: is what is not focus; add --focus");
@@ -201,57 +201,59 @@ TEST(SegmentTint, RefusesMoreColoursThanAByteCounts) {
                         .labelValue = i + 1,
                         .color = Rgb(i / 255.0, 0.2, 0.3)});
   }
-  const auto inputOf = [&](std::size_t count) {
+  const auto makeInput = [&](std::size_t count) {
     segments.resize(count);
     return std::make_shared<SegmentsInput>(SegmentsInput{
         Segmentation("s.nrrd", Grid(Size3(256, 1, 1), Affine::Identity()), 1, labels, segments)});
   };
-  expectRefused("s.nrrd", "more than 255 materials", [&] { planOf(inputOf(256), library, {}); });
-  EXPECT_EQ(makePlan(inputOf(255), library, {}).components.size(), 256U);
+  expectRefused("s.nrrd", "more than 255 materials",
+                [&] { makePlan(makeInput(256), library, {}); });
+  EXPECT_EQ(makePlan(makeInput(255), library, {}).components.size(), 256U);
 }
 
 TEST(SegmentTint, SharesAndColoursLieWhereTheLabelsAre) {
-  const auto segments = row({"liver", "spleen"});
-  const auto plan = std::make_shared<TintPlan>(planOf(segments, library, {}));
+  const auto segments = makeRow({"liver", "spleen"});
+  const auto plan = std::make_shared<TintPlan>(makePlan(segments, library, {}));
   const Grid& grid = segments->segmentation.grid();
-  const auto shares =
+  const auto weights =
       std::make_shared<LabelWeights>(computeLabelWeights(segments, plan->parts, {}, 0.0, grid));
   const Rgb own(0.1, 0.2, 0.3);
   for (const double g : {0.0, 0.5}) {
-    const Tint tint = buildTint(plan, shares, g);
+    const Tint tint = buildTint(plan, weights, g);
     const TintField field(tint, grid);
-    const auto seen = [&](double x) {
+    const auto measureColor = [&](double x) {
       return Rgb(field.albedo(Vec3(x, 0, 0), 7.0, own).unaryExpr([g](double albedo) {
         return toReflectance(albedo, g);
       }));
     };
     for (const std::size_t i : {0U, 1U}) {
       const Rgb expected = (*plan->components[i + 1].material.color)(7.0);
-      EXPECT_LT((seen(2.0 * static_cast<double>(i) + 2.0) - expected).abs().maxCoeff(), 1e-3);
+      EXPECT_LT((measureColor(2.0 * static_cast<double>(i) + 2.0) - expected).abs().maxCoeff(),
+                1e-3);
     }
     EXPECT_EQ(field.albedo(Vec3(3, 0, 0), 7.0, own).matrix(), own.matrix());
     const Rgb half = 0.5 * (own + field.albedo(Vec3(2, 0, 0), 7.0, own));
     EXPECT_LT((field.albedo(Vec3(2.5, 0, 0), 7.0, own) - half).abs().maxCoeff(), 1e-12);
   }
-  const auto liverIn = [&](const std::vector<TintPart>& parts) {
+  const auto sumLiverWeight = [&](const std::vector<TintPart>& parts) {
     const LabelWeights smooth = computeLabelWeights(segments, parts, {}, 1.0, grid);
     double liver = 0.0;
     smooth.forEachWeight(
         smooth.grid().worldToIndex * Vec3(2, 0, 0),
-        [&](std::uint8_t component, double share) { liver += component == 1 ? share : 0.0; });
+        [&](std::uint8_t component, double weight) { liver += component == 1 ? weight : 0.0; });
     return liver;
   };
-  const double liver = liverIn(plan->parts);
+  const double liver = sumLiverWeight(plan->parts);
   EXPECT_GT(liver, 0.0);
   EXPECT_LT(liver, 0.5) << "smoothed as asked";
   std::vector<TintPart> focus = plan->parts;
   for (TintPart& part : focus)
     part.isFocus = part.component == 1;
-  EXPECT_NEAR(liverIn(focus), 2.0 * liver, 0.01) << "a focus has twice its share";
+  EXPECT_NEAR(sumLiverWeight(focus), 2.0 * liver, 0.01) << "a focus has twice its share";
 }
 
 /// Skin at the first of the row's voxels and the air before it.
-Handle<Mask> skinOf(const Grid& grid) {
+Handle<Mask> makeSkin(const Grid& grid) {
   Mask skin{
       grid, std::vector<std::uint8_t>(static_cast<std::size_t>(grid.voxelCount())), 1, {}, 255};
   skin.voxels[0] = 255;
@@ -259,38 +261,38 @@ Handle<Mask> skinOf(const Grid& grid) {
 }
 
 TEST(SegmentTint, SkinNeedsNoSegment) {
-  const auto segments = row({"liver", "spleen"});
+  const auto segments = makeRow({"liver", "spleen"});
   const Grid& grid = segments->segmentation.grid();
-  const TintPlan plan = planOf(segments, automatic, {}, {"liver"}, skinOf(grid));
+  const TintPlan plan = makePlan(segments, automatic, {}, {"liver"}, makeSkin(grid));
   EXPECT_EQ(plan.parts, (Parts{{{0}, 10, 1, true}, {{1}, 10, 2}, {{}, 1, 3}}));
   EXPECT_EQ(plan.names.back(), "skin");
   EXPECT_TRUE(plan.hasDetectedSkin());
-  const LabelWeights shares = computeLabelWeights(segments, plan.parts, skinOf(grid), 0.0, grid);
-  const auto skinAt = [&](double x) {
+  const LabelWeights weights = computeLabelWeights(segments, plan.parts, makeSkin(grid), 0.0, grid);
+  const auto sumSkinWeight = [&](double x) {
     double skin = 0.0;
-    shares.forEachWeight(
-        shares.grid().worldToIndex * Vec3(x, 0, 0),
-        [&](std::uint8_t component, double share) { skin += component == 3 ? share : 0.0; });
+    weights.forEachWeight(
+        weights.grid().worldToIndex * Vec3(x, 0, 0),
+        [&](std::uint8_t component, double weight) { skin += component == 3 ? weight : 0.0; });
     return skin;
   };
-  EXPECT_EQ(skinAt(0.0), 1.0);
-  EXPECT_NEAR(skinAt(0.25), 0.75, 0.01);
-  EXPECT_EQ(skinAt(1.0), 0.0);
+  EXPECT_EQ(sumSkinWeight(0.0), 1.0);
+  EXPECT_NEAR(sumSkinWeight(0.25), 0.75, 0.01);
+  EXPECT_EQ(sumSkinWeight(1.0), 0.0);
 
   EXPECT_FALSE(
       makePlan(segments, automatic, {}, {"liver"}, std::make_shared<Mask>()).hasDetectedSkin());
   EXPECT_FALSE(makePlan(segments, automatic, {}, {"liver"}).hasDetectedSkin());
-  EXPECT_FALSE(makePlan(makeRow({"liver", "skin"}), automatic, {}, {"liver"}, skinOf(grid))
+  EXPECT_FALSE(makePlan(makeRow({"liver", "skin"}), automatic, {}, {"liver"}, makeSkin(grid))
                    .hasDetectedSkin());
-  EXPECT_TRUE(makePlan(makeRow({"body"}), automatic, {}, {}, skinOf(grid)).hasDetectedSkin());
+  EXPECT_TRUE(makePlan(makeRow({"body"}), automatic, {}, {}, makeSkin(grid)).hasDetectedSkin());
 }
 
 TEST(SegmentTint, AlbedoIsTakenAsItIs) {
-  const auto segments = row({"liver"});
-  const auto plan = std::make_shared<TintPlan>(planOf(
-      segments, materials(R"({"version": 1, "materials": {"liver": {"albedo": [0.5, 0.6, 0.7]}}})"),
-      {}));
-  const auto shares = std::make_shared<LabelWeights>(
+  const auto segments = makeRow({"liver"});
+  const auto plan = std::make_shared<TintPlan>(makePlan(
+      segments,
+      makeMaterials(R"({"version": 1, "materials": {"liver": {"albedo": [0.5, 0.6, 0.7]}}})"), {}));
+  const auto weights = std::make_shared<LabelWeights>(
       computeLabelWeights(segments, plan->parts, {}, 0.0, segments->segmentation.grid()));
   EXPECT_EQ((*buildTint(plan, weights, 0.3).albedo[1])(0.0).matrix(), Vec3(0.5, 0.6, 0.7));
 }

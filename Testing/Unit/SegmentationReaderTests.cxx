@@ -9,7 +9,7 @@
 namespace fenestra::SegmentationReaderTests {
 namespace {
 
-Grid unitGrid(const Size3& size, const Vec3& origin = Vec3::Zero(), double spacing = 1.0) {
+Grid makeGrid(const Size3& size, const Vec3& origin = Vec3::Zero(), double spacing = 1.0) {
   return {size, makeTranslation(origin) * makeScaling(Vec3::Constant(spacing))};
 }
 
@@ -17,7 +17,7 @@ std::int64_t index(const Grid& grid, std::int64_t x, std::int64_t y, std::int64_
   return x + grid.size.x() * (y + grid.size.y() * z);
 }
 
-int at(const Mask& mask, const Vec3& world) {
+int getVoxel(const Mask& mask, const Vec3& world) {
   const Vec3 i = mask.grid.worldToIndex * world;
   const Size3 v = i.array().round().cast<std::int64_t>();
   if ((v.array() < 0).any() || (v.array() >= mask.grid.size.array()).any())
@@ -26,9 +26,9 @@ int at(const Mask& mask, const Vec3& world) {
 }
 
 /// Labelmap of 6^3 voxels of 1 mm from the origin, with some labels.
-Segmentation labelmap(const std::vector<std::pair<Size3, int>>& labels, Vec3 origin = Vec3::Zero(),
-                      double spacing = 1.0) {
-  const Grid grid = unitGrid(Size3::Constant(6), origin, spacing);
+Segmentation makeLabelmap(const std::vector<std::pair<Size3, int>>& labels,
+                          Vec3 origin = Vec3::Zero(), double spacing = 1.0) {
+  const Grid grid = makeGrid(Size3::Constant(6), origin, spacing);
   LargeArray<std::uint8_t> voxels(216, 0);
   std::vector<SegmentInfo> segments;
   for (const auto& [voxel, label] : labels) {
@@ -41,8 +41,8 @@ Segmentation labelmap(const std::vector<std::pair<Size3, int>>& labels, Vec3 ori
 }
 
 TEST(SegmentationReader, MaskIsCroppedToTheExtentPlusAMargin) {
-  const Segmentation s = labelmap({{{1, 2, 3}, 1}, {{3, 3, 3}, 2}, {{5, 5, 5}, 3}});
-  const Mask mask = s.makeFocusMask({"1", "2"}, unitGrid({50, 50, 50}, {-20, -20, -20}));
+  const Segmentation s = makeLabelmap({{{1, 2, 3}, 1}, {{3, 3, 3}, 2}, {{5, 5, 5}, 3}});
+  const Mask mask = s.makeFocusMask({"1", "2"}, makeGrid({50, 50, 50}, {-20, -20, -20}));
   EXPECT_EQ(mask.grid.size, Size3(5, 4, 3));
   EXPECT_EQ(mask.count, 2);
   EXPECT_EQ(mask.names, (std::vector<std::string>{"Segment_1", "Segment_2"}));
@@ -55,33 +55,33 @@ TEST(SegmentationReader, MaskIsCroppedToTheExtentPlusAMargin) {
 }
 
 TEST(SegmentationReader, MaskEndsWithZerosInsideTheVolume) {
-  const Segmentation s = labelmap({{{0, 0, 0}, 1}});
-  const Mask mask = s.makeFocusMask({"1"}, unitGrid({50, 50, 50}, {-20, -20, -20}));
+  const Segmentation s = makeLabelmap({{{0, 0, 0}, 1}});
+  const Mask mask = s.makeFocusMask({"1"}, makeGrid({50, 50, 50}, {-20, -20, -20}));
   EXPECT_EQ(mask.grid.size, Size3(3, 3, 3));
   EXPECT_EQ(std::count(mask.voxels.begin(), mask.voxels.end(), 1), 1);
 }
 
 TEST(SegmentationReader, MaskContinuesOverFacesOfTheVolume) {
-  const Segmentation s = labelmap({{{0, 0, 5}, 1}, {{1, 0, 5}, 2}});
+  const Segmentation s = makeLabelmap({{{0, 0, 5}, 1}, {{1, 0, 5}, 2}});
   // The volume shares the labelmap's lower faces of x and y; its upper z face lies two voxels
   // further in.
-  const Mask mask = s.makeFocusMask({"1", "2"}, unitGrid({8, 12, 8}, {0, 0, 0}, 1.0));
+  const Mask mask = s.makeFocusMask({"1", "2"}, makeGrid({8, 12, 8}, {0, 0, 0}, 1.0));
   EXPECT_EQ(mask.count, 2);
   EXPECT_EQ(getVoxel(mask, {-1, 0, 5}), 1);
   EXPECT_EQ(getVoxel(mask, {0, -1, 5}), 1);
   EXPECT_EQ(getVoxel(mask, {-1, -1, 5}), 1);
   EXPECT_EQ(getVoxel(mask, {0, 0, 6}), 0);
   EXPECT_EQ(getVoxel(mask, {-1, -1, 6}), 0);
-  const Mask whole = s.makeFocusMask({"1", "2"}, unitGrid({6, 6, 6}));
+  const Mask full = s.makeFocusMask({"1", "2"}, makeGrid({6, 6, 6}));
   EXPECT_EQ(getVoxel(full, {0, 0, 6}), 1);
   EXPECT_EQ(full.count, 2);
 }
 
 TEST(SegmentationReader, FacesWithinHalfAVoxelAreShared) {
-  const Segmentation s = labelmap({{{0, 3, 3}, 1}});
-  const auto continued = [&s](double offset, double spacing = 1.0) {
-    return at(s.makeFocusMask({"1"}, unitGrid({9, 9, 9}, {offset, -3, -3}, spacing)), {-1, 3, 3}) ==
-           1;
+  const Segmentation s = makeLabelmap({{{0, 3, 3}, 1}});
+  const auto isExtended = [&s](double offset, double spacing = 1.0) {
+    return getVoxel(s.makeFocusMask({"1"}, makeGrid({9, 9, 9}, {offset, -3, -3}, spacing)),
+                    {-1, 3, 3}) == 1;
   };
   EXPECT_TRUE(isExtended(0.0));
   EXPECT_TRUE(isExtended(0.45));
@@ -94,7 +94,7 @@ TEST(SegmentationReader, FacesWithinHalfAVoxelAreShared) {
 }
 
 TEST(SegmentationReader, FlippedGridSharesFacesAndObliqueDoesNot) {
-  const Segmentation s = labelmap({{{0, 3, 3}, 1}});
+  const Segmentation s = makeLabelmap({{{0, 3, 3}, 1}});
   // Grid that fills the labelmap's box, with permuted axes.
   const Affine flipped(Mat3({0, 1, 0}, {0, 0, -1}, {-1, 0, 0}), {5, 0, 5});
   EXPECT_EQ(getVoxel(s.makeFocusMask({"1"}, Grid({6, 6, 6}, flipped)), {-1, 3, 3}), 1);
@@ -109,8 +109,8 @@ TEST(SegmentationReader, ReadsPlainLabelmapsOfEveryFormat) {
   labels[6] = -2;
   std::vector<float> floats(labels.begin(), labels.end());
   for (const char* name : {"s.nrrd", "s.nii.gz", "s.mha"})
-    for (const bool real : {false, true}) {
-      if (real)
+    for (const bool isFloat : {false, true}) {
+      if (isFloat)
         writeFile(folder / name, floats);
       else
         writeFile(folder / name, labels);
@@ -139,10 +139,10 @@ TEST(SegmentationReader, ReadsOneLayerWithoutLayerField) {
 
 TEST(SegmentationReader, ReadsOverlappingLayers) {
   const TemporaryFolder folder;
-  for (const bool old : {false, true}) { // older files have no Layer
+  for (const bool isOld : {false, true}) { // older files have no Layer
     FileGeometry geometry{.components = 2, .compress = true};
-    addSegment(geometry, 0, "a", "liver", "1", old ? "" : "0");
-    addSegment(geometry, 1, "b", "tumour", "1", old ? "" : "1");
+    addSegment(geometry, 0, "a", "liver", "1", isOld ? "" : "0");
+    addSegment(geometry, 1, "b", "tumour", "1", isOld ? "" : "1");
     std::vector<std::uint8_t> labels(48, 0);
     for (const std::size_t voxel : {3u, 4u, 5u})
       labels[2 * voxel] = 1;
@@ -193,9 +193,9 @@ TEST(SegmentationReader, RefusesFilesThatAreNoSegmentation) {
 // ----------------------------------------------------------------------------------
 
 /// World centre of a segment's voxels.
-Vec3 centroid(const Segmentation& segmentation, const std::string& selector) {
-  const Grid elsewhere = unitGrid({1, 1, 1}, Vec3::Constant(1e6)); // shares no face
-  const Mask mask = segmentation.makeFocusMask({selector}, elsewhere);
+Vec3 computeCentroid(const Segmentation& segmentation, const std::string& selector) {
+  const Grid distantGrid = makeGrid({1, 1, 1}, Vec3::Constant(1e6)); // shares no face
+  const Mask mask = segmentation.makeFocusMask({selector}, distantGrid);
   Vec3 sum = Vec3::Zero();
   for (std::int64_t z = 0; z < mask.grid.size.z(); ++z)
     for (std::int64_t y = 0; y < mask.grid.size.y(); ++y)
@@ -348,23 +348,23 @@ TEST(SegmentationReader, RefusesABrokenGzipStream) {
     labels[i] = static_cast<std::uint8_t>((i * 2654435761u >> 13) & 1);
   const std::filesystem::path file = folder / "s.seg.nrrd";
   writeFile(file, labels, geometry);
-  const std::string whole = bytesOf(file);
-  const std::size_t samples = whole.find("\n\n") + 2;
+  const std::string full = readBytes(file);
+  const std::size_t samples = full.find("\n\n") + 2;
   const auto refuse = [&](const std::string& bytes, const char* what) {
     SCOPED_TRACE(what);
     folder.write("s.seg.nrrd", bytes);
     expectRefused(file, "write it again", [&] { readSegmentation(file); });
   };
-  const std::size_t half = samples + (whole.size() - samples) / 2;
-  refuse(whole.substr(0, samples), "no stream");
-  refuse(whole.substr(0, half), "half of it");
-  refuse(whole.substr(0, whole.size() - 9), "its last block cut");
-  refuse(whole.substr(0, whole.size() - 4), "without its length");
-  std::string damaged = whole;
+  const std::size_t half = samples + (full.size() - samples) / 2;
+  refuse(full.substr(0, samples), "no stream");
+  refuse(full.substr(0, half), "half of it");
+  refuse(full.substr(0, full.size() - 9), "its last block cut");
+  refuse(full.substr(0, full.size() - 4), "without its length");
+  std::string damaged = full;
   damaged[half] = static_cast<char>(damaged[half] ^ 0x10);
   refuse(damaged, "a flipped bit");
-  damaged = whole;
-  damaged[whole.size() - 6] = static_cast<char>(damaged[whole.size() - 6] ^ 1);
+  damaged = full;
+  damaged[full.size() - 6] = static_cast<char>(damaged[full.size() - 6] ^ 1);
   refuse(damaged, "a wrong checksum");
 }
 

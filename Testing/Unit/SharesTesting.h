@@ -49,12 +49,12 @@ inline std::vector<LabelWeights::Part> makeRandomParts(int count) {
 
 /// Dense matter on a grid off that of makeRandomParts(), and partly beyond it.
 inline TestScene makePartsScene() {
-  const LabelWeights weights = sharesOf(makeRandomParts(12));
+  const LabelWeights weights = makeLabelWeights(makeRandomParts(12));
   Affine map = weights.grid().indexToWorld;
   map.translate(Vec3(0.4, -0.7, 0.2));
   const Grid grid(weights.grid().size, map);
   return {makeVolume(grid, [](const Vec3& p) { return 0.3 + 0.02 * p.x(); }),
-          linearTransfer(0.6, Rgb(0.9, 0.8, 0.3)),
+          makeLinearTransfer(0.6, Rgb(0.9, 0.8, 0.3)),
           {EnvironmentLight{}},
           {.position = grid.worldCenter() + Vec3(0, -100, 20),
            .target = grid.worldCenter(),

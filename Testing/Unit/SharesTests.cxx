@@ -55,7 +55,7 @@ void forEachVoxel(const Grid& grid, const Visit& visit) {
 
 TEST(LabelWeights, AreThoseOfTheDefinitionAtVoxels) {
   const std::vector<LabelWeights::Part> parts = makeRandomParts(12);
-  const LabelWeights weights = sharesOf(parts);
+  const LabelWeights weights = makeLabelWeights(parts);
   forEachVoxel(weights.grid(), [&](const Vec3& at) {
     WeightMap found = getWeights(weights, at), defined = computeExpected(parts, at);
     double sum = 0.0;
@@ -70,7 +70,7 @@ TEST(LabelWeights, AreThoseOfTheDefinitionAtVoxels) {
 }
 
 TEST(LabelWeights, AreTrilinearBetweenVoxelsAndAcrossBricks) {
-  const LabelWeights weights = sharesOf(makeRandomParts(12));
+  const LabelWeights weights = makeLabelWeights(makeRandomParts(12));
   const Grid& grid = weights.grid();
   for (int i = 0; i < 2000; ++i) {
     Random random(9, static_cast<std::uint64_t>(i), 0);
@@ -95,9 +95,9 @@ TEST(LabelWeights, AreTrilinearBetweenVoxelsAndAcrossBricks) {
 
 TEST(LabelWeights, DoNotDependOnTheOrderOfParts) {
   std::vector<LabelWeights::Part> parts = makeRandomParts(6); // of six components
-  const LabelWeights weights = sharesOf(parts);
+  const LabelWeights weights = makeLabelWeights(parts);
   std::ranges::reverse(parts);
-  const LabelWeights reversed = sharesOf(parts);
+  const LabelWeights reversed = makeLabelWeights(parts);
   forEachVoxel(weights.grid(), [&](const Vec3& at) {
     ASSERT_EQ(getWeights(weights, at), getWeights(reversed, at));
   });
@@ -109,10 +109,10 @@ TEST(LabelWeights, WhatPlanesLeaveIsNothingWhereOthersHaveAll) {
   const auto makePart = [&](std::uint8_t component, const auto& value) {
     return LabelWeights::Part{makeMask(first, size, value), 1, component};
   };
-  const LabelWeights weights =
-      sharesOf({makePart(1, [&](const Size3& v) { return v.x() < 8 ? pattern(v) : 0; }),
-                makePart(2, [&](const Size3& v) { return v.x() < 8 ? 255 - pattern(v) : 0; }),
-                makePart(3, [](const Size3& v) { return v.x() < 8 ? 0 : 255; })});
+  const LabelWeights weights = makeLabelWeights(
+      {makePart(1, [&](const Size3& v) { return v.x() < 8 ? pattern(v) : 0; }),
+       makePart(2, [&](const Size3& v) { return v.x() < 8 ? 255 - pattern(v) : 0; }),
+       makePart(3, [](const Size3& v) { return v.x() < 8 ? 0 : 255; })});
   Random random(3, 0, 0);
   for (int i = 0; i < 2000; ++i) { // in bricks that have all three
     const Vec3 at(4.0 + 3.0 * random.uniform(), 8.0 * random.uniform(), 8.0 * random.uniform());
@@ -124,7 +124,7 @@ TEST(LabelWeights, WhatPlanesLeaveIsNothingWhereOthersHaveAll) {
 
 TEST(LabelWeights, BricksOfOneComponentArePure) {
   const auto inside = [](const Size3&) { return 255; };
-  const LabelWeights weights = sharesOf({{makeMask({0, 0, 0}, {33, 9, 9}, inside), 1, 3}});
+  const LabelWeights weights = makeLabelWeights({{makeMask({0, 0, 0}, {33, 9, 9}, inside), 1, 3}});
   EXPECT_EQ(weights.pureFraction(), 1.0);
   EXPECT_EQ(weights.bricks(), std::vector<std::int32_t>(8 * 2 * 2, 3));
   EXPECT_TRUE(weights.planes().empty());
@@ -132,7 +132,7 @@ TEST(LabelWeights, BricksOfOneComponentArePure) {
 
 TEST(LabelWeights, MixedBricksOfTwoComponentsTakeOnePlane) {
   const auto half = [](const Size3& voxel) { return voxel.x() < 6 ? 255 : 0; };
-  const LabelWeights weights = sharesOf({{makeMask({0, 0, 0}, {13, 5, 5}, half), 1, 1}});
+  const LabelWeights weights = makeLabelWeights({{makeMask({0, 0, 0}, {13, 5, 5}, half), 1, 1}});
   EXPECT_EQ(weights.bricks(), (std::vector<std::int32_t>{1, ~0, 0}));
   EXPECT_EQ(weights.bytes(), 3 * sizeof(std::int32_t) + 128);
 }
@@ -140,8 +140,8 @@ TEST(LabelWeights, MixedBricksOfTwoComponentsTakeOnePlane) {
 /// Components that differ in colour; two of them have the matter's own.
 TestScene makeTintedScene() {
   TestScene scene = makePartsScene();
-  scene.tint =
-      Tint{std::make_shared<const LabelWeights>(sharesOf(makeRandomParts(12))), {std::nullopt}};
+  scene.tint = Tint{std::make_shared<const LabelWeights>(makeLabelWeights(makeRandomParts(12))),
+                    {std::nullopt}};
   for (int i = 1; i <= 6; ++i)
     scene.tint->albedo.push_back(
         ColorFunction({{0.2, Rgb(0.15 * i, 0.5, 0.9 - 0.1 * i)}, {0.6, Rgb(0.9, 0.1 * i, 0.2)}}));
@@ -168,7 +168,7 @@ TEST(Tint, LanesAreTheScalarEstimator) {
 }
 
 TEST(Tint, MarchInLanesIsTheReadableOne) {
-  makeTintedScene().with([](const SceneView& scene) {
+  makeTintedScene().visitView([](const SceneView& scene) {
     ASSERT_TRUE(canUseSimd(scene));
     const FeatureBuffers simd = computeFeatures(scene), scalar = computeScalarFeatures(scene);
     double sum = 0.0;

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fenestra::ShownTextTests {
+namespace fenestra::MessageTextTests {
 namespace {
 
 TEST(ShownText, IsValidUtf8OnOneLine) {
@@ -28,7 +28,7 @@ TEST(ShownText, IsValidUtf8OnOneLine) {
       {"\xf0\x9f\xa6", "???"},      // cut off
       {"\xc3\n", "? "},             // and a control character
   };
-  for (const auto& [text, shownAs] : bad)
+  for (const auto& [text, expected] : bad)
     EXPECT_EQ(toOneLine(text), expected);
 }
 
@@ -46,4 +46,4 @@ TEST(ShownText, ReplacedAllReplacesEveryOccurrence) {
 }
 
 } // namespace
-} // namespace fenestra::ShownTextTests
+} // namespace fenestra::MessageTextTests

@@ -20,16 +20,16 @@ constexpr const char* presetsText = R"(<?xml version="1.0" encoding="UTF-8"?>
 </MRML>)";
 
 /// Environment variable for the duration of a test.
-class Environment {
+class ScopedVariable {
 public:
-  Environment(const char* name, const std::string& value) : m_name(name) {
+  ScopedVariable(const char* name, const std::string& value) : m_name(name) {
     if (const char* before = std::getenv(name))
       m_before = before;
     ::setenv(name, value.c_str(), 1);
   }
-  ~Environment() { m_before ? ::setenv(m_name, m_before->c_str(), 1) : ::unsetenv(m_name); }
-  Environment(const Environment&) = delete;
-  Environment& operator=(const Environment&) = delete;
+  ~ScopedVariable() { m_before ? ::setenv(m_name, m_before->c_str(), 1) : ::unsetenv(m_name); }
+  ScopedVariable(const ScopedVariable&) = delete;
+  ScopedVariable& operator=(const ScopedVariable&) = delete;
 
 private:
   const char* m_name;
@@ -37,35 +37,35 @@ private:
 };
 
 /// Folder as installed by Slicer.
-std::filesystem::path installed(const TemporaryFolder& folder, const std::string& home,
-                                const std::string& version) {
-  const auto place =
+std::filesystem::path installPresets(const TemporaryFolder& folder, const std::string& home,
+                                     const std::string& version) {
+  const auto moduleFolder =
       folder / home / "share" / ("Slicer-" + version) / "qt-loadable-modules" / "VolumeRendering";
-  std::filesystem::create_directories(place);
-  std::ofstream(place / "presets.xml") << presetsText;
+  std::filesystem::create_directories(moduleFolder);
+  std::ofstream(moduleFolder / "presets.xml") << presetsText;
   std::ofstream(folder / home / "Slicer") << "launcher";
-  return place / "presets.xml";
+  return moduleFolder / "presets.xml";
 }
 
 TEST(SlicerPresets, FoundInSlicerHome) {
   const TemporaryFolder folder;
-  const auto presets = installed(folder, "home", "5.8");
-  const Environment path("PATH", "/nowhere");
+  const auto presets = installPresets(folder, "home", "5.8");
+  const ScopedVariable path("PATH", "/nowhere");
   {
-    const Environment home("SLICER_HOME", (folder / "home").string());
+    const ScopedVariable home("SLICER_HOME", (folder / "home").string());
     EXPECT_EQ(findSlicerPresets(), presets);
   }
-  const Environment home("SLICER_HOME", (folder / "none").string());
+  const ScopedVariable home("SLICER_HOME", (folder / "none").string());
   EXPECT_FALSE(findSlicerPresets());
 }
 
 TEST(SlicerPresets, FoundBesideTheLauncherInThePath) {
   const TemporaryFolder folder;
-  const auto presets = installed(folder, "home", "5.8");
+  const auto presets = installPresets(folder, "home", "5.8");
   std::filesystem::create_directory(folder / "bin");
   std::filesystem::create_symlink(folder / "home" / "Slicer", folder / "bin" / "Slicer");
-  const Environment home("SLICER_HOME", "");
-  const Environment path("PATH", "/nowhere::" + (folder / "bin").string());
+  const ScopedVariable home("SLICER_HOME", "");
+  const ScopedVariable path("PATH", "/nowhere::" + (folder / "bin").string());
   ASSERT_TRUE(findSlicerPresets());
   EXPECT_TRUE(std::filesystem::equivalent(*findSlicerPresets(), presets));
 }

@@ -21,18 +21,18 @@ struct Sheet {
 
   using Depth = std::function<std::optional<double>(const Vec2&)>;
 
-  Sheet(int pixels, const Depth& focus, double across = 100.0)
-      : camera(makeAnteriorCamera(Projection::orthographic, 300.0, 0.5 * across, pixels, pixels)),
+  Sheet(int pixels, const Depth& focus, double width = 100.0)
+      : camera(makeAnteriorCamera(Projection::orthographic, 300.0, 0.5 * width, pixels, pixels)),
         buffer(camera, makeCenteredGrid({100, 100, 100})),
         regions(static_cast<std::size_t>(buffer.size()), Region::context) {
     for (std::int64_t sample = 0; sample < buffer.size(); ++sample)
-      if (const auto depth = focus(at(sample))) {
+      if (const auto depth = focus(position(sample))) {
         buffer.set(sample, *depth);
         regions[static_cast<std::size_t>(sample)] = Region::focus;
       }
   }
 
-  Vec2 at(std::int64_t sample) const {
+  Vec2 position(std::int64_t sample) const {
     return buffer.position(sample % buffer.columns(), sample / buffer.columns());
   }
   bool isFocus(std::int64_t sample) const {
@@ -59,20 +59,20 @@ TEST_P(StraightEdge, FillEqualsThePlateUnderTension) {
     });
     double edge = -100.0, end = 0.0; // last sample of the focus, and of the buffer
     for (std::int64_t column = 0; column < sheet.buffer.columns(); ++column)
-      (sheet.isFocus(column) ? edge : end) = sheet.at(column).x();
+      (sheet.isFocus(column) ? edge : end) = sheet.position(column).x();
     const double range = (end - edge) / length;
     fillSmoothly(sheet.buffer, sheet.regions, length);
-    const double given = std::clamp(slope, -maxBoundarySlope, maxBoundarySlope);
+    const double clampedSlope = std::clamp(slope, -maxBoundarySlope, maxBoundarySlope);
     double worst = 0.0;
     for (std::int64_t sample = 0; sample < sheet.buffer.size(); ++sample) {
-      const double x = (sheet.at(sample).x() - edge) / length;
+      const double x = (sheet.position(sample).x() - edge) / length;
       const double expected =
           300.0 + slope * (edge + 20.0) +
-          given * length * (std::cosh(range) - std::cosh(range - x)) / std::sinh(range);
+          clampedSlope * length * (std::cosh(range) - std::cosh(range - x)) / std::sinh(range);
       if (!sheet.isFocus(sample))
         worst = std::max(worst, std::abs(sheet.buffer.at(sample) - expected));
     }
-    EXPECT_LT(worst, 0.08 * std::abs(given) * length) << pixels;
+    EXPECT_LT(worst, 0.08 * std::abs(clampedSlope) * length) << pixels;
   }
 }
 
@@ -87,7 +87,7 @@ TEST(SmoothFill, FillLeavesACurvedBoundaryWithItsSlope) {
   fillSmoothly(sheet.buffer, sheet.regions, 10.0);
   const double pitch = sheet.camera.pixelPitch();
   for (std::int64_t sample = 0; sample < sheet.buffer.size(); ++sample) {
-    const double r = sheet.at(sample).norm();
+    const double r = sheet.position(sample).norm();
     if (!sheet.isFocus(sample) && r < 20.0 + 3.0 * pitch) {
       EXPECT_NEAR(sheet.buffer.at(sample), 304.0 + 0.4 * (r - 20.0), 0.05) << r;
     }
@@ -115,38 +115,38 @@ TEST(SmoothFill, JumpFlattensWithDistance) {
     return x.y() < 0.0 ? 270.0 : 330.0;
   });
   fillSmoothly(sheet.buffer, sheet.regions, 10.0);
-  const auto steepestStepAt = [&](double x) {
+  const auto findMaxStep = [&](double x) {
     const auto column = static_cast<std::int64_t>(std::ceil(sheet.buffer.xAxis().index(x)));
-    double steepest = 0.0;
+    double maximum = 0.0;
     for (std::int64_t row = 1; row < sheet.buffer.rows(); ++row)
-      steepest =
-          std::max(steepest, std::abs(sheet.buffer.at(sheet.buffer.sample(column, row)) -
-                                      sheet.buffer.at(sheet.buffer.sample(column, row - 1))));
-    return steepest;
+      maximum = std::max(maximum, std::abs(sheet.buffer.at(sheet.buffer.sample(column, row)) -
+                                           sheet.buffer.at(sheet.buffer.sample(column, row - 1))));
+    return maximum;
   };
-  EXPECT_NEAR(steepestStepAt(19.0), 60.0, 1e-3);
-  EXPECT_GT(steepestStepAt(20.2), 10.0);
-  EXPECT_LT(steepestStepAt(22.0), 15.0);
-  EXPECT_LT(steepestStepAt(25.0), 6.0);
-  EXPECT_LT(steepestStepAt(30.0), 0.7 * steepestStepAt(25.0));
+  EXPECT_NEAR(findMaxStep(19.0), 60.0, 1e-3);
+  EXPECT_GT(findMaxStep(20.2), 10.0);
+  EXPECT_LT(findMaxStep(22.0), 15.0);
+  EXPECT_LT(findMaxStep(25.0), 6.0);
+  EXPECT_LT(findMaxStep(30.0), 0.7 * findMaxStep(25.0));
 }
 
 /// Samples are coarser beyond a small viewport; a single column or row is a sheet as well.
 TEST(SmoothFill, BufferOfAnyShapeIsFilled) {
-  for (const double across : {100.0, 30.0})
+  for (const double width : {100.0, 30.0})
     for (const int pixels : {1, 2, 33, 100}) {
       Sheet sheet(
-          pixels, [](const Vec2& x) { return std::optional(280.0 + 0.5 * x.x()); }, across);
-      std::int64_t free = 0;
+          pixels, [](const Vec2& x) { return std::optional(280.0 + 0.5 * x.x()); }, width);
+      std::int64_t contextCount = 0;
       for (std::int64_t sample = 0; sample < sheet.buffer.size(); ++sample)
-        if (sheet.at(sample).norm() > 0.3 * across && sample > 0) {
+        if (sheet.position(sample).norm() > 0.3 * width && sample > 0) {
           sheet.regions[static_cast<std::size_t>(sample)] = Region::context;
           sheet.buffer.set(sample, infinity);
-          ++free;
+          ++contextCount;
         }
       fillSmoothly(sheet.buffer, sheet.regions, 5.0);
       for (std::int64_t sample = 0; sample < sheet.buffer.size(); ++sample)
-        ASSERT_NEAR(sheet.buffer.at(sample), 280.0, 60.0) << across << ' ' << pixels << ' ' << free;
+        ASSERT_NEAR(sheet.buffer.at(sample), 280.0, 60.0)
+            << width << ' ' << pixels << ' ' << contextCount;
     }
 }
 

@@ -15,10 +15,10 @@ namespace {
 
 /// Scene whose corner cells have majorant 1 / mm and voxels of 1e8 mm, although almost no point of
 /// a ray there has any extinction: about 1e8 null collisions a ray.
-TestScene endlessScene() {
-  const Grid grid = centredGrid({4, 4, 4}, Vec3::Constant(1e8));
+TestScene makeEndlessScene() {
+  const Grid grid = makeCenteredGrid({4, 4, 4}, Vec3::Constant(1e8));
   TestScene s{makeVolume(grid, [](const Vec3& p) { return p.isZero() ? 255.0 : 0.0; }),
-              {ScalarFunction({knot(0.0, 1e-12), knot(250.0, 1e-12), knot(255.0, 1.0)}),
+              {ScalarFunction({makeKnot(0.0, 1e-12), makeKnot(250.0, 1e-12), makeKnot(255.0, 1.0)}),
                ColorFunction({{0.0, Rgb::Ones()}})},
               {EnvironmentLight{}},
               {}};
@@ -30,14 +30,14 @@ TestScene endlessScene() {
 
 /// Calls work(scene, majorants, ray) with a ray through such cells.
 template <typename Work>
-void alongEndlessRay(Work&& work) {
-  const TestScene s = endlessScene();
+void visitEndlessRay(Work&& work) {
+  const TestScene s = makeEndlessScene();
   const MajorantGrid majorants(s.volume.grid, MinMaxGrid(s.volume, 0), s.transfer, s.clip);
   work(s, majorants, Ray{Vec3(-1.2e8, -1e9, -1.2e8), Vec3::UnitY()});
 }
 
 TEST(Stop, EndsAWalkThatMeetsNothing) {
-  alongEndlessRay([](const TestScene& s, const MajorantGrid& majorants, const Ray& ray) {
+  visitEndlessRay([](const TestScene& s, const MajorantGrid& majorants, const Ray& ray) {
     const StopFlag stop = true;
     const Medium<float> medium(s.volume.grid, std::get<LargeArray<float>>(s.volume.voxels),
                                s.transfer, nullptr);
@@ -52,7 +52,7 @@ TEST(Stop, EndsAWalkThatMeetsNothing) {
 }
 
 TEST(Stop, EndsTheLanesOfABatch) {
-  alongEndlessRay([](const TestScene& s, const MajorantGrid& majorants, const Ray& ray) {
+  visitEndlessRay([](const TestScene& s, const MajorantGrid& majorants, const Ray& ray) {
     const StopFlag stop = true;
     const Domain domain(s.volume.grid);
     const SimdTracker tracker(s.volume, domain, s.transfer, majorants, s.clip, nullptr, stop);
@@ -65,35 +65,35 @@ TEST(Stop, EndsTheLanesOfABatch) {
     Counters counters;
     tracker.sampleCollisions(*rays, counters);
     tracker.estimateTransmittances(*rays, counters);
-    constexpr std::uint64_t mostLanes = 2 * 16;
+    constexpr std::uint64_t maxLanes = 2 * 16;
     EXPECT_LE(counters.lookups, 2 * stopPollInterval * maxLanes);
   });
 }
 
 /// Each measure would take minutes without the stop.
 TEST(Stop, EndsMeasuresOfEndlessWalks) {
-  const TestScene s = endlessScene();
+  const TestScene s = makeEndlessScene();
   const Camera camera(s.pose, s.width, s.height);
   const LightSet lights(s.lights, s.volume.grid, camera);
   const MajorantGrid majorants(s.volume.grid, MinMaxGrid(s.volume, 0), s.transfer, s.clip);
   const SceneView scene{s.volume, s.transfer, majorants, lights, camera, s.clip};
   const auto pixels = static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.height);
-  const FocusPoints behind = findFocusPoints(scene, std::vector<double>(pixels, 2e9));
+  const FocusPoints points = findFocusPoints(scene, std::vector<double>(pixels, 2e9));
   const StopFlag stop = true;
-  EXPECT_GE(measureCoverage(scene, behind, 1, stop), 0.0);
-  measureLight(scene, scene, behind, 1, stop);
+  EXPECT_GE(measureCoverage(scene, points, 1, stop), 0.0);
+  measureLight(scene, scene, points, 1, stop);
 }
 
 /// A stopped path is dropped, together with its tile; tiles whose paths have all ended count whole.
 TEST(Stop, EndsARenderOfEndlessPaths) {
-  const TestScene s = endlessScene();
+  const TestScene s = makeEndlessScene();
   const Camera camera(s.pose, s.width, s.height);
   const LightSet lights(s.lights, s.volume.grid, camera);
   const MajorantGrid majorants(s.volume.grid, MinMaxGrid(s.volume, 0), s.transfer, s.clip);
-  for (const Integrator transport : {Integrator::scalar, Integrator::simd}) {
+  for (const Integrator integrator : {Integrator::scalar, Integrator::simd}) {
     RenderMonitor monitor;
     RenderSettings settings;
-    settings.integrator = transport;
+    settings.integrator = integrator;
     auto rendering = std::async(std::launch::async, [&] {
       return render({s.volume, s.transfer, majorants, lights, camera, s.clip}, settings, monitor);
     });
@@ -102,14 +102,14 @@ TEST(Stop, EndsARenderOfEndlessPaths) {
     const RenderResult result = rendering.get();
     EXPECT_EQ(result.reason, StopReason::request);
     constexpr int tile = 8; // pixels; paths in the volume's corner do not end
-    std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
+    std::uint64_t minSamples = std::numeric_limits<std::uint64_t>::max();
     for (int row = 0; row < s.height; ++row)
       for (int column = 0; column < s.width; ++column) {
         const std::uint64_t samples = result.film.at(column, row).samples;
-        least = std::min(least, samples);
+        minSamples = std::min(minSamples, samples);
         EXPECT_EQ(samples, result.film.at(column / tile * tile, row / tile * tile).samples);
       }
-    EXPECT_EQ(least, 0U);
+    EXPECT_EQ(minSamples, 0U);
   }
 }
 

@@ -25,13 +25,13 @@ TEST(Turn, GoesAroundTheTargetCounterClockwiseAsSeenFromAbove) {
 }
 
 /// Picture of 4 x 4 pixels of 1 mm with a level surface at the target's depth, all context.
-VisibleSurface levelSurface() {
+VisibleSurface makeLevelSurface() {
   const Camera camera = makeAnteriorCamera(Projection::orthographic, 100.0, 2.0, 4, 4);
   return {camera, std::vector<Region>(16, Region::context), std::vector<double>(16, 100.0)};
 }
 
 TEST(SurfaceChange, ChangeIsPerDegreeOverPixelsThatStayContext) {
-  VisibleSurface before = levelSurface(), after = levelSurface();
+  VisibleSurface before = makeLevelSurface(), after = makeLevelSurface();
   for (std::size_t pixel = 0; pixel < 16; ++pixel)
     after.depths[pixel] += pixel < 4 ? 3.0 : -1.0;
   before.regions[4] = Region::focus;
@@ -44,7 +44,7 @@ TEST(SurfaceChange, ChangeIsPerDegreeOverPixelsThatStayContext) {
 }
 
 TEST(SurfaceChange, ExcessIsRelativeToTheSpeedOfTheFocus) {
-  VisibleSurface before = levelSurface(), after = levelSurface();
+  VisibleSurface before = makeLevelSurface(), after = makeLevelSurface();
   after.regions[3] = Region::focus; // the top right pixel, 1.5 mm to the right and above
   after.depths[3] = 98.0;           // and 2 mm nearer to the eye: 2.5 mm from the axis
   after.depths[8] = 101.0;
@@ -57,7 +57,7 @@ TEST(SurfaceChange, ExcessIsRelativeToTheSpeedOfTheFocus) {
 }
 
 /// Balls of 7 and 5 mm that emerge from behind each other, in a block, with cameras around.
-class TurnedBalls : public ::testing::Test {
+class RotatedBalls : public ::testing::Test {
 protected:
   const Grid grid = makeCenteredGrid({80, 80, 40});
   const Mask balls = makeMask(grid, [](const Vec3& p) {
@@ -65,46 +65,46 @@ protected:
   });
   SurfaceOptions options{.boundary = Boundary::exact};
 
-  static Camera cameraAt(double degrees) {
+  static Camera makeCamera(double degrees) {
     const Camera first = makeAnteriorCamera(Projection::orthographic, 200.0, 30.0, 60, 60);
     return {rotateAroundTarget(first.pose(), degrees), 60, 60};
   }
-  ClippingSurface surfaceAt(double degrees, double steady) const {
-    return buildSteadySurface(cameraAt(degrees), grid, balls, options, steady);
+  ClippingSurface makeSurface(double degrees, double steady) const {
+    return buildSteadySurface(makeCamera(degrees), grid, balls, options, steady);
   }
-  VisibleSurface seenAt(double degrees, double steady) const {
-    const ClippingSurface surface = surfaceAt(degrees, steady);
+  VisibleSurface makeVisible(double degrees, double steady) const {
+    const ClippingSurface surface = makeSurface(degrees, steady);
     std::vector<double> focus;
     for (int row = 0; row < 60; ++row)
       for (int column = 0; column < 60; ++column)
         focus.push_back(surface.focus.depth.at(surface.focus.depth.viewportSample(column, row)));
     return makeVisibleSurface(std::get<ClipDepth>(surface.clip), focus, grid);
   }
-  double greatestP95(double steady) const {
+  double findMaxP95(double steady) const {
     constexpr double step = 4.0;
-    double greatest = 0.0;
-    VisibleSurface before = seenAt(0.0, steady);
+    double maximum = 0.0;
+    VisibleSurface before = makeVisible(0.0, steady);
     for (double degrees = step; degrees <= 40.0; degrees += step) {
-      VisibleSurface after = seenAt(degrees, steady);
-      greatest = std::max(greatest, measureChange(before, after, Vec3::UnitZ(), step).p95);
+      VisibleSurface after = makeVisible(degrees, steady);
+      maximum = std::max(maximum, measureChange(before, after, Vec3::UnitZ(), step).p95);
       before = std::move(after);
     }
-    return greatest;
+    return maximum;
   }
 };
 
-TEST_F(TurnedBalls, SeenDepthsAreThoseOfTheSurface) {
-  const VisibleSurface seen = seenAt(0.0, 0.0);
+TEST_F(RotatedBalls, SeenDepthsAreThoseOfTheSurface) {
+  const VisibleSurface visible = makeVisible(0.0, 0.0);
   // Foremost point of the near ball in the picture's centre, and no focus near the left edge.
   EXPECT_EQ(visible.regions[30 * 60 + 30], Region::focus);
   EXPECT_NEAR(visible.depths[30 * 60 + 30], 200.0 - 14.0 - 7.0, 0.5);
   EXPECT_EQ(visible.regions[30 * 60 + 2], Region::context);
 }
 
-TEST_F(TurnedBalls, WithoutSteadyingTheSurfaceIsUnchanged) {
+TEST_F(RotatedBalls, WithoutSteadyingTheSurfaceIsUnchanged) {
   const auto depths = [&](double steady, SurfaceMode mode) {
     options.mode = mode;
-    return std::get<ClipDepth>(surfaceAt(20.0, steady).clip).buffer->depthsFromReference();
+    return std::get<ClipDepth>(makeSurface(20.0, steady).clip).buffer->depthsFromReference();
   };
   options.mode = SurfaceMode::surface;
   EXPECT_EQ(depths(0.0, SurfaceMode::surface),
@@ -114,27 +114,27 @@ TEST_F(TurnedBalls, WithoutSteadyingTheSurfaceIsUnchanged) {
   EXPECT_NE(depths(8.0, SurfaceMode::surface), depths(0.0, SurfaceMode::surface));
 }
 
-TEST_F(TurnedBalls, SteadySurfaceMeetsTheFocus) {
-  const ClippingSurface own = surfaceAt(20.0, 0.0), steady = surfaceAt(20.0, 8.0);
-  const DepthBuffer& a = *std::get<ClipDepth>(own.clip).buffer;
+TEST_F(RotatedBalls, SteadySurfaceMeetsTheFocus) {
+  const ClippingSurface plain = makeSurface(20.0, 0.0), steady = makeSurface(20.0, 8.0);
+  const DepthBuffer& a = *std::get<ClipDepth>(plain.clip).buffer;
   const DepthBuffer& b = *std::get<ClipDepth>(steady.clip).buffer;
-  int beside = 0;
+  int adjacentCount = 0;
   for (std::int64_t row = 0; row < a.rows(); ++row)
     for (std::int64_t column = 0; column < a.columns(); ++column) {
       const double difference = std::abs(a.at(a.sample(column, row)) - b.at(b.sample(column, row)));
-      if (own.focus.isFocus(column, row)) {
+      if (plain.focus.isFocus(column, row)) {
         EXPECT_EQ(difference, 0.0);
-      } else if (own.focus.isFocus(column - 1, row) || own.focus.isFocus(column + 1, row)) {
+      } else if (plain.focus.isFocus(column - 1, row) || plain.focus.isFocus(column + 1, row)) {
         EXPECT_LT(difference, 0.25) << "one sample away, of 8 mm that it takes";
-        ++beside;
+        ++adjacentCount;
       }
     }
-  EXPECT_GT(beside, 20);
+  EXPECT_GT(adjacentCount, 20);
 }
 
-TEST_F(TurnedBalls, SteadySurfaceChangesMoreSlowly) {
-  const double sudden = greatestP95(0.0), steady = greatestP95(8.0);
-  EXPECT_LT(steady, 0.6 * sudden) << sudden << " mm per degree";
+TEST_F(RotatedBalls, SteadySurfaceChangesMoreSlowly) {
+  const double unsmoothed = findMaxP95(0.0), steady = findMaxP95(8.0);
+  EXPECT_LT(steady, 0.6 * unsmoothed) << unsmoothed << " mm per degree";
 }
 
 } // namespace

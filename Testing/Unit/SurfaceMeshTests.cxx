@@ -21,7 +21,7 @@ constexpr std::array projections{Projection::orthographic, Projection::perspecti
 
 /// Clip with a buffer of depths given by (x, y).
 template <typename Depth>
-ClipDepth clipOf(const Camera& camera, const Grid& volume, const Depth& depth) {
+ClipDepth makeClip(const Camera& camera, const Grid& volume, const Depth& depth) {
   DepthBuffer buffer(camera, volume);
   for (std::int64_t row = 0; row < buffer.rows(); ++row)
     for (std::int64_t column = 0; column < buffer.columns(); ++column)
@@ -31,7 +31,7 @@ ClipDepth clipOf(const Camera& camera, const Grid& volume, const Depth& depth) {
 }
 
 /// Camera that looks obliquely at the origin.
-Camera slantedCamera(Projection projection, int width = 48, int height = 36) {
+Camera makeSlantedCamera(Projection projection, int width = 48, int height = 36) {
   CameraPose pose;
   pose.projection = projection;
   pose.position = {130.0, -240.0, 70.0};
@@ -42,13 +42,13 @@ Camera slantedCamera(Projection projection, int width = 48, int height = 36) {
   return {pose, width, height};
 }
 
-double waves(const Camera& camera, const Vec2& p) {
+double waveDepth(const Camera& camera, const Vec2& p) {
   return camera.targetDepth() + 5.0 * std::sin(0.1 * p.x()) - 3.0 * std::cos(0.2 * p.y());
 }
 
 /// Surfaces that are difficult to mesh, by name.
 using Shape = std::function<double(const Vec2&)>;
-std::map<std::string, Shape> shapes(const Camera& camera) {
+std::map<std::string, Shape> makeShapes(const Camera& camera) {
   const double at = camera.targetDepth(), pitch = camera.pixelPitch();
   const auto random = [](const Vec2& p) {
     return Random(7, static_cast<std::uint64_t>(std::llround(1e3 * p.x()) + 1000000),
@@ -56,29 +56,29 @@ std::map<std::string, Shape> shapes(const Camera& camera) {
         .uniform();
   };
   return {
-      {"waves", [=](const Vec2& p) { return waves(camera, p); }},
+      {"waves", [=](const Vec2& p) { return waveDepth(camera, p); }},
       {"a slanted step", [=](const Vec2& p) { return p.x() < 0.37 * p.y() ? at : at + 15.0; }},
       {"a thin wall", [=](const Vec2& p) { return std::abs(p.x()) < 0.6 * pitch ? at - 9.0 : at; }},
       {"a spike", [=](const Vec2& p) { return p.norm() < pitch ? at - 20.0 : at; }},
       {"noise", [=](const Vec2& p) { return at + 20.0 * random(p); }},
       {"a little noise", [=](const Vec2& p) { return at + 0.2 * random(p); }},
-      {"a disk", [=](const Vec2& p) { return p.norm() < 8.3 ? waves(camera, p) : -infinity; }},
-      {"torn", [=](const Vec2& p) { return random(p) < 0.6 ? waves(camera, p) : -infinity; }},
+      {"a disk", [=](const Vec2& p) { return p.norm() < 8.3 ? waveDepth(camera, p) : -infinity; }},
+      {"torn", [=](const Vec2& p) { return random(p) < 0.6 ? waveDepth(camera, p) : -infinity; }},
   };
 }
 
 /// Signed area on the plane through the target, mm²; counter-clockwise is positive.
-double flatArea(const Vec2& a, const Vec2& b, const Vec2& c) {
+double signedArea(const Vec2& a, const Vec2& b, const Vec2& c) {
   return 0.5 * ((b - a).x() * (c - a).y() - (b - a).y() * (c - a).x());
 }
 
-Vec3 normalOf(const SurfaceMesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
+Vec3 computeNormal(const SurfaceMesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
   const auto& [a, b, c] = triangle;
   return (mesh.points[b] - mesh.points[a]).cross(mesh.points[c] - mesh.points[a]);
 }
 
 /// Expects properties of any mesh: finite points, all used, and triangles that face the eye.
-void expectWellMade(const SurfaceMesh& mesh, const Camera& camera) {
+void expectValidMesh(const SurfaceMesh& mesh, const Camera& camera) {
   ASSERT_FALSE(mesh.triangles.empty());
   ASSERT_EQ(mesh.points.size(), mesh.depths.size());
   std::set<std::uint32_t> used;
@@ -86,10 +86,10 @@ void expectWellMade(const SurfaceMesh& mesh, const Camera& camera) {
     used.insert(triangle.begin(), triangle.end());
     ASSERT_LT(*used.rbegin(), mesh.points.size());
     const Vec3 corner = mesh.points[triangle[0]];
-    const Vec3 toEye = camera.pose().projection == Projection::perspective
-                           ? Vec3(camera.pose().position - corner)
-                           : Vec3(-camera.forward());
-    ASSERT_GT(normalOf(mesh, triangle).dot(toEye), 0.0);
+    const Vec3 toCamera = camera.pose().projection == Projection::perspective
+                              ? Vec3(camera.pose().position - corner)
+                              : Vec3(-camera.forward());
+    ASSERT_GT(computeNormal(mesh, triangle).dot(toCamera), 0.0);
   }
   EXPECT_EQ(used.size(), mesh.points.size());
   for (std::size_t i = 0; i < mesh.points.size(); ++i)
@@ -100,8 +100,8 @@ TEST(SurfaceMesh, PlaneSeenAlongAnAxisLiesInItsPlace) {
   const Camera camera = makeAnteriorCamera(Projection::orthographic, 300.0, 8.0, 24, 16);
   const Grid volume = makeCenteredGrid({20, 30, 10}); // in R, A and S: narrower than the viewport
   const auto plane = [](const Vec2& p) { return 290.0 + 0.25 * p.x() - 0.5 * p.y(); };
-  const SurfaceMesh mesh = buildSurfaceMesh(clipOf(camera, volume, plane), volume, 0.0);
-  expectWellMade(mesh, camera);
+  const SurfaceMesh mesh = buildSurfaceMesh(makeClip(camera, volume, plane), volume, 0.0);
+  expectValidMesh(mesh, camera);
   Vec3 lower = Vec3::Constant(infinity), upper = -lower;
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
     const Vec3& p = mesh.points[i]; // x is R, y is S, and depth grows along A
@@ -112,20 +112,21 @@ TEST(SurfaceMesh, PlaneSeenAlongAnAxisLiesInItsPlace) {
     upper = upper.cwiseMax(p);
   }
   const Vec2 pixel(1.0, 1.0);
-  for (const auto& [seen, half] : {std::pair{Vec2(lower.x(), lower.z()), Vec2(-10.0, -5.0)},
-                                   {Vec2(upper.x(), upper.z()), Vec2(10.0, 5.0)}}) {
-    EXPECT_GE((extent.cwiseAbs() - half.cwiseAbs()).minCoeff(), -1e-9) << "all of the volume";
-    EXPECT_LE((extent.cwiseAbs() - half.cwiseAbs() - pixel).maxCoeff(), 1e-9) << "and no more";
+  for (const auto& [extent, halfSize] : {std::pair{Vec2(lower.x(), lower.z()), Vec2(-10.0, -5.0)},
+                                         {Vec2(upper.x(), upper.z()), Vec2(10.0, 5.0)}}) {
+    EXPECT_GE((extent.cwiseAbs() - halfSize.cwiseAbs()).minCoeff(), -1e-9) << "all of the volume";
+    EXPECT_LE((extent.cwiseAbs() - halfSize.cwiseAbs() - pixel).maxCoeff(), 1e-9) << "and no more";
   }
 }
 
 TEST(SurfaceMesh, PointsProjectToTheirSamplesAndHaveTheirDepths) {
   for (const Projection projection : projections) {
-    const Camera camera = slantedCamera(projection);
+    const Camera camera = makeSlantedCamera(projection);
     const Grid volume = makeCenteredGrid({60, 50, 40});
-    const ClipDepth clip = clipOf(camera, volume, [&](const Vec2& p) { return waves(camera, p); });
+    const ClipDepth clip =
+        makeClip(camera, volume, [&](const Vec2& p) { return waveDepth(camera, p); });
     const SurfaceMesh mesh = buildSurfaceMesh(clip, volume, 1e-3);
-    expectWellMade(mesh, camera);
+    expectValidMesh(mesh, camera);
     std::set<std::pair<long, long>> samples;
     for (std::size_t i = 0; i < mesh.points.size(); ++i) {
       const Vec3 at = toBuffer(camera, mesh.points[i]);
@@ -142,14 +143,14 @@ TEST(SurfaceMesh, PointsProjectToTheirSamplesAndHaveTheirDepths) {
 
 TEST(SurfaceMesh, CoversTheVolumesProjection) {
   for (const Projection projection : projections) {
-    const Camera camera = slantedCamera(projection);
+    const Camera camera = makeSlantedCamera(projection);
     const Grid volume = makeCenteredGrid({60, 50, 40});
     const ClipDepth clip =
-        clipOf(camera, volume, [&](const Vec2&) { return camera.targetDepth(); });
+        makeClip(camera, volume, [&](const Vec2&) { return camera.targetDepth(); });
     const SurfaceMesh mesh = buildSurfaceMesh(clip, volume, 1e-3);
     double area = 0.0;
     for (const auto& triangle : mesh.triangles)
-      area += 0.5 * normalOf(mesh, triangle).norm();
+      area += 0.5 * computeNormal(mesh, triangle).norm();
     std::vector<Vec2> corners;
     for (int i = 0; i < 8; ++i)
       corners.push_back(toBuffer(camera, volume.worldCorner(i)).head<2>());
@@ -157,10 +158,10 @@ TEST(SurfaceMesh, CoversTheVolumesProjection) {
     for (const Vec2& a : corners)
       for (const Vec2& b : corners) {
         const Vec2 edge = b - a;
-        const bool outer = std::ranges::all_of(corners, [&](const Vec2& c) {
+        const bool isOuter = std::ranges::all_of(corners, [&](const Vec2& c) {
           return edge.x() * (c - a).y() - edge.y() * (c - a).x() >= -1e-9;
         });
-        if (outer && edge.norm() > 0.0)
+        if (isOuter && edge.norm() > 0.0)
           hull += 0.5 * (a.x() * b.y() - a.y() * b.x());
       }
     const double sample = camera.pixelPitch() * clip.buffer->xAxis().factor;
@@ -173,37 +174,37 @@ TEST(SurfaceMesh, OmitsSamplesWithoutDepthOrBehindTheEye) {
   const Grid volume = makeCenteredGrid({40, 40, 40});
   const Camera parallel = makeAnteriorCamera(Projection::orthographic, 300.0, 10.0, 40, 40);
   const auto disk = [](const Vec2& p) { return p.norm() < 6.0 ? 290.0 : -infinity; };
-  const SurfaceMesh cutaway = buildSurfaceMesh(clipOf(parallel, volume, disk), volume, 1e-3);
-  expectWellMade(cutaway, parallel);
+  const SurfaceMesh cutaway = buildSurfaceMesh(makeClip(parallel, volume, disk), volume, 1e-3);
+  expectValidMesh(cutaway, parallel);
   double area = 0.0;
   for (const auto& triangle : cutaway.triangles)
-    area += 0.5 * normalOf(cutaway, triangle).norm();
+    area += 0.5 * computeNormal(cutaway, triangle).norm();
   EXPECT_LT(area, pi * 36.0);
   EXPECT_GT(area, pi * 36.0 - 2.0 * pi * 6.0 * parallel.pixelPitch()) << "but its edge's halves";
 
   const Camera inside = makeAnteriorCamera(Projection::perspective, 10.0, 10.0, 40, 40);
   const auto ramp = [](const Vec2& p) { return 3.0 + 0.5 * p.x(); };
-  const SurfaceMesh mesh = buildSurfaceMesh(clipOf(inside, volume, ramp), volume, 1e-3);
-  expectWellMade(mesh, inside);
+  const SurfaceMesh mesh = buildSurfaceMesh(makeClip(inside, volume, ramp), volume, 1e-3);
+  expectValidMesh(mesh, inside);
   for (const float depth : mesh.depths)
     EXPECT_GT(depth, 0.0f);
 
   const auto dot = [](const Vec2& p) {
     return (p - Vec2(0.25, 0.25)).norm() < 0.1 ? 290.0 : -infinity;
   };
-  EXPECT_TRUE(buildSurfaceMesh(clipOf(parallel, volume, dot), volume, 1e-3).points.empty());
+  EXPECT_TRUE(buildSurfaceMesh(makeClip(parallel, volume, dot), volume, 1e-3).points.empty());
   const auto none = [](const Vec2&) { return -infinity; };
-  EXPECT_TRUE(buildSurfaceMesh(clipOf(parallel, volume, none), volume, 1e-3).points.empty());
+  EXPECT_TRUE(buildSurfaceMesh(makeClip(parallel, volume, none), volume, 1e-3).points.empty());
 }
 
 /// Greatest depth difference between samples and mesh, and number of triangles over each sample,
 /// computed from the world triangles alone.
 struct MeshError {
-  double greatest = 0.0;
-  std::map<std::pair<std::int64_t, std::int64_t>, int> covered; ///< column and row, not on edges
+  double maximum = 0.0;
+  std::map<std::pair<std::int64_t, std::int64_t>, int> coverage; ///< column and row, not on edges
 };
 
-MeshError errorOf(const SurfaceMesh& mesh, const ClipDepth& clip) {
+MeshError measureError(const SurfaceMesh& mesh, const ClipDepth& clip) {
   const DepthBuffer& buffer = *clip.buffer;
   MeshError error;
   for (const auto& triangle : mesh.triangles) {
@@ -215,14 +216,14 @@ MeshError errorOf(const SurfaceMesh& mesh, const ClipDepth& clip) {
       lower = lower.cwiseMin(index);
       upper = upper.cwiseMax(index);
     }
-    const double area = flatArea(at[0], at[1], at[2]);
-    const Vec3 normal = normalOf(mesh, triangle);
+    const double area = signedArea(at[0], at[1], at[2]);
+    const Vec3 normal = computeNormal(mesh, triangle);
     for (std::int64_t row = std::lround(lower.y()); row <= std::lround(upper.y()); ++row)
       for (std::int64_t column = std::lround(lower.x()); column <= std::lround(upper.x());
            ++column) {
         const Vec2 p = buffer.position(column, row);
-        const double inside = std::min({flatArea(at[0], at[1], p), flatArea(at[1], at[2], p),
-                                        flatArea(at[2], at[0], p)}) /
+        const double inside = std::min({signedArea(at[0], at[1], p), signedArea(at[1], at[2], p),
+                                        signedArea(at[2], at[0], p)}) /
                               area;
         if (inside < -1e-7)
           continue;
@@ -230,9 +231,9 @@ MeshError errorOf(const SurfaceMesh& mesh, const ClipDepth& clip) {
         const double t =
             (mesh.points[triangle[0]] - ray.origin).dot(normal) / ray.direction.dot(normal);
         const double depth = t * clip.camera.depthPerLength(ray);
-        error.greatest =
-            std::max(error.greatest, std::abs(depth - buffer.at(buffer.sample(column, row))));
-        error.covered[{column, row}] += inside > 1e-7 ? 1 : 0;
+        error.maximum =
+            std::max(error.maximum, std::abs(depth - buffer.at(buffer.sample(column, row))));
+        error.coverage[{column, row}] += inside > 1e-7 ? 1 : 0;
       }
   }
   return error;
@@ -256,8 +257,8 @@ void expectNoCracks(const SurfaceMesh& mesh, const Camera& camera) {
   for (const auto& [from, to] : edges) {
     if (edges.contains({to, from}))
       continue;
-    const Vec2 a = at[from], b = at[to], along = (b - a).normalized();
-    const bool isUpright = std::abs(along.y()) > std::abs(along.x());
+    const Vec2 a = at[from], b = at[to], direction = (b - a).normalized();
+    const bool isUpright = std::abs(direction.y()) > std::abs(direction.x());
     const auto& sorted = isUpright ? byY : byX;
     const auto [low, high] = isUpright ? std::minmax(a.y(), b.y()) : std::minmax(a.x(), b.x());
     for (auto point = sorted.upper_bound(low + 1e-6 * pitch);
@@ -272,19 +273,19 @@ void expectNoCracks(const SurfaceMesh& mesh, const Camera& camera) {
 TEST(SurfaceMesh, ErrorAtSamplesIsWithinTheTolerance) {
   for (const Projection projection : projections)
     for (const auto& [width, height] : {std::pair{48, 36}, {33, 65}, {17, 90}}) {
-      const Camera camera = slantedCamera(projection, width, height);
+      const Camera camera = makeSlantedCamera(projection, width, height);
       const Grid volume = makeCenteredGrid({30, 50, 40});
-      for (const auto& [name, shape] : shapes(camera)) {
-        const ClipDepth clip = clipOf(camera, volume, shape);
+      for (const auto& [name, shape] : makeShapes(camera)) {
+        const ClipDepth clip = makeClip(camera, volume, shape);
         std::size_t before = 0;
         for (const double tolerance : {1.0, 0.1, 0.01}) {
           SCOPED_TRACE(name + " to " + std::to_string(tolerance) + " mm");
           const SurfaceMesh mesh = buildSurfaceMesh(clip, volume, tolerance);
-          expectWellMade(mesh, camera);
+          expectValidMesh(mesh, camera);
           expectNoCracks(mesh, camera);
-          const MeshError error = errorOf(mesh, clip);
+          const MeshError error = measureError(mesh, clip);
           EXPECT_LE(error.maximum, tolerance + 1e-9);
-          for (const auto& [sample, triangles] : error.covered)
+          for (const auto& [sample, triangles] : error.coverage)
             ASSERT_LE(triangles, 1);
           EXPECT_GE(mesh.triangles.size(), before);
           before = mesh.triangles.size();
@@ -297,8 +298,8 @@ TEST(SurfaceMesh, CoversEveryCellWithThreeDepths) {
   const Camera camera = makeAnteriorCamera(Projection::orthographic, 300.0, 10.0, 37, 50);
   const Grid volume =
       makeCenteredGrid({60, 60, 60}); // covers the viewport, and is coarser around it
-  for (const auto& [name, shape] : shapes(camera)) {
-    const ClipDepth clip = clipOf(camera, volume, shape);
+  for (const auto& [name, shape] : makeShapes(camera)) {
+    const ClipDepth clip = makeClip(camera, volume, shape);
     const DepthBuffer& buffer = *clip.buffer;
     double cells = 0.0;
     for (std::int64_t row = 0; row + 1 < buffer.rows(); ++row)
@@ -312,9 +313,9 @@ TEST(SurfaceMesh, CoversEveryCellWithThreeDepths) {
     const SurfaceMesh mesh = buildSurfaceMesh(clip, volume, 0.05);
     double area = 0.0;
     for (const auto& [a, b, c] : mesh.triangles)
-      area += flatArea(toBuffer(camera, mesh.points[a]).head<2>(),
-                       toBuffer(camera, mesh.points[b]).head<2>(),
-                       toBuffer(camera, mesh.points[c]).head<2>());
+      area += signedArea(toBuffer(camera, mesh.points[a]).head<2>(),
+                         toBuffer(camera, mesh.points[b]).head<2>(),
+                         toBuffer(camera, mesh.points[c]).head<2>());
     EXPECT_NEAR(area, cells, 1e-9 * cells) << name;
   }
 }
@@ -330,23 +331,23 @@ TEST(SurfaceMesh, PlaneHasTwoTrianglesAndNoiseAllOfThem) {
       const double t = (Vec3(0, -12, 0) - ray.origin).dot(normal) / ray.direction.dot(normal);
       return t * camera.depthPerLength(ray);
     };
-    const ClipDepth flat = clipOf(camera, volume, plane);
+    const ClipDepth flat = makeClip(camera, volume, plane);
     const double tolerance = surfaceTolerance(camera);
     EXPECT_DOUBLE_EQ(tolerance, 0.015);
-    const SurfaceMesh two = buildSurfaceMesh(flat, volume, tolerance);
-    EXPECT_EQ(two.triangles.size(), 2u);
-    EXPECT_EQ(two.points.size(), 4u);
-    EXPECT_LE(errorOf(two, flat).maximum, tolerance);
+    const SurfaceMesh flatMesh = buildSurfaceMesh(flat, volume, tolerance);
+    EXPECT_EQ(flatMesh.triangles.size(), 2u);
+    EXPECT_EQ(flatMesh.points.size(), 4u);
+    EXPECT_LE(measureError(flatMesh, flat).maximum, tolerance);
 
     // A step costs as many triangles as its own edge needs; noise needs every sample, but no more.
     const auto step = [&](const Vec2& p) { return plane(p) + (p.x() < 0.31 * p.y() ? 0.0 : 9.0); };
     const auto columns = static_cast<std::size_t>(flat.buffer->columns());
-    EXPECT_LT(buildSurfaceMesh(clipOf(camera, volume, step), volume, tolerance).triangles.size(),
+    EXPECT_LT(buildSurfaceMesh(makeClip(camera, volume, step), volume, tolerance).triangles.size(),
               14 * columns);
-    const ClipDepth noise = clipOf(camera, volume, shapes(camera).at("noise"));
-    const std::size_t most = buildSurfaceMesh(noise, volume, 0.0).triangles.size();
-    EXPECT_GT(buildSurfaceMesh(noise, volume, tolerance).triangles.size(), most * 95 / 100);
-    EXPECT_LE(most, 2 * static_cast<std::size_t>(flat.buffer->size()));
+    const ClipDepth noise = makeClip(camera, volume, makeShapes(camera).at("noise"));
+    const std::size_t maxTriangles = buildSurfaceMesh(noise, volume, 0.0).triangles.size();
+    EXPECT_GT(buildSurfaceMesh(noise, volume, tolerance).triangles.size(), maxTriangles * 95 / 100);
+    EXPECT_LE(maxTriangles, 2 * static_cast<std::size_t>(flat.buffer->size()));
   }
 }
 
@@ -360,7 +361,7 @@ TEST(SurfaceMesh, TriangleCountDoesNotDependOnTheSubjectsSize) {
       return 5.0 * size - 0.3 * size * std::exp(-9.0 * p.squaredNorm() / (size * size));
     };
     triangles.push_back(
-        buildSurfaceMesh(clipOf(camera, volume, bump), volume, surfaceTolerance(camera))
+        buildSurfaceMesh(makeClip(camera, volume, bump), volume, surfaceTolerance(camera))
             .triangles.size());
   }
   EXPECT_NEAR(static_cast<double>(triangles[0]), static_cast<double>(triangles[1]), 8.0);

@@ -23,7 +23,7 @@ void writeSurface(const SurfaceMesh& surface, const std::filesystem::path& path)
 }
 
 /// Mesh of two triangles on four points.
-SurfaceMesh roof() {
+SurfaceMesh makeRoof() {
   SurfaceMesh mesh;
   mesh.points = {{-1.5, 2.0, 100.125}, {3.0, 4.1, -5.0}, {1e-3, 0.0, 7.0}, {1234.5678, 8.0, 9.0}};
   mesh.depths = {10.5f, 11.25f, 0.1f, 300.0f};
@@ -32,9 +32,9 @@ SurfaceMesh roof() {
 }
 
 /// Reader of numbers from the front of a file's bytes.
-class Bytes {
+class ByteReader {
 public:
-  explicit Bytes(std::string bytes) : m_bytes(std::move(bytes)) {}
+  explicit ByteReader(std::string bytes) : m_bytes(std::move(bytes)) {}
 
   std::string line() {
     const std::size_t end = m_bytes.find('\n', m_at);
@@ -47,16 +47,16 @@ public:
     return m_bytes.substr(m_at - size, size);
   }
   template <typename T>
-  T take() {
+  T read() {
     T value{};
     std::memcpy(&value, text(sizeof value).data(), sizeof value);
     return value;
   }
   Vec3 vector() {
-    const auto x = take<float>(), y = take<float>(), z = take<float>();
+    const auto x = read<float>(), y = read<float>(), z = read<float>();
     return {x, y, z};
   }
-  std::size_t left() const { return m_bytes.size() - m_at; }
+  std::size_t remaining() const { return m_bytes.size() - m_at; }
 
 private:
   std::string m_bytes;
@@ -64,7 +64,7 @@ private:
 };
 
 /// Bytes of base64 digits; a partial byte is dropped.
-std::string decoded(const std::string& text) {
+std::string decodeBase64(const std::string& text) {
   const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string bytes;
   unsigned bits = 0, count = 0;
@@ -79,37 +79,37 @@ std::string decoded(const std::string& text) {
   return bytes;
 }
 
-bool near(const Vec3& a, const Vec3& b) {
+bool isNear(const Vec3& a, const Vec3& b) {
   return (a - b).norm() <= 1e-6 * b.norm();
 }
 
 TEST(SurfaceWriter, VtpKeepsEveryDigitAndTheDepths) {
   const TemporaryFolder folder;
-  const SurfaceMesh mesh = roof();
+  const SurfaceMesh mesh = makeRoof();
   writeSurface(mesh, folder / "roof.vtp");
   MemoryBudget allowance;
-  const VtkSurface read = readVtkSurface(folder / "roof.vtp", {"SPACE"}, allowance);
-  EXPECT_EQ(read.points, mesh.points);
-  EXPECT_EQ(read.triangles, mesh.triangles);
-  EXPECT_EQ(read.texts.at("SPACE"), "RAS");
+  const VtkSurface readBack = readVtkSurface(folder / "roof.vtp", {"SPACE"}, allowance);
+  EXPECT_EQ(readBack.points, mesh.points);
+  EXPECT_EQ(readBack.triangles, mesh.triangles);
+  EXPECT_EQ(readBack.texts.at("SPACE"), "RAS");
 
   pugi::xml_document document;
   ASSERT_TRUE(document.load_file((folder / "roof.vtp").c_str()));
   const pugi::xml_node array =
       document.select_node("/VTKFile/PolyData/Piece/PointData/DataArray[@Name='depth']").node();
   EXPECT_STREQ(array.attribute("type").value(), "Float32");
-  Bytes bytes(decoded(array.text().get()));
-  EXPECT_EQ(bytes.take<std::uint64_t>(), 16u);
+  ByteReader bytes(decodeBase64(array.text().get()));
+  EXPECT_EQ(bytes.read<std::uint64_t>(), 16u);
   for (const float depth : mesh.depths)
-    EXPECT_EQ(bytes.take<float>(), depth);
+    EXPECT_EQ(bytes.read<float>(), depth);
   EXPECT_EQ(bytes.remaining(), 0u);
 }
 
 TEST(SurfaceWriter, PlyHasTheDepthsOfItsVertices) {
   const TemporaryFolder folder;
-  const SurfaceMesh mesh = roof();
+  const SurfaceMesh mesh = makeRoof();
   writeSurface(mesh, folder / "ROOF.PLY");
-  Bytes file(bytesOf(folder / "ROOF.PLY"));
+  ByteReader file(readBytes(folder / "ROOF.PLY"));
   for (const char* line :
        {"ply", "format binary_little_endian 1.0", "comment SPACE=RAS", "element vertex 4",
         "property float x", "property float y", "property float z", "property float depth",
@@ -117,25 +117,25 @@ TEST(SurfaceWriter, PlyHasTheDepthsOfItsVertices) {
     EXPECT_EQ(file.line(), line);
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_TRUE(isNear(file.vector(), mesh.points[i])) << i;
-    EXPECT_EQ(file.take<float>(), mesh.depths[i]);
+    EXPECT_EQ(file.read<float>(), mesh.depths[i]);
   }
   for (const auto& triangle : mesh.triangles) {
-    EXPECT_EQ(file.take<std::uint8_t>(), 3);
+    EXPECT_EQ(file.read<std::uint8_t>(), 3);
     for (const std::uint32_t point : triangle)
-      EXPECT_EQ(file.take<std::uint32_t>(), point);
+      EXPECT_EQ(file.read<std::uint32_t>(), point);
   }
   EXPECT_EQ(file.remaining(), 0u);
 }
 
 TEST(SurfaceWriter, StlHasUnitNormals) {
   const TemporaryFolder folder;
-  const SurfaceMesh mesh = roof();
+  const SurfaceMesh mesh = makeRoof();
   writeSurface(mesh, folder / "roof.stl");
-  Bytes file(bytesOf(folder / "roof.stl"));
+  ByteReader file(readBytes(folder / "roof.stl"));
   const std::string header = file.text(80);
   EXPECT_FALSE(header.starts_with("solid")) << "which text files start with";
   EXPECT_NE(header.find("SPACE=RAS"), std::string::npos);
-  ASSERT_EQ(file.take<std::uint32_t>(), 2u);
+  ASSERT_EQ(file.read<std::uint32_t>(), 2u);
   for (const auto& triangle : mesh.triangles) {
     const Vec3 normal = file.vector();
     std::array<Vec3, 3> corners;
@@ -145,7 +145,7 @@ TEST(SurfaceWriter, StlHasUnitNormals) {
     }
     const Vec3 expected = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
     EXPECT_LT((normal - expected).norm(), 1e-5);
-    EXPECT_EQ(file.take<std::uint16_t>(), 0);
+    EXPECT_EQ(file.read<std::uint16_t>(), 0);
   }
   EXPECT_EQ(file.remaining(), 0u);
 }
@@ -153,11 +153,11 @@ TEST(SurfaceWriter, StlHasUnitNormals) {
 TEST(SurfaceWriter, EqualSurfacesGiveEqualBytesAndEmptyOnesAFile) {
   const TemporaryFolder folder;
   for (const std::string ending : {".vtp", ".ply", ".stl"}) {
-    writeSurface(roof(), folder / ("a" + ending));
-    writeSurface(roof(), folder / ("b" + ending));
-    EXPECT_EQ(bytesOf(folder / ("a" + ending)), bytesOf(folder / ("b" + ending)));
+    writeSurface(makeRoof(), folder / ("a" + ending));
+    writeSurface(makeRoof(), folder / ("b" + ending));
+    EXPECT_EQ(readBytes(folder / ("a" + ending)), readBytes(folder / ("b" + ending)));
     writeSurface({}, folder / ("none" + ending));
-    EXPECT_FALSE(bytesOf(folder / ("none" + ending)).empty());
+    EXPECT_FALSE(readBytes(folder / ("none" + ending)).empty());
   }
   MemoryBudget allowance;
   EXPECT_TRUE(readVtkSurface(folder / "none.vtp", {}, allowance).points.empty());
@@ -165,7 +165,7 @@ TEST(SurfaceWriter, EqualSurfacesGiveEqualBytesAndEmptyOnesAFile) {
 
 TEST(SurfaceWriter, RefusesUnknownExtensionsAndMissingFolders) {
   const TemporaryFolder folder;
-  const auto refused = [&](const std::string& name, ErrorKind kind, const std::string& text) {
+  const auto expectRefusal = [&](const std::string& name, ErrorKind kind, const std::string& text) {
     const auto expectError = [&](const auto& call) {
       try {
         call();
@@ -175,11 +175,11 @@ TEST(SurfaceWriter, RefusesUnknownExtensionsAndMissingFolders) {
         EXPECT_NE(std::string(error.what()).find(text), std::string::npos) << error.what();
       }
     };
-    expectError([&] { writeSurface(roof(), folder / name); });
+    expectError([&] { writeSurface(makeRoof(), folder / name); });
   };
-  refused("a.obj", ErrorKind::usage, "a.obj: has no known extension; name a file .vtp");
-  refused("a", ErrorKind::usage, "has no known extension");
-  refused("missing/a.vtp", ErrorKind::output, "missing/a.vtp: cannot be written: ");
+  expectRefusal("a.obj", ErrorKind::usage, "a.obj: has no known extension; name a file .vtp");
+  expectRefusal("a", ErrorKind::usage, "has no known extension");
+  expectRefusal("missing/a.vtp", ErrorKind::output, "missing/a.vtp: cannot be written: ");
   Outputs outputs;
   declareSurface(folder / "a.stl", outputs);
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));

@@ -21,7 +21,7 @@ struct Data {
 };
 
 /// Sites on a wavy closed curve around (120, -300) mm, at about `radius` mm.
-Data outline(int count, double radius) {
+Data makeOutline(int count, double radius) {
   Data data;
   for (int i = 0; i < count; ++i) {
     const double angle = 2.0 * pi * i / count;
@@ -32,7 +32,7 @@ Data outline(int count, double radius) {
   return data;
 }
 
-Data scattered(Random& random, int count, double radius) {
+Data makeScattered(Random& random, int count, double radius) {
   Data data;
   while (static_cast<int>(data.sites.size()) < count) {
     const Vec2 site = randomPoint(random, -radius, radius).head<2>();
@@ -48,7 +48,7 @@ TEST(ThinPlateSpline, EqualsTheSolutionOfTheSaddleSystem) {
   Random random(1, 0, 0);
   for (const double radius : {0.5, 8.0, 100.0})
     for (const double smoothing : {0.1, 0.5, 0.9, 1.0})
-      for (const Data& data : {outline(50, radius), scattered(random, 20, radius)}) {
+      for (const Data& data : {makeOutline(50, radius), makeScattered(random, 20, radius)}) {
         const ThinPlateSpline spline = data.spline(smoothing);
         const SaddleSpline<long double> reference(data.sites, data.values, smoothing);
         for (int i = 0; i < 50; ++i) {
@@ -59,7 +59,7 @@ TEST(ThinPlateSpline, EqualsTheSolutionOfTheSaddleSystem) {
 }
 
 TEST(ThinPlateSpline, ReproducesPlanesForAnySmoothing) {
-  Data data = outline(50, 60.0);
+  Data data = makeOutline(50, 60.0);
   const auto plane = [](const Vec2& x) { return 700.0 + 0.3 * x.x() - 1.2 * x.y(); };
   for (std::size_t i = 0; i < data.sites.size(); ++i)
     data.values[i] = plane(data.sites[i]);
@@ -70,18 +70,19 @@ TEST(ThinPlateSpline, ReproducesPlanesForAnySmoothing) {
 }
 
 TEST(ThinPlateSpline, InterpolatesAtOneAndApproximatesBelow) {
-  const Data data = outline(50, 60.0);
-  double worst = 0.0, missed = 0.0;
+  const Data data = makeOutline(50, 60.0);
+  double maxError = 0.0, maxResidual = 0.0;
   for (std::size_t i = 0; i < data.sites.size(); ++i) {
-    worst = std::max(worst, std::abs(data.spline(1.0)(data.sites[i]) - data.values[i]));
-    missed = std::max(missed, std::abs(data.spline(0.01)(data.sites[i]) - data.values[i]));
+    maxError = std::max(maxError, std::abs(data.spline(1.0)(data.sites[i]) - data.values[i]));
+    maxResidual =
+        std::max(maxResidual, std::abs(data.spline(0.01)(data.sites[i]) - data.values[i]));
   }
-  EXPECT_LT(worst, 1e-10);
-  EXPECT_GT(missed, 1e-3);
+  EXPECT_LT(maxError, 1e-10);
+  EXPECT_GT(maxResidual, 1e-3);
 }
 
 TEST(ThinPlateSpline, ZeroSmoothingGivesTheLeastSquaresPlane) {
-  const Data data = outline(50, 60.0);
+  const Data data = makeOutline(50, 60.0);
   const ThinPlateSpline spline = data.spline(0.0);
   const Vec2 c(100, -280);
   EXPECT_NEAR(spline(c + Vec2(20, 30)) + spline(c - Vec2(20, 30)), 2 * spline(c), 1e-9);
@@ -95,19 +96,19 @@ TEST(ThinPlateSpline, ZeroSmoothingGivesTheLeastSquaresPlane) {
 
 TEST(ThinPlateSpline, TurnsShiftsAndScalesWithItsSites) {
   Random random(2, 0, 0);
-  const Data data = scattered(random, 30, 40.0);
-  const auto turned = [c = std::cos(0.7), s = std::sin(0.7)](const Vec2& x) {
+  const Data data = makeScattered(random, 30, 40.0);
+  const auto rotate = [c = std::cos(0.7), s = std::sin(0.7)](const Vec2& x) {
     return Vec2(c * x.x() - s * x.y(), s * x.x() + c * x.y());
   };
   for (const double s : {1.0, 0.01, 512.0}) {
     Data moved = data;
     for (Vec2& site : moved.sites)
-      site = s * turned(site) + Vec2(-300, 1000);
+      site = s * rotate(site) + Vec2(-300, 1000);
     // lambda scales with s^2: in mm, a larger copy of a shape is smoothed less.
     const double lambda = (1.0 - 0.5) / 0.5 * s * s;
     const ThinPlateSpline a = data.spline(0.5), b = moved.spline(1.0 / (1.0 + lambda));
     for (const Vec2& x : {Vec2(0, 0), Vec2(17, -33), Vec2(-90, 120)}) {
-      EXPECT_NEAR(a(x), b(s * turned(x) + Vec2(-300, 1000)), 1e-7);
+      EXPECT_NEAR(a(x), b(s * rotate(x) + Vec2(-300, 1000)), 1e-7);
     }
   }
 }
@@ -115,12 +116,12 @@ TEST(ThinPlateSpline, TurnsShiftsAndScalesWithItsSites) {
 TEST(ThinPlateSpline, IsWellConditionedInTheUnitDisc) {
   Random random(3, 0, 0);
   for (const double radius : {1.0, 50.0, 300.0}) {
-    EXPECT_LT(conditionNumber(outline(50, radius).spline(0.5)), 3e3) << radius;
+    EXPECT_LT(computeConditionNumber(makeOutline(50, radius).spline(0.5)), 3e3) << radius;
   }
 }
 
 TEST(ThinPlateSpline, RowsAgreeWithPoints) {
-  const ThinPlateSpline spline = outline(50, 60.0).spline(0.5);
+  const ThinPlateSpline spline = makeOutline(50, 60.0).spline(0.5);
   std::vector<double> x(131), values(x.size());
   for (std::size_t i = 0; i < x.size(); ++i)
     x[i] = 3.0 * static_cast<double>(i) - 50.0;
@@ -131,49 +132,49 @@ TEST(ThinPlateSpline, RowsAgreeWithPoints) {
 }
 
 /// Greatest difference from f over a tile of samples at `pitch` mm.
-double greatestTileError(const ThinPlateSpline& spline, const Vec2& corner, double pitch,
-                         std::size_t columns, std::size_t rows, double tolerance) {
+double findMaxTileError(const ThinPlateSpline& spline, const Vec2& corner, double pitch,
+                        std::size_t columns, std::size_t rows, double tolerance) {
   std::vector<double> x(columns), y(rows), values(columns * rows);
   for (std::size_t i = 0; i < columns; ++i)
     x[i] = corner.x() + pitch * static_cast<double>(i);
   for (std::size_t i = 0; i < rows; ++i)
     y[i] = corner.y() - pitch * static_cast<double>(i);
   spline.evaluateTile(x, y, tolerance, values);
-  double greatest = 0.0;
+  double maximum = 0.0;
   for (std::size_t i = 0; i < values.size(); i += 1 + values.size() / 100)
-    greatest = std::max(greatest, std::abs(values[i] - spline({x[i % columns], y[i / columns]})));
-  return greatest;
+    maximum = std::max(maximum, std::abs(values[i] - spline({x[i % columns], y[i / columns]})));
+  return maximum;
 }
 
 TEST(ThinPlateSpline, TilesAgreeWithPointsToTheirTolerance) {
   Random random(4, 0, 0);
-  double greatest = 0.0;
+  double maximum = 0.0;
   std::uint64_t trials = 0; // a brief run makes a part of them
   for (const double radius : {0.5, 60.0, 300.0})
     for (const double smoothing : {0.0, 0.5, 1.0 - 1e-6, 1.0})
       for (const int count : {2, 3, 50, 300}) {
-        Data data = scattered(random, count, radius);
+        Data data = makeScattered(random, count, radius);
         for (double& value : data.values)
           value *= 50.0; // jumps of 2000 mm
         const ThinPlateSpline spline = data.spline(smoothing);
-        const double rounding = 1e-14 * conditionNumber(spline); // of the points themselves
+        const double rounding = 1e-14 * computeConditionNumber(spline); // of the points themselves
         for (const double pitch : {1e-9 * radius, 1e-3 * radius, 0.01 * radius, 0.3 * radius})
-          for (const double away : {0.0, 1.0, 3.0, 30.0, 3e3})
+          for (const double distanceRatio : {0.0, 1.0, 3.0, 30.0, 3e3})
             for (const auto& [columns, rows] : {std::pair{64, 64}, {64, 1}, {1, 1}, {5, 13}}) {
-              const Vec2 corner = away * radius * randomPoint(random, -1, 1).head<2>();
+              const Vec2 corner = distanceRatio * radius * randomPoint(random, -1, 1).head<2>();
               ++trials; // every fourth shifts the shape
-              if ((trials + trials / 4) % fenestra::testing::brevity() != 0)
+              if ((trials + trials / 4) % fenestra::testing::sampleDivisor() != 0)
                 continue;
               const double error =
-                  greatestTileError(spline, corner, pitch, static_cast<std::size_t>(columns),
-                                    static_cast<std::size_t>(rows), 1e-6);
+                  findMaxTileError(spline, corner, pitch, static_cast<std::size_t>(columns),
+                                   static_cast<std::size_t>(rows), 1e-6);
               ASSERT_LE(error, 1e-6 + rounding * (2000.0 + std::abs(spline(corner))))
                   << count << " sites to " << radius << " mm, p " << smoothing << ", " << columns
                   << "x" << rows << " every " << pitch << " mm at " << corner;
-              greatest = std::max(greatest, smoothing == 0.5 && away < 10.0 ? error : 0.0);
+              maximum = std::max(maximum, smoothing == 0.5 && distanceRatio < 10.0 ? error : 0.0);
             }
       }
-  std::printf("greatest deviation at p = 0.5: %.1e mm\n", greatest);
+  std::printf("greatest deviation at p = 0.5: %.1e mm\n", maximum);
 }
 
 TEST(LocalExpansion, EqualsTheSumOfItsTermsOrIsNone) {
@@ -190,7 +191,7 @@ TEST(LocalExpansion, EqualsTheSumOfItsTermsOrIsNone) {
   for (const double tolerance : {1e-2, 1e-6, 1e-10}) {
     const auto expansion = LocalExpansion::make(terms, center, radius, tolerance);
     ASSERT_TRUE(expansion);
-    double greatest = 0.0;
+    double maximum = 0.0;
     for (int i = 0; i < 1000; ++i) {
       const double angle = 6.3 * random.uniform();
       const Vec2 from = radius * Vec2(std::cos(angle), std::sin(angle));
@@ -200,7 +201,7 @@ TEST(LocalExpansion, EqualsTheSumOfItsTermsOrIsNone) {
         sum += term.weight * squared * std::log(squared);
       }
       expansion->evaluateRow({&from.x(), 1}, from.y(), {&value, 1});
-      greatest = std::max(greatest, std::abs(value - sum));
+      maximum = std::max(maximum, std::abs(value - sum));
     }
     EXPECT_LE(maximum, tolerance);
     EXPECT_GE(maximum, 1e-5 * tolerance) << "longer than it need be";
@@ -232,7 +233,7 @@ TEST(ThinPlateSpline, FewCoincidentOrCollinearSitesGiveMeanOrLine) {
 }
 
 TEST(ThinPlateSpline, NearlyCoincidentSitesStayFinite) {
-  Data data = outline(50, 60.0);
+  Data data = makeOutline(50, 60.0);
   data.sites[1] = data.sites[0] + Vec2(1e-9, 0);
   data.values[1] = data.values[0] + 5.0;
   EXPECT_NEAR(data.spline(0.5)(data.sites[0]), data.values[0] + 2.5, 3.0);

@@ -290,13 +290,13 @@ protected:
       return isCube(v) ? 20.0 : v.x() >= high ? 30.0 : 10.0;
     });
     const LabelWeights weights =
-        sharesOf({{makeMask(isCube), 10, 1},
-                  {makeMask([](const Size3& v) { return v.x() >= high; }), 10, 2}});
+        makeLabelWeights({{makeMask(isCube), 10, 1},
+                          {makeMask([](const Size3& v) { return v.x() >= high; }), 10, 2}});
     return findInterfaces(makeMask(isCube), volume, transfer, weights, {false, true, false});
   }
 
-  const Grid grid = centredGrid({edge, edge, edge}, Vec3(1.0, 2.0, 4.0));
-  const TransferFunction all{ScalarFunction({knot(0.0, 1.0)}), ColorFunction({{0.0, skin}})};
+  const Grid grid = makeCenteredGrid({edge, edge, edge}, Vec3(1.0, 2.0, 4.0));
+  const TransferFunction all{ScalarFunction({makeKnot(0.0, 1.0)}), ColorFunction({{0.0, skin}})};
 };
 
 TEST_F(InterfaceTests, AreMeasuredInSquareMillimetres) {
@@ -317,7 +317,7 @@ TEST_F(InterfaceTests, AreMeasuredInSquareMillimetres) {
 
 TEST_F(InterfaceTests, WhatIsTransparentIsNoNeighbour) {
   TransferFunction transfer = all;
-  transfer.extinction = ScalarFunction({knot(10.0, 0.0), knot(20.0, 1.0)});
+  transfer.extinction = ScalarFunction({makeKnot(10.0, 0.0), makeKnot(20.0, 1.0)});
   const std::vector<ComponentInterface> found = measureInterfaces(transfer);
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].context, 2);

@@ -10,12 +10,12 @@
 namespace fenestra::TransferReaderTests {
 namespace {
 
-TransferFunction parsed(const std::string& json) {
+TransferFunction parse(const std::string& json) {
   return parseTransferLook(json, "test").function;
 }
 
 TEST(TransferReader, ReadsItsOwnFormat) {
-  const TransferFunction f = parsed(
+  const TransferFunction f = parse(
       R"({"extinction": [[100, 4], [0, 0]], "albedo": [[0, 0.1, 0.2, 0.3], [10, 0.5, 0.6, 1]],
           "g": -0.5, "shading": "hybrid"})");
   EXPECT_DOUBLE_EQ(f.extinction(25)[0], 1.0);
@@ -25,25 +25,25 @@ TEST(TransferReader, ReadsItsOwnFormat) {
   ASSERT_TRUE(f.shading);
   EXPECT_EQ(f.shading->gamma, 0.5);
   EXPECT_FALSE(f.gradientOpacity);
-  const TransferFunction least = parsed(R"({"extinction": [[0, 1]], "albedo": [[0, 1, 1, 1]]})");
-  EXPECT_EQ(least.g, 0.0);
-  EXPECT_FALSE(least.shading);
+  const TransferFunction minimal = parse(R"({"extinction": [[0, 1]], "albedo": [[0, 1, 1, 1]]})");
+  EXPECT_EQ(minimal.g, 0.0);
+  EXPECT_FALSE(minimal.shading);
 }
 
 TEST(TransferReader, RelativeScalarsAreAShareOfTheUsualRange) {
   const std::string rest =
       R"("extinction": [[0.5, 0], [1, 4]], "albedo": [[0, 0, 0, 0], [1, 1, 1, 1]]})";
-  const TransferLook look = parseTransferLook(R"({"scalars": "relative", )" + rest, "test");
-  ASSERT_TRUE(look.isRelative);
-  const TransferFunction f = look.mapRange(-100, 300);
+  const TransferLook relative = parseTransferLook(R"({"scalars": "relative", )" + rest, "test");
+  ASSERT_TRUE(relative.isRelative);
+  const TransferFunction f = relative.mapRange(-100, 300);
   EXPECT_DOUBLE_EQ(f.extinction(100)[0], 0.0);
   EXPECT_DOUBLE_EQ(f.extinction(200)[0], 2.0);
   EXPECT_DOUBLE_EQ(f.extinction(300)[0], 4.0);
   EXPECT_NEAR(f.albedo(0)[1], 0.25, 1e-12);
   for (const std::string& start : {std::string(R"({"scalars": "absolute", )"), std::string("{")}) {
-    const TransferLook own = parseTransferLook(start + rest, "test");
-    EXPECT_FALSE(own.isRelative);
-    EXPECT_DOUBLE_EQ(own.mapRange(-100, 300).extinction(0.75)[0], 2.0);
+    const TransferLook absolute = parseTransferLook(start + rest, "test");
+    EXPECT_FALSE(absolute.isRelative);
+    EXPECT_DOUBLE_EQ(absolute.mapRange(-100, 300).extinction(0.75)[0], 2.0);
   }
   const TemporaryFolder folder;
   const auto file = folder.write("relative.json", R"({"scalars": "relative", )" + rest);
@@ -55,8 +55,8 @@ TEST(TransferReader, RelativeScalarsAreAShareOfTheUsualRange) {
 TEST(TransferReader, ColorIsWhatIsSeen) {
   const std::string e = R"("extinction": [[0, 0], [100, 4]], "shading": "hybrid")";
   const TransferFunction f =
-      parsed("{" + e + R"(, "color": [[100, "#bcbcbc"], [0, "#000000"]], "g": 0.5})");
-  const double grey = std::pow((188.0 / 255.0 + 0.055) / 1.055, 2.4);
+      parse("{" + e + R"(, "color": [[100, "#bcbcbc"], [0, "#000000"]], "g": 0.5})");
+  const double gray = std::pow((188.0 / 255.0 + 0.055) / 1.055, 2.4);
   for (int c = 0; c < 3; ++c) {
     EXPECT_NEAR(toReflectance(f.albedo(100)[c], 0.5), gray, 1e-6);
     EXPECT_NEAR(toReflectance(f.albedo(50)[c], 0.5), 0.5 * gray, 0.01);
@@ -67,15 +67,15 @@ TEST(TransferReader, ColorIsWhatIsSeen) {
   EXPECT_EQ(f.shading->specular, 0.2);
   EXPECT_NEAR(f.shading->power, 2.0 / 0.16 - 2.0, 1e-12);
   EXPECT_NEAR(f.shading->oddsFactor, 0.235, 1e-12);
-  const TransferFunction wet = parsed("{" + e + R"(, "albedo": [[0, 0.5, 0.5, 0.5]],
+  const TransferFunction glossy = parse("{" + e + R"(, "albedo": [[0, 0.5, 0.5, 0.5]],
       "specular": 0.5, "roughness": 0.1})");
-  EXPECT_EQ(wet.albedo(0)[0], 0.5) << "albedo stays what it is";
-  ASSERT_TRUE(wet.shading && wet.shading->coated);
-  EXPECT_EQ(wet.shading->specular, 0.5);
-  EXPECT_NEAR(wet.shading->power, 198.0, 1e-9);
-  const TransferFunction old = parsed("{" + e + R"(, "albedo": [[0, 0.5, 0.5, 0.5]]})");
-  EXPECT_FALSE(old.shading->coated);
-  EXPECT_EQ(old.shading->oddsFactor, 1.0);
+  EXPECT_EQ(glossy.albedo(0)[0], 0.5) << "albedo stays what it is";
+  ASSERT_TRUE(glossy.shading && glossy.shading->coated);
+  EXPECT_EQ(glossy.shading->specular, 0.5);
+  EXPECT_NEAR(glossy.shading->power, 198.0, 1e-9);
+  const TransferFunction uncoated = parse("{" + e + R"(, "albedo": [[0, 0.5, 0.5, 0.5]]})");
+  EXPECT_FALSE(uncoated.shading->coated);
+  EXPECT_EQ(uncoated.shading->oddsFactor, 1.0);
 }
 
 void expectRefusal(const std::string& json, const std::string& text) {
@@ -128,7 +128,7 @@ TEST(TransferReader, ErrorNamesTheField) {
 }
 
 /// Text of a .vp.json with these members in its property and component.
-std::string slicer(const std::string& property, const std::string& component) {
+std::string makeSlicerJson(const std::string& property, const std::string& component) {
   return R"({"@schema": "x", "volumeProperties": [{"effectiveRange": [0, "bad"], )" + property +
          R"("components": [{)" + component + R"(
     "scalarOpacity": {"type": "piecewiseLinearFunction", "points": [
@@ -139,13 +139,13 @@ std::string slicer(const std::string& property, const std::string& component) {
 }
 
 TEST(TransferReader, ReadsSlicersJson) {
-  const TransferFunction f = parsed(slicer(R"("scatteringAnisotropy": 0.3, )",
-                                           R"("scalarOpacityUnitDistance": 2, "shade": true,
+  const TransferFunction f = parse(makeSlicerJson(R"("scatteringAnisotropy": 0.3, )",
+                                                  R"("scalarOpacityUnitDistance": 2, "shade": true,
                 "lighting": {"ambient": 0.1, "diffuse": 0.6, "specular": 0.3, "specularPower": 20},
                 "gradientOpacity": {"points": [{"x": 0, "y": 0}, {"x": 10, "y": 1}]}, )"));
   const std::vector<OpacityNode> nodes = {{0, 0, 0.25, 0.5}, {200, 0.5}};
   for (const double x : {-10.0, 20.0, 50.0, 111.0, 199.0, 300.0}) {
-    const double truth = -std::log1p(-curveAt(nodes, x)) / 2.0;
+    const double expected = -std::log1p(-interpolateCurve(nodes, x)) / 2.0;
     EXPECT_NEAR(f.extinction(x)[0], expected, 1e-4 * expected) << x;
   }
   EXPECT_TRUE(f.albedo(0) == decodeSrgb({1, 0.5, 0}));
@@ -162,13 +162,13 @@ TEST(TransferReader, OmitsGradientOpacityWithoutEffect) {
   for (const char* component :
        {"", R"("gradientOpacity": {"points": [{"x": 0, "y": 1}, {"x": 9, "y": 1}]}, )",
         R"("disableGradientOpacity": true, "gradientOpacity": {"points": [{"x": 0, "y": 0}]}, )"})
-    EXPECT_FALSE(parse(slicer("", component)).gradientOpacity);
+    EXPECT_FALSE(parse(makeSlicerJson("", component)).gradientOpacity);
 }
 
 TEST(TransferReader, ClampsAnisotropyBelowOne) {
-  EXPECT_EQ(parse(slicer(R"("scatteringAnisotropy": 1, )", "")).g, 0.999);
-  EXPECT_EQ(parse(slicer(R"("scatteringAnisotropy": -1, )", "")).g, -0.999);
-  expectRefusal(slicer(R"("scatteringAnisotropy": 1.01, )", ""),
+  EXPECT_EQ(parse(makeSlicerJson(R"("scatteringAnisotropy": 1, )", "")).g, 0.999);
+  EXPECT_EQ(parse(makeSlicerJson(R"("scatteringAnisotropy": -1, )", "")).g, -0.999);
+  expectRefusal(makeSlicerJson(R"("scatteringAnisotropy": 1.01, )", ""),
                 "volumeProperties[0].scatteringAnisotropy: is 1.01; it must be from -1 to 1");
 }
 
@@ -176,12 +176,13 @@ TEST(TransferReader, RefusesDamagedSlicerJson) {
   expectRefusal(R"({"volumeProperties": []})", "volumeProperties: is empty");
   expectRefusal(R"({"volumeProperties": [{"components": [{}]}]})",
                 "volumeProperties[0].components[0]: has no \"scalarOpacity\"");
-  expectRefusal(slicer("", R"("scalarOpacityUnitDistance": 0, )"), "scalarOpacityUnitDistance");
-  expectRefusal(slicer("", R"("shade": 1, )"), "shade: must be true or false");
-  expectRefusal(slicer("", R"("gradientOpacity": {"points": [{"x": 0, "y": 2}]}, )"),
+  expectRefusal(makeSlicerJson("", R"("scalarOpacityUnitDistance": 0, )"),
+                "scalarOpacityUnitDistance");
+  expectRefusal(makeSlicerJson("", R"("shade": 1, )"), "shade: must be true or false");
+  expectRefusal(makeSlicerJson("", R"("gradientOpacity": {"points": [{"x": 0, "y": 2}]}, )"),
                 "gradientOpacity.points[0].y");
   expectRefusal(
-      slicer("", R"("gradientOpacity": {"points": [{"x": 0, "y": 1, "sharpness": 3}]}, )"),
+      makeSlicerJson("", R"("gradientOpacity": {"points": [{"x": 0, "y": 1, "sharpness": 3}]}, )"),
       "gradient opacity, point 1");
 }
 

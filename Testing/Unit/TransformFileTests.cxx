@@ -33,10 +33,10 @@ namespace fenestra::TransformFileTests {
 namespace {
 
 using Extensions = std::vector<std::string>;
-const Extensions everyExtension = {".tfm", ".txt", ".h5", "z.h5", ".hdf5", ".mat"}; // z: compressed
+const Extensions allExtensions = {".tfm", ".txt", ".h5", "z.h5", ".hdf5", ".mat"}; // z: compressed
 
 template <typename Real>
-typename itk::TransformIOBaseTemplate<Real>::Pointer transformIo(const std::string& extension) {
+typename itk::TransformIOBaseTemplate<Real>::Pointer makeTransformIo(const std::string& extension) {
   if (extension == ".mat")
     return itk::MatlabTransformIOTemplate<Real>::New().GetPointer();
   if (extension == ".h5" || extension == ".hdf5")
@@ -51,7 +51,7 @@ std::filesystem::path write(const TemporaryFolder& folder, const std::string& ex
   const auto writer = itk::TransformFileWriterTemplate<Real>::New();
   const auto path = folder / ("t" + extension);
   writer->SetFileName(path.string());
-  writer->SetTransformIO(transformIo<Real>(extension));
+  writer->SetTransformIO(makeTransformIo<Real>(extension));
   writer->SetInput(transform);
   writer->SetUseCompression(compress);
   writer->Update();
@@ -62,14 +62,14 @@ std::filesystem::path write(const TemporaryFolder& folder, const std::string& ex
 /// in RAS, in the inverse direction.
 template <typename Real>
 void expectSameMap(const itk::Transform<Real, 3, 3>* transform,
-                   const Extensions& extensions = everyExtension) {
+                   const Extensions& extensions = allExtensions) {
   constexpr double error = sizeof(Real) == 4 ? 1e-3 : 1e-9;
   const TemporaryFolder folder;
   for (std::string extension : extensions) {
     const bool compress = extension.starts_with("z");
     const auto path = write(folder, extension.substr(compress ? 1 : 0), transform, compress);
     const Affine toParent = readLinearTransform(path).inverse();
-    const Affine old = readLinearTransform(path);
+    const Affine fromParent = readLinearTransform(path);
     for (const Vec3& ras : {Vec3(0, 0, 0), Vec3(100, -20, 7), Vec3(-3, 50, -80)}) {
       itk::Point<Real, 3> lps;
       for (unsigned i = 0; i < 3; ++i)
@@ -78,14 +78,15 @@ void expectSameMap(const itk::Transform<Real, 3, 3>* transform,
       const Vec3 expected(-mapped[0], -mapped[1], mapped[2]);
       EXPECT_LT((toParent * expected - ras).norm(), error)
           << transform->GetNameOfClass() << extension;
-      EXPECT_LT((old * ras - expected).norm(), error) << transform->GetNameOfClass() << extension;
+      EXPECT_LT((fromParent * ras - expected).norm(), error)
+          << transform->GetNameOfClass() << extension;
     }
   }
 }
 
 /// Rotation about a centre, with asymmetric numbers.
 template <typename Transform>
-typename Transform::Pointer turned() {
+typename Transform::Pointer makeRotated() {
   auto transform = Transform::New();
   typename Transform::InputPointType center;
   center[0] = 11;
@@ -112,12 +113,12 @@ typename Transform::Pointer turned() {
 }
 
 TEST(TransformFile, ReadsEveryLinearKind) {
-  expectSameMap(turned<itk::AffineTransform<double, 3>>().GetPointer());
-  expectSameMap(turned<itk::Euler3DTransform<double>>().GetPointer());
-  expectSameMap(turned<itk::CenteredEuler3DTransform<double>>().GetPointer());
-  expectSameMap(turned<itk::VersorRigid3DTransform<double>>().GetPointer());
-  expectSameMap(turned<itk::VersorTransform<double>>().GetPointer());
-  auto similarity = turned<itk::Similarity3DTransform<double>>();
+  expectSameMap(makeRotated<itk::AffineTransform<double, 3>>().GetPointer());
+  expectSameMap(makeRotated<itk::Euler3DTransform<double>>().GetPointer());
+  expectSameMap(makeRotated<itk::CenteredEuler3DTransform<double>>().GetPointer());
+  expectSameMap(makeRotated<itk::VersorRigid3DTransform<double>>().GetPointer());
+  expectSameMap(makeRotated<itk::VersorTransform<double>>().GetPointer());
+  auto similarity = makeRotated<itk::Similarity3DTransform<double>>();
   similarity->SetScale(1.7);
   expectSameMap(similarity.GetPointer());
   expectSameMap(itk::IdentityTransform<double, 3>::New().GetPointer(), {".tfm", ".h5", ".mat"});
@@ -134,8 +135,8 @@ TEST(TransformFile, ReadsEveryLinearKind) {
 }
 
 template <typename Transform>
-typename Transform::Pointer stretched() {
-  auto transform = turned<Transform>();
+typename Transform::Pointer makeStretched() {
+  auto transform = makeRotated<Transform>();
   const double stretch[] = {1.5, 0.5, 2.0};
   transform->SetScale(stretch);
   transform->SetCenter(transform->GetCenter()); // some of ITK's kept an old offset
@@ -143,17 +144,17 @@ typename Transform::Pointer stretched() {
 }
 
 TEST(TransformFile, ReadsScalesAndSkews) {
-  expectSameMap(stretched<itk::ScaleVersor3DTransform<double>>().GetPointer());
-  expectSameMap(stretched<itk::ScaleSkewVersor3DTransform<double>>().GetPointer());
-  expectSameMap(stretched<itk::ComposeScaleSkewVersor3DTransform<double>>().GetPointer());
-  expectSameMap(stretched<itk::ScaleTransform<double, 3>>().GetPointer());
-  expectSameMap(stretched<itk::ScaleLogarithmicTransform<double, 3>>().GetPointer());
+  expectSameMap(makeStretched<itk::ScaleVersor3DTransform<double>>().GetPointer());
+  expectSameMap(makeStretched<itk::ScaleSkewVersor3DTransform<double>>().GetPointer());
+  expectSameMap(makeStretched<itk::ComposeScaleSkewVersor3DTransform<double>>().GetPointer());
+  expectSameMap(makeStretched<itk::ScaleTransform<double, 3>>().GetPointer());
+  expectSameMap(makeStretched<itk::ScaleLogarithmicTransform<double, 3>>().GetPointer());
 }
 
 TEST(TransformFile, ReadsFloatsAndTheOrderOfEulerAngles) {
-  expectSameMap(turned<itk::AffineTransform<float, 3>>().GetPointer());
-  expectSameMap(turned<itk::Similarity3DTransform<float>>().GetPointer());
-  auto euler = turned<itk::Euler3DTransform<double>>();
+  expectSameMap(makeRotated<itk::AffineTransform<float, 3>>().GetPointer());
+  expectSameMap(makeRotated<itk::Similarity3DTransform<float>>().GetPointer());
+  auto euler = makeRotated<itk::Euler3DTransform<double>>();
   euler->SetComputeZYX(true);
   expectSameMap(euler.GetPointer());
 }
@@ -164,8 +165,8 @@ TEST(TransformFile, AppliesTheLastOfACompositeFirst) {
   const double shift[] = {10, 0, 0};
   first->SetOffset(shift);
   composite->AddTransform(first);
-  composite->AddTransform(turned<itk::Euler3DTransform<double>>());
-  auto third = turned<itk::Similarity3DTransform<double>>();
+  composite->AddTransform(makeRotated<itk::Euler3DTransform<double>>());
+  auto third = makeRotated<itk::Similarity3DTransform<double>>();
   third->SetScale(3);
   composite->AddTransform(third);
   expectSameMap(composite.GetPointer(), {".tfm", ".txt", ".h5", "z.h5"});
@@ -173,9 +174,9 @@ TEST(TransformFile, AppliesTheLastOfACompositeFirst) {
 
 TEST(TransformFile, ReadsMatColumnsOfTheOtherByteOrder) {
   const TemporaryFolder folder;
-  const auto affine = turned<itk::AffineTransform<double, 3>>();
+  const auto affine = makeRotated<itk::AffineTransform<double, 3>>();
   const Affine expected = readLinearTransform(write(folder, ".mat", affine.GetPointer())).inverse();
-  std::string bytes = bytesOf(folder / "t.mat");
+  std::string bytes = readBytes(folder / "t.mat");
   const auto reverse = [&](std::size_t at, std::size_t size) {
     std::reverse(bytes.begin() + std::ptrdiff_t(at), bytes.begin() + std::ptrdiff_t(at + size));
   };
@@ -200,7 +201,8 @@ std::filesystem::path writeOldHdf5(const TemporaryFolder& folder, int count) {
   const auto path = folder / "old.h5";
   const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
   H5Gclose(H5Gcreate2(file, "TransformGroup", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
-  const auto put = [file](const std::string& name, hid_t type, hsize_t size, const void* values) {
+  const auto writeDataset = [file](const std::string& name, hid_t type, hsize_t size,
+                                   const void* values) {
     const hid_t space = H5Screate_simple(1, &size, nullptr);
     const hid_t set =
         H5Dcreate2(file, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
@@ -215,10 +217,10 @@ std::filesystem::path writeOldHdf5(const TemporaryFolder& folder, int count) {
     const std::string group = "/TransformGroup/" + std::to_string(i);
     H5Gclose(H5Gcreate2(file, group.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
     const char* type = i == 0 ? "CompositeTransform_double_3_3" : "TranslationTransform_double_3_3";
-    put(group + "/TransformType", text, 1, &type);
+    writeDataset(group + "/TransformType", text, 1, &type);
     const double parameters[] = {1, 2.0 * i, 3};
-    put(group + "/TranformParameters", H5T_IEEE_F64BE, 3, parameters);
-    put(group + "/TranformFixedParameters", H5T_IEEE_F64BE, 0, parameters);
+    writeDataset(group + "/TranformParameters", H5T_IEEE_F64BE, 3, parameters);
+    writeDataset(group + "/TranformFixedParameters", H5T_IEEE_F64BE, 0, parameters);
   }
   H5Tclose(text);
   H5Fclose(file);
@@ -244,8 +246,8 @@ void expectRefused(const std::filesystem::path& path, const std::string& text) {
   fenestra::expectRefused(path, text, [&] { readLinearTransform(path).inverse(); });
 }
 
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  return text.replace(text.find(what), what.size(), by);
+std::string replaceText(std::string text, const std::string& what, const std::string& replacement) {
+  return text.replace(text.find(what), what.size(), replacement);
 }
 
 TEST(TransformFile, MapsFromTheParentInLps) {
@@ -262,14 +264,15 @@ TEST(TransformFile, RefusesNonlinearTransforms) {
   for (const char* extension : {".tfm", ".txt", ".h5", ".hdf5", ".mat"})
     expectRefused(write(folder, extension, bspline.GetPointer()), "is not linear; harden it");
   const auto composite = itk::CompositeTransform<double, 3>::New();
-  composite->AddTransform(turned<itk::Euler3DTransform<double>>());
+  composite->AddTransform(makeRotated<itk::Euler3DTransform<double>>());
   composite->AddTransform(bspline);
   expectRefused(write(folder, ".h5", composite.GetPointer()), "is not linear; harden it");
   for (const char* type :
        {"DisplacementFieldTransform_double_3_3", "ThinPlateSplineKernelTransform_double_3_3",
         "InverseDisplacementFieldTransform_double_3_3", "NoSuchTransform_double_3_3"})
-    expectRefused(folder.write("n.tfm", replaced(affineText, "AffineTransform_double_3_3", type)),
-                  std::string("Transform: ") + type + " is not linear; harden it in Slicer");
+    expectRefused(
+        folder.write("n.tfm", replaceText(affineText, "AffineTransform_double_3_3", type)),
+        std::string("Transform: ") + type + " is not linear; harden it in Slicer");
   expectRefused(folder.write("field.nrrd", "NRRD0004"), "is a displacement field");
 }
 
@@ -277,11 +280,11 @@ TEST(TransformFile, RefusesMapsThatCannotBeInverted) {
   const TemporaryFolder folder;
   for (const char* matrix : {"0 0 0 0 1 0 0 0 1", "1 0 0 1 0 0 0 0 1", "1e-300 0 0 0 1 0 0 0 1",
                              "1e300 0 0 0 1e300 0 0 0 1e300"})
-    expectRefused(folder.write("s.tfm", replaced(affineText, "1 0 0 0 1 0 0 0 1", matrix)),
+    expectRefused(folder.write("s.tfm", replaceText(affineText, "1 0 0 0 1 0 0 0 1", matrix)),
                   "cannot be inverted");
   for (const char* offset : {"nan 20 30", "1e999 20 30", "inf 0 0", "10 20", "10 20 30 40", "x"})
-    expectRefused(folder.write("n.tfm", replaced(affineText, "10 20 30", offset)), "is damaged");
-  expectRefused(folder.write("f.tfm", replaced(affineText, "10 20 30", "1e200 0 0")),
+    expectRefused(folder.write("n.tfm", replaceText(affineText, "10 20 30", offset)), "is damaged");
+  expectRefused(folder.write("f.tfm", replaceText(affineText, "10 20 30", "1e200 0 0")),
                 "cannot be inverted");
 }
 
@@ -290,8 +293,8 @@ TEST(TransformFile, RefusesSeveralPlanarAndNestedTransforms) {
   expectRefused(folder.write("two.tfm", affineText + affineText), "holds 2 transforms");
   expectRefused(write(folder, ".tfm", itk::Euler2DTransform<double>::New().GetPointer()),
                 "is not linear");
-  expectRefused(folder.write("2d.tfm", replaced(affineText, "AffineTransform_double_3_3",
-                                                "AffineTransform_double_2_2")),
+  expectRefused(folder.write("2d.tfm", replaceText(affineText, "AffineTransform_double_3_3",
+                                                   "AffineTransform_double_2_2")),
                 "is not a transform of three axes");
   expectRefused(folder.write("c.tfm", "Transform: CompositeTransform_double_3_3\n"
                                       "ComponentTransformFile: ../../other.tfm\n"),
@@ -311,8 +314,8 @@ TEST(TransformFile, RefusesFilesThatAreNoTransform) {
     expectRefused(folder.write("text" + extension, "what is this"), "is damaged");
   }
   expectRefused(folder.write("p.tfm", "Parameters: 1 2 3\n"), "is damaged");
-  expectRefused(folder.write("rigid.tfm",
-                             replaced(replaced(affineText, "Affine", "Rigid3D"), "1 0 0", "2 0 0")),
+  expectRefused(folder.write("rigid.tfm", replaceText(replaceText(affineText, "Affine", "Rigid3D"),
+                                                      "1 0 0", "2 0 0")),
                 "is damaged");
   const auto large = folder.write("large.tfm", affineText);
   std::filesystem::resize_file(large, (64 << 20) + 1);
@@ -326,27 +329,28 @@ TEST(TransformFile, RefusesFilesThatAreNoTransform) {
 TEST(TransformFile, RefusesHdf5ThatOpensOtherFiles) {
   const TemporaryFolder folder;
   const auto other = folder.write("other.raw", std::string(80, '\0'));
-  using Lead = std::function<void(hid_t file)>;
-  const Lead values = [&](hid_t file) { // data set with its values in another file
+  using AddReference = std::function<void(hid_t file)>;
+  const AddReference values = [&](hid_t file) { // data set with its values in another file
     const hsize_t size = 10;
-    const hid_t space = H5Screate_simple(1, &size, nullptr), kept = H5Pcreate(H5P_DATASET_CREATE);
-    ASSERT_GE(H5Pset_external(kept, other.c_str(), 0, 80), 0);
+    const hid_t space = H5Screate_simple(1, &size, nullptr),
+                creation = H5Pcreate(H5P_DATASET_CREATE);
+    ASSERT_GE(H5Pset_external(creation, other.c_str(), 0, 80), 0);
     const hid_t data =
-        H5Dcreate2(file, "more", H5T_IEEE_F64LE, space, H5P_DEFAULT, kept, H5P_DEFAULT);
+        H5Dcreate2(file, "more", H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT);
     ASSERT_GE(data, 0);
     H5Dclose(data);
-    H5Pclose(kept);
+    H5Pclose(creation);
     H5Sclose(space);
   };
-  const Lead link = [&](hid_t file) {
+  const AddReference link = [&](hid_t file) {
     ASSERT_GE(H5Lcreate_external("other.h5", "/", file, "more", H5P_DEFAULT, H5P_DEFAULT), 0);
   };
-  const auto affine = turned<itk::AffineTransform<double, 3>>();
+  const auto affine = makeRotated<itk::AffineTransform<double, 3>>();
   EXPECT_NO_THROW(readLinearTransform(write(folder, ".h5", affine.GetPointer())).inverse());
-  for (const Lead& lead : {values, link}) {
+  for (const AddReference& addReference : {values, link}) {
     const auto path = write(folder, ".h5", affine.GetPointer());
     const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
-    lead(file);
+    addReference(file);
     H5Fclose(file);
     expectRefused(path, "is damaged");
   }
@@ -356,19 +360,19 @@ TEST(TransformFile, RefusesHdf5ThatOpensOtherFiles) {
 TEST(TransformFile, DamagedBytesAreReadOrRefused) {
   const TemporaryFolder folder;
   const auto composite = itk::CompositeTransform<double, 3>::New();
-  composite->AddTransform(turned<itk::Euler3DTransform<double>>());
-  composite->AddTransform(turned<itk::AffineTransform<double, 3>>());
+  composite->AddTransform(makeRotated<itk::Euler3DTransform<double>>());
+  composite->AddTransform(makeRotated<itk::AffineTransform<double, 3>>());
   std::mt19937 random(7);
   ::testing::internal::CaptureStderr();
   for (const std::string extension : {".tfm", ".h5", ".mat"}) {
-    const std::string whole =
-        bytesOf(extension == ".mat" ? write(folder, extension,
-                                            turned<itk::AffineTransform<double, 3>>().GetPointer())
-                                    : write(folder, extension, composite.GetPointer()));
+    const std::string original = readBytes(
+        extension == ".mat"
+            ? write(folder, extension, makeRotated<itk::AffineTransform<double, 3>>().GetPointer())
+            : write(folder, extension, composite.GetPointer()));
     for (int i = 0; i < 20; ++i) {
-      std::string bytes = whole;
+      std::string bytes = original;
       if (i % 4 == 0)
-        bytes.resize(random() % whole.size());
+        bytes.resize(random() % original.size());
       for (int n = 0; n < i % 4; ++n)
         bytes[random() % bytes.size()] = static_cast<char>(random());
       const auto path = folder.write(std::to_string(i) + extension, bytes);
@@ -393,7 +397,7 @@ TEST(TransformFile, ReadsAFileWrittenBySlicer) {
   const Affine expected(Mat3::FromRows({0.939693, -0.34202, 0}, {0.34202, 0.939693, 0}, {0, 0, 1}),
                         {20, -10, 15});
   const Affine toParent = readLinearTransform(path).inverse();
-  EXPECT_LT(normOf(toParent.linear() - expected.linear()), 1e-6);
+  EXPECT_LT(frobeniusNorm(toParent.linear() - expected.linear()), 1e-6);
   EXPECT_LT((toParent.translation() - expected.translation()).norm(), 1e-6);
 }
 

@@ -10,37 +10,37 @@
 namespace fenestra::VolumePropertyTests {
 namespace {
 
-VolumeProperty property(std::vector<OpacityNode> opacity) {
+VolumeProperty makeProperty(std::vector<OpacityNode> opacity) {
   VolumeProperty p;
   p.scalarOpacity = std::move(opacity);
   p.color = {{0.0, {0.2, 0.4, 0.6}}};
   return p;
 }
 
-double extinctionFormula(const VolumeProperty& p, double x) {
-  return -std::log1p(-std::min(curveAt(p.scalarOpacity, x), 0.9999)) / p.unitDistance;
+double evalExtinction(const VolumeProperty& p, double x) {
+  return -std::log1p(-std::min(interpolateCurve(p.scalarOpacity, x), 0.9999)) / p.unitDistance;
 }
 
 /// Greatest relative error of the table's extinction, beyond the documented floor.
-double worstExtinctionError(const VolumeProperty& p, const TransferFunction& f) {
+double findMaxExtinctionError(const VolumeProperty& p, const TransferFunction& f) {
   const double low = p.scalarOpacity.front().x, high = p.scalarOpacity.back().x;
-  double greatest = 0.0;
+  double maximum = 0.0;
   for (const OpacityNode& node : p.scalarOpacity)
-    greatest = std::max(greatest, extinctionFormula(p, node.x));
-  double worst = 0.0;
+    maximum = std::max(maximum, evalExtinction(p, node.x));
+  double maxError = 0.0;
   constexpr int steps = 400'000;
   for (int i = -10; i <= steps + 10; ++i) {
     const double x = low + (high - low) * (i + 0.37) / steps;
-    const double truth = extinctionFormula(p, x);
-    const double miss = std::abs(f.extinction(x)[0] - truth);
-    if (miss > 1e-9 * greatest)
-      worst = std::max(worst, miss / truth);
+    const double expected = evalExtinction(p, x);
+    const double error = std::abs(f.extinction(x)[0] - expected);
+    if (error > 1e-9 * maximum)
+      maxError = std::max(maxError, error / expected);
   }
-  return worst;
+  return maxError;
 }
 
 /// Port of vtkPiecewiseFunction::GetTable between two nodes.
-double vtkValue(const OpacityNode& a, const OpacityNode& b, double x) {
+double evalVtkCurve(const OpacityNode& a, const OpacityNode& b, double x) {
   const double m = std::clamp(a.midpoint, 0.00001, 0.99999);
   double s = (x - a.x) / (b.x - a.x);
   s = s < m ? 0.5 * s / m : 0.5 + 0.5 * (s - m) / (1.0 - m);
@@ -65,11 +65,11 @@ TEST(VolumeProperty, InterpolatesAsVtkDoes) {
     for (const double sharpness : {0.0, 0.009, 0.01, 0.3, 0.5, 0.99, 0.995, 1.0}) {
       const std::vector<OpacityNode> nodes = {{-100, 0.8, midpoint, sharpness}, {300, 0.1}};
       for (double x = -99.7; x < 300; x += 1.1)
-        ASSERT_NEAR(curveAt(nodes, x), vtkValue(nodes[0], nodes[1], x), 1e-14)
+        ASSERT_NEAR(interpolateCurve(nodes, x), evalVtkCurve(nodes[0], nodes[1], x), 1e-14)
             << midpoint << " " << sharpness << " at " << x;
-      EXPECT_EQ(curveAt(nodes, -200), 0.8);
-      EXPECT_EQ(curveAt(nodes, 300), 0.1);
-      EXPECT_EQ(curveAt(nodes, 400), 0.1);
+      EXPECT_EQ(interpolateCurve(nodes, -200), 0.8);
+      EXPECT_EQ(interpolateCurve(nodes, 300), 0.1);
+      EXPECT_EQ(interpolateCurve(nodes, 400), 0.1);
     }
 }
 
@@ -77,10 +77,10 @@ TEST(VolumeProperty, ColoursFollowTheCurveOfOpacity) {
   const std::vector<ColorNode> nodes = {{0, {0, 0.5, 1}, 0.3, 0.4}, {10, {1, 0.25, 0.5}}};
   const std::vector<OpacityNode> red = {{0, 0, 0.3, 0.4}, {10, 1}};
   for (double x = -1; x < 12; x += 0.1) {
-    const double share = curveAt(red, x);
-    EXPECT_NEAR(curveAt(nodes, x)[0], fraction, 1e-14);
-    EXPECT_NEAR(curveAt(nodes, x)[1], 0.5 - 0.25 * fraction, 1e-14);
-    EXPECT_NEAR(curveAt(nodes, x)[2], 1.0 - 0.5 * fraction, 1e-14);
+    const double fraction = interpolateCurve(red, x);
+    EXPECT_NEAR(interpolateCurve(nodes, x)[0], fraction, 1e-14);
+    EXPECT_NEAR(interpolateCurve(nodes, x)[1], 0.5 - 0.25 * fraction, 1e-14);
+    EXPECT_NEAR(interpolateCurve(nodes, x)[2], 1.0 - 0.5 * fraction, 1e-14);
   }
 }
 
@@ -107,10 +107,10 @@ TEST(VolumeProperty, ExtinctionIsWithin1e4OfTheFormula) {
   };
   for (const auto& nodes : curves)
     for (const double unit : {1.0, 0.01, 40.0}) {
-      VolumeProperty p = property(nodes);
+      VolumeProperty p = makeProperty(nodes);
       p.unitDistance = unit;
       const TransferFunction f = tabulate(p, "test");
-      EXPECT_LE(worstExtinctionError(p, f), 1e-4);
+      EXPECT_LE(findMaxExtinctionError(p, f), 1e-4);
       EXPECT_LE(f.extinction.knots().size(), 6000u);
     }
 }
@@ -118,41 +118,42 @@ TEST(VolumeProperty, ExtinctionIsWithin1e4OfTheFormula) {
 TEST(VolumeProperty, ExtinctionOfSharpCurvesIsWithin1e4OfTheFormula) {
   for (const double midpoint : {0.0, 0.1, 0.5, 1.0})
     for (const double sharpness : {0.01, 0.1, 0.5, 0.99}) {
-      const VolumeProperty p = property({{-200, 0, midpoint, sharpness}, {1000, 1}});
+      const VolumeProperty p = makeProperty({{-200, 0, midpoint, sharpness}, {1000, 1}});
       const TransferFunction f = tabulate(p, "test");
-      EXPECT_LE(worstExtinctionError(p, f), 1e-4) << midpoint << " " << sharpness;
+      EXPECT_LE(findMaxExtinctionError(p, f), 1e-4) << midpoint << " " << sharpness;
       EXPECT_LE(f.extinction.knots().size(), 6000u);
     }
 }
 
 TEST(VolumeProperty, NodesAreKnots) {
-  const VolumeProperty p = property({{-7, 0.1}, {0.1, 0.7}, {13, 0.2}});
+  const VolumeProperty p = makeProperty({{-7, 0.1}, {0.1, 0.7}, {13, 0.2}});
   const TransferFunction f = tabulate(p, "test");
   for (const OpacityNode& node : p.scalarOpacity)
     EXPECT_DOUBLE_EQ(f.extinction(node.x)[0], -std::log1p(-node.value));
 }
 
 TEST(VolumeProperty, StepsStayDiscontinuous) {
-  const TransferFunction sharp = tabulate(property({{0, 0.2, 0.25, 1.0}, {8, 0.6}}), "test");
+  const TransferFunction sharp = tabulate(makeProperty({{0, 0.2, 0.25, 1.0}, {8, 0.6}}), "test");
   EXPECT_DOUBLE_EQ(sharp.extinction(1.999)[0], -std::log1p(-0.2));
   EXPECT_DOUBLE_EQ(sharp.extinction(2.0)[0], -std::log1p(-0.6));
-  const TransferFunction coincident = tabulate(property({{0, 0}, {4, 0.2}, {4, 0.6}, {8, 1}}), "");
+  const TransferFunction coincident =
+      tabulate(makeProperty({{0, 0}, {4, 0.2}, {4, 0.6}, {8, 1}}), "");
   EXPECT_NEAR(coincident.extinction(4 - 1e-9)[0], -std::log1p(-0.2), 1e-6);
   EXPECT_DOUBLE_EQ(coincident.extinction(4)[0], -std::log1p(-0.6));
 }
 
 TEST(VolumeProperty, FullOpacityIsCapped) {
-  const TransferFunction f = tabulate(property({{0, 0}, {1, 1}}), "test");
+  const TransferFunction f = tabulate(makeProperty({{0, 0}, {1, 1}}), "test");
   EXPECT_NEAR(f.extinction(1)[0], -std::log(0.0001), 1e-12);
   EXPECT_NEAR(f.extinction(0.99995)[0], -std::log(0.0001), 1e-12);
 }
 
 TEST(VolumeProperty, AlbedoIsWithin1e4OfTheDecodedColour) {
-  VolumeProperty p = property({{0, 0.5}});
+  VolumeProperty p = makeProperty({{0, 0.5}});
   p.color = {{0, {0, 0.5, 1}, 0.3, 0.6}, {10, {1, 0.001, 0.02}}, {11, {0, 0, 0}}};
   const TransferFunction f = tabulate(p, "test");
   for (double x = -1; x < 12; x += 1e-4) {
-    const Rgb truth = decodeSrgb(curveAt(p.color, x));
+    const Rgb expected = decodeSrgb(interpolateCurve(p.color, x));
     ASSERT_TRUE(((f.albedo(x) - expected).abs() <= 1e-4 * expected + 1e-9).all()) << x;
   }
   EXPECT_LE(f.albedo.knots().size(), 6010u);
@@ -172,7 +173,7 @@ TEST(VolumeProperty, NumberOfKnotsIsBounded) {
 }
 
 TEST(VolumeProperty, OmitsGradientOpacityOfOne) {
-  VolumeProperty p = property({{0, 0.5}});
+  VolumeProperty p = makeProperty({{0, 0.5}});
   p.gradientOpacity = {{0, 1}, {255, 1}};
   EXPECT_FALSE(tabulate(p, "test").gradientOpacity);
   p.gradientOpacity = {{0, 0}, {255, 1}};
@@ -182,7 +183,7 @@ TEST(VolumeProperty, OmitsGradientOpacityOfOne) {
 }
 
 TEST(VolumeProperty, ShadeTurnsShadingOn) {
-  VolumeProperty p = property({{0, 0.5}});
+  VolumeProperty p = makeProperty({{0, 0.5}});
   EXPECT_FALSE(tabulate(p, "test").shading);
   p.shade = true;
   p.specularPower = 30.0;
@@ -191,21 +192,21 @@ TEST(VolumeProperty, ShadeTurnsShadingOn) {
 }
 
 TEST(VolumeProperty, RefusesUnusableValues) {
-  const auto refused = [](auto&& change) {
-    VolumeProperty p = property({{0, 0}, {1, 0.5}});
+  const auto expectRefused = [](auto&& change) {
+    VolumeProperty p = makeProperty({{0, 0}, {1, 0.5}});
     change(p);
     EXPECT_THROW(tabulate(p, "test"), Error);
   };
-  refused([](VolumeProperty& p) { p.scalarOpacity.clear(); });
-  refused([](VolumeProperty& p) { p.color.clear(); });
-  refused([](VolumeProperty& p) { p.scalarOpacity[1].value = 1.5; });
-  refused([](VolumeProperty& p) { p.scalarOpacity[1].x = std::nan(""); });
-  refused([](VolumeProperty& p) { p.scalarOpacity[1].x = -1.0; });
-  refused([](VolumeProperty& p) { p.scalarOpacity[0].sharpness = 2.0; });
-  refused([](VolumeProperty& p) { p.color[0].value[1] = -0.1; });
-  refused([](VolumeProperty& p) { p.unitDistance = 0.0; });
-  refused([](VolumeProperty& p) { p.anisotropy = 1.0; });
-  refused([](VolumeProperty& p) { p.specularPower = -1.0; });
+  expectRefused([](VolumeProperty& p) { p.scalarOpacity.clear(); });
+  expectRefused([](VolumeProperty& p) { p.color.clear(); });
+  expectRefused([](VolumeProperty& p) { p.scalarOpacity[1].value = 1.5; });
+  expectRefused([](VolumeProperty& p) { p.scalarOpacity[1].x = std::nan(""); });
+  expectRefused([](VolumeProperty& p) { p.scalarOpacity[1].x = -1.0; });
+  expectRefused([](VolumeProperty& p) { p.scalarOpacity[0].sharpness = 2.0; });
+  expectRefused([](VolumeProperty& p) { p.color[0].value[1] = -0.1; });
+  expectRefused([](VolumeProperty& p) { p.unitDistance = 0.0; });
+  expectRefused([](VolumeProperty& p) { p.anisotropy = 1.0; });
+  expectRefused([](VolumeProperty& p) { p.specularPower = -1.0; });
 }
 
 } // namespace

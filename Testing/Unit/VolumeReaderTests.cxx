@@ -11,13 +11,13 @@ namespace fenestra::VolumeReaderTests {
 namespace {
 
 template <typename Stored>
-const LargeArray<Stored>& as(const Volume& volume) {
+const LargeArray<Stored>& getVoxels(const Volume& volume) {
   return std::get<LargeArray<Stored>>(volume.voxels);
 }
 
 /// Ramp of 24 samples, for the default geometry.
 template <typename T>
-std::vector<T> ramp(double first, double step) {
+std::vector<T> makeRamp(double first, double step) {
   std::vector<T> samples(24);
   for (std::size_t i = 0; i < samples.size(); ++i)
     samples[i] = static_cast<T>(first + step * static_cast<double>(i));
@@ -49,27 +49,27 @@ void expectRoundTrip(const std::vector<T>& samples) {
 }
 
 TEST(VolumeReader, StoresSamplesInTheSmallestType) {
-  expectRoundTrip<std::uint8_t>(ramp<std::int8_t>(0, 5));
-  expectRoundTrip<std::int16_t>(ramp<std::int8_t>(-100, 5));
-  expectRoundTrip<std::uint8_t>(ramp<std::uint8_t>(3, 10));
-  expectRoundTrip<std::int16_t>(ramp<std::int16_t>(-1024, 170));
-  expectRoundTrip<std::uint16_t>(ramp<std::uint16_t>(0, 2800));
-  expectRoundTrip<std::int16_t>(ramp<std::uint16_t>(0, 1000));
-  expectRoundTrip<std::int16_t>(ramp<std::int32_t>(-1024, 170));
-  expectRoundTrip<float>(ramp<std::int32_t>(-100000, 9000));
-  expectRoundTrip<std::uint16_t>(ramp<std::uint32_t>(0, 2800));
-  expectRoundTrip<std::int16_t>(ramp<std::int64_t>(-30000, 2000));
-  expectRoundTrip<float>(ramp<std::int64_t>(-65536.0 * 65536.0, 65536.0));
-  expectRoundTrip<std::uint8_t>(ramp<std::uint64_t>(0, 11));
-  expectRoundTrip<float>(ramp<float>(-0.5, 0.25));
-  expectRoundTrip<std::int16_t>(ramp<float>(-1024, 100));
-  expectRoundTrip<float>(ramp<double>(-0.5, 0.25));
-  expectRoundTrip<std::uint8_t>(ramp<double>(0, 1));
+  expectRoundTrip<std::uint8_t>(makeRamp<std::int8_t>(0, 5));
+  expectRoundTrip<std::int16_t>(makeRamp<std::int8_t>(-100, 5));
+  expectRoundTrip<std::uint8_t>(makeRamp<std::uint8_t>(3, 10));
+  expectRoundTrip<std::int16_t>(makeRamp<std::int16_t>(-1024, 170));
+  expectRoundTrip<std::uint16_t>(makeRamp<std::uint16_t>(0, 2800));
+  expectRoundTrip<std::int16_t>(makeRamp<std::uint16_t>(0, 1000));
+  expectRoundTrip<std::int16_t>(makeRamp<std::int32_t>(-1024, 170));
+  expectRoundTrip<float>(makeRamp<std::int32_t>(-100000, 9000));
+  expectRoundTrip<std::uint16_t>(makeRamp<std::uint32_t>(0, 2800));
+  expectRoundTrip<std::int16_t>(makeRamp<std::int64_t>(-30000, 2000));
+  expectRoundTrip<float>(makeRamp<std::int64_t>(-65536.0 * 65536.0, 65536.0));
+  expectRoundTrip<std::uint8_t>(makeRamp<std::uint64_t>(0, 11));
+  expectRoundTrip<float>(makeRamp<float>(-0.5, 0.25));
+  expectRoundTrip<std::int16_t>(makeRamp<float>(-1024, 100));
+  expectRoundTrip<float>(makeRamp<double>(-0.5, 0.25));
+  expectRoundTrip<std::uint8_t>(makeRamp<double>(0, 1));
 }
 
 TEST(VolumeReader, RoundsDoublesToFloats) {
   const TemporaryFolder folder;
-  auto samples = ramp<double>(0.1, 1);
+  auto samples = makeRamp<double>(0.1, 1);
   samples[3] = 1e300;
   samples[4] = -1e300;
   writeFile(folder / "v.nrrd", samples);
@@ -83,7 +83,7 @@ TEST(VolumeReader, ReplacesNonFiniteVoxels) {
   const TemporaryFolder folder;
   for (const char* name : {"v.nrrd", "v.nii.gz", "v.mha"})
     for (const double step : {0.5, 1.0}) { // stays float; becomes integers
-      auto samples = ramp<float>(-3, step);
+      auto samples = makeRamp<float>(-3, step);
       samples[5] = std::numeric_limits<float>::quiet_NaN();
       samples[6] = std::numeric_limits<float>::infinity();
       samples[7] = -std::numeric_limits<float>::infinity();
@@ -112,7 +112,7 @@ TEST(VolumeReader, ConvertsObliqueGeometryToRas) {
   for (const bool leftHanded : {false, true}) {
     geometry.directions[2] = {0, 0, leftHanded ? -1.0 : 1.0};
     for (const char* name : {"v.nrrd", "v.nii", "v.nii.gz", "v.mha", "v.mhd"}) {
-      writeFile(folder / name, ramp<std::uint8_t>(0, 1), geometry);
+      writeFile(folder / name, makeRamp<std::uint8_t>(0, 1), geometry);
       const Grid grid = readVolume(folder / name).grid;
       const Vec3 index(2, 3, 1);
       const Vec3 lps = Vec3(10, -20, 30) + index[0] * 0.5 * Vec3(c, s, 0) +
@@ -127,8 +127,8 @@ TEST(VolumeReader, ConvertsObliqueGeometryToRas) {
 }
 
 /// Raw NRRD written by hand; `head`: the fields that vary.
-std::string nrrd(const std::string& head, const std::string& data,
-                 const std::string& encoding = "raw") {
+std::string makeNrrd(const std::string& head, const std::string& data,
+                     const std::string& encoding = "raw") {
   return "NRRD0004\ntype: unsigned char\nencoding: " + encoding + "\n" + head + "\n\n" + data;
 }
 
@@ -136,16 +136,16 @@ TEST(VolumeReader, ReadsRasAndShearedHeaders) {
   const TemporaryFolder folder;
   const std::string samples(24, 'x');
   const auto path = folder.write(
-      "ras.nrrd", nrrd("dimension: 3\nspace: right-anterior-superior\nsizes: 3 4 2\n"
-                       "space directions: (2,0,0) (0.5,1,0) (0,0,-3)\nspace origin: (1,2,3)",
-                       samples));
+      "ras.nrrd", makeNrrd("dimension: 3\nspace: right-anterior-superior\nsizes: 3 4 2\n"
+                           "space directions: (2,0,0) (0.5,1,0) (0,0,-3)\nspace origin: (1,2,3)",
+                           samples));
   const Grid grid = readVolume(path).grid;
   EXPECT_TRUE(isApprox(grid.indexToWorld * Vec3(1, 1, 1), Vec3(3.5, 3, 0), 1e-12));
   EXPECT_LT(grid.indexToWorld.linear().determinant(), 0.0);
   const auto lps = folder.write(
-      "lps.nrrd", nrrd("dimension: 3\nspace: left-posterior-superior\nsizes: 3 4 2\n"
-                       "space directions: (-2,0,0) (0,-1,0) (0,0,3)\nspace origin: (1,2,3)",
-                       samples));
+      "lps.nrrd", makeNrrd("dimension: 3\nspace: left-posterior-superior\nsizes: 3 4 2\n"
+                           "space directions: (-2,0,0) (0,-1,0) (0,0,3)\nspace origin: (1,2,3)",
+                           samples));
   EXPECT_TRUE(isApprox(readVolume(lps).grid.indexToWorld * Vec3(1, 1, 1), Vec3(1, -1, 6), 1e-12));
 }
 
@@ -154,7 +154,7 @@ TEST(VolumeReader, ReadsDetachedDataAndLists) {
   const std::string head = "dimension: 3\nsizes: 3 4 2\n";
   folder.write("half.raw", std::string(12, '\1'));
   folder.write("whole.raw", std::string(24, '\2'));
-  const auto one = folder.write("one.nhdr", nrrd(head + "data file: whole.raw", ""));
+  const auto one = folder.write("one.nhdr", makeNrrd(head + "data file: whole.raw", ""));
   EXPECT_EQ(readVolume(one).minimum, 2.0);
   const auto list = folder.write("list.nhdr", "NRRD0004\ntype: unsigned char\nencoding: raw\n" +
                                                   head + "data file: LIST 2\nhalf.raw\nhalf.raw\n");
@@ -175,10 +175,11 @@ TEST(VolumeReader, ReadsAsciiAndHexEncoding) {
 TEST(VolumeReader, DropsTrailingAxesOfOneFrame) {
   const TemporaryFolder folder;
   const auto path = folder.write(
-      "legacy.nrrd", nrrd("dimension: 4\nspace dimension: 4\nsizes: 3 4 2 1\nkinds: domain domain "
-                          "domain domain\nspace directions: (-2,0,0,0) (0,-1,0,0) (0,0,3,0) "
-                          "(0,0,0,1)\nspace origin: (1,2,3,0)",
-                          std::string(24, 'x')));
+      "legacy.nrrd",
+      makeNrrd("dimension: 4\nspace dimension: 4\nsizes: 3 4 2 1\nkinds: domain domain "
+               "domain domain\nspace directions: (-2,0,0,0) (0,-1,0,0) (0,0,3,0) "
+               "(0,0,0,1)\nspace origin: (1,2,3,0)",
+               std::string(24, 'x')));
   const Volume volume = readVolume(path);
   EXPECT_EQ(volume.grid.size, Size3(3, 4, 2));
   EXPECT_TRUE(isApprox(volume.grid.indexToWorld * Vec3(1, 1, 1), Vec3(1, -1, 6), 1e-12));
@@ -226,15 +227,16 @@ TEST(VolumeReader, RefusesTruncatedFiles) {
   for (const char* name : {"v.nrrd", "v.nii", "v.nii.gz", "v.mha"})
     for (const bool compress : {false, true}) {
       writeFile(folder / name, samples, {.size = {20, 20, 20}, .compress = compress});
-      const std::string whole = bytesOf(folder / name);
-      for (const double share : {0.02, 0.3, 0.9, 0.999})
-        expectRefusal(folder.write(std::string("cut-") + name,
-                                   whole.substr(0, std::size_t(share * double(whole.size())))),
-                      "");
+      const std::string complete = readBytes(folder / name);
+      for (const double fraction : {0.02, 0.3, 0.9, 0.999})
+        expectRefusal(
+            folder.write(std::string("cut-") + name,
+                         complete.substr(0, std::size_t(fraction * double(complete.size())))),
+            "");
     }
   for (const bool compress : {false, true}) {
     writeFile(folder / "v.mhd", samples, {.size = {20, 20, 20}, .compress = compress});
-    const std::string data = bytesOf(folder / (compress ? "v.zraw" : "v.raw"));
+    const std::string data = readBytes(folder / (compress ? "v.zraw" : "v.raw"));
     folder.write(compress ? "v.zraw" : "v.raw", data.substr(0, data.size() - 9));
     expectRefusal(folder / "v.mhd", "truncated");
   }
@@ -247,7 +249,7 @@ TEST(VolumeReader, RefusesDamagedStreams) {
     samples[i] = static_cast<std::uint16_t>(i * i * 40503u);
   for (const char* name : {"v.nrrd", "v.mha"}) {
     writeFile(folder / name, samples, {.size = {20, 20, 20}, .compress = true});
-    std::string bytes = bytesOf(folder / name);
+    std::string bytes = readBytes(folder / name);
     for (std::size_t i = bytes.size() / 2; i < bytes.size() / 2 + 40; ++i)
       bytes[i] = static_cast<char>(~bytes[i]);
     expectRefusal(folder.write(name, bytes), "");
@@ -256,36 +258,37 @@ TEST(VolumeReader, RefusesDamagedStreams) {
 
 TEST(VolumeReader, RefusesSizesThatTheFileCannotHold) {
   const TemporaryFolder folder;
-  const auto sized = [&](const std::string& sizes, const std::string& encoding) {
-    return folder.write("huge.nrrd", nrrd("dimension: 3\nsizes: " + sizes, "xxxx", encoding));
+  const auto writeSized = [&](const std::string& sizes, const std::string& encoding) {
+    return folder.write("huge.nrrd", makeNrrd("dimension: 3\nsizes: " + sizes, "xxxx", encoding));
   };
   for (const char* encoding : {"raw", "gzip", "ascii", "hex"}) {
-    expectRefusal(sized("100000 100000 100000", encoding), "truncated");
-    expectRefusal(sized("2147483647 2147483647 2147483647", encoding), "");
-    expectRefusal(sized("4294967297 1 4", encoding), "sizes");
-    expectRefusal(sized("3 0 4", encoding), "sizes");
-    expectRefusal(sized("3 -4 4", encoding), "sizes");
+    expectRefusal(writeSized("100000 100000 100000", encoding), "truncated");
+    expectRefusal(writeSized("2147483647 2147483647 2147483647", encoding), "");
+    expectRefusal(writeSized("4294967297 1 4", encoding), "sizes");
+    expectRefusal(writeSized("3 0 4", encoding), "sizes");
+    expectRefusal(writeSized("3 -4 4", encoding), "sizes");
   }
-  const auto meta = [&](const std::string& size, const std::string& more) {
+  const auto writeMeta = [&](const std::string& size, const std::string& more) {
     return folder.write("huge.mha", "ObjectType = Image\nNDims = 3\nDimSize = " + size + "\n" +
                                         more +
                                         "ElementType = MET_DOUBLE\nElementDataFile = LOCAL\nxxxx");
   };
-  expectRefusal(meta("2000000 2000000 2000000", ""), "truncated");
-  expectRefusal(meta("2000000 2000000 2000000", "CompressedData = True\n"), "truncated");
-  expectRefusal(meta("100 100", ""), "DimSize");
-  expectRefusal(meta("3 3 3\nNDims = 4000", ""), "NDims");
-  expectRefusal(meta("3 3 3\nNDims" + std::string(1, '\0') + " = -1\nDimSize = 1", ""), "damaged");
-  // MetaIO reads endlessly after such fields.
-  expectRefusal(meta("3 3 3\nElementSpacing: 1 = 1", ""), "damaged");
-  expectRefusal(meta("3 3 3\nComment = a\x05"
-                     "b",
-                     ""),
+  expectRefusal(writeMeta("2000000 2000000 2000000", ""), "truncated");
+  expectRefusal(writeMeta("2000000 2000000 2000000", "CompressedData = True\n"), "truncated");
+  expectRefusal(writeMeta("100 100", ""), "DimSize");
+  expectRefusal(writeMeta("3 3 3\nNDims = 4000", ""), "NDims");
+  expectRefusal(writeMeta("3 3 3\nNDims" + std::string(1, '\0') + " = -1\nDimSize = 1", ""),
                 "damaged");
-  expectRefusal(meta("3 3 3\nComment = " + std::string(3000, 'c'), ""), "Comment");
-  expectRefusal(meta("1 1 1\nTransformMatrix = 1 0", ""), "TransformMatrix");
-  writeFile(folder / "v.nii", ramp<float>(0, 1));
-  std::string nifti = bytesOf(folder / "v.nii");
+  // MetaIO reads endlessly after such fields.
+  expectRefusal(writeMeta("3 3 3\nElementSpacing: 1 = 1", ""), "damaged");
+  expectRefusal(writeMeta("3 3 3\nComment = a\x05"
+                          "b",
+                          ""),
+                "damaged");
+  expectRefusal(writeMeta("3 3 3\nComment = " + std::string(3000, 'c'), ""), "Comment");
+  expectRefusal(writeMeta("1 1 1\nTransformMatrix = 1 0", ""), "TransformMatrix");
+  writeFile(folder / "v.nii", makeRamp<float>(0, 1));
+  std::string nifti = readBytes(folder / "v.nii");
   for (const std::size_t axis : {1u, 2u, 3u}) { // dim[] begins at byte 40, two bytes each
     nifti[40 + 2 * axis] = '\xff';
     nifti[41 + 2 * axis] = '\x7f';
@@ -298,65 +301,66 @@ TEST(VolumeReader, RefusesNrrdHeadersThatCrashTeem) {
   const TemporaryFolder folder;
   const std::string sizes = "dimension: 3\nsizes: 3 4 2\n";
   const std::string samples(24, 'x');
-  const auto with = [&](const std::string& line) {
-    return folder.write("v.nrrd", nrrd(sizes + line, samples));
+  const auto writeWithLine = [&](const std::string& line) {
+    return folder.write("v.nrrd", makeNrrd(sizes + line, samples));
   };
   for (const std::string& line :
        {std::string(1000, 'x'), "kinds: " + std::string(1000, 'x'), "#" + std::string(1000, 'x'),
         std::string(1000, 'x') + ": y", "a: " + std::string(1000, 'x') + ":=b"})
-    expectRefusal(with(line), "header: line 6 has more than 500 bytes");
-  EXPECT_EQ(readVolume(with("key:=" + std::string(100'000, 'x'))).maximum, 'x');
+    expectRefusal(writeWithLine(line), "header: line 6 has more than 500 bytes");
+  EXPECT_EQ(readVolume(writeWithLine("key:=" + std::string(100'000, 'x'))).maximum, 'x');
   for (const char control : {'\0', '\x01', '\r', '\x7f'})
-    expectRefusal(with(std::string(400, 'x') + control + ":=" + std::string(400, 'x')), "damaged");
+    expectRefusal(writeWithLine(std::string(400, 'x') + control + ":=" + std::string(400, 'x')),
+                  "damaged");
   expectRefusal(folder.write("v.nrrd", "NRRD0004" + std::string(2000, 'x') + "\n" + sizes), "");
-  expectRefusal(with("data file: LIST\n" + std::string(1000, 'x')), "500 bytes");
-  expectRefusal(with("dimension: 3"), "dimension: is there twice");
-  expectRefusal(with("datafile: v.nrrd\nData file: v.nrrd"), "datafile: is there twice");
+  expectRefusal(writeWithLine("data file: LIST\n" + std::string(1000, 'x')), "500 bytes");
+  expectRefusal(writeWithLine("dimension: 3"), "dimension: is there twice");
+  expectRefusal(writeWithLine("datafile: v.nrrd\nData file: v.nrrd"), "datafile: is there twice");
   std::string many = "dimension: 16\nsizes:";
   for (int axis = 0; axis < 17; ++axis)
     many += " 1";
-  expectRefusal(folder.write("v.nrrd", nrrd(many, samples)), "dimension");
-  expectRefusal(folder.write("a.nrrd", nrrd(sizes, std::string(2000, '1') + " 1", "ascii")),
+  expectRefusal(folder.write("v.nrrd", makeNrrd(many, samples)), "dimension");
+  expectRefusal(folder.write("a.nrrd", makeNrrd(sizes, std::string(2000, '1') + " 1", "ascii")),
                 "number of more than 500 characters");
   std::string deep = folder.path().string();
   for (int level = 0; level < 5; ++level)
     deep += "/" + std::string(200, 'd');
   std::filesystem::create_directories(deep);
-  std::ofstream(deep + "/v.nrrd") << nrrd("x", samples);
+  std::ofstream(deep + "/v.nrrd") << makeNrrd("x", samples);
   expectRefusal(deep + "/v.nrrd", "path of more than 900 bytes");
 }
 
 TEST(VolumeReader, RefusesNrrdHeadersOfTooManyLines) {
   const TemporaryFolder folder;
-  const auto of = [&](int lines) {
+  const auto writeLines = [&](int lines) {
     std::string head = "dimension: 3\nsizes: 3 4 2\n";
     for (int i = 0; i < lines; ++i)
       head += "key" + std::to_string(i) + ":=value\n";
-    return folder.write("v.nrrd", nrrd(head.substr(0, head.size() - 1), std::string(24, 'x')));
+    return folder.write("v.nrrd", makeNrrd(head.substr(0, head.size() - 1), std::string(24, 'x')));
   };
-  EXPECT_EQ(readVolume(of(9'900)).maximum, 'x');
-  expectRefusal(of(100'000), "header: has more than 10000 lines");
+  EXPECT_EQ(readVolume(writeLines(9'900)).maximum, 'x');
+  expectRefusal(writeLines(100'000), "header: has more than 10000 lines");
 }
 
 TEST(VolumeReader, RefusesSingularGeometry) {
   const TemporaryFolder folder;
-  const auto placed = [&](const std::string& directions, const std::string& origin) {
+  const auto writeOriented = [&](const std::string& directions, const std::string& origin) {
     return folder.write("v.nrrd",
-                        nrrd("dimension: 3\nspace: left-posterior-superior\nsizes: 3 4 2\n"
-                             "space directions: " +
-                                 directions + "\nspace origin: " + origin,
-                             std::string(24, 'x')));
+                        makeNrrd("dimension: 3\nspace: left-posterior-superior\nsizes: 3 4 2\n"
+                                 "space directions: " +
+                                     directions + "\nspace origin: " + origin,
+                                 std::string(24, 'x')));
   };
-  expectRefusal(placed("(1,0,0) (2,0,0) (0,0,1)", "(0,0,0)"), "directions");
-  expectRefusal(placed("(1,0,0) (0,0,0) (0,0,1)", "(0,0,0)"), "");
-  expectRefusal(placed("(1,0,0) (0,inf,0) (0,0,1)", "(0,0,0)"), "");
-  expectRefusal(placed("(1,0,0) (nan,nan,nan) (0,0,1)", "(0,0,0)"), "");
-  expectRefusal(placed("(1,0,0) (0,1,0) (0,0,1)", "(0,1e300,0)"), "origin");
+  expectRefusal(writeOriented("(1,0,0) (2,0,0) (0,0,1)", "(0,0,0)"), "directions");
+  expectRefusal(writeOriented("(1,0,0) (0,0,0) (0,0,1)", "(0,0,0)"), "");
+  expectRefusal(writeOriented("(1,0,0) (0,inf,0) (0,0,1)", "(0,0,0)"), "");
+  expectRefusal(writeOriented("(1,0,0) (nan,nan,nan) (0,0,1)", "(0,0,0)"), "");
+  expectRefusal(writeOriented("(1,0,0) (0,1,0) (0,0,1)", "(0,1e300,0)"), "origin");
   for (const char* spacings : {"1 0 1", "1 -1 1", "1 inf 1"})
     expectRefusal(
         folder.write("s.nrrd",
-                     nrrd(std::string("dimension: 3\nsizes: 3 4 2\nspacings: ") + spacings,
-                          std::string(24, 'x'))),
+                     makeNrrd(std::string("dimension: 3\nsizes: 3 4 2\nspacings: ") + spacings,
+                              std::string(24, 'x'))),
         "");
   for (const char* spacing : {"1 0 1", "1 -1 1"})
     expectRefusal(
@@ -378,7 +382,7 @@ TEST(VolumeReader, RefusesBadDataFiles) {
   for (const char* name : {"-", "/dev/zero", ".", "missing.raw", "part%03d.raw 1 9 1"})
     expectRefusal(
         folder.write("v.nhdr",
-                     nrrd(std::string("dimension: 3\nsizes: 3 4 2\ndata file: ") + name, "")),
+                     makeNrrd(std::string("dimension: 3\nsizes: 3 4 2\ndata file: ") + name, "")),
         "data file");
   for (const char* name : {"/dev/zero", ".", "missing.raw", "LIST", "part%03d.raw 1 9 1"})
     expectRefusal(
@@ -390,8 +394,8 @@ TEST(VolumeReader, RefusesBadDataFiles) {
 
 TEST(VolumeReader, RefusesNonFiniteNiftiForms) {
   const TemporaryFolder folder;
-  writeFile(folder / "v.nii", ramp<std::uint8_t>(0, 1));
-  const std::string good = bytesOf(folder / "v.nii");
+  writeFile(folder / "v.nii", makeRamp<std::uint8_t>(0, 1));
+  const std::string good = readBytes(folder / "v.nii");
   for (const std::size_t at : {80u, 256u, 268u, 280u, 324u}) // pixdim, qform, sform
     for (const float bad : {std::numeric_limits<float>::quiet_NaN(),
                             -std::numeric_limits<float>::infinity(), 1e38f}) {
@@ -404,8 +408,8 @@ TEST(VolumeReader, RefusesNonFiniteNiftiForms) {
 
 TEST(VolumeReader, AppliesTheRescalingOfNifti) {
   const TemporaryFolder folder;
-  writeFile(folder / "v.nii", ramp<std::uint8_t>(0, 1));
-  std::string bytes = bytesOf(folder / "v.nii");
+  writeFile(folder / "v.nii", makeRamp<std::uint8_t>(0, 1));
+  std::string bytes = readBytes(folder / "v.nii");
   const float slope = 2.0f, intercept = -1000.0f;
   bytes.replace(112, 4, rawBytes(std::vector<float>{slope}));
   bytes.replace(116, 4, rawBytes(std::vector<float>{intercept}));
@@ -417,25 +421,25 @@ TEST(VolumeReader, AppliesTheRescalingOfNifti) {
 // ---- real data
 // -----------------------------------------------------------------------------------
 
-std::filesystem::path data(const std::string& name) {
+std::filesystem::path findData(const std::string& name) {
   return std::filesystem::path(FENESTRA_DATA) / name;
 }
 
 TEST(VolumeReader, ReadsRealScans) {
-  if (!std::filesystem::exists(data("torso_ct_ccth_a01")))
+  if (!std::filesystem::exists(findData("torso_ct_ccth_a01")))
     GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
-  const Volume torso = readVolume(data("torso_ct_ccth_a01/ct.nii.gz"));
+  const Volume torso = readVolume(findData("torso_ct_ccth_a01/ct.nii.gz"));
   EXPECT_EQ(torso.grid.size, Size3(493, 389, 296));
   EXPECT_TRUE(std::holds_alternative<LargeArray<std::int16_t>>(torso.voxels));
   EXPECT_EQ(torso.minimum, -1024.0);
   EXPECT_NEAR(torso.grid.spacing().z(), 2.5, 1e-3);
-  const Volume abdomen = readVolume(data("abdomen_ct_totalseg/ct.nii.gz"));
+  const Volume abdomen = readVolume(findData("abdomen_ct_totalseg/ct.nii.gz"));
   EXPECT_EQ(abdomen.grid.size, Size3(122, 101, 112));
   EXPECT_TRUE(std::holds_alternative<LargeArray<std::int16_t>>(abdomen.voxels)); // from int32
-  const Volume head = readVolume(data("head_mr_seg3d/t1.nii.gz"));
+  const Volume head = readVolume(findData("head_mr_seg3d/t1.nii.gz"));
   EXPECT_EQ(head.grid.size, Size3(160, 232, 160));
   EXPECT_NEAR(head.maximum, 255 * 2.007843, 1e-3); // uint8 in the file, rescaled
-  const Volume chest = readVolume(data("slicerio_segnrrd/CTChest4.nrrd"));
+  const Volume chest = readVolume(findData("slicerio_segnrrd/CTChest4.nrrd"));
   EXPECT_EQ(chest.grid.size, Size3(128, 128, 34));
   EXPECT_TRUE(
       isApprox(chest.grid.indexToWorld * Vec3::Zero(), Vec3(-193.096, -216.396, -340.25), 1e-4));

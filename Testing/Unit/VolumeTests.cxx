@@ -8,7 +8,7 @@
 namespace fenestra::testing::VolumeTests {
 namespace {
 
-Grid obliqueGrid(const Size3& size) {
+Grid makeObliqueGrid(const Size3& size) {
   Affine map = Affine::Identity();
   map.linear() =
       (makeRotation(0.4, Vec3(1, 2, 3).normalized()).linear()) * Mat3::Diagonal({0.5, 2.0, -1.25});
@@ -17,14 +17,14 @@ Grid obliqueGrid(const Size3& size) {
 }
 
 TEST(Grid, MapsBothWaysAndReturnsItsSpacing) {
-  const Grid grid = obliqueGrid({5, 6, 7});
+  const Grid grid = makeObliqueGrid({5, 6, 7});
   EXPECT_TRUE(isApprox(grid.worldToIndex * (grid.indexToWorld * Vec3(1, 2, 3)), Vec3(1, 2, 3)));
   EXPECT_TRUE(isApprox(grid.spacing(), Vec3(0.5, 2.0, 1.25)));
   EXPECT_NEAR(grid.boundingRadius(), 0.5 * Vec3(2.5, 12, 8.75).norm(), 1e-12);
 }
 
 TEST(Field, ReproducesALinearFunctionAndItsGradient) {
-  const Grid grid = obliqueGrid({6, 5, 4});
+  const Grid grid = makeObliqueGrid({6, 5, 4});
   const Vec3 slope(0.25, -1.5, 3.0);
   std::vector<float> voxels;
   for (int k = 0; k < 4; ++k)

@@ -8,7 +8,7 @@
 namespace fenestra::testing::SimdCameraRaysTests {
 namespace {
 
-class SimdCameraRays : public OnInstructionSet {};
+class SimdCameraRays : public InstructionSetTest {};
 
 constexpr int width = 40, height = 30;
 
@@ -80,10 +80,11 @@ void fill(CameraSamples& samples, const Sampler& source, std::uint64_t pixel,
 }
 
 TEST_P(SimdCameraRays, NumbersAreThoseOfTheSource) {
-  const Grid grid = centredGrid({30, 20, 40}, {1.0, 1.5, 0.8});
+  const Grid grid = makeCenteredGrid({30, 20, 40}, {1.0, 1.5, 0.8});
   const Volume volume = makeVolume(grid, [](const Vec3&) { return 1.0; });
-  TestScene scene{volume, linearTransfer(0.1, Rgb::Ones()), {}, makeViews()[0].pose, width, height};
-  scene.with([&](const SceneView& s) {
+  TestScene scene{volume, makeLinearTransfer(0.1, Rgb::Ones()), {}, makeViews()[0].pose, width,
+                  height};
+  scene.visitView([&](const SceneView& s) {
     const PathSetup setup(s, Domain(grid));
     const auto& [domain, tracker, background, cameraRays, cameraTable, samples, paths] = setup;
     constexpr std::uint64_t streamLength = Sampler::Stream::maxSamples;
@@ -123,13 +124,13 @@ TEST_P(SimdCameraRays, NumbersAreThoseOfTheSource) {
 /// Origins, lengths and depths as they are in double, to some last places of the volume's edge,
 /// however far away the eye is.
 TEST_P(SimdCameraRays, RaysAreThoseInDouble) {
-  const Grid grid = centredGrid({30, 20, 40}, {1.0, 1.5, 0.8});
+  const Grid grid = makeCenteredGrid({30, 20, 40}, {1.0, 1.5, 0.8});
   const Volume volume = makeVolume(grid, [](const Vec3&) { return 1.0; });
   for (const View& view : makeViews()) {
     SCOPED_TRACE(view.name);
-    TestScene scene{volume,   linearTransfer(0.1, Rgb::Ones()), {}, view.pose, width, height,
+    TestScene scene{volume,   makeLinearTransfer(0.1, Rgb::Ones()), {}, view.pose, width, height,
                     view.clip};
-    scene.with([&](const SceneView& s) {
+    scene.visitView([&](const SceneView& s) {
       const PathSetup setup(s, Domain(grid, view.crop));
       const auto& [domain, tracker, background, cameraRays, cameraTable, samples, paths] = setup;
       const auto exact = std::make_unique<RayBatch>();
@@ -165,7 +166,7 @@ TEST_P(SimdCameraRays, RaysAreThoseInDouble) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(InstructionSets, SimdCameraRays, eachInstructionSet);
+INSTANTIATE_TEST_SUITE_P(InstructionSets, SimdCameraRays, allInstructionSets);
 
 } // namespace
 } // namespace fenestra::testing::SimdCameraRaysTests

@@ -181,7 +181,7 @@ std::size_t countMismatches(const Fog& fog, const Values& values, DirectionOf&& 
   return count;
 }
 
-class SimdLights : public OnInstructionSet {};
+class SimdLights : public InstructionSetTest {};
 
 /// Chi-squared of two histograms of equal weight against each other, as a standard normal deviate.
 double compareHistograms(const std::vector<double>& a, const std::vector<double>& b) {
@@ -191,7 +191,7 @@ double compareHistograms(const std::vector<double>& a, const std::vector<double>
     mean[i] = 0.5 * (a[i] + b[i]);
     deviating[i] = mean[i] + std::sqrt(0.5) * (a[i] - b[i]);
   }
-  return chiSquaredDeviate(deviating, mean);
+  return chiSquaredZScore(deviating, mean);
 }
 
 TEST_P(SimdLights, DrawDirectionsAsTheScalarLightsDo) {
@@ -202,11 +202,11 @@ TEST_P(SimdLights, DrawDirectionsAsTheScalarLightsDo) {
     const std::vector<ShadowSample> all = sampleLights(fog, 31, count);
     std::vector<double> simd(SphereBins::count, 0.0), scalar(SphereBins::count, 0.0);
     for (const ShadowSample& sample : all)
-      simd[static_cast<std::size_t>(SphereBins::of(sample.direction))] += 1.0;
+      simd[static_cast<std::size_t>(SphereBins::index(sample.direction))] += 1.0;
     for (std::size_t i = 0; i < count; ++i) {
       Random random(32, i, 0);
       if (const auto sample = fog.lights.sample(Vec3::Zero(), random))
-        scalar[static_cast<std::size_t>(SphereBins::of(sample->direction))] += 1.0;
+        scalar[static_cast<std::size_t>(SphereBins::index(sample->direction))] += 1.0;
     }
     EXPECT_LT(compareHistograms(simd, scalar), 4.5);
     const std::size_t deviating = countMismatches(

@@ -46,14 +46,14 @@ void addPictureView(vtkMRMLApplicationLogic* application, vtkMRMLScene* scene) {
   application->SetSliceLogics(views);
 }
 
-QComboBox* materialOf(const Panel& panel, int row) {
+QComboBox* findMaterial(const Panel& panel, int row) {
   return qobject_cast<QComboBox*>(panel.find<QTableWidget>("MaterialsTable")->cellWidget(row, 1));
 }
 
 /// Makes the ball of something else, once the renderer has told what it is by itself.
 int chooseMaterial(const Panel& panel) {
   CHECK_INT(panel.find<QTableWidget>("MaterialsTable")->rowCount(), 2);
-  QComboBox& material = *materialOf(panel, 0);
+  QComboBox& material = *findMaterial(panel, 0);
   CHECK_BOOL(waitFor([&] { return material.count() > 20; }), true);
   material.setCurrentIndex(material.findData("spleen"));
   CHECK_STD_STRING(panel.flag("materials"), "auto");
@@ -96,7 +96,7 @@ int checkLoaded(const Panel& panel, vtkMRMLScene* scene) {
   CHECK_STD_STRING(panel.flag("size"), "48x40");
   CHECK_STD_STRING(panel.chosen("MaterialsBox").toStdString(), "hand");
   CHECK_STD_STRING(panel.flag("materials"), "auto");
-  CHECK_STD_STRING(materialOf(panel, 0)->currentData().toString().toStdString(), "spleen");
+  CHECK_STD_STRING(findMaterial(panel, 0)->currentData().toString().toStdString(), "spleen");
   CHECK_BOOL(panel.find<QPushButton>("RenderButton")->isEnabled(), true);
   CHECK_STD_STRING(labelText(panel, "StateLabel"), "");
   CHECK_POINTER(panel.picture(), scene->GetFirstNodeByName("Ball render"));
