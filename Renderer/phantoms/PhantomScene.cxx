@@ -77,7 +77,7 @@ void addGeometry(ScenePlaceholders& texts, const Grid& grid) {
                        "  0 0 1 " + joinSpaced(center.z()) + "  0 0 0 1";
 }
 
-void addLooks(ScenePlaceholders& texts, const Phantom& phantom) {
+void addAppearance(ScenePlaceholders& texts, const Phantom& phantom) {
   const Volume& volume = phantom.volume;
   texts["@window@"] = joinSpaced(volume.maximum - volume.minimum);
   texts["@level@"] = joinSpaced(0.5 * (volume.maximum + volume.minimum));
@@ -114,7 +114,7 @@ std::string makePhantomScene(const Phantom& phantom, const std::string& name,
                              {"@roi file@", files + "-roi.mrk.json"}};
   addCamera(texts, phantom);
   addGeometry(texts, phantom.volume.grid);
-  addLooks(texts, phantom);
+  addAppearance(texts, phantom);
 
   throwWithoutMemory();
   pugi::xml_document document;

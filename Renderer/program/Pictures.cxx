@@ -52,7 +52,7 @@ std::map<std::string, std::string> makeHeader(const PreparedScene& scene,
       {"sampling", toString(options.settings.sampling)},
       {"samples", concat(result.finishedSamples)},
       {"camera", formatCamera(scene.camera().pose())},
-      {"look", toRelativeName(scene.look(), folder)},
+      {"look", toRelativeName(scene.transferName(), folder)},
       {"command", concat("fenestra ", join(arguments, " ", shellQuote))}};
   if (options.preset)
     entries["preset"] = toRelativeName(*options.preset, folder);

@@ -129,7 +129,7 @@ struct RenderOptionTable {
   RenderRequest& scene = options.scene;
   ClipRequest& clip = scene.clip;
   SurfaceOptions& surface = clip.surface;
-  FocusRequest& focus = scene.focusLook;
+  FocusRequest& focus = scene.focusStyle;
   ViewRequest& view = scene.view;
   RenderSettings& settings = options.settings;
 

@@ -113,7 +113,7 @@ std::vector<std::filesystem::path> listInputFiles(const OptionValues& values) {
   for (const Option& option : renderSyntax.options)
     if (option.canNameFile() && isImageOption(option) && values.has(option.name))
       files.emplace_back(*values.text(option.name));
-  std::erase_if(files, [](const auto& file) { return isLookText(file.string()); });
+  std::erase_if(files, [](const auto& file) { return isInlineJson(file.string()); });
   return files;
 }
 

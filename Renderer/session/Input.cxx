@@ -109,20 +109,20 @@ SceneSettings Input::settings(const std::optional<std::string>& volume, bool fol
   });
 }
 
-SceneLook Input::look(const std::optional<std::string>& volume,
-                      const std::array<double, 2>& range) const {
+SceneTransfer Input::transfer(const std::optional<std::string>& volume,
+                              const std::array<double, 2>& range) const {
   if (!m_state->isScene)
     return {};
   return m_state->withScene([&](MrmlScene& scene) {
     const ScenePlan plan = makePlan(scene, {volume}, false);
-    SceneLook look;
+    SceneTransfer result;
     if (plan.sliceDisplay)
-      look = {convertSliceDisplay(*plan.rendering, *plan.sliceDisplay, range),
-              "the volume's window and level"};
-    if (!look.transfer && plan.property)
-      look = {readSceneProperty(scene, *plan.property), plan.property->name};
-    look.files = scene.files.usedFiles();
-    return look;
+      result = {convertSliceDisplay(*plan.rendering, *plan.sliceDisplay, range),
+                "the volume's window and level"};
+    if (!result.transfer && plan.property)
+      result = {readSceneProperty(scene, *plan.property), plan.property->name};
+    result.files = scene.files.usedFiles();
+    return result;
   });
 }
 
@@ -163,15 +163,15 @@ SegmentsInput Input::segments(const InputChoice& choice, const Grid& volume) con
   });
 }
 
-SceneLook Input::property(const std::string& name) const {
+SceneTransfer Input::property(const std::string& name) const {
   if (!m_state->isScene)
     return {};
   return m_state->withScene([&](MrmlScene& scene) {
-    SceneLook look;
+    SceneTransfer result;
     for (const MrmlNode* node : scene.document.findByTag("VolumeProperty"))
-      if (!look.transfer && (node->name == name || node->id == name))
-        look = {readSceneProperty(scene, *node), node->name, scene.files.usedFiles()};
-    return look;
+      if (!result.transfer && (node->name == name || node->id == name))
+        result = {readSceneProperty(scene, *node), node->name, scene.files.usedFiles()};
+    return result;
   });
 }
 

@@ -38,7 +38,7 @@ struct SceneSettings {
 };
 
 /// Transfer function of a Slicer scene; nothing where the scene has none.
-struct SceneLook {
+struct SceneTransfer {
   std::optional<TransferFunction> transfer = {};
   std::string name = {}; ///< of the volume property
   InputFiles files = {};
@@ -83,14 +83,14 @@ public:
   SceneSettings settings(const std::optional<std::string>& volume, bool followsCamera) const;
   /// Look of the volume's rendering in Slicer. `range`: of the voxels, for a look that follows the
   /// window of the slice views.
-  SceneLook look(const std::optional<std::string>& volume,
-                 const std::array<double, 2>& range) const;
+  SceneTransfer transfer(const std::optional<std::string>& volume,
+                         const std::array<double, 2>& range) const;
   /// Nothing without a segmentation.
   std::optional<SegmentNames> segmentNames(const InputChoice& choice) const;
   /// Labels, for a volume of that grid.
   SegmentsInput segments(const InputChoice& choice, const Grid& volume) const;
   /// Volume property of that name or id.
-  SceneLook property(const std::string& name) const;
+  SceneTransfer property(const std::string& name) const;
   std::vector<std::string> propertyNames() const;
 
   /// Equal paths.

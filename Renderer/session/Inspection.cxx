@@ -49,7 +49,7 @@ FileVolume inspectVolume(const RenderRequest& request, const Input& input, Json&
   const auto add = [&](const Volume& volume, const std::vector<std::string>& warnings) {
     report["render"] = makeRenderReport();
     report["render"]["volume"] = volumeJson(volume);
-    report["render"]["look"] = defaultLook(volume);
+    report["render"]["look"] = defaultTransferJson(volume);
     report["warnings"] = warnings;
     result.grid = volume.grid;
     result.isLikelyLabelMap = isLikelyLabelMap(volume);
@@ -173,13 +173,13 @@ Json volumeJson(const Volume& volume, const std::string& id) {
           {"transforms", Json::array()}};
 }
 
-Json lookUse(const char* source, const std::string& id, const std::string& name) {
+Json transferJson(const char* source, const std::string& id, const std::string& name) {
   return {{"source", source}, {"id", nullIfEmpty(id)}, {"name", nullIfEmpty(name)}};
 }
 
-Json defaultLook(const Volume& volume) {
+Json defaultTransferJson(const Volume& volume) {
   const std::optional<std::string> preset = chooseTransferPreset(volume);
-  return lookUse(preset ? "preset" : "range", "", preset.value_or(""));
+  return transferJson(preset ? "preset" : "range", "", preset.value_or(""));
 }
 
 Json poseJson(const CameraPose& pose, const std::string& id, const std::string& name) {

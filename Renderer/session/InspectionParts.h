@@ -32,9 +32,9 @@ Inspection makeReport(const RenderRequest& request, const char* kind);
 Json makeRenderReport();
 
 Json volumeJson(const Volume& volume, const std::string& id = "");
-Json lookUse(const char* source, const std::string& id, const std::string& name);
+Json transferJson(const char* source, const std::string& id, const std::string& name);
 /// Look of a volume without settings, by modality and range.
-Json defaultLook(const Volume& volume);
+Json defaultTransferJson(const Volume& volume);
 Json poseJson(const CameraPose& pose, const std::string& id = "", const std::string& name = "");
 /// Adds a POSE.
 void addPose(const CameraPose& pose, Json& camera);

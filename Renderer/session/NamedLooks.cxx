@@ -48,8 +48,8 @@ public:
   }
 
   std::optional<NamedTransfer> find(const std::string& name) {
-    if (SceneLook look = m_input.property(name); look.transfer)
-      return NamedTransfer{{std::move(*look.transfer)}, name, std::move(look.files)};
+    if (SceneTransfer stored = m_input.property(name); stored.transfer)
+      return NamedTransfer{{std::move(*stored.transfer)}, name, std::move(stored.files)};
     if (m_presets)
       for (const MrmlNode* node : m_presets->findByTag("VolumeProperty"))
         if (node->name == name)
@@ -88,12 +88,12 @@ bool isFileName(const std::string& kind, const std::string& name) {
 }
 
 NamedTransfer findTransfer(const std::string& name, const Input& input) {
-  if (isLookText(name))
-    return {parseTransferLook(name, "--transfer"), "--transfer"};
+  if (isInlineJson(name))
+    return {parseTransferJson(name, "--transfer"), "--transfer"};
   if (const std::string_view text = findBuiltinPreset("transfer", name); !text.empty())
-    return {parseTransferLook(text, name), name};
+    return {parseTransferJson(text, name), name};
   if (isExistingFile(name))
-    return {readTransferLook(name), name, {name}};
+    return {readTransferFile(name), name, {name}};
   SlicerTransfers slicer(input);
   if (auto transfer = slicer.find(name))
     return std::move(*transfer);
@@ -103,14 +103,14 @@ NamedTransfer findTransfer(const std::string& name, const Input& input) {
 }
 
 bool isTransferFile(const std::string& name, const Input& input) {
-  if (isLookText(name) || !isFileName("transfer", name))
+  if (isInlineJson(name) || !isFileName("transfer", name))
     return false;
   return name.find('/') != std::string::npos || isExistingFile(name) ||
          !SlicerTransfers(input).find(name);
 }
 
 NamedLights findLights(const std::string& name) {
-  if (isLookText(name))
+  if (isInlineJson(name))
     return {parseLights(name, "--lights"), "--lights"};
   if (const std::string_view text = findBuiltinPreset("lights", name); !text.empty())
     return {parseLights(text, name), name};
@@ -121,7 +121,7 @@ NamedLights findLights(const std::string& name) {
 }
 
 bool isLightsFile(const std::string& name) {
-  return isLookText(name) ? hasFileReference(name, "--lights") : isFileName("lights", name);
+  return isInlineJson(name) ? hasFileReference(name, "--lights") : isFileName("lights", name);
 }
 
 NamedMaterials findMaterials(const std::string& name) {

@@ -15,8 +15,8 @@
 namespace fenestra {
 
 /// True if `look` (lights or a transfer function) is JSON itself, not a name.
-inline bool isLookText(std::string_view look) {
-  return look.starts_with('{');
+inline bool isInlineJson(std::string_view value) {
+  return value.starts_with('{');
 }
 
 /// Names of the program's own presets. `kind`: a folder of Resources, e.g. "transfer".
@@ -26,7 +26,7 @@ std::vector<std::string> listBuiltinPresets(const std::string& kind);
 bool isFileName(const std::string& kind, const std::string& name);
 
 struct NamedTransfer {
-  TransferLook look;
+  TransferFile transfer;
   std::string source;                  ///< its name, or the flag for JSON
   std::vector<std::string> files = {}; ///< files read; empty: JSON or own preset
 };

@@ -100,7 +100,7 @@ struct RenderRequest {
   int width = 512, height = 512;
   bool features = false; ///< marches the filter's features
   bool measure = false;  ///< measures the clip; traces the focus even if no clip needs it
-  FocusRequest focusLook = {};
+  FocusRequest focusStyle = {};
   /// Degrees to both sides over which a clipping surface is steadied
   /// (clip/surface/SteadySurface.h).
   double steadyDegrees = 0.0;

@@ -41,42 +41,44 @@ void PreparedScene::prepare() {
   if (r.materials.value_or(noMaterials) != noMaterials || !r.focus.empty())
     m_segments.get(m_input, {r.volume, r.segmentation, r.labels}, volume->volume.grid);
   const auto focus =
-      m_focus.get(m_segments.result(), r.focus, r.focusLook.shaping, volume->volume.grid);
+      m_focus.get(m_segments.result(), r.focus, r.focusStyle.shaping, volume->volume.grid);
   if (!r.transfer)
-    m_sceneLook.get(m_input, r.volume, {volume->volume.minimum, volume->volume.maximum});
-  const auto look = m_look.get(volume, m_namedTransfer.result(), m_sceneLook.result(),
-                               r.transferModality, r.shift, r.density);
+    m_sceneTransfer.get(m_input, r.volume, {volume->volume.minimum, volume->volume.maximum});
+  const auto transfer = m_transfer.get(volume, m_namedTransfer.result(), m_sceneTransfer.result(),
+                                       r.transferModality, r.shift, r.density);
   if (const std::string name = resolveMaterials(m_segments.result()); name != noMaterials) {
     makeTint(name);
     if (!isTintOnly(*m_plan))
-      m_mixture.get(m_plan.result(), currentTint(), look);
+      m_mixture.get(m_plan.result(), currentTint(), transfer);
   }
-  m_focusWarnings.get(volume, focus, look);
+  m_focusWarnings.get(volume, focus, transfer);
   if (r.view.isAutomatic() && focus->mask)
-    m_view.get(volume, settings, focus, look);
-  const auto minMaxGrid = m_minMaxGrid.get(volume, MajorantGrid::requiredPadding(look->transfer));
-  const Box bounds = settings->camera ? Box() : *m_occupiedBounds.get(volume, minMaxGrid, look);
+    m_view.get(volume, settings, focus, transfer);
+  const auto minMaxGrid =
+      m_minMaxGrid.get(volume, MajorantGrid::requiredPadding(transfer->function));
+  const Box bounds = settings->camera ? Box() : *m_occupiedBounds.get(volume, minMaxGrid, transfer);
   const auto camera =
       m_camera.get(r.view, r.width, r.height, volume, settings, bounds, focus, m_view.result());
   const auto placed = m_lights.get({lights, camera, focus}, volume);
   const auto clip = m_clip.get(r.clip, r.measure, r.steadyDegrees, volume, settings, focus, camera);
-  const double extinction = r.focusLook.contextExtinction;
+  const double extinction = r.focusStyle.contextExtinction;
   const double saturation =
-      m_contrast.get(volume, focus, look, currentTint(), r.focusLook.contextSaturation)->saturation;
+      m_contrast.get(volume, focus, transfer, currentTint(), r.focusStyle.contextSaturation)
+          ->saturation;
   if (focus->mask && (extinction != 1.0 || saturation != 1.0))
     m_style.get(focus, extinction, saturation);
   const auto majorants =
-      m_majorants.get(volume, minMaxGrid, look, clip, m_style.result(), m_mixture.result());
+      m_majorants.get(volume, minMaxGrid, transfer, clip, m_style.result(), m_mixture.result());
   if (r.features)
-    m_features.get(volume, settings, look, tintOrMixture(), placed, camera, clip, m_style.result(),
-                   majorants);
+    m_features.get(volume, settings, transfer, tintOrMixture(), placed, camera, clip,
+                   m_style.result(), majorants);
 }
 
 std::string PreparedScene::resolveMaterials(const Handle<SegmentsInput>& segments) const {
   const RenderRequest& r = m_request;
   if (r.materials)
     return *r.materials;
-  const bool isAdjusted = !r.focus.empty() && !r.focusLook.contextSaturation;
+  const bool isAdjusted = !r.focus.empty() && !r.focusStyle.contextSaturation;
   return isAdjusted && isAnyKnown(segments->segmentation, r.focus) ? autoMaterials : noMaterials;
 }
 
@@ -90,23 +92,23 @@ void PreparedScene::makeTint(const std::string& name) {
   const auto plan = m_plan.get(m_segments.result(), hasVoxels, materials, r.materialChanges,
                                isAdjusted ? r.focus : std::vector<std::string>(), m_skin.result());
   const auto weights = m_labelWeights.get(m_segments.result(), plan->parts, m_skin.result(),
-                                          r.focusLook.shaping.smoothing, volume().grid);
-  const auto look = m_look.result();
-  const auto tint = m_tint.get(plan, weights, look->transfer.g);
+                                          r.focusStyle.shaping.smoothing, volume().grid);
+  const auto transfer = m_transfer.result();
+  const auto tint = m_tint.get(plan, weights, transfer->function.g);
   if (!isAdjusted || !focus())
     return;
   const auto interfaces =
-      m_interfaces.get(m_volume.result(), m_focus.result(), look, weights, plan->isFocus);
-  const auto contrast =
-      m_tintContrast.get(interfaces, plan, tint, materials, look, r.focusLook.contextSaturation);
-  m_contrastedTint.get(tint, plan, contrast, look);
+      m_interfaces.get(m_volume.result(), m_focus.result(), transfer, weights, plan->isFocus);
+  const auto contrast = m_tintContrast.get(interfaces, plan, tint, materials, transfer,
+                                           r.focusStyle.contextSaturation);
+  m_contrastedTint.get(tint, plan, contrast, transfer);
 }
 
 StageSeconds PreparedScene::seconds() const {
   const ClipResult none, &clip = m_clip.isUpdated() ? *m_clip : none;
   return {.load = m_namedTransfer.seconds() + m_volume.seconds() + m_settings.seconds() +
-                  m_segments.seconds() + m_focus.seconds() + m_sceneLook.seconds() +
-                  m_look.seconds(),
+                  m_segments.seconds() + m_focus.seconds() + m_sceneTransfer.seconds() +
+                  m_transfer.seconds(),
           .materials = m_materials.seconds() + m_hasVoxels.seconds() + m_plan.seconds() +
                        m_skin.seconds() + m_labelWeights.seconds() + m_tint.seconds() +
                        m_interfaces.seconds() + m_tintContrast.seconds() +
@@ -122,7 +124,7 @@ StageSeconds PreparedScene::seconds() const {
 UpdatedStages PreparedScene::updatedStages() const {
   return {m_volume.isUpdated(),
           m_focus.isUpdated(),
-          m_look.isUpdated(),
+          m_transfer.isUpdated(),
           m_camera.isUpdated(),
           m_lights.isUpdated(),
           m_clip.isUpdated(),
@@ -135,7 +137,7 @@ UpdatedStages PreparedScene::updatedStages() const {
 std::string PreparedScene::choices() const {
   const RenderRequest& r = m_request;
   const char* const from = r.transferModality ? " (preset)" : "";
-  std::vector<std::string> parts = {"look: " + look() + from};
+  std::vector<std::string> parts = {"look: " + transferName() + from};
   if (r.environment || r.environmentMap)
     parts.push_back("light: all around");
   else
@@ -168,7 +170,7 @@ std::vector<std::string> PreparedScene::warnings() const {
   append(m_settings->warnings, warnings);
   if (m_segments.result())
     append(m_segments->segmentation.warnings(), warnings);
-  append(m_look->warnings, warnings);
+  append(m_transfer->warnings, warnings);
   append(*m_focusWarnings, warnings);
   if (domain().indexCorners().empty())
     warnings.emplace_back("the cropping box lies outside the volume: nothing is left of it");

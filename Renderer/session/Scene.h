@@ -44,9 +44,9 @@ public:
   Domain domain() const { return {volume().grid, m_settings->crop}; }
   /// Mask of the focus; null: none.
   const Mask* focus() const { return m_focus->mask ? &*m_focus->mask : nullptr; }
-  const TransferFunction& transfer() const { return m_look->transfer; }
+  const TransferFunction& transfer() const { return m_transfer->function; }
   /// Source of the transfer function (Look::name).
-  const std::string& look() const { return m_look->name; }
+  const std::string& transferName() const { return m_transfer->source; }
   const Camera& camera() const { return *m_camera; }
   const Clip& clip() const { return m_clip->clip; }
   /// Style of the context; null: unchanged.
@@ -91,11 +91,11 @@ private:
   template <typename Self>
   static auto stages(Self& s) {
     return std::tie(s.m_namedLights, s.m_namedTransfer, s.m_volume, s.m_settings, s.m_segments,
-                    s.m_focus, s.m_sceneLook, s.m_look, s.m_materials, s.m_hasVoxels, s.m_skin,
-                    s.m_plan, s.m_labelWeights, s.m_tint, s.m_interfaces, s.m_tintContrast,
-                    s.m_contrastedTint, s.m_mixture, s.m_focusWarnings, s.m_view, s.m_minMaxGrid,
-                    s.m_occupiedBounds, s.m_camera, s.m_lights, s.m_clip, s.m_contrast, s.m_style,
-                    s.m_majorants, s.m_features);
+                    s.m_focus, s.m_sceneTransfer, s.m_transfer, s.m_materials, s.m_hasVoxels,
+                    s.m_skin, s.m_plan, s.m_labelWeights, s.m_tint, s.m_interfaces,
+                    s.m_tintContrast, s.m_contrastedTint, s.m_mixture, s.m_focusWarnings, s.m_view,
+                    s.m_minMaxGrid, s.m_occupiedBounds, s.m_camera, s.m_lights, s.m_clip,
+                    s.m_contrast, s.m_style, s.m_majorants, s.m_features);
   }
 
   RenderRequest m_request;
@@ -106,8 +106,8 @@ private:
   CachedStage<&Input::settings> m_settings;
   CachedStage<&Input::segments> m_segments; ///< unused without a focus and materials
   CachedStage<&makeFocus> m_focus;
-  CachedStage<&Input::look> m_sceneLook; ///< unused with --transfer
-  CachedStage<&chosenLook> m_look;
+  CachedStage<&Input::transfer> m_sceneTransfer; ///< unused with --transfer
+  CachedStage<&chooseTransfer> m_transfer;
   CachedStage<&findMaterials> m_materials; ///< this and the next five: unused without materials
   CachedStage<&findNonEmpty> m_hasVoxels;
   CachedStage<&findSkin> m_skin; ///< unused unless materials find skin

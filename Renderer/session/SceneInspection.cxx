@@ -77,7 +77,7 @@ private:
     if (const auto scene =
             tryRead([&] { return std::make_unique<PreparedScene>(m_request, m_input); },
                     m_report["refused"])) {
-      addVolume((*scene)->volume(), (*scene)->look(), use);
+      addVolume((*scene)->volume(), (*scene)->transferName(), use);
       pose = (*scene)->camera().pose();
       m_report["warnings"] = (*scene)->warnings();
     } else {
@@ -102,17 +102,18 @@ private:
   }
 
   /// Adds volume and look. `look`: Scene::look of the render.
-  void addVolume(const Volume& volume, const std::string& look, Json& use) {
+  void addVolume(const Volume& volume, const std::string& transferName, Json& use) {
     m_grid = volume.grid;
     use["volume"] = volumeJson(volume, m_plan->volume->id);
     use["volume"]["transforms"] = listParentTransforms(document(), *m_plan->volume);
     const MrmlNode* property = m_plan->property;
-    if (property && look == property->name)
-      use["look"] = lookUse("volumeProperty", property->id, property->name);
+    if (property && transferName == property->name)
+      use["look"] = transferJson("volumeProperty", property->id, property->name);
     else if (m_plan->sliceDisplay)
-      use["look"] = lookUse("volumeDisplay", m_plan->sliceDisplay->id, m_plan->sliceDisplay->name);
+      use["look"] =
+          transferJson("volumeDisplay", m_plan->sliceDisplay->id, m_plan->sliceDisplay->name);
     else
-      use["look"] = defaultLook(volume);
+      use["look"] = defaultTransferJson(volume);
   }
 
   Json cropJson(const MrmlNode& roi) {
@@ -125,7 +126,7 @@ private:
             {"center", box->boxToWorld.translation()}};
   }
 
-  void markUsed(const Json& look) {
+  void markUsed(const Json& transfer) {
     for (const MrmlNode* node : {m_plan->volume, m_plan->rendering, m_plan->roi,
                                  m_plan->segmentation, m_plan->view, m_plan->camera})
       if (node) {
@@ -134,7 +135,7 @@ private:
           for (const std::string& id : listParentTransforms(document(), *node))
             m_used.insert(document().find(id));
       }
-    if (m_plan->property && look.is_object() && look["source"] == "volumeProperty")
+    if (m_plan->property && transfer.is_object() && transfer["source"] == "volumeProperty")
       m_used.insert(m_plan->property);
   }
 

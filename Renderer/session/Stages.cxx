@@ -10,11 +10,11 @@
 namespace fenestra {
 namespace {
 
-TransferFunction fitToVolume(const TransferLook& look, const Volume& volume) {
-  if (!look.isRelative)
-    return look.function;
+TransferFunction fitToVolume(const TransferFile& transfer, const Volume& volume) {
+  if (!transfer.isRelative)
+    return transfer.function;
   const auto [low, high] = findRobustRange(volume);
-  return look.mapRange(low, high);
+  return transfer.mapRange(low, high);
 }
 
 constexpr std::array modalities = {"CT", "MR", "ultrasound"}; ///< as in Modality
@@ -88,16 +88,17 @@ Domain makeDomain(const VolumeHandle& volume, const SettingsHandle& settings) {
   return {volume->volume.grid, settings->crop};
 }
 
-/// Transfer function of chosenLook, neither moved nor multiplied.
-Look lookFor(const Volume& volume, const Handle<NamedTransfer>& named,
-             const Handle<SceneLook>& scene, const std::optional<Modality>& madeFor) {
+/// Transfer function of chooseTransfer, neither moved nor multiplied.
+TransferChoice selectTransfer(const Volume& volume, const Handle<NamedTransfer>& named,
+                              const Handle<SceneTransfer>& scene,
+                              const std::optional<Modality>& madeFor) {
   std::vector<std::string> warnings;
   if (named && !madeFor && named->source.starts_with("ct-") && !canSuit(Modality::ct, volume))
     warnings.push_back("the transfer function " + named->source +
                        " is made for CT, which this volume does not seem to be; --shift moves it, "
                        "or name another with --transfer");
   if (named && (!madeFor || canSuit(*madeFor, volume)))
-    return {fitToVolume(named->look, volume), named->source, warnings};
+    return {fitToVolume(named->transfer, volume), named->source, warnings};
   if (named)
     warnings.push_back(
         concat("the preset's transfer function is made for ",
@@ -109,7 +110,7 @@ Look lookFor(const Volume& volume, const Handle<NamedTransfer>& named,
   const std::optional<std::string> preset = chooseTransferPreset(volume);
   if (!preset)
     return {makeRelativeTransfer(volume), "by the volume's range", warnings};
-  return {findTransfer(*preset, Input({})).look.function, *preset, warnings};
+  return {findTransfer(*preset, Input({})).transfer.function, *preset, warnings};
 }
 
 /// Plane of a request, else the focus's own.
@@ -195,41 +196,43 @@ FocusInput makeFocus(const Handle<SegmentsInput>& segments, const std::vector<st
   return {segments->segmentation.makeFocusMask(names, volume, shaping)};
 }
 
-Look chosenLook(const VolumeHandle& read, const Handle<NamedTransfer>& named,
-                const Handle<SceneLook>& scene, const std::optional<Modality>& madeFor,
-                double shift, double density) {
+TransferChoice chooseTransfer(const VolumeHandle& read, const Handle<NamedTransfer>& named,
+                              const Handle<SceneTransfer>& scene,
+                              const std::optional<Modality>& madeFor, double shift,
+                              double density) {
   const Volume& volume = read->volume;
-  Look look = lookFor(volume, named, scene, madeFor);
-  look.transfer = look.transfer.withShift(shift).withDensity(density);
-  checkExtinction(look.transfer, volume, named ? look.name : volume.name);
-  if (look.transfer.shading && volume.minimum == volume.maximum)
+  TransferChoice transfer = selectTransfer(volume, named, scene, madeFor);
+  transfer.function = transfer.function.withShift(shift).withDensity(density);
+  checkExtinction(transfer.function, volume, named ? transfer.source : volume.name);
+  if (transfer.function.shading && volume.minimum == volume.maximum)
     throw inputError(volume.name,
                      "every voxel has the same value, so there is no gradient for the transfer "
                      "function's shading; use one with shading off (\"shading\": \"volume\")");
-  return look;
+  return transfer;
 }
 
 std::vector<std::string> checkFocus(const VolumeHandle& volume, const FocusHandle& focus,
-                                    const Handle<Look>& look) {
+                                    const Handle<TransferChoice>& transfer) {
   constexpr double most = 0.5;
   if (!focus->mask)
     return {};
-  const double fraction = transparentFraction(*focus->mask, volume->volume, look->transfer);
+  const double fraction = transparentFraction(*focus->mask, volume->volume, transfer->function);
   if (fraction <= most)
     return {};
-  return {concat("the look ", look->name, " leaves ", std::lround(100.0 * fraction),
+  return {concat("the look ", transfer->source, " leaves ", std::lround(100.0 * fraction),
                  " % of the focus transparent; name one made for it with --transfer or --preset")};
 }
 
 ViewDirection chooseView(const VolumeHandle& volume, const SettingsHandle& settings,
-                         const FocusHandle& focus, const Handle<Look>& look) {
+                         const FocusHandle& focus, const Handle<TransferChoice>& transfer) {
   return findBestView(
-      ViewScorer(volume->volume, makeDomain(volume, settings), look->transfer, *focus->mask));
+      ViewScorer(volume->volume, makeDomain(volume, settings), transfer->function, *focus->mask));
 }
 
 Box findOccupiedBounds(const VolumeHandle& volume, const Handle<MinMaxGrid>& minMax,
-                       const Handle<Look>& look) {
-  return MajorantGrid(volume->volume.grid, *minMax, look->transfer, ClipNone()).occupiedBounds();
+                       const Handle<TransferChoice>& transfer) {
+  return MajorantGrid(volume->volume.grid, *minMax, transfer->function, ClipNone())
+      .occupiedBounds();
 }
 
 Camera placeCamera(const ViewRequest& view, int width, int height, const VolumeHandle& volume,
@@ -285,36 +288,39 @@ Mask findSkin(const VolumeHandle& volume) {
 }
 
 TintInterfaces findTintInterfaces(const VolumeHandle& volume, const FocusHandle& focus,
-                                  const Handle<Look>& look, const Handle<LabelWeights>& weights,
+                                  const Handle<TransferChoice>& transfer,
+                                  const Handle<LabelWeights>& weights,
                                   const std::vector<bool>& isFocus) {
-  return findInterfaces(*focus->mask, volume->volume, look->transfer, *weights, isFocus);
+  return findInterfaces(*focus->mask, volume->volume, transfer->function, *weights, isFocus);
 }
 
 TintContrast adjustTintContrast(const Handle<TintInterfaces>& interfaces,
                                 const Handle<TintPlan>& plan, const Handle<Tint>& tint,
-                                const Handle<NamedMaterials>& materials, const Handle<Look>& look,
+                                const Handle<NamedMaterials>& materials,
+                                const Handle<TransferChoice>& transfer,
                                 const std::optional<double>& saturation) {
-  return adjustContrast(*interfaces, *plan, *tint, materials->table, look->transfer,
+  return adjustContrast(*interfaces, *plan, *tint, materials->table, transfer->function,
                         saturation.value_or(1.0));
 }
 
 Mixture makeMixture(const Handle<TintPlan>& plan, const Handle<Tint>& tint,
-                    const Handle<Look>& look) {
-  return buildMixture(*plan, *tint, look->transfer);
+                    const Handle<TransferChoice>& transfer) {
+  return buildMixture(*plan, *tint, transfer->function);
 }
 
 Tint adjustTint(const Handle<Tint>& tint, const Handle<TintPlan>& plan,
-                const Handle<TintContrast>& contrast, const Handle<Look>& look) {
-  return applyAdjustment(*tint, *plan, contrast->adjustment, look->transfer);
+                const Handle<TintContrast>& contrast, const Handle<TransferChoice>& transfer) {
+  return applyAdjustment(*tint, *plan, contrast->adjustment, transfer->function);
 }
 
 FocusContrast chooseContrast(const VolumeHandle& volume, const FocusHandle& focus,
-                             const Handle<Look>& look, const Handle<Tint>& tint,
+                             const Handle<TransferChoice>& transfer, const Handle<Tint>& tint,
                              const std::optional<double>& saturation) {
   if (tint)
     return {saturation.value_or(1.0)};
-  return focus->mask ? chooseSaturation(saturation, *focus->mask, volume->volume, look->transfer)
-                     : FocusContrast();
+  return focus->mask
+             ? chooseSaturation(saturation, *focus->mask, volume->volume, transfer->function)
+             : FocusContrast();
 }
 
 ContextStyle makeContextStyle(const FocusHandle& focus, double extinction, double saturation) {
@@ -322,18 +328,18 @@ ContextStyle makeContextStyle(const FocusHandle& focus, double extinction, doubl
 }
 
 MajorantGrid buildMajorants(const VolumeHandle& volume, const Handle<MinMaxGrid>& minMax,
-                            const Handle<Look>& look, const Handle<ClipResult>& clip,
+                            const Handle<TransferChoice>& transfer, const Handle<ClipResult>& clip,
                             const Handle<ContextStyle>& style, const Handle<Mixture>& mixture) {
-  return {volume->volume.grid, *minMax, look->transfer, clip->clip, style.get(), mixture.get()};
+  return {volume->volume.grid, *minMax, transfer->function, clip->clip, style.get(), mixture.get()};
 }
 
 FeatureBuffers marchFirstHits(const VolumeHandle& volume, const SettingsHandle& settings,
-                              const Handle<Look>& look, const TintOrMixture& segments,
+                              const Handle<TransferChoice>& transfer, const TintOrMixture& segments,
                               const Handle<LightSet>& lights, const Handle<Camera>& camera,
                               const Handle<ClipResult>& clip, const Handle<ContextStyle>& style,
                               const Handle<MajorantGrid>& majorants) {
-  return computeFeatures({volume->volume, look->transfer, *majorants, *lights, *camera, clip->clip,
-                          settings->crop, style.get(), segments.tint.get(),
+  return computeFeatures({volume->volume, transfer->function, *majorants, *lights, *camera,
+                          clip->clip, settings->crop, style.get(), segments.tint.get(),
                           segments.mixture.get()});
 }
 

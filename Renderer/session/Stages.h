@@ -33,29 +33,29 @@ NamedLights makeLights(const std::string& name, const std::optional<Rgb>& enviro
 FocusInput makeFocus(const Handle<SegmentsInput>& segments, const std::vector<std::string>& names,
                      const MaskShaping& shaping, const Grid& volume);
 
-struct Look {
-  TransferFunction transfer;
-  std::string name; ///< source: a file, a preset, a node, or "by the volume's range"
+struct TransferChoice {
+  TransferFunction function;
+  std::string source; ///< source: a file, a preset, a node, or "by the volume's range"
   std::vector<std::string> warnings = {};
 };
 /// The transfer function `named` by the request, unless made for another modality than the
 /// volume's, else the scene's, else one that suits the volume; then moved by `shift` and multiplied
 /// by `density`. Throws Error (input) for a function that the volume cannot be rendered with.
-Look chosenLook(const VolumeHandle& volume, const Handle<NamedTransfer>& named,
-                const Handle<SceneLook>& scene, const std::optional<Modality>& madeFor,
-                double shift, double density);
+TransferChoice chooseTransfer(const VolumeHandle& volume, const Handle<NamedTransfer>& named,
+                              const Handle<SceneTransfer>& scene,
+                              const std::optional<Modality>& madeFor, double shift, double density);
 
 /// Warning of a focus that the look leaves mostly transparent.
 std::vector<std::string> checkFocus(const VolumeHandle& volume, const FocusHandle& focus,
-                                    const Handle<Look>& look);
+                                    const Handle<TransferChoice>& transfer);
 
 /// Direction of the view that shows the focus best (AutomaticView.h).
 ViewDirection chooseView(const VolumeHandle& volume, const SettingsHandle& settings,
-                         const FocusHandle& focus, const Handle<Look>& look);
+                         const FocusHandle& focus, const Handle<TransferChoice>& transfer);
 
 /// Box, in index space, of the cells that hold matter under the transfer function, before any clip.
 Box findOccupiedBounds(const VolumeHandle& volume, const Handle<MinMaxGrid>& minMax,
-                       const Handle<Look>& look);
+                       const Handle<TransferChoice>& transfer);
 
 /// `matter`: framed without a scene's camera; by value, so that a look that fills the same cells
 /// keeps the camera. `best`: null unless the view is automatic.
@@ -100,33 +100,35 @@ Mask findSkin(const VolumeHandle& volume);
 
 /// Where the focus's components meet the others. `isFocus`: TintPlan's.
 TintInterfaces findTintInterfaces(const VolumeHandle& volume, const FocusHandle& focus,
-                                  const Handle<Look>& look, const Handle<LabelWeights>& weights,
+                                  const Handle<TransferChoice>& transfer,
+                                  const Handle<LabelWeights>& weights,
                                   const std::vector<bool>& isFocus);
 
 /// Knobs of the tint. `saturation`: of the request.
 TintContrast adjustTintContrast(const Handle<TintInterfaces>& interfaces,
                                 const Handle<TintPlan>& plan, const Handle<Tint>& tint,
-                                const Handle<NamedMaterials>& materials, const Handle<Look>& look,
+                                const Handle<NamedMaterials>& materials,
+                                const Handle<TransferChoice>& transfer,
                                 const std::optional<double>& saturation);
 
 /// Only where isTint() is false.
 Mixture makeMixture(const Handle<TintPlan>& plan, const Handle<Tint>& tint,
-                    const Handle<Look>& look);
+                    const Handle<TransferChoice>& transfer);
 
 Tint adjustTint(const Handle<Tint>& tint, const Handle<TintPlan>& plan,
-                const Handle<TintContrast>& contrast, const Handle<Look>& look);
+                const Handle<TintContrast>& contrast, const Handle<TransferChoice>& transfer);
 
 /// `saturation`: of the request. `tint`: null without materials; with them nothing is paled
 /// unasked, and what contrast there is adjustTintContrast tells.
 FocusContrast chooseContrast(const VolumeHandle& volume, const FocusHandle& focus,
-                             const Handle<Look>& look, const Handle<Tint>& tint,
+                             const Handle<TransferChoice>& transfer, const Handle<Tint>& tint,
                              const std::optional<double>& saturation);
 
 ContextStyle makeContextStyle(const FocusHandle& focus, double extinction, double saturation);
 
 /// `style`: null if the context is unchanged; `mixture`: null if there is none.
 MajorantGrid buildMajorants(const VolumeHandle& volume, const Handle<MinMaxGrid>& minMax,
-                            const Handle<Look>& look, const Handle<ClipResult>& clip,
+                            const Handle<TransferChoice>& transfer, const Handle<ClipResult>& clip,
                             const Handle<ContextStyle>& style, const Handle<Mixture>& mixture);
 
 /// Colours or matter of segments, as transport reads them; null: none.
@@ -139,7 +141,7 @@ struct TintOrMixture {
 
 /// Features of the filter. `style`: null if unused.
 FeatureBuffers marchFirstHits(const VolumeHandle& volume, const SettingsHandle& settings,
-                              const Handle<Look>& look, const TintOrMixture& segments,
+                              const Handle<TransferChoice>& transfer, const TintOrMixture& segments,
                               const Handle<LightSet>& lights, const Handle<Camera>& camera,
                               const Handle<ClipResult>& clip, const Handle<ContextStyle>& style,
                               const Handle<MajorantGrid>& majorants);

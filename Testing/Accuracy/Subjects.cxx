@@ -41,7 +41,7 @@ RenderRequest makeRequest(const Subject& subject) {
   if (subject.input.extension() != ".mrml")
     request.segmentation = subject.labelmap.string();
   request.focus = {subject.focus};
-  request.focusLook.shaping.smoothing = subject.smoothing;
+  request.focusStyle.shaping.smoothing = subject.smoothing;
   request.clip.softness = 0.0; // depths are those of the surface itself
   return request;
 }

@@ -79,10 +79,10 @@ TEST(Input, OfAFileHasNoSceneOrSettings) {
 }
 
 TEST(LookText, BraceTellsTextFromNames) {
-  EXPECT_TRUE(isLookText(R"({"lights": []})"));
-  EXPECT_TRUE(isLookText("{"));
+  EXPECT_TRUE(isInlineJson(R"({"lights": []})"));
+  EXPECT_TRUE(isInlineJson("{"));
   for (const char* name : {"", "studio", "lights.json", "./{.json", " {}"})
-    EXPECT_FALSE(isLookText(name)) << name;
+    EXPECT_FALSE(isInlineJson(name)) << name;
 }
 
 } // namespace

@@ -110,9 +110,9 @@ TEST(PresetReader, ReadsEveryBuiltInPreset) {
     for (const auto& [option, value] : preset.options)
       if (option == "transfer") {
         // Scalars of MR and ultrasound are unknown in advance.
-        const TransferLook transfer =
-            parseTransferLook(findResource("transfer/" + value + ".json"), value);
-        EXPECT_EQ(look.isRelative, preset.modality != Modality::ct);
+        const TransferFile transfer =
+            parseTransferJson(findResource("transfer/" + value + ".json"), value);
+        EXPECT_EQ(transfer.isRelative, preset.modality != Modality::ct);
       }
   }
 }

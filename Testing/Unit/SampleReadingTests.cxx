@@ -60,9 +60,9 @@ void expectStoredAs(T outlier) {
   const Store::Vectors vectors = storeSamples(samples);
   ASSERT_TRUE(std::holds_alternative<LargeArray<Stored>>(vectors)) << outlier;
   const auto& stored = std::get<LargeArray<Stored>>(vectors);
-  ASSERT_EQ(kept.size(), samples.size());
+  ASSERT_EQ(stored.size(), samples.size());
   for (std::size_t i = 0; i < count; ++i)
-    ASSERT_EQ(static_cast<double>(kept[i]), static_cast<double>(static_cast<Stored>(samples[i])))
+    ASSERT_EQ(static_cast<double>(stored[i]), static_cast<double>(static_cast<Stored>(samples[i])))
         << i;
 }
 
@@ -83,7 +83,7 @@ TEST(SampleReading, WidensMoreThanOnce) {
   samples[300'000] = 40'000; // to uint16, then to float for the negative sample
   const Store::Vectors vectors = storeSamples(samples);
   const auto& stored = std::get<LargeArray<float>>(vectors);
-  EXPECT_TRUE(std::equal(kept.begin(), kept.end(), samples.begin(), samples.end(),
+  EXPECT_TRUE(std::equal(stored.begin(), stored.end(), samples.begin(), samples.end(),
                          [](float a, std::int32_t b) { return a == static_cast<float>(b); }));
 }
 
@@ -97,12 +97,12 @@ TEST(SampleReading, ReplacesNonFiniteSamplesInAnyBlock) {
     EXPECT_EQ(vectors.index(), outlier == 0.5f ? 3u : 0u);
     std::visit(
         [&](const auto& stored) {
-          ASSERT_EQ(kept.size(), count);
+          ASSERT_EQ(stored.size(), count);
           for (std::size_t i = 0; i < count; ++i) {
             const float expected = std::isnan(samples[i])   ? 0.0f
                                    : std::isinf(samples[i]) ? (samples[i] > 0 ? 199.0f : 0.0f)
                                                             : samples[i];
-            ASSERT_EQ(static_cast<float>(kept[i]), expected) << i;
+            ASSERT_EQ(static_cast<float>(stored[i]), expected) << i;
           }
         },
         vectors);

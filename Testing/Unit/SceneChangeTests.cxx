@@ -75,7 +75,7 @@ TEST_P(SceneChange, RemakesOnlyDependentStages) {
             (UpdatedStages{true, true, true, true, true, true, true, true, isTinted, isTinted}));
   EXPECT_EQ(changed.files(), fresh.files());
   EXPECT_EQ(changed.warnings(), fresh.warnings());
-  EXPECT_EQ(changed.look(), fresh.look());
+  EXPECT_EQ(changed.transferName(), fresh.transferName());
   EXPECT_EQ(changed.clipResult().focusDepth, fresh.clipResult().focusDepth);
   const Film expected = renderFilm(fresh);
   const Film film = renderFilm(changed);
@@ -212,7 +212,7 @@ TEST_F(SceneChange, LabelsAreReadOnceAndSharedByColours) {
   request.focus = {"2"};
   EXPECT_TRUE(green.withRequest(request).updatedStages().focus);
   EXPECT_FALSE(green.withRequest(request).updatedStages().tint);
-  request.focusLook.shaping.smoothing = 0.5;
+  request.focusStyle.shaping.smoothing = 0.5;
   EXPECT_NE(green.withRequest(request).tint()->weights, green.tint()->weights);
   request.materials = noMaterials;
   EXPECT_FALSE(green.withRequest(request).tint());
@@ -223,7 +223,7 @@ TEST_F(SceneChange, MaterialsLeaveTheContextItsColoursUnlessAsked) {
   request.materials = "library";
   EXPECT_EQ(PreparedScene(request).contrast().saturation, 1.0);
   EXPECT_FALSE(PreparedScene(request).contrast().contrast) << "it would be of other colours";
-  request.focusLook.contextSaturation = 0.4;
+  request.focusStyle.contextSaturation = 0.4;
   EXPECT_EQ(PreparedScene(request).contrast().saturation, 0.4);
 }
 

@@ -11,7 +11,7 @@ namespace fenestra::TransferReaderTests {
 namespace {
 
 TransferFunction parse(const std::string& json) {
-  return parseTransferLook(json, "test").function;
+  return parseTransferJson(json, "test").function;
 }
 
 TEST(TransferReader, ReadsItsOwnFormat) {
@@ -33,7 +33,7 @@ TEST(TransferReader, ReadsItsOwnFormat) {
 TEST(TransferReader, RelativeScalarsAreAShareOfTheUsualRange) {
   const std::string rest =
       R"("extinction": [[0.5, 0], [1, 4]], "albedo": [[0, 0, 0, 0], [1, 1, 1, 1]]})";
-  const TransferLook relative = parseTransferLook(R"({"scalars": "relative", )" + rest, "test");
+  const TransferFile relative = parseTransferJson(R"({"scalars": "relative", )" + rest, "test");
   ASSERT_TRUE(relative.isRelative);
   const TransferFunction f = relative.mapRange(-100, 300);
   EXPECT_DOUBLE_EQ(f.extinction(100)[0], 0.0);
@@ -41,7 +41,7 @@ TEST(TransferReader, RelativeScalarsAreAShareOfTheUsualRange) {
   EXPECT_DOUBLE_EQ(f.extinction(300)[0], 4.0);
   EXPECT_NEAR(f.albedo(0)[1], 0.25, 1e-12);
   for (const std::string& start : {std::string(R"({"scalars": "absolute", )"), std::string("{")}) {
-    const TransferLook absolute = parseTransferLook(start + rest, "test");
+    const TransferFile absolute = parseTransferJson(start + rest, "test");
     EXPECT_FALSE(absolute.isRelative);
     EXPECT_DOUBLE_EQ(absolute.mapRange(-100, 300).extinction(0.75)[0], 2.0);
   }
@@ -49,7 +49,7 @@ TEST(TransferReader, RelativeScalarsAreAShareOfTheUsualRange) {
   const auto file = folder.write("relative.json", R"({"scalars": "relative", )" + rest);
   expectRefused(file, "scalars: are relative", [&] { readTransferFunction(file); });
   expectRefused("test", "scalars: must be \"absolute\"",
-                [&] { parseTransferLook(R"({"scalars": "percent", )" + rest, "test"); });
+                [&] { parseTransferJson(R"({"scalars": "percent", )" + rest, "test"); });
 }
 
 TEST(TransferReader, ColorIsWhatIsSeen) {
@@ -79,7 +79,7 @@ TEST(TransferReader, ColorIsWhatIsSeen) {
 }
 
 void expectRefusal(const std::string& json, const std::string& text) {
-  expectRefused("test", text, [&] { parseTransferLook(json, "test"); });
+  expectRefused("test", text, [&] { parseTransferJson(json, "test"); });
 }
 
 TEST(TransferReader, ErrorNamesTheField) {
@@ -124,7 +124,7 @@ TEST(TransferReader, ErrorNamesTheField) {
   expectRefusal(many + "]}", "holds more than 200000 values");
   const TemporaryFolder folder;
   const auto large = folder.write("large.json", std::string((4 << 20) + 1, ' '));
-  expectRefused(large, "has more than 4 MB", [&large] { readTransferLook(large); });
+  expectRefused(large, "has more than 4 MB", [&large] { readTransferFile(large); });
 }
 
 /// Text of a .vp.json with these members in its property and component.

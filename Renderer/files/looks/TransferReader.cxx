@@ -29,7 +29,7 @@ std::optional<SurfaceShading> readShading(const JsonNode& root, double g) {
                                     roughness ? roughness->number(0.05, 1.0) : 0.4, g);
 }
 
-TransferLook readFenestraJson(const JsonNode& root) {
+TransferFile readFenestraJson(const JsonNode& root) {
   root.allowOnly(
       {"scalars", "extinction", "albedo", "color", "g", "shading", "specular", "roughness"});
   const ColorKind kind = findColorKind(root);
@@ -203,7 +203,7 @@ VolumeProperty readVp(std::string_view content, const std::string& source) {
 
 } // namespace
 
-TransferFunction TransferLook::mapRange(double low, double high) const {
+TransferFunction TransferFile::mapRange(double low, double high) const {
   TransferFunction result = function;
   if (isRelative) {
     const auto mapPosition = [&](auto& knot) {
@@ -215,7 +215,7 @@ TransferFunction TransferLook::mapRange(double low, double high) const {
   return result;
 }
 
-TransferLook parseTransferLook(std::string_view json, const std::string& source) {
+TransferFile parseTransferJson(std::string_view json, const std::string& source) {
   const nlohmann::json document = parseJson(json, source);
   const JsonNode root(document, source);
   if (root.find("volumeProperties"))
@@ -229,21 +229,21 @@ TransferFunction parseTransferFunction(const std::map<std::string, std::string>&
                   source);
 }
 
-TransferLook readTransferLook(const std::filesystem::path& path) {
+TransferFile readTransferFile(const std::filesystem::path& path) {
   const std::string source = path.string();
   const std::string extension = lowercaseExtension(path);
   if (extension != ".vp" && extension != ".json")
     throw inputError(source, "is no transfer function; name a .vp, .vp.json or .json file");
   const std::string text = readText(path);
-  return extension == ".vp" ? TransferLook{tabulate(readVp(text, source), source)}
-                            : parseTransferLook(text, source);
+  return extension == ".vp" ? TransferFile{tabulate(readVp(text, source), source)}
+                            : parseTransferJson(text, source);
 }
 
 TransferFunction readTransferFunction(const std::filesystem::path& path) {
-  TransferLook look = readTransferLook(path);
-  if (look.isRelative)
+  TransferFile file = readTransferFile(path);
+  if (file.isRelative)
     throw inputError(path, "scalars: are relative to a volume; name one of absolute scalars");
-  return std::move(look.function);
+  return std::move(file.function);
 }
 
 } // namespace fenestra

@@ -11,7 +11,7 @@
 namespace fenestra {
 
 /// Transfer function, and whether its scalars have a unit.
-struct TransferLook {
+struct TransferFile {
   TransferFunction function;
   /// True: scalars without a unit, as in MR and ultrasound; 0 and 1 stand for the least and the
   /// greatest usual value of a volume (see `over`).
@@ -23,12 +23,12 @@ struct TransferLook {
 
 /// Reads by extension: `.vp` (Slicer, text), `.vp.json` (Slicer; its first property's first
 /// component), `.json` (Fenestra). Throws Error (input).
-TransferLook readTransferLook(const std::filesystem::path& path);
+TransferFile readTransferFile(const std::filesystem::path& path);
 /// Reads a transfer function of absolute scalars. Throws Error (input) for relative ones.
 TransferFunction readTransferFunction(const std::filesystem::path& path);
 
 /// Parses a `.json` of either kind. `source` names the text in messages.
-TransferLook parseTransferLook(std::string_view json, const std::string& source);
+TransferFile parseTransferJson(std::string_view json, const std::string& source);
 
 /// Parses a volume property from the attributes of a scene's node, whose values have the form of a
 /// .vp's lines.

@@ -20,7 +20,7 @@
 namespace {
 
 using Flags = std::map<std::string, std::string>;
-using Look = qSlicerFenestraLook;
+using TransferChoice = qSlicerFenestraLook;
 using Clipping = qSlicerFenestraClipping;
 
 QComboBox& box(const QWidget& widget, const char* name) {
@@ -41,7 +41,7 @@ void press(QWidget& widget, int key, const QString& text = {}) {
 }
 
 /// Flags that the widget makes of none, without the empty ones.
-Flags takeFlags(const Look& look) {
+Flags takeFlags(const TransferChoice& look) {
   Flags flags, given;
   look.take(flags);
   for (const auto& [name, value] : flags)
@@ -51,7 +51,7 @@ Flags takeFlags(const Look& look) {
 }
 
 int checkLookDefaults() {
-  Look look;
+  TransferChoice look;
   const Flags gradient = {{"background", "gradient"}};
   CHECK_BOOL(takeFlags(look) == gradient, true);
   look.show(gradient, {}, false);
@@ -80,7 +80,7 @@ int checkLookDefaults() {
 
 /// Values that no widget has stay until the user chooses another.
 int checkLookKeeps() {
-  Look look;
+  TransferChoice look;
   const Flags flags = {{"transfer", "CT-AAA"},
                        {"lights", R"({"lights": [{"type": "environment", "radiance": 1}]})"},
                        {"background", "0.3,0.2,0.1"},
@@ -101,7 +101,7 @@ int checkLookKeeps() {
 }
 
 int checkRigs() {
-  Look look;
+  TransferChoice look;
   const auto strength = [&look](int i) {
     return look.findChild<ctkSliderWidget*>(QString("Strength%1").arg(i));
   };
@@ -119,7 +119,7 @@ int checkRigs() {
   const QString stored = look.take(flags);
   CHECK_STD_STRING(stored.toStdString(), "studio 50 100 100 100");
   CHECK_BOOL(flags["lights"].front() == '{', true);
-  Look again;
+  TransferChoice again;
   again.show(flags, stored, false);
   CHECK_STD_STRING(box(again, "RigBox").currentData().toString().toStdString(), "studio");
   CHECK_DOUBLE(again.findChild<ctkSliderWidget*>("Strength0")->value(), 50.0);
@@ -131,7 +131,7 @@ int checkRigs() {
 
 /// Older renderers have neither exposure nor tone.
 int checkAbilities() {
-  Look look;
+  TransferChoice look;
   qFenestraCapabilities abilities;
   look.setCapabilities(abilities);
   CHECK_BOOL(number(look, "ExposureBox").isHidden(), true);
