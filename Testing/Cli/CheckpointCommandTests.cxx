@@ -11,20 +11,20 @@ namespace {
 class CheckpointCommand : public SmallScene {
 protected:
   CheckpointCommand() {
-    const Outcome made = keep();
-    EXPECT_EQ(made.status, 0) << made.err;
+    const Outcome outcome = renderCheckpoint();
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
   }
 
-  Outcome keep(const Arguments& more = {}) const {
+  Outcome renderCheckpoint(const Arguments& more = {}) const {
     Arguments all = {"--checkpoint", "a.film", "--output", "a.exr"};
     all.insert(all.end(), more.begin(), more.end());
-    return renderWith(all);
+    return renderVolume(all);
   }
   /// Refusal of the film a.film, for a command with other words.
-  ExcludedOptions refusal(const std::string& name, const Arguments& words, const std::string& text,
-                          int status = 2) const {
+  ExcludedOptions refusal(const std::string& name, const Arguments& arguments,
+                          const std::string& text, int status = 2) const {
     Arguments all = {"volume.nrrd", "--checkpoint", "a.film", "--output", "a.exr"};
-    all.insert(all.end(), words.begin(), words.end());
+    all.insert(all.end(), arguments.begin(), arguments.end());
     return {name, all, status, text};
   }
 
@@ -39,75 +39,76 @@ TEST_F(CheckpointCommand, MoreSamplesGoOnFromTheFilm) {
   const Outcome once = run(
       {"volume.nrrd", "--size", "16x16", "--samples", "9", "--output", "once.exr"}, folder.path());
   ASSERT_EQ(once.status, 0) << once.err;
-  expectSamePicture(folder / "once.exr", folder / "more.exr");
+  expectSameImage(folder / "once.exr", folder / "more.exr");
 }
 
 TEST_F(CheckpointCommand, FinishedFilmGivesThePictureAgain) {
-  const std::string film = readBytes(folder / "a.film"), picture = readBytes(folder / "a.exr");
-  const Outcome again = keep({"--output", "a.png", "--denoise", "on"});
+  const std::string checkpoint = readBytes(folder / "a.film"), image = readBytes(folder / "a.exr");
+  const Outcome again = renderCheckpoint({"--output", "a.png", "--denoise", "on"});
   EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_TRUE(readBytes(folder / "a.film") == checkpoint);
-  EXPECT_EQ(keep().status, 0);
+  EXPECT_EQ(renderCheckpoint().status, 0);
   EXPECT_TRUE(readBytes(folder / "a.exr") == image);
   EXPECT_EQ(listFiles(folder.path()), (std::set<std::string>{"a.exr", "a.film", "a.png",
                                                              "segments.seg.nrrd", "volume.nrrd"}));
 }
 
 TEST_F(CheckpointCommand, StoppedRenderGoesOnToTheSameBits) {
-  const auto words = [](const std::string& name) {
+  const auto arguments = [](const std::string& name) {
     return Arguments{"volume.nrrd", "--size",       "64x64",         "--samples", "600",
                      "--noise",     "0.1",          "--noisetarget", "raw",       "--progress",
                      "xml",         "--checkpoint", name + ".film",  "--output",  name + ".exr"};
   };
-  const Outcome once = run(words("once"), folder.path());
+  const Outcome once = run(arguments("once"), folder.path());
   ASSERT_EQ(once.status, 0) << once.err;
-  Process process(words("two"), folder.path());
+  Process process(arguments("two"), folder.path());
   ASSERT_TRUE(process.waitForOutput("<filter-progress>0\\.[2-9]"));
   process.send(SIGTERM);
   const Outcome stopped = process.wait();
   ASSERT_EQ(stopped.status, 5) << stopped.err;
   EXPECT_NE(stopped.out.find("the same command goes on"), std::string::npos) << stopped.out;
-  const Outcome rest = run(words("two"), folder.path());
+  const Outcome rest = run(arguments("two"), folder.path());
   ASSERT_EQ(rest.status, 0) << rest.err;
-  expectSamePicture(folder / "once.exr", folder / "two.exr");
+  expectSameImage(folder / "once.exr", folder / "two.exr");
 }
 
 TEST_F(CheckpointCommand, FilmOfAnotherRenderIsRefused) {
   folder.write("other.json", R"({"extinction": [[0, 0], [64, 1]], "albedo": [[0, 1, 1, 1]]})");
-  const auto with = [this](Arguments words) {
-    words.insert(words.end(), small.begin(), small.end());
-    return words;
+  const auto addSize = [this](Arguments arguments) {
+    arguments.insert(arguments.end(), small.begin(), small.end());
+    return arguments;
   };
   std::vector<ExcludedOptions> refusals = {
-      refusal("seed", with({"--seed", "3"}), "--seed was not given, is 3"),
+      refusal("seed", addSize({"--seed", "3"}), "--seed was not given, is 3"),
       refusal("size", {"--size", "16x17", "--samples", "2"}, "--size was 16x16, is 16x17"),
-      refusal("view", with({"--view", "left"}), "--view was not given, is left"),
-      refusal("transfer", with({"--transfer", "other.json"}), "--transfer was not given, is other"),
-      refusal("bounces", with({"--bounces", "1"}), "--bounces"),
-      refusal("sampling", with({"--sampling", "independent"}), "--sampling"),
+      refusal("view", addSize({"--view", "left"}), "--view was not given, is left"),
+      refusal("transfer", addSize({"--transfer", "other.json"}),
+              "--transfer was not given, is other"),
+      refusal("bounces", addSize({"--bounces", "1"}), "--bounces"),
+      refusal("sampling", addSize({"--sampling", "independent"}), "--sampling"),
       refusal("fewer samples", {"--size", "16x16", "--samples", "1"}, "has up to 2 samples"),
       refusal("turntable", {}, "--checkpoint: a turntable records"),
   };
   refusals.back().arguments.insert(refusals.back().arguments.begin(), "turntable");
   for (ExcludedOptions& one : refusals)
     one.arguments.insert(one.arguments.end(), {"--progress", "xml"});
-  expectRefused(refusals, folder.path());
+  expectErrors(refusals, folder.path());
 }
 
 TEST_F(CheckpointCommand, ChangedInputsAreRefused) {
-  std::string samples = ramp();
+  std::string samples = makeRamp();
   samples[77] = 9;
-  folder.write("volume.nrrd", NrrdText().with(samples));
-  const Outcome outcome = keep();
+  folder.write("volume.nrrd", NrrdText().encode(samples));
+  const Outcome outcome = renderCheckpoint();
   EXPECT_EQ(outcome.status, 2);
   EXPECT_NE(outcome.err.find("volume.nrrd has changed since"), std::string::npos) << outcome.err;
 }
 
 TEST_F(CheckpointCommand, PlanByNoiseIsNotChangedBeyondThePilot) {
-  const Arguments even = {"volume.nrrd",  "--size", "16x16",    "--samples", "20",
-                          "--checkpoint", "b.film", "--output", "b.exr"};
+  const Arguments arguments = {"volume.nrrd",  "--size", "16x16",    "--samples", "20",
+                               "--checkpoint", "b.film", "--output", "b.exr"};
   ASSERT_EQ(run(arguments, folder.path()).status, 0);
-  Arguments planned = even;
+  Arguments planned = arguments;
   planned.insert(planned.end(), {"--noise", "1e-4"});
   const Outcome outcome = run(planned, folder.path());
   EXPECT_EQ(outcome.status, 2);
@@ -116,38 +117,38 @@ TEST_F(CheckpointCommand, PlanByNoiseIsNotChangedBeyondThePilot) {
 
 TEST_F(CheckpointCommand, OtherInstructionSetIsRefused) {
   ::setenv("FENESTRA_INSTRUCTIONS", "SCALAR", 1);
-  const Outcome outcome = keep();
+  const Outcome outcome = renderCheckpoint();
   ::unsetenv("FENESTRA_INSTRUCTIONS");
   EXPECT_EQ(outcome.status, 2);
   EXPECT_NE(outcome.err.find("is SCALAR"), std::string::npos) << outcome.err;
 }
 
 TEST_F(CheckpointCommand, DamagedFilmIsRefusedAndKept) {
-  const std::string film = readBytes(folder / "a.film");
-  for (const std::size_t at : {std::size_t{3}, film.size() / 2, film.size() - 2}) {
-    std::string damaged = film;
+  const std::string checkpoint = readBytes(folder / "a.film");
+  for (const std::size_t at : {std::size_t{3}, checkpoint.size() / 2, checkpoint.size() - 2}) {
+    std::string damaged = checkpoint;
     damaged[at] = static_cast<char>(damaged[at] ^ 4);
     folder.write("a.film", damaged);
-    const Outcome outcome = keep();
+    const Outcome outcome = renderCheckpoint();
     EXPECT_EQ(outcome.status, 3);
     EXPECT_NE(outcome.err.find("a.film: is "), std::string::npos) << outcome.err;
     EXPECT_TRUE(readBytes(folder / "a.film") == damaged);
   }
   folder.write("a.film", "somebody's notes");
-  EXPECT_EQ(keep().status, 3);
+  EXPECT_EQ(renderCheckpoint().status, 3);
   EXPECT_EQ(readBytes(folder / "a.film"), "somebody's notes");
   folder.write("a.film", "");
-  EXPECT_EQ(keep().status, 0);
+  EXPECT_EQ(renderCheckpoint().status, 0);
   EXPECT_EQ(readBytes(folder / "a.film").size(), checkpoint.size());
 }
 
 TEST_F(CheckpointCommand, FilmOfARunningRenderIsRefused) {
-  const Arguments words = {"volume.nrrd", "--size",     "64x64", "--samples",
-                           "1000000",     "--progress", "xml",   "--checkpoint",
-                           "c.film",      "--output",   "c.exr"};
-  Process process(words, folder.path());
+  const Arguments arguments = {"volume.nrrd", "--size",     "64x64", "--samples",
+                               "1000000",     "--progress", "xml",   "--checkpoint",
+                               "c.film",      "--output",   "c.exr"};
+  Process process(arguments, folder.path());
   ASSERT_TRUE(process.waitForOutput("<filter-start>"));
-  const Outcome second = run(words, folder.path());
+  const Outcome second = run(arguments, folder.path());
   EXPECT_EQ(second.status, 2);
   EXPECT_NE(second.err.find("another process is writing this film"), std::string::npos)
       << second.err;

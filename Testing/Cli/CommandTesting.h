@@ -21,7 +21,7 @@ struct NrrdText {
 
   /// Volume with 1 mm voxels and its first voxel's centre at the origin; without a space unless it
   /// has three axes.
-  std::string with(const std::string& samples) const {
+  std::string encode(const std::string& samples) const {
     const auto axes = 1 + std::count(sizes.begin(), sizes.end(), ' ');
     std::string text = "NRRD0004\ntype: " + type + "\ndimension: " + std::to_string(axes) + "\n";
     if (axes == 3)
@@ -33,14 +33,14 @@ struct NrrdText {
 };
 
 /// 4x4x4 different 16-bit values.
-inline std::string ramp() {
+inline std::string makeRamp() {
   std::string samples;
   for (char value = 0; value < 64; ++value)
     samples += {value, 0};
   return samples;
 }
 
-inline std::string gzipped(const std::string& bytes, const TemporaryFolder& folder) {
+inline std::string compressGzip(const std::string& bytes, const TemporaryFolder& folder) {
   const std::filesystem::path path = folder / "deflated.gz";
   const gzFile file = gzopen(path.c_str(), "wb");
   gzwrite(file, bytes.data(), static_cast<unsigned>(bytes.size()));
@@ -51,7 +51,7 @@ inline std::string gzipped(const std::string& bytes, const TemporaryFolder& fold
 }
 
 /// Segments A ("Bone, left", one voxel in the middle, value 1) and B ("Void", no voxel, value 2).
-inline std::string segments() {
+inline std::string makeSegments() {
   NrrdText text;
   text.type = "uint8";
   text.fields = "Segment0_ID:=A\nSegment0_Name:=Bone, left\nSegment0_LabelValue:=1\n"
@@ -59,19 +59,19 @@ inline std::string segments() {
                 "Segment1_LabelValue:=2\nSegment1_Layer:=0\n";
   std::string labels(64, '\0');
   labels[21] = 1;
-  return text.with(labels);
+  return text.encode(labels);
 }
 
 /// Folder with a volume and its segments.
 class SmallScene : public ::testing::Test {
 protected:
   SmallScene() {
-    folder.write("volume.nrrd", NrrdText().with(ramp()));
-    folder.write("segments.seg.nrrd", segments());
+    folder.write("volume.nrrd", NrrdText().encode(makeRamp()));
+    folder.write("segments.seg.nrrd", makeSegments());
   }
 
   /// Runs `fenestra volume.nrrd … ` at 16x16 pixels and 2 samples a pixel.
-  Outcome renderWith(const Arguments& arguments) const {
+  Outcome renderVolume(const Arguments& arguments) const {
     Arguments all = {"volume.nrrd", "--size", "16x16", "--samples", "2"};
     all.insert(all.end(), arguments.begin(), arguments.end());
     return run(all, folder.path());
@@ -83,14 +83,14 @@ protected:
 /// Folder with a knee of 60x68x24 voxels in knee/, made once a program by the executable.
 inline const TemporaryFolder& kneeFolder() {
   static const TemporaryFolder folder;
-  static const Outcome made =
+  static const Outcome outcome =
       run({"phantom", "knee", "--size", "60x68x24", "--output", "knee"}, folder.path());
-  if (made.status != 0)
-    throw std::runtime_error("no knee: " + made.err);
+  if (outcome.status != 0)
+    throw std::runtime_error("no knee: " + outcome.err);
   return folder;
 }
 
-inline std::set<std::string> filesIn(const std::filesystem::path& folder) {
+inline std::set<std::string> listFiles(const std::filesystem::path& folder) {
   std::set<std::string> names;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
     names.insert(entry.path().lexically_relative(folder).string());
@@ -107,12 +107,12 @@ struct ExcludedOptions {
 
 /// Runs each command line; expects its exit status, one line on standard error, nothing on standard
 /// output, and an unchanged set of files.
-inline void expectRefused(const std::vector<ExcludedOptions>& refusals,
-                          const std::filesystem::path& folder) {
-  const std::set<std::string> before = filesIn(folder);
-  for (const ExcludedOptions& refusal : refusals) {
+inline void expectErrors(const std::vector<ExcludedOptions>& errors,
+                         const std::filesystem::path& folder) {
+  const std::set<std::string> before = listFiles(folder);
+  for (const ExcludedOptions& error : errors) {
     SCOPED_TRACE(error.name);
-    const Outcome outcome = run(refusal.arguments, folder);
+    const Outcome outcome = run(error.arguments, folder);
     EXPECT_EQ(outcome.status, error.status) << outcome.err;
     EXPECT_TRUE(outcome.err.starts_with("fenestra: ")) << outcome.err;
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;

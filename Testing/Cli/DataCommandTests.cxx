@@ -134,7 +134,7 @@ const std::vector<Expectation>& expectations() {
   return table;
 }
 
-std::vector<std::string> words(const std::string& text) {
+std::vector<std::string> splitAtBlanks(const std::string& text) {
   std::istringstream in(text);
   std::vector<std::string> all;
   for (std::string word; in >> word;)
@@ -150,14 +150,14 @@ bool matches(const std::string& pattern, const std::string& file) {
 TEST(RealData, EveryFileHasAStatedExpectation) {
   if (!std::filesystem::exists(data))
     GTEST_SKIP() << data << " is absent";
-  for (const std::string& file : filesIn(data)) {
+  for (const std::string& file : listFiles(data)) {
     const std::string name = std::filesystem::path(file).filename().string();
     if (std::filesystem::is_directory(data / file) || name.starts_with("README") ||
         name.starts_with("LICENSE"))
       continue;
     bool known = false;
     for (const Expectation& expectation : expectations())
-      for (const std::string& pattern : words(expectation.files))
+      for (const std::string& pattern : splitAtBlanks(expectation.files))
         known = known || matches(pattern, file);
     EXPECT_TRUE(known) << file << ": say what is expected of it";
   }
@@ -169,7 +169,7 @@ TEST_P(RealFiles, RenderOrAreRefusedForTheStatedReason) {
   if (!std::filesystem::exists(data))
     GTEST_SKIP() << data << " is absent";
   const TemporaryFolder folder;
-  Arguments arguments = words(GetParam().arguments);
+  Arguments arguments = splitAtBlanks(GetParam().arguments);
   for (std::string& argument : arguments)
     if (argument.starts_with('@'))
       argument.replace(0, 1, data.string());
@@ -188,7 +188,7 @@ TEST_P(RealFiles, RenderOrAreRefusedForTheStatedReason) {
 
 INSTANTIATE_TEST_SUITE_P(All, RealFiles, ::testing::ValuesIn(expectations()),
                          [](const ::testing::TestParamInfo<Expectation>& info) {
-                           std::string name = words(info.param.files).back();
+                           std::string name = splitAtBlanks(info.param.files).back();
                            std::replace_if(
                                name.begin(), name.end(),
                                [](unsigned char c) { return !std::isalnum(c); }, '_');

@@ -69,7 +69,7 @@ TEST_F(VersionCommand, InstructionSetIsThatWhichARenderWouldUse) {
   ::setenv("FENESTRA_INSTRUCTIONS", sets.back().c_str(), 1);
   EXPECT_EQ(version()["instructions"], sets.back());
   ::setenv("FENESTRA_INSTRUCTIONS", "ABACUS", 1);
-  expectRefused({{"no such set", {"--version"}, 2, "ABACUS"}}, folder.path());
+  expectErrors({{"no such set", {"--version"}, 2, "ABACUS"}}, folder.path());
   pinned ? ::setenv("FENESTRA_INSTRUCTIONS", before.c_str(), 1)
          : ::unsetenv("FENESTRA_INSTRUCTIONS");
 }
@@ -113,7 +113,7 @@ TEST_F(DescribeCommand, WhatACommandRefusesIsNotOffered) {
   for (const auto& [command, flag] :
        {Pair("serve", "--stats"), Pair("serve", "--checkpoint"), Pair("turntable", "--surface"),
         Pair("turntable", "--checkpoint")}) {
-    expectRefused({{flag, {command, "volume.nrrd", flag, "a.json"}, 2, flag}}, folder.path());
+    expectErrors({{flag, {command, "volume.nrrd", flag, "a.json"}, 2, flag}}, folder.path());
     EXPECT_EQ(run({command, "--help"}, folder.path()).out.find(concat("\n  ", flag, " ")),
               std::string::npos);
   }
@@ -122,10 +122,10 @@ TEST_F(DescribeCommand, WhatACommandRefusesIsNotOffered) {
 }
 
 TEST_F(DescribeCommand, UnknownKindIsRefused) {
-  expectRefused({{"shell", {"describe", "csh"}, 2, "KIND: 'csh' is unknown"},
-                 {"none", {"describe"}, 2, "KIND: is missing"},
-                 {"two", {"describe", "man", "bash"}, 2, "one argument too many"}},
-                folder.path());
+  expectErrors({{"shell", {"describe", "csh"}, 2, "KIND: 'csh' is unknown"},
+                {"none", {"describe"}, 2, "KIND: is missing"},
+                {"two", {"describe", "man", "bash"}, 2, "one argument too many"}},
+               folder.path());
 }
 
 } // namespace

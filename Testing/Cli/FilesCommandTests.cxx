@@ -13,16 +13,16 @@ class FilesCommand : public SmallScene {};
 TEST_F(FilesCommand, RefusesInputThatIsNoVolume) {
   folder.write("text.nrrd", "These are\nonly words.\n");
   folder.write("text.txt", "words");
-  folder.write(".nrrd", NrrdText().with(ramp()));
+  folder.write(".nrrd", NrrdText().encode(makeRamp()));
   folder.write("a.seg.vtm", "<VTKFile/>");
   folder.write("empty.nrrd", "");
   folder.write("picture.nrrd", "\x89PNG\r\n\x1a\n0000");
   folder.write("picture.png", "\x89PNG\r\n\x1a\n0000");
-  folder.write("flat.nrrd", NrrdText{"8 8"}.with(ramp()));
-  folder.write("film.nrrd", NrrdText{"4 4 2 2"}.with(ramp()));
-  folder.write("none.nrrd", NrrdText{"0 4 4"}.with(""));
-  folder.write("negative.nrrd", NrrdText{"-4 4 4"}.with(ramp()));
-  expectRefused(
+  folder.write("flat.nrrd", NrrdText{"8 8"}.encode(makeRamp()));
+  folder.write("film.nrrd", NrrdText{"4 4 2 2"}.encode(makeRamp()));
+  folder.write("none.nrrd", NrrdText{"0 4 4"}.encode(""));
+  folder.write("negative.nrrd", NrrdText{"-4 4 4"}.encode(makeRamp()));
+  expectErrors(
       {
           {"missing", {"missing.nrrd"}, 3, "missing.nrrd: "},
           {"a folder", {"."}, 3, ".: "},
@@ -48,17 +48,17 @@ TEST_F(FilesCommand, RefusesInputThatIsNoVolume) {
 }
 
 TEST_F(FilesCommand, RefusesTruncatedVolumes) {
-  const std::string deflated = gzipped(ramp(), folder);
+  const std::string deflated = compressGzip(makeRamp(), folder);
   NrrdText gzip{"4 4 4", "int16", "gzip"};
-  folder.write("raw.nrrd", NrrdText().with(ramp().substr(1)));
-  folder.write("gzip.nrrd", gzip.with(deflated.substr(0, deflated.size() - 12)));
-  folder.write("larger.nrrd", NrrdText{"400 400 400"}.with(ramp()));
+  folder.write("raw.nrrd", NrrdText().encode(makeRamp().substr(1)));
+  folder.write("gzip.nrrd", gzip.encode(deflated.substr(0, deflated.size() - 12)));
+  folder.write("larger.nrrd", NrrdText{"400 400 400"}.encode(makeRamp()));
   gzip.sizes = "400 400 400";
-  folder.write("largergzip.nrrd", gzip.with(deflated));
-  folder.write("huge.nrrd", NrrdText{"100000 100000 100000"}.with(ramp()));
+  folder.write("largergzip.nrrd", gzip.encode(deflated));
+  folder.write("huge.nrrd", NrrdText{"100000 100000 100000"}.encode(makeRamp()));
   gzip.sizes = "100000 100000 100000";
-  folder.write("hugegzip.nrrd", gzip.with(deflated));
-  expectRefused(
+  folder.write("hugegzip.nrrd", gzip.encode(deflated));
+  expectErrors(
       {
           {"raw", {"raw.nrrd"}, 3, "announces 128 bytes of samples, the file has 127"},
           {"gzip", {"gzip.nrrd"}, 3, "gzip.nrrd: "},
@@ -71,31 +71,33 @@ TEST_F(FilesCommand, RefusesTruncatedVolumes) {
 }
 
 TEST_F(FilesCommand, RefusesMissingOrEmptyFocus) {
-  std::string far = segments();
+  std::string far = makeSegments();
   const std::string origin = "space origin: (0,0,0)";
   far.replace(far.find(origin), origin.size(), "space origin: (5000,0,0)");
   folder.write("far.seg.nrrd", far);
   const std::string id = "Segment0_ID:=A";
-  std::string fractional = segments();
+  std::string fractional = makeSegments();
   fractional.insert(fractional.find(id),
                     "Segmentation_MasterRepresentation:=Fractional labelmap\n");
   folder.write("fractional.seg.nrrd", fractional);
-  folder.write("blank.seg.nrrd", NrrdText{"4 4 4", "uint8"}.with(std::string(64, '\0')));
-  const auto focus = [](const std::string& file, const std::string& segment) {
+  folder.write("blank.seg.nrrd", NrrdText{"4 4 4", "uint8"}.encode(std::string(64, '\0')));
+  const auto focusArguments = [](const std::string& file, const std::string& segment) {
     return Arguments{"volume.nrrd", "--segmentation", file, "--focus", segment};
   };
-  expectRefused(
+  expectErrors(
       {
-          {"unknown", focus("segments.seg.nrrd", "C"), 3,
+          {"unknown", focusArguments("segments.seg.nrrd", "C"), 3,
            "has no segment \"C\"; it has A (Bone, left), B (Void)"},
-          {"comma not escaped", focus("segments.seg.nrrd", "Bone, left"), 3, "\"Bone\""},
-          {"no segments", focus("blank.seg.nrrd", "1"), 3, "blank.seg.nrrd: has no segment \"1\""},
-          {"no voxel", focus("segments.seg.nrrd", "B"), 3, "the focus has no voxel (B (Void))"},
-          {"outside the volume", focus("far.seg.nrrd", "A"), 3, "outside the volume"},
-          {"fractional", focus("fractional.seg.nrrd", "A"), 3,
+          {"comma not escaped", focusArguments("segments.seg.nrrd", "Bone, left"), 3, "\"Bone\""},
+          {"no segments", focusArguments("blank.seg.nrrd", "1"), 3,
+           "blank.seg.nrrd: has no segment \"1\""},
+          {"no voxel", focusArguments("segments.seg.nrrd", "B"), 3,
+           "the focus has no voxel (B (Void))"},
+          {"outside the volume", focusArguments("far.seg.nrrd", "A"), 3, "outside the volume"},
+          {"fractional", focusArguments("fractional.seg.nrrd", "A"), 3,
            "fractional.seg.nrrd: Segmentation_MasterRepresentation: is a fractional labelmap"},
-          {"missing file", focus("missing.seg.nrrd", "A"), 3, "missing.seg.nrrd: "},
-          {"empty name", focus("segments.seg.nrrd", "A,,B"), 2, "--focus: expected names"},
+          {"missing file", focusArguments("missing.seg.nrrd", "A"), 3, "missing.seg.nrrd: "},
+          {"empty name", focusArguments("segments.seg.nrrd", "A,,B"), 2, "--focus: expected names"},
       },
       folder.path());
 }
@@ -110,43 +112,47 @@ TEST_F(FilesCommand, RefusesMissingOrDamagedLooks) {
   const std::string albedo = R"("albedo": [[0, 1, 1, 1]], "g": 0, "shading": )";
   folder.write("hybrid.json", R"({"extinction": [[0, 0], [9, 1]], )" + albedo + R"("hybrid"})");
   folder.write("thick.json", R"({"extinction": [[0, 0], [9, 1e20]], )" + albedo + R"("volume"})");
-  folder.write("constant.nrrd", NrrdText().with(std::string(128, '\1')));
-  const auto with = [](const std::string& flag, const std::string& value) {
+  folder.write("constant.nrrd", NrrdText().encode(std::string(128, '\1')));
+  const auto makeArguments = [](const std::string& flag, const std::string& value) {
     return Arguments{"volume.nrrd", flag, value};
   };
-  expectRefused(
+  expectErrors(
       {
-          {"transfer preset", with("--transfer", "ct-bones"), 3,
+          {"transfer preset", makeArguments("--transfer", "ct-bones"), 3,
            "one of ct-bone, ct-heart, ct-liver"},
-          {"transfer file", with("--transfer", "missing.vp"), 3, "missing.vp: no such file"},
-          {"half of a .json", with("--transfer", "cut.json"), 3, "cut.json: is not JSON"},
-          {"word for a number", with("--transfer", "word.json"), 3, "extinction[0][1]: "},
-          {"damaged .vp", with("--transfer", "words.vp"), 3, "words.vp: line 1"},
-          {"empty .vp.json", with("--transfer", "none.vp.json"), 3, "volumeProperties: is empty"},
-          {"a volume", with("--transfer", "volume.nrrd"), 3, "is no transfer function"},
-          {"endless paths", with("--transfer", "thick.json"), 3,
+          {"transfer file", makeArguments("--transfer", "missing.vp"), 3,
+           "missing.vp: no such file"},
+          {"half of a .json", makeArguments("--transfer", "cut.json"), 3, "cut.json: is not JSON"},
+          {"word for a number", makeArguments("--transfer", "word.json"), 3, "extinction[0][1]: "},
+          {"damaged .vp", makeArguments("--transfer", "words.vp"), 3, "words.vp: line 1"},
+          {"empty .vp.json", makeArguments("--transfer", "none.vp.json"), 3,
+           "volumeProperties: is empty"},
+          {"a volume", makeArguments("--transfer", "volume.nrrd"), 3, "is no transfer function"},
+          {"endless paths", makeArguments("--transfer", "thick.json"), 3,
            "thick.json: extinction: reaches 1e+20"},
           {"no gradient",
            {"constant.nrrd", "--transfer", "hybrid.json"},
            3,
            "constant.nrrd: every voxel has the same value"},
-          {"light preset", with("--lights", "sun"), 3,
+          {"light preset", makeArguments("--lights", "sun"), 3,
            "one of amber, cinema, headlight, soft, studio"},
-          {"light type", with("--lights", "spot.json"), 3, "spot.json: lights[0].type: "},
-          {"half of a light", with("--lights", "cut.json"), 3, "cut.json: is not JSON"},
-          {"half of a text", with("--lights", R"({"lights": [)"), 3,
+          {"light type", makeArguments("--lights", "spot.json"), 3, "spot.json: lights[0].type: "},
+          {"half of a light", makeArguments("--lights", "cut.json"), 3, "cut.json: is not JSON"},
+          {"half of a text", makeArguments("--lights", R"({"lights": [)"), 3,
            "--lights: is not JSON at byte 13; check its brackets"},
-          {"no lights", with("--lights", "{}"), 3, "--lights: has no \"lights\"; add it"},
-          {"light type in text", with("--lights", R"({"lights": [{"type": "spot"}]})"), 3,
+          {"no lights", makeArguments("--lights", "{}"), 3, "--lights: has no \"lights\"; add it"},
+          {"light type in text", makeArguments("--lights", R"({"lights": [{"type": "spot"}]})"), 3,
            "--lights: lights[0].type: must be environment"},
-          {"key of two lines", with("--lights", R"({"a\nb": 1})"), 3, "--lights: unknown key"},
+          {"key of two lines", makeArguments("--lights", R"({"a\nb": 1})"), 3,
+           "--lights: unknown key"},
           {"map of a text",
-           with("--lights", R"({"lights": [{"type": "environment", "file": "missing.exr"}]})"), 3,
-           "missing.exr: there is no such file"},
-          {"half of a look's text", with("--transfer", R"({"extinction": []})"), 3,
+           makeArguments("--lights",
+                         R"({"lights": [{"type": "environment", "file": "missing.exr"}]})"),
+           3, "missing.exr: there is no such file"},
+          {"half of a look's text", makeArguments("--transfer", R"({"extinction": []})"), 3,
            "--transfer: extinction: is empty"},
-          {"environment", with("--environment", "missing.exr"), 3, "missing.exr: "},
-          {"damaged environment", with("--environment", "dark.exr"), 3, "dark.exr: "},
+          {"environment", makeArguments("--environment", "missing.exr"), 3, "missing.exr: "},
+          {"damaged environment", makeArguments("--environment", "dark.exr"), 3, "dark.exr: "},
       },
       folder.path());
 }
@@ -156,20 +162,20 @@ TEST_F(FilesCommand, UnreadablePathIsNamedWithItsCause) {
   std::filesystem::create_symlink("loop", folder / "loop");
   folder.write("s.mrml", R"(<MRML><Volume id="v" references="storage:s;"/>)"
                          R"(<VolumeArchetypeStorage id="s" fileName="loop/a.nrrd"/></MRML>)");
-  const std::string why = ": cannot be read: Too many levels of symbolic links; its links lead";
-  const auto with = [](const std::string& flag, const std::string& value) {
+  const std::string reason = ": cannot be read: Too many levels of symbolic links; its links lead";
+  const auto makeArguments = [](const std::string& flag, const std::string& value) {
     return Arguments{"volume.nrrd", flag, value};
   };
-  expectRefused(
+  expectErrors(
       {
-          {"input", {"loop/a.nrrd"}, 3, "loop/a.nrrd" + why},
-          {"input of inspect", {"inspect", "loop/a.nrrd"}, 3, "loop/a.nrrd" + why},
-          {"series", {"loop/a", "--volume", "1"}, 3, "loop/a" + why},
-          {"series of inspect", {"inspect", "loop/a", "--volume", "1"}, 3, "loop/a" + why},
+          {"input", {"loop/a.nrrd"}, 3, "loop/a.nrrd" + reason},
+          {"input of inspect", {"inspect", "loop/a.nrrd"}, 3, "loop/a.nrrd" + reason},
+          {"series", {"loop/a", "--volume", "1"}, 3, "loop/a" + reason},
+          {"series of inspect", {"inspect", "loop/a", "--volume", "1"}, 3, "loop/a" + reason},
           {"file of a scene", {"s.mrml"}, 3, "loop/a.nrrd, which cannot be read: Too many"},
-          {"transfer", with("--transfer", "loop/t.vp"), 3, "loop/t.vp" + why},
-          {"lights", with("--lights", "loop/l.json"), 3, "loop/l.json" + why},
-          {"preset", with("--preset", "loop/p.json"), 3, "loop/p.json" + why},
+          {"transfer", makeArguments("--transfer", "loop/t.vp"), 3, "loop/t.vp" + reason},
+          {"lights", makeArguments("--lights", "loop/l.json"), 3, "loop/l.json" + reason},
+          {"preset", makeArguments("--preset", "loop/p.json"), 3, "loop/p.json" + reason},
           {"output of a turntable",
            {"turntable", "volume.nrrd", "--output", "loop/t.png"},
            4,
@@ -185,17 +191,18 @@ TEST_F(FilesCommand, UnreadablePathIsNamedWithItsCause) {
 
 TEST_F(FilesCommand, AbsoluteNamesWorkInADeletedFolder) {
   std::filesystem::create_directory(folder / "gone");
-  const std::string there = folder.path().string();
-  const auto inNowhere = [&](const std::string& arguments) {
-    return std::system(("cd " + there + "/gone && rmdir " + there + "/gone && " +
+  const std::string folderPath = folder.path().string();
+  const auto runInDeletedFolder = [&](const std::string& arguments) {
+    return std::system(("cd " + folderPath + "/gone && rmdir " + folderPath + "/gone && " +
                         FENESTRA_EXECUTABLE + " " + arguments + " --samples 1 --size 8x8 2>" +
-                        there + "/said >&2; status=$?; mkdir -p " + there + "/gone; exit $status")
+                        folderPath + "/said >&2; status=$?; mkdir -p " + folderPath +
+                        "/gone; exit $status")
                            .c_str()) >>
            8;
   };
-  EXPECT_EQ(inNowhere(there + "/volume.nrrd --output " + there + "/a.png"), 0)
+  EXPECT_EQ(runInDeletedFolder(folderPath + "/volume.nrrd --output " + folderPath + "/a.png"), 0)
       << readBytes(folder / "said");
-  EXPECT_EQ(inNowhere(there + "/volume.nrrd"), 4);
+  EXPECT_EQ(runInDeletedFolder(folderPath + "/volume.nrrd"), 4);
   EXPECT_NE(readBytes(folder / "said").find("volume.png: cannot be written: No such file"),
             std::string::npos)
       << readBytes(folder / "said");
@@ -204,22 +211,24 @@ TEST_F(FilesCommand, AbsoluteNamesWorkInADeletedFolder) {
 TEST_F(FilesCommand, RefusesUnwritableOutputs) {
   std::filesystem::create_directory(folder / "folder.png");
   std::filesystem::create_directory(folder / "depth-Z.nrrd");
-  folder.write("a-Z.nrrd", NrrdText().with(ramp()));
-  const auto to = [](const std::string& file) {
+  folder.write("a-Z.nrrd", NrrdText().encode(makeRamp()));
+  const auto outputArguments = [](const std::string& file) {
     return Arguments{"volume.nrrd", "--output", file};
   };
-  const std::string known = "has no known extension; name a file .exr, .nrrd, .png or .tif";
-  expectRefused(
+  const std::string extensions = "has no known extension; name a file .exr, .nrrd, .png or .tif";
+  expectErrors(
       {
-          {"missing folder", to("missing/a.png"), 4, "missing/a.png: cannot be written: "},
-          {"a folder", to("folder.png"), 4, "folder.png: is a folder"},
-          {"depth is a folder", to("depth.nrrd"), 4, "depth-Z.nrrd: is a folder"},
-          {"no permission", to("/proc/a.png"), 4, "/proc/a.png: cannot be written: "},
-          {"a device", to("/dev/full"), 2, known},
-          {"unknown extension", to("a.gif"), 2, known},
-          {"no extension", to("a"), 2, known},
-          {"second of two", {"volume.nrrd", "--output", "a.png", "--output", "b"}, 2, known},
-          {"the input", to("./volume.nrrd"), 2, "./volume.nrrd: would replace an input file"},
+          {"missing folder", outputArguments("missing/a.png"), 4,
+           "missing/a.png: cannot be written: "},
+          {"a folder", outputArguments("folder.png"), 4, "folder.png: is a folder"},
+          {"depth is a folder", outputArguments("depth.nrrd"), 4, "depth-Z.nrrd: is a folder"},
+          {"no permission", outputArguments("/proc/a.png"), 4, "/proc/a.png: cannot be written: "},
+          {"a device", outputArguments("/dev/full"), 2, extensions},
+          {"unknown extension", outputArguments("a.gif"), 2, extensions},
+          {"no extension", outputArguments("a"), 2, extensions},
+          {"second of two", {"volume.nrrd", "--output", "a.png", "--output", "b"}, 2, extensions},
+          {"the input", outputArguments("./volume.nrrd"), 2,
+           "./volume.nrrd: would replace an input file"},
           {"twice", {"volume.nrrd", "--output", "a.png", "--output", "./a.png"}, 2, "twice"},
           {"stats over the picture",
            {"volume.nrrd", "--output", "a.png", "--stats", "a.png"},
@@ -248,7 +257,7 @@ TEST_F(FilesCommand, RefusesUnwritableOutputs) {
 }
 
 /// TIFF of one grey pixel, uncompressed.
-std::string tiffOf(std::uint16_t orientation) {
+std::string makeTiff(std::uint16_t orientation) {
   const auto bytes = [](std::uint32_t value, int count) {
     std::string text;
     for (int i = 0; i < count; ++i)
@@ -267,24 +276,24 @@ std::string tiffOf(std::uint16_t orientation) {
 }
 
 TEST_F(FilesCommand, CompareRefusesARotatedTiff) {
-  folder.write("upright.tif", tiffOf(1));
-  folder.write("turned.tif", tiffOf(3));
+  folder.write("upright.tif", makeTiff(1));
+  folder.write("turned.tif", makeTiff(3));
   EXPECT_EQ(run({"compare", "upright.tif", "upright.tif"}, folder.path()).status, 0);
-  expectRefused(
+  expectErrors(
       {{"turned", {"compare", "upright.tif", "turned.tif"}, 3, "turned.tif: Orientation: is 3"}},
       folder.path());
 }
 
 TEST_F(FilesCommand, CompareRefusesDifferentSizesAndUnreadablePictures) {
-  ASSERT_EQ(renderWith({"--output", "a.png"}).status, 0);
-  ASSERT_EQ(renderWith({"--size", "8x8", "--output", "b.png"}).status, 2) << "--size twice";
+  ASSERT_EQ(renderVolume({"--output", "a.png"}).status, 0);
+  ASSERT_EQ(renderVolume({"--size", "8x8", "--output", "b.png"}).status, 2) << "--size twice";
   ASSERT_EQ(
       run({"volume.nrrd", "--size", "8x8", "--samples", "1", "--output", "b.png"}, folder.path())
           .status,
       0);
   folder.write("text.txt", "words");
   folder.write("text.png", "words");
-  expectRefused(
+  expectErrors(
       {
           {"sizes", {"compare", "a.png", "b.png"}, 3, "a.png, b.png: "},
           {"missing", {"compare", "a.png", "missing.png"}, 3, "missing.png: "},
@@ -298,19 +307,19 @@ TEST_F(FilesCommand, CompareRefusesDifferentSizesAndUnreadablePictures) {
 }
 
 TEST_F(FilesCommand, PhantomRefusesBadKindSizeOrFolder) {
-  const auto into = [](const std::string& where) {
+  const auto phantomArguments = [](const std::string& where) {
     return Arguments{"phantom", "knee", "--size", "16x16x16", "--output", where};
   };
-  expectRefused(
+  expectErrors(
       {
           {"kind", {"phantom", "elbow"}, 2, "KIND: 'elbow' is unknown; use knee"},
           {"no kind", {"phantom"}, 2, "KIND: is missing"},
           {"one number", {"phantom", "knee", "--size", "64"}, 2, "--size: expected WIDTHxHEIGHT"},
           {"too small", {"phantom", "knee", "--size", "1x1x1"}, 2, "between 16 and 1024"},
           {"too large", {"phantom", "knee", "--size", "99999x16x16"}, 2, "between 16 and 1024"},
-          {"no permission", into("/proc/knee"), 4, "/proc/knee: cannot be made"},
-          {"a file", into("volume.nrrd"), 4, "volume.nrrd: cannot be made"},
-          {"a device", into("/dev/null"), 4, "/dev/null: cannot be made"},
+          {"no permission", phantomArguments("/proc/knee"), 4, "/proc/knee: cannot be made"},
+          {"a file", phantomArguments("volume.nrrd"), 4, "volume.nrrd: cannot be made"},
+          {"a device", phantomArguments("/dev/null"), 4, "/dev/null: cannot be made"},
       },
       folder.path());
 }

@@ -12,7 +12,7 @@ namespace {
 /// Folder with a knee, rendered at 48x48 pixels.
 class FilterCommand : public ::testing::Test {
 protected:
-  Outcome knee(const Arguments& arguments) const {
+  Outcome runKnee(const Arguments& arguments) const {
     const std::string input = (kneeFolder() / "knee" / "knee").string();
     Arguments all = {input + ".nrrd",    "--segmentation",   input + ".seg.nrrd",
                      "--focus",          "FemoralCartilage", "--transfer",
@@ -21,7 +21,7 @@ protected:
     return run(all, folder.path());
   }
   void render(const Arguments& arguments) const {
-    const Outcome outcome = knee(arguments);
+    const Outcome outcome = runKnee(arguments);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
   }
   nlohmann::json stats() const { return nlohmann::json::parse(readBytes(folder / "s.json")); }
@@ -29,7 +29,7 @@ protected:
   TemporaryFolder folder;
 };
 
-std::set<std::string> channelsOf(const Image& image) {
+std::set<std::string> channelNames(const Image& image) {
   std::set<std::string> names;
   for (const auto& [name, plane] : image.channels)
     names.insert(name);
@@ -37,11 +37,11 @@ std::set<std::string> channelsOf(const Image& image) {
 }
 
 TEST_F(FilterCommand, RawChannelsKeepTheirBits) {
-  const auto with = [&](const std::string& denoise, const std::string& name) {
+  const auto renderImage = [&](const std::string& denoise, const std::string& name) {
     render({"--samples", "4", "--denoise", denoise, "--output", name});
     return readImage(folder / name);
   };
-  const Image off = with("off", "off.exr"), on = with("on", "on.exr");
+  const Image off = renderImage("off", "off.exr"), on = renderImage("on", "on.exr");
   for (const auto& [name, plane] : off.channels)
     EXPECT_EQ(on.channels.at(name), plane) << name;
   EXPECT_GT(on.channels.size(), off.channels.size());
@@ -69,7 +69,7 @@ TEST_F(FilterCommand, AutoFiltersPicturesForTheEyeAndSaysSo) {
   EXPECT_NE(png.find("filtered for the eye"), std::string::npos);
   EXPECT_NE(tiff.find("filtered for the eye"), std::string::npos);
   const Image exr = readImage(folder / "a.exr");
-  EXPECT_FALSE(channelsOf(exr).contains("denoised.R"));
+  EXPECT_FALSE(channelNames(exr).contains("denoised.R"));
   EXPECT_FALSE(exr.header.contains("filter"));
   EXPECT_GT(stats()["noiseFiltered"], 0.0);
   EXPECT_LT(stats()["noiseFiltered"], stats()["noise"]);
@@ -111,29 +111,31 @@ TEST_F(FilterCommand, NoiseMeansTheFilteredPictureIfThatIsAllThereIs) {
 }
 
 TEST_F(FilterCommand, ThreadsChangeNoBit) {
-  std::set<std::string> pictures;
+  std::set<std::string> images;
   for (const char* threads : {"1", "2", "7"}) {
     render({"--samples", "2", "--denoise", "on", "--output", "a.exr", "--threads", threads});
     Image image = readImage(folder / "a.exr");
     std::string bytes;
     for (const auto& [name, plane] : image.channels)
       bytes.append(reinterpret_cast<const char*>(plane.data()), plane.size() * sizeof(float));
-    pictures.insert(bytes);
+    images.insert(bytes);
   }
   EXPECT_EQ(images.size(), 1U);
 }
 
 TEST_F(FilterCommand, ContradictionsAreRefused) {
-  const auto refused = [&](const Arguments& arguments, const std::string& mend) {
-    const Outcome outcome = knee(arguments);
+  const auto expectUsageError = [&](const Arguments& arguments, const std::string& hint) {
+    const Outcome outcome = runKnee(arguments);
     EXPECT_EQ(outcome.status, 2);
     EXPECT_NE(outcome.err.find(hint), std::string::npos) << outcome.err;
   };
-  refused({"--noise", "0.1", "--noisetarget", "filtered", "--denoise", "off"}, "--denoise on");
-  refused({"--noise", "0.1", "--noisetarget", "filtered", "--output", "a.exr"}, "--denoise on");
-  refused({"--noisetarget", "raw"}, "--noise E");
-  refused({"--layers", "denoised,color", "--output", "a.exr"}, "--denoise on");
-  refused({"--layers", "color", "--denoise", "on", "--output", "a.exr"}, "--layers");
+  expectUsageError({"--noise", "0.1", "--noisetarget", "filtered", "--denoise", "off"},
+                   "--denoise on");
+  expectUsageError({"--noise", "0.1", "--noisetarget", "filtered", "--output", "a.exr"},
+                   "--denoise on");
+  expectUsageError({"--noisetarget", "raw"}, "--noise E");
+  expectUsageError({"--layers", "denoised,color", "--output", "a.exr"}, "--denoise on");
+  expectUsageError({"--layers", "color", "--denoise", "on", "--output", "a.exr"}, "--layers");
 }
 
 } // namespace

@@ -21,7 +21,7 @@ protected:
 };
 
 TEST_F(FlagsCommand, RefusesUnknownArgumentsAndSuggestsTheNearest) {
-  expectRefused(
+  expectErrors(
       {
           {"nothing", {}, 2, "INPUT: is missing"},
           {"render alone", {"render"}, 2, "INPUT: is missing"},
@@ -45,11 +45,11 @@ TEST_F(FlagsCommand, RefusesFlagsNotYetImplemented) {
   refusals.push_back(
       refusal({"--segmentation", "segments.seg.nrrd", "--focus", "A", "--boundary", "smooth"},
               "--boundary: expected spline or exact, got 'smooth'"));
-  expectRefused(refusals, folder.path());
+  expectErrors(refusals, folder.path());
 }
 
 TEST_F(FlagsCommand, RefusesMissingAndRepeatedValues) {
-  expectRefused(
+  expectErrors(
       {
           refusal({"--samples"}, "--samples: its value is missing; write --samples N"),
           refusal({"--samples", "--seed", "3"}, "--samples: its value is missing"),
@@ -91,7 +91,7 @@ TEST_F(FlagsCommand, RefusesNumbersOutOfRange) {
   refuseAll("--exposure", {"17", "-16.5", "nan", "1,2", "bright"});
   refuseAll("--size", {"0x0", "32", "-1x3", "1x1x1", "1e3x2", "32X32", "16385x1", "1x16385",
                        "99999999999x1", "x", "nanxnan", ""});
-  expectRefused(refusals, folder.path());
+  expectErrors(refusals, folder.path());
 }
 
 TEST_F(FlagsCommand, RefusesAnglesAndPlanesOutOfRange) {
@@ -101,7 +101,7 @@ TEST_F(FlagsCommand, RefusesAnglesAndPlanesOutOfRange) {
         refusal({"--projection", "perspective", "--angle", angle}, "--angle: expected a number"));
   for (const char* plane : {"0,0,0", "0,0,0,0,0,0", "0,0,0,0,0,nan", "a"})
     refusals.push_back(refusal({"--clip", "plane", "--plane", plane}, "--plane: "));
-  expectRefused(refusals, folder.path());
+  expectErrors(refusals, folder.path());
 }
 
 TEST_F(FlagsCommand, RefusesPictureLargerThanMemory) {
@@ -109,12 +109,12 @@ TEST_F(FlagsCommand, RefusesPictureLargerThanMemory) {
       static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
   if (memory > 60e9)
     GTEST_SKIP() << "this machine has memory for the largest picture";
-  expectRefused({{"largest", {"volume.nrrd", "--size", "16384x16384"}, 4, "GB of memory"}},
-                folder.path());
+  expectErrors({{"largest", {"volume.nrrd", "--size", "16384x16384"}, 4, "GB of memory"}},
+               folder.path());
 }
 
 TEST_F(FlagsCommand, RefusesUnknownWords) {
-  expectRefused(
+  expectErrors(
       {
           refusal({"--view", "top"}, "--view: expected anterior"),
           refusal({"--view", "auto"}, "--view: auto looks for a focus; add --focus"),
@@ -134,7 +134,7 @@ TEST_F(FlagsCommand, RefusesContradictions) {
     flags.insert(flags.begin(), focus.begin(), focus.end());
     return refusal(flags, text);
   };
-  expectRefused(
+  expectErrors(
       {
           refusal({"--view", "left", "--position", "1,2,3"}, "--view and --position contradict"),
           refusal({"--plane", "0,0,0,0,0,1"}, "--plane: only --clip plane uses it"),

@@ -7,27 +7,27 @@ namespace fenestra::InspectCommandTests {
 namespace {
 
 TEST_F(InspectCommand, DescribesVolume) {
-  const Json said = inspect({"volume.nrrd"});
-  EXPECT_EQ(said["kind"], "volume");
-  const Json& volume = said["render"]["volume"];
+  const Json report = inspect({"volume.nrrd"});
+  EXPECT_EQ(report["kind"], "volume");
+  const Json& volume = report["render"]["volume"];
   EXPECT_EQ(volume["size"], Json({4, 4, 4}));
   EXPECT_EQ(volume["spacing"], Json({1.0, 1.0, 1.0}));
   EXPECT_EQ(volume["center"], Json({-1.5, -1.5, 1.5}));
   EXPECT_EQ(volume["voxelType"], "uint8") << "the least that holds its values";
   EXPECT_EQ(volume["range"], Json({0.0, 63.0}));
-  EXPECT_EQ(said["render"]["look"]["source"], "range");
-  EXPECT_EQ(said["render"]["camera"]["projection"], "orthographic");
-  EXPECT_EQ(said["segmentations"], Json::array());
-  EXPECT_TRUE(said["refused"].is_null());
+  EXPECT_EQ(report["render"]["look"]["source"], "range");
+  EXPECT_EQ(report["render"]["camera"]["projection"], "orthographic");
+  EXPECT_EQ(report["segmentations"], Json::array());
+  EXPECT_TRUE(report["refused"].is_null());
   EXPECT_NE(text.find("4 x 4 x 4 voxels of 1 x 1 x 1 mm, uint8 from 0 to 63"), std::string::npos)
       << text;
-  expectAsRendered(said, "volume.nrrd");
+  expectSameAsRender(report, "volume.nrrd");
 }
 
 TEST_F(InspectCommand, DescribesSegments) {
-  const Json said = inspect({"segments.seg.nrrd"});
-  ASSERT_EQ(said["kind"], "segmentation");
-  const Json& segments = said["segmentations"][0]["segments"];
+  const Json report = inspect({"segments.seg.nrrd"});
+  ASSERT_EQ(report["kind"], "segmentation");
+  const Json& segments = report["segmentations"][0]["segments"];
   ASSERT_EQ(segments.size(), 2u);
   EXPECT_EQ(segments[0]["id"], "A");
   EXPECT_EQ(segments[0]["name"], "Bone, left");
@@ -42,8 +42,8 @@ TEST_F(InspectCommand, DescribesSegments) {
 }
 
 TEST_F(InspectCommand, TellsWhatEachSegmentIsMadeOf) {
-  const Json said = inspect({"segments.seg.nrrd"});
-  const Json& bone = said["segmentations"][0]["segments"][0]["material"];
+  const Json report = inspect({"segments.seg.nrrd"});
+  const Json& bone = report["segmentations"][0]["segments"][0]["material"];
   EXPECT_EQ(bone["name"], "bone");
   EXPECT_EQ(bone["kind"], "tint");
   EXPECT_NEAR(bone["color"][2].get<double>(), 0xdc / 255.0, 1e-9);
@@ -51,7 +51,7 @@ TEST_F(InspectCommand, TellsWhatEachSegmentIsMadeOf) {
   EXPECT_EQ(bone["clip"], true);
   EXPECT_EQ(bone["density"], 1.0);
   EXPECT_EQ(bone["why"], "by name 'bone*'");
-  const Json& other = said["segmentations"][0]["segments"][1]["material"];
+  const Json& other = report["segmentations"][0]["segments"][1]["material"];
   EXPECT_TRUE(other["name"].is_null()) << other;
   EXPECT_NE(text.find("bone      #f6eedc  tint  by name 'bone*'"), std::string::npos) << text;
 }
@@ -60,59 +60,59 @@ TEST_F(InspectCommand, ReportsLabelMapAsSegmentation) {
   std::string labels(64, '\0');
   std::fill(labels.begin() + 8, labels.begin() + 24, '\3');
   std::fill(labels.begin() + 32, labels.begin() + 48, '\7');
-  folder.write("labels.nrrd", NrrdText{"4 4 4", "uint8"}.with(labels));
-  const Json said = inspect({"labels.nrrd"});
-  ASSERT_EQ(said["kind"], "segmentation");
-  ASSERT_EQ(said["segmentations"][0]["segments"].size(), 2u);
-  EXPECT_EQ(said["segmentations"][0]["segments"][1]["name"], "Segment_7");
-  EXPECT_EQ(said["segmentations"][0]["segments"][1]["voxels"], 16);
-  EXPECT_EQ(said["render"]["volume"]["range"], Json({0.0, 7.0})) << "it renders as a volume, too";
+  folder.write("labels.nrrd", NrrdText{"4 4 4", "uint8"}.encode(labels));
+  const Json report = inspect({"labels.nrrd"});
+  ASSERT_EQ(report["kind"], "segmentation");
+  ASSERT_EQ(report["segmentations"][0]["segments"].size(), 2u);
+  EXPECT_EQ(report["segmentations"][0]["segments"][1]["name"], "Segment_7");
+  EXPECT_EQ(report["segmentations"][0]["segments"][1]["voxels"], 16);
+  EXPECT_EQ(report["render"]["volume"]["range"], Json({0.0, 7.0})) << "it renders as a volume, too";
 }
 
 TEST_F(InspectCommand, ListsSegmentationGivenBesideVolume) {
-  const Json said = inspect({"volume.nrrd", "--segmentation", "segments.seg.nrrd"});
-  EXPECT_EQ(said["kind"], "volume");
-  EXPECT_EQ(said["render"]["segmentation"], "segments.seg.nrrd");
-  EXPECT_EQ(said["segmentations"][0]["kind"], "file");
-  EXPECT_EQ(said["segmentations"][0]["used"], true);
-  EXPECT_EQ(said["segmentations"][0]["segments"].size(), 2u);
+  const Json report = inspect({"volume.nrrd", "--segmentation", "segments.seg.nrrd"});
+  EXPECT_EQ(report["kind"], "volume");
+  EXPECT_EQ(report["render"]["segmentation"], "segments.seg.nrrd");
+  EXPECT_EQ(report["segmentations"][0]["kind"], "file");
+  EXPECT_EQ(report["segmentations"][0]["used"], true);
+  EXPECT_EQ(report["segmentations"][0]["segments"].size(), 2u);
   const Json missing = inspect({"volume.nrrd", "--segmentation", "none.nrrd"});
   EXPECT_NE(missing["segmentations"][0]["problem"].get<std::string>().find("there is no such file"),
             std::string::npos);
 }
 
 TEST_F(InspectCommand, ListsSceneNodesAndThoseRendered) {
-  const Json said = inspectScene(volumeNode + segmentationNode + settings);
-  EXPECT_EQ(said["kind"], "scene");
-  EXPECT_EQ(said["version"], "Slicer 5.6.2 32448");
-  EXPECT_EQ(said["volumes"][0]["files"],
+  const Json report = inspectScene(volumeNode + segmentationNode + settingNodes);
+  EXPECT_EQ(report["kind"], "scene");
+  EXPECT_EQ(report["version"], "Slicer 5.6.2 32448");
+  EXPECT_EQ(report["volumes"][0]["files"],
             Json::parse(R"([{"name": "volume.nrrd", "there": true}])"));
-  EXPECT_EQ(said["volumes"][0]["transform"], "t1");
-  EXPECT_EQ(said["segmentations"][0]["kind"], "segmentation");
-  EXPECT_EQ(said["segmentations"][0]["segments"][0]["shown"], true);
-  EXPECT_EQ(said["segmentations"][0]["segments"][1]["shown"], false);
-  const Json& rendering = said["volumeRenderings"][0];
+  EXPECT_EQ(report["volumes"][0]["transform"], "t1");
+  EXPECT_EQ(report["segmentations"][0]["kind"], "segmentation");
+  EXPECT_EQ(report["segmentations"][0]["segments"][0]["shown"], true);
+  EXPECT_EQ(report["segmentations"][0]["segments"][1]["shown"], false);
+  const Json& rendering = report["volumeRenderings"][0];
   EXPECT_EQ(rendering["volume"], "vol1");
   EXPECT_EQ(rendering["property"], "prop1");
   EXPECT_EQ(rendering["roi"], "roi1");
   EXPECT_EQ(rendering["cropping"], true);
   EXPECT_EQ(rendering["followsDisplay"], false);
-  EXPECT_EQ(said["views"][0]["layout"], "1");
-  EXPECT_EQ(said["views"][0]["background"]["top"], Json({0.0, 0.0, 1.0}));
-  EXPECT_EQ(said["transforms"][0]["linear"], true);
-  EXPECT_EQ(said["transforms"][0]["toWorld"][1], Json({0.0, 1.0, 0.0, 20.0}));
+  EXPECT_EQ(report["views"][0]["layout"], "1");
+  EXPECT_EQ(report["views"][0]["background"]["top"], Json({0.0, 0.0, 1.0}));
+  EXPECT_EQ(report["transforms"][0]["linear"], true);
+  EXPECT_EQ(report["transforms"][0]["toWorld"][1], Json({0.0, 1.0, 0.0, 20.0}));
   for (const char* list : {"volumes", "segmentations", "volumeRenderings", "volumeProperties",
                            "rois", "views", "cameras", "transforms"})
-    EXPECT_EQ(said[list][0]["used"], true) << list;
-  EXPECT_EQ(said["others"]["SegmentationDisplay"], 1);
-  const Json& library = said["materials"];
+    EXPECT_EQ(report[list][0]["used"], true) << list;
+  EXPECT_EQ(report["others"]["SegmentationDisplay"], 1);
+  const Json& library = report["materials"];
   const auto liver =
       std::ranges::find(library, "liver", [](const Json& one) { return one["name"]; });
   ASSERT_NE(liver, library.end());
   EXPECT_EQ((*liver)["kind"], "tint");
   EXPECT_EQ((*liver)["color"][0], 0x96 / 255.0);
 
-  const Json& render = said["render"];
+  const Json& render = report["render"];
   EXPECT_EQ(render["volume"]["id"], "vol1");
   EXPECT_EQ(render["volume"]["center"], Json({8.5, 18.5, 31.5})) << "moved by the transform";
   EXPECT_EQ(render["volume"]["transforms"], Json({"t1"}));
@@ -126,9 +126,10 @@ TEST_F(InspectCommand, ListsSceneNodesAndThoseRendered) {
   EXPECT_EQ(render["background"]["bottom"], Json({1.0, 0.0, 0.0}));
   EXPECT_EQ(render["segmentation"], "seg1");
   EXPECT_NE(text.find("#ff0000 below to #0000ff above"), std::string::npos) << text;
-  ASSERT_EQ(said["warnings"].size(), 1u);
-  EXPECT_EQ(said["warnings"][0], "the cropping box lies outside the volume: nothing is left of it");
-  expectAsRendered(said, "scene.mrml");
+  ASSERT_EQ(report["warnings"].size(), 1u);
+  EXPECT_EQ(report["warnings"][0],
+            "the cropping box lies outside the volume: nothing is left of it");
+  expectSameAsRender(report, "scene.mrml");
 }
 
 TEST_F(InspectCommand, VolumeFlagChoosesAmongSeveral) {
@@ -144,7 +145,7 @@ TEST_F(InspectCommand, VolumeFlagChoosesAmongSeveral) {
   EXPECT_NE(text.find("A render would be refused: scene.mrml: has several volumes"),
             std::string::npos)
       << text;
-  expectAsRendered(open, "scene.mrml");
+  expectSameAsRender(open, "scene.mrml");
 
   const Json chosen = inspectScene(volumes, {"--volume", "MR"});
   EXPECT_TRUE(chosen["refused"].is_null());
@@ -157,17 +158,17 @@ TEST_F(InspectCommand, VolumeFlagChoosesAmongSeveral) {
 TEST_F(InspectCommand, ReportsAmbiguousSegmentation) {
   const std::string second =
       R"(<Segmentation id="seg2" name="Rest" references="storage:store2;"/>)";
-  const Json open = inspectScene(volumeNode + segmentationNode + settings + second);
+  const Json open = inspectScene(volumeNode + segmentationNode + settingNodes + second);
   EXPECT_TRUE(open["refused"].is_null()) << "without a focus there is nothing to choose";
   EXPECT_TRUE(open["render"]["segmentation"].is_null());
   EXPECT_NE(open["render"]["segmentationProblem"].get<std::string>().find("--segmentation"),
             std::string::npos);
-  const Json chosen =
-      inspectScene(volumeNode + segmentationNode + settings + second, {"--segmentation", "Rest"});
+  const Json chosen = inspectScene(volumeNode + segmentationNode + settingNodes + second,
+                                   {"--segmentation", "Rest"});
   EXPECT_EQ(chosen["render"]["segmentation"], "seg2");
   EXPECT_TRUE(chosen["render"]["segmentationProblem"].is_null());
   const Json none =
-      inspectScene(volumeNode + segmentationNode + settings, {"--segmentation", "nowhere"});
+      inspectScene(volumeNode + segmentationNode + settingNodes, {"--segmentation", "nowhere"});
   EXPECT_EQ(none["render"]["segmentationProblem"],
             "--segmentation nowhere: is neither in the scene nor a file");
 }
@@ -186,7 +187,7 @@ TEST_F(InspectCommand, DescribesRealScenes) {
   if (!std::filesystem::exists(root))
     GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
   const std::string slicer = "slicer_scenes/";
-  for (const RealScene& real : std::vector<RealScene>{
+  for (const RealScene& scene : std::vector<RealScene>{
            {slicer + "slicer_5_2_written/chest.mrb", 1, 1, 1, ""},
            {slicer + "slicer_5_2_written/chest_transformed_cropped.mrb", 1, 1, 1, ""},
            {slicer + "slicerrt_scenes/Scenes/EclipseProstate_Dvh_Scene.mrml", 1, 1, 0, ""},
@@ -201,17 +202,18 @@ TEST_F(InspectCommand, DescribesRealScenes) {
            {slicer + "vr_properties/US-VrPresets.mrml", 0, 0, 8, "holds no scalar volume"},
            {slicer + "vr_properties/SM_presets.mrml", 0, 0, 2, "holds no scalar volume"},
        }) {
-    SCOPED_TRACE(real.file);
-    const std::string file = (root / real.file).string();
-    const Json said = inspect({file});
-    EXPECT_EQ(said["volumes"].size(), real.volumes);
-    EXPECT_EQ(said["segmentations"].size(), real.segmentations);
-    EXPECT_EQ(said["volumeProperties"].size(), real.properties);
-    if (real.refused.empty())
-      EXPECT_TRUE(said["refused"].is_null()) << said["refused"];
+    SCOPED_TRACE(scene.file);
+    const std::string file = (root / scene.file).string();
+    const Json report = inspect({file});
+    EXPECT_EQ(report["volumes"].size(), scene.volumes);
+    EXPECT_EQ(report["segmentations"].size(), scene.segmentations);
+    EXPECT_EQ(report["volumeProperties"].size(), scene.properties);
+    if (scene.refused.empty())
+      EXPECT_TRUE(report["refused"].is_null()) << report["refused"];
     else
-      EXPECT_NE(said["refused"].dump().find(real.refused), std::string::npos) << said["refused"];
-    expectAsRendered(said, file);
+      EXPECT_NE(report["refused"].dump().find(scene.refused), std::string::npos)
+          << report["refused"];
+    expectSameAsRender(report, file);
   }
 }
 
@@ -219,14 +221,14 @@ TEST_F(InspectCommand, ListsDicomSeries) {
   const auto series = std::filesystem::path(FENESTRA_DATA) / "head_ct_slicer_dicom" / "dicom";
   if (!std::filesystem::exists(series))
     GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
-  const Json said = inspect({series.string()});
-  EXPECT_EQ(said["kind"], "dicom");
-  ASSERT_EQ(said["series"].size(), 1u);
-  EXPECT_EQ(said["series"][0]["files"], 93);
-  EXPECT_EQ(said["series"][0]["modality"], "CT");
-  EXPECT_EQ(said["render"]["volume"]["size"], Json({64, 64, 93}));
-  EXPECT_EQ(said["render"]["look"]["name"], "ct-soft") << "its air is at 0";
-  EXPECT_EQ(said["segmentations"], Json::array());
+  const Json report = inspect({series.string()});
+  EXPECT_EQ(report["kind"], "dicom");
+  ASSERT_EQ(report["series"].size(), 1u);
+  EXPECT_EQ(report["series"][0]["files"], 93);
+  EXPECT_EQ(report["series"][0]["modality"], "CT");
+  EXPECT_EQ(report["render"]["volume"]["size"], Json({64, 64, 93}));
+  EXPECT_EQ(report["render"]["look"]["name"], "ct-soft") << "its air is at 0";
+  EXPECT_EQ(report["segmentations"], Json::array());
   const Json other = inspect({series.string(), "--volume", "none"});
   EXPECT_TRUE(other["render"].is_null());
   EXPECT_NE(other["refused"].dump().find("--volume"), std::string::npos) << other["refused"];
@@ -237,21 +239,21 @@ TEST_F(InspectCommand, DescribesSceneWrittenBySlicer) {
                     "chest_transformed_cropped.mrb";
   if (!std::filesystem::exists(file))
     GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
-  const Json said = inspect({file.string()});
-  EXPECT_EQ(said["version"], "Slicer 5.2.2 31383");
-  const Json& render = said["render"];
+  const Json report = inspect({file.string()});
+  EXPECT_EQ(report["version"], "Slicer 5.2.2 31383");
+  const Json& render = report["render"];
   EXPECT_EQ(render["volume"]["size"], Json({128, 128, 34}));
   EXPECT_EQ(render["volume"]["transforms"], Json({"vtkMRMLLinearTransformNode4"}));
   EXPECT_EQ(render["look"]["name"], "CT-Chest-Contrast-Enhanced");
   EXPECT_NEAR(render["crop"]["edges"][0].get<double>(), 300.0, 1e-9);
   EXPECT_NEAR(render["crop"]["center"][2].get<double>(), -170.0, 1e-9);
   EXPECT_EQ(render["camera"]["projection"], "perspective");
-  EXPECT_EQ(said["segmentations"][0]["segments"].size(), 7u);
-  EXPECT_EQ(said["segmentations"][0]["segments"][4]["name"], "right lung");
-  EXPECT_EQ(said["segmentations"][0]["segments"][4]["voxels"], 34450);
-  EXPECT_EQ(said["segmentations"][0]["segments"][4]["material"]["why"], "by SCT^39607008");
-  EXPECT_NEAR(said["transforms"][0]["toWorld"][0][1].get<double>(), -0.34202, 1e-5);
-  EXPECT_EQ(said["warnings"], Json::array());
+  EXPECT_EQ(report["segmentations"][0]["segments"].size(), 7u);
+  EXPECT_EQ(report["segmentations"][0]["segments"][4]["name"], "right lung");
+  EXPECT_EQ(report["segmentations"][0]["segments"][4]["voxels"], 34450);
+  EXPECT_EQ(report["segmentations"][0]["segments"][4]["material"]["why"], "by SCT^39607008");
+  EXPECT_NEAR(report["transforms"][0]["toWorld"][0][1].get<double>(), -0.34202, 1e-5);
+  EXPECT_EQ(report["warnings"], Json::array());
 }
 
 } // namespace

@@ -7,7 +7,7 @@
 namespace fenestra::InspectRefusalsTests {
 namespace {
 
-std::vector<std::string> lines(const std::string& text) {
+std::vector<std::string> splitLines(const std::string& text) {
   std::istringstream in(text);
   std::vector<std::string> all;
   for (std::string line; std::getline(in, line);)
@@ -25,7 +25,7 @@ TEST_F(InspectCommand, ReportsWhyRenderWouldRefuse) {
   for (const Case& c : std::vector<Case>{
            {"no volume", segmentationNode, "holds no scalar volume"},
            {"technique",
-            volumeNode + settings + R"(<View id="view1" name="V" layoutName="1" active="true"
+            volumeNode + settingNodes + R"(<View id="view1" name="V" layoutName="1" active="true"
               raycastTechnique="MaximumIntensityProjection"/>)",
             "a maximum intensity projection"},
            {"missing file",
@@ -38,29 +38,29 @@ TEST_F(InspectCommand, ReportsWhyRenderWouldRefuse) {
             "position: must be three numbers"},
        }) {
     SCOPED_TRACE(c.name);
-    const Json said = inspectScene(c.nodes);
-    ASSERT_TRUE(said["refused"].is_string());
-    EXPECT_NE(said["refused"].get<std::string>().find(c.line), std::string::npos)
-        << said["refused"];
-    EXPECT_EQ(said["volumes"].size() + said["segmentations"].size(), 1u);
-    expectAsRendered(said, "scene.mrml");
+    const Json report = inspectScene(c.nodes);
+    ASSERT_TRUE(report["refused"].is_string());
+    EXPECT_NE(report["refused"].get<std::string>().find(c.line), std::string::npos)
+        << report["refused"];
+    EXPECT_EQ(report["volumes"].size() + report["segmentations"].size(), 1u);
+    expectSameAsRender(report, "scene.mrml");
   }
 }
 
 TEST_F(InspectCommand, NamesTheDamagedPart) {
-  folder.write("cut.seg.nrrd", segments().substr(0, segments().size() - 9));
+  folder.write("cut.seg.nrrd", makeSegments().substr(0, makeSegments().size() - 9));
   const std::string cut = R"(<SegmentationStorage id="store3" fileName="cut.seg.nrrd"/>
     <Segmentation id="seg2" name="Cut" references="storage:store3;"/>
     <BSplineTransform id="t2" name="Warp"/>)";
-  const Json said = inspectScene(volumeNode + cut + segmentationNode + settings);
-  EXPECT_TRUE(said["refused"].is_null());
-  EXPECT_NE(said["segmentations"][0]["problem"].get<std::string>().find("cut.seg.nrrd: "),
+  const Json report = inspectScene(volumeNode + cut + segmentationNode + settingNodes);
+  EXPECT_TRUE(report["refused"].is_null());
+  EXPECT_NE(report["segmentations"][0]["problem"].get<std::string>().find("cut.seg.nrrd: "),
             std::string::npos);
-  EXPECT_TRUE(said["segmentations"][0]["size"].is_null());
-  EXPECT_TRUE(said["segmentations"][1]["problem"].is_null());
-  EXPECT_EQ(said["segmentations"][1]["segments"].size(), 2u);
-  EXPECT_EQ(said["transforms"][0]["linear"], false);
-  EXPECT_NE(said["transforms"][0]["problem"].get<std::string>().find("is not linear"),
+  EXPECT_TRUE(report["segmentations"][0]["size"].is_null());
+  EXPECT_TRUE(report["segmentations"][1]["problem"].is_null());
+  EXPECT_EQ(report["segmentations"][1]["segments"].size(), 2u);
+  EXPECT_EQ(report["transforms"][0]["linear"], false);
+  EXPECT_NE(report["transforms"][0]["problem"].get<std::string>().find("is not linear"),
             std::string::npos);
 
   const Json missing = inspectScene(
@@ -73,7 +73,7 @@ TEST_F(InspectCommand, NamesTheDamagedPart) {
 
 /// HDF5 file of symbols in a tree of five levels; the `children` entries of each node all point to
 /// one node below: a walk meets children^5 leaves.
-std::string fanningTree(std::size_t children) {
+std::string makeExponentialTree(std::size_t children) {
   using namespace std::string_literals;
   const auto number = [](std::uint64_t value, std::size_t size) { // little-endian, as here
     return std::string(reinterpret_cast<const char*>(&value), size);
@@ -104,10 +104,10 @@ TEST_F(InspectCommand, RefusesHdf5TreeThatFansOut) {
   const std::string line = "t.h5: is damaged, truncated or no transform of ITK's; save it again";
   writeScene(volumeNode + R"(<LinearTransformStorage id="ts" fileName="t.h5"/>
     <LinearTransform id="t1" references="storage:ts;"/>)");
-  folder.write("t.h5", fanningTree(40));
+  folder.write("t.h5", makeExponentialTree(40));
   const Outcome inspected = run({"inspect", "scene.mrml"}, folder.path());
   EXPECT_NE(inspected.out.find("problem: " + line), std::string::npos) << inspected.out;
-  folder.write("t.h5", fanningTree(2000));
+  folder.write("t.h5", makeExponentialTree(2000));
   const Outcome rendered = run({"scene.mrml", "--size", "8x8"}, folder.path());
   EXPECT_EQ(rendered.status, 3);
   EXPECT_EQ(rendered.err, "fenestra: " + line + "\n");
@@ -118,35 +118,36 @@ TEST_F(InspectCommand, PrintsUntrustedNamesOnOneLine) {
   std::string models;
   for (int i = 0; i < 300; ++i)
     models += "<Model id=\"m" + std::to_string(i) + "\" name=\"Model\"/>";
-  const Json said =
-      inspectScene(volumeNode + settings + "<VolumeProperty id=\"p2\" name=\"" + evil +
+  const Json report =
+      inspectScene(volumeNode + settingNodes + "<VolumeProperty id=\"p2\" name=\"" + evil +
                    "\"/><Camera id=\"c2\" layoutName=\"" + evil + "\"/>" + models);
-  EXPECT_EQ(said["volumeProperties"][1]["name"],
+  EXPECT_EQ(report["volumeProperties"][1]["name"],
             "\033[31mred\n" + std::string(300, 'x') + "\xc3\xa4");
-  for (const std::string& line : lines(text)) {
+  for (const std::string& line : splitLines(text)) {
     EXPECT_LE(line.size(), 100u) << line;
     EXPECT_EQ(std::count_if(line.begin(), line.end(), [](char c) { return c >= 0 && c < ' '; }), 0);
     EXPECT_FALSE(line.ends_with(' ')) << line;
   }
-  EXPECT_LT(lines(text).size(), 60u) << "300 models are a number";
+  EXPECT_LT(splitLines(text).size(), 60u) << "300 models are a number";
   EXPECT_NE(text.find("Model (300)"), std::string::npos) << text;
-  EXPECT_EQ(said["others"]["Model"], 300);
+  EXPECT_EQ(report["others"]["Model"], 300);
 }
 
 TEST_F(InspectCommand, RefusesInputThatIsNoVolumeOrScene) {
   folder.write("text.nrrd", "These are\nonly words.\n");
   folder.write("text.mrml", "<html/>");
   folder.write("text.mrb", "words");
-  const auto of = [](const std::string& file) { return Arguments{"inspect", file}; };
-  expectRefused(
+  const auto inspectArguments = [](const std::string& file) { return Arguments{"inspect", file}; };
+  expectErrors(
       {
           {"nothing", {"inspect"}, 2, "INPUT: is missing"},
-          {"missing", of("missing.nrrd"), 3, "missing.nrrd: there is no such file"},
-          {"missing scene", of("missing.mrml"), 3, "missing.mrml: there is no such file"},
-          {"words", of("text.nrrd"), 3, "text.nrrd: is not a NRRD file"},
-          {"web page", of("text.mrml"), 3, "text.mrml: has no MRML element"},
-          {"no archive", of("text.mrb"), 3, "text.mrb: "},
-          {"no images", of("."), 3, ".: "},
+          {"missing", inspectArguments("missing.nrrd"), 3, "missing.nrrd: there is no such file"},
+          {"missing scene", inspectArguments("missing.mrml"), 3,
+           "missing.mrml: there is no such file"},
+          {"words", inspectArguments("text.nrrd"), 3, "text.nrrd: is not a NRRD file"},
+          {"web page", inspectArguments("text.mrml"), 3, "text.mrml: has no MRML element"},
+          {"no archive", inspectArguments("text.mrb"), 3, "text.mrb: "},
+          {"no images", inspectArguments("."), 3, ".: "},
           {"switch with a value", {"inspect", "volume.nrrd", "--json=1"}, 2, "--json: is a switch"},
           {"volume of one", {"inspect", "volume.nrrd", "--volume", "CT"}, 2, "--volume: only a"},
           {"flag of another", {"inspect", "volume.nrrd", "--seed", "1"}, 2, "no such flag"},

@@ -18,7 +18,7 @@ inline const std::string segmentationNode = R"(
 <SegmentationDisplay id="show2" SegmentationDisplayProperties="A Visible:true|B Visible3D:false|"/>
 <Segmentation id="seg1" name="Parts" references="storage:store2;display:show2;"/>)";
 
-inline const std::string settings = R"(
+inline const std::string settingNodes = R"(
 <GPURayCastVolumeRendering id="vr1" name="VR" croppingEnabled="true" visibility="true"
   references="volumeProperty:prop1;roi:roi1;view:view1;"/>
 <VolumeProperty id="prop1" name="Warm" scalarOpacity="4 0 0 60 1"
@@ -57,13 +57,13 @@ protected:
 
   /// Expects a render to be refused in the words of the inspection, or to succeed if it reports no
   /// refusal.
-  void expectAsRendered(const Json& said, const std::string& input) const {
+  void expectSameAsRender(const Json& report, const std::string& input) const {
     const Outcome rendered =
         run({input, "--size", "4x4", "--samples", "1", "--output", "a.png"}, folder.path());
-    if (said["refused"].is_null())
+    if (report["refused"].is_null())
       EXPECT_EQ(rendered.status, 0) << rendered.err;
     else
-      EXPECT_EQ(rendered.err, "fenestra: " + said["refused"].get<std::string>() + "\n");
+      EXPECT_EQ(rendered.err, "fenestra: " + report["refused"].get<std::string>() + "\n");
   }
 
   mutable std::string text; ///< output of the last inspection

@@ -10,15 +10,15 @@ namespace {
 
 const std::filesystem::path data = FENESTRA_DATA;
 
-Image rendered(Arguments arguments, const std::filesystem::path& folder,
-               const std::string& name = "p.exr") {
+Image renderImage(Arguments arguments, const std::filesystem::path& folder,
+                  const std::string& name = "p.exr") {
   arguments.insert(arguments.end(), {"--output", name});
   const Outcome outcome = run(arguments, folder);
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   return readImage(folder / name);
 }
 
-bool isOfColor(const std::string& channel) {
+bool isColorChannel(const std::string& channel) {
   return channel.size() == 1 ? channel != "A" && channel != "Z"
                              : channel.starts_with("error.") || channel.starts_with("albedo.");
 }
@@ -29,14 +29,14 @@ void expectOnlyColors(Arguments arguments, const std::string& materials = "libra
   arguments.insert(arguments.end(), {"--size", "40x40", "--samples", "2"});
   Arguments plain = arguments;
   plain.insert(plain.end(), {"--materials", "none"});
-  const Image none = rendered(plain, folder.path());
+  const Image none = renderImage(plain, folder.path());
   arguments.insert(arguments.end(), {"--materials", materials, "--stats", "s.json"});
-  const Image tinted = rendered(arguments, folder.path());
+  const Image tinted = renderImage(arguments, folder.path());
   EXPECT_EQ(none.channels.size(), tinted.channels.size());
   for (const char* name : {"A", "Z", "clip.Z", "normal.X", "samples.N"})
     EXPECT_TRUE(tinted.find(name)) << name;
   for (const auto& [name, plane] : none.channels)
-    if (isOfColor(name))
+    if (isColorChannel(name))
       EXPECT_NE(tinted.channels.at(name), plane) << name << " is not tinted";
     else
       EXPECT_EQ(tinted.channels.at(name), plane) << name;
@@ -100,7 +100,7 @@ TEST_F(RealMaterials, ChangeColoursAloneOfOverlappingLayers) {
 /// The volume and its segments, of which "Bone, left" has a voxel and "Void" none.
 class MaterialsCommand : public SmallScene {
 protected:
-  static Arguments with(const Arguments& more) {
+  static Arguments makeArguments(const Arguments& more) {
     Arguments all = {
         "volume.nrrd", "--segmentation", "segments.seg.nrrd", "--size", "8x8", "--samples", "2"};
     all.insert(all.end(), more.begin(), more.end());
@@ -109,27 +109,29 @@ protected:
 };
 
 TEST_F(MaterialsCommand, NeedNoFocusAndAreTold) {
-  const Outcome outcome = run(with({"--materials", "library", "--output", "a.png"}), folder.path());
+  const Outcome outcome =
+      run(makeArguments({"--materials", "library", "--output", "a.png"}), folder.path());
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
-  EXPECT_EQ(outcome.choices,
+  EXPECT_EQ(outcome.statusLine,
             "look: by the volume's range; light: cinema; materials: library, 1 colour");
 }
 
 /// "Bone, left" is known, and "Void" is not.
 TEST_F(MaterialsCommand, AKnownFocusIsSetOffByDefault) {
-  const auto picture = [&](const Arguments& more) {
-    return rendered(with(more), folder.path()).channels;
+  const auto renderChannels = [&](const Arguments& more) {
+    return renderImage(makeArguments(more), folder.path()).channels;
   };
-  const auto automatic = picture({"--focus", "A", "--materials", "auto"});
-  const auto none = picture({"--focus", "A", "--materials", "none"});
+  const auto automatic = renderChannels({"--focus", "A", "--materials", "auto"});
+  const auto none = renderChannels({"--focus", "A", "--materials", "none"});
   EXPECT_NE(automatic, none);
-  EXPECT_EQ(picture({"--focus", "A"}), automatic);
-  EXPECT_EQ(picture({"--focus", "A,B"}), automatic);
-  EXPECT_EQ(picture({"--focus", "A", "--contextsaturation", "1"}),
-            picture({"--focus", "A", "--contextsaturation", "1", "--materials", "none"}));
-  const Outcome outcome = run(with({"--focus", "A", "--output", "a.png"}), folder.path());
-  EXPECT_NE(outcome.choices.find("; materials: auto, "), std::string::npos) << outcome.choices;
+  EXPECT_EQ(renderChannels({"--focus", "A"}), automatic);
+  EXPECT_EQ(renderChannels({"--focus", "A,B"}), automatic);
+  EXPECT_EQ(renderChannels({"--focus", "A", "--contextsaturation", "1"}),
+            renderChannels({"--focus", "A", "--contextsaturation", "1", "--materials", "none"}));
+  const Outcome outcome = run(makeArguments({"--focus", "A", "--output", "a.png"}), folder.path());
+  EXPECT_NE(outcome.statusLine.find("; materials: auto, "), std::string::npos)
+      << outcome.statusLine;
 }
 
 TEST_F(MaterialsCommand, FilesAndChangesOverrideTheLibrary) {
@@ -137,7 +139,7 @@ TEST_F(MaterialsCommand, FilesAndChangesOverrideTheLibrary) {
                R"({"version": 1, "materials": {"green": {"albedo": [0, 1, 0]}},
                    "segments": [{"match": {"names": ["*bone*"]}, "material": "green"}]})");
   const auto albedo = [&](const Arguments& more) {
-    const Image image = rendered(with(more), folder.path());
+    const Image image = renderImage(makeArguments(more), folder.path());
     const auto mean = [&](const char* name) {
       const Plane& plane = image.channels.at(name);
       return std::accumulate(plane.begin(), plane.end(), 0.0F);
@@ -158,24 +160,24 @@ TEST_F(MaterialsCommand, ContextOfAFileIsAppliedAroundAFocus) {
   const std::string context = R"("context": {"saturation": 0.7, "lightness": 0.2}})";
   folder.write("given.json", R"({"version": 1, )" + context);
   folder.write("contrast.json", R"({"version": 1, "contrast": true, )" + context);
-  const auto told = [&](const std::string& materials) {
-    Arguments arguments =
-        with({"--focus", "A", "--materials", materials, "--stats", "s.json", "--output", "a.png"});
+  const auto renderContrast = [&](const std::string& materials) {
+    Arguments arguments = makeArguments(
+        {"--focus", "A", "--materials", materials, "--stats", "s.json", "--output", "a.png"});
     const Outcome outcome = run(arguments, folder.path());
     EXPECT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_NE(outcome.choices.find("; contrast: "), std::string::npos) << outcome.choices;
+    EXPECT_NE(outcome.statusLine.find("; contrast: "), std::string::npos) << outcome.statusLine;
     return nlohmann::json::parse(readBytes(folder / "s.json")).at("contrast");
   };
   for (const char* file : {"given.json", "contrast.json"}) {
-    EXPECT_EQ(told(file).at("contextSaturation"), 0.7) << file;
-    EXPECT_EQ(told(file).at("contextLightness"), 0.2) << file;
-    EXPECT_EQ(told(file).at("segment"), "Bone, left");
-    EXPECT_EQ(told(file).at("neighbour"), "the rest");
+    EXPECT_EQ(renderContrast(file).at("contextSaturation"), 0.7) << file;
+    EXPECT_EQ(renderContrast(file).at("contextLightness"), 0.2) << file;
+    EXPECT_EQ(renderContrast(file).at("segment"), "Bone, left");
+    EXPECT_EQ(renderContrast(file).at("neighbour"), "the rest");
   }
-  EXPECT_EQ(told("given.json").at("focusLightness"), 0.0);
-  expectRefused({{"no focus", with({"--materials", "given.json"}), 3,
-                  "given.json: context: is what is not focus; add --focus, or leave it out"}},
-                folder.path());
+  EXPECT_EQ(renderContrast("given.json").at("focusLightness"), 0.0);
+  expectErrors({{"no focus", makeArguments({"--materials", "given.json"}), 3,
+                 "given.json: context: is what is not focus; add --focus, or leave it out"}},
+               folder.path());
 }
 
 /// A segment that is not clipped stands where the clip removes the rest.
@@ -183,39 +185,39 @@ TEST_F(MaterialsCommand, MatterCanBeDenserAndStandThroughTheClip) {
   folder.write("dense.json",
                R"({"version": 1, "segments":
                    [{"match": {"names": ["bone*"]}, "material": "bone", "density": 8}]})");
-  const auto seen = [&](Arguments more) {
+  const auto sumAlpha = [&](Arguments more) {
     more.insert(more.end(), {"--background", "transparent", "--density", "0.05"});
-    const Image image = rendered(with(more), folder.path());
+    const Image image = renderImage(makeArguments(more), folder.path());
     const Plane& alpha = image.channels.at("A");
     return std::accumulate(alpha.begin(), alpha.end(), 0.0F);
   };
   const Arguments library = {"--materials", "library"};
-  const auto changed = [&](Arguments more) {
+  const auto sumAlphaWithMaterials = [&](Arguments more) {
     more.insert(more.begin(), library.begin(), library.end());
-    return seen(more);
+    return sumAlpha(more);
   };
-  const float plain = seen(library);
-  EXPECT_GT(seen({"--materials", "dense.json"}), plain);
-  EXPECT_GT(changed({"--material", "A: density=8"}), plain);
-  EXPECT_GT(changed({"--material", "A: extinction=50"}), plain);
-  const auto clipped = [&](Arguments more) {
+  const float plain = sumAlpha(library);
+  EXPECT_GT(sumAlpha({"--materials", "dense.json"}), plain);
+  EXPECT_GT(sumAlphaWithMaterials({"--material", "A: density=8"}), plain);
+  EXPECT_GT(sumAlphaWithMaterials({"--material", "A: extinction=50"}), plain);
+  const auto sumAlphaClipped = [&](Arguments more) {
     more.insert(more.end(), {"--clip", "plane", "--plane", "1000,0,0,-1,0,0"});
-    return changed(more);
+    return sumAlphaWithMaterials(more);
   };
-  EXPECT_EQ(clipped({}), 0.0F);
-  EXPECT_GT(clipped({"--material", "A: clip=no"}), 0.0F);
+  EXPECT_EQ(sumAlphaClipped({}), 0.0F);
+  EXPECT_GT(sumAlphaClipped({"--material", "A: clip=no"}), 0.0F);
 }
 
 TEST_F(MaterialsCommand, RefusesInOneLine) {
   folder.write("broken.json", R"({"version": 1, "materials": {"a": {"colour": "#ffffff"}}})");
   const auto refusal = [](Arguments more, int status, const std::string& text) {
-    return ExcludedOptions{text, with(more), status, text};
+    return ExcludedOptions{text, makeArguments(more), status, text};
   };
   const Arguments on = {"--materials", "library"};
-  const auto change = [&](const std::string& text, const std::string& answer) {
-    return refusal({on[0], on[1], "--material", text}, 3, answer);
+  const auto change = [&](const std::string& text, const std::string& message) {
+    return refusal({on[0], on[1], "--material", text}, 3, message);
   };
-  expectRefused(
+  expectErrors(
       {
           {"no labels",
            {"volume.nrrd", "--materials", "library"},
@@ -250,20 +252,20 @@ TEST_F(MaterialsCommand, StoredMaterialsReproduceThePicture) {
         <SegmentationStorage id="ss" fileName="segments.seg.nrrd"/>)" +
                            stored + "</MRML>");
   };
-  const auto stored = [&](const std::string& name, const std::string& materials,
-                          const std::string& changes = "A: color=#00ff00") {
+  const auto writeStored = [&](const std::string& name, const std::string& materials,
+                               const std::string& changes = "A: color=#00ff00") {
     write(name, R"(<FenestraRender id="f" references="volume:v;segmentation:s;" size="8x8"
                      samples="2" materials=")" +
                     materials + R"(" material=")" + changes + R"("/>)");
   };
   folder.write("mine.json", R"({"version": 1})");
   write("plain.mrml", "");
-  stored("library.mrml", "library");
-  stored("file.mrml", "mine.json");
-  stored(
+  writeStored("library.mrml", "library");
+  writeStored("file.mrml", "mine.json");
+  writeStored(
       "several.mrml", "library",
       R"(A: color=#00ff00\, priority=3,Bone\, left: material=bone\, color=#ff0000,B: priority=2)");
-  const auto renderedScene = [&](const Arguments& arguments, const std::string& warning = "") {
+  const auto renderScene = [&](const Arguments& arguments, const std::string& warning = "") {
     Arguments all = arguments;
     all.insert(all.end(), {"--output", "a.exr"});
     const Outcome outcome = run(all, folder.path());
@@ -273,26 +275,26 @@ TEST_F(MaterialsCommand, StoredMaterialsReproduceThePicture) {
     return readImage(folder / "a.exr").channels;
   };
   const Arguments small = {"plain.mrml", "--size", "8x8", "--samples", "2"};
-  const auto with = [&](Arguments more) {
+  const auto makeArguments = [&](Arguments more) {
     more.insert(more.begin(), small.begin(), small.end());
     return more;
   };
-  const auto none = renderedScene(small);
+  const auto none = renderScene(small);
   const auto green =
-      renderedScene(with({"--materials", "library", "--material", "A: color=#00ff00"}));
+      renderScene(makeArguments({"--materials", "library", "--material", "A: color=#00ff00"}));
   EXPECT_NE(green, none);
-  EXPECT_EQ(renderedScene({"library.mrml"}), green);
+  EXPECT_EQ(renderScene({"library.mrml"}), green);
   EXPECT_EQ(
-      renderedScene({"several.mrml"}),
-      renderedScene(makeArguments(
+      renderScene({"several.mrml"}),
+      renderScene(makeArguments(
           {"--materials", "library", "--material", "A: color=#00ff00, priority=3", "--material",
            "Bone, left: material=bone, color=#ff0000", "--material", "B: priority=2"})));
-  EXPECT_EQ(renderedScene({"library.mrml", "--materials", "library"}),
-            renderedScene(makeArguments({"--materials", "library"})))
+  EXPECT_EQ(renderScene({"library.mrml", "--materials", "library"}),
+            renderScene(makeArguments({"--materials", "library"})))
       << "given materials replace the stored changes, too";
-  EXPECT_EQ(renderedScene({"library.mrml", "--materials", "none"}), none);
+  EXPECT_EQ(renderScene({"library.mrml", "--materials", "none"}), none);
   EXPECT_EQ(
-      renderedScene({"file.mrml"}, "materials \"mine.json\" names a file, which a scene may not"),
+      renderScene({"file.mrml"}, "materials \"mine.json\" names a file, which a scene may not"),
       none);
 }
 
@@ -306,9 +308,9 @@ TEST_F(MaterialsCommand, AServerTakesThemAsAList) {
       << process.output();
   EXPECT_EQ(
       readImage(folder / "a.exr").channels,
-      rendered(makeArguments({"--materials", "library", "--material",
-                              "A: color=#00ff00, priority=3", "--material", "B: color=#ff0000"}),
-               folder.path())
+      renderImage(makeArguments({"--materials", "library", "--material",
+                                 "A: color=#00ff00, priority=3", "--material", "B: color=#ff0000"}),
+                  folder.path())
           .channels);
   process.write("{\"id\": 2, \"materials\": \"nothing\"}\n");
   EXPECT_TRUE(process.waitForOutput("\"error\",\"id\":2,\"message\":\"nothing: no such file"))

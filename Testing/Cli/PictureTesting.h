@@ -10,7 +10,7 @@
 namespace fenestra {
 
 /// Expects the same channels, and the same sample count in the header, if it has one.
-inline void expectSamePicture(const std::filesystem::path& a, const std::filesystem::path& b) {
+inline void expectSameImage(const std::filesystem::path& a, const std::filesystem::path& b) {
   const Image one = readImage(a), other = readImage(b);
   EXPECT_FALSE(one.channels.empty());
   EXPECT_TRUE(one.channels == other.channels) << a << " and " << b;

@@ -25,7 +25,7 @@ Arguments withSegments(const Arguments& arguments) {
 }
 
 /// Lines printed by --echo.
-std::set<std::string> echoed(Arguments arguments, const std::string& input = "knee/knee.nrrd") {
+std::set<std::string> renderEcho(Arguments arguments, const std::string& input = "knee/knee.nrrd") {
   arguments.push_back("--echo");
   const Outcome outcome = renderKnee(arguments, input);
   EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -36,21 +36,21 @@ std::set<std::string> echoed(Arguments arguments, const std::string& input = "kn
   return lines;
 }
 
-bool has(const std::set<std::string>& lines, const std::string& start) {
+bool hasLine(const std::set<std::string>& lines, const std::string& start) {
   return std::any_of(lines.begin(), lines.end(),
                      [&](const std::string& line) { return line.starts_with(start); });
 }
 
-Image picture() {
+Image readResult() {
   return readImage(kneeFolder() / "preset.exr");
 }
 
 TEST(PresetsCommand, PresetSetsFocusLookViewAndClip) {
-  const auto lines = echoed(withSegments({"--preset", "knee-cartilage", "--stats", "s.json"}));
+  const auto lines = renderEcho(withSegments({"--preset", "knee-cartilage", "--stats", "s.json"}));
   for (const char* line : {"preset: knee-cartilage", "focus: FemoralCartilage",
                            "focus: TibialCartilage", "transfer: mr-knee", "clip: surface"})
     EXPECT_TRUE(lines.contains(line)) << line;
-  const Image byPreset = picture();
+  const Image byPreset = readResult();
   EXPECT_EQ(byPreset.header.at("preset"), "knee-cartilage");
   EXPECT_EQ(byPreset.header.at("look"), "mr-knee");
   const auto stats = nlohmann::json::parse(readBytes(kneeFolder() / "s.json"));
@@ -65,50 +65,50 @@ TEST(PresetsCommand, PresetSetsFocusLookViewAndClip) {
                        {std::string("--") + flag, line.substr(std::string(flag).size() + 2)});
   EXPECT_GE(written.size(), 16u);
   ASSERT_EQ(renderKnee(withSegments(written)).status, 0);
-  EXPECT_EQ(picture().channels, byPreset.channels);
-  EXPECT_FALSE(picture().header.contains("preset"));
+  EXPECT_EQ(readResult().channels, byPreset.channels);
+  EXPECT_FALSE(readResult().header.contains("preset"));
 }
 
 TEST(PresetsCommand, FlagsOverrideThePreset) {
-  const auto lines =
-      echoed(withSegments({"--preset", "knee-cartilage", "--view", "superior", "--clip", "cutaway",
-                           "--transfer", "ct-bone", "--focus", "Femur", "--scale", "70"}));
+  const auto lines = renderEcho(
+      withSegments({"--preset", "knee-cartilage", "--view", "superior", "--clip", "cutaway",
+                    "--transfer", "ct-bone", "--focus", "Femur", "--scale", "70"}));
   for (const char* line : {"view: superior", "clip: cutaway", "transfer: ct-bone", "focus: Femur",
                            "scale: 70", "lights: studio", "preset: knee-cartilage"})
     EXPECT_TRUE(lines.contains(line)) << line;
-  EXPECT_FALSE(has(lines, "boundary"));
-  EXPECT_TRUE(has(lines, "labelsmoothing")); // kept: the focus's own in any mode
+  EXPECT_FALSE(hasLine(lines, "boundary"));
+  EXPECT_TRUE(hasLine(lines, "labelsmoothing")); // kept: the focus's own in any mode
   EXPECT_FALSE(lines.contains("focus: FemoralCartilage"));
   // Likewise with a flag that conflicts with the preset's surface.
-  const auto others = echoed(withSegments(
+  const auto others = renderEcho(withSegments(
       {"--preset", "knee-cartilage", "--controlpoints", "20", "--position", "0,300,0"}));
   EXPECT_TRUE(others.contains("clip: surface"));
-  EXPECT_FALSE(has(others, "boundary"));
-  EXPECT_FALSE(has(others, "view"));
+  EXPECT_FALSE(hasLine(others, "boundary"));
+  EXPECT_FALSE(hasLine(others, "view"));
 }
 
 /// Slicer's panel passes all flags, most with their default values.
 TEST(PresetsCommand, DefaultValuesFromSlicerDoNotOverrideThePreset) {
-  const auto lines = echoed(withSegments({"--preset", "knee-cartilage", "--clip", "auto",
-                                          "--boundary", "spline", "--controlpoints", "50",
-                                          "--lights", "soft", "--returnparameterfile", "r.txt"}));
+  const auto lines = renderEcho(withSegments(
+      {"--preset", "knee-cartilage", "--clip", "auto", "--boundary", "spline", "--controlpoints",
+       "50", "--lights", "soft", "--returnparameterfile", "r.txt"}));
   EXPECT_TRUE(lines.contains("clip: surface"));
   EXPECT_TRUE(lines.contains("boundary: exact"));
   EXPECT_TRUE(lines.contains("lights: soft"));
 }
 
 TEST(PresetsCommand, AutoChoosesThePresetBySegmentNames) {
-  EXPECT_TRUE(echoed(withSegments({"--preset", "auto"})).contains("preset: knee-cartilage"));
-  EXPECT_TRUE(echoed(withSegments({"--preset", "auto", "--focus", "Femoral cartilage"}))
+  EXPECT_TRUE(renderEcho(withSegments({"--preset", "auto"})).contains("preset: knee-cartilage"));
+  EXPECT_TRUE(renderEcho(withSegments({"--preset", "auto", "--focus", "Femoral cartilage"}))
                   .contains("focus: Femoral cartilage"));
-  EXPECT_TRUE(echoed({"--preset", "auto"}, "knee/knee.mrb").contains("preset: knee-cartilage"));
+  EXPECT_TRUE(renderEcho({"--preset", "auto"}, "knee/knee.mrb").contains("preset: knee-cartilage"));
 }
 
 TEST(PresetsCommand, WithoutSegmentationSetsNeitherFocusNorClip) {
-  const auto lines = echoed({"--preset", "knee-cartilage"});
+  const auto lines = renderEcho({"--preset", "knee-cartilage"});
   EXPECT_TRUE(lines.contains("transfer: mr-knee"));
-  EXPECT_FALSE(has(lines, "focus"));
-  EXPECT_FALSE(has(lines, "clip"));
+  EXPECT_FALSE(hasLine(lines, "focus"));
+  EXPECT_FALSE(hasLine(lines, "clip"));
 }
 
 /// Clip and look are for another modality: the requested picture is rendered all the same.
@@ -118,7 +118,7 @@ TEST(PresetsCommand, LookForAnotherModalityIsReplacedWithAWarning) {
   EXPECT_NE(outcome.err.find("made for CT, which this volume does not seem to be"),
             std::string::npos)
       << outcome.err;
-  EXPECT_EQ(picture().header.at("look"), "by the volume's range");
+  EXPECT_EQ(readResult().header.at("look"), "by the volume's range");
   EXPECT_EQ(
       renderKnee(withSegments({"--preset", "liver", "--focus", "Femur", "--transfer", "mr-knee"}))
           .err,
@@ -130,47 +130,47 @@ TEST(PresetsCommand, PresetMayBeAFile) {
   folder.write("menisci.json", R"({"title": "Menisci", "modality": "MR",
     "focus": {"names": ["menisc*"]}, "flags": {"view": "superior", "transfer":
       {"scalars": "relative", "extinction": [[0, 0], [1, 1]], "albedo": [[0, 1, 0.5, 0.5]]}}})");
-  const auto lines = echoed(withSegments({"--preset", "menisci.json"}));
+  const auto lines = renderEcho(withSegments({"--preset", "menisci.json"}));
   EXPECT_TRUE(lines.contains("preset: menisci"));
-  EXPECT_TRUE(has(lines, "focus: "));
-  EXPECT_TRUE(has(lines, "transfer: {"));
+  EXPECT_TRUE(hasLine(lines, "focus: "));
+  EXPECT_TRUE(hasLine(lines, "transfer: {"));
 }
 
 TEST(PresetsCommand, RefusesUnknownAndDamagedPresets) {
   const TemporaryFolder& folder = kneeFolder();
-  folder.write("values.nrrd", NrrdText{.type = "uint8"}.with(std::string(64, '\1')));
+  folder.write("values.nrrd", NrrdText{.type = "uint8"}.encode(std::string(64, '\1')));
   folder.write("size.json", R"({"title": "", "focus": {"names": ["a"]}, "modality": "MR",
                                "flags": {"size": "9x9"}})");
   folder.write("brackets.json", "{");
   folder.write("modality.json", R"({"title": "", "focus": {"names": ["a"]}, "modality": "PET",
                                     "flags": {}})");
-  const auto refused = [](const std::string& name, Arguments arguments, int status,
+  const auto refusal = [](const std::string& name, Arguments arguments, int status,
                           const std::string& text) {
     arguments.insert(arguments.begin(), "knee/knee.nrrd");
     return ExcludedOptions{name, arguments, status, text};
   };
-  expectRefused(
+  expectErrors(
       {
-          refused("unknown", withSegments({"--preset", "spleen"}), 3,
+          refusal("unknown", withSegments({"--preset", "spleen"}), 3,
                   "spleen: no such file, and no preset of that name; --preset takes auto, a file, "
                   "or one of brain-surface, brain-tumour"),
-          refused("no such segment", withSegments({"--preset", "liver"}), 3,
+          refusal("no such segment", withSegments({"--preset", "liver"}), 3,
                   "knee.seg.nrrd: --preset liver: none of its segments is one (Femur, Tibia"),
-          refused("values alone", {"--segmentation", "values.nrrd", "--preset", "liver"}, 3,
+          refusal("values alone", {"--segmentation", "values.nrrd", "--preset", "liver"}, 3,
                   "have no names, only values; name them with --labels, or say which are meant "
                   "with --focus"),
-          refused("auto by values", {"--segmentation", "values.nrrd", "--preset", "auto"}, 3,
+          refusal("auto by values", {"--segmentation", "values.nrrd", "--preset", "auto"}, 3,
                   "have no names, only values; name them with --labels, or name a preset"),
-          refused("auto by nothing", {"--preset", "auto"}, 2, "add --segmentation FILE"),
-          refused("auto unknown", withSegments({"--preset", "auto", "--focus", "Femur"}), 3,
+          refusal("auto by nothing", {"--preset", "auto"}, 2, "add --segmentation FILE"),
+          refusal("auto unknown", withSegments({"--preset", "auto", "--focus", "Femur"}), 3,
                   "no preset knows a segment of it (Femur)"),
-          refused("not a look", withSegments({"--preset", "size.json", "--focus", "1"}), 3,
+          refusal("not a look", withSegments({"--preset", "size.json", "--focus", "1"}), 3,
                   "size.json: flags: \"size\" is no flag of clipping, view or look"),
-          refused("not JSON", withSegments({"--preset", "brackets.json"}), 3,
+          refusal("not JSON", withSegments({"--preset", "brackets.json"}), 3,
                   "brackets.json: is not JSON"),
-          refused("modality", withSegments({"--preset", "modality.json"}), 3,
+          refusal("modality", withSegments({"--preset", "modality.json"}), 3,
                   "modality.json: modality: must be"),
-          refused("twice", withSegments({"--preset", "liver", "--preset", "auto"}), 2,
+          refusal("twice", withSegments({"--preset", "liver", "--preset", "auto"}), 2,
                   "--preset: is given more than once"),
       },
       folder.path());
@@ -180,22 +180,23 @@ TEST(PresetsCommand, RefusesUnknownAndDamagedPresets) {
 TEST(PresetsCommand, GivenPresetOverridesFlagsStoredInTheScene) {
   const TemporaryFolder& folder = kneeFolder();
   const std::string scene = readBytes(folder / "knee/knee.mrml");
-  const auto stored = [&](const std::string& flags) {
+  const auto writeStored = [&](const std::string& flags) {
     std::string text = scene;
     text.insert(text.find("</MRML>"), "<FenestraRender id=\"f1\" " + flags + "/>");
     folder.write("knee/stored.mrml", text);
     return std::string("knee/stored.mrml");
   };
-  const auto given = echoed({"--preset", "knee-cartilage"},
-                            stored(R"(view="left" transfer="ct-bone" focus="Femur" seed="7")"));
+  const auto given =
+      renderEcho({"--preset", "knee-cartilage"},
+                 writeStored(R"(view="left" transfer="ct-bone" focus="Femur" seed="7")"));
   EXPECT_TRUE(given.contains("transfer: mr-knee"));
   EXPECT_TRUE(given.contains("focus: FemoralCartilage"));
   EXPECT_TRUE(given.contains("seed: 7"));
   EXPECT_FALSE(given.contains("view: left"));
-  const auto kept = echoed({}, stored(R"(preset="knee-cartilage" view="superior")"));
-  EXPECT_TRUE(kept.contains("transfer: mr-knee"));
-  EXPECT_TRUE(kept.contains("view: superior"));
-  EXPECT_TRUE(kept.contains("focus: FemoralCartilage"));
+  const auto overridden = renderEcho({}, writeStored(R"(preset="knee-cartilage" view="superior")"));
+  EXPECT_TRUE(overridden.contains("transfer: mr-knee"));
+  EXPECT_TRUE(overridden.contains("view: superior"));
+  EXPECT_TRUE(overridden.contains("focus: FemoralCartilage"));
 }
 
 TEST(PresetsCommand, ServeSetsAndResetsThePreset) {
@@ -203,25 +204,25 @@ TEST(PresetsCommand, ServeSetsAndResetsThePreset) {
   Process process({"serve", "knee/knee.nrrd", "--size", "16x16", "--samples", "2", "--output",
                    "served.exr", "--view", "superior"},
                   folder.path());
-  const auto shown = [&](const std::string& id) {
+  const auto waitForImage = [&](const std::string& id) {
     return process.waitForOutput("\"picture\",\"id\":" + id + ",[^\n]*\"done\":true[^\n]*\n");
   };
-  ASSERT_TRUE(shown("null")) << process.output();
+  ASSERT_TRUE(waitForImage("null")) << process.output();
   const Image plain = readImage(folder / "served.exr");
   process.write(R"({"id": 1, "segmentation": "knee/knee.seg.nrrd", "preset": "auto"})"
                 "\n");
-  ASSERT_TRUE(shown("1")) << process.output();
+  ASSERT_TRUE(waitForImage("1")) << process.output();
   const Image preset = readImage(folder / "served.exr");
   EXPECT_EQ(preset.header.at("preset"), "knee-cartilage");
   ASSERT_EQ(renderKnee(withSegments({"--preset", "knee-cartilage", "--view", "superior"})).status,
             0);
-  EXPECT_EQ(picture().channels, preset.channels);
+  EXPECT_EQ(readResult().channels, preset.channels);
   process.write(R"({"id": 2, "preset": "spleen"})"
                 "\n");
   EXPECT_TRUE(process.waitForOutput("\"error\",\"id\":2")) << process.output();
   process.write(R"({"id": 3, "segmentation": null, "preset": null})"
                 "\n");
-  ASSERT_TRUE(shown("3")) << process.output();
+  ASSERT_TRUE(waitForImage("3")) << process.output();
   EXPECT_EQ(readImage(folder / "served.exr").channels, plain.channels);
   process.closeInput();
   EXPECT_EQ(process.wait().status, 0);
@@ -252,7 +253,7 @@ TEST(PresetsCommand, TransferFindsSlicerPresetByName) {
     const SlicerHome slicer(home.path());
     const Outcome outcome = renderKnee({"--transfer", "CT-Mine"});
     EXPECT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_EQ(picture().header.at("look"), "CT-Mine");
+    EXPECT_EQ(readResult().header.at("look"), "CT-Mine");
     const Outcome unknown = renderKnee({"--transfer", "CT-Other"});
     EXPECT_EQ(unknown.status, 3);
     EXPECT_NE(unknown.err.find("of Slicer CT-Mine"), std::string::npos) << unknown.err;
@@ -266,10 +267,10 @@ TEST(PresetsCommand, TransferFindsSlicerPresetByName) {
 TEST(PresetsCommand, TransferFindsVolumePropertyOfTheSceneByName) {
   const Outcome usual = renderKnee({}, "knee/knee.mrb");
   ASSERT_EQ(usual.status, 0) << usual.err;
-  const Image before = picture();
+  const Image before = readResult();
   const Outcome named = renderKnee({"--transfer", "knee property"}, "knee/knee.mrb");
   EXPECT_EQ(named.status, 0) << named.err;
-  EXPECT_EQ(picture().channels, before.channels);
+  EXPECT_EQ(readResult().channels, before.channels);
   const Outcome unknown = renderKnee({"--transfer", "other property"}, "knee/knee.mrb");
   EXPECT_EQ(unknown.status, 3);
   EXPECT_NE(unknown.err.find("of the scene knee property"), std::string::npos) << unknown.err;

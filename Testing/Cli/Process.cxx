@@ -19,18 +19,18 @@ namespace fenestra {
 namespace {
 
 /// Time limit of a process, seconds.
-double longest() {
+double timeLimit() {
   return 30.0 * static_cast<double>(testing::sampleDivisor());
 }
 
 /// Content by a separate file position: child and reader would share a position otherwise.
-std::string content(int file) {
+std::string readContent(int file) {
   const std::ifstream stream("/proc/self/fd/" + std::to_string(file), std::ios::binary);
   return {std::istreambuf_iterator<char>(stream.rdbuf()), {}};
 }
 
-[[noreturn]] void become(const Arguments& arguments, const std::filesystem::path& folder, int in,
-                         int out, int err) {
+[[noreturn]] void execProgram(const Arguments& arguments, const std::filesystem::path& folder,
+                              int in, int out, int err) {
   std::vector<char*> words = {const_cast<char*>(FENESTRA_EXECUTABLE)};
   for (const std::string& argument : arguments)
     words.push_back(const_cast<char*>(argument.c_str()));
@@ -53,18 +53,18 @@ Process::Process(const Arguments& arguments, const std::filesystem::path& folder
   if (m_id < 0)
     throw std::runtime_error("no process");
   if (m_id == 0)
-    become(arguments, folder, in[0],
-           reader == Reader::test     ? m_out
-           : reader == Reader::nobody ? unread[1]
-                                      : ::open("/dev/full", O_WRONLY),
-           m_err);
+    execProgram(arguments, folder, in[0],
+                reader == Reader::test         ? m_out
+                : reader == Reader::closedPipe ? unread[1]
+                                               : ::open("/dev/full", O_WRONLY),
+                m_err);
   ::close(in[0]);
   ::close(unread[1]);
   m_in = in[1];
 }
 
 Process::~Process() {
-  if (running()) {
+  if (isRunning()) {
     ::kill(m_id, SIGKILL);
     ::waitpid(m_id, nullptr, 0);
   }
@@ -85,11 +85,11 @@ void Process::closeInput() {
 }
 
 std::string Process::output() const {
-  return content(m_out);
+  return readContent(m_out);
 }
 
 void Process::send(int signal) const {
-  if (running())
+  if (isRunning())
     ::kill(m_id, signal);
 }
 
@@ -106,42 +106,42 @@ bool Process::waitUntilHandling(int signal) const {
 }
 
 bool Process::waitForOutput(const std::string& expression) const {
-  const std::regex wanted(expression);
-  return waitUntil([&] { return std::regex_search(content(m_out), wanted); }, longest());
+  const std::regex pattern(expression);
+  return waitUntil([&] { return std::regex_search(readContent(m_out), pattern); }, timeLimit());
 }
 
 Outcome Process::wait() {
   const Stopwatch watch;
-  waitUntil([] { return false; }, longest());
+  waitUntil([] { return false; }, timeLimit());
   Outcome outcome;
   outcome.seconds = watch.seconds();
-  if (running()) {
+  if (isRunning()) {
     ::kill(m_id, SIGKILL);
     ::waitpid(m_id, &m_waitStatus, 0);
     m_ended = true;
   }
   if (WIFEXITED(m_waitStatus))
     outcome.status = WEXITSTATUS(m_waitStatus);
-  outcome.out = content(m_out);
-  outcome.err = content(m_err);
+  outcome.out = readContent(m_out);
+  outcome.err = readContent(m_err);
   const std::size_t begin =
       outcome.err.starts_with("look: ") ? 0 : outcome.err.find("\nlook: ") + 1;
   if (outcome.err.compare(begin, 6, "look: ") == 0) {
     const std::size_t end = outcome.err.find('\n', begin);
-    outcome.choices = outcome.err.substr(begin, end - begin);
+    outcome.statusLine = outcome.err.substr(begin, end - begin);
     outcome.err.erase(begin, end - begin + 1);
   }
   return outcome;
 }
 
-bool Process::running() const {
+bool Process::isRunning() const {
   if (!m_ended)
     m_ended = ::waitpid(m_id, &m_waitStatus, WNOHANG) == m_id;
   return !m_ended;
 }
 
 bool Process::waitUntil(const std::function<bool()>& condition, double limit) const {
-  for (const Stopwatch watch; running() && watch.seconds() < limit;) {
+  for (const Stopwatch watch; isRunning() && watch.seconds() < limit;) {
     if (condition())
       return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));

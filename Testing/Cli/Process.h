@@ -13,12 +13,12 @@ using Arguments = std::vector<std::string>;
 struct Outcome {
   int status = -1; ///< exit status; -1 if a signal ended the process
   std::string out, err;
-  std::string choices;  ///< line that tells look, light and labels, taken out of `err`
-  double seconds = 0.0; ///< wall time until the end
+  std::string statusLine; ///< line that tells look, light and labels, taken out of `err`
+  double seconds = 0.0;   ///< wall time until the end
 };
 
 /// Reader of a process's standard output; a full disk accepts nothing.
-enum class Reader { test, nobody, fullDisk };
+enum class Reader { test, closedPipe, fullDisk };
 
 /// `fenestra arguments…`, started in `folder` by the constructor, killed by the destructor.
 class Process {
@@ -45,7 +45,7 @@ public:
   Outcome wait();
 
 private:
-  bool running() const;
+  bool isRunning() const;
   bool waitUntil(const std::function<bool()>& condition, double limit) const;
 
   int m_id = 0;

@@ -8,14 +8,14 @@ namespace {
 class ProgressCommand : public SmallScene {
 protected:
   /// Render of about half a second: long enough for several reports.
-  Outcome withProgress(const Arguments& flags) const {
+  Outcome renderWithProgress(const Arguments& flags) const {
     Arguments all = {"volume.nrrd", "--size", "32x32", "--seconds", "0.5"};
     all.insert(all.end(), flags.begin(), flags.end());
     return run(all, folder.path());
   }
 };
 
-std::vector<double> fractions(const std::string& text) {
+std::vector<double> parseFractions(const std::string& text) {
   const std::string tag = "<filter-progress>";
   std::vector<double> result;
   for (std::size_t at = text.find(tag); at != std::string::npos; at = text.find(tag, at + 1))
@@ -27,12 +27,12 @@ TEST_F(ProgressCommand, XmlWritesSlicerTagsToStandardOutput) {
   for (const Arguments& flags : {Arguments{}, {"--noise", "0.05"}}) {
     Arguments all = {"--progress", "xml"};
     all.insert(all.end(), flags.begin(), flags.end());
-    const Outcome outcome = withProgress(all);
+    const Outcome outcome = renderWithProgress(all);
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(outcome.err, "");
     EXPECT_TRUE(outcome.out.starts_with("<filter-start>\n<filter-name>fenestra</filter-name>\n"));
     EXPECT_NE(outcome.out.find("</filter-end>\n"), std::string::npos) << outcome.out;
-    const std::vector<double> all_fractions = fractions(outcome.out);
+    const std::vector<double> all_fractions = parseFractions(outcome.out);
     ASSERT_FALSE(all_fractions.empty());
     EXPECT_TRUE(std::is_sorted(all_fractions.begin(), all_fractions.end())) << outcome.out;
     EXPECT_GE(all_fractions.front(), 0.0);
@@ -41,7 +41,7 @@ TEST_F(ProgressCommand, XmlWritesSlicerTagsToStandardOutput) {
 }
 
 TEST_F(ProgressCommand, BarIsErasedFromStandardError) {
-  const Outcome outcome = withProgress({"--progress", "bar"});
+  const Outcome outcome = renderWithProgress({"--progress", "bar"});
   ASSERT_EQ(outcome.status, 0);
   EXPECT_NE(outcome.err.find(" % "), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find(" left "), std::string::npos) << outcome.err;
@@ -55,7 +55,7 @@ TEST_F(ProgressCommand, BarIsErasedFromStandardError) {
 
 TEST_F(ProgressCommand, WithoutATerminalNoProgressIsWritten) {
   for (const char* kind : {"auto", "none"}) {
-    const Outcome outcome = withProgress({"--progress", kind});
+    const Outcome outcome = renderWithProgress({"--progress", kind});
     ASSERT_EQ(outcome.status, 0);
     EXPECT_EQ(outcome.err, "");
     EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 1) << outcome.out;

@@ -12,10 +12,10 @@ namespace {
 
 class RendersCommand : public SmallScene {
 protected:
-  Image rendered(const Arguments& arguments) const {
+  Image render(const Arguments& arguments) const {
     Arguments all = arguments;
     all.insert(all.end(), {"--output", "picture.exr"});
-    const Outcome outcome = renderWith(all);
+    const Outcome outcome = renderVolume(all);
     EXPECT_EQ(outcome.status, 0);
     EXPECT_EQ(outcome.err, "");
     return readImage(folder / "picture.exr");
@@ -42,65 +42,65 @@ TEST_F(RendersCommand, DefaultNameIsThatOfTheInputInTheCurrentFolder) {
 }
 
 TEST_F(RendersCommand, TellsWhatItChose) {
-  EXPECT_EQ(renderWith({"--output", "a.png"}).choices,
+  EXPECT_EQ(renderVolume({"--output", "a.png"}).statusLine,
             "look: by the volume's range; light: cinema");
-  EXPECT_EQ(renderWith({"--output", "a.png", "--environment", "1"}).choices,
+  EXPECT_EQ(renderVolume({"--output", "a.png", "--environment", "1"}).statusLine,
             "look: by the volume's range; light: all around");
-  EXPECT_EQ(renderWith({"--output", "a.png", "--progress", "none"}).choices, "");
-  const Outcome ct = renderWith({"--output", "a.png", "--transfer", "ct-bone"});
-  EXPECT_EQ(ct.choices, "look: ct-bone; light: cinema");
+  EXPECT_EQ(renderVolume({"--output", "a.png", "--progress", "none"}).statusLine, "");
+  const Outcome ct = renderVolume({"--output", "a.png", "--transfer", "ct-bone"});
+  EXPECT_EQ(ct.statusLine, "look: ct-bone; light: cinema");
   EXPECT_NE(ct.err.find("ct-bone is made for CT, which this volume does not seem to be"),
             std::string::npos);
 }
 
 TEST_F(RendersCommand, BackgroundIsAGradientUnlessSomethingIsSaid) {
   const Arguments nothing = {"--scale", "100", "--denoise", "off"}; // in the corners
-  const auto with = [&](const Arguments& more) {
+  const auto renderChannels = [&](const Arguments& more) {
     Arguments arguments = nothing;
     arguments.insert(arguments.end(), more.begin(), more.end());
-    return rendered(arguments).channels;
+    return render(arguments).channels;
   };
-  const auto standard = with({});
+  const auto standard = renderChannels({});
   EXPECT_NEAR(standard.at("R").front(), 0.060, 0.004); // upper edge
   EXPECT_NEAR(standard.at("B").back(), 0.016, 0.002);  // lower edge
-  EXPECT_EQ(with({"--background", "gradient"}), standard);
-  EXPECT_EQ(with({"--background", "0,0,0"}).at("R").front(), 0.0f);
+  EXPECT_EQ(renderChannels({"--background", "gradient"}), standard);
+  EXPECT_EQ(renderChannels({"--background", "0,0,0"}).at("R").front(), 0.0f);
 }
 
 TEST_F(RendersCommand, OneNumberIsAGrey) {
-  renderWith({"--output", "a.exr", "--environment", "0.5", "--background", "0.25"});
-  renderWith(
+  renderVolume({"--output", "a.exr", "--environment", "0.5", "--background", "0.25"});
+  renderVolume(
       {"--output", "b.exr", "--environment", "0.5,0.5,0.5", "--background", "0.25,0.25,0.25"});
   EXPECT_EQ(readImage(folder / "a.exr").channels, readImage(folder / "b.exr").channels);
 }
 
 TEST_F(RendersCommand, ExposureAndToneChangePicturesForTheEyeAlone) {
-  const auto with = [&](const Arguments& more, const std::string& name) {
+  const auto renderChannels = [&](const Arguments& more, const std::string& name) {
     Arguments arguments = {"--denoise", "on",           "--output", name + ".exr",
                            "--output",  name + ".nrrd", "--output", name + ".png",
                            "--output",  name + ".tif",  "--stats",  name + ".json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    EXPECT_EQ(renderWith(arguments).status, 0);
+    EXPECT_EQ(renderVolume(arguments).status, 0);
     return readImage(folder / (name + ".exr")).channels;
   };
   const auto file = [&](const std::string& name) { return readBytes(folder / name); };
-  const auto raw = with({}, "a");
-  for (const auto& [flag, value, told] :
+  const auto raw = renderChannels({}, "a");
+  for (const auto& [flag, value, headerText] :
        {std::array{"--exposure", "2", "tone film, exposure 2 EV"},
         std::array{"--tone", "photographic", "tone photographic, exposure 0 EV"}}) {
-    EXPECT_EQ(with({flag, value}, "b"), raw) << flag;
+    EXPECT_EQ(renderChannels({flag, value}, "b"), raw) << flag;
     for (const std::string part : {".nrrd", "-Z.nrrd", "-denoised.nrrd"})
       EXPECT_EQ(file("a" + part), file("b" + part)) << flag << part;
     for (const std::string kind : {".png", ".tif"}) {
       EXPECT_NE(readImage(folder / ("a" + kind)).channels,
                 readImage(folder / ("b" + kind)).channels)
           << flag << kind;
-      EXPECT_NE(file("b" + kind).find(told), std::string::npos) << kind;
+      EXPECT_NE(file("b" + kind).find(headerText), std::string::npos) << kind;
     }
   }
   EXPECT_EQ(stats("a.json")["display"], (nlohmann::json{{"tone", "film"}, {"exposure", 0.0}}));
   EXPECT_EQ(stats("b.json")["display"]["tone"], "photographic");
-  with({"--exposure", "-1.5", "--tone", "film"}, "c");
+  renderChannels({"--exposure", "-1.5", "--tone", "film"}, "c");
   EXPECT_EQ(stats("c.json")["display"]["exposure"], -1.5);
 }
 
@@ -109,7 +109,7 @@ TEST_F(RendersCommand, EveryFormatEqualsItselfInCompare) {
   Arguments arguments;
   for (const std::string& name : names)
     arguments.insert(arguments.end(), {"--output", name});
-  ASSERT_EQ(renderWith(arguments).status, 0);
+  ASSERT_EQ(renderVolume(arguments).status, 0);
   EXPECT_TRUE(std::filesystem::exists(folder / "a-Z.nrrd"));
   for (const std::string& name : names) {
     const Outcome outcome = run({"compare", name, name}, folder.path());
@@ -135,13 +135,13 @@ TEST_F(RendersCommand, EnvironmentVariablePinsTheInstructionSet) {
   const std::string offered = refused.err.substr(0, refused.err.find_last_not_of('\n') + 1);
   const std::string last = offered.substr(offered.find_last_of(' ') + 1);
   ::setenv("FENESTRA_INSTRUCTIONS", last.c_str(), 1);
-  const std::string target = rendered({}).header.at("target");
+  const std::string target = render({}).header.at("target");
   ::unsetenv("FENESTRA_INSTRUCTIONS");
   EXPECT_TRUE(target.ends_with("-" + last)) << target;
 }
 
 TEST_F(RendersCommand, WritesRequestedLayersAndTheHeader) {
-  const Image all = rendered({});
+  const Image all = render({});
   for (const char* name : {"R", "A", "Z", "albedo.G", "normal.Y", "error.B", "samples.N"})
     EXPECT_TRUE(all.find(name)) << name;
   EXPECT_EQ(all.header.at("seed"), "0");
@@ -152,7 +152,7 @@ TEST_F(RendersCommand, WritesRequestedLayersAndTheHeader) {
   for (const char* key : {"version", "target", "camera"})
     EXPECT_FALSE(all.header.at(key).empty()) << key;
 
-  const Image some = rendered({"--layers", "color,depth", "--layers", "samples"});
+  const Image some = render({"--layers", "color,depth", "--layers", "samples"});
   std::set<std::string> names;
   for (const auto& [name, plane] : some.channels)
     names.insert(name);
@@ -165,14 +165,14 @@ TEST_F(RendersCommand, StatsCountOnlyFilesAndRaysThatTheSceneNeeds) {
   folder.write("sky.json", R"({"lights": [{"type": "environment", "radiance": [1, 1, 1]}]})");
   folder.write("haze.json",
                R"({"extinction": [[0, 0], [63, 0.5]], "albedo": [[0, 0.8, 0.8, 0.8]]})");
-  const auto counted = [&](const Arguments& more) {
+  const auto renderStats = [&](const Arguments& more) {
     Arguments arguments = {"--transfer", "haze.json", "--layers", "color",
                            "--output",   "s.exr",     "--stats",  "s.json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    EXPECT_EQ(renderWith(arguments).status, 0);
+    EXPECT_EQ(renderVolume(arguments).status, 0);
     return stats("s.json");
   };
-  const nlohmann::json little = counted(
+  const nlohmann::json minimal = renderStats(
       {"--lights", "sky.json", "--background", "0,0,0", "--view", "anterior", "--scale", "40"});
   EXPECT_EQ(minimal["filesRead"], (nlohmann::json{"haze.json", "sky.json", "volume.nrrd"}));
   EXPECT_EQ(minimal["shadowRays"], 0);
@@ -183,50 +183,50 @@ TEST_F(RendersCommand, StatsCountOnlyFilesAndRaysThatTheSceneNeeds) {
   EXPECT_EQ(minimal["paths"].get<int>(), 2 * 256 - minimal["emptyPixels"].get<int>());
   EXPECT_EQ(minimal["cells"]["empty"], 0);
 
-  const nlohmann::json lit = counted({"--layers", "normal"});
+  const nlohmann::json lit = renderStats({"--layers", "normal"});
   EXPECT_EQ(lit["filesRead"], (nlohmann::json{"haze.json", "volume.nrrd"}));
   EXPECT_GT(lit["shadowRays"], 0);
   EXPECT_GT(lit["gradients"], 0);
   EXPECT_LE(lit["gradients"], lit["collisions"]);
 
-  const nlohmann::json focused = counted({"--segmentation", "segments.seg.nrrd", "--focus", "A",
-                                          "--clip", "cutaway", "--labelsmoothing", "0"});
+  const nlohmann::json focused = renderStats({"--segmentation", "segments.seg.nrrd", "--focus", "A",
+                                              "--clip", "cutaway", "--labelsmoothing", "0"});
   EXPECT_EQ(focused["focusVoxels"], 27) << "one, and a margin";
   EXPECT_EQ(focused["filesRead"],
             (nlohmann::json{"haze.json", "segments.seg.nrrd", "volume.nrrd"}));
 }
 
 TEST_F(RendersCommand, LightsAsFileOrTextGiveTheSamePicture) {
-  rendered({"--background", "1,2,3"});
+  render({"--background", "1,2,3"});
   std::filesystem::create_directory(folder / "maps");
   std::filesystem::rename(folder / "picture.exr", folder / "maps/sky.exr");
   const std::string text = R"({"lights": [{"type": "environment", "file": "maps/sky.exr"},
     {"type": "rectangle", "frame": "camera", "center": [-1.5, 1.7, 2.4], "normal": [1.5, -1.7, -2],
      "up": [0, 1, 0], "size": [1.4, 1.4], "radiance": [15, 10, 5]}]})";
   folder.write("lights.json", text);
-  const Image file = rendered({"--lights", "lights.json"});
-  EXPECT_EQ(file.channels, rendered({"--lights", text, "--stats", "s.json"}).channels);
+  const Image file = render({"--lights", "lights.json"});
+  EXPECT_EQ(file.channels, render({"--lights", text, "--stats", "s.json"}).channels);
   EXPECT_EQ(stats("s.json")["filesRead"], nlohmann::json::array({"volume.nrrd"}));
-  EXPECT_NE(file.channels, rendered({}).channels);
+  EXPECT_NE(file.channels, render({}).channels);
   const std::string longerThanPaths = text + std::string(5000, ' ');
-  EXPECT_EQ(file.channels, rendered({"--lights=" + longerThanPaths}).channels);
+  EXPECT_EQ(file.channels, render({"--lights=" + longerThanPaths}).channels);
 }
 
 TEST_F(RendersCommand, SamplingIsChosenAndTold) {
-  const Image strata = rendered({"--stats", "s.json"});
+  const Image stratified = render({"--stats", "s.json"});
   EXPECT_EQ(stats("s.json")["sampling"], "strata");
-  const Image plain = rendered({"--sampling", "independent", "--stats", "s.json"});
+  const Image plain = render({"--sampling", "independent", "--stats", "s.json"});
   EXPECT_EQ(stats("s.json")["sampling"], "independent");
   EXPECT_EQ(plain.header.at("sampling"), "independent");
   EXPECT_NE(stratified.channels.at("R"), plain.channels.at("R"));
-  EXPECT_EQ(stratified.channels, rendered({"--sampling", "strata"}).channels);
+  EXPECT_EQ(stratified.channels, render({"--sampling", "strata"}).channels);
 }
 
 TEST_F(RendersCommand, SameSeedGivesTheSamePictureForAnyThreads) {
-  const Image one = rendered({"--threads", "1", "--seed", "7"});
-  const Image two = rendered({"--threads", "2", "--seed", "7"});
-  const Image many = rendered({"--threads", "64", "--seed", "7"});
-  const Image other = rendered({"--seed", "8"});
+  const Image one = render({"--threads", "1", "--seed", "7"});
+  const Image two = render({"--threads", "2", "--seed", "7"});
+  const Image many = render({"--threads", "64", "--seed", "7"});
+  const Image other = render({"--seed", "8"});
   EXPECT_EQ(one.channels, two.channels);
   EXPECT_EQ(one.channels, many.channels);
   EXPECT_NE(one.channels.at("R"), other.channels.at("R"));
@@ -289,9 +289,9 @@ TEST_F(RendersCommand, StatsHaveEveryDocumentedKey) {
 }
 
 TEST_F(RendersCommand, NegativeNumbersAreValuesNotFlags) {
-  const Image joined = rendered({"--position=-1,20,3", "--shift=-5"});
-  const Image apart = rendered({"--position", "-1,20,3", "--shift", "-5"});
-  const Image bare = rendered({"--position", "-1.0,20,3.", "--shift", "-.5e1"});
+  const Image joined = render({"--position=-1,20,3", "--shift=-5"});
+  const Image apart = render({"--position", "-1,20,3", "--shift", "-5"});
+  const Image bare = render({"--position", "-1.0,20,3.", "--shift", "-.5e1"});
   EXPECT_EQ(joined.channels, apart.channels);
   EXPECT_EQ(joined.channels, bare.channels);
   EXPECT_NE(joined.header.at("camera").find("--position=-1,20,3 "), std::string::npos)
@@ -299,25 +299,25 @@ TEST_F(RendersCommand, NegativeNumbersAreValuesNotFlags) {
 }
 
 TEST_F(RendersCommand, CameraFlagsFromTheHeaderReproduceThePicture) {
-  const Image named = rendered({"--view", "left"});
+  const Image named = render({"--view", "left"});
   Arguments pose;
   std::istringstream words(named.header.at("camera"));
   for (std::string word; words >> word;)
     pose.push_back(word);
-  EXPECT_EQ(named.channels, rendered(pose).channels);
+  EXPECT_EQ(named.channels, render(pose).channels);
 }
 
 TEST_F(RendersCommand, FindsTheFocusByIdNameAndLabelValue) {
-  const auto focus = [this](Arguments arguments) {
+  const auto renderFocus = [this](Arguments arguments) {
     arguments.insert(arguments.begin(), {"--segmentation", "segments.seg.nrrd"});
-    return rendered(arguments).channels;
+    return render(arguments).channels;
   };
-  const auto byId = focus({"--focus", "A"});
+  const auto byId = renderFocus({"--focus", "A"});
   EXPECT_EQ(byId.count("clip.Z"), 1u);
-  EXPECT_EQ(byId, focus({"--focus", "Bone\\, left"}));
-  EXPECT_EQ(byId, focus({"--focus", "1"}));
-  EXPECT_EQ(byId, focus({"--focus", "A,B"}));
-  EXPECT_EQ(byId, focus({"--focus", "A", "--focus=B"}));
+  EXPECT_EQ(byId, renderFocus({"--focus", "Bone\\, left"}));
+  EXPECT_EQ(byId, renderFocus({"--focus", "1"}));
+  EXPECT_EQ(byId, renderFocus({"--focus", "A,B"}));
+  EXPECT_EQ(byId, renderFocus({"--focus", "A", "--focus=B"}));
 }
 
 TEST_F(RendersCommand, FileNamesMayLookLikeFlagsOrSubcommands) {
@@ -334,13 +334,13 @@ TEST_F(RendersCommand, FileNamesMayLookLikeFlagsOrSubcommands) {
 TEST_F(RendersCommand, DefaultNameReplacesOnlyItsOwnPictures) {
   const std::string volume = readBytes(folder / "volume.nrrd");
   folder.write("named.png", "somebody's picture");
-  ASSERT_EQ(renderWith({"--output", "named.png"}).status, 0);
+  ASSERT_EQ(renderVolume({"--output", "named.png"}).status, 0);
   EXPECT_EQ(readImage(folder / "named.png").width, 16);
-  ASSERT_EQ(renderWith({}).status, 0); // volume.png, a default name
-  ASSERT_EQ(renderWith({}).status, 0);
+  ASSERT_EQ(renderVolume({}).status, 0); // volume.png, a default name
+  ASSERT_EQ(renderVolume({}).status, 0);
   EXPECT_EQ(readImage(folder / "volume.png").width, 16);
   folder.write("volume.png", "somebody's picture");
-  const Outcome refused = renderWith({});
+  const Outcome refused = renderVolume({});
   EXPECT_EQ(refused.status, 2);
   EXPECT_NE(refused.err.find("volume.png: is there, and Fenestra did not write it"),
             std::string::npos)

@@ -12,7 +12,7 @@ namespace {
 
 class ResultsCommand : public SmallScene {
 protected:
-  Outcome turn(Arguments arguments = {}) const {
+  Outcome runTurntable(Arguments arguments = {}) const {
     arguments.insert(arguments.begin(), {"turntable", "volume.nrrd", "--size", "8x8", "--samples",
                                          "1", "--output", "turn.png"});
     if (std::find(arguments.begin(), arguments.end(), "--frames") == arguments.end())
@@ -22,7 +22,7 @@ protected:
 };
 
 TEST_F(ResultsCommand, StatsOnStandardOutputFollowTheReport) {
-  const Outcome outcome = renderWith({"--output", "a.png", "--stats", "/dev/stdout"});
+  const Outcome outcome = renderVolume({"--output", "a.png", "--stats", "/dev/stdout"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const std::size_t json = outcome.out.find('{');
   ASSERT_NE(json, std::string::npos) << outcome.out;
@@ -40,12 +40,12 @@ TEST_F(ResultsCommand, ReportStaysOneLineForNamesWithControlCharacters) {
     EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 1) << outcome.out;
     EXPECT_EQ(outcome.out.find('\x1b'), std::string::npos) << outcome.out;
   };
-  expectOneLine(renderWith({"--output", name + ".png"}));
+  expectOneLine(renderVolume({"--output", name + ".png"}));
   expectOneLine(run({"phantom", "cube", "--size", "16", "--output", name}, folder.path()));
   expectOneLine(run({"turntable", "volume.nrrd", "--output", name + ".png", "--frames", "2",
                      "--size", "8x8", "--samples", "1"},
                     folder.path()));
-  const Outcome echo = renderWith({"--output", name + ".png", "--echo"});
+  const Outcome echo = renderVolume({"--output", name + ".png", "--echo"});
   EXPECT_EQ(echo.out.find('\x1b'), std::string::npos) << echo.out;
 }
 
@@ -74,7 +74,7 @@ TEST_F(ResultsCommand, PathsInTheHeaderAreRelativeToThePicture) {
            "--output=" + patient + "/pictures/a.exr", "--stats", patient + "/pictures/a.json"},
           folder.path());
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const std::filesystem::path pictures = folder / "Doe^John_19501231/pictures";
+  const std::filesystem::path images = folder / "Doe^John_19501231/pictures";
   EXPECT_EQ(readImage(images / "a.exr").header.at("command"),
             "fenestra ../dicom/volume.nrrd --size 8x8 --samples=1 --output=a.exr --stats a.json");
   EXPECT_EQ(nlohmann::json::parse(readBytes(images / "a.json"))["filesRead"],
@@ -84,10 +84,10 @@ TEST_F(ResultsCommand, PathsInTheHeaderAreRelativeToThePicture) {
 }
 
 TEST_F(ResultsCommand, TurntableRendersAnEmptyFrameAgain) {
-  ASSERT_EQ(turn().status, 0);
-  const std::string whole = readBytes(folder / "turn_0000.png");
+  ASSERT_EQ(runTurntable().status, 0);
+  const std::string complete = readBytes(folder / "turn_0000.png");
   std::filesystem::resize_file(folder / "turn_0000.png", 0);
-  const Outcome again = turn();
+  const Outcome again = runTurntable();
   ASSERT_EQ(again.status, 0) << again.err;
   EXPECT_NE(again.out.find("1 rendered now"), std::string::npos) << again.out;
   EXPECT_EQ(readBytes(folder / "turn_0000.png"), complete);
@@ -95,11 +95,12 @@ TEST_F(ResultsCommand, TurntableRendersAnEmptyFrameAgain) {
 
 /// Frames replaced by a longer file, a cut file, and an unrelated file.
 TEST_F(ResultsCommand, TurntableRefusesToReplaceAnEditedFrame) {
-  ASSERT_EQ(turn().status, 0);
-  const std::string whole = readBytes(folder / "turn_0000.png");
-  for (const std::string& edited : {whole + "edited", whole.substr(0, 50), std::string("mine")}) {
+  ASSERT_EQ(runTurntable().status, 0);
+  const std::string complete = readBytes(folder / "turn_0000.png");
+  for (const std::string& edited :
+       {complete + "edited", complete.substr(0, 50), std::string("mine")}) {
     folder.write("turn_0000.png", edited);
-    const Outcome again = turn();
+    const Outcome again = runTurntable();
     EXPECT_EQ(again.status, 2);
     EXPECT_NE(again.err.find("turn_0000.png: is not the frame that was recorded; move it away"),
               std::string::npos)
@@ -109,11 +110,11 @@ TEST_F(ResultsCommand, TurntableRefusesToReplaceAnEditedFrame) {
 }
 
 TEST_F(ResultsCommand, TurntableRefusesALinkInPlaceOfAFrame) {
-  ASSERT_EQ(turn().status, 0);
+  ASSERT_EQ(runTurntable().status, 0);
   folder.write("mine.txt", "mine");
   std::filesystem::remove(folder / "turn_0001.png");
   std::filesystem::create_symlink("mine.txt", folder / "turn_0001.png");
-  EXPECT_EQ(turn().status, 2);
+  EXPECT_EQ(runTurntable().status, 2);
   EXPECT_EQ(readBytes(folder / "mine.txt"), "mine");
 }
 
@@ -124,7 +125,7 @@ TEST_F(ResultsCommand, ResumedTurntableReplacesOnlyItsOwnUnrecordedFrames) {
                                  "1",         "--frames",    "2",      "--output", "go" + ending};
     std::filesystem::remove(folder / "go.turntable.json");
     ASSERT_EQ(run(arguments, folder.path()).status, 0);
-    const std::string whole = readBytes(folder / ("go_0001" + ending));
+    const std::string complete = readBytes(folder / ("go_0001" + ending));
     auto record = nlohmann::json::parse(readBytes(folder / "go.turntable.json"));
     record["finished"].erase(1);
     folder.write("go.turntable.json", record.dump());
@@ -153,7 +154,7 @@ TEST_F(ResultsCommand, SecondTurntableOfTheSameFramesIsRefused) {
     ASSERT_TRUE(first.waitForOutput("<filter-progress>0\\.0*[1-9]"));
     const std::string record = readBytes(folder / "turn.turntable.json");
     for (const Arguments& arguments : {Arguments{}, {"--restart"}, {"--output", "turn.exr"}}) {
-      const Outcome second = turn(arguments);
+      const Outcome second = runTurntable(arguments);
       EXPECT_EQ(second.status, 2) << second.err;
       EXPECT_NE(second.err.find("turn.png: another turntable is writing these frames; wait for it"),
                 std::string::npos)
@@ -167,41 +168,42 @@ TEST_F(ResultsCommand, SecondTurntableOfTheSameFramesIsRefused) {
               0)
         << "of other names";
   } // killed
-  EXPECT_EQ(turn({"--restart"}).status, 0);
-  for (const std::string& file : filesIn(folder.path()))
+  EXPECT_EQ(runTurntable({"--restart"}).status, 0);
+  for (const std::string& file : listFiles(folder.path()))
     EXPECT_FALSE(file.starts_with(".fenestra")) << file;
 }
 
 TEST_F(ResultsCommand, WarnsOfDepthFileLeftByAnEarlierPicture) {
-  ASSERT_EQ(renderWith({"--output", "a.nrrd"}).err, "");
-  const Outcome colour = renderWith({"--output", "a.nrrd", "--layers", "color", "--stats", "s"});
-  EXPECT_EQ(colour.status, 0);
+  ASSERT_EQ(renderVolume({"--output", "a.nrrd"}).err, "");
+  const Outcome colorOnly =
+      renderVolume({"--output", "a.nrrd", "--layers", "color", "--stats", "s"});
+  EXPECT_EQ(colorOnly.status, 0);
   const std::string warning = "a-Z.nrrd: is of an earlier picture than a.nrrd; remove it";
-  EXPECT_EQ(colour.err, "fenestra: warning: " + warning + "\n");
+  EXPECT_EQ(colorOnly.err, "fenestra: warning: " + warning + "\n");
   EXPECT_EQ(nlohmann::json::parse(readBytes(folder / "s"))["warnings"],
             nlohmann::json::array({warning}));
   EXPECT_TRUE(std::filesystem::exists(folder / "a-Z.nrrd"));
-  EXPECT_EQ(renderWith({"--output", "a.nrrd"}).err, "");
+  EXPECT_EQ(renderVolume({"--output", "a.nrrd"}).err, "");
 }
 
 TEST_F(ResultsCommand, RestartWarnsOfFramesLeftOver) {
-  ASSERT_EQ(turn({"--frames", "5"}).status, 0);
+  ASSERT_EQ(runTurntable({"--frames", "5"}).status, 0);
   folder.write("turn_0003.png", "edited since");
-  const Outcome fewer = turn({"--restart"});
+  const Outcome fewer = runTurntable({"--restart"});
   EXPECT_EQ(fewer.status, 0);
   EXPECT_EQ(fewer.err, "fenestra: warning: turn_0002.png to turn_0004.png: 2 files are of the "
                        "turntable that was there before; remove them\n");
-  EXPECT_EQ(turn({"--restart"}).err, "");
+  EXPECT_EQ(runTurntable({"--restart"}).err, "");
 }
 
 TEST_F(ResultsCommand, RestartRefusesAFileThatIsNoRecord) {
   folder.write("turn.turntable.json", "somebody's notes");
-  const Outcome outcome = turn({"--restart"});
+  const Outcome outcome = runTurntable({"--restart"});
   EXPECT_EQ(outcome.status, 2) << outcome.err;
   EXPECT_EQ(readBytes(folder / "turn.turntable.json"), "somebody's notes");
   folder.write("turn.turntable.json", // format of earlier versions
                R"({"request": {"version": "0.1", "arguments": []}, "finished": []})");
-  EXPECT_EQ(turn({"--restart"}).status, 0);
+  EXPECT_EQ(runTurntable({"--restart"}).status, 0);
 }
 
 } // namespace

@@ -26,7 +26,7 @@ struct ViewNumbers {
 /// Boxes as maps from [-1, 1]^3 to the world; the picture shows their intersection.
 using Boxes = std::vector<Map>;
 
-bool meets(const Vector& origin, const Vector& direction, const Boxes& boxes) {
+bool intersects(const Vector& origin, const Vector& direction, const Boxes& boxes) {
   double from = 0.0;
   double to = 1e9;
   for (const Map& box : boxes) {
@@ -51,8 +51,8 @@ bool isCovered(const ViewNumbers& view, const Boxes& boxes, int size, double col
       view.parallel ? view.parallelScale : std::tan(view.viewAngle * std::numbers::pi / 360.0);
   const Vector offset =
       half * ((2.0 * column / size - 1.0) * right + (1.0 - 2.0 * row / size) * up);
-  return view.parallel ? meets(view.position + offset, forward, boxes)
-                       : meets(view.position, forward + offset, boxes);
+  return view.parallel ? intersects(view.position + offset, forward, boxes)
+                       : intersects(view.position, forward + offset, boxes);
 }
 
 constexpr int size = 96;
@@ -103,7 +103,7 @@ void expectOutline(const TemporaryFolder& folder, const std::string& scene,
 // ---- a scene with everything
 // ---------------------------------------------------------------------
 
-Map mapOf(std::initializer_list<double> rows) {
+Map makeMap(std::initializer_list<double> rows) {
   Map map;
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 4; ++column)
@@ -112,7 +112,7 @@ Map mapOf(std::initializer_list<double> rows) {
 }
 
 /// Sixteen numbers of a map, row by row.
-std::string textOf(const Map& map) {
+std::string formatMatrix(const Map& map) {
   std::ostringstream text;
   text.precision(17);
   for (int row = 0; row < 4; ++row)
@@ -122,8 +122,8 @@ std::string textOf(const Map& map) {
 }
 
 /// Map of [-1, 1]^3 onto the 4x4x4 volume of NrrdText, RAS.
-Map cubeOfVolume() {
-  return mapOf({-2, 0, 0, -1.5, 0, -2, 0, -1.5, 0, 0, 2, 1.5});
+Map volumeCube() {
+  return makeMap({-2, 0, 0, -1.5, 0, -2, 0, -1.5, 0, 0, 2, 1.5});
 }
 
 class ScenesCommand : public SmallScene {
@@ -147,9 +147,9 @@ protected:
   std::string scene(const std::string& camera, bool cropping) const {
     return R"(<?xml version="1.0" encoding="UTF-8"?><MRML version="Slicer 5.6.2 32448">
       <LinearTransform id="outer" matrixTransformToParent=")" +
-           textOf(outer) + R"("/>
+           formatMatrix(outer) + R"("/>
       <LinearTransform id="inner" references="transform:outer;" matrixTransformToParent=")" +
-           textOf(inner) + R"("/>
+           formatMatrix(inner) + R"("/>
       <Volume id="v" name="ramp" references="display:d;storage:vs;transform:inner;"/>
       <VolumeArchetypeStorage id="vs" fileName="volume.nrrd"/>
       <GPURayCastVolumeRendering id="d" croppingEnabled=")" +
@@ -172,18 +172,18 @@ protected:
 
 TEST_F(ScenesCommand, ParallelCameraOfTheScenePlacesTheVolume) {
   folder.write("s.mrml", scene(R"(parallelProjection="true" parallelScale="4")", false));
-  expectOutline(folder, "s.mrml", {}, view, {outer * inner * cubeOfVolume()});
+  expectOutline(folder, "s.mrml", {}, view, {outer * inner * volumeCube()});
 }
 
 TEST_F(ScenesCommand, PerspectiveViewIsCroppedByTheRotatedRegion) {
   folder.write("s.mrml", scene(R"(parallelProjection="false" viewAngle="16")", true));
   view.parallel = false;
-  expectOutline(folder, "s.mrml", {}, view, {outer * inner * cubeOfVolume(), roi});
+  expectOutline(folder, "s.mrml", {}, view, {outer * inner * volumeCube(), roi});
 }
 
 TEST_F(ScenesCommand, FlagsOverrideTheCameraOfTheScene) {
   folder.write("s.mrml", scene(R"(viewAngle="16" parallelScale="4")", true));
-  const Boxes boxes = {outer * inner * cubeOfVolume(), roi};
+  const Boxes boxes = {outer * inner * volumeCube(), roi};
   expectOutline(folder, "s.mrml", {"--projection", "orthographic"}, view, boxes);
   view.parallelScale = 3.0;
   view.focalPoint = {2, -2.5, 0.5};
@@ -254,37 +254,38 @@ TEST_F(ScenesCommand, StoredFlagsReproduceThePicture) {
         output="elsewhere.png" threads="one"/>)");
   folder.write("plain.mrml", plain);
   folder.write("stored.mrml", stored);
-  const auto rendered = [&](const std::string& input, const Arguments& flags) {
+  const auto renderChannels = [&](const std::string& input, const Arguments& flags) {
     Arguments all = {input, "--output", "a.exr"};
     all.insert(all.end(), flags.begin(), flags.end());
     const Outcome outcome = run(all, folder.path());
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return readImage(folder / "a.exr").channels;
   };
-  const Arguments looks = {
+  const Arguments appearance = {
       "--size",    "16x16",
       "--seed",    "9",
       "--density", "2",
       "--lights",  R"({"lights": [{"type": "environment", "radiance": [1, 2, 1]}]})"};
   const auto with = [&](Arguments flags) {
-    flags.insert(flags.end(), looks.begin(), looks.end());
+    flags.insert(flags.end(), appearance.begin(), appearance.end());
     return flags;
   };
   const Arguments focus = {"--segmentation", "s", "--focus", "A", "--clip", "cutaway"};
-  const Arguments eye = {"--position", "3,-30,6", "--target", "2,-2,1",
-                         "--up",       "0.1,0,1", "--scale",  "3"};
+  const Arguments camera = {"--position", "3,-30,6", "--target", "2,-2,1",
+                            "--up",       "0.1,0,1", "--scale",  "3"};
   Arguments everything = with({"--noise", "0.5", "--samples", "40"});
   everything.insert(everything.end(), focus.begin(), focus.end());
   Arguments viewed = everything;
-  everything.insert(everything.end(), eye.begin(), eye.end());
-  EXPECT_EQ(rendered("stored.mrml", {}), rendered("plain.mrml", everything));
+  everything.insert(everything.end(), camera.begin(), camera.end());
+  EXPECT_EQ(renderChannels("stored.mrml", {}), renderChannels("plain.mrml", everything));
   viewed.insert(viewed.end(), {"--view", "left"});
-  EXPECT_EQ(rendered("stored.mrml", {"--view", "left"}), rendered("plain.mrml", viewed));
+  EXPECT_EQ(renderChannels("stored.mrml", {"--view", "left"}),
+            renderChannels("plain.mrml", viewed));
   Arguments fewer = with({"--samples", "3", "--clip", "none"});
-  fewer.insert(fewer.end(), eye.begin(), eye.end());
+  fewer.insert(fewer.end(), camera.begin(), camera.end());
   fewer.insert(fewer.end(), {"--segmentation", "s", "--focus", "A"});
-  EXPECT_EQ(rendered("stored.mrml", {"--samples", "3", "--clip", "none"}),
-            rendered("plain.mrml", fewer));
+  EXPECT_EQ(renderChannels("stored.mrml", {"--samples", "3", "--clip", "none"}),
+            renderChannels("plain.mrml", fewer));
   EXPECT_FALSE(std::filesystem::exists(folder / "elsewhere.png"));
 
   const Outcome inspected = run({"inspect", "stored.mrml"}, folder.path());
@@ -308,7 +309,7 @@ TEST_F(ScenesCommand, RefusesDamagedScenesAndMissingNodes) {
     all.insert(all.end(), more.begin(), more.end());
     return all;
   };
-  expectRefused(
+  expectErrors(
       {
           {"no volume", with("none.mrml", {}), 3, "none.mrml: holds no scalar volume"},
           {"entities", with("entities.mrml", {}), 3, "entities.mrml: has a document type"},
@@ -334,7 +335,7 @@ TEST_F(ScenesCommand, ErrorNamesTheFileWithinTheArchive) {
   for (const std::string name : {"s.mrml", "volume.nrrd", "segments.seg.nrrd"})
     zip_file_add(zip, name.c_str(), zip_source_file(zip, (folder / name).c_str(), 0, -1), 0);
   ASSERT_EQ(zip_close(zip), 0);
-  expectRefused(
+  expectErrors(
       {{"segment", {"s.mrb", "--focus", "x"}, 3, "fenestra: s.mrb/segments.seg.nrrd: has no"}},
       folder.path());
 }
@@ -343,7 +344,7 @@ TEST_F(ScenesCommand, ErrorNamesTheFileWithinTheArchive) {
 // --------------------------------------------------------------------
 
 /// Text of the .mrml in an archive written by Slicer.
-std::string sceneOf(const std::filesystem::path& archive) {
+std::string readScene(const std::filesystem::path& archive) {
   int failure = 0;
   zip_t* zip = zip_open(archive.c_str(), ZIP_RDONLY, &failure);
   const std::string name = archive.stem().string() + "/" + archive.stem().string() + ".mrml";
@@ -355,13 +356,14 @@ std::string sceneOf(const std::filesystem::path& archive) {
   return text;
 }
 
-std::string attribute(const std::string& scene, const std::string& tag, const std::string& name) {
+std::string findAttribute(const std::string& scene, const std::string& tag,
+                          const std::string& name) {
   const std::size_t start = scene.find("<" + tag + "\n");
   const std::size_t value = scene.find(" " + name + "=\"", start) + name.size() + 3;
   return scene.substr(value, scene.find('"', value) - value);
 }
 
-std::vector<double> numbersOf(const std::string& text) {
+std::vector<double> readNumbers(const std::string& text) {
   std::istringstream in(text);
   std::vector<double> numbers;
   for (double x = 0.0; in >> x;)
@@ -376,28 +378,28 @@ protected:
         std::filesystem::path(FENESTRA_DATA) / "slicer_scenes/slicer_5_2_written" / GetParam();
     if (!std::filesystem::exists(archive))
       GTEST_SKIP() << archive << " is absent";
-    const std::string scene = sceneOf(archive);
+    const std::string scene = readScene(archive);
     const auto vector = [&](const std::string& name) {
-      const auto n = numbersOf(attribute(scene, "Camera", name));
+      const auto n = readNumbers(findAttribute(scene, "Camera", name));
       return Vector(n.at(0), n.at(1), n.at(2));
     };
     view = {vector("position"),
             vector("focalPoint"),
             vector("viewUp"),
-            attribute(scene, "Camera", "parallelProjection") == "true",
-            numbersOf(attribute(scene, "Camera", "parallelScale")).at(0),
-            numbersOf(attribute(scene, "Camera", "viewAngle")).at(0)};
+            findAttribute(scene, "Camera", "parallelProjection") == "true",
+            readNumbers(findAttribute(scene, "Camera", "parallelScale")).at(0),
+            readNumbers(findAttribute(scene, "Camera", "viewAngle")).at(0)};
     // 128 x 128 x 34 voxels; geometry from the scene's copy
-    const auto spacing = numbersOf(attribute(scene, "Volume", "spacing"));
-    const auto origin = numbersOf(attribute(scene, "Volume", "origin"));
+    const auto spacing = readNumbers(findAttribute(scene, "Volume", "spacing"));
+    const auto origin = readNumbers(findAttribute(scene, "Volume", "origin"));
     const Vector half(64 * spacing[0], 64 * spacing[1], 17 * spacing[2]);
     const Vector first(origin[0], origin[1], origin[2]);
     const Vector center = first + half - 0.5 * Vector(spacing[0], spacing[1], spacing[2]);
     boxes = {Eigen::Translation3d(center) * Eigen::Scaling(half)};
     if (archive.stem() == "chest")
       return;
-    const auto m = numbersOf(attribute(scene, "LinearTransform", "matrixTransformToParent"));
-    boxes[0] = mapOf({m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8], m[9], m[10], m[11]}) *
+    const auto m = readNumbers(findAttribute(scene, "LinearTransform", "matrixTransformToParent"));
+    boxes[0] = makeMap({m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8], m[9], m[10], m[11]}) *
                boxes[0];
     // Data/Volume rendering ROI.mrk.json: centre 0 20 -170 in LPS, sizes 300 260 220
     boxes.push_back(Eigen::Translation3d(0, -20, -170) * Eigen::Scaling(150.0, 130.0, 110.0));

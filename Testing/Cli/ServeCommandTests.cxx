@@ -14,15 +14,16 @@ namespace {
 using nlohmann::json;
 
 /// Seconds; an idle machine takes about 0.1, slow builds more.
-const double soon = 2.0 * static_cast<double>(testing::sampleDivisor());
+const double timeLimit = 2.0 * static_cast<double>(testing::sampleDivisor());
 
 class ServeCommand : public SmallScene {
 protected:
-  static Arguments serving(const std::string& size = "16x16", const std::string& samples = "4") {
+  static Arguments makeArguments(const std::string& size = "16x16",
+                                 const std::string& samples = "4") {
     return {"serve", "volume.nrrd", "--size", size, "--samples", samples, "--output", "a.exr"};
   }
 
-  static std::vector<json> answers(const Process& process) {
+  static std::vector<json> readEvents(const Process& process) {
     std::vector<json> all;
     std::istringstream lines(process.output());
     for (std::string line; std::getline(lines, line);)
@@ -30,7 +31,7 @@ protected:
     return all;
   }
   /// Waits for the last picture of a change.
-  static bool waitForPicture(const Process& process, const std::string& id) {
+  static bool waitForImage(const Process& process, const std::string& id) {
     return process.waitForOutput("\"picture\",\"id\":" + id + ",[^\n]*\"done\":true[^\n]*\n");
   }
   /// Waits for the refusal of a change.
@@ -40,21 +41,21 @@ protected:
   }
 
   /// Picture of `fenestra volume.nrrd …` with these flags.
-  Image rendered(const Arguments& flags) const {
+  Image renderImage(const Arguments& flags) const {
     Arguments all = {"volume.nrrd", "--size", "16x16", "--samples", "4", "--output", "b.exr"};
     all.insert(all.end(), flags.begin(), flags.end());
     EXPECT_EQ(run(all, folder.path()).status, 0);
     return readImage(folder / "b.exr");
   }
-  void expectShown(const Arguments& flags) const {
-    EXPECT_EQ(readImage(folder / "a.exr").channels, rendered(flags).channels);
+  void expectImage(const Arguments& flags) const {
+    EXPECT_EQ(readImage(folder / "a.exr").channels, renderImage(flags).channels);
   }
 };
 
 TEST_F(ServeCommand, PicturesEqualThoseOfRender) {
-  Process process(serving(), folder.path());
-  ASSERT_TRUE(waitForPicture(process, "null")) << process.output();
-  expectShown({});
+  Process process(makeArguments(), folder.path());
+  ASSERT_TRUE(waitForImage(process, "null")) << process.output();
+  expectImage({});
   const std::vector<std::pair<std::string, Arguments>> changes = {
       {R"({"id": 1, "view": "left"})", {"--view", "left"}},
       {R"({"id": 2, "seed": 3, "density": 2.5})",
@@ -76,13 +77,13 @@ TEST_F(ServeCommand, PicturesEqualThoseOfRender) {
     std::string line = changes[i].first;
     std::replace(line.begin(), line.end(), '\n', ' ');
     process.write(line + "\n");
-    ASSERT_TRUE(waitForPicture(process, std::to_string(i + 1))) << process.output();
+    ASSERT_TRUE(waitForImage(process, std::to_string(i + 1))) << process.output();
     Arguments flags = changes[i].second;
     if (std::find(flags.begin(), flags.end(), "8x8") != flags.end()) {
       EXPECT_EQ(readImage(folder / "a.exr").width, 8);
       continue;
     }
-    expectShown(flags);
+    expectImage(flags);
   }
   process.closeInput();
   const Outcome outcome = process.wait();
@@ -91,9 +92,9 @@ TEST_F(ServeCommand, PicturesEqualThoseOfRender) {
 }
 
 TEST_F(ServeCommand, HeaderHoldsTheCommandOfTheChangedPicture) {
-  Process process(serving(), folder.path());
+  Process process(makeArguments(), folder.path());
   process.write("{\"id\": 1, \"view\": \"left\", \"seed\": 5}\n");
-  ASSERT_TRUE(waitForPicture(process, "1")) << process.output();
+  ASSERT_TRUE(waitForImage(process, "1")) << process.output();
   const std::string command = readImage(folder / "a.exr").header.at("command");
   EXPECT_TRUE(command.starts_with("fenestra volume.nrrd ")) << command;
   EXPECT_NE(command.find(" --seed=5"), std::string::npos) << command;
@@ -101,22 +102,22 @@ TEST_F(ServeCommand, HeaderHoldsTheCommandOfTheChangedPicture) {
 }
 
 TEST_F(ServeCommand, PictureIsRefinedUntilTheNextChange) {
-  Process process(serving("256x256", "1000000"), folder.path());
+  Process process(makeArguments("256x256", "1000000"), folder.path());
   ASSERT_TRUE(process.waitForOutput("\"done\":false[^\n]*\n[^\n]*\"done\":false[^\n]*\n"));
-  const std::vector<json> refined = answers(process);
+  const std::vector<json> refined = readEvents(process);
   ASSERT_GE(refined.size(), 2u);
   EXPECT_LT(refined[0]["samples"], refined[1]["samples"]);
   EXPECT_EQ(refined[0]["files"], json::array({"a.exr"}));
   process.write(
       "{\"id\": \"left\", \"view\": \"left\"}\n{\"id\": \"up\", \"view\": \"superior\"}\n");
   ASSERT_TRUE(process.waitForOutput("\"picture\",\"id\":\"up\"")) << process.output();
-  for (const json& answer : answers(process))
+  for (const json& event : readEvents(process))
     EXPECT_EQ(event["event"], "picture");
 }
 
 TEST_F(ServeCommand, BadLineIsAnsweredAndChangesNothing) {
-  Process process(serving(), folder.path());
-  ASSERT_TRUE(waitForPicture(process, "null"));
+  Process process(makeArguments(), folder.path());
+  ASSERT_TRUE(waitForImage(process, "null"));
   const std::vector<std::array<std::string, 3>> lines = {
       {"{\"view\"", "null", "not JSON"},
       {"[1, 2]", "null", "expected a JSON object"},
@@ -147,14 +148,14 @@ TEST_F(ServeCommand, BadLineIsAnsweredAndChangesNothing) {
         << line.substr(0, 99) << process.output();
   }
   process.write("{\"id\": 99, \"view\": \"left\"}\n");
-  ASSERT_TRUE(waitForPicture(process, "99")) << process.output();
-  expectShown({"--view", "left"}); // and no refused change
+  ASSERT_TRUE(waitForImage(process, "99")) << process.output();
+  expectImage({"--view", "left"}); // and no refused change
 }
 
 /// Lines sent together, which the server reads together.
 TEST_F(ServeCommand, GoodLinesAroundABadOneApply) {
-  Process process(serving(), folder.path());
-  ASSERT_TRUE(waitForPicture(process, "null"));
+  Process process(makeArguments(), folder.path());
+  ASSERT_TRUE(waitForImage(process, "null"));
   const std::vector<std::string> bad = {
       R"({"id": "bad", "lights": "/dev/zero"})", R"({"id": "bad", "transfer": "missing.json"})",
       R"({"id": "bad", "environment": "missing.exr"})",
@@ -166,13 +167,13 @@ TEST_F(ServeCommand, GoodLinesAroundABadOneApply) {
                   bad[i] + "\n" + R"({"id": ")" + after + R"(", "density": )" +
                   std::to_string(i + 2) + "}\n");
     ASSERT_TRUE(waitForError(process, "\"bad\"", "")) << bad[i] << process.output();
-    ASSERT_TRUE(waitForPicture(process, "\"" + after + "\"")) << bad[i] << process.output();
-    expectShown({"--seed", std::to_string(i + 1), "--density", std::to_string(i + 2)});
+    ASSERT_TRUE(waitForImage(process, "\"" + after + "\"")) << bad[i] << process.output();
+    expectImage({"--seed", std::to_string(i + 1), "--density", std::to_string(i + 2)});
   }
   std::size_t refused = 0;
-  for (const json& answer : answers(process)) {
-    EXPECT_EQ(event["event"] == "error", event["id"] == "bad") << answer;
-    refused += answer["event"] == "error" ? 1 : 0;
+  for (const json& event : readEvents(process)) {
+    EXPECT_EQ(event["event"] == "error", event["id"] == "bad") << event;
+    refused += event["event"] == "error" ? 1 : 0;
   }
   EXPECT_EQ(refused, bad.size());
 }
@@ -183,12 +184,12 @@ TEST_F(ServeCommand, TurnedViewEndsWithTheFilteredPictureOfRender) {
   arguments.insert(arguments.begin(), "serve");
   arguments.emplace_back("a.png");
   Process process(arguments, folder.path());
-  ASSERT_TRUE(waitForPicture(process, "null"));
+  ASSERT_TRUE(waitForImage(process, "null"));
   process.write(R"({"id": 1, "position": [5, 60, 9]})"
                 "\n");
-  ASSERT_TRUE(waitForPicture(process, "1")) << process.output();
-  for (const json& answer : answers(process))
-    EXPECT_EQ(event.value("noiseFiltered", 0.0) > 0.0, event["samples"] > 1) << answer;
+  ASSERT_TRUE(waitForImage(process, "1")) << process.output();
+  for (const json& event : readEvents(process))
+    EXPECT_EQ(event.value("noiseFiltered", 0.0) > 0.0, event["samples"] > 1) << event;
   Arguments render = flags;
   render.insert(render.end(), {"b.png", "--position", "5,60,9"});
   ASSERT_EQ(run(render, folder.path()).status, 0);
@@ -207,43 +208,43 @@ TEST_F(ServeCommand, WriteFailureIsAnsweredAndServingGoesOn) {
   ASSERT_TRUE(waitForError(process, "null", "results/a.exr")) << process.output();
   std::filesystem::create_directory(place);
   process.write("{\"id\": 2, \"samples\": 4}\n");
-  ASSERT_TRUE(waitForPicture(process, "2")) << process.output();
+  ASSERT_TRUE(waitForImage(process, "2")) << process.output();
 }
 
 TEST_F(ServeCommand, EndOfInputEndsWithStatus0) {
   for (const char* samples : {"1", "1000000"}) {
-    Process process(serving("16x16", samples), folder.path());
+    Process process(makeArguments("16x16", samples), folder.path());
     ASSERT_TRUE(process.waitForOutput("picture"));
     process.closeInput();
     const Outcome outcome = process.wait();
     EXPECT_EQ(outcome.status, 0);
     EXPECT_EQ(outcome.err, "");
-    EXPECT_LT(outcome.seconds, soon);
+    EXPECT_LT(outcome.seconds, timeLimit);
     EXPECT_EQ(listFiles(folder.path()).size(), 3u); // two inputs and the picture
   }
 }
 
 TEST_F(ServeCommand, SignalEndsWithStatus5) {
   for (const int signal : {SIGINT, SIGTERM}) {
-    Process process(serving("16x16", "1000000"), folder.path());
+    Process process(makeArguments("16x16", "1000000"), folder.path());
     ASSERT_TRUE(process.waitForOutput("picture"));
     process.send(signal);
     const Outcome outcome = process.wait();
     EXPECT_EQ(outcome.status, 5);
-    EXPECT_LT(outcome.seconds, soon);
+    EXPECT_LT(outcome.seconds, timeLimit);
     EXPECT_EQ(listFiles(folder.path()).size(), 3u);
   }
 }
 
 TEST_F(ServeCommand, ClosedOutputEndsWithStatus4) {
-  Process process(serving(), folder.path(), Reader::nobody);
+  Process process(makeArguments(), folder.path(), Reader::closedPipe);
   const Outcome outcome = process.wait();
   EXPECT_EQ(outcome.status, 4);
   EXPECT_NE(outcome.err.find("nobody reads"), std::string::npos) << outcome.err;
 }
 
 TEST_F(ServeCommand, RefusesMissingInputStatsAndSurface) {
-  expectRefused(
+  expectErrors(
       {{"no input", {"serve"}, 2, "INPUT: is missing"},
        {"missing", {"serve", "missing.nrrd"}, 3, "missing.nrrd"},
        {"stats", {"serve", "volume.nrrd", "--stats", "a.json"}, 2, "--stats: serve tells"},

@@ -15,7 +15,7 @@ namespace fenestra::SignalsCommandTests {
 namespace {
 
 /// Seconds; an idle machine takes about 0.1, slow builds more.
-const double soon = 2.0 * static_cast<double>(testing::sampleDivisor());
+const double timeLimit = 2.0 * static_cast<double>(testing::sampleDivisor());
 
 class SignalsCommand : public SmallScene, public ::testing::WithParamInterface<int> {};
 
@@ -32,7 +32,7 @@ TEST_P(SignalsCommand, FirstSignalWritesFinishedPasses) {
   const Outcome outcome = process.wait();
   std::cout << "stopped within " << outcome.seconds << " s\n";
   EXPECT_EQ(outcome.status, 5) << outcome.err;
-  EXPECT_LT(outcome.seconds, soon);
+  EXPECT_LT(outcome.seconds, timeLimit);
   EXPECT_NE(outcome.out.find("stopped on request"), std::string::npos) << outcome.out;
   const Image image = readImage(folder / "a.exr");
   const auto samples = std::stoull(image.header.at("samples"));
@@ -47,7 +47,7 @@ TEST_P(SignalsCommand, FirstSignalWritesFinishedPasses) {
 
 TEST_P(SignalsCommand, SecondSignalEndsAtOnceWithoutWriting) {
   folder.write("a.exr", "old");
-  const auto before = filesIn(folder.path());
+  const auto before = listFiles(folder.path());
   // No pass ends within the test, and a path takes long: the matter scatters and never absorbs.
   folder.write("dense.json", R"({"extinction": [[0, 1e4], [64, 1e4]], "albedo": [[0, 1, 1, 1]]})");
   Process process({"volume.nrrd", "--transfer", "dense.json", "--size", "1024x1024", "--samples",
@@ -59,7 +59,7 @@ TEST_P(SignalsCommand, SecondSignalEndsAtOnceWithoutWriting) {
   process.send(GetParam());
   const Outcome outcome = process.wait();
   EXPECT_EQ(outcome.status, 5) << outcome.err;
-  EXPECT_LT(outcome.seconds, soon);
+  EXPECT_LT(outcome.seconds, timeLimit);
   EXPECT_EQ(readBytes(folder / "a.exr"), "old");
   std::filesystem::remove(folder / "dense.json");
   EXPECT_EQ(listFiles(folder.path()), before);
@@ -94,7 +94,7 @@ TEST_P(SignalsCommand, SignalLeavesNothingOfAnUnpackedArchive) {
 }
 
 TEST_P(SignalsCommand, SignalBeforeTheFirstPassWritesNothing) {
-  const auto before = filesIn(kneeFolder().path());
+  const auto before = listFiles(kneeFolder().path());
   Process process({"knee/knee.nrrd", "--size", "1024x1024", "--samples", "1000000", "--density",
                    "1000", "--progress", "xml"},
                   kneeFolder().path()); // its first pass takes minutes
@@ -103,17 +103,17 @@ TEST_P(SignalsCommand, SignalBeforeTheFirstPassWritesNothing) {
   const Outcome outcome = process.wait();
   std::cout << "stopped within " << outcome.seconds << " s\n";
   EXPECT_EQ(outcome.status, 5) << outcome.err;
-  EXPECT_LT(outcome.seconds, soon);
+  EXPECT_LT(outcome.seconds, timeLimit);
   EXPECT_EQ(outcome.err,
             "fenestra: stopped on request before the first pass; no picture was written\n");
   EXPECT_EQ(listFiles(kneeFolder().path()), before);
 }
 
 TEST_P(SignalsCommand, SignalWhileLoadingWritesNothing) {
-  folder.write("large.nrrd", NrrdText{"800 800 400", "uint8"}.with(""));
+  folder.write("large.nrrd", NrrdText{"800 800 400", "uint8"}.encode(""));
   std::filesystem::resize_file(folder / "large.nrrd",
                                std::filesystem::file_size(folder / "large.nrrd") + 256'000'000);
-  const auto before = filesIn(folder.path());
+  const auto before = listFiles(folder.path());
   Process process({"large.nrrd", "--size", "16x16", "--samples", "1"}, folder.path());
   ASSERT_TRUE(process.waitUntilHandling(GetParam()));
   std::this_thread::sleep_for(std::chrono::milliseconds(20)); // past the check of the outputs
@@ -121,19 +121,19 @@ TEST_P(SignalsCommand, SignalWhileLoadingWritesNothing) {
   const Outcome outcome = process.wait();
   std::cout << "stopped within " << outcome.seconds << " s\n";
   EXPECT_EQ(outcome.status, 5) << outcome.err;
-  EXPECT_LT(outcome.seconds, soon);
+  EXPECT_LT(outcome.seconds, timeLimit);
   EXPECT_EQ(outcome.err, "fenestra: stopped on request; nothing was written\n");
   EXPECT_EQ(listFiles(folder.path()), before);
 }
 
 TEST_P(SignalsCommand, SignalLeavesNoPartOfAPhantom) {
-  const auto before = filesIn(folder.path());
+  const auto before = listFiles(folder.path());
   Process process({"phantom", "knee"}, folder.path());
   ASSERT_TRUE(process.waitUntilHandling(GetParam()));
   process.send(GetParam());
   const Outcome outcome = process.wait();
   EXPECT_EQ(outcome.status, 5) << outcome.err;
-  EXPECT_LT(outcome.seconds, soon);
+  EXPECT_LT(outcome.seconds, timeLimit);
   EXPECT_EQ(listFiles(folder.path()), before);
 }
 
@@ -141,13 +141,13 @@ class BrokenPipe : public SmallScene {};
 
 TEST_F(BrokenPipe, EndsTheRenderWithStatus4) {
   folder.write("a.png", "old");
-  const auto before = filesIn(folder.path());
+  const auto before = listFiles(folder.path());
   Process process({"volume.nrrd", "--size", "64x64", "--samples", "1000000", "--seconds", "20",
                    "--progress", "xml", "--output", "a.png"},
-                  folder.path(), Reader::nobody);
+                  folder.path(), Reader::closedPipe);
   const Outcome outcome = process.wait();
   EXPECT_EQ(outcome.status, 4) << outcome.err;
-  EXPECT_LT(outcome.seconds, 10 * soon);
+  EXPECT_LT(outcome.seconds, 10 * timeLimit);
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
   EXPECT_EQ(listFiles(folder.path()), before);
 }

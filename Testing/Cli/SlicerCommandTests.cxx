@@ -19,7 +19,7 @@ const Names simpleTypes = {"integer", "double", "string", "boolean", "string-enu
 const Names vectorTypes = {"string-vector", "double-vector"};
 
 /// Attributes allowed for each type.
-const std::map<std::string, Names> attributesOf = {
+const std::map<std::string, Names> allowedAttributes = {
     {"integer", {}},
     {"double", {}},
     {"string", {}},
@@ -30,7 +30,7 @@ const std::map<std::string, Names> attributesOf = {
     {"image", {"type", "fileExtensions", "multiple", "reference", "hidden"}},
 };
 
-Names childrenOf(const pugi::xml_node& node) {
+Names childNames(const pugi::xml_node& node) {
   Names names;
   for (const pugi::xml_node& child : node.children())
     names.insert(child.name());
@@ -48,7 +48,7 @@ void checkConstraints(const pugi::xml_node& parameter, const std::string& name) 
   if (!constraints)
     return;
   EXPECT_TRUE(numberTypes.contains(parameter.name())) << name;
-  EXPECT_EQ(childrenOf(constraints), (Names{"minimum", "maximum", "step"})) << name;
+  EXPECT_EQ(childNames(constraints), (Names{"minimum", "maximum", "step"})) << name;
   const double start = parameter.child("default").text().as_double();
   EXPECT_LE(constraints.child("minimum").text().as_double(), start) << name;
   EXPECT_GE(constraints.child("maximum").text().as_double(), start) << name;
@@ -56,10 +56,10 @@ void checkConstraints(const pugi::xml_node& parameter, const std::string& name) 
 }
 
 /// Slicer passes the content of every number or choice field, so each needs a default.
-void checkDefault(const pugi::xml_node& parameter, const std::string& name, bool returned) {
+void checkDefault(const pugi::xml_node& parameter, const std::string& name, bool isReturned) {
   const std::string type = parameter.name();
   const std::string start = parameter.child_value("default");
-  EXPECT_TRUE(!numberTypes.contains(type) || returned || isNumber(start))
+  EXPECT_TRUE(!numberTypes.contains(type) || isReturned || isNumber(start))
       << name << ": '" << start << "'";
   if (type != "string-enumeration") {
     EXPECT_FALSE(parameter.child("element")) << name;
@@ -75,9 +75,9 @@ void checkParameter(const pugi::xml_node& parameter, Names& known) {
   static const std::regex identifier("[A-Za-z_][A-Za-z0-9_]*");
   const std::string type = parameter.name();
   const std::string name = parameter.child_value("name");
-  ASSERT_TRUE(attributesOf.contains(type)) << type << " " << name;
+  ASSERT_TRUE(allowedAttributes.contains(type)) << type << " " << name;
   for (const pugi::xml_attribute& attribute : parameter.attributes())
-    EXPECT_TRUE(attributesOf.at(type).contains(attribute.name())) << name;
+    EXPECT_TRUE(allowedAttributes.at(type).contains(attribute.name())) << name;
   Names seen;
   for (const pugi::xml_node& child : parameter.children()) {
     EXPECT_TRUE((Names{"name", "longflag", "label", "description", "default", "channel", "index",
@@ -91,20 +91,20 @@ void checkParameter(const pugi::xml_node& parameter, Names& known) {
   EXPECT_NE(std::string(parameter.child_value("label")), "") << name;
   EXPECT_NE(std::string(parameter.child_value("description")), "") << name;
   const std::string channel = parameter.child_value("channel");
-  const bool flagged = !!parameter.child("longflag");
-  const bool placed = !!parameter.child("index");
-  const bool returned = !flagged && !placed;
+  const bool hasOption = !!parameter.child("longflag");
+  const bool isPositional = !!parameter.child("index");
+  const bool isReturned = !hasOption && !isPositional;
   EXPECT_TRUE(!hasOption || std::regex_match(parameter.child_value("longflag"), identifier))
       << name;
-  EXPECT_FALSE(hasOption && placed) << name;
-  if (returned) {
+  EXPECT_FALSE(hasOption && isPositional) << name;
+  if (isReturned) {
     EXPECT_TRUE(simpleTypes.contains(type)) << name;
     EXPECT_EQ(channel, "output") << name;
   }
   const bool isFile = type == "image" || type == "file";
   EXPECT_TRUE(!isFile || channel == "input" || channel == "output") << name;
   checkConstraints(parameter, name);
-  checkDefault(parameter, name, returned);
+  checkDefault(parameter, name, isReturned);
 }
 
 class SlicerCommand : public SmallScene {
@@ -120,7 +120,7 @@ protected:
   }
 
   /// All flags with the values of an untouched panel in Slicer.
-  static Arguments untouchedPanel(const pugi::xml_document& document) {
+  static Arguments makeDefaultArguments(const pugi::xml_document& document) {
     Arguments flags;
     for (const pugi::xml_node& group : document.child("executable").children("parameters"))
       for (const pugi::xml_node& parameter : group.children()) {
@@ -200,7 +200,7 @@ TEST_F(SlicerCommand, FileBesideTheExecutableEqualsTheXml) {
 TEST_F(SlicerCommand, ArgumentsOfAnUntouchedPanelRender) {
   // Small picture with few samples; other flags as in the untouched panel, whose values must not
   // conflict.
-  Arguments arguments = untouchedPanel(description());
+  Arguments arguments = makeDefaultArguments(description());
   const auto size = std::find(arguments.begin(), arguments.end(), "--size");
   ASSERT_NE(size, arguments.end());
   *(size + 1) = "16x16";
@@ -230,7 +230,7 @@ TEST_F(SlicerCommand, WarningsForSlicerGoToStandardOutput) {
   std::memcpy(samples.data(), &nan, sizeof nan);
   NrrdText text;
   text.type = "float";
-  folder.write("holes.nrrd", text.with(samples));
+  folder.write("holes.nrrd", text.encode(samples));
   const Arguments plain = {"holes.nrrd", "--size", "8x8", "--samples", "1"};
   EXPECT_NE(run(plain, folder.path()).err.find("warning: "), std::string::npos);
   Arguments slicers = plain;
@@ -241,7 +241,7 @@ TEST_F(SlicerCommand, WarningsForSlicerGoToStandardOutput) {
 }
 
 TEST_F(SlicerCommand, EchoPrintsTheParsedValues) {
-  const Outcome outcome = renderWith({"--echo", "--seed", "7", "--output", "a.png"});
+  const Outcome outcome = renderVolume({"--echo", "--seed", "7", "--output", "a.png"});
   EXPECT_EQ(outcome.status, 0);
   for (const char* line : {"INPUT: volume.nrrd\n", "seed: 7\n", "output: a.png\n", "echo: yes\n"})
     EXPECT_NE(outcome.out.find(line), std::string::npos) << line << outcome.out;

@@ -17,20 +17,24 @@ const Arguments quick = {"--size", "16x16", "--samples", "2"};
 
 class StudyCommand : public SmallScene {
 protected:
-  static Arguments study(const Arguments& more, const std::string& table = "t.csv") {
+  static Arguments makeArguments(const Arguments& more, const std::string& table = "t.csv") {
     Arguments all = {"study", table, "--output", "out"};
     all.insert(all.end(), quick.begin(), quick.end());
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
-  Outcome made(const Arguments& more = {}) const { return run(study(more), folder.path()); }
-  std::string bytes(const std::string& file) const { return readBytes(folder / ("out/" + file)); }
-  nlohmann::json record(const std::string& row) const {
-    return nlohmann::json::parse(bytes(row + "/" + row + ".study.json"));
+  Outcome runBatch(const Arguments& more = {}) const {
+    return run(makeArguments(more), folder.path());
+  }
+  std::string readOutput(const std::string& file) const {
+    return readBytes(folder / ("out/" + file));
+  }
+  nlohmann::json readManifest(const std::string& row) const {
+    return nlohmann::json::parse(readOutput(row + "/" + row + ".study.json"));
   }
   /// Line of the summary that begins with a row's name.
-  std::string summaryOf(const std::string& row) const {
-    std::istringstream lines(bytes("study.csv"));
+  std::string findSummary(const std::string& row) const {
+    std::istringstream lines(readOutput("study.csv"));
     for (std::string line; std::getline(lines, line);)
       if (line.starts_with(row + ","))
         return line;
@@ -44,7 +48,7 @@ TEST_F(StudyCommand, RowsEqualThoseOfRender) {
                         "\"Bone, left\",volume.nrrd,segments.seg.nrrd,\"Bone\\, left\",,3\r\n"
                         ",,,,,\r\n");
   const Outcome outcome =
-      made({"--formats", "exr", "--workers", "2", "--threads", "2", "--progress", "none"});
+      runBatch({"--formats", "exr", "--workers", "2", "--threads", "2", "--progress", "none"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("out: 2 of 2 rows done, 2 rendered now"), std::string::npos)
       << outcome.out;
@@ -67,65 +71,66 @@ TEST_F(StudyCommand, RowsEqualThoseOfRender) {
   EXPECT_EQ(readImage(folder / "out/left/left.exr").header.at("command").find(folder.path()),
             std::string::npos)
       << "the header's names are relative";
-  EXPECT_NE(summaryOf("\"Bone, left\"").find("done,0,,\"Bone, left/Bone, left.png\","),
+  EXPECT_NE(findSummary("\"Bone, left\"").find("done,0,,\"Bone, left/Bone, left.png\","),
             std::string::npos);
   EXPECT_GT(readImage(folder / "out/study.png").width, 16);
   EXPECT_EQ(listFiles(folder / "out").size(), 2U + 2 * (1 + 4)) << "four files in each folder";
 }
 
 TEST_F(StudyCommand, AFailingRowEndsNoOther) {
-  folder.write("torn.nrrd", NrrdText().with("x"));
+  folder.write("torn.nrrd", NrrdText().encode("x"));
   folder.write("t.csv", "name,input,focus\na,torn.nrrd,\nb,nowhere.nrrd,\nc,volume.nrrd,7\n"
                         "d,volume.nrrd,\n");
-  const Outcome outcome = made();
+  const Outcome outcome = runBatch();
   EXPECT_EQ(outcome.status, 3) << outcome.err;
   EXPECT_NE(outcome.err.find("t.csv: 3 of 4 rows failed, the first a: torn.nrrd: "),
             std::string::npos)
       << outcome.err;
   EXPECT_NE(outcome.out.find("out: 1 of 4 rows done, 4 rendered now"), std::string::npos);
-  EXPECT_TRUE(summaryOf("a").starts_with("a,failed,3,")) << summaryOf("a");
-  EXPECT_TRUE(summaryOf("b").starts_with("b,failed,3,")) << summaryOf("b");
-  EXPECT_TRUE(summaryOf("c").starts_with("c,failed,2,")) << summaryOf("c");
-  EXPECT_TRUE(summaryOf("d").starts_with("d,done,0,,d/d.png,")) << summaryOf("d");
-  EXPECT_EQ(record("b")["finished"][0]["status"], 3);
-  EXPECT_NE(record("b")["finished"][0]["error"].get<std::string>().find("nowhere.nrrd: there is"),
-            std::string::npos);
+  EXPECT_TRUE(findSummary("a").starts_with("a,failed,3,")) << findSummary("a");
+  EXPECT_TRUE(findSummary("b").starts_with("b,failed,3,")) << findSummary("b");
+  EXPECT_TRUE(findSummary("c").starts_with("c,failed,2,")) << findSummary("c");
+  EXPECT_TRUE(findSummary("d").starts_with("d,done,0,,d/d.png,")) << findSummary("d");
+  EXPECT_EQ(readManifest("b")["finished"][0]["status"], 3);
+  EXPECT_NE(
+      readManifest("b")["finished"][0]["error"].get<std::string>().find("nowhere.nrrd: there is"),
+      std::string::npos);
 
-  folder.write("torn.nrrd", NrrdText().with(ramp()));
-  folder.write("nowhere.nrrd", NrrdText().with(ramp()));
-  const Outcome again = made();
+  folder.write("torn.nrrd", NrrdText().encode(makeRamp()));
+  folder.write("nowhere.nrrd", NrrdText().encode(makeRamp()));
+  const Outcome again = runBatch();
   EXPECT_NE(again.out.find("3 of 4 rows done, 3 rendered now"), std::string::npos) << again.out;
 }
 
 TEST_F(StudyCommand, MakesOnlyRowsWhoseFlagsOrFilesHaveChanged) {
-  folder.write("other.nrrd", NrrdText().with(ramp()));
+  folder.write("other.nrrd", NrrdText().encode(makeRamp()));
   NrrdText header;
   header.fields = "data file: voxels.raw\n";
-  folder.write("detached.nhdr", header.with(""));
-  folder.write("voxels.raw", ramp());
+  folder.write("detached.nhdr", header.encode(""));
+  folder.write("voxels.raw", makeRamp());
   const std::string rows = "name,input,seed\na,volume.nrrd,\nb,other.nrrd,\nc,detached.nhdr,";
   folder.write("t.csv", rows + "\n");
-  ASSERT_EQ(made().status, 0);
-  const auto expectMade = [&](int count, const Arguments& more = {}) {
-    const Outcome outcome = made(more);
+  ASSERT_EQ(runBatch().status, 0);
+  const auto expectRendered = [&](int count, const Arguments& more = {}) {
+    const Outcome outcome = runBatch(more);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_NE(outcome.out.find("3 of 3 rows done, " + std::to_string(count) + " rendered now"),
               std::string::npos)
         << outcome.out;
   };
-  expectMade(0, {"--workers", "3", "--threads", "1"});
+  expectRendered(0, {"--workers", "3", "--threads", "1"});
   folder.write("t.csv", rows + "7\n");
-  expectMade(1);
+  expectRendered(1);
   for (const char* input : {"other.nrrd", "voxels.raw"}) {
     const auto before = std::filesystem::last_write_time(folder / input);
     std::filesystem::last_write_time(folder / input, before + std::chrono::seconds(1));
-    expectMade(1);
+    expectRendered(1);
   }
   std::filesystem::remove(folder / "out/a/a.png");
-  expectMade(1);
-  expectMade(3, {"--exposure", "1"});
-  expectMade(3, {"--exposure", "1", "--restart"});
-  expectMade(0, {"--exposure", "1"});
+  expectRendered(1);
+  expectRendered(3, {"--exposure", "1"});
+  expectRendered(3, {"--exposure", "1", "--restart"});
+  expectRendered(0, {"--exposure", "1"});
 }
 
 TEST_F(StudyCommand, GoesOnAfterAKillWithTheSameFiles) {
@@ -133,38 +138,38 @@ TEST_F(StudyCommand, GoesOnAfterAKillWithTheSameFiles) {
   for (char row = 'a'; row < 'g'; ++row)
     table += std::string(1, row) + ",volume.nrrd\n";
   folder.write("t.csv", table);
-  const Arguments words = study({"--workers", "2"});
-  std::string told;
+  const Arguments arguments = makeArguments({"--workers", "2"});
+  std::string output;
   {
-    Process process(words, folder.path());
+    Process process(arguments, folder.path());
     ASSERT_TRUE(process.waitForOutput("b: [0-9.e-]+ s"));
     process.send(SIGKILL);
     process.wait();
-    told = process.output();
+    output = process.output();
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "out/study.csv"));
   std::map<std::string, std::string> before; // statistics of the rows that are done
   for (char row = 'a'; row < 'g'; ++row)
-    if (told.find(std::string(1, row) + ": ") != std::string::npos)
-      before[std::string(1, row)] = bytes(std::string(1, row) + "/" + row + ".json");
-  const Outcome rest = run(words, folder.path());
+    if (output.find(std::string(1, row) + ": ") != std::string::npos)
+      before[std::string(1, row)] = readOutput(std::string(1, row) + "/" + row + ".json");
+  const Outcome rest = run(arguments, folder.path());
   ASSERT_EQ(rest.status, 0) << rest.err;
   EXPECT_NE(rest.out.find("6 of 6 rows done, "), std::string::npos) << rest.out;
   EXPECT_EQ(rest.out.find("6 rendered now"), std::string::npos) << rest.out;
   for (const auto& [row, stats] : before)
-    EXPECT_EQ(bytes(row + "/" + row + ".json"), stats) << "a row is made twice";
+    EXPECT_EQ(readOutput(row + "/" + row + ".json"), stats) << "a row is made twice";
   EXPECT_EQ(listFiles(folder / "out").size(), 2U + 6 * (1 + 3)) << "something is left";
 }
 
 TEST_F(StudyCommand, ALongRowGoesOnFromItsFilm) {
   namespace fs = std::filesystem;
   folder.write("t.csv", "name,input,size\na,volume.nrrd,96x96\n");
-  const auto words = [](const std::string& output, const std::string& samples) {
+  const auto arguments = [](const std::string& output, const std::string& samples) {
     return Arguments{"study", "t.csv",     "--output", output,      "--formats",
                      "exr",   "--samples", samples,    "--threads", "1"};
   };
   {
-    Process process(words("out", "300"), folder.path());
+    Process process(arguments("out", "300"), folder.path());
     const Stopwatch watch;
     while (!fs::exists(folder / "out/a/a.film") && watch.seconds() < 30.0)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -175,7 +180,7 @@ TEST_F(StudyCommand, ALongRowGoesOnFromItsFilm) {
   ASSERT_FALSE(fs::exists(folder / "out/a/a.png"));
   fs::copy(folder / "out", folder / "other", fs::copy_options::recursive);
   const auto pathsFromFilm = [&](const std::string& output, const std::string& samples) {
-    const Outcome outcome = run(words(output, samples), folder.path());
+    const Outcome outcome = run(arguments(output, samples), folder.path());
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_NE(outcome.out.find("1 of 1 rows done, 1 rendered now"), std::string::npos)
         << outcome.out;
@@ -192,20 +197,20 @@ TEST_F(StudyCommand, ALongRowGoesOnFromItsFilm) {
 }
 
 TEST_F(StudyCommand, ARowWhoseFilmIsRefusedBeginsAnew) {
-  folder.write("late.nrrd", NrrdText().with("x"));
+  folder.write("late.nrrd", NrrdText().encode("x"));
   folder.write("t.csv", "name,input\na,late.nrrd\n");
-  EXPECT_EQ(made().status, 3);
-  folder.write("late.nrrd", NrrdText().with(ramp()));
+  EXPECT_EQ(runBatch().status, 3);
+  folder.write("late.nrrd", NrrdText().encode(makeRamp()));
   folder.write("out/a/a.film", "torn");
-  const Outcome again = made();
+  const Outcome again = runBatch();
   EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_FALSE(std::filesystem::exists(folder / "out/a/a.film"));
   std::filesystem::remove(folder / "out/a/a.study.json");
   for (const char* file : {"a.png", "a.json"})
     std::filesystem::remove(folder / ("out/a/" + std::string(file)));
   folder.write("out/a/a.film", "mine");
-  EXPECT_NE(made().err.find("out/a/a.film: is there, and no a.study.json"), std::string::npos);
-  EXPECT_EQ(bytes("a/a.film"), "mine");
+  EXPECT_NE(runBatch().err.find("out/a/a.film: is there, and no a.study.json"), std::string::npos);
+  EXPECT_EQ(readOutput("a/a.film"), "mine");
 }
 
 TEST_F(StudyCommand, StopsOnRequestAndGoesOn) {
@@ -223,18 +228,19 @@ TEST_F(StudyCommand, StopsOnRequestAndGoesOn) {
     EXPECT_EQ(outcome.status, 5) << outcome.err;
     EXPECT_LT(outcome.seconds, 10.0);
     EXPECT_NE(outcome.out.find("1 of 3 rows done"), std::string::npos) << outcome.out;
-    EXPECT_TRUE(summaryOf("b").starts_with("b,stopped,5,,,")) << summaryOf("b");
-    EXPECT_TRUE(summaryOf("c").starts_with("c,missing,,")) << summaryOf("c");
+    EXPECT_TRUE(findSummary("b").starts_with("b,stopped,5,,,")) << findSummary("b");
+    EXPECT_TRUE(findSummary("c").starts_with("c,missing,,")) << findSummary("c");
   }
 }
 
 TEST_F(StudyCommand, PartsOfTheRowsMakeTheWhole) {
   folder.write("t.csv", "name,input\na,volume.nrrd\nb,volume.nrrd\nc,volume.nrrd\n");
   for (const char* part : {"1/2", "2/2"})
-    ASSERT_EQ(made({"--rows", part}).status, 0);
+    ASSERT_EQ(runBatch({"--rows", part}).status, 0);
   EXPECT_FALSE(std::filesystem::exists(folder / "out/study.csv"));
-  const Outcome whole = made();
-  EXPECT_NE(complete.out.find("3 of 3 rows done, 0 rendered now"), std::string::npos) << whole.out;
+  const Outcome complete = runBatch();
+  EXPECT_NE(complete.out.find("3 of 3 rows done, 0 rendered now"), std::string::npos)
+      << complete.out;
   EXPECT_TRUE(std::filesystem::exists(folder / "out/study.png"));
 }
 
@@ -242,26 +248,26 @@ TEST_F(StudyCommand, LeavesOthersFilesAlone) {
   folder.write("t.csv", "name,input\na,volume.nrrd\nb,volume.nrrd\n");
   std::filesystem::create_directories(folder / "out/a");
   folder.write("out/a/a.png", "mine");
-  const Outcome refused = made();
+  const Outcome refused = runBatch();
   EXPECT_EQ(refused.status, 2);
   EXPECT_NE(refused.err.find("out/a/a.png: is there, and no a.study.json tells what it is of"),
             std::string::npos)
       << refused.err;
-  EXPECT_EQ(bytes("a/a.png"), "mine");
-  ASSERT_EQ(made({"--restart"}).status, 0);
+  EXPECT_EQ(readOutput("a/a.png"), "mine");
+  ASSERT_EQ(runBatch({"--restart"}).status, 0);
   folder.write("out/b/b.png", "mine");
   folder.write("out/a/a.study.json", "{\"request\": 7}");
-  const Outcome edited = made();
+  const Outcome edited = runBatch();
   EXPECT_NE(edited.err.find("out/b/b.png: is not the row that was recorded"), std::string::npos)
       << edited.err;
   EXPECT_NE(edited.err.find("out/a/a.study.json: request: must be an object"), std::string::npos)
       << edited.err;
-  EXPECT_EQ(bytes("b/b.png"), "mine");
+  EXPECT_EQ(readOutput("b/b.png"), "mine");
   std::filesystem::remove(folder / "out/a/a.study.json");
-  ASSERT_EQ(made({"--restart"}).status, 0);
+  ASSERT_EQ(runBatch({"--restart"}).status, 0);
   folder.write("out/study.csv", "mine");
-  EXPECT_EQ(made().status, 2);
-  EXPECT_EQ(bytes("study.csv"), "mine");
+  EXPECT_EQ(runBatch().status, 2);
+  EXPECT_EQ(readOutput("study.csv"), "mine");
 }
 
 TEST_F(StudyCommand, RefusesDamagedTables) {
@@ -285,15 +291,15 @@ TEST_F(StudyCommand, RefusesDamagedTables) {
       {"name,input\n" + std::string(101, 'a') + ",b\n", "cannot be a folder's name"}};
   for (const auto& [text, message] : tables) {
     folder.write("t.csv", text);
-    expectRefused({{text, study({}), 3, "t.csv: "}}, folder.path());
+    expectErrors({{text, makeArguments({}), 3, "t.csv: "}}, folder.path());
     EXPECT_NE(run(makeArguments({}), folder.path()).err.find(message), std::string::npos) << text;
   }
   folder.write("t.csv", "name,input\na,volume.nrrd\n");
-  expectRefused({{"rows", study({"--rows", "3/2"}), 2, "--rows: expected K/N"},
-                 {"formats", study({"--formats", "gif"}), 2, "--formats: expected exr"},
-                 {"flag", study({"--surface", "a.vtp"}), 2, "--surface: no such flag"},
-                 {"no table", {"study", "none.csv"}, 3, "none.csv: there is no such file"}},
-                folder.path());
+  expectErrors({{"rows", makeArguments({"--rows", "3/2"}), 2, "--rows: expected K/N"},
+                {"formats", makeArguments({"--formats", "gif"}), 2, "--formats: expected exr"},
+                {"flag", makeArguments({"--surface", "a.vtp"}), 2, "--surface: no such flag"},
+                {"no table", {"study", "none.csv"}, 3, "none.csv: there is no such file"}},
+               folder.path());
 }
 
 } // namespace

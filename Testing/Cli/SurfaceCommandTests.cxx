@@ -16,7 +16,7 @@ const Arguments knee = {"knee/knee.nrrd", "--segmentation",   "knee/knee.seg.nrr
                         "--focus",        "FemoralCartilage", "--size",
                         "48x40",          "--samples",        "1"};
 
-Arguments kneeWith(const Arguments& more) {
+Arguments kneeArguments(const Arguments& more) {
   Arguments all = knee;
   all.insert(all.end(), more.begin(), more.end());
   return all;
@@ -46,18 +46,21 @@ PlyContent readPly(const std::filesystem::path& path) {
 class SurfaceCommand : public ::testing::TestWithParam<const char*> {
 protected:
   /// Renders in the knee's folder.
-  Outcome rendered(const Arguments& more) const { return run(kneeWith(more), kneeFolder().path()); }
-  std::string in(const std::string& name) const { return (folder / name).string(); }
+  Outcome render(const Arguments& more) const {
+    return run(kneeArguments(more), kneeFolder().path());
+  }
+  std::string outputPath(const std::string& name) const { return (folder / name).string(); }
 
   TemporaryFolder folder;
 };
 
 TEST_P(SurfaceCommand, WritesTheSameMeshInEveryFormat) {
-  const auto to = [&](const std::string& name) {
-    return Arguments{"--clip", GetParam(), "--output", in("a.exr"), "--surface", in(name)};
+  const auto surfaceArguments = [&](const std::string& name) {
+    return Arguments{"--clip",    GetParam(),      "--output", outputPath("a.exr"),
+                     "--surface", outputPath(name)};
   };
   for (const char* name : {"a.ply", "a.vtp", "a.STL"}) {
-    const Outcome outcome = rendered(to(name));
+    const Outcome outcome = render(surfaceArguments(name));
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(outcome.err, "");
   }
@@ -66,7 +69,7 @@ TEST_P(SurfaceCommand, WritesTheSameMeshInEveryFormat) {
   const PlyContent ply = readPly(folder / "a.ply");
   EXPECT_GT(ply.faces, 100u);
   pugi::xml_document vtp;
-  ASSERT_TRUE(vtp.load_file(in("a.vtp").c_str()));
+  ASSERT_TRUE(vtp.load_file(outputPath("a.vtp").c_str()));
   const pugi::xml_node piece = vtp.select_node("/VTKFile/PolyData/Piece").node();
   EXPECT_EQ(piece.attribute("NumberOfPoints").as_ullong(), ply.vertices.size());
   EXPECT_EQ(piece.attribute("NumberOfPolys").as_ullong(), ply.faces);
@@ -75,22 +78,22 @@ TEST_P(SurfaceCommand, WritesTheSameMeshInEveryFormat) {
 }
 
 TEST_P(SurfaceCommand, MeshLiesAtTheDepthsOfTheClipChannel) {
-  ASSERT_EQ(rendered({"--clip", GetParam(), "--view", "left", "--scale", "30", "--output",
-                      in("a.exr"), "--surface", in("a.ply")})
+  ASSERT_EQ(render({"--clip", GetParam(), "--view", "left", "--scale", "30", "--output",
+                    outputPath("a.exr"), "--surface", outputPath("a.ply")})
                 .status,
             0);
   const Image image = readImage(folder / "a.exr");
   const std::vector<float>& clip = image.channels.at("clip.Z");
   std::istringstream camera(image.header.at("camera"));
-  std::array<double, 3> eye{};
+  std::array<double, 3> position{};
   for (std::string word; camera >> word;)
     if (word.starts_with("--position="))
-      std::sscanf(word.c_str(), "--position=%lf,%lf,%lf", &eye[0], &eye[1], &eye[2]);
+      std::sscanf(word.c_str(), "--position=%lf,%lf,%lf", &position[0], &position[1], &position[2]);
   // View from the left: depth grows along +R, columns along -A, rows along -S, 1.5 mm a pixel.
   std::size_t inside = 0;
   for (const auto& [x, y, z, depth] : readPly(folder / "a.ply").vertices) {
     EXPECT_NEAR(x, position[0] + depth, 1e-3);
-    const double column = (eye[1] - y) / 1.5 + 23.5, row = (eye[2] - z) / 1.5 + 19.5;
+    const double column = (position[1] - y) / 1.5 + 23.5, row = (position[2] - z) / 1.5 + 19.5;
     if (column < -0.1 || column > 47.1 || row < -0.1 || row > 39.1)
       continue;
     ++inside;
@@ -109,26 +112,30 @@ TEST(SurfaceCommandLine, RefusesUnwritableFilesAndRendersWithoutSurface) {
   const TemporaryFolder folder;
   std::filesystem::create_directory_symlink(kneeFolder() / "knee", folder / "knee");
   std::filesystem::create_directory(folder / "folder.vtp");
-  const auto to = [](const std::string& file) { return kneeWith({"--surface", file}); };
-  const std::string known = "has no known extension; name a file .vtp, .ply or .stl";
-  const std::string only = "--surface: --clip none and plane have none; add --focus";
-  expectRefused(
+  const auto surfaceArguments = [](const std::string& file) {
+    return kneeArguments({"--surface", file});
+  };
+  const std::string extensions = "has no known extension; name a file .vtp, .ply or .stl";
+  const std::string unavailable = "--surface: --clip none and plane have none; add --focus";
+  expectErrors(
       {
-          {"another ending", to("a.obj"), 2, "--surface a.obj: " + known},
-          {"no ending", to("a"), 2, known},
-          {"no clip", kneeWith({"--surface", "a.vtp", "--clip", "none"}), 2, only},
-          {"no focus", {"knee/knee.nrrd", "--surface", "a.vtp"}, 2, only},
-          {"a missing folder", to("missing/a.vtp"), 4, "missing/a.vtp: cannot be written: "},
-          {"no permission", to("/proc/a.ply"), 4, "/proc/a.ply: cannot be written: "},
-          {"a folder", to("folder.vtp"), 4, "folder.vtp: is a folder"},
-          {"over the stats", kneeWith({"--surface", "a.vtp", "--stats", "./a.vtp"}), 2,
+          {"another ending", surfaceArguments("a.obj"), 2, "--surface a.obj: " + extensions},
+          {"no ending", surfaceArguments("a"), 2, extensions},
+          {"no clip", kneeArguments({"--surface", "a.vtp", "--clip", "none"}), 2, unavailable},
+          {"no focus", {"knee/knee.nrrd", "--surface", "a.vtp"}, 2, unavailable},
+          {"a missing folder", surfaceArguments("missing/a.vtp"), 4,
+           "missing/a.vtp: cannot be written: "},
+          {"no permission", surfaceArguments("/proc/a.ply"), 4, "/proc/a.ply: cannot be written: "},
+          {"a folder", surfaceArguments("folder.vtp"), 4, "folder.vtp: is a folder"},
+          {"over the stats", kneeArguments({"--surface", "a.vtp", "--stats", "./a.vtp"}), 2,
            "a.vtp: would be written twice"},
           {"over an input that is not there",
            {"knee/knee.nrrd", "--segmentation", "knee/bone.vtp", "--focus", "1", "--surface",
             "knee/bone.vtp"},
            3,
            "knee/bone.vtp: there is no such file"},
-          {"twice", kneeWith({"--surface", "a.vtp", "--surface", "b.vtp"}), 2, "more than once"},
+          {"twice", kneeArguments({"--surface", "a.vtp", "--surface", "b.vtp"}), 2,
+           "more than once"},
       },
       folder.path());
 }

@@ -21,7 +21,7 @@ using ThreadsCommand = SmallScene;
 
 /// Refuses new threads, but not processes, to this process and its children from now on. A limit
 /// (RLIMIT_NPROC) would not hold for root.
-bool refuseThreads() {
+bool forbidThreads() {
   constexpr auto refused = SECCOMP_RET_ERRNO | EAGAIN;
   sock_filter filter[] = {
       BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
@@ -39,7 +39,7 @@ bool refuseThreads() {
 
 /// Ends without destructors: the parent still uses the folders of other tests.
 [[noreturn]] void runWithoutThreads(Arguments arguments, const std::filesystem::path& folder) {
-  if (!refuseThreads())
+  if (!forbidThreads())
     std::_Exit(77);
   for (const char* word : {"--size", "8x8", "--samples", "1", "--progress", "xml"})
     arguments.emplace_back(word);
@@ -56,15 +56,16 @@ TEST_F(ThreadsCommand, UnstartableThreadsAreRefusedAndOneThreadRenders) {
   const Arguments render = {"volume.nrrd", "--output", "a.png", "--threads"};
   const Arguments turntable = {"turntable", "volume.nrrd", "--output",  "t.png",
                                "--frames",  "1",           "--threads", "1"};
-  const auto with = [&render](const char* threads) {
+  const auto withThreads = [&render](const char* threads) {
     Arguments arguments = render;
     arguments.emplace_back(threads);
     return arguments;
   };
-  EXPECT_EXIT(runWithoutThreads(with("2"), folder.path()), ::testing::ExitedWithCode(4),
+  EXPECT_EXIT(runWithoutThreads(withThreads("2"), folder.path()), ::testing::ExitedWithCode(4),
               "^fenestra: threads: 2 cannot be started; [^\n]*--threads 1\n$");
   EXPECT_FALSE(std::filesystem::exists(folder / "a.png"));
-  EXPECT_EXIT(runWithoutThreads(with("1"), folder.path()), ::testing::ExitedWithCode(0), "^$");
+  EXPECT_EXIT(runWithoutThreads(withThreads("1"), folder.path()), ::testing::ExitedWithCode(0),
+              "^$");
   EXPECT_TRUE(std::filesystem::exists(folder / "a.png"));
   EXPECT_EXIT(runWithoutThreads(turntable, folder.path()), ::testing::ExitedWithCode(0), "^$");
   EXPECT_TRUE(std::filesystem::exists(folder / "t_0000.png"));

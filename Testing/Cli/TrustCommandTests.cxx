@@ -31,7 +31,7 @@ protected:
   }
 
   /// Picture without the scene's stored flags.
-  std::map<std::string, std::vector<float>> plain(const Arguments& flags) const {
+  std::map<std::string, std::vector<float>> renderPlain(const Arguments& flags) const {
     writeScene("");
     EXPECT_EQ(render("plain.exr", flags).status, 0);
     return readImage(folder / "plain.exr").channels;
@@ -45,12 +45,12 @@ TEST_F(TrustCommand, StoredFlagsWriteNoFilesAndRunNoPrograms) {
     references="segmentation:s;" returnparameterfile="d.txt" threads="-1" progress="xml" echo="1"
     xml="1" processinformationaddress="0" INPUT="other.nrrd" frames="3" restart="1" degrees="9"
     json="1" help="1" version="1" program="./program" executable="./program" errora="e.exr")");
-  const std::set<std::string> before = filesIn(folder.path());
+  const std::set<std::string> before = listFiles(folder.path());
   const Outcome outcome = render("picture.exr", {"--progress", "none"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
   EXPECT_EQ(std::count(outcome.out.begin(), outcome.out.end(), '\n'), 1) << outcome.out;
-  std::set<std::string> after = filesIn(folder.path());
+  std::set<std::string> after = listFiles(folder.path());
   EXPECT_EQ(after.erase("picture.exr"), 1u);
   EXPECT_EQ(after, before);
   EXPECT_EQ(readImage(folder / "picture.exr").width, 8);
@@ -59,7 +59,7 @@ TEST_F(TrustCommand, StoredFlagsWriteNoFilesAndRunNoPrograms) {
 /// Each file is no valid look: reading it would end the render.
 TEST_F(TrustCommand, StoredFlagsThatNameFilesAreIgnored) {
   const Arguments small = {"--size", "8x8", "--samples", "1", "--progress", "none"};
-  const auto expected = plain(small);
+  const auto expected = renderPlain(small);
   const std::string secret = folder.write("secret.exr", "another's").string();
   for (const auto& [attribute, flag] : std::vector<std::pair<std::string, std::string>>{
            {"transfer=\"" + secret + "\"", "transfer"},

@@ -20,7 +20,7 @@ class TurntableCommand : public SmallScene {
 protected:
   /// Arguments of `fenestra turntable volume.nrrd` for segment A: four frames of 16x16 pixels and 2
   /// samples a pixel.
-  static Arguments turntable(const Arguments& more) {
+  static Arguments makeArguments(const Arguments& more) {
     Arguments all = {"turntable", "volume.nrrd", "--size", "16x16", "--frames", "4"};
     all.insert(all.end(), focus.begin(), focus.end());
     if (std::find(more.begin(), more.end(), "--samples") == more.end())
@@ -28,11 +28,11 @@ protected:
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
-  Outcome turn(const Arguments& more) const { return run(turntable(more), folder.path()); }
+  Outcome turn(const Arguments& more) const { return run(makeArguments(more), folder.path()); }
 
   static std::string frame(int number) { return "turn_000" + std::to_string(number) + ".exr"; }
   /// Camera flags from a frame's header.
-  Arguments cameraOf(const std::string& file) const {
+  Arguments readCamera(const std::string& file) const {
     std::istringstream words(readImage(folder / file).header.at("camera"));
     Arguments flags;
     for (std::string word; words >> word;)
@@ -40,8 +40,8 @@ protected:
     return flags;
   }
   /// Three numbers of one of these flags.
-  Vec3 vectorOf(const std::string& file, const std::string& flag) const {
-    for (const std::string& word : cameraOf(file))
+  Vec3 readVector(const std::string& file, const std::string& flag) const {
+    for (const std::string& word : readCamera(file))
       if (word.starts_with(flag)) {
         std::istringstream numbers(word.substr(flag.size()));
         Vec3 v;
@@ -52,10 +52,10 @@ protected:
     throw std::runtime_error(file + " has no " + flag);
   }
   /// Unit direction from a frame's target to its eye.
-  Vec3 toEye(const std::string& file) const {
-    return (vectorOf(file, "--position=") - vectorOf(file, "--target=")).normalized();
+  Vec3 cameraDirection(const std::string& file) const {
+    return (readVector(file, "--position=") - readVector(file, "--target=")).normalized();
   }
-  nlohmann::json record() const {
+  nlohmann::json readManifest() const {
     return nlohmann::json::parse(readBytes(folder / "turn.turntable.json"));
   }
 };
@@ -71,9 +71,9 @@ TEST_F(TurntableCommand, FramesEqualThoseOfRender) {
     for (const char* ending : {".png", ".nrrd", "-Z.nrrd"})
       EXPECT_TRUE(std::filesystem::exists(folder / ("turn_000" + std::to_string(i) + ending)));
     Arguments arguments = {"--output", "single.exr", "--boundary", "exact"};
-    for (const Arguments& more : {focus, cameraOf(frame(i))})
+    for (const Arguments& more : {focus, readCamera(frame(i))})
       arguments.insert(arguments.end(), more.begin(), more.end());
-    ASSERT_EQ(renderWith(arguments).status, 0);
+    ASSERT_EQ(renderVolume(arguments).status, 0);
     const Image single = readImage(folder / "single.exr"), turned = readImage(folder / frame(i));
     EXPECT_EQ(single.channels, turned.channels) << i;
     EXPECT_EQ(single.header.at("camera"), turned.header.at("camera"));
@@ -92,23 +92,23 @@ TEST_F(TurntableCommand, TurnsAroundTheTargetFromTheRequestedView) {
   EXPECT_LT((cameraDirection(frame(2)) - Vec3::UnitX()).norm(), 1e-12)
       << "clockwise, to the patient's right";
   EXPECT_LT((cameraDirection(frame(3)) - Vec3(1, -1, 0).normalized()).norm(), 1e-12);
-  EXPECT_EQ(vectorOf(frame(0), "--target="), vectorOf(frame(3), "--target="));
+  EXPECT_EQ(readVector(frame(0), "--target="), readVector(frame(3), "--target="));
 }
 
 TEST_F(TurntableCommand, RendersOnlyMissingFrames) {
   ASSERT_EQ(turn({"--output", "turn.exr"}).status, 0);
   const Image lost = readImage(folder / frame(2));
   std::map<int, std::filesystem::file_time_type> written;
-  for (const int kept : {0, 1, 3})
-    written[kept] = std::filesystem::last_write_time(folder / frame(kept));
+  for (const int index : {0, 1, 3})
+    written[index] = std::filesystem::last_write_time(folder / frame(index));
   std::filesystem::remove(folder / frame(2));
   const Outcome outcome = turn({"--output", "turn.exr", "--threads", "1"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("4 of 4 frames, 1 rendered now"), std::string::npos) << outcome.out;
-  for (const auto& [kept, when] : written)
-    EXPECT_EQ(std::filesystem::last_write_time(folder / frame(index)), when) << kept;
+  for (const auto& [index, when] : written)
+    EXPECT_EQ(std::filesystem::last_write_time(folder / frame(index)), when) << index;
   EXPECT_EQ(readImage(folder / frame(2)).channels, lost.channels);
-  EXPECT_EQ(record()["finished"].size(), 4U);
+  EXPECT_EQ(readManifest()["finished"].size(), 4U);
 }
 
 /// A .nrrd without depth is one file.
@@ -120,7 +120,7 @@ TEST_F(TurntableCommand, ResumesAfterFramesWithoutDepth) {
 }
 
 TEST_F(TurntableCommand, ResumesAfterAnInterruptionBitForBit) {
-  Arguments arguments = turntable({"--output", "turn.exr", "--samples", "60"});
+  Arguments arguments = makeArguments({"--output", "turn.exr", "--samples", "60"});
   *std::find(arguments.begin(), arguments.end(), "16x16") = "64x64";
   {
     Arguments watched = arguments;
@@ -133,7 +133,7 @@ TEST_F(TurntableCommand, ResumesAfterAnInterruptionBitForBit) {
     EXPECT_NE(outcome.out.find("(stopped on request; the same command goes on)"), std::string::npos)
         << outcome.out;
   }
-  const auto finished = record()["finished"].size();
+  const auto finished = readManifest()["finished"].size();
   ASSERT_GE(finished, 1U);
   ASSERT_LT(finished, 4U);
   EXPECT_EQ(listFiles(folder.path()).size(), 2 + finished + 1) << "no frame is left half-written";
@@ -146,9 +146,9 @@ TEST_F(TurntableCommand, ResumesAfterAnInterruptionBitForBit) {
   EXPECT_NE(rest.out.find(std::to_string(4 - finished) + " rendered now"), std::string::npos);
   for (const auto& [i, bytes] : before)
     EXPECT_EQ(readBytes(folder / frame(i)), bytes) << i;
-  const nlohmann::json resumed = record();
-  Arguments whole = arguments;
-  *std::find(whole.begin(), whole.end(), "turn.exr") = "whole.exr";
+  const nlohmann::json resumed = readManifest();
+  Arguments complete = arguments;
+  *std::find(complete.begin(), complete.end(), "turn.exr") = "whole.exr";
   ASSERT_EQ(run(complete, folder.path()).status, 0);
   for (int i = 0; i < 4; ++i)
     EXPECT_EQ(readImage(folder / ("whole_000" + std::to_string(i) + ".exr")).channels,
@@ -164,16 +164,16 @@ TEST_F(TurntableCommand, RefusesFramesOfAnotherTurntable) {
   ASSERT_EQ(turn({"--output", "turn.exr"}).status, 0);
   folder.write("frame_0001.png", "mine");
   folder.write("damaged.turntable.json", "{\"request\": 7}");
-  expectRefused(
+  expectErrors(
       {
-          {"other samples", turntable({"--output", "turn.exr", "--samples", "3"}), 2,
+          {"other samples", makeArguments({"--output", "turn.exr", "--samples", "3"}), 2,
            "turn.turntable.json: is of another turntable (--samples=2 there, --samples=3 here); "
            "choose another --output, or add --restart"},
-          {"other seed", turntable({"--output", "turn.exr", "--seed", "3"}), 2,
+          {"other seed", makeArguments({"--output", "turn.exr", "--seed", "3"}), 2,
            "another turntable (--seed=3 here)"},
-          {"others' frame", turntable({"--output", "frame.png"}), 2,
+          {"others' frame", makeArguments({"--output", "frame.png"}), 2,
            "frame_0001.png: is there, and no frame.turntable.json tells what it is of"},
-          {"damaged", turntable({"--output", "damaged.png"}), 3, "damaged.turntable.json: "},
+          {"damaged", makeArguments({"--output", "damaged.png"}), 3, "damaged.turntable.json: "},
       },
       folder.path());
   const Outcome again = turn({"--output", "turn.exr", "--seed", "3", "--restart"});
@@ -181,7 +181,7 @@ TEST_F(TurntableCommand, RefusesFramesOfAnotherTurntable) {
   EXPECT_NE(again.out.find("4 rendered now"), std::string::npos) << again.out;
   EXPECT_EQ(readImage(folder / frame(1)).header.at("seed"), "3");
 
-  folder.write("segments.seg.nrrd", segments() + " ");
+  folder.write("segments.seg.nrrd", makeSegments() + " ");
   const Outcome changed = turn({"--output", "turn.exr", "--seed", "3"});
   EXPECT_EQ(changed.status, 2);
   EXPECT_NE(changed.err.find("segments.seg.nrrd has changed since"), std::string::npos)
@@ -198,10 +198,10 @@ TEST_F(TurntableCommand, RefusesToResumeAfterAFileOfTheSceneChanged) {
   for (const char* file : {"knee/knee.nrrd", "knee/knee.seg.nrrd"}) {
     const auto before = std::filesystem::last_write_time(folder / file);
     std::filesystem::last_write_time(folder / file, before + std::chrono::seconds(1));
-    expectRefused({{file, turn, 2,
-                    "knee.turntable.json: is of another turntable (" + std::string(file) +
-                        " has changed since)"}},
-                  folder.path());
+    expectErrors({{file, turn, 2,
+                   "knee.turntable.json: is of another turntable (" + std::string(file) +
+                       " has changed since)"}},
+                 folder.path());
     std::filesystem::last_write_time(folder / file, before);
   }
   EXPECT_EQ(run(turn, folder.path()).status, 0);
@@ -210,22 +210,23 @@ TEST_F(TurntableCommand, RefusesToResumeAfterAFileOfTheSceneChanged) {
 TEST_F(TurntableCommand, RefusesToResumeAfterDetachedVoxelsChanged) {
   NrrdText header;
   header.fields = "data file: voxels.raw\n";
-  folder.write("volume.nhdr", header.with(""));
-  folder.write("voxels.raw", ramp());
-  Arguments arguments = turntable({"--output", "turn.exr"});
+  folder.write("volume.nhdr", header.encode(""));
+  folder.write("voxels.raw", makeRamp());
+  Arguments arguments = makeArguments({"--output", "turn.exr"});
   *std::find(arguments.begin(), arguments.end(), "volume.nrrd") = "volume.nhdr";
   ASSERT_EQ(run(arguments, folder.path()).status, 0);
-  std::string others = ramp();
+  std::string others = makeRamp();
   std::swap(others[20], others[40]);
   const auto before = std::filesystem::last_write_time(folder / "voxels.raw");
   folder.write("voxels.raw", others);
   std::filesystem::last_write_time(folder / "voxels.raw", before);
-  expectRefused({{"voxels", arguments, 2, "(the volume or the focus has changed since)"}},
-                folder.path());
+  expectErrors({{"voxels", arguments, 2, "(the volume or the focus has changed since)"}},
+               folder.path());
 }
 
 TEST_F(TurntableCommand, ReadsARecordOfTenThousandFrames) {
-  Arguments arguments = turntable({"--output", "turn.png", "--samples", "1", "--progress", "xml"});
+  Arguments arguments =
+      makeArguments({"--output", "turn.png", "--samples", "1", "--progress", "xml"});
   *std::find(arguments.begin(), arguments.end(), "4") = "10000";
   const auto renderSome = [&] {
     Process process(arguments, folder.path());
@@ -234,13 +235,13 @@ TEST_F(TurntableCommand, ReadsARecordOfTenThousandFrames) {
     return process.wait();
   };
   ASSERT_EQ(renderSome().status, 5);
-  nlohmann::json whole = record();
-  const nlohmann::json finished = whole["finished"].at(1);
-  for (int frame = static_cast<int>(whole["finished"].size()); frame < 10000; ++frame) {
-    whole["finished"].push_back(finished); // of lost files
-    whole["finished"].back()["frame"] = frame;
+  nlohmann::json complete = readManifest();
+  const nlohmann::json finished = complete["finished"].at(1);
+  for (int frame = static_cast<int>(complete["finished"].size()); frame < 10000; ++frame) {
+    complete["finished"].push_back(finished); // of lost files
+    complete["finished"].back()["frame"] = frame;
   }
-  folder.write("turn.turntable.json", whole.dump(1));
+  folder.write("turn.turntable.json", complete.dump(1));
   std::filesystem::remove(folder / "turn_0000.png");
   std::filesystem::remove(folder / "turn_0001.png");
   const Outcome again = renderSome();
@@ -248,8 +249,9 @@ TEST_F(TurntableCommand, ReadsARecordOfTenThousandFrames) {
 }
 
 TEST_F(TurntableCommand, StopsWithinASurface) {
-  Arguments arguments = turntable({"--output", "turn.exr", "--samples", "1", "--boundary", "exact",
-                                   "--degrees", "90", "--stats", "all.json", "--progress", "xml"});
+  Arguments arguments =
+      makeArguments({"--output", "turn.exr", "--samples", "1", "--boundary", "exact", "--degrees",
+                     "90", "--stats", "all.json", "--progress", "xml"});
   *std::find(arguments.begin(), arguments.end(), "16x16") = "1024x1024"; // five surfaces a frame
   const Stopwatch watch;
   Process process(arguments, folder.path());
@@ -267,15 +269,16 @@ TEST_F(TurntableCommand, StopsWithinASurface) {
 
 TEST_F(TurntableCommand, RefusesFlagsForASinglePicture) {
   folder.write("volume_0002.nrrd", readBytes(folder / "volume.nrrd"));
-  expectRefused(
+  expectErrors(
       {
-          {"surface", turntable({"--surface", "a.vtp"}), 2, "--surface: is for a single picture"},
-          {"xml", turntable({"--xml"}), 2, "--xml: is for a single picture"},
-          {"no folder", turntable({"--output", "nowhere/turn.png"}), 4,
+          {"surface", makeArguments({"--surface", "a.vtp"}), 2,
+           "--surface: is for a single picture"},
+          {"xml", makeArguments({"--xml"}), 2, "--xml: is for a single picture"},
+          {"no folder", makeArguments({"--output", "nowhere/turn.png"}), 4,
            "fenestra: nowhere/turn.turntable.json: cannot be written: No such file"},
-          {"no frames", turntable({"--steady", "50"}), 2,
+          {"no frames", makeArguments({"--steady", "50"}), 2,
            "--steady: expected a number from 0 to 45"},
-          {"unknown", turntable({"--frame", "3"}), 2, "did you mean --frames?"},
+          {"unknown", makeArguments({"--frame", "3"}), 2, "did you mean --frames?"},
           {"an input",
            {"turntable", "volume_0002.nrrd", "--output", "volume.nrrd"},
            2,
@@ -306,7 +309,7 @@ TEST_F(TurntableCommand, AutomaticViewBeginsWithTheViewOfRender) {
 }
 
 TEST_F(TurntableCommand, AutomaticViewShowsKneeCartilageFromAnterior) {
-  const std::string picture = (folder / "auto.exr").string();
+  const std::string image = (folder / "auto.exr").string();
   for (const char* projection : {"orthographic", "perspective"}) {
     ASSERT_EQ(
         run({"knee/knee.mrml", "--focus", "FemoralCartilage,TibialCartilage", "--view", "auto",
@@ -314,8 +317,9 @@ TEST_F(TurntableCommand, AutomaticViewShowsKneeCartilageFromAnterior) {
             kneeFolder().path())
             .status,
         0);
-    EXPECT_GT(cameraDirection("auto.exr").y(), std::cos(45.0 * pi / 180.0)) << toEye("auto.exr");
-    EXPECT_EQ(vectorOf("auto.exr", "--up="), Vec3::UnitZ());
+    EXPECT_GT(cameraDirection("auto.exr").y(), std::cos(45.0 * pi / 180.0))
+        << cameraDirection("auto.exr");
+    EXPECT_EQ(readVector("auto.exr", "--up="), Vec3::UnitZ());
   }
 }
 
@@ -341,8 +345,8 @@ TEST_F(TurntableCommand, RefusesRecordFieldsOfTheWrongType) {
       {"[]", "must be an object"}};
   for (const auto& [text, message] : records) {
     folder.write("turn.turntable.json", text);
-    expectRefused(
-        {{text, turntable({"--output", "turn.exr"}), 3, "turn.turntable.json: " + message}},
+    expectErrors(
+        {{text, makeArguments({"--output", "turn.exr"}), 3, "turn.turntable.json: " + message}},
         folder.path());
   }
 }
@@ -360,8 +364,8 @@ TEST_F(TurntableCommand, PartsRenderTheirFramesBesideEachOther) {
     ASSERT_EQ(outcome.status, 0) << outcome.err;
   }
   for (const char* frame : {"0000", "0001", "0002", "0003", "0004"})
-    expectSamePicture(folder / ("whole_" + std::string(frame) + ".exr"),
-                      folder / ("part_" + std::string(frame) + ".exr"));
+    expectSameImage(folder / ("whole_" + std::string(frame) + ".exr"),
+                    folder / ("part_" + std::string(frame) + ".exr"));
   const Outcome again = turn("part.exr", {"--shard", "2/3"});
   EXPECT_NE(again.out.find("2 of 2 frames, 0 rendered now"), std::string::npos) << again.out;
   EXPECT_EQ(turn("few.exr", {"--shard", "1/6"}).status, 2);

@@ -87,13 +87,13 @@ constexpr FileCall calls[] = {
     {"mmap", SYS_mmap, descriptor, 4},
 };
 
-const FileCall* find(unsigned long long number) {
+const FileCall* findCall(unsigned long long number) {
   const auto* call = std::find_if(std::begin(calls), std::end(calls),
                                   [number](const FileCall& c) { return c.number == number; });
   return call == std::end(calls) ? nullptr : call;
 }
 
-std::string textAt(pid_t thread, unsigned long long address) {
+std::string readText(pid_t thread, unsigned long long address) {
   std::array<char, 256> text = {};
   iovec here = {text.data(), text.size() - 1};
   // NOLINTNEXTLINE(performance-no-int-to-ptr): an address of another process
@@ -103,7 +103,7 @@ std::string textAt(pid_t thread, unsigned long long address) {
   return text.data();
 }
 
-std::string fileOf(pid_t thread, long long descriptor) {
+std::string findFile(pid_t thread, long long descriptor) {
   std::array<char, PATH_MAX> target = {};
   const std::string link =
       "/proc/" + std::to_string(thread) + "/fd/" + std::to_string(static_cast<int>(descriptor));
@@ -121,9 +121,9 @@ unsigned long long argument(const user_regs_struct& registers, int index) {
 std::vector<sock_filter> makeFilter() {
   constexpr auto load = static_cast<std::uint16_t>(BPF_LD | BPF_W | BPF_ABS);
   constexpr auto equal = static_cast<std::uint16_t>(BPF_JMP | BPF_JEQ | BPF_K);
-  constexpr auto give = static_cast<std::uint16_t>(BPF_RET | BPF_K);
-  const sock_filter trace = {give, 0, 0, SECCOMP_RET_TRACE};
-  const sock_filter allow = {give, 0, 0, SECCOMP_RET_ALLOW};
+  constexpr auto ret = static_cast<std::uint16_t>(BPF_RET | BPF_K);
+  const sock_filter trace = {ret, 0, 0, SECCOMP_RET_TRACE};
+  const sock_filter allow = {ret, 0, 0, SECCOMP_RET_ALLOW};
   std::vector<sock_filter> filter = {{load, 0, 0, offsetof(seccomp_data, nr)}};
   for (const FileCall& call : calls)
     if (call.number != SYS_mmap) {
@@ -148,20 +148,20 @@ std::span<const sock_filter> fileCallFilter() {
 }
 
 bool isCommitting(const user_regs_struct& registers) {
-  const FileCall* call = find(registers.orig_rax);
+  const FileCall* call = findCall(registers.orig_rax);
   return call && call->commits;
 }
 
-std::string described(pid_t thread, const user_regs_struct& registers) {
-  const FileCall* call = find(registers.orig_rax);
+std::string describeCall(pid_t thread, const user_regs_struct& registers) {
+  const FileCall* call = findCall(registers.orig_rax);
   if (!call)
     return "call " + std::to_string(registers.orig_rax);
   const unsigned long long about = argument(registers, call->argument);
   switch (call->about) {
   case path:
-    return std::string(call->name) + " " + textAt(thread, about);
+    return std::string(call->name) + " " + readText(thread, about);
   case descriptor:
-    return std::string(call->name) + " " + fileOf(thread, static_cast<long long>(about));
+    return std::string(call->name) + " " + findFile(thread, static_cast<long long>(about));
   default:
     return call->name;
   }

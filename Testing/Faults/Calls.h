@@ -19,6 +19,6 @@ std::span<const sock_filter> fileCallFilter();
 bool isCommitting(const user_regs_struct& registers);
 
 /// Text such as "openat /dev/shm/x/o.png" for a thread stopped before the call.
-std::string described(pid_t thread, const user_regs_struct& registers);
+std::string describeCall(pid_t thread, const user_regs_struct& registers);
 
 } // namespace fenestra::faults

@@ -23,14 +23,14 @@ namespace {
 
 constexpr int skipped = 77; ///< exit status by which ctest reports a skipped test
 
-struct KindOfFault {
+struct FaultKind {
   Fault::Kind kind;
   const char* word;
   const char* valueName;
   int value;
 };
 
-constexpr KindOfFault kinds[] = {
+constexpr FaultKind kinds[] = {
     {Fault::Kind::call, "call", "ENOSPC", ENOSPC},
     {Fault::Kind::call, "call", "EIO", EIO},
     {Fault::Kind::call, "call", "EINTR", EINTR},
@@ -50,74 +50,75 @@ constexpr KindOfFault kinds[] = {
 };
 
 struct Case {
-  const Subject* subject;
-  const KindOfFault* kind;
+  const Baseline* subject;
+  const FaultKind* kind;
   long number;
 };
 
 struct Result {
   Outcome outcome;
-  std::vector<std::string> wrong;
+  std::vector<std::string> violations;
 };
 
-long placesOf(const Subject& subject, const KindOfFault& kind) {
-  const Outcome& outcome = subject.undisturbed;
+long countPlaces(const Baseline& subject, const FaultKind& kind) {
+  const Outcome& outcome = subject.outcome;
   if (kind.kind == Fault::Kind::call)
     return outcome.calls;
   return kind.kind == Fault::Kind::allocation ? outcome.allocations : outcome.commits;
 }
 
 /// Cases for all places, or for `most` places evenly spread.
-std::vector<Case> casesOf(const Subject& subject, const KindOfFault& kind, long most) {
+std::vector<Case> makeCases(const Baseline& subject, const FaultKind& kind, long maxCount) {
   std::vector<Case> cases;
-  const long places = placesOf(subject, kind);
-  const long count = std::min(places, most);
+  const long places = countPlaces(subject, kind);
+  const long count = std::min(places, maxCount);
   for (long i = 0; i < count; ++i)
     cases.push_back({&subject, &kind, 1 + (2 * i + 1) * places / (2 * count)});
   return cases;
 }
 
-Result resultOf(const Case& one, const Place& place) {
+Result runCase(const Case& testCase, const Workspace& place) {
   Result result;
-  result.wrong =
-      judge(*one.subject, {one.kind->kind, one.number, one.kind->value}, place, result.outcome);
+  result.violations =
+      checkRun(*testCase.subject, {testCase.kind->kind, testCase.number, testCase.kind->value},
+               place, result.outcome);
   return result;
 }
 
 /// Reports progress every minute, since a run takes hours.
 class Progress {
 public:
-  explicit Progress(std::size_t whole) : m_whole(whole) {}
+  explicit Progress(std::size_t total) : m_total(total) {}
 
   /// Called from one thread; 0 < `done` <= whole.
-  void tell(std::size_t done) {
+  void report(std::size_t done) {
     using std::chrono::duration_cast, std::chrono::minutes;
     const Clock::duration spent = Clock::now() - m_start;
     if (spent < m_next)
       return;
     m_next = spent + minutes(1);
-    const auto left = spent * (m_whole - done) / done;
-    std::fprintf(stderr, "%zu of %zu runs, %lld min left\n", done, m_whole,
+    const auto left = spent * (m_total - done) / done;
+    std::fprintf(stderr, "%zu of %zu runs, %lld min left\n", done, m_total,
                  static_cast<long long>(duration_cast<minutes>(left).count()));
   }
 
 private:
   using Clock = std::chrono::steady_clock;
-  std::size_t m_whole;
+  std::size_t m_total;
   Clock::time_point m_start = Clock::now();
   Clock::duration m_next = std::chrono::minutes(1);
 };
 
-std::string nameOf(const Case& one) {
-  std::string name = one.subject->request->name + " " + one.kind->word + " ";
-  name += std::to_string(one.number);
-  return *one.kind->valueName ? name + " " + one.kind->valueName : name;
+std::string formatName(const Case& testCase) {
+  std::string name = testCase.subject->request->name + " " + testCase.kind->word + " ";
+  name += std::to_string(testCase.number);
+  return *testCase.kind->valueName ? name + " " + testCase.kind->valueName : name;
 }
 
 /// Reports violations at once: a run takes hours.
-void tellWrong(const Case& one, const Result& result) {
-  for (const std::string& line : result.wrong)
-    std::fprintf(stderr, "%s: %s\n", nameOf(one).c_str(), line.c_str());
+void reportViolations(const Case& testCase, const Result& result) {
+  for (const std::string& line : result.violations)
+    std::fprintf(stderr, "%s: %s\n", formatName(testCase).c_str(), line.c_str());
 }
 
 std::vector<Result> runAll(const std::vector<Case>& cases, const Tools& tools, unsigned threads) {
@@ -127,12 +128,12 @@ std::vector<Result> runAll(const std::vector<Case>& cases, const Tools& tools, u
   std::vector<std::thread> workers;
   for (unsigned i = 0; i < threads; ++i)
     workers.emplace_back([&, i] {
-      const Place place(tools);
+      const Workspace place(tools);
       for (std::size_t at; (at = next++) < cases.size();) {
-        results[at] = resultOf(cases[at], place);
-        tellWrong(cases[at], results[at]);
+        results[at] = runCase(cases[at], place);
+        reportViolations(cases[at], results[at]);
         if (i == 0)
-          progress.tell(at + 1);
+          progress.report(at + 1);
       }
     });
   for (std::thread& worker : workers)
@@ -165,21 +166,21 @@ void printTallies(const char* title, const char* what,
 
 /// Totals for a request and a kind of fault, in the order of the tables' columns.
 struct Row {
-  long places = 0, runs = 0, met = 0, ends[6] = {}, deaths = 0, wrong = 0;
+  long places = 0, runs = 0, triggered = 0, statuses[6] = {}, crashes = 0, violations = 0;
 
   void add(const Result& result) {
     ++runs;
-    met += result.outcome.place.empty() ? 0 : 1;
-    deaths += result.outcome.signal != 0 ? 1 : 0;
+    triggered += result.outcome.place.empty() ? 0 : 1;
+    crashes += result.outcome.signal != 0 ? 1 : 0;
     if (result.outcome.status >= 0 && result.outcome.status < 6)
-      ++ends[result.outcome.status];
-    wrong += result.wrong.empty() ? 0 : 1;
+      ++statuses[result.outcome.status];
+    violations += result.violations.empty() ? 0 : 1;
   }
 
   void print(const std::string& request, const std::string& fault) const {
     std::printf("| %s | %s | %ld | %ld | %ld | %ld | %ld | %ld | %ld | %ld | %ld | %ld |\n",
-                request.c_str(), fault.c_str(), places, runs, met, ends[0], ends[2], ends[3],
-                ends[4], ends[5], deaths, wrong);
+                request.c_str(), fault.c_str(), places, runs, triggered, statuses[0], statuses[2],
+                statuses[3], statuses[4], statuses[5], crashes, violations);
   }
 };
 
@@ -188,50 +189,52 @@ bool print(const std::vector<Case>& cases, const std::vector<Result>& results) {
   std::puts("# Faults, in turn\n\n"
             "| request | fault | places | runs | met it | ended 0 | 2 | 3 | 4 | 5 | by a signal | "
             "wrong |\n|---|---|---|---|---|---|---|---|---|---|---|---|");
-  std::map<std::string, Tally> deaths, violations;
+  std::map<std::string, Tally> crashes, violations;
   Row row;
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    const Case& one = cases[i];
+    const Case& testCase = cases[i];
     const auto& [outcome, wrong] = results[i];
-    row.places = placesOf(*one.subject, *one.kind);
+    row.places = countPlaces(*testCase.subject, *testCase.kind);
     row.add(results[i]);
-    if (one.kind->kind == Fault::Kind::allocation && outcome.signal != 0)
-      deaths[culprit(outcome.frames).function].add(nameOf(one));
+    if (testCase.kind->kind == Fault::Kind::allocation && outcome.signal != 0)
+      crashes[findCulprit(outcome.frames).function].add(formatName(testCase));
     const std::string call = outcome.place.substr(0, outcome.place.find(' '));
     for (const std::string& line : wrong)
-      violations[one.subject->request->name + ", " + one.kind->word + " at " + call + ": " + line]
-          .add(nameOf(one) + ": " + outcome.place);
-    const bool isLast = i + 1 == cases.size() || cases[i + 1].subject != one.subject ||
-                        cases[i + 1].kind != one.kind;
+      violations[testCase.subject->request->name + ", " + testCase.kind->word + " at " + call +
+                 ": " + line]
+          .add(formatName(testCase) + ": " + outcome.place);
+    const bool isLast = i + 1 == cases.size() || cases[i + 1].subject != testCase.subject ||
+                        cases[i + 1].kind != testCase.kind;
     if (isLast)
-      std::exchange(row, {}).print(one.subject->request->name,
-                                   std::string(one.kind->word) + " " + one.kind->valueName);
+      std::exchange(row, {}).print(testCase.subject->request->name,
+                                   std::string(testCase.kind->word) + " " +
+                                       testCase.kind->valueName);
   }
-  printTallies("Deaths where an allocation fails, by function", "innermost function", deaths);
+  printTallies("Deaths where an allocation fails, by function", "innermost function", crashes);
   printTallies("Violations", "what", violations);
   return violations.empty();
 }
 
 /// Case given by the words REQUEST KIND NUMBER [VALUE].
-std::optional<Case> caseOf(const std::vector<Subject>& subjects, char** words, int count) {
-  for (const Subject& subject : subjects)
-    for (const KindOfFault& kind : kinds)
+std::optional<Case> findCase(const std::vector<Baseline>& subjects, char** words, int count) {
+  for (const Baseline& subject : subjects)
+    for (const FaultKind& kind : kinds)
       if (subject.request->name == words[0] && std::string_view(kind.word) == words[1] &&
           std::string_view(kind.valueName) == (count > 3 ? words[3] : ""))
         return Case{&subject, &kind, std::atol(words[2])};
   return std::nullopt;
 }
 
-int showOne(const Case& one, const Tools& tools) {
-  const Result result = resultOf(one, Place(tools));
-  std::printf("%s: met %s; status %d, signal %d\n%s", nameOf(one).c_str(),
+int runOne(const Case& testCase, const Tools& tools) {
+  const Result result = runCase(testCase, Workspace(tools));
+  std::printf("%s: met %s; status %d, signal %d\n%s", formatName(testCase).c_str(),
               result.outcome.place.c_str(), result.outcome.status, result.outcome.signal,
               result.outcome.errors.c_str());
   for (const Frame& frame : result.outcome.frames)
-    std::printf("  in %s\n", functionOf(frame).c_str());
-  for (const std::string& line : result.wrong)
+    std::printf("  in %s\n", functionName(frame).c_str());
+  for (const std::string& line : result.violations)
     std::printf("wrong: %s\n", line.c_str());
-  return result.wrong.empty() ? 0 : 1;
+  return result.violations.empty() ? 0 : 1;
 }
 
 int runFaults(int count, char** words) {
@@ -244,18 +247,18 @@ int runFaults(int count, char** words) {
     return skipped;
   }
   const Tools tools = {std::filesystem::canonical(words[1]), FENESTRA_PRELOAD, FENESTRA_TEST_DATA};
-  std::vector<Subject> subjects;
+  std::vector<Baseline> subjects;
   for (const Request& request : requests())
-    subjects.push_back(learn(request, tools));
+    subjects.push_back(recordBaseline(request, tools));
   if (count > 3) {
-    const std::optional<Case> one = caseOf(subjects, words + 2, count - 2);
-    return one ? showOne(*one, tools) : 2;
+    const std::optional<Case> testCase = findCase(subjects, words + 2, count - 2);
+    return testCase ? runOne(*testCase, tools) : 2;
   }
-  const long most = count == 3 ? std::atol(words[2]) : std::numeric_limits<long>::max();
+  const long maxCount = count == 3 ? std::atol(words[2]) : std::numeric_limits<long>::max();
   std::vector<Case> cases;
-  for (const Subject& subject : subjects)
-    for (const KindOfFault& kind : kinds) {
-      const std::vector<Case> more = casesOf(subject, kind, most);
+  for (const Baseline& subject : subjects)
+    for (const FaultKind& kind : kinds) {
+      const std::vector<Case> more = makeCases(subject, kind, maxCount);
       cases.insert(cases.end(), more.begin(), more.end());
     }
   // A sample of faults runs as a test, beside other tests.

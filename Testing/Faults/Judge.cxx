@@ -30,94 +30,94 @@ std::vector<int> allowedStatuses(const Fault& fault) {
   }
 }
 
-Lines wrongEnd(const Fault& fault, const Outcome& outcome) {
-  Lines wrong;
+Lines checkEnd(const Fault& fault, const Outcome& outcome) {
+  Lines violations;
   if (outcome.hung)
     return {"hangs"};
   const bool isKilled = fault.kind == Fault::Kind::signal && fault.value == SIGKILL;
-  const bool isDeath = fault.kind == Fault::Kind::allocation && outcome.signal != 0 &&
-                       !culprit(outcome.frames).isOurs;
-  if (isKilled || isDeath)
+  const bool isLibraryCrash = fault.kind == Fault::Kind::allocation && outcome.signal != 0 &&
+                              !findCulprit(outcome.frames).isOurs;
+  if (isKilled || isLibraryCrash)
     return {};
   const std::vector<int> allowed = allowedStatuses(fault);
   if (outcome.signal != 0) {
-    wrong.push_back("dies of signal " + std::to_string(outcome.signal));
+    violations.push_back("dies of signal " + std::to_string(outcome.signal));
     if (!outcome.frames.empty())
-      wrong.back() += " in " + culprit(outcome.frames).function;
+      violations.back() += " in " + findCulprit(outcome.frames).function;
   } else if (std::find(allowed.begin(), allowed.end(), outcome.status) == allowed.end())
-    wrong.push_back("status " + std::to_string(outcome.status));
+    violations.push_back("status " + std::to_string(outcome.status));
   if (const Lines lines = errorLines(outcome); lines.size() > 1)
-    wrong.push_back(std::to_string(lines.size()) + " lines");
-  return wrong;
+    violations.push_back(std::to_string(lines.size()) + " lines");
+  return violations;
 }
 
-const std::string& content(const Files& files, const std::string& name) {
+const std::string& findContent(const Files& files, const std::string& name) {
   static const std::string none = "(no such file)";
   const auto found = files.find(name);
   return found == files.end() ? none : found->second;
 }
 
-bool areAs(const Files& files, const Files& wanted, const Lines& names) {
+bool areEqual(const Files& files, const Files& expected, const Lines& names) {
   return std::all_of(names.begin(), names.end(), [&](const std::string& name) {
-    return content(files, name) == content(wanted, name);
+    return findContent(files, name) == findContent(expected, name);
   });
 }
 
-Lines leftovers(const Subject& subject, const Files& files, const Outcome& outcome,
-                const Place& place) {
-  Lines wrong;
+Lines findLeftovers(const Baseline& baseline, const Files& files, const Outcome& outcome,
+                    const Workspace& workspace) {
+  Lines violations;
   const auto isUnfinished = [&](const std::string& name) {
-    return outcome.status != 0 && name == subject.request->unfinished;
+    return outcome.status != 0 && name == baseline.request->leftCheckpoint;
   };
   for (const auto& [name, text] : files)
-    if (!isUnfinished(name) && !subject.before.contains(name) && !subject.after.contains(name))
-      wrong.push_back("leaves a file in the folder");
-  if (!place.temporaries().empty())
-    wrong.push_back("leaves files in TMPDIR");
-  return wrong;
+    if (!isUnfinished(name) && !baseline.before.contains(name) && !baseline.after.contains(name))
+      violations.push_back("leaves a file in the folder");
+  if (!workspace.tempFiles().empty())
+    violations.push_back("leaves files in TMPDIR");
+  return violations;
 }
 
 /// Violations: files that are neither old nor new, torn in the middle of a write.
-Lines tornFiles(const Subject& subject, const Files& files) {
-  Lines wrong;
-  for (const Lines& group : subject.request->groups)
+Lines findTornFiles(const Baseline& baseline, const Files& files) {
+  Lines violations;
+  for (const Lines& group : baseline.request->groups)
     for (const std::string& name : group)
-      if (!areAs(files, subject.before, {name}) && !areAs(files, subject.after, {name}))
-        wrong.push_back(name + " is neither old nor new");
-  const std::string& film = subject.request->film;
-  if (!film.empty() && !areAs(files, subject.before, {film}) &&
-      !areAs(files, subject.after, {film}))
-    wrong.push_back(film + " is neither old nor new");
-  for (const std::string& name : {subject.request->stats, subject.request->record})
-    if (!name.empty() && !nlohmann::json::accept(content(files, name)))
-      wrong.push_back(name + " is not whole");
-  return wrong;
+      if (!areEqual(files, baseline.before, {name}) && !areEqual(files, baseline.after, {name}))
+        violations.push_back(name + " is neither old nor new");
+  const std::string& checkpoint = baseline.request->checkpoint;
+  if (!checkpoint.empty() && !areEqual(files, baseline.before, {checkpoint}) &&
+      !areEqual(files, baseline.after, {checkpoint}))
+    violations.push_back(checkpoint + " is neither old nor new");
+  for (const std::string& name : {baseline.request->stats, baseline.request->manifest})
+    if (!name.empty() && !nlohmann::json::accept(findContent(files, name)))
+      violations.push_back(name + " is not whole");
+  return violations;
 }
 
 /// Violations: groups whose files stem from two requests, or whose stats are of another request; a
 /// film that stayed old without a warning.
-Lines mixedFiles(const Subject& subject, const Files& files, const Outcome& outcome) {
+Lines findMixedFiles(const Baseline& baseline, const Files& files, const Outcome& outcome) {
   const bool isDone = outcome.status == 0;
-  Lines wrong;
-  bool allNew = true, anyNew = false;
-  for (const Lines& group : subject.request->groups) {
-    const bool isNew = areAs(files, subject.after, group);
-    allNew = allNew && isNew;
-    anyNew = anyNew || isNew;
-    if (!isNew && !areAs(files, subject.before, group))
-      wrong.push_back("files of two requests beside each other");
+  Lines violations;
+  bool isAllNew = true, isAnyNew = false;
+  for (const Lines& group : baseline.request->groups) {
+    const bool isNew = areEqual(files, baseline.after, group);
+    isAllNew = isAllNew && isNew;
+    isAnyNew = isAnyNew || isNew;
+    if (!isNew && !areEqual(files, baseline.before, group))
+      violations.push_back("files of two requests beside each other");
   }
-  const std::string& stats = subject.request->stats;
-  const bool statsNew = stats.empty() || !areAs(files, subject.before, {stats});
-  if (!stats.empty() && statsNew && !anyNew)
-    wrong.push_back("stats of a request whose pictures are not there");
-  if (isDone && !(allNew && statsNew))
-    wrong.push_back("status 0 without all files");
-  const std::string& film = subject.request->film;
-  const bool isFilmNew = film.empty() || areAs(files, subject.after, {film});
-  if (isDone && !isFilmNew && outcome.errors.find(film + ": ") == std::string::npos)
-    wrong.push_back("status 0 without a film, and without a warning");
-  return wrong;
+  const std::string& stats = baseline.request->stats;
+  const bool isStatsNew = stats.empty() || !areEqual(files, baseline.before, {stats});
+  if (!stats.empty() && isStatsNew && !isAnyNew)
+    violations.push_back("stats of a request whose pictures are not there");
+  if (isDone && !(isAllNew && isStatsNew))
+    violations.push_back("status 0 without all files");
+  const std::string& checkpoint = baseline.request->checkpoint;
+  const bool isCheckpointNew = checkpoint.empty() || areEqual(files, baseline.after, {checkpoint});
+  if (isDone && !isCheckpointNew && outcome.errors.find(checkpoint + ": ") == std::string::npos)
+    violations.push_back("status 0 without a film, and without a warning");
+  return violations;
 }
 
 void append(Lines& lines, const Lines& more) {
@@ -127,7 +127,7 @@ void append(Lines& lines, const Lines& more) {
 }
 
 /// Function name without template arguments and parameters.
-std::string withoutArguments(const std::string& function) {
+std::string stripArguments(const std::string& function) {
   std::string name;
   int depth = 0;
   for (const char c : function) {
@@ -152,30 +152,31 @@ Lines errorLines(const Outcome& outcome) {
   return lines;
 }
 
-Lines judge(const Subject& subject, const Fault& fault, const Place& place, Outcome& outcome) {
-  place.fill(subject.before);
-  outcome = place.run(subject.request->words, fault);
-  Lines wrong = wrongEnd(fault, outcome);
-  const Files files = place.files();
-  append(wrong, tornFiles(subject, files));
-  if (!areAs(files, subject.before, subject.inputs))
-    wrong.push_back("an input is changed or gone");
+Lines checkRun(const Baseline& baseline, const Fault& fault, const Workspace& workspace,
+               Outcome& outcome) {
+  workspace.fill(baseline.before);
+  outcome = workspace.run(baseline.request->arguments, fault);
+  Lines violations = checkEnd(fault, outcome);
+  const Files files = workspace.files();
+  append(violations, findTornFiles(baseline, files));
+  if (!areEqual(files, baseline.before, baseline.inputs))
+    violations.push_back("an input is changed or gone");
   // Leftovers of a kill, or of a death outside our code, must be gone after the next run.
   if (outcome.signal == 0) {
-    append(wrong, mixedFiles(subject, files, outcome));
-    append(wrong, leftovers(subject, files, outcome, place));
+    append(violations, findMixedFiles(baseline, files, outcome));
+    append(violations, findLeftovers(baseline, files, outcome, workspace));
   } else {
-    const Outcome next = place.run(subject.request->words, {});
+    const Outcome next = workspace.run(baseline.request->arguments, {});
     if (next.status != 0)
-      wrong.push_back("the next run ends with " + std::to_string(next.status));
-    append(wrong, mixedFiles(subject, place.files(), next));
-    for (const std::string& line : leftovers(subject, place.files(), next, place))
-      wrong.push_back(line + " that the next run does not remove");
+      violations.push_back("the next run ends with " + std::to_string(next.status));
+    append(violations, findMixedFiles(baseline, workspace.files(), next));
+    for (const std::string& line : findLeftovers(baseline, workspace.files(), next, workspace))
+      violations.push_back(line + " that the next run does not remove");
   }
-  return wrong;
+  return violations;
 }
 
-std::string functionOf(const Frame& frame) {
+std::string functionName(const Frame& frame) {
   std::string name = frame.function;
   if (name.empty()) {
     std::ostringstream command;
@@ -188,33 +189,33 @@ std::string functionOf(const Frame& frame) {
     }
   }
   int failed = 0;
-  char* const readable = abi::__cxa_demangle(name.c_str(), nullptr, nullptr, &failed);
+  char* const demangled = abi::__cxa_demangle(name.c_str(), nullptr, nullptr, &failed);
   if (failed == 0)
-    name = readable;
-  std::free(readable);
-  return withoutArguments(name);
+    name = demangled;
+  std::free(demangled);
+  return stripArguments(name);
 }
 
-Culprit culprit(const std::vector<Frame>& frames) {
+Culprit findCulprit(const std::vector<Frame>& frames) {
   constexpr const char* runtime[] = {"libc.so", "libstdc++", "libgcc_s",
                                      "libm.so", "ld-linux",  "libfaults"};
-  std::string nameless; // module of a nameless function: its caller there may have a name
+  std::string unnamedModule; // module of a nameless function: its caller there may have a name
   for (const Frame& frame : frames) {
     const std::string module = std::filesystem::path(frame.module).filename().string();
     const bool isRuntime =
         std::any_of(std::begin(runtime), std::end(runtime),
                     [&module](const char* name) { return module.starts_with(name); });
-    const std::string function = functionOf(frame);
+    const std::string function = functionName(frame);
     if (isRuntime || function.starts_with("std::") || function.starts_with("__"))
       continue;
-    if (!nameless.empty() && module != nameless)
+    if (!unnamedModule.empty() && module != unnamedModule)
       break;
-    nameless = module;
+    unnamedModule = module;
     if (function != "??")
       return {function + " (" + module + ")",
               function.find("fenestra::") != std::string::npos || function == "main"};
   }
-  return {"a function without a name (" + nameless + ")", nameless.empty()};
+  return {"a function without a name (" + unnamedModule + ")", unnamedModule.empty()};
 }
 
 } // namespace fenestra::faults

@@ -7,8 +7,8 @@ namespace fenestra::faults {
 
 /// Runs the subject with `fault` at `place`; returns the violations, one line each. A crash inside
 /// a library for lack of memory is no violation: outcome.signal reports it.
-std::vector<std::string> judge(const Subject& subject, const Fault& fault, const Place& place,
-                               Outcome& outcome);
+std::vector<std::string> checkRun(const Baseline& baseline, const Fault& fault,
+                                  const Workspace& workspace, Outcome& outcome);
 
 /// Lines of standard error that are not warnings.
 std::vector<std::string> errorLines(const Outcome& outcome);
@@ -21,8 +21,8 @@ struct Culprit {
 };
 
 /// Exported name of a frame's function, else the name in the module's own symbol table.
-std::string functionOf(const Frame& frame);
+std::string functionName(const Frame& frame);
 
-Culprit culprit(const std::vector<Frame>& frames);
+Culprit findCulprit(const std::vector<Frame>& frames);
 
 } // namespace fenestra::faults

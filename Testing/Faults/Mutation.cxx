@@ -18,13 +18,13 @@ struct Span {
 
 using Spans = std::vector<Span>;
 
-std::size_t below(std::mt19937_64& random, std::size_t limit) {
+std::size_t randomBelow(std::mt19937_64& random, std::size_t limit) {
   return limit == 0 ? 0 : random() % limit; // equal on every machine
 }
 
 template <typename Container>
-const auto& anyOf(const Container& container, std::mt19937_64& random) {
-  return container[below(random, std::size(container))];
+const auto& randomElement(const Container& container, std::mt19937_64& random) {
+  return container[randomBelow(random, std::size(container))];
 }
 
 constexpr std::string_view extremes[] = {
@@ -65,11 +65,11 @@ constexpr std::string_view extremes[] = {
 };
 
 /// Text before samples and tables of bytes.
-std::string_view textOf(std::string_view bytes) {
+std::string_view textPart(std::string_view bytes) {
   return bytes.substr(0, bytes.find('\0'));
 }
 
-Spans numbersIn(std::string_view bytes) {
+Spans findNumbers(std::string_view bytes) {
   Spans found;
   const auto isPart = [](char c) {
     return std::isdigit(static_cast<unsigned char>(c)) || c == '.' || c == '-' || c == 'e';
@@ -88,7 +88,7 @@ Spans numbersIn(std::string_view bytes) {
 }
 
 /// Spans of name="value" with the space before.
-Spans attributesIn(std::string_view bytes) {
+Spans findAttributes(std::string_view bytes) {
   Spans found;
   for (std::size_t at = 0; (at = bytes.find("=\"", at)) != bytes.npos;) {
     const std::size_t space = bytes.rfind(' ', at);
@@ -101,7 +101,7 @@ Spans attributesIn(std::string_view bytes) {
   return found;
 }
 
-Spans linesIn(std::string_view bytes) {
+Spans findLines(std::string_view bytes) {
   Spans found;
   for (std::size_t at = 0; at < bytes.size();) {
     const std::size_t end = std::min(bytes.find('\n', at), bytes.size() - 1) + 1;
@@ -111,17 +111,17 @@ Spans linesIn(std::string_view bytes) {
   return found;
 }
 
-Span blockIn(std::string_view bytes, std::mt19937_64& random) {
-  const std::size_t begin = below(random, bytes.size());
-  const std::size_t most =
-      std::min<std::size_t>(bytes.size() - begin, std::size_t{1} << below(random, 13));
-  return {begin, 1 + below(random, most)};
+Span randomBlock(std::string_view bytes, std::mt19937_64& random) {
+  const std::size_t begin = randomBelow(random, bytes.size());
+  const std::size_t maxLength =
+      std::min<std::size_t>(bytes.size() - begin, std::size_t{1} << randomBelow(random, 13));
+  return {begin, 1 + randomBelow(random, maxLength)};
 }
 
 /// Removes a part, repeats, moves or multiplies it, or exchanges it for its like.
 void change(std::string& bytes, Span part, Span other, std::mt19937_64& random) {
   const std::string text = bytes.substr(part.begin, part.length);
-  switch (below(random, 5)) {
+  switch (randomBelow(random, 5)) {
   case 0:
     bytes.erase(part.begin, part.length);
     break;
@@ -132,7 +132,7 @@ void change(std::string& bytes, Span part, Span other, std::mt19937_64& random) 
     bytes.insert(other.begin, text);
     break;
   case 3:
-    for (std::size_t times = std::size_t{1} << below(random, 9); times > 0; --times)
+    for (std::size_t count = std::size_t{1} << randomBelow(random, 9); count > 0; --count)
       bytes.insert(part.begin, text);
     break;
   default:
@@ -142,57 +142,57 @@ void change(std::string& bytes, Span part, Span other, std::mt19937_64& random) 
 
 void changeOneOf(std::string& bytes, const Spans& parts, std::mt19937_64& random) {
   if (!parts.empty()) {
-    const Span part = anyOf(parts, random);
-    change(bytes, part, anyOf(parts, random), random);
+    const Span part = randomElement(parts, random);
+    change(bytes, part, randomElement(parts, random), random);
   }
 }
 
 void changeNumber(std::string& bytes, std::mt19937_64& random) {
-  const Spans numbers = numbersIn(textOf(bytes));
+  const Spans numbers = findNumbers(textPart(bytes));
   if (numbers.empty())
     return;
-  const Span number = anyOf(numbers, random);
-  bytes.replace(number.begin, number.length, anyOf(extremes, random));
+  const Span number = randomElement(numbers, random);
+  bytes.replace(number.begin, number.length, randomElement(extremes, random));
 }
 
 /// Lengthens the bytes at one place: long names and values find buffers.
 void lengthen(std::string& bytes, std::mt19937_64& random) {
-  const std::size_t at = below(random, bytes.size());
-  bytes.insert(at, std::string(std::size_t{1} << below(random, 18), bytes[at]));
+  const std::size_t at = randomBelow(random, bytes.size());
+  bytes.insert(at, std::string(std::size_t{1} << randomBelow(random, 18), bytes[at]));
 }
 
 void changeBytes(std::string& bytes, std::mt19937_64& random) {
   constexpr std::uint32_t words[] = {0,      1,          0x7f,       0xff,      0x7fff,
                                      0xffff, 0x7fffffff, 0x80000000, 0xffffffff};
   const std::uint32_t word =
-      random() % 2 ? anyOf(words, random) : static_cast<std::uint32_t>(random());
-  const std::size_t at = below(random, bytes.size());
+      random() % 2 ? randomElement(words, random) : static_cast<std::uint32_t>(random());
+  const std::size_t at = randomBelow(random, bytes.size());
   const std::size_t length =
-      std::min<std::size_t>(std::size_t{1} << below(random, 3), bytes.size() - at);
+      std::min<std::size_t>(std::size_t{1} << randomBelow(random, 3), bytes.size() - at);
   for (std::size_t i = 0; i < length; ++i)
     bytes[at + i] = static_cast<char>(word >> (8 * i));
 }
 
-void mutateOnce(std::string& bytes, std::mt19937_64& random) {
+void corruptOnce(std::string& bytes, std::mt19937_64& random) {
   if (bytes.empty())
     return;
-  const std::string_view text = textOf(bytes);
-  switch (below(random, 10)) {
+  const std::string_view text = textPart(bytes);
+  switch (randomBelow(random, 10)) {
   case 0:
   case 1:
   case 2:
     return changeNumber(bytes, random);
   case 3:
   case 4:
-    return changeOneOf(bytes, attributesIn(text), random);
+    return changeOneOf(bytes, findAttributes(text), random);
   case 5:
-    return changeOneOf(bytes, linesIn(text), random);
+    return changeOneOf(bytes, findLines(text), random);
   case 6:
-    return change(bytes, blockIn(bytes, random), blockIn(bytes, random), random);
+    return change(bytes, randomBlock(bytes, random), randomBlock(bytes, random), random);
   case 7:
     return lengthen(bytes, random);
   case 8:
-    return bytes.resize(below(random, bytes.size()));
+    return bytes.resize(randomBelow(random, bytes.size()));
   default:
     return changeBytes(bytes, random);
   }
@@ -200,10 +200,11 @@ void mutateOnce(std::string& bytes, std::mt19937_64& random) {
 
 } // namespace
 
-std::string mutated(std::string bytes, std::mt19937_64& random) {
+std::string corrupt(std::string bytes, std::mt19937_64& random) {
   const std::string before = bytes;
-  for (std::size_t times = 1 + below(random, 3); times > 0 || bytes == before; times -= times > 0)
-    mutateOnce(bytes, random);
+  for (std::size_t count = 1 + randomBelow(random, 3); count > 0 || bytes == before;
+       count -= count > 0)
+    corruptOnce(bytes, random);
   return bytes;
 }
 

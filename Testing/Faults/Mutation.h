@@ -8,6 +8,6 @@
 namespace fenestra::faults {
 
 /// Damaged bytes; a function of the bytes and the random numbers only.
-std::string mutated(std::string bytes, std::mt19937_64& random);
+std::string corrupt(std::string bytes, std::mt19937_64& random);
 
 } // namespace fenestra::faults

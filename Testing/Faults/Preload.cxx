@@ -29,8 +29,8 @@ using fenestra::faults::Page;
 
 Page* page = nullptr; ///< null until `main` begins
 
-bool fails() {
-  if (!page || ++page->allocations != page->failing)
+bool shouldFail() {
+  if (!page || ++page->allocations != page->failingNumber)
     return false;
   errno = ENOMEM;
   return true;
@@ -61,21 +61,21 @@ void onDeath(int signal) {
 using Main = int (*)(int, char**, char**);
 Main realMain = nullptr;
 
-int countedMain(int count, char** words, char** environment) {
+int tracedMain(int count, char** words, char** environment) {
   const char* const file = std::getenv(fenestra::faults::pageVariable);
   const int opened = file ? ::open(file, O_RDWR | O_CLOEXEC) : -1;
   if (opened >= 0) {
     void* const shared =
         ::mmap(nullptr, sizeof(Page), PROT_READ | PROT_WRITE, MAP_SHARED, opened, 0);
     ::close(opened);
-    void* warm[1];
-    ::backtrace(warm, 1); // loads what it needs
+    void* unused[1];
+    ::backtrace(unused, 1); // loads what it needs
     for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT})
       std::signal(signal, onDeath);
     if (shared != MAP_FAILED)
       page = static_cast<Page*>(shared);
   }
-  ::syscall(SYS_lseek, -1, 0, fenestra::faults::mainBegins);
+  ::syscall(SYS_lseek, -1, 0, fenestra::faults::mainMarker);
   return realMain(count, words, environment);
 }
 
@@ -84,19 +84,19 @@ int countedMain(int count, char** words, char** environment) {
 extern "C" {
 
 void* malloc(std::size_t size) {
-  return fails() ? nullptr : __libc_malloc(size);
+  return shouldFail() ? nullptr : __libc_malloc(size);
 }
 
 void* calloc(std::size_t count, std::size_t size) {
-  return fails() ? nullptr : __libc_calloc(count, size);
+  return shouldFail() ? nullptr : __libc_calloc(count, size);
 }
 
 void* realloc(void* memory, std::size_t size) {
-  return fails() ? nullptr : __libc_realloc(memory, size);
+  return shouldFail() ? nullptr : __libc_realloc(memory, size);
 }
 
 void* memalign(std::size_t alignment, std::size_t size) {
-  return fails() ? nullptr : __libc_memalign(alignment, size);
+  return shouldFail() ? nullptr : __libc_memalign(alignment, size);
 }
 
 void* aligned_alloc(std::size_t alignment, std::size_t size) {
@@ -116,6 +116,6 @@ int __libc_start_main(Main main, int count, char** words, void (*begin)(), void 
   const auto start =
       reinterpret_cast<decltype(&__libc_start_main)>(::dlsym(RTLD_NEXT, "__libc_start_main"));
   realMain = main;
-  return start(countedMain, count, words, begin, end, linkerEnd, stack);
+  return start(tracedMain, count, words, begin, end, linkerEnd, stack);
 }
 }

@@ -29,7 +29,7 @@ extern char** environ;
 namespace fenestra::faults {
 namespace {
 
-constexpr auto longest = std::chrono::seconds(20); ///< time limit of a run
+constexpr auto timeLimit = std::chrono::seconds(20); ///< time limit of a run
 
 /// File in memory.
 class MemoryFile {
@@ -84,9 +84,9 @@ public:
   explicit Watchdog(pid_t process)
       : m_thread([this, process] {
           std::unique_lock lock(m_mutex);
-          if (m_wake.wait_for(lock, longest, [this] { return m_ended; }))
+          if (m_wake.wait_for(lock, timeLimit, [this] { return m_ended; }))
             return;
-          m_barked = true;
+          m_hasKilled = true;
           ::kill(process, SIGKILL);
         }) {}
   ~Watchdog() { end(); }
@@ -102,13 +102,13 @@ public:
     m_wake.notify_one();
     if (m_thread.joinable())
       m_thread.join();
-    return m_barked;
+    return m_hasKilled;
   }
 
 private:
   std::mutex m_mutex;
   std::condition_variable m_wake;
-  bool m_ended = false, m_barked = false;
+  bool m_ended = false, m_hasKilled = false;
   std::thread m_thread;
 };
 
@@ -119,9 +119,9 @@ struct Start {
                  std::string(pageVariable) + "=" + page.path()}; // of equal names the first counts
     for (char** variable = environ; *variable; ++variable)
       variables.emplace_back(*variable);
-    for (const std::string& word : command.words)
-      words.push_back(const_cast<char*>(word.c_str()));
-    words.push_back(nullptr);
+    for (const std::string& word : command.arguments)
+      arguments.push_back(const_cast<char*>(word.c_str()));
+    arguments.push_back(nullptr);
     for (const std::string& variable : variables)
       environment.push_back(const_cast<char*>(variable.c_str()));
     environment.push_back(nullptr);
@@ -129,10 +129,11 @@ struct Start {
 
   std::filesystem::path folder;
   std::vector<std::string> variables;
-  std::vector<char*> words, environment;
+  std::vector<char*> arguments, environment;
 };
 
-[[noreturn]] void become(const Start& start, int out, int err, const Fault& fault, bool traced) {
+[[noreturn]] void execCommand(const Start& start, int out, int err, const Fault& fault,
+                              bool traced) {
   const std::span<const sock_filter> filter = fileCallFilter();
   const sock_fprog program = {static_cast<unsigned short>(filter.size()),
                               const_cast<sock_filter*>(filter.data())};
@@ -142,19 +143,19 @@ struct Start {
     ::signal(stop, SIG_DFL);
   if (fault.kind == Fault::Kind::ignored)
     ::signal(fault.value, SIG_IGN);
-  const bool placed = ::chdir(start.folder.c_str()) == 0 && ::dup2(in, STDIN_FILENO) >= 0 &&
-                      ::dup2(out, STDOUT_FILENO) >= 0 && ::dup2(err, STDERR_FILENO) >= 0;
-  if (placed && traced)
+  const bool isReady = ::chdir(start.folder.c_str()) == 0 && ::dup2(in, STDIN_FILENO) >= 0 &&
+                       ::dup2(out, STDOUT_FILENO) >= 0 && ::dup2(err, STDERR_FILENO) >= 0;
+  if (isReady && traced)
     traced = ::ptrace(PTRACE_TRACEME, 0, nullptr, nullptr) == 0 && ::raise(SIGSTOP) == 0 &&
              ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
              ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
-  if (placed)
-    ::execve(start.words[0], start.words.data(), start.environment.data());
+  if (isReady)
+    ::execve(start.arguments[0], start.arguments.data(), start.environment.data());
   ::_exit(127);
 }
 
 /// Process of a thread.
-pid_t processOf(pid_t thread) {
+pid_t findProcess(pid_t thread) {
   std::ifstream status("/proc/" + std::to_string(thread) + "/status");
   for (std::string line; std::getline(status, line);)
     if (line.starts_with("Tgid:"))
@@ -177,7 +178,7 @@ public:
         ::ptrace(PTRACE_CONT, thread, nullptr, signalAfter(thread, state));
       else if (thread == m_root) {
         m_outcome.peakKilobytes = usage.ru_maxrss;
-        ended(state);
+        onEnd(state);
       }
     }
   }
@@ -189,7 +190,7 @@ private:
     if (event == PTRACE_EVENT_SECCOMP)
       onCall(thread);
     else if (event == PTRACE_EVENT_EXEC)
-      m_begun.erase(processOf(thread));
+      m_started.erase(findProcess(thread));
     else if (event == PTRACE_EVENT_FORK || event == PTRACE_EVENT_VFORK)
       onFork(thread);
     else if (event == 0 && WSTOPSIG(state) != SIGSTOP)
@@ -202,14 +203,14 @@ private:
     if (::ptrace(PTRACE_GETEVENTMSG, thread, nullptr, &child) != 0)
       return;
     m_children.push_back(static_cast<pid_t>(child));
-    if (m_begun.contains(process(thread)))
-      m_begun.insert(static_cast<pid_t>(child));
+    if (m_started.contains(process(thread)))
+      m_started.insert(static_cast<pid_t>(child));
   }
 
   pid_t process(pid_t thread) {
     const auto [place, isNew] = m_processes.try_emplace(thread, 0);
     if (isNew)
-      place->second = processOf(thread);
+      place->second = findProcess(thread);
     return place->second;
   }
 
@@ -217,9 +218,9 @@ private:
     user_regs_struct registers = {};
     if (::ptrace(PTRACE_GETREGS, thread, nullptr, &registers) != 0)
       return;
-    if (registers.orig_rax == SYS_lseek && registers.rdx == mainBegins)
-      m_begun.insert(process(thread));
-    else if (m_begun.contains(process(thread)))
+    if (registers.orig_rax == SYS_lseek && registers.rdx == mainMarker)
+      m_started.insert(process(thread));
+    else if (m_started.contains(process(thread)))
       onCounted(thread, registers);
   }
 
@@ -227,7 +228,7 @@ private:
     ++m_outcome.calls;
     m_outcome.commits += isCommitting(registers) ? 1 : 0;
     if (m_fault.kind == Fault::Kind::call && m_outcome.calls == m_fault.number) {
-      m_outcome.place = described(thread, registers);
+      m_outcome.place = describeCall(thread, registers);
       registers.orig_rax = ~0ULL; // skips the call
       registers.rax = static_cast<unsigned long long>(-static_cast<long long>(m_fault.value));
       ::ptrace(PTRACE_SETREGS, thread, nullptr, &registers);
@@ -235,7 +236,7 @@ private:
     const bool signals =
         m_fault.kind == Fault::Kind::signal || m_fault.kind == Fault::Kind::ignored;
     if (signals && isCommitting(registers) && m_outcome.commits == m_fault.number) {
-      m_outcome.place = described(thread, registers);
+      m_outcome.place = describeCall(thread, registers);
       if (process(thread) == m_root)
         ::syscall(SYS_tgkill, m_root, thread, m_fault.value);
       else
@@ -243,7 +244,7 @@ private:
     }
   }
 
-  void ended(int state) {
+  void onEnd(int state) {
     m_outcome.status = WIFEXITED(state) ? WEXITSTATUS(state) : -1;
     m_outcome.signal = WIFSIGNALED(state) ? WTERMSIG(state) : 0;
     for (const pid_t child : m_children)
@@ -253,7 +254,7 @@ private:
   pid_t m_root;
   const Fault& m_fault;
   Outcome& m_outcome;
-  std::set<pid_t> m_begun;            ///< processes that have reached `main`
+  std::set<pid_t> m_started;          ///< processes that have reached `main`
   std::map<pid_t, pid_t> m_processes; ///< process of each thread
   std::vector<pid_t> m_children;
 };
@@ -299,11 +300,11 @@ Outcome run(const Command& command, const Fault& fault) {
   const Start start(command, page);
   const bool traced = fault.kind != Fault::Kind::none && fault.kind != Fault::Kind::allocation;
   if (fault.kind == Fault::Kind::allocation)
-    page->failing = fault.number;
+    page->failingNumber = fault.number;
   Outcome outcome;
   const pid_t child = ::fork();
   if (child == 0)
-    become(start, out.number(), err.number(), fault, traced);
+    execCommand(start, out.number(), err.number(), fault, traced);
   if (child < 0 || (traced && !attach(child)))
     throw std::runtime_error("no process to follow");
   Watchdog watchdog(child);
@@ -314,7 +315,7 @@ Outcome run(const Command& command, const Fault& fault) {
   if (const std::size_t at = outcome.place.find(root); at != outcome.place.npos)
     outcome.place.erase(at, root.size());
   outcome.allocations = page->allocations;
-  if (page->failing != 0 && page->allocations >= page->failing)
+  if (page->failingNumber != 0 && page->allocations >= page->failingNumber)
     outcome.place = "allocation";
   if (page->signal != 0)
     outcome.frames.assign(page->frames, page->frames + page->frameCount);

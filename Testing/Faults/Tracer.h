@@ -24,7 +24,7 @@ struct Fault {
 };
 
 struct Command {
-  std::vector<std::string> words; ///< the executable first
+  std::vector<std::string> arguments; ///< the executable first
   std::filesystem::path folder, temporary;
   std::filesystem::path preload; ///< the library
 };

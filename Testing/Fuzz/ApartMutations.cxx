@@ -20,7 +20,7 @@ struct Seed {
   std::string extension, bytes;
 };
 
-std::vector<Seed> seedsOf(const Path& folder) {
+std::vector<Seed> loadSeeds(const Path& folder) {
   std::vector<Seed> seeds;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     seeds.push_back({entry.path().extension(), readBytes(entry.path())});
@@ -32,28 +32,29 @@ std::vector<Seed> seedsOf(const Path& folder) {
 
 /// Applies up to six mutations: another byte, an extreme number, a removed, moved or repeated
 /// range, an early end.
-std::string mutated(std::string bytes, Random& random) {
-  const auto below = [&random](std::size_t limit) {
+std::string corrupt(std::string bytes, Random& random) {
+  const auto randomBelow = [&random](std::size_t limit) {
     return std::uniform_int_distribution<std::size_t>(0, limit - 1)(random);
   };
-  for (std::size_t left = 1 + below(6); left > 0 && bytes.size() > 16; --left) {
-    const std::size_t at = below(bytes.size() - 8), length = below(64);
-    switch (below(6)) {
+  for (std::size_t remaining = 1 + randomBelow(6); remaining > 0 && bytes.size() > 16;
+       --remaining) {
+    const std::size_t at = randomBelow(bytes.size() - 8), length = randomBelow(64);
+    switch (randomBelow(6)) {
     case 0:
-      bytes.replace(at, 1 + below(8), 8, below(2) ? '\xff' : '\0');
+      bytes.replace(at, 1 + randomBelow(8), 8, randomBelow(2) ? '\xff' : '\0');
       break;
     case 1:
       bytes.erase(at, length);
       break;
     case 2:
-      bytes.insert(below(bytes.size()), bytes.substr(at, length));
+      bytes.insert(randomBelow(bytes.size()), bytes.substr(at, length));
       break;
     case 3:
-      if (below(8) == 0)
+      if (randomBelow(8) == 0)
         bytes.resize(at);
       break;
     default:
-      bytes[at] = static_cast<char>(below(256));
+      bytes[at] = static_cast<char>(randomBelow(256));
     }
   }
   return bytes;
@@ -64,8 +65,8 @@ struct Counts {
 };
 
 template <typename Read>
-void count(Counts& counts, const Path& path, const Read& read) {
-  std::string complaint;
+void classify(Counts& counts, const Path& path, const Read& read) {
+  std::string problem;
   try {
     read();
     ++counts.read;
@@ -77,35 +78,35 @@ void count(Counts& counts, const Path& path, const Read& read) {
       ++counts.refused;
       return;
     }
-    complaint = line;
+    problem = line;
   } catch (const std::exception& error) {
-    complaint = std::string("another exception: ") + error.what();
+    problem = std::string("another exception: ") + error.what();
   }
   ++counts.wrong;
   std::filesystem::copy_file(path,
                              "wrong" + std::to_string(counts.wrong) + path.extension().string(),
                              std::filesystem::copy_options::overwrite_existing);
-  std::printf("%s\n", complaint.c_str());
+  std::printf("%s\n", problem.c_str());
 }
 
-int mutate(int many, Random random) {
+int runAll(int total, Random random) {
   const TemporaryFolder folder;
-  const std::vector<Seed> slices = seedsOf(FENESTRA_APART_FILES "/Dicom"),
-                          transforms = seedsOf(FENESTRA_APART_FILES "/Transform");
+  const std::vector<Seed> slices = loadSeeds(FENESTRA_SANDBOX_FILES "/Dicom"),
+                          transforms = loadSeeds(FENESTRA_SANDBOX_FILES "/Transform");
   Counts counts;
-  for (int i = 0; i < many; ++i) {
+  for (int i = 0; i < total; ++i) {
     const bool isSlice = i % 2 == 0;
     const std::vector<Seed>& seeds = isSlice ? slices : transforms;
     const Seed& seed = seeds[static_cast<std::size_t>(i / 2) % seeds.size()];
-    const Path path = folder.write("damaged" + seed.extension, mutated(seed.bytes, random));
-    count(counts, path, [&] {
+    const Path path = folder.write("damaged" + seed.extension, corrupt(seed.bytes, random));
+    classify(counts, path, [&] {
       if (isSlice)
         readDicomVolume({path}, path.string());
       else
         readLinearTransform(path).inverse();
     });
   }
-  std::printf("%d files: %d read, %d refused, %d neither\n", many, counts.read, counts.refused,
+  std::printf("%d files: %d read, %d refused, %d neither\n", total, counts.read, counts.refused,
               counts.wrong);
   return counts.wrong == 0 ? 0 : 1;
 }
@@ -119,6 +120,6 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: ApartMutations COUNT [SEED]\n");
     return 2;
   }
-  return fenestra::mutate(std::atoi(argv[1]),
+  return fenestra::runAll(std::atoi(argv[1]),
                           fenestra::Random(argc == 3 ? std::stoull(argv[2]) : 1));
 }

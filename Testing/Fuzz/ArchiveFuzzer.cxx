@@ -21,7 +21,7 @@ void put(std::string& bytes, std::size_t at, std::uint32_t value) {
 }
 
 /// Corrects the checksums of stored entries; otherwise no mutated entry would be read.
-std::string withChecksums(std::string zip) {
+std::string fixChecksums(std::string zip) {
   for (std::size_t at = 0; (at = zip.find("PK\1\2", at)) != std::string::npos; at += 4) {
     const std::uint64_t local = get<std::uint32_t>(zip, at + 42);
     const std::uint64_t size = get<std::uint32_t>(zip, at + 20);
@@ -41,5 +41,5 @@ std::string withChecksums(std::string zip) {
 
 FENESTRA_FUZZ(Archive, input) {
   using namespace fenestra;
-  fuzzing::loadScene(fuzzing::asFile(withChecksums(std::string(input)), "scene.mrb"));
+  fuzzing::loadScene(fuzzing::writeInput(fixChecksums(std::string(input)), "scene.mrb"));
 }

@@ -13,6 +13,6 @@ FENESTRA_FUZZ(Dicom, input) {
       throw inputError("slice.dcm", "is no answer");
     }
   }();
-  checkDicomPixels(fuzzing::asFile(input, "slice.dcm"), header);
+  checkDicomPixels(fuzzing::writeInput(input, "slice.dcm"), header);
   rescaleVoxels(header, std::string(imageBytes(header), '\x5a'));
 }

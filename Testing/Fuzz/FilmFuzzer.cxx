@@ -10,14 +10,14 @@ FENESTRA_FUZZ(Film, input) {
   digest.add(input);
   std::string content(input);
   content += fenestra::asBytes(std::array{digest.value()});
-  const auto path = fenestra::fuzzing::asFile(content, "a.film");
-  fenestra::fuzzing::readOrRefuse([&] {
+  const auto path = fenestra::fuzzing::writeInput(content, "a.film");
+  fenestra::fuzzing::expectReadOrError([&] {
     const fenestra::CheckpointFile film(path);
     const nlohmann::json here = {{"settings", {{"seed", {"1"}}}}, {"inputs", {{{"file", "a"}}}}};
     fenestra::findDifference(film.made(), here, path.string());
-    constexpr int most =
+    constexpr int maxSize =
         64; // pixels of a row and a column: a command knows the size, and checks it
-    if (film.width() > most || film.height() > most)
+    if (film.width() > maxSize || film.height() > maxSize)
       return;
     fenestra::RenderResult result = film.begun();
     film.read(result.film);

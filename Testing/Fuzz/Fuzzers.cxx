@@ -34,6 +34,6 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
-  fenestra::fuzzing::readOrRefuse([bytes] { chosen(bytes); });
+  fenestra::fuzzing::expectReadOrError([bytes] { chosen(bytes); });
   return 0;
 }

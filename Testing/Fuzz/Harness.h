@@ -27,21 +27,21 @@ inline const TemporaryFolder& folder() {
 }
 
 /// Writes the input to the file `name` in folder(), replacing the previous input.
-inline std::filesystem::path asFile(std::string_view bytes, const std::string& name) {
+inline std::filesystem::path writeInput(std::string_view bytes, const std::string& name) {
   const std::filesystem::path path = folder() / name;
   const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-  const bool whole =
+  const bool isComplete =
       file >= 0 && ::write(file, bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size());
   if (file >= 0)
     ::close(file);
-  if (!whole)
+  if (!isComplete)
     throw std::runtime_error("no room for the input under " + path.string());
   return path;
 }
 
 /// Runs a reader, which may throw only an Error whose text is one line, not empty.
 template <typename Read>
-void readOrRefuse(Read&& read) {
+void expectReadOrError(Read&& read) {
   try {
     read();
   } catch (const Error& error) {

@@ -7,8 +7,9 @@ FENESTRA_FUZZ(Labels, input) {
   using namespace fenestra;
   const std::string name =
       fuzzing::chooseName(input, std::array{"a.ctbl", "a.label", "a.json", "a.csv", "xml"});
-  const auto names = name == "xml" ? parseLabelNamesXml(input, name)
-                                   : std::optional(readLabelNames(fuzzing::asFile(input, name)));
+  const auto names = name == "xml"
+                         ? parseLabelNamesXml(input, name)
+                         : std::optional(readLabelNames(fuzzing::writeInput(input, name)));
   if (names && (names->empty() || names->contains(0)))
     throw std::logic_error("a table without names, or one that names the background");
 }

@@ -31,7 +31,7 @@ void save(const fs::path& folder, const std::string& name, const std::string& by
 }
 
 /// Volume of 3x3x2 16-bit voxels with both of NIfTI's transforms (qform and sform).
-std::string nifti() {
+std::string makeNifti() {
   std::string header(352, '\0');
   const auto put = [&header](std::size_t at, auto value) {
     std::memcpy(header.data() + at, &value, sizeof(value));
@@ -50,7 +50,7 @@ std::string nifti() {
   return header + std::string("\1\0\2\0\3\0\4\0\5\0\6\0\7\0\10\0\11\0", 18) + std::string(18, '\0');
 }
 
-std::string metaImage() {
+std::string makeMetaImage() {
   return "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n"
          "CompressedData = False\nTransformMatrix = 1 0 0 0 1 0 0 0 1\nOffset = 0 0 0\n"
          "ElementSpacing = 1 1 2\nDimSize = 2 2 2\nElementType = MET_SHORT\n"
@@ -70,11 +70,11 @@ void makeVolumes(const fs::path& corpus, const fs::path& traps) {
     else if (name.ends_with(".nrrd"))
       save(corpus / "Volume", name, "0" + readBytes(entry.path()));
   }
-  save(corpus / "Volume", "volume.nii", "2" + nifti());
-  save(corpus / "Volume", "volume.mha", "4" + metaImage());
+  save(corpus / "Volume", "volume.nii", "2" + makeNifti());
+  save(corpus / "Volume", "volume.mha", "4" + makeMetaImage());
 }
 
-void makePictures(const fs::path& corpus) {
+void makeImages(const fs::path& corpus) {
   const TemporaryFolder folder;
   Image image{3, 2, {}, {{"seed", "1"}}};
   for (const char* channel : {"R", "G", "B", "A"})
@@ -107,7 +107,7 @@ void makeTransforms(const fs::path& corpus) {
 }
 
 /// Writes a child's answers about such files.
-void makeAnswers(const fs::path& corpus) {
+void makeReplies(const fs::path& corpus) {
   ReplyWriter composite;
   for (const char* type : {"CompositeTransform_double_3_3", "AffineTransform_double_3_3",
                            "Euler3DTransform_double_3_3"}) {
@@ -161,8 +161,8 @@ void makeArchive(const fs::path& corpus) {
   for (std::size_t at = 0; (at = scene.find(attribute, at)) != std::string::npos;)
     scene.insert(at += attribute.size(), "Data/");
   std::vector<ZipEntry> entries = {{"n/n.mrml", scene}};
-  const auto neighbours = fuzzing::sceneNeighbours();
-  for (const auto& [name, content] : neighbours)
+  const auto fixtures = fuzzing::sceneFixtures();
+  for (const auto& [name, content] : fixtures)
     entries.push_back({"n/Data/" + name, content});
   save(corpus / "Archive", "stored.mrb", encodeZip(entries, "", "stored.mrb"));
 }
@@ -180,10 +180,10 @@ int main(int argc, char** argv) {
     constexpr double spacing = 12.0; // mm: 3 voxels an axis
     fenestra::testing::writeTraps(traps.path(), spacing);
     fenestra::makeVolumes(argv[1], traps.path());
-    fenestra::makePictures(argv[1]);
+    fenestra::makeImages(argv[1]);
     fenestra::makeTransforms(argv[1]);
     fenestra::makeSlices(argv[1]);
-    fenestra::makeAnswers(argv[1]);
+    fenestra::makeReplies(argv[1]);
     fenestra::makeArchive(argv[1]);
     return 0;
   } catch (const std::exception& error) {

@@ -4,10 +4,10 @@
 #include "files/looks/MaterialReader.h"
 
 FENESTRA_FUZZ(Materials, input) {
-  static const fenestra::MaterialTable beneath = fenestra::parseMaterials(
+  static const fenestra::MaterialTable base = fenestra::parseMaterials(
       R"({"version": 1, "materials": {"fog": {"albedo": [1, 1, 1], "g": -0.5}}})", "beneath");
   if (input.find('{') != input.npos)
-    fenestra::parseMaterials(input, "materials.json", beneath);
+    fenestra::parseMaterials(input, "materials.json", base);
   else
-    fenestra::parseMaterialChange(std::string(input), beneath);
+    fenestra::parseMaterialChange(std::string(input), base);
 }

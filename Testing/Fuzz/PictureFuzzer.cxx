@@ -7,7 +7,7 @@ FENESTRA_FUZZ(Picture, input) {
   using namespace fenestra;
   const std::string name =
       fuzzing::chooseName(input, std::array{"p.exr", "p.png", "p.tif", "p.nrrd"});
-  const Image image = readImage(fuzzing::asFile(input, name));
+  const Image image = readImage(fuzzing::writeInput(input, name));
   for (const auto& [channel, plane] : image.channels)
     if (plane.size() !=
         static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height))

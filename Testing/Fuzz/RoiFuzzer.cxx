@@ -6,13 +6,13 @@
 
 FENESTRA_FUZZ(Roi, input) {
   using namespace fenestra;
-  static const auto scenePath =
-      fuzzing::asFile("<MRML version=\"Slicer5\" userTags=\"\">"
-                      "<MarkupsROI id=\"roi\" name=\"R\" references=\"storage:file;\"></MarkupsROI>"
-                      "<MarkupsROIJsonStorage id=\"file\" name=\"S\" fileName=\"r.mrk.json\">"
-                      "</MarkupsROIJsonStorage></MRML>",
-                      "scene.mrml");
-  fuzzing::asFile(input, "r.mrk.json");
+  static const auto scenePath = fuzzing::writeInput(
+      "<MRML version=\"Slicer5\" userTags=\"\">"
+      "<MarkupsROI id=\"roi\" name=\"R\" references=\"storage:file;\"></MarkupsROI>"
+      "<MarkupsROIJsonStorage id=\"file\" name=\"S\" fileName=\"r.mrk.json\">"
+      "</MarkupsROIJsonStorage></MRML>",
+      "scene.mrml");
+  fuzzing::writeInput(input, "r.mrk.json");
   static MrmlScene scene(scenePath);
   const CropBox box = readSceneRoi(scene, *scene.document.find("roi"));
   if (!allFinite(box.worldToBox))

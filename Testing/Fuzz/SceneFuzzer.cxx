@@ -4,6 +4,6 @@
 
 FENESTRA_FUZZ(PreparedScene, input) {
   using namespace fenestra;
-  fuzzing::writeSceneNeighbours();
-  fuzzing::loadScene(fuzzing::asFile(input, "scene.mrml"));
+  fuzzing::writeSceneFixtures();
+  fuzzing::loadScene(fuzzing::writeInput(input, "scene.mrml"));
 }

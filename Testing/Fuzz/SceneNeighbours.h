@@ -9,7 +9,7 @@
 namespace fenestra::fuzzing {
 
 /// Content by name.
-inline std::map<std::string, std::string> sceneNeighbours() {
+inline std::map<std::string, std::string> sceneFixtures() {
   const std::string nrrd = "NRRD0004\ntype: uint8\ndimension: 3\nspace: left-posterior-superior\n"
                            "sizes: 2 2 2\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n"
                            "encoding: raw\nspace origin: (0,0,0)\n";
@@ -30,10 +30,10 @@ inline std::map<std::string, std::string> sceneNeighbours() {
 }
 
 /// Writes the neighbours to folder() at the first call.
-inline void writeSceneNeighbours() {
+inline void writeSceneFixtures() {
   static const bool written = [] {
-    for (const auto& [name, content] : sceneNeighbours())
-      asFile(content, name);
+    for (const auto& [name, content] : sceneFixtures())
+      writeInput(content, name);
     return true;
   }();
   static_cast<void>(written);

@@ -5,7 +5,7 @@
 
 FENESTRA_FUZZ(Segmentation, input) {
   using namespace fenestra;
-  const Segmentation segmentation = readSegmentation(fuzzing::asFile(input, "s.seg.nrrd"));
+  const Segmentation segmentation = readSegmentation(fuzzing::writeInput(input, "s.seg.nrrd"));
   std::vector<std::string> focus;
   for (const SegmentInfo& segment : segmentation.segments())
     if (focus.size() < 3)

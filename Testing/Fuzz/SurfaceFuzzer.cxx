@@ -6,13 +6,13 @@
 
 FENESTRA_FUZZ(Surface, input) {
   using namespace fenestra;
-  static const auto whole =
-      fuzzing::asFile("<VTKFile type=\"vtkMultiBlockDataSet\"><vtkMultiBlockDataSet>"
-                      "<DataSet index=\"0\" file=\"s.vtp\"/></vtkMultiBlockDataSet></VTKFile>",
-                      "whole.vtm");
+  static const auto validList =
+      fuzzing::writeInput("<VTKFile type=\"vtkMultiBlockDataSet\"><vtkMultiBlockDataSet>"
+                          "<DataSet index=\"0\" file=\"s.vtp\"/></vtkMultiBlockDataSet></VTKFile>",
+                          "whole.vtm");
   const std::string name = fuzzing::chooseName(input, std::array{"s.vtp", "s.vtm"});
-  const auto file = fuzzing::asFile(input, name);
+  const auto file = fuzzing::writeInput(input, name);
   const Grid reference(Size3(16, 16, 16), Affine::Identity());
-  const Segmentation read = readSegmentation(name == "s.vtm" ? file : whole, &reference);
+  const Segmentation read = readSegmentation(name == "s.vtm" ? file : validList, &reference);
   read.statistics();
 }

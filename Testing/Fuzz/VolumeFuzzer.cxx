@@ -6,8 +6,8 @@
 
 FENESTRA_FUZZ(Volume, input) {
   using namespace fenestra;
-  static const auto samples = fuzzing::asFile(std::string(256, '\x2a'), "samples.raw");
+  static const auto samples = fuzzing::writeInput(std::string(256, '\x2a'), "samples.raw");
   const std::string name = fuzzing::chooseName(
       input, std::array{"v.nrrd", "v.nhdr", "v.nii", "v.nii.gz", "v.mha", "v.mhd"});
-  readVolume(fuzzing::asFile(input, name));
+  readVolume(fuzzing::writeInput(input, name));
 }

@@ -16,19 +16,19 @@ namespace {
 
 using namespace fenestra;
 
-constexpr std::int64_t mostVoxels = 32 * 32 * 32;
-constexpr std::uint64_t mostBounces = 8;
+constexpr std::int64_t maxVoxels = 32 * 32 * 32;
+constexpr std::uint64_t maxBounces = 8;
 
 /// Requests that a render stop after half a second: dense matter may take that long, stopping must
 /// not.
-class Budget {
+class StopTimer {
 public:
-  explicit Budget(std::atomic<bool>& stop)
+  explicit StopTimer(std::atomic<bool>& stop)
       : m_thread([this, &stop] {
           std::unique_lock lock(m_mutex);
           stop = !m_wake.wait_for(lock, std::chrono::milliseconds(500), [this] { return m_done; });
         }) {}
-  ~Budget() {
+  ~StopTimer() {
     {
       const std::lock_guard lock(m_mutex);
       m_done = true;
@@ -36,8 +36,8 @@ public:
     m_wake.notify_one();
     m_thread.join();
   }
-  Budget(const Budget&) = delete;
-  Budget& operator=(const Budget&) = delete;
+  StopTimer(const StopTimer&) = delete;
+  StopTimer& operator=(const StopTimer&) = delete;
 
 private:
   std::mutex m_mutex;
@@ -54,15 +54,15 @@ void checkPixels(const Film& film) {
 
 void renderRequest(const RenderRequest& request) {
   const Input input(request.input);
-  if (input.volume(request.volume).volume.grid.voxelCount() > mostVoxels)
+  if (input.volume(request.volume).volume.grid.voxelCount() > maxVoxels)
     return;
   const PreparedScene scene(request, input);
   RenderSettings settings;
-  settings.path.bounces = mostBounces;
+  settings.path.bounces = maxBounces;
   settings.samples = 1;
   settings.threads = 1;
   RenderMonitor monitor;
-  const Budget budget(monitor.stop);
+  const StopTimer timer(monitor.stop);
   checkPixels(render(scene.view(), settings, monitor).film);
 }
 
@@ -71,17 +71,17 @@ void renderRequest(const RenderRequest& request) {
 FENESTRA_FUZZ(WholeRequest, input) {
   if (input.empty())
     return;
-  fuzzing::writeSceneNeighbours();
+  fuzzing::writeSceneFixtures();
   RenderRequest request;
   if (input[0] != '0')
     request.focus = {"A"};
   input.remove_prefix(1);
-  constexpr std::string_view parting = "\n---\n";
-  const std::size_t end = input.find(parting);
-  request.input = fuzzing::asFile(input.substr(0, end), "scene.mrml");
-  fuzzing::asFile(end == input.npos ? fuzzing::sceneNeighbours().at("v.nrrd")
-                                    : std::string(input.substr(end + parting.size())),
-                  "v.nrrd");
+  constexpr std::string_view separator = "\n---\n";
+  const std::size_t end = input.find(separator);
+  request.input = fuzzing::writeInput(input.substr(0, end), "scene.mrml");
+  fuzzing::writeInput(end == input.npos ? fuzzing::sceneFixtures().at("v.nrrd")
+                                        : std::string(input.substr(end + separator.size())),
+                      "v.nrrd");
   request.width = request.height = 4;
   renderRequest(request);
 }

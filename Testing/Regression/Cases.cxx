@@ -16,8 +16,8 @@ namespace fenestra::testing {
 namespace {
 
 /// Words of a line, with each "@name" replaced by its definition.
-std::vector<std::string> words(const std::string& line,
-                               const std::map<std::string, std::vector<std::string>>& names) {
+std::vector<std::string> expandWords(const std::string& line,
+                                     const std::map<std::string, std::vector<std::string>>& names) {
   std::vector<std::string> result;
   std::istringstream stream(line);
   for (std::string word; stream >> word;) {
@@ -31,8 +31,8 @@ std::vector<std::string> words(const std::string& line,
 }
 
 /// Case of "name" or "name:baseline".
-RegressionCase named(const std::string& text, std::uint64_t samples,
-                     std::vector<std::string> arguments) {
+RegressionCase makeCase(const std::string& text, std::uint64_t samples,
+                        std::vector<std::string> arguments) {
   const std::size_t colon = text.find(':');
   const std::string baseline = colon == std::string::npos ? text : text.substr(colon + 1);
   return {text.substr(0, colon), baseline, samples, std::move(arguments)};
@@ -47,13 +47,13 @@ std::vector<RegressionCase> readCases() {
   for (std::string line; std::getline(table, line);) {
     if (line.empty() || line[0] == '#')
       continue;
-    std::vector<std::string> all = words(line, names);
+    std::vector<std::string> all = expandWords(line, names);
     if (all.size() < 3)
       throw std::runtime_error(std::string(FENESTRA_REGRESSION_CASES) + ": too short: " + line);
     if (all[1] == "=")
       names[all[0]] = {all.begin() + 2, all.end()};
     else
-      cases.push_back(named(all[0], std::stoull(all[1]), {all.begin() + 2, all.end()}));
+      cases.push_back(makeCase(all[0], std::stoull(all[1]), {all.begin() + 2, all.end()}));
   }
   if (cases.empty())
     throw std::runtime_error(std::string(FENESTRA_REGRESSION_CASES) + ": has no cases");

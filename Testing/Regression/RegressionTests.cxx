@@ -14,7 +14,7 @@
 namespace fenestra::testing {
 namespace {
 
-std::string shown(const Agreement& a) {
+std::string describe(const Agreement& a) {
   std::ostringstream text;
   text << "probability " << a.probability() << " (pixels " << a.pixels << ", tiles " << a.tiles
        << ", mean " << a.mean << ")";
@@ -26,8 +26,8 @@ std::filesystem::path resultFolder(const RegressionCase& c) {
 }
 
 /// Writes the pictures needed to see an error; returns a text that names their folder.
-std::string errorImages(const Image& image, const Image& baseline,
-                        const std::filesystem::path& folder) {
+std::string writeErrorImages(const Image& image, const Image& baseline,
+                             const std::filesystem::path& folder) {
   const Image z = differenceImage(image, baseline);
   writeImage(image, {}, folder / "render.png");
   writeImage(baseline, {}, folder / "baseline.png");
@@ -45,8 +45,9 @@ TEST_P(Regression, AgreesWithItsBaseline) {
       renderCase(c, seedBase(), reduceSamples(c.samples), dataFolder(), folder / "render.exr");
   const Image baseline = readImage(baselinePath(c));
   const Agreement result = agreement(image, baseline);
-  std::cout << c.name << ": " << shown(result) << std::endl;
-  EXPECT_TRUE(result.holds()) << shown(result) << "; " << errorImages(image, baseline, folder);
+  std::cout << c.name << ": " << describe(result) << std::endl;
+  EXPECT_TRUE(result.holds()) << describe(result) << "; "
+                              << writeErrorImages(image, baseline, folder);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, Regression, ::testing::ValuesIn(readCases()),
@@ -64,16 +65,16 @@ void replaceIn(const std::filesystem::path& path, const std::string& from, const
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-struct Fault {
+struct Mutation {
   std::string name;
-  std::string inCase;
+  std::string caseName;
   /// Plants the fault in a copy of Testing/Data, or in the arguments.
-  std::function<void(const std::filesystem::path& data, RegressionCase& c)> plant;
+  std::function<void(const std::filesystem::path& data, RegressionCase& c)> apply;
 };
 
 /// plain.nrrd and fog.nrrd have voxels of 1.6 mm, which extend in x and y from 19.2 mm to -19.2 mm
 /// in LPS.
-const std::vector<Fault> faults = {
+const std::vector<Mutation> mutations = {
     {"HalfVoxelShift", "plain",
      [](const auto& data, RegressionCase&) {
        replaceIn(data / "traps/plain.nrrd", "space origin: (19.200000000000003,",
@@ -100,31 +101,32 @@ const std::vector<Fault> faults = {
      }},
 };
 
-void PrintTo(const Fault& fault, std::ostream* out) {
-  *out << "in " << fault.inCase;
+void PrintTo(const Mutation& mutation, std::ostream* out) {
+  *out << "in " << mutation.caseName;
 }
 
-class PlantedFault : public ::testing::TestWithParam<Fault> {};
+class PlantedFault : public ::testing::TestWithParam<Mutation> {};
 
 TEST_P(PlantedFault, DiffersFromTheBaseline) {
   if (sampleDivisor() > 1)
     GTEST_SKIP() << "a brief run has too few samples to find it";
   const std::vector<RegressionCase> cases = readCases();
-  const auto it = std::find_if(cases.begin(), cases.end(),
-                               [](const RegressionCase& c) { return c.name == GetParam().inCase; });
+  const auto it = std::find_if(cases.begin(), cases.end(), [](const RegressionCase& c) {
+    return c.name == GetParam().caseName;
+  });
   ASSERT_NE(it, cases.end());
-  RegressionCase spoilt = *it;
+  RegressionCase mutated = *it;
   const TemporaryFolder data;
   std::filesystem::copy(dataFolder() / "traps", data / "traps");
-  GetParam().plant(data.path(), spoilt);
+  GetParam().apply(data.path(), mutated);
   const Image image =
-      renderCase(spoilt, seedBase(), spoilt.samples, data.path(), data / "results/render.exr");
-  const Agreement result = agreement(image, readImage(baselinePath(spoilt)));
-  std::cout << GetParam().name << ": " << shown(result) << std::endl;
-  EXPECT_FALSE(result.holds()) << shown(result);
+      renderCase(mutated, seedBase(), mutated.samples, data.path(), data / "results/render.exr");
+  const Agreement result = agreement(image, readImage(baselinePath(mutated)));
+  std::cout << GetParam().name << ": " << describe(result) << std::endl;
+  EXPECT_FALSE(result.holds()) << describe(result);
 }
 
-INSTANTIATE_TEST_SUITE_P(Faults, PlantedFault, ::testing::ValuesIn(faults),
+INSTANTIATE_TEST_SUITE_P(Faults, PlantedFault, ::testing::ValuesIn(mutations),
                          [](const auto& info) { return info.param.name; });
 
 } // namespace

@@ -25,12 +25,12 @@ struct Axes {
   Mat3 steps; ///< column: step to the next voxel along that axis
   Vec3 first; ///< centre of the first voxel
 
-  Vec3 place(int i, int j, int k) const { return first + steps * Vec3(i, j, k); }
+  Vec3 position(int i, int j, int k) const { return first + steps * Vec3(i, j, k); }
 };
 
 /// Axes along unit directions (columns); the grid is centred at the origin and fills the field of
 /// view.
-Axes axesAlong(const Mat3& directions, const Vec3& spacing) {
+Axes makeAxes(const Mat3& directions, const Vec3& spacing) {
   Axes axes;
   axes.size = (fieldOfView / spacing.array()).round().cast<std::int64_t>();
   axes.steps = directions * Mat3::Diagonal(spacing);
@@ -38,14 +38,14 @@ Axes axesAlong(const Mat3& directions, const Vec3& spacing) {
   return axes;
 }
 
-Mat3 columns(const Vec3& a, const Vec3& b, const Vec3& c) {
+Mat3 makeColumns(const Vec3& a, const Vec3& b, const Vec3& c) {
   return {a, b, c};
 }
 
-const Mat3 straight = Mat3::Identity();
+const Mat3 identity = Mat3::Identity();
 
 /// Rotation by 20 degrees about an axis oblique to the world's axes.
-Mat3 tilted() {
+Mat3 makeTilt() {
   return makeRotation(0.35, Vec3(1.0, 2.0, -1.5).normalized()).linear();
 }
 
@@ -55,14 +55,14 @@ Mat3 tilted() {
 using Value = std::function<double(const Vec3&)>;
 
 template <typename T>
-std::string rawSamples(const Axes& axes, const std::vector<Value>& layers,
-                       std::endian endian = std::endian::little) {
+std::string makeRawSamples(const Axes& axes, const std::vector<Value>& layers,
+                           std::endian endian = std::endian::little) {
   std::string bytes;
   for (int k = 0; k < axes.size.z(); ++k)
     for (int j = 0; j < axes.size.y(); ++j)
       for (int i = 0; i < axes.size.x(); ++i)
         for (const Value& layer : layers) {
-          const double exact = layer(axes.place(i, j, k));
+          const double exact = layer(axes.position(i, j, k));
           const T sample = static_cast<T>(std::is_integral_v<T> ? std::round(exact) : exact);
           std::array<char, sizeof(T)> one;
           std::memcpy(one.data(), &sample, sizeof(T));
@@ -73,16 +73,16 @@ std::string rawSamples(const Axes& axes, const std::vector<Value>& layers,
   return bytes;
 }
 
-std::string textSamples(const Axes& axes, const Value& value) {
+std::string makeTextSamples(const Axes& axes, const Value& value) {
   std::ostringstream text;
   for (int k = 0; k < axes.size.z(); ++k)
     for (int j = 0; j < axes.size.y(); ++j)
       for (int i = 0; i < axes.size.x(); ++i)
-        text << std::lround(value(axes.place(i, j, k))) << (i + 1 < axes.size.x() ? ' ' : '\n');
+        text << std::lround(value(axes.position(i, j, k))) << (i + 1 < axes.size.x() ? ' ' : '\n');
   return text.str();
 }
 
-std::string gzipped(const std::string& bytes) {
+std::string compressGzip(const std::string& bytes) {
   z_stream stream{};
   constexpr int gzipFormat = 15 + 16;
   if (deflateInit2(&stream, 9, Z_DEFLATED, gzipFormat, 8, Z_DEFAULT_STRATEGY) != Z_OK)
@@ -113,7 +113,7 @@ struct Nrrd {
   std::string more = {}; ///< further lines
 };
 
-std::string triple(const Vec3& v) {
+std::string formatTriple(const Vec3& v) {
   std::ostringstream text;
   text.precision(17);
   text << '(' << v.x() << ',' << v.y() << ',' << v.z() << ')';
@@ -121,7 +121,7 @@ std::string triple(const Vec3& v) {
 }
 
 /// Header without the empty line at its end.
-std::string header(const Nrrd& nrrd) {
+std::string makeHeader(const Nrrd& nrrd) {
   const Vec3 toSpace =
       nrrd.space == "right-anterior-superior" ? Vec3(1.0, 1.0, 1.0) : Vec3(-1.0, -1.0, 1.0);
   const bool list = nrrd.layers > 1;
@@ -132,12 +132,12 @@ std::string header(const Nrrd& nrrd) {
     text << ' ' << nrrd.layers;
   text << ' ' << nrrd.axes.size << "\nspace directions:" << (list ? " none" : "");
   for (int axis = 0; axis < 3; ++axis)
-    text << ' ' << triple(nrrd.axes.steps.col(axis).cwiseProduct(toSpace));
+    text << ' ' << formatTriple(nrrd.axes.steps.col(axis).cwiseProduct(toSpace));
   text << "\nkinds:" << (list ? " list" : "") << " domain domain domain\n";
   if (nrrd.encoding != "ascii")
     text << "endian: " << nrrd.endian << '\n';
   text << "encoding: " << nrrd.encoding
-       << "\nspace origin: " << triple(nrrd.axes.first.cwiseProduct(toSpace)) << '\n'
+       << "\nspace origin: " << formatTriple(nrrd.axes.first.cwiseProduct(toSpace)) << '\n'
        << nrrd.more;
   return text.str();
 }
@@ -156,14 +156,14 @@ void writeVolume(const std::filesystem::path& path, const Nrrd& nrrd, double off
   const Value value = [offset](const Vec3& p) { return subject(p) + offset; };
   std::string samples;
   if (nrrd.encoding == "ascii")
-    samples = textSamples(nrrd.axes, value);
+    samples = makeTextSamples(nrrd.axes, value);
   else
-    samples = rawSamples<T>(nrrd.axes, {value},
-                            nrrd.endian == "big" ? std::endian::big : std::endian::little);
+    samples = makeRawSamples<T>(nrrd.axes, {value},
+                                nrrd.endian == "big" ? std::endian::big : std::endian::little);
   if (nrrd.encoding == "gzip")
-    samples = gzipped(samples);
+    samples = compressGzip(samples);
   const std::string separator = path.extension() == ".nhdr" ? "" : "\n" + samples;
-  write(path, header(nrrd) + separator);
+  write(path, makeHeader(nrrd) + separator);
   if (path.extension() == ".nhdr")
     write(std::filesystem::path(path).replace_extension(".raw"), samples);
 }
@@ -174,16 +174,18 @@ void writeVolume(const std::filesystem::path& path, const Nrrd& nrrd, double off
 /// Writes volumes with axes that are not the world's.
 void writeGeometries(const std::filesystem::path& folder, double s) {
   const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ(), cube = Vec3::Constant(s);
-  writeVolume<std::uint8_t>(folder / "plain.nrrd", {"uint8", axesAlong(straight, cube)});
-  writeVolume<std::uint8_t>(folder / "oblique.nrrd", {"uint8", axesAlong(tilted(), cube)});
-  writeVolume<std::uint8_t>(folder / "flipped.nrrd", {"uint8", axesAlong(columns(x, -y, z), cube)});
-  writeVolume<std::uint8_t>(folder / "permuted.nrrd",
-                            {"uint8", axesAlong(columns(-z, x, -y), Vec3(s, 1.5 * s, 0.75 * s))});
+  writeVolume<std::uint8_t>(folder / "plain.nrrd", {"uint8", makeAxes(identity, cube)});
+  writeVolume<std::uint8_t>(folder / "oblique.nrrd", {"uint8", makeAxes(makeTilt(), cube)});
+  writeVolume<std::uint8_t>(folder / "flipped.nrrd",
+                            {"uint8", makeAxes(makeColumns(x, -y, z), cube)});
+  writeVolume<std::uint8_t>(
+      folder / "permuted.nrrd",
+      {"uint8", makeAxes(makeColumns(-z, x, -y), Vec3(s, 1.5 * s, 0.75 * s))});
   writeVolume<std::uint8_t>(folder / "anisotropic.nrrd",
-                            {"uint8", axesAlong(straight, Vec3(0.5 * s, s, 2.0 * s))});
+                            {"uint8", makeAxes(identity, Vec3(0.5 * s, s, 2.0 * s))});
   writeVolume<std::uint8_t>(folder / "ras.nrrd",
-                            {"uint8", axesAlong(straight, cube), "right-anterior-superior"});
-  Axes sheared = axesAlong(straight, cube);
+                            {"uint8", makeAxes(identity, cube), "right-anterior-superior"});
+  Axes sheared = makeAxes(identity, cube);
   sheared.steps.col(2) += 0.3 * s * y; // a tilted gantry
   sheared.first = -0.5 * (sheared.steps * (sheared.size - Size3::Ones()).cast<double>());
   writeVolume<std::uint8_t>(folder / "sheared.nrrd", {"uint8", sheared});
@@ -191,7 +193,7 @@ void writeGeometries(const std::filesystem::path& folder, double s) {
 
 /// Writes volumes of every sample type and encoding.
 void writeEncodings(const std::filesystem::path& folder, double s) {
-  const Axes axes = axesAlong(straight, Vec3::Constant(s));
+  const Axes axes = makeAxes(identity, Vec3::Constant(s));
   const std::string lps = "left-posterior-superior";
   writeVolume<std::int16_t>(folder / "int16.nrrd", {"int16", axes}, -1024.0);
   writeVolume<std::uint16_t>(folder / "uint16.nrrd", {"uint16", axes}, 40000.0);
@@ -206,7 +208,7 @@ void writeEncodings(const std::filesystem::path& folder, double s) {
                             -1024.0);
 }
 
-std::string segment(int n, const std::string& id, int label, int layer) {
+std::string makeSegmentFields(int n, const std::string& id, int label, int layer) {
   std::ostringstream text;
   const std::string key = "Segment" + std::to_string(n) + "_";
   text << key << "ID:=" << id << '\n'
@@ -219,7 +221,7 @@ std::string segment(int n, const std::string& id, int label, int layer) {
   return text.str();
 }
 
-Value labels(std::vector<std::pair<double (*)(const Vec3&), int>> organs) {
+Value makeLabels(std::vector<std::pair<double (*)(const Vec3&), int>> organs) {
   return [organs](const Vec3& p) {
     for (const auto& [organ, label] : organs)
       if (organ(p) < 0.0)
@@ -232,23 +234,24 @@ void writeSegments(const std::filesystem::path& folder, double s) {
   const std::string common = "Segmentation_ContainedRepresentationNames:=Binary labelmap|\n"
                              "Segmentation_MasterRepresentation:=Binary labelmap\n";
   // Overlapping segments: one value in two layers, on a grid of their own.
-  const Axes fine = axesAlong(straight, Vec3::Constant(0.8 * s));
+  const Axes fine = makeAxes(identity, Vec3::Constant(0.8 * s));
   Nrrd layers{"uint8",
               fine,
               "left-posterior-superior",
               "gzip",
               "little",
               2,
-              segment(0, "Liver", 1, 0) + segment(1, "Heart", 1, 1) + segment(2, "Tumour", 7, 0) +
-                  common + "Segmentation_ReferenceImageExtentOffset:=0 0 0\n"};
-  const auto both = rawSamples<std::uint8_t>(
-      fine, {labels({{liver, 1}, {tumour, 7}}), labels({{heart, 1}, {tumour, 2}})});
-  write(folder / "layers.seg.nrrd", header(layers) + "\n" + gzipped(both));
+              makeSegmentFields(0, "Liver", 1, 0) + makeSegmentFields(1, "Heart", 1, 1) +
+                  makeSegmentFields(2, "Tumour", 7, 0) + common +
+                  "Segmentation_ReferenceImageExtentOffset:=0 0 0\n"};
+  const auto both = makeRawSamples<std::uint8_t>(
+      fine, {makeLabels({{liver, 1}, {tumor, 7}}), makeLabels({{heart, 1}, {tumor, 2}})});
+  write(folder / "layers.seg.nrrd", makeHeader(layers) + "\n" + compressGzip(both));
 
   // Part of the volume's grid; the origin is already the part's own.
-  Axes part = axesAlong(straight, Vec3::Constant(s));
+  Axes part = makeAxes(identity, Vec3::Constant(s));
   const Size3 offset = part.size / 2;
-  part.first = part.place(static_cast<int>(offset.x()), static_cast<int>(offset.y()), 0);
+  part.first = part.position(static_cast<int>(offset.x()), static_cast<int>(offset.y()), 0);
   part.size -= Size3(offset.x(), offset.y(), 0);
   std::ostringstream where;
   where << "Segmentation_ReferenceImageExtentOffset:=" << offset.x() << ' ' << offset.y() << " 0\n";
@@ -258,15 +261,16 @@ void writeSegments(const std::filesystem::path& folder, double s) {
                "raw",
                "little",
                1,
-               segment(0, "Liver", 300, 0) + common + where.str()};
+               makeSegmentFields(0, "Liver", 300, 0) + common + where.str()};
   write(folder / "cropped.seg.nrrd",
-        header(cropped) + "\n" + rawSamples<std::int16_t>(part, {labels({{liver, 300}})}));
+        makeHeader(cropped) + "\n" +
+            makeRawSamples<std::int16_t>(part, {makeLabels({{liver, 300}})}));
 
   // Plain label map with gaps between its values.
-  const Axes tilt = axesAlong(tilted(), Vec3::Constant(s));
+  const Axes tilt = makeAxes(makeTilt(), Vec3::Constant(s));
   write(folder / "labels.nrrd",
-        header({"uint8", tilt}) + "\n" +
-            rawSamples<std::uint8_t>(tilt, {labels({{liver, 3}, {heart, 200}})}));
+        makeHeader({"uint8", tilt}) + "\n" +
+            makeRawSamples<std::uint8_t>(tilt, {makeLabels({{liver, 3}, {heart, 200}})}));
 }
 
 } // namespace

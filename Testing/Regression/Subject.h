@@ -24,7 +24,7 @@ inline double liver(const Vec3& p) {
 inline double heart(const Vec3& p) {
   return sphere(p, {-7.0, 8.0, -4.0}, 4.5);
 }
-inline double tumour(const Vec3& p) {
+inline double tumor(const Vec3& p) {
   return sphere(p, {-5.0, 9.0, 8.0}, 3.0);
 }
 /// Rod with a flat end at S 3.
@@ -43,7 +43,7 @@ inline double subject(const Vec3& p) {
   add(liver(p), 140.0);
   add(heart(p), 190.0);
   add(spine(p), 250.0);
-  add(tumour(p), 220.0);
+  add(tumor(p), 220.0);
   return value;
 }
 

@@ -96,7 +96,7 @@ TEST(CameraInsideVolume, TransmittanceIsThatOfTheChordAhead) {
                               direction[axis] * position[axis] > 0.0);
         SCOPED_TRACE((std::ostringstream() << position << " | " << direction).str());
         if (leaves && projection == Projection::orthographic && direction.cwiseAbs().sum() == 1.0)
-          ASSERT_EQ(estimateMean(renderIn(scene, 4).film).mean, 1.0); // nothing ahead
+          ASSERT_EQ(estimateMean(renderScene(scene, 4).film).mean, 1.0); // nothing ahead
         else if (!leaves)
           expectChords(scene, scaleSamples(200));
       }
