@@ -92,7 +92,7 @@ Image renderByOracle(const RenderOptions& options, const PreparedScene& scene,
                                     .background = settings.path.background};
   constexpr std::uint64_t samples = 4;
   return accumulate(wanted, samples, [&](std::uint64_t seed) {
-    return testing::imageOf(oracle::render(subject, samples, seed));
+    return testing::toImage(oracle::render(subject, samples, seed));
   });
 }
 

@@ -11,11 +11,11 @@ namespace {
 
 /// Small bright light beside a ball in the dark: few paths find the light by chance, which makes
 /// the samples of a pixel very skewed.
-TestScene skewedScene() {
+TestScene makeSkewedScene() {
   const Grid grid = makeCenteredGrid({12, 12, 12}, {1.0, 1.0, 1.0});
-  const Vec3 centre(5.5, 5.5, 5.5);
+  const Vec3 center(5.5, 5.5, 5.5);
   TestScene s{
-      makeVolume(grid, [&](const Vec3& p) { return (p - centre).norm() < 4.0 ? 1.0 : 0.0; }),
+      makeVolume(grid, [&](const Vec3& p) { return (p - center).norm() < 4.0 ? 1.0 : 0.0; }),
       makeLinearTransfer(1.0, Rgb(0.95, 0.6, 0.3), 0.7),
       {EnvironmentLight{.radiance = Rgb::Constant(0.05)},
        AreaLight{.center = {0, 0, 8},
@@ -46,8 +46,8 @@ struct Moments {
 constexpr int tile = 16;
 
 /// Moments of each tile's mean over seeds.
-std::vector<Moments> tilesOver(const TestScene& scene, RenderSettings settings, int seeds,
-                               std::uint64_t firstSeed) {
+std::vector<Moments> computeTileMoments(const TestScene& scene, RenderSettings settings, int seeds,
+                                        std::uint64_t firstSeed) {
   std::vector<Moments> tiles(static_cast<std::size_t>(scene.width * scene.height / (tile * tile)));
   for (int seed = 0; seed < seeds; ++seed) {
     settings.seed = shiftSeed(firstSeed + static_cast<std::uint64_t>(seed));
@@ -65,15 +65,15 @@ std::vector<Moments> tilesOver(const TestScene& scene, RenderSettings settings, 
 }
 
 TEST(AdaptiveSampling, MeanEqualsThatOfUniformSampling) {
-  const TestScene scene = skewedScene();
+  const TestScene scene = makeSkewedScene();
   const int seeds = std::max(8, scaleSamples(24)); // fewer seeds estimate their spread badly
   RenderSettings adaptive;
   adaptive.samples = 1U << 20;
   adaptive.noise = relaxError(0.05);
   RenderSettings uniform;
   uniform.samples = scaleSamples(40U);
-  const std::vector<Moments> a = tilesOver(scene, adaptive, seeds, 0);
-  const std::vector<Moments> b = tilesOver(scene, uniform, seeds, 100000);
+  const std::vector<Moments> a = computeTileMoments(scene, adaptive, seeds, 0);
+  const std::vector<Moments> b = computeTileMoments(scene, uniform, seeds, 100000);
   double difference = 0.0, variance = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     const double d = a[i].mean() - b[i].mean();
@@ -89,7 +89,7 @@ TEST(AdaptiveSampling, StopsAtItsTargetWithUnequalCounts) {
   RenderSettings settings;
   settings.samples = 1U << 20;
   settings.noise = relaxError(0.03);
-  const RenderResult result = skewedScene().render(settings);
+  const RenderResult result = makeSkewedScene().render(settings);
   EXPECT_EQ(result.reason, StopReason::noise);
   EXPECT_LE(result.film.noise(), settings.noise);
   EXPECT_GT(result.film.noise(), 0.9 * settings.noise);

@@ -19,7 +19,7 @@ inline RgbEstimate operator+(const RgbEstimate& a, const RgbEstimate& b) {
 }
 
 /// Mean radiance of a picture, with every pixel's own error: pixels may differ.
-inline RgbEstimate pictureEstimate(const Film& film) {
+inline RgbEstimate estimateRgb(const Film& film) {
   RgbEstimate sum;
   Rgb variance = Rgb::Zero();
   for (const PixelSums& pixel : film.pixels()) {
@@ -33,13 +33,13 @@ inline RgbEstimate pictureEstimate(const Film& film) {
 /// Expects |mean - expected| <= 4 standard errors + `known` * expected in every channel (`known`:
 /// relative error of `expected`), and a standard error <= `sharpness` * expected. A bias of 6
 /// `sharpness` * expected is then found almost surely.
-inline void expectMean(const RgbEstimate& estimate, const Rgb& expected, double sharpness,
-                       double known = 0.0) {
+inline void expectMean(const RgbEstimate& estimate, const Rgb& expected, double maxRelativeError,
+                       double relativeError = 0.0) {
   for (int c = 0; c < 3; ++c) {
-    const double tolerance = 4.0 * estimate.error[c] + known * expected[c];
+    const double tolerance = 4.0 * estimate.error[c] + relativeError * expected[c];
     EXPECT_NEAR(estimate.mean[c], expected[c], tolerance)
         << "channel " << c << ", z = " << (estimate.mean[c] - expected[c]) / estimate.error[c];
-    EXPECT_LT(estimate.error[c], relaxError(sharpness * expected[c])) << "channel " << c;
+    EXPECT_LT(estimate.error[c], relaxError(maxRelativeError * expected[c])) << "channel " << c;
   }
 }
 

@@ -8,7 +8,7 @@ namespace fenestra::testing {
 
 /// Volume with albedo `dark` at scalar 0 and `bright` at 1, on a rotated grid of unequal spacing,
 /// about 2 mm in radius; a third of the incident light passes.
-inline TestScene clumps(const Rgb& dark, const Rgb& bright, double g) {
+inline TestScene makeClumps(const Rgb& dark, const Rgb& bright, double g) {
   Grid grid = makeCenteredGrid({5, 4, 6}, {0.5, 0.7, 0.4});
   const Affine turn(makeRotation(0.5, Vec3(1.0, -2.0, 1.5).normalized()));
   grid = Grid(grid.size, turn * grid.indexToWorld);
@@ -28,19 +28,19 @@ inline TestScene clumps(const Rgb& dark, const Rgb& bright, double g) {
 
 /// Radiance scattered toward -`sight`, integrated over a picture plane that holds the whole volume,
 /// mm^2 per steradian. Light: parallel, travelling along `light` with irradiance 1.
-inline RgbEstimate scatteredOut(TestScene& scene, const Vec3& light, const Vec3& sight,
-                                std::uint64_t samples, std::uint64_t seed) {
+inline RgbEstimate estimateScattered(TestScene& scene, const Vec3& light, const Vec3& viewDirection,
+                                     std::uint64_t samples, std::uint64_t seed) {
   const double radius = scene.volume.grid.boundingRadius();
   const Vec3 center = scene.volume.grid.worldCenter();
   scene.lights = {DirectionalLight{.direction = light}};
   scene.pose.target = center;
-  scene.pose.position = center - 2.0 * radius * sight;
-  scene.pose.up = Frame(sight).tangent;
+  scene.pose.position = center - 2.0 * radius * viewDirection;
+  scene.pose.up = Frame(viewDirection).tangent;
   scene.pose.scale = radius;
   RenderSettings settings;
   settings.samples = samples;
   settings.seed = seed;
-  return pictureEstimate(scene.render(settings).film) * (4.0 * radius * radius);
+  return estimateRgb(scene.render(settings).film) * (4.0 * radius * radius);
 }
 
 } // namespace fenestra::testing

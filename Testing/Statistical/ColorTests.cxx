@@ -9,7 +9,7 @@ namespace fenestra::testing::ColorTests {
 namespace {
 
 /// Thickness in free paths that stands for a half-space: with g, as many more as light goes on.
-double deepFor(double g) {
+double halfSpaceThickness(double g) {
   return 300.0 / (1.0 - g);
 }
 
@@ -18,15 +18,15 @@ class SeenColor : public ::testing::TestWithParam<double> {};
 TEST_P(SeenColor, IsRenderedByVolumeShading) {
   const double g = GetParam();
   for (const Rgb& color : {Rgb(0.05, 0.1, 0.2), Rgb(0.35, 0.5, 0.65), Rgb(0.8, 0.9, 0.05)}) {
-    TestScene scene = endlessSlab(deepFor(g), toAlbedo(color, g));
+    TestScene scene = makeInfiniteSlab(halfSpaceThickness(g), toAlbedo(color, g));
     scene.transfer.g = g;
-    expectMean(seen(scene, 400, 41), color, 0.02, 0.03);
+    expectMean(renderMean(scene, 400, 41), color, 0.02, 0.03);
   }
 }
 
 /// Segment of `color` and mean cosine g that is all of a slab, in a volume of another mean cosine.
-TestScene slabOfMaterial(const Rgb& color, double g) {
-  TestScene scene = endlessSlab(deepFor(g), Rgb::Constant(0.5));
+TestScene makeMaterialSlab(const Rgb& color, double g) {
+  TestScene scene = makeInfiniteSlab(halfSpaceThickness(g), Rgb::Constant(0.5));
   scene.transfer.g = 0.3;
   TintPlan plan{{}, std::vector<SegmentMedium>(2), {}, {}};
   Material& material = plan.components[1].material;
@@ -36,24 +36,24 @@ TestScene slabOfMaterial(const Rgb& color, double g) {
   material.g = g;
   plan.components[1].density = 2.0;
   const Mask all{scene.volume.grid, std::vector<std::uint8_t>(8, 1), 8, {}};
-  const auto shares = std::make_shared<const LabelWeights>(makeLabelWeights({{all, 10, 1}}));
-  const Tint tint = buildTint(std::make_shared<const TintPlan>(plan), shares, scene.transfer.g);
+  const auto weights = std::make_shared<const LabelWeights>(makeLabelWeights({{all, 10, 1}}));
+  const Tint tint = buildTint(std::make_shared<const TintPlan>(plan), weights, scene.transfer.g);
   scene.mixture = buildMixture(plan, tint, scene.transfer);
   return scene;
 }
 
 TEST_P(SeenColor, IsThatOfASegment) {
   for (const Rgb& color : {Rgb(0.05, 0.1, 0.2), Rgb(0.35, 0.5, 0.65), Rgb(0.8, 0.9, 0.05)})
-    expectMean(seen(slabOfMaterial(color, GetParam()), 100, 45), color, 0.04, 0.03);
+    expectMean(renderMean(makeMaterialSlab(color, GetParam()), 100, 45), color, 0.04, 0.03);
 }
 
 INSTANTIATE_TEST_SUITE_P(Anisotropies, SeenColor, ::testing::Values(0.0, 0.5, 0.9));
 
 /// Matter of `color` below air, where hybrid shading finds a surface: the scalar goes from 0 to 1
 /// within `ramp` mm.
-TestScene step(const Rgb& color, double ramp, const SurfaceShading& shading) {
+TestScene makeStepScene(const Rgb& color, double ramp, const SurfaceShading& shading) {
   const Grid grid = makeCenteredGrid({2, 2, 400}, {10000.0, 10000.0, ramp});
-  TestScene scene = endlessSlab(400.0 * ramp, Rgb::Zero());
+  TestScene scene = makeInfiniteSlab(400.0 * ramp, Rgb::Zero());
   scene.volume = makeVolume(grid, [](const Vec3& index) { return index.z() < 396.0 ? 1.0 : 0.0; });
   scene.transfer = {ScalarFunction({makeKnot(0.0, 0.0), makeKnot(1.0, 3.0)}),
                     ColorFunction({{0.0, toAlbedo(color, 0.0)}}),
@@ -67,7 +67,7 @@ TEST(SeenColor, IsNearlyRenderedByHybridShading) {
   const SurfaceShading skin = SurfaceShading::makeCoated(0.2, 0.4);
   for (const double ramp : {1.0, 3.0})
     for (const Rgb& color : {Rgb(0.05, 0.1, 0.2), Rgb(0.35, 0.5, 0.65), Rgb(0.8, 0.9, 0.05)}) {
-      const RgbEstimate estimate = seen(step(color, ramp, skin), 400, 43);
+      const RgbEstimate estimate = renderMean(makeStepScene(color, ramp, skin), 400, 43);
       for (int c = 0; c < 3; ++c)
         EXPECT_NEAR(estimate.mean[c], color[c],
                     4.0 * estimate.error[c] + std::max(0.015, 0.1 * color[c]))
@@ -77,22 +77,22 @@ TEST(SeenColor, IsNearlyRenderedByHybridShading) {
 
 /// Diffuse 1 without a coat: nothing is lost at any surface.
 TEST(Furnace, IsOneForAWhiteSurface) {
-  TestScene scene = step(Rgb::Ones(), 0.5, SurfaceShading::makeCoated(0.0, 0.4));
+  TestScene scene = makeStepScene(Rgb::Ones(), 0.5, SurfaceShading::makeCoated(0.0, 0.4));
   scene.transfer.albedo = ColorFunction({{0.0, Rgb::Ones()}});
-  const RgbEstimate estimate = seen(scene, 400, 47);
+  const RgbEstimate estimate = renderMean(scene, 400, 47);
   EXPECT_NEAR(estimate.mean[0], 1.0, 4.0 * estimate.error[0] + 1e-6); // lanes are float
   EXPECT_LT(estimate.error[0], 0.01);
 }
 
 /// Coat and base return what arrives but for a few thousandths, by both transports.
 TEST(Furnace, IsNearlyOneForAWhiteSurfaceUnderACoat) {
-  TestScene scene = step(Rgb::Ones(), 0.5, SurfaceShading::makeCoated(0.5, 0.4));
+  TestScene scene = makeStepScene(Rgb::Ones(), 0.5, SurfaceShading::makeCoated(0.5, 0.4));
   scene.transfer.albedo = ColorFunction({{0.0, Rgb::Ones()}});
-  for (const Integrator transport : {Integrator::simd, Integrator::scalar}) {
+  for (const Integrator integrator : {Integrator::simd, Integrator::scalar}) {
     RenderSettings settings;
     settings.samples = 40;
-    settings.integrator = transport;
-    const RgbEstimate estimate = pictureEstimate(scene.render(settings).film);
+    settings.integrator = integrator;
+    const RgbEstimate estimate = estimateRgb(scene.render(settings).film);
     EXPECT_GT(estimate.mean[0], 0.985);
     EXPECT_LE(estimate.mean[0], 1.0 + 4.0 * estimate.error[0]);
   }

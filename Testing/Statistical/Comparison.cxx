@@ -9,7 +9,7 @@ namespace {
 
 constexpr int tileSize = 4;
 
-oracle::Estimates estimatesOf(const Film& film, std::uint64_t samples) {
+oracle::Estimates toEstimates(const Film& film, std::uint64_t samples) {
   oracle::Estimates estimates(film.width(), film.height(), samples);
   for (std::size_t i = 0; i < film.pixelCount(); ++i) {
     const PixelSums& sums = film.pixels()[i];
@@ -26,7 +26,7 @@ oracle::Estimates estimatesOf(const Film& film, std::uint64_t samples) {
 
 /// One path's radiance in each channel over a whole picture: events that are rare in one pixel
 /// occur in others. See Estimated.
-struct Paths {
+struct PathMoments {
   Rgb skewness = Rgb::Zero(), brightness = Rgb::Zero();
 };
 
@@ -46,126 +46,129 @@ struct Sums {
     samples += pixel.samples;
     pixels += 1.0;
   }
-  Estimated channel(int c, const Paths& paths = {}) const {
-    return {mean[c] / pixels,   variance[c] / (pixels * pixels), samples, paths.skewness[c], blocks,
-            paths.brightness[c]};
+  Estimated channel(int c, const PathMoments& moments = {}) const {
+    return {mean[c] / pixels, variance[c] / (pixels * pixels),
+            samples,          moments.skewness[c],
+            blocks,           moments.brightness[c]};
   }
   /// Sums of pictures whose samples depend on each other within blocks of `size`
   /// (PixelSums::block).
-  Sums inBlocks(double size) const {
+  Sums withBlocks(double size) const {
     Sums sums = *this;
     sums.blocks = samples / size;
     return sums;
   }
 };
 
-Paths pathsOf(const oracle::Estimates& picture) {
+PathMoments computePathMoments(const oracle::Estimates& image) {
   Rgb squares = Rgb::Zero(), cubes = Rgb::Zero(), sum = Rgb::Zero(), squaresOfMeans = Rgb::Zero();
   double samples = 0.0;
-  for (const oracle::PixelEstimate& pixel : picture.pixels) {
+  for (const oracle::PixelEstimate& pixel : image.pixels) {
     squares += pixel.m2;
     cubes += pixel.m3;
     sum += pixel.samples * pixel.mean;
     squaresOfMeans += pixel.samples * pixel.mean.square();
     samples += pixel.samples;
   }
-  const Rgb deviation = (squares / samples).sqrt();
-  Paths paths;
+  const Rgb sigma = (squares / samples).sqrt();
+  PathMoments moments;
   for (int c = 0; c < 3; ++c) {
     if (squares[c] > 0.0)
-      paths.skewness[c] = cubes[c] / samples / (deviation[c] * deviation[c] * deviation[c]);
+      moments.skewness[c] = cubes[c] / samples / (sigma[c] * sigma[c] * sigma[c]);
     if (sum[c] > 0.0)
-      paths.brightness[c] = (squares[c] + squaresOfMeans[c]) / sum[c];
+      moments.brightness[c] = (squares[c] + squaresOfMeans[c]) / sum[c];
   }
-  return paths;
+  return moments;
 }
 
 /// Sums over a square of pixels.
-Sums sumsOf(const oracle::Estimates& picture, int left, int top, int size) {
+Sums sumPixels(const oracle::Estimates& image, int left, int top, int size) {
   Sums sums;
   for (int row = top; row < top + size; ++row)
     for (int column = left; column < left + size; ++column)
-      sums.add(picture.pixels[static_cast<std::size_t>(row * picture.width + column)]);
+      sums.add(image.pixels[static_cast<std::size_t>(row * image.width + column)]);
   return sums;
 }
 
 /// Least of many probabilities, corrected for their number.
-class Least {
+class MinProbability {
 public:
   void add(const std::optional<double>& probability) {
     if (!probability)
       return;
-    m_least = std::min(m_least, *probability);
+    m_minimum = std::min(m_minimum, *probability);
     m_count += 1.0;
   }
-  double corrected() const { return m_count > 0.0 ? sidak(m_least, m_count) : 1.0; }
+  double corrected() const { return m_count > 0.0 ? sidak(m_minimum, m_count) : 1.0; }
 
 private:
-  double m_least = 1.0, m_count = 0.0;
+  double m_minimum = 1.0, m_count = 0.0;
 };
 
 /// Compares squares of `size` pixels; `visit` receives the probability of one channel of each.
 template <typename Visit>
-double compareSquares(const Outcome& outcome, int size, Visit&& visit) {
-  const Paths paths = pathsOf(outcome.truth);
-  Least least;
+double compareTiles(const Outcome& outcome, int size, Visit&& visit) {
+  const PathMoments moments = computePathMoments(outcome.reference);
+  MinProbability minimum;
   int channel = outcome.combination.index;
-  for (int top = 0; top < outcome.truth.height; top += size)
-    for (int left = 0; left < outcome.truth.width; left += size) {
-      const Sums a = sumsOf(outcome.product, left, top, size).inBlocks(Sampler::blockSize);
-      const Sums b = sumsOf(outcome.truth, left, top, size);
+  for (int top = 0; top < outcome.reference.height; top += size)
+    for (int left = 0; left < outcome.reference.width; left += size) {
+      const Sums a = sumPixels(outcome.product, left, top, size).withBlocks(Sampler::blockSize);
+      const Sums b = sumPixels(outcome.reference, left, top, size);
       for (int c = 0; c < 3; ++c)
-        least.add(welchProbability(a.channel(c, paths), b.channel(c, paths)));
+        minimum.add(welchProbability(a.channel(c, moments), b.channel(c, moments)));
       const int one = ++channel % 3;
       const auto p = welchProbability(a.channel(one), b.channel(one));
-      if (p && isEven(b.channel(one, paths)))
+      if (p && hasManyPaths(b.channel(one, moments)))
         visit(*p);
     }
-  return least.corrected();
+  return minimum.corrected();
 }
 
-void comparePicture(Outcome& outcome) {
-  const int size = outcome.truth.width;
-  const Sums a = sumsOf(outcome.product, 0, 0, size).inBlocks(Sampler::blockSize);
-  const Sums b = sumsOf(outcome.truth, 0, 0, size);
-  const Paths paths = pathsOf(outcome.truth);
-  Least least;
+void compareImage(Outcome& outcome) {
+  const int size = outcome.reference.width;
+  const Sums a = sumPixels(outcome.product, 0, 0, size).withBlocks(Sampler::blockSize);
+  const Sums b = sumPixels(outcome.reference, 0, 0, size);
+  const PathMoments moments = computePathMoments(outcome.reference);
+  MinProbability minimum;
   for (int c = 0; c < 3; ++c)
-    least.add(welchProbability(a.channel(c, paths), b.channel(c, paths)));
-  const double share = 0.5 * (a.first[0] / a.pixels + b.first[0] / b.pixels); // colliding paths
+    minimum.add(welchProbability(a.channel(c, moments), b.channel(c, moments)));
+  const double collidedFraction =
+      0.5 * (a.first[0] / a.pixels + b.first[0] / b.pixels); // colliding paths
   // Both draw first collisions from the same distribution, so the oracle's variance serves for
   // both.
   for (int i = 0; i < 3; ++i) {
     double variance = b.firstVariance[i] / (b.pixels * b.pixels);
     if (variance == 0.0) { // the oracle's paths are all alike: what both say of that
       const double mean = 0.5 * (a.first[i] + b.first[i]) / a.pixels;
-      const bool isRareMatter = i == 2 && b.first[i] == 0.0; // of any albedo, amid black
-      variance = isRareMatter  ? mean * (1.0 - mean) / b.samples
-                 : share > 0.0 ? (1.0 - share) * mean * mean / share / b.samples
-                               : 0.0;
+      const bool isRareMedium = i == 2 && b.first[i] == 0.0; // of any albedo, amid black
+      variance = isRareMedium ? mean * (1.0 - mean) / b.samples
+                 : collidedFraction > 0.0
+                     ? (1.0 - collidedFraction) * mean * mean / collidedFraction / b.samples
+                     : 0.0;
     }
-    least.add(welchProbability({a.first[i] / a.pixels, variance, a.samples},
-                               {b.first[i] / b.pixels, variance, b.samples}));
+    minimum.add(welchProbability({a.first[i] / a.pixels, variance, a.samples},
+                                 {b.first[i] / b.pixels, variance, b.samples}));
   }
-  outcome.picture = least.corrected();
+  outcome.image = minimum.corrected();
 
   const int channel = outcome.combination.index % 3;
-  const Estimated product = a.channel(channel), truth = b.channel(channel);
-  const std::optional<double> probability = welchProbability(product, truth);
-  const double difference = product.mean - truth.mean;
-  if (truth.mean > 0.0)
-    outcome.difference = difference / truth.mean;
+  const Estimated product = a.channel(channel), reference = b.channel(channel);
+  const std::optional<double> probability = welchProbability(product, reference);
+  const double difference = product.mean - reference.mean;
+  if (reference.mean > 0.0)
+    outcome.difference = difference / reference.mean;
   if (probability)
-    outcome.deviate = difference / std::sqrt(product.variance + truth.variance);
-  if (isEven(b.channel(channel, paths)))
-    outcome.pictureProbability = probability;
+    outcome.z = difference / std::sqrt(product.variance + reference.variance);
+  if (hasManyPaths(b.channel(channel, moments)))
+    outcome.imageProbability = probability;
 }
 
-void compareDepths(const std::vector<double>& product, const std::vector<double>& truth,
+void compareDepths(const std::vector<double>& product, const std::vector<double>& reference,
                    Outcome& outcome) {
-  for (std::size_t i = 0; i < truth.size(); ++i) {
-    const double difference = std::abs(product[i] - truth[i]);
-    if (std::isinf(product[i]) && std::isinf(truth[i]))
+  for (std::size_t i = 0; i < reference.size(); ++i) {
+    const double difference = std::abs(product[i] - reference[i]);
+    if (std::isinf(product[i]) && std::isinf(reference[i]))
       continue;
     if (difference < 0.01)
       outcome.depthDifference = std::max(outcome.depthDifference, difference);
@@ -174,69 +177,71 @@ void compareDepths(const std::vector<double>& product, const std::vector<double>
   }
 }
 
-std::uint64_t seedOf(const Combination& c, const MatrixSettings& settings, std::uint64_t renderer) {
+std::uint64_t makeSeed(const Combination& c, const MatrixSettings& settings,
+                       std::uint64_t renderer) {
   return mixBits(2 * (1'000'000 * settings.seed + static_cast<std::uint64_t>(c.index)) + renderer);
 }
 
 } // namespace
 
 double Outcome::probability() const {
-  return sidak(std::min({pixels, tiles, picture}), 3.0);
+  return sidak(std::min({pixels, tiles, image}), 3.0);
 }
 
-Truth renderTruth(const Combination& c, const MatrixSettings& settings) {
+OracleRender renderOracle(const Combination& c, const MatrixSettings& settings) {
   std::vector<double> depths;
-  const oracle::Estimates picture =
-      oracle::render(matrixScene(c).forOracle(), settings.samples, seedOf(c, settings, 1), &depths);
-  return {picture, depths};
+  const oracle::Estimates image = oracle::render(
+      makeMatrixScene(c).toOracleScene(), settings.samples, makeSeed(c, settings, 1), &depths);
+  return {image, depths};
 }
 
-Outcome compareWithOracle(const Combination& c, const MatrixSettings& settings, Truth truth) {
-  const MatrixScene scene = matrixScene(c);
+Outcome compareWithOracle(const Combination& c, const MatrixSettings& settings,
+                          OracleRender oracleRender) {
+  const MatrixScene scene = makeMatrixScene(c);
   RenderSettings renderSettings = scene.settings;
   renderSettings.samples = settings.samples;
-  renderSettings.seed = seedOf(c, settings, 0);
-  renderSettings.integrator = settings.transport;
+  renderSettings.seed = makeSeed(c, settings, 0);
+  renderSettings.integrator = settings.integrator;
   Outcome outcome{.combination = c,
                   .tileProbabilities = {},
-                  .pictureProbability = {},
+                  .imageProbability = {},
                   .product =
-                      estimatesOf(scene.product.render(renderSettings).film, settings.samples),
-                  .truth = std::move(truth.picture)};
-  outcome.pixels = compareSquares(outcome, 1, [](double) {});
+                      toEstimates(scene.product.render(renderSettings).film, settings.samples),
+                  .reference = std::move(oracleRender.image)};
+  outcome.pixels = compareTiles(outcome, 1, [](double) {});
   outcome.tiles =
-      compareSquares(outcome, tileSize, [&](double p) { outcome.tileProbabilities.push_back(p); });
-  comparePicture(outcome);
-  compareDepths(scene.productDepths, truth.depths, outcome);
+      compareTiles(outcome, tileSize, [&](double p) { outcome.tileProbabilities.push_back(p); });
+  compareImage(outcome);
+  compareDepths(scene.productDepths, oracleRender.depths, outcome);
   return outcome;
 }
 
-std::vector<Verdict> verdicts(const std::vector<Outcome>& outcomes) {
-  Least pixels, tiles, pictures;
-  std::vector<double> tileProbabilities, pictureProbabilities;
+std::vector<HypothesisTest> testHypotheses(const std::vector<Outcome>& outcomes) {
+  MinProbability pixels, tiles, images;
+  std::vector<double> tileProbabilities, imageProbabilities;
   double sum = 0.0;
   for (const Outcome& c : outcomes) {
     pixels.add(c.pixels);
     tiles.add(c.tiles);
-    pictures.add(c.picture);
+    images.add(c.image);
     tileProbabilities.insert(tileProbabilities.end(), c.tileProbabilities.begin(),
                              c.tileProbabilities.end());
-    if (c.pictureProbability) {
-      pictureProbabilities.push_back(*c.pictureProbability);
-      sum += c.deviate;
+    if (c.imageProbability) {
+      imageProbabilities.push_back(*c.imageProbability);
+      sum += c.z;
     }
   }
   const auto n = static_cast<double>(outcomes.size());
   const auto nTiles = static_cast<double>(tileProbabilities.size());
-  const auto nPictures = static_cast<double>(pictureProbabilities.size());
-  return {{"largest difference of a pixel", n, pixels.corrected()},
-          {"largest difference of a tile", n, tiles.corrected()},
-          {"largest difference of a picture", n, pictures.corrected()},
-          {"tiles' probabilities are uniform", nTiles, uniformityProbability(tileProbabilities)},
-          {"pictures' probabilities are uniform", nPictures,
-           uniformityProbability(pictureProbabilities)},
-          {"pictures' mean difference is 0", nPictures,
-           normalTail(sum / std::sqrt(std::max(nPictures, 1.0)))}};
+  const auto nImages = static_cast<double>(imageProbabilities.size());
+  return {
+      {"largest difference of a pixel", n, pixels.corrected()},
+      {"largest difference of a tile", n, tiles.corrected()},
+      {"largest difference of a picture", n, images.corrected()},
+      {"tiles' probabilities are uniform", nTiles, uniformityProbability(tileProbabilities)},
+      {"pictures' probabilities are uniform", nImages, uniformityProbability(imageProbabilities)},
+      {"pictures' mean difference is 0", nImages,
+       normalTail(sum / std::sqrt(std::max(nImages, 1.0)))}};
 }
 
 } // namespace fenestra::testing

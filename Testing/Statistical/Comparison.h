@@ -17,41 +17,42 @@ namespace fenestra::testing {
 struct MatrixSettings {
   std::uint64_t samples = 128; ///< a pixel, of each renderer
   std::uint64_t seed = 1;
-  Integrator transport = Integrator::simd; ///< of the product
+  Integrator integrator = Integrator::simd; ///< of the product
 };
 
 struct Outcome {
   Combination combination;
   /// Probability of the largest difference: over all pixels and channels; over all tiles and
   /// channels; over the picture's channels, share of colliding paths, depth and albedo.
-  double pixels = 1.0, tiles = 1.0, picture = 1.0;
+  double pixels = 1.0, tiles = 1.0, image = 1.0;
   /// Probabilities of one channel a tile, and of the picture: independent, hence uniform in [0, 1].
   /// Only from even means (isEven): those of uneven means are too rarely near 0 or 1.
   std::vector<double> tileProbabilities;
-  std::optional<double> pictureProbability;
+  std::optional<double> imageProbability;
   /// Picture's channel: (product - oracle) / oracle's mean, and / standard error of the difference.
-  double difference = 0.0, deviate = 0.0;
+  double difference = 0.0, z = 0.0;
   /// Largest difference of the two depth buffers, mm, over samples on whose kind (focus or not)
   /// both agree; and number of samples on which they disagree.
   double depthDifference = 0.0;
   int depthDisagreements = 0;
-  oracle::Estimates product, truth; ///< for error images
+  oracle::Estimates product, reference; ///< for error images
 
   /// Probability of all three scales together.
   double probability() const;
 };
 
 /// Oracle's render of a combination.
-struct Truth {
-  oracle::Estimates picture;
+struct OracleRender {
+  oracle::Estimates image;
   std::vector<double> depths; ///< depth clip's buffer, mm, row by row
 };
 
-Truth renderTruth(const Combination& c, const MatrixSettings& settings);
-Outcome compareWithOracle(const Combination& c, const MatrixSettings& settings, Truth truth);
+OracleRender renderOracle(const Combination& c, const MatrixSettings& settings);
+Outcome compareWithOracle(const Combination& c, const MatrixSettings& settings,
+                          OracleRender oracleRender);
 
 /// Hypothesis about all combinations together, and the probability of the observation under it.
-struct Verdict {
+struct HypothesisTest {
   std::string name;
   double count;
   double probability;
@@ -59,6 +60,6 @@ struct Verdict {
 
 /// Verdicts on pixels, tiles and pictures; on uniformity of the tiles' and the pictures'
 /// probabilities; on the pictures' mean deviate.
-std::vector<Verdict> verdicts(const std::vector<Outcome>& outcomes);
+std::vector<HypothesisTest> testHypotheses(const std::vector<Outcome>& outcomes);
 
 } // namespace fenestra::testing

@@ -10,10 +10,10 @@
 namespace fenestra::testing::ComponentsTests {
 namespace {
 
-constexpr Integrator transports[] = {Integrator::simd, Integrator::scalar};
+constexpr Integrator integrators[] = {Integrator::simd, Integrator::scalar};
 
 /// Ball in a labelmap of one voxel a mm, turned against the volumes, and smooth over 2 mm or hard.
-Mask ball(const Vec3& center, double radius, bool isSoft) {
+Mask makeBallMask(const Vec3& center, double radius, bool isSoft) {
   const Grid flat = makeCenteredGrid(Size3::Constant(23), Vec3::Constant(1.0));
   const Grid grid(flat.size,
                   makeRotation(0.4, Vec3(1.0, 2.0, -0.5).normalized()) * flat.indexToWorld);
@@ -25,30 +25,31 @@ Mask ball(const Vec3& center, double radius, bool isSoft) {
       for (std::int64_t x = 0; x < grid.size.x(); ++x) {
         const Vec3 p = grid.indexToWorld * Size3(x, y, z).cast<double>();
         const double inside = radius - (p - center).norm();
-        const double share = isSoft ? std::clamp(0.5 + inside / 2.0, 0.0, 1.0) : inside > 0.0;
-        mask.voxels.push_back(static_cast<std::uint8_t>(share * mask.maxValue));
+        const double fraction = isSoft ? std::clamp(0.5 + inside / 2.0, 0.0, 1.0) : inside > 0.0;
+        mask.voxels.push_back(static_cast<std::uint8_t>(fraction * mask.maxValue));
       }
   return mask;
 }
 
 /// Parts 1 to `count`, a ball each, some of which overlap, of three priorities.
-std::vector<LabelWeights::Part> balls(int count, bool isSoft) {
+std::vector<LabelWeights::Part> makeBalls(int count, bool isSoft) {
   std::vector<LabelWeights::Part> parts;
   for (int i = 0; i < count; ++i) {
     const double angle = 2.4 * i, height = -6.0 + 12.0 * (i + 0.5) / count;
     const Vec3 center(5.0 * std::cos(angle), 5.0 * std::sin(angle), height);
-    parts.push_back(
-        {ball(center, 3.0 + 0.2 * (i % 5), isSoft), i % 3, static_cast<std::uint8_t>(i + 1)});
+    parts.push_back({makeBallMask(center, 3.0 + 0.2 * (i % 5), isSoft), i % 3,
+                     static_cast<std::uint8_t>(i + 1)});
   }
   return parts;
 }
 
-Mixture mixtureOf(const std::vector<LabelWeights::Part>& parts, std::vector<Component> components) {
+Mixture makeMixture(const std::vector<LabelWeights::Part>& parts,
+                    std::vector<Component> components) {
   return {std::make_shared<const LabelWeights>(makeLabelWeights(parts)), std::move(components)};
 }
 
 /// Hills of scalars from 0 to 1, seen from the front.
-TestScene hills(const TransferFunction& transfer) {
+TestScene makeHillScene(const TransferFunction& transfer) {
   TestScene scene{makeVolume(makeCenteredGrid({20, 24, 18}, {1.0, 0.8, 1.3}),
                              [](const Vec3& p) {
                                return 0.5 + 0.5 * std::sin(0.9 * p.x()) *
@@ -65,15 +66,15 @@ TestScene hills(const TransferFunction& transfer) {
   return scene;
 }
 
-TransferFunction coated() {
+TransferFunction makeCoatedTransfer() {
   TransferFunction transfer = makeLinearTransfer(0.6, Rgb(0.9, 0.6, 0.3), 0.4);
   transfer.shading = SurfaceShading::makeCoated(0.5, 0.3, transfer.g);
   return transfer;
 }
 
-RenderSettings settingsOf(Integrator transport, std::uint64_t samples, std::uint64_t seed) {
+RenderSettings makeSettings(Integrator integrator, std::uint64_t samples, std::uint64_t seed) {
   RenderSettings settings;
-  settings.integrator = transport;
+  settings.integrator = integrator;
   settings.samples = scaleSamples(samples);
   settings.seed = shiftSeed(seed);
   settings.path.background.kind = Background::Kind::environment;
@@ -107,15 +108,15 @@ void expectSame(const Film& a, const Film& b) {
 
 /// Segments of the volume's own matter change nothing but random numbers.
 TEST(OneMatter, IsThatOfEverySegment) {
-  TransferFunction steep = coated();
+  TransferFunction steep = makeCoatedTransfer();
   steep.gradientOpacity = ScalarFunction({makeKnot(0.0, 0.1), makeKnot(0.3, 1.0)});
-  for (const TransferFunction& transfer : {coated(), steep})
-    for (const Integrator transport : transports) {
-      const TestScene alone = hills(transfer);
-      TestScene mixed = hills(transfer);
-      mixed.mixture = mixtureOf(balls(4, true), std::vector<Component>(5, {transfer}));
-      expectSame(alone.render(settingsOf(transport, 400, 61)).film,
-                 mixed.render(settingsOf(transport, 400, 62)).film);
+  for (const TransferFunction& transfer : {makeCoatedTransfer(), steep})
+    for (const Integrator integrator : integrators) {
+      const TestScene alone = makeHillScene(transfer);
+      TestScene mixed = makeHillScene(transfer);
+      mixed.mixture = makeMixture(makeBalls(4, true), std::vector<Component>(5, {transfer}));
+      expectSame(alone.render(makeSettings(integrator, 400, 61)).film,
+                 mixed.render(makeSettings(integrator, 400, 62)).film);
     }
 }
 
@@ -125,7 +126,7 @@ TEST(OneMatter, IsThatOfEverySegment) {
 /// Indicators of a segment over the voxels of a column along z, 1 mm each, of 255.
 using Column = std::vector<std::uint8_t>;
 
-Mask wideMask(const Column& column) {
+Mask makeLayerMask(const Column& column) {
   const auto n = static_cast<std::int64_t>(column.size());
   Mask mask;
   mask.grid = makeCenteredGrid({2, 2, n}, {10000.0, 10000.0, 1.0});
@@ -137,7 +138,7 @@ Mask wideMask(const Column& column) {
 
 /// Integral over z of a function that is linear between the voxels of a column and, beyond the
 /// outermost ones, constant for half a voxel.
-double integral(const std::vector<double>& values) {
+double integrate(const std::vector<double>& values) {
   double sum = 0.5 * (values.front() + values.back());
   for (std::size_t i = 0; i + 1 < values.size(); ++i)
     sum += 0.5 * (values[i] + values[i + 1]);
@@ -148,22 +149,22 @@ const Column lower = {255, 255, 250, 180, 77, 13, 0, 0};
 const Column upper = {0, 40, 120, 200, 255, 255, 90, 20};
 
 /// Slab of 8 mm with two segments that overlap, of extinctions 0.6 and 0.1 per mm, in 0.25.
-TestScene slabOfTwo(int lowerPriority, int upperPriority) {
-  TestScene scene = slab(20000.0, 8.0, Rgb::Zero(), 0.25);
+TestScene makeTwoSegmentSlab(int lowerPriority, int upperPriority) {
+  TestScene scene = makeSlab(20000.0, 8.0, Rgb::Zero(), 0.25);
   scene.pose.scale = 1.0;
   const auto dense = [&](double sigma_t) {
     TransferFunction transfer = scene.transfer;
     transfer.extinction = ScalarFunction({makeKnot(0.0, sigma_t)});
     return transfer;
   };
-  scene.mixture =
-      mixtureOf({{wideMask(lower), lowerPriority, 1}, {wideMask(upper), upperPriority, 2}},
-                {{scene.transfer}, {dense(0.6)}, {dense(0.1)}});
+  scene.mixture = makeMixture(
+      {{makeLayerMask(lower), lowerPriority, 1}, {makeLayerMask(upper), upperPriority, 2}},
+      {{scene.transfer}, {dense(0.6)}, {dense(0.1)}});
   return scene;
 }
 
 /// Optical depth along z; the shares of a voxel in 255ths, as they are kept.
-double depthOfTwo(int lowerPriority, int upperPriority) {
+double computeOpticalDepth(int lowerPriority, int upperPriority) {
   std::vector<double> extinctions;
   for (std::size_t i = 0; i < lower.size(); ++i) {
     double a = lower[i], b = upper[i];
@@ -178,16 +179,16 @@ double depthOfTwo(int lowerPriority, int upperPriority) {
     }
     extinctions.push_back((0.6 * a + 0.1 * b + 0.25 * (255.0 - a - b)) / 255.0);
   }
-  return integral(extinctions);
+  return integrate(extinctions);
 }
 
 /// Expects exp(-depth / mu) behind the slab, at five angles.
 void expectTransmittance(TestScene scene, double depth, std::uint64_t seed) {
-  for (const Integrator transport : transports)
+  for (const Integrator integrator : integrators)
     for (const double mu : {1.0, 0.9, 0.7, 0.5, 0.35}) {
       SCOPED_TRACE(mu);
-      look(scene, downward(mu, 0.3));
-      const RenderSettings settings = settingsOf(transport, 500, seed++);
+      aimCamera(scene, downwardDirection(mu, 0.3));
+      const RenderSettings settings = makeSettings(integrator, 500, seed++);
       const Estimate estimate = estimateMean(scene.render(settings).film);
       const double expected = std::exp(-depth / mu);
       // Every sample is 0 or 1.
@@ -198,14 +199,14 @@ void expectTransmittance(TestScene scene, double depth, std::uint64_t seed) {
 }
 
 TEST(SlabOfComponents, LetsThroughWhatTheIntegralOfTheirExtinctionsLeaves) {
-  expectTransmittance(slabOfTwo(20, 10), depthOfTwo(20, 10), 1000);
-  expectTransmittance(slabOfTwo(10, 20), depthOfTwo(10, 20), 1100);
-  expectTransmittance(slabOfTwo(10, 10), depthOfTwo(10, 10), 1200);
+  expectTransmittance(makeTwoSegmentSlab(20, 10), computeOpticalDepth(20, 10), 1000);
+  expectTransmittance(makeTwoSegmentSlab(10, 20), computeOpticalDepth(10, 20), 1100);
+  expectTransmittance(makeTwoSegmentSlab(10, 10), computeOpticalDepth(10, 10), 1200);
 }
 
 /// In the removed half only the upper segment is left.
 TEST(SlabOfComponents, LosesToAClipWhatIsClipped) {
-  TestScene scene = slabOfTwo(20, 10);
+  TestScene scene = makeTwoSegmentSlab(20, 10);
   scene.mixture->components[2].isClipped = false;
   scene.clip =
       ClipPlane{Camera(scene.pose, scene.width, scene.height), Vec3::Zero(), Vec3::UnitZ()};
@@ -215,14 +216,14 @@ TEST(SlabOfComponents, LosesToAClipWhatIsClipped) {
       all += extinction(i);
     return all;
   };
-  const auto upperShare = [](std::size_t i) {
+  const auto upperWeight = [](std::size_t i) {
     return std::min<double>(upper[i], 255.0 - lower[i]) / 255.0;
   };
   const auto all = [&](std::size_t i) {
-    const double a = lower[i] / 255.0, b = upperShare(i);
+    const double a = lower[i] / 255.0, b = upperWeight(i);
     return 0.6 * a + 0.1 * b + 0.25 * (1.0 - a - b);
   };
-  const auto left = [&](std::size_t i) { return 0.1 * upperShare(i); };
+  const auto left = [&](std::size_t i) { return 0.1 * upperWeight(i); };
   // Trapezoids: what lies between voxels 3 and 4 is halved at the plane.
   const double kept = sum(0, 4, all) + (all(4) - all(3)) / 8.0;
   const double removed = sum(4, 8, left) - (left(4) - left(3)) / 8.0;
@@ -234,7 +235,7 @@ TEST(SlabOfComponents, LosesToAClipWhatIsClipped) {
 
 /// Fourteen materials of albedo 1, each with a phase function, density and roughness of its own, of
 /// which the clip leaves every fourth.
-std::vector<Component> whiteMatter(bool isHybrid) {
+std::vector<Component> makeWhiteComponents(bool isHybrid) {
   std::vector<Component> all;
   for (int i = 0; i < 15; ++i) {
     TransferFunction transfer =
@@ -253,22 +254,22 @@ std::vector<Component> whiteMatter(bool isHybrid) {
 TEST(FurnaceOfComponents, IsOne) {
   for (const bool isHybrid : {false, true})
     for (const bool isCutaway : {false, true})
-      for (const Integrator transport : transports) {
-        const std::vector<Component> components = whiteMatter(isHybrid);
-        TestScene scene = hills(components.front().transfer);
-        scene.mixture = mixtureOf(balls(14, true), components);
+      for (const Integrator integrator : integrators) {
+        const std::vector<Component> components = makeWhiteComponents(isHybrid);
+        TestScene scene = makeHillScene(components.front().transfer);
+        scene.mixture = makeMixture(makeBalls(14, true), components);
         const Camera camera(scene.pose, scene.width, scene.height);
         scene.clip = ClipPlane{camera, Vec3(0.0, 2.0, 0.0), Vec3(0.2, 1.0, 0.1).normalized()};
         // A map is sampled, which makes noise; a constant environment is not.
         scene.lights = {EnvironmentLight{Rgb::Ones(), {8, 4, std::vector<float>(96, 1.0F)}}};
         if (isCutaway) {
           scene.lights = {EnvironmentLight{}};
-          scene.clip =
-              buildClippingSurface(camera, Domain(scene.volume.grid, {}),
-                                   ball(Vec3::Zero(), 4.0, false), {SurfaceMode::cutaway, 50, 0.5})
-                  .clip;
+          scene.clip = buildClippingSurface(camera, Domain(scene.volume.grid, {}),
+                                            makeBallMask(Vec3::Zero(), 4.0, false),
+                                            {SurfaceMode::cutaway, 50, 0.5})
+                           .clip;
         }
-        const RenderResult result = scene.render(settingsOf(transport, 128, 71));
+        const RenderResult result = scene.render(makeSettings(integrator, 128, 71));
         EXPECT_GT(result.counters.collisions, 10000U) << "the medium must matter";
         const Estimate estimate = estimateMean(result.film);
         EXPECT_NEAR(estimate.mean, 1.0, 4.0 * estimate.error + 1e-5); // lanes are float
@@ -286,16 +287,16 @@ TEST(FurnaceOfComponents, IsOne) {
 /// Neither segments' order nor that of priorities in it tells anything.
 TEST(OrderOfSegments, ChangesNoBit) {
   for (const bool isSoft : {false, true})
-    for (const Integrator transport : transports) {
-      std::vector<LabelWeights::Part> parts = balls(7, isSoft);
-      TestScene scene = hills(coated());
-      scene.mixture = mixtureOf(parts, whiteMatter(true));
-      const RenderSettings settings = settingsOf(transport, 8, 81);
+    for (const Integrator integrator : integrators) {
+      std::vector<LabelWeights::Part> parts = makeBalls(7, isSoft);
+      TestScene scene = makeHillScene(makeCoatedTransfer());
+      scene.mixture = makeMixture(parts, makeWhiteComponents(true));
+      const RenderSettings settings = makeSettings(integrator, 8, 81);
       const Film first = scene.render(settings).film;
       std::ranges::reverse(parts);
       std::rotate(parts.begin(), parts.begin() + 2, parts.end());
       // A labelmap begins where its first part does: all of these begin there.
-      scene.mixture = mixtureOf(parts, whiteMatter(true));
+      scene.mixture = makeMixture(parts, makeWhiteComponents(true));
       const Film other = scene.render(settings).film;
       for (std::size_t i = 0; i < first.pixelCount(); ++i)
         EXPECT_EQ(first.pixels()[i].mean, other.pixels()[i].mean);
@@ -305,14 +306,14 @@ TEST(OrderOfSegments, ChangesNoBit) {
 /// Expects no extinction above its cell's majorant at points of the cell and of the strip around it
 /// in which the bound holds; returns the greatest share of a majorant that was met.
 double expectBound(const TestScene& scene) {
-  double greatest = 0.0;
+  double maximum = 0.0;
   scene.visitView([&](const SceneView& parts) {
     const MajorantGrid& majorants = parts.majorants;
     const auto& voxels = std::get<LargeArray<float>>(scene.volume.voxels);
     const Medium<float> medium(scene.volume.grid, voxels, scene.transfer, parts.style, nullptr,
                                parts.mixture);
     const Affine toWorld = majorants.worldToCell().inverse();
-    const Vec3 strip = MajorantGrid::margin * majorants.edge().cast<double>().cwiseInverse();
+    const Vec3 padding = MajorantGrid::margin * majorants.edge().cast<double>().cwiseInverse();
     Random random(shiftSeed(91), 0, 0);
     const Size3& count = majorants.cellCount();
     std::int64_t cell = 0;
@@ -321,43 +322,43 @@ double expectBound(const TestScene& scene) {
         for (std::int64_t x = 0; x < count.x(); ++x, ++cell)
           for (int i = 0; i < scaleSamples(4); ++i) {
             const Vec3 u(random.uniform(), random.uniform(), random.uniform());
-            const Vec3 within = (1.0 + 2.0 * strip.array()) * u.array() - strip.array();
-            const Vec3 world = toWorld * (Size3(x, y, z).cast<double>() + within);
+            const Vec3 inCell = (1.0 + 2.0 * padding.array()) * u.array() - padding.array();
+            const Vec3 world = toWorld * (Size3(x, y, z).cast<double>() + inCell);
             const MajorantGrid::Cell& bound = majorants.cell(cell);
-            const double kept = bound.isCut ? clipWeight(scene.clip, world) : 1.0;
+            const double weight = bound.isCut ? clipWeight(scene.clip, world) : 1.0;
             const double extinction =
                 bound.majorant > 0.0F
-                    ? medium.extinction(scene.volume.grid.worldToIndex * world, kept)
+                    ? medium.extinction(scene.volume.grid.worldToIndex * world, weight)
                     : medium.extinction(scene.volume.grid.worldToIndex * world,
                                         clipWeight(scene.clip, world));
             EXPECT_LE(extinction, static_cast<double>(bound.majorant));
             if (bound.majorant > 0.0F)
-              greatest = std::max(greatest, extinction / static_cast<double>(bound.majorant));
+              maximum = std::max(maximum, extinction / static_cast<double>(bound.majorant));
           }
     return 0;
   });
-  return greatest;
+  return maximum;
 }
 
 TEST(MajorantOfComponents, IsNeverExceeded) {
   for (const bool isSoft : {false, true})
     for (const bool isSteep : {false, true})
       for (const bool isThin : {false, true}) {
-        TransferFunction own = coated();
+        TransferFunction own = makeCoatedTransfer();
         if (isSteep)
           own.gradientOpacity =
               ScalarFunction({makeKnot(0.0, 0.1), makeKnot(0.3, 1.0), makeKnot(0.6, 0.2)});
-        TestScene scene = hills(own);
-        std::vector<Component> components = whiteMatter(true);
+        TestScene scene = makeHillScene(own);
+        std::vector<Component> components = makeWhiteComponents(true);
         components[0].transfer = components[3].transfer = own;
-        scene.mixture = mixtureOf(balls(14, isSoft), components);
+        scene.mixture = makeMixture(makeBalls(14, isSoft), components);
         scene.clip = ClipPlane{Camera(scene.pose, scene.width, scene.height),
                                Vec3::Zero(),
                                Vec3(0.2, 1.0, 0.1).normalized(),
                                {0.2, isSoft ? 2.0 : 0.0}};
         if (isThin)
-          scene.style.emplace(
-              ContextStyle{std::make_shared<const Mask>(ball(Vec3::Zero(), 4.0, false)), 0.3, 1.0});
+          scene.style.emplace(ContextStyle{
+              std::make_shared<const Mask>(makeBallMask(Vec3::Zero(), 4.0, false)), 0.3, 1.0});
         EXPECT_GT(expectBound(scene), 0.95) << "the bound is no better than it must be";
       }
 }

@@ -7,12 +7,12 @@
 namespace fenestra::testing::CropTests {
 namespace {
 
-Volume ones(const Grid& grid) {
+Volume makeUniformVolume(const Grid& grid) {
   return makeVolume(grid, [](const Vec3&) { return 1.0; });
 }
 
 /// Map of [-1, 1]^3 onto a rotated box of half edges `half` around `center`.
-Affine turnedBox(const Vec3& center, const Vec3& half, double angle) {
+Affine makeRotatedBox(const Vec3& center, const Vec3& half, double angle) {
   return makeTranslation(center) * makeRotation(angle, Vec3(1.0, -2.0, 0.5).normalized()) *
          makeScaling(half);
 }
@@ -41,7 +41,7 @@ double chord(const Affine& box, const Ray& ray) {
 struct Differences {
   double sum = 0.0, variance = 0.0;
 
-  void add(double estimate, double expected) {
+  void addDifference(double estimate, double expected) {
     sum += estimate - expected;
     variance += (estimate - expected) * (estimate - expected);
   }
@@ -51,11 +51,11 @@ struct Differences {
 class CroppedTransmittance : public ::testing::TestWithParam<bool> {};
 
 TEST_P(CroppedTransmittance, IsExponentialAlongTheChord) {
-  const Volume volume = ones(makeCenteredGrid({30, 30, 30}, {1.0, 1.0, 1.0}));
+  const Volume volume = makeUniformVolume(makeCenteredGrid({30, 30, 30}, {1.0, 1.0, 1.0}));
   const double sigma_t = 0.2;
   const TransferFunction transfer = makeLinearTransfer(sigma_t, Rgb::Zero());
   const TransferFunction looser = transfer.withDensity(2.0); // not every collision is real
-  Affine box = turnedBox({0.3, -0.4, 0.2}, {3.0, 5.0, 4.0}, 0.7);
+  Affine box = makeRotatedBox({0.3, -0.4, 0.2}, {3.0, 5.0, 4.0}, 0.7);
   if (GetParam()) // sheared, as by a transform above the box
     box = Affine(Mat3::FromRows({1.0, 0.3, 0.0}, {0.0, 1.0, -0.2}, {0.1, 0.0, 0.8})) * box;
   const MajorantGrid majorants(volume.grid, MinMaxGrid(volume, 0), looser, ClipNone{});
@@ -72,10 +72,10 @@ TEST_P(CroppedTransmittance, IsExponentialAlongTheChord) {
     const Vec3 through = 4.0 * sampleUniformSphere(random.uniform2());
     const Ray ray{origin, (through - origin).normalized()};
     const double expected = std::exp(-sigma_t * chord(box, ray));
-    passed.add(tracker.transmittance(ray, {}, random, counters), expected);
+    passed.addDifference(tracker.transmittance(ray, {}, random, counters), expected);
     const bool free =
         tracker.sampleCollision(ray, {}, random.uniform2(), random, counters) == infinity;
-    survived.add(free ? 1.0 : 0.0, expected);
+    survived.addDifference(free ? 1.0 : 0.0, expected);
   }
   EXPECT_NEAR(passed.z(), 0.0, 4.0);
   EXPECT_NEAR(survived.z(), 0.0, 4.0);
@@ -89,9 +89,9 @@ struct Shape {
   Projection projection;
 };
 
-class CroppedPicture : public ::testing::TestWithParam<Shape> {};
+class CroppedImage : public ::testing::TestWithParam<Shape> {};
 
-TestScene litScene(Volume volume, const Shape& shape) {
+TestScene makeLitScene(Volume volume, const Shape& shape) {
   TestScene scene{std::move(volume),
                   makeLinearTransfer(0.5, Rgb(0.9, 0.8, 0.7), 0.3),
                   {EnvironmentLight{.radiance = Rgb::Constant(0.3), .map = {}},
@@ -109,14 +109,15 @@ TestScene litScene(Volume volume, const Shape& shape) {
 
 /// Eye, scattered and light rays all end at the crop: a box cropped from a larger constant volume
 /// looks like a volume of that box, at any rotation against the voxels.
-TEST_P(CroppedPicture, EqualsThePictureOfAVolumeOfThatShape) {
+TEST_P(CroppedImage, EqualsThePictureOfAVolumeOfThatShape) {
   const Vec3 half(5.0, 4.0, 3.0);
-  const Affine box = turnedBox({1.0, 0.0, -1.0}, half, GetParam().angle);
+  const Affine box = makeRotatedBox({1.0, 0.0, -1.0}, half, GetParam().angle);
   // Grid of 10 x 8 x 6 voxels of 1 mm that fills the box.
   const Affine indexToWorld =
       box * makeScaling(Vec3(half.cwiseInverse())) * makeTranslation(Vec3(-4.5, -3.5, -2.5));
-  const TestScene cut = litScene(ones(Grid({10, 8, 6}, indexToWorld)), GetParam());
-  TestScene cropped = litScene(ones(makeCenteredGrid({24, 24, 24}, {1.0, 1.0, 1.0})), GetParam());
+  const TestScene cut = makeLitScene(makeUniformVolume(Grid({10, 8, 6}, indexToWorld)), GetParam());
+  TestScene cropped =
+      makeLitScene(makeUniformVolume(makeCenteredGrid({24, 24, 24}, {1.0, 1.0, 1.0})), GetParam());
   cropped.crop = CropBox(box);
 
   RenderSettings settings;
@@ -147,7 +148,7 @@ TEST_P(CroppedPicture, EqualsThePictureOfAVolumeOfThatShape) {
   EXPECT_NEAR(all.z(), 0.0, 4.0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, CroppedPicture,
+INSTANTIATE_TEST_SUITE_P(Shapes, CroppedImage,
                          ::testing::Values(Shape{"upright", 0.0, Projection::orthographic},
                                            Shape{"turned", 0.6, Projection::orthographic},
                                            Shape{"perspective", 1.1, Projection::perspective}),

@@ -9,7 +9,7 @@ namespace {
 
 /// Ray along `direction` from a square of half edge `half` that faces `direction`, 2 `half` before
 /// the volume's centre; `u` in [0, 1)^2 selects the point.
-Ray parallelRay(const Grid& grid, const Vec3& direction, double half, const Vec2& u) {
+Ray makeParallelRay(const Grid& grid, const Vec3& direction, double half, const Vec2& u) {
   const Frame frame(direction);
   return {grid.worldCenter() - 2.0 * half * direction +
               half * ((2.0 * u.x() - 1.0) * frame.tangent + (2.0 * u.y() - 1.0) * frame.bitangent),
@@ -18,20 +18,20 @@ Ray parallelRay(const Grid& grid, const Vec3& direction, double half, const Vec2
 
 /// Light of irradiance 1 that collides, mm^2: 1 - exp(-optical depth), integrated over a plane that
 /// faces the light by the midpoint rule on `lines`^2 rays.
-double stopped(const TestScene& scene, const Vec3& light, int lines) {
-  const StraightIntegral integral(scene.volume, scene.transfer);
+double computeCollidedLight(const TestScene& scene, const Vec3& light, int lines) {
+  const LineIntegral integral(scene.volume, scene.transfer);
   const double half = scene.volume.grid.boundingRadius();
   double sum = 0.0;
   for (int row = 0; row < lines; ++row)
     for (int column = 0; column < lines; ++column)
       sum -= std::expm1(-integral.opticalDepth(
-          parallelRay(scene.volume.grid, light, half, Vec2(column + 0.5, row + 0.5) / lines)));
+          makeParallelRay(scene.volume.grid, light, half, Vec2(column + 0.5, row + 0.5) / lines)));
   return sum * 4.0 * half * half / (lines * lines);
 }
 
 /// Light scattered into all directions: two random directions in each of many equal parts of the
 /// sphere, whose difference estimates the variance within a part.
-RgbEstimate scatteredAround(TestScene& scene, const Vec3& light, std::uint64_t seed) {
+RgbEstimate estimateScatteredLight(TestScene& scene, const Vec3& light, std::uint64_t seed) {
   constexpr int rows = 20; // rows around the light's direction
   constexpr int columns = 12;
   const Frame frame(light);
@@ -40,12 +40,14 @@ RgbEstimate scatteredAround(TestScene& scene, const Vec3& light, std::uint64_t s
   for (int part = 0; part < rows * columns; ++part) {
     Rgb seen[2];
     for (int i = 0; i < 2; ++i) {
-      const std::uint64_t picture = seed + static_cast<std::uint64_t>(2 * part + i);
-      Random random(picture, 0, 1);
+      const std::uint64_t imageSeed = seed + static_cast<std::uint64_t>(2 * part + i);
+      Random random(imageSeed, 0, 1);
       const Vec2 u = random.uniform2();
-      const Vec3 way = sampleUniformSphere(
+      const Vec3 direction = sampleUniformSphere(
           {(part / columns + u.x()) / rows, (part % columns + u.y()) / columns});
-      seen[i] = scatteredOut(scene, light, -frame.toWorld(way), scaleSamples(12UL), picture).mean;
+      seen[i] =
+          estimateScattered(scene, light, -frame.toWorld(direction), scaleSamples(12UL), imageSeed)
+              .mean;
     }
     sum.mean += 0.5 * (seen[0] + seen[1]);
     variance += 0.25 * (seen[0] - seen[1]).square();
@@ -57,13 +59,13 @@ RgbEstimate scatteredAround(TestScene& scene, const Vec3& light, std::uint64_t s
 // ---- what is absorbed, by a forward random walk of its own
 // ---------------------------------------
 
-Rgb albedoAt(const TransferFunction& transfer, double scalar) {
+Rgb interpolateAlbedo(const TransferFunction& transfer, double scalar) {
   const auto& knots = transfer.albedo.knots(); // two, at 0 and 1
   return knots[0].value + scalar * (knots[1].value - knots[0].value);
 }
 
 /// Direction by inversion of Henyey and Greenstein's distribution of the cosine.
-Vec3 scattered(const Vec3& direction, double g, const Vec2& u) {
+Vec3 sampleDirection(const Vec3& direction, double g, const Vec2& u) {
   const double s = (1.0 - g * g) / (1.0 - g + 2.0 * g * u.x());
   const double cosine = g == 0.0 ? 2.0 * u.x() - 1.0 : (1.0 + g * g - s * s) / (2.0 * g);
   const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
@@ -76,42 +78,43 @@ Vec3 scattered(const Vec3& direction, double g, const Vec2& u) {
 
 /// Absorbed share of a walk's power: free paths with one majorant; a real collision absorbs 1 -
 /// albedo.
-Rgb absorbedOf(const TestScene& scene, const StraightIntegral& medium, Ray ray, Random& random) {
+Rgb traceAbsorbedPower(const TestScene& scene, const LineIntegral& medium, Ray ray,
+                       Random& random) {
   double majorant = 0.0;
   for (const auto& knot : scene.transfer.extinction.knots())
     majorant = std::max(majorant, knot.value.value());
-  Rgb absorbed = Rgb::Zero();
+  Rgb absorbedPower = Rgb::Zero();
   Rgb power = Rgb::Ones();
   while (power.maxCoeff() > 1e-4) { // the rest is negligible
-    const Interval inside = medium.inside(ray);
+    const Interval inside = medium.boxInterval(ray);
     const double distance = std::max(inside.begin, 0.0) - std::log1p(-random.uniform()) / majorant;
     if (!(distance < inside.end))
       break;
     ray.origin = ray.at(distance);
-    const double scalar = medium.scalar(ray.origin);
+    const double scalar = medium.interpolate(ray.origin);
     if (random.uniform() * majorant >= medium.extinction(scalar))
       continue;
-    const Rgb albedo = albedoAt(scene.transfer, scalar);
-    absorbed += power * (1.0 - albedo);
+    const Rgb albedo = interpolateAlbedo(scene.transfer, scalar);
+    absorbedPower += power * (1.0 - albedo);
     power *= albedo;
-    ray.direction = scattered(ray.direction, scene.transfer.g, random.uniform2());
+    ray.direction = sampleDirection(ray.direction, scene.transfer.g, random.uniform2());
   }
-  return absorbed;
+  return absorbedPower;
 }
 
 /// Absorbed light for irradiance 1, mm^2.
-RgbEstimate absorbed(const TestScene& scene, const Vec3& light, std::uint64_t seed) {
-  const StraightIntegral medium(scene.volume, scene.transfer);
+RgbEstimate estimateAbsorbedLight(const TestScene& scene, const Vec3& light, std::uint64_t seed) {
+  const LineIntegral medium(scene.volume, scene.transfer);
   const double half = scene.volume.grid.boundingRadius();
   const std::uint64_t walks = scaleSamples(200000UL);
   Rgb sum = Rgb::Zero();
   Rgb squares = Rgb::Zero();
   for (std::uint64_t i = 0; i < walks; ++i) {
     Random random(seed, i, 2);
-    const Ray ray = parallelRay(scene.volume.grid, light, half, random.uniform2());
-    const Rgb share = absorbedOf(scene, medium, ray, random);
-    sum += share;
-    squares += share.square();
+    const Ray ray = makeParallelRay(scene.volume.grid, light, half, random.uniform2());
+    const Rgb absorbedPower = traceAbsorbedPower(scene, medium, ray, random);
+    sum += absorbedPower;
+    squares += absorbedPower.square();
   }
   const auto n = static_cast<double>(walks);
   const Rgb mean = sum / n;
@@ -122,30 +125,31 @@ RgbEstimate absorbed(const TestScene& scene, const Vec3& light, std::uint64_t se
 // ---------------------------------------------------------------------------------
 
 /// Relative error of stopped() with this number of lines.
-constexpr double known = 3e-4;
+constexpr double quadratureError = 3e-4;
 constexpr int lines = 120;
 
-const Vec3 lightWay = Vec3(0.4, -0.7, -0.5).normalized();
+const Vec3 lightDirection = Vec3(0.4, -0.7, -0.5).normalized();
 
 class Energy : public ::testing::TestWithParam<double> {};
 
 TEST_P(Energy, WithoutAbsorptionOutgoingEqualsIncoming) {
-  TestScene scene = clumps(Rgb::Ones(), Rgb::Ones(), GetParam());
-  const double in = stopped(scene, lightWay, lines);
-  EXPECT_NEAR(stopped(scene, lightWay, 2 * lines) / in, 1.0, known);
+  TestScene scene = makeClumps(Rgb::Ones(), Rgb::Ones(), GetParam());
+  const double in = computeCollidedLight(scene, lightDirection, lines);
+  EXPECT_NEAR(computeCollidedLight(scene, lightDirection, 2 * lines) / in, 1.0, quadratureError);
   const double silhouette = 4.0 * std::pow(scene.volume.grid.boundingRadius(), 2.0);
   EXPECT_GT(in, 0.1 * silhouette) << "the medium must matter";
-  expectMean(scatteredAround(scene, lightWay, shiftSeed(7000)), Rgb::Constant(in), 0.01, known);
+  expectMean(estimateScatteredLight(scene, lightDirection, shiftSeed(7000)), Rgb::Constant(in),
+             0.01, quadratureError);
 }
 
 TEST_P(Energy, OutgoingPlusAbsorbedEqualsIncoming) {
-  TestScene scene = clumps(Rgb(0.95, 0.7, 0.9), Rgb(0.8, 0.95, 0.4), GetParam());
-  const double in = stopped(scene, lightWay, lines);
-  const RgbEstimate out = scatteredAround(scene, lightWay, shiftSeed(8000));
-  const RgbEstimate kept = absorbed(scene, lightWay, shiftSeed(8500));
-  EXPECT_GT((out.mean / kept.mean).minCoeff(), 0.2) << "both must matter";
-  EXPECT_LT((out.mean / kept.mean).maxCoeff(), 5.0) << "both must matter";
-  expectMean(out + kept, Rgb::Constant(in), 0.01, known);
+  TestScene scene = makeClumps(Rgb(0.95, 0.7, 0.9), Rgb(0.8, 0.95, 0.4), GetParam());
+  const double in = computeCollidedLight(scene, lightDirection, lines);
+  const RgbEstimate out = estimateScatteredLight(scene, lightDirection, shiftSeed(8000));
+  const RgbEstimate absorbedLight = estimateAbsorbedLight(scene, lightDirection, shiftSeed(8500));
+  EXPECT_GT((out.mean / absorbedLight.mean).minCoeff(), 0.2) << "both must matter";
+  EXPECT_LT((out.mean / absorbedLight.mean).maxCoeff(), 5.0) << "both must matter";
+  expectMean(out + absorbedLight, Rgb::Constant(in), 0.01, quadratureError);
 }
 
 INSTANTIATE_TEST_SUITE_P(Anisotropies, Energy, ::testing::Values(0.0, 0.5, -0.5));

@@ -73,10 +73,10 @@ private:
     return 0.5 * light.environment * sky + light.irradiance / (4.0 * pi) * beam;
   }
 
-  double emergent(double mu, bool fromBelow) const {
+  double emergent(double mu, bool isFromBelow) const {
     double sum = 0.0;
     for (int i = 0; i < m_values.size(); ++i) {
-      const double near = fromBelow ? thickness() - m_edges[i + 1] : m_edges[i];
+      const double near = isFromBelow ? thickness() - m_edges[i + 1] : m_edges[i];
       sum += m_values[i] * (std::exp(-near / mu) - std::exp(-(near + width(i)) / mu));
     }
     return sum;
@@ -87,11 +87,11 @@ private:
 
 struct View {
   double mu;
-  bool fromBelow;
+  bool isFromBelow;
 };
 
 /// Relative error of Emission's radiances.
-constexpr double known = 1e-4;
+constexpr double quadratureError = 1e-4;
 constexpr std::array<View, 3> views = {{{1.0, false}, {0.25, false}, {0.7, true}}};
 const Rgb albedos(0.5, 0.9, 1.0);
 
@@ -106,14 +106,14 @@ public:
     }
   }
 
-  Rgb toward(const View& view) const {
+  Rgb emittedRadiance(const View& view) const {
     Rgb radiance;
     for (int c = 0; c < 3; ++c) {
-      const auto of = [&](const std::vector<SourceFunction>& sources) {
+      const auto evaluate = [&](const std::vector<SourceFunction>& sources) {
         const SourceFunction& source = sources[static_cast<std::size_t>(c)];
-        return view.fromBelow ? source.below(view.mu) : source.above(view.mu);
+        return view.isFromBelow ? source.below(view.mu) : source.above(view.mu);
       };
-      radiance[c] = (4.0 * of(m_fine) - of(m_coarse)) / 3.0;
+      radiance[c] = (4.0 * evaluate(m_fine) - evaluate(m_coarse)) / 3.0;
     }
     return radiance;
   }
@@ -130,8 +130,9 @@ TEST(Emission, QuadratureErrorIsBelowItsBound) {
       const Emission emission(thickness, light);
       const Emission refined(thickness, light, 360);
       for (const View& view : views) {
-        const Rgb radiance = emission.toward(view);
-        EXPECT_LT((radiance / refined.toward(view) - 1.0).abs().maxCoeff(), known);
+        const Rgb radiance = emission.emittedRadiance(view);
+        EXPECT_LT((radiance / refined.emittedRadiance(view) - 1.0).abs().maxCoeff(),
+                  quadratureError);
         if (light.environment > 0.0) { // without absorption as bright as the environment
           EXPECT_NEAR(radiance[2], 1.0 - std::exp(-thickness / view.mu), 1e-9);
         }
@@ -149,22 +150,23 @@ class FiniteSlab : public ::testing::TestWithParam<std::tuple<double, SlabCase>>
 
 TEST_P(FiniteSlab, RadianceSolvesTheIntegralEquation) {
   const auto& [thickness, c] = GetParam();
-  TestScene scene = endlessSlab(thickness, albedos);
+  TestScene scene = makeInfiniteSlab(thickness, albedos);
   scene.lights.clear();
   if (c.light.environment > 0.0)
     scene.lights.push_back(EnvironmentLight{.radiance = Rgb::Constant(c.light.environment)});
   if (c.light.irradiance > 0.0)
-    scene.lights.push_back(DirectionalLight{.direction = downward(c.light.mu0, 0.8),
+    scene.lights.push_back(DirectionalLight{.direction = downwardDirection(c.light.mu0, 0.8),
                                             .irradiance = Rgb::Constant(c.light.irradiance)});
   const Emission emission(thickness, c.light);
   const std::uint64_t samples = thickness > 5.0 ? 600 : 2000; // where paths are short
   std::uint64_t seed = c.seed + static_cast<std::uint64_t>(10.0 * thickness);
   for (const View& view : views) {
-    SCOPED_TRACE(std::to_string(view.mu) + (view.fromBelow ? " from below" : " from above"));
-    look(scene, downward(view.fromBelow ? -view.mu : view.mu));
+    SCOPED_TRACE(std::to_string(view.mu) + (view.isFromBelow ? " from below" : " from above"));
+    aimCamera(scene, downwardDirection(view.isFromBelow ? -view.mu : view.mu));
     // Very little light crosses eight free paths of a dark medium.
-    const double sharpness = view.fromBelow && thickness > 5.0 ? 0.3 : 0.01;
-    expectMean(seen(scene, samples, seed++), emission.toward(view), sharpness, known);
+    const double sharpness = view.isFromBelow && thickness > 5.0 ? 0.3 : 0.01;
+    expectMean(renderMean(scene, samples, seed++), emission.emittedRadiance(view), sharpness,
+               quadratureError);
   }
 }
 

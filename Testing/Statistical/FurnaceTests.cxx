@@ -10,12 +10,12 @@
 namespace fenestra::testing::FurnaceTests {
 namespace {
 
-enum class MediumKind { homogeneous, heterogeneous, spikes };
+enum class MediumKind { homogeneous, heterogeneous, makeSpikes };
 enum class ClipKind { none, plane, cutaway, surface };
 
 using Case = std::tuple<MediumKind, Projection, ClipKind, double, bool>;
 
-Volume volumeOf(MediumKind kind) {
+Volume makeMediumVolume(MediumKind kind) {
   const Grid grid = makeCenteredGrid({20, 24, 18}, {1.0, 0.8, 1.3});
   return makeVolume(grid, [kind](const Vec3& p) {
     if (kind == MediumKind::homogeneous)
@@ -25,7 +25,7 @@ Volume volumeOf(MediumKind kind) {
 }
 
 /// Non-monotone extinction: 0 at both ends of the range, dense in a thin band between.
-TransferFunction spikes() {
+TransferFunction makeSpikes() {
   return {ScalarFunction({makeKnot(0.0, 0.0), makeKnot(0.45, 0.0), makeKnot(0.5, 4.0),
                           makeKnot(0.55, 0.0), makeKnot(0.9, 0.0), makeKnot(0.9, 1.5),
                           makeKnot(1.0, 0.2)}),
@@ -33,7 +33,7 @@ TransferFunction spikes() {
 }
 
 /// Ball of radius 4 mm, off-centre.
-Mask ball() {
+Mask makeBallMask() {
   const Grid grid = makeCenteredGrid({16, 16, 16}, {1.0, 1.0, 1.0});
   Mask mask{grid, {}, 0, {"ball"}};
   for (int k = 0; k < 16; ++k)
@@ -47,22 +47,24 @@ Mask ball() {
 }
 
 /// Rotated crop that cuts the ball and two of the volume's corners.
-CropBox turnedCrop() {
+CropBox makeRotatedCrop() {
   return CropBox(makeTranslation({0.5, -2.0, 1.0}) *
                  makeRotation(0.5, Vec3(1.0, 1.0, -2.0).normalized()) *
                  makeScaling(Vec3(7.0, 5.0, 12.0)));
 }
 
-Clip clipOf(ClipKind kind, const Camera& camera, const Domain& volume) {
+Clip makeClip(ClipKind kind, const Camera& camera, const Domain& volume) {
   switch (kind) {
   case ClipKind::none:
     return ClipNone{};
   case ClipKind::plane:
     return ClipPlane{camera, Vec3(0.0, -2.0, 0.0), Vec3(0.2, 1.0, 0.1).normalized()};
   case ClipKind::cutaway:
-    return buildClippingSurface(camera, volume, ball(), {SurfaceMode::cutaway, 50, 0.5}).clip;
+    return buildClippingSurface(camera, volume, makeBallMask(), {SurfaceMode::cutaway, 50, 0.5})
+        .clip;
   case ClipKind::surface:
-    return buildClippingSurface(camera, volume, ball(), {SurfaceMode::surface, 50, 0.5}).clip;
+    return buildClippingSurface(camera, volume, makeBallMask(), {SurfaceMode::surface, 50, 0.5})
+        .clip;
   }
   return {};
 }
@@ -71,9 +73,9 @@ class Furnace : public ::testing::TestWithParam<Case> {};
 
 TEST_P(Furnace, RadianceIsOne) {
   const auto [mediumKind, projection, clipKind, g, isCropped] = GetParam();
-  TestScene scene{volumeOf(mediumKind),
-                  mediumKind == MediumKind::spikes ? spikes()
-                                                   : makeLinearTransfer(0.4, Rgb::Ones()),
+  TestScene scene{makeMediumVolume(mediumKind),
+                  mediumKind == MediumKind::makeSpikes ? makeSpikes()
+                                                       : makeLinearTransfer(0.4, Rgb::Ones()),
                   {EnvironmentLight{}},
                   {},
                   24,
@@ -84,9 +86,9 @@ TEST_P(Furnace, RadianceIsOne) {
   scene.pose.target = Vec3::Zero();
   scene.pose.scale = 12.0;
   if (isCropped)
-    scene.crop = turnedCrop();
-  scene.clip = clipOf(clipKind, Camera(scene.pose, scene.width, scene.height),
-                      Domain(scene.volume.grid, scene.crop));
+    scene.crop = makeRotatedCrop();
+  scene.clip = makeClip(clipKind, Camera(scene.pose, scene.width, scene.height),
+                        Domain(scene.volume.grid, scene.crop));
 
   RenderSettings settings;
   settings.samples = 64;
@@ -101,11 +103,12 @@ TEST_P(Furnace, RadianceIsOne) {
 
 INSTANTIATE_TEST_SUITE_P(
     Everywhere, Furnace,
-    ::testing::Combine(
-        ::testing::Values(MediumKind::homogeneous, MediumKind::heterogeneous, MediumKind::spikes),
-        ::testing::Values(Projection::orthographic, Projection::perspective),
-        ::testing::Values(ClipKind::none, ClipKind::plane, ClipKind::cutaway, ClipKind::surface),
-        ::testing::Values(0.0, 0.7), ::testing::Values(false)));
+    ::testing::Combine(::testing::Values(MediumKind::homogeneous, MediumKind::heterogeneous,
+                                         MediumKind::makeSpikes),
+                       ::testing::Values(Projection::orthographic, Projection::perspective),
+                       ::testing::Values(ClipKind::none, ClipKind::plane, ClipKind::cutaway,
+                                         ClipKind::surface),
+                       ::testing::Values(0.0, 0.7), ::testing::Values(false)));
 
 INSTANTIATE_TEST_SUITE_P(Cropped, Furnace,
                          ::testing::Combine(::testing::Values(MediumKind::heterogeneous),
@@ -117,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(Cropped, Furnace,
 
 TEST(SkyOfOneColour, EqualsAConstantEnvironment) {
   const Rgb color(0.9, 0.6, 0.3);
-  TestScene scene{volumeOf(MediumKind::heterogeneous),
+  TestScene scene{makeMediumVolume(MediumKind::heterogeneous),
                   makeLinearTransfer(0.4, Rgb(0.9, 0.7, 0.5)),
                   {EnvironmentLight{color, {}}},
                   {}};
@@ -127,8 +130,8 @@ TEST(SkyOfOneColour, EqualsAConstantEnvironment) {
   RenderSettings settings;
   settings.samples = 256;
   settings.path.background.kind = Background::Kind::environment;
-  for (const Integrator transport : {Integrator::simd, Integrator::scalar}) {
-    settings.integrator = transport;
+  for (const Integrator integrator : {Integrator::simd, Integrator::scalar}) {
+    settings.integrator = integrator;
     settings.seed = 21;
     scene.lights = {EnvironmentLight{color, {}}};
     const Estimate constant = estimateMean(scene.render(settings).film);

@@ -19,7 +19,7 @@ int level(int factor, int index, int levels) {
   return order[static_cast<std::size_t>(index % levels)];
 }
 
-Combination combination(int index) {
+Combination makeCombination(int index) {
   int factor = 0;
   const auto next = [&](int levels) { return level(++factor, index, levels); };
   constexpr double anisotropies[] = {-0.9, -0.4, 0.0, 0.3, 0.7, 0.9, 0.99};
@@ -44,33 +44,33 @@ Combination combination(int index) {
   const auto style = static_cast<StyleFactor>(std::max(0, next(6) - 2)); // half of them: none
   constexpr double offsets[] = {0.0, 0.7, -0.7};
   const double offset = offsets[next(3)];
-  const bool isOtherKind = next(2) == 0;
-  const bool isOtherLight = next(3) == 0;
+  const bool isVariantClip = next(2) == 0;
+  const bool isVariantLight = next(3) == 0;
   const bool isCoated = next(2) == 0;
   constexpr int counts[] = {1, 3, 8};
   const int count = counts[next(3)];
   c.segments = static_cast<SegmentFactor>(next(3));
-  c.areSoft = next(2) == 0;
-  const bool isMore = index >= shortCount && index % 3 != 0;
-  c.segmentCount = index % 2 == 1 || isMore ? count : 0;
-  c.areMatter = (next(2) == 0 && c.segmentCount > 0) || isMore;
-  if (next(2) == 0 && c.areMatter) // surfaces of several kinds
+  c.haveSoftEdges = next(2) == 0;
+  const bool isExtra = index >= shortCount && index % 3 != 0;
+  c.segmentCount = index % 2 == 1 || isExtra ? count : 0;
+  c.areMedia = (next(2) == 0 && c.segmentCount > 0) || isExtra;
+  if (next(2) == 0 && c.areMedia) // surfaces of several kinds
     c.isHybrid = true;
   c.isCoated = isCoated && c.isHybrid;
-  c.haveBorders = next(3) == 0 && c.areMatter && c.isHybrid;
+  c.haveInterfaces = next(3) == 0 && c.areMedia && c.isHybrid;
   if (index % 4 == 1 ||
       index % 4 == 2) { // the others are plain, which shows errors of other factors best
     c.edge = static_cast<EdgeFactor>(isSoftCut ? 2 + edge % 2 : edge);
     c.style = style;
     c.offset = offset;
-    if (isOtherKind && c.clip == ClipFactor::surface)
+    if (isVariantClip && c.clip == ClipFactor::surface)
       c.clip = ClipFactor::exactSurface;
-    if (isOtherKind && c.clip == ClipFactor::cutaway)
+    if (isVariantClip && c.clip == ClipFactor::cutaway)
       c.clip = ClipFactor::hole;
   }
-  if (isOtherLight && c.light == LightFactor::constant)
+  if (isVariantLight && c.light == LightFactor::constant)
     c.light = LightFactor::sky;
-  if (isOtherLight && c.light == LightFactor::disk)
+  if (isVariantLight && c.light == LightFactor::disk)
     c.light = LightFactor::sphere;
   // Parallel light reaches the eye only through the phase function's peak: at g = 0.99 hardly one
   // path in ten thousand shows the light, and means are far from normal.
@@ -83,32 +83,34 @@ Combination combination(int index) {
 // ---- the volume
 // --------------------------------------------------------------------------------
 
-Grid gridOf(const Combination& c, Generator& generator) {
-  const auto centred = [](const Size3& size, const Mat3& axes) {
+Grid makeGrid(const Combination& c, Generator& generator) {
+  const auto makeCentered = [](const Size3& size, const Mat3& axes) {
     Affine map = Affine::Identity();
     map.linear() = axes;
     map.translation() = -axes * (0.5 * (size.cast<double>() - Vec3::Ones()));
     return Grid(size, map);
   };
-  const auto scaled = [](double x, double y, double z) { return Mat3(Mat3::Diagonal({x, y, z})); };
+  const auto makeAxes = [](double x, double y, double z) {
+    return Mat3(Mat3::Diagonal({x, y, z}));
+  };
   switch (c.grid) {
   case GridFactor::cubes:
-    return centred({12, 11, 13}, scaled(1.0, 1.0, 1.0));
+    return makeCentered({12, 11, 13}, makeAxes(1.0, 1.0, 1.0));
   case GridFactor::thickSlices:
-    return centred({24, 17, 4}, scaled(0.5, 0.7, 3.0));
-  case GridFactor::turned: {
-    const Mat3 turn =
+    return makeCentered({24, 17, 4}, makeAxes(0.5, 0.7, 3.0));
+  case GridFactor::rotated: {
+    const Mat3 rotation =
         makeRotation(uniform(generator, 0.0, 6.0), randomDirection(generator)).linear();
-    return centred({14, 10, 12}, turn * scaled(0.8, 1.2, 1.0));
+    return makeCentered({14, 10, 12}, rotation * makeAxes(0.8, 1.2, 1.0));
   }
   case GridFactor::shearedMirrored: {
     Mat3 shear = Mat3::Identity();
     shear(0, 1) = 0.3;
     shear(1, 2) = -0.25;
-    return centred({11, 13, 9}, shear * scaled(1.0, -0.9, 1.3));
+    return makeCentered({11, 13, 9}, shear * makeAxes(1.0, -0.9, 1.3));
   }
   case GridFactor::fine: // majorant cells of several voxels
-    return centred({122, 115, 101}, scaled(0.1, 0.1, 0.12));
+    return makeCentered({122, 115, 101}, makeAxes(0.1, 0.1, 0.12));
   }
   return {};
 }
@@ -133,7 +135,7 @@ struct Range {
   double low, high;
 };
 
-Range rangeOf(VoxelFactor voxels) {
+Range scalarRange(VoxelFactor voxels) {
   switch (voxels) {
   case VoxelFactor::uint8:
     return {5.0, 250.0};
@@ -148,7 +150,7 @@ Range rangeOf(VoxelFactor voxels) {
 }
 
 template <typename Voxel>
-Volume volumeAs(const Grid& grid, const Range& range, Generator& generator) {
+Volume makeTypedVolume(const Grid& grid, const Range& range, Generator& generator) {
   const Hills hills(generator);
   return makeVolume<Voxel>(grid, [&](const Vec3& index) {
     const double noise = uniform(generator, -0.08, 0.08);
@@ -157,18 +159,18 @@ Volume volumeAs(const Grid& grid, const Range& range, Generator& generator) {
   });
 }
 
-Volume volumeOf(const Combination& c, Generator& generator) {
-  const Grid grid = gridOf(c, generator);
-  const Range range = rangeOf(c.voxels);
+Volume makeCombinationVolume(const Combination& c, Generator& generator) {
+  const Grid grid = makeGrid(c, generator);
+  const Range range = scalarRange(c.voxels);
   switch (c.voxels) {
   case VoxelFactor::uint8:
-    return volumeAs<std::uint8_t>(grid, range, generator);
+    return makeTypedVolume<std::uint8_t>(grid, range, generator);
   case VoxelFactor::int16:
-    return volumeAs<std::int16_t>(grid, range, generator);
+    return makeTypedVolume<std::int16_t>(grid, range, generator);
   case VoxelFactor::uint16:
-    return volumeAs<std::uint16_t>(grid, range, generator);
+    return makeTypedVolume<std::uint16_t>(grid, range, generator);
   case VoxelFactor::float32:
-    return volumeAs<float>(grid, range, generator);
+    return makeTypedVolume<float>(grid, range, generator);
   }
   return {};
 }
@@ -177,41 +179,41 @@ Volume volumeOf(const Combination& c, Generator& generator) {
 // --------------------------------------------------------------------------------
 
 /// Function with knots placed relative to the scalar's range, [0, 1].
-ScalarFunction overRange(const Range& range, std::initializer_list<std::array<double, 2>> knots) {
+ScalarFunction makeCurve(const Range& range, std::initializer_list<std::array<double, 2>> knots) {
   std::vector<ScalarFunction::Knot> placed;
   for (const auto& [u, value] : knots)
     placed.push_back({range.low + u * (range.high - range.low), ScalarFunction::Value(value)});
   return ScalarFunction(placed);
 }
 
-ScalarFunction extinctionOf(TransferFactor kind, const Range& range) {
+ScalarFunction makeExtinction(TransferFactor kind, const Range& range) {
   switch (kind) {
   case TransferFactor::step:
-    return overRange(range, {{0.0, 0.02}, {0.5, 0.02}, {0.5, 2.5}, {1.0, 2.5}});
+    return makeCurve(range, {{0.0, 0.02}, {0.5, 0.02}, {0.5, 2.5}, {1.0, 2.5}});
   case TransferFactor::spike:
-    return overRange(range, {{0.0, 0.0}, {0.45, 0.0}, {0.5, 6.0}, {0.55, 0.0}, {1.0, 0.05}});
+    return makeCurve(range, {{0.0, 0.0}, {0.45, 0.0}, {0.5, 6.0}, {0.55, 0.0}, {1.0, 0.05}});
   case TransferFactor::nonMonotone:
-    return overRange(range,
+    return makeCurve(range,
                      {{0.0, 0.3}, {0.25, 1.2}, {0.45, 0.0}, {0.6, 0.0}, {0.75, 1.8}, {1.0, 0.1}});
   case TransferFactor::linear:
   case TransferFactor::gradientOpacity:
   case TransferFactor::steepGradientOpacity:
-    return overRange(range, {{0.0, 0.0}, {1.0, 2.0}});
+    return makeCurve(range, {{0.0, 0.0}, {1.0, 2.0}});
   }
-  return overRange(range, {{0.0, 0.0}});
+  return makeCurve(range, {{0.0, 0.0}});
 }
 
-ColorFunction albedoOf(AlbedoFactor kind, const Range& range) {
-  const auto grey = [](double value) { return ColorFunction({{0.0, Rgb::Constant(value)}}); };
+ColorFunction makeAlbedo(AlbedoFactor kind, const Range& range) {
+  const auto makeGray = [](double value) { return ColorFunction({{0.0, Rgb::Constant(value)}}); };
   switch (kind) {
   case AlbedoFactor::black:
-    return grey(0.0);
+    return makeGray(0.0);
   case AlbedoFactor::half:
-    return grey(0.5);
+    return makeGray(0.5);
   case AlbedoFactor::nearlyOne:
-    return grey(0.999);
+    return makeGray(0.999);
   case AlbedoFactor::one:
-    return grey(1.0);
+    return makeGray(1.0);
   case AlbedoFactor::perChannel:
     return ColorFunction({{0.0, Rgb(0.95, 0.6, 0.2)}});
   case AlbedoFactor::byScalar: {
@@ -222,24 +224,24 @@ ColorFunction albedoOf(AlbedoFactor kind, const Range& range) {
                           {range.high, Rgb(1.0, 0.9, 0.8)}});
   }
   }
-  return grey(0.0);
+  return makeGray(0.0);
 }
 
-TransferFunction transferOf(const Combination& c) {
-  const Range range = rangeOf(c.voxels);
+TransferFunction makeTransfer(const Combination& c) {
+  const Range range = scalarRange(c.voxels);
   const double span = range.high - range.low;
-  TransferFunction transfer{extinctionOf(c.transfer, range), albedoOf(c.albedo, range)};
+  TransferFunction transfer{makeExtinction(c.transfer, range), makeAlbedo(c.albedo, range)};
   transfer.g = c.g;
-  const auto overGradient = [&](std::initializer_list<std::array<double, 2>> knots) {
+  const auto makeGradientCurve = [&](std::initializer_list<std::array<double, 2>> knots) {
     std::vector<ScalarFunction::Knot> placed; // positions in ranges per mm
     for (const auto& [slope, value] : knots)
       placed.push_back({slope * span, ScalarFunction::Value(value)});
     return ScalarFunction(placed);
   };
   if (c.transfer == TransferFactor::gradientOpacity)
-    transfer.gradientOpacity = overGradient({{0.0, 0.2}, {0.3, 1.0}});
+    transfer.gradientOpacity = makeGradientCurve({{0.0, 0.2}, {0.3, 1.0}});
   if (c.transfer == TransferFactor::steepGradientOpacity)
-    transfer.gradientOpacity = overGradient({{0.0, 0.0}, {0.1, 0.0}, {0.1, 1.0}, {0.3, 0.4}});
+    transfer.gradientOpacity = makeGradientCurve({{0.0, 0.0}, {0.1, 0.0}, {0.1, 1.0}, {0.3, 0.4}});
   if (c.isHybrid)
     transfer.shading = c.isCoated ? SurfaceShading::makeCoated(0.6, 0.35, c.g)
                                   : SurfaceShading{0.8, 0.3, 12.0, 0.6};
@@ -249,7 +251,7 @@ TransferFunction transferOf(const Combination& c) {
 // ---- lights, eye, clip
 // -------------------------------------------------------------------------
 
-EnvironmentMap mapOf(Generator& generator) {
+EnvironmentMap makeMap(Generator& generator) {
   EnvironmentMap map{8, 4, {}};
   for (int i = 0; i < 8 * 4 * 3; ++i)
     map.rgb.push_back(static_cast<float>(std::max(0.0, uniform(generator, -0.3, 1.0))));
@@ -258,7 +260,7 @@ EnvironmentMap mapOf(Generator& generator) {
   return map;
 }
 
-AreaLight areaOf(AreaLight::Shape shape, LightFrame frame, Generator& generator) {
+AreaLight makeAreaLight(AreaLight::Shape shape, LightFrame frame, Generator& generator) {
   // In the camera's frame the unit is the bounding sphere's radius, about 10 mm.
   const double unit = frame == LightFrame::world ? 10.0 : 1.0;
   AreaLight light;
@@ -272,49 +274,49 @@ AreaLight areaOf(AreaLight::Shape shape, LightFrame frame, Generator& generator)
   return light;
 }
 
-SkyLight skyOf(LightFrame frame, Generator& generator) {
+SkyLight makeSky(LightFrame frame, Generator& generator) {
   return {Rgb(0.2, 0.4, 1.4), Rgb(0.9, 1.0, 1.1), Rgb(0.5, 0.2, 0.0), randomDirection(generator),
           frame};
 }
 
 /// Around a part of the volume, beside it, or far away.
-SphereLight sphereOf(const Combination& c, LightFrame frame, Generator& generator) {
+SphereLight makeSphereLight(const Combination& c, LightFrame frame, Generator& generator) {
   const double unit = frame == LightFrame::world ? 10.0 : 1.0;
   constexpr double distances[] = {0.3, 0.9, 2.2};
   return {distances[c.index / 2 % 3] * unit * randomDirection(generator), 1.1 * unit,
           Rgb(2.0, 1.6, 1.2), frame};
 }
 
-std::vector<Light> lightsOf(const Combination& c, Generator& generator) {
+std::vector<Light> makeLights(const Combination& c, Generator& generator) {
   const Light parallel = DirectionalLight{randomDirection(generator), Rgb(3.0, 2.5, 2.0)};
   const LightFrame frame = c.index % 2 == 0 ? LightFrame::world : LightFrame::camera;
   switch (c.light) {
   case LightFactor::constant:
     return {EnvironmentLight{Rgb(1.0, 0.9, 0.7), {}}};
   case LightFactor::map:
-    return {EnvironmentLight{Rgb(1.0, 0.8, 1.2), mapOf(generator)}};
+    return {EnvironmentLight{Rgb(1.0, 0.8, 1.2), makeMap(generator)}};
   case LightFactor::directional:
     return {parallel};
   case LightFactor::rectangle:
-    return {areaOf(AreaLight::Shape::rectangle, frame, generator)};
+    return {makeAreaLight(AreaLight::Shape::rectangle, frame, generator)};
   case LightFactor::disk:
-    return {areaOf(AreaLight::Shape::disk, frame, generator)};
+    return {makeAreaLight(AreaLight::Shape::disk, frame, generator)};
   case LightFactor::sky:
-    return {skyOf(frame, generator), EnvironmentLight{Rgb(0.1, 0.1, 0.1), {}}};
+    return {makeSky(frame, generator), EnvironmentLight{Rgb(0.1, 0.1, 0.1), {}}};
   case LightFactor::sphere:
-    return {sphereOf(c, frame, generator)};
+    return {makeSphereLight(c, frame, generator)};
   case LightFactor::several:
     return {EnvironmentLight{Rgb(0.2, 0.3, 0.4), {}},
-            EnvironmentLight{Rgb(0.5, 0.5, 0.5), mapOf(generator)},
+            EnvironmentLight{Rgb(0.5, 0.5, 0.5), makeMap(generator)},
             parallel,
-            areaOf(AreaLight::Shape::rectangle, frame, generator),
-            skyOf(frame, generator),
-            sphereOf(c, frame, generator)};
+            makeAreaLight(AreaLight::Shape::rectangle, frame, generator),
+            makeSky(frame, generator),
+            makeSphereLight(c, frame, generator)};
   }
   return {};
 }
 
-CameraPose poseOf(const Combination& c, Generator& generator) {
+CameraPose makePose(const Combination& c, Generator& generator) {
   CameraPose pose;
   const bool isPerspective =
       c.view == ViewFactor::perspective || c.view == ViewFactor::perspectiveInside;
@@ -331,7 +333,7 @@ CameraPose poseOf(const Combination& c, Generator& generator) {
   return pose;
 }
 
-Affine cropOf(Generator& generator) {
+Affine makeCrop(Generator& generator) {
   Affine crop = Affine::Identity();
   crop.linear() = makeRotation(uniform(generator, 0.0, 6.0), randomDirection(generator)).linear() *
                   Mat3(Mat3::Diagonal({6.5, 4.5, 7.0}));
@@ -339,7 +341,7 @@ Affine cropOf(Generator& generator) {
   return crop;
 }
 
-Background backgroundOf(BackgroundFactor kind) {
+Background makeBackground(BackgroundFactor kind) {
   switch (kind) {
   case BackgroundFactor::color:
     return {Background::Kind::color, Rgb(0.2, 0.1, 0.3)};
@@ -353,10 +355,10 @@ Background backgroundOf(BackgroundFactor kind) {
 
 } // namespace
 
-std::vector<Combination> combinations(int count) {
+std::vector<Combination> makeCombinations(int count) {
   std::vector<Combination> list;
   for (int i = 0; i < count; ++i)
-    list.push_back(combination(i));
+    list.push_back(makeCombination(i));
   return list;
 }
 
@@ -386,9 +388,9 @@ std::string describe(const Combination& c) {
   if (c.clip > ClipFactor::plane && c.offset != 0.0)
     text << (c.offset < 0.0 ? ", nearer" : ", deeper");
   if (c.segmentCount > 0)
-    text << ", " << c.segmentCount << (c.areSoft ? " soft " : " hard ")
-         << name(segments, c.segments) << (c.areMatter ? " matter" : " tints")
-         << (c.haveBorders ? " with borders" : "");
+    text << ", " << c.segmentCount << (c.haveSoftEdges ? " soft " : " hard ")
+         << name(segments, c.segments) << (c.areMedia ? " matter" : " tints")
+         << (c.haveInterfaces ? " with borders" : "");
   text << name(styles, c.style) << (c.isCropped ? ", cropped" : "") << " | "
        << name(lights, c.light) << " | " << c.g << " | " << name(albedos, c.albedo) << " | "
        << name(transfers, c.transfer) << (c.isHybrid ? c.isCoated ? ", coated" : ", hybrid" : "")
@@ -401,22 +403,22 @@ std::string describe(const Combination& c) {
   return text.str();
 }
 
-MatrixScene matrixScene(const Combination& c) {
+MatrixScene makeMatrixScene(const Combination& c) {
   Generator generator(static_cast<std::uint64_t>(77000 + c.index));
-  Volume volume = volumeOf(c, generator);
+  Volume volume = makeCombinationVolume(c, generator);
   MatrixScene scene{
-      {std::move(volume), transferOf(c), lightsOf(c, generator), poseOf(c, generator)}, {}};
-  scene.settings.path.background = backgroundOf(c.background);
+      {std::move(volume), makeTransfer(c), makeLights(c, generator), makePose(c, generator)}, {}};
+  scene.settings.path.background = makeBackground(c.background);
   scene.settings.path.bounces = c.bounces;
   if (c.isCropped)
-    scene.product.crop = CropBox(cropOf(generator));
+    scene.product.crop = CropBox(makeCrop(generator));
   placeClip(c, generator, scene);
   styleContext(c.style, scene);
   placeSegments(c, generator, scene);
   return scene;
 }
 
-oracle::OracleScene MatrixScene::forOracle() const {
+oracle::OracleScene MatrixScene::toOracleScene() const {
   std::optional<Affine> crop;
   if (product.crop)
     crop = product.crop->boxToWorld;

@@ -23,7 +23,7 @@ enum class ClipFactor { none, plane, cutaway, surface, exactSurface, hole };
 /// Sharpness of a clip's edge.
 enum class EdgeFactor { sharp, ghost, soft, softGhost };
 /// Look of the context.
-enum class StyleFactor { none, thin, pale, thinAndPale };
+enum class StyleFactor { none, thin, desaturated, thinDesaturated };
 enum class LightFactor { constant, map, directional, rectangle, disk, several, sky, sphere };
 enum class AlbedoFactor { black, half, nearlyOne, one, perChannel, byScalar };
 enum class TransferFactor {
@@ -35,7 +35,7 @@ enum class TransferFactor {
   steepGradientOpacity
 };
 enum class VoxelFactor { uint8, int16, uint16, float32 };
-enum class GridFactor { cubes, thickSlices, turned, shearedMirrored, fine };
+enum class GridFactor { cubes, thickSlices, rotated, shearedMirrored, fine };
 enum class BackgroundFactor { color, transparent, environment };
 
 /// How segments lie.
@@ -61,16 +61,16 @@ struct Combination {
   double offset = 0.0; ///< of the clip, mm
   int segmentCount = 0;
   SegmentFactor segments{};
-  bool areSoft = false;     ///< segments, at their borders
-  bool areMatter = false;   ///< segments: all of their matter is their own, not albedo alone
-  bool haveBorders = false; ///< segments: some borders are surfaces
+  bool haveSoftEdges = false;  ///< segments, at their borders
+  bool areMedia = false;       ///< segments: all of their matter is their own, not albedo alone
+  bool haveInterfaces = false; ///< segments: some borders are surfaces
 };
 
 /// Combinations of the short version of the suite, and of the long one.
 inline constexpr int shortCount = 240, longCount = 640;
 
 /// First `count` combinations of an endless list.
-std::vector<Combination> combinations(int count);
+std::vector<Combination> makeCombinations(int count);
 
 /// "12 perspective surface map g 0.9 ..."
 std::string describe(const Combination& c);
@@ -85,9 +85,9 @@ struct MatrixScene {
   /// Depth clip's buffer, mm, row by row, for comparison with the oracle's.
   std::vector<double> productDepths = {};
 
-  oracle::OracleScene forOracle() const;
+  oracle::OracleScene toOracleScene() const;
 };
 
-MatrixScene matrixScene(const Combination& c);
+MatrixScene makeMatrixScene(const Combination& c);
 
 } // namespace fenestra::testing

@@ -6,7 +6,7 @@ namespace fenestra::testing {
 namespace {
 
 /// Two balls, one of which has a hole right through.
-Mask focusOf() {
+Mask makeFocus() {
   const Grid grid = makeCenteredGrid({17, 17, 17}, Vec3::Constant(0.75));
   Mask mask{grid, {}, 0, {"balls"}};
   for (int k = 0; k < 17; ++k)
@@ -42,7 +42,7 @@ oracle::DepthClip describeDepth(const Combination& c, const ClippingSurface& sur
                                 const SurfaceOptions& options) {
   oracle::DepthClip clip;
   clip.isCutaway = c.clip == ClipFactor::cutaway;
-  clip.focus = focusOf();
+  clip.focus = makeFocus();
   clip.smoothing = options.smoothing;
   clip.offset = options.offset;
   clip.edge = {options.edge.ghost, options.edge.softness};
@@ -63,13 +63,13 @@ oracle::DepthClip describeDepth(const Combination& c, const ClippingSurface& sur
   return clip;
 }
 
-ClipEdge edgeOf(EdgeFactor factor) {
+ClipEdge makeEdge(EdgeFactor factor) {
   const bool isGhost = factor == EdgeFactor::ghost || factor == EdgeFactor::softGhost;
   const bool isSoft = factor == EdgeFactor::soft || factor == EdgeFactor::softGhost;
   return {isGhost ? 0.25 : 0.0, isSoft ? 1.5 : 0.0};
 }
 
-SurfaceOptions surfaceOptions(const Combination& c) {
+SurfaceOptions makeSurfaceOptions(const Combination& c) {
   SurfaceOptions options;
   options.mode = c.clip == ClipFactor::cutaway ? SurfaceMode::cutaway
                  : c.clip == ClipFactor::hole  ? SurfaceMode::hole
@@ -78,7 +78,7 @@ SurfaceOptions surfaceOptions(const Combination& c) {
   options.boundary = c.clip == ClipFactor::exactSurface ? Boundary::exact : Boundary::spline;
   options.hole = {static_cast<HoleShape>(c.index % 3), 0.5};
   options.offset = c.offset;
-  options.edge = edgeOf(c.edge);
+  options.edge = makeEdge(c.edge);
   return options;
 }
 
@@ -91,14 +91,14 @@ void placeClip(const Combination& c, Generator& generator, MatrixScene& scene) {
     return;
   if (c.clip == ClipFactor::plane) {
     const Vec3 point = randomDirection(generator), normal = randomDirection(generator);
-    const ClipEdge edge = edgeOf(c.edge);
+    const ClipEdge edge = makeEdge(c.edge);
     product.clip = ClipPlane{camera, point, normal, edge};
     scene.clip = oracle::PlaneClip{point, normal, {edge.ghost, edge.softness}};
     return;
   }
-  const SurfaceOptions options = surfaceOptions(c);
+  const SurfaceOptions options = makeSurfaceOptions(c);
   const ClippingSurface surface =
-      buildClippingSurface(camera, Domain(product.volume.grid, product.crop), focusOf(), options);
+      buildClippingSurface(camera, Domain(product.volume.grid, product.crop), makeFocus(), options);
   product.clip = surface.clip;
   scene.clip = describeDepth(c, surface, options);
   const DepthBuffer& buffer = *std::get<ClipDepth>(surface.clip).buffer;
@@ -109,10 +109,10 @@ void placeClip(const Combination& c, Generator& generator, MatrixScene& scene) {
 void styleContext(StyleFactor factor, MatrixScene& scene) {
   if (factor == StyleFactor::none)
     return;
-  const double extinction = factor == StyleFactor::pale ? 1.0 : 0.3;
+  const double extinction = factor == StyleFactor::desaturated ? 1.0 : 0.3;
   const double saturation = factor == StyleFactor::thin ? 1.0 : 0.2;
-  scene.style = {focusOf(), extinction, saturation};
-  scene.product.style = {std::make_shared<const Mask>(focusOf()), extinction, saturation};
+  scene.style = {makeFocus(), extinction, saturation};
+  scene.product.style = {std::make_shared<const Mask>(makeFocus()), extinction, saturation};
 }
 
 } // namespace fenestra::testing

@@ -14,7 +14,7 @@ constexpr int bins = 20;
 
 using Histogram = std::array<double, bins>;
 
-Histogram histogramOf(const std::vector<double>& probabilities) {
+Histogram makeHistogram(const std::vector<double>& probabilities) {
   Histogram histogram{};
   for (const double p : probabilities)
     histogram[static_cast<std::size_t>(std::min(static_cast<int>(p * bins), bins - 1))] += 1.0;
@@ -25,11 +25,11 @@ Histogram histogramOf(const std::vector<double>& probabilities) {
 void drawHistogram(std::ostream& svg, int left, const std::vector<double>& probabilities,
                    const std::string& title) {
   constexpr double width = 320.0, height = 180.0, top = 40.0;
-  const Histogram histogram = histogramOf(probabilities);
+  const Histogram histogram = makeHistogram(probabilities);
   const double expected = static_cast<double>(probabilities.size()) / bins;
   const double spread = 2.0 * std::sqrt(expected * (1.0 - 1.0 / bins));
-  const double greatest = 1.1 * std::max(*std::ranges::max_element(histogram), expected + spread);
-  const auto y = [&](double count) { return top + height * (1.0 - count / greatest); };
+  const double maximum = 1.1 * std::max(*std::ranges::max_element(histogram), expected + spread);
+  const auto y = [&](double count) { return top + height * (1.0 - count / maximum); };
   svg << "<g transform='translate(" << left << ",0)'>\n<text x='" << width / 2
       << "' y='24' text-anchor='middle'>" << title << "</text>\n";
   svg << "<rect x='0' y='" << y(expected + spread) << "' width='" << width << "' height='"
@@ -48,30 +48,30 @@ void drawHistogram(std::ostream& svg, int left, const std::vector<double>& proba
 }
 
 void writeHistograms(const std::filesystem::path& path, const std::vector<double>& tiles,
-                     const std::vector<double>& pictures) {
+                     const std::vector<double>& images) {
   std::ofstream svg(path);
   svg << "<svg xmlns='http://www.w3.org/2000/svg' width='760' height='260' "
          "font-family='sans-serif' font-size='13'>\n<rect width='760' height='260' "
          "fill='white'/>\n";
   drawHistogram(svg, 30, tiles, std::to_string(tiles.size()) + " tiles");
-  drawHistogram(svg, 410, pictures, std::to_string(pictures.size()) + " pictures");
+  drawHistogram(svg, 410, images, std::to_string(images.size()) + " pictures");
   svg << "</svg>\n";
 }
 
 } // namespace
 
-void recordMatrix(const std::vector<Outcome>& outcomes, const std::vector<Verdict>& verdicts,
+void recordMatrix(const std::vector<Outcome>& outcomes, const std::vector<HypothesisTest>& tests,
                   const MatrixSettings& settings) {
   const std::optional<std::filesystem::path> folder = reportFolder();
   if (!folder)
     return;
-  std::vector<double> tiles, pictures;
+  std::vector<double> tiles, images;
   for (const Outcome& c : outcomes) {
     tiles.insert(tiles.end(), c.tileProbabilities.begin(), c.tileProbabilities.end());
-    if (c.pictureProbability)
-      pictures.push_back(*c.pictureProbability);
+    if (c.imageProbability)
+      images.push_back(*c.imageProbability);
   }
-  writeHistograms(*folder / "probabilities.svg", tiles, pictures);
+  writeHistograms(*folder / "probabilities.svg", tiles, images);
 
   std::ofstream md(*folder / "matrix.md");
   md << "# The product against the oracle\n\n"
@@ -79,9 +79,9 @@ void recordMatrix(const std::vector<Outcome>& outcomes, const std::vector<Verdic
      << " samples a pixel of each renderer, seed " << settings.seed << ".\n\n"
      << "| hypothesis | values | probability of what was seen |\n|---|---|---|\n"
      << std::setprecision(3);
-  for (const Verdict& verdict : verdicts)
-    md << "| " << verdict.name << " | " << verdict.count << " | " << verdict.probability << " |\n";
-  md << "\nEach is held to " << leastProbability(verdicts.size())
+  for (const HypothesisTest& test : tests)
+    md << "| " << test.name << " | " << test.count << " | " << test.probability << " |\n";
+  md << "\nEach is held to " << significanceLevel(tests.size())
      << ", so that all of them together fail once in a thousand runs by chance.\n\n"
      << "![Histograms of the probabilities](probabilities.svg)\n\n"
      << "Probabilities of the differences in tiles and pictures: uniform where there is no "
@@ -92,7 +92,7 @@ void recordMatrix(const std::vector<Outcome>& outcomes, const std::vector<Verdic
      << "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   for (const Outcome& c : outcomes)
     md << "| " << c.combination.index << " | " << describe(c.combination) << " | "
-       << 100.0 * c.difference << " % | " << c.deviate << " | " << c.probability() << " |\n";
+       << 100.0 * c.difference << " % | " << c.z << " | " << c.probability() << " |\n";
   md << "\n</details>\n";
 }
 

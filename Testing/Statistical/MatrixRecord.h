@@ -7,7 +7,7 @@ namespace fenestra::testing {
 
 /// Writes matrix.md (tables) and probabilities.svg (histograms) if a report is requested
 /// (RunSettings.h).
-void recordMatrix(const std::vector<Outcome>& outcomes, const std::vector<Verdict>& verdicts,
+void recordMatrix(const std::vector<Outcome>& outcomes, const std::vector<HypothesisTest>& tests,
                   const MatrixSettings& settings);
 
 } // namespace fenestra::testing

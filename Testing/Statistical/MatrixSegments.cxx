@@ -10,7 +10,7 @@ struct Ball {
 };
 
 /// Balls as the combination has them, in a labelmap of 17 voxels along each axis.
-std::vector<Ball> balls(const Combination& c, Generator& generator) {
+std::vector<Ball> makeBalls(const Combination& c, Generator& generator) {
   const Vec3 middle = Vec3::Constant(8.0);
   std::vector<Ball> all;
   for (int i = 0; i < c.segmentCount; ++i) {
@@ -28,7 +28,7 @@ std::vector<Ball> balls(const Combination& c, Generator& generator) {
 }
 
 /// Indicator of a ball, over its own extent.
-Mask maskOf(const Ball& ball, const Grid& labels, bool isSoft) {
+Mask makeBallMask(const Ball& ball, const Grid& labels, bool isSoft) {
   const Size3 first = (ball.center.array() - ball.radius - 2.0).floor().cast<std::int64_t>();
   const Size3 end = (ball.center.array() + ball.radius + 3.0).ceil().cast<std::int64_t>();
   Affine map = labels.indexToWorld;
@@ -40,15 +40,15 @@ Mask maskOf(const Ball& ball, const Grid& labels, bool isSoft) {
     for (std::int64_t y = first.y(); y < end.y(); ++y)
       for (std::int64_t x = first.x(); x < end.x(); ++x) {
         const double inside = ball.radius - (Size3(x, y, z).cast<double>() - ball.center).norm();
-        const double share = isSoft ? std::clamp(0.5 + inside / 2.0, 0.0, 1.0) : inside > 0.0;
-        mask.voxels.push_back(static_cast<std::uint8_t>(share * mask.maxValue));
+        const double fraction = isSoft ? std::clamp(0.5 + inside / 2.0, 0.0, 1.0) : inside > 0.0;
+        mask.voxels.push_back(static_cast<std::uint8_t>(fraction * mask.maxValue));
       }
   return mask;
 }
 
 using Component = oracle::ComponentsDescription::Component;
 
-ColorFunction colorsOf(const ScalarFunction& extinction, Generator& generator) {
+ColorFunction makeColors(const ScalarFunction& extinction, Generator& generator) {
   const auto channel = [&] { return uniform(generator, 0.1, 0.95); };
   const auto color = [&] { return Rgb(channel(), channel(), channel()); };
   const auto& knots = extinction.knots();
@@ -56,7 +56,8 @@ ColorFunction colorsOf(const ScalarFunction& extinction, Generator& generator) {
 }
 
 /// Extinction of a segment's own: one for all scalars, or over them.
-ScalarFunction extinctionOf(const ScalarFunction& volume, bool isConstant, Generator& generator) {
+ScalarFunction makeSegmentExtinction(const ScalarFunction& volume, bool isConstant,
+                                     Generator& generator) {
   const double low = volume.knots().front().position, high = volume.knots().back().position;
   const auto at = [&](double position) {
     return ScalarFunction::Knot{position, ScalarFunction::Value(uniform(generator, 0.0, 2.5))};
@@ -68,17 +69,17 @@ ScalarFunction extinctionOf(const ScalarFunction& volume, bool isConstant, Gener
 
 /// Matter of segment `number`, from 1. The volume's own extinction, denser or thinner, is that of
 /// every third.
-Component matterOf(const Combination& c, std::size_t number, const TransferFunction& volume,
-                   Generator& generator) {
+Component makeComponent(const Combination& c, std::size_t number, const TransferFunction& volume,
+                        Generator& generator) {
   constexpr double anisotropies[] = {-0.4, 0.0, 0.5, 0.8};
   Component component{volume, uniform(generator, 0.0, 1.0) < 0.6};
   TransferFunction& transfer = component.transfer;
-  transfer.albedo = colorsOf(volume.extinction, generator);
+  transfer.albedo = makeColors(volume.extinction, generator);
   transfer.g = anisotropies[generator() % 4];
   if (number % 3 == 0) {
     transfer = transfer.withDensity(uniform(generator, 0.5, 2.0));
   } else {
-    transfer.extinction = extinctionOf(volume.extinction, number % 3 == 1, generator);
+    transfer.extinction = makeSegmentExtinction(volume.extinction, number % 3 == 1, generator);
     transfer.gradientOpacity.reset();
   }
   if (transfer.shading) {
@@ -87,7 +88,7 @@ Component matterOf(const Combination& c, std::size_t number, const TransferFunct
     transfer.shading->gamma = volume.shading->gamma; // the same for all
     transfer.shading->diffuse = uniform(generator, 0.0, 1.0);
   }
-  if (c.haveBorders && number % 2 == 1)
+  if (c.haveInterfaces && number % 2 == 1)
     component.interfaceWeight = uniform(generator, 0.2, 1.0);
   return component;
 }
@@ -105,28 +106,28 @@ void placeSegments(const Combination& c, Generator& generator, MatrixScene& scen
   std::vector<LabelWeights::Part> parts;
   Tint tint{{}, {std::nullopt}};
   Mixture mixture{{}, {{volume}}};
-  oracle::ComponentsDescription all{{}, {{volume}}, !c.areMatter};
-  for (const Ball& ball : balls(c, generator)) {
+  oracle::ComponentsDescription all{{}, {{volume}}, !c.areMedia};
+  for (const Ball& ball : makeBalls(c, generator)) {
     const std::size_t number = all.components.size();
-    const Mask mask = maskOf(ball, labels, c.areSoft);
+    const Mask mask = makeBallMask(ball, labels, c.haveSoftEdges);
     parts.push_back({mask, ball.priority, static_cast<std::uint8_t>(number)});
     all.segments.push_back({mask, ball.priority, number});
     Component component{volume};
     if (number == 2) { // what is in no segment, too, has this matter
       tint.albedo.emplace_back();
-    } else if (c.areMatter) {
-      component = matterOf(c, number, volume, generator);
+    } else if (c.areMedia) {
+      component = makeComponent(c, number, volume, generator);
     } else {
-      component.transfer.albedo = colorsOf(volume.extinction, generator);
+      component.transfer.albedo = makeColors(volume.extinction, generator);
       tint.albedo.emplace_back(component.transfer.albedo);
     }
     mixture.components.push_back(
         {component.transfer, component.isClipped, component.interfaceWeight});
     all.components.push_back(std::move(component));
   }
-  const auto shares = std::make_shared<const LabelWeights>(makeLabelWeights(parts));
-  tint.weights = mixture.weights = shares;
-  if (c.areMatter)
+  const auto weights = std::make_shared<const LabelWeights>(makeLabelWeights(parts));
+  tint.weights = mixture.weights = weights;
+  if (c.areMedia)
     scene.product.mixture = std::move(mixture);
   else
     scene.product.tint = std::move(tint);

@@ -19,12 +19,12 @@ const Size3 size(10, 12, 14);
 const Vec3 spacing(1.2, 1.0, 0.8), origin(-20.0, 30.0, 5.0);
 
 /// Ellipsoid without the piece beyond an oblique plane: equal to itself in no other order of axes.
-std::int16_t valueOf(const Size3& voxel) {
+std::int16_t computeValue(const Size3& voxel) {
   const Vec3 at = (voxel.cast<double>().array() + 0.5) / size.cast<double>().array() - 0.5;
   return at.norm() < 0.48 && at.dot(Vec3(1.0, 0.6, 0.3)) < 0.12 ? 300 : -1000;
 }
 
-Image pictureOf(const std::filesystem::path& file, std::uint64_t seed) {
+Image renderFile(const std::filesystem::path& file, std::uint64_t seed) {
   RenderRequest request;
   request.input = file;
   request.transfer = "ct-soft";
@@ -42,10 +42,10 @@ Image pictureOf(const std::filesystem::path& file, std::uint64_t seed) {
 TEST(NiftiOrder, EveryOrderAndSignOfAxesGivesThePictureWithinItsErrors) {
   const TemporaryFolder folder;
   Affine map;
-  NiftiFile whole = makeReordered(size, spacing, origin, valueOf, {0, 1, 2}, 0, map);
-  whole.setSform(map);
-  whole.sformCode = 1;
-  const Image expected = pictureOf(folder.write("whole.nii", whole.bytes()), 1000);
+  NiftiFile unpermuted = makeReordered(size, spacing, origin, computeValue, {0, 1, 2}, 0, map);
+  unpermuted.setSform(map);
+  unpermuted.sformCode = 1;
+  const Image expected = renderFile(folder.write("whole.nii", unpermuted.bytes()), 1000);
   const std::pair<int, int> codes[] = {{0, 2}, {1, 0}, {1, 1}, {1, 2}}; // of qform and sform
   int number = 0, compared = 0;
   std::array<int, 3> order = {0, 1, 2};
@@ -55,13 +55,13 @@ TEST(NiftiOrder, EveryOrderAndSignOfAxesGivesThePictureWithinItsErrors) {
         // The short run takes each order and each sign once, and each pair of codes twelve times.
         if (!isLongRun() && number++ % 4 != reversed % 4)
           continue;
-        NiftiFile file = makeReordered(size, spacing, origin, valueOf, order, reversed, map);
+        NiftiFile file = makeReordered(size, spacing, origin, computeValue, order, reversed, map);
         file.setQform(map);
         file.setSform(sform == 2 && qform == 1 ? makeTranslation({99.0, 0.0, 0.0}) : map);
         file.qformCode = static_cast<std::int16_t>(qform);
         file.sformCode = static_cast<std::int16_t>(sform);
         const Image image =
-            pictureOf(folder.write("v.nii", file.bytes()), std::uint64_t(++compared));
+            renderFile(folder.write("v.nii", file.bytes()), std::uint64_t(++compared));
         EXPECT_GT(computeAgreement(image, expected), 1e-3 / 192.0)
             << order[0] << order[1] << order[2] << " reversed " << reversed << " codes " << qform
             << sform;

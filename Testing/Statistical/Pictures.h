@@ -7,13 +7,13 @@
 namespace fenestra::testing {
 
 /// Image with R, G, B, error.R, error.G, error.B and samples.N.
-inline Image imageOf(const oracle::Estimates& estimates) {
+inline Image toImage(const oracle::Estimates& estimates) {
   Image image{estimates.width, estimates.height, {}, {}};
-  constexpr const char* colours[] = {"R", "G", "B"};
+  constexpr const char* colors[] = {"R", "G", "B"};
   for (const oracle::PixelEstimate& pixel : estimates.pixels) {
     for (int c = 0; c < 3; ++c) {
-      image.channels[colours[c]].push_back(static_cast<float>(pixel.mean[c]));
-      image.channels[std::string("error.") + colours[c]].push_back(
+      image.channels[colors[c]].push_back(static_cast<float>(pixel.mean[c]));
+      image.channels[std::string("error.") + colors[c]].push_back(
           static_cast<float>(std::sqrt(pixel.variance()[c])));
     }
     image.channels["samples.N"].push_back(static_cast<float>(pixel.samples));

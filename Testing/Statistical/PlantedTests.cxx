@@ -101,15 +101,15 @@ void findInToldErrors(std::vector<Fault>& faults, double bound) {
 /// Compares one combination without an error, and with each that is still looked for.
 void lookIn(const Combination& c, MatrixSettings settings, std::vector<Fault*> faults, double bound,
             const char* how) {
-  const Truth truth = renderTruth(c, settings);
+  const OracleRender truth = renderOracle(c, settings);
   for (const Integrator transport : {Integrator::simd, Integrator::scalar}) {
-    settings.transport = transport;
+    settings.integrator = transport;
     EXPECT_GT(compareWithOracle(c, settings, truth).probability(), bound)
         << "without an error planted: " << describe(c) << how;
   }
   for (Fault* fault : faults) {
     const Planting planting(fault->name);
-    settings.transport = fault->transport;
+    settings.integrator = fault->transport;
     const double probability = compareWithOracle(c, settings, truth).probability();
     fault->hints.emplace_back(probability, c);
     if (probability > bound)
@@ -140,17 +140,17 @@ TEST(PlantedErrors, EveryErrorIsFound) {
   constexpr int count = shortCount; // sets the bound for a single combination
   std::vector<Fault> faults = readFaults();
   ASSERT_FALSE(faults.empty());
-  findInToldErrors(faults, leastProbability(count));
-  for (const Combination& c : combinations(count)) {
+  findInToldErrors(faults, significanceLevel(count));
+  for (const Combination& c : makeCombinations(count)) {
     std::vector<Fault*> lookedFor;
     for (Fault& fault : faults)
       if (fault.isLookedFor())
         lookedFor.push_back(&fault);
     if (lookedFor.empty())
       break;
-    lookIn(c, {}, lookedFor, leastProbability(count), "");
+    lookIn(c, {}, lookedFor, significanceLevel(count), "");
   }
-  lookAgain(faults, leastProbability(count));
+  lookAgain(faults, significanceLevel(count));
   for (const Fault& fault : faults)
     EXPECT_FALSE(fault.foundIn.empty()) << fault.name << " was not found: " << fault.why;
   std::cout << "planted errors found: "

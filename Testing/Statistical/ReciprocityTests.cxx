@@ -15,7 +15,7 @@ enum class Cut { none, plane };
 
 /// Plate that is clear at one end, dense and bright at the other: paths through its faces and its
 /// ends differ as much as possible, and so do the effects of errors.
-Volume plate() {
+Volume makePlate() {
   Random random(92, 0, 0);
   return makeVolume(makeCenteredGrid({9, 6, 3}, Vec3::Constant(0.6)),
                     [&](const Vec3& p) { return 0.7 - 0.08 * p.x() + 0.3 * random.uniform(); });
@@ -24,7 +24,7 @@ Volume plate() {
 class Reciprocity : public ::testing::TestWithParam<std::tuple<double, Cut>> {};
 
 /// Clip that keeps more than half of the volume; the camera is irrelevant in parallel projection.
-Clip cutOf(Cut cut, const CameraPose& pose) {
+Clip makeClip(Cut cut, const CameraPose& pose) {
   if (cut == Cut::none)
     return ClipNone{};
   return ClipPlane{Camera(pose, 1, 1), Vec3(0.1, -0.3, 0.2), Vec3(0.5, -1.0, 0.3).normalized()};
@@ -32,24 +32,26 @@ Clip cutOf(Cut cut, const CameraPose& pose) {
 
 TEST_P(Reciprocity, SwappingLightAndViewerKeepsTheRadiance) {
   const auto [g, cut] = GetParam();
-  TestScene scene = clumps(Rgb(0.9, 0.3, 0.6), Rgb(1.0, 0.9, 0.4), g);
-  scene.volume = plate();
-  scene.clip = cutOf(cut, scene.pose);
+  TestScene scene = makeClumps(Rgb(0.9, 0.3, 0.6), Rgb(1.0, 0.9, 0.4), g);
+  scene.volume = makePlate();
+  scene.clip = makeClip(cut, scene.pose);
   std::uint64_t seed = 9000 + static_cast<std::uint64_t>(10.0 * (g + 1.0));
-  const std::array<std::array<Vec3, 2>, 3> ways = {
+  const std::array<std::array<Vec3, 2>, 3> directions = {
       {{Vec3(0.1, 0.2, -1.0), Vec3(1.0, 0.2, 0.1)},     // face and one end
        {Vec3(0.2, -0.1, 1.0), Vec3(-1.0, 0.3, 0.4)},    // face and the other
        {Vec3(1.0, -0.2, -0.1), Vec3(-0.6, 0.3, 1.0)}}}; // end and end
-  for (const auto& [one, other] : ways) {
+  for (const auto& [one, other] : directions) {
     const Vec3 a = one.normalized();
     const Vec3 b = other.normalized();
     SCOPED_TRACE(a.dot(b));
-    const RgbEstimate there = scatteredOut(scene, b, a, scaleSamples(5000UL), shiftSeed(seed));
-    const RgbEstimate back = scatteredOut(scene, a, b, scaleSamples(5000UL), shiftSeed(seed + 1));
-    const Rgb error = (there + back).error;
+    const RgbEstimate forward =
+        estimateScattered(scene, b, a, scaleSamples(5000UL), shiftSeed(seed));
+    const RgbEstimate reversed =
+        estimateScattered(scene, a, b, scaleSamples(5000UL), shiftSeed(seed + 1));
+    const Rgb error = (forward + reversed).error;
     seed += 2;
     for (int c = 0; c < 3; ++c) {
-      EXPECT_NEAR(forward.mean[c], back.mean[c], 4.0 * error[c]);
+      EXPECT_NEAR(forward.mean[c], reversed.mean[c], 4.0 * error[c]);
       EXPECT_LT(error[c], relaxError(0.015 * forward.mean[c]));
     }
   }

@@ -33,17 +33,17 @@ struct ReferenceCase {
 /// Options of `fenestra` from NAME.arguments, one argument a line, in the reference folder.
 RenderOptions readArguments(const ReferenceCase& c) {
   std::filesystem::current_path(FENESTRA_REFERENCE);
-  std::vector<std::string> words = {"fenestra"};
+  std::vector<std::string> arguments = {"fenestra"};
   std::ifstream file(std::string(c.name) + ".arguments");
   for (std::string line; std::getline(file, line);)
     if (!line.empty())
-      words.push_back(line);
-  words.insert(words.end(), {"--samples", std::to_string(c.samples), "--seed", "42"});
+      arguments.push_back(line);
+  arguments.insert(arguments.end(), {"--samples", std::to_string(c.samples), "--seed", "42"});
   if (c.noise > 0.0)
-    words.insert(words.end(), {"--noise", std::to_string(c.noise)});
+    arguments.insert(arguments.end(), {"--noise", std::to_string(c.noise)});
   std::vector<char*> argv;
-  for (std::string& word : words)
-    argv.push_back(word.data());
+  for (std::string& argument : arguments)
+    argv.push_back(argument.data());
   return makeRenderOptions(
       *parseCommandLine(renderSyntax, static_cast<int>(argv.size()), argv.data(), 1));
 }
@@ -70,12 +70,12 @@ oracle::Estimates renderOracle(const ReferenceCase& c) {
                         c.samples, 43);
 }
 
-bool present() {
+bool hasReferences() {
   return std::filesystem::exists(std::string(FENESTRA_REFERENCE) + "/S1.arguments");
 }
 
 /// Appends a line to the report's table.
-void record(const std::string& who, const ZStatistics& z) {
+void appendRecord(const std::string& who, const ZStatistics& z) {
   if (const std::optional<std::filesystem::path> folder = reportFolder())
     std::ofstream(*folder / "references.md", std::ios::app)
         << std::setprecision(3) << "| " << who << " | " << z.count << " | " << z.mean << " | "
@@ -85,7 +85,7 @@ void record(const std::string& who, const ZStatistics& z) {
 /// Bounds on the distribution of z over tiles: four standard errors of each figure, for S2, which
 /// fills three quarters of its picture.
 struct Bounds {
-  int tile; ///< pixels to a side
+  int tileSize; ///< pixels to a side
   double mean, deviation;
 };
 
@@ -94,14 +94,14 @@ void expectAgreement(const Image& image, const ReferenceCase& c, const Bounds& b
   const std::string name = c.name;
   Image reference = readImage(name + "_best.exr");
   attachError(reference, readImage(name + "_best_se.exr"));
-  const Image tiles = computeTileMeans(image, bounds.tile);
-  reference = computeTileMeans(reference, bounds.tile);
+  const Image tiles = computeTileMeans(image, bounds.tileSize);
+  reference = computeTileMeans(reference, bounds.tileSize);
   const Comparison comparison = compareImages(tiles, reference);
   ASSERT_TRUE(comparison.z);
   EXPECT_NEAR(comparison.z->mean, 0.0, bounds.mean);
   EXPECT_NEAR(comparison.z->deviation, 1.0, bounds.deviation);
   EXPECT_LT(comparison.z->imageMean.abs().maxCoeff(), 3.0);
-  record(label, *comparison.z);
+  appendRecord(label, *comparison.z);
   if (::testing::Test::HasFailure())
     writeImage(differenceImage(tiles, reference), {},
                std::filesystem::temp_directory_path() / (name + "-difference.png"),
@@ -111,7 +111,7 @@ void expectAgreement(const Image& image, const ReferenceCase& c, const Bounds& b
 class Reference : public ::testing::TestWithParam<ReferenceCase> {};
 
 TEST_P(Reference, PictureAgreesWithinStatistics) {
-  if (!present())
+  if (!hasReferences())
     GTEST_SKIP() << "no reference pictures at " << FENESTRA_REFERENCE;
   // Near the thin shells of S2 a pixel's samples are so skewed that its z needs thousands of
   // samples for mean 0; a tile's z needs hundreds.
@@ -134,7 +134,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Reference,
 class NoiseTarget : public ::testing::TestWithParam<ReferenceCase> {};
 
 TEST_P(NoiseTarget, TrueErrorIsWithinAFifthOfTheTarget) {
-  if (!present())
+  if (!hasReferences())
     GTEST_SKIP() << "no reference pictures at " << FENESTRA_REFERENCE;
   const ReferenceCase& c = GetParam();
   Image reference = readImage(std::string(FENESTRA_REFERENCE) + "/" + c.name + "_best.exr");
@@ -151,10 +151,10 @@ INSTANTIATE_TEST_SUITE_P(Scenes, NoiseTarget,
 class OracleReference : public ::testing::TestWithParam<ReferenceCase> {};
 
 TEST_P(OracleReference, PictureAgreesWithinStatistics) {
-  if (!present())
+  if (!hasReferences())
     GTEST_SKIP() << "no reference pictures at " << FENESTRA_REFERENCE;
   const Bounds bounds = isLongRun() ? Bounds{4, 0.07, 0.05} : Bounds{16, 0.3, 0.2};
-  expectAgreement(imageOf(renderOracle(GetParam())), GetParam(), bounds,
+  expectAgreement(toImage(renderOracle(GetParam())), GetParam(), bounds,
                   std::string("oracle, ") + GetParam().name);
 }
 
@@ -165,14 +165,14 @@ INSTANTIATE_TEST_SUITE_P(Scenes, OracleReference,
 
 /// Albedo 1 in an environment of 1 without weights: every path returns 1.
 TEST(OracleReferenceFurnace, S3hetIsOneEverywhere) {
-  if (!present())
+  if (!hasReferences())
     GTEST_SKIP() << "no reference scenes at " << FENESTRA_REFERENCE;
   for (const oracle::PixelEstimate& pixel : renderOracle({"S3het", 1}).pixels)
     ASSERT_NEAR(pixel.mean[1], 1.0, 1e-9);
 }
 
 TEST(ReferenceFurnace, S3hetIsOneEverywhere) {
-  if (!present())
+  if (!hasReferences())
     GTEST_SKIP() << "no reference scenes at " << FENESTRA_REFERENCE;
   const Image image = renderReference({"S3het", scaleSamples(32U)});
   double mean = 0.0;

@@ -21,8 +21,8 @@ Estimated withRareEvents(Estimated e, const Estimated& other) {
 
 } // namespace
 
-std::optional<double> welchProbability(const Estimated& given, const Estimated& other) {
-  const Estimated a = withRareEvents(given, other), b = withRareEvents(other, given);
+std::optional<double> welchProbability(const Estimated& one, const Estimated& other) {
+  const Estimated a = withRareEvents(one, other), b = withRareEvents(other, one);
   const double difference = a.mean - b.mean;
   const double variance = a.variance + b.variance;
   // Rounding error of equal numbers: the product's lanes compute in float.
@@ -31,31 +31,31 @@ std::optional<double> welchProbability(const Estimated& given, const Estimated& 
     return std::nullopt;
   if (!(variance > 0.0) || !std::isfinite(difference))
     return 0.0;
-  const auto ofVariance = [](const Estimated& e) {
+  const auto termOfVariance = [](const Estimated& e) {
     return square(e.variance) / ((e.blocks > 0.0 ? e.blocks : e.samples) - 1.0);
   };
-  const double satterthwaite = square(variance) / (ofVariance(a) + ofVariance(b));
+  const double satterthwaite = square(variance) / (termOfVariance(a) + termOfVariance(b));
   const double all = a.samples + b.samples;
   const double mean = (a.samples * a.mean + b.samples * b.mean) / all;
   const double perSample = (square(a.samples) * a.variance + square(b.samples) * b.variance) / all;
   const double brightPaths =
       std::min(a.samples, b.samples) * std::min(1.0, square(mean) / perSample);
-  const auto evenPaths = [](const Estimated& e) {
+  const auto countEvenPaths = [](const Estimated& e) {
     return e.samples / std::max(square(e.skewness), 1e-9);
   };
   return studentTail(difference / std::sqrt(variance),
-                     std::min({satterthwaite, brightPaths, evenPaths(a), evenPaths(b)}));
+                     std::min({satterthwaite, brightPaths, countEvenPaths(a), countEvenPaths(b)}));
 }
 
-bool isEven(const Estimated& e) {
+bool hasManyPaths(const Estimated& e) {
   return e.samples >= 100.0 * square(e.skewness);
 }
 
-double sidak(double least, double count) {
-  return -std::expm1(count * std::log1p(-least));
+double sidak(double minimum, double count) {
+  return -std::expm1(count * std::log1p(-minimum));
 }
 
-double leastProbability(std::size_t count) {
+double significanceLevel(std::size_t count) {
   return 1.0 - std::pow(1.0 - 1e-3, 1.0 / static_cast<double>(count));
 }
 

@@ -23,31 +23,31 @@ TEST_P(SingleScatter, RadianceEqualsClosedForm) {
   const double thickness = 1.5;
   const Rgb albedo(1.0, 0.6, 0.2);
   const Rgb irradiance(1.0, 2.0, 3.0);
-  TestScene scene = endlessSlab(thickness, albedo);
+  TestScene scene = makeInfiniteSlab(thickness, albedo);
   scene.transfer.g = g;
   std::uint64_t seed = 5300 + static_cast<std::uint64_t>(100.0 * (g + 1.0));
   for (const double mu0 : {1.0, 0.5})
     for (const double mu : {0.95, 0.3})
       for (const double azimuth : {0.0, 2.0})
-        for (const bool fromBelow : {false, true}) {
+        for (const bool isFromBelow : {false, true}) {
           SCOPED_TRACE(std::to_string(mu0) + " " + std::to_string(mu) + " " +
-                       std::to_string(azimuth) + (fromBelow ? " transmitted" : " reflected"));
-          const Vec3 lightWay = downward(mu0);
-          const Vec3 sight = downward(fromBelow ? -mu : mu, azimuth);
-          scene.lights = {DirectionalLight{.direction = lightWay, .irradiance = irradiance}};
-          look(scene, sight);
+                       std::to_string(azimuth) + (isFromBelow ? " transmitted" : " reflected"));
+          const Vec3 lightDirection = downwardDirection(mu0);
+          const Vec3 viewDirection = downwardDirection(isFromBelow ? -mu : mu, azimuth);
+          scene.lights = {DirectionalLight{.direction = lightDirection, .irradiance = irradiance}};
+          aimCamera(scene, viewDirection);
           const double layer =
-              fromBelow
+              isFromBelow
                   ? mu0 / (mu - mu0) * (std::exp(-thickness / mu) - std::exp(-thickness / mu0))
                   : mu0 / (mu + mu0) * -std::expm1(-thickness / mu - thickness / mu0);
-          const Rgb expected =
-              albedo * irradiance * (henyeyGreenstein(g, lightWay.dot(-sight)) * layer);
-          expectMean(seen(scene, 1500, seed++, 1), expected, 0.012);
+          const Rgb expected = albedo * irradiance *
+                               (henyeyGreenstein(g, lightDirection.dot(-viewDirection)) * layer);
+          expectMean(renderMean(scene, 1500, seed++, 1), expected, 0.012);
         }
 }
 
 /// Mean of a picture that shows everywhere the same, and its standard error.
-RgbEstimate meanOfPixels(const Film& film) {
+RgbEstimate averagePixels(const Film& film) {
   Rgb sum = Rgb::Zero(), squares = Rgb::Zero();
   for (const PixelSums& pixel : film.pixels()) {
     sum += pixel.mean;
@@ -63,26 +63,27 @@ RgbEstimate meanOfPixels(const Film& film) {
 TEST(SingleScatterOfLights, DrawnFromStrataAddUp) {
   const double thickness = 1.5;
   const Rgb albedo(1.0, 0.6, 0.2);
-  TestScene scene = endlessSlab(thickness, albedo);
+  TestScene scene = makeInfiniteSlab(thickness, albedo);
   scene.width = scene.height = 128;
-  look(scene, downward(0.95, 1.0));
+  aimCamera(scene, downwardDirection(0.95, 1.0));
   Rgb expected = Rgb::Zero();
   for (const double mu0 : {1.0, 0.5, 0.2}) {
     const Rgb irradiance(0.5, 1.5 - mu0, 2.0 * mu0);
-    scene.lights.push_back(DirectionalLight{.direction = downward(mu0), .irradiance = irradiance});
+    scene.lights.push_back(
+        DirectionalLight{.direction = downwardDirection(mu0), .irradiance = irradiance});
     const double layer = mu0 / (0.95 + mu0) * -std::expm1(-thickness / 0.95 - thickness / mu0);
     expected += albedo * irradiance * (0.25 / pi * layer);
   }
   scene.lights.erase(scene.lights.begin()); // the slab's environment
-  for (const Integrator transport : {Integrator::simd, Integrator::scalar})
+  for (const Integrator integrator : {Integrator::simd, Integrator::scalar})
     for (const std::uint64_t samples : {1U, 3U, 16U}) {
       SCOPED_TRACE(std::to_string(samples));
       RenderSettings settings;
-      settings.integrator = transport;
+      settings.integrator = integrator;
       settings.samples = samples;
       settings.seed = shiftSeed(5900 + samples);
       settings.path.bounces = 1;
-      expectMean(meanOfPixels(scene.render(settings).film), expected, 0.03);
+      expectMean(averagePixels(scene.render(settings).film), expected, 0.03);
     }
 }
 

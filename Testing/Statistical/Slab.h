@@ -7,7 +7,7 @@
 namespace fenestra::testing {
 
 /// Slab of side x side x thickness mm of one medium, seen from above, z down.
-inline TestScene slab(double side, double thickness, const Rgb& albedo, double sigma_t = 1.0) {
+inline TestScene makeSlab(double side, double thickness, const Rgb& albedo, double sigma_t = 1.0) {
   const Grid grid = makeCenteredGrid({2, 2, 2}, {side / 2.0, side / 2.0, thickness / 2.0});
   TestScene scene{makeVolume(grid, [](const Vec3&) { return 1.0; }),
                   makeLinearTransfer(sigma_t, albedo),
@@ -24,32 +24,32 @@ inline TestScene slab(double side, double thickness, const Rgb& albedo, double s
 
 /// Slab that is infinitely wide in double precision: the loss through the sides of a slab a few
 /// free paths thick decays by exp(-r / (one or two free paths)) over 10000 free paths.
-inline TestScene endlessSlab(double thickness, const Rgb& albedo) {
-  TestScene scene = slab(20000.0, thickness, albedo);
+inline TestScene makeInfiniteSlab(double thickness, const Rgb& albedo) {
+  TestScene scene = makeSlab(20000.0, thickness, albedo);
   scene.pose.scale = 1.0;
   return scene;
 }
 
 /// Unit direction downward; upward for mu < 0.
-inline Vec3 downward(double mu, double azimuth = 0.0) {
+inline Vec3 downwardDirection(double mu, double azimuth = 0.0) {
   const double sine = std::sqrt(1.0 - mu * mu);
   return {sine * std::cos(azimuth), sine * std::sin(azimuth), -mu};
 }
 
 /// Turns the camera to look along `direction` at the slab's centre.
-inline void look(TestScene& scene, const Vec3& direction) {
+inline void aimCamera(TestScene& scene, const Vec3& direction) {
   scene.pose.target = Vec3::Zero();
   scene.pose.position = -1000.0 * direction; // above the face, however oblique
 }
 
 /// Mean radiance in the scene's camera, against a black background.
-inline RgbEstimate seen(const TestScene& scene, std::uint64_t samples, std::uint64_t seed,
-                        std::uint64_t bounces = PathSettings().bounces) {
+inline RgbEstimate renderMean(const TestScene& scene, std::uint64_t samples, std::uint64_t seed,
+                              std::uint64_t bounces = PathSettings().bounces) {
   RenderSettings settings;
   settings.samples = scaleSamples(samples);
   settings.seed = shiftSeed(seed);
   settings.path.bounces = bounces;
-  return pictureEstimate(scene.render(settings).film);
+  return estimateRgb(scene.render(settings).film);
 }
 
 } // namespace fenestra::testing

@@ -11,7 +11,7 @@ class SlabTransmittance : public ::testing::TestWithParam<double> {};
 
 TEST_P(SlabTransmittance, EqualsExpOfMinusDepth) {
   const double depth = GetParam();
-  TestScene scene = slab(100.0, depth, Rgb::Zero());
+  TestScene scene = makeSlab(100.0, depth, Rgb::Zero());
   RenderSettings settings;
   settings.samples = 2000;
   settings.path.background.kind = Background::Kind::environment;
@@ -26,14 +26,14 @@ INSTANTIATE_TEST_SUITE_P(Depths, SlabTransmittance, ::testing::Values(0.01, 0.5,
 
 TEST(RatioTracking, ShadowThroughASlabIsExponential) {
   const double depth = 2.0;
-  const TestScene scene = slab(100.0, depth, Rgb::Zero());
+  const TestScene scene = makeSlab(100.0, depth, Rgb::Zero());
   const Camera camera(scene.pose, 8, 8);
   const MinMaxGrid ranges(scene.volume, 0);
   const MajorantGrid majorants(scene.volume.grid, ranges, scene.transfer, ClipNone{});
   const auto& voxels = std::get<LargeArray<float>>(scene.volume.voxels);
   // Majorant twice the extinction, so that not all ratios are 0: a scaled grid.
-  const TransferFunction doubled = scene.transfer.withDensity(2.0);
-  const MajorantGrid loose(scene.volume.grid, ranges, doubled, ClipNone{});
+  const TransferFunction doubledTransfer = scene.transfer.withDensity(2.0);
+  const MajorantGrid loose(scene.volume.grid, ranges, doubledTransfer, ClipNone{});
   const Medium<float> medium(scene.volume.grid, voxels, scene.transfer);
   const Clip clip;
   for (const MajorantGrid* grid : {&majorants, &loose}) {
@@ -92,7 +92,7 @@ class HalfSpace : public ::testing::TestWithParam<HalfSpaceCase> {};
 TEST_P(HalfSpace, ReflectanceEqualsChandrasekhars) {
   const auto [albedo, reflectance] = GetParam();
   EXPECT_NEAR(1.0 - std::sqrt(1.0 - albedo) * ChandrasekharH(albedo)(1.0), reflectance, 2e-4);
-  TestScene scene = slab(140.0, 70.0, Rgb::Constant(albedo)); // half-width 70, thickness 70
+  TestScene scene = makeSlab(140.0, 70.0, Rgb::Constant(albedo)); // half-width 70, thickness 70
   RenderSettings settings;
   settings.samples = albedo > 0.95 ? 400 : 1000;
   const Estimate estimate = estimateMean(scene.render(settings).film);
@@ -106,11 +106,12 @@ INSTANTIATE_TEST_SUITE_P(Albedos, HalfSpace,
 
 /// Optical thickness that stands for a half-space: light returned from below 60 free paths is less
 /// than exp(-2 · 0.17 · 60) of all, with 0.17 per free path the slowest decay at albedo 0.99.
-constexpr double deep = 60.0;
+constexpr double halfSpaceDepth = 60.0;
 const Rgb halfSpaceAlbedo(0.5, 0.9, 0.99);
-constexpr double knownH = 2e-4; ///< relative error of H: its reflectances above have four digits
+constexpr double relativeErrorOfH =
+    2e-4; ///< relative error of H: its reflectances above have four digits
 
-std::array<ChandrasekharH, 3> halfSpaceH() {
+std::array<ChandrasekharH, 3> makeHalfSpaceH() {
   return {ChandrasekharH(halfSpaceAlbedo[0]), ChandrasekharH(halfSpaceAlbedo[1]),
           ChandrasekharH(halfSpaceAlbedo[2])};
 }
@@ -118,36 +119,36 @@ std::array<ChandrasekharH, 3> halfSpaceH() {
 /// Reflectance under a constant environment of 1 at an angle: 1 - sqrt(1 - w) H(mu), by reciprocity
 /// with the albedo of a half-space for parallel light.
 TEST(HalfSpace, EnvironmentReflectanceEqualsClosedFormAtAnyAngle) {
-  const std::array<ChandrasekharH, 3> h = halfSpaceH();
+  const std::array<ChandrasekharH, 3> h = makeHalfSpaceH();
   std::uint64_t seed = 20;
   for (const double mu : {0.7, 0.2}) {
     SCOPED_TRACE(mu);
-    TestScene scene = endlessSlab(deep, halfSpaceAlbedo);
-    look(scene, downward(mu));
+    TestScene scene = makeInfiniteSlab(halfSpaceDepth, halfSpaceAlbedo);
+    aimCamera(scene, downwardDirection(mu));
     Rgb expected;
     for (int c = 0; c < 3; ++c)
       expected[c] = 1.0 - std::sqrt(1.0 - halfSpaceAlbedo[c]) * h[static_cast<std::size_t>(c)](mu);
-    expectMean(seen(scene, 600, seed++), expected, 0.01, knownH);
+    expectMean(renderMean(scene, 600, seed++), expected, 0.01, relativeErrorOfH);
   }
 }
 
 /// Law of diffuse reflection (Chandrasekhar, ch. III and V): under parallel light of irradiance F
 /// on a plane that faces the light, I(mu) = w F / (4 pi) mu0 / (mu + mu0) H(mu) H(mu0).
 TEST(HalfSpace, ParallelLightFollowsTheLawOfDiffuseReflection) {
-  const std::array<ChandrasekharH, 3> h = halfSpaceH();
+  const std::array<ChandrasekharH, 3> h = makeHalfSpaceH();
   std::uint64_t seed = 30;
   for (const double mu0 : {1.0, 0.4})
     for (const double mu : {0.9, 0.25}) {
       SCOPED_TRACE(std::to_string(mu0) + " " + std::to_string(mu));
-      TestScene scene = endlessSlab(deep, halfSpaceAlbedo);
-      scene.lights = {
-          DirectionalLight{.direction = downward(mu0, 2.0), .irradiance = Rgb::Constant(pi)}};
-      look(scene, downward(mu));
+      TestScene scene = makeInfiniteSlab(halfSpaceDepth, halfSpaceAlbedo);
+      scene.lights = {DirectionalLight{.direction = downwardDirection(mu0, 2.0),
+                                       .irradiance = Rgb::Constant(pi)}};
+      aimCamera(scene, downwardDirection(mu));
       Rgb expected;
       for (int c = 0; c < 3; ++c)
         expected[c] = 0.25 * halfSpaceAlbedo[c] * mu0 / (mu + mu0) *
                       h[static_cast<std::size_t>(c)](mu) * h[static_cast<std::size_t>(c)](mu0);
-      expectMean(seen(scene, 600, seed++), expected, 0.01, knownH);
+      expectMean(renderMean(scene, 600, seed++), expected, 0.01, relativeErrorOfH);
     }
 }
 

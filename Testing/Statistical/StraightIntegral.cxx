@@ -4,7 +4,7 @@ namespace fenestra::testing {
 namespace {
 
 /// Roots of c1 + 2 c2 u + 3 c3 u^2 in (0, 1), with 0 and 1, in order.
-std::vector<double> monotonePieces(double c1, double c2, double c3) {
+std::vector<double> splitMonotone(double c1, double c2, double c3) {
   std::vector<double> ends = {0.0, 1.0};
   const auto add = [&ends](double u) {
     if (u > 0.0 && u < 1.0)
@@ -22,7 +22,7 @@ std::vector<double> monotonePieces(double c1, double c2, double c3) {
 
 } // namespace
 
-StraightIntegral::StraightIntegral(const Volume& volume, const TransferFunction& transfer)
+LineIntegral::LineIntegral(const Volume& volume, const TransferFunction& transfer)
     : m_worldToIndex(volume.grid.indexToWorld.inverse()), m_size(volume.grid.size) {
   std::visit([&](const auto& voxels) { m_scalars.assign(voxels.begin(), voxels.end()); },
              volume.voxels);
@@ -30,11 +30,11 @@ StraightIntegral::StraightIntegral(const Volume& volume, const TransferFunction&
     m_knots.push_back({knot.position, knot.value.value()});
 }
 
-Interval StraightIntegral::inside(const Ray& ray) const {
-  return inside(m_worldToIndex * ray.origin, m_worldToIndex.linear() * ray.direction);
+Interval LineIntegral::boxInterval(const Ray& ray) const {
+  return boxInterval(m_worldToIndex * ray.origin, m_worldToIndex.linear() * ray.direction);
 }
 
-Interval StraightIntegral::inside(const Vec3& origin, const Vec3& direction) const {
+Interval LineIntegral::boxInterval(const Vec3& origin, const Vec3& direction) const {
   Interval range;
   for (int axis = 0; axis < 3; ++axis) {
     const double low = (-0.5 - origin[axis]) / direction[axis];
@@ -45,38 +45,38 @@ Interval StraightIntegral::inside(const Vec3& origin, const Vec3& direction) con
   return range;
 }
 
-double StraightIntegral::opticalDepth(const Ray& ray, const Interval& range) const {
+double LineIntegral::opticalDepth(const Ray& ray, const Interval& range) const {
   const Vec3 origin = m_worldToIndex * ray.origin;
   const Vec3 direction = m_worldToIndex.linear() * ray.direction;
-  const Interval all = inside(origin, direction);
+  const Interval all = boxInterval(origin, direction);
   const double begin = std::max(all.begin, range.begin);
   const double end = std::min(all.end, range.end);
   if (!(begin < end))
     return 0.0;
-  std::vector<double> borders = {begin, end};
+  std::vector<double> breaks = {begin, end};
   for (int axis = 0; axis < 3; ++axis)
     for (std::int64_t plane = 0; plane < m_size[axis]; ++plane) {
       const double t = (static_cast<double>(plane) - origin[axis]) / direction[axis];
       if (t > begin && t < end)
-        borders.push_back(t);
+        breaks.push_back(t);
     }
-  std::sort(borders.begin(), borders.end());
+  std::sort(breaks.begin(), breaks.end());
   double sum = 0.0;
-  for (std::size_t i = 0; i + 1 < borders.size(); ++i)
-    sum += (borders[i + 1] - borders[i]) *
-           meanExtinction(
-               cubicBetween(origin + borders[i] * direction, origin + borders[i + 1] * direction));
+  for (std::size_t i = 0; i + 1 < breaks.size(); ++i)
+    sum +=
+        (breaks[i + 1] - breaks[i]) * meanExtinction(fitCubic(origin + breaks[i] * direction,
+                                                              origin + breaks[i + 1] * direction));
   return sum;
 }
 
-double StraightIntegral::scalar(const Vec3& point) const {
+double LineIntegral::interpolate(const Vec3& point) const {
   const Vec3 index = m_worldToIndex * point;
-  return scalarInCell(index, index);
+  return interpolateInCell(index, index);
 }
 
 /// Trilinear scalar at `index` in the cell that contains `inCell`: both ends of a segment use one
 /// cell. Constant beyond the outermost voxel centres.
-double StraightIntegral::scalarInCell(const Vec3& index, const Vec3& inCell) const {
+double LineIntegral::interpolateInCell(const Vec3& index, const Vec3& inCell) const {
   double value = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
     double weight = 1.0;
@@ -85,20 +85,20 @@ double StraightIntegral::scalarInCell(const Vec3& index, const Vec3& inCell) con
       const double last = static_cast<double>(m_size[axis]) - 1.0;
       const double low = std::floor(std::clamp(inCell[axis], 0.0, last));
       const double fraction = std::clamp(index[axis], 0.0, last) - low;
-      const bool upper = (corner >> axis & 1) != 0;
-      weight *= upper ? fraction : 1.0 - fraction;
+      const bool isUpper = (corner >> axis & 1) != 0;
+      weight *= isUpper ? fraction : 1.0 - fraction;
       voxel = voxel * m_size[axis] +
-              static_cast<std::int64_t>(std::min(low + (upper ? 1.0 : 0.0), last));
+              static_cast<std::int64_t>(std::min(low + (isUpper ? 1.0 : 0.0), last));
     }
     value += weight * m_scalars[static_cast<std::size_t>(voxel)];
   }
   return value;
 }
 
-StraightIntegral::Cubic StraightIntegral::cubicBetween(const Vec3& from, const Vec3& to) const {
+LineIntegral::Cubic LineIntegral::fitCubic(const Vec3& from, const Vec3& to) const {
   double value[4];
   for (int n = 0; n < 4; ++n)
-    value[n] = scalarInCell(from + n / 3.0 * (to - from), 0.5 * (from + to));
+    value[n] = interpolateInCell(from + n / 3.0 * (to - from), 0.5 * (from + to));
   // Newton's divided differences at 0, 1/3, 2/3, 1, written out in powers of u.
   const double d1 = 3.0 * (value[1] - value[0]);
   const double d2 = 4.5 * (value[2] - 2.0 * value[1] + value[0]);
@@ -107,27 +107,27 @@ StraightIntegral::Cubic StraightIntegral::cubicBetween(const Vec3& from, const V
 }
 
 /// Positions at which the scalar crosses a knot, by bisection.
-void StraightIntegral::addCrossings(const Cubic& cubic, std::vector<double>& breaks) const {
-  const std::vector<double> ends = monotonePieces(cubic.c1, cubic.c2, cubic.c3);
+void LineIntegral::addKnotCrossings(const Cubic& cubic, std::vector<double>& breaks) const {
+  const std::vector<double> ends = splitMonotone(cubic.c1, cubic.c2, cubic.c3);
   for (std::size_t i = 0; i + 1 < ends.size(); ++i)
     for (const Knot& knot : m_knots) {
       double a = ends[i];
       double b = ends[i + 1];
-      const bool below = cubic(a) < knot.position;
-      if (below == (cubic(b) < knot.position))
+      const bool isBelow = cubic(a) < knot.position;
+      if (isBelow == (cubic(b) < knot.position))
         continue;
       for (int halving = 0; halving < 52; ++halving) {
         const double middle = 0.5 * (a + b);
-        ((cubic(middle) < knot.position) == below ? a : b) = middle;
+        ((cubic(middle) < knot.position) == isBelow ? a : b) = middle;
       }
       breaks.push_back(b);
     }
 }
 
 /// Between crossings of knots, extinction is a cubic of u: Gauss' rule with two points is exact.
-double StraightIntegral::meanExtinction(const Cubic& cubic) const {
+double LineIntegral::meanExtinction(const Cubic& cubic) const {
   std::vector<double> breaks = {0.0, 1.0};
-  addCrossings(cubic, breaks);
+  addKnotCrossings(cubic, breaks);
   std::sort(breaks.begin(), breaks.end());
   double sum = 0.0;
   for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
@@ -139,7 +139,7 @@ double StraightIntegral::meanExtinction(const Cubic& cubic) const {
   return sum;
 }
 
-double StraightIntegral::extinction(double scalar) const {
+double LineIntegral::extinction(double scalar) const {
   if (scalar < m_knots.front().position)
     return m_knots.front().extinction;
   for (std::size_t i = 0; i + 1 < m_knots.size(); ++i) {

@@ -9,15 +9,15 @@
 
 namespace fenestra::testing {
 
-class StraightIntegral {
+class LineIntegral {
 public:
   /// Requires a scene without clip and gradient opacity.
-  StraightIntegral(const Volume& volume, const TransferFunction& transfer);
+  LineIntegral(const Volume& volume, const TransferFunction& transfer);
 
   /// Interval of a ray (world, unit direction), t >= 0, inside the volume's box.
-  Interval inside(const Ray& ray) const;
+  Interval boxInterval(const Ray& ray) const;
   /// Scalar at a point (world) inside the box; extinction at a scalar, mm^-1.
-  double scalar(const Vec3& point) const;
+  double interpolate(const Vec3& point) const;
   double extinction(double scalar) const;
   /// Optical depth of the ray's part that is inside the box and within `range`, mm.
   double opticalDepth(const Ray& ray, const Interval& range = {}) const;
@@ -32,11 +32,11 @@ private:
     double operator()(double u) const { return c0 + u * (c1 + u * (c2 + u * c3)); }
   };
 
-  Interval inside(const Vec3& origin, const Vec3& direction) const;
-  Cubic cubicBetween(const Vec3& from, const Vec3& to) const;
-  void addCrossings(const Cubic& cubic, std::vector<double>& breaks) const;
+  Interval boxInterval(const Vec3& origin, const Vec3& direction) const;
+  Cubic fitCubic(const Vec3& from, const Vec3& to) const;
+  void addKnotCrossings(const Cubic& cubic, std::vector<double>& breaks) const;
   double meanExtinction(const Cubic& cubic) const;
-  double scalarInCell(const Vec3& index, const Vec3& inCell) const;
+  double interpolateInCell(const Vec3& index, const Vec3& inCell) const;
 
   Affine m_worldToIndex;
   Size3 m_size;

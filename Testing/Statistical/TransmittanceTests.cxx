@@ -17,7 +17,7 @@ struct Subject {
   TransferFunction transfer;
 };
 
-TransferFunction table(const std::vector<std::pair<double, double>>& knots) {
+TransferFunction makeTransfer(const std::vector<std::pair<double, double>>& knots) {
   std::vector<ScalarFunction::Knot> list;
   for (const auto& [scalar, sigma_t] : knots)
     list.push_back({scalar, ScalarFunction::Value(sigma_t)});
@@ -26,7 +26,7 @@ TransferFunction table(const std::vector<std::pair<double, double>>& knots) {
 
 /// Voxels drawn uniformly from [0, greatest].
 template <typename Voxel = float>
-Volume noise(const Size3& size, const Vec3& spacing, double greatest = 1.0) {
+Volume makeNoise(const Size3& size, const Vec3& spacing, double greatest = 1.0) {
   Random random(77, static_cast<std::uint64_t>(size.prod()), 0);
   return makeVolume<Voxel>(makeCenteredGrid(size, spacing),
                            [&](const Vec3&) { return greatest * random.uniform(); });
@@ -34,13 +34,13 @@ Volume noise(const Size3& size, const Vec3& spacing, double greatest = 1.0) {
 
 /// Scalar equal to the index along x, 0 to 5; extinction proportional to the scalar.
 constexpr double rampSlope = 0.12;
-Volume ramp() {
+Volume makeRamp() {
   return makeVolume(makeCenteredGrid({6, 4, 5}, {1.3, 0.7, 0.9}),
                     [](const Vec3& p) { return p.x(); });
 }
 
 /// Rotated grid of unequal spacing.
-Volume turned(Volume volume) {
+Volume rotateGrid(Volume volume) {
   const Affine turn(makeRotation(0.7, Vec3(1.0, 2.0, -0.5).normalized()));
   volume.grid = Grid(volume.grid.size, turn * volume.grid.indexToWorld);
   return volume;
@@ -48,19 +48,21 @@ Volume turned(Volume volume) {
 
 /// Subjects: a linear ramp; one trilinear cell; a spike inside the range, with 0 on both sides;
 /// steps, in 8 bit; all kinds of knots, dense, so that little light passes.
-std::vector<Subject> subjects() {
-  return {{"ramp", ramp(), table({{0.0, 0.0}, {5.0, 5.0 * rampSlope}})},
-          {"cell", turned(noise({2, 2, 2}, {2.0, 1.5, 2.5})), table({{0.0, 0.0}, {1.0, 1.5}})},
-          {"spike", turned(noise({5, 6, 4}, {0.9, 0.8, 1.1})),
-           table({{0.0, 0.0}, {0.4, 0.0}, {0.5, 6.0}, {0.53, 0.0}, {1.0, 0.0}})},
-          {"steps", noise<std::uint8_t>({5, 5, 5}, {1.0, 1.0, 1.0}, 255.0),
-           table({{60.0, 0.4}, {60.0, 0.05}, {140.0, 0.3}, {140.0, 2.0}, {200.0, 0.0}})},
-          {"dense", turned(noise({6, 5, 7}, {0.5, 1.0, 0.7})),
-           table({{0.1, 0.2}, {0.3, 3.0}, {0.35, 0.1}, {0.6, 0.8}, {0.6, 2.5}, {0.9, 0.4}})}};
+std::vector<Subject> makeSubjects() {
+  return {
+      {"ramp", makeRamp(), makeTransfer({{0.0, 0.0}, {5.0, 5.0 * rampSlope}})},
+      {"cell", rotateGrid(makeNoise({2, 2, 2}, {2.0, 1.5, 2.5})),
+       makeTransfer({{0.0, 0.0}, {1.0, 1.5}})},
+      {"spike", rotateGrid(makeNoise({5, 6, 4}, {0.9, 0.8, 1.1})),
+       makeTransfer({{0.0, 0.0}, {0.4, 0.0}, {0.5, 6.0}, {0.53, 0.0}, {1.0, 0.0}})},
+      {"steps", makeNoise<std::uint8_t>({5, 5, 5}, {1.0, 1.0, 1.0}, 255.0),
+       makeTransfer({{60.0, 0.4}, {60.0, 0.05}, {140.0, 0.3}, {140.0, 2.0}, {200.0, 0.0}})},
+      {"dense", rotateGrid(makeNoise({6, 5, 7}, {0.5, 1.0, 0.7})),
+       makeTransfer({{0.1, 0.2}, {0.3, 3.0}, {0.35, 0.1}, {0.6, 0.8}, {0.6, 2.5}, {0.9, 0.4}})}};
 }
 
 Subject subject(int index) {
-  return std::move(subjects()[static_cast<std::size_t>(index)]);
+  return std::move(makeSubjects()[static_cast<std::size_t>(index)]);
 }
 
 /// Ray toward a point inside, from outside or from another point inside.
@@ -79,9 +81,9 @@ Ray randomRay(const Volume& volume, Random& random) {
 // ---- the integral itself
 // -------------------------------------------------------------------------
 
-TEST(StraightIntegral, LinearRampEqualsClosedForm) {
+TEST(LineIntegral, LinearRampEqualsClosedForm) {
   const Subject ramp = subject(0);
-  const StraightIntegral integral(ramp.volume, ramp.transfer);
+  const LineIntegral integral(ramp.volume, ramp.transfer);
   // Antiderivative of clamp(x, 0, 5): the outer half voxels clamp x.
   const auto antiderivative = [](double x) {
     return x < 0.0 ? 0.0 : x < 5.0 ? 0.5 * x * x : 12.5 + 5.0 * (x - 5.0);
@@ -89,7 +91,7 @@ TEST(StraightIntegral, LinearRampEqualsClosedForm) {
   for (std::uint64_t i = 0; i < 10000; ++i) {
     Random random(3, i, 0);
     const Ray ray = randomRay(ramp.volume, random);
-    const Interval range = integral.inside(ray);
+    const Interval range = integral.boxInterval(ray);
     const double from = (ramp.volume.grid.worldToIndex * ray.at(range.begin)).x();
     const double to = (ramp.volume.grid.worldToIndex * ray.at(range.end)).x();
     const double expected = rampSlope * (range.end - range.begin) *
@@ -99,17 +101,17 @@ TEST(StraightIntegral, LinearRampEqualsClosedForm) {
 }
 
 /// Reference: midpoint rule on Medium's own extinction.
-TEST(StraightIntegral, EqualsTheMidpointRuleWithSmallSteps) {
+TEST(LineIntegral, EqualsTheMidpointRuleWithSmallSteps) {
   for (int index = 0; index < 5; ++index) {
     const Subject s = subject(index);
-    const StraightIntegral integral(s.volume, s.transfer);
+    const LineIntegral integral(s.volume, s.transfer);
     std::visit(
         [&](const auto& voxels) {
           const Medium medium(s.volume.grid, voxels, s.transfer);
           for (std::uint64_t i = 0; i < 50; ++i) {
             Random random(4, i, 0);
             const Ray ray = randomRay(s.volume, random);
-            const Interval range = integral.inside(ray);
+            const Interval range = integral.boxInterval(ray);
             constexpr int steps = 20000;
             const double step = (range.end - range.begin) / steps;
             double sum = 0.0;
@@ -140,17 +142,17 @@ public:
   }
 
   /// Expects sums within 4 standard errors in every bin whose expectation is known to 2 percent.
-  void expectNone(const std::string& what) const {
-    int sharp = 0;
+  void expectUnbiased(const std::string& what) const {
+    int sharpBins = 0;
     for (const Bin& bin : m_bins) {
       if (!(std::sqrt(bin.squares) < 0.02 * bin.expected))
         continue;
-      ++sharp;
+      ++sharpBins;
       EXPECT_NEAR(bin.sum / std::sqrt(bin.squares), 0.0, 4.0)
           << what << ": " << bin.count << " rays, mean transmittance " << bin.expected / bin.count
           << ", relative error " << std::sqrt(bin.squares) / bin.expected;
     }
-    EXPECT_GT(sharp, 0) << what;
+    EXPECT_GT(sharpBins, 0) << what;
   }
 
 private:
@@ -161,47 +163,47 @@ private:
 };
 
 /// Ray to follow, with its own random numbers.
-struct Travel {
+struct TestRay {
   Ray ray;
   Interval range;
   Random random;
 };
 
 /// Follows rays one by one, or in lanes; results are in the rays' order.
-class Follower {
+class TrackerAdapter {
 public:
-  virtual ~Follower() = default;
-  virtual std::vector<double> collisions(const std::vector<Travel>& travels) const = 0;
-  virtual std::vector<double> transmittances(const std::vector<Travel>& travels) const = 0;
+  virtual ~TrackerAdapter() = default;
+  virtual std::vector<double> collisions(const std::vector<TestRay>& testRays) const = 0;
+  virtual std::vector<double> transmittances(const std::vector<TestRay>& testRays) const = 0;
 };
 
 template <typename Voxel>
-class ScalarFollower : public Follower {
+class ScalarAdapter : public TrackerAdapter {
 public:
-  ScalarFollower(const Subject& s, const LargeArray<Voxel>& voxels, const MajorantGrid& majorants,
-                 const Clip& clip)
+  ScalarAdapter(const Subject& s, const LargeArray<Voxel>& voxels, const MajorantGrid& majorants,
+                const Clip& clip)
       : m_medium(s.volume.grid, voxels, s.transfer),
         m_clip(clip),
         m_tracker(s.volume.grid, m_medium, majorants, m_clip) {}
 
-  std::vector<double> collisions(const std::vector<Travel>& travels) const override {
-    return oneByOne(travels, [this](Travel& t, Counters& counters) {
+  std::vector<double> collisions(const std::vector<TestRay>& testRays) const override {
+    return traceEach(testRays, [this](TestRay& t, Counters& counters) {
       return m_tracker.sampleCollision(t.ray, t.range, t.random.uniform2(), t.random, counters);
     });
   }
-  std::vector<double> transmittances(const std::vector<Travel>& travels) const override {
-    return oneByOne(travels, [this](Travel& t, Counters& counters) {
+  std::vector<double> transmittances(const std::vector<TestRay>& testRays) const override {
+    return traceEach(testRays, [this](TestRay& t, Counters& counters) {
       return m_tracker.transmittance(t.ray, t.range, t.random, counters);
     });
   }
 
 private:
-  template <typename Follow>
-  std::vector<double> oneByOne(const std::vector<Travel>& travels, Follow&& follow) const {
+  template <typename Method>
+  std::vector<double> traceEach(const std::vector<TestRay>& testRays, Method&& method) const {
     std::vector<double> results;
     Counters counters;
-    for (Travel t : travels)
-      results.push_back(follow(t, counters));
+    for (TestRay t : testRays)
+      results.push_back(method(t, counters));
     return results;
   }
 
@@ -210,35 +212,35 @@ private:
   Tracker<Voxel> m_tracker;
 };
 
-class WideFollower : public Follower {
+class SimdAdapter : public TrackerAdapter {
 public:
-  WideFollower(const Subject& s, const MajorantGrid& majorants, const Clip& clip)
+  SimdAdapter(const Subject& s, const MajorantGrid& majorants, const Clip& clip)
       : m_domain(s.volume.grid),
         m_clip(clip),
         m_tracker(s.volume, m_domain, s.transfer, majorants, m_clip) {}
 
-  std::vector<double> collisions(const std::vector<Travel>& travels) const override {
-    return inBatches(travels, &SimdTracker::sampleCollisions);
+  std::vector<double> collisions(const std::vector<TestRay>& testRays) const override {
+    return traceBatches(testRays, &SimdTracker::sampleCollisions);
   }
-  std::vector<double> transmittances(const std::vector<Travel>& travels) const override {
-    return inBatches(travels, &SimdTracker::estimateTransmittances);
+  std::vector<double> transmittances(const std::vector<TestRay>& testRays) const override {
+    return traceBatches(testRays, &SimdTracker::estimateTransmittances);
   }
 
 private:
-  std::vector<double> inBatches(const std::vector<Travel>& travels,
-                                void (SimdTracker::*follow)(RayBatch&, Counters&) const) const {
+  std::vector<double> traceBatches(const std::vector<TestRay>& testRays,
+                                   void (SimdTracker::*method)(RayBatch&, Counters&) const) const {
     std::vector<double> results, begins;
     Counters counters;
     RayBatch rays;
     const auto flush = [&] {
-      (m_tracker.*follow)(rays, counters);
+      (m_tracker.*method)(rays, counters);
       for (std::size_t i = 0; i < rays.size; ++i)
         results.push_back(static_cast<double>(rays.result[i]) +
-                          (follow == &SimdTracker::sampleCollisions ? begins[i] : 0.0));
+                          (method == &SimdTracker::sampleCollisions ? begins[i] : 0.0));
       rays.size = 0;
       begins.clear();
     };
-    for (Travel t : travels) {
+    for (TestRay t : testRays) {
       rays.depthBits[rays.size] = static_cast<std::uint32_t>(t.random.bits() >> 32);
       rays.acceptance[rays.size] = static_cast<float>(t.random.uniform());
       begins.push_back(setDomainRay(rays, rays.size++, m_domain, t.ray, t.range));
@@ -255,13 +257,13 @@ private:
 };
 
 /// Follower "scalar", or the lanes of an instruction set; null if the machine lacks that set.
-std::unique_ptr<Follower> followerOf(const Subject& subject, const MajorantGrid& majorants,
-                                     const Clip& clip, const std::string& name) {
+std::unique_ptr<TrackerAdapter> makeAdapter(const Subject& subject, const MajorantGrid& majorants,
+                                            const Clip& clip, const std::string& name) {
   if (name == "scalar")
     return std::visit(
-        [&](const auto& voxels) -> std::unique_ptr<Follower> {
+        [&](const auto& voxels) -> std::unique_ptr<TrackerAdapter> {
           using Voxel = typename std::decay_t<decltype(voxels)>::value_type;
-          return std::make_unique<ScalarFollower<Voxel>>(subject, voxels, majorants, clip);
+          return std::make_unique<ScalarAdapter<Voxel>>(subject, voxels, majorants, clip);
         },
         subject.volume.voxels);
   const std::vector<std::string> known = instructionSets();
@@ -270,7 +272,7 @@ std::unique_ptr<Follower> followerOf(const Subject& subject, const MajorantGrid&
   EXPECT_TRUE(SimdTracker::isSupported(subject.volume, subject.transfer));
   useInstructionSet(name);
   EXPECT_EQ(instructionSet(), name);
-  return std::make_unique<WideFollower>(subject, majorants, clip);
+  return std::make_unique<SimdAdapter>(subject, majorants, clip);
 }
 
 /// Subject, and the follower of its rays.
@@ -279,89 +281,89 @@ protected:
   void SetUp() override {
     m_majorants.emplace(m_subject.volume.grid, MinMaxGrid(m_subject.volume, 0), m_subject.transfer,
                         m_clip);
-    m_follower = followerOf(m_subject, *m_majorants, m_clip, std::get<1>(GetParam()));
-    if (!m_follower)
+    m_adapter = makeAdapter(m_subject, *m_majorants, m_clip, std::get<1>(GetParam()));
+    if (!m_adapter)
       GTEST_SKIP() << "this machine has no " << std::get<1>(GetParam());
   }
   void TearDown() override { useInstructionSet(instructionSets().front()); }
 
   Subject m_subject = subject(std::get<0>(GetParam()));
-  StraightIntegral m_integral{m_subject.volume, m_subject.transfer};
+  LineIntegral m_integral{m_subject.volume, m_subject.transfer};
   Clip m_clip = ClipNone{};
   std::optional<MajorantGrid> m_majorants;
-  std::unique_ptr<Follower> m_follower;
+  std::unique_ptr<TrackerAdapter> m_adapter;
 };
 
 TEST_P(Tracking, MeanTransmittanceEqualsExpOfIntegral) {
-  std::vector<Travel> travels;
+  std::vector<TestRay> testRays;
   for (std::uint64_t i = 0; i < scaleSamples(100000UL); ++i) {
     Random random(shiftSeed(6), i, 0);
     const Ray ray = randomRay(m_subject.volume, random);
     // Range up to a near light, or infinite.
-    const Interval inside = m_integral.inside(ray);
+    const Interval inside = m_integral.boxInterval(ray);
     const double end =
         i % 2 == 0 ? infinity : inside.begin + random.uniform() * (inside.end - inside.begin);
-    travels.push_back({ray, {0.0, end}, random});
+    testRays.push_back({ray, {0.0, end}, random});
   }
-  const std::vector<double> ratios = m_follower->transmittances(travels);
-  const std::vector<double> distances = m_follower->collisions(travels);
+  const std::vector<double> ratios = m_adapter->transmittances(testRays);
+  const std::vector<double> distances = m_adapter->collisions(testRays);
   Differences passed, survived;
-  for (std::size_t i = 0; i < travels.size(); ++i) {
-    const double expected = std::exp(-m_integral.opticalDepth(travels[i].ray, travels[i].range));
+  for (std::size_t i = 0; i < testRays.size(); ++i) {
+    const double expected = std::exp(-m_integral.opticalDepth(testRays[i].ray, testRays[i].range));
     passed.add(ratios[i], expected);
     survived.add(distances[i] == infinity ? 1.0 : 0.0, expected);
   }
-  passed.expectNone("ratio tracking");
-  survived.expectNone("survival");
+  passed.expectUnbiased("ratio tracking");
+  survived.expectUnbiased("survival");
 }
 
 /// Optical depth at the collision, as a share of the rays that collide before it: uniform. Rays
 /// that pass get a random share above that of all their collisions.
 TEST_P(Tracking, CollisionsFollowTheExactDistribution) {
-  std::vector<Travel> travels;
+  std::vector<TestRay> testRays;
   for (std::uint64_t i = 0; i < scaleSamples(100000UL); ++i) {
     Random random(shiftSeed(7), i, 0);
     const Ray ray = randomRay(m_subject.volume, random);
-    travels.push_back({ray, {}, random});
+    testRays.push_back({ray, {}, random});
   }
-  const std::vector<double> distances = m_follower->collisions(travels);
-  std::vector<double> shares;
-  for (std::size_t i = 0; i < travels.size(); ++i) {
+  const std::vector<double> distances = m_adapter->collisions(testRays);
+  std::vector<double> quantiles;
+  for (std::size_t i = 0; i < testRays.size(); ++i) {
     Random random(shiftSeed(8), i, 0);
-    const double passes = std::exp(-m_integral.opticalDepth(travels[i].ray, {0.0, distances[i]}));
-    shares.push_back(1.0 - (distances[i] < infinity ? passes : random.uniform() * passes));
+    const double passes = std::exp(-m_integral.opticalDepth(testRays[i].ray, {0.0, distances[i]}));
+    quantiles.push_back(1.0 - (distances[i] < infinity ? passes : random.uniform() * passes));
   }
-  EXPECT_GT(uniformityProbability(shares), 1e-4);
+  EXPECT_GT(uniformityProbability(quantiles), 1e-4);
 }
 
 /// A ray's result does not depend on the other rays of the batch.
 TEST_P(Tracking, RayResultDoesNotDependOnItsBatch) {
-  std::vector<Travel> travels;
+  std::vector<TestRay> testRays;
   for (std::uint64_t i = 0; i < 1000; ++i) {
     Random random(9, i, 0);
     const Ray ray = randomRay(m_subject.volume, random);
-    travels.push_back({ray, {}, random});
+    testRays.push_back({ray, {}, random});
   }
-  const std::vector<double> distances = m_follower->collisions(travels);
-  const std::vector<double> ratios = m_follower->transmittances(travels);
-  for (std::size_t i = 0; i < travels.size(); i += 7) {
-    EXPECT_EQ(m_follower->collisions({travels[i]}).at(0), distances[i]);
-    EXPECT_EQ(m_follower->transmittances({travels[i]}).at(0), ratios[i]);
+  const std::vector<double> distances = m_adapter->collisions(testRays);
+  const std::vector<double> ratios = m_adapter->transmittances(testRays);
+  for (std::size_t i = 0; i < testRays.size(); i += 7) {
+    EXPECT_EQ(m_adapter->collisions({testRays[i]}).at(0), distances[i]);
+    EXPECT_EQ(m_adapter->transmittances({testRays[i]}).at(0), ratios[i]);
   }
 }
 
 /// Matter in front of an exact surface, by each follower of rays.
-class SeamTracking : public ::testing::TestWithParam<std::string> {
+class SilhouetteTracking : public ::testing::TestWithParam<std::string> {
 protected:
   void TearDown() override { useInstructionSet(instructionSets().front()); }
 };
 
 /// Short segments of eye rays where the surface between samples differs from the samples: past the
 /// edge of a ball, in fog that little light passes.
-TEST_P(SeamTracking, TransmittanceBesideTheFocusFollowsTheExactSurface) {
+TEST_P(SilhouetteTracking, TransmittanceBesideTheFocusFollowsTheExactSurface) {
   const Grid grid = makeCenteredGrid({40, 40, 40}, Vec3::Ones());
   const Subject fog{"fog", makeVolume(grid, [](const Vec3&) { return 1.0; }),
-                    table({{0.0, 0.0}, {1.0, 8.0}})};
+                    makeTransfer({{0.0, 0.0}, {1.0, 8.0}})};
   Mask ball{grid, {}, 0, {"ball"}};
   for (std::int64_t i = 0; i < grid.voxelCount(); ++i)
     ball.voxels.push_back(
@@ -377,12 +379,12 @@ TEST_P(SeamTracking, TransmittanceBesideTheFocusFollowsTheExactSurface) {
     const Clip clip = buildClippingSurface(camera, Domain(grid), ball, options).clip;
     const auto& depth = std::get<ClipDepth>(clip);
     const MajorantGrid majorants(grid, MinMaxGrid(fog.volume, 0), fog.transfer, clip);
-    const auto follower = followerOf(fog, majorants, clip, GetParam());
-    if (!follower)
+    const auto adapter = makeAdapter(fog, majorants, clip, GetParam());
+    if (!adapter)
       GTEST_SKIP() << "this machine has no " << GetParam();
-    std::vector<Travel> travels;
+    std::vector<TestRay> testRays;
     std::vector<double> expected;
-    for (std::uint64_t i = 0; travels.size() < scaleSamples(20000UL); ++i) {
+    for (std::uint64_t i = 0; testRays.size() < scaleSamples(20000UL); ++i) {
       Random random(shiftSeed(10), i, 0);
       const double angle = 2.0 * pi * random.uniform(), radius = 8.5 + 3.0 * random.uniform();
       const Vec2 at(radius * std::cos(angle), radius * std::sin(angle));
@@ -391,15 +393,15 @@ TEST_P(SeamTracking, TransmittanceBesideTheFocusFollowsTheExactSurface) {
         continue;
       const Ray ray = camera.makePlaneRay(at);
       const double perLength = camera.depthPerLength(ray);
-      const Interval way{std::min(surface, linear) / perLength,
-                         std::max(surface, linear) / perLength};
-      travels.push_back({ray, way, random});
-      expected.push_back(surface > linear ? 1.0 : std::exp(-8.0 * (way.end - way.begin)));
+      const Interval segment{std::min(surface, linear) / perLength,
+                             std::max(surface, linear) / perLength};
+      testRays.push_back({ray, segment, random});
+      expected.push_back(surface > linear ? 1.0 : std::exp(-8.0 * (segment.end - segment.begin)));
     }
-    const std::vector<double> passed = follower->transmittances(travels);
-    double apart = 0.0, squares = 0.0;
+    const std::vector<double> passed = adapter->transmittances(testRays);
+    double difference = 0.0, squares = 0.0;
     for (std::size_t i = 0; i < passed.size(); ++i) {
-      apart += passed[i] - expected[i];
+      difference += passed[i] - expected[i];
       squares += std::pow(passed[i] - expected[i], 2);
     }
     // Lanes in float see the outline slightly displaced: some of a thousand rays lie on its other
@@ -409,7 +411,7 @@ TEST_P(SeamTracking, TransmittanceBesideTheFocusFollowsTheExactSurface) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Trackers, SeamTracking,
+INSTANTIATE_TEST_SUITE_P(Trackers, SilhouetteTracking,
                          ::testing::Values("scalar", "AVX3", "AVX2", "SSE4", "SCALAR"));
 
 INSTANTIATE_TEST_SUITE_P(Media, Tracking,

@@ -8,7 +8,7 @@ namespace {
 constexpr std::uint64_t million = 1'000'000;
 
 /// 2x2 pixels of a small scattering volume, brighter on one side.
-TestScene smallScene() {
+TestScene makeSmallScene() {
   TestScene scene{makeVolume(makeCenteredGrid({3, 3, 3}, Vec3::Ones()),
                              [](const Vec3& p) { return 0.4 + 0.1 * p.x(); }),
                   makeLinearTransfer(0.4, Rgb(0.9, 0.5, 0.1)),
@@ -26,11 +26,11 @@ TestScene smallScene() {
 }
 
 /// Samples first ... first + count - 1 of a pixel, drawn as in a render.
-std::vector<PathSample> samplesOf(const TestScene& scene, int column, int row, std::uint64_t first,
-                                  std::uint64_t count) {
+std::vector<PathSample> traceSamples(const TestScene& scene, int column, int row,
+                                     std::uint64_t first, std::uint64_t count) {
   std::vector<PathSample> samples;
   samples.reserve(count);
-  withEstimator(scene, [&](const auto& estimator) {
+  withIntegrator(scene, [&](const auto& estimator) {
     Counters counters;
     const Sampler source(RenderSettings().sampling, 7);
     const auto pixel = static_cast<std::uint64_t>(row * scene.width + column);
@@ -44,28 +44,28 @@ std::vector<PathSample> samplesOf(const TestScene& scene, int column, int row, s
 }
 
 struct Moments {
-  long double mean = 0.0L, deviation = 0.0L; ///< red channel, computed in two passes
+  long double mean = 0.0L, m2 = 0.0L; ///< red channel, computed in two passes
 };
 
-Moments twoPasses(const std::vector<PathSample>& samples) {
+Moments computeTwoPass(const std::vector<PathSample>& samples) {
   Moments moments;
   for (const PathSample& sample : samples)
     moments.mean += static_cast<long double>(sample.radiance[0]);
   moments.mean /= static_cast<long double>(samples.size());
   for (const PathSample& sample : samples) {
     const long double d = static_cast<long double>(sample.radiance[0]) - moments.mean;
-    moments.deviation += d * d;
+    moments.m2 += d * d;
   }
   return moments;
 }
 
 TEST(Accumulation, MillionSamplesEqualTwoPasses) {
-  const TestScene scene = smallScene();
-  const std::vector<PathSample> samples = samplesOf(scene, 0, 1, 0, million);
+  const TestScene scene = makeSmallScene();
+  const std::vector<PathSample> samples = traceSamples(scene, 0, 1, 0, million);
   PixelSums sums;
   for (const PathSample& sample : samples)
     sums.add(sample);
-  const Moments exact = twoPasses(samples);
+  const Moments exact = computeTwoPass(samples);
   EXPECT_EQ(sums.samples, million);
   EXPECT_NEAR(sums.mean[0] / static_cast<double>(exact.mean), 1.0, 1e-12);
   EXPECT_NEAR(sums.m2[0] / static_cast<double>(exact.m2), 1.0, 1e-12);
@@ -77,24 +77,24 @@ TEST(Accumulation, MillionSamplesEqualTwoPasses) {
     sample.radiance += 1e6;
     shifted.add(sample);
   }
-  const Moments exactFar = twoPasses(far);
+  const Moments exactFar = computeTwoPass(far);
   EXPECT_NEAR(shifted.mean[0] / static_cast<double>(exactFar.mean), 1.0, 1e-12);
   EXPECT_NEAR(shifted.m2[0] / static_cast<double>(exactFar.m2), 1.0, 1e-9);
 }
 
 TEST(Accumulation, MillionSamplesEqualARenderAndDoNotDrift) {
-  const TestScene scene = smallScene();
+  const TestScene scene = makeSmallScene();
   RenderSettings settings;
   settings.samples = million;
   settings.seed = 7;
-  const Film fast = scene.render(settings).film;
+  const Film simdFilm = scene.render(settings).film;
   settings.integrator = Integrator::scalar;
   const Film film = scene.render(settings).film;
   for (int row = 0; row < 2; ++row)
     for (int column = 0; column < 2; ++column) {
       PixelSums first, second, all;
       for (const std::uint64_t begin : {std::uint64_t{0}, million / 2})
-        for (const PathSample& sample : samplesOf(scene, column, row, begin, million / 2)) {
+        for (const PathSample& sample : traceSamples(scene, column, row, begin, million / 2)) {
           (begin == 0 ? first : second).add(sample);
           all.add(sample);
         }
@@ -103,7 +103,7 @@ TEST(Accumulation, MillionSamplesEqualARenderAndDoNotDrift) {
       const Rgb difference = (first.mean - second.mean).abs();
       const Rgb error = (first.standardError().square() + second.standardError().square()).sqrt();
       EXPECT_TRUE((difference < 4.0 * error).all()) << difference << ", errors " << error;
-      const Rgb other = (fast.at(column, row).mean - all.mean).abs();
+      const Rgb other = (simdFilm.at(column, row).mean - all.mean).abs();
       EXPECT_TRUE((other < 4.0 * std::sqrt(2.0) * all.standardError()).all())
           << other << ", error of each " << all.standardError();
     }
@@ -131,13 +131,13 @@ TEST(SampleCounters, DoNotWrapBeyond32Bits) {
 }
 
 TEST(SampleIndices, IndicesBeyond32BitsGiveNewSamples) {
-  const TestScene scene = smallScene();
+  const TestScene scene = makeSmallScene();
   constexpr std::uint64_t count = 20000;
   constexpr std::uint64_t far = (std::uint64_t{1} << 32) * 3;
   PixelSums near, beyond;
   double product = 0.0;
-  const auto a = samplesOf(scene, 0, 0, 0, count);
-  const auto b = samplesOf(scene, 0, 0, far, count);
+  const auto a = traceSamples(scene, 0, 0, 0, count);
+  const auto b = traceSamples(scene, 0, 0, far, count);
   for (std::size_t i = 0; i < count; ++i) {
     near.add(a[i]);
     beyond.add(b[i]);

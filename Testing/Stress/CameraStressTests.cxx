@@ -9,7 +9,7 @@ namespace {
 constexpr double sigma = 0.25;
 
 /// 6x5x4 mm, absorbing, in an environment of 1.
-TestScene absorber(const CameraPose& pose, int width, int height) {
+TestScene makeAbsorber(const CameraPose& pose, int width, int height) {
   return {makeVolume(makeCenteredGrid({6, 5, 4}, Vec3::Ones()), [](const Vec3&) { return 1.0; }),
           makeLinearTransfer(sigma, Rgb::Zero()),
           {EnvironmentLight{}},
@@ -20,7 +20,7 @@ TestScene absorber(const CameraPose& pose, int width, int height) {
 
 /// Eye ray through a raster position: rows from the top, `scale` half the picture's height, `angle`
 /// the full height.
-Ray eyeRay(const CameraPose& pose, int width, int height, double column, double row) {
+Ray makeCameraRay(const CameraPose& pose, int width, int height, double column, double row) {
   const Vec3 forward = (pose.target - pose.position).normalized();
   const Vec3 right = forward.cross(pose.up).normalized();
   const Vec3 up = right.cross(forward);
@@ -38,17 +38,19 @@ Ray eyeRay(const CameraPose& pose, int width, int height, double column, double 
 /// known. The expected mean is taken over a raster of rays, finer in the long version, whose
 /// samples resolve the raster's error at the box's silhouette.
 void expectChords(const TestScene& scene, int samples) {
-  const int fine = isLongRun() ? 128 : 16;
-  const RenderResult result = renderIn(scene, samples);
+  const int subdivisions = isLongRun() ? 128 : 16;
+  const RenderResult result = renderScene(scene, samples);
   double chi2 = 0.0, difference = 0.0, variance = 0.0;
   int pixels = 0;
   for (int row = 0; row < scene.height; ++row)
     for (int column = 0; column < scene.width; ++column) {
       double expected = 0.0;
-      for (int i = 0; i < fine * fine; ++i) {
-        const Ray ray = eyeRay(scene.pose, scene.width, scene.height,
-                               column + (i % fine + 0.5) / fine, row + (i / fine + 0.5) / fine);
-        expected += std::exp(-sigma * chord(scene.volume.grid, ray)) / (fine * fine);
+      for (int i = 0; i < subdivisions * subdivisions; ++i) {
+        const Ray ray = makeCameraRay(scene.pose, scene.width, scene.height,
+                                      column + (i % subdivisions + 0.5) / subdivisions,
+                                      row + (i / subdivisions + 0.5) / subdivisions);
+        expected +=
+            std::exp(-sigma * chord(scene.volume.grid, ray)) / (subdivisions * subdivisions);
       }
       const double mean = result.film.at(column, row).mean[0];
       if (expected > 1.0 - 1e-12) {
@@ -68,7 +70,7 @@ void expectChords(const TestScene& scene, int samples) {
   EXPECT_LT(std::abs(difference), 4.0 * std::sqrt(variance));
 }
 
-CameraPose pose(Projection projection, const Vec3& position, const Vec3& forward) {
+CameraPose makePose(Projection projection, const Vec3& position, const Vec3& forward) {
   CameraPose result;
   result.projection = projection;
   result.position = position;
@@ -89,28 +91,30 @@ TEST(CameraInsideVolume, TransmittanceIsThatOfTheChordAhead) {
   for (const Projection projection : {Projection::orthographic, Projection::perspective})
     for (const Vec3& position : positions)
       for (const Vec3& direction : directions) {
-        const TestScene scene = absorber(pose(projection, position, direction), 8, 8);
-        bool leaves = false;
+        const TestScene scene = makeAbsorber(makePose(projection, position, direction), 8, 8);
+        bool isLeaving = false;
         for (int axis = 0; axis < 3; ++axis)
-          leaves = leaves || (std::abs(position[axis]) == Vec3(3.0, 2.5, 2.0)[axis] &&
-                              direction[axis] * position[axis] > 0.0);
+          isLeaving = isLeaving || (std::abs(position[axis]) == Vec3(3.0, 2.5, 2.0)[axis] &&
+                                    direction[axis] * position[axis] > 0.0);
         SCOPED_TRACE((std::ostringstream() << position << " | " << direction).str());
-        if (leaves && projection == Projection::orthographic && direction.cwiseAbs().sum() == 1.0)
+        if (isLeaving && projection == Projection::orthographic &&
+            direction.cwiseAbs().sum() == 1.0)
           ASSERT_EQ(estimateMean(renderScene(scene, 4).film).mean, 1.0); // nothing ahead
-        else if (!leaves)
+        else if (!isLeaving)
           expectChords(scene, scaleSamples(200));
       }
 }
 
 TEST(CameraInsideVolume, FurnaceIsOne) {
-  TestScene scene = absorber(pose(Projection::perspective, {0.5, 0.5, 0.5}, {1, 1, 1}), 12, 12);
+  TestScene scene =
+      makeAbsorber(makePose(Projection::perspective, {0.5, 0.5, 0.5}, {1, 1, 1}), 12, 12);
   scene.transfer = makeLinearTransfer(2.0, Rgb::Ones());
-  expectOne(renderIn(scene, scaleSamples(100)));
+  expectRadianceOne(renderScene(scene, scaleSamples(100)));
 }
 
 TEST(FieldOfView, MillionthOfADegreeEqualsOrthographic) {
   constexpr double angle = 1e-6;
-  CameraPose near = pose(Projection::orthographic, {20.0, -30.0, 15.0}, {-20.0, 30.0, -15.0});
+  CameraPose near = makePose(Projection::orthographic, {20.0, -30.0, 15.0}, {-20.0, 30.0, -15.0});
   near.target = Vec3::Zero();
   near.scale = 4.0;
   CameraPose far = near;
@@ -118,35 +122,37 @@ TEST(FieldOfView, MillionthOfADegreeEqualsOrthographic) {
   far.angle = angle;
   // At 4.6e8 mm half the angle spans 4 mm.
   far.position = near.position.normalized() * (4.0 / std::tan(angle * pi / 360.0));
-  TestScene scene = absorber(near, 16, 16);
+  TestScene scene = makeAbsorber(near, 16, 16);
   scene.volume = makeVolume(scene.volume.grid, [](const Vec3& p) {
     return 0.5 + 0.5 * std::sin(0.9 * p.x()) * std::cos(0.7 * p.y() + 0.3 * p.z());
   });
   scene.transfer = makeLinearTransfer(1.5, Rgb::Constant(0.8), 0.4);
-  const RenderResult expected = renderIn(scene, scaleSamples(300), 1);
+  const RenderResult expected = renderScene(scene, scaleSamples(300), 1);
   scene.pose = far;
-  expectSamePicture(expected.film, renderIn(scene, scaleSamples(300), 2).film);
+  expectSameImage(expected.film, renderScene(scene, scaleSamples(300), 2).film);
 }
 
 TEST(FieldOfView, ExtremeAnglesSeeTheChordAhead) {
   for (const double angle : {1e-6, 1e-3, 150.0, 179.0})
     for (const Vec3& position : {Vec3(-3.5, 0.2, 0.1), Vec3(0.1, 0.0, 0.0), Vec3(-3.0, 0.0, 0.0)}) {
-      CameraPose wide = pose(Projection::perspective, position, {1.0, 0.03, 0.02});
+      CameraPose wide = makePose(Projection::perspective, position, {1.0, 0.03, 0.02});
       wide.angle = angle;
-      expectChords(absorber(wide, 16, 16), scaleSamples(400));
+      expectChords(makeAbsorber(wide, 16, 16), scaleSamples(400));
     }
 }
 
 TEST(PictureSize, OnePixelOrOneRowSeesTheChordAhead) {
-  const CameraPose outside = pose(Projection::orthographic, {-9.0, 0.2, 0.1}, {1.0, 0.3, 0.2});
+  const CameraPose outside = makePose(Projection::orthographic, {-9.0, 0.2, 0.1}, {1.0, 0.3, 0.2});
   for (const auto& [width, height] :
        {std::pair(1, 1), std::pair(1, 4096), std::pair(4096, 1), std::pair(3, 17)}) {
     CameraPose fitted = outside;
     fitted.scale = width > height ? 3.0 / 4096.0 : 2.0; // pixels are square
-    expectChords(absorber(fitted, width, height), scaleSamples(width * height == 1 ? 20000 : 100));
+    expectChords(makeAbsorber(fitted, width, height),
+                 scaleSamples(width * height == 1 ? 20000 : 100));
     fitted.projection = Projection::perspective;
     fitted.angle = width > height ? 0.02 : 40.0;
-    expectChords(absorber(fitted, width, height), scaleSamples(width * height == 1 ? 20000 : 100));
+    expectChords(makeAbsorber(fitted, width, height),
+                 scaleSamples(width * height == 1 ? 20000 : 100));
   }
 }
 
@@ -154,10 +160,11 @@ TEST(PictureSize, OnePixelOrOneRowSeesTheChordAhead) {
 
 TEST(SharpScattering, FurnaceIsOneInABoundedNumberOfCollisions) {
   for (const double g : {-0.9999, 0.9999, -0.9999999999, 0.9999999999}) {
-    TestScene scene = absorber(pose(Projection::orthographic, {-9, 1, 2}, {9, -1, -2}), 12, 12);
+    TestScene scene =
+        makeAbsorber(makePose(Projection::orthographic, {-9, 1, 2}, {9, -1, -2}), 12, 12);
     scene.transfer = makeLinearTransfer(1.0, Rgb::Ones(), g);
-    const RenderResult result = renderIn(scene, scaleSamples(200));
-    expectOne(result);
+    const RenderResult result = renderScene(scene, scaleSamples(200));
+    expectRadianceOne(result);
     // Scattering straight on or straight back in 4 mm on average: a walk in one dimension.
     const double collisions = static_cast<double>(result.counters.collisions) /
                               static_cast<double>(result.counters.paths);
@@ -165,8 +172,9 @@ TEST(SharpScattering, FurnaceIsOneInABoundedNumberOfCollisions) {
   }
 }
 
-TestScene mirrors(double power) {
-  TestScene scene = absorber(pose(Projection::orthographic, {-9, 1, 2}, {9, -1, -2}), 12, 12);
+TestScene makeMirrors(double power) {
+  TestScene scene =
+      makeAbsorber(makePose(Projection::orthographic, {-9, 1, 2}, {9, -1, -2}), 12, 12);
   scene.volume = makeVolume(scene.volume.grid, [](const Vec3& p) {
     return 0.5 + 0.5 * std::sin(2.0 * p.x()) * std::cos(1.5 * p.y() + p.z());
   });
@@ -177,16 +185,16 @@ TestScene mirrors(double power) {
 
 TEST(SharpScattering, MirrorsReflectNoMoreThanArrives) {
   for (const double power : {0.0, 1e4, 1e8, 1e16, 1e300}) {
-    const Estimate estimate = estimateMean(renderIn(mirrors(power), scaleSamples(100)).film);
+    const Estimate estimate = estimateMean(renderScene(makeMirrors(power), scaleSamples(100)).film);
     EXPECT_LT(estimate.mean, 1.0 + 4.0 * estimate.error) << power;
     EXPECT_GT(estimate.mean, 0.1) << power; // 0.3 diffuse, seen once, and the background
   }
 }
 
 TEST(SharpScattering, MirrorsConvergeWithGrowingPower) {
-  const Film sharp = renderIn(mirrors(1e6), scaleSamples(300), 1).film; // lobes 1/1000 wide
-  expectSamePicture(sharp, renderIn(mirrors(1e16), scaleSamples(300), 2).film);
-  expectSamePicture(sharp, renderIn(mirrors(1e300), scaleSamples(300), 3).film);
+  const Film sharp = renderScene(makeMirrors(1e6), scaleSamples(300), 1).film; // lobes 1/1000 wide
+  expectSameImage(sharp, renderScene(makeMirrors(1e16), scaleSamples(300), 2).film);
+  expectSameImage(sharp, renderScene(makeMirrors(1e300), scaleSamples(300), 3).film);
 }
 
 } // namespace

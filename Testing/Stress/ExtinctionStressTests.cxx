@@ -12,7 +12,7 @@ constexpr double thinnest = 1e-8; // per mm
 constexpr double densest = 1e8;
 
 /// Extinction thinnest * 10^(16 s / last) over s in [0, last], as a table of `knots` pieces.
-TransferFunction logarithmicRamp(double last, int knots, const Rgb& albedo) {
+TransferFunction makeLogarithmicRamp(double last, int knots, const Rgb& albedo) {
   std::vector<ScalarFunction::Knot> table;
   for (int i = 0; i <= knots; ++i)
     table.push_back(makeKnot(last * i / knots, thinnest * std::pow(10.0, 16.0 * i / knots)));
@@ -20,7 +20,7 @@ TransferFunction logarithmicRamp(double last, int knots, const Rgb& albedo) {
 }
 
 /// Integral of a table over [from, to] within its knots, no two of which coincide.
-double integral(const ScalarFunction& f, double from, double to) {
+double integrate(const ScalarFunction& f, double from, double to) {
   std::vector<double> ends = {from, to};
   for (const auto& k : f.knots())
     if (k.position > from && k.position < to)
@@ -33,7 +33,7 @@ double integral(const ScalarFunction& f, double from, double to) {
 }
 
 /// Layers along z with scalars 0, 1, 2, ...; `across` mm wide.
-Volume layers(int count, double spacing, double across) {
+Volume makeLayers(int count, double spacing, double across) {
   return makeVolume(makeCenteredGrid({2, 2, count}, {across / 2.0, across / 2.0, spacing}),
                     [](const Vec3& p) { return p.z(); });
 }
@@ -50,14 +50,14 @@ class LogarithmicRamp : public ::testing::TestWithParam<RampCase> {};
 TEST_P(LogarithmicRamp, TransmittanceEqualsExpOfIntegral) {
   const auto [begin, depth] = GetParam();
   constexpr double spacing = 0.002;
-  const Volume volume = layers(9, spacing, 0.1); // two decades a voxel
-  const RayProbe<> probe(volume, logarithmicRamp(8.0, 96, Rgb::Zero()));
+  const Volume volume = makeLayers(9, spacing, 0.1); // two decades a voxel
+  const RayProbe<> probe(volume, makeLogarithmicRamp(8.0, 96, Rgb::Zero()));
   const ScalarFunction& extinction = probe.medium().transfer().extinction;
   double end = begin;
   for (double step = 8.0; step > 1e-13; step *= 0.5)
-    if (end + step <= 8.0 && spacing * integral(extinction, begin, end + step) <= depth)
+    if (end + step <= 8.0 && spacing * integrate(extinction, begin, end + step) <= depth)
       end += step;
-  const double expected = std::exp(-spacing * integral(extinction, begin, end));
+  const double expected = std::exp(-spacing * integrate(extinction, begin, end));
   ASSERT_NEAR(expected, std::exp(-depth), 1e-3);
 
   const auto place = [&](double s) { return Vec3(0.01, -0.02, spacing * (s - 4.0)); };
@@ -104,21 +104,22 @@ struct Profile {
 };
 
 constexpr int depthVoxels = 33;
-constexpr double opaque = 1e6; ///< 1e8 beside clear voxels would take a minute of null collisions
+constexpr double opaqueExtinction =
+    1e6; ///< 1e8 beside clear voxels would take a minute of null collisions
 
-TransferFunction dense(const Rgb& albedo) {
+TransferFunction makeDense(const Rgb& albedo) {
   return {ScalarFunction({makeKnot(0.0, densest)}), ColorFunction({{0.0, albedo}})};
 }
-TransferFunction smooth(const Rgb& albedo) {
-  return logarithmicRamp(depthVoxels - 1, 400, albedo);
+TransferFunction makeSmooth(const Rgb& albedo) {
+  return makeLogarithmicRamp(depthVoxels - 1, 400, albedo);
 }
-TransferFunction stepped(const Rgb& albedo) {
-  return {
-      ScalarFunction({makeKnot(0.0, thinnest), makeKnot(20.3, thinnest), makeKnot(20.3, opaque)}),
-      ColorFunction({{0.0, albedo}})};
+TransferFunction makeStepped(const Rgb& albedo) {
+  return {ScalarFunction({makeKnot(0.0, thinnest), makeKnot(20.3, thinnest),
+                          makeKnot(20.3, opaqueExtinction)}),
+          ColorFunction({{0.0, albedo}})};
 }
 /// Three thin layers of optical depth 0.3 to 0.6 between clear layers, then an opaque layer.
-TransferFunction striped(const Rgb& albedo) {
+TransferFunction makeStriped(const Rgb& albedo) {
   return {
       ScalarFunction({makeKnot(0.0, thinnest), makeKnot(10.0, thinnest), makeKnot(10.0, 2000.0),
                       makeKnot(10.4, 2000.0), makeKnot(10.4, thinnest), makeKnot(20.0, thinnest),
@@ -129,9 +130,9 @@ TransferFunction striped(const Rgb& albedo) {
 }
 
 /// Greatest optical depth that lanes accept, from clear to opaque.
-constexpr double deepestOfLanes = 1.6e5;
-TransferFunction deep(const Rgb& albedo) {
-  return {ScalarFunction({makeKnot(0.0, 0.0), makeKnot(depthVoxels - 1, deepestOfLanes)}),
+constexpr double maxSimdDepth = 1.6e5;
+TransferFunction makeDeep(const Rgb& albedo) {
+  return {ScalarFunction({makeKnot(0.0, 0.0), makeKnot(depthVoxels - 1, maxSimdDepth)}),
           ColorFunction({{0.0, albedo}})};
 }
 
@@ -140,7 +141,7 @@ class HalfSpaceProfile : public ::testing::TestWithParam<ReflectanceCase> {};
 
 TEST_P(HalfSpaceProfile, ReflectanceEqualsChandrasekhars) {
   const auto& [profile, reflectance] = GetParam();
-  TestScene scene{layers(depthVoxels, 0.0005, 0.4), // 0.0165 mm deep: no loss at the sides
+  TestScene scene{makeLayers(depthVoxels, 0.0005, 0.4), // 0.0165 mm deep: no loss at the sides
                   profile.transfer(Rgb::Constant(reflectance.first)),
                   {EnvironmentLight{}},
                   {},
@@ -150,7 +151,7 @@ TEST_P(HalfSpaceProfile, ReflectanceEqualsChandrasekhars) {
   scene.pose.target = Vec3::Zero();
   scene.pose.up = Vec3::UnitY();
   scene.pose.scale = 0.001;
-  const RenderResult result = renderIn(scene, scaleSamples(250));
+  const RenderResult result = renderScene(scene, scaleSamples(250));
   const Estimate estimate = estimateMean(result.film);
   EXPECT_NEAR(estimate.mean, reflectance.second, 4.0 * estimate.error + 5e-5); // four digits given
   EXPECT_LT(estimate.error, relaxError(0.005));
@@ -159,9 +160,10 @@ TEST_P(HalfSpaceProfile, ReflectanceEqualsChandrasekhars) {
 
 INSTANTIATE_TEST_SUITE_P(
     Profiles, HalfSpaceProfile,
-    ::testing::Combine(::testing::Values(Profile{"dense", dense}, Profile{"smooth", smooth},
-                                         Profile{"stepped", stepped}, Profile{"striped", striped},
-                                         Profile{"deep", deep}),
+    ::testing::Combine(::testing::Values(Profile{"dense", makeDense}, Profile{"smooth", makeSmooth},
+                                         Profile{"stepped", makeStepped},
+                                         Profile{"striped", makeStriped},
+                                         Profile{"deep", makeDeep}),
                        ::testing::Values(std::pair(0.5, 0.1152), std::pair(0.9, 0.4149))),
     [](const auto& info) {
       return std::string(std::get<0>(info.param).name) +
@@ -169,32 +171,32 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 TEST(HalfSpace, LanesServeDepthsUpToTheirLimit) {
-  const Volume volume = layers(depthVoxels, 0.0005, 0.4);
-  EXPECT_TRUE(SimdTracker::isSupported(volume, deep(Rgb::Ones())));
-  EXPECT_FALSE(SimdTracker::isSupported(volume, deep(Rgb::Ones()).withDensity(1.2)));
-  EXPECT_FALSE(SimdTracker::isSupported(volume, stepped(Rgb::Ones())));
+  const Volume volume = makeLayers(depthVoxels, 0.0005, 0.4);
+  EXPECT_TRUE(SimdTracker::isSupported(volume, makeDeep(Rgb::Ones())));
+  EXPECT_FALSE(SimdTracker::isSupported(volume, makeDeep(Rgb::Ones()).withDensity(1.2)));
+  EXPECT_FALSE(SimdTracker::isSupported(volume, makeStepped(Rgb::Ones())));
 }
 
 // ---- whole pictures
 
 /// 8^3 voxels, alternating 0 and 1.
-Volume checkerboard(double spacing) {
+Volume makeCheckerboard(double spacing) {
   return makeVolume(makeCenteredGrid({8, 8, 8}, Vec3::Constant(spacing)),
                     [](const Vec3& p) { return std::fmod(p.x() + p.y() + p.z(), 2.0); });
 }
 
-Volume diagonalRamp(double spacing) {
+Volume makeDiagonalRamp(double spacing) {
   return makeVolume(makeCenteredGrid({8, 8, 8}, Vec3::Constant(spacing)),
                     [](const Vec3& p) { return (p.x() + p.y() + p.z()) / 21.0; });
 }
 
-TransferFunction contrast(double high, const Rgb& albedo) {
+TransferFunction makeContrast(double high, const Rgb& albedo) {
   return {ScalarFunction({makeKnot(0.5, thinnest), makeKnot(0.5, high)}),
           ColorFunction({{0.0, albedo}})};
 }
 
 /// Scene seen from a corner.
-TestScene cornerScene(Volume volume, const TransferFunction& transfer) {
+TestScene makeCornerScene(Volume volume, const TransferFunction& transfer) {
   const double radius = volume.grid.boundingRadius();
   TestScene scene{std::move(volume), transfer, {EnvironmentLight{}}, {}, 8, 8};
   scene.pose.position = radius * Vec3(2.0, -3.0, 1.5);
@@ -205,26 +207,27 @@ TestScene cornerScene(Volume volume, const TransferFunction& transfer) {
 
 TEST(ExtremeContrast, FurnaceIsOneWithoutAbsorption) {
   for (const double high : {1.0, 1e3, 5e4}) { // optical depth <= 800
-    const TestScene scene = cornerScene(checkerboard(0.002), contrast(high, Rgb::Ones()));
-    expectOne(renderIn(scene, scaleSamples(high > 1e4 ? 32 : 128)));
+    const TestScene scene =
+        makeCornerScene(makeCheckerboard(0.002), makeContrast(high, Rgb::Ones()));
+    expectRadianceOne(renderScene(scene, scaleSamples(high > 1e4 ? 32 : 128)));
   }
 }
 
 using SceneMaker = TestScene (*)(double unit);
 
 /// Scene with lengths multiplied and extinctions divided by `unit`. Powers of two change no bit.
-TestScene rampScene(double unit) {
-  return cornerScene(diagonalRamp(0.002 * unit),
-                     logarithmicRamp(1.0, 64, Rgb(0.9, 0.5, 0.0)).withDensity(1.0 / unit));
+TestScene makeRampScene(double unit) {
+  return makeCornerScene(makeDiagonalRamp(0.002 * unit),
+                         makeLogarithmicRamp(1.0, 64, Rgb(0.9, 0.5, 0.0)).withDensity(1.0 / unit));
 }
-TestScene checkerScene(double unit) {
-  return cornerScene(checkerboard(0.002 * unit),
-                     contrast(densest, Rgb(0.9, 0.5, 0.0)).withDensity(1.0 / unit));
+TestScene makeCheckerScene(double unit) {
+  return makeCornerScene(makeCheckerboard(0.002 * unit),
+                         makeContrast(densest, Rgb(0.9, 0.5, 0.0)).withDensity(1.0 / unit));
 }
-TestScene homogeneousScene(double unit) {
-  return cornerScene(makeVolume(makeCenteredGrid({8, 8, 8}, Vec3::Constant(unit)),
-                                [](const Vec3&) { return 1.0; }),
-                     makeLinearTransfer(0.3 / unit, Rgb(1.0, 0.9, 0.5)));
+TestScene makeHomogeneousScene(double unit) {
+  return makeCornerScene(makeVolume(makeCenteredGrid({8, 8, 8}, Vec3::Constant(unit)),
+                                    [](const Vec3&) { return 1.0; }),
+                         makeLinearTransfer(0.3 / unit, Rgb(1.0, 0.9, 0.5)));
 }
 
 TEST(UnitOfLength, PowerOfTwoKeepsEveryBitOfThePicture) {
@@ -234,14 +237,14 @@ TEST(UnitOfLength, PowerOfTwoKeepsEveryBitOfThePicture) {
     int samples;
   };
   for (const auto& [make, unit, samples] :
-       {Case{rampScene, 0x1p10, 4}, Case{checkerScene, 0x1p10, 1},
-        Case{homogeneousScene, 0x1p26, 64}, Case{homogeneousScene, 0x1p-26, 64}}) {
+       {Case{makeRampScene, 0x1p10, 4}, Case{makeCheckerScene, 0x1p10, 1},
+        Case{makeHomogeneousScene, 0x1p26, 64}, Case{makeHomogeneousScene, 0x1p-26, 64}}) {
     TestScene scene = make(1.0);
     scene.transfer.g = 0.3;
-    const RenderResult usual = renderIn(scene, scaleSamples(samples));
+    const RenderResult usual = renderScene(scene, scaleSamples(samples));
     TestScene other = make(unit);
     other.transfer.g = 0.3;
-    const RenderResult scaled = renderIn(other, scaleSamples(samples));
+    const RenderResult scaled = renderScene(other, scaleSamples(samples));
     expectEqualBits(usual.film, scaled.film);
     EXPECT_EQ(usual.counters.lookups, scaled.counters.lookups);
     const Estimate estimate = estimateMean(usual.film);
@@ -252,8 +255,8 @@ TEST(UnitOfLength, PowerOfTwoKeepsEveryBitOfThePicture) {
 TEST(ExtremeContrast, NumberOfCollisionsIsBounded) {
   // One crossing takes at most (majorant x length) tentative collisions, plus Poisson's spread.
   const double crossing = densest * 0.016 * std::sqrt(3.0);
-  const auto greatest = static_cast<std::uint64_t>(crossing + 6.0 * std::sqrt(crossing));
-  for (const TestScene& scene : {rampScene(1.0), checkerScene(1.0)}) {
+  const auto maximum = static_cast<std::uint64_t>(crossing + 6.0 * std::sqrt(crossing));
+  for (const TestScene& scene : {makeRampScene(1.0), makeCheckerScene(1.0)}) {
     const RayProbe<> probe(scene.volume, scene.transfer);
     const Camera camera(scene.pose, 8, 8);
     std::uint64_t worst = 0;
@@ -267,7 +270,7 @@ TEST(ExtremeContrast, NumberOfCollisionsIsBounded) {
     EXPECT_LE(worst, maximum);
     RecordProperty("worstLookupsOfARay", std::to_string(worst));
     std::cout << "worst null collisions of a ray: " << worst
-              << ", of a path: " << renderIn(scene, 1).counters.lookups / 64 << " on average\n";
+              << ", of a path: " << renderScene(scene, 1).counters.lookups / 64 << " on average\n";
   }
 }
 

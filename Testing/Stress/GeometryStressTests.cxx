@@ -11,7 +11,7 @@ double bump(const Vec3& p) {
 }
 
 /// 12x10x8 voxels of 1 x 1.2 x 1.5 mm around the origin, seen from a corner.
-TestScene bumpScene() {
+TestScene makeBumpScene() {
   const Grid grid = makeCenteredGrid({12, 10, 8}, {1.0, 1.2, 1.5});
   TestScene scene{makeVolume(grid, bump),
                   makeLinearTransfer(0.6, Rgb::Constant(0.8), 0.4),
@@ -26,7 +26,7 @@ TestScene bumpScene() {
 }
 
 /// Whole scene, camera included, in another place.
-TestScene moved(TestScene scene, const Affine& map) {
+TestScene transformScene(TestScene scene, const Affine& map) {
   Grid& grid = scene.volume.grid;
   grid = Grid(grid.size, map * grid.indexToWorld);
   scene.pose.position = map * scene.pose.position;
@@ -35,7 +35,7 @@ TestScene moved(TestScene scene, const Affine& map) {
   return scene;
 }
 
-Affine turn(double angle, const Vec3& translation = Vec3::Zero()) {
+Affine makeRigid(double angle, const Vec3& translation = Vec3::Zero()) {
   return Affine(makeTranslation(translation) *
                 makeRotation(angle, Vec3(1.0, -2.0, 0.5).normalized()));
 }
@@ -48,16 +48,16 @@ struct Place {
 class Placed : public ::testing::TestWithParam<Place> {};
 
 TEST_P(Placed, PictureIsUnchanged) {
-  const TestScene scene = bumpScene();
-  const TestScene elsewhere = moved(scene, GetParam().map);
+  const TestScene scene = makeBumpScene();
+  const TestScene elsewhere = transformScene(scene, GetParam().map);
   const int samples = scaleSamples(400);
-  expectSamePicture(renderIn(scene, samples, 1).film, renderIn(elsewhere, samples, 2).film);
+  expectSameImage(renderScene(scene, samples, 1).film, renderScene(elsewhere, samples, 2).film);
 }
 
 TEST_P(Placed, IndexRoundTripKeepsVoxelPrecision) {
   // Rounding of a coordinate of size c: half an ulp of c for each of a few operations, in voxels.
   // At 1e6 mm and 1 mm voxels: 1e-9 of a voxel.
-  const Grid grid = moved(bumpScene(), GetParam().map).volume.grid;
+  const Grid grid = transformScene(makeBumpScene(), GetParam().map).volume.grid;
   const double far = 100.0 + grid.indexToWorld.translation().cwiseAbs().maxCoeff();
   const double bound = 16.0 * 0x1p-53 * far / grid.spacing().minCoeff();
   for (int i = 0; i < 8; ++i) {
@@ -71,12 +71,13 @@ INSTANTIATE_TEST_SUITE_P(
     Places, Placed,
     ::testing::Values(Place{"far", Affine(makeTranslation({1e6, -1e6, 1e6}))},
                       Place{"farther", Affine(makeTranslation({-1e9, 7e8, 1e9}))},
-                      Place{"turned", turn(1.0)}, Place{"turnedFar", turn(2.0, {1e6, 1e6, -1e6})},
-                      Place{"turnedLittle", turn(1e-9)}, Place{"halfTurn", turn(pi)}),
+                      Place{"turned", makeRigid(1.0)},
+                      Place{"turnedFar", makeRigid(2.0, {1e6, 1e6, -1e6})},
+                      Place{"turnedLittle", makeRigid(1e-9)}, Place{"halfTurn", makeRigid(pi)}),
     [](const auto& info) { return std::string(info.param.name); });
 
 TEST(MirroredAxes, PictureIsUnchanged) {
-  const TestScene scene = bumpScene();
+  const TestScene scene = makeBumpScene();
   const Size3 size = scene.volume.grid.size;
   for (int axis = 0; axis < 3; ++axis) {
     Affine flip = Affine::Identity();
@@ -87,12 +88,12 @@ TEST(MirroredAxes, PictureIsUnchanged) {
                                  [&](const Vec3& p) { return bump(flip * p); });
     EXPECT_LT(mirrored.volume.grid.indexToWorld.linear().determinant(), 0.0);
     const int samples = scaleSamples(400);
-    expectSamePicture(renderIn(scene, samples, 3).film, renderIn(mirrored, samples, 4).film);
+    expectSameImage(renderScene(scene, samples, 3).film, renderScene(mirrored, samples, 4).film);
   }
 }
 
 /// Field that is linear in the world, on any grid; grids differ only outside the crop.
-TestScene linearScene(const Size3& size, const Mat3& axes) {
+TestScene makeLinearScene(const Size3& size, const Mat3& axes) {
   Affine map;
   map.linear() = axes;
   map.translation() = -axes * (0.5 * (size - Size3::Ones()).cast<double>());
@@ -100,32 +101,33 @@ TestScene linearScene(const Size3& size, const Mat3& axes) {
   const auto field = [&](const Vec3& p) {
     return 0.5 + Vec3(0.05, -0.04, 0.06).dot(grid.indexToWorld * p);
   };
-  TestScene scene = bumpScene();
+  TestScene scene = makeBumpScene();
   scene.volume = makeVolume(grid, field);
-  scene.crop = CropBox(turn(0.4) * Affine(makeScaling(Vec3(4.0, 3.0, 3.5))));
+  scene.crop = CropBox(makeRigid(0.4) * Affine(makeScaling(Vec3(4.0, 3.0, 3.5))));
   scene.pose.scale = 6.0;
   return scene;
 }
 
 TEST(ShearedAxes, PictureIsUnchanged) {
-  const TestScene straight = linearScene({14, 14, 14}, Mat3::Identity());
+  const TestScene straight = makeLinearScene({14, 14, 14}, Mat3::Identity());
   const Mat3 sheared = Mat3::FromRows({1.0, 0.9, 0.3}, {0.0, 0.8, -0.7}, {0.0, 0.0, 1.1});
   const Mat3 flat = // two axes nearly parallel
       Mat3::FromRows({0.5, 0.5, 0.1}, {0.5, 0.5 - 1e-3, 0.0}, {0.0, 0.2, 1.0});
   const int samples = scaleSamples(400);
-  const RenderResult expected = renderIn(straight, samples, 5);
-  expectSamePicture(expected.film, renderIn(linearScene({50, 50, 30}, sheared), samples, 6).film);
+  const RenderResult expected = renderScene(straight, samples, 5);
+  expectSameImage(expected.film,
+                  renderScene(makeLinearScene({50, 50, 30}, sheared), samples, 6).film);
   // The flat parallelepiped holds only a small part of the crop; the part common to both is
   // compared by eye rays through an even smaller crop.
   TestScene small = straight;
   small.crop = CropBox(Affine(makeScaling(Vec3(0.01, 0.01, 0.5))));
   small.pose.scale = 0.3;
   small.transfer = makeLinearTransfer(5.0, Rgb::Constant(0.8));
-  TestScene smallFlat = linearScene({101, 101, 9}, flat);
+  TestScene smallFlat = makeLinearScene({101, 101, 9}, flat);
   smallFlat.crop = small.crop;
   smallFlat.pose = small.pose;
   smallFlat.transfer = small.transfer;
-  expectSamePicture(renderIn(small, samples, 7).film, renderIn(smallFlat, samples, 8).film);
+  expectSameImage(renderScene(small, samples, 7).film, renderScene(smallFlat, samples, 8).film);
 }
 
 // ---- needles: 0.01 x 0.01 x 100 mm
@@ -135,7 +137,7 @@ double needleValue(double i, double j, double z) {
 }
 
 /// 24x24 needles of two slices; or the same field on slices of 20 mm.
-Volume needles(bool resampled) {
+Volume makeNeedles(bool resampled) {
   const auto value = [](const Vec3& p, double z) { // linear between z = -50 and 50, clamped
     const double f = std::clamp((z + 50.0) / 100.0, 0.0, 1.0);
     return (1.0 - f) * needleValue(p.x(), p.y(), -50.0) + f * needleValue(p.x(), p.y(), 50.0);
@@ -145,9 +147,9 @@ Volume needles(bool resampled) {
   return makeVolume(grid, [&](const Vec3& p) { return value(p, (grid.indexToWorld * p).z()); });
 }
 
-TestScene needleScene(bool resampled, const Rgb& albedo) {
+TestScene makeNeedleScene(bool resampled, const Rgb& albedo) {
   TestScene scene{
-      needles(resampled), makeLinearTransfer(0.01, albedo), {EnvironmentLight{}}, {}, 12, 12};
+      makeNeedles(resampled), makeLinearTransfer(0.01, albedo), {EnvironmentLight{}}, {}, 12, 12};
   scene.pose.position = {0.0, 0.0, 200.0};
   scene.pose.target = {0.02, 0.01, 0.0}; // nearly along the needles
   scene.pose.up = Vec3::UnitY();
@@ -158,16 +160,16 @@ TestScene needleScene(bool resampled, const Rgb& albedo) {
 TEST(NeedleVoxels, PictureEqualsThatOfSlicesOfTheSameField) {
   const int samples = scaleSamples(1000);
   const Rgb albedo = Rgb::Constant(0.5);
-  expectSamePicture(renderIn(needleScene(false, albedo), samples, 1).film,
-                    renderIn(needleScene(true, albedo), samples, 2).film);
+  expectSameImage(renderScene(makeNeedleScene(false, albedo), samples, 1).film,
+                  renderScene(makeNeedleScene(true, albedo), samples, 2).film);
 }
 
 TEST(NeedleVoxels, FurnaceIsOne) {
-  expectOne(renderIn(needleScene(false, Rgb::Ones()), scaleSamples(100)));
+  expectRadianceOne(renderScene(makeNeedleScene(false, Rgb::Ones()), scaleSamples(100)));
 }
 
 TEST(NeedleVoxels, DiagonalTransmittanceEqualsExpOfIntegral) {
-  const Volume volume = needles(false);
+  const Volume volume = makeNeedles(false);
   constexpr double sigma = 0.01;
   const RayProbe<> probe(volume, makeLinearTransfer(sigma, Rgb::Zero()));
   for (int i = 0; i < 4; ++i) {

@@ -12,20 +12,20 @@ struct GrazedGrid {
   Grid grid;
 };
 
-std::vector<GrazedGrid> grids() {
-  const auto turned = [](const Grid& grid) {
-    const Affine turn(makeTranslation({5.0, -3.0, 2.0}) *
-                      makeRotation(0.7, Vec3(1.0, 2.0, -0.5).normalized()));
-    return Grid(grid.size, turn * grid.indexToWorld);
+std::vector<GrazedGrid> makeGrids() {
+  const auto rotate = [](const Grid& grid) {
+    const Affine rotation(makeTranslation({5.0, -3.0, 2.0}) *
+                          makeRotation(0.7, Vec3(1.0, 2.0, -0.5).normalized()));
+    return Grid(grid.size, rotation * grid.indexToWorld);
   };
   const Grid unit = makeCenteredGrid({6, 5, 4}, Vec3::Ones());
   return {{"unit", unit},
           {"uneven", makeCenteredGrid({6, 5, 4}, {0.3, 0.7, 1.1})},
-          {"turned", turned(unit)},
+          {"turned", rotate(unit)},
           {"far", Grid(unit.size, Affine(makeTranslation({1e6, 1e6, 1e6})) * unit.indexToWorld)}};
 }
 
-Volume ones(const Grid& grid) {
+Volume makeUniformVolume(const Grid& grid) {
   return makeVolume(grid, [](const Vec3&) { return 1.0; });
 }
 
@@ -36,14 +36,16 @@ Ray toWorld(const Grid& grid, const Vec3& origin, const Vec3& direction) {
 
 class Grazing : public ::testing::TestWithParam<int> {
 protected:
-  Grazing() : m_grid(grids()[static_cast<std::size_t>(GetParam())].grid), m_volume(ones(m_grid)) {}
+  Grazing()
+      : m_grid(makeGrids()[static_cast<std::size_t>(GetParam())].grid),
+        m_volume(makeUniformVolume(m_grid)) {}
 
   /// Rounding of a world coordinate, and its effect on a chord, mm.
   double rounding() const {
     return 64.0 * 0x1p-53 * (20.0 + m_grid.indexToWorld.translation().cwiseAbs().maxCoeff());
   }
 
-  bool isTurned() const {
+  bool isRotated() const {
     int zeros = 0;
     for (int axis = 0; axis < 3; ++axis)
       zeros += static_cast<int>(std::ranges::count(m_grid.indexToWorld.linear().col(axis), 0.0));
@@ -76,11 +78,11 @@ TEST_P(Grazing, RayAlongAFaceOrEdgeWalksAllOrNothing) {
             direction[a] = slope;
             const Ray ray = toWorld(m_grid, origin, direction);
             const double full = m_grid.spacing()[along] * static_cast<double>(m_grid.size[along]);
-            const double walked = probe.walkedLength(ray);
+            const double walked = probe.measureWalk(ray);
             (walked > 0.5 * full ? inside : outside) += 1;
             EXPECT_LT(walked, full + rounding());
             // The rounded slope of a rotated ray may lead out of the face.
-            EXPECT_TRUE(isTurned() || walked > full - rounding() || walked == 0.0)
+            EXPECT_TRUE(isRotated() || walked > full - rounding() || walked == 0.0)
                 << walked << " of " << full;
           }
   EXPECT_GT(inside, 0);
@@ -100,13 +102,13 @@ TEST_P(Grazing, RayNextToAFaceWalksTheChord) {
           direction[along] = 1.0;
           direction[a] = slope;
           const Ray ray = toWorld(m_grid, origin, direction);
-          EXPECT_NEAR(probe.walkedLength(ray), chord(m_grid, ray), rounding())
+          EXPECT_NEAR(probe.measureWalk(ray), chord(m_grid, ray), rounding())
               << side << " " << slope;
         }
 }
 
 /// Directions through corners of voxels: the 26 neighbours and knight's moves.
-std::vector<Vec3> latticeDirections() {
+std::vector<Vec3> makeLatticeDirections() {
   std::vector<Vec3> directions;
   for (int x = -2; x <= 2; ++x)
     for (int y = -2; y <= 2; ++y)
@@ -121,12 +123,12 @@ TEST_P(Grazing, RayThroughCentresAndCornersOfVoxelsWalksTheChord) {
   double greatest = 0.0;
   for (const Vec3& offset : {Vec3(0, 0, 0), Vec3(0.5, 0, 0), Vec3(0.5, 0.5, 0), Vec3(0.5, 0.5, 0.5),
                              Vec3(0.5, std::nextafter(0.5, 1.0), std::nextafter(0.5, 0.0))})
-    for (const Vec3& direction : latticeDirections())
+    for (const Vec3& direction : makeLatticeDirections())
       for (const double back : {0.0, 8.0}) { // from inside and from outside
         const Vec3 start = Vec3(2, 2, 1) + offset;
         const Ray ray = toWorld(m_grid, start - back * direction, direction);
         const double expected = chord(m_grid, ray);
-        EXPECT_NEAR(probe.walkedLength(ray), expected, rounding()) << start << " | " << direction;
+        EXPECT_NEAR(probe.measureWalk(ray), expected, rounding()) << start << " | " << direction;
         greatest = std::max(greatest, expected);
         if (back == 0.0 && offset.y() == 0.5 && direction.cwiseAbs().maxCoeff() == 1.0)
           probe.expectTransmittance(ray, {}, std::exp(-sigma * expected), scaleSamples(1000));
@@ -141,9 +143,9 @@ TEST_P(Grazing, RayFromACornerWalksTheChordInwardAndNothingOutward) {
     const Vec3 at = box.corner(corner);
     const Vec3 inward =
         (box.center() - at).unaryExpr([](double x) { return std::copysign(1.0, x); });
-    EXPECT_NEAR(probe.walkedLength(toWorld(m_grid, at, inward)),
+    EXPECT_NEAR(probe.measureWalk(toWorld(m_grid, at, inward)),
                 chord(m_grid, toWorld(m_grid, at, inward)), rounding());
-    EXPECT_LT(probe.walkedLength(toWorld(m_grid, at, -inward)), rounding());
+    EXPECT_LT(probe.measureWalk(toWorld(m_grid, at, -inward)), rounding());
   }
 }
 
@@ -154,13 +156,13 @@ INSTANTIATE_TEST_SUITE_P(Grids, Grazing, ::testing::Range(0, 4), [](const auto& 
 // Faces that are exact in binary: a ray that lies in such a face counts as inside (Box::clip).
 TEST(ExactFaces, RayInAFaceCountsAsInside) {
   const Grid grid = makeCenteredGrid({6, 4, 2}, Vec3::Ones());
-  const Volume volume = ones(grid);
+  const Volume volume = makeUniformVolume(grid);
   const RayProbe<> probe(volume, makeLinearTransfer(sigma, Rgb::Zero()));
   for (const double zero : {0.0, -0.0}) {
-    EXPECT_EQ(probe.walkedLength({{-9.0, 2.0, 1.0}, {1.0, zero, zero}}), 6.0);
-    EXPECT_EQ(probe.walkedLength({{-9.0, -2.0, -1.0}, {1.0, zero, zero}}), 6.0);
-    EXPECT_EQ(probe.walkedLength({{-9.0, std::nextafter(2.0, 3.0), 0.0}, {1.0, zero, zero}}), 0.0);
-    EXPECT_EQ(probe.walkedLength({{3.0, 0.0, 9.0}, {zero, zero, -1.0}}), 2.0);
+    EXPECT_EQ(probe.measureWalk({{-9.0, 2.0, 1.0}, {1.0, zero, zero}}), 6.0);
+    EXPECT_EQ(probe.measureWalk({{-9.0, -2.0, -1.0}, {1.0, zero, zero}}), 6.0);
+    EXPECT_EQ(probe.measureWalk({{-9.0, std::nextafter(2.0, 3.0), 0.0}, {1.0, zero, zero}}), 0.0);
+    EXPECT_EQ(probe.measureWalk({{3.0, 0.0, 9.0}, {zero, zero, -1.0}}), 2.0);
   }
   const Ray inFace{{-9.0, 2.0, 1.0}, Vec3::UnitX()};
   probe.expectTransmittance(inFace, {}, std::exp(-sigma * 6.0), scaleSamples(10000));

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double ends[] = {0.0, 0x1p-53, 0.25, 0.5, 0.75, largestUniform};
 
-std::vector<Vec2> corners() {
+std::vector<Vec2> makeCorners() {
   std::vector<Vec2> result;
   for (const double u : ends)
     for (const double v : ends)
@@ -19,7 +19,7 @@ std::vector<Vec2> corners() {
 TEST(ChosenDraws, ChosenDrawReturnsTheChosenBits) {
   for (const int draw : {1, 2, 3, 7, 200})
     for (const std::uint64_t bits : {std::uint64_t{0}, ~std::uint64_t{0}, std::uint64_t{12345}}) {
-      Random random = randomWithDraw(draw, bits);
+      Random random = makeRandomWithDraw(draw, bits);
       for (int i = 1; i < draw; ++i)
         random.bits();
       EXPECT_EQ(random.bits(), bits);
@@ -27,8 +27,8 @@ TEST(ChosenDraws, ChosenDrawReturnsTheChosenBits) {
 }
 
 TEST(RandomEnds, UniformsLieBelowOneAndExponentialsAreFinite) {
-  const auto least = [] { return randomWithDraw(1, 0); };
-  const auto most = [] { return randomWithDraw(1, ~std::uint64_t{0}); };
+  const auto least = [] { return makeRandomWithDraw(1, 0); };
+  const auto most = [] { return makeRandomWithDraw(1, ~std::uint64_t{0}); };
   EXPECT_EQ(least().uniform(), 0.0);
   EXPECT_EQ(most().uniform(), largestUniform);
   EXPECT_EQ(least().exponential(), 0.0);
@@ -48,7 +48,7 @@ TEST(RandomEnds, CoordinatesBeyond32BitsDoNotWrap) {
 }
 
 TEST(DirectionEnds, DirectionIsUnit) {
-  for (const Vec2& u : corners())
+  for (const Vec2& u : makeCorners())
     EXPECT_NEAR(sampleUniformSphere(u).norm(), 1.0, 4e-16);
 }
 
@@ -74,7 +74,7 @@ TEST_P(PhaseEnds, DirectionIsUnitAndDensityExact) {
   const Rgb albedo(1.0, 0.5, 0.0);
   const long double size = std::abs(static_cast<long double>(g));
   for (const Vec3& incoming : {Vec3(0, 0, -1), Vec3(-1, 0, 0), Vec3(0.48, -0.6, 0.64)})
-    for (const Vec2& u : corners()) {
+    for (const Vec2& u : makeCorners()) {
       const ScatterSample sample = PhaseScattering(incoming, g, albedo).sample(u);
       EXPECT_NEAR(sample.outgoing.norm(), 1.0, 1e-15);
       EXPECT_TRUE(sample.weight == albedo);
@@ -97,7 +97,7 @@ INSTANTIATE_TEST_SUITE_P(MeanCosines, PhaseEnds,
 // ---- surface lobes
 
 /// Unit direction of incidence with this cosine to the normal z, as exact as doubles allow.
-Vec3 incidence(double cosine) {
+Vec3 makeIncident(double cosine) {
   return {std::sqrt((1.0 - cosine) * (1.0 + cosine)), 0.0, -cosine};
 }
 
@@ -112,11 +112,11 @@ TEST(SurfaceEnds, DirectionIsUnitAndWeightBounded) {
     for (const double power : {0.0, 1e-3, 10.0, 1e4, 1e8, 1e16, 1e30, 1e300, most})
       for (const Vec2& strength : strengths)
         for (const Vec3& gradient : {Vec3(0, 0, -1), Vec3(0, 0, 1e-40), Vec3(0, 0, 1e45)}) {
-          const SurfaceScattering surface(incidence(cosine), gradient,
+          const SurfaceScattering surface(makeIncident(cosine), gradient,
                                           {strength.x(), strength.y(), power, 0.5},
                                           Rgb(1.0, 0.3, 0.0));
           for (const double choice : {0.0, largestUniform})
-            for (const Vec2& u : corners()) {
+            for (const Vec2& u : makeCorners()) {
               const ScatterSample sample = surface.sample(choice, u);
               ASSERT_NEAR(sample.outgoing.norm(), 1.0, 1e-12) << cosine << " " << power;
               ASSERT_TRUE(sample.pdf >= 0.0 && std::isfinite(sample.pdf)) << cosine << " " << power;
@@ -133,7 +133,7 @@ TEST(SurfaceEnds, DirectionIsUnitAndWeightBounded) {
 
 const Grid unitGrid(Size3(2, 2, 2), Affine::Identity());
 
-Camera camera() {
+Camera makeCamera() {
   CameraPose pose;
   pose.position = {0.5, -50, 0.5};
   pose.target = {0.5, 0.5, 0.5};
@@ -142,7 +142,7 @@ Camera camera() {
 
 /// Map of 8 x 4 texels; texels with `isLit(column, row)` have this radiance, others 0.
 template <typename IsLit>
-EnvironmentLight mapLight(IsLit&& isLit, float radiance = 1.0F) {
+EnvironmentLight makeMapLight(IsLit&& isLit, float radiance = 1.0F) {
   EnvironmentLight light;
   light.map = {8, 4, {}};
   for (int row = 0; row < 4; ++row)
@@ -151,24 +151,24 @@ EnvironmentLight mapLight(IsLit&& isLit, float radiance = 1.0F) {
   return light;
 }
 
-std::vector<EnvironmentLight> environments() {
+std::vector<EnvironmentLight> makeEnvironments() {
   constexpr float most = std::numeric_limits<float>::max();
   constexpr float least = std::numeric_limits<float>::denorm_min();
   const auto checker = [](int column, int row) { return (column + row) % 2 == 0; };
   return {EnvironmentLight{},
-          mapLight([](int, int) { return true; }),
-          mapLight([](int, int row) { return row == 1; }),
-          mapLight([](int column, int row) { return column == 7 && row == 3; }),
-          mapLight([](int column, int row) { return column == 0 && row == 0; }),
-          mapLight(checker),
-          mapLight(checker, most),
-          mapLight(checker, least)};
+          makeMapLight([](int, int) { return true; }),
+          makeMapLight([](int, int row) { return row == 1; }),
+          makeMapLight([](int column, int row) { return column == 7 && row == 3; }),
+          makeMapLight([](int column, int row) { return column == 0 && row == 0; }),
+          makeMapLight(checker),
+          makeMapLight(checker, most),
+          makeMapLight(checker, least)};
 }
 
 TEST(EnvironmentEnds, DirectionIsUnitInOrNextToALitTexel) {
-  for (const EnvironmentLight& light : environments()) {
+  for (const EnvironmentLight& light : makeEnvironments()) {
     const EnvironmentSampler sampler(light);
-    for (const Vec2& u : corners()) {
+    for (const Vec2& u : makeCorners()) {
       const Vec3 direction = sampler.sample(u);
       EXPECT_NEAR(direction.norm(), 1.0, 4e-16);
       EXPECT_TRUE(sampler.pdf(direction) >= 0.0 && std::isfinite(sampler.pdf(direction)));
@@ -186,17 +186,17 @@ TEST(EnvironmentEnds, DirectionIsUnitInOrNextToALitTexel) {
 }
 
 TEST(EnvironmentEnds, BlackMapIsNeverDrawn) {
-  const EnvironmentLight black = mapLight([](int, int) { return false; });
+  const EnvironmentLight black = makeMapLight([](int, int) { return false; });
   const EnvironmentSampler sampler(black);
-  const LightSet set({black}, unitGrid, camera());
-  for (const Vec2& u : corners()) {
+  const LightSet set({black}, unitGrid, makeCamera());
+  for (const Vec2& u : makeCorners()) {
     EXPECT_NEAR(sampler.sample(u).norm(), 1.0, 4e-16);
     EXPECT_EQ(sampler.pdf(sampler.sample(u)), 0.0);
     EXPECT_FALSE(set.sample(Vec3::Zero(), 0.0, u));
   }
 }
 
-AreaLight areaLight(AreaLight::Shape shape, double size) {
+AreaLight makeAreaLight(AreaLight::Shape shape, double size) {
   AreaLight light;
   light.shape = shape;
   light.center = Vec3::Zero();
@@ -205,16 +205,17 @@ AreaLight areaLight(AreaLight::Shape shape, double size) {
   return light;
 }
 
-std::vector<std::vector<Light>> lightings() {
+std::vector<std::vector<Light>> makeLightings() {
   std::vector<std::vector<Light>> result;
-  for (const EnvironmentLight& light : environments())
+  for (const EnvironmentLight& light : makeEnvironments())
     result.push_back({light});
   result.push_back({DirectionalLight{}});
   for (const double size : {2.0, 1e-30, 1e30})
     for (const auto shape : {AreaLight::Shape::rectangle, AreaLight::Shape::disk})
-      result.push_back({areaLight(shape, size)});
-  result.push_back({areaLight(AreaLight::Shape::disk, 2.0), DirectionalLight{}, EnvironmentLight{},
-                    environments()[2], areaLight(AreaLight::Shape::rectangle, 1e-3)});
+      result.push_back({makeAreaLight(shape, size)});
+  result.push_back({makeAreaLight(AreaLight::Shape::disk, 2.0), DirectionalLight{},
+                    EnvironmentLight{}, makeEnvironments()[2],
+                    makeAreaLight(AreaLight::Shape::rectangle, 1e-3)});
   return result;
 }
 
@@ -225,11 +226,11 @@ TEST(LightEnds, DirectionIsUnitAndContributionFinite) {
                          {-1, -1, 0}, {1, 0, 1e-300},      {0, 0, 5e-324},    {1e-200, 0, 1e-200},
                          {0, 0, 1e9}, {0, 1e-160, 1e-161}, {1e6, 1e6, 1e-300}};
   int drawn = 0;
-  for (const std::vector<Light>& lights : lightings()) {
-    const LightSet set(lights, unitGrid, camera());
+  for (const std::vector<Light>& lights : makeLightings()) {
+    const LightSet set(lights, unitGrid, makeCamera());
     for (const Vec3& point : points)
       for (const double choice : {0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99, largestUniform})
-        for (const Vec2& u : corners()) {
+        for (const Vec2& u : makeCorners()) {
           const std::optional<LightSample> sample = set.sample(point, choice, u);
           if (!sample)
             continue;
@@ -246,10 +247,10 @@ TEST(LightEnds, DirectionIsUnitAndContributionFinite) {
 }
 
 TEST(LightEnds, LightInTheVolumesCentreLeavesUsableShares) {
-  AreaLight light = areaLight(AreaLight::Shape::disk, 1.0);
+  AreaLight light = makeAreaLight(AreaLight::Shape::disk, 1.0);
   light.center = unitGrid.worldCenter();
   const EnvironmentLight sky{Rgb::Ones(), {2, 1, std::vector<float>(6, 1.0F)}};
-  const LightSet set({light, sky}, unitGrid, camera());
+  const LightSet set({light, sky}, unitGrid, makeCamera());
   EXPECT_NEAR(set.evaluateEnvironment(Vec3::UnitX()).pdf, 0.5 * 0.25 / pi, 1e-12);
 }
 
@@ -257,25 +258,25 @@ TEST(LightEnds, LightInTheVolumesCentreLeavesUsableShares) {
 
 constexpr std::uint64_t endBits[] = {0, ~std::uint64_t{0}};
 
-Volume bumps() {
+Volume makeBumps() {
   return makeVolume(makeCenteredGrid({9, 8, 7}, {1.0, 1.0, 1.0}), [](const Vec3& p) {
     return 0.5 + 0.5 * std::sin(1.3 * p.x()) * std::cos(0.9 * p.y() + p.z());
   });
 }
 
 TEST(TrackingEnds, CollisionsStayInTheRange) {
-  const Volume volume = bumps();
+  const Volume volume = makeBumps();
   const RayProbe<> probe(volume, makeLinearTransfer(2.0, Rgb::Ones()));
   const Interval range{1.0, 12.0};
   for (const std::uint64_t bits : endBits)
     for (int draw = 1; draw <= 40; ++draw)
       for (const Vec3& origin : {Vec3(-8, 0.3, 0.2), Vec3(-8, 0, 0), Vec3(0, 0, 0)}) {
         Counters counters;
-        Random forCollision = randomWithDraw(draw, bits);
+        Random forCollision = makeRandomWithDraw(draw, bits);
         const double t = probe.tracker().sampleCollision(
             {origin, Vec3::UnitX()}, range, forCollision.uniform2(), forCollision, counters);
         EXPECT_TRUE(t == infinity || (t >= range.begin && t <= range.end)) << t;
-        Random forRatio = randomWithDraw(draw, bits);
+        Random forRatio = makeRandomWithDraw(draw, bits);
         const double ratio =
             probe.tracker().transmittance({origin, Vec3::UnitX()}, range, forRatio, counters);
         EXPECT_TRUE(ratio >= 0.0 && ratio <= 1.0) << ratio;
@@ -284,8 +285,8 @@ TEST(TrackingEnds, CollisionsStayInTheRange) {
 }
 
 /// Sample of one path, with its counters.
-PathSample tracedPath(const TestScene& scene, const PrimarySamples& numbers, Counters& counters) {
-  return withEstimator(scene, [&](const auto& estimator) {
+PathSample tracePath(const TestScene& scene, const PrimarySamples& numbers, Counters& counters) {
+  return withIntegrator(scene, [&](const auto& estimator) {
     return *estimator.trace(0.5 * scene.width, 0.5 * scene.height, numbers, counters);
   });
 }
@@ -294,7 +295,7 @@ TEST(PathEnds, RadianceIsBoundedByTheNumberOfCollisions) {
   for (const bool hybrid : {false, true})
     for (const double g : {-0.9999, 0.0, 0.9999}) {
       TestScene scene{
-          bumps(), makeLinearTransfer(5.0, Rgb(1.0, 0.9, 0.0), g), {EnvironmentLight{}}, {}};
+          makeBumps(), makeLinearTransfer(5.0, Rgb(1.0, 0.9, 0.0), g), {EnvironmentLight{}}, {}};
       scene.pose.position = {0.0, -20.0, 0.0};
       scene.pose.target = Vec3::Zero();
       if (hybrid)
@@ -302,7 +303,7 @@ TEST(PathEnds, RadianceIsBoundedByTheNumberOfCollisions) {
       for (const std::uint64_t bits : endBits)
         for (int draw = 1; draw <= 150; ++draw) {
           Counters counters;
-          const Rgb radiance = tracedPath(scene, numbersWithDraw(draw, bits), counters).radiance;
+          const Rgb radiance = tracePath(scene, makeSamplesWithDraw(draw, bits), counters).radiance;
           // At each collision the sampled light and the light that is hit, weighted by the balance
           // heuristic, add at most one weight each.
           const double weight = hybrid ? 25.0 : 1.0;

@@ -10,7 +10,7 @@ namespace {
 
 /// Continuous field from the voxel array, by definition: trilinear, clamped.
 template <typename Voxel>
-double fieldAt(const Volume& volume, const Vec3& index) {
+double evaluateField(const Volume& volume, const Vec3& index) {
   const auto& voxels = std::get<LargeArray<Voxel>>(volume.voxels);
   const Size3& size = volume.grid.size;
   double sum = 0.0;
@@ -35,15 +35,15 @@ double fieldAt(const Volume& volume, const Vec3& index) {
 
 /// Integral of the field along the segment, by the midpoint rule.
 template <typename Voxel>
-double fieldIntegral(const Volume& volume, const Vec3& from, const Vec3& to, int steps = 20000) {
+double integrateField(const Volume& volume, const Vec3& from, const Vec3& to, int steps = 20000) {
   double sum = 0.0;
   for (int k = 0; k < steps; ++k)
-    sum += fieldAt<Voxel>(volume,
-                          volume.grid.worldToIndex * (from + (to - from) * ((k + 0.5) / steps)));
+    sum += evaluateField<Voxel>(volume, volume.grid.worldToIndex *
+                                            (from + (to - from) * ((k + 0.5) / steps)));
   return sum * (to - from).norm() / steps;
 }
 
-Vec3 randomIndex(const Grid& grid, Random& random) {
+Vec3 sampleIndex(const Grid& grid, Random& random) {
   const Vec3 u(random.uniform(), random.uniform(), random.uniform());
   return u.cwiseProduct(grid.size.cast<double>()) - Vec3::Constant(0.5);
 }
@@ -69,12 +69,12 @@ TEST_P(SmallSizes, TransmittanceEqualsExpOfIntegral) {
   const Grid& grid = m_volume.grid;
   for (int i = 0; i < 6; ++i) {
     Random random(2, static_cast<std::uint64_t>(i), 0);
-    const Vec3 a = grid.indexToWorld * randomIndex(grid, random);
-    const Vec3 b = grid.indexToWorld * randomIndex(grid, random);
+    const Vec3 a = grid.indexToWorld * sampleIndex(grid, random);
+    const Vec3 b = grid.indexToWorld * sampleIndex(grid, random);
     const Ray ray{a, (b - a).normalized()};
-    EXPECT_NEAR(probe.walkedLength(ray), chord(grid, ray), 1e-12);
+    EXPECT_NEAR(probe.measureWalk(ray), chord(grid, ray), 1e-12);
     const Interval range{0.0, (b - a).norm()};
-    const double depth = sigma * fieldIntegral<float>(m_volume, a, b, 4000);
+    const double depth = sigma * integrateField<float>(m_volume, a, b, 4000);
     probe.expectTransmittance(ray, range, std::exp(-depth), scaleSamples(4000));
   }
 }
@@ -84,13 +84,13 @@ TEST_P(SmallSizes, GradientIsZeroAlongSingleVoxels) {
   const Grid& grid = m_volume.grid;
   for (int i = 0; i < 20; ++i) {
     Random random(3, static_cast<std::uint64_t>(i), 0);
-    const Vec3 index = randomIndex(grid, random);
+    const Vec3 index = sampleIndex(grid, random);
     const Vec3 gradient = probe.medium().evaluate(index, true).gradient;
     for (int axis = 0; axis < 3; ++axis) {
       // The derivative along index axis a is the gradient's component along column a.
       const Vec3 step = Vec3::Unit(axis);
-      const double expected =
-          0.5 * (fieldAt<float>(m_volume, index + step) - fieldAt<float>(m_volume, index - step));
+      const double expected = 0.5 * (evaluateField<float>(m_volume, index + step) -
+                                     evaluateField<float>(m_volume, index - step));
       EXPECT_NEAR(gradient.dot(grid.indexToWorld.linear().col(axis)), expected, 1e-12);
       EXPECT_TRUE(grid.size[axis] > 1 || expected == 0.0) << expected;
     }
@@ -106,7 +106,7 @@ TEST_P(SmallSizes, FurnaceIsOne) {
     scene.pose.scale = 6.0;
     if (hybrid)
       scene.transfer.shading = SurfaceShading{1.0, 0.0, 10.0, 0.5}; // Lambert alone loses no energy
-    expectOne(renderIn(scene, scaleSamples(50)));
+    expectRadianceOne(renderScene(scene, scaleSamples(50)));
   }
 }
 
@@ -126,7 +126,7 @@ INSTANTIATE_TEST_SUITE_P(Sizes, SmallSizes,
 // ---- cells
 
 TEST(MajorantCells, AnyShapeHasAboutAQuarterOfAMillionCells) {
-  constexpr double wanted = 1 << 18;
+  constexpr double target = 1 << 18;
   struct Shape {
     Size3 size;
     Vec3 spacing;
@@ -158,7 +158,7 @@ TEST(MajorantCells, PrimeSizesTransmitExpOfIntegral) {
   for (int i = 0; i < 4; ++i) {
     const Vec3 from = volume.grid.worldCorner(i);
     const Vec3 to = volume.grid.worldCorner(7 - i);
-    const double depth = sigma * fieldIntegral<std::uint8_t>(volume, from, to);
+    const double depth = sigma * integrateField<std::uint8_t>(volume, from, to);
     probe.expectTransmittance({from, (to - from).normalized()}, {}, std::exp(-depth),
                               scaleSamples(4000));
   }
@@ -188,7 +188,7 @@ constexpr bool isSanitized() {
 }
 
 /// Volume with blocks of 16^3 voxels of 100 and 200 in two opposite corners; 0 elsewhere.
-Volume hugeVolume(std::int64_t side) {
+Volume makeHugeVolume(std::int64_t side) {
   LargeArray<std::uint8_t> voxels(static_cast<std::size_t>(side * side * side));
   for (std::int64_t k = 0; k < 16; ++k)
     for (std::int64_t j = 0; j < 16; ++j)
@@ -210,7 +210,7 @@ TEST(HugeVolume, VoxelsBeyond31BitsAreSeen) {
     GTEST_SKIP() << "needs 8 GB of free memory and no sanitizer";
   constexpr std::int64_t side = 1300;
   // 1 mm of the far block has an optical depth of 1.
-  TestScene scene{hugeVolume(side),
+  TestScene scene{makeHugeVolume(side),
                   {ScalarFunction({makeKnot(0.0, 0.0), makeKnot(200.0, 1.0)}),
                    ColorFunction({{0.0, Rgb::Constant(0.5)}})},
                   {EnvironmentLight{}},
@@ -230,7 +230,7 @@ TEST(HugeVolume, VoxelsBeyond31BitsAreSeen) {
   for (const Vec3& direction :
        {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(1, 1, 1), Vec3(1, 0.5, 0.2)}) {
     const Vec3 from = last - 4.0 * direction;
-    const double depth = fieldIntegral<std::uint8_t>(volume, from, last) / 200.0;
+    const double depth = integrateField<std::uint8_t>(volume, from, last) / 200.0;
     EXPECT_GT(depth, 1.0);
     probe.expectTransmittance({from, direction.normalized()}, {0.0, (last - from).norm()},
                               std::exp(-depth), scaleSamples(4000));
@@ -250,8 +250,8 @@ TEST(HugeVolume, VoxelsBeyond31BitsAreSeen) {
       scene.pose,
       4,
       4};
-  expectSamePicture(renderIn(scene, scaleSamples(500), 1).film,
-                    renderIn(small, scaleSamples(500), 2).film);
+  expectSameImage(renderScene(scene, scaleSamples(500), 1).film,
+                  renderScene(small, scaleSamples(500), 2).film);
 }
 
 } // namespace

@@ -41,41 +41,41 @@ struct SplineData {
   }
 };
 
-inline Vec2 inDisc(Random& random, double radius) {
+inline Vec2 sampleDisk(Random& random, double radius) {
   const double angle = uniform(random, 0.0, 2.0 * pi);
   return radius * std::sqrt(random.uniform()) * Vec2(std::cos(angle), std::sin(angle));
 }
 
 /// Random sites over a disc, random values in [500, 500 + range] mm.
-inline SplineData scattered(Random& random, int count, double radius, const Vec2& center,
-                            double range) {
+inline SplineData makeScattered(Random& random, int count, double radius, const Vec2& center,
+                                double range) {
   SplineData data;
   for (int i = 0; i < count; ++i)
-    data.add(center + inDisc(random, radius), 500.0 + range * random.uniform());
+    data.add(center + sampleDisk(random, radius), 500.0 + range * random.uniform());
   return data;
 }
 
 /// Evaluation points: eight of the sites, points 1e-9 mm beside these, `near` points within three
 /// extents of the first site, and four points 10 m away.
-inline std::vector<Vec2> places(Random& random, const SplineData& data, int near) {
-  std::vector<Vec2> places;
+inline std::vector<Vec2> makeEvaluationPoints(Random& random, const SplineData& data, int near) {
+  std::vector<Vec2> points;
   for (std::size_t i = 0; i < data.sites.size(); i += 1 + data.sites.size() / 8) {
-    places.push_back(data.sites[i]);
-    places.push_back(data.sites[i] + Vec2(1e-9, -1e-9));
+    points.push_back(data.sites[i]);
+    points.push_back(data.sites[i] + Vec2(1e-9, -1e-9));
   }
   for (int i = 0; i < near; ++i)
-    places.push_back(data.sites[0] + inDisc(random, 3.0 * data.extent()));
+    points.push_back(data.sites[0] + sampleDisk(random, 3.0 * data.extent()));
   for (int i = 0; i < 4; ++i)
-    places.push_back(data.sites[0] + 1e4 * Vec2(std::cos(1.7 * i), std::sin(1.7 * i)));
-  return places;
+    points.push_back(data.sites[0] + 1e4 * Vec2(std::cos(1.7 * i), std::sin(1.7 * i)));
+  return points;
 }
 
 /// Error norm of every bound here: greatest |f - g| / (range of the values + |g|) over the places;
 /// infinity if f is not finite at some place.
 template <typename F, typename G>
-double greatestError(const F& f, const G& g, const std::vector<Vec2>& places, double range) {
+double maxError(const F& f, const G& g, const std::vector<Vec2>& points, double range) {
   double worst = 0.0;
-  for (const Vec2& x : places) {
+  for (const Vec2& x : points) {
     const double exact = g(x), error = std::abs(f(x) - exact);
     worst = std::max(worst, std::isfinite(error) ? error / (range + std::abs(exact)) : infinity);
   }
@@ -83,7 +83,7 @@ double greatestError(const F& f, const G& g, const std::vector<Vec2>& places, do
 }
 
 /// Bound promised in ThinPlateSpline.h, at least 1e-9.
-inline double splineBound(const ThinPlateSpline& spline) {
+inline double errorBound(const ThinPlateSpline& spline) {
   return std::max(1e-9, 1e-14 * computeConditionNumber(spline));
 }
 

@@ -19,7 +19,7 @@ constexpr std::array origins{0.0, 120.3, 1e6};
 
 /// Smoothing for the saddle system, which does not exist at p = 0: its solution at 1e-30 is closer
 /// to the limit than double precision.
-double aboveZero(double smoothing) {
+double clampAboveZero(double smoothing) {
   return std::max(smoothing, 1e-30);
 }
 
@@ -28,9 +28,9 @@ double aboveZero(double smoothing) {
 void expectExact(const SplineData& data, const SplineData& same, double smoothing) {
   Random random(7, 0, 0);
   const ThinPlateSpline spline = data.spline(smoothing);
-  EXPECT_LE(
-      maxError(spline, same.exact(aboveZero(smoothing)), places(random, data, 8), data.range()),
-      splineBound(spline));
+  EXPECT_LE(maxError(spline, same.exact(clampAboveZero(smoothing)),
+                     makeEvaluationPoints(random, data, 8), data.range()),
+            errorBound(spline));
 }
 
 void expectExact(const SplineData& data) {
@@ -52,10 +52,10 @@ TEST(SplineStress, RandomSitesEqualTheFiftyDigitSolution) {
     const int count = 4 + static_cast<int>(46.999 * std::pow(random.uniform(), 2.0));
     const double radius = 0.5 * std::pow(1000.0, random.uniform());
     const double range = std::pow(10.0, uniform(random, -1, 3));
-    const SplineData data = scattered(random, count, radius, inDisc(random, 1e3), range);
+    const SplineData data = makeScattered(random, count, radius, sampleDisk(random, 1e3), range);
     const ThinPlateSpline spline = data.spline(p);
     const double error =
-        greatestError(spline, data.exact(p), places(random, data, 6), data.range());
+        maxError(spline, data.exact(p), makeEvaluationPoints(random, data, 6), data.range());
     EXPECT_LE(error, 1e-9) << count << " sites, radius " << radius << ", p " << p;
     worst = std::max(worst, error);
     worstCondition = std::max(worstCondition, computeConditionNumber(spline));
@@ -68,16 +68,17 @@ TEST(SplineStress, RandomSitesEqualTheFiftyDigitSolution) {
 TEST(SplineStress, ThousandSitesEqualTheSaddleSystem) {
   // Disc of 1 mm, in which the saddle system is well enough conditioned for long double.
   Random random(2, 0, 0);
-  const SplineData data = scattered(random, 1000, 1.0, {0.3, -0.2}, 500.0);
+  const SplineData data = makeScattered(random, 1000, 1.0, {0.3, -0.2}, 500.0);
   const double p = 1.0 / (1.0 + 1e-4); // equals p = 0.5 in a disc of 100 mm
   const ThinPlateSpline spline = data.spline(p);
   const SaddleSpline<long double> exact(data.sites, data.values, p);
-  EXPECT_LE(maxError(spline, exact, places(random, data, 50), data.range()), splineBound(spline));
+  EXPECT_LE(maxError(spline, exact, makeEvaluationPoints(random, data, 50), data.range()),
+            errorBound(spline));
   const ThinPlateSpline through = data.spline(1.0);
   double miss = 0.0;
   for (std::size_t i = 0; i < data.sites.size(); ++i)
     miss = std::max(miss, std::abs(through(data.sites[i]) - data.values[i]));
-  EXPECT_LE(miss, splineBound(through) * 1000.0);
+  EXPECT_LE(miss, errorBound(through) * 1000.0);
 }
 
 TEST(SplineStress, DepthJumpsOnACircleAreExact) {
@@ -100,7 +101,7 @@ TEST(SplineStress, ClustersAtTwoScalesAreExact) {
       double mean = 0.0;
       for (int i = 0; i < 8; ++i) {
         const Vec2 center(100.0 * (cluster % 3), 100.0 * (cluster / 3));
-        data.add(center + inDisc(random, width), 500.0 + 100.0 * cluster + random.uniform());
+        data.add(center + sampleDisk(random, width), 500.0 + 100.0 * cluster + random.uniform());
         mean += data.values.back() / 8.0;
       }
       centers.add(data.sites[data.sites.size() - 8], mean);
@@ -114,17 +115,17 @@ TEST(SplineStress, ClustersAtTwoScalesAreExact) {
 }
 
 TEST(SplineStress, NearlyCoincidentSitesAreExact) {
-  for (const double apart : {1e-3, 1e-6, 1e-9, 1e-12})
+  for (const double distance : {1e-3, 1e-6, 1e-9, 1e-12})
     for (const double jump : {0.0, 1e-3, 500.0})
       for (const double smoothing : {0.0, 0.5, 1.0 - 1e-6, 1.0 - 1e-13, 1.0}) {
         SCOPED_TRACE(std::to_string(jump) + " mm over " + std::to_string(1e12 * distance) +
                      "e-12 mm, p " + std::to_string(smoothing));
         Random random(4, 0, 0);
-        SplineData data = scattered(random, 20, 60.0, {0.0, 0.0}, 40.0);
+        SplineData data = makeScattered(random, 20, 60.0, {0.0, 0.0}, 40.0);
         SplineData one = data;
-        data.add(data.sites[0] + Vec2(apart, 0.0), data.values[0] + jump);
+        data.add(data.sites[0] + Vec2(distance, 0.0), data.values[0] + jump);
         one.values[0] += 0.5 * jump;
-        expectExact(data, smoothing > 1.0 - 1e-9 && apart < 1e-5 ? one : data, smoothing);
+        expectExact(data, smoothing > 1.0 - 1e-9 && distance < 1e-5 ? one : data, smoothing);
       }
 }
 
@@ -143,7 +144,7 @@ TEST(SplineStress, SitesInATinyDiscAreExact) {
   for (const double radius : {1e-3, 1e-6, 1e-12}) {
     Random random(6, 0, 0);
     SCOPED_TRACE(radius);
-    expectExact(scattered(random, 20, radius, {0.0, 0.0}, 10.0));
+    expectExact(makeScattered(random, 20, radius, {0.0, 0.0}, 10.0));
   }
 }
 
@@ -242,11 +243,11 @@ void expectSame(const SplineData& data, double p, const SplineData& moved, doubl
   Random random(9, 0, 0);
   const ThinPlateSpline a = data.spline(p), b = moved.spline(movedP);
   const auto atMoved = [&](const Vec2& x) { return b(map(x)); };
-  EXPECT_LE(maxError(atMoved, a, places(random, data, 50), data.range()), bound);
+  EXPECT_LE(maxError(atMoved, a, makeEvaluationPoints(random, data, 50), data.range()), bound);
 }
 
 template <typename Map>
-SplineData mapped(const SplineData& data, const Map& map) {
+SplineData mapSites(const SplineData& data, const Map& map) {
   SplineData moved = data;
   std::ranges::transform(data.sites, moved.sites.begin(), map);
   return moved;
@@ -257,26 +258,27 @@ TEST(SplineStress, DoesNotDependOnTheUnit) {
   for (const int count : {5, 50, 300})
     for (const double lambda : {0.0, 1e-3, 1.0, 1e3})
       for (const double unit : {1e-3, 1.0 / 512.0, 25.4, 1e3}) { // mm
-        const SplineData data = scattered(random, count, 40.0, {120, -300}, 40.0);
+        const SplineData data = makeScattered(random, count, 40.0, {120, -300}, 40.0);
         const auto inUnit = [&](const Vec2& x) -> Vec2 { return x / unit; };
         const double same = 1.0 / (1.0 + lambda / (unit * unit));
         const double rounded = lambda > 0.0 ? 1e-16 * unit * unit / lambda : 0.0; // of 1 - p
-        expectSame(data, 1.0 / (1.0 + lambda), mapped(data, inUnit), same, inUnit, 1e-9 + rounded);
+        expectSame(data, 1.0 / (1.0 + lambda), mapSites(data, inUnit), same, inUnit,
+                   1e-9 + rounded);
       }
 }
 
 TEST(SplineStress, ShiftsWithItsSites) {
   Random random(11, 0, 0);
-  SplineData data = scattered(random, 50, 40.0, {0, 0}, 40.0);
+  SplineData data = makeScattered(random, 50, 40.0, {0, 0}, 40.0);
   for (Vec2& site : data.sites) // multiples of 2^-12 mm, so that the shift is exact
     site = (site * 4096.0).array().round() / 4096.0;
   for (const Vec2& by : {Vec2(1, -7), Vec2(1e3, 2e3), Vec2(-1e6, 1e6)})
     for (const double smoothing : smoothings) {
       const ThinPlateSpline a = data.spline(smoothing);
       const ThinPlateSpline b =
-          mapped(data, [&](const Vec2& x) -> Vec2 { return x + by; }).spline(smoothing);
+          mapSites(data, [&](const Vec2& x) -> Vec2 { return x + by; }).spline(smoothing);
       for (int i = 0; i < 50; ++i) {
-        const Vec2 x = (4096.0 * inDisc(random, 1e4)).array().round() / 4096.0;
+        const Vec2 x = (4096.0 * sampleDisk(random, 1e4)).array().round() / 4096.0;
         ASSERT_NEAR(a(x), b(x + by), 1e-12 * (data.range() + std::abs(a(x)))) << by;
       }
     }
@@ -287,21 +289,21 @@ TEST(SplineStress, TurnsWithItsSites) {
   for (const double origin : origins)
     for (const double smoothing : smoothings)
       for (const double angle : {1e-8, 0.7, 0.5 * pi, 3.0}) {
-        const SplineData data = scattered(random, 50, 40.0, {0, 0}, 40.0);
+        const SplineData data = makeScattered(random, 50, 40.0, {0, 0}, 40.0);
         const auto turn = [&](const Vec2& x) -> Vec2 {
           const double c = std::cos(angle), s = std::sin(angle);
           return {c * x.x() - s * x.y() + origin, s * x.x() + c * x.y() - origin};
         };
         // At 1e6 mm coordinates are rounded by 1e-10 mm, which slopes turn into errors of f.
         const double bound = origin > 1e5 ? 1e-7 : 1e-9;
-        expectSame(data, smoothing, mapped(data, turn), smoothing, turn, bound);
+        expectSame(data, smoothing, mapSites(data, turn), smoothing, turn, bound);
       }
 }
 
 TEST(SplineStress, DoesNotDependOnTheOrderOfSites) {
   Random random(13, 0, 0);
   for (const double smoothing : smoothings) {
-    const SplineData data = scattered(random, 50, 40.0, {120, -300}, 40.0);
+    const SplineData data = makeScattered(random, 50, 40.0, {120, -300}, 40.0);
     SplineData reversed = data;
     std::ranges::reverse(reversed.sites);
     std::ranges::reverse(reversed.values);
@@ -313,7 +315,7 @@ TEST(SplineStress, DoesNotDependOnTheOrderOfSites) {
 // ---- condition numbers
 
 /// Wavy closed curve, like a contour.
-SplineData outline(int count, double radius) {
+SplineData makeOutline(int count, double radius) {
   SplineData data;
   for (int i = 0; i < count; ++i) {
     const double angle = 2.0 * pi * i / count;
@@ -325,7 +327,8 @@ SplineData outline(int count, double radius) {
 
 TEST(SplineStress, ConditionNumberEqualsTheRatioOfEigenvalues) {
   Random random(14, 0, 0);
-  for (const SplineData& data : {outline(50, 60.0), scattered(random, 30, 5.0, {10, 20}, 1.0)}) {
+  for (const SplineData& data :
+       {makeOutline(50, 60.0), makeScattered(random, 30, 5.0, {10, 20}, 1.0)}) {
     for (const double lambda : {0.0, 1.0}) {
       const double expected = computeConditionByEigenvectors(data.sites, lambda);
       EXPECT_NEAR(computeConditionNumber(data.spline(1.0 / (1.0 + lambda))), expected,
@@ -341,8 +344,8 @@ TEST(SplineStress, ConditionNumberStaysSmall) {
     for (const int count : {10, 50, 200, 1000}) {
       Random random(15, 0, 0);
       const auto sites = [&](double radius) {
-        return *layout == 'o' ? outline(count, radius)
-                              : scattered(random, count, radius, Vec2::Zero(), 1.0);
+        return *layout == 'o' ? makeOutline(count, radius)
+                              : makeScattered(random, count, radius, Vec2::Zero(), 1.0);
       };
       const std::array conditions{computeConditionNumber(sites(1.0).spline(0.5)),
                                   computeConditionNumber(sites(100.0).spline(0.5)),

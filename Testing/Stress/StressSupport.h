@@ -33,22 +33,22 @@ constexpr std::uint64_t unmixBits(std::uint64_t y) {
 
 /// Random whose `draw`-th call of bits(), counted from 1, returns `bits`; other draws stay random.
 /// Feeds 0 and the largest u to code that takes only a Random.
-inline Random randomWithDraw(int draw, std::uint64_t bits) {
+inline Random makeRandomWithDraw(int draw, std::uint64_t bits) {
   return Random(unmixBits(bits) - static_cast<std::uint64_t>(draw) * Random::gamma);
 }
 
 /// Numbers of a path of which the `draw`-th one, in the order of PrimarySamples from depth on, is
 /// `bits`.
-inline PrimarySamples numbersWithDraw(int draw, std::uint64_t bits) {
+inline PrimarySamples makeSamplesWithDraw(int draw, std::uint64_t bits) {
   constexpr int given = 4;
-  Random random = randomWithDraw(draw, bits);
+  Random random = makeRandomWithDraw(draw, bits);
   const std::uint64_t depth = random.bits();
   const std::uint64_t acceptance = random.bits();
-  const std::uint64_t scattered = random.bits();
+  const std::uint64_t direction = random.bits();
   const std::uint64_t choices = random.bits();
   const std::uint64_t rest =
       unmixBits(bits) - static_cast<std::uint64_t>(draw - given) * Random::gamma;
-  return {0, depth, acceptance, scattered, choices, rest};
+  return {0, depth, acceptance, direction, choices, rest};
 }
 
 /// Length of a ray inside a grid's box, t >= 0, mm; in long double, without the product's code.
@@ -101,27 +101,28 @@ public:
   /// [0, 1]: variance <= T (1 - T). Returns the counters of `n` rays of each.
   Counters expectTransmittance(const Ray& ray, const Interval& range, double expected,
                                int n) const {
-    double free = 0.0;
+    double survived = 0.0;
     double ratio = 0.0;
     Counters counters;
     for (int i = 0; i < n; ++i) {
       Random random(41, static_cast<std::uint64_t>(i), 0);
-      free += m_tracker.sampleCollision(ray, range, random.uniform2(), random, counters) == infinity
-                  ? 1.0 / n
-                  : 0.0;
+      survived +=
+          m_tracker.sampleCollision(ray, range, random.uniform2(), random, counters) == infinity
+              ? 1.0 / n
+              : 0.0;
       ratio += m_tracker.transmittance(ray, range, random, counters) / n;
     }
     const double error = 4.0 * std::sqrt(expected * (1.0 - expected) / n) + 1e-12 * expected + 1e-9;
-    EXPECT_NEAR(free, expected, error) << ray.origin << " | " << ray.direction;
+    EXPECT_NEAR(survived, expected, error) << ray.origin << " | " << ray.direction;
     EXPECT_NEAR(ratio, expected, error) << ray.origin << " | " << ray.direction;
     return counters;
   }
 
   /// Length of the ray covered by the walk over majorant cells, mm; expects no gaps or overlaps.
-  double walkedLength(const Ray& ray) const {
-    const Interval inside =
+  double measureWalk(const Ray& ray) const {
+    const Interval interval =
         m_domain.clip(transformRay(m_domain.grid().worldToIndex, ray), Interval{});
-    GridWalk walk(transformRay(m_majorants.worldToCell(), ray), inside, m_majorants.cellCount());
+    GridWalk walk(transformRay(m_majorants.worldToCell(), ray), interval, m_majorants.cellCount());
     if (walk.isDone())
       return 0.0;
     const double begin = walk.interval().begin;
@@ -145,7 +146,7 @@ private:
 
 /// Calls `work` with the path estimator of a scene, built as in a render.
 template <typename Work>
-auto withEstimator(const TestScene& scene, Work&& work) {
+auto withIntegrator(const TestScene& scene, Work&& work) {
   const Camera camera(scene.pose, scene.width, scene.height);
   const LightSet lights(scene.lights, scene.volume.grid, camera);
   const RayProbe<> probe(scene.volume, scene.transfer);
@@ -158,7 +159,7 @@ auto withEstimator(const TestScene& scene, Work&& work) {
 /// Expects two pictures of independent seeds to differ by chance alone: their means to 4 standard
 /// errors, the sum of squared z over the pixels to 4 of its own (Wilson and Hilferty 1931). Pixels
 /// without variance in both must be equal.
-inline void expectSamePicture(const Film& a, const Film& b) {
+inline void expectSameImage(const Film& a, const Film& b) {
   ASSERT_EQ(a.pixelCount(), b.pixelCount());
   double difference = 0.0, variance = 0.0, chi2 = 0.0;
   int pixels = 0;
@@ -192,7 +193,7 @@ inline void expectEqualBits(const Film& a, const Film& b) {
 }
 
 /// Renders `samples` a pixel against an environment, visible behind the volume.
-inline RenderResult renderIn(const TestScene& scene, int samples, std::uint64_t seed = 1) {
+inline RenderResult renderScene(const TestScene& scene, int samples, std::uint64_t seed = 1) {
   RenderSettings settings;
   settings.samples = static_cast<std::uint64_t>(samples);
   settings.seed = seed;
@@ -201,7 +202,7 @@ inline RenderResult renderIn(const TestScene& scene, int samples, std::uint64_t 
 }
 
 /// Furnace: expects radiance 1 for albedo 1 in an environment of 1.
-inline void expectOne(const RenderResult& result) {
+inline void expectRadianceOne(const RenderResult& result) {
   const Estimate estimate = estimateMean(result.film);
   EXPECT_NEAR(estimate.mean, 1.0, 4.0 * estimate.error + 1e-7);
   EXPECT_LT(estimate.error, 0.02);

@@ -35,7 +35,7 @@ inline void expectBounded(double depth, const ClippingSurface& surface, const Vi
       least = std::min(least, focus);
       greatest = std::max(greatest, focus);
     }
-  const double reach = 2.0 * view.volume.boundingRadius();
+  const double distance = 2.0 * view.volume.boundingRadius();
   ASSERT_GE(depth, least - distance);
   ASSERT_LE(depth, greatest + distance);
 }
@@ -81,7 +81,7 @@ inline void expectDepths(const View& view, const ClippingSurface& surface,
 
 /// Expects distinct focus samples, at most the requested number, and consistent mismatches.
 inline void expectControlPoints(const ClippingSurface& surface, const SurfaceOptions& options) {
-  const auto asked = static_cast<std::size_t>(options.controlPoints);
+  const auto requested = static_cast<std::size_t>(options.controlPoints);
   EXPECT_GE(surface.controlPoints.size(), 1U);
   EXPECT_LE(surface.controlPoints.size(), requested);
   std::set<std::pair<double, double>> sites;
@@ -94,29 +94,31 @@ inline void expectControlPoints(const ClippingSurface& surface, const SurfaceOpt
   EXPECT_LE(mismatch.mean, mismatch.max * (1.0 + 1e-12));
   EXPECT_LE(mismatch.p95, mismatch.max);
   EXPECT_TRUE(std::isfinite(mismatch.max));
-  const std::string flat = "the focus covers hardly a pixel: the clipping surface is flat; choose "
-                           "a larger --size, or a view that frames the focus";
-  EXPECT_EQ(std::ranges::count(surface.warnings, flat),
+  const std::string warning =
+      "the focus covers hardly a pixel: the clipping surface is flat; choose "
+      "a larger --size, or a view that frames the focus";
+  EXPECT_EQ(std::ranges::count(surface.warnings, warning),
             surface.controlPoints.size() < std::min<std::size_t>(3, requested) ? 1 : 0);
 }
 
 /// Expects 0 or 1 in and around the volume, up to double's limits, and where projection fails.
-inline void expectKeepEverywhere(const View& view, const Clip& clip) {
+inline void expectClipWeightEverywhere(const View& view, const Clip& clip) {
   Random random(1, 0, 0);
   const Camera& camera = view.camera;
   const Vec3 center = view.volume.worldCenter();
-  const Vec3& eye = camera.pose().position;
+  const Vec3& cameraPosition = camera.pose().position;
   std::vector<Vec3> points{center,
-                           eye,
-                           eye + 1e-300 * camera.forward(),
-                           eye + camera.right(),
-                           eye - 1e300 * camera.forward(),
+                           cameraPosition,
+                           cameraPosition + 1e-300 * camera.forward(),
+                           cameraPosition + camera.right(),
+                           cameraPosition - 1e300 * camera.forward(),
                            center + Vec3::Constant(1e300)};
-  for (const double reach : {1.0, 3.0, 1e3, 1e9})
+  for (const double distance : {1.0, 3.0, 1e3, 1e9})
     for (int i = 0; i < 200; ++i)
-      points.push_back(center + reach * view.volume.boundingRadius() * randomPoint(random, -1, 1));
+      points.push_back(center +
+                       distance * view.volume.boundingRadius() * randomPoint(random, -1, 1));
   for (const Vec3& point : points) {
-    const double kept = clipWeight(clip, point);
+    const double weight = clipWeight(clip, point);
     ASSERT_TRUE(weight == 0.0 || weight == 1.0) << point;
     if (isBehindCamera(camera, camera.toView(point).z())) {
       ASSERT_EQ(weight, 0.0);
@@ -125,23 +127,23 @@ inline void expectKeepEverywhere(const View& view, const Clip& clip) {
 }
 
 /// Expects eye rays to be kept from the start of visible on, and not before.
-inline void expectVisible(const View& view, const Clip& clip) {
+inline void expectVisibleInterval(const View& view, const Clip& clip) {
   Random random(2, 0, 0);
   const Camera& camera = view.camera;
   for (int i = 0; i < 500; ++i) {
     const Ray ray =
         camera.makeRay(uniform(random, 0, camera.width()), uniform(random, 0, camera.height()));
-    const Interval seen = visibleInterval(clip, ray);
+    const Interval interval = visibleInterval(clip, ray);
     ASSERT_TRUE(std::isfinite(interval.begin) && interval.begin >= 0.0);
     ASSERT_EQ(interval.end, infinity);
     // Rounding of a position times the surface's slope is an error of depth.
-    const double step = 1e-9 * (ray.origin.norm() + seen.begin + camera.targetDepth()) + 1e-6;
-    ASSERT_EQ(clipWeight(clip, ray.at(interval.begin + step)), 1.0) << seen.begin;
-    ASSERT_EQ(clipWeight(clip, ray.at(2.0 * interval.begin + 1e3)), 1.0) << seen.begin;
-    if (seen.begin > 2.0 * step) {
-      ASSERT_EQ(clipWeight(clip, ray.at(interval.begin - step)), 0.0) << seen.begin;
+    const double step = 1e-9 * (ray.origin.norm() + interval.begin + camera.targetDepth()) + 1e-6;
+    ASSERT_EQ(clipWeight(clip, ray.at(interval.begin + step)), 1.0) << interval.begin;
+    ASSERT_EQ(clipWeight(clip, ray.at(2.0 * interval.begin + 1e3)), 1.0) << interval.begin;
+    if (interval.begin > 2.0 * step) {
+      ASSERT_EQ(clipWeight(clip, ray.at(interval.begin - step)), 0.0) << interval.begin;
       ASSERT_EQ(clipWeight(clip, ray.at(interval.begin * random.uniform() * 0.999)), 0.0)
-          << seen.begin;
+          << interval.begin;
     }
   }
 }
@@ -157,9 +159,10 @@ inline void expectBoxes(const View& view, const Clip& clip) {
     Corners corners;
     for (int corner = 0; corner < 8; ++corner)
       corners[static_cast<std::size_t>(corner)] = box.corner(corner);
-    const ClipBounds verdict = boundClipWeight(clip, corners);
+    const ClipBounds bounds = boundClipWeight(clip, corners);
     for (int point = 0; point < 16; ++point) {
-      const double kept = clipWeight(clip, center + half.cwiseProduct(randomPoint(random, -1, 1)));
+      const double weight =
+          clipWeight(clip, center + half.cwiseProduct(randomPoint(random, -1, 1)));
       ASSERT_FALSE(bounds == ClipBounds::none && weight > 0.0);
       ASSERT_FALSE(bounds == ClipBounds::all && weight < 1.0);
     }
@@ -168,7 +171,8 @@ inline void expectBoxes(const View& view, const Clip& clip) {
 
 /// Expects the cut to end where the focus begins, at the centres of the picture's focus pixels; an
 /// exact cut may end behind, where the focus falls away steeply.
-inline void expectFocusShown(const View& view, const ClippingSurface& surface, Boundary boundary) {
+inline void expectFocusVisible(const View& view, const ClippingSurface& surface,
+                               Boundary boundary) {
   const DepthBuffer& buffer = surface.focus.depth;
   for (int row = 0; row < view.camera.height(); ++row)
     for (int column = 0; column < view.camera.width(); ++column) {
@@ -185,15 +189,15 @@ inline void expectFocusShown(const View& view, const ClippingSurface& surface, B
     }
 }
 
-inline void expectSound(const View& view, const SurfaceOptions& options) {
+inline void expectValid(const View& view, const SurfaceOptions& options) {
   const ClippingSurface surface = view.surface(options);
   expectDepths(view, surface, options);
   if (options.mode == SurfaceMode::surface && options.boundary == Boundary::spline)
     expectControlPoints(surface, options);
-  expectKeepEverywhere(view, surface.clip);
-  expectVisible(view, surface.clip);
+  expectClipWeightEverywhere(view, surface.clip);
+  expectVisibleInterval(view, surface.clip);
   expectBoxes(view, surface.clip);
-  expectFocusShown(view, surface, options.boundary);
+  expectFocusVisible(view, surface, options.boundary);
 }
 
 /// For every edge and offset, expects keep in [0, 1], at least the ghost in front of the eye, and
@@ -215,11 +219,11 @@ inline void expectEdges(const View& view) {
         Corners corners;
         for (int corner = 0; corner < 8; ++corner)
           corners[static_cast<std::size_t>(corner)] = box.corner(corner);
-        const ClipBounds verdict = boundClipWeight(clip, corners);
+        const ClipBounds bounds = boundClipWeight(clip, corners);
         for (int point = 0; point < 8; ++point) {
           const Vec3 at =
               lower + Vec3(box.upper - lower).cwiseProduct(randomPoint(random, 0.0, 1.0));
-          const double kept = clipWeight(clip, at);
+          const double weight = clipWeight(clip, at);
           const bool isBehind = isBehindCamera(view.camera, view.camera.toView(at).z());
           ASSERT_GE(weight, isBehind ? 0.0 : edge.ghost);
           ASSERT_LE(weight, bounds.max);
@@ -230,19 +234,19 @@ inline void expectEdges(const View& view) {
 }
 
 /// Tests every mode, smoothing and number of control points; for large buffers only one.
-inline void expectSound(const View& view) {
+inline void expectValid(const View& view) {
   if (DepthBuffer(view.camera, view.volume).size() > 40'000)
-    return expectSound(view, {.controlPoints = 30, .smoothing = 1.0});
-  expectSound(view, {.mode = SurfaceMode::cutaway});
-  expectSound(view, {.boundary = Boundary::exact});
+    return expectValid(view, {.controlPoints = 30, .smoothing = 1.0});
+  expectValid(view, {.mode = SurfaceMode::cutaway});
+  expectValid(view, {.boundary = Boundary::exact});
   for (const HoleShape shape : {HoleShape::box, HoleShape::cylinder, HoleShape::sphere})
     for (const double margin : {0.0, 5.0})
-      expectSound(view, {.mode = SurfaceMode::hole, .hole = {shape, margin}});
+      expectValid(view, {.mode = SurfaceMode::hole, .hole = {shape, margin}});
   expectEdges(view);
   for (const double smoothing : smoothings)
     for (const int points : {1, 3, 50, 300}) {
       SCOPED_TRACE("p " + std::to_string(smoothing) + ", points " + std::to_string(points));
-      expectSound(view, {.controlPoints = points, .smoothing = smoothing});
+      expectValid(view, {.controlPoints = points, .smoothing = smoothing});
     }
 }
 

@@ -14,29 +14,29 @@ constexpr double lowest = -200.0; // scalars of the volume
 constexpr double highest = 300.0;
 
 /// Volume of 11 layers of 1 mm along z.
-Volume scalarRamp() {
+Volume makeScalarRamp() {
   return makeVolume<std::int16_t>(makeCenteredGrid({2, 2, 11}, Vec3::Ones()), [](const Vec3& p) {
     return lowest + (highest - lowest) * p.z() / 10.0;
   });
 }
 
 /// Value just right of s (a step belongs to its right side), from sorted knots.
-double valueAt(const Knots& knots, double s) {
+double evaluate(const Knots& knots, double s) {
   double value = knots.front().value[0];
   for (std::size_t i = 0; i < knots.size(); ++i) {
     if (knots[i].position > s)
       break;
     value = knots[i].value[0];
     if (i + 1 < knots.size() && knots[i + 1].position > s) {
-      const double share = (s - knots[i].position) / (knots[i + 1].position - knots[i].position);
-      value += share * (knots[i + 1].value[0] - value);
+      const double t = (s - knots[i].position) / (knots[i + 1].position - knots[i].position);
+      value += t * (knots[i + 1].value[0] - value);
     }
   }
   return value;
 }
 
 /// Integral of the function over the volume's scalars: trapezia between knots.
-double integral(const Knots& knots) {
+double integrate(const Knots& knots) {
   std::vector<double> ends = {lowest, highest};
   for (const auto& k : knots)
     if (k.position > lowest && k.position < highest)
@@ -47,15 +47,15 @@ double integral(const Knots& knots) {
     const double width = ends[i + 1] - ends[i];
     if (width > 1e-6) // linear inside: two interior points determine the line
       sum += 0.5 * width *
-             (valueAt(knots, ends[i] + 0.25 * width) + valueAt(knots, ends[i] + 0.75 * width));
+             (evaluate(knots, ends[i] + 0.25 * width) + evaluate(knots, ends[i] + 0.75 * width));
   }
   return sum;
 }
 
 /// Optical depth of a ray along the ramp: 10 mm, plus half a voxel of the scalar at either end.
-double opticalDepth(const Knots& knots) {
-  return 0.5 * valueAt(knots, lowest) + integral(knots) / (highest - lowest) * 10.0 +
-         0.5 * valueAt(knots, highest);
+double computeOpticalDepth(const Knots& knots) {
+  return 0.5 * evaluate(knots, lowest) + integrate(knots) / (highest - lowest) * 10.0 +
+         0.5 * evaluate(knots, highest);
 }
 
 struct TransferCase {
@@ -65,7 +65,7 @@ struct TransferCase {
 
 const double next = std::nextafter(50.0, 51.0);
 
-std::vector<TransferCase> transferCases() {
+std::vector<TransferCase> makeTransferCases() {
   return {
       {"oneKnot", {makeKnot(50, 0.1)}},
       {"oneKnotFarOutside", {makeKnot(1e30, 0.1)}},
@@ -98,8 +98,8 @@ std::vector<TransferCase> transferCases() {
 class TransferExtremes : public ::testing::TestWithParam<TransferCase> {};
 
 TEST_P(TransferExtremes, TransmittanceEqualsExpOfIntegral) {
-  const Volume volume = scalarRamp();
-  const double expected = std::exp(-opticalDepth(GetParam().knots));
+  const Volume volume = makeScalarRamp();
+  const double expected = std::exp(-computeOpticalDepth(GetParam().knots));
   Knots unsorted = GetParam().knots; // any order of positions; coincident knots keep their order
   std::stable_sort(unsorted.begin(), unsorted.end(),
                    [](const auto& a, const auto& b) { return a.position > b.position; });
@@ -113,7 +113,7 @@ TEST_P(TransferExtremes, TransmittanceEqualsExpOfIntegral) {
 }
 
 TEST_P(TransferExtremes, FurnaceIsOne) {
-  TestScene scene{scalarRamp(),
+  TestScene scene{makeScalarRamp(),
                   {ScalarFunction(GetParam().knots), ColorFunction({{0.0, Rgb::Ones()}})},
                   {EnvironmentLight{}},
                   {},
@@ -122,15 +122,15 @@ TEST_P(TransferExtremes, FurnaceIsOne) {
   scene.pose.position = {10.0, -10.0, 8.0};
   scene.pose.target = Vec3::Zero();
   scene.pose.scale = 5.0;
-  const RenderResult result = renderIn(scene, scaleSamples(60));
-  expectOne(result);
+  const RenderResult result = renderScene(scene, scaleSamples(60));
+  expectRadianceOne(result);
   if (std::string(GetParam().name) == "allZero") {
     EXPECT_EQ(result.counters.lookups, 0U);
     EXPECT_EQ(result.counters.skippedCells, result.counters.cells);
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Functions, TransferExtremes, ::testing::ValuesIn(transferCases()),
+INSTANTIATE_TEST_SUITE_P(Functions, TransferExtremes, ::testing::ValuesIn(makeTransferCases()),
                          [](const auto& info) { return std::string(info.param.name); });
 
 // ---- Slicer's volume property
@@ -148,7 +148,7 @@ TEST_P(PropertyExtremes, TransmittanceEqualsTheFormula) {
   property.scalarOpacity = GetParam().opacity;
   property.color = {{0.0, Rgb::Zero()}};
   property.unitDistance = GetParam().unitDistance;
-  const Volume volume = scalarRamp();
+  const Volume volume = makeScalarRamp();
   const RayProbe<std::int16_t> probe(volume, tabulate(property, "test"));
   // Reference: -ln(1 - opacity) / unit distance, opacity <= 0.9999, along 0.5 mm around scalar 50.
   double depth = 0.0;
@@ -198,7 +198,7 @@ void expectConstantIs(double value, double sigma_t) {
   for (const bool hybrid : {false, true}) { // no gradient: never a surface
     if (hybrid)
       scene.transfer.shading = SurfaceShading{};
-    expectOne(renderIn(scene, scaleSamples(60)));
+    expectRadianceOne(renderScene(scene, scaleSamples(60)));
   }
 }
 

@@ -17,7 +17,7 @@ const FileGeometry cube{.size = {4, 4, 4}};
 /// Ordinary values 0 to 94 (steps of 1.5 if the type has fractions), with the values `odd` in
 /// between.
 template <typename T>
-std::vector<T> samplesWith(const std::vector<T>& odd) {
+std::vector<T> makeSamples(const std::vector<T>& odd) {
   std::vector<T> samples(64);
   for (std::size_t i = 0; i < samples.size(); ++i)
     samples[i] = static_cast<T>(1.5 * static_cast<double>(i * 29 % 64));
@@ -29,7 +29,7 @@ std::vector<T> samplesWith(const std::vector<T>& odd) {
 /// Documented replacement: NaN and -infinity become the least finite value, +infinity the greatest;
 /// values beyond float are clamped to its range.
 template <typename T>
-std::vector<float> replaced(const std::vector<T>& samples) {
+std::vector<float> replaceOdd(const std::vector<T>& samples) {
   std::vector<long double> finite;
   for (const T x : samples)
     if (std::isfinite(static_cast<long double>(x)))
@@ -46,7 +46,7 @@ std::vector<float> replaced(const std::vector<T>& samples) {
   return result;
 }
 
-Film filmOf(RenderRequest request, int samples) {
+Film renderFilm(RenderRequest request, int samples) {
   request.width = 8;
   request.height = 8;
   const PreparedScene scene(request);
@@ -57,20 +57,20 @@ Film filmOf(RenderRequest request, int samples) {
 }
 
 /// Picture by the command line's defaults, in an environment of 1.
-Film pictureOf(const std::filesystem::path& volume, const std::optional<std::string>& transfer) {
+Film renderFile(const std::filesystem::path& volume, const std::optional<std::string>& transfer) {
   RenderRequest request;
   request.input = volume;
   request.transfer = transfer;
   request.environment = Rgb::Ones();
-  return filmOf(request, 16);
+  return renderFilm(request, 16);
 }
 
 /// Compares the stored voxels and the pictures, under a given look and under the default look.
 template <typename T>
 void expectReplaced(const std::vector<T>& odd) {
   const TemporaryFolder folder;
-  const std::vector<T> samples = samplesWith(odd);
-  const std::vector<float> expected = replaced(samples);
+  const std::vector<T> samples = makeSamples(odd);
+  const std::vector<float> expected = replaceOdd(samples);
   writeFile(folder / "odd.nrrd", samples, cube);
   writeFile(folder / "easy.nrrd", expected, cube);
   const Volume volume = readVolume(folder / "odd.nrrd");
@@ -85,13 +85,13 @@ void expectReplaced(const std::vector<T>& odd) {
   EXPECT_EQ(volume.minimum, static_cast<double>(*least));
   EXPECT_EQ(volume.maximum, static_cast<double>(*greatest));
 
-  const std::string look =
+  const std::string transferFile =
       folder.write("look.json", R"({"extinction": [[-50, 0.1], [20, 0], [80, 1.5], [80, 0.4]],
                                     "albedo": [[0, 0.9, 0.5, 0.1], [90, 0.2, 0.8, 0.9]]})");
   for (const std::optional<std::string>& transfer :
-       {std::optional(look), std::optional<std::string>{}}) {
-    const Film film = pictureOf(folder / "odd.nrrd", transfer);
-    expectEqualBits(film, pictureOf(folder / "easy.nrrd", transfer));
+       {std::optional(transferFile), std::optional<std::string>{}}) {
+    const Film film = renderFile(folder / "odd.nrrd", transfer);
+    expectEqualBits(film, renderFile(folder / "easy.nrrd", transfer));
     double sum = 0.0;
     for (const PixelSums& pixel : film.pixels()) {
       ASSERT_TRUE((pixel.mean >= 0.0).all() && allFinite(pixel.mean));
@@ -102,21 +102,21 @@ void expectReplaced(const std::vector<T>& odd) {
 }
 
 template <typename T>
-std::vector<T> extremes() {
+std::vector<T> makeExtremes() {
   using Limits = std::numeric_limits<T>;
   return {Limits::max(), Limits::lowest(), static_cast<T>(Limits::max() - 1),
           static_cast<T>(Limits::lowest() + 1)};
 }
 
 TEST(OddVoxels, ExtremeIntegersAreKeptOrRounded) {
-  expectReplaced<std::int8_t>(extremes<std::int8_t>());
-  expectReplaced<std::uint8_t>(extremes<std::uint8_t>());
-  expectReplaced<std::int16_t>(extremes<std::int16_t>());
-  expectReplaced<std::uint16_t>(extremes<std::uint16_t>());
-  expectReplaced<std::int32_t>(extremes<std::int32_t>());
-  expectReplaced<std::uint32_t>(extremes<std::uint32_t>());
-  expectReplaced<std::int64_t>(extremes<std::int64_t>());
-  expectReplaced<std::uint64_t>(extremes<std::uint64_t>());
+  expectReplaced<std::int8_t>(makeExtremes<std::int8_t>());
+  expectReplaced<std::uint8_t>(makeExtremes<std::uint8_t>());
+  expectReplaced<std::int16_t>(makeExtremes<std::int16_t>());
+  expectReplaced<std::uint16_t>(makeExtremes<std::uint16_t>());
+  expectReplaced<std::int32_t>(makeExtremes<std::int32_t>());
+  expectReplaced<std::uint32_t>(makeExtremes<std::uint32_t>());
+  expectReplaced<std::int64_t>(makeExtremes<std::int64_t>());
+  expectReplaced<std::uint64_t>(makeExtremes<std::uint64_t>());
 }
 
 template <typename T>
@@ -150,29 +150,29 @@ TEST(OddVoxels, WithoutFiniteVoxelIsRefusedWithOneIsConstant) {
   const double nan = std::nan("");
   writeFile(folder / "none.nrrd", std::vector<double>(64, nan), cube);
   expectRefused(folder / "none.nrrd", "no voxel is a finite number",
-                [&] { pictureOf(folder / "none.nrrd", {}); });
+                [&] { renderFile(folder / "none.nrrd", {}); });
   std::vector<double> one(64, nan);
   one[63] = -1000.0;
   writeFile(folder / "one.nrrd", one, cube);
   writeFile(folder / "easy.nrrd", std::vector<double>(64, -1000.0), cube);
-  expectEqualBits(pictureOf(folder / "one.nrrd", {}), pictureOf(folder / "easy.nrrd", {}));
+  expectEqualBits(renderFile(folder / "one.nrrd", {}), renderFile(folder / "easy.nrrd", {}));
 }
 
 TEST(ConstantFiles, DefaultLookDoesNotDependOnTheValue) {
   const TemporaryFolder folder;
-  const auto shown = [&](double value) {
+  const auto renderConstant = [&](double value) {
     writeFile(folder / "v.nrrd", std::vector<float>(64, static_cast<float>(value)), cube);
-    return pictureOf(folder / "v.nrrd", {});
+    return renderFile(folder / "v.nrrd", {});
   };
-  const Film usual = shown(100.0);
+  const Film usual = renderConstant(100.0);
   EXPECT_GT(usual.at(4, 4).mean.sum(), 0.0);
   for (const double value : {0.0, -1000.0, 1e-45, 3e38, -3e38, 255.0})
-    expectEqualBits(shown(value), usual);
+    expectEqualBits(renderConstant(value), usual);
 }
 
 // ---- limits on a scene's extinction
 
-std::string denseLook(double extinction) {
+std::string makeDenseTransfer(double extinction) {
   std::ostringstream text;
   text << R"({"extinction": [[0, 0], [10, )" << extinction
        << R"(]], "albedo": [[0, 0.9, 0.9, 0.9]]})";
@@ -184,31 +184,32 @@ TEST(ExtinctionLimit, OpticalDepthAboveTenMillionIsRefused) {
   writeFile(folder / "v.nrrd", std::vector<std::uint8_t>(64, 10), cube);
   const double limit = 1e7 / (4.0 * std::sqrt(3.0)); // across the diagonal of 4 mm
   for (const double extinction : {1.001 * limit, 1e8, 1e30}) {
-    const auto look = folder.write("over.json", denseLook(extinction));
-    expectRefused(look, "extinction: reaches", [&] { pictureOf(folder / "v.nrrd", look); });
+    const auto transferFile = folder.write("over.json", makeDenseTransfer(extinction));
+    expectRefused(transferFile, "extinction: reaches",
+                  [&] { renderFile(folder / "v.nrrd", transferFile); });
   }
-  const auto look = folder.write("at.json", denseLook(0.999 * limit));
+  const auto transferFile = folder.write("at.json", makeDenseTransfer(0.999 * limit));
   // Every eye ray meets a half-space of albedo 0.9 head-on: Chandrasekhar's reflectance.
-  const Estimate estimate = estimateMean(pictureOf(folder / "v.nrrd", look));
+  const Estimate estimate = estimateMean(renderFile(folder / "v.nrrd", transferFile));
   EXPECT_GT(estimate.mean, 0.25); // rays beside the volume show black
   RenderRequest request;
   request.input = folder / "v.nrrd";
-  request.transfer = look;
+  request.transfer = transferFile;
   request.density = 1.01;
-  expectRefused(look, "extinction: reaches", [&] { PreparedScene scene(request); });
+  expectRefused(transferFile, "extinction: reaches", [&] { PreparedScene scene(request); });
 }
 
 TEST(ExtinctionLimit, ReflectanceEqualsChandrasekhars) {
   const TemporaryFolder folder;
   writeFile(folder / "v.nrrd", std::vector<std::uint8_t>(64, 10), cube);
-  const auto look = folder.write("at.json", denseLook(1e6));
+  const auto transferFile = folder.write("at.json", makeDenseTransfer(1e6));
   RenderRequest request;
   request.input = folder / "v.nrrd";
-  request.transfer = look;
+  request.transfer = transferFile;
   request.lights = folder.write("lights.json", R"({"lights": [{"type": "environment",
                                                     "radiance": [1, 1, 1]}]})");
   request.view.scale = 1.5; // inside the silhouette, seen head-on
-  const Estimate estimate = estimateMean(filmOf(request, 250));
+  const Estimate estimate = estimateMean(renderFilm(request, 250));
   EXPECT_NEAR(estimate.mean, 0.4149, 4.0 * estimate.error + 5e-5);
   EXPECT_LT(estimate.error, relaxError(0.005));
 }
