@@ -1,6 +1,6 @@
 #include "qSlicerFenestraLook.h"
 
-#include "qFenestraAbilities.h"
+#include "qFenestraCapabilities.h"
 #include "qSlicerFenestraLights.h"
 #include "qSlicerFenestraWidgets.h"
 

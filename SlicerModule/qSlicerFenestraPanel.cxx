@@ -1,6 +1,6 @@
 #include "qSlicerFenestraPanel.h"
 
-#include "qFenestraAbilities.h"
+#include "qFenestraCapabilities.h"
 #include "qSlicerFenestraClipping.h"
 #include "qSlicerFenestraLook.h"
 #include "qSlicerFenestraMaterials.h"

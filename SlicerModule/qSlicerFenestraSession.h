@@ -2,7 +2,7 @@
 #define __qSlicerFenestraSession_h
 
 #include "FenestraSceneFiles.h"
-#include "qFenestraAbilities.h"
+#include "qFenestraCapabilities.h"
 #include "qFenestraFolder.h"
 #include "qFenestraMaterials.h"
 #include "qFenestraPreview.h"

@@ -1,8 +1,8 @@
 // Main function of the tests. Exit status 77 if a case was skipped and none failed, so that ctest
 // reports the skip, and 1 if no case ran: a stale filter is no success.
 
-#ifdef FENESTRA_TEST_APART
-#include "base/safe/Apart.h"
+#ifdef FENESTRA_TEST_SANDBOX
+#include "io/Sandbox.h"
 #endif
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ using Application = QCoreApplication;
 #endif
 
 int main(int argc, char** argv) {
-#ifdef FENESTRA_TEST_APART
+#ifdef FENESTRA_TEST_SANDBOX
   fenestra::serveSandbox(argc, argv); // the process that reads for a test is this executable
 #endif
   ::testing::InitGoogleTest(&argc, argv);

@@ -2,7 +2,7 @@
 // Small scenes and statistics that tests share.
 
 #include "base/InstructionSets.h"
-#include "transport/render/Render.h"
+#include "integrator/render/Render.h"
 
 #include <cstdint>
 #include <cstdlib>

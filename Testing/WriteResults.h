@@ -1,9 +1,9 @@
 #pragma once
 // Results of a single writer: declared, written and committed in one call.
 
-#include "base/safe/Inputs.h"
-#include "base/safe/Outputs.h"
-#include "files/pictures/ImageWriter.h"
+#include "files/images/ImageWriter.h"
+#include "io/InputRegistry.h"
+#include "io/Outputs.h"
 
 namespace fenestra {
 

@@ -247,8 +247,8 @@ stage_study() {
   build release
   local data
   data=$(sed -n 's/^FENESTRA_DATA:PATH=//p' "$top/build/CMakeCache.txt")
-  in_study twelve "$top/Testing/Study/twelve.sh" "$top/build/bin/fenestra" "$data" "$logs/twelve"
-  in_study slurm-study "$top/Testing/Cluster/study.sh" "$top/build/bin/fenestra" "$logs/slurm-study"
+  in_study twelve "$top/Testing/Batch/twelve.sh" "$top/build/bin/fenestra" "$data" "$logs/twelve"
+  in_study slurm-study "$top/Testing/Cluster/batch.sh" "$top/build/bin/fenestra" "$logs/slurm-study"
   in_study slurm-shards "$top/Testing/Cluster/shards.sh" "$top/build/bin/fenestra" "$logs/slurm-shards"
   in_study slurm-mpi "$top/Testing/Cluster/mpi.sh" "$top/build/bin/fenestra" "$top/build/bin/fenestra-mpi" \
     "$logs/slurm-mpi"

@@ -27,18 +27,18 @@ if(FENESTRA_FUZZING)
   target_compile_options(fenestra_reading INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
-# fenestra_simd(sources...): sources that Highway compiles once for each instruction set. No multiply
+# fenestra_simd_sources(sources...): sources that Highway compiles once for each instruction set. No multiply
 # and add may be fused that is not written so: a lane's result must not depend on what was inlined
 # around it. Sanitizers see lanes that are emulated (what gathers read is then checked), and nothing
 # else of them: it would take clang a quarter of an hour.
-function(fenestra_simd)
+function(fenestra_simd_sources)
   set(options -ffp-contract=off)
   if(FENESTRA_SANITIZERS)
     list(APPEND options -DHWY_COMPILE_ONLY_EMU128
       $<$<CXX_COMPILER_ID:Clang>:-fno-sanitize=undefined>)
   endif()
   # Highway includes a source by its name, once for each instruction set.
-  set(root "${PROJECT_BINARY_DIR}/include/simd")
+  set(root "${PROJECT_BINARY_DIR}/include/highway")
   foreach(source ${ARGN})
     if(NOT IS_ABSOLUTE "${source}")
       file(RELATIVE_PATH name "${PROJECT_SOURCE_DIR}/Renderer" "${CMAKE_CURRENT_SOURCE_DIR}/${source}")
@@ -78,7 +78,7 @@ function(fenestra_library folder)
   target_sources(${target} INTERFACE FILE_SET HEADERS BASE_DIRS "${root}" FILES ${alone})
   target_link_libraries(${target} PUBLIC ${arg_PUBLIC} fenestra_sanitizers
     PRIVATE ${arg_PRIVATE} fenestra_warnings)
-  if(folder MATCHES "^(base/safe|files|session|program)")
+  if(folder MATCHES "^(io|files|scene|program)")
     target_link_libraries(${target} PRIVATE fenestra_reading)
   endif()
 endfunction()

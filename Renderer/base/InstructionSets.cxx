@@ -1,7 +1,7 @@
 #include "base/InstructionSets.h"
 
 #include "base/Error.h"
-#include "base/LaneTargets.h"
+#include "base/SimdTargets.h"
 #include "base/Text.h"
 
 #include <hwy/targets.h>

@@ -1,5 +1,5 @@
 #pragma once
-// Instruction sets that lanes are compiled for (base/LaneTargets.h): one is chosen at run time, by
+// Instruction sets that lanes are compiled for (base/SimdTargets.h): one is chosen at run time, by
 // Highway's names: AVX3 (AVX-512), AVX2, SSE4, SCALAR (none needed).
 
 #include <string>

@@ -1,5 +1,5 @@
 // Arithmetic in three dimensions, for plain numbers and for lanes: a part of the namespace that
-// includes it (base/Numbers.h).
+// includes it (base/ScalarMath.h).
 
 FENESTRA_INLINE Float lerp(Float a, Float b, Float f) {
   return fma(b - a, f, a);

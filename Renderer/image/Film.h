@@ -96,7 +96,7 @@ public:
 
   int width() const { return m_width; }
   int height() const { return m_height; }
-  /// Condition for the error that the filter tells (filter/ToldError.h).
+  /// Condition for the error that the filter tells (denoise/filter/ErrorEstimate.h).
   bool hasIndependentHalves() const { return m_hasIndependentHalves; }
   /// Index of a pixel in pixels().
   std::size_t index(int column, int row) const {

@@ -1,6 +1,6 @@
 #include "phantoms/Anatomy.h"
 
-#include "base/safe/EmbeddedResources.h"
+#include "io/EmbeddedResources.h"
 
 namespace fenestra {
 

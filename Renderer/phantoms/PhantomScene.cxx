@@ -1,8 +1,8 @@
 #include "phantoms/PhantomScene.h"
 
-#include "base/safe/EmbeddedResources.h"
-#include "base/safe/Mark.h"
-#include "files/looks/PropertyWriter.h"
+#include "files/appearance/PropertyWriter.h"
+#include "io/EmbeddedResources.h"
+#include "io/ProvenanceTag.h"
 
 #include <nlohmann/json.hpp>
 #include <pugixml.hpp>

@@ -1,11 +1,11 @@
 #include "phantoms/PhantomWriter.h"
 
 #include "base/Error.h"
-#include "base/safe/Folders.h"
-#include "base/safe/NrrdWriter.h"
-#include "base/safe/Outputs.h"
-#include "base/safe/ZipWriter.h"
-#include "files/looks/PropertyWriter.h"
+#include "files/appearance/PropertyWriter.h"
+#include "files/formats/NrrdWriter.h"
+#include "files/formats/ZipWriter.h"
+#include "io/Folders.h"
+#include "io/Outputs.h"
 #include "phantoms/PhantomScene.h"
 
 #include <fstream>

@@ -1,10 +1,10 @@
 #include "program/Checkpoint.h"
 
 #include "base/Error.h"
-#include "base/safe/Digest.h"
-#include "base/safe/Inputs.h"
-#include "base/safe/JsonNode.h"
-#include "files/medical/NamedFiles.h"
+#include "files/medical/ReferencedFiles.h"
+#include "io/Digest.h"
+#include "io/InputRegistry.h"
+#include "io/JsonNode.h"
 #include "program/FileNames.h"
 #include "program/about/Version.h"
 

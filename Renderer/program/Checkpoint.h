@@ -2,10 +2,10 @@
 // Film of a render that is under way, on disk (--checkpoint): the same command goes on from it.
 
 #include "base/Stopwatch.h"
-#include "base/safe/Locks.h"
-#include "base/safe/Outputs.h"
-#include "program/Pictures.h"
-#include "session/FilmFile.h"
+#include "io/Locks.h"
+#include "io/Outputs.h"
+#include "program/RenderSteps.h"
+#include "scene/CheckpointFile.h"
 
 namespace fenestra {
 

@@ -1,7 +1,7 @@
 #pragma once
 // Conversion of arguments to flag values, by a command's syntax, and its help.
 
-#include "program/Flags.h"
+#include "program/Options.h"
 
 #include <string_view>
 

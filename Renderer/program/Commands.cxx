@@ -1,10 +1,10 @@
 #include "program/Commands.h"
 
 #include "base/Error.h"
+#include "program/BatchTable.h"
 #include "program/CommandLine.h"
-#include "program/RenderFlags.h"
-#include "program/StudyTable.h"
-#include "program/TurntableFrames.h"
+#include "program/RenderOptions.h"
+#include "program/TurntableOptions.h"
 
 #include <filesystem>
 

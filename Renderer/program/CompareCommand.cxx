@@ -1,10 +1,10 @@
 #include "program/Commands.h"
 
 #include "base/Error.h"
-#include "base/safe/Inputs.h"
-#include "files/pictures/ImageReader.h"
-#include "files/pictures/ImageWriter.h"
+#include "files/images/ImageReader.h"
+#include "files/images/ImageWriter.h"
 #include "image/Compare.h"
+#include "io/InputRegistry.h"
 #include "program/CommandLine.h"
 
 #include <cstdio>

@@ -1,5 +1,5 @@
 #include "base/Error.h"
-#include "base/safe/ShownText.h"
+#include "io/MessageText.h"
 #include "program/CommandLine.h"
 #include "program/Commands.h"
 #include "program/Describe.h"

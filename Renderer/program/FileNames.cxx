@@ -1,6 +1,6 @@
 #include "program/FileNames.h"
 
-#include "base/safe/SystemCalls.h"
+#include "io/SystemErrors.h"
 
 #include <utility>
 

@@ -2,7 +2,7 @@
 // File names as results store them: relative to the folder of the result, so that pictures passed
 // on do not reveal where, and under whose name, a patient's files lie.
 
-#include "program/Flags.h"
+#include "program/Options.h"
 
 #include <filesystem>
 #include <string>

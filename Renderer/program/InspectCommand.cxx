@@ -1,12 +1,12 @@
 #include "program/Commands.h"
 
 #include "base/Error.h"
-#include "base/safe/Inputs.h"
-#include "base/safe/JsonNode.h"
-#include "base/safe/ShownText.h"
+#include "io/InputRegistry.h"
+#include "io/JsonNode.h"
+#include "io/MessageText.h"
 #include "program/CommandLine.h"
-#include "program/MergedFlags.h"
-#include "session/Inspection.h"
+#include "program/MergedOptions.h"
+#include "scene/Inspection.h"
 
 #include <algorithm>
 #include <cmath>

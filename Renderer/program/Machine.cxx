@@ -3,7 +3,7 @@
 #include "base/Error.h"
 #include "base/InstructionSets.h"
 #include "program/Commands.h"
-#include "program/Flags.h"
+#include "program/Options.h"
 
 #include <tbb/global_control.h>
 #include <tbb/info.h>

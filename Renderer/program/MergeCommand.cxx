@@ -3,7 +3,7 @@
 // the clip's surface and its measures.
 
 #include "base/Error.h"
-#include "base/safe/JsonNode.h"
+#include "io/JsonNode.h"
 #include "program/CommandLine.h"
 #include "program/Commands.h"
 #include "program/RenderCommand.h"

@@ -1,7 +1,7 @@
 #include "program/Commands.h"
 
 #include "base/Error.h"
-#include "base/safe/ShownText.h"
+#include "io/MessageText.h"
 #include "phantoms/PhantomWriter.h"
 #include "phantoms/Phantoms.h"
 #include "program/CommandLine.h"

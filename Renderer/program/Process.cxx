@@ -1,10 +1,10 @@
 #include "program/Process.h"
 
 #include "base/Error.h"
-#include "base/safe/Apart.h"
-#include "base/safe/Folders.h"
-#include "base/safe/Leftovers.h"
-#include "base/safe/ShownText.h"
+#include "io/Folders.h"
+#include "io/MessageText.h"
+#include "io/Sandbox.h"
+#include "io/TempFiles.h"
 #include "program/Stop.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // How progress is shown, to a person or to Slicer.
 
 #include "base/Stopwatch.h"
-#include "program/RenderFlags.h"
+#include "program/RenderOptions.h"
 
 #include <string>
 #include <vector>

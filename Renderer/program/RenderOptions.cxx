@@ -1,10 +1,10 @@
 // From flags to a render: values go where the table says; contradictions are refused.
 
+#include "program/RenderOptions.h"
 #include "base/Error.h"
-#include "files/pictures/ImageFormat.h"
+#include "files/images/ImageFormat.h"
 #include "files/slicer/SceneFiles.h"
-#include "program/RenderFlags.h"
-#include "session/NamedLooks.h"
+#include "scene/NamedPresets.h"
 
 #include <algorithm>
 

@@ -5,7 +5,7 @@
 #include "base/Stopwatch.h"
 #include "program/CommandLine.h"
 #include "program/Commands.h"
-#include "program/Pictures.h"
+#include "program/RenderSteps.h"
 #include "program/ServeInput.h"
 
 #include <set>

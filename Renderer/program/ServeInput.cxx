@@ -1,13 +1,13 @@
 #include "program/ServeInput.h"
 
 #include "base/Error.h"
-#include "base/safe/JsonNode.h"
-#include "base/safe/ShownText.h"
-#include "files/looks/LightReader.h"
+#include "files/appearance/LightReader.h"
+#include "io/JsonNode.h"
+#include "io/MessageText.h"
 #include "program/CommandLine.h"
-#include "program/MergedFlags.h"
+#include "program/MergedOptions.h"
 #include "program/Stop.h"
-#include "session/NamedLooks.h"
+#include "scene/NamedPresets.h"
 
 #include <cstdio>
 #include <thread>

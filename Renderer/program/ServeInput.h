@@ -2,8 +2,8 @@
 // Input of a server while it works: changes, one JSON object a line, until the end of input.
 
 #include "base/Stopwatch.h"
-#include "program/RenderFlags.h"
-#include "session/Input.h"
+#include "program/RenderOptions.h"
+#include "scene/Input.h"
 
 #include <nlohmann/json.hpp>
 

@@ -2,7 +2,7 @@
 // The renderer as a command line module of 3D Slicer: its flags in the terms of Slicer's execution
 // model, from which Slicer builds a panel, and the values that a render returns to Slicer.
 
-#include "program/Flags.h"
+#include "program/Options.h"
 
 #include <string>
 #include <vector>

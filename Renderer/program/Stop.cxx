@@ -1,8 +1,8 @@
 #include "program/Stop.h"
 
 #include "base/Error.h"
-#include "base/safe/Leftovers.h"
-#include "base/safe/Outputs.h"
+#include "io/Outputs.h"
+#include "io/TempFiles.h"
 
 #include <csignal>
 #include <ctime>

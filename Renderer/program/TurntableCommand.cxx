@@ -2,17 +2,17 @@
 // the stages that depend on the camera are rebuilt (Scene::changed).
 
 #include "base/Error.h"
-#include "base/safe/Inputs.h"
-#include "base/safe/JsonNode.h"
-#include "base/safe/Locks.h"
-#include "base/safe/ShownText.h"
-#include "base/safe/SystemCalls.h"
+#include "io/InputRegistry.h"
+#include "io/JsonNode.h"
+#include "io/Locks.h"
+#include "io/MessageText.h"
+#include "io/SystemErrors.h"
 #include "program/CommandLine.h"
 #include "program/Commands.h"
-#include "program/Pictures.h"
 #include "program/Progress.h"
+#include "program/RenderSteps.h"
 #include "program/Stop.h"
-#include "program/TurntableRecord.h"
+#include "program/TurntableManifest.h"
 
 #include <chrono>
 #include <future>

@@ -7,8 +7,8 @@
 #include "program/RenderCommand.h"
 #include "program/Stop.h"
 #include "program/about/Version.h"
-#include "ranks/Loans.h"
-#include "ranks/SharedFiles.h"
+#include "ranks/FileBroadcast.h"
+#include "ranks/Scheduler.h"
 
 #include <algorithm>
 #include <new>

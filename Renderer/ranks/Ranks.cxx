@@ -1,7 +1,7 @@
 #include "ranks/Ranks.h"
 
 #include "base/Error.h"
-#include "base/safe/ShownText.h"
+#include "io/MessageText.h"
 
 #include <algorithm>
 #include <chrono>

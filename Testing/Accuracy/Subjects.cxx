@@ -1,7 +1,7 @@
 #include "Subjects.h"
 
-#include "files/pictures/ImageReader.h"
-#include "session/Scene.h"
+#include "files/images/ImageReader.h"
+#include "scene/PreparedScene.h"
 
 #include <itkImage.h>
 #include <itkImageFileReader.h>

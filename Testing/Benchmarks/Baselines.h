@@ -2,7 +2,7 @@
 // Other renderers' trackers for the product's path estimator: delta tracking with one majorant for
 // the whole volume, and the fixed steps of medical renderers. Both have Tracker's members.
 
-#include "transport/render/Render.h"
+#include "integrator/render/Render.h"
 
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>

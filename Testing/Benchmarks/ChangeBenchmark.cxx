@@ -6,8 +6,8 @@
 #include "base/Error.h"
 #include "base/Stopwatch.h"
 #include "program/CommandLine.h"
-#include "program/RenderFlags.h"
-#include "session/Scene.h"
+#include "program/RenderOptions.h"
+#include "scene/PreparedScene.h"
 
 #include <functional>
 #include <iomanip>

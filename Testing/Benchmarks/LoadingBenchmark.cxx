@@ -6,7 +6,7 @@
 #include "TemporaryFolder.h"
 #include "WriteResults.h"
 #include "base/Stopwatch.h"
-#include "base/safe/NrrdWriter.h"
+#include "files/formats/NrrdWriter.h"
 
 #include <itkImage.h>
 #include <itkImageFileReader.h>

@@ -3,8 +3,8 @@
 #include "Scenes.h"
 
 #include "clip/surface/ThinPlateSpline.h"
-#include "session/Scene.h"
-#include "transport/readable/Tracker.h"
+#include "integrator/scalar/Tracker.h"
+#include "scene/PreparedScene.h"
 
 #include <benchmark/benchmark.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 // Render modes that the benchmark compares.
 
-#include "transport/render/Render.h"
+#include "integrator/render/Render.h"
 
 #include <span>
 #include <string>

@@ -3,15 +3,15 @@
 #include "Modes.h"
 
 #include "Oracle/Oracle.h"
-#include "Statistical/Pictures.h"
+#include "Statistical/EstimateImages.h"
 
 #include "WriteResults.h"
 #include "base/Error.h"
 #include "base/Stopwatch.h"
-#include "base/safe/EmbeddedResources.h"
-#include "files/looks/LightReader.h"
-#include "files/pictures/ImageReader.h"
+#include "files/appearance/LightReader.h"
+#include "files/images/ImageReader.h"
 #include "image/Compare.h"
+#include "io/EmbeddedResources.h"
 
 #include <algorithm>
 #include <optional>

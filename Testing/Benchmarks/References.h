@@ -4,7 +4,7 @@
 #include "Scenes.h"
 
 #include "image/Image.h"
-#include "session/Scene.h"
+#include "scene/PreparedScene.h"
 
 namespace fenestra::benchmarks {
 

@@ -1,7 +1,7 @@
 #pragma once
 // Scenes of scenes.txt; each is a command line of `fenestra`.
 
-#include "program/RenderFlags.h"
+#include "program/RenderOptions.h"
 
 #include <filesystem>
 #include <string>

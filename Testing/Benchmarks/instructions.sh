@@ -23,7 +23,7 @@ case $mode in
 esac
 
 size=128x128
-counts=(1 17) # samples a pixel: between them as many as a block of strata has (base/Sampling.h)
+counts=(1 17) # samples a pixel: between them as many as a block of strata has (base/Sampler.h)
 share=3       # percent
 
 # count SAMPLES ARGUMENT...: instructions and paths of a picture.

@@ -1,7 +1,7 @@
 // Films of renders that are under way: the same command goes on, and no other one does.
 
 #include "CommandTesting.h"
-#include "PictureTesting.h"
+#include "ImageTesting.h"
 
 #include <csignal>
 

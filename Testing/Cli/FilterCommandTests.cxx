@@ -2,7 +2,7 @@
 
 #include "CommandTesting.h"
 
-#include "files/pictures/ImageReader.h"
+#include "files/images/ImageReader.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,7 +1,7 @@
 // Materials on the command line: what they change of a picture, what they leave, and refusals.
 
 #include "CommandTesting.h"
-#include "files/pictures/ImageReader.h"
+#include "files/images/ImageReader.h"
 
 #include <nlohmann/json.hpp>
 

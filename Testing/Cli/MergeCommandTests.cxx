@@ -1,7 +1,7 @@
 // Parts of a picture, rendered by themselves, are merged to the picture of one machine.
 
 #include "CommandTesting.h"
-#include "PictureTesting.h"
+#include "ImageTesting.h"
 #include "RunSettings.h"
 
 #include <csignal>

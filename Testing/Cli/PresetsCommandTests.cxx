@@ -1,7 +1,7 @@
 // Organ presets, and Slicer's presets by name, through the command line.
 
 #include "CommandTesting.h"
-#include "files/pictures/ImageReader.h"
+#include "files/images/ImageReader.h"
 
 #include <nlohmann/json.hpp>
 

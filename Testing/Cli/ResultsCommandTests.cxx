@@ -1,7 +1,7 @@
 // Results: their places, the files that they replace, and their record of inputs.
 
 #include "CommandTesting.h"
-#include "files/pictures/ImageReader.h"
+#include "files/images/ImageReader.h"
 
 #include <nlohmann/json.hpp>
 

@@ -2,7 +2,7 @@
 // by the scene's own numbers, projected by code written here from VTK's conventions.
 
 #include "CommandTesting.h"
-#include "files/pictures/ImageReader.h"
+#include "files/images/ImageReader.h"
 
 #include <Eigen/Geometry>
 #include <zip.h>

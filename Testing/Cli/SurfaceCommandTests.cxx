@@ -1,7 +1,7 @@
 // `--surface`: the clipping surface as a mesh, its refusals, and leftover files.
 
 #include "CommandTesting.h"
-#include "files/pictures/ImageReader.h"
+#include "files/images/ImageReader.h"
 
 #include <pugixml.hpp>
 

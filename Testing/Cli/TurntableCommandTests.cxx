@@ -2,9 +2,9 @@
 // auto, which may choose the first frame's view.
 
 #include "CommandTesting.h"
-#include "PictureTesting.h"
+#include "ImageTesting.h"
 #include "base/Stopwatch.h"
-#include "files/pictures/ImageReader.h"
+#include "files/images/ImageReader.h"
 
 #include <nlohmann/json.hpp>
 

@@ -2,7 +2,7 @@
 #include "Harness.h"
 
 #include "program/CommandLine.h"
-#include "program/RenderFlags.h"
+#include "program/RenderOptions.h"
 
 #include <vector>
 

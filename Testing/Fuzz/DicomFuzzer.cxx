@@ -2,7 +2,7 @@
 // controls the child. ApartMutations sends files.
 #include "Harness.h"
 
-#include "files/medical/DicomFiles.h"
+#include "files/medical/DicomReader.h"
 
 FENESTRA_FUZZ(Dicom, input) {
   using namespace fenestra;

@@ -1,7 +1,7 @@
 // All fuzz targets in one executable. The environment variable FENESTRA_FUZZ_TARGET selects the
 // target to run.
 #include "Harness.h"
-#include "base/safe/Apart.h"
+#include "io/Sandbox.h"
 
 #include <cstdlib>
 #include <iostream>

@@ -1,7 +1,7 @@
 // Lights.
 #include "Harness.h"
 
-#include "files/looks/LightReader.h"
+#include "files/appearance/LightReader.h"
 
 FENESTRA_FUZZ(Lights, input) {
   fenestra::parseLights(input, "lights.json");

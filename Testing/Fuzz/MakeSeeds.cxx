@@ -1,11 +1,11 @@
 // usage: MakeSeeds FOLDER: writes the seeds that are not text into FOLDER/<target>/ and
 // FOLDER/../Apart/.
 #include "Regression/SampleFiles.h"
-#include "SceneNeighbours.h"
+#include "SceneFixtures.h"
 #include "TemporaryFolder.h"
 #include "WriteResults.h"
-#include "base/safe/Apart.h"
-#include "base/safe/ZipWriter.h"
+#include "files/formats/ZipWriter.h"
+#include "io/Sandbox.h"
 
 #include <itkAffineTransform.h>
 #include <itkGDCMImageIO.h>

@@ -1,7 +1,7 @@
 // Materials; a line without a brace is a change to one segment.
 #include "Harness.h"
 
-#include "files/looks/MaterialReader.h"
+#include "files/appearance/MaterialReader.h"
 
 FENESTRA_FUZZ(Materials, input) {
   static const fenestra::MaterialTable base = fenestra::parseMaterials(

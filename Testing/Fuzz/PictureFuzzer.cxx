@@ -1,7 +1,7 @@
 // Pictures to compare or to use as environments; the first byte selects the format.
 #include "Harness.h"
 
-#include "files/pictures/ImageReader.h"
+#include "files/images/ImageReader.h"
 
 FENESTRA_FUZZ(Picture, input) {
   using namespace fenestra;

@@ -2,7 +2,7 @@
 #include "Harness.h"
 
 #include "base/Text.h"
-#include "files/looks/PresetReader.h"
+#include "files/appearance/PresetReader.h"
 
 FENESTRA_FUZZ(Preset, input) {
   const fenestra::OrganPreset preset = fenestra::parsePreset(input, "preset.json");

@@ -1,6 +1,6 @@
 // Slicer scenes (.mrml), beside the files that a scene may name.
+#include "SceneFixtures.h"
 #include "SceneInputs.h"
-#include "SceneNeighbours.h"
 
 FENESTRA_FUZZ(PreparedScene, input) {
   using namespace fenestra;

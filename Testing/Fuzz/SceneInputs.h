@@ -4,7 +4,7 @@
 #include "Approx.h"
 #include "Harness.h"
 
-#include "session/Input.h"
+#include "scene/Input.h"
 
 namespace fenestra::fuzzing {
 

@@ -1,7 +1,7 @@
 // One line of a server's input. Only looks are read, and nothing is written.
 #include "Harness.h"
 
-#include "base/safe/JsonNode.h"
+#include "io/JsonNode.h"
 #include "program/ServeInput.h"
 
 FENESTRA_FUZZ(Serve, input) {

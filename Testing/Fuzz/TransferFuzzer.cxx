@@ -2,7 +2,7 @@
 #include "Approx.h"
 #include "Harness.h"
 
-#include "files/looks/TransferReader.h"
+#include "files/appearance/TransferReader.h"
 
 namespace {
 

@@ -3,10 +3,10 @@
 // this target tests combinations of scene and volume (positions, boxes, cameras, majorants, paths).
 #include "Approx.h"
 #include "Harness.h"
-#include "SceneNeighbours.h"
+#include "SceneFixtures.h"
 
-#include "session/Scene.h"
-#include "transport/render/Render.h"
+#include "integrator/render/Render.h"
+#include "scene/PreparedScene.h"
 
 #include <condition_variable>
 #include <mutex>

@@ -1,7 +1,7 @@
 #pragma once
 // Keep at a point, computed from a clip's description.
 
-#include "Matter.h"
+#include "Medium.h"
 #include "View.h"
 
 #include <optional>

@@ -27,7 +27,7 @@ trap 'rm -rf "$work"' EXIT
 
 # fill FOLDER: inputs for requests.sh.
 fill() {
-  local data=$1/data apart=$here/../Fuzz/Apart
+  local data=$1/data apart=$here/../Fuzz/Sandbox
   mkdir -p "$data"/{native,jpeg2000}
   cp "$here"/../Data/traps/{plain.nrrd,layers.seg.nrrd,property.vp,roi.mrk.json} "$here/../Data/cube/cube.mrb" "$data"
   cp "$apart/Dicom/native.dcm" "$data/native"

@@ -2,7 +2,7 @@
 
 #include "Agreement.h"
 #include "Cli/Process.h"
-#include "files/pictures/ImageReader.h"
+#include "files/images/ImageReader.h"
 
 #include <algorithm>
 #include <cmath>

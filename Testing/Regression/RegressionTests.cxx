@@ -3,7 +3,7 @@
 #include "RunSettings.h"
 #include "TemporaryFolder.h"
 #include "WriteResults.h"
-#include "files/pictures/ImageReader.h"
+#include "files/images/ImageReader.h"
 #include "image/Compare.h"
 
 #include <gtest/gtest.h>

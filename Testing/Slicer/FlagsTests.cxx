@@ -2,7 +2,7 @@
 
 #include "FenestraFlags.h"
 #include "FenestraMaterials.h"
-#include "qFenestraAbilities.h"
+#include "qFenestraCapabilities.h"
 
 #include <QProcess>
 #include <gtest/gtest.h>

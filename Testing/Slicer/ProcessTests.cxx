@@ -4,7 +4,7 @@
 #include "RunSettings.h"
 #include "TemporaryFolder.h"
 
-#include "qFenestraAbilities.h"
+#include "qFenestraCapabilities.h"
 #include "qFenestraPreview.h"
 #include "qFenestraQueue.h"
 

@@ -2,7 +2,7 @@
 // Small volume of random voxels, with an extinction that is not monotone in the scalar, and
 // pictures that show all of it.
 
-#include "Anchors.h"
+#include "RgbEstimate.h"
 
 namespace fenestra::testing {
 

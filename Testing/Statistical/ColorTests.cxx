@@ -3,7 +3,7 @@
 #include "Slab.h"
 
 #include "model/medium/Reflectance.h"
-#include "session/SegmentTint.h"
+#include "scene/SegmentTint.h"
 
 namespace fenestra::testing::ColorTests {
 namespace {

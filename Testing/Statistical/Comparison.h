@@ -5,7 +5,7 @@
 #include "Matrix.h"
 #include "Oracle/Estimates.h"
 #include "Significance.h"
-#include "transport/render/Render.h"
+#include "integrator/render/Render.h"
 
 #include <optional>
 #include <string>

@@ -2,7 +2,7 @@
 // transmitted.
 
 #include "Clumps.h"
-#include "StraightIntegral.h"
+#include "LineIntegral.h"
 
 namespace fenestra::testing::EnergyTests {
 namespace {

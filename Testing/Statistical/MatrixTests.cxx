@@ -1,8 +1,8 @@
 // Product against oracle over the whole matrix.
 
 #include "Comparison.h"
+#include "EstimateImages.h"
 #include "MatrixRecord.h"
-#include "Pictures.h"
 #include "RunSettings.h"
 
 #include "WriteResults.h"

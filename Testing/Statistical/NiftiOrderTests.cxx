@@ -5,8 +5,8 @@
 #include "Agreement.h"
 #include "RunSettings.h"
 #include "TemporaryFolder.h"
-#include "session/Picture.h"
-#include "session/Scene.h"
+#include "scene/FilmImage.h"
+#include "scene/PreparedScene.h"
 
 #include <gtest/gtest.h>
 

@@ -1,19 +1,19 @@
 // Scenes of ../shared/reference against converged pictures of independent renderers, through the
 // product's own command line.
 
+#include "EstimateImages.h"
 #include "Oracle/Oracle.h"
-#include "Pictures.h"
 #include "RunSettings.h"
 #include "Support.h"
 
 #include "Agreement.h"
 #include "WriteResults.h"
-#include "files/looks/LightReader.h"
-#include "files/pictures/ImageReader.h"
+#include "files/appearance/LightReader.h"
+#include "files/images/ImageReader.h"
 #include "image/Compare.h"
 #include "program/CommandLine.h"
-#include "program/RenderFlags.h"
-#include "session/Scene.h"
+#include "program/RenderOptions.h"
+#include "scene/PreparedScene.h"
 
 #include <gtest/gtest.h>
 

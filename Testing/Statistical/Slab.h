@@ -2,7 +2,7 @@
 // Homogeneous slab with faces across z, for tests with known radiance. Angles are given by their
 // cosine to the z axis.
 
-#include "Anchors.h"
+#include "RgbEstimate.h"
 
 namespace fenestra::testing {
 

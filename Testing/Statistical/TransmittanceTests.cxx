@@ -1,12 +1,12 @@
 // Transmittance and free paths in heterogeneous media against exact optical depths.
 
-#include "Anchors.h"
+#include "LineIntegral.h"
+#include "RgbEstimate.h"
 #include "Significance.h"
-#include "StraightIntegral.h"
 #include "base/InstructionSets.h"
 
 #include "clip/surface/ClippingSurface.h"
-#include "transport/lanes/Tracker.h"
+#include "integrator/simd/Tracker.h"
 
 namespace fenestra::testing::TransmittanceTests {
 namespace {

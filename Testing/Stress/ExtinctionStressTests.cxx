@@ -3,7 +3,7 @@
 
 #include "StressSupport.h"
 
-#include "transport/lanes/Tracker.h"
+#include "integrator/simd/Tracker.h"
 
 namespace fenestra::testing::ExtinctionStressTests {
 namespace {

@@ -6,7 +6,7 @@
 #include "StressSupport.h"
 #include "Unit/MedicalFiles.h"
 #include "files/medical/VolumeReader.h"
-#include "session/Scene.h"
+#include "scene/PreparedScene.h"
 
 namespace fenestra::testing::VoxelStressTests {
 namespace {

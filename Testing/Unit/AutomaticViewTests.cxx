@@ -1,6 +1,6 @@
 // --view auto: its measures of analytic bodies, and its stability.
 
-#include "session/AutomaticView.h"
+#include "scene/AutomaticView.h"
 
 #include "Support.h"
 #include "base/Random.h"

@@ -3,7 +3,7 @@
 
 #include "ClippingTesting.h"
 #include "clip/surface/ClippingSurface.h"
-#include "measure/BoundaryMeasures.h"
+#include "metrics/BoundaryMetrics.h"
 
 #include <gtest/gtest.h>
 

@@ -4,6 +4,7 @@
 #include "RunSettings.h"
 #include "base/Error.h"
 #include "clip/surface/ClippingSurface.h"
+#include "metrics/BoundaryMetrics.h"
 
 #include <gtest/gtest.h>
 

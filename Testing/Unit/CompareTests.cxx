@@ -3,7 +3,7 @@
 #include "Agreement.h"
 #include "base/Error.h"
 #include "base/Random.h"
-#include "files/pictures/ImageReader.h"
+#include "files/images/ImageReader.h"
 #include "image/Compare.h"
 
 #include <gtest/gtest.h>

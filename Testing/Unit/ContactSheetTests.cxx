@@ -1,9 +1,9 @@
-#include "files/pictures/ContactSheet.h"
+#include "files/images/ContactSheet.h"
 
 #include "TemporaryFolder.h"
-#include "base/safe/Outputs.h"
-#include "files/pictures/ImageWriter.h"
-#include "files/pictures/Letters.h"
+#include "files/images/BitmapFont.h"
+#include "files/images/ImageWriter.h"
+#include "io/Outputs.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Colour differences against published pairs, and the contrast of a focus with its surroundings.
 
-#include "session/Contrast.h"
+#include "scene/Contrast.h"
 
 #include "Support.h"
 #include "base/Color.h"

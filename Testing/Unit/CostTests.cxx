@@ -1,9 +1,9 @@
 // Cost of reading: instructions for n parts against 2 n, counted by valgrind instead of time.
 // Skipped without valgrind.
 
-#include "base/safe/JsonNode.h"
 #include "files/medical/MedicalHeader.h"
 #include "files/slicer/ScenePlan.h"
+#include "io/JsonNode.h"
 
 #include "TemporaryFolder.h"
 

@@ -2,7 +2,7 @@
 
 #include "Support.h"
 
-#include "measure/FocusMeasures.h"
+#include "metrics/FocusMetrics.h"
 
 #include <gtest/gtest.h>
 

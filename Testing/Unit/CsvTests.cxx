@@ -1,4 +1,4 @@
-#include "base/safe/Csv.h"
+#include "files/formats/Csv.h"
 
 #include "base/Error.h"
 

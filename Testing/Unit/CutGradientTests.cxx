@@ -3,7 +3,7 @@
 
 #include "ClippingTesting.h"
 #include "clip/surface/ClippingSurface.h"
-#include "transport/readable/Matter.h"
+#include "integrator/scalar/ClippedMedium.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Defaults of a scene.
 
-#include "session/Defaults.h"
-#include "session/Picture.h"
+#include "scene/Defaults.h"
+#include "scene/FilmImage.h"
 
 #include "Approx.h"
 #include "Support.h"

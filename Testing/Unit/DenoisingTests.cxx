@@ -1,6 +1,6 @@
 // Input of the filter, from a film and its scene.
 
-#include "session/Denoising.h"
+#include "scene/Denoising.h"
 
 #include "MedicalFiles.h"
 

@@ -2,7 +2,7 @@
 
 #include "ClippingTesting.h"
 #include "base/Error.h"
-#include "clip/keep/DepthPyramid.h"
+#include "clip/field/DepthPyramid.h"
 
 #include <gtest/gtest.h>
 

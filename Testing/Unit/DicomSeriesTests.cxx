@@ -4,8 +4,8 @@
 
 #include "Approx.h"
 #include "MedicalFiles.h"
-#include "files/medical/AirAtZero.h"
-#include "files/medical/Quiet.h"
+#include "files/medical/HounsfieldOffset.h"
+#include "files/medical/SuppressItkOutput.h"
 #include "files/medical/VolumeReader.h"
 
 #include <gdcmImageChangeTransferSyntax.h>
@@ -423,7 +423,7 @@ TEST(DicomSeries, RealSeriesEqualsItsNiftiFile) {
 /// Stream that once crashed GDCM's decoder; whether it is read or refused depends on the memory
 /// layout.
 TEST(DicomSeries, StreamThatCrashesTheDecoderIsReadOrRefused) {
-  const auto damaged = Path(__FILE__).parent_path() / "../Fuzz/Apart/Dicom/jpeg2000-stream.dcm";
+  const auto damaged = Path(__FILE__).parent_path() / "../Fuzz/Sandbox/Dicom/jpeg2000-stream.dcm";
   ASSERT_TRUE(std::filesystem::exists(damaged));
   try {
     EXPECT_EQ(readDicomVolume({damaged}, "CT").grid.size, Size3(32, 32, 1));

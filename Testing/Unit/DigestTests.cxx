@@ -1,4 +1,4 @@
-#include "base/safe/Digest.h"
+#include "io/Digest.h"
 
 #include "Refusals.h"
 

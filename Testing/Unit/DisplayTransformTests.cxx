@@ -1,6 +1,6 @@
 // Display views: properties of the tone curve, and alpha.
 
-#include "files/pictures/DisplayTransform.h"
+#include "files/images/DisplayTransform.h"
 
 #include <gtest/gtest.h>
 

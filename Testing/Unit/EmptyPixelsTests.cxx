@@ -1,7 +1,7 @@
 // Pixels that provably meet nothing take one sample; other pixels do not.
 
 #include "Support.h"
-#include "transport/render/EmptyPixels.h"
+#include "integrator/render/EmptyPixels.h"
 
 #include <gtest/gtest.h>
 

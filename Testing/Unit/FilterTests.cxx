@@ -1,11 +1,11 @@
 // The filter on synthetic pictures whose truth is known: what it keeps, what it tells of its error,
 // and what makes it lie.
 
-#include "filter/Filter.h"
+#include "denoise/filter/Filter.h"
 
 #include "base/Random.h"
-#include "filter/ToldError.h"
-#include "filter/WindowFit.h"
+#include "denoise/filter/ErrorEstimate.h"
+#include "denoise/filter/WindowFit.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

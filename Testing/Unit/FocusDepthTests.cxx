@@ -2,7 +2,7 @@
 
 #include "ClippingTesting.h"
 #include "RunSettings.h"
-#include "base/LaneTargets.h"
+#include "base/SimdTargets.h"
 #include "clip/focus/CellCubic.h"
 #include "clip/focus/FocusCells.h"
 

@@ -1,7 +1,7 @@
 // Round trips of pictures through files: the retained values, and the effects of a failure.
 
 #include "ImageTesting.h"
-#include "base/safe/EmbeddedResources.h"
+#include "io/EmbeddedResources.h"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>

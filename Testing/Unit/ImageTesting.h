@@ -3,7 +3,7 @@
 
 #include "WriteResults.h"
 #include "base/Error.h"
-#include "files/pictures/ImageReader.h"
+#include "files/images/ImageReader.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Input: opened once for all that is read from it, with the files of each reading.
 
-#include "session/NamedLooks.h"
-#include "session/Scene.h"
+#include "scene/NamedPresets.h"
+#include "scene/PreparedScene.h"
 
 #include "SceneTesting.h"
 

@@ -1,7 +1,7 @@
 #include "clip/surface/KernelSums.h"
 
 #include "ClippingTesting.h"
-#include "base/LaneTargets.h"
+#include "base/SimdTargets.h"
 
 #include <gtest/gtest.h>
 #include <hwy/highway.h>

@@ -2,8 +2,8 @@
 
 #include "Approx.h"
 #include "WriteResults.h"
-#include "base/safe/EmbeddedResources.h"
-#include "files/looks/LightReader.h"
+#include "files/appearance/LightReader.h"
+#include "io/EmbeddedResources.h"
 #include "model/lights/LightSet.h"
 #include "model/medium/ContextStyle.h"
 

@@ -1,4 +1,4 @@
-#include "transport/readable/MajorantGrid.h"
+#include "integrator/scalar/MajorantGrid.h"
 
 #include "RunSettings.h"
 #include "Support.h"

@@ -1,7 +1,7 @@
 // Tables of materials and changes to them: content, refusals, and the library that is compiled in.
 
-#include "base/safe/EmbeddedResources.h"
-#include "files/looks/MaterialReader.h"
+#include "files/appearance/MaterialReader.h"
+#include "io/EmbeddedResources.h"
 #include "model/medium/Reflectance.h"
 
 #include "Refusals.h"

@@ -2,8 +2,8 @@
 
 #include "model/medium/Mixture.h"
 
-#include "SharesTesting.h"
-#include "transport/render/ExpectedFlight.h"
+#include "LabelWeightsTesting.h"
+#include "denoise/features/FeatureBuffers.h"
 
 #include <gtest/gtest.h>
 

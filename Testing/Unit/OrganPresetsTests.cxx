@@ -1,9 +1,9 @@
 // Segments that a preset selects as its focus, and presets selected for segments.
 
-#include "base/safe/EmbeddedResources.h"
-#include "session/Defaults.h"
-#include "session/NamedLooks.h"
-#include "session/OrganPresets.h"
+#include "io/EmbeddedResources.h"
+#include "scene/Defaults.h"
+#include "scene/NamedPresets.h"
+#include "scene/OrganPresets.h"
 
 #include "Refusals.h"
 #include "Support.h"

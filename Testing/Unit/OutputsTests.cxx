@@ -3,11 +3,11 @@
 
 #include "TemporaryFolder.h"
 #include "base/Error.h"
-#include "base/safe/Folders.h"
-#include "base/safe/Inputs.h"
-#include "base/safe/Locks.h"
-#include "base/safe/Outputs.h"
-#include "base/safe/TemporaryFile.h"
+#include "io/Folders.h"
+#include "io/InputRegistry.h"
+#include "io/Locks.h"
+#include "io/Outputs.h"
+#include "io/TemporaryFile.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
 // Organ presets: content of their files, refusals, and matches of name patterns.
 
 #include "base/Text.h"
-#include "base/safe/EmbeddedResources.h"
-#include "files/looks/PresetReader.h"
-#include "files/looks/TransferReader.h"
+#include "files/appearance/PresetReader.h"
+#include "files/appearance/TransferReader.h"
+#include "io/EmbeddedResources.h"
 
 #include "Refusals.h"
 

@@ -1,4 +1,4 @@
-#include "transport/render/SamplePlan.h"
+#include "integrator/render/SamplePlan.h"
 
 #include "base/Random.h"
 

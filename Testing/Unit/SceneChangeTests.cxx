@@ -1,6 +1,6 @@
 // A changed request gives the same scene as a fresh request, and rebuilds only dependent parts.
 
-#include "session/Scene.h"
+#include "scene/PreparedScene.h"
 
 #include "MedicalFiles.h"
 #include "Refusals.h"

@@ -3,7 +3,7 @@
 #include "base/Color.h"
 #include "files/segments/LabelNames.h"
 #include "image/ColorVision.h"
-#include "session/SegmentMaterials.h"
+#include "scene/SegmentMaterials.h"
 
 #include <gtest/gtest.h>
 

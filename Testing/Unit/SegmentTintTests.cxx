@@ -1,7 +1,7 @@
 // Components by segments and their materials, as a tint and as a mixture, and refusals.
 
 #include "model/medium/Reflectance.h"
-#include "session/SegmentTint.h"
+#include "scene/SegmentTint.h"
 
 #include "Refusals.h"
 

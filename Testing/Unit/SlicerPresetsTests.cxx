@@ -2,8 +2,8 @@
 
 #include "files/slicer/SlicerPresets.h"
 
-#include "base/safe/JsonNode.h"
 #include "files/slicer/MrmlScene.h"
+#include "io/JsonNode.h"
 
 #include "Refusals.h"
 

@@ -2,8 +2,8 @@
 
 #include "Support.h"
 
-#include "measure/FocusMeasures.h"
-#include "transport/lanes/Tracker.h"
+#include "integrator/simd/Tracker.h"
+#include "metrics/FocusMetrics.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include "Approx.h"
 #include "ClippingTesting.h"
 #include "clip/surface/SteadySurface.h"
-#include "measure/SurfaceChange.h"
+#include "metrics/SurfaceChange.h"
 
 #include <gtest/gtest.h>
 

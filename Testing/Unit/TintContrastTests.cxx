@@ -1,6 +1,6 @@
 // Contrast of a tinted focus: what borders on it, and how colours are changed until they differ.
 
-#include "session/TintContrast.h"
+#include "scene/TintContrast.h"
 
 #include "Support.h"
 #include "base/Color.h"

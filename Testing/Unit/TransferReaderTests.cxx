@@ -1,6 +1,6 @@
 // Transfer functions: Fenestra's own, Slicer's .vp and .vp.json, and invalid files.
 
-#include "files/looks/TransferReader.h"
+#include "files/appearance/TransferReader.h"
 
 #include "Approx.h"
 #include "Curves.h"

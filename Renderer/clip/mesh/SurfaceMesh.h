@@ -1,7 +1,7 @@
 #pragma once
 // Clipping surface as triangles, for viewing from other directions.
 
-#include "clip/keep/Clip.h"
+#include "clip/field/Clip.h"
 #include "model/volume/Domain.h"
 
 #include <array>

@@ -1,8 +1,8 @@
 #pragma once
 // Writes surfaces for other programs.
 
-#include "base/safe/Outputs.h"
 #include "clip/mesh/SurfaceMesh.h"
+#include "io/Outputs.h"
 
 #include <filesystem>
 

@@ -2,9 +2,9 @@
 // First pass of the method: from a view and a focus to the clip that shows the focus.
 
 #include "base/Distribution.h"
+#include "clip/field/Clip.h"
 #include "clip/focus/Contour.h"
 #include "clip/focus/FocusDepth.h"
-#include "clip/keep/Clip.h"
 #include "clip/surface/Hole.h"
 
 #include <optional>

@@ -1,6 +1,6 @@
 #include "clip/surface/Hole.h"
 
-#include "clip/keep/Clip.h"
+#include "clip/field/Clip.h"
 
 namespace fenestra {
 

@@ -1,6 +1,6 @@
 #include "clip/surface/KernelSums.h"
 
-#include "base/LaneTargets.h"
+#include "base/SimdTargets.h"
 
 #include <algorithm>
 #include <array>

@@ -1,10 +1,10 @@
 #include "files/medical/DicomSeries.h"
 
 #include "base/Error.h"
-#include "base/safe/Inputs.h"
-#include "base/safe/ShownText.h"
-#include "base/safe/SystemCalls.h"
-#include "files/medical/DicomFiles.h"
+#include "files/medical/DicomReader.h"
+#include "io/InputRegistry.h"
+#include "io/MessageText.h"
+#include "io/SystemErrors.h"
 
 #include <algorithm>
 #include <map>

@@ -1,9 +1,9 @@
 // Volume from a series' slices.
 
 #include "base/Error.h"
-#include "files/medical/AirAtZero.h"
-#include "files/medical/DicomFiles.h"
+#include "files/medical/DicomReader.h"
 #include "files/medical/DicomSeries.h"
+#include "files/medical/HounsfieldOffset.h"
 #include "files/medical/VolumeReader.h"
 
 namespace fenestra {

@@ -1,10 +1,10 @@
 #include "files/medical/MedicalHeader.h"
 
 #include "base/Error.h"
-#include "base/safe/HeaderText.h"
-#include "base/safe/Inputs.h"
-#include "base/safe/NrrdHeader.h"
-#include "base/safe/ShownText.h"
+#include "files/formats/NrrdHeader.h"
+#include "files/formats/TextHeader.h"
+#include "io/InputRegistry.h"
+#include "io/MessageText.h"
 
 #include <algorithm>
 #include <initializer_list>

@@ -1,11 +1,11 @@
 #include "files/medical/MedicalImage.h"
 
 #include "base/Error.h"
-#include "base/safe/Inputs.h"
 #include "files/medical/MedicalHeader.h"
 #include "files/medical/NiftiSamples.h"
-#include "files/medical/Quiet.h"
 #include "files/medical/SampleStream.h"
+#include "files/medical/SuppressItkOutput.h"
+#include "io/InputRegistry.h"
 
 #include <itkMetaDataObject.h>
 #include <itkMetaImageIO.h>

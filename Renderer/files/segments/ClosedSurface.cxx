@@ -1,10 +1,10 @@
 #include "files/segments/ClosedSurface.h"
 
 #include "base/Error.h"
-#include "base/safe/Inputs.h"
-#include "base/safe/JsonNode.h"
-#include "base/safe/ShownText.h"
 #include "files/segments/VtkSurface.h"
+#include "io/InputRegistry.h"
+#include "io/JsonNode.h"
+#include "io/MessageText.h"
 #include "model/masks/Voxelize.h"
 
 #include <pugixml.hpp>

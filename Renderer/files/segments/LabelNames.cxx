@@ -2,11 +2,11 @@
 
 #include "base/Error.h"
 #include "base/Text.h"
-#include "base/safe/Csv.h"
-#include "base/safe/EmbeddedResources.h"
-#include "base/safe/Inputs.h"
-#include "base/safe/JsonNode.h"
-#include "base/safe/ShownText.h"
+#include "files/formats/Csv.h"
+#include "io/EmbeddedResources.h"
+#include "io/InputRegistry.h"
+#include "io/JsonNode.h"
+#include "io/MessageText.h"
 
 #include <pugixml.hpp>
 

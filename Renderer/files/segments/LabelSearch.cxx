@@ -2,8 +2,8 @@
 
 #include "base/Error.h"
 #include "base/Text.h"
-#include "base/safe/Inputs.h"
-#include "base/safe/ShownText.h"
+#include "io/InputRegistry.h"
+#include "io/MessageText.h"
 
 #include <algorithm>
 

@@ -1,8 +1,8 @@
 // Focus and statistics of segments.
 
 #include "base/Error.h"
-#include "base/safe/ShownText.h"
 #include "files/segments/SegmentationReader.h"
+#include "io/MessageText.h"
 #include "model/masks/MaskShaping.h"
 
 #include <tbb/blocked_range.h>

@@ -1,12 +1,12 @@
 #include "files/segments/SegmentationReader.h"
 
 #include "base/Error.h"
-#include "base/safe/HeaderText.h"
-#include "base/safe/Inputs.h"
+#include "files/formats/TextHeader.h"
 #include "files/medical/MedicalImage.h"
 #include "files/medical/SampleStore.h"
 #include "files/segments/ClosedSurface.h"
 #include "files/segments/LabelSearch.h"
+#include "io/InputRegistry.h"
 
 #include <map>
 #include <optional>

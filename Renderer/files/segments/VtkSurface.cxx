@@ -1,8 +1,8 @@
 #include "files/segments/VtkSurface.h"
 
 #include "base/Error.h"
-#include "base/safe/Base64.h"
-#include "base/safe/Inputs.h"
+#include "io/Base64.h"
+#include "io/InputRegistry.h"
 
 #include <pugixml.hpp>
 #include <zlib.h>

@@ -1,6 +1,6 @@
 #include "files/slicer/MrmlDocument.h"
 
-#include "base/safe/ShownText.h"
+#include "io/MessageText.h"
 
 #include <pugixml.hpp>
 

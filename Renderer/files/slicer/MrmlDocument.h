@@ -2,7 +2,7 @@
 // MRML scene as stored: nodes with attributes, and references between nodes. MrmlScene interprets
 // them.
 
-#include "base/Checked.h"
+#include "base/CheckAffine.h"
 
 #include <map>
 #include <optional>

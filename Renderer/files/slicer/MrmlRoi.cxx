@@ -1,8 +1,8 @@
 // Cropping boxes of all ages: markups, annotations, and the first ROI nodes.
 
-#include "base/safe/Inputs.h"
-#include "base/safe/JsonNode.h"
 #include "files/slicer/MrmlScene.h"
+#include "io/InputRegistry.h"
+#include "io/JsonNode.h"
 
 namespace fenestra {
 namespace {

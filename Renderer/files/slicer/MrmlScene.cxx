@@ -1,7 +1,7 @@
 #include "files/slicer/MrmlScene.h"
 
-#include "base/Checked.h"
-#include "files/looks/TransferReader.h"
+#include "base/CheckAffine.h"
+#include "files/appearance/TransferReader.h"
 #include "files/medical/DicomSeries.h"
 #include "files/medical/MedicalHeader.h"
 #include "files/medical/VolumeReader.h"

@@ -1,10 +1,10 @@
 #include "files/slicer/SceneFiles.h"
 
-#include "base/safe/Inputs.h"
-#include "base/safe/JsonNode.h"
-#include "base/safe/ShownText.h"
-#include "base/safe/SystemCalls.h"
-#include "files/medical/NamedFiles.h"
+#include "files/medical/ReferencedFiles.h"
+#include "io/InputRegistry.h"
+#include "io/JsonNode.h"
+#include "io/MessageText.h"
+#include "io/SystemErrors.h"
 
 #include <zip.h>
 

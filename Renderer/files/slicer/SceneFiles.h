@@ -2,8 +2,8 @@
 // The files of a Slicer scene: beside a .mrml, or inside a .mrb.
 
 #include "base/Error.h"
-#include "base/safe/Folders.h"
-#include "base/safe/Inputs.h"
+#include "io/Folders.h"
+#include "io/InputRegistry.h"
 
 #include <filesystem>
 #include <map>

@@ -1,11 +1,11 @@
 #include "files/slicer/TransformFile.h"
 
-#include "base/Checked.h"
-#include "base/safe/Apart.h"
-#include "base/safe/Inputs.h"
-#include "base/safe/JsonNode.h"
-#include "base/safe/ShownText.h"
-#include "files/medical/Quiet.h"
+#include "base/CheckAffine.h"
+#include "files/medical/SuppressItkOutput.h"
+#include "io/InputRegistry.h"
+#include "io/JsonNode.h"
+#include "io/MessageText.h"
+#include "io/Sandbox.h"
 
 #include <hdf5.h>
 #include <itkHDF5TransformIO.h>

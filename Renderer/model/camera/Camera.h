@@ -2,7 +2,7 @@
 // The camera, and view space: origin at the eye (perspective) or on the camera plane
 // (orthographic), x right, y up, depth z along the viewing direction, mm.
 
-#include "base/Checked.h"
+#include "base/CheckAffine.h"
 
 namespace fenestra {
 

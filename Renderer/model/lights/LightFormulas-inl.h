@@ -1,5 +1,5 @@
 // Formulas of lights, for plain numbers and for lanes: a part of the namespace that includes it
-// (base/Numbers.h), behind model/lights/LightTables.h.
+// (base/ScalarMath.h), behind model/lights/LightTables.h.
 
 using Lights = LightTables<Real>;
 

@@ -5,8 +5,8 @@
 // second ray.
 // Area lights and spheres only emit: they block nothing, and eye rays do not see them.
 
-#include "base/Numbers.h"
 #include "base/Random.h"
+#include "base/ScalarMath.h"
 #include "model/camera/Camera.h"
 #include "model/lights/EnvironmentSampler.h"
 #include "model/lights/LightTables.h"

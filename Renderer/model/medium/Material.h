@@ -7,9 +7,10 @@
 //              move, hide or invent a surface.
 //     matter   all of it.
 //
-// This header is data, without names. `files/looks/MaterialReader` reads tables of materials, and
-// the rules that say which segments they are for; `session/SegmentMaterials` chooses by these rules
-// one SegmentMedium for each segment, in the segments' order. Transport sees no rule, code or name.
+// This header is data, without names. `files/appearance/MaterialReader` reads tables of materials,
+// and the rules that say which segments they are for; `scene/SegmentMaterials` chooses by these
+// rules one SegmentMedium for each segment, in the segments' order. Transport sees no rule, code or
+// name.
 //
 // A renderer of them takes a list of components (Mixture.h, Tint.h), one for each distinct material
 // of a volume, and the share of each in every voxel, on the segmentation's grid and under its

@@ -14,7 +14,7 @@
 // Where components differ in nothing but albedo, Tint is the same medium with less noise.
 
 #include "base/Random.h"
-#include "model/medium/Shares.h"
+#include "model/medium/LabelWeights.h"
 #include "model/medium/TransferFunction.h"
 
 #include <algorithm>

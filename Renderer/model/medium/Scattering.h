@@ -4,9 +4,9 @@
 // direction in which the path continues (toward a light). evaluate() is the factor on radiance per
 // steradian, with albedo and, at surfaces, the cosine included; pdf() is per steradian.
 
-#include "base/Numbers.h"
 #include "base/Random.h"
-#include "model/medium/ScatterLaw.h"
+#include "base/ScalarMath.h"
+#include "model/medium/BsdfParameters.h"
 
 #include <variant>
 

@@ -1,5 +1,5 @@
 // Formulas of scattering, for plain numbers and for lanes: a part of the namespace that includes it
-// (base/Numbers.h), behind model/medium/BsdfParameters.h.
+// (base/ScalarMath.h), behind model/medium/BsdfParameters.h.
 
 /// Factor of scattering on radiance toward a direction, and the density of drawing that direction.
 struct ScatterEval {

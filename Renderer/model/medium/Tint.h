@@ -3,8 +3,8 @@
 // function's, so that an error of the segmentation can colour wrongly, and never move, hide or
 // invent a surface.
 
+#include "model/medium/LabelWeights.h"
 #include "model/medium/PiecewiseLinear.h"
-#include "model/medium/Shares.h"
 
 #include <memory>
 #include <optional>

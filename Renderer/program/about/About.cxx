@@ -1,8 +1,8 @@
 #include "program/about/About.h"
 
 #include "base/InstructionSets.h"
-#include "base/safe/JsonNode.h"
 #include "files/slicer/SlicerPresets.h"
+#include "io/JsonNode.h"
 #include "program/about/Commit.h"
 #include "program/about/Version.h"
 

@@ -2,7 +2,7 @@
 
 #include "FenestraTesting.h"
 
-#include "qFenestraAbilities.h"
+#include "qFenestraCapabilities.h"
 #include "qSlicerFenestraClipping.h"
 #include "qSlicerFenestraLights.h"
 #include "qSlicerFenestraLook.h"

@@ -1,0 +1,157 @@
+#include "clip/field/Clip.h"
+
+#include <algorithm>
+
+namespace fenestra {
+
+namespace {
+
+/// Least distance, mm, of a box from the surface to count as removed or kept whole: far more than
+/// rounding, far below visibility.
+constexpr double slack = 1e-6;
+
+Interval findUnclipped(const ClipNone&, const Ray&) {
+  return {};
+}
+
+Interval findUnclipped(const ClipPlane& clip, const Ray& cameraRay) {
+  const double height = (cameraRay.origin - clip.point).dot(clip.normal); // the removed side is > 0
+  const double slope = cameraRay.direction.dot(clip.normal);
+  if (slope > 0.0)
+    return {0.0, std::max(0.0, -height / slope)};
+  if (slope < 0.0)
+    return {std::max(0.0, -height / slope), infinity};
+  return height > 0.0 ? Interval{0.0, 0.0} : Interval{};
+}
+
+Interval findUnclipped(const ClipDepth& clip, const Ray& cameraRay) {
+  const double depthPerLength = clip.camera.depthPerLength(cameraRay);
+  // All points of the ray have the same (x, y); at the target's depth rounding matters least.
+  const Vec3 point = cameraRay.at(clip.camera.targetDepth() / depthPerLength);
+  const double depth = clip.surfaceDepth(toBuffer(clip.camera, point).head<2>());
+  return {std::max(0.0, depth / depthPerLength), infinity};
+}
+
+Vec3 evaluateCut(const ClipNone&, const Vec3&) {
+  return Vec3::Zero();
+}
+
+Vec3 evaluateCut(const ClipPlane& clip, const Vec3& world) {
+  if (isBehindCamera(clip.camera, clip.camera.toView(world).z()) ||
+      !clip.edge.isRamp(clip.signedDistance(world)))
+    return Vec3::Zero();
+  return -cutShading / clip.edge.softness * clip.normal;
+}
+
+Vec3 evaluateCut(const ClipDepth& clip, const Vec3& world) {
+  const Camera& camera = clip.camera;
+  const Vec3 at = toBuffer(camera, world);
+  if (isBehindCamera(camera, at.z()) || !clip.edge.isRamp(clip.signedDistance(at)))
+    return Vec3::Zero();
+  Vec2 slope = Vec2::Zero();
+  if (clip.lookup == ClipDepth::Lookup::linear)
+    slope = clip.buffer->gradient(clip.buffer->cell(at.head<2>()));
+  double forward = 1.0;
+  if (camera.pose().projection == Projection::perspective) {
+    forward += slope.dot(at.head<2>()) / at.z();
+    slope *= camera.targetDepth() / at.z();
+  }
+  const Vec3 gradient =
+      forward * camera.forward() - slope.x() * camera.right() - slope.y() * camera.up();
+  return cutShading / clip.edge.softness * gradient.normalized();
+}
+
+/// Position of a box relative to a part of space.
+enum class Side { inside, straddling, outside };
+
+/// Bound for a box over a range of distances behind the surface, mm.
+ClipBounds boundFromDistance(const ClipEdge& edge, const Interval& distances, Side side) {
+  if (side == Side::outside)
+    return ClipBounds::none;
+  if (side == Side::inside && distances.begin > edge.softness + slack)
+    return ClipBounds::all;
+  if (distances.end < -slack)
+    return {edge.ghost, side == Side::inside || edge.isHard()};
+  return ClipBounds::some;
+}
+
+/// Position of a stretch of depths, mm, relative to the space in front of the eye.
+Side classifyDepths(const Camera& camera, const Interval& depths) {
+  if (isBehindCamera(camera, depths.end + slack))
+    return Side::outside;
+  return isBehindCamera(camera, depths.begin - slack) ? Side::straddling : Side::inside;
+}
+
+ClipBounds boundBox(const ClipNone&, const Corners&) {
+  return ClipBounds::all;
+}
+
+ClipBounds boundBox(const ClipPlane& clip, const Corners& corners) {
+  Interval distances{infinity, -infinity}, depths = distances;
+  for (const Vec3& corner : corners) {
+    const double distance = clip.signedDistance(corner), depth = clip.camera.toView(corner).z();
+    distances = enclose(distances, {distance, distance});
+    depths = enclose(depths, {depth, depth});
+  }
+  return boundFromDistance(clip.edge, distances, classifyDepths(clip.camera, depths));
+}
+
+ClipBounds boundBox(const ClipDepth& clip, const Corners& corners) {
+  Box box = Box::makeEmpty(); // (x, y) and depths
+  for (const Vec3& corner : corners)
+    box.extend(toBuffer(clip.camera, corner));
+  const Side side = classifyDepths(clip.camera, {box.lower.z(), box.upper.z()});
+  if (side == Side::outside)
+    return ClipBounds::none;
+  Vec2 lower = box.lower.head<2>(), upper = box.upper.head<2>();
+  if (side == Side::straddling) { // the box's projection is unbounded
+    lower = Vec2::Constant(-infinity);
+    upper = Vec2::Constant(infinity);
+  }
+  const Interval surface = clip.pyramid->bounds(*clip.buffer, lower, upper);
+  return boundFromDistance(clip.edge, {box.lower.z() - surface.end, box.upper.z() - surface.begin},
+                           side);
+}
+
+} // namespace
+
+double ClipDepth::refineAtSilhouette(const DepthBuffer::Cell& cell, const Vec2& position,
+                                     double linear, const Interval& queryRange) const {
+  const std::int32_t silhouetteCell =
+      silhouette->indices()[static_cast<std::size_t>(buffer->sample(cell.column, cell.row))];
+  if (silhouetteCell < 0)
+    return linear;
+  const SilhouetteCells::DepthBounds& bounds =
+      silhouette->depthBounds()[static_cast<std::size_t>(silhouetteCell)];
+  const double reference = buffer->reference();
+  if (queryRange.end < std::min(linear, reference + bounds.min) ||
+      queryRange.begin > std::max(linear, reference + bounds.max))
+    return linear;
+  SilhouetteCells::Query query{silhouetteCell, position, linear - reference,
+                               queryRange.begin - reference};
+  silhouette->evaluate({&query, 1});
+  return reference + query.depth;
+}
+
+Vec3 cutGradient(const Clip& clip, const Vec3& world) {
+  return std::visit(
+      [&](const auto& kind) -> Vec3 {
+        return kind.edge.softness > 0.0 ? evaluateCut(kind, world) : Vec3::Zero();
+      },
+      clip);
+}
+
+Interval intervalBehindSurface(const Clip& clip, const Ray& cameraRay) {
+  return std::visit([&](const auto& kind) { return findUnclipped(kind, cameraRay); }, clip);
+}
+
+Interval visibleInterval(const Clip& clip, const Ray& cameraRay) {
+  const bool isHard = std::visit([](const auto& kind) { return kind.edge.isHard(); }, clip);
+  return isHard ? intervalBehindSurface(clip, cameraRay) : Interval{};
+}
+
+ClipBounds boundClipWeight(const Clip& clip, const Corners& corners) {
+  return std::visit([&](const auto& kind) { return boundBox(kind, corners); }, clip);
+}
+
+} // namespace fenestra

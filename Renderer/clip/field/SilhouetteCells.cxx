@@ -1,0 +1,191 @@
+#include "clip/field/SilhouetteCells.h"
+
+#include "clip/focus/FocusCells.h"
+#include "clip/focus/Footprints.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <array>
+
+namespace fenestra {
+
+namespace {
+
+/// Per cell of `range`: 0: all four samples around the cell are focus; 1: the focus may end there.
+std::vector<std::uint8_t> findOuterCells(const FocusDepth& focus, const CellRange& range) {
+  std::vector<std::uint8_t> isOuter(range.size());
+  const auto outside = [&](std::int64_t sample) {
+    return static_cast<std::uint8_t>(focus.regions[static_cast<std::size_t>(sample)] !=
+                                     Region::focus);
+  };
+  for (std::int64_t row = range.top; row < range.bottom; ++row)
+    for (std::int64_t column = range.left; column < range.right; ++column) {
+      const std::int64_t upper = focus.depth.sample(column, row);
+      const std::int64_t lower = upper + focus.depth.columns();
+      isOuter[range.at(column, row)] = static_cast<std::uint8_t>(
+          outside(upper) | outside(upper + 1) | outside(lower) | outside(lower + 1));
+    }
+  return isOuter;
+}
+
+/// Depth range of the 4 x 4 samples around each cell, made twice as long away from the eye: a hole
+/// may be deeper than its samples. mm, relative to the target.
+std::vector<SilhouetteCells::DepthBounds> boundNeighborhoods(const DepthBuffer& buffer,
+                                                             const CellRange& range) {
+  constexpr std::int64_t width = 4;
+  constexpr float noDepth = std::numeric_limits<float>::infinity();
+  const auto columns = static_cast<std::size_t>(range.columns());
+  std::vector<float> row(columns + width - 1);
+  // Ranges of four neighbours in a row, then of four such rows.
+  std::vector<SilhouetteCells::DepthBounds> bounds(
+      columns * static_cast<std::size_t>(range.rows() + width - 1));
+  auto bound = bounds.begin();
+  for (std::int64_t r = range.top - 1; r < range.bottom + width - 2; ++r) {
+    for (std::size_t i = 0; i < row.size(); ++i)
+      row[i] = buffer.depthsFromReference()[static_cast<std::size_t>(
+          buffer.sample(std::clamp<std::int64_t>(range.left - 1 + static_cast<std::int64_t>(i), 0,
+                                                 buffer.columns() - 1),
+                        std::clamp<std::int64_t>(r, 0, buffer.rows() - 1)))];
+    const auto at = [&](std::size_t i) { // empty for a sample beside the focus
+      return SilhouetteCells::DepthBounds{row[i], row[i] < noDepth ? row[i] : -noDepth};
+    };
+    for (std::size_t i = 0; i < columns; ++i)
+      *bound++ = enclose(enclose(at(i), at(i + 1)), enclose(at(i + 2), at(i + 3)));
+  }
+  for (std::size_t i = 0; i < range.size(); ++i) {
+    const auto& [least, greatest] =
+        enclose(enclose(bounds[i], bounds[i + columns]),
+                enclose(bounds[i + 2 * columns], bounds[i + 3 * columns]));
+    bounds[i] = {least, 2.0F * greatest - least};
+  }
+  return bounds;
+}
+
+/// Questions that are traced together.
+struct QueryBatch {
+  std::size_t size = 0;
+  std::array<SilhouetteCells::Query*, SilhouetteCells::maxQueries> queries;
+  std::array<DepthQuery, SilhouetteCells::maxQueries> requests;
+  std::array<DepthHit, SilhouetteCells::maxQueries> results;
+
+  void add(SilhouetteCells::Query& query, const Interval& depths) {
+    queries[size] = &query;
+    requests[size++] = {query.position, depths};
+  }
+  std::span<const DepthQuery> depthQueries() const { return std::span(requests).first(size); }
+  std::span<DepthHit> hits() { return std::span(results).first(size); }
+};
+
+} // namespace
+
+SilhouetteCells::SilhouetteCells(std::shared_ptr<const FocusTracer> tracer, const FocusDepth& focus)
+    : m_tracer(std::move(tracer)),
+      m_reference(focus.depth.reference()),
+      m_indices(focus.regions.size(), -1) {
+  const Camera& camera = m_tracer->camera();
+  const FocusCells& cells = m_tracer->cells();
+  const CellRange range = findFocusRange(camera, focus.depth, cells);
+  const std::vector<std::uint8_t> isOuter = findOuterCells(focus, range);
+  const std::vector<Interval> outer =
+      computeDepthBounds(camera, focus.depth, cells, range, isOuter);
+  const std::vector<DepthBounds> inner = boundNeighborhoods(focus.depth, range);
+  for (std::int64_t row = range.top; row < range.bottom; ++row)
+    for (std::int64_t column = range.left; column < range.right; ++column) {
+      const std::size_t cell = range.at(column, row);
+      if (isOuter[cell] && outer[cell].isEmpty())
+        continue;
+      m_indices[static_cast<std::size_t>(focus.depth.sample(column, row))] =
+          static_cast<std::int32_t>(m_depthBounds.size());
+      m_depthBounds.push_back(isOuter[cell]
+                                  ? DepthBounds{static_cast<float>(outer[cell].begin - m_reference),
+                                                static_cast<float>(outer[cell].end - m_reference)}
+                                  : inner[cell]);
+      m_isInner.push_back(!isOuter[cell]);
+    }
+  findHalo(focus, range);
+}
+
+/// Reaches of the four cells around a sample, joined, mm.
+Interval SilhouetteCells::joinDepthBounds(const DepthBuffer& buffer, std::int64_t column,
+                                          std::int64_t row) const {
+  Interval depths{infinity, -infinity};
+  for (const std::int64_t r : {std::max<std::int64_t>(row, 1) - 1, row})
+    for (const std::int64_t c : {std::max<std::int64_t>(column, 1) - 1, column})
+      if (const DepthBounds* const bounds = findDepthBounds(buffer.sample(c, r)))
+        depths = enclose(depths, {m_reference + bounds->min, m_reference + bounds->max});
+  return depths;
+}
+
+void SilhouetteCells::findHalo(const FocusDepth& focus, const CellRange& range) {
+  const DepthBuffer& buffer = focus.depth;
+  std::vector<DepthQuery> depthQueries;
+  for (std::int64_t row = range.top; row <= std::min(range.bottom, buffer.rows() - 1); ++row)
+    for (std::int64_t column = range.left; column <= std::min(range.right, buffer.columns() - 1);
+         ++column) {
+      const std::int64_t sample = buffer.sample(column, row);
+      if (focus.regions[static_cast<std::size_t>(sample)] != Region::context)
+        continue;
+      const Interval depths = joinDepthBounds(buffer, column, row);
+      if (depths.isEmpty())
+        continue;
+      m_halo.push_back({sample, 0.0});
+      depthQueries.push_back({buffer.position(column, row), depths});
+    }
+  std::vector<DepthHit> hits(depthQueries.size());
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, depthQueries.size(), 256), [&](const auto& part) {
+        m_tracer->findHitsAndMaxima(std::span(depthQueries).subspan(part.begin(), part.size()),
+                                    std::span(hits).subspan(part.begin(), part.size()));
+      });
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < m_halo.size(); ++i)
+    if (hits[i].indicator > FocusCells::captureThreshold)
+      m_halo[found++] = {m_halo[i].sample, hits[i].depth};
+  m_halo.resize(found);
+}
+
+void SilhouetteCells::move(double offset) {
+  m_offset += offset;
+  for (DepthBounds& bounds : m_depthBounds)
+    bounds = {static_cast<float>(bounds.min + offset), static_cast<float>(bounds.max + offset)};
+}
+
+void SilhouetteCells::evaluate(std::span<Query> queries) const {
+  QueryBatch inner, rest;
+  const double toFocus = m_reference - m_offset;
+  const auto findBounds = [&](const Query& query) {
+    const auto& [least, greatest] = m_depthBounds[static_cast<std::size_t>(query.cell)];
+    return Interval{toFocus + least, toFocus + greatest};
+  };
+  const auto addToRest = [&](Query& query) {
+    const Interval bounds = findBounds(query);
+    rest.add(query, {bounds.begin, isInner(query.cell) ? infinity : bounds.end});
+  };
+  for (Query& query : queries) {
+    const Interval bounds = findBounds(query);
+    if (m_tracer->isFocus(query.position, toFocus + query.nearLimit))
+      query.depth = bounds.begin - toFocus; // the focus is met at `from` or before
+    else if (isInner(query.cell))
+      inner.add(query, bounds);
+    else
+      addToRest(query);
+  }
+  m_tracer->findHits(inner.depthQueries(), inner.hits());
+  for (std::size_t i = 0; i < inner.size; ++i)
+    if (inner.results[i].indicator > 0.0)
+      inner.queries[i]->depth = inner.results[i].depth - toFocus;
+    else
+      addToRest(*inner.queries[i]);
+  m_tracer->findHitsAndMaxima(rest.depthQueries(), rest.hits());
+  for (std::size_t i = 0; i < rest.size; ++i)
+    if (const DepthHit& hit = rest.results[i]; hit.indicator > FocusCells::captureThreshold) {
+      Query& query = *rest.queries[i];
+      const double depth = std::min(hit.depth, findBounds(query).end) - toFocus;
+      const double blend =
+          (hit.indicator - FocusCells::captureThreshold) / (0.5 - FocusCells::captureThreshold);
+      query.depth += blend * (depth - query.depth);
+    }
+}
+
+} // namespace fenestra

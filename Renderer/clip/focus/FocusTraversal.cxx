@@ -1,0 +1,400 @@
+// FocusCells::findHits and findHitsAndMaxima, in SIMD lanes: as many rays as there are lanes walk
+// through the cells together (Amanatides and Woo 1987), over empty blocks in one step. Lanes are
+// double: a meeting is as exact as for a single ray.
+
+#include "base/SimdTargets.h"
+#include "clip/focus/CellCubic.h"
+#include "clip/focus/FocusCells.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "clip/focus/FocusTraversal.cxx"
+#include <hwy/foreach_target.h>
+// After foreach_target.h:
+#include "clip/focus/FocusAxis-inl.h"
+
+#include <bit>
+HWY_BEFORE_NAMESPACE();
+namespace fenestra::HWY_NAMESPACE {
+namespace {
+
+constexpr std::size_t maxLanes = HWY_MAX_BYTES / sizeof(double);
+struct alignas(64) LaneDoubles : std::array<double, maxLanes> {};
+
+HWY_INLINE unsigned maskBits(M mask) {
+  std::array<std::uint8_t, 8> packed = {};
+  hn::StoreMaskBits(doubles, mask, packed.data());
+  return packed[0];
+}
+
+/// Cubics, over parts of rays, that rise from < 0 to >= 0.
+class RootSolver {
+public:
+  void add(const Cubic& cubic, double begin, double length, std::size_t ray) {
+    for (std::size_t i = 0; i < 4; ++i)
+      m_c[i][m_size] = cubic.c[i];
+    m_begin[m_size] = begin;
+    m_length[m_size] = length;
+    m_ray[m_size] = ray;
+    ++m_size;
+  }
+
+  /// Writes rays.meeting from the roots, found as by findRoot(cubic, 0, 1).
+  void solveAll(FocusRays& rays) {
+    for (std::size_t i = m_size; i % hn::Lanes(doubles) != 0; ++i)
+      for (Column* column : {&m_c[0], &m_c[1], &m_c[2], &m_c[3], &m_begin, &m_length})
+        (*column)[i] = 0.0; // whole vectors are read
+    for (std::size_t i = 0; i < m_size; i += hn::Lanes(doubles)) {
+      const D s = findRoots(i);
+      LaneDoubles hits;
+      hn::Store(hn::MulAdd(s, hn::Load(doubles, &m_length[i]), hn::Load(doubles, &m_begin[i])),
+                doubles, hits.data());
+      for (std::size_t lane = 0; lane < std::min(hn::Lanes(doubles), m_size - i); ++lane)
+        rays.hitT[m_ray[i + lane]] = hits[lane];
+    }
+  }
+
+private:
+  HWY_INLINE D findRoots(std::size_t i) const {
+    const D c0 = hn::Load(doubles, &m_c[0][i]), c1 = hn::Load(doubles, &m_c[1][i]);
+    const D c2 = hn::Load(doubles, &m_c[2][i]), c3 = hn::Load(doubles, &m_c[3][i]);
+    const auto at = [&](D s) {
+      return hn::MulAdd(hn::MulAdd(hn::MulAdd(c3, s, c2), s, c1), s, c0);
+    };
+    const auto slope = [&](D s) {
+      return hn::MulAdd(hn::MulAdd(hn::Mul(all(3.0), c3), s, hn::Mul(all(2.0), c2)), s, c1);
+    };
+    const D rounding = all(1e-15);
+    D low = hn::Zero(doubles), high = all(1.0);
+    D s = hn::Div(c0, hn::Sub(c0, at(high)));
+    M open = hn::FirstN(doubles, m_size - i);
+    for (int step = 0; step < 100; ++step) {
+      const D value = at(s);
+      const M below = hn::Lt(value, hn::Zero(doubles));
+      low = hn::IfThenElse(below, s, low);
+      high = hn::IfThenElse(below, high, s);
+      const D newton = hn::Sub(s, hn::Div(value, slope(s)));
+      const M settled = hn::Or(hn::Le(hn::Sub(high, low), rounding),
+                               hn::Le(hn::Abs(hn::Sub(newton, s)), rounding));
+      open = hn::AndNot(settled, open); // a NaN settles nothing
+      if (hn::AllFalse(doubles, open))
+        break;
+      const M inside = hn::And(hn::Gt(newton, low), hn::Lt(newton, high));
+      const D next = hn::IfThenElse(inside, newton, hn::Mul(all(0.5), hn::Add(low, high)));
+      s = hn::IfThenElse(open, next, s);
+    }
+    return s;
+  }
+
+  using Column = FocusRays::SoaArray;
+  std::size_t m_size = 0;
+  alignas(64) std::array<Column, 4> m_c;
+  alignas(64) Column m_begin, m_length;
+  std::array<std::size_t, FocusRays::capacity> m_ray;
+};
+
+/// Tolerance of a plateau: heights (indicator units) and places (mm) that differ by less are equal.
+/// Rays along a flat face pass a plateau, whose beginning is the summit.
+constexpr double plateauTolerance = 1e-8;
+
+/// Tolerance of a ridge, indicator units: points of a hill less than this below its summit belong
+/// to one ridge, which hides what is behind (FocusCells::replaceRatio). A face seen edge-on needs
+/// it: a ray beside the face misses it by slightly different distances along the ray.
+constexpr double ridgeTolerance = 1e-4;
+
+/// Walk of rays i, i + 1 and so on, one in each lane.
+template <bool withMaxima>
+class Traversal {
+public:
+  Traversal(const FocusCells::Layout& cells, FocusRays& rays, RootSolver& roots, std::size_t i)
+      : m_cells(cells),
+        m_rays(rays),
+        m_solver(roots),
+        m_first(i),
+        m_t(hn::Load(doubles, &rays.begin[i])),
+        m_end(hn::Load(doubles, &rays.end[i])),
+        m_busy(
+            hn::And(hn::FirstN(doubles, rays.size - std::min(i, rays.size)), hn::Lt(m_t, m_end))),
+        m_axes{axis(0), axis(1), axis(2)} {
+    m_maxima.fill(FocusCells::captureThreshold - 0.5);
+    m_maximaT.fill(-infinity);
+    m_ridgeEnds.fill(-infinity);
+  }
+
+  /// Writes the summits to the rays; to be called when no lane is busy.
+  void finish() {
+    for (std::size_t i = m_first;
+         withMaxima && i < std::min(m_first + hn::Lanes(doubles), m_rays.size); ++i) {
+      m_rays.maximumT[i] = m_maximaT[i - m_first];
+      m_rays.maximum[i] = 0.5 + m_maxima[i - m_first];
+    }
+  }
+
+  bool isBusy() const { return !hn::AllFalse(doubles, m_busy); }
+
+  FocusAxis axis(std::size_t a) const {
+    return {hn::Load(doubles, &m_rays.origin[a][m_first]),
+            hn::Load(doubles, &m_rays.direction[a][m_first]), m_t,
+            m_cells.blockCount[static_cast<int>(a)]};
+  }
+
+  /// Steps into the next cell or block.
+  HWY_INLINE void step() {
+    const I x = hn::DemoteTo(ints, m_axes[0].cellIndex());
+    const I y = hn::DemoteTo(ints, m_axes[1].cellIndex());
+    const I z = hn::DemoteTo(ints, m_axes[2].cellIndex());
+    const auto linear = [](I a, I b, I c, std::int64_t countA, std::int64_t countB) {
+      return hn::Add(a, hn::Mul(allInts(countA), hn::Add(b, hn::Mul(allInts(countB), c))));
+    };
+    const I block =
+        hn::GatherIndex(ints, m_cells.blocks,
+                        linear(hn::ShiftRight<2>(x), hn::ShiftRight<2>(y), hn::ShiftRight<2>(z),
+                               m_cells.blockCount.x(), m_cells.blockCount.y()));
+    const M isOccupied = isNonZero(block);
+    const M isEmpty = hn::Not(isOccupied);
+    const D toX = m_axes[0].findFace(isEmpty);
+    const D toY = m_axes[1].findFace(isEmpty);
+    const D toZ = m_axes[2].findFace(isEmpty);
+    const D out = hn::Min(hn::Min(toX, toY), toZ);
+    const D exit = hn::Min(m_end, hn::Max(m_t, out));
+
+    if (const M candidates = hn::And(isOccupied, m_busy); !hn::AllFalse(doubles, candidates)) {
+      const I three = allInts(3);
+      const I cell = linear(hn::And(x, three), hn::And(y, three), hn::And(z, three), 4, 4);
+      const I at = hn::Add(hn::ShiftLeft<6>(block), cell);
+      const I corners = hn::And(
+          hn::GatherOffset(ints, reinterpret_cast<const std::int32_t*>(m_cells.corners), at),
+          allInts(0xff));
+      if (const M occupied = hn::And(candidates, isNonZero(corners));
+          !hn::AllFalse(doubles, occupied))
+        intersect(occupied, corners,
+                  hn::Add(hn::ShiftLeft<7>(block),
+                          linear(hn::And(x, three), hn::And(y, three), hn::And(z, three), 5, 5)),
+                  exit);
+    }
+
+    m_busy = hn::And(m_busy, hn::Lt(out, m_end));
+    const M throughX = hn::Eq(toX, out);
+    const M throughY = hn::AndNot(throughX, hn::Eq(toY, out));
+    const M throughZ = hn::Not(hn::Or(throughX, throughY));
+    m_axes[0].advance(m_busy, throughX, exit);
+    m_axes[1].advance(m_busy, throughY, exit);
+    m_axes[2].advance(m_busy, throughZ, exit);
+    m_t = exit;
+  }
+
+private:
+  /// Ends the walks that meet the surface in their cells. Bernstein's coefficients bound a cubic:
+  /// only cubics with a coefficient >= 0, or near the summit so far, are solved. `values`: index of
+  /// a cell's first value.
+  HWY_INLINE void intersect(M which, I corners, I values, D exit) {
+    const std::array<D, 8> v = m_cells.values ? smoothCorners(values) : binaryCorners(corners);
+    const D length = hn::Sub(exit, m_t);
+    const D x = m_axes[0].fraction(m_t), u = m_axes[0].displacement(length);
+    const D y = m_axes[1].fraction(m_t), w = m_axes[1].displacement(length);
+    const D z = m_axes[2].fraction(m_t), q = m_axes[2].displacement(length);
+
+    // The indicator is a + x bx + y by + z bz + x y cxy + x z cxz + y z cyz + x y z d, and along
+    // the ray x becomes x + s u, y + s w, z + s q with s in [0, 1].
+    const D bx = hn::Sub(v[1], v[0]), by = hn::Sub(v[2], v[0]), bz = hn::Sub(v[4], v[0]);
+    const D cxy = hn::Sub(hn::Sub(v[3], v[2]), bx);
+    const D cxz = hn::Sub(hn::Sub(v[5], v[4]), bx);
+    const D cyz = hn::Sub(hn::Sub(v[6], v[4]), by);
+    const D d = hn::Sub(hn::Add(hn::Sub(hn::Sub(v[7], v[6]), v[5]), v[4]), cxy);
+    const auto sum = [](auto... terms) {
+      D total = hn::Zero(doubles);
+      ((total = hn::Add(total, terms)), ...);
+      return total;
+    };
+    const auto times = [](D a, auto... factors) {
+      ((a = hn::Mul(a, factors)), ...);
+      return a;
+    };
+    const D c0 = sum(v[0], times(bx, x), times(by, y), times(bz, z), times(cxy, x, y),
+                     times(cxz, x, z), times(cyz, y, z), times(d, x, y, z));
+    const D c1 =
+        sum(times(bx, u), times(by, w), times(bz, q), times(cxy, sum(times(x, w), times(y, u))),
+            times(cxz, sum(times(x, q), times(z, u))), times(cyz, sum(times(y, q), times(z, w))),
+            times(d, sum(times(x, y, q), times(x, w, z), times(u, y, z))));
+    const D c2 = sum(times(cxy, u, w), times(cxz, u, q), times(cyz, w, q),
+                     times(d, sum(times(x, w, q), times(u, y, q), times(u, w, z))));
+    const D c3 = times(d, u, w, q);
+
+    const D third = all(1.0 / 3.0);
+    const D b1 = hn::Add(c0, hn::Mul(c1, third));
+    const D b2 = hn::Add(b1, hn::Mul(hn::Add(c1, c2), third));
+    const D b3 = sum(c0, c1, c2, c3);
+    const D greatest = hn::Max(hn::Max(c0, b1), hn::Max(b2, b3));
+    D least = all(-1e-12); // a little below 0 is rounding
+    if constexpr (withMaxima)
+      least = hn::Min(least, hn::Sub(hn::Load(doubles, m_maxima.data()), all(ridgeTolerance)));
+    const M possible = hn::And(which, hn::Ge(greatest, least));
+    if (hn::AllFalse(doubles, possible))
+      return;
+    const M rises = hn::And(hn::And(hn::Lt(c0, hn::Zero(doubles)), hn::Ge(b3, hn::Zero(doubles))),
+                            hn::And(hn::And(hn::Le(c0, b1), hn::Le(b1, b2)), hn::Le(b2, b3)));
+    solve(possible, {c0, c1, c2, c3}, rises, length);
+  }
+
+  /// Indicator - 1/2 at the corners of cells, x fastest.
+  HWY_INLINE static std::array<D, 8> binaryCorners(I corners) {
+    const auto value = [&](std::int32_t i) {
+      const I bit = hn::And(corners, allInts(1 << i));
+      return hn::IfThenElse(isNonZero(bit), all(0.5), all(-0.5));
+    };
+    return {value(0), value(1), value(2), value(3), value(4), value(5), value(6), value(7)};
+  }
+  HWY_INLINE std::array<D, 8> smoothCorners(I first) const {
+    const auto value = [&](I byte) {
+      const D whole = hn::PromoteTo(doubles, hn::And(byte, allInts(0xff)));
+      return hn::MulSub(whole, all(m_cells.valueScale), all(0.5));
+    };
+    std::array<D, 8> v;
+    std::size_t i = 0;
+    for (const std::int32_t row : {0, 5, 25, 30}) { // two neighbours along x at once
+      const I both = hn::GatherOffset(ints, reinterpret_cast<const std::int32_t*>(m_cells.values),
+                                      hn::Add(first, allInts(row)));
+      v[i++] = value(both);
+      v[i++] = value(hn::ShiftRight<8>(both));
+    }
+    return v;
+  }
+
+  /// Searches the cubics of `which` one by one. Cubics of `rises` have one root for certain: added
+  /// to m_solver, which finds many roots at once later.
+  HWY_INLINE void solve(M which, const std::array<D, 4>& c, M rises, D length) {
+    alignas(64) std::array<LaneDoubles, 7> lanes;
+    for (std::size_t i = 0; i < 4; ++i)
+      hn::Store(c[i], doubles, lanes[i].data());
+    hn::Store(m_t, doubles, lanes[4].data());
+    hn::Store(length, doubles, lanes[5].data());
+    hn::Store(hn::IfThenElseZero(m_busy, all(1.0)), doubles, lanes[6].data());
+    const unsigned toLook = maskBits(which);
+    const unsigned rising = maskBits(rises);
+    for (unsigned left = toLook; left != 0; left &= left - 1) {
+      const auto lane = static_cast<std::size_t>(std::countr_zero(left));
+      const Cubic cubic{{lanes[0][lane], lanes[1][lane], lanes[2][lane], lanes[3][lane]}};
+      const bool isRising = rising >> lane & 1;
+      const double s = isRising ? 0.0 : findFirstNonNegative(cubic);
+      if (s == infinity) {
+        if constexpr (withMaxima)
+          updateMaximum(lane, cubic, lanes[4][lane], lanes[5][lane]);
+        continue;
+      }
+      lanes[6][lane] = 0.0;
+      if (isRising)
+        m_solver.add(cubic, lanes[4][lane], lanes[5][lane], m_first + lane);
+      else
+        m_rays.hitT[m_first + lane] = lanes[4][lane] + s * lanes[5][lane];
+    }
+    m_busy = hn::Gt(hn::Load(doubles, lanes[6].data()), hn::Zero(doubles));
+  }
+
+  /// Updates the summit in a cell without a meeting.
+  void updateMaximum(std::size_t lane, const Cubic& cubic, double begin, double length) {
+    const std::array<double, 2> turns = findTurningPoints(cubic);
+    bool isOnRidge = begin - m_ridgeEnds[lane] < plateauTolerance;
+    for (const double s : {0.0, turns[0], turns[1], 1.0}) { // between these the cubic is monotone
+      const double height = cubic(s);
+      if (isOnRidge ? isHigher(lane, height) : isNewMaximum(lane, height)) {
+        m_maxima[lane] = height;
+        m_maximaT[lane] = begin + s * length;
+        isOnRidge = true;
+      }
+      isOnRidge = isOnRidge && height >= m_maxima[lane] - ridgeTolerance;
+      if (isOnRidge)
+        m_ridgeEnds[lane] = begin + s * length;
+    }
+  }
+
+  /// True if a height on the summit's own hill replaces the summit so far.
+  bool isHigher(std::size_t lane, double height) const {
+    const double least = std::min(ridgeTolerance, -height / FocusCells::replaceRatio);
+    return height > m_maxima[lane] + std::max(plateauTolerance, least);
+  }
+
+  /// True if a height on a later hill replaces the summit so far (FocusCells::findHitsAndMaxima).
+  bool isNewMaximum(std::size_t lane, double height) const {
+    return m_maximaT[lane] == -infinity ? height > m_maxima[lane] + plateauTolerance
+                                        : height > FocusCells::replaceRatio * m_maxima[lane];
+  }
+
+  const FocusCells::Layout& m_cells;
+  FocusRays& m_rays;
+  RootSolver& m_solver;
+  std::size_t m_first;
+  D m_t, m_end;
+  M m_busy;
+  std::array<FocusAxis, 3> m_axes;
+  LaneDoubles m_maxima, m_maximaT; ///< so far: indicator - 1/2, and t
+  LaneDoubles m_ridgeEnds;         ///< t at which the summit's ridge ends
+};
+
+template <bool withMaxima>
+void traverseAll(const FocusCells::Layout& cells, FocusRays& rays) {
+  RootSolver roots;
+  const std::size_t lanes = hn::Lanes(doubles);
+  for (std::size_t i = 0; i < rays.size; i += 2 * lanes) {
+    // Two walks take turns: while one waits for its cells from memory, the other computes.
+    Traversal<withMaxima> one(cells, rays, roots, i);
+    if (i + lanes < rays.size) {
+      Traversal<withMaxima> other(cells, rays, roots, i + lanes);
+      while (one.isBusy() || other.isBusy()) {
+        one.step();
+        other.step();
+      }
+      other.finish();
+    }
+    while (one.isBusy())
+      one.step();
+    one.finish();
+  }
+  roots.solveAll(rays);
+}
+
+void findAllHits(const FocusCells::Layout& cells, FocusRays& rays) {
+  traverseAll<false>(cells, rays);
+}
+void findAllHitsAndMaxima(const FocusCells::Layout& cells, FocusRays& rays) {
+  traverseAll<true>(cells, rays);
+}
+
+} // namespace
+} // namespace fenestra::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace fenestra {
+
+HWY_EXPORT(findAllHits);
+HWY_EXPORT(findAllHitsAndMaxima);
+
+namespace {
+
+/// Sets all meetings to infinity, and finite values beyond the last ray, where whole vectors read.
+void initialize(FocusRays& rays) {
+  std::fill_n(rays.hitT.begin(), rays.size, infinity);
+  for (std::size_t i = rays.size; i < std::min(rays.size + 16, rays.begin.size()); ++i) {
+    for (FocusRays::SoaArray* column :
+         {&rays.origin[0], &rays.origin[1], &rays.origin[2], &rays.begin, &rays.end})
+      (*column)[i] = 0.0;
+    for (FocusRays::SoaArray& column : rays.direction)
+      column[i] = 1.0;
+  }
+}
+
+} // namespace
+
+void FocusCells::findHits(FocusRays& rays) const {
+  initialize(rays);
+  const Layout cells = layout();
+  HWY_DYNAMIC_DISPATCH(findAllHits)(cells, rays);
+}
+
+void FocusCells::findHitsAndMaxima(FocusRays& rays) const {
+  initialize(rays);
+  const Layout cells = layout();
+  HWY_DYNAMIC_DISPATCH(findAllHitsAndMaxima)(cells, rays);
+}
+
+} // namespace fenestra
+#endif

@@ -1,0 +1,121 @@
+#pragma once
+// Eye rays and rays to lights, marched one by one or in SIMD lanes.
+
+#include "denoise/features/RayMarcher.h"
+#include "denoise/features/SimdRayMarcher.h"
+#include "integrator/render/Render.h"
+#include "integrator/scalar/PathSteps.h"
+
+#include <memory>
+#include <span>
+
+namespace fenestra {
+
+/// Expected values of one pixel.
+struct PrimaryHit {
+  float hit = 0.0F, depth = 0.0F;
+  std::array<float, 3> albedo = {}, normal = {}, surfaceNormal = {};
+};
+
+/// A point of the picture through which a ray is marched.
+struct RasterPoint {
+  double column, row;
+};
+
+/// Rays of a picture, marched one by one. along: expected values of eye rays; through:
+/// transmittance of rays to lights.
+template <typename Voxel>
+class ScalarFeatureMarcher {
+public:
+  ScalarFeatureMarcher(const SceneView& scene, const Medium<Voxel>& medium)
+      : m_scene(scene),
+        m_march({scene.volume.grid, scene.crop}, medium, scene.majorants, scene.clip) {}
+
+  void integrateHits(std::span<const RasterPoint> points, PrimaryHit* out) const {
+    for (const RasterPoint& point : points) {
+      const Ray ray = m_scene.camera.makeRay(point.column, point.row);
+      const ExpectedHit first = m_march.integrateHits(
+          ray, visibleInterval(cameraRayClip(m_scene.clip, m_scene.mixture), ray));
+      PrimaryHit primary{narrow(first.hit),
+                         narrow(first.distance * m_scene.camera.depthPerLength(ray))};
+      primary.albedo = narrow3(first.albedo.matrix());
+      primary.normal = narrow3(first.normal);
+      primary.surfaceNormal = narrow3(first.surfaceNormal);
+      *out++ = primary;
+    }
+  }
+  void computeTransmittance(std::span<const ShadowRay> rays, float* out) const {
+    for (const ShadowRay& shadow : rays)
+      *out++ = narrow(m_march.computeTransmittance(shadow.ray, {0.0, shadow.distance}));
+  }
+
+private:
+  const SceneView& m_scene;
+  RayMarcher<Voxel> m_march;
+};
+
+/// Rays of a picture, marched in lanes, as ScalarFeatureMarcher.
+class SimdFeatureMarcher {
+public:
+  explicit SimdFeatureMarcher(const SceneView& scene)
+      : m_scene(scene),
+        m_domain(scene.volume.grid, scene.crop),
+        m_medium(SimdTracker(scene.volume, m_domain, scene.transfer, scene.majorants, scene.clip,
+                             scene.style, neverStopped, scene.mixture)
+                     .medium()),
+        m_shading(scene.volume.grid, scene.transfer, scene.lights, 0, true, scene.tint,
+                  scene.mixture) {
+    m_medium.silhouette = nullptr; // exact surfaces cost more than features gain
+  }
+
+  void integrateHits(std::span<const RasterPoint> points, PrimaryHit* out) const {
+    const auto batch = std::make_unique<MarchBatch>();
+    std::array<double, RayBatch::capacity> before = {}, perLength = {};
+    for (std::size_t from = 0; from < points.size(); from += RayBatch::capacity) {
+      const std::size_t count = std::min(points.size() - from, RayBatch::capacity);
+      batch->rays.size = count;
+      for (std::size_t i = 0; i < count; ++i) {
+        const Ray ray = m_scene.camera.makeRay(points[from + i].column, points[from + i].row);
+        before[i] =
+            setDomainRay(batch->rays, i, m_domain, ray,
+                         visibleInterval(cameraRayClip(m_scene.clip, m_scene.mixture), ray));
+        perLength[i] = m_scene.camera.depthPerLength(ray);
+      }
+      marchCameraRays(m_medium, m_shading, *batch);
+      for (std::size_t i = 0; i < count; ++i)
+        *out++ = toPrimaryHit(*batch, i, before[i], perLength[i]);
+    }
+  }
+
+  void computeTransmittance(std::span<const ShadowRay> rays, float* out) const {
+    const auto batch = std::make_unique<RayBatch>();
+    for (std::size_t from = 0; from < rays.size(); from += RayBatch::capacity) {
+      batch->size = std::min(rays.size() - from, RayBatch::capacity);
+      for (std::size_t i = 0; i < batch->size; ++i)
+        setDomainRay(*batch, i, m_domain, rays[from + i].ray, {0.0, rays[from + i].distance});
+      marchShadowRays(m_medium, *batch);
+      out = std::copy_n(batch->result.begin(), batch->size, out);
+    }
+  }
+
+private:
+  static PrimaryHit toPrimaryHit(const MarchBatch& batch, std::size_t i, double before,
+                                 double perLength) {
+    PrimaryHit primary;
+    primary.hit = batch.hit[i];
+    primary.depth = narrow((batch.distance[i] + before * batch.hit[i]) * perLength);
+    for (std::size_t c = 0; c < 3; ++c) {
+      primary.albedo[c] = batch.albedo[c][i];
+      primary.normal[c] = batch.normal[c][i];
+      primary.surfaceNormal[c] = batch.surfaceNormal[c][i];
+    }
+    return primary;
+  }
+
+  const SceneView& m_scene;
+  Domain m_domain;
+  SimdMedium m_medium;
+  SimdShading m_shading;
+};
+
+} // namespace fenestra

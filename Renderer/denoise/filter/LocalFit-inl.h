@@ -1,0 +1,116 @@
+// Least squares in 16 windows at once, in plain loops over their 16 lanes, which the compiler turns
+// into vectors. Included once for each instruction set, within its namespace.
+
+#if defined(FENESTRA_LOCALFIT_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef FENESTRA_LOCALFIT_INL_H
+#undef FENESTRA_LOCALFIT_INL_H
+#else
+#define FENESTRA_LOCALFIT_INL_H
+#endif
+
+#include "denoise/filter/WindowSums.h"
+
+#include <algorithm>
+#include <array>
+
+HWY_BEFORE_NAMESPACE();
+namespace fenestra::HWY_NAMESPACE {
+namespace {
+
+constexpr std::size_t lanes = 16;
+
+struct alignas(64) Lanes {
+  float v[lanes];
+};
+
+template <typename Function>
+HWY_INLINE void forEachLane(Function&& function) {
+  for (std::size_t l = 0; l < lanes; ++l)
+    function(l);
+}
+
+/// Sums over a window in, its coefficients out, times the window's number of pixels: so that
+/// windows are averaged by their pixels. Minimises
+///   sum over pixels of (c - a - b . (f - mean f))^2 + n ridge |b|^2
+/// by the normal equations, factored as L D L^T.
+class LocalFit {
+public:
+  explicit LocalFit(const SumLayout& layout) : m_layout(layout) {}
+
+  /// Order of `sums` and of `out`: SumLayout.
+  HWY_INLINE void solve(const Lanes* sums, Lanes* out) {
+    forEachLane([&](std::size_t l) {
+      m_count.v[l] = sums[0].v[l];
+      m_inverse.v[l] = m_count.v[l] > 0.0F ? 1.0F / m_count.v[l] : 0.0F;
+      m_ridge.v[l] = ridge * (1.0F + 40.0F * m_inverse.v[l]);
+    });
+    factor(sums);
+    for (std::size_t c = 0; c < m_layout.colors; ++c)
+      fit(sums, c, out);
+    out[0] = m_count;
+  }
+
+private:
+  static constexpr float ridge = 1e-4F; ///< for features of unit deviation over the picture
+  static constexpr std::size_t maxFeatures = SumLayout::maxFeatures;
+
+  HWY_INLINE void factor(const Lanes* sums) {
+    const std::size_t count = m_layout.features;
+    for (std::size_t j = 0; j < count; ++j)
+      for (std::size_t i = j; i < count; ++i) {
+        const Lanes& product = sums[m_layout.product(j, i)];
+        const Lanes &meanI = sums[m_layout.feature(i)], &meanJ = sums[m_layout.feature(j)];
+        Lanes& t = m_scaled[i][j];
+        forEachLane([&](std::size_t l) {
+          t.v[l] = (product.v[l] - meanI.v[l] * meanJ.v[l] * m_inverse.v[l]) * m_inverse.v[l];
+        });
+        if (i == j)
+          forEachLane([&](std::size_t l) { t.v[l] += m_ridge.v[l]; });
+        for (std::size_t q = 0; q < j; ++q)
+          forEachLane([&](std::size_t l) { t.v[l] -= m_scaled[i][q].v[l] * m_unit[j][q].v[l]; });
+        if (i == j)
+          forEachLane([&](std::size_t l) {
+            m_pivot[j].v[l] = 1.0F / std::max(t.v[l], 0.01F * m_ridge.v[l]);
+          });
+        else
+          forEachLane([&](std::size_t l) { m_unit[i][j].v[l] = t.v[l] * m_pivot[j].v[l]; });
+      }
+  }
+
+  HWY_INLINE void fit(const Lanes* sums, std::size_t color, Lanes* out) {
+    const std::size_t count = m_layout.features;
+    const Lanes& sum = sums[m_layout.color(color)];
+    std::array<Lanes, maxFeatures> b;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Lanes& product = sums[m_layout.featureColor(i, color)];
+      const Lanes& mean = sums[m_layout.feature(i)];
+      forEachLane([&](std::size_t l) {
+        b[i].v[l] = (product.v[l] - mean.v[l] * sum.v[l] * m_inverse.v[l]) * m_inverse.v[l];
+      });
+      for (std::size_t q = 0; q < i; ++q)
+        forEachLane([&](std::size_t l) { b[i].v[l] -= m_unit[i][q].v[l] * b[q].v[l]; });
+    }
+    Lanes a = sum;
+    for (std::size_t i = count; i-- > 0;) {
+      forEachLane([&](std::size_t l) { b[i].v[l] *= m_pivot[i].v[l]; });
+      for (std::size_t q = i + 1; q < count; ++q)
+        forEachLane([&](std::size_t l) { b[i].v[l] -= m_unit[q][i].v[l] * b[q].v[l]; });
+      const Lanes& mean = sums[m_layout.feature(i)];
+      forEachLane([&](std::size_t l) { a.v[l] -= b[i].v[l] * mean.v[l]; });
+      forEachLane(
+          [&](std::size_t l) { out[m_layout.slope(color, i)].v[l] = b[i].v[l] * m_count.v[l]; });
+    }
+    out[m_layout.intercept(color)] = a;
+  }
+
+  const SumLayout& m_layout;
+  Lanes m_count, m_inverse, m_ridge;
+  Lanes m_scaled[maxFeatures][maxFeatures]; ///< L D, lower triangle
+  Lanes m_unit[maxFeatures][maxFeatures];   ///< L
+  Lanes m_pivot[maxFeatures];               ///< 1 / D
+};
+
+} // namespace
+} // namespace fenestra::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

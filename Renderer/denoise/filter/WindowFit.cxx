@@ -1,0 +1,298 @@
+#include "denoise/filter/WindowFit.h"
+
+#include "base/SimdTargets.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstddef>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "denoise/filter/WindowFit.cxx"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+// After foreach_target.h:
+#include "denoise/filter/LocalFit-inl.h"
+HWY_BEFORE_NAMESPACE();
+namespace fenestra::HWY_NAMESPACE {
+namespace {
+
+/// Rows of several planes; a ring keeps the last ones.
+class RowRing {
+public:
+  RowRing(std::size_t rows, std::size_t planes, std::size_t width)
+      : m_rows(rows), m_planes(planes), m_width(width), m_values(rows * planes * width, 0.0F) {}
+
+  float* at(std::int64_t row, std::size_t plane) {
+    constexpr std::int64_t before = 1000; // rows begin above the picture: keeps numbers positive
+    const auto place = static_cast<std::size_t>(row + before) % m_rows;
+    return &m_values[(place * m_planes + plane) * m_width];
+  }
+  std::size_t planes() const { return m_planes; }
+  std::size_t width() const { return m_width; }
+
+  /// Sums of all rows of a plane.
+  HWY_INLINE void sum(std::size_t plane, float* out) {
+    static_assert(window == 5);
+    const float *a = at(0, plane), *b = at(1, plane), *c = at(2, plane), *d = at(3, plane),
+                *e = at(4, plane);
+    for (std::size_t x = 0; x < m_width; ++x)
+      out[x] = ((a[x] + b[x]) + (c[x] + d[x])) + e[x];
+  }
+
+  static constexpr std::size_t window = 5; ///< cells
+
+private:
+  std::size_t m_rows, m_planes, m_width;
+  std::vector<float> m_values;
+};
+
+/// One tile of the picture: sums of cells, fits of the windows around them, and means of
+/// fits, row by row.
+class TileFit {
+public:
+  static constexpr std::int64_t edge = tileColumns, rows = tileRows;
+
+  TileFit(const FitInput& input, int level, std::int64_t column, std::int64_t row,
+          std::vector<Plane>& out)
+      : m_input(input),
+        m_layout{input.features.size(), input.color.size()},
+        m_level(level),
+        m_cell(std::int64_t{1} << level),
+        m_column(column),
+        m_row(row),
+        m_out(out),
+        m_fit(m_layout),
+        m_sums(RowRing::window, m_layout.sums(), width),
+        m_fits(RowRing::window, m_layout.coefficients(), width),
+        m_means(2, m_layout.coefficients(), width),
+        m_rowSum(width),
+        m_windowSums(m_layout.sums() * width),
+        m_interpolated(m_layout.coefficients() * width) {}
+
+  HWY_ATTR void run() {
+    // A mean needs fits two rows further, and a fit sums two rows further; one row of means more on
+    // each side for the interpolation between cells.
+    const std::int64_t first = m_row - 1, end = std::min(m_row + rows, cells(m_input.height)) + 1;
+    for (std::int64_t row = first - 4; row < end + 4; ++row) {
+      sumCells(row);
+      if (row >= first)
+        fitRow(row - 2);
+      if (row >= first + 4)
+        averageRow(row - 4);
+      if (row >= first + 5)
+        evaluateRows(row - 5);
+    }
+  }
+
+private:
+  static constexpr std::int64_t margin = 5; ///< cells to each side of which sums are needed
+  static constexpr std::size_t width = 80;  ///< >= edge + 2 margin, and what is read beyond
+
+  std::int64_t cells(int pixels) const { return (pixels + m_cell - 1) / m_cell; }
+
+  // ---- sums over cells; place 0 of a row is cell m_column - margin
+
+  HWY_INLINE void sumCells(std::int64_t row) {
+    for (std::size_t plane = 0; plane < m_sums.planes(); ++plane)
+      std::fill_n(m_sums.at(row, plane), width, 0.0F);
+    if (row < 0 || row >= cells(m_input.height))
+      return;
+    const std::int64_t firstCell = std::max<std::int64_t>(m_column - margin, 0);
+    const std::int64_t first = firstCell * m_cell;
+    const std::int64_t end =
+        std::min<std::int64_t>((m_column + edge + margin) * m_cell, m_input.width);
+    const auto at = static_cast<std::size_t>(firstCell - (m_column - margin));
+    const std::int64_t lastRow = std::min<std::int64_t>((row + 1) * m_cell, m_input.height);
+    const auto add = [&](std::size_t plane, const Plane& a, const Plane& b) {
+      m_products.assign(static_cast<std::size_t>(end - first), 0.0F);
+      for (std::int64_t y = row * m_cell; y < lastRow; ++y) {
+        const std::int64_t start = y * m_input.width + first;
+        addProducts(a.data() + start, b.data() + start);
+      }
+      pool(m_sums.at(row, plane) + at);
+    };
+    add(0, m_input.active, m_input.active);
+    for (std::size_t i = 0; i < m_layout.features; ++i) {
+      add(m_layout.feature(i), m_input.features[i], m_input.active);
+      for (std::size_t j = i; j < m_layout.features; ++j)
+        add(m_layout.product(i, j), m_input.features[i], m_input.features[j]);
+      for (std::size_t c = 0; c < m_layout.colors; ++c)
+        add(m_layout.featureColor(i, c), m_input.features[i], m_input.color[c]);
+    }
+    for (std::size_t c = 0; c < m_layout.colors; ++c)
+      add(m_layout.color(c), m_input.color[c], m_input.active);
+  }
+  HWY_INLINE void addProducts(const float* a, const float* b) {
+    float* out = m_products.data();
+    const std::size_t count = m_products.size();
+    for (std::size_t x = 0; x < count; ++x)
+      out[x] += a[x] * b[x];
+  }
+  HWY_INLINE void pool(float* out) {
+    const float* in = m_products.data();
+    const std::size_t count = m_products.size();
+    if (m_cell == 1) {
+      std::copy_n(in, count, out);
+      return;
+    }
+    for (std::size_t x = 0; x < count; ++x)
+      out[x >> m_level] += in[x];
+  }
+
+  // ---- fits of windows; place 0 of a row is the window around cell m_column - margin + 2
+
+  HWY_INLINE void fitRow(std::int64_t row) {
+    for (std::size_t plane = 0; plane < m_sums.planes(); ++plane)
+      m_sums.sum(plane, &m_windowSums[plane * width]);
+    m_blockSums.resize(m_layout.sums());
+    m_blockFits.resize(m_layout.coefficients());
+    for (std::size_t x = 0; x + lanes + 4 <= width; x += lanes) {
+      float pixels = 0.0F;
+      for (std::size_t plane = 0; plane < m_layout.sums(); ++plane) {
+        const float* in = &m_windowSums[plane * width + x];
+        Lanes& out = m_blockSums[plane];
+        forEachLane([&](std::size_t l) {
+          out.v[l] = ((in[l] + in[l + 1]) + (in[l + 2] + in[l + 3])) + in[l + 4];
+        });
+        if (plane == 0)
+          for (const float count : out.v)
+            pixels += count;
+        if (pixels == 0.0F)
+          break;
+      }
+      if (pixels > 0.0F)
+        m_fit.solve(m_blockSums.data(), m_blockFits.data());
+      else
+        std::ranges::fill(m_blockFits, Lanes{});
+      for (std::size_t plane = 0; plane < m_layout.coefficients(); ++plane)
+        std::copy_n(m_blockFits[plane].v, lanes, m_fits.at(row, plane) + x);
+    }
+  }
+
+  // ---- means of fits; place 0 of a row is cell m_column - 1
+
+  HWY_INLINE void averageRow(std::int64_t row) {
+    for (std::size_t plane = 0; plane < m_fits.planes(); ++plane) {
+      m_fits.sum(plane, m_rowSum.data());
+      const float* in = m_rowSum.data();
+      float* out = m_means.at(row, plane);
+      for (std::size_t x = 0; x + 4 < width; ++x)
+        out[x] = ((in[x] + in[x + 1]) + (in[x + 2] + in[x + 3])) + in[x + 4];
+    }
+  }
+
+  // ---- pixels
+
+  /// Pixels whose centres lie between those of cell rows `row` and `row` + 1; row `row` itself
+  /// where cells are pixels.
+  HWY_INLINE void evaluateRows(std::int64_t row) {
+    const std::int64_t begin = row * m_cell + m_cell / 2;
+    const std::int64_t end = std::min(
+        {begin + m_cell, (m_row + rows) * m_cell, static_cast<std::int64_t>(m_input.height)});
+    for (std::int64_t y = std::max(begin, m_row * m_cell); y < end; ++y) {
+      const double down = (static_cast<double>(y) + 0.5) / static_cast<double>(m_cell) - 0.5;
+      evaluate(y, row, static_cast<float>(down - static_cast<double>(row)));
+    }
+  }
+
+  HWY_INLINE void evaluate(std::int64_t y, std::int64_t row, float down) {
+    for (std::size_t plane = 0; plane < m_means.planes(); ++plane) {
+      const float *upper = m_means.at(row, plane), *lower = m_means.at(row + 1, plane);
+      float* interpolated = &m_interpolated[plane * width];
+      for (std::size_t x = 0; x < width; ++x)
+        interpolated[x] = upper[x] + down * (lower[x] - upper[x]);
+    }
+    const std::int64_t first = m_column * m_cell;
+    const std::int64_t end = std::min<std::int64_t>((m_column + edge) * m_cell, m_input.width);
+    for (std::int64_t phase = 0; phase < m_cell; ++phase) {
+      // Pixels at one place between the centres of two cells: every m_cell-th.
+      const std::int64_t before = m_cell > 1 && phase < m_cell / 2 ? 1 : 0;
+      const std::int64_t x = first + before * m_cell + phase - m_cell / 2;
+      if (x >= end)
+        continue;
+      m_count = static_cast<std::size_t>((end - x + m_cell - 1) / m_cell);
+      // Cells of one pixel: at the centre of the next cell.
+      const std::int64_t place = m_cell > 1 ? before : 1;
+      const float across =
+          m_cell > 1 ? (static_cast<float>(phase) + 0.5F) / static_cast<float>(m_cell) : 0.0F;
+      evaluateStrided(static_cast<std::size_t>(y * m_input.width + x),
+                      static_cast<std::size_t>(place), across);
+    }
+  }
+
+  /// Pixels from `start` on, m_cell apart; the first lies `across` of the way from place `place` of
+  /// the means to the next.
+  HWY_INLINE void evaluateStrided(std::size_t start, std::size_t place, float across) {
+    const auto step = static_cast<std::size_t>(m_cell);
+    for (std::size_t i = 0; i < m_layout.features; ++i)
+      for (std::size_t x = 0; x < m_count; ++x)
+        m_features[i][x] = m_input.features[i][start + x * step];
+    std::array<float, edge + 1> weights, pixels;
+    interpolate(0, place, across, weights);
+    for (std::size_t c = 0; c < m_layout.colors; ++c) {
+      interpolate(m_layout.intercept(c), place, across, pixels);
+      for (std::size_t i = 0; i < m_layout.features; ++i) {
+        const float* f = m_features[i].data();
+        const float* slope = &m_interpolated[m_layout.slope(c, i) * width + place];
+        for (std::size_t x = 0; x < m_count; ++x)
+          pixels[x] += (slope[x] + across * (slope[x + 1] - slope[x])) * f[x];
+      }
+      for (std::size_t x = 0; x < m_count; ++x) {
+        const std::size_t at = start + x * step;
+        if (m_input.active[at] > 0.0F && weights[x] > 0.0F)
+          m_out[c][at] = pixels[x] / weights[x];
+      }
+    }
+  }
+
+  HWY_INLINE void interpolate(std::size_t plane, std::size_t place, float across,
+                              std::array<float, edge + 1>& out) const {
+    const float* in = &m_interpolated[plane * width + place];
+    for (std::size_t x = 0; x < m_count; ++x)
+      out[x] = in[x] + across * (in[x + 1] - in[x]);
+  }
+
+  const FitInput& m_input;
+  SumLayout m_layout;
+  int m_level;
+  std::int64_t m_cell; ///< pixels along an edge of a cell
+  std::int64_t m_column, m_row;
+  std::vector<Plane>& m_out;
+  LocalFit m_fit;
+  RowRing m_sums, m_fits, m_means;
+  std::vector<float> m_rowSum, m_windowSums, m_products, m_interpolated;
+  std::array<std::array<float, edge + 1>, SumLayout::maxFeatures> m_features;
+  std::size_t m_count = 0; ///< pixels that are evaluated together
+  std::vector<Lanes> m_blockSums, m_blockFits;
+};
+
+void fitTile(const FitInput& input, int level, std::int64_t column, std::int64_t row,
+             std::vector<Plane>& out) {
+  TileFit(input, level, column, row, out).run();
+}
+
+} // namespace
+} // namespace fenestra::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace fenestra {
+
+HWY_EXPORT(fitTile);
+
+std::vector<Plane> fitWindows(const FitInput& input, int level) {
+  std::vector<Plane> out = input.color;
+  const std::int64_t across = std::int64_t{tileColumns} << level,
+                     down = std::int64_t{tileRows} << level;
+  const std::int64_t columns = (input.width + across - 1) / across,
+                     rows = (input.height + down - 1) / down;
+  tbb::parallel_for(std::int64_t{0}, columns * rows, [&](std::int64_t tile) {
+    HWY_DYNAMIC_DISPATCH(fitTile)
+    (input, level, tile % columns * tileColumns, tile / columns * tileRows, out);
+  });
+  return out;
+}
+
+} // namespace fenestra
+#endif

@@ -1,0 +1,231 @@
+#include "files/formats/NrrdHeader.h"
+
+#include "files/formats/TextHeader.h"
+
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace fenestra {
+
+using namespace header;
+
+namespace {
+
+/// Most lines of a header, list of files included: teem compares each key with all earlier ones.
+constexpr int maxLines = 10'000;
+/// Longest line and path, bytes: teem may copy them into a message of 1024.
+constexpr std::size_t maxLineBytes = 500, maxPathBytes = 900;
+
+/// Key of the field `name`, as in NrrdHeaderText.
+std::string toKey(std::string_view name) {
+  std::string key = toLower(name);
+  std::erase(key, ' ');
+  return key;
+}
+
+/// Checks dimension and sizes. ITK keeps sizes in 32 bits and passes teem a buffer of those; teem
+/// has room for 16 axes, and writes one more where there are too many sizes.
+void checkNrrdSizes(const std::filesystem::path& path, const Fields& fields) {
+  const auto axes = parseInteger(findValue(fields, "dimension"));
+  if (!axes || *axes < 1 || *axes > 10)
+    throw inputError(path, "dimension: must be a whole number from 1 to 10");
+  if (!fields.contains("sizes"))
+    throw damagedError(path, "NRRD");
+  for (const std::string& word : splitWords(fields.at("sizes")))
+    if (const auto size = parseInteger(word); !size || *size < 1 || *size > INT32_MAX)
+      throw inputError(path, "sizes: each must be a whole number from 1 to 2147483647");
+}
+
+/// Lengths of the vectors in parentheses; nullopt: malformed vector.
+std::optional<std::vector<double>> parseVectorLengths(const std::string& text) {
+  std::vector<double> lengths;
+  for (std::size_t open = text.find('('); open != std::string::npos;
+       open = text.find('(', open + 1)) {
+    const std::size_t close = text.find(')', open);
+    if (close == std::string::npos)
+      return std::nullopt;
+    std::string inside = text.substr(open + 1, close - open - 1);
+    std::replace(inside.begin(), inside.end(), ',', ' ');
+    std::erase(inside, '+');
+    const auto numbers = parseNumbers(inside);
+    if (!numbers)
+      return std::nullopt;
+    lengths.push_back(
+        std::sqrt(std::inner_product(numbers->begin(), numbers->end(), numbers->begin(), 0.0)));
+  }
+  return lengths;
+}
+
+/// Number of axes that ITK places in space: all but lists, vectors and colours.
+std::size_t countSpatialAxes(const Fields& fields) {
+  if (!fields.contains("kinds"))
+    return splitWords(fields.at("sizes")).size();
+  std::size_t count = 0;
+  for (const std::string& kind : splitWords(fields.at("kinds")))
+    for (const char* known : {"domain", "space", "time", "???", "none"})
+      count += toLower(kind) == known;
+  return count;
+}
+
+/// Checks space directions; ITK takes missing ones as 1 mm.
+void checkNrrdVectors(const std::filesystem::path& path, const Fields& fields) {
+  const auto lengths = parseVectorLengths(findValue(fields, "spacedirections"));
+  constexpr double maxSpacing = 1e9; // mm; limit of every spacing
+  const auto isUsable = [](double length) {
+    return length >= 1.0 / maxSpacing && length <= maxSpacing;
+  };
+  if (!lengths || !std::all_of(lengths->begin(), lengths->end(), isUsable))
+    throw inputError(
+        path,
+        "space directions: each must be a vector of 1e-9 to 1e9 mm, or none; mend the header");
+  if (!lengths->empty() && lengths->size() < std::min<std::size_t>(countSpatialAxes(fields), 3))
+    throw inputError(path, "space directions: has ", lengths->size(),
+                     " vectors; write one for each axis in space");
+}
+
+/// Checks each unit of the field `name`, a text in quotes.
+void checkNrrdUnits(const std::filesystem::path& path, const Fields& fields, const char* name) {
+  const std::vector<std::string> parts = split(findValue(fields, toKey(name)), '"');
+  for (std::size_t i = 1; i < parts.size(); i += 2)
+    checkMillimeters(path, name, parts[i]);
+}
+
+/// Checks spacings, axis mins and axis maxs: beside a space teem wants space directions instead;
+/// without spacings ITK takes the mins, and 1 mm.
+void checkNrrdAxes(const std::filesystem::path& path, const Fields& fields) {
+  const bool hasSpace = fields.contains("space") || fields.contains("spacedimension");
+  for (const auto& [name, hint] : {std::pair("spacings", "write space directions"),
+                                   {"axis mins", "write space directions and space origin"},
+                                   {"axis maxs", "write space directions and space origin"},
+                                   {"units", "write space units"}})
+    if (hasSpace && fields.contains(toKey(name)))
+      throw inputError(path, name, ": are not read beside a space; ", hint);
+  for (const char* name : {"axis mins", "axis maxs"})
+    if (fields.contains(toKey(name)) && !fields.contains("spacings"))
+      throw inputError(
+          path, name,
+          ": has no spacings with it; write them, or a space with its directions and origin");
+}
+
+void checkNrrdKinds(const std::filesystem::path& path, const Fields& fields) {
+  const std::string name = toLower(findValue(fields, "space"));
+  const bool hasTime = name.ends_with("-time") || name.ends_with("st"); // RAST and its like
+  if (name.empty() || hasTime)
+    return;
+  if (const std::size_t count = countSpatialAxes(fields); count > 3)
+    throw inputError(path, "kinds: ", count,
+                     " axes do not lie in a space of three; extract one frame");
+}
+
+/// Checks the geometry; refuses NaN, for which ITK silently takes its default.
+void checkNrrdGeometry(const std::filesystem::path& path, const Fields& fields) {
+  for (const char* name : {"space directions", "space origin", "spacings"})
+    if (toLower(findValue(fields, toKey(name))).find("nan") != std::string::npos)
+      throw inputError(path, name, ": is not a number; mend the header");
+  checkNrrdVectors(path, fields);
+  checkNrrdAxes(path, fields);
+  checkNrrdKinds(path, fields);
+  checkNrrdUnits(path, fields, "space units");
+  checkNrrdUnits(path, fields, "units");
+}
+
+/// Lines of an NRRD header, short enough for teem's messages.
+class NrrdLines {
+public:
+  explicit NrrdLines(const std::filesystem::path& path) : m_path(path), m_lines(path) {}
+
+  std::optional<std::string_view> next() {
+    const auto line = m_lines.next();
+    if (!line)
+      return std::nullopt;
+    if (++m_count > maxLines)
+      throw inputError(m_path, "header: has more than ", maxLines,
+                       " lines; remove some of its key:=value lines");
+    if (hasControlCharacter(*line))
+      throw damagedError(m_path, "NRRD");
+    if (line->size() > maxLineBytes && !isKeyValue(*line))
+      throw inputError(m_path, "header: line ", m_count, " has more than ", maxLineBytes,
+                       " bytes and is no key:=value; shorten it");
+    return line;
+  }
+
+  /// True for "key:=value", a text of any length of the application's own. A ": " before the ":="
+  /// makes the line a field, as in teem.
+  static bool isKeyValue(std::string_view line) {
+    return line.substr(0, line.find(": ")).find(":=") != std::string_view::npos;
+  }
+
+  /// Offset in the file of the byte after the lines read so far.
+  std::uint64_t position() const { return m_lines.position(); }
+
+private:
+  const std::filesystem::path& m_path;
+  HeaderLines m_lines;
+  int m_count = 0;
+};
+
+Fields readNrrdFields(const std::filesystem::path& path, NrrdLines& lines) {
+  const auto magic = lines.next();
+  if (!magic || !magic->starts_with("NRRD000") || magic->size() != 8)
+    throw damagedError(path, "NRRD");
+  Fields fields;
+  for (auto line = lines.next(); line && !line->empty(); line = lines.next()) {
+    const std::size_t colon = line->find(": ");
+    if (colon == std::string_view::npos || line->starts_with('#') || NrrdLines::isKeyValue(*line))
+      continue;
+    const std::string key = toKey(line->substr(0, colon));
+    const auto [field, isNew] = fields.emplace(key, trim(line->substr(colon + 2)));
+    if (!isNew) // whichever value teem would take
+      throw inputError(path, key.substr(0, 40), ": is there twice; remove one");
+    if (key == "datafile" && field->second.starts_with("LIST"))
+      break; // the file names follow
+  }
+  return fields;
+}
+
+} // namespace
+
+void checkNrrdPath(const std::filesystem::path& path) {
+  if (path.string().size() > maxPathBytes)
+    throw inputError(path, "has a path of more than ", maxPathBytes,
+                     " bytes; move it to a folder with a shorter one");
+}
+
+/// Teem copies each number's text into 1024 bytes, however long it is.
+void checkNrrdNumbers(const std::filesystem::path& path, std::uint64_t offset,
+                      const std::filesystem::path& header) {
+  std::ifstream file(path, std::ios::binary);
+  file.seekg(static_cast<std::streamoff>(offset));
+  std::size_t length = 0; // characters of the current number
+  for (char c = 0; file.get(c);) {
+    length = std::isspace(static_cast<unsigned char>(c)) ? 0 : length + 1;
+    if (length > maxLineBytes)
+      throw inputError(header, "has a number of more than ", maxLineBytes,
+                       " characters among its samples; write it again");
+  }
+}
+
+bool hasNrrdSpacing(const NrrdHeaderText& header) {
+  return header.fields.contains("spacings") ||
+         findValue(header.fields, "spacedirections").find('(') != std::string::npos;
+}
+
+NrrdHeaderText readNrrdHeader(const std::filesystem::path& path) {
+  checkNrrdPath(path);
+  NrrdLines lines(path);
+  NrrdHeaderText header;
+  header.fields = readNrrdFields(path, lines);
+  checkNrrdSizes(path, header.fields);
+  checkNrrdGeometry(path, header.fields);
+  header.end = lines.position();
+  if (findValue(header.fields, "datafile").starts_with("LIST"))
+    for (auto line = lines.next(); line; line = lines.next()) {
+      if (trim(*line).empty()) // teem takes it for a file name
+        throw inputError(path, "data file: its LIST has an empty line; remove that");
+      header.files.emplace_back(trim(*line));
+    }
+  return header;
+}
+
+} // namespace fenestra

@@ -1,0 +1,213 @@
+#include "files/images/ContactSheet.h"
+
+#include "base/Color.h"
+#include "base/Error.h"
+#include "base/Text.h"
+#include "files/images/BitmapFont.h"
+#include "files/images/ImageReader.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace fenestra {
+namespace {
+
+constexpr int boxWidth = 336, maxBoxHeight = 504, minBoxHeight = 168; ///< pixels
+constexpr int gap = 20;
+constexpr double titleDotSize = 3.0, nameDotSize = 2.0, textDotSize = 1.5; ///< pixels a dot
+
+constexpr std::uint32_t sheetColor = 0x17191b, panelColor = 0x222527, white = 0xf0f0f0,
+                        gray = 0xa2a8ad, errorColor = 0xff9d7a;
+
+/// Opaque picture in the making, linear Rec. 709.
+class Canvas {
+public:
+  Canvas(int width, int height, std::uint32_t color) : m_width(width), m_height(height) {
+    for (Plane& plane : m_planes)
+      plane.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    fill(0, 0, width, height, color);
+  }
+
+  int width() const { return m_width; }
+  int height() const { return m_height; }
+  /// Rectangle; what lies beyond the canvas is left out.
+  void fill(int left, int top, int width, int height, std::uint32_t color) {
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x)
+        blend(left + x, top + y, toLinear(color), 1.0F);
+  }
+  /// Text from the left, cut with an ellipsis where wider than `width` pixels.
+  void drawText(int left, int top, const std::string& text, double dot, std::uint32_t color,
+                int width) {
+    const auto maxLength = static_cast<std::size_t>(std::max(4.0, width / (glyphWidth * dot)));
+    std::string visible = toAscii(text);
+    if (visible.size() > maxLength)
+      visible = visible.substr(0, maxLength - 3) + "...";
+    const TextBitmap line = rasterizeText(visible, dot);
+    auto coverage = line.coverage.begin();
+    for (int y = 0; y < line.height; ++y)
+      for (int x = 0; x < line.width; ++x)
+        blend(left + x, top + y, toLinear(color), *coverage++);
+  }
+  void drawImage(int left, int top, const Canvas& source) {
+    for (int y = 0; y < source.m_height; ++y)
+      for (int x = 0; x < source.m_width; ++x)
+        blend(left + x, top + y, source.at(x, y), 1.0F);
+  }
+  /// Puts `share` of the colour over a pixel.
+  void blend(int x, int y, const Rgb& color, float coverage) {
+    if (x < 0 || y < 0 || x >= m_width || y >= m_height)
+      return;
+    for (std::size_t c = 0; c < m_planes.size(); ++c) {
+      float& value = m_planes[c][index(x, y)];
+      value += coverage * (static_cast<float>(color[static_cast<int>(c)]) - value);
+    }
+  }
+  Image image() && {
+    Image image{m_width, m_height, {}, {}};
+    for (std::size_t c = 0; c < m_planes.size(); ++c)
+      image.channels[std::string(1, "RGB"[c])] = std::move(m_planes[c]);
+    return image;
+  }
+
+private:
+  static Rgb toLinear(std::uint32_t color) { return decodeSrgb(hexToRgb(color)); }
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(m_width) +
+           static_cast<std::size_t>(x);
+  }
+  Rgb at(int x, int y) const {
+    const std::size_t i = index(x, y);
+    return Rgb(m_planes[0][i], m_planes[1][i], m_planes[2][i]);
+  }
+
+  int m_width, m_height;
+  std::array<Plane, 3> m_planes;
+};
+
+/// Picture of display values, with straight alpha over the panel, averaged in light down to the
+/// box, or enlarged to it.
+Canvas scaleToBox(const Image& image) {
+  const double scale = std::min(1.0 * boxWidth / image.width, 1.0 * maxBoxHeight / image.height);
+  const auto scaled = [scale](int size) {
+    return std::max(1, static_cast<int>(size * scale + 0.5));
+  };
+  Canvas canvas(scaled(image.width), scaled(image.height), panelColor);
+  const Plane* const alpha = image.find("A");
+  const std::array<const Plane*, 3> planes = {image.find("R"), image.find("G"), image.find("B")};
+  const auto from = [](int at, int size, int all) {
+    return static_cast<int>(std::int64_t{at} * all / size);
+  };
+  for (int y = 0; y < canvas.height(); ++y)
+    for (int x = 0; x < canvas.width(); ++x) {
+      const int top = from(y, canvas.height(), image.height);
+      const int left = from(x, canvas.width(), image.width);
+      const int bottom = std::max(top + 1, from(y + 1, canvas.height(), image.height));
+      const int right = std::max(left + 1, from(x + 1, canvas.width(), image.width));
+      Rgb sum = Rgb::Zero();
+      double covered = 0.0;
+      for (int v = top; v < bottom; ++v)
+        for (int u = left; u < right; ++u) {
+          const std::size_t i =
+              static_cast<std::size_t>(v) * static_cast<std::size_t>(image.width) +
+              static_cast<std::size_t>(u);
+          const double weight = alpha ? static_cast<double>((*alpha)[i]) : 1.0;
+          sum += weight * decodeSrgb(Rgb((*planes[0])[i], (*planes[1])[i], (*planes[2])[i]));
+          covered += weight;
+        }
+      const double all = 1.0 * (bottom - top) * (right - left);
+      if (covered > 0.0)
+        canvas.blend(x, y, sum / covered, static_cast<float>(covered / all));
+    }
+  return canvas;
+}
+
+/// Entry with its picture as small as it will be shown.
+struct Thumbnail {
+  const SheetEntry* entry;
+  std::string problem;
+  std::optional<Canvas> image = {};
+};
+
+Thumbnail makeThumbnail(const SheetEntry& entry) {
+  Thumbnail thumbnail{&entry, entry.problem};
+  if (entry.image.empty())
+    return thumbnail;
+  try {
+    thumbnail.image = scaleToBox(readImage(entry.image));
+  } catch (const Error& error) {
+    thumbnail.problem = error.what();
+  }
+  return thumbnail;
+}
+
+/// Columns for a sheet somewhat wider than high, with few empty places in the last row.
+int chooseColumns(int count) {
+  const int wide = std::max(1, static_cast<int>(std::ceil(std::sqrt(1.4 * count))));
+  const int narrow = std::max(1, wide - 1);
+  const auto empty = [count](int columns) { return (columns - count % columns) % columns; };
+  return empty(narrow) < empty(wide) ? narrow : wide;
+}
+
+/// Draws an entry into its cell.
+void drawEntry(Canvas& sheet, int left, int top, int boxHeight, const Thumbnail& thumbnail) {
+  constexpr int margin = 14, nameLine = static_cast<int>(lineHeight * nameDotSize),
+                textLine = static_cast<int>(lineHeight * textDotSize) + 2;
+  sheet.fill(left, top, boxWidth, boxHeight, panelColor);
+  if (const auto& picture = thumbnail.image)
+    sheet.drawImage(left + (boxWidth - picture->width()) / 2,
+                    top + (boxHeight - picture->height()) / 2, *picture);
+  int line = top + margin;
+  const auto fits = static_cast<std::size_t>((boxWidth - 2 * margin) / (glyphWidth * textDotSize));
+  if (!thumbnail.problem.empty())
+    for (const std::string& text : split(wrapLines(thumbnail.problem, fits), '\n')) {
+      if (line + textLine > top + boxHeight)
+        break;
+      sheet.drawText(left + margin, line, text, textDotSize, errorColor, boxWidth - 2 * margin);
+      line += textLine;
+    }
+  line = top + boxHeight + 8;
+  sheet.drawText(left, line, thumbnail.entry->name, nameDotSize,
+                 thumbnail.problem.empty() ? white : errorColor, boxWidth);
+  line += nameLine;
+  for (const std::string& text : thumbnail.entry->lines) {
+    sheet.drawText(left, line, text, textDotSize, gray, boxWidth);
+    line += textLine;
+  }
+}
+
+} // namespace
+
+Image makeContactSheet(const std::string& title, const std::string& subtitle,
+                       std::span<const SheetEntry> entries, int maxColumns) {
+  std::vector<Thumbnail> thumbnails;
+  int boxHeight = minBoxHeight;
+  std::size_t lines = 0;
+  for (const SheetEntry& entry : entries) {
+    thumbnails.push_back(makeThumbnail(entry));
+    lines = std::max(lines, entry.lines.size());
+    if (const auto& picture = thumbnails.back().image)
+      boxHeight = std::max(boxHeight, picture->height());
+  }
+  const int count = static_cast<int>(entries.size());
+  const int columns = std::min(maxColumns, chooseColumns(count));
+  const int rows = (count + columns - 1) / columns;
+  const int captionHeight =
+      8 + static_cast<int>(lineHeight * nameDotSize) +
+      static_cast<int>(lines) * (static_cast<int>(lineHeight * textDotSize) + 2);
+  const int headerHeight = static_cast<int>(lineHeight * (titleDotSize + textDotSize)) + 2 * gap;
+  const int cellWidth = boxWidth + gap, cellHeight = boxHeight + captionHeight + gap;
+  Canvas sheet(gap + std::max(columns, 2) * cellWidth, headerHeight + rows * cellHeight + gap / 2,
+               sheetColor);
+  const int width = sheet.width() - 2 * gap;
+  sheet.drawText(gap, gap, title, titleDotSize, white, width);
+  sheet.drawText(gap, gap + static_cast<int>(lineHeight * titleDotSize), subtitle, textDotSize,
+                 gray, width);
+  for (int i = 0; i < count; ++i)
+    drawEntry(sheet, gap + i % columns * cellWidth, headerHeight + i / columns * cellHeight,
+              boxHeight, thumbnails[static_cast<std::size_t>(i)]);
+  return std::move(sheet).image();
+}
+
+} // namespace fenestra

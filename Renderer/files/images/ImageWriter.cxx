@@ -1,0 +1,298 @@
+#include "files/images/ImageWriter.h"
+
+#include "base/Error.h"
+#include "base/TextStream.h"
+#include "files/formats/NrrdWriter.h"
+#include "files/images/ImageFormat.h"
+
+#include <ImfChannelList.h>
+#include <ImfChromaticitiesAttribute.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfStandardAttributes.h>
+#include <ImfStdIO.h>
+#include <ImfStringAttribute.h>
+#include <png.h>
+#include <tiffio.hxx>
+#include <zlib.h>
+
+#include <cstdint>
+#include <fstream>
+#include <limits>
+#include <memory>
+#include <new>
+
+namespace fenestra {
+
+namespace {
+
+/// Throws std::bad_alloc for an incomplete EXR: OpenEXR hides failures of memory in its tasks and
+/// destructors.
+void requireComplete(const std::string& exr) {
+  Imf::StdISStream stream;
+  stream.str(exr);
+  if (!Imf::InputFile(stream).isComplete())
+    throw std::bad_alloc();
+}
+
+std::string encodeExr(const Image& image) {
+  Imf::Header header(image.width, image.height);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  header.zipCompressionLevel() = 1;                      // noise packs no better with more work
+  Imf::addChromaticities(header, Imf::Chromaticities()); // Rec. 709
+  for (const auto& [key, value] : image.header)
+    header.insert("fenestra." + key, Imf::StringAttribute(value));
+  header.insert("software", Imf::StringAttribute(std::string(blankProvenanceTag)));
+  Imf::FrameBuffer frame;
+  for (const auto& [name, plane] : image.channels) {
+    header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+    char* const pixels = reinterpret_cast<char*>(const_cast<float*>(plane.data()));
+    frame.insert(name, Imf::Slice(Imf::FLOAT, pixels, sizeof(float),
+                                  sizeof(float) * static_cast<std::size_t>(image.width)));
+  }
+  Imf::StdOSStream stream;
+  {
+    Imf::OutputFile file(stream, header);
+    file.setFrameBuffer(frame);
+    file.writePixels(image.height);
+  }
+  std::string bytes = stream.str();
+  requireComplete(bytes);
+  return sealProvenanceTag(std::move(bytes));
+}
+
+bool isOpaque(const std::vector<float>& rgba) {
+  for (std::size_t i = 3; i < rgba.size(); i += 4)
+    if (rgba[i] < 1.0f)
+      return false;
+  return true;
+}
+
+/// Integers from 0 to the largest of T for values in [0, 1]; no alpha if all pixels are opaque.
+template <typename T>
+std::vector<T> quantize(const std::vector<float>& rgba) {
+  const bool opaque = isOpaque(rgba);
+  std::vector<T> values;
+  values.reserve(rgba.size());
+  for (std::size_t i = 0; i < rgba.size(); ++i)
+    if (!opaque || i % 4 != 3)
+      values.push_back(static_cast<T>(
+          std::lround(static_cast<double>(rgba[i]) * std::numeric_limits<T>::max())));
+  return values;
+}
+
+std::string toBigEndian(std::uint32_t number) {
+  std::string bytes;
+  for (const int shift : {24, 16, 8, 0})
+    bytes += static_cast<char>(number >> shift & 0xff);
+  return bytes;
+}
+
+/// A tEXt chunk (PNG specification, 11.3.4.3), which libpng's simple interface does not write; its
+/// checksum is set by setChecksum.
+std::string makeTextChunk(const std::string& keyword, std::string_view text) {
+  const auto length = static_cast<std::uint32_t>(keyword.size() + 1 + text.size());
+  return toBigEndian(length) + "tEXt" + keyword + std::string(1, '\0') + std::string(text) +
+         toBigEndian(0);
+}
+
+/// Sets the checksum of the chunk of `size` bytes at `start`.
+void setChecksum(std::string& png, std::size_t start, std::size_t size) {
+  const auto* const bytes = reinterpret_cast<const Bytef*>(png.data()) + start + 4;
+  const uLong checksum = crc32(crc32(0, nullptr, 0), bytes, static_cast<uInt>(size - 8));
+  png.replace(start + size - 4, 4, toBigEndian(static_cast<std::uint32_t>(checksum)));
+}
+
+/// Inserts the mark and, unless empty, a comment after the first chunk, IHDR.
+std::string insertTexts(std::string png, const std::string& comment) {
+  constexpr std::size_t afterHeader = 8 + 25; // signature and IHDR
+  if (!comment.empty()) {
+    const std::string chunk = makeTextChunk("Comment", comment);
+    png.insert(afterHeader, chunk);
+    setChecksum(png, afterHeader, chunk.size());
+  }
+  const std::string tag = makeTextChunk("Software", blankProvenanceTag);
+  png.insert(afterHeader, tag);
+  png = sealProvenanceTag(std::move(png));
+  setChecksum(png, afterHeader, tag.size());
+  return png;
+}
+
+/// Comment of a display picture: tone and exposure, and the header's words on a filter;
+/// empty: neither.
+std::string makeComment(const Image& image, const Display& display) {
+  std::string comment;
+  if (display.view != DisplayView::standard)
+    comment =
+        concat("tone ", toString(display.view), ", exposure ", toString(display.exposure), " EV");
+  if (const auto found = image.header.find("filter"); found != image.header.end())
+    comment += (comment.empty() ? "" : "; ") + found->second;
+  return comment;
+}
+
+std::string encodePng(const Image& image, const std::vector<float>& rgba,
+                      const std::string& comment) {
+  const std::vector<std::uint8_t> values = quantize<std::uint8_t>(rgba);
+  png_image png{};
+  png.version = PNG_IMAGE_VERSION;
+  png.width = static_cast<png_uint_32>(image.width);
+  png.height = static_cast<png_uint_32>(image.height);
+  png.format = isOpaque(rgba) ? PNG_FORMAT_RGB : PNG_FORMAT_RGBA;
+  png.flags = PNG_IMAGE_FLAG_FAST; // noise packs little better with twice the work
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
+  std::string content(size, '\0');
+  if (!png_image_write_to_memory(&png, content.data(), &size, 0, values.data(), 0, nullptr))
+    throw outputError("picture as PNG", png.message, "; write it as .exr");
+  content.resize(size);
+  return insertTexts(std::move(content), comment);
+}
+
+void setTiffFields(TIFF* tiff, const Image& image, bool opaque, const std::string& comment) {
+  const std::uint16_t straightAlpha = EXTRASAMPLE_UNASSALPHA;
+  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, image.width);
+  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, image.height);
+  TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 16);
+  TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, opaque ? 3 : 4);
+  if (!opaque)
+    TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, 1, &straightAlpha);
+  TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_RGB);
+  TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
+  TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_ADOBE_DEFLATE);
+  TIFFSetField(tiff, TIFFTAG_PREDICTOR, PREDICTOR_HORIZONTAL);
+  TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, TIFFDefaultStripSize(tiff, 0));
+  if (!comment.empty())
+    TIFFSetField(tiff, TIFFTAG_IMAGEDESCRIPTION, comment.c_str());
+  TIFFSetField(tiff, TIFFTAG_SOFTWARE, std::string(blankProvenanceTag).c_str());
+}
+
+std::string encodeTiff(const Image& image, const std::vector<float>& rgba,
+                       const std::string& comment) {
+  std::vector<std::uint16_t> values = quantize<std::uint16_t>(rgba);
+  const std::size_t rowLength = values.size() / static_cast<std::size_t>(image.height);
+  TextWriter stream;
+  const std::unique_ptr<TIFF, void (*)(TIFF*)> tiff(TIFFStreamOpen("picture", &stream), TIFFClose);
+  bool good = tiff != nullptr;
+  if (good)
+    setTiffFields(tiff.get(), image, isOpaque(rgba), comment);
+  for (std::size_t row = 0; good && row < static_cast<std::size_t>(image.height); ++row)
+    good = TIFFWriteScanline(tiff.get(), &values[row * rowLength],
+                             static_cast<std::uint32_t>(row)) == 1;
+  if (!good || TIFFFlush(tiff.get()) != 1)
+    throw outputError("picture as TIFF", "does not fit into memory; write it as .exr");
+  return sealProvenanceTag(stream.str());
+}
+
+/// Index to world of the slice, which is as thick as a pixel is wide; right-handed, so that Slicer
+/// need not flip it.
+Affine sliceToWorld(const ImagePlane& plane) {
+  const Vec3 normal = plane.columnStep.cross(plane.rowStep).normalized();
+  return Affine({plane.columnStep, plane.rowStep, normal * plane.columnStep.norm()}, plane.topLeft);
+}
+
+/// `values`: one or more floats per pixel.
+std::string encodeSlice(const Image& image, const ImagePlane& plane,
+                        const std::vector<float>& values) {
+  const std::size_t components = values.size() / image.channels.at("R").size();
+  const NrrdHeader header{.type = "float",
+                          .leadingKind = components > 1 ? "vector" : "",
+                          .leadingCount = components,
+                          .size = {image.width, image.height, 1},
+                          .indexToWorld = sliceToWorld(plane),
+                          .encoding = NrrdHeader::Encoding::raw,
+                          .fields = {{"Software", std::string(blankProvenanceTag)}}};
+  return sealProvenanceTag(encodeNrrd(header, asBytes(values)));
+}
+
+/// Channels R, G, B and A whose names begin with `prefix`.
+std::vector<float> interleaveRgba(const Image& image, const std::string& prefix = "") {
+  const std::size_t count = image.channels.at(prefix + "R").size();
+  std::vector<float> values(4 * count, 1.0f);
+  for (std::size_t c = 0; c < 4; ++c)
+    if (const std::vector<float>* channel = image.find(prefix + "RGBA"[c]))
+      for (std::size_t i = 0; i < count; ++i)
+        values[4 * i + c] = (*channel)[i];
+  return values;
+}
+
+/// Picture beside a `.nrrd`.
+std::filesystem::path siblingPath(const std::filesystem::path& path, const char* part) {
+  return path.parent_path() / (path.stem().string() + "-" + part + ".nrrd");
+}
+
+/// Header lines of a NRRD that give its geometry: space, directions, origin.
+std::vector<std::string> readGridLines(const std::filesystem::path& path) {
+  std::vector<std::string> lines;
+  ThrowingStream<std::ifstream> file(path, std::ios::binary);
+  for (std::string line; std::getline(file, line) && !line.empty() && lines.size() < 3;)
+    for (const char* field : {"space: ", "space directions: ", "space origin: "})
+      if (line.starts_with(field))
+        lines.push_back(line.starts_with("space directions: none ") ? line.erase(18, 5) : line);
+  return lines;
+}
+
+/// True if Fenestra wrote the depth picture: by its mark, or (files older than marks) by the grid
+/// that it shares with the colours.
+bool isFenestraDepth(const std::filesystem::path& depth, const std::filesystem::path& color) {
+  const std::vector<std::string> lines = readGridLines(depth);
+  return hasProvenanceTag(depth) || (lines.size() == 3 && lines == readGridLines(color));
+}
+
+ImageFormat requireFormat(const std::filesystem::path& path) {
+  if (const auto format = findImageFormat(path))
+    return *format;
+  throw usageError("--output ", path, ": has no known extension; name a file ", imageExtensions);
+}
+
+void requireColor(const Image& image, const std::filesystem::path& path) {
+  for (const char* name : {"R", "G", "B"})
+    if (!image.find(name))
+      throw usageError(path, ": the picture has no channel ", name, "; write it as .exr");
+}
+
+} // namespace
+
+void writeImage(const Image& image, const ImagePlane& plane, const std::filesystem::path& path,
+                Outputs& outputs, const Display& display) {
+  const ImageFormat format = requireFormat(path);
+  if (format == ImageFormat::exr)
+    return outputs.write(path, encodeExr(image));
+  requireColor(image, path);
+  if (format == ImageFormat::nrrd) {
+    outputs.write(path, encodeSlice(image, plane, interleaveRgba(image)));
+    if (const std::vector<float>* depth = image.find("Z"))
+      outputs.write(siblingPath(path, "Z"), encodeSlice(image, plane, *depth));
+    if (image.find("denoised.R"))
+      outputs.write(siblingPath(path, "denoised"),
+                    encodeSlice(image, plane, interleaveRgba(image, "denoised.")));
+    return;
+  }
+  const std::vector<float> pixels = toDisplay(interleaveRgba(image), display);
+  const std::string comment = makeComment(image, display);
+  outputs.write(path, format == ImageFormat::png ? encodePng(image, pixels, comment)
+                                                 : encodeTiff(image, pixels, comment));
+}
+
+std::vector<std::filesystem::path> listImageFiles(const std::filesystem::path& path) {
+  if (requireFormat(path) == ImageFormat::nrrd)
+    return {path, siblingPath(path, "Z"), siblingPath(path, "denoised")};
+  return {path};
+}
+
+void declareImage(const std::filesystem::path& path, Outputs& outputs, NameOrigin origin,
+                  HasDenoised hasDenoised) {
+  const ImageFormat format = requireFormat(path);
+  if (origin == NameOrigin::user)
+    outputs.add(path);
+  else
+    outputs.add(path, hasProvenanceTag);
+  if (format != ImageFormat::nrrd)
+    return;
+  outputs.add(siblingPath(path, "Z"),
+              [path](const auto& depth) { return isFenestraDepth(depth, path); });
+  if (hasDenoised == HasDenoised::yes)
+    outputs.add(siblingPath(path, "denoised"), hasProvenanceTag);
+}
+
+} // namespace fenestra

@@ -1,0 +1,405 @@
+#include "integrator/render/Render.h"
+
+#include "base/InstructionSets.h"
+#include "base/Stopwatch.h"
+#include "integrator/render/EmptyPixels.h"
+#include "integrator/render/SamplePlan.h"
+#include "integrator/render/TileStream.h"
+#include "integrator/scalar/PathIntegrator.h"
+
+#include <tbb/combinable.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <bit>
+#include <numeric>
+
+namespace fenestra {
+namespace {
+
+/// Samples per pixel below which a noise estimate is too uncertain to stop by.
+constexpr std::uint64_t minNoiseSamples = SamplePlan::pilotSamples;
+
+/// Traces one path after the other.
+template <typename Voxel>
+struct ScalarTracer {
+  PathIntegrator<Voxel> estimator;
+
+  template <typename Source>
+  bool trace(Source& source, std::size_t maxPaths, Counters& counters) const {
+    const auto samples = std::make_unique<CameraSamples>();
+    do {
+      source.fill(*samples, std::min(maxPaths, RayBatch::capacity));
+      for (std::size_t i = 0; i < samples->size; ++i) {
+        const PrimarySamples numbers =
+            source.numbers().generate({samples->start[i], samples->key[i]}, samples->number[i]);
+        const Vec2 place = toUniform2(numbers.position) + Vec2(samples->column[i], samples->row[i]);
+        const std::optional<PathSample> sample =
+            estimator.trace(place.x(), place.y(), numbers, counters);
+        if (!sample)
+          return false;
+        source.deliver(samples->tile[i], samples->tileSample[i], *sample);
+      }
+    } while (samples->size > 0);
+    return true;
+  }
+};
+
+/// Samples per pixel of passes.
+struct PassGrowth {
+  std::uint64_t perSample = 1; ///< of a pass, for each sample before it
+  std::uint64_t largest = 16;
+};
+
+/// Samples per pixel of the next pass. Passes grow, so that a picture is there early and overhead
+/// stays small later; sizes are fixed, so that a stop by noise falls on the same sample count on
+/// every machine.
+std::uint64_t choosePassSize(std::uint64_t done, const RenderSettings& settings,
+                             const PassGrowth& growth = {}) {
+  const std::uint64_t grown = std::clamp<std::uint64_t>(done * growth.perSample, 1, growth.largest);
+  return settings.passSamples > 0 ? settings.passSamples : grown;
+}
+
+/// Samples per pixel of the next pass toward a noise target. The pilot ends at minNoiseSamples
+/// whatever the passes are. After the pilot passes grow from 1 again, for some pixels may get far
+/// more than the mean; the last pass is as small as the noise so far predicts (variance ~ 1 /
+/// samples).
+std::uint64_t chooseNoisePassSize(const LastPass& last, const RenderSettings& settings) {
+  const std::uint64_t done = last.samples;
+  if (done < minNoiseSamples)
+    return std::min(choosePassSize(done, settings), minNoiseSamples - done);
+  constexpr double maxPerPixel = 256.0;
+  const double missing =
+      static_cast<double>(done) * (std::pow(last.noise / settings.noise, 2.0) - 1.0);
+  const double room = maxPerPixel / last.plan.at(done + 1).maxRatio();
+  const auto most = static_cast<std::uint64_t>(std::max(1.0, std::min(missing, room)));
+  return std::min(choosePassSize(done - minNoiseSamples, settings), most);
+}
+
+/// Lets all threads render what is left of a pass, to its end, a pause or a stop; tiles are done
+/// whole or not at all.
+template <typename Tracer>
+void renderTiles(const Tracer& tracer, Pass& pass, const Film& film, Counters& total,
+                 RenderMonitor& monitor) {
+  const int threads = tbb::this_task_arena::max_concurrency();
+  // Paths at once in a thread: limited, so that all threads get some and tails are short.
+  const std::size_t maxPaths =
+      std::max<std::size_t>(64, film.pixelCount() / (4 * static_cast<std::size_t>(threads)));
+  tbb::combinable<Counters> counters;
+  tbb::parallel_for(
+      0, threads,
+      [&](int) {
+        TileStream stream(pass, monitor.isCheckpointDue);
+        if (!monitor.stop.load(std::memory_order_relaxed))
+          tracer.trace(stream, maxPaths, counters.local());
+      },
+      tbb::simple_partitioner());
+  counters.combine_each([&](const Counters& local) { total += local; });
+}
+
+/// Parts of a render that all its passes share.
+struct PassInputs {
+  std::vector<int> tiles;
+  EmptyPixels empty;
+  Sampler numbers;
+};
+
+/// Renders tiles as renderTiles, beside helpers.
+template <typename Tracer>
+void renderWithWorkers(const Tracer& tracer, Pass& pass, RenderResult& result,
+                       RenderMonitor& monitor) {
+  const RemoteWorkers& workers = monitor.workers;
+  if (workers.count == 0)
+    return renderTiles(tracer, pass, result.film, result.counters, monitor);
+  workers.dispatch(pass, result);
+  try {
+    renderTiles(tracer, pass, result.film, result.counters, monitor);
+  } catch (...) { // pass and film end here
+    monitor.stop = true;
+    workers.join(monitor);
+    throw;
+  }
+  result.counters += workers.join(monitor);
+}
+
+/// Renders the samples that stage `result.begunSamples` has beyond the film. Returns false if
+/// stopped before all were done.
+template <typename Tracer>
+bool renderPass(const Tracer& tracer, const PassInputs& source, RenderResult& result,
+                RenderMonitor& monitor) {
+  const SamplePlan& plan = result.last.plan;
+  Pass pass(source.tiles, plan.at(result.finishedSamples), plan.at(result.begunSamples),
+            source.empty, source.numbers, result.film, monitor.paths);
+  for (;;) {
+    renderWithWorkers(tracer, pass, result, monitor);
+    if (pass.isComplete() || monitor.stop)
+      return pass.isComplete();
+    monitor.onCheckpoint(result); // nothing but a rest leaves tiles undone
+  }
+}
+
+/// True if all eye rays through one pixel that meet no matter return the same radiance.
+bool isConstantPerPixel(const Background& background, const LightSet& lights) {
+  return background.kind != Background::Kind::environment ||
+         (!lights.hasMaps() && lights.tables().skies.empty());
+}
+
+/// Pixels of which one sample is enough; the film is told.
+EmptyPixels markEmptyPixels(const SceneView& scene, const RenderSettings& settings, Film& film) {
+  EmptyPixels empty = isConstantPerPixel(settings.path.background, scene.lights)
+                          ? EmptyPixels(scene.camera, scene.majorants)
+                          : EmptyPixels();
+  for (int row = 0; row < film.height(); ++row)
+    for (int column = 0; column < film.width(); ++column)
+      film.at(column, row).isDeterministic = empty.contains(column, row);
+  return empty;
+}
+
+/// Duration of passes, and the samples that the time limit still allows.
+class TimeBudget {
+public:
+  explicit TimeBudget(double limit) : m_limit(limit) {}
+
+  void addPass(std::uint64_t samples) {
+    const double now = m_watch.seconds();
+    m_perSample = (now - m_last) / static_cast<double>(samples);
+    m_last = now;
+  }
+  /// Time until now went into a look, not into samples.
+  void restartClock() { m_last = m_watch.seconds(); }
+  /// Number of samples that the remaining time allows, at the last pass's time per sample.
+  std::uint64_t affordableSamples() const {
+    if (!(m_limit < infinity) || m_perSample == 0.0)
+      return std::numeric_limits<std::uint64_t>::max();
+    const double left = m_limit - m_watch.seconds();
+    return static_cast<std::uint64_t>(std::clamp(left / m_perSample, 0.0, 1e9));
+  }
+
+private:
+  double m_limit;
+  Stopwatch m_watch;
+  double m_last = 0.0, m_perSample = 0.0;
+};
+
+/// Number of samples at which the seen noise is looked at next.
+std::uint64_t nextNoiseCheck(std::uint64_t done) {
+  constexpr std::uint64_t first = 4;
+  return std::max(first, std::bit_ceil(done + 1));
+}
+
+/// Decides how many samples a pass gets, and when the noise is low enough.
+class NoiseLimit {
+public:
+  NoiseLimit(const RenderSettings& settings, const PassGrowth& growth)
+      : m_settings(settings), m_growth(growth) {}
+
+  /// Samples of the pass after `last`, which no other limit cuts short.
+  std::uint64_t nextPass(const LastPass& last) const {
+    if (m_settings.isAdaptive())
+      return chooseNoisePassSize(last, m_settings);
+    const std::uint64_t size = choosePassSize(last.samples, m_settings, m_growth);
+    if (hasDisplayNoise())
+      return std::min(size, nextNoiseCheck(last.samples) - last.samples);
+    const std::uint64_t left = m_settings.samples - last.samples;
+    return left <= size + size / 2 ? left : size; // no short pass for the rest
+  }
+
+  /// Looks at the film after a pass, if a look is due, and sets `monitor.noise`. Returns true if
+  /// the target is reached. A pass that nothing has cut short becomes the last one.
+  bool isReached(RenderResult& result, bool isCut, RenderMonitor& monitor) const {
+    const std::uint64_t done = result.finishedSamples;
+    std::atomic<double>& noise = monitor.noise;
+    if (!isCut)
+      result.last.samples = done;
+    if (hasDisplayNoise()) {
+      if (nextNoiseCheck(done - 1) != done)
+        return false;
+      noise = m_settings.displayNoise(result.film);
+      return noise <= m_settings.noise;
+    }
+    const bool isPlanned = m_settings.isAdaptive();
+    if (isPlanned || monitor.isNoiseWanted)
+      noise = result.film.noise();
+    if (!isPlanned)
+      return false;
+    if (!isCut)
+      result.last.noise = noise;
+    if (done < minNoiseSamples)
+      return false;
+    if (done == minNoiseSamples)
+      result.last.plan = SamplePlan(result.film);
+    return noise <= m_settings.noise;
+  }
+
+private:
+  bool hasDisplayNoise() const { return m_settings.noise > 0.0 && m_settings.displayNoise; }
+
+  const RenderSettings& m_settings;
+  const PassGrowth m_growth;
+};
+
+/// A short pass costs more a sample: in each one caches meet the whole volume anew, and threads run
+/// out of paths once. So passes grow fourfold where nobody is shown pictures between them; and with
+/// several processes, each of which moves the film, yet faster, and more.
+PassGrowth choosePassGrowth(const RenderMonitor& monitor) {
+  const auto processes = static_cast<std::uint64_t>(monitor.workers.count) + 1;
+  return {(monitor.onPassEnd ? 1 : 3) * processes, 16 * processes};
+}
+
+/// Result before the first sample.
+RenderResult makeEmptyResult(const Camera& camera, const Sampler& numbers) {
+  return {Film(camera.width(), camera.height(), Sampler::hasIndependentHalfBuffers,
+               numbers.samplesPerBlock())};
+}
+
+/// True if no tile of the film is ahead of the last pass or behind it.
+bool isAtLastPass(const RenderResult& result) {
+  const SamplePlan::Stage stage = result.last.plan.at(result.last.samples);
+  const std::vector<PixelSums>& pixels = result.film.pixels();
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+    if (!pixels[i].isDeterministic && pixels[i].samples != stage.count(i))
+      return false;
+  return result.last.samples > 0 && result.finishedSamples == result.last.samples;
+}
+
+template <typename Tracer>
+RenderResult renderPasses(const Tracer& tracer, const std::string& arithmetic,
+                          const SceneView& scene, const RenderSettings& settings,
+                          RenderMonitor& monitor, std::optional<RenderResult> resumed) {
+  const Sampler numbers(settings.sampling, settings.seed);
+  RenderResult result = resumed ? std::move(*resumed) : makeEmptyResult(scene.camera, numbers);
+  result.reason = StopReason::samples;
+  result.target = arithmetic;
+  if (!settings.isAdaptive())
+    result.last = {result.last.samples}; // a plan made by the pilot is not followed
+  const PassInputs source{Tiles(result.film.width(), result.film.height()).select(settings.shard),
+                          markEmptyPixels(scene, settings, result.film), numbers};
+  monitor.paths = result.finishedSamples * result.film.pixelCount() /
+                  static_cast<std::size_t>(settings.shard.count);
+  const NoiseLimit target(settings, choosePassGrowth(monitor));
+  TimeBudget budget(settings.seconds);
+  const auto checkNoise = [&](bool isCut) {
+    const bool isReached = target.isReached(result, isCut, monitor);
+    if (isReached)
+      result.reason = StopReason::noise;
+    return isReached;
+  };
+  if (isAtLastPass(result) && checkNoise(false))
+    return result;
+  while (result.finishedSamples < settings.samples) {
+    const std::uint64_t done = result.finishedSamples;
+    const std::uint64_t passEnd =
+        std::max(result.last.samples + target.nextPass(result.last), done + 1);
+    const std::uint64_t count =
+        std::min({passEnd - done, settings.samples - done, budget.affordableSamples()});
+    if (count == 0) {
+      result.reason = StopReason::seconds;
+      return result;
+    }
+    if (done > 0 && monitor.onPassEnd)
+      monitor.onPassEnd(result);
+    if (monitor.isCheckpointDue && monitor.isCheckpointDue())
+      monitor.onCheckpoint(result);
+    result.begunSamples = done + count;
+    if (!renderPass(tracer, source, result, monitor)) {
+      result.reason = StopReason::request;
+      return result;
+    }
+    budget.addPass(count);
+    result.finishedSamples += count;
+    if (checkNoise(result.finishedSamples < passEnd))
+      return result;
+    budget.restartClock();
+  }
+  return result;
+}
+
+template <typename Tracer>
+void renderEachLease(const Tracer& tracer, const SceneView& scene, const RenderSettings& settings,
+                     RenderMonitor& monitor,
+                     const std::function<std::optional<TileLease>(RenderResult&)>& next) {
+  const Sampler numbers(settings.sampling, settings.seed);
+  RenderResult result = makeEmptyResult(scene.camera, numbers);
+  const EmptyPixels empty = markEmptyPixels(scene, settings, result.film);
+  while (const std::optional<TileLease> lease = next(result)) {
+    result.counters = {};
+    const SamplePlan& plan = result.last.plan;
+    Pass pass(lease->tiles, plan.at(lease->from), plan.at(lease->to), empty, numbers, result.film,
+              monitor.paths);
+    renderTiles(tracer, pass, result.film, result.counters, monitor);
+  }
+}
+
+/// Calls work(tracer, arithmetic) with rays in lanes.
+template <typename Work>
+auto traceSimd(const SceneView& scene, const RenderSettings& settings, const StopFlag& stop,
+               Work&& work) {
+  const Domain domain(scene.volume.grid, scene.crop);
+  const SimdTracker tracker(scene.volume, domain, scene.transfer, scene.majorants, scene.clip,
+                            scene.style, stop, scene.mixture);
+  const SimdShading shading(scene.volume.grid, scene.transfer, scene.lights, settings.path.bounces,
+                            settings.path.wantNormals, scene.tint, scene.mixture);
+  const CameraTable table(domain, scene.camera);
+  const CameraRays cameraRays(scene.camera, cameraRayClip(scene.clip, scene.mixture), scene.lights,
+                              settings.path.background);
+  return work(SimdPathIntegrator(tracker, shading, table, cameraRays, stop), instructionSet());
+}
+
+/// Calls work(tracer, arithmetic) with the readable estimator.
+template <typename Work>
+auto traceScalar(const SceneView& scene, const RenderSettings& settings, const StopFlag& stop,
+                 Work&& work) {
+  const auto scalar = [&]<typename Voxel>(const Medium<Voxel>& medium,
+                                          const Tracker<Voxel>& tracker) {
+    return work(
+        ScalarTracer<Voxel>{PathIntegrator<Voxel>(scene.volume.grid, medium, tracker, scene.lights,
+                                                  scene.camera, scene.clip, settings.path, stop)},
+        std::string("scalar"));
+  };
+  return withMedium(scene, scalar, stop);
+}
+
+bool isSimdUsed(const SceneView& scene, const RenderSettings& settings) {
+  return settings.integrator == Integrator::simd && canUseSimd(scene);
+}
+
+/// Calls work(tracer, arithmetic) in the threads that the settings allow.
+template <typename Work>
+auto traceScene(const SceneView& scene, const RenderSettings& settings, const StopFlag& stop,
+                Work&& work) {
+  const int cores = tbb::info::default_concurrency(); // TBB complains about more
+  tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
+  return arena.execute([&] {
+    return isSimdUsed(scene, settings) ? traceSimd(scene, settings, stop, work)
+                                       : traceScalar(scene, settings, stop, work);
+  });
+}
+
+} // namespace
+
+bool canUseSimd(const SceneView& scene) {
+  return SimdTracker::isSupported(scene.volume, scene.transfer, scene.mixture) &&
+         SimdShading::isSupported(scene.volume.grid, scene.transfer, scene.lights, scene.mixture) &&
+         (!scene.tint || SimdLabelWeights::isSupported(*scene.tint->weights));
+}
+
+std::string findTarget(const SceneView& scene, const RenderSettings& settings) {
+  return isSimdUsed(scene, settings) ? instructionSet() : "scalar";
+}
+
+RenderResult render(const SceneView& scene, const RenderSettings& settings, RenderMonitor& monitor,
+                    std::optional<RenderResult> resumed) {
+  return traceScene(
+      scene, settings, monitor.stop, [&](const auto& tracer, const std::string& arithmetic) {
+        return renderPasses(tracer, arithmetic, scene, settings, monitor, std::move(resumed));
+      });
+}
+
+void renderLeases(const SceneView& scene, const RenderSettings& settings, RenderMonitor& monitor,
+                  const std::function<std::optional<TileLease>(RenderResult&)>& next) {
+  traceScene(scene, settings, monitor.stop, [&](const auto& tracer, const std::string&) {
+    renderEachLease(tracer, scene, settings, monitor, next);
+  });
+}
+
+} // namespace fenestra

@@ -1,0 +1,153 @@
+#include "integrator/scalar/MajorantGrid.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace fenestra {
+namespace {
+
+/// The transfer function's maximum over [low, high], widened by the rounding of interpolation
+/// between two such values.
+double findMaximum(const ScalarFunction& f, double low, double high) {
+  const double rounding =
+      4.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(low), std::abs(high));
+  return f.range(low - rounding, high + rounding)[1];
+}
+
+/// Greatest |gradient| (scalar units per mm) if all interpolated values differ by at most `spread`:
+/// every central difference is at most spread / 2 per voxel.
+double boundGradient(const Grid& grid, double spread) {
+  return 0.5 * spread * grid.worldToIndex.linear().transpose().columnNorms().sum();
+}
+
+float roundUp(double x) {
+  const auto f = static_cast<float>(x);
+  return static_cast<double>(f) < x ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
+}
+
+/// Corners of a cell with the strip around it, `margin` in cells.
+Corners findCorners(const Affine& cellToWorld, const Vec3& cell, const Vec3& margin) {
+  Corners corners;
+  const Box box{cell - margin, cell + margin + Vec3::Ones()};
+  for (int i = 0; i < 8; ++i)
+    corners[static_cast<std::size_t>(i)] = cellToWorld * box.corner(i);
+  return corners;
+}
+
+/// True if the indicator may reach 1/2 in `box` (the mask's index space): a voxel around the box is
+/// at least half(). Beyond the mask the outermost voxels repeat.
+bool canReachMask(const Mask& mask, const Box& box) {
+  const Vec3 last = (mask.grid.size.array() - 1).cast<double>();
+  const auto within = [&](const Vec3& index) { return index.cwiseMax(0.0).cwiseMin(last); };
+  const Size3 first = within(box.lower.array().floor()).cast<std::int64_t>();
+  const Size3 end = within(box.upper.array().ceil()).cast<std::int64_t>().array() + 1;
+  const Size3& size = mask.grid.size;
+  for (std::int64_t z = first.z(); z < end.z(); ++z)
+    for (std::int64_t y = first.y(); y < end.y(); ++y) {
+      const auto row = mask.voxels.begin() + size.x() * (y + size.y() * z);
+      if (std::any_of(row + first.x(), row + end.x(),
+                      [&](std::uint8_t voxel) { return voxel >= mask.threshold(); }))
+        return true;
+    }
+  return false;
+}
+
+/// Greatest factor of a style on the extinction among the corners of a cell.
+double findMaximumFactor(const ContextStyle& style, const Corners& corners) {
+  Box box = Box::makeEmpty();
+  for (const Vec3& corner : corners)
+    box.extend(style.focus->grid.worldToIndex * corner);
+  return canReachMask(*style.focus, box) ? 1.0 : style.extinction;
+}
+
+/// Greatest extinction, mm^-1, of the matter in a cell that the clip may remove, and of that which
+/// it leaves.
+struct CellBound {
+  double clipped = 0.0, unclipped = 0.0;
+};
+
+/// A cell's majorant under the clip and the style.
+MajorantGrid::Cell makeCell(const CellBound& bound, const Corners& corners, const Clip& clip,
+                            const ContextStyle* style) {
+  const ClipBounds bounds =
+      std::holds_alternative<ClipNone>(clip) ? ClipBounds::all : boundClipWeight(clip, corners);
+  const double majorant = std::max(bound.clipped * bounds.max, bound.unclipped) *
+                          (style ? findMaximumFactor(*style, corners) : 1.0);
+  const bool isCut = majorant > 0.0 && !(bounds.isUniform && bounds.max == 1.0);
+  return {roundUp(majorant), isCut};
+}
+
+double findMaximum(const TransferFunction& transfer, const Grid& grid, double low, double high) {
+  const double extinction = findMaximum(transfer.extinction, low, high);
+  if (extinction == 0.0 || !transfer.gradientOpacity)
+    return extinction;
+  return extinction * findMaximum(*transfer.gradientOpacity, 0.0, boundGradient(grid, high - low));
+}
+
+/// Bound for a mixture, among the corners of a cell whose scalars lie in [low, high].
+CellBound boundMixture(const Mixture& mixture, const Grid& grid, const Corners& corners, double low,
+                       double high) {
+  // Shares sum to 1 but for rounding.
+  constexpr double rounding = 1.0 + 64.0 * std::numeric_limits<double>::epsilon();
+  Box box = Box::makeEmpty();
+  for (const Vec3& corner : corners)
+    box.extend(mixture.weights->grid().worldToIndex * corner);
+  CellBound bound;
+  mixture.weights->forEachInBox(box, [&](std::uint8_t number) {
+    const Component& component = mixture.components[number];
+    double& maximum = component.isClipped ? bound.clipped : bound.unclipped;
+    maximum = std::max(maximum, rounding * findMaximum(component.transfer, grid, low, high));
+  });
+  return bound;
+}
+
+} // namespace
+
+MajorantGrid::MajorantGrid(const Grid& grid, const MinMaxGrid& ranges,
+                           const TransferFunction& transfer, const Clip& clip,
+                           const ContextStyle* style, const Mixture* mixture)
+    : m_cellCount(ranges.cellCount()), m_edge(ranges.cellSize()), m_cells(ranges.size()) {
+  m_worldToCell = makeScaling(ranges.cellSize().cast<double>().cwiseInverse()) *
+                  (makeTranslation(Vec3::Constant(0.5)) * grid.worldToIndex);
+  const Affine cellToWorld = m_worldToCell.inverse();
+
+  const Vec3 strip = margin * ranges.cellSize().cast<double>().cwiseInverse();
+  tbb::parallel_for(std::int64_t{0}, m_cellCount.z(), [&](std::int64_t z) {
+    for (std::int64_t y = 0; y < m_cellCount.y(); ++y)
+      for (std::int64_t x = 0; x < m_cellCount.x(); ++x) {
+        const auto cell = static_cast<std::size_t>(x + m_cellCount.x() * (y + m_cellCount.y() * z));
+        const double low = ranges.low(cell), high = ranges.high(cell);
+        const auto corners = [&] {
+          return findCorners(cellToWorld, Size3(x, y, z).cast<double>(), strip);
+        };
+        const CellBound bound = mixture ? boundMixture(*mixture, grid, corners(), low, high)
+                                        : CellBound{findMaximum(transfer, grid, low, high)};
+        m_cells[cell] = bound.clipped > 0.0 || bound.unclipped > 0.0
+                            ? makeCell(bound, corners(), clip, style)
+                            : Cell{0.0F, false};
+      }
+  });
+}
+
+std::size_t MajorantGrid::emptyCount() const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(m_cells, [](const Cell& cell) { return cell.majorant == 0.0F; }));
+}
+
+Box MajorantGrid::occupiedBounds() const {
+  Box box = Box::makeEmpty(); // in cells
+  std::size_t next = 0;
+  for (std::int64_t z = 0; z < m_cellCount.z(); ++z)
+    for (std::int64_t y = 0; y < m_cellCount.y(); ++y)
+      for (std::int64_t x = 0; x < m_cellCount.x(); ++x)
+        if (m_cells[next++].majorant > 0.0F) {
+          const Vec3 lower = Size3(x, y, z).cast<double>();
+          box.extend(lower);
+          box.extend(lower.array() + 1.0);
+        }
+  const Vec3 edge = m_edge.cast<double>();
+  return {box.lower.cwiseProduct(edge).array() - 0.5, box.upper.cwiseProduct(edge).array() - 0.5};
+}
+
+} // namespace fenestra

@@ -1,0 +1,185 @@
+#pragma once
+// A path, event by event: begins, arrives at a collision (gathering light), scatters. The readable
+// truth; integrator/simd/PathSteps does the same for many paths at once.
+//
+// Radiative transfer, one extinction for the three channels:
+//   L(x, w) = T(x, exit) L_light(w) + ∫ T(x, y) sigma_t(y) ∫ f(y, w, w') L(y, w') dw' dy
+// with f = albedo * phase function, or surface lobes. Collisions are drawn from T sigma_t, so
+// a path's weight changes by f / pdf alone; at each collision one light is sampled (next-event
+// estimation) and combined with light met by the scattered ray itself by the balance heuristic
+// (Veach 1997, eq. 9.8).
+
+#include "base/Sampler.h"
+#include "image/Film.h"
+#include "integrator/scalar/CameraRays.h"
+#include "integrator/scalar/ClippedMedium.h"
+#include "integrator/scalar/Counters.h"
+#include "model/lights/LightSet.h"
+#include "model/medium/Scattering.h"
+
+#include <optional>
+
+namespace fenestra {
+
+struct PathSettings {
+  Background background;
+  std::uint64_t bounces = std::numeric_limits<std::uint64_t>::max(); ///< most scatterings
+  bool wantNormals = false; ///< fill PathSample::normal even without shading
+};
+
+/// Weight (root mean square of its components) below which paths are subject to Russian roulette.
+inline constexpr double rouletteThreshold = 0.5;
+
+/// A path under way: its next ray, and the sample gathered so far.
+struct Path {
+  Random random;
+  Vec2 uFlight;    ///< numbers of the next flight's first collision
+  Vec2 uDirection; ///< numbers of the next direction
+  Vec2 uChoices;   ///< of the next collision: whether it is a surface's, and its light
+  double row;      ///< raster row of the eye ray
+  Ray ray;         ///< world space
+  Interval range;  ///< part of the ray left by clipping, mm
+  Rgb throughput = Rgb::Ones();
+  double scatterPdf = 0.0;   ///< of the ray's direction, per steradian
+  std::uint64_t bounces = 0; ///< scatterings so far
+  PathSample sample = {};
+};
+
+/// Light sampled at a collision: `radiance` times the transmittance of the ray arrives.
+struct ShadowRay {
+  Ray ray;         ///< world space
+  double distance; ///< mm to the light; infinity for lights at infinity
+  Rgb radiance;
+};
+
+/// A view of the scene. Random numbers of the first flight and direction are given; others come
+/// from the path's own stream, in the order of its steps.
+template <typename Voxel>
+class PathSteps {
+public:
+  PathSteps(const Grid& grid, const Medium<Voxel>& medium, const LightSet& lights,
+            const Camera& camera, const Clip& clip, const PathSettings& settings)
+      : m_worldToIndex(grid.worldToIndex),
+        m_medium(medium),
+        m_clip(clip),
+        m_lights(lights),
+        m_cameraRays(camera, cameraRayClip(clip, medium.mixture()), lights, settings.background),
+        m_settings(settings) {}
+
+  /// Begins a path through raster position (column, row).
+  Path begin(double column, double row, const PrimarySamples& numbers) const {
+    const Ray ray = m_cameraRays.ray(column, row);
+    const Vec2 flight{toUniform(numbers.opticalDepth), toUniform(numbers.acceptance)};
+    return {Random(numbers.pathSeed),    flight, toUniform2(numbers.direction),
+            toUniform2(numbers.choices), row,    ray,
+            m_cameraRays.range(ray)};
+  }
+
+  /// Ends the path's ray at its next collision, after `distance` mm, or at infinity (no collision).
+  /// Gathers the light met before; returns true if the path scatters there.
+  bool handleVertex(Path& path, double distance) const {
+    if (path.bounces > 0)
+      path.sample.radiance +=
+          path.throughput * emittedAlongRay(path.ray, distance, path.scatterPdf);
+    else if (distance == infinity)
+      path.sample = m_cameraRays.sampleBackground(path.row, path.ray.direction);
+    return distance < infinity && path.bounces < m_settings.bounces;
+  }
+
+  /// Scatters the path at its collision after `distance` mm: samples a light and a direction, and
+  /// sets the path's new ray. A weight of zero ends the path.
+  std::optional<ShadowRay> scatter(Path& path, double distance, Counters& counters) const {
+    const Vec3 point = path.ray.at(distance);
+    const bool first = path.bounces == 0;
+    const bool wantGradient = first && m_settings.wantNormals;
+    counters.gradients += m_medium.needsGradient(wantGradient) ? 1 : 0;
+    const MediumSample medium =
+        sampleMedium(m_medium, m_clip, point, m_worldToIndex * point, wantGradient, path.random);
+    if (first)
+      recordFirstHit(path, distance, medium);
+    const Scattering scattering = chooseScattering(path.ray.direction, medium, path.uChoices.x());
+    std::optional<ShadowRay> light = sampleLight(point, scattering, path);
+    const ScatterSample scattered = sampleScattering(scattering, path.uDirection, path.random);
+    path.uDirection = path.random.uniform2();
+    path.uChoices = path.random.uniform2();
+    path.throughput *= scattered.weight;
+    playRoulette(path);
+    path.scatterPdf = scattered.pdf;
+    path.ray = {point, scattered.outgoing};
+    path.range = {};
+    path.uFlight = path.random.uniform2();
+    ++path.bounces;
+    path.sample.scatterings += 1.0;
+    return light;
+  }
+
+  static bool hasEnded(const Path& path) { return !(path.throughput.maxCoeff() > 0.0); }
+
+private:
+  void recordFirstHit(Path& path, double distance, const MediumSample& medium) const {
+    PathSample& sample = path.sample;
+    sample.depth = m_cameraRays.depth(path.ray, distance);
+    sample.albedo = medium.albedo;
+    const double slope = medium.gradient.norm();
+    if (slope > 0.0)
+      sample.normal =
+          medium.gradient / (path.ray.direction.dot(medium.gradient) < 0.0 ? slope : -slope);
+  }
+
+  static Scattering chooseScattering(const Vec3& incoming, const MediumSample& medium,
+                                     double choice) {
+    const TransferFunction& transfer = *medium.transfer;
+    if (choice < medium.surfaceProbability)
+      return SurfaceScattering(incoming, medium.gradient, *transfer.shading, medium.albedo);
+    return PhaseScattering(incoming, transfer.g, medium.albedo);
+  }
+
+  /// Next-event estimation: one light, to be seen through the volume, weighted against scattering
+  /// toward that light.
+  std::optional<ShadowRay> sampleLight(const Vec3& point, const Scattering& scattering,
+                                       Path& path) const {
+    const std::optional<LightSample> light =
+        m_lights.sample(point, path.uChoices.y(), path.random.uniform2());
+    if (!light)
+      return std::nullopt;
+    const Rgb factor = evaluateScattering(scattering, light->direction);
+    if (!(factor.maxCoeff() > 0.0) || !(light->radiance.maxCoeff() > 0.0))
+      return std::nullopt;
+    const double other =
+        light->isDelta ? 0.0 : fenestra::scatteringPdf(scattering, light->direction);
+    const Rgb radiance = path.throughput * factor * light->radiance / (light->pdf + other);
+    return ShadowRay{{point, light->direction}, light->distance, radiance};
+  }
+
+  /// Light that a scattered ray meets by itself before its next collision (or at infinity).
+  Rgb emittedAlongRay(const Ray& ray, double distance, double scatterPdf) const {
+    const auto weigh = [&](const EmitterHit& hit) -> Rgb {
+      return hit.radiance * (scatterPdf / (scatterPdf + hit.pdf));
+    };
+    Rgb sum = m_lights.sumEmitterHits(ray, distance, weigh);
+    if (distance == infinity)
+      sum += weigh(m_lights.evaluateEnvironment(ray.direction));
+    return sum;
+  }
+
+  /// Russian roulette on the path's weight: its square is what the path adds to the variance.
+  static void playRoulette(Path& path) {
+    const double rms = std::sqrt(path.throughput.square().mean());
+    if (rms >= rouletteThreshold)
+      return;
+    const double chance = rms / rouletteThreshold;
+    if (path.random.uniform() < chance)
+      path.throughput /= chance;
+    else
+      path.throughput.setZero();
+  }
+
+  Affine m_worldToIndex;
+  const Medium<Voxel>& m_medium;
+  const Clip& m_clip;
+  const LightSet& m_lights;
+  CameraRays m_cameraRays;
+  const PathSettings& m_settings;
+};
+
+} // namespace fenestra

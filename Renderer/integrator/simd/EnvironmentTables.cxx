@@ -1,0 +1,33 @@
+#include "integrator/simd/EnvironmentTables.h"
+
+namespace fenestra {
+
+bool EnvironmentTables::isSupported(const EnvironmentSampler& sampler) {
+  constexpr double maxTotal = 1e20, minTotal = 1e-20;
+  constexpr int maxTexels = 1 << 14; // texels: places of columns and rows keep digits in float
+  const EnvironmentMap& map = sampler.light().map;
+  const double whole = sampler.integral();
+  return sampler.isConstant() || (std::max(map.width, map.height) <= maxTexels &&
+                                  (whole == 0.0 || (whole > minTotal && whole < maxTotal)));
+}
+
+EnvironmentTables::EnvironmentTables(const EnvironmentSampler& sampler, double mapPmf)
+    : width(sampler.light().map.width),
+      height(sampler.light().map.height),
+      rgb(sampler.light().map.rgb.data()),
+      tint(narrow3(sampler.light().radiance)),
+      pmf(narrow(mapPmf)),
+      pdfPerBrightness(narrow(mapPmf / sampler.integral())),
+      rows(static_cast<std::size_t>(height)),
+      columns(static_cast<std::size_t>(width)) {
+  rows.append(sampler.rowCdf());
+  columns.slots.reserve(columns.size() * static_cast<std::size_t>(height));
+  for (int row = 0; row < height; ++row)
+    columns.append(sampler.columnCdf(row));
+  for (int row = 0; row <= (height + 1) / 2; ++row) {
+    const double sine = std::sin(0.5 * pi * row / height);
+    oneMinusCos.push_back(narrow(2.0 * sine * sine));
+  }
+}
+
+} // namespace fenestra

@@ -1,0 +1,76 @@
+// Lights for many paths: model/lights/LightSet.h in lanes. A part of the namespace that includes
+// it, behind Scene-inl.h.
+
+#include "integrator/simd/EnvironmentSampler-inl.h"
+#include "model/lights/LightFormulas-inl.h"
+
+/// EmitterHit in lanes.
+struct LaneEmitterHit {
+  Float3 radiance;
+  Float pdf;
+};
+/// LightSet::environment; selectTexel(map): each map's texel in the direction.
+template <typename TexelOf>
+HWY_INLINE LaneEmitterHit evaluateEnvironment(const SimdShading& shading, const Float3& direction,
+                                              TexelOf&& selectTexel) {
+  LaneEmitterHit sum{evaluateSkies(shading.lights, direction), 0.0F};
+  for (const EnvironmentTables& map : shading.maps) {
+    const Float3 radiance = loadRadiance(map, selectTexel(map));
+    sum.radiance = sum.radiance + radiance;
+    sum.pdf = sum.pdf + map.pdfPerBrightness * maxComponent(radiance);
+  }
+  return sum;
+}
+
+inline void sampleMaps(const SimdShading& shading, LaneMask which, Float choice, UInt u, UInt v,
+                       LightSamples& sampled) {
+  const std::size_t count = shading.maps.size();
+  TexelSample toward = sampleTexel(shading.maps[0], u, v);
+  LaneMask later = which;
+  for (std::size_t i = 1; i < count; ++i) { // the last map takes the remainder of rounding
+    const float before = shading.maps[i - 1].pmf;
+    later = later & (choice > before);
+    choice = choice - before;
+    if (later.any())
+      toward.direction =
+          select(later, sampleTexel(shading.maps[i], u, v).direction, toward.direction);
+  }
+  const LaneEmitterHit light =
+      evaluateEnvironment(shading, toward.direction, [&](const EnvironmentTables& map) {
+        return count == 1 ? toward.texel : findTexel(map, toward.direction);
+      });
+  const LaneMask lit = which & (light.pdf > 0.0F);
+  sampled.direction = select(lit, toward.direction, sampled.direction);
+  sampled.radiance = select(lit, light.radiance, sampled.radiance);
+  sampled.pdf = select(lit, light.pdf, sampled.pdf);
+}
+
+/// LightSet::sample for the lanes of `which`, from local points; `uBits`, `vBits`: random bits.
+inline LightSamples sampleLightSet(const SimdShading& shading, LaneMask which, const Float3& point,
+                                   Float choice, UInt uBits, UInt vBits) {
+  const Float u = toUniform(uBits), v = toUniform(vBits);
+  LightSamples sampled = sampleLights(shading.lights, which, point, choice, u, v);
+  if (!shading.maps.empty() && which.any())
+    sampleMaps(shading, which, choice, uBits, vBits, sampled);
+  return sampled;
+}
+
+/// PathSteps::arriving for rays from local points, for the lanes of `which`; 0 in the others.
+inline Float3 emittedAlongRay(const SimdShading& shading, LaneMask which, const Float3& origin,
+                              const Float3& direction, Float distance, Float scatterPdf) {
+  Float3 sum{0.0F, 0.0F, 0.0F};
+  intersectLights(shading.lights, which, origin, direction, distance,
+                  [&](LaneMask hits, const Float3& radiance, Float pdf) {
+                    const Float weight = scatterPdf / (scatterPdf + pdf);
+                    sum = sum + zeroUnless(hits, weight * radiance);
+                  });
+  const LaneMask escaped = which & (distance == std::numeric_limits<float>::infinity());
+  if (shading.maps.empty())
+    return sum + zeroUnless(escaped, evaluateSkies(shading.lights, direction));
+  if (!escaped.any())
+    return sum;
+  const LaneEmitterHit far = evaluateEnvironment(
+      shading, direction, [&](const EnvironmentTables& map) { return findTexel(map, direction); });
+  const Float weight = scatterPdf / (scatterPdf + far.pdf);
+  return sum + zeroUnless(escaped, weight * far.radiance);
+}

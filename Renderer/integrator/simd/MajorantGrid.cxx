@@ -1,0 +1,188 @@
+#include "integrator/simd/MajorantGrid.h"
+
+#include <tbb/parallel_for.h>
+
+#include <atomic>
+#include <bit>
+
+namespace fenestra {
+namespace {
+
+/// Array of cells with a border one cell wide.
+struct PaddedGrid {
+  Size3 size;
+
+  std::size_t count() const { return static_cast<std::size_t>(size.prod()); }
+  std::size_t index(const Size3& cell) const { return linearIndex(cell, size); }
+  /// Steps from a cell to its neighbours along the axes.
+  std::array<std::size_t, 3> strides() const {
+    return {index(Size3::UnitX()), index(Size3::UnitY()), index(Size3::UnitZ())};
+  }
+  /// Calls visit(index, cell) for all cells of a layer inside the border.
+  template <typename Visit>
+  void forEachInLayer(std::int64_t z, Visit&& visit) const {
+    for (std::int64_t y = 1; y < size.y() - 1; ++y)
+      for (std::int64_t x = 1; x < size.x() - 1; ++x)
+        visit(index({x, y, z}), Size3(x, y, z));
+  }
+  /// Visits inner cells in the order of their indices.
+  template <typename Visit>
+  void forEachInner(Visit&& visit) const {
+    for (std::int64_t z = 1; z < size.z() - 1; ++z)
+      forEachInLayer(z, visit);
+  }
+  /// Visits inner cells in any order.
+  template <typename Visit>
+  void forEachInParallel(Visit&& visit) const {
+    tbb::parallel_for(std::int64_t{1}, size.z() - 1,
+                      [&](std::int64_t z) { forEachInLayer(z, visit); });
+  }
+};
+
+/// Number of empty cells around each empty cell inside the border, -1 for filled cells: two sweeps
+/// (Rosenfeld and Pfaltz 1966), exact for distances that count diagonals as 1. Nothing beyond the
+/// border counts as empty.
+std::vector<std::int32_t> findEmptyRadii(const PaddedGrid& at,
+                                         const std::vector<float>& majorants) {
+  constexpr std::int32_t unknown = 1000000;
+  std::vector<std::int32_t> cells(at.count(), 0);
+  at.forEachInner(
+      [&](std::size_t i, const Size3&) { cells[i] = majorants[i] > 0.0F ? -1 : unknown; });
+  std::array<std::ptrdiff_t, 13> back; // to the neighbours that the first sweep visits before
+  for (std::ptrdiff_t n = 0; n < 13; ++n)
+    back[static_cast<std::size_t>(n)] =
+        n % 3 - 1 + at.size.x() * (n / 3 % 3 - 1 + at.size.y() * (n / 9 - 1));
+  const auto relax = [&](std::int32_t* cell, std::ptrdiff_t side) {
+    // A filled neighbour (-1) allows 0; an empty neighbour with n around allows n + 1.
+    for (const std::ptrdiff_t step : back)
+      if (*cell > 0)
+        *cell = std::min(*cell, cell[side * step] + 1);
+  };
+  at.forEachInner([&](std::size_t i, const Size3&) { relax(&cells[i], 1); });
+  at.forEachInner([&](std::size_t i, const Size3&) { relax(&cells[at.count() - 1 - i], -1); });
+  return cells;
+}
+
+/// Replaces each cell inside the border by the maximum of the 27 cells centred there.
+void dilate(const PaddedGrid& at, std::vector<float>& cells, std::vector<float>& scratch) {
+  for (const std::size_t stride : at.strides()) {
+    at.forEachInParallel([&](std::size_t i, const Size3&) {
+      scratch[i] = std::max({cells[i - stride], cells[i], cells[i + stride]});
+    });
+    cells.swap(scratch);
+  }
+}
+
+/// Reach of each cell, and the bound that holds within the reach.
+struct SkipRadii {
+  std::vector<float> bound;
+  std::vector<std::uint8_t> radii;
+};
+
+/// Sums over boxes of cells.
+class BoxSums {
+public:
+  BoxSums(const PaddedGrid& at, const std::vector<float>& cells)
+      : m_at(at), m_sums(cells.begin(), cells.end()) {
+    for (const std::size_t stride : at.strides())
+      at.forEachInner([&](std::size_t i, const Size3&) { m_sums[i] += m_sums[i - stride]; });
+  }
+
+  /// Mean over the inner cells at most `reach` away from a cell.
+  float mean(const Size3& cell, std::int64_t radius) const {
+    const Size3 low = (cell.array() - radius).max(1);
+    const Size3 high = (cell.array() + radius).min(m_at.size.array() - 2);
+    const auto upTo = [&](std::int64_t x, std::int64_t y, std::int64_t z) {
+      return m_sums[m_at.index({x, y, z})];
+    };
+    const auto slice = [&](std::int64_t z) {
+      return upTo(high.x(), high.y(), z) - upTo(low.x() - 1, high.y(), z) -
+             upTo(high.x(), low.y() - 1, z) + upTo(low.x() - 1, low.y() - 1, z);
+    };
+    return static_cast<float>((slice(high.z()) - slice(low.z() - 1)) /
+                              static_cast<double>((high - low + Size3::Ones()).prod()));
+  }
+
+private:
+  const PaddedGrid& m_at;
+  std::vector<double> m_sums;
+};
+
+/// Chooses per cell the reach r of least cost per mm, in look-ups: stepCost / (edge (0.7 + r)) for
+/// steps, plus bound_r - mean majorant for null collisions. 0.7 edges: mean chord of a cell.
+/// stepCost: cost of a step relative to a look-up (measured; changes no expectation).
+SkipRadii chooseRadii(const PaddedGrid& at, const std::vector<float>& majorants,
+                      const std::vector<bool>& cut, double edge) {
+  constexpr double stepCost = 0.15;
+  const BoxSums sums(at, majorants);
+  SkipRadii best{majorants, std::vector<std::uint8_t>(at.count(), 0)};
+  std::vector<float> minCosts(at.count(), static_cast<float>(stepCost / (edge * 0.7)));
+  std::vector<float> bounds(majorants);
+  std::vector<float> scratch(at.count(), 0.0F);
+  for (std::size_t i = 0; i < at.count(); ++i)
+    if (cut[i]) // cut cells are walked alone
+      bounds[i] = std::numeric_limits<float>::infinity();
+  // A cell that gains by neither r + 1 nor r + 2 is assumed not to gain by r + 3.
+  std::atomic<bool> some = true;
+  for (std::uint32_t radius = 1; some && radius <= SimdMajorants::maxRadius; ++radius) {
+    some = false;
+    dilate(at, bounds, scratch);
+    const auto step = static_cast<float>(stepCost / (edge * (0.7 + radius)));
+    at.forEachInParallel([&](std::size_t i, const Size3& cell) {
+      if (majorants[i] == 0.0F || best.radii[i] + 2U < radius)
+        return;
+      some.store(true, std::memory_order_relaxed);
+      const float cost = bounds[i] - sums.mean(cell, radius) + step;
+      if (cost < minCosts[i]) {
+        minCosts[i] = cost;
+        best.bound[i] = bounds[i];
+        best.radii[i] = static_cast<std::uint8_t>(radius);
+      }
+    });
+  }
+  return best;
+}
+
+/// Cells of this many voxels at most are merged (measured: looser bounds cost less than more
+/// cells).
+constexpr std::int64_t maxMergedVoxels = 16;
+
+/// Code of a bound >= majorant, which is not 0.
+std::uint32_t encodeMajorant(float majorant) {
+  constexpr auto below = static_cast<std::uint32_t>(SimdMajorants::radiusBits);
+  return (std::bit_cast<std::uint32_t>(majorant) + below) & ~below;
+}
+
+} // namespace
+
+SimdMajorants::SimdMajorants(const MajorantGrid& majorants)
+    : merged(majorants.edge().prod() <= maxMergedVoxels ? 2 : 1),
+      count((majorants.cellCount().array() + merged - 1) / merged) {
+  const PaddedGrid at{count.array() + 2};
+  std::vector<float> bound(at.count(), 0.0F);
+  std::vector<bool> cut(at.count(), false);
+  const Size3& fine = majorants.cellCount();
+  std::int64_t next = 0;
+  for (std::int64_t z = 0; z < fine.z(); ++z)
+    for (std::int64_t y = 0; y < fine.y(); ++y)
+      for (std::int64_t x = 0; x < fine.x(); ++x) {
+        const MajorantGrid::Cell& cell = majorants.cell(next++);
+        const std::size_t i = at.index({x / merged + 1, y / merged + 1, z / merged + 1});
+        bound[i] = std::max(bound[i], cell.majorant);
+        cut[i] = cut[i] || cell.isCut;
+      }
+  const double edge = static_cast<double>(merged) *
+                      std::cbrt(std::abs(1.0 / majorants.worldToCell().linear().determinant()));
+  const std::vector<std::int32_t> emptyRadii = findEmptyRadii(at, bound);
+  const SkipRadii skip = chooseRadii(at, bound, cut, edge);
+  codes.assign(at.count(), 0);
+  for (std::size_t i = 0; i < at.count(); ++i) {
+    if (bound[i] > 0.0F)
+      codes[i] = static_cast<std::int32_t>((cut[i] ? SimdMajorants::cutBit : 0U) |
+                                           encodeMajorant(skip.bound[i]) | skip.radii[i]);
+    else
+      codes[i] = std::min(std::max(emptyRadii[i], 0), radiusBits);
+  }
+}
+
+} // namespace fenestra

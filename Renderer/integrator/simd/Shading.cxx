@@ -1,0 +1,85 @@
+#include "integrator/simd/Shading.h"
+
+namespace fenestra {
+namespace {
+
+/// True if no lobe is narrower than the resolution of directions in float.
+bool hasWideLobes(const TransferFunction& transfer) {
+  constexpr double minRoughness = 1e-2;
+  constexpr double maxG = 0.9999;
+  return std::abs(transfer.g) <= maxG &&
+         makeBsdfParameters(transfer.g, transfer.shading).roughness >= minRoughness;
+}
+
+} // namespace
+
+bool SimdShading::isSupported(const Grid& grid, const TransferFunction& transfer,
+                              const LightSet& lights, const Mixture* mixture) {
+  constexpr double maxDistance = 1e15; // mm; squares and areas stay far below the greatest float
+  constexpr double maxRadiance = 1e20;
+  constexpr double minRadius = 1e-3; // mm; radius of a sphere whose square of the sine is a float
+  constexpr double maxRadius = 1e6;  // mm; distance^2 - radius^2 has digits left in float
+  const auto isNear = [&](const auto& light, double most) {
+    return (light.center - grid.worldCenter()).norm() < most &&
+           light.radiance.maxCoeff() < maxRadiance;
+  };
+  const auto areaFits = [&](const auto& light) {
+    return isNear(light, maxDistance) &&
+           std::max(light.right.norm(), light.up.norm()) < maxDistance;
+  };
+  const auto sphereFits = [&](const auto& light) {
+    const double radius = std::sqrt(light.radius2);
+    return isNear(light, maxRadius) && radius > minRadius && radius < maxRadius;
+  };
+  const auto mapFits = [](const PlacedEnvironment& environment) {
+    return EnvironmentTables::isSupported(environment.sampler);
+  };
+  return hasWideLobes(transfer) &&
+         (!mixture ||
+          std::ranges::all_of(mixture->components, hasWideLobes, &Component::transfer)) &&
+         std::ranges::all_of(lights.tables().areas, areaFits) &&
+         std::ranges::all_of(lights.tables().spheres, sphereFits) &&
+         std::ranges::all_of(lights.environments(), mapFits);
+}
+
+SimdShading::SimdShading(const Grid& grid, const TransferFunction& transfer, const LightSet& set,
+                         std::uint64_t maxBounces, bool normalsWanted, const Tint* tinted,
+                         const Mixture* mixture)
+    : hybrid(transfer.shading && transfer.extinction.span() > 0.0),
+      surfaceRate(hybrid ? narrow(25.0 * std::pow(transfer.shading->gamma, 3)) : 0.0F),
+      wantNormals(normalsWanted || transfer.shading),
+      bounces(static_cast<std::int32_t>(
+          std::min<std::uint64_t>(maxBounces, std::numeric_limits<std::int32_t>::max()))),
+      lights(set.tables().cast<float>(grid.worldCenter())) {
+  const auto add = [&](const TransferFunction& function) {
+    bsdfs.push_back(makeBsdfParameters(function.g, function.shading).cast<float>());
+    if (!tinted)
+      albedos.emplace_back(function.albedo);
+  };
+  if (tinted) {
+    tint.emplace(*tinted->weights, grid);
+    for (const std::optional<ColorFunction>& color : tinted->albedo)
+      albedos.emplace_back(color.value_or(transfer.albedo));
+  }
+  if (mixture)
+    for (const Component& component : mixture->components)
+      add(component.transfer);
+  else
+    add(transfer);
+  Affine local = grid.indexToWorld;
+  local.translation() -= grid.worldCenter();
+  toLocal = affineRows(local);
+  localToIndex = affineRows(Affine(grid.worldToIndex.linear()));
+  const double span = transfer.extinction.span();
+  const double scale = 0.5 / (span > 0.0 ? span : 1.0);
+  indexDifferenceToGradient =
+      affineRows(Affine(Mat3(scale * grid.worldToIndex.linear().transpose())));
+  if (bounces > 0) // else nothing is lit, and large tables are not needed
+    for (const PlacedEnvironment& environment : set.environments())
+      if (environment.pmf > 0.0) // no constant, no black map
+        maps.emplace_back(environment.sampler, environment.pmf);
+  hasSampledLights = !lights.areas.empty() || !lights.directionals.empty() ||
+                     !lights.spheres.empty() || !maps.empty();
+}
+
+} // namespace fenestra

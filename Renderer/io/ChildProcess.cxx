@@ -1,0 +1,99 @@
+#include "io/ChildProcess.h"
+
+#include "base/Error.h"
+#include "io/SelfExec.h"
+#include "io/SystemErrors.h"
+
+#include <algorithm>
+#include <csignal>
+#include <fcntl.h>
+#include <string_view>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace fenestra {
+namespace {
+
+/// Becomes the program, in the child. Async-signal-safe: other threads may have held locks at the
+/// fork. Signals are blocked on entry, for the parent's handlers must not run here.
+[[noreturn]] void execProgram(pid_t parent, int errors, char* const* arguments) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) // the parent died before PR_SET_PDEATHSIG
+    ::_exit(1);
+  ::setpgid(0, 0);
+  const int nothing = ::open("/dev/null", O_RDWR);
+  ::dup2(nothing, STDIN_FILENO);
+  ::dup2(nothing, STDOUT_FILENO);
+  ::dup2(errors, STDERR_FILENO);
+  ::closefrom(STDERR_FILENO + 1);
+  for (int signal = 1; signal < NSIG; ++signal) {
+    struct sigaction action = {};
+    if (::sigaction(signal, nullptr, &action) == 0 && action.sa_handler != SIG_IGN)
+      ::signal(signal, SIG_DFL);
+  }
+  sigset_t none;
+  ::sigemptyset(&none);
+  ::sigprocmask(SIG_SETMASK, &none, nullptr);
+  ::execv(selfExecutable, arguments);
+  constexpr std::string_view line = "fenestra: cannot be started once more; close other programs\n";
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, line.data(), line.size());
+  ::_exit(static_cast<int>(ErrorKind::output));
+}
+
+} // namespace
+
+ChildProcess::ChildProcess(std::vector<std::string> arguments)
+    : m_errors(::memfd_create("errors", MFD_CLOEXEC)) {
+  const SelfArguments words(std::move(arguments));
+  const pid_t parent = ::getpid();
+  ::signal(SIGCHLD, SIG_DFL); // ignored, it would hide how the child ends
+  sigset_t all, before;
+  ::sigfillset(&all);
+  ::pthread_sigmask(SIG_BLOCK, &all, &before);
+  m_id = m_errors.isOpen() ? ::fork() : -1;
+  if (m_id == 0)
+    execProgram(parent, *m_errors, words.get());
+  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  if (m_id < 0)
+    throw outputError("memory", "no further process can be started; close other programs");
+}
+
+ChildProcess::~ChildProcess() {
+  if (m_id == 0)
+    return;
+  send(SIGKILL);
+  retryOnEintr([this] { return ::waitpid(m_id, nullptr, 0); });
+}
+
+bool ChildProcess::hasEnded() {
+  int state = 0;
+  if (m_id == 0)
+    return true;
+  if (retryOnEintr([&] { return ::waitpid(m_id, &state, WNOHANG); }) != m_id)
+    return false;
+  m_id = 0;
+  m_status = WIFEXITED(state) ? WEXITSTATUS(state) : 128 + WTERMSIG(state);
+  return true;
+}
+
+void ChildProcess::send(int signal) const {
+  if (m_id != 0)
+    ::kill(m_id, signal);
+}
+
+std::string ChildProcess::errors() const {
+  constexpr off_t maxBytes = 1 << 16;
+  struct stat file = {};
+  ::fstat(*m_errors, &file);
+  std::string text(static_cast<std::size_t>(std::min<off_t>(file.st_size, maxBytes)), '\0');
+  const auto from = file.st_size - static_cast<off_t>(text.size());
+  const auto read =
+      retryOnEintr([&] { return ::pread(*m_errors, text.data(), text.size(), from); });
+  text.resize(static_cast<std::size_t>(std::max<ssize_t>(read, 0)));
+  return text;
+}
+
+} // namespace fenestra

@@ -1,0 +1,113 @@
+#include "io/Folders.h"
+
+#include "base/Error.h"
+#include "io/SystemErrors.h"
+
+#include <fcntl.h>
+
+namespace fenestra {
+namespace {
+
+constexpr std::string_view folderPrefix = "fenestra-scene-";
+
+std::filesystem::path findTempRoot() {
+  std::error_code failed;
+  std::filesystem::path folder = std::filesystem::temp_directory_path(failed);
+  if (failed)
+    throw outputError("TMPDIR", "is no folder; set it to one that you may write to");
+  return folder;
+}
+
+constexpr const char* folderHint = "name a folder that you may write to";
+constexpr const char* tempHint = "set TMPDIR to a folder that you may write to";
+
+/// Makes a folder and appends it to `made`; returns the error code, 0: made.
+int createFolder(const std::filesystem::path& folder, mode_t mode,
+                 std::list<TempFileGuard>& created) {
+  const SignalBlocker blocker;
+  created.emplace_back(folder, TempFileGuard::Kind::folder);
+  if (::mkdir(folder.c_str(), mode) == 0)
+    return 0;
+  const int code = errno;
+  created.back().release(); // the existing name is not ours
+  return code;
+}
+
+/// Makes `folder` and the missing folders above it. Throws Error (output) with the mend `other`.
+void createMissing(const std::filesystem::path& folder, mode_t mode, const char* hint,
+                   std::list<TempFileGuard>& created) {
+  std::error_code failed;
+  if (std::filesystem::is_directory(folder, failed))
+    return;
+  createMissing(folder.parent_path(), mode, hint, created);
+  if (!folder.has_filename()) // `folder` ends in a slash
+    return;
+  if (const int code = createFolder(folder, mode, created); code != 0)
+    throw createError(folder, code, hint);
+}
+
+} // namespace
+
+CreatedFolders::CreatedFolders(const std::filesystem::path& folder) {
+  std::error_code failed;
+  const std::filesystem::path absolute = std::filesystem::absolute(folder, failed);
+  if (failed)
+    throw createError(folder, failed.value(), folderHint);
+  createMissing(absolute.lexically_normal(), 0777, folderHint, m_created);
+}
+
+CreatedFolders::~CreatedFolders() {
+  while (!m_created.empty()) { // the innermost first
+    std::error_code failed;
+    if (!std::filesystem::is_empty(m_created.back().path(), failed) && !failed)
+      m_created.back().release();
+    m_created.pop_back();
+  }
+}
+
+/// False: another name is needed. A folder is locked after it is made; in between another run may
+/// take it for abandoned and remove it.
+bool PrivateFolder::makeLocked(const std::filesystem::path& folder) {
+  const SignalBlocker blocker;
+  const int code = createFolder(folder, S_IRWXU, m_entries);
+  if (code == EEXIST)
+    return false;
+  if (code != 0)
+    throw createError(folder, code, tempHint);
+  m_lock = Descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  return !m_lock.isOpen() || (tryLock(m_lock) && hasName(m_lock));
+}
+
+PrivateFolder::PrivateFolder() {
+  const std::filesystem::path parent = findTempRoot();
+  while (!makeLocked(parent / makeTempName(folderPrefix)))
+    m_entries.clear();
+}
+
+PrivateFolder::~PrivateFolder() {
+  while (!m_entries.empty()) // contents before their folder
+    m_entries.pop_back();
+}
+
+std::filesystem::path PrivateFolder::add(const std::filesystem::path& relative) {
+  std::filesystem::path file = path() / relative;
+  createMissing(file.parent_path(), S_IRWXU, tempHint, m_entries);
+  const SignalBlocker blocker;
+  m_entries.emplace_back(file, TempFileGuard::Kind::file);
+  if (!Descriptor(::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR))
+           .isOpen())
+    throw createError(file, errno, tempHint);
+  return file;
+}
+
+void removeStaleFolders() {
+  std::filesystem::path parent;
+  try {
+    parent = findTempRoot();
+  } catch (const std::exception&) { // no folder or memory: reported where the folder is needed
+    return;
+  }
+  removeStaleTempFiles(parent, folderPrefix, TempFileGuard::Kind::folder);
+}
+
+} // namespace fenestra

@@ -1,0 +1,176 @@
+#include "io/InputRegistry.h"
+
+#include "base/Error.h"
+#include "io/SystemErrors.h"
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <utility>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+
+namespace fenestra {
+namespace {
+
+struct Registry {
+  std::mutex mutex;
+  std::map<FileId, std::filesystem::path> inputs;
+  std::map<std::filesystem::path, FileId> results;
+};
+
+Registry& registry() {
+  static Registry registry;
+  return registry;
+}
+
+void addInput(const FileId& file, const std::filesystem::path& path) {
+  const std::lock_guard lock(registry().mutex);
+  registry().inputs.try_emplace(file, path);
+}
+
+bool isResult(const FileId& file) {
+  const std::lock_guard lock(registry().mutex);
+  return std::any_of(registry().results.begin(), registry().results.end(),
+                     [&file](const auto& result) { return result.second == file; });
+}
+
+std::optional<FileId> getFileId(int folder, const char* path, int flags) {
+  struct statx status = {};
+  if (::statx(folder, path, flags, STATX_INO | STATX_BTIME, &status) != 0)
+    return std::nullopt;
+  const bool isBorn = (status.stx_mask & STATX_BTIME) != 0;
+  return FileId{std::uint64_t{status.stx_dev_major} << 32 | status.stx_dev_minor, status.stx_ino,
+                isBorn ? std::int64_t{status.stx_btime.tv_sec} * 1'000'000'000 +
+                             status.stx_btime.tv_nsec
+                       : 0};
+}
+
+/// Canonical folder to which this thread's reads are confined; null: not confined. (A pointer: a
+/// thread_local object with a destructor ends the process where memory is short.)
+thread_local const std::filesystem::path* confinement = nullptr;
+
+bool isWithin(const std::filesystem::path& path, const std::filesystem::path& folder) {
+  std::error_code failed;
+  const std::filesystem::path real = std::filesystem::canonical(path, failed);
+  return !failed && std::mismatch(folder.begin(), folder.end(), real.begin(), real.end()).first ==
+                        folder.end();
+}
+
+std::filesystem::file_type getFileType(const std::filesystem::path& path) {
+  std::error_code failed;
+  const std::filesystem::file_type type = std::filesystem::status(path, failed).type();
+  if (type == std::filesystem::file_type::none)
+    throw readError(path, failed.value(), "check the permissions of its folder");
+  return type;
+}
+
+/// True for names that system calls would cut at a zero byte.
+bool hasZeroByte(const std::filesystem::path& path) {
+  return path.native().find('\0') != std::string::npos;
+}
+
+} // namespace
+
+std::optional<FileId> fileId(const std::filesystem::path& path) {
+  return getFileId(AT_FDCWD, path.c_str(), 0);
+}
+
+std::optional<FileId> fileId(int descriptor) {
+  return getFileId(descriptor, "", AT_EMPTY_PATH);
+}
+
+bool fileExists(const std::filesystem::path& path) {
+  return getFileType(path) != std::filesystem::file_type::not_found;
+}
+
+bool isFolder(const std::filesystem::path& path) {
+  return getFileType(path) == std::filesystem::file_type::directory;
+}
+
+void requireFile(const std::filesystem::path& path, const std::string& hint,
+                 std::uint64_t maxBytes) {
+  if (hasZeroByte(path))
+    throw inputError(path.c_str(),
+                     "is followed by a zero byte, which no name holds; write it again");
+  // Checked first: a name on an automount or a server would reveal the access to others.
+  if (confinement && !isWithin(path, *confinement))
+    throw inputError(path,
+                     "is outside the archive that names it, or not in it; save the scene again");
+  struct stat status = {};
+  if (::stat(path.c_str(), &status) != 0) {
+    if (errno == ENOENT || errno == ENOTDIR)
+      throw inputError(path, "there is no such file; check the name");
+    throw readError(path, errno, "check its permissions and those of its folder");
+  }
+  if (S_ISDIR(status.st_mode))
+    throw inputError(path, "is a folder; ", hint);
+  if (!S_ISREG(status.st_mode))
+    throw inputError(path, "is not a file that can be read; ", hint);
+  if (static_cast<std::uint64_t>(status.st_size) > maxBytes)
+    throw inputError(path, "has more than ", maxBytes >> 20, " MB; name a smaller file");
+  if (::faccessat(AT_FDCWD, path.c_str(), R_OK, AT_EACCESS) != 0)
+    throw readError(path, errno, "check its permissions");
+  const std::optional<FileId> file = fileId(path);
+  if (file && isResult(*file))
+    throw inputError(path, "is a result of this command; name another file");
+  if (file)
+    addInput(*file, path);
+}
+
+void registerInput(const std::filesystem::path& path) {
+  const auto addFile = [](const std::filesystem::path& file) {
+    if (const std::optional<FileId> id = fileId(file))
+      addInput(*id, file);
+  };
+  if (hasZeroByte(path))
+    return;
+  std::error_code failed;
+  const auto type = std::filesystem::status(path, failed).type();
+  if (type == std::filesystem::file_type::regular)
+    addFile(path);
+  else if (type == std::filesystem::file_type::directory)
+    for (std::filesystem::directory_iterator entry(path, failed), end; !failed && entry != end;
+         entry.increment(failed))
+      if (entry->is_regular_file(failed))
+        addFile(entry->path());
+}
+
+InputConfinement::InputConfinement(const std::optional<std::filesystem::path>& folder) {
+  if (folder)
+    m_folder = std::filesystem::canonical(*folder);
+  m_before = std::exchange(confinement, m_folder ? &*m_folder : nullptr);
+}
+
+InputConfinement::~InputConfinement() {
+  confinement = m_before;
+}
+
+std::optional<std::filesystem::path> findInput(const FileId& file) {
+  const std::lock_guard lock(registry().mutex);
+  const auto found = registry().inputs.find(file);
+  return found == registry().inputs.end() ? std::nullopt : std::optional(found->second);
+}
+
+void forgetInput(const FileId& file) {
+  const std::lock_guard lock(registry().mutex);
+  registry().inputs.erase(file);
+}
+
+void registerResult(const std::filesystem::path& path) {
+  const std::lock_guard lock(registry().mutex);
+  if (const auto file = fileId(path))
+    registry().results[path] = *file;
+}
+
+void unregisterResult(const std::filesystem::path& path) {
+  const std::lock_guard lock(registry().mutex);
+  registry().results.erase(path);
+}
+
+std::string lowercaseExtension(const std::filesystem::path& path) {
+  return toLower(path.extension().string());
+}
+
+} // namespace fenestra

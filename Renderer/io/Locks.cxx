@@ -1,0 +1,69 @@
+#include "io/Locks.h"
+
+#include "base/Stopwatch.h"
+#include "io/InputRegistry.h"
+#include "io/SystemErrors.h"
+
+#include <chrono>
+#include <map>
+#include <thread>
+
+#include <fcntl.h>
+
+namespace fenestra {
+namespace {
+
+void sleepBriefly() {
+  std::this_thread::sleep_for(std::chrono::milliseconds(2));
+}
+
+} // namespace
+
+std::vector<Descriptor> lockFolders(const std::set<std::filesystem::path>& folders) {
+  constexpr double maxSeconds = 2.0; // s; a script may lock the folder while it runs Fenestra
+  std::map<FileId, std::filesystem::path> ordered; // so that two runs cannot deadlock
+  for (const std::filesystem::path& folder : folders)
+    if (const auto id = fileId(folder))
+      ordered.emplace(*id, folder);
+  std::vector<Descriptor> locks;
+  const Stopwatch watch;
+  for (const auto& [id, folder] : ordered) {
+    Descriptor file(retryOnEintr(
+        [&path = folder] { return ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); }));
+    if (!file.isOpen())
+      continue;
+    while (!tryLock(file) && watch.seconds() < maxSeconds)
+      sleepBriefly();
+    locks.push_back(std::move(file));
+  }
+  return locks;
+}
+
+NameLock::NameLock(const std::filesystem::path& path) {
+  constexpr double maxSeconds = 0.2; // s; removeAbandoned locks files for much less
+  const std::filesystem::path lock =
+      path.parent_path() / hashTempName(tempFilePrefix, path.filename().string());
+  const Stopwatch watch;
+  for (tryTake(lock, path); !isHeld() && watch.seconds() < maxSeconds; tryTake(lock, path))
+    sleepBriefly();
+}
+
+/// Fails where another process has removed the file after it was opened: no other process would see
+/// that lock.
+void NameLock::tryTake(const std::filesystem::path& lock, const std::filesystem::path& path) {
+  const SignalBlocker blocker;
+  m_name.emplace(lock, TempFileGuard::Kind::file);
+  Descriptor file(retryOnEintr(
+      [&] { return ::open(lock.c_str(), O_RDONLY | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0644); }));
+  const int code = errno;
+  if (file.isOpen() && tryLock(file) && fileId(lock) == fileId(*file)) {
+    m_file = std::move(file);
+    return;
+  }
+  m_name->release(); // the file is another process's, or missing
+  m_name.reset();
+  if (!file.isOpen())
+    throw writeError(path, code);
+}
+
+} // namespace fenestra

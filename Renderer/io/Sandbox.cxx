@@ -1,0 +1,292 @@
+#include "io/Sandbox.h"
+
+#include "base/Error.h"
+#include "io/SelfExec.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <ctime>
+#include <fcntl.h>
+#include <linux/landlock.h>
+#include <poll.h>
+#include <spawn.h>
+#include <stdexcept>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <utility>
+
+namespace fenestra {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr const char* subcommand = "read-apart"; // not for users
+constexpr int childConnection = 3;
+constexpr std::uint64_t maxRequestBytes = 1 << 16; // bytes; less than a socket holds
+
+// ---- frames: a length of 8 bytes, then as many bytes
+
+bool sendAll(int connection, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const auto sent =
+        retryOnEintr([&] { return ::send(connection, bytes.data(), bytes.size(), MSG_NOSIGNAL); });
+    if (sent < 0)
+      return false;
+    bytes.remove_prefix(static_cast<std::size_t>(sent));
+  }
+  return true;
+}
+
+bool sendFrame(int connection, const std::string& bytes) {
+  const std::uint64_t length = bytes.size();
+  return sendAll(connection, {reinterpret_cast<const char*>(&length), sizeof length}) &&
+         sendAll(connection, bytes);
+}
+
+/// Waits for bytes to receive. False: none before `deadline`; nullopt: no deadline.
+bool waitReadable(int connection, std::optional<Clock::time_point> deadline) {
+  using std::chrono::milliseconds;
+  pollfd event{connection, POLLIN, 0};
+  for (;;) {
+    int left = -1;
+    if (deadline)
+      left = static_cast<int>(std::max<std::int64_t>(
+          0, std::chrono::ceil<milliseconds>(*deadline - Clock::now()).count()));
+    const int ready = ::poll(&event, 1, left);
+    if (ready >= 0 || errno != EINTR)
+      return ready > 0;
+  }
+}
+
+bool receiveAll(int connection, char* to, std::uint64_t size,
+                std::optional<Clock::time_point> deadline) {
+  while (size > 0) {
+    if (!waitReadable(connection, deadline))
+      return false;
+    const auto count =
+        retryOnEintr([&] { return ::recv(connection, to, static_cast<std::size_t>(size), 0); });
+    if (count <= 0)
+      return false;
+    to += count;
+    size -= static_cast<std::uint64_t>(count);
+  }
+  return true;
+}
+
+std::optional<std::string> receiveFrame(int connection, std::uint64_t maxBytes,
+                                        std::optional<Clock::time_point> deadline) {
+  std::uint64_t length = 0;
+  if (!receiveAll(connection, reinterpret_cast<char*>(&length), sizeof length, deadline) ||
+      length > maxBytes)
+    return std::nullopt;
+  std::string bytes(static_cast<std::size_t>(length), '\0');
+  if (!receiveAll(connection, bytes.data(), length, deadline))
+    return std::nullopt;
+  return bytes;
+}
+
+// ---- confinement of the child
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool hasSanitizer = true;
+#elif defined(__has_feature)
+constexpr bool hasSanitizer = __has_feature(address_sanitizer) || __has_feature(thread_sanitizer);
+#else
+constexpr bool hasSanitizer = false;
+#endif
+
+/// Lowers a limit for good.
+bool lowerLimit(__rlimit_resource resource, rlim_t maximum) {
+  rlimit both{};
+  if (::getrlimit(resource, &both) != 0)
+    return false;
+  both.rlim_max = std::min(both.rlim_max, maximum);
+  both.rlim_cur = both.rlim_max;
+  return ::setrlimit(resource, &both) == 0;
+}
+
+/// Gives up every right to write, make, remove and execute files; no effect on kernels without
+/// Landlock.
+void forbidFileChanges() {
+  landlock_ruleset_attr rights{};
+  rights.handled_access_fs =
+      LANDLOCK_ACCESS_FS_WRITE_FILE | LANDLOCK_ACCESS_FS_EXECUTE | LANDLOCK_ACCESS_FS_REMOVE_DIR |
+      LANDLOCK_ACCESS_FS_REMOVE_FILE | LANDLOCK_ACCESS_FS_MAKE_CHAR | LANDLOCK_ACCESS_FS_MAKE_DIR |
+      LANDLOCK_ACCESS_FS_MAKE_REG | LANDLOCK_ACCESS_FS_MAKE_SOCK | LANDLOCK_ACCESS_FS_MAKE_FIFO |
+      LANDLOCK_ACCESS_FS_MAKE_BLOCK | LANDLOCK_ACCESS_FS_MAKE_SYM;
+  const long rules = ::syscall(SYS_landlock_create_ruleset, &rights, sizeof rights, 0);
+  if (rules < 0)
+    return;
+  ::syscall(SYS_landlock_restrict_self, rules, 0);
+  ::close(static_cast<int>(rules));
+}
+
+/// Limits this process for good: `bytes` of address space (not under sanitizers, which map
+/// terabytes), 32 open files, no growing file, no core; no right to change files. Lets the kernel
+/// kill this process when its parent dies. False where process number `parent` is gone already, or
+/// a limit cannot be set.
+bool confineProcess(std::uint64_t bytes, const char* parent) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (std::to_string(::getppid()) != parent)
+    return false; // the parent died before PR_SET_PDEATHSIG
+  ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
+  forbidFileChanges();
+  constexpr rlim_t maxFiles = 32;
+  return lowerLimit(RLIMIT_CORE, 0) && lowerLimit(RLIMIT_FSIZE, 0) &&
+         lowerLimit(RLIMIT_NOFILE, maxFiles) && (hasSanitizer || lowerLimit(RLIMIT_AS, bytes));
+}
+
+/// Lets the kernel kill this process once it has used `seconds` more of processor time.
+void limitCpuTime(unsigned seconds) {
+  const auto used = static_cast<rlim_t>(std::clock() / CLOCKS_PER_SEC);
+  rlimit both{};
+  ::getrlimit(RLIMIT_CPU, &both);
+  both.rlim_cur = std::min(both.rlim_max, used + seconds);
+  ::setrlimit(RLIMIT_CPU, &both);
+}
+
+// ---- the child
+
+bool servesSandbox = false; ///< this program's main calls serveSandbox
+
+/// Jobs of this program.
+std::vector<const SandboxJob*>& registeredJobs() {
+  static std::vector<const SandboxJob*> jobs;
+  return jobs;
+}
+
+[[noreturn]] void serveRequests(const SandboxJob& job) {
+  while (const auto request = receiveFrame(childConnection, maxRequestBytes, std::nullopt)) {
+    limitCpuTime(job.limits.seconds);
+    std::string reply;
+    try {
+      reply = job.handler(*request);
+    } catch (...) { // the parent reports the error
+      reply.clear();
+    }
+    if (!sendFrame(childConnection, reply))
+      break;
+  }
+  ::_exit(0);
+}
+
+// ---- starting a child
+
+/// Starts the child for `job`, which has no file but its end of the connection, and default signal
+/// handlers. Returns the process id, or 0: failed.
+pid_t spawn(const std::string& job, int connection) {
+  const SelfArguments arguments({subcommand, job, std::to_string(::getpid())});
+  posix_spawn_file_actions_t files;
+  ::posix_spawn_file_actions_init(&files);
+  ::posix_spawn_file_actions_adddup2(&files, connection, childConnection);
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    ::posix_spawn_file_actions_addopen(&files, stream, "/dev/null", O_RDWR, 0);
+  ::posix_spawn_file_actions_addclosefrom_np(&files, childConnection + 1);
+
+  posix_spawnattr_t attributes;
+  ::posix_spawnattr_init(&attributes);
+  sigset_t signals;
+  ::sigemptyset(&signals);
+  ::posix_spawnattr_setsigmask(&attributes, &signals);
+  ::sigfillset(&signals);
+  ::posix_spawnattr_setsigdefault(&attributes, &signals);
+  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF |
+                                              POSIX_SPAWN_SETPGROUP);
+  pid_t child = 0;
+  const int failed =
+      ::posix_spawn(&child, selfExecutable, &files, &attributes, arguments.get(), environ);
+  ::posix_spawnattr_destroy(&attributes);
+  ::posix_spawn_file_actions_destroy(&files);
+  return failed ? 0 : child;
+}
+
+} // namespace
+
+SandboxJob::SandboxJob(std::string named, Handler answers, SandboxLimits limited)
+    : name(std::move(named)), handler(answers), limits(limited) {
+  registeredJobs().push_back(this);
+}
+
+void SandboxedReader::start() {
+  if (!servesSandbox)
+    throw std::logic_error("main does not call serveApart");
+  std::array<int, 2> ends{};
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) == 0) {
+    m_connection = Descriptor(ends[0]);
+    m_child = spawn(m_job.name, *Descriptor(ends[1]));
+  }
+  if (m_child != 0)
+    return;
+  end();
+  throw outputError("memory", "no process can be started to read files in; close other programs");
+}
+
+void SandboxedReader::end() {
+  if (m_child != 0) {
+    ::kill(m_child, SIGKILL);
+    retryOnEintr([this] { return ::waitpid(m_child, nullptr, 0); });
+  }
+  m_child = 0;
+  m_connection = Descriptor();
+}
+
+std::optional<std::string> SandboxedReader::request(const std::string& message,
+                                                    std::uint64_t maxBytes) {
+  if (message.size() > maxRequestBytes)
+    return std::nullopt;
+  if (m_child == 0)
+    start();
+  constexpr unsigned wallClockFactor = 3;
+  const auto deadline = Clock::now() + std::chrono::seconds(wallClockFactor * m_job.limits.seconds);
+  std::optional<std::string> reply;
+  if (sendFrame(*m_connection, message))
+    reply = receiveFrame(*m_connection, maxBytes, deadline);
+  if (!reply)
+    end();
+  return reply;
+}
+
+std::string ReplyReader::text() {
+  const auto take = [this](std::uint64_t size) {
+    if (size > m_bytes.size())
+      throw std::runtime_error("an answer goes beyond its end");
+    std::string taken(m_bytes.substr(0, static_cast<std::size_t>(size)));
+    m_bytes.remove_prefix(taken.size());
+    return taken;
+  };
+  std::uint64_t size = 0;
+  std::memcpy(&size, take(sizeof size).data(), sizeof size);
+  return take(size);
+}
+
+std::vector<double> ReplyReader::numbers() {
+  const std::string bytes = text();
+  std::vector<double> numbers(bytes.size() / sizeof(double));
+  if (bytes.size() != numbers.size() * sizeof(double))
+    throw std::runtime_error("an answer ends within a number");
+  std::ranges::copy(bytes, reinterpret_cast<char*>(numbers.data()));
+  if (!std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); }))
+    throw std::runtime_error("a number in an answer is not finite");
+  return numbers;
+}
+
+void serveSandbox(int argc, char** argv) {
+  servesSandbox = true;
+  if (argc != 4 || std::string_view(argv[1]) != subcommand)
+    return;
+  for (const SandboxJob* job : registeredJobs())
+    if (job->name == argv[2] && confineProcess(job->limits.bytes, argv[3]))
+      serveRequests(*job);
+  ::_exit(1);
+}
+
+} // namespace fenestra

@@ -1,0 +1,200 @@
+#include "io/TempFiles.h"
+
+#include "base/Text.h"
+#include "io/Descriptor.h"
+
+#include <atomic>
+#include <cerrno>
+#include <cstdint>
+#include <memory>
+#include <new>
+#include <random>
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <unistd.h>
+
+namespace fenestra {
+namespace {
+
+constexpr std::string_view digits = "0123456789abcdef";
+constexpr std::size_t digitCount = 12, checkCount = 8;
+
+/// The last digits of FNV-1a (Fowler, Noll and Vo, 64 bits).
+std::string hashDigits(std::string_view text, std::size_t count) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const char c : text)
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  std::string result;
+  for (std::size_t i = 0; i < count; ++i, hash /= digits.size())
+    result += digits[hash % digits.size()];
+  return result;
+}
+
+std::string appendChecksum(const std::string& name) {
+  return name + '-' + hashDigits("made by Fenestra: " + name, checkCount) + ".tmp";
+}
+
+/// True for error codes that mean that no such file exists. No file has a name that is too long.
+bool isNotFound(int code) {
+  return code == ENOENT || code == ENOTDIR || code == ENAMETOOLONG;
+}
+
+/// Lock on a file of this user, or on a folder accessible to this user alone, that no process has
+/// locked; not open: there is none.
+Descriptor lockStaleFile(const std::filesystem::path& path, TempFileGuard::Kind kind) {
+  Descriptor file(::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  struct stat status = {};
+  if (::fstat(*file, &status) != 0 || status.st_uid != ::geteuid())
+    return Descriptor();
+  const bool isPrivate = S_ISDIR(status.st_mode) && (status.st_mode & 0777) == S_IRWXU;
+  const bool isCandidate = kind == TempFileGuard::Kind::file ? S_ISREG(status.st_mode) : isPrivate;
+  return isCandidate && ::flock(*file, LOCK_EX | LOCK_NB) == 0 ? std::move(file) : Descriptor();
+}
+
+static_assert(std::atomic<void*>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
+
+std::atomic<int> blockingThreads = 0;           ///< number of threads that are Uninterrupted
+std::atomic<void (*)()> endRequested = nullptr; ///< set by a signal handler; null: none
+thread_local int depth = 0;                     ///< number of nested Uninterrupted in this thread
+
+void unblock() {
+  if (--blockingThreads == 0)
+    if (void (*end)() = endRequested)
+      end();
+}
+
+} // namespace
+
+std::string makeTempName(std::string_view prefix) {
+  std::random_device random;
+  return hashTempName(prefix, concat(random(), ' ', random()));
+}
+
+std::string hashTempName(std::string_view prefix, std::string_view what) {
+  return appendChecksum(std::string(prefix) + hashDigits(what, digitCount));
+}
+
+bool isTempName(std::string_view name, std::string_view prefix) {
+  return name.starts_with(prefix) &&
+         name == appendChecksum(std::string(name.substr(0, prefix.size() + digitCount)));
+}
+
+/// Entry of the list. Entries are reused, never freed: a signal handler may walk the list at any
+/// time.
+struct TempFileGuard::Entry {
+  std::filesystem::path path; ///< constant while listed
+  Kind kind = Kind::file;
+  std::atomic<bool> isTaken = false;
+  std::atomic<bool> isRegistered = false;
+  Entry* next = nullptr;
+
+  static std::atomic<Entry*> first;
+
+  /// Takes a free entry, or a new one.
+  static Entry* take() {
+    for (Entry* entry = first; entry; entry = entry->next)
+      if (!entry->isTaken.exchange(true))
+        return entry;
+    auto* entry = new Entry;
+    entry->isTaken = true;
+    entry->next = first;
+    while (!first.compare_exchange_weak(entry->next, entry))
+      ;
+    return entry;
+  }
+
+  bool remove() const {
+    return (kind == Kind::folder ? ::rmdir(path.c_str()) : ::unlink(path.c_str())) == 0;
+  }
+  bool exists() const { return ::access(path.c_str(), F_OK) == 0 || !isNotFound(errno); }
+};
+
+std::atomic<TempFileGuard::Entry*> TempFileGuard::Entry::first = nullptr;
+
+TempFileGuard::TempFileGuard(const std::filesystem::path& path, Kind kind) {
+  std::filesystem::path copy = path; // may throw, before an entry is taken
+  m_entry = Entry::take();
+  m_entry->path = std::move(copy);
+  m_entry->kind = kind;
+  m_entry->isRegistered = true;
+}
+
+TempFileGuard::~TempFileGuard() {
+  if (m_entry->isRegistered && !m_entry->remove() && !isNotFound(errno))
+    return; // the name stays listed: the end of the process tries again
+  m_entry->isRegistered = false;
+  m_entry->isTaken = false;
+}
+
+const std::filesystem::path& TempFileGuard::path() const {
+  return m_entry->path;
+}
+
+void TempFileGuard::release() {
+  m_entry->isRegistered = false;
+}
+
+void removeStaleTempFiles(const std::filesystem::path& folder, std::string_view prefix,
+                          TempFileGuard::Kind kind) {
+  // std::filesystem's iterator ends the process where memory fails.
+  const std::unique_ptr<DIR, int (*)(DIR*)> names(::opendir(folder.c_str()), ::closedir);
+  while (const dirent* const entry = names ? ::readdir(names.get()) : nullptr)
+    try {
+      if (!isTempName(entry->d_name, prefix))
+        continue;
+      const std::filesystem::path path = folder / entry->d_name;
+      const Descriptor lock = lockStaleFile(path, kind);
+      std::error_code ignored;
+      if (lock.isOpen() && kind == TempFileGuard::Kind::file)
+        ::unlink(path.c_str());
+      else if (lock.isOpen())
+        std::filesystem::remove_all(path, ignored);
+    } catch (const std::bad_alloc&) {
+      return;
+    }
+}
+
+void removeAllTempFiles() {
+  for (const auto* entry = TempFileGuard::Entry::first.load(); entry; entry = entry->next)
+    if (entry->isRegistered && entry->kind == TempFileGuard::Kind::file)
+      entry->remove();
+  for (bool isDone = false; !isDone;) { // nested folders: repeat until none can be removed
+    isDone = true;
+    for (const auto* entry = TempFileGuard::Entry::first.load(); entry; entry = entry->next)
+      if (entry->isRegistered && entry->kind == TempFileGuard::Kind::folder && entry->remove())
+        isDone = false;
+  }
+}
+
+std::vector<std::filesystem::path> remainingTempFiles() {
+  std::vector<std::filesystem::path> paths;
+  for (const auto* entry = TempFileGuard::Entry::first.load(); entry; entry = entry->next)
+    if (entry->isRegistered && entry->exists())
+      paths.push_back(entry->path);
+  return paths;
+}
+
+SignalBlocker::SignalBlocker() {
+  if (depth++ > 0)
+    return;
+  ++blockingThreads;
+  if (!endRequested)
+    return;
+  unblock();
+  for (;;) // another thread ends the process
+    ::pause();
+}
+
+SignalBlocker::~SignalBlocker() {
+  if (--depth == 0)
+    unblock();
+}
+
+void endWhenUnblocked(void (*end)()) {
+  endRequested = end;
+  if (blockingThreads == 0)
+    end();
+}
+
+} // namespace fenestra

@@ -1,0 +1,293 @@
+// `fenestra study`: the rows of a table, each rendered by a process of its own.
+
+#include "base/Error.h"
+#include "io/ChildProcess.h"
+#include "io/MessageText.h"
+#include "program/BatchResults.h"
+#include "program/CommandLine.h"
+#include "program/Commands.h"
+#include "program/ProgressView.h"
+#include "program/Stop.h"
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <iostream>
+#include <memory>
+#include <thread>
+
+namespace fenestra {
+namespace {
+
+namespace fs = std::filesystem;
+using State = RowOutcome::State;
+
+/// Part K of N of the rows, from 0.
+struct RowShard {
+  std::size_t index = 0, count = 1;
+
+  bool has(std::size_t row) const { return row % count == index; }
+};
+
+struct BatchOptions {
+  std::vector<std::string> formats; ///< beside .png
+  int workers = 1;
+  int threads = 1; ///< of all workers together
+  RowShard shard;
+  bool restart = false;
+  ProgressMode progress = ProgressMode::automatic;
+};
+
+/// Renders the rows that are not finished, some at once.
+class Batch {
+public:
+  Batch(const BatchOptions& options, BatchResults& results)
+      : m_options(options),
+        m_results(results),
+        m_view(options.progress, "Study"),
+        m_workers(static_cast<std::size_t>(options.workers)) {
+    for (std::size_t row = 0; row < results.rows.size(); ++row)
+      if (options.shard.has(row))
+        m_rows.push_back(row);
+  }
+
+  /// Returns once no row is left, or all have ended after a request to stop.
+  void run() {
+    const DeferredStop stopInstead(m_stop);
+    while (hasWork()) {
+      for (std::size_t i = 0; i < m_workers.size(); ++i) {
+        if (m_workers[i] && m_workers[i]->child.hasEnded())
+          finishWorker(i);
+        while (!m_workers[i] && m_next < m_rows.size() && !m_stop)
+          beginRow(m_rows[m_next++], i);
+      }
+      if (m_stop)
+        requestStop();
+      m_view.show(fraction(), statusFields(), false);
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    m_view.show(m_stop ? fraction() : 1.0, statusFields(), true);
+  }
+
+  std::size_t rows() const { return m_rows.size(); }
+  std::size_t rendered() const { return m_rendered; }
+  std::size_t failed() const { return m_results.count(State::failed); }
+  bool isStopped() const { return m_stop; }
+
+private:
+  /// Row under way.
+  struct Worker {
+    std::size_t row;
+    std::unique_ptr<RowManifest> manifest;
+    ChildProcess child;
+    Stopwatch watch = {};
+  };
+
+  bool hasWork() const {
+    return (m_next < m_rows.size() && !m_stop) ||
+           std::ranges::any_of(m_workers, [](const auto& worker) { return worker != nullptr; });
+  }
+
+  /// Threads of a worker: all of them, shared out.
+  int workerThreads(std::size_t worker) const {
+    const int share = m_options.threads / m_options.workers;
+    const int rest = m_options.threads % m_options.workers;
+    return std::max(1, share + (static_cast<int>(worker) < rest ? 1 : 0));
+  }
+
+  void beginRow(std::size_t row, std::size_t worker) {
+    try {
+      auto manifest = std::make_unique<RowManifest>(m_results.rows[row], m_results.folder,
+                                                    m_options.formats, m_options.restart);
+      if (manifest->finished()) {
+        ++m_skipped;
+        m_results.outcomes[row] = *manifest->finished();
+        return;
+      }
+      manifest->begin();
+      startWorker(row, std::move(manifest), worker);
+    } catch (const Error& error) {
+      reportOutcome(row, {State::failed, error.exitStatus(), 0.0, error.what()});
+    }
+  }
+
+  /// Throws Error (output).
+  void startWorker(std::size_t row, std::unique_ptr<RowManifest> manifest, std::size_t worker) {
+    auto arguments = manifest->arguments(workerThreads(worker));
+    m_workers[worker].reset(
+        new Worker{row, std::move(manifest), ChildProcess(std::move(arguments))});
+  }
+
+  void finishWorker(std::size_t index) {
+    const std::unique_ptr<Worker> worker = std::move(m_workers[index]);
+    const ChildProcess& child = worker->child;
+    RowOutcome outcome{State::done, child.status(), worker->watch.seconds()};
+    const bool wasYoung =
+        m_hasRequestedStop && outcome.status == 128 + SIGTERM; // without a handler yet
+    if (wasYoung || outcome.status == stoppedStatus) {
+      outcome.state = State::stopped;
+      outcome.status = stoppedStatus;
+    } else if (outcome.status != 0) {
+      outcome.state = State::failed;
+      outcome.error = findErrorLine(child);
+    }
+    try {
+      if (!m_stop && worker->manifest->discardCheckpoint(outcome))
+        return startWorker(worker->row, std::move(worker->manifest), index);
+      worker->manifest->finish(outcome);
+    } catch (const Error& error) {
+      outcome = {State::failed, error.exitStatus(), outcome.seconds, error.what()};
+    }
+    reportOutcome(worker->row, outcome);
+  }
+
+  /// Last line that the process wrote which is no warning.
+  static std::string findErrorLine(const ChildProcess& child) {
+    if (child.status() > 128)
+      return concat("ended by signal ", child.status() - 128, " (",
+                    ::strsignal(child.status() - 128), ")");
+    std::string last;
+    constexpr std::string_view program = "fenestra: ";
+    for (const std::string& line : split(child.errors(), '\n'))
+      if (line.starts_with(program) && !line.starts_with("fenestra: warning: "))
+        last = line.substr(program.size());
+    return last.empty() ? concat("ended with status ", child.status()) : toOneLine(last);
+  }
+
+  /// Keeps what came of a row, and prints it.
+  void reportOutcome(std::size_t row, const RowOutcome& outcome) {
+    m_results.outcomes[row] = outcome;
+    ++m_rendered;
+    m_seconds += outcome.seconds;
+    if (m_view.mode() == ProgressMode::xml)
+      return;
+    m_view.erase();
+    const std::string& name = m_results.rows[row].name;
+    if (outcome.state == State::failed)
+      std::cerr << "fenestra: warning: " << toOneLine(name + ": " + outcome.error) << '\n';
+    else if (outcome.state == State::done)
+      std::cout << toOneLine(name) << ": " << toString(outcome.seconds, 3) << " s" << std::endl;
+  }
+
+  /// Asks running processes once to end: they write what they have reached.
+  void requestStop() {
+    if (std::exchange(m_hasRequestedStop, true))
+      return;
+    for (const auto& worker : m_workers)
+      if (worker)
+        worker->child.send(SIGTERM);
+  }
+
+  /// Finished share of the rows that were to be made, in [0, 1]; of a row under way by the mean
+  /// seconds of rows so far.
+  double fraction() const {
+    const double toDo = static_cast<double>(m_rows.size() - m_skipped);
+    double done = static_cast<double>(m_rendered);
+    for (const auto& worker : m_workers)
+      if (worker && m_seconds > 0.0)
+        done +=
+            std::min(0.9, worker->watch.seconds() * static_cast<double>(m_rendered) / m_seconds);
+    return toDo > 0.0 ? std::min(1.0, done / toDo) : 1.0;
+  }
+
+  std::vector<std::string> statusFields() const {
+    std::vector<std::string> fields = {
+        concat("row ", std::min(m_skipped + m_rendered + 1, m_rows.size()), " of ", m_rows.size())};
+    if (failed() > 0)
+      fields.push_back(concat(failed(), " failed"));
+    return fields;
+  }
+
+  const BatchOptions& m_options;
+  BatchResults& m_results;
+  ProgressView m_view;
+  std::vector<std::size_t> m_rows; ///< of this run
+  std::vector<std::unique_ptr<Worker>> m_workers;
+  std::size_t m_next = 0, m_skipped = 0,
+              m_rendered = 0; ///< rows: to begin, of earlier runs, of this
+  double m_seconds = 0.0;     ///< of the rows of this run
+  std::atomic<bool> m_stop = false;
+  bool m_hasRequestedStop = false;
+};
+
+RowShard parseRowShard(const OptionValues& values) {
+  const std::string text = values.text("rows").value_or("1/1");
+  std::size_t part = 0, parts = 0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%zu/%zu%c", &part, &parts, &rest) != 2 || part < 1 ||
+      parts < part || parts > 100'000)
+    throw usageError("--rows: expected K/N, K from 1 to N, got '", toOneLine(text), "'");
+  return {part - 1, parts};
+}
+
+BatchOptions makeBatchOptions(const OptionValues& values) {
+  BatchOptions options;
+  options.formats = values.list("formats");
+  for (const std::string& format : options.formats)
+    if (format != "exr" && format != "nrrd" && format != "tif")
+      throw usageError("--formats: expected exr, nrrd or tif, got '", toOneLine(format), "'");
+  options.threads = threadCount(values);
+  options.workers = static_cast<int>(values.integer("workers").value_or(1));
+  options.shard = parseRowShard(values);
+  options.restart = values.has("restart");
+  options.progress = readOptions(values).progress;
+  return options;
+}
+
+/// Flags of all rows, without the study's own.
+OptionValues commonValues(const OptionValues& values) {
+  OptionValues common = values;
+  for (const Option& option : batchSyntax().options)
+    if (!isImageOption(option) && option.name != "layers")
+      common.remove(option.name);
+  for (const char* name : {"TABLE", "output", "workers", "formats", "rows", "restart"})
+    common.remove(name);
+  return common;
+}
+
+} // namespace
+
+int batchCommand(int argc, char** argv, int first) {
+  const std::optional<OptionValues> values = parseCommandLine(batchSyntax(), argc, argv, first);
+  if (!values)
+    return 0;
+  const BatchOptions options = makeBatchOptions(*values);
+  BatchResults results{*values->text("TABLE"), {}, {}, {}};
+  results.folder = values->text("output").value_or(
+      (results.table.parent_path() / results.table.stem()).string());
+  results.rows = readBatchTable(results.table, commonValues(*values));
+  results.outcomes.resize(results.rows.size());
+  const CreatedFolders made(results.folder);
+  Outputs outputs;
+  const bool isComplete =
+      options.shard.count == 1; // one of several machines knows its own rows only
+  if (isComplete)
+    declareResults(results, outputs);
+  const Stopwatch watch;
+  Batch batch(options, results);
+  batch.run();
+  if (isComplete)
+    writeResults(results, outputs);
+  outputs.commit();
+  std::cout << toOneLine(concat(
+                   results.folder, ": ", results.count(State::done), " of ", batch.rows(),
+                   " rows done, ", batch.rendered(), " rendered now, ",
+                   toString(watch.seconds(), 3), " s",
+                   batch.isStopped() ? " (stopped on request; the same command goes on)" : ""))
+            << std::endl;
+  if (batch.isStopped())
+    return stopStatus();
+  for (std::size_t row = 0; row < results.rows.size(); ++row)
+    if (const RowOutcome& outcome = results.outcomes[row]; outcome.state == State::failed) {
+      const bool isKnown = outcome.status == static_cast<int>(ErrorKind::usage) ||
+                           outcome.status == static_cast<int>(ErrorKind::input);
+      throw Error(isKnown ? static_cast<ErrorKind>(outcome.status) : ErrorKind::output,
+                  concat(results.table, ": ", batch.failed(), " of ", batch.rows(),
+                         " rows failed, the first ", results.rows[row].name, ": ", outcome.error));
+    }
+  return 0;
+}
+
+} // namespace fenestra

@@ -1,0 +1,203 @@
+#include "program/BatchTable.h"
+
+#include "base/Error.h"
+#include "files/formats/Csv.h"
+#include "io/JsonNode.h"
+#include "io/MessageText.h"
+#include "program/CommandLine.h"
+
+#include <algorithm>
+#include <set>
+
+namespace fenestra {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* batchGroup = "Study";
+constexpr const char* nameColumn = "name";
+constexpr const char* inputColumn = "input";
+
+const Option batchTable[] = {
+    {"output", "DIR", batchGroup,
+     "Folder for a folder of each row, study.csv and study.png [the table's name without .csv]"},
+    {"workers", "N", batchGroup, "Rows at once, 1 to 256; they share out the threads",
+     ValueSpec::integer(1, 256).withDefault("1")},
+    {"formats", "L,...", batchGroup, "Pictures of each row beside the .png: exr, nrrd, tif [none]",
+     ValueSpec::list()},
+    {"rows", "K/N", batchGroup,
+     "Only the K-th of N parts of the rows, dealt out in turn, for several machines; the same "
+     "command without --rows then makes study.csv and study.png [all]"},
+    {"restart", "", batchGroup, "Make all rows again, in place of whatever has their names"},
+};
+
+/// Throws Error (input) unless the name can be a folder's on every system, and is no formula of a
+/// spreadsheet.
+void requireFolderName(const std::string& name, const std::string& source,
+                       const std::string& place) {
+  constexpr std::size_t longest = 100; // bytes; extensions and temporary names have to fit as well
+  constexpr std::string_view notFirst = ".-=+@ '", notLast = ". ";
+  const bool isPortable = !name.empty() && name.size() <= longest && toOneLine(name) == name &&
+                          name.find_first_of("/\\:*?\"<>|") == name.npos &&
+                          notFirst.find(name.front()) == notFirst.npos &&
+                          notLast.find(name.back()) == notLast.npos;
+  if (!isPortable)
+    throw inputError(source, place, ": '", fenestra::sanitize(name),
+                     "' cannot be a folder's name; use at most 100 letters, digits, blanks, dots, "
+                     "- and _, a letter, digit or _ first");
+}
+
+/// True if several cells may give the flag.
+bool canHaveColumns(const Option& option) {
+  return option.spec.canRepeat || option.spec.type == "string-vector";
+}
+
+/// Flags of the columns; null: name, input. Throws Error (input).
+std::vector<const Option*> parseColumns(const CsvRecord& head, const std::string& source) {
+  std::vector<std::string> known = {nameColumn, inputColumn};
+  for (const Option& option : renderSyntax.options)
+    if (isImageOption(option))
+      known.push_back(option.name);
+  std::vector<const Option*> columns;
+  std::set<std::string> names;
+  for (const std::string& name : head.fields) {
+    const Option* const option = findOption(renderSyntax.options, name);
+    if (std::ranges::find(known, name) == known.end()) {
+      const std::string likely = findNearest(toLower(name), known);
+      throw inputError(source, "line ", head.line, ": '", fenestra::sanitize(name),
+                       "' is no column of a study",
+                       likely.empty() ? "; columns are name, input and flags of fenestra render"
+                                      : "; did you mean " + likely + "?");
+    }
+    if (!names.insert(name).second && !(option && canHaveColumns(*option)))
+      throw inputError(source, "line ", head.line, ": has the column '", name,
+                       "' twice; remove one");
+    columns.push_back(option);
+  }
+  for (const char* required : {nameColumn, inputColumn})
+    if (!names.contains(required))
+      throw inputError(source, "line ", head.line, ": has no column '", required, "'; add it");
+  return columns;
+}
+
+/// The file that a cell names, from the working folder; the cell itself where it names none. What
+/// looks like a file's name and is not beside the table is no file of the working folder either.
+std::string resolveFile(const std::string& cell, const fs::path& folder) {
+  std::error_code failed;
+  const fs::path beside = folder / cell;
+  const bool isName = cell.find_first_of("./") == cell.npos;
+  if (isName || (!fs::exists(beside, failed) && !fs::exists(cell, failed)))
+    return cell;
+  return beside.string();
+}
+
+/// Reads rows, one after the other.
+class TableReader {
+public:
+  TableReader(const fs::path& path, const CsvRecord& head, const OptionValues& common)
+      : m_folder(path.parent_path()),
+        m_source(path.string()),
+        m_head(head),
+        m_columns(parseColumns(head, m_source)),
+        m_common(common) {}
+
+  BatchRow row(const CsvRecord& record) {
+    const std::string place = concat("line ", record.line);
+    if (record.fields.size() != m_columns.size())
+      throw inputError(m_source, place, ": has ", record.fields.size(), " fields, the first line ",
+                       m_columns.size(), "; quote fields with commas, or add what is missing");
+    BatchRow row;
+    OptionValues others = m_common;
+    for (std::size_t i = 0; i < m_columns.size(); ++i) {
+      const std::string cell(trim(record.fields[i]));
+      if (!cell.empty())
+        add(row, others, i, cell, place);
+    }
+    requireFolderName(row.name, m_source, place);
+    if (row.input.empty())
+      throw inputError(m_source, place, ": names no input; fill in the column");
+    if (const auto [known, isNew] = m_lines.emplace(toLower(row.name), record.line); !isNew)
+      throw inputError(m_source, place, ": has the name of line ", known->second, ", '", row.name,
+                       "'; rename one");
+    const std::vector<std::string> rest = others.arguments();
+    row.arguments.insert(row.arguments.end(), rest.begin(), rest.end());
+    return row;
+  }
+
+private:
+  void add(BatchRow& row, OptionValues& others, std::size_t column, const std::string& cell,
+           const std::string& place) {
+    if (toOneLine(cell) != cell)
+      throw inputError(m_source, place, ", ", m_head.fields[column],
+                       ": holds a line's end or no UTF-8; write it on one line");
+    const Option* const option = m_columns[column];
+    if (!option && m_head.fields[column] == nameColumn)
+      row.name = cell;
+    else if (!option)
+      row.input = (m_folder / cell).string();
+    else {
+      const bool namesFile = option->canNameFile();
+      row.arguments.push_back(
+          concat("--", option->name, "=", namesFile ? resolveFile(cell, m_folder) : cell));
+      others.remove(option->name);
+      if (!namesFile || cell.find_first_of("./") == cell.npos)
+        row.label += (row.label.empty() ? "" : ", ") + cell;
+    }
+  }
+
+  fs::path m_folder;
+  std::string m_source;
+  const CsvRecord& m_head;
+  std::vector<const Option*> m_columns;
+  const OptionValues& m_common;
+  std::map<std::string, std::size_t> m_lines; ///< by name in lower case
+};
+
+} // namespace
+
+const CommandSyntax& batchSyntax() {
+  static const std::vector<Option> options = [] {
+    std::vector<Option> all(std::begin(batchTable), std::end(batchTable));
+    for (const Option& option : renderSyntax.options)
+      if (isImageOption(option) || option.name == "layers" || option.name == "threads" ||
+          option.name == "progress")
+        all.push_back(option);
+    return all;
+  }();
+  static const CommandSyntax syntax = {
+      "study",
+      "Renders a table of cases, a row a case, each as fenestra render does it, in a process of "
+      "its "
+      "own: a row that fails ends no other. Columns are name, input and flags of fenestra render, "
+      "such as segmentation, preset, view; an empty cell gives no flag, and files are relative to "
+      "the table. The row liver gives DIR/liver/liver.png, its measures liver.json and the record "
+      "liver.study.json: the same command goes on where it was stopped, and makes rows again that "
+      "failed, or whose flags or files have changed. At the end study.csv holds a line a row "
+      "(status, seconds, noise, measures), and study.png shows all pictures with their names; "
+      "beyond 36 there are further sheets. Flags of fenestra render are for all rows whose cell is "
+      "empty.",
+      {{"TABLE", "Table of the rows (.csv), the first line naming the columns"}},
+      options,
+  };
+  return syntax;
+}
+
+std::vector<BatchRow> readBatchTable(const fs::path& path, const OptionValues& common) {
+  constexpr std::size_t mostRows = 10'000;
+  const std::vector<CsvRecord> records = parseCsv(readText(path), path.string());
+  if (records.size() < 2)
+    throw inputError(path, "holds no row; write a line of columns (name,input,…), then a line a "
+                           "case");
+  if (records.size() > mostRows + 1)
+    throw inputError(path, "holds more than ", mostRows, " rows; split it");
+  TableReader reader(path, records.front(), common);
+  std::vector<BatchRow> rows;
+  for (const CsvRecord& record : records) {
+    const auto isEmpty = [](const std::string& field) { return trim(field).empty(); };
+    if (&record != &records.front() && !std::ranges::all_of(record.fields, isEmpty))
+      rows.push_back(reader.row(record));
+  }
+  return rows;
+}
+
+} // namespace fenestra

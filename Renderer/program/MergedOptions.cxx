@@ -1,0 +1,216 @@
+#include "program/MergedOptions.h"
+
+#include "base/Error.h"
+#include "files/images/ImageFormat.h"
+#include "files/slicer/MrmlScene.h"
+#include "io/MessageText.h"
+#include "scene/Defaults.h"
+#include "scene/NamedPresets.h"
+#include "scene/OrganPresets.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace fenestra {
+namespace {
+
+// ---- an organ preset's flags
+
+/// False for a default that Slicer hands over: its panel passes every flag.
+bool isGiven(const OptionValues& given, const std::string& name) {
+  return given.has("returnparameterfile") ? given.hasNonDefault(name) : given.has(name);
+}
+
+/// True if given flags replace what the preset says of `own`.
+bool isOverridden(const Option& own, const OptionValues& given) {
+  return std::ranges::any_of(renderSyntax.options, [&](const Option& option) {
+    const bool isAlternative = option.overrideGroup == own.overrideGroup &&
+                               parentGroup(own.overrideGroup) != own.overrideGroup;
+    const bool isMode =
+        option.name == "clip" && parentGroup(own.overrideGroup) == OverrideGroup::clip;
+    return (option.name == own.name || isAlternative || isMode) && isGiven(given, option.name);
+  });
+}
+
+/// Flag that a preset sets. Throws Error (input) for one that it may not set: a preset may be a
+/// user's file.
+const Option& findPresetOption(const std::string& name, const std::string& source) {
+  if (const Option* option = findOption(renderSyntax.options, name);
+      option && isAppearanceOption(*option))
+    return *option;
+  throw inputError(source, "flags: \"", name, "\" is no flag of clipping, view or look; remove it");
+}
+
+/// Segments named by the given focus; all if it names none.
+std::vector<SegmentInfo> selectFocus(const OptionValues& given,
+                                     const std::vector<SegmentInfo>& segments) {
+  const std::vector<std::string> focus = given.list("focus");
+  std::vector<SegmentInfo> selected;
+  std::ranges::copy_if(segments, std::back_inserter(selected), [&](const SegmentInfo& segment) {
+    const std::string names[] = {segment.id, segment.name, std::to_string(segment.labelValue)};
+    return std::ranges::find_first_of(focus, names) != focus.end();
+  });
+  return selected.empty() ? segments : selected;
+}
+
+OrganPreset choosePreset(const OptionValues& given, const Input& input,
+                         const std::optional<SegmentNames>& names) {
+  const std::string name = *given.text("preset");
+  if (name != "auto")
+    return findOrganPreset(name);
+  if (!names)
+    throw usageError("--preset auto: goes by the names of segments; add --segmentation FILE, or "
+                     "name a preset");
+  if (names->segments.empty())
+    throw inputError(names->source, "--preset auto: its segments have no names, only values; name "
+                                    "them with --labels, or name a preset and give --focus "
+                                    "A,B,...");
+  std::vector<OrganPreset> presets;
+  for (const std::string& own : listBuiltinPresets("presets"))
+    presets.push_back(findOrganPreset(own));
+  return findMatchingPreset(presets, selectFocus(given, names->segments), names->source,
+                            [&](Modality modality) {
+                              return canSuit(modality, input.volume(given.text("volume")).volume);
+                            });
+}
+
+void addFocus(const OrganPreset& preset, const SegmentNames& names, OptionValues& values) {
+  if (names.segments.empty())
+    throw inputError(names.source, "--preset ", preset.name,
+                     ": its segments have no names, only values; name them with --labels, or say "
+                     "which are meant with --focus A,B,...");
+  const std::vector<SegmentInfo> focus = findFocusSegments(preset.focus, names.segments);
+  if (focus.empty())
+    throw inputError(names.source, "--preset ", preset.name, ": none of its segments is one (",
+                     joinSegmentNames(names.segments),
+                     "); give --focus A,B,..., or another preset");
+  for (const SegmentInfo& segment : focus)
+    values.add("focus", replaceAll(segment.id, ",", "\\,"));
+}
+
+// ---- a scene's flags
+
+/// True if given flags replace a stored one: itself, or another of its topic.
+bool isReplaced(const Option& own, const OptionValues& given) {
+  return std::ranges::any_of(renderSyntax.options, [&](const Option& option) {
+    const bool isInGroup = parentGroup(option.overrideGroup) == parentGroup(own.overrideGroup);
+    return (option.name == own.name || (isInGroup && own.overrideGroup != OverrideGroup::own)) &&
+           given.has(option.name);
+  });
+}
+
+/// True if a render would open a file that the value names.
+bool isFile(const std::string& name, const std::string& value, const Input& input) {
+  if (name == "environment")
+    return findImageFormat(value) == ImageFormat::exr;
+  if (name == "preset")
+    return isFileName("presets", value);
+  if (name == "lights")
+    return isLightsFile(value);
+  if (name == "materials")
+    return isMaterialsFile(value);
+  return name == "transfer" && isTransferFile(value, input);
+}
+
+/// True beyond the limits of a scene's flags. A text that is no number is refused later, like one
+/// that a user gave.
+bool isBeyondLimit(const std::string& name, const std::string& value) {
+  constexpr int mostPixels = 4096; // limit of width and of height
+  constexpr std::uint64_t mostSamples = 65536;
+  int width = 0, height = 0;
+  if (name == "size" && std::sscanf(value.c_str(), "%dx%d", &width, &height) == 2)
+    return std::max(width, height) > mostPixels;
+  if (name != "samples")
+    return false;
+  OptionValues samples(renderSyntax.options);
+  samples.add(name, value);
+  return samples.integer(name) > mostSamples;
+}
+
+/// Adds a stored value; of a flag that may be repeated, values separated by commas ("\," is a
+/// comma).
+void addStoredValue(const Option& option, const std::string& value, OptionValues& merged) {
+  if (!option.spec.canRepeat)
+    return merged.add(option.name, value);
+  OptionValues stored(renderSyntax.options);
+  stored.add(option.name, value);
+  for (const std::string& one : stored.list(option.name))
+    merged.add(option.name, one);
+}
+
+/// Reason why a scene's stored value is not taken; empty: taken.
+std::string rejectionReason(const Input& input, const std::string& name, const std::string& value) {
+  if (name == "volume" || name == "segmentation")
+    return input.document()->find(value) ? "" : "is no node of the scene";
+  if (isBeyondLimit(name, value))
+    return "is more than a scene may ask for";
+  return isFile(name, value, input) ? "names a file, which a scene may not choose" : "";
+}
+
+} // namespace
+
+PresetOptions mergePreset(const OptionValues& given, const Input& input) {
+  PresetOptions result{given};
+  if (!given.has("preset"))
+    return result;
+  const bool givenFocus = given.has("focus");
+  const bool byNames = given.text("preset") == "auto" || !givenFocus;
+  const auto names = byNames ? input.segmentNames({given.text("volume"), given.text("segmentation"),
+                                                   given.text("labels")})
+                             : std::nullopt;
+  const OrganPreset preset = choosePreset(given, input, names);
+  OptionValues& values = result.values;
+  if (!givenFocus && names)
+    addFocus(preset, *names, values);
+  for (const auto& [name, value] : preset.options) {
+    const Option& option = findPresetOption(name, *given.text("preset"));
+    if (isOverridden(option, given) || (isClipOption(option) && !values.has("focus")))
+      continue;
+    values.remove(name);
+    values.add(name, value);
+    if (name == "transfer")
+      result.transferModality = preset.modality;
+  }
+  values.remove("preset");
+  values.add("preset", preset.name);
+  return result;
+}
+
+RenderOptions makeRenderOptions(const PresetOptions& merged) {
+  RenderOptions options = makeRenderOptions(merged.values);
+  options.scene.transferModality = merged.transferModality;
+  return options;
+}
+
+SceneOptions mergeSceneOptions(const OptionValues& given, const Input& input) {
+  SceneOptions result{given};
+  OptionValues& merged = result.values;
+  const MrmlDocument* scene = input.document();
+  const auto nodes = scene ? scene->findByTag("FenestraRender") : std::vector<const MrmlNode*>();
+  if (nodes.empty())
+    return result;
+  const MrmlNode& node = *nodes.back();
+  const OptionValues explicitValues = mergePreset(given, input).values;
+  for (const Option& option : renderSyntax.options) {
+    const std::string& name = option.name;
+    const bool isNode = name == "volume" || name == "segmentation";
+    const std::string value = isNode ? node.referenceId(name) : node.text(name);
+    if (!isImageOption(option) || value.empty() || isReplaced(option, explicitValues))
+      continue;
+    if (const std::string reason = rejectionReason(input, name, value); reason.empty())
+      addStoredValue(option, value, merged);
+    else
+      result.ignored.push_back(concat(node.tag, ' ', describeNode(node), ": ", name, " \"",
+                                      sanitize(value), "\" ", reason, "; give --", name, ' ',
+                                      sanitize(value)));
+  }
+  const bool hasMaterials = merged.text("materials").value_or(noMaterials) != noMaterials;
+  if (!hasMaterials && !given.has("material")) // changes of what was not taken
+    merged.remove("material");
+  const bool usesLabels = merged.has("focus") || hasMaterials;
+  if (!usesLabels && !given.has("segmentation")) // the stored choice does not matter
+    merged.remove("segmentation");
+  return result;
+}
+
+} // namespace fenestra

@@ -1,0 +1,175 @@
+#include "program/RenderSteps.h"
+
+#include "base/Error.h"
+#include "clip/mesh/SurfaceWriter.h"
+#include "files/images/ImageFormat.h"
+#include "files/images/ImageWriter.h"
+#include "io/InputRegistry.h"
+#include "io/MessageText.h"
+#include "program/FileNames.h"
+#include "program/MergedOptions.h"
+#include "program/about/Version.h"
+
+#include <algorithm>
+#include <future>
+
+#include <unistd.h>
+
+namespace fenestra {
+namespace {
+
+/// Quotes an argument for a shell.
+std::string shellQuote(const std::string& argument) {
+  const char* const plain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
+  if (!argument.empty() && argument.find_first_not_of(plain) == std::string::npos)
+    return argument;
+  return concat("'", replaceAll(argument, "'", "'\\''"), "'");
+}
+
+/// Flags that reproduce the camera.
+std::string formatCamera(const CameraPose& pose) {
+  constexpr int exact = 17; // significant digits
+  const bool perspective = pose.projection == Projection::perspective;
+  return concat("--projection ", perspective ? "perspective --angle " : "orthographic --scale ",
+                toString(perspective ? pose.angle : pose.scale, exact),
+                " --position=", joinNumbers(pose.position, ",", exact),
+                " --target=", joinNumbers(pose.target, ",", exact),
+                " --up=", joinNumbers(pose.up, ",", exact));
+}
+
+std::map<std::string, std::string> makeHeader(const PreparedScene& scene,
+                                              const RenderOptions& options,
+                                              const RenderResult& result,
+                                              const std::vector<std::string>& words) {
+  const std::filesystem::path folder = options.outputs.front().parent_path();
+  const std::vector<std::string> arguments =
+      toRelativeArguments(words, renderSyntax.options, folder);
+  std::map<std::string, std::string> entries = {
+      {"version", versionText},
+      {"target", concat(processorText, "-", result.target)},
+      {"seed", concat(options.settings.seed)},
+      {"sampling", toString(options.settings.sampling)},
+      {"samples", concat(result.finishedSamples)},
+      {"camera", formatCamera(scene.camera().pose())},
+      {"look", toRelativeName(scene.transferName(), folder)},
+      {"command", concat("fenestra ", join(arguments, " ", shellQuote))}};
+  if (options.preset)
+    entries["preset"] = toRelativeName(*options.preset, folder);
+  return entries;
+}
+
+/// Sentence of a picture's header on its filter.
+std::string describeDenoising(const std::optional<FilteredImage>& filtered) {
+  const std::optional<double> noise = denoisedNoise(filtered);
+  return concat("filtered for the eye by least squares in windows, version ", filterVersion,
+                ", on expected albedo, normal, depth and light; told error ",
+                noise ? toString(*noise, 3) : "unknown", "; --denoise off leaves the picture raw");
+}
+
+/// Adds the filtered channels that the layers name; R, G, B and A stay as they are.
+void addDenoisedChannels(const RenderOptions& options, const PreparedScene& scene,
+                         const FilteredImage& filtered, Image& image) {
+  if (options.hasFilterLayer("expected"))
+    addExpected(image, *scene.features());
+  if (!options.hasFilterLayer("denoised"))
+    return;
+  addDenoised(image, filtered);
+  image.header["filter"] = concat("channels denoised.* are ", describeDenoising(filtered),
+                                  "; R, G, B and A are not filtered");
+}
+
+} // namespace
+
+RenderJob makeRenderJob(const OptionValues& given) {
+  const Input input(*given.text("INPUT"));
+  const SceneOptions stored = mergeSceneOptions(given, input);
+  const PresetOptions preset = mergePreset(stored.values, input);
+  RenderJob job{stored.values, preset.values, makeRenderOptions(preset), input};
+  job.options.scene.omissions = stored.ignored;
+  return job;
+}
+
+void declareOutputs(const RenderOptions& options, Outputs& outputs) {
+  for (const std::filesystem::path& input : options.inputs)
+    registerInput(input);
+  for (const std::filesystem::path& path : options.outputs)
+    declareImage(path, outputs, options.outputNaming, options.filteredFiles());
+  if (options.surface)
+    declareSurface(*options.surface, outputs);
+  for (const auto& file : {options.stats, options.returnValues, options.checkpoint})
+    if (file)
+      outputs.add(*file);
+}
+
+/// Compared with physical memory: Linux grants more, and ends the process when it is used.
+void checkMemory(const RenderRequest& scene) {
+  constexpr double filter = 400.0; // its planes
+  const double bytesPerPixel =     // the film, and its channels as written
+      2.0 * sizeof(PixelSums) + (scene.features ? filter : 0.0);
+  constexpr double gigabyte = 1e9;
+  const double needed = bytesPerPixel * scene.width * scene.height;
+  const double available =
+      static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
+  if (needed <= available)
+    return;
+  throw outputError("--size", "a picture of ", scene.width, "x", scene.height, " pixels takes ",
+                    toString(needed / gigabyte, 3), " GB of memory, this machine has ",
+                    toString(available / gigabyte, 3), "; choose a smaller one");
+}
+
+RenderSettings ImageDenoiser::settings() {
+  RenderSettings settings = makeSettings(m_options, m_scene.background());
+  if (m_options.noiseTarget == NoiseTarget::filtered)
+    settings.displayNoise = [this](const Film& film) {
+      m_checked = denoise(film, m_scene);
+      m_checkedSamples = film.sampleCounts().max;
+      // Twice its standard error more, lest luck ends the render.
+      return std::sqrt(m_checked.estimatedError + 2.0 * m_checked.errorUncertainty);
+    };
+  return settings;
+}
+
+std::optional<FilteredImage> ImageDenoiser::apply(const RenderResult& result) const {
+  if (!m_scene.features())
+    return std::nullopt;
+  if (result.reason == StopReason::noise && m_checkedSamples == result.finishedSamples)
+    return m_checked;
+  return denoise(result.film, m_scene);
+}
+
+std::optional<double> denoisedNoise(const std::optional<FilteredImage>& filtered) {
+  if (!filtered || filtered->error[0].empty())
+    return std::nullopt;
+  return std::sqrt(filtered->estimatedError);
+}
+
+void writeImages(const RenderOptions& options, const PreparedScene& scene,
+                 const RenderResult& result, const std::optional<FilteredImage>& filtered,
+                 const std::vector<std::string>& arguments, Outputs& outputs) {
+  const bool isRawWanted = !filtered || !std::ranges::all_of(options.outputs, isDisplayFile);
+  Image raw{
+      options.scene.width, options.scene.height, {}, makeHeader(scene, options, result, arguments)};
+  Image shown = raw;
+  if (isRawWanted) {
+    Image channels = makeImage(result.film, scene.camera(), scene.clip(), options.layers);
+    raw.channels = std::move(channels.channels);
+  }
+  if (filtered) {
+    shown.channels = makeFilteredImage(*filtered, raw.width, raw.height).channels;
+    shown.header["filter"] = describeDenoising(filtered);
+    addDenoisedChannels(options, scene, *filtered, raw);
+  }
+  // All files at once if threads are free: compressing one does not delay another.
+  std::vector<std::future<void>> files;
+  for (const std::filesystem::path& path : options.outputs) {
+    const Image& image = filtered && isDisplayFile(path) ? shown : raw;
+    files.push_back(std::async([&image, &scene, &path, &options, &outputs] {
+      writeImage(image, makeImagePlane(scene.camera()), path, outputs, options.display);
+    }));
+  }
+  for (std::future<void>& file : files)
+    file.get();
+}
+
+} // namespace fenestra

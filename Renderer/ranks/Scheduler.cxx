@@ -1,0 +1,296 @@
+#include "ranks/Scheduler.h"
+
+#include "base/Error.h"
+#include "base/Stopwatch.h"
+#include "image/PixelWords.h"
+#include "integrator/render/TileStream.h"
+
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <new>
+#include <utility>
+
+namespace fenestra {
+namespace {
+
+/// First words of messages from rank 0.
+constexpr std::uint64_t startTag = 1, leaseTag = 2, stopTag = 3;
+
+constexpr std::size_t maxLeaseTiles = 4096; ///< of a loan: 60 MB
+
+/// Words of a message, one after the other.
+class MessageReader {
+public:
+  explicit MessageReader(const Message& message) : m_message(message) {}
+
+  std::uint64_t word() { return m_message.at(m_next++); }
+  std::size_t left() const { return m_message.size() - m_next; }
+
+private:
+  const Message& m_message;
+  std::size_t m_next = 0;
+};
+
+/// Calls each(pixel) for the pixels of tiles, in their order.
+template <typename Each>
+void forEachTilePixel(std::span<const int> tiles, Film& film, Each&& each) {
+  const Tiles layout(film.width(), film.height());
+  for (const int number : tiles) {
+    const Tiles::Tile tile = layout.at(number);
+    for (int row = tile.top; row < tile.bottom; ++row)
+      for (int column = tile.left; column < tile.right; ++column)
+        each(film.at(column, row));
+  }
+}
+
+/// Adds the number of tiles, the tiles, and the sums of their pixels.
+void writeTiles(std::span<const int> tiles, Film& film, Message& message) {
+  message.push_back(tiles.size());
+  message.insert(message.end(), tiles.begin(), tiles.end());
+  message.reserve(message.size() + tiles.size() * Tiles::size * Tiles::size * wordsPerPixel);
+  forEachTilePixel(tiles, film, [&](const PixelSums& pixel) {
+    const PixelWords words = toWords(pixel);
+    message.insert(message.end(), words.begin(), words.end());
+  });
+}
+
+/// Puts the sums of pixels into the film; the result: their tiles.
+std::vector<int> readTiles(MessageReader& reader, Film& film) {
+  std::vector<int> tiles(reader.word());
+  for (int& tile : tiles)
+    tile = static_cast<int>(reader.word());
+  forEachTilePixel(tiles, film, [&](PixelSums& pixel) {
+    PixelWords words = {};
+    for (std::uint64_t& word : words)
+      word = reader.word();
+    setWords(words, pixel);
+  });
+  return tiles;
+}
+
+/// Counts, in the order of messages.
+template <typename Each>
+void forEachCounter(Counters& counters, Each&& each) {
+  for (std::uint64_t* count :
+       {&counters.paths, &counters.collisions, &counters.lookups, &counters.cells,
+        &counters.skippedCells, &counters.shadowRays, &counters.gradients})
+    each(*count);
+}
+
+/// A rank's side of loans.
+class LeasedTiles {
+public:
+  LeasedTiles(Ranks& ranks, RenderMonitor& monitor) : m_ranks(ranks), m_monitor(monitor) {}
+
+  /// Brings the last loan back and gets another (renderLeases).
+  std::optional<TileLease> next(RenderResult& result) {
+    m_watch = {};
+    returnTiles(result);
+    for (const Rests poller;;) {
+      const std::optional<Received> measureIrradiance = m_ranks.receive();
+      if (!measureIrradiance) {
+        poller.rest();
+        continue;
+      }
+      MessageReader reader(measureIrradiance->message);
+      if (reader.word() == stopTag)
+        return std::nullopt;
+      TileLease lease = {{}, reader.word(), reader.word()};
+      m_tiles = lease.tiles = readTiles(reader, result.film);
+      if (reader.left() > 0)
+        readPlan(reader, result);
+      watch();
+      return lease;
+    }
+  }
+
+private:
+  void returnTiles(RenderResult& result) {
+    const bool isStopped = m_monitor.stop;
+    Message message = {isStopped,
+                       static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency())};
+    forEachCounter(result.counters, [&](std::uint64_t count) { message.push_back(count); });
+    writeTiles(isStopped ? std::span<const int>() : std::span<const int>(m_tiles), result.film,
+               message);
+    m_tiles.clear();
+    m_ranks.send(0, message);
+  }
+
+  static void readPlan(MessageReader& reader, RenderResult& result) {
+    std::vector<float> plan(reader.left());
+    for (float& s : plan)
+      s = std::bit_cast<float>(static_cast<std::uint32_t>(reader.word()));
+    result.last.plan = SamplePlan(std::move(plan));
+  }
+
+  /// Stops the loan under way if rank 0 says anything meanwhile, which is that all is done.
+  void watch() {
+    m_watch = std::jthread([this](const std::stop_token& end) {
+      std::mutex mutex;
+      std::condition_variable_any wake;
+      std::unique_lock lock(mutex);
+      while (!end.stop_requested() && !m_monitor.stop) {
+        if (m_ranks.hasMessage())
+          m_monitor.stop = true;
+        wake.wait_for(lock, end, std::chrono::milliseconds(20), [] { return false; });
+      }
+    });
+  }
+
+  Ranks& m_ranks;
+  RenderMonitor& m_monitor;
+  std::vector<int> m_tiles; ///< of the loan under way
+  std::jthread m_watch;
+};
+
+} // namespace
+
+// ---- rank 0
+
+void recruitAll(Ranks& ranks) {
+  for (int rank = 1; rank < ranks.count(); ++rank)
+    ranks.send(rank, {startTag});
+}
+
+Lender::~Lender() {
+  m_thread = {};
+}
+
+void Lender::help(RenderMonitor& monitor) {
+  m_monitor = &monitor;
+  monitor.workers = {m_ranks.count() - 1,
+                     [this](Pass& pass, RenderResult& result) {
+                       const std::lock_guard lock(m_mutex);
+                       m_pass = &pass;
+                       m_result = &result;
+                     },
+                     [this](const RenderMonitor& watched) { return join(watched); }};
+  m_thread = std::jthread([this](const std::stop_token& end) { serve(end); });
+}
+
+void Lender::serve(const std::stop_token& end) {
+  Rests poller;
+  try {
+    while (!end.stop_requested()) {
+      {
+        const std::lock_guard lock(m_mutex);
+        if (m_pass) {
+          if (hear())
+            poller.begin();
+          lendAll();
+        }
+      }
+      poller.rest();
+    }
+  } catch (const std::bad_alloc&) {
+    m_ranks.abort("out of memory; use a smaller picture", static_cast<int>(ErrorKind::output));
+  }
+}
+
+/// Takes all messages that are there; false if there is none. Locked.
+bool Lender::hear() {
+  bool hasReceived = false;
+  while (const std::optional<Received> measureIrradiance = m_ranks.receive()) {
+    hasReceived = true;
+    Borrower& worker = m_borrowers[static_cast<std::size_t>(measureIrradiance->from)];
+    worker.waitReadable = true;
+    takeBack(measureIrradiance->message);
+    worker.threads = measureIrradiance->message[1];
+  }
+  return hasReceived;
+}
+
+/// Locked.
+void Lender::takeBack(const Message& message) {
+  MessageReader reader(message);
+  if (reader.word() != 0)
+    m_monitor->stop = true;
+  reader.word();
+  Counters counters;
+  forEachCounter(counters, [&](std::uint64_t& count) { count = reader.word(); });
+  m_added += counters;
+  for (const int tile : readTiles(reader, m_result->film))
+    m_pass->takeBack(tile);
+}
+
+/// Lends tiles to all that wait. Locked.
+void Lender::lendAll() {
+  for (std::size_t rank = 1; rank < m_borrowers.size(); ++rank) {
+    Borrower& worker = m_borrowers[rank];
+    if (m_monitor->stop || m_pass->left() == 0)
+      return;
+    if (!worker.waitReadable)
+      continue;
+    worker.waitReadable = false;
+    m_ranks.send(static_cast<int>(rank), loanFor(worker));
+  }
+}
+
+/// A share of what is left of the pass, which gets smaller toward its end, so that all ranks end it
+/// together. Locked.
+Message Lender::loanFor(Borrower& worker) {
+  const std::size_t fair = m_pass->left() / (2 * m_borrowers.size());
+  const std::size_t wanted = std::min(std::max(fair, 2 * worker.threads), maxLeaseTiles);
+  Message message = {leaseTag, m_result->finishedSamples, m_result->begunSamples};
+  writeTiles(m_pass->take(wanted), m_result->film, message);
+  const std::vector<float>& plan = m_result->last.plan.noise();
+  if (!plan.empty() && !std::exchange(worker.knowsPlan, true))
+    for (const float s : plan)
+      message.push_back(std::bit_cast<std::uint32_t>(s));
+  return message;
+}
+
+Counters Lender::join(const RenderMonitor& monitor) {
+  for (const Rests poller;;) {
+    {
+      const std::lock_guard lock(m_mutex);
+      if (m_pass->whole() || monitor.stop ||
+          (monitor.isCheckpointDue && monitor.isCheckpointDue())) {
+        m_pass = nullptr;
+        return std::exchange(m_added, {});
+      }
+    }
+    poller.rest();
+  }
+}
+
+bool Lender::dismiss(bool isStopped) {
+  constexpr double maxSeconds = 2.0; // s
+  m_thread = {};
+  const bool isBegun = m_monitor != nullptr;
+  for (int rank = 1; rank < m_ranks.count(); ++rank)
+    m_ranks.send(rank, {stopTag});
+  std::size_t isBusy = 0;
+  for (std::size_t rank = 1; isBegun && rank < m_borrowers.size(); ++rank)
+    isBusy += m_borrowers[rank].waitReadable ? 0 : 1;
+  const Stopwatch watch;
+  const Rests poller;
+  while (isBusy > 0 && (!isStopped || watch.seconds() < maxSeconds)) {
+    if (m_ranks.receive())
+      --isBusy;
+    else
+      poller.rest();
+  }
+  return isBusy == 0;
+}
+
+// ---- other ranks
+
+bool isRecruited(Ranks& ranks) {
+  for (const Rests poller;;) {
+    if (const std::optional<Received> measureIrradiance = ranks.receive())
+      return measureIrradiance->message.front() == startTag;
+    poller.rest();
+  }
+}
+
+void borrow(Ranks& ranks, const SceneView& scene, const RenderSettings& settings,
+            RenderMonitor& monitor) {
+  LeasedTiles tiles(ranks, monitor);
+  renderLeases(scene, settings, monitor,
+               [&tiles](RenderResult& result) { return tiles.next(result); });
+}
+
+} // namespace fenestra

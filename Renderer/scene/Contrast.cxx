@@ -1,0 +1,94 @@
+#include "scene/Contrast.h"
+
+#include "base/Color.h"
+#include "base/Text.h"
+#include "files/images/DisplayTransform.h"
+#include "model/medium/ContextStyle.h"
+#include "model/medium/Reflectance.h"
+
+#include <algorithm>
+
+namespace fenestra {
+namespace {
+
+/// Mean over scalars of the colour that an eye sees of matter with `albedoOf` their albedo.
+template <typename AlbedoOf>
+Rgb meanReflectance(const std::vector<double>& scalars, double g, const AlbedoOf& albedoOf) {
+  Rgb sum = Rgb::Zero();
+  for (const double scalar : scalars)
+    sum += toReflectance(Rgb(albedoOf(scalar)), g);
+  return sum / static_cast<double>(scalars.size());
+}
+
+/// Display light, linear, of matter of that colour.
+Rgb toDisplayLight(const Rgb& seen) {
+  constexpr double light = 1.1;
+  std::vector<float> pixel(4, 1.0F);
+  for (int c = 0; c < 3; ++c)
+    pixel[static_cast<std::size_t>(c)] = static_cast<float>(light * seen[c]);
+  pixel = toDisplay(pixel, {DisplayView::film});
+  return decodeSrgb(Rgb(double{pixel[0]}, double{pixel[1]}, double{pixel[2]}));
+}
+
+} // namespace
+
+double Contrast::score() const {
+  constexpr double normal = 20.0, colorBlind = 12.0;
+  return std::min({deltaE[0] / normal, deltaE[1] / colorBlind, deltaE[2] / colorBlind});
+}
+
+Contrast measureContrast(const Rgb& focus, const Rgb& context,
+                         double (*difference)(const Lab&, const Lab&)) {
+  Contrast contrast = {};
+  for (const ColorVision sight : colorVisions)
+    contrast.deltaE[static_cast<std::size_t>(sight)] =
+        difference(toLab(simulateVision(sight, focus)), toLab(simulateVision(sight, context)));
+  contrast.deltaL = std::abs(toLab(focus).L - toLab(context).L);
+  return contrast;
+}
+
+Contrast measureReflectedContrast(const Rgb& focus, const Rgb& context) {
+  return measureContrast(toDisplayLight(focus), toDisplayLight(context), deltaE2000);
+}
+
+Contrast measureInterfaceContrast(const InterfaceScalars& interface,
+                                  const TransferFunction& transfer, double saturation) {
+  const ContextStyle style{.focus = nullptr, .saturation = saturation};
+  return measureReflectedContrast(
+      meanReflectance(interface.focus, transfer.g, transfer.albedo),
+      meanReflectance(interface.context, transfer.g,
+                      [&](double scalar) { return style.desaturate(transfer.albedo(scalar)); }));
+}
+
+FocusContrast chooseSaturation(const std::optional<double>& requested, const Mask& focus,
+                               const Volume& volume, const TransferFunction& transfer) {
+  const InterfaceScalars interface = sampleInterface(focus, volume, transfer);
+  if (interface.focus.empty() || interface.context.empty())
+    return {requested.value_or(1.0)};
+  const auto at = [&](double saturation) {
+    return FocusContrast{saturation, measureInterfaceContrast(interface, transfer, saturation)};
+  };
+  FocusContrast best = at(requested.value_or(1.0));
+  if (requested)
+    return best;
+  for (const double saturation : {mutedSaturation, graySaturation}) {
+    if (best.contrast->score() > 1.0)
+      break;
+    const FocusContrast muted = at(saturation);
+    if (muted.contrast->score() > best.contrast->score())
+      best = muted;
+  }
+  return best;
+}
+
+std::string summary(const FocusContrast& contrast) {
+  if (!contrast.contrast)
+    return "";
+  const std::string desaturated =
+      contrast.saturation < 1.0 ? "; surroundings paled to " + toString(contrast.saturation, 3)
+                                : "";
+  return concat(toString(contrast.contrast->deltaE[0], 3), " (colour-blind ",
+                toString(contrast.contrast->colorBlind(), 3), desaturated, ")");
+}
+
+} // namespace fenestra

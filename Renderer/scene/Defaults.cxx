@@ -1,0 +1,265 @@
+#include "scene/Defaults.h"
+
+#include "base/Color.h"
+#include "base/Error.h"
+#include "model/medium/Reflectance.h"
+
+#include <map>
+
+namespace fenestra {
+namespace {
+
+ViewDirection findView(const std::string& name, const ViewDirection* best) {
+  static const std::map<std::string, ViewDirection> views = {
+      {"anterior", {Vec3::UnitY(), Vec3::UnitZ()}}, {"posterior", {-Vec3::UnitY(), Vec3::UnitZ()}},
+      {"right", {Vec3::UnitX(), Vec3::UnitZ()}},    {"left", {-Vec3::UnitX(), Vec3::UnitZ()}},
+      {"superior", {Vec3::UnitZ(), Vec3::UnitY()}}, {"inferior", {-Vec3::UnitZ(), Vec3::UnitY()}},
+  };
+  if (name == "auto" && best)
+    return *best;
+  const auto known = views.find(name);
+  if (known == views.end())
+    throw usageError("--view: '" + name +
+                     "' is unknown; use anterior, posterior, left, right, superior, inferior, or "
+                     "auto with a focus");
+  return known->second;
+}
+
+/// Values of at most about a million voxels, spread over the volume.
+std::vector<double> sampleValues(const Volume& volume) {
+  const auto sample = [](const auto& voxels) {
+    const std::size_t stride = voxels.size() / 1'000'000 + 1;
+    std::vector<double> values;
+    for (std::size_t i = 0; i < voxels.size(); i += stride)
+      values.push_back(static_cast<double>(voxels[i]));
+    return values;
+  };
+  return std::visit(sample, volume.voxels);
+}
+
+/// Otsu's threshold (1979) of a sample of the values, from a 256-bin histogram of [low, high].
+double otsuThreshold(const Volume& volume, double low, double high) {
+  constexpr int bins = 256;
+  std::array<double, bins> histogram{};
+  double total = 0.0, moment = 0.0;
+  for (const double value : sampleValues(volume)) {
+    const double x = std::clamp((value - low) / (high - low), 0.0, 1.0);
+    const auto bin = static_cast<std::size_t>(x * (bins - 1));
+    histogram[bin] += 1.0;
+    total += 1.0;
+    moment += static_cast<double>(bin);
+  }
+  double below = 0.0, belowMoment = 0.0;
+  double best = -1.0;
+  int threshold = 0;
+  for (int i = 0; i < bins; ++i) {
+    const double count = histogram[static_cast<std::size_t>(i)];
+    below += count;
+    belowMoment += i * count;
+    if (below == 0.0 || below == total)
+      continue;
+    const double gap = belowMoment / below - (moment - belowMoment) / (total - below);
+    const double between = below * (total - below) * gap * gap;
+    if (between > best) {
+      best = between;
+      threshold = i;
+    }
+  }
+  return low + (high - low) * (threshold + 1.0) / bins;
+}
+
+/// Vector times the power of two that brings its length near 1: squares neither overflow nor
+/// vanish, and the normalized vector has the same digits as without scaling.
+Vec3 scaleNearUnit(const Vec3& v) {
+  const double greatest = v.cwiseAbs().maxCoeff();
+  if (greatest == 0.0 || !std::isfinite(greatest))
+    return v;
+  const int exponent = std::ilogb(greatest);
+  return v.unaryExpr([exponent](double x) { return std::ldexp(x, -exponent); });
+}
+
+/// Centre of a domain's bounding box along its grid, world mm.
+Vec3 boxCenter(const Domain& domain) {
+  Box box = Box::makeEmpty();
+  for (const Vec3& corner : domain.indexCorners())
+    box.extend(corner);
+  return domain.grid().indexToWorld * box.center();
+}
+
+/// Coordinates of the domain along a unit vector in the world, mm.
+Interval axisExtent(const Domain& domain, const Vec3& axis) {
+  Interval extent{infinity, -infinity};
+  for (const Vec3& corner : domain.indexCorners()) {
+    const double position = axis.dot(domain.grid().indexToWorld * corner);
+    extent = {std::min(extent.begin, position), std::max(extent.end, position)};
+  }
+  return extent;
+}
+
+/// Way along `up`, mm, that takes a frame of `half` above and below `center` from beyond an end of
+/// the scan back over its matter, but no farther than until as much is empty on the other side.
+/// 0 where matter ends inside the scan: what is empty there belongs to the picture.
+double shiftIntoScan(const Domain& occupied, const Vec3& up, const Vec3& center, double half) {
+  const Interval extent = axisExtent(occupied, up), scan = axisExtent(occupied.grid(), up);
+  const double at = up.dot(center), rounding = 1e-6 * half;
+  const double above = at + half - extent.end, below = extent.begin - (at - half); // empty
+  const double shift = std::min(std::max(above, below), 0.5 * std::abs(above - below));
+  if (shift <= 0.0)
+    return 0.0;
+  if (above > below)
+    return extent.end > scan.end - rounding ? -shift : 0.0;
+  return extent.begin < scan.begin + rounding ? shift : 0.0;
+}
+
+} // namespace
+
+std::optional<std::string> chooseTransferPreset(const Volume& volume) {
+  return canSuit(Modality::ct, volume) ? std::optional<std::string>("ct-soft") : std::nullopt;
+}
+
+bool canSuit(Modality modality, const Volume& volume) {
+  // Air, or padding beyond it (-2000, -8192, -32768 occur), and bone.
+  const bool hounsfield = volume.minimum <= -500.0 && volume.maximum >= 200.0;
+  return hounsfield == (modality == Modality::ct);
+}
+
+std::array<double, 2> findRobustRange(const Volume& volume) {
+  std::vector<double> values = sampleValues(volume);
+  std::ranges::sort(values);
+  const auto quantile = [&values](double f) {
+    return values[static_cast<std::size_t>(f * static_cast<double>(values.size() - 1))];
+  };
+  const double low = quantile(0.005), high = quantile(0.995);
+  return {low, high > low ? high : volume.maximum};
+}
+
+std::optional<double> findAirThreshold(const Volume& volume) {
+  if (canSuit(Modality::ct, volume))
+    return -300.0;
+  const std::vector<double> values = sampleValues(volume);
+  if (10 * std::ranges::count(values, volume.minimum) >= std::ssize(values))
+    return std::nullopt;
+  const auto [low, high] = findRobustRange(volume);
+  return otsuThreshold(volume, low, high);
+}
+
+double transparentFraction(const Mask& focus, const Volume& volume,
+                           const TransferFunction& transfer) {
+  const Affine toVolume = volume.grid.worldToIndex * focus.grid.indexToWorld;
+  const Box box = volume.grid.indexBox();
+  const Size3& size = focus.grid.size;
+  const auto count = [&](const auto& voxels) {
+    const Field field(volume.grid, voxels);
+    const std::size_t stride = focus.voxels.size() / 1'000'000 + 1;
+    double all = 0.0, transparent = 0.0;
+    for (std::size_t i = 0; i < focus.voxels.size(); i += stride) {
+      if (focus.voxels[i] < focus.threshold())
+        continue;
+      const auto at = static_cast<std::int64_t>(i);
+      const Size3 voxel(at % size.x(), at / size.x() % size.y(), at / size.x() / size.y());
+      const Vec3 index = toVolume * voxel.cast<double>();
+      all += 1.0;
+      const double value = field.value(index.cwiseMax(box.lower).cwiseMin(box.upper));
+      transparent += transfer.extinction(value)[0] == 0.0;
+    }
+    return all > 0.0 ? transparent / all : 0.0;
+  };
+  return std::visit(count, volume.voxels);
+}
+
+TransferFunction makeRelativeTransfer(const Volume& volume) {
+  const double unit =
+      100.0 / volume.grid.boundingRadius(); // extinctions below suit a radius of 100 mm
+  const std::array<double, 2> range = findRobustRange(volume);
+  const double low = range[0], high = range[1];
+  if (!(high > low))
+    return {ScalarFunction({{low, ScalarFunction::Value(0.02 * unit)}}),
+            ColorFunction({{low, Rgb(0.9, 0.85, 0.8)}})};
+
+  const double background = otsuThreshold(volume, low, high);
+  const auto between = [&](double f) { return background + f * (high - background); };
+  const auto at = [&](double f) { return low + f * (high - low); };
+  const auto knot = [](double s, double sigma_t) {
+    return ScalarFunction::Knot{s, ScalarFunction::Value(sigma_t)};
+  };
+  const double start = background - 0.35 * (background - low);
+  return {ScalarFunction({knot(start, 0.0), knot(background, 0.8 * unit),
+                          knot(between(0.3), 2.5 * unit), knot(high, 5.0 * unit)}),
+          toAlbedo(ColorFunction({{at(0.05), decodeSrgb(Rgb(0.816, 0.643, 0.580))},
+                                  {at(0.15), decodeSrgb(Rgb(0.769, 0.565, 0.502))},
+                                  {at(0.35), decodeSrgb(Rgb(0.729, 0.525, 0.455))},
+                                  {at(0.6), decodeSrgb(Rgb(0.808, 0.627, 0.541))},
+                                  {at(1.0), decodeSrgb(Rgb(0.925, 0.831, 0.745))}}),
+                   0.0),
+          {},
+          0.0,
+          SurfaceShading::makeCoated(0.2, 0.45)};
+}
+
+CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* focus, int width,
+                     int height, const ViewDirection* best) {
+  constexpr double surroundings = 1.6; // framed size / size of the focus
+  constexpr double margin = 1.05;      // around the whole volume
+  constexpr double defaultAngle = 30.0;
+  const ViewDirection named = findView(view.name.value_or("anterior"), best);
+
+  const Grid& grid = domain.grid();
+  const Domain volume = domain.indexCorners().empty() ? Domain(grid) : domain;
+  CameraPose pose;
+  pose.projection = view.projection.value_or(Projection::orthographic);
+  pose.angle = view.angle.value_or(defaultAngle);
+  pose.target = view.target.value_or(focus ? focus->grid.worldCenter() : boxCenter(volume));
+  const Vec3 back =
+      view.position ? Vec3((*view.position - pose.target).normalized()) : named.fromTarget;
+  pose.up = view.up.value_or(
+      std::abs(back.dot(named.up)) > 0.999 * back.norm() ? Vec3(Vec3::UnitY()) : named.up);
+  const Vec3 right = scaleNearUnit(pose.up).cross(back).normalized();
+  const Vec3 up = back.cross(right);
+
+  // Frames the whole volume, or the focus with its surroundings if smaller.
+  const double aspect = static_cast<double>(width) / height;
+  const auto halfHeight = [&](const Domain& domain) {
+    const Vec3 center = boxCenter(domain);
+    double half = 0.0;
+    for (const Vec3& corner : domain.indexCorners()) {
+      const Vec3 d = domain.grid().indexToWorld * corner - center;
+      half = std::max({half, std::abs(d.dot(up)), std::abs(d.dot(right)) / aspect});
+    }
+    return half;
+  };
+  double half = margin * halfHeight(volume);
+  if (focus)
+    half = std::min(half, surroundings * halfHeight(focus->grid));
+  pose.scale = view.scale.value_or(half);
+  if (focus && !view.target && !view.position && !view.scale)
+    pose.target +=
+        shiftIntoScan(volume, up, pose.target, half) * up; // a turntable turns about `up`
+
+  // The eye stands outside the volume, and in perspective at least as far as pose.angle demands; a
+  // farther eye gets a narrower angle.
+  const double outside = margin * grid.boundingRadius() + (pose.target - grid.worldCenter()).norm();
+  const double distance = std::max(outside, half / std::tan(pose.angle * pi / 360.0));
+  if (!view.angle && !view.position)
+    pose.angle = 360.0 / pi * std::atan2(half, distance);
+  pose.position = view.position.value_or(pose.target + distance * back);
+  return pose;
+}
+
+CameraPose adjustView(const ViewRequest& view, const CameraPose& scene) {
+  CameraPose pose = scene;
+  pose.projection = view.projection.value_or(scene.projection);
+  const bool perspective = pose.projection == Projection::perspective;
+  if (perspective && view.scale)
+    throw usageError("--scale: the scene's camera is a perspective one; use --angle, or add "
+                     "--projection orthographic");
+  if (!perspective && view.angle)
+    throw usageError("--angle: the scene's camera is an orthographic one; use --scale, or add "
+                     "--projection perspective");
+  pose.target = view.target.value_or(scene.target);
+  pose.up = view.up.value_or(scene.up);
+  pose.scale = view.scale.value_or(scene.scale);
+  pose.angle = view.angle.value_or(scene.angle);
+  return pose;
+}
+
+} // namespace fenestra

@@ -1,0 +1,127 @@
+#include "scene/Denoising.h"
+
+#include "scene/FilmImage.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace fenestra {
+namespace {
+
+/// Openness of pixels: 0 for certain ones, and for those around which the march met nothing, so
+/// that no window spreads a silhouette into the background. Never by what the samples met: a mask
+/// that knows their noise makes the told error a lie.
+std::vector<std::uint8_t> findActivePixels(const Film& film, const FeatureBuffers& features) {
+  std::vector<std::uint8_t> isOpen(film.pixelCount());
+  for (int row = 0; row < film.height(); ++row)
+    for (int column = 0; column < film.width(); ++column) {
+      bool isEmpty = true;
+      for (int y = std::max(row - 1, 0); y <= std::min(row + 1, film.height() - 1); ++y)
+        for (int x = std::max(column - 1, 0); x <= std::min(column + 1, film.width() - 1); ++x)
+          isEmpty = isEmpty && features.hit[film.index(x, y)] == 0.0F;
+      isOpen[film.index(column, row)] = !isEmpty && !film.at(column, row).isDeterministic;
+    }
+  return isOpen;
+}
+
+/// Fills the halves; with the picture twice where the pixel is closed or there are no halves.
+void fillHalfBuffers(const Film& film, FilterInput& input) {
+  const std::size_t count = film.pixelCount();
+  for (std::size_t c = 0; c < 4; ++c) {
+    input.even[c].resize(count);
+    input.odd[c].resize(count);
+    if (c < 3)
+      input.variance[c].resize(count);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const PixelSums& pixel = film.pixels()[i];
+    const double alpha =
+        pixel.alpha / static_cast<double>(std::max<std::uint64_t>(pixel.samples, 1));
+    const HalfMeans half = input.hasHalfBuffers && input.isActive[i]
+                               ? pixel.halfMeans()
+                               : HalfMeans{pixel.mean, pixel.mean, alpha, alpha};
+    const Rgb variance = pixel.standardError().square();
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto channel = static_cast<int>(c);
+      input.even[c][i] = static_cast<float>(half.even[channel]);
+      input.odd[c][i] = static_cast<float>(half.odd[channel]);
+      input.variance[c][i] = static_cast<float>(variance[channel]);
+    }
+    input.even[3][i] = static_cast<float>(half.evenAlpha);
+    input.odd[3][i] = static_cast<float>(half.oddAlpha);
+  }
+}
+
+/// Sums of depth as distances from their median, mm: a pixel that meets little has little.
+Plane centerDepth(const FeatureBuffers& features) {
+  std::vector<float> depths;
+  for (std::size_t i = 0; i < features.hit.size(); ++i)
+    if (features.hit[i] > 0.5F)
+      depths.push_back(features.depth[i] / features.hit[i]);
+  if (depths.empty())
+    return features.depth;
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::ranges::nth_element(depths, middle);
+  Plane plane = features.depth;
+  for (std::size_t i = 0; i < plane.size(); ++i)
+    plane[i] -= *middle * features.hit[i];
+  return plane;
+}
+
+/// Central differences to the neighbours `step` pixels before and after; 0 at the border.
+Plane computeSlope(const Plane& plane, int width, int height, bool down) {
+  Plane slope(plane.size(), 0.0F);
+  const auto row = static_cast<std::size_t>(width);
+  const std::size_t step = down ? row : 1;
+  for (int y = down ? 1 : 0; y < height - (down ? 1 : 0); ++y)
+    for (int x = down ? 0 : 1; x < width - (down ? 0 : 1); ++x) {
+      const std::size_t i = static_cast<std::size_t>(y) * row + static_cast<std::size_t>(x);
+      slope[i] = plane[i + step] - plane[i - step];
+    }
+  return slope;
+}
+
+/// Depth of the clip's surface where there is one, else that of the nearest pixel before it in the
+/// row: rays that the clip ends see nothing of it.
+Plane fillClipDepth(const Camera& camera, const Clip& clip) {
+  Plane plane = makeClipDepth(camera, clip);
+  float last = static_cast<float>(camera.targetDepth());
+  for (float& depth : plane)
+    depth = last = std::isfinite(depth) ? depth : last;
+  return plane;
+}
+
+void addFeatures(const PreparedScene& scene, const FeatureBuffers& features, FilterInput& input) {
+  for (const Plane& plane : features.albedo)
+    input.features.push_back(plane);
+  // Where light scatters at surfaces, what it meets there is told by their normals.
+  for (const Plane& plane : scene.transfer().shading ? features.surfaceNormal : features.normal)
+    input.features.push_back(plane);
+  input.features.push_back(features.light);
+  const Plane depth = centerDepth(features);
+  input.features.push_back(computeSlope(depth, input.width, input.height, false));
+  input.features.push_back(computeSlope(depth, input.width, input.height, true));
+  input.features.push_back(depth);
+  if (!std::holds_alternative<ClipNone>(scene.clip()))
+    input.features.push_back(fillClipDepth(scene.camera(), scene.clip()));
+}
+
+bool hasHalfBuffers(const Film& film) {
+  return std::ranges::all_of(film.pixels(), [](const PixelSums& pixel) {
+    return pixel.isDeterministic || pixel.samples > 1;
+  });
+}
+
+} // namespace
+
+FilterInput makeFilterInput(const Film& film, const PreparedScene& scene) {
+  if (!film.hasIndependentHalves())
+    throw std::logic_error("a film without independent halves cannot be filtered");
+  FilterInput input{film.width(), film.height(), {}, {}, {}, {}, {}, hasHalfBuffers(film)};
+  input.isActive = findActivePixels(film, *scene.features());
+  fillHalfBuffers(film, input);
+  addFeatures(scene, *scene.features(), input);
+  return input;
+}
+
+} // namespace fenestra

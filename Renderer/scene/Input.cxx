@@ -1,0 +1,183 @@
+#include "scene/Input.h"
+
+#include "base/Error.h"
+#include "files/medical/DicomSeries.h"
+#include "files/medical/VolumeReader.h"
+#include "files/slicer/ScenePlan.h"
+#include "io/InputRegistry.h"
+
+#include <algorithm>
+#include <mutex>
+
+namespace fenestra {
+namespace {
+
+ScenePlan makePlan(const MrmlScene& scene, const InputChoice& choice, bool needsSegmentation) {
+  return planRender(scene.document, {choice.volume, choice.segmentation, needsSegmentation});
+}
+
+VolumeInput readVolumeFiles(const std::filesystem::path& path,
+                            const std::optional<std::string>& choice) {
+  if (!isFolder(path))
+    return {readVolume(path), {path.string()}};
+  const DicomSeries series = chooseSeries(findDicomSeries(path), choice, path.string());
+  VolumeInput input{readDicomVolume(series)};
+  for (const auto& file : series.files)
+    input.files.push_back(file.string());
+  return input;
+}
+
+std::optional<SegmentNames> readSegmentNames(const InputChoice& choice) {
+  if (!choice.segmentation)
+    return std::nullopt;
+  return SegmentNames{*choice.segmentation, readSegmentInfos(*choice.segmentation, choice.labels)};
+}
+
+/// Labels with the files that they were read from.
+SegmentsInput makeSegments(Segmentation segmentation, InputFiles files) {
+  if (fileExists(segmentation.namesSource()))
+    files.push_back(segmentation.namesSource());
+  return {std::move(segmentation), std::move(files)};
+}
+
+} // namespace
+
+struct Input::SharedState {
+  /// Result of work(scene), which no other thread uses meanwhile. Opens the scene at the first
+  /// call.
+  template <typename Work>
+  auto withScene(Work&& work) {
+    const std::lock_guard lock(mutex);
+    if (!scene)
+      scene.emplace(path);
+    scene->files.resetUsedFiles();
+    return work(*scene);
+  }
+
+  std::filesystem::path path;
+  bool isScene = false;
+  std::mutex mutex = {};
+  std::optional<MrmlScene> scene = {};
+};
+
+Input::Input(std::filesystem::path path) : m_state(std::make_shared<SharedState>()) {
+  m_state->isScene = isSceneFile(path);
+  m_state->path = std::move(path);
+}
+
+const std::filesystem::path& Input::path() const {
+  return m_state->path;
+}
+
+const MrmlDocument* Input::document() const {
+  const MrmlScene* opened = scene();
+  return opened ? &opened->document : nullptr;
+}
+
+MrmlScene* Input::scene() const {
+  if (!m_state->isScene)
+    return nullptr;
+  return m_state->withScene([](MrmlScene& scene) { return &scene; });
+}
+
+VolumeInput Input::volume(const std::optional<std::string>& choice) const {
+  if (!m_state->isScene)
+    return readVolumeFiles(path(), choice);
+  return m_state->withScene([&](MrmlScene& scene) {
+    Volume volume = readSceneVolume(scene, *makePlan(scene, {choice}, false).volume);
+    return VolumeInput{std::move(volume), scene.files.usedFiles()};
+  });
+}
+
+SceneSettings Input::settings(const std::optional<std::string>& volume, bool followsCamera) const {
+  if (!m_state->isScene)
+    return {};
+  return m_state->withScene([&](MrmlScene& scene) {
+    const ScenePlan plan = makePlan(scene, {volume}, false);
+    SceneSettings settings;
+    if (plan.roi)
+      settings.crop = readSceneRoi(scene, *plan.roi);
+    if (plan.camera && followsCamera)
+      settings.camera = readSceneCamera(scene, *plan.camera);
+    if (plan.view) {
+      const auto [bottom, top] = readViewBackground(*plan.view);
+      settings.background = Background::makeGradient(bottom, top);
+    }
+    settings.warnings = plan.warnings;
+    settings.files = scene.files.usedFiles();
+    return settings;
+  });
+}
+
+SceneTransfer Input::transfer(const std::optional<std::string>& volume,
+                              const std::array<double, 2>& range) const {
+  if (!m_state->isScene)
+    return {};
+  return m_state->withScene([&](MrmlScene& scene) {
+    const ScenePlan plan = makePlan(scene, {volume}, false);
+    SceneTransfer result;
+    if (plan.sliceDisplay)
+      result = {convertSliceDisplay(*plan.rendering, *plan.sliceDisplay, range),
+                "the volume's window and level"};
+    if (!result.transfer && plan.property)
+      result = {readSceneProperty(scene, *plan.property), plan.property->name};
+    result.files = scene.files.usedFiles();
+    return result;
+  });
+}
+
+std::optional<SegmentNames> Input::segmentNames(const InputChoice& choice) const {
+  if (!m_state->isScene)
+    return readSegmentNames(choice);
+  return m_state->withScene([&](MrmlScene& scene) {
+    const bool hasSegmentation = std::ranges::any_of(scene.document.nodes(), isSegmentation);
+    const ScenePlan plan = makePlan(scene, choice, hasSegmentation);
+    if (!plan.segmentation)
+      return readSegmentNames(choice);
+    return std::optional(
+        SegmentNames{scene.document.source() + ": " + describeNode(*plan.segmentation),
+                     readSceneSegmentInfos(scene, *plan.segmentation, choice.labels)});
+  });
+}
+
+SegmentsInput Input::segments(const InputChoice& choice, const Grid& volume) const {
+  const auto readFile = [&] {
+    return makeSegments(readSegmentation(*choice.segmentation, &volume, choice.labels),
+                        {*choice.segmentation});
+  };
+  if (!m_state->isScene)
+    return readFile();
+  return m_state->withScene([&](MrmlScene& scene) {
+    const ScenePlan plan = makePlan(scene, choice, true);
+    if (!plan.segmentation && fileExists(*choice.segmentation))
+      return readFile();
+    if (!plan.segmentation)
+      throw inputError(scene.document.source(),
+                       "has no segmentation \"" + *choice.segmentation +
+                           "\", and there is no file of that name; fenestra inspect lists what "
+                           "there is");
+    Segmentation segmentation =
+        readSceneSegmentation(scene, *plan.segmentation, &volume, choice.labels);
+    segmentation.setSource(scene.files.translatePaths(segmentation.source()));
+    return makeSegments(std::move(segmentation), scene.files.usedFiles());
+  });
+}
+
+SceneTransfer Input::property(const std::string& name) const {
+  if (!m_state->isScene)
+    return {};
+  return m_state->withScene([&](MrmlScene& scene) {
+    SceneTransfer result;
+    for (const MrmlNode* node : scene.document.findByTag("VolumeProperty"))
+      if (!result.transfer && (node->name == name || node->id == name))
+        result = {readSceneProperty(scene, *node), node->name, scene.files.usedFiles()};
+    return result;
+  });
+}
+
+std::vector<std::string> Input::propertyNames() const {
+  const MrmlDocument* scene = document();
+  return scene ? fenestra::listPropertyNames(*scene) : std::vector<std::string>();
+}
+
+} // namespace fenestra

@@ -1,0 +1,256 @@
+#include "scene/Inspection.h"
+
+#include "base/Color.h"
+#include "files/medical/DicomSeries.h"
+#include "io/InputRegistry.h"
+#include "scene/Defaults.h"
+#include "scene/InspectionParts.h"
+#include "scene/SegmentMaterials.h"
+
+namespace fenestra {
+namespace {
+
+constexpr std::array voxelTypes = {"uint8", "int16", "uint16", "float"}; ///< as in Voxels
+
+/// True if most pairs of neighbouring voxels above the least value are equal, as in label maps (at
+/// least 59 % in those at hand) and in no scan (at most 8 %).
+bool isLikelyLabelMap(const Volume& volume) {
+  constexpr double most = 0.5;
+  if (volume.minimum < 0.0 || std::holds_alternative<LargeArray<float>>(volume.voxels))
+    return false;
+  const auto areMostEqual = [&](const auto& voxels) {
+    const auto isLeast = [&](auto voxel) { return static_cast<double>(voxel) == volume.minimum; };
+    std::size_t pairs = 0, equal = 0;
+    for (std::size_t i = 1; i < voxels.size(); ++i)
+      if (!isLeast(voxels[i]) || !isLeast(voxels[i - 1])) {
+        ++pairs;
+        equal += voxels[i] == voxels[i - 1];
+      }
+    return static_cast<double>(equal) > most * static_cast<double>(pairs);
+  };
+  return std::visit(areMostEqual, volume.voxels);
+}
+
+bool hasSegmentationName(const std::filesystem::path& path) {
+  return path.filename().string().find(".seg.") != std::string::npos;
+}
+
+/// Properties of a volume that the rest of an inspection needs: the volume itself is released
+/// before segments are read.
+struct FileVolume {
+  std::optional<Grid> grid = {};     ///< nothing: unreadable
+  std::optional<Error> failure = {}; ///< of a render; may have come after the volume was read
+  bool isLikelyLabelMap = false;
+};
+
+/// Adds what a render uses of the input, its refusal and its warnings.
+FileVolume inspectVolume(const RenderRequest& request, const Input& input, Json& report) {
+  FileVolume result;
+  const auto add = [&](const Volume& volume, const std::vector<std::string>& warnings) {
+    report["render"] = makeRenderReport();
+    report["render"]["volume"] = volumeJson(volume);
+    report["render"]["look"] = defaultTransferJson(volume);
+    report["warnings"] = warnings;
+    result.grid = volume.grid;
+    result.isLikelyLabelMap = isLikelyLabelMap(volume);
+  };
+  try {
+    const PreparedScene scene(request, input);
+    add(scene.volume(), scene.warnings());
+    report["render"]["camera"] = poseJson(scene.camera().pose());
+  } catch (const Error& error) {
+    result.failure = error;
+    report["refused"] = error.what();
+    Json unused;
+    if (const auto read = tryRead([&] { return input.volume(request.volume); }, unused))
+      add(read->volume, read->volume.warnings);
+  }
+  return result;
+}
+
+/// Colour, display-encoded; of several knots each with its scalar; null: none.
+Json colorJson(const std::optional<ColorFunction>& color) {
+  if (!color)
+    return nullptr;
+  if (color->knots().size() == 1)
+    return encodeSrgb(color->knots().front().value);
+  Json knots;
+  for (const auto& [scalar, value] : color->knots())
+    knots.push_back({scalar, encodeSrgb(value)});
+  return knots;
+}
+
+const char* kindName(const Material& material) {
+  return material.kind == MaterialKind::tint ? "tint" : "matter";
+}
+
+Json materialJson(const SegmentMaterial& material) {
+  const SegmentMedium& medium = material.medium;
+  return {{"name", nullIfEmpty(material.name)},
+          {"kind", kindName(medium.material)},
+          {"color", colorJson(toReflectanceColor(medium.material))},
+          {"priority", medium.priority},
+          {"clip", medium.isClipped},
+          {"density", medium.density},
+          {"why", material.reason}};
+}
+
+/// The library's materials, by name.
+Json libraryJson() {
+  Json all = Json::array();
+  for (const auto& [name, material] : materialLibrary().materials)
+    all.push_back({{"name", name},
+                   {"kind", kindName(material)},
+                   {"color", colorJson(toReflectanceColor(material))}});
+  return all;
+}
+
+Json inspectFiles(const RenderRequest& request, const Input& input) {
+  const bool isDicom = isFolder(request.input);
+  Json report = makeReport(request, isDicom ? "dicom" : "volume");
+  if (isDicom)
+    for (const DicomSeries& series : findDicomSeries(request.input))
+      report["series"].push_back({{"uid", series.uid},
+                                  {"number", nullIfEmpty(series.number)},
+                                  {"description", nullIfEmpty(series.description)},
+                                  {"modality", nullIfEmpty(series.modality)},
+                                  {"files", series.files.size()}});
+  const FileVolume volume = inspectVolume(request, input, report);
+  Json& segmentations = report["segmentations"];
+  const Grid* grid = volume.grid ? &*volume.grid : nullptr;
+  if (!isDicom && (!grid || volume.isLikelyLabelMap || hasSegmentationName(request.input))) {
+    segmentations.push_back(inspectSegmentationFile(request.input, grid, request.labels));
+    if (!grid && !segmentations.back()["problem"].is_null())
+      throw *volume.failure;
+    report["kind"] = "segmentation";
+  }
+  if (request.segmentation) {
+    segmentations.push_back(inspectSegmentationFile(*request.segmentation, grid, request.labels));
+    segmentations.back()["used"] = true;
+    if (grid)
+      report["render"]["segmentation"] = nullIfEmpty(*request.segmentation);
+  }
+  return report;
+}
+
+} // namespace
+
+Json nullIfEmpty(const std::string& text) {
+  return text.empty() ? Json(nullptr) : Json(text);
+}
+
+Json makeReport(const RenderRequest& request, const char* kind) {
+  Json report = {{"input", request.input.string()}, {"kind", kind}, {"version", nullptr}};
+  for (const char* list : {"volumes", "segmentations", "volumeRenderings", "volumeProperties",
+                           "rois", "views", "cameras", "transforms", "series"})
+    report[list] = Json::array();
+  report["others"] = Json::object();
+  report["materials"] = libraryJson();
+  report["render"] = nullptr;
+  report["refused"] = nullptr;
+  report["warnings"] = Json::array();
+  report["ignored"] = Json::array();
+  return report;
+}
+
+Json makeRenderReport() {
+  Json use;
+  for (const char* part :
+       {"volume", "look", "crop", "camera", "background", "segmentation", "segmentationProblem"})
+    use[part] = nullptr;
+  use["stored"] = Json::array();
+  return use;
+}
+
+Json volumeJson(const Volume& volume, const std::string& id) {
+  return {{"id", nullIfEmpty(id)},
+          {"name", volume.name},
+          {"size", volume.grid.size},
+          {"spacing", volume.grid.spacing()},
+          {"center", volume.grid.worldCenter()},
+          {"voxelType", voxelTypes[volume.voxels.index()]},
+          {"range", {volume.minimum, volume.maximum}},
+          {"transforms", Json::array()}};
+}
+
+Json transferJson(const char* source, const std::string& id, const std::string& name) {
+  return {{"source", source}, {"id", nullIfEmpty(id)}, {"name", nullIfEmpty(name)}};
+}
+
+Json defaultTransferJson(const Volume& volume) {
+  const std::optional<std::string> preset = chooseTransferPreset(volume);
+  return transferJson(preset ? "preset" : "range", "", preset.value_or(""));
+}
+
+Json poseJson(const CameraPose& pose, const std::string& id, const std::string& name) {
+  Json camera = {{"id", nullIfEmpty(id)}, {"name", nullIfEmpty(name)}};
+  addPose(pose, camera);
+  return camera;
+}
+
+void addPose(const CameraPose& pose, Json& camera) {
+  const bool perspective = pose.projection == Projection::perspective;
+  camera["projection"] = perspective ? "perspective" : "orthographic";
+  camera["position"] = pose.position;
+  camera["target"] = pose.target;
+  camera["up"] = pose.up;
+  camera[perspective ? "angle" : "scale"] = perspective ? pose.angle : pose.scale;
+}
+
+Json nodeJson(const std::string& id, const std::string& name) {
+  return {{"id", nullIfEmpty(id)}, {"name", name},  {"files", Json::array()},
+          {"transform", nullptr},  {"used", false}, {"problem", nullptr}};
+}
+
+Json segmentationMembers(const char* kind, bool shown) {
+  return {{"kind", kind},       {"shown", shown},       {"size", nullptr},
+          {"spacing", nullptr}, {"namesFrom", nullptr}, {"segments", Json::array()}};
+}
+
+void addSegments(const Segmentation& segmentation, const std::map<std::string, bool>& shown,
+                 Json& json) {
+  constexpr double cubicMmInMl = 1000.0;
+  const Grid& grid = segmentation.grid();
+  json["size"] = grid.size;
+  if (!segmentation.namesSource().empty())
+    json["namesFrom"] = segmentation.namesSource();
+  json["spacing"] = grid.spacing();
+  const double milliliters = std::abs(grid.indexToWorld.linear().determinant()) / cubicMmInMl;
+  const std::vector<SegmentStatistics> statistics = segmentation.statistics();
+  const std::vector<SegmentMaterial> materials =
+      assignMaterials(segmentation.segments(), materialLibrary());
+  for (std::size_t i = 0; i < statistics.size(); ++i) {
+    const SegmentInfo& info = segmentation.segments()[i];
+    const auto& [voxels, bounds] = statistics[i];
+    const auto visible = shown.find(info.id);
+    Json segment = {{"id", info.id},
+                    {"name", info.name},
+                    {"labelValue", info.labelValue},
+                    {"layer", info.layer},
+                    {"color", info.color},
+                    {"voxels", voxels},
+                    {"milliliters", milliliters * static_cast<double>(voxels)},
+                    {"bounds", nullptr},
+                    {"shown", visible == shown.end() || visible->second},
+                    {"material", materialJson(materials[i])}};
+    if (voxels > 0)
+      segment["bounds"] = {{"lower", bounds.lower}, {"upper", bounds.upper}};
+    json["segments"].push_back(std::move(segment));
+  }
+}
+
+Json inspectSegmentationFile(const std::filesystem::path& path, const Grid* volume,
+                             const std::optional<std::string>& labels) {
+  Json json = nodeJson("", path.string());
+  json.update(segmentationMembers("file", true));
+  if (const auto segmentation =
+          tryRead([&] { return readSegmentation(path, volume, labels); }, json["problem"]))
+    addSegments(*segmentation, {}, json);
+  return json;
+}
+
+Inspection inspectInput(const RenderRequest& request, const Input& input) {
+  return input.document() ? inspectScene(request, input) : inspectFiles(request, input);
+}
+
+} // namespace fenestra

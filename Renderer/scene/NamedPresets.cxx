@@ -1,0 +1,151 @@
+#include "scene/NamedPresets.h"
+
+#include "base/Error.h"
+#include "files/appearance/LightReader.h"
+#include "files/slicer/MrmlScene.h"
+#include "files/slicer/SlicerPresets.h"
+#include "io/EmbeddedResources.h"
+#include "io/JsonNode.h"
+#include "io/MessageText.h"
+#include "io/SystemErrors.h"
+#include "scene/SegmentMaterials.h"
+
+#include <optional>
+
+namespace fenestra {
+namespace {
+
+/// Text of the preset `name` under Resources/<kind>/; empty: none.
+std::string_view findBuiltinPreset(const std::string& kind, const std::string& name) {
+  return findResource(kind + "/" + name + ".json");
+}
+
+std::string joinNames(const std::vector<std::string>& names) {
+  return join(names, ", ", [](const std::string& name) { return sanitize(name); });
+}
+
+bool isExistingFile(const std::string& name) {
+  std::error_code failed;
+  return std::filesystem::exists(name, failed);
+}
+
+/// Error for an unknown name. A path in a folder without permission gets a reading error; any other
+/// name could be a preset's as well.
+Error makeUnknownError(const std::string& flag, const std::string& name, const std::string& known) {
+  std::error_code failed;
+  if (name.find('/') != std::string::npos && !std::filesystem::exists(name, failed) && failed)
+    return readError(name, failed.value(), "check the permissions of its folder");
+  return inputError(name,
+                    "no such file, and no preset of that name; --" + flag + " takes " + known);
+}
+
+/// Volume properties of a scene, by name or id, and Slicer's presets.
+class SlicerTransfers {
+public:
+  explicit SlicerTransfers(const Input& input) : m_input(input) {
+    if (const auto file = findSlicerPresets())
+      m_presets.emplace(readText(*file), file->string());
+  }
+
+  std::optional<NamedTransfer> find(const std::string& name) {
+    if (SceneTransfer stored = m_input.property(name); stored.transfer)
+      return NamedTransfer{{std::move(*stored.transfer)}, name, std::move(stored.files)};
+    if (m_presets)
+      for (const MrmlNode* node : m_presets->findByTag("VolumeProperty"))
+        if (node->name == name)
+          return NamedTransfer{
+              {readInlineProperty(*m_presets, *node)}, name, {m_presets->source()}};
+    return std::nullopt;
+  }
+
+  /// Known names, for a message.
+  std::string knownNames() const {
+    const std::vector<std::string> inScene = m_input.propertyNames();
+    std::string text = inScene.empty() ? "" : "; of the scene " + joinNames(inScene);
+    text += m_presets ? "; of Slicer " + joinNames(listPropertyNames(*m_presets))
+                      : "; Slicer's own presets are known where SLICER_HOME names its folder";
+    return text;
+  }
+
+private:
+  const Input& m_input;
+  std::optional<MrmlDocument> m_presets; ///< Slicer's own
+};
+
+} // namespace
+
+std::vector<std::string> listBuiltinPresets(const std::string& kind) {
+  std::vector<std::string> names;
+  for (const std::string& path : listResources(kind + "/"))
+    if (path.ends_with(".json"))
+      names.push_back(std::filesystem::path(path).stem());
+  return names;
+}
+
+bool isFileName(const std::string& kind, const std::string& name) {
+  return findBuiltinPreset(kind, name).empty() &&
+         (name.find_first_of("/.") != std::string::npos || isExistingFile(name));
+}
+
+NamedTransfer findTransfer(const std::string& name, const Input& input) {
+  if (isInlineJson(name))
+    return {parseTransferJson(name, "--transfer"), "--transfer"};
+  if (const std::string_view text = findBuiltinPreset("transfer", name); !text.empty())
+    return {parseTransferJson(text, name), name};
+  if (isExistingFile(name))
+    return {readTransferFile(name), name, {name}};
+  SlicerTransfers slicer(input);
+  if (auto transfer = slicer.find(name))
+    return std::move(*transfer);
+  throw makeUnknownError("transfer", name,
+                         "a file or one of " + joinNames(listBuiltinPresets("transfer")) +
+                             slicer.knownNames());
+}
+
+bool isTransferFile(const std::string& name, const Input& input) {
+  if (isInlineJson(name) || !isFileName("transfer", name))
+    return false;
+  return name.find('/') != std::string::npos || isExistingFile(name) ||
+         !SlicerTransfers(input).find(name);
+}
+
+NamedLights findLights(const std::string& name) {
+  if (isInlineJson(name))
+    return {parseLights(name, "--lights"), "--lights"};
+  if (const std::string_view text = findBuiltinPreset("lights", name); !text.empty())
+    return {parseLights(text, name), name};
+  if (!isExistingFile(name))
+    throw makeUnknownError("lights", name,
+                           "a file or one of " + joinNames(listBuiltinPresets("lights")));
+  return {readLights(name), name, {name}};
+}
+
+bool isLightsFile(const std::string& name) {
+  return isInlineJson(name) ? hasFileReference(name, "--lights") : isFileName("lights", name);
+}
+
+NamedMaterials findMaterials(const std::string& name) {
+  if (!isMaterialsFile(name)) {
+    NamedMaterials materials{materialLibrary(), name};
+    materials.table.hasContrast = materials.table.detectsSkin = name == autoMaterials;
+    return materials;
+  }
+  if (!isExistingFile(name))
+    throw makeUnknownError("materials", name, "none, auto, library, or a file");
+  return {parseMaterials(readText(name), name, materialLibrary()), name, {name}};
+}
+
+bool isMaterialsFile(const std::string& name) {
+  return name != noMaterials && name != autoMaterials && name != "library";
+}
+
+OrganPreset findOrganPreset(const std::string& name) {
+  if (const std::string_view text = findBuiltinPreset("presets", name); !text.empty())
+    return parsePreset(text, name);
+  if (!isExistingFile(name))
+    throw makeUnknownError("preset", name,
+                           "auto, a file, or one of " + joinNames(listBuiltinPresets("presets")));
+  return parsePreset(readText(name), name);
+}
+
+} // namespace fenestra

@@ -1,0 +1,195 @@
+#include "scene/PreparedScene.h"
+
+#include "scene/SegmentMaterials.h"
+#include "base/Text.h"
+
+#include <algorithm>
+
+namespace fenestra {
+namespace {
+
+void append(const std::vector<std::string>& from, std::vector<std::string>& to) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+} // namespace
+
+PreparedScene::PreparedScene(const RenderRequest& request)
+    : PreparedScene(request, Input(request.input)) {}
+
+PreparedScene::PreparedScene(const RenderRequest& request, const Input& input)
+    : m_request(request), m_input(input) {
+  prepare();
+}
+
+PreparedScene PreparedScene::withRequest(const RenderRequest& request) const {
+  PreparedScene scene = *this;
+  scene.m_request = request;
+  if (request.input != m_input.path())
+    scene.m_input = Input(request.input);
+  scene.prepare();
+  return scene;
+}
+
+void PreparedScene::prepare() {
+  const RenderRequest& r = m_request;
+  std::apply([](auto&... stage) { (stage.markUnused(), ...); }, stages(*this));
+  const auto lights = m_namedLights.get(r.lights, r.environment, r.environmentMap); // errors early
+  if (r.transfer)
+    m_namedTransfer.get(*r.transfer, m_input);
+  const auto volume = m_volume.get(m_input, r.volume);
+  const auto settings = m_settings.get(m_input, r.volume, r.view.isSceneCamera());
+  if (r.materials.value_or(noMaterials) != noMaterials || !r.focus.empty())
+    m_segments.get(m_input, {r.volume, r.segmentation, r.labels}, volume->volume.grid);
+  const auto focus =
+      m_focus.get(m_segments.result(), r.focus, r.focusStyle.shaping, volume->volume.grid);
+  if (!r.transfer)
+    m_sceneTransfer.get(m_input, r.volume, {volume->volume.minimum, volume->volume.maximum});
+  const auto transfer = m_transfer.get(volume, m_namedTransfer.result(), m_sceneTransfer.result(),
+                                       r.transferModality, r.shift, r.density);
+  if (const std::string name = resolveMaterials(m_segments.result()); name != noMaterials) {
+    makeTint(name);
+    if (!isTintOnly(*m_plan))
+      m_mixture.get(m_plan.result(), currentTint(), transfer);
+  }
+  m_focusWarnings.get(volume, focus, transfer);
+  if (r.view.isAutomatic() && focus->mask)
+    m_view.get(volume, settings, focus, transfer);
+  const auto minMaxGrid =
+      m_minMaxGrid.get(volume, MajorantGrid::requiredPadding(transfer->function));
+  const Box bounds = settings->camera ? Box() : *m_occupiedBounds.get(volume, minMaxGrid, transfer);
+  const auto camera =
+      m_camera.get(r.view, r.width, r.height, volume, settings, bounds, focus, m_view.result());
+  const auto placed = m_lights.get({lights, camera, focus}, volume);
+  const auto clip = m_clip.get(r.clip, r.measure, r.steadyDegrees, volume, settings, focus, camera);
+  const double extinction = r.focusStyle.contextExtinction;
+  const double saturation =
+      m_contrast.get(volume, focus, transfer, currentTint(), r.focusStyle.contextSaturation)
+          ->saturation;
+  if (focus->mask && (extinction != 1.0 || saturation != 1.0))
+    m_style.get(focus, extinction, saturation);
+  const auto majorants =
+      m_majorants.get(volume, minMaxGrid, transfer, clip, m_style.result(), m_mixture.result());
+  if (r.features)
+    m_features.get(volume, settings, transfer, tintOrMixture(), placed, camera, clip,
+                   m_style.result(), majorants);
+}
+
+std::string PreparedScene::resolveMaterials(const Handle<SegmentsInput>& segments) const {
+  const RenderRequest& r = m_request;
+  if (r.materials)
+    return *r.materials;
+  const bool isAdjusted = !r.focus.empty() && !r.focusStyle.contextSaturation;
+  return isAdjusted && isAnyKnown(segments->segmentation, r.focus) ? autoMaterials : noMaterials;
+}
+
+void PreparedScene::makeTint(const std::string& name) {
+  const RenderRequest& r = m_request;
+  const auto materials = m_materials.get(name);
+  const bool isAdjusted = materials->hasColorAdjustment();
+  const auto hasVoxels = m_hasVoxels.get(m_segments.result());
+  if (materials->table.detectsSkin)
+    m_skin.get(m_volume.result());
+  const auto plan = m_plan.get(m_segments.result(), hasVoxels, materials, r.materialChanges,
+                               isAdjusted ? r.focus : std::vector<std::string>(), m_skin.result());
+  const auto weights = m_labelWeights.get(m_segments.result(), plan->parts, m_skin.result(),
+                                          r.focusStyle.shaping.smoothing, volume().grid);
+  const auto transfer = m_transfer.result();
+  const auto tint = m_tint.get(plan, weights, transfer->function.g);
+  if (!isAdjusted || !focus())
+    return;
+  const auto interfaces =
+      m_interfaces.get(m_volume.result(), m_focus.result(), transfer, weights, plan->isFocus);
+  const auto contrast = m_tintContrast.get(interfaces, plan, tint, materials, transfer,
+                                           r.focusStyle.contextSaturation);
+  m_contrastedTint.get(tint, plan, contrast, transfer);
+}
+
+StageSeconds PreparedScene::seconds() const {
+  const ClipResult none, &clip = m_clip.isUpdated() ? *m_clip : none;
+  return {.load = m_namedTransfer.seconds() + m_volume.seconds() + m_settings.seconds() +
+                  m_segments.seconds() + m_focus.seconds() + m_sceneTransfer.seconds() +
+                  m_transfer.seconds(),
+          .materials = m_materials.seconds() + m_hasVoxels.seconds() + m_plan.seconds() +
+                       m_skin.seconds() + m_labelWeights.seconds() + m_tint.seconds() +
+                       m_interfaces.seconds() + m_tintContrast.seconds() +
+                       m_contrastedTint.seconds() + m_mixture.seconds(),
+          .classify = m_minMaxGrid.seconds() + m_occupiedBounds.seconds() + m_contrast.seconds() +
+                      m_style.seconds() + m_majorants.seconds(),
+          .focus = clip.focusSeconds,
+          .spline = clip.splineSeconds,
+          .fill = clip.fillSeconds,
+          .features = m_features.seconds()};
+}
+
+UpdatedStages PreparedScene::updatedStages() const {
+  return {m_volume.isUpdated(),
+          m_focus.isUpdated(),
+          m_transfer.isUpdated(),
+          m_camera.isUpdated(),
+          m_lights.isUpdated(),
+          m_clip.isUpdated(),
+          m_minMaxGrid.isUpdated(),
+          m_majorants.isUpdated(),
+          m_tint.isUpdated() || m_contrastedTint.isUpdated(),
+          m_labelWeights.isUpdated()};
+}
+
+std::string PreparedScene::choices() const {
+  const RenderRequest& r = m_request;
+  const char* const from = r.transferModality ? " (preset)" : "";
+  std::vector<std::string> parts = {"look: " + transferName() + from};
+  if (r.environment || r.environmentMap)
+    parts.push_back("light: all around");
+  else
+    parts.push_back("light: " + (r.lights.starts_with('{') ? "its own" : r.lights));
+  std::vector<std::string> labels;
+  if (m_segments.result() && !m_segments->segmentation.namesSource().empty())
+    labels.push_back("names from " + m_segments->segmentation.namesSource());
+  if (m_focus->mask && m_focus->mask->smoothing > 0.0)
+    labels.push_back("smoothed " + toString(m_focus->mask->smoothing, 3) + " mm");
+  if (!labels.empty())
+    parts.push_back("labels: " + join(labels, ", "));
+  if (tint()) {
+    const std::size_t colors = tint()->albedo.size() - 1;
+    parts.push_back(concat("materials: ", m_materials->source, ", ", colors,
+                           colors == 1 ? " colour" : " colours",
+                           m_plan->hasDetectedSkin() ? ", skin found" : ""));
+  }
+  const double softness = std::visit([](const auto& kind) { return kind.edge.softness; }, clip());
+  if (softness > 0.0)
+    parts.push_back("cut: soft over " + toString(softness, 3) + " mm");
+  if (const std::string text = tintContrast() ? summary(*tintContrast()) : summary(contrast());
+      !text.empty())
+    parts.push_back("contrast: " + text);
+  return join(parts, "; ");
+}
+
+std::vector<std::string> PreparedScene::warnings() const {
+  std::vector<std::string> warnings = m_request.omissions;
+  append(volume().warnings, warnings);
+  append(m_settings->warnings, warnings);
+  if (m_segments.result())
+    append(m_segments->segmentation.warnings(), warnings);
+  append(m_transfer->warnings, warnings);
+  append(*m_focusWarnings, warnings);
+  if (domain().indexCorners().empty())
+    warnings.emplace_back("the cropping box lies outside the volume: nothing is left of it");
+  append(m_clip->warnings, warnings);
+  return warnings;
+}
+
+std::vector<std::string> PreparedScene::files() const {
+  std::vector<std::string> files;
+  const auto add = [&files](const auto& stage) {
+    if constexpr (requires { stage->files; })
+      if (stage.result())
+        append(stage->files, files);
+  };
+  std::apply([&](const auto&... stage) { (add(stage), ...); }, stages(*this));
+  std::ranges::sort(files);
+  files.erase(std::unique(files.begin(), files.end()), files.end());
+  return files;
+}
+
+} // namespace fenestra

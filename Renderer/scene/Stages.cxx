@@ -1,0 +1,346 @@
+#include "scene/Stages.h"
+
+#include "base/Error.h"
+#include "base/TextStream.h"
+#include "clip/surface/SteadySurface.h"
+#include "files/appearance/LightReader.h"
+#include "model/masks/OuterLayer.h"
+#include "scene/Defaults.h"
+
+namespace fenestra {
+namespace {
+
+TransferFunction fitToVolume(const TransferFile& transfer, const Volume& volume) {
+  if (!transfer.isRelative)
+    return transfer.function;
+  const auto [low, high] = findRobustRange(volume);
+  return transfer.mapRange(low, high);
+}
+
+constexpr std::array modalities = {"CT", "MR", "ultrasound"}; ///< as in Modality
+
+/// Throws Error (input) above a limit of the extinction: null collisions take time in proportion to
+/// the greatest extinction, and a file could make paths endless.
+void checkExtinction(const TransferFunction& transfer, const Volume& volume,
+                     const std::string& name) {
+  constexpr double maxDepth = 1e7; // optical depth across the volume
+  double greatest = 0.0;
+  for (const auto& knot : transfer.extinction.knots())
+    greatest = std::max(greatest, knot.value[0]);
+  const double allowed = maxDepth / (2.0 * volume.grid.boundingRadius());
+  if (greatest <= allowed)
+    return;
+  TextWriter line;
+  line << "extinction: reaches " << greatest << " per mm, and " << allowed
+       << " is opaque in any picture of this volume; lower it or --density";
+  throw inputError(name, line.str());
+}
+
+/// Focus depths at the viewport's pixels, mm.
+std::vector<double> viewportDepths(const FocusDepth& focus, const Camera& camera) {
+  std::vector<double> depths;
+  for (int row = 0; row < camera.height(); ++row)
+    for (int column = 0; column < camera.width(); ++column)
+      depths.push_back(focus.depth.at(focus.depth.viewportSample(column, row)));
+  return depths;
+}
+
+bool hasFrame(LightFrame frame, const Light& light) {
+  const auto hasKindFrame = [frame](const auto& kind) {
+    if constexpr (requires { kind.frame; })
+      return kind.frame == frame;
+    else
+      return false;
+  };
+  return std::visit(hasKindFrame, light);
+}
+
+bool hasAnyFrame(LightFrame frame, const std::vector<Light>& lights) {
+  return std::ranges::any_of(lights, [&](const Light& light) { return hasFrame(frame, light); });
+}
+
+/// Mean of the voxels' centres, weighted by the indicator, world mm; the focus is not empty.
+Vec3 computeCentroid(const Mask& focus) {
+  const Size3& size = focus.grid.size;
+  Vec3 moment = Vec3::Zero();
+  double weight = 0.0;
+  std::size_t i = 0;
+  for (std::int64_t z = 0; z < size.z(); ++z)
+    for (std::int64_t y = 0; y < size.y(); ++y)
+      for (std::int64_t x = 0; x < size.x(); ++x) {
+        const double indicator = focus.voxels[i++];
+        moment += indicator * Vec3(Size3(x, y, z).cast<double>());
+        weight += indicator;
+      }
+  return focus.grid.indexToWorld * Vec3(moment / weight);
+}
+
+/// True for light from all around, which --environment replaces.
+bool isEnvironment(const Light& light) {
+  return std::holds_alternative<EnvironmentLight>(light) || std::holds_alternative<SkyLight>(light);
+}
+
+const Mask* maskOrNull(const FocusHandle& focus) {
+  return focus->mask ? &*focus->mask : nullptr;
+}
+
+Domain makeDomain(const VolumeHandle& volume, const SettingsHandle& settings) {
+  return {volume->volume.grid, settings->crop};
+}
+
+/// Transfer function of chooseTransfer, neither moved nor multiplied.
+TransferChoice selectTransfer(const Volume& volume, const Handle<NamedTransfer>& named,
+                              const Handle<SceneTransfer>& scene,
+                              const std::optional<Modality>& madeFor) {
+  std::vector<std::string> warnings;
+  if (named && !madeFor && named->source.starts_with("ct-") && !canSuit(Modality::ct, volume))
+    warnings.push_back("the transfer function " + named->source +
+                       " is made for CT, which this volume does not seem to be; --shift moves it, "
+                       "or name another with --transfer");
+  if (named && (!madeFor || canSuit(*madeFor, volume)))
+    return {fitToVolume(named->transfer, volume), named->source, warnings};
+  if (named)
+    warnings.push_back(
+        concat("the preset's transfer function is made for ",
+               modalities[static_cast<std::size_t>(*madeFor)],
+               ", which this volume does not seem to be; the volume gets a look of its own, "
+               "or name one with --transfer"));
+  else if (scene->transfer)
+    return {*scene->transfer, scene->name};
+  const std::optional<std::string> preset = chooseTransferPreset(volume);
+  if (!preset)
+    return {makeRelativeTransfer(volume), "by the volume's range", warnings};
+  return {findTransfer(*preset, Input({})).transfer.function, *preset, warnings};
+}
+
+/// Plane of a request, else the focus's own.
+ClipPlane placePlane(const ClipRequest& request, const Camera& camera, const FocusHandle& focus,
+                     const std::optional<FocusDepth>& depth) {
+  if (!request.plane)
+    requireVisible(*depth, *maskOrNull(focus));
+  ClipPlane plane = request.plane ? ClipPlane{camera, request.plane->origin, request.plane->normal}
+                                  : fitFocusPlane(camera, *depth);
+  plane.point += request.surface.offset * camera.forward();
+  plane.edge = {0.0, request.softness.value_or(0.0)};
+  return plane;
+}
+
+ClipResult buildPlaneClip(const ClipRequest& request, bool measure, const Domain& domain,
+                          const FocusHandle& focus, const Camera& camera) {
+  ClipResult result;
+  const bool isPlane = request.mode == ClipMode::plane;
+  std::optional<FocusDepth> depth;
+  if (focus->mask && ((isPlane && !request.plane) || measure)) {
+    const Stopwatch watch;
+    depth = FocusTracer(camera, domain, *focus->mask).traceDepths();
+    result.focusDepth = viewportDepths(*depth, camera);
+    result.focusSeconds = watch.seconds();
+  }
+  if (isPlane)
+    result.clip = placePlane(request, camera, focus, depth);
+  if (isPlane && depth && measure)
+    result.boundary = measureBoundary(result.clip, domain, *focus->mask, *depth);
+  return result;
+}
+
+ClipResult buildDepthClip(const ClipRequest& request, ClipMode mode, const Domain& domain,
+                          const Mask& focus, const Camera& camera, bool measure,
+                          double steadyDegrees) {
+  SurfaceOptions options = request.surface;
+  options.mode = mode == ClipMode::hole      ? SurfaceMode::hole
+                 : mode == ClipMode::cutaway ? SurfaceMode::cutaway
+                                             : SurfaceMode::surface;
+  if (mode == ClipMode::ghost)
+    options.edge.ghost = double{static_cast<float>(request.ghost)};
+  options.edge.softness =
+      request.softness.value_or(mode == ClipMode::ghost ? 0.0 : chooseSmoothing(focus.grid));
+  ClippingSurface surface = buildSteadySurface(camera, domain, focus, options, steadyDegrees);
+  ClipResult result{.clip = std::move(surface.clip),
+                    .focusDepth = viewportDepths(surface.focus, camera),
+                    .mismatch = surface.mismatch,
+                    .controlPoints = std::move(surface.controlPoints),
+                    .warnings = std::move(surface.warnings),
+                    .focusSeconds = surface.focusSeconds,
+                    .splineSeconds = surface.splineSeconds,
+                    .fillSeconds = surface.fillSeconds};
+  if (measure)
+    result.boundary = measureBoundary(result.clip, domain, focus, surface.focus);
+  if (options.mode == SurfaceMode::surface && !result.mismatch && result.boundary)
+    result.mismatch = result.boundary->gap;
+  return result;
+}
+
+} // namespace
+
+NamedLights makeLights(const std::string& name, const std::optional<Rgb>& environment,
+                       const std::optional<std::filesystem::path>& environmentMap) {
+  NamedLights named = findLights(name);
+  if (!environment && !environmentMap)
+    return named;
+  std::erase_if(named.lights, isEnvironment);
+  EnvironmentLight replacement;
+  if (environment) {
+    replacement.radiance = *environment;
+  } else {
+    replacement.map = readEnvironmentMap(*environmentMap);
+    named.files.push_back(environmentMap->string());
+  }
+  named.lights.emplace_back(replacement);
+  return named;
+}
+
+FocusInput makeFocus(const Handle<SegmentsInput>& segments, const std::vector<std::string>& names,
+                     const MaskShaping& shaping, const Grid& volume) {
+  if (names.empty())
+    return {};
+  return {segments->segmentation.makeFocusMask(names, volume, shaping)};
+}
+
+TransferChoice chooseTransfer(const VolumeHandle& read, const Handle<NamedTransfer>& named,
+                              const Handle<SceneTransfer>& scene,
+                              const std::optional<Modality>& madeFor, double shift,
+                              double density) {
+  const Volume& volume = read->volume;
+  TransferChoice transfer = selectTransfer(volume, named, scene, madeFor);
+  transfer.function = transfer.function.withShift(shift).withDensity(density);
+  checkExtinction(transfer.function, volume, named ? transfer.source : volume.name);
+  if (transfer.function.shading && volume.minimum == volume.maximum)
+    throw inputError(volume.name,
+                     "every voxel has the same value, so there is no gradient for the transfer "
+                     "function's shading; use one with shading off (\"shading\": \"volume\")");
+  return transfer;
+}
+
+std::vector<std::string> checkFocus(const VolumeHandle& volume, const FocusHandle& focus,
+                                    const Handle<TransferChoice>& transfer) {
+  constexpr double most = 0.5;
+  if (!focus->mask)
+    return {};
+  const double fraction = transparentFraction(*focus->mask, volume->volume, transfer->function);
+  if (fraction <= most)
+    return {};
+  return {concat("the look ", transfer->source, " leaves ", std::lround(100.0 * fraction),
+                 " % of the focus transparent; name one made for it with --transfer or --preset")};
+}
+
+ViewDirection chooseView(const VolumeHandle& volume, const SettingsHandle& settings,
+                         const FocusHandle& focus, const Handle<TransferChoice>& transfer) {
+  return findBestView(
+      ViewScorer(volume->volume, makeDomain(volume, settings), transfer->function, *focus->mask));
+}
+
+Box findOccupiedBounds(const VolumeHandle& volume, const Handle<MinMaxGrid>& minMax,
+                       const Handle<TransferChoice>& transfer) {
+  return MajorantGrid(volume->volume.grid, *minMax, transfer->function, ClipNone())
+      .occupiedBounds();
+}
+
+Camera placeCamera(const ViewRequest& view, int width, int height, const VolumeHandle& volume,
+                   const SettingsHandle& settings, const Box& bounds, const FocusHandle& focus,
+                   const Handle<ViewDirection>& best) {
+  if (settings->camera)
+    return {adjustView(view, *settings->camera), width, height};
+  const Domain whole = makeDomain(volume, settings);
+  const Domain part = whole.intersect(bounds);
+  const bool isEmpty = part.indexCorners().empty();
+  return {frameView(view, isEmpty ? whole : part, maskOrNull(focus), width, height, best.get()),
+          width, height};
+}
+
+bool FramedLights::operator==(const FramedLights& other) const {
+  return lights == other.lights &&
+         (camera == other.camera || !hasAnyFrame(LightFrame::camera, lights->lights)) &&
+         (focus == other.focus || !hasAnyFrame(LightFrame::focus, lights->lights));
+}
+
+LightSet placeLights(const FramedLights& framed, const VolumeHandle& volume) {
+  const std::vector<Light>& lights = framed.lights->lights;
+  const Grid& grid = volume->volume.grid;
+  if (!hasAnyFrame(LightFrame::focus, lights))
+    return {lights, grid, *framed.camera};
+  if (const Mask* const focus = maskOrNull(framed.focus))
+    return {lights, grid, *framed.camera, computeCentroid(*focus)};
+  const auto first = std::ranges::find_if(
+      lights, [](const Light& light) { return hasFrame(LightFrame::focus, light); });
+  throw inputError(framed.lights->source, "lights[", first - lights.begin(),
+                   "].frame: is \"focus\", and there is no focus; name one with --focus, or use "
+                   "\"world\" or \"camera\"");
+}
+
+ClipResult buildClip(const ClipRequest& request, bool measure, double steadyDegrees,
+                     const VolumeHandle& volume, const SettingsHandle& settings,
+                     const FocusHandle& focus, const Handle<Camera>& camera) {
+  const Domain domain = makeDomain(volume, settings);
+  const ClipMode mode = request.resolveMode(focus->mask.has_value());
+  if (isDepthClip(mode))
+    return buildDepthClip(request, mode, domain, *focus->mask, *camera, measure, steadyDegrees);
+  return buildPlaneClip(request, measure, domain, focus, *camera);
+}
+
+MinMaxGrid makeMinMaxGrid(const VolumeHandle& volume, int padding) {
+  return {volume->volume, padding};
+}
+
+Mask findSkin(const VolumeHandle& volume) {
+  constexpr double depth = 2.5; // mm
+  const std::optional<double> air = findAirThreshold(volume->volume);
+  return air ? findOuterLayer(volume->volume, *air, depth) : Mask();
+}
+
+TintInterfaces findTintInterfaces(const VolumeHandle& volume, const FocusHandle& focus,
+                                  const Handle<TransferChoice>& transfer,
+                                  const Handle<LabelWeights>& weights,
+                                  const std::vector<bool>& isFocus) {
+  return findInterfaces(*focus->mask, volume->volume, transfer->function, *weights, isFocus);
+}
+
+TintContrast adjustTintContrast(const Handle<TintInterfaces>& interfaces,
+                                const Handle<TintPlan>& plan, const Handle<Tint>& tint,
+                                const Handle<NamedMaterials>& materials,
+                                const Handle<TransferChoice>& transfer,
+                                const std::optional<double>& saturation) {
+  return adjustContrast(*interfaces, *plan, *tint, materials->table, transfer->function,
+                        saturation.value_or(1.0));
+}
+
+Mixture makeMixture(const Handle<TintPlan>& plan, const Handle<Tint>& tint,
+                    const Handle<TransferChoice>& transfer) {
+  return buildMixture(*plan, *tint, transfer->function);
+}
+
+Tint adjustTint(const Handle<Tint>& tint, const Handle<TintPlan>& plan,
+                const Handle<TintContrast>& contrast, const Handle<TransferChoice>& transfer) {
+  return applyAdjustment(*tint, *plan, contrast->adjustment, transfer->function);
+}
+
+FocusContrast chooseContrast(const VolumeHandle& volume, const FocusHandle& focus,
+                             const Handle<TransferChoice>& transfer, const Handle<Tint>& tint,
+                             const std::optional<double>& saturation) {
+  if (tint)
+    return {saturation.value_or(1.0)};
+  return focus->mask
+             ? chooseSaturation(saturation, *focus->mask, volume->volume, transfer->function)
+             : FocusContrast();
+}
+
+ContextStyle makeContextStyle(const FocusHandle& focus, double extinction, double saturation) {
+  return {{focus, &*focus->mask}, extinction, saturation};
+}
+
+MajorantGrid buildMajorants(const VolumeHandle& volume, const Handle<MinMaxGrid>& minMax,
+                            const Handle<TransferChoice>& transfer, const Handle<ClipResult>& clip,
+                            const Handle<ContextStyle>& style, const Handle<Mixture>& mixture) {
+  return {volume->volume.grid, *minMax, transfer->function, clip->clip, style.get(), mixture.get()};
+}
+
+FeatureBuffers marchFirstHits(const VolumeHandle& volume, const SettingsHandle& settings,
+                              const Handle<TransferChoice>& transfer, const TintOrMixture& segments,
+                              const Handle<LightSet>& lights, const Handle<Camera>& camera,
+                              const Handle<ClipResult>& clip, const Handle<ContextStyle>& style,
+                              const Handle<MajorantGrid>& majorants) {
+  return computeFeatures({volume->volume, transfer->function, *majorants, *lights, *camera,
+                          clip->clip, settings->crop, style.get(), segments.tint.get(),
+                          segments.mixture.get()});
+}
+
+} // namespace fenestra

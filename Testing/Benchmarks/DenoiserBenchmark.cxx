@@ -1,0 +1,152 @@
+// Gain and cost of the filter, and whether its told error is true, over scenes and sample counts
+// (README.md here): prints a table in Markdown.
+
+#include "Program.h"
+#include "References.h"
+#include "image/Compare.h"
+#include "program/CommandLine.h"
+#include "scene/Denoising.h"
+
+#include <algorithm>
+#include <charconv>
+#include <iomanip>
+#include <iostream>
+
+namespace fenestra::benchmarks {
+namespace {
+
+constexpr const char* group = "Benchmark";
+const Option flags[] = {
+    {"scenes", "A,B,...", group, "Scenes of the table [all]"},
+    {"counts", "N,...", group, "Samples a pixel [1,2,4,8,16,64,1024]"},
+    {"seeds", "N", group, "Renders of a count below 1024 [3]", ValueSpec::integer(1, 1000)},
+    {"referencesamples", "N", group, "Samples of references that are made here [1024]",
+     ValueSpec::integer(16, 1 << 20)},
+    {"references", "DIR", group, "Where references are kept [benchmarks/filter of the build]"},
+    {"phantoms", "DIR", group, "Where the phantoms are [benchmarks of the build]"},
+    {"table", "FILE", group, "Table of scenes [filter-scenes.txt beside the sources]"},
+};
+
+const CommandSyntax syntax = {
+    "FilterBenchmark", "Measures the filter against references.", {}, flags};
+
+/// Result and CPU seconds of some work.
+template <typename Work>
+auto timeWork(const Work& work, double& seconds) {
+  const double before = cpuSeconds();
+  auto result = work();
+  seconds = cpuSeconds() - before;
+  return result;
+}
+
+/// Means over the seeds of a count.
+struct Row {
+  double raw = 0.0, filtered = 0.0;  ///< relMSE
+  double estimated = 0.0;            ///< relMSE that the filter tells
+  double render = 0.0, filter = 0.0; ///< CPU seconds
+
+  void add(const Row& other, double weight) {
+    raw += weight * other.raw;
+    filtered += weight * other.filtered;
+    estimated += weight * other.estimated;
+    render += weight * other.render;
+    filter += weight * other.filter;
+  }
+};
+
+Row measureRender(const PreparedScene& scene, const RenderSettings& settings,
+                  const Image& reference) {
+  Row row;
+  const Film film = timeWork(
+      [&] {
+        RenderMonitor monitor;
+        return render(scene.view(), settings, monitor).film;
+      },
+      row.render);
+  const FilteredImage denoised = timeWork([&] { return denoise(film, scene); }, row.filter);
+  row.raw = compareImages(toImage(film, scene), reference).relMse;
+  row.filtered =
+      compareImages(makeFilteredImage(denoised, film.width(), film.height()), reference).relMse;
+  row.estimated = denoised.estimatedError;
+  return row;
+}
+
+void print(const std::string& scene, std::uint64_t samples, const Row& row, double march) {
+  const double efficiency =
+      row.raw * row.render / (row.filtered * (row.render + row.filter + march));
+  std::cout << std::setprecision(3) << "| " << scene << " | " << samples << " | " << row.raw
+            << " | " << row.filtered << " | " << row.raw / row.filtered << " | ";
+  if (row.estimated > 0.0)
+    std::cout << row.estimated / row.filtered;
+  std::cout << " | " << efficiency << " | " << row.render << " | " << march << " | " << row.filter
+            << " |" << std::endl;
+}
+
+/// Throws Error (usage).
+std::uint64_t parseCount(const std::string& text) {
+  std::uint64_t count = 0;
+  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), count);
+  if (failed != std::errc() || end != text.data() + text.size() || count == 0)
+    throw usageError("--counts: expected whole numbers above 0, got '" + text + "'");
+  return count;
+}
+
+std::vector<std::uint64_t> parseCounts(const OptionValues& values) {
+  std::vector<std::uint64_t> counts;
+  for (const std::string& text : values.list("counts"))
+    counts.push_back(parseCount(text));
+  return counts.empty() ? std::vector<std::uint64_t>{1, 2, 4, 8, 16, 64, 1024} : counts;
+}
+
+void measureScene(const SceneCase& sceneCase, const OptionValues& values,
+                  const ReferenceSettings& wanted) {
+  if (!sceneCase.missing.empty()) {
+    std::cout << "| " << sceneCase.name << " | not present |" << std::endl;
+    return;
+  }
+  RenderOptions options = sceneCase.options();
+  options.scene.features = true;
+  const PreparedScene scene(options.scene);
+  RenderSettings settings = makeSettings(options, scene.background());
+  const Reference reference = findReference(sceneCase, scene, settings, wanted);
+  double march = 0.0;
+  timeWork([&] { return computeFeatures(scene.view()); }, march);
+  for (const std::uint64_t count : parseCounts(values)) {
+    settings.samples = count;
+    const std::uint64_t seeds = count < 1024 ? values.integer("seeds").value_or(3) : 1;
+    Row mean;
+    for (settings.seed = 1; settings.seed <= seeds; ++settings.seed)
+      mean.add(measureRender(scene, settings, reference.image), 1.0 / static_cast<double>(seeds));
+    print(sceneCase.name, count, mean, march);
+  }
+}
+
+int benchmark(int argc, char** argv) {
+  const std::optional<OptionValues> values = parseCommandLine(syntax, argc, argv, 1);
+  if (!values)
+    return 0;
+  const std::filesystem::path build = FENESTRA_BENCHMARK_FOLDER;
+  const auto folder = [&](const char* name, const std::filesystem::path& otherwise) {
+    return std::filesystem::path(values->text(name).value_or(otherwise.string()));
+  };
+  const ReferenceSettings wanted{.folder = folder("references", build / "filter"),
+                                 .samples = values->integer("referencesamples").value_or(1024)};
+  const std::vector<std::string> scenes = values->list("scenes");
+  std::cout << "| scene | samples | relMSE raw | filtered | gain | told / true | gain × time "
+               "| CPU s render | march | filter |\n|---|---|---|---|---|---|---|---|---|---|"
+            << std::endl;
+  for (const SceneCase& scene :
+       readScenes(folder("table", FENESTRA_FILTER_TABLE),
+                  {FENESTRA_REFERENCE, FENESTRA_DATA, folder("phantoms", build)}))
+    if (scenes.empty() || std::ranges::find(scenes, scene.name) != scenes.end())
+      measureScene(scene, *values, wanted);
+  return 0;
+}
+
+} // namespace
+} // namespace fenestra::benchmarks
+
+int main(int argc, char** argv) {
+  using namespace fenestra::benchmarks;
+  return runBenchmark("FilterBenchmark", benchmark, argc, argv);
+}

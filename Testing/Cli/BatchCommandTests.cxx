@@ -1,0 +1,306 @@
+// `fenestra study`: a row's failure is its own, and no row is made twice.
+
+#include "CommandTesting.h"
+#include "base/Stopwatch.h"
+#include "files/images/ImageReader.h"
+
+#include <nlohmann/json.hpp>
+
+#include <csignal>
+#include <sstream>
+#include <thread>
+
+namespace fenestra::StudyCommandTests {
+namespace {
+
+const Arguments quick = {"--size", "16x16", "--samples", "2"};
+
+class StudyCommand : public SmallScene {
+protected:
+  static Arguments makeArguments(const Arguments& more, const std::string& table = "t.csv") {
+    Arguments all = {"study", table, "--output", "out"};
+    all.insert(all.end(), quick.begin(), quick.end());
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  Outcome runBatch(const Arguments& more = {}) const {
+    return run(makeArguments(more), folder.path());
+  }
+  std::string readOutput(const std::string& file) const {
+    return readBytes(folder / ("out/" + file));
+  }
+  nlohmann::json readManifest(const std::string& row) const {
+    return nlohmann::json::parse(readOutput(row + "/" + row + ".study.json"));
+  }
+  /// Line of the summary that begins with a row's name.
+  std::string findSummary(const std::string& row) const {
+    std::istringstream lines(readOutput("study.csv"));
+    for (std::string line; std::getline(lines, line);)
+      if (line.starts_with(row + ","))
+        return line;
+    return "";
+  }
+};
+
+TEST_F(StudyCommand, RowsEqualThoseOfRender) {
+  folder.write("t.csv", "\xef\xbb\xbfname,input,segmentation,focus,view,samples\r\n"
+                        "left,volume.nrrd,segments.seg.nrrd,A,left,\r\n"
+                        "\"Bone, left\",volume.nrrd,segments.seg.nrrd,\"Bone\\, left\",,3\r\n"
+                        ",,,,,\r\n");
+  const Outcome outcome =
+      runBatch({"--formats", "exr", "--workers", "2", "--threads", "2", "--progress", "none"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("out: 2 of 2 rows done, 2 rendered now"), std::string::npos)
+      << outcome.out;
+  const std::vector<std::pair<std::string, Arguments>> rows = {
+      {"left", {"--focus", "A", "--view", "left"}},
+      {"Bone, left", {"--focus", "A", "--samples", "3"}}};
+  for (const auto& [name, flags] : rows) {
+    Arguments single = {"volume.nrrd", "--segmentation", "segments.seg.nrrd", "--size",    "16x16",
+                        "--output",    "single.exr",     "--output",          "single.png"};
+    if (name == "left")
+      single.insert(single.end(), {"--samples", "2"});
+    single.insert(single.end(), flags.begin(), flags.end());
+    ASSERT_EQ(run(single, folder.path()).status, 0);
+    const std::string base = "out/" + name + "/" + name;
+    EXPECT_EQ(readImage(folder / (base + ".exr")).channels,
+              readImage(folder / "single.exr").channels)
+        << name;
+    EXPECT_EQ(readBytes(folder / (base + ".png")), readBytes(folder / "single.png")) << name;
+  }
+  EXPECT_EQ(readImage(folder / "out/left/left.exr").header.at("command").find(folder.path()),
+            std::string::npos)
+      << "the header's names are relative";
+  EXPECT_NE(findSummary("\"Bone, left\"").find("done,0,,\"Bone, left/Bone, left.png\","),
+            std::string::npos);
+  EXPECT_GT(readImage(folder / "out/study.png").width, 16);
+  EXPECT_EQ(listFiles(folder / "out").size(), 2U + 2 * (1 + 4)) << "four files in each folder";
+}
+
+TEST_F(StudyCommand, AFailingRowEndsNoOther) {
+  folder.write("torn.nrrd", NrrdText().encode("x"));
+  folder.write("t.csv", "name,input,focus\na,torn.nrrd,\nb,nowhere.nrrd,\nc,volume.nrrd,7\n"
+                        "d,volume.nrrd,\n");
+  const Outcome outcome = runBatch();
+  EXPECT_EQ(outcome.status, 3) << outcome.err;
+  EXPECT_NE(outcome.err.find("t.csv: 3 of 4 rows failed, the first a: torn.nrrd: "),
+            std::string::npos)
+      << outcome.err;
+  EXPECT_NE(outcome.out.find("out: 1 of 4 rows done, 4 rendered now"), std::string::npos);
+  EXPECT_TRUE(findSummary("a").starts_with("a,failed,3,")) << findSummary("a");
+  EXPECT_TRUE(findSummary("b").starts_with("b,failed,3,")) << findSummary("b");
+  EXPECT_TRUE(findSummary("c").starts_with("c,failed,2,")) << findSummary("c");
+  EXPECT_TRUE(findSummary("d").starts_with("d,done,0,,d/d.png,")) << findSummary("d");
+  EXPECT_EQ(readManifest("b")["finished"][0]["status"], 3);
+  EXPECT_NE(
+      readManifest("b")["finished"][0]["error"].get<std::string>().find("nowhere.nrrd: there is"),
+      std::string::npos);
+
+  folder.write("torn.nrrd", NrrdText().encode(makeRamp()));
+  folder.write("nowhere.nrrd", NrrdText().encode(makeRamp()));
+  const Outcome again = runBatch();
+  EXPECT_NE(again.out.find("3 of 4 rows done, 3 rendered now"), std::string::npos) << again.out;
+}
+
+TEST_F(StudyCommand, MakesOnlyRowsWhoseFlagsOrFilesHaveChanged) {
+  folder.write("other.nrrd", NrrdText().encode(makeRamp()));
+  NrrdText header;
+  header.fields = "data file: voxels.raw\n";
+  folder.write("detached.nhdr", header.encode(""));
+  folder.write("voxels.raw", makeRamp());
+  const std::string rows = "name,input,seed\na,volume.nrrd,\nb,other.nrrd,\nc,detached.nhdr,";
+  folder.write("t.csv", rows + "\n");
+  ASSERT_EQ(runBatch().status, 0);
+  const auto expectRendered = [&](int count, const Arguments& more = {}) {
+    const Outcome outcome = runBatch(more);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("3 of 3 rows done, " + std::to_string(count) + " rendered now"),
+              std::string::npos)
+        << outcome.out;
+  };
+  expectRendered(0, {"--workers", "3", "--threads", "1"});
+  folder.write("t.csv", rows + "7\n");
+  expectRendered(1);
+  for (const char* input : {"other.nrrd", "voxels.raw"}) {
+    const auto before = std::filesystem::last_write_time(folder / input);
+    std::filesystem::last_write_time(folder / input, before + std::chrono::seconds(1));
+    expectRendered(1);
+  }
+  std::filesystem::remove(folder / "out/a/a.png");
+  expectRendered(1);
+  expectRendered(3, {"--exposure", "1"});
+  expectRendered(3, {"--exposure", "1", "--restart"});
+  expectRendered(0, {"--exposure", "1"});
+}
+
+TEST_F(StudyCommand, GoesOnAfterAKillWithTheSameFiles) {
+  std::string table = "name,input\n";
+  for (char row = 'a'; row < 'g'; ++row)
+    table += std::string(1, row) + ",volume.nrrd\n";
+  folder.write("t.csv", table);
+  const Arguments arguments = makeArguments({"--workers", "2"});
+  std::string output;
+  {
+    Process process(arguments, folder.path());
+    ASSERT_TRUE(process.waitForOutput("b: [0-9.e-]+ s"));
+    process.send(SIGKILL);
+    process.wait();
+    output = process.output();
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/study.csv"));
+  std::map<std::string, std::string> before; // statistics of the rows that are done
+  for (char row = 'a'; row < 'g'; ++row)
+    if (output.find(std::string(1, row) + ": ") != std::string::npos)
+      before[std::string(1, row)] = readOutput(std::string(1, row) + "/" + row + ".json");
+  const Outcome rest = run(arguments, folder.path());
+  ASSERT_EQ(rest.status, 0) << rest.err;
+  EXPECT_NE(rest.out.find("6 of 6 rows done, "), std::string::npos) << rest.out;
+  EXPECT_EQ(rest.out.find("6 rendered now"), std::string::npos) << rest.out;
+  for (const auto& [row, stats] : before)
+    EXPECT_EQ(readOutput(row + "/" + row + ".json"), stats) << "a row is made twice";
+  EXPECT_EQ(listFiles(folder / "out").size(), 2U + 6 * (1 + 3)) << "something is left";
+}
+
+TEST_F(StudyCommand, ALongRowGoesOnFromItsFilm) {
+  namespace fs = std::filesystem;
+  folder.write("t.csv", "name,input,size\na,volume.nrrd,96x96\n");
+  const auto arguments = [](const std::string& output, const std::string& samples) {
+    return Arguments{"study", "t.csv",     "--output", output,      "--formats",
+                     "exr",   "--samples", samples,    "--threads", "1"};
+  };
+  {
+    Process process(arguments("out", "300"), folder.path());
+    const Stopwatch watch;
+    while (!fs::exists(folder / "out/a/a.film") && watch.seconds() < 30.0)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    process.send(SIGKILL);
+    process.wait();
+  }
+  ASSERT_TRUE(fs::exists(folder / "out/a/a.film"));
+  ASSERT_FALSE(fs::exists(folder / "out/a/a.png"));
+  fs::copy(folder / "out", folder / "other", fs::copy_options::recursive);
+  const auto pathsFromFilm = [&](const std::string& output, const std::string& samples) {
+    const Outcome outcome = run(arguments(output, samples), folder.path());
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("1 of 1 rows done, 1 rendered now"), std::string::npos)
+        << outcome.out;
+    EXPECT_EQ(listFiles(folder / output / "a").size(), 4U) << "something is left";
+    return nlohmann::json::parse(readBytes(folder / output / "a/a.json")).value("pathsFromFilm", 0);
+  };
+  EXPECT_GT(pathsFromFilm("out", "300"), 0);
+  ASSERT_EQ(run({"volume.nrrd", "--size", "96x96", "--samples", "300", "--output", "alone.exr"},
+                folder.path())
+                .status,
+            0);
+  EXPECT_EQ(readImage(folder / "out/a/a.exr").channels, readImage(folder / "alone.exr").channels);
+  EXPECT_EQ(pathsFromFilm("other", "1"), 0) << "a film of other flags";
+}
+
+TEST_F(StudyCommand, ARowWhoseFilmIsRefusedBeginsAnew) {
+  folder.write("late.nrrd", NrrdText().encode("x"));
+  folder.write("t.csv", "name,input\na,late.nrrd\n");
+  EXPECT_EQ(runBatch().status, 3);
+  folder.write("late.nrrd", NrrdText().encode(makeRamp()));
+  folder.write("out/a/a.film", "torn");
+  const Outcome again = runBatch();
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/a/a.film"));
+  std::filesystem::remove(folder / "out/a/a.study.json");
+  for (const char* file : {"a.png", "a.json"})
+    std::filesystem::remove(folder / ("out/a/" + std::string(file)));
+  folder.write("out/a/a.film", "mine");
+  EXPECT_NE(runBatch().err.find("out/a/a.film: is there, and no a.study.json"), std::string::npos);
+  EXPECT_EQ(readOutput("a/a.film"), "mine");
+}
+
+TEST_F(StudyCommand, StopsOnRequestAndGoesOn) {
+  folder.write("t.csv", "name,input,samples,size\na,volume.nrrd,2,16x16\n"
+                        "b,volume.nrrd,1000000,64x64\nc,volume.nrrd,2,16x16\n");
+  for (const int milliseconds : {0, 300}) { // before the row's process has begun, and within it
+    Process process({"study", "t.csv", "--output", "out", "--restart"}, folder.path());
+    ASSERT_TRUE(process.waitForOutput("a: "));
+    const Stopwatch watch;
+    while (!std::filesystem::exists(folder / "out/b/b.study.json") && watch.seconds() < 10.0)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+    process.send(SIGTERM);
+    const Outcome outcome = process.wait();
+    EXPECT_EQ(outcome.status, 5) << outcome.err;
+    EXPECT_LT(outcome.seconds, 10.0);
+    EXPECT_NE(outcome.out.find("1 of 3 rows done"), std::string::npos) << outcome.out;
+    EXPECT_TRUE(findSummary("b").starts_with("b,stopped,5,,,")) << findSummary("b");
+    EXPECT_TRUE(findSummary("c").starts_with("c,missing,,")) << findSummary("c");
+  }
+}
+
+TEST_F(StudyCommand, PartsOfTheRowsMakeTheWhole) {
+  folder.write("t.csv", "name,input\na,volume.nrrd\nb,volume.nrrd\nc,volume.nrrd\n");
+  for (const char* part : {"1/2", "2/2"})
+    ASSERT_EQ(runBatch({"--rows", part}).status, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/study.csv"));
+  const Outcome complete = runBatch();
+  EXPECT_NE(complete.out.find("3 of 3 rows done, 0 rendered now"), std::string::npos)
+      << complete.out;
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/study.png"));
+}
+
+TEST_F(StudyCommand, LeavesOthersFilesAlone) {
+  folder.write("t.csv", "name,input\na,volume.nrrd\nb,volume.nrrd\n");
+  std::filesystem::create_directories(folder / "out/a");
+  folder.write("out/a/a.png", "mine");
+  const Outcome refused = runBatch();
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("out/a/a.png: is there, and no a.study.json tells what it is of"),
+            std::string::npos)
+      << refused.err;
+  EXPECT_EQ(readOutput("a/a.png"), "mine");
+  ASSERT_EQ(runBatch({"--restart"}).status, 0);
+  folder.write("out/b/b.png", "mine");
+  folder.write("out/a/a.study.json", "{\"request\": 7}");
+  const Outcome edited = runBatch();
+  EXPECT_NE(edited.err.find("out/b/b.png: is not the row that was recorded"), std::string::npos)
+      << edited.err;
+  EXPECT_NE(edited.err.find("out/a/a.study.json: request: must be an object"), std::string::npos)
+      << edited.err;
+  EXPECT_EQ(readOutput("b/b.png"), "mine");
+  std::filesystem::remove(folder / "out/a/a.study.json");
+  ASSERT_EQ(runBatch({"--restart"}).status, 0);
+  folder.write("out/study.csv", "mine");
+  EXPECT_EQ(runBatch().status, 2);
+  EXPECT_EQ(readOutput("study.csv"), "mine");
+}
+
+TEST_F(StudyCommand, RefusesDamagedTables) {
+  const std::vector<std::array<std::string, 2>> tables = {
+      {"", "holds no row"},
+      {"name,input\n", "holds no row"},
+      {"name\na\n", "line 1: has no column 'input'; add it"},
+      {"input\na\n", "line 1: has no column 'name'; add it"},
+      {"name,input,veiw\na,b,c\n", "line 1: 'veiw' is no column of a study; did you mean view?"},
+      {"name,input,stats\na,b,c\n", "line 1: 'stats' is no column of a study"},
+      {"name,input,view,view\na,b,,\n", "line 1: has the column 'view' twice"},
+      {"name,input\na\n", "line 2: has 1 fields, the first line 2"},
+      {"name,input\n../a,b\n", "line 2: '../a' cannot be a folder's name"},
+      {"name,input\n.a,b\n", "line 2: '.a' cannot be a folder's name"},
+      {"name,input\n=1+2,b\n", "line 2: '=1+2' cannot be a folder's name"},
+      {"name,input\n\"a\nb\",b\n", "line 2, name: holds a line's end"},
+      {"name,input\n,b\n", "line 2: '' cannot be a folder's name"},
+      {"name,input\na,\n", "line 2: names no input"},
+      {"name,input\na,b\nA,b\n", "line 3: has the name of line 2, 'A'; rename one"},
+      {"name,input\na,\"b\n", "line 2: its quotes do not close"},
+      {"name,input\n" + std::string(101, 'a') + ",b\n", "cannot be a folder's name"}};
+  for (const auto& [text, message] : tables) {
+    folder.write("t.csv", text);
+    expectErrors({{text, makeArguments({}), 3, "t.csv: "}}, folder.path());
+    EXPECT_NE(run(makeArguments({}), folder.path()).err.find(message), std::string::npos) << text;
+  }
+  folder.write("t.csv", "name,input\na,volume.nrrd\n");
+  expectErrors({{"rows", makeArguments({"--rows", "3/2"}), 2, "--rows: expected K/N"},
+                {"formats", makeArguments({"--formats", "gif"}), 2, "--formats: expected exr"},
+                {"flag", makeArguments({"--surface", "a.vtp"}), 2, "--surface: no such flag"},
+                {"no table", {"study", "none.csv"}, 3, "none.csv: there is no such file"}},
+               folder.path());
+}
+
+} // namespace
+} // namespace fenestra::StudyCommandTests

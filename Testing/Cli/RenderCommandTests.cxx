@@ -1,0 +1,353 @@
+// Outputs of a render: pictures, statistics and messages.
+
+#include "CommandTesting.h"
+#include "files/images/ImageReader.h"
+
+#include <nlohmann/json.hpp>
+
+#include <array>
+
+namespace fenestra::RendersCommandTests {
+namespace {
+
+class RendersCommand : public SmallScene {
+protected:
+  Image render(const Arguments& arguments) const {
+    Arguments all = arguments;
+    all.insert(all.end(), {"--output", "picture.exr"});
+    const Outcome outcome = renderVolume(all);
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_EQ(outcome.err, "");
+    return readImage(folder / "picture.exr");
+  }
+
+  nlohmann::json stats(const std::string& name) const {
+    return nlohmann::json::parse(readBytes(folder / name));
+  }
+};
+
+TEST_F(RendersCommand, DefaultNameIsThatOfTheInputInTheCurrentFolder) {
+  std::filesystem::create_directory(folder / "data");
+  std::filesystem::rename(folder / "volume.nrrd", folder / "data/volume.nrrd");
+  const Outcome outcome =
+      run({"render", "data/volume.nrrd", "--size", "16x8", "--samples", "1"}, folder.path());
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_TRUE(outcome.out.starts_with("volume.png: 16x8 pixels, 1 sample each")) << outcome.out;
+  const Image image = readImage(folder / "volume.png");
+  EXPECT_EQ(image.width, 16);
+  EXPECT_EQ(image.height, 8);
+  EXPECT_EQ(listFiles(folder.path()),
+            (std::set<std::string>{"data", "data/volume.nrrd", "segments.seg.nrrd", "volume.png"}));
+}
+
+TEST_F(RendersCommand, TellsWhatItChose) {
+  EXPECT_EQ(renderVolume({"--output", "a.png"}).statusLine,
+            "look: by the volume's range; light: cinema");
+  EXPECT_EQ(renderVolume({"--output", "a.png", "--environment", "1"}).statusLine,
+            "look: by the volume's range; light: all around");
+  EXPECT_EQ(renderVolume({"--output", "a.png", "--progress", "none"}).statusLine, "");
+  const Outcome ct = renderVolume({"--output", "a.png", "--transfer", "ct-bone"});
+  EXPECT_EQ(ct.statusLine, "look: ct-bone; light: cinema");
+  EXPECT_NE(ct.err.find("ct-bone is made for CT, which this volume does not seem to be"),
+            std::string::npos);
+}
+
+TEST_F(RendersCommand, BackgroundIsAGradientUnlessSomethingIsSaid) {
+  const Arguments nothing = {"--scale", "100", "--denoise", "off"}; // in the corners
+  const auto renderChannels = [&](const Arguments& more) {
+    Arguments arguments = nothing;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return render(arguments).channels;
+  };
+  const auto standard = renderChannels({});
+  EXPECT_NEAR(standard.at("R").front(), 0.060, 0.004); // upper edge
+  EXPECT_NEAR(standard.at("B").back(), 0.016, 0.002);  // lower edge
+  EXPECT_EQ(renderChannels({"--background", "gradient"}), standard);
+  EXPECT_EQ(renderChannels({"--background", "0,0,0"}).at("R").front(), 0.0f);
+}
+
+TEST_F(RendersCommand, OneNumberIsAGrey) {
+  renderVolume({"--output", "a.exr", "--environment", "0.5", "--background", "0.25"});
+  renderVolume(
+      {"--output", "b.exr", "--environment", "0.5,0.5,0.5", "--background", "0.25,0.25,0.25"});
+  EXPECT_EQ(readImage(folder / "a.exr").channels, readImage(folder / "b.exr").channels);
+}
+
+TEST_F(RendersCommand, ExposureAndToneChangePicturesForTheEyeAlone) {
+  const auto renderChannels = [&](const Arguments& more, const std::string& name) {
+    Arguments arguments = {"--denoise", "on",           "--output", name + ".exr",
+                           "--output",  name + ".nrrd", "--output", name + ".png",
+                           "--output",  name + ".tif",  "--stats",  name + ".json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(renderVolume(arguments).status, 0);
+    return readImage(folder / (name + ".exr")).channels;
+  };
+  const auto file = [&](const std::string& name) { return readBytes(folder / name); };
+  const auto raw = renderChannels({}, "a");
+  for (const auto& [flag, value, headerText] :
+       {std::array{"--exposure", "2", "tone film, exposure 2 EV"},
+        std::array{"--tone", "photographic", "tone photographic, exposure 0 EV"}}) {
+    EXPECT_EQ(renderChannels({flag, value}, "b"), raw) << flag;
+    for (const std::string part : {".nrrd", "-Z.nrrd", "-denoised.nrrd"})
+      EXPECT_EQ(file("a" + part), file("b" + part)) << flag << part;
+    for (const std::string kind : {".png", ".tif"}) {
+      EXPECT_NE(readImage(folder / ("a" + kind)).channels,
+                readImage(folder / ("b" + kind)).channels)
+          << flag << kind;
+      EXPECT_NE(file("b" + kind).find(headerText), std::string::npos) << kind;
+    }
+  }
+  EXPECT_EQ(stats("a.json")["display"], (nlohmann::json{{"tone", "film"}, {"exposure", 0.0}}));
+  EXPECT_EQ(stats("b.json")["display"]["tone"], "photographic");
+  renderChannels({"--exposure", "-1.5", "--tone", "film"}, "c");
+  EXPECT_EQ(stats("c.json")["display"]["exposure"], -1.5);
+}
+
+TEST_F(RendersCommand, EveryFormatEqualsItselfInCompare) {
+  const Arguments names = {"a.png", "a.tif", "A.EXR", "a.nrrd"};
+  Arguments arguments;
+  for (const std::string& name : names)
+    arguments.insert(arguments.end(), {"--output", name});
+  ASSERT_EQ(renderVolume(arguments).status, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder / "a-Z.nrrd"));
+  for (const std::string& name : names) {
+    const Outcome outcome = run({"compare", name, name}, folder.path());
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_NE(outcome.out.find("\nlargest     0\n"), std::string::npos) << name << outcome.out;
+    // relMSE has the reference's own variance subtracted if the picture states it
+    EXPECT_EQ(outcome.out.starts_with("relMSE      0\n"), name != "A.EXR") << outcome.out;
+  }
+  EXPECT_TRUE(readImage(folder / "A.EXR").find("normal.X"));
+  const Image linear = readImage(folder / "A.EXR");
+  EXPECT_EQ(*linear.find("R"), *readImage(folder / "a.nrrd").find("R"));
+  EXPECT_EQ(*linear.find("Z"), *readImage(folder / "a-Z.nrrd").find("Z"));
+}
+
+TEST_F(RendersCommand, EnvironmentVariablePinsTheInstructionSet) {
+  ::setenv("FENESTRA_INSTRUCTIONS", "MMX", 1);
+  const Outcome refused =
+      run({"volume.nrrd", "--size", "16x16", "--samples", "2", "--output", "refused.exr"},
+          folder.path());
+  EXPECT_EQ(refused.status, 2) << refused.err;
+  EXPECT_NE(refused.err.find("FENESTRA_INSTRUCTIONS: MMX"), std::string::npos) << refused.err;
+
+  const std::string offered = refused.err.substr(0, refused.err.find_last_not_of('\n') + 1);
+  const std::string last = offered.substr(offered.find_last_of(' ') + 1);
+  ::setenv("FENESTRA_INSTRUCTIONS", last.c_str(), 1);
+  const std::string target = render({}).header.at("target");
+  ::unsetenv("FENESTRA_INSTRUCTIONS");
+  EXPECT_TRUE(target.ends_with("-" + last)) << target;
+}
+
+TEST_F(RendersCommand, WritesRequestedLayersAndTheHeader) {
+  const Image all = render({});
+  for (const char* name : {"R", "A", "Z", "albedo.G", "normal.Y", "error.B", "samples.N"})
+    EXPECT_TRUE(all.find(name)) << name;
+  EXPECT_EQ(all.header.at("seed"), "0");
+  EXPECT_EQ(all.header.at("sampling"), "strata");
+  EXPECT_EQ(all.header.at("samples"), "2");
+  EXPECT_EQ(all.header.at("command"),
+            "fenestra volume.nrrd --size 16x16 --samples 2 --output picture.exr");
+  for (const char* key : {"version", "target", "camera"})
+    EXPECT_FALSE(all.header.at(key).empty()) << key;
+
+  const Image some = render({"--layers", "color,depth", "--layers", "samples"});
+  std::set<std::string> names;
+  for (const auto& [name, plane] : some.channels)
+    names.insert(name);
+  EXPECT_EQ(names, (std::set<std::string>{"R", "G", "B", "A", "Z", "samples.N"}));
+  for (const float samples : *some.find("samples.N"))
+    EXPECT_EQ(samples, 2.0f);
+}
+
+TEST_F(RendersCommand, StatsCountOnlyFilesAndRaysThatTheSceneNeeds) {
+  folder.write("sky.json", R"({"lights": [{"type": "environment", "radiance": [1, 1, 1]}]})");
+  folder.write("haze.json",
+               R"({"extinction": [[0, 0], [63, 0.5]], "albedo": [[0, 0.8, 0.8, 0.8]]})");
+  const auto renderStats = [&](const Arguments& more) {
+    Arguments arguments = {"--transfer", "haze.json", "--layers", "color",
+                           "--output",   "s.exr",     "--stats",  "s.json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    EXPECT_EQ(renderVolume(arguments).status, 0);
+    return stats("s.json");
+  };
+  const nlohmann::json minimal = renderStats(
+      {"--lights", "sky.json", "--background", "0,0,0", "--view", "anterior", "--scale", "40"});
+  EXPECT_EQ(minimal["filesRead"], (nlohmann::json{"haze.json", "sky.json", "volume.nrrd"}));
+  EXPECT_EQ(minimal["shadowRays"], 0);
+  EXPECT_EQ(minimal["gradients"], 0);
+  EXPECT_FALSE(minimal.contains("focusVoxels"));
+  EXPECT_GT(minimal["emptyPixels"], 0);
+  EXPECT_EQ(minimal["samplesPerPixel"]["min"], 2);
+  EXPECT_EQ(minimal["paths"].get<int>(), 2 * 256 - minimal["emptyPixels"].get<int>());
+  EXPECT_EQ(minimal["cells"]["empty"], 0);
+
+  const nlohmann::json lit = renderStats({"--layers", "normal"});
+  EXPECT_EQ(lit["filesRead"], (nlohmann::json{"haze.json", "volume.nrrd"}));
+  EXPECT_GT(lit["shadowRays"], 0);
+  EXPECT_GT(lit["gradients"], 0);
+  EXPECT_LE(lit["gradients"], lit["collisions"]);
+
+  const nlohmann::json focused = renderStats({"--segmentation", "segments.seg.nrrd", "--focus", "A",
+                                              "--clip", "cutaway", "--labelsmoothing", "0"});
+  EXPECT_EQ(focused["focusVoxels"], 27) << "one, and a margin";
+  EXPECT_EQ(focused["filesRead"],
+            (nlohmann::json{"haze.json", "segments.seg.nrrd", "volume.nrrd"}));
+}
+
+TEST_F(RendersCommand, LightsAsFileOrTextGiveTheSamePicture) {
+  render({"--background", "1,2,3"});
+  std::filesystem::create_directory(folder / "maps");
+  std::filesystem::rename(folder / "picture.exr", folder / "maps/sky.exr");
+  const std::string text = R"({"lights": [{"type": "environment", "file": "maps/sky.exr"},
+    {"type": "rectangle", "frame": "camera", "center": [-1.5, 1.7, 2.4], "normal": [1.5, -1.7, -2],
+     "up": [0, 1, 0], "size": [1.4, 1.4], "radiance": [15, 10, 5]}]})";
+  folder.write("lights.json", text);
+  const Image file = render({"--lights", "lights.json"});
+  EXPECT_EQ(file.channels, render({"--lights", text, "--stats", "s.json"}).channels);
+  EXPECT_EQ(stats("s.json")["filesRead"], nlohmann::json::array({"volume.nrrd"}));
+  EXPECT_NE(file.channels, render({}).channels);
+  const std::string longerThanPaths = text + std::string(5000, ' ');
+  EXPECT_EQ(file.channels, render({"--lights=" + longerThanPaths}).channels);
+}
+
+TEST_F(RendersCommand, SamplingIsChosenAndTold) {
+  const Image stratified = render({"--stats", "s.json"});
+  EXPECT_EQ(stats("s.json")["sampling"], "strata");
+  const Image plain = render({"--sampling", "independent", "--stats", "s.json"});
+  EXPECT_EQ(stats("s.json")["sampling"], "independent");
+  EXPECT_EQ(plain.header.at("sampling"), "independent");
+  EXPECT_NE(stratified.channels.at("R"), plain.channels.at("R"));
+  EXPECT_EQ(stratified.channels, render({"--sampling", "strata"}).channels);
+}
+
+TEST_F(RendersCommand, SameSeedGivesTheSamePictureForAnyThreads) {
+  const Image one = render({"--threads", "1", "--seed", "7"});
+  const Image two = render({"--threads", "2", "--seed", "7"});
+  const Image many = render({"--threads", "64", "--seed", "7"});
+  const Image other = render({"--seed", "8"});
+  EXPECT_EQ(one.channels, two.channels);
+  EXPECT_EQ(one.channels, many.channels);
+  EXPECT_NE(one.channels.at("R"), other.channels.at("R"));
+}
+
+TEST_F(RendersCommand, StopsAtTimeLimitAndAtNoiseTarget) {
+  Outcome outcome = run({"volume.nrrd", "--size", "32x32", "--seconds", "0.3", "--stats", "s.json"},
+                        folder.path());
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const double seconds = stats("s.json")["seconds"]["transport"];
+  EXPECT_GT(seconds, 0.1);
+  EXPECT_LT(seconds, 2.0);
+  outcome =
+      run({"volume.nrrd", "--size", "32x32", "--noise", "0.1", "--stats", "n.json"}, folder.path());
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_LE(stats("n.json")["noiseFiltered"], 0.1); // of the picture for the eye
+  outcome = run({"volume.nrrd", "--size", "32x32", "--noise", "0.1", "--noisetarget", "raw",
+                 "--stats", "r.json"},
+                folder.path());
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_LE(stats("r.json")["noise"], 0.1);
+  EXPECT_GE(stats("r.json")["samplesPerPixel"]["min"], 16);
+}
+
+TEST_F(RendersCommand, StatsHaveEveryDocumentedKey) {
+  const Outcome outcome = run(
+      {"knee/knee.nrrd", "--segmentation", "knee/knee.seg.nrrd", "--focus", "FemoralCartilage",
+       "--transfer", "knee/knee.vp.json", "--labelsmoothing", "0", "--size", "32x32", "--samples",
+       "4", "--output", (folder / "knee.png").string(), "--stats", (folder / "knee.json").string()},
+      kneeFolder().path());
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json json = stats("knee.json");
+  double stages = 0.0;
+  for (const char* stage : {"load", "classify", "focus", "spline", "fill", "features", "transport",
+                            "filter", "write"}) {
+    EXPECT_GT(json["seconds"][stage], 0.0) << stage;
+    stages += json["seconds"][stage].get<double>();
+  }
+  EXPECT_LE(stages, json["seconds"]["total"].get<double>() * 1.001);
+  EXPECT_GT(json["cpuSeconds"], 0.0);
+  EXPECT_EQ(json["paths"], 32 * 32 * 4);
+  EXPECT_GT(json["collisions"], 0);
+  EXPECT_GT(json["lookups"], json["collisions"]);
+  EXPECT_GE(json["skippedFraction"], 0.0);
+  EXPECT_LE(json["skippedFraction"], 1.0);
+  EXPECT_EQ(json["samplesPerPixel"], (nlohmann::json{{"min", 4}, {"mean", 4.0}, {"max", 4}}));
+  EXPECT_GT(json["noise"], 0.0);
+  EXPECT_GT(json["noiseFiltered"], 0.0);
+  EXPECT_LT(json["noiseFiltered"], json["noise"]);
+  EXPECT_GT(json["peakBytes"], 1'000'000);
+  EXPECT_GE(json["boundaryMismatchMm"]["mean"], 0.0);
+  EXPECT_GE(json["boundaryMismatchMm"]["p95"], json["boundaryMismatchMm"]["mean"]);
+  EXPECT_GE(json["boundaryMismatchMm"]["max"], json["boundaryMismatchMm"]["p95"]);
+  EXPECT_GT(json["focusCoverage"], 0.5);
+  EXPECT_LE(json["focusCoverage"], 1.0);
+  for (const char* key : {"deltaE", "deltaEProtan", "deltaEDeutan", "deltaETritan", "deltaL"})
+    EXPECT_GE(json["contrast"][key], 0.0) << key;
+  EXPECT_GT(json["contrast"]["contextSaturation"], 0.0);
+  EXPECT_TRUE(json["warnings"].is_array());
+}
+
+TEST_F(RendersCommand, NegativeNumbersAreValuesNotFlags) {
+  const Image joined = render({"--position=-1,20,3", "--shift=-5"});
+  const Image apart = render({"--position", "-1,20,3", "--shift", "-5"});
+  const Image bare = render({"--position", "-1.0,20,3.", "--shift", "-.5e1"});
+  EXPECT_EQ(joined.channels, apart.channels);
+  EXPECT_EQ(joined.channels, bare.channels);
+  EXPECT_NE(joined.header.at("camera").find("--position=-1,20,3 "), std::string::npos)
+      << joined.header.at("camera");
+}
+
+TEST_F(RendersCommand, CameraFlagsFromTheHeaderReproduceThePicture) {
+  const Image named = render({"--view", "left"});
+  Arguments pose;
+  std::istringstream words(named.header.at("camera"));
+  for (std::string word; words >> word;)
+    pose.push_back(word);
+  EXPECT_EQ(named.channels, render(pose).channels);
+}
+
+TEST_F(RendersCommand, FindsTheFocusByIdNameAndLabelValue) {
+  const auto renderFocus = [this](Arguments arguments) {
+    arguments.insert(arguments.begin(), {"--segmentation", "segments.seg.nrrd"});
+    return render(arguments).channels;
+  };
+  const auto byId = renderFocus({"--focus", "A"});
+  EXPECT_EQ(byId.count("clip.Z"), 1u);
+  EXPECT_EQ(byId, renderFocus({"--focus", "Bone\\, left"}));
+  EXPECT_EQ(byId, renderFocus({"--focus", "1"}));
+  EXPECT_EQ(byId, renderFocus({"--focus", "A,B"}));
+  EXPECT_EQ(byId, renderFocus({"--focus", "A", "--focus=B"}));
+}
+
+TEST_F(RendersCommand, FileNamesMayLookLikeFlagsOrSubcommands) {
+  std::filesystem::copy(folder / "volume.nrrd", folder / "--volume.nrrd");
+  std::filesystem::copy(folder / "volume.nrrd", folder / "rendr.nrrd");
+  for (const char* input : {"./--volume.nrrd", "rendr.nrrd"}) {
+    const Outcome outcome =
+        run({input, "--size", "4x4", "--samples", "1", "--output=-a.png"}, folder.path());
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_TRUE(std::filesystem::remove(folder / "-a.png"));
+  }
+}
+
+TEST_F(RendersCommand, DefaultNameReplacesOnlyItsOwnPictures) {
+  const std::string volume = readBytes(folder / "volume.nrrd");
+  folder.write("named.png", "somebody's picture");
+  ASSERT_EQ(renderVolume({"--output", "named.png"}).status, 0);
+  EXPECT_EQ(readImage(folder / "named.png").width, 16);
+  ASSERT_EQ(renderVolume({}).status, 0); // volume.png, a default name
+  ASSERT_EQ(renderVolume({}).status, 0);
+  EXPECT_EQ(readImage(folder / "volume.png").width, 16);
+  folder.write("volume.png", "somebody's picture");
+  const Outcome refused = renderVolume({});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("volume.png: is there, and Fenestra did not write it"),
+            std::string::npos)
+      << refused.err;
+  EXPECT_EQ(readBytes(folder / "volume.png"), "somebody's picture");
+  EXPECT_EQ(readBytes(folder / "volume.nrrd"), volume);
+}
+
+} // namespace
+} // namespace fenestra::RendersCommandTests

@@ -1,0 +1,75 @@
+#include "io/ChildProcess.h"
+
+#include "base/Stopwatch.h"
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <iostream>
+#include <thread>
+
+#include <fcntl.h>
+
+namespace fenestra::ChildProcessTests {
+namespace {
+
+/// Runs one of the disabled cases below.
+std::vector<std::string> makeArguments(const std::string& testCase) {
+  return {"--gtest_also_run_disabled_tests", "--gtest_filter=Child.DISABLED_" + testCase};
+}
+
+void waitFor(ChildProcess& child) {
+  const Stopwatch watch;
+  while (!child.hasEnded() && watch.seconds() < 30.0)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+TEST(ChildProcess, DISABLED_Speaks) {
+  std::cerr << "said by the child\n";
+}
+TEST(ChildProcess, DISABLED_Fails) {
+  FAIL();
+}
+TEST(ChildProcess, DISABLED_Crashes) {
+  std::cerr << std::string(70'000, 'x') << "the end\n";
+  ::kill(::getpid(), SIGKILL);
+}
+TEST(ChildProcess, DISABLED_Sleeps) {
+  std::this_thread::sleep_for(std::chrono::minutes(1));
+}
+/// Standard input is empty, and no file of the parent is open.
+TEST(ChildProcess, DISABLED_HasNoFileOfTheParent) {
+  EXPECT_EQ(std::cin.get(), EOF);
+  for (int file = 3; file < 64; ++file)
+    EXPECT_LT(::fcntl(file, F_GETFD), 0) << file;
+}
+
+TEST(ChildProcess, TellsHowItEnded) {
+  const std::vector<std::pair<std::string, int>> cases = {
+      {"Speaks", 0}, {"Fails", 1}, {"Crashes", 128 + SIGKILL}, {"HasNoFileOfTheParent", 0}};
+  for (const auto& [testCase, status] : cases) {
+    ChildProcess child(makeArguments(testCase));
+    waitFor(child);
+    EXPECT_EQ(child.status(), status) << testCase << child.errors();
+    if (testCase == "Speaks") {
+      EXPECT_EQ(child.errors(), "said by the child\n");
+    }
+    if (testCase == "Crashes") {
+      EXPECT_TRUE(child.errors().ends_with("xthe end\n"));
+      EXPECT_EQ(child.errors().size(), 1U << 16U);
+    }
+  }
+}
+
+TEST(ChildProcess, EndsBySignalAndWithItsObject) {
+  const Stopwatch watch;
+  ChildProcess child(makeArguments("Sleeps"));
+  child.send(SIGTERM);
+  waitFor(child);
+  EXPECT_EQ(child.status(), 128 + SIGTERM);
+  { const ChildProcess other(makeArguments("Sleeps")); }
+  EXPECT_LT(watch.seconds(), 30.0);
+}
+
+} // namespace
+} // namespace fenestra::ChildProcessTests

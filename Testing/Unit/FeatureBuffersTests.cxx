@@ -1,0 +1,213 @@
+// The march of expected first flights: against closed forms, against the samples' own means, and
+// lanes against the readable one.
+
+#include "Support.h"
+#include "denoise/features/FeatureBuffers.h"
+#include "denoise/features/RayMarcher.h"
+
+#include <gtest/gtest.h>
+
+namespace fenestra::testing::FeatureBuffersTests {
+namespace {
+
+FeatureBuffers renderFeatures(const TestScene& s) {
+  return s.visitView([](const SceneView& scene) { return computeFeatures(scene); });
+}
+
+/// Slab of 10 mm with one extinction, seen face on by parallel rays that start 50 mm before it.
+TestScene makeSlab(double extinction) {
+  TestScene s{
+      makeVolume(makeCenteredGrid({10, 40, 40}, {1.0, 1.0, 1.0}), [](const Vec3&) { return 1.0; }),
+      makeLinearTransfer(extinction, Rgb(0.9, 0.5, 0.1)),
+      {},
+      {.position = {-55, 0, 0}, .target = Vec3::Zero(), .scale = 8.0}};
+  return s;
+}
+
+/// Waves of matter under hybrid shading, partly beside the frame.
+TestScene makeWaves() {
+  TestScene s{makeVolume<std::int16_t>(makeCenteredGrid({24, 24, 24}, {1.0, 1.0, 1.5}),
+                                       [](const Vec3& p) {
+                                         return 100.0 * std::sin(0.5 * p.x()) *
+                                                std::cos(0.4 * p.y() + 0.3 * p.z());
+                                       }),
+              {ScalarFunction({makeKnot(-20.0, 0.0), makeKnot(100.0, 0.8)}),
+               ColorFunction({{0.0, Rgb(0.9, 0.8, 0.7)}, {100.0, Rgb(0.2, 0.3, 0.9)}}),
+               {},
+               0.4,
+               SurfaceShading{}},
+              {DirectionalLight{}},
+              {.position = {10, -60, 20}, .target = Vec3::Zero(), .scale = 14.0},
+              41,
+              29};
+  return s;
+}
+
+/// Soft cut along a tilted surface through the target.
+Clip makeTiltedClip(const TestScene& s) {
+  const Camera camera(s.pose, s.width, s.height);
+  auto buffer = std::make_shared<DepthBuffer>(camera, s.volume.grid);
+  for (std::int64_t row = 0; row < buffer->rows(); ++row)
+    for (std::int64_t column = 0; column < buffer->columns(); ++column)
+      buffer->set(buffer->sample(column, row),
+                  camera.targetDepth() + buffer->position(column, row).dot(Vec2(0.5, -0.3)));
+  return ClipDepth{camera,
+                   buffer,
+                   std::make_shared<const DepthPyramid>(*buffer),
+                   ClipDepth::Lookup::linear,
+                   {0.0, 3.0}};
+}
+
+double meanDepth(double extinction, double length) {
+  const double transmittance = std::exp(-extinction * length);
+  return (1.0 - transmittance * (1.0 + extinction * length)) /
+         extinction; // times the share that collides
+}
+
+TEST(FeatureBuffers, OfASlabHasItsClosedForm) {
+  for (const double extinction : {1e-3, 0.05, 0.4, 3.0}) {
+    const FeatureBuffers features = renderFeatures(makeSlab(extinction));
+    const double hit = 1.0 - std::exp(-10.0 * extinction);
+    const std::size_t middle = features.hit.size() / 2 + 8;
+    EXPECT_NEAR(features.hit[middle], hit, 0.03 * hit) << extinction; // a ray ends in the dark
+    EXPECT_NEAR(features.depth[middle], 50.0 * hit + meanDepth(extinction, 10.0),
+                0.04 * 60.0 * hit);
+    EXPECT_NEAR(features.albedo[1][middle], 0.5 * features.hit[middle], 1e-5);
+    EXPECT_EQ(features.normal[0][middle], 0.0F); // no gradient
+  }
+}
+
+TEST(FeatureBuffers, LightOfASlabHasItsClosedForm) {
+  TestScene s = makeSlab(0.1);
+  s.lights = {DirectionalLight{.direction = -Vec3::UnitX(), .irradiance = Rgb::Constant(2.0)}};
+  const FeatureBuffers features = renderFeatures(s);
+  const std::size_t middle = features.hit.size() / 2 + 8;
+  const double depth = static_cast<double>(features.depth[middle] / features.hit[middle]) - 50.0;
+  const double toFarSide = std::exp(-0.1 * (10.0 - depth)), phase = 1.0 / (4.0 * pi);
+  EXPECT_NEAR(features.light[middle],
+              0.5 * phase * 2.0 * static_cast<double>(features.hit[middle]) * toFarSide, 1e-3);
+}
+
+TEST(FeatureBuffers, RaysThatMeetNothingGiveZeros) {
+  TestScene s = makeSlab(0.0);
+  s.pose.scale = 100.0;
+  const FeatureBuffers features = renderFeatures(s);
+  for (std::size_t i = 0; i < features.hit.size(); ++i) {
+    EXPECT_EQ(features.hit[i], 0.0F);
+    EXPECT_EQ(features.depth[i], 0.0F);
+    EXPECT_EQ(features.surfaceNormal[2][i], 0.0F);
+  }
+}
+
+/// An axis on which half a voxel is less than a float's last place: nothing for lanes.
+TEST(FeatureBuffers, EndsOnAxesOfAMillionVoxels) {
+  const Grid grid = makeCenteredGrid({2, 2, 600'000}, {1.0, 1.0, 1.0});
+  TestScene s{makeVolume<std::uint8_t>(grid, [](const Vec3& p) { return p.z() < 3.0 ? 1 : 0; }),
+              makeLinearTransfer(0.1, Rgb(0.9, 0.5, 0.1)),
+              {DirectionalLight{}},
+              {.position = {0, 0, 4e5}, .target = Vec3::Zero(), .up = Vec3::UnitY(), .scale = 1.5},
+              4,
+              4};
+  s.visitView([](const SceneView& scene) {
+    EXPECT_FALSE(canUseSimd(scene));
+    EXPECT_GT(computeFeatures(scene).hit[5], 0.1F);
+  });
+}
+
+/// Root mean square of the differences, relative to that of `b`.
+double relativeDifference(const Plane& a, const Plane& b) {
+  double difference = 0.0, reference = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    difference += std::pow(static_cast<double>(a[i]) - static_cast<double>(b[i]), 2.0);
+    reference += std::pow(static_cast<double>(b[i]), 2.0);
+  }
+  return std::sqrt(difference / reference);
+}
+
+TEST(FeatureBuffers, LanesAgreeWithTheReadableMarch) {
+  TestScene s = makeWaves();
+  std::vector<Clip> clips = {ClipNone(), makeTiltedClip(s)};
+  clips.push_back(
+      ClipPlane{Camera(s.pose, s.width, s.height), Vec3(0, 2, 0), -Vec3::UnitY(), {0.0, 3.0}});
+  for (const Clip& clip : clips) {
+    s.clip = clip;
+    s.visitView([](const SceneView& scene) {
+      ASSERT_TRUE(canUseSimd(scene));
+      const FeatureBuffers simd = computeFeatures(scene), scalar = computeScalarFeatures(scene);
+      EXPECT_LT(relativeDifference(simd.hit, scalar.hit), 0.01);
+      EXPECT_LT(relativeDifference(simd.depth, scalar.depth), 0.01);
+      EXPECT_LT(relativeDifference(simd.light, scalar.light), 0.2);
+      for (std::size_t c = 0; c < 3; ++c) {
+        EXPECT_LT(relativeDifference(simd.albedo[c], scalar.albedo[c]), 0.02);
+        EXPECT_LT(relativeDifference(simd.normal[c], scalar.normal[c]), 0.2);
+        EXPECT_LT(relativeDifference(simd.surfaceNormal[c], scalar.surfaceNormal[c]), 0.2);
+      }
+    });
+  }
+}
+
+/// Nearly all collisions lie in the cut's softness, and matter alone has no surface.
+TEST(FeatureBuffers, FacesTheSoftCutOfHomogeneousMatter) {
+  for (const Projection projection : {Projection::orthographic, Projection::perspective}) {
+    TestScene s = makeSlab(6.0);
+    s.pose.projection = projection;
+    s.transfer.shading = SurfaceShading{};
+    s.clip = makeTiltedClip(s);
+    const double opacity = 1.0 - std::exp(-6.0);
+    const double probability = opacity * (1.0 - std::exp(-25.0 * 0.125 * cutShading / 3.0));
+    const std::size_t middle = static_cast<std::size_t>(s.width * s.height / 2 + s.width / 2);
+    const Vec3 normal = -cutGradient(s.clip, Vec3(1.0, 0.0, 0.0)).normalized();
+    s.visitView([&](const SceneView& scene) {
+      for (const FeatureBuffers& features : {computeFeatures(scene), computeScalarFeatures(scene)})
+        for (std::size_t c = 0; c < 3; ++c) {
+          const double hit = static_cast<double>(features.hit[middle]);
+          const double expected = normal[static_cast<int>(c)] * hit;
+          EXPECT_NEAR(features.normal[c][middle], expected, 0.01) << c;
+          EXPECT_NEAR(features.surfaceNormal[c][middle], expected * probability, 0.01) << c;
+        }
+    });
+  }
+}
+
+TEST(FeatureBuffers, IsTheMeanOfTheSamples) {
+  TestScene s = makeWaves();
+  s.clip = makeTiltedClip(s);
+  RenderSettings settings;
+  settings.samples = 512;
+  settings.path.wantNormals = true;
+  settings.path.bounces = 1;
+  const Film film = s.render(settings).film;
+  const FeatureBuffers features = renderFeatures(s);
+  std::array<Plane, 7> means;
+  for (const PixelSums& pixel : film.pixels()) {
+    const auto n = static_cast<double>(pixel.samples);
+    means[6].push_back(static_cast<float>(pixel.depth / n));
+    for (int c = 0; c < 3; ++c) {
+      means[static_cast<std::size_t>(c)].push_back(static_cast<float>(pixel.albedo[c] / n));
+      means[static_cast<std::size_t>(3 + c)].push_back(static_cast<float>(pixel.normal[c] / n));
+    }
+  }
+  EXPECT_LT(relativeDifference(features.depth, means[6]), 0.05);
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_LT(relativeDifference(features.albedo[c], means[c]), 0.07) << c;
+    EXPECT_LT(relativeDifference(features.normal[c], means[3 + c]), 0.2) << c;
+  }
+}
+
+TEST(FeatureBuffers, PartOfAPictureMarchesAsTheWholeDoes) {
+  TestScene s = makeWaves();
+  s.width = s.height = 40;
+  s.pose.scale = 10.0;
+  const FeatureBuffers reference = renderFeatures(s);
+  s.height = 20; // the middle rows
+  s.pose.scale = 5.0;
+  const FeatureBuffers cropped = renderFeatures(s);
+  for (int row = 1; row < 19; ++row) // neighbours decide, which the border lacks
+    for (int column = 0; column < 40; ++column)
+      ASSERT_NEAR(cropped.depth[static_cast<std::size_t>(row * 40 + column)],
+                  reference.depth[static_cast<std::size_t>((row + 10) * 40 + column)], 1e-3)
+          << column << " " << row;
+}
+
+} // namespace
+} // namespace fenestra::testing::FeatureBuffersTests

@@ -1,0 +1,50 @@
+// Text of files as shown in messages.
+
+#include "io/MessageText.h"
+#include "base/Text.h"
+
+#include <gtest/gtest.h>
+
+namespace fenestra::MessageTextTests {
+namespace {
+
+TEST(ShownText, IsValidUtf8OnOneLine) {
+  EXPECT_EQ(toOneLine("Schädel, 頭, 🦴"), "Schädel, 頭, 🦴");
+  EXPECT_EQ(toOneLine(std::string("a\nb\0c\x7f"
+                                  "d",
+                                  7)),
+            "a b c d");
+  const std::pair<const char*, const char*> bad[] = {
+      {"Sch\xe4"
+       "del",
+       "Sch?del"},                  // Latin-1
+      {"\x80\xbf", "??"},           // not a first byte
+      {"\xc0\xaf", "??"},           // overlong
+      {"\xe0\x9f\xbf", "???"},      // overlong
+      {"\xf0\x8f\xbf\xbf", "????"}, // overlong
+      {"\xed\xa0\x80", "???"},      // a surrogate
+      {"\xf4\x90\x80\x80", "????"}, // beyond the last
+      {"\xff\xfe", "??"},           // never valid
+      {"\xe9\xa0", "??"},           // cut off
+      {"\xf0\x9f\xa6", "???"},      // cut off
+      {"\xc3\n", "? "},             // and a control character
+  };
+  for (const auto& [text, expected] : bad)
+    EXPECT_EQ(toOneLine(text), expected);
+}
+
+TEST(ShownText, IsCutBetweenCharacters) {
+  const std::string text = std::string(79, 'x') + "ä";
+  EXPECT_EQ(sanitize(text), std::string(79, 'x'));
+  EXPECT_EQ(sanitize(std::string(78, 'x') + "ä"), std::string(78, 'x') + "ä");
+  EXPECT_EQ(sanitize(std::string(200, '\x80')), std::string(77, '?'));
+}
+
+TEST(ShownText, ReplacedAllReplacesEveryOccurrence) {
+  EXPECT_EQ(replaceAll("aXXbX", "X", "yy"), "ayyyybyy");
+  EXPECT_EQ(replaceAll("abc", "X", "y"), "abc");
+  EXPECT_EQ(replaceAll("%2525", "%25", "%"), "%25");
+}
+
+} // namespace
+} // namespace fenestra::MessageTextTests

@@ -1,0 +1,250 @@
+// Work in a child process: restrictions on the child, crashes that would have ended this process,
+// and invalid answers. The jobs below run in the child, which is this executable.
+
+#include "io/Sandbox.h"
+
+#include "TemporaryFolder.h"
+#include "base/Error.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <csignal>
+#include <cstring>
+#include <fcntl.h>
+#include <iostream>
+#include <poll.h>
+#include <stdexcept>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+
+namespace fenestra::SandboxTests {
+namespace {
+
+constexpr std::uint64_t maxBytes = 1 << 20;
+constexpr std::uint64_t memoryLimit = std::uint64_t{2} << 30;
+
+const SandboxJob echoJob("test-echo", [](const std::string& request) { return request; });
+
+/// Misbehaves in the way that the question names.
+std::string misbehave(const std::string& how) {
+  if (how == "throw")
+    throw std::runtime_error("no");
+  if (how == "abort")
+    std::abort();
+  if (how == "segv")
+    ::raise(SIGSEGV);
+  if (how == "exit")
+    std::_Exit(0);
+  if (how == "print")
+    std::cerr << "not for the user" << std::endl;
+  if (how == "spin")
+    while (::getpid() != 0)
+      ;
+  if (how == "sleep")
+    for (;;)
+      ::pause();
+  if (how == "take memory")
+    return std::string(3 * memoryLimit / 2, 'x');
+  if (how == "number")
+    return std::to_string(::getpid());
+  constexpr int connection = 3;
+  if (how == "half a frame" && ::write(connection, "\1\0\0", 3) == 3)
+    std::_Exit(0);
+  const std::uint64_t length = how == "endless frame" ? ~std::uint64_t{0} : 100;
+  if (how.ends_with(" frame") && ::write(connection, &length, sizeof length) == sizeof length &&
+      ::write(connection, "abc", 3) == 3)
+    std::_Exit(0);
+  return how;
+}
+
+const SandboxJob misbehavingJob("test-misbehave", misbehave, {1, memoryLimit});
+
+TEST(SandboxedReader, AnswersInTurnWithinTheSizeLimits) {
+  SandboxedReader child(echoJob);
+  EXPECT_EQ(child.request("hello", maxBytes), "hello");
+  const std::string large(60000, 'x');
+  EXPECT_EQ(child.request(large, maxBytes), large);
+  EXPECT_EQ(child.request("", maxBytes), "");
+  EXPECT_EQ(child.request(std::string(1 << 17, 'x'), maxBytes), std::nullopt);
+  EXPECT_EQ(child.request("hello", 4), std::nullopt);
+  EXPECT_EQ(child.request("hello", 5), "hello");
+}
+
+TEST(SandboxedReader, SurvivesCrashesAndTimeoutsOfTheChild) {
+  ::testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStdout();
+  {
+    SandboxedReader child(misbehavingJob);
+    EXPECT_EQ(child.request("print", maxBytes), "print");
+    EXPECT_EQ(child.request("throw", maxBytes), "");
+    for (const char* how : {"abort", "segv", "exit", "spin", "sleep", "half a frame",
+                            "endless frame", "short frame"}) {
+      EXPECT_EQ(child.request(how, maxBytes), std::nullopt) << how;
+      EXPECT_EQ(child.request("fine", maxBytes), "fine") << "after " << how;
+    }
+  }
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a child is left";
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__clang__) // sanitizers map terabytes
+TEST(SandboxedReader, ChildCannotTakeMuchMemory) {
+  SandboxedReader child(misbehavingJob);
+  EXPECT_EQ(child.request("take memory", 2 * memoryLimit), "");
+}
+#endif
+
+/// Words for each action that the child is allowed, for the test below.
+std::string listPermissions(const std::string& path) {
+  std::string permissions;
+  if (::open(path.c_str(), O_WRONLY | O_CREAT, 0600) >= 0)
+    permissions += "made a file; ";
+  for (int file = 0; file < 1024; ++file)
+    if (file > 3 && ::fcntl(file, F_GETFD) >= 0)
+      permissions += "has file " + std::to_string(file) + "; ";
+  int files = 0;
+  while (::open("/dev/null", O_RDONLY) >= 0)
+    ++files;
+  if (files > 32)
+    permissions += "opens " + std::to_string(files) + " files; ";
+  for (const auto limit : {RLIMIT_CORE, RLIMIT_FSIZE}) {
+    rlimit now{};
+    ::getrlimit(limit, &now);
+    if (now.rlim_max != 0)
+      permissions += "may write; ";
+  }
+  sigset_t blocked;
+  ::sigprocmask(SIG_SETMASK, nullptr, &blocked);
+  struct sigaction term {};
+  ::sigaction(SIGTERM, nullptr, &term);
+  if (::sigismember(&blocked, SIGINT) || term.sa_handler != SIG_DFL)
+    permissions += "has signals of its parent's; ";
+  if (::getpgrp() != ::getpid())
+    permissions += "is in its parent's group; ";
+  return permissions + "no more";
+}
+
+const SandboxJob permissionsJob("test-allowed", listPermissions);
+
+TEST(SandboxedReader, ChildInheritsNothingAndWritesNothing) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "made";
+  const int file = ::open("/dev/null", O_RDONLY); // inherited unless the child closes it
+  sigset_t blocked, before;
+  ::sigemptyset(&blocked);
+  ::sigaddset(&blocked, SIGINT);
+  ::pthread_sigmask(SIG_BLOCK, &blocked, &before);
+  const auto handler = ::signal(SIGTERM, SIG_IGN);
+  SandboxedReader child(permissionsJob);
+  std::string permissions = child.request(path, maxBytes).value_or("nothing");
+  ::signal(SIGTERM, handler);
+  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  ::close(file);
+  // Kernels without Landlock let the child make a file, which stays empty.
+  if (const std::string made = "made a file; "; permissions.starts_with(made)) {
+    EXPECT_EQ(std::filesystem::file_size(path), 0u);
+    permissions = permissions.substr(made.size());
+  }
+  EXPECT_EQ(permissions, "no more");
+}
+
+TEST(SandboxedReader, UnstartableProcessIsAnOutputError) {
+  rlimit before{};
+  ::getrlimit(RLIMIT_NOFILE, &before);
+  const rlimit none{0, before.rlim_max};
+  SandboxedReader child(echoJob);
+  ::setrlimit(RLIMIT_NOFILE, &none);
+  std::string line;
+  try {
+    child.request("hello", maxBytes);
+  } catch (const Error& error) {
+    ::setrlimit(RLIMIT_NOFILE, &before); // first: sanitizers inspect objects through a pipe
+    line = error.kind() == ErrorKind::output ? error.what() : "of another kind";
+  }
+  ::setrlimit(RLIMIT_NOFILE, &before);
+  EXPECT_EQ(line, "memory: no process can be started to read files in; close other programs");
+  EXPECT_EQ(child.request("hello", maxBytes), "hello");
+}
+
+TEST(SandboxedReader, EachThreadMayHaveAChild) {
+  std::vector<std::thread> threads;
+  std::array<int, 8> correct{};
+  for (int& count : correct)
+    threads.emplace_back([&count] {
+      for (int i = 0; i < 4; ++i) {
+        SandboxedReader child(echoJob);
+        count += child.request(std::to_string(i), maxBytes) == std::to_string(i);
+      }
+    });
+  for (std::thread& thread : threads)
+    thread.join();
+  for (const int count : correct)
+    EXPECT_EQ(count, 4);
+}
+
+/// A process queries a child, reports the child's number, and has the child sleep; then the process
+/// is killed.
+TEST(SandboxedReader, ChildEndsWithItsParent) {
+  std::array<int, 2> pipe{};
+  ASSERT_EQ(::pipe(pipe.data()), 0);
+  const pid_t parent = ::fork();
+  if (parent == 0) {
+    SandboxedReader child(misbehavingJob);
+    const int pid = std::stoi(child.request("number", maxBytes).value_or("0"));
+    if (::write(pipe[1], &pid, sizeof pid) == sizeof pid)
+      child.request("sleep", maxBytes);
+    ::_exit(0);
+  }
+  pid_t child = 0;
+  ASSERT_EQ(::read(pipe[0], &child, sizeof child), ssize_t{sizeof child});
+  const int process = static_cast<int>(::syscall(SYS_pidfd_open, child, 0));
+  ASSERT_GE(process, 0);
+  ::kill(parent, SIGKILL);
+  ::waitpid(parent, nullptr, 0);
+  pollfd ended{process, POLLIN, 0};
+  constexpr int timeout = 60'000; // ms; the child would sleep for ever
+  EXPECT_EQ(::poll(&ended, 1, timeout), 1);
+  ::close(process);
+  ::close(pipe[0]);
+  ::close(pipe[1]);
+}
+
+TEST(ReplyReader, ReturnsTheValuesThatWerePut) {
+  ReplyWriter writer;
+  writer.put("text");
+  writer.put(std::vector<double>{1.5, -2.0});
+  writer.put("");
+  writer.put(std::vector<double>{});
+  ReplyReader reader(writer.bytes());
+  EXPECT_EQ(reader.text(), "text");
+  EXPECT_EQ(reader.numbers(), (std::vector<double>{1.5, -2.0}));
+  EXPECT_EQ(reader.text(), "");
+  EXPECT_FALSE(reader.isAtEnd());
+  EXPECT_TRUE(reader.numbers().empty());
+  EXPECT_TRUE(reader.isAtEnd());
+}
+
+TEST(ReplyReader, RefusesTruncatedAndOverlongAnswers) {
+  ReplyWriter writer;
+  writer.put(std::vector<double>{1.0, 2.0});
+  const std::string& complete = writer.bytes();
+  for (std::size_t length = 0; length < complete.size(); ++length)
+    EXPECT_THROW(ReplyReader(complete.substr(0, length)).numbers(), std::runtime_error) << length;
+  for (const std::uint64_t count : {std::uint64_t{17}, std::uint64_t{1} << 61, ~std::uint64_t{0}}) {
+    std::string changed = complete;
+    std::memcpy(changed.data(), &count, sizeof count);
+    EXPECT_THROW(ReplyReader(changed).numbers(), std::runtime_error) << count;
+    EXPECT_THROW(ReplyReader(changed).text(), std::runtime_error) << count;
+  }
+  ReplyWriter infinite;
+  infinite.put(std::vector<double>{std::numeric_limits<double>::infinity()});
+  EXPECT_THROW(ReplyReader(infinite.bytes()).numbers(), std::runtime_error);
+}
+
+} // namespace
+} // namespace fenestra::SandboxTests
