@@ -10,7 +10,7 @@ using Vec3 = Vector<double, 3>;
 /// 3 x 3 matrix, stored by columns.
 class Mat3 {
 public:
-  Mat3() = default; ///< uninitialised
+  Mat3() = default; ///< uninitialized
   constexpr Mat3(const Vec3& x, const Vec3& y, const Vec3& z) : m_columns{x, y, z} {}
   static constexpr Mat3 Identity() { return {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}; }
   static constexpr Mat3 Zero() { return {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}; }
@@ -58,7 +58,7 @@ private:
   Vec3 m_columns[3];
 };
 
-/// Sums are in Eigen's order, which keeps pictures bit-identical.
+/// Sums follow Eigen's order, so that images stay bit-identical.
 constexpr Vec3 operator*(const Mat3& m, const Vec3& v) {
   const Vec3 &a = m.col(0), &b = m.col(1), &c = m.col(2);
   return {(a[0] * v[0] + b[0] * v[1]) + c[0] * v[2], (a[1] * v[0] + b[1] * v[1]) + c[1] * v[2],
@@ -83,7 +83,7 @@ constexpr Mat3 operator-(const Mat3& a, const Mat3& b) {
 /// p -> linear * p + translation.
 class Affine {
 public:
-  Affine() = default; ///< uninitialised
+  Affine() = default; ///< uninitialized
   constexpr explicit Affine(const Mat3& linear, const Vec3& translation = Vec3::Zero())
       : m_linear(linear), m_translation(translation) {}
   static constexpr Affine Identity() { return Affine(Mat3::Identity()); }

@@ -4,12 +4,12 @@ namespace fenestra {
 
 void AliasTables::append(std::span<const double> cumulative) {
   const std::uint64_t full = std::uint64_t{1} << (32 - bits);
-  std::vector<std::uint64_t> remaining(size(), 0); // of each bin, to be placed
-  std::vector<std::size_t> underfull, overfull;    // less than a place full, and the others
+  std::vector<std::uint64_t> remaining(size(), 0); // probability per bin that has no slot yet
+  std::vector<std::size_t> underfull, overfull; // bins with less than a full slot, and the others
   std::uint64_t previous = 0;
   for (std::size_t i = 0; i < size(); ++i) {
     if (i + 1 < cumulative.size()) {
-      // Rounded sums' differences add up to 2^32: the places are filled without a remainder.
+      // Differences of rounded sums add up to exactly 2^32, so the slots fill without a remainder.
       const auto sum = static_cast<std::uint64_t>(0x1p32 * cumulative[i + 1] + 0.5);
       remaining[i] = sum - previous;
       previous = sum;

@@ -1,5 +1,5 @@
 #pragma once
-// Discrete distributions that lanes draw from: one random word, one look-up.
+// Discrete distributions for SIMD sampling: one random word and one table look-up per sample.
 
 #include <cstddef>
 #include <cstdint>
@@ -8,20 +8,20 @@
 
 namespace fenestra {
 
-/// Draws bins by one random word each, without a search (Walker 1977; Vose 1991, in whole numbers):
-/// the word's low bits choose one of 2^bits places; the rest, below height(), is compared
-/// with the place's threshold: below it the bin of the place's own number is drawn, else the other
-/// one. Probabilities are whole multiples of 2^-32, 0 where they are 0. All numbers of a place are
-/// exact in float.
+/// Alias method (Walker 1977; Vose 1991) in integer arithmetic. The low bits of a random word
+/// select one of 2^bits slots. The remaining bits, a number below thresholdRange(), are compared
+/// with the slot's threshold: below it the slot's own bin is sampled, otherwise its alias.
+/// Probabilities are multiples of 2^-32, and 0 exactly where the bin's is 0. All values of a slot
+/// are exact in float.
 struct AliasTables {
   struct Slot {
     float threshold, alias;
   };
-  /// Least number: what is left of a word has 24 bits then.
+  /// Minimum, so that the remaining bits of a word fit into a float's 24.
   static constexpr int minBits = 8;
 
   int bits = minBits;
-  std::vector<Slot> slots; ///< one table behind the other
+  std::vector<Slot> slots; ///< tables, one after the other
 
   explicit AliasTables(std::size_t bins) {
     while (std::size_t{1} << bits < bins)
@@ -29,8 +29,8 @@ struct AliasTables {
   }
   std::size_t size() const { return std::size_t{1} << bits; }
   float thresholdRange() const { return static_cast<float>(std::uint32_t{1} << (32 - bits)); }
-  /// Appends a table. `cumulative`: 0, then sums of the bins' probabilities, the last of them 1;
-  /// or 0 throughout, for bins that are never drawn.
+  /// Appends a table. `cumulative`: 0, then the cumulative probabilities of the bins up to 1; or
+  /// all zeros, for bins that are never sampled.
   void append(std::span<const double> cumulative);
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// Checks of composed maps (transforms above a node, a box or a grid under transforms), whatever
-// their source. Single numbers are checked where they are read.
+// Validates composed maps (products of transforms, a box or grid under transforms) once, after
+// composition. Single numbers are validated where they are read.
 
 #include "base/Error.h"
 #include "base/Vector.h"
@@ -10,19 +10,19 @@
 
 namespace fenestra {
 
-/// Makes an Error from a description: adds the file and the field, or the flag.
+/// Makes an Error from a description, adding the file and field, or the option.
 using MakeError = std::function<Error(const std::string& what)>;
 
-/// Returns `map` if invertible with digits to spare: lengths of columns in (1e-9, 1e9),
-/// |translation| < 1e9 mm in each axis, |determinant| of the normalised columns > 1e-6. Throws
-/// otherwise: beyond these bounds a point keeps no fraction of a voxel.
+/// Returns `map` if it can be inverted accurately: column lengths in (1e-9, 1e9), |translation| <
+/// 1e9 mm per axis, |determinant| of the normalized columns > 1e-6. Throws otherwise: beyond these
+/// bounds rounding errors reach the size of a voxel.
 inline Affine checkAffine(const Affine& map, const MakeError& makeError) {
   constexpr double maxScale = 1e9, minDeterminant = 1e-6;
   const auto lengths = map.linear().columnNorms().array();
   if (!((lengths > 1.0 / maxScale).all() && (lengths < maxScale).all() &&
         (map.translation().array().abs() < maxScale).all() &&
         std::abs(map.linear().normalizedColumns().determinant()) > minDeterminant))
-    throw makeError("cannot be inverted within scales of 1e-9 to 1e9 and places of 1e9 mm");
+    throw makeError("must be invertible, with scales in 1e-9 to 1e9 and translations below 1e9 mm");
   return map;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Colours in numbers: linear Rec. 709, and sRGB as displays encode it.
+// Color conversions: linear Rec. 709, and sRGB as displays encode it.
 
 #include "base/Vector.h"
 
@@ -12,7 +12,7 @@ inline double luminance(const Rgb& color) {
   return 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2];
 }
 
-/// Components, 0 to 1, of a colour 0xrrggbb.
+/// Components, 0 to 1, of the color 0xrrggbb.
 inline Rgb hexToRgb(std::uint32_t color) {
   const auto byte = [color](unsigned shift) {
     return static_cast<double>((color >> shift) & 0xffU);
@@ -26,7 +26,7 @@ inline Rgb decodeSrgb(const Rgb& encoded) {
       [](double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); });
 }
 
-/// Its inverse, of linear values from 0 to 1.
+/// Inverse of decodeSrgb, for linear values from 0 to 1.
 inline Rgb encodeSrgb(const Rgb& linear) {
   return linear.unaryExpr([](double v) {
     return v <= 0.04045 / 12.92 ? 12.92 * v : 1.055 * std::pow(v, 1.0 / 2.4) - 0.055;

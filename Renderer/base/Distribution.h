@@ -6,7 +6,7 @@
 
 namespace fenestra {
 
-/// Mean, 95th percentile and maximum of some values, in the values' unit; 0 for no values.
+/// Mean, 95th percentile and maximum of values, in their unit; 0 if there are none.
 struct Distribution {
   double mean = 0.0, p95 = 0.0, max = 0.0;
 

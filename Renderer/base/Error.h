@@ -1,6 +1,6 @@
 #pragma once
-// Every failure that a user can cause is an Error: one line that names the file (or flag), the
-// field and the remedy. The kind is the process's exit status.
+// Every failure that a user can cause is an Error: one line that names the file (or option), the
+// field and the fix. The kind is the process's exit status.
 
 #include "base/Text.h"
 
@@ -26,7 +26,7 @@ private:
   ErrorKind m_kind;
 };
 
-// Parts of the line as in textOf: texts, paths, whole numbers.
+// The line's pieces are those of concat: texts, paths, integers.
 template <typename... Parts>
 Error usageError(const Parts&... line) {
   return {ErrorKind::usage, concat(line...)};

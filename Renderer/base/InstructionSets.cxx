@@ -9,8 +9,8 @@
 namespace fenestra {
 namespace {
 
-/// Bits of the instruction sets of both program and machine, pinned or not; the best has the
-/// lowest.
+/// Bits of the instruction sets that both program and machine support, pinned or not; the lowest
+/// bit is the best set.
 std::int64_t supportedSets() {
   static const std::int64_t supported = hwy::SupportedTargets() & HWY_TARGETS;
   return supported;
@@ -35,7 +35,7 @@ void useInstructionSet(const std::string& name) {
     if (name == hwy::TargetName(left & -left))
       return hwy::SetSupportedTargetsForTest(left & -left);
   throw usageError("FENESTRA_INSTRUCTIONS: " + name +
-                   " is no instruction set of this machine, which has " +
+                   " is not an instruction set of this machine; use one of " +
                    join(instructionSets(), ", "));
 }
 

@@ -8,9 +8,9 @@
 namespace fenestra {
 namespace {
 
-/// Size of a large page of x86-64, and of ARM with small pages of 4 KiB; bytes.
+/// Large page of x86-64, and of ARM with base pages of 4 KiB; bytes.
 constexpr std::size_t largePage = std::size_t{2} << 20;
-/// Alignment of small arrays, bytes: a line of the cache.
+/// Alignment of small arrays, bytes: one cache line.
 constexpr std::size_t cacheLine = 64;
 
 std::size_t roundUp(std::size_t bytes, std::size_t to) {
@@ -27,7 +27,7 @@ void* allocateInLargePages(std::size_t bytes) {
     throw std::bad_alloc();
 #ifdef MADV_HUGEPAGE
   if (alignment == largePage)
-    madvise(memory, size, MADV_HUGEPAGE); // advice: its failure is none of ours
+    madvise(memory, size, MADV_HUGEPAGE); // a hint: its failure is harmless
 #endif
   return memory;
 }

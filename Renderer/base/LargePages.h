@@ -1,7 +1,7 @@
 #pragma once
-// Arrays in large pages of memory. A path looks a volume up all over: with pages of 4 KiB the
-// processor's table of addresses misses about as often as its cache, and on a volume of 64 MiB that
-// took a fifth of the time.
+// Arrays in large memory pages. Paths read a volume at scattered addresses: with pages of 4 KiB the
+// processor's TLB misses about as often as its cache. On a volume of 64 MiB that took a fifth of
+// the render time.
 
 #include <cstddef>
 #include <new>
@@ -9,13 +9,13 @@
 
 namespace fenestra {
 
-/// Memory of at least `bytes`, never a null pointer; in large pages where that is worth while and
-/// the system has them (Linux: transparent huge pages, if `always` or `madvise`). A page is taken
-/// when it is first touched. Throws std::bad_alloc.
+/// Allocates at least `bytes`; never returns a null pointer. Large arrays get large pages if the
+/// system has them (Linux: transparent huge pages, set to `always` or `madvise`). A page is
+/// committed when first touched. Throws std::bad_alloc.
 void* allocateInLargePages(std::size_t bytes);
 void freeLargePages(void* memory) noexcept;
 
-/// Allocator of such arrays.
+/// Standard allocator for such arrays.
 template <typename T>
 struct LargePages {
   using value_type = T;

@@ -1,5 +1,5 @@
 #pragma once
-// Conversions from double to the floats that lanes read.
+// Conversions from double to the floats that SIMD code reads.
 
 #include "base/Vector.h"
 
@@ -16,7 +16,7 @@ std::array<float, 3> narrow3(const Triple& v) {
   return {narrow(v[0]), narrow(v[1]), narrow(v[2])};
 }
 
-/// The rows of an affine map, translation last.
+/// Rows of an affine map, translation last.
 using AffineRows = std::array<std::array<float, 4>, 3>;
 
 inline AffineRows affineRows(const Affine& map) {

@@ -8,45 +8,45 @@
 
 namespace fenestra {
 
-/// Bit mixer with full avalanche (Stafford's variant 13 of MurmurHash3's finaliser).
+/// Bit mixer with full avalanche (Stafford's variant 13 of MurmurHash3's finalizer).
 constexpr std::uint64_t mixBits(std::uint64_t x) {
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
   return x ^ (x >> 31);
 }
 
-/// Bit mixer of 32 bits with low bias (the Hash Prospector project).
+/// Bit mixer for 32 bits with low bias (the Hash Prospector project).
 constexpr std::uint32_t mixBits32(std::uint32_t x) {
   x = (x ^ (x >> 16)) * 0x21f0aaadU;
   x = (x ^ (x >> 15)) * 0x735a2d97U;
   return x ^ (x >> 15);
 }
 
-/// Uniform in [0, 1) from random bits: 0 occurs, the largest value is 1 - 2^-53.
+/// Random bits to a uniform number in [0, 1); the largest value is 1 - 2^-53.
 constexpr double toUniform(std::uint64_t bits) {
   return static_cast<double>(bits >> 11) * 0x1p-53;
 }
 
-/// Two from one, of 32 bits each.
+/// Two uniform numbers of 32 bits each.
 inline Vec2 toUniform2(std::uint64_t bits) {
   return {static_cast<double>(bits >> 32) * 0x1p-32,
           static_cast<double>(bits & 0xffffffffU) * 0x1p-32};
 }
 
-/// Exponential with mean 1 from a uniform number of [0, 1); finite for every number, 0 included.
+/// Uniform number in [0, 1) to an exponential variate of mean 1; always finite.
 inline double toExponential(double uniform) {
   return -std::log1p(-uniform);
 }
 
-/// SplitMix64 (Steele, Lea, Flood 2014), started at a hash of its coordinates.
+/// SplitMix64 (Steele, Lea, Flood 2014), seeded with a hash of its coordinates.
 class Random {
 public:
-  /// The greatest odd multiple of the golden ratio: steps of a state.
+  /// Increment of the state: the odd integer nearest to 2^64 / golden ratio.
   static constexpr std::uint64_t gamma = 0x9e3779b97f4a7c15ULL;
 
   Random(std::uint64_t seed, std::uint64_t pixel, std::uint64_t sample)
       : m_state(mixBits(mixBits(mixBits(seed + gamma) ^ (pixel + gamma)) ^ (sample + gamma))) {}
-  /// From random bits.
+  /// Starts from random bits.
   explicit Random(std::uint64_t start) : m_state(start) {}
 
   std::uint64_t bits() { return mixBits(m_state += gamma); }

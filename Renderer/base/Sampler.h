@@ -1,6 +1,6 @@
 #pragma once
-// Random numbers of a sample as a function of (seed, pixel, sample): the few that decide most of a
-// path's noise stratified over samples of the pixel, or independent.
+// Random numbers of a path as a function of (seed, pixel, sample). The few that cause most of its
+// noise are stratified over the pixel's samples, or independent.
 
 #include "base/Random.h"
 
@@ -9,36 +9,37 @@
 namespace fenestra {
 
 enum class Sampling {
-  stratified, ///< a pixel's samples share out the first numbers, block by block
-  independent ///< no two samples share anything
+  stratified, ///< the first dimensions are stratified over blocks of a pixel's samples
+  independent ///< no two samples are correlated
 };
 
 constexpr const char* toString(Sampling sampling) {
   return sampling == Sampling::stratified ? "strata" : "independent";
 }
 
-/// Random bits of one sample, independent of each other: eight numbers that decide most, and the
-/// seed of all others.
+/// Random bits of one sample, independent of each other: the eight numbers with most influence, and
+/// the seed of all others.
 struct PrimarySamples {
-  std::uint64_t position;                 ///< in the pixel: toUniform2
-  std::uint64_t opticalDepth, acceptance; ///< optical depth to the eye ray's first tentative
-                                          ///< collision, and whether that one is real: toUniform
+  std::uint64_t position; ///< in the pixel: toUniform2
+  std::uint64_t opticalDepth,
+      acceptance;          ///< optical depth to the camera ray's first tentative collision,
+                           ///< and whether that collision is real: toUniform
   std::uint64_t direction; ///< the first scattered direction: toUniform2
-  std::uint64_t choices;   ///< whether the first collision is a surface's, and the light
-                           ///< that is looked at there: toUniform2
+  std::uint64_t choices;   ///< whether the first collision is at a surface, and the light
+                           ///< sampled there: toUniform2
   std::uint64_t pathSeed;
 };
 
-/// Strata lie in blocks of `blockSize` samples of one half, the pixel's samples of even or of odd
-/// index: of each of the eight numbers a block has one sample in each of blockSize equal strata,
-/// and of each pair (position; depth and acceptance; direction; choices) one in each of the boxes
-/// that are a power of two wide and high and hold as much (Hammersley's net; Niederreiter 1992,
-/// chapter 3). Blocks, and with them the halves, are independent of each other.
+/// Stratifies blocks of `blockSize` samples of one half buffer (a pixel's samples of even, or of
+/// odd, index). In each block, each of the eight numbers has one sample in each of blockSize equal
+/// strata. Each pair (position; depth and acceptance; direction; choices) is a (0, 3, 2)-net in
+/// base 2 (Hammersley's; Niederreiter 1992, chapter 3). Blocks, and thereby the half buffers, are
+/// independent of each other.
 ///
-/// A sample's place in its block is an element of the field of blockSize elements. It is multiplied
-/// by a random element for each pair, so that one pair's strata tell nothing of another's; then the
-/// strata of each number are shifted by adding a random element, so that each is as likely as any
-/// other whatever the place and the other numbers are.
+/// A sample's index in its block is an element of GF(blockSize). It is multiplied by a random
+/// element per pair, so that the strata of one pair are independent of another's. Then a random
+/// element is added to each number's strata, so that all strata are equally likely, whatever the
+/// index and the other numbers are.
 class Sampler {
 public:
   static constexpr bool hasIndependentHalfBuffers = true;
@@ -47,15 +48,15 @@ public:
   Sampler(Sampling sampling, std::uint64_t seed)
       : m_seed(Random(seed, 0, 0).bits()), m_isStratified(sampling == Sampling::stratified) {}
 
-  /// Samples of a half that depend on each other.
+  /// Number of samples of a half buffer that depend on each other.
   std::uint32_t samplesPerBlock() const { return m_isStratified ? blockSize : 1; }
 
   bool isStratified() const { return m_isStratified; }
 
-  /// Words for up to `samples` successive samples of a pixel: hashes of a counter and a key.
+  /// Words for up to `maxSamples` successive samples of a pixel: hashes of a counter and a key.
   struct Stream {
     static constexpr std::uint32_t maxSamples = std::uint32_t{1} << 27;
-    static constexpr std::uint32_t wordsPerSample = 16; ///< words of a sample
+    static constexpr std::uint32_t wordsPerSample = 16; ///< words per sample
     static constexpr std::uint32_t step = 0x9e3779b9U;
 
     std::uint32_t start, key;
@@ -63,7 +64,7 @@ public:
     std::uint32_t at(std::uint32_t n) const { return mixBits32((start + n * step) ^ key); }
   };
 
-  /// Stream of a sample, which is number `sample` % Stream::samples in there.
+  /// Stream that contains a sample, at index `sample` % Stream::maxSamples.
   Stream stream(std::uint64_t pixel, std::uint64_t sample) const {
     const std::uint64_t bits =
         mixBits(mixBits(m_seed + pixel * Random::gamma) + sample / Stream::maxSamples);
@@ -74,7 +75,7 @@ public:
     return generate(stream(pixel, sample), static_cast<std::uint32_t>(sample % Stream::maxSamples));
   }
 
-  /// Numbers of sample number `sample` of a stream. base/SimdSampler-inl.h draws the same in lanes.
+  /// Sample at index `sample` of a stream. base/SimdSampler-inl.h computes the same in SIMD lanes.
   PrimarySamples generate(const Stream& stream, std::uint32_t sample) const {
     Words words;
     for (std::uint32_t i = 0; i < words.size(); ++i)
@@ -88,24 +89,23 @@ public:
             toUInt64(4, 5), toUInt64(6, 7),  toUInt64(8, 9)};
   }
 
-  static constexpr unsigned strataBits = 3;                   ///< binary places of a stratum
-  static constexpr std::uint32_t elementMask = blockSize - 1; ///< mask
-  static constexpr std::uint32_t leadingMask = elementMask
-                                               << (32 - strataBits); ///< places of a word
+  static constexpr unsigned strataBits = 3;                   ///< bits of a stratum's index
+  static constexpr std::uint32_t elementMask = blockSize - 1; ///< mask of a field element
+  static constexpr std::uint32_t leadingMask = elementMask << (32 - strataBits); ///< mask in a word
   static constexpr std::uint32_t pairs = 4;
-  /// Index of the first of the words that shuffle a block's strata, one a pair, among those of the
-  /// block's first sample.
+  /// Index of the first word that shuffles a block's strata, among the words of the block's first
+  /// sample; one word per pair.
   static constexpr std::uint32_t shuffleWords = Stream::wordsPerSample - pairs;
 
-  /// Strata of a pair, at blockSize * factor + place: element `place` times element `factor` modulo
-  /// x^3 + x + 1 in a word's leading places, and behind them its places in reverse order. Factor 0
-  /// stands for 1.
+  /// Strata of a pair, at blockSize * factor + index: the product of elements `index` and `factor`
+  /// modulo x^3 + x + 1 in a word's leading bits, followed by the product's bits in reverse order.
+  /// Factor 0 stands for 1.
   using Nets = std::array<std::uint32_t, blockSize * blockSize>;
   static const Nets nets;
 
 private:
-  /// Hashes of a sample: position (0, 1), depth, acceptance, direction (4, 5), choices (6, 7), rest
-  /// (8, 9), and the less significant bits of depth and acceptance, which lanes leave out.
+  /// Hashes of a sample: position (0, 1), depth, acceptance, direction (4, 5), choices (6, 7), seed
+  /// (8, 9), and the low bits of depth and acceptance, which SIMD code omits.
   using Words = std::array<std::uint32_t, shuffleWords>;
 
   /// Replaces leading bits by strata.

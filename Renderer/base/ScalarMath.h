@@ -1,22 +1,21 @@
 #pragma once
-// Words of lane code (base/Simd-inl.h, base/SimdMath-inl.h) for plain numbers: one lane, in
-// double. Formulas that plain code and lanes share are written once, with these words, in files
-// named *Formulas-inl.h: each is a part of the namespace that includes it, fenestra::plain or an
-// instruction set's.
+// Scalar counterpart of base/Simd-inl.h and base/SimdMath-inl.h: one lane, in double. Formulas that
+// scalar and SIMD code share are written once, with these names, in files named *Formulas-inl.h.
+// Each is included inside a namespace: fenestra::scalar, or that of an instruction set.
 
 #include "base/Vector.h"
 
 #include <array>
 
-/// Highway's HWY_INLINE, for formulas.
+/// Highway's HWY_INLINE, for shared formulas.
 #define FENESTRA_INLINE inline __attribute__((always_inline))
 
 namespace fenestra::scalar {
 
-using Real = double; ///< the plain number of which Float is one a lane
+using Real = double; ///< the type of one lane of Float
 using Float = double;
 
-/// True or false.
+/// LaneMask of one lane.
 struct ScalarMask {
   bool value;
 
@@ -64,7 +63,7 @@ inline Float sqrt(Float x) {
 inline Float copySign(Float magnitude, Float sign) {
   return std::copysign(magnitude, sign);
 }
-/// An event of that probability, by a uniform number of [0, 1).
+/// True with the given probability, for a uniform number in [0, 1).
 inline LaneMask sampleBernoulli(Real probability, Float uniform) {
   return uniform < probability;
 }

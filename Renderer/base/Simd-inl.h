@@ -1,7 +1,7 @@
-// Numbers of all lanes at once, so that lane code reads like arithmetic: Float, Int, Word, and
-// LaneMask, one value a lane. Operators and functions take plain numbers, too, which stand for that
-// number in every lane. Nothing is fused unless fma() says so. Compiled once for each instruction
-// set: include after Highway's foreach_target.h.
+// SIMD types with operators, so that SIMD code reads like scalar arithmetic: Float, Int and UInt
+// hold a number per lane, LaneMask a bool. Scalar operands apply to every lane. Only fma() and its
+// like fuse a multiplication with an addition. Compiled once per instruction set: include after
+// Highway's foreach_target.h.
 
 #if defined(FENESTRA_SIMD_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef FENESTRA_SIMD_INL_H
@@ -37,15 +37,15 @@ inline constexpr UInts uints{};
 
 inline constexpr std::size_t laneCount = hn::MaxLanes(floats);
 
-/// True or false in each lane.
+/// True or false per lane.
 struct LaneMask {
   hn::Mask<Floats> m;
 
   LaneMask() = default;
-  /// Takes any vector's comparison.
+  /// Converts a mask of any vector type.
   template <typename Mask>
   HWY_INLINE LaneMask(Mask mask) : m(hn::RebindMask(floats, mask)) {}
-  /// The first n lanes; all where there are no more.
+  /// The first n lanes, or all if there are fewer.
   static HWY_INLINE LaneMask first(std::size_t n) { return hn::FirstN(floats, n); }
   static HWY_INLINE LaneMask none() { return first(0); }
   /// Lane i from bit i.
@@ -64,14 +64,14 @@ struct LaneMask {
   HWY_INLINE LaneMask operator&(LaneMask other) const { return hn::And(m, other.m); }
   HWY_INLINE LaneMask operator|(LaneMask other) const { return hn::Or(m, other.m); }
   HWY_INLINE LaneMask operator~() const { return hn::Not(m); }
-  /// For a vector of other numbers.
+  /// Mask for vectors of another type.
   template <typename Tag>
   HWY_INLINE auto cast(Tag tag) const {
     return hn::RebindMask(tag, m);
   }
 };
 
-/// A number a lane, of the plain type T.
+/// A number of the scalar type T per lane.
 template <typename T>
 struct Simd {
   using Tag = hn::Rebind<T, Floats>;
@@ -81,7 +81,7 @@ struct Simd {
 
   Simd() = default;
   HWY_INLINE Simd(Vector x) : v(x) {}
-  template <std::same_as<T> X> // no other plain number becomes one unseen
+  template <std::same_as<T> X> // no implicit conversion of other scalar types
   HWY_INLINE Simd(X x) : v(hn::Set(Tag(), x)) {}
 
   HWY_INLINE void setIf(LaneMask m, Simd value) { v = hn::IfThenElse(m.cast(Tag()), value.v, v); }
@@ -105,19 +105,19 @@ struct Simd {
 
 using Float = Simd<float>;
 using Int = Simd<std::int32_t>;
-using UInt = Simd<std::uint32_t>; ///< bits, and numbers modulo 2^32
+using UInt = Simd<std::uint32_t>; ///< bits, and integers modulo 2^32
 
 template <int by, typename T>
 HWY_INLINE Simd<T> shiftLeft(Simd<T> x) {
   return hn::ShiftLeft<by>(x.v);
 }
-/// Shift of Int is arithmetic: the sign stays.
+/// Shifts of Int are arithmetic: the sign stays.
 template <int by, typename T>
 HWY_INLINE Simd<T> shiftRight(Simd<T> x) {
   return hn::ShiftRight<by>(x.v);
 }
 
-/// By a number of bits, the same in every lane.
+/// Shifts by the same number of bits in every lane.
 template <typename T>
 HWY_INLINE Simd<T> shiftLeft(Simd<T> x, int by) {
   return hn::ShiftLeftSame(x.v, by);
@@ -143,7 +143,7 @@ HWY_INLINE Int zeroUnless(LaneMask m, Int yes) {
   return hn::IfThenElseZero(m.cast(ints), yes.v);
 }
 
-/// a b + c, rounded once where the instruction set can.
+/// a b + c, rounded once if the instruction set supports it.
 HWY_INLINE Float fma(Float a, Float b, Float c) {
   return hn::MulAdd(a.v, b.v, c.v);
 }
@@ -179,16 +179,16 @@ HWY_INLINE Float copySign(Float magnitude, Float sign) {
 HWY_INLINE Float toFloat(Int x) {
   return hn::ConvertTo(floats, x.v);
 }
-/// Conversion of whole numbers from 0 to 2^23 - 1.
+/// Converts integers from 0 to 2^23 - 1.
 HWY_INLINE Int wholeToInt(Float x) {
   constexpr float shift = 0x1p23F; // moves the number to the mantissa's lowest bits
   return Int(hn::BitCast(ints, (x + shift).v)) & 0x7fffff;
 }
-/// Rounded toward 0.
+/// Rounds toward 0.
 HWY_INLINE Int toInt(Float x) {
   return hn::ConvertTo(ints, x.v);
 }
-/// Bits of a number as another kind of number.
+/// Reinterprets the bits of a number as another type.
 template <typename T>
 HWY_INLINE Float bitsAsFloat(Simd<T> x) {
   return hn::BitCast(floats, x.v);
@@ -215,7 +215,7 @@ HWY_INLINE Simd<T> gather(const T* memory, Int index) {
   return hn::GatherIndex(typename Simd<T>::Tag(), memory, index.v);
 }
 
-/// One number a lane, in memory, for work lane by lane.
+/// One number per lane, in memory, for work lane by lane.
 template <typename T>
 struct alignas(64) LaneArray : std::array<T, laneCount> {
   LaneArray() = default;
@@ -225,12 +225,12 @@ struct alignas(64) LaneArray : std::array<T, laneCount> {
   }
 };
 
-/// Places in memory, one a lane. Without a sign, so that they are addresses as they are.
+/// Array indices, one per lane. Unsigned, so that they serve as addresses without sign extension.
 struct Indices : LaneArray<std::uint32_t> {
   explicit HWY_INLINE Indices(Int notNegative) : LaneArray(bitsAsUInt(notNegative)) {}
 };
 
-/// Reads a number, aligned or not.
+/// Reads a scalar, aligned or not.
 template <typename Number>
 HWY_INLINE Number loadScalar(const void* memory) {
   Number number;
@@ -239,7 +239,7 @@ HWY_INLINE Number loadScalar(const void* memory) {
 }
 
 #if HWY_TARGET != HWY_SCALAR
-/// loadEach of few places. By a pack: where a loop is unrolled too late, lanes go through memory.
+/// loadEach for few numbers. A fold: a loop, unrolled too late, would move lanes through memory.
 template <typename Number, std::size_t step, typename Element, std::size_t... i>
 HWY_INLINE auto loadFew(const Element* memory, const std::uint32_t* index,
                         std::index_sequence<i...>) {
@@ -248,8 +248,8 @@ HWY_INLINE auto loadFew(const Element* memory, const std::uint32_t* index,
   return numbers;
 }
 
-/// Loads a Number from each of `count` places, `step` indices apart, aligned or not. Loads one by
-/// one are less work for the processor than gathers, once the indices are in registers.
+/// Loads `count` numbers, aligned or not, at every `step`-th index. With the indices in registers,
+/// single loads are as fast as gather instructions, or faster.
 template <typename Number, std::size_t count, std::size_t step, typename Element>
 HWY_INLINE auto loadEach(const Element* memory, const std::uint32_t* index) {
   if constexpr (count * sizeof(Number) > 16)
@@ -261,7 +261,7 @@ HWY_INLINE auto loadEach(const Element* memory, const std::uint32_t* index) {
 }
 #endif
 
-/// Loads 32 bits from memory[i] on for each i.
+/// Loads 32 bits at memory[i] for each i.
 template <typename Element>
 HWY_INLINE Int loadInts(const Element* memory, const Indices& index) {
 #if HWY_TARGET == HWY_SCALAR
@@ -271,12 +271,12 @@ HWY_INLINE Int loadInts(const Element* memory, const Indices& index) {
 #endif
 }
 
-/// Two floats a lane, neighbours in memory.
+/// Two floats per lane, adjacent in memory.
 struct Pairs {
   Float first, second;
 };
 
-/// Loads 64 bits from memory[i] on for each i.
+/// Loads 64 bits at memory[i] for each i.
 template <typename Element>
 HWY_INLINE Pairs loadPairs(const Element* memory, const Indices& index) {
 #if HWY_TARGET == HWY_SCALAR

@@ -1,6 +1,5 @@
-// Tools shared by all lane code: arithmetic in three dimensions, random numbers, angles, and lanes
-// that change places. Compiled once for each instruction set: include after Highway's
-// foreach_target.h.
+// SIMD math: 3D arithmetic, random numbers, angles, and moving lanes within a vector. Compiled once
+// per instruction set: include after Highway's foreach_target.h.
 
 #if defined(FENESTRA_SIMD_MATH_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef FENESTRA_SIMD_MATH_INL_H
@@ -17,12 +16,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 
-using Real = float; ///< the plain number of which Float is one a lane
+using Real = float; ///< the type of one lane of Float
 
 HWY_INLINE float abs(float x) {
   return std::abs(x);
 }
-/// An event of that probability, by a uniform number of (0, 1].
+/// True with the given probability, for uniform numbers in (0, 1].
 HWY_INLINE LaneMask sampleBernoulli(float probability, Float uniform) {
   return uniform <= probability;
 }
@@ -53,7 +52,7 @@ HWY_INLINE Float3 mapDirection(const AffineRows& map, const Float3& d) {
   return {row(map[0]), row(map[1]), row(map[2])};
 }
 
-/// Three columns of a structure of arrays, from index i on.
+/// Loads from three arrays of a structure of arrays, from index i on.
 template <typename Columns>
 HWY_INLINE Float3 load3(const Columns& columns, std::size_t i) {
   return {load(&columns[0][i]), load(&columns[1][i]), load(&columns[2][i])};
@@ -72,18 +71,18 @@ HWY_INLINE UInt mixBits(UInt x) {
   return x ^ shiftRight<15>(x);
 }
 
-/// Random numbers of a lane: hashes of a counter that starts at a seed.
+/// Random bits per lane: hashes of a counter that starts at a seed.
 HWY_INLINE UInt nextBits(UInt& counter) {
   counter = counter + 0x9e3779b9U;
   return mixBits(counter);
 }
 
-/// (h + 1/2) / 2^32 for h < 2^31: as precise near 0 as 32 bits can be.
+/// (h + 1/2) / 2^32 for h < 2^31: as precise near 0 as 32 bits allow.
 HWY_INLINE Float toFraction(UInt h) {
   return fma(toFloat(bitsAsInt(h)), 0x1p-32F, 0x1p-33F);
 }
 
-/// The half of the unit interval that random bits lie in, and the place in it.
+/// Half of the unit interval that random bits select, and the position in it.
 struct SplitUniform {
   LaneMask upper;
   Float low; ///< in (0, 1/2)
@@ -109,8 +108,8 @@ HWY_INLINE Float polynomial(Float x, float highest, std::initializer_list<float>
   return sum;
 }
 
-/// The logarithm of a positive number that is not subnormal, to a float's last place (the
-/// polynomial of Cephes' logf).
+/// Logarithm of a positive normal number, accurate to a float's last digit (polynomial of Cephes'
+/// logf).
 HWY_INLINE Float log(Float x) {
   const Int raw = bitsAsInt(x);
   // sqrt(1/2): mantissas lie in [sqrt(1/2), sqrt(2)).
@@ -126,7 +125,7 @@ HWY_INLINE Float log(Float x) {
   return fma(e, 0.693359375F, f + low);
 }
 
-/// Exponential with mean 1, precise near 0 and in the tail: each half of the unit interval is
+/// Exponential variate of mean 1, precise near 0 and in the tail: each half of the unit interval is
 /// measured from its own end.
 HWY_INLINE Float toExponential(UInt h) {
   const SplitUniform u = splitUniform(h);
@@ -163,12 +162,12 @@ HWY_INLINE CosineSine cosSinTurns(Float turns) {
           signedBy(select(swapped, cosine, sine), sineSign)};
 }
 
-/// Angle of the point (x, y) in turns from the axis of x, in [-1/2, 1/2], to 1e-7; 0 at the origin.
+/// Angle of the point (x, y) in turns from the x axis, in [-1/2, 1/2], to 1e-7; 0 at the origin.
 HWY_INLINE Float angleInTurns(Float x, Float y) {
   const Float minor = min(abs(x), abs(y));
   const Float major = max(abs(x), abs(y));
   const Float q = minor / max(major, std::numeric_limits<float>::min());
-  // Minimax polynomial of atan(q) / (2 pi q), to 1.5e-8 of it.
+  // Minimax polynomial of atan(q) / (2 pi q), with a relative error of 1.5e-8.
   const Float octant =
       q * polynomial(q * q, 4.535739899e-4F,
                      {-2.557401608e-3F, 6.794566131e-3F, -1.194345555e-2F, 1.693557243e-2F,
@@ -177,18 +176,18 @@ HWY_INLINE Float angleInTurns(Float x, Float y) {
   return copySign(select(x < 0.0F, 0.5F - quadrant, quadrant), y);
 }
 
-/// Sends lanes to other places, in whole vectors.
+/// Permutes the lanes of a vector.
 class Shuffle {
 public:
-  /// The lanes of `which` first, in their order; lanes behind them hold no number of use.
+  /// Moves the lanes of `which` to the front, in order; the lanes behind them are undefined.
   static HWY_INLINE Shuffle compress(LaneMask which) {
-#if HWY_TARGET <= HWY_AVX3 // an instruction; no table
+#if HWY_TARGET <= HWY_AVX3 // has an instruction: no table needed
     return Shuffle(Int(hn::Compress(hn::Iota(ints, 0), which.cast(ints))));
 #else
     return Shuffle(promote({lanePackTable[which.bits()]}));
 #endif
   }
-  /// Numbers in a row to the lanes of `which`, in their order.
+  /// Moves the first lanes to the lanes of `which`, in order.
   static HWY_INLINE Shuffle expand(LaneMask which) {
     const std::uint64_t set = which.bits();
     if constexpr (laneCount <= 8)
@@ -206,7 +205,7 @@ public:
   HWY_INLINE Float3 operator()(const Float3& v) const {
     return {(*this)(v.x), (*this)(v.y), (*this)(v.z)};
   }
-  /// Lane that each lane's number comes from.
+  /// Lane from which each lane takes its value.
   HWY_INLINE Int indices() const {
     return m_indices;
   }

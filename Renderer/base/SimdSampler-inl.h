@@ -1,4 +1,4 @@
-// Random numbers of samples, one a lane: base/Sampler.h, bit for bit. Compiled once for each
+// SIMD version of base/Sampler.h, one sample per lane, with the same bits. Compiled once per
 // instruction set: include after Highway's foreach_target.h.
 
 #if defined(FENESTRA_SIMD_SAMPLER_INL_H) == defined(HWY_TARGET_TOGGLE)
@@ -15,12 +15,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 
-/// The 32 leading bits of each number of a sample, in the order of Sampler's words.
+/// The 32 leading bits of each of the PrimarySamples, in the order of Sampler's words.
 struct SimdPrimarySamples {
   std::array<UInt, 2> position, collision, direction, choices, pathSeed;
 };
 
-/// Sampler::numbers of `sample` in the stream (start, key).
+/// Sampler::generate for `sample` in the stream (start, key).
 HWY_INLINE SimdPrimarySamples generateSamples(UInt start, UInt key, UInt sample,
                                               bool isStratified) {
   using Stream = Sampler::Stream;
@@ -49,7 +49,7 @@ HWY_INLINE SimdPrimarySamples generateSamples(UInt start, UInt key, UInt sample,
   return numbers;
 }
 
-/// Uniform in [0, 1): the 24 leading bits.
+/// Uniform in [0, 1), from the 24 leading bits.
 HWY_INLINE Float toUniformBelow1(UInt bits) {
   return toFloat(bitsAsInt(shiftRight<8>(bits))) * 0x1p-24F;
 }

@@ -1,16 +1,16 @@
 #pragma once
-// Orders of lanes, for moving lanes in whole vectors: tables that stay where they are. (Highway
-// 1.0.3 copies its table for Compress to the stack at each call.)
+// Tables that move lanes within a vector. They stay in static memory, whereas Highway 1.0.3 copies
+// its table for Compress to the stack at each call.
 
 #include <array>
 #include <cstdint>
 
 namespace fenestra {
 
-/// Eight small numbers, the first in the lowest byte, for each set of eight lanes.
+/// Eight byte indices, the first in the lowest byte, per set of eight lanes.
 using LaneTable = std::array<std::uint64_t, 256>;
 
-/// Numbers of the lanes in the set, ascending; then zeros.
+/// Indices of the lanes in the set, ascending; then zeros.
 constexpr LaneTable makePackTable() {
   LaneTable table{};
   for (std::uint64_t set = 0; set < table.size(); ++set) {
@@ -22,7 +22,7 @@ constexpr LaneTable makePackTable() {
   return table;
 }
 
-/// How many lanes of the set come before each lane.
+/// Number of lanes of the set before each lane.
 constexpr LaneTable makeRankTable() {
   LaneTable table{};
   for (std::uint64_t set = 0; set < table.size(); ++set) {

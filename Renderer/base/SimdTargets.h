@@ -1,5 +1,5 @@
 #pragma once
-// Instruction sets that lanes are compiled for: three, and the baseline of every machine. Include
-// before Highway's foreach_target.h.
+// Instruction sets that SIMD code is compiled for: three, and the baseline of every machine.
+// Include before Highway's foreach_target.h.
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_AVX3_DL)

@@ -1,5 +1,5 @@
 #pragma once
-// Small tools on text, independent of the locale. Blanks are space, tab, carriage return and line
+// Text functions, independent of the locale. Whitespace is space, tab, carriage return and line
 // feed.
 
 #include <charconv>
@@ -15,12 +15,12 @@
 
 namespace fenestra {
 
-/// Parts one after the other: texts and paths as they are, whole numbers in decimal.
+/// Concatenates texts and paths as they are, and integers in decimal.
 template <typename... Parts>
 std::string concat(const Parts&... parts) {
   std::string text;
   const auto append = [&text]<typename Part>(const Part& part) {
-    static_assert(!std::floating_point<Part>, "say how many digits: numberText");
+    static_assert(!std::floating_point<Part>, "use toString to choose the digits");
     if constexpr (std::integral<Part> && !std::same_as<Part, char>)
       text += std::to_string(part);
     else if constexpr (requires { part.string(); })
@@ -32,10 +32,10 @@ std::string concat(const Parts&... parts) {
   return text;
 }
 
-/// Number in at most `digits` significant digits, like printf's %.6g.
+/// Number with at most `digits` significant digits, like printf's %.6g.
 std::string toString(double x, int digits = 6);
 
-/// Texts of the items with `separator` between them; of more than `most` the first, then `rest`.
+/// Items as text, with `separator` between them; after `maxItems` of them, `rest` instead.
 template <typename Items, typename ToText = std::identity>
 std::string join(const Items& items, std::string_view separator, ToText&& toText = {},
                  std::size_t maxItems = std::numeric_limits<std::size_t>::max(),
@@ -52,7 +52,7 @@ std::string join(const Items& items, std::string_view separator, ToText&& toText
   return text;
 }
 
-/// Numbers with `separator` between them, each as toString or textOf has it.
+/// Numbers with `separator` between them, each formatted by toString or concat.
 template <typename Numbers>
 std::string joinNumbers(const Numbers& numbers, std::string_view separator, int digits = 6) {
   return join(numbers, separator, [digits](auto x) {
@@ -63,7 +63,7 @@ std::string joinNumbers(const Numbers& numbers, std::string_view separator, int 
   });
 }
 
-/// Numbers as they lie in memory.
+/// Bytes of the numbers in memory.
 template <typename Numbers>
 std::string_view asBytes(const Numbers& numbers) {
   return {reinterpret_cast<const char*>(std::data(numbers)),
@@ -72,20 +72,20 @@ std::string_view asBytes(const Numbers& numbers) {
 
 std::string toLower(std::string_view text);
 std::string_view trim(std::string_view text, std::string_view whitespace = " \t\r\n");
-/// Parts between blanks.
+/// Parts between whitespace.
 std::vector<std::string> splitWords(std::string_view text);
-/// Words of a name in lower case, of its first 1000 characters: letters and digits, and what `kept`
-/// lists; a capital after a small letter begins another. "Left lung", "lung_left" and "LungLeft"
-/// have the same words.
+/// Lower-case words in the first 1000 characters of a name. Words consist of letters, digits and
+/// the characters of `extra`; a capital after a lower-case letter starts a new word. "Left lung",
+/// "lung_left" and "LungLeft" have the same words.
 std::vector<std::string> splitName(std::string_view name, std::string_view extra = "");
-/// Parts between separators, as std::getline reads them: none is empty at the end.
+/// Parts between separators, as std::getline reads them: an empty last part is dropped.
 std::vector<std::string> split(std::string_view text, char separator);
-/// Words of `text` in lines of at most `width` bytes; a longer word has its own line.
+/// Wraps `text` into lines of at most `width` bytes; a longer word gets its own line.
 std::string wrapLines(std::string_view text, std::size_t width);
 /// Text with every `from` replaced by `to`.
 std::string replaceAll(std::string_view text, std::string_view from, std::string_view to);
 
-/// Number that is the whole text; nullopt: other text.
+/// The number that the complete text represents; nullopt: other text.
 template <typename Number>
 std::optional<Number> parseNumber(std::string_view text) {
   Number number{};
@@ -96,7 +96,7 @@ std::optional<Number> parseNumber(std::string_view text) {
 inline std::optional<std::int64_t> parseInteger(std::string_view text) {
   return parseNumber<std::int64_t>(trim(text));
 }
-/// Finite numbers between white space, as Slicer writes them; nullopt: any other text.
+/// Finite numbers separated by whitespace, as Slicer writes them; nullopt: any other text.
 std::optional<std::vector<double>> parseNumbers(std::string_view text);
 
 } // namespace fenestra

@@ -1,6 +1,6 @@
 #pragma once
 // Streams that throw std::bad_alloc if memory runs out. The standard library's streams swallow the
-// exception: a text then ends early, and a truncated file is written.
+// exception: a text would end early, and a truncated file would be written.
 
 #include <fstream>
 #include <ios>

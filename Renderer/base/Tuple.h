@@ -1,8 +1,8 @@
 #pragma once
-// Vector (point or direction) and Array (unrelated numbers, for example a colour): 1 to 4 numbers
-// of one type. Both add and scale; * and < of two arrays are elementwise. Members have Eigen's
-// names. Eigen solves our equations but stays out of this header: its templates took half of the
-// compile time. Sums and dot products run left to right, which keeps pictures bit-identical.
+// Vector (point or direction) and Array (unrelated numbers, such as a color): 1 to 4 numbers of one
+// type. Both add and scale; * and < of two arrays are elementwise. Members have Eigen's names, but
+// this header does not include Eigen, whose templates took half of the compile time. Sums and dot
+// products run left to right, so that images stay bit-identical.
 
 #include <algorithm>
 #include <cmath>
@@ -17,14 +17,14 @@ class Vector;
 template <typename T, int N>
 class Array;
 
-/// Base of Vector and Array. T: type of a number; N: count, 1 to 4.
+/// Base of Vector and Array. T: type of a component; N: number of components, 1 to 4.
 template <template <typename, int> class Kind, typename T, int N>
 class Tuple {
 public:
   using Scalar = T;
   using Self = Kind<T, N>;
 
-  Tuple() = default; ///< uninitialised, as an int
+  Tuple() = default; ///< uninitialized, like an int
   static constexpr Self Constant(T value) {
     Self result;
     for (T& part : result.m_parts)
@@ -50,7 +50,7 @@ public:
 
   constexpr void setZero() { self() = Zero(); }
 
-  /// Applies f to each part.
+  /// Applies f to each component.
   template <typename F>
   constexpr auto unaryExpr(F&& f) const {
     Kind<decltype(f(m_parts[0])), N> result;
@@ -86,7 +86,7 @@ public:
   constexpr T mean() const { return sum() / T(N); }
   constexpr T maxCoeff() const { return *std::max_element(begin(), end()); }
   constexpr T minCoeff() const { return *std::min_element(begin(), end()); }
-  /// True if |part| <= most for every part.
+  /// True if |x| <= most for every component x.
   bool isZero(T most = T(1e-12)) const {
     return std::all_of(begin(), end(), [most](T part) { return std::abs(part) <= most; });
   }
@@ -161,8 +161,8 @@ class Array : public Tuple<Array, T, N> {
 public:
   Array() = default;
   Array(const Array&) = default;
-  Array& operator=(const Array&) & = default; // temporaries refuse assignment
-  /// One number in each part. Conversion: `array < 1.0` compares each part with 1.
+  Array& operator=(const Array&) & = default; // not for temporaries
+  /// Sets every component. Implicit, so that `array < 1.0` compares each component with 1.
   constexpr Array(T each) { *this = Array::Constant(each); }
   constexpr Array(T x, T y) requires(N == 2) { this->assign(x, y); }
   constexpr Array(T x, T y, T z) requires(N == 3) { this->assign(x, y, z); }
@@ -229,11 +229,11 @@ class Vector : public Tuple<Vector, T, N> {
 public:
   Vector() = default;
   Vector(const Vector&) = default;
-  Vector& operator=(const Vector&) & = default; // temporaries refuse assignment
+  Vector& operator=(const Vector&) & = default; // not for temporaries
   constexpr Vector(T x, T y) requires(N == 2) { this->assign(x, y); }
   constexpr Vector(T x, T y, T z) requires(N == 3) { this->assign(x, y, z); }
   constexpr Vector(T x, T y, T z, T w) requires(N == 4) { this->assign(x, y, z, w); }
-  /// Conversion, not explicit: assigning an array to a vector is common.
+  /// Implicit, since arrays are often assigned to vectors.
   constexpr Vector(const Array<T, N>& parts) {
     for (int i = 0; i < N; ++i)
       (*this)[i] = parts[i];
@@ -263,7 +263,7 @@ public:
     const T square = squaredNorm();
     return square > T(0) ? *this / std::sqrt(square) : *this;
   }
-  /// normalized() for lengths whose squares overflow or vanish.
+  /// normalized() for lengths whose squares overflow or underflow.
   Vector stableNormalized() const {
     const T largest = this->cwiseAbs().maxCoeff();
     const T square = (*this / largest).squaredNorm();

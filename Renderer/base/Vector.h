@@ -1,7 +1,8 @@
 #pragma once
-// Types shared by all folders: points and directions, colours, rays, intervals, boxes.
+// Types shared by all folders: points and directions, colors, rays, intervals, boxes.
 // Spaces are named where a value is declared: "world" is RAS in mm, "index" counts voxels (voxel
-// centres at integers), "view" is defined in model/camera/Camera.h.
+// centers at integers), "view" is defined in model/camera/Camera.h. Files in LPS are converted to
+// RAS when they are read.
 
 #include "base/Affine.h"
 
@@ -21,7 +22,7 @@ using Rgb = Array<double, 3>;
 inline constexpr double pi = std::numbers::pi;
 inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// A stretch [begin, end] of a ray's parameter; empty when end <= begin (or either is NaN).
+/// Range [begin, end] of a ray's parameter; empty if end <= begin or either is NaN.
 struct Interval {
   double begin = 0.0;
   double end = infinity;
@@ -29,7 +30,7 @@ struct Interval {
   bool isEmpty() const { return !(begin < end); }
 };
 
-/// Shortest stretch that holds both. {infinity, -infinity} joins nothing.
+/// Shortest interval that contains both; {infinity, -infinity} adds nothing.
 inline Interval enclose(const Interval& a, const Interval& b) {
   return {std::min(a.begin, b.begin), std::max(a.end, b.end)};
 }
@@ -60,7 +61,7 @@ struct Box {
 
   bool operator==(const Box&) const = default;
 
-  /// Holds no point; grows by extend.
+  /// Contains no point; grows by extend().
   static Box makeEmpty() { return {Vec3::Constant(infinity), Vec3::Constant(-infinity)}; }
   void extend(const Vec3& point) {
     lower = lower.cwiseMin(point);
@@ -73,8 +74,8 @@ struct Box {
             i & 4 ? upper.z() : lower.z()};
   }
 
-  /// The part of `range` in which the ray is inside the box (slab test; zero direction components
-  /// are ordinary input, and a ray that lies exactly in a face counts as inside).
+  /// The part of `range` in which the ray is inside the box (slab test). Direction components may
+  /// be zero; a ray exactly in a face counts as inside.
   Interval clip(const Ray& ray, Interval range = {}) const {
     for (int axis = 0; axis < 3; ++axis) {
       const double d = ray.direction[axis];

@@ -1,5 +1,4 @@
-// Arithmetic in three dimensions, for plain numbers and for lanes: a part of the namespace that
-// includes it (base/ScalarMath.h).
+// 3D arithmetic for scalar and SIMD code, included inside their namespaces (base/ScalarMath.h).
 
 FENESTRA_INLINE Float lerp(Float a, Float b, Float f) {
   return fma(b - a, f, a);
@@ -15,13 +14,13 @@ FENESTRA_INLINE Float square(Float x) {
   return x * x;
 }
 
-/// A vector, point or colour in every lane.
+/// A vector, point or color per lane.
 struct Float3 {
   Float x, y, z;
 
   Float3() = default;
   FENESTRA_INLINE Float3(Float a, Float b, Float c) : x(a), y(b), z(c) {}
-  /// Takes any three plain numbers.
+  /// Converts any triple of scalars, the same for every lane.
   template <typename Triple>
   requires requires(const Triple& v) { Real{v[2]}; }
   FENESTRA_INLINE Float3(const Triple& v) : x(v[0]), y(v[1]), z(v[2]) {}
@@ -71,7 +70,7 @@ struct CosineSine {
   Float cosine, sine;
 };
 
-/// A right-handed orthonormal frame around a unit normal (base/Vector.h's Frame).
+/// A right-handed orthonormal frame around a unit normal, as Frame in base/Vector.h.
 struct Frames {
   Float3 tangent, bitangent, normal;
 

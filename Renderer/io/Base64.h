@@ -9,7 +9,7 @@ namespace fenestra {
 
 std::string toBase64(std::string_view bytes);
 
-/// Bytes of groups of four digits, the last of which may end in "="; nullopt: any other text.
+/// Decodes groups of four digits, the last of which may end in "="; nullopt: any other text.
 std::optional<std::string> fromBase64(std::string_view text);
 
 } // namespace fenestra

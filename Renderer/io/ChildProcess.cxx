@@ -17,8 +17,8 @@
 namespace fenestra {
 namespace {
 
-/// Becomes the program, in the child. Async-signal-safe: other threads may have held locks at the
-/// fork. Signals are blocked on entry, for the parent's handlers must not run here.
+/// Executes the program, in the child. Async-signal-safe, since other threads may have held locks
+/// at the fork. Signals are blocked on entry, so that the parent's handlers do not run here.
 [[noreturn]] void execProgram(pid_t parent, int errors, char* const* arguments) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) // the parent died before PR_SET_PDEATHSIG
@@ -38,7 +38,8 @@ namespace {
   ::sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
   ::execv(selfExecutable, arguments);
-  constexpr std::string_view line = "fenestra: cannot be started once more; close other programs\n";
+  constexpr std::string_view line =
+      "fenestra: cannot start another process; close other programs\n";
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, line.data(), line.size());
   ::_exit(static_cast<int>(ErrorKind::output));
 }
@@ -49,7 +50,7 @@ ChildProcess::ChildProcess(std::vector<std::string> arguments)
     : m_errors(::memfd_create("errors", MFD_CLOEXEC)) {
   const SelfArguments words(std::move(arguments));
   const pid_t parent = ::getpid();
-  ::signal(SIGCHLD, SIG_DFL); // ignored, it would hide how the child ends
+  ::signal(SIGCHLD, SIG_DFL); // if it were ignored, the child's status would be lost
   sigset_t all, before;
   ::sigfillset(&all);
   ::pthread_sigmask(SIG_BLOCK, &all, &before);
@@ -58,7 +59,7 @@ ChildProcess::ChildProcess(std::vector<std::string> arguments)
     execProgram(parent, *m_errors, words.get());
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   if (m_id < 0)
-    throw outputError("memory", "no further process can be started; close other programs");
+    throw outputError("memory", "cannot start another process; close other programs");
 }
 
 ChildProcess::~ChildProcess() {

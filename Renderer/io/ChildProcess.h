@@ -1,5 +1,5 @@
 #pragma once
-// This program, run once more in a process of its own: a crash of one piece of work ends no other.
+// Runs this program again as a child process: a crash there ends only that piece of work.
 
 #include "io/Descriptor.h"
 
@@ -12,11 +12,11 @@
 namespace fenestra {
 
 /// Child process with default signal handlers, no files of this process, no standard input,
-/// standard output discarded and standard error kept. Signals of the terminal do not reach the
-/// child; the kernel kills the child when the thread that made it ends.
+/// standard output discarded and standard error recorded. Signals of the terminal do not reach it.
+/// The kernel kills it when the thread that created it ends.
 class ChildProcess {
 public:
-  /// Runs `fenestra arguments…`. Throws Error (output) where no process can be started.
+  /// Runs `fenestra arguments…`. Throws Error (output) if no process can be started.
   explicit ChildProcess(std::vector<std::string> arguments);
   /// Kills the process if it still runs.
   ~ChildProcess();
@@ -25,7 +25,7 @@ public:
 
   /// True once the process has ended. Does not wait.
   bool hasEnded();
-  /// Exit status; 128 and the signal's number for a process that a signal ended. 0 until then.
+  /// Exit status, or 128 plus the number of the signal that ended the process. 0 until then.
   int status() const { return m_status; }
   void send(int signal) const;
   /// Last 64 kB written to standard error so far.

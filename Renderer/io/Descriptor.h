@@ -1,5 +1,5 @@
 #pragma once
-// Open files, and locks on them (flock).
+// File descriptors, and locks on their files (flock).
 
 #include <cerrno>
 #include <utility>
@@ -10,7 +10,7 @@
 
 namespace fenestra {
 
-/// Number of an open file, which is closed with this object; -1: none.
+/// Owns a file descriptor and closes it; -1: none.
 class Descriptor {
 public:
   explicit Descriptor(int file = -1) : m_file(file) {}
@@ -31,7 +31,7 @@ private:
   int m_file;
 };
 
-/// Calls `call` until no signal interrupts the call (EINTR); returns its result.
+/// Repeats a system call that a signal has interrupted (EINTR); returns its result.
 template <typename Call>
 auto retryOnEintr(Call&& systemCall) {
   auto result = systemCall();
@@ -40,13 +40,13 @@ auto retryOnEintr(Call&& systemCall) {
   return result;
 }
 
-/// Tries to lock a file. False: another process holds the lock. True also on a disk without locks.
+/// Tries to lock a file. False: another process holds the lock. Also true on disks without locks.
 inline bool tryLock(const Descriptor& file) {
   return retryOnEintr([&] { return ::flock(*file, LOCK_EX | LOCK_NB); }) == 0 ||
          errno != EWOULDBLOCK;
 }
 
-/// False if the file has no name any more.
+/// False if all names of the file have been removed.
 inline bool hasName(const Descriptor& file) {
   struct stat status = {};
   return ::fstat(*file, &status) != 0 || status.st_nlink > 0;

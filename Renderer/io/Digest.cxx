@@ -13,7 +13,7 @@ namespace fenestra {
 namespace {
 
 constexpr std::size_t wordBytes = 8;
-static_assert(std::endian::native == std::endian::little, "words are taken as they lie in memory");
+static_assert(std::endian::native == std::endian::little, "words are read in memory order");
 
 std::uint64_t mixWord(std::uint64_t state, const char* bytes) {
   std::uint64_t word = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// Digest of bytes, the same on every machine: notices damage and other contents, not an attacker.
+// Digest of bytes, the same on every machine. It detects damage and change, but no attack.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,21 +9,21 @@
 
 namespace fenestra {
 
-/// Chain of mixed words of eight bytes: two contents that differ within one aligned word have
-/// different digests.
+/// Chained mixing of words of eight bytes: two contents that differ within one aligned word always
+/// have different digests.
 class Digest {
 public:
   void add(std::string_view bytes);
-  /// Digest of all bytes so far; their number counts.
+  /// Digest of all bytes so far and of their number.
   std::uint64_t value() const;
 
 private:
   std::uint64_t m_state = 0, m_size = 0;
-  std::string m_rest; ///< bytes of a word that is not complete
+  std::string m_rest; ///< bytes of an incomplete word
 };
 
-/// Digest of the first `bytes` bytes of a file, or of all if it is shorter, read block by block.
-/// Throws Error (input) where the file cannot be read.
+/// Digest of the first `bytes` bytes of a file, or of all if it is shorter, read in blocks. Throws
+/// Error (input) if the file cannot be read.
 std::uint64_t computeDigest(const std::filesystem::path& file, std::uint64_t bytes = UINT64_MAX);
 
 } // namespace fenestra

@@ -14,14 +14,14 @@ std::filesystem::path findTempRoot() {
   std::error_code failed;
   std::filesystem::path folder = std::filesystem::temp_directory_path(failed);
   if (failed)
-    throw outputError("TMPDIR", "is no folder; set it to one that you may write to");
+    throw outputError("TMPDIR", "is not a folder; set it to one that you may write to");
   return folder;
 }
 
 constexpr const char* folderHint = "name a folder that you may write to";
 constexpr const char* tempHint = "set TMPDIR to a folder that you may write to";
 
-/// Makes a folder and appends it to `made`; returns the error code, 0: made.
+/// Creates a folder and appends it to `created`; returns the error code, 0: success.
 int createFolder(const std::filesystem::path& folder, mode_t mode,
                  std::list<TempFileGuard>& created) {
   const SignalBlocker blocker;
@@ -29,11 +29,11 @@ int createFolder(const std::filesystem::path& folder, mode_t mode,
   if (::mkdir(folder.c_str(), mode) == 0)
     return 0;
   const int code = errno;
-  created.back().release(); // the existing name is not ours
+  created.back().release(); // not created by this process
   return code;
 }
 
-/// Makes `folder` and the missing folders above it. Throws Error (output) with the mend `other`.
+/// Creates `folder` and its missing parents. Throws Error (output) with `hint`.
 void createMissing(const std::filesystem::path& folder, mode_t mode, const char* hint,
                    std::list<TempFileGuard>& created) {
   std::error_code failed;
@@ -65,8 +65,8 @@ CreatedFolders::~CreatedFolders() {
   }
 }
 
-/// False: another name is needed. A folder is locked after it is made; in between another run may
-/// take it for abandoned and remove it.
+/// False: the name is taken; try another. The folder is locked only after its creation; in between
+/// another run may consider it stale and remove it.
 bool PrivateFolder::makeLocked(const std::filesystem::path& folder) {
   const SignalBlocker blocker;
   const int code = createFolder(folder, S_IRWXU, m_entries);
@@ -104,7 +104,7 @@ void removeStaleFolders() {
   std::filesystem::path parent;
   try {
     parent = findTempRoot();
-  } catch (const std::exception&) { // no folder or memory: reported where the folder is needed
+  } catch (const std::exception&) { // no folder or memory: the first user of the folder reports it
     return;
   }
   removeStaleTempFiles(parent, folderPrefix, TempFileGuard::Kind::folder);

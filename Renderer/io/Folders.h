@@ -1,6 +1,6 @@
 #pragma once
-// Folders that this process makes, and removes with the object or by a signal that ends the
-// process.
+// Folders that this process creates. They are removed with their object, or by a signal that ends
+// the process.
 
 #include "io/Descriptor.h"
 #include "io/TempFiles.h"
@@ -10,8 +10,8 @@
 
 namespace fenestra {
 
-/// Makes `folder`, for results, and the missing folders above it. The destructor removes those of
-/// them that are still empty. Throws Error (output).
+/// Creates `folder`, for results, and its missing parents. The destructor removes those that are
+/// still empty. Throws Error (output).
 class CreatedFolders {
 public:
   explicit CreatedFolders(const std::filesystem::path& folder);
@@ -23,11 +23,11 @@ private:
   std::list<TempFileGuard> m_created; ///< the outermost first
 };
 
-/// Temporary folder, readable by this user alone; removed after SIGKILL by a later run.
+/// Temporary folder that only this user can read. After SIGKILL a later run removes it.
 class PrivateFolder {
 public:
-  /// Makes a folder in TMPDIR, locked (flock) while in use. Throws Error (output) where TMPDIR
-  /// cannot be written.
+  /// Creates a folder in TMPDIR, locked (flock) while in use. Throws Error (output) if TMPDIR
+  /// cannot be written to.
   PrivateFolder();
   ~PrivateFolder();
   PrivateFolder(const PrivateFolder&) = delete;
@@ -35,18 +35,18 @@ public:
 
   const std::filesystem::path& path() const { return m_entries.front().path(); }
 
-  /// Makes an empty file at `relative` (normal, without "..") and the folders above it; returns its
-  /// full path. Throws Error (output), also where the file exists.
+  /// Creates an empty file at `relative` (normal, without "..") and its parent folders; returns the
+  /// full path. Throws Error (output), also if the file exists.
   std::filesystem::path add(const std::filesystem::path& relative);
 
 private:
   bool makeLocked(const std::filesystem::path& folder);
 
   Descriptor m_lock;
-  std::list<TempFileGuard> m_entries; ///< the folder, then its content as made
+  std::list<TempFileGuard> m_entries; ///< the folder, then its content in order of creation
 };
 
-/// Removes the private folders that killed runs of this user have left: no process has them locked.
+/// Removes private folders that killed runs of this user have left, which no process has locked.
 /// Ignores failures.
 void removeStaleFolders();
 

@@ -47,8 +47,8 @@ std::optional<FileId> getFileId(int folder, const char* path, int flags) {
                        : 0};
 }
 
-/// Canonical folder to which this thread's reads are confined; null: not confined. (A pointer: a
-/// thread_local object with a destructor ends the process where memory is short.)
+/// Canonical folder to which this thread's reads are confined; null: not confined. A pointer, since
+/// a thread_local object with a destructor ends the process if memory runs out.
 thread_local const std::filesystem::path* confinement = nullptr;
 
 bool isWithin(const std::filesystem::path& path, const std::filesystem::path& folder) {
@@ -66,7 +66,7 @@ std::filesystem::file_type getFileType(const std::filesystem::path& path) {
   return type;
 }
 
-/// True for names that system calls would cut at a zero byte.
+/// True for names that system calls would truncate at a zero byte.
 bool hasZeroByte(const std::filesystem::path& path) {
   return path.native().find('\0') != std::string::npos;
 }
@@ -93,23 +93,22 @@ void requireFile(const std::filesystem::path& path, const std::string& hint,
                  std::uint64_t maxBytes) {
   if (hasZeroByte(path))
     throw inputError(path.c_str(),
-                     "is followed by a zero byte, which no name holds; write it again");
-  // Checked first: a name on an automount or a server would reveal the access to others.
+                     "is followed by a zero byte in the file that names it; write that file again");
+  // Checked first: access to an automount or a server would reveal the read to others.
   if (confinement && !isWithin(path, *confinement))
-    throw inputError(path,
-                     "is outside the archive that names it, or not in it; save the scene again");
+    throw inputError(path, "is not inside the archive that refers to it; save the scene again");
   struct stat status = {};
   if (::stat(path.c_str(), &status) != 0) {
     if (errno == ENOENT || errno == ENOTDIR)
-      throw inputError(path, "there is no such file; check the name");
+      throw inputError(path, "no such file; check the name");
     throw readError(path, errno, "check its permissions and those of its folder");
   }
   if (S_ISDIR(status.st_mode))
     throw inputError(path, "is a folder; ", hint);
   if (!S_ISREG(status.st_mode))
-    throw inputError(path, "is not a file that can be read; ", hint);
+    throw inputError(path, "is not a regular file; ", hint);
   if (static_cast<std::uint64_t>(status.st_size) > maxBytes)
-    throw inputError(path, "has more than ", maxBytes >> 20, " MB; name a smaller file");
+    throw inputError(path, "is larger than ", maxBytes >> 20, " MB; use a smaller file");
   if (::faccessat(AT_FDCWD, path.c_str(), R_OK, AT_EACCESS) != 0)
     throw readError(path, errno, "check its permissions");
   const std::optional<FileId> file = fileId(path);

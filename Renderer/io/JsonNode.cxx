@@ -37,20 +37,19 @@ nlohmann::json parseJson(std::string_view text, const std::string& source, int m
   const auto count = [&](int depth, Event event, const nlohmann::json&) {
     const bool isContainer = event == Event::object_start || event == Event::array_start;
     if (isContainer && depth >= maxDepth)
-      throw inputError(source, "is nested deeper than ", maxDepth,
-                       " levels; Fenestra writes no such file");
+      throw inputError(source, "is nested deeper than ", maxDepth, " levels; simplify it");
     if ((isContainer || event == Event::key || event == Event::value) && ++nodes > maxNodes)
-      throw inputError(source, "holds more than ", maxNodes,
-                       " values; Fenestra writes no such file");
+      throw inputError(source, "contains more than ", maxNodes,
+                       " values and keys; use a smaller file");
     return true;
   };
   try {
     return nlohmann::json::parse(text, count);
   } catch (const nlohmann::json::parse_error& error) {
-    throw inputError(source, "is not JSON at byte ", error.byte,
+    throw inputError(source, "is not valid JSON at byte ", error.byte,
                      "; check its brackets, commas and quotes");
   } catch (const nlohmann::json::exception&) {
-    throw inputError(source, "holds a number that is too large; write a smaller one");
+    throw inputError(source, "contains a number that is too large; use a smaller one");
   }
 }
 
@@ -145,8 +144,7 @@ std::string JsonNode::json() const {
 void JsonNode::allowOnly(std::initializer_list<std::string_view> keys) const {
   for (const auto& [key, value] : object().items())
     if (std::find(keys.begin(), keys.end(), key) == keys.end()) {
-      const std::string quotedKey =
-          nlohmann::json(key).dump(-1, ' ', true); // one line, whatever the key holds
+      const std::string quotedKey = nlohmann::json(key).dump(-1, ' ', true); // any key on one line
       throw error("unknown key " + quotedKey.substr(0, 80) + "; known ones are " +
                   join(keys, ", "));
     }

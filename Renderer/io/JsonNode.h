@@ -1,5 +1,5 @@
 #pragma once
-// JSON from untrusted files; every error names its place.
+// JSON from untrusted files. Every error states its path in the document.
 
 #include "base/Error.h"
 #include "base/Vector.h"
@@ -15,25 +15,24 @@
 
 namespace fenestra {
 
-/// Largest text file, bytes, but for Slicer's scenes. Parsed JSON takes some 25 times as many.
+/// Size limit of text files but Slicer's scenes, bytes. Parsed JSON takes about 25 times that.
 inline constexpr std::uint64_t maxTextBytes = std::uint64_t{4} << 20;
 
-/// The content of a text file. Throws Error (input) where it cannot be read or exceeds `most`
-/// bytes.
+/// Content of a text file. Throws Error (input) if it cannot be read or exceeds `maxBytes` bytes.
 std::string readText(const std::filesystem::path& path, std::uint64_t maxBytes = maxTextBytes);
 
-/// Most values and keys of a JSON text.
+/// Limit of the number of values and keys of a JSON text.
 inline constexpr int maxJsonNodes = 200'000;
 
-/// Parses one JSON value. Throws Error (input) for other text, for nesting deeper than 64, and for
-/// more than `maxNodes` values and keys.
+/// Parses one JSON value. Throws Error (input) for invalid text, nesting deeper than 64, and more
+/// than `maxNodes` values and keys.
 nlohmann::json parseJson(std::string_view text, const std::string& source,
                          int maxNodes = maxJsonNodes);
 
-/// JSON as a file's content, or a line with `indent` -1; bytes that are not UTF-8 are replaced.
+/// JSON as the content of a file, or as one line if `indent` is -1; replaces invalid UTF-8.
 std::string dumpJson(const nlohmann::ordered_json& json, int indent = 2);
 
-/// View of a JSON value, with its place in the document, like "lights[2].radiance". The document
+/// View of a JSON value and its path in the document, such as "lights[2].radiance". The document
 /// must outlive the view. Accessors throw Error (input) for a value of another type or range.
 class JsonNode {
 public:
@@ -46,7 +45,7 @@ public:
   bool isObject() const { return m_value->is_object(); }
   bool boolean() const;
   std::string text() const;
-  /// Index of the text among `words`, at least two.
+  /// Index of the text among `words`, which are at least two.
   std::size_t choice(const std::vector<std::string>& words) const;
   double number() const;
   double number(double low, double high) const;
@@ -60,7 +59,7 @@ public:
   /// Elements of an array.
   std::vector<JsonNode> elements() const;
 
-  /// Member of an object. Missing key: find returns nullopt, at throws Error (input).
+  /// Member of an object. If the key is missing, find returns nullopt and at throws Error (input).
   std::optional<JsonNode> find(const std::string& key) const;
   JsonNode at(const std::string& key) const;
   /// Keys and values, in the keys' order.
@@ -70,14 +69,14 @@ public:
   /// Value as JSON text, on one line.
   std::string json() const;
 
-  /// Error (input) that names the file and the place, then says `mend`.
+  /// Error (input) that names the file and the path, then `hint`.
   Error error(const std::string& hint) const;
 
 private:
   JsonNode(const nlohmann::json& value, std::string source, std::string place)
       : m_value(&value), m_source(std::move(source)), m_path(std::move(place)) {}
 
-  /// Returns the value. Throws Error (input) unless `isRight`.
+  /// Returns the value. Throws Error (input) unless `isValid`.
   const nlohmann::json& require(bool isValid, const char* hint) const;
   const nlohmann::json& object() const;
   std::string memberPath(const std::string& key) const {

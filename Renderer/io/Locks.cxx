@@ -40,7 +40,7 @@ std::vector<Descriptor> lockFolders(const std::set<std::filesystem::path>& folde
 }
 
 NameLock::NameLock(const std::filesystem::path& path) {
-  constexpr double maxSeconds = 0.2; // s; removeAbandoned locks files for much less
+  constexpr double maxSeconds = 0.2; // s; removeStaleTempFiles holds locks for much less
   const std::filesystem::path lock =
       path.parent_path() / hashTempName(tempFilePrefix, path.filename().string());
   const Stopwatch watch;
@@ -48,7 +48,7 @@ NameLock::NameLock(const std::filesystem::path& path) {
     sleepBriefly();
 }
 
-/// Fails where another process has removed the file after it was opened: no other process would see
+/// Fails if another process has removed the file after it was opened: other processes would not see
 /// that lock.
 void NameLock::tryTake(const std::filesystem::path& lock, const std::filesystem::path& path) {
   const SignalBlocker blocker;

@@ -1,6 +1,6 @@
 #pragma once
-// Locks between processes (flock), released when their process ends in any way. On a disk without
-// locks every caller proceeds.
+// Locks between processes (flock), released however their process ends. On disks without locks
+// every caller proceeds.
 
 #include "io/Descriptor.h"
 #include "io/TempFiles.h"
@@ -12,18 +12,18 @@
 
 namespace fenestra {
 
-/// Locks folders, so that no other run places results in the same folders meanwhile and results of
-/// two runs do not mix. Placing takes milliseconds: after 2 s of waiting the caller proceeds
-/// without the lock. Folders that cannot be read are left out.
+/// Locks folders, so that the results that two runs place there do not mix. Placing takes
+/// milliseconds: after 2 s of waiting the caller proceeds without the lock. Folders that cannot be
+/// read are skipped.
 std::vector<Descriptor> lockFolders(const std::set<std::filesystem::path>& folders);
 
 /// Lock on a result's name, held by one process at a time, for results that take long to write.
-/// Locks a temporary file beside the result, which is removed with this object, or after SIGKILL by
-/// the next run in the folder.
+/// Locks a temporary file beside the result, which is removed with this object or, after SIGKILL,
+/// by the next run in the folder.
 class NameLock {
 public:
-  /// Takes the lock unless another process holds the lock. Throws Error (output) where no file can
-  /// be made in the folder of `path`.
+  /// Takes the lock unless another process holds it. Throws Error (output) if no file can be
+  /// created in the folder of `path`.
   explicit NameLock(const std::filesystem::path& path);
 
   bool isHeld() const { return m_file.isOpen(); }

@@ -1,5 +1,5 @@
 #pragma once
-// Text from files, for messages: on one line, valid UTF-8, cut to 80 bytes by shown().
+// Makes text from files fit for messages: one line of valid UTF-8, by sanitize() at most 80 bytes.
 
 #include <algorithm>
 #include <span>
@@ -8,8 +8,8 @@
 
 namespace fenestra {
 
-/// Bytes of the UTF-8 character at the front of `text`; 0: empty, or not valid UTF-8 (The Unicode
-/// Standard 15.0, table 3-7).
+/// Size in bytes of the UTF-8 character at the start of `text`; 0: empty, or not valid UTF-8 (The
+/// Unicode Standard 15.0, table 3-7).
 inline std::size_t characterSize(std::string_view text) {
   const auto byte = [&text](std::size_t i) {
     return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;

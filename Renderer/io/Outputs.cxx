@@ -26,8 +26,8 @@ constexpr int namedPipe = -1; ///< stream that is opened when its content is sen
 
 std::atomic<bool> anyPlaced = false;
 
-/// File that writing to `path` would change: links are followed, dangling ones as well. The folder
-/// is canonical, so that one file has one name. Throws Error (output).
+/// File that writing to `path` would change; links are followed, dangling ones as well. The folder
+/// is canonical, so that each file has one name. Throws Error (output).
 fs::path resolveTarget(const fs::path& path) {
   constexpr int maxLinks = 40; // Linux's limit
   std::error_code failed;
@@ -42,8 +42,8 @@ fs::path resolveTarget(const fs::path& path) {
   return folder / target.filename();
 }
 
-/// True if this process may not rename over the file: in a sticky folder, as /tmp, only the owners
-/// of the file and of the folder may (rename(2), EPERM).
+/// True if this process may not rename over the file: in a sticky folder, such as /tmp, only the
+/// owners of the file and of the folder may (rename(2), EPERM).
 bool isSticky(const struct stat& file, const fs::path& folder) {
   struct stat status = {};
   const uid_t user = ::geteuid();
@@ -65,7 +65,7 @@ void requireReplaceable(const fs::path& path, const fs::path& target) {
   if ((status.st_mode & 0222) == 0 || ::faccessat(AT_FDCWD, target.c_str(), W_OK, AT_EACCESS) != 0)
     throw outputError(path, "is write-protected; choose another name, or chmod u+w it");
   if (isSticky(status, target.parent_path()))
-    throw outputError(path, "belongs to somebody else, in a folder where only owners may replace "
+    throw outputError(path, "belongs to another user, in a folder where only owners may replace "
                             "files; choose another name or folder");
 }
 
@@ -76,7 +76,7 @@ void requireNoInput(const fs::path& path, const std::optional<FileId>& file) {
 }
 
 Error duplicateError(const fs::path& path) {
-  return usageError(path, ": would be written twice; give each result a name of its own");
+  return usageError(path, ": would be written twice; give each result its own name");
 }
 
 void syncFolder(const fs::path& folder) {
@@ -101,8 +101,8 @@ std::optional<int> descriptorNumber(const std::string& path) {
   return std::nullopt;
 }
 
-/// Descriptor of a result that is no file: /dev/stdout, /dev/stderr, /dev/fd/N, /proc/self/fd/N, or
-/// `namedPipe`; nullopt: other paths. Throws Error (output) where the descriptor is not open for
+/// Descriptor of a result that is not a file: /dev/stdout, /dev/stderr, /dev/fd/N, /proc/self/fd/N,
+/// or `namedPipe`; nullopt: other paths. Throws Error (output) if the descriptor is not open for
 /// writing.
 std::optional<int> findStream(const fs::path& path) {
   if (const auto number = descriptorNumber(path.lexically_normal().string())) {
@@ -116,17 +116,17 @@ std::optional<int> findStream(const fs::path& path) {
   return isPipe ? std::optional(namedPipe) : std::nullopt;
 }
 
-/// Throws Error (output), also where no process reads the pipe.
+/// Throws Error (output), also if no process reads the pipe.
 void sendContent(int stream, const std::string& content, const fs::path& path) {
   if (stream != namedPipe) {
     std::cout.flush(); // earlier output comes first
     std::fflush(stdout);
     return writeAll(stream, content, path);
   }
-  // Opening without O_NONBLOCK would wait for ever where no process reads the pipe.
+  // Without O_NONBLOCK, open would block until a process reads the pipe.
   const Descriptor file(::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC));
   if (!file.isOpen())
-    throw outputError(path, "nobody reads this pipe; start its reader first");
+    throw outputError(path, "pipe has no reader; start the reader first");
   ::fcntl(*file, F_SETFL, 0);
   writeAll(*file, content, path);
 }
@@ -145,7 +145,7 @@ bool hasPlacedResults() {
 
 struct Outputs::Result {
   fs::path path;
-  std::optional<int> stream;           ///< as of findStream
+  std::optional<int> stream;           ///< see findStream
   std::string pending;                 ///< content of the stream
   fs::path target;                     ///< path of the file, links followed
   std::unique_ptr<TemporaryFile> file; ///< content written, not yet in place
@@ -160,12 +160,12 @@ struct Outputs::Result {
   }
   void requireOwnFile() const {
     std::error_code failed;
-    // An empty file holds nobody's data.
+    // An empty file has no data to lose.
     if (isOwnFile && fs::exists(target, failed) && !fs::is_empty(target, failed) &&
         !isOwnFile(target))
       throw usageError(
           path,
-          ": is there, and Fenestra did not write it; move it away, or choose another --output");
+          ": exists and was not written by Fenestra; move it away, or choose another --output");
   }
 };
 
@@ -185,8 +185,7 @@ void Outputs::add(const fs::path& path, const IsOwnFile& isOwnFile) {
     requireReplaceable(path, result->target);
     if (isTempName(result->target.filename().string(), tempFilePrefix))
       throw usageError(
-          path,
-          ": is a name for Fenestra's temporary files, which the next run removes; choose another");
+          path, ": is a name for temporary files, which the next run removes; choose another name");
   }
   requireNoInput(path, result->id());
   const std::optional<FileId> id = result->id();
@@ -196,7 +195,7 @@ void Outputs::add(const fs::path& path, const IsOwnFile& isOwnFile) {
     throw duplicateError(path);
   if (!result->stream && m_folders.insert(result->target.parent_path()).second) {
     removeStaleTempFiles(result->target.parent_path(), tempFilePrefix, TempFileGuard::Kind::file);
-    const TemporaryFile probe(result->target); // throws where none can be made
+    const TemporaryFile probe(result->target); // throws if none can be created
   }
   result->isOwnFile = isOwnFile;
   m_results[path] = std::move(result);

@@ -1,6 +1,10 @@
 #pragma once
-// Results of a command: declared before the long work, refused where they would cost the user a
-// file, put in place together when complete. Nothing else in Renderer writes results.
+// Results of a command. They are declared before the long work, refused if they would cost the user
+// a file, and put in place together when all are complete. Nothing else in Renderer writes results.
+//
+// Contents are complete and synced under temporary names before the first is renamed. Names are
+// exchanged, so that a rename that fails restores the previous files. Encoders work in memory, so
+// that a full disk is detected here alone.
 
 #include "io/InputRegistry.h"
 #include "io/ProvenanceTag.h"
@@ -20,7 +24,7 @@
 
 namespace fenestra {
 
-/// Size and digest (Digest.h) of a content, which identify a result.
+/// Size and digest (io/Digest.h) of a content, which identify a result.
 struct ContentDigest {
   std::uint64_t bytes = 0, digest = 0;
 
@@ -38,33 +42,32 @@ public:
   Outputs(const Outputs&) = delete;
   Outputs& operator=(const Outputs&) = delete;
 
-  /// True if Fenestra wrote the existing file, which may then be replaced unasked.
+  /// True if Fenestra wrote the existing file, which may then be replaced without asking.
   using IsOwnFile = std::function<bool(const std::filesystem::path&)>;
 
-  /// Declares a result that the user has named, or, with `isOurs`, one that Fenestra names. Links
-  /// are followed; /dev/stdout, /dev/fd/N and pipes are streams, written after all files. Throws
-  /// Error: usage where `path` is a file that was read (io/InputRegistry), another result or a
-  /// temporary file's name; output where `path` is a folder, a device or write-protected, or no
-  /// file can be made in its folder; usage where `path` is a file that is neither ours nor empty.
+  /// Declares a result that the user has named, or, with `isOwnFile`, one that Fenestra names.
+  /// Links are followed; /dev/stdout, /dev/fd/N and pipes are streams, written after all files.
+  /// Throws Error: usage if `path` is a registered input, another result, a temporary file's name,
+  /// or a file that is neither Fenestra's own nor empty; output if `path` is a folder, a device or
+  /// write-protected, or no file can be created in its folder.
   void add(const std::filesystem::path& path, const IsOwnFile& isOwnFile = {});
 
-  /// Repeats add's check against the ledger of inputs, after more files were read. Throws Error
+  /// Repeats add's check against the input registry, after more files were read. Throws Error
   /// (usage).
   void checkInputs() const;
-  /// Removes the results from the ledger of inputs, after a request that reads a result was
-  /// refused.
+  /// Removes the results from the input registry, after a request that reads a result was refused.
   void forgetInputs() const;
 
-  /// Writes the whole content of a declared result to the disk, not yet in place. Callable from any
-  /// thread. Throws Error (output), a full disk included.
+  /// Writes the complete content of a declared result to the disk, not yet in place. Callable from
+  /// any thread. Throws Error (output), also if the disk is full.
   void write(const std::filesystem::path& path, std::string_view content);
-  /// State of the content written last; nullopt: none, or no declared result.
+  /// Digest of the content written last; nullopt: none, or not a declared result.
   std::optional<ContentDigest> writtenDigest(const std::filesystem::path& path) const;
 
   /// Puts all content written since the last commit in place, all or nothing: after a failure the
-  /// results placed before are taken back. Two processes with the same results place theirs one
-  /// after the other. No signal ends the process meanwhile. Throws Error: usage where a result
-  /// became an input since; output.
+  /// results placed before are withdrawn. If two processes have the same results, one places all of
+  /// its own before the other. No signal ends the process meanwhile. Throws Error: usage if a
+  /// result has become an input; output.
   void commit(Durability durability = Durability::synced);
 
 private:
@@ -75,7 +78,7 @@ private:
   std::map<std::filesystem::path, std::unique_ptr<Result>> m_results; ///< by the name given to add
   std::set<std::pair<FileId, std::string>> m_targets; ///< folder and name of all results
   std::set<FileId> m_files;                           ///< existing files of declared names
-  std::set<std::filesystem::path> m_folders;          ///< folders in which a file can be made
+  std::set<std::filesystem::path> m_folders;          ///< folders in which files can be created
 };
 
 } // namespace fenestra

@@ -26,14 +26,14 @@ std::string formatChecksum(uLong sum) {
   return digits;
 }
 
-/// Checksum of `content` without the digits at `at` and the `behind` bytes after them.
+/// Checksum of `content` without the digits at `at` and the `trailingBytes` bytes after them.
 std::string computeChecksum(std::string_view content, std::size_t at) {
   const std::size_t rest = std::min(content.size(), at + checksumDigits + trailingBytes);
   return formatChecksum(
       updateChecksum(updateChecksum(0, content.substr(0, at)), content.substr(rest)));
 }
 
-/// Passes the bytes from `begin` to `end`, or to the file's own end, to `take` block by block.
+/// Passes the bytes from `begin` to `end`, or to the end of the file, to `take` in blocks.
 void readBlocks(std::istream& file, std::uint64_t begin, std::uint64_t end,
                 const std::function<void(std::string_view block)>& take) {
   file.clear();
@@ -47,12 +47,12 @@ void readBlocks(std::istream& file, std::uint64_t begin, std::uint64_t end,
   }
 }
 
-/// Offsets of the digits of the last marks. A file of ours has its own mark last, after the marks
-/// of files that it contains.
+/// Offsets of the digits of the last tags. Fenestra's files have their own tag last, after the tags
+/// of files that they contain.
 std::vector<std::uint64_t> findTags(std::istream& file) {
-  constexpr std::ptrdiff_t maxTags = 4; // each costs a pass through the file
+  constexpr std::ptrdiff_t maxTags = 4; // each takes a pass through the file
   std::vector<std::uint64_t> tags;
-  std::string text; // tail of the previous block, too short to hold a mark, then the current block
+  std::string text; // tail of the previous block, too short for a tag, then the current block
   std::uint64_t textBegin = 0;
   readBlocks(file, 0, UINT64_MAX, [&](std::string_view block) {
     text += block;

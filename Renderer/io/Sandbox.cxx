@@ -29,9 +29,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr const char* subcommand = "read-apart"; // not for users
+constexpr const char* subcommand = "read-apart"; // internal
 constexpr int childConnection = 3;
-constexpr std::uint64_t maxRequestBytes = 1 << 16; // bytes; less than a socket holds
+constexpr std::uint64_t maxRequestBytes = 1 << 16; // bytes; fits into a socket's buffer
 
 // ---- frames: a length of 8 bytes, then as many bytes
 
@@ -52,7 +52,7 @@ bool sendFrame(int connection, const std::string& bytes) {
          sendAll(connection, bytes);
 }
 
-/// Waits for bytes to receive. False: none before `deadline`; nullopt: no deadline.
+/// Waits for readable bytes. False: none before `deadline`; nullopt: no deadline.
 bool waitReadable(int connection, std::optional<Clock::time_point> deadline) {
   using std::chrono::milliseconds;
   pollfd event{connection, POLLIN, 0};
@@ -104,7 +104,7 @@ constexpr bool hasSanitizer = __has_feature(address_sanitizer) || __has_feature(
 constexpr bool hasSanitizer = false;
 #endif
 
-/// Lowers a limit for good.
+/// Lowers a limit irrevocably.
 bool lowerLimit(__rlimit_resource resource, rlim_t maximum) {
   rlimit both{};
   if (::getrlimit(resource, &both) != 0)
@@ -114,8 +114,8 @@ bool lowerLimit(__rlimit_resource resource, rlim_t maximum) {
   return ::setrlimit(resource, &both) == 0;
 }
 
-/// Gives up every right to write, make, remove and execute files; no effect on kernels without
-/// Landlock.
+/// Drops all rights to write, create, remove and execute files, irrevocably. No effect on kernels
+/// without Landlock.
 void forbidFileChanges() {
   landlock_ruleset_attr rights{};
   rights.handled_access_fs =
@@ -130,10 +130,10 @@ void forbidFileChanges() {
   ::close(static_cast<int>(rules));
 }
 
-/// Limits this process for good: `bytes` of address space (not under sanitizers, which map
-/// terabytes), 32 open files, no growing file, no core; no right to change files. Lets the kernel
-/// kill this process when its parent dies. False where process number `parent` is gone already, or
-/// a limit cannot be set.
+/// Limits this process irrevocably: `bytes` of address space (except under sanitizers, which map
+/// terabytes), 32 open files, no growing file, no core dump, no right to change files. The kernel
+/// kills this process when its parent dies. False if process number `parent` is gone already, or a
+/// limit cannot be set.
 bool confineProcess(std::uint64_t bytes, const char* parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (std::to_string(::getppid()) != parent)
@@ -145,7 +145,7 @@ bool confineProcess(std::uint64_t bytes, const char* parent) {
          lowerLimit(RLIMIT_NOFILE, maxFiles) && (hasSanitizer || lowerLimit(RLIMIT_AS, bytes));
 }
 
-/// Lets the kernel kill this process once it has used `seconds` more of processor time.
+/// Makes the kernel kill this process after `seconds` more of CPU time.
 void limitCpuTime(unsigned seconds) {
   const auto used = static_cast<rlim_t>(std::clock() / CLOCKS_PER_SEC);
   rlimit both{};
@@ -156,9 +156,9 @@ void limitCpuTime(unsigned seconds) {
 
 // ---- the child
 
-bool servesSandbox = false; ///< this program's main calls serveSandbox
+bool servesSandbox = false; ///< main has called serveSandbox
 
-/// Jobs of this program.
+/// All jobs of this program.
 std::vector<const SandboxJob*>& registeredJobs() {
   static std::vector<const SandboxJob*> jobs;
   return jobs;
@@ -181,8 +181,8 @@ std::vector<const SandboxJob*>& registeredJobs() {
 
 // ---- starting a child
 
-/// Starts the child for `job`, which has no file but its end of the connection, and default signal
-/// handlers. Returns the process id, or 0: failed.
+/// Starts the child for `job`, with its end of the connection as its only file, and default signal
+/// handlers. Returns the process id; 0: failure.
 pid_t spawn(const std::string& job, int connection) {
   const SelfArguments arguments({subcommand, job, std::to_string(::getpid())});
   posix_spawn_file_actions_t files;
@@ -218,7 +218,7 @@ SandboxJob::SandboxJob(std::string named, Handler answers, SandboxLimits limited
 
 void SandboxedReader::start() {
   if (!servesSandbox)
-    throw std::logic_error("main does not call serveApart");
+    throw std::logic_error("main does not call serveSandbox");
   std::array<int, 2> ends{};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) == 0) {
     m_connection = Descriptor(ends[0]);
@@ -227,7 +227,7 @@ void SandboxedReader::start() {
   if (m_child != 0)
     return;
   end();
-  throw outputError("memory", "no process can be started to read files in; close other programs");
+  throw outputError("memory", "cannot start a process to read files; close other programs");
 }
 
 void SandboxedReader::end() {
@@ -258,7 +258,7 @@ std::optional<std::string> SandboxedReader::request(const std::string& message,
 std::string ReplyReader::text() {
   const auto take = [this](std::uint64_t size) {
     if (size > m_bytes.size())
-      throw std::runtime_error("an answer goes beyond its end");
+      throw std::runtime_error("reply is truncated");
     std::string taken(m_bytes.substr(0, static_cast<std::size_t>(size)));
     m_bytes.remove_prefix(taken.size());
     return taken;
@@ -272,10 +272,10 @@ std::vector<double> ReplyReader::numbers() {
   const std::string bytes = text();
   std::vector<double> numbers(bytes.size() / sizeof(double));
   if (bytes.size() != numbers.size() * sizeof(double))
-    throw std::runtime_error("an answer ends within a number");
+    throw std::runtime_error("reply ends within a number");
   std::ranges::copy(bytes, reinterpret_cast<char*>(numbers.data()));
   if (!std::ranges::all_of(numbers, [](double x) { return std::isfinite(x); }))
-    throw std::runtime_error("a number in an answer is not finite");
+    throw std::runtime_error("reply contains a number that is not finite");
   return numbers;
 }
 

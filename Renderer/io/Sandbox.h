@@ -1,11 +1,15 @@
 #pragma once
-// Reading in a process of its own, for libraries that do not survive damaged files: GDCM and HDF5.
+// Reads files in a sandboxed child process, for libraries that do not survive damaged files: GDCM
+// and HDF5. NRRD and NIfTI are read in the process itself: a volume should not pass through a pipe.
 //
-// The child runs the parent's own executable (/proc/self/exe: the same build, even if the file has
-// been replaced since; under a loader that was called with it, the file of its name) and inherits
-// no memory, files, threads or locks. A program whose readers work apart calls serveSandbox first
-// in main, as fenestra, its tests and its fuzz targets do. In any other program Apart::ask throws
-// std::logic_error instead of running that program's main again.
+// The child runs the parent's executable (/proc/self/exe: the same build even if the file has been
+// replaced; the program's file if a loader was started with it). It inherits no memory, files,
+// threads or locks. A program that uses SandboxedReader calls serveSandbox first in main, as
+// fenestra, its tests and its fuzz targets do. In other programs SandboxedReader::request throws
+// std::logic_error instead of running main again.
+//
+// Replies are as untrusted as the file, and interpreted in the parent. A file for which the child
+// crashes or exceeds its limits is rejected. One child reads all files of a folder.
 
 #include "base/Text.h"
 #include "io/Descriptor.h"
@@ -18,17 +22,17 @@
 
 namespace fenestra {
 
-/// Limits of a child, which is killed beyond `seconds`; beyond `bytes` its allocations fail.
+/// Limits of a child. Beyond `seconds` it is killed; beyond `bytes` its allocations fail.
 struct SandboxLimits {
-  unsigned seconds = 5; ///< processor time for a question, s; 3 times as long by the clock
+  unsigned seconds = 5; ///< CPU time per request, s; three times as much wall-clock time
   std::uint64_t bytes = std::uint64_t{2} << 30; ///< address space, libraries included
 };
 
-/// Work for a child: bytes in, bytes out. Declared as a constant at namespace scope, next to the
-/// caller of Apart::ask.
+/// Function that runs in a child: bytes in, bytes out. Declared as a constant at namespace scope,
+/// beside the caller of SandboxedReader::request.
 struct SandboxJob {
-  /// Answers a question in the child. Empty string or exception: no answer, since the file is not
-  /// of the expected format.
+  /// Handles a request in the child. An empty string or an exception means that there is no reply,
+  /// since the file does not have the expected format.
   using Handler = std::string (*)(const std::string& question);
 
   SandboxJob(std::string name, Handler handler, SandboxLimits limits = {});
@@ -38,10 +42,10 @@ struct SandboxJob {
   const SandboxLimits limits;
 };
 
-/// One child process, started by the first question and restarted after a failure. The child has no
-/// standard streams and no files of the parent; it may open 32 files, write none and leave no core;
-/// its signal handlers are the defaults, and signals of the terminal do not reach it. The kernel
-/// kills the child when the thread that started it ends: call `ask` from one thread, which outlives
+/// One child process, started by the first request and restarted after a failure. It has no
+/// standard streams and no files of the parent. It may open 32 files, write none and dump no core.
+/// Its signal handlers are the defaults, and signals of the terminal do not reach it. The kernel
+/// kills it when the thread that started it ends: call `request` from one thread, which outlives
 /// the object.
 class SandboxedReader {
 public:
@@ -50,9 +54,9 @@ public:
   SandboxedReader(const SandboxedReader&) = delete;
   SandboxedReader& operator=(const SandboxedReader&) = delete;
 
-  /// Returns the child's answer, unchecked, at most `most` bytes; empty: the job gave no answer.
-  /// nullopt: `question` exceeds 64 kB, or the child crashed, exceeded its limits or answered with
-  /// more than `most` bytes. Throws Error (output) where no process can be started.
+  /// Returns the child's reply of at most `maxBytes` bytes, not validated; empty: the handler gave
+  /// no reply. nullopt: `message` exceeds 64 kB, or the child crashed, exceeded its limits or
+  /// replied with more than `maxBytes` bytes. Throws Error (output) if no process can be started.
   std::optional<std::string> request(const std::string& message, std::uint64_t maxBytes);
 
 private:
@@ -64,7 +68,7 @@ private:
   Descriptor m_connection; ///< socket to the child
 };
 
-/// Encodes texts and lists of numbers in an answer, in the child: a size (8 bytes), then as many
+/// Encodes texts and lists of numbers in a reply, in the child: a size (8 bytes), then that many
 /// bytes of characters or doubles.
 class ReplyWriter {
 public:
@@ -79,8 +83,8 @@ private:
   std::string m_bytes;
 };
 
-/// Decodes an answer, in the parent. Throws std::runtime_error for a truncated answer, or a number
-/// that is not finite.
+/// Decodes a reply, in the parent. Throws std::runtime_error for a truncated reply or a number that
+/// is not finite.
 class ReplyReader {
 public:
   explicit ReplyReader(std::string_view bytes) : m_bytes(bytes) {}
@@ -94,8 +98,8 @@ private:
   std::string_view m_bytes;
 };
 
-/// In a child: answers questions until the parent closes the connection or dies, and does not
-/// return. In any other process: enables Apart::ask and returns.
+/// In a child: handles requests until the parent closes the connection or dies, and does not
+/// return. In any other process: enables SandboxedReader::request and returns.
 void serveSandbox(int argc, char** argv);
 
 } // namespace fenestra

@@ -1,5 +1,5 @@
 #pragma once
-// This program, to be run once more in a process of its own.
+// Arguments that start this program again in a new process.
 
 #include <string>
 #include <vector>
@@ -8,13 +8,13 @@
 
 namespace fenestra {
 
-/// File to run: the same build, even if the program's file has been replaced.
+/// File to execute: the same build, even if the program's file has been replaced.
 inline constexpr const char* selfExecutable = "/proc/self/exe";
 
-/// Arguments with which it is this program with `words`. Where a loader was called with the
-/// program's file (an archive brings its own), /proc/self/exe is that loader: the kernel has no
-/// base of an interpreter then, and the loader says the file (glibc: AT_EXECFN). It is told again
-/// to keep away from the system's libraries, as the archive's launcher tells it.
+/// Argument list of this program with `args`. If a loader was started with the program's file, as
+/// by the launcher of a release archive, /proc/self/exe is that loader. AT_BASE is then 0, and
+/// glibc has the program's file in AT_EXECFN. As in the launcher, --inhibit-cache keeps the loader
+/// away from the system's libraries.
 class SelfArguments {
 public:
   explicit SelfArguments(std::vector<std::string> args) : m_args(std::move(args)) {

@@ -1,5 +1,5 @@
 #pragma once
-// Messages for the error codes of system calls, with the mend for a user.
+// Errors of failed system calls, with a hint for the user.
 
 #include "base/Error.h"
 #include "io/Descriptor.h"
@@ -15,7 +15,7 @@ inline std::string systemMessage(int code) {
   return std::generic_category().message(code);
 }
 
-/// Mend for a failed write; `other`: mend where the name or its folder is at fault.
+/// Hint for a failed write. `nameHint`: hint if the name or its folder is at fault.
 inline std::string writeHint(int code, const std::string& nameHint) {
   switch (code) {
   case ENOSPC:
@@ -25,7 +25,7 @@ inline std::string writeHint(int code, const std::string& nameHint) {
   case ENAMETOOLONG:
     return "choose a shorter name";
   case EIO:
-    return "its disk fails: check it";
+    return "check the disk for errors";
   case EMFILE:
   case ENFILE:
     return "close other programs, or raise the limit on open files (ulimit -n)";
@@ -36,9 +36,9 @@ inline std::string writeHint(int code, const std::string& nameHint) {
   }
 }
 
-/// Mend for a failed read; `other` as in writeHint.
+/// Hint for a failed read; `nameHint` as in writeHint.
 inline std::string readHint(int code, const std::string& nameHint) {
-  return code == ELOOP ? "its links lead to each other: name the file itself"
+  return code == ELOOP ? "its symbolic links form a loop: name the file itself"
                        : writeHint(code, nameHint);
 }
 
@@ -48,9 +48,9 @@ inline Error writeError(const std::filesystem::path& path, int code) {
                      writeHint(code, "name a file in an existing folder that you may write to"));
 }
 
-/// Error for a file or folder that cannot be made; `other` as in writeHint.
+/// Error for a file or folder that cannot be created; `nameHint` as in writeHint.
 inline Error createError(const std::filesystem::path& path, int code, const std::string& nameHint) {
-  return outputError(path, "cannot be made: ", systemMessage(code), "; ",
+  return outputError(path, "cannot be created: ", systemMessage(code), "; ",
                      writeHint(code, nameHint));
 }
 

@@ -35,13 +35,13 @@ std::string appendChecksum(const std::string& name) {
   return name + '-' + hashDigits("made by Fenestra: " + name, checkCount) + ".tmp";
 }
 
-/// True for error codes that mean that no such file exists. No file has a name that is too long.
+/// True for error codes of missing files. No file has a name for which ENAMETOOLONG is reported.
 bool isNotFound(int code) {
   return code == ENOENT || code == ENOTDIR || code == ENAMETOOLONG;
 }
 
-/// Lock on a file of this user, or on a folder accessible to this user alone, that no process has
-/// locked; not open: there is none.
+/// Locks a file of this user, or a folder accessible to this user alone, that no process has
+/// locked; otherwise the result is not open.
 Descriptor lockStaleFile(const std::filesystem::path& path, TempFileGuard::Kind kind) {
   Descriptor file(::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
   struct stat status = {};
@@ -54,9 +54,9 @@ Descriptor lockStaleFile(const std::filesystem::path& path, TempFileGuard::Kind 
 
 static_assert(std::atomic<void*>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
 
-std::atomic<int> blockingThreads = 0;           ///< number of threads that are Uninterrupted
+std::atomic<int> blockingThreads = 0;           ///< number of threads with a SignalBlocker
 std::atomic<void (*)()> endRequested = nullptr; ///< set by a signal handler; null: none
-thread_local int depth = 0;                     ///< number of nested Uninterrupted in this thread
+thread_local int depth = 0;                     ///< number of nested SignalBlockers in this thread
 
 void unblock() {
   if (--blockingThreads == 0)
@@ -80,10 +80,10 @@ bool isTempName(std::string_view name, std::string_view prefix) {
          name == appendChecksum(std::string(name.substr(0, prefix.size() + digitCount)));
 }
 
-/// Entry of the list. Entries are reused, never freed: a signal handler may walk the list at any
-/// time.
+/// Entry of the registry, a list. Entries are reused, never freed: a signal handler may walk the
+/// list at any time.
 struct TempFileGuard::Entry {
-  std::filesystem::path path; ///< constant while listed
+  std::filesystem::path path; ///< constant while registered
   Kind kind = Kind::file;
   std::atomic<bool> isTaken = false;
   std::atomic<bool> isRegistered = false;
@@ -91,7 +91,7 @@ struct TempFileGuard::Entry {
 
   static std::atomic<Entry*> first;
 
-  /// Takes a free entry, or a new one.
+  /// Takes an unused entry, or creates one.
   static Entry* take() {
     for (Entry* entry = first; entry; entry = entry->next)
       if (!entry->isTaken.exchange(true))
@@ -122,7 +122,7 @@ TempFileGuard::TempFileGuard(const std::filesystem::path& path, Kind kind) {
 
 TempFileGuard::~TempFileGuard() {
   if (m_entry->isRegistered && !m_entry->remove() && !isNotFound(errno))
-    return; // the name stays listed: the end of the process tries again
+    return; // stays registered: removal is tried again when the process ends
   m_entry->isRegistered = false;
   m_entry->isTaken = false;
 }
@@ -137,7 +137,7 @@ void TempFileGuard::release() {
 
 void removeStaleTempFiles(const std::filesystem::path& folder, std::string_view prefix,
                           TempFileGuard::Kind kind) {
-  // std::filesystem's iterator ends the process where memory fails.
+  // std::filesystem's iterator ends the process if memory runs out.
   const std::unique_ptr<DIR, int (*)(DIR*)> names(::opendir(folder.c_str()), ::closedir);
   while (const dirent* const entry = names ? ::readdir(names.get()) : nullptr)
     try {

@@ -1,6 +1,6 @@
 #pragma once
-// Temporary names, removed when the process ends, by a signal as well; and sections of code that no
-// signal may end the process in.
+// Temporary files that are removed when the process ends, also by a signal; and sections of code
+// that signals must not interrupt.
 
 #include <filesystem>
 #include <string>
@@ -9,23 +9,24 @@
 
 namespace fenestra {
 
-/// Prefix of files that are made beside results.
+/// Prefix of temporary files beside results.
 inline constexpr std::string_view tempFilePrefix = ".fenestra-";
 
-/// Name of `prefix`, 12 random digits and a checksum, like ".fenestra-0123456789ab-89abcdef.tmp".
-/// Files with such names are removed; the checksum keeps a user's file from having one by chance.
+/// Name of `prefix`, 12 random digits and a checksum, such as
+/// ".fenestra-0123456789ab-89abcdef.tmp". Stale files with such names are removed; the checksum
+/// protects a user's file of a similar name.
 std::string makeTempName(std::string_view prefix);
 /// Temporary name whose digits are a hash of `what`, and so the same in every process.
 std::string hashTempName(std::string_view prefix, std::string_view what);
 bool isTempName(std::string_view name, std::string_view prefix);
 
-/// A temporary file or folder: removed with this object, or by the signal that ends the process.
+/// Removes a temporary file or folder with this object, or when a signal ends the process.
 class TempFileGuard {
 public:
   enum class Kind { file, folder };
 
-  /// Lists `path`, which need not exist yet. Throws std::bad_alloc, before the caller makes the
-  /// file.
+  /// Registers `path`, which need not exist yet. Throws std::bad_alloc, before the caller creates
+  /// the file.
   TempFileGuard(const std::filesystem::path& path, Kind kind);
   /// Removes the file, or the folder if empty.
   ~TempFileGuard();
@@ -33,7 +34,7 @@ public:
   TempFileGuard& operator=(const TempFileGuard&) = delete;
 
   const std::filesystem::path& path() const;
-  /// Unlists the name: the file stays.
+  /// Unregisters the name: the file stays.
   void release();
 
 private:
@@ -44,21 +45,21 @@ private:
   Entry* m_entry;
 };
 
-/// Removes what killed runs of this user have left in `folder`: files, or folders accessible to
-/// this user alone, that have temporary names and that no process has locked. Stops silently where
-/// the folder cannot be read or memory fails: a later run handles the rest.
+/// Removes from `folder` what killed runs of this user have left and no process has locked: files
+/// with temporary names, or such folders accessible to this user alone. Stops silently if the
+/// folder cannot be read or memory runs out: a later run removes the rest.
 void removeStaleTempFiles(const std::filesystem::path& folder, std::string_view prefix,
                           TempFileGuard::Kind kind);
 
-/// Removes every listed name: files, then folders from the inside out. Async-signal-safe: system
-/// calls only.
+/// Removes every registered name: files, then folders from the inside out. Async-signal-safe:
+/// system calls only.
 void removeAllTempFiles();
 
-/// Listed names that still exist, for a message to the user.
+/// Registered names that still exist, for a message to the user.
 std::vector<std::filesystem::path> remainingTempFiles();
 
-/// Section in which no signal may end the process, as from listing a name to making its file.
-/// Nests.
+/// Delays signals that would end the process, for example from registering a name until its file is
+/// created. Nests.
 class SignalBlocker {
 public:
   SignalBlocker();
@@ -67,8 +68,8 @@ public:
   SignalBlocker& operator=(const SignalBlocker&) = delete;
 };
 
-/// Calls `end`, which ends the process: at once, or, after this function has returned, as soon as
-/// no thread is Uninterrupted. For a signal handler.
+/// Calls `end`, which ends the process: immediately, or, after this function has returned, as soon
+/// as no thread has a SignalBlocker. For a signal handler.
 void endWhenUnblocked(void (*end)());
 
 } // namespace fenestra

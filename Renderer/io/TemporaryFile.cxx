@@ -14,7 +14,7 @@ std::filesystem::path makeSiblingName(const std::filesystem::path& target) {
   return target.parent_path() / makeTempName(tempFilePrefix);
 }
 
-/// Mode of a new file: 0666 less umask. Queried before threads start, since umask is the process's.
+/// Mode of a new file: 0666 less umask. Read before threads start, since umask is per process.
 const mode_t defaultMode = [] {
   const mode_t mask = ::umask(077);
   ::umask(mask);
@@ -31,8 +31,8 @@ bool copyAccessList(const std::filesystem::path& from, int to) {
   return ::fsetxattr(to, attribute, list.data(), static_cast<std::size_t>(size), 0) == 0;
 }
 
-/// Mode of the earlier file; where its group could not be kept, the group's rights are cut to those
-/// that others have.
+/// Mode of the previous file; if its group could not be kept, the group's rights are reduced to
+/// those that others have as well.
 mode_t inheritMode(const struct stat& before, bool isOfItsGroup) {
   const mode_t mode = before.st_mode & 0777;
   const mode_t groupAsOthers = (mode & 07) << 3;
@@ -45,12 +45,12 @@ TemporaryFile::TemporaryFile(const std::filesystem::path& target) : m_target(tar
   open();
   if (!m_file.isOpen())
     throw writeError(m_target, errno);
-  if (const auto file = fileId(*m_file)) // it reuses a number; births may be unknown
+  if (const auto file = fileId(*m_file)) // inode numbers are reused; birth times may be unknown
     forgetInput(*file);
 }
 
-/// Makes the file, then locks it; makes another where a later run has removed it in between as
-/// abandoned.
+/// Creates the file, then locks it. Creates another if a later run has removed it in between as
+/// stale.
 void TemporaryFile::open() {
   for (;;) {
     const SignalBlocker blocker;
@@ -59,7 +59,7 @@ void TemporaryFile::open() {
       return ::open(m_name->path().c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
     }));
     if (!m_file.isOpen() && errno == EEXIST)
-      m_name->release(); // somebody else's
+      m_name->release(); // another process's file
     else if (!m_file.isOpen() || (tryLock(m_file) && hasName(m_file)))
       return;
   }
@@ -80,7 +80,7 @@ void TemporaryFile::finish(Durability durability) {
   }
   if (retryOnEintr([&] { return ::fchmod(*m_file, mode); }) != 0)
     throw writeError(m_target, errno);
-  const mode_t ownerOnly = mode & 0700; // without the list its mask, the group's bits, is void
+  const mode_t ownerOnly = mode & 0700; // the group's bits are the list's mask, void without it
   if (isThere && !copyAccessList(m_target, *m_file) && ::fchmod(*m_file, ownerOnly) != 0)
     throw writeError(m_target, errno);
   if (durability == Durability::synced && retryOnEintr([&] { return ::fsync(*m_file); }) != 0 &&
@@ -92,7 +92,7 @@ void TemporaryFile::place() {
   const char* const name = m_name->path().c_str();
   const char* const target = m_target.c_str();
   m_replaced = Descriptor(::open(target, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
-  if (m_replaced.isOpen()) // locked where readable: other runs must not take it for abandoned
+  if (m_replaced.isOpen()) // locked if readable: other runs must not consider it stale
     ::flock(*m_replaced, LOCK_SH | LOCK_NB);
   const auto rename = [&](unsigned flags) {
     return retryOnEintr([&] { return ::renameat2(AT_FDCWD, name, AT_FDCWD, target, flags); }) == 0;
@@ -107,8 +107,8 @@ void TemporaryFile::place() {
     throw writeError(m_target, errno);
 }
 
-/// Places the file on disks that cannot exchange names, with a hard link to the earlier file.
-/// Without hard links placing cannot be undone.
+/// Places the file on disks that cannot exchange names; a hard link keeps the previous file. On
+/// disks without hard links, placing cannot be undone.
 void TemporaryFile::placeByLink() {
   m_before.emplace(makeSiblingName(m_target), TempFileGuard::Kind::file);
   const bool hasBackup = ::link(m_target.c_str(), m_before->path().c_str()) == 0;

@@ -11,25 +11,25 @@
 
 namespace fenestra {
 
-enum class Durability { synced, none }; ///< synced: on the disk before a function returns
+enum class Durability { synced, none }; ///< synced: on the disk before the function returns
 
-/// File with a temporary name (io/TempFiles), listed there and locked (flock): a later run
-/// in the folder removes files that SIGKILL has left.
+/// File with a temporary name, registered in io/TempFiles and locked (flock): a later run in the
+/// folder removes such files after SIGKILL.
 class TemporaryFile {
 public:
-  /// Makes an empty file, accessible to its owner alone, in the folder of `target`. Throws Error
+  /// Creates an empty file, accessible to its owner alone, in the folder of `target`. Throws Error
   /// (output), which names `target`.
   explicit TemporaryFile(const std::filesystem::path& target);
 
-  /// Appends. Throws Error (output), a full disk included.
+  /// Appends. Throws Error (output), also if the disk is full.
   void write(std::string_view content);
 
-  /// Sets mode, owner and access list as the file at `target` has them, or as a new file has; where
-  /// owner or group cannot be set, nobody gains rights. Throws Error (output).
+  /// Sets mode, owner and access list to those of the file at `target`, or of a new file. If owner
+  /// or group cannot be set, no user gains rights. Throws Error (output).
   void finish(Durability durability);
 
-  /// Renames this file to `target`; an existing target takes the temporary name, and is removed
-  /// with this object. Throws Error (output), and then has changed nothing.
+  /// Renames this file to `target`. An existing target gets the temporary name, and is removed with
+  /// this object. Throws Error (output) without having changed anything.
   void place();
   /// Undoes place(), after another file of the group could not be placed.
   void undoPlace() noexcept;
@@ -42,8 +42,8 @@ private:
 
   std::filesystem::path m_target;
   Descriptor m_file;
-  Descriptor m_replaced; ///< the earlier file, locked while its name is temporary
-  /// Names, removed before their locks are released; m_before: the earlier file (placeByLink).
+  Descriptor m_replaced; ///< the previous file, locked while its name is temporary
+  /// Names, removed before their locks are released; m_before: the previous file (placeByLink).
   std::optional<TempFileGuard> m_name, m_before;
   Placed m_placed = Placed::no;
 };
