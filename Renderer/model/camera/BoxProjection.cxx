@@ -8,7 +8,7 @@ BoxProjection::BoxProjection(const Camera& camera, const Affine& boxesToWorld)
   const Mat3 toView = Mat3::FromRows(camera.right(), camera.up(), camera.forward());
   m_boxesToView.translation() = camera.toView(boxesToWorld.translation());
   m_boxesToView.linear() = toView * boxesToWorld.linear();
-  // Half a box, enlarged by far more than rounding.
+  // Half a box, enlarged by far more than rounding errors.
   m_half = 0.5001 * m_boxesToView.linear().cwiseAbs().rowSums() +
            Vec3::Constant(1e-12 * m_boxesToView.translation().norm());
 }

@@ -1,18 +1,18 @@
 #pragma once
-// Bounds of the projections of many equal boxes.
+// Projected bounds of many boxes of equal size.
 
 #include "model/camera/Camera.h"
 
 namespace fenestra {
 
-/// Boxes [i, i + 1], i three whole numbers, in a space that an affine map takes to the world.
+/// Boxes [i, i + 1] for integer triples i, in a space with an affine map to world space.
 class BoxProjection {
 public:
   BoxProjection(const Camera& camera, const Affine& boxesToWorld);
 
-  /// Every eye ray that meets the box crosses the plane through the target between `lower` and
-  /// `upper` (mm), and is inside the box at `depths` (mm) only. Perspective: `lower` and `upper`
-  /// are infinite if the box reaches behind the eye, and `depths` is empty if all of the box does.
+  /// Every camera ray that hits the box crosses the plane through the target between `lower` and
+  /// `upper` (mm), and is inside the box only at `depths` (mm). In perspective, `lower` and `upper`
+  /// are infinite if part of the box is behind the camera; `depths` is empty if all of it is.
   struct Bounds {
     Interval depths;
     Vec2 lower, upper;

@@ -16,7 +16,7 @@ CameraPose validatePose(const CameraPose& pose, const MakeError& makeError) {
   if (!isInRange(pose.position) || !isInRange(pose.target) || !(view.norm() > 0.0))
     throw makeError("position and target must be two different points within 1e12 mm");
   if (!(computeRight(view / view.norm(), pose.up).norm() > 1e-12))
-    throw makeError("up must not be zero or along the viewing direction");
+    throw makeError("up must not be zero or parallel to the viewing direction");
   return pose;
 }
 

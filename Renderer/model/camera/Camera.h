@@ -1,5 +1,5 @@
 #pragma once
-// The camera, and view space: origin at the eye (perspective) or on the camera plane
+// The camera, and view space: origin at the camera position (perspective) or on the camera plane
 // (orthographic), x right, y up, depth z along the viewing direction, mm.
 
 #include "base/CheckAffine.h"
@@ -8,7 +8,7 @@ namespace fenestra {
 
 enum class Projection { orthographic, perspective };
 
-/// Camera parameters as a user states them; world space, mm, degrees.
+/// Camera parameters as the user states them: world space, mm, degrees.
 struct CameraPose {
   Projection projection = Projection::orthographic;
   Vec3 position = Vec3::Zero();
@@ -18,18 +18,18 @@ struct CameraPose {
   double angle = 30.0;  ///< perspective: full vertical angle, degrees
 };
 
-/// Returns `pose` if valid: position and target differ and lie within 1e12 mm, and up is neither
-/// zero nor along the view. Throws otherwise.
+/// Returns `pose` if it is valid: position and target differ and lie within 1e12 mm, and up is
+/// neither zero nor parallel to the viewing direction. Throws otherwise.
 CameraPose validatePose(const CameraPose& pose, const MakeError& makeError);
 
-/// Pose of a turntable: turns the eye about the axis through the target along `up`,
-/// counter-clockwise seen from the tip of `up`. Distance and height of the eye stay. 0 degrees
-/// returns `pose`, bit for bit.
+/// Turntable pose: rotates the camera around the axis through the target along `up`,
+/// counterclockwise as seen from the tip of `up`, at constant distance and height. 0 degrees
+/// returns `pose` unchanged, bit for bit.
 CameraPose rotateAroundTarget(const CameraPose& pose, double degrees);
 
 class Camera {
 public:
-  /// Throws Error (usage) if validatePose() refuses `pose`.
+  /// Throws Error (usage) if validatePose() rejects `pose`.
   Camera(const CameraPose& pose, int width, int height);
 
   int width() const { return m_width; }
@@ -38,16 +38,16 @@ public:
   const Vec3& right() const { return m_right; }
   const Vec3& up() const { return m_up; }
   const Vec3& forward() const { return m_forward; }
-  /// Depth of the target plane (through the target, facing the eye), mm.
+  /// Depth of the target plane, which contains the target and faces the camera, mm.
   double targetDepth() const { return m_targetDepth; }
-  /// Distance between pixel centres on the target plane, mm.
+  /// Distance between pixel centers on the target plane, mm.
   double pixelPitch() const { return m_pixelPitch; }
 
-  /// The eye ray through raster position (column, row), both continuous, (0, 0) the top left corner
-  /// of the top left pixel. Unit direction, in world space; starts at depth 0.
+  /// Camera ray through raster position (column, row), both continuous; (0, 0) is the top left
+  /// corner of the top left pixel. Unit direction, world space; starts at depth 0.
   Ray makeRay(double column, double row) const { return makePlaneRay(toPlane(column, row)); }
 
-  /// Point (x, y) in which the eye ray through a raster position meets the target plane, mm.
+  /// Point (x, y) where the camera ray through a raster position meets the target plane, mm.
   Vec2 toPlane(double column, double row) const {
     return {(column - 0.5 * m_width) * m_pixelPitch, (0.5 * m_height - row) * m_pixelPitch};
   }
@@ -57,7 +57,7 @@ public:
     return {plane.x() / m_pixelPitch + 0.5 * m_width, 0.5 * m_height - plane.y() / m_pixelPitch};
   }
 
-  /// Eye ray through (x, y) of the target plane.
+  /// Camera ray through (x, y) on the target plane.
   Ray makePlaneRay(const Vec2& plane) const {
     const Vec3 offset = plane.x() * m_right + plane.y() * m_up;
     if (m_pose.projection == Projection::orthographic)
@@ -70,7 +70,7 @@ public:
     return {d.dot(m_right), d.dot(m_up), d.dot(m_forward)};
   }
 
-  /// Growth of depth along an eye ray: depth = t * depthPerLength(ray).
+  /// Depth per length along a camera ray: depth = t * depthPerLength(ray).
   double depthPerLength(const Ray& cameraRay) const { return cameraRay.direction.dot(m_forward); }
 
 private:

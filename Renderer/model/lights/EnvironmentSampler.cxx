@@ -7,14 +7,14 @@ namespace {
 
 struct CdfSample {
   int index;
-  double remainder; ///< position inside the picked bin, [0, 1)
+  double remainder; ///< position inside the bin, [0, 1)
 };
 
-/// Picks the bin that contains u from a cumulative table (0 first, 1 last); bins of probability 0
-/// are never picked.
+/// Finds the bin that contains u in a cumulative table (0 first, 1 last). Bins of probability 0 are
+/// never selected.
 CdfSample sampleCdf(const std::vector<double>& cdf, double u) {
   auto above = std::ranges::upper_bound(cdf, u);
-  if (above == cdf.end()) // only by rounding: the last bin of probability > 0
+  if (above == cdf.end()) // rounding: use the last bin of probability > 0
     above = std::ranges::lower_bound(cdf, cdf.back());
   const auto index = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, above - cdf.begin() - 1));
   const double width = cdf[index + 1] - cdf[index];
@@ -22,7 +22,7 @@ CdfSample sampleCdf(const std::vector<double>& cdf, double u) {
   return {static_cast<int>(index), std::clamp(remainder, 0.0, std::nextafter(1.0, 0.0))};
 }
 
-/// Makes a cumulative table of weight(bin), 0 first and 1 last; returns the sum of the weights.
+/// Builds the cumulative table of weight(bin), 0 first and 1 last; returns the weights' sum.
 double buildCdf(std::vector<double>& cdf, int bins, const auto& weight) {
   cdf = {0.0};
   for (int i = 0; i < bins; ++i)

@@ -1,6 +1,6 @@
 #pragma once
-// Radiance from infinity: a constant, or a latitude-longitude map of constant texels, sampled in
-// proportion to brightness times solid angle.
+// Environment radiance: a constant, or a latitude-longitude map with constant texels that is
+// importance sampled by brightness times solid angle.
 
 #include "model/lights/Light.h"
 
@@ -10,19 +10,19 @@ class EnvironmentSampler {
 public:
   explicit EnvironmentSampler(EnvironmentLight light);
 
-  /// Draws a unit direction toward the environment, with density pdf().
+  /// Samples a unit direction toward the environment with density pdf().
   Vec3 sample(const Vec2& u) const;
   Rgb radiance(const Vec3& direction) const;
   double pdf(const Vec3& direction) const;
-  /// Radiance averaged over the sphere.
+  /// Mean radiance over the sphere.
   const Rgb& mean() const { return m_mean; }
 
   const EnvironmentLight& light() const { return m_light; }
-  /// Integral of a map's brightness over the sphere; 0 of a constant.
+  /// Integral of the map's brightness over the sphere; 0 for a constant.
   double integral() const { return m_integral; }
-  /// Sums of the rows' probabilities: 0, ..., 1; all 0 if the map is black.
+  /// Cumulative probabilities of the rows: 0, ..., 1; all 0 if the map is black.
   const std::vector<double>& rowCdf() const { return m_rowCdf; }
-  /// Sums of the probabilities of a row's texels, in the same way.
+  /// Cumulative probabilities of the texels in a row, likewise.
   const std::vector<double>& columnCdf(int row) const {
     return m_columnCdf[static_cast<std::size_t>(row)];
   }
@@ -41,7 +41,7 @@ private:
   EnvironmentLight m_light;
   Rgb m_mean = Rgb::Zero();
   std::vector<double> m_rowCdf;                 ///< height + 1 entries, last 1
-  std::vector<std::vector<double>> m_columnCdf; ///< width + 1 entries for each row
+  std::vector<std::vector<double>> m_columnCdf; ///< width + 1 entries per row
   double m_integral = 0.0;
 };
 

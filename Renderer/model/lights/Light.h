@@ -1,6 +1,7 @@
 #pragma once
-// The kinds of light, as plain data. Directions and lengths are in world space (mm, RAS) or in the
-// camera's frame; LightSet.h prepares lights for sampling.
+// Light descriptions as plain data. Directions and lengths are in world space (mm, RAS) or in the
+// camera's frame; LightSet.h prepares lights for sampling. Light is a variant: to add a kind, put
+// sampling and pdf into LightFormulas-inl.h (used by both integrators) and placement into LightSet.
 
 #include "base/Vector.h"
 
@@ -11,7 +12,7 @@
 
 namespace fenestra {
 
-/// Weight of a radiance in choices between lights and between texels.
+/// Scalar measure of a radiance for choosing between lights and between texels.
 inline double brightness(const Rgb& radiance) {
   return radiance.maxCoeff();
 }
@@ -28,26 +29,26 @@ struct EnvironmentLight {
   EnvironmentMap map = {}; ///< empty (width 0): constant
 };
 
-/// Frame of a light's positions and directions. `camera`: x is right, y up, z toward the viewer,
-/// the origin is the volume's centre, and lengths are in radii of its bounding sphere. `focus`: the
-/// world's axes and mm, the origin is the centroid of the focus.
+/// Frame of a light's positions and directions. `camera`: x is right, y up, z toward the camera;
+/// the origin is the volume's center, and the unit is the radius of its bounding sphere. `focus`:
+/// world axes and mm; the origin is the centroid of the focus.
 enum class LightFrame { world, camera, focus };
 
-/// Radiance from every direction, by t, the cosine of the angle between the direction toward the
-/// sky and `up`: linear in t from `middle` (t = 0) to `top` (t = 1) and to `bottom` (t = -1).
+/// Radiance from every direction as a function of t, the cosine of the angle between that direction
+/// and `up`: linear in t from `middle` (t = 0) to `top` (t = 1) and to `bottom` (t = -1).
 struct SkyLight {
   Rgb top = Rgb::Ones(), middle = Rgb::Ones(), bottom = Rgb::Ones();
   Vec3 up = Vec3::UnitY(); ///< unit
   LightFrame frame = LightFrame::camera;
 };
 
-/// Parallel light travelling along `direction`; `irradiance` on a plane facing the light.
+/// Parallel light traveling along `direction`, with `irradiance` on a plane that faces the light.
 struct DirectionalLight {
   Vec3 direction = -Vec3::UnitZ(); ///< unit
   Rgb irradiance = Rgb::Ones();
 };
 
-/// Emits from one side, along `normal`.
+/// One-sided emitter: emits along `normal`.
 struct AreaLight {
   enum class Shape { rectangle, disk };
   Shape shape = Shape::rectangle;
@@ -59,8 +60,8 @@ struct AreaLight {
   LightFrame frame = LightFrame::world;
 };
 
-/// Ball of light. From outside its near half is seen, and emits outward; from inside it is light
-/// from all around: a ray from anywhere takes `radiance` once, where it first meets the sphere.
+/// Emitting sphere. From outside, the near half is visible and emits outward. From inside, light
+/// arrives from all directions: every ray receives `radiance` once, at its first intersection.
 struct SphereLight {
   Vec3 center = Vec3::Zero();
   double diameter = 1.0;

@@ -1,9 +1,9 @@
-// Formulas of lights, for plain numbers and for lanes: a part of the namespace that includes it
-// (base/ScalarMath.h), behind model/lights/LightTables.h.
+// Sampling and intersection formulas for lights, written once for scalar and SIMD code. Include
+// after model/lights/LightTables.h, inside the namespace that defines Float (base/ScalarMath.h).
 
 using Lights = LightTables<Real>;
 
-/// LightSample; radiance 0: no sample.
+/// LightSample in each lane; radiance 0 marks an invalid sample.
 struct LightSamples {
   Float3 direction, radiance;
   Float distance;
@@ -11,7 +11,7 @@ struct LightSamples {
   LaneMask isDelta;
 };
 
-/// Draws for the lanes of `mine`, seen from `point`.
+/// Samples a point on the light, as seen from `point`, in the lanes of `mine`.
 FENESTRA_INLINE void samplePoint(const Lights::Area& light, LaneMask mine, const Float3& point,
                                  Float u, Float v, LightSamples& samples) {
   Float x = fms(2.0F, u, 1.0F);
@@ -27,7 +27,7 @@ FENESTRA_INLINE void samplePoint(const Lights::Area& light, LaneMask mine, const
   const Float distance = sqrt(distance2);
   const Float3 direction = (1.0F / distance) * d;
   const Float cosine = -dot(Float3(light.normal), direction);
-  // False behind the light, in its plane, and on the light: no direction.
+  // No valid direction behind the light, in its plane, or on the light itself.
   const LaneMask isSeparate = distance2 >= std::numeric_limits<Real>::min();
   const LaneMask lit = mine & isSeparate & (cosine > 0.0F);
   const Float pdf = light.pmf * distance2 / (light.area * cosine);
@@ -37,26 +37,27 @@ FENESTRA_INLINE void samplePoint(const Lights::Area& light, LaneMask mine, const
   samples.pdf = select(lit, pdf, samples.pdf);
 }
 
-/// 1 - cos of half the angle that a sphere subtends, as sin^2 / (1 + cos), which keeps the digits
-/// of narrow cones; 2 from inside: all directions. The solid angle is 2 pi of that.
+/// 1 - cos of half the angle that a sphere subtends, as sin^2 / (1 + cos), which is accurate for
+/// narrow cones; 2 from inside: all directions. The solid angle is 2 pi times that.
 FENESTRA_INLINE Float computeSpread(const Lights::Sphere& light, Float distance2) {
-  const Float sine2 = light.radius2 / distance2; // NaN at the centre of one without a square
+  const Float sine2 = light.radius2 / distance2; // 0 / 0 = NaN at the center of a tiny sphere
   const Float cosine = sqrt(max(1.0F - sine2, 0.0F));
   return select(sine2 < 1.0F, sine2 / (1.0F + cosine), 2.0F);
 }
 FENESTRA_INLINE Float computePdf(const Lights::Sphere& light, Float spread) {
   return light.pmf / (static_cast<Real>(2.0 * pi) * spread);
 }
-/// Distance to a sphere whose centre is `along` ahead, and aside by the square root of `across2`.
+/// Distance along a ray to a sphere. The ray passes the center after the length `along`, at the
+/// squared distance `across2`.
 FENESTRA_INLINE Float computeDistance(const Lights::Sphere& light, Float distance2, Float along,
                                       Float across2) {
   const Float outside = distance2 - light.radius2;
-  const Float half = sqrt(max(light.radius2 - across2, 0.0F)); // of the chord
+  const Float half = sqrt(max(light.radius2 - across2, 0.0F)); // half chord
   const Float far = along + half;
   return select(outside > 0.0F, outside / far, far);
 }
 
-/// Draws for the lanes of `mine`, seen from `point`.
+/// Samples a direction in the cone that the sphere subtends at `point`, in the lanes of `mine`.
 FENESTRA_INLINE void samplePoint(const Lights::Sphere& light, LaneMask mine, const Float3& point,
                                  Float u, Float v, LightSamples& samples) {
   const Float3 d = Float3(light.center) - point;
@@ -78,8 +79,8 @@ FENESTRA_INLINE void samplePoint(const Lights::Sphere& light, LaneMask mine, con
   samples.pdf = select(mine, computePdf(light, spread), samples.pdf);
 }
 
-/// Draws one light for each lane of `which`, seen from `point`. `choice` selects it by the lights'
-/// shares. What remains of both is for environments.
+/// Samples one light per lane of `which`, as seen from `point`; `choice` selects it by the lights'
+/// pmf. On return, the remaining `which` and `choice` select among environment maps.
 FENESTRA_INLINE LightSamples sampleLights(const Lights& lights, LaneMask& which,
                                           const Float3& point, Float& choice, Float u, Float v) {
   const Float far = std::numeric_limits<Real>::infinity();
@@ -110,13 +111,13 @@ FENESTRA_INLINE LightSamples sampleLights(const Lights& lights, LaneMask& which,
   return samples;
 }
 
-/// Lanes whose ray meets a light, and there the density of drawing the ray's direction.
+/// Lanes whose ray hits a light, and the light sampling density of the ray's direction there.
 struct LightHits {
   LaneMask hit;
   Float pdf;
 };
 
-/// Meeting of rays of the lanes of `which` with a light before `end` (mm).
+/// Intersects the rays of the lanes of `which` with a light, before `end` (mm).
 FENESTRA_INLINE LightHits intersect(const Lights::Area& light, LaneMask which, const Float3& origin,
                                     const Float3& direction, Float end) {
   const Float3 normal = Float3(light.normal);
@@ -150,8 +151,8 @@ FENESTRA_INLINE LightHits intersect(const Lights::Sphere& light, LaneMask which,
   return {hit, computePdf(light, computeSpread(light, distance2))};
 }
 
-/// Calls visit(lanes, radiance, pdf) for the area lights and spheres that rays of the lanes of
-/// `which` meet before `end` (mm).
+/// Calls visit(lanes, radiance, pdf) for each area light and sphere that rays of the lanes of
+/// `which` hit before `end` (mm).
 template <typename Visit>
 FENESTRA_INLINE void intersectLights(const Lights& lights, LaneMask which, const Float3& origin,
                                      const Float3& direction, Float end, Visit&& visit) {
@@ -166,7 +167,7 @@ FENESTRA_INLINE void intersectLights(const Lights& lights, LaneMask which, const
     intersectOne(light);
 }
 
-/// Radiance of constant environments and skies.
+/// Total radiance of the constant environments and the skies.
 FENESTRA_INLINE Float3 evaluateSkies(const Lights& lights, const Float3& direction) {
   Float3 sum = Float3(lights.constant);
   for (const Lights::Sky& sky : lights.skies) {

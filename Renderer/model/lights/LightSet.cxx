@@ -3,8 +3,8 @@
 namespace fenestra {
 namespace {
 
-/// Least share of a light, relative to an equal share: a light that is dark at the volume's centre
-/// may matter elsewhere.
+/// Lower bound of a light's pmf, relative to uniform selection: a light that is dark at the
+/// volume's center may be bright elsewhere.
 constexpr double minPmf = 0.05;
 
 } // namespace
@@ -12,7 +12,7 @@ constexpr double minPmf = 0.05;
 LightSet::LightSet(const std::vector<Light>& lights, const Grid& volume, const Camera& camera,
                    const Vec3& focus) {
   const Mat3 cameraAxes(camera.right(), camera.up(), -camera.forward());
-  const WorldFrame frames[] = {// as in LightFrame
+  const WorldFrame frames[] = {// in the order of LightFrame
                                {},
                                {cameraAxes, volume.worldCenter(), volume.boundingRadius()},
                                {Mat3::Identity(), focus, 1.0}};
@@ -63,11 +63,11 @@ void LightSet::place(const SphereLight& light, const WorldFrame& frame) {
                               radius * radius, light.radiance, 0.0});
 }
 
-/// Each light is drawn in proportion to its irradiance at the volume's centre.
+/// Selects lights in proportion to their irradiance at the volume's center.
 void LightSet::computePmfs(const Vec3& center) {
   std::vector<double*> pmfs;
   for (PlacedEnvironment& environment : m_environments) {
-    if (!(environment.sampler.integral() > 0.0)) // constant, or black: nothing to draw
+    if (!(environment.sampler.integral() > 0.0)) // constant, or black: never sampled
       continue;
     environment.pmf = pi * brightness(environment.sampler.mean());
     pmfs.push_back(&environment.pmf);
@@ -118,7 +118,7 @@ std::optional<LightSample> LightSet::sampleEnvironment(double choice, const Vec2
   for (const PlacedEnvironment& environment : m_environments) {
     if (environment.pmf == 0.0)
       continue;
-    chosen = &environment; // the last map takes the remainder of rounding
+    chosen = &environment; // rounding: the last map takes the remainder
     if (choice < environment.pmf)
       break;
     choice -= environment.pmf;

@@ -1,9 +1,8 @@
 #pragma once
-// The lights of a scene: samples for next-event estimation; and, for directions drawn by
-// scattering, the arriving radiance and the density of sample() (for multiple importance sampling).
-// A constant environment and a sky are never sampled: scattered rays meet them anyway, without a
-// second ray.
-// Area lights and spheres only emit: they block nothing, and eye rays do not see them.
+// The lights of a scene: next-event estimation samples; and, for directions sampled by scattering,
+// the emitted radiance and the density of sample() (for multiple importance sampling).
+// Constant environments and skies are never sampled: scattered rays reach them without a second
+// ray. Area lights and spheres only emit: they block no light, and camera rays do not see them.
 
 #include "base/Random.h"
 #include "base/ScalarMath.h"
@@ -23,33 +22,33 @@ namespace fenestra {
 struct LightSample {
   Vec3 direction;  ///< unit, from the point toward the light
   double distance; ///< mm; infinity for environment and directional lights
-  Rgb radiance;    ///< arriving; for a directional light its irradiance
-  double pdf;      ///< per steradian, the choice of the light included; for a directional light
-                   ///< the probability of that choice alone
-  bool isDelta;    ///< true for a directional light: scattering never draws its direction
+  Rgb radiance;    ///< incident; for a directional light its irradiance
+  double pdf;      ///< per steradian, including the light's pmf; for a directional light the pmf
+                   ///< alone
+  bool isDelta;    ///< true for a directional light: scattering never samples its direction
 };
 
-/// Radiance arriving from a direction, and the density of sample() for that direction.
+/// Radiance along a direction, and the density of sample() for that direction.
 struct EmitterHit {
   Rgb radiance = Rgb::Zero();
   double pdf = 0.0;
 };
 
-/// An environment in the world.
+/// An environment light with its selection probability.
 struct PlacedEnvironment {
   EnvironmentSampler sampler;
-  double pmf; ///< probability that LightSet::sample() takes this light; 0: never sampled
+  double pmf; ///< probability that LightSet::sample() selects it; 0: never
 };
 
 class LightSet {
 public:
-  /// Lights in the camera's frame are placed around the volume's centre, lights in the focus's
-  /// frame around `focus`, its centroid in the world.
+  /// Lights in the camera's frame are placed around the volume's center, lights in the focus's
+  /// frame around `focus`, its centroid in world space.
   LightSet(const std::vector<Light>& lights, const Grid& volume, const Camera& camera,
            const Vec3& focus = Vec3::Zero());
 
-  /// Sample of one light, chosen by its share; empty if that light does not reach the point, or
-  /// without lights to sample.
+  /// Samples one light, selected by pmf. Empty if that light does not reach the point, or if there
+  /// is no light to sample.
   std::optional<LightSample> sample(const Vec3& point, Random& random) const {
     const double choice = random.uniform();
     return sample(point, choice, random.uniform2());
@@ -57,10 +56,10 @@ public:
   /// `choice`, in [0, 1), selects the light.
   std::optional<LightSample> sample(const Vec3& point, double choice, const Vec2& u) const;
 
-  /// Radiance and density of all environments and skies together.
+  /// Total radiance and density of the environments and skies.
   EmitterHit evaluateEnvironment(const Vec3& direction) const;
 
-  /// Sum of weigh(arrival) over all area lights and spheres that the ray meets before `end` (mm).
+  /// Sum of weigh(hit) over all area lights and spheres that the ray hits before `end` (mm).
   template <typename Weigh>
   Rgb sumEmitterHits(const Ray& ray, double end, Weigh&& weigh) const {
     Rgb sum = Rgb::Zero();
@@ -71,18 +70,18 @@ public:
     return sum;
   }
 
-  /// All lights in the world but environment maps.
+  /// All placed lights except environment maps.
   const LightTables<double>& tables() const { return m_tables; }
   const std::vector<PlacedEnvironment>& environments() const { return m_environments; }
   /// True if any environment is not constant.
   bool hasMaps() const;
 
 private:
-  /// Sample of an environment map; empty without maps. `choice`: a uniform number less the shares
-  /// of all area and directional lights and spheres.
+  /// Samples an environment map; empty without maps. `choice`: a uniform number minus the pmf of
+  /// all area, directional and sphere lights.
   std::optional<LightSample> sampleEnvironment(double choice, const Vec2& u) const;
 
-  /// A frame's axes, its origin (mm) and its unit of length (mm) in the world.
+  /// A frame's axes, origin (mm) and unit of length (mm) in world space.
   struct WorldFrame {
     Mat3 axes = Mat3::Identity();
     Vec3 origin = Vec3::Zero();

@@ -1,6 +1,5 @@
 #pragma once
-// Placed lights in the form that formulas read: plain numbers, double or float, in a space with the
-// world's axes and mm.
+// Placed lights for the formulas: float or double, in a space with world axes and mm.
 
 #include "base/Vector.h"
 
@@ -20,9 +19,9 @@ struct LightTables {
     Real perRight, perUp; ///< 1 / squared length of right, up
     Real area;            ///< mm^2
     Color radiance;
-    Real pmf; ///< probability that a sample is of this light
+    Real pmf; ///< probability that this light is sampled
   };
-  /// Directions toward it are drawn uniformly: in the cone that it subtends, or from inside in all.
+  /// Sampled uniformly over the cone of directions that it subtends; from inside, over all.
   struct Sphere {
     Point center;
     Real radius2; ///< mm^2
@@ -37,16 +36,16 @@ struct LightTables {
   struct Sky {
     Point up;
     Color middle;
-    Color toTop, toBottom; ///< difference of the radiance there and in the middle
+    Color toTop, toBottom; ///< differences of the radiance there from that in the middle
   };
 
   std::vector<Area> areas;
   std::vector<Sphere> spheres;
   std::vector<Directional> directionals;
   std::vector<Sky> skies;
-  Color constant = Color::Zero(); ///< radiance of all constant environments
+  Color constant = Color::Zero(); ///< sum of all constant environments
 
-  /// These tables in other numbers, around `origin`.
+  /// Converts the tables to another number type, relative to `origin`.
   template <typename To>
   LightTables<To> cast(const Point& origin) const {
     LightTables<To> to;

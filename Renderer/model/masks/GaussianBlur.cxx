@@ -8,7 +8,7 @@
 namespace fenestra {
 namespace {
 
-/// Weights from the centre on, w[0] + 2 (w[1] + ...) = 1.
+/// Kernel weights from the center outward, w[0] + 2 (w[1] + ...) = 1.
 std::vector<float> makeHalfKernel(double sigma) {
   const auto radius = static_cast<int>(std::ceil(3.0 * sigma));
   std::vector<double> weights;
@@ -29,10 +29,10 @@ void addRow(float weight, const float* from, std::int64_t count, float* to) {
     to[x] += weight * from[x];
 }
 
-/// Slice of floats; rows that hold nothing but 0 are marked, and not written.
+/// A slice of floats. Rows of zeros are marked as empty and not written.
 struct Plane {
   std::vector<float> values;
-  std::vector<char> isEmpty; ///< by row
+  std::vector<char> isEmpty; ///< per row
 
   Plane(std::int64_t columns, std::int64_t rows)
       : values(static_cast<std::size_t>(columns * rows)), isEmpty(static_cast<std::size_t>(rows)) {}
@@ -47,8 +47,8 @@ public:
         m_kernels{makeHalfKernel(sigmas[0]), makeHalfKernel(sigmas[1]), makeHalfKernel(sigmas[2])} {
   }
 
-  /// Slices [begin, end) into `to`, the whole part's voxels. Each needs the slices around it, of
-  /// which a ring is kept.
+  /// Blurs the slices [begin, end) into `to`, the voxels of the complete region. A ring buffer
+  /// holds the neighboring slices that each of them needs.
   void blurSlices(std::int64_t begin, std::int64_t end, std::uint8_t* to) const {
     const std::int64_t radius = kernelRadius(2), ringSize = 2 * radius + 1;
     std::vector<Plane> ring(static_cast<std::size_t>(ringSize), Plane(m_size.x(), m_size.y()));
@@ -70,12 +70,12 @@ private:
     return static_cast<std::int64_t>(m_kernels[axis].size()) - 1;
   }
 
-  /// Nearest coordinate in the mask's grid of one in the part.
+  /// Maps a coordinate in the region to the nearest one in the mask's grid.
   std::int64_t clampToMask(int axis, std::int64_t coordinate) const {
     return std::clamp<std::int64_t>(m_first[axis] + coordinate, 0, m_mask.grid.size[axis] - 1);
   }
 
-  /// Slice z of the part, blurred along rows and columns; `raw`: room for the former alone.
+  /// Blurs slice z of the region along rows and columns; `raw`: buffer for the row pass.
   void blurSlice(std::int64_t z, Plane& raw, Plane& to) const {
     for (std::int64_t y = 0; y < m_size.y(); ++y)
       blurAlongRow(z, y, raw);
@@ -109,14 +109,14 @@ private:
     });
   }
 
-  /// Calls visit(offset, weight) for each sample of an axis' kernel.
+  /// Calls visit(offset, weight) for each sample of the kernel of an axis.
   template <typename Visit>
   void forEachTap(std::size_t axis, const Visit& visit) const {
     for (std::int64_t k = -kernelRadius(axis); k <= kernelRadius(axis); ++k)
       visit(k, m_kernels[axis][static_cast<std::size_t>(std::abs(k))]);
   }
 
-  /// Adds a plane's row to one that is empty so far, or not.
+  /// Adds a row of a plane to `row`, and clears `row` first if it is marked as empty.
   void addTo(float* row, char& isEmpty, const Plane& from, std::int64_t y, float weight) const {
     if (from.isEmpty[static_cast<std::size_t>(y)])
       return;
@@ -148,7 +148,7 @@ std::vector<std::uint8_t> blurMask(const Mask& mask, const Size3& first, const S
                                    const Vec3& sigmas) {
   std::vector<std::uint8_t> result(static_cast<std::size_t>(size.prod()));
   const Blur blur(mask, first, size, sigmas);
-  constexpr std::int64_t blockSize = 32; // slices: those around are blurred anew for each block
+  constexpr std::int64_t blockSize = 32; // slices; each block blurs its neighbors again
   const std::int64_t blocks = (size.z() + blockSize - 1) / blockSize;
   tbb::parallel_for(std::int64_t{0}, blocks, [&](std::int64_t block) {
     blur.blurSlices(block * blockSize, std::min((block + 1) * blockSize, size.z()), result.data());

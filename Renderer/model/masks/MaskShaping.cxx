@@ -15,14 +15,14 @@ namespace {
 
 using ItkImage = itk::Image<float, 3>;
 
-/// Part of a mask's index space, in whole voxels.
+/// A box of voxels in a mask's index space.
 struct Region {
   Size3 first, size;
 
   Size3 end() const { return first + size; }
 };
 
-/// Part of the mask and `reach` mm around it, at most a voxel beyond the volume.
+/// The mask's region padded by `padding` mm, but at most one voxel beyond the volume.
 Region padRegion(const Mask& mask, double padding, const Grid& volume) {
   const Affine toMask = mask.grid.worldToIndex * volume.indexToWorld;
   Vec3 lower = Vec3::Constant(infinity), upper = -lower;
@@ -35,15 +35,15 @@ Region padRegion(const Mask& mask, double padding, const Grid& volume) {
   const Vec3 last = (mask.grid.size.array() - 1).cast<double>();
   const Vec3 first = (-voxels).cwiseMax((lower.array().floor() - 1.0).matrix()).cwiseMin(0.0);
   const Vec3 end = (last + voxels).cwiseMin((upper.array().ceil() + 1.0).matrix()).cwiseMax(last);
-  constexpr double fewest = 4.0; // voxels that recursive filters and ContextStyle need
+  constexpr double fewest = 4.0; // voxels; minimum for recursive filters and ContextStyle
   const Vec3 size = (end - first + Vec3::Ones()).cwiseMax(fewest);
   if (size.prod() > 0x1p31)
     throw outputError("--margin and --labelsmoothing",
-                      "the focus, grown by them, spans more than 2^31 voxels; choose smaller ones");
+                      "the padded focus has more than 2^31 voxels; choose smaller values");
   return {first.cast<std::int64_t>(), size.cast<std::int64_t>()};
 }
 
-/// Calls visit(voxel in `part`, its number there) for each voxel.
+/// Calls visit(voxel, its linear index in `region`) for each voxel of the region.
 template <typename Visitor>
 void forEachVoxel(const Region& region, const Visitor& visit) {
   std::size_t number = 0;
@@ -53,8 +53,8 @@ void forEachVoxel(const Region& region, const Visitor& visit) {
         visit(Size3(x, y, z), number++);
 }
 
-/// Indicator over a part of the mask's index space, with spacing in mm; outside the mask that of
-/// the nearest voxel in it.
+/// ITK image of the indicator in a region, with spacing in mm. Outside the mask the nearest voxel
+/// repeats.
 ItkImage::Pointer toItkImage(const Mask& mask, const Region& region) {
   const auto image = ItkImage::New();
   ItkImage::SizeType size;
@@ -75,7 +75,7 @@ ItkImage::Pointer toItkImage(const Mask& mask, const Region& region) {
   return image;
 }
 
-/// Mask of the same segments on a part of the grid.
+/// Mask of the same segments on a region of the grid.
 Mask makeRegionMask(const Mask& from, const Region& region, std::uint8_t maxValue,
                     std::vector<std::uint8_t> voxels) {
   Affine indexToWorld = from.grid.indexToWorld;
@@ -93,8 +93,8 @@ Mask applyMargin(Mask mask, double margin, const Grid& volume) {
     return mask;
   const Region region =
       margin > 0.0 ? padRegion(mask, margin, volume) : Region{Size3::Zero(), mask.grid.size};
-  // Distances, mm, from the outermost voxels of the mask (margin < 0: of its complement): 0 there,
-  // positive outside.
+  // Signed distances, mm, to the mask's boundary voxels (margin < 0: to its complement's), which
+  // have distance 0; positive outside.
   const ItkImage::Pointer pixels = toItkImage(mask, region);
   if (margin < 0.0)
     std::transform(pixels->GetBufferPointer(),
@@ -118,7 +118,7 @@ Mask uniteMasks(std::vector<Mask> masks) {
   if (masks.size() == 1)
     return std::move(masks.front());
   const Mask& first = masks.front();
-  // Place of a mask in the first mask's voxels.
+  // Region of a mask in the voxels of the first mask.
   const auto findRegion = [&](const Mask& mask) {
     const Vec3 place = first.grid.worldToIndex * mask.grid.indexToWorld.translation();
     return Region{place.array().round().cast<std::int64_t>(), mask.grid.size};
@@ -146,8 +146,8 @@ Mask uniteMasks(std::vector<Mask> masks) {
 
 namespace {
 
-/// Widest deviation that is blurred by a kernel, voxels; the time of ITK's recursive filter does
-/// not grow with it.
+/// Largest sigma, voxels, for which GaussianBlur.h is used. Beyond it, ITK's recursive filter is
+/// faster: its time does not depend on sigma.
 constexpr double maxKernelSigma = 8.0;
 
 std::vector<std::uint8_t> blurRecursively(const Mask& mask, const Region& region, double sigma) {
@@ -163,14 +163,14 @@ std::vector<std::uint8_t> blurRecursively(const Mask& mask, const Region& region
   return result;
 }
 
-/// Voxels of a mask around which nothing is left of it once smoothed.
+/// Finds voxels of a mask that smoothing erased together with their neighborhood.
 class ErasedVoxels {
 public:
-  /// `first`: voxel of the mask at which `smooth` begins.
+  /// `first`: voxel of the mask where `smooth` begins.
   ErasedVoxels(const Mask& mask, const Mask& smooth, const Size3& first)
       : m_mask(mask), m_smooth(smooth), m_first(first) {}
 
-  /// Their numbers in the smoothed mask.
+  /// Their linear indices in the smoothed mask.
   std::vector<std::size_t> find() const {
     const Size3& size = m_mask.grid.size;
     std::vector<std::vector<std::size_t>> slices(static_cast<std::size_t>(size.z()));
@@ -198,7 +198,7 @@ private:
     }
   }
 
-  /// True if nothing is left among the voxels around.
+  /// True if the smoothed mask is empty at the voxel and its 26 neighbors.
   bool isEmptyAround(const Size3& at) const {
     const Size3& size = m_smooth.grid.size;
     const Size3 lower = (at - Size3::Constant(1)).cwiseMax(0);
@@ -220,7 +220,7 @@ private:
 Mask smoothMask(const Mask& mask, double sigma, const Grid& volume) {
   if (sigma == 0.0)
     return mask;
-  constexpr double maxSigmas = 3.0; // deviations
+  constexpr double maxSigmas = 3.0; // sigmas
   const Region region = padRegion(mask, maxSigmas * sigma, volume);
   const Vec3 sigmas = sigma * mask.grid.spacing().cwiseInverse();
   Mask result = makeRegionMask(mask, region, 255,
@@ -234,7 +234,7 @@ Mask smoothMask(const Mask& mask, double sigma, const Grid& volume) {
 Mask smoothMaskAuto(const Mask& mask, const Grid& volume) {
   const double sigma = chooseSmoothing(mask.grid);
   if (sigma > maxKernelSigma * mask.grid.spacing().minCoeff())
-    return mask; // voxels like needles, or flakes
+    return mask; // extremely anisotropic voxels
   Mask result = smoothMask(mask, sigma, volume);
   const Vec3 first = mask.grid.worldToIndex * result.grid.indexToWorld.translation();
   const std::vector<std::size_t> erased =

@@ -1,5 +1,9 @@
 #pragma once
-// Margins, interpolation between slices, and smoothing of a focus's labels.
+// Margins, interpolation between slices, and smoothing of focus masks. Masks are smoothed by shape
+// based interpolation first, then by a Gaussian: label maps are binary samples, and the Gaussian
+// alone would leave a staircase wherever a surface shifts by more than about two sigmas per slice.
+// Stripes that remain in an image come from the volume, which is trilinear between slices, in
+// voxels that two tissues share. They vanish under a constant transfer function.
 
 #include "model/volume/Mask.h"
 
@@ -9,42 +13,40 @@
 namespace fenestra {
 
 struct MaskShaping {
-  /// Margin of each chosen segment in their order, or one of their union, mm; > 0 grows, < 0
+  /// Margin per chosen segment, in their order, or a single one for their union, mm; > 0 grows, < 0
   /// shrinks; empty: none.
   std::vector<double> margins = {};
-  /// Standard deviation of a Gaussian, mm, applied after thick slices are interpolated
-  /// (interpolateSlices); 0: neither is done; nothing: smoothMaskAuto().
+  /// Sigma of a Gaussian, mm, applied after thick slices are interpolated (interpolateSlices). 0:
+  /// neither is done; nullopt: smoothMaskAuto().
   std::optional<double> smoothing = 0.0;
 
   bool operator==(const MaskShaping&) const = default;
 };
 
-/// Mask of the voxels whose centres are at most `margin` mm from a voxel of `mask`; margin < 0:
-/// more than -margin from every voxel that is not in `mask`. Reaches at most one voxel beyond the
-/// volume. Throws Error (output) for more than 2^31 voxels.
+/// Grows the mask to all voxels whose centers are within `margin` mm of its voxels; margin < 0
+/// shrinks it to those more than -margin from every voxel outside. Extends at most one voxel beyond
+/// the volume. Throws Error (output) for more than 2^31 voxels.
 Mask applyMargin(Mask mask, double margin, const Grid& volume);
 
-/// Union of at least one mask, all on voxels of one labelmap.
+/// Union of one or more masks on the same label map's lattice.
 Mask uniteMasks(std::vector<Mask> masks);
 
-/// Mask on voxels that are nearly cubes: divides slices that are at least twice as thick as their
-/// pixels are wide. The mask's own slices stay; between two of them a voxel is inside if the signed
-/// distance to their outlines, interpolated linearly, is < 0 (Raya and Udupa 1990: shape based
-/// interpolation). Labels of a surface that is oblique to the slices form a stair: each tread is as
-/// wide as the outline's shift from slice to slice, and only a Gaussian of that width smooths it.
+/// Resamples a mask to nearly cubic voxels: divides slices at least twice as thick as their pixels
+/// are wide. The original slices are kept. Between two of them a voxel is inside if the linearly
+/// interpolated signed distance to their outlines is < 0 (Raya and Udupa 1990: shape based
+/// interpolation). A surface oblique to the slices would otherwise form stairs, each as wide as the
+/// outline's shift per slice; only a Gaussian of that width would smooth them.
 Mask interpolateSlices(Mask mask);
 
-/// Deviation, mm, that takes the stairs off a label map and leaves the shapes: 0.6 of the longest
-/// edge of its voxels, after interpolateSlices. `labels`: before it or after, which makes no
-/// difference.
+/// Sigma, mm, that removes the staircase of a label map and preserves shapes: 0.6 times the longest
+/// voxel edge after interpolateSlices. `labels`: the grid before or after it, with equal result.
 double chooseSmoothing(const Grid& labels);
 
-/// Indicator convolved with a Gaussian, `deviation` in mm; `full` is 255. Parts thinner than about
-/// the deviation vanish.
+/// Convolves the indicator with a Gaussian, `sigma` in mm; maxValue becomes 255. Structures thinner
+/// than about sigma disappear.
 Mask smoothMask(const Mask& mask, double sigma, const Grid& volume);
-/// Indicator convolved by chooseSmoothing(); but parts that it would erase, such as vessels a
-/// voxel wide, stay as they are labelled; and all of a mask does whose voxels are more than ten
-/// times as long as they are wide.
+/// Smooths by chooseSmoothing(), but preserves structures that this would erase, such as vessels
+/// one voxel wide. Masks whose voxels are more than ten times as long as wide stay unchanged.
 Mask smoothMaskAuto(const Mask& mask, const Grid& volume);
 
 } // namespace fenestra

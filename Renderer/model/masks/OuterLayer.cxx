@@ -11,23 +11,23 @@
 namespace fenestra {
 namespace {
 
-constexpr double coarseSpacing = 2.0; ///< mm: of the voxels so many are passed over
-constexpr double maxPerVoxel = 8.0;   ///< voxels of another lattice, for each of the volume's
+constexpr double coarseSpacing = 2.0; ///< mm; approximate spacing of the subsampled grid
+constexpr double maxPerVoxel = 8.0;   ///< voxels of the resampled mask per voxel of the volume
 
-/// Grid whose voxel i lies where voxel i `stride` of `fine` does.
+/// Subsampled grid: its voxel i has the position of voxel i * `stride` of `fine`.
 Grid subsampleGrid(const Grid& fine, const Size3& stride) {
   const Affine& map = fine.indexToWorld;
   return {(fine.size.array() - 1) / stride.array() + 1,
           Affine(map.linear() * Mat3::Diagonal(stride.cast<double>()), map.translation())};
 }
 
-/// Axis of the grid that is nearest to the patient's S axis.
+/// Axis of the grid closest to the patient's S axis.
 int longAxis(const Grid& grid) {
   const Vec3 up = grid.indexToWorld.linear().normalizedColumns().row(2).cwiseAbs();
   return static_cast<int>(std::ranges::max_element(up.data(), up.data() + 3) - up.data());
 }
 
-/// Voxels that a front reaches from the sides, through those that are air.
+/// Flood fill of the air voxels that are connected with the sides of the grid.
 class FloodFill {
 public:
   FloodFill(const Size3& size, std::vector<std::uint8_t>& voxels)
@@ -75,7 +75,7 @@ private:
   std::vector<Size3> m_front;
 };
 
-/// Air around the body: every stride-th voxel, 255 or 0.
+/// Mask of the air around the body, at every `stride`-th voxel: 255 or 0.
 Mask findOutsideAir(const Volume& volume, double airBelow, const Size3& stride) {
   Mask mask{subsampleGrid(volume.grid, stride), {}, 0, {}, 255};
   const Size3& size = mask.grid.size;
@@ -101,14 +101,14 @@ Mask findOutsideAir(const Volume& volume, double airBelow, const Size3& stride) 
   return mask;
 }
 
-/// A mask at the voxels of another grid.
+/// Resamples a mask at the voxels of another grid.
 class MaskResampler {
 public:
   /// `toMask`: from the other grid's index space to the mask's.
   MaskResampler(const Mask& mask, const Affine& toMask)
       : m_mask(mask), m_field(mask.grid, mask.voxels), m_toMask(toMask) {}
 
-  /// Writes the voxels [begin, end) of the other grid.
+  /// Writes a block of voxels, [begin, end), of the other grid.
   void writeBlock(const Size3& begin, const Size3& end, Mask& to) const {
     const std::optional<std::uint8_t> all = findUniformValue(begin, end);
     for (std::int64_t z = begin.z(); z < end.z(); ++z)
@@ -124,7 +124,7 @@ private:
     return static_cast<std::uint8_t>(0.5 + m_field.value(m_toMask * voxel.cast<double>()));
   }
 
-  /// Value of all of the mask's voxels that the block is made from; nothing: they differ.
+  /// Common value of all mask voxels that the block depends on; nullopt if they differ.
   std::optional<std::uint8_t> findUniformValue(const Size3& begin, const Size3& end) const {
     const Box block{begin.cast<double>(), (end.array() - 1).cast<double>()};
     Box box = Box::makeEmpty();
@@ -158,11 +158,11 @@ Mask findOuterLayer(const Volume& volume, double airBelow, double depth) {
   Mask layer = findOutsideAir(volume, airBelow, stride);
   if (layer.count == 0 || layer.count == layer.grid.voxelCount())
     return {};
-  // Half space blurred by a Gaussian: 0.1 of it is left 1.2816 deviations beyond its face.
+  // A half-space blurred by a Gaussian falls to 0.1 at 1.2816 sigmas from its face.
   const Vec3 sigmas = ((depth / 1.2816) * layer.grid.spacing().cwiseInverse())
                           .cwiseMin(layer.grid.size.cast<double>());
   layer.voxels = blurMask(layer, Size3::Zero(), layer.grid.size, sigmas);
-  std::array<std::uint8_t, 256> remapped; // by what is left
+  std::array<std::uint8_t, 256> remapped; // indicator by blurred value
   for (std::size_t left = 0; left < remapped.size(); ++left) {
     const double indicator = std::clamp((static_cast<double>(left) / 255.0 - 0.05) / 0.1, 0.0, 1.0);
     remapped[left] = static_cast<std::uint8_t>(std::lround(indicator * layer.maxValue));

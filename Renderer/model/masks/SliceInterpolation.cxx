@@ -8,15 +8,15 @@
 namespace fenestra {
 namespace {
 
-/// Axis along which voxels are longest, and the number of slices in place of one across it: odd, so
-/// that no voxel lies half-way between two straight outlines, neither inside nor outside.
+/// Axis along which voxels are longest, and the number of slices that replace one. It is odd: then
+/// no new slice lies halfway between two outlines, where inside and outside would be undecided.
 struct Subdivision {
   int axis;
   std::int64_t parts;
 };
 
 Subdivision computeSubdivision(const Grid& grid) {
-  constexpr double most = 9.0; // bounds memory: more would be guesses
+  constexpr double most = 9.0; // limits memory; more slices would add no information
   const Vec3 edges = grid.spacing();
   const int axis = static_cast<int>(std::max_element(edges.begin(), edges.end()) - edges.begin());
   const double widest = std::max(edges[axis == 0 ? 1 : 0], edges[axis == 2 ? 1 : 2]);
@@ -24,7 +24,7 @@ Subdivision computeSubdivision(const Grid& grid) {
   return {axis, 2 * static_cast<std::int64_t>(std::min(ratio, most) / 2.0) + 1};
 }
 
-/// Slices of a mask, across the axis along which its voxels are longest; lengths in mm.
+/// Slices of a mask across the axis along which its voxels are longest; lengths in mm.
 class Slices {
 public:
   explicit Slices(const Mask& mask) : m_mask(mask) {
@@ -47,8 +47,8 @@ public:
                                                   slice * m_step[2])] >= m_mask.threshold();
   }
 
-  /// Signed distance of each pixel to the slice's outline, negative inside, bounded by farthest():
-  /// half a pixel less than to the nearest pixel of the other kind.
+  /// Signed distance of each pixel to the slice's outline, negative inside, limited to
+  /// maxDistance(): the distance to the nearest pixel on the other side, minus half a pixel.
   std::vector<float> computeDistances(std::int64_t slice) const {
     const double half = 0.5 * std::min(m_edge[0], m_edge[1]);
     const std::vector<double> toInside = squaredDistances(true, slice),
@@ -64,7 +64,7 @@ public:
 private:
   double maxDistance() const { return 2.0 * m_thickness; }
 
-  /// Distances along rows to the nearest pixel that is inside (false: outside).
+  /// Distances along rows to the nearest pixel that is inside (`inside` false: outside).
   std::vector<double> rowDistances(bool inside, std::int64_t slice) const {
     const auto [columns, rows, slices] = m_count;
     std::vector<double> result(static_cast<std::size_t>(columns * rows));
@@ -91,8 +91,8 @@ private:
     return false;
   }
 
-  /// Squared distances of each pixel to the nearest pixel that is inside; false: of each that is
-  /// inside to the nearest that is outside.
+  /// Squared distances from all pixels to the nearest pixel inside; or, if `inside` is false, from
+  /// pixels inside to the nearest one outside.
   std::vector<double> squaredDistances(bool inside, std::int64_t slice) const {
     const auto [columns, rows, slices] = m_count;
     std::vector<std::uint8_t> hasInsidePixel(static_cast<std::size_t>(rows));
@@ -121,23 +121,23 @@ private:
 
   const Mask& m_mask;
   int m_axis = 0;
-  double m_thickness = 0.0;            ///< distance of slices
+  double m_thickness = 0.0;            ///< distance between slices
   std::array<std::int64_t, 3> m_count; ///< columns, rows, slices
   std::array<std::int64_t, 3> m_step;  ///< to the next column, row, slice, in the mask's voxels
-  std::array<double, 2> m_edge;        ///< distances of columns, of rows
+  std::array<double, 2> m_edge;        ///< distances between columns, between rows
 };
 
-/// Place between two slices.
+/// A position between two slices.
 struct SlicePair {
   const float *before, *after; ///< their distances
-  float fraction;              ///< of the way from one to the other, 0 to 1
+  float fraction;              ///< of the distance from one to the other, 0 to 1
 
   bool isInside(std::int64_t pixel) const {
     return (1.0F - fraction) * before[pixel] + fraction * after[pixel] < 0.0F;
   }
 };
 
-/// Grid with `parts` times as many steps along an axis, between the same outermost centres.
+/// Grid with steps divided into `parts` along an axis, between the same outermost centers.
 Grid subdivideGrid(const Grid& grid, int axis, std::int64_t parts) {
   Size3 size = grid.size;
   size[axis] = (size[axis] - 1) * parts + 1;

@@ -24,7 +24,7 @@ double edgeArea(const Vec3& a, const Vec3& b, double y, double z) {
   return (b.y() - a.y()) * (z - a.z()) - (b.z() - a.z()) * (y - a.y());
 }
 
-/// Side of the edge on which the moved row lies: 1 or -1; 0: the edge is a point.
+/// Side of the edge on which the perturbed row lies: 1 or -1; 0 if the edge is a single point.
 int edgeSide(const Vec3& a, const Vec3& b, double area) {
   const auto sign = [](double x) { return (x > 0.0) - (x < 0.0); };
   if (area != 0.0)
@@ -44,7 +44,7 @@ class Crossings {
 public:
   explicit Crossings(const Size3& size) : m_size(size) {}
 
-  /// Adds a triangle's crossings. False: maxWork is exceeded.
+  /// Adds a triangle's intersections with rows. Returns false if maxWork is exceeded.
   bool add(const Vec3& a, const Vec3& b, const Vec3& c) {
     const auto [y0, y1] =
         integerRange(std::min({a.y(), b.y(), c.y()}), std::max({a.y(), b.y(), c.y()}), m_size.y());

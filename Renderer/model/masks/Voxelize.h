@@ -1,5 +1,5 @@
 #pragma once
-// Voxels inside a closed surface.
+// Scan conversion of a closed triangle mesh.
 
 #include "base/Vector.h"
 
@@ -10,16 +10,16 @@
 
 namespace fenestra {
 
-/// Voxels [first, last) of the row (y, z) along x.
+/// Voxels [first, last) along x in the row (y, z).
 struct VoxelRun {
   std::int64_t y = 0, z = 0, first = 0, last = 0;
 };
 
-/// Voxels of a grid of `size` whose centres (at integers) are inside: an odd number of the
-/// surface's triangles lies before them in their row. `points` are in index space. Rows count as
-/// moved by an infinitesimal in y, and a smaller one in z, so that no row meets an edge and each
-/// crossing counts once (Edelsbrunner and Mücke 1990, "Simulation of simplicity"). nullopt: the
-/// surface has a hole in some row, or more than 10^9 pairs of row and triangle would be tested.
+/// Voxels of a grid of `size` whose centers (at integers) are inside the mesh: an odd number of
+/// triangles lies before them in their row. `points` are in index space. Each row is perturbed by
+/// an infinitesimal in y and a smaller one in z, so that it meets no edge and each intersection
+/// counts once (Edelsbrunner and Mücke 1990, "Simulation of simplicity"). nullopt: the mesh has a
+/// hole in some row, or more than 10^9 pairs of row and triangle would be tested.
 std::optional<std::vector<VoxelRun>>
 voxelizeSurface(const std::vector<Vec3>& points,
                 const std::vector<std::array<std::uint32_t, 3>>& triangles, const Size3& size);

@@ -1,5 +1,5 @@
 #pragma once
-// How matter scatters, beside its albedo, in the form that formulas read.
+// Parameters of scattering apart from the albedo, as ScatteringFormulas-inl.h uses them.
 
 #include "model/medium/TransferFunction.h"
 
@@ -7,13 +7,13 @@
 
 namespace fenestra {
 
-/// `Number`: plain, or one a lane.
+/// `Number`: a plain number, or one per SIMD lane.
 template <typename Number>
 struct BsdfParameters {
   Number g;
-  Number diffuse, specular, f0, oddsFactor, roughness; ///< of SurfaceShading
+  Number diffuse, specular, f0, oddsFactor, roughness; ///< as in SurfaceShading
   bool isCoated;
-  std::array<Number, 4> coat; ///< of CoatReflectance, over the Lambert lobe; 0: reflects nothing
+  std::array<Number, 4> coat; ///< CoatReflectance over the Lambert lobe; 0: reflects nothing
 
   template <typename To>
   BsdfParameters<To> cast() const {
@@ -26,7 +26,7 @@ struct BsdfParameters {
   }
 };
 
-/// Without shading nothing is reflected.
+/// Without shading, the surface lobes reflect nothing.
 BsdfParameters<double> makeBsdfParameters(double g, const std::optional<SurfaceShading>& shading);
 
 } // namespace fenestra

@@ -7,7 +7,7 @@
 namespace fenestra {
 namespace {
 
-/// Mean weight of GGX's samples, spread evenly.
+/// Directional albedo of the GGX lobe: mean weight of its samples on a regular grid.
 double estimateReflectance(const SurfaceShading& ggx, double cosine) {
   constexpr int strata = 32;
   const Vec3 incoming(-std::sqrt(1.0 - cosine * cosine), 0.0, -cosine);

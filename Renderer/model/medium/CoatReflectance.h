@@ -1,15 +1,15 @@
 #pragma once
-// Light that a coat of GGX reflects in all directions together.
+// Directional albedo of a GGX coat: the fraction of incident light that it reflects in total.
 
 #include <algorithm>
 
 namespace fenestra {
 
-/// Schlick's F0 of tissue against air, refractive index 1.4.
+/// Schlick's F0 of tissue in air, refractive index 1.4.
 inline constexpr double tissueF0 = 0.028;
 
-/// Share of the light from one direction that is reflected, by that direction's cosine to the
-/// normal: a polynomial in x = 1 - cosine.
+/// Reflected fraction of the light from one direction, as a function of that direction's cosine to
+/// the normal: a polynomial in x = 1 - cosine.
 struct CoatReflectance {
   double constant = 0.0, x2 = 0.0, x4 = 0.0, x8 = 0.0;
 
@@ -18,14 +18,14 @@ struct CoatReflectance {
     const double square = x * x, fourth = square * square;
     return constant + x2 * square + x4 * fourth + x8 * fourth * fourth;
   }
-  /// Over a hemisphere, weighted by the cosine: the integral of 2 cosine times this.
+  /// Cosine-weighted mean over the hemisphere: the integral of 2 cosine times this.
   double mean() const { return constant + x2 / 6.0 + x4 / 15.0 + x8 / 45.0; }
   CoatReflectance withScale(double f) const { return {f * constant, f * x2, f * x4, f * x8}; }
 };
 
-/// Reflectance of GGX with tissue's F0: least squares over the cosine, raised until it is nowhere
-/// less, so that a coat and what lies below never reflect more than arrives. Too much by 0.005 at
-/// most from a roughness of 0.2 on, by 0.07 at 0.05 and glancing angles.
+/// Directional albedo of GGX with tissue's F0: a least-squares fit, raised so that it is nowhere
+/// too low; so a coat and the lobe below never reflect more light than arrives. The error is at
+/// most 0.005 for a roughness of at least 0.2, and 0.07 at 0.05 and grazing angles.
 CoatReflectance fitCoatReflectance(double roughness);
 
 } // namespace fenestra

@@ -1,6 +1,7 @@
 #pragma once
-// Style of the context, to set off the focus: thinner or paler. (Viola, Kanitsar, Groeller 2005,
-// "Importance-Driven Feature Enhancement in Volume Visualization".)
+// Style that makes the context less prominent than the focus: lower extinction and saturation
+// (Viola, Kanitsar, Groeller 2005, "Importance-Driven Feature Enhancement in Volume
+// Visualization"). It changes the medium, not the clip.
 
 #include "base/Color.h"
 #include "model/volume/Mask.h"
@@ -10,11 +11,11 @@
 
 namespace fenestra {
 
-/// Look of the context, where the focus's indicator is below 1/2. The focus is unchanged.
+/// Applies where the focus's indicator is below 1/2. The focus is unchanged.
 struct ContextStyle {
   std::shared_ptr<const Mask> focus; ///< at least four voxels
-  double extinction = 1.0;           ///< multiplies the extinction, 0 to 1
-  double saturation = 1.0;           ///< of the albedo; 0: grey, 1: unchanged
+  double extinction = 1.0;           ///< factor on the extinction, 0 to 1
+  double saturation = 1.0;           ///< factor on the albedo's saturation; 0: gray, 1: unchanged
 
   /// Albedo of reduced saturation and unchanged luminance.
   Rgb desaturate(const Rgb& albedo) const {
@@ -23,7 +24,7 @@ struct ContextStyle {
   }
 };
 
-/// Tests a volume's points for a style's focus. A view: the style must outlive the object.
+/// Evaluates a style at points of a volume. A view: the style must outlive it.
 class ContextField {
 public:
   ContextField(const ContextStyle& style, const Grid& volume)
@@ -33,8 +34,8 @@ public:
         m_level(0.5 * style.focus->maxValue) {}
 
   const ContextStyle& style() const { return m_style; }
-  /// True if a point (the volume's index space) lies in the focus: indicator >= 1/2. Beyond the
-  /// mask the outermost voxels repeat.
+  /// True if a point (the volume's index space) lies in the focus: indicator >= 1/2. Outside the
+  /// mask's grid the nearest voxel is used.
   bool isFocus(const Vec3& index) const { return m_field.value(m_toMask * index) >= m_level; }
 
 private:

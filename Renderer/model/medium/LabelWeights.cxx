@@ -13,22 +13,22 @@
 namespace fenestra {
 namespace {
 
-/// A number for each voxel of a brick, in 255ths: whole numbers add up alike in any order.
+/// A number per voxel of a brick, in 255ths: integers, so that sums do not depend on the order.
 using BrickValues = std::array<float, LabelWeights::voxelsInBrick>;
 constexpr float maxWeight = 255.0F;
 
-/// Voxels of a brick along an axis, and its rows.
+/// Voxels of a brick along an axis, and the number of its rows.
 constexpr std::int64_t width = LabelWeights::brickEdge + 1, rowsInBrick = width * width;
 
-/// A part in the common grid.
+/// A part in the combined grid.
 struct PlacedPart {
   PackedMask mask;
   int priority;
   std::uint8_t component;
-  Size3 first, end; ///< voxels of the common grid
+  Size3 first, end; ///< voxels of the combined grid
 };
 
-/// Parts in the grid of the first one, whatever that one's extent is.
+/// Parts in the grid of the first one, which may extend beyond it on all sides.
 std::vector<PlacedPart> placeParts(std::size_t count,
                                    const std::function<LabelWeights::Part(std::size_t)>& getPart) {
   std::vector<PlacedPart> all;
@@ -43,10 +43,10 @@ std::vector<PlacedPart> placeParts(std::size_t count,
   return all;
 }
 
-/// Part of a brick that a segment covers.
+/// How much of a brick a part covers.
 enum class Coverage { none, some, all };
 
-/// Indicators of a part in the voxels of a row of bricks along x.
+/// Indicators of a part in a row of bricks along x.
 class PartRows {
 public:
   PartRows(const PlacedPart& part, const Size3& grid)
@@ -57,7 +57,7 @@ public:
   int priority() const { return m_part.priority; }
   std::uint8_t component() const { return m_part.component; }
 
-  /// Takes the bricks whose first voxels have these y and z.
+  /// Loads the row of bricks whose first voxels have these y and z.
   void loadRow(std::int64_t y, std::int64_t z) {
     if (m_hasVoxels)
       std::ranges::fill(m_voxels, std::uint8_t{0});
@@ -68,12 +68,12 @@ public:
         loadVoxels(std::min(y + j, m_last.y()), std::min(z + k, m_last.z()), row);
   }
 
-  /// Indicators in the brick whose first voxel has this x; not written for none.
+  /// Reads the brick whose first voxel has this x; `values` are not written for Coverage::none.
   Coverage readBrick(std::int64_t x, BrickValues& values) const {
     if (!m_hasVoxels || x >= m_part.end.x() || x + width <= m_part.first.x())
       return Coverage::none;
     const std::uint8_t* row = m_voxels.data() + x;
-    std::uint64_t some = 0, all = ~some; // of the eight voxels from x on; padding has them all
+    std::uint64_t some = 0, all = ~some; // of the eight voxels from x on; padding repeats the last
     for (std::int64_t i = 0; i < rowsInBrick; ++i) {
       std::uint64_t eight;
       std::memcpy(&eight, row + i * m_stride, sizeof eight);
@@ -117,10 +117,10 @@ private:
   bool m_hasVoxels = false;
 };
 
-/// Shares of a brick's components, in their order, each once.
+/// Label weights of a brick's components, sorted by component, each once.
 class BrickWeights {
 public:
-  /// Takes the parts, by priority, in the brick whose first voxel has this x.
+  /// Computes the weights of the brick whose first voxel has this x; `parts`: by priority.
   void compute(const std::vector<PartRows>& parts, std::int64_t x) {
     m_weights.clear();
     m_rest.fill(maxWeight);
@@ -148,7 +148,7 @@ public:
     std::ranges::sort(m_weights, {}, &Component::component);
   }
 
-  /// Component of the whole brick; nothing: several.
+  /// The only component of the brick; nullopt if there are several.
   std::optional<std::uint8_t> pureComponent() const {
     return m_weights.size() == 1 ? std::optional(m_weights.front().component) : std::nullopt;
   }
@@ -184,7 +184,7 @@ private:
       found->weight[i] += weight[i];
   }
 
-  /// Gives what is left to the parts of one priority.
+  /// Distributes the remaining weight among the parts of one priority.
   void distributeRest() {
     BrickValues factor;
     for (std::size_t i = 0; i < factor.size(); ++i) {
@@ -201,8 +201,8 @@ private:
     }
   }
 
-  /// Rounds the shares of a voxel; the greatest, of equals the first component's, takes what
-  /// rounding loses or gains.
+  /// Rounds the weights of a voxel. The largest one (the first, if several are equal) absorbs the
+  /// rounding error, so that the sum is exact.
   void writeVoxel(std::size_t voxel, LabelWeights::Plane* planes) const {
     int left = static_cast<int>(maxWeight);
     std::size_t greatest = 0;
@@ -268,7 +268,7 @@ LabelWeights::LabelWeights(std::size_t count, const std::function<Part(std::size
       }
     }
   });
-  // A layer's planes are counted from its own first one until now.
+  // So far, planes are counted from the first plane of their own layer.
   std::size_t all = 0;
   for (const std::vector<Plane>& planes : layers)
     all += planes.size();

@@ -1,13 +1,13 @@
 #pragma once
-// Shares: how much of each voxel belongs to which component of the medium. The only thing that
-// transport knows of a segmentation.
+// Label weights (partial-volume fractions): how much of each voxel belongs to which component of
+// the medium. The integrators see a segmentation only in this form.
 //
-// Most voxels belong to one component alone, and most others to two. A grid of voxels is cut into
-// bricks of 4^3 cells, which hold all 5^3 voxels that interpolation inside them reads: a look-up
-// reads one brick. A pure brick is one number. A mixed one of k components is k - 1 planes, one
-// after the other, each of one component's shares in 128 bytes; the component of the greatest
-// number gets what they leave, voxel by voxel in whole numbers, and so nothing where it has
-// nothing.
+// Most voxels belong to a single component, and most others to two. The grid is divided into bricks
+// of 4^3 cells, each stored with all 5^3 voxels that interpolation inside it reads, so that a
+// look-up reads one brick. A pure brick is the number of its component. A mixed brick of k
+// components has k - 1 consecutive planes of 128 bytes, each with the weights of one component. The
+// component of the highest number gets the rest, computed per voxel in integers, so that it is
+// exactly zero where the component is absent.
 
 #include "model/volume/Mask.h"
 
@@ -20,56 +20,56 @@ namespace fenestra {
 
 class LabelWeights {
 public:
-  /// Voxels of a segment, or of several of one component.
+  /// Voxels of one or several segments that belong to one component.
   struct Part {
-    Mask mask; ///< all on voxels of one labelmap
+    Mask mask; ///< all masks are on the same label map's lattice
     int priority;
-    std::uint8_t component; ///< 0: what is in no segment
+    std::uint8_t component; ///< 0: outside all segments
   };
 
   static constexpr std::int64_t brickEdge = 4; ///< cells of a brick along each axis
   static constexpr std::size_t voxelsInBrick = (brickEdge + 1) * (brickEdge + 1) * (brickEdge + 1);
 
-  /// A component of a mixed brick. Its size lets lanes read 32 bits from any voxel on, and the
-  /// three numbers behind the shares in one load.
+  /// Weights of one component in a mixed brick. The size lets SIMD lanes load 32 bits starting at
+  /// any voxel, and the three bytes after the weights in one load.
   struct alignas(64) Plane {
-    std::array<std::uint8_t, voxelsInBrick> weights; ///< of 255, x fastest
+    std::array<std::uint8_t, voxelsInBrick> weights; ///< in 255ths, x fastest
     std::uint8_t component;
-    std::uint8_t rest;   ///< component that gets what the brick's planes leave: the same in all
-    std::uint8_t isLast; ///< 1: the brick's last plane; else 0, and the next one is its, too
+    std::uint8_t rest;   ///< component that gets the rest; the same in all planes of the brick
+    std::uint8_t isLast; ///< 1 in the brick's last plane; else 0, and the next plane belongs to it
   };
   static_assert(sizeof(Plane) == 128);
 
-  /// Shares in order of the parts' priority, the greater first: with `left` = 1, and U the sum of
-  /// the indicators u of a priority, each gets u min(1, left / U), and `left` loses min(left, U);
-  /// component 0 gets the rest. Rounded to 255ths that sum to 255. Parts of one priority may come
-  /// in any order, and be of different components. `count`: of parts, at least one; one at a time
-  /// is held.
+  /// Assigns weights by decreasing priority. Let `rest` = 1, and U be the sum of the indicators u
+  /// of one priority: each part gets u min(1, rest / U), and `rest` decreases by min(rest, U).
+  /// Component 0 gets the final rest. Weights are rounded to 255ths that sum to 255. Parts of one
+  /// priority may come in any order and belong to different components. `count`: number of parts,
+  /// at least one. getPart(i) is called one at a time, to limit memory.
   LabelWeights(std::size_t count, const std::function<Part(std::size_t)>& getPart);
 
-  /// Voxels that the parts' masks cover. Beyond them the outermost voxels repeat.
+  /// Grid that covers all masks. Outside of it the outermost voxels repeat.
   const Grid& grid() const { return m_grid; }
   const Size3& brickCount() const { return m_brickCount; }
-  /// A pure brick's component; for a mixed brick ~n, its first plane's number n. x fastest.
+  /// A pure brick's component; a mixed brick's ~n, n being the index of its first plane. x fastest.
   const std::vector<std::int32_t>& bricks() const { return m_bricks; }
   const std::vector<Plane>& planes() const { return m_planes; }
-  /// Share of pure bricks, 0 to 1.
+  /// Fraction of pure bricks, 0 to 1.
   double pureFraction() const;
   std::size_t bytes() const {
     return m_bricks.size() * sizeof(std::int32_t) + m_planes.size() * sizeof(Plane);
   }
 
-  /// Calls visit(component) for the components of a brick, given by its number in bricks().
+  /// Calls visit(component) for each component of a brick, given by its index in bricks().
   template <typename Visit>
   void forEachInBrick(std::size_t brick, Visit&& visit) const;
 
-  /// Calls visit(component) for all components that may have a share in a box (the grid's index
-  /// space); some more than once.
+  /// Calls visit(component) for all components that may have weight in a box (the grid's index
+  /// space); may repeat components.
   template <typename Visit>
   void forEachInBox(const Box& box, Visit&& visit) const;
 
-  /// Calls visit(component, share) for the components at a point (the grid's index space): shares
-  /// are trilinear between voxels, > 0, and sum to 1. Each comes once, by number.
+  /// Calls visit(component, weight) for the components at a point (the grid's index space). Weights
+  /// are trilinear between voxels, > 0, and sum to 1. Each component comes once, by number.
   template <typename Visit>
   void forEachWeight(const Vec3& index, Visit&& visit) const;
 
@@ -123,7 +123,7 @@ void LabelWeights::forEachWeight(const Vec3& index, Visit&& visit) const {
   const Vec3 f = inside - cell.cast<double>();
   const std::size_t first =
       linearIndex(cell.array() - brickEdge * brick.array(), Size3::Constant(brickEdge + 1));
-  // Whole numbers at the eight voxels around the point.
+  // Integer weights at the eight voxels around the point.
   constexpr std::size_t up = brickEdge + 1, deep = up * up;
   constexpr std::array<std::size_t, 8> corners = {0,    1,        up,        up + 1,
                                                   deep, deep + 1, deep + up, deep + up + 1};

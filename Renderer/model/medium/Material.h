@@ -1,21 +1,20 @@
 #pragma once
-// Matter of segments. A volume's own transfer function is the matter of everything; a material
-// changes what it says within a segment:
+// Optical properties of segments. The volume's transfer function applies everywhere; a material
+// overrides it within a segment:
 //
-//     tint     the albedo alone. Extinction, phase function, surfaces and normals stay the transfer
-//              function's, so that an error of the segmentation can colour wrongly, and never
-//              move, hide or invent a surface.
-//     matter   all of it.
+//     tint     the albedo only. Extinction, phase function, surfaces and normals come from the
+//              transfer function, so that segmentation errors can change colors but never move,
+//              hide or create a surface.
+//     medium   all properties.
 //
-// This header is data, without names. `files/appearance/MaterialReader` reads tables of materials,
-// and the rules that say which segments they are for; `scene/SegmentMaterials` chooses by these
-// rules one SegmentMedium for each segment, in the segments' order. Transport sees no rule, code or
-// name.
+// These types are plain data. `files/appearance/MaterialReader` reads tables of materials and rules
+// that match segments by name or code; `scene/SegmentMaterials` applies the rules and yields one
+// SegmentMedium per segment. The integrators do not depend on rules, codes or names.
 //
-// A renderer of them takes a list of components (Mixture.h, Tint.h), one for each distinct material
-// of a volume, and the share of each in every voxel, on the segmentation's grid and under its
-// transform; all shares of a volume sum to 1, by `priority` where segments overlap. A volume
-// without segments is one component.
+// The renderer uses a list of components (Mixture.h, Tint.h): one per distinct material of a
+// volume, with its weight in every voxel, on the segmentation's grid and under its transform. The
+// weights sum to 1; `priority` decides where segments overlap. Without segments there is one
+// component.
 
 #include "model/medium/PiecewiseLinear.h"
 
@@ -25,32 +24,32 @@ namespace fenestra {
 
 enum class MaterialKind { tint, medium };
 
-/// Members that are not set are as the volume's transfer function has them.
+/// Members that are not set keep the values of the volume's transfer function.
 struct Material {
   MaterialKind kind = MaterialKind::tint;
-  /// Over the scalar, linear Rec. 709, 0 to 1: the colour that an eye sees of a thick piece, from
-  /// which the albedo follows by the mean cosine of whatever scatters there (Reflectance.h).
+  /// Over the scalar, linear Rec. 709, 0 to 1: reflectance of a thick piece of the material. It
+  /// determines the albedo, by the mean cosine of the local phase function (Reflectance.h).
   std::optional<ColorFunction> color = {};
-  bool colorIsAlbedo = false;                    ///< `color` is the albedo itself
+  bool colorIsAlbedo = false;                    ///< `color` is the albedo, not the reflectance
   std::optional<ScalarFunction> extinction = {}; ///< mm^-1 over the scalar
 
-  // Matter alone has these:
+  // For MaterialKind::medium only:
   double g = 0.0;                                        ///< Henyey-Greenstein mean cosine
-  double diffuse = 1.0, specular = 0.2, roughness = 0.4; ///< lobes, as SurfaceShading's
-  /// Weight of the border as a surface: of the gradient of the segment's share, per mm, beside that
-  /// of the scalar over its span.
+  double diffuse = 1.0, specular = 0.2, roughness = 0.4; ///< lobes, as in SurfaceShading
+  /// Weight of the segment's interface as a surface: scales the gradient of the segment's weight,
+  /// per mm, which is added to the scalar gradient (divided by the transfer function's span).
   double interfaceWeight = 0.0;
 };
 
-/// Colour that an eye sees; nullopt: the transfer function's.
+/// Color as reflectance; nullopt: the transfer function's.
 std::optional<ColorFunction> toReflectanceColor(const Material& material);
 
-/// A segment's matter.
+/// Optical properties of one segment.
 struct SegmentMedium {
   Material material = {};
-  int priority = 10;     ///< where segments overlap, the greater takes what it covers
-  bool isClipped = true; ///< false: stays where the clip removes all else
-  double density = 1.0;  ///< multiplies the extinction
+  int priority = 10;     ///< the segment with the highest priority gets the overlap
+  bool isClipped = true; ///< false: the clip does not remove it
+  double density = 1.0;  ///< factor on the extinction
 };
 
 } // namespace fenestra

@@ -1,5 +1,5 @@
 #pragma once
-// The classified volume at a point: extinction for tracking, matter for the estimator.
+// The classified volume: extinction for tracking, and optical properties at collisions.
 
 #include "base/Random.h"
 #include "model/medium/ContextStyle.h"
@@ -12,17 +12,16 @@
 
 namespace fenestra {
 
-/// Matter at a real collision, for the estimator.
+/// Optical properties at a real collision.
 struct MediumSample {
   Rgb albedo;
-  Vec3 gradient; ///< of the scalar, with a cut's, per mm, world axes; zero unless needsGradient()
-  double surfaceProbability;        ///< probability that the path scatters at a surface here
-  const TransferFunction* transfer; ///< its phase function and surfaces scatter
+  Vec3 gradient;             ///< of scalar and cut, per mm, world axes; zero unless needsGradient()
+  double surfaceProbability; ///< probability that the path scatters at a surface here
+  const TransferFunction* transfer; ///< for the phase function and surface shading
 };
 
-/// A view: voxels, transfer function, style, tint and mixture must outlive the medium. Points are
-/// in index space. With a mixture the transfer function is the volume's own; a mixture has no
-/// tint.
+/// A view: the arguments of the constructor, except the grid, must outlive it. Points are in index
+/// space. With a mixture, `transfer` is the volume's own function, and there is no tint.
 template <typename Voxel>
 class Medium {
 public:
@@ -38,11 +37,11 @@ public:
       m_mixture.emplace(*mixture, grid);
   }
 
-  /// True if the extinction may be above 0 where a clip keeps `kept`.
+  /// True if the extinction may be above 0 where the clip weight is `clipWeight`.
   bool canCollide(double clipWeight) const {
     return clipWeight > 0.0 || (m_mixture && m_mixture->hasUnclipped());
   }
-  /// Extinction, mm^-1, of which the clip keeps `kept`.
+  /// Extinction, mm^-1, under a clip weight.
   double extinction(const Vec3& index, double clipWeight = 1.0) const {
     if (m_mixture)
       return contextFactor(index) * m_mixture->extinction(makePoint(index, clipWeight));
@@ -56,13 +55,13 @@ public:
 
   bool needsGradient(bool wantGradient) const { return wantGradient || m_transfer.shading; }
   const TransferFunction& transfer() const { return m_transfer; }
-  /// Null: the volume's transfer function is all of the matter.
+  /// Null: there is no mixture, and the volume's transfer function applies everywhere.
   const MixtureField* mixtureField() const { return m_mixture ? &*m_mixture : nullptr; }
   const Mixture* mixture() const { return m_mixture ? &m_mixture->mixture() : nullptr; }
 
-  /// Matter without a mixture. `wantGradient`: fills the gradient even without shading. `cut`:
-  /// gradient that a cut adds where there is shading, spans of the transfer function per mm, world
-  /// axes; it changes surfaces, not the extinction.
+  /// Sample of a medium without a mixture. `wantGradient`: computes the gradient even without
+  /// shading. `cut`: gradient that the clip's cut adds under shading, in spans of the transfer
+  /// function per mm, world axes; it affects surfaces, not the extinction.
   MediumSample evaluate(const Vec3& index, bool wantGradient,
                         const Vec3& cut = Vec3::Zero()) const {
     const bool oneAlbedo = m_transfer.albedo.knots().size() == 1 && !m_tint;
@@ -72,7 +71,7 @@ public:
       albedo = m_tint->albedo(index, scalar, albedo);
     return makeSample(m_transfer, albedo, index, scalar, wantGradient, cut);
   }
-  /// Matter of a mixture's component.
+  /// Sample of one component of the mixture.
   MediumSample evaluate(std::uint8_t number, const MixturePoint& point, bool wantGradient,
                         const Vec3& cut = Vec3::Zero()) const {
     const Component& component = m_mixture->mixture().components[number];
@@ -84,21 +83,21 @@ public:
                       point.scalar, wantGradient,
                       interface + (component.isClipped ? cut : Vec3::Zero()));
   }
-  /// A point with what a mixture's parts there depend on.
+  /// Gathers what the mixture's parts at a point depend on.
   MixturePoint makePoint(const Vec3& index, double clipWeight) const {
     const double slope = m_mixture->needsGradient() ? m_field.gradient(index).norm() : 0.0;
     return {index, m_field.value(index), clipWeight, slope};
   }
 
 private:
-  /// Factor of the context's style on the extinction.
+  /// The context style's factor on the extinction.
   double contextFactor(const Vec3& index) const {
     return m_context && m_context->style().extinction != 1.0 && !m_context->isFocus(index)
                ? m_context->style().extinction
                : 1.0;
   }
 
-  /// `added`: to the scalar's gradient, spans of the volume's own extinction per mm.
+  /// `extraGradient`: added to the scalar gradient, in spans of the volume's own extinction per mm.
   MediumSample makeSample(const TransferFunction& transfer, const Rgb& albedo, const Vec3& index,
                           double scalar, bool wantGradient, const Vec3& extraGradient) const {
     MediumSample m{albedo, Vec3::Zero(), 0.0, &transfer};
@@ -124,7 +123,7 @@ private:
   double computeSurfaceProbability(double gamma, double sigma_t, double gradientMagnitude) const {
     const double span = m_transfer.extinction.span();
     if (!(span > 0.0))
-      return 0.0; // one knot: no scale to call a gradient large
+      return 0.0; // one knot: there is no scale for gradients
     const double opacity = -std::expm1(-sigma_t);
     const double m = gradientMagnitude / span;
     return opacity * -std::expm1(-25.0 * gamma * gamma * gamma * m);

@@ -1,17 +1,16 @@
 #pragma once
-// Mixture: a medium that is a sum of components, each with its own matter. At a point x component j
-// has the share w_j(x) of the segmentation (all sum to 1), and
+// Mixture: a medium that is the sum of components with different optical properties. At a point x,
+// component j has the label weight w_j(x) (the weights sum to 1) and the extinction
 //
-//     sigma_j(x) = keep_j(x) w_j(x) extinction_j(s(x)),   sigma_t = sum of sigma_j,
+//     sigma_j(x) = clip_j(x) w_j(x) extinction_j(s(x)),   sigma_t = sum of sigma_j,
 //
-// where s is the interpolated scalar (and the extinction is times the gradient opacity, where a
-// transfer function has one), and keep_j the clip's, or 1 for a component that the clip leaves. At
-// a collision one component is drawn with probability sigma_j / sigma_t, and all that follows
-// (albedo, phase function or surface) is that component's: unbiased, whatever differs. The
-// estimator knows a list of parts alone: another volume's matter would join it with shares of its
-// own.
+// where s is the interpolated scalar, and clip_j the clip weight, or 1 for an unclipped component.
+// If the transfer function has gradient opacity, that factor applies, too. At a collision one
+// component is sampled with probability sigma_j / sigma_t, and its albedo, phase function and
+// surface shading apply, which is unbiased. The estimator depends on this list of parts only, so
+// that a second volume could join it with weights of its own.
 //
-// Where components differ in nothing but albedo, Tint is the same medium with less noise.
+// If components differ only in albedo, a Tint gives the same medium with less noise.
 
 #include "base/Random.h"
 #include "model/medium/LabelWeights.h"
@@ -24,23 +23,23 @@
 
 namespace fenestra {
 
-/// Matter of a component.
+/// Optical properties of a component.
 struct Component {
-  TransferFunction transfer; ///< its density is in the extinction
-  bool isClipped = true;     ///< false: stays where the clip removes all else
-  /// Weight of the border as a surface: of the share's gradient, per mm, beside the scalar's, in
-  /// spans of the volume's own extinction per mm.
+  TransferFunction transfer; ///< its extinction includes the density factor
+  bool isClipped = true;     ///< false: the clip does not remove it
+  /// Weight of the component's interface as a surface: scales the weight's gradient, per mm, which
+  /// is added to the scalar gradient, in spans of the volume's own extinction per mm.
   double interfaceWeight = 0.0;
 };
 
 struct Mixture {
   std::shared_ptr<const LabelWeights> weights;
-  /// By number in `shares`, at least one. All have surface shading where the volume's own transfer
-  /// function has it, else none. Gradients count by that function's span for all of them: a
-  /// constant extinction has none.
+  /// Indexed by component number in `weights`; at least one. All have surface shading if the
+  /// volume's own transfer function has it, else none. That function's span scales the gradients of
+  /// all components: a constant extinction has no span.
   std::vector<Component> components;
 
-  /// True if the clip leaves some component.
+  /// True if some component is not clipped.
   bool hasUnclipped() const { return !std::ranges::all_of(components, &Component::isClipped); }
   /// True if some extinction depends on the gradient.
   bool hasGradientOpacity() const {
@@ -50,21 +49,21 @@ struct Mixture {
   }
 };
 
-/// Part of a mixture's extinction at a point.
+/// One component's part of a mixture's extinction at a point.
 struct MixturePart {
   std::uint8_t component;
   double extinction; ///< sigma_j, mm^-1, > 0
 };
 
-/// A point of the volume (its index space) with what a mixture's parts there depend on.
+/// A point of the volume (index space) and the values that a mixture's parts there depend on.
 struct MixturePoint {
   Vec3 index;
   double scalar;
-  double clipWeight;  ///< keep of the clip there
+  double clipWeight;  ///< clip weight at the point
   double slope = 0.0; ///< |gradient|, scalar units per mm; 0 unless needsGradient()
 };
 
-/// A volume's mixture at its points. A view: the mixture must outlive the object.
+/// Evaluates a mixture at points of a volume. A view: the mixture must outlive it.
 class MixtureField {
 public:
   MixtureField(const Mixture& mixture, const Grid& volume)
@@ -77,7 +76,7 @@ public:
   bool hasUnclipped() const { return m_hasUnclipped; }
   bool needsGradient() const { return m_needsGradient; }
 
-  /// Calls visit(part) for the parts at a point, each component once.
+  /// Calls visit(part) once per component with extinction > 0 at the point.
   template <typename Visit>
   void forEachPart(const MixturePoint& point, Visit&& visit) const {
     m_mixture.weights->forEachWeight(
@@ -99,8 +98,8 @@ public:
     return sum;
   }
 
-  /// Component that a collision meets, with probability sigma_j / sigma_t. Draws a number where
-  /// there are several; component 0 where the extinction is 0.
+  /// Samples the component of a collision, with probability sigma_j / sigma_t. Uses a random number
+  /// only if there are several; returns 0 if the extinction is 0.
   std::uint8_t sampleComponent(const MixturePoint& point, Random& random) const {
     double sum = 0.0;
     std::uint8_t last = 0;
@@ -122,8 +121,8 @@ public:
     return sampled.value_or(last);
   }
 
-  /// Gradient of a component's share at a point (the volume's index space), per mm, world axes:
-  /// central differences over one voxel of the shares to each side.
+  /// Gradient of a component's label weight at a point (the volume's index space), per mm, world
+  /// axes: central differences over one voxel of the weights' grid on each side.
   Vec3 weightGradient(std::uint8_t number, const Vec3& index) const {
     const Vec3 middle = m_toWeights * index;
     const auto findWeight = [&](const Vec3& at) {

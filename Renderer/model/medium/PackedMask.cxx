@@ -8,12 +8,12 @@
 namespace fenestra {
 namespace {
 
-constexpr std::ptrdiff_t maxRun = 128; ///< stretch of equal or of different voxels
-constexpr std::ptrdiff_t minRun = 3;   ///< equal voxels that are worth a number
+constexpr std::ptrdiff_t maxRun = 128; ///< maximum length of a run or of a literal stretch
+constexpr std::ptrdiff_t minRun = 3;   ///< minimum number of equal voxels for a run
 
 using Row = std::span<const std::uint8_t>;
 
-/// Number of voxels that equal the first one.
+/// Number of leading voxels that equal the first one.
 std::ptrdiff_t countEqual(Row row) {
   const auto other = std::ranges::find_if(row, [&](std::uint8_t v) { return v != row.front(); });
   return other - row.begin();

@@ -1,6 +1,6 @@
 #pragma once
-// A mask whose rows are packed: a stretch of equal voxels is a number and a value. Smoothed masks
-// of a segmentation take a tenth or less of their voxels, and many can be held at once.
+// A mask with run-length encoded rows (as in PackBits). Smoothed masks of a segmentation shrink to
+// a tenth or less, so that many fit into memory at once.
 
 #include "model/volume/Mask.h"
 
@@ -14,15 +14,15 @@ public:
   explicit PackedMask(const Mask& mask);
 
   const Grid& grid() const { return m_grid; }
-  std::uint8_t maxValue() const { return m_maxValue; } ///< Mask::full
-  /// Writes the voxels of a row to `to`, size.x() of them; false: all are 0, and none is written.
+  std::uint8_t maxValue() const { return m_maxValue; } ///< Mask::maxValue
+  /// Writes the size.x() voxels of a row to `to`. Returns false, and writes nothing, if all are 0.
   bool unpackRow(std::int64_t y, std::int64_t z, std::uint8_t* to) const;
 
 private:
-  /// Packed rows, one after the other: a byte n < 128 before n + 1 voxels, or n >= 128 before one
-  /// that is repeated n - 127 times; nothing for a row of zeros.
+  /// Encoded rows: a byte n < 128 precedes n + 1 literal voxels; n >= 128 precedes one voxel that
+  /// is repeated n - 127 times. A row of zeros is empty.
   struct Slice {
-    std::vector<std::size_t> rowStart; ///< in `bytes`, and their end
+    std::vector<std::size_t> rowStart; ///< in `bytes`; the last entry is the end
     std::vector<std::uint8_t> bytes;
   };
 

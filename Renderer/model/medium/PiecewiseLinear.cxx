@@ -10,7 +10,7 @@ PiecewiseLinear<Channels>::PiecewiseLinear(std::vector<Knot> knots) : m_knots(st
   std::stable_sort(m_knots.begin(), m_knots.end(),
                    [](const Knot& a, const Knot& b) { return a.position < b.position; });
   if (!(span() > 0.0))
-    return; // one position: every value is an end's value
+    return; // one position: every value is that of an end
 
   const std::size_t bins = 4 * m_knots.size();
   m_binsPerUnit = static_cast<double>(bins) / span();
@@ -19,7 +19,7 @@ PiecewiseLinear<Channels>::PiecewiseLinear(std::vector<Knot> knots) : m_knots(st
   m_firstSegment.resize(bins);
   std::size_t i = 0;
   for (std::size_t bin = 0; bin < bins; ++bin) {
-    // One bin early: rounding of s to a bin must never start past the segment of s.
+    // One bin early: rounding of s to a bin must never lead past the segment of s.
     const double start =
         m_knots.front().position + (static_cast<double>(bin) - 1.0) / m_binsPerUnit;
     while (i + 2 < m_knots.size() && m_knots[i + 1].position <= start)

@@ -1,6 +1,6 @@
 #pragma once
-// A function given by knots: linear between knots, constant beyond the ends. Two knots at one
-// position make a step, whose value at that position is that of the second knot.
+// A function defined by knots: linear between knots, constant beyond the ends. Two knots at one
+// position make a step; the value at that position is that of the second knot.
 
 #include "base/Vector.h"
 
@@ -21,11 +21,11 @@ public:
     bool operator==(const Knot&) const = default;
   };
 
-  /// Knots in any order (sorted here, stably by position), finite, at least one.
+  /// At least one knot, finite, in any order (sorted here, stably by position).
   explicit PiecewiseLinear(std::vector<Knot> knots);
 
   Value operator()(double s) const {
-    if (!(s >= m_knots.front().position)) // NaN reads as the low end
+    if (!(s >= m_knots.front().position)) // NaN counts as the low end
       return m_knots.front().value;
     if (s >= m_knots.back().position)
       return m_knots.back().value;
@@ -35,13 +35,13 @@ public:
     return a.value + (b.value - a.value) * ((s - a.position) / (b.position - a.position));
   }
 
-  /// Least and greatest value that any channel takes over [low, high] (both ends included, and both
-  /// sides of a step at either end).
+  /// Minimum and maximum over all channels and [low, high] (both ends included, and both sides of a
+  /// step at either end).
   std::array<double, 2> range(double low, double high) const;
 
   const std::vector<Knot>& knots() const { return m_knots; }
   bool operator==(const PiecewiseLinear& other) const { return m_knots == other.m_knots; }
-  /// Function of the same knots after change(knot).
+  /// Copy in which change(knot) was applied to each knot.
   template <typename Change>
   PiecewiseLinear withKnots(const Change& change) const {
     std::vector<Knot> knots = m_knots;
@@ -52,8 +52,8 @@ public:
   double span() const { return m_knots.back().position - m_knots.front().position; }
 
 private:
-  /// Segment i with position[i] <= s < position[i + 1], for s strictly inside the knots. A table of
-  /// equal bins over the span gives the first candidate.
+  /// Segment i with position[i] <= s < position[i + 1], for s strictly between the outer knots. A
+  /// table of equal bins gives the first candidate.
   std::size_t findSegment(double s) const {
     const auto bin = static_cast<std::size_t>((s - m_knots.front().position) * m_binsPerUnit);
     std::size_t i = m_firstSegment[std::min(bin, m_firstSegment.size() - 1)];
@@ -63,7 +63,7 @@ private:
   }
 
   std::vector<Knot> m_knots;
-  std::vector<std::uint32_t> m_firstSegment; ///< per bin: segment at or before the bin's start
+  std::vector<std::uint32_t> m_firstSegment; ///< per bin: segment at or before its start
   double m_binsPerUnit = 0.0;
 };
 

@@ -5,8 +5,8 @@
 namespace fenestra {
 namespace {
 
-/// Reflectance by similarity parameter s = sqrt((1 - a) / (1 - g a)), with which media of different
-/// g look nearly alike (van de Hulst 1980): the closed form for g = 0, corrected by the table.
+/// Reflectance by similarity parameter s = sqrt((1 - a) / (1 - g a)): media of different g and
+/// equal s look nearly alike (van de Hulst 1980). Closed form for g = 0, corrected by the table.
 double lookUpReflectance(double s, double g) {
   using namespace reflectanceTable;
   const double row = std::clamp(g / maxReflectanceG, 0.0, 1.0) * (rows - 1),
@@ -32,7 +32,7 @@ double toReflectance(double albedo, double g) {
 double toAlbedo(double color, double g) {
   const double wanted = std::clamp(color, 0.0, maxReflectance);
   const double forward = std::clamp(g, 0.0, maxReflectanceG);
-  double least = 0.0, greatest = 1.0; // of s: reflectance falls with it
+  double least = 0.0, greatest = 1.0; // bounds of s; the reflectance decreases with s
   for (int i = 0; i < 50; ++i) {
     const double s = 0.5 * (least + greatest);
     (lookUpReflectance(s, forward) > wanted ? least : greatest) = s;

@@ -1,30 +1,31 @@
 #pragma once
-// Colour as it is seen: of a thick, uniform scattering medium an eye sees less than its albedo.
+// Conversion between albedo and reflectance. A thick, uniform scattering medium reflects less light
+// than its single-scattering albedo; materials are described by the color that is seen.
 
 #include "model/medium/PiecewiseLinear.h"
 
 namespace fenestra {
 
-/// Radiance of a half-space seen along its normal under uniform light of radiance 1 (its plane
-/// albedo), by single-scattering albedo, 0 to 1, and Henyey-Greenstein mean cosine g. From a table
-/// that Testing/Oracle/MakeReflectance made; g below 0 reads as 0, and beyond 0.95 as 0.95.
+/// Reflectance of a half-space (plane albedo): radiance along the normal under uniform light of
+/// radiance 1, by single-scattering albedo, 0 to 1, and Henyey-Greenstein mean cosine g. The table
+/// comes from Testing/Oracle/MakeReflectance; g is clamped to [0, maxReflectanceG].
 double toReflectance(double albedo, double g);
 inline Rgb toReflectance(const Rgb& albedo, double g) {
   return albedo.unaryExpr([g](double channel) { return toReflectance(channel, g); });
 }
 
-/// Mean cosines of the table: 0 to this.
+/// Largest mean cosine in the table; the smallest is 0.
 inline constexpr double maxReflectanceG = 0.95;
-/// Greatest reflectance that toAlbedo inverts: whiter matter would scatter for minutes.
+/// Largest reflectance that toAlbedo inverts: a whiter medium would scatter far too often.
 inline constexpr double maxReflectance = 0.95;
 
-/// Albedo whose reflectance is that; its inverse.
+/// Inverse of toReflectance: the albedo of a medium with that reflectance.
 double toAlbedo(double color, double g);
 inline Rgb toAlbedo(const Rgb& color, double g) {
   return color.unaryExpr([g](double channel) { return toAlbedo(channel, g); });
 }
-/// Albedo of a function whose colours are seen. Between two knots colours are linear, which their
-/// albedo is not: knots in between follow it, within 2 % of the colour for g = 0.
+/// Albedo of a reflectance function. Reflectance is linear between two knots, but its albedo is
+/// not: added knots approximate it, within 2 % of the color for g = 0.
 ColorFunction toAlbedo(const ColorFunction& colors, double g);
 
 } // namespace fenestra

@@ -5,7 +5,7 @@
 namespace fenestra {
 namespace {
 
-/// Roughness limit: a narrower lobe is finer than directions in double, and its density overflows.
+/// Lower limit: directions in double cannot resolve a narrower lobe, and its density overflows.
 constexpr double minRoughness = 1e-6;
 
 ScatterSample toSample(const scalar::ScatterSamples& sample) {

@@ -1,8 +1,8 @@
 #pragma once
-// Scattering of light at a real collision, by the phase function or at a surface. Conventions:
-// `incoming` is the direction in which the path travels (away from the eye), `outgoing` the
-// direction in which the path continues (toward a light). evaluate() is the factor on radiance per
-// steradian, with albedo and, at surfaces, the cosine included; pdf() is per steradian.
+// Scattering at a real collision, by the phase function or at a surface. Conventions: `incoming` is
+// the direction in which the path travels (away from the camera), `outgoing` the direction in which
+// it continues (toward a light). evaluate() is the factor on radiance per steradian, including the
+// albedo and, at surfaces, the cosine; pdf() is per steradian.
 
 #include "base/Random.h"
 #include "base/ScalarMath.h"
@@ -36,11 +36,11 @@ private:
   scalar::PhaseLobe<double> m_lobe;
 };
 
-/// Lambert and glossy lobes of a surface.
+/// Lambert and GGX lobes of a surface.
 class SurfaceScattering {
 public:
-  /// `gradient` must not be zero; the normal is -gradient, flipped to the side of the path's
-  /// origin.
+  /// `gradient` must not be zero. The normal is -gradient, turned to the side that the path comes
+  /// from.
   SurfaceScattering(const Vec3& incoming, const Vec3& gradient, const SurfaceShading& shading,
                     const Rgb& albedo);
 
@@ -61,7 +61,7 @@ inline double scatteringPdf(const Scattering& s, const Vec3& outgoing) {
 inline Rgb evaluateScattering(const Scattering& s, const Vec3& outgoing) {
   return std::visit([&](const auto& kind) { return kind.evaluate(outgoing); }, s);
 }
-/// `u` gives the direction, `random` the choice of a lobe.
+/// `u` samples the direction, `random` the lobe.
 inline ScatterSample sampleScattering(const Scattering& s, const Vec2& u, Random& random) {
   if (const auto* surface = std::get_if<SurfaceScattering>(&s))
     return surface->sample(random.uniform(), u);

@@ -1,7 +1,7 @@
-// Formulas of scattering, for plain numbers and for lanes: a part of the namespace that includes it
-// (base/ScalarMath.h), behind model/medium/BsdfParameters.h.
+// Scattering formulas, written once for scalar and SIMD code. Include after
+// model/medium/BsdfParameters.h, inside the namespace that defines Float (base/ScalarMath.h).
 
-/// Factor of scattering on radiance toward a direction, and the density of drawing that direction.
+/// Factor of scattering on radiance toward a direction, and the sampling density of that direction.
 struct ScatterEval {
   Float3 factor;
   Float pdf;
@@ -12,10 +12,10 @@ struct ScatterSamples {
   Float pdf;
 };
 
-/// Density of the uniform distribution over directions.
+/// Density of uniformly distributed directions.
 inline constexpr Real uniformPdf = static_cast<Real>(0.25 / pi);
 
-/// Henyey-Greenstein 1941, times the albedo. `Number`: of g, Real or Float.
+/// Henyey-Greenstein 1941, times the albedo. `Number`: type of g, Real or Float.
 template <typename Number>
 class PhaseLobe {
 public:
@@ -35,7 +35,7 @@ public:
       const Float r = safeSqrt(fnma(z, z, 1.0F));
       return {{r * phi.cosine, r * phi.sine, z}, m_albedo, uniformPdf};
     }
-    // cos = (1 + g^2 - ((1 - g^2) / (1 + g - 2 g u))^2) / (2 g), as 1 - cos for accuracy near 1:
+    // cos = (1 + g^2 - ((1 - g^2) / (1 + g - 2 g u))^2) / (2 g), rearranged for accuracy near 1:
     // with a = 1 + g - 2 g u, 1 - cos = 2 u (1 - g)^2 (1 + g (1 - u)) / a^2.
     const Float g = m_g;
     const Float a = fnma(2.0F * m_g, u, 1.0F + m_g);
@@ -49,9 +49,8 @@ public:
   }
 
 private:
-  /// Density of a direction; chord2: squared distance of that unit vector from the lobe's peak.
-  /// 1 + g^2 - 2 g cos, written so that nothing cancels where g and cos are near 1: with unit
-  /// vectors 2 (1 - cos) is the squared chord.
+  /// Density of a direction; chord2: squared distance of that unit vector from the lobe's peak,
+  /// which is 2 (1 - cos). So 1 + g^2 - 2 g cos needs no cancellation where g and cos are near 1.
   FENESTRA_INLINE Float evaluatePdf(Float chord2) const {
     if (isAllEqual(m_g, 0.0F))
       return uniformPdf;
@@ -65,16 +64,16 @@ private:
 };
 
 /// A Lambert lobe of the albedo and a GGX lobe (Walter et al. 2007; visible normals by Heitz 2018)
-/// with Schlick's Fresnel term F. Side by side they are weighted so that they never reflect more
-/// than arrives. Under a coat that reflects E the Lambert lobe is
-/// albedo / pi (1 - E(viewer)) (1 - E(outgoing)) / (1 - E_mean), which is reciprocal and returns,
-/// for albedo 1, all but what the coat reflects (Kelemen, Szirmay-Kalos 2001). `Number`: of the
-/// law, Real or Float.
+/// with Schlick's Fresnel term F. Without a coat, the lobes' weights sum to at most 1, so that
+/// energy is conserved. Under a coat of directional albedo E the Lambert lobe is
+/// albedo / pi (1 - E(viewer)) (1 - E(outgoing)) / (1 - E_mean), which is reciprocal and, for
+/// albedo 1, returns all light that the coat transmits (Kelemen, Szirmay-Kalos 2001). `Number`:
+/// type of the parameters, Real or Float.
 template <typename Number>
 class SurfaceLobes {
 public:
-  /// `gradient` must not be zero; the normal is -gradient, flipped to the side of the path's
-  /// origin.
+  /// `gradient` must not be zero. The normal is -gradient, turned to the side that the path comes
+  /// from.
   FENESTRA_INLINE SurfaceLobes(const BsdfParameters<Number>& bsdf, const Float3& incoming,
                                const Float3& gradient, const Float3& albedo)
       : m_specular(bsdf.specular),
@@ -122,14 +121,14 @@ private:
     const Float x = clampZero(min(1.0F - cosine, 1.0F));
     return fma(1.0F - m_f0, square(square(x)) * x, m_f0);
   }
-  /// Albedo whose odds are `odds` times those of the given one.
+  /// Multiplies the odds a / (1 - a) of an albedo a.
   static FENESTRA_INLINE Float3 scaleOdds(Number oddsFactor, const Float3& albedo) {
     const auto channel = [oddsFactor](Float a) {
       return oddsFactor * a / fnma(1.0F - oddsFactor, a, 1.0F);
     };
     return {channel(albedo.x), channel(albedo.y), channel(albedo.z)};
   }
-  /// Share of light that passes the coat.
+  /// Fraction of light that the coat transmits.
   FENESTRA_INLINE Float coatTransmittance(Float cosine) const {
     const Float x = clampZero(min(1.0F - cosine, 1.0F));
     const Float x2 = square(x), x4 = square(x2);
@@ -138,7 +137,7 @@ private:
     return 1.0F - fma(high, x4, low);
   }
 
-  /// The glossy lobe is D F G / (4 cos cos) times the outgoing cosine, G separable (Smith); its
+  /// The GGX lobe is D F G / (4 cos cos) times the outgoing cosine, with separable Smith G; its
   /// density is Heitz 2018, eq. 17.
   FENESTRA_INLINE ScatterEval evaluateLocal(const Float3& l) const {
     const Float lambertPdf = clampZero(l.z) * static_cast<Real>(1.0 / pi);
@@ -172,7 +171,7 @@ private:
     return a2 / (static_cast<Real>(pi) * square(d));
   }
 
-  /// Heitz 2018, listing 1; `r`, `phi`: polar coordinates of a point in the unit disc.
+  /// Heitz 2018, listing 1; `r`, `phi`: polar coordinates of a point in the unit disk.
   FENESTRA_INLINE Float3 sampleVisibleNormal(Float r, const CosineSine& phi) const {
     const Float a = m_roughness;
     const Float3 stretched = normalize({a * m_viewer.x, a * m_viewer.y, m_viewer.z});
@@ -195,6 +194,6 @@ private:
   std::array<Number, 4> m_coat;
   Frames m_frame;     ///< local z is the normal
   Float3 m_viewer;    ///< local direction back along the path
-  Float3 m_diffuse;   ///< weight * albedo, and what the coat lets through from the viewer
-  Float m_lambertPmf; ///< probability that draw() takes the Lambert lobe
+  Float3 m_diffuse;   ///< weight * albedo * coat transmittance toward the viewer
+  Float m_lambertPmf; ///< probability that sample() selects the Lambert lobe
 };

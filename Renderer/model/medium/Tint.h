@@ -1,7 +1,8 @@
 #pragma once
-// Tint: colours of segments. Extinction, phase function, surfaces and normals stay the transfer
-// function's, so that an error of the segmentation can colour wrongly, and never move, hide or
-// invent a surface.
+// Tint: colors of segments. Extinction, phase function, surfaces and normals come from the transfer
+// function, so that segmentation errors can change colors but never move, hide or create a surface.
+// The tint is the mean of the components' albedos, not a Mixture: the medium is the same, with less
+// noise, and everything but the color stays bit-identical.
 
 #include "model/medium/LabelWeights.h"
 #include "model/medium/PiecewiseLinear.h"
@@ -13,18 +14,18 @@ namespace fenestra {
 
 struct Tint {
   std::shared_ptr<const LabelWeights> weights;
-  /// Albedo of each component over the scalar; nothing: as the transfer function has it.
+  /// Albedo of each component over the scalar; nullopt: the transfer function's.
   std::vector<std::optional<ColorFunction>> albedo;
 };
 
-/// A volume's tint at its points. A view: the tint must outlive the object.
+/// Evaluates a tint at points of a volume. A view: the tint must outlive it.
 class TintField {
 public:
   TintField(const Tint& tint, const Grid& volume)
       : m_tint(tint), m_toWeights(tint.weights->grid().worldToIndex * volume.indexToWorld) {}
 
-  /// Mean of the components' albedo at a point (the volume's index space), weighted by their
-  /// shares; `own`: of the transfer function.
+  /// Mean albedo of the components at a point (the volume's index space), by label weight.
+  /// `transferAlbedo`: the transfer function's albedo there.
   Rgb albedo(const Vec3& index, double scalar, const Rgb& transferAlbedo) const {
     Rgb sum = Rgb::Zero();
     m_tint.weights->forEachWeight(m_toWeights * index, [&](std::uint8_t component, double weight) {

@@ -9,13 +9,13 @@ namespace {
 
 constexpr double opacityCap = 0.9999;
 constexpr double tolerance = 1e-4;
-/// Share of the function's greatest value below which the error counts as absolute: a curve like
-/// x^11 would need endless knots near zero.
+/// Fraction of the function's maximum below which errors count as absolute: a curve like x^11 would
+/// otherwise need an unlimited number of knots near zero.
 constexpr double relativeFloor = 1e-9;
-constexpr std::size_t maxNodes = 2000; ///< in one curve
-constexpr std::size_t maxKnots = 6000; ///< in one table, besides the nodes
+constexpr std::size_t maxNodes = 2000; ///< per curve
+constexpr std::size_t maxKnots = 6000; ///< per table, in addition to the nodes
 
-/// VTK keeps the midpoint off the ends.
+/// VTK keeps midpoints away from the ends.
 double clampMidpoint(double midpoint) {
   return std::clamp(midpoint, 1e-5, 1.0 - 1e-5);
 }
@@ -26,9 +26,9 @@ Value evaluateSegment(const CurveNode<Value>& a, const CurveNode<Value>& b, doub
   return a.value + (b.value - a.value) * evaluateCurve(u, a.midpoint, a.sharpness);
 }
 
-/// Knots for map(curve), where `map` converts nodes' values to the table's. Pieces without kinks
-/// are halved, the worst first, until every chord's error at its probes is at most tolerance / 2,
-/// or maxKnots are used (which no usual property needs).
+/// Tabulates map(curve), where `map` converts node values to table values. Smooth pieces are
+/// halved, the worst first, until the error of every chord at its test points is at most
+/// tolerance / 2, or maxKnots are used (which normal properties do not need).
 template <int Channels, typename Node, typename Map>
 class Tabulator {
 public:
@@ -50,7 +50,7 @@ public:
     refine();
     for (; !m_chords.empty(); m_chords.pop())
       addKnot(m_chords.top());
-    // Chords come in any order; a stable sort keeps the order of a step's two knots.
+    // Chords come in any order; a stable sort preserves the order of a step's two knots.
     std::stable_sort(
         m_knots.begin(), m_knots.end(), [](const SegmentKnot& a, const SegmentKnot& b) {
           return std::pair(a.segment, a.knot.position) < std::pair(b.segment, b.knot.position);
@@ -64,7 +64,7 @@ public:
   }
 
 private:
-  /// Part of one segment; emit() makes `begin` a knot.
+  /// Part of one segment; addKnot() makes `begin` a knot.
   struct Chord {
     std::size_t segment;
     double begin, end;
@@ -111,8 +111,8 @@ private:
     addKnot(i, m_nodes[i + 1].x, m_map(m_nodes[i + 1].value));
   }
 
-  /// Position at which opacity crosses its cap within a segment (bisection: opacity is monotonic
-  /// there); the segment's begin without a crossing, and for colours.
+  /// Position where the opacity crosses its cap within a segment (by bisection: opacity is
+  /// monotonic there). Without a crossing, and for colors: the segment's begin.
   double findCapCrossing(std::size_t i) const {
     double low = m_nodes[i].x, high = m_nodes[i + 1].x;
     if constexpr (std::is_same_v<Node, OpacityNode>) {
@@ -179,15 +179,15 @@ void checkNodes(const std::vector<Node>& nodes, const std::string& name,
                 const std::string& source) {
   if (nodes.empty() || nodes.size() > maxNodes)
     throw inputError(source, name + ": has " + std::to_string(nodes.size()) +
-                                 " points; give it 1 to " + std::to_string(maxNodes));
+                                 " points; expected 1 to " + std::to_string(maxNodes));
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const std::string place = name + ", point " + std::to_string(i + 1) + ": ";
     const Node& node = nodes[i];
     if (!(std::abs(node.x) <= 1e38) || (i > 0 && node.x < nodes[i - 1].x))
       throw inputError(source,
-                       place + "x must be a number of at most 1e38 and not below the point before");
+                       place + "x must be at most 1e38 and not less than the previous point's");
     if (!inUnitRange(node.value))
-      throw inputError(source, place + "value is outside 0 to 1; move it inside");
+      throw inputError(source, place + "value must be from 0 to 1");
     if (!inUnitRange(node.midpoint) || !inUnitRange(node.sharpness))
       throw inputError(source, place + "midpoint and sharpness must be from 0 to 1");
   }
@@ -203,9 +203,9 @@ void check(const VolumeProperty& p, const std::string& source) {
       throw inputError(source, field, ": ", hint);
   };
   require(p.unitDistance > 0.0 && std::isfinite(p.unitDistance), "scalarOpacityUnitDistance",
-          "must be a length above 0 mm");
+          "must be greater than 0 mm");
   require(std::abs(p.anisotropy) < 1.0, "scatteringAnisotropy",
-          "must be between -1 and 1, both excluded");
+          "must be greater than -1 and less than 1");
   for (const auto& [field, x] : {std::pair("diffuse", p.diffuse),
                                  {"specular", p.specular},
                                  {"specularPower", p.specularPower}})
@@ -223,7 +223,7 @@ double evaluateCurve(double u, double midpoint, double sharpness) {
     return s;
   const double power = 1.0 + 10.0 * sharpness;
   s = s < 0.5 ? 0.5 * std::pow(2.0 * s, power) : 1.0 - 0.5 * std::pow(2.0 * (1.0 - s), power);
-  const double ends = s * (s * (2.0 * s - 3.0) + 1.0); // both slopes' Hermite terms
+  const double ends = s * (s * (2.0 * s - 3.0) + 1.0); // Hermite terms of both end slopes
   return std::clamp(s * s * (3.0 - 2.0 * s) + (1.0 - sharpness) * ends, 0.0, 1.0);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// A Slicer volume property as stored in files, and its tabulation into the medium.
+// A Slicer volume property as stored in files, and its tabulation as piecewise linear extinction
+// and albedo. The table defines the medium: the original curves are not used after this point.
 
 #include "base/Color.h"
 #include "model/medium/TransferFunction.h"
@@ -8,8 +9,8 @@
 
 namespace fenestra {
 
-/// A node of vtkPiecewiseFunction, or of vtkColorTransferFunction in its RGB colour space: midpoint
-/// and sharpness shape the curve toward the next node.
+/// A node of vtkPiecewiseFunction, or of vtkColorTransferFunction in RGB: midpoint and sharpness
+/// shape the curve toward the next node.
 template <typename Value>
 struct CurveNode {
   double x = 0.0;
@@ -31,15 +32,15 @@ struct VolumeProperty {
   double anisotropy = 0.0; ///< Henyey-Greenstein g
 };
 
-/// Progress of the curve from one node's value (0) to the next node's (1) at the share u of the
-/// way; monotonic. Like vtkPiecewiseFunction::GetTable and vtkColorTransferFunction::GetTable
-/// (RGB): the midpoint bends u, sharpness compresses the result, and a Hermite curve with end
+/// Progress of the curve from one node's value (0) to the next node's (1), at the fraction u of the
+/// distance; monotonic. As in vtkPiecewiseFunction::GetTable and vtkColorTransferFunction::GetTable
+/// (RGB): the midpoint warps u, sharpness compresses the result, and a Hermite curve with end
 /// slopes (1 - sharpness) follows.
 double evaluateCurve(double u, double midpoint, double sharpness);
 
-/// Extinction -ln(1 - opacity) / unitDistance with opacity capped at 0.9999, decoded colour as
-/// albedo; both piecewise linear with knots kept and a relative error of at most 1e-4.
-/// Throws Error (input; `source` names the file) if a node list is empty or a number is unusable.
+/// Extinction is -ln(1 - opacity) / unitDistance with opacity capped at 0.9999; the albedo is the
+/// decoded color. Both are piecewise linear, keep the nodes as knots, and have a relative error of
+/// at most 1e-4. Throws Error (input) for an empty node list or an invalid number; `source`: file.
 TransferFunction tabulate(const VolumeProperty& property, const std::string& source);
 
 } // namespace fenestra

@@ -4,8 +4,8 @@ namespace fenestra {
 namespace {
 
 /// Adds the points (index space) where edges of `box` enter and leave `other`. `toOther` maps from
-/// the space of `box` to that of `other`. `other` is enlarged by 1e-9: otherwise rounding could
-/// lose a corner common to both boxes.
+/// the space of `box` to that of `other`. `other` is enlarged by 1e-9, since rounding could
+/// otherwise lose a corner that the boxes have in common.
 void addEdgeIntersections(const Box& box, const Box& other, const Affine& toOther,
                           const Affine& toIndex, std::vector<Vec3>& points) {
   const Vec3 slack = 1e-9 * (other.upper - other.lower);

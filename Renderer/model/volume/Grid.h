@@ -1,5 +1,6 @@
 #pragma once
-// A regular grid of voxels and its place in the world.
+// A regular voxel grid with its transform to world space. Rays are mapped affinely to index or cell
+// space, but their parameter stays in world mm, so that distances agree in all spaces.
 
 #include "base/Vector.h"
 
@@ -7,12 +8,12 @@
 
 namespace fenestra {
 
-/// Number of a voxel (or cell) in a grid of `size`: x fastest.
+/// Linear index of a voxel (or cell) in a grid of `size`, x fastest.
 inline std::size_t linearIndex(const Size3& voxel, const Size3& size) {
   return static_cast<std::size_t>(voxel.x() + size.x() * (voxel.y() + size.y() * voxel.z()));
 }
 
-/// Index space has voxel centres at integers; the grid fills [-0.5, size - 0.5] in each axis.
+/// Voxel centers are at integers in index space; the grid fills [-0.5, size - 0.5] in each axis.
 struct Grid {
   Size3 size = Size3::Zero();               ///< voxels per axis, fastest axis first
   Affine indexToWorld = Affine::Identity(); ///< index to RAS mm; any invertible map
@@ -26,14 +27,14 @@ struct Grid {
 
   std::int64_t voxelCount() const { return size.prod(); }
   Box indexBox() const { return {Vec3::Constant(-0.5), size.cast<double>().array() - 0.5}; }
-  /// Distance of neighbouring voxel centres along each axis, mm.
+  /// Distance between neighboring voxel centers along each axis, mm.
   Vec3 spacing() const { return indexToWorld.linear().columnNorms(); }
   Vec3 worldCenter() const { return indexToWorld * indexBox().center(); }
   Vec3 worldCorner(int i) const { return indexToWorld * indexBox().corner(i); }
   /// Radius of the box's bounding sphere around worldCenter(), mm.
   double boundingRadius() const {
     double radius = 0.0;
-    for (int i = 0; i < 4; ++i) // opposite corners are equally far
+    for (int i = 0; i < 4; ++i) // opposite corners are at the same distance
       radius = std::max(radius, (worldCorner(i) - worldCenter()).norm());
     return radius;
   }

@@ -1,6 +1,6 @@
 #pragma once
-// The cells that a ray crosses in a regular grid, one after the other (Amanatides and Woo 1987, "A
-// Fast Voxel Traversal Algorithm for Ray Tracing").
+// Traversal of the cells of a regular grid along a ray (Amanatides and Woo 1987, "A Fast Voxel
+// Traversal Algorithm for Ray Tracing").
 
 #include "base/Vector.h"
 
@@ -9,16 +9,15 @@
 namespace fenestra {
 
 /// Iterates over the cells along a ray. The ray is in cell space, where cell c fills [c, c + 1] in
-/// each axis; the unit of t is the caller's (usually world mm).
+/// each axis. The caller chooses the unit of t (usually world mm).
 ///
-///     for (GridWalk walk(ray, range, cellCount); !walk.done(); walk.next())
+///     for (GridWalk walk(ray, range, cellCount); !walk.isDone(); walk.next())
 ///       visit(walk.cell(), walk.interval());
 ///
-/// For every finite ray the walk ends, visits cells of the grid only, and its intervals tile the
-/// part of `range` that lies inside the grid: the first begins where that part begins, each begins
-/// exactly where the one before ended, the last ends where the part ends. An interval may have no
-/// length (rays through edges and corners). A ray that runs along a face between two cells visits
-/// one of the two. After the last cell only done() is valid.
+/// Guarantees for every finite ray: the traversal ends, and visits only cells of the grid. Its
+/// intervals tile the part of `range` inside the grid exactly: each begins where the previous one
+/// ended. An interval may have zero length (rays through edges and corners). A ray along a face
+/// between two cells visits one of the two. After the last cell only isDone() is valid.
 class GridWalk {
 public:
   GridWalk(const Ray& ray, const Interval& range, const Size3& cellCount)
@@ -55,18 +54,18 @@ public:
   const Interval& interval() const { return m_interval; }
 
 private:
-  /// Sets one axis' state just after t: coordinate of the cell, next face.
+  /// Initializes one axis just after t: the cell's coordinate and the next face.
   void enter(int axis, double direction, double t) {
     const bool up = direction > 0.0;
     const double position = direction == 0.0 ? m_origin[axis] : m_origin[axis] + t * direction;
     const double cell = direction < 0.0 ? std::ceil(position) - 1.0 : std::floor(position);
     const std::int64_t last = m_cells[axis] - 1;
-    // This order of min and max maps NaN (infinity times zero) to a cell.
+    // This order of min and max maps NaN (infinity times zero) to a valid cell.
     const double inGrid = std::max(0.0, std::min(static_cast<double>(last), cell));
     m_coordinates[axis] = static_cast<std::int64_t>(inGrid);
 
     const double inverse = 1.0 / direction;
-    const bool moves = std::isfinite(inverse); // false for zero and the least subnormals
+    const bool moves = std::isfinite(inverse); // false for zero and the smallest subnormals
     m_inverse[axis] = inverse;
     m_step[axis] = up ? 1 : -1;
     m_remaining[axis] = moves ? (up ? last - m_coordinates[axis] : m_coordinates[axis]) : 0;
@@ -76,7 +75,7 @@ private:
     m_stride[axis] = m_step[axis] * stride;
   }
 
-  /// A template argument, because an axis known at compile time halves the time.
+  /// The axis is a template argument, since a constant axis halves the time.
   template <int axis>
   void step() {
     m_coordinates[axis] += m_step[axis];
@@ -86,9 +85,9 @@ private:
     m_next[axis] = faceDistance(axis);
   }
 
-  /// t at the next face of an axis; infinity for the grid's outer faces: the walk ends at m_end, so
-  /// rounding cannot lead out of the grid. Computed from the face's coordinate, not by adding up
-  /// steps: errors do not grow along the ray.
+  /// t at the next face of an axis; infinity at the grid's outer faces: m_end ends the traversal,
+  /// so that rounding cannot leave the grid. It is computed from the face's coordinate rather than
+  /// by adding steps, so that errors do not accumulate along the ray.
   double faceDistance(int axis) const {
     return m_remaining[axis] > 0 ? (m_face[axis] - m_origin[axis]) * m_inverse[axis] : infinity;
   }
@@ -103,11 +102,11 @@ private:
   Vec3 m_face = Vec3::Zero();    ///< coordinate of the next face in each axis
   Vec3 m_next = Vec3::Zero();    ///< t at m_face
   Size3 m_coordinates = Size3::Zero();
-  Size3 m_remaining = Size3::Zero(); ///< cells still to come in each axis
+  Size3 m_remaining = Size3::Zero(); ///< remaining cells in each axis
   Size3 m_step = Size3::Zero(), m_stride = Size3::Zero();
   std::int64_t m_cell = 0;
   Interval m_interval;
-  double m_end; ///< t at which the walk ends
+  double m_end; ///< t at which the traversal ends
 };
 
 } // namespace fenestra

@@ -1,5 +1,5 @@
 #pragma once
-// The focus: the interpolated indicator of some segments, in a grid of its own.
+// A mask of segments, such as the focus: their interpolated indicator on a grid of its own.
 
 #include "model/volume/Grid.h"
 
@@ -9,21 +9,20 @@
 
 namespace fenestra {
 
-/// Indicator at a voxel centre: 1 in a chosen segment, else 0, between 0 and 1 in a smoothed
-/// labelmap; trilinear between centres; the surface is the 1/2 level. Readers crop the mask to the
-/// segments' extent plus a margin of one voxel: outside the grid the indicator is 0, reached
-/// linearly within one voxel of the outermost centres. Where the file's labelmap ends at the
-/// volume's own face, the reader's margin voxel repeats the edge voxel instead, and users of the
-/// mask stay inside the volume's box there.
+/// The indicator at a voxel center is 1 in a chosen segment, else 0; in a smoothed label map it is
+/// between 0 and 1. It is trilinear between centers, and its 1/2 level is the surface. Readers crop
+/// the mask to the segments' extent plus one voxel. Outside the grid the indicator is 0, and it
+/// falls linearly to 0 within one voxel of the outermost centers. Where the label map ends at a
+/// face of the volume, the extra voxel repeats the edge voxel, and callers stay in the volume.
 struct Mask {
   Grid grid;
-  std::vector<std::uint8_t> voxels; ///< 0 to `full`, x fastest
+  std::vector<std::uint8_t> voxels; ///< 0 to `maxValue`, x fastest
   std::int64_t count = 0;           ///< number of voxels in the segments
   std::vector<std::string> names;   ///< names of the segments, for messages
-  std::uint8_t maxValue = 1;        ///< voxel of indicator 1; 255 in a smoothed mask
-  double smoothing = 0.0;           ///< deviation of the Gaussian that made it, mm; 0: none
+  std::uint8_t maxValue = 1;        ///< voxel value of indicator 1; 255 in a smoothed mask
+  double smoothing = 0.0;           ///< sigma of the Gaussian applied to it, mm; 0: none
 
-  /// Least voxel in the focus: full / 2, rounded up.
+  /// Smallest voxel value inside the surface: maxValue / 2, rounded up.
   std::uint8_t threshold() const { return static_cast<std::uint8_t>(maxValue - maxValue / 2); }
 };
 

@@ -11,14 +11,14 @@ struct Span {
   std::int64_t first, last; ///< voxels, both included
 };
 
-/// Voxels that interpolation within cell `c` of one axis touches.
+/// Voxels that interpolation in cell `c` of one axis can read.
 Span footprint(std::int64_t c, std::int64_t cellSize, std::int64_t voxels, int padding) {
   const std::int64_t first = c * cellSize - 1 - padding;
   const std::int64_t last = (c + 1) * cellSize + padding;
   return {std::max<std::int64_t>(first, 0), std::min(last, voxels - 1)};
 }
 
-/// Lowers `lows` and raises `highs` to a row of voxels, elementwise.
+/// Element-wise minimum and maximum of `lows`, `highs` and a row of voxels.
 template <typename Voxel>
 void addRow(const Voxel* row, std::vector<Voxel>& lows, std::vector<Voxel>& highs) {
   Voxel* const low = lows.data();
@@ -44,12 +44,12 @@ Size3 MinMaxGrid::chooseCellSize(const Grid& grid) {
   constexpr double wantedCells = 1 << 18;
   const Vec3 spacing = grid.spacing();
   const Vec3 size = grid.size.cast<double>();
-  Vec3 voxels = Vec3::Zero(); // 0: not settled yet
-  // An axis with spacing > the cube's edge gets cells of one voxel, an axis shorter than the cube's
-  // edge gets one cell; the other axes share the remaining cells. (Otherwise a thin slice would
-  // have a cell for every voxel.)
+  Vec3 voxels = Vec3::Zero(); // 0: not yet determined
+  // An axis with spacing > the cube's edge gets cells of one voxel; an axis shorter than the edge
+  // gets one cell. The other axes divide the remaining cells. (Otherwise a thin slice would have a
+  // cell per voxel.)
   for (int settled = 0; settled < 3; ++settled) {
-    double volume = 1.0; // product of the unsettled axes' lengths
+    double volume = 1.0; // product of the undetermined axes' lengths
     double cells = wantedCells;
     for (int axis = 0; axis < 3; ++axis)
       if (voxels[axis] == 0.0)
@@ -58,7 +58,7 @@ Size3 MinMaxGrid::chooseCellSize(const Grid& grid) {
         cells /= size[axis] / voxels[axis];
     const double edge = std::pow(volume / cells, 1.0 / (3 - settled)); // mm
     int farthest = -1;
-    double factor = 0.0; // by which cells of `farthest` miss the cube's edge
+    double factor = 0.0; // ratio by which the cells of `farthest` differ from the cube's edge
     for (int axis = 0; axis < 3; ++axis)
       if (voxels[axis] == 0.0) {
         const double cube = edge / spacing[axis];
@@ -76,8 +76,8 @@ Size3 MinMaxGrid::chooseCellSize(const Grid& grid) {
 
 template <typename Voxel>
 void MinMaxGrid::fill(const Grid& grid, const LargeArray<Voxel>& voxels) {
-  // A row of cells is first reduced to one row of voxels, elementwise: memory is read in order,
-  // with vector instructions.
+  // Each row of cells is first reduced to one row of voxels, element-wise. This reads memory in
+  // order and with vector instructions.
   const auto fillSlab = [&](std::int64_t cz) {
     const Span z = footprint(cz, m_cellSize.z(), grid.size.z(), m_padding);
     std::vector<Voxel> low(static_cast<std::size_t>(grid.size.x())), high(low.size());

@@ -1,19 +1,19 @@
 #pragma once
-// The least and greatest scalar that the continuous field takes in each cell of a coarse grid.
+// Minimum and maximum of the scalar field in each cell of a coarse grid.
 
 #include "model/volume/Volume.h"
 
 namespace fenestra {
 
-/// Cell c spans [c, c + 1] * edge - 0.5 in index space, in each axis. The cell's range covers every
-/// voxel that trilinear interpolation inside the cell can touch, plus `apron` voxels on every side
-/// (1 for central differences).
+/// Cell c spans [c, c + 1] * cellSize() - 0.5 in index space, per axis. Its range covers every
+/// voxel that trilinear interpolation in the cell can read, plus `padding` voxels on every side (1
+/// for central differences).
 class MinMaxGrid {
 public:
   MinMaxGrid(const Volume& volume, int padding);
 
-  /// Edges of a cell, voxels per axis. About 2^18 cells, as near to cubes in mm as whole voxels
-  /// allow: thick slices must not make long cells with loose bounds.
+  /// Edges of a cell, voxels per axis. There are about 2^18 cells, as close to cubes in mm as whole
+  /// voxels allow: in volumes with thick slices, long cells would have loose bounds.
   static Size3 chooseCellSize(const Grid& grid);
 
   int padding() const { return m_padding; }
@@ -29,7 +29,7 @@ private:
 
   int m_padding;
   Size3 m_cellSize, m_cellCount;
-  std::vector<float> m_low, m_high; ///< exact: every storage type fits a float
+  std::vector<float> m_low, m_high; ///< exact: float represents every voxel value
 };
 
 } // namespace fenestra

@@ -1,5 +1,7 @@
 #pragma once
-// The scalar volume: voxels in their storage type, and the continuous field that they define.
+// The scalar volume: voxels in their storage type, and the continuous field interpolated from them.
+// Voxels are never converted: code that reads them is a template on their type, and
+// integrator/render/Render.h dispatches on it once.
 
 #include "base/LargePages.h"
 #include "model/volume/Grid.h"
@@ -12,26 +14,26 @@
 
 namespace fenestra {
 
-/// Kind of scan. CT's scalars are Hounsfield units; MR and ultrasound have no unit of their own.
+/// Kind of scan. CT scalars are Hounsfield units; MR and ultrasound have no standard unit.
 enum class Modality { ct, mr, us };
 
-/// Storage types, x fastest. Readers narrow or widen every file type to the smallest of these that
-/// holds all its values (64-bit and double values that do not fit are rounded to float).
+/// Storage types, x fastest. Readers convert every file type to the smallest of these that holds
+/// all its values (64-bit and double values that do not fit are rounded to float).
 using Voxels = std::variant<LargeArray<std::uint8_t>, LargeArray<std::int16_t>,
                             LargeArray<std::uint16_t>, LargeArray<float>>;
 
-/// Every voxel is finite: readers replace NaN and -infinity by the least finite value of the volume
-/// and +infinity by the greatest, and say so in `warnings`.
+/// Every voxel is finite: readers replace NaN and -infinity by the volume's smallest finite value,
+/// and +infinity by its largest, and add a warning.
 struct Volume {
   Grid grid;
   Voxels voxels;
-  double minimum = 0.0; ///< least voxel
+  double minimum = 0.0; ///< smallest voxel value
   double maximum = 0.0;
-  std::string name; ///< for messages: the file
+  std::string name; ///< file name, for messages
   std::vector<std::string> warnings;
 };
 
-/// Fills minimum and maximum from the voxels.
+/// Computes minimum and maximum from the voxels.
 inline void computeRange(Volume& volume) {
   const auto compute = [&volume](const auto& voxels) {
     if (voxels.empty())
@@ -43,8 +45,8 @@ inline void computeRange(Volume& volume) {
   std::visit(compute, volume.voxels);
 }
 
-/// The continuous field of `Volume::voxels`: trilinear between voxel centres, clamped in the outer
-/// half voxel. Points are in index space, inside Grid::indexBox(). Keeps a pointer to the voxels.
+/// The continuous field of `Volume::voxels`: trilinear between voxel centers, clamped in the outer
+/// half voxel. Points are in index space, in Grid::indexBox(). The voxels must outlive the field.
 template <typename Voxel>
 class Field {
 public:
@@ -68,7 +70,7 @@ public:
     return low + (high - low) * fz;
   }
 
-  /// Gradient in scalar units per mm, world axes: central differences over one voxel to each side.
+  /// Gradient in scalar units per mm, world axes: central differences over one voxel on each side.
   Vec3 gradient(const Vec3& index) const {
     Vec3 difference;
     for (int axis = 0; axis < 3; ++axis) {
@@ -101,7 +103,7 @@ private:
   const Voxel* m_voxels;
   Vec3 m_last;
   Size3 m_lastCell;
-  Size3 m_stride; ///< offset of the next voxel in each axis, 0 if the axis has one voxel
+  Size3 m_stride; ///< offset of the next voxel in each axis; 0 if the axis has one voxel
   std::int64_t m_row, m_slice;
   Mat3 m_indexGradientToWorld;
 };
