@@ -6,7 +6,7 @@ namespace fenestra {
 
 namespace {
 
-/// Least distance, mm, of a box from the surface to count as removed or kept whole: far more than
+/// A box farther than this from the surface, mm, counts as fully removed or fully kept. Far above
 /// rounding, far below visibility.
 constexpr double slack = 1e-6;
 
@@ -15,7 +15,7 @@ Interval findUnclipped(const ClipNone&, const Ray&) {
 }
 
 Interval findUnclipped(const ClipPlane& clip, const Ray& cameraRay) {
-  const double height = (cameraRay.origin - clip.point).dot(clip.normal); // the removed side is > 0
+  const double height = (cameraRay.origin - clip.point).dot(clip.normal); // > 0 on the removed side
   const double slope = cameraRay.direction.dot(clip.normal);
   if (slope > 0.0)
     return {0.0, std::max(0.0, -height / slope)};
@@ -26,7 +26,7 @@ Interval findUnclipped(const ClipPlane& clip, const Ray& cameraRay) {
 
 Interval findUnclipped(const ClipDepth& clip, const Ray& cameraRay) {
   const double depthPerLength = clip.camera.depthPerLength(cameraRay);
-  // All points of the ray have the same (x, y); at the target's depth rounding matters least.
+  // All points of the ray have the same (x, y); rounding is smallest at the target's depth.
   const Vec3 point = cameraRay.at(clip.camera.targetDepth() / depthPerLength);
   const double depth = clip.surfaceDepth(toBuffer(clip.camera, point).head<2>());
   return {std::max(0.0, depth / depthPerLength), infinity};
@@ -61,10 +61,10 @@ Vec3 evaluateCut(const ClipDepth& clip, const Vec3& world) {
   return cutShading / clip.edge.softness * gradient.normalized();
 }
 
-/// Position of a box relative to a part of space.
+/// Position of a box relative to the half-space in front of the camera.
 enum class Side { inside, straddling, outside };
 
-/// Bound for a box over a range of distances behind the surface, mm.
+/// Bounds the clip weight of a box whose points have these distances behind the surface, mm.
 ClipBounds boundFromDistance(const ClipEdge& edge, const Interval& distances, Side side) {
   if (side == Side::outside)
     return ClipBounds::none;
@@ -75,7 +75,7 @@ ClipBounds boundFromDistance(const ClipEdge& edge, const Interval& distances, Si
   return ClipBounds::some;
 }
 
-/// Position of a stretch of depths, mm, relative to the space in front of the eye.
+/// Position of an interval of depths, mm, relative to the half-space in front of the camera.
 Side classifyDepths(const Camera& camera, const Interval& depths) {
   if (isBehindCamera(camera, depths.end + slack))
     return Side::outside;

@@ -1,6 +1,10 @@
 #pragma once
-// Kinds of clip, and keep at points, on rays and in boxes. A clip multiplies the extinction by
-// keep(point), from 0 to 1.
+// Clip modes. A clip multiplies the extinction by clipWeight(point), from 0 to 1. Paths evaluate it
+// at points, majorant grids bound it in boxes, and camera rays skip the parts where it is 0.
+//
+// All modes except the plane are a depth map (ClipDepth), so that rays, SIMD code and metrics
+// handle two kinds only. Surface, cutaway and hole differ in how they fill the depth map outside
+// the focus; ghosts and soft edges differ in ClipEdge.
 
 #include "clip/field/DepthPyramid.h"
 #include "clip/field/SilhouetteCells.h"
@@ -13,20 +17,20 @@
 
 namespace fenestra {
 
-/// Profile of keep across the surface.
+/// Profile of the clip weight across the surface.
 struct ClipEdge {
-  double ghost = 0.0;    ///< keep in front of the surface: 0, or a small share, a float's value
-  double softness = 0.0; ///< mm behind the surface over which keep rises linearly to 1
+  double ghost = 0.0;    ///< weight in front of the surface; exactly representable as a float
+  double softness = 0.0; ///< mm behind the surface over which the weight rises linearly to 1
 
-  /// keep at `behind` mm behind the surface; negative: in front.
+  /// Weight at `distance` mm behind the surface; negative: in front.
   double operator()(double distance) const {
     if (distance < 0.0)
       return ghost;
     return distance < softness ? ghost + (1.0 - ghost) * (distance / softness) : 1.0;
   }
-  /// True: keep rises at `behind`.
+  /// True if the weight rises at `distance`.
   bool isRamp(double distance) const { return distance >= 0.0 && distance < softness; }
-  /// True: keep = 0 in front of the surface.
+  /// True if the weight is 0 in front of the surface.
   bool isHard() const { return ghost == 0.0; }
 
   bool operator==(const ClipEdge&) const = default;
@@ -36,24 +40,24 @@ struct ClipNone {
   static constexpr ClipEdge edge = {};
 };
 
-/// Removes the half-space that the normal points at.
+/// Removes the half-space that the normal points to.
 struct ClipPlane {
   Camera camera;
   Vec3 point;  ///< world mm
-  Vec3 normal; ///< world, not zero; unit if edge.softness > 0
+  Vec3 normal; ///< world, nonzero; unit length if edge.softness > 0
   ClipEdge edge = {};
 
-  /// Signed distance behind the plane, mm if the normal is unit.
+  /// Positive behind the plane, where the volume remains; mm if the normal has unit length.
   double signedDistance(const Vec3& world) const { return (point - world).dot(normal); }
 };
 
-/// Removes all points nearer to the eye than the surface of a depth buffer.
+/// Removes all points in front of the surface that a depth buffer defines.
 struct ClipDepth {
   enum class Lookup { nearest, linear };
 
   Camera camera;
-  std::shared_ptr<const DepthBuffer> buffer;   ///< depth -infinity: nothing removed
-  std::shared_ptr<const DepthPyramid> pyramid; ///< bounds of buffer and seams
+  std::shared_ptr<const DepthBuffer> buffer;   ///< -infinity where nothing is removed
+  std::shared_ptr<const DepthPyramid> pyramid; ///< bounds of buffer and silhouette cells
   Lookup lookup = Lookup::linear;
   ClipEdge edge = {};
   std::shared_ptr<const SilhouetteCells> silhouette =
@@ -64,8 +68,8 @@ struct ClipDepth {
     return surfaceDepth(position, {-infinity, infinity});
   }
 
-  /// Surface depth at `position`, mm. If it lies outside `between`, only the side is guaranteed,
-  /// not the value.
+  /// Surface depth at `position`, mm. If it lies outside `queryRange`, only the side is guaranteed,
+  /// not the value, which saves queries of the focus.
   double surfaceDepth(const Vec2& position, const Interval& queryRange) const {
     if (lookup == Lookup::nearest)
       return buffer->nearestDepth(position);
@@ -74,8 +78,8 @@ struct ClipDepth {
     return silhouette ? refineAtSilhouette(cell, position, linear, queryRange) : linear;
   }
 
-  /// Depth of a point behind the surface, mm; negative: in front. Exact in the edge's ramp; beyond
-  /// it only the side is guaranteed. `at`: as toBuffer returns it.
+  /// Distance of a point behind the surface, mm along depth. Exact in the edge's ramp; elsewhere
+  /// only the sign is guaranteed. `at`: buffer coordinates (toBuffer).
   double signedDistance(const Vec3& at) const {
     return at.z() - surfaceDepth(at.head<2>(), {at.z() - edge.softness, at.z()});
   }
@@ -87,8 +91,8 @@ private:
 
 using Clip = std::variant<ClipNone, ClipPlane, ClipDepth>;
 
-/// Share of the extinction that remains at a world point, 0 to 1; behind the eye 0 for every clip
-/// but ClipNone.
+/// Fraction of the extinction that remains at a world point, 0 to 1. Behind a perspective camera it
+/// is 0 for all clips except ClipNone.
 inline double clipWeight(const ClipNone&, const Vec3&) {
   return 1.0;
 }
@@ -110,36 +114,36 @@ inline double clipWeight(const Clip& clip, const Vec3& world) {
   return std::visit([&](const auto& kind) { return clipWeight(kind, world); }, clip);
 }
 
-/// Weight of a soft cut among the gradients that make surfaces.
+/// Weight of the cut's gradient relative to the medium's gradient in hybrid shading.
 inline constexpr double cutShading = 0.5;
 
-/// Gradient, mm^-1, world axes, that a soft cut adds to the scalar's in spans of the transfer
-/// function (Weiskopf, Engel, Ertl 2003: shading on the cut):
-///   cutShading / softness n   for 0 <= behind < softness, else 0
-/// where `behind` is as in keep, mm, and n is the unit normal of the cut, into the matter that is
-/// left: n = grad(behind) / |grad(behind)|. A plane's n is its normal, turned round. In front of a
-/// depth buffer, with view axes (right, up, forward), (x, y) as in toBuffer and D the surface's
-/// depth there, linear between samples (in seams too),
-///   grad(behind) = (-D_x, -D_y, 1)                                         orthographic,
-///   grad(behind) = (-s D_x, -s D_y, 1 + (x D_x + y D_y) / z), s = target's depth / z perspective.
-/// Steps (Lookup::nearest) have no slope: n is the camera's forward axis.
+/// Gradient, mm^-1, world axes, that a soft cut adds to the scalar gradient (in spans of the
+/// transfer function) in hybrid shading. The cut is then shaded as a surface, also in a homogeneous
+/// medium, whose own gradient is noise (Weiskopf, Engel, Ertl 2003):
+///   cutShading / softness n   for 0 <= d < softness, else 0
+/// where d is the signed distance behind the surface, mm, and n = grad(d) / |grad(d)| is the unit
+/// normal of the cut, pointing into the remaining medium. For a plane, n is its negated normal. For
+/// a depth buffer, with view axes (right, up, forward), (x, y) as in toBuffer, and D the depth of
+/// the surface, linear between samples (also in silhouette cells),
+///   grad(d) = (-D_x, -D_y, 1)                                         orthographic,
+///   grad(d) = (-s D_x, -s D_y, 1 + (x D_x + y D_y) / z), s = target's depth / z   perspective.
+/// With Lookup::nearest there is no slope: n is the camera's forward axis. A hard edge adds
+/// nothing, since it has no depth in which paths could scatter.
 Vec3 cutGradient(const Clip& clip, const Vec3& world);
 
-/// Part of an eye ray, t >= 0, behind the clip's surface: one interval for every kind of clip. With
-/// a hard edge keep = 0 on the rest of the ray.
+/// Interval of a camera ray, t >= 0, behind the clip's surface. A hard edge removes the rest.
 Interval intervalBehindSurface(const Clip& clip, const Ray& cameraRay);
 
-/// Interval of an eye ray, t >= 0, outside of which keep = 0: paths may start at its begin, and end
-/// at its end.
+/// Interval of a camera ray, t >= 0, that contains all points of nonzero clip weight.
 Interval visibleInterval(const Clip& clip, const Ray& cameraRay);
 
 /// World corners of a box, in any order.
 using Corners = std::array<Vec3, 8>;
 
-/// Bound of keep over the convex hull of some corners.
+/// Bounds of the clip weight over the convex hull of some corners.
 struct ClipBounds {
-  double max;     ///< keep <= most
-  bool isUniform; ///< true: keep = most everywhere; false: unknown
+  double max;     ///< upper bound
+  bool isUniform; ///< true: the weight is `max` everywhere; false: unknown
 
   static const ClipBounds none, some, all;
 

@@ -4,7 +4,7 @@
 
 namespace fenestra {
 
-/// Level above one of columns * rows entries; below(i): its entry i.
+/// Builds the level above one of columns * rows entries, whose entry i is below(i).
 template <typename Below>
 DepthPyramid::Level DepthPyramid::buildCoarser(std::int64_t columns, std::int64_t rows,
                                                const Below& below) {
@@ -40,11 +40,11 @@ DepthPyramid::DepthPyramid(const DepthBuffer& buffer, const SilhouetteCells* sil
 }
 
 Interval DepthPyramid::bounds(const DepthBuffer& buffer, const Vec2& a, const Vec2& b) const {
-  constexpr double slack = 1e-3; // samples; more than rounding
+  constexpr double slack = 1e-3; // in samples; larger than rounding
   const DepthAxis::SampleRange columns = buffer.xAxis().sampleRange(a.x(), b.x(), slack);
   const DepthAxis::SampleRange rows = buffer.yAxis().sampleRange(a.y(), b.y(), slack);
-  // An entry of m_levels[l - 1] spans 2^l samples. Level l is chosen so that the range spans at
-  // most 5 x 5 entries, and the entries reach little beyond the range.
+  // An entry of m_levels[l - 1] spans 2^l samples. Level l is chosen such that the range spans at
+  // most 5 x 5 entries, which extend only slightly beyond it.
   const auto longest = std::max(columns.last - columns.first, rows.last - rows.first);
   const auto bits =
       static_cast<std::ptrdiff_t>(std::bit_width(static_cast<std::uint64_t>(longest)));

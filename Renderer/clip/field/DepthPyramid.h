@@ -1,5 +1,5 @@
 #pragma once
-// Least and greatest depth over any rectangle of a depth buffer, from a few look-ups.
+// Min-max pyramid of a depth buffer: depth bounds over any rectangle from a few look-ups.
 
 #include "clip/field/SilhouetteCells.h"
 #include "clip/focus/DepthBuffer.h"
@@ -8,14 +8,14 @@
 
 namespace fenestra {
 
-/// Level 0 holds the extremes of 2 x 2 samples, each further level those of 2 x 2
-/// entries of the level below.
+/// Level 0 holds the minimum and maximum of 2 x 2 samples, each coarser level those of 2 x 2
+/// entries of the finer level.
 class DepthPyramid {
 public:
   explicit DepthPyramid(const DepthBuffer& buffer, const SilhouetteCells* silhouette = nullptr);
 
-  /// Bounds of the surface depth (nearest, linear, or in seams) over the rectangle between two
-  /// positions, mm. Samples near the rectangle count as well, so bounds may be wider.
+  /// Bounds of the surface depth, mm, over the rectangle between two positions, for both kinds of
+  /// look-up and in silhouette cells. Conservative: samples near the rectangle are included.
   Interval bounds(const DepthBuffer& buffer, const Vec2& a, const Vec2& b) const;
 
 private:

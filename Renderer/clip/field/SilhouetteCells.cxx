@@ -12,7 +12,7 @@ namespace fenestra {
 
 namespace {
 
-/// Per cell of `range`: 0: all four samples around the cell are focus; 1: the focus may end there.
+/// Per cell of `range`: 1 if any of its four samples is outside the focus, else 0.
 std::vector<std::uint8_t> findOuterCells(const FocusDepth& focus, const CellRange& range) {
   std::vector<std::uint8_t> isOuter(range.size());
   const auto outside = [&](std::int64_t sample) {
@@ -29,15 +29,15 @@ std::vector<std::uint8_t> findOuterCells(const FocusDepth& focus, const CellRang
   return isOuter;
 }
 
-/// Depth range of the 4 x 4 samples around each cell, made twice as long away from the eye: a hole
-/// may be deeper than its samples. mm, relative to the target.
+/// Depth bounds, mm, relative to the target, of the 4 x 4 samples around each cell. Doubled in
+/// length away from the camera, since a pit may be deeper than its samples.
 std::vector<SilhouetteCells::DepthBounds> boundNeighborhoods(const DepthBuffer& buffer,
                                                              const CellRange& range) {
   constexpr std::int64_t width = 4;
   constexpr float noDepth = std::numeric_limits<float>::infinity();
   const auto columns = static_cast<std::size_t>(range.columns());
   std::vector<float> row(columns + width - 1);
-  // Ranges of four neighbours in a row, then of four such rows.
+  // First over four neighbors in a row, then over four such rows.
   std::vector<SilhouetteCells::DepthBounds> bounds(
       columns * static_cast<std::size_t>(range.rows() + width - 1));
   auto bound = bounds.begin();
@@ -47,7 +47,7 @@ std::vector<SilhouetteCells::DepthBounds> boundNeighborhoods(const DepthBuffer& 
           buffer.sample(std::clamp<std::int64_t>(range.left - 1 + static_cast<std::int64_t>(i), 0,
                                                  buffer.columns() - 1),
                         std::clamp<std::int64_t>(r, 0, buffer.rows() - 1)))];
-    const auto at = [&](std::size_t i) { // empty for a sample beside the focus
+    const auto at = [&](std::size_t i) { // empty for samples outside the focus
       return SilhouetteCells::DepthBounds{row[i], row[i] < noDepth ? row[i] : -noDepth};
     };
     for (std::size_t i = 0; i < columns; ++i)
@@ -62,7 +62,7 @@ std::vector<SilhouetteCells::DepthBounds> boundNeighborhoods(const DepthBuffer& 
   return bounds;
 }
 
-/// Questions that are traced together.
+/// Queries that are traced together.
 struct QueryBatch {
   std::size_t size = 0;
   std::array<SilhouetteCells::Query*, SilhouetteCells::maxQueries> queries;
@@ -106,7 +106,7 @@ SilhouetteCells::SilhouetteCells(std::shared_ptr<const FocusTracer> tracer, cons
   findHalo(focus, range);
 }
 
-/// Reaches of the four cells around a sample, joined, mm.
+/// Encloses the depth bounds of the four cells around a sample, mm.
 Interval SilhouetteCells::joinDepthBounds(const DepthBuffer& buffer, std::int64_t column,
                                           std::int64_t row) const {
   Interval depths{infinity, -infinity};
@@ -165,7 +165,7 @@ void SilhouetteCells::evaluate(std::span<Query> queries) const {
   for (Query& query : queries) {
     const Interval bounds = findBounds(query);
     if (m_tracer->isFocus(query.position, toFocus + query.nearLimit))
-      query.depth = bounds.begin - toFocus; // the focus is met at `from` or before
+      query.depth = bounds.begin - toFocus; // the hit is at or before nearLimit
     else if (isInner(query.cell))
       inner.add(query, bounds);
     else

@@ -7,21 +7,21 @@ namespace fenestra {
 
 namespace {
 
-/// Steps toward the neighbour on each side; side + 1 turns from columns to rows.
+/// Step to the neighbor on each side, in the order of Crossing::side: quarter turns.
 constexpr std::array<SampleStep, 4> steps{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}}};
 
 constexpr std::uint8_t rotateSide(int side, int quarters) {
   return static_cast<std::uint8_t>((side + quarters) & 3);
 }
 
-/// Next crossing on the contour, decided by the two farther samples of the square ahead, whose
-/// nearer two are the focus sample and its outside neighbour.
+/// Next crossing on the contour. Of the four samples of the square ahead, two are the focus sample
+/// and its neighbor outside; the other two decide how the contour turns.
 Crossing findNextCrossing(const FocusDepth& focus, const Crossing& crossing) {
   const SampleStep out = outwardStep(crossing);
   const SampleStep ahead = steps[rotateSide(crossing.side, 1)];
   const std::int32_t column = crossing.column + ahead.column;
   const std::int32_t row = crossing.row + ahead.row;
-  if (focus.isFocus(column + out.column, row + out.row)) // joins diagonal touches
+  if (focus.isFocus(column + out.column, row + out.row)) // joins diagonal neighbors
     return {column + out.column, row + out.row, rotateSide(crossing.side, 3)};
   if (focus.isFocus(column, row))
     return {column, row, crossing.side};
@@ -32,7 +32,7 @@ std::int64_t sampleIndex(const DepthBuffer& buffer, const Crossing& crossing) {
   return buffer.sample(crossing.column, crossing.row);
 }
 
-/// Control points of the crossings' samples, each sample once, in the order of the buffer.
+/// Converts the focus samples of crossings to control points, without duplicates, in buffer order.
 std::vector<ControlPoint> collectDistinctSamples(const DepthBuffer& buffer, Contour crossings) {
   const auto sample = [&](const Crossing& crossing) { return sampleIndex(buffer, crossing); };
   std::ranges::sort(crossings, {}, sample);
@@ -45,7 +45,7 @@ std::vector<ControlPoint> collectDistinctSamples(const DepthBuffer& buffer, Cont
   return points;
 }
 
-/// Calls back with each crossing and the length of contour that leads on from it, mm.
+/// Calls visit(from, to, length) for each pair of successive crossings; length in mm.
 template <typename Visitor>
 void visitSegments(const DepthBuffer& buffer, const std::vector<Contour>& contours,
                    const Visitor& visit) {
@@ -64,8 +64,8 @@ SampleStep outwardStep(const Crossing& crossing) {
 
 std::vector<Contour> traceContours(const FocusDepth& focus) {
   const DepthBuffer& buffer = focus.depth;
-  std::vector<std::uint8_t> visited(static_cast<std::size_t>(buffer.size())); // a bit for each side
-  const auto visit = [&](const Crossing& crossing) { // false: visited before
+  std::vector<std::uint8_t> visited(static_cast<std::size_t>(buffer.size())); // one bit per side
+  const auto visit = [&](const Crossing& crossing) { // false if visited before
     std::uint8_t& sides = visited[static_cast<std::size_t>(sampleIndex(buffer, crossing))];
     const bool isNew = !(sides >> crossing.side & 1U);
     sides = static_cast<std::uint8_t>(sides | 1U << crossing.side);

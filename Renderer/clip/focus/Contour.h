@@ -8,10 +8,10 @@
 
 namespace fenestra {
 
-/// Place where a contour passes between a focus sample and a neighbour outside the focus.
+/// Point where a contour passes between a focus sample and a neighbor outside the focus.
 struct Crossing {
   std::int32_t column, row; ///< the focus sample
-  std::uint8_t side; ///< of the neighbour: 0 next column, 1 next row, 2 last column, 3 last row
+  std::uint8_t side; ///< neighbor: 0 next column, 1 next row, 2 previous column, 3 previous row
 
   bool operator==(const Crossing&) const = default;
 };
@@ -21,14 +21,14 @@ struct SampleStep {
   std::int32_t column, row;
 };
 
-/// Step toward the neighbour on a crossing's side.
+/// Step from the focus sample to its neighbor outside.
 SampleStep outwardStep(const Crossing& crossing);
 
-/// Closed loop: each crossing is followed by its neighbour on the contour, the last by the first.
+/// Closed loop of successive crossings; the last is followed by the first.
 using Contour = std::vector<Crossing>;
 
-/// All contours of the focus region, outer ones and holes, by marching squares on the samples.
-/// Places beyond the buffer are not focus. Focus samples that touch only diagonally are joined.
+/// Traces all contours of the focus region, including holes, by marching squares on the samples.
+/// Samples beyond the buffer count as outside. Diagonal neighbors count as connected.
 std::vector<Contour> traceContours(const FocusDepth& focus);
 
 /// Midpoint of the crossing's two samples, mm on the plane through the target.
@@ -40,12 +40,12 @@ struct ControlPoint {
   double depth;
 };
 
-/// Focus samples at `count` crossings, spaced uniformly in arc length (mm) over the loops one after
-/// the other. A sample of two of the crossings is returned once.
+/// Chooses `count` crossings, spaced uniformly in arc length (mm) over the concatenated contours,
+/// and returns their focus samples without duplicates.
 std::vector<ControlPoint> placeControlPoints(const FocusDepth& focus,
                                              const std::vector<Contour>& contours, int count);
 
-/// All focus samples that a contour touches, each once.
+/// Returns all focus samples on the contours, without duplicates.
 std::vector<ControlPoint> findBoundarySamples(const FocusDepth& focus,
                                               const std::vector<Contour>& contours);
 

@@ -26,7 +26,7 @@ Rectangle projectVolume(const Camera& camera, const Grid& volume) {
       rectangle.extend(corner.head<2>());
     } else if (corner.z() > 0.0) {
       rectangle.extend(corner.head<2>().cwiseMax(-limit).cwiseMin(limit));
-    } else { // behind the eye: the box's edges may leave the picture anywhere
+    } else { // behind the camera: the projection of the box is unbounded
       rectangle.extend(-limit);
       rectangle.extend(limit);
     }
@@ -34,12 +34,12 @@ Rectangle projectVolume(const Camera& camera, const Grid& volume) {
   return rectangle;
 }
 
-/// Sets `before` and `after` of the axis such that its samples reach from a to b, mm.
+/// Sets `before` and `after` such that the samples of the axis cover [a, b], mm.
 void extendAxis(DepthAxis& axis, double factor, double a, double b) {
   const double first = std::min(a / axis.pitch, b / axis.pitch) - axis.start;
   const double last = std::max(a / axis.pitch, b / axis.pitch) - axis.start;
   const auto countSamples = [factor](double pixels) {
-    constexpr double limit = 1e9; // more than any buffer has; the square does not overflow
+    constexpr double limit = 1e9; // larger than any buffer; its square does not overflow
     return static_cast<std::int64_t>(std::ceil(std::clamp(pixels / factor, 0.0, limit)));
   };
   axis.factor = factor;
@@ -47,7 +47,7 @@ void extendAxis(DepthAxis& axis, double factor, double a, double b) {
   axis.after = countSamples(last - static_cast<double>(axis.inside - 1));
 }
 
-/// Axis along which pixel i's centre is at (i + 1/2 - pixels / 2) pitch, as in Camera::toPlane.
+/// Axis on which the center of pixel i is at (i + 1/2 - pixels / 2) pitch, as in Camera::toPlane.
 DepthAxis viewportAxis(double pitch, int pixels) {
   DepthAxis axis;
   axis.pitch = pitch;
@@ -67,8 +67,8 @@ DepthBuffer::DepthBuffer(const Camera& camera, const Grid& volume)
   const double farthest = span.lower.cwiseAbs().cwiseMax(span.upper.cwiseAbs()).maxCoeff();
   if (!(pitch > 0.0) || !std::isfinite(pitch) || !(farthest / pitch < 1e15) ||
       std::min(camera.width(), camera.height()) < 1)
-    throw usageError("--scale, --angle and --size: the picture is empty, or a pixel is less than "
-                     "1e-15 of the volume's extent; choose larger ones");
+    throw usageError("--scale, --angle and --size: the image is empty, or a pixel is smaller than "
+                     "1e-15 of the volume; use larger values");
   const std::int64_t limit = std::max<std::int64_t>(
       {4 << 20, m_x.inside * m_y.inside * 5 / 4, (m_x.inside + 2) * (m_y.inside + 2)});
   const auto fits = [&](double factor) {
@@ -77,7 +77,7 @@ DepthBuffer::DepthBuffer(const Camera& camera, const Grid& volume)
     return size() <= limit;
   };
   double fitting = 1.0;
-  while (!fits(fitting)) // ends: the limit allows one sample on each side
+  while (!fits(fitting)) // terminates: the limit allows one sample on each side
     fitting *= 2.0;
   for (double failing = 0.5 * fitting; failing >= 1.0 && fitting - failing > 1.0;) {
     const double middle = std::floor(0.5 * (failing + fitting));

@@ -1,5 +1,5 @@
 #pragma once
-// Support of the clipping surface: depths over the plane through the target that faces the eye.
+// Depth map of the clipping surface, on the plane through the target, parallel to the image plane.
 
 #include "model/camera/Camera.h"
 #include "model/volume/Grid.h"
@@ -9,8 +9,8 @@
 
 namespace fenestra {
 
-/// (x, y) in mm where the eye ray through a world point meets the plane through the target, and the
-/// point's depth. In perspective (x, y) is defined at positive depths only.
+/// Converts a world point to buffer coordinates: (x, y), mm, where its camera ray meets the plane
+/// through the target, and its depth. In perspective, defined for positive depths only.
 inline Vec3 toBuffer(const Camera& camera, const Vec3& world) {
   const Vec3 view = camera.toView(world);
   if (camera.pose().projection == Projection::orthographic)
@@ -19,7 +19,7 @@ inline Vec3 toBuffer(const Camera& camera, const Vec3& world) {
   return {view.x() * scale, view.y() * scale, view.z()};
 }
 
-/// Inverse of toBuffer: the world point at depth at.z(), mm, on the eye ray through (x, y).
+/// Inverse of toBuffer: the world point at depth at.z(), mm, on the camera ray through (x, y).
 inline Vec3 fromBuffer(const Camera& camera, const Vec3& at) {
   const Ray ray = camera.makePlaneRay(at.head<2>());
   return ray.at(at.z() / camera.depthPerLength(ray));
@@ -30,19 +30,19 @@ inline bool isBehindCamera(const Camera& camera, double depth) {
   return camera.pose().projection == Projection::perspective && !(depth > 0.0);
 }
 
-/// Sample positions along one axis of a depth buffer. Inside the viewport they are the centres of
-/// its pixels; beyond it they lie `factor` pixels apart.
+/// Sample positions along one axis of a depth buffer: the pixel centers inside the viewport, and
+/// every `factor` pixels beyond it.
 struct DepthAxis {
-  double pitch = 1.0;      ///< mm from one pixel to the next, negative where rows run downwards
-  double start = 0.0;      ///< coordinate of the viewport's first pixel, in pitches
-  double factor = 1.0;     ///< pixels between samples beyond the viewport, a whole number
-  std::int64_t before = 0; ///< samples ahead of the viewport
-  std::int64_t inside = 1; ///< the viewport's pixels
-  std::int64_t after = 0;  ///< samples behind the viewport
+  double pitch = 1.0;      ///< mm per pixel; negative for rows, which run downward
+  double start = 0.0;      ///< coordinate of the first viewport pixel, in units of pitch
+  double factor = 1.0;     ///< pixels per sample beyond the viewport, an integer
+  std::int64_t before = 0; ///< samples before the viewport
+  std::int64_t inside = 1; ///< pixels of the viewport
+  std::int64_t after = 0;  ///< samples after the viewport
 
   std::int64_t size() const { return before + inside + after; }
 
-  /// Coordinate of a sample, mm; extrapolated for indices out of range.
+  /// Coordinate of a sample, mm; extrapolated for indices that are out of range.
   double coordinate(std::int64_t sample) const {
     const auto pixel = static_cast<double>(sample - before);
     const double fine = clampToViewport(pixel);
@@ -64,8 +64,7 @@ struct DepthAxis {
     return std::max(0.0, std::min(static_cast<double>(size() - 1), index)); // NaN: size - 1
   }
 
-  /// Samples that interpolation between two coordinates (mm) reads, and those that `slack` samples
-  /// more on both sides add.
+  /// Samples that interpolation over [a, b] (mm) reads, extended by `slack` samples on both sides.
   struct SampleRange {
     std::int64_t first, last;
   };
@@ -81,14 +80,14 @@ private:
   }
 };
 
-/// Depths in mm over (x, y) in mm, where the eye rays meet the plane through the target. Spans the
-/// viewport and the volume's projection (in perspective up to 75 degrees from the axis). Beyond the
-/// samples the edge sample's depth holds. Row 0 is at the top, as in pictures.
+/// Depths, mm, over (x, y), mm, where camera rays meet the plane through the target. Covers the
+/// viewport and the volume's projection (in perspective, up to 75 degrees from the axis). Beyond
+/// the samples, the depth of the nearest edge sample applies. Row 0 is the top row.
 class DepthBuffer {
 public:
-  /// Depths start at infinity. Samples beyond the viewport are as dense as its pixels, or as dense
-  /// as max(4 Mpixel, 5/4 of the viewport) allows. Throws Error (usage) for a viewport without
-  /// extent.
+  /// Initializes all depths to infinity. Beyond the viewport, samples have its pixel spacing, or
+  /// the finest spacing for which the buffer fits in max(4 Mpixel, 5/4 of the viewport). Throws
+  /// Error (usage) if the viewport is empty.
   DepthBuffer(const Camera& camera, const Grid& volume);
 
   const DepthAxis& xAxis() const { return m_x; }
@@ -99,7 +98,7 @@ public:
   std::int64_t sample(std::int64_t column, std::int64_t row) const {
     return row * columns() + column;
   }
-  /// Sample at the centre of a pixel of the viewport.
+  /// Sample at the center of a viewport pixel.
   std::int64_t viewportSample(std::int64_t column, std::int64_t row) const {
     return sample(m_x.before + column, m_y.before + row);
   }
@@ -107,7 +106,7 @@ public:
     return {m_x.coordinate(column), m_y.coordinate(row)};
   }
 
-  /// Depths less reference(), mm, row by row from the top.
+  /// Depths minus reference(), mm, in row-major order.
   const std::vector<float>& depthsFromReference() const { return m_depths; }
   /// Depth of the camera's target, mm.
   double reference() const { return m_reference; }
@@ -116,14 +115,14 @@ public:
     m_depths[index(sample)] = static_cast<float>(depth - m_reference);
   }
 
-  /// Moves all depths `offset` mm away from the eye.
+  /// Moves all depths `offset` mm away from the camera.
   void move(double offset);
 
-  /// Cell between four samples, and a place in the cell.
+  /// Cell between four samples, and a position in it.
   struct Cell {
     std::int64_t column, row;         ///< of the cell's first sample
     std::int64_t nextColumn, nextRow; ///< of the cell's last sample
-    Vec2 fraction;                    ///< of the place, from first to last, 0 to 1
+    Vec2 fraction;                    ///< position between first and last sample, 0 to 1
   };
   Cell cell(const Vec2& position) const {
     const Neighbors x = neighbors(m_x, position.x());
@@ -131,7 +130,7 @@ public:
     return {x.low, y.low, x.high, y.high, Vec2(x.fraction, y.fraction)};
   }
 
-  /// Depth, bilinear between the four samples, which must be finite.
+  /// Bilinear interpolation of the four samples, which must be finite.
   double interpolate(const Cell& cell) const {
     const auto lerp = [](double a, double b, double f) { return a + (b - a) * f; };
     const auto row = [&](std::int64_t r) {
@@ -142,8 +141,8 @@ public:
   }
   double depth(const Vec2& position) const { return interpolate(cell(position)); }
 
-  /// Derivatives of interpolate along x and y, mm per mm; 0 along an axis at whose end the cell
-  /// lies with its place: beyond the samples the depth is constant.
+  /// Gradient of interpolate(), mm per mm. Zero along an axis at whose end the position lies, since
+  /// the depth is constant beyond the samples.
   Vec2 gradient(const Cell& cell) const {
     const auto depth = [&](std::int64_t column, std::int64_t row) {
       return static_cast<double>(m_depths[index(sample(column, row))]);
@@ -176,7 +175,7 @@ private:
     const auto low = static_cast<std::int64_t>(x);
     return {low, std::min(low + 1, axis.size() - 1), x - static_cast<double>(low)};
   }
-  /// Samples per mm in the cell that begins with sample `low`; 0 at the axis's ends.
+  /// Samples per mm in the cell that begins with sample `low`; 0 at the ends of the axis.
   static double samplesPerMm(const DepthAxis& axis, std::int64_t low, double fraction) {
     const bool isEnd = low + 1 >= axis.size() || (low == 0 && fraction == 0.0);
     return isEnd ? 0.0 : 1.0 / (axis.coordinate(low + 1) - axis.coordinate(low));
@@ -185,7 +184,7 @@ private:
 
   DepthAxis m_x, m_y;
   double m_reference;          ///< mm, depth of the camera's target
-  std::vector<float> m_depths; ///< mm, less m_reference: float suffices even for a far eye
+  std::vector<float> m_depths; ///< mm, minus m_reference: float suffices for distant cameras, too
 };
 
 } // namespace fenestra

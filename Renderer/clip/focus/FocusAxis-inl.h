@@ -1,5 +1,4 @@
-// One axis of the walk of many rays through a focus's cells. Compiled once for each instruction set
-// (see FocusWalk.cxx).
+// One axis of the SIMD traversal in FocusTraversal.cxx. Compiled once per instruction set.
 
 #if defined(FENESTRA_FOCUS_AXIS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef FENESTRA_FOCUS_AXIS_INL_H
@@ -37,13 +36,13 @@ HWY_INLINE M isNonZero(I x) {
   return hn::Ne(hn::PromoteTo(doubles, x), hn::Zero(doubles));
 }
 
-/// One axis of the rays' walk, mirrored for rays of negative direction, so that all rays go up. The
-/// cells' number is rounded up to whole blocks.
+/// Traversal state of a vector of rays along one axis. Rays of negative direction are mirrored, so
+/// that all rays ascend. The number of cells is rounded up to full blocks.
 struct FocusAxis {
   D origin, direction; ///< direction >= 0
   D inverseDirection;  ///< 1 / direction; infinity: no motion along this axis
-  D cell;              ///< current cells of the rays
-  D face;              ///< next face ahead: of the cell, or of the block if empty
+  D cell;              ///< current cell of each ray
+  D face;              ///< next face: of the cell, or of the block if that is empty
   M isMirrored;
   double cellCount; ///< number of cells, a multiple of blockSize
 
@@ -57,7 +56,7 @@ struct FocusAxis {
     cell = hn::Max(hn::Min(findCell(t), all(cellCount - 1.0)), hn::Zero(doubles));
   }
 
-  /// t of the next face; infinity: the last face (the range ends the walk).
+  /// Sets `face` and returns its t; infinity for the last face, since the ray's range ends there.
   HWY_INLINE D findFace(M emptyBlock) {
     constexpr double edge = FocusCells::blockSize;
     const D block = hn::Floor(hn::Mul(cell, all(1.0 / edge)));
@@ -67,18 +66,18 @@ struct FocusAxis {
     return hn::IfThenElse(inner, hn::Mul(hn::Sub(face, origin), inverseDirection), all(infinity));
   }
 
-  /// Moves the walks of `which` to t: into the cell beyond the face for `through`, else at most up
-  /// to the face; never back.
+  /// Advances the rays of `which` to t: into the cell beyond the face where `crosses`, otherwise at
+  /// most up to the face. Never moves back.
   HWY_INLINE void advance(M which, M crosses, D t) {
     const D before = hn::Min(hn::Max(findCell(t), cell), hn::Sub(face, all(1.0)));
     cell = hn::IfThenElse(which, hn::IfThenElse(crosses, face, before), cell);
   }
 
-  /// Cell's number, not mirrored.
+  /// Cell index, not mirrored.
   HWY_INLINE D cellIndex() const {
     return hn::IfThenElse(isMirrored, hn::Sub(all(cellCount - 1.0), cell), cell);
   }
-  /// Ray's position in the cell, 0 to 1, and its way along this axis in `length`; not mirrored.
+  /// Position in the cell at t, 0 to 1, and displacement over `length`; both not mirrored.
   HWY_INLINE D fraction(D t) const {
     const D f = hn::Sub(position(t), cell);
     return hn::IfThenElse(isMirrored, hn::Sub(all(1.0), f), f);

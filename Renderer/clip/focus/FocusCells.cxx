@@ -13,20 +13,20 @@ namespace {
 constexpr std::int64_t edge = FocusCells::blockSize;
 constexpr std::int64_t cornersPerEdge = edge + 1; ///< voxels along an edge of a block
 
-/// Least value of a voxel above the foothill.
+/// Smallest voxel value above captureThreshold.
 std::uint8_t voxelThreshold(const Mask& mask) {
   return static_cast<std::uint8_t>(std::floor(FocusCells::captureThreshold * mask.maxValue) + 1.0);
 }
 
-/// Access to the mask's voxels around blocks of cells.
+/// Reads the mask's voxels at the corners of a block's cells.
 class Voxels {
 public:
   explicit Voxels(const Mask& mask)
       : m_voxels(mask.voxels.data()), m_size(mask.grid.size), m_threshold(voxelThreshold(mask)) {}
 
-  /// One byte per cell for the four cells of a block's row, first cell lowest. Bits 0 and 1: the
-  /// cell's two neighbours along x, in the row of voxels `y`, `z`, are above the foothill. 0
-  /// outside the mask.
+  /// Compares the voxels of row (y, z) with the threshold, for a block's four cells along x.
+  /// Returns one byte per cell, first cell lowest: bits 0 and 1 stand for its two corners along x.
+  /// 0 outside the mask.
   std::uint32_t neighborPairs(std::int64_t blockX, std::int64_t y, std::int64_t z) const {
     if (y < 0 || z < 0 || y >= m_size.y() || z >= m_size.z())
       return 0;
@@ -55,8 +55,8 @@ private:
   std::uint8_t m_threshold;
 };
 
-/// Blocks of a layer, x fastest: 1 for a voxel above the foothill at any corner of the block's
-/// cells. Computed from the greatest voxel per x over the rows around each row of blocks.
+/// Per block of a layer, x fastest: 1 if any corner of its cells is above captureThreshold. First
+/// reduces the rows of voxels around each row of blocks to their maxima.
 std::vector<std::uint8_t> findOccupied(const Mask& mask, const Size3& blocks, std::int64_t blockZ) {
   const Size3& size = mask.grid.size;
   const auto range = [&](std::int64_t block, int axis) { // first and end
@@ -84,7 +84,7 @@ std::vector<std::uint8_t> findOccupied(const Mask& mask, const Size3& blocks, st
   return result;
 }
 
-/// Fills the corners of a block's cells; true if all bits are set.
+/// Fills a block's corner bits; returns true if all are set.
 bool fillCorners(const Voxels& voxels, const Size3& block,
                  std::array<std::uint8_t, edge * edge * edge>& result) {
   std::array<std::array<std::uint32_t, cornersPerEdge>, cornersPerEdge> neighborPairs;
@@ -105,7 +105,7 @@ bool fillCorners(const Voxels& voxels, const Size3& block,
   return isFull;
 }
 
-/// Fills the voxels around a block's cells and returns the least.
+/// Fills a block's corner values and returns their minimum.
 std::uint8_t fillValues(const Voxels& voxels, const Size3& block,
                         std::array<std::uint8_t, 128>& result) {
   std::uint8_t least = 255;
@@ -129,7 +129,7 @@ FocusCells::FocusCells(const Mask& mask)
       m_valueScale(1.0 / mask.maxValue) {
   const std::int64_t bytes = m_blocks.prod() * static_cast<std::int64_t>(sizeof(BlockValues));
   if (bytes > std::numeric_limits<std::int32_t>::max())
-    throw inputError("focus", "its segments span more than 2^30 voxels; crop the segmentation");
+    throw inputError("focus", "spans more than 2^30 voxels; crop the segmentation");
   m_blockCorners.resize(static_cast<std::size_t>(m_blocks.prod()), emptyBlock);
   m_corners.resize(2);
   m_corners[emptyBlock].fill(0);
@@ -146,7 +146,7 @@ FocusCells::FocusCells(const Mask& mask)
   });
   const std::size_t perLayer = static_cast<std::size_t>(m_blocks.x() * m_blocks.y());
   for (std::size_t z = 0; z < layers.size(); ++z) {
-    // Numbers so far count the layer's own mixed blocks: -1, -2 and so on.
+    // buildLayer numbers the mixed blocks of its layer -1, -2, …; make the indices global.
     const auto firstIndex = static_cast<std::int32_t>(m_corners.size());
     for (std::size_t i = z * perLayer; i < (z + 1) * perLayer; ++i)
       if (m_blockCorners[i] < 0)
@@ -157,7 +157,7 @@ FocusCells::FocusCells(const Mask& mask)
         m_values.push_back(block.values);
     }
   }
-  m_corners.emplace_back(); // padding: lanes read four bytes for one
+  m_corners.emplace_back(); // padding: gathers read four bytes per cell
 }
 
 double FocusCells::indicator(const Vec3& point) const {
@@ -191,7 +191,7 @@ FocusCells::Layout FocusCells::layout() const {
           m_values.empty() ? nullptr : m_values.front().data(), m_valueScale};
 }
 
-/// Mixed blocks of a layer; m_blockCorners numbers them -1, -2 and so on within the layer.
+/// Returns the mixed blocks of a layer, which m_blockCorners numbers -1, -2, … within the layer.
 std::vector<FocusCells::Block> FocusCells::buildLayer(const Mask& mask, std::int64_t z) {
   const Voxels voxels(mask);
   const std::vector<std::uint8_t> isOccupied = findOccupied(mask, m_blocks, z);

@@ -1,5 +1,6 @@
 #pragma once
-// Cells of a mask, and the points at which rays meet the mask's surface in its cells.
+// Sparse grid of a mask, and ray intersection with the surface of the mask: the level 1/2 of its
+// indicator, the trilinear interpolation of its voxels (1 inside, 0 outside).
 
 #include "model/volume/Mask.h"
 
@@ -9,19 +10,19 @@
 
 namespace fenestra {
 
-/// Rays traced together, in the cell space of FocusCells; a structure of arrays.
+/// Rays that are traced together, in the cell space of FocusCells, as a structure of arrays.
 struct FocusRays {
   static constexpr std::size_t capacity = 256;
-  using SoaArray = std::array<double, capacity + 8>; ///< padded to whole vectors
+  using SoaArray = std::array<double, capacity + 8>; ///< padded to full SIMD vectors
 
-  /// Leaves the arrays uninitialised: clearing 256 entries costs more than tracing a few rays.
+  /// Leaves the arrays uninitialized: clearing 256 entries costs more than tracing a few rays.
   FocusRays() {}
 
   std::size_t size = 0;
   alignas(64) std::array<SoaArray, 3> origin, direction;
-  alignas(64) SoaArray begin, end; ///< range of t to search; inside FocusCells::box()
-  alignas(64) SoaArray hitT;       ///< t at which the mask is met; infinity: missed
-  /// Summit's t, and the indicator there; only from findHitsAndMaxima, for rays that miss the mask.
+  alignas(64) SoaArray begin, end; ///< interval of t to search; inside FocusCells::box()
+  alignas(64) SoaArray hitT;       ///< first hit; infinity if the ray misses the mask
+  /// Ray maximum: its t and its value. Set by findHitsAndMaxima, for rays that miss the mask.
   alignas(64) SoaArray maximumT, maximum;
 
   bool isFull() const { return size == capacity; }
@@ -36,15 +37,15 @@ struct FocusRays {
   }
 };
 
-/// Dual cells: cell c lies between the voxel centres c - 1 and c of each axis and fills [c, c + 1]
-/// of cell space; the outermost cells hold the fall to 0 outside the mask's grid. Cells come in
-/// blocks of 4^3: empty (no voxel above the foothill), whole (all voxels >= 1/2) or mixed. A mixed
-/// block keeps one byte a cell, one line of the cache in all.
+/// Dual grid of a mask. Cell c lies between the voxel centers c - 1 and c of each axis and fills
+/// [c, c + 1] of cell space; in the outermost cells the indicator falls to 0. Cells are stored in
+/// blocks of 4^3: empty (no voxel above captureThreshold), full (all voxels >= 1/2) or mixed. A
+/// mixed block has one byte per cell and fills one cache line.
 class FocusCells {
 public:
   static constexpr std::int64_t blockSize = 4; ///< cells
 
-  /// Keeps no reference to `mask`. Throws Error (input) for a mask of more than 2^30 voxels.
+  /// Copies what it needs of `mask`. Throws Error (input) for a mask of more than 2^30 voxels.
   explicit FocusCells(const Mask& mask);
 
   const Affine& worldToCell() const { return m_worldToCell; }
@@ -52,33 +53,33 @@ public:
   /// Box of all cells, in cell space.
   Box box() const { return {Vec3::Zero(), m_count.cast<double>()}; }
 
-  /// Fills rays.meeting: least t in each ray's range with indicator >= 1/2; infinity: none.
+  /// Sets rays.hitT: the first t in each ray's interval with indicator >= 1/2, or infinity.
   void findHits(FocusRays& rays) const;
 
-  /// Fills rays.meeting and, for rays that miss the mask, rays.summit and rays.height. Summit:
-  /// least t at which the indicator is greatest, for a ray that just misses the mask the t at which
-  /// the ray would meet the mask. Height: indicator there; `foothill`: no summit (indicator <=
-  /// foothill). With several hills on a ray (faces in one plane, a ridge along the ray) the nearer
-  /// hides the farther: (1) the summit is the top of the first hill above the foothill; (2) a later
-  /// hill of height h2 replaces a summit of height h1 only if 1/2 - h2 < replaceRatio * (1/2 - h1).
+  /// Sets rays.hitT and, for rays that miss the mask, the ray maximum: the first t at which the
+  /// indicator is greatest. For a ray that barely misses, this is where it would hit the mask. If
+  /// no indicator exceeds captureThreshold there is no ray maximum, and rays.maximum is
+  /// captureThreshold. Of several local maxima (coplanar faces, a ridge along the ray) the nearer
+  /// occludes the farther: one of value h2 replaces an earlier one of value h1 only if 1/2 - h2 <
+  /// replaceRatio * (1/2 - h1).
   void findHitsAndMaxima(FocusRays& rays) const;
   static constexpr double captureThreshold = 0.25;
   static constexpr double replaceRatio = 1.0 / 64.0;
 
-  /// Indicator at a point of cell space; 0 all over empty blocks, 1 all over whole ones.
+  /// Indicator at a point in cell space; 0 in empty blocks, 1 in full ones.
   double indicator(const Vec3& point) const;
 
-  /// Arrays that the walks read.
+  /// Arrays that the traversal reads.
   struct Layout {
-    const std::int32_t* blocks;  ///< per block: its number in `corners` and `values`
+    const std::int32_t* blocks;  ///< per block: its index into `corners` and `values`
     const std::uint8_t* corners; ///< BlockCorners, 64 bytes each
     Size3 blockCount;
     const std::uint8_t* values; ///< BlockValues, 128 bytes each; null: voxels are 0 and 1 only
     double valueScale;          ///< indicator per unit of a value
   };
 
-  /// Calls back with each block that is not empty; block (i, j, k) fills [i, i + 1]... of cell
-  /// space / blockSize.
+  /// Calls visit(block) for each non-empty block (i, j, k), [i, i + 1]... of cell space /
+  /// blockSize.
   template <typename Visitor>
   void visitOccupied(const Visitor& visit) const {
     std::size_t block = 0;
@@ -89,7 +90,7 @@ public:
             visit(Size3(x, y, z));
   }
 
-  /// Calls back with each cell of `block` that has a corner above the foothill.
+  /// Calls visit(cell) for each cell of `block` with a corner above captureThreshold.
   template <typename Visitor>
   void visitCells(const Size3& block, const Visitor& visit) const {
     const BlockCorners& corners = m_corners[static_cast<std::size_t>(
@@ -103,16 +104,16 @@ public:
   }
 
 private:
-  /// One byte per cell of a block, x fastest; bit i is set if corner i of the cell, x fastest, is
-  /// above the foothill. 0: the walks skip the cell.
+  /// One byte per cell of a block, x fastest. Bit i is set if corner i of the cell, x fastest, is
+  /// above captureThreshold. Rays skip cells of value 0.
   using BlockCorners = std::array<std::uint8_t, blockSize * blockSize * blockSize>;
-  static constexpr std::int32_t emptyBlock = 0, fullBlock = 1; ///< numbers in m_corners
-  /// Voxels at the corners of a block's cells, 5^3, x fastest, padded to two lines of the cache.
+  static constexpr std::int32_t emptyBlock = 0, fullBlock = 1; ///< indices into m_corners
+  /// Voxels at the corners of a block's cells, 5^3, x fastest, padded to two cache lines.
   using BlockValues = std::array<std::uint8_t, 128>;
 
   struct Block {
     BlockCorners corners;
-    BlockValues values; ///< of a smoothed mask only
+    BlockValues values; ///< for smoothed masks only
   };
   std::vector<Block> buildLayer(const Mask& mask, std::int64_t z);
   Layout layout() const;

@@ -10,7 +10,7 @@
 
 namespace fenestra {
 
-/// Camera's eye rays, built in cell space directly: no ray is transformed.
+/// Generates camera rays directly in cell space, so that no ray needs a transform.
 class CellRays {
 public:
   CellRays(const Camera& camera, const FocusCells& cells)
@@ -22,7 +22,7 @@ public:
         m_forward(cells.worldToCell().linear() * camera.forward()) {}
 
   struct CameraRay {
-    Ray ray; ///< in cell space, its parameter in world mm
+    Ray ray; ///< in cell space; its parameter is in world mm
     double depthPerLength;
   };
   /// Camera::makePlaneRay in cell space.
@@ -43,7 +43,7 @@ private:
 
 namespace {
 
-/// True if the domain contains the whole grid of the focus.
+/// True if the domain contains the complete grid of the focus.
 bool isInside(const FocusCells& cells, const Domain& volume) {
   const Affine toIndex = volume.grid().worldToIndex * cells.cellToWorld();
   const Box box = cells.box();
@@ -53,7 +53,7 @@ bool isInside(const FocusCells& cells, const Domain& volume) {
   return true;
 }
 
-/// Part of a world ray in the volume's domain.
+/// Clips a world ray to the volume's domain.
 Interval clipToVolume(const Domain& volume, const Ray& ray) {
   return volume.clip(transformRay(volume.grid().worldToIndex, ray));
 }
@@ -69,7 +69,7 @@ FocusTracer::FocusTracer(const Camera& camera, const Domain& volume, const Mask&
 
 FocusTracer::~FocusTracer() = default;
 
-/// Part of an eye ray in which the ray can meet the focus inside the volume's domain.
+/// Interval of a camera ray in which it can hit the focus inside the volume's domain.
 Interval FocusTracer::clipToDomain(const Vec2& position) const {
   return m_isInside ? Interval{} : clipToVolume(m_volume, m_camera.makePlaneRay(position));
 }
@@ -85,7 +85,7 @@ FocusDepth FocusTracer::traceDepths() const {
     return !clipToVolume(m_volume, m_camera.makePlaneRay(depth.position(column, row))).isEmpty();
   };
   tbb::parallel_for(std::int64_t{0}, depth.rows(), [&](std::int64_t row) {
-    // The domain is convex: all samples between two that meet the domain meet it.
+    // The domain is convex, so the samples whose rays meet it are contiguous.
     auto [first, end] = domainFootprint.columns(depth, row);
     while (first < end && !meetsVolume(first, row))
       ++first;
@@ -141,7 +141,7 @@ void FocusTracer::trace(std::span<const DepthQuery> queries, std::span<DepthHit>
   if (queries.empty())
     return;
   std::ranges::fill(hits, DepthHit{});
-  FocusRays rays; // traced together
+  FocusRays rays; // current batch
   std::array<DepthHit*, FocusRays::capacity> hitOfRay;
   FocusRays::SoaArray depthPerLength;
   const auto flush = [&] {

@@ -1,5 +1,5 @@
 #pragma once
-// Depth at which each eye ray first meets the focus.
+// Depth of the first intersection of each camera ray with the focus.
 
 #include "clip/focus/DepthBuffer.h"
 #include "model/volume/Domain.h"
@@ -12,11 +12,11 @@
 
 namespace fenestra {
 
-/// Kind of an eye ray: misses the volume's domain; meets the domain only; meets the focus.
+/// What a camera ray meets: nothing (outside), the volume's domain only (context), or the focus.
 enum class Region : std::uint8_t { outside, context, focus };
 
 struct FocusDepth {
-  DepthBuffer depth;           ///< of the focus, mm; infinity: missed
+  DepthBuffer depth;           ///< of the focus, mm; infinity if missed
   std::vector<Region> regions; ///< one per sample of `depth`
 
   bool isFocus(std::int64_t column, std::int64_t row) const {
@@ -24,7 +24,7 @@ struct FocusDepth {
            regions[static_cast<std::size_t>(depth.sample(column, row))] == Region::focus;
   }
 
-  /// Calls back with each sample of the focus: its position (x, y) and depth, mm.
+  /// Calls visit(Vec3(x, y, depth)), mm, for each focus sample.
   template <typename Visitor>
   void visitFocus(const Visitor& visit) const {
     for (std::int64_t row = 0; row < depth.rows(); ++row)
@@ -39,41 +39,41 @@ struct FocusDepth {
 class CellRays;
 class FocusCells;
 
-/// Stretch of an eye ray to search.
+/// Camera ray, and the depths to search on it.
 struct DepthQuery {
-  Vec2 position;        ///< (x, y) of the ray, mm
+  Vec2 position;        ///< (x, y) on the plane through the target, mm
   Interval depths = {}; ///< mm
 };
 
-/// Result for a glance.
+/// Result of a query.
 struct DepthHit {
-  /// mm, where the ray meets the focus, else at the ray's summit (FocusCells); infinity: neither.
-  /// Continuous from ray to ray across the outline of the focus.
+  /// mm; of the hit, else of the ray maximum (FocusCells), else infinity. Continuous from ray to
+  /// ray across the outline of the focus.
   double depth = infinity;
-  double indicator = 0.0; ///< 1/2: focus met; (foothill, 1/2): summit's height; 0: neither
+  double indicator = 0.0; ///< 1/2: hit; in (captureThreshold, 1/2): ray maximum; 0: neither
 };
 
-/// Intersects eye rays with the surface of a focus. Copies what it needs of mask and volume.
+/// Intersects camera rays with the surface of a focus. Copies what it needs of mask and volume.
 class FocusTracer {
 public:
   FocusTracer(const Camera& camera, const Domain& volume, const Mask& focus);
   ~FocusTracer();
 
-  /// Depth at which the ray of each sample first meets the 0.5 level of the focus inside the
-  /// volume's domain and in front of the eye: exact, to rounding. A ray that starts, or enters the
-  /// domain, inside the focus meets the focus there. The buffer spans the whole volume, cropped or
-  /// not.
+  /// Intersects the ray of each sample with the level 0.5 of the focus, inside the volume's domain
+  /// and in front of the camera. Depths are exact to rounding: roots of a cubic, not ray-marched. A
+  /// ray that starts, or enters the domain, inside the focus hits it there. The buffer covers the
+  /// volume without its crop.
   FocusDepth traceDepths() const;
 
-  /// Depths of the focus on the rays through these (x, y), mm; infinity: missed.
+  /// Depths of the focus on the rays through these (x, y), mm; infinity if missed.
   std::vector<double> findDepths(const std::vector<Vec2>& positions) const;
 
-  /// Fills sights[i] for glances[i]. `meet`: meetings only (cheaper); `look`: summits as well. Not
-  /// threaded inside: to be called in parallel.
+  /// Sets hits[i] for queries[i]. findHits ignores ray maxima and is cheaper. Both run on the
+  /// calling thread, so that callers can parallelize.
   void findHits(std::span<const DepthQuery> queries, std::span<DepthHit> hits) const;
   void findHitsAndMaxima(std::span<const DepthQuery> queries, std::span<DepthHit> hits) const;
 
-  /// True if the ray through (x, y) is in focus and domain at this depth, mm.
+  /// True if the point at (x, y) and `depth`, mm, lies inside both focus and domain.
   bool isFocus(const Vec2& position, double depth) const;
 
   const Camera& camera() const { return m_camera; }
@@ -88,7 +88,7 @@ private:
   Domain m_volume;
   std::unique_ptr<const FocusCells> m_cells;
   std::unique_ptr<const CellRays> m_rays;
-  bool m_isInside; ///< true: the domain contains the focus's whole grid
+  bool m_isInside; ///< the domain contains the complete grid of the focus
 };
 
 } // namespace fenestra

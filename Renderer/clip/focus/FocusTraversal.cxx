@@ -1,6 +1,6 @@
-// FocusCells::findHits and findHitsAndMaxima, in SIMD lanes: as many rays as there are lanes walk
-// through the cells together (Amanatides and Woo 1987), over empty blocks in one step. Lanes are
-// double: a meeting is as exact as for a single ray.
+// FocusCells::findHits and findHitsAndMaxima with SIMD. Each lane traces one ray through the cells
+// with a DDA (Amanatides and Woo 1987) that skips empty blocks. Lanes are double, so that hits are
+// as exact as those of scalar code.
 
 #include "base/SimdTargets.h"
 #include "clip/focus/CellCubic.h"
@@ -26,7 +26,7 @@ HWY_INLINE unsigned maskBits(M mask) {
   return packed[0];
 }
 
-/// Cubics, over parts of rays, that rise from < 0 to >= 0.
+/// Collects cubics over ray segments that rise from < 0 to >= 0, and solves them in SIMD batches.
 class RootSolver {
 public:
   void add(const Cubic& cubic, double begin, double length, std::size_t ray) {
@@ -38,11 +38,11 @@ public:
     ++m_size;
   }
 
-  /// Writes rays.meeting from the roots, found as by findRoot(cubic, 0, 1).
+  /// Sets rays.hitT from the roots, found like findRoot(cubic, 0, 1).
   void solveAll(FocusRays& rays) {
     for (std::size_t i = m_size; i % hn::Lanes(doubles) != 0; ++i)
       for (Column* column : {&m_c[0], &m_c[1], &m_c[2], &m_c[3], &m_begin, &m_length})
-        (*column)[i] = 0.0; // whole vectors are read
+        (*column)[i] = 0.0; // full vectors are loaded
     for (std::size_t i = 0; i < m_size; i += hn::Lanes(doubles)) {
       const D s = findRoots(i);
       LaneDoubles hits;
@@ -75,7 +75,7 @@ private:
       const D newton = hn::Sub(s, hn::Div(value, slope(s)));
       const M settled = hn::Or(hn::Le(hn::Sub(high, low), rounding),
                                hn::Le(hn::Abs(hn::Sub(newton, s)), rounding));
-      open = hn::AndNot(settled, open); // a NaN settles nothing
+      open = hn::AndNot(settled, open); // NaN never settles
       if (hn::AllFalse(doubles, open))
         break;
       const M inside = hn::And(hn::Gt(newton, low), hn::Lt(newton, high));
@@ -92,16 +92,16 @@ private:
   std::array<std::size_t, FocusRays::capacity> m_ray;
 };
 
-/// Tolerance of a plateau: heights (indicator units) and places (mm) that differ by less are equal.
-/// Rays along a flat face pass a plateau, whose beginning is the summit.
+/// Values (indicator units) and positions (mm) that differ by less are equal. Along a flat face the
+/// indicator is a plateau, and the ray maximum is where the plateau begins.
 constexpr double plateauTolerance = 1e-8;
 
-/// Tolerance of a ridge, indicator units: points of a hill less than this below its summit belong
-/// to one ridge, which hides what is behind (FocusCells::replaceRatio). A face seen edge-on needs
-/// it: a ray beside the face misses it by slightly different distances along the ray.
+/// Points less than this below a maximum, in indicator units, belong to the same ridge, which
+/// occludes what is behind (FocusCells::replaceRatio). Needed for a face seen edge-on: its distance
+/// from the ray varies slightly along the ray.
 constexpr double ridgeTolerance = 1e-4;
 
-/// Walk of rays i, i + 1 and so on, one in each lane.
+/// Traversal of rays i, i + 1, …, one per lane.
 template <bool withMaxima>
 class Traversal {
 public:
@@ -120,7 +120,7 @@ public:
     m_ridgeEnds.fill(-infinity);
   }
 
-  /// Writes the summits to the rays; to be called when no lane is busy.
+  /// Writes the maxima to the rays. To be called when no lane is busy.
   void finish() {
     for (std::size_t i = m_first;
          withMaxima && i < std::min(m_first + hn::Lanes(doubles), m_rays.size); ++i) {
@@ -183,9 +183,9 @@ public:
   }
 
 private:
-  /// Ends the walks that meet the surface in their cells. Bernstein's coefficients bound a cubic:
-  /// only cubics with a coefficient >= 0, or near the summit so far, are solved. `values`: index of
-  /// a cell's first value.
+  /// Intersects the rays of `which` with the surface in their current cells and stops those that
+  /// hit it. The Bernstein coefficients bound a cubic: it is solved only if one is >= 0, or near
+  /// the maximum so far. `values`: index of a cell's first value.
   HWY_INLINE void intersect(M which, I corners, I values, D exit) {
     const std::array<D, 8> v = m_cells.values ? smoothCorners(values) : binaryCorners(corners);
     const D length = hn::Sub(exit, m_t);
@@ -224,7 +224,7 @@ private:
     const D b2 = hn::Add(b1, hn::Mul(hn::Add(c1, c2), third));
     const D b3 = sum(c0, c1, c2, c3);
     const D greatest = hn::Max(hn::Max(c0, b1), hn::Max(b2, b3));
-    D least = all(-1e-12); // a little below 0 is rounding
+    D least = all(-1e-12); // tolerance for rounding
     if constexpr (withMaxima)
       least = hn::Min(least, hn::Sub(hn::Load(doubles, m_maxima.data()), all(ridgeTolerance)));
     const M possible = hn::And(which, hn::Ge(greatest, least));
@@ -250,7 +250,7 @@ private:
     };
     std::array<D, 8> v;
     std::size_t i = 0;
-    for (const std::int32_t row : {0, 5, 25, 30}) { // two neighbours along x at once
+    for (const std::int32_t row : {0, 5, 25, 30}) { // two neighbors along x per gather
       const I both = hn::GatherOffset(ints, reinterpret_cast<const std::int32_t*>(m_cells.values),
                                       hn::Add(first, allInts(row)));
       v[i++] = value(both);
@@ -259,8 +259,8 @@ private:
     return v;
   }
 
-  /// Searches the cubics of `which` one by one. Cubics of `rises` have one root for certain: added
-  /// to m_solver, which finds many roots at once later.
+  /// Searches the cubics of `which` one by one, except those of `rises`: they have exactly one
+  /// root, and m_solver solves them later in batches.
   HWY_INLINE void solve(M which, const std::array<D, 4>& c, M rises, D length) {
     alignas(64) std::array<LaneDoubles, 7> lanes;
     for (std::size_t i = 0; i < 4; ++i)
@@ -289,11 +289,11 @@ private:
     m_busy = hn::Gt(hn::Load(doubles, lanes[6].data()), hn::Zero(doubles));
   }
 
-  /// Updates the summit in a cell without a meeting.
+  /// Updates the ray maximum in a cell without a hit.
   void updateMaximum(std::size_t lane, const Cubic& cubic, double begin, double length) {
     const std::array<double, 2> turns = findTurningPoints(cubic);
     bool isOnRidge = begin - m_ridgeEnds[lane] < plateauTolerance;
-    for (const double s : {0.0, turns[0], turns[1], 1.0}) { // between these the cubic is monotone
+    for (const double s : {0.0, turns[0], turns[1], 1.0}) { // the cubic is monotonic in between
       const double height = cubic(s);
       if (isOnRidge ? isHigher(lane, height) : isNewMaximum(lane, height)) {
         m_maxima[lane] = height;
@@ -306,13 +306,13 @@ private:
     }
   }
 
-  /// True if a height on the summit's own hill replaces the summit so far.
+  /// True if a value on the same ridge replaces the maximum so far.
   bool isHigher(std::size_t lane, double height) const {
     const double least = std::min(ridgeTolerance, -height / FocusCells::replaceRatio);
     return height > m_maxima[lane] + std::max(plateauTolerance, least);
   }
 
-  /// True if a height on a later hill replaces the summit so far (FocusCells::findHitsAndMaxima).
+  /// True if a later local maximum replaces the maximum so far (FocusCells::findHitsAndMaxima).
   bool isNewMaximum(std::size_t lane, double height) const {
     return m_maximaT[lane] == -infinity ? height > m_maxima[lane] + plateauTolerance
                                         : height > FocusCells::replaceRatio * m_maxima[lane];
@@ -326,7 +326,7 @@ private:
   M m_busy;
   std::array<FocusAxis, 3> m_axes;
   LaneDoubles m_maxima, m_maximaT; ///< so far: indicator - 1/2, and t
-  LaneDoubles m_ridgeEnds;         ///< t at which the summit's ridge ends
+  LaneDoubles m_ridgeEnds;         ///< t at which the ridge of the maximum ends
 };
 
 template <bool withMaxima>
@@ -334,7 +334,7 @@ void traverseAll(const FocusCells::Layout& cells, FocusRays& rays) {
   RootSolver roots;
   const std::size_t lanes = hn::Lanes(doubles);
   for (std::size_t i = 0; i < rays.size; i += 2 * lanes) {
-    // Two walks take turns: while one waits for its cells from memory, the other computes.
+    // Two traversals alternate, to hide the latency of their memory accesses.
     Traversal<withMaxima> one(cells, rays, roots, i);
     if (i + lanes < rays.size) {
       Traversal<withMaxima> other(cells, rays, roots, i + lanes);
@@ -370,7 +370,7 @@ HWY_EXPORT(findAllHitsAndMaxima);
 
 namespace {
 
-/// Sets all meetings to infinity, and finite values beyond the last ray, where whole vectors read.
+/// Sets all hits to infinity, and pads the rays with finite values for full-vector loads.
 void initialize(FocusRays& rays) {
   std::fill_n(rays.hitT.begin(), rays.size, infinity);
   for (std::size_t i = rays.size; i < std::min(rays.size + 16, rays.begin.size()); ++i) {

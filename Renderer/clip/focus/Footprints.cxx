@@ -6,7 +6,7 @@ namespace fenestra {
 
 namespace {
 
-/// Slack, in samples: more than rounding moves a projection.
+/// In samples; larger than the rounding error of a projection.
 constexpr double sampleSlack = 0.01;
 
 /// Cells of the buffer between two positions, with slack.
@@ -16,8 +16,8 @@ CellRange findCells(const DepthBuffer& buffer, const Vec2& lower, const Vec2& up
   return {left, right, top, bottom};
 }
 
-/// Calls function(block, depths, seen) for each block of the focus's cells that is not behind the
-/// eye. `depths`: of the block, mm. `seen`: cells of the buffer whose rays can pass the block.
+/// Calls function(block, depths, footprint) for each block of the focus that is not behind the
+/// camera, with its depths, mm, and the cells of the buffer whose rays can pass through it.
 template <typename Function>
 void visitVisibleBlocks(const Camera& camera, const DepthBuffer& buffer, const FocusCells& cells,
                         const Function& function) {
@@ -30,8 +30,7 @@ void visitVisibleBlocks(const Camera& camera, const DepthBuffer& buffer, const F
   });
 }
 
-/// Number of cells that are asked for above and left of each cell (Crow 1984): what a rectangle
-/// holds of them takes four look-ups.
+/// Summed-area table (Crow 1984) of the requested cells: four look-ups count those in a rectangle.
 class SummedAreaTable {
 public:
   SummedAreaTable(const CellRange& range, const std::vector<std::uint8_t>& isRequested)
@@ -48,7 +47,7 @@ public:
     }
   }
 
-  /// True if any cell of the rectangle, which lies in the range, is asked for.
+  /// True if any cell of the rectangle, which must lie in the range, is requested.
   bool hasAny(const CellRange& cells) const {
     return cells.left < cells.right && cells.top < cells.bottom &&
            m_sums[at(cells.right, cells.bottom)] + m_sums[at(cells.left, cells.top)] !=
@@ -79,7 +78,7 @@ DomainFootprint::Columns DomainFootprint::columns(const DepthBuffer& buffer,
                                                   std::int64_t row) const {
   if (!m_isInFront)
     return {0, buffer.columns()};
-  // Part of the corners' convex hull between the rows next to this one.
+  // x range of the corners' convex hull between the previous and the next row.
   const DepthAxis& axis = buffer.yAxis();
   const auto [low, high] = std::minmax({axis.coordinate(row - 1), axis.coordinate(row + 1)});
   double first = infinity, last = -infinity;

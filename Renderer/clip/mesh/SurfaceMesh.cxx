@@ -1,7 +1,7 @@
-// Right-triangulated irregular networks: Evans, Kirkpatrick and Townsend, Algorithmica 30 (2001).
-// Squares are cut along a diagonal, and right triangles are halved from the right angle's corner to
-// the middle of the edge across, again and again. The two triangles that share such an edge are
-// halved together or not at all: no corner ever lies on another triangle's edge.
+// Right-triangulated irregular network (Evans, Kirkpatrick and Townsend, Algorithmica 30, 2001).
+// Squares are split along a diagonal. Right triangles are split recursively, from the right angle
+// to the midpoint of the hypotenuse. The two triangles at a hypotenuse are split together, so that
+// the mesh has no T-junctions.
 
 #include "clip/mesh/SurfaceMesh.h"
 
@@ -18,8 +18,7 @@ namespace {
 
 constexpr double noDepth = std::numeric_limits<double>::quiet_NaN();
 
-/// Samples of a mesh, in their bounding rectangle; columns and rows count from the rectangle's
-/// first.
+/// Bounding rectangle of the samples that have a depth. Columns and rows are relative to it.
 class MeshSamples {
 public:
   MeshSamples(const ClipDepth& clip, const Domain& volume)
@@ -44,7 +43,7 @@ public:
   std::size_t sample(std::int64_t column, std::int64_t row) const {
     return static_cast<std::size_t>(row * m_columns + column);
   }
-  /// Depth of a sample, mm; NaN: none.
+  /// Depth of a sample, mm; NaN if it has none.
   double depth(std::int64_t column, std::int64_t row) const {
     return m_depths[sample(column, row)];
   }
@@ -90,8 +89,7 @@ private:
     return std::isfinite(depth) && !isBehindCamera(m_camera, depth);
   }
 
-  /// Depth of a sample of the buffer, mm; NaN: the sample has none, or is no corner of a cell in
-  /// the footprint.
+  /// Depth of a buffer sample, mm; NaN if none, or if no cell of the footprint has this corner.
   double findDepth(std::int64_t column, std::int64_t row) const {
     DomainFootprint::Columns nearby{m_buffer.columns(), 0};
     for (std::int64_t near = std::max(std::int64_t{0}, row - 1);
@@ -112,25 +110,25 @@ private:
   std::vector<double> m_depths; ///< row by row
 };
 
-/// Corner of halved squares: a sample's column and row. Squares may reach beyond the last column
-/// and row: corners there are moved onto the last, and triangles without an area are left out.
+/// Corner of a triangle: column and row of a sample. Squares may extend beyond the samples; such
+/// corners are clamped to the last column and row, and triangles without area are skipped.
 struct Corner {
   std::int64_t column, row;
 };
 
-/// Triangle with its right angle at the apex; halved from the apex to the middle of a and b.
+/// Right triangle with its right angle at `apex`. Split from the apex to the midpoint of a and b.
 struct Triangle {
   Corner a, b, apex;
 };
 
-/// Two triangles with a and b in common, halved together: a square, or both sides of an edge.
+/// Two triangles with the common hypotenuse a-b, which are split together.
 struct Pair {
   Corner a, b;
   std::array<Corner, 2> apexes;
 };
 
 /// Square (column, row) among squares of edge `side`. Its diagonal starts at the corner that is
-/// also the midpoint of the parent square, so that halved triangles nest.
+/// also the midpoint of the parent square, so that split triangles nest.
 Pair makeSquarePair(std::int64_t column, std::int64_t row, std::int64_t side) {
   const bool isLeft = column % 2 != 0, isUpper = row % 2 != 0;
   const std::int64_t left = column * side, upper = row * side;
@@ -139,7 +137,7 @@ Pair makeSquarePair(std::int64_t column, std::int64_t row, std::int64_t side) {
   return {odd, even, {{{odd.column, even.row}, {even.column, odd.row}}}};
 }
 
-/// Triangles on both sides of the squares' edge of length 2 s around `middle`.
+/// Triangles on both sides of the edge of length 2 s, between two squares, with this midpoint.
 Pair makeEdgePair(const Corner& middle, std::int64_t s) {
   const Corner left{middle.column - s, middle.row}, right{middle.column + s, middle.row};
   const Corner upper{middle.column, middle.row - s}, lower{middle.column, middle.row + s};
@@ -147,8 +145,7 @@ Pair makeEdgePair(const Corner& middle, std::int64_t s) {
                                     : Pair{upper, lower, {left, right}};
 }
 
-/// Plane of a mesh triangle over (x, y): its height, linear in (x, y), is the depth, in perspective
-/// 1 / depth.
+/// Plane of a triangle. Its height, linear in (x, y), is the depth, in perspective 1 / depth.
 class MeshPlane {
 public:
   MeshPlane(const std::array<Vec3, 3>& corners, bool isPerspective)
@@ -161,7 +158,7 @@ public:
     m_slope = Vec2(du * v.y() - dv * u.y(), dv * u.x() - du * v.x()) / area;
   }
 
-  /// True if all samples, in a row at y, have a depth, within `tolerance` of the plane.
+  /// True if all samples of a row segment at y have a depth within `tolerance` of the plane.
   bool isNear(const double* x, const double* depths, std::int64_t count, double y,
               double tolerance) const {
     const double start = m_height + m_slope.y() * (y - m_origin.y()) - m_slope.x() * m_origin.x();
@@ -210,8 +207,8 @@ public:
 private:
   static constexpr auto noPoint = std::numeric_limits<std::uint32_t>::max();
 
-  /// Marks the pairs to halve, from the smallest to the largest: every pair that must be, and every
-  /// pair whose half contains a marked one.
+  /// Marks the pairs to split, from the smallest to the largest: all inaccurate pairs, and all
+  /// pairs that contain a marked one.
   void markSplits() {
     for (std::int64_t s = 1; s < m_side; s *= 2) {
       for (std::int64_t row = 0; row - s < m_lastRow; row += s)
@@ -231,12 +228,12 @@ private:
     if (!isSplit(middle) && !std::ranges::any_of(pair.apexes, mustSplit))
       return;
     m_isSplit[index(middle)] = true;
-    for (const Corner& apex : pair.apexes) // an apex is the middle of the parent pair
+    for (const Corner& apex : pair.apexes) // an apex is the midpoint of the parent pair
       if (isInside(apex))
         m_isSplit[index(apex)] = true;
   }
 
-  /// True if the corner lies in the squares, which may reach beyond the samples.
+  /// True if the corner lies in the squares, which may extend beyond the samples.
   bool isInside(const Corner& corner) const {
     return corner.column >= 0 && corner.column <= m_squaresAcross * m_side && corner.row >= 0 &&
            corner.row <= m_squaresDown * m_side;
@@ -256,13 +253,13 @@ private:
     const Corner sample = clampToSamples(corner);
     return m_samples.depth(sample.column, sample.row);
   }
-  /// Twice the area, in samples; > 0: counter-clockwise as seen from the eye.
+  /// Twice the area, in samples; > 0: counterclockwise as seen from the camera.
   static std::int64_t area(const Triangle& triangle) {
     const auto& [a, b, apex] = triangle;
     return (b.row - a.row) * (apex.column - a.column) - (b.column - a.column) * (apex.row - a.row);
   }
 
-  /// True if the triangle may stay whole: all samples are within tolerance, or none has a depth.
+  /// True if no split is needed: all samples are within tolerance, or none has a depth.
   bool isAccurate(const Triangle& triangle) const {
     const auto [a, b, apex] = clampToSamples(triangle);
     if (area({a, b, apex}) == 0)
@@ -326,8 +323,8 @@ private:
     }
   }
 
-  /// Adds the one triangle of a cell whose diagonal has a depth at one end only: that end and the
-  /// two apexes. Called for both halves of the cell; the upper half adds the triangle.
+  /// Adds the triangle of a cell whose diagonal has a depth at only one end: that end and both
+  /// apexes. Called for both halves of the cell; only the upper half adds it.
   void addCornerTriangle(const Triangle& half) {
     const auto& [a, b, apex] = half;
     const Corner opposite{a.column + b.column - apex.column, a.row + b.row - apex.row};
@@ -345,7 +342,7 @@ private:
           {pointIndex(triangle.a), pointIndex(triangle.b), pointIndex(triangle.apex)});
   }
 
-  /// Number of the corner's point, which is added on first use.
+  /// Index of the corner's point, which is added on first use.
   std::uint32_t pointIndex(const Corner& corner) {
     const Corner sample = clampToSamples(corner);
     std::uint32_t& point = m_pointIndices[m_samples.sample(sample.column, sample.row)];
@@ -360,10 +357,10 @@ private:
   const MeshSamples& m_samples;
   double m_tolerance;
   std::int64_t m_lastColumn, m_lastRow;
-  std::int64_t m_side; ///< samples, edge of the first squares (one row or column), a power of two
+  std::int64_t m_side; ///< edge of the initial squares, in samples; a power of two
   std::int64_t m_squaresAcross, m_squaresDown;
-  std::vector<bool> m_isSplit;               ///< per middle of a pair
-  std::vector<std::uint32_t> m_pointIndices; ///< per sample: number of its point
+  std::vector<bool> m_isSplit;               ///< per midpoint of a pair
+  std::vector<std::uint32_t> m_pointIndices; ///< per sample: index of its point
   SurfaceMesh m_mesh;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Clipping surface as triangles, for viewing from other directions.
+// Clipping surface as a triangle mesh, for other views and other programs.
 
 #include "clip/field/Clip.h"
 #include "model/volume/Domain.h"
@@ -13,23 +13,22 @@ namespace fenestra {
 struct SurfaceMesh {
   std::vector<Vec3> points;  ///< world mm
   std::vector<float> depths; ///< of each point, mm
-  /// Indices of points, counter-clockwise as seen from the eye: normals point towards the eye.
+  /// Indices of points, counterclockwise as seen from the camera: normals point toward the camera.
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Tolerance for buildSurfaceMesh(), mm: a tenth of a pixel on the plane through the target. Across
-/// the view the surface is known to a pixel only, so no picture of this resolution, from any side,
-/// would show a smaller error in depth.
+/// Tolerance for buildSurfaceMesh, mm: a tenth of a pixel on the plane through the target. The
+/// samples resolve the surface to a pixel only, so no view of this resolution would show a smaller
+/// error in depth. There is no option for it: larger images give finer meshes.
 inline double surfaceTolerance(const Camera& camera) {
   return 0.1 * camera.pixelPitch();
 }
 
-/// Mesh of the surface over the volume's projection, as far as the surface has a depth (in
-/// perspective: in front of the eye). Points are samples of the clip's buffer, at each sample's
-/// depth on its eye ray; every other sample is within `tolerance`, mm along depth, of the mesh.
-/// Triangles meet at whole edges, without cracks: neighbouring samples are joined however their
-/// depths differ; only samples without a depth leave gaps. A cell between four samples, one of them
-/// without a depth, gives one triangle. Empty if no three samples span a triangle.
+/// Triangulates the surface over the volume's projection, where it has a depth (in perspective: in
+/// front of the camera). Vertices are samples of the clip's buffer; every other sample is within
+/// `tolerance`, mm along depth, of the mesh. The mesh has no cracks: neighboring samples are
+/// connected even across depth jumps, and only samples without a depth leave gaps. A cell with one
+/// sample without a depth gives one triangle. Empty if no three samples span a triangle.
 SurfaceMesh buildSurfaceMesh(const ClipDepth& clip, const Domain& volume, double tolerance);
 
 } // namespace fenestra

@@ -11,9 +11,9 @@ namespace fenestra {
 
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "numbers are written as they lie");
+static_assert(std::endian::native == std::endian::little, "numbers are written in memory order");
 
-/// Appends the bytes of one number or several.
+/// Appends the bytes of a number or of an array of numbers.
 template <typename T>
 void append(std::string& bytes, const T& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
@@ -93,8 +93,7 @@ Encoder findEncoder(const std::filesystem::path& path) {
       {".vtp", encodeVtp}, {".ply", encodePly}, {".stl", encodeStl}};
   const auto it = encoders.find(lowercaseExtension(path));
   if (it == encoders.end())
-    throw usageError("--surface ", path,
-                     ": has no known extension; name a file .vtp, .ply or .stl");
+    throw usageError("--surface ", path, ": unknown file extension; use .vtp, .ply or .stl");
   return it->second;
 }
 

@@ -56,8 +56,8 @@ Distribution measureMismatch(const ThinPlateSpline& spline,
   return Distribution::compute(std::move(errors));
 }
 
-/// Fills samples outside the focus from the spline, in tiles, which are halved if many sites are
-/// near.
+/// Fills the samples outside the focus from the spline, in tiles. Tiles near many sites are split,
+/// to reduce the number of terms that need direct evaluation.
 class SplineFill {
 public:
   SplineFill(DepthBuffer& buffer, const std::vector<Region>& regions, const ThinPlateSpline& spline)
@@ -86,10 +86,10 @@ private:
 
   static constexpr std::int64_t maxTileSize = ThinPlateSpline::maxColumns;
   static constexpr std::int64_t minTileSize = 8;
-  /// Number of kernels that cost, one by one, about as much as four tiles' expansions.
+  /// Evaluating this many kernels directly costs about as much as the expansions of four tiles.
   static constexpr std::int64_t maxKernels = 2048;
-  /// mm; below the rounding of floats 10 mm from the target (measured over phantoms and scans: all
-  /// depths differ from evaluateRow's by at most one unit of a float's last place).
+  /// mm; below float rounding 10 mm from the target. On phantoms and scans, all depths were within
+  /// one unit in the last place (float) of those of evaluateRow.
   static constexpr double tolerance = 1e-6;
 
   void fill(const Tile& tile) const {
@@ -142,20 +142,20 @@ private:
   std::vector<double> m_x, m_y; ///< mm, of the columns and rows
 };
 
-/// Length, mm, over which a surface with an exact boundary loses the focus's slope: a share of the
-/// volume's size that keeps the surface inside the volume's depths.
+/// Length, mm, over which the exact surface levels off from the slope of the focus. A fraction of
+/// the volume's diagonal that keeps the surface inside the volume's depth range.
 double levelingLength(const Domain& volume) {
   return 0.05 * (volume.grid().worldCorner(7) - volume.grid().worldCorner(0)).norm();
 }
 
-/// Sets -infinity outside the focus: nothing is removed there.
+/// Sets -infinity outside the focus, where nothing is removed.
 void fillCutaway(DepthBuffer& buffer, const std::vector<Region>& regions) {
   for (std::int64_t sample = 0; sample < buffer.size(); ++sample)
     if (regions[static_cast<std::size_t>(sample)] != Region::focus)
       buffer.set(sample, -infinity);
 }
 
-/// Fills the surface of an exact boundary, from the rim on.
+/// Fills the surface with an exact boundary, starting at the halo.
 void fillFromHalo(DepthBuffer& buffer, const FocusDepth& focus, const SilhouetteCells& silhouette,
                   double length) {
   std::vector<Region> known = focus.regions;
@@ -174,8 +174,8 @@ ThinPlateSpline fitOutline(ClippingSurface& surface, const SurfaceOptions& optio
   surface.mismatch = measureMismatch(spline, findBoundarySamples(surface.focus, contours));
   const auto requested = static_cast<std::size_t>(options.controlPoints);
   if (surface.controlPoints.size() < std::min<std::size_t>(3, requested))
-    surface.warnings.push_back("the focus covers hardly a pixel: the clipping surface is flat; "
-                               "choose a larger --size, or a view that frames the focus");
+    surface.warnings.push_back("the focus covers hardly a pixel, so the clipping surface is flat; "
+                               "use a larger --size, or a view that frames the focus");
   return spline;
 }
 
@@ -185,8 +185,8 @@ void requireVisible(const FocusDepth& focus, const Mask& mask) {
   if (std::ranges::find(focus.regions, Region::focus) == focus.regions.end())
     throw inputError(
         describeFocus(mask),
-        "cannot be seen: it lies outside the volume or its cropping box, behind the eye, or "
-        "is smaller than a pixel; choose another --focus or view");
+        "is not visible: it is outside the volume or its crop box, behind the camera, or smaller "
+        "than a pixel; choose another --focus or view");
 }
 
 ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume, const Mask& focus,
@@ -197,9 +197,8 @@ ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume,
   ClippingSurface surface{.clip = {}, .focus = tracer->traceDepths()};
   requireVisible(surface.focus, focus);
   if (!isInViewport(surface.focus))
-    surface.warnings.push_back(describeFocus(focus) +
-                               " lies outside the picture; choose another --view, "
-                               "--target or --scale");
+    surface.warnings.push_back(describeFocus(focus) + " is outside the image; change --view, "
+                                                      "--target or --scale");
   surface.focusSeconds = stopwatch.lap();
 
   auto buffer = std::make_shared<DepthBuffer>(surface.focus.depth);

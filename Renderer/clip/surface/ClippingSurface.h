@@ -1,5 +1,5 @@
 #pragma once
-// First pass of the method: from a view and a focus to the clip that shows the focus.
+// First pass of the method, once per view: builds the clip that shows the focus.
 
 #include "base/Distribution.h"
 #include "clip/field/Clip.h"
@@ -14,24 +14,24 @@
 namespace fenestra {
 
 enum class SurfaceMode {
-  cutaway, ///< removes only the matter in front of the focus
-  surface, ///< the volumetric clipping surface: the cut continues into the focus's surroundings
-  hole,    ///< a channel from the eye to the focus
+  cutaway, ///< removes only what is in front of the focus
+  surface, ///< the volumetric clipping surface: the cut continues from the focus into the context
+  hole,    ///< a channel from the camera to the focus
 };
 
-/// Continuation of a surface from the focus into its surroundings.
+/// How the surface continues from the focus into the context.
 enum class Boundary {
-  spline, ///< the paper's: a thin plate spline through some control points
-  exact,  ///< from every point of the focus's boundary, with the focus's slope (SmoothFill.h)
+  spline, ///< the paper's method: a thin plate spline, fitted to control points
+  exact,  ///< from all boundary points of the focus, with the slope of the focus (SmoothFill.h)
 };
 
 struct SurfaceOptions {
   SurfaceMode mode = SurfaceMode::surface;
-  int controlPoints = 50; ///< number on the focus's contours, 1 to 1000
+  int controlPoints = 50; ///< on the contours of the focus, 1 to 1000
   double smoothing = 0.5; ///< p of the thin plate spline, 0 to 1
   Boundary boundary = Boundary::spline;
   HoleOptions hole = {};
-  double offset = 0.0; ///< mm, shift of the surface away from the eye; negative: toward the eye
+  double offset = 0.0; ///< mm, moves the surface away from the camera; negative: toward it
   ClipEdge edge = {};
 
   bool operator==(const SurfaceOptions&) const = default;
@@ -40,22 +40,22 @@ struct SurfaceOptions {
 struct ClippingSurface {
   Clip clip;                                 ///< a ClipDepth
   FocusDepth focus;                          ///< over the samples of the clip's buffer
-  std::vector<ControlPoint> controlPoints{}; ///< spline only, else empty
-  /// |f(x) - z|, mm, of a spline f over the focus samples (x, depth z) on the contours.
+  std::vector<ControlPoint> controlPoints{}; ///< empty unless the boundary is a spline
+  /// Spline boundary only: |f(x) - z|, mm, at the focus samples (x, depth z) on the contours.
   std::optional<Distribution> mismatch{};
   double focusSeconds = 0.0, splineSeconds = 0.0, fillSeconds = 0.0;
   std::vector<std::string> warnings{};
 };
 
-/// Throws Error (input) where no sample meets the focus.
+/// Throws Error (input) if no sample is focus.
 void requireVisible(const FocusDepth& focus, const Mask& mask);
 
-/// Least-squares plane, in depth, through the visible points of the focus, never seen edge-on. The
-/// normal points towards the eye. Needs at least one focus sample; with too few samples to
-/// determine a tilt the plane faces the eye.
+/// Fits a plane to the visible points of the focus by least squares in depth, so that it is never
+/// seen edge-on. Its normal points toward the camera. Needs at least one focus sample. If the
+/// samples do not determine a tilt, the plane faces the camera.
 ClipPlane fitFocusPlane(const Camera& camera, const FocusDepth& focus);
 
-/// Throws Error (usage) for options out of range and Error (input) where no ray meets the focus.
+/// Throws Error (usage) for options out of range, and Error (input) if no ray hits the focus.
 ClippingSurface buildClippingSurface(const Camera& camera, const Domain& volume, const Mask& focus,
                                      const SurfaceOptions& options);
 

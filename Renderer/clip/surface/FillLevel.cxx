@@ -8,7 +8,7 @@
 namespace fenestra {
 namespace {
 
-/// Calls back with each row, in parallel; short rows share a thread.
+/// Calls function(row) for each row, in parallel, in chunks of several short rows.
 template <typename Function>
 void forEachRow(const FillLevel& level, const Function& function) {
   const std::size_t grain = 1 + 32768 / level.columns();
@@ -55,7 +55,7 @@ void FillLevel::extendBoundary(double length) {
   std::vector<std::uint8_t> known(m_depth.size(), 0);
   findBoundary();
   std::vector<std::size_t> front, next;
-  for (const float free : {0.0f, 1.0f}) { // inward first: the outward pass reads those slopes
+  for (const float free : {0.0f, 1.0f}) { // inward first: the outward pass uses those slopes
     front.clear();
     for (const BoundarySample& sample : m_boundary) {
       known[sample.at] = 1;
@@ -101,8 +101,8 @@ float FillLevel::extrapolate(std::size_t at, const std::vector<float>& own,
 }
 
 void FillLevel::prolongate(const FillLevel& coarse) {
-  // Weights of four neighbouring coarse samples, for a fine sample in the first half of its
-  // coarse one; mirrored for the second half.
+  // Interpolation weights of four neighboring coarse samples, for the first of the two fine samples
+  // in a coarse one; mirrored for the second.
   constexpr float weights[] = {-5.0f / 128, 35.0f / 128, 105.0f / 128, -7.0f / 128};
   forEachRow(*this, [&](std::size_t row) {
     const std::size_t count = coarse.columns();
@@ -157,7 +157,7 @@ void FillLevel::computeBoundary(float stiffness) {
 
 FillLevel::BoundarySample FillLevel::makeBoundarySample(std::size_t at, float stiffness) const {
   BoundarySample sample{at};
-  // Only the part of the sample's square outside the focus is bent.
+  // Only the part of the sample's area outside the focus bends.
   const float bend = 1.0f / std::max(1.0f - m_coverage[at], 1.0f / stiffness);
   forEachNeighbor(at, [&](const Neighbor& neighbor) {
     const float weight = bend * neighbor.weight;

@@ -1,5 +1,5 @@
 #pragma once
-// One resolution of SmoothFill's multigrid. For SmoothFill.cxx.
+// One level of the multigrid solver in SmoothFill.cxx.
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@ namespace fenestra {
 struct RowStencil;
 struct SampleRun;
 
-/// Weights of the two neighbours in a second derivative along an axis, mm^-2.
+/// Weights of the two neighbors in a second derivative along an axis, mm^-2.
 struct Stencil {
   float before, after;
 };
@@ -47,7 +47,7 @@ public:
   Stencil stencil(std::size_t i) const { return {m_before[i], m_after[i]}; }
   const float* before() const { return m_before.data(); }
   const float* after() const { return m_after.data(); }
-  double maxWeightSum() const { return m_maxWeightSum; }   ///< before + after of a stencil
+  double maxWeightSum() const { return m_maxWeightSum; }   ///< largest before + after
   double width(std::size_t i) const { return m_width[i]; } ///< of sample i, mm
 
 private:
@@ -58,8 +58,8 @@ private:
   double m_maxWeightSum = 0.0;
 };
 
-/// Depths over a grid of samples, some of them free. A margin of one sample surrounds the stored
-/// rows; stencils give it weight 0.
+/// Depths over a grid of samples: fixed in the focus, free elsewhere. Stored with a margin of one
+/// sample, whose weight in all stencils is 0.
 class FillLevel {
 public:
   FillLevel(FillAxis x, FillAxis y)
@@ -73,9 +73,9 @@ public:
   std::size_t columns() const { return m_x.size(); }
   std::size_t rows() const { return m_y.size(); }
   bool isSmall() const { return std::max(columns(), rows()) <= 8; }
-  /// True if `solve` takes little time and memory.
+  /// True if solve() is fast and needs little memory.
   bool isSolvable() const { return columns() * rows() <= 8192; }
-  /// Least distance of samples, mm.
+  /// Smallest sample spacing, mm.
   double pitch() const {
     return 1.0 / std::sqrt(0.5 * std::max(m_x.maxWeightSum(), m_y.maxWeightSum()));
   }
@@ -83,37 +83,37 @@ public:
   float& depth(std::size_t column, std::size_t row) { return m_depth[index(column, row)]; }
   float depth(std::size_t column, std::size_t row) const { return m_depth[index(column, row)]; }
   bool isFree(std::size_t column, std::size_t row) const { return m_free[index(column, row)] != 0; }
-  /// `covered`: share of the sample's square that is focus, 0 to 1; 0: free sample, else focus.
+  /// `coverage`: fraction of the sample's area that is focus, 0 to 1; the sample is free if 0.
   void set(std::size_t column, std::size_t row, float depth, float coverage) {
     const std::size_t at = index(column, row);
     m_depth[at] = depth;
     m_coverage[at] = coverage;
     m_free[at] = coverage > 0.0f ? 0.0f : 1.0f;
   }
-  /// Trims `covered` so that the focus ends at the centres of its outermost samples.
+  /// Reduces the coverage so that the focus ends at the centers of its outermost samples.
   void trimFocus();
 
-  /// Level of half the resolution: a sample is the mean of four, and focus if any of the four is.
+  /// Level of half the resolution. A sample is the mean of four, and is focus if any of them is.
   FillLevel coarsen() const;
 
-  /// Continues the boundary's depths by `length`, step by step: into the focus with the focus's own
-  /// slopes, limited to maxBoundarySlope, and out of the focus with slopes that decay. Coarser
-  /// levels need both: their samples do not end where the focus ends.
+  /// Extrapolates the boundary's depths by `length`: into the focus with its own slopes, limited to
+  /// maxBoundarySlope, and out of the focus with decaying slopes. Coarser levels need both, since
+  /// the focus does not end at the edges of their samples.
   void extendBoundary(double length);
 
-  /// Fills the free samples, cubic between the centres of the coarser samples.
+  /// Initializes the free samples by cubic interpolation of the coarser level.
   void prolongate(const FillLevel& coarse);
 
-  /// `steps` of Chebyshev's iteration for  L L u - L u / length² = 0  at the free samples near the
-  /// boundary: elsewhere the coarser level's surface is as good.
+  /// Performs `steps` Chebyshev iterations for  L L u - L u / length² = 0, L the Laplacian, at the
+  /// free samples near the boundary. Elsewhere the coarser level is accurate enough.
   void relax(double length, int steps);
 
   /// Solves directly; for a few thousand samples.
   void solve(double length);
 
 private:
-  /// Focus sample beside free ones: L there is `fixed`, from the sample itself and its focus
-  /// neighbours (limited in slope), plus weights times the depths of its free neighbours.
+  /// Focus sample next to free ones. There, L u = `fixed` + sum of weights * depths of the free
+  /// neighbors; `fixed` comes from the sample and its focus neighbors, with limited slope.
   struct BoundarySample {
     std::size_t at;
     float fixed = 0.0f;
@@ -132,7 +132,7 @@ private:
     double distance; ///< mm
     float weight;    ///< in L
   };
-  /// Calls back with each neighbour of a sample.
+  /// Calls function(neighbor) for each neighbor of a sample.
   template <typename Function>
   void forEachNeighbor(std::size_t at, const Function& function) const {
     const std::size_t column = at % m_stride - 1, row = at / m_stride - 1;
@@ -147,13 +147,13 @@ private:
       function(Neighbor{3, at + m_stride, m_y.spacing(row), y.after});
   }
 
-  /// Offsets in memory to the neighbours on the four sides.
+  /// Offsets in memory to the neighbors on the four sides.
   std::array<std::ptrdiff_t, 4> offsets() const {
     const auto stride = static_cast<std::ptrdiff_t>(m_stride);
     return {-1, 1, -stride, stride};
   }
 
-  /// Depth continued from the known neighbours (mean).
+  /// Mean of the depths extrapolated from the known neighbors.
   float extrapolate(std::size_t at, const std::vector<float>& own,
                     const std::vector<std::uint8_t>& known, double length) const;
 
@@ -161,15 +161,15 @@ private:
     return (row + 1) * m_stride + column + 1;
   }
 
-  /// Finds the focus samples beside free ones.
+  /// Finds the focus samples next to free ones.
   void findBoundary();
 
-  /// Computes m_edges. `stiffness`: upper limit of the ratio (boundary weight / plate weight).
+  /// Computes m_boundary. `stiffness`: limit of the boundary's weight relative to the plate's.
   void computeBoundary(float stiffness);
 
   BoundarySample makeBoundarySample(std::size_t at, float stiffness) const;
 
-  /// Computes the curvature L u along `runs` and at the boundary.
+  /// Computes the Laplacian L u of the depths along `runs` and at the boundary.
   void applyLaplacian(const std::vector<SampleRun>& runs, float* laplacian) const;
 
   void updateDepths(const std::vector<SampleRun>& runs, const float* laplacian, float* change,
@@ -179,9 +179,9 @@ private:
 
   FillAxis m_x, m_y;
   std::size_t m_stride;
-  std::vector<float> m_depth;    ///< mm, less the buffer's reference
-  std::vector<float> m_free;     ///< 1; 0: focus, margin
-  std::vector<float> m_coverage; ///< share of each sample's square that is focus
+  std::vector<float> m_depth;    ///< mm, minus the buffer's reference
+  std::vector<float> m_free;     ///< 1: free; 0: focus or margin
+  std::vector<float> m_coverage; ///< fraction of each sample's area that is focus
   std::vector<BoundarySample> m_boundary;
 };
 

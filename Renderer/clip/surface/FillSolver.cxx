@@ -1,4 +1,4 @@
-// FillLevel's equations: relaxed, or solved directly.
+// Iterative and direct solver of FillLevel's equations.
 #include "clip/surface/FillLevel.h"
 
 #include <Eigen/SparseCholesky>
@@ -30,7 +30,7 @@ struct RowStencil {
 
 namespace {
 
-/// Square tiles of a raster of samples, some of them marked.
+/// Square tiles of the sample grid, which can be marked.
 class SampleTiles {
 public:
   SampleTiles(std::size_t columns, std::size_t rows)
@@ -47,7 +47,7 @@ public:
         m_marks[j * m_across + i] = 1;
   }
 
-  /// Samples of marked tiles, and up to `margin`, 0 or 1, samples beside the tiles.
+  /// Runs of samples in marked tiles, extended by `margin` samples, 0 or 1.
   std::vector<SampleRun> runs(std::size_t margin) const {
     std::vector<SampleRun> runs;
     for (std::size_t row = 0; row < m_rows; ++row) {
@@ -71,13 +71,13 @@ public:
   }
 
 private:
-  static constexpr std::size_t edge = 16; ///< samples: as far as the finest levels still change
+  static constexpr std::size_t edge = 16; ///< samples; farther away the finest levels do not change
 
   std::size_t m_columns, m_rows, m_across;
   std::vector<std::uint8_t> m_marks;
 };
 
-/// Stiffness in `relax`: more only slows convergence.
+/// Stiffness in relax(); larger values only slow convergence.
 constexpr float maxStiffness = 3.0f;
 
 void applyLaplacianRow(const RowStencil& l, const float* in, float* __restrict out) {
@@ -85,7 +85,7 @@ void applyLaplacianRow(const RowStencil& l, const float* in, float* __restrict o
     out[i] = l(in, i);
 }
 
-/// One step of the iteration along a row: updates the depths u from their curvature L u.
+/// One step of the iteration along a row: updates the depths u from their Laplacian L u.
 void updateRow(const RowStencil& l, const float* laplacian, const float* free, float tension,
                float momentum, float step, float* __restrict change, float* __restrict depth) {
   for (std::size_t i = 0; i < l.count; ++i) {
@@ -94,7 +94,7 @@ void updateRow(const RowStencil& l, const float* laplacian, const float* free, f
   }
 }
 
-/// Calls back with each run, in parallel; runs are short and share a thread.
+/// Calls function(run) for each run, in parallel, in chunks of several short runs.
 template <typename Function>
 void forEachRun(const std::vector<SampleRun>& runs, const Function& function) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, runs.size(), 256), [&](const auto& range) {
@@ -145,10 +145,10 @@ void FillLevel::relax(double length, int steps) {
       maxStiffness * maxWeightSum * (maxWeightSum + tension); // bounds the operator's eigenvalues
   const double low = high / (0.25 * steps * steps);
   const double center = 0.5 * (high + low), radius = 0.5 * (high - low);
-  // Memory away from the boundary is never touched.
+  // Uninitialized, since only samples near the boundary are accessed.
   const auto laplacian = std::make_unique_for_overwrite<float[]>(m_depth.size());
   const auto change = std::make_unique_for_overwrite<float[]>(m_depth.size());
-  for (const SampleRun& run : laplacianRuns) // stencils reach a sample further
+  for (const SampleRun& run : laplacianRuns) // stencils read one sample further
     for (const std::size_t row : {run.row, run.row + 1, run.row + 2}) {
       const std::size_t first = row * m_stride + run.begin;
       std::fill_n(&laplacian[first], run.end - run.begin + 2, 0.0f);
@@ -179,8 +179,7 @@ void FillLevel::solve(double length) {
     boundaryBySample[sample.at] = &sample;
   Eigen::VectorXd right = Eigen::VectorXd::Zero(count);
   std::vector<Eigen::Triplet<double>> entries;
-  // Adds `factor` times the curvature at a sample to an equation; of the symmetric matrix only
-  // the lower half.
+  // Adds `factor` times the Laplacian at a sample to an equation; lower triangle only (symmetric).
   const auto addLaplacian = [&](int row, std::size_t at, double factor) {
     const auto add = [&](std::size_t neighbor, double weight) {
       if (unknown[neighbor] >= 0) {

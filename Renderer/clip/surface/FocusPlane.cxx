@@ -4,10 +4,10 @@ namespace fenestra {
 
 namespace {
 
-/// Shortest x with the least |S x - r|. S = (xx, xy; xy, yy) has eigenvalues >= 0, and r is a sum
-/// of S's columns.
+/// Minimum-norm least-squares solution of S x = r. S = (xx, xy; xy, yy) is positive semidefinite,
+/// and r is in its column space.
 Vec2 solveMinimumNorm(double xx, double xy, double yy, const Vec2& r) {
-  constexpr double singular = 1e-12; // ratio of eigenvalues: samples on one line
+  constexpr double singular = 1e-12; // ratio of eigenvalues below which samples are collinear
   const double trace = xx + yy, determinant = xx * yy - xy * xy;
   if (determinant > singular * trace * trace)
     return Vec2(yy * r.x() - xy * r.y(), xx * r.y() - xy * r.x()) / determinant;

@@ -6,7 +6,7 @@ namespace fenestra {
 
 namespace {
 
-/// Fills all samples that are not focus by bottom((x, y)).
+/// Sets all samples outside the focus to bottom((x, y)).
 template <typename Bottom>
 void fillContext(DepthBuffer& buffer, const FocusDepth& focus, const Bottom& bottom) {
   for (std::int64_t row = 0; row < buffer.rows(); ++row)
@@ -15,7 +15,7 @@ void fillContext(DepthBuffer& buffer, const FocusDepth& focus, const Bottom& bot
         buffer.set(buffer.sample(column, row), bottom(buffer.position(column, row)));
 }
 
-/// Depth at which the eye ray through (x, y) leaves a ball, mm; -infinity: missed.
+/// Depth at which the camera ray through (x, y) leaves a sphere, mm; -infinity if it misses.
 double findFarSide(const Camera& camera, const Vec2& at, const Vec3& center, double radius) {
   const Ray ray = camera.makePlaneRay(at);
   const double nearest = (center - ray.origin).dot(ray.direction);

@@ -1,15 +1,15 @@
 #pragma once
-// Virtual holes: channels of simple shape from the eye to the focus, as the paper's reference [6]
-// (Wimmer et al.) cuts by boxes and balls.
+// Virtual holes: channels of simple shape from the camera to the focus, like the boxes and spheres
+// of Wimmer et al., reference [6] of the paper.
 
 #include "clip/focus/FocusDepth.h"
 
 namespace fenestra {
 
 enum class HoleShape {
-  box,      ///< upright, flat at the depth of the focus's farthest visible point
-  cylinder, ///< round, else like a box
-  sphere,   ///< far side of a ball around the visible focus
+  box,      ///< axis-aligned in the image; flat bottom at the farthest visible focus point
+  cylinder, ///< circular, otherwise like the box
+  sphere,   ///< far side of a sphere around the visible focus
 };
 
 struct HoleOptions {
@@ -19,8 +19,8 @@ struct HoleOptions {
   bool operator==(const HoleOptions&) const = default;
 };
 
-/// Fills the samples of `buffer` that are not focus: depth of the hole's bottom, mm; -infinity:
-/// beside the hole. At least one sample has to be focus.
+/// Fills the samples of `buffer` outside the focus with the depth of the hole's bottom, mm, or with
+/// -infinity beside the hole. At least one sample must be focus.
 void fillHole(DepthBuffer& buffer, const FocusDepth& focus, const Camera& camera,
               const HoleOptions& options);
 

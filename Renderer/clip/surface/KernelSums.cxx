@@ -21,7 +21,7 @@ using Doubles = hn::ScalableTag<double>;
 using D = hn::Vec<Doubles>;
 constexpr Doubles doubles{};
 
-/// values[i] = function(x[i], values[i]), in vectors of lanes.
+/// values[i] = function(x[i], values[i]), in SIMD vectors.
 template <typename Function>
 HWY_INLINE void mapVectors(std::span<const double> x, std::span<double> values,
                            Function&& function) {
@@ -32,7 +32,7 @@ HWY_INLINE void mapVectors(std::span<const double> x, std::span<double> values,
                &values[i]);
   if (i == x.size())
     return;
-  // Not every instruction set can load a part of a vector.
+  // Not all instruction sets can load partial vectors.
   alignas(64) std::array<double, HWY_MAX_BYTES / sizeof(double)> restOfX{}, rest{};
   std::copy(x.begin() + static_cast<std::ptrdiff_t>(i), x.end(), restOfX.begin());
   std::copy_n(&values[i], x.size() - i, rest.begin());

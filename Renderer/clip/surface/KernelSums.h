@@ -1,6 +1,6 @@
 #pragma once
-// Sums that take most of a thin plate spline's time, in SIMD lanes. The instruction set is chosen
-// at run time (Highway).
+// SIMD code for the sums that dominate the cost of a thin plate spline. The instruction set is
+// chosen at run time (Highway).
 
 #include "base/Vector.h"
 

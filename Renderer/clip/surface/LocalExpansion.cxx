@@ -9,10 +9,10 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// Terms of the longest expansion: 3^-24 is about the rounding of a sum.
+/// Maximum number of terms: 3^-24 is about the rounding error of a sum.
 constexpr Eigen::Index maxTerms = 24;
 
-/// Rounding of a sum, relative to the sum of its terms' sizes.
+/// Rounding error of a sum, relative to the sum of the absolute terms.
 constexpr double rounding = 64.0 * std::numeric_limits<double>::epsilon();
 
 constexpr auto binomials = [] {
@@ -30,7 +30,7 @@ struct Polynomials {
   std::vector<Complex> p, q;
 };
 
-/// All terms at once, as arrays.
+/// Terms as a structure of arrays.
 struct Terms {
   Eigen::ArrayXd x, y, weight; ///< d = x + i y
 

@@ -1,7 +1,6 @@
 #pragma once
-// Far kernels of a thin plate spline as a polynomial over a disc well away from their sites (like
-// the local expansions of Greengard and Rokhlin 1987, "A Fast Algorithm for Particle Simulations",
-// for the biharmonic kernel).
+// Local expansion of a thin plate spline: the sum of distant kernels as a polynomial over a disk
+// (Greengard and Rokhlin 1987, "A Fast Algorithm for Particle Simulations"; biharmonic kernel).
 
 #include "clip/surface/KernelSums.h"
 
@@ -13,8 +12,8 @@
 
 namespace fenestra {
 
-/// Where u = center + radius * tau, |tau| <= 1, and with d = site - center, e = radius / d as
-/// complex numbers, |e| < 1,
+/// For u = center + radius * tau, |tau| <= 1, with d = site - center and e = radius / d as complex
+/// numbers, |e| < 1,
 ///   phi = |u - site|^2 (ln |d|^2 + 2 Re ln(1 - e tau)),
 ///   (1 - q) ln(1 - q) = -q + sum over k >= 2 of q^k / (k (k - 1)),
 /// so that the sum of the terms is the real part of P(tau) + conj(tau) Q(tau), with
@@ -23,21 +22,21 @@ namespace fenestra {
 ///   2 / (K (K + 1)) sum |w| |d|^2 |e|^(K + 1) (1 + |e|) / (1 - |e|).
 class LocalExpansion {
 public:
-  /// Greatest |e| of expanded terms: a compromise between their number and the expansion's length.
+  /// Largest |e| of expanded terms. Larger values expand more terms but need longer expansions.
   static constexpr double maxRatio = 1.0 / 3.0;
 
-  /// Expansion within `tolerance` of the terms' sum all over the disc, rounding included; nothing
-  /// if double precision cannot reach `tolerance`. Every |e| has to be at most `farthest`.
+  /// Expansion within `tolerance` of the terms' sum over the disk, including rounding. Empty if
+  /// double precision cannot reach `tolerance`. Every |e| must be at most maxRatio.
   static std::optional<LocalExpansion> make(std::span<const KernelTerm> terms, const Vec2& center,
                                             double radius, double tolerance);
 
   void addPlane(double atCenter, double alongX, double alongY);
 
-  /// Sum of the terms at center + (x[i], y) for every i, all points within the disc.
+  /// Sum of the terms at center + (x[i], y) for every i, all points within the disk.
   void evaluateRow(std::span<const double> x, double y, std::span<double> values) const;
 
 private:
-  /// Coefficients of x^a y^b in row a and column b, in radii.
+  /// Coefficients of x^a y^b in row a and column b; x and y in radii.
   using Coefficients = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic>;
 
   LocalExpansion(Coefficients coefficients, double radius)

@@ -25,7 +25,7 @@ void fillSmoothly(DepthBuffer& buffer, const std::vector<Region>& regions, doubl
   levels.push_back(makeFinestLevel(buffer, regions));
   levels.back().trimFocus();
   levels.back().extendBoundary(length);
-  // Coarser levels would not resolve the plate's bending.
+  // Coarser levels would not resolve the bending of the plate.
   while (!levels.back().isSmall() &&
          (levels.back().pitch() < 0.25 * length || !levels.back().isSolvable()))
     levels.push_back(levels.back().coarsen());

@@ -6,14 +6,14 @@ namespace fenestra {
 
 namespace {
 
-/// Distance of each sample from the nearest focus sample, mm: along steps to the eight neighbours,
-/// at most 8 % too long.
+/// Distance of each sample from the nearest focus sample, mm. Chamfer distance over eight
+/// neighbors, at most 8 % too large.
 std::vector<double> computeFocusDistances(const FocusDepth& focus) {
   const DepthBuffer& buffer = focus.depth;
   std::vector<double> distances;
   for (const Region region : focus.regions)
     distances.push_back(region == Region::focus ? 0.0 : infinity);
-  // Row by row from the top, then from the bottom, from neighbours visited before.
+  // Two passes, from the top and from the bottom, each from neighbors that were visited before.
   for (const std::int64_t direction : {1, -1}) {
     const auto relax = [&](std::int64_t column, std::int64_t row, std::int64_t x, std::int64_t y) {
       if (x < 0 || y < 0 || x >= buffer.columns() || y >= buffer.rows())
@@ -50,7 +50,7 @@ ClippingSurface buildSteadySurface(const Camera& camera, const Domain& volume, c
   const auto& own = std::get<ClipDepth>(surface.clip);
   const double width = focus.grid.boundingRadius() * std::abs(degrees) * pi / 180.0;
   std::vector<double> blends = computeFocusDistances(surface.focus);
-  for (double& blend : blends) // of the mean: 0 at the focus, 1 at distances >= `width`
+  for (double& blend : blends) // of the mean: 0 at the focus, 1 from `width` on
     blend = smoothStep(0.0, width, blend);
 
   auto buffer = std::make_shared<DepthBuffer>(*own.buffer);

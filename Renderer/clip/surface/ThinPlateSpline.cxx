@@ -12,11 +12,11 @@ namespace {
 /// Keeps the logarithm finite at a site, where its factor is 0.
 constexpr double tiny = 1e-300;
 
-/// Least lambda - phi of two distinct sites, the smallest eigenvalue that the two cause: below the
-/// bound too few digits of the solution survive.
+/// Smallest lambda - phi of two distinct sites, which is the smallest eigenvalue due to the pair.
+/// Below this bound the solution loses too many digits.
 constexpr double minEigenvalue = 1e-12;
 
-/// Squared radii beyond which the sum of the kernels loses too much to cancellation.
+/// Squared distance, in disk radii, beyond which cancellation spoils the sum of the kernels.
 constexpr double farRadiusSquared = 256.0;
 
 /// Rounding error of a site's coordinates, mm.
@@ -44,12 +44,12 @@ Eigen::MatrixXd kernelMatrix(const Eigen::MatrixX2d& sites, double lambda) {
   return k;
 }
 
-/// P = Q R by Householder's reflections (Golub and Van Loan, "Matrix Computations", 5.1 and 5.2):
+/// P = Q R by Householder reflections (Golub and Van Loan, "Matrix Computations", 5.1 and 5.2):
 /// Q = H0 H1 H2 with Hk = I - vk vk'. The columns of Q after the third span the null space of P'.
 class PolynomialQr {
 public:
-  /// `singular`: singular values below this share of the largest count as 0. The sites' centroid is
-  /// 0: the largest is that of the constant, to rounding.
+  /// `singular`: singular values below this fraction of the largest count as 0. Since the sites'
+  /// centroid is 0, the largest is that of the constant, up to rounding.
   PolynomialQr(const Eigen::MatrixX2d& sites, double singular) : m_v(sites.rows(), 3) {
     m_v << Eigen::VectorXd::Ones(sites.rows()), sites;
     for (Eigen::Index k = 0; k < 3; ++k)
@@ -79,7 +79,7 @@ public:
     return x;
   }
 
-  /// Q2' K Q2 of a symmetric K, where Q2 is Q after its third column.
+  /// Q2' K Q2 of a symmetric K, where Q2 is Q without its first three columns.
   Eigen::MatrixXd projectToNullSpace(Eigen::MatrixXd k) const {
     for (Eigen::Index i = 0; i < 3; ++i) { // H K H = K - v w' - w v'
       const auto v = m_v.col(i);
@@ -92,7 +92,7 @@ public:
     return k.bottomRightCorner(n, n);
   }
 
-  /// Flattest a with the least |P a - z|.
+  /// Least-squares solution a of P a = z with the smallest slope.
   Vec3 solveLeastSquares(const Eigen::VectorXd& z) const {
     const Eigen::VectorXd all = applyQTransposed(z);
     const Eigen::Index given = std::min<Eigen::Index>(3, all.size());
@@ -102,7 +102,7 @@ public:
     if (m_rank == 3) {
       a[2] = right[2] / m_r(2, 2);
       a[1] = (right[1] - m_r(1, 2) * a[2]) / m_r(1, 1);
-    } else if (m_rank == 2) { // a line: B'B less the lesser square is a multiple of d d'
+    } else if (m_rank == 2) { // collinear: B'B - minSingular^2 I is a multiple of d d'
       const Eigen::Matrix2d b = m_r.bottomRightCorner<2, 2>();
       Eigen::Matrix2d outer = b.transpose() * b;
       outer.diagonal().array() -= m_minSingular * m_minSingular;
@@ -114,8 +114,7 @@ public:
   }
 
 private:
-  /// Replaces column k by its reflection's v (0: nothing left to reflect) and reflects the later
-  /// columns.
+  /// Replaces column k by its reflection vector v (0 for a zero column); reflects later columns.
   void reflect(Eigen::Index k) {
     const Eigen::Index above = std::min(k, m_v.rows());
     auto v = m_v.col(k);
@@ -144,21 +143,20 @@ Eigen::MatrixX2d toMatrix(const std::vector<Vec2>& points) {
   return matrix;
 }
 
-/// Sites of the unit disc, and their values.
+/// Sites in the unit disk, and their values.
 struct Samples {
   std::vector<Vec2> sites;
   std::vector<double> values;
 };
 
-/// Replaces sites that lambda leaves indistinct by the first of them, with their mean value: the
-/// remaining sites are far enough apart.
+/// Merges sites that are too close for this lambda into the first of them, with their mean value.
 Samples mergeSites(const Samples& samples, double lambda) {
   Samples distinct;
   std::vector<double> counts;
   for (std::size_t i = 0; i < samples.sites.size(); ++i) {
     const auto isNear = [&, site = samples.sites[i]](const Vec2& other) {
       const Eigen::Array<double, 1, 1> squared((site - other).squaredNorm());
-      return squared[0] < 1e-6 && lambda - kernel(squared)[0] < minEigenvalue; // phi < 0 nearby
+      return squared[0] < 1e-6 && lambda - kernel(squared)[0] < minEigenvalue; // phi < 0 if close
     };
     const auto found = std::ranges::find_if(distinct.sites, isNear);
     const auto at = static_cast<std::size_t>(found - distinct.sites.begin());
