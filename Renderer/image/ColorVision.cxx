@@ -26,7 +26,7 @@ double pow7(double x) {
   return std::pow(x, 7.0);
 }
 
-/// Chroma and hue with a* stretched so that greys are rounder (eq. 2 to 7).
+/// Chroma and hue, with a* scaled near gray (eq. 2 to 7).
 struct AdjustedHue {
   double C, h;
 
@@ -38,7 +38,7 @@ struct AdjustedHue {
   }
 };
 
-/// Difference and mean of two hues, the short way round, degrees (eq. 10 and 14).
+/// Difference and mean of two hues along the shorter arc, degrees (eq. 10 and 14).
 std::array<double, 2> hueDifferenceAndMean(const AdjustedHue& x, const AdjustedHue& y) {
   if (x.C * y.C == 0.0)
     return {0.0, x.h + y.h};

@@ -62,7 +62,7 @@ ZStatistics computeZStatistics(const ImagePair& pair, int width) {
   return z;
 }
 
-/// z of largest modulus among a pixel's channels; a channel that says nothing counts as 0.
+/// z of largest magnitude among a pixel's channels; uninformative channels count as 0.
 double findLargestZ(const ImagePair& pair, std::size_t i) {
   double largest = 0.0;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -78,7 +78,7 @@ double meanDifference(const ImagePair& pair, std::size_t i) {
   return (pair.difference(0, i) + pair.difference(1, i) + pair.difference(2, i)) / 3.0;
 }
 
-/// Signed values to show, with full colour at modulus 1.
+/// Signed values to display; magnitude 1 gives full color.
 std::vector<double> computeDifferences(const ImagePair& pair) {
   std::vector<double> values(pair.pixels);
   double scale = pair.hasErrors() ? fullColorZ : 0.0;
@@ -109,14 +109,14 @@ Planes findPlanes(const Image& image, const std::array<const char*, 3>& names) {
 Planes findColors(const Image& image) {
   const Planes planes = findPlanes(image, colorNames);
   if (!isComplete(planes))
-    throw inputError("pictures", "one has no channels R, G and B; compare pictures in colour");
+    throw inputError("images", "one has no channels R, G and B; compare color images");
   return planes;
 }
 
 void requireSameSize(const Image& a, const Image& b) {
   if (a.width != b.width || a.height != b.height)
-    throw inputError("pictures", "are of different sizes, " + formatSize(a) + " and " +
-                                     formatSize(b) + "; compare pictures of one size");
+    throw inputError("images", "have different sizes, " + formatSize(a) + " and " + formatSize(b) +
+                                   "; compare images of the same size");
 }
 
 Comparison compareImages(const Image& a, const Image& b) {

@@ -39,13 +39,13 @@ HalfMeans PixelSums::halfMeans() const {
           (alpha - evenAlpha) / odd};
 }
 
-/// Adds the open block of a half, now complete, to the others; its samples count already.
+/// Adds a half's last block, now complete, to the block statistics. Its samples already count.
 void PixelSums::finishBlock(std::uint64_t half) {
   const Rgb sum = std::exchange(partialSums[half], Rgb::Zero());
   const double count = completeBlockCount();
   if (count < 2.0)
     return;
-  // Welford 1962: the block before the mean of all is moved.
+  // Welford 1962, with the deviation from the mean that already includes the block.
   const Rgb difference = sum / static_cast<double>(blockSize) - completeBlockMean();
   blockM2 += difference * difference * (count / (count - 1.0));
 }

@@ -1,5 +1,5 @@
 #pragma once
-// A finished picture as named float planes, for writers, readers and `compare`.
+// Finished image as named float planes, for writers, readers and `compare`.
 
 #include "base/Vector.h"
 
@@ -9,7 +9,7 @@
 
 namespace fenestra {
 
-/// One value a pixel, row 0 at the top.
+/// One value per pixel, row 0 at the top.
 using Plane = std::vector<float>;
 
 /// Channels by their EXR names (R G B A Z clip.Z albedo.R … error.R … samples.N), each width *
@@ -25,9 +25,9 @@ struct Image {
   }
 };
 
-/// Position of a picture in the world, stored in NRRD files so that Slicer shows the picture there.
+/// Position of an image in the world, stored in NRRD files so that Slicer shows the image there.
 struct ImagePlane {
-  Vec3 topLeft = Vec3::Zero();     ///< centre of the top left pixel, RAS mm
+  Vec3 topLeft = Vec3::Zero();     ///< center of the top-left pixel, RAS mm
   Vec3 columnStep = Vec3::UnitX(); ///< to the next pixel to the right, mm
   Vec3 rowStep = -Vec3::UnitZ();   ///< to the next pixel below, mm
 };

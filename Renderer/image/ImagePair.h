@@ -1,5 +1,5 @@
 #pragma once
-// Two pictures of one size, value by value.
+// Two images of the same size, for comparison.
 
 #include "image/Image.h"
 
@@ -10,7 +10,7 @@ namespace fenestra {
 inline constexpr std::array<const char*, 3> colorNames = {"R", "G", "B"};
 inline constexpr std::array<const char*, 3> errorNames = {"error.R", "error.G", "error.B"};
 
-/// Three planes of a picture; null: missing.
+/// Three planes of an image; null if missing.
 using Planes = std::array<const std::vector<float>*, 3>;
 
 Planes findPlanes(const Image& image, const std::array<const char*, 3>& names);
@@ -19,7 +19,7 @@ inline bool isComplete(const Planes& planes) {
   return planes[0] && planes[1] && planes[2];
 }
 
-/// Planes of R, G and B. Throws Error (input) where one is missing.
+/// Planes of R, G and B. Throws Error (input) if one is missing.
 Planes findColors(const Image& image);
 
 /// Throws Error (input) for different sizes.
@@ -29,12 +29,12 @@ constexpr double square(double x) {
   return x * x;
 }
 
-/// Both pictures of a comparison, value by value.
+/// Channels of two images that are compared.
 struct ImagePair {
   Planes a, b, errorA, errorB;
   std::size_t pixels;
 
-  /// Throws Error (input) for different sizes or missing colours.
+  /// Throws Error (input) for different sizes or missing colors.
   ImagePair(const Image& imageA, const Image& imageB)
       : a(findColors(imageA)),
         b(findColors(imageB)),
@@ -54,13 +54,13 @@ struct ImagePair {
   double rounding(std::size_t c, std::size_t i) const {
     return 0x1p-24 * std::max(std::abs((*a[c])[i]), std::abs((*b[c])[i]));
   }
-  /// True if the values are equal to the rounding of a float.
+  /// True if the values are equal up to float rounding.
   bool isEqual(std::size_t c, std::size_t i) const {
     return std::abs(difference(c, i)) <= 2.0 * rounding(c, i);
   }
   /// True if the value carries no statistical information: both errors are 0, or one is 0 and the
-  /// values are equal (background, whatever error one renderer states); "0" and "equal" mean to the
-  /// rounding of a float. Excluded from z.
+  /// values are equal (background, whatever error one renderer states), up to float rounding.
+  /// Excluded from z.
   bool isUninformative(std::size_t c, std::size_t i) const {
     const bool exactA = std::abs((*errorA[c])[i]) <= rounding(c, i);
     const bool exactB = std::abs((*errorB[c])[i]) <= rounding(c, i);

@@ -1,5 +1,5 @@
 #pragma once
-// A pixel's sums as words, for films on disk and films that processes send each other.
+// A pixel's sums as 64-bit words, for checkpoint files and for messages between processes.
 
 #include "image/Film.h"
 
@@ -12,8 +12,8 @@ inline constexpr std::size_t wordsPerPixel = 30;
 
 using PixelWords = std::array<std::uint64_t, wordsPerPixel>;
 
-/// Calls `each` for every number of a pixel, in the order of the words; PixelSums::block and
-/// isCertain belong to the film and to the scene.
+/// Calls each(number) for all numbers of a pixel, in the order of the words. Excludes blockSize and
+/// isDeterministic, which follow from the film and the scene.
 template <typename Sums, typename Each>
 void forEachNumber(Sums& p, Each&& each) {
   const auto colors = [&](auto& color) {

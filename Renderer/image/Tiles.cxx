@@ -8,7 +8,7 @@
 namespace fenestra {
 namespace {
 
-/// Bits of a number below 2^16, a zero after each.
+/// Interleaves the bits of a number below 2^16 with zeros.
 std::uint32_t spreadBits(int number) {
   auto bits = static_cast<std::uint32_t>(number);
   bits = (bits | bits << 8) & 0x00ff00ffU;

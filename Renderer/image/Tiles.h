@@ -1,11 +1,11 @@
 #pragma once
-// Tiles of a picture, and their share among parts that are rendered by themselves.
+// Tiles of an image, and their distribution among shards that are rendered separately.
 
 #include <vector>
 
 namespace fenestra {
 
-/// Part number `index`, from 0, of `count` of a picture.
+/// Shard `index`, from 0, of `count` shards of an image.
 struct Shard {
   int index = 0, count = 1;
 
@@ -16,7 +16,7 @@ struct Shard {
 
 inline constexpr int maxShards = 10000;
 
-/// Squares of `size` pixels, cut off at the right and lower border; numbered row by row.
+/// Squares of `size` pixels, clipped at the right and lower edge; numbered row by row.
 class Tiles {
 public:
   static constexpr int size = 8;
@@ -30,8 +30,8 @@ public:
 
   int count() const { return m_columns * m_rows; }
   Tile at(int index) const;
-  /// Numbers of a part's tiles, ascending. Successive tiles of a Morton curve (Morton 1966) belong
-  /// to successive parts: each part has tiles from everywhere, and costs about the same.
+  /// Indices of a shard's tiles, ascending. Successive tiles of a Morton curve (Morton 1966) belong
+  /// to successive shards, so that all shards cover the image evenly and cost about the same.
   std::vector<int> select(const Shard& shard) const;
 
 private:

@@ -21,16 +21,16 @@ bool hasSteps(const Clip& clip) {
   return depth && depth->lookup == ClipDepth::Lookup::nearest;
 }
 
-/// Crossing of the outline: two samples on the inner side, two beyond.
+/// Crossing of the outline, with two samples on each side.
 struct OutlineEdge {
-  Vec2 inside, outside; ///< last focus sample and first beyond, mm
+  Vec2 inside, outside; ///< last focus sample and first sample outside, mm
   double focusDepth,
-      innerDepth;    ///< focus depths at `inside` and one sample before, mm; infinity: no focus
-  double near, far;  ///< context depths at `outside` and one sample further, mm
-  bool hasDepthJump; ///< true: the focus's depth jumps at `inside`
+      innerDepth;    ///< focus depths at `inside` and one sample further in, mm, or infinity
+  double near, far;  ///< context depths at `outside` and one sample further out, mm
+  bool hasDepthJump; ///< the focus depth jumps at `inside`
 };
 
-/// Depth, mm, at which the remaining volume begins on the ray through `position`; infinity: none.
+/// Depth, mm, at which the remaining volume begins on the ray through `position`, or infinity.
 double findContextDepth(const Clip& clip, const Domain& volume, const Vec2& position) {
   const Camera& camera = *findCamera(clip);
   const Ray ray = camera.makePlaneRay(position);
@@ -53,7 +53,7 @@ bool hasDepthJump(const FocusDepth& focus, std::int64_t column, std::int64_t row
   return false;
 }
 
-/// Edge at a crossing; nothing: no context beyond.
+/// Edge at a crossing; empty if there is no context outside.
 std::optional<OutlineEdge> findEdge(const Crossing& crossing, const Clip& clip,
                                     const Domain& volume, const FocusDepth& focus) {
   const DepthBuffer& buffer = focus.depth;
@@ -88,13 +88,13 @@ std::vector<OutlineEdge> findOutlineEdges(const Clip& clip, const Domain& volume
   return edges;
 }
 
-/// Point at which the focus ends.
+/// Point on the outline of the focus.
 struct OutlinePoint {
   double depth; ///< of the focus just inside, mm
   Vec2 outside; ///< just outside
 };
 
-/// Outline points between `inside` and `outside`, to 2^-24 of the distance.
+/// Bisects for the outline between `inside` and `outside`, to 2^-24 of their distance.
 std::vector<OutlinePoint> findOutlinePoints(const FocusTracer& tracer,
                                             const std::vector<OutlineEdge>& edges) {
   std::vector<OutlinePoint> points;
@@ -132,7 +132,7 @@ BoundaryMetrics measureBoundary(const Clip& clip, const Domain& volume, const Ma
   for (std::size_t i = 0; i < points.size(); ++i) {
     const OutlineEdge& edge = edges[i];
     ++metrics.crossings;
-    // A steep fall of the focus before its end is a jump as well.
+    // A steep slope of the focus just before the outline also counts as a jump.
     if (edge.hasDepthJump || std::abs(points[i].depth - edge.focusDepth) > depthJump)
       continue;
     const double context = findContextDepth(clip, volume, points[i].outside);

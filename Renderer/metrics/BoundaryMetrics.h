@@ -1,6 +1,6 @@
 #pragma once
-// Quality of a clip: how well the remaining context meets the focus along the focus's outline.
-// Measured alike for every kind of clip.
+// Clip metric: how well the remaining context meets the focus along the outline of the focus.
+// Defined equally for all clip modes.
 
 #include "base/Distribution.h"
 #include "clip/field/Clip.h"
@@ -9,23 +9,23 @@
 
 namespace fenestra {
 
-/// Focus depth against context depth along the outline, whose points are found by bisection between
-/// a focus sample and a neighbour outside the focus. Context depth: where the context begins just
-/// beyond the outline, at the clip's surface or where the eye ray enters the volume. For clips with
-/// steps (cutaway, hole): extrapolated linearly from the two samples beyond.
+/// Compares focus depth and context depth along the outline, which is located by bisection between
+/// a focus sample and a neighbor outside. The context depth is where the context begins just
+/// outside the outline: at the clip's surface, or where the camera ray enters the volume. For clips
+/// with steps (cutaway, hole), it is extrapolated linearly from the two samples outside.
 struct BoundaryMetrics {
   Distribution gap; ///< |context depth - focus depth|, mm, without depth jumps
-  /// Difference of the slopes of two samples on each side, mm of depth per mm, without depth jumps.
+  /// Difference of the two-sample slopes on both sides, mm of depth per mm, without depth jumps.
   Distribution slopeJump;
-  double depthJumpFraction = 0.0; ///< share of the crossings where the focus's own depth jumps
+  double depthJumpFraction = 0.0; ///< fraction of the crossings where the focus depth itself jumps
   std::size_t crossings = 0;
 };
 
-/// Threshold, mm: the focus jumps at a sample if a neighbour's depth differs by more.
+/// mm; the focus depth jumps at a sample if a neighbor's depth differs by more.
 constexpr double depthJump = 2.0;
 
-/// Measures `clip` along the outline of `focus`, whose `depths` are seen from the clip's camera.
-/// All measures are 0 for ClipNone.
+/// Measures `clip` along the outline of `focus`. `depths`: of the focus, from the clip's camera.
+/// All metrics are 0 for ClipNone.
 BoundaryMetrics measureBoundary(const Clip& clip, const Domain& volume, const Mask& focus,
                                 const FocusDepth& depths);
 

@@ -12,12 +12,12 @@ double sum(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-/// Handle that does not own the mask.
+/// Shared pointer that does not own the mask.
 std::shared_ptr<const Mask> nonOwning(const Mask& mask) {
   return {std::shared_ptr<void>(), &mask};
 }
 
-/// Greatest depth of the focus at a pixel and its neighbours.
+/// Largest depth of the focus at a pixel and its neighbors.
 double findDeepest(const std::vector<double>& depth, std::size_t width, std::size_t column,
                    std::size_t row) {
   double deepest = -infinity;
@@ -28,7 +28,7 @@ double findDeepest(const std::vector<double>& depth, std::size_t width, std::siz
   return deepest;
 }
 
-/// Share of the points that clipping leaves; 0 without points.
+/// Fraction of the points that the clip does not remove; 0 without points.
 double unclippedFraction(const FocusPoints& points) {
   if (points.empty())
     return 0.0;
@@ -82,7 +82,7 @@ double measureCoverage(const SceneView& scene, const FocusPoints& points, std::u
 std::optional<double> measureLight(const SceneView& scene, const SceneView& focusOnly,
                                    const FocusPoints& focus, std::uint64_t seed,
                                    const StopFlag& stop) {
-  constexpr std::size_t maxPoints = 4096; // kept points
+  constexpr std::size_t maxPoints = 4096; // unclipped points
   constexpr std::uint64_t samplesPerPoint = 4;
   std::vector<const FocusPoint*> points;
   for (const FocusPoint& point : focus)

@@ -6,7 +6,7 @@
 namespace fenestra {
 namespace {
 
-/// Greatest distance of a visible point of the focus from the axis, mm.
+/// Largest distance of a visible focus point from the axis, mm.
 double focusRadius(const VisibleSurface& surface, const Vec3& axis) {
   const Camera& camera = surface.camera;
   const Vec3 direction = axis.stableNormalized();

@@ -7,7 +7,7 @@
 namespace fenestra {
 namespace {
 
-/// Pixels, row 0 at the top.
+/// Image of primary hits, row 0 at the top.
 struct Raster {
   int width, height;
   std::vector<PrimaryHit> pixels;
@@ -18,7 +18,7 @@ struct Raster {
   }
 };
 
-/// True if two neighbouring rays see different things. `pitch`: mm between pixels.
+/// True if two neighboring pixels differ by more than fixed thresholds. `pitch`: mm between pixels.
 bool areDifferent(const PrimaryHit& a, const PrimaryHit& b, double pitch) {
   constexpr float colors = 0.08F, slope = 4.0F;
   const auto isFar = [&](std::size_t c) { return std::abs(a.albedo[c] - b.albedo[c]) > colors; };
@@ -88,7 +88,7 @@ Raster marchPixels(const Camera& camera, const March& march) {
   return raster;
 }
 
-/// Light that reaches the mean collisions of a picture's pixels unscattered.
+/// Direct light at the mean collisions of an image's pixels.
 template <typename Voxel, typename March>
 class DirectLight {
 public:
@@ -102,9 +102,9 @@ public:
   }
 
 private:
-  static constexpr int samples = 4; ///< of the lights at each point
+  static constexpr int samples = 4; ///< light samples per point
 
-  /// A pixel's mean collision.
+  /// Mean collision of a pixel.
   struct Collision {
     std::size_t pixel;
     Vec3 point, incoming;
@@ -116,7 +116,7 @@ private:
     const std::vector<Collision> collisions = findCollisions(raster, row);
     std::vector<ShadowRay> rays;
     std::vector<std::size_t> pixels;
-    for (int sample = 0; sample < samples; ++sample) // neighbouring rays toward one light
+    for (int sample = 0; sample < samples; ++sample) // so that neighboring rays are similar
       for (const Collision& at : collisions)
         if (const auto ray = makeShadowRay(at, sample)) {
           rays.push_back(*ray);
@@ -147,7 +147,7 @@ private:
     return collisions;
   }
 
-  /// Matter that a collision meets with the greatest probability.
+  /// The medium that a collision samples with the highest probability.
   std::optional<MediumSample> findLikeliest(const Vec3& point, const Vec3& index) const {
     std::optional<MediumSample> found;
     double best = 0.0;
@@ -161,7 +161,7 @@ private:
     return found;
   }
 
-  /// Samples of lights are the same numbers everywhere: what they lack in precision is no noise.
+  /// All points use the same random numbers: integration errors vary smoothly and are not noise.
   std::optional<ShadowRay> makeShadowRay(const Collision& at, int sample) const {
     Random random(0, 0, static_cast<std::uint64_t>(sample));
     const double choice = (sample + random.uniform()) / samples;

@@ -1,5 +1,5 @@
 #pragma once
-// Eye rays and rays to lights, marched one by one or in SIMD lanes.
+// Camera rays and shadow rays of an image, traced by the scalar or the SIMD ray marcher.
 
 #include "denoise/features/RayMarcher.h"
 #include "denoise/features/SimdRayMarcher.h"
@@ -11,19 +11,19 @@
 
 namespace fenestra {
 
-/// Expected values of one pixel.
+/// Expected values of one camera ray or pixel (FeatureBuffers).
 struct PrimaryHit {
   float hit = 0.0F, depth = 0.0F;
   std::array<float, 3> albedo = {}, normal = {}, surfaceNormal = {};
 };
 
-/// A point of the picture through which a ray is marched.
+/// Raster position of a camera ray.
 struct RasterPoint {
   double column, row;
 };
 
-/// Rays of a picture, marched one by one. along: expected values of eye rays; through:
-/// transmittance of rays to lights.
+/// Scalar ray marcher. integrateHits: expected values of camera rays; computeTransmittance: of
+/// shadow rays.
 template <typename Voxel>
 class ScalarFeatureMarcher {
 public:
@@ -54,7 +54,7 @@ private:
   RayMarcher<Voxel> m_march;
 };
 
-/// Rays of a picture, marched in lanes, as ScalarFeatureMarcher.
+/// SIMD ray marcher, with the interface of ScalarFeatureMarcher.
 class SimdFeatureMarcher {
 public:
   explicit SimdFeatureMarcher(const SceneView& scene)
@@ -65,7 +65,7 @@ public:
                      .medium()),
         m_shading(scene.volume.grid, scene.transfer, scene.lights, 0, true, scene.tint,
                   scene.mixture) {
-    m_medium.silhouette = nullptr; // exact surfaces cost more than features gain
+    m_medium.silhouette = nullptr; // exact surfaces would cost more than they improve features
   }
 
   void integrateHits(std::span<const RasterPoint> points, PrimaryHit* out) const {

@@ -1,6 +1,7 @@
 #pragma once
-// Expected first collision of an eye ray, by a march with a step size. It serves features of the
-// filter, never the picture: any function of the scene, free of noise, may be a feature.
+// Ray marching with a step size: expected first collision of camera rays, and transmittance toward
+// lights. Results are feature buffers of the denoiser, not radiance: any noise-free function of the
+// scene may be a feature, so the bias of the step size is harmless.
 
 #include "integrator/scalar/ClippedMedium.h"
 #include "integrator/scalar/MajorantGrid.h"
@@ -11,27 +12,27 @@
 
 namespace fenestra {
 
-/// Sums over the first collisions of a ray, weighted by their probability T(t) sigma_t(t) dt; a ray
-/// that meets nothing counts as 0.
+/// Integrals over the first collision of a ray, weighted by its pdf T(t) sigma_t(t) dt. A ray
+/// without collision contributes 0.
 struct ExpectedHit {
   double hit = 0.0;      ///< probability of a collision
   double distance = 0.0; ///< from the ray's origin, mm
   Rgb albedo = Rgb::Zero();
   Vec3 surfaceNormal = Vec3::Zero(); ///< normal times the probability of scattering at a surface
-  Vec3 normal = Vec3::Zero(); ///< unit where the gradient is not zero, world axes, toward the eye
+  Vec3 normal = Vec3::Zero();        ///< unit or zero, world axes, toward the camera
 };
 
-/// Accuracy of a march.
+/// Accuracy of the ray marcher.
 struct MarchAccuracy {
-  static constexpr double minVoxels = 0.5;         ///< a step is at least that long
-  static constexpr double opticalDepth = 0.1;      ///< or so deep under its cell's majorant
+  static constexpr double minVoxels = 0.5;    ///< minimum length of a step
+  static constexpr double opticalDepth = 0.1; ///< of a step under its cell's majorant, if longer
   static constexpr double minTransmittance = 0.03; ///< transmittance at which a ray ends
-  static constexpr double shadowScale = 2.0;       ///< factor of steps on the way to a light
+  static constexpr double shadowScale = 2.0;       ///< scale of the steps toward a light
   static constexpr double groupProbability =
-      1.0 / 16.0; ///< of the collisions, for which matter is looked up
+      1.0 / 16.0; ///< of collisions per look-up of the medium
 };
 
-/// A view: all arguments must outlive the march. Rays are in world space, unit direction.
+/// Non-owning: all arguments must outlive the object. Rays are in world space, unit direction.
 template <typename Voxel>
 class RayMarcher {
 public:
@@ -57,7 +58,7 @@ public:
     return sums.expected;
   }
 
-  /// Transmittance over `range`, in coarser steps.
+  /// Transmittance over `range`, in steps longer by MarchAccuracy::shadowScale.
   double computeTransmittance(const Ray& ray, const Interval& range) const {
     const std::optional<Part> part = clipToDomain(ray, range);
     double transmittance = 1.0;
@@ -70,15 +71,15 @@ public:
   }
 
 private:
-  /// Part of a ray inside the domain; lengths count from its begin, which keeps their digits.
+  /// Part of a ray inside the domain. Lengths count from its begin to keep their precision.
   struct Part {
     Ray ray, indexRay;
-    double before, length; ///< mm from the ray's origin to the begin; of the part
+    double before, length; ///< mm: distance from the ray's origin to the part; length of the part
   };
   struct Sums {
     double transmittance = 1.0;
-    double pending = 0.0; ///< probability of the collisions that are not collected yet
-    double moment = 0.0;  ///< of these, times their distance
+    double pending = 0.0; ///< probability of the collisions not yet collected
+    double moment = 0.0;  ///< that probability times distance, summed
     ExpectedHit expected = {};
   };
 
@@ -92,10 +93,11 @@ private:
                 inside.end - inside.begin};
   }
 
-  /// Calls visit(middle, length, extinction there) for the steps in matter until it returns false.
+  /// Calls visit(center, length, extinction at the center) for the steps in non-empty cells until
+  /// it returns false.
   template <typename Visit>
   void forEachStep(const Part& part, double stepScale, Visit&& visit) const {
-    constexpr double maxSteps = 64.0; // in a cell
+    constexpr double maxSteps = 64.0; // per cell
     const double voxels = MarchAccuracy::minVoxels / part.indexRay.direction.norm();
     GridWalk cells(transformRay(m_majorants.worldToCell(), part.ray), {0.0, part.length},
                    m_majorants.cellCount());
@@ -119,7 +121,7 @@ private:
     }
   }
 
-  /// Adds the pending collisions with the matter in their middle.
+  /// Adds the pending collisions, all with the medium at their mean distance.
   void collect(const Part& part, Sums& sums) const {
     if (!(sums.pending > 0.0))
       return;

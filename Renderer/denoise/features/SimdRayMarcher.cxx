@@ -11,11 +11,11 @@ HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 namespace {
 
-/// Neighbouring rays under way, which end after a similar number of steps.
+/// One ray per lane. Neighboring rays form a group, since they need a similar number of steps.
 template <typename Voxel>
 class Walk {
 public:
-  /// From ray `first` on.
+  /// Rays from index `first` on.
   Walk(const SimdMedium& medium, const RayBatch& rays, std::size_t first, double stepScale,
        bool usesClip)
       : m_medium(medium),
@@ -36,13 +36,13 @@ public:
   const Float3& direction() const { return m_direction; }
   HWY_INLINE Float3 pointAt(Float t) const { return m_origin + t * m_direction; }
 
-  /// Each lane leaves an empty cell with its reach, or takes one step in matter. Returns the lanes
-  /// that end with it.
+  /// Each lane skips empty cells, or takes one step in a cell that is not empty. Returns the lanes
+  /// whose ray ends.
   HWY_INLINE LaneMask step() {
     LaneCells cell;
     const Float toFace = findCellExit(m_medium, m_way, m_t, cell);
     const Float stop = min(toFace, m_end);
-    // A little beyond the face: the next point lies in the next cell, whatever rounding does.
+    // Slightly past the face, so that rounding cannot keep the next point in this cell.
     const Float beyond = fma(m_minStep, 0.02F, max(stop, m_t));
     const LaneMask filled = m_busy & (cell.majorant > 0.0F);
     const Float wanted = max(m_minStep, m_opticalDepth / cell.majorant);
@@ -57,12 +57,12 @@ public:
     return ended;
   }
 
-  /// Collisions that have not been taken: their probability, and the middle of them.
+  /// Collisions not yet collected: their probability and mean distance.
   struct Pending {
     Float probability, middle;
   };
   HWY_INLINE LaneMask hasPending(Float least) const { return m_pending > least; }
-  /// Takes those of the lanes of `which`; 0 in the others.
+  /// Takes those of the lanes of `which`; probability 0 in the others.
   HWY_INLINE Pending take(LaneMask which) {
     const Float t = m_moment / select(which, m_pending, 1.0F);
     const Pending taken{zeroUnless(which, m_pending), select(which, t, m_t)};
@@ -72,7 +72,7 @@ public:
   }
 
 private:
-  /// Light that matter stops from m_t to `next`, by its extinction in the middle.
+  /// Attenuates the light between m_t and `next`, by the extinction at the center.
   HWY_INLINE void attenuate(LaneMask filled, const LaneCells& cell, Float next) {
     const Float length = next - m_t;
     const Float middle = fma(0.5F, length, m_t);
@@ -94,7 +94,7 @@ private:
   }
 
   const SimdMedium& m_medium;
-  Float3 m_origin, m_direction; ///< index space, per mm
+  Float3 m_origin, m_direction; ///< index space; direction per mm
   DdaAxis m_way[3];
   Float m_end, m_minStep; ///< mm
   Float m_opticalDepth;   ///< of a step
@@ -104,14 +104,13 @@ private:
   Float m_pending = 0.0F, m_moment = 0.0F;
 };
 
-/// Sums of ExpectedHit.
 template <typename Voxel>
 class Sums {
 public:
   Sums(const SimdMedium& medium, const SimdShading& shading)
       : m_medium(medium), m_shading(shading) {}
 
-  /// Adds the pending collisions of the lanes of `which` with the matter in their middle.
+  /// Adds the pending collisions of the lanes of `which`, with the medium at their mean distance.
   void collect(Walk<Voxel>& walk, LaneMask which) {
     const auto [probability, middle] = walk.take(which);
     const Float3 p = walk.pointAt(middle);
@@ -124,7 +123,7 @@ public:
     m_albedo = m_albedo + probability * albedo;
     const Float3 difference = centralDifference<Voxel>(m_medium.field, p);
     Float3 gradient = mapDirection(m_shading.indexDifferenceToGradient, difference);
-    Float alongRay = dot(walk.direction(), difference); // of the gradient's sign
+    Float alongRay = dot(walk.direction(), difference); // has the sign of the slope along the ray
     if (m_shading.hybrid && m_medium.cutSlope > 0.0F) {
       gradient = gradient + cutGradient(m_medium, p, which);
       alongRay = dot(mapDirection(m_shading.toLocal, walk.direction()), gradient);
@@ -139,7 +138,7 @@ public:
     m_distance = fma(probability, middle, m_distance);
   }
 
-  /// Albedo and opacity over 1 mm, means over what a collision may meet.
+  /// Albedo, and opacity over 1 mm; means over the components that a collision may sample.
   struct Mean {
     Float3 albedo;
     Float opacity;
@@ -183,8 +182,8 @@ private:
 };
 
 void marchCameraAll(const SimdMedium& medium, const SimdShading& shading, MarchBatch& batch) {
-  // Eye rays begin behind the surface, where only an edge that is not sharp matters; unless they
-  // are whole, for matter that the clip leaves.
+  // Behind a sharp edge the clip weight is 1, and camera rays start there. With a ghost or with
+  // unclipped components they start in front of it.
   const bool usesClip = medium.ghost > 0.0F || medium.softness > 0.0F ||
                         (medium.mixture && medium.mixture->hasUnclipped);
   const auto march = [&]<typename Voxel>(const Voxel*) {

@@ -22,7 +22,7 @@ void sumRow(const float* in, float* out, int count, int radius) {
   }
 }
 
-/// Columns that are summed together: neighbours in memory.
+/// Columns that are summed together, since they are adjacent in memory.
 constexpr std::size_t columnBlock = 64;
 
 /// Running sums along `columns` columns; `row`: length of a row.

@@ -1,21 +1,21 @@
 #pragma once
-// Sums and means over square windows of a picture, by running sums in double.
+// Sums and means over square windows of an image, by running sums in double.
 
 #include "denoise/filter/FilterInput.h"
 
 namespace fenestra {
 
-/// Sums over the windows of 2 radius + 1 pixels around each pixel, cut off at the picture's edges.
-/// Independent of threads.
+/// Sums over windows of 2 radius + 1 pixels around each pixel, clipped at the edges of the image.
+/// Independent of the number of threads.
 Plane computeBoxSums(const Plane& plane, int width, int height, int radius);
 
-/// Means over the open pixels of such windows; 0 where none is open.
+/// Means over the active pixels of such windows; 0 if there are none.
 class MaskedMean {
 public:
-  /// `hole`: radius of the window in the middle that is left out; negative: none.
+  /// `innerRadius`: radius of a window in the middle that is excluded; negative: none.
   MaskedMean(const Plane& active, int width, int height, int radius, int innerRadius = -1);
 
-  /// Means of `plane`, which is 0 where a pixel is closed.
+  /// Means of `plane`, which must be 0 at inactive pixels.
   Plane operator()(const Plane& plane) const;
 
 private:

@@ -28,10 +28,10 @@ ErrorPlanes estimatePlanes(const FitInput& fit, const std::vector<Plane>& filter
     planes.bias[c].resize(fit.active.size());
     for (std::size_t i = 0; i < fit.active.size(); ++i) {
       if (fit.active[i] == 0.0F)
-        continue; // its colours may be infinite
+        continue; // its colors may be infinite
       const ErrorEstimate estimate = estimateError(filtered[c][i], filtered[other + c][i],
                                                    fit.color[c][i], fit.color[other + c][i]);
-      // Where windows cross black, the error is at most all that is there.
+      // Limits the relative variance to 1, where windows extend into black regions.
       const float weight = std::min(relativeWeight(image.color[c][i]), 1.0F / estimate.variance);
       planes.variance[c][i] = weight * estimate.variance;
       planes.bias[c][i] = weight * estimate.bias;
@@ -40,13 +40,13 @@ ErrorPlanes estimatePlanes(const FitInput& fit, const std::vector<Plane>& filter
   return planes;
 }
 
-/// Mean over the picture of the bias part, drawn toward the prior, and its standard error.
+/// Mean of the bias part over the image, shrunk toward the prior, and its standard error.
 struct Bias {
   double mean, standardError;
 };
 
 Bias estimateBias(const ErrorPlanes& planes, double variance, double count) {
-  constexpr double priorRatio = 0.65, priorDeviation = 0.7; // of the variance
+  constexpr double priorRatio = 0.65, priorDeviation = 0.7; // relative to the variance
   double sum = 0.0, squares = 0.0;
   for (std::size_t i = 0; i < planes.bias[0].size(); ++i) {
     const double mean =
@@ -59,7 +59,7 @@ Bias estimateBias(const ErrorPlanes& planes, double variance, double count) {
   const double priorVariance = priorDeviation * priorDeviation * variance * variance;
   if (!(meanVariance + priorVariance > 0.0))
     return {std::max(mean, 0.0), 0.0};
-  // Weights of the two: the other's variance over the sum of both.
+  // Inverse-variance weighting of the two.
   const double combined =
       (std::max(mean, 0.0) * priorVariance + priorRatio * variance * meanVariance) /
       (meanVariance + priorVariance);

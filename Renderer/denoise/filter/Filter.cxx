@@ -14,11 +14,11 @@ namespace fenestra {
 namespace {
 
 constexpr int levels = 4;      ///< half-widths 2, 4, 8, 16
-constexpr int singleLevel = 2; ///< of pictures without halves
+constexpr int singleLevel = 2; ///< for images without half buffers
 
 using FittedPlanes = std::vector<Plane>;
 
-/// True if no pixel that takes part is even a little transparent: alpha needs no fit.
+/// True if all active pixels are opaque, so that alpha needs no fit.
 bool isOpaque(const FilterInput& input) {
   for (std::size_t i = 0; i < input.pixelCount(); ++i)
     if (input.isActive[i] &&
@@ -27,7 +27,7 @@ bool isOpaque(const FilterInput& input) {
   return true;
 }
 
-/// 1: the pixel takes part, and all that the fit reads of it is finite.
+/// 1 for active pixels whose colors and features are all finite, else 0.
 Plane findActivePixels(const FilterInput& input, const FittedPlanes& color) {
   Plane active(input.pixelCount());
   for (std::size_t i = 0; i < active.size(); ++i)
@@ -42,8 +42,8 @@ Plane findActivePixels(const FilterInput& input, const FittedPlanes& color) {
   return active;
 }
 
-/// Gives the feature mean 0 and deviation 1 over the open pixels, and 0 elsewhere; false if it is
-/// constant there.
+/// Normalizes a feature to mean 0 and standard deviation 1 over the active pixels, and to 0
+/// elsewhere. Returns false if it is constant.
 bool standardize(Plane& feature, const Plane& active) {
   double count = 0.0, sum = 0.0, squares = 0.0;
   for (std::size_t i = 0; i < feature.size(); ++i)
@@ -88,8 +88,8 @@ FitInput prepareInput(FilterInput& input, std::size_t channels) {
   return fit;
 }
 
-/// Weights of the choice: relative to a slightly blurred picture of small windows, which hardly
-/// knows the pixel's own noise.
+/// Weights of squared errors for the selection. Relative to a slightly blurred result of the
+/// smallest windows, which depends little on the pixel's own noise.
 Plane computeSelectionWeight(const FitInput& fit, const FittedPlanes& smallest,
                              std::size_t channel) {
   const MaskedMean blur(fit.active, fit.width, fit.height, 1);
@@ -103,9 +103,9 @@ Plane computeSelectionWeight(const FitInput& fit, const FittedPlanes& smallest,
   return weight;
 }
 
-/// Mean over colours of the told error, relative, averaged over 21x21 pixels around each pixel but
-/// not over the 5x5 that its own noise reaches: noise that helped to choose would flatter the
-/// choice.
+/// Scores candidates by their estimated relative error, averaged over colors and over 21x21 pixels
+/// around each pixel. Excludes the 5x5 pixels that the pixel's own noise affects, since noise that
+/// influences the selection would bias the estimate.
 class CandidateScorer {
 public:
   CandidateScorer(const FitInput& fit, const FittedPlanes& smallest)
@@ -142,7 +142,7 @@ private:
   std::array<Plane, 3> m_weight;
 };
 
-/// Candidates: raw, then each size of windows.
+/// Candidates: unfiltered, then filtered with each window size.
 class Candidates {
 public:
   explicit Candidates(const FitInput& fit) : m_fit(fit), m_fitted(levels) {
@@ -162,7 +162,7 @@ private:
   std::vector<FittedPlanes> m_fitted;
 };
 
-/// Number of the candidate of least told error, by pixel.
+/// Per pixel: index of the candidate with the smallest estimated error.
 std::vector<std::uint8_t> chooseCandidates(const FitInput& fit, const Candidates& candidates,
                                            const std::array<Plane, 3>& variance) {
   const CandidateScorer scorer(fit, candidates.smallest());
@@ -179,7 +179,7 @@ std::vector<std::uint8_t> chooseCandidates(const FitInput& fit, const Candidates
   return choice;
 }
 
-/// Candidates blended by their share of the choices in the 5x5 pixels around.
+/// Blends the candidates, weighted by how often each is chosen in the 5x5 pixels around.
 FittedPlanes blendCandidates(const FitInput& fit, const Candidates& candidates,
                              const std::vector<std::uint8_t>& choice) {
   const MaskedMean mean(fit.active, fit.width, fit.height, 2);
@@ -198,7 +198,7 @@ FittedPlanes blendCandidates(const FitInput& fit, const Candidates& candidates,
   return blend;
 }
 
-/// Colours as the samples have them.
+/// Unfiltered colors: the mean of the half buffers.
 FourPlanes averageHalves(const FilterInput& input) {
   FourPlanes color = input.even;
   for (std::size_t c = 0; c < color.size() && input.hasHalfBuffers; ++c)
@@ -207,7 +207,7 @@ FourPlanes averageHalves(const FilterInput& input) {
   return color;
 }
 
-/// Adds the error of closed pixels, which is that of their samples: 0 where they are certain.
+/// Adds the error of inactive pixels: the standard error of their samples, 0 if deterministic.
 void addInactiveErrors(const std::array<Plane, 3>& variance, const Plane& active,
                        FilteredImage& image) {
   double sum = 0.0;
@@ -239,9 +239,9 @@ FittedPlanes filterAdaptively(const FitInput& fit, const std::array<Plane, 3>& v
 
 FilteredImage filterImage(FilterInput input) {
   if (input.features.size() > SumLayout::maxFeatures)
-    throw std::logic_error("more features than the filter has room for");
+    throw std::logic_error("too many features for the filter");
   FilteredImage image;
-  image.color = averageHalves(input); // closed pixels stay so
+  image.color = averageHalves(input); // inactive pixels keep these
   const std::size_t channels = isOpaque(input) ? 3 : 4;
   const FitInput fit = prepareInput(input, channels);
   const FittedPlanes chosen =

@@ -1,21 +1,24 @@
 #pragma once
-// A filter for the eye: least squares in windows of four sizes, the size chosen pixel by pixel by
-// the error that the filter tells of itself (ToldError.h). Biased, and never a part of the raw
-// channels.
+// Denoiser of display images: linear regression of the colors on noise-free features (albedo,
+// normal, depth, light) in windows of four sizes. The size is selected per pixel by the estimated
+// error (ErrorEstimate.h). The filter is biased, and never applied to the raw channels.
+//
+// The error estimate uses the half buffers only. It is valid only if the features are functions of
+// the scene, independent of the samples. Features are therefore ray-marched (denoise/features).
 
 #include "denoise/filter/WindowFit.h"
 
 namespace fenestra {
 
-inline constexpr int filterVersion = 1; ///< changes whenever filtered pictures do
+inline constexpr int filterVersion = 1; ///< changes whenever filtered images do
 
-/// Filters both halves, each by itself, with the same features; the picture is their mean. Raw is
-/// one of the candidates. Without halves windows have one size, and the errors are empty.
-/// Independent of threads.
+/// Filters both half buffers separately, with the same features, and returns their mean. The
+/// unfiltered image is one of the candidates. Without half buffers there is one window size, and
+/// the error estimates are empty. Independent of the number of threads.
 FilteredImage filterImage(FilterInput input);
 
-/// fit.color, filtered by windows of the sizes that tell the least error, pixel by pixel.
-/// `variance`: of the mean of both halves.
+/// Filters fit.color with the window size of the smallest estimated error per pixel. `variance`: of
+/// the mean of both half buffers.
 std::vector<Plane> filterAdaptively(const FitInput& fit, const std::array<Plane, 3>& variance);
 
 } // namespace fenestra

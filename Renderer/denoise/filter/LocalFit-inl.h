@@ -1,5 +1,5 @@
-// Least squares in 16 windows at once, in plain loops over their 16 lanes, which the compiler turns
-// into vectors. Included once for each instruction set, within its namespace.
+// Least squares in 16 windows at once, as loops over 16 lanes that the compiler vectorizes.
+// Included once per instruction set, within its namespace.
 
 #if defined(FENESTRA_LOCALFIT_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef FENESTRA_LOCALFIT_INL_H
@@ -29,10 +29,10 @@ HWY_INLINE void forEachLane(Function&& function) {
     function(l);
 }
 
-/// Sums over a window in, its coefficients out, times the window's number of pixels: so that
-/// windows are averaged by their pixels. Minimises
+/// Computes a window's coefficients from its sums, multiplied by its pixel count, which weights the
+/// average over windows. Minimizes
 ///   sum over pixels of (c - a - b . (f - mean f))^2 + n ridge |b|^2
-/// by the normal equations, factored as L D L^T.
+/// by the normal equations, with an L D L^T factorization.
 class LocalFit {
 public:
   explicit LocalFit(const SumLayout& layout) : m_layout(layout) {}
@@ -51,7 +51,7 @@ public:
   }
 
 private:
-  static constexpr float ridge = 1e-4F; ///< for features of unit deviation over the picture
+  static constexpr float ridge = 1e-4F; ///< for features of unit standard deviation over the image
   static constexpr std::size_t maxFeatures = SumLayout::maxFeatures;
 
   HWY_INLINE void factor(const Lanes* sums) {

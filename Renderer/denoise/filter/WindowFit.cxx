@@ -17,14 +17,14 @@ HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 namespace {
 
-/// Rows of several planes; a ring keeps the last ones.
+/// Ring buffer of the last rows of several planes.
 class RowRing {
 public:
   RowRing(std::size_t rows, std::size_t planes, std::size_t width)
       : m_rows(rows), m_planes(planes), m_width(width), m_values(rows * planes * width, 0.0F) {}
 
   float* at(std::int64_t row, std::size_t plane) {
-    constexpr std::int64_t before = 1000; // rows begin above the picture: keeps numbers positive
+    constexpr std::int64_t before = 1000; // rows begin above the image; keeps the index positive
     const auto place = static_cast<std::size_t>(row + before) % m_rows;
     return &m_values[(place * m_planes + plane) * m_width];
   }
@@ -47,8 +47,7 @@ private:
   std::vector<float> m_values;
 };
 
-/// One tile of the picture: sums of cells, fits of the windows around them, and means of
-/// fits, row by row.
+/// Processes a tile of the image row by row: sums of cells, fits of windows, means of the fits.
 class TileFit {
 public:
   static constexpr std::int64_t edge = tileColumns, rows = tileRows;
@@ -71,8 +70,8 @@ public:
         m_interpolated(m_layout.coefficients() * width) {}
 
   HWY_ATTR void run() {
-    // A mean needs fits two rows further, and a fit sums two rows further; one row of means more on
-    // each side for the interpolation between cells.
+    // A mean needs fits of two more rows, and a fit needs sums of two more rows. Interpolation
+    // between cells needs one more row of means on each side.
     const std::int64_t first = m_row - 1, end = std::min(m_row + rows, cells(m_input.height)) + 1;
     for (std::int64_t row = first - 4; row < end + 4; ++row) {
       sumCells(row);
@@ -86,12 +85,12 @@ public:
   }
 
 private:
-  static constexpr std::int64_t margin = 5; ///< cells to each side of which sums are needed
-  static constexpr std::size_t width = 80;  ///< >= edge + 2 margin, and what is read beyond
+  static constexpr std::int64_t margin = 5; ///< cells on each side that sums are needed for
+  static constexpr std::size_t width = 80;  ///< >= edge + 2 margin, padded for reads beyond
 
   std::int64_t cells(int pixels) const { return (pixels + m_cell - 1) / m_cell; }
 
-  // ---- sums over cells; place 0 of a row is cell m_column - margin
+  // ---- sums over cells; index 0 of a row is cell m_column - margin
 
   HWY_INLINE void sumCells(std::int64_t row) {
     for (std::size_t plane = 0; plane < m_sums.planes(); ++plane)
@@ -140,7 +139,7 @@ private:
       out[x >> m_level] += in[x];
   }
 
-  // ---- fits of windows; place 0 of a row is the window around cell m_column - margin + 2
+  // ---- fits of windows; index 0 of a row is the window around cell m_column - margin + 2
 
   HWY_INLINE void fitRow(std::int64_t row) {
     for (std::size_t plane = 0; plane < m_sums.planes(); ++plane)
@@ -170,7 +169,7 @@ private:
     }
   }
 
-  // ---- means of fits; place 0 of a row is cell m_column - 1
+  // ---- means of fits; index 0 of a row is cell m_column - 1
 
   HWY_INLINE void averageRow(std::int64_t row) {
     for (std::size_t plane = 0; plane < m_fits.planes(); ++plane) {
@@ -184,8 +183,8 @@ private:
 
   // ---- pixels
 
-  /// Pixels whose centres lie between those of cell rows `row` and `row` + 1; row `row` itself
-  /// where cells are pixels.
+  /// Evaluates the pixels whose centers lie between those of cell rows `row` and `row` + 1, or the
+  /// pixels of `row` if cells are single pixels.
   HWY_INLINE void evaluateRows(std::int64_t row) {
     const std::int64_t begin = row * m_cell + m_cell / 2;
     const std::int64_t end = std::min(
@@ -206,13 +205,13 @@ private:
     const std::int64_t first = m_column * m_cell;
     const std::int64_t end = std::min<std::int64_t>((m_column + edge) * m_cell, m_input.width);
     for (std::int64_t phase = 0; phase < m_cell; ++phase) {
-      // Pixels at one place between the centres of two cells: every m_cell-th.
+      // Every m_cell-th pixel has the same position between the centers of two cells.
       const std::int64_t before = m_cell > 1 && phase < m_cell / 2 ? 1 : 0;
       const std::int64_t x = first + before * m_cell + phase - m_cell / 2;
       if (x >= end)
         continue;
       m_count = static_cast<std::size_t>((end - x + m_cell - 1) / m_cell);
-      // Cells of one pixel: at the centre of the next cell.
+      // If cells are single pixels, the pixel is at the center of the next cell.
       const std::int64_t place = m_cell > 1 ? before : 1;
       const float across =
           m_cell > 1 ? (static_cast<float>(phase) + 0.5F) / static_cast<float>(m_cell) : 0.0F;
@@ -221,8 +220,8 @@ private:
     }
   }
 
-  /// Pixels from `start` on, m_cell apart; the first lies `across` of the way from place `place` of
-  /// the means to the next.
+  /// Evaluates every m_cell-th pixel from `start`. The first lies between indices `place` and
+  /// `place` + 1 of the means, at fraction `across`.
   HWY_INLINE void evaluateStrided(std::size_t start, std::size_t place, float across) {
     const auto step = static_cast<std::size_t>(m_cell);
     for (std::size_t i = 0; i < m_layout.features; ++i)

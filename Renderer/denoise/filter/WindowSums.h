@@ -1,5 +1,5 @@
 #pragma once
-// Order of a window's sums and of its coefficients: of the pixel count, k features and m colours.
+// Memory layout of a window's sums and coefficients, for k features and m colors.
 
 #include <cstddef>
 
@@ -10,8 +10,8 @@ struct SumLayout {
   std::size_t features; ///< k
   std::size_t colors;   ///< m
 
-  /// Sums of 1, of each feature, of the products of two features, of each colour, and of the
-  /// products of a feature and a colour.
+  /// Sums of 1, of each feature, of the products of two features, of each color, and of the
+  /// products of a feature and a color.
   std::size_t sums() const { return featureColor(features, 0); }
   std::size_t feature(std::size_t i) const { return 1 + i; }
   /// For i <= j.
@@ -25,7 +25,7 @@ struct SumLayout {
     return color(colors) + i * colors + c;
   }
 
-  /// Coefficients: the pixel count, then by colour an intercept and k slopes.
+  /// Coefficients: the pixel count, then per color an intercept and k slopes.
   std::size_t coefficients() const { return intercept(colors); }
   std::size_t intercept(std::size_t c) const { return 1 + c * (features + 1); }
   std::size_t slope(std::size_t c, std::size_t i) const { return intercept(c) + 1 + i; }
