@@ -8,11 +8,11 @@
 namespace fenestra {
 namespace {
 
-/// Tolerance, pixels; greater than the rounding of a projection.
+/// Tolerance, pixels; larger than the rounding error of a projection.
 constexpr double tolerance = 0.01;
 
-/// First and last tile of the raster coordinates from `low` to `high`; first > last if there is
-/// none. All tiles if `low` and `high` are NaN.
+/// First and last tile that raster coordinates from `low` to `high` touch; first > last if none.
+/// All tiles if both are NaN.
 std::pair<int, int> findTiles(double low, double high, int pixels, int tileSize) {
   if (low - tolerance >= pixels || high + tolerance < 0.0)
     return {0, -1};

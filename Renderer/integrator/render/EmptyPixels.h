@@ -1,5 +1,5 @@
 #pragma once
-// Pixels that need no more than one sample.
+// Pixels that need only one sample.
 
 #include "integrator/scalar/MajorantGrid.h"
 #include "model/camera/Camera.h"
@@ -8,8 +8,8 @@
 
 namespace fenestra {
 
-/// Pixels in whose whole area (the footprint of the box filter) no eye ray meets a cell of majorant
-/// > 0. If the background is constant over each pixel, all samples of such a pixel are equal.
+/// Pixels in whose area (the footprint of the box filter) no camera ray meets a cell of majorant
+/// > 0. If the background is constant within each pixel, all samples of such a pixel are equal.
 class EmptyPixels {
 public:
   /// Contains no pixel.
@@ -25,7 +25,7 @@ public:
 private:
   static constexpr int tileSize = 4; ///< pixels
 
-  std::size_t m_tilesPerRow = 0; ///< tiles in a row
+  std::size_t m_tilesPerRow = 0; ///< tiles per row
   std::vector<std::uint8_t> m_isOccupied;
 };
 

@@ -17,10 +17,10 @@
 namespace fenestra {
 namespace {
 
-/// Samples per pixel below which a noise estimate is too uncertain to stop by.
+/// Samples per pixel below which a noise estimate is too uncertain to stop the render.
 constexpr std::uint64_t minNoiseSamples = SamplePlan::pilotSamples;
 
-/// Traces one path after the other.
+/// Traces one path after another with the scalar integrator.
 template <typename Voxel>
 struct ScalarTracer {
   PathIntegrator<Voxel> estimator;
@@ -45,14 +45,14 @@ struct ScalarTracer {
   }
 };
 
-/// Samples per pixel of passes.
+/// Growth of passes, in samples per pixel.
 struct PassGrowth {
-  std::uint64_t perSample = 1; ///< of a pass, for each sample before it
+  std::uint64_t perSample = 1; ///< samples of a pass per sample before it
   std::uint64_t largest = 16;
 };
 
-/// Samples per pixel of the next pass. Passes grow, so that a picture is there early and overhead
-/// stays small later; sizes are fixed, so that a stop by noise falls on the same sample count on
+/// Samples per pixel of the next pass. Passes grow, so that the first image appears early and later
+/// overhead is small. Sizes are fixed, so that a noise limit stops at the same sample count on
 /// every machine.
 std::uint64_t choosePassSize(std::uint64_t done, const RenderSettings& settings,
                              const PassGrowth& growth = {}) {
@@ -60,10 +60,9 @@ std::uint64_t choosePassSize(std::uint64_t done, const RenderSettings& settings,
   return settings.passSamples > 0 ? settings.passSamples : grown;
 }
 
-/// Samples per pixel of the next pass toward a noise target. The pilot ends at minNoiseSamples
-/// whatever the passes are. After the pilot passes grow from 1 again, for some pixels may get far
-/// more than the mean; the last pass is as small as the noise so far predicts (variance ~ 1 /
-/// samples).
+/// Samples per pixel of the next pass toward a noise target. The pilot always ends at
+/// minNoiseSamples. After it passes grow from 1 again, since some pixels may get far more than the
+/// mean. The last pass is only as large as the noise predicts (variance ~ 1 / samples).
 std::uint64_t chooseNoisePassSize(const LastPass& last, const RenderSettings& settings) {
   const std::uint64_t done = last.samples;
   if (done < minNoiseSamples)
@@ -76,13 +75,13 @@ std::uint64_t chooseNoisePassSize(const LastPass& last, const RenderSettings& se
   return std::min(choosePassSize(done - minNoiseSamples, settings), most);
 }
 
-/// Lets all threads render what is left of a pass, to its end, a pause or a stop; tiles are done
-/// whole or not at all.
+/// Lets all threads render the rest of a pass, until its end, a checkpoint or a stop. Tiles are
+/// added complete or not at all.
 template <typename Tracer>
 void renderTiles(const Tracer& tracer, Pass& pass, const Film& film, Counters& total,
                  RenderMonitor& monitor) {
   const int threads = tbb::this_task_arena::max_concurrency();
-  // Paths at once in a thread: limited, so that all threads get some and tails are short.
+  // Limits the paths per thread, so that all threads get some and they end at about the same time.
   const std::size_t maxPaths =
       std::max<std::size_t>(64, film.pixelCount() / (4 * static_cast<std::size_t>(threads)));
   tbb::combinable<Counters> counters;
@@ -97,14 +96,14 @@ void renderTiles(const Tracer& tracer, Pass& pass, const Film& film, Counters& t
   counters.combine_each([&](const Counters& local) { total += local; });
 }
 
-/// Parts of a render that all its passes share.
+/// What all passes of a render share.
 struct PassInputs {
   std::vector<int> tiles;
   EmptyPixels empty;
   Sampler numbers;
 };
 
-/// Renders tiles as renderTiles, beside helpers.
+/// renderTiles, while remote workers render other tiles of the pass.
 template <typename Tracer>
 void renderWithWorkers(const Tracer& tracer, Pass& pass, RenderResult& result,
                        RenderMonitor& monitor) {
@@ -114,7 +113,7 @@ void renderWithWorkers(const Tracer& tracer, Pass& pass, RenderResult& result,
   workers.dispatch(pass, result);
   try {
     renderTiles(tracer, pass, result.film, result.counters, monitor);
-  } catch (...) { // pass and film end here
+  } catch (...) { // pass and film are about to be destroyed
     monitor.stop = true;
     workers.join(monitor);
     throw;
@@ -122,8 +121,8 @@ void renderWithWorkers(const Tracer& tracer, Pass& pass, RenderResult& result,
   result.counters += workers.join(monitor);
 }
 
-/// Renders the samples that stage `result.begunSamples` has beyond the film. Returns false if
-/// stopped before all were done.
+/// Renders the samples that the film lacks to stage `result.begunSamples`. Returns false if stopped
+/// before all were finished.
 template <typename Tracer>
 bool renderPass(const Tracer& tracer, const PassInputs& source, RenderResult& result,
                 RenderMonitor& monitor) {
@@ -134,17 +133,17 @@ bool renderPass(const Tracer& tracer, const PassInputs& source, RenderResult& re
     renderWithWorkers(tracer, pass, result, monitor);
     if (pass.isComplete() || monitor.stop)
       return pass.isComplete();
-    monitor.onCheckpoint(result); // nothing but a rest leaves tiles undone
+    monitor.onCheckpoint(result); // tiles are left, so a checkpoint is due
   }
 }
 
-/// True if all eye rays through one pixel that meet no matter return the same radiance.
+/// True if all camera rays through one pixel that meet no medium return the same radiance.
 bool isConstantPerPixel(const Background& background, const LightSet& lights) {
   return background.kind != Background::Kind::environment ||
          (!lights.hasMaps() && lights.tables().skies.empty());
 }
 
-/// Pixels of which one sample is enough; the film is told.
+/// Finds the pixels that need only one sample, and marks them as deterministic in the film.
 EmptyPixels markEmptyPixels(const SceneView& scene, const RenderSettings& settings, Film& film) {
   EmptyPixels empty = isConstantPerPixel(settings.path.background, scene.lights)
                           ? EmptyPixels(scene.camera, scene.majorants)
@@ -155,7 +154,7 @@ EmptyPixels markEmptyPixels(const SceneView& scene, const RenderSettings& settin
   return empty;
 }
 
-/// Duration of passes, and the samples that the time limit still allows.
+/// Measures passes, and predicts the samples that fit into the time limit.
 class TimeBudget {
 public:
   explicit TimeBudget(double limit) : m_limit(limit) {}
@@ -165,9 +164,9 @@ public:
     m_perSample = (now - m_last) / static_cast<double>(samples);
     m_last = now;
   }
-  /// Time until now went into a look, not into samples.
+  /// Excludes the time since the last pass, which was spent on a noise estimate.
   void restartClock() { m_last = m_watch.seconds(); }
-  /// Number of samples that the remaining time allows, at the last pass's time per sample.
+  /// Samples per pixel that fit into the remaining time, at the speed of the last pass.
   std::uint64_t affordableSamples() const {
     if (!(m_limit < infinity) || m_perSample == 0.0)
       return std::numeric_limits<std::uint64_t>::max();
@@ -181,19 +180,19 @@ private:
   double m_last = 0.0, m_perSample = 0.0;
 };
 
-/// Number of samples at which the seen noise is looked at next.
+/// Number of samples at which the display image's noise is estimated next.
 std::uint64_t nextNoiseCheck(std::uint64_t done) {
   constexpr std::uint64_t first = 4;
   return std::max(first, std::bit_ceil(done + 1));
 }
 
-/// Decides how many samples a pass gets, and when the noise is low enough.
+/// Decides how many samples a pass gets, and whether the noise is low enough.
 class NoiseLimit {
 public:
   NoiseLimit(const RenderSettings& settings, const PassGrowth& growth)
       : m_settings(settings), m_growth(growth) {}
 
-  /// Samples of the pass after `last`, which no other limit cuts short.
+  /// Samples per pixel of the pass after `last`, if no other limit cuts it short.
   std::uint64_t nextPass(const LastPass& last) const {
     if (m_settings.isAdaptive())
       return chooseNoisePassSize(last, m_settings);
@@ -201,11 +200,11 @@ public:
     if (hasDisplayNoise())
       return std::min(size, nextNoiseCheck(last.samples) - last.samples);
     const std::uint64_t left = m_settings.samples - last.samples;
-    return left <= size + size / 2 ? left : size; // no short pass for the rest
+    return left <= size + size / 2 ? left : size; // avoids a short last pass
   }
 
-  /// Looks at the film after a pass, if a look is due, and sets `monitor.noise`. Returns true if
-  /// the target is reached. A pass that nothing has cut short becomes the last one.
+  /// Estimates the noise after a pass, if an estimate is due, into `monitor.noise`. Returns true if
+  /// the target is reached. If the pass was not cut short, it becomes result.last.
   bool isReached(RenderResult& result, bool isCut, RenderMonitor& monitor) const {
     const std::uint64_t done = result.finishedSamples;
     std::atomic<double>& noise = monitor.noise;
@@ -238,9 +237,9 @@ private:
   const PassGrowth m_growth;
 };
 
-/// A short pass costs more a sample: in each one caches meet the whole volume anew, and threads run
-/// out of paths once. So passes grow fourfold where nobody is shown pictures between them; and with
-/// several processes, each of which moves the film, yet faster, and more.
+/// Short passes cost more per sample: each pass reloads the volume into the caches and ends with
+/// idle threads. So passes grow fourfold if no image is shown between them. With several processes,
+/// each of which transfers the film, they grow faster and larger.
 PassGrowth choosePassGrowth(const RenderMonitor& monitor) {
   const auto processes = static_cast<std::uint64_t>(monitor.workers.count) + 1;
   return {(monitor.onPassEnd ? 1 : 3) * processes, 16 * processes};
@@ -252,7 +251,7 @@ RenderResult makeEmptyResult(const Camera& camera, const Sampler& numbers) {
                numbers.samplesPerBlock())};
 }
 
-/// True if no tile of the film is ahead of the last pass or behind it.
+/// True if all tiles of the film are exactly at the last pass.
 bool isAtLastPass(const RenderResult& result) {
   const SamplePlan::Stage stage = result.last.plan.at(result.last.samples);
   const std::vector<PixelSums>& pixels = result.film.pixels();
@@ -271,7 +270,7 @@ RenderResult renderPasses(const Tracer& tracer, const std::string& arithmetic,
   result.reason = StopReason::samples;
   result.target = arithmetic;
   if (!settings.isAdaptive())
-    result.last = {result.last.samples}; // a plan made by the pilot is not followed
+    result.last = {result.last.samples}; // ignores an adaptive plan of an earlier run
   const PassInputs source{Tiles(result.film.width(), result.film.height()).select(settings.shard),
                           markEmptyPixels(scene, settings, result.film), numbers};
   monitor.paths = result.finishedSamples * result.film.pixelCount() /
@@ -330,7 +329,7 @@ void renderEachLease(const Tracer& tracer, const SceneView& scene, const RenderS
   }
 }
 
-/// Calls work(tracer, arithmetic) with rays in lanes.
+/// Calls work(tracer, target) with the SIMD integrator.
 template <typename Work>
 auto traceSimd(const SceneView& scene, const RenderSettings& settings, const StopFlag& stop,
                Work&& work) {
@@ -345,7 +344,7 @@ auto traceSimd(const SceneView& scene, const RenderSettings& settings, const Sto
   return work(SimdPathIntegrator(tracker, shading, table, cameraRays, stop), instructionSet());
 }
 
-/// Calls work(tracer, arithmetic) with the readable estimator.
+/// Calls work(tracer, target) with the scalar integrator.
 template <typename Work>
 auto traceScalar(const SceneView& scene, const RenderSettings& settings, const StopFlag& stop,
                  Work&& work) {
@@ -363,11 +362,11 @@ bool isSimdUsed(const SceneView& scene, const RenderSettings& settings) {
   return settings.integrator == Integrator::simd && canUseSimd(scene);
 }
 
-/// Calls work(tracer, arithmetic) in the threads that the settings allow.
+/// Calls work(tracer, target) in an arena of as many threads as the settings allow.
 template <typename Work>
 auto traceScene(const SceneView& scene, const RenderSettings& settings, const StopFlag& stop,
                 Work&& work) {
-  const int cores = tbb::info::default_concurrency(); // TBB complains about more
+  const int cores = tbb::info::default_concurrency(); // TBB warns about more
   tbb::task_arena arena(settings.threads > 0 ? std::min(settings.threads, cores) : cores);
   return arena.execute([&] {
     return isSimdUsed(scene, settings) ? traceSimd(scene, settings, stop, work)

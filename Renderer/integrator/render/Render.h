@@ -1,6 +1,8 @@
 #pragma once
-// From a prepared scene to a film: passes over the picture up to a limit of samples, time or noise.
-// The voxel type is resolved once, in withMedium; everything below is a template.
+// Renders a prepared scene to a film, in passes, up to a limit of samples, time or noise. The voxel
+// type is resolved once, in withMedium; everything below it is a template. Samples are a function
+// of (seed, pixel, sample index) and each pixel adds its samples in order, so the image depends
+// neither on threads nor on passes nor on interruptions.
 
 #include "image/Film.h"
 #include "image/Tiles.h"
@@ -18,7 +20,7 @@
 
 namespace fenestra {
 
-/// Data that transport reads; all must outlive the render.
+/// What integrators read. Non-owning: all referenced objects must outlive the render.
 struct SceneView {
   const Volume& volume;
   const TransferFunction& transfer;
@@ -27,9 +29,9 @@ struct SceneView {
   const Camera& camera;
   const Clip& clip;
   std::optional<CropBox> crop = {};
-  const ContextStyle* style = nullptr; ///< of the context; null: unchanged
+  const ContextStyle* style = nullptr; ///< null: context is not restyled
   const Tint* tint = nullptr;          ///< of segments; null: none
-  const Mixture* mixture = nullptr;    ///< of segments, in place of a tint; null: none
+  const Mixture* mixture = nullptr;    ///< of segments, instead of a tint; null: none
 };
 
 /// Calls work(medium, tracker) for the volume's storage type.
@@ -47,29 +49,27 @@ auto withMedium(const SceneView& scene, Work&& work, const StopFlag& stop = neve
       scene.volume.voxels);
 }
 
-/// Implementation of transport. Both are unbiased; `fast` falls back to `readable` if lanes do not
-/// serve.
+/// Both are unbiased. `simd` falls back to `scalar` for scenes that it does not support.
 enum class Integrator { simd, scalar };
 
-/// Limits of a render, which stops at the first of samples, seconds and noise. With a noise target
-/// on the raw picture, noisier pixels get more samples, after a pilot of 16 (SamplePlan); else all
-/// get the same number.
+/// A render stops at the first of the limits. With a noise target for the raw image, noisier pixels
+/// get more samples, after a pilot of 16 per pixel (SamplePlan). Otherwise all get the same number.
 struct RenderSettings {
   PathSettings path;
   std::uint64_t samples = 64; ///< limit of the mean number per pixel
-  double seconds = infinity;  ///< limit of the time of transport
+  double seconds = infinity;  ///< limit of the rendering time
   double noise = -1.0; ///< limit of Film::noise() after a pass, from 16 samples on; negative: none
-  /// Noise of the picture as it will be seen, in place of Film::noise(): looked at after 4, 8, 16,
-  /// … samples, so that a lucky picture in between ends nothing. Empty: Film::noise().
+  /// Noise of the final display image, compared with `noise` instead of Film::noise(). Evaluated at
+  /// 4, 8, 16, ... samples only, so that a low estimate by chance is unlikely to end the render.
   std::function<double(const Film&)> displayNoise = {};
   std::uint64_t seed = 0;
   Sampling sampling = Sampling::stratified;
   Integrator integrator = Integrator::simd;
   int threads = 0;               ///< 0: all
-  std::uint64_t passSamples = 0; ///< in a pass; 0: growing passes. Never changes the picture.
-  Shard shard = {}; ///< of the picture's tiles; the others stay empty. Not with `noise`.
+  std::uint64_t passSamples = 0; ///< per pass; 0: growing passes. Does not affect the image.
+  Shard shard = {}; ///< tiles to render; the others stay empty. Not together with `noise`.
 
-  /// True if noisier pixels get more samples, once the pilot has ended.
+  /// True if noisier pixels get more samples after the pilot.
   bool isAdaptive() const { return noise > 0.0 && !displayNoise; }
 };
 
@@ -77,28 +77,30 @@ class Pass;
 struct RenderMonitor;
 struct RenderResult;
 
-/// Other processes that take tiles of a pass, from another thread, and add them to the film.
+/// Other processes that render tiles of a pass. Another thread of this process adds the tiles to
+/// the film. This process alone holds limits, plan, checkpoints and stop flag. Tiles come back
+/// complete or not at all, so nothing is lost with a worker that dies.
 struct RemoteWorkers {
   int count = 0;
-  /// Lends them tiles of the pass, and lets them add to result.film, until the next settle().
+  /// Sends them tiles of the pass, and lets them add to result.film until the next join().
   std::function<void(Pass&, RenderResult&)> dispatch = {};
-  /// Called when this process's threads have no tile left, or rest. Returns once the pass is whole,
-  /// or `monitor` wants a film kept or a stop; nothing is added any more then. The result: counts
-  /// of what was added.
+  /// Called when this process's threads have no tile left, or pause. Returns when the pass is
+  /// complete or `monitor` requests a checkpoint or a stop; after that nothing is added. Returns
+  /// the counters of what was added.
   std::function<Counters(const RenderMonitor&)> join = {};
 };
 
 /// Progress of a running render, and its stop flag.
 struct RenderMonitor {
   std::atomic<bool> stop = false;
-  std::atomic<std::uint64_t> paths = 0; ///< finished so far, as if no pixel were empty
-  std::atomic<double> noise = infinity; ///< at the last look
-  /// Somebody watches `noise`: it is estimated after each pass, though nothing else needs it.
+  std::atomic<std::uint64_t> paths = 0; ///< finished so far; empty pixels count in full
+  std::atomic<double> noise = infinity; ///< latest estimate
+  /// Estimate `noise` after each pass even if no limit needs it.
   bool isNoiseWanted = false;
   /// Called between two passes with the result so far; the render waits.
   std::function<void(const RenderResult&)> onPassEnd = {};
-  /// Looked at by all threads, often. Once true, they end their tiles, and `keep` is called with
-  /// the result so far, which render() goes on from; the render waits. Empty: never.
+  /// Polled often, by all threads. Once true, they finish their tiles, and onCheckpoint is called
+  /// with the result so far, from which render() can resume; the render waits. Empty: never.
   std::function<bool()> isCheckpointDue = {};
   std::function<void(const RenderResult&)> onCheckpoint = {};
   RemoteWorkers workers = {};
@@ -106,11 +108,11 @@ struct RenderMonitor {
 
 enum class StopReason { samples, seconds, noise, request };
 
-/// Last pass that no limit of samples or time has cut short. The passes after it follow from it
-/// alone, so that a render toward a noise target that goes on ends as if it had not been stopped.
+/// The last pass that no limit of samples or time cut short. All later passes follow from it alone,
+/// so a resumed render toward a noise target ends as an uninterrupted one does.
 struct LastPass {
   std::uint64_t samples = 0; ///< mean per pixel at its end
-  double noise = infinity;   ///< Film::noise() there, for a target on the raw picture
+  double noise = infinity;   ///< Film::noise() then, if the raw image has a noise target
   SamplePlan plan = {};
 };
 
@@ -118,38 +120,38 @@ struct RenderResult {
   Film film;
   Counters counters = {};
   StopReason reason = StopReason::samples;
-  /// Mean samples per pixel, over pixels with isCertain = false. After a stop by request single
+  /// Mean samples per pixel, over pixels with isDeterministic = false. After a stop on request some
   /// tiles may be one pass ahead.
   std::uint64_t finishedSamples = 0;
-  std::uint64_t begunSamples = 0; ///< at the end of the pass that was begun last
+  std::uint64_t begunSamples = 0; ///< at the end of the pass started last
   LastPass last = {};
-  /// Arithmetic within which pictures are bit-identical: "scalar", or the lanes' instruction set.
+  /// Instruction set, or "scalar": images of the same target are bit-identical.
   std::string target = "scalar";
 };
 
-/// True if SIMD lanes serve the scene (SimdTracker::serves, SimdShading::serves).
+/// True if SIMD supports the scene (SimdTracker::isSupported, SimdShading::isSupported).
 bool canUseSimd(const SceneView& scene);
 
-/// RenderResult::target of a render.
+/// RenderResult::target that a render will have.
 std::string findTarget(const SceneView& scene, const RenderSettings& settings);
 
-/// `begun`: result of a render of the same scene and settings to go on from, but for threads and
-/// the limits of samples, time and noise: at least begun->begunSamples samples, and planned by
-/// noise or not as before if that is beyond the pilot.
+/// `resumed`: earlier result to resume from, of the same scene and settings. Threads and the limits
+/// of samples, time and noise may differ, with two conditions: at least resumed->begunSamples
+/// samples, and past the pilot the same isAdaptive().
 RenderResult render(const SceneView& scene, const RenderSettings& settings, RenderMonitor& monitor,
                     std::optional<RenderResult> resumed = {});
 
-/// Tiles that another process lends, and the stages of the plan between which their pixels lack
-/// samples (SamplePlan::at).
+/// Tiles that another process assigns, and the stages of the plan (SamplePlan::at) between which
+/// their pixels lack samples.
 struct TileLease {
   std::vector<int> tiles;
   std::uint64_t from = 0, to = 0;
 };
 
-/// Renders tiles for the process whose render has this one among its helpers. `next` takes the last
-/// loan's tiles from result.film, with result.counters, unless the stop flag is set; it puts the
-/// next one's pixels there, and the plan into result.last. It returns the next loan, or nothing at
-/// the end.
+/// Renders tiles for the process that has this one among its remote workers. `next` takes the last
+/// lease's tiles from result.film, with result.counters, unless the stop flag is set. It then puts
+/// the pixels of the next lease there, and the plan into result.last, and returns that lease;
+/// nothing at the end.
 void renderLeases(const SceneView& scene, const RenderSettings& settings, RenderMonitor& monitor,
                   const std::function<std::optional<TileLease>(RenderResult&)>& next);
 

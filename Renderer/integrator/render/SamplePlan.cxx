@@ -10,13 +10,12 @@
 namespace fenestra {
 namespace {
 
-/// Least s of a pixel, relative to the mean s: few samples miss rare bright paths.
+/// Minimum s of a pixel, relative to the mean s: a few samples can miss rare bright paths.
 constexpr double minNoise = 0.25;
-constexpr int radius = 2; ///< pixels to each side in around()
+constexpr int radius = 2; ///< pixels to each side in averageNeighbors()
 
-/// Variance of one sample / (x^2 + 0.01), mean over the channels. Strata leave it as it is: what
-/// they take from the variance of a mean differs little from pixel to pixel, and would be known
-/// from very few blocks.
+/// Variance of one sample / (x^2 + 0.01), mean over the channels. Stratification is ignored: the
+/// variance that it removes differs little between pixels, and would be estimated from few blocks.
 double relativeVariance(const PixelSums& pixel) {
   if (pixel.isDeterministic)
     return 0.0;
@@ -24,13 +23,13 @@ double relativeVariance(const PixelSums& pixel) {
   return (variance / (pixel.mean.square() + 0.01)).mean();
 }
 
-/// Cost of a path, in scatterings: `beginning`, plus the mean number of scatterings.
+/// Cost of a path, in scatterings: a base cost plus the mean number of scatterings.
 double pathCost(const PixelSums& pixel) {
   constexpr double baseCost = 0.15;
   return baseCost + pixel.scatterings / static_cast<double>(pixel.samples);
 }
 
-/// Mean of the values of a film's pixels around (column, row), that pixel excluded.
+/// Mean of the values of a film's pixels around (column, row), without that pixel itself.
 double averageNeighbors(const Film& film, const std::vector<double>& values, int column, int row) {
   double sum = 0.0;
   int count = -1;
@@ -44,7 +43,7 @@ double averageNeighbors(const Film& film, const std::vector<double>& values, int
   return sum / count;
 }
 
-/// Uniform in [0, 1), one for each pixel.
+/// Hash of a pixel, uniform in [0, 1).
 double dither(std::size_t pixel) {
   return static_cast<double>(mixBits(pixel + 1) >> 11) * 0x1p-53;
 }
@@ -91,7 +90,7 @@ SamplePlan::SamplePlan(std::vector<float> noise)
   sort();
 }
 
-/// Makes the sums of sorted s, without those of certain pixels.
+/// Sorts s and sums it up, without deterministic pixels.
 void SamplePlan::sort() {
   std::ranges::copy_if(m_noise, std::back_inserter(m_sorted), [](float s) { return s > 0.0F; });
   if (m_sorted.empty())
@@ -103,7 +102,7 @@ void SamplePlan::sort() {
 }
 
 /// Pixels get max(pilot, perNoise s) samples. If the first k pixels of m_sorted stay at the pilot,
-/// perNoise(k) follows from the mean; k is the least with perNoise(k) m_sorted[k] >= pilot.
+/// perNoise(k) follows from the mean. k is the smallest with perNoise(k) m_sorted[k] >= pilot.
 SamplePlan::Stage SamplePlan::at(std::uint64_t mean) const {
   Stage stage;
   stage.m_plan = this;

@@ -53,8 +53,8 @@ void TileStream::fill(CameraSamples& samples, std::size_t maxCount) {
   }
 }
 
-/// Takes neighbouring tiles, which meet much of the same matter; one by one when few are left, so
-/// that all threads get some. Returns false if none is left, or for a pause.
+/// Takes neighboring tiles, which read similar parts of the volume; one at a time near the end, so
+/// that all threads get some. Returns false if none is left or the pass pauses.
 bool TileStream::takeTiles() {
   if (m_isPaused && m_isPaused())
     return false;
@@ -62,7 +62,7 @@ bool TileStream::takeTiles() {
   return !m_taken.empty();
 }
 
-/// Makes the next tile that has samples the current one; false if none is left, or for a pause.
+/// Opens the next tile that lacks samples; false if none is left or the pass pauses.
 bool TileStream::openTile() {
   if (m_freeSlots.empty()) {
     m_freeSlots.push_back(static_cast<std::uint32_t>(m_tiles.size()));

@@ -1,6 +1,6 @@
 #pragma once
-// The samples of one pass, taken by threads path after path, from one tile into the next, so that a
-// thread that follows many paths at once never runs short of paths before the pass ends.
+// The samples of one pass. Threads take them path by path, from one tile into the next, so that a
+// thread that traces many paths at once has enough of them until the pass ends.
 
 #include "image/Film.h"
 #include "image/Tiles.h"
@@ -15,12 +15,12 @@
 
 namespace fenestra {
 
-/// State shared by all threads of a pass: the samples that the pixels of `tiles` have in stage `to`
-/// beyond those in the film.
+/// State of a pass that all threads share: the samples up to stage `to` of the plan that pixels of
+/// `tiles` lack in the film.
 class Pass {
 public:
-  /// A view of tiles, plan, empty pixels and film. Each finished tile adds the samples of stage
-  /// `to` beyond stage `from` to `paths`, as if no pixel were empty.
+  /// Non-owning: tiles, plan, empty pixels and film must outlive the pass. Each finished tile adds
+  /// its samples from stage `from` to `to` to `paths`; empty pixels count in full.
   Pass(std::span<const int> tiles, const SamplePlan::Stage& from, const SamplePlan::Stage& to,
        const EmptyPixels& empty, const Sampler& source, Film& film,
        std::atomic<std::uint64_t>& paths);
@@ -28,20 +28,20 @@ public:
   /// True once all tiles have been added to the film.
   bool isComplete() const { return m_tilesDone == m_tiles.size(); }
 
-  /// Number of tiles that nobody has taken.
+  /// Number of tiles that no thread or process has taken.
   std::size_t tilesLeft() const {
     return m_tiles.size() - std::min<std::size_t>(m_nextTile, m_tiles.size());
   }
-  /// Takes the next tiles, `most` at most, for a thread or for another process.
+  /// Takes the next tiles, at most `maxCount`, for a thread or for another process.
   std::span<const int> take(std::size_t maxCount);
-  /// Counts another process's tile, whose samples are in the film again, as added.
+  /// Marks a tile of another process as finished, once the film has its samples.
   void returnTile(int tile);
 
 private:
   friend class TileStream;
 
-  /// Calls visit(column, row, index in the film) for the pixels of a tile, and returns the samples
-  /// that its plan adds to them, as if no pixel were empty.
+  /// Calls visit(column, row, index in the film) for the pixels of a tile. Returns the samples that
+  /// the pass adds to them; empty pixels count in full.
   template <typename Visit>
   std::uint64_t forEachPixel(int tile, Visit&& visit) const {
     std::uint64_t planned = 0;
@@ -69,19 +69,19 @@ private:
   std::atomic<std::size_t> m_nextTile = 0, m_tilesDone = 0;
 };
 
-/// One thread's part of a pass: a source of paths for SimdPathIntegrator::trace.
+/// One thread's part of a pass: the source of paths for SimdPathIntegrator::trace.
 class TileStream {
 public:
-  /// Takes no more tiles once `pauses` returns true, which must outlive the stream; empty: never.
+  /// Takes no more tiles once `isPaused`, if not empty, returns true. It must outlive the stream.
   TileStream(Pass& pass, const std::function<bool()>& isPaused)
       : m_pass(pass), m_isPaused(isPaused) {}
 
-  /// Random numbers of the starts.
+  /// Generator of the samples' random numbers.
   const Sampler& numbers() const { return m_pass.m_sampler; }
-  /// Replaces `starts` by the next ones, `most` at most: fewer only if no more are left.
+  /// Replaces `samples` by the next ones, at most `maxCount`; fewer only if no more are left.
   void fill(CameraSamples& samples, std::size_t maxCount);
-  /// Takes the samples of starts in any order. A tile is added to the film as a whole, with its
-  /// last sample; each pixel's samples in the order of their numbers.
+  /// Accepts results in any order. A tile is added to the film as a unit, with its last result, and
+  /// each pixel's samples in the order of their indices.
   void deliver(std::uint32_t slot, std::uint32_t tileSample, const PathSample& sample) {
     Tile& tile = m_tiles[slot];
     tile.results[tileSample] = sample;
@@ -98,9 +98,9 @@ private:
     std::uint64_t begin, end;
   };
   struct Tile {
-    std::uint64_t planned = 0; ///< number of samples if no pixel were empty
+    std::uint64_t planned = 0; ///< number of samples; empty pixels count in full
     std::vector<Run> runs;
-    std::vector<PathSample> results; ///< of all runs, one after the other
+    std::vector<PathSample> results; ///< of all runs, in order
     std::size_t pending = 0;
   };
 
@@ -111,13 +111,13 @@ private:
 
   Pass& m_pass;
   const std::function<bool()>& m_isPaused;
-  std::span<const int> m_taken;           ///< tiles that are not yet open
-  std::vector<Tile> m_tiles;              ///< open tiles, and free places
-  std::vector<std::uint32_t> m_freeSlots; ///< free places in m_tiles
-  std::uint32_t m_current = 0;            ///< place of the tile of the next samples
+  std::span<const int> m_taken;           ///< tiles not yet open
+  std::vector<Tile> m_tiles;              ///< open tiles, and free slots
+  std::vector<std::uint32_t> m_freeSlots; ///< free slots in m_tiles
+  std::uint32_t m_current = 0;            ///< slot of the tile that gives the next samples
   std::size_t m_left = 0;                 ///< samples left in that tile
-  std::size_t m_run = 0;                  ///< their first run there
-  std::uint64_t m_next = 0;               ///< its next sample
+  std::size_t m_run = 0;                  ///< index of its current run
+  std::uint64_t m_next = 0;               ///< next sample in that run
 };
 
 } // namespace fenestra

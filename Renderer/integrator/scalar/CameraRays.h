@@ -1,5 +1,5 @@
 #pragma once
-// Eye rays, where paths begin, and the background behind the volume.
+// Camera rays, on which paths start, and the background behind the volume.
 
 #include "clip/field/Clip.h"
 #include "image/Film.h"
@@ -11,14 +11,14 @@
 
 namespace fenestra {
 
-/// Clip by which eye rays are shortened: none where the clip leaves some of a mixture, which may
-/// stand in front of its surface.
+/// Clip that shortens camera rays. If a mixture has unclipped components, rays are not shortened:
+/// such components may lie in front of the clipping surface.
 inline const Clip& cameraRayClip(const Clip& clip, const Mixture* mixture) {
   static const Clip none = ClipNone();
   return mixture && mixture->hasUnclipped() ? none : clip;
 }
 
-/// A view: camera, clip (cameraRayClip), lights and background must outlive the object.
+/// Non-owning: camera, clip (cameraRayClip), lights and background must outlive the object.
 class CameraRays {
 public:
   CameraRays(const Camera& camera, const Clip& clip, const LightSet& lights,
@@ -29,19 +29,19 @@ public:
         m_gradient.push_back(background.evaluate(1.0 - (row + 0.5) / camera.height()));
   }
 
-  /// Eye ray through raster position (column, row).
+  /// Camera ray through raster position (column, row).
   Ray ray(double column, double row) const { return m_camera.makeRay(column, row); }
-  /// True if clipping leaves every eye ray whole.
+  /// True if the clip shortens no camera ray.
   bool isUnclipped() const { return std::holds_alternative<ClipNone>(m_clip); }
-  /// Part of an eye ray that clipping leaves.
+  /// Part of a camera ray on which the clip weight can be above 0.
   Interval range(const Ray& ray) const { return visibleInterval(m_clip, ray); }
-  /// View-space depth at `distance` along an eye ray; mm.
+  /// View-space depth at `distance` along a camera ray, mm.
   double depth(const Ray& ray, double distance) const {
     return distance * m_camera.depthPerLength(ray);
   }
 
-  /// Sample of an eye ray without collision: the background. A gradient has one colour for a whole
-  /// row of pixels, so that a sample's position inside the pixel adds no noise.
+  /// Sample of a camera ray without collision: the background. A gradient is constant over a row of
+  /// pixels, so the sample's position within the pixel adds no noise.
   PathSample sampleBackground(double row, const Vec3& direction) const {
     PathSample sample;
     switch (m_background.kind) {
@@ -66,7 +66,7 @@ private:
   const Clip& m_clip;
   const LightSet& m_lights;
   const Background& m_background;
-  std::vector<Rgb> m_gradient; ///< colours of the rows of a gradient
+  std::vector<Rgb> m_gradient; ///< one color per row; empty unless the background is a gradient
 };
 
 } // namespace fenestra

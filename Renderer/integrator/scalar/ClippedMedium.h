@@ -1,19 +1,20 @@
 #pragma once
-// Matter of the clipped volume at a point, given in world and in index space. `wantGradient`: as
-// Medium::matter.
+// The medium under the clip at a point, given in world and in index space. Medium is independent of
+// the clip; here a soft cut adds its gradient (Clip.h), for scattering and for the ray marcher.
+// `wantGradient` is that of Medium::evaluate.
 
 #include "clip/field/Clip.h"
 #include "model/medium/Medium.h"
 
 namespace fenestra {
 
-/// Gradient of the clip's cut, where surfaces are shaded.
+/// Gradient that the clip's soft cut adds; zero without surface shading.
 template <typename Voxel>
 Vec3 findCutGradient(const Medium<Voxel>& medium, const Clip& clip, const Vec3& world) {
   return medium.transfer().shading ? cutGradient(clip, world) : Vec3::Zero();
 }
 
-/// Parts of a mixture; what a clip keeps matters where it does not keep as much of all.
+/// Point of a mixture. The clip weight matters only if the clip treats components differently.
 template <typename Voxel>
 MixturePoint makeMixturePoint(const Medium<Voxel>& medium, const Clip& clip, const Vec3& world,
                               const Vec3& index) {
@@ -21,7 +22,7 @@ MixturePoint makeMixturePoint(const Medium<Voxel>& medium, const Clip& clip, con
                           medium.mixtureField()->hasUnclipped() ? clipWeight(clip, world) : 1.0);
 }
 
-/// Matter that a collision meets; of a mixture one component, drawn.
+/// Medium at a collision: of a mixture, one component sampled by its part of the extinction.
 template <typename Voxel>
 MediumSample sampleMedium(const Medium<Voxel>& medium, const Clip& clip, const Vec3& world,
                           const Vec3& index, bool wantGradient, Random& random) {
@@ -33,7 +34,7 @@ MediumSample sampleMedium(const Medium<Voxel>& medium, const Clip& clip, const V
                          cut);
 }
 
-/// Calls visit(matter, probability) for all matter that a collision may meet.
+/// Calls visit(medium, probability) for each medium that a collision may sample.
 template <typename Voxel, typename Visit>
 void forEachMediumSample(const Medium<Voxel>& medium, const Clip& clip, const Vec3& world,
                          const Vec3& index, bool wantGradient, Visit&& visit) {

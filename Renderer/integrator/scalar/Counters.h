@@ -1,5 +1,5 @@
 #pragma once
-// Counts of tracking's work: plain sums, one set a thread, added up after each pass.
+// Work counters of an integrator: one set per thread, added up after each pass.
 
 #include <cstdint>
 
@@ -7,12 +7,12 @@ namespace fenestra {
 
 struct Counters {
   std::uint64_t paths = 0;
-  std::uint64_t collisions = 0;   ///< real ones, of eye and scatter rays
-  std::uint64_t lookups = 0;      ///< of the extinction
-  std::uint64_t cells = 0;        ///< majorant cells walked through
-  std::uint64_t skippedCells = 0; ///< part of `cells`: those with majorant 0
+  std::uint64_t collisions = 0;   ///< real collisions of camera and scattered rays
+  std::uint64_t lookups = 0;      ///< evaluations of the extinction
+  std::uint64_t cells = 0;        ///< majorant cells traversed
+  std::uint64_t skippedCells = 0; ///< those of `cells` whose majorant is 0
   std::uint64_t shadowRays = 0;
-  std::uint64_t gradients = 0; ///< computed at collisions
+  std::uint64_t gradients = 0; ///< gradients evaluated at collisions
 
   Counters& operator+=(const Counters& o) {
     paths += o.paths;

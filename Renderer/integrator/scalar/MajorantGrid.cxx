@@ -7,16 +7,16 @@
 namespace fenestra {
 namespace {
 
-/// The transfer function's maximum over [low, high], widened by the rounding of interpolation
-/// between two such values.
+/// Maximum of the transfer function over [low, high]. The interval is widened by the rounding error
+/// of interpolation between two such values.
 double findMaximum(const ScalarFunction& f, double low, double high) {
   const double rounding =
       4.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(low), std::abs(high));
   return f.range(low - rounding, high + rounding)[1];
 }
 
-/// Greatest |gradient| (scalar units per mm) if all interpolated values differ by at most `spread`:
-/// every central difference is at most spread / 2 per voxel.
+/// Upper bound of |gradient| (scalar units per mm) if interpolated values differ by at most
+/// `spread`: then each central difference is at most spread / 2 per voxel.
 double boundGradient(const Grid& grid, double spread) {
   return 0.5 * spread * grid.worldToIndex.linear().transpose().columnNorms().sum();
 }
@@ -26,7 +26,7 @@ float roundUp(double x) {
   return static_cast<double>(f) < x ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
 }
 
-/// Corners of a cell with the strip around it, `margin` in cells.
+/// Corners of a cell enlarged by `margin` (in cells) on each side.
 Corners findCorners(const Affine& cellToWorld, const Vec3& cell, const Vec3& margin) {
   Corners corners;
   const Box box{cell - margin, cell + margin + Vec3::Ones()};
@@ -35,8 +35,8 @@ Corners findCorners(const Affine& cellToWorld, const Vec3& cell, const Vec3& mar
   return corners;
 }
 
-/// True if the indicator may reach 1/2 in `box` (the mask's index space): a voxel around the box is
-/// at least half(). Beyond the mask the outermost voxels repeat.
+/// True if the indicator can reach 1/2 in `box` (the mask's index space): one of the voxels that
+/// interpolation reads there is at least threshold(). Outside the mask the border voxels repeat.
 bool canReachMask(const Mask& mask, const Box& box) {
   const Vec3 last = (mask.grid.size.array() - 1).cast<double>();
   const auto within = [&](const Vec3& index) { return index.cwiseMax(0.0).cwiseMin(last); };
@@ -53,7 +53,7 @@ bool canReachMask(const Mask& mask, const Box& box) {
   return false;
 }
 
-/// Greatest factor of a style on the extinction among the corners of a cell.
+/// Maximum factor by which a context style scales the extinction between the corners of a cell.
 double findMaximumFactor(const ContextStyle& style, const Corners& corners) {
   Box box = Box::makeEmpty();
   for (const Vec3& corner : corners)
@@ -61,13 +61,13 @@ double findMaximumFactor(const ContextStyle& style, const Corners& corners) {
   return canReachMask(*style.focus, box) ? 1.0 : style.extinction;
 }
 
-/// Greatest extinction, mm^-1, of the matter in a cell that the clip may remove, and of that which
-/// it leaves.
+/// Maximum extinction in a cell, mm^-1: of components that the clip can remove, and of unclipped
+/// ones.
 struct CellBound {
   double clipped = 0.0, unclipped = 0.0;
 };
 
-/// A cell's majorant under the clip and the style.
+/// Cell with the majorant that remains under the clip and the style.
 MajorantGrid::Cell makeCell(const CellBound& bound, const Corners& corners, const Clip& clip,
                             const ContextStyle* style) {
   const ClipBounds bounds =
@@ -85,10 +85,10 @@ double findMaximum(const TransferFunction& transfer, const Grid& grid, double lo
   return extinction * findMaximum(*transfer.gradientOpacity, 0.0, boundGradient(grid, high - low));
 }
 
-/// Bound for a mixture, among the corners of a cell whose scalars lie in [low, high].
+/// Bound of a mixture between the corners of a cell whose scalars lie in [low, high].
 CellBound boundMixture(const Mixture& mixture, const Grid& grid, const Corners& corners, double low,
                        double high) {
-  // Shares sum to 1 but for rounding.
+  // Label weights sum to 1 up to rounding.
   constexpr double rounding = 1.0 + 64.0 * std::numeric_limits<double>::epsilon();
   Box box = Box::makeEmpty();
   for (const Vec3& corner : corners)

@@ -1,17 +1,17 @@
 #pragma once
-// The readable truth: one scalar, unbiased path through the clipped volume. Everything faster must
-// agree with it.
+// Reference integrator: scalar, double precision, one path at a time. Unbiased; all faster
+// integrators are tested against it.
 
 #include "integrator/scalar/PathSteps.h"
 #include "integrator/scalar/Tracker.h"
 
 namespace fenestra {
 
-/// `Distances` samples collisions and transmittances like Tracker.
+/// `Distances` has the sampling functions of Tracker.
 template <typename Voxel, typename Distances = Tracker<Voxel>>
 class PathIntegrator {
 public:
-  /// A view: all arguments must outlive the estimator.
+  /// Non-owning: all arguments must outlive the integrator.
   PathIntegrator(const Grid& grid, const Medium<Voxel>& medium, const Distances& tracker,
                  const LightSet& lights, const Camera& camera, const Clip& clip,
                  const PathSettings& settings, const StopFlag& stop)

@@ -1,14 +1,13 @@
 #pragma once
-// A path, event by event: begins, arrives at a collision (gathering light), scatters. The readable
-// truth; integrator/simd/PathSteps does the same for many paths at once.
+// The steps of a path: start, vertex (where emitted light is added), scattering. The scalar
+// reference; integrator/simd/PathSteps does the same for many paths at once.
 //
 // Radiative transfer, one extinction for the three channels:
 //   L(x, w) = T(x, exit) L_light(w) + ∫ T(x, y) sigma_t(y) ∫ f(y, w, w') L(y, w') dw' dy
-// with f = albedo * phase function, or surface lobes. Collisions are drawn from T sigma_t, so
-// a path's weight changes by f / pdf alone; at each collision one light is sampled (next-event
-// estimation) and combined with light met by the scattered ray itself by the balance heuristic
-// (Veach 1997, eq. 9.8).
-
+// with f = albedo * phase function, or surface lobes. Collisions are sampled with pdf T sigma_t, so
+// that throughput changes by f / pdf alone. Each vertex samples one light (next-event estimation),
+// which is combined with emission along the scattered ray by the balance heuristic (Veach 1997,
+// eq. 9.8). A scattered ray starts at its collision: null collisions need no offset.
 #include "base/Sampler.h"
 #include "image/Film.h"
 #include "integrator/scalar/CameraRays.h"
@@ -23,37 +22,37 @@ namespace fenestra {
 
 struct PathSettings {
   Background background;
-  std::uint64_t bounces = std::numeric_limits<std::uint64_t>::max(); ///< most scatterings
-  bool wantNormals = false; ///< fill PathSample::normal even without shading
+  std::uint64_t bounces = std::numeric_limits<std::uint64_t>::max(); ///< maximum of scatterings
+  bool wantNormals = false; ///< fill PathSample::normal even without surface shading
 };
 
-/// Weight (root mean square of its components) below which paths are subject to Russian roulette.
+/// Throughput (root mean square of its components) below which Russian roulette applies.
 inline constexpr double rouletteThreshold = 0.5;
 
-/// A path under way: its next ray, and the sample gathered so far.
+/// State of a path: its next ray, and the sample accumulated so far.
 struct Path {
   Random random;
-  Vec2 uFlight;    ///< numbers of the next flight's first collision
-  Vec2 uDirection; ///< numbers of the next direction
-  Vec2 uChoices;   ///< of the next collision: whether it is a surface's, and its light
-  double row;      ///< raster row of the eye ray
+  Vec2 uFlight;    ///< random numbers of the next tentative collision: optical depth, acceptance
+  Vec2 uDirection; ///< random numbers of the next direction
+  Vec2 uChoices;   ///< random numbers at the next vertex: surface or phase function; light
+  double row;      ///< raster row of the camera ray
   Ray ray;         ///< world space
-  Interval range;  ///< part of the ray left by clipping, mm
+  Interval range;  ///< part of the ray that the clip leaves, mm
   Rgb throughput = Rgb::Ones();
   double scatterPdf = 0.0;   ///< of the ray's direction, per steradian
   std::uint64_t bounces = 0; ///< scatterings so far
   PathSample sample = {};
 };
 
-/// Light sampled at a collision: `radiance` times the transmittance of the ray arrives.
+/// Ray toward a sampled light, which contributes `radiance` times the transmittance along the ray.
 struct ShadowRay {
   Ray ray;         ///< world space
-  double distance; ///< mm to the light; infinity for lights at infinity
+  double distance; ///< to the light, mm; infinity for lights at infinity
   Rgb radiance;
 };
 
-/// A view of the scene. Random numbers of the first flight and direction are given; others come
-/// from the path's own stream, in the order of its steps.
+/// Non-owning. The random numbers of the first vertex are given (PrimarySamples); all later ones
+/// come from the path's own stream, in the order of its steps.
 template <typename Voxel>
 class PathSteps {
 public:
@@ -66,7 +65,7 @@ public:
         m_cameraRays(camera, cameraRayClip(clip, medium.mixture()), lights, settings.background),
         m_settings(settings) {}
 
-  /// Begins a path through raster position (column, row).
+  /// Starts a path through raster position (column, row).
   Path begin(double column, double row, const PrimarySamples& numbers) const {
     const Ray ray = m_cameraRays.ray(column, row);
     const Vec2 flight{toUniform(numbers.opticalDepth), toUniform(numbers.acceptance)};
@@ -75,8 +74,8 @@ public:
             m_cameraRays.range(ray)};
   }
 
-  /// Ends the path's ray at its next collision, after `distance` mm, or at infinity (no collision).
-  /// Gathers the light met before; returns true if the path scatters there.
+  /// Ends the path's ray after `distance` mm at a collision, or at infinity without one, and adds
+  /// the light emitted along it. Returns true if the path scatters there.
   bool handleVertex(Path& path, double distance) const {
     if (path.bounces > 0)
       path.sample.radiance +=
@@ -87,7 +86,7 @@ public:
   }
 
   /// Scatters the path at its collision after `distance` mm: samples a light and a direction, and
-  /// sets the path's new ray. A weight of zero ends the path.
+  /// sets the next ray. Throughput 0 ends the path.
   std::optional<ShadowRay> scatter(Path& path, double distance, Counters& counters) const {
     const Vec3 point = path.ray.at(distance);
     const bool first = path.bounces == 0;
@@ -134,8 +133,8 @@ private:
     return PhaseScattering(incoming, transfer.g, medium.albedo);
   }
 
-  /// Next-event estimation: one light, to be seen through the volume, weighted against scattering
-  /// toward that light.
+  /// Next-event estimation: samples one light, weighted by the balance heuristic against scattering
+  /// toward it. Its visibility is the transmittance of the returned ray.
   std::optional<ShadowRay> sampleLight(const Vec3& point, const Scattering& scattering,
                                        Path& path) const {
     const std::optional<LightSample> light =
@@ -151,7 +150,8 @@ private:
     return ShadowRay{{point, light->direction}, light->distance, radiance};
   }
 
-  /// Light that a scattered ray meets by itself before its next collision (or at infinity).
+  /// Radiance emitted along a scattered ray up to its next collision, weighted against
+  /// next-event estimation.
   Rgb emittedAlongRay(const Ray& ray, double distance, double scatterPdf) const {
     const auto weigh = [&](const EmitterHit& hit) -> Rgb {
       return hit.radiance * (scatterPdf / (scatterPdf + hit.pdf));
@@ -162,7 +162,7 @@ private:
     return sum;
   }
 
-  /// Russian roulette on the path's weight: its square is what the path adds to the variance.
+  /// Russian roulette on throughput. Its square measures what the path adds to the variance.
   static void playRoulette(Path& path) {
     const double rms = std::sqrt(path.throughput.square().mean());
     if (rms >= rouletteThreshold)

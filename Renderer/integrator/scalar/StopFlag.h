@@ -1,18 +1,18 @@
 #pragma once
-// A flag that cancels work under way.
+// A flag that cancels running work.
 
 #include <atomic>
 #include <cstdint>
 
 namespace fenestra {
 
-/// Stays true, once set, until the work has ended; unfinished parts are dropped whole.
+/// Once set, stays true until the work has ended. Unfinished tiles are discarded.
 using StopFlag = std::atomic<bool>;
 
-/// Flag for work that is bounded anyway.
+/// For work of bounded duration.
 inline const StopFlag neverStopped = false;
 
-/// Steps of a walk between two reads of the flag: a fraction of a millisecond. A read at each step
+/// Tracking steps per poll of the stop flag: a fraction of a millisecond. Polling at each step
 /// would cost as much as the step.
 inline constexpr std::uint32_t stopPollInterval = 1024;
 

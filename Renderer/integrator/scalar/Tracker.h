@@ -1,6 +1,7 @@
 #pragma once
-// Free paths and transmittance through the clipped, classified volume, by null collisions against a
-// majorant grid (Woodcock et al. 1965; Novak et al. 2018 for the terms). Exact: no step size.
+// Free-flight sampling and transmittance in the clipped, classified volume, by null collisions
+// against a majorant grid (Woodcock et al. 1965; terms as in Novák et al. 2018). Unbiased: there is
+// no step size.
 
 #include "base/Random.h"
 #include "integrator/scalar/Counters.h"
@@ -15,8 +16,8 @@
 namespace fenestra {
 
 /// Delta tracking: t of the first real collision, or infinity. `walk(visit)` calls visit(t,
-/// probability of a real collision) at each tentative collision until visit returns false. The
-/// first one is judged by `acceptance`, uniform in [0, 1).
+/// probability of a real collision) at each tentative collision until visit returns false.
+/// `acceptance`, uniform in [0, 1), decides about the first one.
 template <typename Walk>
 double findRealCollision(Walk&& walk, double acceptance, Random& random) {
   double distance = infinity;
@@ -43,8 +44,8 @@ double trackRatio(Walk&& walk, Random& random) {
   return ratio;
 }
 
-/// A view: medium, majorants, clip and stop must outlive the tracker. Rays are in world space, unit
-/// direction. Once `stop` is true walks are abandoned and results are meaningless.
+/// Non-owning: medium, majorants, clip and stop must outlive the tracker. Rays are in world space,
+/// unit direction. Once `stop` is true, walks end early and results are meaningless.
 template <typename Voxel>
 class Tracker {
 public:
@@ -52,8 +53,8 @@ public:
           const Clip& clip, const StopFlag& stop = neverStopped)
       : m_domain(domain), m_medium(medium), m_majorants(majorants), m_clip(clip), m_stop(stop) {}
 
-  /// Distance (mm) to the next real collision within `range`, or infinity. `first`: numbers of the
-  /// first tentative collision, its optical depth's and its acceptance.
+  /// Distance (mm) to the next real collision within `range`, or infinity. `first`: random numbers
+  /// of the first tentative collision, for its optical depth and its acceptance.
   double sampleCollision(const Ray& ray, const Interval& range, const Vec2& first, Random& random,
                          Counters& counters) const {
     const auto walk = [&](auto&& visit) {
@@ -72,19 +73,18 @@ public:
   }
 
 private:
-  /// Calls visit(t, extinction / majorant) at each tentative collision until it returns
-  /// false. One exponential optical depth is spent across cell borders and redrawn after each
-  /// collision.
+  /// Calls visit(t, extinction / majorant) at each tentative collision until it returns false. An
+  /// exponential optical depth is used up across cells, and sampled again after each collision.
   template <typename Visit>
   void walkTentative(const Ray& ray, const Interval& range, double opticalDepth, Random& random,
                      Counters& counters, Visit&& visit) const {
     const Affine& worldToIndex = m_domain.grid().worldToIndex;
-    // Cells may reach beyond the volume and its crop: the domain itself bounds the walk.
+    // Cells may extend beyond the volume and its crop, so the domain bounds the walk.
     const Interval inside = m_domain.clip(transformRay(worldToIndex, ray), range);
     if (inside.isEmpty())
       return;
-    // Lengths count from the entry into the domain: free paths keep their digits, however far away
-    // the ray's origin is.
+    // Lengths count from the entry into the domain, so that free paths keep their precision even if
+    // the ray's origin is far away.
     const Ray entering{ray.at(inside.begin), ray.direction};
     const Ray indexRay = transformRay(worldToIndex, entering);
     GridWalk walk(transformRay(m_majorants.worldToCell(), entering),

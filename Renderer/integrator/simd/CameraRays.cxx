@@ -11,7 +11,7 @@ HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 namespace {
 
-/// Draws the paths' numbers, and moves starts to their places in the pixels.
+/// Generates the paths' random numbers, and moves samples to their positions within the pixels.
 void sampleAll(const CameraTable& camera, CameraSamples& samples, PathBatch& paths) {
   for (std::size_t i = 0; i < samples.size; i += laneCount) {
     const SimdPrimarySamples numbers =
@@ -36,7 +36,6 @@ void sampleAll(const CameraTable& camera, CameraSamples& samples, PathBatch& pat
   }
 }
 
-/// Begins the paths with their eye rays.
 void beginAll(const SimdMedium& medium, const CameraTable& camera, const CameraSamples& samples,
               PathBatch& paths) {
   for (std::size_t i = 0; i < samples.size; i += laneCount) {

@@ -1,31 +1,31 @@
 #pragma once
-// Eye rays in SIMD lanes, in float (readable/CameraRays.h): where paths begin. The instruction set
-// is chosen at run time (Highway).
+// Start of paths on camera rays: SIMD version of integrator/scalar/CameraRays.h, in float. Highway
+// selects the instruction set at run time.
 
 #include "integrator/scalar/CameraRays.h"
 #include "integrator/simd/PathBatch.h"
 
 namespace fenestra {
 
-/// Eye rays as functions of the raster position, counted from the picture's middle: floats keep
-/// their digits however far away the eye is, as rays begin in the plane that faces the eye at the
-/// depth of the domain's nearest corner (at the eye, if that lies behind).
+/// Camera rays as functions of the raster position relative to the image's center. Rays start in
+/// the plane that faces the camera at the depth of the domain's nearest corner (at the camera, if
+/// that lies behind it). So floats keep their precision however far away the camera is.
 struct CameraTable {
   using Triple = std::array<float, 3>;
 
   CameraTable(const Domain& domain, const Camera& camera);
 
-  double nearDepth;              ///< of the plane, mm; PathBatch counts depths from here
-  float middleColumn, middleRow; ///< of the picture
+  double nearDepth;              ///< of that plane, mm; PathBatch depths are relative to it
+  float middleColumn, middleRow; ///< raster position of the image's center
   Triple point, pointPerColumn,
-      pointPerRow; ///< of the plane, index space: in the middle, and its change
+      pointPerRow; ///< on the plane, index space: at the center; per pixel
   Triple forward, forwardPerColumn,
-      forwardPerRow;  ///< direction, world axes: in the middle, and its change
-  AffineRows toIndex; ///< of directions
+      forwardPerRow;  ///< direction, world axes: at the center; per pixel
+  AffineRows toIndex; ///< maps world directions to index space
 };
 
-/// Begins a path for each start, behind those of `paths`. Changes rows and columns of `starts` to
-/// raster positions, counted from the picture's middle.
+/// Appends one path per camera sample to `paths`. Changes rows and columns of `samples` to raster
+/// positions relative to the image's center.
 void beginPaths(const SimdMedium& medium, const CameraTable& table, const CameraRays& cameraRays,
                 CameraSamples& samples, PathBatch& paths);
 

@@ -1,6 +1,6 @@
-// Clip of lanes at points in index space: keep, and the gradient of a soft cut (clip/field/Clip.h).
+// Clip weight and the gradient of a soft cut at points in index space (SIMD clip/field/Clip.h).
 
-/// Continuous index of a coordinate in mm among a depth buffer's samples (DepthAxis::index).
+/// Continuous index, among a depth buffer's samples, of a coordinate in mm (DepthAxis::index).
 HWY_INLINE Float depthIndex(const SimdMedium::DepthAxis& axis, Float coordinate) {
   const Float pixel = fms(coordinate, axis.perPitch, axis.start);
   const Float fine = max(min(pixel, axis.lastInside), 0.0F);
@@ -11,9 +11,9 @@ HWY_INLINE Float depthIndex(const SimdMedium::DepthAxis& axis, Float coordinate)
 /// Points in view space.
 struct ViewPoints {
   Float x, y;              ///< as toBuffer's; 0 for a plane
-  Float depth;             ///< from the target, mm
+  Float depth;             ///< relative to the target, mm
   Float scale;             ///< target's depth / depth; 1 in orthographic views
-  LaneMask isBehindCamera; ///< no lane in orthographic views
+  LaneMask isBehindCamera; ///< none in orthographic views
 };
 
 HWY_INLINE ViewPoints mapToView(const SimdMedium& medium, const Float3& p) {
@@ -30,8 +30,8 @@ HWY_INLINE ViewPoints mapToView(const SimdMedium& medium, const Float3& p) {
   return at;
 }
 
-/// Slope of a surface along one axis of the buffer, mm per mm, from its `rise` over a cell. Beyond
-/// the samples, and at the first of them, 0.
+/// Slope of a surface along one axis of the buffer, mm per mm, from its `rise` across a cell; 0 at
+/// the first sample and outside the samples.
 HWY_INLINE Float axisSlope(const SimdMedium::DepthAxis& axis, Float index, Float rise) {
   const Float before = axis.before;
   const LaneMask isFine = (index >= before) & (index < before + axis.lastInside);
@@ -40,10 +40,10 @@ HWY_INLINE Float axisSlope(const SimdMedium::DepthAxis& axis, Float index, Float
   return zeroUnless(isBetween, rise * perLength);
 }
 
-/// A surface between four samples of the buffer.
+/// A surface between four samples of the depth buffer.
 struct Surface {
-  Int sample;           ///< the first of the four
-  Float depth;          ///< mm from the target
+  Int sample;           ///< index of the top-left sample
+  Float depth;          ///< relative to the target, mm
   Float slopeX, slopeY; ///< mm per mm
 };
 HWY_INLINE Surface interpolateSurface(const SimdMedium& medium, const ViewPoints& view) {
@@ -64,7 +64,7 @@ HWY_INLINE Surface interpolateSurface(const SimdMedium& medium, const ViewPoints
           axisSlope(medium.depthY, row, lerp(downLeft - upLeft, downRight - upRight, fc))};
 }
 
-/// Exact surface depth in seams for the lanes of `isQueried`; `surface` for the others.
+/// Exact surface depth for the lanes of `isQueried`; `surface` for the others.
 inline Float querySilhouettes(const SilhouetteCells& silhouettes, LaneMask isQueried, Int cell,
                               const ViewPoints& at, double softness, Float surface) {
   static_assert(laneCount <= SilhouetteCells::maxQueries);
@@ -83,7 +83,7 @@ inline Float querySilhouettes(const SilhouetteCells& silhouettes, LaneMask isQue
   return load(surfaces.data());
 }
 
-/// ClipDepth::surfaceDepth: exact in seams for the lanes of `which`, else `surface`.
+/// ClipDepth::surfaceDepth: exact in silhouette cells for the lanes of `which`, else interpolated.
 HWY_INLINE Float refineAtSilhouette(const SimdMedium& medium, LaneMask which, const Surface& linear,
                                     const ViewPoints& at) {
   const Float surface = linear.depth;
@@ -94,7 +94,7 @@ HWY_INLINE Float refineAtSilhouette(const SimdMedium& medium, LaneMask which, co
   const Int first = shiftLeft<1>(max(cell, 0));
   const float* const bounds = &medium.silhouette->depthBounds().data()->min;
   const Float nearest = min(surface, gather(bounds, first));
-  const Float farthest = max(surface, gather(bounds + 1, first)); // least and greatest alternate
+  const Float farthest = max(surface, gather(bounds + 1, first)); // minima and maxima alternate
   const LaneMask isNear = (at.depth >= nearest) & (at.depth <= farthest + medium.softness);
   const LaneMask isQueried = which & isSilhouette & isNear;
   if (!isQueried.any())
@@ -102,15 +102,14 @@ HWY_INLINE Float refineAtSilhouette(const SimdMedium& medium, LaneMask which, co
   return querySilhouettes(*medium.silhouette, isQueried, cell, at, medium.softness, surface);
 }
 
-/// Depth of the nearest sample.
 HWY_INLINE Float findNearestDepth(const SimdMedium& medium, const ViewPoints& view) {
   const Int c = toInt(depthIndex(medium.depthX, view.x) + 0.5F);
   const Int r = toInt(depthIndex(medium.depthY, view.y) + 0.5F);
   return gather(medium.depths, r * medium.depthColumns + c);
 }
 
-/// Way of points behind the clip's surface, mm; below 0 in front. In seams exact for the lanes of
-/// `which`.
+/// Distance behind the clip's surface, mm; below 0 in front of it. In silhouette cells exact only
+/// for the lanes of `which`.
 HWY_INLINE Float signedDistance(const SimdMedium& medium, const Float3& p, const ViewPoints& view,
                                 LaneMask which) {
   if (medium.clipKind == SimdMedium::ClipKind::plane)
@@ -122,7 +121,7 @@ HWY_INLINE Float signedDistance(const SimdMedium& medium, const Float3& p, const
          (medium.silhouette ? refineAtSilhouette(medium, which, surface, view) : surface.depth);
 }
 
-/// keep for every kind of clip, for the lanes of `which`.
+/// Clip weight for every kind of clip, valid for the lanes of `which`.
 inline Float clipWeight(const SimdMedium& medium, const Float3& p, LaneMask which) {
   const ViewPoints view = mapToView(medium, p);
   const Float behind = signedDistance(medium, p, view, which);
@@ -132,7 +131,7 @@ inline Float clipWeight(const SimdMedium& medium, const Float3& p, LaneMask whic
   return select(view.isBehindCamera, 0.0F, weight);
 }
 
-/// Gradient of the depth behind a surface, along the view's axes.
+/// Gradient of the distance behind a surface, along the view's axes.
 HWY_INLINE Float3 distanceGradient(const SimdMedium& medium, const ViewPoints& view,
                                    const Surface& surface) {
   const Float x = surface.slopeX, y = surface.slopeY;
@@ -143,7 +142,7 @@ HWY_INLINE Float3 distanceGradient(const SimdMedium& medium, const ViewPoints& v
   return {-(x * view.scale), -(y * view.scale), fma(along, perDepth, 1.0F)};
 }
 
-/// cutGradient, world axes, for the lanes of `which`; 0 in the others. Requires a soft edge.
+/// Gradient of a soft cut, world axes, for the lanes of `which`; 0 in the others.
 inline Float3 cutGradient(const SimdMedium& medium, const Float3& p, LaneMask which) {
   const ViewPoints view = mapToView(medium, p);
   const Float behind = signedDistance(medium, p, view, which);

@@ -1,23 +1,24 @@
-// Rays through majorant cells, axis by axis.
+// Traversal of majorant cells, axis by axis (3D-DDA). No cell index is stored: a ray's cell follows
+// from its position.
 
-/// One axis of rays in units of a cell's edge: where they are, and when they leave a cell.
+/// One axis of a ray's traversal, in units of a cell's edge.
 struct DdaAxis {
   Float start, speed; ///< cells, cells per mm
-  Float inverse;      ///< 1 / speed; 0: the ray does not move
-  Float toMiddle;     ///< t of the middle of cell 0; infinity if the ray does not move
+  Float inverse;      ///< 1 / speed; 0: the ray does not move along this axis
+  Float toMiddle;     ///< t at the center of cell 0; infinity if the ray does not move
 
   HWY_INLINE Float at(Float t) const { return fma(speed, t, start); }
-  /// t at which a ray has left cell number `cell` and the cells up to `half` edges around its
-  /// middle; rounding moves it by some last places of the farthest t.
+  /// t at which a ray has left all cells within `half` edges of the center of cell `cell`. Rounding
+  /// errors are some last places of the largest t.
   HWY_INLINE Float exitDistance(Float cell, Float half) const {
     return fma(cell, inverse, fma(half, abs(inverse), toMiddle));
   }
 
-  /// Axis of rays given in index space.
+  /// Axis of a ray given in index space.
   static HWY_INLINE DdaAxis fromRay(const SimdMedium::Axis& axis, Float origin, Float direction) {
     DdaAxis result;
     result.speed = direction * axis.cellsPerVoxel;
-    // Clamped below the last face, so that a ray lying in that face starts inside the last cell.
+    // Clamped below the last face, so that a ray in that face starts inside the last cell.
     const Float inside = fma(origin, axis.cellsPerVoxel, 0.5F * axis.cellsPerVoxel);
     result.start = max(min(inside, axis.insideCells), 0.0F);
     const LaneMask moves = abs(result.speed) >= 1e-30F;
@@ -35,7 +36,7 @@ struct DdaAxis {
   }
 };
 
-/// t at which rays have left the cells in which they are with their reach; `cell`: these.
+/// t at which rays leave their cell and all cells within its skip radius. `cell` receives the cell.
 HWY_INLINE Float findCellExit(const SimdMedium& scene, const DdaAxis (&axes)[3], Float t,
                               LaneCells& cell) {
   const Float x = floor(axes[0].at(t));

@@ -1,13 +1,13 @@
-// Environment maps for many paths: model/lights/EnvironmentSampler.h in lanes. A part of the
-// namespace that includes it, as LightSet-inl.h.
+// Sampling of environment maps: SIMD version of model/lights/EnvironmentSampler.h. Included inside
+// a namespace, as LightSet-inl.h is.
 
-/// A bin of an alias table, and a place inside it, uniform in (0, 1].
+/// A bin of an alias table, and a position inside it, uniform in (0, 1].
 struct Bin {
   Int index;
   Float fraction;
 };
 
-/// `table`: number of the table among the tables.
+/// Samples a bin. `table`: index among the tables.
 HWY_INLINE Bin sampleBin(const AliasTables& tables, Int table, UInt random) {
   const Int own = bitsAsInt(random & static_cast<std::uint32_t>(tables.size() - 1));
   const Int place = shiftLeft(table, tables.bits) + own;
@@ -20,7 +20,7 @@ HWY_INLINE Bin sampleBin(const AliasTables& tables, Int table, UInt random) {
   return {select(below, own, toInt(other)), inside / size};
 }
 
-/// A direction, drawn in proportion to its texel's brightness times solid angle.
+/// Direction sampled in proportion to its texel's brightness times solid angle.
 struct TexelSample {
   Float3 direction;
   Int texel;
@@ -29,7 +29,7 @@ HWY_INLINE TexelSample sampleTexel(const EnvironmentTables& map, UInt u, UInt v)
   const Bin row = sampleBin(map.rows, 0, u);
   const Bin column = sampleBin(map.columns, row.index, v);
 
-  // Uniform in solid angle inside the texel: uniform in cos(theta) and phi.
+  // Uniform in solid angle inside the texel: uniform in cos(theta) and in phi.
   const Int fromSouth = Int(map.height - 1) - row.index;
   const LaneMask isSouth = row.index > fromSouth;
   const auto [upper, lower] =
@@ -44,7 +44,7 @@ HWY_INLINE TexelSample sampleTexel(const EnvironmentTables& map, UInt u, UInt v)
 }
 
 HWY_INLINE Int findTexel(const EnvironmentTables& map, const Float3& d) {
-  const auto cell = [](Float place, std::int32_t count) { // NaN, too, gets one that is there
+  const auto cell = [](Float place, std::int32_t count) { // maps NaN to a valid index, too
     return toInt(clampZero(min(place, static_cast<float>(count - 1))));
   };
   const Float sine = sqrt(square(d.x) + square(d.y));

@@ -4,7 +4,7 @@ namespace fenestra {
 
 bool EnvironmentTables::isSupported(const EnvironmentSampler& sampler) {
   constexpr double maxTotal = 1e20, minTotal = 1e-20;
-  constexpr int maxTexels = 1 << 14; // texels: places of columns and rows keep digits in float
+  constexpr int maxTexels = 1 << 14; // texels: positions in rows and columns stay precise in float
   const EnvironmentMap& map = sampler.light().map;
   const double whole = sampler.integral();
   return sampler.isConstant() || (std::max(map.width, map.height) <= maxTexels &&

@@ -1,5 +1,5 @@
 #pragma once
-// Environment maps in the form that lanes draw from and look up.
+// Environment maps in the form that SIMD code samples and evaluates.
 
 #include "base/AliasTables.h"
 #include "base/Narrow.h"
@@ -9,22 +9,22 @@
 
 namespace fenestra {
 
-/// EnvironmentSampler of a map, in float.
+/// EnvironmentSampler of a map, in float. Its CDFs become alias tables.
 struct EnvironmentTables {
   std::int32_t width, height;
-  const float* rgb; ///< of the texels, row by row; the map's own
+  const float* rgb; ///< texels of the map itself, row by row
   std::array<float, 3> tint;
-  float pmf;              ///< probability that LightSet::sample() takes this map
-  float pdfPerBrightness; ///< density of that, per steradian, of a radiance of brightness 1
+  float pmf;              ///< probability that LightSet::sample() selects this map
+  float pdfPerBrightness; ///< pdf of sampling it, per steradian, per brightness of a radiance
   AliasTables rows;
-  AliasTables columns; ///< a table for each row
-  /// 1 - cos of the angle from the nearer pole to the upper edge of its i-th row.
+  AliasTables columns; ///< one table per row
+  /// 1 - cos of the angle between the nearer pole and the upper edge of its i-th row.
   std::vector<float> oneMinusCos;
 
-  /// True if floats suffice.
+  /// True if float precision suffices.
   static bool isSupported(const EnvironmentSampler& sampler);
 
-  /// A view: the sampler must outlive the object. Not of a constant, nor of a black map.
+  /// Non-owning: the sampler must outlive the object. Its map is neither constant nor black.
   EnvironmentTables(const EnvironmentSampler& sampler, double mapPmf);
 };
 

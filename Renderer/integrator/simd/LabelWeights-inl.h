@@ -1,7 +1,7 @@
-// Shares of components at points in index space.
+// Label weights of components at points in index space.
 
-/// Calls visit(lanes, component) for each component that lanes of `which` have: its lanes, and its
-/// number, plain.
+/// Calls visit(lanes, component) once per distinct component among the lanes of `which`, with its
+/// lanes and its scalar index.
 template <typename Visit>
 HWY_INLINE void forEachComponent(LaneMask which, Int components, Visit&& visit) {
   const LaneArray<std::int32_t> each(components);
@@ -13,15 +13,15 @@ HWY_INLINE void forEachComponent(LaneMask which, Int components, Visit&& visit) 
   }
 }
 
-/// Shares at the lanes' points (Shares::at).
+/// Label weights at one point per lane (LabelWeights::forEachWeight).
 class LaneLabelWeights {
 public:
   /// `index`: in the volume's index space.
   HWY_INLINE LaneLabelWeights(const SimdLabelWeights& weights, const Float3& index)
       : m_weights(weights), m_corner(findCorner(mapPoint(weights.toWeights, index))) {}
 
-  /// Calls visit(lanes, components, shares) until all shares of the lanes of `which` have been
-  /// given. `lanes`: whose shares are above 0; the shares of others are 0.
+  /// Calls visit(lanes, components, fractions) until all weights of the lanes of `which` have been
+  /// visited. `lanes` are those with a fraction above 0; it is 0 in the others.
   template <typename Visit>
   HWY_INLINE void forEach(LaneMask which, Visit&& visit) const {
     const Int code = gather(m_weights.bricks, m_corner.brick);
@@ -40,16 +40,16 @@ public:
   }
 
 private:
-  /// Lowest voxel of the eight around a point.
+  /// The lowest of the eight voxels around a point.
   struct Corner {
-    Int brick, voxel; ///< number of the brick; and of the voxel in it
-    Float3 fractions; ///< position from there, 0 to 1
+    Int brick, voxel; ///< index of the brick; of the voxel within it
+    Float3 fractions; ///< distance from the voxel, 0 to 1
   };
   static constexpr std::int32_t edge = LabelWeights::brickEdge + 1; ///< voxels
-  /// Shares of a plane, from voxels on: four of a row and the four behind them; then of the next
-  /// slice.
+  /// Weights of a plane, four bytes in each: those from the lowest voxel on, and the four after
+  /// them; then the same in the next slice.
   using Bytes = std::array<Int, 4>;
-  /// Remainder that the planes of mixed bricks leave.
+  /// The component that gets what the planes of a mixed brick leave of 255, and these bytes.
   struct Remainder {
     Int components;
     Bytes bytes;
@@ -70,7 +70,7 @@ private:
             {x.fraction, y.fraction, z.fraction}};
   }
 
-  /// Shares in mixed bricks, but for the rest's; `plane`: the first of the brick.
+  /// Visits the planes of mixed bricks and returns the remainder. `plane`: the brick's first.
   template <typename Visit>
   HWY_INLINE Remainder forEachPlane(LaneMask mixed, Int plane, Visit&& visit) const {
     constexpr std::int32_t byte = 8, numbersAt = sizeof(LabelWeights::Plane) - sizeof(std::int32_t);
@@ -81,7 +81,7 @@ private:
       const Int start = zeroUnless(left, plane * std::int32_t{sizeof(LabelWeights::Plane)});
       const Int numbers = loadInts(memory + numbersAt, Indices(start));
       const Bytes bytes = loadBytes(memory, start + m_corner.voxel);
-      for (std::size_t i = 0; i < bytes.size(); ++i) // no byte of the shares falls below 0
+      for (std::size_t i = 0; i < bytes.size(); ++i) // no weight's byte falls below 0
         rest.bytes[i] = rest.bytes[i] - zeroUnless(left, bytes[i]);
       rest.components.setIf(left, shiftRight<2 * byte>(numbers) & 0xff);
       const Float fraction = zeroUnless(left, interpolate(bytes));
@@ -99,9 +99,9 @@ private:
             bitsAsInt(high.second)};
   }
 
-  /// Share, trilinear between the eight voxels around the point.
+  /// Fraction, trilinear between the eight voxels around the point.
   HWY_INLINE Float interpolate(const Bytes& bytes) const {
-    static_assert(edge == 5); // the next row is a byte beyond the first four
+    static_assert(edge == 5); // the next row starts one byte after the first four
     const Float3& f = m_corner.fractions;
     const auto slice = [&](std::size_t i) {
       const Int row = bytes[i], next = bytes[i + 1];

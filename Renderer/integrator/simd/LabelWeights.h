@@ -1,5 +1,5 @@
 #pragma once
-// Shares of segments in the form that lanes read.
+// Label weights in SIMD form.
 
 #include "base/Narrow.h"
 #include "model/medium/LabelWeights.h"
@@ -8,15 +8,15 @@
 
 namespace fenestra {
 
-/// Voxels along one axis, for interpolation in lanes.
+/// One axis of a voxel grid, for interpolation.
 struct SimdAxis {
   float last;          ///< index of the last voxel
-  float lastCell;      ///< greatest index of a lower voxel in interpolation
-  std::int32_t stride; ///< offset in this axis of the next voxel or brick; 0 for one voxel
+  float lastCell;      ///< maximum index of the lower voxel in interpolation
+  std::int32_t stride; ///< array offset of the next voxel or brick; 0 along an axis of one voxel
 };
 using SimdAxes = std::array<SimdAxis, 3>;
 
-/// `counts`: of voxels or bricks, for the strides.
+/// `counts`: voxels or bricks per axis, which give the strides.
 inline SimdAxes makeSimdAxes(const Size3& voxels, const Size3& counts) {
   const auto axis = [&](int i, std::int64_t stride) {
     return SimdAxis{static_cast<float>(voxels[i] - 1),
@@ -26,14 +26,14 @@ inline SimdAxes makeSimdAxes(const Size3& voxels, const Size3& counts) {
   return {axis(0, 1), axis(1, counts.x()), axis(2, counts.x() * counts.y())};
 }
 
-/// A view: the shares must outlive the object.
+/// Non-owning: the label weights must outlive the object.
 struct SimdLabelWeights {
-  /// True if lanes can number the bytes of all planes.
+  /// True if 32 bits can index the bytes of all planes.
   static bool isSupported(const LabelWeights& weights) {
     constexpr std::size_t maxCount = std::size_t{1} << 32; // indices of 32 bits
     return weights.planes().size() <= maxCount / sizeof(LabelWeights::Plane);
   }
-  /// `volume`: whose points are asked for.
+  /// `volume`: grid of the points to be looked up.
   SimdLabelWeights(const LabelWeights& weights, const Grid& volume)
       : toWeights(affineRows(weights.grid().worldToIndex * volume.indexToWorld)),
         axes(makeSimdAxes(weights.grid().size, weights.brickCount())),

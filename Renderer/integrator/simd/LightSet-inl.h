@@ -1,15 +1,15 @@
-// Lights for many paths: model/lights/LightSet.h in lanes. A part of the namespace that includes
-// it, behind Scene-inl.h.
+// Lights: SIMD version of model/lights/LightSet.h. Included inside a namespace, after
+// Lookups-inl.h.
 
 #include "integrator/simd/EnvironmentSampler-inl.h"
 #include "model/lights/LightFormulas-inl.h"
 
-/// EmitterHit in lanes.
+/// EmitterHit, one per lane.
 struct LaneEmitterHit {
   Float3 radiance;
   Float pdf;
 };
-/// LightSet::environment; selectTexel(map): each map's texel in the direction.
+/// LightSet::evaluateEnvironment. selectTexel(map) returns a map's texel in `direction`.
 template <typename TexelOf>
 HWY_INLINE LaneEmitterHit evaluateEnvironment(const SimdShading& shading, const Float3& direction,
                                               TexelOf&& selectTexel) {
@@ -22,12 +22,13 @@ HWY_INLINE LaneEmitterHit evaluateEnvironment(const SimdShading& shading, const 
   return sum;
 }
 
+/// Samples an environment map for the lanes of `which`. `choice`: as left by sampleLights.
 inline void sampleMaps(const SimdShading& shading, LaneMask which, Float choice, UInt u, UInt v,
                        LightSamples& sampled) {
   const std::size_t count = shading.maps.size();
   TexelSample toward = sampleTexel(shading.maps[0], u, v);
   LaneMask later = which;
-  for (std::size_t i = 1; i < count; ++i) { // the last map takes the remainder of rounding
+  for (std::size_t i = 1; i < count; ++i) { // rounding errors of the pmf go to the last map
     const float before = shading.maps[i - 1].pmf;
     later = later & (choice > before);
     choice = choice - before;
@@ -45,7 +46,8 @@ inline void sampleMaps(const SimdShading& shading, LaneMask which, Float choice,
   sampled.pdf = select(lit, light.pdf, sampled.pdf);
 }
 
-/// LightSet::sample for the lanes of `which`, from local points; `uBits`, `vBits`: random bits.
+/// LightSet::sample for the lanes of `which`, at points in local space (SimdShading). `uBits` and
+/// `vBits` are random bits.
 inline LightSamples sampleLightSet(const SimdShading& shading, LaneMask which, const Float3& point,
                                    Float choice, UInt uBits, UInt vBits) {
   const Float u = toUniform(uBits), v = toUniform(vBits);
@@ -55,7 +57,7 @@ inline LightSamples sampleLightSet(const SimdShading& shading, LaneMask which, c
   return sampled;
 }
 
-/// PathSteps::arriving for rays from local points, for the lanes of `which`; 0 in the others.
+/// PathSteps::emittedAlongRay for rays in local space, for the lanes of `which`; 0 in the others.
 inline Float3 emittedAlongRay(const SimdShading& shading, LaneMask which, const Float3& origin,
                               const Float3& direction, Float distance, Float scatterPdf) {
   Float3 sum{0.0F, 0.0F, 0.0F};

@@ -1,6 +1,6 @@
-// Look-ups of lanes in a scene. Each of the files named below doubles the readable or model header
-// of its name, and is a part of this namespace. Compiled once for each instruction set: include
-// after Highway's foreach_target.h.
+// SIMD look-ups in the scene. Each header included below is the SIMD version of the scalar header
+// of its name, and part of this namespace. Compiled once per instruction set: include after
+// Highway's foreach_target.h.
 
 #if defined(FENESTRA_LOOKUPS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef FENESTRA_LOOKUPS_INL_H
@@ -18,13 +18,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace fenestra::HWY_NAMESPACE {
 #include "integrator/simd/Medium-inl.h"
-// Parts of a look-up:
+// Used by the ones below:
 #include "integrator/simd/Clip-inl.h"
 #include "integrator/simd/LabelWeights-inl.h"
-// Matter, made of these:
+// Shading and mixtures:
 #include "integrator/simd/Mixture-inl.h"
 #include "integrator/simd/Shading-inl.h"
-// Rays among cells:
+// Traversal of majorant cells:
 #include "integrator/simd/DdaAxis-inl.h"
 } // namespace fenestra::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -8,24 +8,24 @@
 namespace fenestra {
 namespace {
 
-/// Array of cells with a border one cell wide.
+/// Index arithmetic of an array of cells with a border one cell wide.
 struct PaddedGrid {
   Size3 size;
 
   std::size_t count() const { return static_cast<std::size_t>(size.prod()); }
   std::size_t index(const Size3& cell) const { return linearIndex(cell, size); }
-  /// Steps from a cell to its neighbours along the axes.
+  /// Offsets from a cell to its next neighbors along the axes.
   std::array<std::size_t, 3> strides() const {
     return {index(Size3::UnitX()), index(Size3::UnitY()), index(Size3::UnitZ())};
   }
-  /// Calls visit(index, cell) for all cells of a layer inside the border.
+  /// Calls visit(index, cell) for all cells of a layer, border excluded.
   template <typename Visit>
   void forEachInLayer(std::int64_t z, Visit&& visit) const {
     for (std::int64_t y = 1; y < size.y() - 1; ++y)
       for (std::int64_t x = 1; x < size.x() - 1; ++x)
         visit(index({x, y, z}), Size3(x, y, z));
   }
-  /// Visits inner cells in the order of their indices.
+  /// Visits inner cells in ascending order of their indices.
   template <typename Visit>
   void forEachInner(Visit&& visit) const {
     for (std::int64_t z = 1; z < size.z() - 1; ++z)
@@ -39,21 +39,21 @@ struct PaddedGrid {
   }
 };
 
-/// Number of empty cells around each empty cell inside the border, -1 for filled cells: two sweeps
-/// (Rosenfeld and Pfaltz 1966), exact for distances that count diagonals as 1. Nothing beyond the
-/// border counts as empty.
+/// For each inner cell the radius, in cells, of the empty cube around it; -1 for cells that are not
+/// empty. A chessboard distance transform in two sweeps (Rosenfeld and Pfaltz 1966). Cells
+/// outside the border do not count as empty.
 std::vector<std::int32_t> findEmptyRadii(const PaddedGrid& at,
                                          const std::vector<float>& majorants) {
   constexpr std::int32_t unknown = 1000000;
   std::vector<std::int32_t> cells(at.count(), 0);
   at.forEachInner(
       [&](std::size_t i, const Size3&) { cells[i] = majorants[i] > 0.0F ? -1 : unknown; });
-  std::array<std::ptrdiff_t, 13> back; // to the neighbours that the first sweep visits before
+  std::array<std::ptrdiff_t, 13> back; // offsets to neighbors visited earlier in the first sweep
   for (std::ptrdiff_t n = 0; n < 13; ++n)
     back[static_cast<std::size_t>(n)] =
         n % 3 - 1 + at.size.x() * (n / 3 % 3 - 1 + at.size.y() * (n / 9 - 1));
   const auto relax = [&](std::int32_t* cell, std::ptrdiff_t side) {
-    // A filled neighbour (-1) allows 0; an empty neighbour with n around allows n + 1.
+    // A filled neighbor (-1) allows radius 0; an empty one of radius n allows n + 1.
     for (const std::ptrdiff_t step : back)
       if (*cell > 0)
         *cell = std::min(*cell, cell[side * step] + 1);
@@ -63,7 +63,7 @@ std::vector<std::int32_t> findEmptyRadii(const PaddedGrid& at,
   return cells;
 }
 
-/// Replaces each cell inside the border by the maximum of the 27 cells centred there.
+/// Replaces each inner cell by the maximum of the 27 cells centered there.
 void dilate(const PaddedGrid& at, std::vector<float>& cells, std::vector<float>& scratch) {
   for (const std::size_t stride : at.strides()) {
     at.forEachInParallel([&](std::size_t i, const Size3&) {
@@ -73,13 +73,13 @@ void dilate(const PaddedGrid& at, std::vector<float>& cells, std::vector<float>&
   }
 }
 
-/// Reach of each cell, and the bound that holds within the reach.
+/// Skip radius of each cell, and the majorant that holds within it.
 struct SkipRadii {
   std::vector<float> bound;
   std::vector<std::uint8_t> radii;
 };
 
-/// Sums over boxes of cells.
+/// Summed-volume table: sums over boxes of cells in constant time.
 class BoxSums {
 public:
   BoxSums(const PaddedGrid& at, const std::vector<float>& cells)
@@ -88,7 +88,7 @@ public:
       at.forEachInner([&](std::size_t i, const Size3&) { m_sums[i] += m_sums[i - stride]; });
   }
 
-  /// Mean over the inner cells at most `reach` away from a cell.
+  /// Mean over the inner cells within `radius` cells of a cell.
   float mean(const Size3& cell, std::int64_t radius) const {
     const Size3 low = (cell.array() - radius).max(1);
     const Size3 high = (cell.array() + radius).min(m_at.size.array() - 2);
@@ -108,9 +108,10 @@ private:
   std::vector<double> m_sums;
 };
 
-/// Chooses per cell the reach r of least cost per mm, in look-ups: stepCost / (edge (0.7 + r)) for
-/// steps, plus bound_r - mean majorant for null collisions. 0.7 edges: mean chord of a cell.
-/// stepCost: cost of a step relative to a look-up (measured; changes no expectation).
+/// Chooses for each cell the skip radius r of least cost per mm, in units of a look-up:
+/// stepCost / (edge (0.7 + r)) for steps, plus bound_r - mean majorant for null collisions. 0.7
+/// edges is the mean chord of a cell; stepCost is the measured cost of a step. The choice changes
+/// cost alone, never an expected value.
 SkipRadii chooseRadii(const PaddedGrid& at, const std::vector<float>& majorants,
                       const std::vector<bool>& cut, double edge) {
   constexpr double stepCost = 0.15;
@@ -120,9 +121,9 @@ SkipRadii chooseRadii(const PaddedGrid& at, const std::vector<float>& majorants,
   std::vector<float> bounds(majorants);
   std::vector<float> scratch(at.count(), 0.0F);
   for (std::size_t i = 0; i < at.count(); ++i)
-    if (cut[i]) // cut cells are walked alone
+    if (cut[i]) // cut cells are never part of another cell's radius
       bounds[i] = std::numeric_limits<float>::infinity();
-  // A cell that gains by neither r + 1 nor r + 2 is assumed not to gain by r + 3.
+  // A cell that gains from neither r + 1 nor r + 2 is assumed not to gain from r + 3.
   std::atomic<bool> some = true;
   for (std::uint32_t radius = 1; some && radius <= SimdMajorants::maxRadius; ++radius) {
     some = false;
@@ -143,11 +144,11 @@ SkipRadii chooseRadii(const PaddedGrid& at, const std::vector<float>& majorants,
   return best;
 }
 
-/// Cells of this many voxels at most are merged (measured: looser bounds cost less than more
+/// Cells of at most this many voxels are merged (measured: looser bounds cost less than more
 /// cells).
 constexpr std::int64_t maxMergedVoxels = 16;
 
-/// Code of a bound >= majorant, which is not 0.
+/// Code of a bound >= majorant > 0: the radius's bits are rounded up.
 std::uint32_t encodeMajorant(float majorant) {
   constexpr auto below = static_cast<std::uint32_t>(SimdMajorants::radiusBits);
   return (std::bit_cast<std::uint32_t>(majorant) + below) & ~below;

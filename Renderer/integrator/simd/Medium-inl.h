@@ -1,9 +1,9 @@
-// Look-ups of lanes at points in index space: scalar, extinction, majorant cells.
+// Look-ups at points in index space: scalar, extinction, majorant cell, domain.
 
-/// A point along one axis of voxels or shares, clamped in the outer half voxel.
+/// A point along one axis of a grid, clamped in the outer half voxel.
 struct AxisPosition {
-  Float lower;    ///< the lower of the two voxels around it, whole
-  Float fraction; ///< position from there, 0 to 1
+  Float lower;    ///< index of the voxel below, an integer
+  Float fraction; ///< distance from it, 0 to 1
 };
 HWY_INLINE AxisPosition locateOnAxis(const SimdAxis& a, Float x) {
   // This order of min and max maps NaN to 0.
@@ -11,12 +11,12 @@ HWY_INLINE AxisPosition locateOnAxis(const SimdAxis& a, Float x) {
   const Float lower = min(floor(inside), a.lastCell);
   return {lower, inside - lower};
 }
-/// Offset of a voxel or brick.
+/// Offset of a voxel or brick in its array.
 HWY_INLINE Int voxelOffset(const SimdAxes& axes, Float x, Float y, Float z) {
   return wholeToInt(x) + wholeToInt(y) * axes[1].stride + wholeToInt(z) * axes[2].stride;
 }
 
-/// Voxels from places on, and their neighbours along x.
+/// Each lane's voxel at `first` + `offset`, and its neighbor along x.
 template <typename Voxel>
 HWY_INLINE Pairs loadVoxels(const SimdField& field, Int first, const Indices& index,
                             std::int32_t offset) {
@@ -29,7 +29,7 @@ HWY_INLINE Pairs loadVoxels(const SimdField& field, Int first, const Indices& in
   } else if constexpr (std::is_same_v<Voxel, std::uint16_t>) {
     const Int both = loadInts(voxels + offset, index);
     return {toFloat(both & 0xffff), toFloat(shiftRight<16>(both) & 0xffff)};
-  } else { // reads four bytes, never beyond the last voxel
+  } else { // reads four bytes, but none past the last voxel
     const Int row = first + offset;
     const Int from = min(row, static_cast<std::int32_t>(field.count - 4));
     const Int four = loadInts(voxels, Indices(from));
@@ -38,7 +38,7 @@ HWY_INLINE Pairs loadVoxels(const SimdField& field, Int first, const Indices& in
   }
 }
 
-/// The scalar, trilinear between voxel centres.
+/// The scalar, trilinear between voxel centers.
 template <typename Voxel>
 HWY_INLINE Float interpolateScalar(const SimdField& field, const Float3& p) {
   const SimdAxes& axes = field.axes;
@@ -60,10 +60,10 @@ HWY_INLINE Float interpolateScalar(const SimdField& field, const Float3& p) {
   return lerp(low, high, z.fraction);
 }
 
-/// Segment of a table that holds a scalar.
+/// The segment of a table that contains a scalar.
 struct Segment {
   Int index;
-  Float beyondStart; ///< scalar units from the segment's start; not finite in the first segment
+  Float beyondStart; ///< scalar minus the segment's start; not finite in the first segment
 };
 
 HWY_INLINE Segment findSegment(const SimdTable& table, Float s) {
@@ -91,12 +91,12 @@ HWY_INLINE Float evalTable(const SimdTable& table, Float s) {
   return evalSegment(table.channels[0], findSegment(table, s));
 }
 
-/// Values by lines, one load a lane; not where a lane's bin holds a knot.
+/// Values of SimdLines, one load per lane; invalid where a lane's bin contains a knot.
 struct LineValue {
   Float value;
   LaneMask hasKnot;
 };
-/// `first`: number of each lane's first line.
+/// `first`: index of each lane's first line.
 HWY_INLINE LineValue evalLines(const SimdLines& table, Int first, Float s) {
   const Float place = max(min((s - table.start) * table.binsPerUnit, table.last), 0.0F);
   const Float line = floor(place);
@@ -105,20 +105,20 @@ HWY_INLINE LineValue evalLines(const SimdLines& table, Int first, Float s) {
   return {clampZero(fma(place - line, rise, value)), ~(rise == rise)};
 }
 
-/// Extinction (mm^-1) of a scalar, without a mixture.
+/// Extinction (mm^-1) of a scalar, for media without mixture.
 HWY_INLINE Float evalExtinction(const SimdLines& table, Float s) {
   const auto [value, hasKnot] = evalLines(table, 0, s);
   return hasKnot.any() ? select(hasKnot, evalTable(table.segments[0], s), value) : value;
 }
 
-/// Majorant cells, one a lane (SimdMajorants).
+/// Majorant cells, one per lane (SimdMajorants).
 struct LaneCells {
   Float majorant;   ///< mm^-1
   Float skipRadius; ///< cells
   LaneMask isCut;
 };
 
-/// Cells of these numbers along the axes: whole, -1 and one too many for the border.
+/// Cells with these indices along the axes: integers, from -1 (border) to the count (border).
 HWY_INLINE LaneCells loadCells(const SimdMedium& medium, Float x, Float y, Float z) {
   const Float place =
       fma(z, medium.axes[2].cellStride, fma(y, medium.axes[1].cellStride, x + medium.firstCell));
@@ -129,11 +129,11 @@ HWY_INLINE LaneCells loadCells(const SimdMedium& medium, Float x, Float y, Float
           toFloat(code & SimdMajorants::radiusBits), code < 0};
 }
 
-/// Stretches of rays, one a lane, t in mm.
+/// Parts of rays, one per lane; t in mm.
 struct LaneIntervals {
   Float begin, end;
 
-  /// Cuts off what is outside the domain (Domain::clip); rays in index space.
+  /// Intersects with the domain (Domain::clip). Rays are in index space.
   HWY_INLINE void clip(const SimdMedium& medium, const Float3& origin, const Float3& direction) {
     clip(medium.lower, medium.upper, origin, direction);
     if (const std::optional<AffineRows>& toCrop = medium.toCrop)
@@ -142,7 +142,7 @@ struct LaneIntervals {
   }
 
 private:
-  /// Cuts off what is outside a box. A ray that lies in a face counts as inside.
+  /// Intersects with a box. A ray that lies in a face counts as inside.
   HWY_INLINE void clip(const Float3& lower, const Float3& upper, const Float3& origin,
                        const Float3& direction) {
     const auto along = [&](Float low, Float high, Float o, Float d) {
@@ -160,7 +160,7 @@ private:
   }
 };
 
-/// Length (mm) of a ray from inside the domain to its end; 0 if rounding put the origin outside.
+/// Length (mm) of a ray up to the domain's end; 0 if rounding put the origin outside.
 HWY_INLINE Float lengthInDomain(const SimdMedium& medium, const Float3& origin,
                                 const Float3& direction) {
   LaneIntervals inside{0.0F, std::numeric_limits<float>::infinity()};
@@ -168,7 +168,7 @@ HWY_INLINE Float lengthInDomain(const SimdMedium& medium, const Float3& origin,
   return clampZero(inside.end);
 }
 
-/// Lanes whose point (index space) lies in the focus, where a style changes nothing.
+/// Lanes whose point (index space) lies in the focus, where the context style does not apply.
 HWY_INLINE LaneMask isFocus(const SimdMedium::Context& context, const Float3& p) {
   return interpolateScalar<std::uint8_t>(context.focus, mapPoint(context.toFocus, p)) >=
          context.level;

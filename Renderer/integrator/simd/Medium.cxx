@@ -1,4 +1,4 @@
-// Construction of SimdTracker's scene.
+// Construction of SimdTracker and its SimdMedium.
 
 #include "integrator/simd/Tracker.h"
 
@@ -14,8 +14,8 @@ SimdMedium::DepthAxis toSimd(const DepthAxis& axis) {
           static_cast<float>(axis.size() - 1)};
 }
 
-/// Affine map of index space: normal . (world point - from) + offset, `normal` and `from` in world
-/// space.
+/// Row of an affine map from index space: normal . (world point - from) + offset. `normal` and
+/// `from` are in world space.
 std::array<float, 4> makeRow(const Grid& grid, const Vec3& normal, const Vec3& from,
                              double offset) {
   const Vec3 n = grid.indexToWorld.linear().transpose() * normal;
@@ -23,7 +23,7 @@ std::array<float, 4> makeRow(const Grid& grid, const Vec3& normal, const Vec3& f
   return {narrow(n.x()), narrow(n.y()), narrow(n.z()), narrow(o)};
 }
 
-/// Greatest number of voxels, along one axis, that 1 mm crosses in any direction.
+/// Maximum number of voxels, along one axis, that 1 mm in any direction crosses.
 double maxVoxelsPerMm(const Grid& grid) {
   return grid.worldToIndex.linear().transpose().columnNorms().maxCoeff();
 }
@@ -32,7 +32,7 @@ SimdField makeField(const void* voxels, const Grid& grid) {
   return {voxels, grid.voxelCount(), makeSimdAxes(grid.size, grid.size)};
 }
 
-/// Extinctions of all matter.
+/// The extinction functions of the medium: one, or one per component.
 std::vector<const ScalarFunction*> listExtinctions(const TransferFunction& transfer,
                                                    const Mixture* mixture) {
   if (!mixture)
@@ -118,8 +118,8 @@ double setDomainRay(RayBatch& rays, std::size_t i, const Domain& domain, const R
 
 bool SimdTracker::isSupported(const Volume& volume, const TransferFunction& transfer,
                               const Mixture* mixture) {
-  constexpr double maxDepth = 1e5; // rounding moves a collision by 0.6 % of a free path, at most
-  // Voxels in a row; a float's last place is then far below MajorantGrid::margin.
+  constexpr double maxDepth = 1e5; // rounding moves a collision by at most 0.6 % of a free path
+  // Voxels along the diagonal: a float's last place is then far below MajorantGrid::margin.
   constexpr double maxVoxels = 1 << 17;
   const std::int64_t count = volume.grid.voxelCount();
   constexpr std::int64_t maxCount = std::int64_t{1} << 31; // indices of 32 bits

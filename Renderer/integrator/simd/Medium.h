@@ -1,5 +1,5 @@
 #pragma once
-// A volume and its clip in the form that lanes read.
+// A volume and its clip in SIMD form.
 
 #include "base/Narrow.h"
 #include "integrator/simd/MajorantGrid.h"
@@ -15,23 +15,23 @@ namespace fenestra {
 
 class SilhouetteCells;
 
-/// Voxels for interpolation in lanes.
+/// Voxels for interpolation.
 struct SimdField {
   const void* voxels = nullptr;
   std::int64_t count = 0;
   SimdAxes axes = {};
 };
 
-/// Plain numbers and pointers, in float and index space. Built by SimdTracker.
+/// Numbers and pointers alone, in float and index space. SimdTracker builds it.
 struct SimdMedium {
-  /// First voxel, of Voxels' types.
+  /// Pointer to the first voxel, of one of the types of Voxels.
   using FirstVoxel =
       std::variant<const std::uint8_t*, const std::int16_t*, const std::uint16_t*, const float*>;
   /// Cells along one axis.
   struct Axis {
     float cellEdge;      ///< voxels
     float cellsPerVoxel; ///< 1 / cellEdge
-    float insideCells;   ///< greatest float below `cells`
+    float insideCells;   ///< largest float below the number of cells
     float cellStride;    ///< offset of the next cell in SimdMajorants::codes
   };
   /// Samples of the clip's depth buffer along one axis (clip/focus/DepthBuffer.h).
@@ -42,8 +42,8 @@ struct SimdMedium {
   /// ContextStyle (model/medium/ContextStyle.h) in float.
   struct Context {
     SimdField focus;
-    AffineRows toFocus = {}; ///< index space to the focus's index space
-    float level = 0.0F;      ///< voxel value at the focus's surface
+    AffineRows toFocus = {}; ///< from the volume's index space to the focus's
+    float level = 0.0F;      ///< voxel value on the focus's surface
     float extinction = 1.0F, saturation = 1.0F;
   };
 
@@ -54,14 +54,14 @@ struct SimdMedium {
   std::array<float, 3> lower, upper;
   std::optional<AffineRows> toCrop = {};
 
-  SimdLines extinctions; ///< mm^-1 over the scalar: of all matter, or of a mixture's components
+  SimdLines extinctions; ///< mm^-1 over the scalar: one function, or one per mixture component
   std::optional<SimdMixture> mixture = {};
 
   SimdMajorants cells;    ///< fewer than 2^23
   float firstCell = 0.0F; ///< index in SimdMajorants::codes of the first cell inside the border
-  float lastCell = 0.0F;  ///< index of the last one, the border's
-  /// Way, mm, that a ray goes on behind a face before it looks for its cell: half of
-  /// MajorantGrid::margin at most, so that the new cell is not the old one, whatever rounding does.
+  float lastCell = 0.0F;  ///< index of the last cell, which belongs to the border
+  /// Distance, mm, by which a ray steps past a face before its position gives the next cell. It
+  /// exceeds rounding errors, so that rays cannot get stuck; MajorantGrid::margin is twice as much.
   float overshoot = 0.0F;
 
   std::optional<Context> context = {};
@@ -71,15 +71,15 @@ struct SimdMedium {
   float softness = 0.0F;               ///< mm
   float perSoftness = 0.0F;            ///< 1 / mm; 0: sharp edge
   float cutSlope = 0.0F;               ///< cutShading / softness, mm^-1; 0: sharp edge
-  std::array<float, 3> cutNormal = {}; ///< into matter, world: a plane's; else the view's axis
+  std::array<float, 3> cutNormal = {}; ///< world, into the medium: of a plane; else view axis
   bool perspective = false;
-  /// Rows of the map from index space to view space, depth counted from the target.
+  /// Rows of the map from index space to view space. Depth is relative to the target.
   AffineRows toView = {};
   AffineRows fromView = {};          ///< directions: view space to world
   std::array<float, 4> toPlane = {}; ///< distance from the plane, mm; > 0: removed
   float targetDepth = 0.0F;
   DepthAxis depthX = {}, depthY = {};
-  const float* depths = nullptr; ///< mm, counted from the target
+  const float* depths = nullptr; ///< mm, relative to the target
   std::int32_t depthColumns = 0;
   const SilhouetteCells* silhouette = nullptr; ///< for an exact boundary; else null
 };

@@ -1,6 +1,6 @@
-// Parts of a mixture at points in index space.
+// Components of a mixture at points in index space.
 
-/// Extinction (mm^-1) of one component a lane, as if it had all of the space.
+/// Extinction (mm^-1) of one component per lane, at label weight 1.
 HWY_INLINE Float evalExtinction(const SimdLines& table, LaneMask which, Int components,
                                 Float scalar) {
   LineValue at = evalLines(table, zeroUnless(which, components * table.count), scalar);
@@ -10,16 +10,15 @@ HWY_INLINE Float evalExtinction(const SimdLines& table, LaneMask which, Int comp
   return at.value;
 }
 
-/// Lanes of `which` whose component the clip leaves.
+/// Lanes of `which` whose component is unclipped.
 HWY_INLINE LaneMask findUnclipped(const SimdMixture& mixture, LaneMask which, Int components) {
   if (!mixture.hasUnclipped)
     return LaneMask::none();
   return gather(mixture.isUnclipped.data(), zeroUnless(which, components)) == 1;
 }
 
-/// Calls visit(lanes, components, extinctions) for the parts in the lanes of `which`
-/// (MixtureField::forEachPart); extinctions of lanes that are not in `lanes` are 0. `kept`: keep of
-/// the clip.
+/// Calls visit(lanes, components, extinctions) for the components in the lanes of `which`
+/// (MixtureField::forEachPart). Extinctions are 0 outside `lanes`. `weight`: clip weight.
 template <typename Visit>
 HWY_INLINE void forEachPart(const SimdMedium& medium, LaneMask which, const Float3& index,
                             Float scalar, Float weight, Visit&& visit) {
@@ -31,7 +30,7 @@ HWY_INLINE void forEachPart(const SimdMedium& medium, LaneMask which, const Floa
   LaneLabelWeights(medium.mixture->weights, index).forEach(which, part);
 }
 
-/// Extinction (mm^-1) of what a clip may remove, and of what it leaves.
+/// Extinction (mm^-1) of the components that the clip can remove, and of the unclipped ones.
 struct LaneExtinctions {
   Float clipped, unclipped;
 };
@@ -48,7 +47,7 @@ inline LaneExtinctions sumExtinctions(const SimdMedium& medium, LaneMask which, 
   return sums;
 }
 
-/// Extinctions of all matter at points, under the context's style. `isMixed`: there is a mixture.
+/// Extinction at points, under the context's style. `isMixed`: the medium is a mixture.
 template <bool isMixed>
 HWY_INLINE LaneExtinctions evalExtinctions(const SimdMedium& medium, LaneMask which,
                                            const Float3& index, Float scalar) {
@@ -64,14 +63,15 @@ HWY_INLINE LaneExtinctions evalExtinctions(const SimdMedium& medium, LaneMask wh
   return all;
 }
 
-/// Keep of the clip where a mixture's components differ in it; else 1.
+/// Clip weight for a mixture with clipped and unclipped components; else 1, as it then cancels.
 inline Float mixtureClipWeight(const SimdMedium& medium, LaneMask which, const Float3& index) {
   return medium.mixture->hasUnclipped && medium.clipKind != SimdMedium::ClipKind::none
              ? clipWeight(medium, index, which)
              : Float(1.0F);
 }
 
-/// Components that collisions of the lanes of `which` meet (MixtureField::draw); 0 in others.
+/// Samples one component per lane of `which` at a collision (MixtureField::sampleComponent); 0 in
+/// the other lanes.
 inline Int sampleComponents(const SimdMedium& medium, LaneMask which, const Float3& index,
                             Float scalar, Float uniform) {
   const Float weight = mixtureClipWeight(medium, which, index);
@@ -83,14 +83,14 @@ inline Int sampleComponents(const SimdMedium& medium, LaneMask which, const Floa
   Int sampled = 0;
   forEachPart(medium, which, index, scalar, weight, [&](LaneMask, Int components, Float part) {
     const LaneMask some = undecided & (part > 0.0F);
-    sampled = select(some, components, sampled); // the last one, if rounding leaves all
+    sampled = select(some, components, sampled); // the last component, if rounding skips all
     undecided = undecided.without(some & (left < part));
     left = left - part;
   });
   return sampled;
 }
 
-/// Scattering of one component a lane; all count as coated, with a coat that may reflect nothing.
+/// BsdfParameters of one component per lane. All count as coated; a coat may have reflectance 0.
 inline BsdfParameters<Float> gatherBsdfs(const SimdShading& shading, Int components) {
   constexpr std::int32_t stride = sizeof(BsdfParameters<float>) / sizeof(float);
   const Int at = components * stride;

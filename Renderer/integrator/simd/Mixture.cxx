@@ -4,7 +4,7 @@ namespace fenestra {
 
 namespace {
 
-/// For each component the first one of that extinction, clipped alike.
+/// For each component the first with the same extinction and the same isClipped.
 std::vector<std::int32_t> findFirstAlike(const std::vector<Component>& components) {
   std::vector<std::int32_t> first;
   for (const Component& component : components) {

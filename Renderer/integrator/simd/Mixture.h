@@ -1,5 +1,5 @@
 #pragma once
-// Shares of a mixture's components in the form that lanes read.
+// Label weights of a mixture's components in SIMD form.
 
 #include "integrator/simd/LabelWeights.h"
 #include "model/medium/Mixture.h"
@@ -9,20 +9,21 @@
 
 namespace fenestra {
 
-/// A view: the mixture must outlive the object.
+/// Non-owning: the mixture must outlive the object.
 struct SimdMixture {
-  /// True if lanes support every part of the mixture: no gradient opacity, no borders as surfaces.
+  /// False for mixtures with gradient opacity or with interfaces shaded as surfaces.
   static bool isSupported(const Mixture& mixture);
-  /// `volume`: whose points are asked for.
+  /// `volume`: grid of the points to be looked up.
   SimdMixture(const Mixture& mixture, const Grid& volume);
 
   SimdLabelWeights weights;
-  /// The same, but bricks whose components all have one extinction, and are clipped alike, are pure
-  /// ones of the first such component: flights need not tell them apart.
+  /// Label weights for free flights, which read extinctions alone. A brick whose components have
+  /// the same extinction, and are all clipped or all unclipped, becomes a pure brick of the first
+  /// such component.
   SimdLabelWeights merged;
   std::shared_ptr<const std::vector<std::int32_t>> mergedBricks;
-  bool hasUnclipped;                     ///< the clip leaves some component
-  std::vector<std::int32_t> isUnclipped; ///< of each component: 1, or 0
+  bool hasUnclipped;                     ///< some component is unclipped
+  std::vector<std::int32_t> isUnclipped; ///< per component: 1 if unclipped, else 0
 };
 
 } // namespace fenestra

@@ -1,7 +1,7 @@
 #pragma once
-// Many paths at once, for speed: all of a batch fly, then all scatter, then all look at their
-// lights, and new paths replace those that have ended. A path depends on its own random numbers
-// alone, so its sample is the same whichever paths share the batch.
+// SIMD path integrator. All paths of a batch sample their collisions, then scatter, then trace
+// shadow rays; new paths replace those that have ended. A path depends on its own random numbers
+// alone, so its sample does not depend on the other paths of the batch.
 
 #include "integrator/simd/CameraRays.h"
 #include "integrator/simd/PathSteps.h"
@@ -13,8 +13,8 @@ namespace fenestra {
 
 class SimdPathIntegrator {
 public:
-  /// A view: all arguments must outlive the wave. The tracker must have the same `stop`: paths left
-  /// unfinished are dropped here.
+  /// Non-owning: all arguments must outlive the integrator. The tracker must have the same `stop`:
+  /// it leaves paths unfinished, which are discarded here.
   SimdPathIntegrator(const SimdTracker& tracker, const SimdShading& shading,
                      const CameraTable& table, const CameraRays& cameraRays, const StopFlag& stop)
       : m_tracker(tracker),
@@ -23,7 +23,7 @@ public:
         m_cameraRays(cameraRays),
         m_stop(stop) {}
 
-  /// Traces all paths of source.fill(starts, most), at most `atOnce` together, and calls
+  /// Traces all paths of source.fill(samples, maxCount), at most `maxPaths` at a time, and calls
   /// source.deliver(tile, tileSample, sample) for each, in any order. Returns false if `stop`
   /// became true before all had ended.
   template <typename Source>
@@ -79,7 +79,7 @@ private:
     const auto triple = [&](const SoaArray3& columns) {
       return Rgb(columns[0][i], columns[1][i], columns[2][i]);
     };
-    if (paths.bounces[i] == 0) // escaped, or collided with a limit of 0 scatterings
+    if (paths.bounces[i] == 0) // escaped, or collided with scatterings limited to 0
       return std::isinf(paths.rays.result[i])
                  ? m_cameraRays.sampleBackground(double{paths.row[i]},
                                                  triple(paths.cameraDirection).matrix())

@@ -12,7 +12,7 @@ namespace fenestra::HWY_NAMESPACE {
 #include "model/medium/ScatteringFormulas-inl.h"
 namespace {
 
-/// A path's own random numbers: hashes of a counter and a key.
+/// Random numbers of one path per lane: hashes of a counter and a key.
 struct PathRandom {
   UInt key, counter;
 
@@ -23,7 +23,7 @@ struct PathRandom {
   HWY_INLINE Float uniform() { return toUniform(nextBits()); }
 };
 
-/// One path a lane, at its collision.
+/// One path per lane, at its collision.
 struct Collisions {
   LaneMask active; ///< lanes that scatter
   LaneMask first;  ///< lanes that scatter for the first time
@@ -31,9 +31,9 @@ struct Collisions {
   Float scalar;
   Float3 incoming, throughput;
   Float3 albedo = {};
-  Float3 gradient = {0.0F, 0.0F, 0.0F}; ///< 0 unless needed
+  Float3 gradient = {0.0F, 0.0F, 0.0F}; ///< filled if needed
   LaneMask surface = LaneMask::none();
-  Int component = 0; ///< of a mixture
+  Int component = 0; ///< sampled from a mixture
 };
 
 template <typename Voxel>
@@ -75,7 +75,7 @@ private:
     m_paths.ended[i / 64] |= there.without(alive).bits() << i % 64;
   }
 
-  /// Adds the light that scattered rays met before their collisions, or at infinity.
+  /// Adds the light emitted along scattered rays, up to their collision or at infinity.
   HWY_INLINE void addEmitted(std::size_t i, LaneMask scattered, const Float3& origin,
                              Float distance) {
     if (!scattered.any())
@@ -87,7 +87,7 @@ private:
     store3(sum + load3(m_paths.throughput, i) * light, m_paths.radiance, i);
   }
 
-  /// Scatters the lanes of `going`; returns the lanes that go on afterwards.
+  /// Scatters the lanes of `active`; returns those whose path continues.
   LaneMask collide(std::size_t i, LaneMask active, LaneMask first, const Float3& origin,
                    Float distance) {
     PathRandom draws{load(&m_paths.key[i]), load(&m_paths.counter[i])};
@@ -99,7 +99,7 @@ private:
                             : scatter(i, at, draws, m_shading.bsdfs[0]);
   }
 
-  /// Scatters lanes by the law; returns those that go on afterwards.
+  /// Scatters by the given BSDF parameters; returns the lanes whose path continues.
   template <typename Number>
   HWY_INLINE LaneMask scatter(std::size_t i, const Collisions& at, PathRandom& draws,
                               const BsdfParameters<Number>& law) {
@@ -118,7 +118,7 @@ private:
                            select(at.surface, o.pdf, s.pdf)};
       });
 
-    const Float choice = m_shading.hybrid ? draws.uniform() : 0.0F; // independent of neighbours
+    const Float choice = m_shading.hybrid ? draws.uniform() : 0.0F; // even if no lane needs it
     const Float u = selectGiven(at.first, m_paths.uDirection[0], i, draws);
     const Float v = selectGiven(at.first, m_paths.uDirection[1], i, draws);
     ScatterSamples sampled = phase.sample(u, v);
@@ -160,20 +160,20 @@ private:
     return at;
   }
 
-  /// A number of each path at i: of `given` where it scatters for the first time.
+  /// One random number per path: given at its first scattering, generated at later ones.
   static HWY_INLINE Float selectGiven(LaneMask first, const SoaArray<float>& given, std::size_t i,
                                       PathRandom& draws) {
     return select(first, load(&given[i]), draws.uniform());
   }
 
-  /// Lanes whose matter the clip may remove.
+  /// Lanes whose component the clip can remove.
   HWY_INLINE LaneMask findClippable(const Collisions& at) const {
     return m_medium.mixture
                ? at.active.without(findUnclipped(*m_medium.mixture, at.active, at.component))
                : at.active;
   }
 
-  /// Extinction of the matter that collisions meet, as if it had all of the space.
+  /// Extinction of the component at the collision, at label weight 1.
   HWY_INLINE Float evalOwnExtinction(const Collisions& at) const {
     return m_medium.mixture
                ? evalExtinction(m_medium.extinctions, at.active, at.component, at.scalar)
@@ -202,7 +202,7 @@ private:
     put3(makeNormal(gradient, dot(at.incoming, gradient), 1.0F), m_paths.firstNormal);
   }
 
-  /// PathSteps::sampleLight.
+  /// PathSteps::sampleLight: appends a shadow ray for each lane whose light can contribute.
   template <typename Toward>
   void sampleLights(std::size_t i, const Collisions& at, PathRandom& draws, Toward&& toward) {
     const Float choice = selectGiven(at.first, m_paths.uChoices[1], i, draws);
@@ -234,7 +234,7 @@ private:
     m_shadowRays.rays.size += count;
   }
 
-  /// Sets the paths' weights and new rays. Returns the lanes that survive Russian roulette.
+  /// Sets the paths' throughput and next rays. Returns the lanes that survive Russian roulette.
   HWY_INLINE LaneMask continuePath(std::size_t i, const Collisions& at,
                                    const ScatterSamples& sampled, PathRandom& draws) {
     constexpr auto threshold = static_cast<float>(rouletteThreshold);
@@ -282,7 +282,7 @@ void dropEndedLanes(PathBatch& paths) {
       (store(pack(load(&columns[i])), &columns[left]), ...);
     };
     const auto move3 = [&](auto&... columns) { (move(columns[0], columns[1], columns[2]), ...); };
-    if (left != i || ended.any()) { // all that paths need after their first scattering
+    if (left != i || ended.any()) { // the columns that paths need after their first scattering
       move3(paths.rays.origin, paths.rays.direction, paths.direction, paths.throughput,
             paths.radiance, paths.firstAlbedo, paths.firstNormal);
       move(paths.rays.length, paths.rays.depthBits, paths.rays.acceptance, paths.scatterPdf,

@@ -1,6 +1,6 @@
 #pragma once
-// Events of many paths at once: PathSteps in SIMD lanes, in float. The instruction set is chosen at
-// run time (Highway).
+// Vertices of many paths at once: SIMD version of PathSteps, in float. Highway selects the
+// instruction set at run time.
 
 #include "integrator/scalar/PathSteps.h"
 #include "integrator/simd/PathBatch.h"
@@ -8,20 +8,20 @@
 
 namespace fenestra {
 
-/// Light sampled for paths: `radiance` times the transmittance of the ray arrives at `path`.
+/// Shadow rays: `radiance` times the transmittance of a ray is added to `path`.
 struct ShadowBatch {
   RayBatch rays;
   SoaArray3 radiance;
   SoaArray<std::uint32_t> path;
 };
 
-/// Handles the paths' collisions and escapes (rays.result): gathers the light met by the rays,
-/// replaces `lights` by one light for each path that scatters, sets new rays, and marks the paths
-/// that have ended.
+/// Handles the paths' collisions and escapes (rays.result): adds the light emitted along the rays,
+/// replaces `shadowRays` by one per path that scatters and samples a light, sets the next rays, and
+/// marks the paths that have ended.
 void scatterPaths(const SimdMedium& medium, const SimdShading& shading, PathBatch& paths,
                   ShadowBatch& shadowRays, Counters& counters);
 
-/// Takes the paths that have ended out of the batch.
+/// Removes ended paths from the batch; the others move up, so that there are no gaps.
 void dropEnded(PathBatch& paths);
 
 } // namespace fenestra

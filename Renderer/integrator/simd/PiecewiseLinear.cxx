@@ -7,12 +7,12 @@ namespace {
 
 constexpr std::size_t lineCount = 1024;
 
-/// Appends a function's lines over the bins between two scalars.
+/// Appends the lines of a function over the equal bins of `bins`.
 void appendLines(std::vector<SimdTable::Line>& lines, const ScalarFunction& function,
                  const Interval& bins) {
   const auto& knots = function.knots();
   const double width = (bins.end - bins.begin) / static_cast<double>(lineCount);
-  // Rounding of a float.
+  // Bound of float rounding errors.
   const double rounding =
       2.5e-4 * width + 0x1p-22 * std::max(std::abs(bins.begin), std::abs(bins.end));
   const bool isFine = rounding < 0.1 * width || knots.size() == 1;
@@ -24,7 +24,7 @@ void appendLines(std::vector<SimdTable::Line>& lines, const ScalarFunction& func
   };
   for (std::size_t bin = 0; bin < lineCount; ++bin) {
     const double low = bins.begin + width * static_cast<double>(bin), high = low + width;
-    // At its edges a bin may have one knot, where the function bends and does not jump.
+    // A bin may have one knot on each edge, where the function bends but does not jump.
     const auto inside = behind(low + rounding);
     const bool isLine = isFine && inside - before(low - rounding) <= 1 &&
                         before(high - rounding) <= inside && behind(high + rounding) - inside <= 1;
@@ -36,7 +36,7 @@ void appendLines(std::vector<SimdTable::Line>& lines, const ScalarFunction& func
   lines.push_back({narrow(knots.back().value[0]), 0.0F});
 }
 
-/// `count` over a range of scalars, per unit; 0 if none has a width that floats can tell.
+/// Bins per scalar unit over a range; 0 if a float cannot represent it.
 float computeBinsPerUnit(std::size_t count, double range) {
   const float perUnit = range > 0.0 ? narrow(static_cast<double>(count) / range) : 0.0F;
   return std::isfinite(perUnit) ? perUnit : 0.0F;
@@ -62,13 +62,13 @@ SimdTable::SimdTable(const PiecewiseLinear<Channels>& function) {
     channels.push_back(std::move(channel));
   }
 
-  // More bins than segments, so that few segments have to be tried.
+  // More bins than segments, so that a look-up tries few segments.
   const std::size_t bins = 2 * knots.size();
   binStart = narrow(knots.front().position);
   const double span = function.span();
   binsPerUnit = computeBinsPerUnit(bins, span);
   for (std::size_t bin = 0; bin < bins; ++bin) {
-    // One bin early: rounding must not lead past a segment.
+    // One bin early, so that rounding cannot skip a segment.
     const double start = knots.front().position +
                          span * (static_cast<double>(bin) - 1.0) / static_cast<double>(bins);
     const auto segment = std::ranges::upper_bound(position, start) - position.begin() - 1;

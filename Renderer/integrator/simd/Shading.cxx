@@ -3,7 +3,6 @@
 namespace fenestra {
 namespace {
 
-/// True if no lobe is narrower than the resolution of directions in float.
 bool hasWideLobes(const TransferFunction& transfer) {
   constexpr double minRoughness = 1e-2;
   constexpr double maxG = 0.9999;
@@ -15,10 +14,10 @@ bool hasWideLobes(const TransferFunction& transfer) {
 
 bool SimdShading::isSupported(const Grid& grid, const TransferFunction& transfer,
                               const LightSet& lights, const Mixture* mixture) {
-  constexpr double maxDistance = 1e15; // mm; squares and areas stay far below the greatest float
+  constexpr double maxDistance = 1e15; // mm; squares and areas stay far below the largest float
   constexpr double maxRadiance = 1e20;
-  constexpr double minRadius = 1e-3; // mm; radius of a sphere whose square of the sine is a float
-  constexpr double maxRadius = 1e6;  // mm; distance^2 - radius^2 has digits left in float
+  constexpr double minRadius = 1e-3; // mm; minimum radius of spheres: sine^2 must not underflow
+  constexpr double maxRadius = 1e6;  // mm; keeps distance^2 - radius^2 precise in float
   const auto isNear = [&](const auto& light, double most) {
     return (light.center - grid.worldCenter()).norm() < most &&
            light.radiance.maxCoeff() < maxRadiance;
@@ -74,9 +73,9 @@ SimdShading::SimdShading(const Grid& grid, const TransferFunction& transfer, con
   const double scale = 0.5 / (span > 0.0 ? span : 1.0);
   indexDifferenceToGradient =
       affineRows(Affine(Mat3(scale * grid.worldToIndex.linear().transpose())));
-  if (bounces > 0) // else nothing is lit, and large tables are not needed
+  if (bounces > 0) // without scattering no light is sampled, and the large tables are not needed
     for (const PlacedEnvironment& environment : set.environments())
-      if (environment.pmf > 0.0) // no constant, no black map
+      if (environment.pmf > 0.0) // maps alone: constant and black ones are never sampled
         maps.emplace_back(environment.sampler, environment.pmf);
   hasSampledLights = !lights.areas.empty() || !lights.directionals.empty() ||
                      !lights.spheres.empty() || !maps.empty();
