@@ -43,7 +43,7 @@ ColorFunction readColors(const JsonNode& rows) {
     colors.push_back({readFinite(parts[0]), readHexColor(parts[1])});
   }
   if (colors.empty() || colors.size() > maxColors)
-    throw rows.error(concat("has ", colors.size(), " points; give from 1 to ", maxColors));
+    throw rows.error(concat("has ", colors.size(), " points; give 1 to ", maxColors));
   return ColorFunction(std::move(colors));
 }
 
@@ -51,7 +51,7 @@ ColorKind findColorKind(const JsonNode& object) {
   const auto color = object.find("color");
   const bool hasAlbedo = object.find("albedo").has_value();
   if (color && hasAlbedo)
-    throw color->error("and albedo contradict each other; give one");
+    throw color->error("cannot be combined with \"albedo\"; give one of them");
   return color ? ColorKind::reflectance : hasAlbedo ? ColorKind::albedo : ColorKind::none;
 }
 
@@ -59,7 +59,7 @@ double readMeanCosine(const JsonNode& object, double fallback, ColorKind kind) {
   const auto node = object.find("g");
   const double g = node ? node->number() : fallback;
   if (!(std::abs(g) < 1.0))
-    throw node->error("must be between -1 and 1, both excluded");
+    throw node->error("must be between -1 and 1, exclusive");
   if (kind == ColorKind::reflectance && !(g >= 0.0 && g <= maxReflectanceG))
     throw object.at("g").error(
         concat("must be from 0 to ", toString(maxReflectanceG), " with \"color\""));

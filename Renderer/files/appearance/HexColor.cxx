@@ -11,7 +11,7 @@ Rgb readHexColor(const JsonNode& node) {
   const bool isColor = text.size() == 7 && text[0] == '#' &&
                        text.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
   if (!isColor)
-    throw node.error("must be a colour such as \"#d8a090\"");
+    throw node.error("must be a color such as \"#d8a090\"");
   Rgb encoded;
   for (int channel = 0; channel < 3; ++channel) {
     const std::size_t digit = 1 + 2 * static_cast<std::size_t>(channel);

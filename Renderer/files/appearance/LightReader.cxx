@@ -10,8 +10,8 @@
 namespace fenestra {
 namespace {
 
-constexpr double maxNumber = 1e30;   ///< largest radiance and length; products of two stay finite
-constexpr float maxMapValue = 1e12f; ///< largest value of a map, and of colours in flags
+constexpr double maxNumber = 1e30; ///< limit of radiance and length; a product of two stays finite
+constexpr float maxMapValue = 1e12f; ///< limit of the values of an environment map
 
 Vec3 readDirection(const JsonNode& node) {
   const Vec3 v = node.triple(-maxNumber, maxNumber);
@@ -24,26 +24,26 @@ Rgb readTriple(const JsonNode& node) {
   return node.triple(0.0, maxNumber).array();
 }
 
-/// Radiance, or irradiance, of a light, by `key`: a triple; or with "color" one number, the
-/// luminance of light of that colour.
+/// Radiance or irradiance of a light, under `key`: a triple, or together with "color" one number,
+/// the luminance of light of that color.
 Rgb readRadiance(const JsonNode& light, const std::string& key) {
   const auto color = light.find("color");
   const JsonNode value = light.at(key);
   if (value.isNumber() != color.has_value())
-    throw value.error("must be one number with \"color\", and three without");
+    throw value.error("must be one number with \"color\", and three numbers without");
   if (!color)
     return readTriple(value);
   const Rgb tint = readHexColor(*color);
   if (tint.isZero(0.0))
-    throw color->error("is black, which no light is; use a radiance of 0 for a light that is off");
+    throw color->error("is black; to switch a light off, set its radiance to 0");
   return tint * (value.number(0.0, maxNumber) / luminance(tint));
 }
 
-/// File name without zero bytes and line breaks, fit for a message of one line.
+/// Reads a file name. Rejects null bytes and line breaks, so that messages stay on one line.
 std::string readFileName(const JsonNode& node) {
   std::string name = node.text();
   if (name.find_first_of(std::string_view("\0\n\r", 3)) != std::string::npos)
-    throw node.error("\"" + sanitize(name) + "\" is no file name; give one without line breaks");
+    throw node.error("\"" + sanitize(name) + "\" is not a file name; remove its line breaks");
   return name;
 }
 
@@ -58,7 +58,7 @@ Light readEnvironment(const JsonNode& node, const std::filesystem::path& folder)
   return light;
 }
 
-/// Frame of a light that has a place.
+/// Coordinate frame of a light with a position.
 LightFrame readFrame(const JsonNode& node) {
   return static_cast<LightFrame>(node.choice({"world", "camera", "focus"}));
 }
@@ -94,7 +94,7 @@ Vec2 readSize(const JsonNode& node, AreaLight::Shape shape) {
   if (size[0] == 0.0 || size[1] == 0.0)
     throw node.error("must be above 0");
   if (disk && size[0] != size[1])
-    throw node.error("of a disk is one number, its diameter");
+    throw node.error("must be one number for a disk, its diameter");
   return {size[0], size[1]};
 }
 
@@ -171,7 +171,7 @@ bool hasFileReference(std::string_view json, const std::string& source) {
 
 EnvironmentMap readEnvironmentMap(const std::filesystem::path& path) {
   if (lowercaseExtension(path) != ".exr")
-    throw inputError(path, "is no environment map; name a .exr file");
+    throw inputError(path, "is not an environment map; give a .exr file");
   const Image image = readImage(path);
   EnvironmentMap map{image.width, image.height, {}};
   const auto width = static_cast<std::size_t>(image.width);
@@ -186,7 +186,7 @@ EnvironmentMap readEnvironmentMap(const std::filesystem::path& path) {
       const float value = (*plane)[i];
       if (!(value >= 0.0f && value <= maxMapValue))
         throw inputError(path, "channel ", names[c], " at pixel ", i % width, ", ", i / width,
-                         " is not from 0 to 1e12; mend the map");
+                         " is not from 0 to 1e12; fix the map");
       map.rgb[3 * i + c] = value;
     }
   }

@@ -10,7 +10,7 @@ namespace fenestra {
 namespace {
 
 constexpr double maxPriority = 1000.0, maxInterfaceWeight = 10.0;
-constexpr double maxDensity = 1000.0; ///< as --density
+constexpr double maxDensity = 1000.0; ///< same limit as --density
 
 // ---- materials
 
@@ -20,14 +20,14 @@ void readOptional(const JsonNode& object, const char* key, double low, double hi
     value = node->number(low, high);
 }
 
-/// "#rrggbb", or rows over the scalar.
+/// Reads "#rrggbb", or rows over the scalar.
 ColorFunction readReflectance(const JsonNode& node) {
   if (node.isArray())
     return readColors(node);
   return ColorFunction({{0.0, readHexColor(node)}});
 }
 
-/// Three numbers, or rows over the scalar.
+/// Reads three numbers, or rows over the scalar.
 ColorFunction readAlbedo(const JsonNode& node) {
   const std::vector<JsonNode> parts = node.elements();
   if (parts.empty() || !parts.front().isNumber())
@@ -35,7 +35,7 @@ ColorFunction readAlbedo(const JsonNode& node) {
   return ColorFunction({{0.0, node.triple(0.0, 1.0).array()}});
 }
 
-/// "base", a number per mm, or rows over the scalar.
+/// Reads "base" (nullopt), a number per mm, or rows over the scalar.
 std::optional<ScalarFunction> readExtinction(const JsonNode& node) {
   if (node.isArray())
     return readCurve<1>(node, maxMagnitude);
@@ -56,11 +56,11 @@ void readKind(const JsonNode& object, Material& material) {
   if (kind)
     material.kind = static_cast<MaterialKind>(kind->choice({"tint", "matter"}));
   if (material.kind == MaterialKind::tint && material.extinction)
-    throw kind->error("is \"tint\", which keeps the volume's extinction; leave out \"extinction\", "
-                      "or make it \"matter\"");
+    throw kind->error("is \"tint\", which keeps the volume's extinction; remove \"extinction\" or "
+                      "use \"matter\"");
 }
 
-/// Sets what the object says of a material.
+/// Sets the members of a material that the object gives.
 void readMaterial(const JsonNode& object, Material& material) {
   ColorKind color = findColorKind(object);
   if (color == ColorKind::reflectance)
@@ -81,27 +81,27 @@ void readMaterial(const JsonNode& object, Material& material) {
 
 // ---- rules
 
-/// A whole number from low to high.
+/// Reads an integer from low to high.
 std::int32_t readInteger(const JsonNode& node, double low, double high) {
   const double value = node.number(low, high);
   if (value != std::floor(value))
-    throw node.error("must be a whole number");
+    throw node.error("must be an integer");
   return static_cast<std::int32_t>(value);
 }
 
-/// Name of a material, which must be there.
+/// Reads the name of a known material.
 std::string readMaterialName(const JsonNode& node, const std::map<std::string, Material>& known) {
   constexpr std::size_t maxListed = 40;
   std::string name = node.text();
   if (!known.contains(name))
     throw node.error(
-        "there is no material \"" + sanitize(name) + "\"; name one of \"materials\", or of " +
+        "there is no material \"" + sanitize(name) + "\"; use one of \"materials\", or " +
         join(
             known, ", ", [](const auto& one) { return sanitize(one.first); }, maxListed));
   return name;
 }
 
-/// Sets what the object says of a segment's use of its material.
+/// Sets the members that the object gives for a segment's use of its material.
 template <typename Use>
 void readUse(const JsonNode& object, Use& use) {
   if (const auto priority = object.find("priority"))
@@ -124,12 +124,12 @@ MaterialRule readRule(const JsonNode& node, const std::map<std::string, Material
     for (const JsonNode& value : values->elements()) {
       rule.values.push_back(readInteger(value, minValue, maxValue));
       if (rule.values.back() == 0)
-        throw value.error("is 0, which is the background; name another value");
+        throw value.error("is 0, the background; use another value");
     }
   if (rule.patterns.codes.empty() && rule.patterns.names.empty() && rule.values.empty() &&
       rule.category.empty())
-    throw match.error("has no \"codes\", \"names\", \"values\" or \"category\"; say which segments "
-                      "are meant");
+    throw match.error("has no \"codes\", \"names\", \"values\" or \"category\"; add one to select "
+                      "segments");
   rule.material = readMaterialName(node.at("material"), known);
   rule.isFromFile = true;
   readUse(node, rule);
@@ -146,7 +146,7 @@ ContextColors readContext(const JsonNode& node) {
 
 // ---- changes
 
-/// Value of "key=value" as JSON: yes, no, a number, or a text.
+/// Converts the value of "key=value" to JSON: boolean for yes or no, number, or string.
 nlohmann::json toJsonValue(const std::string& text) {
   if (const auto number = parseNumber<double>(text))
     return *number;
@@ -176,7 +176,7 @@ MaterialTable parseMaterials(std::string_view json, const std::string& source,
   const JsonNode root(document, source);
   root.allowOnly({"version", "materials", "segments", "rest", "context", "contrast"});
   if (const JsonNode version = root.at("version"); version.number() != 1.0)
-    throw version.error("must be 1, which is the form that this Fenestra reads");
+    throw version.error("must be 1, the version that this Fenestra reads");
   MaterialTable table = base;
   std::ranges::for_each(table.rules, [](MaterialRule& rule) { rule.isFromFile = false; });
   if (const auto materials = root.find("materials"))
@@ -208,7 +208,7 @@ MaterialChange parseMaterialChange(const std::string& text, const MaterialTable&
                         nlohmann::json::object()};
   if (colon == std::string::npos || change.selector.empty())
     throw inputError("--material " + sanitize(text),
-                     "must name a segment and what to change, as in \"Liver: color=#963e2e\"");
+                     "must give a segment and what to change, as in \"Liver: color=#963e2e\"");
   for (const std::string& field : split(toOneLine(text.substr(colon + 1)), ',')) {
     const std::size_t equals = field.find('=');
     const std::string key(trim(field.substr(0, std::min(equals, field.size()))));
@@ -216,7 +216,7 @@ MaterialChange parseMaterialChange(const std::string& text, const MaterialTable&
       throw inputError(describeSource(change), "\"", sanitize(field),
                        "\" must be a key and a value, as in ", "density=2");
     if (change.fields.contains(key))
-      throw inputError(describeSource(change), sanitize(key), ": is given twice; give one");
+      throw inputError(describeSource(change), sanitize(key), ": is given twice; remove one");
     change.fields[key] = toJsonValue(std::string(trim(field.substr(equals + 1))));
   }
   if (change.fields.empty())

@@ -1,6 +1,9 @@
 #pragma once
-// Reads materials and the rules that say which segments they are for (Resources/materials/README.md
-// describes the file), and changes to one segment, as a command line gives them.
+// Reads tables of materials with the rules that assign them to segments, and the changes to single
+// segments that --material gives. Resources/materials/README.md describes the file.
+//
+// Rules choose by terminology code, label value or name. Code below the scene layer sees none of
+// these, only one SegmentMedium per segment. The built-in library uses the user's file format.
 
 #include "files/appearance/SegmentPatterns.h"
 #include "model/medium/Material.h"
@@ -14,51 +17,51 @@
 
 namespace fenestra {
 
-/// Material of the segments that match: by label value, code, category or name.
+/// Assigns a material to the segments that match by label value, code, category or name.
 struct MaterialRule {
   SegmentPatterns patterns;
-  std::string category;             ///< code of a segment's category; empty: any or none
-  std::vector<std::int32_t> values; ///< of a label map
+  std::string category;             ///< code of a segment's category; empty: any
+  std::vector<std::int32_t> values; ///< label values
   std::string material;             ///< name in MaterialTable::materials
-  int priority = 10;                ///< and of two rules for one name the greater is taken
+  int priority = 10;                ///< the higher of two rules that match by name wins
   bool isClipped = true;
   double density = 1.0;
-  bool isFromFile = false; ///< of the file itself, not of the table beneath
+  bool isFromFile = false; ///< from the file itself, not from the table that it extends
 };
 
-/// Colours of what is not focus; nothing: not said.
+/// Color adjustment of the context; not set: unspecified.
 struct ContextColors {
-  std::optional<double> saturation = {}; ///< 0: grey, 1: unchanged
-  std::optional<double> lightness = {};  ///< share of the way to white, 0 to 1
+  std::optional<double> saturation = {}; ///< 0: gray, 1: unchanged
+  std::optional<double> lightness = {};  ///< 0: unchanged, 1: white
 };
 
 struct MaterialTable {
   std::map<std::string, Material> materials;
-  std::vector<MaterialRule> rules; ///< of equals the first is taken
-  std::string rest;                ///< material of what is no segment; empty: the volume's own
+  std::vector<MaterialRule> rules; ///< among equal matches the first wins
+  std::string rest;                ///< material outside all segments; empty: the volume's own
   ContextColors context;
-  bool hasContrast = false; ///< colours are changed until the focus is told from its neighbours
-  bool detectsSkin = false; ///< what is no segment is skin in the outer millimetres of the body
+  bool hasContrast = false; ///< colors are adjusted so that the focus is distinguishable
+  bool detectsSkin = false; ///< unsegmented tissue in the body's outer millimeters is skin
 };
 
-/// Reads a table over the table `beneath`: its materials replace those of the same name, its rules
-/// come first. `source` names the text in messages. Throws Error (input) that names source and
-/// field.
+/// Parses a table that extends the table `base`: its materials replace those of the same name, and
+/// its rules come first. `source` identifies the text in messages. Throws Error (input) that states
+/// source and field.
 MaterialTable parseMaterials(std::string_view json, const std::string& source,
                              const MaterialTable& base = {});
 
-/// Change to the matter of one segment.
+/// Change to the material of one segment.
 struct MaterialChange {
   std::string selector;  ///< id, name or label value, as for --focus
-  nlohmann::json fields; ///< members of a material and of a rule
+  nlohmann::json fields; ///< members of a material or of a rule
 };
 
-/// Parses "Liver: color=#963e2e, density=2, clip=no": what stands before the last colon selects a
-/// segment. Throws Error (input) for fields that parseMaterials would not take, too.
+/// Parses "Liver: color=#963e2e, density=2, clip=no"; the text before the last colon selects the
+/// segment. Throws Error (input), also for fields that parseMaterials would reject.
 MaterialChange parseMaterialChange(const std::string& text, const MaterialTable& table);
 
-/// Matter with the change: first its "material", then single members. Throws Error (input), where
-/// members contradict those of `matter`.
+/// Applies a change: first its "material", then the single members. Throws Error (input) if members
+/// contradict those of `medium`.
 SegmentMedium applyChange(const SegmentMedium& medium, const MaterialChange& change,
                           const MaterialTable& table);
 

@@ -17,7 +17,8 @@ SegmentPatterns readFocus(const JsonNode& node) {
   return focus;
 }
 
-/// Value of a flag as on the command line: a text, a number, numbers, or a look's JSON.
+/// Value of an option as on the command line: text, a number, numbers, or JSON (a transfer function
+/// or lights).
 std::string readValue(const JsonNode& node) {
   if (node.isObject() || node.isNumber())
     return node.json();

@@ -1,5 +1,5 @@
 #pragma once
-// Reads organ presets: flags and focus for an anatomy (Resources/presets/README.md).
+// Reads organ presets: options and focus for an anatomy (Resources/README.md).
 
 #include "files/appearance/SegmentPatterns.h"
 #include "model/volume/Volume.h"
@@ -15,15 +15,15 @@ struct OrganPreset {
   std::string name; ///< file name without extension
   std::string title;
   Modality modality;
-  SegmentPatterns focus;                ///< segments that are the focus
-  std::vector<std::string> before = {}; ///< presets that `auto` passes over where this one fits
-  /// Flags of the command line and their values, sorted by name.
+  SegmentPatterns focus;                ///< the segments that form the focus
+  std::vector<std::string> before = {}; ///< presets that `auto` skips if this one matches
+  /// Command line options and their values, sorted by name.
   std::vector<std::pair<std::string, std::string>> options = {};
-  std::string tested = {}; ///< data on which the preset was tried
+  std::string tested = {}; ///< data on which the preset was tested
 };
 
-/// Reads a preset from JSON text. `source`, a path, names the text in messages, and its stem the
-/// preset. Throws Error (input) that names source and field.
+/// Parses a preset from JSON text. `source`, a path, identifies the text in messages; its stem is
+/// the preset's name. Throws Error (input) that states source and field.
 OrganPreset parsePreset(std::string_view json, const std::string& source);
 
 } // namespace fenestra

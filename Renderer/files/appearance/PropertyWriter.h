@@ -1,5 +1,5 @@
 #pragma once
-// A volume property in Slicer's two file formats.
+// Writes a volume property in Slicer's two file formats.
 
 #include "model/medium/VolumeProperty.h"
 
@@ -11,18 +11,18 @@ namespace fenestra {
 /// scalars.
 std::string encodePropertyJson(const VolumeProperty& property, double minimum, double maximum);
 
-/// Functions of a property as Slicer's strings: number of values, then x and y (or x, r, g, b) per
-/// node. The strings hold no unit distance, midpoint or sharpness (defaults are assumed): opacities
-/// are converted to a unit of 1 mm, exactly at the nodes; between nodes exactly only where the two
-/// are equal, or the unit is 1 mm already.
+/// Functions of a property as Slicer's strings: the number of values, then x and y (or x, r, g, b)
+/// per node. They cannot hold unit distance, midpoint or sharpness (defaults are assumed), so
+/// opacities are converted to a unit of 1 mm. That is exact at the nodes. Between nodes it is exact
+/// only if both opacities are equal or the unit already is 1 mm.
 struct PropertyStrings {
   std::string scalarOpacity, gradientOpacity, color;
 };
 PropertyStrings encodePropertyStrings(const VolumeProperty& property);
 
-/// Content of a .vp, which every Slicer reads.
+/// Content of a .vp, which every version of Slicer reads.
 std::string encodePropertyVp(const VolumeProperty& property);
 
-inline constexpr double ambientLight = 0.1; ///< ambient term of Slicer's files; Fenestra has none
+inline constexpr double ambientLight = 0.1; ///< Slicer's ambient term; Fenestra has none
 
 } // namespace fenestra

@@ -8,7 +8,7 @@
 namespace fenestra {
 namespace {
 
-/// Text of a pattern or a code.
+/// Reads a pattern or a code as text.
 std::string readPatternString(const JsonNode& node) {
   constexpr std::size_t maxLength = 200;
   std::string text = node.text();
@@ -17,7 +17,7 @@ std::string readPatternString(const JsonNode& node) {
   return text;
 }
 
-/// Backtracks to the last * only: time at most the product of both lengths.
+/// Backtracks only to the last *, so time is at most the product of both lengths.
 bool matchesGlob(std::string_view glob, std::string_view word) {
   std::size_t g = 0, w = 0, star = std::string_view::npos, from = 0;
   while (w < word.size()) {
@@ -52,7 +52,7 @@ std::string readCode(const JsonNode& node) {
   std::string code = readPatternString(node);
   if (!std::regex_match(code, pattern))
     throw node.error(
-        "must be a code like \"SCT^39607008\", or with its region \"SCT^4147007~SCT^12738006\"");
+        "must be a code like \"SCT^39607008\", or with a region \"SCT^4147007~SCT^12738006\"");
   return code;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Patterns that tell segments by name and terminology code, in presets and materials.
+// Patterns that match segments by name and terminology code, for presets and materials.
 
 #include "io/JsonNode.h"
 
@@ -8,9 +8,9 @@
 
 namespace fenestra {
 
-/// Pattern of names. A name matches if consecutive words of it match the words of the pattern, in
-/// upper or lower case; `*` is any text in a word, `?` any character. Other signs, and changes to
-/// upper case, separate words.
+/// Pattern for names. A name matches if the pattern's words match consecutive words of the name,
+/// case-insensitively. `*` stands for any text within a word, `?` for any character. Other
+/// punctuation, and a capital after a small letter, separate words.
 struct NamePattern {
   NamePattern(std::string text);
   NamePattern(const char* text) : NamePattern(std::string(text)) {}
@@ -18,28 +18,27 @@ struct NamePattern {
   std::string text;
   std::vector<std::string> words; ///< in lower case
 
-  /// `name`: its words (splitName).
+  /// `name`: the words of the name (splitName).
   bool matches(const std::vector<std::string>& name) const;
   bool operator==(const NamePattern&) const = default;
 };
 
 struct SegmentPatterns {
   std::vector<NamePattern> names = {};
-  std::vector<NamePattern> except = {}; ///< of names that are excluded, whatever else matches
+  std::vector<NamePattern> except = {}; ///< names to exclude, whatever else matches
   /// Terminology codes of a segment's type, like "SCT^39607008", or type~region, like
   /// "SCT^4147007~SCT^12738006".
   std::vector<std::string> codes = {};
 };
 
-/// Reads the members "names", "except" and "codes" of an object, each of which may be missing.
-/// Throws Error (input).
+/// Reads the optional members "names", "except" and "codes" of an object. Throws Error (input).
 SegmentPatterns readPatterns(const JsonNode& node);
-/// Texts of the member `key`, of 1 to 200 bytes each; empty: there is no such member.
+/// Strings of the member `key`, 1 to 200 bytes each; empty: there is no such member.
 std::vector<std::string> readPatternStrings(const JsonNode& parent, const std::string& key);
-/// A code as in SegmentPatterns::codes.
+/// Reads a code as in SegmentPatterns::codes.
 std::string readCode(const JsonNode& node);
 
-/// First of the patterns that a name's words match; null: none.
+/// First pattern that matches a name's words; null: none.
 const NamePattern* findPattern(const std::vector<NamePattern>& patterns,
                                const std::vector<std::string>& name);
 

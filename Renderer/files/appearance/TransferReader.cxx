@@ -9,18 +9,18 @@
 namespace fenestra {
 namespace {
 
-constexpr double maxAnisotropy = 0.999; ///< g = 1 would never scatter
+constexpr double maxAnisotropy = 0.999; ///< maximum |g|; at 1, directions would never change
 
-// ---- Fenestra
+// ---- Fenestra's .json
 
-/// Surface lobes: a coat where colour, specular or roughness is given; else those of Slicer's usual
-/// material.
+/// Surface lobes: a coat if color, specular or roughness is given; otherwise those of Slicer's
+/// default material.
 std::optional<SurfaceShading> readShading(const JsonNode& root, double g) {
   const auto specular = root.find("specular"), roughness = root.find("roughness");
   const auto shading = root.find("shading");
   if (!shading || shading->choice({"volume", "hybrid"}) == 0) {
     if (const auto& lobe = specular ? specular : roughness)
-      throw lobe->error("is of surfaces; add \"shading\": \"hybrid\"");
+      throw lobe->error("applies to surfaces only; add \"shading\": \"hybrid\"");
     return std::nullopt;
   }
   if (!specular && !roughness && !root.find("color"))
@@ -36,7 +36,7 @@ TransferFile readFenestraJson(const JsonNode& root) {
   const double g = readMeanCosine(root, 0.0, kind);
   ScalarFunction extinction = readCurve<1>(root.at("extinction"), maxMagnitude);
   if (kind == ColorKind::none)
-    throw root.error("has no \"albedo\" and no \"color\"; give one");
+    throw root.error("has neither \"albedo\" nor \"color\"; give one of them");
   TransferFunction transfer{std::move(extinction), kind == ColorKind::reflectance
                                                        ? toAlbedo(readColors(root.at("color")), g)
                                                        : readCurve<3>(root.at("albedo"), 1.0)};
@@ -48,13 +48,13 @@ TransferFile readFenestraJson(const JsonNode& root) {
 
 // ---- Slicer's .vp.json
 
-/// Sets `value` to the number of a key, where there is one.
+/// Sets `value` if the member exists.
 void readOptional(const JsonNode& parent, const std::string& key, double& value) {
   if (const auto node = parent.find(key))
     value = readFinite(*node);
 }
 
-/// Points of a function, sorted by x.
+/// Reads the points of a function, sorted by x.
 template <typename Node>
 std::vector<Node> readPoints(const JsonNode& function) {
   std::vector<Node> nodes;
@@ -103,9 +103,9 @@ VolumeProperty readVpJson(const JsonNode& root) {
   return property;
 }
 
-// ---- Slicer's .vp, and the same texts as a scene's attributes
+// ---- Slicer's .vp, and the same strings as attributes of a scene node
 
-/// MRML's names of a property's texts, in the order of a .vp's lines.
+/// MRML attribute names of a property, in the order of the lines of a .vp.
 constexpr const char* propertyFields[] = {"interpolation", "shade",           "diffuse",
                                           "ambient",       "specular",        "specularPower",
                                           "scalarOpacity", "gradientOpacity", "colorTransfer"};
@@ -127,13 +127,13 @@ public:
     return all[0];
   }
 
-  /// Parses `<count> x v... x v...` into rows of `width`. An x below the previous one is set to the
-  /// previous one (Slicer adds 10 units in the last place).
+  /// Parses `<count> x v... x v...` into rows of `width` numbers. An x below the previous
+  /// one is raised to it, since Slicer shifts equal x by 10 units in the last place.
   std::vector<std::vector<double>> rows(const std::string& field, std::size_t width) const {
     const auto all = numbers(field);
     if (all.empty() || all[0] != static_cast<double>(all.size() - 1) ||
         (all.size() - 1) % width != 0)
-      throw error(field, concat("must be a count and that many numbers, ", width, " a point"));
+      throw error(field, concat("must be a count and that many numbers, ", width, " per point"));
     std::vector<std::vector<double>> rows;
     for (auto it = all.begin() + 1; it != all.end(); it += static_cast<long>(width)) {
       rows.emplace_back(it, it + static_cast<long>(width));
@@ -159,7 +159,7 @@ private:
     auto all = parseNumbers(text->second);
     if (!all || std::any_of(all->begin(), all->end(),
                             [](double x) { return !(std::abs(x) <= maxMagnitude); }))
-      throw error(field, "holds something other than numbers; save the volume property again");
+      throw error(field, "has text that is not a number; save the volume property again");
     return std::move(*all);
   }
 
@@ -168,7 +168,7 @@ private:
   std::string m_source;
 };
 
-/// Reads all but ambient light, which path tracing does not have.
+/// Reads all fields but ambient light, which path tracing does not have.
 VolumeProperty readProperty(const PropertyFields& texts) {
   VolumeProperty property;
   if (texts.has("shade"))
@@ -233,7 +233,7 @@ TransferFile readTransferFile(const std::filesystem::path& path) {
   const std::string source = path.string();
   const std::string extension = lowercaseExtension(path);
   if (extension != ".vp" && extension != ".json")
-    throw inputError(source, "is no transfer function; name a .vp, .vp.json or .json file");
+    throw inputError(source, "is not a transfer function; give a .vp, .vp.json or .json file");
   const std::string text = readText(path);
   return extension == ".vp" ? TransferFile{tabulate(readVp(text, source), source)}
                             : parseTransferJson(text, source);
@@ -242,7 +242,7 @@ TransferFile readTransferFile(const std::filesystem::path& path) {
 TransferFunction readTransferFunction(const std::filesystem::path& path) {
   TransferFile file = readTransferFile(path);
   if (file.isRelative)
-    throw inputError(path, "scalars: are relative to a volume; name one of absolute scalars");
+    throw inputError(path, "scalars: are relative to a volume; give a file with absolute scalars");
   return std::move(file.function);
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Reads transfer functions: Fenestra's own, and Slicer's volume properties.
+// Reads transfer functions: Fenestra's own format and Slicer's volume properties.
 
 #include "model/medium/TransferFunction.h"
 
@@ -10,28 +10,28 @@
 
 namespace fenestra {
 
-/// Transfer function, and whether its scalars have a unit.
+/// Content of a transfer function file.
 struct TransferFile {
   TransferFunction function;
-  /// True: scalars without a unit, as in MR and ultrasound; 0 and 1 stand for the least and the
-  /// greatest usual value of a volume (see `over`).
+  /// True if scalars have no unit, as in MR and ultrasound; 0 and 1 then stand for the lower and
+  /// upper end of a volume's usual range (see mapRange).
   bool isRelative = false;
 
-  /// Function with 0 moved to `low` and 1 to `high` if relative; unchanged otherwise.
+  /// Function with 0 mapped to `low` and 1 to `high` if relative; otherwise unchanged.
   TransferFunction mapRange(double low, double high) const;
 };
 
-/// Reads by extension: `.vp` (Slicer, text), `.vp.json` (Slicer; its first property's first
-/// component), `.json` (Fenestra). Throws Error (input).
+/// Reads a file by extension: `.vp` (Slicer, text), `.vp.json` (Slicer; first component of the
+/// first property), `.json` (Fenestra). Throws Error (input).
 TransferFile readTransferFile(const std::filesystem::path& path);
 /// Reads a transfer function of absolute scalars. Throws Error (input) for relative ones.
 TransferFunction readTransferFunction(const std::filesystem::path& path);
 
-/// Parses a `.json` of either kind. `source` names the text in messages.
+/// Parses a `.json` of either format. `source` identifies the text in messages.
 TransferFile parseTransferJson(std::string_view json, const std::string& source);
 
-/// Parses a volume property from the attributes of a scene's node, whose values have the form of a
-/// .vp's lines.
+/// Parses a volume property from the attributes of a scene node; their values have the same form as
+/// the lines of a .vp.
 TransferFunction parseTransferFunction(const std::map<std::string, std::string>& attributes,
                                        const std::string& source);
 

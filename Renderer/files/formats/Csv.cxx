@@ -61,8 +61,8 @@ private:
     std::string field;
     for (++m_at; !isAt('"') || m_text.substr(m_at).starts_with("\"\""); ++m_at) {
       if (m_at == m_text.size())
-        throw inputError(m_source, "line ", firstLine, ": its quotes do not close; close them");
-      m_at += isAt('"') ? 1 : 0; // the first of two, which stand for one
+        throw inputError(m_source, "line ", firstLine, ": quotes are not closed; close them");
+      m_at += isAt('"') ? 1 : 0; // a doubled quote stands for one
       m_line += isAt('\n') ? 1 : 0;
       field += m_text[m_at];
     }

@@ -12,9 +12,9 @@ using namespace header;
 
 namespace {
 
-/// Most lines of a header, list of files included: teem compares each key with all earlier ones.
+/// Maximum number of lines, including a list of files: teem compares each key with all others.
 constexpr int maxLines = 10'000;
-/// Longest line and path, bytes: teem may copy them into a message of 1024.
+/// Maximum length of a line and of a path, bytes: teem may copy them into a message of 1024.
 constexpr std::size_t maxLineBytes = 500, maxPathBytes = 900;
 
 /// Key of the field `name`, as in NrrdHeaderText.
@@ -25,7 +25,7 @@ std::string toKey(std::string_view name) {
 }
 
 /// Checks dimension and sizes. ITK keeps sizes in 32 bits and passes teem a buffer of those; teem
-/// has room for 16 axes, and writes one more where there are too many sizes.
+/// has room for 16 axes, and writes one more if there are too many sizes.
 void checkNrrdSizes(const std::filesystem::path& path, const Fields& fields) {
   const auto axes = parseInteger(findValue(fields, "dimension"));
   if (!axes || *axes < 1 || *axes > 10)
@@ -57,7 +57,7 @@ std::optional<std::vector<double>> parseVectorLengths(const std::string& text) {
   return lengths;
 }
 
-/// Number of axes that ITK places in space: all but lists, vectors and colours.
+/// Number of axes that ITK places in space: all but lists, vectors and colors.
 std::size_t countSpatialAxes(const Fields& fields) {
   if (!fields.contains("kinds"))
     return splitWords(fields.at("sizes")).size();
@@ -68,7 +68,7 @@ std::size_t countSpatialAxes(const Fields& fields) {
   return count;
 }
 
-/// Checks space directions; ITK takes missing ones as 1 mm.
+/// Checks space directions; ITK replaces missing ones by 1 mm.
 void checkNrrdVectors(const std::filesystem::path& path, const Fields& fields) {
   const auto lengths = parseVectorLengths(findValue(fields, "spacedirections"));
   constexpr double maxSpacing = 1e9; // mm; limit of every spacing
@@ -77,11 +77,10 @@ void checkNrrdVectors(const std::filesystem::path& path, const Fields& fields) {
   };
   if (!lengths || !std::all_of(lengths->begin(), lengths->end(), isUsable))
     throw inputError(
-        path,
-        "space directions: each must be a vector of 1e-9 to 1e9 mm, or none; mend the header");
+        path, "space directions: each must be a vector of 1e-9 to 1e9 mm, or none; fix the header");
   if (!lengths->empty() && lengths->size() < std::min<std::size_t>(countSpatialAxes(fields), 3))
     throw inputError(path, "space directions: has ", lengths->size(),
-                     " vectors; write one for each axis in space");
+                     " vectors; write one per spatial axis");
 }
 
 /// Checks each unit of the field `name`, a text in quotes.
@@ -91,8 +90,8 @@ void checkNrrdUnits(const std::filesystem::path& path, const Fields& fields, con
     checkMillimeters(path, name, parts[i]);
 }
 
-/// Checks spacings, axis mins and axis maxs: beside a space teem wants space directions instead;
-/// without spacings ITK takes the mins, and 1 mm.
+/// Checks spacings, axis mins and axis maxs. Beside a space, teem expects space directions instead;
+/// without spacings, ITK uses the mins, and 1 mm.
 void checkNrrdAxes(const std::filesystem::path& path, const Fields& fields) {
   const bool hasSpace = fields.contains("space") || fields.contains("spacedimension");
   for (const auto& [name, hint] : {std::pair("spacings", "write space directions"),
@@ -100,29 +99,28 @@ void checkNrrdAxes(const std::filesystem::path& path, const Fields& fields) {
                                    {"axis maxs", "write space directions and space origin"},
                                    {"units", "write space units"}})
     if (hasSpace && fields.contains(toKey(name)))
-      throw inputError(path, name, ": are not read beside a space; ", hint);
+      throw inputError(path, name, ": cannot be combined with a space; ", hint);
   for (const char* name : {"axis mins", "axis maxs"})
     if (fields.contains(toKey(name)) && !fields.contains("spacings"))
-      throw inputError(
-          path, name,
-          ": has no spacings with it; write them, or a space with its directions and origin");
+      throw inputError(path, name,
+                       ": requires spacings; add them, or a space with its directions and origin");
 }
 
 void checkNrrdKinds(const std::filesystem::path& path, const Fields& fields) {
   const std::string name = toLower(findValue(fields, "space"));
-  const bool hasTime = name.ends_with("-time") || name.ends_with("st"); // RAST and its like
+  const bool hasTime = name.ends_with("-time") || name.ends_with("st"); // RAST and similar
   if (name.empty() || hasTime)
     return;
   if (const std::size_t count = countSpatialAxes(fields); count > 3)
     throw inputError(path, "kinds: ", count,
-                     " axes do not lie in a space of three; extract one frame");
+                     " spatial axes in a space of three dimensions; extract one frame");
 }
 
-/// Checks the geometry; refuses NaN, for which ITK silently takes its default.
+/// Checks the geometry. Refuses NaN, for which ITK silently uses its default.
 void checkNrrdGeometry(const std::filesystem::path& path, const Fields& fields) {
   for (const char* name : {"space directions", "space origin", "spacings"})
     if (toLower(findValue(fields, toKey(name))).find("nan") != std::string::npos)
-      throw inputError(path, name, ": is not a number; mend the header");
+      throw inputError(path, name, ": is not a number; fix the header");
   checkNrrdVectors(path, fields);
   checkNrrdAxes(path, fields);
   checkNrrdKinds(path, fields);
@@ -146,12 +144,12 @@ public:
       throw damagedError(m_path, "NRRD");
     if (line->size() > maxLineBytes && !isKeyValue(*line))
       throw inputError(m_path, "header: line ", m_count, " has more than ", maxLineBytes,
-                       " bytes and is no key:=value; shorten it");
+                       " bytes and is not key:=value; shorten it");
     return line;
   }
 
-  /// True for "key:=value", a text of any length of the application's own. A ": " before the ":="
-  /// makes the line a field, as in teem.
+  /// True for "key:=value", a text of any length that an application defines. A ": " before the
+  /// ":=" makes the line a field, as in teem.
   static bool isKeyValue(std::string_view line) {
     return line.substr(0, line.find(": ")).find(":=") != std::string_view::npos;
   }
@@ -176,8 +174,8 @@ Fields readNrrdFields(const std::filesystem::path& path, NrrdLines& lines) {
       continue;
     const std::string key = toKey(line->substr(0, colon));
     const auto [field, isNew] = fields.emplace(key, trim(line->substr(colon + 2)));
-    if (!isNew) // whichever value teem would take
-      throw inputError(path, key.substr(0, 40), ": is there twice; remove one");
+    if (!isNew) // teem would use one of the two values
+      throw inputError(path, key.substr(0, 40), ": occurs twice; remove one");
     if (key == "datafile" && field->second.starts_with("LIST"))
       break; // the file names follow
   }
@@ -189,10 +187,10 @@ Fields readNrrdFields(const std::filesystem::path& path, NrrdLines& lines) {
 void checkNrrdPath(const std::filesystem::path& path) {
   if (path.string().size() > maxPathBytes)
     throw inputError(path, "has a path of more than ", maxPathBytes,
-                     " bytes; move it to a folder with a shorter one");
+                     " bytes; move it to a folder with a shorter path");
 }
 
-/// Teem copies each number's text into 1024 bytes, however long it is.
+/// Teem copies each number's text into 1024 bytes, whatever its length.
 void checkNrrdNumbers(const std::filesystem::path& path, std::uint64_t offset,
                       const std::filesystem::path& header) {
   std::ifstream file(path, std::ios::binary);
@@ -201,8 +199,8 @@ void checkNrrdNumbers(const std::filesystem::path& path, std::uint64_t offset,
   for (char c = 0; file.get(c);) {
     length = std::isspace(static_cast<unsigned char>(c)) ? 0 : length + 1;
     if (length > maxLineBytes)
-      throw inputError(header, "has a number of more than ", maxLineBytes,
-                       " characters among its samples; write it again");
+      throw inputError(header, "samples: a number has more than ", maxLineBytes,
+                       " characters; write the file again");
   }
 }
 
@@ -221,8 +219,8 @@ NrrdHeaderText readNrrdHeader(const std::filesystem::path& path) {
   header.end = lines.position();
   if (findValue(header.fields, "datafile").starts_with("LIST"))
     for (auto line = lines.next(); line; line = lines.next()) {
-      if (trim(*line).empty()) // teem takes it for a file name
-        throw inputError(path, "data file: its LIST has an empty line; remove that");
+      if (trim(*line).empty()) // teem would take it as a file name
+        throw inputError(path, "data file: its LIST has an empty line; remove it");
       header.files.emplace_back(trim(*line));
     }
   return header;

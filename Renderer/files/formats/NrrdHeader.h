@@ -1,5 +1,5 @@
 #pragma once
-// NRRD header, checked before ITK's reader sees the file.
+// NRRD header, validated before ITK's reader sees the file.
 
 #include <cstdint>
 #include <filesystem>
@@ -16,17 +16,17 @@ struct NrrdHeaderText {
   std::uint64_t end = 0;          ///< offset of the byte after the header
 };
 
-/// Throws Error (input) for a file that is no NRRD, for values known to crash ITK's reader, and for
-/// a geometry that ITK would silently replace.
+/// Throws Error (input) if the file is not NRRD, for values known to crash ITK's reader, and for a
+/// geometry that ITK would silently replace.
 NrrdHeaderText readNrrdHeader(const std::filesystem::path& path);
 
-/// True if the header states the distances between voxels; otherwise ITK assumes 1 mm.
+/// True if the header states the voxel spacing; otherwise ITK assumes 1 mm.
 bool hasNrrdSpacing(const NrrdHeaderText& header);
 
-/// Throws Error (input) where the path may exceed teem's message buffer.
+/// Throws Error (input) if the path may exceed teem's message buffer.
 void checkNrrdPath(const std::filesystem::path& path);
 
-/// Throws Error (input) where samples written as text, from byte `offset` of `file` on, hold a
+/// Throws Error (input) if samples written as text, from byte `offset` of `file` on, contain a
 /// number longer than teem's buffer. The message names `header`.
 void checkNrrdNumbers(const std::filesystem::path& file, std::uint64_t offset,
                       const std::filesystem::path& header);

@@ -12,9 +12,9 @@ namespace fenestra {
 
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "samples are written as they lie");
+static_assert(std::endian::native == std::endian::little, "samples are written in memory order");
 
-/// "(x,y,z)" in LPS, whose first two axes are RAS negated; "+ 0.0" for no "-0" in the header.
+/// "(x,y,z)" in LPS, whose first two axes are negated RAS; "+ 0.0" avoids "-0" in the header.
 std::string formatLps(const Vec3& ras) {
   const Vec3 lps(-ras.x() + 0.0, -ras.y() + 0.0, ras.z() + 0.0);
   return '(' + joinNumbers(lps, ",", 17) + ')';

@@ -1,5 +1,5 @@
 #pragma once
-// Volumes, label maps and slices as NRRD, byte for byte the same on every run.
+// Encodes volumes, label maps and slices as NRRD, with the same bytes on every run.
 
 #include "base/Vector.h"
 
@@ -10,14 +10,14 @@
 
 namespace fenestra {
 
-/// Further lines of the header, "key:=value".
+/// Additional header lines, "key:=value".
 using NrrdFields = std::vector<std::pair<std::string, std::string>>;
 
 /// Fields of a NRRD header; the samples follow the header.
 struct NrrdHeader {
   enum class Encoding { raw, gzip };
 
-  std::string type;             ///< sample type in NRRD's words: "short", "float"
+  std::string type;             ///< sample type in NRRD's terms: "short", "float"
   std::string leadingKind = {}; ///< kind of an axis before the spatial axes; empty: no such axis
   std::size_t leadingCount = 1; ///< samples per voxel, along that axis
   Size3 size;                   ///< voxels along each axis, fastest first
@@ -26,10 +26,10 @@ struct NrrdHeader {
   NrrdFields fields = {};
 };
 
-/// Header lines up to the empty one, inclusive.
+/// Header lines, including the empty one at the end.
 std::string formatNrrdHeader(const NrrdHeader& header);
 
-/// Content of the whole file. `samples`: bytes in memory order, little endian.
+/// Content of the complete file. `samples`: bytes in memory order, little endian.
 std::string encodeNrrd(const NrrdHeader& header, std::string_view samples);
 
 } // namespace fenestra

@@ -1,5 +1,5 @@
 #pragma once
-// Text headers at the front of a file: NRRD and MetaImage.
+// Text headers at the start of a file: NRRD and MetaImage.
 
 #include "base/Error.h"
 
@@ -31,8 +31,8 @@ inline Error damagedError(const std::filesystem::path& path, const std::string& 
   return inputError(path, "is not a ", format, " file, or its header is damaged; write it again");
 }
 
-/// Throws Error (input) where `unit` is a length other than mm: all readers take lengths as mm.
-/// Units of other quantities, such as time, pass.
+/// Throws Error (input) if `unit` is a length other than mm: all readers take lengths as mm. Units
+/// of other quantities, such as time, are accepted.
 inline void checkMillimeters(const std::filesystem::path& path, const std::string& field,
                              const std::string& unit) {
   static const std::set<std::string> others = {
@@ -42,11 +42,12 @@ inline void checkMillimeters(const std::filesystem::path& path, const std::strin
       "centimeter", "centimeters", "centimetre", "centimetres", "micrometer", "micrometers",
       "micrometre", "micrometres", "foot",       "feet"};
   if (others.contains(toLower(unit)))
-    throw inputError(path, field, ": \"", unit, "\" is not read; scale the geometry to \"mm\"");
+    throw inputError(path, field, ": \"", unit,
+                     "\" is not supported; scale the geometry to \"mm\"");
 }
 
-/// Finds control characters other than a tab. Libraries end a line at a zero byte or a lone \r, and
-/// would read another header than this code.
+/// True if there is a control character other than a tab. Libraries end a line at a zero byte or a
+/// lone \r, and would read a different header.
 inline bool hasControlCharacter(std::string_view line) {
   return std::any_of(line.begin(), line.end(),
                      [](unsigned char c) { return (c < 0x20 && c != '\t') || c == 0x7f; });
@@ -61,8 +62,8 @@ public:
     m_text = std::make_unique_for_overwrite<char[]>(m_limit + 1);
   }
 
-  /// Next line, without its line end; valid as long as this object. nullopt: end of the file, or a
-  /// line that goes beyond maxHeaderBytes.
+  /// Next line, without its line end; valid during the life of this object. nullopt: end of the
+  /// file, or a line that goes beyond maxHeaderBytes.
   std::optional<std::string_view> next() {
     char* const begin = m_text.get() + m_position;
     if (!m_file.getline(begin, static_cast<std::streamsize>(m_limit + 1 - m_position)))

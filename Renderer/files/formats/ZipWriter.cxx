@@ -11,10 +11,10 @@ namespace fenestra {
 namespace {
 
 constexpr zip_uint16_t dosTime = 0, dosDate = 0x21;   ///< 1980-01-01, the format's first day
-constexpr zip_uint32_t readableFile = 0100644U << 16; ///< a Unix mode, whatever the source's is
+constexpr zip_uint32_t readableFile = 0100644U << 16; ///< Unix mode, whatever the source's is
 
 Error zipError(const std::filesystem::path& path, const std::string& reason) {
-  return outputError(path, "cannot be made: ", reason, "; close other programs");
+  return outputError(path, "cannot be created: ", reason, "; close other programs");
 }
 
 std::string readContent(zip_source_t* source, const std::filesystem::path& path) {
@@ -62,7 +62,7 @@ std::string encodeZip(const std::vector<ZipEntry>& entries, const std::string& c
   require(zip_set_archive_comment(archive.get(), comment.data(),
                                   static_cast<zip_uint16_t>(comment.size())) == 0);
   require(zip_close(archive.get()) == 0);
-  static_cast<void>(archive.release()); // closed: freed
+  static_cast<void>(archive.release()); // zip_close has freed it
   return readContent(source.get(), path);
 }
 

@@ -10,9 +10,9 @@ namespace fenestra {
 namespace {
 
 constexpr int glyphColumns = 5, glyphRows = 9;
-constexpr int glyphsPerBand = 16; ///< letters beside each other in `shapes`
+constexpr int glyphsPerBand = 16; ///< glyphs per band of `glyphs`
 
-/// Shapes of the characters from blank to DEL, 16 in a band of 9 rows; a line's end comes first.
+/// Glyphs from space to DEL: bands of 16 glyphs, each band 9 rows. The text starts with a newline.
 constexpr std::string_view glyphs = R"(
 ..... ..#.. .#.#. .#.#. ..#.. ##... .##.. ..#.. ...#. .#... ..... ..... ..... ..... ..... .....
 ..... ..#.. .#.#. .#.#. .#### ##..# #..#. ..#.. ..#.. ..#.. ..#.. ..#.. ..... ..... ..... ....#
@@ -69,9 +69,9 @@ constexpr std::string_view glyphs = R"(
 #.... ....# ..... ..... ..... ..... ..... ..... ..... ....# ..... ..... ..... ..... ..... .....
 #.... ....# ..... ..... ..... ..... ..... ..... ..... .###. ..... ..... ..... ..... ..... .....
 )";
-constexpr std::size_t rowLength = glyphs.find('\n', 1); ///< with the line's end
+constexpr std::size_t rowLength = glyphs.find('\n', 1); ///< includes the newline
 
-/// Grid of dots, true where there is ink.
+/// Grid of dots, true where the glyph is set.
 struct DotMatrix {
   int width, height;
   std::vector<bool> isSet;
@@ -98,7 +98,7 @@ DotMatrix rasterizeDots(const std::string& text) {
   return dots;
 }
 
-/// Twice as many dots each way, with smooth diagonals: A. Mazzoleni, Scale2x (2001).
+/// Doubles the resolution and smooths diagonals: A. Mazzoleni, Scale2x (2001).
 DotMatrix scale2x(const DotMatrix& dots) {
   DotMatrix twice{2 * dots.width, 2 * dots.height, {}};
   for (int y = 0; y < twice.height; ++y)
@@ -135,7 +135,7 @@ std::string toAscii(std::string_view text) {
 }
 
 TextBitmap rasterizeText(std::string_view text, double dotSize) {
-  constexpr int fine = 8; // parts of a dot
+  constexpr int fine = 8; // subdots per dot: scale2x three times
   const DotMatrix dots = scale2x(scale2x(scale2x(rasterizeDots(toAscii(text)))));
   const auto pixels = [dotSize](int parts) {
     return static_cast<int>(std::ceil(parts * dotSize / fine));

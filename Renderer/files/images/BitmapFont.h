@@ -1,5 +1,5 @@
 #pragma once
-// Letters of our own, for words in pictures: ASCII, 5 by 7 dots, and 2 dots below the line.
+// Built-in bitmap font for text in images: ASCII, 5 by 7 dots, plus 2 dots for descenders.
 
 #include <string>
 #include <string_view>
@@ -7,20 +7,20 @@
 
 namespace fenestra {
 
-/// A line of text as shares of ink, row 0 at the top.
+/// Rasterized line of text; row 0 is at the top.
 struct TextBitmap {
   int width = 0, height = 0;   ///< pixels
-  std::vector<float> coverage; ///< 0 to 1, a value a pixel
+  std::vector<float> coverage; ///< coverage of each pixel, 0 to 1
 };
 
-/// Width of a letter with the gap behind it, and height of a line with the gap below it, in dots.
+/// Advance width of a glyph and height of a line, gaps included, in dots.
 inline constexpr int glyphWidth = 6, lineHeight = 11;
 
-/// Letters of a UTF-8 text, an ASCII character each: letters of Latin-1 lose their accents, and
-/// any other character is DEL, which is drawn as an empty box.
+/// Converts UTF-8 to one ASCII character per code point. Latin-1 letters lose their accents; any
+/// other character becomes DEL, which is drawn as an empty box.
 std::string toAscii(std::string_view text);
 
-/// Draws a text, of dots `size` pixels wide, smoothed.
+/// Rasterizes a text with antialiasing; each dot is `dotSize` pixels wide.
 TextBitmap rasterizeText(std::string_view text, double dotSize);
 
 } // namespace fenestra

@@ -15,12 +15,12 @@ namespace {
 
 constexpr int boxWidth = 336, maxBoxHeight = 504, minBoxHeight = 168; ///< pixels
 constexpr int gap = 20;
-constexpr double titleDotSize = 3.0, nameDotSize = 2.0, textDotSize = 1.5; ///< pixels a dot
+constexpr double titleDotSize = 3.0, nameDotSize = 2.0, textDotSize = 1.5; ///< pixels per font dot
 
 constexpr std::uint32_t sheetColor = 0x17191b, panelColor = 0x222527, white = 0xf0f0f0,
                         gray = 0xa2a8ad, errorColor = 0xff9d7a;
 
-/// Opaque picture in the making, linear Rec. 709.
+/// Opaque image to draw on, linear Rec. 709. Colors are given as sRGB hex.
 class Canvas {
 public:
   Canvas(int width, int height, std::uint32_t color) : m_width(width), m_height(height) {
@@ -31,13 +31,13 @@ public:
 
   int width() const { return m_width; }
   int height() const { return m_height; }
-  /// Rectangle; what lies beyond the canvas is left out.
+  /// Fills a rectangle, clipped to the canvas.
   void fill(int left, int top, int width, int height, std::uint32_t color) {
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x)
         blend(left + x, top + y, toLinear(color), 1.0F);
   }
-  /// Text from the left, cut with an ellipsis where wider than `width` pixels.
+  /// Draws left-aligned text; text wider than `width` pixels ends in an ellipsis.
   void drawText(int left, int top, const std::string& text, double dot, std::uint32_t color,
                 int width) {
     const auto maxLength = static_cast<std::size_t>(std::max(4.0, width / (glyphWidth * dot)));
@@ -55,7 +55,7 @@ public:
       for (int x = 0; x < source.m_width; ++x)
         blend(left + x, top + y, source.at(x, y), 1.0F);
   }
-  /// Puts `share` of the colour over a pixel.
+  /// Blends a color over a pixel; `coverage` is its opacity.
   void blend(int x, int y, const Rgb& color, float coverage) {
     if (x < 0 || y < 0 || x >= m_width || y >= m_height)
       return;
@@ -86,8 +86,8 @@ private:
   std::array<Plane, 3> m_planes;
 };
 
-/// Picture of display values, with straight alpha over the panel, averaged in light down to the
-/// box, or enlarged to it.
+/// Scales an image of display values with straight alpha to the box, composited over the panel.
+/// Averages in linear light when it shrinks the image.
 Canvas scaleToBox(const Image& image) {
   const double scale = std::min(1.0 * boxWidth / image.width, 1.0 * maxBoxHeight / image.height);
   const auto scaled = [scale](int size) {
@@ -123,7 +123,7 @@ Canvas scaleToBox(const Image& image) {
   return canvas;
 }
 
-/// Entry with its picture as small as it will be shown.
+/// Entry with its image scaled to display size.
 struct Thumbnail {
   const SheetEntry* entry;
   std::string problem;
@@ -142,7 +142,7 @@ Thumbnail makeThumbnail(const SheetEntry& entry) {
   return thumbnail;
 }
 
-/// Columns for a sheet somewhat wider than high, with few empty places in the last row.
+/// Chooses columns for a sheet somewhat wider than high, with few empty cells in the last row.
 int chooseColumns(int count) {
   const int wide = std::max(1, static_cast<int>(std::ceil(std::sqrt(1.4 * count))));
   const int narrow = std::max(1, wide - 1);

@@ -1,5 +1,5 @@
 #pragma once
-// Contact sheet: many pictures on one, with their names.
+// Contact sheet: one image of captioned thumbnails.
 
 #include "image/Image.h"
 
@@ -12,17 +12,17 @@ namespace fenestra {
 
 struct SheetEntry {
   std::string name;
-  std::vector<std::string> lines = {}; ///< below the name
-  std::filesystem::path image = {};    ///< .png or .tif; empty: none
-  std::string problem = {};            ///< why there is no picture, or what is wrong with it
+  std::vector<std::string> lines = {}; ///< caption below the name
+  std::filesystem::path image = {};    ///< .png or .tif; empty: no image
+  std::string problem = {};            ///< why the image is missing, or a warning about it
 };
 
-/// Most entries that are worth one sheet.
+/// Maximum number of entries for one readable sheet.
 inline constexpr std::size_t maxSheetEntries = 36;
 
-/// Sheet in linear Rec. 709, channels R, G, B: title, subtitle, and the entries in their order, row
-/// by row, in at most `maxColumns` columns, each picture scaled into the same box. A picture that
-/// cannot be read is a problem of its entry. At most 2200 pixels wide.
+/// Makes a sheet at most 2200 pixels wide, in linear Rec. 709 with channels R, G, B. It holds the
+/// title, the subtitle, and the entries row by row in at most `maxColumns` columns. Every thumbnail
+/// is scaled to fit the same box. An unreadable image becomes its entry's `problem`.
 Image makeContactSheet(const std::string& title, const std::string& subtitle,
                        std::span<const SheetEntry> entries, int maxColumns = 6);
 

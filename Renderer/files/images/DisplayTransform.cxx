@@ -14,17 +14,17 @@ namespace ocio = OCIO_NAMESPACE;
 
 namespace {
 
-/// Upper limit of radiance, far above white in any view: OpenColorIO overflows near the largest
+/// Upper limit of radiance, far above white in every view. OpenColorIO overflows near the largest
 /// floats.
 constexpr float maxRadiance = 65504.0f;
 
 ocio::ConstConfigRcPtr loadConfig() {
-  ocio::SetLoggingFunction([](const char*) {}); // silent on standard error: failures are thrown
+  ocio::SetLoggingFunction([](const char*) {}); // failures are thrown; keep stderr clean
   TextReader text{std::string(findResource("color/fenestra.ocio"))};
   return ocio::Config::CreateFromStream(text);
 }
 
-/// The configuration's name of a view.
+/// Name of the view in the OpenColorIO configuration.
 const char* ocioViewName(DisplayView view) {
   switch (view) {
   case DisplayView::film:
@@ -43,12 +43,11 @@ ocio::ConstCPUProcessorRcPtr makeProcessor(DisplayView view) {
   transform->setSrc(ocio::ROLE_SCENE_LINEAR);
   transform->setDisplay("sRGB");
   transform->setView(ocioViewName(view));
-  // Lossless, since the default's fast approximations of log and exp move black and differ by
-  // machine.
+  // The default optimization approximates log and exp. That shifts black and varies between CPUs.
   return config->getProcessor(transform)->getOptimizedCPUProcessor(ocio::OPTIMIZATION_LOSSLESS);
 }
 
-/// Clamps to [0, most]; NaN becomes 0.
+/// Clamps to [0, maxValue]; NaN becomes 0.
 float sanitize(float value, float maxValue) {
   return value > 0.0f ? std::min(value, maxValue) : 0.0f;
 }
@@ -69,7 +68,7 @@ std::string_view toString(DisplayView view) {
 
 std::vector<float> toDisplay(std::vector<float> rgba, const Display& display) {
   if (rgba.empty())
-    return rgba; // OpenColorIO refuses empty pictures
+    return rgba; // OpenColorIO rejects empty images
   const bool isExposed = display.view != DisplayView::standard;
   const auto gain = static_cast<float>(isExposed ? std::exp2(display.exposure) : 1.0);
   for (std::size_t i = 0; i < rgba.size(); i += 4) {
@@ -77,11 +76,11 @@ std::vector<float> toDisplay(std::vector<float> rgba, const Display& display) {
     for (std::size_t c = i; c < i + 3; ++c)
       rgba[c] = alpha > 0.0f ? sanitize(rgba[c] / alpha * gain, maxRadiance) : 0.0f;
   }
-  constexpr std::ptrdiff_t pixel = 4 * sizeof(float); // OpenColorIO passes over alpha
+  constexpr std::ptrdiff_t pixel = 4 * sizeof(float); // the stride skips alpha
   ocio::PackedImageDesc colors(rgba.data(), static_cast<long>(rgba.size() / 4), 1, 3,
                                ocio::BIT_DEPTH_F32, sizeof(float), pixel, ocio::AutoStride);
   makeProcessor(display.view)->apply(colors);
-  // Rounding takes white past 1.
+  // Rounding can exceed 1.
   std::ranges::transform(rgba, rgba.begin(), [](float x) { return std::clamp(x, 0.0f, 1.0f); });
   return rgba;
 }

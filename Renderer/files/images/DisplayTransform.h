@@ -1,30 +1,31 @@
 #pragma once
-// Radiance to display values, by the views of Resources/color/fenestra.ocio.
-
+// Maps radiance to display values, through OpenColorIO and Resources/color/fenestra.ocio. Exposure
+// and tone apply only when a .png or .tif is encoded, so raw channels, noise estimates and metrics
+// do not depend on them.
 #include <string_view>
 #include <vector>
 
 namespace fenestra {
 
-/// Views of the configuration. `film`: for pictures to look at, contrast in the middle, colours
-/// keep their hue. `photographic`: for measuring, dark and middle values as they are, channel by
-/// channel. Both roll off below white. `standard`: the sRGB encoding, clipped.
+/// Views of the configuration. `film`: for presentation; more mid-tone contrast, hues preserved.
+/// `photographic`: for measurement; dark and middle values unchanged, applied per channel. Both
+/// roll off toward white. `standard`: the sRGB encoding, clipped.
 enum class DisplayView { film, photographic, standard };
 
-/// Name of a view, as --tone has it.
+/// Value of --tone that selects the view.
 std::string_view toString(DisplayView view);
 
-/// How radiance is shown.
+/// Settings of the display transform.
 struct Display {
   DisplayView view = DisplayView::film;
   double exposure =
-      0.0; ///< stops, EV; radiance is multiplied by 2^exposure, but not for `standard`
+      0.0; ///< EV (stops): radiance is multiplied by 2^exposure, except for `standard`
 };
 
-/// Display values, sRGB-encoded and in [0, 1], of a picture in linear Rec. 709, R G B A by pixel.
-/// NaN becomes black, infinity white. Alpha becomes straight: colours are divided by alpha before
-/// exposure and view apply; black where alpha is 0. OpenColorIO's environment variables have no
-/// effect.
+/// Converts interleaved RGBA, linear Rec. 709 with premultiplied alpha, to sRGB-encoded values in
+/// [0, 1] with straight alpha. Color is divided by alpha before exposure and view apply, and is
+/// black where alpha is 0. NaN becomes black, infinity white. OpenColorIO's environment variables
+/// have no effect.
 std::vector<float> toDisplay(std::vector<float> rgba, const Display& display);
 
 } // namespace fenestra

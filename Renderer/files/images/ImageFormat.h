@@ -1,5 +1,5 @@
 #pragma once
-// Formats of picture files.
+// Image file formats.
 
 #include "io/InputRegistry.h"
 
@@ -11,7 +11,7 @@ enum class ImageFormat { exr, nrrd, png, tiff };
 
 inline constexpr const char* imageExtensions = ".exr, .nrrd, .png or .tif";
 
-/// Format by extension, in either case; nullopt: unknown.
+/// Format by file extension, case-insensitive; nullopt: unknown.
 inline std::optional<ImageFormat> findImageFormat(const std::filesystem::path& path) {
   static const std::map<std::string, ImageFormat> formats = {{".exr", ImageFormat::exr},
                                                              {".nrrd", ImageFormat::nrrd},
@@ -22,7 +22,7 @@ inline std::optional<ImageFormat> findImageFormat(const std::filesystem::path& p
   return it == formats.end() ? std::nullopt : std::optional(it->second);
 }
 
-/// True for a picture for the eye, by its extension.
+/// True if the extension is that of a display image (PNG or TIFF).
 inline bool isDisplayFile(const std::filesystem::path& path) {
   const auto format = findImageFormat(path);
   return format == ImageFormat::png || format == ImageFormat::tiff;

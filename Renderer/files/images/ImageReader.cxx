@@ -25,13 +25,13 @@ namespace fenestra {
 namespace {
 
 constexpr std::int64_t maxSide = 32768;
-/// Most pixels times channels: 1 GiB of floats, so that two pictures to compare, or a map of light
-/// and its picture, take about 2 GiB.
+/// Limit of pixels times channels: 1 GiB of floats. Comparing two images, or holding an environment
+/// map and its image, then takes about 2 GiB.
 constexpr std::int64_t maxSamples = std::int64_t{1} << 28;
 
-/// Checks untrusted sizes before memory is taken. No format packs more than about 4096 samples into
-/// a byte (deflate: 1032 bytes per byte, 1-bit pictures are rare); 2^20 more are allowed for tiny
-/// files.
+/// Checks untrusted dimensions before allocating memory. No format stores more than about 4096
+/// samples per byte (deflate expands up to 1032 times, and 1-bit images are rare). Tiny files may
+/// have 2^20 more.
 void checkSize(const std::filesystem::path& path, std::int64_t width, std::int64_t height,
                std::int64_t channels) {
   const std::string size = concat(width, 'x', height);
@@ -42,13 +42,13 @@ void checkSize(const std::filesystem::path& path, std::int64_t width, std::int64
     throw inputError(path, "is too short for ", channels, " channels of ", size,
                      " pixels; write it again");
   if (channels > maxSamples / (width * height))
-    throw inputError(path, "has ", width * height * channels, " samples; at most ", maxSamples,
-                     " are read, so use fewer pixels or channels");
+    throw inputError(path, "has ", width * height * channels, " samples, more than the limit of ",
+                     maxSamples, "; reduce pixels or channels");
 }
 
 // ---- EXR
 
-/// Bytes of attribute types of fixed size ("OpenEXR File Layout", openexr.com).
+/// Sizes in bytes of the fixed-size attribute types ("OpenEXR File Layout", openexr.com).
 const std::map<std::string, std::uint32_t> fixedSizes = {
     {"box2f", 16},   {"box2i", 16},         {"compression", 1}, {"chromaticities", 32},
     {"double", 8},   {"deepImageState", 1}, {"envmap", 1},      {"float", 4},
@@ -64,7 +64,7 @@ std::uint32_t readLittleEndian(const std::string& bytes, std::size_t at) {
   return value;
 }
 
-/// True for channels (each a name and 16 bytes), then an empty name.
+/// True for a list of channels (each a name and 16 bytes) that ends in an empty name.
 bool isChannelList(const std::string& value) {
   std::size_t at = 0;
   while (at < value.size() && value[at] != '\0') {
@@ -81,15 +81,15 @@ bool isStringVector(const std::string& value) {
   return at == value.size();
 }
 
-/// True for width, height, and that many pixels of four bytes.
+/// True for width, height, and as many pixels of four bytes.
 bool isPreview(const std::string& value) {
   const std::uint64_t width = readLittleEndian(value, 0), height = readLittleEndian(value, 4);
   return value.size() >= 8 && width <= value.size() && height <= value.size() &&
          8 + 4 * width * height == value.size();
 }
 
-/// True if `value` is one whole value of `type`. Unknown types pass: OpenEXR reads them by their
-/// size.
+/// True if `value` is exactly one value of `type`. Unknown types pass, since OpenEXR reads those by
+/// their declared size.
 bool hasExactSize(const std::string& type, const std::string& value) {
   if (const auto fixed = fixedSizes.find(type); fixed != fixedSizes.end())
     return value.size() == fixed->second;
@@ -101,12 +101,12 @@ bool hasExactSize(const std::string& type, const std::string& value) {
     return isPreview(value);
   if (type == "floatvector")
     return value.size() % 4 == 0;
-  return type != "idmanifest"; // needed by deep pixels alone
+  return type != "idmanifest"; // occurs with deep pixels only, which are not read
 }
 
-/// Throws std::runtime_error unless every attribute lies within the file and fills its size
-/// exactly. OpenEXR takes memory for an attribute of any size before it reads the bytes, and reads
-/// most types without regard to their size, misreading all that follows.
+/// Throws std::runtime_error unless every attribute ends within the file and has exactly its
+/// declared size. OpenEXR allocates any declared size before it reads. It also ignores the size of
+/// most types and then misreads everything that follows.
 void checkExrAttributes(const std::filesystem::path& path) {
   ThrowingStream<std::ifstream> file(path, std::ios::binary);
   const auto length = static_cast<std::int64_t>(std::filesystem::file_size(path));
@@ -114,15 +114,15 @@ void checkExrAttributes(const std::filesystem::path& path) {
   const bool isMultiPart = (file.get() & 0x10) != 0;
   file.seekg(8);
   std::string name, type, size(4, '\0'), value;
-  do { // one header per part, and an empty one after the last
+  do { // one header per part, then an empty header
     while (std::getline(file, name, '\0') && !name.empty() && std::getline(file, type, '\0')) {
       file.read(size.data(), 4);
       if (!file || readLittleEndian(size, 0) > length - file.tellg())
-        throw std::runtime_error("an attribute reaches past the end");
+        throw std::runtime_error("an attribute extends beyond the end of the file");
       value.resize(readLittleEndian(size, 0));
       file.read(value.data(), static_cast<std::streamsize>(value.size()));
       if (!hasExactSize(type, value))
-        throw std::runtime_error("an attribute does not fill its size");
+        throw std::runtime_error("an attribute does not match its declared size");
     }
   } while (isMultiPart && file.peek() > 0);
 }
@@ -134,7 +134,7 @@ void checkExr(const std::filesystem::path& path, const Imf::Header& header) {
     if (it.channel().xSampling != 1 || it.channel().ySampling != 1)
       throw inputError(path, "has subsampled channels; write them at full resolution");
   if (header.hasType() && Imf::isDeepData(header.type()))
-    throw inputError(path, "holds deep pixels; flatten them first");
+    throw inputError(path, "has deep pixels; flatten the image first");
   checkSize(path, std::int64_t{window.max.x} - window.min.x + 1,
             std::int64_t{window.max.y} - window.min.y + 1, channels);
 }
@@ -152,7 +152,7 @@ std::map<std::string, std::string> readFenestraAttributes(const Imf::Header& hea
 }
 
 Image readExr(const std::filesystem::path& path) {
-  // OpenEXR allocates tables of offsets and tiles before it returns the header.
+  // OpenEXR allocates offset and tile tables before it returns the header.
   checkExrAttributes(path);
   constexpr int side = static_cast<int>(maxSide);
   Imf::Header::setMaxImageSize(side, side);
@@ -160,7 +160,7 @@ Image readExr(const std::filesystem::path& path) {
   Imf::InputFile file(path.c_str());
   checkExr(path, file.header());
   if (!file.isComplete())
-    throw inputError(path, "lacks some of its lines or tiles; write it again");
+    throw inputError(path, "lacks some scan lines or tiles; write it again");
   const auto window = file.header().dataWindow();
   Image image;
   image.width = window.max.x - window.min.x + 1;
@@ -182,7 +182,7 @@ Image readExr(const std::filesystem::path& path) {
 
 // ---- PNG, TIFF, NRRD
 
-/// Channel names by the number of components; no names: not supported; empty name: grey.
+/// Channel names for a number of components. An empty name means gray, an empty list unsupported.
 std::vector<std::string> channelNames(ImageFormat format, unsigned components) {
   if (components == 3)
     return {"R", "G", "B"};
@@ -193,7 +193,7 @@ std::vector<std::string> channelNames(ImageFormat format, unsigned components) {
   return components == 1 ? std::vector<std::string>{""} : std::vector<std::string>{"", "A"};
 }
 
-/// Picture of interleaved samples; integers become [0, 1].
+/// Image of interleaved samples; integers are scaled to [0, 1].
 template <typename T>
 Image deinterleave(const std::vector<char>& bytes, const std::vector<std::string>& names,
                    std::size_t width, std::size_t height) {
@@ -213,7 +213,7 @@ Image deinterleave(const std::vector<char>& bytes, const std::vector<std::string
   return image;
 }
 
-/// Reads by libpng's simplified interface, which converts every kind of PNG to 8 bit.
+/// Uses libpng's simplified interface, which converts every kind of PNG to 8 bits.
 Image readPng(const std::filesystem::path& path) {
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
@@ -237,7 +237,7 @@ std::uint32_t tiffField(TIFF* tiff, std::uint32_t tag) {
   return value;
 }
 
-/// Throws Error (input) unless the file has rows of interleaved unsigned samples, grey or RGB.
+/// Throws Error (input) unless the file has rows of interleaved unsigned samples, gray or RGB.
 void checkTiff(const std::filesystem::path& path, TIFF* tiff) {
   const auto bits = tiffField(tiff, TIFFTAG_BITSPERSAMPLE);
   const auto samples = tiffField(tiff, TIFFTAG_SAMPLESPERPIXEL);
@@ -248,16 +248,16 @@ void checkTiff(const std::filesystem::path& path, TIFF* tiff) {
       tiffField(tiff, TIFFTAG_SAMPLEFORMAT) == SAMPLEFORMAT_UINT;
   if (!isSupported || samples < 1 || samples > 4 || TIFFIsTiled(tiff) ||
       tiffField(tiff, TIFFTAG_PLANARCONFIG) != PLANARCONFIG_CONTIG)
-    throw inputError(path, "is not grey or RGB of 8 or 16 bit in interleaved rows; convert it");
+    throw inputError(path, "is not 8- or 16-bit gray or RGB in interleaved rows; convert it");
   if (const auto orientation = tiffField(tiff, TIFFTAG_ORIENTATION);
       orientation != ORIENTATION_TOPLEFT)
     throw inputError(path, "Orientation: is ", orientation,
-                     ", a turned or mirrored picture; save it upright");
+                     ", so the image is rotated or mirrored; save it upright");
 }
 
 std::vector<char> readTiffRows(TIFF* tiff, std::size_t rowBytes, std::uint32_t height) {
   if (static_cast<std::size_t>(TIFFScanlineSize(tiff)) != rowBytes)
-    throw std::runtime_error("rows of another length");
+    throw std::runtime_error("rows have an unexpected length");
   std::vector<char> bytes(rowBytes * height);
   for (std::uint32_t row = 0; row < height; ++row)
     if (TIFFReadScanline(tiff, &bytes[row * rowBytes], row) != 1)
@@ -266,9 +266,9 @@ std::vector<char> readTiffRows(TIFF* tiff, std::size_t rowBytes, std::uint32_t h
 }
 
 Image readTiff(const std::filesystem::path& path) {
-  TIFFSetErrorHandler(nullptr); // silent on standard error
+  TIFFSetErrorHandler(nullptr); // keep stderr clean
   TIFFSetWarningHandler(nullptr);
-  // m: no memory mapping, in which a file that shrinks kills its reader.
+  // "m" disables memory mapping: if the file shrank, the mapping would kill this process.
   const std::unique_ptr<TIFF, void (*)(TIFF*)> tiff(TIFFOpen(path.c_str(), "rm"), TIFFClose);
   if (!tiff)
     throw std::runtime_error("no TIFF directory");
@@ -278,7 +278,7 @@ Image readTiff(const std::filesystem::path& path) {
   TIFFGetField(tiff.get(), TIFFTAG_IMAGELENGTH, &height);
   const auto samples = tiffField(tiff.get(), TIFFTAG_SAMPLESPERPIXEL);
   const bool is16Bit = tiffField(tiff.get(), TIFFTAG_BITSPERSAMPLE) == 16;
-  checkSize(path, width, height, samples < 3 ? samples + 2 : samples); // grey becomes R, G, B
+  checkSize(path, width, height, samples < 3 ? samples + 2 : samples); // gray becomes R, G, B
   const auto bytes =
       readTiffRows(tiff.get(), std::size_t{width} * samples * (is16Bit ? 2 : 1), height);
   const auto unpack = is16Bit ? deinterleave<std::uint16_t> : deinterleave<std::uint8_t>;
@@ -295,13 +295,13 @@ bool isSingleImage(const itk::ImageIOBase& io) {
 
 Image readNrrd(const std::filesystem::path& path) {
   if (readNrrdHeader(path).fields.contains("datafile"))
-    throw inputError(path, "keeps its data outside; store them in the file itself");
+    throw inputError(path, "has its samples in another file; store them in this one");
   const auto io = itk::NrrdImageIO::New();
   io->SetFileName(path.string());
   io->ReadImageInformation();
   const auto names = channelNames(ImageFormat::nrrd, io->GetNumberOfComponents());
   if (!isSingleImage(*io) || names.empty() || io->GetComponentType() != itk::IOComponentEnum::FLOAT)
-    throw inputError(path, "is not one slice of 1, 3 or 4 floats a pixel; extract one");
+    throw inputError(path, "is not one slice of 1, 3 or 4 floats per pixel; extract one");
   const std::size_t width = io->GetDimensions(0), height = io->GetDimensions(1);
   checkSize(path, static_cast<std::int64_t>(width), static_cast<std::int64_t>(height),
             io->GetNumberOfComponents());
@@ -316,7 +316,7 @@ Image readImage(const std::filesystem::path& path) {
   requireFile(path, "name an image");
   const auto format = findImageFormat(path);
   if (!format)
-    throw inputError(path, "has no known extension; name an image ", imageExtensions);
+    throw inputError(path, "has an unknown extension; give an image ", imageExtensions);
   try {
     switch (*format) {
     case ImageFormat::exr:
@@ -333,11 +333,11 @@ Image readImage(const std::filesystem::path& path) {
     throw;
   } catch (const std::bad_alloc&) {
     throw inputError(path, "does not fit into memory; use a smaller image");
-  } catch (const itk::ExceptionObject&) { // its text names ITK's own source lines
-    throw inputError(path, "is damaged or not of its extension's format; write it again");
+  } catch (const itk::ExceptionObject&) { // its text names ITK's source lines
+    throw inputError(path, "is damaged or does not match its extension; write it again");
   } catch (const std::exception& error) {
     const std::string_view text = error.what();
-    throw inputError(path, "is damaged or not of its extension's format (",
+    throw inputError(path, "is damaged or does not match its extension (",
                      text.substr(0, text.find('\n')), "); write it again");
   }
 }

@@ -28,8 +28,8 @@ namespace fenestra {
 
 namespace {
 
-/// Throws std::bad_alloc for an incomplete EXR: OpenEXR hides failures of memory in its tasks and
-/// destructors.
+/// Throws std::bad_alloc for an incomplete EXR. OpenEXR swallows allocation failures in its tasks
+/// and destructors.
 void requireComplete(const std::string& exr) {
   Imf::StdISStream stream;
   stream.str(exr);
@@ -40,7 +40,7 @@ void requireComplete(const std::string& exr) {
 std::string encodeExr(const Image& image) {
   Imf::Header header(image.width, image.height);
   header.compression() = Imf::ZIP_COMPRESSION;
-  header.zipCompressionLevel() = 1;                      // noise packs no better with more work
+  header.zipCompressionLevel() = 1;                      // noise barely compresses
   Imf::addChromaticities(header, Imf::Chromaticities()); // Rec. 709
   for (const auto& [key, value] : image.header)
     header.insert("fenestra." + key, Imf::StringAttribute(value));
@@ -70,7 +70,7 @@ bool isOpaque(const std::vector<float>& rgba) {
   return true;
 }
 
-/// Integers from 0 to the largest of T for values in [0, 1]; no alpha if all pixels are opaque.
+/// Scales values in [0, 1] to the full range of T; drops alpha if all pixels are opaque.
 template <typename T>
 std::vector<T> quantize(const std::vector<float>& rgba) {
   const bool opaque = isOpaque(rgba);
@@ -90,8 +90,8 @@ std::string toBigEndian(std::uint32_t number) {
   return bytes;
 }
 
-/// A tEXt chunk (PNG specification, 11.3.4.3), which libpng's simple interface does not write; its
-/// checksum is set by setChecksum.
+/// A tEXt chunk (PNG specification, 11.3.4.3), which libpng's simplified interface cannot write.
+/// setChecksum fills in its checksum.
 std::string makeTextChunk(const std::string& keyword, std::string_view text) {
   const auto length = static_cast<std::uint32_t>(keyword.size() + 1 + text.size());
   return toBigEndian(length) + "tEXt" + keyword + std::string(1, '\0') + std::string(text) +
@@ -105,7 +105,7 @@ void setChecksum(std::string& png, std::size_t start, std::size_t size) {
   png.replace(start + size - 4, 4, toBigEndian(static_cast<std::uint32_t>(checksum)));
 }
 
-/// Inserts the mark and, unless empty, a comment after the first chunk, IHDR.
+/// Inserts the provenance tag and, unless empty, the comment after the first chunk, IHDR.
 std::string insertTexts(std::string png, const std::string& comment) {
   constexpr std::size_t afterHeader = 8 + 25; // signature and IHDR
   if (!comment.empty()) {
@@ -120,7 +120,7 @@ std::string insertTexts(std::string png, const std::string& comment) {
   return png;
 }
 
-/// Comment of a display picture: tone and exposure, and the header's words on a filter;
+/// Comment of a display image: tone and exposure, and the header's description of the denoiser;
 /// empty: neither.
 std::string makeComment(const Image& image, const Display& display) {
   std::string comment;
@@ -140,11 +140,11 @@ std::string encodePng(const Image& image, const std::vector<float>& rgba,
   png.width = static_cast<png_uint_32>(image.width);
   png.height = static_cast<png_uint_32>(image.height);
   png.format = isOpaque(rgba) ? PNG_FORMAT_RGB : PNG_FORMAT_RGBA;
-  png.flags = PNG_IMAGE_FLAG_FAST; // noise packs little better with twice the work
+  png.flags = PNG_IMAGE_FLAG_FAST; // twice the work barely compresses noise better
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
   std::string content(size, '\0');
   if (!png_image_write_to_memory(&png, content.data(), &size, 0, values.data(), 0, nullptr))
-    throw outputError("picture as PNG", png.message, "; write it as .exr");
+    throw outputError("image as PNG", png.message, "; write it as .exr");
   content.resize(size);
   return insertTexts(std::move(content), comment);
 }
@@ -172,7 +172,7 @@ std::string encodeTiff(const Image& image, const std::vector<float>& rgba,
   std::vector<std::uint16_t> values = quantize<std::uint16_t>(rgba);
   const std::size_t rowLength = values.size() / static_cast<std::size_t>(image.height);
   TextWriter stream;
-  const std::unique_ptr<TIFF, void (*)(TIFF*)> tiff(TIFFStreamOpen("picture", &stream), TIFFClose);
+  const std::unique_ptr<TIFF, void (*)(TIFF*)> tiff(TIFFStreamOpen("image", &stream), TIFFClose);
   bool good = tiff != nullptr;
   if (good)
     setTiffFields(tiff.get(), image, isOpaque(rgba), comment);
@@ -180,12 +180,12 @@ std::string encodeTiff(const Image& image, const std::vector<float>& rgba,
     good = TIFFWriteScanline(tiff.get(), &values[row * rowLength],
                              static_cast<std::uint32_t>(row)) == 1;
   if (!good || TIFFFlush(tiff.get()) != 1)
-    throw outputError("picture as TIFF", "does not fit into memory; write it as .exr");
+    throw outputError("image as TIFF", "does not fit into memory; write it as .exr");
   return sealProvenanceTag(stream.str());
 }
 
-/// Index to world of the slice, which is as thick as a pixel is wide; right-handed, so that Slicer
-/// need not flip it.
+/// Index-to-world transform of the slice; its thickness equals the pixel width. It is right-handed,
+/// so that Slicer need not flip it.
 Affine sliceToWorld(const ImagePlane& plane) {
   const Vec3 normal = plane.columnStep.cross(plane.rowStep).normalized();
   return Affine({plane.columnStep, plane.rowStep, normal * plane.columnStep.norm()}, plane.topLeft);
@@ -205,7 +205,7 @@ std::string encodeSlice(const Image& image, const ImagePlane& plane,
   return sealProvenanceTag(encodeNrrd(header, asBytes(values)));
 }
 
-/// Channels R, G, B and A whose names begin with `prefix`.
+/// Interleaves the channels `prefix` + R, G, B and A; a missing A is 1.
 std::vector<float> interleaveRgba(const Image& image, const std::string& prefix = "") {
   const std::size_t count = image.channels.at(prefix + "R").size();
   std::vector<float> values(4 * count, 1.0f);
@@ -216,12 +216,12 @@ std::vector<float> interleaveRgba(const Image& image, const std::string& prefix 
   return values;
 }
 
-/// Picture beside a `.nrrd`.
+/// Path of an extra file beside a `.nrrd`.
 std::filesystem::path siblingPath(const std::filesystem::path& path, const char* part) {
   return path.parent_path() / (path.stem().string() + "-" + part + ".nrrd");
 }
 
-/// Header lines of a NRRD that give its geometry: space, directions, origin.
+/// Geometry lines of a NRRD header: space, directions, origin.
 std::vector<std::string> readGridLines(const std::filesystem::path& path) {
   std::vector<std::string> lines;
   ThrowingStream<std::ifstream> file(path, std::ios::binary);
@@ -232,8 +232,8 @@ std::vector<std::string> readGridLines(const std::filesystem::path& path) {
   return lines;
 }
 
-/// True if Fenestra wrote the depth picture: by its mark, or (files older than marks) by the grid
-/// that it shares with the colours.
+/// True if Fenestra wrote the depth file. Files older than provenance tags are recognized by their
+/// grid, which equals the color file's.
 bool isFenestraDepth(const std::filesystem::path& depth, const std::filesystem::path& color) {
   const std::vector<std::string> lines = readGridLines(depth);
   return hasProvenanceTag(depth) || (lines.size() == 3 && lines == readGridLines(color));
@@ -242,13 +242,13 @@ bool isFenestraDepth(const std::filesystem::path& depth, const std::filesystem::
 ImageFormat requireFormat(const std::filesystem::path& path) {
   if (const auto format = findImageFormat(path))
     return *format;
-  throw usageError("--output ", path, ": has no known extension; name a file ", imageExtensions);
+  throw usageError("--output ", path, ": has an unknown extension; give a file ", imageExtensions);
 }
 
 void requireColor(const Image& image, const std::filesystem::path& path) {
   for (const char* name : {"R", "G", "B"})
     if (!image.find(name))
-      throw usageError(path, ": the picture has no channel ", name, "; write it as .exr");
+      throw usageError(path, ": the image has no channel ", name, "; write it as .exr");
 }
 
 } // namespace

@@ -1,5 +1,5 @@
 #pragma once
-// Writes finished pictures.
+// Encodes and writes images.
 
 #include "files/images/DisplayTransform.h"
 #include "image/Image.h"
@@ -11,28 +11,29 @@
 
 namespace fenestra {
 
-/// Writes a picture in the format that the extension names, into results that declareImage
+/// Writes an image in the format that its extension names, to the outputs that declareImage
 /// declared:
-/// - `.exr`: every channel as 32-bit float, and the header as string attributes "fenestra.<key>".
-/// - `.nrrd`: R, G, B, A (1 without A) as a float vector volume of one slice that lies on `plane`
-///   in the world; beside it, where present, Z as a scalar volume, "<stem>-Z.nrrd", and denoised.R,
-///   G, B, A as another vector volume, "<stem>-denoised.nrrd".
-/// - `.png` (8 bit), `.tif`, `.tiff` (16 bit): R, G, B as `display` shows them, with straight alpha
-///   if any pixel is not opaque; tone, exposure and the header's "filter" as a comment.
-/// Equal pictures give equal bytes, and all bear Fenestra's mark. Throws Error: usage for another
-/// extension or missing R, G, B; output where the file cannot be written.
+/// - `.exr`: all channels as 32-bit float, and the header as string attributes "fenestra.<key>".
+/// - `.nrrd`: R, G, B, A (A = 1 if missing) as a float vector volume of one slice, which lies on
+///   `plane` in world space. If present, Z goes to the scalar volume "<stem>-Z.nrrd", and
+///   denoised.R, G, B, A to the vector volume "<stem>-denoised.nrrd".
+/// - `.png` (8 bit), `.tif`, `.tiff` (16 bit): R, G, B through the display transform, with straight
+///   alpha if any pixel is not opaque. A comment holds tone, exposure and the header's "filter".
+/// Equal images give equal bytes, and every file has Fenestra's provenance tag. Throws Error: usage
+/// for another extension or missing R, G, B; output if the file cannot be written.
 void writeImage(const Image& image, const ImagePlane& plane, const std::filesystem::path& path,
                 Outputs& outputs, const Display& display = {});
 
-/// Files that writeImage may make for this path: itself, and the depth and the filtered colours
-/// beside a `.nrrd`. Throws Error (usage) for another extension.
+/// Lists the files that writeImage may write for this path: the path itself and, for `.nrrd`, the
+/// depth and denoised files beside it. Throws Error (usage) for another extension.
 std::vector<std::filesystem::path> listImageFiles(const std::filesystem::path& path);
 
+/// Whether the user named the file, or Fenestra chose its default name.
 enum class NameOrigin { user, standard };
-/// Whether pictures have filtered channels.
 enum class HasDenoised { no, yes };
-/// Declares the files of listImageFiles, before a long render. Pictures beside a `.nrrd`, and a
-/// picture with its standard name, replace only files that Fenestra wrote. Throws as Outputs does.
+/// Declares the files of listImageFiles as outputs, before a long render. Files that the user did
+/// not name (the extra `.nrrd` files, default names) only replace files that Fenestra wrote. Throws
+/// as Outputs does.
 void declareImage(const std::filesystem::path& path, Outputs& outputs,
                   NameOrigin origin = NameOrigin::user, HasDenoised hasDenoised = HasDenoised::no);
 

@@ -23,9 +23,9 @@ using gdcm::Tag;
 constexpr std::uint64_t maxHeaderBytes = 1 << 20;
 constexpr std::string_view padding(" \0", 2);
 
-// ---- the fields: the child sends their texts in this order
+// ---- header fields, in the order in which the child sends them
 
-/// Numbers of decimal strings between backslashes; empty: one is not a number.
+/// Numbers of a backslash-separated list of decimal strings; empty if one is not a number.
 std::vector<double> parseDecimals(std::string text) {
   std::replace(text.begin(), text.end(), '\\', ' ');
   std::erase(text, '+');
@@ -38,13 +38,13 @@ void parseField(const std::string& text, std::string& member) {
 void parseField(const std::string& text, std::vector<double>& member) {
   member = parseDecimals(text);
 }
-/// Keeps any number; the default where the field is missing; NaN: not one number.
+/// Accepts any number. A missing field leaves the default; any other text gives NaN.
 void parseField(const std::string& text, double& member) {
   const std::vector<double> numbers = parseDecimals(text);
   if (!text.empty())
     member = numbers.size() == 1 ? numbers[0] : std::nan("");
 }
-/// Keeps a number from 0 to 2^31; the default where the field is missing; 0: any other text.
+/// Accepts a number from 0 to 2^31. A missing field leaves the default; any other text gives 0.
 void parseField(const std::string& text, unsigned& member) {
   double number = member;
   parseField(text, number);
@@ -81,7 +81,7 @@ constexpr std::array dicomFields = {
     HeaderField{0x0028, 0x1053, &DicomHeader::slope},
 };
 
-// ---- in the child
+// ---- in the child process
 
 bool isDicom(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -92,7 +92,7 @@ bool isDicom(const std::string& path) {
 std::string makeHeaderReply(const std::string& path) {
   if (!isDicom(path))
     return {};
-  std::set<Tag> tags = {Tag(0x0008, 0x0016)}; // the kind of object
+  std::set<Tag> tags = {Tag(0x0008, 0x0016)}; // SOPClassUID
   for (const HeaderField& field : dicomFields)
     tags.insert(field.tag());
   gdcm::Reader reader;
@@ -114,7 +114,7 @@ std::string makeHeaderReply(const std::string& path) {
   return reply.bytes();
 }
 
-/// True if the file holds all `bytes` of the voxels: GDCM silently fills up what is cut off.
+/// True if the file contains all `bytes` of the voxels. GDCM silently pads truncated data.
 bool hasAllVoxels(const std::string& path, std::uint64_t bytes) {
   const Tag pixelData(0x7fe0, 0x0010);
   gdcm::Reader reader;
@@ -136,7 +136,7 @@ std::string makeVoxelsReply(const std::string& path) {
   return isComplete && image.GetBuffer(voxels.data()) ? voxels : std::string();
 }
 
-/// First character of a question; a path follows.
+/// First character of a request; the path follows.
 constexpr char headerRequest = 'h', voxelsRequest = 'v';
 
 std::string handleDicomRequest(const std::string& request) {
@@ -148,7 +148,7 @@ const SandboxJob dicomJob("dicom", handleDicomRequest);
 
 // ---- voxels
 
-/// Value of a voxel's stored bits.
+/// Extracts the stored bits of a voxel, sign-extended if signed.
 std::int64_t storedValue(const DicomHeader& h, const std::string& voxels, std::size_t voxel) {
   const std::size_t size = h.bits / 8;
   std::uint64_t bits = 0;
@@ -186,11 +186,11 @@ std::optional<DicomHeader> DicomReader::readHeader(const Path& path) {
   try {
     if (reply)
       return parseDicomHeader(*reply);
-  } catch (const std::runtime_error&) { // malformed answer
+  } catch (const std::runtime_error&) { // malformed reply
   }
   throw inputError(
       path,
-      "DICOM header: cannot be read; export the series again, or take the file out of its folder");
+      "DICOM header: cannot be read; export the series again, or remove the file from its folder");
 }
 
 std::string DicomReader::readVoxels(const Path& path, const DicomHeader& h) {
@@ -210,11 +210,11 @@ void checkDicomPixels(const Path& path, const DicomHeader& h) {
   const bool isSupported = h.bits == 8 || h.bits == 16 || h.bits == 32;
   if (!isSupported || h.bitsStored == 0 || h.highBit >= h.bits || h.bitsStored > h.highBit + 1 ||
       h.isSigned > 1)
-    refuse("BitsAllocated, BitsStored or HighBit: has a value that is not read; save the volume in "
-           "Slicer as .nrrd and name that");
+    refuse("BitsAllocated, BitsStored or HighBit: has an unsupported value; save the volume in "
+           "Slicer as .nrrd and use that");
   if (!std::isfinite(h.slope) || !std::isfinite(h.intercept))
     refuse("RescaleSlope or RescaleIntercept: is not one finite number; export the series again");
-  // Lossless codecs pack an empty picture into next to nothing, and any other 1000 to 1 at most.
+  // Lossless codecs compress an empty image to almost nothing, and other images at most 1000 to 1.
   constexpr std::uint64_t ratio = 1000, emptyImageBytes = 1 << 24;
   const std::uint64_t stored = std::filesystem::file_size(path);
   const std::uint64_t maxBytes =

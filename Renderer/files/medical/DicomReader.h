@@ -1,6 +1,6 @@
 #pragma once
-// Headers and voxels of DICOM files, read by GDCM in a child process: GDCM takes memory for
-// whatever length a file declares, and ends its process where a file is damaged.
+// Reads headers and voxels of DICOM files with GDCM, in a sandboxed child process. GDCM allocates
+// any length that a file declares, and terminates its process on some damaged files.
 
 #include "io/Sandbox.h"
 
@@ -16,53 +16,52 @@ namespace fenestra {
 struct DicomHeader {
   std::string seriesUid, seriesNumber, seriesDescription, modality;
   std::string photometric;
-  std::vector<double> position;     ///< ImagePositionPatient: first voxel's centre, LPS mm
-  std::vector<double> orientation;  ///< ImageOrientationPatient: along a row, along a column, LPS
-  std::vector<double> pixelSpacing; ///< mm between rows, between columns
-  double slope = 1.0, intercept = 0.0; ///< NaN: not one number
+  std::vector<double> position;        ///< ImagePositionPatient: center of the first voxel, LPS mm
+  std::vector<double> orientation;     ///< ImageOrientationPatient: row and column direction, LPS
+  std::vector<double> pixelSpacing;    ///< mm between rows, between columns
+  double slope = 1.0, intercept = 0.0; ///< NaN: not a single number
   unsigned rows = 0, columns = 0, samples = 1, frames = 1;
   unsigned bits = 0, bitsStored = 0, highBit = 0, isSigned = 0; ///< layout of a voxel
-  bool isImageObject = false; ///< this kind of object has an image
-  bool isCompressed = false;  ///< voxels are compressed
-  bool isComplete = false;    ///< all before the voxels can be read
+  bool isImageObject = false; ///< the SOP class is an image storage class
+  bool isCompressed = false;  ///< the voxels are compressed
+  bool isComplete = false;    ///< everything before the voxels is readable
 };
 
-/// True for images: objects without one (structures, plans, reports) have no rows.
+/// True for images. Other objects (structure sets, plans, reports) have no rows.
 inline bool isImage(const DicomHeader& header) {
   return header.isImageObject || header.rows > 0;
 }
 
-/// Bytes of the voxels that the header declares.
+/// Size in bytes of the voxels that the header declares.
 inline std::uint64_t imageBytes(const DicomHeader& header) {
   return std::uint64_t{header.rows} * header.columns * (header.bits / 8);
 }
 
-/// Reader of a folder's files, with one child process.
+/// Reads DICOM files through one child process.
 class DicomReader {
 public:
   DicomReader();
 
-  /// Header of a file; nullopt: unreadable, or not DICOM (preamble and "DICM" are missing). `whole`
-  /// is false for a damaged or wholly deflated file. Throws Error (input) where the child crashes
-  /// or exceeds its limits.
+  /// Reads a header; nullopt: unreadable, or not DICOM (no preamble and "DICM"). `isComplete` is
+  /// false for a damaged file and for the deflated transfer syntax. Throws Error (input) if the
+  /// child crashes or exceeds its limits.
   std::optional<DicomHeader> readHeader(const std::filesystem::path& path);
 
-  /// Voxels, rows * columns of bits / 8 bytes each, little-endian, decompressed, not yet rescaled.
-  /// Throws Error (input) for another number of voxels.
+  /// Reads the voxels: rows * columns values of bits / 8 bytes each, little-endian, decompressed,
+  /// not rescaled. Throws Error (input) if their size differs.
   std::string readVoxels(const std::filesystem::path& path, const DicomHeader& header);
 
 private:
   SandboxedReader m_reader;
 };
 
-/// Header in the child's answer, which is untrusted. Throws std::runtime_error for a malformed
-/// answer.
+/// Parses the child's reply, which is untrusted. Throws std::runtime_error for a malformed reply.
 DicomHeader parseDicomHeader(std::string_view reply);
 
-/// Throws Error (input) unless the header describes an image that its file can hold.
+/// Throws Error (input) unless the header describes a supported image that fits in its file.
 void checkDicomPixels(const std::filesystem::path& path, const DicomHeader& header);
 
-/// Scalars of DicomReader::voxels, after slope and intercept. `header` has passed checkDicomPixels.
+/// Applies slope and intercept to the result of readVoxels. Requires checkDicomPixels(header).
 std::vector<double> rescaleVoxels(const DicomHeader& header, const std::string& voxels);
 
 } // namespace fenestra

@@ -17,20 +17,20 @@ namespace fs = std::filesystem;
 using Path = fs::path;
 using Paths = std::vector<Path>;
 
-/// Files and folders in a folder, sorted. Enters the files into the ledger.
+/// Files and folders in a folder, sorted. Registers the files as inputs.
 std::pair<Paths, Paths> listFolder(const Path& folder) {
   Paths files, folders;
   std::error_code failed;
   for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed)) {
     std::error_code unknown;
     if (it->is_regular_file(unknown)) {
-      requireFile(it->path(), "name the folder alone");
+      requireFile(it->path(), "give only the folder");
       files.push_back(it->path());
     } else if (it->is_directory(unknown))
       folders.push_back(it->path());
   }
   if (failed)
-    throw inputError(folder, "the folder cannot be read: ", failed.message(), "; ",
+    throw inputError(folder, "folder cannot be read: ", failed.message(), "; ",
                      readHint(failed.value(), "check its name and its permissions"));
   std::ranges::sort(files);
   std::ranges::sort(folders);
@@ -74,12 +74,12 @@ std::vector<DicomSeries> findDicomSeries(const Path& folder) {
     series.files.push_back(file);
   }
   if (byUid.empty())
-    throw inputError(
-        folder, "the folder holds no DICOM series of images; name one that does, or a volume file");
+    throw inputError(folder,
+                     "folder has no DICOM image series; give one that does, or a volume file");
   std::vector<DicomSeries> all;
   for (auto& [uid, series] : byUid)
     all.push_back(std::move(series));
-  std::ranges::sort(all, {}, [](const DicomSeries& series) { // numbers as numbers: shorter first
+  std::ranges::sort(all, {}, [](const DicomSeries& series) { // shorter first: numeric order
     return std::tuple(series.number.size(), series.number, series.uid);
   });
   return all;
@@ -90,8 +90,8 @@ DicomSeries chooseSeries(const std::vector<DicomSeries>& series,
   if (!selector && series.size() == 1)
     return series.front();
   if (!selector)
-    throw inputError(folder, "holds ", series.size(), " DICOM series: ", formatSeries(series),
-                     "; pick one with --volume, by uid, number or description");
+    throw inputError(folder, "has ", series.size(), " DICOM series: ", formatSeries(series),
+                     "; choose one with --volume, by uid, number or description");
   for (const auto field : {&DicomSeries::uid, &DicomSeries::number, &DicomSeries::description}) {
     std::vector<DicomSeries> found;
     std::ranges::copy_if(series, std::back_inserter(found),
@@ -99,11 +99,11 @@ DicomSeries chooseSeries(const std::vector<DicomSeries>& series,
     if (found.size() == 1)
       return found.front();
     if (found.size() > 1)
-      throw inputError(folder, "--volume \"", sanitize(*selector), "\" can be any of ",
-                       formatSeries(found), "; pick one by its uid");
+      throw inputError(folder, "--volume \"", sanitize(*selector),
+                       "\" matches several: ", formatSeries(found), "; choose one by its uid");
   }
   throw inputError(folder, "--volume \"", sanitize(*selector),
-                   "\" names no DICOM series; there are ", formatSeries(series));
+                   "\" matches no DICOM series; it has ", formatSeries(series));
 }
 
 } // namespace fenestra

@@ -1,5 +1,5 @@
 #pragma once
-// DICOM series: those in a folder, and a volume from a series.
+// Finds the DICOM series in a folder and reads one of them as a volume.
 
 #include "model/volume/Volume.h"
 
@@ -10,32 +10,31 @@
 
 namespace fenestra {
 
-/// Series of slices, one file each.
+/// Series of slices, one file per slice.
 struct DicomSeries {
   std::string uid, number, description, modality; ///< empty: missing
   std::vector<std::filesystem::path> files;       ///< sorted by name
 };
 
-/// Series of images in the folder itself (in the folders below only if it holds no file), sorted by
-/// number, then uid. Skips files that are not DICOM, and objects without an image (DICOMDIR,
-/// structures, plans). Throws Error (input) where there is no series.
+/// Finds the image series in a folder, sorted by number, then uid. Searches its direct subfolders
+/// only if the folder itself has no files. Skips files that are not DICOM and objects without an
+/// image (DICOMDIR, structure sets, plans). Throws Error (input) if there is no series.
 std::vector<DicomSeries> findDicomSeries(const std::filesystem::path& folder);
 
-/// Series that `selector` names by uid, else number, else description; without a selector the only
-/// series. Throws Error (input), listing the series and naming --volume, where none or several
-/// match. `folder` is for messages.
+/// Returns the series that `selector` matches by uid, else number, else description; without a
+/// selector, the only series. Throws Error (input) that lists the series and mentions --volume if
+/// none or several match. `folder` is used in messages.
 DicomSeries chooseSeries(const std::vector<DicomSeries>& series,
                          const std::optional<std::string>& selector, const std::string& folder);
 
-/// Volume of the slices, sorted along their normal, with rescale slope and intercept applied. The
-/// step between slices is that of their positions, so that a tilted gantry is right as well. Warns
-/// of slices more than 2 % of the step off even places. Throws Error (input), naming the file, for
-/// missing or repeated slices, slices more than half a step or half a pixel off, different sizes or
-/// orientations, several frames or colours, missing geometry, and files that are damaged or not
-/// DICOM.
+/// Reads the slices, sorts them along their normal, and applies rescale slope and intercept. The
+/// slice step follows from the positions, so a tilted gantry is handled. Warns if slices deviate
+/// from even spacing by more than 2 % of the step. Throws Error (input) that names the file for
+/// missing or duplicate slices, deviations over half a step or half a pixel, inconsistent sizes or
+/// orientations, multi-frame or color images, missing geometry, and damaged or non-DICOM files.
 Volume readDicomVolume(const DicomSeries& series);
 
-/// Volume of a scene's list of files; `name`: the volume's, for messages.
+/// Reads the files that a scene lists. `name` becomes the volume's name and is used in messages.
 Volume readDicomVolume(const std::vector<std::filesystem::path>& files, const std::string& name);
 
 } // namespace fenestra

@@ -1,4 +1,4 @@
-// Volume from a series' slices.
+// Assembles a volume from the slices of a DICOM series.
 
 #include "base/Error.h"
 #include "files/medical/DicomReader.h"
@@ -11,12 +11,12 @@ namespace {
 
 using Path = std::filesystem::path;
 
-constexpr double maxLength = 1e9; ///< mm; limit of other files as well
+constexpr double maxLength = 1e9; ///< mm, as in the other formats
 
 struct Slice {
   Path path;
   DicomHeader header;
-  Vec3 position;      ///< first voxel's centre, LPS mm
+  Vec3 position;      ///< center of the first voxel, LPS mm
   double depth = 0.0; ///< position along the normal, mm
 };
 
@@ -30,23 +30,23 @@ Slice openSlice(DicomReader& files, const Path& path) {
   const auto header = files.readHeader(path);
   const auto refuse = [&](const char* what) { throw inputError(path, what); };
   if (!header)
-    refuse("is not a DICOM file; name a volume file or a DICOM series");
+    refuse("is not a DICOM file; give a volume file or a DICOM series");
   const DicomHeader& h = *header;
   if (!h.isComplete)
     refuse("is damaged, truncated or deflated; export the series again");
   if (!isImage(h))
-    refuse("PixelData: there is none; name a series of images");
+    refuse("PixelData: is missing; give a series of images");
   if (h.frames != 1)
-    refuse("NumberOfFrames: several in one file are not read; save the volume in Slicer as .nrrd "
-           "and name that");
+    refuse("NumberOfFrames: multi-frame files are not supported; save the volume in Slicer as "
+           ".nrrd and use that");
   if (h.samples != 1 || h.photometric != "MONOCHROME2")
-    refuse("PhotometricInterpretation: is not MONOCHROME2, of one scalar a voxel; name a series of "
-           "grey images");
+    refuse("PhotometricInterpretation: is not MONOCHROME2 with one sample per voxel; give a series "
+           "of gray images");
   if (h.position.size() != 3 || h.orientation.size() != 6)
-    refuse("ImagePositionPatient or ImageOrientationPatient: is missing, so nothing says where the "
-           "slice lies; name another series");
+    refuse("ImagePositionPatient or ImageOrientationPatient: is missing, so the slice cannot be "
+           "placed; give another series");
   if (h.pixelSpacing.size() != 2)
-    refuse("PixelSpacing: is missing; name another series");
+    refuse("PixelSpacing: is missing; give another series");
   for (const double spacing : h.pixelSpacing)
     if (!(spacing > 1.0 / maxLength && spacing < maxLength))
       refuse("PixelSpacing: must be above 0 mm; export the series again");
@@ -56,7 +56,7 @@ Slice openSlice(DicomReader& files, const Path& path) {
 
 // ---- all files
 
-/// Directions along a row and along a column, LPS; at right angles.
+/// Orthogonal row and column directions, LPS.
 struct Axes {
   Vec3 row, column;
   Vec3 normal() const { return row.cross(column).normalized(); }
@@ -65,12 +65,12 @@ struct Axes {
 Axes readAxes(const Slice& slice) {
   const std::vector<double>& o = slice.header.orientation;
   const Vec3 row(o[0], o[1], o[2]), column(o[3], o[4], o[5]);
-  constexpr double tolerance = 1e-2; // real files round their cosines
+  constexpr double tolerance = 1e-2; // real files round their direction cosines
   if (std::abs(row.norm() - 1.0) > tolerance || std::abs(column.norm() - 1.0) > tolerance ||
       std::abs(row.dot(column)) > tolerance)
     throw inputError(
         slice.path,
-        "ImageOrientationPatient: must be two directions at right angles; export the series again");
+        "ImageOrientationPatient: must be two orthogonal directions; export the series again");
   return {row.normalized(), column.normalized()};
 }
 
@@ -82,7 +82,7 @@ void checkConsistent(const std::vector<Slice>& slices) {
   for (const Slice& slice : slices) {
     const auto refuse = [&](const char* field) {
       throw inputError(slice.path, field, ": differs from that of ", first.path.filename(),
-                       "; name a series of parallel slices of one size");
+                       "; give a series of parallel slices of equal size");
     };
     const DicomHeader& h = slice.header;
     if (h.rows != first.header.rows || h.columns != first.header.columns)
@@ -100,7 +100,7 @@ double computeMedian(std::vector<double> values) {
   return *middle;
 }
 
-/// Throws Error (input) where one of the sorted slices is missing or repeated.
+/// Throws Error (input) if one of the sorted slices is missing or duplicated.
 void checkGaps(const std::vector<Slice>& slices) {
   std::vector<double> gaps;
   for (std::size_t i = 1; i < slices.size(); ++i)
@@ -110,16 +110,16 @@ void checkGaps(const std::vector<Slice>& slices) {
   for (std::size_t i = 0; i < gaps.size(); ++i) {
     const std::string nextName = slices[i + 1].path.filename().string();
     if (gaps[i] < minGap)
-      throw inputError(slices[i].path, "ImagePositionPatient: lies where ", nextName,
-                       " does; name a series of one slice a place (not several times or echoes)");
+      throw inputError(slices[i].path, "ImagePositionPatient: equals that of ", nextName,
+                       "; give a series with one slice per position (no multiple times or echoes)");
     if (std::abs(gaps[i] - medianGap) > 0.5 * medianGap)
       throw inputError(slices[i].path, "ImagePositionPatient: is ", formatMm(gaps[i]), " from ",
-                       nextName, ", others ", formatMm(medianGap),
-                       "; add the slices that are missing");
+                       nextName, ", but the median gap is ", formatMm(medianGap),
+                       "; add the missing slices");
   }
 }
 
-/// Step from a slice to the next, LPS mm. Warns of uneven slices of the volume `name`.
+/// Step from one slice to the next, LPS mm. Warns about uneven slices of the volume `name`.
 Vec3 computeStep(const std::vector<Slice>& slices, const Axes& axes, const std::string& name,
                  std::vector<std::string>& warnings) {
   if (slices.size() == 1)
@@ -136,13 +136,12 @@ Vec3 computeStep(const std::vector<Slice>& slices, const Axes& axes, const std::
         std::abs(offset.dot(axes.row)) > 0.5 * pixel[1] ||
         std::abs(offset.dot(axes.column)) > 0.5 * pixel[0])
       throw inputError(slices[i].path, "ImagePositionPatient: is ", formatMm(offset.norm()),
-                       " off even steps; resample the series in Slicer and name the volume file");
+                       " off even spacing; resample the series in Slicer and use the volume file");
     maxOffset = std::max(maxOffset, offset.norm());
   }
   if (maxOffset > 0.02 * step.norm())
-    warnings.push_back(concat(name, ": slices lie up to ", formatMm(maxOffset),
-                              " off even steps of ", formatMm(step.norm()),
-                              ", which are taken for theirs"));
+    warnings.push_back(concat(name, ": slices are up to ", formatMm(maxOffset),
+                              " off even spacing; ", formatMm(step.norm()), " steps are used"));
   return step;
 }
 
@@ -152,7 +151,7 @@ Grid makeGrid(const std::vector<Slice>& slices, const Axes& axes, const Vec3& st
     if (!(slice.position.array().abs() < maxLength).all())
       throw inputError(
           slice.path,
-          "ImagePositionPatient: is not a place within 1e9 mm; export the series again");
+          "ImagePositionPatient: must be within 1e9 mm of the origin; export the series again");
   const Mat3 steps(axes.row * h.pixelSpacing[1], axes.column * h.pixelSpacing[0], step);
   return {Size3(h.columns, h.rows, static_cast<std::int64_t>(slices.size())),
           Affine(lpsToRas * steps, lpsToRas * slices.front().position)};
@@ -169,7 +168,7 @@ VoxelStore readAll(DicomReader& files, const std::vector<Slice>& slices) {
   return all;
 }
 
-/// True for a CT whose values would be Hounsfield units as stored.
+/// True for a CT whose header states no rescaling.
 bool isUnscaledCt(const std::vector<Slice>& slices) {
   return std::ranges::all_of(slices, [](const Slice& slice) {
     const DicomHeader& h = slice.header;
@@ -183,7 +182,7 @@ Volume readSlices(const std::vector<Path>& paths, const std::string& name) {
   for (const Path& path : paths)
     slices.push_back(openSlice(files, path));
   if (slices.empty())
-    throw inputError(name, "names no DICOM file; name the series' files");
+    throw inputError(name, "names no DICOM file; give the files of the series");
   checkConsistent(slices);
   const Axes axes = readAxes(slices.front());
   for (Slice& slice : slices)

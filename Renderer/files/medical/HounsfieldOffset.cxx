@@ -8,9 +8,9 @@
 namespace fenestra {
 namespace {
 
-constexpr int hounsfieldOffset = 1024; ///< HU of a stored 0, negated
+constexpr int hounsfieldOffset = 1024; ///< the stored value of 0 HU
 
-/// Most frequent value, to 25, of the voxels on the four sides along the slices' edges.
+/// Most frequent value, in bins of 25, of the voxels on the four sides parallel to the slice axis.
 template <typename Voxel>
 double computeSideMode(const LargeArray<Voxel>& voxels, const Size3& size) {
   constexpr double width = 25.0;
@@ -29,7 +29,7 @@ double computeSideMode(const LargeArray<Voxel>& voxels, const Size3& size) {
   return width * static_cast<double>(mode->first);
 }
 
-/// Median of the voxels above 200; 0: there are none.
+/// Median of the voxels above 200; 0 if there are none.
 template <typename Voxel>
 double computeTissueMedian(const LargeArray<Voxel>& voxels) {
   std::vector<Voxel> tissue;
@@ -41,7 +41,7 @@ double computeTissueMedian(const LargeArray<Voxel>& voxels) {
   return static_cast<double>(*middle);
 }
 
-/// Voxels less the offset, in a type that holds them.
+/// Subtracts the offset, in a type that holds the result.
 template <typename Voxel>
 Voxels subtractOffset(const LargeArray<Voxel>& voxels, double maximum) {
   const auto convert = [&]<typename To>(To) -> Voxels {
@@ -54,7 +54,7 @@ Voxels subtractOffset(const LargeArray<Voxel>& voxels, double maximum) {
                                                                        : convert(float());
 }
 
-/// The voxels in Hounsfield units where they are certainly not; warns.
+/// Returns the voxels in Hounsfield units if they are certainly offset; else nullopt. Warns.
 template <typename Voxel>
 std::optional<Voxels> toHounsfield(const LargeArray<Voxel>& voxels, Volume& volume) {
   constexpr double maxAirOffset = 50.0, minTissue = 800.0, maxTissue = 1300.0;
@@ -62,19 +62,18 @@ std::optional<Voxels> toHounsfield(const LargeArray<Voxel>& voxels, Volume& volu
     return std::nullopt;
   const double tissue = computeTissueMedian(voxels);
   const bool isHounsfieldShifted = tissue >= minTissue && tissue <= maxTissue;
-  volume.warnings.push_back(volume.name +
-                            (isHounsfieldShifted
-                                 ? ": its air is stored at 0, so 1024 is subtracted and its "
-                                   "values are Hounsfield units; --shift -1024 undoes that"
-                                 : ": may not be in Hounsfield units, for its air is at 0; "
-                                   "--shift 1024 moves a CT's look to it"));
+  volume.warnings.push_back(
+      volume.name + (isHounsfieldShifted ? ": air is stored at 0, so 1024 is subtracted to get "
+                                           "Hounsfield units; --shift -1024 reverts this"
+                                         : ": air is at 0, so values may not be Hounsfield units; "
+                                           "--shift 1024 adapts a CT transfer function"));
   return isHounsfieldShifted ? std::optional(subtractOffset(voxels, volume.maximum)) : std::nullopt;
 }
 
 } // namespace
 
 void correctHounsfieldOffset(Volume& volume) {
-  constexpr double minValue = -200.0, minMaximum = 500.0; // less holds no tissue of either kind
+  constexpr double minValue = -200.0, minMaximum = 500.0; // below 500 there is no soft tissue
   if (volume.minimum < minValue || volume.maximum < minMaximum)
     return;
   auto hounsfield =

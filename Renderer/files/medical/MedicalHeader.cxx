@@ -17,13 +17,13 @@ using namespace header;
 
 namespace {
 
-/// Adds a data file, named relative to the header's folder.
+/// Adds a data file; its name is relative to the header's folder.
 void addFile(const std::filesystem::path& path, std::string_view name, StoredSamples& stored) {
   const std::filesystem::path file = path.parent_path() / std::filesystem::path(name);
-  if (name == "-") // libraries read the standard input
-    throw inputError(path, "data file: \"-\" is no file; name one beside the header");
+  if (name == "-") // libraries would read standard input
+    throw inputError(path, "data file: \"-\" is not a file; give one beside the header");
   try {
-    requireFile(file, "name a file with samples");
+    requireFile(file, "give a file of samples");
   } catch (const Error& error) {
     throw inputError(path, "data file: ", error.what());
   }
@@ -33,7 +33,7 @@ void addFile(const std::filesystem::path& path, std::string_view name, StoredSam
 
 void setOffset(const std::filesystem::path& path, std::uint64_t offset, StoredSamples& stored) {
   if (offset > stored.bytes)
-    throw inputError(path, "is truncated: it ends before its samples begin; copy it again");
+    throw inputError(path, "is truncated: it ends before the first sample; copy it again");
   stored.offset = offset;
   stored.bytes -= offset;
 }
@@ -52,7 +52,7 @@ void locateNrrdFiles(const std::filesystem::path& path, const NrrdHeaderText& he
       addFile(path, file, stored);
   } else if (name.find('%') != std::string::npos)
     throw inputError(
-        path, "data file: numbered series of files are not read; write the volume into one file");
+        path, "data file: numbered file series are not supported; write the volume to one file");
   else
     addFile(path, name, stored);
 }
@@ -65,14 +65,15 @@ bool isGzip(const std::string& encoding) {
   return isOneOf(encoding, {"gzip", "gz"});
 }
 
-/// Refuses encodings, dimensions and byte skips that ITK does not read, before it fails.
+/// Rejects encodings, dimensions and byte skips that ITK does not support.
 void checkNrrdSupport(const std::filesystem::path& path, Fields& fields) {
   const std::string encoding = toLower(fields["encoding"]);
   if (!isGzip(encoding) && !isOneOf(encoding, {"raw", "hex", "ascii", "text", "txt"}))
-    throw inputError(path, "encoding: \"", sanitize(encoding), "\" is not read; write raw or gzip");
+    throw inputError(path, "encoding: \"", sanitize(encoding),
+                     "\" is not supported; use raw or gzip");
   if (const auto axes = parseInteger(fields["dimension"]); axes && *axes < 3)
-    throw inputError(path, "is a picture of ", *axes, " axes, not a volume; name one of three");
-  constexpr std::int64_t maxSkipped = 1 << 20; // teem inflates skipped bytes one by one
+    throw inputError(path, "is an image of ", *axes, " axes, not a volume; give one with three");
+  constexpr std::int64_t maxSkipped = 1 << 20; // teem inflates skipped bytes one at a time
   if (isGzip(encoding) && fields.contains("byteskip")) {
     const auto skipped = parseInteger(fields["byteskip"]);
     if (!skipped || *skipped < 0 || *skipped > maxSkipped)
@@ -88,7 +89,7 @@ StoredSamples locateNrrd(const std::filesystem::path& path) {
   StoredSamples stored;
   stored.hasSpacing = hasNrrdSpacing(header);
   const std::string encoding = toLower(fields["encoding"]);
-  stored.isCompressed = encoding != "raw" && encoding != "hex"; // a digit of text can be 8 bytes
+  stored.isCompressed = encoding != "raw" && encoding != "hex"; // one text digit can give 8 bytes
   locateNrrdFiles(path, header, stored);
   for (const std::filesystem::path& file : stored.files) {
     checkNrrdPath(file);
@@ -108,8 +109,8 @@ StoredSamples locateNrrd(const std::filesystem::path& path) {
 
 // ---- MetaImage
 
-/// Checks lengths: MetaIO copies text into 255 bytes, and takes as many numbers as the dimension
-/// needs, present or not.
+/// Checks lengths. MetaIO copies text into 255-byte buffers. It also reads as many numbers as the
+/// dimension requires, present or not.
 void checkMetaField(const std::filesystem::path& path, const std::string& key,
                     std::string_view value, std::int64_t dimension) {
   const bool isVector = isOneOf(key, {"DimSize", "ElementSpacing", "ElementSize", "Offset",
@@ -122,16 +123,16 @@ void checkMetaField(const std::filesystem::path& path, const std::string& key,
   const auto numbers = static_cast<std::int64_t>(splitWords(value).size());
   const std::int64_t needed = isVector ? dimension : isMatrix ? dimension * dimension : 0;
   if (numbers < needed)
-    throw inputError(path, key, ": has ", numbers, " numbers; give it ", needed);
+    throw inputError(path, key, ": has ", numbers, " numbers; it needs ", needed);
 }
 
-/// Refuses values that MetaIO reads but nobody applies, or that it misreads.
+/// Rejects values that MetaIO misreads, or reads but does not apply.
 void checkMetaValue(const std::filesystem::path& path, const std::string& key,
                     const std::string& value) {
   const auto refuseUnless = [&](double neutral) {
     if (parseNumbers(value) != std::vector<double>{neutral})
-      throw inputError(path, key, ": is not read, unless it is ", static_cast<int>(neutral),
-                       "; rescale the samples and write them again");
+      throw inputError(path, key, ": only ", static_cast<int>(neutral),
+                       " is supported; rescale the samples and write them again");
   };
   if (key == "ElementToIntensityFunctionSlope")
     refuseUnless(1.0);
@@ -142,7 +143,7 @@ void checkMetaValue(const std::filesystem::path& path, const std::string& key,
   else if (key == "DimSize")
     for (const std::string& word : splitWords(value))
       if (const auto size = parseInteger(word); !size || *size < 1 || *size > INT32_MAX)
-        throw inputError(path, "DimSize: each must be a whole number from 1 to 2147483647");
+        throw inputError(path, "DimSize: each must be an integer from 1 to 2147483647");
 }
 
 Fields readMetaFields(const std::filesystem::path& path, HeaderLines& lines) {
@@ -154,14 +155,14 @@ Fields readMetaFields(const std::filesystem::path& path, HeaderLines& lines) {
     if (equals == std::string_view::npos || hasControlCharacter(trim(*line)))
       throw damagedError(path, "MetaImage");
     const std::string_view name = line->substr(0, equals);
-    if (name.find(':') != std::string_view::npos) // MetaIO takes a colon for an equals sign
+    if (name.find(':') != std::string_view::npos) // MetaIO treats a colon as an equals sign
       throw damagedError(path, "MetaImage");
     const std::string key(trim(name));
     fields[key] = trim(line->substr(equals + 1));
     if (key == "NDims") {
       dimension = parseInteger(fields[key]).value_or(0);
       if (dimension < 1 || dimension > 10)
-        throw inputError(path, "NDims: must be a whole number from 1 to 10");
+        throw inputError(path, "NDims: must be an integer from 1 to 10");
     }
     checkMetaField(path, key, fields[key], dimension);
     checkMetaValue(path, key, fields[key]);
@@ -179,11 +180,11 @@ StoredSamples locateMeta(const std::filesystem::path& path) {
     return value.starts_with('t') || value.starts_with('1') || value.starts_with('y');
   };
   if (fields.contains("BinaryData") && !isTrue("BinaryData"))
-    throw inputError(path, "BinaryData: samples as text are not read; write them as binary");
+    throw inputError(path, "BinaryData: text samples are not supported; write them as binary");
   const std::string& name = fields["ElementDataFile"];
   if (name.starts_with("LIST") || name.find('%') != std::string::npos)
     throw inputError(
-        path, "ElementDataFile: series of files are not read; write the volume into one file");
+        path, "ElementDataFile: file series are not supported; write the volume to one file");
   const bool isLocal = toLower(name) == "local";
   StoredSamples stored;
   stored.hasSpacing = fields.contains("ElementSpacing") || fields.contains("ElementSize");
@@ -194,7 +195,7 @@ StoredSamples locateMeta(const std::filesystem::path& path) {
       stored.order = isTrue(key) ? std::endian::big : std::endian::little;
   addFile(path, isLocal ? path.filename().string() : name, stored);
   const std::int64_t header = parseInteger(fields["HeaderSize"]).value_or(0);
-  // A negative HeaderSize means: the samples end where the file ends.
+  // A negative HeaderSize means that the samples end at the end of the file.
   stored.isRaw = !stored.isCompressed && (header == 0 || (header > 0 && !isLocal));
   setOffset(path,
             isLocal ? lines.position()
@@ -240,9 +241,9 @@ std::uint64_t checkDeclaredBytes(const std::filesystem::path& path, const Stored
   if (__builtin_mul_overflow(count, sampleBytes, &declared) ||
       __builtin_add_overflow(declared, skipped, &declared))
     declared = UINT64_MAX;
-  constexpr std::uint64_t maxRatio = 1100; // bound of deflate's, 1032
+  constexpr std::uint64_t maxRatio = 1100; // deflate reaches 1032
   if (declared / (stored.isCompressed ? maxRatio : 1) > stored.bytes)
-    throw inputError(path, "is truncated: its header announces ", declared,
+    throw inputError(path, "is truncated: its header declares ", declared,
                      " bytes of samples, the file has ", stored.bytes,
                      (stored.isCompressed ? " compressed" : ""), "; copy or write it again");
   return declared;

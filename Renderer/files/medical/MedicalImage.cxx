@@ -31,20 +31,20 @@ void checkPixels(const std::filesystem::path& path, const itk::ImageIOBase& io,
   const bool scalar = io.GetNumberOfComponents() == 1 && type != Pixel::COMPLEX;
   const bool list = allowed == Components::any && type == Pixel::VECTOR;
   if (!scalar && !list)
-    throw inputError(path, "has ", io.GetNumberOfComponents(), " components a voxel (",
+    throw inputError(path, "has ", io.GetNumberOfComponents(), " components per voxel (",
                      itk::ImageIOBase::GetPixelTypeAsString(type),
-                     "); convert it to one scalar a voxel");
+                     "); convert it to one scalar per voxel");
 }
 
 std::size_t countFrames(const itk::ImageIOBase& io) {
   return io.GetNumberOfDimensions() > 3 ? io.GetDimensions(3) : 1;
 }
 
-/// Size of three axes; a fourth may hold several frames where `allowed`.
+/// Size along three axes; a fourth axis may hold frames if `allowed`.
 Size3 readSize(const std::filesystem::path& path, const itk::ImageIOBase& io, Components allowed) {
   const unsigned axes = io.GetNumberOfDimensions();
   if (axes < 3)
-    throw inputError(path, "is a picture of ", axes, " axes, not a volume; name one of three");
+    throw inputError(path, "is an image of ", axes, " axes, not a volume; give one with three");
   const bool allowsFrames = allowed == Components::any && io.GetNumberOfComponents() == 1;
   for (unsigned axis = allowsFrames ? 4 : 3; axis < axes; ++axis)
     if (io.GetDimensions(axis) != 1)
@@ -61,15 +61,15 @@ Size3 readSize(const std::filesystem::path& path, const itk::ImageIOBase& io, Co
 
 void checkGeometry(const std::filesystem::path& path, const Mat3& directions, const Vec3& spacing,
                    const Vec3& origin) {
-  constexpr double maxLength = 1e9; // mm; beyond, points lose fractions of a voxel
+  constexpr double maxLength = 1e9; // mm; beyond it, coordinates lose fractions of a voxel
   if (!((spacing.array() > 1.0 / maxLength).all() && (spacing.array() < maxLength).all()))
-    throw inputError(path, "spacing: must be from 1e-9 to 1e9 mm in every axis; mend the header");
+    throw inputError(path, "spacing: must be from 1e-9 to 1e9 mm along every axis; fix the header");
   if (!(origin.array().abs() < maxLength).all())
-    throw inputError(path, "origin: is not a place within 1e9 mm; mend the header");
-  // The volume of the cell that unit directions span: 1 for orthogonal axes, 0 for coplanar ones.
+    throw inputError(path, "origin: must be within 1e9 mm; fix the header");
+  // The determinant of the unit directions: 1 for orthogonal axes, 0 for coplanar ones.
   constexpr double minDeterminant = 1e-6;
   if (!(std::abs(directions.normalizedColumns().determinant()) > minDeterminant))
-    throw inputError(path, "directions: the axes do not span space; mend the header");
+    throw inputError(path, "directions: the axes are linearly dependent; fix the header");
 }
 
 Grid readGrid(const std::filesystem::path& path, const itk::ImageIOBase& io, Components allowed) {
@@ -106,11 +106,11 @@ SampleType findSampleType(const std::filesystem::path& path, const itk::ImageIOB
       {Type::FLOAT, float()},           {Type::DOUBLE, double()}};
   const auto type = types.find(io.GetComponentType());
   if (type == types.end())
-    throw inputError(path, "has samples of an unknown type; convert them to 16-bit integers");
+    throw inputError(path, "has an unsupported sample type; convert it to 16-bit integers");
   return type->second;
 }
 
-/// Reads all samples at once, in any encoding that ITK knows.
+/// Reads all samples at once, for any encoding that ITK supports.
 std::function<void(void*, std::size_t)> readThroughItk(itk::ImageIOBase& io, std::size_t bytes) {
   itk::ImageIORegion region(io.GetNumberOfDimensions());
   for (unsigned axis = 0; axis < io.GetNumberOfDimensions(); ++axis)
@@ -124,13 +124,13 @@ std::function<void(void*, std::size_t)> readThroughItk(itk::ImageIOBase& io, std
   };
 }
 
-/// Samples of the files. Throws Error (input) for more than the files can hold.
+/// Source of the file's samples. Throws Error (input) if it declares more than it can hold.
 SampleSource makeSampleSource(const std::filesystem::path& path, const StoredSamples& stored,
                               itk::ImageIOBase& io) {
   SampleSource source{.type = findSampleType(path, io), .count = sampleCount(io)};
   const std::size_t sampleBytes = bytesPerSample(source.type);
   const std::uint64_t declared = checkDeclaredBytes(path, stored, source.count, sampleBytes);
-  // ITK brings a voxel's components together where they lie apart.
+  // ITK interleaves the components of a voxel if they are stored apart.
   const bool isInterleaved = io.GetNumberOfComponents() == 1 || stored.isListFirst;
   const bool isOrderKnown = sampleBytes == 1 || stored.order;
   if (!((stored.isRaw || stored.isStream) && isInterleaved && isOrderKnown)) {
@@ -153,17 +153,16 @@ std::map<std::string, std::string> readTextFields(const itk::ImageIOBase& io) {
   return fields;
 }
 
-/// One volume alone; a list of components would be NRRD's.
+/// Reads a single volume; only NRRD can hold a list of components.
 void readNifti(const std::filesystem::path& path, const SampleConsumer& consume) {
   const NiftiHeader header = readNiftiHeader(path);
   const std::size_t axes = header.size.size();
   if (axes < 3)
-    throw inputError(path, "is a picture of ", axes, " axes, not a volume; name one of three");
+    throw inputError(path, "is an image of ", axes, " axes, not a volume; give one with three");
   for (std::size_t axis = 3; axis < axes; ++axis)
-    if (header.size[axis] != 1) { // the fifth axis is a vector's (nifti1.h)
-      const char* const problem = axis == 4
-                                      ? " components a voxel; convert it to one scalar a voxel"
-                                      : " frames; extract one of them";
+    if (header.size[axis] != 1) { // the fifth axis holds vector components (nifti1.h)
+      const char* const problem = axis == 4 ? " components per voxel; convert it to one scalar"
+                                            : " frames; extract one of them";
       throw inputError(path, "has ", axes, " axes, the ", axis + 1, "th with ", header.size[axis],
                        problem);
     }
@@ -177,14 +176,14 @@ void readNifti(const std::filesystem::path& path, const SampleConsumer& consume)
 
 void readChecked(const std::filesystem::path& path, MedicalFormat format, Components allowed,
                  const SampleConsumer& consume) {
-  const StoredSamples stored = locateSamples(path, format); // refuses what ITK does not survive
+  const StoredSamples stored = locateSamples(path, format); // rejects what would crash ITK
   if (format == MedicalFormat::nifti)
     return readNifti(path, consume);
   const SuppressItkOutput suppress;
   const auto io = makeImageIo(format);
   io->SetFileName(path.string());
   io->ReadImageInformation();
-  // NRRD alone keeps a list of layers.
+  // Only NRRD can hold a list of segmentation layers.
   if (format != MedicalFormat::nrrd)
     allowed = Components::one;
   checkPixels(path, *io, allowed);
@@ -193,7 +192,7 @@ void readChecked(const std::filesystem::path& path, MedicalFormat format, Compon
                      .hasFrames = countFrames(*io) > 1,
                      .fields = readTextFields(*io)};
   if (!stored.hasSpacing)
-    image.warnings.push_back(path.string() + ": has no spacing; voxels are taken to be 1 mm");
+    image.warnings.push_back(path.string() + ": has no spacing; 1 mm voxels are assumed");
   if (image.hasFrames)
     image.components = countFrames(*io);
   consume(image, makeSampleSource(path, stored, *io));
@@ -203,13 +202,13 @@ void readChecked(const std::filesystem::path& path, MedicalFormat format, Compon
 
 void readMedicalImage(const std::filesystem::path& path, Components allowed,
                       const SampleConsumer& consume) {
-  requireFile(path, "name a volume file in it");
+  requireFile(path, "give a volume file in it");
   const auto format = findMedicalFormat(path);
   if (lowercaseExtension(path) == ".vtm")
-    throw inputError(path, "is a segmentation; name its volume, and this file as --segmentation");
+    throw inputError(path, "is a segmentation; give its volume, and this file as --segmentation");
   if (!format)
     throw inputError(
-        path, "has no known extension; name a .nrrd, .nhdr, .nii, .nii.gz, .mha or .mhd file");
+        path, "has an unknown extension; give a .nrrd, .nhdr, .nii, .nii.gz, .mha or .mhd file");
   try {
     readChecked(path, *format, allowed, consume);
   } catch (const Error&) {
@@ -217,8 +216,7 @@ void readMedicalImage(const std::filesystem::path& path, Components allowed,
   } catch (const std::bad_alloc&) {
     throw inputError(path, "does not fit into memory; crop or resample it");
   } catch (const std::exception&) { // ITK's text has many lines and names its own sources
-    throw inputError(path,
-                     "is damaged, truncated or not of its extension's format; write it again");
+    throw inputError(path, "is damaged, truncated or does not match its extension; write it again");
   }
 }
 

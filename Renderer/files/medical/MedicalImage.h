@@ -1,7 +1,7 @@
 #pragma once
-// Reads NRRD, NIfTI and MetaImage files: headers through ITK, but for NIfTI's; samples by our own
-// code, in one pass, where they are raw or one stream. Scenes use VolumeReader.h and
-// SegmentationReader.h.
+// Reads NRRD, NIfTI and MetaImage files. ITK parses the headers, except NIfTI's. Raw samples and
+// single compressed streams are read by our own code, in one pass. Callers normally use
+// VolumeReader.h or SegmentationReader.h.
 
 #include "files/medical/SampleSource.h"
 #include "model/volume/Grid.h"
@@ -14,23 +14,23 @@
 namespace fenestra {
 
 struct MedicalImage {
-  Grid grid = {}; ///< index to RAS mm, whatever the file's space
+  Grid grid = {}; ///< index to RAS mm, whatever the space of the file
   std::size_t components = 1;
-  bool hasFrames = false; ///< components: one frame after the other; else by voxel; x fastest
-  std::map<std::string, std::string> fields = {}; ///< NRRD's key:=value pairs
-  std::string extensions = {};                    ///< bytes of NIfTI's header extensions
+  bool hasFrames = false; ///< components are stored frame by frame; else per voxel; x is fastest
+  std::map<std::string, std::string> fields = {}; ///< key:=value pairs of a NRRD
+  std::string extensions = {};                    ///< bytes of the NIfTI header extensions
   std::vector<std::string> warnings = {};         ///< each names the file
 };
 
 enum class Components { one, any };
 
-/// Consumer of the samples, which are read while it runs.
+/// Receives the image and a source from which it reads the samples before it returns.
 using SampleConsumer = std::function<void(const MedicalImage&, const SampleSource&)>;
 
-/// Calls `take` once, with an image of three axes (further ones of size 1 are dropped) and real
-/// scalars; several per voxel only where `allowed`: a NRRD's list, or the frames along its fourth
-/// axis. Throws Error (input), one line, for other images, missing or damaged files, more samples
-/// than the file can hold (before memory is taken for them), and singular geometry.
+/// Calls `consume` once, with an image of three axes and real scalars; further axes of size 1 are
+/// dropped. Several components per voxel are read only if `allowed`: a NRRD list, or frames along
+/// the fourth axis. Throws a one-line Error (input) for other images, missing or damaged files,
+/// singular geometry, and (before memory is allocated) more samples than the file can hold.
 void readMedicalImage(const std::filesystem::path& path, Components allowed,
                       const SampleConsumer& consume);
 

@@ -12,12 +12,12 @@
 namespace fenestra {
 namespace {
 
-/// NiftiFields of nifti_1_header, by their offsets.
+/// Access to the fields of nifti_1_header by byte offset.
 class NiftiFields {
 public:
   NiftiFields(const NiftiBytes& bytes, const std::filesystem::path& path)
       : m_bytes(bytes), m_path(path) {
-    const auto axes = number<std::int16_t>(40); // 1 to 7 tells the byte order
+    const auto axes = number<std::int16_t>(40); // dim[0]; reveals the byte order
     m_swapped = axes < 1 || axes > 7;
   }
 
@@ -32,7 +32,7 @@ public:
   double real(std::size_t at) const { return number<float>(at); }
   Vec3 triple(std::size_t at) const { return {real(at), real(at + 4), real(at + 8)}; }
 
-  /// True if `count` numbers from `at` on are finite and below 1e9.
+  /// True if `count` numbers from offset `at` on are finite and below 1e9.
   bool hasFiniteNumbers(std::size_t at, std::size_t count) const {
     for (std::size_t end = at + 4 * count; at < end; at += 4)
       if (!(std::abs(real(at)) < 1e9))
@@ -69,11 +69,11 @@ SampleType readNiftiType(const NiftiFields& fields) {
   const auto type = types.find(code);
   if (type == types.end())
     throw inputError(fields.path(), "datatype: ", code,
-                     " is no real scalar; convert it to 16-bit integers");
+                     " is not a real scalar type; convert it to 16-bit integers");
   return type->second;
 }
 
-/// A slope of 0 or NaN: samples as they are.
+/// Slope and intercept; nullopt: no rescaling, as a slope of 0 or NaN means.
 std::optional<Rescaling> readNiftiRescaling(const NiftiFields& fields) {
   const double slope = fields.real(112), intercept = fields.real(116);
   if (std::isnan(slope) || slope == 0.0)
@@ -87,8 +87,8 @@ std::optional<Rescaling> readNiftiRescaling(const NiftiFields& fields) {
 
 // ---- geometry
 
-/// Orthogonal matrix nearest to one with unit columns (the polar factor, by Newton's iteration:
-/// Higham, Computing the polar decomposition, 1986).
+/// Orthogonal matrix nearest to one with unit columns: its polar factor, by Newton's iteration
+/// (Higham, Computing the polar decomposition, 1986).
 Mat3 findNearestOrthogonal(Mat3 matrix) {
   for (int i = 0; i < 12; ++i) {
     const Mat3 inverse = matrix.inverse().transpose();
@@ -103,15 +103,15 @@ Affine readSform(const NiftiFields& fields, const Vec3& pixdim) {
   const Mat3 axes = linear.normalizedColumns();
   constexpr double minDeterminant = 1e-6, maxDeviation = 1e-3;
   if (!(std::abs(axes.determinant()) > minDeterminant))
-    throw inputError(fields.path(), "srow: its axes do not span space; mend the header");
+    throw inputError(fields.path(), "srow: the axes are linearly dependent; fix the header");
   const Mat3 nearest = findNearestOrthogonal(axes);
   double deviation = 0.0;
   for (int column = 0; column < 3; ++column)
     deviation = std::max(deviation, (axes.col(column) - nearest.col(column)).norm());
   if (!(deviation < maxDeviation))
-    throw inputError(fields.path(), "srow: shears, by ", toString(deviation, 2),
-                     " of an axis; resample the image onto axes at right angles");
-  // Where pixdim says the same, it says it without the rounding of the rows.
+    throw inputError(fields.path(), "srow: is sheared by ", toString(deviation, 2),
+                     " of an axis; resample the image onto orthogonal axes");
+  // If pixdim agrees, it states the spacing without the rounding of the rows.
   Vec3 spacing = linear.columnNorms();
   for (int axis = 0; axis < 3; ++axis)
     if (std::abs(spacing[axis] - pixdim[axis]) < 1e-5 * pixdim[axis])
@@ -123,7 +123,7 @@ Affine readSform(const NiftiFields& fields, const Vec3& pixdim) {
 Affine readQform(const NiftiFields& fields, const Vec3& pixdim) {
   Vec3 v = fields.triple(256);
   double a = 1.0 - v.squaredNorm();
-  if (a < 1e-7) { // rounding: a half turn
+  if (a < 1e-7) { // rounding of a rotation by 180 degrees
     v = (1.0 / v.norm()) * v;
     a = 0.0;
   }
@@ -138,7 +138,7 @@ Affine readQform(const NiftiFields& fields, const Vec3& pixdim) {
                 fields.triple(268));
 }
 
-/// Millimetres of the header's unit of length.
+/// Millimeters per unit of length of the header.
 double readUnitMm(const NiftiFields& fields) {
   const int code = fields.number<char>(123) & 7;
   return code == 1 ? 1000.0 : code == 3 ? 0.001 : 1.0;
@@ -149,8 +149,8 @@ Affine readNiftiGeometry(const NiftiFields& fields, std::vector<std::string>& wa
   const bool usesSform = sform > 0 && (sform == 1 || qform <= 0);
   if (!fields.hasFiniteNumbers(76, 4) || (qform > 0 && !fields.hasFiniteNumbers(256, 6)) ||
       (sform > 0 && !fields.hasFiniteNumbers(280, 12)))
-    throw inputError(fields.path(), "qform, sform or pixdim: holds a number that is not finite or "
-                                    "beyond 1e9 mm; write it again");
+    throw inputError(fields.path(), "qform, sform or pixdim: has a number that is not finite or "
+                                    "exceeds 1e9 mm; write it again");
   Vec3 pixdim = fields.triple(80);
   for (int axis = 0; axis < 3; ++axis)
     pixdim[axis] = pixdim[axis] == 0.0 ? 1.0 : std::abs(pixdim[axis]);
@@ -161,7 +161,7 @@ Affine readNiftiGeometry(const NiftiFields& fields, std::vector<std::string>& wa
     map = readQform(fields, pixdim);
   else
     warnings.push_back(fields.path().string() +
-                       ": has neither qform nor sform; voxels are placed along LPS axes from 0 on");
+                       ": has no qform or sform; voxels are placed along LPS axes from the origin");
   const double unit = readUnitMm(fields);
   return Affine(map.linear() * Mat3::Diagonal(Vec3::Constant(unit)), unit * map.translation());
 }
@@ -179,10 +179,10 @@ NiftiHeader parseNiftiHeader(const NiftiBytes& bytes, const std::filesystem::pat
                        std::ranges::all_of(header.size, [](std::int64_t n) { return n >= 1; });
   if (fields.number<std::int32_t>(0) != static_cast<std::int32_t>(bytes.size()) || !isSized ||
       !fields.isOnePart() || !(offset <= maxOffset))
-    throw inputError(path, "is not a NIfTI-1 file of one part; write it again as .nii.gz");
+    throw inputError(path, "is not a single-file NIfTI-1 image; write it again as .nii.gz");
   header.type = readNiftiType(fields);
   header.rescaling = readNiftiRescaling(fields);
-  // Samples follow the header and four bytes that announce extensions.
+  // Samples follow the header and the four bytes that flag extensions.
   header.offset = static_cast<std::int64_t>(std::max(offset, 352.0));
   header.indexToRas = readNiftiGeometry(fields, header.warnings);
   return header;

@@ -16,7 +16,7 @@ Error makeDamagedError(const std::filesystem::path& path) {
   return inputError(path, "is damaged or truncated; copy or write it again");
 }
 
-/// Reads plain and compressed files alike.
+/// Reads plain and gzip-compressed files.
 class NiftiStream {
 public:
   explicit NiftiStream(const std::filesystem::path& path)
@@ -42,7 +42,8 @@ public:
       throw makeDamagedError(m_path);
   }
 
-  /// Reads on, so that zlib compares checksums if the stream ends within 1024 bytes.
+  /// Reads beyond the samples, so that zlib verifies the checksum if the stream ends within 1024
+  /// bytes.
   void checkEnd() {
     std::array<char, 1024> rest;
     if (gzread(m_file.get(), rest.data(), rest.size()) < 0)

@@ -1,6 +1,6 @@
 #pragma once
-// Reads a NIfTI-1 file, plain or compressed. ITK's library silently turns samples that are not
-// finite into zeros, and holds all samples twice; a child (Apart.h) would copy them once more.
+// Reads NIfTI-1 files, plain or compressed. ITK's reader silently replaces non-finite samples by
+// zeros and holds all samples twice. A sandboxed child (Sandbox.h) would copy them once more.
 
 #include "files/medical/NiftiHeader.h"
 
@@ -10,15 +10,15 @@
 
 namespace fenestra {
 
-/// Throws Error (input) as parseNiftiHeader does, and where the file is too short.
+/// Throws Error (input) as parseNiftiHeader does, and if the file is too short.
 NiftiHeader readNiftiHeader(const std::filesystem::path& path);
 
-/// Bytes of all header extensions, with their sizes and codes; at most 4 MiB. Throws Error (input)
-/// where the file ends before.
+/// Raw bytes of all header extensions, including their sizes and codes; at most 4 MiB. Throws Error
+/// (input) if the file is too short.
 std::string readNiftiExtensions(const std::filesystem::path& path, const NiftiHeader& header);
 
-/// First `count` samples of the file. Throws Error (input) for more samples than the file can hold;
-/// reading them throws where the file ends before.
+/// Source of the first `count` samples. Throws Error (input) if the file cannot hold that many;
+/// reading throws if the file turns out to be too short.
 SampleSource openNiftiSamples(const std::filesystem::path& path, const NiftiHeader& header,
                               std::size_t count);
 

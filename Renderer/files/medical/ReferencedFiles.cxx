@@ -16,10 +16,10 @@ namespace {
 namespace fs = std::filesystem;
 using Paths = std::vector<fs::path>;
 
-constexpr std::size_t maxFiles = 10'000;                  ///< names in one file
-constexpr std::uint64_t maxMultiBlockBytes = 64ULL << 20; ///< bytes of a .vtm
+constexpr std::size_t maxFiles = 10'000;                  ///< references in one file
+constexpr std::uint64_t maxMultiBlockBytes = 64ULL << 20; ///< size of a .vtm, bytes
 
-/// True if the name is `start`, a number, `end`.
+/// True if the name is `start`, a number and `end`.
 bool isNumbered(std::string_view name, std::string_view start, std::string_view end) {
   if (name.size() < start.size() + end.size() || !name.starts_with(start) || !name.ends_with(end))
     return false;
@@ -28,7 +28,7 @@ bool isNumbered(std::string_view name, std::string_view start, std::string_view 
   return name.find_first_not_of("0123456789+- ") == std::string_view::npos;
 }
 
-/// Adds the existing files of a pattern like "s%03d.raw 1 99 1", whatever their numbers.
+/// Adds the existing files that match a pattern like "s%03d.raw 1 99 1", with any number.
 void addSeries(const fs::path& folder, std::string_view pattern, Paths& files) {
   const std::size_t percent = pattern.find('%');
   const std::size_t conversion = pattern.find_first_not_of("0123456789+- #.", percent + 1);
@@ -45,7 +45,7 @@ void addSeries(const fs::path& folder, std::string_view pattern, Paths& files) {
       files.push_back(entry->path());
 }
 
-/// Adds the files that a header names for its samples: one, "LIST" and those on the following
+/// Adds the sample files that a header names: a single file, "LIST" and the files on the following
 /// lines, or a pattern.
 void addReferenced(const fs::path& header, std::string_view value, HeaderLines& lines,
                    Paths& files) {
@@ -62,7 +62,7 @@ void addReferenced(const fs::path& header, std::string_view value, HeaderLines& 
     addSeries(folder, value, files);
 }
 
-/// Files that the line "data file: NAME" or "ElementDataFile = NAME" names.
+/// Files referenced by the line "data file: NAME" or "ElementDataFile = NAME".
 Paths readHeaderReferences(const fs::path& path, std::string_view separator, std::string_view key) {
   Paths files;
   HeaderLines lines(path);

@@ -1,6 +1,6 @@
 #pragma once
-// Samples in their file, and their transfer to a store block by block, so that only the store is as
-// large as the volume.
+// Streams samples from a file to a SampleStore block by block. Inflating, analyzing and storing
+// overlap, and only the store is as large as the volume.
 
 #include "files/medical/SampleStore.h"
 
@@ -16,7 +16,7 @@
 
 namespace fenestra {
 
-/// Type of a sample: the alternative counts, not its value.
+/// Type of a sample: which alternative is active; its value is unused.
 using SampleType =
     std::variant<std::int8_t, std::uint8_t, std::int16_t, std::uint16_t, std::int32_t,
                  std::uint32_t, std::int64_t, std::uint64_t, float, double>;
@@ -32,11 +32,11 @@ struct Rescaling {
 struct SampleSource {
   SampleType type = {};
   std::size_t count = 0;
-  bool isSwapped = false; ///< byte order is not the machine's
+  bool isSwapped = false; ///< byte order differs from the machine's
   std::optional<Rescaling> rescaling = {};
-  /// Fills memory with the next bytes of the file, fewer than 2^30. Throws where it ends before.
+  /// Fills memory with the next bytes of the file, fewer than 2^30. Throws if the file ends early.
   std::function<void(void*, std::size_t)> read = {};
-  /// Called after the last sample; throws where the file proves to be damaged. May be empty.
+  /// Called after the last sample; throws if the file is damaged. May be empty.
   std::function<void()> finish = {};
 };
 
@@ -48,7 +48,7 @@ void swapBytes(T& x) {
   std::memcpy(&x, bytes.data(), sizeof(T));
 }
 
-/// Block of samples of the file's type T; rescaled ones are `Rescaled`.
+/// Block of samples of the file's type T; rescaling converts them to `Rescaled`.
 template <typename T>
 class SampleBlock {
 public:
@@ -88,16 +88,15 @@ private:
   SampleStats m_stats;
 };
 
-/// Appends all samples to a SampleStore, in their order. Reading (which inflates), preparing and
-/// appending blocks overlap.
+/// Appends all samples to a SampleStore, in order. A pipeline overlaps reading (which inflates),
+/// preparing and appending.
 template <typename Store>
 void readSamples(const SampleSource& source, Store& store) {
   constexpr std::size_t samplesInBlock = 1 << 18;
   constexpr std::size_t blocksInFlight = 4;
   const auto readAs = [&]<typename T>(T) {
     using Block = SampleBlock<T>;
-    std::array<Block, blocksInFlight>
-        blocks; // a token is free again when its block has been appended
+    std::array<Block, blocksInFlight> blocks; // the pipeline reuses a block only after its append
     std::size_t started = 0;
     std::size_t remaining = source.count;
     const auto read = [&](tbb::flow_control& flow) -> Block* {

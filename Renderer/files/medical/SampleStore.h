@@ -1,6 +1,6 @@
 #pragma once
-// Keeps samples in the smallest type that holds all of them so far: a file's own, wider type never
-// takes memory as a whole.
+// Stores samples in the smallest type that holds all of them so far. The full volume therefore
+// never exists in the file's wider type.
 
 #include "base/LargePages.h"
 #include "base/Vector.h"
@@ -17,10 +17,10 @@
 
 namespace fenestra {
 
-/// Range and kind of samples. Doubles suffice: they hold every integer of 32 bits exactly.
+/// Range and kind of samples. Doubles hold every 32-bit integer exactly.
 struct SampleStats {
   double minimum = infinity, maximum = -infinity; ///< range of the finite samples
-  bool isIntegral = true;                         ///< all finite samples are whole numbers
+  bool isIntegral = true;                         ///< all finite samples are integers
   std::size_t nanCount = 0, infiniteCount = 0;
 
   bool isFinite() const { return nanCount + infiniteCount == 0; }
@@ -57,17 +57,17 @@ SampleStats computeStats(std::span<const T> samples) {
   return s;
 }
 
-/// `Stored`: types in order of preference. Integers hold whole numbers in their range; a float
-/// holds any number, rounded and clamped to its range.
+/// Store of samples; `Stored` lists its types in order of preference. An integer type holds the
+/// integers in its range. A floating-point type holds any number, rounded and clamped.
 template <typename... Stored>
 class SampleStore {
 public:
   using Vectors = std::variant<LargeArray<Stored>...>;
 
-  /// Reserves room for `count` samples; pages are touched only as samples come.
+  /// Reserves memory for `count` samples; pages are touched only as samples arrive.
   explicit SampleStore(std::size_t count) : m_count(count) { setType(0); }
 
-  /// Appends a block, whose survey is `s`. Drops all samples once no type holds them.
+  /// Appends a block with statistics `s`. Drops all samples once no type can hold them.
   template <typename T>
   void append(std::span<const T> block, const SampleStats& s) {
     m_stats.add(s);
@@ -80,7 +80,7 @@ public:
   const SampleStats& stats() const { return m_stats; }
   bool canHoldAll() const { return m_index < sizeof...(Stored); }
 
-  /// Least and greatest sample that take() returns.
+  /// Minimum and maximum of the samples that take() returns.
   std::array<double, 2> range() const {
     return std::visit(
         [this]<typename To>(const LargeArray<To>&) -> std::array<double, 2> {
@@ -90,8 +90,8 @@ public:
         m_samples);
   }
 
-  /// Moves all samples out; requires canHoldAll(). NaN and -infinity become the least finite
-  /// sample, +infinity the greatest.
+  /// Moves all samples out; requires canHoldAll(). NaN and -infinity become the minimum of the
+  /// finite samples, +infinity the maximum.
   Vectors take() {
     if (!m_stats.isFinite()) {
       std::visit([this](auto& samples) { this->replaceNonFinite(samples); }, m_samples);
@@ -119,7 +119,7 @@ private:
                                     fitting.begin());
   }
 
-  /// Converts the samples to the type of index `wanted`; drops them if there is no such type.
+  /// Converts the samples to the type with index `wanted`; drops them if there is no such type.
   void setType(std::size_t wanted) {
     const Vectors previous = std::exchange(m_samples, Vectors());
     m_index = wanted;
@@ -133,8 +133,8 @@ private:
     std::visit([&](const auto& from) { copy(std::span(from), samples); }, previous);
   }
 
-  /// Appends in parts: growing fills with zeros, which costs little while a part stays in the
-  /// cache.
+  /// Appends chunk by chunk: resize() zeroes the new elements first, which is cheap while a chunk
+  /// stays in cache.
   template <typename T, typename To>
   static void copy(std::span<const T> from, LargeArray<To>& to) {
     if constexpr (std::is_same_v<T, To>)
@@ -154,10 +154,10 @@ private:
     if constexpr (std::is_same_v<T, double> && std::is_same_v<To, float>) {
       constexpr double limit = std::numeric_limits<float>::max();
       return std::isinf(x) ? static_cast<float>(x)
-                           : static_cast<float>(std::clamp(x, -limit, limit)); // NaN stays
+                           : static_cast<float>(std::clamp(x, -limit, limit)); // NaN passes through
     }
     if constexpr (std::is_floating_point_v<To>)
-      return static_cast<To>(static_cast<double>(x)); // range() then rounds as samples do
+      return static_cast<To>(static_cast<double>(x)); // rounds as range() does
     return static_cast<To>(x);
   }
 

@@ -10,12 +10,12 @@
 namespace fenestra {
 namespace {
 
-/// One zlib or gzip stream, from the file's current byte on.
+/// One zlib or gzip stream that starts at the file's current position.
 class InflatedSamples {
 public:
   InflatedSamples(const std::filesystem::path& path, std::ifstream file, std::uint64_t declared)
       : m_path(path), m_file(std::move(file)), m_declared(declared) {
-    constexpr int anyHeader = 15 + 32; // zlib's or gzip's
+    constexpr int anyHeader = 15 + 32; // detects zlib and gzip headers
     m_status = inflateInit2(&m_stream, anyHeader);
   }
   ~InflatedSamples() { inflateEnd(&m_stream); }
@@ -35,7 +35,7 @@ public:
   }
 
 private:
-  /// Returns the number of bytes, fewer than `bytes` where the stream ends or is damaged.
+  /// Returns the number of bytes; fewer than `bytes` if the stream ends or is damaged.
   std::size_t inflateTo(void* to, std::size_t bytes) {
     m_stream.next_out = static_cast<Bytef*>(to);
     m_stream.avail_out = static_cast<uInt>(bytes);
@@ -45,14 +45,14 @@ private:
         m_stream.next_in = reinterpret_cast<Bytef*>(m_input.data());
         m_stream.avail_in = static_cast<uInt>(m_file.gcount());
       }
-      m_status = inflate(&m_stream, Z_NO_FLUSH); // without input left: Z_BUF_ERROR
+      m_status = inflate(&m_stream, Z_NO_FLUSH); // Z_BUF_ERROR at the end of the file
     }
     return bytes - m_stream.avail_out;
   }
 
   Error makeDamagedError() const {
-    return inputError(m_path, "is damaged or truncated: its compressed samples do not give the ",
-                      m_declared, " bytes that its header announces; copy or write it again");
+    return inputError(m_path, "is damaged or truncated: its compressed samples do not inflate to ",
+                      m_declared, " bytes as its header declares; copy or write it again");
   }
 
   std::filesystem::path m_path;

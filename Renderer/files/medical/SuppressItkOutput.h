@@ -1,11 +1,11 @@
 #pragma once
-// Silence for libraries that complain on std::cerr; their failures become Errors.
+// Silences ITK, which prints warnings to std::cerr; its failures are thrown as Errors.
 
 #include <streambuf>
 
 namespace fenestra {
 
-/// Discards std::cerr during the object's life, and turns ITK's warnings off for good.
+/// Discards std::cerr during its lifetime and disables ITK's warnings for the rest of the process.
 class SuppressItkOutput {
 public:
   SuppressItkOutput();

@@ -1,5 +1,5 @@
 #pragma once
-// Reads the scalar volume.
+// Reads scalar volumes.
 
 #include "files/medical/SampleStore.h"
 #include "model/volume/Volume.h"
@@ -8,16 +8,16 @@
 
 namespace fenestra {
 
-/// Reads NRRD (.nrrd .nhdr), NIfTI (.nii .nii.gz) or MetaImage (.mha .mhd), of any scalar type and
-/// geometry; stored as Volume.h says. Throws Error (input): several components or frames, missing,
-/// damaged or truncated files, singular geometry, no finite voxel, other formats.
+/// Reads NRRD (.nrrd .nhdr), NIfTI (.nii .nii.gz) or MetaImage (.mha .mhd) with any scalar type and
+/// geometry. Throws Error (input) for several components or frames, missing, damaged or truncated
+/// files, singular geometry, a volume without a finite voxel, and other formats.
 Volume readVolume(const std::filesystem::path& path);
 
-/// Store of Volume.h's types.
+/// Store that chooses among Volume.h's voxel types.
 using VoxelStore = SampleStore<std::uint8_t, std::int16_t, std::uint16_t, float>;
 
-/// Volume of finite voxels in the smallest storage, as Volume.h says. `name`: the volume's, and for
-/// messages. Throws Error (input) where no sample is a finite number.
+/// Makes a volume of finite voxels in the smallest voxel type. `name` becomes the volume's name and
+/// is used in messages. Throws Error (input) if no sample is finite.
 Volume makeVolume(const std::string& name, const Grid& grid, VoxelStore&& samples);
 
 } // namespace fenestra

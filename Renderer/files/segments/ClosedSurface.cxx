@@ -19,14 +19,14 @@ using Path = std::filesystem::path;
 constexpr const char* exportHint =
     "export the segmentation in Slicer as a binary labelmap (.seg.nrrd)";
 
-/// Files that a .vtm names. Throws Error (input) for names outside its folder.
+/// Paths of the files that a .vtm references. Throws Error (input) for files outside its folder.
 std::vector<Path> readBlocks(const Path& path) {
   pugi::xml_document document;
-  const std::string text = readText(path); // holds names alone
+  const std::string text = readText(path); // small: it only lists files
   const bool read = static_cast<bool>(document.load_buffer(text.data(), text.size()));
   const pugi::xml_node file = document.child("VTKFile");
   if (!read || std::string_view(file.attribute("type").value()) != "vtkMultiBlockDataSet")
-    throw inputError(path, "is damaged or no multi-block file; ", exportHint);
+    throw inputError(path, "is damaged or not a multi-block file; ", exportHint);
   constexpr std::size_t maxBlocks = 4096;
   std::vector<Path> blocks;
   for (const auto& block : file.child("vtkMultiBlockDataSet").children("DataSet")) {
@@ -37,7 +37,7 @@ std::vector<Path> readBlocks(const Path& path) {
     blocks.push_back(path.parent_path() / name);
   }
   if (blocks.empty())
-    throw inputError(path, "holds no segment; ", exportHint);
+    throw inputError(path, "has no segment; ", exportHint);
   return blocks;
 }
 
@@ -73,7 +73,7 @@ std::vector<Surface> readSurfaces(const Path& path) {
     VtkSurface shape = readVtkSurface(block, fieldData, budget);
     if (shape.triangles.empty() && shape.hasLines)
       throw inputError(
-          block, "Segmentation_MasterRepresentation: holds planar contours, not a closed surface; ",
+          block, "Segmentation_MasterRepresentation: is planar contours, not a closed surface; ",
           exportHint);
     surfaces.push_back({makeSegmentInfo(shape, surfaces.size()), std::move(shape)});
   }
@@ -102,7 +102,7 @@ Grid makeGrid(const Box& bounds) {
   return {(extent / spacing).array().ceil().cast<std::int64_t>() + 1, indexToWorld};
 }
 
-/// Part of the reference that the surfaces may touch.
+/// Part of the reference grid that the surfaces can overlap.
 Grid cropGrid(const Grid& reference, const Box& bounds) {
   const Vec3 last = reference.size.cast<double>().array() - 1.0;
   const Vec3 lower = bounds.lower.array().floor().max(0.0).min(last.array());
@@ -112,14 +112,14 @@ Grid cropGrid(const Grid& reference, const Box& bounds) {
   return {(upper - lower).array().cast<std::int64_t>().max(0) + 1, indexToWorld};
 }
 
-/// Labels in layers, one after the other.
+/// Label layers, stored one after the other.
 class Layers {
 public:
   using Label = std::int16_t;
 
   Layers(const Size3& size, const Path& path) : m_size(size), m_path(path) {}
 
-  /// Adds a segment in the first layer where it overlaps no other; returns that layer.
+  /// Adds a segment to the first layer in which it overlaps no other; returns that layer.
   std::size_t add(const std::vector<VoxelRun>& runs, Label label) {
     std::size_t layer = 0;
     while (layer < count && !isFree(layer, runs))
@@ -128,7 +128,7 @@ public:
       constexpr std::int64_t maxLabels = std::int64_t{1} << 31;
       const std::int64_t size = m_size.prod() * static_cast<std::int64_t>(++count);
       if (size > maxLabels)
-        throw inputError(m_path, "overlaps in too many layers; ", exportHint);
+        throw inputError(m_path, "has segments that overlap in too many layers; ", exportHint);
       labels.resize(static_cast<std::size_t>(size));
     }
     for (const VoxelRun& run : runs)
@@ -160,11 +160,11 @@ private:
 } // namespace
 
 Segmentation readClosedSurfaces(const Path& path, const Grid* reference) {
-  requireFile(path, "name a .vtm file in it");
+  requireFile(path, "give a .vtm file in it");
   std::vector<Surface> surfaces = readSurfaces(path);
   const Box bounds = computeBounds(surfaces, Affine::Identity());
   if (!(bounds.upper.array() >= bounds.lower.array()).all())
-    throw inputError(path, "its surfaces hold no point; ", exportHint);
+    throw inputError(path, "has surfaces without points; ", exportHint);
   const Grid grid = reference
                         ? cropGrid(*reference, computeBounds(surfaces, reference->worldToIndex))
                         : makeGrid(bounds);
@@ -176,7 +176,7 @@ Segmentation readClosedSurfaces(const Path& path, const Grid* reference) {
     const auto runs = voxelizeSurface(surface.shape.points, surface.shape.triangles, grid.size);
     if (!runs)
       throw inputError(path, "segment \"", sanitize(surface.info.name),
-                       "\": its surface has holes or is too complex; ", exportHint);
+                       "\": has a surface with holes, or one too complex; ", exportHint);
     surface.info.layer = layers.add(*runs, static_cast<Layers::Label>(surface.info.labelValue));
     segments.push_back(surface.info);
   }
@@ -185,7 +185,7 @@ Segmentation readClosedSurfaces(const Path& path, const Grid* reference) {
 }
 
 std::vector<SegmentInfo> readClosedSurfaceInfos(const Path& path) {
-  requireFile(path, "name a .vtm file in it");
+  requireFile(path, "give a .vtm file in it");
   std::vector<SegmentInfo> infos;
   for (Surface& surface : readSurfaces(path))
     infos.push_back(std::move(surface.info));

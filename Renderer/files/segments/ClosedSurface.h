@@ -1,18 +1,18 @@
 #pragma once
-// Slicer's closed-surface segmentations (.vtm with a .vtp for each segment), as labels.
+// Reads Slicer's closed-surface segmentations (a .vtm with one .vtp per segment) as labels.
 
 #include "files/segments/SegmentationReader.h"
 
 namespace fenestra {
 
-/// Labels of the voxels of `reference` (the volume's grid) whose centres are inside the surfaces;
-/// null: a grid along RAS axes, of voxels of 1/256 of the longest extent. Surfaces are in RAS, as
-/// Slicer writes them. Overlapping segments lie in several layers. Throws Error (input): files that
-/// the .vtm names outside its folder, planar contours without a surface, surfaces with holes,
-/// damaged files.
+/// Labels the voxels whose centers lie inside the surfaces, on the grid `reference` (the volume's);
+/// null: on a grid along the RAS axes, with voxels of 1/256 of the longest extent. Surfaces are in
+/// RAS, as Slicer writes them. Overlapping segments go to separate layers. Throws Error (input) for
+/// files outside the folder of the .vtm, planar contours without a surface, surfaces with holes,
+/// and damaged files.
 Segmentation readClosedSurfaces(const std::filesystem::path& path, const Grid* reference);
 
-/// Segments of such a file, without labels.
+/// Reads the segments of such a file, without labels.
 std::vector<SegmentInfo> readClosedSurfaceInfos(const std::filesystem::path& path);
 
 } // namespace fenestra

@@ -16,7 +16,7 @@
 namespace fenestra {
 namespace {
 
-/// Names that grow, with the place in the table that errors tell.
+/// Collects names; its errors state the source and the place in the table.
 class TableBuilder {
 public:
   explicit TableBuilder(std::string source) : m_source(std::move(source)) {}
@@ -25,7 +25,7 @@ public:
            std::optional<Rgb> color = {}) {
     if (!value || *value < std::numeric_limits<std::int32_t>::min() ||
         *value > std::numeric_limits<std::int32_t>::max())
-      throw inputError(m_source, place, ": must begin with a whole number of 32 bits");
+      throw inputError(m_source, place, ": must begin with a 32-bit integer");
     if (*value == 0)
       return;
     if (name.empty())
@@ -35,13 +35,13 @@ public:
       color.reset();
     const auto [entry, isNew] = m_names.insert({key, {std::move(name), color}});
     if (!isNew)
-      throw inputError(m_source, place, ": names the value ", key, " again, which is \"",
-                       sanitize(entry->second.name), "\" already");
+      throw inputError(m_source, place, ": names the value ", key, ", which already is \"",
+                       sanitize(entry->second.name), "\"; remove one of them");
   }
 
   LabelNames take() {
     if (m_names.empty())
-      throw inputError(m_source, "names no value; is it a table of labels?");
+      throw inputError(m_source, "names no value; give a label table");
     return std::move(m_names);
   }
 
@@ -52,7 +52,7 @@ private:
   LabelNames m_names;
 };
 
-/// Calls `use` with the place and the text of each line that holds something.
+/// Calls `use` with the place and the text of each line that is neither empty nor a comment.
 void forEachLine(const std::string& text,
                  const std::function<void(const std::string& place, std::string_view line)>& use) {
   std::size_t number = 0;
@@ -64,7 +64,7 @@ void forEachLine(const std::string& text,
   }
 }
 
-/// Colour of three bytes in words; nullopt: other words.
+/// Color of three byte values, starting at `first`; nullopt: malformed.
 std::optional<Rgb> parseColor(const std::vector<std::string>& parts, std::size_t first) {
   Rgb color;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -77,7 +77,7 @@ std::optional<Rgb> parseColor(const std::vector<std::string>& parts, std::size_t
   return color;
 }
 
-/// Slicer writes blanks in names as underscores, and says nothing of it: names stay as they are.
+/// Slicer writes spaces in names as underscores, which is ambiguous; names stay as written.
 void readColorTable(const std::string& text, TableBuilder& table) {
   forEachLine(text, [&](const std::string& place, std::string_view line) {
     const std::vector<std::string> parts = splitWords(line);
@@ -120,7 +120,7 @@ void readCsv(const std::string& text, TableBuilder& table) {
       name = findColumn({"name", "label_name", "labelname", "structure", "segment"});
       if (value >= fields.size() || name >= fields.size())
         throw inputError(table.source(), place,
-                         ": has no columns \"label\" and \"name\"; name them so");
+                         ": has no columns \"label\" and \"name\"; rename the columns");
       continue;
     }
     const auto field = [&](std::size_t i) { return i < fields.size() ? fields[i] : std::string(); };
@@ -155,7 +155,7 @@ LabelNames readLabelNames(const std::filesystem::path& path) {
       {".json", [](const std::string& text, TableBuilder& table) { readJsonTable(text, table); }}};
   const auto reader = readers.find(lowercaseExtension(path));
   if (reader == readers.end())
-    throw inputError(path.string(), "is no table of labels by its extension; name a .ctbl, .txt, "
+    throw inputError(path.string(), "has no extension of a label table; give a .ctbl, .txt, "
                                     ".label, .json or .csv");
   TableBuilder table(path.string());
   reader->second(readText(path), table);

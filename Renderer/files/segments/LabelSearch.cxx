@@ -17,10 +17,11 @@ std::filesystem::path stripExtensions(const std::filesystem::path& path) {
 
 struct SiblingTable {
   std::filesystem::path file;
-  bool mustMatchExactly; ///< it names many label maps' values perhaps: its values must be these
+  bool mustMatchExactly; ///< must name exactly the label map's values, since many label maps may
+                         ///< share it
 };
 
-/// Tables in the label map's folder that may be its.
+/// Existing tables in the label map's folder that may belong to it.
 std::vector<SiblingTable> findSiblingTables(const std::filesystem::path& path) {
   std::vector<SiblingTable> tables;
   const std::filesystem::path stem = stripExtensions(path);
@@ -36,7 +37,7 @@ std::size_t countNamed(const LabelNames& names, const std::set<std::int32_t>& va
       std::ranges::count_if(values, [&](std::int32_t value) { return names.contains(value); }));
 }
 
-/// Version of TotalSegmentator whose classes the names are; empty: of neither.
+/// Version of TotalSegmentator whose class names match; empty: neither.
 std::string findVersion(const LabelNames& names) {
   for (const char* version : {"totalsegmentator2", "totalsegmentator1"}) {
     const LabelNames table = *findBuiltInLabelNames(version);
@@ -55,16 +56,15 @@ FoundNames readRequestedNames(const std::filesystem::path& path, const std::stri
     const auto inFile = parseLabelNamesXml(extensions, path.string());
     const std::string version = inFile ? findVersion(*inFile) : "";
     if (version.empty())
-      throw inputError(path, "does not say which version of TotalSegmentator made it, and each "
-                             "numbers other organs; give --labels totalsegmentator1 or "
+      throw inputError(path, "does not state its TotalSegmentator version, and versions number "
+                             "organs differently; give --labels totalsegmentator1 or "
                              "totalsegmentator2");
     return {*inFile, version};
   }
   if (auto table = findBuiltInLabelNames(requested))
     return {*table, requested};
   if (!fileExists(requested))
-    throw usageError("--labels ", sanitize(requested),
-                     ": is no file, and none of totalsegmentator, ",
+    throw usageError("--labels ", sanitize(requested), ": is neither a file nor totalsegmentator, ",
                      join(listBuiltInLabelTables(), ", "));
   const InputConfinement anywhere(std::nullopt);
   return {readLabelNames(requested), requested};
@@ -81,8 +81,8 @@ FoundNames readSiblingNames(const std::filesystem::path& path,
                         (!table.mustMatchExactly || names.size() == values.size());
       if (fits)
         return {std::move(names), file, std::move(found.warnings)};
-      found.warnings.push_back(concat(file, ": names other values than ", path.filename(),
-                                      " holds, and is not used; --labels ", file, " uses it"));
+      found.warnings.push_back(concat(file, ": does not match the values of ", path.filename(),
+                                      " and is not used; --labels ", file, " forces its use"));
     } catch (const Error& error) {
       found.warnings.push_back(std::string(error.what()) + " (it is not used)");
     }
@@ -108,10 +108,10 @@ FoundNames findLabelNames(const std::filesystem::path& path, const std::set<std:
   }
   FoundNames found = readRequestedNames(path, extensions, *requested);
   if (!values.empty() && countNamed(found.names, values) == 0)
-    throw inputError(path, "--labels ", sanitize(*requested), " names none of its values (",
+    throw inputError(path, "--labels ", sanitize(*requested), " names none of the label values (",
                      join(
                          values, ", ", [](std::int32_t value) { return concat(value); }, 8),
-                     "); is it another label map's table?");
+                     "); give the table of this label map");
   return found;
 }
 

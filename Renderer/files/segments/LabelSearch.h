@@ -1,6 +1,6 @@
 #pragma once
-// Choice of the names for a label map's values: the user's, those in the file, or a table beside
-// it.
+// Finds the names for a label map's values: in the table that the user requests, in the file
+// itself, or in a table beside it.
 
 #include "files/segments/LabelNames.h"
 
@@ -9,22 +9,22 @@
 namespace fenestra {
 
 struct FoundNames {
-  LabelNames names = {};                  ///< empty: values have no names
-  std::string source = {};                ///< file, or table's name
+  LabelNames names = {};                  ///< empty: the values have no names
+  std::string source = {};                ///< file, or name of a built-in table
   std::vector<std::string> warnings = {}; ///< each names the file
 };
 
-/// Names for the `values` (without 0) of the label map at `path`. `wanted`: a file, a compiled
-/// table's name, or "totalsegmentator", whose version the label table in NIfTI's header
-/// `extensions` decides. Otherwise that label table, a table with the label map's stem that names
-/// all values, or a seg_labels.json that names exactly them; one that does not is told in a
-/// warning. Throws Error (input, usage) for wanted names that there are not, or that name none of
-/// the values.
+/// Finds names for the `values` (without 0) of the label map at `path`. `requested` is a file, a
+/// built-in table, or "totalsegmentator", whose version follows from the label table in the NIfTI
+/// header `extensions`. If nothing is requested, uses that label table, else a table with the label
+/// map's stem that names all values, else a seg_labels.json that names exactly these values. A
+/// table beside the label map that does not match gives a warning. Throws Error (input, usage) if
+/// the requested table does not exist or names none of the values.
 FoundNames findLabelNames(const std::filesystem::path& path, const std::set<std::int32_t>& values,
                           const std::string& extensions,
                           const std::optional<std::string>& requested);
 
-/// True if findLabelNames would look into the values: there is something to choose.
+/// True if findLabelNames needs the values, since there is a table to match.
 bool hasLabelNames(const std::filesystem::path& path, const std::string& extensions,
                    const std::optional<std::string>& requested);
 

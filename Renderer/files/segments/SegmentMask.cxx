@@ -1,4 +1,4 @@
-// Focus and statistics of segments.
+// Masks and statistics of segments.
 
 #include "base/Error.h"
 #include "files/segments/SegmentationReader.h"
@@ -31,10 +31,10 @@ struct VoxelExtent {
   }
 };
 
-// ---- focus
+// ---- mask
 
-/// True if all corners of the face are within half a voxel of a face of the volume, with the
-/// labelmap on the inner side.
+/// True if all corners of the face lie within half a voxel of a face of the volume, with the
+/// labelmap on its inner side.
 bool isOnVolumeFace(const Grid& labelmap, const Grid& volume, int axis, int side) {
   const Affine toVolume = volume.worldToIndex * labelmap.indexToWorld;
   const Box labels = labelmap.indexBox(), box = volume.indexBox();
@@ -51,7 +51,7 @@ bool isOnVolumeFace(const Grid& labelmap, const Grid& volume, int axis, int side
   return false;
 }
 
-/// Voxels of the labelmap, and one more beyond each face that lies on a face of the volume.
+/// Voxel extent of the labelmap, plus one voxel beyond each face that lies on a face of the volume.
 VoxelExtent extendToVolume(const Grid& labelmap, const Grid& volume) {
   VoxelExtent extent{Size3::Zero(), labelmap.size.array() - 1};
   for (int axis = 0; axis < 3; ++axis) {
@@ -61,7 +61,7 @@ VoxelExtent extendToVolume(const Grid& labelmap, const Grid& volume) {
   return extent;
 }
 
-/// Set of label values, queried at least once for every voxel.
+/// Set of label values, optimized for a query per voxel: a bit table before the set.
 template <typename Label>
 class LabelValueSet {
 public:
@@ -78,11 +78,11 @@ public:
   }
 
 private:
-  std::vector<std::uint8_t> m_lowBits = std::vector<std::uint8_t>(1 << 16); ///< 1: of a value
+  std::vector<std::uint8_t> m_lowBits = std::vector<std::uint8_t>(1 << 16); ///< by low 16 bits
   std::set<Label> m_values;
 };
 
-/// Focus in one labelmap: its chosen voxels, and their mask.
+/// Selected voxels of one labelmap.
 template <typename Label>
 class Focus {
 public:
@@ -93,8 +93,8 @@ public:
       m_values[segment.layer].insert(segment.labelValue);
   }
 
-  /// Sets grid, voxels and their count, cropped to the focus; leaves `mask` unchanged without
-  /// chosen voxels. Voxels of `continued` beyond the labelmap repeat its outermost ones, uncounted.
+  /// Sets the mask's grid, voxels and count, cropped to the selected voxels; leaves it unchanged if
+  /// there are none. Voxels of `extended` beyond the labelmap repeat its outermost ones, uncounted.
   void fill(Mask& mask, const VoxelExtent& extendToVolume) const {
     const VoxelExtent extent = this->extent();
     if (extent.empty())
@@ -117,8 +117,8 @@ public:
   }
 
 private:
-  /// Writes the `count` voxels from `first` on, 0 before; returns how many of the labelmap's own
-  /// are chosen.
+  /// Writes `count` voxels from `first` on, into zeroed memory. Returns the number of selected
+  /// voxels inside the labelmap.
   std::int64_t fillRow(const Size3& first, std::int64_t count, const VoxelExtent& extendToVolume,
                        std::uint8_t* to) const {
     const Size3 last = m_grid.size.array() - 1, nearest = first.cwiseMax(0).cwiseMin(last);
@@ -138,7 +138,7 @@ private:
     return chosen;
   }
 
-  /// Labels of a row, its voxels' layers together.
+  /// Labels of a row of voxels; the layers of a voxel are adjacent.
   const Label* labelRow(std::int64_t y, std::int64_t z) const {
     return m_labels.data() + linearIndex({0, y, z}, m_grid.size) * m_layerCount;
   }
@@ -182,7 +182,7 @@ private:
   const Grid& m_grid;
   std::size_t m_layerCount;
   const LargeArray<Label>& m_labels;
-  std::vector<LabelValueSet<Label>> m_values; ///< chosen values of each layer
+  std::vector<LabelValueSet<Label>> m_values; ///< selected values of each layer
 };
 
 // ---- statistics
@@ -194,12 +194,12 @@ struct ValueStatistics {
 
 using StatisticsByValue = std::map<std::int32_t, ValueStatistics>;
 
-/// Adds one layer's voxels to the statistics of the values in `values`.
+/// Counts the voxels of one layer, for the label values that are keys of `values`.
 template <typename Label>
 void countVoxels(const LargeArray<Label>& labels, const Size3& size, std::size_t layer,
                  std::size_t layerCount, StatisticsByValue& values) {
   std::size_t at = layer;
-  std::int32_t last = 0; // labels come in runs
+  std::int32_t last = 0; // equal labels come in runs: look up once per run
   ValueStatistics* counted = nullptr;
   for (std::int64_t z = 0; z < size.z(); ++z)
     for (std::int64_t y = 0; y < size.y(); ++y)
@@ -216,7 +216,7 @@ void countVoxels(const LargeArray<Label>& labels, const Size3& size, std::size_t
       }
 }
 
-/// Bounds of whole voxels, along the world's axes.
+/// Axis-aligned world bounds of voxels, including their full extent.
 Box worldBounds(const Grid& grid, const VoxelExtent& extent) {
   const Box voxels{extent.lower.cast<double>().array() - 0.5,
                    extent.upper.cast<double>().array() + 0.5};
@@ -236,8 +236,8 @@ std::string formatSegments(const std::vector<SegmentInfo>& segments) {
   return join(segments, ", ", named, 12);
 }
 
-/// True if each word of the selector, without a final s, begins a word of the name: "Kidneys" means
-/// kidney_left, and "left kidney" as well.
+/// True if each word of the selector, ignoring a final s, begins a word of the name: "Kidneys" and
+/// "left kidney" match kidney_left.
 bool isLikelyMatch(const std::string& selector, const std::string& name) {
   const std::vector<std::string> words = splitName(name), selectorWords = splitName(selector);
   return !selectorWords.empty() && std::ranges::all_of(selectorWords, [&](std::string word) {
@@ -248,10 +248,10 @@ bool isLikelyMatch(const std::string& selector, const std::string& name) {
   });
 }
 
-/// Mend of an unknown selector: the segments that it may mean, else those that there are.
+/// Hint for an unknown selector: likely matches, else all segments.
 std::string suggestSegments(const std::string& selector, const std::vector<SegmentInfo>& segments) {
   if (segments.empty())
-    return "it has none at all";
+    return "it has no segments";
   std::vector<SegmentInfo> suggested;
   std::ranges::copy_if(segments, std::back_inserter(suggested),
                        [&](const SegmentInfo& one) { return isLikelyMatch(selector, one.name); });
@@ -264,7 +264,7 @@ std::string suggestSegments(const std::string& selector, const std::vector<Segme
     return segment.name == concat("Segment_", segment.labelValue);
   });
   return concat("it has ", formatSegments(segments),
-                unnamed ? "; --labels gives the values names" : "");
+                unnamed ? "; --labels can name the values" : "");
 }
 
 } // namespace
@@ -279,8 +279,8 @@ std::size_t Segmentation::find(const std::string& selector) const {
     std::vector<SegmentInfo> found;
     std::ranges::copy_if(m_segments, std::back_inserter(found), matches);
     if (found.size() > 1)
-      throw inputError(m_source, "segment \"", sanitize(selector), "\" can be any of ",
-                       formatSegments(found), "; name one by its id");
+      throw inputError(m_source, "segment \"", sanitize(selector),
+                       "\" matches several: ", formatSegments(found), "; choose one by its id");
     if (!found.empty())
       return static_cast<std::size_t>(std::ranges::find_if(m_segments, matches) -
                                       m_segments.begin());
@@ -314,14 +314,14 @@ std::vector<SegmentStatistics> Segmentation::statistics() const {
 Mask Segmentation::makeFocusMask(const std::vector<std::string>& selectors, const Grid& volume,
                                  const MaskShaping& shaping) const {
   if (shaping.margins.size() > 1 && shaping.margins.size() != selectors.size())
-    throw usageError("--margin: give one for all segments of --focus, or one each");
+    throw usageError("--margin: give one value for all segments of --focus, or one per segment");
   std::vector<SegmentInfo> chosen;
   for (const std::string& selector : selectors)
     chosen.push_back(m_segments[find(selector)]);
   Mask mask = makeMask(chosen, volume, shaping);
   if (mask.count == 0)
     throw inputError(m_source, "--margin and --labelsmoothing leave nothing of the focus (",
-                     formatSegments(chosen), "); choose a margin nearer to 0, or less smoothing");
+                     formatSegments(chosen), "); use a margin closer to 0, or less smoothing");
   return mask;
 }
 
@@ -350,7 +350,7 @@ Mask Segmentation::makeMask(const std::vector<SegmentInfo>& chosen, const Grid& 
     return applyMargin(std::move(mask), margin, volume);
   };
   std::vector<Mask> masks;
-  if (shaping.margins.size() <= 1) // the union first: no gaps where segments touch
+  if (shaping.margins.size() <= 1) // unite first: no gaps between adjacent segments
     masks.push_back(shapeMask(chosen, shaping.margins.empty() ? 0.0 : shaping.margins[0]));
   else
     for (std::size_t i = 0; i < chosen.size(); ++i)

@@ -28,14 +28,13 @@ Segmentation::Labels toLabels(LabelStore&& samples, const std::string& source) {
   const SampleStats& s = samples.stats();
   if (!s.isIntegral || !s.isFinite())
     throw inputError(
-        source,
-        "holds values that are not whole numbers, so it is no labelmap; name a segmentation");
+        source, "has values that are not integers, so it is not a labelmap; give a segmentation");
   if (!samples.canHoldAll())
-    throw inputError(source, "holds label values beyond 32 bits; number its labels again");
+    throw inputError(source, "has label values beyond 32 bits; renumber its labels");
   return samples.take();
 }
 
-/// Values of a labelmap other than 0.
+/// Label values other than 0.
 std::set<std::int32_t> collectValues(const Segmentation::Labels& labels,
                                      const std::string& source) {
   std::set<std::int32_t> values;
@@ -45,14 +44,14 @@ std::set<std::int32_t> collectValues(const Segmentation::Labels& labels,
         for (const std::int32_t value : voxels)
           if (value != std::exchange(last, value) && value != 0 && values.insert(value).second &&
               values.size() > maxSegments)
-            throw inputError(source, "holds more than 65536 different values, so it is no "
-                                     "labelmap; name a segmentation");
+            throw inputError(source, "has more than 65536 different values, so it is not a "
+                                     "labelmap; give a segmentation");
       },
       labels);
   return values;
 }
 
-/// Segments of a labelmap, one per value, in ascending order.
+/// One segment per label value, in ascending order.
 std::vector<SegmentInfo> makeSegments(const std::set<std::int32_t>& values,
                                       const LabelNames& names) {
   std::vector<SegmentInfo> segments;
@@ -70,14 +69,14 @@ std::vector<SegmentInfo> makeSegments(const std::set<std::int32_t>& values,
 
 void rejectLabels(const std::string& source, const std::optional<std::string>& labels) {
   if (labels)
-    throw inputError(source, "names its segments itself; leave out --labels");
+    throw inputError(source, "already names its segments; remove --labels");
 }
 
 // ---- Slicer's header fields
 
-/// Grid of the file's voxels. The oldest files keep the geometry of the whole reference image, in
-/// RAS, and state in Segmentation_Extent which part of it their voxels are. (With this
-/// offset the bladder of such a file lies at the same patient's bladder surface.)
+/// Grid of the file's voxels. The oldest files store the geometry of the full reference image, in
+/// RAS, and Segmentation_Extent states which part of it the voxels cover. (Verified: the bladder of
+/// such a file then coincides with the same patient's bladder surface.)
 Grid applyExtent(const Grid& grid, const Fields& fields, const std::string& source) {
   const auto extent = fields.find("Segmentation_Extent");
   if (extent == fields.end())
@@ -86,7 +85,7 @@ Grid applyExtent(const Grid& grid, const Fields& fields, const std::string& sour
   for (const std::string& word : splitWords(extent->second))
     numbers.push_back(parseNumber<std::int32_t>(word).value_or(infinity));
   if (numbers.size() != 6 || std::ranges::count(numbers, infinity) > 0)
-    throw inputError(source, "Segmentation_Extent: must be six whole numbers");
+    throw inputError(source, "Segmentation_Extent: must be six integers");
   const Vec3 first(numbers[0], numbers[2], numbers[4]);
   return {grid.size, Affine(lpsToRas) * grid.indexToWorld * makeTranslation(first)};
 }
@@ -102,7 +101,7 @@ public:
     return it == m_fields.end() ? nullptr : &it->second;
   }
 
-  /// Segment `n` of a file of `layerCount` layers; the fields have an ID.
+  /// Reads segment `n` of a file with `layerCount` layers; requires its ID field.
   SegmentInfo readSegment(std::size_t n, std::size_t layerCount) const {
     SegmentInfo info;
     info.id = *find("ID");
@@ -110,8 +109,8 @@ public:
     info.name = name ? *name : info.id;
     info.labelValue = number("LabelValue", 1);
     if (info.labelValue == 0)
-      throw inputError(m_source, m_prefix, "LabelValue: 0 is the background; use another");
-    // Older files state no layer: with several layers it is the segment's own.
+      throw inputError(m_source, m_prefix, "LabelValue: 0 is the background; use another value");
+    // Older files state no layer; if there are several, each segment has its own.
     const std::int32_t layer = number("Layer", layerCount == 1 ? 0 : static_cast<std::int32_t>(n));
     if (std::cmp_less(layer, 0) || std::cmp_greater_equal(layer, layerCount))
       throw inputError(m_source, m_prefix, "Layer: is ", layer, ", but the file has ", layerCount,
@@ -128,11 +127,11 @@ private:
     const std::string* text = find(field);
     const auto value = text ? parseNumber<std::int32_t>(*text) : fallback;
     if (!value)
-      throw inputError(m_source, m_prefix, field, ": must be a whole number");
+      throw inputError(m_source, m_prefix, field, ": must be an integer");
     return *value;
   }
 
-  /// Leaves `color`, which is decoration, where the field is missing or malformed.
+  /// Keeps `color` if the field is missing or malformed; the color is not essential.
   void readColor(Rgb& color) const {
     const std::string* text = find("Color") ? find("Color") : find("DefaultColor");
     const auto numbers = text ? parseNumbers(*text) : std::nullopt;
@@ -148,15 +147,15 @@ private:
   std::string m_prefix;
 };
 
-/// Segments that the fields name. Throws Error (input), also for a fractional labelmap.
+/// Reads the segments that the fields describe. Throws Error (input), also if they are fractional.
 std::vector<SegmentInfo> readSegments(const Fields& fields, const std::string& source,
                                       std::size_t layerCount) {
   for (const char* field :
        {"Segmentation_MasterRepresentation", "Segmentation_SourceRepresentation"})
     if (header::findValue(fields, field).starts_with("Fractional"))
       throw inputError(source, field,
-                       ": is a fractional labelmap, which is not read; export the segmentation "
-                       "in Slicer as a binary labelmap (.seg.nrrd)");
+                       ": is a fractional labelmap, which is not supported; export the "
+                       "segmentation in Slicer as a binary labelmap (.seg.nrrd)");
   std::vector<SegmentInfo> segments;
   while (segments.size() < maxSegments) {
     const SegmentFields segmentFields(fields, source, concat("Segment", segments.size(), '_'));
@@ -169,7 +168,7 @@ std::vector<SegmentInfo> readSegments(const Fields& fields, const std::string& s
 
 } // namespace
 
-/// "...|TerminologyEntry:LIST~CATEGORY~TYPE~MODIFIER~LIST~REGION~MODIFIER|...", each
+/// Format: "...|TerminologyEntry:LIST~CATEGORY~TYPE~MODIFIER~LIST~REGION~MODIFIER|...", each part
 /// SCHEME^VALUE^MEANING (vtkSegment, vtkSlicerTerminologiesModuleLogic).
 void SegmentInfo::parseTerminology(std::string_view tags) {
   constexpr std::string_view key = "TerminologyEntry:";
@@ -236,7 +235,7 @@ Segmentation readSegmentation(const std::filesystem::path& path, const Grid* ref
   auto segments = readSegments(image.fields, source, image.components);
   if (segments.empty() && image.components > 1)
     throw inputError(source, "has ", image.components,
-                     " components a voxel but names no segments; name a segmentation");
+                     " components per voxel but names no segments; give a segmentation");
   FoundNames found;
   if (!segments.empty()) {
     rejectLabels(source, labelTable);

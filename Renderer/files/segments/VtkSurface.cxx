@@ -13,13 +13,13 @@
 namespace fenestra {
 namespace {
 
-/// Thrown by the functions below; readVtkSurface adds the file's name and the mend.
+/// Thrown by the functions below; readVtkSurface adds the file name and a hint.
 struct SurfaceError {
   const char* reason;
 };
-constexpr SurfaceError damagedSurface{"is damaged or no surface as Slicer writes it"};
+constexpr SurfaceError damagedSurface{"is damaged or not a surface as Slicer writes it"};
 constexpr SurfaceError largeSurface{
-    "takes, with the surfaces before it, more than 1 GiB of memory"};
+    "needs, with the surfaces before it, more than 1 GiB of memory"};
 
 void charge(MemoryBudget& budget, std::uint64_t count, std::uint64_t size = 1) {
   if (count > budget.bytes / size)
@@ -45,10 +45,10 @@ T readNumber(std::string_view bytes, std::uint64_t index) {
   return value;
 }
 
-/// Encoding of the file's arrays, and their allowance.
+/// Encoding of the file's arrays, and the memory budget for decoding them.
 struct ArrayEncoding {
   MemoryBudget& budget;
-  bool has64BitHeaders = false; ///< 64 bit
+  bool has64BitHeaders = false; ///< header words have 64 bits, not 32
   bool isDeflated = false;
 
   std::uint64_t header(std::string_view bytes, std::uint64_t index) const {
@@ -68,8 +68,8 @@ std::string readPlainArray(std::string_view text, const ArrayEncoding& encoding)
   return bytes;
 }
 
-/// Inflates an array: a header (blocks, bytes of a block, of the last one, of each when deflated),
-/// then the blocks.
+/// Inflates an array. Its header has the number of blocks, the sizes of a block and of the last one
+/// (0: complete), and the deflated size of each block; the blocks follow.
 std::string inflateArray(std::string_view text, const ArrayEncoding& encoding) {
   const auto encodedSize = [](std::uint64_t bytes) { return (bytes + 2) / 3 * 4; };
   const std::size_t word = encoding.headerSize();
@@ -93,7 +93,7 @@ std::string inflateArray(std::string_view text, const ArrayEncoding& encoding) {
     const std::uint64_t length = encoding.header(header, 3 + block);
     const bool partial = block + 1 == blocks && lastSize != 0;
     const std::uint64_t size = partial ? lastSize : blockSize;
-    constexpr std::uint64_t ratio = 1032, slack = 64; // deflate's greatest
+    constexpr std::uint64_t ratio = 1032, slack = 64; // maximum of deflate
     if (length > packed.size() - at || size > length * ratio + slack)
       throw damagedSurface;
     const std::size_t before = bytes.size();
@@ -130,7 +130,8 @@ std::vector<double> readNumbers(const pugi::xml_node& array, const ArrayEncoding
   const std::string format = array.attribute("format").value();
   if (format == "ascii") {
     const std::string_view text = array.text().get();
-    charge(encoding.budget, text.size() / 2, sizeof(double)); // at least a digit and a blank each
+    charge(encoding.budget, text.size() / 2,
+           sizeof(double)); // a number takes at least 2 characters
     auto numbers = parseNumbers(text);
     if (!numbers)
       throw damagedSurface;
@@ -150,7 +151,7 @@ std::vector<double> readNumbers(const pugi::xml_node& array, const ArrayEncoding
   return convert->second(bytes, encoding);
 }
 
-/// First string of an array.
+/// First string of an array of strings.
 std::string readString(const pugi::xml_node& array, const ArrayEncoding& encoding) {
   std::string text;
   if (std::string_view(array.attribute("format").value()) == "ascii")
@@ -168,7 +169,7 @@ pugi::xml_node findArray(const pugi::xml_node& parent, const char* name) {
   return parent.find_child_by_attribute("DataArray", "Name", name);
 }
 
-/// Adds the triangles of polygons (fans) or strips, whose points are those from `first` on.
+/// Adds the triangles of polygons (fans) or strips. `first`: index of the piece's first point.
 void addTriangles(const pugi::xml_node& cells, const ArrayEncoding& encoding, bool strips,
                   std::size_t first, VtkSurface& surface) {
   if (!findArray(cells, "offsets"))
@@ -242,7 +243,7 @@ VtkSurface readSurface(const pugi::xml_document& document, const std::set<std::s
 
 VtkSurface readVtkSurface(const std::filesystem::path& path, const std::set<std::string>& fieldData,
                           MemoryBudget& budget) {
-  requireFile(path, "name a .vtp file in it");
+  requireFile(path, "give a .vtp file in it");
   pugi::xml_document document;
   try {
     charge(budget, std::filesystem::file_size(path));

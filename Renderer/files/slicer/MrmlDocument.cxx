@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t maxNodes = 100'000, maxAttributes = 1'000'000; ///< limits of a scene
 
-/// Attributes that hold references in older files, with the role that they have now; of two with
-/// one role the first wins.
+/// Attributes that hold references in older files, with their current role. The first of two with
+/// the same role takes precedence.
 constexpr std::pair<const char*, const char*> legacyRoles[] = {
     {"displayNodeID", "display"},
     {"displayNodeRef", "display"},
@@ -29,7 +29,7 @@ constexpr std::pair<const char*, const char*> legacyRoles[] = {
     {"ROINodeID", "roi"},
     {"shaderPropertyNodeId", "shaderProperty"}};
 
-/// "role1:id1 {key=value} id2;role2:id3;": braces hold properties of the reference before them.
+/// Format: "role1:id1 {key=value} id2;role2:id3;"; braces hold properties of the reference before.
 void readReferences(const std::string& text, MrmlNode& node) {
   for (const std::string& entry : split(text, ';')) {
     const std::size_t colon = entry.find(':');
@@ -56,7 +56,7 @@ MrmlNode readNode(const pugi::xml_node& element) {
   return node;
 }
 
-/// Collects file names from elements at any depth, without recursion.
+/// Collects file names from elements at any depth without recursion.
 struct FileNameCollector final : pugi::xml_tree_walker {
   bool for_each(pugi::xml_node& element) override {
     for (const pugi::xml_attribute& attribute : element.attributes()) {
@@ -119,15 +119,15 @@ MrmlDocument::MrmlDocument(std::string_view text, std::string source)
   const pugi::xml_parse_result result =
       document.load_buffer(text.data(), text.size(), pugi::parse_default | pugi::parse_doctype);
   if (!result)
-    throw inputError(m_source, "is no whole XML (", result.description(), " at byte ",
+    throw inputError(m_source, "is not complete XML (", result.description(), " at byte ",
                      result.offset, "); save the scene again");
   for (const pugi::xml_node& child : document)
     if (child.type() == pugi::node_doctype)
-      throw inputError(m_source, "has a document type, which no MRML scene needs and which could "
-                                 "define entities; remove the line <!DOCTYPE ...>");
+      throw inputError(m_source, "has a document type, which could define entities and is never "
+                                 "needed in MRML; remove the line <!DOCTYPE ...>");
   const pugi::xml_node root = document.child("MRML");
   if (!root)
-    throw inputError(m_source, "has no MRML element, so it is no scene; name a .mrml or .mrb");
+    throw inputError(m_source, "has no MRML element, so it is not a scene; give a .mrml or .mrb");
   m_version = root.attribute("version").value();
   FileNameCollector names;
   document.traverse(names);
@@ -136,11 +136,11 @@ MrmlDocument::MrmlDocument(std::string_view text, std::string source)
   for (const pugi::xml_node& element : root.children())
     if (element.type() == pugi::node_element) {
       if (m_nodes.size() == maxNodes)
-        throw inputError(m_source, "holds more than 100000 nodes; save a smaller scene");
+        throw inputError(m_source, "has more than 100000 nodes; save a smaller scene");
       m_nodes.push_back(readNode(element));
       attributes += m_nodes.back().attributes.size();
       if (attributes > maxAttributes)
-        throw inputError(m_source, "holds more than a million attributes; save a smaller scene");
+        throw inputError(m_source, "has more than a million attributes; save a smaller scene");
       if (!m_nodes.back().id.empty())
         m_byId.emplace(m_nodes.back().id, m_nodes.size() - 1);
     }

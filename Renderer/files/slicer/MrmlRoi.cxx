@@ -1,4 +1,4 @@
-// Cropping boxes of all ages: markups, annotations, and the first ROI nodes.
+// Reads crop boxes of every MRML version: markups, annotations, and the first ROI nodes.
 
 #include "files/slicer/MrmlScene.h"
 #include "io/InputRegistry.h"
@@ -9,21 +9,20 @@ namespace {
 
 constexpr double maxLength = 1e9; ///< mm
 
-/// Map of [-1, 1]^3 to a box with `halfEdges` along the columns of `axes`. Throws for a flat box.
+/// Map from [-1, 1]^3 to a box with `halfEdges` along the columns of `axes`. Throws for a flat box.
 Affine makeBoxMap(const Vec3& center, const Mat3& axes, const Vec3& halfEdges,
                   const MakeError& makeError) {
   if (!(halfEdges.array() > 0.0).all())
-    throw makeError("its size must be above 0 in every axis; mend it in the Markups module");
+    throw makeError("its size must be above 0 along every axis; fix it in the Markups module");
   if (!(std::abs(axes.determinant()) > 1e-6))
-    throw makeError("its axes do not span space; mend it in the Markups module");
+    throw makeError("its axes are linearly dependent; fix it in the Markups module");
   return Affine(axes * Mat3::Diagonal(halfEdges), center);
 }
 
 void rejectInsideOut(bool insideOut, const MakeError& makeError) {
   if (insideOut)
-    throw makeError(
-        "is inside out, which crops everything in Slicer, too; turn that off in the Markups "
-        "module");
+    throw makeError("is inside out, which crops everything in Slicer, too; switch that off in the "
+                    "Markups module");
 }
 
 // ---- .mrk.json
@@ -32,7 +31,7 @@ bool isLps(const JsonNode& markup) {
   const auto system = markup.find("coordinateSystem");
   if (!system)
     return true;          // Slicer's default
-  if (system->isNumber()) // in the first files: vtkMRMLStorageNode's enumeration
+  if (system->isNumber()) // the first version: vtkMRMLStorageNode's enumeration
     return system->number() != 0.0;
   return system->choice({"LPS", "RAS"}) == 0;
 }
@@ -47,7 +46,7 @@ Affine readMarkupsJson(const std::filesystem::path& path) {
   const JsonNode& roi = elements.front();
   const auto makeError = [&roi](const std::string& what) { return roi.error(what); };
   if (roi.at("type").text() != "ROI")
-    throw roi.at("type").error("must be \"ROI\"; name a region of interest");
+    throw roi.at("type").error("must be \"ROI\"; give a region of interest");
   if (const auto insideOut = roi.find("insideOut"))
     rejectInsideOut(insideOut->boolean(), makeError);
 
@@ -66,16 +65,16 @@ Affine readMarkupsJson(const std::filesystem::path& path) {
   return lps ? Affine(lpsToRas) * box : box;
 }
 
-// ---- older forms: centre and half edges, RAS
+// ---- older versions: center and half edges, RAS
 
 Affine makeAlignedBox(const std::vector<double>& centerAndRadius, const MakeError& makeError) {
   if (centerAndRadius.size() != 6)
-    throw makeError("needs a centre and a radius, three numbers each; save it again");
+    throw makeError("needs a center and a radius, three numbers each; save it again");
   const std::vector<double>& n = centerAndRadius;
   return makeBoxMap({n[0], n[1], n[2]}, Mat3::Identity(), {n[3], n[4], n[5]}, makeError);
 }
 
-/// Annotation files: two lines "point|x|y|z|...".
+/// Reads an annotation file: two lines "point|x|y|z|...".
 Affine readAnnotation(const std::filesystem::path& path) {
   const auto makeError = [&path](const std::string& what) { return inputError(path, what); };
   std::vector<double> numbers;
@@ -118,7 +117,7 @@ Affine readBox(MrmlScene& scene, const MrmlNode& roi) {
 CropBox readSceneRoi(MrmlScene& scene, const MrmlNode& roi) {
   return CropBox(checkAffine(
       toWorld(scene, roi) * readBox(scene, roi),
-      scene.document.errorMaker(roi, "its box in the world ", "; mend it in the Markups module")));
+      scene.document.errorMaker(roi, "its world transform ", "; fix it in the Markups module")));
 }
 
 } // namespace fenestra

@@ -14,7 +14,7 @@ namespace {
 
 using Paths = std::vector<std::filesystem::path>;
 
-/// Grid of a volume's file, changed by the storage node as in vtkITKArchetypeImageSeriesReader.
+/// Grid of a volume file, modified by its storage node as in vtkITKArchetypeImageSeriesReader.
 Grid applyStorageSettings(const MrmlNode* storage, const Grid& fromFile) {
   if (!storage)
     return fromFile;
@@ -29,19 +29,19 @@ Grid applyStorageSettings(const MrmlNode* storage, const Grid& fromFile) {
   return {fromFile.size, indexToWorld};
 }
 
-/// Grid of a node in the world.
+/// Grid of a node in world space.
 Grid transformGrid(const MrmlScene& scene, const MrmlNode& node, const Affine& nodeToWorld,
                    const Grid& grid) {
   return {grid.size, checkAffine(nodeToWorld * grid.indexToWorld,
-                                 scene.document.errorMaker(node, "its place in the world ",
-                                                           "; mend the transforms above it"))};
+                                 scene.document.errorMaker(node, "its world transform ",
+                                                           "; fix the transforms above it"))};
 }
 
-/// Names of the files that hold a node's data. Throws Error (input) where there are none.
+/// Names of the files that hold a node's data. Throws Error (input) if there are none.
 std::vector<std::string> requireDataFiles(const MrmlScene& scene, const MrmlNode& node) {
   std::vector<std::string> names = listStorageFiles(scene, node);
   if (names.empty())
-    throw scene.document.error(node, "names no file; save its data in Slicer, then the scene");
+    throw scene.document.error(node, "has no file; save its data in Slicer, then the scene");
   return names;
 }
 
@@ -103,7 +103,7 @@ std::vector<std::string> listStorageFiles(const MrmlScene& scene, const MrmlNode
 Volume readSceneVolume(MrmlScene& scene, const MrmlNode& node) {
   const Affine nodeToWorld = toWorld(scene, node);
   Volume volume = scene.files.read(requireDataFiles(scene, node), [&](const Paths& files) {
-    // A medical image (its samples may be in further files), else DICOM slices.
+    // A volume file (with samples possibly in further files), else DICOM slices.
     return findMedicalFormat(files.front()) ? readVolume(files.front())
                                             : readDicomVolume(files, node.name);
   });
@@ -170,8 +170,8 @@ TransferFunction readSceneProperty(MrmlScene& scene, const MrmlNode& property) {
   const std::vector<std::string> names = listStorageFiles(scene, property);
   const bool isInline = property.find("scalarOpacity") && property.find("colorTransfer");
   if (names.empty() && !isInline)
-    throw scene.document.error(property, "has neither a file nor points of its own; save the "
-                                         "volume property, or give --transfer");
+    throw scene.document.error(property, "has neither a file nor points; save the volume "
+                                         "property, or give --transfer");
   if (names.empty())
     return readInlineProperty(scene.document, property);
   return scene.files.read(names,

@@ -1,4 +1,4 @@
-// Transforms above nodes, and cameras, which transforms place.
+// Transforms above nodes, and camera poses, which depend on them.
 
 #include "files/slicer/MrmlScene.h"
 #include "files/slicer/TransformFile.h"
@@ -9,20 +9,20 @@
 namespace fenestra {
 namespace {
 
-constexpr std::size_t maxDepth = 1000; ///< most transforms above a node
+constexpr std::size_t maxDepth = 1000; ///< maximum number of transforms above a node
 
-/// Invertible affine map of 16 numbers, row by row; nullopt: attribute missing. Throws Error
-/// (input) for any other value.
+/// Reads an invertible affine map from 16 numbers, row by row; nullopt: attribute missing. Throws
+/// Error (input) for any other value.
 std::optional<Affine> readMatrix(const MrmlScene& scene, const MrmlNode& node,
                                  const std::string& attribute) {
   if (!node.find(attribute))
     return std::nullopt;
   const auto numbers = node.numbers(attribute);
   const MakeError makeError =
-      scene.document.errorMaker(node, attribute + ": ", "; mend it in the Transforms module");
+      scene.document.errorMaker(node, attribute + ": ", "; fix it in the Transforms module");
   if (!numbers || numbers->size() != 16)
     throw makeError("must be 16 numbers");
-  const auto row = [&numbers](std::size_t i) { // first three of the row's four
+  const auto row = [&numbers](std::size_t i) { // first three of the row's four numbers
     return Vec3((*numbers)[4 * i], (*numbers)[4 * i + 1], (*numbers)[4 * i + 2]);
   };
   if (row(3) != Vec3::Zero() || numbers->back() != 1.0)
@@ -31,8 +31,8 @@ std::optional<Affine> readMatrix(const MrmlScene& scene, const MrmlNode& node,
   return checkAffine(Affine(Mat3::FromRows(row(0), row(1), row(2)), translation), makeError);
 }
 
-/// True if a node's file maps to the parent, as some old scenes say; linear transforms said so the
-/// wrong way round (vtkMRMLLinearTransformNode::ReadXMLAttributes).
+/// True if a node's file maps to the parent, as in some old scenes. Linear transforms stored that
+/// attribute inverted (vtkMRMLLinearTransformNode::ReadXMLAttributes).
 bool isFileToParent(const MrmlNode& node) {
   const std::string* value = node.find("readWriteAsTransformToParent");
   return value && (*value == "true") != (node.tag == "LinearTransform");
@@ -60,7 +60,7 @@ Affine loadTransform(MrmlScene& scene, const std::string& file) {
   if (known == scene.transformFiles.end())
     known = scene.transformFiles.emplace(file, readOrError(scene, file)).first;
   else if (scene.files.contains(file))
-    scene.files.locate(file); // counts as read again
+    scene.files.locate(file); // records that the scene uses the file
   if (const Error* error = std::get_if<Error>(&known->second))
     throw *error;
   return std::get<Affine>(known->second);
@@ -98,12 +98,12 @@ Affine toWorld(MrmlScene& scene, const MrmlNode& node) {
   for (std::size_t level = 0; above; above = scene.document.follow(*above, "transform"), ++level) {
     if (level == maxDepth)
       throw scene.document.error(node, "the transforms above it form a loop, or too long a chain; "
-                                       "mend them in the Transforms module");
+                                       "fix them in the Transforms module");
     result = toParent(scene, *above) * result;
   }
   return checkAffine(result,
                      scene.document.errorMaker(node, "the product of the transforms above it ",
-                                               "; mend them in the Transforms module"));
+                                               "; fix them in the Transforms module"));
 }
 
 CameraPose readSceneCamera(MrmlScene& scene, const MrmlNode& camera) {
@@ -116,7 +116,7 @@ CameraPose readSceneCamera(MrmlScene& scene, const MrmlNode& camera) {
     const double number =
         camera.number(attribute).value_or(camera.find(attribute) ? 0.0 : fallback);
     if (!(number > 0.0 && number <= maxValue))
-      throw scene.document.error(camera, attribute + ": is not usable; give --view");
+      throw scene.document.error(camera, attribute + ": is out of range; give --view");
     return number;
   };
   CameraPose pose;
@@ -128,8 +128,8 @@ CameraPose readSceneCamera(MrmlScene& scene, const MrmlNode& camera) {
   pose.scale = number("parallelScale", pose.scale, 1e9);
   pose.angle = number("viewAngle", pose.angle, 179.0);
 
-  // The stored pose is in the world, with `appliedTransform` applied; only later changes of the
-  // transforms above still move the camera (vtkMRMLCameraNode::TransformPoints).
+  // The stored pose is in world space and includes `appliedTransform`. Only changes of the camera's
+  // transform since then still move the camera (vtkMRMLCameraNode::TransformPoints).
   if (camera.references.contains("transform")) {
     const Affine applied =
         readMatrix(scene, camera, "appliedTransform").value_or(Affine::Identity());
@@ -138,7 +138,7 @@ CameraPose readSceneCamera(MrmlScene& scene, const MrmlNode& camera) {
     pose.target = change * pose.target;
     pose.up = change.linear() * pose.up;
   }
-  return validatePose(pose, scene.document.errorMaker(camera, "looks nowhere: ", "; give --view"));
+  return validatePose(pose, scene.document.errorMaker(camera, "has a bad pose: ", "; give --view"));
 }
 
 } // namespace fenestra

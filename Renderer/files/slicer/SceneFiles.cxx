@@ -18,14 +18,14 @@
 namespace fenestra {
 namespace {
 
-constexpr std::uint64_t maxSceneBytes = std::uint64_t{64} << 20; ///< bytes of a .mrml
+constexpr std::uint64_t maxSceneBytes = std::uint64_t{64} << 20; ///< size of a .mrml, bytes
 constexpr std::int64_t maxEntries = 1'000'000;
 
-/// Deflate's greatest ratio, unpacked to packed bytes. No archive of Slicer's claims more.
+/// Maximum ratio of unpacked to packed bytes with deflate. No archive from Slicer exceeds it.
 constexpr std::uint64_t maxRatio = 1032;
 
-/// Most bytes that all files of an archive may unpack to: a volume of zeros packs better than 100
-/// to 1, a whole scene does not.
+/// Limit of the total unpacked size of an archive. A single volume of zeros compresses better than
+/// 100 to 1, a complete scene does not.
 std::uint64_t maxUnpackedBytes(std::uint64_t archiveBytes) {
   return (std::uint64_t{1} << 30) + 100 * archiveBytes;
 }
@@ -40,17 +40,16 @@ bool isOutside(const std::filesystem::path& name) {
 /// A zip archive with a scene and its files.
 class SceneArchive {
 public:
-  /// Throws Error (input) where `path` is no archive, or an entry's name leads out of the archive.
+  /// Throws Error (input) if `path` is not an archive, or an entry's name leads out of it.
   explicit SceneArchive(const std::filesystem::path& path);
 
-  /// Number of each file in the archive, by normal relative path; of several files with one path
-  /// the first.
+  /// Entry index of each file, by normalized relative path; the first of several with equal paths.
   const std::map<std::filesystem::path, std::uint64_t>& files() const { return m_files; }
 
-  /// Writes one of files() into an existing, empty file. Throws Error: input where the entry is
-  /// damaged, encrypted or larger than its packed bytes allow; output where there is no room.
+  /// Writes one of files() into an existing, empty file. Throws Error: input if the entry is
+  /// damaged, encrypted or larger than its packed bytes allow; output if the disk is full.
   void extract(const std::filesystem::path& file, const std::filesystem::path& destination);
-  /// Content of one of files(). Throws Error (input) as extract does, and for more than `most`
+  /// Content of one of files(). Throws Error (input) as extract does, and for more than `maxBytes`
   /// bytes.
   std::string text(const std::filesystem::path& file, std::uint64_t maxBytes) const;
 
@@ -62,7 +61,7 @@ private:
   using Chunk = std::function<void(std::string_view)>;
 
   Error error(const std::filesystem::path& file, const std::string& what) const {
-    return inputError(m_source, toOneLine(file.string()), " in it ", what);
+    return inputError(m_source, toOneLine(file.string()), ": ", what);
   }
   Error makeDamagedError(const std::filesystem::path& file) const {
     return error(file, "is damaged; save the scene again");
@@ -77,12 +76,12 @@ private:
     if (stat.encryption_method != ZIP_EM_NONE)
       throw error(file, "is encrypted; save the scene without a password");
     if (stat.size / maxRatio > stat.comp_size)
-      throw error(file, "claims more bytes than it can hold; save the scene again");
+      throw error(file, "declares more bytes than it can hold; save the scene again");
     return stat;
   }
 
-  /// Passes the entry's bytes to `take`. Throws Error (input) unless they are `size` bytes with the
-  /// right checksum.
+  /// Passes the entry's bytes to `consume`. Throws Error (input) unless there are exactly `size`
+  /// bytes with the right checksum.
   void read(std::uint64_t entry, const std::filesystem::path& file, std::uint64_t size,
             const Chunk& consume) const {
     const std::unique_ptr<zip_file_t, Close> stream(zip_fopen_index(m_archive.get(), entry, 0));
@@ -90,7 +89,7 @@ private:
       throw makeDamagedError(file);
     std::array<char, 1 << 16> buffer;
     std::uint64_t rest = size;
-    for (;;) { // to the end of the stream, where the checksum is
+    for (;;) { // read to the end of the stream, where libzip verifies the checksum
       const zip_int64_t count = zip_fread(stream.get(), buffer.data(), buffer.size());
       if (count < 0 || static_cast<std::uint64_t>(count) > rest)
         throw makeDamagedError(file);
@@ -116,12 +115,12 @@ SceneArchive::SceneArchive(const std::filesystem::path& path) : m_source(path.st
   if (!zip && (failure == ZIP_ER_OPEN || failure == ZIP_ER_READ) && errno != 0)
     throw readError(path, errno, "check its permissions");
   if (!zip)
-    throw inputError(m_source, "is no whole archive; save the scene again, or name its .mrml");
+    throw inputError(m_source, "is not a complete archive; save the scene again, or use its .mrml");
   m_archive.reset(zip);
   m_remainingBytes = maxUnpackedBytes(std::filesystem::file_size(path));
   const zip_int64_t count = zip_get_num_entries(zip, 0);
   if (count > maxEntries)
-    throw inputError(m_source, "holds more than a million files; save a smaller scene");
+    throw inputError(m_source, "has more than a million files; save a smaller scene");
 
   for (std::uint64_t entry = 0; entry < static_cast<std::uint64_t>(count); ++entry) {
     const char* name = zip_get_name(zip, entry, 0);
@@ -129,9 +128,9 @@ SceneArchive::SceneArchive(const std::filesystem::path& path) : m_source(path.st
       throw inputError(m_source, "has an entry without a name; save the scene again");
     const std::filesystem::path file = name;
     if (isOutside(file))
-      throw inputError(m_source, "holds an entry that leads out of the archive (",
+      throw inputError(m_source, "has an entry that leads out of the archive (",
                        sanitize(file.string()),
-                       "); Slicer writes no such archive, so do not trust it");
+                       "), which Slicer never writes; do not trust this archive");
     if (!file.empty() && file.has_filename())
       m_files.try_emplace(file.lexically_normal(), entry);
   }
@@ -142,8 +141,8 @@ void SceneArchive::extract(const std::filesystem::path& file,
   const std::uint64_t entry = m_files.at(file);
   const std::uint64_t size = stat(entry, file).size;
   if (size > m_remainingBytes)
-    throw error(file, "and what was unpacked before have more bytes than a scene packs into "
-                      "an archive of this size; save the scene again, or unpack it yourself");
+    throw error(file, "exceeds, with the files before it, the unpacked size of a scene in an "
+                      "archive of this size; save the scene again, or unpack it yourself");
   m_remainingBytes -= size;
   const auto makeUnpackError = [&](int code) {
     return outputError(toOneLine(destination.string()), toOneLine(file.string()),
@@ -154,7 +153,7 @@ void SceneArchive::extract(const std::filesystem::path& file,
   if (size > std::filesystem::space(destination.parent_path(), unknown).available && !unknown)
     throw makeUnpackError(ENOSPC);
   errno = 0;
-  // Mode `in`: does not make the file again if the end of the process has removed it.
+  // Mode `in` does not recreate the file if the exit or signal handler has removed it.
   std::ofstream out(destination, std::ios::binary | std::ios::in);
   read(entry, file, size, [&](std::string_view chunk) {
     if (!out.write(chunk.data(), static_cast<std::streamsize>(chunk.size())))
@@ -181,14 +180,14 @@ std::ptrdiff_t depth(const std::filesystem::path& file) {
   return std::distance(file.begin(), file.end());
 }
 
-/// True for names beyond Linux's limits, which an archive may hold.
+/// True for names beyond Linux's limits, which an archive can contain.
 bool isTooLong(const std::filesystem::path& path) {
   return path.native().size() >= PATH_MAX ||
          std::any_of(path.begin(), path.end(),
                      [](const auto& part) { return part.native().size() > NAME_MAX; });
 }
 
-/// Scene closest to the root, as in Slicer: deeper ones belong to sequences.
+/// The scene closest to the root, as in Slicer; deeper ones belong to sequences.
 std::filesystem::path findMainScene(const SceneArchive& archive,
                                     const std::filesystem::path& path) {
   std::vector<std::filesystem::path> closest;
@@ -196,7 +195,7 @@ std::filesystem::path findMainScene(const SceneArchive& archive,
     if (lowercaseExtension(file) == ".mrml")
       closest.push_back(file);
   if (closest.empty())
-    throw inputError(path, "holds no .mrml, so it is no scene; save it again from Slicer");
+    throw inputError(path, "has no .mrml, so it is not a scene; save it again from Slicer");
   const auto least = depth(*std::ranges::min_element(closest, {}, depth));
   std::erase_if(closest, [least](const auto& file) { return depth(file) > least; });
   if (closest.size() == 1)
@@ -209,14 +208,14 @@ std::filesystem::path findMainScene(const SceneArchive& archive,
     return named.front();
   const std::string names =
       join(closest, ", ", [](const auto& file) { return toOneLine(file.string()); });
-  throw inputError(path, "holds several scenes (", names.substr(0, 300),
-                   "); unpack it and name one of them");
+  throw inputError(path, "has several scenes (", names.substr(0, 300),
+                   "); unpack it and give one of them");
 }
 
 } // namespace
 
 std::string decodeUrl(std::string text) {
-  // Order matters: % was escaped first, so its escape is undone last.
+  // Slicer escapes % first, so it must be decoded last.
   constexpr std::pair<std::string_view, std::string_view> escapes[] = {
       {"%22", "\""}, {"%3C", "<"}, {"%3E", ">"}, {"%27", "'"}, {"%20", " "}, {"%25", "%"}};
   for (const auto& [escape, character] : escapes)
@@ -230,7 +229,7 @@ bool isSceneFile(const std::filesystem::path& path) {
 }
 
 SceneFiles::SceneFiles(const std::filesystem::path& path) : m_source(path.string()) {
-  requireFile(path, "name the .mrml or .mrb in it");
+  requireFile(path, "give the .mrml or .mrb in it");
   if (lowercaseExtension(path) == ".mrb") {
     m_archive = std::make_unique<SceneArchive>(path);
     const std::filesystem::path scene = findMainScene(*m_archive, path);
@@ -277,14 +276,14 @@ std::filesystem::path SceneFiles::locate(const std::string& fileName) {
                       concat("cannot be read: ", systemMessage(failed.value()), "; ",
                              readHint(failed.value(), "check the permissions of its folder")));
     if (!isThere)
-      throw makeError(file, "is not there; put it back, or save the scene again");
+      throw makeError(file, "does not exist; restore it, or save the scene again");
     m_usedFiles.insert(file);
     return file;
   }
   if (name.is_absolute() || *file.begin() == "..")
     throw makeError(name, "is outside the archive; save the scene again");
   if (!m_archive->files().contains(file))
-    throw makeError(file, "it does not hold; save the scene again");
+    throw makeError(file, "is not in the archive; save the scene again");
   std::filesystem::path place = unpack(file);
   const std::filesystem::path root = m_unpackFolder->path().lexically_normal();
   for (const std::filesystem::path& part : findReferencedFiles(place))
@@ -302,8 +301,8 @@ std::filesystem::path SceneFiles::unpack(const std::filesystem::path& file) {
     m_unpackFolder.emplace();
   if (isTooLong(m_unpackFolder->path() / file))
     throw inputError(m_source, "names ", sanitize(file.string()),
-                     ", which is too long for a file's name; save the scene again under shorter "
-                     "ones");
+                     ", which exceeds the system's limit for file names; save the scene again with "
+                     "shorter names");
   const std::filesystem::path destination = m_unpackFolder->add(file);
   m_archive->extract(file, destination);
   return m_unpackedFiles[file] = destination;

@@ -1,6 +1,6 @@
 #pragma once
-// The files of a Slicer scene: beside a .mrml, or inside a .mrb.
-
+// Files of a Slicer scene, beside a .mrml or inside a .mrb. Only this class knows where they are.
+// It unpacks archived files on demand.
 #include "base/Error.h"
 #include "io/Folders.h"
 #include "io/InputRegistry.h"
@@ -17,41 +17,42 @@ namespace fenestra {
 
 class SceneArchive;
 
-/// True for .mrml and .mrb, in either case.
+/// True for .mrml and .mrb, case-insensitive.
 bool isSceneFile(const std::filesystem::path& path);
 
-/// Undoes the six escapes of vtkMRMLNode::URLEncodeString.
+/// Decodes the six escapes of vtkMRMLNode::URLEncodeString.
 std::string decodeUrl(std::string text);
 
 class SceneFiles {
 public:
-  /// Opens a .mrml or a .mrb. An archive's scene is the .mrml closest to its root; of several as
-  /// close, the one named like the archive or like its own folder. Throws Error (input).
+  /// Opens a .mrml or a .mrb. The scene of an archive is the .mrml closest to its root. If several
+  /// are equally close, it is the one named like the archive or like its own folder. Throws Error
+  /// (input).
   explicit SceneFiles(const std::filesystem::path& path);
   ~SceneFiles();
 
-  /// Name of the scene in messages: the .mrml, or the archive.
+  /// Name of the scene in messages: the .mrml or the archive.
   const std::string& source() const { return m_source; }
   /// The content of the .mrml.
   const std::string& sceneText() const { return m_sceneText; }
 
-  /// Path at which the file that a storage node names can be read: URL escapes undone, relative to
-  /// the .mrml. Unpacks an archive's file at the first call, with the files that this file names;
-  /// refuses names that lead out of an archive. Throws Error (input) where there is no such file.
+  /// Path at which a file that a storage node names can be read; the name is URL-decoded and
+  /// relative to the .mrml. The first call unpacks an archived file and the files that it
+  /// references. Throws Error (input) if the file does not exist or lies outside the archive.
   std::filesystem::path locate(const std::string& fileName);
-  /// Enters a file that the scene names, and the files that this file names, into the ledger of
-  /// inputs, read or not: no result may replace a part of a scene.
+  /// Registers a file that the scene names, and the files that it references, as inputs, whether
+  /// they are read or not. No output may replace a part of a scene.
   void registerInputs(const std::string& fileName) const;
   /// True if locate would find the file.
   bool contains(const std::string& fileName) const;
 
-  /// Starts a new list of files read.
+  /// Clears the list of used files.
   void resetUsedFiles() { m_usedFiles.clear(); }
-  /// Names of the scene and of the files located since resetUsedFiles(), as the user knows them.
+  /// The scene and the files located since resetUsedFiles(), by the names that the user knows.
   std::vector<std::string> usedFiles() const;
 
-  /// Result of `reader` on the located paths of these files, with errors as in knowingly. Throws
-  /// Error (input) as locate does.
+  /// Calls `reader` with the located paths of these files and returns its result. Translates errors
+  /// as translateErrors does. Throws Error (input) as locate does.
   template <typename Reader>
   auto read(const std::vector<std::string>& fileNames, Reader&& reader) {
     std::vector<std::filesystem::path> paths;
@@ -59,12 +60,12 @@ public:
       paths.push_back(locate(fileName));
     return translateErrors([&] {
       std::optional<InputConfinement> confined;
-      if (m_unpackFolder) // an archive's files may name only files in it
+      if (m_unpackFolder) // archived files may only reference files of the archive
         confined.emplace(m_unpackFolder->path());
       return reader(paths);
     });
   }
-  /// Result of `work`; its errors name located files as the user knows them.
+  /// Returns the result of `work`; errors name unpacked files as the user knows them.
   template <typename Work>
   auto translateErrors(Work&& work) const {
     try {
@@ -73,22 +74,22 @@ public:
       throw Error(error.kind(), translatePaths(error.what()));
     }
   }
-  /// Message with paths of unpacked files replaced by names that the user knows, on one line.
+  /// Replaces paths of unpacked files in a message by names that the user knows; one line.
   std::string translatePaths(std::string message) const;
 
 private:
   std::filesystem::path resolve(const std::string& fileName) const;
-  /// Path of one of the archive's files, unpacked at the first call.
+  /// Path of an archived file, unpacked at the first call.
   std::filesystem::path unpack(const std::filesystem::path& file);
 
   std::string m_source;
   std::string m_sceneText;
-  std::filesystem::path m_folder; ///< folder of the .mrml; for a .mrb, within the archive
+  std::filesystem::path m_folder; ///< folder of the .mrml; in a .mrb, relative to the archive
   std::unique_ptr<SceneArchive> m_archive;
   std::optional<PrivateFolder> m_unpackFolder;
   std::map<std::filesystem::path, std::filesystem::path>
-      m_unpackedFiles;                         ///< unpacked files, by name
-  std::set<std::filesystem::path> m_usedFiles; ///< names, escapes undone
+      m_unpackedFiles;                         ///< unpacked paths, by name
+  std::set<std::filesystem::path> m_usedFiles; ///< decoded names
 };
 
 } // namespace fenestra

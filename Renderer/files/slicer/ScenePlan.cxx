@@ -29,7 +29,7 @@ std::string formatNodes(const Nodes& nodes) {
       nodes, ", ", [](const MrmlNode* node) { return describeNode(*node); }, 20, "...");
 }
 
-/// Node by id, else by name; null: none. Throws Error (input) where several have the name.
+/// Node by id, else by name; null: none. Throws Error (input) if several have the name.
 const MrmlNode* findNamed(const MrmlDocument& document, const Nodes& nodes, const std::string& name,
                           const std::string& flag) {
   const Nodes byId = filterNodes(nodes, [&](const MrmlNode& node) { return node.id == name; });
@@ -37,13 +37,13 @@ const MrmlNode* findNamed(const MrmlDocument& document, const Nodes& nodes, cons
     return byId.front();
   const Nodes byName = filterNodes(nodes, [&](const MrmlNode& node) { return node.name == name; });
   if (byName.size() > 1)
-    throw inputError(document.source(), "--", flag, " ", name, " can be any of ",
-                     formatNodes(byName), "; name one by its id");
+    throw inputError(document.source(), "--", flag, " ", name,
+                     " matches several: ", formatNodes(byName), "; choose one by its id");
   return byName.empty() ? nullptr : byName.front();
 }
 
-/// Node of the first list that has any; null: none has. Throws Error (input) where that list has
-/// several.
+/// Node of the first list that is not empty; null: all are empty. Throws Error (input) if that list
+/// has several nodes.
 const MrmlNode* findSingle(const MrmlDocument& document, std::initializer_list<const Nodes*> lists,
                            const char* what, const char* flag) {
   for (const Nodes* candidates : lists)
@@ -67,7 +67,7 @@ const MrmlNode* findDisplay(const MrmlDocument& document, const MrmlNode& volume
   return nullptr;
 }
 
-/// Volume rendering display of the volume: a shown one, else the first; null: none.
+/// Volume rendering display of the volume: the first visible one, else the first; null: none.
 const MrmlNode* findRendering(const MrmlDocument& document, const MrmlNode& volume) {
   const MrmlNode* visible = findDisplay(document, volume, [](const MrmlNode& display) {
     return isVolumeRendering(display) && isVisible(display);
@@ -79,14 +79,14 @@ const MrmlNode* chooseVolume(const MrmlDocument& document,
                              const std::optional<std::string>& choice) {
   const Nodes volumes = findNodes(document, isScalarVolume);
   if (volumes.empty())
-    throw inputError(document.source(), "holds no scalar volume; add one in Slicer and save again");
+    throw inputError(document.source(), "has no scalar volume; add one in Slicer and save again");
   if (choice) {
     if (const MrmlNode* volume = findNamed(document, volumes, *choice, "volume"))
       return volume;
     throw inputError(document.source(), "has no scalar volume \"", *choice, "\"; it has ",
                      formatNodes(volumes));
   }
-  // Candidates in this order: rendered in Slicer, renderable, active in Slicer, all.
+  // Candidates in order of preference: rendered in Slicer, renderable, active in Slicer, all.
   const Nodes rendered = filterNodes(volumes, [&](const MrmlNode& volume) {
     const MrmlNode* display = findRendering(document, volume);
     return display && isVisible(*display);
@@ -119,10 +119,10 @@ const MrmlNode* chooseSegmentation(const MrmlDocument& document, const SceneSele
                                        "segmentations", "segmentation"))
     return one;
   throw inputError(document.source(),
-                   "has no segmentation to find segments in; give --segmentation FILE");
+                   "has no segmentation, but a focus needs one; give --segmentation FILE");
 }
 
-/// Rank of a view: the user most likely looked at the view of the greatest rank.
+/// Rank of a view; the highest is most likely the one that the user last used.
 int rankView(const MrmlNode& view) {
   const bool inLayout = view.text("attributes").find("MappedInLayout:1") != std::string::npos;
   return 4 * view.boolean("active", false) + 2 * inLayout + view.boolean("visibility", true);
@@ -160,7 +160,7 @@ const MrmlNode* findCamera(const MrmlDocument& document, const MrmlNode* view) {
   return cameras.size() == 1 ? cameras.front() : nullptr;
 }
 
-/// Refuses maximum and minimum intensity projections, which have no light to trace.
+/// Rejects maximum and minimum intensity projections, which have no light transport.
 void rejectTechnique(const MrmlDocument& document, const MrmlNode* node) {
   if (!node)
     return;
@@ -172,8 +172,8 @@ void rejectTechnique(const MrmlDocument& document, const MrmlNode* node) {
   if (const auto technique = unsupported.find(node->text("raycastTechnique"));
       technique != unsupported.end())
     throw document.error(*node, "raycastTechnique is " + technique->second +
-                                    ", which has no light to trace; set it to Composite (Volume "
-                                    "Rendering module), or render the volume's own file");
+                                    ", which path tracing cannot render; set it to Composite "
+                                    "(Volume Rendering module), or render the volume's own file");
 }
 
 std::string explain(const MrmlNode& node, const std::string& why) {
@@ -181,7 +181,7 @@ std::string explain(const MrmlNode& node, const std::string& why) {
 }
 
 void addReasons(const Nodes& nodes, const std::string& why, std::vector<std::string>& list) {
-  constexpr std::size_t maxListed = 3; // scenes have hundreds of models
+  constexpr std::size_t maxListed = 3; // scenes can have hundreds of models
   if (nodes.size() > maxListed)
     list.push_back(std::to_string(nodes.size()) + " nodes " + nodes.front()->tag + ": " + why);
   else
@@ -189,16 +189,16 @@ void addReasons(const Nodes& nodes, const std::string& why, std::vector<std::str
       list.push_back(explain(*node, why));
 }
 
-/// Lists settings of the rendering that a path tracer lacks.
+/// Reports settings of the rendering that path tracing does not support.
 void listRenderingSettings(const MrmlDocument& document, ScenePlan& plan) {
   const MrmlNode& rendering = *plan.rendering;
   if (!isVisible(rendering))
     plan.ignored.push_back(explain(rendering, "is hidden in Slicer; its settings are used anyway"));
   if (const MrmlNode* clip = document.follow(rendering, "ClipNode");
       clip && rendering.boolean("clipping", false))
-    plan.warnings.push_back(explain(*clip, "clips the rendering in Slicer, and is ignored here"));
+    plan.warnings.push_back(explain(*clip, "clips the rendering in Slicer, but is ignored here"));
   if (const MrmlNode* shader = document.follow(rendering, "shaderProperty"))
-    plan.ignored.push_back(explain(*shader, "shaders have no meaning in path tracing"));
+    plan.ignored.push_back(explain(*shader, "path tracing does not use shaders"));
   if (const MrmlNode* roi = document.follow(rendering, "roi"); roi && !plan.roi)
     plan.ignored.push_back(explain(*roi, "cropping is off"));
   if (!plan.roi && rendering.boolean("croppingEnabled", false))

@@ -1,5 +1,6 @@
 #pragma once
-// Nodes of a Slicer scene that a picture shows: as in Slicer, or as the user chooses.
+// Chooses the nodes of a Slicer scene to render: as visible in Slicer, or as the user selects.
+// `fenestra inspect` prints the same plan.
 
 #include "files/slicer/MrmlScene.h"
 
@@ -9,29 +10,29 @@
 
 namespace fenestra {
 
-/// Nodes that the user chooses, by id or name; nullopt: no choice.
+/// Nodes that the user selects, by id or name; nullopt: not selected.
 struct SceneSelection {
   std::optional<std::string> volume = {};
   std::optional<std::string> segmentation = {};
-  bool needsSegmentation = false; ///< a focus must be found
+  bool needsSegmentation = false; ///< the request has a focus
 };
 
 /// Chosen nodes, owned by the document; null: none.
 struct ScenePlan {
   const MrmlNode* volume = nullptr;       ///< never null
-  const MrmlNode* rendering = nullptr;    ///< volume rendering display of the volume
-  const MrmlNode* property = nullptr;     ///< volume property of the rendering
+  const MrmlNode* rendering = nullptr;    ///< the volume's volume rendering display
+  const MrmlNode* property = nullptr;     ///< the rendering's volume property
   const MrmlNode* sliceDisplay = nullptr; ///< slice display whose window the rendering follows
-  const MrmlNode* roi = nullptr;          ///< box that crops the rendering
+  const MrmlNode* roi = nullptr;          ///< crop box of the rendering
   const MrmlNode* segmentation = nullptr; ///< segmentation or label map
   const MrmlNode* view = nullptr;
-  const MrmlNode* camera = nullptr;       ///< camera of the view
-  std::vector<std::string> warnings = {}; ///< "node: reason", unlike in Slicer
-  std::vector<std::string> ignored = {};  ///< "node: reason", for nodes and settings left out
+  const MrmlNode* camera = nullptr;       ///< the view's camera
+  std::vector<std::string> warnings = {}; ///< "node: reason" for each difference from Slicer
+  std::vector<std::string> ignored = {};  ///< "node: reason" for each unused node or setting
 };
 
-/// Throws Error (input) where the choice is ambiguous (the message lists the candidates), names no
-/// volume, or a technique has no equivalent in path tracing.
+/// Throws Error (input) if the choice is ambiguous (the message lists the candidates), there is no
+/// such volume, or a rendering technique has no equivalent in path tracing.
 ScenePlan planRender(const MrmlDocument& document, const SceneSelection& choice);
 
 } // namespace fenestra

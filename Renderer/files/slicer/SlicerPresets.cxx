@@ -10,8 +10,8 @@ namespace {
 
 using Path = std::filesystem::path;
 
-/// presets.xml in share/Slicer-VERSION/qt-loadable-modules (qSlicerLoadableModule's share
-/// directory); of several versions the last by name.
+/// presets.xml in share/Slicer-VERSION/qt-loadable-modules (the share directory of
+/// qSlicerLoadableModule); of several versions, the last by name.
 std::optional<Path> findPresets(const Path& home) {
   std::optional<Path> last;
   std::error_code failed;
@@ -26,7 +26,7 @@ std::optional<Path> findPresets(const Path& home) {
   return last;
 }
 
-/// Folder of the first Slicer launcher in PATH, links resolved.
+/// Folder of the first Slicer launcher in PATH, with links resolved.
 std::optional<Path> findHome() {
   const char* const path = std::getenv("PATH");
   for (const std::string& folder : split(path ? path : "", ':')) {

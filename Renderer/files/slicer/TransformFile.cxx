@@ -24,14 +24,14 @@ namespace {
 
 using Path = std::filesystem::path;
 
-// ITK's transform files are read by a child process: ITK and HDF5 take memory for whatever sizes a
-// file declares, and abort or go astray on damage.
+// A sandboxed child process reads the files, since ITK and HDF5 allocate any size that a file
+// declares, and abort or corrupt memory on damaged files.
 
 constexpr std::size_t maxRecords = 256;
 constexpr std::size_t maxNumbers = 64; // more than any linear transform has
 constexpr std::uint64_t maxReplyBytes = maxRecords * 2048;
 
-// ---- in the child: whether a file is whole
+// ---- in the child process: is the file self-contained?
 
 constexpr herr_t proceed = 0, stop = -1;
 
@@ -51,11 +51,11 @@ herr_t visitObject(hid_t file, const char* name, const H5O_info_t* object, void*
   return isInFile ? proceed : stop;
 }
 
-/// True if an HDF5 file is self-contained: no link, raw storage or virtual data set lies in another
-/// file, which the library would open unchecked. False where the file cannot be read.
+/// True if an HDF5 file has no link, storage or virtual data set in another file, which the library
+/// would open unchecked. False if the file cannot be read.
 bool isSelfContained(const std::string& path) {
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-  // Each group and object is visited once, however often it is named.
+  // HDF5 visits each group and object once, however many names it has.
   const bool isComplete = file >= 0 &&
                           H5Lvisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, visitLink, nullptr) >= 0 &&
                           H5Ovisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, visitObject, nullptr) >= 0;
@@ -63,9 +63,9 @@ bool isSelfContained(const std::string& path) {
   return isComplete;
 }
 
-// ---- in the child: what the file says
+// ---- in the child process: read the file's numbers
 
-/// Transform of any type, known or not, that keeps its file's numbers.
+/// Transform of any type, known or not, that only stores the file's numbers.
 class RecordedTransform : public itk::TransformBaseTemplate<double> {
 public:
   using Category = itk::TransformBaseTemplateEnums::TransformCategory;
@@ -91,7 +91,7 @@ private:
   FixedParametersType m_fixed;
 };
 
-/// The only pointer to a new object, which counts one reference from the start.
+/// Takes ownership of a new object, whose reference count starts at one.
 template <typename Object>
 itk::SmartPointer<Object> takeOwnership(Object* made) {
   const itk::SmartPointer<Object> pointer = made;
@@ -119,7 +119,7 @@ itk::TransformIOBaseTemplate<double>::Pointer makeTransformReader(const std::str
   return itk::TxtTransformIOTemplate<double>::New().GetPointer();
 }
 
-/// First maxNumbers + 1 numbers: one too many shows that there are more.
+/// First maxNumbers + 1 numbers, so that the parent notices if there are too many.
 template <typename Parameters>
 std::vector<double> copyFirst(const Parameters& parameters) {
   const auto count = std::min<std::size_t>(parameters.Size(), maxNumbers + 1);
@@ -131,7 +131,7 @@ std::string handleTransformRequest(const std::string& request) {
   if ((extension == ".h5" || extension == ".hdf5") && !isSelfContained(request))
     return {};
   const auto reader = makeTransformReader(extension);
-  RecordingFactory::RegisterFactory(takeOwnership(new RecordingFactory), // before ITK's own
+  RecordingFactory::RegisterFactory(takeOwnership(new RecordingFactory), // ahead of ITK's factories
                                     RecordingFactory::InsertionPositionEnum::INSERT_AT_FRONT);
   reader->SetFileName(request);
   reader->Read();
@@ -144,30 +144,30 @@ std::string handleTransformRequest(const std::string& request) {
   return reply.bytes();
 }
 
-// HDF5's tree of symbols may fan out without end; reading a transform takes a few milliseconds.
+// An HDF5 symbol tree can branch without bound; a normal transform takes a few milliseconds.
 const SandboxJob transformJob("transform", handleTransformRequest, {.seconds = 3});
 
-// ---- in this process: what the answer means
+// ---- in the parent process: interpret the reply
 
 constexpr const char* hardenHint =
     "harden it in Slicer (Data module, Harden transform) and save again";
 constexpr std::uint64_t maxFileBytes = 64 << 20;
-constexpr std::uint64_t maxTextFileBytes = 1 << 20; ///< room for hundreds of matrices
+constexpr std::uint64_t maxTextFileBytes = 1 << 20; ///< hundreds of matrices fit
 
 struct TransformRecord {
   std::string type;               ///< ITK's name without scalar type and axes: "AffineTransform"
   std::vector<double> parameters; ///< in the order of ITK's class of that name
-  std::vector<double> fixed;      ///< fixed parameters: mostly the centre
+  std::vector<double> fixed;      ///< fixed parameters, usually the center
 };
 
 [[noreturn]] void throwDamaged(const Path& path) {
-  throw inputError(path, "is damaged, truncated or no transform of ITK's; save it again");
+  throw inputError(path, "is damaged, truncated or not an ITK transform; save it again");
 }
 
-/// Transforms that ITK computes a matrix and an offset for.
+/// Base class of ITK's transforms that have a matrix and an offset.
 using MatrixTransform = itk::MatrixOffsetTransformBase<double, 3, 3>;
 
-/// ITK's own of this type; null: none.
+/// New ITK transform of this type; null: no such type.
 MatrixTransform::Pointer makeMatrixTransform(const std::string& type) {
   [[maybe_unused]] static const bool known = [] {
     itk::TransformFactoryBase::RegisterDefaultTransforms();
@@ -181,7 +181,7 @@ MatrixTransform::Pointer makeMatrixTransform(const std::string& type) {
   return dynamic_cast<MatrixTransform*>(made.GetPointer());
 }
 
-/// "Type" of "Type_scalar_axes_axes". Throws Error (input) unless linear and of three axes.
+/// "Type" of "Type_scalar_axes_axes". Throws Error (input) unless linear and 3D.
 std::string requireLinearType(const Path& path, const std::string& name) {
   std::string type = name.substr(0, name.find('_'));
   const bool isSimple =
@@ -190,11 +190,11 @@ std::string requireLinearType(const Path& path, const std::string& name) {
     throw inputError(path, "Transform: ", sanitize(name), " is not linear; ", hardenHint);
   if (name != type + "_double_3_3") // ITK's readers turn _float_ into _double_
     throw inputError(path, "Transform: ", sanitize(name),
-                     " is not a transform of three axes; save one that is");
+                     " is not a 3D transform; save one that is");
   return type;
 }
 
-/// Records in the answer, which is untrusted. Throws std::runtime_error where it is malformed.
+/// Parses the reply, which is untrusted. Throws std::runtime_error if it is malformed.
 std::vector<TransformRecord> parseRecords(const Path& path, std::string_view reply) {
   std::vector<TransformRecord> records;
   for (ReplyReader reader(reply); !reader.isAtEnd();)
@@ -202,8 +202,8 @@ std::vector<TransformRecord> parseRecords(const Path& path, std::string_view rep
   return records;
 }
 
-/// Map of a record, in the file's own space and sense. Throws ITK's exceptions for values that the
-/// type forbids (a rigid matrix that is not orthogonal).
+/// Map of a record, in the file's space and direction. Throws ITK's exceptions for values that the
+/// type forbids (such as a rigid matrix that is not orthogonal).
 Affine makeMap(const Path& path, const TransformRecord& record) {
   if (record.type == "IdentityTransform")
     return Affine::Identity();
@@ -213,7 +213,7 @@ Affine makeMap(const Path& path, const TransformRecord& record) {
   const auto transform = makeMatrixTransform(record.type);
   if (!transform) // a composite within a composite
     throwDamaged(path);
-  // Euler angles may have a fourth fixed parameter, the order of the axes.
+  // Euler transforms may have a fourth fixed parameter, the order of the axes.
   const std::size_t maxFixed = std::max<std::size_t>(3, transform->GetFixedParameters().size());
   if (numbers.size() != transform->GetNumberOfParameters() ||
       (!fixed.empty() && (fixed.size() < 3 || fixed.size() > maxFixed)))
@@ -236,14 +236,14 @@ Affine makeMap(const Path& path, const TransformRecord& record) {
   return map;
 }
 
-/// Product of the file's transforms, in LPS, in the file's own sense.
+/// Product of the file's transforms, in LPS and the file's direction.
 Affine compose(const Path& path, const std::vector<TransformRecord>& records) {
   if (records.empty())
     throwDamaged(path);
   if (records.front().type != "CompositeTransform") {
     if (records.size() > 1)
-      throw inputError(path, "holds ", records.size(),
-                       " transforms and does not say how they combine; save one, or a composite");
+      throw inputError(path, "has ", records.size(),
+                       " transforms and does not state how they combine; save one, or a composite");
     return makeMap(path, records.front());
   }
   Affine map = Affine::Identity();
@@ -259,30 +259,30 @@ void checkExtension(const Path& path) {
   if (images.contains(extension))
     throw inputError(path, "is a displacement field, which is not linear; ", hardenHint);
   if (!known.contains(extension))
-    throw inputError(
-        path, "has no known extension of a transform; name a .tfm, .txt, .h5, .hdf5 or .mat file");
+    throw inputError(path,
+                     "has no extension of a transform; give a .tfm, .txt, .h5, .hdf5 or .mat file");
 }
 
-/// Refuses texts that name further files: ITK would open them.
+/// Rejects text files that reference other files, which ITK would open.
 void checkNoFileReference(const Path& path) {
   if (readText(path, maxFileBytes).find("ComponentTransformFile") != std::string::npos)
-    throw inputError(
-        path, "ComponentTransformFile: further files are not read; save the composite in one file");
+    throw inputError(path,
+                     "ComponentTransformFile: is not supported; save the composite in one file");
 }
 
 } // namespace
 
 Affine readLinearTransform(const Path& path) {
-  requireFile(path, "name a transform file in it");
+  requireFile(path, "give a transform file in it");
   const std::string extension = lowercaseExtension(path);
   const bool isText = extension == ".tfm" || extension == ".txt";
   const std::uint64_t largest = isText ? maxTextFileBytes : maxFileBytes;
   if (std::filesystem::file_size(path) > largest)
-    throw inputError(path, "is larger than ", largest >> 20, " MB, so it is no linear transform; ",
-                     hardenHint);
+    throw inputError(path, "is larger than ", largest >> 20,
+                     " MB, so it is not a linear transform; ", hardenHint);
   checkExtension(path);
   checkNoFileReference(path);
-  // Starting a child takes longer than reading a transform: each thread keeps its child.
+  // Starting a child takes longer than reading a transform, so each thread keeps its child.
   thread_local SandboxedReader reader(transformJob);
   return parseTransformReply(path, reader.request(path.string(), maxReplyBytes).value_or(""));
 }
@@ -299,8 +299,8 @@ Affine parseTransformReply(const Path& path, std::string_view reply) {
     throw;
   } catch (const std::bad_alloc&) {
     throw;
-  } catch (const std::exception&) { // ITK's: a matrix that its class forbids; ReplyReader's: a
-                                    // malformed answer
+  } catch (const std::exception&) { // ITK: a matrix that its class forbids; ReplyReader: a
+                                    // malformed reply
     throwDamaged(path);
   }
 }
