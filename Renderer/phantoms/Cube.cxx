@@ -15,14 +15,14 @@ std::int16_t sliceScalar(std::int64_t slice, std::int64_t count) {
       std::lround(maxScalar * (2.0 * static_cast<double>(slice) - last) / last));
 }
 
-/// Opaque within edge / 100, blue at -255 through purple to red at 255; no shading, since the only
-/// gradients are between the cube's slices. A .vp has no unit distance and cannot express this for
-/// an edge far below 100 mm: there Fenestra's cap on opacity leaves 9.2 per mm.
+/// Opaque within edge / 100, blue at -255 through purple to red at 255. No shading, since the only
+/// gradients are between slices. A .vp file has no unit distance and cannot express this for an
+/// edge far below 100 mm: Fenestra's opacity cap limits the extinction to 9.2 per mm there.
 VolumeProperty cubeProperty(double edge) {
   VolumeProperty property;
   property.scalarOpacity = {{-maxScalar, 0.99}, {maxScalar, 0.99}};
   property.gradientOpacity = {{0, 1}, {255, 1}};
-  // Not pure: a component of 0 would lose all light scattered more than once.
+  // Not pure colors: a component of 0 would lose all light that scatters more than once.
   property.color = {
       {-maxScalar, {0.15, 0.25, 1.0}}, {0, {0.80, 0.50, 0.85}}, {maxScalar, {1.0, 0.20, 0.15}}};
   property.unitDistance = edge / 100.0;
@@ -35,7 +35,7 @@ VolumeProperty cubeProperty(double edge) {
 Phantom makeCubePhantom(const CubeOptions& options) {
   const Size3 size = Size3::Constant(options.size);
   if (!(options.edge > 0.0) || !std::isfinite(options.edge))
-    throw usageError("--edge: the cube's edge is to be a positive number of mm");
+    throw usageError("--edge: must be a positive number of mm");
 
   Phantom phantom;
   phantom.volume.grid =

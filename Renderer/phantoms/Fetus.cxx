@@ -10,7 +10,7 @@ namespace {
 const Vec3 fetusFieldOfView{112.0, 112.0, 112.0}; ///< mm along the voxel axes
 const Vec3 fetusFieldCenter{0.0, 14.0, -8.0};     ///< world
 
-// Echo strengths, 0 to 255; larger for tissue that scatters more.
+// Echo strengths, 0 to 255; stronger in tissue that scatters more.
 double insideEcho(const Vec3& p) {
   return 92.0 + 16.0 * valueNoise(p / 5.0, 11);
 }
@@ -24,7 +24,7 @@ double uterineWall(const Vec3& p) {
   return -ellipsoidDistance(p, {0, -4, -8}, {62, 58, 62}) + wave - 0.5;
 }
 
-/// The fetus in its fluid.
+/// The fetus in amniotic fluid.
 class FetusSubject : public LayeredSubject<PaintSite> {
 public:
   static constexpr double background = 6.0; ///< fluid
@@ -45,9 +45,9 @@ public:
              uterineWall);
   }
 
-  PaintSite makeSite(const Vec3& point) const { return {point, -infinity}; } // no outside in view
+  PaintSite makeSite(const Vec3& point) const { return {point, -infinity}; } // skin is out of view
 
-  /// Applies speckle of pulse size, attenuation with depth, and noise.
+  /// Applies speckle at pulse size, attenuation with depth, and noise.
   std::int16_t acquire(double signal, const Vec3& point, std::uint64_t voxel) const {
     const double speckle =
         1.0 + 0.24 * valueNoise(point / 1.3, 21) + 0.14 * valueNoise(point / 0.7, 22);

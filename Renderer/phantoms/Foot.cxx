@@ -17,13 +17,13 @@ double trabeculae(const Vec3& p) {
   return 90.0 * valueNoise(p / 1.6, 270) + 60.0 * valueNoise(p / 4.0, 271);
 }
 
-/// Height of the sole over the floor, mm: the medial arch.
+/// Height of the sole above the floor, mm: the medial arch.
 double soleHeight(const Vec3& p) {
   const double across = (p.x() + 40.0) / 24.0, along = (p.y() - 112.0) / 42.0;
   return 16.0 * std::exp(-across * across - along * along);
 }
 
-/// Thickness of skin and subcutaneous fat, mm; large under the sole.
+/// Thickness of skin and subcutaneous fat, mm; largest under the sole.
 double footFasciaDepth(const Vec3& p) {
   const double plantar = smoothStep(20.0, 6.0, p.z()) * smoothStep(205.0, 190.0, p.y());
   const double heel = smoothStep(45.0, 20.0, p.y()) * smoothStep(30.0, 12.0, p.z());
@@ -41,7 +41,7 @@ double footFatSignal(const Vec3& p) {
   return -105.0 + 12.0 * valueNoise(p / 5.0, 275);
 }
 
-/// Adds layer 1: all voxels of at least footBoneThreshold.
+/// Adds layer 1: all voxels at or above footBoneThreshold.
 void addThresholdedBones(Phantom& phantom) {
   const auto& voxels = std::get<LargeArray<std::int16_t>>(phantom.volume.voxels);
   std::vector<std::uint8_t> bones(voxels.size());
@@ -81,7 +81,7 @@ double footMarrowSignal(const FootSite& s) {
 FootSubject::FootSubject() : LayeredSubject(1.5) {
   const Solid shape = m_anatomy.at("body");
   const auto sole = [](const Vec3& p) { return soleHeight(p) - p.z(); };
-  // The web of the toes runs backward from the great toe to the little one.
+  // The web of the toes runs backward from the big toe to the little toe.
   const auto web = [](const Vec3& p) {
     return (p.y() - 208.0 + 0.40 * (p.x() + 15.0)) / std::hypot(1.0, 0.40);
   };
@@ -158,7 +158,7 @@ void FootSubject::addBones() {
 void FootSubject::addSoftTissue() {
   const Field underSkin = makeInset(footSkinThickness);
   const Field capsules = [](const FootSite& s) {
-    constexpr double halfWidth = 2.3; // mm; half of the gap that a capsule bridges
+    constexpr double halfWidth = 2.3; // mm; half the gap that a capsule bridges
     return 0.5 * (s.bones[s.nearest] + s.second) - halfWidth;
   };
   addLayer(addSegment("joints", "Joint cartilage and capsules", cartilageColor), makeConstant(85.0),

@@ -1,5 +1,5 @@
 #pragma once
-// Foot as layers: order of the shapes, their tissues, and their segments.
+// The foot phantom as layers: their order, shapes, tissues and segments.
 
 #include "phantoms/Anatomy.h"
 #include "phantoms/FootBones.h"
@@ -7,17 +7,17 @@
 
 namespace fenestra {
 
-/// A place with the distances that most layers need.
+/// A point with the distances that most layers need.
 struct FootSite : PaintSite {
   double fascia;              ///< mm to the bottom of the subcutaneous fat
   FootBones::Distances bones; ///< mm
   std::size_t nearest;        ///< index of the nearest bone
   double second;              ///< mm to the second nearest bone
-  double shaft;               ///< FootBones::shaft of the nearest bone
-  double spongiosa;           ///< HU, of the nearest bone
+  double shaft;               ///< FootBones::shaftPosition in the nearest bone
+  double spongiosa;           ///< HU, in the nearest bone
 };
 
-// Hounsfield units with the tissue's own texture.
+// Hounsfield units, including the tissue's texture.
 double footCortexSignal(const FootSite& site);
 double footMarrowSignal(const FootSite& site);
 
@@ -28,17 +28,17 @@ public:
   FootSubject();
 
   FootSite makeSite(const Vec3& point) const;
-  /// Adds noise, and clips to 12 bits like a scanner.
+  /// Adds noise, and clamps to 12 bits like a scanner.
   std::int16_t acquire(double signal, const Vec3& point, std::uint64_t voxel) const;
 
 private:
-  /// Adds shapes, cut off `depth` mm under the skin's surface.
+  /// Adds layers for `shapes`, cut off `depth` mm below the skin's surface.
   void addShapes(std::uint8_t label, const Field& signal, const std::vector<Solid>& shapes,
                  double depth);
 
   void addBones();
   void addSoftTissue();
-  /// Distance to the skin, mm, without and with the bulges over bones and raised tendons.
+  /// Distance to the skin, mm, without and with the bulges above bones and tendons.
   double outlineDistance(const Vec3& point) const;
   double skinDistance(const Vec3& point, double nearestBone) const;
 

@@ -7,11 +7,10 @@ namespace fenestra {
 
 namespace {
 
-constexpr double jointBlend = 1.5; ///< mm; rounding of a joint face's rim
+constexpr double jointBlend = 1.5; ///< mm; rounding at the edge of an articular surface
 
-/// Metatarsal or phalanx between the middles of its two ends. Half widths, across and plantar to
-/// dorsal, are given at the base, mid-shaft and at the head; `bow`: mm, dorsal bow of the shaft's
-/// middle.
+/// Metatarsal or phalanx between the centers of its two ends. `radii`: half widths (across, plantar
+/// to dorsal) at base, mid-shaft and head. `bow`: dorsal offset of the mid-shaft, mm.
 Solid longBone(const Vec3& base, const Vec3& head, const std::vector<Vec2>& radii, double bow) {
   const double length = (head - base).norm();
   const Vec2 top(0.0, bow);

@@ -14,10 +14,10 @@ const Vec3 kneeFieldCenter{0.0, -2.0, 6.8};      ///< world
 
 constexpr double kneeSkinThickness = 1.5;
 constexpr double fasciaThickness = 0.6;
-constexpr double fluidFilm = 0.7; ///< mm; fluid on the joint's faces
+constexpr double fluidFilm = 0.7; ///< mm; fluid on the articular surfaces
 constexpr double fasciaSignal = 210.0;
 
-/// A place with the distances that most layers need.
+/// A point with the distances that most layers need.
 struct KneeSite : PaintSite {
   double fascia;                        ///< mm to the sheath around muscles and joint
   double femur, tibia, fibula, patella; ///< mm to the bones' surfaces
@@ -30,9 +30,9 @@ double cortexThickness(const Vec3& p) {
   return 1.15 + 0.045 * shaft + 0.15 * valueNoise(p / 6.0, 91);
 }
 
-// Soft tissue, as shapes in the frame of KneeBones.h.
+// Soft tissue shapes, in the frame of KneeBones.h.
 
-/// Outer surface of the leg; the kneecap protrudes in front. `trunk`: without kneecap and tubercle.
+/// Outer surface of the leg; the kneecap protrudes. `trunk`: without kneecap and tubercle.
 double legOutline(const Solid& trunk, const Vec3& p) {
   const double kneecap = ellipsoidDistance(p, {2, 34, 38}, {25, 21, 28});
   const double tubercle = ellipsoidDistance(p, {2, 18, -30}, {14, 16, 26});
@@ -40,7 +40,7 @@ double legOutline(const Solid& trunk, const Vec3& p) {
   return leg + 0.5 * valueNoise(p / 14.0, 61);
 }
 
-/// Depth of the fascia under the skin's surface, mm: thickness of skin and subcutaneous fat.
+/// Depth of the fascia below the skin's surface, mm: thickness of skin and subcutaneous fat.
 double fasciaDepth(const Vec3& p) {
   // Thick at the rear and medially, thin over the kneecap, the tubercle and the shin.
   const double behind = smoothStep(20.0, -45.0, p.y());
@@ -48,13 +48,13 @@ double fasciaDepth(const Vec3& p) {
   return 3.4 + 3.0 * behind + 1.8 * medial + 0.7 * valueNoise(p / 16.0, 62);
 }
 
-/// Meniscus before the joint's faces cut it: a wedge-shaped ring around one plateau, open toward
-/// the eminence.
+/// Meniscus before the articular surfaces cut it: a wedge-shaped ring on one tibial plateau, open
+/// toward the intercondylar eminence.
 struct MeniscusRing {
   Vec2 center;
   Vec2 outerRadii;      ///< mm
   double innerFraction; ///< inner / outer radius, in the middle of the C
-  double openingAngle;  ///< half of the C's gap, radians, around `opening`
+  double openingAngle;  ///< half the C's gap, radians, around `opening`
   double opening;       ///< direction to the eminence: 0 lateral, pi medial
 
   double distance(const Vec3& p) const {
@@ -64,12 +64,12 @@ struct MeniscusRing {
     const double scale = outerRadii.mean();
     double turn = std::atan2(scaled.y(), scaled.x()) - opening;
     turn = std::abs(std::remainder(turn, 2.0 * pi));
-    // The horns are slimmer than the body, with round ends.
+    // The horns are thinner than the body and have round ends.
     const double horns = smoothStep(openingAngle + 0.9, openingAngle, turn);
     const double inner = std::lerp(innerFraction, 0.5 * (1.0 + innerFraction), horns);
     const double ring = std::max(fraction - 1.0, inner - fraction) * scale;
     const double ends = (openingAngle - turn) * fraction * scale;
-    // The wedge grows from the thin inner edge to 6 mm at the rim.
+    // The wedge rises from the thin inner edge to 6 mm at the outer edge.
     const double height = 0.6 + 5.4 * std::clamp((fraction - inner) / (1.0 - inner), 0.0, 1.0);
     const double faces = std::max(p.z() - height, -3.6 - p.z());
     return smoothIntersection(smoothIntersection(ring, ends, 3.0), faces, 2.0);
@@ -78,7 +78,7 @@ struct MeniscusRing {
 constexpr MeniscusRing medialMeniscus{{-20.0, -4.5}, {18.0, 23.5}, 0.56, 0.62, 0.0};
 constexpr MeniscusRing lateralMeniscus{{20.0, -5.5}, {17.0, 19.0}, 0.50, 0.42, pi};
 
-/// Thin sheets from the kneecap's sides to the condyles.
+/// Thin sheets from the sides of the kneecap to the condyles.
 double patellarRetinaculum(const Vec3& p) {
   const double hull = ellipsoidDistance({p.x(), p.y(), 0}, {1.5, 4, 0}, {44.5, 39.5, 1});
   const double sheet = std::abs(hull + 0.6 * valueNoise(p / 12.0, 64)) - 0.35;
@@ -100,8 +100,8 @@ double suprapatellarRecess(const Vec3& p) {
   return sheet + 0.5 * valueNoise(p / 6.0, 63);
 }
 
-/// Distance to the surface of a bone with its cartilage, `extra` mm thicker; `beyond` where there
-/// is no cartilage.
+/// Distance to the surface of a bone with its cartilage, `extra` mm thicker; maxDistance where
+/// there is no cartilage.
 double coverDistance(double bone, double cartilage, double extra) {
   return cartilage > 0.05 ? bone - cartilage - extra : KneeBones::maxDistance;
 }
@@ -129,9 +129,9 @@ private:
   }
   static double underFascia(const KneeSite& s) { return s.fascia + fasciaThickness; }
 
-  /// Adds a segment for each structure of a list of the anatomy, {"id", "name", "color",
-  /// "shapes": [...]}, and calls back with the segment's label for each of the shapes. `color`: of
-  /// structures that have none of their own.
+  /// Adds a segment for each structure in a list of the anatomy, {"id", "name", "color",
+  /// "shapes": [...]}, and calls addShape(label, shape) for each shape. `color`: default for
+  /// structures without a color.
   template <typename AddShape>
   void addStructures(const char* kind, const Rgb& color, const AddShape& addShape) {
     for (const Anatomy& entry : m_anatomy.at(kind)) {
@@ -154,7 +154,7 @@ private:
   Anatomy m_anatomy = loadAnatomy("knee");
   KneeBones m_bones;
   Solid m_trunk = m_anatomy.at("leg");
-  std::uint8_t m_deepFat = 0; ///< label of the deep fat
+  std::uint8_t m_deepFat = 0; ///< label of the intermuscular fat
 };
 
 KneeSubject::KneeSubject() : LayeredSubject(1.5) {
@@ -255,7 +255,7 @@ void KneeSubject::addJointSpace() {
       infrapatellarFatPad);
 }
 
-/// Adds vessels or nerves, cut off under the skin.
+/// Adds vessels or nerves, cut off below the skin.
 void KneeSubject::addVessels(const char* kind, const Field& signal) {
   const auto underSkin = [](const KneeSite& s) { return s.surface + kneeSkinThickness + 0.5; };
   addStructures(kind, vesselColor, [&](std::uint8_t label, const Solid& shape) {
@@ -263,7 +263,7 @@ void KneeSubject::addVessels(const char* kind, const Field& signal) {
   });
 }
 
-/// Adds each muscle with a layer of fat, which separates neighbouring muscles.
+/// Adds each muscle with a layer of fat that separates it from its neighbors.
 void KneeSubject::addMuscles() {
   m_deepFat = addSegment("IntermuscularFat", "Intermuscular fat", fatColor);
   addStructures("muscles", muscleColor, [this](std::uint8_t label, const Solid& belly) {
@@ -286,11 +286,11 @@ void KneeSubject::addCovers() {
   addLayer(addSegment("Skin", "Skin", skinColor), makeConstant(410.0), everywhere, makeInset(0.0));
 }
 
-/// Natural colours: pearly cartilage, yellow fat and marrow, red muscle.
+/// Natural colors: pearly cartilage, yellow fat and marrow, red muscle.
 VolumeProperty kneeProperty() {
   VolumeProperty property;
-  // Air and flow voids are transparent. Cartilage is far denser than the values between its own and
-  // those of fluid (215) or cortex (66): partial volume shows no muscle red on its border.
+  // Air and flow voids are transparent. Cartilage is far denser than signals between its own and
+  // that of fluid (215) or cortex (66), so that partial volume adds no muscle red at its surface.
   property.scalarOpacity = {{0, 0},      {46, 0},     {70, 0.30},  {130, 0.42}, {185, 0.20},
                             {240, 0.14}, {300, 0.30}, {350, 0.42}, {400, 0.40}, {450, 0.75},
                             {500, 0.97}, {580, 0.97}, {650, 0.60}, {740, 0.45}, {1200, 0.50}};

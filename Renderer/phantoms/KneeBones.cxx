@@ -12,7 +12,7 @@ constexpr double grooveX = 1.5;              ///< bottom of the trochlear groove
 constexpr double notchX = 0.5;               ///< middle of the intercondylar notch
 
 /// Sagittal outline of the distal femur around the transcondylar axis: a spiral whose radius of
-/// curvature falls from nearly 40 mm under the trochlea to 20 mm at the rear.
+/// curvature decreases from nearly 40 mm at the trochlea to 20 mm at the rear.
 struct ProfileNode {
   double degrees, radius;
 };
@@ -29,7 +29,7 @@ double hermite(double a, double b, double slopeA, double slopeB, double width, d
 
 double profileAtDegrees(double degrees) {
   constexpr int last = static_cast<int>(std::size(profileNodes)) - 1;
-  // The outline is closed: node 0 is node `last`, a turn earlier.
+  // The outline is closed: node 0 equals node `last`, one turn earlier.
   const auto node = [](int i) {
     const int turn = i < 0 ? -1 : i > last ? 1 : 0;
     const ProfileNode& n = profileNodes[i - turn * last];
@@ -46,7 +46,7 @@ double profileAtDegrees(double degrees) {
                  (degrees - node(i).degrees) / width);
 }
 
-/// Medial and lateral walls of the distal femur at a place: x, mm.
+/// x of the medial and lateral walls of the distal femur near a point, mm.
 struct Walls {
   double medial, lateral;
 };
@@ -58,33 +58,33 @@ Walls computeWalls(const Vec3& p) {
   return {-38.5 + narrowing + back + 0.009 * front, 38.2 - narrowing - back - 0.0065 * front};
 }
 
-/// Field of the notch, open to the rear and below; its roof rises backward along Blumensaat's line.
+/// Intercondylar notch, open to the rear and below; its roof rises backward (Blumensaat's line).
 double notchField(const Vec3& p) {
   const double roof = ((p.y() - 8.0) * 28.0 + (p.z() - 8.5) * 24.0) / std::hypot(28.0, 24.0);
   const double sides = std::abs(p.x() - notchX) - 9.2 - 0.05 * std::max(0.0, -10.0 - p.y());
   return smoothIntersection(roof, sides, 9.0);
 }
 
-/// Turns a field with a slope near 1 into a distance, right to first order (Taubin 1994, "Distance
-/// Approximations for Rasterizing Implicit Curves").
+/// Converts a field with a slope near 1 into a distance, accurate to first order (Taubin 1994,
+/// "Distance Approximations for Rasterizing Implicit Curves").
 template <typename Field>
 double firstOrderDistance(const Field& field, const Vec3& p) {
   constexpr double step = 0.05;
   const double value = field(p);
-  if (std::abs(value) > 4.0) // kinks of the field lie far away, where accuracy does not matter
+  if (std::abs(value) > 4.0) // far away, where the field has kinks and accuracy does not matter
     return value;
   const Vec3 slope{field(p + Vec3{step, 0, 0}) - value, field(p + Vec3{0, step, 0}) - value,
                    field(p + Vec3{0, 0, step}) - value};
   return value / std::clamp(slope.norm() / step, 0.3, 2.0);
 }
 
-/// Share of the trochlea: 1 on it, 0 on the bearing and rear parts of the condyles.
+/// Weight of the trochlea: 1 on it, 0 on the bearing and rear parts of the condyles.
 double trochleaWeight(double angle, double distalEnd, double frontEnd) {
   return smoothStep(distalEnd, frontEnd, angle) * (1.0 - smoothStep(1.5, 2.5, angle));
 }
 
-/// Height of the tibia's upper surface, mm: a concave medial and a convex lateral plateau that fall
-/// backward, and the two spines of the eminence.
+/// Height of the tibia's upper surface, mm: a concave medial and a convex lateral plateau, sloping
+/// down backward, and the two spines of the eminence.
 double plateauHeight(const Vec3& p) {
   const auto hill = [&](double x, double y, double rx, double ry) {
     return std::exp(-std::pow((p.x() - x) / rx, 2) - std::pow((p.y() - y) / ry, 2));
@@ -120,7 +120,8 @@ double KneeBones::profile(double angle) const {
 }
 
 /// Condyles and trochlea as one surface around the transcondylar axis. At the rear and below, each
-/// condyle is crowned; in front the groove lies between a high lateral and a lower medial facet.
+/// condyle is convex across; in front, the groove lies between a high lateral and a lower medial
+/// facet.
 double KneeBones::wheelField(const Vec3& p) const {
   const double y = p.y() - axisY, z = p.z() - axisZ;
   const double angle = std::atan2(z, y);
@@ -155,18 +156,18 @@ double KneeBones::tibiaField(const Vec3& p) const {
   const double condyles = std::min(medial, lateral);
   const double shaft =
       smoothUnion(smoothUnion(m_tibialShaft.distance(p), tuberosity, 8.0), condyles, 12.0);
-  // The outline recedes between the rear parts of the condyles: the groove of the PCL.
+  // The outline recedes between the rear parts of the condyles (groove of the PCL).
   const double rearGroove = ellipsoidDistance(p, {0, -34, -6}, {11, 11, 20});
   return smoothIntersection(smoothDifference(shaft, rearGroove, 6.0), p.z() - plateauHeight(p),
                             3.5);
 }
 
-/// Rounded triangle in front; two facets at the rear meet in a ridge that runs in the groove.
+/// Rounded triangle in front; at the rear, two facets meet in a ridge that glides in the groove.
 double KneeBones::patellaField(const Vec3& p) const {
   const double across = p.x() - 2.0;
   const double ridge = std::sqrt(across * across + 9.0) - 3.0;
   const double slope = across > 0.0 ? 0.30 : 0.40;
-  const double apex = 0.35 * std::max(0.0, 30.0 - p.z()); // the lower quarter has no facet
+  const double apex = 0.35 * std::max(0.0, 30.0 - p.z()); // the lower quarter has no facets
   const double facets = 32.0 + slope * ridge + apex - p.y();
   const double front = std::max(0.0, std::abs(across) - 6.0);
   const double dome = p.y() - 50.0 + 0.010 * front * front + 0.004 * std::pow(p.z() - 40.0, 2);
@@ -209,8 +210,7 @@ Vec3 KneeBones::femoralSurface(double x, double angle) const {
 
 namespace {
 
-/// Share of the cartilage left by a lesion: 1 outside it, 1 - depth on its floor; the wall is
-/// steep.
+/// Remaining fraction of the cartilage at a lesion: 1 outside, 1 - depth on its floor; steep walls.
 double lesionFactor(const CartilageLesion& lesion, const Vec3& p) {
   const double y = p.y() - axisY, z = p.z() - axisZ;
   const double along = std::hypot(y, z) * (std::atan2(z, y) - lesion.angle);
@@ -219,7 +219,7 @@ double lesionFactor(const CartilageLesion& lesion, const Vec3& p) {
   return 1.0 - lesion.depth * (1.0 - smoothStep(-0.35, 0.35, fromRim));
 }
 
-/// Thickness `margin` mm inside the cartilage's border: rises from 0 to `thickness`.
+/// Thickness at `margin` mm inside the cartilage's edge: rises from 0 to `thickness`.
 double taperThickness(double thickness, double margin) {
   return thickness * smoothStep(-1.0, 3.2, margin);
 }

@@ -1,8 +1,8 @@
 #pragma once
 // Bones of a right knee in extension, and their cartilage, as distance functions.
 //
-// World is RAS, mm: x to the lateral side (R), y anterior, z superior; the origin is the middle of
-// the joint line, under the intercondylar notch. Adult proportions.
+// World is RAS, mm: x lateral (R), y anterior, z superior; the origin is the middle of the joint
+// line, under the intercondylar notch. Adult proportions.
 
 #include "phantoms/Shapes.h"
 
@@ -10,17 +10,17 @@
 
 namespace fenestra {
 
-/// Round defect of the femoral cartilage, centred at `x` along the transverse axis and `angle`
+/// Round defect of the femoral cartilage, centered at `x` along the transcondylar axis and `angle`
 /// around it.
 struct CartilageLesion {
   double x;        ///< mm
-  double angle;    ///< radians around the transcondylar axis, 0 anterior, -pi/2 distal
+  double angle;    ///< radians around the axis, 0 anterior, -pi/2 distal
   double diameter; ///< mm
-  double depth;    ///< share of the cartilage that is missing
+  double depth;    ///< missing fraction of the cartilage
 };
 
-/// Lesion on the medial slope of the lower trochlea, with the notch behind, not more cartilage: a
-/// view from in front through the lesion meets the bone of its floor.
+/// Lesion on the medial slope of the lower trochlea. Behind it is the notch and no more cartilage:
+/// an anterior view through the lesion shows the bone at its floor.
 inline constexpr CartilageLesion fullThicknessLesion{-4.8, -0.48, 8.0, 1.0};
 /// Lesion on the lateral condyle.
 inline constexpr CartilageLesion partialThicknessLesion{22.5, -0.62, 9.0, 0.5};
@@ -29,21 +29,21 @@ class KneeBones {
 public:
   KneeBones();
 
-  /// Distances to the bones' outer surfaces, mm; `beyond` if a bone is farther than `beyond`.
+  /// Distances to the bones' outer surfaces, mm; maxDistance if a bone's box is farther away.
   double femur(const Vec3& point) const;
   double tibia(const Vec3& point) const;
   double fibula(const Vec3& point) const;
   double patella(const Vec3& point) const;
   static constexpr double maxDistance = 8.0;
 
-  /// Thickness of the cartilage, mm, on the bone's surface near `point`; 0 off the joint's faces;
-  /// lesions included.
+  /// Thickness of the cartilage, mm, on the bone's surface near `point`, including lesions; 0
+  /// outside the articular surfaces.
   double femoralCartilage(const Vec3& point) const;
   double intactFemoralCartilage(const Vec3& point) const; ///< without lesions
   double tibialCartilage(const Vec3& point) const;
   double patellarCartilage(const Vec3& point) const;
 
-  /// Point on the femur's surface, on the trochlea or a condyle; x and angle as in CartilageLesion.
+  /// Point on the femur's surface at the trochlea or a condyle; x and angle as in CartilageLesion.
   Vec3 femoralSurface(double x, double angle) const;
 
 private:
@@ -51,7 +51,7 @@ private:
   double wheelField(const Vec3& point) const;
   double tibiaField(const Vec3& point) const;
   double patellaField(const Vec3& point) const;
-  /// Distance to the surface where a field is 0, roughened; the bone lies in `box`.
+  /// Distance to the zero level of a field, with surface noise; the bone lies in `box`.
   double distance(const Box& box, double (KneeBones::*field)(const Vec3&) const, std::uint64_t seed,
                   const Vec3& point) const;
   double profile(double angle) const;

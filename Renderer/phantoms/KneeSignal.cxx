@@ -7,7 +7,7 @@ namespace fenestra {
 
 namespace {
 
-/// 1 on thin, crumpled sheets about `size` mm apart that fade in and out; 0 elsewhere.
+/// 1 on thin, crumpled sheets about `size` mm apart that come and go; 0 elsewhere.
 double septa(const Vec3& p, const Vec3& size, double thickness, std::uint64_t seed) {
   const Vec3 bend{valueNoise(p / 5.0, seed + 100), valueNoise(p / 5.0, seed + 101),
                   valueNoise(p / 5.0, seed + 102)};
@@ -16,7 +16,7 @@ double septa(const Vec3& p, const Vec3& size, double thickness, std::uint64_t se
          smoothStep(-0.5, 0.5, valueNoise(p / 9.0, seed + 103));
 }
 
-/// Scars of the growth plates: dark, slightly wavy sheets.
+/// Growth plate scars: dark, slightly wavy sheets.
 double physis(const Vec3& p) {
   const double wave = 1.6 * valueNoise(p / 9.0, 77) + 0.004 * (p.x() * p.x() - 500.0);
   const double femoral = std::abs(p.z() - 35.0 + wave + 0.12 * p.y());

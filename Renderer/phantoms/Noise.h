@@ -1,5 +1,5 @@
 #pragma once
-// Noise as a function of position alone: independent of run, order and thread.
+// Noise as a function of position only: independent of run, order and thread.
 
 #include "base/Vector.h"
 
@@ -7,15 +7,16 @@
 
 namespace fenestra {
 
-/// Value noise on the unit lattice, smoothly interpolated; in [-1, 1]. Divide `point` by the
-/// feature size; different seeds are independent fields.
+/// Value noise on the unit lattice, smoothly interpolated, in [-1, 1]. Divide `point` by the
+/// feature size; different seeds give independent fields.
 double valueNoise(const Vec3& point, std::uint64_t seed);
 
 /// Normal noise with mean 0 and standard deviation 1.
 double normalNoise(std::uint64_t voxel);
 
-/// Magnitude of a signal with normal noise of standard deviation `sigma` in its two quadratures, as
-/// MR shows it (Gudbjartsson and Patz 1995, "The Rician Distribution of Noisy MRI Data").
+/// Rician noise, as in MR magnitude images: the signal has normal noise of standard deviation
+/// `sigma` in both quadratures (Gudbjartsson and Patz 1995, "The Rician Distribution of Noisy MRI
+/// Data").
 double ricianNoise(double signal, double sigma, std::uint64_t voxel);
 
 } // namespace fenestra

@@ -1,5 +1,5 @@
 #pragma once
-// Conversion of layers of shapes to voxels.
+// Rasterization of layered shapes into voxels.
 
 #include "phantoms/Phantom.h"
 #include "phantoms/Shapes.h"
@@ -10,19 +10,19 @@
 
 namespace fenestra {
 
-/// Place in a subject.
+/// A point of a subject.
 struct PaintSite {
   Vec3 point;     ///< world
-  double surface; ///< mm to the subject's outside
+  double surface; ///< mm to the subject's outer surface
 
-  /// Functions of a point are functions of a place.
+  /// Lets functions of a point serve as functions of a site.
   operator const Vec3&() const { return point; }
 };
 
 inline const Box everywhere{Vec3::Constant(-infinity), Vec3::Constant(infinity)};
 
-/// Base of a subject: its segments, and its layers front to back, each of which hides the later
-/// ones. `S`: a PaintSite with the data that the layers need.
+/// Base class of subjects: segments, and layers from front to back; each layer hides the later
+/// ones. `S`: a PaintSite with the additional data that the layers need.
 template <typename S>
 class LayeredSubject {
 public:
@@ -32,15 +32,15 @@ public:
   struct Layer {
     std::uint8_t label;
     Field signal;
-    Box box;        ///< world; the shape lies inside it
-    Field distance; ///< of the shape, mm, negative inside
+    Box box;        ///< world; contains the shape
+    Field distance; ///< to the shape, mm, negative inside
   };
 
   const std::vector<Layer>& layers() const { return m_layers; }
   const std::vector<PhantomSegment>& segments() const { return m_segments; }
 
 protected:
-  /// `margin`: mm by which a layer may pass the box that it is given.
+  /// `margin`: mm by which a layer may exceed its given box.
   explicit LayeredSubject(double margin) : m_margin(margin) {}
 
   /// Adds a segment; returns its label.
@@ -50,7 +50,7 @@ protected:
     return label;
   }
 
-  /// Adds a layer behind the others.
+  /// Adds a layer behind the existing ones.
   void addLayer(std::uint8_t label, Field signal, const Box& box, Field distance) {
     m_layers.push_back({label, std::move(signal), expandBox(box, m_margin), std::move(distance)});
   }
@@ -58,7 +58,7 @@ protected:
   static Field makeConstant(double signal) {
     return [signal](const Site&) { return signal; };
   }
-  /// Distance to the surface `depth` mm under the subject's outside.
+  /// Distance to the surface that lies `depth` mm below the subject's outer surface.
   static Field makeInset(double depth) {
     return [depth](const Site& site) { return site.surface + depth; };
   }
@@ -81,20 +81,20 @@ inline const Rgb vesselColor{0.847, 0.396, 0.310};
 inline const Rgb fatColor{0.902, 0.863, 0.275};
 inline const Rgb skinColor{0.694, 0.478, 0.396};
 
-/// Paints places of a grid, from the front layer back until the voxel is full.
+/// Paints voxels of a grid, from the front layer to the back, until the voxel is full.
 ///
-/// A Subject is a LayeredSubject with `background`, the signal around the subject; `site(point)`,
-/// world; and `acquired(signal, point, voxel)`, the scanner's value, int16.
+/// A Subject is a LayeredSubject with `background`, the signal around the subject;
+/// `makeSite(point)`, world; and `acquire(signal, point, voxel)`, the scanner's output, int16.
 template <typename Subject>
 class Painter {
 public:
   using Layer = typename Subject::Layer;
 
-  /// Signal and label at a place.
+  /// Signal and label at a point.
   struct Sample {
     double signal = 0.0;
     std::uint8_t label = 0;
-    double boundaryDistance = infinity; ///< mm to the nearest border in a visible layer
+    double boundaryDistance = infinity; ///< mm to the nearest boundary of a visible layer
   };
 
   Painter(const Subject& subject, const Grid& grid)
@@ -103,7 +103,7 @@ public:
         m_sliceStep(grid.indexToWorld.linear().col(2)),
         m_softness(0.6 * std::cbrt(grid.spacing().prod())) {}
 
-  /// Layers that a row of voxels along the first axis can meet.
+  /// Layers that a row of voxels along the first axis can intersect.
   std::vector<const Layer*> findRowLayers(const Vec3& start, std::int64_t count) const {
     const double length = m_rowStep.norm();
     const Ray row{start, m_rowStep / length};
@@ -115,8 +115,8 @@ public:
     return layers;
   }
 
-  /// Mean over the slice's thickness, which equals the slice distance; near a border from three
-  /// places, elsewhere from the middle alone.
+  /// Mean over the slice's thickness, which equals the slice distance: from three points near a
+  /// boundary, elsewhere from the center alone.
   Sample paintVoxel(const std::vector<const Layer*>& row, const Vec3& center) const {
     Sample middle = paint(row, center);
     if (middle.boundaryDistance > boundaryReach())
@@ -128,7 +128,7 @@ public:
   }
 
 private:
-  /// Largest distance from a voxel's middle, mm, at which a border shows in the voxel.
+  /// Largest distance from a voxel's center, mm, at which a boundary affects the voxel.
   double boundaryReach() const { return m_softness + m_sliceStep.norm() / 3.0; }
 
   Sample paint(const std::vector<const Layer*>& row, const Vec3& point) const {
@@ -139,13 +139,13 @@ private:
     if (site.surface > m_softness)
       return sample;
     sample.signal = 0.0;
-    double visible = 1.0; // share of the voxel not yet covered
+    double visible = 1.0; // fraction of the voxel not yet covered
     for (const Layer* layer : row) {
       if (!contains(expandBox(layer->box, m_softness), point))
         continue;
       const double distance = layer->distance(site);
       sample.boundaryDistance = std::min(sample.boundaryDistance, std::abs(distance));
-      // A voxel on a border holds a share of either side: the partial volume effect.
+      // A voxel at a boundary contains a fraction of either side: the partial volume effect.
       const double coverage = smoothStep(m_softness, -m_softness, distance);
       if (coverage == 0.0)
         continue;
@@ -161,12 +161,12 @@ private:
   }
 
   const Subject& m_subject;
-  Vec3 m_rowStep, m_sliceStep; ///< vectors between neighbours in a row, and between slices
-  double m_softness;           ///< mm; half the width of a border
+  Vec3 m_rowStep, m_sliceStep; ///< vectors to the next voxel in a row, and to the next slice
+  double m_softness;           ///< mm; half the width of a boundary
 };
 
-/// The subject's volume, named `name`, and one layer of labels on the whole grid. Independent of
-/// run and number of threads.
+/// Paints the subject's volume, called `name`, and one layer of labels on the complete grid. The
+/// result does not depend on run or number of threads.
 template <typename Subject>
 Phantom paintPhantom(const Subject& subject, const Grid& grid, const std::string& name) {
   const Painter painter(subject, grid);

@@ -1,5 +1,5 @@
 #pragma once
-// Synthetic subject: an image, the structures in it, and their display.
+// Synthetic subject: a volume, the structures in it, and display settings.
 
 #include "base/Vector.h"
 #include "model/medium/VolumeProperty.h"
@@ -19,7 +19,7 @@ struct PhantomSegment {
   std::size_t layer = 0; ///< segments of different layers may overlap
 };
 
-/// Labels on a box of the volume's voxels; 0: no segment.
+/// Labels on a box of the volume's voxels; 0: background.
 struct PhantomLabels {
   Size3 offset = Size3::Zero();                  ///< first voxel of the box, in the volume
   Size3 size = Size3::Zero();                    ///< voxels
@@ -30,13 +30,13 @@ struct Phantom {
   Volume volume; ///< int16
   PhantomLabels labels;
   std::vector<PhantomSegment> segments; ///< labels 1, 2, ... in this order in each layer
-  VolumeProperty property;              ///< natural colours
-  /// Direction from the subject to a viewer who sees it well, with superior up; world.
+  VolumeProperty property;              ///< with natural colors
+  /// Direction from the subject to a viewpoint with a good view, superior being up; world.
   Vec3 towardViewer = Vec3{-0.35, 1.0, 0.25};
 };
 
-/// Grid of `size` voxels around `center` (world). `fieldOfView`: mm along the voxel axes, whose
-/// unit directions in the world are the columns of `axes`. Throws Error (usage) unless each axis
+/// Grid of `size` voxels around `center` (world). `fieldOfView`: mm along the voxel axes; the
+/// columns of `axes` are their unit directions in the world. Throws Error (usage) unless each axis
 /// has 16 to 1024 voxels.
 Grid makePhantomGrid(const Size3& size, const Vec3& fieldOfView, const Mat3& axes,
                      const Vec3& center);

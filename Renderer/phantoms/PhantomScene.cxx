@@ -15,8 +15,8 @@ namespace fenestra {
 
 namespace {
 
-/// Makes pugixml throw std::bad_alloc. Otherwise it drops attributes for want of memory, and
-/// returns that in results that nobody checks.
+/// Makes pugixml throw std::bad_alloc. Otherwise it silently drops attributes when memory runs out,
+/// as its result codes are not checked here.
 void throwWithoutMemory() {
   const auto allocate = [](std::size_t size) {
     void* const memory = std::malloc(size);
@@ -25,8 +25,8 @@ void throwWithoutMemory() {
   pugi::set_memory_management_functions(allocate, std::free);
 }
 
-/// Encodes a file name or segment id as Slicer does in attributes: all but letters, digits and
-/// "-_./" become %XX.
+/// Encodes a file name or segment id as Slicer does in attributes: all characters except letters,
+/// digits and "-_./" become %XX.
 std::string urlEncode(const std::string& text) {
   TextWriter encoded;
   encoded << std::hex << std::uppercase;
@@ -41,24 +41,24 @@ std::string urlEncode(const std::string& text) {
   return encoded.str();
 }
 
-/// Texts for the places of Resources/phantoms/scene.mrml.
+/// Values for the placeholders in Resources/phantoms/scene.mrml.
 using ScenePlaceholders = std::map<std::string, std::string>;
 
-/// Pose of a parallel camera that frames the volume's box in a square, with a margin of a
-/// twentieth.
+/// Adds the pose of a parallel camera that frames the volume's box in a square, with a margin of
+/// 5 %.
 void addCamera(ScenePlaceholders& texts, const Phantom& phantom) {
   const Grid& grid = phantom.volume.grid;
   const Vec3 center = grid.worldCenter();
   const Vec3 backward = phantom.towardViewer.normalized();
   const Vec3 right = Vec3::UnitZ().cross(backward).normalized();
   const Vec3 up = backward.cross(right);
-  double scale = 0.0; // half the height, mm
+  double scale = 0.0; // half the viewport's height, mm
   for (int i = 0; i < 8; ++i) {
     const Vec3 offset = grid.worldCorner(i) - center;
     scale = std::max({scale, 1.05 * std::abs(offset.dot(up)), 1.05 * std::abs(offset.dot(right))});
   }
   const double distance = 4.0 * grid.boundingRadius();
-  const auto rounded = [&](const Vec3& v) { // no 1e-17 where 0 is meant
+  const auto rounded = [&](const Vec3& v) { // 0 instead of rounding errors such as 1e-17
     return Vec3(v.unaryExpr([&](double x) { return std::abs(x) < 1e-9 * distance ? 0.0 : x; }));
   };
   texts["@position@"] = joinSpaced(rounded(center + distance * backward));

@@ -1,5 +1,5 @@
 #pragma once
-// Phantom as a Slicer scene, as Slicer 5.2 to 5.12 write a volume with volume rendering.
+// A phantom as a Slicer scene, as Slicer 5.2 to 5.12 write a volume with volume rendering.
 
 #include "base/TextStream.h"
 #include "phantoms/Phantom.h"
@@ -8,18 +8,18 @@
 
 namespace fenestra {
 
-/// Text of a .mrml, its nodes named after `name`: Volume, Segmentation, VolumeProperty and
-/// MarkupsROI, each with its storage and display; GPU volume rendering of the volume, not cropped;
-/// view 1 with its parallel camera, which frames the volume seen from Phantom::towardViewer. World
-/// is RAS; numbers have six digits, as Slicer's. `data`: path of the scene's files from the scene,
-/// empty or with a / at its end.
+/// Content of a .mrml file. Its nodes are named after `name`: Volume, Segmentation, VolumeProperty
+/// and MarkupsROI with their storage and display nodes; uncropped GPU volume rendering; and view 1
+/// with a parallel camera that frames the volume, seen from Phantom::towardViewer. World is RAS;
+/// numbers have six digits, as Slicer's. `data`: path from the scene to its files, empty or with a
+/// trailing /.
 std::string makePhantomScene(const Phantom& phantom, const std::string& name,
                              const std::string& data = "");
 
-/// Text of the region of interest's .mrk.json: the box that the volume's voxels fill, LPS mm.
+/// Content of the region of interest's .mrk.json: the box that the volume's voxels fill, LPS mm.
 std::string makePhantomRoi(const Phantom& phantom);
 
-/// Numbers as Slicer writes them: a stream's six digits, separated by blanks.
+/// Formats numbers as Slicer writes them: six significant digits, separated by spaces.
 template <typename... Numbers>
 std::string joinSpaced(const Numbers&... numbers) {
   TextWriter stream;

@@ -14,8 +14,8 @@ namespace fenestra {
 
 namespace {
 
-/// First and last voxel in each axis of all labels of a layer, in its own voxels; "0 -1": no
-/// labels. Slicer writes this extent for each segment of a layer, since it crops the layer to the
+/// First and last labeled voxel of a layer in each axis, in the layer's voxels; "0 -1" without
+/// labels. Slicer writes this extent for every segment of a layer, and crops the layer to the
 /// extent of its first segment.
 std::string formatExtent(const std::vector<std::uint8_t>& labels, const Size3& size) {
   Size3 first = size, last = Size3::Constant(-1);
@@ -32,7 +32,7 @@ std::string formatExtent(const std::vector<std::uint8_t>& labels, const Size3& s
   return joinSpaced(first.x(), last.x(), first.y(), last.y(), first.z(), last.z());
 }
 
-/// Slicer's own fields (vtkMRMLSegmentationStorageNode).
+/// Fields of Slicer's segmentation files (vtkMRMLSegmentationStorageNode).
 NrrdFields makeSegmentationFields(const Phantom& phantom) {
   NrrdFields fields;
   const auto set = [&fields](const std::string& key, const std::string& value) {
@@ -91,10 +91,10 @@ std::string encodeSegmentation(const Phantom& phantom) {
 
 struct PhantomFile {
   std::string name, content;
-  bool isInScene = false; ///< true: the scene names it
+  bool isInScene = false; ///< true if the scene references it
 };
 
-/// Archive of a scene and of the files that it names, which have a folder of their own.
+/// Archive of a scene and the files that it references, in a folder of their own.
 std::string encodeArchive(const Phantom& phantom, const std::filesystem::path& path,
                           const std::string& name, const std::vector<PhantomFile>& files) {
   const std::string scene = makePhantomScene(phantom, name, "Data/");
@@ -119,7 +119,7 @@ bool hasContent(const std::filesystem::path& path, const std::string& content) {
          fileStartsWith(path, content);
 }
 
-/// Text as written before there were marks.
+/// Removes the provenance line: the text as versions before provenance tags wrote it.
 std::string removeProvenance(std::string text) {
   const std::size_t at = text.find("Written by Fenestra");
   const std::size_t line = text.rfind('\n', at) + 1;

@@ -1,5 +1,5 @@
 #pragma once
-// Phantom as the files that Slicer opens.
+// Writes a phantom as files for Slicer.
 
 #include "phantoms/Phantom.h"
 
@@ -9,13 +9,13 @@
 
 namespace fenestra {
 
-/// Writes into `directory` (made if missing): `name`.nrrd (the volume), .seg.nrrd (the segments, in
-/// their layers), .vp.json and .vp (the volume property; the second for Slicers before 5.10),
-/// -roi.mrk.json (the volume's box), .mrml (a scene of these) and .mrb (the same in an archive).
-/// Files are LPS, the same bytes on every run, and appear together or not at all. They replace only
-/// what Fenestra wrote: files that bear its mark, that have the same bytes, or that lie with this
-/// phantom's volume and scene. Returns their names. Throws Error: usage where a file is somebody
-/// else's; output.
+/// Writes into `directory` (created if missing): `name`.nrrd (the volume), .seg.nrrd (the segments,
+/// in layers), .vp.json and .vp (the volume property; .vp for Slicer before 5.10), -roi.mrk.json
+/// (the volume's box), .mrml (a scene of these) and .mrb (the same as an archive). Files are LPS,
+/// identical on every run, and appear all together or not at all. They only replace files that
+/// Fenestra wrote: with a provenance tag, with identical content, or beside this phantom's volume
+/// and scene. Returns the file names. Throws Error: usage for a file that Fenestra did not write;
+/// output.
 std::vector<std::string> writePhantom(const Phantom& phantom,
                                       const std::filesystem::path& directory,
                                       const std::string& name);

@@ -8,22 +8,22 @@ namespace fenestra {
 
 inline constexpr Size3 kneeSize{300, 344, 120}, footSize{300, 120, 150}, fetusSize{160, 160, 160};
 
-/// Right knee as a T1-weighted sagittal MR scan shows it; every structure is a segment. Voxel axes
-/// point posterior, inferior and right; field of view: 120 x 137.6 x 120 mm. The femoral cartilage
-/// has a full-thickness lesion on the medial slope of the trochlea and a half-thickness lesion on
-/// the lateral condyle.
+/// Right knee as in a T1-weighted sagittal MR scan; every structure is a segment. Voxel axes point
+/// posterior, inferior and right; field of view: 120 x 137.6 x 120 mm. The femoral cartilage has a
+/// full-thickness lesion on the medial slope of the trochlea and a half-thickness lesion on the
+/// lateral condyle.
 Phantom makeKneePhantom(const Size3& size = kneeSize);
 
-/// Right foot as CT shows it, in Hounsfield units. Voxel axes point anterior, left and superior;
-/// field of view: 280 x 112 x 140 mm. Layer 0 has a segment for each of the foot's 26 bones, the
-/// stumps of tibia and fibula, and the soft tissues; layer 1 has the segment "bones": every voxel
-/// of at least 200 HU.
+/// Right foot as in CT, in Hounsfield units. Voxel axes point anterior, left and superior; field of
+/// view: 280 x 112 x 140 mm. Layer 0 has a segment for each of the foot's 26 bones, the ends of
+/// tibia and fibula, and the soft tissues; layer 1 has the segment "bones": all voxels of at least
+/// 200 HU.
 Phantom makeFootPhantom(const Size3& size = footSize);
 
-/// Head of a fetus of about 28 weeks as obstetric ultrasound shows it, from in front. Voxel axes
-/// point left, posterior and superior; field of view: 112 x 112 x 112 mm. Values are 0 to 255, with
-/// speckle and shadows of ultrasound. The face, with a hand beside it, is one segment, hidden from
-/// in front by the uterine wall and a loop of the cord.
+/// Head of a fetus of about 28 weeks as in obstetric ultrasound from the front. Voxel axes point
+/// left, posterior and superior; field of view: 112 x 112 x 112 mm. Values are 0 to 255, with
+/// speckle and attenuation. The face, with a hand beside it, is one segment; the uterine wall and a
+/// loop of the cord hide it from the front.
 Phantom makeFetusPhantom(const Size3& size = fetusSize);
 
 struct CubeOptions {
@@ -31,12 +31,12 @@ struct CubeOptions {
   std::int64_t size = 512; ///< voxels along each edge
 };
 
-/// Simulated model of the clipping method's publication (its section 4): a cube whose scalar is its
-/// z index, around a cuboid focus. Voxel axes are R, A, S; the cube is centred at the origin. Slice
-/// k of n holds 255 (2 k - (n - 1)) / (n - 1), rounded: -255 in the first slice, 255 in the last.
-/// Among 512 slices the middle two hold 0 and each other slice one more than the slice below:
-/// the z index, counted from the middle. The segment "focus" has 255 x 255 x 391 voxels of 512, its
-/// long edge along z; of other sizes the same shares, rounded. Along an axis where n and the focus
+/// Simulated model of the clipping method's paper (section 4): a cube whose scalar is its z index,
+/// around a cuboid focus. Voxel axes are R, A, S; the cube is centered at the origin. Slice k of n
+/// holds 255 (2 k - (n - 1)) / (n - 1), rounded: -255 in the first slice, 255 in the last. With 512
+/// slices the middle two hold 0, and each other slice holds one more than the slice below: the z
+/// index relative to the middle. The segment "focus" has 255 x 255 x 391 voxels of 512, its long
+/// edge along z; other sizes use the same proportions, rounded. Along an axis where n and the focus
 /// differ by an odd number, the focus lies half a voxel below the middle. Labels cover the focus
 /// only. Throws Error (usage) unless edge > 0.
 Phantom makeCubePhantom(const CubeOptions& options = {});

@@ -44,7 +44,7 @@ Box uniteBoxes(const Box& a, const Box& b) {
   return {a.lower.cwiseMin(b.lower), a.upper.cwiseMax(b.upper)};
 }
 
-/// Box around a box mapped affinely.
+/// Bounding box of an affinely transformed box.
 Box mapBox(const Affine& map, const Box& box) {
   Box result = Box::makeEmpty();
   for (int i = 0; i < 8; ++i)
@@ -66,7 +66,7 @@ LoftSection findSection(const std::vector<LoftSection>& sections, double z) {
           catmullRom(a.radii, b.radii, c.radii, d.radii, t).cwiseMax(0.5)};
 }
 
-/// Distance to a tube whose nodes are as close as refined() makes them.
+/// Distance to a tube with nodes as dense as refineTube() makes them.
 double tubeDistance(const std::vector<TubeNode>& nodes, const Vec3& point) {
   double nearest = infinity;
   for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
@@ -130,7 +130,7 @@ Solid makeLoft(const std::vector<LoftSection>& sections, double squareness, doub
       box.extend({corner.x(), corner.y(), section.z});
     }
   const double bottom = sections.front().z, top = sections.back().z;
-  const double overshoot = 2.0; // mm; of a Catmull-Rom curve over its nodes
+  const double overshoot = 2.0; // mm; of a Catmull-Rom curve beyond its nodes
   return {[=](const Vec3& p) {
             const LoftSection section = findSection(sections, p.z());
             const double side =
@@ -163,7 +163,7 @@ Solid placeSolid(const Affine& toShape, const Solid& solid) {
           mapBox(toShape.inverse(), solid.box)};
 }
 
-/// The box grows by blend / 4, the reach of a blend.
+/// The box grows by blend / 4, the maximum effect of a blend.
 Solid unite(const Solid& a, const Solid& b, double blend) {
   return {[=](const Vec3& p) { return smoothUnion(a.distance(p), b.distance(p), blend); },
           expandBox(uniteBoxes(a.box, b.box), 0.25 * blend)};

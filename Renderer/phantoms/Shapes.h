@@ -1,6 +1,6 @@
 #pragma once
-// Shapes as distance functions: mm, negative inside, positive outside; near the surface exact to
-// first order, or slightly less. Blends follow Quilez, "Smooth minimum" (polynomial, quadratic).
+// Shapes as signed distance functions: mm, negative inside. Near the surface they are exact to
+// first order or slightly too small. Blends: Quilez, "Smooth minimum" (polynomial, quadratic).
 
 #include "base/Vector.h"
 
@@ -9,8 +9,8 @@
 
 namespace fenestra {
 
-/// Union, intersection and difference of two shapes, blended where their distances differ by less
-/// than `blend`, mm.
+/// Union, intersection and difference of two shapes, given by distances. They are blended where the
+/// distances differ by less than `blend`, mm.
 double smoothUnion(double a, double b, double blend);
 double smoothIntersection(double a, double b, double blend);
 double smoothDifference(double a, double b, double blend);
@@ -20,7 +20,7 @@ double ellipsoidDistance(const Vec3& point, const Vec3& center, const Vec3& radi
 Box expandBox(const Box& box, double margin);
 bool contains(const Box& box, const Vec3& point);
 
-/// Shape with a box around it, in the world.
+/// A shape with a bounding box, in the world.
 struct Solid {
   std::function<double(const Vec3&)> distance; ///< mm
   Box box;
@@ -29,38 +29,38 @@ Solid makeEllipsoid(const Vec3& center, const Vec3& radii);
 /// Box around the origin with edges rounded by `radius`.
 Solid makeBlock(const Vec3& halfSize, double radius);
 
-/// Cross-section of a loft in the axial plane: an ellipse, or more square.
+/// Cross-section of a loft in the axial plane: an ellipse or a superellipse.
 struct LoftSection {
   double z = 0.0;
   Vec2 center = Vec2::Zero();
   Vec2 radii = Vec2::Ones();
 };
-/// Solid through axial cross-sections, by rising z, at least two; centre and radii follow
+/// Solid through at least two axial cross-sections, by increasing z; center and radii follow
 /// Catmull-Rom curves of z. `squareness`: 0 (ellipse) to 1 (superellipse of exponent 4). The ends
-/// are flat, rounded over `capBlend` mm.
+/// are flat and rounded over `capBlend` mm.
 Solid makeLoft(const std::vector<LoftSection>& sections, double squareness, double capBlend);
 
-/// Point of a tube's axis, and the tube's radius there.
+/// Point on a tube's axis, and the tube's radius there.
 struct TubeNode {
   Vec3 point;
   double radius;
 };
-/// Tube along a Catmull-Rom curve through its nodes. `stretch` (each component at least 1) makes a
-/// band: its cross-section is that many times wider along each axis.
+/// Tube along a Catmull-Rom curve through its nodes. `stretch` (each component at least 1) flattens
+/// it into a band: the cross-section is that many times wider along each axis.
 Solid makeTube(const std::vector<TubeNode>& nodes, const Vec3& stretch = Vec3::Ones());
 
-/// Map from the world to a shape's space with origin at `origin`, z along `axis`, y toward `up`,
-/// and x along axis x up (mirrored: x is the lateral side of a right limb if axis is anterior and
-/// up superior). Units stay mm.
+/// Map from the world to a shape's space: origin at `origin`, z along `axis`, y toward `up`, x
+/// along axis x up (mirrored: x is the lateral side of a right limb if axis is anterior and up
+/// superior). Lengths are preserved.
 Affine toShape(const Vec3& origin, const Vec3& axis, const Vec3& up);
-/// Solid placed by the map to its own space.
+/// Solid transformed to the world; `toShape` maps to its own space.
 Solid placeSolid(const Affine& toShape, const Solid& solid);
 
-/// Solids blended as by smoothUnion and its like.
+/// Blended combinations of solids, as smoothUnion etc.
 Solid unite(const Solid& a, const Solid& b, double blend);
 Solid intersect(const Solid& a, const Solid& b, double blend);
 Solid subtract(const Solid& solid, const Solid& removed, double blend);
-/// `right` and its mirror image at the plane x = 0.
+/// Union of `right` and its mirror image at the plane x = 0.
 Solid mirrorPair(const Solid& right);
 
 } // namespace fenestra

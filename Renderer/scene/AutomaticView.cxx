@@ -9,7 +9,7 @@ namespace {
 constexpr double degree = pi / 180.0;
 constexpr double goldenAngle = 2.399963229728653;
 
-/// Directions spread evenly over the sphere.
+/// Directions distributed evenly over the sphere.
 std::vector<Vec3> spreadDirections(int count) {
   std::vector<Vec3> directions;
   for (int i = 0; i < count; ++i) {
@@ -20,7 +20,7 @@ std::vector<Vec3> spreadDirections(int count) {
   return directions;
 }
 
-/// Points spread evenly over a disc.
+/// Points distributed evenly over a disk.
 std::vector<Vec2> spreadPoints(int count, double radius) {
   std::vector<Vec2> points;
   for (int i = 0; i < count; ++i) {
@@ -30,7 +30,7 @@ std::vector<Vec2> spreadPoints(int count, double radius) {
   return points;
 }
 
-/// Frame's normal, tilted toward its two other axes by `angles`, radians.
+/// Normal of the frame, tilted toward its two other axes by `angles`, radians.
 Vec3 tiltNormal(const Frame& frame, const Vec2& angles) {
   const double angle = angles.norm();
   const double perAngle = angle > 0.0 ? std::sin(angle) / angle : 1.0;
@@ -45,7 +45,7 @@ std::vector<double> computeScores(const ViewScorer& scorer, const std::vector<Ve
   return scores;
 }
 
-/// Best of directions all around, each scored by a weighted mean over its neighbours.
+/// Best of the directions on the sphere. Scores are weighted means over neighboring directions.
 Vec3 searchCoarse(const ViewScorer& scorer) {
   constexpr double near = 15.0 * degree;
   constexpr std::size_t rays = 1024;
@@ -68,9 +68,10 @@ Vec3 searchCoarse(const ViewScorer& scorer) {
   return best;
 }
 
-/// Step from the middle of the points to the top of the quadratic fitted to their scores, with
-/// Gaussian weights of deviation `near`; at most `near` long, uphill if there is no top. By normal
-/// equations, which are far from singular with `near` as the unit of length.
+/// Step from the center of the points to the maximum of a quadratic that is fitted to their scores.
+/// The fit has Gaussian weights of standard deviation `near`. The step is at most `near` long, and
+/// goes uphill if there is no maximum. Normal equations suffice: with `near` as the unit of length
+/// they are well-conditioned.
 Vec2 stepToMaximum(const std::vector<Vec2>& points, const std::vector<double>& scores,
                    double near) {
   using Terms = Eigen::Matrix<double, 6, 1>;

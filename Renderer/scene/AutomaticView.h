@@ -1,15 +1,15 @@
 #pragma once
-// --view auto: the direction that shows the focus best. A direction d, from the focus to the eye,
-// scores
-//     area(d) * (1 - removed(d)) * custom(d).
-// - area: of the focus's projection along d, mm²: visible surface of the focus times the mean of
-//   cos(normal, d). More visible focus, and less foreshortening, score higher.
-// - removed: share of the context that a clipping surface takes away: in front of the focus all
-//   hiding context; beside the focus all context nearer than the focus's mean depth, where a
-//   surface levels off. Context is visible under the transfer function: air costs nothing.
-// - custom: 1 + 0.05 (d . anterior) - 0.1 (d . superior)²: among nearly equal views, preference for
-//   the customary one, in which up is up.
-// Eye rays are parallel: scores are independent of the projection and of the picture's size.
+// Automatic view direction (--view auto). The score of a direction d, from focus to camera, is
+//     area(d) * (1 - removed(d)) * preference(d)
+// - area: projected area of the focus along d, mm².
+// - removed: fraction of the visible context that a clipping surface would remove: all context in
+//   front of the focus and, beside it, the context nearer than the mean depth of the focus.
+//   Opacity under the transfer function decides visibility, so air costs nothing.
+// - preference: 1 + 0.05 (d . anterior) - 0.1 (d . superior)², which favors upright anterior views
+//   among nearly equal ones.
+// Rays are parallel. The score depends only on volume, focus and transfer function, so the view
+// does not change with the projection, the clip or the image size. Scores are averaged over
+// neighboring directions, so that a small change of the focus hardly moves the view.
 
 #include "clip/focus/FocusCells.h"
 #include "model/medium/TransferFunction.h"
@@ -19,10 +19,10 @@
 namespace fenestra {
 
 struct ViewScore {
-  double area = 0.0;            ///< of the focus's projection, mm²
-  double removedFraction = 0.0; ///< share of the context, 0 to 1
+  double area = 0.0;            ///< projected area of the focus, mm²
+  double removedFraction = 0.0; ///< fraction of the context, 0 to 1
   double score = 0.0;           ///< mm²
-  double hitFraction = 0.0;     ///< share of the rays that meet the focus
+  double hitFraction = 0.0;     ///< fraction of the rays that hit the focus
 };
 
 class ViewScorer {
@@ -30,12 +30,12 @@ public:
   ViewScorer(const Volume& volume, const Domain& domain, const TransferFunction& transfer,
              const Mask& focus);
 
-  /// `fromTarget`: unit vector. `rays`: number of rays, over the box of the focus. Relative error
-  /// of the score: about 1 / number of rays that meet the focus.
+  /// `fromTarget`: unit vector. `rays`: number of rays over the bounding box of the focus. The
+  /// relative error of the score is about 1 / number of rays that hit the focus.
   ViewScore operator()(const Vec3& fromTarget, std::size_t rays) const;
 
 private:
-  /// Context in one coarse cell of the volume.
+  /// One coarse cell of the volume that contains visible context.
   struct ContextCell {
     Vec3 center;   ///< world mm
     double weight; ///< opacity of the cell, 0 to 1
@@ -50,19 +50,19 @@ private:
   double m_cellEdge = 1.0; ///< edge of a coarse cell, mm
 };
 
-/// Direction from the target to the viewer, and the viewer's up; unit vectors, RAS.
+/// Unit vectors in RAS: direction from the target to the camera, and the camera's up direction.
 struct ViewDirection {
   Vec3 fromTarget, up;
 };
 
-/// Direction of the best score, in two steps: the best of 256 all around, then the top of a
-/// quadratic through the scores within 25 degrees of that best. Both steps weight neighbouring
-/// directions by a Gaussian: a view is no better than after a small turn, and a slightly different
-/// focus gives a slightly different view, unless views far apart are equally good. Independent of
+/// Returns the direction with the best score. The search takes the best of 256 directions on the
+/// sphere, then the maximum of a quadratic fitted to the scores within 25 degrees of it. Both steps
+/// weight neighboring directions by a Gaussian, so a slightly different focus gives a slightly
+/// different view, unless distant views score equally. The result does not depend on the number of
 /// threads.
 ///
-/// Up is superior, or anterior if superior is within 15 degrees of the view's axis. A focus that
-/// rays hardly meet is viewed from anterior.
+/// Up is superior, or anterior if the view axis is within 15 degrees of superior. The direction is
+/// anterior if almost no ray hits the focus.
 ViewDirection findBestView(const ViewScorer& scorer);
 
 } // namespace fenestra

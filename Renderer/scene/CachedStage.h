@@ -1,6 +1,6 @@
 #pragma once
-// Stage: a pure function and its last result, kept with the arguments, which are its key: numbers
-// and names by value, results of earlier stages by handle. Nothing has to be marked as outdated.
+// CachedStage: a pure function with its last result. The arguments are the cache key: numbers and
+// names by value, results of earlier stages by handle. So nothing needs explicit invalidation.
 
 #include "base/Stopwatch.h"
 
@@ -10,25 +10,25 @@
 
 namespace fenestra {
 
-/// Shared result of a stage; null: the stage is not used. Equal for one and the same result.
+/// Shared result of a stage; null: unused. Handles are equal if they share one result.
 template <typename Result>
 using Handle = std::shared_ptr<const Result>;
 
 template <auto function, typename Type = decltype(function)>
 class CachedStage;
 
-/// For results of namespace-scope functions.
+/// For free functions.
 template <auto function, typename Result, typename... Arguments>
 class CachedStage<function, Result (*)(Arguments...)> {
 public:
-  /// Marks the stage as unused; its result is kept for later equal arguments.
+  /// Marks the stage as unused. The result stays cached for later calls with equal arguments.
   void markUnused() {
     m_result = nullptr;
     m_seconds = 0.0;
   }
 
-  /// Result of function(arguments...), kept from before if the arguments are equal. Throws as the
-  /// function does.
+  /// Returns function(arguments...), from the cache if the arguments equal those of the last call.
+  /// Throws what the function throws.
   Handle<Result> get(const std::remove_cvref_t<Arguments>&... arguments) {
     if (!m_cached || m_cached->key != std::tie(arguments...)) {
       const Stopwatch watch;
@@ -38,11 +38,11 @@ public:
     return m_result = {m_cached, &m_cached->result};
   }
 
-  /// Null: not used since begin().
+  /// Null if get() was not called since markUnused().
   const Handle<Result>& result() const { return m_result; }
   const Result& operator*() const { return *m_result; }
   const Result* operator->() const { return m_result.get(); }
-  /// Wall-clock seconds of the function since begin(); 0: not called.
+  /// Wall-clock seconds of the function since markUnused(); 0: not called.
   double seconds() const { return m_seconds; }
   bool isUpdated() const { return m_seconds > 0.0; }
 
@@ -57,7 +57,7 @@ private:
   double m_seconds = 0.0;
 };
 
-/// For results of member functions: the object is the first argument.
+/// For const member functions: the object is the first argument.
 template <auto function, typename Object, typename Result, typename... Arguments>
 class CachedStage<function, Result (Object::*)(Arguments...) const>
     : public CachedStage<function, Result (*)(const Object&, Arguments...)> {};

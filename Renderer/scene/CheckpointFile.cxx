@@ -17,9 +17,9 @@ using nlohmann::ordered_json;
 
 constexpr std::string_view magic = "fenestra film 1 ";
 constexpr std::size_t maxFirstLine = 40;
-constexpr double maxSamples = 0x1p62; ///< sums of a few such counts fit 64 bits
+constexpr double maxSamples = 0x1p62; ///< so that sums of a few counts fit 64 bits
 
-/// Calls visit(index of the pixel in the film) for the pixels of a part, in the order of the file.
+/// Calls visit(column, row) for the pixels of a shard, in the order of the file.
 template <typename Visit>
 void forEachPixel(const Film& film, const Shard& shard, Visit&& visit) {
   const Tiles tiles(film.width(), film.height());
@@ -95,7 +95,7 @@ std::string encodeCheckpoint(const RenderResult& result, const Shard& shard,
 }
 
 CheckpointFile::CheckpointFile(const fs::path& path) : m_path(path) {
-  requireFile(path, "name a film");
+  requireFile(path, "name a checkpoint file");
   std::ifstream file = open(0);
   std::string line(maxFirstLine, '\0');
   file.read(line.data(), static_cast<std::streamsize>(line.size()));
@@ -105,8 +105,8 @@ CheckpointFile::CheckpointFile(const fs::path& path) : m_path(path) {
                          ? parseNumber<std::uint64_t>(line.substr(magic.size(), end - magic.size()))
                          : std::nullopt;
   if (!bytes)
-    throw inputError(path, "is no film of this version of Fenestra; name another file, or move it "
-                           "away to begin anew");
+    throw inputError(path, "is not a checkpoint of this version of Fenestra; choose another file, "
+                           "or move it away to start over");
   const std::uint64_t size = fs::file_size(path);
   std::array<std::uint64_t, 1> digest = {};
   if (*bytes > maxTextBytes || size < end + 1 + *bytes + sizeof digest)
@@ -136,7 +136,7 @@ CheckpointFile::CheckpointFile(const fs::path& path) : m_path(path) {
 }
 
 Error CheckpointFile::makeDamageError() const {
-  return inputError(m_path, "is a damaged film; remove it, and render it anew");
+  return inputError(m_path, "is a damaged checkpoint; delete it, and render again");
 }
 
 std::ifstream CheckpointFile::open(std::uint64_t position) const {

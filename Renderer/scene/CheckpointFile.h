@@ -1,14 +1,16 @@
 #pragma once
-// Films on disk: a render's sums, from which the same render goes on, and parts of a picture, which
-// are merged. (Here, since image knows no files and files know no render.)
+// Checkpoint files. A checkpoint stores the sums of a render, so that the render resumes as if it
+// had not been interrupted; a shard's checkpoint holds its tiles only, and `merge` joins shards.
+// The next sample index of a pixel is its sample count, so tiles may be ahead of the current pass.
+// The file is part of this layer because image must not depend on files, nor files on render.
 //
-//   fenestra film 1 BYTES\n      version of the format, and size of the next line
-//   {...}\n                      size, part and progress; what the film was made with
-//   pixels                       PixelSums, of the part's tiles (image/Tiles), one after the other
-//   plan                         floats, if the progress says so (SamplePlan::noise)
+//   fenestra film 1 BYTES\n      format version, and size of the next line
+//   {...}\n                      JSON header: image size, shard, progress and metadata
+//   pixels                       PixelSums of the shard's tiles (image/Tiles), tile by tile
+//   plan                         floats, if the header says so (SamplePlan::noise)
 //   digest                       of all bytes before (io/Digest)
 //
-// Numbers are little-endian, 8 bytes each but the plan's, counts among them.
+// Numbers are little-endian. All have 8 bytes, counts included, except those of the plan.
 
 #include "integrator/render/Render.h"
 
@@ -20,34 +22,34 @@
 
 namespace fenestra {
 
-/// Content of a film's file. `made`: an object that tells what the film was made with.
+/// Encodes a checkpoint file. `metadata`: JSON object that identifies the request and its inputs.
 std::string encodeCheckpoint(const RenderResult& result, const Shard& shard,
                              const nlohmann::ordered_json& metadata);
 
-/// Film in a file, which may be damaged or come from strangers: sizes and digest are checked before
-/// anything is believed, or memory taken.
+/// Checkpoint file, which may be damaged or untrusted: sizes and digest are verified before any
+/// content is used and before memory is allocated.
 class CheckpointFile {
 public:
-  /// Reads all but the pixels. Throws Error (input).
+  /// Reads everything except the pixels. Throws Error (input).
   explicit CheckpointFile(const std::filesystem::path& path);
 
   const std::filesystem::path& path() const { return m_path; }
   int width() const { return m_width; }
   int height() const { return m_height; }
   const Shard& shard() const { return m_shard; }
-  /// Facts that the film was made with: an object.
+  /// JSON object that identifies the request and its inputs.
   const nlohmann::json& metadata() const { return m_header.at("made"); }
-  /// Arithmetic of the samples (RenderResult::target).
+  /// Instruction set that computed the samples (RenderResult::target).
   std::string target() const;
   /// RenderResult::finishedSamples and begunSamples.
   std::uint64_t finishedSamples() const { return readCount("finished"); }
   std::uint64_t begunSamples() const { return readCount("begun"); }
-  /// Counts of this part's work.
+  /// Counters of this shard's work.
   Counters counters() const;
 
-  /// Progress, over an empty film. Takes memory for width() x height() pixels.
+  /// Returns the progress with an empty film. Allocates width() x height() pixels.
   RenderResult readProgress() const;
-  /// Puts the pixels of this part into a film of the same size. Throws Error (input).
+  /// Copies the pixels of this shard into a film of the same size. Throws Error (input).
   void readPixels(Film& film) const;
 
 private:

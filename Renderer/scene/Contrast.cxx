@@ -11,7 +11,7 @@
 namespace fenestra {
 namespace {
 
-/// Mean over scalars of the colour that an eye sees of matter with `albedoOf` their albedo.
+/// Mean reflected color of thick media with the albedo `albedoOf` of the scalars.
 template <typename AlbedoOf>
 Rgb meanReflectance(const std::vector<double>& scalars, double g, const AlbedoOf& albedoOf) {
   Rgb sum = Rgb::Zero();
@@ -20,7 +20,7 @@ Rgb meanReflectance(const std::vector<double>& scalars, double g, const AlbedoOf
   return sum / static_cast<double>(scalars.size());
 }
 
-/// Display light, linear, of matter of that colour.
+/// Linear display color of a medium with this reflectance.
 Rgb toDisplayLight(const Rgb& seen) {
   constexpr double light = 1.1;
   std::vector<float> pixel(4, 1.0F);
@@ -84,10 +84,10 @@ FocusContrast chooseSaturation(const std::optional<double>& requested, const Mas
 std::string summary(const FocusContrast& contrast) {
   if (!contrast.contrast)
     return "";
-  const std::string desaturated =
-      contrast.saturation < 1.0 ? "; surroundings paled to " + toString(contrast.saturation, 3)
-                                : "";
-  return concat(toString(contrast.contrast->deltaE[0], 3), " (colour-blind ",
+  const std::string desaturated = contrast.saturation < 1.0 ? "; surroundings desaturated to " +
+                                                                  toString(contrast.saturation, 3)
+                                                            : "";
+  return concat(toString(contrast.contrast->deltaE[0], 3), " (color-blind ",
                 toString(contrast.contrast->colorBlind(), 3), desaturated, ")");
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Contrast of the focus with what surrounds it: arithmetic on two colours, before anything is
-// rendered, and thus the same for every camera, clip and number of samples.
+// Color contrast between the focus and its surroundings. It is computed from two colors before
+// rendering, so it does not depend on camera, clip or number of samples.
 
 #include "image/ColorVision.h"
 #include "scene/FocusInterface.h"
@@ -11,48 +11,48 @@
 
 namespace fenestra {
 
-/// Differences of the colours in which the focus and its surroundings are shown.
+/// Differences between the displayed colors of the focus and of its surroundings.
 struct Contrast {
-  std::array<double, 4> deltaE; ///< by ColorVision
-  double deltaL;                ///< of CIELAB lightness, in absolute value
+  std::array<double, 4> deltaE; ///< indexed by ColorVision
+  double deltaL;                ///< absolute difference of CIELAB lightness
 
-  /// Least share of what normal sight and the two frequent kinds of colour blindness need, 20, 12
-  /// and 12, to tell them apart.
+  /// Smallest deltaE as a fraction of the required one, which is 20 for normal vision and 12 for
+  /// each of the two common kinds of color blindness.
   double score() const;
-  /// Least difference for the two frequent kinds of colour blindness.
+  /// Smaller deltaE of the two common kinds of color blindness.
   double colorBlind() const { return std::min(deltaE[1], deltaE[2]); }
 };
 
-/// Contrast of two colours as displayed, linear. `difference`: of two colours in CIELAB.
+/// Contrast of two linear display colors. `difference`: color difference formula in CIELAB.
 Contrast measureContrast(const Rgb& focus, const Rgb& context,
                          double (*difference)(const Lab&, const Lab&));
 
-/// Contrast (CIEDE2000) of two colours that an eye sees of thick matter in white light, linear: lit
-/// a little above white (radiance 1.1), by the film curve.
+/// CIEDE2000 contrast of two linear reflectances of thick media. They are lit slightly above white
+/// (radiance 1.1) and displayed with the film tone curve.
 Contrast measureReflectedContrast(const Rgb& focus, const Rgb& context);
 
-/// Contrast of the mean colours of both sides, which have at least one scalar each. `saturation`:
+/// Contrast of the mean colors of both sides; each side needs at least one scalar. `saturation`:
 /// of the context (ContextStyle).
 Contrast measureInterfaceContrast(const InterfaceScalars& interface,
                                   const TransferFunction& transfer, double saturation);
 
-/// Context's saturation, and the contrast that it gives.
+/// Saturation of the context, and the resulting contrast.
 struct FocusContrast {
   double saturation = 1.0;
-  std::optional<Contrast> contrast = {}; ///< nothing where one side is transparent
+  std::optional<Contrast> contrast = {}; ///< empty if one side is transparent
 };
 
-/// Saturations of a context that would hide the focus: tissue keeps its hue, or nothing does.
+/// Saturations for a context that is too similar to the focus: reduced, and none at all.
 inline constexpr double mutedSaturation = 0.35, graySaturation = 0.0;
 
-/// `asked`: by the user; nothing: the first of 1, `pale` and `grey` with which the contrast's share
-/// exceeds 1; where none does, that of the greatest share, among equals the most colourful. `grey`
-/// goes beyond the plan, which ended with `pale`: a brain in a head then differed by 8 across its
-/// edge for the red-blind, who need 12.
+/// Chooses the saturation of the context. `requested`: the user's value. Without one, the first of
+/// 1, `mutedSaturation` and `graySaturation` whose score exceeds 1 is used, else the one with the
+/// best score (the most saturated among equals). Gray is needed for a brain in a head: with the
+/// muted context the deltaE for protan vision was 8 of the required 12.
 FocusContrast chooseSaturation(const std::optional<double>& requested, const Mask& focus,
                                const Volume& volume, const TransferFunction& transfer);
 
-/// Contrast and what it took, in a few words; empty: none.
+/// One-line summary of contrast and saturation; empty without a contrast.
 std::string summary(const FocusContrast& contrast);
 
 } // namespace fenestra

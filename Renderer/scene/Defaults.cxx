@@ -25,7 +25,7 @@ ViewDirection findView(const std::string& name, const ViewDirection* best) {
   return known->second;
 }
 
-/// Values of at most about a million voxels, spread over the volume.
+/// Values of at most about a million voxels, distributed over the volume.
 std::vector<double> sampleValues(const Volume& volume) {
   const auto sample = [](const auto& voxels) {
     const std::size_t stride = voxels.size() / 1'000'000 + 1;
@@ -37,7 +37,7 @@ std::vector<double> sampleValues(const Volume& volume) {
   return std::visit(sample, volume.voxels);
 }
 
-/// Otsu's threshold (1979) of a sample of the values, from a 256-bin histogram of [low, high].
+/// Otsu's threshold (1979) of sampled values, from a 256-bin histogram of [low, high].
 double otsuThreshold(const Volume& volume, double low, double high) {
   constexpr int bins = 256;
   std::array<double, bins> histogram{};
@@ -68,8 +68,8 @@ double otsuThreshold(const Volume& volume, double low, double high) {
   return low + (high - low) * (threshold + 1.0) / bins;
 }
 
-/// Vector times the power of two that brings its length near 1: squares neither overflow nor
-/// vanish, and the normalized vector has the same digits as without scaling.
+/// Scales a vector by the power of two that brings its length near 1. Squares then neither overflow
+/// nor underflow, and the normalized vector has the same bits as without scaling.
 Vec3 scaleNearUnit(const Vec3& v) {
   const double greatest = v.cwiseAbs().maxCoeff();
   if (greatest == 0.0 || !std::isfinite(greatest))
@@ -78,7 +78,7 @@ Vec3 scaleNearUnit(const Vec3& v) {
   return v.unaryExpr([exponent](double x) { return std::ldexp(x, -exponent); });
 }
 
-/// Centre of a domain's bounding box along its grid, world mm.
+/// Center of the grid-aligned bounding box of a domain, world mm.
 Vec3 boxCenter(const Domain& domain) {
   Box box = Box::makeEmpty();
   for (const Vec3& corner : domain.indexCorners())
@@ -86,7 +86,7 @@ Vec3 boxCenter(const Domain& domain) {
   return domain.grid().indexToWorld * box.center();
 }
 
-/// Coordinates of the domain along a unit vector in the world, mm.
+/// Extent of the domain along a unit vector in the world, mm.
 Interval axisExtent(const Domain& domain, const Vec3& axis) {
   Interval extent{infinity, -infinity};
   for (const Vec3& corner : domain.indexCorners()) {
@@ -96,9 +96,9 @@ Interval axisExtent(const Domain& domain, const Vec3& axis) {
   return extent;
 }
 
-/// Way along `up`, mm, that takes a frame of `half` above and below `center` from beyond an end of
-/// the scan back over its matter, but no farther than until as much is empty on the other side.
-/// 0 where matter ends inside the scan: what is empty there belongs to the picture.
+/// Shift along `up`, mm, for a frame that extends `half` above and below `center`. It moves a frame
+/// that extends beyond an end of the scan back over the occupied part, until both sides have equal
+/// empty margins. 0 if the occupied part ends inside the scan: the empty space is then real.
 double shiftIntoScan(const Domain& occupied, const Vec3& up, const Vec3& center, double half) {
   const Interval extent = axisExtent(occupied, up), scan = axisExtent(occupied.grid(), up);
   const double at = up.dot(center), rounding = 1e-6 * half;
@@ -118,7 +118,7 @@ std::optional<std::string> chooseTransferPreset(const Volume& volume) {
 }
 
 bool canSuit(Modality modality, const Volume& volume) {
-  // Air, or padding beyond it (-2000, -8192, -32768 occur), and bone.
+  // The minimum is air, or padding below it (-2000, -8192 and -32768 occur); the maximum is bone.
   const bool hounsfield = volume.minimum <= -500.0 && volume.maximum >= 200.0;
   return hounsfield == (modality == Modality::ct);
 }
@@ -169,7 +169,7 @@ double transparentFraction(const Mask& focus, const Volume& volume,
 
 TransferFunction makeRelativeTransfer(const Volume& volume) {
   const double unit =
-      100.0 / volume.grid.boundingRadius(); // extinctions below suit a radius of 100 mm
+      100.0 / volume.grid.boundingRadius(); // the extinctions below are for a radius of 100 mm
   const std::array<double, 2> range = findRobustRange(volume);
   const double low = range[0], high = range[1];
   if (!(high > low))
@@ -198,8 +198,8 @@ TransferFunction makeRelativeTransfer(const Volume& volume) {
 
 CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* focus, int width,
                      int height, const ViewDirection* best) {
-  constexpr double surroundings = 1.6; // framed size / size of the focus
-  constexpr double margin = 1.05;      // around the whole volume
+  constexpr double surroundings = 1.6; // size of the frame / size of the focus
+  constexpr double margin = 1.05;      // around the volume
   constexpr double defaultAngle = 30.0;
   const ViewDirection named = findView(view.name.value_or("anterior"), best);
 
@@ -216,7 +216,7 @@ CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* 
   const Vec3 right = scaleNearUnit(pose.up).cross(back).normalized();
   const Vec3 up = back.cross(right);
 
-  // Frames the whole volume, or the focus with its surroundings if smaller.
+  // Frames the volume, or the focus with its surroundings if that is smaller.
   const double aspect = static_cast<double>(width) / height;
   const auto halfHeight = [&](const Domain& domain) {
     const Vec3 center = boxCenter(domain);
@@ -233,10 +233,10 @@ CameraPose frameView(const ViewRequest& view, const Domain& domain, const Mask* 
   pose.scale = view.scale.value_or(half);
   if (focus && !view.target && !view.position && !view.scale)
     pose.target +=
-        shiftIntoScan(volume, up, pose.target, half) * up; // a turntable turns about `up`
+        shiftIntoScan(volume, up, pose.target, half) * up; // turntables rotate about `up`
 
-  // The eye stands outside the volume, and in perspective at least as far as pose.angle demands; a
-  // farther eye gets a narrower angle.
+  // The camera is outside the volume, and in perspective at least as far away as pose.angle
+  // requires. A camera farther away gets a narrower angle.
   const double outside = margin * grid.boundingRadius() + (pose.target - grid.worldCenter()).norm();
   const double distance = std::max(outside, half / std::tan(pose.angle * pi / 360.0));
   if (!view.angle && !view.position)
@@ -250,10 +250,10 @@ CameraPose adjustView(const ViewRequest& view, const CameraPose& scene) {
   pose.projection = view.projection.value_or(scene.projection);
   const bool perspective = pose.projection == Projection::perspective;
   if (perspective && view.scale)
-    throw usageError("--scale: the scene's camera is a perspective one; use --angle, or add "
-                     "--projection orthographic");
+    throw usageError("--scale: the scene's camera is perspective; use --angle, or add --projection "
+                     "orthographic");
   if (!perspective && view.angle)
-    throw usageError("--angle: the scene's camera is an orthographic one; use --scale, or add "
+    throw usageError("--angle: the scene's camera is orthographic; use --scale, or add "
                      "--projection perspective");
   pose.target = view.target.value_or(scene.target);
   pose.up = view.up.value_or(scene.up);

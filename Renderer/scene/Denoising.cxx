@@ -8,9 +8,9 @@
 namespace fenestra {
 namespace {
 
-/// Openness of pixels: 0 for certain ones, and for those around which the march met nothing, so
-/// that no window spreads a silhouette into the background. Never by what the samples met: a mask
-/// that knows their noise makes the told error a lie.
+/// Pixels that the denoiser changes. It skips deterministic pixels, and those around which no
+/// camera ray hits anything, so that no window blurs a silhouette into the background. The mask
+/// must not depend on the samples: their noise would bias the error estimate.
 std::vector<std::uint8_t> findActivePixels(const Film& film, const FeatureBuffers& features) {
   std::vector<std::uint8_t> isOpen(film.pixelCount());
   for (int row = 0; row < film.height(); ++row)
@@ -24,7 +24,7 @@ std::vector<std::uint8_t> findActivePixels(const Film& film, const FeatureBuffer
   return isOpen;
 }
 
-/// Fills the halves; with the picture twice where the pixel is closed or there are no halves.
+/// Fills the half buffers. Inactive pixels, and films without halves, get the mean in both.
 void fillHalfBuffers(const Film& film, FilterInput& input) {
   const std::size_t count = film.pixelCount();
   for (std::size_t c = 0; c < 4; ++c) {
@@ -52,7 +52,8 @@ void fillHalfBuffers(const Film& film, FilterInput& input) {
   }
 }
 
-/// Sums of depth as distances from their median, mm: a pixel that meets little has little.
+/// Depth sums relative to the median depth, mm, so that pixels with little coverage get small
+/// values.
 Plane centerDepth(const FeatureBuffers& features) {
   std::vector<float> depths;
   for (std::size_t i = 0; i < features.hit.size(); ++i)
@@ -68,7 +69,7 @@ Plane centerDepth(const FeatureBuffers& features) {
   return plane;
 }
 
-/// Central differences to the neighbours `step` pixels before and after; 0 at the border.
+/// Central differences between the two neighboring pixels; 0 at the edge of the image.
 Plane computeSlope(const Plane& plane, int width, int height, bool down) {
   Plane slope(plane.size(), 0.0F);
   const auto row = static_cast<std::size_t>(width);
@@ -81,8 +82,8 @@ Plane computeSlope(const Plane& plane, int width, int height, bool down) {
   return slope;
 }
 
-/// Depth of the clip's surface where there is one, else that of the nearest pixel before it in the
-/// row: rays that the clip ends see nothing of it.
+/// Clip depth, with gaps filled from the previous pixel in the row. Gaps are where the clip removes
+/// the complete ray.
 Plane fillClipDepth(const Camera& camera, const Clip& clip) {
   Plane plane = makeClipDepth(camera, clip);
   float last = static_cast<float>(camera.targetDepth());
@@ -94,7 +95,7 @@ Plane fillClipDepth(const Camera& camera, const Clip& clip) {
 void addFeatures(const PreparedScene& scene, const FeatureBuffers& features, FilterInput& input) {
   for (const Plane& plane : features.albedo)
     input.features.push_back(plane);
-  // Where light scatters at surfaces, what it meets there is told by their normals.
+  // With surface shading, `surfaceNormal` weights normals by the probability of surface scattering.
   for (const Plane& plane : scene.transfer().shading ? features.surfaceNormal : features.normal)
     input.features.push_back(plane);
   input.features.push_back(features.light);
@@ -116,7 +117,7 @@ bool hasHalfBuffers(const Film& film) {
 
 FilterInput makeFilterInput(const Film& film, const PreparedScene& scene) {
   if (!film.hasIndependentHalves())
-    throw std::logic_error("a film without independent halves cannot be filtered");
+    throw std::logic_error("a film without independent halves cannot be denoised");
   FilterInput input{film.width(), film.height(), {}, {}, {}, {}, {}, hasHalfBuffers(film)};
   input.isActive = findActivePixels(film, *scene.features());
   fillHalfBuffers(film, input);

@@ -1,5 +1,5 @@
 #pragma once
-// Film as named channels, ready to be written.
+// Conversion of a film to an image with named channels.
 
 #include "clip/field/Clip.h"
 #include "denoise/features/FeatureBuffers.h"
@@ -11,30 +11,30 @@
 
 namespace fenestra {
 
-/// Groups of channels that a picture has, by their names in --layers.
+/// Names of channel groups, as in --layers.
 using LayerSet = std::set<std::string>;
 
 inline const LayerSet allLayers = {"color", "depth",   "clip",     "albedo",  "normal",
                                    "error", "samples", "denoised", "expected"};
 
-/// Layers of these names; empty list: all. Throws Error (usage) for an unknown name.
+/// Layers with these names; an empty list selects all. Throws Error (usage) for an unknown name.
 LayerSet parseLayers(const std::vector<std::string>& names);
 
 Image makeImage(const Film& film, const Camera& camera, const Clip& clip, const LayerSet& layers);
 
 /// Adds the channels denoised.* and denoised.error.*.
 void addDenoised(Image& image, const FilteredImage& result);
-/// Adds the channels expected.*: albedo and normal over all rays, as Film's; Z, like the channel Z,
-/// over those that meet something, and infinity where none does.
+/// Adds the channels expected.*: albedo and normal as means over all rays, like the film's; Z, like
+/// the channel Z, as the mean over the rays that hit something, else infinity.
 void addExpected(Image& image, const FeatureBuffers& features);
-/// R, G, B and A of the filtered picture.
+/// Image with the channels R, G, B and A of the denoised image.
 Image makeFilteredImage(const FilteredImage& result, int width, int height);
 
-/// Depth at which the eye ray of each pixel's centre passes the clip's surface, mm; infinity:
-/// nothing lies behind the surface.
+/// Depth at which the camera ray through each pixel center crosses the clip surface, mm. Infinity:
+/// the ray has no unclipped part.
 Plane makeClipDepth(const Camera& camera, const Clip& clip);
 
-/// Place of the picture: on the plane through the target.
+/// Position and size of the image in the world, on the plane through the target.
 ImagePlane makeImagePlane(const Camera& camera);
 
 } // namespace fenestra

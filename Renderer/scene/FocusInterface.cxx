@@ -7,9 +7,9 @@
 namespace fenestra {
 namespace {
 
-constexpr std::int64_t shellDepth = 3; ///< voxels to either side of a face
+constexpr std::int64_t shellDepth = 3; ///< voxels on either side of a face
 
-/// Every n-th of the values added, n a power of two, so that some ten thousand are left.
+/// Keeps every n-th of the values added. n is a power of two, so that about ten thousand remain.
 class Subsample {
 public:
   void add(double value) {
@@ -38,7 +38,7 @@ private:
   std::size_t m_count = 0, m_stride = 1;
 };
 
-/// Faces between voxels of the focus and others, and the volume's samples there.
+/// Visits the faces between focus voxels and other voxels, and samples the volume there.
 template <typename Voxel>
 class InterfaceSampler {
 public:
@@ -50,8 +50,8 @@ public:
         m_toVolume(volume.grid.worldToIndex * focus.grid.indexToWorld),
         m_transfer(transfer) {}
 
-  /// Calls visit(voxel of the focus, step to the other) for faces of at most about `mostVoxels` of
-  /// the mask's voxels, spread over its rows.
+  /// Calls visit(focus voxel, step to its neighbor) for each face. Rows are skipped so that at most
+  /// about `mostVoxels` voxels of the mask are tested.
   template <typename Visit>
   void forEachFace(const Visit& visit) const {
     constexpr double mostVoxels = 4e6;
@@ -65,8 +65,8 @@ public:
             visitFaces({x, y, z}, visit);
   }
 
-  /// Calls take(voxel, scalar) for shown voxels of the shell from `first` on, up to the first voxel
-  /// of the other side.
+  /// Calls take(voxel, scalar) for the visible voxels of the shell, from `first` to the last voxel
+  /// on the same side.
   template <typename Take>
   void forEachShellVoxel(const Size3& first, const Size3& step, const Take& take) const {
     const bool side = isInside(first);
@@ -94,7 +94,7 @@ private:
       }
   }
 
-  /// Scalar of a voxel; nothing where it is transparent, or outside the volume.
+  /// Scalar of a voxel; empty if it is transparent or outside the volume.
   std::optional<double> visibleScalar(const Size3& voxel) const {
     const Vec3 index = m_toVolume * voxel.cast<double>();
     if (index != Vec3(index.cwiseMax(m_box.lower).cwiseMin(m_box.upper)))
@@ -110,7 +110,7 @@ private:
   const TransferFunction& m_transfer;
 };
 
-/// Components of a mask's voxels.
+/// Looks up the components of mask voxels.
 class Components {
 public:
   Components(const Grid& mask, const LabelWeights& weights, const std::vector<bool>& isFocus)
@@ -118,7 +118,7 @@ public:
         m_toWeights(weights.grid().worldToIndex * mask.indexToWorld),
         m_isFocus(isFocus) {}
 
-  /// Component of the side with the greatest share; nothing: it has none there.
+  /// Component with the largest label weight among those of a side; empty if all are 0.
   std::optional<std::uint8_t> at(const Size3& voxel, bool focusSide) const {
     std::optional<std::uint8_t> greatest;
     double most = 0.0;
@@ -138,13 +138,13 @@ private:
   const std::vector<bool>& m_isFocus;
 };
 
-/// Scalars on one side of a face, of the component that is met first.
+/// Visible scalars on one side of a face, as far as they belong to the component nearest to it.
 struct Side {
   std::optional<std::uint8_t> component = {};
   std::vector<double> scalars = {};
 };
 
-/// Properties of a part of the border.
+/// Accumulated values of one part of the interface.
 struct Part {
   double area = 0.0;
   Subsample focus, context;

@@ -1,6 +1,6 @@
 #pragma once
-// Border of the focus: what the volume holds to both sides of the faces between its voxels and
-// others.
+// Interface between the focus and its surroundings: the scalars of the volume on both sides of the
+// faces between focus voxels and other voxels.
 
 #include "model/medium/LabelWeights.h"
 #include "model/medium/TransferFunction.h"
@@ -11,25 +11,25 @@
 
 namespace fenestra {
 
-/// Scalars at the focus's border: of the three voxels to either side of its labels' faces, those
-/// that the transfer function shows; at most some ten thousand of each.
+/// Scalars of the three voxels on either side of each face, as far as the transfer function makes
+/// them visible. Subsampled to about ten thousand per side.
 struct InterfaceScalars {
   std::vector<double> focus, context;
 };
 
-/// `focus`: of at least one voxel. A side that is transparent has none.
+/// `focus`: has at least one voxel. The result of a transparent side is empty.
 InterfaceScalars sampleInterface(const Mask& focus, const Volume& volume,
                                  const TransferFunction& transfer);
 
-/// Part of the border, where two components of the medium meet, as far as both are shown.
+/// Part of the interface where two given components of the medium meet and both are visible.
 struct ComponentInterface {
   std::uint8_t focus, context;
-  double area;                       ///< of the voxels' faces, mm^2, but for a common factor
-  double focusScalar, contextScalar; ///< medians of the three voxels to either side
+  double area;                       ///< of the voxel faces, proportional to mm²
+  double focusScalar, contextScalar; ///< medians over the three voxels on either side
 };
 
-/// Parts of the border, the largest first. `isFocus`: by component; a voxel's component is, of its
-/// side's, the one with the greatest share.
+/// Returns the parts of the interface, largest first. `isFocus`: per component. The component of a
+/// voxel is the one with the largest label weight among those of its side.
 std::vector<ComponentInterface> findInterfaces(const Mask& focus, const Volume& volume,
                                                const TransferFunction& transfer,
                                                const LabelWeights& weights,

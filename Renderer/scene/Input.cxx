@@ -33,7 +33,7 @@ std::optional<SegmentNames> readSegmentNames(const InputChoice& choice) {
   return SegmentNames{*choice.segmentation, readSegmentInfos(*choice.segmentation, choice.labels)};
 }
 
-/// Labels with the files that they were read from.
+/// A segmentation with the files from which it was read.
 SegmentsInput makeSegments(Segmentation segmentation, InputFiles files) {
   if (fileExists(segmentation.namesSource()))
     files.push_back(segmentation.namesSource());
@@ -43,8 +43,7 @@ SegmentsInput makeSegments(Segmentation segmentation, InputFiles files) {
 } // namespace
 
 struct Input::SharedState {
-  /// Result of work(scene), which no other thread uses meanwhile. Opens the scene at the first
-  /// call.
+  /// Returns work(scene) under a lock. The first call opens the scene.
   template <typename Work>
   auto withScene(Work&& work) {
     const std::lock_guard lock(mutex);
@@ -154,8 +153,7 @@ SegmentsInput Input::segments(const InputChoice& choice, const Grid& volume) con
     if (!plan.segmentation)
       throw inputError(scene.document.source(),
                        "has no segmentation \"" + *choice.segmentation +
-                           "\", and there is no file of that name; fenestra inspect lists what "
-                           "there is");
+                           "\", and no such file exists; fenestra inspect lists the segmentations");
     Segmentation segmentation =
         readSceneSegmentation(scene, *plan.segmentation, &volume, choice.labels);
     segmentation.setSource(scene.files.translatePaths(segmentation.source()));

@@ -1,5 +1,5 @@
 #pragma once
-// Input of a request: a volume's file, a DICOM folder, or a Slicer scene with its settings.
+// Input of a request: a volume file, a DICOM folder, or a Slicer scene with its settings.
 
 #include "files/segments/SegmentationReader.h"
 #include "model/camera/Background.h"
@@ -20,7 +20,7 @@ namespace fenestra {
 class MrmlDocument;
 struct MrmlScene;
 
-/// Paths of read files, as the user knows them.
+/// Paths of the files that were read, as the user named them.
 using InputFiles = std::vector<std::string>;
 
 struct VolumeInput {
@@ -28,7 +28,7 @@ struct VolumeInput {
   InputFiles files = {};
 };
 
-/// View and crop of a Slicer scene; nothing for other inputs.
+/// View and crop of a Slicer scene; empty for other inputs.
 struct SceneSettings {
   std::optional<CropBox> crop = {};
   std::optional<CameraPose> camera = {};
@@ -37,7 +37,7 @@ struct SceneSettings {
   InputFiles files = {};
 };
 
-/// Transfer function of a Slicer scene; nothing where the scene has none.
+/// Transfer function of a Slicer scene; empty if the scene has none.
 struct SceneTransfer {
   std::optional<TransferFunction> transfer = {};
   std::string name = {}; ///< of the volume property
@@ -49,51 +49,50 @@ struct SegmentsInput {
   InputFiles files = {};
 };
 
-/// Names of all segments that would be searched for a focus, without labels.
+/// Names of all segments among which a focus is searched. Needs no voxels of the label map.
 struct SegmentNames {
-  std::string source;                ///< names the segmentation in messages
-  std::vector<SegmentInfo> segments; ///< empty: segments have no names
+  std::string source;                ///< describes the segmentation in messages
+  std::vector<SegmentInfo> segments; ///< empty: the segments have no names
 };
 
-/// Choice of a scene's nodes, or of files (RenderRequest).
+/// Selects nodes of a scene, or files (RenderRequest).
 struct InputChoice {
   std::optional<std::string> volume = {};
   std::optional<std::string> segmentation = {};
-  std::optional<std::string> labels = {}; ///< names of a label map's values (LabelSearch.h)
+  std::optional<std::string> labels = {}; ///< names of label values (LabelSearch.h)
 
   bool operator==(const InputChoice&) const = default;
 };
 
-/// Opened on first use, and then once: copies share an opened scene, its unpacked files and read
-/// transforms. Files are assumed unchanged. All methods throw Error, and may be called from any
-/// thread.
+/// The input is opened once, on first use. Copies share the opened scene, its unpacked files and
+/// its transforms. Files are assumed not to change. All methods throw Error and are thread-safe.
 class Input {
 public:
   explicit Input(std::filesystem::path path);
 
   const std::filesystem::path& path() const;
-  /// Scene as stored; null: no Slicer scene.
+  /// The stored scene; null if the input is not a Slicer scene.
   const MrmlDocument* document() const;
-  /// Opened scene, shared, for a process that uses it in one thread; null: no Slicer scene.
+  /// The opened scene, shared, for single-threaded use; null if the input is not a Slicer scene.
   MrmlScene* scene() const;
 
-  /// `choice`: of a scene's volumes, or of a folder's DICOM series.
+  /// `choice`: a volume of the scene, or a DICOM series of the folder.
   VolumeInput volume(const std::optional<std::string>& choice) const;
-  /// `followsCamera`: reads the scene's camera.
+  /// `followsCamera`: also reads the scene's camera.
   SceneSettings settings(const std::optional<std::string>& volume, bool followsCamera) const;
-  /// Look of the volume's rendering in Slicer. `range`: of the voxels, for a look that follows the
-  /// window of the slice views.
+  /// Transfer function of the volume's rendering in Slicer. `range`: of the voxels; needed for
+  /// renderings that follow the window and level of the slice views.
   SceneTransfer transfer(const std::optional<std::string>& volume,
                          const std::array<double, 2>& range) const;
-  /// Nothing without a segmentation.
+  /// Empty without a segmentation.
   std::optional<SegmentNames> segmentNames(const InputChoice& choice) const;
-  /// Labels, for a volume of that grid.
+  /// Segmentation for a volume on the given grid.
   SegmentsInput segments(const InputChoice& choice, const Grid& volume) const;
-  /// Volume property of that name or id.
+  /// Volume property with this name or id.
   SceneTransfer property(const std::string& name) const;
   std::vector<std::string> propertyNames() const;
 
-  /// Equal paths.
+  /// Compares paths only.
   bool operator==(const Input& other) const { return path() == other.path(); }
 
 private:

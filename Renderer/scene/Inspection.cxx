@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::array voxelTypes = {"uint8", "int16", "uint16", "float"}; ///< as in Voxels
 
-/// True if most pairs of neighbouring voxels above the least value are equal, as in label maps (at
-/// least 59 % in those at hand) and in no scan (at most 8 %).
+/// True if most pairs of adjacent voxels above the minimum are equal. At least 59 % were in all
+/// available label maps, and at most 8 % in scans.
 bool isLikelyLabelMap(const Volume& volume) {
   constexpr double most = 0.5;
   if (volume.minimum < 0.0 || std::holds_alternative<LargeArray<float>>(volume.voxels))
@@ -35,15 +35,15 @@ bool hasSegmentationName(const std::filesystem::path& path) {
   return path.filename().string().find(".seg.") != std::string::npos;
 }
 
-/// Properties of a volume that the rest of an inspection needs: the volume itself is released
-/// before segments are read.
+/// What the rest of an inspection needs of a volume, which is released before segmentations are
+/// read.
 struct FileVolume {
-  std::optional<Grid> grid = {};     ///< nothing: unreadable
-  std::optional<Error> failure = {}; ///< of a render; may have come after the volume was read
+  std::optional<Grid> grid = {};     ///< empty: unreadable
+  std::optional<Error> failure = {}; ///< of the render, perhaps after the volume was read
   bool isLikelyLabelMap = false;
 };
 
-/// Adds what a render uses of the input, its refusal and its warnings.
+/// Reports what a render uses of the input, with its warnings or its error.
 FileVolume inspectVolume(const RenderRequest& request, const Input& input, Json& report) {
   FileVolume result;
   const auto add = [&](const Volume& volume, const std::vector<std::string>& warnings) {
@@ -68,7 +68,7 @@ FileVolume inspectVolume(const RenderRequest& request, const Input& input, Json&
   return result;
 }
 
-/// Colour, display-encoded; of several knots each with its scalar; null: none.
+/// Display-encoded color; with several knots, [scalar, color] per knot; null: none.
 Json colorJson(const std::optional<ColorFunction>& color) {
   if (!color)
     return nullptr;

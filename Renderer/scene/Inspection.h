@@ -1,5 +1,5 @@
 #pragma once
-// Contents of an input, and the parts that a render would use: the report of `fenestra inspect`.
+// The report of `fenestra inspect`: the contents of an input, and what a render would use of it.
 
 #include "scene/Input.h"
 
@@ -7,42 +7,43 @@
 
 namespace fenestra {
 
-/// Report as one JSON object. Lengths in mm, volumes of segments in ml, places in RAS, colours
-/// display-encoded in [0, 1]; null: absent. Nodes refer to each other by id. Text is unchanged from
-/// the files: printers have to escape control characters. The keys are stable:
+/// The report, one JSON object. Lengths are in mm, segment volumes in ml, positions in RAS, and
+/// colors are display-encoded in [0, 1]. Absent values are null. Nodes refer to each other by id.
+/// Strings are copied from the files unchanged, so printers must escape control characters. The
+/// keys are stable:
 ///
 ///     input, kind ("scene" | "volume" | "segmentation" | "dicom"), version (of Slicer)
 ///     volumes [NODE]
 ///     segmentations [NODE + kind ("segmentation" | "labelMap" | "file"), shown, size, spacing,
 ///       segments [id, name, labelValue, layer, color, voxels, milliliters, bounds {lower, upper},
-///       shown, material {name (null: a colour alone), kind ("tint" | "matter"), color (null: the
-///       volume's own; what is seen, or [scalar, color] of each knot), priority, clip, density, why
-///       (SegmentMaterials.h)}]]
+///       shown, material {name (null: only a color), kind ("tint" | "matter"), color (null: the
+///       volume's own; else the reflected color, or [scalar, color] per knot), priority, clip,
+///       density, why (SegmentMaterials.h)}]]
 ///     volumeRenderings [NODE + volume, property, roi, cropping, followsDisplay, shown]
 ///     volumeProperties [NODE], rois [NODE]
 ///     views [NODE + layout, technique, background {bottom, top}]
 ///     cameras [NODE + layout, POSE unless the node has a problem]
-///     transforms [NODE + linear, toWorld (row by row, with all transforms above)]
+///     transforms [NODE + linear, toWorld (row-major, including all parent transforms)]
 ///     series [uid, number, description, modality, files]
 ///     others {tag: count}
-///     materials [name, kind, color (as of a segment's material)]: the library
-///     render: null (undecided what a render shows), or what one uses, as far as it can be read:
-///       volume {id, name, size, spacing, center, voxelType, range, transforms [id, nearest
-///       first]}, look {source ("volumeProperty" | "volumeDisplay" | "preset" | "range"), id,
-///       name}, crop {id, name, edges, center}, camera {id, name, POSE}, background {view, bottom,
-///       top}, segmentation (id or file that is searched for a focus), segmentationProblem (why it
-///       is undecided), stored [argument stored in the scene by Fenestra's extension]
-///     refused: null, or the line that a render ends in
+///     materials [name, kind, color (like a segment's material)]: the library
+///     render: null if the choice of nodes is ambiguous, else what a render uses, as far as it can
+///       be read: volume {id, name, size, spacing, center, voxelType, range, transforms [id,
+///       innermost first]}, look {source ("volumeProperty" | "volumeDisplay" | "preset" | "range"),
+///       id, name}, crop {id, name, edges, center}, camera {id, name, POSE}, background {view,
+///       bottom, top}, segmentation (id or file in which a focus is searched), segmentationProblem
+///       (why it is ambiguous), stored [option stored in the scene by Fenestra's extension]
+///     refused: null, or the error message of a render
 ///     warnings [line], ignored [line]
 ///
-/// NODE: id, name, files [name (as in the scene, URL escapes decoded), there], transform (id of the
-/// one right above), used (by a render), problem (null, or the line of the error on reading it).
+/// NODE: id, name, files [name (as in the scene, URL-decoded), there], transform (id of its parent
+/// transform), used (by a render), problem (null, or the error message from reading it).
 /// POSE: projection, position, target, up, scale | angle.
 using Inspection = nlohmann::ordered_json;
 
-/// `input`: of request.input. Uses of the request only volume and segmentation. Reads the files
-/// that a render would, and every segmentation, camera and transform (after 64 of a kind only
-/// names). Throws Error if the input is neither scene nor volume nor segmentation.
+/// `input`: of request.input. Of the request, only volume and segmentation are used. Reads the
+/// files that a render would read, and all segmentations, cameras and transforms (names only after
+/// the first 64 of a kind). Throws Error if the input is no scene, volume or segmentation.
 Inspection inspectInput(const RenderRequest& request, const Input& input);
 
 } // namespace fenestra

@@ -1,5 +1,5 @@
 #pragma once
-// Parts shared by the inspections of scenes and of plain files. For session's own sources.
+// Functions shared by the inspection of scenes and of plain files; private to this folder.
 
 #include "base/Error.h"
 #include "files/segments/SegmentationReader.h"
@@ -11,9 +11,9 @@
 
 namespace fenestra {
 
-using Json = nlohmann::ordered_json; ///< a report, or a part of it
+using Json = nlohmann::ordered_json; ///< a report, or part of it
 
-/// Result of `read`; nothing: `line` holds the line of the Error thrown.
+/// Returns the result of `read`. On Error, stores its message in `line` and returns nothing.
 template <typename Read>
 auto tryRead(Read&& read, Json& line) -> std::optional<decltype(read())> {
   try {
@@ -24,16 +24,16 @@ auto tryRead(Read&& read, Json& line) -> std::optional<decltype(read())> {
   }
 }
 
-/// Null for the empty text.
+/// Null if the text is empty.
 Json nullIfEmpty(const std::string& text);
 
-/// Report with nothing found, and its member `render` with nothing used.
+/// An empty report, and an empty member `render`.
 Inspection makeReport(const RenderRequest& request, const char* kind);
 Json makeRenderReport();
 
 Json volumeJson(const Volume& volume, const std::string& id = "");
 Json transferJson(const char* source, const std::string& id, const std::string& name);
-/// Look of a volume without settings, by modality and range.
+/// Default transfer function of a volume, from modality and range.
 Json defaultTransferJson(const Volume& volume);
 Json poseJson(const CameraPose& pose, const std::string& id = "", const std::string& name = "");
 /// Adds a POSE.
@@ -41,13 +41,13 @@ void addPose(const CameraPose& pose, Json& camera);
 
 /// NODE without files, unused, without a problem.
 Json nodeJson(const std::string& id, const std::string& name);
-/// Members that a segmentation has beyond NODE, before it is read.
+/// Additional members of a segmentation, before it is read.
 Json segmentationMembers(const char* kind, bool shown);
-/// Adds size, spacing and segments; segments without an entry in `shown` are shown.
+/// Adds size, spacing and segments. A segment without an entry in `shown` counts as shown.
 void addSegments(const Segmentation& segmentation, const std::map<std::string, bool>& shown,
                  Json& json);
-/// Segmentation of a file. `volume`: grid that closed surfaces become labels on; null: none.
-/// `labels`: RenderRequest's.
+/// Inspects a segmentation file. `volume`: grid on which closed surfaces are voxelized; null: none.
+/// `labels`: RenderRequest::labels.
 Json inspectSegmentationFile(const std::filesystem::path& path, const Grid* volume,
                              const std::optional<std::string>& labels);
 

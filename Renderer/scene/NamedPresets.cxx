@@ -15,7 +15,7 @@
 namespace fenestra {
 namespace {
 
-/// Text of the preset `name` under Resources/<kind>/; empty: none.
+/// JSON of the built-in preset `name` under Resources/<kind>/; empty if there is none.
 std::string_view findBuiltinPreset(const std::string& kind, const std::string& name) {
   return findResource(kind + "/" + name + ".json");
 }
@@ -29,17 +29,16 @@ bool isExistingFile(const std::string& name) {
   return std::filesystem::exists(name, failed);
 }
 
-/// Error for an unknown name. A path in a folder without permission gets a reading error; any other
-/// name could be a preset's as well.
+/// Error for an unknown name. A path in an inaccessible folder gets a reading error; any other name
+/// might be a misspelled preset.
 Error makeUnknownError(const std::string& flag, const std::string& name, const std::string& known) {
   std::error_code failed;
   if (name.find('/') != std::string::npos && !std::filesystem::exists(name, failed) && failed)
     return readError(name, failed.value(), "check the permissions of its folder");
-  return inputError(name,
-                    "no such file, and no preset of that name; --" + flag + " takes " + known);
+  return inputError(name, "no such file or preset; --" + flag + " takes " + known);
 }
 
-/// Volume properties of a scene, by name or id, and Slicer's presets.
+/// Volume properties of a scene, by name or id, and the presets of an installed Slicer.
 class SlicerTransfers {
 public:
   explicit SlicerTransfers(const Input& input) : m_input(input) {
@@ -58,18 +57,18 @@ public:
     return std::nullopt;
   }
 
-  /// Known names, for a message.
+  /// Lists the known names for a message.
   std::string knownNames() const {
     const std::vector<std::string> inScene = m_input.propertyNames();
-    std::string text = inScene.empty() ? "" : "; of the scene " + joinNames(inScene);
-    text += m_presets ? "; of Slicer " + joinNames(listPropertyNames(*m_presets))
-                      : "; Slicer's own presets are known where SLICER_HOME names its folder";
+    std::string text = inScene.empty() ? "" : "; in the scene: " + joinNames(inScene);
+    text += m_presets ? "; in Slicer: " + joinNames(listPropertyNames(*m_presets))
+                      : "; set SLICER_HOME to Slicer's folder to use its presets";
     return text;
   }
 
 private:
   const Input& m_input;
-  std::optional<MrmlDocument> m_presets; ///< Slicer's own
+  std::optional<MrmlDocument> m_presets; ///< of an installed Slicer
 };
 
 } // namespace

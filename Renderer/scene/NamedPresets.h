@@ -1,6 +1,6 @@
 #pragma once
-// Looks by name: presets compiled into the program, files, nodes of a Slicer scene, and the presets
-// of an installed 3D Slicer.
+// Look-up of transfer functions, lights, materials and organ presets by name: built-in presets,
+// files, nodes of a Slicer scene, and the presets of an installed 3D Slicer.
 
 #include "files/appearance/MaterialReader.h"
 #include "files/appearance/PresetReader.h"
@@ -14,60 +14,59 @@
 
 namespace fenestra {
 
-/// True if `look` (lights or a transfer function) is JSON itself, not a name.
+/// True if the option value is inline JSON (lights or a transfer function) instead of a name.
 inline bool isInlineJson(std::string_view value) {
   return value.starts_with('{');
 }
 
-/// Names of the program's own presets. `kind`: a folder of Resources, e.g. "transfer".
+/// Names of the built-in presets. `kind`: a folder of Resources, such as "transfer".
 std::vector<std::string> listBuiltinPresets(const std::string& kind);
 
-/// True if `name` is no own preset, and has a folder or an ending, or is an existing file.
+/// True if `name` is no built-in preset and is an existing file, or contains a slash or a dot.
 bool isFileName(const std::string& kind, const std::string& name);
 
 struct NamedTransfer {
   TransferFile transfer;
-  std::string source;                  ///< its name, or the flag for JSON
-  std::vector<std::string> files = {}; ///< files read; empty: JSON or own preset
+  std::string source;                  ///< the name, or the option if it was inline JSON
+  std::vector<std::string> files = {}; ///< files read; empty for inline JSON and built-in presets
 };
-/// Transfer function from the JSON itself, else the program's preset of that name, a file, a volume
-/// property of a scene (by name or id), or one of Slicer's presets. Throws Error (input)
-/// that lists the known names.
+/// Finds a transfer function: inline JSON, a built-in preset, a file, a volume property of the
+/// scene (by name or id), or one of Slicer's presets, in this order. Throws Error (input), which
+/// lists the known names.
 NamedTransfer findTransfer(const std::string& name, const Input& input);
 
-/// True if findTransfer would open a file of that name.
+/// True if findTransfer would open a file with this name.
 bool isTransferFile(const std::string& name, const Input& input);
 
 struct NamedLights {
   std::vector<Light> lights;
-  std::string source;                  ///< its name, or the flag for JSON
-  std::vector<std::string> files = {}; ///< files read; empty: JSON or own preset
+  std::string source;                  ///< the name, or the option if it was inline JSON
+  std::vector<std::string> files = {}; ///< files read; empty for inline JSON and built-in presets
 };
-/// Lights from the JSON itself, else the program's preset of that name, or a file. Throws Error
-/// (input).
+/// Finds lights: inline JSON, a built-in preset, or a file, in this order. Throws Error (input).
 NamedLights findLights(const std::string& name);
 
-/// True if findLights would open a file: of that name, or named in the JSON.
+/// True if findLights would open a file: with this name, or one that the inline JSON names.
 bool isLightsFile(const std::string& name);
 
 struct NamedMaterials {
   MaterialTable table;
-  std::string source;                  ///< its name
-  std::vector<std::string> files = {}; ///< files read; empty: the library alone
+  std::string source;                  ///< the name
+  std::vector<std::string> files = {}; ///< files read; empty: only the library
 
-  /// True if focus and context get colours of their own (TintContrast.h).
+  /// True if the colors of focus and context are adjusted for contrast (TintContrast.h).
   bool hasColorAdjustment() const {
     return table.hasContrast || table.context.saturation || table.context.lightness;
   }
 };
-/// Materials of the library ("auto": with contrast and skin), or of a file over it. Throws Error
-/// (input).
+/// Materials of the library ("auto": with contrast adjustment and skin detection), or of a file
+/// whose rules precede the library's. Throws Error (input).
 NamedMaterials findMaterials(const std::string& name);
 
-/// True if findMaterials would open a file of that name.
+/// True if findMaterials would open a file with this name.
 bool isMaterialsFile(const std::string& name);
 
-/// Organ preset of the program, or from a file. Throws Error (input).
+/// Organ preset: built-in or from a file. Throws Error (input).
 OrganPreset findOrganPreset(const std::string& name);
 
 } // namespace fenestra

@@ -69,12 +69,12 @@ const OrganPreset& findMatchingPreset(const std::vector<OrganPreset>& presets,
     std::erase_if(matches,
                   [&](const OrganPreset* preset) { return !isSuitable(preset->modality); });
   if (matches.empty())
-    throw inputError(source, "--preset auto: no preset knows a segment of it (" +
+    throw inputError(source, "--preset auto: no preset matches a segment (" +
                                  joinSegmentNames(segments) +
-                                 "); name a preset and give --focus A,B,...");
+                                 "); choose a preset, and add --focus A,B,...");
   if (matches.size() > 1)
-    throw inputError(source, "--preset auto: several presets fit, " +
-                                 listMatches(matches, segments) + "; name one");
+    throw inputError(source, "--preset auto: several presets match, " +
+                                 listMatches(matches, segments) + "; choose one");
   return *matches.front();
 }
 

@@ -1,5 +1,7 @@
 #pragma once
-// Segments that an organ preset means, and the preset that fits segments.
+// Matching of organ presets and segments. A preset only supplies default options: its segments are
+// found by name, without reading labels, and all later stages see options that a user could have
+// given. Explicit options override a preset, and an explicit preset overrides the scene's options.
 
 #include "files/appearance/PresetReader.h"
 #include "files/segments/SegmentationReader.h"
@@ -10,17 +12,17 @@
 
 namespace fenestra {
 
-/// Segments that the preset's patterns or codes name, in the order of `segments`.
+/// Segments that match the preset's name patterns or codes, in the order of `segments`.
 std::vector<SegmentInfo> findFocusSegments(const SegmentPatterns& patterns,
                                            const std::vector<SegmentInfo>& segments);
 
-/// Names for a message, at most 12: "liver, left lung, …".
+/// Joins at most 12 names for a message: "liver, left lung, …".
 std::string joinSegmentNames(const std::vector<SegmentInfo>& segments);
 
-/// Preset of `presets` that finds a focus among the segments, unless another one that does comes
-/// before it (OrganPreset::before). Several of different modalities: only presets with
-/// suits(modality) count; `suits` is called in this case only. Throws Error (input), naming
-/// `source` as the segmentation, if none or several remain.
+/// Finds the preset of `presets` whose focus is among the segments. A matching preset excludes the
+/// presets that it lists in OrganPreset::before. If the remaining ones differ in modality, only
+/// those with isSuitable(modality) count; it is not called otherwise. Throws Error (input), with
+/// `source` as the segmentation's name, if none or several remain.
 const OrganPreset& findMatchingPreset(const std::vector<OrganPreset>& presets,
                                       const std::vector<SegmentInfo>& segments,
                                       const std::string& source,

@@ -34,7 +34,7 @@ PreparedScene PreparedScene::withRequest(const RenderRequest& request) const {
 void PreparedScene::prepare() {
   const RenderRequest& r = m_request;
   std::apply([](auto&... stage) { (stage.markUnused(), ...); }, stages(*this));
-  const auto lights = m_namedLights.get(r.lights, r.environment, r.environmentMap); // errors early
+  const auto lights = m_namedLights.get(r.lights, r.environment, r.environmentMap); // fails early
   if (r.transfer)
     m_namedTransfer.get(*r.transfer, m_input);
   const auto volume = m_volume.get(m_input, r.volume);
@@ -140,9 +140,9 @@ std::string PreparedScene::choices() const {
   const char* const from = r.transferModality ? " (preset)" : "";
   std::vector<std::string> parts = {"look: " + transferName() + from};
   if (r.environment || r.environmentMap)
-    parts.push_back("light: all around");
+    parts.push_back("lights: environment");
   else
-    parts.push_back("light: " + (r.lights.starts_with('{') ? "its own" : r.lights));
+    parts.push_back("lights: " + (r.lights.starts_with('{') ? "inline JSON" : r.lights));
   std::vector<std::string> labels;
   if (m_segments.result() && !m_segments->segmentation.namesSource().empty())
     labels.push_back("names from " + m_segments->segmentation.namesSource());
@@ -153,12 +153,12 @@ std::string PreparedScene::choices() const {
   if (tint()) {
     const std::size_t colors = tint()->albedo.size() - 1;
     parts.push_back(concat("materials: ", m_materials->source, ", ", colors,
-                           colors == 1 ? " colour" : " colours",
-                           m_plan->hasDetectedSkin() ? ", skin found" : ""));
+                           colors == 1 ? " color" : " colors",
+                           m_plan->hasDetectedSkin() ? ", skin detected" : ""));
   }
   const double softness = std::visit([](const auto& kind) { return kind.edge.softness; }, clip());
   if (softness > 0.0)
-    parts.push_back("cut: soft over " + toString(softness, 3) + " mm");
+    parts.push_back("clip: soft over " + toString(softness, 3) + " mm");
   if (const std::string text = tintContrast() ? summary(*tintContrast()) : summary(contrast());
       !text.empty())
     parts.push_back("contrast: " + text);
@@ -174,7 +174,7 @@ std::vector<std::string> PreparedScene::warnings() const {
   append(m_transfer->warnings, warnings);
   append(*m_focusWarnings, warnings);
   if (domain().indexCorners().empty())
-    warnings.emplace_back("the cropping box lies outside the volume: nothing is left of it");
+    warnings.emplace_back("the crop box lies outside the volume, so the image is empty");
   append(m_clip->warnings, warnings);
   return warnings;
 }

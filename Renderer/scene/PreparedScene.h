@@ -1,6 +1,7 @@
 #pragma once
-// Scene: everything that transport needs, made from a request in stages (scene/Stages.h). A scene
-// is a value that never changes; the scene of another request shares all stages with equal keys.
+// PreparedScene: everything that the integrators need, computed from a request in cached stages
+// (scene/Stages.h). It is immutable; the scene of a changed request shares all stages whose
+// arguments are equal.
 
 #include "integrator/render/Render.h"
 #include "scene/Stages.h"
@@ -9,13 +10,13 @@
 
 namespace fenestra {
 
-/// Wall-clock seconds by stage, for the stats; 0: shared.
+/// Wall-clock seconds by stage, for the stats; 0: the result was shared.
 struct StageSeconds {
   double load = 0.0, materials = 0.0, classify = 0.0, focus = 0.0, spline = 0.0, fill = 0.0,
          features = 0.0;
 };
 
-/// Stages made for a scene; false: shared with the scene before.
+/// Stages that were computed for a scene; false: shared with the previous scene.
 struct UpdatedStages {
   bool volume = false, focus = false, transfer = false, camera = false, lights = false,
        clip = false, minMaxGrid = false, majorants = false, tint = false, labelWeights = false;
@@ -25,13 +26,13 @@ struct UpdatedStages {
 
 class PreparedScene {
 public:
-  /// Makes all stages. Throws Error.
+  /// Computes all stages. Throws Error.
   explicit PreparedScene(const RenderRequest& request);
-  /// `input`: of request.input, opened before.
+  /// `input`: already opened from request.input.
   PreparedScene(const RenderRequest& request, const Input& input);
 
-  /// Scene(request), of which only stages that depend on a difference from this scene's request are
-  /// made. Files are assumed unchanged. Throws Error.
+  /// Returns the scene of another request. Recomputes only the stages that depend on a difference
+  /// from this scene's request. Files are assumed not to change. Throws Error.
   PreparedScene withRequest(const RenderRequest& request) const;
 
   SceneView view() const {
@@ -40,45 +41,45 @@ public:
             clip(),   m_settings->crop, style(),      medium.tint.get(), medium.mixture.get()};
   }
   const Volume& volume() const { return m_volume->volume; }
-  /// Volume's box, or its part inside a Slicer scene's cropping box.
+  /// Bounding box of the volume, or its part inside a Slicer scene's crop box.
   Domain domain() const { return {volume().grid, m_settings->crop}; }
-  /// Mask of the focus; null: none.
+  /// Mask of the focus; null without one.
   const Mask* focus() const { return m_focus->mask ? &*m_focus->mask : nullptr; }
   const TransferFunction& transfer() const { return m_transfer->function; }
-  /// Source of the transfer function (Look::name).
+  /// Source of the transfer function (TransferChoice::source).
   const std::string& transferName() const { return m_transfer->source; }
   const Camera& camera() const { return *m_camera; }
   const Clip& clip() const { return m_clip->clip; }
   /// Style of the context; null: unchanged.
   const ContextStyle* style() const { return m_style.result().get(); }
-  /// Colours of the segments; null: no materials.
+  /// Segment colors; null without materials.
   const Tint* tint() const { return currentTint().get(); }
-  /// Matter of the segments; null: they differ in colour alone, or there are no materials.
+  /// Media of the segments; null without materials, or if segments differ only in color.
   const Mixture* mixture() const { return m_mixture.result().get(); }
-  /// Saturation of the context, and the contrast that it leaves; none told with materials.
+  /// Saturation of the context and the resulting contrast, which is empty with materials.
   const FocusContrast& contrast() const { return *m_contrast; }
-  /// Contrast of a tinted focus; null: nothing sets it off.
+  /// Contrast of a tinted focus; null if colors are not adjusted.
   const TintContrast* tintContrast() const { return m_tintContrast.result().get(); }
   /// Clip with its measures, and the depth of the focus.
   const ClipResult& clipResult() const { return *m_clip; }
   const MinMaxGrid& minMaxGrid() const { return *m_minMaxGrid; }
-  /// Null unless the request asks for features.
+  /// Null unless the request includes features.
   const FeatureBuffers* features() const { return m_features.result().get(); }
   StageSeconds seconds() const;
   UpdatedStages updatedStages() const;
   std::vector<std::string> warnings() const;
-  /// Look, light and labels in a line: what was chosen where the request left it open, and where
-  /// from.
+  /// One-line summary of transfer function, lights and labels: what was chosen by default, and from
+  /// which source.
   std::string choices() const;
-  /// Files read for the stages of this scene, shared stages included.
+  /// Files read for the stages of this scene, including shared stages.
   std::vector<std::string> files() const;
-  /// Background of a Slicer scene, where rays meet nothing; nothing for other inputs.
+  /// Background of a Slicer scene; empty for other inputs.
   const std::optional<Background>& background() const { return m_settings->background; }
 
 private:
-  /// Makes all stages that m_request needs, in their order.
+  /// Computes all stages that m_request needs, in order.
   void prepare();
-  /// Name of the materials; `segments`: null without labels.
+  /// Name of the materials to use; `segments`: null without labels.
   std::string resolveMaterials(const Handle<SegmentsInput>& segments) const;
   void makeTint(const std::string& name);
   const Handle<Tint>& currentTint() const {
@@ -104,32 +105,32 @@ private:
   CachedStage<&findTransfer> m_namedTransfer; ///< unused without --transfer
   CachedStage<&Input::volume> m_volume;
   CachedStage<&Input::settings> m_settings;
-  CachedStage<&Input::segments> m_segments; ///< unused without a focus and materials
+  CachedStage<&Input::segments> m_segments; ///< unused without a focus or materials
   CachedStage<&makeFocus> m_focus;
   CachedStage<&Input::transfer> m_sceneTransfer; ///< unused with --transfer
   CachedStage<&chooseTransfer> m_transfer;
   CachedStage<&findMaterials> m_materials; ///< this and the next five: unused without materials
   CachedStage<&findNonEmpty> m_hasVoxels;
-  CachedStage<&findSkin> m_skin; ///< unused unless materials find skin
+  CachedStage<&findSkin> m_skin; ///< unused unless the materials detect skin
   CachedStage<&makeTintPlan> m_plan;
   CachedStage<&computeLabelWeights> m_labelWeights;
   CachedStage<&buildTint> m_tint;
   CachedStage<&findTintInterfaces>
-      m_interfaces; ///< this and the next two: unused unless materials set off a focus
+      m_interfaces; ///< this and the next two: unused unless colors are adjusted
   CachedStage<&adjustTintContrast> m_tintContrast;
   CachedStage<&adjustTint> m_contrastedTint;
-  CachedStage<&makeMixture> m_mixture; ///< unused where segments differ in colour alone
+  CachedStage<&makeMixture> m_mixture; ///< unused if segments differ only in color
   CachedStage<&checkFocus> m_focusWarnings;
-  CachedStage<&chooseView> m_view; ///< used by automatic views alone
+  CachedStage<&chooseView> m_view; ///< used only by automatic views
   CachedStage<&makeMinMaxGrid> m_minMaxGrid;
-  CachedStage<&findOccupiedBounds> m_occupiedBounds; ///< unused where the scene's camera applies
+  CachedStage<&findOccupiedBounds> m_occupiedBounds; ///< unused with the scene's camera
   CachedStage<&placeCamera> m_camera;
   CachedStage<&placeLights> m_lights;
   CachedStage<&buildClip> m_clip;
   CachedStage<&chooseContrast> m_contrast;
   CachedStage<&makeContextStyle> m_style; ///< unused if the context is unchanged
   CachedStage<&buildMajorants> m_majorants;
-  CachedStage<&marchFirstHits> m_features; ///< unused without a filter
+  CachedStage<&marchFirstHits> m_features; ///< unused without the denoiser
 };
 
 } // namespace fenestra

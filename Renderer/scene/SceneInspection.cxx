@@ -1,4 +1,4 @@
-// Inspection of Slicer scenes: the parts that a render uses, then every node by itself.
+// Inspection of Slicer scenes: first what a render uses, then each node.
 
 #include "files/slicer/ScenePlan.h"
 #include "scene/Defaults.h"
@@ -52,7 +52,7 @@ private:
   const MrmlDocument& document() const { return m_scene.document; }
   const Grid* volumeGrid() const { return m_grid ? &*m_grid : nullptr; }
 
-  /// Plans a render with a focus; if only the focus's segmentation is undecided, one without.
+  /// Plans a render with a focus, or without one if only its segmentation is ambiguous.
   void makePlan() {
     SceneSelection choice{m_request.volume, m_request.segmentation, true};
     const auto tryPlan = [&] { return planRender(document(), choice); };
@@ -68,7 +68,7 @@ private:
 
   // ---- what a render would use
 
-  /// Finds volume, look and camera by making a Scene; if the Scene fails, by reading each.
+  /// Makes a PreparedScene to get volume, transfer function and camera; if that fails, reads each.
   void inspectRender() {
     Json use = makeRenderReport();
     m_report["warnings"] = m_plan->warnings;
@@ -101,7 +101,7 @@ private:
     m_report["render"] = std::move(use);
   }
 
-  /// Adds volume and look. `look`: Scene::look of the render.
+  /// Adds volume and transfer function. `transferName`: PreparedScene::transferName of the render.
   void addVolume(const Volume& volume, const std::string& transferName, Json& use) {
     m_grid = volume.grid;
     use["volume"] = volumeJson(volume, m_plan->volume->id);
@@ -186,12 +186,12 @@ private:
     return json;
   }
 
-  /// True for nodes after the first 64 of a list that no render uses: reading files takes time.
+  /// True for unused nodes after the first 64 of a list: reading their files would take too long.
   bool isSkipped(const char* list, Json& node) const {
     constexpr std::size_t mostRead = 64;
     if (m_report[list].size() < mostRead || node["used"] == true)
       return false;
-    node["problem"] = "not looked into: there are " + std::to_string(mostRead) + " before it";
+    node["problem"] = "not read: only the first " + std::to_string(mostRead) + " are";
     return true;
   }
 
@@ -255,15 +255,15 @@ private:
     return json;
   }
 
-  /// Inspects a requested segmentation that is not in the scene, but may be a file.
+  /// Inspects the requested segmentation if it is a file and not a node of the scene.
   void inspectChosenFile() {
     if (!m_plan || m_plan->segmentation || !m_request.segmentation)
       return;
     const std::filesystem::path path = *m_request.segmentation;
     std::error_code failed;
-    if (!std::filesystem::exists(path, failed) && !failed) { // else its reader reports why
+    if (!std::filesystem::exists(path, failed) && !failed) { // else its reader reports it
       m_report["render"]["segmentationProblem"] =
-          "--segmentation " + path.string() + ": is neither in the scene nor a file";
+          "--segmentation " + path.string() + ": neither a node of the scene nor a file";
       return;
     }
     Json segmentation = inspectSegmentationFile(path, volumeGrid(), m_request.labels);
@@ -280,7 +280,7 @@ private:
   std::optional<Grid> m_grid; ///< of the volume
   std::set<const MrmlNode*> m_used;
   std::map<std::string, std::string> m_owners;
-  Json m_unused; ///< problems reported elsewhere: with their nodes, or in `refused`
+  Json m_unused; ///< problems that are reported elsewhere: with their nodes, or in `refused`
   Inspection m_report;
 };
 

@@ -12,7 +12,7 @@
 namespace fenestra {
 namespace {
 
-/// Part of a segment that a rule matches, weakest first.
+/// What a rule matches of a segment, weakest first.
 enum class Match { none, name, region, category, type, typeAndRegion, value };
 
 struct Found {
@@ -24,7 +24,7 @@ bool hasElement(const auto& list, const auto& value) {
   return std::ranges::find(list, value) != list.end();
 }
 
-/// Match of the segment's codes, which are empty where there are none.
+/// Match by the segment's codes, which are empty if it has none.
 Found findCode(const MaterialRule& rule, const SegmentInfo& segment) {
   const std::vector<std::string>& codes = rule.patterns.codes;
   const std::string both = segment.type + "~" + segment.region;
@@ -39,7 +39,7 @@ Found findCode(const MaterialRule& rule, const SegmentInfo& segment) {
   return {};
 }
 
-/// Strongest match of the rule; `words`: of the segment's name.
+/// Strongest match of the rule; `words`: of the segment name.
 Found findMatch(const MaterialRule& rule, const SegmentInfo& segment,
                 const std::vector<std::string>& words) {
   Found found = findCode(rule, segment);
@@ -75,7 +75,7 @@ std::optional<SegmentMaterial> matchRules(const SegmentInfo& segment, const Mate
       std::move(bestFound.reason)};
 }
 
-/// Grey that Slicer, and this program, give to segments without a colour.
+/// Gray that Slicer and Fenestra assign to segments without a color.
 bool isDefaultGray(const Rgb& color) {
   constexpr double byte = 1.0 / 255.0;
   return ((color - 0.5).abs() < byte).all();
@@ -87,8 +87,8 @@ SegmentMaterial makeColored(const Rgb& encoded, const char* reason) {
   return result;
 }
 
-/// Colours, sRGB, each as far from those before it in CIELAB as it can be, of a lightness from 45
-/// to 88 and a chroma from 24 to 68; no two are nearer than 30.
+/// sRGB colors. Each has the largest possible CIELAB distance from those before it, at lightness 45
+/// to 88 and chroma 24 to 68; the smallest distance between two is 30.
 constexpr std::array<std::uint32_t, 20> palette = {
     0x9396ec, 0xc5e057, 0xc4362b, 0x11ece6, 0x706c43, 0xe74da3, 0xf2a236,
     0xffb7ba, 0x0c9d52, 0x1b7f97, 0xbfddac, 0x8f5a79, 0xa9daff, 0x9648b7,
@@ -117,7 +117,7 @@ std::vector<SegmentMaterial> assignMaterials(const std::vector<SegmentInfo>& seg
     if (auto found = matchRules(segment, table))
       materials.push_back(std::move(*found));
     else if (!isDefaultGray(segment.color))
-      materials.push_back(makeColored(segment.color, "by its own colour"));
+      materials.push_back(makeColored(segment.color, "by its own color"));
     else {
       materials.push_back(makeColored(hexToRgb(palette[unknown++ % palette.size()]), "by palette"));
       materials.back().isFromPalette = true;

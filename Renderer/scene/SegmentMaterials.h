@@ -1,5 +1,6 @@
 #pragma once
-// Matter of each segment, by what the segmentation says of it.
+// Assignment of a material to each segment from its codes, name, label value or color. This is the
+// only place that applies rules: all lower layers see one SegmentMedium per segment.
 
 #include "files/appearance/MaterialReader.h"
 #include "files/segments/SegmentationReader.h"
@@ -11,28 +12,28 @@ namespace fenestra {
 
 struct SegmentMaterial {
   SegmentMedium medium = {};
-  std::string name = {}; ///< of the material; empty: none of the table's, but a colour
-  /// Reason: "by SCT^10200004", "by name 'liver'", "by value 5", "by its own colour", "by palette".
+  std::string name = {}; ///< of the material; empty: only a color, none of the table's materials
+  /// Reason: "by SCT^10200004", "by name 'liver'", "by value 5", "by its own color", "by palette".
   std::string reason = {};
-  bool isFromPalette = false; ///< nothing is known of the segment
+  bool isFromPalette = false; ///< the segment matches no rule and has no color of its own
 };
 
-/// Materials and rules that are compiled in (Resources/materials).
+/// Built-in materials and rules (Resources/materials), written in the user's file format.
 const MaterialTable& materialLibrary();
 
-/// Materials of the segments, in their order. A rule of the table's own file is taken before any
-/// beneath it, and among those the first of
-///   1. the segment's label value,
+/// Assigns materials to the segments, in their order. Rules of the user's file precede all others.
+/// Among equals, the first match wins of
+///   1. the label value of the segment,
 ///   2. its terminology: type and region, type, category, region,
-///   3. its name; of several rules that of the greatest priority, then the first.
-/// A rule whose exceptions the name matches is passed over. A segment without a rule is tinted in
-/// its own colour, if that is not Slicer's default grey; else in a colour of a palette, so that
-/// no two of the first 20 look alike.
+///   3. its name; of several rules, the one with the highest priority, then the first.
+/// A rule is skipped if the name matches its exceptions. A segment without a rule gets a tint of
+/// its own color, unless that is Slicer's default gray; else a color of a palette in which the
+/// first 20 are distinguishable.
 std::vector<SegmentMaterial> assignMaterials(const std::vector<SegmentInfo>& segments,
                                              const MaterialTable& table);
 
-/// True if the library knows one of the segments, or it has a colour of its own. `selectors`: ids,
-/// names or label values. Throws Error (input) for one that is not there.
+/// True if at least one segment has a rule in the library or a color of its own. `selectors`: ids,
+/// names or label values. Throws Error (input) for one that does not exist.
 bool isAnyKnown(const Segmentation& segmentation, const std::vector<std::string>& selectors);
 
 } // namespace fenestra

@@ -13,11 +13,11 @@
 namespace fenestra {
 namespace {
 
-constexpr std::size_t mostComponents = 256; ///< a component is a byte
+constexpr std::size_t mostComponents = 256; ///< a component index is one byte
 constexpr const char* skinMaterial = "skin";
 constexpr int skinPriority = 1;
 
-/// Material of each segment, with the changes; empty segments as they come.
+/// Material of each segment after the changes. If contrast is adjusted, palette colors are dropped.
 std::vector<SegmentMaterial> collectMaterials(const Segmentation& segmentation,
                                               const NamedMaterials& materials,
                                               const std::vector<std::string>& changes) {
@@ -35,8 +35,8 @@ std::vector<SegmentMaterial> collectMaterials(const Segmentation& segmentation,
   return all;
 }
 
-/// Places of the segments by name, then id: components are numbered so, and pictures do not depend
-/// on the order in a file.
+/// Indices of the segments sorted by name, then id. Components are numbered in this order, so that
+/// images do not depend on the order in a file.
 std::vector<std::size_t> sortByName(const std::vector<SegmentInfo>& segments) {
   std::vector<std::size_t> indices(segments.size());
   std::iota(indices.begin(), indices.end(), std::size_t{0});
@@ -45,13 +45,13 @@ std::vector<std::size_t> sortByName(const std::vector<SegmentInfo>& segments) {
   return indices;
 }
 
-/// Material of what no segment covers.
+/// Material outside all segments.
 Material unlabeledMaterial(const NamedMaterials& materials) {
   const MaterialTable& table = materials.table;
   return table.rest.empty() ? Material() : table.materials.at(table.rest);
 }
 
-/// True if a segment that has voxels is skin.
+/// True if a non-empty segment is skin.
 bool hasSkin(const std::vector<SegmentMaterial>& all, const std::vector<bool>& hasVoxels) {
   for (std::size_t i = 0; i < all.size(); ++i)
     if (hasVoxels[i] && all[i].name == skinMaterial)
@@ -59,7 +59,7 @@ bool hasSkin(const std::vector<SegmentMaterial>& all, const std::vector<bool>& h
   return false;
 }
 
-/// True if both are the same under any transfer function; priority aside.
+/// True if both media are equal under any transfer function; ignores priority.
 bool isSame(const SegmentMedium& a, const SegmentMedium& b) {
   const Material &m = a.material, &n = b.material;
   const bool looksAlike = m.color == n.color && (!m.color || m.colorIsAlbedo == n.colorIsAlbedo);
@@ -71,7 +71,7 @@ bool isSame(const SegmentMedium& a, const SegmentMedium& b) {
               std::tie(n.g, n.diffuse, n.specular, n.roughness, n.interfaceWeight));
 }
 
-/// Component of the matter, a new one if there is none. `segment`: its name.
+/// Index of the component with this medium; adds one if needed. `segment`: the segment's name.
 std::uint8_t findComponent(const SegmentMaterial& material, const std::string& segment,
                            bool isFocus, TintPlan& plan, const std::string& source) {
   const std::string& name = material.name.empty() ? segment : material.name;
@@ -83,20 +83,20 @@ std::uint8_t findComponent(const SegmentMaterial& material, const std::string& s
     }
   if (plan.components.size() == mostComponents)
     throw inputError(source, "its segments have more than ", mostComponents - 1,
-                     " materials; give several of them one material with --materials FILE");
+                     " materials; assign one material to several with --materials FILE");
   plan.components.push_back(material.medium);
   plan.names.push_back(segment);
   plan.isFocus.push_back(isFocus);
   return static_cast<std::uint8_t>(plan.components.size() - 1);
 }
 
-/// Segments of the focus, by place; none where materials do not set it off.
+/// Flags the segments of the focus; all false if the materials do not adjust its colors.
 std::vector<bool> markFocus(const Segmentation& segmentation, const NamedMaterials& materials,
                             const std::vector<std::string>& focus) {
   const ContextColors& context = materials.table.context;
   if (focus.empty() && (context.saturation || context.lightness))
     throw inputError(materials.source,
-                     "context: is what is not focus; add --focus, or leave it out");
+                     "context: needs a focus; add --focus, or remove this member");
   std::vector<bool> isFocus(segmentation.segments().size());
   if (materials.hasColorAdjustment())
     for (const std::string& selector : focus)
@@ -104,14 +104,14 @@ std::vector<bool> markFocus(const Segmentation& segmentation, const NamedMateria
   return isFocus;
 }
 
-/// Gives a smoothed part all of what it has half of: the surface of a focus, which lies there, is
-/// not shown in a mixture of its colour with the context's.
+/// Doubles the weights of a smoothed part, up to 1. The focus surface lies at weight 1/2, where the
+/// color would otherwise be mixed with the context's.
 void saturate(Mask& mask) {
   for (std::uint8_t& voxel : mask.voxels)
     voxel = static_cast<std::uint8_t>(std::min(2 * voxel, int{mask.maxValue}));
 }
 
-/// Parts without those of component 0 that leave to others what they cover.
+/// Removes parts of component 0 that have lower priority than all others, so cover nothing.
 std::vector<TintPart> removeRedundant(std::vector<TintPart> parts) {
   const auto isColored = [](const TintPart& part) { return part.component != 0; };
   int lowest = std::numeric_limits<int>::max();
@@ -124,8 +124,8 @@ std::vector<TintPart> removeRedundant(std::vector<TintPart> parts) {
   return parts;
 }
 
-/// Takes what a material says beside colour; the component is of the volume's own matter, with the
-/// material's albedo for that one's mean cosine.
+/// Applies all properties of a material except its color. The component starts as a copy of the
+/// volume's medium; the albedo is recomputed for the material's mean cosine.
 void applyMaterial(const Material& material, Component& component) {
   TransferFunction& transfer = component.transfer;
   if (!material.colorIsAlbedo)
@@ -175,7 +175,7 @@ TintPlan makeTintPlan(const Handle<SegmentsInput>& input,
                                                    isFocus[i], plan, segmentation.source());
       segments[{component, all[i].medium.priority}].push_back(i);
     }
-  const bool canGrow = isTintOnly(plan); // matter stays where its segment is
+  const bool canGrow = isTintOnly(plan); // media stay inside their segments
   for (auto& [of, places] : segments)
     plan.parts.push_back(
         {std::move(places), of.second, of.first, canGrow && plan.isFocus[of.first]});
@@ -188,7 +188,7 @@ TintPlan makeTintPlan(const Handle<SegmentsInput>& input,
   plan.parts = removeRedundant(std::move(plan.parts));
   if (plan.parts.empty())
     throw inputError(segmentation.source(),
-                     "no segment has a voxel, so there is nothing to colour; drop --materials");
+                     "no segment has a voxel, so nothing can be colored; remove --materials");
   return plan;
 }
 
@@ -196,7 +196,7 @@ LabelWeights computeLabelWeights(const Handle<SegmentsInput>& input,
                                  const std::vector<TintPart>& parts, const Handle<Mask>& skin,
                                  const std::optional<double>& smoothing, const Grid& volume) {
   const Segmentation& segmentation = input->segmentation;
-  std::optional<Grid> labels; // of the parts before
+  std::optional<Grid> labels; // of the preceding parts
   const auto partAt = [&](std::size_t number) -> LabelWeights::Part {
     const TintPart& part = parts[number];
     if (part.segments.empty())

@@ -1,8 +1,9 @@
 #pragma once
-// Matter of a scene's segments, in stages (Stage.h): what is said of the segments decides which
-// component each belongs to, their labels how much of each voxel it gets, and the transfer function
-// which albedo makes its colour. Another colour needs no labels anew. Where segments differ in more
-// than colour, the components become a mixture.
+// Media of a scene's segments, in cached stages (CachedStage.h). Codes and names assign each
+// segment to a component, labels give the components' weights per voxel, and the transfer function
+// converts colors to albedo. So a changed color does not require the labels again. Materials are
+// tints by default: a segmentation changes colors, but adds, moves or hides no surface. If segments
+// differ in more than color, the components become a mixture.
 
 #include "model/medium/Mixture.h"
 #include "model/medium/Tint.h"
@@ -12,37 +13,37 @@
 
 namespace fenestra {
 
-/// Segments of one component and one priority, or the skin that is no segment.
+/// Segments of one component and one priority, or the detected skin, which is no segment.
 struct TintPart {
-  std::vector<std::size_t> segments; ///< places in Segmentation::segments(); none: the skin
+  std::vector<std::size_t> segments; ///< indices in Segmentation::segments(); empty: skin
   int priority;
   std::uint8_t component;
-  bool isFocus = false; ///< the focus's, to be set off by colour
+  bool isFocus = false; ///< belongs to a focus whose colors are adjusted
 
   bool operator==(const TintPart&) const = default;
 };
 
 struct TintPlan {
-  std::vector<TintPart> parts; ///< at least one; skin that is no segment is the last
-  /// Matter of the components, at least one; their priority is the parts'. Component 0 is what no
-  /// segment covers, and every segment of the same matter.
+  std::vector<TintPart> parts; ///< at least one; detected skin is the last
+  /// At least one medium; its priority is that of the parts. Component 0 is the medium outside all
+  /// segments, and of every segment with an equal medium.
   std::vector<SegmentMedium> components;
-  std::vector<std::string> names; ///< of the components: a segment's, else a material's
-  std::vector<bool> isFocus;      ///< by component; none is where nothing sets off the focus
+  std::vector<std::string> names; ///< per component: of its segment, or of a shared material
+  std::vector<bool> isFocus;      ///< per component; all false if colors are not adjusted
 
-  /// True if there is skin that is no segment.
+  /// True if skin was detected that is no segment.
   bool hasDetectedSkin() const { return parts.back().segments.empty(); }
 };
 
-/// By place in Segmentation::segments(): true if the segment has a voxel. Reads all labels.
+/// For each of Segmentation::segments(): true if it has a voxel. Reads all labels.
 std::vector<bool> findNonEmpty(const Handle<SegmentsInput>& segments);
 
-/// Components of the segments that have voxels (`there`: findNonEmpty): one for each matter, and,
-/// where materials set off the focus, those of the focus apart. `changes`: of --material, over the
-/// materials that the table gives; with contrast a segment of which nothing is known keeps the
-/// volume's own colours. `focus`: ids, names or label values. `skin`: skinOf(); null or without
-/// voxels: none; it is left out, too, where a segment is skin. Throws Error (input) for a change to
-/// an unknown segment, for colours of a context without a focus, without any voxel, and for more
+/// Makes one component per distinct medium of the non-empty segments; if colors are adjusted, the
+/// focus gets components of its own. `hasVoxels`: from findNonEmpty(). `changes`: values of
+/// --material, which override the table. With contrast adjustment, a segment with a palette color
+/// keeps the volume's own colors. `focus`: ids, names or label values. `skin`: from findSkin();
+/// null or empty: none; ignored if a segment is skin. Throws Error (input) for a change to an
+/// unknown segment, for context colors without a focus, if no segment has a voxel, and for more
 /// than 256 components.
 TintPlan makeTintPlan(const Handle<SegmentsInput>& segments,
                       const Handle<std::vector<bool>>& hasVoxels,
@@ -50,20 +51,20 @@ TintPlan makeTintPlan(const Handle<SegmentsInput>& segments,
                       const std::vector<std::string>& changes,
                       const std::vector<std::string>& focus, const Handle<Mask>& skin);
 
-/// Shares of the components. `smoothing`: MaskShaping's. Skin that is no
-/// segment is put on the labels' voxels (resampleMask()).
+/// Label weights of the components. `smoothing`: MaskShaping::smoothing. Detected skin is resampled
+/// on the label grid (resampleMask()).
 LabelWeights computeLabelWeights(const Handle<SegmentsInput>& segments,
                                  const std::vector<TintPart>& parts, const Handle<Mask>& skin,
                                  const std::optional<double>& smoothing, const Grid& volume);
 
-/// `g`: mean cosine of whatever scatters, by which albedo makes a colour.
+/// `g`: mean cosine of the phase function, which relates albedo and reflected color.
 Tint buildTint(const Handle<TintPlan>& plan, const Handle<LabelWeights>& weights, double g);
 
-/// True if components differ in colour alone.
+/// True if the components differ only in color.
 bool isTintOnly(const TintPlan& plan);
 
-/// Components with the albedo of `tint`, which was made for the mean cosine of `transfer`, the
-/// volume's own.
+/// Builds the components with the albedo of `tint`, which must have been computed for the mean
+/// cosine of `transfer`, the volume's transfer function.
 Mixture buildMixture(const TintPlan& plan, const Tint& tint, const TransferFunction& transfer);
 
 } // namespace fenestra

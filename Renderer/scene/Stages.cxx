@@ -19,8 +19,8 @@ TransferFunction fitToVolume(const TransferFile& transfer, const Volume& volume)
 
 constexpr std::array modalities = {"CT", "MR", "ultrasound"}; ///< as in Modality
 
-/// Throws Error (input) above a limit of the extinction: null collisions take time in proportion to
-/// the greatest extinction, and a file could make paths endless.
+/// Throws Error (input) if the extinction is too large. Time is proportional to the largest
+/// extinction because of null collisions, so a file could make paths practically endless.
 void checkExtinction(const TransferFunction& transfer, const Volume& volume,
                      const std::string& name) {
   constexpr double maxDepth = 1e7; // optical depth across the volume
@@ -31,8 +31,8 @@ void checkExtinction(const TransferFunction& transfer, const Volume& volume,
   if (greatest <= allowed)
     return;
   TextWriter line;
-  line << "extinction: reaches " << greatest << " per mm, and " << allowed
-       << " is opaque in any picture of this volume; lower it or --density";
+  line << "extinction: reaches " << greatest << " per mm, but " << allowed
+       << " is already opaque in any image of this volume; reduce it or --density";
   throw inputError(name, line.str());
 }
 
@@ -59,7 +59,7 @@ bool hasAnyFrame(LightFrame frame, const std::vector<Light>& lights) {
   return std::ranges::any_of(lights, [&](const Light& light) { return hasFrame(frame, light); });
 }
 
-/// Mean of the voxels' centres, weighted by the indicator, world mm; the focus is not empty.
+/// Mean of the voxel centers, weighted by the indicator, world mm. The focus must not be empty.
 Vec3 computeCentroid(const Mask& focus) {
   const Size3& size = focus.grid.size;
   Vec3 moment = Vec3::Zero();
@@ -75,7 +75,7 @@ Vec3 computeCentroid(const Mask& focus) {
   return focus.grid.indexToWorld * Vec3(moment / weight);
 }
 
-/// True for light from all around, which --environment replaces.
+/// True for lights that --environment replaces.
 bool isEnvironment(const Light& light) {
   return std::holds_alternative<EnvironmentLight>(light) || std::holds_alternative<SkyLight>(light);
 }
@@ -88,23 +88,22 @@ Domain makeDomain(const VolumeHandle& volume, const SettingsHandle& settings) {
   return {volume->volume.grid, settings->crop};
 }
 
-/// Transfer function of chooseTransfer, neither moved nor multiplied.
+/// The choice of chooseTransfer, before shift and scale.
 TransferChoice selectTransfer(const Volume& volume, const Handle<NamedTransfer>& named,
                               const Handle<SceneTransfer>& scene,
                               const std::optional<Modality>& madeFor) {
   std::vector<std::string> warnings;
   if (named && !madeFor && named->source.starts_with("ct-") && !canSuit(Modality::ct, volume))
     warnings.push_back("the transfer function " + named->source +
-                       " is made for CT, which this volume does not seem to be; --shift moves it, "
-                       "or name another with --transfer");
+                       " is for CT, but this volume does not seem to be CT; move it with --shift, "
+                       "or choose another with --transfer");
   if (named && (!madeFor || canSuit(*madeFor, volume)))
     return {fitToVolume(named->transfer, volume), named->source, warnings};
   if (named)
-    warnings.push_back(
-        concat("the preset's transfer function is made for ",
-               modalities[static_cast<std::size_t>(*madeFor)],
-               ", which this volume does not seem to be; the volume gets a look of its own, "
-               "or name one with --transfer"));
+    warnings.push_back(concat(
+        "the preset's transfer function is for ", modalities[static_cast<std::size_t>(*madeFor)],
+        ", which does not seem to be this volume's modality; using a default, unless "
+        "--transfer names another"));
   else if (scene->transfer)
     return {*scene->transfer, scene->name};
   const std::optional<std::string> preset = chooseTransferPreset(volume);
@@ -113,7 +112,7 @@ TransferChoice selectTransfer(const Volume& volume, const Handle<NamedTransfer>&
   return {findTransfer(*preset, Input({})).transfer.function, *preset, warnings};
 }
 
-/// Plane of a request, else the focus's own.
+/// The requested plane, else a plane fitted to the focus.
 ClipPlane placePlane(const ClipRequest& request, const Camera& camera, const FocusHandle& focus,
                      const std::optional<FocusDepth>& depth) {
   if (!request.plane)
@@ -206,8 +205,8 @@ TransferChoice chooseTransfer(const VolumeHandle& read, const Handle<NamedTransf
   checkExtinction(transfer.function, volume, named ? transfer.source : volume.name);
   if (transfer.function.shading && volume.minimum == volume.maximum)
     throw inputError(volume.name,
-                     "every voxel has the same value, so there is no gradient for the transfer "
-                     "function's shading; use one with shading off (\"shading\": \"volume\")");
+                     "all voxels have the same value, so gradients for surface shading are zero; "
+                     "use a transfer function with shading off (\"shading\": \"volume\")");
   return transfer;
 }
 
@@ -219,8 +218,9 @@ std::vector<std::string> checkFocus(const VolumeHandle& volume, const FocusHandl
   const double fraction = transparentFraction(*focus->mask, volume->volume, transfer->function);
   if (fraction <= most)
     return {};
-  return {concat("the look ", transfer->source, " leaves ", std::lround(100.0 * fraction),
-                 " % of the focus transparent; name one made for it with --transfer or --preset")};
+  return {concat("the transfer function ", transfer->source, " makes ",
+                 std::lround(100.0 * fraction),
+                 " % of the focus transparent; choose another with --transfer or --preset")};
 }
 
 ViewDirection chooseView(const VolumeHandle& volume, const SettingsHandle& settings,
@@ -263,8 +263,8 @@ LightSet placeLights(const FramedLights& framed, const VolumeHandle& volume) {
   const auto first = std::ranges::find_if(
       lights, [](const Light& light) { return hasFrame(LightFrame::focus, light); });
   throw inputError(framed.lights->source, "lights[", first - lights.begin(),
-                   "].frame: is \"focus\", and there is no focus; name one with --focus, or use "
-                   "\"world\" or \"camera\"");
+                   "].frame: is \"focus\", but there is no focus; add --focus, or use \"world\" or "
+                   "\"camera\"");
 }
 
 ClipResult buildClip(const ClipRequest& request, bool measure, double steadyDegrees,

@@ -16,7 +16,7 @@ bool isInGamut(const Rgb& color) {
   return color.minCoeff() >= 0.0 && color.maxCoeff() <= maxReflectance;
 }
 
-/// Colour, linear, with as much of its chroma as the display has.
+/// Linear color; chroma is reduced as far as the display gamut requires.
 Rgb reduceToGamut(const Lab& lab) {
   constexpr int bisections = 20;
   const auto withChroma = [&](double fraction) {
@@ -32,14 +32,14 @@ Rgb reduceToGamut(const Lab& lab) {
   return withChroma(least).max(0.0).min(maxReflectance);
 }
 
-/// Loss of L* of a context at the edge: where it faces the light, and in a groove
-/// that the focus shades. With what pictured() says, chosen by eye for means from 3 to 8 pixels to
-/// both sides of the edges of seven foci (abdomen, knee, torso; LookBenchmark) under cinema and the
-/// film curve.
+/// Decrease of L* of the context at the edge: where it faces the light, and in a groove that the
+/// focus shades. These values and those in toImageColor() were fitted by hand to mean colors 3 to 8
+/// pixels from the edges of seven foci (abdomen, knee, torso; AppearanceBenchmark) with the cinema
+/// lights and the film tone curve.
 constexpr std::array contextShading = {-3.0, 4.0};
 
-/// Colour, linear, that pictures show of matter at the edge: shadow and what wet surfaces reflect
-/// leave less than half of the differences in lightness.
+/// Linear color of a medium at the edge, as it appears in an image. Shadows and specular
+/// reflections leave less than half of the lightness differences.
 Rgb toImageColor(const Rgb& seen, double shade) {
   constexpr double darkest = 29.0, lightness = 0.43, saturation = 0.62;
   const Lab lab = toLab(seen);
@@ -47,25 +47,25 @@ Rgb toImageColor(const Rgb& seen, double shade) {
   return toLinear({L - shade, chroma * lab.a, chroma * lab.b}).max(0.0).min(1.0);
 }
 
-/// Albedo of a component over the scalar.
+/// Albedo of a component as a function of the scalar.
 const ColorFunction& albedoOf(const std::optional<ColorFunction>& own,
                               const TransferFunction& transfer) {
   return own ? *own : transfer.albedo;
 }
 
-/// Context's saturation before any knob is turned, how far knobs may be turned, and the difference
-/// of colours from their own that all of what is wanted would be worth.
+/// Saturation of the context at the start, limits of the adjustment, and the color difference
+/// (CIELAB) whose cost equals a score of 1.
 struct Limits {
   double saturationStart;
   double saturation, lightness, shift, chroma, accent;
   double changeScale;
 };
-/// Tissue stays tissue; and, of a focus that would not be told from its like (bowel in bowel, a
-/// vertebra on another), paint.
+/// `gentle` stays within tissue colors. `strong` leaves them, for a focus in similar tissue (bowel
+/// in bowel, one vertebra on another).
 constexpr Limits gentle{0.6, 0.5, 0.35, 12.0, 1.4, 0.35, 300.0},
     strong{1.0, 0.3, 0.5, 18.0, 1.7, 0.6, 600.0};
 
-/// Turns knobs until a border has enough of what is wanted.
+/// Increases the adjustment until the interface has enough contrast.
 class AdjustmentSearch {
 public:
   AdjustmentSearch(const std::vector<InterfaceColors>& colors, const ColorAdjustment& start,
@@ -81,7 +81,7 @@ public:
   const ColorAdjustment& adjustment() const { return m_adjustment; }
   double score() const { return m_score; }
 
-  /// Turns a knob from where it is, in steps, to at most `farthest`.
+  /// Increases a member in steps, from its current value to at most `farthest`.
   void increase(double ColorAdjustment::*knob, double farthest) {
     const double first = m_adjustment.*knob;
     for (int i = 1; i <= steps && m_score < sufficientScore; ++i)
@@ -89,8 +89,8 @@ public:
                [this](double fraction) { return fraction > m_score; });
   }
 
-  /// Turns all knobs back toward the start, from the last to the first, as far as that costs
-  /// nothing that is wanted: again as long as one that is back lets another follow.
+  /// Moves all members back toward the start, last to first, without losing a needed score. Repeats
+  /// this, since one relaxed member may allow another to relax further.
   void relax() {
     ColorAdjustment before;
     do {
@@ -102,8 +102,8 @@ public:
     } while (!(m_adjustment == before));
   }
 
-  /// Turns the focus toward the accent that is worth most, if one is worth the change, of those
-  /// about as light as itself: a pale organ in dark red would be taken for muscle.
+  /// Blends the focus with the accent color of the best worth, if one improves it. Only accents of
+  /// similar lightness are tried: a pale organ in dark red would look like muscle.
   void addAccent(double farthest) {
     constexpr double mostApart = 40.0;
     const double own = mean([](const InterfaceColors& part) { return toLab(part.focus).L; });
@@ -121,7 +121,7 @@ public:
     m_score = best.m_score;
   }
 
-  /// True if its share is worth its change.
+  /// True if its score, less the cost of its color change, is higher.
   bool isBetterThan(const AdjustmentSearch& other) const { return worth() > other.worth(); }
 
 private:
@@ -146,7 +146,7 @@ private:
     return true;
   }
 
-  /// Mean over the border of a function of its parts.
+  /// Mean of a function over the interface, weighted by area.
   double mean(const auto& function) const {
     double sum = 0.0, area = 0.0;
     for (const InterfaceColors& part : *m_colors) {
@@ -161,7 +161,7 @@ private:
     });
   }
   double worth() const { return std::min(m_score, sufficientScore) - change() / m_changeScale; }
-  /// Difference of the colours from their own, both sides together.
+  /// Mean color difference from the original colors, summed over both sides.
   double change() const {
     return mean([&](const InterfaceColors& part) {
       return deltaE76(toLab(part.focus), toLab(adjustFocus(part.focus, m_adjustment))) +
@@ -175,7 +175,7 @@ private:
   double m_score;
 };
 
-/// Parts of the border with enough of it to matter.
+/// Parts with a significant fraction of the interface.
 std::vector<ComponentInterface> selectMajor(std::vector<ComponentInterface> interfaces) {
   constexpr double enough = 0.05;
   double area = 0.0;
@@ -303,18 +303,18 @@ std::string summary(const TintContrast& chosen) {
     return "";
   const Contrast& contrast = *chosen.contrast;
   const ColorAdjustment &adjustment = chosen.adjustment, neutral;
-  std::vector<std::string> parts = {"colour-blind " + toString(contrast.colorBlind(), 3)};
+  std::vector<std::string> parts = {"color-blind " + toString(contrast.colorBlind(), 3)};
   const auto add = [&](const std::string& what, double ColorAdjustment::*member) {
     if (adjustment.*member != neutral.*member)
       parts.push_back(what + toString(adjustment.*member, 3));
   };
-  add("surroundings' colour x ", &ColorAdjustment::contextSaturation);
-  add("lightness evened by ", &ColorAdjustment::contextLightness);
-  add("focus's lightness + ", &ColorAdjustment::focusLightness);
-  add("colour x ", &ColorAdjustment::focusChroma);
-  add(concat("toward ", accentColors[adjustment.accent].name, " by "),
+  add("context chroma x ", &ColorAdjustment::contextSaturation);
+  add("context lightness blended by ", &ColorAdjustment::contextLightness);
+  add("focus lightness + ", &ColorAdjustment::focusLightness);
+  add("focus chroma x ", &ColorAdjustment::focusChroma);
+  add(concat("focus blended with ", accentColors[adjustment.accent].name, " by "),
       &ColorAdjustment::focusAccent);
-  return concat(toString(contrast.deltaE[0], 3), " of ", sanitize(chosen.segment), " to ",
+  return concat(toString(contrast.deltaE[0], 3), " between ", sanitize(chosen.segment), " and ",
                 sanitize(chosen.neighbor), " (", join(parts, ", "), ")");
 }
 

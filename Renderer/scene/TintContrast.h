@@ -1,6 +1,7 @@
 #pragma once
-// Contrast of a tinted focus with its neighbours, made sure of by arithmetic on colours before
-// anything is rendered: the same for every camera, clip and number of samples.
+// Contrast adjustment of a tinted focus. The colors on both sides of the focus interface are
+// changed step by step until they are distinguishable. The computation models the typical effect of
+// shading on colors and ignores the view, so all frames of a turntable get the same colors.
 
 #include "scene/Contrast.h"
 #include "scene/SegmentTint.h"
@@ -11,20 +12,20 @@
 
 namespace fenestra {
 
-/// Change of the colours that an eye sees of thick matter, in CIELAB.
+/// Change of the reflected colors of thick media, in CIELAB.
 struct ColorAdjustment {
   double contextSaturation = 1.0; ///< factor of the context's chroma
-  double contextLightness = 0.0;  ///< share of the way to the lightness `contextGoal`
+  double contextLightness = 0.0;  ///< blend weight toward the lightness `contextGoal`
   double contextGoal = 72.0;
   double focusLightness = 0.0; ///< added to L*
   double focusChroma = 1.0;    ///< factor
-  double focusAccent = 0.0;    ///< share of the way to the colour `accent`
-  std::size_t accent = 0;      ///< of `accents`
+  double focusAccent = 0.0;    ///< blend weight toward the color `accent`
+  std::size_t accent = 0;      ///< index in `accentColors`
 
   bool operator==(const ColorAdjustment&) const = default;
 };
 
-/// Colours far from each other in CIELAB, for the colour-blind, too.
+/// Colors that differ strongly in CIELAB, also for color-blind viewers.
 struct AccentColor {
   const char* name;
   std::uint32_t color; ///< sRGB, 0xrrggbb
@@ -33,64 +34,64 @@ inline constexpr std::array accentColors = {AccentColor{"yellow", 0xebbe3c},
                                             AccentColor{"ice", 0xbfe6f2},
                                             AccentColor{"dark red", 0x7c1e22}};
 
-/// Colour changed by the knobs; linear, no whiter than matter can be, and, where the display has no
-/// such colour, of less chroma.
+/// Applies the adjustment to a linear reflected color. The result is at most as white as a medium
+/// can be; its chroma is reduced where it would leave the display gamut.
 Rgb adjustContext(const Rgb& seen, const ColorAdjustment& adjustment);
 Rgb adjustFocus(const Rgb& seen, const ColorAdjustment& adjustment);
 
-/// Colours to both sides of a part of the focus's border, as an eye sees them, linear.
+/// Reflected colors on both sides of a part of the focus interface, linear.
 struct InterfaceColors {
   Rgb focus, context;
-  double area; ///< of the border, any unit
+  double area; ///< of the interface, any unit
 };
 
-/// Share of what is wanted across an edge in a picture, 0 to 1, the mean of four: of a difference
-/// (CIELAB) of 20 for normal sight, of 12 for each of both frequent kinds of colour blindness, and
-/// of 8 in lightness, which survives a grey print; each and a tenth, since
-/// measureAdjustedContrast() is not exact.
+/// Contrast relative to the target, 0 to 1. It is the mean of four ratios, each at most 1. The
+/// targets are a CIELAB difference of 20 for normal vision, 12 for each of the two common kinds of
+/// color blindness, and 8 in lightness, which survives grayscale printing. Each target is raised by
+/// a tenth, since measureAdjustedContrast() is approximate.
 double contrastScore(const Contrast& contrast);
-/// Share beyond which no knob is turned: nobody sees what is missing.
+/// The search stops at this score: the remaining difference is invisible.
 inline constexpr double sufficientScore = 0.995;
-/// Share below which knobs are turned beyond what tissue looks like: a difference of 19 of 22.
+/// Below this score (a difference of 19 of 22), colors may leave the range of natural tissue.
 inline constexpr double nearlySufficient = 0.966;
 
-/// Contrast (CIELAB) under the knobs across the focus's edge in a picture: in the light, or, if
-/// that is less, where the focus stands in a groove that it shades. `saturation`: of the context's
-/// albedo, after the knobs (ContextStyle).
+/// CIELAB contrast of the adjusted colors across the focus edge in an image: the smaller of the
+/// contrasts in the light and in a groove that the focus shades. `saturation`: of the context's
+/// albedo, applied after the adjustment (ContextStyle).
 Contrast measureAdjustedContrast(const ColorAdjustment& adjustment, const InterfaceColors& colors,
                                  double saturation, double g);
 
-/// Knobs that may be turned. `context`: of a focus of which nothing is known, so that it keeps the
-/// volume's colours.
+/// Which colors may be adjusted. `context`: if the focus has no known material, so that it keeps
+/// the volume's colors.
 enum class Adjustable { nothing, context, both };
 
-/// Knobs with which the border has sufficientScore, as the mean over its area, from a context of
-/// 0.6 of its saturation on: muted, it takes fewer collisions, too. They are turned one after the
-/// other, in their order, each no further than that needs, or, where that is out of its reach, to
-/// where the share is greatest; then, from the last to the first, back as far as nothing is lost.
-/// Where even nearlySufficient is out of reach they begin at the whole saturation, and go farther,
-/// on the same way. Of a darker focus in a lighter context and the reverse, the way whose share is
-/// more worth its change of colours. `context`: what it sets is not turned. `colors`: without any,
-/// nothing is, either. Where the focus is not turned, its context may become grey.
+/// Finds the adjustment whose score, as the mean over the interface area, reaches sufficientScore.
+/// The members are increased in their order of declaration, each only as far as needed, or to its
+/// best score if its limit comes first. Then they are relaxed in reverse order as long as the score
+/// does not drop. The context starts at a saturation of 0.6, which also needs fewer collisions. If
+/// even nearlySufficient is out of reach, the search starts again at full saturation with wider
+/// limits. A darker focus in a lighter context and the reverse are both tried; the better score for
+/// its color change wins. `context`: members that it sets stay fixed. If the focus is not
+/// adjustable, the context may become gray. Without `colors`, nothing is adjusted.
 ColorAdjustment chooseAdjustment(const std::vector<InterfaceColors>& colors,
                                  const ContextColors& context, Adjustable adjustable,
                                  double saturation, double g);
 
 struct TintContrast {
   ColorAdjustment adjustment = {};
-  std::string segment = {}, neighbor = {}; ///< of the part with the least share
-  std::optional<Contrast> contrast = {};   ///< there; nothing: no neighbour is shown
+  std::string segment = {}, neighbor = {}; ///< of the interface with the lowest score
+  std::optional<Contrast> contrast = {};   ///< at this interface; empty: no visible neighbor
 };
 
-/// Knobs for neighbours that have 5 % of the border or more. `saturation`: of the context's albedo.
+/// Uses neighbors with at least 5 % of the interface. `saturation`: of the context's albedo.
 TintContrast adjustContrast(const std::vector<ComponentInterface>& interfaces, const TintPlan& plan,
                             const Tint& tint, const MaterialTable& table,
                             const TransferFunction& transfer, double saturation);
 
-/// Contrast and what it took, in a few words; empty: none.
+/// One-line summary of contrast and adjustment; empty without a contrast.
 std::string summary(const TintContrast& contrast);
 
-/// Tint with the knobs.
+/// The tint with adjusted colors.
 Tint applyAdjustment(const Tint& tint, const TintPlan& plan, const ColorAdjustment& adjustment,
                      const TransferFunction& transfer);
 

@@ -7,8 +7,8 @@
 namespace fenestra {
 namespace {
 
-/// Point n of a sequence that fills the unit square evenly, not aligned with its axes (Roberts
-/// 2018, "The unreasonable effectiveness of quasirandom sequences").
+/// Point n of the R2 sequence, which fills the unit square evenly without alignment to its axes
+/// (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
 Vec2 r2Point(std::size_t n) {
   const auto fraction = [](double x) { return x - std::floor(x); };
   const auto i = static_cast<double>(n) + 0.5;
@@ -25,7 +25,7 @@ bool isFocus(const Mask& focus, const Vec3& world) {
 
 } // namespace
 
-/// Depths at which parallel rays first meet the focus.
+/// Depths at which parallel rays hit the focus.
 class ViewScorer::FocusDepths {
 public:
   FocusDepths(const FocusCells& cells, const Domain& domain, const Vec3& fromTarget,
@@ -39,10 +39,10 @@ public:
     trace(rays);
   }
 
-  /// Area of the focus's projection, mm².
+  /// Projected area of the focus, mm².
   double area() const { return 4.0 * m_half.x() * m_half.y() * hitFraction(); }
   double hitFraction() const { return m_hitCount / m_rays; }
-  /// Depth, mm from the focus's centre, of the clip's surface at a point of `local` coordinates.
+  /// Depth of the clip surface, mm from the focus center, at a point in local coordinates.
   double surfaceDepth(const Vec3& point) const {
     const Vec2 at = binPosition(point.head<2>());
     if ((at.array() < 0.0).any() || (at.array() >= double{bins}).any())
@@ -50,7 +50,7 @@ public:
     const Bin& bin = m_bins[binIndex(at)];
     return bin.count > 0.0 ? bin.sum / bin.count : m_mean;
   }
-  /// Coordinates from the focus's centre, mm: two across the view, and depth along the view.
+  /// Coordinates from the focus center, mm: two across the view, and the depth.
   Vec3 toLocal(const Vec3& world) const {
     const Vec3 across = m_frame.toLocal(world - m_center);
     return {across.x(), across.y(), -across.z()};
@@ -109,7 +109,7 @@ private:
 
   const FocusCells& m_cells;
   const Domain& m_domain;
-  Frame m_frame; ///< normal: toward the eye
+  Frame m_frame; ///< normal: toward the camera
   Vec3 m_center;
   Vec3 m_half = Vec3::Zero(); ///< half extents of the cells' box, mm
   double m_rays = 0.0, m_hitCount = 0.0;
