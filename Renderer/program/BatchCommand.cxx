@@ -1,4 +1,5 @@
-// `fenestra study`: the rows of a table, each rendered by a process of its own.
+// `fenestra batch`: renders each row of a table in a process of its own. The result of a row is bit
+// for bit that of `fenestra render`, and a crash costs one row.
 
 #include "base/Error.h"
 #include "io/ChildProcess.h"
@@ -24,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using State = RowOutcome::State;
 
-/// Part K of N of the rows, from 0.
+/// Shard of the rows, as --rows K/N; `index` counts from 0.
 struct RowShard {
   std::size_t index = 0, count = 1;
 
@@ -32,28 +33,28 @@ struct RowShard {
 };
 
 struct BatchOptions {
-  std::vector<std::string> formats; ///< beside .png
+  std::vector<std::string> formats; ///< in addition to .png
   int workers = 1;
-  int threads = 1; ///< of all workers together
+  int threads = 1; ///< total of all workers
   RowShard shard;
   bool restart = false;
   ProgressMode progress = ProgressMode::automatic;
 };
 
-/// Renders the rows that are not finished, some at once.
+/// Renders the unfinished rows, several at a time.
 class Batch {
 public:
   Batch(const BatchOptions& options, BatchResults& results)
       : m_options(options),
         m_results(results),
-        m_view(options.progress, "Study"),
+        m_view(options.progress, "Batch"),
         m_workers(static_cast<std::size_t>(options.workers)) {
     for (std::size_t row = 0; row < results.rows.size(); ++row)
       if (options.shard.has(row))
         m_rows.push_back(row);
   }
 
-  /// Returns once no row is left, or all have ended after a request to stop.
+  /// Returns when all rows have ended, or those under way after a request to stop.
   void run() {
     const DeferredStop stopInstead(m_stop);
     while (hasWork()) {
@@ -77,7 +78,7 @@ public:
   bool isStopped() const { return m_stop; }
 
 private:
-  /// Row under way.
+  /// Process that is rendering a row.
   struct Worker {
     std::size_t row;
     std::unique_ptr<RowManifest> manifest;
@@ -90,7 +91,7 @@ private:
            std::ranges::any_of(m_workers, [](const auto& worker) { return worker != nullptr; });
   }
 
-  /// Threads of a worker: all of them, shared out.
+  /// Threads of a worker; the total is divided evenly.
   int workerThreads(std::size_t worker) const {
     const int share = m_options.threads / m_options.workers;
     const int rest = m_options.threads % m_options.workers;
@@ -125,7 +126,7 @@ private:
     const ChildProcess& child = worker->child;
     RowOutcome outcome{State::done, child.status(), worker->watch.seconds()};
     const bool wasYoung =
-        m_hasRequestedStop && outcome.status == 128 + SIGTERM; // without a handler yet
+        m_hasRequestedStop && outcome.status == 128 + SIGTERM; // had no signal handler yet
     if (wasYoung || outcome.status == stoppedStatus) {
       outcome.state = State::stopped;
       outcome.status = stoppedStatus;
@@ -143,7 +144,7 @@ private:
     reportOutcome(worker->row, outcome);
   }
 
-  /// Last line that the process wrote which is no warning.
+  /// Last error message of the process, ignoring warnings.
   static std::string findErrorLine(const ChildProcess& child) {
     if (child.status() > 128)
       return concat("ended by signal ", child.status() - 128, " (",
@@ -156,7 +157,7 @@ private:
     return last.empty() ? concat("ended with status ", child.status()) : toOneLine(last);
   }
 
-  /// Keeps what came of a row, and prints it.
+  /// Stores and prints the outcome of a row.
   void reportOutcome(std::size_t row, const RowOutcome& outcome) {
     m_results.outcomes[row] = outcome;
     ++m_rendered;
@@ -171,7 +172,7 @@ private:
       std::cout << toOneLine(name) << ": " << toString(outcome.seconds, 3) << " s" << std::endl;
   }
 
-  /// Asks running processes once to end: they write what they have reached.
+  /// Sends SIGTERM to all workers once; they write what they have rendered.
   void requestStop() {
     if (std::exchange(m_hasRequestedStop, true))
       return;
@@ -180,8 +181,8 @@ private:
         worker->child.send(SIGTERM);
   }
 
-  /// Finished share of the rows that were to be made, in [0, 1]; of a row under way by the mean
-  /// seconds of rows so far.
+  /// Finished fraction of the rows to render, in [0, 1]. Running rows are estimated from the mean
+  /// time of finished ones.
   double fraction() const {
     const double toDo = static_cast<double>(m_rows.size() - m_skipped);
     double done = static_cast<double>(m_rendered);
@@ -205,9 +206,8 @@ private:
   ProgressView m_view;
   std::vector<std::size_t> m_rows; ///< of this run
   std::vector<std::unique_ptr<Worker>> m_workers;
-  std::size_t m_next = 0, m_skipped = 0,
-              m_rendered = 0; ///< rows: to begin, of earlier runs, of this
-  double m_seconds = 0.0;     ///< of the rows of this run
+  std::size_t m_next = 0, m_skipped = 0, m_rendered = 0; ///< next row; rows done before, done now
+  double m_seconds = 0.0;                                ///< sum over the rows done now
   std::atomic<bool> m_stop = false;
   bool m_hasRequestedStop = false;
 };
@@ -218,7 +218,7 @@ RowShard parseRowShard(const OptionValues& values) {
   char rest = 0;
   if (std::sscanf(text.c_str(), "%zu/%zu%c", &part, &parts, &rest) != 2 || part < 1 ||
       parts < part || parts > 100'000)
-    throw usageError("--rows: expected K/N, K from 1 to N, got '", toOneLine(text), "'");
+    throw usageError("--rows: expected K/N with K from 1 to N, got '", toOneLine(text), "'");
   return {part - 1, parts};
 }
 
@@ -236,7 +236,7 @@ BatchOptions makeBatchOptions(const OptionValues& values) {
   return options;
 }
 
-/// Flags of all rows, without the study's own.
+/// Options that apply to all rows, without the batch's own.
 OptionValues commonValues(const OptionValues& values) {
   OptionValues common = values;
   for (const Option& option : batchSyntax().options)
@@ -261,8 +261,7 @@ int batchCommand(int argc, char** argv, int first) {
   results.outcomes.resize(results.rows.size());
   const CreatedFolders made(results.folder);
   Outputs outputs;
-  const bool isComplete =
-      options.shard.count == 1; // one of several machines knows its own rows only
+  const bool isComplete = options.shard.count == 1; // other shards' rows are not known here
   if (isComplete)
     declareResults(results, outputs);
   const Stopwatch watch;
@@ -275,7 +274,7 @@ int batchCommand(int argc, char** argv, int first) {
                    results.folder, ": ", results.count(State::done), " of ", batch.rows(),
                    " rows done, ", batch.rendered(), " rendered now, ",
                    toString(watch.seconds(), 3), " s",
-                   batch.isStopped() ? " (stopped on request; the same command goes on)" : ""))
+                   batch.isStopped() ? " (stopped on request; the same command resumes)" : ""))
             << std::endl;
   if (batch.isStopped())
     return stopStatus();

@@ -40,7 +40,7 @@ std::vector<fs::path> sheetPaths(const BatchResults& results) {
 const std::vector<std::string> firstColumns = {"name",  "status",  "exitStatus",
                                                "error", "picture", "seconds"};
 
-/// True for a summary of any version.
+/// True for a summary written by any version.
 bool isSummary(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::string line;
@@ -48,7 +48,7 @@ bool isSummary(const fs::path& path) {
   return std::getline(file, line) && line.starts_with(head.substr(0, head.size() - 2));
 }
 
-/// Numbers of statistics by their places, as "samplesPerPixel.mean"; lists are left out.
+/// Numbers of the statistics by JSON path, as "samplesPerPixel.mean"; lists are omitted.
 using Measures = std::map<std::string, double>;
 
 void addMeasures(const nlohmann::json& json, const std::string& place, Measures& measures) {
@@ -61,13 +61,13 @@ void addMeasures(const nlohmann::json& json, const std::string& place, Measures&
   }
 }
 
-/// Empty without statistics.
+/// Empty without valid statistics.
 Measures readMeasures(const BatchRow& row, const fs::path& folder) {
   Measures measures;
   try {
     const fs::path path = rowStatsPath(row, folder);
     addMeasures(parseJson(readText(path), path.string()), "", measures);
-  } catch (const Error&) { // the row has none, or they are damaged
+  } catch (const Error&) { // missing or damaged
     measures.clear();
   }
   return measures;
@@ -115,7 +115,7 @@ SheetEntry makeSheetEntry(const BatchRow& row, const RowOutcome& outcome, const 
     return found == measures.end() ? std::optional<double>() : found->second;
   };
   if (const auto coverage = measure("focusCoverage"))
-    facts.push_back(concat(std::lround(100.0 * *coverage), " % of the focus seen"));
+    facts.push_back(concat(std::lround(100.0 * *coverage), " % of the focus visible"));
   if (const auto filtered = measure("noiseFiltered");
       const auto noise = filtered ? filtered : measure("noise"))
     facts.push_back("noise " + toString(*noise, 2));

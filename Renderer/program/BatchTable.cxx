@@ -14,28 +14,28 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* batchGroup = "Study";
+constexpr const char* batchGroup = "Batch";
 constexpr const char* nameColumn = "name";
 constexpr const char* inputColumn = "input";
 
 const Option batchTable[] = {
     {"output", "DIR", batchGroup,
-     "Folder for a folder of each row, study.csv and study.png [the table's name without .csv]"},
-    {"workers", "N", batchGroup, "Rows at once, 1 to 256; they share out the threads",
+     "Folder for one folder per row, study.csv and study.png [the table's name without .csv]"},
+    {"workers", "N", batchGroup, "Rows rendered at a time, 1 to 256; they divide the threads",
      ValueSpec::integer(1, 256).withDefault("1")},
-    {"formats", "L,...", batchGroup, "Pictures of each row beside the .png: exr, nrrd, tif [none]",
+    {"formats", "L,...", batchGroup, "Images per row beside the .png: exr, nrrd, tif [none]",
      ValueSpec::list()},
     {"rows", "K/N", batchGroup,
-     "Only the K-th of N parts of the rows, dealt out in turn, for several machines; the same "
-     "command without --rows then makes study.csv and study.png [all]"},
-    {"restart", "", batchGroup, "Make all rows again, in place of whatever has their names"},
+     "Only rows K, K+N, K+2N, ... for one of N machines; afterwards the same command without "
+     "--rows writes study.csv and study.png [all]"},
+    {"restart", "", batchGroup, "Render all rows again, replacing existing files"},
 };
 
-/// Throws Error (input) unless the name can be a folder's on every system, and is no formula of a
+/// Throws Error (input) unless the name is a valid folder name on every system, and no formula of a
 /// spreadsheet.
 void requireFolderName(const std::string& name, const std::string& source,
                        const std::string& place) {
-  constexpr std::size_t longest = 100; // bytes; extensions and temporary names have to fit as well
+  constexpr std::size_t longest = 100; // bytes; leaves room for extensions and temporary names
   constexpr std::string_view notFirst = ".-=+@ '", notLast = ". ";
   const bool isPortable = !name.empty() && name.size() <= longest && toOneLine(name) == name &&
                           name.find_first_of("/\\:*?\"<>|") == name.npos &&
@@ -43,16 +43,16 @@ void requireFolderName(const std::string& name, const std::string& source,
                           notLast.find(name.back()) == notLast.npos;
   if (!isPortable)
     throw inputError(source, place, ": '", fenestra::sanitize(name),
-                     "' cannot be a folder's name; use at most 100 letters, digits, blanks, dots, "
-                     "- and _, a letter, digit or _ first");
+                     "' is not a valid folder name; use at most 100 letters, digits, blanks, dots, "
+                     "- and _, beginning with a letter, digit or _");
 }
 
-/// True if several cells may give the flag.
+/// True if the option may have several columns.
 bool canHaveColumns(const Option& option) {
   return option.spec.canRepeat || option.spec.type == "string-vector";
 }
 
-/// Flags of the columns; null: name, input. Throws Error (input).
+/// Options of the columns; null: name, input. Throws Error (input).
 std::vector<const Option*> parseColumns(const CsvRecord& head, const std::string& source) {
   std::vector<std::string> known = {nameColumn, inputColumn};
   for (const Option& option : renderSyntax.options)
@@ -65,23 +65,22 @@ std::vector<const Option*> parseColumns(const CsvRecord& head, const std::string
     if (std::ranges::find(known, name) == known.end()) {
       const std::string likely = findNearest(toLower(name), known);
       throw inputError(source, "line ", head.line, ": '", fenestra::sanitize(name),
-                       "' is no column of a study",
-                       likely.empty() ? "; columns are name, input and flags of fenestra render"
+                       "' is no valid column",
+                       likely.empty() ? "; columns are name, input and options of fenestra render"
                                       : "; did you mean " + likely + "?");
     }
     if (!names.insert(name).second && !(option && canHaveColumns(*option)))
-      throw inputError(source, "line ", head.line, ": has the column '", name,
-                       "' twice; remove one");
+      throw inputError(source, "line ", head.line, ": duplicate column '", name, "'; remove one");
     columns.push_back(option);
   }
   for (const char* required : {nameColumn, inputColumn})
     if (!names.contains(required))
-      throw inputError(source, "line ", head.line, ": has no column '", required, "'; add it");
+      throw inputError(source, "line ", head.line, ": column '", required, "' is missing; add it");
   return columns;
 }
 
-/// The file that a cell names, from the working folder; the cell itself where it names none. What
-/// looks like a file's name and is not beside the table is no file of the working folder either.
+/// File that a cell names, relative to the working directory; the cell itself if it names none. A
+/// name like a file's is looked up beside the table, never in the working directory.
 std::string resolveFile(const std::string& cell, const fs::path& folder) {
   std::error_code failed;
   const fs::path beside = folder / cell;
@@ -91,7 +90,7 @@ std::string resolveFile(const std::string& cell, const fs::path& folder) {
   return beside.string();
 }
 
-/// Reads rows, one after the other.
+/// Reads the rows in sequence.
 class TableReader {
 public:
   TableReader(const fs::path& path, const CsvRecord& head, const OptionValues& common)
@@ -105,7 +104,7 @@ public:
     const std::string place = concat("line ", record.line);
     if (record.fields.size() != m_columns.size())
       throw inputError(m_source, place, ": has ", record.fields.size(), " fields, the first line ",
-                       m_columns.size(), "; quote fields with commas, or add what is missing");
+                       m_columns.size(), "; quote fields with commas, or add the missing ones");
     BatchRow row;
     OptionValues others = m_common;
     for (std::size_t i = 0; i < m_columns.size(); ++i) {
@@ -115,10 +114,10 @@ public:
     }
     requireFolderName(row.name, m_source, place);
     if (row.input.empty())
-      throw inputError(m_source, place, ": names no input; fill in the column");
+      throw inputError(m_source, place, ": input is empty; name a file or folder");
     if (const auto [known, isNew] = m_lines.emplace(toLower(row.name), record.line); !isNew)
-      throw inputError(m_source, place, ": has the name of line ", known->second, ", '", row.name,
-                       "'; rename one");
+      throw inputError(m_source, place, ": has the same name as line ", known->second, ", '",
+                       row.name, "'; rename one");
     const std::vector<std::string> rest = others.arguments();
     row.arguments.insert(row.arguments.end(), rest.begin(), rest.end());
     return row;
@@ -129,7 +128,7 @@ private:
            const std::string& place) {
     if (toOneLine(cell) != cell)
       throw inputError(m_source, place, ", ", m_head.fields[column],
-                       ": holds a line's end or no UTF-8; write it on one line");
+                       ": contains a line break or invalid UTF-8; write it on one line, in UTF-8");
     const Option* const option = m_columns[column];
     if (!option && m_head.fields[column] == nameColumn)
       row.name = cell;
@@ -166,17 +165,16 @@ const CommandSyntax& batchSyntax() {
   }();
   static const CommandSyntax syntax = {
       "study",
-      "Renders a table of cases, a row a case, each as fenestra render does it, in a process of "
-      "its "
-      "own: a row that fails ends no other. Columns are name, input and flags of fenestra render, "
-      "such as segmentation, preset, view; an empty cell gives no flag, and files are relative to "
-      "the table. The row liver gives DIR/liver/liver.png, its measures liver.json and the record "
-      "liver.study.json: the same command goes on where it was stopped, and makes rows again that "
-      "failed, or whose flags or files have changed. At the end study.csv holds a line a row "
-      "(status, seconds, noise, measures), and study.png shows all pictures with their names; "
-      "beyond 36 there are further sheets. Flags of fenestra render are for all rows whose cell is "
-      "empty.",
-      {{"TABLE", "Table of the rows (.csv), the first line naming the columns"}},
+      "Renders a table of cases, one per row, each in a process of its own, so that a row that "
+      "fails does not end the others. The columns are name, input and options of fenestra render, "
+      "such as segmentation, preset or view. An empty cell sets no option, and files are relative "
+      "to the table. The row liver gives DIR/liver/liver.png, its measurements liver.json and the "
+      "manifest liver.study.json. The same command resumes after a stop, and renders rows again "
+      "that failed or whose options or files have changed. At the end study.csv lists status, "
+      "seconds, noise and measurements of each row, and the contact sheets study.png, study-2.png "
+      "and so on show 36 images each. Options of fenestra render on the command line apply to all "
+      "rows whose cell is empty.",
+      {{"TABLE", "Table of the rows (.csv); its first line names the columns"}},
       options,
   };
   return syntax;
@@ -186,10 +184,10 @@ std::vector<BatchRow> readBatchTable(const fs::path& path, const OptionValues& c
   constexpr std::size_t mostRows = 10'000;
   const std::vector<CsvRecord> records = parseCsv(readText(path), path.string());
   if (records.size() < 2)
-    throw inputError(path, "holds no row; write a line of columns (name,input,…), then a line a "
-                           "case");
+    throw inputError(path, "has no row; write a line of column names (name,input,…), then one line "
+                           "per case");
   if (records.size() > mostRows + 1)
-    throw inputError(path, "holds more than ", mostRows, " rows; split it");
+    throw inputError(path, "has more than ", mostRows, " rows; split it");
   TableReader reader(path, records.front(), common);
   std::vector<BatchRow> rows;
   for (const CsvRecord& record : records) {

@@ -1,27 +1,25 @@
 #pragma once
-// Table of a study, a row a case: its flags as arguments of `fenestra render`.
+// Table of a batch. Each row is a case: its input, and options of `fenestra render`.
 
 #include "program/RenderOptions.h"
 
 namespace fenestra {
 
-/// Case of a study.
+/// Case of a batch.
 struct BatchRow {
   std::string name;
-  std::vector<std::string>
-      arguments; ///< "--name=value"; files of the table's folder by their paths
+  std::vector<std::string> arguments; ///< "--name=value"; file names include the table's folder
   std::string input;
-  std::string label; ///< values in which the rows differ, for people
+  std::string label; ///< the row's values, for the contact sheet
 };
 
-/// Syntax of study: own flags, and those of render that shape a picture, for all rows.
+/// Syntax of batch: its own options, and those of render that the image depends on, for all rows.
 const CommandSyntax& batchSyntax();
 
-/// Reads a table (parseCsv): columns `name` and `input`, others named as flags of render, empty
-/// cells being flags that are not given. A flag in `common`, given for all rows, is left to the
-/// rows that have no value of their own. Throws Error (input), naming the line: for unknown or
-/// doubled columns, names that are no portable folder names, doubled names, more than 10,000 rows.
-/// Values are not checked: a row's own run does that.
+/// Reads a CSV table (parseCsv). Its columns are `name`, `input` and options of render; an empty
+/// cell sets no option. Options in `common` apply to rows without a value of their own. Throws
+/// Error (input), with the line number: for unknown or duplicate columns, duplicate or unportable
+/// names, and more than 10,000 rows. Each row's own process checks its option values.
 std::vector<BatchRow> readBatchTable(const std::filesystem::path& path, const OptionValues& common);
 
 } // namespace fenestra

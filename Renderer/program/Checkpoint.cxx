@@ -19,7 +19,7 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-/// Values of the given flags that `isTold`, by name; names of files relative to `folder`.
+/// Values of the given options that `isIncluded`, by name; file names relative to `folder`.
 template <typename Predicate>
 ordered_json collectOptions(const OptionValues& options, const fs::path& folder,
                             Predicate&& isIncluded) {
@@ -42,7 +42,7 @@ std::string joinValues(const json& options, const std::string& name) {
   });
 }
 
-/// First flag in which two objects of flags differ; empty: none.
+/// First option in which two objects of options differ; empty: none.
 std::string findOptionDifference(const json& stored, const json& current) {
   std::set<std::string> names;
   for (const json* options : {&stored, &current})
@@ -55,7 +55,7 @@ std::string findOptionDifference(const json& stored, const json& current) {
   return "";
 }
 
-/// First file of `some` that `others` lack, with its content; empty: none.
+/// First file in `some` without an equal entry in `others`; empty: none.
 std::string findMissingFile(const json& some, const json& others) {
   for (const json& file : some)
     if (std::ranges::find(others, file) == others.end())
@@ -118,7 +118,7 @@ std::string findDifference(const json& stored, const json& current, const std::s
       for (const JsonNode& file : node.at(key).elements())
         file.at("file").text();
       const std::string now = findMissingFile(value, before);
-      return (now.empty() ? findMissingFile(before, value) : now) + " has changed since";
+      return (now.empty() ? findMissingFile(before, value) : now) + " has changed";
     }
     return concat(key, " was ", node.at(key).text(), ", is ", value.get<std::string>());
   }
@@ -126,10 +126,10 @@ std::string findDifference(const json& stored, const json& current, const std::s
 }
 
 Error Checkpoint::mismatchError(const std::string& difference) const {
-  return usageError(m_path, ": is of another render: ", difference,
-                    m_isMerge ? "; put inputs and films back as they were, or render anew"
-                              : "; choose another --checkpoint, or move this one away to begin "
-                                "anew");
+  return usageError(m_path, ": belongs to another render: ", difference,
+                    m_isMerge ? "; restore inputs and checkpoint files, or render again"
+                              : "; use another --checkpoint, or move this file away to start "
+                                "over");
 }
 
 std::string formatShard(const Shard& shard) {
@@ -143,8 +143,8 @@ Checkpoint::Checkpoint(const RenderJob& job, const OptionValues& given, Warn war
       m_lock(m_path),
       m_provenance(makeProvenance(given, job.values, m_path.parent_path())) {
   if (!m_lock->isHeld())
-    throw usageError(m_path, ": another process is writing this film; wait for it, or choose "
-                             "another --checkpoint");
+    throw usageError(m_path, ": another process is writing this file; wait for it, or use another "
+                             "--checkpoint");
   std::error_code failed;
   if (fileExists(m_path) &&
       !(fs::is_regular_file(m_path, failed) && fs::is_empty(m_path, failed))) {
@@ -154,7 +154,7 @@ Checkpoint::Checkpoint(const RenderJob& job, const OptionValues& given, Warn war
     if (const Shard& here = job.options.settings.shard; film.shard() != here)
       throw mismatchError(
           concat("--shard was ", formatShard(film.shard()), ", is ", formatShard(here)));
-    forgetInput(*fileId(m_path)); // it is written again
+    forgetInput(*fileId(m_path)); // since it is also an output
   }
   m_outputs.add(m_path);
 }
@@ -177,17 +177,17 @@ void Checkpoint::requireSame(const CheckpointFile& film, const std::string& key)
     throw mismatchError(difference);
 }
 
-/// Samples are never taken back, nor dealt out anew.
+/// Existing samples cannot be removed or redistributed between pixels.
 void Checkpoint::checkSampleCounts(const RenderResult& result,
                                    const RenderSettings& settings) const {
   if (settings.samples < result.begunSamples)
     throw usageError("--samples: ", m_path, " has up to ", result.begunSamples,
-                     " samples a pixel; ask for as many, or choose another --checkpoint");
+                     " samples per pixel; ask for at least as many, or use another --checkpoint");
   const bool wasPlanned = result.last.noise < infinity;
   if (result.begunSamples > SamplePlan::pilotSamples && wasPlanned != settings.isAdaptive())
-    throw usageError("--noise: ", m_path, wasPlanned ? " has" : " lacks",
-                     " more samples where the picture is noisier, as only a raw --noise asks for; ",
-                     wasPlanned ? "give one" : "drop it", ", or choose another --checkpoint");
+    throw usageError("--noise: ", m_path, wasPlanned ? " was" : " was not",
+                     " rendered with a raw --noise, which gives noisier pixels more samples; ",
+                     wasPlanned ? "add one" : "omit it", ", or use another --checkpoint");
 }
 
 std::optional<RenderResult> Checkpoint::load(const PreparedScene& scene,
@@ -199,10 +199,10 @@ std::optional<RenderResult> Checkpoint::load(const PreparedScene& scene,
   requireSame(first, "inputs");
   if (const std::string here = findTarget(scene.view(), settings); first.target() != here)
     throw mismatchError(concat("its instruction set was ", first.target(), ", is ", here,
-                               " (the environment variable FENESTRA_INSTRUCTIONS chooses)"));
+                               " (set FENESTRA_INSTRUCTIONS to change it)"));
   const RenderRequest& request = m_job.options.scene;
   if (first.width() != request.width || first.height() != request.height)
-    throw inputError(m_path, "has another size than its settings say; render it again");
+    throw inputError(m_path, "size differs from the stored settings; render it again");
   RenderResult result = first.readProgress();
   if (!m_isMerge)
     checkSampleCounts(result, settings);
@@ -225,7 +225,7 @@ void Checkpoint::attach(RenderMonitor& monitor) {
 }
 
 void Checkpoint::trySave(const RenderResult& result) {
-  constexpr double fraction = 0.01, longest = 60.0; // of the time; s
+  constexpr double fraction = 0.01, longest = 60.0; // of the total time; seconds
   const Stopwatch cost;
   std::string failure;
   try {
@@ -233,10 +233,10 @@ void Checkpoint::trySave(const RenderResult& result) {
   } catch (const Error& error) {
     failure = error.what();
   } catch (const std::bad_alloc&) {
-    failure = m_path.string() + ": there is no memory to write it";
+    failure = m_path.string() + ": not enough memory to write it";
   }
   if (!failure.empty() && !std::exchange(m_hasWarned, true))
-    m_warn(failure + " (the render goes on without this film)");
+    m_warn(failure + " (the render continues without this checkpoint)");
   m_dueTime = m_watch.seconds() + std::min(cost.seconds() / fraction, longest);
 }
 

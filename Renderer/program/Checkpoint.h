@@ -1,5 +1,7 @@
 #pragma once
-// Film of a render that is under way, on disk (--checkpoint): the same command goes on from it.
+// Checkpoint file of a render (--checkpoint), from which the same command resumes. The final image
+// is bit for bit that of an uninterrupted render. A mismatch of settings, inputs, version or
+// instruction set is an error. `merge` reads the shards of an image through the same class.
 
 #include "base/Stopwatch.h"
 #include "io/Locks.h"
@@ -9,55 +11,53 @@
 
 namespace fenestra {
 
-/// True if a sample depends on the flag; false if only when to stop, how a picture is shown, and
-/// where.
+/// True if samples depend on the option; false for stopping criteria, display and output.
 bool isSampleOption(const Option& option);
 
-/// Facts that a film is made with: the version, the flags as given and those that shape its
-/// samples, by name, and the content of all files read; names are relative to `folder`.
+/// What a checkpoint file stores about its render: version, options as given, and options (after
+/// merging) that samples depend on. File names are relative to `folder`.
 nlohmann::ordered_json makeProvenance(const OptionValues& given, const OptionValues& options,
                                       const std::filesystem::path& folder);
-/// All files that the scene was made from; an archive, not its members.
+/// All files from which the scene was built; an archive instead of its members.
 std::vector<std::filesystem::path> listInputFiles(const PreparedScene& scene,
                                                   const RenderOptions& options);
-/// Name, size and digest of every file that the scene was made from.
+/// Name, size and digest of each of these files.
 nlohmann::ordered_json digestInputs(const PreparedScene& scene, const RenderOptions& options,
                                     const std::filesystem::path& folder);
 
-/// First difference between what two films, or a film and a command, are made with, as "--seed was
-/// 1, is 2"; empty: none. `there` may be damaged, and is the film that `source` names; a key that
-/// `here` lacks is not compared. Throws Error (input).
+/// First difference between two makeProvenance() objects, as "--seed was 1, is 2"; empty: none.
+/// Keys that `current` lacks are not compared. `stored` comes from the file `source` and may be
+/// damaged. Throws Error (input).
 std::string findDifference(const nlohmann::json& stored, const nlohmann::json& current,
                            const std::string& source);
 
-/// "2/3" for the second of three parts.
+/// "2/3" for the second of three shards.
 std::string formatShard(const Shard& shard);
 
 class Checkpoint {
 public:
   using Warn = std::function<void(const std::string&)>;
 
-  /// Locks options.checkpoint, which must be set, and reads what is there. The request must outlive
-  /// this. Throws Error: usage where another process writes that film, or it belongs to other
-  /// settings; input where it is damaged; output where none can be written.
+  /// Locks options.checkpoint, which must be set, and reads an existing file. The job must outlive
+  /// this. Throws Error: usage if another process is writing the file or its settings differ; input
+  /// if it is damaged; output if it cannot be written.
   Checkpoint(const RenderJob& job, const OptionValues& given, Warn warn);
 
-  /// The parts of one picture, in their order (readShards), which are read and never written.
+  /// For merge: all shards of one image, in order; they are read and never written.
   Checkpoint(const RenderJob& job, const OptionValues& given, std::vector<CheckpointFile> shards);
 
-  /// Result to go on from; nothing: from the beginning. Throws Error: usage where the film belongs
-  /// to other inputs, another instruction set, or more samples than the settings allow; input.
+  /// State to resume; nullopt: none. Throws Error: usage if the inputs or the instruction set
+  /// differ, or the file has more samples than requested; input if it is damaged.
   std::optional<RenderResult> load(const PreparedScene& scene, const RenderSettings& settings);
 
-  /// Lets a render be kept: first after a second, then so often that writing takes 1 % of the time,
-  /// or each minute if it takes more.
+  /// Saves during the render: first after a second, then so rarely that writing takes 1 % of the
+  /// time, but at least every minute.
   void attach(RenderMonitor& monitor);
 
-  /// Writes the film, if there is more than in the one on disk. A failure is one warning, however
-  /// often: the earlier film stays.
+  /// As save(), but only the first failure is reported, as a warning. The previous file remains.
   void trySave(const RenderResult& result);
 
-  /// Writes the film, which is the command's result. Throws Error (output).
+  /// Saves if there are new samples. Throws Error (output).
   void save(const RenderResult& result);
 
 private:
@@ -69,13 +69,13 @@ private:
   const std::filesystem::path m_path;
   Warn m_warn;
   std::optional<NameLock> m_lock;
-  std::vector<CheckpointFile> m_files; ///< as they were at the start
+  std::vector<CheckpointFile> m_files; ///< read at the start
   bool m_isMerge = false;
   nlohmann::ordered_json m_provenance;
   Outputs m_outputs;
-  std::optional<std::uint64_t> m_savedPaths; ///< in the film on disk
+  std::optional<std::uint64_t> m_savedPaths; ///< in the file on disk
   Stopwatch m_watch;
-  double m_dueTime = 1.0; ///< s by m_watch
+  double m_dueTime = 1.0; ///< seconds by m_watch
   bool m_hasWarned = false;
 };
 

@@ -12,15 +12,15 @@ namespace fenestra {
 namespace {
 
 const Option commonTable[] = {
-    {"help", "", "", "Print this and exit"},
+    {"help", "", "", "Print this help and exit"},
     {"version", "", "",
-     "Print version, commit, compiler, instruction set, libraries and licence, as JSON with "
-     "--json, and exit"},
+     "Print version, commit, compiler, instruction set, libraries and license (with --json as "
+     "JSON) and exit"},
 };
 
-constexpr std::size_t page = 80, column = 30; ///< characters of a help line, and before its text
+constexpr std::size_t page = 80, column = 30; ///< characters per line, and before descriptions
 
-/// Line of a name and its explanation, in two columns.
+/// A name and its description, in two columns.
 std::string formatEntry(std::string_view name, std::string_view text) {
   const std::string margin(column, ' ');
   std::string head = concat("  ", name);
@@ -31,14 +31,15 @@ std::string formatEntry(std::string_view name, std::string_view text) {
   return concat(head, replaceAll(wrapLines(text, page - column), "\n", "\n" + margin), "\n");
 }
 
-/// Summary, positional arguments and flags by group.
+/// Summary, positional arguments, and options by group.
 std::string formatHelp(const CommandSyntax& syntax) {
   std::string usage = "Usage: fenestra " + syntax.name, names;
   for (const Positional& positional : syntax.positionals) {
     usage += " " + positional.name + (positional.canRepeat ? "..." : "");
     names += formatEntry(positional.name, positional.description);
   }
-  std::string text = concat(wrapLines(syntax.summary, page), "\n\n", usage, " [FLAGS]\n\n", names);
+  std::string text =
+      concat(wrapLines(syntax.summary, page), "\n\n", usage, " [OPTIONS]\n\n", names);
   for (const Option& option : commonOptions)
     text += formatEntry("--" + option.name, option.description);
   std::string group;
@@ -53,7 +54,7 @@ std::string formatHelp(const CommandSyntax& syntax) {
 }
 
 std::string helpHint(const CommandSyntax& syntax) {
-  return concat(" (fenestra ", syntax.name, " --help lists what there is)");
+  return concat(" (see fenestra ", syntax.name, " --help)");
 }
 
 Error unknownOption(const CommandSyntax& syntax, std::string_view given) {
@@ -62,15 +63,15 @@ Error unknownOption(const CommandSyntax& syntax, std::string_view given) {
   std::ranges::copy(listNames(listOptions(syntax)), std::back_inserter(names));
   const std::string_view word = given.substr(std::min(given.find_first_not_of('-'), given.size()));
   const std::string likely = findNearest(toLower(word), names);
-  return usageError(given, ": no such flag",
+  return usageError(given, ": unknown option",
                     likely.empty() ? "" : concat("; did you mean --", likely, "?"),
                     helpHint(syntax));
 }
 
 Error extraArgument(const CommandSyntax& syntax, std::string_view given) {
-  return usageError("'", given, "': one argument too many after ",
+  return usageError("'", given, "': unexpected argument after ",
                     join(syntax.positionals, " and ", std::mem_fn(&Positional::name)),
-                    "; quote names with blanks", helpHint(syntax));
+                    "; quote names that contain blanks", helpHint(syntax));
 }
 
 using Arguments = std::span<const std::string_view>;
@@ -81,7 +82,7 @@ std::string_view takeFirst(Arguments& words) {
   return word;
 }
 
-/// Takes the flag `word`, and its value from the same word or the next.
+/// Parses the option `word`. Its value is in the same argument or the next.
 void parseOption(const CommandSyntax& syntax, std::string_view word, Arguments& words,
                  OptionValues& values) {
   const std::size_t equals = word.find('=');
@@ -91,13 +92,13 @@ void parseOption(const CommandSyntax& syntax, std::string_view word, Arguments& 
   if (!option)
     throw unknownOption(syntax, word);
   if (option->isSwitch() && hasValue)
-    throw usageError("--", option->name, ": is a switch; write it without a value");
+    throw usageError("--", option->name, ": takes no value; omit it");
   if (option->isSwitch())
     return values.add(option->name, "");
   const bool isMissing =
       hasValue ? equals + 1 == word.size() : words.empty() || words.front().starts_with("--");
   if (isMissing || (!hasValue && words.front().empty()))
-    throw usageError("--", option->name, ": its value is ", isMissing ? "missing" : "empty",
+    throw usageError("--", option->name, ": value is ", isMissing ? "missing" : "empty",
                      "; write --", option->name, " ", option->placeholder);
   values.add(option->name, std::string(hasValue ? word.substr(equals + 1) : takeFirst(words)));
 }
@@ -114,12 +115,12 @@ OptionValues parseArguments(const CommandSyntax& syntax, Arguments words) {
     else if (positional == syntax.positionals.end())
       throw extraArgument(syntax, word);
     else if (word.empty())
-      throw usageError(positional->name, ": is empty; name a file");
+      throw usageError(positional->name, ": must not be empty; name a file");
     else if (values.add(positional->name, std::string(word)); !positional->canRepeat)
       ++positional;
   }
   if (positional != syntax.positionals.end() && !values.has(positional->name))
-    throw usageError(positional->name, ": is missing; name it: ", positional->description,
+    throw usageError(positional->name, ": missing; expected: ", positional->description,
                      helpHint(syntax));
   for (const ExcludedOptions& refusal : syntax.excluded)
     for (const std::string& name : refusal.names)
@@ -128,7 +129,7 @@ OptionValues parseArguments(const CommandSyntax& syntax, Arguments words) {
   return values;
 }
 
-/// Optimal string alignment distance: insertions, deletions, substitutions and swapped neighbours.
+/// Optimal string alignment distance: insertions, deletions, substitutions, adjacent swaps.
 std::size_t editDistance(std::string_view a, std::string_view b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
   for (std::size_t i = 0; i <= a.size(); ++i)
@@ -156,9 +157,9 @@ std::vector<std::string> listNames(std::span<const Option> options) {
 }
 
 std::string findNearest(std::string_view word, std::span<const std::string> candidates) {
-  constexpr std::size_t longest = 32; // no name is longer, but a path may be
+  constexpr std::size_t longest = 32; // option names are shorter; a path may not be
   std::string best;
-  std::size_t least = std::min<std::size_t>(3, word.size() / 3 + 1); // more is no misspelling
+  std::size_t least = std::min<std::size_t>(3, word.size() / 3 + 1); // a misspelling is closer
   if (word.empty() || word.size() > longest)
     return best;
   for (const std::string& candidate : candidates) {

@@ -1,5 +1,5 @@
 #pragma once
-// Conversion of arguments to flag values, by a command's syntax, and its help.
+// Parsing of a command's arguments, and its --help.
 
 #include "program/Options.h"
 
@@ -7,17 +7,17 @@
 
 namespace fenestra {
 
-/// Switches that every command takes, whatever else it is given.
+/// Switches that every command accepts: --help and --version.
 extern const std::span<const Option> commonOptions;
 
-/// Parses argv[first …]: "--name value" or "--name=value", positionals in between; after "--", only
-/// positionals. A value may begin with one dash, as negative numbers do. If --help or --version is
-/// among the words, prints the text (of the version as JSON if --json is, too) and returns nullopt,
-/// whatever else is wrong. Throws Error (usage).
+/// Parses argv[first …]: "--name value" or "--name=value", mixed with positional arguments; only
+/// positional ones after "--". A value may begin with one dash, as negative numbers do. If --help
+/// or --version is present, prints that text (the version as JSON with --json) and returns nullopt,
+/// even if other arguments are invalid. Throws Error (usage).
 std::optional<OptionValues> parseCommandLine(const CommandSyntax& syntax, int argc, char** argv,
                                              int first);
 
-/// True if two commands take the same flag.
+/// True if two commands share the option.
 inline bool isSameOption(const Option& a, const Option& b) {
   return a.name == b.name && a.placeholder == b.placeholder && a.description == b.description;
 }
@@ -26,7 +26,7 @@ inline bool isSameOption(const Option& a, const Option& b) {
 std::string findNearest(std::string_view word, std::span<const std::string> candidates);
 std::vector<std::string> listNames(std::span<const Option> options);
 
-/// Flags that the command takes, in the table's order.
+/// Options that the command accepts, in table order.
 std::vector<Option> listOptions(const CommandSyntax& syntax);
 
 } // namespace fenestra

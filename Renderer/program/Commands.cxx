@@ -23,7 +23,7 @@ constexpr Command subcommands[] = {
     {describeSyntax, describeCommand},
 };
 
-/// Throws Error (usage) for a word that names no file and nearly a subcommand.
+/// Throws Error (usage) for a word that names no file but resembles a command.
 void rejectMisspelled(std::string_view word) {
   std::vector<std::string> names;
   for (const Command& command : commands())
@@ -31,8 +31,8 @@ void rejectMisspelled(std::string_view word) {
   const std::string likely = findNearest(word, names);
   std::error_code failed;
   if (!likely.empty() && !std::filesystem::exists(word, failed) && !failed)
-    throw usageError("'", word, "': neither a file nor a subcommand; did you mean fenestra ",
-                     likely, "?");
+    throw usageError("'", word, "': neither a file nor a command; did you mean fenestra ", likely,
+                     "?");
 }
 
 } // namespace

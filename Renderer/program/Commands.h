@@ -1,6 +1,6 @@
 #pragma once
-// Subcommands, and steps that they share. Each takes the arguments from argv[first] on and returns
-// the exit status; errors are thrown (base/Error.h) and reported by main.
+// Commands, and steps that they share. A command parses argv[first …] and returns the exit status.
+// Errors are thrown (base/Error.h); runProcess reports them.
 
 #include <span>
 
@@ -14,10 +14,10 @@ struct Command {
   int (*run)(int argc, char** argv, int first);
 };
 
-/// All subcommands; the name of the first may be left out.
+/// All commands; the name of the first, render, is optional.
 std::span<const Command> commands();
 
-/// Runs the command that the first argument names, else a render.
+/// Runs the command that the first argument names, or else render.
 int dispatch(int argc, char** argv);
 
 const CommandSyntax& inspectSyntax();
@@ -41,12 +41,12 @@ int describeCommand(int argc, char** argv, int first);
 /// (usage) if the machine lacks it.
 void pinInstructions();
 
-/// Threads that --threads asks for, at most one a core.
+/// Number of threads that --threads requests, at most one per core.
 int threadCount(const OptionValues& options);
 
-/// Limits this process to --threads threads, at most one a core, and starts them before other code
-/// uses threads; pins the instruction set, too. Throws Error: as pinInstructions; output if the
-/// threads cannot be started.
+/// Limits this process to threadCount() threads, starts them before other code uses threads, and
+/// pins the instruction set. Throws Error: as pinInstructions; output if the threads cannot be
+/// started.
 void configureMachine(const OptionValues& options);
 
 } // namespace fenestra

@@ -14,9 +14,9 @@ namespace {
 
 constexpr const char* compareGroup = "Compare";
 const Option compareTable[] = {
-    {"errora", "FILE", compareGroup, "Standard errors of A, where A itself has no error channels"},
-    {"errorb", "FILE", compareGroup, "Standard errors of B, where B itself has no error channels"},
-    {"output", "FILE", compareGroup, "Difference picture: .png .tif .exr .nrrd"},
+    {"errora", "FILE", compareGroup, "Standard errors of A, if A itself has no error channels"},
+    {"errorb", "FILE", compareGroup, "Standard errors of B, if B itself has no error channels"},
+    {"output", "FILE", compareGroup, "Difference image: .png .tif .exr .nrrd"},
 };
 
 Image readWithError(const OptionValues& values, const char* name, const char* errorFlag) {
@@ -26,7 +26,7 @@ Image readWithError(const OptionValues& values, const char* name, const char* er
   return image;
 }
 
-/// Throws Error before the pictures are read, not after.
+/// Throws Error before the images are read, not after.
 void declareOutput(const OptionValues& values, Outputs& outputs) {
   for (const char* name : {"A", "B", "errora", "errorb"})
     if (const auto input = values.text(name))
@@ -35,7 +35,7 @@ void declareOutput(const OptionValues& values, Outputs& outputs) {
     declareImage(*output, outputs);
 }
 
-/// Adds the file names to an error: compareImages knows pictures only.
+/// Adds the file names to errors, since compareImages only knows images.
 Comparison compareFiles(const OptionValues& values, const Image& a, const Image& b) {
   try {
     return compareImages(a, b);
@@ -70,9 +70,9 @@ void print(const Comparison& c) {
 const CommandSyntax& compareSyntax() {
   static const CommandSyntax syntax = {
       "compare",
-      "Compares picture A with reference B: error measures, and z statistics where both carry "
-      "errors.",
-      {{"A", "Picture: .exr .nrrd .png .tif"}, {"B", "Reference of the same size"}},
+      "Compares image A with reference B: error measures, and statistics of z if both have "
+      "standard errors.",
+      {{"A", "Image: .exr .nrrd .png .tif"}, {"B", "Reference of the same size"}},
       compareTable,
   };
   return syntax;

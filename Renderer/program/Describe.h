@@ -1,15 +1,15 @@
 #pragma once
-// The command line told to other programs, from the tables of flags: to man, and to shells, which
-// complete commands, flags, and their values.
+// Manual page and shell completions, generated from the tables of options, so that they match this
+// version. Shells complete commands, options and option values.
 
 #include <string>
 
 namespace fenestra {
 
-/// Manual page in the language mdoc.
+/// Manual page in mdoc format.
 std::string makeManPage();
 
-/// Scripts that a shell reads, by bash 4, zsh and fish 3.
+/// Scripts for bash 4, zsh and fish 3.
 std::string makeBashCompletions();
 std::string makeZshCompletions();
 std::string makeFishCompletions();

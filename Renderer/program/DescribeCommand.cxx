@@ -22,8 +22,8 @@ const std::map<std::string, std::string (*)()> descriptions = {
 const CommandSyntax& describeSyntax() {
   static const CommandSyntax syntax = {
       "describe",
-      "Prints the manual page, or what a shell needs to complete fenestra's commands, flags and "
-      "their values.",
+      "Prints the manual page, or a script with which a shell completes fenestra's commands, "
+      "options and their values.",
       {{"KIND", "man (the manual page), bash, zsh or fish", {"man", "bash", "zsh", "fish"}}},
       {},
   };

@@ -9,7 +9,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Type of the file; none if `path` names no file (a look as text) or may not be examined. Throws
+/// Type of the file; none if `path` is no file name (inline JSON) or must not be examined. Throws
 /// Error (input) if the file system fails.
 fs::file_type findFileType(const fs::path& path) {
   std::error_code failed;
@@ -28,11 +28,11 @@ fs::path resolvePath(const fs::path& path) {
   return real;
 }
 
-/// Relative name of a result, which does not exist yet.
+/// Relative name of a result, which need not exist yet.
 std::string toRelativeOutput(const std::string& name, const fs::path& folder) {
   std::error_code failed;
   const fs::path path = fs::absolute(name, failed);
-  if (failed) // without a working folder the result cannot be written either
+  if (failed) // without a working directory the result cannot be written either
     return name;
   return (fs::path(toRelativeName(path.parent_path().string(), folder)) / path.filename())
       .lexically_normal()
@@ -44,14 +44,14 @@ std::string toRelativeOutput(const std::string& name, const fs::path& folder) {
 std::string toRelativeName(const std::string& name, const fs::path& folder) {
   std::error_code failed;
   fs::path existing = fs::absolute(name, failed), member;
-  if (failed) // the working folder is gone: no file has this name
+  if (failed) // the working directory was deleted: no file has this name
     return name;
   while (findFileType(existing) == fs::file_type::not_found && existing.has_relative_path()) {
     member = member.empty() ? existing.filename() : existing.filename() / member; // in an archive
     existing = existing.parent_path();
   }
   const fs::path from = folder.empty() ? "." : folder;
-  if (findFileType(from) == fs::file_type::not_found) // the later write reports the missing folder
+  if (findFileType(from) == fs::file_type::not_found) // reported when the result is written
     return name;
   const fs::file_type type = findFileType(existing);
   if (type == fs::file_type::none || (!member.empty() && type != fs::file_type::regular))
@@ -63,14 +63,14 @@ std::string toRelativeName(const std::string& name, const fs::path& folder) {
 std::vector<std::string> toRelativeArguments(const std::vector<std::string>& words,
                                              std::span<const Option> options,
                                              const fs::path& folder) {
-  const auto convert = [&](const Option* option, const std::string& value) { // null: a positional's
+  const auto convert = [&](const Option* option, const std::string& value) { // null: positional
     if (option && !option->canNameFile())
       return value;
     return option && option->isOutputFile() ? toRelativeOutput(value, folder)
                                             : toRelativeName(value, folder);
   };
   std::vector<std::string> result;
-  const Option* pending = nullptr; // flag whose value is the next word
+  const Option* pending = nullptr; // option whose value is the next word
   for (const std::string& word : words) {
     if (pending || !word.starts_with("--")) {
       result.push_back(convert(std::exchange(pending, nullptr), word));

@@ -1,6 +1,6 @@
 #pragma once
-// File names as results store them: relative to the folder of the result, so that pictures passed
-// on do not reveal where, and under whose name, a patient's files lie.
+// File names as stored in results: relative to the folder of the result, so that published images
+// do not reveal the location of patient data.
 
 #include "program/Options.h"
 
@@ -10,12 +10,12 @@
 
 namespace fenestra {
 
-/// `name` relative to `folder`; for a member of an archive, the archive's name, then the member's.
-/// A name without a file is returned unchanged.
+/// `name` relative to `folder`; for a member of an archive, the archive's relative name and the
+/// member's. A text that names no file is returned unchanged.
 std::string toRelativeName(const std::string& name, const std::filesystem::path& folder);
 
-/// Words of a command line with file names made relative to `folder`: positionals, and values of
-/// flags that take a file.
+/// Command-line arguments with file names made relative to `folder`: positional arguments, and
+/// values of options that can name a file.
 std::vector<std::string> toRelativeArguments(const std::vector<std::string>& words,
                                              std::span<const Option> options,
                                              const std::filesystem::path& folder);

@@ -20,11 +20,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 using Row = std::vector<std::string>;
 
-constexpr std::size_t width = 100; ///< characters in a line
+constexpr std::size_t width = 100; ///< characters per line
 constexpr std::size_t longestName = 36, longestId = 48, longestFile = 90;
-constexpr std::size_t maxNodes = 20, maxSegments = 100; ///< listed one by one
+constexpr std::size_t maxNodes = 20, maxSegments = 100; ///< listed individually
 
-// ---- words
+// ---- text
 
 bool isCharacterStart(char c) { // in UTF-8
   return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U;
@@ -35,7 +35,7 @@ std::size_t countCharacters(const std::string& textMember) {
       std::count_if(textMember.begin(), textMember.end(), isCharacterStart));
 }
 
-/// `text`, or its first characters and "...": at most `most` characters.
+/// `text`, shortened with "..." to at most `most` characters.
 std::string shorten(std::string textMember, std::size_t most) {
   textMember = toOneLine(std::move(textMember));
   if (countCharacters(textMember) <= most)
@@ -47,7 +47,7 @@ std::string shorten(std::string textMember, std::size_t most) {
   return textMember.substr(0, end) + "...";
 }
 
-/// Texts that are not empty, in one.
+/// Joins the texts that are not empty.
 std::string joinNonEmpty(Row texts, const char* between = ", ") {
   std::erase(texts, "");
   return join(texts, between);
@@ -55,24 +55,24 @@ std::string joinNonEmpty(Row texts, const char* between = ", ") {
 
 std::string formatNumber(double x, const char* format = "%.6g") {
   char textMember[32];
-  std::snprintf(textMember, sizeof textMember, format, x == 0.0 ? 0.0 : x); // no -0
+  std::snprintf(textMember, sizeof textMember, format, x == 0.0 ? 0.0 : x); // not -0
   return textMember;
 }
 
 // ---- members of the report
 
-/// Member that is text, clipped; empty: there is none.
+/// Member that is a text, shortened; empty: null.
 std::string textMember(const Json& object, const char* key, std::size_t most) {
   const Json& member = object[key];
   return member.is_null() ? "" : shorten(member, most);
 }
 
-/// Name: a file's in full, a node's clipped.
+/// Name of a file in full, of a node shortened.
 std::string nodeName(const Json& node) {
   return textMember(node, "name", node["id"].is_null() ? longestFile : longestName);
 }
 
-/// "name (id)", or what there is of it.
+/// "name (id)", or only one of them.
 std::string nameAndId(const Json& node) {
   const std::string id = textMember(node, "id", longestId);
   return joinNonEmpty({nodeName(node), id.empty() ? "" : "(" + id + ")"}, " ");
@@ -90,7 +90,7 @@ std::string toHex(const Json& color) {
 
 std::string formatColors(const Json& background) {
   const std::string bottom = toHex(background["bottom"]), top = toHex(background["top"]);
-  return bottom == top ? bottom : bottom + " below to " + top + " above";
+  return bottom == top ? bottom : bottom + " (bottom) to " + top + " (top)";
 }
 
 std::string formatFiles(const Json& list) {
@@ -106,7 +106,7 @@ std::string formatFiles(const Json& list) {
   return formatValue;
 }
 
-/// Text, number or numbers, colours of a background, or files; empty: null, or anything else.
+/// Text, numbers, colors of a background, or files; empty: null or anything else.
 std::string formatValue(const std::string& key, const Json& member) {
   static const std::map<std::string, const char*> separators = {{"size", " x "},
                                                                 {"spacing", " x "},
@@ -129,8 +129,8 @@ std::string formatValue(const std::string& key, const Json& member) {
   return joinNonEmpty(items, separator == separators.end() ? "," : separator->second);
 }
 
-/// Words with the object's members in place of "{key}", and named() in place of "{}"; empty: one of
-/// them is null or missing.
+/// Replaces "{key}" in `words` by that member, and "{}" by name and id; empty: one of them is null
+/// or missing.
 std::string fillTemplate(std::string_view words, const Json& object) {
   std::string textMember;
   for (auto open = words.find('{'); open != words.npos; open = words.find('{')) {
@@ -146,23 +146,23 @@ std::string fillTemplate(std::string_view words, const Json& object) {
   return textMember.append(words);
 }
 
-/// Words for a part of the report, whatever its kind. Shown if filled() is not empty, and if the
-/// member `key` has this value; no key: whatever the members are.
+/// Template for a part of the report, whatever its kind. Applies if all its members exist and, if
+/// there is a `key`, that member has this value.
 struct Phrase {
   const char* words;
   const char* key = nullptr;
   Json value = {};
 };
 
-/// Description of a node, or of a part of a render, for the place behind its name and id.
+/// Description of a node or part of a render, without name and id.
 std::string describe(const Json& part) {
   static const Phrase phrases[] = {
       {"label map", "kind", "labelMap"},
       {"hidden", "shown", false},
-      {"of no volume", "volume", nullptr},
+      {"without a volume", "volume", nullptr},
       {"of {volume}"},
       {"names from {namesFrom}"},
-      {"by {property}"},
+      {"property {property}"},
       {"follows the slice display", "followsDisplay", true},
       {"cropped by {roi}", "cropping", true},
       {"cropping off, {roi}", "cropping", false},
@@ -175,12 +175,12 @@ std::string describe(const Json& part) {
       {"linear", "linear", true},
       {"{files}"},
       {"{size} voxels of {spacing} mm"},
-      {"{voxelType} from {range}, centre {center}"},
-      {"moved by {transforms}"},
+      {"{voxelType} from {range}, center {center}"},
+      {"transformed by {transforms}"},
       {"{}", "source", "volumeProperty"},
       {"the window of {}, which the rendering follows", "source", "volumeDisplay"},
-      {"preset {name}, by the volume's range", "source", "preset"},
-      {"made for the volume's range", "source", "range"},
+      {"preset {name}, chosen by the volume's range", "source", "preset"},
+      {"built for the volume's range", "source", "range"},
       {"{edges} mm around {center}"},
       {"under {transform}"},
   };
@@ -193,7 +193,7 @@ std::string describe(const Json& part) {
 
 // ---- lines
 
-/// Lines below a title; nothing without lines.
+/// Title and lines; empty without lines.
 std::string section(const char* title, const std::string& lines) {
   return lines.empty() ? "" : std::string("\n") + title + "\n" + lines;
 }
@@ -202,13 +202,13 @@ std::string line(const std::string& textMember) {
   return textMember.substr(0, textMember.find_last_not_of(' ') + 1) + "\n";
 }
 
-/// Wrapped text; the first line starts with `label`, the others are indented by its width.
+/// Wrapped text; the first line begins with `label`, the others are indented by its width.
 std::string paragraph(const std::string& label, const std::string& textMember) {
   const std::string lines = wrapLines(toOneLine(textMember), width - countCharacters(label));
   return label + replaceAll(lines, "\n", "\n" + std::string(countCharacters(label), ' ')) + "\n";
 }
 
-/// Rows as lines; a column is as wide as its widest cell, and aligned right if right[i] is '>'.
+/// Pads the cells of each column to the same width; column i is aligned right if right[i] is '>'.
 std::vector<std::string> alignColumns(std::vector<Row> rows, const std::string& right = "") {
   for (std::size_t i = 0; i < (rows.empty() ? 0 : rows[0].size()); ++i) {
     std::size_t columns = 0;
@@ -232,7 +232,7 @@ std::string table(const std::string& indent, const std::vector<Row>& rows,
 
 // ---- sections
 
-/// Cells of a segment's material: name, colour, kind, and why it has it.
+/// Cells of a segment's material: name, color, kind, and why it was chosen.
 Row materialCells(const Json& material) {
   const Json& color = material["color"];
   const std::string formatColors = color.is_null() ? "as it is"
@@ -264,8 +264,8 @@ std::string segmentTable(const Json& segments) {
   return table("      ", rows, ">> >>");
 }
 
-/// Lines "* name  id  description"; a description that is too long has a line of its own. An
-/// asterisk marks nodes that a render uses.
+/// Lines "* name  id  description"; a long description gets a line of its own. The asterisk marks
+/// nodes that a render uses.
 std::string nodeLines(const Json& nodes) {
   const std::size_t count = std::min(nodes.size(), maxNodes);
   std::vector<Row> names;
@@ -319,7 +319,7 @@ std::string renderLines(const Json& use) {
     return fillTemplate("{}: ", part) + describe(part);
   };
   add("  volume        ", "volume", withName);
-  add("  look          ", "look", describe);
+  add("  appearance    ", "look", describe);
   add("  crop          ", "crop", withName);
   add("  camera        ", "camera", [&](const Json& camera) {
     return (nameAndId(camera).empty() ? "framed: " : "") + withName(camera);
@@ -327,7 +327,7 @@ std::string renderLines(const Json& use) {
   add("  background    ", "background",
       [](const Json& part) { return formatColors(part) + fillTemplate(", of {view}", part); });
   add("  segmentation  ", "segmentationProblem",
-      [](const std::string& problem) { return "open: " + problem; });
+      [](const std::string& problem) { return "undecided: " + problem; });
   add("  segmentation  ", "segmentation",
       [](const std::string& segmentation) { return segmentation + ", with --focus"; });
   add("  as rendered   ", "stored",
@@ -335,7 +335,7 @@ std::string renderLines(const Json& use) {
   return lines;
 }
 
-/// Lines of at most 100 characters; a list that is cut says how much is missing.
+/// Lines of at most 100 characters; a truncated list states how much is missing.
 std::string inspectionText(const Inspection& inspection) {
   const std::map<std::string, const char*> kinds = {{"scene", "Slicer scene"},
                                                     {"volume", "volume"},
@@ -357,11 +357,11 @@ std::string inspectionText(const Inspection& inspection) {
     textMember += section(title, nodeLines(inspection[key]));
   textMember += section("Other nodes", otherLines(inspection["others"]));
   if (refused)
-    textMember += "\n" + paragraph("", "A render would be refused: " +
-                                           inspection["refused"].get<std::string>());
+    textMember +=
+        "\n" + paragraph("", "A render would fail: " + inspection["refused"].get<std::string>());
   if (const Json& use = inspection["render"]; !use.is_null())
     textMember +=
-        section(refused ? "It would use, as far as that can be read" : "A render would use",
+        section(refused ? "It would use, as far as can be determined" : "A render would use",
                 renderLines(use));
   return textMember + section("Warnings", listLines(inspection["warnings"])) +
          section("Ignored", listLines(inspection["ignored"]));
@@ -372,18 +372,18 @@ std::string inspectionText(const Inspection& inspection) {
 constexpr const char* inspectGroup = "Inspect";
 const Option inspectTable[] = {
     {"volume", "NAME", inspectGroup,
-     "As for render: which volume of a scene, or series of a folder"},
+     "As for render: volume of a scene, or series of a DICOM folder"},
     {"segmentation", "FILE|NAME", inspectGroup, "As for render: a file, or a node of the scene"},
-    {"labels", "FILE|NAME", inspectGroup, "As for render: names of a label map's values"},
-    {"progress", "KIND", inspectGroup, "Taken as render takes it; inspect shows none",
+    {"labels", "FILE|NAME", inspectGroup, "As for render: names of label values"},
+    {"progress", "KIND", inspectGroup, "Accepted as by render; inspect shows no progress",
      ValueSpec::choice({"auto", "bar", "xml", "none"})},
     {"json", "", inspectGroup,
      "Print one JSON document: volumes, segmentations, volumeRenderings, volumeProperties, rois, "
      "views, cameras, transforms, series, others; materials (the library); render (what it would "
-     "use), refused (why it would not start, else null), warnings, ignored; mm, RAS, ml"},
+     "use), refused (why it would fail, else null), warnings, ignored; units mm, RAS, ml"},
 };
 
-/// Arguments of `merged` that are not given.
+/// Arguments of `merged` that were not given, hence come from the scene.
 std::vector<std::string> listStoredArguments(const OptionValues& given,
                                              const OptionValues& merged) {
   std::vector<std::string> arguments = merged.arguments();
@@ -398,7 +398,7 @@ std::vector<std::string> listStoredArguments(const OptionValues& given,
 const CommandSyntax& inspectSyntax() {
   static const CommandSyntax syntax = {
       "inspect",
-      "Lists what an input holds, what a render of it would use, and what it would ignore and why.",
+      "Lists what an input contains, what a render would use, and what it would ignore and why.",
       {{"INPUT",
         "Slicer scene (.mrml .mrb), volume (.nrrd .nhdr .nii .nii.gz .mha .mhd), label map, "
         "segmentation (.seg.nrrd) or DICOM folder"}},
@@ -425,7 +425,7 @@ int inspectCommand(int argc, char** argv, int first) {
   request.segmentation = merged.text("segmentation");
   request.labels = merged.text("labels");
   if (request.volume && !input.document() && !isFolder(input.path()))
-    throw usageError("--volume: only a scene or a DICOM folder holds several; drop it");
+    throw usageError("--volume: only for a scene or DICOM folder with several volumes; omit it");
   Inspection inspection = inspectInput(request, input);
   if (Inspection& use = inspection["render"]; !use.is_null())
     use["stored"] = listStoredArguments(given, merged);

@@ -1,4 +1,4 @@
-// Use of this machine's cores and instruction sets.
+// Use of the machine's cores and instruction sets.
 
 #include "base/Error.h"
 #include "base/InstructionSets.h"
@@ -20,10 +20,10 @@
 namespace fenestra {
 namespace {
 
-/// Starts `count` threads at once, to find out whether they can run: TBB's threads start each
-/// other, and end the process where one cannot start.
+/// Starts `count` threads at the same time, to check that they can run: TBB's threads start each
+/// other, and end the process if one cannot start.
 void tryThreads(int count) {
-  // Threads are asked to end, and joined, when all have started or one cannot.
+  // The destructors stop and join all threads, also if one could not start.
   std::vector<std::jthread> threads;
   for (int i = 0; i < count; ++i)
     threads.emplace_back([](const std::stop_token& end) {
@@ -51,7 +51,7 @@ int threadCount(const OptionValues& options) {
 
 void configureMachine(const OptionValues& options) {
   const int count = threadCount(options);
-  // Never destroyed: after its destruction TBB would start more than `count` threads.
+  // Never destroyed: without it TBB would start more than `count` threads.
   [[maybe_unused]] static const auto* const limit = new tbb::global_control(
       tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count));
   try {
@@ -61,7 +61,7 @@ void configureMachine(const OptionValues& options) {
   } catch (const std::runtime_error&) { // std::system_error, and TBB's own errors
     throw outputError("threads", count,
                       " cannot be started; allow more processes (ulimit -u), or "
-                      "render with --threads 1");
+                      "use --threads 1");
   }
   pinInstructions();
 }

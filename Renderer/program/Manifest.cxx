@@ -15,9 +15,9 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-/// Name, size and time of each file, in the names' order.
+/// Name, size and modification time of each file, in the order of names.
 json listFileStates(const std::set<fs::path>& files, const fs::path& folder) {
-  std::map<std::string, json> states; // one, however many names a file has in `files`
+  std::map<std::string, json> states; // one per file, even if `files` has several names of it
   std::error_code failed;
   for (const fs::path& file : files) // a member of an archive changes with the archive
     if (fs::is_regular_file(file, failed)) {
@@ -32,9 +32,9 @@ json listFileStates(const std::set<fs::path>& files, const fs::path& folder) {
   return list;
 }
 
-/// True if a piece's file is as recorded; false if missing or empty: to be made again. Throws Error
-/// (usage) for any other file: pieces are placed whole, so a shorter one is no torn piece but
-/// somebody's work.
+/// True if an item's file is unchanged; false if it is missing or empty, to be rendered again.
+/// Throws Error (usage) for any other file: since items appear by renaming, it is not a partial
+/// item but was replaced or edited.
 bool isAsRecorded(const fs::path& path, const JsonNode& recorded, const std::string& itemKey) {
   std::error_code failed;
   const std::uintmax_t bytes = fs::file_size(path, failed);
@@ -43,11 +43,11 @@ bool isAsRecorded(const fs::path& path, const JsonNode& recorded, const std::str
   if (recorded.at("bytes").json() == std::to_string(bytes) &&
       recorded.at("digest").json() == std::to_string(computeDigest(path)))
     return true;
-  throw usageError(path, ": is not the ", itemKey,
-                   " that was recorded; move it away, and the same command renders it again");
+  throw usageError(path, ": differs from the recorded ", itemKey,
+                   "; move it away, and the same command renders it again");
 }
 
-/// True for a record of any work of any version of Fenestra.
+/// True for the manifest of any task, written by any version of Fenestra.
 bool isManifest(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   const json document = json::parse(file, nullptr, false);
@@ -65,19 +65,19 @@ std::string listMissing(const json& some, const json& others) {
   return join(names, " ");
 }
 
-/// Text of the difference between two requests in the value of `key`.
+/// Text of the difference between the values of `key` in two requests.
 std::string describeDifference(const std::string& key, const json& stored, const json& current) {
   if (key == "version")
-    return "made by fenestra " + stored.dump();
+    return "written by fenestra " + stored.dump();
   const std::string now = key == "voxels" ? "" : listMissing(current, stored);
   if (key != "arguments")
-    return (now.empty() ? "the volume or the focus" : now) + " has changed since";
+    return (now.empty() ? "the volume or the focus" : now) + " has changed";
   const std::string before = listMissing(stored, current);
-  return before + (before.empty() || now.empty() ? "" : " there, ") + now +
-         (now.empty() ? " there" : " here");
+  return before + (before.empty() || now.empty() ? "" : " before, ") + now +
+         (now.empty() ? " before" : " now");
 }
 
-/// Throws Error (input), naming file and field, unless a record's request has the structure that
+/// Throws Error (input), naming file and field, unless a stored request has the structure that
 /// `describeDifference` relies on.
 void checkRequest(const JsonNode& request) {
   request.allowOnly({"version", "arguments", "inputs", "voxels"});
@@ -100,7 +100,7 @@ void Manifest::addInputs(const std::set<fs::path>& files) {
 }
 
 void Manifest::readRequest(int mostFiles) {
-  // Values and keys of a file and its piece; bytes, with a name of 255 letters, all escaped.
+  // JSON values and keys of a file and its item; bytes, with a name of 255 escaped characters.
   constexpr int parts = 23, bytes = 2100;
   const std::string text =
       readText(m_path, maxTextBytes + std::uint64_t{bytes} * static_cast<unsigned>(mostFiles));
@@ -131,7 +131,7 @@ void Manifest::readItems(int count, const ListFiles& listFiles,
   const JsonNode root(m_document, m_path.string());
   for (const JsonNode& entry : root.at("finished").elements()) {
     const auto item = static_cast<int>(entry.at(m_itemKey).number(0, count - 1));
-    const auto files = entry.find("files"); // absent in files of older versions
+    const auto files = entry.find("files"); // missing in manifests of older versions
     const auto isUnchanged = [this](const fs::path& path, const JsonNode& recorded) {
       return isAsRecorded(path, recorded, m_itemKey);
     };
@@ -172,7 +172,7 @@ void Manifest::write(Outputs& outputs) const {
 void Manifest::finish(int item, const WrittenFiles& files, const json& extra, Outputs& outputs) {
   Item& finished = m_finished[item] = {json::array(), extra};
   for (const auto& [file, state] : files)
-    finished.files.push_back({{"file", file.filename().string()}, // beside the record
+    finished.files.push_back({{"file", file.filename().string()}, // in the manifest's folder
                               {"bytes", state.bytes},
                               {"digest", state.digest}});
   write(outputs);

@@ -1,7 +1,7 @@
 #pragma once
-// Record of the finished pieces of long work (frames of a turntable, a row of a study), in a file
-// beside them: the same command resumes where it was stopped, and another command does not mix its
-// pieces with these.
+// Manifest of the finished items of a long task (frames of a turntable, a row of a batch), a file
+// beside them: request, sizes and times of inputs, size and digest of each result. It is the only
+// state of the task. The same command resumes; another one cannot mix its items with these.
 
 #include "io/JsonNode.h"
 #include "io/Outputs.h"
@@ -21,64 +21,64 @@ namespace fenestra {
 
 class Manifest {
 public:
-  /// Finished piece.
+  /// Finished item.
   struct Item {
     nlohmann::json files; ///< name, bytes and digest of each
-    nlohmann::json extra; ///< further members of its entry; null: none
+    nlohmann::json extra; ///< additional members of its entry; null: none
   };
   using WrittenFiles = std::vector<std::pair<std::filesystem::path, ContentDigest>>;
   using ListFiles = std::function<std::vector<std::filesystem::path>(int item)>;
 
-  /// `word`: what a piece is called, in the file and in messages. `arguments`: those on which the
-  /// pieces depend, with file names relative to the record's folder.
+  /// `itemKey`: name of an item in file and messages, as "frame". `arguments`: those that the items
+  /// depend on, with file names relative to the manifest's folder.
   Manifest(std::filesystem::path path, std::string itemKey,
            const std::vector<std::string>& arguments);
 
   const std::filesystem::path& path() const { return m_path; }
   std::filesystem::path folder() const { return m_path.parent_path(); }
 
-  /// Adds a part to the request, beside version and arguments.
+  /// Adds a member to the request, beside version and arguments.
   void addRequest(const std::string& key, const nlohmann::json& value) { m_request[key] = value; }
-  /// Adds name, size and time of the input files to the request, by which a replaced file is
-  /// noticed.
+  /// Adds names, sizes and modification times of the input files to the request, which reveal a
+  /// replaced file.
   void addInputs(const std::set<std::filesystem::path>& files);
 
-  /// Reads the request in the file, of untrusted size: at most a record of `mostFiles` files.
-  /// Throws Error (input), naming file and field, for a damaged record.
+  /// Reads the request from the file. The file is untrusted: at most the size of a manifest of
+  /// `mostFiles` files is read. Throws Error (input), naming file and field, if it is damaged.
   void readRequest(int mostFiles);
   bool hasRequest() const { return !m_recorded.is_null(); }
-  /// Input files that the request read from the file names.
+  /// Input files that the stored request names.
   std::set<std::filesystem::path> recordedInputs() const;
-  /// Text of the first difference between the request read from the file and this one, as far as
-  /// the latter is known; nullopt: none, or nothing was read.
+  /// First difference between the stored request and this one, of the members that this one has so
+  /// far; nullopt: none, or nothing was read.
   std::optional<std::string> findDifference() const;
 
-  /// Reads the finished pieces, of `count`, after readRequest; pieces that miss a file do not
-  /// count. `readExtra`: checks and returns the further members of an entry. Throws Error: usage
-  /// for a file that is there but not as recorded; input for a damaged record.
+  /// Reads the finished items, numbered from 0 to `count` - 1, after readRequest(). Items with
+  /// missing files are skipped. `readExtra` checks and returns additional members of an entry.
+  /// Throws Error: usage if a file differs from its entry; input for a damaged manifest.
   void readItems(int count, const ListFiles& listFiles,
                  const std::function<nlohmann::json(const JsonNode& entry)>& readExtra);
-  /// Files that the record read by readRequest names and that still have their sizes.
+  /// Files that the stored manifest names and whose sizes are unchanged.
   std::set<std::filesystem::path> recordedFiles() const;
 
   const std::map<int, Item>& finished() const { return m_finished; }
   void clearItems() { m_finished.clear(); }
 
-  /// Throws the errors of Outputs. A record of any version may be replaced.
+  /// Throws the errors of Outputs. A manifest of any version may be replaced.
   void declare(Outputs& outputs) const;
-  /// Puts the record in place: before the first piece, for a piece without a record cannot be
-  /// distinguished from another command's. Throws Error (output).
+  /// Writes the manifest. Call before the first item, since an item without a manifest could belong
+  /// to any command. Throws Error (output).
   void write(Outputs& outputs) const;
-  /// Records sizes and digests of the piece's files, by which a damaged or replaced file is
-  /// noticed. Call once they are in place. Throws Error (output).
+  /// Adds an item whose files are in place, with their sizes and digests, which reveal damaged or
+  /// replaced files. Throws Error (output).
   void finish(int item, const WrittenFiles& files, const nlohmann::json& extra, Outputs& outputs);
 
 private:
   std::filesystem::path m_path;
   std::string m_itemKey;
-  nlohmann::json m_document; ///< as read
+  nlohmann::json m_document; ///< content of the file
   nlohmann::json m_request;
-  nlohmann::json m_recorded; ///< request in the file; null: not read
+  nlohmann::json m_recorded; ///< stored request; null: not read
   std::map<int, Item> m_finished;
 };
 

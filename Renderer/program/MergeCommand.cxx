@@ -1,6 +1,6 @@
-// `fenestra merge`: parts of a picture (render --shard) as the picture that one machine would have
-// made. The scene is made again, from the flags that the parts record: for the filter's features,
-// the clip's surface and its measures.
+// `fenestra merge`: joins the shards of an image (render --shard), bit for bit as in one run. The
+// scene is built again from the options that the shards store, since denoising, clipping
+// surface and measures need it.
 
 #include "base/Error.h"
 #include "io/JsonNode.h"
@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// True for flags of a picture that is rendered already.
+/// True for options that apply to an image whose samples exist already.
 bool isMergeOption(const Option& option) {
   constexpr std::string_view others[] = {
       "checkpoint", "shard", "xml", "echo", "returnparameterfile", "processinformationaddress"};
@@ -23,46 +23,46 @@ bool isMergeOption(const Option& option) {
          std::ranges::find(others, option.name) == std::end(others);
 }
 
-/// Throws Error (usage) unless both are parts of one picture with the same samples.
+/// Throws Error (usage) unless both are shards of one image with the same number of samples.
 void requireSameImage(const CheckpointFile& one, const CheckpointFile& other) {
   const auto refuse = [&](const std::string& what) {
-    return usageError(other.path(), ": ", what, "; merge parts of one picture");
+    return usageError(other.path(), ": ", what, "; merge shards of one image");
   };
   if (one.shard().count != other.shard().count)
-    throw refuse(concat("is part ", formatShard(other.shard()), ", and ", one.path(), " is ",
+    throw refuse(concat("is shard ", formatShard(other.shard()), ", but ", one.path(), " is ",
                         formatShard(one.shard())));
   for (const char* key : {"version", "settings", "inputs"}) {
     const nlohmann::json here = {
         {key, JsonNode(other.metadata(), other.path().string()).at(key).value()}};
     const std::string difference = findDifference(one.metadata(), here, one.path().string());
     if (!difference.empty())
-      throw refuse(concat("is not of the picture of ", one.path(), ": ", difference));
+      throw refuse(concat("belongs to another image than ", one.path(), ": ", difference));
   }
   if (one.target() != other.target())
     throw refuse(
-        concat("has samples by ", other.target(), ", and ", one.path(), " by ", one.target()));
+        concat("was rendered by ", other.target(), ", but ", one.path(), " by ", one.target()));
   if (one.finishedSamples() != other.finishedSamples())
-    throw usageError(other.path(), ": has ", other.finishedSamples(), " samples a pixel, and ",
+    throw usageError(other.path(), ": has ", other.finishedSamples(), " samples per pixel, but ",
                      one.path(), " has ", one.finishedSamples(),
-                     "; run the command of the lesser one to its end");
+                     "; resume the one with fewer samples");
 }
 
-/// Films in the order of their parts. Throws Error: usage where one is missing, doubled, not
-/// finished, or of another picture; input where one is damaged.
+/// Checkpoint files in the order of their shards. Throws Error: usage if one is missing, duplicate,
+/// unfinished, or of another image; input if one is damaged.
 std::vector<CheckpointFile> readShards(const std::vector<std::string>& names) {
   std::vector<CheckpointFile> films;
   for (const std::string& name : names) {
     const CheckpointFile& film = films.emplace_back(name);
     requireSameImage(films.front(), film);
     if (film.finishedSamples() == 0 || film.begunSamples() != film.finishedSamples())
-      throw usageError(film.path(), ": is not finished; run its command again");
+      throw usageError(film.path(), ": is unfinished; run its render command again");
   }
   std::ranges::sort(films, {}, [](const CheckpointFile& film) { return film.shard().index; });
   const auto twice = std::ranges::adjacent_find(
       films, {}, [](const CheckpointFile& film) { return film.shard().index; });
   if (twice != films.end())
-    throw usageError(twice->path(), ": is part ", formatShard(twice->shard()), ", as is ",
-                     std::next(twice)->path(), "; drop one");
+    throw usageError(twice->path(), ": is shard ", formatShard(twice->shard()), ", as is ",
+                     std::next(twice)->path(), "; omit one");
   std::vector<int> missing;
   const int count = films.front().shard().count;
   for (int index = 0; index < count; ++index)
@@ -70,7 +70,7 @@ std::vector<CheckpointFile> readShards(const std::vector<std::string>& names) {
       missing.push_back(index + 1);
   constexpr std::size_t mostNamed = 10;
   if (!missing.empty())
-    throw usageError("PART: of ", count, " parts, number ",
+    throw usageError("PART: of ", count, " shards, number ",
                      join(
                          missing, ", ", [](int i) { return concat(i); }, mostNamed),
                      missing.size() == 1 ? " is" : " are", " missing; add ",
@@ -78,7 +78,7 @@ std::vector<CheckpointFile> readShards(const std::vector<std::string>& names) {
   return films;
 }
 
-/// Flags with which a film was rendered, whose names of files are relative to the film. Throws
+/// Options that a checkpoint file was rendered with. Their file names are relative to it. Throws
 /// Error (input).
 OptionValues readRenderOptions(const CheckpointFile& film) {
   OptionValues options(renderSyntax.options);
@@ -87,7 +87,7 @@ OptionValues readRenderOptions(const CheckpointFile& film) {
   for (const auto& [name, values] : given.members()) {
     const Option* const option = findOption(renderSyntax.options, name);
     if (name != "INPUT" && !(option && isImageOption(*option)))
-      throw given.error("\"" + name + "\" is no flag of a picture; render the film again");
+      throw given.error("\"" + name + "\" is not an option of an image; render the shard again");
     for (const JsonNode& value : values.elements()) {
       const std::string text = value.text();
       std::error_code failed;
@@ -97,13 +97,13 @@ OptionValues readRenderOptions(const CheckpointFile& film) {
     }
   }
   if (options.texts("INPUT").size() != 1)
-    throw given.error("must have one INPUT; render the film again");
+    throw given.error("must have one INPUT; render the shard again");
   return options;
 }
 
 } // namespace
 
-/// Built on first use: renderSyntax is initialised in another source.
+/// Built on first use, since renderSyntax is initialized in another source file.
 const CommandSyntax& mergeSyntax() {
   static const std::vector<Option> options = [] {
     std::vector<Option> all;
@@ -112,11 +112,11 @@ const CommandSyntax& mergeSyntax() {
   }();
   static const CommandSyntax syntax = {
       "merge",
-      "Makes a picture of its parts, which fenestra render --shard K/N has put into films, in any "
-      "order: bit for bit the picture that one machine would have made. A single film of "
-      "--checkpoint will do as well. The films name the inputs, which are read again.",
+      "Joins the shards of an image, which fenestra render --shard K/N has written to checkpoint "
+      "files, in any order: bit for bit the image of a single run. A single file of --checkpoint "
+      "can be merged, too. The checkpoint files name the inputs, which are read again.",
       {{.name = "PART",
-        .description = "Films (.film), all parts of one picture",
+        .description = "All checkpoint files (.film) of one image",
         .canRepeat = true}},
       options,
   };
@@ -137,7 +137,7 @@ int mergeCommand(int argc, char** argv, int first) {
         options.add(option.name, value);
     }
   RenderJob job = makeRenderJob(options);
-  RenderSettings& settings = job.options.settings; // nothing is left to render
+  RenderSettings& settings = job.options.settings; // such that no samples are added
   settings.samples = films.front().finishedSamples();
   settings.seconds = infinity;
   settings.noise = -1.0;

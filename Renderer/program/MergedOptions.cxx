@@ -14,14 +14,14 @@
 namespace fenestra {
 namespace {
 
-// ---- an organ preset's flags
+// ---- options of an organ preset
 
-/// False for a default that Slicer hands over: its panel passes every flag.
+/// False for a default passed by Slicer, whose panel passes every option.
 bool isGiven(const OptionValues& given, const std::string& name) {
   return given.has("returnparameterfile") ? given.hasNonDefault(name) : given.has(name);
 }
 
-/// True if given flags replace what the preset says of `own`.
+/// True if given options override the preset's option `own`.
 bool isOverridden(const Option& own, const OptionValues& given) {
   return std::ranges::any_of(renderSyntax.options, [&](const Option& option) {
     const bool isAlternative = option.overrideGroup == own.overrideGroup &&
@@ -32,16 +32,17 @@ bool isOverridden(const Option& own, const OptionValues& given) {
   });
 }
 
-/// Flag that a preset sets. Throws Error (input) for one that it may not set: a preset may be a
+/// Option that a preset sets. Throws Error (input) if presets may not set it; a preset may be a
 /// user's file.
 const Option& findPresetOption(const std::string& name, const std::string& source) {
   if (const Option* option = findOption(renderSyntax.options, name);
       option && isAppearanceOption(*option))
     return *option;
-  throw inputError(source, "flags: \"", name, "\" is no flag of clipping, view or look; remove it");
+  throw inputError(source, "flags: \"", name,
+                   "\" is not an option of clipping, view or appearance; remove it");
 }
 
-/// Segments named by the given focus; all if it names none.
+/// Segments that the given focus names; all if it names none.
 std::vector<SegmentInfo> selectFocus(const OptionValues& given,
                                      const std::vector<SegmentInfo>& segments) {
   const std::vector<std::string> focus = given.list("focus");
@@ -59,11 +60,11 @@ OrganPreset choosePreset(const OptionValues& given, const Input& input,
   if (name != "auto")
     return findOrganPreset(name);
   if (!names)
-    throw usageError("--preset auto: goes by the names of segments; add --segmentation FILE, or "
-                     "name a preset");
+    throw usageError("--preset auto: chooses by segment names; add --segmentation FILE, or name a "
+                     "preset");
   if (names->segments.empty())
-    throw inputError(names->source, "--preset auto: its segments have no names, only values; name "
-                                    "them with --labels, or name a preset and give --focus "
+    throw inputError(names->source, "--preset auto: its segments have no names, only values; add "
+                                    "--labels with names, or name a preset and give --focus "
                                     "A,B,...");
   std::vector<OrganPreset> presets;
   for (const std::string& own : listBuiltinPresets("presets"))
@@ -77,20 +78,20 @@ OrganPreset choosePreset(const OptionValues& given, const Input& input,
 void addFocus(const OrganPreset& preset, const SegmentNames& names, OptionValues& values) {
   if (names.segments.empty())
     throw inputError(names.source, "--preset ", preset.name,
-                     ": its segments have no names, only values; name them with --labels, or say "
-                     "which are meant with --focus A,B,...");
+                     ": its segments have no names, only values; add --labels with names, or "
+                     "--focus A,B,...");
   const std::vector<SegmentInfo> focus = findFocusSegments(preset.focus, names.segments);
   if (focus.empty())
-    throw inputError(names.source, "--preset ", preset.name, ": none of its segments is one (",
+    throw inputError(names.source, "--preset ", preset.name, ": none of its segments found (only ",
                      joinSegmentNames(names.segments),
-                     "); give --focus A,B,..., or another preset");
+                     "); add --focus A,B,..., or use another preset");
   for (const SegmentInfo& segment : focus)
     values.add("focus", replaceAll(segment.id, ",", "\\,"));
 }
 
-// ---- a scene's flags
+// ---- options of a scene
 
-/// True if given flags replace a stored one: itself, or another of its topic.
+/// True if given options replace a stored one: the same option, or another one of its group.
 bool isReplaced(const Option& own, const OptionValues& given) {
   return std::ranges::any_of(renderSyntax.options, [&](const Option& option) {
     const bool isInGroup = parentGroup(option.overrideGroup) == parentGroup(own.overrideGroup);
@@ -112,10 +113,10 @@ bool isFile(const std::string& name, const std::string& value, const Input& inpu
   return name == "transfer" && isTransferFile(value, input);
 }
 
-/// True beyond the limits of a scene's flags. A text that is no number is refused later, like one
-/// that a user gave.
+/// True for values beyond the limits of a scene. A text that is no number is rejected later, as on
+/// the command line.
 bool isBeyondLimit(const std::string& name, const std::string& value) {
-  constexpr int mostPixels = 4096; // limit of width and of height
+  constexpr int mostPixels = 4096; // for width and height
   constexpr std::uint64_t mostSamples = 65536;
   int width = 0, height = 0;
   if (name == "size" && std::sscanf(value.c_str(), "%dx%d", &width, &height) == 2)
@@ -127,8 +128,8 @@ bool isBeyondLimit(const std::string& name, const std::string& value) {
   return samples.integer(name) > mostSamples;
 }
 
-/// Adds a stored value; of a flag that may be repeated, values separated by commas ("\," is a
-/// comma).
+/// Adds a stored value. A repeatable option stores its values separated by commas ("\," is a
+/// literal comma).
 void addStoredValue(const Option& option, const std::string& value, OptionValues& merged) {
   if (!option.spec.canRepeat)
     return merged.add(option.name, value);
@@ -138,13 +139,13 @@ void addStoredValue(const Option& option, const std::string& value, OptionValues
     merged.add(option.name, one);
 }
 
-/// Reason why a scene's stored value is not taken; empty: taken.
+/// Reason why a scene's stored value is ignored; empty: it is used.
 std::string rejectionReason(const Input& input, const std::string& name, const std::string& value) {
   if (name == "volume" || name == "segmentation")
     return input.document()->find(value) ? "" : "is no node of the scene";
   if (isBeyondLimit(name, value))
-    return "is more than a scene may ask for";
-  return isFile(name, value, input) ? "names a file, which a scene may not choose" : "";
+    return "is beyond the limit for scenes";
+  return isFile(name, value, input) ? "names a file, which a scene must not do" : "";
 }
 
 } // namespace
@@ -201,14 +202,14 @@ SceneOptions mergeSceneOptions(const OptionValues& given, const Input& input) {
       addStoredValue(option, value, merged);
     else
       result.ignored.push_back(concat(node.tag, ' ', describeNode(node), ": ", name, " \"",
-                                      sanitize(value), "\" ", reason, "; give --", name, ' ',
-                                      sanitize(value)));
+                                      sanitize(value), "\" ", reason, "; to use it, add --", name,
+                                      ' ', sanitize(value)));
   }
   const bool hasMaterials = merged.text("materials").value_or(noMaterials) != noMaterials;
-  if (!hasMaterials && !given.has("material")) // changes of what was not taken
+  if (!hasMaterials && !given.has("material")) // changes of materials that were ignored
     merged.remove("material");
   const bool usesLabels = merged.has("focus") || hasMaterials;
-  if (!usesLabels && !given.has("segmentation")) // the stored choice does not matter
+  if (!usesLabels && !given.has("segmentation")) // the stored choice has no effect
     merged.remove("segmentation");
   return result;
 }

@@ -9,7 +9,7 @@
 namespace fenestra {
 namespace {
 
-/// Finite number, perhaps between blanks.
+/// Finite number, optionally surrounded by blanks.
 std::optional<double> parseFinite(std::string_view text) {
   const auto value = parseNumber<double>(trim(text, " "));
   return value && std::isfinite(*value) ? value : std::nullopt;
@@ -32,14 +32,14 @@ Error invalidValue(const std::string& option, const std::string& expected, const
   return usageError("--", option, ": expected ", expected, ", got '", toOneLine(got), "'");
 }
 
-/// Throws Error (usage) unless there is a value, and in the flag's range.
+/// Throws Error (usage) unless the value exists and is in the option's range.
 template <typename Number>
 Number requireInRange(std::optional<Number> value, const Option& option, const std::string& given,
                       const char* alternative = "") {
   const auto [least, greatest] = std::pair(option.spec.least, option.spec.greatest);
   if (value && least <= static_cast<double>(*value) && static_cast<double>(*value) <= greatest)
     return *value;
-  const char* const kind = std::is_integral_v<Number> ? "a whole number from " : "a number from ";
+  const char* const kind = std::is_integral_v<Number> ? "an integer from " : "a number from ";
   throw invalidValue(option.name,
                      concat(kind, toString(least), " to ", toString(greatest), alternative), given);
 }
@@ -71,7 +71,7 @@ std::optional<std::string> OptionValues::text(const std::string& name) const {
   if (it == m_values.end())
     return std::nullopt;
   if (it->second.size() > 1)
-    throw usageError("--" + name + ": is given more than once; give it once");
+    throw usageError("--" + name + ": given more than once; give it once");
   return it->second.front();
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Flags as data: one table, read by --help, by parsing, by Slicer's description, and where a
-// scene's or a preset's flags meet those of the command line.
+// Command-line options as data. One table serves --help, the man page, shell completions, parsing,
+// Slicer's XML, and the merge with options stored in scenes and presets.
 
 #include "base/Text.h"
 #include "base/Vector.h"
@@ -20,22 +20,22 @@ namespace fenestra {
 
 class OptionValues;
 
-/// Values that a flag accepts, its default, and where the value goes.
+/// Type, range and default of an option's value, and the variable that receives it.
 struct ValueSpec {
   std::string type = "string";                   ///< Slicer's name; empty: not in Slicer's panel
-  std::string channel = {};                      ///< of a file: "input", or "output" if written
+  std::string channel = {};                      ///< of a file: "input" or "output"
   std::string image = {};                        ///< of an image: "label" or "vector"
-  std::string extensions = {};                   ///< of a file that is written
+  std::string extensions = {};                   ///< of an output file
   double least = -infinity, greatest = infinity; ///< range of a number
-  std::vector<std::string> choices = {};         ///< values, if not empty
-  std::vector<std::string> namedValues = {};     ///< some of the values of a flag without `words`
+  std::vector<std::string> choices = {};         ///< all values of an enumeration; empty: free
+  std::vector<std::string> namedValues = {};     ///< some valid values of a free text or number
   std::string defaultValue = {}; ///< default, shown in the help and in Slicer's panel; empty: none
-  bool canRepeat = false;        ///< may be given several times, each value one by itself (texts)
-  std::optional<double> noEffectValue = {}; ///< number that changes nothing, whatever else is given
-  /// Puts a given value into its place; empty: the command asks for the value by name.
+  bool canRepeat = false;        ///< each occurrence adds one text
+  std::optional<double> noEffectValue = {}; ///< number that has no effect, with any other options
+  /// Stores a given value in its variable; empty: the command looks up the value by name.
   std::function<void(const OptionValues&, const std::string& name)> store = {};
 
-  static ValueSpec text() { return {}; } ///< checked by the code that uses it
+  static ValueSpec text() { return {}; } ///< validated by its user
   static ValueSpec texts() { return {.canRepeat = true}; }
   static ValueSpec list() { return {"string-vector"}; }
   static ValueSpec numbers() { return {"double-vector"}; }
@@ -51,7 +51,7 @@ struct ValueSpec {
   static ValueSpec integer(double least, double greatest) {
     return {"integer", "", "", "", least, greatest};
   }
-  /// A number, or the word auto, which leaves `place` empty and is the default.
+  /// A number, or "auto" (the default), which resets `target`.
   static ValueSpec numberOrAuto(std::optional<double>& target, double least, double greatest,
                                 double noEffectValue) {
     ValueSpec spec = ValueSpec{.least = least,
@@ -66,7 +66,7 @@ struct ValueSpec {
   static ValueSpec choice(std::vector<std::string> words) {
     return {.type = "string-enumeration", .choices = std::move(words)};
   }
-  /// A word for each value of `place`, where it goes; the place's present value is the default.
+  /// One choice per value of `target`. The default is the current value of `target`.
   template <typename Target>
   static ValueSpec
   choice(Target& target,
@@ -84,7 +84,7 @@ struct ValueSpec {
     return spec;
   }
 
-  /// Place of the value, which must outlive `put`. The default is its present number or text.
+  /// Stores into `target`, which must outlive the result. Its current value becomes the default.
   template <typename Target>
   ValueSpec bind(Target& target) const {
     ValueSpec spec = bind(
@@ -95,7 +95,7 @@ struct ValueSpec {
       spec.defaultValue = target;
     return spec;
   }
-  /// Place that `read(flags, name, place)` fills, for values of a form of their own.
+  /// Calls `read(options, name, target)`, for values with a syntax of their own.
   template <typename Target, typename Read>
   ValueSpec bind(Target& target, Read read) const {
     ValueSpec spec = *this;
@@ -104,13 +104,13 @@ struct ValueSpec {
     };
     return spec;
   }
-  /// Names that stand for values, beside other values.
+  /// Adds named values, such as presets, to free text.
   ValueSpec withNamedValues(std::vector<std::string> known) const {
     ValueSpec spec = *this;
     spec.namedValues = std::move(known);
     return spec;
   }
-  /// Default to be shown instead; empty: none.
+  /// Replaces the displayed default; empty: none.
   ValueSpec withDefault(const std::string& text) const {
     ValueSpec spec = *this;
     spec.defaultValue = text;
@@ -118,23 +118,23 @@ struct ValueSpec {
   }
 };
 
-/// Topic of a flag. A given flag replaces all flags of its topic that a scene stores; `own`: itself
-/// alone. A part of a topic holds alternatives: a given one replaces all that a preset sets.
+/// A given option replaces all options of its group that a scene stores; in `own`, only itself. The
+/// options of a subgroup are alternatives: a given one replaces all of them that a preset sets.
 enum class OverrideGroup {
   own,
   focus,
   clip,
-  boundary, ///< part of clip
+  boundary, ///< subgroup of clip
   view,
-  viewpoint, ///< part of view
-  extent,    ///< part of view
+  viewpoint, ///< subgroup of view
+  extent,    ///< subgroup of view
   materials,
   lights,
   stop,
-  process ///< files, and how the program works: stored in no scene, for it shapes no picture
+  process ///< files and execution: never stored in a scene, since the image does not depend on them
 };
 
-/// Topic that a part belongs to; else the topic itself.
+/// Group of a subgroup; any other group itself.
 constexpr OverrideGroup parentGroup(OverrideGroup group) {
   using enum OverrideGroup;
   if (group == boundary)
@@ -142,76 +142,76 @@ constexpr OverrideGroup parentGroup(OverrideGroup group) {
   return group == viewpoint || group == extent ? view : group;
 }
 
-/// Things without which a flag has no effect, and is refused: a focus, any clip, labels (of a
-/// focus or of materials), or a kind of clip.
+/// What an option requires to have an effect: a focus, any clip, labels (a focus or materials), or
+/// one kind of clip. Without it the option is rejected.
 enum class Requires { nothing, focus, labels, clip, plane, hole, ghost, surface, spline };
 
 struct Option {
   std::string name;        ///< one lower-case word, without dashes
   std::string placeholder; ///< placeholder in the help, such as FILE; empty: a switch
   std::string group;       ///< heading in the help
-  std::string description; ///< one sentence of help; "[…]" at its end: a default in words
+  std::string description; ///< one sentence; a final "[…]" describes the default
   ValueSpec spec = {};
   OverrideGroup overrideGroup = OverrideGroup::own;
   Requires requirement = Requires::nothing;
 
   bool isSwitch() const { return placeholder.empty(); }
-  /// True if the value names a file to be written.
+  /// True if the value names an output file.
   bool isOutputFile() const { return spec.channel == "output"; }
   /// True if the value may name a file.
   bool canNameFile() const { return placeholder.find("FILE") != std::string::npos; }
-  /// Sentence of help with the default, "… [50]".
+  /// Description and default: "… [50]".
   std::string help() const;
 };
 
 struct Positional {
   std::string name;
   std::string description;               ///< one sentence of help
-  std::vector<std::string> choices = {}; ///< values; empty: it names a file
-  bool canRepeat = false;                ///< the last may be given several times
+  std::vector<std::string> choices = {}; ///< all values; empty: a file name
+  bool canRepeat = false;                ///< only for the last: may occur several times
 };
 
-/// Flags of another command that this one shares its table with, but does not take.
+/// Options that are in a command's table, which other commands share, but that it rejects.
 struct ExcludedOptions {
   std::vector<std::string> names;
-  std::string reason; ///< and what to do; the rest of the message
+  std::string reason; ///< second half of the error message: reason and hint
 };
 
 struct CommandSyntax {
   std::string name;
   std::string summary;
   std::vector<Positional> positionals; ///< all required, in order
-  std::span<const Option> options;     ///< those refused, too
+  std::span<const Option> options;     ///< including `excluded`
   std::vector<ExcludedOptions> excluded = {};
 };
 
-/// Flag values as the user gave them. Accessors throw Error (usage) for values that the flag does
-/// not take; those without "optional" are for flags that are given.
+/// Option values as given by the user. Accessors throw Error (usage) for invalid values. Those that
+/// return no std::optional require that the option was given.
 class OptionValues {
 public:
   explicit OptionValues(std::span<const Option> options) : m_options(options) {}
 
   bool has(const std::string& name) const { return m_values.contains(name); }
-  /// True if the flag was given with another value than its default.
+  /// True if the option was given with a value other than its default.
   bool hasNonDefault(const std::string& name) const;
   std::optional<std::string> text(const std::string& name) const;
-  /// Finite number in the flag's range.
+  /// Finite number in the option's range.
   std::optional<double> number(const std::string& name) const;
-  /// The same; nothing for auto.
+  /// As number(); nullopt: "auto".
   std::optional<double> numberOrAuto(const std::string& name) const;
-  /// True for a flag's value that changes nothing (Takes::idle).
+  /// True if the value is ValueSpec::noEffectValue.
   bool hasNoEffect(const std::string& name) const;
   std::optional<std::uint64_t> integer(const std::string& name) const;
   /// Exactly `size` finite numbers, separated by commas.
   std::vector<double> numbers(const std::string& name, std::size_t size) const;
   Vec3 triple(const std::string& name) const;
-  /// One of the flag's words; any text if it has none.
+  /// One of the option's choices; any text if it has none.
   std::string word(const std::string& name) const;
-  /// All values of a repeatable flag; empty: not given.
+  /// All values of a repeatable option; empty: not given.
   std::vector<std::string> texts(const std::string& name) const;
-  /// All values of a repeatable flag, split at commas; "\," is a comma.
+  /// All values of a repeatable option, split at commas; "\," is a literal comma.
   std::vector<std::string> list(const std::string& name) const;
-  /// Reads a given flag as the place's type asks.
+  /// Reads a given value according to the type of `target`.
   template <typename Target>
   void read(const std::string& name, Target& target) const {
     if constexpr (std::is_same_v<Target, std::vector<std::string>>)
@@ -228,9 +228,9 @@ public:
       target = *number(name);
   }
 
-  /// All given values, "name: value" a line.
+  /// All given values, one line "name: value" each.
   std::string echo() const;
-  /// All given values as arguments of a command line.
+  /// All given values as command-line arguments.
   std::vector<std::string> arguments() const;
 
   void add(const std::string& name, const std::string& value) { m_values[name].push_back(value); }
@@ -243,7 +243,7 @@ private:
   std::map<std::string, std::vector<std::string>> m_values;
 };
 
-/// Flag with that name; null: none.
+/// Option with that name; nullptr: none.
 const Option* findOption(std::span<const Option> options, std::string_view name);
 
 } // namespace fenestra

@@ -15,13 +15,13 @@ namespace {
 constexpr const char* phantomGroup = "Phantom";
 const Option phantomTable[] = {
     {"output", "DIR", phantomGroup,
-     "Folder for KIND.mrml, KIND.mrb, KIND.nrrd and the others [KIND]"},
+     "Folder for KIND.mrml, KIND.mrb, KIND.nrrd and the other files [KIND]"},
     {"size", "WxHxD", phantomGroup,
-     concat("Voxels over the same field of view; N for the cube [knee ", joinNumbers(kneeSize, "x"),
+     concat("Voxels over a fixed field of view; N for the cube [knee ", joinNumbers(kneeSize, "x"),
             ", foot ", joinNumbers(footSize, "x"), ", fetus ", joinNumbers(fetusSize, "x"),
             ", cube ", CubeOptions().size, "]"),
      ValueSpec{.least = 16, .greatest = 1024}}, // range of the cube's N
-    {"edge", "MM", phantomGroup, "The cube's edge",
+    {"edge", "MM", phantomGroup, "Edge length of the cube",
      ValueSpec::number(1e-3, 1e5).withDefault(toString(CubeOptions().edge))},
 };
 
@@ -48,7 +48,7 @@ Phantom makeCube(const OptionValues& values) {
 
 Phantom makePhantom(const std::string& kind, const OptionValues& values) {
   if (kind != "cube" && values.has("edge"))
-    throw usageError("--edge: is for the cube alone; leave it out, or use phantom cube");
+    throw usageError("--edge: only for the cube; omit it, or use phantom cube");
   if (kind == "knee")
     return makeKneePhantom(readGridSize(values, kneeSize));
   if (kind == "foot")
@@ -65,7 +65,7 @@ Phantom makePhantom(const std::string& kind, const OptionValues& values) {
 const CommandSyntax& phantomSyntax() {
   static const CommandSyntax syntax = {
       "phantom",
-      "Makes a synthetic subject: an image, its segments, a transfer function, and scenes of them.",
+      "Creates a synthetic subject: image, segments, transfer function, and Slicer scenes of them.",
       {{"KIND",
         "knee (MR), foot (CT), fetus (ultrasound) or cube (the scalar is the z index)",
         {"knee", "foot", "fetus", "cube"}}},

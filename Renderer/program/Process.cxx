@@ -26,7 +26,7 @@ void print(std::string_view text) {
   [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());
 }
 
-/// Prints an exception's message on one line, without allocating: memory may have run out.
+/// Prints an error message as one line. Does not allocate, since memory may be exhausted.
 int reportFailure(int status, std::string_view line) {
   static char buffer[8192];
   const std::size_t size = std::min(line.size(), sizeof buffer);
@@ -46,40 +46,40 @@ int run(int argc, char** argv, DispatchFunction dispatch) {
   } catch (const Error& error) {
     return reportFailure(error.exitStatus(), error.what());
   } catch (const std::bad_alloc&) {
-    return reportFailure(outputStatus, "out of memory; use a smaller volume or picture");
+    return reportFailure(outputStatus, "out of memory; use a smaller volume or image");
   } catch (const std::exception& error) {
     return reportFailure(outputStatus, error.what());
   }
 }
 
-/// Opens closed standard streams, so that no file gets their numbers. Reads find an empty file;
-/// writes to /dev/full fail as they would have.
+/// Opens closed standard streams, so that no file gets their descriptors. Reads find an empty file;
+/// writes to /dev/full fail, as they would have.
 void openStandardStreams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(stream, F_GETFD) < 0)
-      ::open(stream == STDIN_FILENO ? "/dev/null" : "/dev/full", O_RDWR); // gets number `stream`
+      ::open(stream == STDIN_FILENO ? "/dev/null" : "/dev/full", O_RDWR); // gets this descriptor
 }
 
-/// Fails if standard output cannot be written: printed text is also a result.
+/// Fails if standard output cannot be written, since printed text is also a result.
 int finishOutput(int status) {
   const bool isComplete = std::cout.flush() && std::fflush(stdout) == 0 && !std::ferror(stdout);
   if (isComplete || status != 0)
     return status;
   return reportFailure(outputStatus,
-                       "standard output: cannot be written; is there room, and a reader?");
+                       "standard output: cannot be written; disk full or pipe closed?");
 }
 
-/// Retries the removal of temporary files, and names those that the user has to remove.
+/// Tries again to remove temporary files, and names those that the user has to remove.
 int removeTempFiles(int status) {
   removeAllTempFiles();
   try {
     for (const std::filesystem::path& path : remainingTempFiles()) {
-      print("fenestra: warning: temporary file left: ");
+      print("fenestra: warning: temporary file cannot be removed: ");
       print(path.native());
       print("; remove it\n");
     }
   } catch (const std::bad_alloc&) {
-    print("fenestra: warning: temporary files are left; run any command again to remove them\n");
+    print("fenestra: warning: temporary files remain; the next fenestra command removes them\n");
   }
   return status;
 }
@@ -92,8 +92,8 @@ void runProcess(int argc, char** argv, DispatchFunction dispatch) {
   installStopHandlers();
   removeStaleFolders();
   const int status = removeTempFiles(finishOutput(run(argc, argv, dispatch)));
-  // Everything is written. Destructors of libraries' static objects do no useful work, take a tenth
-  // of a short command's time, and print if memory fails (HDF5's).
+  // All results are written. Destructors of the libraries' static objects are useless, take a tenth
+  // of a short command's time, and print messages if memory is exhausted (HDF5).
   std::_Exit(status == 0 && isStopRequested() ? stopStatus() : status);
 }
 

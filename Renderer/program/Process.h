@@ -1,12 +1,12 @@
 #pragma once
-// Frame of every process of this program: streams, stops, errors, temporary files.
+// Framework of every process of this program: streams, signals, errors, temporary files.
 
 namespace fenestra {
 
-/// Runs what the arguments say, and returns the exit status; may throw Error.
+/// Runs the command that the arguments name, and returns the exit status. May throw Error.
 using DispatchFunction = int (*)(int argc, char** argv);
 
-/// Runs `dispatch` between opening and closing streams, handles stops, reports errors, removes
+/// Opens closed standard streams, handles signals, runs `dispatch`, reports errors, removes
 /// temporary files, and ends the process.
 [[noreturn]] void runProcess(int argc, char** argv, DispatchFunction dispatch);
 

@@ -28,7 +28,7 @@ Progress::Progress(const RenderOptions& options, RenderMonitor& monitor, int fin
   m_monitor.isNoiseWanted = true;
   try {
     m_thread = std::jthread([this](const std::stop_token& end) { run(end); });
-  } catch (const std::system_error&) { // no thread is left; the picture matters more
+  } catch (const std::system_error&) { // no thread is available; render without progress
   }
 }
 
@@ -75,7 +75,7 @@ std::vector<std::string> Progress::statusFields() const {
   if (m_frames > 1)
     fields.push_back(concat("frame ", std::min(m_finished + 1, m_frames), " of ", m_frames));
   fields.push_back(
-      formatNumber(samples < 10.0 ? "%.1f samples a pixel" : "%.0f samples a pixel", samples));
+      formatNumber(samples < 10.0 ? "%.1f samples per pixel" : "%.0f samples per pixel", samples));
   if (noise < infinity)
     fields.push_back(formatNumber("noise %.3f", noise));
   return fields;

@@ -1,5 +1,5 @@
 #pragma once
-// Progress of a render, reported to a person or to Slicer from a separate thread.
+// Progress of a render, reported to a terminal or to Slicer from a separate thread.
 
 #include "base/Stopwatch.h"
 #include "program/ProgressView.h"
@@ -16,22 +16,22 @@ namespace fenestra {
 /// Shows progress from construction to destruction.
 class Progress {
 public:
-  /// For a command that renders `frames` pictures one after the other, `before` of them by earlier
-  /// runs.
+  /// For a command that renders `frames` images in sequence, of which earlier runs finished
+  /// `finishedBefore`.
   Progress(const RenderOptions& options, RenderMonitor& monitor, int finishedBefore = 0,
            int frames = 1);
 
-  /// Counts a picture as finished, and resets the monitor for the next one.
+  /// Counts the image as finished, and resets the monitor for the next one.
   void nextFrame();
 
 private:
   void run(const std::stop_token& end);
   void show(bool last);
-  /// Texts of frame, samples a pixel and noise.
+  /// Frame number, samples per pixel and noise as text.
   std::vector<std::string> statusFields() const;
-  /// Finished share of all the work, in [0, 1].
+  /// Finished fraction of all work, in [0, 1].
   double fraction() const;
-  /// Finished share of the current picture, in [0, 1], by samples, seconds or noise.
+  /// Finished fraction of the current image, in [0, 1], by samples, seconds or noise.
   double frameFraction() const;
 
   ProgressView m_view;
@@ -39,7 +39,7 @@ private:
   double m_pixels;
   RenderMonitor& m_monitor;
   int m_finishedBefore, m_finished,
-      m_frames; ///< frames: by earlier runs, so far (these included), all
+      m_frames; ///< frames: finished by earlier runs, finished so far, total
   Stopwatch m_frameWatch;
   std::mutex m_mutex;
   std::condition_variable_any m_wake;

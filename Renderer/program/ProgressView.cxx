@@ -25,7 +25,7 @@ std::string drawBar(double fraction, std::size_t width) {
   return std::string("[") + std::string(full, '#') + std::string(width - full, '.') + "] ";
 }
 
-/// Width of the terminal in characters, queried each time: a user may change it.
+/// Width of the terminal in characters, queried each time since the user may resize it.
 std::size_t terminalWidth() {
   winsize size = {};
   const bool known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
@@ -50,7 +50,7 @@ void ProgressView::show(double fraction, const std::vector<std::string>& status,
   if (m_mode == ProgressMode::xml)
     return showTags(status, last);
   if (last)
-    return erase(); // leaves an empty line for the final report
+    return erase(); // leaves an empty line for the summary
   if (m_mode == ProgressMode::bar)
     showBar(status);
 }
@@ -80,7 +80,7 @@ void ProgressView::showBar(const std::vector<std::string>& status) const {
   std::vector<std::string> fields = status;
   fields.insert(fields.begin(), {percent, formatTime(left) + " left"});
 
-  // A wrapped line cannot be erased: fields that do not fit are left out, the bar first.
+  // A wrapped line cannot be erased, so fields that do not fit are omitted, the bar first.
   constexpr std::size_t longest = 24;
   constexpr std::size_t frame = 3;
   const std::size_t width = terminalWidth() - 1;

@@ -1,5 +1,5 @@
 #pragma once
-// How progress is shown, to a person or to Slicer.
+// Display of progress on a terminal or in Slicer.
 
 #include "base/Stopwatch.h"
 #include "program/RenderOptions.h"
@@ -9,19 +9,19 @@
 
 namespace fenestra {
 
-/// A bar on standard error, erased at the end, or Slicer's tags on standard output. `automatic`: a
-/// bar if standard error is a terminal.
+/// A bar on standard error, erased at the end, or Slicer's progress tags on standard output.
+/// `automatic`: a bar if standard error is a terminal.
 class ProgressView {
 public:
-  /// `comment`: what is done, for Slicer.
+  /// `comment`: name of the task, for Slicer.
   ProgressView(ProgressMode mode, const char* comment);
 
   /// Never automatic.
   ProgressMode mode() const { return m_mode; }
-  /// Shows the finished share of all the work, in [0, 1], never less than before, the time left,
-  /// and texts on what is reached. `last`: for the last time.
+  /// Shows the finished fraction of all work, in [0, 1], which never decreases; the time left; and
+  /// status texts. `last`: final call.
   void show(double fraction, const std::vector<std::string>& status, bool last);
-  /// Makes room for a line of text; the bar comes back with show.
+  /// Erases the bar, so that a line can be printed; show() draws it again.
   void erase() const;
 
 private:

@@ -27,14 +27,14 @@ using Json = nlohmann::ordered_json;
 
 // ---- statistics
 
-/// Facts of a render beside its scene and its result.
+/// Facts about a render that neither its scene nor its result has.
 struct RenderStats {
-  /// Wall-clock seconds; transport includes looks at a filtered picture's error.
+  /// Wall-clock seconds. Transport includes checks of the denoised image's noise.
   double transport = 0.0, filter = 0.0, write = 0.0, measure = 0.0, total = 0.0;
-  std::optional<std::uint64_t> checkpointPaths = {}; ///< of the film that the render went on from
-  std::optional<double> filtered = {};               ///< noise of the filtered picture, as it tells
+  std::optional<std::uint64_t> checkpointPaths = {}; ///< in the checkpoint file at the start
+  std::optional<double> filtered = {};               ///< estimated noise after denoising
   std::optional<FocusReport> focus = {};
-  std::vector<std::string> warnings = {}; ///< beside the scene's
+  std::vector<std::string> warnings = {}; ///< in addition to the scene's
 };
 
 double seconds(const timeval& t) {
@@ -45,7 +45,7 @@ Json toJson(const Distribution& values) {
   return {{"mean", values.mean}, {"p95", values.p95}, {"max", values.max}};
 }
 
-/// Differences of the focus's colours from its neighbours', and what they were reached with.
+/// Color differences between focus and neighbors, and the color adjustments that achieved them.
 void addContrast(Json& json, const PreparedScene& scene) {
   const TintContrast* tint = scene.tintContrast();
   const auto& contrast = tint ? tint->contrast : scene.contrast().contrast;
@@ -92,7 +92,7 @@ void addClip(Json& json, const PreparedScene& scene, const std::optional<FocusRe
     json["contextRemoved"] = *focus->contextRemoved;
 }
 
-/// Adds how pictures for the eye are shown, the sources of the picture, and the warnings.
+/// Adds display settings, the files that were read, and warnings.
 void addSources(Json& json, const RenderStats& stats, const RenderOptions& options,
                 const PreparedScene& scene) {
   const std::filesystem::path folder = options.stats->parent_path();
@@ -109,10 +109,10 @@ void addSources(Json& json, const RenderStats& stats, const RenderOptions& optio
     json["warnings"].push_back(warning);
 }
 
-/// Content of options.stats, which must be set, as JSON text. markEmptyPixels: certain from one
-/// sample, and not in samplesPerPixel; cells: of the majorant grid; focusVoxels: of the cropped
-/// labelmap; controlPoints: column and row in the picture. Measures of the clip: see
-/// BoundaryMetrics and FocusReport. Names of files are relative to the statistics' folder.
+/// Content of options.stats, which must be set. markEmptyPixels: exactly known from one sample, and
+/// not in samplesPerPixel; cells: of the majorant grid; focusVoxels: of the cropped label map;
+/// controlPoints: column and row in the image. Measures of the clip: see BoundaryMetrics and
+/// FocusReport. File names are relative to the folder of the statistics.
 std::string makeStatsJson(const RenderStats& stats, const RenderOptions& options,
                           const PreparedScene& scene, const RenderResult& result) {
   rusage usage = {};
@@ -160,8 +160,8 @@ std::string makeStatsJson(const RenderStats& stats, const RenderOptions& options
 
 // ---- the command
 
-/// Starts writing options.surface, if set, in parallel to other work. The arguments must outlive
-/// the future; its get() throws Error (output).
+/// Starts writing options.surface, if set, in another thread. The arguments must outlive the
+/// future. Its get() throws Error (output).
 std::future<void> startSurfaceWriter(const RenderOptions& options, const PreparedScene& scene,
                                      Outputs& outputs) {
   if (!options.surface)
@@ -173,15 +173,15 @@ std::future<void> startSurfaceWriter(const RenderOptions& options, const Prepare
   });
 }
 
-/// A warning for each existing file that belongs to one of options.outputs and was not written with
-/// it, such as the old depth beside a `.nrrd` that has no depth now. For after the commit.
+/// A warning for each existing file that belongs to an output but was not written now, such as an
+/// old depth beside a `.nrrd` without depth. Call after the commit.
 std::vector<std::string> findStaleFiles(const RenderOptions& options, const Outputs& outputs) {
   std::vector<std::string> warnings;
   std::error_code failed;
   for (const std::filesystem::path& path : options.outputs)
     for (const std::filesystem::path& file : listImageFiles(path))
       if (!outputs.writtenDigest(file) && std::filesystem::exists(file, failed))
-        warnings.push_back(toOneLine(file.string()) + ": is of an earlier picture than " +
+        warnings.push_back(toOneLine(file.string()) + ": belongs to an earlier image than " +
                            toOneLine(path.filename().string()) + "; remove it");
   return warnings;
 }
@@ -194,15 +194,15 @@ void report(const RenderOptions& options, const RenderResult& result,
   std::string line =
       concat(files, ": ", options.scene.width, "x", options.scene.height, " pixels, ",
              result.finishedSamples, result.finishedSamples == 1 ? " sample" : " samples");
-  line += counts.min == counts.max ? " each"
-                                   : concat(" a pixel (", counts.min, " to ", counts.max, ")");
+  line += counts.min == counts.max ? " per pixel"
+                                   : concat(" per pixel (", counts.min, " to ", counts.max, ")");
   if (noise < infinity)
     line += ", noise " + toString(noise, 3);
   if (filtered)
-    line += ", filtered " + toString(*filtered, 3);
+    line += ", after denoising " + toString(*filtered, 3);
   line += ", " + toString(seconds, 3) + " s";
   if (result.reason == StopReason::request)
-    line += options.checkpoint ? " (stopped on request; the same command goes on)"
+    line += options.checkpoint ? " (stopped on request; the same command resumes)"
                                : " (stopped on request)";
   std::cout << toOneLine(line) << std::endl;
 }
@@ -213,22 +213,22 @@ void warn(const RenderOptions& options, const std::vector<std::string>& warnings
         << "fenestra: warning: " << toOneLine(warning) << '\n';
 }
 
-/// Puts the film of a part in place. Returns the exit status.
+/// Writes the checkpoint file of a shard. Returns the exit status.
 int finishShard(const RenderOptions& options, const RenderResult& result, Checkpoint& checkpoint,
                 double seconds) {
   checkpoint.save(result);
   const bool isStopped = result.reason == StopReason::request;
-  std::cout << toOneLine(concat(*options.checkpoint, ": part ", formatShard(options.settings.shard),
-                                " of ", options.scene.width, "x", options.scene.height, " pixels, ",
-                                result.finishedSamples,
-                                result.finishedSamples == 1 ? " sample" : " samples", " each, ",
-                                toString(seconds, 3), " s",
-                                isStopped ? " (stopped on request; the same command goes on)" : ""))
+  std::cout << toOneLine(concat(*options.checkpoint, ": shard ",
+                                formatShard(options.settings.shard), " of ", options.scene.width,
+                                "x", options.scene.height, " pixels, ", result.finishedSamples,
+                                result.finishedSamples == 1 ? " sample" : " samples",
+                                " per pixel, ", toString(seconds, 3), " s",
+                                isStopped ? " (stopped on request; the same command resumes)" : ""))
             << std::endl;
   return isStopped ? stopStatus() : 0;
 }
 
-/// Measures the focus, unless a stop is asked for, and writes options.stats, if set.
+/// Measures the focus, unless a stop was requested, and writes options.stats, if set.
 void writeStats(const RenderOptions& options, const PreparedScene& scene,
                 const RenderResult& result, const Stopwatch& total, RenderMonitor& monitor,
                 RenderStats& stats, Outputs& outputs) {
@@ -236,7 +236,7 @@ void writeStats(const RenderOptions& options, const PreparedScene& scene,
     return;
   const Stopwatch watch;
   const std::vector<double>& depth = scene.clipResult().focusDepth;
-  if (!depth.empty() && !monitor.stop) // a stop does not wait for measures
+  if (!depth.empty() && !monitor.stop) // a stop must not wait for measures
     stats.focus = measureFocus(scene.view(), scene.minMaxGrid(), *scene.focus(), depth,
                                options.settings.seed, monitor.stop);
   stats.measure = watch.seconds();
@@ -244,7 +244,7 @@ void writeStats(const RenderOptions& options, const PreparedScene& scene,
   outputs.write(*options.stats, makeStatsJson(stats, options, scene, result));
 }
 
-/// Renders, from the checkpoint on if there is one, and keeps the film there.
+/// Renders, resuming from the checkpoint if there is one, and saves checkpoints.
 RenderResult renderFilm(const RenderOptions& options, const PreparedScene& scene,
                         const RenderSettings& settings, std::optional<Checkpoint>& checkpoint,
                         RenderMonitor& monitor, const StartWorkers& startWorkers,
@@ -275,7 +275,7 @@ int renderScene(const RenderJob& job, const std::vector<std::string>& arguments,
   const RenderOptions& options = job.options;
   const Stopwatch total;
   const PreparedScene scene(options.scene, job.input);
-  outputs.checkInputs(); // now also files that the scene refers to
+  outputs.checkInputs(); // now including files that the scene refers to
   warn(options, scene.warnings());
   if (options.progress != ProgressMode::none && options.progress != ProgressMode::xml)
     std::cerr << toOneLine(scene.choices()) << '\n';
@@ -293,7 +293,7 @@ int renderScene(const RenderJob& job, const std::vector<std::string>& arguments,
   if (options.isShard)
     return finishShard(options, result, *checkpoint, total.seconds());
   if (result.finishedSamples == 0) {
-    std::cerr << "fenestra: stopped on request before the first pass; no picture was written\n";
+    std::cerr << "fenestra: stopped on request before the first pass; no image was written\n";
     return stopStatus();
   }
   watch.lap();

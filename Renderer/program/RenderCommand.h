@@ -1,5 +1,5 @@
 #pragma once
-// From a request to its results, for the commands that write a picture.
+// The render itself, from a job to its results, for the commands that write one image.
 
 #include "program/Checkpoint.h"
 
@@ -7,19 +7,19 @@
 
 namespace fenestra {
 
-/// Finds processes that help with a render, tells them of it, and puts them into its monitor;
-/// empty: there are none.
+/// Starts remote workers for a render and registers them in its monitor; empty: no workers. Keeps
+/// MPI out of this library.
 using StartWorkers = std::function<void(const RenderOptions&, const PreparedScene&,
                                         const RenderSettings&, RenderMonitor&)>;
 
-/// Renders the scene, from `checkpoint` on if there is one, puts its pictures in place, then
-/// measures them for the statistics; of a part, puts its film in place. `words`: arguments of the
-/// process, for the pictures' headers. Returns the exit status.
+/// Builds the scene, renders it (resuming from `checkpoint` if set), writes images, and measures
+/// them for the statistics. For a shard, writes only the checkpoint file. `arguments`: command line
+/// of the process, for the image headers. Returns the exit status.
 int renderScene(const RenderJob& job, const std::vector<std::string>& arguments,
                 std::optional<Checkpoint>& checkpoint, Outputs& outputs,
                 const StartWorkers& startWorkers = {});
 
-/// The command `render`, with processes that help.
+/// The command `render`, with remote workers.
 int runRender(const StartWorkers& startWorkers, int argc, char** argv, int first);
 
 } // namespace fenestra

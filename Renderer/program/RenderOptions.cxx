@@ -1,4 +1,5 @@
-// From flags to a render: values go where the table says; contradictions are refused.
+// From option values to render options: checks that the options fit each other and the input, and
+// resolves defaults that depend on several of them.
 
 #include "program/RenderOptions.h"
 #include "base/Error.h"
@@ -19,26 +20,26 @@ void checkInput(const OptionValues& values, const RenderRequest& scene) {
   const bool isScene = isSceneFile(scene.input),
              usesLabels = !scene.focus.empty() || hasMaterials(scene);
   if (scene.volume && !isScene && !isFolder(scene.input))
-    throw usageError("--volume: only a scene or a DICOM folder holds several; drop it");
+    throw usageError("--volume: only for a scene or DICOM folder with several volumes; omit it");
   if (!scene.focus.empty() && !scene.segmentation && !isScene)
-    throw usageError("--focus: needs --segmentation FILE to find segments in");
+    throw usageError("--focus: requires --segmentation FILE, which holds the segments");
   if (hasMaterials(scene) && !scene.segmentation && !isScene)
-    throw usageError("--materials: needs --segmentation FILE with the segments to colour");
+    throw usageError("--materials: requires --segmentation FILE, which holds the segments");
   if (!scene.materialChanges.empty() && !hasMaterials(scene))
-    throw usageError("--material: changes what --materials gives; add --materials library");
+    throw usageError("--material: requires --materials; add --materials library");
   for (const char* name : {"segmentation", "labels"})
     if (values.has(name) && !usesLabels)
       throw usageError("--", name,
-                       ": only --focus, --materials and --preset use it; add --focus A,B,..., "
+                       ": used only with --focus, --materials or --preset; add --focus A,B,..., "
                        "--materials library or --preset auto");
   if (values.hasNonDefault("view") && values.hasNonDefault("position"))
-    throw usageError("--view and --position contradict each other; give one");
+    throw usageError("--view and --position contradict each other; give only one");
 }
 
 void checkView(const ViewRequest& view, const RenderRequest& scene) {
   if (view.isAutomatic() && scene.focus.empty())
-    throw usageError("--view: auto looks for a focus; add --focus A,B,..., or name a direction");
-  // A scene's camera may apply, whose projection is not known yet.
+    throw usageError("--view: auto requires a focus; add --focus A,B,..., or name a direction");
+  // The scene's camera may apply, whose projection is not known yet.
   if (isSceneFile(scene.input) && !view.projection && view.isSceneCamera())
     return;
   const bool perspective = view.projection == Projection::perspective;
@@ -48,26 +49,26 @@ void checkView(const ViewRequest& view, const RenderRequest& scene) {
     throw usageError("--angle: only for --projection perspective; use --scale");
 }
 
-/// Reason why a flag has no effect with this clip; empty: it has one.
+/// Reason why an option has no effect with this clip; empty: it has an effect.
 std::string_view findNoEffectReason(Requires requirement, bool hasFocus, bool hasLabels,
                                     ClipMode mode, Boundary boundary) {
   const bool isSurface = mode == ClipMode::surface || mode == ClipMode::ghost;
   if (requirement == Requires::focus && !hasFocus)
-    return "needs a focus; add --focus, or drop it";
+    return "requires a focus; add --focus A,B,..., or omit it";
   if (requirement == Requires::labels && !hasLabels)
-    return "needs a focus or materials; add --focus or --materials, or drop it";
+    return "requires a focus or materials; add --focus or --materials, or omit it";
   if (requirement == Requires::clip && mode == ClipMode::none)
-    return "without a clip there is nothing to change; drop it";
+    return "has no effect without a clip; omit it";
   if (requirement == Requires::plane && mode != ClipMode::plane)
-    return "only --clip plane uses it; add --clip plane, or drop it";
+    return "used only with --clip plane; add that, or omit it";
   if (requirement == Requires::hole && mode != ClipMode::hole)
-    return "only --clip hole uses it; add --clip hole, or drop it";
+    return "used only with --clip hole; add that, or omit it";
   if (requirement == Requires::ghost && mode != ClipMode::ghost)
-    return "only --clip ghost uses it; add --clip ghost, or drop it";
+    return "used only with --clip ghost; add that, or omit it";
   if ((requirement == Requires::surface || requirement == Requires::spline) && !isSurface)
-    return "only --clip surface and ghost use it; drop it";
+    return "used only with --clip surface and ghost; omit it";
   if (requirement == Requires::spline && boundary != Boundary::spline)
-    return "only --boundary spline uses it; drop it";
+    return "used only with --boundary spline; omit it";
   return "";
 }
 
@@ -76,24 +77,24 @@ void checkClip(const OptionValues& values, const RenderRequest& scene) {
   const bool hasFocus = values.has("focus"), hasLabels = hasFocus || hasMaterials(scene);
   const ClipMode mode = clip.resolveMode(hasFocus);
   if (!hasFocus && isDepthClip(mode))
-    throw usageError("--clip: ", *values.text("clip"), " needs a focus; add --focus");
+    throw usageError("--clip: ", *values.text("clip"), " requires a focus; add --focus A,B,...");
   if (mode == ClipMode::plane && !clip.plane && !hasFocus)
-    throw usageError("--clip: plane needs --plane OX,OY,OZ,NX,NY,NZ, or a --focus to place it by");
+    throw usageError("--clip: plane requires --plane OX,OY,OZ,NX,NY,NZ or a --focus; add one");
   for (const Option& option : renderSyntax.options)
     if (const auto reason = findNoEffectReason(option.requirement, hasFocus, hasLabels, mode,
                                                clip.surface.boundary);
         !reason.empty() && values.hasNonDefault(option.name) && !values.hasNoEffect(option.name))
       throw usageError("--", option.name, ": ", reason);
   if (values.has("surface") && !isDepthClip(mode))
-    throw usageError("--surface: --clip none and plane have none; add --focus A,B,... without "
-                     "another --clip, or drop it");
+    throw usageError("--surface: not available with --clip none and plane; add --focus A,B,... "
+                     "without another --clip, or omit it");
 }
 
-/// INPUT.png in the current folder, without the input's own endings. Throws Error (usage) if no
-/// name is left.
+/// INPUT.png in the current folder, without the input's extensions. Throws Error (usage) if no name
+/// is left.
 std::filesystem::path makeDefaultOutput(const std::filesystem::path& input) {
   std::filesystem::path path = input.lexically_normal();
-  if (!path.has_filename()) // folder name with a slash at its end
+  if (!path.has_filename()) // folder name with a trailing slash
     path = path.parent_path();
   if (std::error_code failed; path.filename() == "." || path.filename() == "..")
     path = std::filesystem::canonical(path, failed);
@@ -102,12 +103,12 @@ std::filesystem::path makeDefaultOutput(const std::filesystem::path& input) {
     if (name.ends_with(ending))
       name.resize(name.size() - std::string_view(ending).size());
   if (name.empty())
-    throw usageError("--output: is missing, and ", input,
-                     " gives the picture no name; add --output FILE.png");
+    throw usageError("--output: missing, and ", input,
+                     " gives no name for the image; add --output FILE.png");
   return name + ".png";
 }
 
-/// Input files that flags name, or may name.
+/// Input files that options name or may name.
 std::vector<std::filesystem::path> listInputFiles(const OptionValues& values) {
   std::vector<std::filesystem::path> files = {*values.text("INPUT")};
   for (const Option& option : renderSyntax.options)
@@ -117,39 +118,39 @@ std::vector<std::filesystem::path> listInputFiles(const OptionValues& values) {
   return files;
 }
 
-/// Checks the layers against the pictures, and asks for normals if one of these has them.
+/// Checks that the outputs support the layers, and requests normals if one of them stores normals.
 void resolveLayers(const OptionValues& values, RenderOptions& options) {
   const auto has = [&options](ImageFormat format) {
     return std::ranges::count(options.outputs, format, findImageFormat) > 0;
   };
   const bool hasExr = has(ImageFormat::exr);
   if (!hasExr && !has(ImageFormat::nrrd) && values.hasNonDefault("layers"))
-    throw usageError("--layers: only .exr and .nrrd have them; add --output FILE.exr");
+    throw usageError("--layers: only for .exr and .nrrd; add --output FILE.exr");
   for (const std::filesystem::path& path : options.outputs)
     if (!options.layers.contains("color") && findImageFormat(path) != ImageFormat::exr)
-      throw usageError("--layers: ", path, " needs color; add it, or write .exr alone");
-  // A film holds all that a later command may write.
+      throw usageError("--layers: ", path, " requires color; add it, or write .exr only");
+  // A checkpoint file holds everything that a later command may write.
   options.settings.path.wantNormals =
       (hasExr && options.layers.contains("normal")) || options.checkpoint;
 }
 
-/// Settles what is filtered, and which noise ends the render.
+/// Resolves which images are denoised, and which noise stops the render.
 void resolveDenoising(const OptionValues& values, RenderOptions& options) {
   const bool hasDisplay = std::ranges::any_of(options.outputs, isDisplayFile);
   const bool hasLayers = options.hasFilterLayer("denoised") || options.hasFilterLayer("expected");
   options.scene.features = options.denoise != Denoise::off && (hasDisplay || hasLayers);
   if (options.denoise == Denoise::on && !hasLayers)
     throw usageError(
-        "--denoise: on adds the layers denoised and expected; name one in --layers, or "
-        "drop --denoise");
+        "--denoise: on requires the layer denoised or expected; add one to --layers, or "
+        "omit --denoise");
   if (options.noiseTarget == NoiseTarget::filtered && !options.scene.features)
-    throw usageError("--noisetarget: filtered needs a filtered picture; write a .png, or add "
+    throw usageError("--noisetarget: filtered requires a denoised image; write a .png, or add "
                      "--denoise on");
   if (values.hasNonDefault("noisetarget") && !values.has("noise"))
-    throw usageError("--noisetarget: only --noise uses it; add --noise E, or drop it");
+    throw usageError("--noisetarget: used only with --noise; add --noise E, or omit it");
   for (const char* layer : {"denoised", "expected"})
     if (values.has("layers") && options.layers.contains(layer) && options.denoise != Denoise::on)
-      throw usageError("--layers: ", layer, " needs --denoise on; add it");
+      throw usageError("--layers: ", layer, " requires --denoise on; add it");
   if (options.noiseTarget == NoiseTarget::automatic)
     options.noiseTarget =
         options.scene.features && std::ranges::all_of(options.outputs, isDisplayFile)
@@ -157,18 +158,18 @@ void resolveDenoising(const OptionValues& values, RenderOptions& options) {
             : NoiseTarget::raw;
 }
 
-/// Checks the flags of a part of a picture, which has no picture yet.
+/// Rejects options that a shard cannot use, since it is not a complete image.
 void checkShard(const OptionValues& values, const RenderOptions& options) {
   if (!options.checkpoint)
-    throw usageError("--shard: needs --checkpoint FILE, the film of that part; add it");
+    throw usageError("--shard: requires --checkpoint FILE, which the shard is saved to; add it");
   for (const char* name : {"output", "surface", "stats", "layers"})
     if (values.hasNonDefault(name))
-      throw usageError("--", name, ": is for the whole picture; give it to fenestra merge");
+      throw usageError("--", name, ": not for a shard; give it to fenestra merge");
   for (const char* name : {"noise", "seconds"})
     if (values.has(name))
       throw usageError("--", name,
-                       ": depends on the whole picture, and parts must have the same "
-                       "samples; with --shard give --samples N");
+                       ": depends on the complete image, and all shards need the same number of "
+                       "samples; with --shard use --samples N");
 }
 
 } // namespace

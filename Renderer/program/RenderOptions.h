@@ -1,5 +1,5 @@
 #pragma once
-// Flags of `fenestra [render]`, and their meaning.
+// Options of `fenestra [render]`, and the request and settings that they result in.
 
 #include "files/images/ImageWriter.h"
 #include "program/Options.h"
@@ -8,11 +8,11 @@
 
 namespace fenestra {
 
-/// Pictures that are filtered: those for the eye (.png, .tif); the others, too, in channels of
-/// their own; none.
+/// Which images are denoised: automatic, display images (.png, .tif) only; on, also .exr and .nrrd,
+/// in additional channels; off, none.
 enum class Denoise { automatic, on, off };
-/// Noise that a render stops by: of the raw picture, of the filtered one; automatic: filtered if
-/// all outputs are pictures for the eye.
+/// Noise that --noise limits: of the raw or of the denoised image. Automatic: denoised if all
+/// outputs are display images.
 enum class NoiseTarget { automatic, raw, filtered };
 
 enum class ProgressMode { automatic, bar, xml, none };
@@ -20,26 +20,26 @@ enum class ProgressMode { automatic, bar, xml, none };
 struct RenderOptions {
   RenderRequest scene;
   RenderSettings settings;
-  std::optional<Background> background = {};  ///< nullopt: the scene's, else the standard
-  std::vector<std::filesystem::path> inputs;  ///< input files given as such, without presets
-  std::vector<std::filesystem::path> outputs; ///< at least one
+  std::optional<Background> background = {};  ///< nullopt: the scene's, or else the standard one
+  std::vector<std::filesystem::path> inputs;  ///< given input files, without those of presets
+  std::vector<std::filesystem::path> outputs; ///< at least one, except for a shard
   NameOrigin outputNaming = NameOrigin::user;
   LayerSet layers = allLayers;
   Display display = {}; ///< of .png and .tif
   Denoise denoise = Denoise::automatic;
-  NoiseTarget noiseTarget = NoiseTarget::automatic;  ///< settled: raw or filtered
-  std::optional<std::filesystem::path> surface = {}; ///< only with a clip by depth
+  NoiseTarget noiseTarget = NoiseTarget::automatic;  ///< raw or filtered after makeRenderOptions
+  std::optional<std::filesystem::path> surface = {}; ///< only with a depth clip
   std::optional<std::filesystem::path> stats = {};
-  std::optional<std::filesystem::path> checkpoint = {}; ///< film of what is rendered so far
-  /// True for a part of a picture, settings.shard: the checkpoint is the only result.
+  std::optional<std::filesystem::path> checkpoint = {};
+  /// True with --shard (settings.shard): the checkpoint file is the only result.
   bool isShard = false;
-  /// Slicer's return parameters. If set, warnings go to standard output: Slicer reports everything
-  /// on standard error as an error.
+  /// Slicer's return parameter file. If set, warnings go to standard output, since Slicer reports
+  /// all text on standard error as an error.
   std::optional<std::filesystem::path> returnValues = {};
   ProgressMode progress = ProgressMode::automatic;
   std::optional<std::string> preset = {}; ///< the organ preset's name
 
-  /// True if an `.exr` or `.nrrd` has a layer that the filter makes.
+  /// True if an `.exr` or `.nrrd` gets this layer, which the denoiser makes.
   bool hasFilterLayer(const std::string& layer) const {
     return denoise == Denoise::on && layers.contains(layer);
   }
@@ -48,29 +48,29 @@ struct RenderOptions {
   }
 };
 
-inline constexpr double unlimited = 0x1p40; ///< limit of samples and of scatterings
+inline constexpr double unlimited = 0x1p40; ///< upper limit of samples and bounces
 
 extern const CommandSyntax renderSyntax;
 
-/// True if the picture depends on the flag, not only its files or how the process works.
+/// True if the image depends on the option, false for files and execution.
 inline bool isImageOption(const Option& option) {
   return option.overrideGroup != OverrideGroup::process;
 }
 
-/// True for a flag of clipping; also how the focus's labels are shaped, and how the context looks.
+/// True for options of clipping, including label smoothing and context appearance.
 bool isClipOption(const Option& option);
-/// True for a flag of clipping, view or look: the flags that an organ preset may set.
+/// True for options of clipping, view or appearance, which an organ preset may set.
 bool isAppearanceOption(const Option& option);
 
-/// Values of the flags in the places that the table says. Throws Error (usage) for values out of
-/// range.
+/// Stores each value where its table row says, without further checks. Throws Error (usage) for
+/// values out of range.
 RenderOptions readOptions(const OptionValues& values);
 
-/// Options from all flags. Throws Error (usage) for values out of range and for flags that
-/// contradict each other.
+/// Complete options from all values. Throws Error (usage) for values out of range and for
+/// contradictory options.
 RenderOptions makeRenderOptions(const OptionValues& values);
 
-/// options.settings with their background: the flags', else `scene` (a Slicer scene's; nullopt for
+/// options.settings with a background: the option's, else `scene` (from a Slicer scene; nullopt for
 /// other inputs), else Background::standard.
 RenderSettings makeSettings(const RenderOptions& options, const std::optional<Background>& scene);
 

@@ -18,7 +18,7 @@
 namespace fenestra {
 namespace {
 
-/// Quotes an argument for a shell.
+/// Quotes an argument for a POSIX shell.
 std::string shellQuote(const std::string& argument) {
   const char* const plain =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
@@ -27,7 +27,7 @@ std::string shellQuote(const std::string& argument) {
   return concat("'", replaceAll(argument, "'", "'\\''"), "'");
 }
 
-/// Flags that reproduce the camera.
+/// Options that reproduce the camera.
 std::string formatCamera(const CameraPose& pose) {
   constexpr int exact = 17; // significant digits
   const bool perspective = pose.projection == Projection::perspective;
@@ -59,15 +59,15 @@ std::map<std::string, std::string> makeHeader(const PreparedScene& scene,
   return entries;
 }
 
-/// Sentence of a picture's header on its filter.
+/// Header text on how an image was denoised.
 std::string describeDenoising(const std::optional<FilteredImage>& filtered) {
   const std::optional<double> noise = denoisedNoise(filtered);
-  return concat("filtered for the eye by least squares in windows, version ", filterVersion,
-                ", on expected albedo, normal, depth and light; told error ",
-                noise ? toString(*noise, 3) : "unknown", "; --denoise off leaves the picture raw");
+  return concat("denoised by local linear regression, version ", filterVersion,
+                ", on expected albedo, normal, depth and light; estimated error ",
+                noise ? toString(*noise, 3) : "unknown", "; --denoise off leaves the image raw");
 }
 
-/// Adds the filtered channels that the layers name; R, G, B and A stay as they are.
+/// Adds the denoiser's channels that the layers include; R, G, B and A stay unchanged.
 void addDenoisedChannels(const RenderOptions& options, const PreparedScene& scene,
                          const FilteredImage& filtered, Image& image) {
   if (options.hasFilterLayer("expected"))
@@ -76,7 +76,7 @@ void addDenoisedChannels(const RenderOptions& options, const PreparedScene& scen
     return;
   addDenoised(image, filtered);
   image.header["filter"] = concat("channels denoised.* are ", describeDenoising(filtered),
-                                  "; R, G, B and A are not filtered");
+                                  "; R, G, B and A are not denoised");
 }
 
 } // namespace
@@ -102,10 +102,10 @@ void declareOutputs(const RenderOptions& options, Outputs& outputs) {
       outputs.add(*file);
 }
 
-/// Compared with physical memory: Linux grants more, and ends the process when it is used.
+/// Compares with physical memory, since Linux grants more and kills the process when it is used.
 void checkMemory(const RenderRequest& scene) {
-  constexpr double filter = 400.0; // its planes
-  const double bytesPerPixel =     // the film, and its channels as written
+  constexpr double filter = 400.0; // buffers of the denoiser
+  const double bytesPerPixel =     // film, and its channels as written
       2.0 * sizeof(PixelSums) + (scene.features ? filter : 0.0);
   constexpr double gigabyte = 1e9;
   const double needed = bytesPerPixel * scene.width * scene.height;
@@ -113,9 +113,9 @@ void checkMemory(const RenderRequest& scene) {
       static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
   if (needed <= available)
     return;
-  throw outputError("--size", "a picture of ", scene.width, "x", scene.height, " pixels takes ",
-                    toString(needed / gigabyte, 3), " GB of memory, this machine has ",
-                    toString(available / gigabyte, 3), "; choose a smaller one");
+  throw outputError("--size", "an image of ", scene.width, "x", scene.height, " pixels needs ",
+                    toString(needed / gigabyte, 3), " GB of memory, but this machine has ",
+                    toString(available / gigabyte, 3), "; use a smaller size");
 }
 
 RenderSettings ImageDenoiser::settings() {
@@ -124,7 +124,7 @@ RenderSettings ImageDenoiser::settings() {
     settings.displayNoise = [this](const Film& film) {
       m_checked = denoise(film, m_scene);
       m_checkedSamples = film.sampleCounts().max;
-      // Twice its standard error more, lest luck ends the render.
+      // Two standard errors more, so that the render does not stop by chance.
       return std::sqrt(m_checked.estimatedError + 2.0 * m_checked.errorUncertainty);
     };
   return settings;
@@ -160,7 +160,7 @@ void writeImages(const RenderOptions& options, const PreparedScene& scene,
     shown.header["filter"] = describeDenoising(filtered);
     addDenoisedChannels(options, scene, *filtered, raw);
   }
-  // All files at once if threads are free: compressing one does not delay another.
+  // Writes all files in parallel: compressing one does not delay the others.
   std::vector<std::future<void>> files;
   for (const std::filesystem::path& path : options.outputs) {
     const Image& image = filtered && isDisplayFile(path) ? shown : raw;

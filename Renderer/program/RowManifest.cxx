@@ -31,7 +31,7 @@ std::vector<fs::path> rowImages(const BatchRow& row, const fs::path& folder,
   return pictures;
 }
 
-/// Arguments on which a row depends; its folder exists.
+/// Arguments that a row's results depend on. Its folder must exist.
 std::vector<std::string> listArguments(const BatchRow& row, const fs::path& folder,
                                        const std::vector<std::string>& formats) {
   std::vector<std::string> arguments = row.arguments;
@@ -41,7 +41,7 @@ std::vector<std::string> listArguments(const BatchRow& row, const fs::path& fold
   return toRelativeArguments(arguments, renderSyntax.options, folder / row.name);
 }
 
-/// Input files of a row that is done: those of its arguments and statistics, what their headers
+/// Input files of a finished row: those in its arguments and statistics, files that their headers
 /// name, and the files of an input folder.
 std::set<fs::path> listRowInputs(const BatchRow& row, const fs::path& stats) {
   const std::string name = stats.string();
@@ -50,7 +50,7 @@ std::set<fs::path> listRowInputs(const BatchRow& row, const fs::path& stats) {
   for (const JsonNode& file : JsonNode(document, name).at("filesRead").elements())
     files.insert(stats.parent_path() / file.text());
   for (const std::string& flag : row.arguments)
-    files.insert(flag.substr(flag.find('=') + 1)); // what is no file has no state
+    files.insert(flag.substr(flag.find('=') + 1)); // a value that is no file is skipped later
   std::error_code failed;
   if (fs::is_directory(row.input, failed))
     for (const auto& entry : fs::directory_iterator(row.input, failed))
@@ -70,7 +70,7 @@ ContentDigest readFileState(const fs::path& path) {
   return {bytes, computeDigest(path)};
 }
 
-/// Outcome in the record's entry. Throws Error (input).
+/// Outcome in the manifest's entry. Throws Error (input).
 json checkedOutcome(const JsonNode& entry) {
   json more = {{"status", entry.at("status").number(0, 255)},
                {"seconds", entry.at("seconds").number(0.0, 1e12)}};
@@ -100,7 +100,7 @@ RowManifest::RowManifest(const BatchRow& row, const fs::path& folder,
       m_manifest(rowFile(row, folder, ".study.json"), "row", listArguments(row, folder, formats)) {
   if (!m_lock.isHeld())
     throw usageError(m_manifest.path(),
-                     ": another study is making this row; wait for it, or choose another --output");
+                     ": another batch is rendering this row; wait for it, or use another --output");
   read(restart);
   m_manifest.declare(m_outputs);
 }
@@ -114,12 +114,12 @@ void RowManifest::read(bool restart) {
     if (fileExists(m_checkpoint))
       unknown.push_back(m_checkpoint);
     for (const fs::path& file : unknown)
-      throw usageError(file, ": is there, and no ", m_manifest.path().filename(),
-                       " tells what it is of; move it away, or add --restart to replace it");
+      throw usageError(file, ": already exists, and no ", m_manifest.path().filename(),
+                       " describes it; move it away, or add --restart to replace it");
     return;
   }
   m_manifest.readRequest(maxRowFiles);
-  forgetInput(*there); // the record is rewritten, so it is no input
+  forgetInput(*there); // since the manifest is also an output
   m_manifest.addInputs(m_manifest.recordedInputs());
   m_manifest.readItems(
       1, [this](int) { return files(); }, checkedOutcome);

@@ -1,5 +1,5 @@
 #pragma once
-// Files of a study's row, and what their record tells of them.
+// Files and manifest of one row of a batch.
 
 #include "io/Folders.h"
 #include "io/Locks.h"
@@ -8,46 +8,45 @@
 
 namespace fenestra {
 
-/// End of a row.
+/// Result of a row.
 struct RowOutcome {
   enum class State { missing, done, failed, stopped };
 
   State state = State::missing;
-  int status = 0;         ///< exit status; 128 and a signal's number where one ended the process
+  int status = 0;         ///< exit status; 128 + number of the signal that ended the process
   double seconds = 0.0;   ///< wall time of its process
-  std::string error = {}; ///< error line of a row that failed
+  std::string error = {}; ///< error message of a failed row
 };
 
-/// Folder, files and record of a row, held against other studies of these names during the
-/// object's life. Until the row is done its film lies there, too, from which a row that was
-/// interrupted goes on.
+/// Folder, files and manifest of a row. A lock, one per row, excludes other batches during the
+/// object's life, so that several machines can share a folder. An unfinished row also has a
+/// checkpoint file, from which it resumes.
 class RowManifest {
 public:
-  /// Makes the folder. Reads the record of the row, if any; with `restart`, nothing counts as
-  /// finished. `formats`: extensions of pictures beside .png. Throws Error: usage if another
-  /// process makes this row, or if a file is there that is not as recorded; input if the record is
-  /// damaged; output.
+  /// Creates the folder and reads an existing manifest; with `restart`, ignores finished work.
+  /// `formats`: image extensions in addition to .png. Throws Error: usage if another process is
+  /// rendering this row, or if an existing file differs from the manifest; input for a damaged
+  /// manifest; output.
   RowManifest(const BatchRow& row, const std::filesystem::path& folder,
               const std::vector<std::string>& formats, bool restart);
 
-  /// Outcome of an earlier run with the same flags and inputs that was done; nullopt: none.
+  /// Outcome of an earlier, successful run with the same options and inputs; nullopt: none.
   const std::optional<RowOutcome>& finished() const { return m_finished; }
-  /// Arguments of the process that makes the row, with its share of threads.
+  /// Arguments of the process that renders the row, with its number of threads.
   std::vector<std::string> arguments(int threads) const;
 
-  /// Puts the record in place, before the row is made, and removes a film of other flags. Throws
-  /// Error (output).
+  /// Writes the manifest, before the row is rendered, and removes a checkpoint file of other
+  /// options. Throws Error (output).
   void begin();
-  /// True if the film may be why the row's process refused to begin (files or machine have
-  /// changed, or the film is damaged): it is removed, and the row has to be made from nothing.
-  /// Throws Error (output).
+  /// True if the row's process may have rejected its checkpoint file (damaged, or files or machine
+  /// changed). Then removes that file; the row has to start over. Throws Error (output).
   bool discardCheckpoint(const RowOutcome& outcome);
-  /// Records what came of the row; of one that is done, files and inputs. Throws Error.
+  /// Writes the outcome to the manifest; for a finished row also files and inputs. Throws Error.
   void finish(const RowOutcome& outcome);
 
 private:
   void read(bool restart);
-  /// Files that the row has.
+  /// Existing files of the row.
   std::vector<std::filesystem::path> files() const;
   /// Throws Error (output).
   void removeCheckpoint() const;
@@ -57,14 +56,14 @@ private:
   CreatedFolders m_made;
   std::vector<std::filesystem::path> m_images;
   std::filesystem::path m_checkpoint;
-  bool m_isResumed = false; ///< from the film
+  bool m_isResumed = false; ///< from the checkpoint file
   NameLock m_lock;
   Manifest m_manifest;
   Outputs m_outputs;
   std::optional<RowOutcome> m_finished;
 };
 
-/// Files of a row in its folder: NAME.png, and its statistics.
+/// Files in the row's folder: NAME.png, and its statistics.
 std::filesystem::path rowImagePath(const BatchRow& row, const std::filesystem::path& folder);
 std::filesystem::path rowStatsPath(const BatchRow& row, const std::filesystem::path& folder);
 

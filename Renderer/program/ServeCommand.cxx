@@ -1,5 +1,5 @@
-// `fenestra serve`: a scene stays loaded, changes come in, pictures go out. Stages that a change
-// does not touch are not rebuilt (Scene::changed), and a change stops the render under way.
+// `fenestra serve`: keeps a scene loaded, reads changes, and writes an image after each. A change
+// stops the current render, and rebuilds only the stages that it affects (PreparedScene::changed).
 
 #include "base/Error.h"
 #include "base/Stopwatch.h"
@@ -23,7 +23,7 @@ public:
         m_outputs(outputs),
         m_input(m_values, m_source, m_monitor) {}
 
-  /// Runs until the process ends. Throws Error if there is no first scene.
+  /// Runs until the process ends. Throws Error if the first scene cannot be built.
   [[noreturn]] void run() {
     m_scene.emplace(m_options.scene, m_source);
     m_outputs.checkInputs();
@@ -38,9 +38,9 @@ public:
   }
 
 private:
-  /// Builds the scene of all changes together. If that fails, tries each half separately, down to
-  /// single changes; a single change that fails is answered with the error and has no effect.
-  /// Returns whether all changes were taken together.
+  /// Builds one scene for all changes. If that fails, tries each half separately, down to single
+  /// changes. A single change that fails is reported and has no effect. Returns whether all changes
+  /// were applied at once.
   bool applyChanges(std::span<const ServeChange> changes) {
     try {
       OptionValues values = m_values;
@@ -68,8 +68,8 @@ private:
     return false;
   }
 
-  /// Publishes the first picture at once, later ones at most every 0.1 seconds, and such that most
-  /// of the time goes to samples.
+  /// Publishes the first image at once, later ones at most every 0.1 seconds, and so rarely that
+  /// most of the time is spent on samples.
   void renderPictures() {
     m_isComplete = false;
     m_monitor.noise = infinity;
@@ -88,14 +88,14 @@ private:
       publish(result, filter, true);
   }
 
-  /// Puts the pictures in place and tells them. A failure (a full disk) is told as well, for
-  /// intermediate pictures only once each; the next picture may have room again.
+  /// Writes the images and reports them. A failure, such as a full disk, is reported as well, for
+  /// intermediate images only when its message changes; the next image may succeed again.
   void publish(const RenderResult& result, const ImageDenoiser& filter, bool last) {
     const Stopwatch watch;
     try {
       const std::optional<FilteredImage> filtered = filter.apply(result);
       writeImages(m_options, *m_scene, result, filtered, m_values.arguments(), m_outputs);
-      m_outputs.commit(Durability::none); // the next picture follows soon
+      m_outputs.commit(Durability::none); // the next image follows soon
       writeImageEvent(result, denoisedNoise(filtered), last);
     } catch (const Error& error) {
       if (last || m_failure != error.what())
@@ -123,39 +123,39 @@ private:
     writeEvent(event);
   }
 
-  const Input m_source;  ///< of all scenes
-  OptionValues m_values; ///< flags of the current scene, without a preset's
+  const Input m_source;  ///< shared by all scenes
+  OptionValues m_values; ///< of the current scene, before merging a preset
   RenderOptions m_options;
-  ServeChange m_change; ///< last one taken
+  ServeChange m_change; ///< last one applied
   Outputs& m_outputs;
   RenderMonitor m_monitor;
   ServeInput m_input;
   std::optional<PreparedScene> m_scene;
-  bool m_isComplete = false;            ///< true: the scene's picture is finished
-  std::optional<Stopwatch> m_published; ///< time since the scene's last picture; nullopt: none yet
-  double m_publishSeconds = 0.0;        ///< seconds that it took
-  std::string m_failure;                ///< last reported failure to write a picture of this scene
+  bool m_isComplete = false;            ///< true: the scene's image is finished
+  std::optional<Stopwatch> m_published; ///< since the scene's last image; nullopt: none yet
+  double m_publishSeconds = 0.0;        ///< duration of the last publish(), s
+  std::string m_failure;                ///< last reported failure to write an image of this scene
   std::set<std::string> m_warned;
 };
 
 } // namespace
 
-// Built on first use: renderSyntax is initialised in another source.
+// Built on first use, since renderSyntax is initialized in another source file.
 const CommandSyntax& serveSyntax() {
   static const CommandSyntax syntax = {
       "serve",
-      "Keeps a scene loaded and renders it anew after every change, for previews. Changes are JSON "
-      "objects of flags on standard input, a line each, as {\"id\": 7, \"view\": \"left\", "
-      "\"focus\": [\"Femur\", \"Tibia\"]}; null takes a flag back. Every refreshed picture "
-      "replaces the output files at once and is told on standard output, as are errors: "
-      "{\"event\": \"picture\" or \"error\", \"id\": 7, ...}. Ends with its input. Takes the "
-      "flags of fenestra render.",
+      "Keeps a scene loaded and renders it again after every change, for previews. Reads changes "
+      "from standard input, one JSON object of options per line, as {\"id\": 7, \"view\": "
+      "\"left\", \"focus\": [\"Femur\", \"Tibia\"]}; null removes an option. Every refreshed image "
+      "replaces the output files atomically. Images and errors are reported on standard output: "
+      "{\"event\": \"picture\" or \"error\", \"id\": 7, ...}. Ends with its input. Accepts the "
+      "options of fenestra render.",
       renderSyntax.positionals,
       renderSyntax.options,
       {{{"stats", "returnparameterfile", "progress", "xml", "echo"},
-        "serve tells all on standard output; drop it"},
+        "not for serve, which reports on standard output; omit it"},
        {{"surface", "checkpoint", "shard"},
-        "serve writes pictures alone; write it with fenestra render"}},
+        "not for serve, which only writes images; use fenestra render"}},
   };
   return syntax;
 }
@@ -166,7 +166,7 @@ int serveCommand(int argc, char** argv, int first) {
     return 0;
   configureMachine(*given);
   const RenderJob start = makeRenderJob(*given);
-  // Never destroyed: the reading thread, which lives as long as the process, uses both.
+  // Never destroyed: the reading thread uses both until the process ends.
   Outputs& outputs = *new Outputs;
   declareOutputs(start.options, outputs);
   checkMemory(start.options.scene);

@@ -20,7 +20,7 @@ using nlohmann::json;
 
 constexpr std::size_t longestLine = 1 << 20;
 
-/// Value as text of the command line.
+/// Value as command-line text.
 std::string valueText(const std::string& name, const json& value) {
   if (value.is_string())
     return value.get<std::string>();
@@ -29,7 +29,7 @@ std::string valueText(const std::string& name, const json& value) {
   throw usageError(name + ": expected a text, a number or a list of them");
 }
 
-/// Items separated by commas; commas within an item are escaped.
+/// Items separated by commas; commas in items are escaped.
 std::string listText(const std::string& name, const json& list) {
   return join(list, ",",
               [&name](const json& item) { return replaceAll(valueText(name, item), ",", "\\,"); });
@@ -43,7 +43,7 @@ void writeEvent(const nlohmann::ordered_json& content) {
   const std::lock_guard lock(mutex);
   if (std::fwrite(line.data(), 1, line.size(), stdout) == line.size() && std::fflush(stdout) == 0)
     return;
-  std::fputs("fenestra: standard output: nobody reads it any more\n", stderr);
+  std::fputs("fenestra: standard output was closed\n", stderr);
   endProcess(static_cast<int>(ErrorKind::output));
 }
 
@@ -62,7 +62,7 @@ json readId(const json& change) {
 
 OptionValues applyChange(const json& change, const OptionValues& values) {
   if (!change.is_object())
-    throw usageError("expected a JSON object of flags, as {\"view\": \"left\"}");
+    throw usageError("expected a JSON object of options, as {\"view\": \"left\"}");
   OptionValues result = values;
   for (const auto& [name, value] : change.items()) {
     if (name == "id")
@@ -70,7 +70,7 @@ OptionValues applyChange(const json& change, const OptionValues& values) {
     const Option* option = findOption(renderSyntax.options, name);
     if (!option) {
       const std::string likely = findNearest(name, listNames(renderSyntax.options));
-      throw usageError(toOneLine(name), ": no such flag",
+      throw usageError(toOneLine(name), ": unknown option",
                        likely.empty() ? "" : concat("; did you mean ", likely, "?"));
     }
     if (!isImageOption(*option))
@@ -92,7 +92,7 @@ OptionValues applyChange(const json& change, const OptionValues& values) {
 
 void checkChange(const json& change, const OptionValues& values, const Input& input) {
   const RenderRequest scene = makeRenderOptions(mergePreset(values, input)).scene;
-  const bool isPreset = change.contains("preset"); // may name lights and a transfer function
+  const bool isPreset = change.contains("preset"); // may set lights and a transfer function
   if (isPreset || change.contains("lights"))
     findLights(scene.lights);
   if (scene.transfer && (isPreset || change.contains("transfer")))
@@ -105,7 +105,7 @@ void checkChange(const json& change, const OptionValues& values, const Input& in
 
 ServeInput::ServeInput(const OptionValues& start, const Input& input, RenderMonitor& monitor)
     : m_input(input), m_monitor(monitor), m_requested(start) {
-  std::thread([this] { read(); }).detach(); // ends with the process only
+  std::thread([this] { read(); }).detach(); // runs until the process ends
 }
 
 ServeChanges ServeInput::next() {
@@ -131,7 +131,7 @@ void ServeInput::read() {
       continue;
     }
     if (line.size() > longestLine)
-      writeErrorEvent(nullptr, "a line has more than a million characters; send shorter ones");
+      writeErrorEvent(nullptr, "a line has more than a million characters; send shorter lines");
     else if (line.find_first_not_of(" \t\r") != std::string::npos)
       handleLine(line);
     line.clear();

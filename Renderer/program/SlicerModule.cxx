@@ -12,7 +12,7 @@ void addText(pugi::xml_node parent, const char* name, const std::string& text) {
   parent.append_child(name).text().set(text.c_str());
 }
 
-/// Label: the flag's own name, so that a panel's field can be matched to a flag.
+/// Label of a panel's field: the option's name, so that users can match them.
 std::string makeLabel(const std::string& name) {
   std::string label = name;
   label[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(label[0])));
@@ -27,14 +27,14 @@ pugi::xml_node addParameters(pugi::xml_node module, const std::string& label,
   return group;
 }
 
-/// Slicer's type of a flag. Slicer always passes numbers and words, so that such a flag without a
-/// default is a text.
+/// Slicer's type of an option. Slicer always passes numbers and enumerations, so without a default
+/// they become texts.
 std::string slicerType(const ValueSpec& spec) {
   const bool isPassed = spec.least > -infinity || !spec.choices.empty();
   return isPassed && spec.defaultValue.empty() ? "string" : spec.type;
 }
 
-/// Adds a slider if the range is narrow enough to set by hand.
+/// Adds a slider if the range is narrow enough for one.
 void addConstraints(pugi::xml_node parameter, const ValueSpec& spec) {
   constexpr double widest = 1e6;
   if (slicerType(spec) == "string" || spec.defaultValue.empty() ||
@@ -77,7 +77,7 @@ void addInput(pugi::xml_node group, const Positional& input) {
 }
 
 void addReturnValues(pugi::xml_node module) {
-  pugi::xml_node group = addParameters(module, "Reached", "What the render reached");
+  pugi::xml_node group = addParameters(module, "Results", "Measured values of the render");
   for (const ReturnValue& value : returnValues) {
     pugi::xml_node parameter = group.append_child("double");
     addText(parameter, "name", value.name);

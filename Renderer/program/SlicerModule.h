@@ -1,5 +1,5 @@
 #pragma once
-// The renderer as a command line module of 3D Slicer: its flags in the terms of Slicer's execution
+// The renderer as a command-line module of 3D Slicer: its options in the XML of Slicer's execution
 // model, from which Slicer builds a panel, and the values that a render returns to Slicer.
 
 #include "program/Options.h"
@@ -9,24 +9,24 @@
 
 namespace fenestra {
 
-/// Measured result of a render, a number; Slicer shows it under the panel.
+/// A number that a render measured; Slicer shows it below the panel.
 struct ReturnValue {
   const char* name;
   const char* description;
 };
 inline constexpr ReturnValue returnValues[] = {
-    {"samplesPerPixel", "Samples a pixel, the mean over the picture"},
+    {"samplesPerPixel", "Samples per pixel, mean over the image"},
     {"reachedNoise",
-     "Relative noise of the picture, filtered if that is; empty below two samples a pixel"},
-    {"renderSeconds", "Time of the rendering alone, by the clock"},
+     "Relative noise of the image, after denoising if applied; empty below two samples per pixel"},
+    {"renderSeconds", "Rendering time alone, wall clock"},
 };
 
-/// Module description, an XML document: the first positional argument as a volume, then every flag
-/// but Slicer's own, in the table's order, then the return values. A flag without a default is a
-/// text, which Slicer leaves out if empty.
+/// XML module description: the first positional argument as a volume, all options but Slicer's own
+/// in table order, and the return values. A number or enumeration without a default becomes a text,
+/// since Slicer always passes the former but omits an empty text.
 std::string makeSlicerXml(const CommandSyntax& syntax);
 
-/// Lines "name = value" in Slicer's form; values[i] belongs to returnValues[i].
+/// Lines "name = value", as Slicer expects; values[i] belongs to returnValues[i].
 std::string formatReturnValues(const std::vector<double>& values);
 
 } // namespace fenestra

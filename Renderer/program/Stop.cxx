@@ -14,7 +14,7 @@ namespace {
 
 std::atomic<std::atomic<bool>*> stopFlag = nullptr;
 std::atomic<int> firstSignal = 0;
-std::atomic<std::int64_t> firstTime = 0; ///< of the first signal, ms
+std::atomic<std::int64_t> firstTime = 0; ///< time of the first signal, ms
 static_assert(std::atomic<std::atomic<bool>*>::is_always_lock_free);
 
 std::int64_t milliseconds() {
@@ -23,13 +23,13 @@ std::int64_t milliseconds() {
   return std::int64_t{now.tv_sec} * 1000 + now.tv_nsec / 1'000'000;
 }
 
-/// True shortly after the first signal: a closed terminal sends HUP twice.
+/// True shortly after the first signal, since a closed terminal sends HUP twice.
 bool isRepeat() {
   constexpr std::int64_t together = 300; // ms
   return milliseconds() - firstTime < together;
 }
 
-/// Writes the line to standard error, only on the first call, whichever threads end the process.
+/// Writes the line to standard error, only on the first call by any thread.
 void printOnce(std::string_view line) {
   static std::atomic<bool> isSaid = false;
   if (isSaid.exchange(true))
@@ -40,7 +40,7 @@ void printOnce(std::string_view line) {
 /// Async-signal-safe.
 void endNow() {
   if (firstSignal == SIGPIPE)
-    printOnce("fenestra: standard output: nobody reads it any more\n");
+    printOnce("fenestra: standard output was closed\n");
   else if (hasPlacedResults())
     printOnce("fenestra: stopped on request\n");
   else
@@ -72,7 +72,7 @@ void installStopHandlers() {
   action.sa_handler = onSignal;
   action.sa_flags = SA_RESTART;
   sigfillset(&action.sa_mask);
-  ::signal(SIGXFSZ, SIG_IGN); // the write call then returns an error, as with a full disk
+  ::signal(SIGXFSZ, SIG_IGN); // write() then returns an error, as for a full disk
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU, SIGPIPE}) {
     struct sigaction before = {};
     if (::sigaction(signal, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)

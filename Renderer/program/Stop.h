@@ -1,7 +1,7 @@
 #pragma once
-// Signals that ask the process to end: INT, TERM, HUP (terminal closed), QUIT, XCPU, and PIPE
-// (standard output closed). The first ends the process at once; where that would cost finished
-// work (DeferredStop), the second. Signals ignored when the process began (nohup) stay ignored.
+// Signals that request the end of the process: INT, TERM, HUP (terminal closed), QUIT, XCPU, and
+// PIPE (standard output closed). The first signal ends the process at once; with DeferredStop, the
+// second does, so that finished work is saved. Signals ignored at the start (nohup) stay ignored.
 
 #include <atomic>
 
@@ -9,22 +9,22 @@ namespace fenestra {
 
 inline constexpr int stoppedStatus = 5;
 
-/// Installs the handlers. Call before files are read or made.
+/// Installs the signal handlers. Call before files are read or written.
 void installStopHandlers();
 
-/// True once any of those signals has come.
+/// True after any of these signals.
 bool isStopRequested();
 
-/// Exit status of a command that was asked to stop: stoppedStatus, or the status of an output error
-/// if standard output is closed.
+/// Exit status after a signal: stoppedStatus, or that of an output error if standard output is
+/// closed.
 int stopStatus();
 
-/// Ends the process, whatever other threads are doing, as soon as no result is being put in place.
-/// Removes temporary files.
+/// Ends the process from any thread, but never while results are being renamed into place. Removes
+/// temporary files.
 [[noreturn]] void endProcess(int status);
 
-/// Makes the first signal set `stop` instead of ending the process, for the object's lifetime. At
-/// most one instance at a time.
+/// During its lifetime, the first signal sets `stop` instead of ending the process. At most one
+/// instance at a time.
 class DeferredStop {
 public:
   explicit DeferredStop(std::atomic<bool>& stop);

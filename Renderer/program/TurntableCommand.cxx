@@ -1,5 +1,5 @@
-// `fenestra turntable`: a rotation as numbered frames. The scene is built once; for each frame only
-// the stages that depend on the camera are rebuilt (Scene::changed).
+// `fenestra turntable`: a rotation as numbered frames. The scene is built once; each frame rebuilds
+// only the stages that depend on the camera (PreparedScene::changed).
 
 #include "base/Error.h"
 #include "io/InputRegistry.h"
@@ -24,10 +24,10 @@
 namespace fenestra {
 namespace {
 
-/// Renders all frames that are not finished, one by one.
+/// Renders all unfinished frames in sequence.
 class Turntable {
 public:
-  /// `words`: arguments of the process, for the headers of the pictures.
+  /// `arguments`: command line of the process, for the image headers.
   Turntable(const TurntableOptions& options, const Input& input, TurntableManifest& manifest,
             Outputs& outputs, std::vector<std::string> arguments)
       : m_options(options),
@@ -40,8 +40,8 @@ public:
 
   /// Returns the exit status.
   int run() {
-    const DeferredStop stopInstead(m_monitor.stop); // the frame under way is discarded
-    m_outputs.checkInputs();                        // now also files that the scene refers to
+    const DeferredStop stopInstead(m_monitor.stop); // the current frame is discarded
+    m_outputs.checkInputs();                        // now including files that the scene refers to
     m_manifest.setInputs(m_view.scene);
     m_manifest.write(m_outputs);
     if (!m_manifest.warning().empty())
@@ -50,11 +50,11 @@ public:
     const bool isComplete = finishedCount() == frameCount();
     const auto& stats = m_options.render.stats;
     if (stats &&
-        (renderedCount() > 0 || isComplete)) // otherwise they would describe missing pictures
+        (renderedCount() > 0 || isComplete)) // otherwise they would describe missing frames
       m_outputs.write(*stats, statsJson());
     m_outputs.commit();
     report();
-    if (m_preparing.valid()) // a view is still being built, and will not be used
+    if (m_preparing.valid()) // its thread is still building a view, which is not needed
       endProcess(stopStatus());
     return isComplete ? 0 : stopStatus();
   }
@@ -62,13 +62,13 @@ public:
 private:
   /// Scene of a frame, before rendering.
   struct View {
-    int frame; ///< -2: none, the scene is as requested
+    int frame; ///< -2: none, the scene has the requested camera
     PreparedScene scene;
     std::optional<VisibleSurface> surface = {};
     std::optional<SurfaceChange> change = {}; ///< since the preceding frame
   };
 
-  /// Number of frames of this part.
+  /// Number of frames of this shard.
   int frameCount() const { return m_options.end() - m_options.first(); }
   int finishedCount() const { return static_cast<int>(m_manifest.finished().size()); }
   int renderedCount() const { return finishedCount() - m_finishedBefore; }
@@ -109,8 +109,8 @@ private:
     return true;
   }
 
-  /// Builds the view in another thread if one can start: a stop does not wait for surfaces. Returns
-  /// whether the view is ready; false: stopped.
+  /// Builds the view in another thread, if one can start, so that a stop does not wait for the
+  /// surface. Returns whether the view is ready; false: stopped.
   bool waitForView(int frame) {
     m_preparing = std::async([this, frame] { return buildView(frame); });
     while (m_preparing.wait_for(std::chrono::milliseconds(10)) == std::future_status::timeout)
@@ -119,7 +119,7 @@ private:
     return true;
   }
 
-  /// Scene for the eye of m_start turned around its target.
+  /// Scene for the initial camera, rotated around its target.
   PreparedScene buildScene(double degrees) const {
     const CameraPose pose = rotateAroundTarget(m_start, degrees);
     RenderRequest request = m_options.render.scene;
@@ -145,7 +145,7 @@ private:
     return view;
   }
 
-  /// Visible part of the clipping surface; nullopt: the clip is no surface.
+  /// Visible part of the clipping surface; nullopt: the clip has no smooth surface.
   static std::optional<VisibleSurface> findVisibleSurface(const PreparedScene& scene) {
     const auto* clip = std::get_if<ClipDepth>(&scene.clip());
     if (!clip || clip->lookup != ClipDepth::Lookup::linear)
@@ -184,7 +184,7 @@ private:
                             m_options.images(m_options.end() - 1).front().filename(), ": ",
                             finishedCount(), " of ", frameCount(), " frames, ", renderedCount(),
                             " rendered now, ", toString(m_total.seconds(), 3), " s",
-                            isComplete ? "" : " (stopped on request; the same command goes on)"))
+                            isComplete ? "" : " (stopped on request; the same command resumes)"))
               << std::endl;
   }
 
@@ -195,14 +195,14 @@ private:
   int m_finishedBefore; ///< frames finished by earlier runs
   Stopwatch m_total;
   RenderMonitor m_monitor;
-  View m_view;        ///< built last
+  View m_view;        ///< last one built
   CameraPose m_start; ///< of frame 0
   std::set<std::string> m_warnings;
-  std::future<View> m_preparing; ///< abandoned by a stop
+  std::future<View> m_preparing; ///< still valid after a stop
 };
 
-/// Declares all results before the long work. When resuming, an unfinished frame may replace only
-/// Fenestra's own files: other files in its place were put there since.
+/// Declares all results before the render. On resuming, an unfinished frame may replace only files
+/// that Fenestra wrote: any other file in its place is newer than the manifest.
 void declareFrames(const TurntableOptions& options, const TurntableManifest& manifest,
                    Outputs& outputs) {
   for (int frame = options.first(); frame < options.end(); ++frame) {
@@ -216,8 +216,8 @@ void declareFrames(const TurntableOptions& options, const TurntableManifest& man
   manifest.declare(outputs);
 }
 
-/// Locks, to be held while the frames are written. Throws Error: usage if another process holds
-/// one; output.
+/// Locks to hold while the frames are written. Throws Error: usage if another process holds one;
+/// output.
 std::list<NameLock> lockFrames(const TurntableOptions& options) {
   std::map<std::filesystem::path, std::filesystem::path> names; // as given, by canonical path
   for (const std::filesystem::path& output : options.render.outputs) {
@@ -233,8 +233,8 @@ std::list<NameLock> lockFrames(const TurntableOptions& options) {
   for (const auto& [known, name] : names)
     if (!locks.emplace_back(name).isHeld())
       throw usageError(options.render.outputs.front(),
-                       ": another turntable is writing these frames; wait for it, or choose "
-                       "another --output");
+                       ": another turntable is writing these frames; wait for it, or use another "
+                       "--output");
   return locks;
 }
 
@@ -246,15 +246,15 @@ int turntableCommand(int argc, char** argv, int first) {
     return 0;
   configureMachine(*given);
   OptionValues values = *given;
-  values.remove("shard"); // which deals out frames here, not tiles
+  values.remove("shard"); // a turntable distributes frames, not tiles
   const RenderJob job = makeRenderJob(values);
   TurntableOptions options = makeTurntableOptions(job.values, job.options);
   options.shard = readOptions(*given).settings.shard;
   if (options.first() == options.end())
-    throw usageError("--shard: ", options.shard.count, " parts are more than the ", options.frames,
-                     " frames; ask for fewer parts");
+    throw usageError("--shard: ", options.shard.count, " shards are more than the ", options.frames,
+                     " frames; use fewer shards");
   for (const std::filesystem::path& input : options.render.inputs)
-    registerInput(input); // --restart replaces no input
+    registerInput(input); // so that --restart does not replace an input
   const auto locks = lockFrames(options);
   TurntableManifest manifest(options, job.values);
   Outputs outputs;

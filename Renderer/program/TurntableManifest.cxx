@@ -12,7 +12,7 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-/// Arguments on which the pictures of the frames depend.
+/// Arguments that the images of the frames depend on.
 std::vector<std::string> listArguments(const OptionValues& values, const fs::path& folder) {
   OptionValues request = values;
   for (const char* name : {"threads", "progress", "stats", "restart"})
@@ -52,7 +52,7 @@ TurntableManifest::TurntableManifest(const TurntableOptions& options, const Opti
   else if (!options.restart)
     rejectUnknownFrames();
   if (there)
-    forgetInput(*there); // the record is rewritten, so it is no input
+    forgetInput(*there); // since the manifest is also an output
 }
 
 int TurntableManifest::maxFiles() const {
@@ -62,10 +62,10 @@ int TurntableManifest::maxFiles() const {
 void TurntableManifest::rejectUnknownFrames() const {
   for (int frame = m_options.first(); frame < m_options.end(); ++frame)
     for (const fs::path& file : m_options.files(frame))
-      if (const auto id = fileId(file); id && !findInput(*id)) // inputs have their own refusal
-        throw usageError(file, ": is there, and no ", m_manifest.path(),
-                         " tells what it is of; choose another --output, or add --restart to "
-                         "replace it");
+      if (const auto id = fileId(file); id && !findInput(*id)) // inputs have their own message
+        throw usageError(file, ": already exists, and no ", m_manifest.path(),
+                         " describes it; use another --output, or add --restart to replace "
+                         "it");
 }
 
 void TurntableManifest::read() {
@@ -79,7 +79,7 @@ void TurntableManifest::read() {
       });
 }
 
-/// Empty if there are none, or the record cannot be read: it is about to be replaced.
+/// Empty if there are none, or the manifest cannot be read, since it is about to be replaced.
 std::string TurntableManifest::makeStaleWarning() {
   std::set<fs::path> stale;
   try {
@@ -94,7 +94,7 @@ std::string TurntableManifest::makeStaleWarning() {
       stale.erase(file);
   if (stale.empty())
     return {};
-  constexpr const char* whose = " of the turntable that was there before; remove ";
+  constexpr const char* whose = " from the previous turntable of that name; remove ";
   if (stale.size() == 1)
     return concat(*stale.begin(), ": is", whose, "it");
   return concat(*stale.begin(), " to ", stale.rbegin()->filename(), ": ", stale.size(),
@@ -110,14 +110,14 @@ void TurntableManifest::setInputs(const PreparedScene& scene) {
       {"volume", std::visit([](const auto& v) { return digest(v); }, scene.volume().voxels)}};
   if (scene.focus())
     voxels["focus"] = digest(scene.focus()->voxels);
-  m_manifest.addRequest("voxels", voxels); // which may lie in files that only a header names
+  m_manifest.addRequest("voxels", voxels); // which may be in files that only a header names
   requireSame();
 }
 
 void TurntableManifest::requireSame() const {
   if (const auto difference = m_manifest.findDifference())
-    throw usageError(m_manifest.path(), ": is of another turntable (", *difference,
-                     "); choose another --output, or add --restart to replace its frames");
+    throw usageError(m_manifest.path(), ": belongs to another turntable (", *difference,
+                     "); use another --output, or add --restart to replace its frames");
 }
 
 std::vector<SurfaceChange> TurntableManifest::changes() const {

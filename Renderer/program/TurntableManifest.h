@@ -1,5 +1,6 @@
 #pragma once
-// Record of a turntable's finished frames.
+// Manifest of a turntable's finished frames. A frame depends only on its own request, even if its
+// surface is smoothed with those of neighboring angles, so frames can be rendered in any order.
 
 #include "metrics/SurfaceChange.h"
 #include "program/Manifest.h"
@@ -10,37 +11,37 @@ namespace fenestra {
 
 class TurntableManifest {
 public:
-  /// Reads the existing record of these flags, if any; with options.restart, none of its frames
-  /// counts as finished. Throws Error: usage if the record, or a frame without a record, belongs to
-  /// other flags; input if the record is damaged. Keeps a reference to the options.
+  /// Reads an existing manifest of these options; with options.restart, ignores finished frames.
+  /// Throws Error: usage if the manifest, or a frame without one, belongs to other options; input
+  /// for a damaged manifest. Keeps a reference to the options.
   TurntableManifest(const TurntableOptions& options, const OptionValues& values);
-  /// Adds the inputs beside the flags to the request: states of all files named or referred to, and
-  /// digests of the voxels. Throws Error (usage) if the recorded frames have other inputs.
+  /// Adds the inputs to the request: states of all input files and digests of the voxels. Throws
+  /// Error (usage) if the finished frames have other inputs.
   void setInputs(const PreparedScene& scene);
 
-  /// Frames that are recorded and whose files are all unchanged, by number.
+  /// Finished frames by number; all their files are unchanged.
   const std::map<int, Manifest::Item>& finished() const { return m_manifest.finished(); }
-  /// Changes of the clipping surface, each since the preceding frame, of the finished frames that
-  /// have one.
+  /// Changes of the clipping surface since the preceding frame, of all finished frames that have
+  /// one.
   std::vector<SurfaceChange> changes() const;
   /// Warning about files of the previous turntable that --restart does not replace; empty: none.
   const std::string& warning() const { return m_warning; }
 
   /// Throws the errors of Outputs.
   void declare(Outputs& outputs) const { m_manifest.declare(outputs); }
-  /// Puts the record in place, before the first frame. Throws Error (output).
+  /// Writes the manifest, before the first frame. Throws Error (output).
   void write(Outputs& outputs) const { m_manifest.write(outputs); }
-  /// Records a frame whose files are in place. Throws Error (output).
+  /// Adds a frame whose files are in place. Throws Error (output).
   void finish(int frame, const std::optional<SurfaceChange>& change, Outputs& outputs);
 
 private:
   void read();
-  /// Throws Error (usage) if the record is of another request, as far as the latter is known.
+  /// Throws Error (usage) if the stored request differs from this one as far as it is known.
   void requireSame() const;
   void rejectUnknownFrames() const;
-  /// Warning about existing files of the recorded turntable that are no frames of these options.
+  /// Warning about files of the stored turntable that are no frames of these options.
   std::string makeStaleWarning();
-  /// Most files that a record of as many frames as there may be names.
+  /// Most files that the manifest of a turntable with the maximum number of frames can name.
   int maxFiles() const;
 
   const TurntableOptions& m_options;
@@ -48,7 +49,7 @@ private:
   std::string m_warning;
 };
 
-/// JSON form in the record and in the statistics.
+/// JSON form in the manifest and in the statistics.
 nlohmann::ordered_json toJson(const SurfaceChange& change);
 
 } // namespace fenestra

@@ -11,16 +11,16 @@ namespace {
 constexpr const char* turntableGroup = "Turntable";
 
 const Option turntableTable[] = {
-    {"frames", "N", turntableGroup, "Pictures, 1 to 10000",
+    {"frames", "N", turntableGroup, "Number of frames, 1 to 10000",
      ValueSpec::integer(1, maxFrames).withDefault("36")},
-    {"degrees", "D", turntableGroup, "How far the eye goes around; frame i of N stands at i D / N",
+    {"degrees", "D", turntableGroup, "Total rotation; frame i of N is at i D / N",
      ValueSpec::number(-36000.0, 36000.0).withDefault("360")},
     {"steady", "DEGREES", turntableGroup,
-     "Spreads what the clipping surface does suddenly, away from the focus, over so far to both "
-     "sides; 0: every frame as render makes it [twice from frame to frame, 10 at most]",
+     "Temporal smoothing of the clipping surface away from the focus, over this many degrees "
+     "before and after each frame; 0: off [twice the step between frames, at most 10]",
      ValueSpec::number(0.0, 45.0)},
     {"restart", "", turntableGroup,
-     "Begin anew, in place of another turntable's frames of these names"},
+     "Start over, replacing the frames of another turntable with these names"},
 };
 
 } // namespace
@@ -33,23 +33,22 @@ const CommandSyntax& turntableSyntax() {
   }();
   static const CommandSyntax syntax = {
       "turntable",
-      "Renders what the eye sees while it goes around its target, about the axis that is up: "
-      "--output turn.png gives turn_0000.png, turn_0001.png and so on, each as fenestra render "
-      "makes it. Beside them turn.turntable.json records what is finished: the same command goes "
-      "on where it was stopped. --samples, --seconds and --noise are for a frame, --stats for all "
-      "of them.",
+      "Renders a rotation of the camera around its target, about the up axis: --output turn.png "
+      "gives turn_0000.png, turn_0001.png and so on, each as by fenestra render. The file "
+      "turn.turntable.json records the finished frames, so that the same command resumes after a "
+      "stop. --samples, --seconds and --noise are per frame; --stats covers all frames.",
       renderSyntax.positionals,
       options,
       {{{"surface", "returnparameterfile", "xml", "echo"},
-        "is for a single picture; use it with fenestra render, or drop it"},
-       {{"checkpoint"}, "a turntable records its frames by itself; drop it"}},
+        "only for a single image; use fenestra render, or omit it"},
+       {{"checkpoint"}, "not needed, since a turntable resumes by itself; omit it"}},
   };
   return syntax;
 }
 
 TurntableOptions makeTurntableOptions(const OptionValues& values, const RenderOptions& render) {
   TurntableOptions options{render};
-  options.render.scene.measure = false; // the statistics cover all frames
+  options.render.scene.measure = false; // the statistics are of all frames
   options.frames = static_cast<int>(values.integer("frames").value_or(36));
   options.degrees = values.number("degrees").value_or(options.degrees);
   const double usual = std::min(10.0, 2.0 * std::abs(options.angle(1)));

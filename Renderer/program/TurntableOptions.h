@@ -1,41 +1,41 @@
 #pragma once
-// Flags of `fenestra turntable`, and the options that follow for each frame.
+// Options of `fenestra turntable`, and the names of its frames and manifest.
 
 #include "program/RenderOptions.h"
 
 namespace fenestra {
 
-inline constexpr int maxFrames = 10000; ///< numbers have four digits
+inline constexpr int maxFrames = 10000; ///< file names have four digits
 
 struct TurntableOptions {
-  RenderOptions render; ///< of all frames; view and files differ by frame
+  RenderOptions render; ///< common to all frames; view and files differ per frame
   int frames = 36;
   double degrees = 360.0;
   bool restart = false;
-  Shard shard = {}; ///< of the frames: those from `first` to `end` - 1
+  Shard shard = {}; ///< of the frames: first() to end() - 1
 
   int first() const { return frames * shard.index / shard.count; }
   int end() const { return frames * (shard.index + 1) / shard.count; }
 
-  /// Degrees from frame 0 to `frame`; a full turn loops without a repeated frame.
+  /// Rotation from frame 0 to `frame`, degrees. A full turn loops without a duplicate frame.
   double angle(int frame) const { return degrees * frame / frames; }
-  /// True if the last frame leads back to frame 0.
+  /// True if frame 0 follows the last frame.
   bool isClosed() const { return degrees != 0.0 && std::remainder(degrees, 360.0) == 0.0; }
 
-  /// Pictures of a frame, an output each: turn.png's frame 7 is turn_0007.png.
+  /// Images of a frame, one per output: frame 7 of turn.png is turn_0007.png.
   std::vector<std::filesystem::path> images(int frame) const;
-  /// All files that the image writer makes for a frame.
+  /// All files that the image writer creates for a frame.
   std::vector<std::filesystem::path> files(int frame) const;
 };
 
-/// Syntax of render, with the turntable's own flags.
+/// Syntax of render with the turntable's own options.
 const CommandSyntax& turntableSyntax();
 
-/// `render`: options of the same flags. Throws Error (usage).
+/// `render`: already parsed from the same values. Throws Error (usage).
 TurntableOptions makeTurntableOptions(const OptionValues& values, const RenderOptions& render);
 
-/// Record of the finished frames: turn.png's is turn.turntable.json, that of its second part of
-/// three turn.2of3.turntable.json, so that parts are rendered beside each other.
+/// Manifest of finished frames: turn.turntable.json for turn.png, turn.2of3.turntable.json for the
+/// second of three shards, so that shards can render at the same time.
 std::filesystem::path manifestPath(const std::filesystem::path& output, const Shard& shard);
 
 } // namespace fenestra

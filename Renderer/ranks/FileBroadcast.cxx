@@ -55,7 +55,7 @@ SharedFiles::SharedFiles(Ranks& ranks) {
       file.write(block.data(), static_cast<std::streamsize>(block.size()));
     });
     if (!file.flush())
-      throw outputError(path, "cannot be written; make room there, or set TMPDIR to another disk");
+      throw outputError(path, "cannot be written; free some space, or set TMPDIR to another disk");
   }
 }
 

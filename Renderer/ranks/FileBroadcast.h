@@ -1,5 +1,6 @@
 #pragma once
-// Input files, which rank 0 has read, as files of the other ranks' own.
+// Copies rank 0's input files to the other ranks, which prepare the scene from them. Sending the
+// results of its stages instead would require a second representation of each.
 
 #include "io/Folders.h"
 #include "program/Options.h"
@@ -7,24 +8,24 @@
 
 namespace fenestra {
 
-/// Gives files to all other ranks, which call ReceivedFiles(ranks) meanwhile. Throws Error (input).
+/// Sends files to all other ranks, which construct ReceivedFiles meanwhile. Throws Error (input).
 void broadcastFiles(const std::vector<std::filesystem::path>& files, Ranks& ranks);
 
-/// Files of rank 0, in a temporary folder (TMPDIR) of this rank.
+/// Copies of rank 0's files in a temporary folder (TMPDIR) of this rank.
 class ReceivedFiles {
 public:
   /// Throws Error (output).
   explicit ReceivedFiles(Ranks& ranks);
 
-  /// Flags with those names of files, relative to rank 0's working folder, that are here in place
-  /// of the ones that rank 0 was given.
+  /// `options` with rank 0's file names, relative to its working folder, replaced by those of the
+  /// copies.
   OptionValues localizePaths(const OptionValues& options, std::span<const Flag> known) const;
 
 private:
   std::filesystem::path localPath(const std::filesystem::path& remotePath) const;
 
   PrivateFolder m_folder;
-  std::filesystem::path m_working; ///< rank 0's
+  std::filesystem::path m_working; ///< rank 0's working folder
 };
 
 } // namespace fenestra

@@ -23,22 +23,22 @@ int firstArgument(int argc, char** argv) {
     return 2;
   for (const Command& command : commands())
     if (word == command.syntax().name)
-      throw usageError(word, ": mpirun is for one picture; run it without, in one process or as an "
-                             "array job");
+      throw usageError(word, ": mpirun supports render only; run this command without mpirun, in "
+                             "one process or as an array job");
   return 1;
 }
 
-/// Throws Error (usage) unless all ranks make the same samples.
+/// Throws Error (usage) unless all ranks compute the same samples.
 void requireSameRanks(const std::vector<std::string>& targets) {
   const auto other = std::ranges::find_if(
       targets, [&](const std::string& text) { return text != targets.front(); });
   if (other != targets.end())
     throw usageError("mpirun: rank ", other - targets.begin(), " is ", *other, ", rank 0 is ",
                      targets.front(),
-                     "; use one build, and set FENESTRA_INSTRUCTIONS to what all machines have");
+                     "; use one build, and set FENESTRA_INSTRUCTIONS to a set of all machines");
 }
 
-/// Facts that differ where scenes do: the voxels' range, the camera, the bounds of the extinction.
+/// Facts that differ if the scenes do: the range of the voxels, the camera, the majorants.
 std::string describeScene(const PreparedScene& scene, const RenderSettings& settings) {
   constexpr int exact = 17; // significant digits
   const CameraPose& pose = scene.camera().pose();
@@ -50,7 +50,7 @@ std::string describeScene(const PreparedScene& scene, const RenderSettings& sett
       "; ", majorants.size(), " cells, ", majorants.emptyCount(), " of them empty");
 }
 
-/// Lets the other ranks make the scene, and lend a hand.
+/// Makes the other ranks prepare the scene and render tiles of it.
 void startRanks(const RenderOptions& options, const PreparedScene& scene,
                 const RenderSettings& settings, RenderMonitor& monitor, Ranks& ranks,
                 Scheduler& scheduler) {
@@ -59,7 +59,7 @@ void startRanks(const RenderOptions& options, const PreparedScene& scene,
     shareFiles(filesOf(scene, options), ranks);
     std::string text = describeScene(scene, settings);
     ranks.spread(text);
-  } catch (const Error& error) { // the others wait for bytes
+  } catch (const Error& error) { // abort: the other ranks would wait for bytes
     ranks.abort(error.what(), error.exitStatus());
   } catch (const std::exception& error) {
     ranks.abort(error.what(), static_cast<int>(ErrorKind::input));
@@ -67,7 +67,7 @@ void startRanks(const RenderOptions& options, const PreparedScene& scene,
   scheduler.help(monitor);
 }
 
-/// Rank 0: the whole command.
+/// Rank 0: the complete command.
 int runFirstRank(int argc, char** argv, Ranks& ranks, const std::vector<std::string>& targets) {
   Scheduler scheduler(ranks);
   try {
@@ -78,7 +78,7 @@ int runFirstRank(int argc, char** argv, Ranks& ranks, const std::vector<std::str
     };
     const int status = renderWith(start, argc, argv, firstArgument(argc, argv));
     if (!scheduler.stopWorkers(status == stoppedStatus))
-      ranks.abort("stopped; other ranks do not answer", status);
+      ranks.abort("stopped; other ranks do not respond", status);
     return status;
   } catch (...) {
     scheduler.stopWorkers(true);
@@ -86,7 +86,7 @@ int runFirstRank(int argc, char** argv, Ranks& ranks, const std::vector<std::str
   }
 }
 
-/// Other ranks: tiles of the picture that rank 0 makes of the same arguments.
+/// Other ranks: tiles of the image that rank 0 renders from the same arguments.
 void runOtherRank(int argc, char** argv, Ranks& ranks) {
   const std::optional<OptionValues> given =
       parseCommandLine(renderSyntax, argc, argv, firstArgument(argc, argv));
@@ -96,14 +96,14 @@ void runOtherRank(int argc, char** argv, Ranks& ranks) {
   ranks.spread(expected);
   RenderJob request = makeRenderJob(files->renamed(*given, renderSyntax.flags));
   RenderRequest& wanted = request.options.scene;
-  wanted.features = wanted.measure = false; // what is for rank 0 alone
+  wanted.features = wanted.measure = false; // rank 0 alone needs them
   checkMemory(wanted);
   const PreparedScene scene(wanted, request.input);
   files.reset();
   const RenderSettings settings = makeSettings(request.options, scene.background());
   if (const std::string here = describeScene(scene, settings); here != expected)
-    throw inputError(wanted.input, "is another scene than rank 0 has (", here, ", not ", expected,
-                     "); a file that it names may differ between machines");
+    throw inputError(wanted.input, "scene differs from rank 0's (", here, ", not ", expected,
+                     "); a file that it refers to may differ between machines");
   RenderMonitor monitor;
   const DeferredStop stopInstead(monitor.stop);
   runWorker(ranks, scene.view(), settings, monitor);
@@ -127,7 +127,7 @@ int dispatchRank(int argc, char** argv) {
   } catch (const Error& error) {
     ranks.abort(error.what(), error.exitStatus());
   } catch (const std::bad_alloc&) {
-    ranks.abort("out of memory; use fewer ranks on a machine, or a smaller picture",
+    ranks.abort("out of memory; use fewer ranks per machine, or a smaller image",
                 static_cast<int>(ErrorKind::output));
   } catch (const std::exception& error) {
     ranks.abort(error.what(), static_cast<int>(ErrorKind::output));

@@ -22,7 +22,7 @@ Ranks::Ranks() {
   int level = MPI_THREAD_SINGLE;
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &level);
   if (level < MPI_THREAD_SERIALIZED)
-    throw outputError("MPI", "this library serves one thread alone; use another one");
+    throw outputError("MPI", "this library does not support threads; use another one");
   MPI_Comm_rank(MPI_COMM_WORLD, &m_rank);
   MPI_Comm_size(MPI_COMM_WORLD, &m_count);
 }
@@ -86,7 +86,7 @@ bool Ranks::hasMessage() {
 
 void Ranks::abort(std::string_view line, int status) {
   std::cerr << toOneLine(textOf("fenestra: rank ", m_rank, ": ", line)) << std::endl;
-  MPI_Abort(MPI_COMM_WORLD, status); // other threads may be inside a call: no lock
+  MPI_Abort(MPI_COMM_WORLD, status); // without the lock: other threads may be inside a call
   ::_exit(status);
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Processes of one mpirun, and what they tell each other. The only sources that know MPI.
+// Processes of one mpirun and their messages. No other sources use MPI.
 
 #include "base/Stopwatch.h"
 
@@ -13,7 +13,7 @@
 
 namespace fenestra {
 
-/// Words of a message; their meaning is the sender's and the receiver's.
+/// Words of a message; sender and receiver agree on their meaning.
 using Message = std::vector<std::uint64_t>;
 
 struct ReceivedMessage {
@@ -21,13 +21,13 @@ struct ReceivedMessage {
   Message message;
 };
 
-/// All methods may be called from any thread.
+/// All methods are thread-safe.
 class Ranks {
 public:
-  /// Joins the other processes. Throws Error (output) where MPI cannot be used from threads. At
-  /// most one object in a process.
+  /// Initializes MPI. Throws Error (output) if MPI cannot be used from threads. At most one object
+  /// per process.
   Ranks();
-  /// Waits for the other ranks to do the same.
+  /// Waits for the destructors of the other ranks.
   ~Ranks();
   Ranks(const Ranks&) = delete;
   Ranks& operator=(const Ranks&) = delete;
@@ -35,20 +35,20 @@ public:
   int rank() const { return m_rank; }
   int count() const { return m_count; }
 
-  /// Texts of all ranks, in their order, the same everywhere; each rank must call this.
+  /// Texts of all ranks in rank order, the same on every rank. Each rank must call this.
   std::vector<std::string> allGather(const std::string& text);
-  /// Gives the bytes of rank 0 to all others; each rank must call this, with as many bytes.
+  /// Sends the bytes of rank 0 to all others. Each rank must call this, with as many bytes.
   void broadcast(std::span<char> bytes);
-  /// Gives the text of rank 0 to all others.
+  /// Sends the text of rank 0 to all others. Each rank must call this.
   void broadcast(std::string& text);
 
   void send(int to, const Message& message);
-  /// Next message, if there is one.
+  /// Next message, if any.
   std::optional<ReceivedMessage> receive();
   /// True if receive() would return a message.
   bool hasMessage();
 
-  /// Ends the processes of all ranks, with a line that names this one.
+  /// Ends the processes of all ranks, with a message that names this one.
   [[noreturn]] void abort(std::string_view line, int status);
 
 private:
@@ -56,12 +56,12 @@ private:
   int m_rank = 0, m_count = 1;
 };
 
-/// Rests between looks for messages, each an eighth of the time since the last one that was there:
-/// looks take next to nothing of a long wait from threads that render, and make a short one hardly
-/// longer.
+/// Waits between polls for messages: an eighth of the time since the last message, within limits.
+/// Rendering threads lose little time to polls during long waits (polls every 0.3 ms took a tenth
+/// of rank 0's time), and short waits are hardly prolonged.
 class BackoffPoller {
 public:
-  /// Counts from now, for a message was there.
+  /// Restarts the time, after a message.
   void reset() { m_watch = {}; }
   void wait() const;
 

@@ -15,12 +15,12 @@
 namespace fenestra {
 namespace {
 
-/// First words of messages from rank 0.
+/// First word of each message from rank 0.
 constexpr std::uint64_t startTag = 1, leaseTag = 2, stopTag = 3;
 
-constexpr std::size_t maxLeaseTiles = 4096; ///< of a loan: 60 MB
+constexpr std::size_t maxLeaseTiles = 4096; ///< per lease: 60 MB
 
-/// Words of a message, one after the other.
+/// Reads the words of a message in order.
 class MessageReader {
 public:
   explicit MessageReader(const Message& message) : m_message(message) {}
@@ -45,7 +45,7 @@ void forEachTilePixel(std::span<const int> tiles, Film& film, Each&& each) {
   }
 }
 
-/// Adds the number of tiles, the tiles, and the sums of their pixels.
+/// Appends the number of tiles, the tiles, and the sums of their pixels.
 void writeTiles(std::span<const int> tiles, Film& film, Message& message) {
   message.push_back(tiles.size());
   message.insert(message.end(), tiles.begin(), tiles.end());
@@ -56,7 +56,7 @@ void writeTiles(std::span<const int> tiles, Film& film, Message& message) {
   });
 }
 
-/// Puts the sums of pixels into the film; the result: their tiles.
+/// Copies the sums of pixels to the film; returns their tiles.
 std::vector<int> readTiles(MessageReader& reader, Film& film) {
   std::vector<int> tiles(reader.word());
   for (int& tile : tiles)
@@ -70,7 +70,7 @@ std::vector<int> readTiles(MessageReader& reader, Film& film) {
   return tiles;
 }
 
-/// Counts, in the order of messages.
+/// Calls each(counter) in the order of messages.
 template <typename Each>
 void forEachCounter(Counters& counters, Each&& each) {
   for (std::uint64_t* count :
@@ -79,12 +79,12 @@ void forEachCounter(Counters& counters, Each&& each) {
     each(*count);
 }
 
-/// A rank's side of loans.
+/// Leases of a rank other than 0.
 class LeasedTiles {
 public:
   LeasedTiles(Ranks& ranks, RenderMonitor& monitor) : m_ranks(ranks), m_monitor(monitor) {}
 
-  /// Brings the last loan back and gets another (renderLeases).
+  /// Returns the previous lease's tiles and waits for the next; nullopt: there are no more.
   std::optional<TileLease> next(RenderResult& result) {
     m_watch = {};
     returnTiles(result);
@@ -125,7 +125,7 @@ private:
     result.last.plan = SamplePlan(std::move(plan));
   }
 
-  /// Stops the loan under way if rank 0 says anything meanwhile, which is that all is done.
+  /// Stops the current lease if a message arrives meanwhile: it can only end the work.
   void watch() {
     m_watch = std::jthread([this](const std::stop_token& end) {
       std::mutex mutex;
@@ -141,7 +141,7 @@ private:
 
   Ranks& m_ranks;
   RenderMonitor& m_monitor;
-  std::vector<int> m_tiles; ///< of the loan under way
+  std::vector<int> m_tiles; ///< of the current lease
   std::jthread m_watch;
 };
 
@@ -185,11 +185,11 @@ void Lender::serve(const std::stop_token& end) {
       poller.rest();
     }
   } catch (const std::bad_alloc&) {
-    m_ranks.abort("out of memory; use a smaller picture", static_cast<int>(ErrorKind::output));
+    m_ranks.abort("out of memory; use a smaller image", static_cast<int>(ErrorKind::output));
   }
 }
 
-/// Takes all messages that are there; false if there is none. Locked.
+/// Handles all pending messages; false if there are none. The caller holds m_mutex.
 bool Lender::hear() {
   bool hasReceived = false;
   while (const std::optional<Received> measureIrradiance = m_ranks.receive()) {
@@ -202,7 +202,7 @@ bool Lender::hear() {
   return hasReceived;
 }
 
-/// Locked.
+/// Adds a worker's samples to the film. The caller holds m_mutex.
 void Lender::takeBack(const Message& message) {
   MessageReader reader(message);
   if (reader.word() != 0)
@@ -215,7 +215,7 @@ void Lender::takeBack(const Message& message) {
     m_pass->takeBack(tile);
 }
 
-/// Lends tiles to all that wait. Locked.
+/// Leases tiles to all idle workers. The caller holds m_mutex.
 void Lender::lendAll() {
   for (std::size_t rank = 1; rank < m_borrowers.size(); ++rank) {
     Borrower& worker = m_borrowers[rank];
@@ -228,8 +228,8 @@ void Lender::lendAll() {
   }
 }
 
-/// A share of what is left of the pass, which gets smaller toward its end, so that all ranks end it
-/// together. Locked.
+/// Leases a fraction of the pass's remaining tiles. Leases shrink toward the end of the pass, so
+/// that all ranks finish it together. The caller holds m_mutex.
 Message Lender::loanFor(Borrower& worker) {
   const std::size_t fair = m_pass->left() / (2 * m_borrowers.size());
   const std::size_t wanted = std::min(std::max(fair, 2 * worker.threads), maxLeaseTiles);

@@ -1,7 +1,7 @@
 #pragma once
-// Tiles that travel between ranks: rank 0 has the film, and lends tiles with their pixels' sums;
-// the others add samples to these, and bring them back. So the film is whole, and rank 0 alone
-// knows of passes, plans, limits and checkpoints.
+// Distributes tiles to MPI ranks. Rank 0 owns the film and leases tiles with their pixels' sums;
+// the others add samples and return the tiles, complete or not at all. Only rank 0 handles passes,
+// sample plans, limits and checkpoints, and a rank that dies costs the film nothing.
 
 #include "integrator/render/Render.h"
 #include "ranks/Ranks.h"
@@ -10,25 +10,25 @@
 
 namespace fenestra {
 
-/// Rank 0: lends tiles to all other ranks.
+/// Rank 0: leases tiles to all other ranks.
 class Scheduler {
 public:
   explicit Scheduler(Ranks& ranks)
       : m_ranks(ranks), m_workers(static_cast<std::size_t>(ranks.count())) {}
   ~Scheduler();
 
-  /// Begins to lend tiles of the render with that monitor, which must live until the render has
+  /// Starts to lease tiles of the render with this monitor, which must live until the render has
   /// ended.
   void start(RenderMonitor& monitor);
-  /// Sends the other ranks home. False if they do not answer after a stop was asked for: one may
-  /// have died.
+  /// Stops the other ranks. False if one does not respond after a stop was requested: it may have
+  /// died.
   bool stopWorkers(bool isStopped);
 
 private:
   struct Worker {
     std::size_t threads = 1;
-    bool isIdle = false;  ///< for tiles, or the end
-    bool hasPlan = false; ///< RenderResult::last.plan
+    bool isIdle = false;  ///< for a lease, or the end
+    bool hasPlan = false; ///< has received RenderResult::last.plan
   };
 
   void serve(const std::stop_token& end);
@@ -39,23 +39,23 @@ private:
   Counters join(const RenderMonitor& monitor);
 
   Ranks& m_ranks;
-  std::mutex m_mutex;            ///< of all below
+  std::mutex m_mutex;            ///< for all members below
   std::vector<Worker> m_workers; ///< by rank
   RenderMonitor* m_monitor = nullptr;
-  Pass* m_pass = nullptr; ///< null: nothing is lent or taken back
+  Pass* m_pass = nullptr; ///< null: tiles are neither leased nor accepted
   RenderResult* m_result = nullptr;
   Counters m_added;
   std::jthread m_thread; ///< ends before the members above
 };
 
-/// Other ranks: renders what rank 0 lends until it says that all is done. `monitor.stop`, once
-/// true, stops rank 0, too.
+/// Other ranks: renders what rank 0 leases until rank 0 ends it. `monitor.stop`, once true, also
+/// stops rank 0.
 void runWorker(Ranks& ranks, const SceneView& scene, const RenderSettings& settings,
                RenderMonitor& monitor);
 
-/// Other ranks: waits for a render to help with; false: there is none.
+/// Other ranks: waits until rank 0 starts a render; false: there is none.
 bool waitForStart(Ranks& ranks);
-/// Rank 0: asks all other ranks to help with a render.
+/// Rank 0: makes all other ranks join a render.
 void startWorkers(Ranks& ranks);
 
 } // namespace fenestra

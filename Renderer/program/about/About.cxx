@@ -41,7 +41,7 @@ std::string aboutText() {
                 "\nbuild: ", fact("compiler"), ", ", fact("system"),     //
                 "\ninstruction set: ", fact("instructions"),             //
                 "\nlibraries: ", join(libraryVersions(), ", ", library), //
-                "\nlicence: ", fact("license"), "\n");
+                "\nlicense: ", fact("license"), "\n");
 }
 
 std::string aboutJson() {

@@ -1,6 +1,6 @@
 #pragma once
-// Facts about this program, for bug reports, packagers and papers: version, commit, compiler,
-// instruction set, licence, and the libraries that it runs with.
+// Facts about this build, for bug reports, packagers and papers: version, commit, compiler,
+// instruction set, license and libraries.
 
 #include <string>
 #include <utility>
@@ -8,11 +8,11 @@
 
 namespace fenestra {
 
-/// Names and versions of the libraries: of the one that is loaded where it tells, else of its
+/// Names and versions of the libraries: of the loaded library if it reports one, else of its
 /// headers.
 std::vector<std::pair<std::string, std::string>> libraryVersions();
 
-/// "fenestra VERSION", then the facts, a line each.
+/// "fenestra VERSION" and the facts, one per line.
 std::string aboutText();
 /// The facts as one JSON document.
 std::string aboutJson();

@@ -2,7 +2,7 @@
 
 namespace fenestra {
 
-extern const char* const commitText; ///< "unknown": built outside git; "…-dirty": with changes
+extern const char* const commitText; ///< "unknown": built outside git; "…-dirty": modified tree
 extern const char* const commitDate; ///< year-month-day, UTC
 
 } // namespace fenestra

@@ -1,4 +1,4 @@
-// Versions of all libraries, in one place that includes a header of each.
+// Versions of all libraries, in the one source file that includes a header of each.
 
 #include "base/Text.h"
 #include "program/about/About.h"
