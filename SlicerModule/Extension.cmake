@@ -9,8 +9,8 @@ find_package(Slicer REQUIRED)
 include(${Slicer_USE_FILE})
 
 set(MODULE_NAME Fenestra)
-# Slicer makes modules attributes of slicer.modules, in lower case: the renderer, `fenestra` in a terminal,
-# has another name as a command line module.
+# Slicer makes each module an attribute of slicer.modules, in lower case. The panel is `fenestra` there, so the
+# renderer needs another name as a command line module.
 set(COMMAND_MODULE_NAME FenestraCommand)
 set(MODULE_TITLE "Fenestra")
 string(TOUPPER ${MODULE_NAME} MODULE_NAME_UPPER)
@@ -40,7 +40,7 @@ slicerMacroBuildLoadableModule(
   RESOURCES Resources/qSlicerFenestraModule.qrc
   WITH_GENERIC_TESTS)
 
-# Libraries that the module links are exported with it.
+# Libraries that the module links are exported with the module.
 set_property(GLOBAL APPEND PROPERTY Slicer_TARGETS
   FenestraProcess FenestraScene fenestra_sanitizers fenestra_warnings)
 

@@ -1,4 +1,4 @@
-# The renderer beside the module: where Slicer looks for command line modules.
+# Copies the renderer to the folder where Slicer looks for command line modules.
 set(cli_folder "${CMAKE_BINARY_DIR}/${Slicer_CLIMODULES_BIN_DIR}")
 add_custom_target(${COMMAND_MODULE_NAME} ALL
   COMMAND ${CMAKE_COMMAND} -E make_directory "${cli_folder}"
@@ -9,8 +9,8 @@ add_custom_target(${COMMAND_MODULE_NAME} ALL
   DEPENDS fenestra
   COMMENT "The renderer as a command line module")
 
-# The package holds the archive that users without Slicer get, whole, and a link to its launcher for
-# Slicer, which reads the .xml beside that in place of starting it.
+# The package contains the complete archive for users without Slicer, and a link to the archive's launcher. Slicer
+# reads the .xml file beside the link instead of starting the launcher.
 set(cli_install "${Slicer_INSTALL_CLIMODULES_BIN_DIR}")
 set(archive_install "${Slicer_INSTALL_LIB_DIR}/fenestra")
 file(RELATIVE_PATH to_launcher "/${cli_install}" "/${archive_install}/bin/fenestra")

@@ -19,16 +19,16 @@ namespace {
 
 using Flags = qSlicerFenestraClipping::Flags;
 
-constexpr const char* byPresetMode = "preset"; ///< the mode is known only at rendering
+constexpr const char* byPresetMode = "preset"; ///< only the renderer knows the preset's mode
 const QStringList& cuttingModes() {
   static const QStringList modes = {"surface", "ghost", "cutaway", "hole", "plane", byPresetMode};
   return modes;
 }
 const QStringList anyMode; ///< empty list: any mode with a focus
 
-constexpr double automatic = -1.0; ///< value of an AutomaticBox for the word auto
+constexpr double automatic = -1.0; ///< value of an AutomaticBox for "auto"
 
-/// Numbers from 0, and one step below 0 the word auto: Arrow Down or Page Down, without a second
+/// Numbers from 0; one step below 0 is "auto", set by Arrow Down or Page Down without a second
 /// control. Negative numbers cannot be typed.
 class AutomaticBox : public QDoubleSpinBox {
 public:
@@ -74,52 +74,52 @@ qSlicerFenestraClipping::qSlicerFenestraClipping(qMRMLNodeComboBox* planeNode, Q
 void qSlicerFenestraClipping::buildMode(QFormLayout* form) {
   m_clip = makeComboBox("ClipBox",
                         {{tr("Smooth surface through the focus"), ""},
-                         {tr("Surface, tissue in front left faint"), "ghost"},
-                         {tr("All in front of the focus (cut-away)"), "cutaway"},
+                         {tr("Surface, with faint tissue in front"), "ghost"},
+                         {tr("Everything in front of the focus (cutaway)"), "cutaway"},
                          {tr("Hole toward the focus"), "hole"},
-                         {tr("Flat plane"), "plane"},
+                         {tr("Plane"), "plane"},
                          {tr("Nothing"), "none"}},
-                        tr("What is taken away, so that the focus shows"));
+                        tr("Tissue to remove so that the focus is visible"));
   form->addRow(tr("Clip:"), m_clip);
   m_boundary =
       makeComboBox("BoundaryBox", {{tr("Exact"), "exact"}, {tr("Smoothed (spline)"), "spline"}},
-                   tr("How the surface goes on beside the focus. Exact: from its very edge, "
-                      "without a step or a kink. Smoothed: near it, as in the paper"));
+                   tr("How the surface continues beside the focus. Exact: from its edge, "
+                      "without a step or kink. Smoothed: close to its edge, as in the paper"));
   form->addRow(tr("Edge of the focus:"), m_boundary);
-  addNumber(form, "ghost", tr("Left in front:"), 0.01, 10.0, {"ghost"},
-            tr("Share of its density that tissue in front of the surface keeps"));
+  addNumber(form, "ghost", tr("Density in front:"), 0.01, 10.0, {"ghost"},
+            tr("Percentage of its density that tissue in front of the surface keeps"));
   m_innerRadius =
       makeComboBox("HoleBox", {{tr("Cylinder"), ""}, {tr("Box"), "box"}, {tr("Sphere"), "sphere"}},
-                   tr("The hole leads from the eye to the focus"));
+                   tr("Shape of the hole from the camera to the focus"));
   form->addRow(tr("Shape:"), m_innerRadius);
   addNumber(form, "holemargin", tr("Wider by:"), 1.0, 5.0, {"hole"},
-            tr("How much wider than the focus"));
-  m_plane = makeComboBox("PlaneBox", {}, tr("Where the plane lies"));
-  m_plane->addItem(tr("Placed by the focus"), int(Plane::automatic));
-  m_plane->addItem(tr("A plane of the scene"), int(Plane::node));
+            tr("How much wider the hole is than the focus"));
+  m_plane = makeComboBox("PlaneBox", {}, tr("Position of the clip plane"));
+  m_plane->addItem(tr("Automatic, at the focus"), int(Plane::automatic));
+  m_plane->addItem(tr("Plane of the scene"), int(Plane::node));
   form->addRow(tr("Plane:"), m_plane);
   m_planeNode->setNoneEnabled(true);
-  m_planeNode->setToolTip(tr("Draw one in the Markups module. What its normal points at is taken "
-                             "away; the preview follows it as you move it"));
-  form->addRow(tr("Which:"), m_planeNode);
+  m_planeNode->setToolTip(tr("Create a plane in the Markups module. The side that its normal "
+                             "points to is removed; the preview follows the plane as you move it"));
+  form->addRow(tr("Plane node:"), m_planeNode);
 }
 
 void qSlicerFenestraClipping::buildDetails(QFormLayout* form) {
   m_margins = new qSlicerFenestraMargins;
   form->addRow(tr("Margin:"), m_margins);
   addNumber(form, "labelsmoothing", tr("Smooth labels by:"), 1.0, automatic, anyMode,
-            tr("Against stair steps of the segments' voxels. auto, below 0: by the size of the "
-               "voxels, or as the anatomy preset"));
+            tr("Removes the stair steps of the segments' voxels. auto (below 0): chosen by voxel "
+               "size, or by the anatomy preset"));
   addNumber(form, "offset", tr("Move the cut by:"), 1.0, 0.0, cuttingModes(),
-            tr("Away from the eye, into the focus; negative: toward the eye"));
+            tr("Away from the camera, into the focus; negative: toward the camera"));
   addNumber(form, "soft", tr("Soft edge:"), 1.0, automatic, cuttingModes(),
-            tr("Tissue comes back gradually over this depth behind the cut. auto, below 0: by the "
-               "size of the voxels, or as the anatomy preset"));
+            tr("Depth behind the cut over which tissue fades in. auto (below 0): chosen by voxel "
+               "size, or by the anatomy preset"));
   addNumber(form, "contextdensity", tr("Surroundings, density:"), 0.01, 100.0, anyMode,
-            tr("Makes all but the focus more transparent"));
-  addNumber(form, "contextsaturation", tr("Surroundings, colour:"), 0.01, automatic, anyMode,
-            tr("0 %: all but the focus is grey. auto, below 0: paler, or grey, where the focus "
-               "would not be told from its surroundings, or as the anatomy preset"));
+            tr("Makes everything but the focus more transparent"));
+  addNumber(form, "contextsaturation", tr("Surroundings, color:"), 0.01, automatic, anyMode,
+            tr("0 %: everything but the focus is gray. auto (below 0): reduced only where the "
+               "focus looks like its surroundings, or chosen by the anatomy preset"));
 }
 
 void qSlicerFenestraClipping::addNumber(QFormLayout* form, const char* flag, const QString& label,
@@ -147,7 +147,7 @@ qSlicerFenestraClipping::Plane qSlicerFenestraClipping::plane() const {
   return static_cast<Plane>(m_plane->currentData().toInt());
 }
 
-/// Clipping mode, in the renderer's word.
+/// Clip mode, as the renderer names it.
 QString qSlicerFenestraClipping::mode(bool byPreset) const {
   const QString word = m_clip->currentData().toString();
   return word.isEmpty() ? (byPreset ? byPresetMode : "surface") : word;
@@ -156,7 +156,7 @@ QString qSlicerFenestraClipping::mode(bool byPreset) const {
 void qSlicerFenestraClipping::showMode() {
   const QString now = mode(m_byPreset);
   const bool surface = now == "surface" || now == "ghost";
-  m_clip->setItemText(0, m_byPreset ? tr("As the anatomy preset")
+  m_clip->setItemText(0, m_byPreset ? tr("From the anatomy preset")
                                     : tr("Smooth surface through the focus"));
   showRow(m_form, m_boundary, surface);
   showRow(m_form, m_innerRadius, now == "hole");
@@ -193,7 +193,7 @@ void qSlicerFenestraClipping::show(const Flags& flags, Plane plane,
   if (now == "plane") {
     const int fixed = m_plane->findData(int(Plane::fixed));
     if (plane == Plane::fixed && fixed < 0)
-      m_plane->addItem(tr("As it was rendered"), int(Plane::fixed));
+      m_plane->addItem(tr("As rendered"), int(Plane::fixed));
     if (plane != Plane::fixed && fixed >= 0)
       m_plane->removeItem(fixed);
     const bool choosing = this->plane() == Plane::node && !m_planeNode->currentNode();
@@ -243,7 +243,7 @@ void qSlicerFenestraClipping::take(Flags& flags, const std::string& plane, bool 
   flags["clip"] = clips ? word(m_clip) : "";
   flags["boundary"] = clips && surface ? word(m_boundary) : "";
   if (flags["boundary"] != "spline")
-    flags["controlpoints"] = flags["smoothing"] = ""; // flags of the spline only
+    flags["controlpoints"] = flags["smoothing"] = ""; // used only by the spline
   flags["hole"] = clips && now == "hole" ? word(m_innerRadius) : "";
   flags["margin"] = hasFocus ? m_margins->flag().toStdString() : "";
   for (const Number& number : m_numbers) {

@@ -15,28 +15,27 @@ class QDoubleSpinBox;
 class QFormLayout;
 struct qSlicerFenestraSegment;
 
-/// \brief How the focus is uncovered: widgets for the flags of clipping; shows those of the chosen
-/// mode.
+/// \brief Widgets for the clipping flags; shows those of the chosen clip mode.
 ///
-/// A widget keeps its value while its flag has no effect and is not passed.
+/// A widget keeps its value while its flag has no effect and is not passed to the renderer.
 class qSlicerFenestraClipping : public QWidget {
   Q_OBJECT
 
 public:
   using Flags = std::map<std::string, std::string>;
-  /// Source of the plane: the renderer, a plane node, or a stored flag.
+  /// Where the clip plane comes from: the renderer, a plane node, or a stored flag.
   enum class Plane { automatic, node, fixed };
 
-  /// `planeNode` chooses among the scene's planes; this widget becomes its parent.
+  /// `planeNode` lists the scene's planes; this widget becomes its parent.
   explicit qSlicerFenestraClipping(qMRMLNodeComboBox* planeNode, QWidget* parent = nullptr);
 
-  /// Shows the flags. `byPreset`: an organ preset is chosen, which sets clip and focus unless other
-  /// flags do.
+  /// Shows the flags. `byPreset`: an anatomy preset is chosen; it sets clip mode and focus unless
+  /// flags set them.
   void show(const Flags& flags, Plane plane, const QList<qSlicerFenestraSegment>& focus,
             bool byPreset);
-  /// Sets all widgets to defaults, also those hidden now.
+  /// Sets all widgets to their defaults, including hidden ones.
   void reset();
-  /// Sets all flags of clipping; empty: not passed. `plane`: flag value of the chosen plane node.
+  /// Writes all clipping flags; empty: not passed. `plane`: flag value of the chosen plane node.
   void take(Flags& flags, const std::string& plane, bool hasFocus, bool byPreset) const;
   Plane plane() const;
   const qMRMLNodeComboBox* planeNode() const { return m_planeNode; }
@@ -45,14 +44,14 @@ signals:
   void changed();
 
 private:
-  /// Number widget of a flag.
+  /// Widget of a numeric flag.
   struct Number {
     const char* flag;
     QDoubleSpinBox* box;
     double unit;         ///< flag value per unit of the box
-    double defaultValue; ///< default, in the box's units; below 0 may be the word auto
-    QStringList modes;   ///< clipping modes that use the flag; empty: all
-    QString shown;       ///< flag text as shown, possibly with more digits than the box
+    double defaultValue; ///< default, in the box's units; below 0: "auto"
+    QStringList modes;   ///< clip modes that use the flag; empty: all
+    QString shown;       ///< flag value last shown; may have more digits than the box
     double shownValue;
   };
 

@@ -14,7 +14,7 @@ enum Role : std::size_t { key, fill, halo, environment, none };
 /// Role of each light.
 std::vector<Role> assignRoles(const QJsonArray& lights) {
   std::vector<Role> roles;
-  Role before = key; // the role of the next light before the volume
+  Role before = key; // role of the next light in front of the volume
   for (const QJsonValue& value : lights) {
     const QJsonObject light = value.toObject();
     const QString type = light["type"].toString();
@@ -32,7 +32,7 @@ std::vector<Role> assignRoles(const QJsonArray& lights) {
   return roles;
 }
 
-/// Radiance of a light, a number or a triple, times a factor.
+/// Product of a radiance, a number or an RGB triple, and a factor.
 QJsonValue scaleRadiance(const QJsonValue& radiance, double factor) {
   if (!radiance.isArray())
     return radiance.toDouble() * factor;
@@ -42,7 +42,7 @@ QJsonValue scaleRadiance(const QJsonValue& radiance, double factor) {
   return triple;
 }
 
-/// Lights of a rig of the renderer; empty: it has no such rig.
+/// Lights of a rig of the renderer; empty: unknown rig.
 QJsonArray readRig(const QString& rig) {
   QFile file(":/Lights/" + rig + ".json");
   if (!file.open(QIODevice::ReadOnly))

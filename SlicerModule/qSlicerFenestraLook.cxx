@@ -18,7 +18,7 @@ using namespace qSlicerFenestraWidgets;
 namespace {
 
 constexpr const char* defaultTone = "film"; ///< the renderer's default
-constexpr double maxStrength = 300.0;       ///< per cent
+constexpr double maxStrength = 300.0;       ///< percent
 
 } // namespace
 
@@ -29,21 +29,21 @@ qSlicerFenestraLook::qSlicerFenestraLook(QWidget* parent) : QWidget(parent) {
       makeComboBox("TransferBox",
                    {{tr("As in Slicer's volume rendering"), ""},
                     {tr("CT: skin and soft tissue"), "ct-soft"},
-                    {tr("CT: bones alone"), "ct-bone"},
-                    {tr("CT: bones among muscle"), "ct-skeleton"},
+                    {tr("CT: bones only"), "ct-bone"},
+                    {tr("CT: bones and muscle"), "ct-skeleton"},
                     {tr("CT: liver and abdomen"), "ct-liver"},
                     {tr("CT: heart and vessels"), "ct-heart"},
                     {tr("CT: lungs and airways"), "ct-lung"},
                     {tr("MR: brain"), "mr-brain"},
-                    {tr("MR: cartilage of the knee"), "mr-knee"},
+                    {tr("MR: knee cartilage"), "mr-knee"},
                     {tr("Ultrasound: fetus"), "us-fetal"}},
-                   tr("Colours and opacities; set up your own in the Volume Rendering module"));
-  m_form->addRow(tr("Tissue colours:"), m_transfer);
+                   tr("Colors and opacities; define your own in the Volume Rendering module"));
+  m_form->addRow(tr("Tissue colors:"), m_transfer);
   buildLights(m_form);
   m_background = makeComboBox("BackgroundBox",
                               {{tr("Dark gradient"), "gradient"},
                                {tr("Black"), "0,0,0"},
-                               {tr("Grey"), "0.1,0.1,0.1"},
+                               {tr("Gray"), "0.1,0.1,0.1"},
                                {tr("White"), "100,100,100"},
                                {tr("Transparent"), "transparent"}},
                               tr("Behind the volume"));
@@ -60,19 +60,19 @@ qSlicerFenestraLook::qSlicerFenestraLook(QWidget* parent) : QWidget(parent) {
 
 void qSlicerFenestraLook::buildLights(QFormLayout* form) {
   m_rig = makeComboBox("RigBox",
-                       {{tr("By default"), ""},
+                       {{tr("Default"), ""},
                         {tr("Cinema"), "cinema"},
                         {tr("Studio"), "studio"},
                         {tr("Headlight"), "headlight"},
                         {tr("Soft"), "soft"},
                         {tr("Amber"), "amber"}},
-                       tr("Where light comes from; the default is Cinema"));
+                       tr("Light rig; the default is Cinema"));
   form->addRow(tr("Lights:"), m_rig);
   const QString names[4] = {tr("Key:"), tr("Fill:"), tr("Rim:"), tr("Environment:")};
   for (int i = 0; i < 4; ++i) {
     auto* slider = new ctkSliderWidget;
     slider->setObjectName(QString("Strength%1").arg(i));
-    slider->setToolTip(tr("Strength of a light of the rig that is chosen above"));
+    slider->setToolTip(tr("Strength of this light in the rig chosen above"));
     slider->setRange(0.0, maxStrength);
     slider->setDecimals(0);
     slider->setSuffix(" %");
@@ -89,13 +89,13 @@ void qSlicerFenestraLook::buildDisplay(QFormLayout* form) {
   m_exposure->setDecimals(2);
   m_exposure->setSingleStep(0.25);
   m_exposure->setSuffix(tr(" EV"));
-  m_exposure->setToolTip(tr("Makes the picture brighter or darker; 1 EV is twice the light. Linear "
-                            "colours stay as they are"));
+  m_exposure->setToolTip(tr("Makes the image brighter or darker; 1 EV doubles the light. Linear "
+                            "colors are not affected"));
   form->addRow(tr("Exposure:"), m_exposure);
   m_tone =
       makeComboBox("ToneBox", {{tr("Film"), defaultTone}, {tr("Photographic"), "photographic"}},
-                   tr("Film: more contrast, colours keep their hue. Photographic: dark and middle "
-                      "values as they are, for measuring"));
+                   tr("Film: more contrast, colors keep their hue. Photographic: dark and medium "
+                      "values stay as they are, for measuring"));
   form->addRow(tr("Tone:"), m_tone);
   m_shownTone = defaultTone;
 }
@@ -109,10 +109,10 @@ void qSlicerFenestraLook::setCapabilities(const qFenestraCapabilities& abilities
 
 void qSlicerFenestraLook::show(const Flags& flags, const QString& rig, bool byPreset) {
   const QSignalBlocker blocker(this);
-  const QString left = tr("As the anatomy preset");
+  const QString left = tr("From the anatomy preset");
   m_transfer->setItemText(m_transfer->findData(""),
                           byPreset ? left : tr("As in Slicer's volume rendering"));
-  m_rig->setItemText(m_rig->findData(""), byPreset ? left : tr("By default"));
+  m_rig->setItemText(m_rig->findData(""), byPreset ? left : tr("Default"));
   selectOrAdd(m_transfer, findFlag(flags, "transfer"));
   selectOrAdd(m_background, findFlag(flags, "background"));
   showLights(findFlag(flags, "lights"), rig);

@@ -12,10 +12,10 @@ class QDoubleSpinBox;
 class QFormLayout;
 struct qFenestraCapabilities;
 
-/// \brief How the picture looks: widgets for tissue colours, lights, background, exposure and tone.
+/// \brief Widgets for the appearance: tissue colors, lights, background, exposure, tone curve.
 ///
-/// Defaults of the renderer are no flags: the command line without them makes the same picture. The
-/// background is always a flag, for a scene that Slicer saves has one of its own.
+/// The renderer's defaults are not written as flags: the command line without them renders the same
+/// image. The background is always a flag, because a scene saved by Slicer has its own background.
 class qSlicerFenestraLook : public QWidget {
   Q_OBJECT
 
@@ -24,15 +24,15 @@ public:
 
   explicit qSlicerFenestraLook(QWidget* parent = nullptr);
 
-  /// Shows what only newer renderers support.
+  /// Shows the controls that the renderer supports.
   void setCapabilities(const qFenestraCapabilities& abilities);
-  /// Shows the flags. `rig`: rig and strengths as take() returned them; believed only if the flag
-  /// of the lights follows from them. `byPreset`: an anatomy preset sets what other flags do not.
+  /// Shows the flags. `rig`: rig and strengths as take() returned them; used only if they produce
+  /// the flag `lights`. `byPreset`: an anatomy preset sets what flags do not set.
   void show(const Flags& flags, const QString& rig, bool byPreset);
-  /// Leaves tissue colours and lights to the preset, or to the renderer.
+  /// Lets the preset, or the renderer, choose tissue colors and lights.
   void resetToPreset();
-  /// Sets the look's flags; empty: not passed. Returns rig and strengths, "rig key fill rim
-  /// environment", strengths in per cent.
+  /// Writes the appearance flags; empty: not passed. Returns rig and strengths in percent: "rig key
+  /// fill rim environment".
   QString take(Flags& flags) const;
 
 signals:
@@ -46,11 +46,11 @@ private:
   QFormLayout* m_form;
   QComboBox* m_transfer;
   QComboBox* m_rig;
-  ctkSliderWidget* m_strengths[4]; ///< per cent; key, fill, rim, environment
+  ctkSliderWidget* m_strengths[4]; ///< percent; key, fill, rim, environment
   QComboBox* m_background;
   QDoubleSpinBox* m_exposure;
   QComboBox* m_tone;
-  double m_shownExposure = 0.0; ///< of the box; a flag beyond its range stays until the box changes
+  double m_shownExposure = 0.0; ///< a flag outside the box's range stays until the box changes
   QString m_shownTone;
 };
 

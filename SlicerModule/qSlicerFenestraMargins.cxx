@@ -18,7 +18,7 @@ QDoubleSpinBox* makeMillimeterBox(const QString& name) {
   box->setRange(-maximum, maximum);
   box->setSingleStep(0.5);
   box->setSuffix(QObject::tr(" mm"));
-  box->setToolTip(QObject::tr("Grows the segment for the clipping, or shrinks it where negative"));
+  box->setToolTip(QObject::tr("Grows the segment for clipping; negative: shrinks it"));
   return box;
 }
 
@@ -36,7 +36,7 @@ qSlicerFenestraMargins::qSlicerFenestraMargins(QWidget* parent) : QWidget(parent
   layout->setContentsMargins(0, 0, 0, 0);
   m_all = makeMillimeterBox("MarginBox");
   layout->addWidget(m_all);
-  m_each = new QCheckBox(tr("another one for each segment"));
+  m_each = new QCheckBox(tr("one per segment"));
   m_each->setObjectName("MarginEachBox");
   layout->addWidget(m_each);
   m_rows = new QFormLayout;
@@ -59,7 +59,7 @@ void qSlicerFenestraMargins::show(const QString& flag, const QList<qSlicerFenest
   build(focus);
   const bool each = numbers.size() > 1 && numbers.size() == focus.size();
   {
-    const QSignalBlocker eachBlocker(m_each); // the numbers are shown below
+    const QSignalBlocker eachBlocker(m_each); // the numbers are set below
     m_each->setChecked(each);
   }
   if (!each)

@@ -12,14 +12,14 @@ struct qSlicerFenestraSegment {
   QString id, name;
 };
 
-/// Margins by which the focus segments grow, mm; one for all, or one each.
+/// Margins in mm by which the focus segments grow: one for all, or one per segment.
 class qSlicerFenestraMargins : public QWidget {
   Q_OBJECT
 
 public:
   explicit qSlicerFenestraMargins(QWidget* parent = nullptr);
 
-  /// Shows the numbers of the flag `margin`, which follow the order of the segments.
+  /// Shows the numbers of the flag `margin`, in the order of the segments.
   void show(const QString& flag, const QList<qSlicerFenestraSegment>& focus);
   QString flag() const;
 
@@ -34,8 +34,8 @@ private:
   QCheckBox* m_each;
   QFormLayout* m_rows;
   QList<qSlicerFenestraSegment> m_focus;
-  QList<QDoubleSpinBox*> m_boxes;  ///< one a segment of the focus
-  QMap<QString, double> m_margins; ///< mm by segment; kept for segments outside the focus
+  QList<QDoubleSpinBox*> m_boxes;  ///< one per focus segment
+  QMap<QString, double> m_margins; ///< mm by segment id; kept for segments outside the focus
 };
 
 #endif

@@ -26,11 +26,11 @@ namespace {
 
 enum Column { nameColumn, materialColumn, colorColumn, clipColumn, resetColumn, columns };
 
-// Sources of materials: values of --materials, and two that stand for others.
+// Sources of materials: values of --materials, and two that stand for other values.
 const QString none = "none", automaticSource = "auto", library = "library";
 const QString fileSource = "file", manualSource = "hand";
 
-/// Box that leaves the wheel to the table, which scrolls: no material changes unnoticed.
+/// Ignores the wheel, which then scrolls the table instead of changing a material unnoticed.
 class NoWheelComboBox : public QComboBox {
 protected:
   void wheelEvent(QWheelEvent* event) override { event->ignore(); }
@@ -43,7 +43,7 @@ QIcon makeSwatch(const QString& color) {
   return pixels;
 }
 
-/// Tool tip that shows the text as it is: names in a scene must not be read as HTML.
+/// Tool tip with escaped text: names in a scene must not be read as HTML.
 QString toPlainToolTip(const QString& text) {
   return "<qt>" + text.toHtmlEscaped() + "</qt>";
 }
@@ -60,22 +60,21 @@ qSlicerFenestraMaterials::qSlicerFenestraMaterials(QWidget* parent) : QWidget(pa
 }
 
 void qSlicerFenestraMaterials::buildSource(QFormLayout* form) {
-  m_source =
-      makeComboBox("MaterialsBox",
-                   {{tr("By default"), ""},
-                    {tr("None: the volume's colours"), none},
-                    {tr("Automatic: the focus set off"), automaticSource},
-                    {tr("Library"), library},
-                    {tr("File"), fileSource},
-                    {tr("By hand"), manualSource}},
-                   tr("What the segments are made of: their colours, and what the clip leaves"));
+  m_source = makeComboBox("MaterialsBox",
+                          {{tr("Default"), ""},
+                           {tr("None: the volume's colors"), none},
+                           {tr("Automatic: distinguish the focus"), automaticSource},
+                           {tr("Library"), library},
+                           {tr("File"), fileSource},
+                           {tr("Manual"), manualSource}},
+                          tr("Colors of the segments, and whether they are clipped"));
   form->addRow(tr("Materials:"), m_source);
   m_fileRow = new QWidget;
   auto* row = new QHBoxLayout(m_fileRow);
   row->setContentsMargins(0, 0, 0, 0);
   m_file = new QLineEdit;
   m_file->setObjectName("MaterialsFile");
-  m_file->setToolTip(tr("Materials of your own over the library's (.json)"));
+  m_file->setToolTip(tr("Your own materials (.json), which override the library"));
   auto* browse = new QToolButton;
   browse->setObjectName("MaterialsBrowse");
   browse->setText(tr("..."));
@@ -105,9 +104,9 @@ void qSlicerFenestraMaterials::buildTable(QFormLayout* form) {
   m_table->setObjectName("MaterialsTable");
   m_table->setAccessibleName(tr("Materials of the segments"));
   m_table->setHorizontalHeaderLabels(
-      {tr("Segment"), tr("Material"), tr("Colour"), tr("Clip"), QString()});
+      {tr("Segment"), tr("Material"), tr("Color"), tr("Clip"), QString()});
   m_table->horizontalHeaderItem(clipColumn)
-      ->setToolTip(tr("Unticked: the segment stays where the clip removes all else"));
+      ->setToolTip(tr("Unchecked: the segment is not clipped"));
   m_table->verticalHeader()->hide();
   m_table->setSelectionMode(QAbstractItemView::NoSelection);
   m_table->setMaximumHeight(tallest);
@@ -142,7 +141,7 @@ void qSlicerFenestraMaterials::buildRow(int row) {
   m_table->setItem(row, clipColumn, clip);
   auto* reset = new QToolButton;
   reset->setText(QString::fromUtf8("\u21ba"));
-  reset->setToolTip(tr("Back to the automatic choice"));
+  reset->setToolTip(tr("Reset to the automatic choice"));
   m_table->setCellWidget(row, resetColumn, reset);
   connect(material, QOverload<int>::of(&QComboBox::currentIndexChanged), this, [this, row] {
     if (!m_showing)
@@ -152,7 +151,7 @@ void qSlicerFenestraMaterials::buildRow(int row) {
   connect(reset, &QToolButton::clicked, this, [this, row] { onReset(row); });
 }
 
-// ---- what is shown
+// ---- display
 
 void qSlicerFenestraMaterials::list(const QList<qSlicerFenestraSegment>& segments) {
   const QScopedValueRollback<bool> showing(m_showing, true);
@@ -174,31 +173,31 @@ QString qSlicerFenestraMaterials::source() const {
   return m_source->currentData().toString();
 }
 
-/// Flag of the materials that changes are made to, or would be.
+/// Flag `materials` to which manual changes apply.
 QString qSlicerFenestraMaterials::base() const {
   const QString word = source();
   return word == manualSource ? m_base : word == fileSource ? m_file->text() : word;
 }
 
-/// Changes of a segment that the flags have.
+/// Changes of a segment that are in the flags.
 SlicerExport::MaterialChange qSlicerFenestraMaterials::findChange(const QString& segment) const {
   return source() == manualSource ? m_changes.value(segment) : Change();
 }
 
-/// Material that the renderer chooses, as far as it is known here: a file of the user's may choose
-/// another one.
+/// Material that the renderer chooses, as far as known here: the user's file may choose another
+/// one.
 qFenestraMaterial qSlicerFenestraMaterials::findAutomatic(const QString& segment) const {
   const qFenestraMaterial one = m_known.bySegment.value(segment);
   const QString word = base();
   const bool isUnknown = word != library && one.why == "by palette";
   if (word == none || isUnknown)
-    return {{}, {}, tr("the volume's own colours"), true};
+    return {{}, {}, tr("the volume's own colors"), true};
   if (!QStringList{"", automaticSource, library}.contains(word))
-    return {{}, {}, tr("as the file says"), true};
+    return {{}, {}, tr("from the file"), true};
   return one;
 }
 
-/// Colour in which the segment is seen; empty: not known, or the volume's own.
+/// Displayed color of the segment; empty: not known, or the volume's own.
 QString qSlicerFenestraMaterials::findColor(const QString& segment) const {
   const Change change = findChange(segment);
   const QString name = QString::fromStdString(change.field("material"));
@@ -216,7 +215,7 @@ void qSlicerFenestraMaterials::showSource() {
                        : m_base == automaticSource ? tr("the automatic choice")
                                                    : QFileInfo(m_base).fileName();
   m_source->setItemText(m_source->findData(manualSource),
-                        m_base.isEmpty() ? tr("By hand") : tr("By hand, over %1").arg(base));
+                        m_base.isEmpty() ? tr("Manual") : tr("Manual, based on %1").arg(base));
   qSlicerFenestraWidgets::showRow(m_form, m_fileRow, source() == fileSource);
   m_table->setEnabled(source() != none);
   showRows();
@@ -240,7 +239,7 @@ void qSlicerFenestraMaterials::showRow(int row) {
     material->addItem(QString(), QString());
     for (const qFenestraMaterial& one : m_known.library)
       material->addItem(one.color.isEmpty() ? QIcon() : makeSwatch(one.color), one.name, one.name);
-    material->view()->setMinimumWidth(material->view()->sizeHintForColumn(0)); // whole names
+    material->view()->setMinimumWidth(material->view()->sizeHintForColumn(0)); // full names
   }
   material->setItemText(0,
                         own.name.isEmpty() ? tr("Automatic") : tr("%1 (automatic)").arg(own.name));
@@ -248,11 +247,11 @@ void qSlicerFenestraMaterials::showRow(int row) {
                                          : toPlainToolTip(tr("Automatic: %1").arg(own.why)));
   selectOrAdd(material, QString::fromStdString(change.field("material")));
   auto* color = cell<QToolButton>(row, colorColumn);
-  color->setAccessibleName(tr("Colour of %1").arg(name));
+  color->setAccessibleName(tr("Color of %1").arg(name));
   const QString seen = findColor(id);
   color->setIcon(seen.isEmpty() ? QIcon() : makeSwatch(seen));
   color->setText(seen.isEmpty() ? tr("...") : QString());
-  color->setToolTip(tr("The colour in which the segment is seen, sRGB %1").arg(seen));
+  color->setToolTip(tr("Displayed color of the segment, sRGB %1").arg(seen));
   const std::string clip = change.field("clip");
   const bool isClipped = clip.empty() ? own.isClipped : clip != "no";
   m_table->item(row, clipColumn)->setCheckState(isClipped ? Qt::Checked : Qt::Unchecked);
@@ -261,9 +260,9 @@ void qSlicerFenestraMaterials::showRow(int row) {
   reset->setEnabled(!change.fields.empty());
 }
 
-// ---- what the user does
+// ---- user actions
 
-/// Changes a row by hand. Changes made before another source was chosen are forgotten then.
+/// Changes a row manually. Drops changes that were made before another source was chosen.
 void qSlicerFenestraMaterials::change(int row, const std::map<std::string, QString>& fields) {
   const QString& id = m_segments[row].id;
   if (source() != manualSource) {
@@ -279,7 +278,7 @@ void qSlicerFenestraMaterials::change(int row, const std::map<std::string, QStri
   onSource();
 }
 
-/// Changes need materials beneath them.
+/// Manual changes need other materials to apply to.
 void qSlicerFenestraMaterials::onSource() {
   if (source() != manualSource)
     m_base = base();
@@ -294,7 +293,7 @@ void qSlicerFenestraMaterials::onFile() {
     onSource();
 }
 
-/// A material comes with its colour.
+/// A new material replaces the color, too.
 void qSlicerFenestraMaterials::onMaterial(int row) {
   const QString name = cell<QComboBox>(row, materialColumn)->currentData().toString();
   change(row, {{"material", name}, {"color", {}}});
@@ -302,9 +301,9 @@ void qSlicerFenestraMaterials::onMaterial(int row) {
 
 void qSlicerFenestraMaterials::onColor(int row) {
   const auto [id, name] = m_segments[row];
-  const QColor color = QColorDialog::getColor(QColor(findColor(id)), this,
-                                              tr("Colour of %1, as it is seen").arg(name));
-  const bool isListed = row < m_segments.size() && m_segments[row].id == id; // still
+  const QColor color =
+      QColorDialog::getColor(QColor(findColor(id)), this, tr("Displayed color of %1").arg(name));
+  const bool isListed = row < m_segments.size() && m_segments[row].id == id; // may have changed
   if (color.isValid() && isListed)
     change(row, {{"color", color.name()}});
 }
@@ -323,7 +322,7 @@ void qSlicerFenestraMaterials::onReset(int row) {
 
 // ---- flags
 
-/// Id of the segment that a change means; empty: none that is listed.
+/// Id of the listed segment that a change selects; empty: none.
 QString qSlicerFenestraMaterials::findId(const QString& selector) const {
   for (const auto member : {&qSlicerFenestraSegment::id, &qSlicerFenestraSegment::name})
     for (const qSlicerFenestraSegment& one : m_segments)
@@ -338,11 +337,11 @@ void qSlicerFenestraMaterials::setChanges(const std::vector<std::string>& texts)
   for (const std::string& text : texts) {
     Change given = SlicerExport::parseMaterialChange(text);
     const QString selector = QString::fromStdString(given.segment);
-    const QString id = m_segments.isEmpty() ? selector : findId(selector); // listed later
+    const QString id = m_segments.isEmpty() ? selector : findId(selector); // list() comes later
     if (id.isEmpty())
       continue;
     given.segment = id.toStdString();
-    given.fields.insert(m_changes[id].fields.begin(), m_changes[id].fields.end()); // given earlier
+    given.fields.insert(m_changes[id].fields.begin(), m_changes[id].fields.end()); // earlier texts
     m_changes[id] = given;
   }
 }

@@ -17,10 +17,10 @@ class QLineEdit;
 class QTableWidget;
 class QToolButton;
 
-/// \brief Materials of the segments: where they come from, and a table of one row a segment with
-/// what the user changes of it.
+/// \brief Materials of the segments: their source, and a table of the user's changes with one row
+/// per segment.
 ///
-/// Only what differs from the automatic choice becomes a flag. Needs Qt alone.
+/// Only differences from the automatic choice become flags. Needs Qt, but not Slicer.
 class qSlicerFenestraMaterials : public QWidget {
   Q_OBJECT
 
@@ -29,15 +29,15 @@ public:
 
   explicit qSlicerFenestraMaterials(QWidget* parent = nullptr);
 
-  /// Lists the segments. The changes of one that is gone are no flag, but there again with it.
+  /// Lists the segments. Changes to a removed segment are not passed, but return with the segment.
   void list(const QList<qSlicerFenestraSegment>& segments);
-  /// Shows what the renderer chooses by itself, and what it offers.
+  /// Sets the renderer's automatic choices and its material library.
   void setKnownMaterials(const qFenestraMaterials& known);
-  /// Shows the flags. Without segments none is passed: the widgets stay as they are then.
+  /// Shows the flags. Empty flags are ignored without segments, since none are passed then.
   void show(const Flags& flags);
-  /// Sets all widgets to defaults, and forgets all changes.
+  /// Sets all widgets to their defaults and removes all changes.
   void reset();
-  /// Sets the flags; empty: not passed.
+  /// Writes the flags; empty: not passed.
   void take(Flags& flags) const;
 
 signals:
@@ -74,10 +74,10 @@ private:
   QWidget* m_fileRow;
   QLineEdit* m_file;
   QTableWidget* m_table;
-  QString m_base = {}; ///< flag `materials` beneath changes made by hand
+  QString m_base = {}; ///< flag `materials` to which manual changes apply
   QList<qSlicerFenestraSegment> m_segments;
   qFenestraMaterials m_known;
-  QMap<QString, Change> m_changes; ///< by the segments' ids
+  QMap<QString, Change> m_changes; ///< by segment id
   bool m_showing = false;          ///< widgets are being set by the program, not by the user
 };
 

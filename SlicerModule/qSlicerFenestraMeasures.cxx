@@ -16,30 +16,31 @@ struct MeasureInfo {
   QString name, help;
 };
 
-/// Known measures, the most important for a viewer first.
+/// Known measures, the most important first.
 QList<MeasureInfo> knownMeasures() {
   const auto tr = [](const char* text) { return QObject::tr(text); };
   return {
-      {"focusCoverage", Unit::fraction, tr("Focus seen"),
-       tr("Share of the light from the focus that reaches the eye through what lies in front")},
-      {"focusCoverageUnclipped", Unit::fraction, tr("Focus seen without clipping"),
-       tr("Share of the light from the focus that would reach the eye without clipping")},
+      {"focusCoverage", Unit::fraction, tr("Focus visible"),
+       tr("Percentage of the light from the focus that reaches the camera through the tissue in "
+          "front")},
+      {"focusCoverageUnclipped", Unit::fraction, tr("Focus visible without clipping"),
+       tr("Percentage of the light from the focus that would reach the camera without clipping")},
       {"focusKept", Unit::fraction, tr("Focus kept"),
-       tr("Share of the pixels of the focus where clipping leaves the focus itself")},
+       tr("Percentage of the focus's pixels where clipping does not remove the focus itself")},
       {"focusLight", Unit::fraction, tr("Light on the focus"),
        tr("Direct light on the focus, relative to the focus without surroundings")},
-      {"contextRemoved", Unit::fraction, tr("Surroundings taken away"),
-       tr("Share of the tissue outside the focus that clipping removes")},
+      {"contextRemoved", Unit::fraction, tr("Surroundings removed"),
+       tr("Percentage of the tissue outside the focus that clipping removes")},
       {"boundaryGapMm", Unit::millimeters, tr("Gap at the edge"),
-       tr("Difference in depth between the focus and the surface at the edge of the focus")},
+       tr("Depth difference between the focus and the surface at the edge of the focus")},
       {"boundaryMismatchMm", Unit::millimeters, tr("Step at the edge"),
-       tr("Difference in depth between the outermost pixels of the focus and the surface beside "
+       tr("Depth difference between the outermost pixels of the focus and the surface beside "
           "them")},
       {"boundarySlopeJump", Unit::slope, tr("Kink at the edge"),
-       tr("Change of the slope in depth at the edge of the focus, mm a mm")},
-      {"boundaryDepthJumps", Unit::fraction, tr("Torn edge"),
-       tr("Share of the edge where the focus's own depth jumps, which is not measured")},
-      {"surfaceChangeMmPerDegree", Unit::millimetersPerDegree, tr("Change while turning"),
+       tr("Change of the depth's slope at the edge of the focus, mm per mm")},
+      {"boundaryDepthJumps", Unit::fraction, tr("Discontinuous edge"),
+       tr("Percentage of the edge where the focus's own depth jumps; no gap is measured there")},
+      {"surfaceChangeMmPerDegree", Unit::millimetersPerDegree, tr("Change during rotation"),
        tr("Change of the surface's depth from frame to frame")},
   };
 }

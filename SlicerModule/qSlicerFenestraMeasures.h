@@ -7,17 +7,17 @@
 
 #include "qSlicerFenestraModuleExport.h"
 
-/// Measures of a picture by the renderer, in words for users.
+/// Quality measures of a rendered image, as text for users.
 namespace qSlicerFenestraMeasures {
 
 struct Measure {
   QString name, value, help;
 };
 
-/// Statistics to be stored with a picture.
+/// Selects the statistics that are stored with an image.
 Q_SLICER_QTMODULES_FENESTRA_EXPORT QJsonObject selectMeasures(const QJsonObject& statistics);
 
-/// Existing measures, in words.
+/// Formats the measures that exist.
 Q_SLICER_QTMODULES_FENESTRA_EXPORT QList<Measure> toUserText(const QJsonObject& measures);
 
 /// Duration as text: "4.2 s", "42 s", "3 min 7 s".

@@ -14,7 +14,7 @@ qSlicerFenestraModule::qSlicerFenestraModule(QObject* parent) : Superclass(paren
 qSlicerFenestraModule::~qSlicerFenestraModule() {
   if (fenestraLogic())
     fenestraLogic()->SetRenderer(nullptr);
-  delete m_session; // while the logic that it uses is there
+  delete m_session; // before the logic that it uses
 }
 
 vtkSlicerFenestraLogic* qSlicerFenestraModule::fenestraLogic() {
@@ -44,15 +44,15 @@ void qSlicerFenestraModule::onSceneClosed() {
 }
 
 QString qSlicerFenestraModule::formatHelp() const {
-  return tr("Photorealistic pictures of a volume in which nothing hides the anatomy of interest. "
-            "Choose a volume, a segmentation and the segments to show; a smooth surface through "
-            "them clips what lies in front. See the <a "
+  return tr("Photorealistic rendering of a volume with an unobstructed view of the anatomy of "
+            "interest. Choose a volume, a segmentation and the segments to show; a smooth surface "
+            "through them clips the tissue in front. See the <a "
             "href=\"https://github.com/fenestra-render/SlicerFenestra#readme\">tutorial</a>.");
 }
 
 QString qSlicerFenestraModule::acknowledgementText() const {
   return tr(
-      "After the paper \"Volumetric Clipping Surface: Un-occluded Visualization of Structures "
+      "Based on the paper \"Volumetric Clipping Surface: Un-occluded Visualization of Structures "
       "Preserving Depth Cues into Surrounding Organs\". For research and teaching; not a "
       "medical device.");
 }
@@ -77,7 +77,7 @@ QStringList qSlicerFenestraModule::associatedNodeTypes() const {
   return {"vtkMRMLFenestraRenderNode"};
 }
 
-/// Path beside this library, where Slicer also finds the renderer as a command line module.
+/// Path relative to this library, where Slicer also finds the renderer as a command line module.
 QString qSlicerFenestraModule::program() const {
   const QDir folder = QFileInfo(this->path()).dir();
 #ifdef Q_OS_WIN

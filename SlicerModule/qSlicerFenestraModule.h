@@ -10,7 +10,7 @@
 class qSlicerFenestraSession;
 class vtkSlicerFenestraLogic;
 
-/// The module as Slicer loads it: names, texts, and its parts.
+/// The loadable module: its texts, session and logic.
 class Q_SLICER_QTMODULES_FENESTRA_EXPORT qSlicerFenestraModule : public qSlicerLoadableModule {
   Q_OBJECT
   Q_PLUGIN_METADATA(IID "org.slicer.modules.loadable.qSlicerLoadableModule/1.0");
@@ -33,7 +33,7 @@ public:
 
   /// Path of the renderer installed with this module.
   QString program() const;
-  /// Work of the panel and of scripts; begins when it is first asked for.
+  /// Renders for the panel and for scripts; created on first use.
   qSlicerFenestraSession* session();
 
 public slots:

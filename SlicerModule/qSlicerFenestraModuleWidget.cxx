@@ -36,7 +36,7 @@ namespace {
 
 using Node = vtkMRMLFenestraRenderNode;
 
-/// Shape of the first 3-D view, in about as many pixels as `side` x `side`; empty: there is no
+/// Size with the aspect ratio of the first 3D view and about `side` x `side` pixels; empty: no
 /// view.
 std::string findViewSize(double side) {
   const qSlicerApplication* application = qSlicerApplication::application();
@@ -54,7 +54,7 @@ std::string findViewSize(double side) {
 qSlicerFenestraModuleWidget::qSlicerFenestraModuleWidget(QWidget* parent) : Superclass(parent) {}
 
 qSlicerFenestraModuleWidget::~qSlicerFenestraModuleWidget() {
-  if (m_session) { // the module's, which goes on
+  if (m_session) { // the module owns it and keeps it running
     m_session->preview(nullptr);
     m_session->disconnect(this);
   }
@@ -158,7 +158,7 @@ void qSlicerFenestraModuleWidget::exit() {
   Superclass::exit();
 }
 
-/// Drops the messages about the scene, whose session the module ends.
+/// Clears messages about the scene; the module closes the session's scene.
 void qSlicerFenestraModuleWidget::onSceneClosed() {
   m_sceneIsNew = true;
   clearStatus();
@@ -168,8 +168,8 @@ void qSlicerFenestraModuleWidget::onSceneImported() {
   m_sceneIsNew = true;
 }
 
-/// Called at the end of a batch: only then do the panel's boxes know the nodes, and opening a scene
-/// closes the old one in the same batch.
+/// Waits for the end of a batch: before, the panel's boxes do not know the nodes, and opening a
+/// scene closes the old one in the same batch.
 void qSlicerFenestraModuleWidget::useNewScene() {
   if (m_sceneIsNew)
     useScene();
@@ -219,8 +219,8 @@ void qSlicerFenestraModuleWidget::start(qSlicerFenestraSession::Kind kind) {
   updateButtons();
 }
 
-/// Shows the result twice: a view just made by the layout fits the picture only once it has its
-/// size.
+/// Shows the result twice: a view that the layout just created fits the image only once the view
+/// has its size.
 void qSlicerFenestraModuleWidget::showResult(Node* render, int times) {
   const vtkWeakPointer<Node> shown = render;
   QTimer::singleShot(0, this, [this, shown, times] {
@@ -234,12 +234,11 @@ void qSlicerFenestraModuleWidget::showResult(Node* render, int times) {
   });
 }
 
-/// Writing may take long: a second press ends the render without it.
+/// Writing may take long; a second press ends the render without writing.
 void qSlicerFenestraModuleWidget::stop() {
   m_session->stop();
   if (m_session->isRendering())
-    setStatus(
-        tr("Stopping: finished samples are being written. Press Stop again to end without them."));
+    setStatus(tr("Stopping: writing the finished samples. Press Stop again to discard them."));
 }
 
 void qSlicerFenestraModuleWidget::repeat() {
@@ -249,7 +248,7 @@ void qSlicerFenestraModuleWidget::repeat() {
   m_settings->copy(render);
   if (render->WithholdsFiles())
     return setStatus(
-        tr("This picture was made with files that its scene names. Allow them above, then "
+        tr("This image needs files that are named in the scene. Allow them above, then "
            "press Render."));
   start(render->IsTurntable() ? qSlicerFenestraSession::Kind::turntable
                               : qSlicerFenestraSession::Kind::picture);
@@ -260,12 +259,12 @@ void qSlicerFenestraModuleWidget::showPicture(const QImage& picture,
   m_panel->preview->setPixmap(QPixmap::fromImage(picture));
   const QString noise = what.noise < 0.0 ? QString() : tr(", noise %1").arg(what.noise, 0, 'g', 2);
   m_panel->previewState->setText(
-      tr("Preview: %1 samples a pixel%2, %3")
+      tr("Preview: %1 samples per pixel%2, %3")
           .arg(what.samples)
           .arg(noise, qSlicerFenestraMeasures::formatDuration(what.seconds)));
 }
 
-/// Updates at most every `interval`: without a graphics card, Slicer's window redraws slowly.
+/// Updates at most once per `interval`: Slicer's window redraws slowly without a GPU.
 void qSlicerFenestraModuleWidget::onProgress(double fraction, double seconds) {
   constexpr int interval = 500; // milliseconds
   if (m_session->isStopping() || (m_progressAge.isValid() && m_progressAge.elapsed() < interval))
@@ -273,15 +272,15 @@ void qSlicerFenestraModuleWidget::onProgress(double fraction, double seconds) {
   m_progressAge.start();
   m_panel->progress->show();
   m_panel->progress->setValue(static_cast<int>(1000.0 * fraction));
-  QString line = tr("%1 so far").arg(qSlicerFenestraMeasures::formatDuration(seconds));
+  QString line = tr("%1 elapsed").arg(qSlicerFenestraMeasures::formatDuration(seconds));
   if (fraction > 0.01)
     line +=
-        tr(", %1 to go")
+        tr(", %1 left")
             .arg(qSlicerFenestraMeasures::formatDuration(seconds * (1.0 - fraction) / fraction));
   if (!m_samplesAndNoise.isEmpty())
     line += ", " + m_samplesAndNoise;
   if (m_session->waitingCount() > 0)
-    line += tr("; %n more waiting", nullptr, m_session->waitingCount());
+    line += tr("; %n more in the queue", nullptr, m_session->waitingCount());
   setStatus(line);
 }
 
@@ -289,10 +288,10 @@ QString qSlicerFenestraModuleWidget::toUserText(Node* render, qFenestraOutcome::
   using Kind = qFenestraOutcome::Kind;
   const bool isComplete = kind == Kind::done;
   if (!render)
-    return kind == Kind::killed ? tr("Ended at once, without a picture.")
-                                : tr("Stopped before there was a picture.");
+    return kind == Kind::killed ? tr("Stopped immediately, without an image.")
+                                : tr("Stopped before there was an image.");
   const QString description = QString::fromUtf8(render->GetDescription());
-  if (description.isEmpty()) // the statistics were not written
+  if (description.isEmpty()) // the renderer wrote no statistics
     return isComplete ? tr("Done.") : tr("Stopped.");
   return (isComplete ? tr("Done: %1.") : tr("Stopped: %1.")).arg(description);
 }
@@ -318,7 +317,7 @@ void qSlicerFenestraModuleWidget::setStatus(const QString& message, const QStrin
   m_panel->details->setChecked(false);
 }
 
-/// Clears the last render's message, once the user has moved on.
+/// Clears the last render's message after another user action.
 void qSlicerFenestraModuleWidget::clearStatus() {
   if (!m_session->isRendering())
     setStatus({});
@@ -343,14 +342,14 @@ void qSlicerFenestraModuleWidget::updateButtons() {
   m_panel->resume->setVisible(m_session->canResume(render));
 }
 
-/// Replaces the picture shown, if any, by the chosen one.
+/// Replaces the displayed image, if any, by the chosen one.
 void qSlicerFenestraModuleWidget::onRenderChosen() {
   showSelected();
   if (chosen() && fenestraLogic()->GetShownRender())
     showResult(chosen());
 }
 
-/// Shows description, player and measures of the chosen picture.
+/// Shows description, player and measures of the chosen image.
 void qSlicerFenestraModuleWidget::showSelected() {
   updateButtons();
   Node* render = chosen();
@@ -385,13 +384,13 @@ void qSlicerFenestraModuleWidget::save() {
   const QStringList frames = m_session->results().findFrames(render);
   if (isTurntable ? frames.isEmpty() : m_session->results().findFile(render, "png").isEmpty())
     return setStatus(
-        tr("The files of this picture were removed with the session that made it. Press "
+        tr("The files of this image were removed with the session that rendered it. Press "
            "Repeat, then save."));
-  const QString png = isTurntable ? tr("Pictures, numbered (*.png)") : tr("Picture (*.png)");
-  const QString exr = tr("Linear colour and depth (*.exr)");
-  // Overwriting is confirmed below, for the final names: an ending or a number may be added.
+  const QString png = isTurntable ? tr("Numbered images (*.png)") : tr("Image (*.png)");
+  const QString exr = tr("Linear color and depth (*.exr)");
+  // Overwriting is confirmed below for the final names, which may gain an extension or a number.
   const QString chosen = QFileDialog::getSaveFileName(
-      this, isTurntable ? tr("Save the frames, numbered") : tr("Save the picture"),
+      this, isTurntable ? tr("Save numbered frames") : tr("Save image"),
       QString::fromUtf8(render->GetName()) + ".png", isTurntable ? png : png + ";;" + exr, nullptr,
       QFileDialog::DontConfirmOverwrite);
   if (chosen.isEmpty())
@@ -405,8 +404,8 @@ void qSlicerFenestraModuleWidget::save() {
 void qSlicerFenestraModuleWidget::saveAs(const qFenestraCopies& copies) {
   const QStringList replaced = copies.existingTargets();
   const QString question = replaced.size() == 1
-                               ? tr("%1 is there already. Replace it?").arg(replaced.first())
-                               : tr("%n files are there already, %1 the first. Replace them?",
+                               ? tr("%1 already exists. Replace it?").arg(replaced.first())
+                               : tr("%n files already exist, the first is %1. Replace them?",
                                     nullptr, static_cast<int>(replaced.size()))
                                      .arg(replaced.value(0));
   if (!replaced.isEmpty() && QMessageBox::question(this, tr("Save"), question) != QMessageBox::Yes)
@@ -415,18 +414,18 @@ void qSlicerFenestraModuleWidget::saveAs(const qFenestraCopies& copies) {
   setStatus(
       failed.isEmpty()
           ? tr("Saved as %1.").arg(copies.names())
-          : tr("%1 could not be written, and is as it was. Choose another folder.").arg(failed));
+          : tr("%1 could not be written and is unchanged. Choose another folder.").arg(failed));
 }
 
 void qSlicerFenestraModuleWidget::loadSample() {
   m_session->makeSample([this](const QString& scene, const QString& message) {
     if (scene.isEmpty())
-      return setStatus(tr("The sample could not be made."), message);
+      return setStatus(tr("The sample could not be generated."), message);
     qSlicerIO::IOProperties properties;
     properties["fileName"] = scene;
     properties["clear"] = false;
     qSlicerCoreApplication::application()->coreIOManager()->loadNodes("SceneFile", properties);
     fenestraLogic()->ShowNewestVolume();
-    setStatus(tr("A synthetic knee. Choose a segment as focus."));
+    setStatus(tr("The synthetic knee is loaded. Choose a segment as focus."));
   });
 }

@@ -15,8 +15,8 @@ class qSlicerFenestraPanel;
 class qSlicerFenestraSettings;
 class vtkMRMLFenestraRenderNode;
 
-/// \brief The module's panel at work: settings live in a node of the scene; the panel shows and
-/// edits that node, and the session follows it.
+/// \brief Controller of the panel. A scene node stores the settings; the panel shows and edits the
+/// node, and the session renders it.
 class Q_SLICER_QTMODULES_FENESTRA_EXPORT qSlicerFenestraModuleWidget
     : public qSlicerAbstractModuleWidget {
   Q_OBJECT
@@ -74,10 +74,10 @@ private:
 
   qSlicerFenestraPanel* m_panel = nullptr;
   qSlicerFenestraSettings* m_settings = nullptr;
-  QPointer<qSlicerFenestraSession> m_session; ///< of the module, which may end before the panel
-  bool m_sceneIsNew = false;                  ///< scene closed or loaded, and not yet used
-  QString m_samplesAndNoise;   ///< samples and noise of the render under way, in words
-  QElapsedTimer m_progressAge; ///< time since progress was last shown
+  QPointer<qSlicerFenestraSession> m_session; ///< owned by the module, which may end earlier
+  bool m_sceneIsNew = false;                  ///< scene closed or loaded, but not shown yet
+  QString m_samplesAndNoise;                  ///< samples and noise of the current render, as text
+  QElapsedTimer m_progressAge;                ///< time since progress was last shown
 };
 
 #endif

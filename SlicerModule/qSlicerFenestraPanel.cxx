@@ -29,9 +29,9 @@ using namespace qSlicerFenestraWidgets;
 
 namespace {
 
-constexpr int pictureSide = 48; ///< pixels of an anatomy's picture
+constexpr int pictureSide = 48; ///< pixels of an anatomy's icon
 
-/// Anatomy presets of the renderer, with their names for users.
+/// Anatomy presets of the renderer with their display names.
 QList<Choice> anatomies() {
   const auto tr = [](const char* text) { return QObject::tr(text); };
   return {{tr("Knee cartilage (MR)"), "knee-cartilage"},
@@ -41,14 +41,14 @@ QList<Choice> anatomies() {
           {tr("Lungs and airways (CT)"), "lungs"},
           {tr("Liver (CT)"), "liver"},
           {tr("Brain surface (MR)"), "brain-surface"},
-          {tr("Brain tumour (MR)"), "brain-tumour"},
+          {tr("Brain tumor (MR)"), "brain-tumour"},
           {tr("Face of a fetus (US)"), "fetal-face"}};
 }
 
 QLabel* makeLabel(const QString& name) {
   auto* label = new QLabel;
   label->setObjectName(name);
-  label->setTextFormat(Qt::PlainText); // texts of a scene must not be read as HTML
+  label->setTextFormat(Qt::PlainText); // texts from a scene must not be read as HTML
   label->setWordWrap(true);
   label->setTextInteractionFlags(Qt::TextSelectableByMouse);
   return label;
@@ -79,7 +79,7 @@ QDoubleSpinBox* makeLimitBox(const QString& name, double greatest, int parseDeci
   return box;
 }
 
-/// Names each control for screen readers: by its own text, else by its label, else by its tool tip.
+/// Names each control for screen readers: by its own text, else its label, else its tool tip.
 void nameControls(QWidget* panel) {
   QHash<const QWidget*, QString> labels;
   for (const QLabel* label : panel->findChildren<QLabel*>())
@@ -90,7 +90,7 @@ void nameControls(QWidget* panel) {
       continue;
     const auto* button = qobject_cast<QAbstractButton*>(control);
     QString name = button ? button->text() : QString();
-    // The parts of a box of several widgets bear the box's name.
+    // The parts of a compound widget take the widget's name.
     for (const QWidget* one = control; one != panel && name.isEmpty(); one = one->parentWidget())
       name = labels.contains(one) ? labels.value(one) : one->toolTip();
     control->setAccessibleName(name.remove('&'));
@@ -138,7 +138,7 @@ void qSlicerFenestraPanel::buildSubject(QVBoxLayout* layout) {
   QFormLayout* form = addSection(layout, tr("What to show"), false);
   m_subject = form;
   sample = button("SampleButton", tr("Load a sample knee"),
-                  tr("A synthetic knee with its segments, made on this computer"));
+                  tr("A synthetic knee with segments, generated on this computer"));
   form->addRow(sample);
   volume = makeNodeBox("vtkMRMLScalarVolumeNode", "VolumeBox");
   volume->setNoneEnabled(true);
@@ -148,25 +148,25 @@ void qSlicerFenestraPanel::buildSubject(QVBoxLayout* layout) {
   segmentation->setNoneEnabled(true);
   form->addRow(tr("Segmentation:"), segmentation);
   preset = makeComboBox(
-      "PresetBox", {{tr("My own choice"), ""}, {tr("By the segments' names"), "auto"}},
-      tr("Focus, clipping, tissue colours, light and view for an anatomy, in one; what "
-         "you choose yourself wins over it"));
+      "PresetBox", {{tr("Custom"), ""}, {tr("By segment names"), "auto"}},
+      tr("Sets focus, clipping, tissue colors, light and view for an anatomy; your own "
+         "choices override it"));
   preset->setIconSize({pictureSide, pictureSide});
   form->addRow(tr("Anatomy:"), preset);
   preset->hide();
   form->labelForField(preset)->hide();
   focus = new QListWidget;
   focus->setObjectName("FocusList");
-  focus->setToolTip(tr("Segments that nothing hides"));
+  focus->setToolTip(tr("Segments to show unobstructed"));
   focus->setMaximumHeight(150);
   form->addRow(tr("Focus:"), focus);
   focusHint = makeLabel("FocusHint");
-  focusHint->setText(tr("With none ticked, the anatomy's segments are found by their names."));
+  focusHint->setText(tr("If no segment is checked, the preset finds its segments by name."));
   focusHint->hide();
   form->addRow(focusHint);
   withheld = makeLabel("WithheldLabel");
   allow = button("AllowButton", tr("Open these files"),
-                 tr("Files that the scene names are opened only where you trust who made it"));
+                 tr("The scene names these files. Open them only if you trust its author"));
   for (QWidget* one : {static_cast<QWidget*>(withheld), static_cast<QWidget*>(allow)}) {
     one->hide();
     form->addRow(one);
@@ -192,7 +192,7 @@ void qSlicerFenestraPanel::buildPreview(QVBoxLayout* layout) {
   layout->addWidget(showPreview);
   preview = new QLabel;
   preview->setObjectName("PreviewLabel");
-  preview->setAccessibleName(tr("Preview of the picture"));
+  preview->setAccessibleName(tr("Preview of the image"));
   preview->setAlignment(Qt::AlignCenter);
   preview->setMinimumSize(256, 256);
   preview->setStyleSheet("background: black; color: gray");
@@ -203,8 +203,8 @@ void qSlicerFenestraPanel::buildPreview(QVBoxLayout* layout) {
 
 void qSlicerFenestraPanel::buildRender(QVBoxLayout* layout) {
   auto* row = new QHBoxLayout;
-  render = button("RenderButton", tr("Render"), tr("Adds the picture to the scene"));
-  stop = button("StopButton", tr("Stop"), tr("Ends the render and keeps its finished samples"));
+  render = button("RenderButton", tr("Render"), tr("Renders an image and adds it to the scene"));
+  stop = button("StopButton", tr("Stop"), tr("Stops the render and keeps its finished samples"));
   stop->setEnabled(false);
   row->addWidget(render, 2);
   row->addWidget(stop, 1);
@@ -238,7 +238,7 @@ void qSlicerFenestraPanel::buildView(QVBoxLayout* layout) {
                        {tr("From right"), "right"},
                        {tr("From superior"), "superior"},
                        {tr("From inferior"), "inferior"}},
-                      tr("Where the picture is taken from"));
+                      tr("Viewpoint of the image"));
   form->addRow(tr("View:"), view);
   view3D = makeNodeBox("vtkMRMLViewNode", "View3DBox");
   follow = new QCheckBox(tr("live"));
@@ -261,10 +261,10 @@ void qSlicerFenestraPanel::buildQuality(QVBoxLayout* layout) {
                           {tr("Good"), "256 0.05 0"},
                           {tr("Final"), "4096 0.015 0"},
                           {tr("Custom"), ""}},
-                         tr("A render ends at the first of its limits"));
+                         tr("A render ends at the first limit that it reaches"));
   form->addRow(tr("Quality:"), quality);
   samples = makeSpinBox("SamplesBox", 1, 1000000);
-  form->addRow(tr("Samples a pixel:"), samples);
+  form->addRow(tr("Samples per pixel:"), samples);
   noise = makeLimitBox("NoiseBox", 1.0, 3, {});
   noise->setSingleStep(0.005);
   form->addRow(tr("Noise:"), noise);
@@ -292,30 +292,30 @@ void qSlicerFenestraPanel::buildAnimation(QVBoxLayout* layout) {
   degrees->setDecimals(1);
   degrees->setValue(360.0);
   degrees->setSuffix(tr("\u00b0"));
-  degrees->setToolTip(tr("How far around the focus; negative: the other way"));
-  form->addRow(tr("Turn:"), degrees);
+  degrees->setToolTip(tr("Angle around the focus; negative: the other direction"));
+  form->addRow(tr("Rotation:"), degrees);
   steady = new QDoubleSpinBox;
   steady->setObjectName("SteadyBox");
   steady->setRange(0.0, 45.0);
   steady->setDecimals(1);
   steady->setSuffix(tr("\u00b0"));
-  steady->setSpecialValueText(tr("each frame by itself"));
+  steady->setSpecialValueText(tr("off"));
   steady->setToolTip(
-      tr("Spreads sudden changes of the clipping surface over this part of the turn"));
-  form->addRow(tr("Steady surface:"), steady);
+      tr("Spreads sudden changes of the clipping surface over this part of the rotation"));
+  form->addRow(tr("Surface smoothing:"), steady);
   turn = button("TurnButton", tr("Render turntable"),
-                tr("Goes around the focus from the view above; each frame is a picture of the "
+                tr("Rotates around the focus, starting at the view above; each frame has the "
                    "quality above"));
   form->addRow(turn);
 }
 
 void qSlicerFenestraPanel::buildResults(QVBoxLayout* layout) {
-  QFormLayout* form = addSection(layout, tr("Pictures"), false);
+  QFormLayout* form = addSection(layout, tr("Images"), false);
   renders = makeNodeBox("vtkMRMLFenestraRenderNode", "RendersBox");
   renders->setNoneEnabled(true);
   renders->setRemoveEnabled(true);
   renders->setRenameEnabled(true);
-  form->addRow(tr("Picture:"), renders);
+  form->addRow(tr("Image:"), renders);
   description = makeLabel("DescriptionLabel");
   form->addRow(description);
   player = new qSlicerFenestraPlayer;
@@ -326,15 +326,15 @@ void qSlicerFenestraPanel::buildResults(QVBoxLayout* layout) {
   measures->setTextFormat(Qt::RichText);
   form->addRow(measures);
   auto* row = new QHBoxLayout;
-  show = button("ShowButton", tr("Show"), tr("In a view beside the 3D view"));
-  back = button("BackButton", tr("Back"), tr("Shows the views that were there before the picture"));
+  show = button("ShowButton", tr("Show"), tr("Shows the image beside the 3D view"));
+  back = button("BackButton", tr("Back"), tr("Restores the views from before the image was shown"));
   repeat = button("RepeatButton", tr("Repeat"), tr("Renders with the same settings again"));
-  resume = button("ResumeButton", tr("Continue"),
-                  tr("Renders the frames of the turntable that are missing"));
+  resume =
+      button("ResumeButton", tr("Continue"), tr("Renders the missing frames of the turntable"));
   resume->hide();
   save = button("SaveButton", tr("Save as..."),
-                tr("A .png to look at, or an .exr with linear colour and depth; a turntable's "
-                   "frames as numbered .png"));
+                tr("A .png for display, or an .exr with linear color and depth; the frames of a "
+                   "turntable as numbered .png"));
   for (QPushButton* one : {show, back, repeat, resume, save})
     row->addWidget(one);
   form->addRow(row);
@@ -359,7 +359,7 @@ void qSlicerFenestraPanel::setCapabilities(const qFenestraCapabilities& abilitie
 }
 
 void qSlicerFenestraPanel::offerPresetView(bool chosen) {
-  setChoiceOffered(view, 0, {tr("As the anatomy preset"), "preset"}, chosen);
+  setChoiceOffered(view, 0, {tr("From the anatomy preset"), "preset"}, chosen);
 }
 
 void qSlicerFenestraPanel::showWithheld(const std::map<std::string, std::string>& what,

@@ -25,18 +25,18 @@ class QVBoxLayout;
 class vtkMRMLScene;
 struct qFenestraCapabilities;
 
-/// The module's widgets from top to bottom, without behaviour.
+/// The module's widgets from top to bottom, without behavior.
 class qSlicerFenestraPanel : public QWidget {
   Q_OBJECT
 
 public:
   explicit qSlicerFenestraPanel(QWidget* parent = nullptr);
 
-  /// Adds choices that only newer renderers support.
+  /// Shows the choices that the renderer supports.
   void setCapabilities(const qFenestraCapabilities& abilities);
-  /// Adds or removes the view that the anatomy preset has; data: "preset".
+  /// Adds or removes the view choice of the anatomy preset; data: "preset".
   void offerPresetView(bool chosen);
-  /// Shows flags of the scene that are withheld, name and value; `files`: some name files.
+  /// Shows the withheld flags of the scene; `files`: some of them name files.
   void showWithheld(const std::map<std::string, std::string>& what, bool files);
 
   QPushButton* sample;
@@ -45,14 +45,14 @@ public:
   QComboBox* preset; ///< hidden if the renderer has none
   QListWidget* focus;
   QLabel* focusHint;
-  QLabel* withheld;   ///< flags of the scene that are withheld; hidden if there are none
+  QLabel* withheld;   ///< withheld flags of the scene; hidden if there are none
   QPushButton* allow; ///< allows the withheld files
   qSlicerFenestraClipping* clipping;
   qSlicerFenestraMaterials* materials;
 
-  QComboBox* view; ///< data: the flag's word; empty: the camera of a 3-D view
+  QComboBox* view; ///< data: value of the flag `view`; empty: the camera of a 3D view
   qMRMLNodeComboBox* view3D;
-  QCheckBox* follow; ///< follow the camera of the 3-D view live
+  QCheckBox* follow; ///< follow the camera of the 3D view live
   qSlicerFenestraLook* look;
 
   QComboBox* quality; ///< data: "samples noise seconds"; empty: values of the boxes
@@ -65,7 +65,7 @@ public:
   QWidget* animation;
   QSpinBox* frames;
   QDoubleSpinBox* degrees;
-  QDoubleSpinBox* steady; ///< degrees; 0: each frame by itself
+  QDoubleSpinBox* steady; ///< degrees; 0: off
   QPushButton* turn;
 
   QCheckBox* showPreview;
@@ -84,7 +84,7 @@ public:
   qSlicerFenestraPlayer* player;
   QLabel* measures;
   QPushButton* show;
-  QPushButton* back; ///< to the layout before the picture's
+  QPushButton* back; ///< restores the layout before the image was shown
   QPushButton* repeat;
   QPushButton* resume;
   QPushButton* save;

@@ -15,10 +15,10 @@ qSlicerFenestraPlayer::qSlicerFenestraPlayer(QWidget* parent) : QWidget(parent) 
   m_play = new QToolButton;
   m_play->setObjectName("PlayButton");
   m_play->setCheckable(true);
-  m_play->setToolTip(tr("Plays the frames, around and around"));
+  m_play->setToolTip(tr("Plays the frames in a loop"));
   m_slider = new QSlider(Qt::Horizontal);
   m_slider->setObjectName("FrameSlider");
-  m_slider->setToolTip(tr("The frame that is shown"));
+  m_slider->setToolTip(tr("Current frame"));
   m_position = new QLabel;
   m_position->setObjectName("FrameLabel");
   m_speed = new QSpinBox;
@@ -26,12 +26,12 @@ qSlicerFenestraPlayer::qSlicerFenestraPlayer(QWidget* parent) : QWidget(parent) 
   m_speed->setRange(1, 60);
   m_speed->setValue(12);
   m_speed->setSuffix(tr(" / s"));
-  m_speed->setToolTip(tr("Frames a second"));
+  m_speed->setToolTip(tr("Frames per second"));
   row->addWidget(m_play);
   row->addWidget(m_slider, 1);
   row->addWidget(m_position);
   row->addWidget(m_speed);
-  // The timer restarts after each frame is drawn: a slow screen is not overrun.
+  // The timer restarts after each frame is drawn, so that a slow display is not overloaded.
   m_timer.setSingleShot(true);
   connect(&m_timer, &QTimer::timeout, this, &qSlicerFenestraPlayer::step);
   connect(m_play, &QToolButton::toggled, this, &qSlicerFenestraPlayer::play);

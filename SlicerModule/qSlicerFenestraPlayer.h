@@ -9,20 +9,20 @@ class QSlider;
 class QSpinBox;
 class QToolButton;
 
-/// Plays frames one after the other, in a loop.
+/// Plays frames in a loop.
 class qSlicerFenestraPlayer : public QWidget {
   Q_OBJECT
 
 public:
   explicit qSlicerFenestraPlayer(QWidget* parent = nullptr);
 
-  /// Sets the number of frames, for another animation or for more frames of the same; stops
-  /// playing.
+  /// Sets the number of frames, of another animation or of the same one with more frames. Stops
+  /// playback.
   void setFrames(int count);
   int frame() const;
 
 signals:
-  /// Emits the frame's index, from 0.
+  /// `frame`: index from 0.
   void frameChanged(int frame);
 
 private:

@@ -26,7 +26,7 @@ QJsonObject readStatistics(const QString& folder) {
 QString statsLine(const QJsonObject& stats) {
   return stats.isEmpty()
              ? QString()
-             : QObject::tr("%1 samples a pixel, noise %2, %3")
+             : QObject::tr("%1 samples per pixel, noise %2, %3")
                    .arg(stats["samplesPerPixel"].toObject()["mean"].toDouble(), 0, 'f', 0)
                    .arg(stats["noiseFiltered"].toDouble(stats["noise"].toDouble()), 0, 'g', 2)
                    .arg(qSlicerFenestraMeasures::formatDuration(
@@ -40,7 +40,7 @@ QString turntableLine(Node* render) {
            QString::fromStdString(render->GetFlag("degrees")));
 }
 
-/// Stores the statistics' line and measures in the node.
+/// Stores a summary and the measures in the node.
 void describe(Node* render, const QJsonObject& stats) {
   const QString line = render->IsTurntable() ? turntableLine(render) : statsLine(stats);
   render->SetDescription(line.toUtf8().constData());

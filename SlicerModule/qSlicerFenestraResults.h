@@ -9,23 +9,23 @@
 #include "vtkMRMLFenestraRenderNode.h"
 #include <vtkWeakPointer.h>
 
-/// \brief Folders of this scene's renders, one folder a render.
+/// \brief Folders of this scene's renders, one per render.
 ///
-/// A result belongs to a node, not to the node's ID: IDs begin again with every scene.
+/// Results are found by node, not by node ID: the next scene reuses the IDs.
 class Q_SLICER_QTMODULES_FENESTRA_EXPORT qSlicerFenestraResults {
 public:
   /// Stores the folder, and describes the node by the statistics in the folder. Removes the folders
-  /// of nodes that are gone.
+  /// of deleted nodes.
   void add(vtkMRMLFenestraRenderNode* render, const QString& folder);
   void clear() { m_all.clear(); }
 
-  /// Folder of a render; empty: not made in this session.
+  /// Folder of a render; empty: not rendered in this session.
   QString findFolder(vtkMRMLFenestraRenderNode* render) const;
-  /// The picture's file as written; empty: none.
+  /// Image file as the renderer wrote it; empty: none.
   QString findFile(vtkMRMLFenestraRenderNode* render, const QString& extension) const;
   /// The turntable's frame files; empty: none.
   QStringList findFrames(vtkMRMLFenestraRenderNode* turntable) const;
-  /// True for a turntable without all of its frames, whose scene file still exists.
+  /// True for a turntable with missing frames whose scene file still exists.
   bool lacksFrames(vtkMRMLFenestraRenderNode* render) const;
 
 private:

@@ -26,7 +26,7 @@ qFenestraOutcome failure(const QString& message, const QString& details = {}) {
   return {Ended::failed, message, details};
 }
 
-/// The renderer's message, without names of files in this session's folder.
+/// The renderer's message without file names in this session's folder.
 QString toUserText(QString message, const QString& folder) {
   const int colon = message.indexOf(": ");
   if (colon > 0 && message.startsWith(folder))
@@ -36,7 +36,7 @@ QString toUserText(QString message, const QString& folder) {
   return message;
 }
 
-/// Pauses drawing of the views, which then are drawn once, after all additions.
+/// Pauses rendering of the views, which are then drawn once, after all additions.
 struct RenderPause {
   explicit RenderPause(vtkMRMLApplicationLogic* logic) : application(logic) {
     if (application)
@@ -131,7 +131,7 @@ void qSlicerFenestraSession::runInWorker(const std::function<void()>& job) {
   m_worker.start(QRunnable::create(job));
 }
 
-/// Runs the job in the main thread, unless this object is gone by then.
+/// Runs the job in the main thread, unless this object is deleted before.
 void qSlicerFenestraSession::runInMainThread(const std::function<void()>& job) {
   QMetaObject::invokeMethod(this, job, Qt::QueuedConnection);
 }
@@ -176,14 +176,14 @@ vtkMRMLFenestraRenderNode* qSlicerFenestraSession::render(Node* settings, Kind k
   return node;
 }
 
-/// Writes the scene and queues the render. Voxels are the scene's own: an edit while they are
-/// written would tear them, so they are written again, `tries` times at most.
+/// Writes the scene and queues the render. The voxels are shared with Slicer: an edit during the
+/// writing corrupts the files, which are then written again, at most `tries` times.
 void qSlicerFenestraSession::submit(int id, const SlicerExport::Contents& contents,
                                     bool withSurface, int tries) {
   write(contents, [=](const QString& scene, const QString& message) {
     Render& render = m_renders[id];
     if (!message.isEmpty())
-      return endRender(id, failure(tr("The volume could not be handed to the renderer. Is the "
+      return endRender(id, failure(tr("The volume could not be written for the renderer. Is the "
                                       "disk with the temporary files full?"),
                                    message));
     render.folder = QFileInfo(scene).absolutePath();
@@ -223,7 +223,7 @@ void qSlicerFenestraSession::waitFor(Node* node) {
     loop.exec(QEventLoop::ExcludeUserInputEvents);
 }
 
-/// Passes all flags on the command line: the renderer trusts a user more than a scene.
+/// Passes all flags on the command line, which the renderer trusts more than a scene.
 QStringList qSlicerFenestraSession::arguments(Node* render, const QString& scene,
                                               bool withSurface) const {
   QStringList all = render->IsTurntable() ? QStringList{"turntable", scene} : QStringList{scene};
@@ -256,13 +256,13 @@ void qSlicerFenestraSession::stop() {
 void qSlicerFenestraSession::closeScene() {
   m_preview.stop();
   m_results.clear();
-  const QList<int> ids = m_renders.keys(); // waiting ones end at once
+  const QList<int> ids = m_renders.keys(); // a copy: waiting renders end in stop()
   for (const int id : ids) {
     m_renders[id].stopped = true;
     m_queue.stop(id);
-    m_queue.stop(id); // discards results of the one under way
+    m_queue.stop(id); // discards the results of the current render
   }
-  m_files = std::make_shared<Files>(); // the last process using the old files removes them
+  m_files = std::make_shared<Files>(); // the old files are removed with their last process
   m_shownData.clear();
   m_previewFolder.clear();
 }
@@ -272,7 +272,7 @@ void qSlicerFenestraSession::finishRender(int id, const qFenestraOutcome& outcom
   emit renderStopped();
   Node* node = m_renders[id].node;
   const bool isTurntable =
-      node && node->IsTurntable(); // finished frames are kept, whatever happens
+      node && node->IsTurntable(); // keeps finished frames even after a failure
   const bool hasFiles =
       isTurntable ? !vtkSlicerFenestraLogic::GetFrameFiles(folder.toStdString()).empty()
                   : outcome.kind != Ended::failed && QFileInfo::exists(folder + "/radiance.nrrd");
@@ -288,8 +288,7 @@ void qSlicerFenestraSession::finishRender(int id, const qFenestraOutcome& outcom
     }
     runInMainThread([this, id, outcome, result, message] {
       if (!message.isEmpty())
-        return endRender(id,
-                         failure(tr("The picture could not be read back. Press Repeat."), message));
+        return endRender(id, failure(tr("The image could not be read. Press Repeat."), message));
       const auto paused = std::make_shared<RenderPause>(m_logic->GetMRMLApplicationLogic());
       addResult(id, outcome, [this, result, paused](Node* node, int step) {
         m_logic->AddResult(node, *result, step);
@@ -298,7 +297,7 @@ void qSlicerFenestraSession::finishRender(int id, const qFenestraOutcome& outcom
   });
 }
 
-/// Adds one step, then returns to the event loop, in which the user may close the scene.
+/// Adds one step, then returns to the event loop, where the user may close the scene.
 void qSlicerFenestraSession::addResult(int id, const qFenestraOutcome& outcome,
                                        const std::function<void(Node*, int)>& add, int step) {
   Node* node = m_renders[id].node;

@@ -24,12 +24,12 @@
 #include "vtkSlicerFenestraLogic.h"
 #include <vtkWeakPointer.h>
 
-/// \brief Work of the panel and of scripts: one preview that follows the settings, and renders one
-/// after the other. Failures are also told in Slicer's log.
+/// \brief Rendering for the panel and for scripts: one preview that follows the settings, and a
+/// queue of renders. Failures are also logged.
 ///
-/// Files are written and read in a worker thread, below a private folder that is removed with the
-/// scene; the scene is changed in the main thread only. While a render is under way there is no
-/// preview, which would slow the render down.
+/// A worker thread writes and reads the files, in a private folder that is removed with the scene.
+/// Only the main thread changes the scene. During a render there is no preview, which would slow
+/// the render down.
 class Q_SLICER_QTMODULES_FENESTRA_EXPORT qSlicerFenestraSession : public QObject,
                                                                   public FenestraRenderer {
   Q_OBJECT
@@ -40,7 +40,7 @@ public:
   ~qSlicerFenestraSession() override;
 
   enum class Kind { picture, turntable };
-  /// Adds a render of the settings to the scene and to the queue. Null if something is missing:
+  /// Adds a render of the settings to the scene and to the queue. Null: an input is missing, and
   /// `ended` reports the reason.
   vtkMRMLFenestraRenderNode* render(vtkMRMLFenestraRenderNode* settings, Kind kind = Kind::picture);
   vtkMRMLFenestraRenderNode* start(vtkMRMLFenestraRenderNode* settings, bool turntable) override;
@@ -50,25 +50,25 @@ public:
   bool canResume(vtkMRMLFenestraRenderNode* turntable) const;
   /// Renders the missing frames.
   void resume(vtkMRMLFenestraRenderNode* turntable);
-  /// Ends the render under way, keeping finished results; a second call discards them.
+  /// Stops the current render and keeps finished results; a second call discards them.
   void stop() override;
-  /// True once the render under way has been asked to end.
+  /// True once the current render has been asked to stop.
   bool isStopping() const { return isRendering() && m_renders.first().stopped; }
-  /// Ends all renders and drops results and files of the closed scene.
+  /// Stops all renders, and drops results and files of the closed scene.
   void closeScene();
   bool isRendering() const { return !m_renders.isEmpty(); }
   int waitingCount() const { return isRendering() ? static_cast<int>(m_renders.size()) - 1 : 0; }
 
-  /// Asks the renderer what it can do, which `learned` tells.
+  /// Queries the renderer's capabilities; `learned` reports them.
   void queryCapabilities();
-  /// Asks what the renderer makes the segments of, which `materialsTold` tells; the same segments
-  /// are not asked about again.
+  /// Queries the materials that the renderer chooses for the segments; `materialsTold` reports
+  /// them. Unchanged segments are not queried again.
   void queryMaterials(const std::vector<SlicerExport::Segment>& segments);
   /// Previews the settings from now on; null: ends the preview.
   void preview(vtkMRMLFenestraRenderNode* settings);
 
-  /// Makes the renderer's synthetic knee, then calls `then` with the scene's path, or with a
-  /// failure.
+  /// Generates the synthetic sample knee, then calls `then` with the path of its scene or with an
+  /// error message.
   void makeSample(const std::function<void(const QString& scene, const QString& failure)>& then);
 
   const qSlicerFenestraResults& results() const { return m_results; }
@@ -79,32 +79,32 @@ public slots:
   void refresh();
 
 signals:
-  /// Abilities of the renderer, soon after learn().
+  /// Result of queryCapabilities().
   void learned(const qFenestraCapabilities& abilities);
   void materialsTold(const qFenestraMaterials& materials);
   void previewed(const QImage& picture, const qFenestraPreviewImage& what);
-  /// A sentence for the user; the last preview stays.
+  /// `message`: a sentence for the user. The last preview stays visible.
   void previewRefused(const QString& message);
   void started(vtkMRMLFenestraRenderNode* render);
-  /// `part`: finished share, 0 to 1; `seconds`: time so far.
+  /// `fraction`: finished fraction, 0 to 1; `seconds`: elapsed time.
   void progressed(vtkMRMLFenestraRenderNode* render, double fraction, double seconds);
-  /// Samples and noise of the render under way, in words.
+  /// Samples and noise of the current render, as text.
   void reached(const QString& words);
-  /// The process of the render under way has ended; its result is not read yet.
+  /// The process of the current render has ended; its result is not read yet.
   void renderStopped();
   /// The render's result, if any, is in the scene.
   void ended(vtkMRMLFenestraRenderNode* render, const qFenestraOutcome& outcome);
 
 private:
   static constexpr const char* folderPrefix = "fenestra-slicer-";
-  /// Files of one scene; used in the worker thread.
+  /// Files of one scene, for the worker thread.
   struct Files {
     qFenestraFolder folder{QDir::tempPath(), folderPrefix};
     SlicerExport::Writer writer{folder.path().toStdString()};
   };
   struct Render {
     vtkWeakPointer<vtkMRMLFenestraRenderNode> node;
-    std::shared_ptr<Files> files; ///< kept until the process has ended
+    std::shared_ptr<Files> files; ///< kept alive until the process has ended
     QString folder;               ///< empty until the scene is written
     bool stopped = false;
   };
@@ -133,24 +133,24 @@ private:
   vtkSlicerFenestraLogic* m_logic;
   QString m_program;
   std::shared_ptr<Files> m_files; ///< of the open scene
-  /// Folder of the sample, once made. Outlives the scene: it holds no patient's data, and saved
-  /// scenes may refer to it.
+  /// Folder of the sample, once generated. It outlives the scene: it holds no patient data, and
+  /// saved scenes may refer to it.
   std::unique_ptr<qFenestraFolder> m_sample;
   QThreadPool m_worker;
 
   qFenestraCapabilityQuery m_capabilityQuery;
   qFenestraMaterialsQuery m_materials;
-  std::vector<SlicerExport::Segment> m_queriedSegments; ///< segments of the last question
+  std::vector<SlicerExport::Segment> m_queriedSegments; ///< segments of the last query
   qFenestraQueue m_queue;
-  QMap<int, Render> m_renders; ///< under way and waiting
+  QMap<int, Render> m_renders; ///< running and waiting
   qSlicerFenestraResults m_results;
   QElapsedTimer m_renderTime;
   int m_lastId = 0;
 
   qFenestraPreview m_preview;
-  QTimer m_refreshTimer; ///< merges changes within a short time
+  QTimer m_refreshTimer; ///< merges changes in quick succession
   vtkWeakPointer<vtkMRMLFenestraRenderNode> m_previewed;
-  std::string m_shownData; ///< data of the preview's scene
+  std::string m_shownData; ///< key of the data in the preview's scene
   QString m_previewFolder;
   QJsonObject m_sentFlags;
   bool m_starting = false;

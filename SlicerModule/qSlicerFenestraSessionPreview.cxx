@@ -18,7 +18,8 @@ namespace {
 
 using Node = vtkMRMLFenestraRenderNode;
 
-/// Data whose change requires a new preview: volume, segmentation, transforms, crop.
+/// Key of the data that require a new preview when they change: volume, segmentation, transforms,
+/// crop box.
 std::string makeDataKey(const SlicerExport::Contents& contents) {
   std::ostringstream text;
   text.precision(17);
@@ -32,7 +33,7 @@ std::string makeDataKey(const SlicerExport::Contents& contents) {
   return text.str();
 }
 
-/// Size with the picture's aspect, at most 256 x 256: quick to render.
+/// Size with the image's aspect ratio, at most 256 x 256, for speed.
 std::string previewSize(const std::string& size) {
   const QStringList words = QString::fromStdString(size).split('x');
   const QSize one = QSize(words.value(0, "512").toInt(), words.value(1, "512").toInt())
@@ -60,7 +61,7 @@ void qSlicerFenestraSession::updatePreview() {
   if (!m_previewed || !m_previewed->GetScene() || isRendering())
     return;
   if (m_starting)
-    return m_refreshTimer.start(); // changes are sent then
+    return m_refreshTimer.start(); // sends the changes later
   try {
     const SlicerExport::Contents contents =
         m_logic->Snapshot(m_previewed, m_files->folder.path().toStdString());
@@ -86,7 +87,7 @@ void qSlicerFenestraSession::startPreview(const SlicerExport::Contents& contents
       arguments << QString::fromStdString(argument);
     m_sentFlags = qFenestraPreview::toJson(flags);
     const QString folder = QFileInfo(scene).absolutePath();
-    if (isRendering() || files != m_files) // the scene was closed meanwhile
+    if (isRendering() || files != m_files) // or the scene was closed during the writing
       return removeFolder(folder);
     m_preview.start(m_program, arguments, folder, files);
     removeFolder(m_previewFolder);
@@ -109,7 +110,7 @@ qSlicerFenestraSession::previewFlags(Flags flags, const SlicerExport::Contents& 
   return flags;
 }
 
-/// File named by a hash of its content: another transfer function is another file.
+/// Writes the transfer function to a file named by its hash, so that a changed one is another file.
 QString qSlicerFenestraSession::propertyFile(const SlicerExport::Contents& contents) const {
   const QByteArray text = QByteArray::fromStdString(contents.property);
   const QString name = QCryptographicHash::hash(text, QCryptographicHash::Sha1).toHex();
@@ -125,7 +126,7 @@ void qSlicerFenestraSession::sendToPreview(const QJsonObject& flags) {
   QJsonObject changed;
   for (auto flag = m_sentFlags.begin(); flag != m_sentFlags.end(); ++flag)
     if (!flags.contains(flag.key()))
-      changed[flag.key()] = QJsonValue::Null; // no longer given
+      changed[flag.key()] = QJsonValue::Null; // not set any more
   for (auto flag = flags.begin(); flag != flags.end(); ++flag)
     if (m_sentFlags.value(flag.key()) != flag.value())
       changed[flag.key()] = flag.value();

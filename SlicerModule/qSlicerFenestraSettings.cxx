@@ -37,7 +37,7 @@ namespace {
 using Node = vtkMRMLFenestraRenderNode;
 constexpr const char* rigAttribute = "Fenestra.Lights"; ///< value: "rig key fill rim environment"
 
-/// Flag value of a limit; empty, thus not passed: no limit.
+/// Flag value of a limit; empty, so not passed: no limit.
 std::string toLimitFlag(double value) {
   return value > 0.0 ? QString::number(value, 'g', 6).toStdString() : std::string();
 }
@@ -108,7 +108,7 @@ void qSlicerFenestraSettings::copy(Node* render) {
   m_node->EndModify(wasModifying);
 }
 
-/// Chooses the first volume, segmentation and 3-D view that a user may choose.
+/// Chooses the first volume, segmentation and 3D view that are visible to users.
 void qSlicerFenestraSettings::chooseDefaults() {
   const auto byDefault = [this](const char* role, const char* className) {
     if (m_node->GetNodeReference(role))
@@ -191,7 +191,7 @@ void qSlicerFenestraSettings::onDataChanged() {
   emit changed();
 }
 
-/// Takes the materials alone: a segment may be gone, or there again.
+/// Updates only the material flags, since a segment may have been removed or restored.
 void qSlicerFenestraSettings::takeMaterials() {
   if (!m_node || m_showing)
     return;
@@ -305,7 +305,7 @@ void qSlicerFenestraSettings::showQuality(const Flags& flags) {
   const QStringList size = findFlag(flags, "size").split('x');
   m_panel->width->setValue(size.value(0, "512").toInt());
   m_panel->height->setValue(size.value(1, "512").toInt());
-  if (flags.count("frames") == 0) // flags of a repeated picture, not of a turntable
+  if (flags.count("frames") == 0) // flags of a repeated image, not of a turntable
     return;
   m_panel->frames->setValue(findFlag(flags, "frames").toInt());
   m_panel->degrees->setValue(flags.count("degrees") > 0 ? findFlag(flags, "degrees").toDouble()
@@ -352,8 +352,8 @@ void qSlicerFenestraSettings::takeClipping(Flags& flags) {
                 byPreset || !flags["focus"].empty(), byPreset);
 }
 
-/// Leaves the preset's flags to the preset until the user chooses; without a preset, restores the
-/// defaults.
+/// Does not set the flags that the preset sets, until the user chooses them. Without a preset,
+/// restores the defaults.
 void qSlicerFenestraSettings::takePreset() {
   if (!m_node || m_showing)
     return;
@@ -370,7 +370,7 @@ void qSlicerFenestraSettings::takePreset() {
   take();
 }
 
-/// Takes the flags of the view. A 3-D view's camera is followed, or stored as it is now.
+/// Writes the view flags. The camera of a 3D view is followed, or stored as it is now.
 void qSlicerFenestraSettings::takeView(Flags& flags) {
   const std::string word = selectedData(m_panel->view);
   const bool byPreset = word == "preset";
@@ -416,6 +416,6 @@ void qSlicerFenestraSettings::takeSegmentation(vtkMRMLNode* node) {
   const int wasModifying = m_node->StartModify();
   m_node->SetNodeReferenceID(Node::SegmentationRole, getId(node));
   m_node->SetFocus({});
-  m_node->SetFlag("material", ""); // changes of the other one's segments
+  m_node->SetFlag("material", ""); // it refers to the old segmentation's segments
   m_node->EndModify(wasModifying);
 }

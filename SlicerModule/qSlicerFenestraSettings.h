@@ -17,9 +17,9 @@ class qSlicerFenestraPanel;
 class vtkMRMLNode;
 class vtkSlicerFenestraLogic;
 
-/// \brief Keeps a settings node and the panel's choices equal: each shows the changes of the other.
+/// \brief Synchronizes a settings node and the panel, in both directions.
 ///
-/// Observes the nodes that the settings name: volume, segmentation, camera and plane.
+/// Observes the nodes that the settings reference: volume, segmentation, camera and plane.
 class qSlicerFenestraSettings : public QObject {
   Q_OBJECT
   QVTK_OBJECT
@@ -29,14 +29,14 @@ public:
   qSlicerFenestraSettings(qSlicerFenestraPanel* panel, vtkSlicerFenestraLogic* logic,
                           QObject* parent = nullptr);
 
-  /// Connects the panel to the scene's settings, with defaults for unset ones; null: disconnects.
+  /// Connects the panel to a settings node, with defaults for unset references; null: disconnects.
   void use(vtkMRMLFenestraRenderNode* node);
   vtkMRMLFenestraRenderNode* node() const { return m_node; }
   /// Copies the settings of a render, to repeat the render.
   void copy(vtkMRMLFenestraRenderNode* render);
 
 signals:
-  /// The settings, or a node that they name, have changed.
+  /// The settings, or a node that they reference, have changed.
   void changed();
 
 private slots:

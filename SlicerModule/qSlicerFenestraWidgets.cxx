@@ -17,7 +17,7 @@ QComboBox* qSlicerFenestraWidgets::makeComboBox(const QString& name, const QList
   auto* box = new QComboBox;
   box->setObjectName(name);
   box->setToolTip(help);
-  box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon); // long texts fit
+  box->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon); // for long texts
   for (const Choice& choice : all)
     box->addItem(choice.icon, choice.text, choice.data);
   return box;

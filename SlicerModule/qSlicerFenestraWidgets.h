@@ -22,17 +22,17 @@ struct Choice {
 };
 
 QComboBox* makeComboBox(const QString& name, const QList<Choice>& all, const QString& help);
-/// Adds or removes a choice at `index`; the selection stays.
+/// Adds a choice at `index` or removes it; the selection stays.
 void setChoiceOffered(QComboBox* box, int index, const Choice& choice, bool offered);
 /// Selects the item with `data`, else the first.
 void selectData(QComboBox* box, const QString& data);
-/// Selects the item with `data`; adds one where there is none, in place of the last that was added.
+/// Selects the item with `data`. A missing item is added, in place of the item added before.
 void selectOrAdd(QComboBox* box, const QString& data);
 std::string selectedData(const QComboBox* box);
 
 void showRow(const QFormLayout* form, QWidget* editor, bool shown);
 
-/// Value of a flag; empty: not given.
+/// Value of a flag; empty: not set.
 QString findFlag(const std::map<std::string, std::string>& flags, const char* name);
 
 } // namespace qSlicerFenestraWidgets

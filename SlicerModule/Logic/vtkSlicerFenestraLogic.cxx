@@ -163,7 +163,7 @@ SlicerExport::Contents vtkSlicerFenestraLogic::Snapshot(Node* render,
   vtkSlicerFenestraSnapshot::TakeVolume(volume, contents);
   vtkSlicerFenestraSnapshot::TakeRendering(volume, folder, contents);
   if (!segmentation && !render->GetFocus().empty())
-    throw SlicerExport::UserError("The segmentation that holds the focus is gone. Choose one.");
+    throw SlicerExport::UserError("The segmentation of the focus was removed. Choose one.");
   if (segmentation)
     vtkSlicerFenestraSnapshot::TakeSegmentation(segmentation, render->GetFocus(), contents);
   return contents;
@@ -241,7 +241,7 @@ std::vector<std::string> vtkSlicerFenestraLogic::GetArguments(Node* render, bool
   std::vector<std::string> arguments = {"--stats=stats.json"};
   if (render->IsTurntable())
     arguments.push_back("--output=frame.png");
-  else // layers that compress slowly would delay a stop
+  else // slow compression of further layers would delay a stop
     arguments.insert(arguments.end(), {"--output=picture.png", "--output=picture.exr",
                                        "--output=radiance.nrrd", "--layers=color,depth"});
   if (withSurface && !render->IsTurntable())
@@ -250,7 +250,7 @@ std::vector<std::string> vtkSlicerFenestraLogic::GetArguments(Node* render, bool
   const auto denoise = flags.find("denoise");
   const bool isFiltered = denoise == flags.end() || denoise->second != "off";
   if (isFiltered && flags.count("noise") > 0 && flags.count("noisetarget") == 0)
-    arguments.push_back("--noisetarget=filtered"); // of the picture that is looked at
+    arguments.push_back("--noisetarget=filtered"); // noise of the displayed image
   const std::vector<std::string> own = SlicerExport::toArguments(flags);
   arguments.insert(arguments.end(), own.begin(), own.end());
   return arguments;

@@ -23,104 +23,103 @@ class vtkMRMLSliceLogic;
 class vtkMRMLVolumeNode;
 class vtkPolyData;
 
-/// Result of a render, read from its files. VTK's wrapper for Python takes structs whose names
-/// begin with `vtk` for classes of its own kind: no other name does here. A turntable has only
-/// `picture`, with one frame a slice.
+/// Result of a render, read from its files. The name has no prefix `vtk`, because VTK's Python
+/// wrapper treats structs with that prefix as VTK classes. A turntable has only `picture`, with one
+/// frame per slice.
 struct FenestraResult {
   SlicerExport::Image radiance;          ///< linear RGBA, placed in the world
-  SlicerExport::Image depth;             ///< mm from the eye; infinite: nothing seen
-  vtkSmartPointer<vtkImageData> picture; ///< display colours, row 0 at the top
+  SlicerExport::Image depth;             ///< mm from the camera; infinite: nothing visible
+  vtkSmartPointer<vtkImageData> picture; ///< display colors, row 0 at the top
   vtkSmartPointer<vtkPolyData> surface;  ///< clipping surface, RAS; null: none
 };
 
-/// Renders in the background. The module has one: processes are Qt's, which the logic does not
-/// know.
+/// Background renderer. The module implements it with Qt's processes, since the logic does not
+/// depend on Qt.
 class FenestraRenderer {
 public:
   virtual ~FenestraRenderer() = default;
-  /// Adds a node for a render of the settings and queues it; null: the log says why not.
+  /// Adds a node for a render of the settings and queues it; null: failed, the log says why.
   virtual vtkMRMLFenestraRenderNode* start(vtkMRMLFenestraRenderNode* settings, bool turntable) = 0;
   virtual bool isActive(vtkMRMLFenestraRenderNode* render) const = 0;
-  /// Returns when the render has ended; events are processed meanwhile, user input is not.
+  /// Returns when the render has ended; processes events except user input.
   virtual void waitFor(vtkMRMLFenestraRenderNode* render) = 0;
-  /// Ends the render under way, keeping what is finished.
+  /// Stops the current render and keeps finished results.
   virtual void stop() = 0;
 };
 
-/// \brief Exchange between Slicer's scene and the renderer's files.
+/// \brief Converts between Slicer's scene and the renderer's files.
 ///
-/// All calls are quick: files are written and read in other threads (SlicerExport::Writer,
-/// ReadResult).
+/// All calls are quick: other threads write and read the files (SlicerExport::Writer, ReadResult).
 class VTK_SLICER_FENESTRA_MODULE_LOGIC_EXPORT vtkSlicerFenestraLogic : public vtkSlicerModuleLogic {
 public:
   static vtkSlicerFenestraLogic* New();
   vtkTypeMacro(vtkSlicerFenestraLogic, vtkSlicerModuleLogic);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
-  /// Settings that the panel edits; created if missing. A singleton of the scene; renders are
+  /// Settings that the panel edits; created if missing. A singleton of the scene; renders have
   /// copies.
   vtkMRMLFenestraRenderNode* GetSettings();
-  /// Adds a node for a render with the current settings; a followed camera becomes a fixed view. A
-  /// turntable's node keeps the flags of turntables.
+  /// Adds a node for a render with the current settings; a followed camera becomes a fixed view.
+  /// Only a turntable's node keeps the turntable flags.
   vtkMRMLFenestraRenderNode* AddRender(vtkMRMLFenestraRenderNode* settings, bool turntable = false);
 
-  /// Renders the settings in the background and returns the render's node, which tells of progress
-  /// and end (RenderProgressEvent, RenderEndEvent). Null: the log says why. `wait`: returns at the
-  /// end; a render without a picture, of which the log says why, is null.
+  /// Renders the settings in the background and returns the render's node, which reports progress
+  /// and end as events (RenderProgressEvent, RenderEndEvent). Null: failed, the log says why.
+  /// `wait`: returns after the end; then null also means that there is no image.
   vtkMRMLFenestraRenderNode* Render(vtkMRMLFenestraRenderNode* settings, bool wait = false);
   vtkMRMLFenestraRenderNode* RenderTurntable(vtkMRMLFenestraRenderNode* settings,
                                              bool wait = false);
-  /// Ends the render under way, keeping what is finished.
+  /// Stops the current render and keeps finished results.
   void StopRender();
   bool IsRendering(vtkMRMLFenestraRenderNode* render);
-  /// Called when a renderer is needed first.
+  /// Sets the function that returns the renderer; called whenever the renderer is needed.
   void SetRenderer(std::function<FenestraRenderer*()> renderer);
 
-  /// Writes the scene that the renderer would be given into a folder, and returns its path; empty:
-  /// the log says why.
+  /// Writes the scene as the renderer would receive it into a folder and returns its path; empty:
+  /// failed, the log says why.
   std::string WriteScene(vtkMRMLFenestraRenderNode* render, const std::string& folder);
   /// Sets the view to that of a camera, as flags.
   void UseCamera(vtkMRMLFenestraRenderNode* render, vtkMRMLCameraNode* camera);
 
-  /// All that the renderer needs except the flags, without a copy of the voxels. `folder`: private,
-  /// for data that Slicer can only write as files. Throws SlicerExport::Complaint.
+  /// Collects all inputs of the renderer except the flags, without copying voxels. `folder`:
+  /// private, for data that Slicer can only write as files. Throws SlicerExport::UserError.
   SlicerExport::Contents Snapshot(vtkMRMLFenestraRenderNode* render,
                                   const std::filesystem::path& folder);
-  /// Names, tags and colours of the segments that the node names; of none without a segmentation.
+  /// Names, tags and colors of the node's segments; empty without a segmentation.
   static std::vector<SlicerExport::Segment> GetSegments(vtkMRMLFenestraRenderNode* render);
-  /// The node's flags, and those of its 3-D view's camera unless another flag sets the view.
+  /// The node's flags, and those of its 3D view's camera unless another flag sets the view.
   std::map<std::string, std::string> GetFlags(vtkMRMLFenestraRenderNode* render);
   static std::map<std::string, std::string> GetCameraFlags(vtkMRMLCameraNode* camera);
   /// Flag value of a plane of the Markups module; empty: no plane, or not placed yet.
   static std::string GetPlaneFlag(vtkMRMLNode* plane);
-  /// Camera of the node's 3-D view; null: the flags set the view.
+  /// Camera of the node's 3D view; null: flags set the view.
   vtkMRMLCameraNode* GetFollowedCamera(vtkMRMLFenestraRenderNode* render);
 
-  /// Reads a result from `folder`, where files have the names of GetArguments. Throws
+  /// Reads a result from `folder`; the file names are those of GetArguments. Throws
   /// SlicerExport::FileError. Thread-safe.
   static FenestraResult ReadResult(const std::string& folder);
-  /// Command line flags for rendering the node, with outputs that ReadResult reads.
+  /// Command-line arguments for rendering the node, with the outputs that ReadResult reads.
   static std::vector<std::string> GetArguments(vtkMRMLFenestraRenderNode* render, bool withSurface);
   /// Finished frames of a turntable in `folder`, from frame 0 to the first missing one.
   static std::vector<std::string> GetFrameFiles(const std::string& folder);
   /// True if a render with these flags has a clipping surface.
   static bool HasSurface(const std::map<std::string, std::string>& flags);
 
-  /// Adds nodes of the result, referenced by the render: one a step, so that the application stays
-  /// responsive between steps, 0 to ResultSteps - 1. For a resumed turntable, replaces the frames.
+  /// Adds nodes of the result, referenced by the render: one per step, so that the application
+  /// stays responsive. `step`: 0 to ResultSteps - 1. Replaces the frames of a resumed turntable.
   void AddResult(vtkMRMLFenestraRenderNode* render, const FenestraResult& result, int step);
   static constexpr int ResultSteps = 4;
-  /// Shows the scene's newest volume in the slice views; loading a scene does not change them.
+  /// Shows the scene's newest volume in the slice views, which loading a scene does not do.
   void ShowNewestVolume();
-  /// Shows the render's picture beside a 3-D view, in the module's own layout.
+  /// Shows the render's image beside a 3D view, in the module's own layout.
   void ShowResult(vtkMRMLFenestraRenderNode* render);
-  /// Shows the layout that the module's own took the place of.
+  /// Restores the layout that the module's own layout replaced.
   void ShowLayoutBefore();
-  /// Render whose picture the module's layout shows; null: none.
+  /// Render whose image the module's layout shows; null: none.
   vtkMRMLFenestraRenderNode* GetShownRender();
   /// Shows another frame of a turntable, in the same view.
   void ShowFrame(vtkMRMLFenestraRenderNode* render, int frame);
-  /// Frames in the render's picture; 1: not a turntable; 0: no picture.
+  /// Number of frames in the render's image; 1: not a turntable; 0: no image.
   static int GetNumberOfFrames(vtkMRMLFenestraRenderNode* render);
 
 protected:
@@ -131,7 +130,7 @@ protected:
 
   void RegisterNodes() override;
   void SetMRMLSceneInternal(vtkMRMLScene* scene) override;
-  /// Registers the module's layout, in which the scene may have been saved.
+  /// Registers the module's layout, which the scene may have been saved with.
   void OnMRMLSceneStartImport() override;
   void OnMRMLSceneNodeRemoved(vtkMRMLNode* node) override;
 

@@ -31,7 +31,7 @@
 namespace {
 using Node = vtkMRMLFenestraRenderNode;
 
-constexpr const char* PictureViewId = "vtkMRMLSliceNodeFenestra"; // by class and singleton tag
+constexpr const char* PictureViewId = "vtkMRMLSliceNodeFenestra"; // class and singleton tag
 constexpr int ResultLayout = 5617; // larger than the numbers of Slicer's own layouts
 constexpr const char* ResultLayoutXml =
     "<layout type=\"horizontal\" split=\"true\">"
@@ -54,7 +54,7 @@ vtkSmartPointer<vtkImageData> ToVtk(const SlicerExport::Image& image) {
 SlicerExport::Image ReadFloats(const std::string& file) {
   SlicerExport::Image image = SlicerExport::readNrrd(file);
   if (image.type != "float" || image.size[2] != 1)
-    throw SlicerExport::FileError(file + ": is no picture of the renderer's; render it again");
+    throw SlicerExport::FileError(file + ": not an image written by Fenestra; render it again");
   return image;
 }
 
@@ -66,8 +66,8 @@ bool IsOpaque(vtkImageData* picture) {
   return true;
 }
 
-/// Reads picture files as slices: row 0 at the top, as in the renderer's volumes. Of four
-/// components only where a pixel is transparent.
+/// Reads image files as slices, with row 0 at the top, as in the renderer's volumes. Keeps the
+/// fourth component only if a pixel is transparent.
 vtkSmartPointer<vtkImageData> ReadPictures(const std::vector<std::string>& files) {
   vtkNew<vtkStringArray> names;
   for (const std::string& file : files)
@@ -95,7 +95,7 @@ std::string FrameFile(const std::string& folder, int frame) {
   return folder + "/frame_" + number + ".png";
 }
 
-/// Turns the slice view to the picture as the eye saw it: rows to the right, columns down.
+/// Aligns the slice view with a frame as the camera saw it: rows to the right, columns down.
 void AlignSliceWithFrame(vtkMRMLVolumeNode* picture, int frame, vtkMRMLSliceNode* slice) {
   double directions[3][3];
   picture->GetIJKToRASDirections(directions);
@@ -126,7 +126,7 @@ bool IsShowing(vtkMRMLSliceLogic* view, const char* picture) {
   return picture && shown && std::strcmp(picture, shown) == 0;
 }
 
-/// Sets a grey window over the finite values.
+/// Sets the display window to the range of the finite values.
 void SetWindowToFiniteRange(vtkMRMLVolumeNode* volume, const SlicerExport::Image& depth) {
   auto* display = vtkMRMLScalarVolumeDisplayNode::SafeDownCast(volume->GetDisplayNode());
   const auto* values = static_cast<const float*>(depth.data.get());
@@ -178,7 +178,7 @@ FenestraResult vtkSlicerFenestraLogic::ReadResult(const std::string& folder) {
   return result;
 }
 
-/// Puts a result into the subject hierarchy's folder of its render, beside the render's volume.
+/// Moves a result into the render's folder of the subject hierarchy, beside the render's volume.
 void vtkSlicerFenestraLogic::MoveToRenderFolder(Node* render, vtkMRMLNode* result) {
   auto* hierarchy = vtkMRMLSubjectHierarchyNode::GetSubjectHierarchyNode(this->GetMRMLScene());
   if (!hierarchy)
@@ -197,7 +197,7 @@ void vtkSlicerFenestraLogic::MoveToRenderFolder(Node* render, vtkMRMLNode* resul
     hierarchy->CreateItem(folder, result);
 }
 
-/// Results and their folder go with their render.
+/// Removes the results of a removed render, and their folder.
 void vtkSlicerFenestraLogic::OnMRMLSceneNodeRemoved(vtkMRMLNode* node) {
   vtkMRMLScene* scene = this->GetMRMLScene();
   auto* render = Node::SafeDownCast(node);
@@ -236,7 +236,7 @@ vtkMRMLVolumeNode* vtkSlicerFenestraLogic::AddVolume(Node* render, const char* c
         scene->AddNewNodeByClass("vtkMRMLFenestraPictureDisplayNode")->GetID());
   volume->CreateDefaultDisplayNodes();
   if (vtkMRMLDisplayNode* display = volume->GetDisplayNode())
-    display->SetDisplayableOnlyInView(PictureViewId); // no part of the 3D views' bounds
+    display->SetDisplayableOnlyInView(PictureViewId); // not part of the 3D views' bounds
   render->SetNodeReferenceID(role, volume->GetID());
   this->MoveToRenderFolder(render, volume);
   return volume;
@@ -252,13 +252,13 @@ void vtkSlicerFenestraLogic::AddSurface(Node* render, vtkPolyData* surface) {
   vtkMRMLDisplayNode* display = model->GetDisplayNode();
   display->SetColor(0.44, 0.69, 0.78);
   display->SetOpacity(0.5);
-  display->SetVisibility(false); // the surface lies in front of the anatomy
+  display->SetVisibility(false); // it would cover the anatomy
   render->SetNodeReferenceID(Node::SurfaceRole, model->GetID());
   this->MoveToRenderFolder(render, model);
 }
 
-/// Matrix of the picture, moved toward the eye beyond the volume: a slice view in its plane then
-/// shows no segments and models that lie there.
+/// Matrix of the image, moved toward the camera beyond the volume, so that a slice view in its
+/// plane shows no segments and models.
 SlicerExport::Matrix
 vtkSlicerFenestraLogic::MoveOutsideVolume(Node* render, const SlicerExport::Matrix& ijkToRas) {
   auto* volume = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::VolumeRole));
@@ -275,7 +275,7 @@ vtkSlicerFenestraLogic::MoveOutsideVolume(Node* render, const SlicerExport::Matr
   return moved;
 }
 
-/// Adds frames as a volume of 1 mm pixels far from the anatomy, in which frames have no place.
+/// Adds frames as a volume of 1 mm pixels, away from the anatomy, to which they have no position.
 void vtkSlicerFenestraLogic::AddFrames(Node* render, vtkImageData* frames) {
   if (auto* picture = vtkMRMLVolumeNode::SafeDownCast(render->GetNodeReference(Node::PictureRole)))
     return picture->SetAndObserveImageData(frames);
@@ -355,7 +355,7 @@ void vtkSlicerFenestraLogic::ShowResult(Node* render) {
   composite->SetForegroundVolumeID(nullptr);
   composite->SetLabelVolumeID(nullptr);
   AlignSliceWithFrame(picture, 0, slice);
-  const int* view = slice->GetDimensions(); // otherwise the picture's sides are cut off
+  const int* view = slice->GetDimensions(); // otherwise the image's sides are cut off
   logic->FitSliceToBackground(view[0], view[1]);
 }
 

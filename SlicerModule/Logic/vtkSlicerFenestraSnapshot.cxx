@@ -74,8 +74,8 @@ SlicerExport::Matrix ToMatrix(vtkMatrix4x4* matrix) {
   return copy;
 }
 
-/// Image that shares the array and keeps it alive. `ijkToRas` is for index 0, which need not be
-/// where the extent begins.
+/// Image that shares the array and keeps it alive. `ijkToRas` refers to index 0, but the extent may
+/// begin at another index.
 SlicerExport::Image ShareImage(vtkImageData* image, vtkMatrix4x4* ijkToRas) {
   SlicerExport::Image shared;
   vtkSmartPointer<vtkDataArray> array = image->GetPointData()->GetScalars();
@@ -98,7 +98,7 @@ SlicerExport::Matrix GetWorldMatrix(vtkMRMLTransformableNode* node) {
   if (!transform)
     return SlicerExport::identity;
   if (!transform->IsTransformToWorldLinear())
-    throw UserError(Quote(node) + " is under a transform that bends space. Harden that transform "
+    throw UserError(Quote(node) + " has a nonlinear transform. Harden the transform "
                                   "(Data module, right click), then try again.");
   vtkNew<vtkMatrix4x4> toWorld;
   transform->GetMatrixTransformToWorld(toWorld);
@@ -125,7 +125,7 @@ vtkMRMLVolumeRenderingDisplayNode* FindRenderingDisplay(vtkMRMLScalarVolumeNode*
   return first;
 }
 
-/// File that is removed at the end of scope, also after an exception.
+/// File that is removed at the end of the scope, also after an exception.
 struct ScopedFile {
   explicit ScopedFile(const std::filesystem::path& file) : path(file) {}
   ~ScopedFile() {
@@ -138,18 +138,18 @@ struct ScopedFile {
   std::filesystem::path path;
 };
 
-/// Text of a property that was taken last: most snapshots are of another camera alone.
+/// Property of the last snapshot: most snapshots differ in the camera alone.
 struct CachedProperty {
   vtkWeakPointer<vtkMRMLVolumePropertyNode> node;
   vtkMTimeType time = 0;
   std::string text, extension;
 };
 
-/// Takes the property from a file that Slicer writes: Slicer's storage node knows all fields of
-/// this version's properties.
+/// Reads the property from a file that Slicer writes, since Slicer's storage node knows all fields
+/// of its version.
 void TakeProperty(vtkMRMLVolumePropertyNode* property, const std::filesystem::path& folder,
                   SlicerExport::Contents& contents) {
-  static CachedProperty taken; // of the main thread
+  static CachedProperty taken; // used in the main thread only
   const vtkMTimeType time =
       std::max(property->GetMTime(), property->GetVolumeProperty()->GetMTime());
   if (taken.node == property && taken.time == time) {
@@ -157,7 +157,7 @@ void TakeProperty(vtkMRMLVolumePropertyNode* property, const std::filesystem::pa
     contents.propertyExtension = taken.extension;
     return;
   }
-  vtkNew<vtkMRMLVolumePropertyNode> copy; // the user's own must not count as saved
+  vtkNew<vtkMRMLVolumePropertyNode> copy; // writing the original would mark it as saved
   copy->Copy(property);
   const auto storage =
       vtkSmartPointer<vtkMRMLStorageNode>::Take(property->CreateDefaultStorageNode());
@@ -179,7 +179,7 @@ void TakeRoi(vtkMRMLVolumeRenderingDisplayNode* display, SlicerExport::Contents&
   auto* roi = vtkMRMLMarkupsROINode::SafeDownCast(display->GetROINode());
   if (!roi)
     throw UserError(
-        "The volume rendering is cropped by a region of interest of an old kind. Create "
+        "The volume rendering is cropped by a region of interest of an old type. Create "
         "a new one in the Volume Rendering module, or turn cropping off.");
   vtkMatrix4x4* axes = roi->GetObjectToWorldMatrix();
   double size[3];
@@ -203,7 +203,7 @@ void TakeRoi(vtkMRMLVolumeRenderingDisplayNode* display, SlicerExport::Contents&
   contents.crop.push_back({text.str(), SlicerExport::identity});
 }
 
-/// Segmentation with binary labelmaps; if it has only surfaces, a converted copy outside the scene.
+/// Segmentation with binary labelmaps; if it has only surfaces, a converted copy.
 vtkSmartPointer<vtkSegmentation> GetWithBinaryLabels(vtkMRMLSegmentationNode* node) {
   const std::string labels = vtkSegmentationConverter::GetBinaryLabelmapRepresentationName();
   vtkSmartPointer<vtkSegmentation> segmentation = node->GetSegmentation();
@@ -213,7 +213,7 @@ vtkSmartPointer<vtkSegmentation> GetWithBinaryLabels(vtkMRMLSegmentationNode* no
   copy->DeepCopy(segmentation);
   if (!copy->CreateRepresentation(labels))
     throw UserError(Quote(node) +
-                    " could not be made a labelmap. Create its binary labelmap in the "
+                    " could not be converted to a labelmap. Create its binary labelmap in the "
                     "Segmentations module, then try again.");
   return copy;
 }
@@ -223,7 +223,7 @@ bool IsEmpty(vtkOrientedImageData* labels) {
          labels->GetNumberOfPoints() == 0;
 }
 
-/// Terminology tag of the segment, which names its anatomy.
+/// Tag of the segment's terminology entry, which identifies its anatomy.
 std::string GetTerminologyTag(vtkSegment* segment) {
   std::string entry;
   if (!segment->GetTag(vtkSegment::GetTerminologyEntryTagName(), entry) || entry.empty())
@@ -241,7 +241,7 @@ SlicerExport::Segment ToSegment(const std::string& id, vtkSegment* segment, size
           {color[0], color[1], color[2]}};
 }
 
-/// Layer on the lattice of the first one; labels on another lattice are resampled (nearest).
+/// Layer on the grid of the first one; labels on another grid are resampled (nearest neighbor).
 SlicerExport::Layer ToLayer(vtkOrientedImageData* labels, vtkOrientedImageData* first) {
   vtkSmartPointer<vtkOrientedImageData> image = labels;
   if (!vtkOrientedImageDataResample::DoGeometriesMatch(labels, first)) {
@@ -270,13 +270,13 @@ void vtkSlicerFenestraSnapshot::TakeVolume(vtkMRMLScalarVolumeNode* volume,
     throw UserError("The volume " + Quote(volume) + " has no voxels. Choose another one.");
   if (image->GetNumberOfScalarComponents() != 1)
     throw UserError("The volume " + Quote(volume) +
-                    " has several values a voxel. Choose one with a single value.");
+                    " has several components per voxel. Choose a scalar volume.");
   vtkNew<vtkMatrix4x4> ijkToRas;
   volume->GetIJKToRASMatrix(ijkToRas);
   contents.volume = ShareImage(image, ijkToRas);
   if (contents.volume.type.empty())
     throw UserError("The volume " + Quote(volume) +
-                    " has voxels of an unknown type. Convert it in the Cast Scalar Volume module.");
+                    " has an unknown voxel type. Convert it in the Cast Scalar Volume module.");
   contents.volumeKey = MakeKey(image, volume->GetID(), contents.volume);
   contents.volumeToWorld = GetWorldMatrix(volume);
 }
@@ -329,13 +329,13 @@ void vtkSlicerFenestraSnapshot::TakeSegmentation(vtkMRMLSegmentationNode* node,
     taken.layers.push_back(ToLayer(labels, first));
     key << '\n' << MakeKey(labels, "", taken.layers.back().labels);
   }
-  for (const std::string& name : focus) { // a script's names, the panel's ids
+  for (const std::string& name : focus) { // scripts may pass names, the panel passes ids
     const std::string named = segmentation->GetSegmentIdBySegmentName(name);
     const std::string id = segmentation->GetSegment(name) ? name : named;
     const auto isEqual = [&id](const Segment& segment) { return segment.id == id; };
     vtkSegment* segment = segmentation->GetSegment(id);
     if (!segment)
-      throw UserError("The segment \"" + name + "\" is gone. Choose another focus.");
+      throw UserError("The segment \"" + name + "\" was removed. Choose another focus.");
     if (std::none_of(taken.segments.begin(), taken.segments.end(), isEqual))
       throw UserError("The segment \"" + std::string(segment->GetName()) +
                       "\" is empty. Paint it, or choose another focus.");

@@ -9,19 +9,19 @@
 class vtkMRMLScalarVolumeNode;
 class vtkMRMLSegmentationNode;
 
-/// Data of Slicer's nodes for the renderer, without copies of voxels: arrays are shared, and freed
-/// with their last owner. Functions throw SlicerExport::Complaint.
+/// Reads Slicer's nodes for the renderer without copying voxels: arrays are shared, and freed with
+/// their last owner. Functions throw SlicerExport::UserError.
 namespace vtkSlicerFenestraSnapshot {
 void TakeVolume(vtkMRMLScalarVolumeNode* volume, SlicerExport::Contents& contents);
-/// Takes the user's volume rendering, if any: its crop box and its property, which passes through a
-/// file in the private `folder`.
+/// Takes crop box and property of the volume rendering, if any. The property passes through a file
+/// in the private `folder`.
 void TakeRendering(vtkMRMLScalarVolumeNode* volume, const std::filesystem::path& folder,
                    SlicerExport::Contents& contents);
-/// Takes all segments, also hidden and unsaved ones. Segments in `focus` must exist and not be
+/// Takes all segments, including hidden and unsaved ones. Segments in `focus` must exist and not be
 /// empty.
 void TakeSegmentation(vtkMRMLSegmentationNode* segmentation, const std::vector<std::string>& focus,
                       SlicerExport::Contents& contents);
-/// All segments, also empty ones, without places of their labels.
+/// All segments, including empty ones; their layers are not set.
 std::vector<SlicerExport::Segment> ListSegments(vtkMRMLSegmentationNode* segmentation);
 } // namespace vtkSlicerFenestraSnapshot
 

@@ -8,10 +8,10 @@
 
 class vtkImageExtractComponents;
 
-/// \brief Display of a picture of four components: red, green, blue, opacity.
+/// \brief Display of an RGBA image.
 ///
-/// Slicer's display of vectors appends an opacity of its own to all components; its views take no
-/// picture of five.
+/// Slicer's display of vector volumes appends its own opacity to all components, and its slice
+/// views do not accept an image of five components.
 class VTK_SLICER_FENESTRA_MODULE_MRML_EXPORT vtkMRMLFenestraPictureDisplayNode
     : public vtkMRMLVectorVolumeDisplayNode {
 public:

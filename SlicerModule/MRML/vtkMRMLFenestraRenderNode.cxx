@@ -155,7 +155,7 @@ void vtkMRMLFenestraRenderNode::WriteXML(ostream& of, int indent) {
   for (const auto* all : {&this->Flags, &this->Withheld})
     for (const auto& [name, value] : *all)
       write(name, value);
-  for (const auto& [name, value] : this->Unknown) // a newer Slicer's base class may know it
+  for (const auto& [name, value] : this->Unknown) // a newer Slicer's base class may write it
     if (base.str().find(' ' + name + "=\"") == std::string::npos)
       write(name, value);
 }

@@ -12,19 +12,19 @@
 class vtkMRMLModelNode;
 class vtkMRMLVolumeNode;
 
-/// \brief Settings and results of a picture.
+/// \brief Settings and results of a rendered image.
 ///
-/// Settings are flags of the renderer's command line with their values, saved as attributes of the
-/// same names, so that `fenestra scene.mrml` reproduces the picture. Of several such nodes the
-/// renderer uses the last.
+/// Settings are flags: options of the renderer's command line with their values. They are saved as
+/// attributes of the same names, so that `fenestra scene.mrml` reproduces the image. If a scene has
+/// several such nodes, the renderer uses the last.
 ///
-/// Scenes come from others, so attributes are checked when read: invalid values, and files that the
-/// scene names, are withheld: kept and saved again, but not used. Attributes that a newer version
-/// wrote are kept and saved again, too.
+/// Scenes may come from untrusted sources, so attributes are checked when read. Invalid values and
+/// file names are withheld: kept and saved again, but not used. Unknown attributes, which a newer
+/// version wrote, are kept and saved again, too.
 ///
 /// References: `volume`, `segmentation`, `view` (its camera is followed unless a flag sets the
-/// view), `plane` (source of the flag `plane`), and results: `picture` (display colours; of a
-/// turntable all frames, one slice each), `radiance` (linear RGBA), `depth` (mm) and `surface` (the
+/// view), `plane` (source of the flag `plane`), and results: `picture` (display colors; for a
+/// turntable all frames, one per slice), `radiance` (linear RGBA), `depth` (mm) and `surface` (the
 /// clipping surface, a model).
 class VTK_SLICER_FENESTRA_MODULE_MRML_EXPORT vtkMRMLFenestraRenderNode : public vtkMRMLNode {
 public:
@@ -38,46 +38,46 @@ public:
   void WriteXML(ostream& of, int indent) override;
   vtkMRMLCopyContentMacro(vtkMRMLFenestraRenderNode);
 
-  /// Flags that a node can hold; others are neither set nor read.
+  /// Names of the flags that a node can hold; others are ignored.
   static const std::vector<std::string>& GetFlagNames();
-  /// Flags in GetFlagNames() of `fenestra turntable` alone; the renderer does not take them from
+  /// Names of the flags that only `fenestra turntable` accepts; the renderer ignores them in
   /// scenes.
   static const std::vector<std::string>& GetTurntableFlagNames();
-  /// True if the picture holds frames of a turntable; false for settings, which have such flags
-  /// too.
+  /// True if the result is a turntable; false for the settings node, which also has turntable
+  /// flags.
   bool IsTurntable() { return !this->GetSingletonTag() && !this->GetFlag("frames").empty(); }
 
-  /// Values as on the command line; empty: flag not given.
+  /// Values as on the command line; empty: flag not set.
   void SetFlag(const std::string& name, const std::string& value);
   std::string GetFlag(const std::string& name) const;
   void SetFlags(const std::map<std::string, std::string>& flags);
   const std::map<std::string, std::string>& GetFlags() const { return this->Flags; }
 
-  /// Attributes of the node's scene that are not flags; setting a flag removes its withheld value.
+  /// Flags of the scene that are withheld; setting a flag removes its withheld value.
   const std::map<std::string, std::string>& GetWithheld() const { return this->Withheld; }
   /// True if a withheld value names a file.
   bool WithholdsFiles() const;
-  /// Turns withheld files into flags, once the user allows them.
+  /// Accepts withheld file names as flags, after the user has allowed them.
   void AllowFiles();
   /// Copies flags, withheld values and unknown attributes from another node; null: no change.
   void CopyFlags(vtkMRMLFenestraRenderNode* node);
 
-  /// Events of a render in the background, for observers of its node.
+  /// Events of a background render, for observers of its node.
   enum { RenderProgressEvent = 62170, RenderEndEvent };
-  /// Finished share of the render, 0 to 1. Not saved.
+  /// Finished fraction of the render, 0 to 1. Not saved.
   vtkGetMacro(Progress, double);
-  /// Sets the share and invokes RenderProgressEvent.
+  /// Sets the fraction and invokes RenderProgressEvent.
   void SetProgress(double fraction);
-  /// Reason, a sentence, why the render ended without a picture; empty: it has one, or goes on.
+  /// Why the render ended without an image, as a sentence; empty: it has one, or still runs.
   const std::string& GetProblem() const { return this->Problem; }
-  /// Invokes RenderEndEvent; a render that ended well has an empty problem.
+  /// Invokes RenderEndEvent; `problem` is empty after success.
   void EndRender(const std::string& problem);
 
   /// Focus segments by id, name or label value: the flag `focus`, split at its commas.
   void SetFocus(const std::vector<std::string>& segments);
   std::vector<std::string> GetFocus() const;
 
-  /// Roles for SetNodeReferenceID and GetNodeReference, for scripts, which do not see constants.
+  /// Roles for SetNodeReferenceID and GetNodeReference, for scripts, which cannot read constants.
   static const char* GetVolumeNodeReferenceRole() { return VolumeRole; }
   static const char* GetSegmentationNodeReferenceRole() { return SegmentationRole; }
   static const char* GetViewNodeReferenceRole() { return ViewRole; }
@@ -96,7 +96,7 @@ public:
   static const char* const DepthRole;
   static const char* const SurfaceRole;
 
-  /// Attribute of a result: measures from the renderer's statistics, a JSON object.
+  /// Attribute of a result: measures selected from the renderer's statistics, a JSON object.
   static const char* const MeasuresAttribute;
 
 protected:

@@ -54,7 +54,7 @@ void qFenestraCapabilityQuery::onEnded(const qFenestraOutcome& outcome) {
     m_child.run(m_program, {"turntable", "--help"}, QDir::tempPath());
     return;
   }
-  // Old renderers take "turntable" for a file, and print the help of a render.
+  // Old renderers take "turntable" for a file name and print the help of `fenestra render`.
   if (m_flagsKnown && good && m_output.contains("--frames"))
     m_abilities.turntable = m_output;
   emit told(m_abilities);

@@ -1,5 +1,5 @@
 #pragma once
-// Abilities of the renderer, queried from the program, so that users see no choice that it refuses.
+// Capabilities of the renderer, queried from the program: the panel offers nothing else.
 
 #include "qFenestraProgram.h"
 
@@ -10,7 +10,7 @@ struct qFenestraCapabilities {
     QString text;        ///< description
     QStringList choices; ///< all values of a flag with fixed choices
   };
-  QMap<QString, Flag> flags; ///< flags of a picture, by name
+  QMap<QString, Flag> flags; ///< of `fenestra render`, by name
   QString turntable;         ///< help text of `fenestra turntable`; empty: no such command
 
   bool hasChoice(const QString& flag, const QString& word) const {
@@ -19,11 +19,11 @@ struct qFenestraCapabilities {
   bool mentions(const QString& flag, const QString& word) const;
   bool hasTurntable() const { return !turntable.isEmpty(); }
 
-  /// Flags in the description for Slicer (XML); none if it is invalid.
+  /// Parses the renderer's description for Slicer (XML); no flags if it is invalid.
   static QMap<QString, Flag> parseFlags(const QString& description);
 };
 
-/// Queries the renderer once. Without an answer, `told` is emitted with empty abilities.
+/// Queries the renderer once. After a failure, `told` is emitted without capabilities.
 class qFenestraCapabilityQuery : public QObject {
   Q_OBJECT
 
@@ -40,5 +40,5 @@ private:
   QString m_program, m_output;
   qFenestraProgram m_child;
   qFenestraCapabilities m_abilities;
-  bool m_flagsKnown = false; ///< the turntable has been queried
+  bool m_flagsKnown = false; ///< the query of the turntable runs
 };

@@ -10,7 +10,7 @@ namespace {
 bool copyFile(const qFenestraCopy& copy) {
   QFile in(copy.source);
   QSaveFile out(copy.target);
-  // Unbuffered: Qt's commit does not report a failed write of its last buffer.
+  // Unbuffered, because QSaveFile::commit() does not report a failed write of the last buffer.
   if (!in.open(QIODevice::ReadOnly) || !out.open(QIODevice::WriteOnly | QIODevice::Unbuffered))
     return false;
   constexpr qint64 chunkSize = 1 << 20; // bytes per read

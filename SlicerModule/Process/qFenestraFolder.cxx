@@ -14,8 +14,8 @@ namespace {
 
 constexpr const char* lockName = "lock";
 
-/// Opens a lock and takes it without waiting; -1: another process holds it, or it belongs to
-/// another user.
+/// Opens a lock file and locks it without waiting; -1: another process holds the lock, or another
+/// user owns the file.
 int acquireLock(const QString& file, int flags) {
   const int lock = ::open(QFile::encodeName(file).constData(),
                           flags | O_RDWR | O_NOFOLLOW | O_CLOEXEC, S_IRUSR | S_IWUSR);
@@ -27,8 +27,7 @@ int acquireLock(const QString& file, int flags) {
   return -1;
 }
 
-/// Removes folders with a free lock. Folders without a lock are kept: just created, and still
-/// empty.
+/// Removes folders with a free lock. Folders without a lock file were just created and are kept.
 void removeStaleFolders(const QDir& parent, const QString& prefix) {
   const QStringList names = parent.entryList({prefix + "*"}, QDir::Dirs | QDir::NoSymLinks);
   for (const QString& name : names) {
@@ -47,7 +46,7 @@ qFenestraFolder::qFenestraFolder(const QString& parent, const QString& prefix)
     : QTemporaryDir((removeStaleFolders(parent, prefix), parent + "/" + prefix + "XXXXXX")) {
   if (!isValid())
     return;
-  const QString unlocked = filePath("lock.young"); // the lock gets its name once it is held
+  const QString unlocked = filePath("lock.young"); // renamed once it is locked
   m_lock = acquireLock(unlocked, O_CREAT | O_EXCL);
   QFile::rename(unlocked, filePath(lockName));
 }
@@ -58,7 +57,7 @@ qFenestraFolder::~qFenestraFolder() {
     ::close(m_lock);
 }
 
-#else // without flock: abandoned folders remain
+#else // no flock: stale folders remain
 
 qFenestraFolder::qFenestraFolder(const QString& parent, const QString& prefix)
     : QTemporaryDir(parent + "/" + prefix + "XXXXXX") {}

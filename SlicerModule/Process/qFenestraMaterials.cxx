@@ -8,7 +8,7 @@
 
 namespace {
 
-/// Colour of three numbers in [0, 1]; of the middle one of knots [scalar, colour]; empty: none.
+/// Color of three numbers in [0, 1], or of the middle one of knots [scalar, color]; empty: none.
 QString parseColor(const QJsonArray& json) {
   if (json.isEmpty() || json.first().isArray())
     return json.isEmpty() ? QString() : parseColor(json[json.size() / 2].toArray()[1].toArray());
@@ -61,7 +61,7 @@ void qFenestraMaterialsQuery::start(const Query& question) {
   try {
     SlicerExport::writeSegmentNames(question.segments,
                                     std::filesystem::path(question.folder.toStdString()) / name);
-  } catch (const SlicerExport::FileError&) { // a render tells why
+  } catch (const SlicerExport::FileError&) { // a render reports the reason
     emit told({});
     return;
   }

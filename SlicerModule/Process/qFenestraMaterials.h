@@ -1,5 +1,5 @@
 #pragma once
-// Materials of segments as the renderer chooses them, queried from the program.
+// Materials that the renderer chooses for segments, queried from the program.
 
 #include "FenestraSceneFiles.h"
 #include "qFenestraProgram.h"
@@ -11,9 +11,9 @@
 #include <vector>
 
 struct qFenestraMaterial {
-  QString name;  ///< of the library; empty: a colour alone
-  QString color; ///< seen, sRGB, #rrggbb; empty: the volume's own
-  QString why;   ///< words such as "by name 'liver'"; empty for a material of the library
+  QString name;  ///< in the library; empty: only a color
+  QString color; ///< displayed, sRGB, #rrggbb; empty: the volume's own
+  QString why;   ///< reason such as "by name 'liver'"; empty for a material of the library
   bool isClipped = true;
 };
 
@@ -21,18 +21,18 @@ struct qFenestraMaterials {
   QList<qFenestraMaterial> library;
   QMap<QString, qFenestraMaterial> bySegment; ///< automatic choices, by id
 
-  /// Materials in a report of `fenestra inspect --json`; none if it is invalid.
+  /// Parses a report of `fenestra inspect --json`; no materials if it is invalid.
   static qFenestraMaterials parseReport(const QByteArray& report);
 };
 
-/// Queries the renderer. Without an answer, `told` is emitted with nothing.
+/// Queries the renderer. After a failure, `told` is emitted without materials.
 class qFenestraMaterialsQuery : public QObject {
   Q_OBJECT
 
 public:
   explicit qFenestraMaterialsQuery(QObject* parent = nullptr);
-  /// Asks about the segments, by names, tags and colours; a question under way is answered first.
-  /// `folder`: private, for the question's file.
+  /// Queries the materials of segments with these names, tags and colors. Follows a running query,
+  /// whose result is then dropped. `folder`: private, for the query's file.
   void request(const QString& program, const std::vector<SlicerExport::Segment>& segments,
                const QString& folder);
 
@@ -50,6 +50,6 @@ private:
 
   qFenestraProgram m_child;
   QByteArray m_output;
-  bool m_running = false;      ///< a question is under way
-  std::optional<Query> m_next; ///< question to be asked then
+  bool m_running = false;      ///< a query is running
+  std::optional<Query> m_next; ///< follows the running query
 };

@@ -19,7 +19,7 @@ void qFenestraPreview::start(const QString& program, const QStringList& argument
   m_child = new qFenestraProgram(this);
   connect(m_child, &qFenestraProgram::said, this, &qFenestraPreview::readEvent);
   connect(m_child, &qFenestraProgram::ended, this, &qFenestraPreview::ended);
-  connect(m_child, &QObject::destroyed, [files] {}); // the connection keeps the files
+  connect(m_child, &QObject::destroyed, [files] {}); // the connection keeps the files alive
   m_child->run(program, QStringList{"serve"} + arguments, folder);
 }
 
@@ -35,9 +35,9 @@ void qFenestraPreview::stop() {
     return child->deleteLater();
   connect(child, &qFenestraProgram::ended, child, &QObject::deleteLater);
   constexpr int graceMs = 150;
-  child->closeWriteChannel(); // a server ends at the end of its input
+  child->closeWriteChannel(); // `fenestra serve` ends with its input
   child->stop();
-  QTimer::singleShot(graceMs, child, &qFenestraProgram::stop); // kills: no result is to be kept
+  QTimer::singleShot(graceMs, child, &qFenestraProgram::stop); // kills: there is no result to keep
 }
 
 void qFenestraPreview::change(const QJsonObject& flags) {

@@ -8,8 +8,8 @@
 
 namespace {
 
-/// Runs in the child, between fork and exec: the child gets a signal when its parent ends, even by
-/// a crash.
+/// Runs in the child between fork and exec. The kernel sends the signal when the parent ends, even
+/// by a crash.
 void endWithParent() {
 #ifdef Q_OS_LINUX
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
@@ -38,9 +38,9 @@ qFenestraProgram::qFenestraProgram(QObject* parent) : QProcess(parent) {
       return;
     const qFenestraOutcome outcome = {
         qFenestraOutcome::Kind::failed,
-        tr("The renderer could not be started. Is the Fenestra extension installed whole?"),
+        tr("The renderer could not be started. Install the Fenestra extension again."),
         QStringLiteral("%1: %2").arg(program(), errorString())};
-    // Deferred beyond start(): a receiver may start again.
+    // Queued until after start(), since a receiver may start the program again.
     QMetaObject::invokeMethod(
         this, [this, outcome] { finish(outcome); }, Qt::QueuedConnection);
   });
@@ -116,11 +116,11 @@ qFenestraOutcome qFenestraProgram::makeOutcome(int code, QProcess::ExitStatus st
   if (m_killed && crashed)
     return {Kind::killed, {}, errors};
   if (crashed ? m_stopped && code == SIGTERM : code == stoppedOnRequest)
-    return {Kind::stopped, {}, errors}; // ended by the signal itself before it could handle signals
+    return {Kind::stopped, {}, errors}; // SIGTERM came before the renderer handled signals
   if (crashed)
     return {Kind::failed,
-            tr("The renderer ended unexpectedly. If the computer ran out of memory, try a smaller "
-               "picture, or crop the volume."),
+            tr("The renderer ended unexpectedly. If the computer ran out of memory, render a "
+               "smaller image, or crop the volume."),
             errors};
   if (code != 0)
     return {Kind::failed, lastLine(errors), errors};

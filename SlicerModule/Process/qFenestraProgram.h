@@ -1,13 +1,13 @@
 #pragma once
-// The renderer as a child process: it does not see Slicer's libraries, and never outlives Slicer,
-// however Slicer ends.
+// The renderer as a child process. It does not load Slicer's libraries and never outlives Slicer,
+// even if Slicer crashes.
 
 #include <QProcess>
 #include <QProcessEnvironment>
 
-/// End of a child, in words for the caller.
+/// How a child process ended.
 struct qFenestraOutcome {
-  /// `stopped`: on request, results so far kept; `killed`: on request, results lost.
+  /// `stopped`: on request, with the results so far; `killed`: on request, without results.
   enum class Kind { done, stopped, killed, failed };
   Kind kind = Kind::done;
   QString message; ///< one sentence with advice; empty: no failure
@@ -19,17 +19,17 @@ class qFenestraProgram : public QProcess {
 
 public:
   explicit qFenestraProgram(QObject* parent = nullptr);
-  /// Stops the child and waits for its end: leaves no zombie.
+  /// Stops the child and waits for its end, so that no zombie process remains.
   ~qFenestraProgram() override;
 
-  /// Starts `program` in `folder`. `ended` follows, also if the start fails.
+  /// Starts `program` in `folder`; `ended` is emitted even if the start fails.
   void run(const QString& program, const QStringList& arguments, const QString& folder);
 
-  /// Asks the child to end; it first writes its finished results, however long that takes. A second
+  /// Asks the child to end. It first writes its finished results, which has no time limit. A second
   /// call kills the child.
   void stop();
 
-  /// `environment` without the variables that a launcher set for its own program's libraries.
+  /// Removes the variables by which Slicer's launcher selects its own libraries and plugins.
   static QProcessEnvironment removeLibraryPaths(QProcessEnvironment environment);
 
 signals:

@@ -4,7 +4,7 @@
 
 namespace {
 
-/// Text inside a line that is one of Slicer's tags; empty for other lines.
+/// Text within one of Slicer's progress tags that fills the line; empty for other lines.
 QString extractTag(const QString& line, const char* tag) {
   const QString begin = QStringLiteral("<filter-%1>").arg(tag);
   const QString end = QStringLiteral("</filter-%1>").arg(tag);

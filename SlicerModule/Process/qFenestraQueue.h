@@ -21,12 +21,12 @@ public:
 
   /// Starts the render, or queues it.
   void add(const qFenestraJob& job);
-  /// Ends the render under way, keeping finished results (second call: discards them), or removes a
-  /// waiting one.
+  /// Stops the current render and keeps finished results (a second call discards them), or removes
+  /// a waiting one.
   void stop(int id);
   int waiting() const { return static_cast<int>(m_waiting.size()); }
 
-  /// Finished share in a line of the renderer's output, 0 to 1; -1: another kind of line.
+  /// Finished fraction in a line of the renderer's output, 0 to 1; -1: another kind of line.
   static double parseProgress(const QString& line);
   /// Samples and noise in a line of the renderer's output; empty: another kind of line.
   static QString parseComment(const QString& line);

@@ -7,15 +7,15 @@
 namespace SlicerExport {
 namespace {
 
-constexpr std::size_t maxLength = 100000; // bytes; an argument of a command may have 131,071
+constexpr std::size_t maxLength = 100000; // bytes; Linux allows 131,071 per argument
 
 bool isInteger(const std::string& text) {
-  constexpr std::size_t digits = 20; // as many as 2^64 has
+  constexpr std::size_t digits = 20; // of 2^64
   return !text.empty() && text.size() <= digits &&
          text.find_first_not_of("0123456789") == std::string::npos;
 }
 
-/// True for numbers of any size that a double holds; infinity and "nan" are not read by streams.
+/// True for finite numbers; streams do not read infinity and "nan".
 bool areNumbers(const std::string& text, bool allowList) {
   std::istringstream in(text);
   in.imbue(std::locale::classic());
@@ -43,9 +43,9 @@ bool isSize(const std::string& text) {
          isInteger(text.substr(times + 1));
 }
 
-/// True if a look may name a file. A JSON text opens a file by its member "file"; a backslash may
-/// hide that word. Any other value is a name: without one of / \ . : ~ it can only be a file in the
-/// session's own folder.
+/// True if the value may name a file. A JSON text opens a file by its member "file"; a backslash
+/// may be an escape within that word. Any other value is a name: without / \ . : ~ it can only be a
+/// file in the session's own folder.
 bool mayNameFile(const std::string& value) {
   if (value.front() == '{')
     return value.find("\"file\"") != std::string::npos || value.find('\\') != std::string::npos;
@@ -73,10 +73,10 @@ bool matchesKind(FlagKind kind, const std::string& value) {
   case FlagKind::resource:
     break;
   }
-  return value.find('\0') == std::string::npos; // a zero byte would end an argument
+  return value.find('\0') == std::string::npos; // a null byte would end the argument
 }
 
-/// Flag of that name; null: none.
+/// Flag with that name; null: none.
 const Flag* findFlag(const std::string& name) {
   const auto flag = std::find_if(flags().begin(), flags().end(),
                                  [&](const Flag& one) { return one.name == name; });

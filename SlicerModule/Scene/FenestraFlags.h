@@ -1,6 +1,6 @@
 #pragma once
-// Flags of the renderer's command line that a scene's node may hold, checks of their values in
-// scenes from unknown sources, and the arguments that they are.
+// Flags: options of the renderer's command line that a scene's node may hold. Checks their values,
+// since scenes may come from untrusted sources, and converts them to arguments.
 
 #include <map>
 #include <string>
@@ -8,47 +8,47 @@
 
 namespace SlicerExport {
 
-/// Form of a flag's value. The renderer checks the limits.
+/// Form of a flag's value. The renderer checks the range.
 enum class FlagKind {
   text,
-  textList,     ///< a flag that may be repeated: joined()
-  word,         ///< lower-case letters
-  integer,      ///< a whole number, not negative
+  textList,     ///< values of a repeatable flag: joinList()
+  word,         ///< lowercase letters and hyphens
+  integer,      ///< a nonnegative integer
   number,       ///< a finite number
-  numberOrAuto, ///< a finite number, or the word auto
+  numberOrAuto, ///< a finite number or the word auto
   numbers,      ///< finite numbers, separated by commas
-  size,         ///< two whole numbers, WxH
+  size,         ///< two integers, WxH
   color,        ///< a word or numbers
-  resource      ///< a name, numbers, a JSON text, or the name of a file
+  resource      ///< a name, numbers, a JSON text, or a file name
 };
 
 struct Flag {
   std::string name;
   FlagKind kind;
-  bool turntableOnly = false; ///< of `fenestra turntable` alone
+  bool turntableOnly = false; ///< only for `fenestra turntable`
 };
 
 const std::vector<Flag>& flags();
 
 enum class Verdict {
   valid,
-  file,   ///< names a file, by itself or inside its JSON text: the user must allow opening it
-  invalid ///< no value of this flag, or no flag
+  file,   ///< names a file, directly or in its JSON text: the user must allow opening it
+  invalid ///< unknown flag, or invalid value
 };
 
-/// Checks a flag's value stored in a scene.
+/// Checks the value of a flag that a scene stores.
 Verdict checkFlag(const std::string& name, const std::string& value);
 
-/// Texts as one value, separated by commas; a comma of a text becomes "\,", as in --focus.
+/// Joins texts by commas; a comma within a text becomes "\,", as in --focus.
 std::string joinList(const std::vector<std::string>& texts);
-/// Texts in a value that joined() made; none of an empty one.
+/// Splits a value of joinList(); no texts if it is empty.
 std::vector<std::string> splitList(const std::string& value);
 
-/// True for a flag of kind texts.
+/// True for a flag of kind textList.
 bool isRepeatable(const std::string& name);
-/// Values as the command line takes them, one an argument: several of a flag that repeats.
+/// Values for the command line, one per argument; several for a repeatable flag.
 std::vector<std::string> toArgumentValues(const std::string& name, const std::string& value);
-/// Arguments "--name=value" of flags; "=" keeps a value that begins with a dash.
+/// Arguments "--name=value" of flags; "=" allows values that begin with a dash.
 std::vector<std::string> toArguments(const std::map<std::string, std::string>& flags);
 
 } // namespace SlicerExport

@@ -16,7 +16,7 @@ bool isLittleEndian() {
   return first == 1;
 }
 
-/// Element of the matrix in LPS, the frame of NRRD; Slicer's is RAS.
+/// Element of the matrix in LPS, the space of NRRD files; Slicer uses RAS.
 double toLps(const Matrix& matrix, std::size_t row, std::size_t column) {
   const double value = matrix[4 * row + column];
   return row < 2 && value != 0.0 ? -value : value;
@@ -62,8 +62,7 @@ void readPoint(const std::string& text, Matrix& matrix, std::size_t column) {
   for (std::size_t row = 0; row < 3; ++row) {
     double value = 0.0;
     if (!(in >> mark >> value))
-      throw std::invalid_argument(
-          "needs three numbers in its origin and in each of its directions");
+      throw std::invalid_argument("space origin and space directions need three numbers each");
     matrix[4 * row + column] = row < 2 && value != 0.0 ? -value : value;
   }
 }
@@ -79,7 +78,7 @@ std::vector<std::string> splitWords(const std::string& text) {
 std::string getField(const std::map<std::string, std::string>& fields, const std::string& name) {
   const auto found = fields.find(name);
   if (found == fields.end())
-    throw std::invalid_argument("has no field " + name);
+    throw std::invalid_argument("missing field " + name);
   return found->second;
 }
 
@@ -95,7 +94,7 @@ Image parseHeader(const std::map<std::string, std::string>& fields) {
   }
   if (sizes.size() != 3 || directions.size() != 3)
     throw std::invalid_argument(
-        "must have three dimensions, and at most one axis of components before them");
+        "needs three dimensions, preceded by at most one axis of components");
   for (std::size_t axis = 0; axis < 3; ++axis) {
     image.size[axis] = std::stoul(sizes[axis]);
     readPoint(directions[axis], image.ijkToRas, axis);
@@ -104,7 +103,7 @@ Image parseHeader(const std::map<std::string, std::string>& fields) {
   const bool order = componentBytes(image.type) == 1 ||
                      getField(fields, "endian") == (isLittleEndian() ? "little" : "big");
   if (getField(fields, "encoding") != "raw" || componentBytes(image.type) == 0 || !order)
-    throw std::invalid_argument("must be raw samples of a known type in this machine's byte order");
+    throw std::invalid_argument("needs raw encoding, a known type and this machine's byte order");
   return image;
 }
 
@@ -136,7 +135,7 @@ void writeNrrd(const Image& image, const std::filesystem::path& file) {
     if (!out) {
       std::error_code ignored;
       std::filesystem::remove(partial, ignored);
-      throw makeError(file, "could not be written; is the disk full?");
+      throw makeError(file, "cannot be written; is the disk full?");
     }
   }
   std::filesystem::rename(partial, file);
@@ -146,7 +145,7 @@ Image readNrrd(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::string line;
   if (!std::getline(in, line) || line.compare(0, 4, "NRRD") != 0)
-    throw makeError(file, "is not a NRRD file");
+    throw makeError(file, "not an NRRD file");
   std::map<std::string, std::string> fields;
   while (std::getline(in, line) && !line.empty()) {
     const std::size_t colon = line.find(": ");
@@ -159,13 +158,13 @@ Image readNrrd(const std::filesystem::path& file) {
     const std::uintmax_t rest =
         std::filesystem::file_size(file) - static_cast<std::uintmax_t>(begin);
     if (!in || rest != image.bytes())
-      throw std::invalid_argument("has another length than its header says");
+      throw std::invalid_argument("data size differs from the header");
     const std::shared_ptr<char[]> data(new char[image.bytes()]);
     if (!in.read(data.get(), static_cast<std::streamsize>(image.bytes())))
-      throw std::invalid_argument("cannot be read to its end");
+      throw std::invalid_argument("data cannot be read");
     image.data = std::shared_ptr<const void>(data, data.get());
     return image;
-  } catch (const std::logic_error& error) { // also texts that are no numbers
+  } catch (const std::logic_error& error) { // also from std::stoul
     throw makeError(file, error.what());
   }
 }

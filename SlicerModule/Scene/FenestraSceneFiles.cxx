@@ -22,11 +22,10 @@ void writeText(const std::string& text, const std::filesystem::path& file) {
   out << text;
   out.close();
   if (!out)
-    throw FileError(file.string() + ": could not be written; is the disk full?");
+    throw FileError(file.string() + ": cannot be written; is the disk full?");
 }
 
-/// Text of a scene, one node after the other. Values come from this file, not from users: nothing
-/// needs escaping.
+/// Text of a scene, one node per line. Values never come from users, so nothing needs escaping.
 class Nodes {
 public:
   using Attributes = std::vector<std::pair<std::string, std::string>>;
@@ -38,7 +37,7 @@ public:
         m_text << ' ' << name << "=\"" << value << '"';
     m_text << "></" << tag << ">\n";
   }
-  /// Returns the reference to the transform; empty: identity.
+  /// Returns the reference to the transform; empty for the identity.
   std::string addTransform(const std::string& id, const Matrix& toWorld) {
     if (toWorld == identity)
       return {};
@@ -101,7 +100,7 @@ std::string makeSceneText(const Contents& contents) {
   return nodes.text();
 }
 
-/// `text` without line ends, which would end a NRRD field.
+/// Replaces line ends, which would end an NRRD field.
 std::string toOneLine(std::string text) {
   for (char& c : text)
     if (c == '\n' || c == '\r')
@@ -109,7 +108,7 @@ std::string toOneLine(std::string text) {
   return text;
 }
 
-/// Colour with six digits, as Slicer saves it: a picture of the saved scene has the same bits.
+/// Color with six digits, as Slicer saves it: the saved scene then renders bit for bit the same.
 std::string formatColor(const std::array<double, 3>& color) {
   std::ostringstream text;
   text << color[0] << ' ' << color[1] << ' ' << color[2];
@@ -137,7 +136,7 @@ Image makeSegmentationImage(const Segmentation& segmentation) {
   return image;
 }
 
-/// Copies a layer's values into its component of a larger box.
+/// Copies a layer's labels into its component of a larger image.
 template <typename From, typename To>
 void copyLayer(const Layer& layer, const Image& box, const std::array<long, 3>& begin, To* out) {
   const auto* in = static_cast<const From*>(layer.labels.data.get());
@@ -168,7 +167,7 @@ void copyLayerAs(const Layer& layer, const Image& box, const std::array<long, 3>
   else if (type == "int32")
     copyLayer<std::int32_t>(layer, box, begin, out);
   else
-    throw FileError("the segmentation: labels must be whole numbers, but are " + type +
+    throw FileError("segmentation: labels must be integers, but are " + type +
                     "; create its binary labelmap again");
 }
 

@@ -1,7 +1,7 @@
 #pragma once
-// Slicer's data for the renderer, written into a folder: a small scene for `fenestra scene.mrml`.
-// Flags are passed on the command line, since the renderer trusts a scene less. Independent of
-// Slicer and VTK: built and tested everywhere, usable in any thread.
+// Writes Slicer's data for the renderer into a folder: a small scene for `fenestra scene.mrml`.
+// Flags are passed on the command line, since the renderer trusts a scene less. Needs neither
+// Slicer nor VTK: built and tested everywhere, usable in any thread.
 
 #include "FenestraImage.h"
 
@@ -11,7 +11,7 @@
 
 namespace SlicerExport {
 
-/// Problem that a user can solve; one sentence that says how.
+/// Problem that the user can fix; the message is one sentence and a hint.
 struct UserError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -19,9 +19,9 @@ struct UserError : std::runtime_error {
 struct Segment {
   std::string id, name;
   int label = 0;                                 ///< value of its voxels in its layer
-  std::size_t layer = 0;                         ///< component that holds it; segments may overlap
+  std::size_t layer = 0;                         ///< component of the labels; layers may overlap
   std::string tags = {};                         ///< terminology, "key:value|..."
-  std::array<double, 3> color = {0.5, 0.5, 0.5}; ///< sRGB in [0, 1]; Slicer's grey: none given
+  std::array<double, 3> color = {0.5, 0.5, 0.5}; ///< sRGB in [0, 1]; Slicer's default gray
 
   bool operator==(const Segment& other) const {
     return id == other.id && name == other.name && label == other.label && layer == other.layer &&
@@ -29,10 +29,10 @@ struct Segment {
   }
 };
 
-/// Labels of segments that do not overlap; all layers of a segmentation share one lattice.
+/// Labels of segments that do not overlap; all layers of a segmentation share one voxel grid.
 struct Layer {
   Image labels;
-  std::array<long, 3> begin = {0, 0, 0}; ///< lattice index of its first voxel
+  std::array<long, 3> begin = {0, 0, 0}; ///< grid index of its first voxel
 };
 
 struct Segmentation {
@@ -46,7 +46,7 @@ struct Roi {
   Matrix toWorld = identity;
 };
 
-/// Equal values of a key mean the same volume (or segmentation); an empty key equals no other.
+/// Equal keys mean the same volume (or segmentation); an empty key never matches.
 struct Contents {
   Image volume;
   std::string volumeKey;
@@ -54,19 +54,19 @@ struct Contents {
   Segmentation segmentation; ///< without segments: none
   std::string segmentationKey;
   std::string property; ///< text of the volume property's file; empty: the renderer chooses
-  std::string propertyExtension = ".vp"; ///< of the property's file
+  std::string propertyExtension = ".vp"; ///< of the volume property file
   std::vector<Roi> crop;
 };
 
-/// All layers as components of one image, over the smallest box that holds them.
+/// Combines the layers as components of one image over their common bounding box.
 Image composeLayers(const std::vector<Layer>& layers);
 
-/// Writes a segmentation (.seg.nrrd) of one voxel in which each segment has a value of its own: for
-/// questions about names, tags and colours. Throws FileError.
+/// Writes a segmentation (.seg.nrrd) of one voxel in which each segment has its own label value,
+/// for queries by name, tags and color. Throws FileError.
 void writeSegmentNames(std::vector<Segment> segments, const std::filesystem::path& file);
 
-/// Writes scenes into numbered folders below a private one; files unchanged since the preceding
-/// scene are linked, not written again.
+/// Writes scenes into numbered folders of a private folder; files that are unchanged since the
+/// preceding scene become hard links.
 class Writer {
 public:
   explicit Writer(std::filesystem::path folder) : m_folder(std::move(folder)) {}

@@ -1,5 +1,5 @@
-// Checks of Slicer's index of extensions (ExtensionsIndex, scripts/check_description_files.py), of
-// which most read the top-level CMakeLists.txt as text; and names of modules in Slicer.
+// Checks by Slicer's ExtensionsIndex (scripts/check_description_files.py), most of which read the
+// top-level CMakeLists.txt as text, and names of the extension's modules.
 
 #include <gtest/gtest.h>
 
@@ -33,14 +33,14 @@ std::string setting(const std::string& name) {
   return findMatch(readText("CMakeLists.txt"), "set\\s*\\(" + name + "\\s*\"([^\"]+)\"\\s*\\)");
 }
 
-TEST(Extension, TopLevelNamesWhatTheIndexReads) {
+TEST(Extension, TopLevelListFileSetsWhatTheIndexReads) {
   const std::string list = readText("CMakeLists.txt");
   EXPECT_EQ(findMatch(list, R"(project\s*\(\s*([^\s\)]+))"), "Fenestra");
   for (const char* name : {"EXTENSION_HOMEPAGE", "EXTENSION_CONTRIBUTORS", "EXTENSION_DESCRIPTION",
                            "EXTENSION_ICONURL", "EXTENSION_SCREENSHOTURLS", "EXTENSION_CATEGORY"})
     EXPECT_NE(setting(name), "") << name;
   for (const char* name : {"EXTENSION_ICONURL", "EXTENSION_SCREENSHOTURLS"}) {
-    // A file of this repository, as its host serves it: .../<owner>/<repository>/<branch>/<path>.
+    // A file of this repository as raw.githubusercontent.com serves it.
     const std::string path = findMatch(
         setting(name), "^https://raw\\.githubusercontent\\.com/[^/]+/[^/]+/main/(.+\\.(png|jpg))$");
     EXPECT_TRUE(!path.empty() && std::filesystem::is_regular_file(project / path)) << name;
@@ -53,13 +53,13 @@ TEST(Extension, DescriptionNamesRepositoryAndCategory) {
   const std::string url = findMatch(entry, "\"scm_url\"\\s*:\\s*\"([^\"]+)\"");
   EXPECT_TRUE(std::regex_match(url, std::regex("https://[^/]+/[^/]+/Slicer\\w+\\.git"))) << url;
   EXPECT_EQ(findMatch(entry, "\"category\"\\s*:\\s*\"([^\"]+)\""), setting("EXTENSION_CATEGORY"));
-  EXPECT_EQ(setting("EXTENSION_CATEGORY"), "Rendering"); // one of the index's list
+  EXPECT_EQ(setting("EXTENSION_CATEGORY"), "Rendering"); // from the index's list
   EXPECT_NE(readText("LICENSE"), "");
   EXPECT_EQ(setting("EXTENSION_HOMEPAGE").rfind(url.substr(0, url.size() - 4), 0), 0u);
 }
 
-/// Slicer makes each module an attribute of slicer.modules, in lower case: of two equal ones the
-/// second takes the first one's place.
+/// Slicer makes each module an attribute of slicer.modules, in lower case; a second module of the
+/// same name would replace the first.
 TEST(Extension, NamesOfModulesDifferInLowerCase) {
   const std::string loadable =
       findMatch(readText("SlicerModule/Extension.cmake"), "set\\(MODULE_NAME (\\w+)\\)");

@@ -1,4 +1,4 @@
-// Patients' files: the place where a session keeps them, their removal, and the cost of saving.
+// Patient data: a session's private folder and its removal, and copies that the user saves.
 
 #include "TemporaryFolder.h"
 
@@ -20,7 +20,7 @@ QString toQString(const std::filesystem::path& path) {
   return QString::fromStdString(path.string());
 }
 
-/// Another session, in a process that lives until it is killed.
+/// Another session, in a process that runs until it is killed.
 class OtherSession {
 public:
   explicit OtherSession(const TemporaryFolder& parent) {
@@ -73,11 +73,11 @@ TEST(SlicerFolder, IsPrivateAndRemovedWithItsSession) {
   EXPECT_FALSE(QDir(path).exists());
 }
 
-/// A session's process number may differ in another container.
+/// In another container, the number in a folder's name may belong to no process or to another one.
 TEST(SlicerFolder, OnlyFoldersOfCrashedSessionsAreRemoved) {
   const TemporaryFolder parent;
   OtherSession other(parent);
-  const std::filesystem::path renamed = parent / "session-999999999-a"; // no such process here
+  const std::filesystem::path renamed = parent / "session-999999999-a"; // no process has this id
   std::filesystem::rename(other.folder, renamed);
   { const qFenestraFolder own(toQString(parent.path()), "session-"); }
   EXPECT_TRUE(std::filesystem::exists(renamed / "patient.nrrd"));
@@ -111,12 +111,12 @@ protected:
   TemporaryFolder folder;
 };
 
-TEST_F(SlicerCopies, CompleteCopyReplacesTheFile) {
+TEST_F(SlicerCopies, CompleteCopyReplacesTheOldFile) {
   EXPECT_EQ(qFenestraCopies::picture(path("new.png"), path("old.png"), ".png").write(), "");
   EXPECT_EQ(readBytes(folder / "old.png").size(), 10000u);
 }
 
-TEST_F(SlicerCopies, FailedCopyKeepsTheOldFileAndLeavesNoOther) {
+TEST_F(SlicerCopies, FailedCopyKeepsTheOldFileAndLeavesNoPartialFile) {
   EXPECT_EQ(qFenestraCopies::picture(path("gone.png"), path("old.png"), ".png").write(),
             path("old.png"));
   EXPECT_EQ(readBytes(folder / "old.png"), "old");

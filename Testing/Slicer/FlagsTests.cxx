@@ -1,4 +1,4 @@
-// Flags in a scene from an untrusted source: those that are accepted.
+// Checks of flags in scenes from untrusted sources, and their conversion to arguments.
 
 #include "FenestraFlags.h"
 #include "FenestraMaterials.h"
@@ -19,7 +19,7 @@ struct Case {
   std::string value;
 };
 
-TEST(SlicerFlags, ValuesThatTheRendererTakesAreGood) {
+TEST(SlicerFlags, ValuesThatTheRendererAcceptsAreValid) {
   for (const auto& [name, value] :
        std::vector<Case>{{"focus", "Segment_1,a\\,b, <\xc3\xa9>"},
                          {"margin", "1,-0.5,3e-2"},
@@ -51,7 +51,7 @@ TEST(SlicerFlags, ValuesThatTheRendererTakesAreGood) {
     EXPECT_EQ(checkFlag(name, value), Verdict::valid) << name << ": " << value;
 }
 
-TEST(SlicerFlags, MalformedValuesAreRejected) {
+TEST(SlicerFlags, MalformedValuesAreInvalid) {
   for (const auto& [name, value] : std::vector<Case>{{"frames", "x"},
                                                      {"frames", ""},
                                                      {"frames", "-3"},
@@ -85,7 +85,7 @@ TEST(SlicerFlags, MalformedValuesAreRejected) {
     EXPECT_EQ(checkFlag(name, value), Verdict::invalid) << name << ": " << value.substr(0, 40);
 }
 
-TEST(SlicerFlags, NamesOfFilesAreDetectedAlsoInsideTexts) {
+TEST(SlicerFlags, FileNamesAreDetectedEvenInsideJson) {
   for (const auto& [name, value] : std::vector<Case>{
            {"transfer", "/etc/passwd"},
            {"transfer", "colours.vp"},
@@ -100,8 +100,8 @@ TEST(SlicerFlags, NamesOfFilesAreDetectedAlsoInsideTexts) {
     EXPECT_EQ(checkFlag(name, value), Verdict::file) << name << ": " << value;
 }
 
-/// Reference: the renderer's own description of its numbers and words.
-TEST(SlicerFlags, KindsEqualThoseOfTheRenderer) {
+/// Reference: the renderer's own description of its options.
+TEST(SlicerFlags, KindsMatchTheRenderersOptions) {
   QProcess child;
   child.start(FENESTRA_EXECUTABLE, {"--xml"});
   ASSERT_TRUE(child.waitForFinished());
@@ -114,7 +114,7 @@ TEST(SlicerFlags, KindsEqualThoseOfTheRenderer) {
     ASSERT_TRUE(known.contains(name)) << flag.name;
     const bool hasWords = !known[name].choices.isEmpty();
     EXPECT_EQ(flag.kind == FlagKind::word, hasWords) << flag.name;
-    const bool maySayAuto = !hasWords && flag.kind != FlagKind::resource; // there it is a name
+    const bool maySayAuto = !hasWords && flag.kind != FlagKind::resource; // there, "auto" is a name
     EXPECT_EQ(flag.kind == FlagKind::numberOrAuto, maySayAuto && known[name].text.contains("auto:"))
         << flag.name;
     EXPECT_TRUE(!SlicerExport::isRepeatable(flag.name) ||
@@ -125,7 +125,7 @@ TEST(SlicerFlags, KindsEqualThoseOfTheRenderer) {
   }
 }
 
-TEST(SlicerFlags, TextsSurviveAsOneValue) {
+TEST(SlicerFlags, JoinedListsAreSplitAgain) {
   const std::vector<std::string> texts = {"Liver: color=#963e2e, clip=no", "a\\b, \"c\": clip=no",
                                           "d"};
   const std::string value = SlicerExport::joinList(texts);
@@ -136,8 +136,8 @@ TEST(SlicerFlags, TextsSurviveAsOneValue) {
                                       "--material=" + texts[1], "--material=d", "--offset=-1"}));
 }
 
-/// A change to a segment that is gone would be refused by the renderer, with the whole picture.
-TEST(SlicerFlags, ChangesOfGoneSegmentsAreLeftOut) {
+/// The renderer would reject a change to a missing segment, and render no image.
+TEST(SlicerFlags, ChangesToMissingSegmentsAreRemoved) {
   using Flags = std::map<std::string, std::string>;
   const std::vector<SlicerExport::Segment> there = {{"S,1", "Liver", 1}, {"S2", "Aorta", 7}};
   const auto change = [](const char* selector) { return std::string(selector) + ": clip=no"; };

@@ -1,5 +1,5 @@
-// Table of the segments' materials: what it shows, the arguments that it makes, and that these make
-// the picture of a command typed by hand. With the renderer itself.
+// Table of the segments' materials, with the real renderer: display, arguments, and equality of
+// their image with that of a typed command.
 
 #include "RunSettings.h"
 #include "TemporaryFolder.h"
@@ -42,7 +42,7 @@ bool waitFor(const std::function<bool()>& condition) {
 
 enum Column { name, material, color, clip, reset };
 
-/// Segments with ids and names that a shell, a list or a JSON text would have to escape.
+/// Ids and names that would need escaping in a shell, a list or JSON.
 const std::string awkward = "a, \"b\": c=d; $HOME 'e' \\, \xc3\xa9";
 std::vector<SlicerExport::Segment> segments() {
   return {{"Segment_1", "Liver", 1, 0, "", {0.9, 0.1, 0.1}},
@@ -66,11 +66,11 @@ qFenestraMaterials queryMaterials(const std::vector<SlicerExport::Segment>& all,
   question.request(program, {}, QString::fromStdString(folder.path().string()));
   question.request(program, all, QString::fromStdString(folder.path().string()));
   EXPECT_TRUE(waitFor([&] { return !told.empty(); }));
-  EXPECT_EQ(told.size(), 1u) << "an outdated question has no answer";
+  EXPECT_EQ(told.size(), 1u) << "an outdated query has no result";
   return told.empty() ? qFenestraMaterials() : told.back();
 }
 
-/// Answer of the renderer about the segments, asked for once.
+/// The renderer's materials for the segments, queried once.
 const qFenestraMaterials& knownMaterials() {
   static const qFenestraMaterials materials = queryMaterials(segments(), TemporaryFolder());
   return materials;
@@ -100,13 +100,13 @@ protected:
     widget().item(row, clip)->setCheckState(isClipped ? Qt::Checked : Qt::Unchecked);
   }
   bool isClipped(int row) { return widget().item(row, clip)->checkState() == Qt::Checked; }
-  /// Colour on the row's button, or its text.
+  /// Color on the row's button, or its text.
   QString seen(int row) {
     auto& button = cell<QToolButton>(row, color);
     return button.icon().isNull() ? button.text()
                                   : button.icon().pixmap(16).toImage().pixelColor(8, 8).name();
   }
-  /// Presses the row's button, and chooses in the dialog that opens.
+  /// Presses the row's button and chooses a color in the dialog that opens.
   void pickColor(int row, const char* chosen) {
     QTimer::singleShot(0, [chosen] {
       auto* dialog = qobject_cast<QColorDialog*>(QApplication::activeModalWidget());
@@ -117,7 +117,7 @@ protected:
     cell<QToolButton>(row, color).click();
   }
 
-  /// Flags that are given.
+  /// Nonempty flags.
   Flags taken() const {
     Flags all, given;
     table.take(all);
@@ -133,7 +133,7 @@ protected:
 
 using Strings = std::vector<std::string>;
 
-TEST_F(SlicerMaterials, RendererTellsItsChoicesAndItsLibrary) {
+TEST_F(SlicerMaterials, RendererReportsItsChoicesAndItsLibrary) {
   EXPECT_GE(knownMaterials().library.size(), 24);
   for (const qFenestraMaterial& one : knownMaterials().library)
     EXPECT_FALSE(one.name.isEmpty());
@@ -144,11 +144,11 @@ TEST_F(SlicerMaterials, RendererTellsItsChoicesAndItsLibrary) {
   EXPECT_TRUE(cell<QComboBox>(2, material).toolTip().contains("by its own colour"));
   EXPECT_EQ(cell<QComboBox>(0, material).count(), knownMaterials().library.size() + 1);
   EXPECT_EQ(seen(0), "#963e2e");
-  EXPECT_EQ(seen(2), "#3366cc"); // the segment's own
+  EXPECT_EQ(seen(2), "#3366cc"); // the segment's own color
 }
 
-TEST_F(SlicerMaterials, SourceIsOneFlagAndNoChange) {
-  EXPECT_TRUE(arguments().empty()) << "what nobody has touched is no flag";
+TEST_F(SlicerMaterials, SourceIsOneFlagWithoutChanges) {
+  EXPECT_TRUE(arguments().empty()) << "defaults are not flags";
   for (const char* word : {"none", "auto", "library"}) {
     choose(word);
     EXPECT_EQ(arguments(), (Strings{std::string("--materials=") + word}));
@@ -161,14 +161,14 @@ TEST_F(SlicerMaterials, SourceIsOneFlagAndNoChange) {
   file.setText("/data/my own.json");
   emit file.editingFinished();
   EXPECT_EQ(arguments(), (Strings{"--materials=/data/my own.json"}));
-  EXPECT_EQ(seen(0), "...") << "what the file says is not known here";
+  EXPECT_EQ(seen(0), "...") << "the colors of a materials file are unknown";
   choose("hand");
   EXPECT_EQ(arguments(), (Strings{"--materials=/data/my own.json"}));
   choose("");
   EXPECT_TRUE(arguments().empty());
 }
 
-TEST_F(SlicerMaterials, OnlyWhatIsChangedIsAnArgument) {
+TEST_F(SlicerMaterials, OnlyChangesAreArguments) {
   int changes = 0;
   QObject::connect(&table, &Materials::changed, [&changes] { ++changes; });
   setClip(1, false);
@@ -185,7 +185,7 @@ TEST_F(SlicerMaterials, OnlyWhatIsChangedIsAnArgument) {
   EXPECT_EQ(seen(0), "#abcdef");
   setMaterial(0, "vein");
   const Strings vein = {"--material=Segment_1: material=vein", "--materials=library"};
-  EXPECT_EQ(seen(0), "#4668b2") << "a material comes with its colour";
+  EXPECT_EQ(seen(0), "#4668b2") << "a new material replaces the color";
   EXPECT_EQ(arguments(), vein);
   setClip(0, false);
   setClip(0, true);
@@ -196,8 +196,8 @@ TEST_F(SlicerMaterials, OnlyWhatIsChangedIsAnArgument) {
   EXPECT_EQ(seen(0), "#963e2e");
 }
 
-/// Texts of a scene are neither read as HTML nor as colours.
-TEST_F(SlicerMaterials, TextsOfASceneAreShownAsTheyAre) {
+/// Texts of a scene are read neither as HTML nor as invalid colors.
+TEST_F(SlicerMaterials, TextsOfASceneAreEscaped) {
   qFenestraMaterials hostile = knownMaterials();
   hostile.bySegment["Segment_1"].why = "<img src='file:///etc/passwd'>";
   table.setKnownMaterials(hostile);
@@ -207,7 +207,7 @@ TEST_F(SlicerMaterials, TextsOfASceneAreShownAsTheyAre) {
   EXPECT_FALSE(cell<QToolButton>(0, color).toolTip().contains("<b>"));
 }
 
-TEST_F(SlicerMaterials, WhatNobodyKnowsKeepsTheVolumesColours) {
+TEST_F(SlicerMaterials, UnknownSegmentKeepsTheVolumesColors) {
   qFenestraMaterials palette = knownMaterials();
   palette.bySegment["Segment_3"].why = "by palette";
   table.setKnownMaterials(palette);
@@ -252,14 +252,14 @@ TEST_F(SlicerMaterials, RowsFollowTheSegments) {
   EXPECT_EQ(text(0), "<b>Aorta</b>");
   EXPECT_FALSE(isClipped(0));
   EXPECT_EQ(arguments(), (Strings{"--material=" + awkward + ": clip=no", "--materials=auto"}));
-  table.list(toPanelSegments(segments())); // there again, as after Undo
+  table.list(toPanelSegments(segments())); // restored, as by Undo
   EXPECT_EQ(arguments(), both);
   table.list({});
   EXPECT_FALSE(table.isEnabled());
-  EXPECT_TRUE(arguments().empty()) << "the renderer refuses materials without segments";
+  EXPECT_TRUE(arguments().empty()) << "the renderer rejects materials without segments";
 }
 
-TEST_F(SlicerMaterials, FlagsAreShownAndMadeAgain) {
+TEST_F(SlicerMaterials, ShownFlagsAreWrittenUnchanged) {
   const std::string own = "Segment_1: color=#abcdef, density=2, priority=20";
   const std::string other = awkward + ": clip=no, material=vein";
   for (const Flags& flags : std::vector<Flags>{
@@ -271,7 +271,7 @@ TEST_F(SlicerMaterials, FlagsAreShownAndMadeAgain) {
            {{"materials", "/data/mine.json"}, {"material", SlicerExport::joinList({other})}},
            {{"materials", "library"}, {"material", SlicerExport::joinList({own, other})}},
            {{"materials", "auto"}, {"material", "Segment_3: material=of a file"}},
-           {{"material", "Segment_3: clip=no"}}}) { // what is missing is for the user to say
+           {{"material", "Segment_3: clip=no"}}}) { // without `materials`: left to the user
     table.show(flags);
     EXPECT_EQ(taken(), flags);
     EXPECT_EQ(chosen() == "hand", flags.count("material") > 0);
@@ -282,7 +282,7 @@ TEST_F(SlicerMaterials, FlagsAreShownAndMadeAgain) {
   EXPECT_EQ(arguments(), (Strings{"--materials=auto"}));
 }
 
-TEST_F(SlicerMaterials, FlagsAreThereBeforeTheSegments) {
+TEST_F(SlicerMaterials, FlagsMayBeShownBeforeTheSegments) {
   const Flags flags = {{"materials", "library"},
                        {"material", SlicerExport::joinList({awkward + ": clip=no"})}};
   Materials early;
@@ -294,7 +294,7 @@ TEST_F(SlicerMaterials, FlagsAreThereBeforeTheSegments) {
   EXPECT_EQ(made, flags);
 }
 
-TEST_F(SlicerMaterials, ChangesOfScriptsAreFoundByName) {
+TEST_F(SlicerMaterials, ChangesByScriptsMaySelectByName) {
   table.show({{"materials", "library"},
               {"material", SlicerExport::joinList(
                                {"Liver: clip=no", "Gone: clip=no", "Segment_1: color=#00ff00"})}});
@@ -303,7 +303,7 @@ TEST_F(SlicerMaterials, ChangesOfScriptsAreFoundByName) {
             (Strings{"--material=Segment_1: clip=no, color=#00ff00", "--materials=library"}));
 }
 
-/// Scene with the segments side by side, as the extension hands it to the renderer.
+/// Scene with the segments side by side, as the extension writes it for the renderer.
 class SlicerMaterialsPicture : public SlicerMaterials {
 protected:
   SlicerMaterialsPicture() {
@@ -325,7 +325,7 @@ protected:
     scene = SlicerExport::Writer(folder.path()).write(contents);
   }
 
-  /// Picture with the table's arguments, by the panel's way: the queue of renders.
+  /// Image with the table's arguments, rendered by the queue as in the panel.
   std::string renderByPanel() const {
     QStringList all = {QString::fromStdString(scene.string()), "--size=24x24", "--samples=4",
                        "--output=panel.nrrd"};
@@ -341,7 +341,7 @@ protected:
       EXPECT_EQ(one.kind, qFenestraOutcome::Kind::done) << one.details.toStdString();
     return readBytes(folder / "panel.nrrd");
   }
-  /// Picture with arguments as they are typed into a shell.
+  /// Image with arguments as typed into a shell.
   std::string renderByCommand(const std::string& typed) const {
     const std::string command = "cd '" + folder.path().string() + "' && '" + program.toStdString() +
                                 "' '" + scene.string() +
@@ -355,9 +355,9 @@ protected:
   std::filesystem::path scene;
 };
 
-TEST_F(SlicerMaterialsPicture, IsThatOfTheCommandLineBitForBit) {
+TEST_F(SlicerMaterialsPicture, EqualsThatOfTheCommandLineBitForBit) {
   const std::string none = renderByPanel();
-  EXPECT_TRUE(none == renderByCommand("")) << "no flag";
+  EXPECT_TRUE(none == renderByCommand("")) << "without options";
   choose("library");
   const std::string library = renderByPanel();
   EXPECT_TRUE(library == renderByCommand("--materials library"));
@@ -378,14 +378,14 @@ TEST_F(SlicerMaterialsPicture, IsThatOfTheCommandLineBitForBit) {
   EXPECT_TRUE(renderByPanel() == library);
 }
 
-/// The extension's scene holds the segments' own colours, which are those of unknown ones.
-TEST_F(SlicerMaterialsPicture, UnknownSegmentHasItsOwnColour) {
+/// The extension's scene contains the segments' colors, which unknown segments use.
+TEST_F(SlicerMaterialsPicture, UnknownSegmentHasItsOwnColor) {
   choose("library");
   EXPECT_TRUE(renderByPanel() ==
               renderByCommand("--materials library --material 'Segment_3: color=#3366cc'"));
 }
 
-TEST_F(SlicerMaterialsPicture, PreviewTakesTheSameFlags) {
+TEST_F(SlicerMaterialsPicture, PreviewAcceptsTheSameFlags) {
   setMaterial(0, "spleen");
   setMaterial(1, "vein");
   qFenestraPreview preview;
@@ -416,7 +416,7 @@ TEST_F(SlicerMaterialsPicture, PreviewTakesTheSameFlags) {
   EXPECT_TRUE(picture() == first);
 }
 
-TEST_F(SlicerMaterials, ResetForgetsAll) {
+TEST_F(SlicerMaterials, ResetRemovesAllChanges) {
   setMaterial(0, "spleen");
   table.reset();
   EXPECT_TRUE(arguments().empty());

@@ -1,5 +1,5 @@
-// Renders and previews as run by the extension, with the renderer itself: their reports and their
-// end.
+// Renders and previews as the extension runs them, with the real renderer: their output and how
+// they end.
 
 #include "RunSettings.h"
 #include "TemporaryFolder.h"
@@ -27,7 +27,8 @@ using Kind = qFenestraOutcome::Kind;
 
 const QString program = FENESTRA_EXECUTABLE;
 const int timeoutMs = 30000 * static_cast<int>(testing::sampleDivisor()); ///< milliseconds
-const int maxStopMs = 1000 * static_cast<int>(testing::sampleDivisor()); ///< 200 on an idle machine
+const int maxStopMs =
+    1000 * static_cast<int>(testing::sampleDivisor()); ///< ms; 200 on an idle machine
 
 /// Runs the event loop until the condition holds; false after `longest`.
 bool waitFor(const std::function<bool()>& condition) {
@@ -68,7 +69,7 @@ struct Ended {
   qFenestraOutcome outcome;
 };
 
-/// Reports of a queue.
+/// Records the signals of a queue.
 struct SignalRecorder {
   std::vector<int> started;
   std::vector<double> parts;
@@ -126,7 +127,7 @@ TEST_F(SlicerProcess, StopKeepsFinishedPassesAndSkipsWaitingJobs) {
   EXPECT_TRUE(exists("after.png"));
 }
 
-TEST_F(SlicerProcess, FailureCarriesTheRenderersMessage) {
+TEST_F(SlicerProcess, FailureHasTheRenderersMessage) {
   qFenestraQueue queue(program);
   const SignalRecorder recorder(queue);
   queue.add({1, {"missing.nrrd"}, path()});
@@ -160,13 +161,13 @@ TEST_F(SlicerProcess, KilledRendererIsReportedAsFailed) {
                    [&](const qFenestraOutcome& outcome) { outcomes.push_back(outcome); });
   child.run(program, job(1, {"--samples", "100000000"}).arguments, path());
   ASSERT_TRUE(child.waitForStarted());
-  ::kill(static_cast<pid_t>(child.processId()), SIGKILL); // as the kernel does, short of memory
+  ::kill(static_cast<pid_t>(child.processId()), SIGKILL); // as the kernel does if memory runs out
   ASSERT_TRUE(waitFor([&] { return !outcomes.empty(); }));
   EXPECT_EQ(outcomes[0].kind, Kind::failed);
   EXPECT_TRUE(outcomes[0].message.contains("memory"));
 }
 
-/// Renderer made of a few words of shell that react to the stop signal.
+/// Starts a shell script in place of the renderer, which handles the stop signal, and stops it.
 struct StoppedChild {
   explicit StoppedChild(const TemporaryFolder& folder, const char* whenTold) {
     QObject::connect(&child, &qFenestraProgram::ended,
@@ -190,7 +191,7 @@ struct StoppedChild {
   qFenestraProgram child;
 };
 
-/// Longer than any plausible timeout. The window must respond meanwhile.
+/// Writing takes longer than any plausible timeout; meanwhile the window must respond.
 TEST_F(SlicerProcess, StopWaitsForARendererThatWrites) {
   StoppedChild stopped(folder, "sleep 2; echo picture >kept.png; exit 5");
   bool answered = false;
@@ -213,7 +214,7 @@ TEST_F(SlicerProcess, SecondStopKillsTheRenderer) {
 TEST_F(SlicerProcess, FailureWhileStoppingIsReported) {
   EXPECT_EQ(StoppedChild(folder, "kill -SEGV $$").kind(), Kind::failed);
   EXPECT_EQ(StoppedChild(folder, "echo fenestra: full >&2; exit 4").kind(), Kind::failed);
-  EXPECT_EQ(StoppedChild(folder, "exit 0").kind(), Kind::done); // it was just ready
+  EXPECT_EQ(StoppedChild(folder, "exit 0").kind(), Kind::done); // finished before the stop
 }
 
 TEST_F(SlicerProcess, StopRightAfterTheStartEndsTheProgram) {
@@ -237,7 +238,7 @@ TEST_F(SlicerProcess, ProgressIsReadFromValidTagsOnly) {
     EXPECT_EQ(qFenestraQueue::parseProgress(line), -1.0) << line;
 }
 
-TEST_F(SlicerProcess, AbilitiesListFlagsAndNamesOfTheRenderer) {
+TEST_F(SlicerProcess, CapabilitiesListOptionsAndNamesOfTheRenderer) {
   qFenestraCapabilityQuery question;
   std::vector<qFenestraCapabilities> told;
   QObject::connect(&question, &qFenestraCapabilityQuery::told,
@@ -271,7 +272,7 @@ TEST_F(SlicerProcess, EnvironmentOfAChildOmitsLibraryPaths) {
   EXPECT_EQ(environment.keys(), QStringList{"HOME"});
 }
 
-/// A child ends with its object and, by the signal that it requested, with its parent.
+/// A child ends with its object and, by a parent-death signal, with its parent process.
 TEST_F(SlicerProcess, ChildEndsWithItsObjectAndWithItsParent) {
   qint64 id = 0;
   {
@@ -285,7 +286,7 @@ TEST_F(SlicerProcess, ChildEndsWithItsObjectAndWithItsParent) {
   int tell[2];
   ASSERT_EQ(::pipe(tell), 0);
   const pid_t parent = ::fork();
-  if (parent == 0) { // a crashing Slicer
+  if (parent == 0) { // simulates a crash of Slicer
     qFenestraProgram child;
     child.run(program, job(1, {"--samples", "100000000"}).arguments, path());
     child.waitForStarted();
@@ -300,7 +301,7 @@ TEST_F(SlicerProcess, ChildEndsWithItsObjectAndWithItsParent) {
   ::waitpid(parent, nullptr, 0);
   ASSERT_GT(orphan, 0);
   const auto gone = [&] {
-    QFile status(QString("/proc/%1/stat").arg(orphan)); // a reaped or zombie process counts as gone
+    QFile status(QString("/proc/%1/stat").arg(orphan)); // no process, or a zombie, has ended
     return !status.open(QIODevice::ReadOnly) || status.readAll().contains(") Z ");
   };
   EXPECT_TRUE(waitFor(gone));
@@ -339,7 +340,7 @@ TEST_F(SlicerPreview, FastChangesAreSentAsOne) {
   EXPECT_EQ(pictures.back().files, QStringList{"p.png"});
   EXPECT_TRUE(exists("p.png"));
   pictures.clear();
-  // Fast changes: one change is sent, the last of each kind.
+  // Of fast changes, one is sent, with the last value of each flag.
   for (const char* view : {"left", "right", "superior"}) {
     preview.change({{"view", view}});
     preview.change({{"samples", 4}});
@@ -363,7 +364,7 @@ TEST_F(SlicerPreview, RefusedChangeKeepsThePreviewRunning) {
   EXPECT_TRUE(preview.running());
 }
 
-TEST_F(SlicerPreview, StopReturnsAtOnce) {
+TEST_F(SlicerPreview, StopReturnsImmediately) {
   start("100000000");
   ASSERT_TRUE(waitFor([this] { return !pictures.empty(); }));
   QElapsedTimer watch;
@@ -372,12 +373,12 @@ TEST_F(SlicerPreview, StopReturnsAtOnce) {
   std::cout << "stopped within " << watch.elapsed() << " ms\n";
   EXPECT_LT(watch.elapsed(), maxStopMs);
   EXPECT_FALSE(preview.running());
-  // The child ends by itself, without further reports.
+  // The child ends on its own, without further signals.
   EXPECT_TRUE(waitFor([this] { return preview.findChildren<qFenestraProgram*>().isEmpty(); }));
   EXPECT_TRUE(outcomes.empty());
 }
 
-TEST_F(SlicerPreview, FilesAreHeldUntilTheChildHasEnded) {
+TEST_F(SlicerPreview, FilesAreKeptUntilTheChildHasEnded) {
   auto files = std::make_shared<int>();
   const std::weak_ptr<int> held = files;
   preview.start(program, {"volume.nrrd", "--size=16x16", "--samples=100000000", "--output=p.png"},
@@ -389,7 +390,7 @@ TEST_F(SlicerPreview, FilesAreHeldUntilTheChildHasEnded) {
   EXPECT_TRUE(preview.findChildren<qFenestraProgram*>().isEmpty());
 }
 
-TEST_F(SlicerPreview, FailedStartCarriesTheRenderersMessage) {
+TEST_F(SlicerPreview, FailedStartHasTheRenderersMessage) {
   preview.start(program, {"missing.nrrd"}, path());
   ASSERT_TRUE(waitFor([this] { return !outcomes.empty(); }));
   EXPECT_EQ(outcomes[0].kind, Kind::failed);

@@ -1,4 +1,4 @@
-// Scenes written by the extension for the renderer, read back and rendered.
+// Scenes that the extension writes for the renderer.
 
 #include "TemporaryFolder.h"
 
@@ -43,12 +43,12 @@ TEST(SlicerSceneFiles, ImageRoundTripsBitForBit) {
   const SlicerExport::Image again = SlicerExport::readNrrd(folder / "image.nrrd");
   EXPECT_EQ(again.type, image.type);
   EXPECT_EQ(again.size, image.size);
-  EXPECT_EQ(again.ijkToRas, image.ijkToRas); // every digit
+  EXPECT_EQ(again.ijkToRas, image.ijkToRas); // all digits
   ASSERT_EQ(again.bytes(), image.bytes());
   EXPECT_EQ(std::memcmp(again.data.get(), image.data.get(), image.bytes()), 0);
 }
 
-TEST(SlicerSceneFiles, DamagedNrrdIsRefused) {
+TEST(SlicerSceneFiles, DamagedNrrdIsRejected) {
   const TemporaryFolder folder;
   SlicerExport::writeNrrd(makeRamp({3, 4, 5}), folder / "image.nrrd");
   std::filesystem::resize_file(folder / "image.nrrd",
@@ -62,7 +62,7 @@ TEST(SlicerSceneFiles, DamagedNrrdIsRefused) {
                SlicerExport::FileError);
 }
 
-TEST(SlicerSceneFiles, ComposedLayersKeepTheirPlaces) {
+TEST(SlicerSceneFiles, ComposedLayersKeepTheirPositions) {
   const SlicerExport::Image both =
       SlicerExport::composeLayers({makeBlock({0, 0, 0}, 1), makeBlock({1, -1, 0}, 2)});
   EXPECT_EQ(both.components, 2u);
@@ -76,7 +76,7 @@ TEST(SlicerSceneFiles, ComposedLayersKeepTheirPlaces) {
   EXPECT_EQ(at(0, 0, 0, 0), 0);
   EXPECT_EQ(at(1, 0, 0, 1), 2);
   EXPECT_EQ(at(0, 1, 0, 1), 0);
-  EXPECT_EQ(at(1, 1, 1, 0), 1); // both overlap
+  EXPECT_EQ(at(1, 1, 1, 0), 1); // the layers overlap here
   EXPECT_EQ(at(1, 1, 1, 1), 2);
 }
 
@@ -110,10 +110,10 @@ TEST(SlicerSceneFiles, TagsOfSegmentsAreWritten) {
   std::ifstream file(scene.parent_path() / "segmentation.seg.nrrd");
   const std::string text((std::istreambuf_iterator<char>(file)), {});
   EXPECT_NE(text.find("\nSegment0_Tags:=TerminologyEntry:b~SCT^1^ c|\n"), std::string::npos);
-  EXPECT_EQ(text.find("Segment1_Tags"), std::string::npos); // none
+  EXPECT_EQ(text.find("Segment1_Tags"), std::string::npos); // has no tags
 }
 
-TEST(SlicerSceneFiles, ColoursOfSegmentsAreWrittenAsSlicerDoes) {
+TEST(SlicerSceneFiles, ColorsOfSegmentsAreWrittenAsSlicerDoes) {
   const TemporaryFolder folder;
   SlicerExport::writeSegmentNames(
       {{"a", "A", 7, 3, "", {0.9450980392, 0.5, 1.0 / 3.0}}, {"b", "B"}},

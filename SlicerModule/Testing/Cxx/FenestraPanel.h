@@ -1,5 +1,5 @@
 #pragma once
-// The panel as a user meets it: widgets to choose and click, and their texts.
+// The panel as a user operates it: widgets to choose and click, and their texts.
 
 #include "FenestraTesting.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// Helpers shared by the tests inside Slicer.
+// Helpers for the tests inside Slicer.
 
 #include <vtkMRMLCoreTestingMacros.h>
 
@@ -21,7 +21,7 @@
 
 namespace FenestraTesting {
 
-/// Processes Qt's events until the condition holds, at most 30 s; returns whether it does.
+/// Processes Qt's events until the condition holds, for at most 30 s; returns whether it holds.
 template <typename Condition>
 bool waitFor(Condition&& condition) {
   QElapsedTimer watch;
@@ -31,7 +31,7 @@ bool waitFor(Condition&& condition) {
   return condition();
 }
 
-/// Fills a ball of `value` in air: radius 10, in 32 voxels a side, 1 mm.
+/// Fills a ball of `value` in air: radius 10 mm, in 32 x 32 x 32 voxels of 1 mm.
 inline void fillBall(vtkImageData* image, int type, double value) {
   image->SetDimensions(32, 32, 32);
   image->AllocateScalars(type, 1);
@@ -71,7 +71,7 @@ inline vtkMRMLSegmentationNode* addSegmentation(vtkMRMLScene* scene) {
   return node;
 }
 
-/// True if a flag has these numbers, within 1e-9.
+/// True if a flag has these numbers within 1e-9.
 inline bool isNear(const std::string& flag, const std::vector<double>& numbers) {
   std::istringstream text(flag);
   char comma = 0;

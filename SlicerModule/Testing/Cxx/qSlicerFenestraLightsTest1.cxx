@@ -33,7 +33,7 @@ int checkRigs() {
                                            {"nothing", {false, false, false, false}}};
   for (const auto& [rig, has] : expected)
     CHECK_BOOL(findLights(rig) == has, true);
-  const Strengths others = {0.5, 2.0, 0.0, 1.0}; // of lights that these have not
+  const Strengths others = {0.5, 2.0, 0.0, 1.0}; // of lights that these rigs lack
   CHECK_STD_STRING(makeFlag("soft", others).toStdString(), "soft");
   CHECK_STD_STRING(makeFlag("my.json", others).toStdString(), "my.json");
   return EXIT_SUCCESS;
@@ -61,8 +61,8 @@ int checkStrengths() {
   return EXIT_SUCCESS;
 }
 
-/// Lights of a rig unlike the renderer's own: a sphere is a key, a rim comes first, and lights that
-/// may stand anywhere, or are more than the strengths, stay as they are.
+/// A rig unlike the renderer's own: a sphere is the key light, and a rim light comes first. Lights
+/// in world space, and lights beyond the four strengths, are unchanged.
 int checkOthers() {
   const QJsonArray lights = parseLights(R"({"lights": [
     {"type": "disk", "frame": "camera", "center": [0, 1, -2], "radiance": 1},

@@ -1,4 +1,4 @@
-// The renderer's measures in words.
+// Texts of the renderer's quality measures.
 
 #include "FenestraTesting.h"
 
@@ -19,7 +19,7 @@ int qSlicerFenestraMeasuresTest1(int, char*[]) {
   CHECK_INT(selectMeasures({}).size(), 0);
   const QList<Measure> words = toUserText(measures);
   CHECK_INT(static_cast<int>(words.size()), 4);
-  CHECK_STD_STRING(words[0].name.toStdString(), "Focus seen");
+  CHECK_STD_STRING(words[0].name.toStdString(), "Focus visible");
   CHECK_STD_STRING(words[0].value.toStdString(), "99.88 %");
   CHECK_STD_STRING(words[1].value.toStdString(), "25.0 %");
   CHECK_STD_STRING(words[2].value.toStdString(), "mean 0.012, 95 % below 0.05, at most 1.5 mm");

@@ -1,4 +1,4 @@
-// The panel as a user meets it: changes of widgets are compared with the settings node, both ways.
+// The panel as a user operates it: widgets and settings node stay equal, in both directions.
 // Arguments: the renderer, a folder for files, the module's library.
 
 #include "FenestraPanel.h"
@@ -55,14 +55,14 @@ int checkDefaults(const Panel& panel, vtkMRMLNode* volume, vtkMRMLNode* segmenta
   CHECK_BOOL(panel.find<QPushButton>("SampleButton")->isHidden(), true);
   CHECK_INT(panel.find<QListWidget>("FocusList")->count(), 2);
   CHECK_STD_STRING(panel.chosen("QualityBox").toStdString(), "256 0.05 0");
-  panel.find<QSpinBox>("SamplesBox")->setValue(255); // takes all that the panel shows
+  panel.find<QSpinBox>("SamplesBox")->setValue(255); // writes all flags of the panel
   for (const char* usual : {"transfer", "lights", "exposure", "tone", "preset", "clip"})
     CHECK_STD_STRING(panel.flag(usual), "");
   CHECK_STD_STRING(panel.flag("background"), "gradient");
   return EXIT_SUCCESS;
 }
 
-/// Slice views show the newest volume on request; loading a scene does not change them.
+/// Slice views show the newest volume on request, since loading a scene does not change them.
 int checkShowingVolume(const Panel& panel, vtkMRMLScene* scene, vtkMRMLNode* volume) {
   auto* view = vtkMRMLSliceCompositeNode::SafeDownCast(
       scene->AddNewNodeByClass("vtkMRMLSliceCompositeNode"));
@@ -104,7 +104,7 @@ int checkTaking(const Panel& panel, const std::string& segment) {
   return EXIT_SUCCESS;
 }
 
-/// The panel shows the node's flags, and showing changes no other flag.
+/// The panel shows the node's flags without changing other flags.
 int checkShowing(const Panel& panel) {
   Node* settings = panel.settings();
   const std::map<std::string, std::string> before = settings->GetFlags();
@@ -127,7 +127,7 @@ int checkShowing(const Panel& panel) {
   return EXIT_SUCCESS;
 }
 
-/// Each clipping mode shows its own widgets, and sets no other flag.
+/// Each clip mode shows its own widgets and sets no flags of other modes.
 int checkClipping(const Panel& panel) {
   const std::map<std::string, std::string> before = panel.settings()->GetFlags();
   for (const char* automatic : {"labelsmoothing", "soft", "contextsaturation"})
@@ -137,14 +137,14 @@ int checkClipping(const Panel& panel) {
   for (const char* other : {"ghostBox", "HoleBox", "holemarginBox", "PlaneBox", "PlaneNodeBox"})
     CHECK_BOOL(panel.withDefault(other), false);
   CHECK_STD_STRING(panel.flag("boundary"), "exact"); // the default of a first focus
-  panel.settings()->SetFlag("boundary", "");         // like a scene from elsewhere
+  panel.settings()->SetFlag("boundary", "");         // like a scene that Fenestra did not save
   CHECK_STD_STRING(panel.chosen("BoundaryBox").toStdString(), "spline");
   panel.settings()->SetFlag("controlpoints", "30");
   panel.set("softBox", 1.0);
   CHECK_STD_STRING(panel.flag("boundary"), "spline"); // other choices keep the boundary
   CHECK_STD_STRING(panel.flag("controlpoints"), "30");
   panel.choose("BoundaryBox", "exact");
-  CHECK_STD_STRING(panel.flag("controlpoints"), ""); // a flag of the spline only
+  CHECK_STD_STRING(panel.flag("controlpoints"), ""); // used only by the spline
   panel.choose("ClipBox", "ghost");
   CHECK_STD_STRING(panel.flag("boundary"), "exact"); // ghost has the same surface
   panel.set("ghostBox", 25.0);
@@ -158,7 +158,7 @@ int checkClipping(const Panel& panel) {
   panel.set("holemarginBox", 7.5);
   CHECK_STD_STRING(panel.flag("hole"), "sphere");
   CHECK_STD_STRING(panel.flag("holemargin"), "7.5");
-  panel.choose("ClipBox", "ghost"); // values set earlier remain
+  panel.choose("ClipBox", "ghost"); // values set before are kept
   CHECK_STD_STRING(panel.flag("ghost"), "0.25");
   CHECK_STD_STRING(panel.flag("holemargin"), "");
 
@@ -179,7 +179,7 @@ int checkClipping(const Panel& panel) {
   panel.choose("ClipBox", "cutaway");
   CHECK_STD_STRING(panel.flag("offset"), "-2.5");
 
-  // Without a focus no flag of clipping is set.
+  // Without a focus, no clipping flag is set.
   QListWidgetItem* segment = panel.find<QListWidget>("FocusList")->item(0);
   panel.set("labelsmoothingBox", 0.0);
   segment->setCheckState(Qt::Unchecked);
@@ -190,7 +190,7 @@ int checkClipping(const Panel& panel) {
   CHECK_STD_STRING(panel.flag("margin"), "1");
   CHECK_STD_STRING(panel.flag("labelsmoothing"), "0"); // as chosen
 
-  // Digits beyond the box's stay until the box is changed.
+  // Digits beyond those of the box are kept until the box changes.
   panel.settings()->SetFlag("soft", "1.23456");
   CHECK_DOUBLE(panel.find<QDoubleSpinBox>("softBox")->value(), 1.23);
   panel.choose("TransferBox", "ct-bone");
@@ -271,7 +271,7 @@ int checkPresets(const Panel& panel, const qFenestraCapabilities& abilities) {
       CHECK_STD_STRING(panel.flag(name), "");
     CHECK_STD_STRING(panel.flag("preset"), "knee-cartilage");
     CHECK_STD_STRING(panel.chosen("ViewBox").toStdString(), "preset");
-    panel.choose("ClipBox", "surface"); // wins over the preset
+    panel.choose("ClipBox", "surface"); // overrides the preset
     CHECK_STD_STRING(panel.flag("clip"), "surface");
     panel.choose("ViewBox", "left");
     CHECK_STD_STRING(panel.flag("view"), "left");
@@ -285,7 +285,7 @@ int checkPresets(const Panel& panel, const qFenestraCapabilities& abilities) {
   return EXIT_SUCCESS;
 }
 
-/// The panel shows withheld flags; files become flags once allowed.
+/// The panel shows withheld flags; file names become flags once allowed.
 int checkWithheld(const Panel& panel) {
   const std::map<std::string, std::string> flags = panel.settings()->GetFlags();
   CHECK_BOOL(panel.withDefault("WithheldLabel"), false);
@@ -305,7 +305,7 @@ int checkWithheld(const Panel& panel) {
   return EXIT_SUCCESS;
 }
 
-/// A turntable is rendered, played, stopped in between and resumed.
+/// A turntable is rendered, played, stopped and resumed.
 int checkTurntable(const Panel& panel, const qFenestraCapabilities& abilities) {
   CHECK_BOOL(panel.withDefault("Turntable"), abilities.hasTurntable());
   CHECK_BOOL(panel.withDefault("Player"), false);
@@ -329,7 +329,7 @@ int checkTurntable(const Panel& panel, const qFenestraCapabilities& abilities) {
   CHECK_INT(slider->maximum(), 2);
   panel.find<QToolButton>("PlayButton")->setChecked(true);
   CHECK_BOOL(waitFor([&] { return slider->value() == 2; }), true);
-  CHECK_BOOL(waitFor([&] { return slider->value() == 0; }), true); // starts again
+  CHECK_BOOL(waitFor([&] { return slider->value() == 0; }), true); // loops
   panel.find<QToolButton>("PlayButton")->setChecked(false);
 
   frames->setValue(60);
@@ -343,10 +343,10 @@ int checkTurntable(const Panel& panel, const qFenestraCapabilities& abilities) {
   QObject::disconnect(connection);
   turntable = panel.picture();
   const int some = vtkSlicerFenestraLogic::GetNumberOfFrames(turntable);
-  std::cout << some << " frames when it was stopped\n";
+  std::cout << some << " frames before the stop\n";
   CHECK_BOOL(some > 0 && some < 60, true);
   CHECK_BOOL(panel.withDefault("ResumeButton"), true);
-  turntable->SetFlag("frames", "x"); // an invalid frame count: cannot be resumed
+  turntable->SetFlag("frames", "x"); // a turntable with an invalid count cannot be resumed
   CHECK_BOOL(panel.widget->session()->canResume(turntable), false);
   turntable->SetFlag("frames", "60");
   CHECK_BOOL(endsOneRender(panel, [&] { panel.find<QPushButton>("ResumeButton")->click(); }), true);
@@ -365,12 +365,12 @@ int checkRenders(const Panel& panel) {
   CHECK_BOOL(panel.find<QLabel>("StateLabel")->text().startsWith("Done: "), true);
   CHECK_BOOL(panel.find<QLabel>("DescriptionLabel")->text().contains("samples"), true);
   CHECK_BOOL(panel.withDefault("MeasuresLabel"), true);
-  CHECK_BOOL(panel.find<QLabel>("MeasuresLabel")->text().contains("Focus seen"), true);
+  CHECK_BOOL(panel.find<QLabel>("MeasuresLabel")->text().contains("Focus visible"), true);
   for (const char* enabled : {"ShowButton", "RepeatButton", "SaveButton"})
     CHECK_BOOL(panel.find<QPushButton>(enabled)->isEnabled(), true);
   CHECK_BOOL(panel.find<QPushButton>("StopButton")->isEnabled(), false);
 
-  // Repeat restores the settings of the first picture.
+  // Repeat restores the settings of the first image.
   panel.choose("ViewBox", "anterior");
   panel.choose("RigBox", "studio");
   CHECK_BOOL(endsOneRender(panel, [&] { panel.find<QPushButton>("RepeatButton")->click(); }), true);
@@ -380,7 +380,7 @@ int checkRenders(const Panel& panel) {
   CHECK_BOOL(radianceOf(first).isEmpty(), false);
   CHECK_BOOL(radianceOf(panel.picture()) == radianceOf(first), true);
 
-  // A segment without a voxel: a message, and the earlier picture stays chosen.
+  // An empty segment gives a message, and the earlier image stays chosen.
   QListWidget& focus = *panel.find<QListWidget>("FocusList");
   focus.item(0)->setCheckState(Qt::Unchecked);
   focus.item(1)->setCheckState(Qt::Checked);
@@ -388,7 +388,7 @@ int checkRenders(const Panel& panel) {
   CHECK_BOOL(endsOneRender(panel, [&] { button->click(); }), true);
   CHECK_BOOL(panel.find<QLabel>("StateLabel")->text().contains("choose segments"), true);
   CHECK_POINTER(panel.picture(), before);
-  panel.find<QPushButton>("ShowButton")->click(); // the user moves on
+  panel.find<QPushButton>("ShowButton")->click(); // another action clears the message
   CHECK_STD_STRING(panel.find<QLabel>("StateLabel")->text().toStdString(), "");
   return EXIT_SUCCESS;
 }
@@ -434,7 +434,7 @@ int qSlicerFenestraModuleWidgetTest1(int argc, char* argv[]) {
   CHECK_EXIT_SUCCESS(checkTurntable(panel, abilities));
   CHECK_EXIT_SUCCESS(checkRenders(panel));
 
-  // A segment is added and removed elsewhere; then the segmentation is deselected.
+  // A segment is added and removed outside the panel; then the segmentation is deselected.
   QListWidget& focus = *panel.find<QListWidget>("FocusList");
   segmentation->GetSegmentation()->AddEmptySegment("Third", "Third");
   CHECK_INT(focus.count(), 3);

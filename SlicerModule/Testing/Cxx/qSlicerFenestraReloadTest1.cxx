@@ -1,5 +1,5 @@
-// The scene is closed and loaded under the open panel, both in place of the present scene and added
-// to it. Arguments: the renderer, a folder for files, the module's library.
+// Closes and loads a scene while the panel is open, replacing the current scene or adding to it.
+// Arguments: the renderer, a folder for files, the module's library.
 
 #include "FenestraPanel.h"
 #include "FenestraTesting.h"
@@ -35,7 +35,7 @@ std::string labelText(const Panel& panel, const char* label) {
   return panel.find<QLabel>(label)->text().toStdString();
 }
 
-/// Adds the view that Slicer's layout makes for ShowResult.
+/// Adds the view that Slicer's layout manager would create for ShowResult.
 void addPictureView(vtkMRMLApplicationLogic* application, vtkMRMLScene* scene) {
   scene->AddNewNodeByClass("vtkMRMLLayoutNode");
   vtkNew<vtkMRMLSliceLogic> view;
@@ -50,7 +50,7 @@ QComboBox* findMaterial(const Panel& panel, int row) {
   return qobject_cast<QComboBox*>(panel.find<QTableWidget>("MaterialsTable")->cellWidget(row, 1));
 }
 
-/// Makes the ball of something else, once the renderer has told what it is by itself.
+/// Gives the ball another material, once the renderer has reported its automatic choice.
 int chooseMaterial(const Panel& panel) {
   CHECK_INT(panel.find<QTableWidget>("MaterialsTable")->rowCount(), 2);
   QComboBox& material = *findMaterial(panel, 0);
@@ -69,7 +69,7 @@ int render(const Panel& panel, const char* from) {
   return EXIT_SUCCESS;
 }
 
-/// No text and no picture of the scene is left.
+/// No text and no image of the scene remains.
 int checkClosed(const Panel& panel) {
   for (const char* label : {"StateLabel", "PreviewStateLabel", "DescriptionLabel"})
     CHECK_STD_STRING(labelText(panel, label), "");
@@ -80,7 +80,7 @@ int checkClosed(const Panel& panel) {
   return EXIT_SUCCESS;
 }
 
-/// The scene is as saved, and the visible picture is the chosen one.
+/// The scene is as saved, and the displayed image is the chosen one.
 int checkLoaded(const Panel& panel, vtkMRMLScene* scene) {
   vtkMRMLNode* volume = scene->GetFirstNodeByName("Ball");
   vtkMRMLNode* segmentation = scene->GetFirstNodeByName("Segmentation");
@@ -108,7 +108,7 @@ int checkLoaded(const Panel& panel, vtkMRMLScene* scene) {
   return EXIT_SUCCESS;
 }
 
-/// Renders end with their scene, also waiting ones.
+/// Closing the scene stops its renders, including waiting ones.
 int checkEnd(const Panel& panel, vtkMRMLScene* scene, qSlicerFenestraSession* session) {
   panel.find<QSpinBox>("SamplesBox")->setValue(1000000);
   panel.find<QPushButton>("RenderButton")->click();
@@ -117,7 +117,7 @@ int checkEnd(const Panel& panel, vtkMRMLScene* scene, qSlicerFenestraSession* se
   CHECK_BOOL(waitFor([&] { return panel.withDefault("ProgressBar"); }), true);
   scene->Clear(false);
   CHECK_BOOL(waitFor([&] { return !session->isRendering(); }), true);
-  CHECK_STD_STRING(labelText(panel, "StateLabel"), "Ended at once, without a picture.");
+  CHECK_STD_STRING(labelText(panel, "StateLabel"), "Stopped immediately, without an image.");
   CHECK_BOOL(panel.withDefault("ProgressBar"), false);
   return EXIT_SUCCESS;
 }
@@ -128,7 +128,7 @@ int qSlicerFenestraReloadTest1(int argc, char* argv[]) {
   qSlicerApplication application(argc, argv);
   if (argc < 4)
     return EXIT_FAILURE;
-  auto* converters = vtkSegmentationConverterFactory::GetInstance(); // like the converters' module
+  auto* converters = vtkSegmentationConverterFactory::GetInstance(); // like Slicer's own module
   converters->RegisterConverterRule(
       vtkSmartPointer<vtkBinaryLabelmapToClosedSurfaceConversionRule>::New());
   converters->RegisterConverterRule(
@@ -155,7 +155,7 @@ int qSlicerFenestraReloadTest1(int argc, char* argv[]) {
   panel.find<QSpinBox>("WidthBox")->setValue(48);
   panel.find<QSpinBox>("HeightBox")->setValue(40);
 
-  // Two pictures; the chosen one is visible, and saved so.
+  // Two images; the chosen one is displayed, and saved as such.
   CHECK_EXIT_SUCCESS(render(panel, "left"));
   Node* const first = panel.picture();
   CHECK_EXIT_SUCCESS(render(panel, "right"));
@@ -175,7 +175,7 @@ int qSlicerFenestraReloadTest1(int argc, char* argv[]) {
   scene->AddNewNodeByClass("vtkMRMLLayoutNode");
   CHECK_BOOL(scene->ReadFromMRB(file.c_str(), false), true);
   CHECK_EXIT_SUCCESS(checkLoaded(panel, scene));
-  CHECK_EXIT_SUCCESS(render(panel, "right")); // its messages disappear as well
+  CHECK_EXIT_SUCCESS(render(panel, "right")); // its messages must disappear, too
   panel.nodes("RendersBox")->setCurrentNode(nullptr);
   CHECK_BOOL(scene->ReadFromMRB(file.c_str(), true), true);
   CHECK_EXIT_SUCCESS(checkLoaded(panel, scene));

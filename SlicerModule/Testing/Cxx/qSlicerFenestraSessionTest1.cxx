@@ -1,5 +1,5 @@
-// The whole path except the panel: a scene, a preview, renders, and their results in the scene, bit
-// for bit equal to the command line's on the scene as Slicer saves it.
+// A session without the panel: scene, preview, renders, and results in the scene. Rendering the
+// scene that Slicer saves from the command line gives the same image, bit for bit.
 // Arguments: the renderer, a folder for files.
 
 #include "FenestraTesting.h"
@@ -58,7 +58,7 @@ struct SignalRecorder {
   QImage preview;
 };
 
-/// Saves a node's data, and adds the storage node, as Slicer does.
+/// Saves a node's data and adds the storage node, as Slicer does.
 void store(vtkMRMLScene* scene, vtkMRMLStorableNode* node, const QString& file) {
   const auto storage = vtkSmartPointer<vtkMRMLStorageNode>::Take(node->CreateDefaultStorageNode());
   storage->SetFileName(file.toUtf8().constData());
@@ -113,7 +113,7 @@ int checkResult(vtkMRMLScene* scene, Node* render) {
   return EXIT_SUCCESS;
 }
 
-/// Two renders, one after the other.
+/// Two renders, run one after the other.
 int checkTwoRenders(vtkMRMLScene* scene, qSlicerFenestraSession& session, Node* settings,
                     SignalRecorder& recorder) {
   Node* first = session.render(settings);
@@ -128,7 +128,7 @@ int checkTwoRenders(vtkMRMLScene* scene, qSlicerFenestraSession& session, Node* 
   return EXIT_SUCCESS;
 }
 
-/// Finished samples of a stopped render are kept, soon.
+/// A stopped render keeps its finished samples.
 int checkStop(qSlicerFenestraSession& session, Node* settings, SignalRecorder& recorder) {
   settings->SetFlag("samples", "100000000");
   Node* long_ = session.render(settings);
@@ -144,7 +144,7 @@ int checkStop(qSlicerFenestraSession& session, Node* settings, SignalRecorder& r
   return EXIT_SUCCESS;
 }
 
-/// Failures leave no node behind. `ids`: of a segment, and of an empty one.
+/// Failures leave no node. `ids`: of a segment and of an empty segment.
 int checkFailures(vtkSlicerFenestraLogic* logic, qSlicerFenestraSession& session, Node* settings,
                   const std::vector<std::string>& ids, SignalRecorder& recorder) {
   vtkMRMLScene* const scene = settings->GetScene();
@@ -170,7 +170,7 @@ int checkFailures(vtkSlicerFenestraLogic* logic, qSlicerFenestraSession& session
   return EXIT_SUCCESS;
 }
 
-/// Another scene has a node with this render's ID: results of the render are not shown for it.
+/// A node of another scene has the ID of a render: it must not show the render's results.
 int checkAnotherScene(vtkMRMLScene* scene, qSlicerFenestraSession& session, Node* render) {
   const std::string id = render->GetID();
   const QString file = session.results().findFile(render, "png");
@@ -184,12 +184,12 @@ int checkAnotherScene(vtkMRMLScene* scene, qSlicerFenestraSession& session, Node
   CHECK_BOOL(session.results().findFile(stranger, "png").isEmpty(), true);
   CHECK_BOOL(session.results().findFrames(stranger).isEmpty(), true);
   CHECK_BOOL(session.canResume(stranger), false);
-  session.closeScene(); // like the panel
+  session.closeScene(); // the module does this in Slicer
   CHECK_BOOL(waitFor([&] { return !QFileInfo::exists(file); }), true);
   return EXIT_SUCCESS;
 }
 
-/// Render, events and removal as a script asks for them.
+/// Render, events and removal, as a script uses them.
 int checkScript(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, qSlicerFenestraSession& session,
                 Node* settings) {
   TESTING_OUTPUT_ASSERT_ERRORS_BEGIN();
@@ -219,7 +219,7 @@ int checkScript(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, qSlicerFenes
   Node* watch = logic->Render(settings, true);
   CHECK_NOT_NULL(watch);
   CHECK_NOT_NULL(watch->GetNodeReference(Node::PictureRole));
-  // Results go with their render.
+  // Results are removed with their render.
   const std::string picture = watch->GetNodeReferenceID(Node::PictureRole);
   const std::string depth = watch->GetNodeReferenceID(Node::DepthRole);
   scene->RemoveNode(watch);
@@ -238,7 +238,7 @@ int qSlicerFenestraSessionTest1(int argc, char* argv[]) {
   const QString folder = QString(argv[2]) + "/session";
   QDir(folder).removeRecursively();
   QDir().mkpath(folder);
-  auto* converters = vtkSegmentationConverterFactory::GetInstance(); // like the converters' module
+  auto* converters = vtkSegmentationConverterFactory::GetInstance(); // like Slicer's own module
   converters->RegisterConverterRule(
       vtkSmartPointer<vtkBinaryLabelmapToClosedSurfaceConversionRule>::New());
   converters->RegisterConverterRule(
@@ -262,7 +262,7 @@ int qSlicerFenestraSessionTest1(int argc, char* argv[]) {
   SignalRecorder recorder(session);
   session.preview(settings);
   CHECK_BOOL(waitFor([&] { return recorder.previews > 0; }), true);
-  CHECK_INT(recorder.preview.width(), 256); // the picture's aspect
+  CHECK_INT(recorder.preview.width(), 256); // the image's aspect ratio
   CHECK_INT(recorder.preview.height(), 213);
   const int before = recorder.previews;
   settings->SetFocus({ids[0]});

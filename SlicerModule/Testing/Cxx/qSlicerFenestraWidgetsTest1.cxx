@@ -1,4 +1,4 @@
-// Widgets of look and clipping without a scene: flags that they show, and flags that they make.
+// Widgets for appearance and clipping without a scene: flags that they show and write.
 
 #include "FenestraTesting.h"
 
@@ -40,7 +40,7 @@ void press(QWidget& widget, int key, const QString& text = {}) {
   QApplication::sendEvent(&widget, &event);
 }
 
-/// Flags that the widget makes of none, without the empty ones.
+/// Nonempty flags that the widget writes.
 Flags takeFlags(const TransferChoice& look) {
   Flags flags, given;
   look.take(flags);
@@ -78,7 +78,7 @@ int checkLookDefaults() {
   return EXIT_SUCCESS;
 }
 
-/// Values that no widget has stay until the user chooses another.
+/// Flag values that the widgets cannot represent stay until the user chooses another.
 int checkLookKeeps() {
   TransferChoice look;
   const Flags flags = {{"transfer", "CT-AAA"},
@@ -86,7 +86,7 @@ int checkLookKeeps() {
                        {"background", "0.3,0.2,0.1"},
                        {"exposure", "-9.125"},
                        {"tone", "film"}};
-  look.show(flags, "cinema 50 100 100 100", false); // a rig that these lights do not follow from
+  look.show(flags, "cinema 50 100 100 100", false); // this rig does not produce these lights
   Flags taken = flags;
   look.take(taken);
   CHECK_BOOL(taken == flags, true);
@@ -95,7 +95,7 @@ int checkLookKeeps() {
   look.take(taken);
   CHECK_STD_STRING(taken["transfer"], "ct-bone");
   CHECK_STD_STRING(taken["exposure"], "-9.125");
-  look.show({{"transfer", "MR-Default"}}, {}, false); // in place of the last of its kind
+  look.show({{"transfer", "MR-Default"}}, {}, false); // replaces the item added before
   CHECK_INT(box(look, "TransferBox").findData("CT-AAA"), -1);
   return EXIT_SUCCESS;
 }
@@ -129,7 +129,7 @@ int checkRigs() {
   return EXIT_SUCCESS;
 }
 
-/// Older renderers have neither exposure nor tone.
+/// Old renderers lack exposure and tone.
 int checkAbilities() {
   TransferChoice look;
   qFenestraCapabilities abilities;
@@ -142,7 +142,7 @@ int checkAbilities() {
   return EXIT_SUCCESS;
 }
 
-/// Anatomies are listed with a picture where there is one.
+/// Anatomies have icons where the resources contain one.
 int checkPictures() {
   qSlicerFenestraPanel panel;
   qFenestraCapabilities abilities;
@@ -155,7 +155,7 @@ int checkPictures() {
   return EXIT_SUCCESS;
 }
 
-/// Numbers that may be automatic, by the keyboard alone.
+/// Numbers that may be "auto" can be set by the keyboard alone.
 int checkAutomatic() {
   Clipping clipping(new qMRMLNodeComboBox);
   const QList<qSlicerFenestraSegment> focus = {{"A", "A"}};
@@ -175,18 +175,18 @@ int checkAutomatic() {
     press(one, Qt::Key_Down);
     CHECK_STD_STRING(one.text().toStdString(), "auto");
     one.selectAll();
-    for (const QChar sign : QString("-0.3")) // the minus is not taken
+    for (const QChar sign : QString("-0.3")) // the minus sign is rejected
       press(one, 0, sign);
     CHECK_DOUBLE(one.value(), 0.3);
     press(one, Qt::Key_Down);
     CHECK_DOUBLE(one.value(), 0.0);
     press(one, Qt::Key_PageDown);
     CHECK_STD_STRING(taken(flag), "");
-    clipping.show({{flag, "0.5"}}, Clipping::Plane::automatic, focus, false); // of an old scene
+    clipping.show({{flag, "0.5"}}, Clipping::Plane::automatic, focus, false); // from an old scene
     CHECK_STD_STRING(taken(flag), "0.5");
     clipping.show({{flag, "auto"}}, Clipping::Plane::automatic, focus, false);
     CHECK_STD_STRING(one.text().toStdString(), "auto");
-    CHECK_STD_STRING(taken(flag), "auto"); // over a preset
+    CHECK_STD_STRING(taken(flag), "auto"); // overrides a preset
     clipping.reset();
     CHECK_STD_STRING(taken(flag), "");
   }

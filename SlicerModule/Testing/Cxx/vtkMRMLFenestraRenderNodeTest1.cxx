@@ -1,4 +1,4 @@
-// The node of settings and results: written, read, copied.
+// Writing, reading and copying the node of settings and results.
 
 #include "FenestraFlags.h"
 #include "FenestraTesting.h"
@@ -11,7 +11,7 @@ namespace {
 
 using Node = vtkMRMLFenestraRenderNode;
 
-/// Valid value of a flag of this kind.
+/// Valid value for a flag of this kind.
 std::string makeValue(SlicerExport::FlagKind kind) {
   using Kind = SlicerExport::FlagKind;
   switch (kind) {
@@ -34,7 +34,7 @@ std::string makeValue(SlicerExport::FlagKind kind) {
   }
 }
 
-/// Reads a scene's text, and returns its only render node.
+/// Reads a scene from text and returns its only render node.
 Node* readScene(vtkMRMLScene* scene, const std::string& text) {
   scene->RegisterNodeClass(vtkSmartPointer<Node>::New());
   scene->SetLoadFromXMLString(1);
@@ -49,8 +49,8 @@ std::string writeScene(vtkMRMLScene* scene) {
   return scene->GetSceneXMLString();
 }
 
-/// Attributes of a newer version are written again, once, and copied; those of every node are not
-/// theirs.
+/// Attributes of a newer version are written again, once, and copied. The base class writes the
+/// attributes of all nodes.
 int testUnknown() {
   const std::string text =
       R"(<MRML version="Slicer 5.12"><FenestraRender id="r" name="r" description="d" )"
@@ -76,7 +76,7 @@ int testUnknown() {
   return EXIT_SUCCESS;
 }
 
-/// Scene from an unknown source: files and invalid values are kept, but are no flags.
+/// File names and invalid values from an untrusted scene are kept, but are not flags.
 int testWithheld() {
   const std::string text =
       R"(<MRML version="Slicer 5.2"><FenestraRender id="r" name="r" )"
@@ -106,7 +106,7 @@ int testWithheld() {
   return EXIT_SUCCESS;
 }
 
-/// Every flag, and the measures, written with the node's scene and read again.
+/// All flags and the measures are written to a scene and read again.
 int testEveryFlag(Node* read) {
   std::map<std::string, std::string> all;
   for (const SlicerExport::Flag& flag : SlicerExport::flags())
@@ -166,7 +166,7 @@ int vtkMRMLFenestraRenderNodeTest1(int, char*[]) {
   vtkNew<Node> copy;
   copy->Copy(first);
   CHECK_BOOL(copy->GetFlags() == first->GetFlags(), true);
-  // No change, no event.
+  // Setting the same value must not invoke an event.
   const vtkMTimeType before = first->GetMTime();
   first->SetFlag("clip", "surface");
   CHECK_BOOL(first->GetMTime() == before, true);

@@ -1,4 +1,4 @@
-// Data for the renderer, and messages for the user.
+// Data that the logic collects for the renderer, and its error messages.
 
 #include "FenestraTesting.h"
 
@@ -21,9 +21,9 @@ namespace {
 
 using Node = vtkMRMLFenestraRenderNode;
 
-const auto folder = std::filesystem::temp_directory_path(); // no data pass through it here
+const auto folder = std::filesystem::temp_directory_path(); // these tests write no files
 
-/// Message about missing data; empty: nothing is missing.
+/// Error message of a snapshot; empty: success.
 std::string getSnapshotError(vtkSlicerFenestraLogic* logic, Node* node) {
   try {
     logic->Snapshot(node, folder);
@@ -98,7 +98,7 @@ int testSubject(vtkMRMLScene* scene, vtkSlicerFenestraLogic* logic, Node* settin
   contents = logic->Snapshot(settings, folder);
   CHECK_BOOL(contents.segmentationKey != before, true);
   const auto named = vtkSlicerFenestraLogic::GetSegments(settings);
-  CHECK_INT(static_cast<int>(named.size()), 2); // also the empty one
+  CHECK_INT(static_cast<int>(named.size()), 2); // includes the empty segment
   for (const SlicerExport::Segment& one : {contents.segmentation.segments[0], named[0]}) {
     CHECK_STD_STRING(one.id, ids[0]);
     CHECK_STD_STRING(one.tags, "TerminologyEntry:a~SCT^1^b|");
@@ -135,7 +135,7 @@ int testPlane(vtkMRMLScene* scene) {
   return EXIT_SUCCESS;
 }
 
-/// Flags of turntables do not reach a picture's node.
+/// An image's node has no turntable flags.
 int testTurntable(vtkSlicerFenestraLogic* logic, Node* settings) {
   settings->SetFlag("frames", "12");
   settings->SetFlag("degrees", "90");

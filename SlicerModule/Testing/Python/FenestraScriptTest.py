@@ -1,4 +1,4 @@
-"""Lines of the tutorial that a user would type, typed."""
+"""Runs the tutorial's Python lines."""
 
 import pathlib
 import re

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# The pictures of SlicerModule/Tutorial.md, from what a tour left. Needs ImageMagick.
+# Makes the images of SlicerModule/Tutorial.md from a tour's screenshots. Needs ImageMagick.
 # usage: FENESTRA_TOUR_QUALITY=1 ctest -R qSlicerFenestraTour, then: pictures.sh REPORT
 set -euo pipefail
 report=$1
 pictures=$(cd "$(dirname "${BASH_SOURCE[0]}")/../../.." && pwd)/Resources/pictures
 for step in 1-start 2-loaded 3-opened 4-focus 5-turned 6-rendering 7-result 8-closed 9-reloaded \
   10-repeated 11-command 12-hole 13-surroundings 14-view 15-anatomy 16-measures 18-turntable; do
-  [ -e "$report/$step.png" ] || continue # the renderer did not know it
+  [ -e "$report/$step.png" ] || continue # the renderer did not support this step
   convert "$report/$step.png" -resize 1200x -quality 82 "$pictures/slicer-${step#*-}.jpg"
 done

@@ -3,7 +3,7 @@
 #include <QElapsedTimer>
 #include <QTimer>
 
-/// Measures the longest pause of the event loop.
+/// Measures the longest time during which the event loop did not respond.
 class qSlicerFenestraPulse {
 public:
   qSlicerFenestraPulse();

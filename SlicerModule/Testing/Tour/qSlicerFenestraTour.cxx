@@ -94,7 +94,7 @@ bool qSlicerFenestraTour::loadPhantom() {
   if (!qSlicerApplication::application()->coreIOManager()->loadScene(m_report + "/knee/knee.mrml"))
     return false;
   auto* fenestra = qSlicerApplication::application()->moduleLogic("Fenestra");
-  vtkSlicerFenestraLogic::SafeDownCast(fenestra)->ShowNewestVolume(); // like the sample's button
+  vtkSlicerFenestraLogic::SafeDownCast(fenestra)->ShowNewestVolume(); // as loadSample() does
   join(2000);
   takeScreenshot("2-loaded");
   return true;
@@ -108,7 +108,7 @@ bool qSlicerFenestraTour::showModule() {
   return true;
 }
 
-/// Chooses segments with the mouse, on the check boxes of their rows.
+/// Chooses segments by mouse clicks on their check boxes.
 bool qSlicerFenestraTour::chooseCartilage() {
   auto* list = m_panel->findChild<QListWidget*>("FocusList");
   const QList<QListWidgetItem*> items = list->findItems("cartilage", Qt::MatchContains);
@@ -134,7 +134,7 @@ bool qSlicerFenestraTour::chooseCartilage() {
   return true;
 }
 
-/// Measures without and with Slicer's own volume rendering, which is slow without a graphics card.
+/// Measures without and with Slicer's own volume rendering, which is slow without a GPU.
 bool qSlicerFenestraTour::turnCamera() {
   showVolumeRendering(false);
   const int alone = slowestTurn();
@@ -186,12 +186,12 @@ bool qSlicerFenestraTour::render() {
   if (!waitFor([&] { return m_ended > before; }, 300000))
     return false;
   m_measurements["render"] = m_panel->findChild<QLabel*>("StateLabel")->text();
-  join(8000); // volume rendering of a new view is slow without a graphics card
+  join(8000); // volume rendering in a new view is slow without a GPU
   takeScreenshot("7-result");
   return lastRender() && !radianceOf(lastRender()).isEmpty();
 }
 
-/// Hides Slicer's own volume rendering, so that pauses are the module's.
+/// Hides Slicer's own volume rendering, to measure only the module's pauses.
 bool qSlicerFenestraTour::stopRender() {
   showVolumeRendering(false);
   Node* const settings = this->settings();
@@ -224,7 +224,7 @@ bool qSlicerFenestraTour::stopRender() {
   return lastRender() != nullptr;
 }
 
-/// Shows the best picture so far, the first, beside the previews.
+/// Shows the best image so far, which is the first, beside the previews.
 bool qSlicerFenestraTour::changeClipping() {
   showVolumeRendering(false);
   m_panel->findChild<qMRMLNodeComboBox*>("RendersBox")->setCurrentNode(firstRender());
@@ -280,10 +280,10 @@ bool qSlicerFenestraTour::renderMeasured() {
   takeScreenshot("16-measures");
   auto* measures = m_panel->findChild<QLabel*>("MeasuresLabel");
   m_measurements["measures"] = measures->text();
-  return measures->isVisible() && measures->text().contains("Focus seen");
+  return measures->isVisible() && measures->text().contains("Focus visible");
 }
 
-/// Renders and plays a few small frames, if the renderer has turntables.
+/// Renders and plays a few small frames, if the renderer supports turntables.
 bool qSlicerFenestraTour::renderTurntable() {
   if (m_panel->findChild<QWidget*>("Turntable")->isHidden())
     return true;
@@ -365,7 +365,7 @@ bool qSlicerFenestraTour::saveAndRepeat() {
   return m_measurements["repeatedBitForBit"].toBool() && m_measurements["readBack"].toBool();
 }
 
-/// Runs the renderer as a command line module, in the panel that Slicer makes of its description.
+/// Runs the renderer as a command line module, in the panel that Slicer builds from its XML.
 bool qSlicerFenestraTour::runCommand() {
   auto* application = qSlicerApplication::application();
   auto* module =
@@ -411,8 +411,8 @@ bool qSlicerFenestraTour::runCommand() {
          node->GetErrorText().empty() && image && image->GetDimensions()[0] == 512;
 }
 
-/// Turns the slice view as with its menu: coronal, then to the picture's plane, without outlines of
-/// segments.
+/// Turns the slice view as its menu does: first coronal, then to the image's plane, without segment
+/// outlines.
 void qSlicerFenestraTour::faceOutput(vtkMRMLVolumeNode* output) {
   auto* application = qSlicerApplication::application();
   std::vector<vtkMRMLNode*> outlines;

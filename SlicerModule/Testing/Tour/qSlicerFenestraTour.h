@@ -1,5 +1,5 @@
 #pragma once
-// Steps of the tutorial, done with the mouse, and checks of their results.
+// Performs the steps of the tutorial with the mouse and checks their results.
 
 #include "qSlicerFenestraPulse.h"
 #include "qSlicerFenestraUser.h"
@@ -10,9 +10,9 @@ class vtkMRMLVolumeNode;
 
 class qSlicerFenestraTour : private qSlicerFenestraUser {
 public:
-  /// `report`: folder with the phantom's scene in knee/; receives pictures and tour.json.
+  /// `report`: folder with the phantom's scene in knee/; receives screenshots and tour.json.
   explicit qSlicerFenestraTour(const QString& report);
-  /// True if every step did what the tutorial says.
+  /// True if every step had the result that the tutorial states.
   bool run();
 
 private:

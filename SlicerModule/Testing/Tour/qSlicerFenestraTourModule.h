@@ -5,7 +5,7 @@
 
 #include "qSlicerFenestraTourModuleExport.h"
 
-/// Starts the tour once the application runs, if FENESTRA_TOUR names a folder for its report.
+/// Starts the tour after the application's start, if FENESTRA_TOUR names a folder for its report.
 class Q_SLICER_QTMODULES_FENESTRATOUR_EXPORT qSlicerFenestraTourModule
     : public qSlicerLoadableModule {
   Q_OBJECT
@@ -17,8 +17,8 @@ public:
   explicit qSlicerFenestraTourModule(QObject* parent = nullptr) : Superclass(parent) {}
 
   qSlicerGetTitleMacro(QTMODULE_TITLE);
-  QString formatHelp() const override { return "The tutorial, done by a program."; }
-  QString acknowledgementText() const override { return "For tests and pictures."; }
+  QString formatHelp() const override { return "Performs the tutorial automatically."; }
+  QString acknowledgementText() const override { return "For tests and screenshots."; }
   bool isHidden() const override { return true; }
   QStringList dependencies() const override { return {"Fenestra"}; }
 

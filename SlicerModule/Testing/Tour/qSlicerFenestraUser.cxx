@@ -70,7 +70,7 @@ bool qSlicerFenestraUser::click(const char* button) {
   if (!found || !found->isEnabled())
     return false;
   QTest::mousePress(found, Qt::LeftButton);
-  join(50); // like a finger
+  join(50); // a typical click
   QTest::mouseRelease(found, Qt::LeftButton);
   return true;
 }
@@ -96,10 +96,10 @@ void qSlicerFenestraUser::scrollTo(const char* widget) {
 
 void qSlicerFenestraUser::fold(const char* section, bool folded) {
   m_panel->findChild<ctkCollapsibleButton*>(section)->setCollapsed(folded);
-  join(300); // time for the new layout
+  join(300); // for the new layout
 }
 
-/// Photographs the preview after a change.
+/// Takes a screenshot of the preview after a change.
 bool qSlicerFenestraUser::takePreviewScreenshot(const char* name,
                                                 const std::function<bool()>& action) {
   const int before = m_previews;

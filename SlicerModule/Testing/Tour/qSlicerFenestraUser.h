@@ -1,5 +1,5 @@
 #pragma once
-// A user of the panel: mouse actions, photographs of the window, and the nodes of the scene.
+// Simulated user of the panel: mouse actions, screenshots, and access to the scene's nodes.
 
 #include <QString>
 
@@ -11,11 +11,11 @@ class vtkMRMLFenestraRenderNode;
 
 class qSlicerFenestraUser {
 public:
-  /// `report`: folder for photographs.
+  /// `report`: folder for screenshots.
   explicit qSlicerFenestraUser(const QString& report);
 
 protected:
-  /// Opens the module, and starts counting previews and renders.
+  /// Opens the module and starts counting previews and renders.
   bool openModule();
 
   bool click(const char* button);
@@ -30,7 +30,7 @@ protected:
 
   vtkMRMLFenestraRenderNode* settings() const;
   vtkMRMLFenestraRenderNode* firstRender() const;
-  vtkMRMLFenestraRenderNode* lastRender() const; ///< last one with a picture
+  vtkMRMLFenestraRenderNode* lastRender() const; ///< last render with an image
 
   QString m_report;
   QMainWindow* m_window;

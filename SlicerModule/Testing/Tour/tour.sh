@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# The tutorial in a real Slicer on a virtual screen. usage: tour.sh SLICER MODULES FENESTRA REPORT
-# FENESTRA_TOUR_QUALITY: 0 draft, 1 good, 2 final. FENESTRA_TOUR_PATIENCE: how many times as long as
-# usual a step may take, on a busy machine or for better quality. Leaves pictures and tour.json in
-# REPORT; fails where a step does, or where Slicer logs a warning that names Fenestra.
+# Runs the tutorial in a real Slicer on a virtual screen. usage: tour.sh SLICER MODULES FENESTRA REPORT
+# FENESTRA_TOUR_QUALITY: 0 draft, 1 good, 2 final. FENESTRA_TOUR_PATIENCE: factor on all waiting times, for a busy
+# machine or a higher quality. Leaves screenshots and tour.json in REPORT. Fails if a step fails, or if Slicer logs a
+# warning or error that names Fenestra.
 set -euo pipefail
 slicer=$1 modules=$2 fenestra=$3 report=$4
 rm -rf "$report"
@@ -26,6 +26,6 @@ if [ "$status" -ne 0 ]; then
 fi
 if grep -iE '(warning|error).*fenestra|fenestra.*(warning|error)' "$report/slicer.log" |
   grep -v 'completed without errors$'; then
-  echo "Slicer's log has the above to say" >&2
+  echo "Slicer's log contains the warnings or errors above" >&2
   exit 1
 fi

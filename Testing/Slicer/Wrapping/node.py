@@ -1,4 +1,4 @@
-"""Round trip of the node from Python: flags, XML, content; and arguments that are None or of no sense."""
+"""Uses the wrapped node from Python: flags, XML, copies, and invalid arguments such as None."""
 
 import vtkmodules.vtkCommonCore
 from FenestraPython import vtkMRMLFenestraPictureDisplayNode as PictureDisplay
@@ -8,7 +8,7 @@ from vtkmodules.vtkCommonDataModel import vtkImageData
 
 
 def attempt(call, *arguments):
-    """Whatever a script types ends in a result or in an exception, never with the process."""
+    """Calls with any arguments: the result may be an exception, but not a crash."""
     try:
         call(*arguments)
     except (TypeError, ValueError):
@@ -35,7 +35,7 @@ assert node.GetNodeReferenceID("volume") == "vtkMRMLScalarVolumeNode1"
 
 read = Node()
 read.ReadAll(["name", "other", "clip", "surface", "transfer", "/etc/passwd", "mood", "<deep>"])
-assert read.GetFlag("clip") == "surface" and read.GetFlag("transfer") == "", "a file is withheld"
+assert read.GetFlag("clip") == "surface" and read.GetFlag("transfer") == "", "file names are withheld"
 assert read.WithholdsFiles()
 written = read.Written()
 assert all(part in written for part in ('clip="surface"', 'transfer="/etc/passwd"', 'mood="&lt;deep>"'))
@@ -53,13 +53,13 @@ copy.AllowFiles()
 assert copy.GetFlag("transfer") == "/etc/passwd"
 
 of_vtk = ("IsTypeOf", "IsA", "SafeDownCast", "NewInstance", "GetNumberOfGenerationsFromBase",
-          "GetNumberOfGenerationsFromBaseType")  # VTK's own, which ends with None
+          "GetNumberOfGenerationsFromBaseType")  # VTK's own methods, which crash on None
 own = [name for name in vars(Node) if name[0].isupper() and name not in of_vtk]
 assert {"SetFlag", "SetFocus", "CopyContent"} <= set(own)
 for name in own:
     for arguments in ((), (None,), (None, None), ("x",), ("x", None), (node, node), ([],), ([None],)):
         attempt(getattr(node, name), *arguments)
-print("round trip from Python: well")
+print("node from Python: ok")
 
 pixels = [(200, 100, 50, 255), (200, 100, 50, 128), (0, 0, 0, 0)]
 picture = vtkImageData()
@@ -76,6 +76,6 @@ def displayed(node):
                   for component in range(image.GetNumberOfScalarComponents())) for x in range(3)]
 
 
-assert displayed(PictureDisplay()) == pixels, "colours and opacity as in the picture"
-assert len(displayed(VectorDisplay())[0]) == 5, "what the stand-in, as Slicer, makes of it"
-print("opacity of pictures: kept")
+assert displayed(PictureDisplay()) == pixels, "color and opacity of the image"
+assert len(displayed(VectorDisplay())[0]) == 5, "the stand-in appends an opacity, as Slicer does"
+print("opacity of images: ok")

@@ -1,7 +1,7 @@
 #ifndef __vtkMRMLNode_h
 #define __vtkMRMLNode_h
-// Stand-in for Slicer's class of this name: as much of its interface as the module's node and the
-// wrapper's output need.
+// Stand-in for Slicer's class, with as much of its interface as the module's node and the wrapper's
+// output need.
 
 #include <vtkObject.h>
 #include <vtkObjectFactory.h>
@@ -54,7 +54,7 @@ public:
   int StartModify() { return 0; }
   void EndModify(int) {}
 
-  /// Text of WriteXML, and its inverse for `name value name value ...`, for scripts.
+  /// Output of WriteXML as text, and its inverse for `name value name value ...`, for scripts.
   std::string Written() {
     std::ostringstream text;
     this->WriteXML(text, 0);

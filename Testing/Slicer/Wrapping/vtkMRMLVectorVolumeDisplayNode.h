@@ -1,7 +1,7 @@
 #ifndef __vtkMRMLVectorVolumeDisplayNode_h
 #define __vtkMRMLVectorVolumeDisplayNode_h
-// Stand-in for Slicer's class of this name, with its pipeline of filters: colours scaled by the
-// window, then an opacity appended.
+// Stand-in for Slicer's class with its filter pipeline: colors are scaled by the window, then an
+// opacity is appended.
 
 #include "vtkMRMLNode.h"
 
@@ -24,7 +24,7 @@ public:
     return this->ShiftScale->GetInputConnection(0, 0);
   }
 
-  /// Picture as a slice view gets it, for scripts.
+  /// Image as a slice view receives it, for scripts.
   vtkImageData* Displayed(vtkImageData* picture) {
     vtkNew<vtkTrivialProducer> source;
     source->SetOutput(picture);

@@ -1,7 +1,6 @@
 #ifndef __vtkSlicerModuleLogic_h
 #define __vtkSlicerModuleLogic_h
-// Stand-in for Slicer's class of this name, for compiling what the wrapper makes of the module's
-// logic.
+// Stand-in for Slicer's class, to compile the wrapper's output for the module's logic.
 
 #include <vtkObject.h>
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# The module's classes as Slicer makes them usable from Python: VTK's wrapper reads every header of Logic
-# and MRML, what it makes is compiled, and a script uses the node. Stand-ins (in this folder) take the place
-# of Slicer's classes. Debian's packages of VTK are unpacked into FOLDER where they are not installed.
-# usage: wrap.sh FOLDER. Exit status 77: there is neither the wrapper nor a way to get it.
+# Wraps the module's classes for Python as Slicer does: VTK's wrapper reads every header of Logic and MRML, its
+# output is compiled, and a script uses the node. Stand-ins in this folder replace Slicer's classes. If Debian's VTK
+# packages are not installed, they are unpacked into FOLDER.
+# usage: wrap.sh FOLDER. Exit status 77: the wrapper is neither installed nor can be downloaded.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 module=$here/../../../SlicerModule
@@ -19,10 +19,10 @@ if ! [ -x /usr/bin/vtkWrapPython-9.1 ] || ! [ -e /usr/include/vtk-9.1/vtkPythonA
   root=$PWD/debian
   packages=(libvtk9-dev libvtk9.1 python3-vtk9 vtk9 libpython3.11-dev)
   if ! [ -e "$root/usr/bin/vtkWrapHierarchy-9.1" ]; then
-    command -v apt-get >/dev/null || skip "no apt-get to get VTK's wrapper with"
+    command -v apt-get >/dev/null || skip "needs apt-get to download VTK's wrapper"
     apt-get download "${packages[@]}" >apt.log 2>&1 ||
       { apt-get update && apt-get download "${packages[@]}"; } >apt.log 2>&1 ||
-      skip "packages of VTK 9.1 cannot be fetched ($PWD/apt.log)"
+      skip "the VTK 9.1 packages cannot be downloaded ($PWD/apt.log)"
     for package in *.deb; do dpkg -x "$package" "$root"; done
     rm ./*.deb
   fi
@@ -42,8 +42,8 @@ printf '%s;FenestraPython\n' "${headers[@]}" >headers.txt
 "$root/usr/bin/vtkWrapHierarchy-9.1" "${includes[@]}" -o ours.txt headers.txt
 cp ours.txt FenestraPython-hierarchy.txt
 types=(--types FenestraPython-hierarchy.txt)
-for room in vtkCommonCore vtkCommonDataModel vtkCommonExecutionModel; do
-  types+=(--types "$libraries/vtk/hierarchy/VTK/$room-hierarchy.txt")
+for vtk_module in vtkCommonCore vtkCommonDataModel vtkCommonExecutionModel; do
+  types+=(--types "$libraries/vtk/hierarchy/VTK/$vtk_module-hierarchy.txt")
 done
 
 compile=(g++ -std=c++17 -fPIC -O0 "${includes[@]}" "-I$root/usr/include/python3.11" -I/usr/include/python3.11)
@@ -56,7 +56,7 @@ for header in "${headers[@]}"; do
 done
 echo "wrapped and compiled: ${#headers[@]} headers"
 
-# The nodes as a Python module.
+# Links the nodes into a Python module.
 printf '%s\n' FenestraPython vtkMRMLNode vtkMRMLFenestraRenderNode vtkMRMLVectorVolumeDisplayNode \
   vtkMRMLFenestraPictureDisplayNode >init.txt
 "$root/usr/bin/vtkWrapPythonInit-9.1" init.txt FenestraPythonInit.cxx FenestraPythonInitImpl.cxx
