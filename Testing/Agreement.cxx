@@ -11,7 +11,7 @@
 namespace fenestra {
 namespace {
 
-/// A picture with standard errors.
+/// Means and standard errors of an image.
 struct Estimates {
   Planes means, errors;
   const std::vector<float>* samples;
@@ -21,8 +21,8 @@ struct Estimates {
         errors(findPlanes(image, errorNames)),
         samples(image.find("samples.N")) {
     if (!isComplete(errors))
-      throw inputError("pictures", "one has no channels error.R, error.G and error.B; compare "
-                                   "renders with all layers");
+      throw inputError("images", "one has no channels error.R, error.G and error.B; compare "
+                                 "renders with all layers");
   }
   double mean(std::size_t c, std::size_t i) const { return (*means[c])[i]; }
   double variance(std::size_t c, std::size_t i) const { return square((*errors[c])[i]); }
@@ -65,8 +65,8 @@ double computePValue(const Estimates& a, const Estimates& b, std::size_t c, std:
   return studentTail(t, dof);
 }
 
-/// The continued fraction of the incomplete beta function (DLMF 8.17.22), evaluated as Lentz does
-/// (modified: Thompson and Barnett 1986). It converges fast for x < (a + 1) / (a + b + 2).
+/// Continued fraction of the incomplete beta function (DLMF 8.17.22), by the modified Lentz method
+/// (Thompson and Barnett 1986). It converges fast for x < (a + 1) / (a + b + 2).
 double betaFraction(double a, double b, double x) {
   constexpr double tiny = 1e-300, tolerance = 1e-14;
   const auto avoidZero = [](double value) { return std::abs(value) < tiny ? tiny : value; };
@@ -88,7 +88,7 @@ double betaFraction(double a, double b, double x) {
   return fraction;
 }
 
-/// I_x(a, b); `y` is 1 - x, without the rounding of that difference.
+/// I_x(a, b). `y`: 1 - x, passed separately to avoid the rounding of that difference.
 double regularizedBeta(double x, double y, double a, double b) {
   if (x <= 0.0 || y <= 0.0)
     return x <= 0.0 ? 0.0 : 1.0;
@@ -133,14 +133,14 @@ double computeAgreement(const Image& a, const Image& b) {
   const ImagePair pair(a, b);
   const Estimates estimatesA(a), estimatesB(b);
   if (!estimatesA.samples || !estimatesB.samples)
-    throw inputError("pictures", "one has no channel samples.N; compare renders with all layers");
+    throw inputError("images", "one has no channel samples.N; compare renders with all layers");
   double minP = 1.0, count = 0.0;
   for (std::size_t c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < pair.pixels; ++i) {
       if (pair.isUninformative(c, i) && pair.isEqual(c, i))
         continue;
       const double p = computePValue(estimatesA, estimatesB, c, i);
-      minP = std::isnan(p) ? 0.0 : std::min(minP, p); // NaN: exact, or not finite
+      minP = std::isnan(p) ? 0.0 : std::min(minP, p); // NaN: exact or not finite
       ++count;
     }
   return count == 0.0 ? 1.0 : -std::expm1(count * std::log1p(-minP)); // 1 - (1 - p)^count

@@ -1,5 +1,5 @@
 #pragma once
-// Comparisons of points and maps, as Eigen defines them for its own.
+// Approximate comparison of vectors, matrices and affine maps, by Eigen's definition of isApprox.
 
 #include "base/Vector.h"
 
@@ -16,7 +16,7 @@ inline bool allFinite(const Affine& map) {
   return allFinite(map.linear()) && allFinite(map.translation());
 }
 
-/// Root of the sum of squares.
+/// Frobenius norm; for an affine map, of its 3 x 4 matrix.
 inline double frobeniusNorm(const Mat3& m) {
   return std::hypot(m.col(0).norm(), m.col(1).norm(), m.col(2).norm());
 }
@@ -27,7 +27,7 @@ inline double frobeniusNorm(const Affine& map) {
 /// True if |a - b| <= relative * min(|a|, |b|).
 template <template <typename, int> class Kind, typename T, int N>
 bool isApprox(const Tuple<Kind, T, N>& a, const Kind<T, N>& b, T relative = T(1e-12)) {
-  T difference = 0, norm = 0, other = 0; // squares
+  T difference = 0, norm = 0, other = 0; // squared norms
   for (int i = 0; i < N; ++i) {
     difference += (a[i] - b[i]) * (a[i] - b[i]);
     norm += a[i] * a[i];

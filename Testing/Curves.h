@@ -1,6 +1,6 @@
 #pragma once
-// Curves of a volume property at a point, as vtkPiecewiseFunction and vtkColorTransferFunction have
-// them: clamped to the end nodes outside.
+// Value of a volume property's curve at a point, as in vtkPiecewiseFunction and
+// vtkColorTransferFunction: clamped to the end nodes outside.
 
 #include "model/medium/VolumeProperty.h"
 

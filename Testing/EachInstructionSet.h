@@ -1,5 +1,5 @@
 #pragma once
-// Tests of lanes on each of the machine's instruction sets.
+// Fixture for tests of SIMD code on each of the machine's instruction sets.
 
 #include "base/InstructionSets.h"
 
@@ -7,13 +7,13 @@
 
 namespace fenestra::testing {
 
-/// Pins the instruction set of that number, the best first; skips where the machine has fewer.
+/// Selects the instruction set with this index, best first; skips if the machine has fewer.
 class InstructionSetTest : public ::testing::TestWithParam<std::size_t> {
 protected:
   void SetUp() override {
     const std::vector<std::string> available = instructionSets();
     if (GetParam() >= available.size())
-      GTEST_SKIP() << "this machine has fewer";
+      GTEST_SKIP() << "this machine has fewer instruction sets";
     useInstructionSet(available[GetParam()]);
   }
   void TearDown() override { useInstructionSet(instructionSets().front()); }

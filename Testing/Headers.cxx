@@ -1,1 +1,1 @@
-// Empty: CMake wants a source beside the headers that it compiles for the tests.
+// Empty: CMake requires a source in the target that precompiles the tests' headers.

@@ -1,6 +1,6 @@
 #pragma once
-// Test whether a sampling routine draws what its pdf states: directions are binned on the sphere
-// and compared with the integral of the pdf over each bin.
+// Chi-squared test of whether a sampling routine matches the pdf that it states: directions are
+// binned on the sphere and compared with the integral of the pdf over each bin.
 
 #include "base/Random.h"
 
@@ -29,7 +29,7 @@ struct SphereBins {
   }
 };
 
-/// Integral of pdf(direction) over each bin: midpoint rule on `fine` x `fine` points.
+/// Integral of pdf(direction) over each bin: midpoint rule on `resolution`^2 points per bin.
 template <typename Pdf>
 std::vector<double> integrateBins(Pdf&& pdf, int resolution) {
   std::vector<double> expected(SphereBins::count, 0.0);
@@ -44,8 +44,8 @@ std::vector<double> integrateBins(Pdf&& pdf, int resolution) {
   return expected;
 }
 
-/// Pearson's chi-squared of observed against expected counts (bins with fewer than 10 expected are
-/// pooled), as a standard normal deviate (Wilson and Hilferty 1931).
+/// z-score of Pearson's chi-squared of observed against expected counts (Wilson and Hilferty 1931).
+/// Bins with an expected count below 10 are pooled.
 inline double chiSquaredZScore(const std::vector<double>& observed,
                                const std::vector<double>& expected) {
   double chi2 = 0.0;
@@ -70,8 +70,8 @@ inline double chiSquaredZScore(const std::vector<double>& observed,
   return (std::cbrt(chi2 / dof) - (1.0 - a)) / std::sqrt(a);
 }
 
-/// `draw(random)`: a direction, or zero if the draw ended without one. `pdf`: per steradian,
-/// integrates to `mass` (1 if every draw has a direction).
+/// `sample(random)`: a direction, or zero if the sample has none. `pdf`: per steradian, integrates
+/// to `mass` (1 if every sample has a direction).
 template <typename Sample, typename Pdf>
 void expectSamplingMatchesPdf(Sample&& sample, Pdf&& pdf, double mass = 1.0, int resolution = 60) {
   const std::vector<double> integrals = integrateBins(pdf, resolution);

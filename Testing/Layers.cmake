@@ -1,6 +1,7 @@
-# Who may include whom, by the table of Renderer/README.md: a folder's sources include headers of its own, of
-# the folders in its row's last column, and of those that these may include. Rows name rows above them alone,
-# so there are no circles. usage: cmake -DRENDERER=FOLDER -P Layers.cmake
+# Checks #include directives against the table in Renderer/README.md: a folder may include its own headers, those
+# of the folders in its row's last column, and transitively those that these may include. A row may name only rows
+# above it, so there are no cycles.
+# usage: cmake -DRENDERER=FOLDER -P Layers.cmake
 cmake_minimum_required(VERSION 3.25)
 set(folders)
 set(faults)
@@ -14,7 +15,7 @@ foreach(row IN LISTS rows)
   foreach(other IN LISTS named)
     list(APPEND open_to_${folder} ${open_to_${other}})
     if(NOT other IN_LIST folders)
-      list(APPEND faults "README.md: `${folder}` includes `${other}`, which no row above it is about")
+      list(APPEND faults "README.md: `${folder}` includes `${other}`, which has no row above it")
     endif()
   endforeach()
   list(APPEND folders ${folder})
@@ -24,7 +25,7 @@ file(GLOB_RECURSE sources RELATIVE "${RENDERER}" "${RENDERER}/*.h" "${RENDERER}/
 foreach(source IN LISTS sources)
   get_filename_component(folder ${source} DIRECTORY)
   if(NOT folder IN_LIST folders)
-    list(APPEND faults "${source}: no row of README.md's table is about its folder")
+    list(APPEND faults "${source}: its folder has no row in README.md's table")
     continue()
   endif()
   file(STRINGS "${RENDERER}/${source}" lines REGEX "^ *# *include \"")
@@ -32,7 +33,7 @@ foreach(source IN LISTS sources)
     string(REGEX REPLACE "^[^\"]*\"([^\"]*)\".*$" "\\1" header "${line}")
     get_filename_component(other ${header} DIRECTORY)
     if(NOT other IN_LIST open_to_${folder})
-      list(APPEND faults "${source}: includes ${header}, which README.md's table does not let `${folder}` do")
+      list(APPEND faults "${source}: includes ${header}, which README.md's table does not allow for `${folder}`")
     endif()
   endforeach()
 endforeach()
@@ -41,5 +42,5 @@ list(LENGTH sources count)
 if(faults OR count LESS 100)
   list(JOIN faults "\n" text)
   message("${text}")
-  message(FATAL_ERROR "${RENDERER}: ${count} sources; mend the above, or the table")
+  message(FATAL_ERROR "${RENDERER}: ${count} sources; fix the above, or the table")
 endif()

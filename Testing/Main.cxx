@@ -1,5 +1,5 @@
-// Main function of the tests. Exit status 77 if a case was skipped and none failed, so that ctest
-// reports the skip, and 1 if no case ran: a stale filter is no success.
+// Main function of the tests. Returns 77 if a case was skipped and none failed, so that ctest
+// reports the skip, and 1 if no case ran, so that an outdated filter fails.
 
 #ifdef FENESTRA_TEST_SANDBOX
 #include "io/Sandbox.h"
@@ -17,7 +17,7 @@ using Application = QCoreApplication;
 
 int main(int argc, char** argv) {
 #ifdef FENESTRA_TEST_SANDBOX
-  fenestra::serveSandbox(argc, argv); // the process that reads for a test is this executable
+  fenestra::serveSandbox(argc, argv); // this executable is also the sandboxed reader process
 #endif
   ::testing::InitGoogleTest(&argc, argv);
 #ifdef FENESTRA_TEST_WIDGETS

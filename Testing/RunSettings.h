@@ -1,10 +1,10 @@
 #pragma once
 // Environment variables of a test run:
-//   FENESTRA_LONG          set: the long version
-//   FENESTRA_BRIEF         number that divides the counts of samples, for slow builds
+//   FENESTRA_LONG          set: run the long version
+//   FENESTRA_BRIEF         divisor of sample counts, for slow builds
 //   FENESTRA_SEED          number that selects other seeds
-//   FENESTRA_COMBINATIONS  number of the matrix's combinations, for slow builds
-//   FENESTRA_PLANTED       names of the planted errors to look for, between commas
+//   FENESTRA_COMBINATIONS  number of combinations to test of the matrix, for slow builds
+//   FENESTRA_MUTATIONS     comma-separated names of the mutations to test
 //   FENESTRA_REPORT        folder for fragments of the report
 
 #include <algorithm>
@@ -33,21 +33,21 @@ inline std::uint64_t sampleDivisor() {
   return sampleDivisor;
 }
 
-/// Sample count of a test that has no long version.
+/// Sample count of a test without a long version.
 template <typename Count>
 Count reduceSamples(Count samples) {
   const auto count = static_cast<std::uint64_t>(samples);
   return static_cast<Count>((count + sampleDivisor() - 1) / sampleDivisor());
 }
 
-/// Sample count of a test: 16 times as many in the long version, for a quarter of the error.
+/// Sample count of a test; the long version takes 16 times as many, for a quarter of the error.
 template <typename Count>
 Count scaleSamples(Count samples) {
   return static_cast<Count>(
       reduceSamples(static_cast<std::uint64_t>(samples) * (isLongRun() ? 16 : 1)));
 }
 
-/// Greatest standard error with which a test still finds errors; wider in a brief run.
+/// Largest standard error at which a test is still sensitive; larger in a brief run.
 inline double relaxError(double error) {
   return error * std::sqrt(static_cast<double>(sampleDivisor()));
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Thin plate spline solved from its textbook equations, for tests: no unit disc, no null space.
+// Reference thin plate spline for tests, solved from the textbook equations without rescaling.
 
 #include "base/Vector.h"
 
@@ -10,9 +10,9 @@
 
 namespace fenestra::testing_clipping {
 
-/// Plain saddle system in mm, [K + lambda I, P; P', 0] [w; a] = [z; 0] with lambda = (1 - p) / p,
-/// solved in Scalar by Gaussian elimination with partial pivoting (twenty lines; a library's takes
-/// the compiler a minute for such a Scalar). Requires p > 0 and sites that determine a plane.
+/// Saddle-point system in mm, [K + lambda I, P; P', 0] [w; a] = [z; 0] with lambda = (1 - p) / p.
+/// Solved in Scalar by Gaussian elimination with partial pivoting: a library's solver takes a
+/// minute to compile for such a Scalar. Requires p > 0 and sites that determine a plane.
 template <typename Scalar>
 class SaddleSpline {
 public:
@@ -32,7 +32,7 @@ public:
     m_solution = solve(std::move(system));
   }
 
-  /// f(x), computed in Scalar and rounded at the end.
+  /// f(x), computed in Scalar and rounded to double.
   double operator()(const Vec2& x) const {
     const std::size_t n = m_sites.size();
     Scalar sum =
@@ -45,7 +45,7 @@ public:
 private:
   using Row = std::vector<Scalar>;
 
-  /// Solution of A x = b; each row holds a row of A, then its entry of b.
+  /// Solution of A x = b. `rows`: augmented matrix [A b].
   static Row solve(std::vector<Row> rows) {
     using std::abs;
     const std::size_t count = rows.size();

@@ -5,12 +5,11 @@
 
 namespace fenestra::testing_clipping {
 
-/// Condition number in the 2-norm of K' + lambda / s^2 I on the null space of P'; 1 without a
-/// system.
+/// 2-norm condition number of K' + lambda / s^2 I on the null space of P'; 1 without kernel terms.
 double computeConditionNumber(const ThinPlateSpline& spline);
 
-/// Condition number from independently rebuilt matrices, with another basis of the null space:
-/// eigenvectors of P P'. Sites in the xy plane, mm.
+/// The same from independently rebuilt matrices, with the eigenvectors of P P' as the basis of the
+/// null space. Sites in the xy plane, mm.
 double computeConditionByEigenvectors(const std::vector<Vec2>& sites, double lambda);
 
 } // namespace fenestra::testing_clipping

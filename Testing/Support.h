@@ -1,5 +1,5 @@
 #pragma once
-// Small scenes and statistics that tests share.
+// Small scenes and statistics shared by tests.
 
 #include "base/InstructionSets.h"
 #include "integrator/render/Render.h"
@@ -12,7 +12,7 @@
 namespace fenestra::testing {
 
 /// Selects FENESTRA_INSTRUCTIONS at the start of any program that includes this header, as
-/// `fenestra` does; the program ends if the machine lacks that instruction set.
+/// `fenestra` does. The program ends if the machine lacks that instruction set.
 inline const bool instructionSetIsPinned = [] {
   const char* name = std::getenv("FENESTRA_INSTRUCTIONS");
   if (name)
@@ -20,7 +20,7 @@ inline const bool instructionSetIsPinned = [] {
   return name != nullptr;
 }();
 
-/// A grid centred at the origin, axes along RAS.
+/// A grid centered at the origin with its axes along RAS.
 inline Grid makeCenteredGrid(const Size3& size, const Vec3& spacing) {
   Affine map = Affine::Identity();
   map.linear() = Mat3::Diagonal(spacing);
@@ -55,12 +55,12 @@ inline TransferFunction makeLinearTransfer(double sigma_t, const Rgb& albedo, do
   return transfer;
 }
 
-/// Shares of parts that all lie in memory.
+/// Label weights of parts that are all in memory.
 inline LabelWeights makeLabelWeights(const std::vector<LabelWeights::Part>& parts) {
   return {parts.size(), [&](std::size_t i) { return parts[i]; }};
 }
 
-/// Owner of everything that a SceneView refers to.
+/// Owns everything that a SceneView refers to.
 struct TestScene {
   Volume volume;
   TransferFunction transfer;
@@ -71,9 +71,9 @@ struct TestScene {
   std::optional<CropBox> crop = {};
   std::optional<ContextStyle> style = {};
   std::optional<Tint> tint = {};
-  std::optional<Mixture> mixture = {}; ///< in place of a tint
+  std::optional<Mixture> mixture = {}; ///< instead of a tint
 
-  /// work(SceneView).
+  /// Returns work(SceneView).
   template <typename Work>
   auto visitView(Work&& work) const {
     const Camera camera(pose, width, height);
@@ -93,7 +93,7 @@ struct TestScene {
   }
 };
 
-/// Mean and standard error over all pixels and channels, from the pixels' means: valid if all
+/// Mean and standard error over all pixels and channels, from the pixels' means. Requires that all
 /// pixels estimate the same value.
 struct Estimate {
   double mean = 0.0, error = 0.0;
@@ -104,7 +104,7 @@ inline Estimate estimateMean(const Film& film) {
   double variance = 0.0;
   for (const PixelSums& pixel : film.pixels()) {
     estimate.mean += pixel.mean.mean();
-    // Channels of one path are correlated: error of their mean <= mean of their errors.
+    // Channels of a path are correlated: error of their mean <= mean of their errors.
     variance += std::pow(pixel.standardError().mean(), 2.0);
   }
   const auto n = static_cast<double>(film.pixelCount());

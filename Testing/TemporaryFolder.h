@@ -1,5 +1,5 @@
 #pragma once
-// Files that are removed with their test.
+// A folder that is removed at the end of its test.
 
 #include <unistd.h>
 
@@ -16,7 +16,7 @@ public:
   TemporaryFolder() {
     std::string name = (std::filesystem::temp_directory_path() / "fenestra-XXXXXX").string();
     if (!mkdtemp(name.data()))
-      throw std::runtime_error("no temporary folder");
+      throw std::runtime_error("cannot create a temporary folder");
     m_path = name;
   }
   ~TemporaryFolder() { std::filesystem::remove_all(m_path); }

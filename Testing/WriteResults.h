@@ -1,5 +1,5 @@
 #pragma once
-// Results of a single writer: declared, written and committed in one call.
+// Results written in one call: declared, written and committed.
 
 #include "files/images/ImageWriter.h"
 #include "io/InputRegistry.h"
@@ -7,7 +7,7 @@
 
 namespace fenestra {
 
-/// Removes the path from the ledger of inputs: tests overwrite files that they have read.
+/// Removes the path from the input registry, so that tests may overwrite files that they have read.
 inline void forgetIfRead(const std::filesystem::path& path) {
   if (const auto file = fileId(path))
     forgetInput(*file);

@@ -1,4 +1,4 @@
-// --view auto: its measures of analytic bodies, and its stability.
+// --view auto: scores of bodies with closed forms, and stability of the chosen view.
 
 #include "scene/AutomaticView.h"
 
@@ -11,14 +11,14 @@
 namespace fenestra::testing::AutomaticViewTests {
 namespace {
 
-/// Cube of 60 mm filled by a transparent context.
-class ViewOfCube : public ::testing::Test {
+/// Cube of 60 mm filled with a transparent context.
+class AutomaticView : public ::testing::Test {
 protected:
   const Grid grid = makeCenteredGrid({30, 30, 30}, {2.0, 2.0, 2.0});
   const TransferFunction transfer = makeLinearTransfer(0.01, Rgb::Constant(0.8));
   Volume volume = makeVolume(grid, [](const Vec3&) { return 1.0; });
 
-  /// Mask of 1 mm voxels in the cube whose centres satisfy the predicate.
+  /// Mask of 1 mm voxels in the cube whose centers satisfy the predicate.
   template <typename Predicate>
   static Mask makeFocus(const Predicate& predicate) {
     Mask mask;
@@ -41,7 +41,7 @@ double angleInDegrees(const Vec3& a, const Vec3& b) {
   return std::acos(std::clamp(a.dot(b), -1.0, 1.0)) * 180.0 / pi;
 }
 
-/// Three ellipsoids of different sizes, like a bone with its processes.
+/// True in three ellipsoids of different sizes, like a bone with its processes.
 bool isInLump(const Vec3& p) {
   const auto inside = [&](const Vec3& center, const Vec3& radii) {
     return (p - center).cwiseQuotient(radii).squaredNorm() <= 1.0;
@@ -50,18 +50,18 @@ bool isInLump(const Vec3& p) {
          inside({9, 4, 8}, {4, 7, 4});
 }
 
-TEST_F(ViewOfCube, ScoreOfABallEqualsClosedForm) {
+TEST_F(AutomaticView, ScoreOfABallEqualsClosedForm) {
   constexpr double radius = 15.0, edge = 60.0, disk = pi * radius * radius;
   const Mask ball = makeFocus([](const Vec3& p) { return p.norm() <= radius; });
   const ViewScorer score = makeScorer(ball);
-  // Context in front of the ball's near half, and beside it in front of the plane at that half's
-  // mean depth.
+  // A surface removes the context in front of the ball's near half. Beside the ball, it removes the
+  // context in front of the plane at that half's mean depth.
   const double inFront = disk * (edge / 2.0 - 2.0 / 3.0 * radius);
   const double beside = (edge * edge - disk) * (edge / 2.0 - 2.0 / 3.0 * radius);
   const double context = std::pow(edge, 3.0) - 4.0 / 3.0 * disk * radius;
   for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0, 0, 1)}) {
     const ViewScore result = score(axis, 16384);
-    EXPECT_NEAR(result.area, disk, 0.02 * disk) << "of voxels";
+    EXPECT_NEAR(result.area, disk, 0.02 * disk) << "voxels have a rough outline";
     EXPECT_NEAR(result.removedFraction, (inFront + beside) / context, 0.01);
   }
   const double front = score(Vec3::UnitY(), 16384).score;
@@ -69,7 +69,7 @@ TEST_F(ViewOfCube, ScoreOfABallEqualsClosedForm) {
   EXPECT_NEAR(score(Vec3::UnitZ(), 16384).score, front * 0.9 / 1.05, 0.01 * front);
 }
 
-TEST_F(ViewOfCube, SlabIsShownFromTheNearestFace) {
+TEST_F(AutomaticView, SlabIsShownFromTheNearestFace) {
   for (int axis = 0; axis < 3; ++axis)
     for (const double side : {-1.0, 1.0}) {
       const Mask slab = makeFocus([&](const Vec3& p) {
@@ -84,7 +84,7 @@ TEST_F(ViewOfCube, SlabIsShownFromTheNearestFace) {
     }
 }
 
-TEST_F(ViewOfCube, DiscIsShownFlatOnFromTheUsualSide) {
+TEST_F(AutomaticView, DiskIsShownFaceOnFromTheCustomarySide) {
   for (const Vec3& normal : {Vec3(0, 1, 0), Vec3(1, 2, 0.5), Vec3(-2, 1, 1), Vec3(1, 1, -1)}) {
     const Vec3 unit = normal.normalized();
     const Mask disk = makeFocus([&](const Vec3& p) {
@@ -94,13 +94,14 @@ TEST_F(ViewOfCube, DiscIsShownFlatOnFromTheUsualSide) {
   }
 }
 
-TEST_F(ViewOfCube, ViewThroughAirIsPreferredToTissue) {
+TEST_F(AutomaticView, ViewThroughAirIsPreferredToTissue) {
   volume = makeVolume(grid, [](const Vec3& index) { return index.y() > 14.5 ? 1.0 : 0.0; });
   const Mask ball = makeFocus([](const Vec3& p) { return p.norm() <= 10.0; });
-  EXPECT_LT(findView(ball).fromTarget.y(), -0.7) << "from posterior, against the habit";
+  EXPECT_LT(findView(ball).fromTarget.y(), -0.7)
+      << "from posterior, although anterior is customary";
 }
 
-TEST_F(ViewOfCube, ViewMovesLittleForASimilarFocus) {
+TEST_F(AutomaticView, ViewMovesLittleForASimilarFocus) {
   const Vec3 reference = findView(makeFocus(isInLump)).fromTarget;
   const auto angle = [&](const auto& predicate) {
     return angleInDegrees(reference, findView(makeFocus(predicate)).fromTarget);
@@ -124,17 +125,17 @@ TEST_F(ViewOfCube, ViewMovesLittleForASimilarFocus) {
   EXPECT_LT(
       angle([](const Vec3& p) { return isInLump(Vec3((p.array() / 2.0).floor() * 2.0 + 1.0)); }),
       12.0)
-      << "at half the resolution, of parts 8 mm wide";
+      << "at half the resolution, parts 8 mm wide";
 }
 
-TEST_F(ViewOfCube, ViewIsTheSameForAnyNumberOfThreads) {
+TEST_F(AutomaticView, ViewIsTheSameForAnyNumberOfThreads) {
   const Mask lump = makeFocus(isInLump);
   const Vec3 expected = findView(lump).fromTarget;
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   EXPECT_EQ(findView(lump).fromTarget, expected);
 }
 
-TEST_F(ViewOfCube, EmptyFocusIsShownFromAnterior) {
+TEST_F(AutomaticView, EmptyFocusIsShownFromAnterior) {
   Mask emptyMask;
   emptyMask.grid = makeCenteredGrid({3, 3, 3}, {1.0, 1.0, 1.0});
   emptyMask.voxels.assign(27, 0);

@@ -1,4 +1,4 @@
-// Background where eye rays meet nothing.
+// Background where camera rays hit nothing.
 
 #include "Support.h"
 
@@ -7,7 +7,7 @@
 namespace fenestra::testing::BackgroundTests {
 namespace {
 
-/// Picture of 4 x 8 pixels of an empty volume in front of a background.
+/// Renders 4 x 8 pixels of a volume without scattering in front of a background.
 Film renderEmptyScene(const Background& background, double sigma_t = 0.0, int threads = 0) {
   TestScene scene{
       makeVolume(makeCenteredGrid({4, 4, 4}, {1.0, 1.0, 1.0}), [](const Vec3&) { return 1.0; }),
@@ -27,7 +27,7 @@ Film renderEmptyScene(const Background& background, double sigma_t = 0.0, int th
 }
 
 TEST(Background, GradientIsLinearInDisplayValues) {
-  const Rgb bottom(0.756863, 0.764706, 0.909804); // Slicer's own defaults
+  const Rgb bottom(0.756863, 0.764706, 0.909804); // Slicer's defaults
   const Rgb top(0.454902, 0.470588, 0.745098);
   const Film film = renderEmptyScene(Background::makeGradient(bottom, top));
   for (int row = 0; row < 8; ++row)
@@ -38,12 +38,12 @@ TEST(Background, GradientIsLinearInDisplayValues) {
       const Rgb expected =
           ((encoded + 0.055) / 1.055).unaryExpr([](double v) { return std::pow(v, 2.4); });
       EXPECT_LT((pixel.mean - expected).abs().maxCoeff(), 1e-12) << "row " << row;
-      EXPECT_EQ(pixel.standardError().maxCoeff(), 0.0) << "a background is no noise";
-      EXPECT_EQ(pixel.alpha, 1.0) << "of one sample, which is enough";
+      EXPECT_EQ(pixel.standardError().maxCoeff(), 0.0) << "a background has no noise";
+      EXPECT_EQ(pixel.alpha, 1.0) << "sum over the single sample of a deterministic pixel";
     }
 }
 
-TEST(Background, ShowsASkyAcrossEachPixel) {
+TEST(Background, SkyVariesWithinEachPixel) {
   TestScene scene{
       makeVolume(makeCenteredGrid({4, 4, 4}, {1.0, 1.0, 1.0}), [](const Vec3&) { return 0.0; }),
       makeLinearTransfer(0.0, Rgb::Zero()),
@@ -59,7 +59,7 @@ TEST(Background, ShowsASkyAcrossEachPixel) {
   settings.samples = 4000;
   settings.path.background.kind = Background::Kind::environment;
   const Film film = scene.render(settings).film;
-  // Mean over a pixel of the cosine toward the camera's up, y / sqrt(1 + x^2 + y^2), for x from
+  // Mean over a pixel of the cosine to the camera's up vector, y / sqrt(1 + x^2 + y^2), for x from
   // -1/2 to 1/2 and y from 0 to 1: int sqrt(2 + x^2) - sqrt(1 + x^2) dx.
   const auto integral = [](double a) {
     const double half = 0.5;
@@ -68,10 +68,10 @@ TEST(Background, ShowsASkyAcrossEachPixel) {
   const double cosine = integral(2.0) - integral(1.0);
   EXPECT_NEAR(film.at(0, 0).mean[2], 0.5 + 2.5 * cosine, 4.0 * film.at(0, 0).standardError()[2]);
   EXPECT_NEAR(film.at(0, 1).mean[0], 0.5 + 2.5 * cosine, 4.0 * film.at(0, 1).standardError()[0]);
-  EXPECT_GT(film.at(0, 0).standardError()[2], 0.0) << "varies inside the pixel";
+  EXPECT_GT(film.at(0, 0).standardError()[2], 0.0) << "the sky varies within the pixel";
 }
 
-TEST(Background, EqualColoursGiveAPlainBackground) {
+TEST(Background, EqualColorsGiveAConstantBackground) {
   const Background background = Background::makeGradient(Rgb(0.5, 0.2, 1.0), Rgb(0.5, 0.2, 1.0));
   EXPECT_EQ(background.kind, Background::Kind::color);
   EXPECT_NEAR(background.color[0], 0.21404114, 1e-8);
@@ -79,7 +79,7 @@ TEST(Background, EqualColoursGiveAPlainBackground) {
   EXPECT_EQ((renderEmptyScene(background).at(0, 0).mean - background.color).abs().maxCoeff(), 0.0);
 }
 
-TEST(Background, StandardIsDarkGreyAndLighterAtTheTop) {
+TEST(Background, DefaultIsDarkGrayAndLighterAtTheTop) {
   const Background background = Background::makeDefault();
   EXPECT_LT((background.evaluate(1.0) - Rgb(0.060, 0.066, 0.078)).abs().maxCoeff(), 1e-12);
   EXPECT_LT((background.evaluate(0.0) - Rgb(0.012, 0.013, 0.016)).abs().maxCoeff(), 1e-12);
@@ -88,13 +88,13 @@ TEST(Background, StandardIsDarkGreyAndLighterAtTheTop) {
     EXPECT_TRUE((film.at(0, row).mean < film.at(0, row - 1).mean).all()) << "row " << row;
 }
 
-TEST(Background, ShowsThroughTheVolumeForAnyNumberOfThreads) {
+TEST(Background, IsVisibleThroughTheVolumeForAnyNumberOfThreads) {
   const Background background = Background::makeGradient(Rgb(0.1, 0.2, 0.3), Rgb(0.9, 0.8, 0.7));
   const Film one = renderEmptyScene(background, 0.3, 1);
   const Film two = renderEmptyScene(background, 0.3, 2);
   for (std::size_t i = 0; i < one.pixelCount(); ++i) {
     EXPECT_TRUE(one.pixels()[i].mean == two.pixels()[i].mean);
-    // Black matter of 4 mm: some paths hit the matter, the others show the full background.
+    // Black medium, 4 mm thick: some paths collide in it, the others see the full background.
     const Rgb behind = background.evaluate((7.5 - static_cast<double>(i / 4)) / 8.0);
     const double fraction = one.pixels()[i].mean[0] / behind[0];
     EXPECT_NEAR(fraction, std::exp(-1.2), 5.0 * std::sqrt(0.25 / 50.0));

@@ -1,4 +1,4 @@
-// Films on disk: what is written is read, and nothing else is taken for a film.
+// Checkpoint files: content is read back unchanged, and any other file is rejected.
 
 #include "scene/CheckpointFile.h"
 
@@ -29,14 +29,14 @@ RenderResult readCheckpoint(const std::filesystem::path& path) {
   return result;
 }
 
-/// Makes certain pixels certain again, which the scene says, not the film.
+/// Copies the flags of deterministic pixels, which follow from the scene and are not stored.
 void copyDeterministic(const Film& from, Film& to) {
   for (int row = 0; row < to.height(); ++row)
     for (int column = 0; column < to.width(); ++column)
       to.at(column, row).isDeterministic = from.at(column, row).isDeterministic;
 }
 
-TEST(CheckpointFile, RoundTripKeepsEveryBit) {
+TEST(CheckpointFile, RoundTripPreservesEveryBit) {
   const TemporaryFolder folder;
   for (const double noise : {-1.0, 0.01}) {
     const RenderResult result = renderResult(80, 72, noise);
@@ -58,7 +58,7 @@ TEST(CheckpointFile, RoundTripKeepsEveryBit) {
   }
 }
 
-TEST(CheckpointFile, PartsHoldTheirTilesAlone) {
+TEST(CheckpointFile, ShardsContainOnlyTheirTiles) {
   const TemporaryFolder folder;
   const RenderResult result = renderResult(33, 21, -1.0);
   Film sum =
@@ -76,7 +76,7 @@ TEST(CheckpointFile, PartsHoldTheirTilesAlone) {
   EXPECT_LT(bytes, readBytes(folder / "a.film").size() + 4000);
 }
 
-TEST(CheckpointFile, DamagedByteAnywhereIsRefused) {
+TEST(CheckpointFile, AnyDamagedByteIsRejected) {
   const TemporaryFolder folder;
   const std::string content = encodeCheckpoint(renderResult(8, 8, -1.0), {}, testMetadata);
   ASSERT_NO_THROW(readCheckpoint(folder.write("a.film", content)));
@@ -85,22 +85,22 @@ TEST(CheckpointFile, DamagedByteAnywhereIsRefused) {
     std::string damaged = content;
     damaged[at] = static_cast<char>(damaged[at] ^ 1 << random() % 8);
     const auto path = folder.write("a.film", damaged);
-    expectRefused(path, "film", [&] { readCheckpoint(path); });
+    expectRefused(path, "checkpoint", [&] { readCheckpoint(path); });
   }
 }
 
-TEST(CheckpointFile, TruncatedOrLongerFileIsRefused) {
+TEST(CheckpointFile, TruncatedOrLongerFileIsRejected) {
   const TemporaryFolder folder;
   const std::string content = encodeCheckpoint(renderResult(8, 8, -1.0), {}, testMetadata);
   for (std::size_t size = 0; size < content.size(); size += size < 700 ? 23 : 1009) {
     const auto path = folder.write("a.film", content.substr(0, size));
-    expectRefused(path, "film", [&] { readCheckpoint(path); });
+    expectRefused(path, "checkpoint", [&] { readCheckpoint(path); });
   }
   const auto path = folder.write("a.film", content + '\0');
   expectRefused(path, "damaged", [&] { readCheckpoint(path); });
 }
 
-/// `content` with the digest that it should have.
+/// `content` with a correct digest.
 std::string withDigest(std::string content) {
   content.resize(content.size() - sizeof(std::uint64_t));
   Digest digest;
@@ -108,7 +108,7 @@ std::string withDigest(std::string content) {
   return content += asBytes(std::array{digest.value()});
 }
 
-/// `content` with a text in its header replaced by one of the same length, and a right digest.
+/// `content` with a text of its header replaced by one of the same length, and a correct digest.
 std::string replaceText(std::string content, const std::string& text,
                         const std::string& replacement) {
   EXPECT_EQ(text.size(), replacement.size());
@@ -117,7 +117,7 @@ std::string replaceText(std::string content, const std::string& text,
   return withDigest(content.replace(at, text.size(), replacement));
 }
 
-TEST(CheckpointFile, ForgedHeaderIsRefused) {
+TEST(CheckpointFile, ForgedHeaderIsRejected) {
   const TemporaryFolder folder;
   const std::string content = encodeCheckpoint(renderResult(8, 8, -1.0), {}, testMetadata);
   ASSERT_NO_THROW(readCheckpoint(folder.write("a.film", replaceText(content, "[8,8]", "[8,8]"))));
@@ -139,7 +139,7 @@ TEST(CheckpointFile, ForgedHeaderIsRefused) {
   }
 }
 
-TEST(CheckpointFile, ChangedFilmOfARightDigestIsReadOrRefused) {
+TEST(CheckpointFile, ChangedFileWithACorrectDigestIsReadOrRejected) {
   const TemporaryFolder folder;
   const std::string content = encodeCheckpoint(renderResult(2, 2, -1.0), {}, testMetadata);
   std::mt19937 random(2);

@@ -13,9 +13,9 @@
 namespace fenestra::ChildProcessTests {
 namespace {
 
-/// Runs one of the disabled cases below.
+/// Arguments that run one of the disabled cases below.
 std::vector<std::string> makeArguments(const std::string& testCase) {
-  return {"--gtest_also_run_disabled_tests", "--gtest_filter=Child.DISABLED_" + testCase};
+  return {"--gtest_also_run_disabled_tests", "--gtest_filter=ChildProcess.DISABLED_" + testCase};
 }
 
 void waitFor(ChildProcess& child) {
@@ -24,8 +24,8 @@ void waitFor(ChildProcess& child) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
 }
 
-TEST(ChildProcess, DISABLED_Speaks) {
-  std::cerr << "said by the child\n";
+TEST(ChildProcess, DISABLED_Prints) {
+  std::cerr << "printed by the child\n";
 }
 TEST(ChildProcess, DISABLED_Fails) {
   FAIL();
@@ -38,21 +38,21 @@ TEST(ChildProcess, DISABLED_Sleeps) {
   std::this_thread::sleep_for(std::chrono::minutes(1));
 }
 /// Standard input is empty, and no file of the parent is open.
-TEST(ChildProcess, DISABLED_HasNoFileOfTheParent) {
+TEST(ChildProcess, DISABLED_InheritsNoFiles) {
   EXPECT_EQ(std::cin.get(), EOF);
   for (int file = 3; file < 64; ++file)
     EXPECT_LT(::fcntl(file, F_GETFD), 0) << file;
 }
 
-TEST(ChildProcess, TellsHowItEnded) {
+TEST(ChildProcess, ReportsHowItEnded) {
   const std::vector<std::pair<std::string, int>> cases = {
-      {"Speaks", 0}, {"Fails", 1}, {"Crashes", 128 + SIGKILL}, {"HasNoFileOfTheParent", 0}};
+      {"Prints", 0}, {"Fails", 1}, {"Crashes", 128 + SIGKILL}, {"InheritsNoFiles", 0}};
   for (const auto& [testCase, status] : cases) {
     ChildProcess child(makeArguments(testCase));
     waitFor(child);
     EXPECT_EQ(child.status(), status) << testCase << child.errors();
-    if (testCase == "Speaks") {
-      EXPECT_EQ(child.errors(), "said by the child\n");
+    if (testCase == "Prints") {
+      EXPECT_EQ(child.errors(), "printed by the child\n");
     }
     if (testCase == "Crashes") {
       EXPECT_TRUE(child.errors().ends_with("xthe end\n"));
@@ -61,7 +61,7 @@ TEST(ChildProcess, TellsHowItEnded) {
   }
 }
 
-TEST(ChildProcess, EndsBySignalAndWithItsObject) {
+TEST(ChildProcess, EndsOnASignalAndWhenDestroyed) {
   const Stopwatch watch;
   ChildProcess child(makeArguments("Sleeps"));
   child.send(SIGTERM);

@@ -1,5 +1,4 @@
-// Soft edges and ghosts, holes, automatic planes, and measures along the context's outline, against
-// geometry.
+// Soft clip edges, ghosts, holes, automatic planes and boundary metrics, compared with geometry.
 
 #include "ClippingTesting.h"
 #include "clip/surface/ClippingSurface.h"
@@ -14,7 +13,7 @@ namespace {
 
 constexpr std::array projections{Projection::orthographic, Projection::perspective};
 
-/// Ball of radius 12 mm in the centre of a cube of 80 mm, seen from 100 mm in front.
+/// Ball of radius 12 mm in the center of a cube of 80 mm, seen from 100 mm in front.
 struct Ball {
   Grid volume = makeCenteredGrid({80, 80, 80});
   Mask focus = makeMask(volume, [](const Vec3& p) { return p.norm() < 12.0; });
@@ -26,13 +25,13 @@ struct Ball {
   ClippingSurface surface(const SurfaceOptions& options) const {
     return buildClippingSurface(camera, volume, focus, options);
   }
-  /// keep at a depth on the eye ray through (x, y) on the plane through the target.
+  /// Clip weight at a depth on the camera ray through (x, y) of the plane through the target.
   double rayClipWeight(const Clip& clip, double x, double y, double depth) const {
     return clipWeight(clip, fromBuffer(camera, Vec3(x, y, depth)));
   }
 };
 
-TEST(ClipEdge, KeepRisesLinearlyFromTheGhostToOne) {
+TEST(ClipEdge, WeightRisesLinearlyFromTheGhostToOne) {
   const ClipEdge sharp, ghost{0.25, 0.0}, soft{0.0, 4.0}, both{0.2, 4.0};
   EXPECT_EQ(sharp(-1e-9), 0.0);
   EXPECT_EQ(sharp(0.0), 1.0);
@@ -46,7 +45,7 @@ TEST(ClipEdge, KeepRisesLinearlyFromTheGhostToOne) {
   EXPECT_EQ(both(infinity), 1.0);
 }
 
-TEST(ClipEdge, GhostIsVisibleFromTheEyeOn) {
+TEST(ClipEdge, GhostIsVisibleFromTheCameraOn) {
   const Ball ball(Projection::perspective);
   SurfaceOptions options;
   options.edge.ghost = 0.125;
@@ -59,7 +58,7 @@ TEST(ClipEdge, GhostIsVisibleFromTheEyeOn) {
   EXPECT_NEAR(intervalBehindSurface(clip, ray).begin, 88.0, 0.3);
 }
 
-TEST(ClipEdge, KeptInBoundsKeepOfEveryPoint) {
+TEST(ClipEdge, BoundsHoldForTheWeightOfEveryPoint) {
   Random random(3, 0, 0);
   for (const Projection projection : projections) {
     const Ball ball(projection);
@@ -94,13 +93,13 @@ TEST(ClipEdge, KeptInBoundsKeepOfEveryPoint) {
         reducedBoxes += bounds.max < 1.0;
         uniformBoxes += bounds.isUniform;
       }
-      EXPECT_GT(reducedBoxes, 30) << "not merely cautious";
+      EXPECT_GT(reducedBoxes, 30) << "the bounds are not trivial";
       EXPECT_GT(uniformBoxes, 200);
     }
   }
 }
 
-TEST(Clip, OffsetMovesTheSurfaceAlongTheView) {
+TEST(Clip, OffsetMovesTheSurfaceAlongTheViewDirection) {
   const Ball ball(Projection::orthographic);
   SurfaceOptions options;
   const auto plain = std::get<ClipDepth>(ball.surface(options).clip);
@@ -137,7 +136,7 @@ TEST_P(Holes, BoxIsFlatAtTheFarthestVisiblePointAndWiderByItsMargin) {
     EXPECT_EQ(weight(sign * outside, 0, 70.0), 1.0);
     EXPECT_EQ(weight(0, sign * outside, 70.0), 1.0);
   }
-  EXPECT_EQ(weight(0, 0, 89.0), 1.0) << "the focus itself stays";
+  EXPECT_EQ(weight(0, 0, 89.0), 1.0) << "the focus is not clipped";
   EXPECT_EQ(weight(0, 0, 87.0), 0.0);
 }
 
@@ -152,14 +151,14 @@ TEST_P(Holes, CylinderIsRound) {
   EXPECT_EQ(ball.rayClipWeight(clip, 19.5, 0, 80.0), 1.0);
 }
 
-TEST_P(Holes, SphereLeavesABowl) {
+TEST_P(Holes, SphereLeavesASphericalSurface) {
   const Ball ball(GetParam());
   SurfaceOptions options;
   options.mode = SurfaceMode::hole;
   options.hole = {HoleShape::sphere, 8.0};
   const Clip clip = ball.surface(options).clip;
-  // The pressed-in ball holds the visible half of the focus or less; the ball is reconstructed from
-  // its bottom along three rays.
+  // The sphere contains at most the visible half of the focus. Its center is reconstructed from
+  // four points of its bottom.
   const auto& depth = std::get<ClipDepth>(clip);
   const auto bottom = [&](double x, double y) {
     return fromBuffer(ball.camera, Vec3(x, y, depth.surfaceDepth({x, y})));
@@ -179,7 +178,7 @@ TEST_P(Holes, SphereLeavesABowl) {
 
 INSTANTIATE_TEST_SUITE_P(Projections, Holes, ::testing::ValuesIn(projections));
 
-TEST(FocusPlane, FlatFocusGivesItsOwnPlane) {
+TEST(FocusPlane, FlatFocusGivesItsPlane) {
   const Grid volume = makeCenteredGrid({80, 80, 80});
   const Vec3 normal = Vec3(0.3, -1.0, 0.2).normalized();
   const Mask focus = makeMask(volume, [&](const Vec3& p) {
@@ -189,13 +188,13 @@ TEST(FocusPlane, FlatFocusGivesItsOwnPlane) {
     const Camera camera = makeAnteriorCamera(projection, 150, 40, 128, 128);
     const ClipPlane plane = fitFocusPlane(camera, FocusTracer(camera, volume, focus).traceDepths());
     EXPECT_GT(plane.normal.dot(normal), std::cos(4.0 * pi / 180.0));
-    // The plane is the slab's side toward the eye, to half a voxel.
+    // The plane is the side of the slab that faces the camera, to half a voxel.
     EXPECT_NEAR(plane.point.dot(normal), 4.0, 0.6);
     EXPECT_LT(plane.normal.dot(camera.forward()), 0.0);
   }
 }
 
-TEST(FocusPlane, OneSampleGivesAPlaneFacingTheEye) {
+TEST(FocusPlane, OneSampleGivesAPlaneFacingTheCamera) {
   const Camera camera = makeAnteriorCamera(Projection::orthographic, 150, 40, 3, 3);
   const Grid volume = makeCenteredGrid({80, 80, 80});
   const Mask focus = makeBoxMask(volume, {-3, -3, -3}, {3, 3, 3});
@@ -250,7 +249,7 @@ TEST(BoundaryMetrics, TiltedPlaneGapEqualsItsDistance) {
   const Vec3 normal = 0.25 * model.camera.right() - model.camera.forward();
   const Clip clip = ClipPlane{model.camera, through, normal.normalized()};
   const BoundaryMetrics metrics = measureBoundary(clip, model.volume, model.focus, focus);
-  // The cuboid's edges are rounded by half a voxel, where the surface falls away.
+  // The cuboid's edges are rounded by half a voxel, which lowers the surface there.
   EXPECT_NEAR(metrics.gap.max, 4.0, 0.6);
   EXPECT_NEAR(metrics.gap.mean, 0.5 * (4.0 + 2.0), 0.4) << "4 on two sides, 0 to 4 on the others";
   const BoundaryMetrics flat =
@@ -261,7 +260,7 @@ TEST(BoundaryMetrics, TiltedPlaneGapEqualsItsDistance) {
 
 TEST(BoundaryMetrics, JumpsWithinTheFocusAreCountedSeparately) {
   const Grid volume = makeCenteredGrid({80, 80, 80});
-  // The right half lies 10 mm deeper.
+  // The right half is 10 mm deeper.
   const Mask focus = makeMask(volume, [](const Vec3& p) {
     return std::abs(p.x()) < 16.0 && std::abs(p.z()) < 16.0 &&
            std::abs(p.y() - (p.x() > 0.0 ? 10.0 : 0.0)) < 6.0;
@@ -271,7 +270,7 @@ TEST(BoundaryMetrics, JumpsWithinTheFocusAreCountedSeparately) {
   options.boundary = Boundary::exact;
   const ClippingSurface surface = buildClippingSurface(camera, volume, focus, options);
   const BoundaryMetrics metrics = measureBoundary(surface.clip, volume, focus, surface.focus);
-  // Two samples on each side of the jump, at its top and its bottom.
+  // Two samples on each side of the jump, at its top and at its bottom.
   EXPECT_NEAR(metrics.depthJumpFraction * static_cast<double>(metrics.crossings), 4.0, 4.0);
   EXPECT_GT(metrics.depthJumpFraction, 0.0);
   EXPECT_LT(metrics.gap.max, 3.0);

@@ -1,4 +1,4 @@
-// keep, visible and boundClipWeight agree; the surface meets the focus; errors name their remedy.
+// Clip weights, visible intervals and bounds are consistent; surfaces agree with the focus; errors.
 
 #include "ClippingTesting.h"
 #include "RunSettings.h"
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::array projections{Projection::orthographic, Projection::perspective};
 
-/// Smaller version of the paper's model: a cuboid focus in the centre of a cube.
+/// Smaller version of the paper's model: a cuboid focus in the center of a cube.
 struct Model {
   Grid volume = makeCenteredGrid({64, 64, 64});
   Mask focus = makeBoxMask(volume, {-16, -16, -24}, {16, 16, 24});
@@ -52,7 +52,7 @@ std::vector<Clip> makeClips(const Camera& camera) {
   return clips;
 }
 
-TEST(Clip, NoneKeepsEverything) {
+TEST(Clip, NoneClipsNothing) {
   EXPECT_EQ(clipWeight(Clip{}, {1e9, -1e9, 0.0}), 1.0);
   EXPECT_EQ(visibleInterval(Clip{}, {}).begin, 0.0);
   EXPECT_EQ(visibleInterval(Clip{}, {}).end, infinity);
@@ -76,7 +76,7 @@ TEST(Clip, PlaneParallelToARayRemovesAllOrNothing) {
   EXPECT_FALSE(visibleInterval(ClipPlane{camera, {1, 0, 0}, {1, 0, 0}}, ray).isEmpty());
 }
 
-TEST(Clip, PerspectiveRemovesPointsBehindTheEyeInEveryMode) {
+TEST(Clip, PerspectiveRemovesPointsBehindTheCameraInEveryMode) {
   const Camera camera = makeObliqueCamera(Projection::perspective, 10.0, 32);
   const Vec3 behind = camera.pose().position - 3.0 * camera.forward();
   const auto clips = makeClips(camera);
@@ -87,7 +87,7 @@ TEST(Clip, PerspectiveRemovesPointsBehindTheEyeInEveryMode) {
   }
 }
 
-TEST(Clip, EyeRaysStartWhereKeepBegins) {
+TEST(Clip, VisibleIntervalEndsWhereTheWeightChanges) {
   Random random(1, 0, 0);
   for (const auto projection : projections)
     for (const double distance : {12.0, 120.0, 1e5}) {
@@ -98,7 +98,7 @@ TEST(Clip, EyeRaysStartWhereKeepBegins) {
           const Interval visible = visibleInterval(clip, ray);
           const double step = 1e-6 * (1.0 + 1e-4 * distance);
           if (!visible.isEmpty()) {
-            // Next to a distant eye (x, y) has lost its digits.
+            // Close to a distant camera, (x, y) has too few significant digits.
             const double inside = std::min(visible.begin > 0.0 ? step : 1e-3 * distance,
                                            0.5 * (visible.end - visible.begin));
             ASSERT_EQ(clipWeight(clip, ray.at(visible.begin + inside)), 1.0);
@@ -117,7 +117,7 @@ TEST(Clip, EyeRaysStartWhereKeepBegins) {
     }
 }
 
-TEST(Clip, KeptInHoldsForPointsOfTheBox) {
+TEST(Clip, BoundsHoldForPointsOfTheBox) {
   Random random(2, 0, 0);
   for (const auto projection : projections)
     for (const double distance : {12.0, 120.0}) {
@@ -150,14 +150,14 @@ TEST(Clip, KeptInHoldsForPointsOfTheBox) {
           foundFull += bounds == ClipBounds::all;
           full += visiblePoints == 60;
         }
-        // Not merely conservative: small boxes that are removed, or kept, are recognised.
+        // The bounds are tight enough to recognize small boxes that are clipped or unclipped.
         EXPECT_GE(foundEmpty, c == 0 ? 0 : c == 3 ? empty / 3 : empty * 3 / 4) << "clip " << c;
         EXPECT_GE(foundFull, full / 3) << "clip " << c;
       }
     }
 }
 
-TEST(Clip, BoxAcrossTheEyesPlaneCountsEveryDirection) {
+TEST(Clip, BoxAcrossTheCameraPlaneIncludesEveryDirection) {
   // Depth 20 mm, except far to the right, at the edge of the buffer.
   const Camera camera = makeAnteriorCamera(Projection::perspective, 30.0, 10.0, 64, 64);
   auto buffer = std::make_shared<DepthBuffer>(camera, makeCenteredGrid({100, 100, 100}));
@@ -183,7 +183,7 @@ TEST(Clip, BoxAcrossTheEyesPlaneCountsEveryDirection) {
             ClipBounds::all);
 }
 
-TEST(ClippingSurface, DepthAtFocusSamplesIsThatOfTheFocus) {
+TEST(ClippingSurface, DepthAtFocusSamplesEqualsThatOfTheFocus) {
   const Model model;
   for (const auto projection : projections)
     for (const auto mode : {SurfaceMode::cutaway, SurfaceMode::surface}) {
@@ -235,7 +235,7 @@ TEST(ClippingSurface, ExactBoundaryGapIsSmallerThanTheSplines) {
   }
 }
 
-TEST(ClippingSurface, JumpAtTheFocusIsWithinTheStatedMismatch) {
+TEST(ClippingSurface, JumpAtTheFocusIsWithinTheReportedMismatch) {
   const Shell shell;
   for (const auto projection : projections) {
     const Camera camera = makeObliqueCamera(projection, 120.0, 160);
@@ -244,7 +244,7 @@ TEST(ClippingSurface, JumpAtTheFocusIsWithinTheStatedMismatch) {
     EXPECT_LE(surface.mismatch->p95, surface.mismatch->max);
     EXPECT_GT(surface.mismatch->max, 0.0);
     const auto& buffer = *std::get<ClipDepth>(surface.clip).buffer;
-    // From one sample to the next the spline changes by its slope, measured outside the focus.
+    // Between adjacent samples the spline changes by its slope, measured outside the focus.
     double slope = 0.0, worst = 0.0;
     for (std::int64_t row = 0; row < buffer.rows(); ++row)
       for (std::int64_t column = 1; column < buffer.columns(); ++column) {
@@ -276,7 +276,7 @@ TEST(ClippingSurface, DoesNotDependOnFraming) {
   EXPECT_LT(different, 20); // samples coincide; the contour's start does not matter
 }
 
-TEST(ClippingSurface, WarnsOfAFocusOutsideThePicture) {
+TEST(ClippingSurface, WarnsOfAFocusOutsideTheImage) {
   const Model model;
   CameraPose pose;
   pose.position = {28.0, -200.0, 28.0};
@@ -285,10 +285,10 @@ TEST(ClippingSurface, WarnsOfAFocusOutsideThePicture) {
   const ClippingSurface surface = model.surface({pose, 32, 32});
   ASSERT_EQ(surface.warnings.size(), 1U);
   EXPECT_EQ(surface.warnings[0],
-            "focus A lies outside the picture; choose another --view, --target or --scale");
+            "focus A is outside the image; change --view, --target or --scale");
 }
 
-TEST(ClippingSurface, FocusThatNoRayMeetsIsAnInputError) {
+TEST(ClippingSurface, FocusThatNoRayHitsIsAnInputError) {
   const Model model;
   const Camera camera = makeAnteriorCamera(Projection::orthographic, 200.0, 40.0, 40, 40);
   Affine shifted = model.focus.grid.indexToWorld;
@@ -315,7 +315,7 @@ TEST(ClippingSurface, OptionsOutOfRangeAreUsageErrors) {
     EXPECT_THROW(buildClippingSurface(camera, model.volume, model.focus, options), Error);
 }
 
-TEST(ClippingSurface, OnePixelFocusGivesALevelSurface) {
+TEST(ClippingSurface, OnePixelFocusGivesAFlatSurface) {
   const Grid volume = makeCenteredGrid({21, 21, 21});
   const Mask dot = makeBoxMask(volume, Vec3::Constant(-0.1), Vec3::Constant(0.1));
   CameraPose pose;

@@ -19,7 +19,7 @@ inline Vec3 randomPoint(Random& random, double low, double high) {
   return {uniform(random, low, high), uniform(random, low, high), uniform(random, low, high)};
 }
 
-/// Grid with voxels of `spacing` mm, centred at the world's origin.
+/// Grid with voxels of `spacing` mm, centered at the world origin.
 inline Grid makeCenteredGrid(const Size3& size, const Vec3& spacing = Vec3::Ones()) {
   Affine map = Affine::Identity();
   map.linear() = Mat3::Diagonal(spacing);
@@ -27,7 +27,7 @@ inline Grid makeCenteredGrid(const Size3& size, const Vec3& spacing = Vec3::Ones
   return {size, map};
 }
 
-/// Mask of the voxels whose centres, world mm, satisfy the predicate.
+/// Mask of the voxels whose centers, world mm, satisfy the predicate.
 template <typename Predicate>
 Mask makeMask(const Grid& grid, const Predicate& predicate) {
   Mask mask;
@@ -53,8 +53,8 @@ inline Mask makeSphereMask(const Grid& grid, double radius) {
   return makeMask(grid, [&](const Vec3& p) { return p.norm() <= radius; });
 }
 
-/// Camera that looks along +A (y grows with depth) at the origin from `distance` mm; `scale`: half
-/// the visible height at the origin in either projection, mm.
+/// Camera that looks at the origin from anterior, `distance` mm away (y grows with depth). `scale`:
+/// half the visible height at the origin in both projections, mm.
 inline Camera makeAnteriorCamera(Projection projection, double distance, double scale, int width,
                                  int height) {
   CameraPose pose;
@@ -66,7 +66,7 @@ inline Camera makeAnteriorCamera(Projection projection, double distance, double 
   return {pose, width, height};
 }
 
-/// Focus region drawn with '#'; 1 mm a sample, depth = column + 10 row.
+/// Focus region drawn with '#': 1 mm per sample, depth = column + 10 row.
 inline FocusDepth makeFocusDepth(const std::vector<std::string>& rows) {
   const auto width = static_cast<int>(rows[0].size());
   const auto height = static_cast<int>(rows.size());

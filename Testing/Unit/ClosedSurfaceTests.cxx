@@ -1,4 +1,4 @@
-// Surfaces of known shapes, in every encoding of VTK's arrays, and invalid files.
+// Closed surfaces of known shapes in every encoding of VTK's arrays, and invalid files.
 
 #include "files/segments/ClosedSurface.h"
 
@@ -31,7 +31,7 @@ Shape makeBox(const Vec3& lower, const Vec3& upper) {
   return shape;
 }
 
-/// Subdivided octahedron with its points moved onto the sphere.
+/// Subdivided octahedron with its points projected onto the sphere.
 Shape makeSphere(const Vec3& center, double radius, int divisions) {
   Shape shape{
       {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ(), -Vec3::UnitX(), -Vec3::UnitY(), -Vec3::UnitZ()},
@@ -75,7 +75,7 @@ std::string encodeBase64(const std::string& bytes) {
 
 enum class Encoding { ascii, uncompressed, deflated };
 
-/// Text between an array's tags. Small blocks, hence several.
+/// Text between an array's tags. Compressed blocks are small, so that there are several.
 template <typename T>
 std::string encodeArray(const std::vector<T>& values, Encoding encoding) {
   std::ostringstream text;
@@ -227,8 +227,8 @@ TEST(ClosedSurface, OverlappingSegmentsGetLayers) {
   EXPECT_THROW(segmentation.makeFocusMask({"id3"}, grid), Error);
 }
 
-/// A surface is cut at the volume, and the focus continues across the volume's faces.
-TEST(ClosedSurface, SurfaceIsCutAtTheVolume) {
+/// The surface is clipped to the volume; the focus continues across the volume's faces.
+TEST(ClosedSurface, SurfaceIsClippedToTheVolume) {
   const TemporaryFolder folder;
   const Grid grid(Size3(10, 10, 10), Affine::Identity());
   const Path path = writeSegments(folder, {makeBox(Vec3(-50, 2.5, 2.5), Vec3(50, 4.5, 4.5))});
@@ -238,7 +238,7 @@ TEST(ClosedSurface, SurfaceIsCutAtTheVolume) {
                           [&] { readSegmentation(outside, &grid).makeFocusMask({"id0"}, grid); });
 }
 
-TEST(ClosedSurface, WithoutAVolumeChoosesItsOwnGrid) {
+TEST(ClosedSurface, WithoutAVolumeGetsItsOwnGrid) {
   const TemporaryFolder folder;
   const Path path = writeSegments(folder, {makeBox(Vec3(-10, 0, 5), Vec3(118, 64, 37))});
   const Segmentation segmentation = readSegmentation(path);
@@ -253,7 +253,7 @@ TEST(ClosedSurface, CrossingsAtEdgesCountOnce) {
   const Shape onPlanes = makeBox(Vec3(2, 2, 2), Vec3(6, 6, 6));
   const auto runs = voxelizeSurface(onPlanes.points, onPlanes.triangles, Size3(10, 10, 10));
   ASSERT_TRUE(runs);
-  EXPECT_EQ(runs->size(), 16u); // the last of five planes is outside, in y and z
+  EXPECT_EQ(runs->size(), 16u); // in y and z, the last of five planes is outside
   std::mt19937 random(3);
   for (int i = 0; i < 50; ++i) {
     Shape shape = makeSphere(Vec3(8, 8, 8), 5, 3);
@@ -268,32 +268,32 @@ void expectRefused(const Path& subject, const Path& path, const std::string& tex
   fenestra::expectRefused(subject, text, [&] { readSegmentation(path); });
 }
 
-TEST(ClosedSurface, RefusesOpenSurfaces) {
+TEST(ClosedSurface, RejectsOpenSurfaces) {
   const TemporaryFolder folder;
   Shape open = makeBox(Vec3(0, 0, 0), Vec3(5, 5, 5));
   open.triangles.pop_back();
   const Path path = writeSegments(folder, {open});
-  expectRefused(path, path, "segment \"ségment 0\": its surface has holes");
+  expectRefused(path, path, "segment \"ségment 0\": has a surface with holes");
   const Path empty = writeSegments(folder, {{}});
-  expectRefused(empty, empty, "its surfaces hold no point");
+  expectRefused(empty, empty, "has surfaces without points");
   std::string lines = makeSurfaceXml({}, "a", "b", Encoding::ascii);
   const std::string none = "NumberOfLines=\"0\"";
   lines.replace(lines.find(none), none.size(), "NumberOfLines=\"4\"");
   folder.write("lines.vtp", lines);
-  expectRefused(folder / "lines.vtp", writeBlocks(folder, {"lines.vtp"}), "holds planar contours");
+  expectRefused(folder / "lines.vtp", writeBlocks(folder, {"lines.vtp"}), "is planar contours");
 }
 
-TEST(ClosedSurface, RefusesFilesOutsideItsFolder) {
+TEST(ClosedSurface, RejectsFilesOutsideItsFolder) {
   const TemporaryFolder folder;
   for (const char* name : {"../other.vtp", "a/../../other.vtp", "/etc/passwd", ""}) {
     const Path path = writeBlocks(folder, {name});
     expectRefused(path, path, "is not in the folder of the .vtm");
   }
   const Path path = writeBlocks(folder, {"absent.vtp"});
-  expectRefused(folder / "absent.vtp", path, "there is no such file");
+  expectRefused(folder / "absent.vtp", path, "no such file");
 }
 
-TEST(ClosedSurface, DamagedBytesAreReadOrRefused) {
+TEST(ClosedSurface, DamagedBytesAreReadOrRejected) {
   const TemporaryFolder folder;
   std::mt19937 random(5);
   int readCount = 0;
@@ -322,7 +322,7 @@ TEST(ClosedSurface, DamagedBytesAreReadOrRefused) {
 }
 
 /// Zeros compress well: 200 kB would expand to 1.5 GiB.
-TEST(ClosedSurface, RefusesArraysThatExpandBeyondTheLimit) {
+TEST(ClosedSurface, RejectsArraysThatExpandBeyondTheLimit) {
   const TemporaryFolder folder;
   constexpr std::uint64_t block = 1 << 20, blocks = 1536;
   const std::string zeros(block, '\0');
@@ -351,18 +351,18 @@ TEST(ClosedSurface, RefusesArraysThatExpandBeyondTheLimit) {
     expectRefused(folder / "large.vtp", writeBlocks(folder, {"large.vtp"}), "more than 1 GiB");
   }
   folder.write("unused.vtp",
-               replaceArray("Segmentation_MasterRepresentation")); // must not be opened
+               replaceArray("Segmentation_MasterRepresentation")); // is never decompressed
   EXPECT_EQ(readSegmentation(writeBlocks(folder, {"unused.vtp"})).segments().size(), 1u);
 }
 
 /// SlicerRT's examples contain only contours.
-TEST(ClosedSurface, RefusesRealContours) {
+TEST(ClosedSurface, RejectsRealContours) {
   const Path folder = Path(FENESTRA_DATA) / "slicer_scenes" / "slicerrt_scenes";
   if (!std::filesystem::exists(folder))
     GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
   for (const std::string name : {"TinyPatientStructureSet", "EclipseProstate_Structures"})
     expectRefused(folder / (name + ".seg") / (name + ".seg_0.vtp"), folder / (name + ".seg.vtm"),
-                  "holds planar contours, not a closed surface");
+                  "is planar contours, not a closed surface");
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// Comparisons of pictures with known statistics.
+// Comparisons of images with known statistics.
 
 #include "Agreement.h"
 #include "base/Error.h"
@@ -24,7 +24,7 @@ Image withError(Image image, float error) {
   return image;
 }
 
-/// Image of normal values (Box and Muller 1958).
+/// Image of normally distributed values (Box and Muller 1958).
 Image makeNoisyImage(int size, float mean, float deviation, std::uint64_t seed) {
   Image image = makeConstantImage(size, size, mean);
   Random random(seed, 0, 0);
@@ -42,11 +42,11 @@ ErrorKind catchErrorKind(const Image& a, const Image& b) {
     EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
     return error.kind();
   }
-  ADD_FAILURE() << "nothing thrown";
+  ADD_FAILURE() << "no error was thrown";
   return ErrorKind::output;
 }
 
-TEST(CompareImages, ConstantDifferenceHasKnownMeasures) {
+TEST(CompareImages, ConstantDifferenceHasKnownMetrics) {
   const Comparison c = compareImages(makeConstantImage(5, 3, 0.6f), makeConstantImage(5, 3, 0.5f));
   EXPECT_NEAR(c.relMse, 0.01 / 0.26, 1e-7);
   EXPECT_NEAR(c.rmse, 0.1, 1e-7);
@@ -58,7 +58,7 @@ TEST(CompareImages, ConstantDifferenceHasKnownMeasures) {
   EXPECT_FALSE(c.z.has_value());
 }
 
-TEST(CompareImages, EqualPicturesHaveNoDifference) {
+TEST(CompareImages, EqualImagesHaveNoDifference) {
   const Image image = makeConstantImage(4, 4, 0.25f);
   const Comparison c = compareImages(image, image);
   EXPECT_EQ(c.relMse, 0.0);
@@ -67,11 +67,11 @@ TEST(CompareImages, EqualPicturesHaveNoDifference) {
   EXPECT_EQ(c.maxDifference, 0.0);
 }
 
-TEST(CompareImages, RelMseOmitsTheReferencesOwnVariance) {
+TEST(CompareImages, RelMseExcludesTheVarianceOfTheReference) {
   const Image reference = makeNoisyImage(200, 1.0f, 0.01f, 1);
   const Image exact = makeConstantImage(200, 200, 1.0f);
   const double ownVariance = 1e-4 / 1.01;
-  // Mean of 120000 squares of normal values.
+  // Mean of 120000 squared normal values.
   const double tolerance = 5.0 * ownVariance * std::sqrt(2.0 / 120000.0);
   EXPECT_NEAR(compareImages(exact, reference).relMse, 0.0, tolerance);
   Image withoutErrors = reference;
@@ -79,7 +79,7 @@ TEST(CompareImages, RelMseOmitsTheReferencesOwnVariance) {
   EXPECT_NEAR(compareImages(exact, withoutErrors).relMse, ownVariance, tolerance);
 }
 
-TEST(CompareImages, TrueErrorsGiveNormalZ) {
+TEST(CompareImages, CorrectErrorsGiveNormalZ) {
   const Comparison c =
       compareImages(makeNoisyImage(200, 1.0f, 0.03f, 1), makeNoisyImage(200, 1.0f, 0.04f, 2));
   ASSERT_TRUE(c.z.has_value());
@@ -90,14 +90,14 @@ TEST(CompareImages, TrueErrorsGiveNormalZ) {
   EXPECT_LT(c.z->imageMean.abs().maxCoeff(), 4.5);
 }
 
-TEST(CompareImages, ImageMeanShowsABiasThatNoPixelShows) {
+TEST(CompareImages, ImageMeanShowsABiasThatSinglePixelsDoNot) {
   const Comparison c =
       compareImages(makeNoisyImage(200, 1.001f, 0.03f, 1), makeNoisyImage(200, 1.0f, 0.04f, 2));
   EXPECT_NEAR(c.z->imageMean.mean(), 0.001 / (0.05 / 200.0), 3.0); // 4 standard errors
   EXPECT_NEAR(c.z->deviation, 1.0, 0.02);
 }
 
-TEST(CompareImages, LargestZHasItsPixelAndChannel) {
+TEST(CompareImages, LargestZReportsItsPixelAndChannel) {
   Image a = withError(makeConstantImage(7, 4, 1.0f), 0.3f);
   const Image b = withError(makeConstantImage(7, 4, 1.0f), 0.4f);
   a.channels["G"][2 * 7 + 5] = -1.0f;
@@ -130,7 +130,7 @@ TEST(CompareImages, ZSkipsEqualValuesWithOneErrorZero) {
   EXPECT_EQ(compareImages(a, c).z->count, 6u);
 }
 
-TEST(CompareImages, NonFiniteValuesReachTheMeasures) {
+TEST(CompareImages, NonFiniteValuesAffectTheMetrics) {
   const Image b = makeConstantImage(3, 3, 1.0f);
   Image a = b;
   a.channels["G"][4] = std::numeric_limits<float>::quiet_NaN();
@@ -143,7 +143,7 @@ TEST(CompareImages, NonFiniteValuesReachTheMeasures) {
   EXPECT_EQ(compareImages(b, a).notFinite, 1u);
 }
 
-TEST(CompareImages, RefusesDifferentSizesAndMissingChannels) {
+TEST(CompareImages, RejectsDifferentSizesAndMissingChannels) {
   EXPECT_EQ(catchErrorKind(makeConstantImage(2, 3, 1.0f), makeConstantImage(3, 2, 1.0f)),
             ErrorKind::input);
   Image gray = makeConstantImage(2, 3, 1.0f);
@@ -162,10 +162,10 @@ TEST(DifferenceImage, PositiveIsRedAndNegativeIsBlue) {
   EXPECT_EQ(difference.channels.at("B"), (std::vector<float>{1.0f, 0.0f, 1.0f}));
 }
 
-TEST(DifferenceImage, KnownErrorsShowTheLargestZOfAPixel) {
+TEST(DifferenceImage, WithErrorsShowsTheLargestZOfAPixel) {
   const Image b = withError(makeConstantImage(3, 1, 1.0f), 0.4f);
   Image a = withError(b, 0.3f);
-  a.channels["G"] = {1.0f, 2.25f, 1.0f}; // z 2.5, half of full colour
+  a.channels["G"] = {1.0f, 2.25f, 1.0f}; // z 2.5, half of full color
   a.channels["B"] = {1.0f, 1.5f, std::numeric_limits<float>::quiet_NaN()};
   const Image difference = differenceImage(a, b);
   EXPECT_NEAR(difference.channels.at("R")[1], 1.0, 1e-6);
@@ -175,7 +175,7 @@ TEST(DifferenceImage, KnownErrorsShowTheLargestZOfAPixel) {
   EXPECT_EQ(difference.channels.at("B")[2], 0.0f);
 }
 
-TEST(AttachError, PictureOfErrorsBecomesErrorChannels) {
+TEST(AttachError, ErrorImageBecomesErrorChannels) {
   Image image = makeConstantImage(2, 2, 1.0f);
   attachError(image, makeConstantImage(2, 2, 0.125f));
   for (const char* name : {"error.R", "error.G", "error.B"})
@@ -183,30 +183,30 @@ TEST(AttachError, PictureOfErrorsBecomesErrorChannels) {
   EXPECT_THROW(attachError(image, makeConstantImage(1, 4, 0.125f)), Error);
 }
 
-TEST(AttachError, VarianceOfAReferenceIsThatOfItsReadme) {
+TEST(AttachError, VarianceOfTheReferenceEqualsThatInItsReadme) {
   const std::filesystem::path folder = FENESTRA_REFERENCE;
   if (!std::filesystem::exists(folder / "S1_best.exr"))
-    GTEST_SKIP() << "no reference pictures in " << folder;
+    GTEST_SKIP() << "no reference images in " << folder;
   Image reference = readImage(folder / "S1_best.exr");
   attachError(reference, readImage(folder / "S1_best_se.exr"));
   Image withoutErrors = reference;
   for (const char* name : {"error.R", "error.G", "error.B"})
     withoutErrors.channels.erase(name);
-  // README of the reference: relative variance 7e-5.
+  // The README of the reference states a relative variance of 7e-5.
   const double ownVariance = -compareImages(withoutErrors, reference).relMse;
   EXPECT_GT(ownVariance, 6e-5);
   EXPECT_LT(ownVariance, 8e-5);
 }
 
-// ---- probability that two renders are of one scene
-// --------------------------------------------------------
+// ---- probability that two renders show the same scene
+// -----------------------------------------------------------
 
 Image withSamples(Image image, float samples) {
   image.channels["samples.N"].assign(image.channels["R"].size(), samples);
   return image;
 }
 
-/// Render of a constant picture with correct errors, independent for each seed.
+/// Render of a constant image with correct errors, independent for each seed.
 Image makeRender(std::uint64_t seed, float mean = 0.5f) {
   return withSamples(makeNoisyImage(32, mean, 0.01f, seed), 1e4f);
 }
@@ -217,12 +217,12 @@ TEST(StudentTail, MatchesClosedForms) {
     EXPECT_NEAR(studentTail(t, 1.0) / (1.0 - 2.0 / pi * std::atan(t)), 1.0, 1e-9);
     EXPECT_NEAR(studentTail(-t, 2.0) / (1.0 - t / std::sqrt(2.0 + t * t)), 1.0, 1e-9);
   }
-  for (const double t : {0.3, 1.0, 4.0, 6.0}) // normal in the limit
+  for (const double t : {0.3, 1.0, 4.0, 6.0}) // the limit is normal
     EXPECT_NEAR(studentTail(t, 1e8) / std::erfc(t / std::sqrt(2.0)), 1.0, 1e-4);
   EXPECT_EQ(studentTail(infinity, 7.0), 0.0);
 }
 
-TEST(TileMeans, MeanAndErrorAreThoseOfTheTile) {
+TEST(TileMeans, HaveTheMeanAndErrorOfTheTile) {
   Image image = withSamples(withError(makeConstantImage(5, 4, 1.0f), 0.2f), 11.0f);
   image.channels["R"][0] = 5.0f;
   const Image tiles = computeTileMeans(image, 4);
@@ -258,13 +258,13 @@ TEST(AgreementProbability, IsOneForIdenticalValuesWithZeroError) {
   Image other = black;
   other.channels["B"][3] = 0.5f;
   EXPECT_EQ(computeAgreement(black, other), 0.0);
-  other.channels["error.B"][3] = 0.5f; // one of few samples hit something
+  other.channels["error.B"][3] = 0.5f; // one of a few samples hit something
   EXPECT_GT(computeAgreement(black, other), 0.05);
 }
 
-TEST(AgreementProbability, RareBrightPathsAreNoDisagreement) {
-  // One path in two hundred is bright, with 100 and 800 samples: among 4096 pixels several have
-  // four bright paths of 100, which a normal distribution would exclude.
+TEST(AgreementProbability, RareBrightPathsDoNotDisagree) {
+  // One path in 200 is bright, at 100 and 800 samples. Several of the 4096 pixels then have four
+  // bright paths of 100, which a normal distribution would exclude.
   const auto makeSparseImage = [](std::uint64_t seed, int samples) {
     Image image =
         withSamples(withError(makeConstantImage(64, 64, 0.0f), 0.0f), static_cast<float>(samples));

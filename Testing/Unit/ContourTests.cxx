@@ -1,4 +1,4 @@
-// Contours of drawn regions: loops, lengths, holes, and control points at uniform spacing.
+// Contours of drawn regions: loops, lengths, holes, and equally spaced control points.
 
 #include "ClippingTesting.h"
 #include "clip/focus/Contour.h"
@@ -29,8 +29,8 @@ std::vector<std::string> makeRandomPattern(Random& random, int width, int height
   return rows;
 }
 
-/// Number of connected parts of one kind of sample, with or without diagonal connections; the
-/// picture has a border of dots.
+/// Number of connected components of one kind of sample, with or without diagonal connections. A
+/// border of dots is added to the pattern.
 int countComponents(const std::vector<std::string>& rows, char kind, bool diagonal) {
   const int width = static_cast<int>(rows[0].size()) + 2,
             height = static_cast<int>(rows.size()) + 2;
@@ -68,7 +68,7 @@ TEST(Contour, EmptyFocusHasNoContour) {
   EXPECT_TRUE(traceContours(makeFocusDepth({"...", "..."})).empty());
 }
 
-TEST(Contour, SingleSampleGivesADiamond) {
+TEST(Contour, SingleSampleGivesADiamondShape) {
   const FocusDepth focus = makeFocusDepth({"...", ".#.", "..."});
   const auto contours = traceContours(focus);
   ASSERT_EQ(contours.size(), 1U);
@@ -76,7 +76,7 @@ TEST(Contour, SingleSampleGivesADiamond) {
   EXPECT_NEAR(computeLength(focus.depth, contours[0]), 2.0 * std::sqrt(2.0), 1e-12);
 }
 
-TEST(Contour, RectangleIsAsLongAsItsSides) {
+TEST(Contour, LengthOfARectangleFollowsFromItsSides) {
   const FocusDepth focus = makeFocusDepth({"......", ".####.", ".####.", ".####.", "......"});
   const auto contours = traceContours(focus);
   ASSERT_EQ(contours.size(), 1U);
@@ -91,14 +91,14 @@ TEST(Contour, FocusAtTheEdgeOfTheBufferIsClosedThere) {
   EXPECT_NEAR(computeLength(focus.depth, contours[0]), 2 * (2 + 1) + 4 * std::sqrt(0.5), 1e-12);
 }
 
-TEST(Contour, HolesAndComponentsHaveTheirOwnLoops) {
+TEST(Contour, HolesAndComponentsHaveSeparateLoops) {
   EXPECT_EQ(traceContours(makeFocusDepth({"###", "#.#", "###"})).size(), 2U);
   EXPECT_EQ(traceContours(makeFocusDepth({"#.#", "...", "#.#"})).size(), 4U);
   EXPECT_EQ(traceContours(makeFocusDepth({"#####", "#...#", "#.#.#", "#...#", "#####"})).size(),
             3U);
 }
 
-TEST(Contour, DiagonalNeighboursAreJoined) {
+TEST(Contour, DiagonalNeighborsAreConnected) {
   EXPECT_EQ(traceContours(makeFocusDepth({"#.", ".#"})).size(), 1U);
   EXPECT_EQ(traceContours(makeFocusDepth({".#", "#."})).size(), 1U);
 }
@@ -132,7 +132,7 @@ TEST(Contour, EveryCrossingLiesOnExactlyOneLoop) {
   }
 }
 
-/// Disc of radius 40 mm with a hole of radius 15 mm, and a small disc beside.
+/// Disk of radius 40 mm with a hole of radius 15 mm, and a small disk beside it.
 FocusDepth makeDisks() {
   std::vector<std::string> rows(100, std::string(140, '.'));
   for (std::size_t y = 0; y < rows.size(); ++y)
@@ -146,7 +146,7 @@ FocusDepth makeDisks() {
   return makeFocusDepth(rows);
 }
 
-TEST(ControlPoints, SpreadOverLoopsInProportionToTheirLength) {
+TEST(ControlPoints, AreDistributedOverLoopsInProportionToLength) {
   const FocusDepth focus = makeDisks();
   const auto contours = traceContours(focus);
   ASSERT_EQ(contours.size(), 3U);
@@ -179,13 +179,13 @@ TEST(ControlPoints, AreUniformInArcLength) {
   for (std::size_t i = 0; i < angles.size(); ++i) {
     const double gap =
         i + 1 < angles.size() ? angles[i + 1] - angles[i] : angles[0] + 2 * pi - angles[i];
-    // Spacing 5 mm; sites lie within one sample of their place, and a staircase is up to 8 % longer
-    // between the axes and the diagonals.
+    // The spacing is 5 mm. Sites are within one sample of their ideal position, and a staircase is
+    // up to 8 % longer between the axes and the diagonals.
     EXPECT_NEAR(gap * 40.0, 2 * pi * 40.0 / 50.0, 1.9);
   }
 }
 
-TEST(ControlPoints, DepthIsThatOfTheSampleAndSitesAreUnique) {
+TEST(ControlPoints, HaveTheDepthOfTheirSampleAndUniqueSites) {
   const FocusDepth focus = makeDisks();
   const auto contours = traceContours(focus);
   const auto points = placeControlPoints(focus, contours, 1000);
@@ -198,7 +198,7 @@ TEST(ControlPoints, DepthIsThatOfTheSampleAndSitesAreUnique) {
   EXPECT_LE(points.size(), findBoundarySamples(focus, contours).size());
 }
 
-TEST(ControlPoints, BoundarySamplesAreTheFocusSamplesWithAnOutsideNeighbour) {
+TEST(ControlPoints, BoundarySamplesAreFocusSamplesWithAnOutsideNeighbor) {
   const FocusDepth focus = makeDisks();
   std::size_t expected = 0;
   for (std::int64_t row = 0; row < focus.depth.rows(); ++row)

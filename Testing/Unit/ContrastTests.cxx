@@ -1,4 +1,4 @@
-// Colour differences against published pairs, and the contrast of a focus with its surroundings.
+// Color differences compared with published pairs, and contrast of a focus with its surroundings.
 
 #include "scene/Contrast.h"
 
@@ -40,20 +40,20 @@ TEST(ColorVision, LabOfPrimaries) {
   EXPECT_NEAR(red.L, 53.24, 0.02);
   EXPECT_NEAR(red.a, 80.09, 0.05);
   EXPECT_NEAR(red.b, 67.20, 0.05);
-  EXPECT_NEAR(toLab(Rgb::Constant(0.001)).L, 0.9033, 1e-3) << "the line near black";
+  EXPECT_NEAR(toLab(Rgb::Constant(0.001)).L, 0.9033, 1e-3) << "on the linear segment near black";
   EXPECT_NEAR(deltaE76(white, red), 114.57, 0.1);
 }
 
-TEST(ColorVision, DichromatsSeeGreysAsTheyAreAndLoseOneHue) {
+TEST(ColorVision, DichromatsSeeGraysUnchangedAndConfuseOneHue) {
   const Rgb red(0.5, 0.1, 0.1), olive(0.22, 0.2, 0.1), blue(0.1, 0.1, 0.5), teal(0.02, 0.18, 0.2);
   const auto difference = [](ColorVision vision, const Rgb& x, const Rgb& y) {
     return deltaE2000(toLab(simulateVision(vision, x)), toLab(simulateVision(vision, y)));
   };
   for (const ColorVision vision : colorVisions)
-    for (const double grey : {0.0, 0.2, 1.0})
-      EXPECT_LT(
-          deltaE76(toLab(simulateVision(vision, Rgb::Constant(grey))), toLab(Rgb::Constant(grey))),
-          0.01);
+    for (const double level : {0.0, 0.2, 1.0})
+      EXPECT_LT(deltaE76(toLab(simulateVision(vision, Rgb::Constant(level))),
+                         toLab(Rgb::Constant(level))),
+                0.01);
   EXPECT_LT(difference(ColorVision::deutan, red, olive),
             0.5 * difference(ColorVision::normal, red, olive));
   EXPECT_GT(difference(ColorVision::tritan, red, olive),
@@ -64,7 +64,7 @@ TEST(ColorVision, DichromatsSeeGreysAsTheyAreAndLoseOneHue) {
 
 constexpr double inside = 60.0, outside = 20.0, air = -1000.0;
 
-/// Ball of radius 6 mm in other matter up to `radius`, then air.
+/// Ball of radius 6 mm in another medium up to `radius`, then air.
 Volume makeBallVolume(double radius) {
   return makeVolume<float>(makeCenteredGrid({40, 40, 40}, Vec3::Ones()),
                            [radius](const Vec3& index) {
@@ -85,27 +85,27 @@ Mask makeBallMask() {
   return mask;
 }
 
-/// Air is transparent; the two kinds of matter have these albedos.
+/// Transparent air, and these albedos for the two media.
 TransferFunction makeTransfer(const Rgb& context, const Rgb& focus) {
   return {ScalarFunction({makeKnot(-500.0, 0.0), makeKnot(0.0, 1.0)}),
           ColorFunction({{outside, context}, {inside, focus}})};
 }
 
-TEST(Contrast, TakesScalarsOfBothSidesOfTheBorder) {
+TEST(Contrast, SamplesScalarsOnBothSidesOfTheInterface) {
   const TransferFunction transfer = makeTransfer(Rgb(0.9, 0.5, 0.4), Rgb(0.9, 0.9, 0.9));
   const auto mean = [](const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   };
   const InterfaceScalars scalars = sampleInterface(makeBallMask(), makeBallVolume(8.0), transfer);
   EXPECT_EQ(mean(scalars.focus), inside);
-  EXPECT_EQ(mean(scalars.context), outside) << "air beyond does not count";
+  EXPECT_EQ(mean(scalars.context), outside) << "air beyond is not counted";
   EXPECT_TRUE(sampleInterface(makeBallMask(), makeBallVolume(6.0), transfer).context.empty())
-      << "air alone";
+      << "only air";
 }
 
-/// Surroundings of the focus's own red lose it; of another colour they do not; what is asked for is
-/// done.
-TEST(Contrast, PalesSurroundingsThatLookLikeTheFocus) {
+/// Surroundings as red as the focus lose their saturation, those of another color do not. A
+/// requested saturation is used as it is.
+TEST(Contrast, DesaturatesSurroundingsThatLookLikeTheFocus) {
   const Rgb red(0.9, 0.4, 0.35), cream(0.99, 0.97, 0.9);
   const Volume volume = makeBallVolume(15.0);
   const FocusContrast same = chooseSaturation({}, makeBallMask(), volume, makeTransfer(red, red));
@@ -128,18 +128,18 @@ TEST(Contrast, PalesSurroundingsThatLookLikeTheFocus) {
   EXPECT_FALSE(isolated.contrast);
 }
 
-/// Surroundings of a colour near the focus's stay as colourful as they can: pale where that is
-/// enough, grey where it is not, be that enough or not.
-TEST(Contrast, PalesNoMoreThanIsNeeded) {
+/// Surroundings similar to the focus stay as saturated as possible: muted if that is enough, else
+/// gray, even if gray is not enough either.
+TEST(Contrast, DesaturatesNoMoreThanNecessary) {
   const Volume volume = makeBallVolume(15.0);
-  const auto chosen = [&volume](const Rgb& context, const Rgb& focus) {
+  const auto choose = [&volume](const Rgb& context, const Rgb& focus) {
     const auto decodeAlbedo = [](const Rgb& encoded) { return toAlbedo(decodeSrgb(encoded), 0.0); };
     return chooseSaturation({}, makeBallMask(), volume,
                             makeTransfer(decodeAlbedo(context), decodeAlbedo(focus)));
   };
   const Rgb yellow(0.9, 0.75, 0.25), orange(0.9, 0.5, 0.3), red(0.78, 0.49, 0.43);
-  const FocusContrast muted = chosen(orange, yellow), grayed = chosen(yellow, yellow),
-                      insufficient = chosen(red, red);
+  const FocusContrast muted = choose(orange, yellow), grayed = choose(yellow, yellow),
+                      insufficient = choose(red, red);
   EXPECT_EQ(muted.saturation, mutedSaturation);
   EXPECT_GT(muted.contrast->score(), 1.0);
   EXPECT_EQ(grayed.saturation, graySaturation);
@@ -148,9 +148,9 @@ TEST(Contrast, PalesNoMoreThanIsNeeded) {
   EXPECT_LT(insufficient.contrast->score(), 1.0);
 }
 
-/// Purple around grey-blue: paled, normal sight tells them apart better, and the colour-blind no
-/// longer do.
-TEST(Contrast, TakesNothingFromTheColorBlind) {
+/// Purple around gray-blue: muting improves the contrast for normal vision, but makes the two
+/// indistinguishable for color-blind viewers.
+TEST(Contrast, DoesNotReduceContrastForTheColorBlind) {
   const auto decodeAlbedo = [](const Rgb& encoded) { return toAlbedo(decodeSrgb(encoded), 0.0); };
   const TransferFunction transfer =
       makeTransfer(decodeAlbedo(Rgb(0.82, 0.486, 0.918)), decodeAlbedo(Rgb(0.435, 0.506, 0.545)));

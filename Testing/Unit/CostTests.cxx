@@ -1,5 +1,5 @@
-// Cost of reading: instructions for n parts against 2 n, counted by valgrind instead of time.
-// Skipped without valgrind.
+// Cost of reading n items compared with 2 n, in instructions counted by valgrind, which unlike time
+// are reproducible. Skipped without valgrind.
 
 #include "files/medical/MedicalHeader.h"
 #include "files/slicer/ScenePlan.h"
@@ -21,7 +21,7 @@ namespace {
 
 constexpr const char* countsVariable = "FENESTRA_COUNTS"; ///< files written by valgrind
 
-/// Instructions of one call.
+/// Counts the instructions of one call.
 double countInstructions(const std::function<void()>& work) {
   static int dumps = 0;
   CALLGRIND_ZERO_STATS;
@@ -31,7 +31,7 @@ double countInstructions(const std::function<void()>& work) {
   for (std::string word; counts >> word;)
     if (double count = 0.0; (word == "totals:" || word == "summary:") && counts >> count)
       return count;
-  throw std::runtime_error("valgrind has counted nothing");
+  throw std::runtime_error("valgrind reported no instruction count");
 }
 
 std::string repeat(int n, const std::function<std::string(const std::string&)>& item) {
@@ -41,7 +41,7 @@ std::string repeat(int n, const std::function<std::string(const std::string&)>& 
   return text;
 }
 
-/// Prepares an input of n parts; returns the function that reads the input.
+/// Prepares an input of n items; returns the function that reads it.
 using Prepare = std::function<std::function<void()>(int n)>;
 
 std::function<void()> makePlan(const std::string& nodes) {
@@ -122,7 +122,7 @@ bool runUnderValgrind(const TemporaryFolder& folder) {
   ::waitpid(child, &status, 0);
   if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
     return false;
-  EXPECT_EQ(status, 0) << "as valgrind's process says above";
+  EXPECT_EQ(status, 0) << "see the output of the valgrind process above";
   return true;
 }
 
@@ -137,8 +137,8 @@ TEST(Cost, GrowsNoFasterThanNLogN) {
   for (const Case& item : makeCases(folder)) {
     const double once = countInstructions(item.prepare(item.n));
     const double twice = countInstructions(item.prepare(2 * item.n));
-    std::cout << item.name << ": " << once / item.n << " instructions each of " << item.n
-              << ", growing by " << twice / once << '\n';
+    std::cout << item.name << ": " << once / item.n << " instructions for each of " << item.n
+              << ", growing by a factor of " << twice / once << '\n';
     EXPECT_LT(twice / once, maxGrowth) << item.name;
   }
 }

@@ -1,4 +1,4 @@
-// Coverage of the focus, and stopping within a long path.
+// Coverage of the focus, and stopping during a long path.
 
 #include "Support.h"
 
@@ -11,8 +11,8 @@
 namespace fenestra::testing::CoverageTests {
 namespace {
 
-/// Cube of 20 mm around the origin, extinction 0.1 per mm, seen from anterior; every pixel meets
-/// the focus 5 mm behind the cube's face.
+/// Cube of 20 mm around the origin, extinction 0.1 per mm, seen from anterior. In every pixel the
+/// focus is 5 mm behind the cube's face.
 struct Cube {
   TestScene scene{
       makeVolume(makeCenteredGrid({10, 10, 10}, {2.0, 2.0, 2.0}), [](const Vec3&) { return 1.0; }),
@@ -50,21 +50,21 @@ TEST(FocusCoverage, EqualsTheTransmittanceToTheFocus) {
   EXPECT_NEAR(Cube().computeCoverage(ClipNone{}), std::exp(-0.5), 4.0 * std::sqrt(0.25 / 256.0));
 }
 
-TEST(FocusCoverage, IsOneIfAPlaneEndsAtTheFocus) {
+TEST(FocusCoverage, IsOneIfAPlaneClipsUpToTheFocus) {
   EXPECT_DOUBLE_EQ(Cube().computeCoverage(Vec3(0, 5.0, 0), Vec3::UnitY()), 1.0);
 }
 
-TEST(FocusCoverage, IsZeroIfTheFocusIsCutAway) {
+TEST(FocusCoverage, IsZeroIfTheFocusIsClipped) {
   const Cube cube;
-  EXPECT_EQ(cube.computeCoverage(Vec3(0, 3.0, 0), Vec3::UnitY()), 0.0) << "cut from in front";
-  EXPECT_EQ(cube.computeCoverage(Vec3(0, 8.0, 0), -Vec3::UnitY()), 0.0) << "cut from behind";
+  EXPECT_EQ(cube.computeCoverage(Vec3(0, 3.0, 0), Vec3::UnitY()), 0.0) << "clipped from in front";
+  EXPECT_EQ(cube.computeCoverage(Vec3(0, 8.0, 0), -Vec3::UnitY()), 0.0) << "clipped from behind";
   EXPECT_EQ(cube.computeCoverage(Vec3(-50, 0, 0), Vec3::UnitX()), 0.0)
-      << "all gone, plane along the view";
+      << "the plane removes everything";
 }
 
-TEST(Render, StopsWithinALongPath) {
+TEST(Render, StopsDuringALongPath) {
   TestScene scene = Cube().scene;
-  scene.transfer = makeLinearTransfer(20000.0, Rgb::Ones()); // no absorption, and almost no escape
+  scene.transfer = makeLinearTransfer(20000.0, Rgb::Ones()); // no absorption, hardly any escape
   const Camera camera(scene.pose, scene.width, scene.height);
   const LightSet lights(scene.lights, scene.volume.grid, camera);
   const MinMaxGrid ranges(scene.volume, 0);
@@ -81,7 +81,7 @@ TEST(Render, StopsWithinALongPath) {
   std::uint64_t samples = 0;
   for (const PixelSums& pixel : result.film.pixels())
     samples += pixel.samples;
-  EXPECT_LT(samples, 64U * 256U) << "abandoned paths are no samples";
+  EXPECT_LT(samples, 64U * 256U) << "abandoned paths are not counted";
 }
 
 } // namespace

@@ -25,7 +25,7 @@ std::string catchError(const std::string& text) {
   return "";
 }
 
-TEST(Csv, ReadsEveryFormOfTheSameTable) {
+TEST(Csv, ReadsEveryVariantOfTheSameTable) {
   const std::vector<Fields> expected = {{"name", "input"}, {"a", "b c"}, {"d", ""}};
   for (const char* text :
        {"name,input\na,b c\nd,\n", "name,input\r\na,b c\r\nd,", "name,input\ra,b c\rd,\r",
@@ -35,26 +35,26 @@ TEST(Csv, ReadsEveryFormOfTheSameTable) {
   EXPECT_EQ(readFields(""), std::vector<Fields>());
 }
 
-TEST(Csv, QuotedFieldsHoldAnything) {
+TEST(Csv, QuotedFieldsCanContainAnything) {
   EXPECT_EQ(readFields("a,\"1,2\"\n\"x\r\ny\",\"say \"\"b\"\"\"\nn,5\" disk\n"),
             (std::vector<Fields>{{"a", "1,2"}, {"x\r\ny", "say \"b\""}, {"n", "5\" disk"}}));
   const auto records = parseCsv("a\n\"1\n2\n3\"\nb\n", "t.csv");
   EXPECT_EQ(records[1].line, 2U);
-  EXPECT_EQ(records[2].line, 5U) << "lines within quotes count";
+  EXPECT_EQ(records[2].line, 5U) << "line breaks within quotes count";
 }
 
-TEST(Csv, RefusalsNameTheLine) {
-  EXPECT_EQ(catchError("a,b\n1,\"2\n3\n"), "t.csv: line 2: its quotes do not close; close them");
+TEST(Csv, ErrorsNameTheLine) {
+  EXPECT_EQ(catchError("a,b\n1,\"2\n3\n"), "t.csv: line 2: quotes are not closed; close them");
   EXPECT_EQ(catchError("a\n\"1\"2\n"),
             "t.csv: line 2: text follows closing quotes; double the quotes within a field");
   EXPECT_EQ(catchError(std::string(1'000'001, ',')),
             "t.csv: holds more than 1000000 fields; split it");
 }
 
-TEST(Csv, WrittenLinesAreReadAgain) {
+TEST(Csv, WrittenLinesReadBackUnchanged) {
   const Fields fields = {"a", "1,2", "say \"b\"", "", "two\nlines", "-7.5", "x;y"};
   EXPECT_EQ(readFields(formatCsvLine(fields)), std::vector<Fields>{fields});
-  EXPECT_EQ(formatCsvLine({"=1+2", "-x", "-3"}), "'=1+2,'-x,-3\r\n") << "no formula";
+  EXPECT_EQ(formatCsvLine({"=1+2", "-x", "-3"}), "'=1+2,'-x,-3\r\n") << "text is never a formula";
 }
 
 } // namespace

@@ -1,5 +1,5 @@
-// The gradient of a soft cut: along the gradient of keep, of the length that its formula says, and
-// what it makes of matter.
+// Gradient of a soft clip edge: its direction, its length, and its effect on the surface
+// probability of a homogeneous medium.
 
 #include "ClippingTesting.h"
 #include "clip/surface/ClippingSurface.h"
@@ -41,7 +41,7 @@ bool isNearCellBorder(const ClipDepth& clip, const Vec3& world) {
   return (fraction.array() - 0.5).abs().maxCoeff() > 0.49;
 }
 
-/// Central differences of keep, mm^-1.
+/// Gradient of the clip weight by central differences, mm^-1.
 Vec3 estimateGradient(const Clip& clip, const Vec3& world) {
   constexpr double step = 1e-4;
   Vec3 gradient;
@@ -57,7 +57,7 @@ bool isInRamp(const Clip& clip, const Vec3& world) {
   return weight > edge.ghost + 1e-3 && weight < 1.0 - 1e-3;
 }
 
-TEST(CutGradient, PointsAlongTheGradientOfKeep) {
+TEST(CutGradient, PointsAlongTheGradientOfTheClipWeight) {
   const Vec3 normal = Vec3(0.4, -2.0, 0.3).normalized();
   std::vector<Clip> clips;
   for (const Projection projection : {Projection::orthographic, Projection::perspective}) {
@@ -81,7 +81,7 @@ TEST(CutGradient, PointsAlongTheGradientOfKeep) {
   }
 }
 
-TEST(CutGradient, IsThatOfTheLinearSurfaceInSeams) {
+TEST(CutGradient, UsesTheLinearSurfaceInSilhouetteCells) {
   const Clip exact = makeSoftSurface(Projection::perspective, Boundary::exact);
   ClipDepth linear = std::get<ClipDepth>(exact);
   linear.silhouette = nullptr;
@@ -97,7 +97,7 @@ TEST(CutGradient, IsThatOfTheLinearSurfaceInSeams) {
   EXPECT_GT(differing, 20);
 }
 
-TEST(CutGradient, IsNothingBesideTheRamp) {
+TEST(CutGradient, IsZeroOutsideTheRamp) {
   const Camera camera = makeAnteriorCamera(Projection::perspective, 100.0, 20.0, 8, 8);
   const auto plane = [&](const ClipEdge& e) {
     return ClipPlane{camera, Vec3::Zero(), -Vec3::UnitY(), e};
@@ -110,10 +110,10 @@ TEST(CutGradient, IsNothingBesideTheRamp) {
   EXPECT_EQ(cutGradient(plane({}), {1.0, 0.0, 2.0}), Vec3::Zero());
   EXPECT_EQ(cutGradient(ClipNone{}, {1.0, 0.0, 2.0}), Vec3::Zero());
   const ClipPlane flipped{camera, Vec3(0.0, -102.0, 0.0), Vec3::UnitY(), edge};
-  EXPECT_EQ(cutGradient(flipped, {0.0, -103.0, 0.0}), Vec3::Zero()); // behind the eye
+  EXPECT_EQ(cutGradient(flipped, {0.0, -103.0, 0.0}), Vec3::Zero()); // behind the camera
 }
 
-TEST(CutGradient, OfStepsIsTheViewsAxisAndNothingWhereNothingIsRemoved) {
+TEST(CutGradient, IsTheViewAxisAtStepsAndZeroWhereNothingIsClipped) {
   const Camera camera = makeAnteriorCamera(Projection::perspective, 100.0, 20.0, 8, 8);
   auto buffer = std::make_shared<DepthBuffer>(camera, makeCenteredGrid({30, 30, 30}));
   for (std::int64_t i = 0; i < buffer->size(); ++i)
@@ -130,8 +130,8 @@ TEST(CutGradient, OfStepsIsTheViewsAxisAndNothingWhereNothingIsRemoved) {
   EXPECT_EQ(cutGradient(clip, {0.0, -3.0, 2.0}), Vec3::Zero()); // between -infinity and a depth
 }
 
-/// P = o (1 - exp(-25 gamma^3 m)) with m = 1 mm cutShading / softness: matter has no gradient.
-TEST(CutGradient, MakesASurfaceOfHomogeneousMatter) {
+/// P = o (1 - exp(-25 gamma^3 m)) with m = 1 mm cutShading / softness: the medium has no gradient.
+TEST(CutGradient, GivesAHomogeneousMediumASurface) {
   const Camera camera = makeAnteriorCamera(Projection::orthographic, 100.0, 20.0, 8, 8);
   const Clip clip = ClipPlane{camera, Vec3::Zero(), -Vec3::UnitY(), edge};
   const Grid grid = makeCenteredGrid({20, 20, 20});

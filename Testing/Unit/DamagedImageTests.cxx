@@ -1,4 +1,4 @@
-// Picture files that are damaged or malicious.
+// Image files that are damaged or malicious.
 
 #include "ImageTesting.h"
 
@@ -20,7 +20,7 @@ namespace {
 
 using DamagedFiles = ImageFiles;
 
-TEST_F(DamagedFiles, TruncatedFileIsRefusedOrComplete) {
+TEST_F(DamagedFiles, TruncatedFileIsRejectedOrComplete) {
   for (const std::string name : {"a.exr", "a.nrrd", "a.png", "a.tif"}) {
     const Image image = readImage(save(makeTestImage(), name));
     const std::string original = readContent(path(name));
@@ -37,7 +37,7 @@ TEST_F(DamagedFiles, TruncatedFileIsRefusedOrComplete) {
   }
 }
 
-TEST_F(DamagedFiles, ChangedByteIsReadOrRefused) {
+TEST_F(DamagedFiles, ChangedByteIsReadOrRejected) {
   for (const std::string name : {"a.exr", "a.nrrd", "a.png", "a.tif"}) {
     const std::string original = readContent(save(makeTestImage(), name));
     const std::size_t step = 1 + original.size() / 1500;
@@ -57,38 +57,38 @@ TEST_F(DamagedFiles, ChangedByteIsReadOrRefused) {
   }
 }
 
-TEST_F(DamagedFiles, ClaimedSizeBeyondTheFileIsRefused) {
+TEST_F(DamagedFiles, ClaimedSizeBeyondTheFileIsRejected) {
   const std::string head = "NRRD0004\ntype: float\ndimension: 3\nencoding: raw\nendian: little\n"
                            "kinds: vector domain domain\n";
   writeContent(path("a.nrrd"), head + "sizes: 4 30000 30000\n\n1234");
   EXPECT_EQ(catchErrorKind([&] { readImage(path("a.nrrd")); }, "too short"), ErrorKind::input);
   writeContent(path("b.nrrd"), head + "sizes: 4 40000 2\n\n1234");
   EXPECT_EQ(catchErrorKind([&] { readImage(path("b.nrrd")); }, "32768"), ErrorKind::input);
-  // Attribute of 2 GB, right after the magic number and the version.
+  // Attribute of 2 GB, directly after the magic number and the version.
   std::string exr = readContent(save(makeTestImage(), "a.exr"));
   exr.replace(8, 0, std::string("note\0string\0\xff\xff\xff\x7f", 16));
   writeContent(path("a.exr"), exr);
   EXPECT_EQ(catchErrorKind([&] { readImage(path("a.exr")); }, "attribute"), ErrorKind::input);
-  // List of channels that ends before its declared size: OpenEXR would take the following bytes for
-  // an attribute.
+  // Channel list that ends before its declared size: OpenEXR would read the following bytes as an
+  // attribute.
   exr.replace(8, 16, std::string("c\0chlist\0\x0d\0\0\0\0w\0string\0\xff\xff\xff\x7f", 26));
   writeContent(path("a.exr"), exr);
-  EXPECT_EQ(catchErrorKind([&] { readImage(path("a.exr")); }, "does not fill"), ErrorKind::input);
-  // Width and height of a PNG are bytes 16 to 23; libpng checks either these or the checksum first.
+  EXPECT_EQ(catchErrorKind([&] { readImage(path("a.exr")); }, "declared size"), ErrorKind::input);
+  // Width and height of a PNG are bytes 16 to 23; libpng checks either them or the checksum first.
   std::string png = readContent(save(makeTestImage(), "a.png"));
   png.replace(16, 8, std::string("\0\0\x70\0\0\0\x70\0", 8));
   writeContent(path("a.png"), png);
   EXPECT_EQ(catchErrorKind([&] { readImage(path("a.png")); }, "a.png"), ErrorKind::input);
 }
 
-TEST_F(DamagedFiles, ClaimedMemoryBeyondTheLimitIsRefused) {
+TEST_F(DamagedFiles, ClaimedMemoryBeyondTheLimitIsRejected) {
   const std::string head = "NRRD0004\ntype: float\ndimension: 3\nencoding: gzip\nendian: little\n"
                            "kinds: vector domain domain\n";
   writeContent(path("a.nrrd"), head + "sizes: 4 16384 8192\n\n" + std::string(200'000, '\0'));
   EXPECT_EQ(catchErrorKind([&] { readImage(path("a.nrrd")); }, "536870912 samples"),
             ErrorKind::input);
-  // A writer that stops early leaves zeros in the table of offsets to blocks of lines; the first
-  // block follows that table.
+  // A writer that stops early leaves zeros in the table of offsets to blocks of scan lines. The
+  // first block follows that table.
   std::string exr = readContent(save(makeTestImage(40, 70), "a.exr"));
   constexpr std::size_t tableBytes = 8 * ((70 + 15) / 16);
   const auto readOffset = [&exr](std::size_t at) {
@@ -101,11 +101,11 @@ TEST_F(DamagedFiles, ClaimedMemoryBeyondTheLimitIsRefused) {
     ++table;
   exr.replace(table + tableBytes - 8, 8, std::string(8, '\0'));
   writeContent(path("cut.exr"), exr.substr(0, exr.size() * 2 / 3));
-  EXPECT_EQ(catchErrorKind([&] { readImage(path("cut.exr")); }, "lacks some of its lines"),
+  EXPECT_EQ(catchErrorKind([&] { readImage(path("cut.exr")); }, "lacks some scan lines"),
             ErrorKind::input);
 }
 
-TEST_F(DamagedFiles, NameOfAnotherFileIsRefused) {
+TEST_F(DamagedFiles, NameOfAnotherFileIsRejected) {
   const std::string head = "NRRD0004\ntype: float\ndimension: 2\nencoding: raw\nendian: little\n"
                            "sizes: 4 4\n";
   for (const std::string& line : {"data file: -"s, "datafile: /dev/zero"s, " Data  File:-"s,
@@ -120,8 +120,8 @@ TEST_F(DamagedFiles, NameOfAnotherFileIsRefused) {
     EXPECT_EQ(catchErrorKind([&] { readImage(path(name)); }, name), ErrorKind::input);
 }
 
-/// Teem's messages hold 1024 bytes of a line, and its arrays hold sizes of 16 axes.
-TEST_F(DamagedFiles, OverlongHeaderFieldIsRefused) {
+/// Teem's message buffer holds 1024 bytes of a line, and its arrays hold the sizes of 16 axes.
+TEST_F(DamagedFiles, OverlongHeaderFieldIsRejected) {
   const std::string head = "NRRD0004\ntype: float\nencoding: raw\nendian: little\n";
   const std::string plain = head + "dimension: 2\nsizes: 4 4\n", ones(1000, '1');
   for (const std::string& header :
@@ -135,10 +135,10 @@ TEST_F(DamagedFiles, OverlongHeaderFieldIsRefused) {
   }
 }
 
-TEST_F(DamagedFiles, RefusalPrintsNothingToStandardError) {
+TEST_F(DamagedFiles, ErrorsPrintNothingToStandardError) {
   ::testing::internal::CaptureStderr();
   for (const std::string name : {"a.exr", "a.nrrd", "a.png", "a.tif"}) {
-    writeContent(path(name), "not a picture at all, whatever the extension says");
+    writeContent(path(name), "this text is not an image, despite the extension");
     EXPECT_EQ(catchErrorKind([&] { readImage(path(name)); }, name), ErrorKind::input);
   }
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");

@@ -1,4 +1,4 @@
-// Defaults of a scene.
+// Default view, transfer function and channels of a scene.
 
 #include "scene/Defaults.h"
 #include "scene/FilmImage.h"
@@ -23,7 +23,7 @@ Mask makeSmallFocus() {
   return {Grid({8, 8, 8}, map), std::vector<std::uint8_t>(512, 1), 512, {"A"}};
 }
 
-TEST(FrameView, NamedViewShowsTheWholeVolumeAlongAnAxis) {
+TEST(FrameView, NamedViewShowsTheCompleteVolumeAlongAnAxis) {
   const Grid grid = makeRamp(0, 1).grid;
   ViewRequest view;
   view.name = "left";
@@ -32,13 +32,13 @@ TEST(FrameView, NamedViewShowsTheWholeVolumeAlongAnAxis) {
   EXPECT_TRUE(isApprox(camera.up(), Vec3::UnitZ()));
   for (int i = 0; i < 8; ++i) {
     const Vec3 corner = camera.toView(grid.worldCorner(i));
-    EXPECT_GT(corner.z(), 0.0) << "nothing is behind the eye";
+    EXPECT_GT(corner.z(), 0.0) << "nothing is behind the camera";
     EXPECT_LE(std::abs(corner.y()), camera.pose().scale);
     EXPECT_LE(std::abs(corner.x()), 2.0 * camera.pose().scale);
   }
 }
 
-TEST(FrameView, UpMayHaveAnyLength) {
+TEST(FrameView, UpCanHaveAnyLength) {
   const Grid grid = makeRamp(0, 1).grid;
   const auto frame = [&grid](const Vec3& up) {
     ViewRequest view;
@@ -63,14 +63,14 @@ TEST(FrameView, FocusFramingIsEqualInBothProjections) {
   const Camera perspective(frameView(view, grid, &focus, 64, 64), 64, 64);
   EXPECT_TRUE(isApprox(orthographic.pose().target, focus.grid.worldCenter()));
   EXPECT_NEAR(perspective.pixelPitch(), orthographic.pixelPitch(), 1e-9);
-  EXPECT_LT(orthographic.pose().scale, 10.0) << "the focus, not the volume";
+  EXPECT_LT(orthographic.pose().scale, 10.0) << "frames the focus, not the volume";
   const Vec3 fromCenter =
       grid.worldToIndex * perspective.pose().position - grid.indexBox().center();
   const Vec3 half = 0.5 * grid.size.cast<double>();
-  EXPECT_GT((fromCenter.cwiseAbs() - half).maxCoeff(), 0.0) << "the eye is outside the volume";
+  EXPECT_GT((fromCenter.cwiseAbs() - half).maxCoeff(), 0.0) << "the camera is outside the volume";
 }
 
-TEST(FrameView, AFocusNearAnEndOfTheScanIsFramedWithoutWhatLiesBeyond) {
+TEST(FrameView, FocusNearAnEndOfTheScanIsFramedUpToThatEnd) {
   const Grid grid = makeRamp(0, 1).grid; // 40 mm high
   const auto makeFocus = [&](double height, int voxels) {
     const Vec3 center = grid.worldCenter() + Vec3(0.0, 0.0, height);
@@ -85,17 +85,17 @@ TEST(FrameView, AFocusNearAnEndOfTheScanIsFramedWithoutWhatLiesBeyond) {
   for (const double side : {-1.0, 1.0}) {
     const Mask near = makeFocus(side * 15.0, 10);
     const Vec2 framing = frame(near, grid);
-    EXPECT_NEAR(framing.y(), 8.0, 1e-9) << "as large as elsewhere";
-    EXPECT_NEAR(framing.x(), side * 12.0, 1e-9) << "up to the end";
+    EXPECT_NEAR(framing.y(), 8.0, 1e-9) << "same scale as elsewhere";
+    EXPECT_NEAR(framing.x(), side * 12.0, 1e-9) << "shifted to the end of the scan";
     Box occupied = grid.indexBox();
     (side > 0.0 ? occupied.upper : occupied.lower).z() -= side * 1.0;
     EXPECT_NEAR(frame(near, Domain(grid).intersect(occupied)).x(), side * 15.0, 1e-9)
-        << "matter ends before the scan";
+        << "the medium ends before the scan";
     ViewRequest view;
     view.scale = 8.0;
     EXPECT_NEAR(frame(near, grid, view).x(), side * 15.0, 1e-9);
     const Mask large = makeFocus(side * 4.0, 30);
-    EXPECT_NEAR(frame(large, grid).x(), 0.0, 1e-9) << "empty on both sides alike";
+    EXPECT_NEAR(frame(large, grid).x(), 0.0, 1e-9) << "equal margins on both sides";
   }
   EXPECT_NEAR(frame(makeFocus(3.0, 10), grid).x(), 3.0, 1e-9);
 }
@@ -115,17 +115,17 @@ TEST(FrameView, CroppedVolumeIsFramed) {
   const CropBox outside(Affine(makeTranslation({500, 0, 0})));
   EXPECT_EQ(frameView({}, Domain(grid, outside), nullptr, 64, 64).scale,
             frameView({}, grid, nullptr, 64, 64).scale)
-      << "nothing is left: the volume is framed";
+      << "the crop is empty, so the volume is framed";
 }
 
-TEST(FrameView, RefusesAnUnknownName) {
+TEST(FrameView, RejectsAnUnknownName) {
   ViewRequest view;
   view.name = "sideways";
   EXPECT_THROW(frameView(view, makeRamp(0, 1).grid, nullptr, 8, 8), Error);
 }
 
-TEST(TransparentShare, CountsVoxelsOfTheFocusWithoutExtinction) {
-  const Volume volume = makeRamp(0, 39); // the value is the voxel's number along x
+TEST(TransparentFraction, CountsFocusVoxelsWithoutExtinction) {
+  const Volume volume = makeRamp(0, 39); // the value is the voxel's x index
   const Affine map = volume.grid.indexToWorld;
   const Mask focus{Grid({20, 30, 20}, map), std::vector<std::uint8_t>(12000, 1), 12000, {"A"}};
   const auto makeTransfer = [](double value) {
@@ -135,7 +135,7 @@ TEST(TransparentShare, CountsVoxelsOfTheFocusWithoutExtinction) {
   };
   EXPECT_EQ(transparentFraction(focus, volume, makeTransfer(-1.0)), 0.0);
   EXPECT_NEAR(transparentFraction(focus, volume, makeTransfer(4.5)), 0.25, 1e-12)
-      << "0 to 4 of 0 to 19";
+      << "0 to 4, of 0 to 19";
   EXPECT_EQ(transparentFraction(focus, volume, makeTransfer(50.0)), 1.0);
 }
 
@@ -146,7 +146,7 @@ TEST(DefaultTransfer, HounsfieldRangeGivesACtPreset) {
   EXPECT_FALSE(chooseTransferPreset(makeRamp(0, 4000)));
 }
 
-TEST(AirLevel, IsThatOfTheModalityAndNothingWhereSurroundingsAreCutOff) {
+TEST(AirThreshold, FollowsTheModalityAndIsMissingForMaskedBackgrounds) {
   EXPECT_EQ(findAirThreshold(makeRamp(-1000, 1500)), -300.0);
   const auto makeHead = [](double air) {
     return makeVolume<float>(makeCenteredGrid({40, 30, 20}, {2.0, 2.0, 2.0}), [=](const Vec3& p) {
@@ -157,7 +157,7 @@ TEST(AirLevel, IsThatOfTheModalityAndNothingWhereSurroundingsAreCutOff) {
   ASSERT_TRUE(level);
   EXPECT_GT(*level, 30.0);
   EXPECT_LT(*level, 380.0);
-  EXPECT_FALSE(findAirThreshold(makeHead(0.0))) << "masked";
+  EXPECT_FALSE(findAirThreshold(makeHead(0.0))) << "masked background";
   EXPECT_FALSE(findAirThreshold(makeRamp(7, 7))) << "constant";
 }
 
@@ -171,7 +171,7 @@ TEST(DefaultTransfer, RangeRunsFromTransparentToOpaqueAndAConstantIsVisible) {
   EXPECT_FALSE(flat.shading);
 }
 
-TEST(Picture, PlaneLiesThroughTheTargetWithThePicturesCorners) {
+TEST(FilmImage, PlaneLiesThroughTheTargetWithTheCornersOfTheImage) {
   CameraPose pose;
   pose.position = {0, -100, 0};
   pose.target = {0, 0, 0};
@@ -182,7 +182,7 @@ TEST(Picture, PlaneLiesThroughTheTargetWithThePicturesCorners) {
   EXPECT_TRUE(isApprox(plane.rowStep, Vec3(0, 0, -1)));
 }
 
-TEST(Picture, HasEveryDocumentedChannel) {
+TEST(FilmImage, HasEveryDocumentedChannel) {
   CameraPose pose;
   const Camera camera(pose, 2, 1);
   Film film(2, 1);

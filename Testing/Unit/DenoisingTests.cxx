@@ -1,4 +1,4 @@
-// Input of the filter, from a film and its scene.
+// Filter input from a film and its scene, and the denoised image.
 
 #include "scene/Denoising.h"
 
@@ -9,7 +9,7 @@
 namespace fenestra::DenoisingTests {
 namespace {
 
-/// Ball of thin haze in a box of 16^3 voxels: many rays cross it without a collision.
+/// Ball of a thin medium in a box of 16^3 voxels: many rays cross it without a collision.
 class Denoising : public ::testing::Test {
 protected:
   Denoising() {
@@ -46,7 +46,7 @@ protected:
   RenderRequest request;
 };
 
-TEST_F(Denoising, ClosedAreEmptyPixelsWhateverTheSamplesMet) {
+TEST_F(Denoising, InactivePixelsAreTheEmptyOnesWhateverTheSamplesHit) {
   const PreparedScene scene(request);
   const Film film = renderFilm(scene);
   const FilterInput input = makeFilterInput(film, scene);
@@ -72,12 +72,12 @@ TEST_F(Denoising, FeaturesDoNotDependOnSamples) {
   EXPECT_NE(one.even, other.even);
 }
 
-TEST_F(Denoising, HalvesThatAreNotIndependentAreRefused) {
+TEST_F(Denoising, DependentHalfBuffersAreRejected) {
   const PreparedScene scene(request);
   EXPECT_THROW(makeFilterInput(Film(48, 48, false), scene), std::logic_error);
 }
 
-TEST_F(Denoising, HalvesAverageToThePicture) {
+TEST_F(Denoising, HalfBuffersAverageToTheImage) {
   const PreparedScene scene(request);
   const Film film = renderFilm(scene, 3, 4);
   const FilterInput input = makeFilterInput(film, scene);
@@ -93,7 +93,7 @@ double sumSquaredErrors(const FilteredImage& image, const Film& reference) {
   return sum;
 }
 
-TEST_F(Denoising, FilteredPictureIsNearerToTheTruth) {
+TEST_F(Denoising, FilteredImageIsCloserToTheReference) {
   const PreparedScene scene(request);
   const Film reference = renderFilm(scene, 9, 512), film = renderFilm(scene, 1, 4);
   const FilteredImage filtered = denoise(film, scene);
@@ -104,7 +104,7 @@ TEST_F(Denoising, FilteredPictureIsNearerToTheTruth) {
   EXPECT_EQ(filtered.error[0].size(), film.pixelCount());
 }
 
-TEST_F(Denoising, ClosedPixelsKeepTheirRawColourAtAnyCount) {
+TEST_F(Denoising, InactivePixelsStayRawAtAnySampleCount) {
   const PreparedScene scene(request);
   const Film film = renderFilm(scene, 4, 3);
   const FilterInput input = makeFilterInput(film, scene);
@@ -115,7 +115,7 @@ TEST_F(Denoising, ClosedPixelsKeepTheirRawColourAtAnyCount) {
   }
 }
 
-TEST_F(Denoising, OnePixelWithOneSampleLeavesNoHalvesButTheWholePicture) {
+TEST_F(Denoising, OnePixelWithOneSampleDisablesHalfBuffersButNotFiltering) {
   const PreparedScene scene(request);
   Film film = renderFilm(scene, 4, 2);
   std::size_t first = 0;

@@ -1,4 +1,4 @@
-// Positions and extent of the buffer's samples, interpolation between and clamping beyond.
+// Depth buffer: positions and extent of its samples, interpolation, and clamping beyond them.
 
 #include "ClippingTesting.h"
 #include "base/Error.h"
@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t maxSamples = 4 << 20;
 
-TEST(DepthBuffer, SamplesAreTheViewportsPixelCentres) {
+TEST(DepthBuffer, SamplesAreAtPixelCentersOfTheViewport) {
   for (const auto projection : {Projection::orthographic, Projection::perspective}) {
     const Camera camera = makeAnteriorCamera(projection, 300.0, 20.0, 37, 22);
     const DepthBuffer buffer(camera, makeCenteredGrid({100, 100, 100}));
@@ -55,7 +55,7 @@ TEST(DepthBuffer, LargeVolumeIsCoarserBeyondTheViewport) {
   }
 }
 
-TEST(DepthBuffer, CoarseningFactorIsTheLeastPossible) {
+TEST(DepthBuffer, CoarseningFactorIsTheSmallestPossible) {
   const Grid grid = makeCenteredGrid({500, 500, 500});
   const auto factor = [&](double scale) {
     const Camera camera = makeAnteriorCamera(Projection::orthographic, 1000.0, scale, 300, 200);
@@ -68,7 +68,7 @@ TEST(DepthBuffer, CoarseningFactorIsTheLeastPossible) {
 
 TEST(DepthBuffer, PerspectiveReachesToSeventyFiveDegrees) {
   const Camera camera = makeAnteriorCamera(Projection::perspective, 30.0, 10.0, 64, 64);
-  const DepthBuffer buffer(camera, makeCenteredGrid({100, 100, 100})); // the eye is inside
+  const DepthBuffer buffer(camera, makeCenteredGrid({100, 100, 100})); // the camera is inside
   const double limit = 30.0 * std::tan(75.0 * pi / 180.0);
   const double sample = buffer.xAxis().factor * camera.pixelPitch();
   EXPECT_NEAR(buffer.xAxis().coordinate(0), -limit, sample);
@@ -114,7 +114,7 @@ TEST(DepthBuffer, NearestReturnsTheSampleOfThePixel) {
   EXPECT_EQ(buffer.nearestDepth({99.0, -99.0}), 63.0);
 }
 
-TEST(DepthBuffer, RefusesAPictureWithoutExtent) {
+TEST(DepthBuffer, RejectsAnImageWithoutExtent) {
   const Grid grid = makeCenteredGrid({2, 2, 2});
   for (const double scale : {0.0, -1.0, 1e-30, infinity, std::nan("")}) {
     EXPECT_THROW(

@@ -1,4 +1,4 @@
-// A picture is a function of scene, seed and sample counts only.
+// A render depends only on the scene, the seed and the sample counts.
 
 #include "FilmTesting.h"
 
@@ -22,7 +22,7 @@ TEST(Determinism, ThreadsAndPassesChangeNoBit) {
   }
 }
 
-TEST(Determinism, DifferentSeedsGiveDifferentPictures) {
+TEST(Determinism, DifferentSeedsGiveDifferentImages) {
   const TestScene s = makeWavyScene();
   RenderSettings settings;
   settings.samples = 4;
@@ -46,7 +46,7 @@ TEST(Render, StopOnRequestReturnsFinishedSamples) {
   EXPECT_EQ(result.finishedSamples, 0U);
 }
 
-TEST(Render, EstimatesNoiseForThoseWhoWatch) {
+TEST(Render, EstimatesNoiseOnlyOnRequest) {
   const TestScene s = makeWavyScene();
   RenderSettings settings;
   settings.samples = 4;
@@ -76,7 +76,7 @@ TEST(Render, StopsAtTimeLimitAndAtNoiseTarget) {
   EXPECT_GE(converged.finishedSamples, 16U);
 }
 
-TEST(Render, StopsBySeenNoiseAtFixedCountsAlikeInAllPixels) {
+TEST(Render, DisplayNoiseIsEstimatedAtFixedCountsEqualInAllPixels) {
   const TestScene s = makeWavyScene();
   RenderSettings settings;
   settings.samples = 1000;

@@ -1,4 +1,4 @@
-// DICOM series written here by GDCM, a real series, and invalid files.
+// DICOM series written by GDCM, a real series, and invalid files.
 
 #include "files/medical/DicomSeries.h"
 
@@ -21,7 +21,7 @@ namespace {
 
 using Path = std::filesystem::path;
 
-/// Slice as written by a scanner; LPS.
+/// Slice as a scanner writes it; LPS.
 struct SliceFile {
   unsigned width = 5, height = 4;
   Vec3 position = Vec3::Zero();
@@ -29,14 +29,14 @@ struct SliceFile {
   double rowSpacing = 2.0, columnSpacing = 0.5;
   std::string uid = "1.2.3", number = "7", description = "head";
   std::string intercept = "0", slope = "1";
-  std::int16_t first = 0; ///< stored values count up from this one
+  std::int16_t first = 0; ///< first of the consecutive stored values
   bool compress = false;  ///< lossless JPEG 2000
   unsigned components = 1;
 };
 
 Path write(const Path& path, const SliceFile& slice) {
   const unsigned width = slice.width, height = slice.height;
-  const SuppressItkOutput quiet; // GDCM warns of missing files
+  const SuppressItkOutput quiet; // GDCM warns about missing files
   const auto io = itk::GDCMImageIO::New();
   io->SetFileName(path.string());
   io->KeepOriginalUIDOn();
@@ -89,7 +89,7 @@ Path write(const Path& path, const SliceFile& slice) {
   return path;
 }
 
-/// Writes `count` slices along the normal, in files whose names do not give their order.
+/// Writes `count` slices along the normal; the order of the file names is not that of the slices.
 void writeStack(const TemporaryFolder& folder, SliceFile slice, int count, double step) {
   const Vec3 begin = slice.position;
   for (int i = 0; i < count; ++i) {
@@ -130,7 +130,7 @@ TEST(DicomSeries, SortsSlicesAlongTheirNormal) {
         const Vec3 lps = slice.position + slice.axes * Vec3(0.5 * x, 2.0 * y, 2.5 * z);
         EXPECT_LT(
             (volume.grid.indexToWorld * Vec3(x, y, z) - Vec3(-lps[0], -lps[1], lps[2])).norm(),
-            1e-4); // files round their numbers
+            1e-4); // numbers are rounded in the files
       }
 }
 
@@ -145,7 +145,7 @@ TEST(DicomSeries, AppliesRescaleAndKeepsGantryTilt) {
   EXPECT_TRUE(isApprox(volume.grid.indexToWorld.linear().col(2), Vec3(0, -0.7, 3.0)));
 }
 
-TEST(DicomSeries, SlicesMayDifferInSlope) {
+TEST(DicomSeries, SlicesCanDifferInSlope) {
   const TemporaryFolder folder;
   int i = 0;
   for (const char* slope : {"1", "0.5", "0.25"}) {
@@ -158,7 +158,7 @@ TEST(DicomSeries, SlicesMayDifferInSlope) {
   EXPECT_EQ(getVoxel(volume, 4, 3, 2), 4.75);
 }
 
-TEST(DicomSeries, DecodesJpeg2000AndRefusesDamagedStreams) {
+TEST(DicomSeries, DecodesJpeg2000AndRejectsDamagedStreams) {
   const TemporaryFolder folder;
   SliceFile slice{.width = 60, .height = 50, .intercept = "-1024", .first = -3, .compress = true};
   const Path file = write(folder / "one.dcm", slice);
@@ -167,7 +167,7 @@ TEST(DicomSeries, DecodesJpeg2000AndRefusesDamagedStreams) {
   const Volume volume = readDicomVolume({file}, "x");
   for (int i = 0; i < 3000; ++i)
     ASSERT_EQ(getVoxel(volume, i % 60, i / 60, 0), i - 3 - 1024);
-  std::string wider = bytes; // width in the codestream, greater than declared
+  std::string wider = bytes; // width in the codestream, larger than declared
   wider[wider.find("\xff\x4f\xff\x51") + 8] = 1;
   folder.write("wider.dcm", wider);
   const Path truncated = folder.write("half.dcm", bytes.substr(0, bytes.size() - 40));
@@ -235,12 +235,12 @@ TEST(DicomSeries, SelectorChoosesAmongSeries) {
   EXPECT_EQ(choose("8").files.size(), 4u);
   EXPECT_EQ(choose("head").files.size(), 2u);
   expectRefusedFolder(folder.path(),
-                      {"holds 3 DICOM series: number 7 \"head\" CT 1.2.3 (2 files); number 8",
-                       "pick one with --volume"},
+                      {"has 3 DICOM series: number 7 \"head\" CT 1.2.3 (2 files); number 8",
+                       "choose one with --volume"},
                       [&] { choose(std::nullopt); });
-  expectRefusedFolder(folder.path(), {"--volume \"neck\" can be any of number 8", "by its uid"},
+  expectRefusedFolder(folder.path(), {"--volume \"neck\" matches several: number 8", "by its uid"},
                       [&] { choose("neck"); });
-  expectRefusedFolder(folder.path(), {"--volume \"foot\" names no DICOM series"},
+  expectRefusedFolder(folder.path(), {"--volume \"foot\" matches no DICOM series"},
                       [&] { choose("foot"); });
 }
 
@@ -252,7 +252,7 @@ TEST(DicomSeries, SearchesSubfoldersOfAFolderWithoutFiles) {
   write(folder / "b/2.dcm", {.position = {0, 0, 4}});
   EXPECT_EQ(readSingleSeries(folder.path()).grid.size.z(), 2);
   folder.write("readme", "");
-  fenestra::expectRefused(folder.path(), "holds no DICOM series",
+  fenestra::expectRefused(folder.path(), "has no DICOM image series",
                           [&] { findDicomSeries(folder.path()); });
 }
 
@@ -266,32 +266,32 @@ void writeDepths(const TemporaryFolder& folder, const std::vector<double>& depth
     write(folder / (std::to_string(i) + ".dcm"), {.position = {0, 0, depths[i]}});
 }
 
-TEST(DicomSeries, RefusesMissingAndRepeatedSlices) {
+TEST(DicomSeries, RejectsMissingAndRepeatedSlices) {
   const TemporaryFolder gap, repeated, drift, sideways;
   writeDepths(gap, {0, 2, 4, 8, 10});
-  expectRefused(gap / "2.dcm", gap.path(), "is 4 mm from 3.dcm, others 2 mm; add the slices");
+  expectRefused(gap / "2.dcm", gap.path(), "is 4 mm from 3.dcm, but the median gap is 2 mm");
   writeDepths(repeated, {0, 2, 4, 2});
-  expectRefused(repeated / "1.dcm", repeated.path(), "lies where 3.dcm does");
+  expectRefused(repeated / "1.dcm", repeated.path(), "equals that of 3.dcm");
   writeDepths(drift, {0, 2, 4, 6, 8.9, 11.8, 14.7, 17.6});
-  expectRefused(drift / "3.dcm", drift.path(), "off even steps");
+  expectRefused(drift / "3.dcm", drift.path(), "off even spacing");
   for (int i = 0; i < 3; ++i)
     write(sideways / (std::to_string(i) + ".dcm"), {.position = Vec3(i == 1 ? 0.6 : 0, 0, i)});
-  expectRefused(sideways / "1.dcm", sideways.path(), "off even steps");
+  expectRefused(sideways / "1.dcm", sideways.path(), "off even spacing");
 }
 
-TEST(DicomSeries, WarnsOfUnevenSlices) {
+TEST(DicomSeries, WarnsOfUnevenSpacing) {
   const TemporaryFolder folder, even;
   writeDepths(folder, {0, 2.1, 4, 6});
   const Volume volume = readSingleSeries(folder.path());
   ASSERT_EQ(volume.warnings.size(), 1u);
-  EXPECT_EQ(volume.warnings[0], folder.path().string() + ": slices lie up to 0.1 mm off even steps "
-                                                         "of 2 mm, which are taken for theirs");
+  EXPECT_EQ(volume.warnings[0], folder.path().string() + ": slices are up to 0.1 mm off even "
+                                                         "spacing; 2 mm steps are used");
   EXPECT_NEAR(volume.grid.spacing().z(), 2.0, 1e-12);
   writeDepths(even, {0, 2.01, 4, 6});
   EXPECT_TRUE(readSingleSeries(even.path()).warnings.empty());
 }
 
-TEST(DicomSeries, RefusesSlicesOfDifferentGeometry) {
+TEST(DicomSeries, RejectsSlicesOfDifferentGeometry) {
   const TemporaryFolder rotated, spaced;
   writeDepths(rotated, {0, 1});
   write(rotated / "2.dcm", {.position = {0, 0, 2}, .axes = makeObliqueAxes()});
@@ -302,22 +302,22 @@ TEST(DicomSeries, RefusesSlicesOfDifferentGeometry) {
   expectRefused(spaced / "2.dcm", spaced.path(), "PixelSpacing: differs");
 }
 
-/// Overwrites the start of an element's value in a file's bytes; the element's type is implicit.
-void replace(std::string& bytes, const std::string& tag, const std::string& value) {
+/// Overwrites the start of an element's value in a file's bytes. The element has no explicit VR.
+void overwriteElement(std::string& bytes, const std::string& tag, const std::string& value) {
   const std::size_t at = bytes.find(tag);
   ASSERT_NE(at, std::string::npos);
   bytes.replace(at + tag.size() + 4, value.size(), value);
 }
 
-TEST(DicomSeries, RefusesFilesThatAreNoGreySlices) {
+TEST(DicomSeries, RejectsFilesThatAreNotGraySlices) {
   const TemporaryFolder folder;
   const Path colored = write(folder / "rgb.dcm", {.components = 3});
   const auto read = [](const Path& file) { return [file] { readDicomVolume({file}, "x"); }; };
-  fenestra::expectRefused(colored, "of one scalar a voxel", read(colored));
+  fenestra::expectRefused(colored, "with one sample per voxel", read(colored));
   const std::string bytes = readBytes(write(folder / "a.dcm", {}));
   const auto expect = [&](const std::string& tag, const std::string& value, const char* text) {
     std::string changed = bytes;
-    replace(changed, tag, value);
+    overwriteElement(changed, tag, value);
     const Path file = folder.write("changed.dcm", changed);
     fenestra::expectRefused(file, text, read(file));
   };
@@ -328,19 +328,19 @@ TEST(DicomSeries, RefusesFilesThatAreNoGreySlices) {
   expect("\x28\0\x30\0"s, "-1\\1", "PixelSpacing: must be above 0 mm");
   expect("\x28\0\x53\x10"s, "nan", "RescaleSlope or RescaleIntercept: is not one finite number");
   expect("\x28\0\x52\x10"s, "x", "RescaleSlope or RescaleIntercept: is not one finite number");
-  expect("\x20\0\x32\0"s, "x", "is missing, so nothing says where");
-  expect("\x20\0\x37\0"s, "1\\1", "must be two directions");
+  expect("\x20\0\x32\0"s, "x", "is missing, so the slice cannot be placed");
+  expect("\x20\0\x37\0"s, "1\\1", "must be two orthogonal directions");
   const Path truncated = folder.write("half.dcm", bytes.substr(0, bytes.size() - 10));
   fenestra::expectRefused(truncated, "is damaged, truncated or deflated", read(truncated));
   const Path none = folder.write("none.dcm", "what");
   fenestra::expectRefused(none, "is not a DICOM file", read(none));
   fenestra::expectRefused(folder / "absent",
-                          "the folder cannot be read: No such file or directory; check its name",
+                          "folder cannot be read: No such file or directory; check its name",
                           [&] { findDicomSeries(folder / "absent"); });
 }
 
-/// Damaged bytes must be read, or refused on one line.
-TEST(DicomSeries, DamagedBytesAreReadOrRefused) {
+/// Damaged bytes must be read, or rejected with a message of one line.
+TEST(DicomSeries, DamagedBytesAreReadOrRejected) {
   const TemporaryFolder folder;
   const std::string original = readBytes(write(folder / "a.dcm", {}));
   std::mt19937 random(11);
@@ -364,7 +364,7 @@ TEST(DicomSeries, DamagedBytesAreReadOrRefused) {
   EXPECT_GT(readCount, 3);
 }
 
-/// Ball of soft tissue in air, as stored: values below `tissue` / 2 are air's.
+/// Ball of soft tissue in air.
 Volume makeBall(double tissue, double air) {
   LargeArray<std::int16_t> voxels;
   for (int z = 0; z < 8; ++z)
@@ -380,7 +380,7 @@ Volume makeBall(double tissue, double air) {
   return volume;
 }
 
-TEST(AirAtZero, OnlyACertainCtIsMoved) {
+TEST(HounsfieldOffset, OnlyAnUnambiguousCtIsCorrected) {
   struct {
     double tissue, air;
     bool moves, warns;
@@ -398,8 +398,8 @@ TEST(AirAtZero, OnlyACertainCtIsMoved) {
   }
 }
 
-/// One head, as a series (with rescale intercept 0, although its air is 0) and as the volume in HU
-/// that another program made of it.
+/// A head as a DICOM series (rescale intercept 0, although its air is at 0) and as the volume in HU
+/// that another program converted it to.
 TEST(DicomSeries, RealSeriesEqualsItsNiftiFile) {
   const Path folder = Path(FENESTRA_DATA) / "head_ct_slicer_dicom";
   if (!std::filesystem::exists(folder))
@@ -420,9 +420,9 @@ TEST(DicomSeries, RealSeriesEqualsItsNiftiFile) {
       }
 }
 
-/// Stream that once crashed GDCM's decoder; whether it is read or refused depends on the memory
-/// layout.
-TEST(DicomSeries, StreamThatCrashesTheDecoderIsReadOrRefused) {
+/// Codestream that once crashed the decoder of GDCM. Whether it is read or rejected depends on the
+/// memory layout.
+TEST(DicomSeries, StreamThatCrashesTheDecoderIsReadOrRejected) {
   const auto damaged = Path(__FILE__).parent_path() / "../Fuzz/Sandbox/Dicom/jpeg2000-stream.dcm";
   ASSERT_TRUE(std::filesystem::exists(damaged));
   try {

@@ -14,7 +14,7 @@ std::uint64_t digestInSteps(const std::string& text, std::size_t step) {
   return digest.value();
 }
 
-TEST(Digest, DependsOnTheBytesAloneNotOnTheirPieces) {
+TEST(Digest, DependsOnTheBytesNotOnTheirDivision) {
   std::string text;
   for (int i = 0; i < 1000; ++i)
     text += static_cast<char>(i * i);
@@ -25,7 +25,7 @@ TEST(Digest, DependsOnTheBytesAloneNotOnTheirPieces) {
   EXPECT_EQ(computeDigest(folder / "a", 77), digestInSteps(text.substr(0, 77), 1));
 }
 
-TEST(Digest, NoticesEveryBitAndTheLength) {
+TEST(Digest, ChangesWithEveryBitAndTheLength) {
   const std::string text(40, '\0');
   for (std::size_t bit = 0; bit < 8 * text.size(); ++bit) {
     std::string other = text;
@@ -36,11 +36,11 @@ TEST(Digest, NoticesEveryBitAndTheLength) {
   EXPECT_NE(digestInSteps("", 1), digestInSteps(std::string(8, '\0'), 8));
 }
 
-TEST(Digest, StaysAsItIs) { // films and records of earlier runs hold it
+TEST(Digest, NeverChanges) { // checkpoints and manifests of earlier runs contain it
   EXPECT_EQ(digestInSteps("fenestra", 8), 7811035952669358778ULL);
 }
 
-TEST(Digest, MissingFileIsRefused) {
+TEST(Digest, MissingFileIsRejected) {
   const TemporaryFolder folder;
   const std::filesystem::path path = folder / "none";
   expectRefused(path, "cannot be read", [&] { computeDigest(path); });

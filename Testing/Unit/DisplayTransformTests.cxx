@@ -1,4 +1,4 @@
-// Display views: properties of the tone curve, and alpha.
+// Display views: properties of the tone curves, and alpha.
 
 #include "files/images/DisplayTransform.h"
 
@@ -21,7 +21,7 @@ double srgbToLinear(double v) {
   return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
 }
 
-/// Display values of one opaque pixel.
+/// Displayed values of one opaque pixel.
 std::vector<float> displayPixel(DisplayView view, float r, float g, float b) {
   return toDisplay({r, g, b, 1.0f}, {view});
 }
@@ -43,7 +43,7 @@ constexpr DisplayView film = DisplayView::film;
 
 using Color = std::array<double, 3>;
 
-/// Display light of one opaque pixel.
+/// Displayed light of one opaque pixel, linear.
 Color computeLight(DisplayView view, const Color& c) {
   const std::vector<float> rgba = displayPixel(view, static_cast<float>(c[0]),
                                                static_cast<float>(c[1]), static_cast<float>(c[2]));
@@ -55,19 +55,19 @@ double luminance(const Color& c) {
   return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
 }
 
-/// Shoulder of the film: reaches 1 at 6.
+/// Shoulder of the film curve: reaches 1 at 6.
 double shoulder(double x) {
   return x * (1.0 + x / 36.0) / (1.0 + x);
 }
 
-/// Contrast of the film about middle grey, and the gain after which the shoulder keeps that.
+/// Film contrast about middle gray, with the gain that compensates for the shoulder there.
 Color applyContrast(Color c) {
   for (double& x : c)
     x = 1.21058 * 0.18 * std::pow(x / 0.18, 1.15);
   return c;
 }
 
-/// The film as specified: its shoulder by 60 % on luminance, by 40 % on channels.
+/// Specified film curve: 60 % of the shoulder on luminance, 40 % on channels.
 Color blendShoulders(const Color& scene) {
   Color c = applyContrast(scene);
   const double y = luminance(c), scale = y > 0.0 ? shoulder(y) / y : 1.0;
@@ -76,7 +76,7 @@ Color blendShoulders(const Color& scene) {
   return c;
 }
 
-/// The film as the view says it: 0.4 of the roll-off on luminance, then the rest by channel.
+/// Implemented film curve: 0.4 of the roll-off on luminance, then the rest per channel.
 Color applyFilmView(const Color& scene) {
   Color c = applyContrast(scene);
   const double scale = 1.0 / (1.0 + 0.4 * luminance(c));
@@ -100,7 +100,7 @@ double colorDifference(const Color& a, const Color& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-/// The sRGB gamut in five steps a channel, from 4 stops under to 4 over.
+/// sRGB gamut in six values per channel, exposed from -4 to +4 stops.
 std::vector<Color> makeExposedGamut() {
   std::vector<Color> colors;
   for (int stops = -4; stops <= 4; ++stops)
@@ -123,7 +123,7 @@ TEST(PhotographicView, FollowsItsFormula) {
   }
 }
 
-TEST(PhotographicView, KeepsBlackAndMiddleGreyAndRollsOffBelowWhite) {
+TEST(PhotographicView, KeepsBlackAndMiddleGrayAndRollsOffBelowWhite) {
   EXPECT_EQ(displayGray(photographic, 0.0f), 0.0f);
   EXPECT_NEAR(computeGrayLight(photographic, 0.18), 0.18, 1e-3);
   EXPECT_GT(computeGrayLight(photographic, 4.0), 0.97);
@@ -131,7 +131,7 @@ TEST(PhotographicView, KeepsBlackAndMiddleGreyAndRollsOffBelowWhite) {
   EXPECT_EQ(std::lround(255.0f * displayGray(photographic, 65504.0f)), 255);
 }
 
-TEST(PhotographicView, RisesStrictlyUpTo4AndNeverFalls) {
+TEST(PhotographicView, IncreasesStrictlyUpTo4AndNeverDecreases) {
   float previous = 0.0f;
   for (double stops = -12.0; stops < 20.0; stops += 0.01) {
     const double x = 0.18 * std::exp2(stops);
@@ -146,7 +146,7 @@ TEST(PhotographicView, RisesStrictlyUpTo4AndNeverFalls) {
   }
 }
 
-TEST(PhotographicView, KeepsDarkTissueAndTheOrderOfChannels) {
+TEST(PhotographicView, PreservesDarkTissueAndTheOrderOfChannels) {
   const std::vector<float> dark = displayPixel(photographic, 0.17f, 0.06f, 0.05f);
   EXPECT_NEAR(srgbToLinear(dark[0]), 0.17, 1e-3);
   EXPECT_NEAR(srgbToLinear(dark[1]), 0.06, 1e-3);
@@ -167,7 +167,7 @@ TEST(FilmView, FollowsItsFormula) {
   }
 }
 
-TEST(FilmView, ComesNearAShoulderOfLuminanceBlendedWithOneOfChannels) {
+TEST(FilmView, ApproximatesABlendOfLuminanceAndChannelShoulders) {
   double sum = 0.0, maximum = 0.0;
   int count = 0;
   for (const Color& c : makeExposedGamut()) {
@@ -184,7 +184,7 @@ TEST(FilmView, ComesNearAShoulderOfLuminanceBlendedWithOneOfChannels) {
   EXPECT_LT(maximum, 10.5);
 }
 
-TEST(FilmView, KeepsBlackAndMiddleGreyAndWhitesBelowThoseOfPhotographic) {
+TEST(FilmView, KeepsBlackAndMiddleGrayAndShowsWhiteDarkerThanPhotographic) {
   EXPECT_EQ(displayPixel(film, 0.0f, 0.0f, 0.0f), (std::vector<float>{0.0f, 0.0f, 0.0f, 1.0f}));
   EXPECT_NEAR(computeGrayLight(film, 0.18), 0.18, 1e-3);
   EXPECT_NEAR(computeGrayLight(film, 1.0), 0.637, 2e-3);
@@ -194,7 +194,7 @@ TEST(FilmView, KeepsBlackAndMiddleGreyAndWhitesBelowThoseOfPhotographic) {
   EXPECT_GT(displayGray(film, 65504.0f), 0.999999f);
 }
 
-TEST(FilmView, RisesInEveryChannelAsAColourGetsBrighter) {
+TEST(FilmView, IncreasesInEveryChannelWithBrightness) {
   for (const Color& hue : {Color{1, 1, 1}, Color{1, 0.3, 0.2}, Color{0, 0, 1}, Color{0, 1, 0.1}}) {
     Color previous = {};
     for (double stops = -12.0; stops < 20.0; stops += 0.02) {
@@ -226,7 +226,7 @@ TEST(DisplayTransform, ShowsNanAsBlackAndInfinityAsWhite) {
   }
 }
 
-TEST(DisplayTransform, HandlesEveryPixelAlike) {
+TEST(DisplayTransform, TreatsAllPixelsEqually) {
   const float gray = displayGray(photographic, 0.3f);
   std::vector<float> many;
   for (int i = 0; i < 1000; ++i)
@@ -242,15 +242,15 @@ TEST(DisplayTransform, IgnoresTheEnvironmentAndPrintsNothing) {
   ::setenv("OCIO_ACTIVE_VIEWS", "Standard", 1);
   ::setenv("OCIO_ACTIVE_DISPLAYS", "Cinema", 1);
   ::testing::internal::CaptureStderr();
-  const float displayPixel = displayGray(photographic, 1.0f);
+  const float gray = displayGray(photographic, 1.0f);
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
-  EXPECT_LT(displayPixel, 0.9f); // photographic: Standard would clip 1 to 1
+  EXPECT_LT(gray, 0.9f); // photographic: Standard would clip 1 to 1
   ::unsetenv("OCIO");
   ::unsetenv("OCIO_ACTIVE_VIEWS");
   ::unsetenv("OCIO_ACTIVE_DISPLAYS");
 }
 
-TEST(ToDisplay, ExposureMultipliesRadianceBeforeTheTone) {
+TEST(ToDisplay, ExposureMultipliesRadianceBeforeTheToneCurve) {
   const std::vector<float> pixels = {0.04f, 0.02f, 0.3f, 0.5f};
   std::vector<float> brighter = pixels, darker = pixels;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -275,7 +275,7 @@ TEST(ToDisplay, DividesByAlphaBeforeTheView) {
   EXPECT_EQ(full[3], 1.0f);
 }
 
-TEST(ToDisplay, TransparentIsBlackAndAlphaIsFrom0To1) {
+TEST(ToDisplay, TransparentIsBlackAndAlphaIsClampedTo0To1) {
   EXPECT_EQ(toDisplay({0.4f, 0.2f, 0.1f, 0.0f}, {photographic}),
             (std::vector<float>{0.0f, 0.0f, 0.0f, 0.0f}));
   EXPECT_EQ(toDisplay({0.4f, 0.2f, 0.1f, notANumber}, {photographic})[3], 0.0f);

@@ -1,4 +1,4 @@
-// Domain of a cropped volume against its definition: a point is inside if both boxes contain it.
+// Domain of a cropped volume compared with its definition: inside both boxes.
 
 #include "model/volume/Domain.h"
 
@@ -17,7 +17,7 @@ Vec3 randomPoint(Random& random, double size) {
   return {uniform(random, -size, size), uniform(random, -size, size), uniform(random, -size, size)};
 }
 
-/// Map that rotates, shears and stretches about the origin, and sometimes mirrors.
+/// Map that rotates, shears and scales about the origin, and sometimes mirrors.
 Affine makeRandomMap(Random& random, double size) {
   Affine map = Affine::Identity();
   const Mat3 randomMatrix(randomPoint(random, 1), randomPoint(random, 1), randomPoint(random, 1));
@@ -37,8 +37,8 @@ Grid makeRandomGrid(Random& random) {
                     makeTranslation(-0.5 * (size.array() - 1).cast<double>().matrix())};
 }
 
-/// Distance of a world point outside the domain, in the boxes' own units; 0: on the surface,
-/// negative: inside.
+/// Distance of a world point from the domain, in units of the boxes. 0: on the surface, negative:
+/// inside.
 double distanceOutside(const Grid& grid, const CropBox& crop, const Vec3& world) {
   const Vec3 index = grid.worldToIndex * world;
   const Box box = grid.indexBox();
@@ -56,7 +56,7 @@ TEST(Domain, ClipIsTheIntersectionOfGridAndCrop) {
     const Vec3 target = crop.boxToWorld * randomPoint(random, 1.0);
     Ray ray{randomPoint(random, 6.0), Vec3::Zero()};
     ray.direction = (target - ray.origin).normalized();
-    if (trial % 3 == 0) // along an axis of the world, or of a box
+    if (trial % 3 == 0) // along an axis of the world or of a box
       ray.direction = Vec3::Unit(trial % 9 / 3);
     else if (trial % 3 == 1)
       ray.direction = (trial % 2 ? crop.boxToWorld : grid.indexToWorld).linear().col(trial % 9 / 3);
@@ -75,7 +75,7 @@ TEST(Domain, ClipIsTheIntersectionOfGridAndCrop) {
       continue;
     for (const double end : {inside.begin, inside.end}) {
       if (end != range.begin && end != range.end) {
-        ASSERT_NEAR(distanceOutside(grid, crop, ray.at(end)), 0.0, 1e-9) << "no step, no voxel";
+        ASSERT_NEAR(distanceOutside(grid, crop, ray.at(end)), 0.0, 1e-9) << "ends are exact";
       }
     }
   }
@@ -109,7 +109,7 @@ TEST(Domain, RayInAFaceIsInside) {
   }
   EXPECT_TRUE(domain.clip({Vec3(-4, std::nextafter(3.0, 4.0), 2), Vec3::UnitX()}).isEmpty());
   EXPECT_TRUE(domain.clip({Vec3(-4, 2, 2), -Vec3::UnitX()}).isEmpty()) << "behind the ray";
-  EXPECT_EQ(domain.clip({Vec3(2, 2, 2), Vec3::UnitZ()}).begin, 0.0) << "from inside";
+  EXPECT_EQ(domain.clip({Vec3(2, 2, 2), Vec3::UnitZ()}).begin, 0.0) << "the ray starts inside";
 }
 
 TEST(Domain, CornersSpanTheDomain) {
@@ -117,7 +117,7 @@ TEST(Domain, CornersSpanTheDomain) {
   int cut = 0;
   for (int trial = 0; trial < 200; ++trial) {
     const Grid grid = makeRandomGrid(random);
-    const CropBox crop(trial % 4 ? makeRandomMap(random, 3.0) // else exactly the grid's own box
+    const CropBox crop(trial % 4 ? makeRandomMap(random, 3.0) // else exactly the grid's box
                                  : grid.indexToWorld * makeTranslation({2, 4, 3}) *
                                        makeScaling(Vec3(2.5, 4.5, 3.5)));
     const std::vector<Vec3> corners = Domain(grid, crop).indexCorners();
@@ -146,7 +146,7 @@ TEST(Domain, CornersSpanTheDomain) {
   EXPECT_GT(cut, 100);
 }
 
-TEST(Domain, CropBesideTheGridLeavesNothing) {
+TEST(Domain, CropOutsideTheGridIsEmpty) {
   Affine map = Affine::Identity();
   map.translation() = Vec3(20, 0, 0);
   const Domain domain(Grid({8, 8, 8}, Affine::Identity()), CropBox(map));

@@ -1,4 +1,4 @@
-// Pixels that provably meet nothing take one sample; other pixels do not.
+// Pixels that provably hit nothing get one sample; other pixels do not.
 
 #include "Support.h"
 #include "integrator/render/EmptyPixels.h"
@@ -8,7 +8,7 @@
 namespace fenestra::testing::EmptyPixelsTests {
 namespace {
 
-/// Small opaque ball off the centre of an empty box, rotated against the view.
+/// Small opaque ball off the center of an empty box, rotated against the view.
 TestScene makeBallScene(Projection projection, double distance) {
   Affine map = Affine::Identity();
   map.linear() = makeRotation(0.4, Vec3(1, 2, 3).normalized()).linear() * 1.5;
@@ -30,17 +30,17 @@ TestScene makeBallScene(Projection projection, double distance) {
 struct View {
   const char* name;
   Projection projection;
-  double distance; ///< mm from the volume's centre
+  double distance; ///< mm from the volume's center
 };
 
-class EmptyPixelsOf : public ::testing::TestWithParam<View> {};
+class EmptyPixelsViews : public ::testing::TestWithParam<View> {};
 
-TEST_P(EmptyPixelsOf, CertainPixelsAreMissedByEverySample) {
+TEST_P(EmptyPixelsViews, NoSampleHitsInADeterministicPixel) {
   const TestScene scene = makeBallScene(GetParam().projection, GetParam().distance);
   RenderSettings settings;
   settings.samples = 64;
   const Film film = scene.render(settings).film;
-  TestScene mapped = scene; // environment is not constant: no pixel is certain
+  TestScene mapped = scene; // the environment varies: no pixel is deterministic
   mapped.lights = {EnvironmentLight{Rgb::Ones(), {2, 1, {1, 1, 1, 2, 2, 2}}}};
   settings.path.background.kind = Background::Kind::environment;
   settings.samples = 256;
@@ -62,13 +62,13 @@ TEST_P(EmptyPixelsOf, CertainPixelsAreMissedByEverySample) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Views, EmptyPixelsOf,
+INSTANTIATE_TEST_SUITE_P(Views, EmptyPixelsViews,
                          ::testing::Values(View{"Orthographic", Projection::orthographic, 100.0},
                                            View{"Perspective", Projection::perspective, 100.0},
                                            View{"FromInside", Projection::perspective, 3.0}),
                          [](const auto& info) { return info.param.name; });
 
-TEST(EmptyPixels, FilledPictureOfOneColumnHasNone) {
+TEST(EmptyPixels, OccupiedImageOfOneColumnHasNone) {
   TestScene scene = makeBallScene(Projection::orthographic, 100.0);
   scene.transfer = makeLinearTransfer(0.0, Rgb::Constant(0.7));
   scene.transfer.extinction = ScalarFunction({makeKnot(0.0, 1.0)});
@@ -85,7 +85,7 @@ TEST(EmptyPixels, DefaultHasNone) {
   EXPECT_FALSE(EmptyPixels().contains(0, 0));
 }
 
-TEST(EmptyPixels, PictureThatMeetsNothingHasOnlyEmptyPixels) {
+TEST(EmptyPixels, ImageThatHitsNothingHasOnlyEmptyPixels) {
   TestScene scene = makeBallScene(Projection::orthographic, 100.0);
   scene.transfer = makeLinearTransfer(0.0, Rgb::Constant(0.7));
   RenderSettings settings;

@@ -1,5 +1,5 @@
-// The march of expected first flights: against closed forms, against the samples' own means, and
-// lanes against the readable one.
+// Feature buffers compared with closed forms and with the means of samples, and SIMD ray marching
+// with scalar.
 
 #include "Support.h"
 #include "denoise/features/FeatureBuffers.h"
@@ -14,7 +14,7 @@ FeatureBuffers renderFeatures(const TestScene& s) {
   return s.visitView([](const SceneView& scene) { return computeFeatures(scene); });
 }
 
-/// Slab of 10 mm with one extinction, seen face on by parallel rays that start 50 mm before it.
+/// Slab of 10 mm with constant extinction, seen face-on by parallel rays from 50 mm in front of it.
 TestScene makeSlab(double extinction) {
   TestScene s{
       makeVolume(makeCenteredGrid({10, 40, 40}, {1.0, 1.0, 1.0}), [](const Vec3&) { return 1.0; }),
@@ -24,7 +24,7 @@ TestScene makeSlab(double extinction) {
   return s;
 }
 
-/// Waves of matter under hybrid shading, partly beside the frame.
+/// Wavy medium with hybrid shading, partly outside the image.
 TestScene makeWaves() {
   TestScene s{makeVolume<std::int16_t>(makeCenteredGrid({24, 24, 24}, {1.0, 1.0, 1.5}),
                                        [](const Vec3& p) {
@@ -43,7 +43,7 @@ TestScene makeWaves() {
   return s;
 }
 
-/// Soft cut along a tilted surface through the target.
+/// Soft clip edge at a tilted surface through the target.
 Clip makeTiltedClip(const TestScene& s) {
   const Camera camera(s.pose, s.width, s.height);
   auto buffer = std::make_shared<DepthBuffer>(camera, s.volume.grid);
@@ -58,18 +58,18 @@ Clip makeTiltedClip(const TestScene& s) {
                    {0.0, 3.0}};
 }
 
+/// Mean collision depth, times the fraction of rays that collide.
 double meanDepth(double extinction, double length) {
   const double transmittance = std::exp(-extinction * length);
-  return (1.0 - transmittance * (1.0 + extinction * length)) /
-         extinction; // times the share that collides
+  return (1.0 - transmittance * (1.0 + extinction * length)) / extinction;
 }
 
-TEST(FeatureBuffers, OfASlabHasItsClosedForm) {
+TEST(FeatureBuffers, OfASlabHaveTheirClosedForm) {
   for (const double extinction : {1e-3, 0.05, 0.4, 3.0}) {
     const FeatureBuffers features = renderFeatures(makeSlab(extinction));
     const double hit = 1.0 - std::exp(-10.0 * extinction);
     const std::size_t middle = features.hit.size() / 2 + 8;
-    EXPECT_NEAR(features.hit[middle], hit, 0.03 * hit) << extinction; // a ray ends in the dark
+    EXPECT_NEAR(features.hit[middle], hit, 0.03 * hit) << extinction; // marching stops in the dark
     EXPECT_NEAR(features.depth[middle], 50.0 * hit + meanDepth(extinction, 10.0),
                 0.04 * 60.0 * hit);
     EXPECT_NEAR(features.albedo[1][middle], 0.5 * features.hit[middle], 1e-5);
@@ -88,7 +88,7 @@ TEST(FeatureBuffers, LightOfASlabHasItsClosedForm) {
               0.5 * phase * 2.0 * static_cast<double>(features.hit[middle]) * toFarSide, 1e-3);
 }
 
-TEST(FeatureBuffers, RaysThatMeetNothingGiveZeros) {
+TEST(FeatureBuffers, AreZeroWhereRaysHitNothing) {
   TestScene s = makeSlab(0.0);
   s.pose.scale = 100.0;
   const FeatureBuffers features = renderFeatures(s);
@@ -99,8 +99,8 @@ TEST(FeatureBuffers, RaysThatMeetNothingGiveZeros) {
   }
 }
 
-/// An axis on which half a voxel is less than a float's last place: nothing for lanes.
-TEST(FeatureBuffers, EndsOnAxesOfAMillionVoxels) {
+/// On this axis half a voxel is below the rounding error of a float, which SIMD cannot march.
+TEST(FeatureBuffers, TerminateOnAnAxisOfMoreThanHalfAMillionVoxels) {
   const Grid grid = makeCenteredGrid({2, 2, 600'000}, {1.0, 1.0, 1.0});
   TestScene s{makeVolume<std::uint8_t>(grid, [](const Vec3& p) { return p.z() < 3.0 ? 1 : 0; }),
               makeLinearTransfer(0.1, Rgb(0.9, 0.5, 0.1)),
@@ -124,7 +124,7 @@ double relativeDifference(const Plane& a, const Plane& b) {
   return std::sqrt(difference / reference);
 }
 
-TEST(FeatureBuffers, LanesAgreeWithTheReadableMarch) {
+TEST(FeatureBuffers, SimdAgreesWithScalarMarching) {
   TestScene s = makeWaves();
   std::vector<Clip> clips = {ClipNone(), makeTiltedClip(s)};
   clips.push_back(
@@ -146,8 +146,8 @@ TEST(FeatureBuffers, LanesAgreeWithTheReadableMarch) {
   }
 }
 
-/// Nearly all collisions lie in the cut's softness, and matter alone has no surface.
-TEST(FeatureBuffers, FacesTheSoftCutOfHomogeneousMatter) {
+/// Nearly all collisions are in the soft clip edge; the medium alone has no surface.
+TEST(FeatureBuffers, NormalsOfAHomogeneousMediumFollowTheSoftClipEdge) {
   for (const Projection projection : {Projection::orthographic, Projection::perspective}) {
     TestScene s = makeSlab(6.0);
     s.pose.projection = projection;
@@ -169,7 +169,7 @@ TEST(FeatureBuffers, FacesTheSoftCutOfHomogeneousMatter) {
   }
 }
 
-TEST(FeatureBuffers, IsTheMeanOfTheSamples) {
+TEST(FeatureBuffers, AreTheMeanOfTheSamples) {
   TestScene s = makeWaves();
   s.clip = makeTiltedClip(s);
   RenderSettings settings;
@@ -194,7 +194,7 @@ TEST(FeatureBuffers, IsTheMeanOfTheSamples) {
   }
 }
 
-TEST(FeatureBuffers, PartOfAPictureMarchesAsTheWholeDoes) {
+TEST(FeatureBuffers, CroppedImageEqualsTheSamePartOfTheCompleteImage) {
   TestScene s = makeWaves();
   s.width = s.height = 40;
   s.pose.scale = 10.0;
@@ -202,7 +202,7 @@ TEST(FeatureBuffers, PartOfAPictureMarchesAsTheWholeDoes) {
   s.height = 20; // the middle rows
   s.pose.scale = 5.0;
   const FeatureBuffers cropped = renderFeatures(s);
-  for (int row = 1; row < 19; ++row) // neighbours decide, which the border lacks
+  for (int row = 1; row < 19; ++row) // results depend on neighbors, which border rows lack
     for (int column = 0; column < 40; ++column)
       ASSERT_NEAR(cropped.depth[static_cast<std::size_t>(row * 40 + column)],
                   reference.depth[static_cast<std::size_t>((row + 10) * 40 + column)], 1e-3)

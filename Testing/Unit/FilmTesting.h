@@ -1,5 +1,5 @@
 #pragma once
-// Films compared bit for bit, and a scene with noise, scattering and an empty border.
+// Bitwise comparison of films, and a scene with noise, scattering and empty margins.
 
 #include "Support.h"
 
@@ -25,7 +25,7 @@ inline void expectIdentical(const Film& a, const Film& b) {
   }
 }
 
-/// Waves of matter under a sky, a sun and a lamp.
+/// Wavy medium lit by a sky, a sun and a lamp.
 inline TestScene makeWavyScene(int width = 33, int height = 21) {
   const Grid grid = makeCenteredGrid({20, 20, 20}, {1.0, 1.0, 1.0});
   TestScene s{makeVolume<std::int16_t>(

@@ -27,7 +27,7 @@ TEST(PixelSums, MeanAndStandardErrorEqualTwoPasses) {
   EXPECT_NEAR(sums.standardError()[0], std::sqrt(variance / 1000.0), 1e-9);
 }
 
-TEST(PixelSums, HalvesAreMeansBySampleIndex) {
+TEST(PixelSums, HalfBuffersAreMeansOfEvenAndOddSamples) {
   PixelSums sums;
   Rgb even = Rgb::Zero(), odd = Rgb::Zero();
   double evenAlpha = 0.0, oddAlpha = 0.0;
@@ -56,7 +56,7 @@ TEST(PixelSums, OneSampleHasNoError) {
   EXPECT_EQ(sums.standardError()[1], 0.0);
 }
 
-/// Standard error of samples in blocks, from its definition.
+/// Standard error of samples in blocks, by its definition.
 double computeError(const std::vector<double>& values, std::size_t block) {
   struct Block {
     double sum = 0.0, size = 0.0;
@@ -77,7 +77,7 @@ double computeError(const std::vector<double>& values, std::size_t block) {
   return std::sqrt(squares / (static_cast<double>(values.size() * values.size()) - sizes));
 }
 
-TEST(PixelSums, ErrorComesFromBlocks) {
+TEST(PixelSums, StandardErrorFollowsFromBlocks) {
   for (const std::uint32_t block : {2U, 4U, 8U}) {
     PixelSums sums, shifted;
     sums.blockSize = block;
@@ -105,7 +105,7 @@ TEST(PixelSums, BlocksThatCancelHaveNoError) {
   sums.blockSize = 2;
   for (int i = 0; i < 16; ++i) {
     PathSample sample;
-    sample.radiance = Rgb::Constant(i / 2 % 2 == 0 ? 1.0 : 3.0); // each half: 1 3 1 3 ...
+    sample.radiance = Rgb::Constant(i / 2 % 2 == 0 ? 1.0 : 3.0); // per half buffer: 1 3 1 3 ...
     sums.add(sample);
   }
   EXPECT_EQ(sums.standardError()[0], 0.0);

@@ -1,5 +1,5 @@
-// The filter on synthetic pictures whose truth is known: what it keeps, what it tells of its error,
-// and what makes it lie.
+// Filter on synthetic images with known exact values: what it preserves, its error estimate, and
+// inputs that break the estimate.
 
 #include "denoise/filter/Filter.h"
 
@@ -17,11 +17,11 @@
 namespace fenestra::testing::FilterTests {
 namespace {
 
-/// Picture of three bands and waves: a linear function of its features, plus `unknown` times a
-/// pattern that no feature knows.
+/// Image of three bands and waves: a linear function of its features, plus `unexplained` times a
+/// pattern that no feature contains.
 struct TestImage {
   int width = 96, height = 80;
-  double unexplained = 0.3, noise = 0.5; ///< noise: deviation of a half's pixel
+  double unexplained = 0.3, noise = 0.5; ///< noise: standard deviation in a half buffer
 
   std::size_t count() const { return static_cast<std::size_t>(width * height); }
   static double band(int x) { return x < 30 ? 0.2 : x < 60 ? 1.0 : 0.5; }
@@ -62,7 +62,7 @@ struct TestImage {
     return in;
   }
 
-  /// Mean over pixels and colours of (x - truth)^2 / (truth^2 + 0.01).
+  /// Mean over pixels and colors of (x - exact)^2 / (exact^2 + 0.01).
   double relativeError(const FourPlanes& color) const {
     double sum = 0.0;
     for (std::size_t c = 0; c < 3; ++c)
@@ -75,7 +75,7 @@ struct TestImage {
   }
 };
 
-/// Told and true error, and the raw picture's, as means over several draws.
+/// Estimated and exact relative squared error, and that of the raw image: means over several runs.
 struct Errors {
   double estimated = 0.0, exact = 0.0, raw = 0.0;
 };
@@ -99,20 +99,20 @@ Errors measureErrors(
   return errors;
 }
 
-TEST(Filter, PictureThatIsLinearInItsFeaturesStays) {
+TEST(Filter, ImageLinearInItsFeaturesIsUnchanged) {
   const TestImage subject{.unexplained = 0.0, .noise = 0.0};
   const FilteredImage image = filterImage(subject.input(1));
   EXPECT_LT(std::sqrt(subject.relativeError(image.color)), 1e-3);
   EXPECT_LT(image.estimatedError, 1e-6);
 }
 
-TEST(Filter, ErrorFallsAndTheToldErrorIsTrueInTheMean) {
+TEST(Filter, ReducesErrorAndEstimatesItWithoutBias) {
   const Errors errors = measureErrors({.width = 192, .height = 160}, 12);
   EXPECT_GT(errors.raw / errors.exact, 10.0);
   EXPECT_NEAR(errors.estimated / errors.exact, 1.0, 0.15);
 }
 
-TEST(ToldError, OfOneWindowIsUnbiased) {
+TEST(ErrorEstimate, OfOneWindowIsUnbiased) {
   const TestImage subject{.width = 384, .height = 320};
   const int runs = 8;
   double estimated = 0.0, exact = 0.0;
@@ -135,8 +135,8 @@ TEST(ToldError, OfOneWindowIsUnbiased) {
   EXPECT_NEAR(estimated / exact, 1.0, 0.15) << "four standard errors";
 }
 
-/// The choice must not know the noise of the pixel that it is made for: the hole of Judge.
-TEST(ToldError, OfTheChosenWindowsIsUnbiased) {
+/// The choice of a pixel's window must not depend on that pixel's noise: CandidateScorer omits it.
+TEST(ErrorEstimate, OfTheChosenWindowsIsUnbiased) {
   const TestImage subject{.width = 192, .height = 160, .unexplained = 0.6, .noise = 1.0};
   double estimated = 0.0, exact = 0.0;
   for (std::uint64_t seed = 0; seed < 16; ++seed) {
@@ -162,11 +162,11 @@ TEST(ToldError, OfTheChosenWindowsIsUnbiased) {
         exact += std::pow(0.5 * static_cast<double>(even + odd) - m, 2);
       }
   }
-  std::cout << "told / true " << estimated / exact << "\n";
+  std::cout << "estimated / exact " << estimated / exact << "\n";
   EXPECT_NEAR(estimated / exact, 1.0, 0.1);
 }
 
-TEST(Filter, FeaturesWithTheSamplesOwnNoiseMakeTheToldErrorALie) {
+TEST(Filter, FeaturesWithTheNoiseOfTheSamplesBiasTheEstimate) {
   const Errors errors = measureErrors({}, 4, [](FilterInput& input) {
     for (std::size_t i = 0; i < input.pixelCount(); ++i)
       input.features[0][i] = 0.5F * (input.even[0][i] + input.odd[0][i]);
@@ -174,7 +174,7 @@ TEST(Filter, FeaturesWithTheSamplesOwnNoiseMakeTheToldErrorALie) {
   EXPECT_LT(errors.estimated / errors.exact, 0.7);
 }
 
-TEST(Filter, ToldErrorsOfPixelsAverageToThePictures) {
+TEST(Filter, EstimatedErrorsOfPixelsAverageToThatOfTheImage) {
   const TestImage subject;
   const FilteredImage image = filterImage(subject.input(3));
   double sum = 0.0;
@@ -197,7 +197,7 @@ TEST(Filter, BitsAreTheSameForOneTwoAndSevenThreads) {
   EXPECT_EQ(images[0], images[2]);
 }
 
-TEST(Filter, NothingIsInventedInNoiseAroundAConstant) {
+TEST(Filter, NoiseAroundAConstantCreatesNoStructure) {
   const TestImage noisy{.unexplained = 0.0};
   FilterInput input = noisy.input(5);
   const auto removeSignal = [&](Plane& plane, std::size_t c) {
@@ -220,11 +220,11 @@ TEST(Filter, NothingIsInventedInNoiseAroundAConstant) {
     }
   EXPECT_LT(worst, 2.0) << "raw standard errors";
   const double fraction = outliers / (3.0 * static_cast<double>(noisy.count()));
-  std::cout << "beyond five told errors: " << 100.0 * fraction << " %\n";
+  std::cout << "beyond five estimated errors: " << 100.0 * fraction << " %\n";
   EXPECT_LT(fraction, 0.05);
 }
 
-TEST(Filter, FireflyIsNoWorseThanRaw) {
+TEST(Filter, FireflyIsNotWorseThanRaw) {
   const Errors errors = measureErrors({}, 1, [](FilterInput& input) {
     input.even[0][4000] += 1e6F;
     input.variance[0][4000] = 0.25e12F;
@@ -234,7 +234,7 @@ TEST(Filter, FireflyIsNoWorseThanRaw) {
   EXPECT_TRUE(std::isfinite(errors.estimated));
 }
 
-TEST(Filter, ClosedAndUnusualPixelsStayRaw) {
+TEST(Filter, InactiveAndNonFinitePixelsStayRaw) {
   const TestImage subject{.width = 40, .height = 30};
   FilterInput input = subject.input(1);
   input.isActive[100] = 0;
@@ -250,13 +250,13 @@ TEST(Filter, ClosedAndUnusualPixelsStayRaw) {
     EXPECT_TRUE(std::isfinite(image.color[2][pixel]));
   FilterInput inactive = subject.input(1);
   std::ranges::fill(inactive.isActive, std::uint8_t{0});
-  EXPECT_GT(filterImage(inactive).estimatedError, 0.1); // of the samples
+  EXPECT_GT(filterImage(inactive).estimatedError, 0.1); // error of the samples
   for (Plane& plane : inactive.variance)
-    std::ranges::fill(plane, 0.0F); // certain
+    std::ranges::fill(plane, 0.0F); // deterministic
   EXPECT_EQ(filterImage(inactive).estimatedError, 0.0);
 }
 
-TEST(Filter, AnySizeOfPicture) {
+TEST(Filter, AcceptsImagesOfAnySize) {
   for (const auto& [width, height] : {std::pair(1, 1), {1, 50}, {70, 1}, {3, 2}, {65, 129}}) {
     const TestImage subject{.width = width, .height = height};
     for (const bool hasHalfBuffers : {true, false}) {
@@ -271,9 +271,9 @@ TEST(Filter, AnySizeOfPicture) {
   }
 }
 
-/// Half of the picture is black without noise, the other a million times as bright: windows reach
-/// over, and sums that ought to be 0 keep a rounding error.
-TEST(Filter, BlackBesideBrightTellsAFiniteErrorThatCanBeReached) {
+/// Half of the image is black without noise, the other half a million times as bright. Windows
+/// overlap both, and sums that should be 0 keep a rounding error.
+TEST(Filter, BlackBesideBrightHasAFiniteAndAttainableErrorEstimate) {
   const TestImage subject;
   FilterInput input = subject.input(8);
   for (std::size_t c = 0; c < 3; ++c)
@@ -286,7 +286,7 @@ TEST(Filter, BlackBesideBrightTellsAFiniteErrorThatCanBeReached) {
         input.variance[c][i] *= scale * scale;
       }
   const FilteredImage image = filterImage(input);
-  double estimated = 0.0, remaining = 0.0; // squares, over the black half
+  double estimated = 0.0, remaining = 0.0; // squares, summed over the black half
   for (std::size_t c = 0; c < 3; ++c)
     for (int y = 0; y < subject.height; ++y)
       for (int x = 0; x < subject.width; ++x) {
@@ -297,10 +297,10 @@ TEST(Filter, BlackBesideBrightTellsAFiniteErrorThatCanBeReached) {
         remaining += x < 40 ? std::pow(static_cast<double>(image.color[c][i]), 2) : 0.0;
       }
   EXPECT_LT(image.estimatedError, 1.0);
-  EXPECT_GT(estimated, 0.25 * remaining) << "told standard errors at least half of what is there";
+  EXPECT_GT(estimated, 0.25 * remaining) << "estimated errors are at least half of what remains";
 }
 
-TEST(Filter, PictureWithoutFeaturesIsFilteredByMeans) {
+TEST(Filter, ImageWithoutFeaturesIsFilteredByMeans) {
   const Errors errors =
       measureErrors({.unexplained = 0.0}, 1, [](FilterInput& in) { in.features.clear(); });
   EXPECT_LT(errors.exact, errors.raw);

@@ -1,4 +1,4 @@
-// Exactness of the focus's depth: against planes and against dense marching of the same indicator.
+// Depth of the focus compared with planes and with dense ray marching of the same indicator.
 
 #include "ClippingTesting.h"
 #include "RunSettings.h"
@@ -25,7 +25,7 @@ double interpolate(const std::array<double, 8>& v, const Vec3& p) {
   return sum;
 }
 
-/// Indicator of the mask at a world point, by definition.
+/// Mask indicator at a world point, by definition.
 double indicator(const Mask& mask, const Vec3& world) {
   const Vec3 index = mask.grid.worldToIndex * world;
   const Vec3 floor = index.array().floor();
@@ -43,7 +43,7 @@ double findDepth(const FocusDepth& focus, const Vec2& position) {
   return focus.depth.nearestDepth(position);
 }
 
-/// Rays through and beside a mask of 3^3 voxels, in its cells and in the world.
+/// Rays through and beside a mask of 3^3 voxels, in cell space and in world space.
 struct RandomRays {
   FocusRays cellRays;
   std::vector<Ray> worldRays;
@@ -66,7 +66,7 @@ struct RandomRays {
   }
 };
 
-TEST(FocusCells, RayMeetsThemWhereTheIndicatorFirstReachesAHalf) {
+TEST(FocusCells, RayHitsThemWhereTheIndicatorFirstReachesOneHalf) {
   Random random(5, 0, 0);
   const Grid grid({3, 3, 3}, Affine::Identity());
   int hits = 0;
@@ -89,10 +89,10 @@ TEST(FocusCells, RayMeetsThemWhereTheIndicatorFirstReachesAHalf) {
   EXPECT_GT(hits, reduceSamples(500));
 }
 
-/// Tolerance within which the near end of a ridge may be returned as its summit.
+/// Tolerance on a ridge along the ray, whose near end may be returned as the maximum.
 constexpr double ridgeTolerance = 1.01e-4;
 
-/// Summit on a ray that misses a mask, by stepping.
+/// Maximum on a ray that misses a mask, by stepping.
 double findMaximum(const Mask& mask, const Ray& ray, double begin, double end) {
   constexpr double step = 0.003;
   double best = 0.0, before = 0.0, here = 0.0;
@@ -110,7 +110,7 @@ double findMaximum(const Mask& mask, const Ray& ray, double begin, double end) {
   return best;
 }
 
-TEST(FocusCells, SummitOfAMissingRayEqualsDenseSampling) {
+TEST(FocusCells, MaximumOfAMissingRayEqualsDenseSampling) {
   Random random(6, 0, 0);
   const Grid grid({3, 3, 3}, Affine::Identity());
   int captured = 0, hidden = 0, mismatches = 0;
@@ -137,13 +137,13 @@ TEST(FocusCells, SummitOfAMissingRayEqualsDenseSampling) {
         hidden += maximum > rays.maximum[i] + 0.01;
         const double expected = findMaximum(mask, worldRays[i], rays.begin[i], rays.end[i]);
         if (std::abs(rays.maximum[i] - expected) > 2e-3)
-          ++mismatches; // stepping may decide either way on a hill that is barely hidden
+          ++mismatches; // stepping can decide either way on a maximum that is barely hidden
         else if (expected == maximum) {
           EXPECT_GE(rays.maximum[i], maximum - ridgeTolerance);
         }
-        const Vec3 summit = worldRays[i].at(rays.maximumT[i]);
-        EXPECT_NEAR(indicator(mask, summit) / maxValue, rays.maximum[i], 1e-9);
-        EXPECT_NEAR(cells.indicator(cells.worldToCell() * summit), rays.maximum[i], 1e-9);
+        const Vec3 point = worldRays[i].at(rays.maximumT[i]);
+        EXPECT_NEAR(indicator(mask, point) / maxValue, rays.maximum[i], 1e-9);
+        EXPECT_NEAR(cells.indicator(cells.worldToCell() * point), rays.maximum[i], 1e-9);
       }
     }
   EXPECT_GT(captured, reduceSamples(200));
@@ -176,7 +176,7 @@ TEST(CellCubic, FirstRootEqualsBruteForce) {
     for (int i = 0; i <= samples; ++i) {
       const double s = static_cast<double>(i) / samples;
       if (s < root - 1e-9) {
-        ASSERT_LT(cubic(s), 1e-12) << "a root before " << root;
+        ASSERT_LT(cubic(s), 1e-12) << "there is a root before " << root;
       }
     }
     if (root > 0.0 && root < infinity) {
@@ -188,7 +188,7 @@ TEST(CellCubic, FirstRootEqualsBruteForce) {
   EXPECT_GT(roots, 5000);
 }
 
-TEST(CellCubic, TouchingConstantAndLinearRootsAreFound) {
+TEST(CellCubic, DoubleConstantAndLinearRootsAreFound) {
   EXPECT_EQ(findFirstNonNegative({{-1, 0, 0, 0}}), infinity);
   EXPECT_EQ(findFirstNonNegative({{0, -1, 0, 0}}), 0.0);
   EXPECT_NEAR(findFirstNonNegative({{-0.25, 1, 0, 0}}), 0.25, 1e-15);
@@ -196,7 +196,7 @@ TEST(CellCubic, TouchingConstantAndLinearRootsAreFound) {
   EXPECT_NEAR(findFirstNonNegative({{-1, 0, 0, 1}}), 1.0, 1e-15);
 }
 
-TEST(FocusDepth, BoxFacesLieAtTheVoxelsFaces) {
+TEST(FocusDepth, BoxFacesAreAtTheVoxelFaces) {
   const Grid grid = makeCenteredGrid({40, 40, 40}, {1.0, 0.7, 1.3});
   const Mask mask = makeBoxMask(grid, {-10.1, -7.1, -13.1}, {10.1, 7.1, 13.1});
   for (const auto projection : {Projection::orthographic, Projection::perspective}) {
@@ -222,7 +222,7 @@ TEST(FocusDepth, RegionsCountFocusContextAndOutside) {
   EXPECT_EQ(count[static_cast<std::size_t>(Region::outside)], 40 * 40 - 20 * 20);
 }
 
-/// Expects every hit on the level 0.5, with no focus in front.
+/// Expects every hit at the level 0.5, and no focus in front of it.
 void compareWithMarching(const Camera& camera, const Domain& volume, const Mask& mask) {
   const FocusDepth focus = FocusTracer(camera, volume, mask).traceDepths();
   const double step = 0.02;
@@ -303,8 +303,8 @@ TEST(FocusDepth, AgreesWithMarchingInObliqueGridsAndViews) {
   }
 }
 
-/// Grids, crops and views of every kind: the eye anywhere, the volume anywhere in the picture.
-TEST(FocusDepth, RegionIsWhatItsRayMeets) {
+/// Grids, crops and views of every kind: camera and volume at any position.
+TEST(FocusDepth, RegionIsWhatItsRayHits) {
   Random random(4, 0, 0);
   const Grid grid = makeCenteredGrid({20, 24, 16}, {1.0, 0.8, 1.5});
   const Mask mask = makeMask(grid, [&](const Vec3& p) {
@@ -344,25 +344,25 @@ TEST(FocusDepth, RegionIsWhatItsRayMeets) {
   EXPECT_GT(*std::ranges::min_element(count), 500);
 }
 
-TEST(FocusDepth, RayThatStartsInsideMeetsTheFocusAtZero) {
+TEST(FocusDepth, RayThatStartsInsideHitsTheFocusAtZero) {
   const Grid grid = makeCenteredGrid({20, 20, 20});
   const Mask mask = makeSphereMask(grid, 6.0);
   const Camera camera = makeAnteriorCamera(Projection::perspective, 1.0, 1.0, 8, 8);
   EXPECT_EQ(findDepth(FocusTracer(camera, grid, mask).traceDepths(), {0.0, 0.0}), 0.0);
 }
 
-TEST(FocusDepth, FocusBeyondTheVolumeIsCutAtItsFace) {
+TEST(FocusDepth, FocusBeyondTheVolumeIsClippedAtItsFace) {
   const Grid volume = makeCenteredGrid({20, 20, 20});
   const Mask mask = makeSphereMask(makeCenteredGrid({40, 40, 40}), 15.0);
   const Camera camera = makeAnteriorCamera(Projection::orthographic, 50.0, 8.0, 16, 16);
   EXPECT_NEAR(findDepth(FocusTracer(camera, volume, mask).traceDepths(), {0.0, 0.0}), 40.0, 1e-5);
 }
 
-TEST(FocusDepth, CropCutsTheFocusAndItsContext) {
+TEST(FocusDepth, CropClipsTheFocusAndItsContext) {
   const Grid volume = makeCenteredGrid({40, 40, 40});
   const Mask mask = makeSphereMask(volume, 10.0);
-  // Crop that keeps matter behind a plane through the origin, whose depth grows 1 mm per mm to the
-  // right.
+  // The crop keeps everything behind a plane through the origin, whose depth grows 1 mm per mm to
+  // the right.
   const CropBox crop(makeRotation(-pi / 4, Vec3::UnitZ()) * makeTranslation({0.0, 30.0, 0.0}) *
                      makeScaling(Vec3(60.0, 30.0, 18.0)));
   const Camera camera = makeAnteriorCamera(Projection::orthographic, 50.0, 20.0, 40, 40);
@@ -374,7 +374,7 @@ TEST(FocusDepth, CropCutsTheFocusAndItsContext) {
           return focus.regions[static_cast<std::size_t>(focus.depth.sample(column, row))];
     return Region::outside;
   };
-  EXPECT_NEAR(findDepth(focus, {4.5, 0.5}), 50.0 - 4.5, 1e-5) << "met in the crop's face";
+  EXPECT_NEAR(findDepth(focus, {4.5, 0.5}), 50.0 - 4.5, 1e-5) << "hit at the crop's face";
   EXPECT_NEAR(findDepth(focus, {-4.5, 0.5}), 50.0 + 4.5, 1e-5);
   EXPECT_EQ(region({-4.5, 0.5}), Region::focus);
   EXPECT_EQ(findDepth(focus, {-8.5, 0.5}), infinity) << "the crop begins behind the sphere";
@@ -383,7 +383,7 @@ TEST(FocusDepth, CropCutsTheFocusAndItsContext) {
   EXPECT_EQ(region({0.5, 18.5}), Region::outside) << "above the crop, inside the volume";
 }
 
-TEST(FocusDepth, MaskWithoutMarginEndsHalfAVoxelBeyondItsCentres) {
+TEST(FocusDepth, MaskWithoutMarginEndsHalfAVoxelBeyondItsCenters) {
   const Grid volume = makeCenteredGrid({20, 20, 20});
   const Mask mask =
       makeMask(makeCenteredGrid({2, 1, 2}, {2, 2, 2}), [](const Vec3&) { return true; });
@@ -393,7 +393,7 @@ TEST(FocusDepth, MaskWithoutMarginEndsHalfAVoxelBeyondItsCentres) {
   EXPECT_EQ(findDepth(focus, {2.2, 0.1}), infinity);
 }
 
-TEST(FocusDepth, FarEyeKeepsThePrecision) {
+TEST(FocusDepth, DistantCameraKeepsThePrecision) {
   const Grid grid = makeCenteredGrid({40, 40, 40});
   const Mask mask = makeBoxMask(grid, Vec3::Constant(-10), Vec3::Constant(10));
   for (const auto projection : {Projection::orthographic, Projection::perspective}) {

@@ -1,4 +1,4 @@
-// Reaches of the cells of a depth buffer.
+// Depth bounds of the cells of a depth buffer.
 
 #include "ClippingTesting.h"
 #include "base/Random.h"
@@ -12,7 +12,7 @@ using namespace testing_clipping;
 
 namespace {
 
-/// Ball of single voxels, so that what lies under one cell of the buffer tells nothing of the next.
+/// Ball of isolated voxels: the content of one buffer cell does not predict that of the next.
 Mask makeDust(const Grid& grid) {
   Mask mask = makeSphereMask(grid, 20.3);
   Random random(7, 0, 0);
@@ -22,7 +22,7 @@ Mask makeDust(const Grid& grid) {
   return mask;
 }
 
-/// Expects that rays through cells meet the focus within the cells' reaches.
+/// Expects that rays through cells hit the focus within the depth bounds of the cells.
 void expectHitsInBounds(const FocusTracer& tracer, const DepthBuffer& buffer,
                         const CellRange& range, const std::vector<Interval>& bounds,
                         Random& random) {
@@ -44,8 +44,8 @@ void expectHitsInBounds(const FocusTracer& tracer, const DepthBuffer& buffer,
   EXPECT_GT(hits, 200);
 }
 
-/// Pixels both wider and narrower than the focus's cells.
-TEST(Footprints, ReachesHoldTheFocusWhicheverCellsAreAskedFor) {
+/// Pixels are wider or narrower than the focus cells.
+TEST(Footprints, DepthBoundsContainTheFocusForAnyRequestedCells) {
   const Grid grid = makeCenteredGrid({60, 60, 60});
   const Mask focus = makeDust(grid);
   for (const int pixels : {8, 100}) {

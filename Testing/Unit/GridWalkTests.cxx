@@ -1,4 +1,4 @@
-// Every cell in order, for every ray: GridWalk against its contract and against brute force.
+// GridWalk visits all cells of a ray in order: compared with its contract and with dense sampling.
 
 #include "RunSettings.h"
 #include "base/Random.h"
@@ -15,10 +15,10 @@ namespace {
 
 struct WalkResult {
   std::int64_t cells = 0;
-  double worstOutside = 0.0; ///< greatest distance of an interval's middle outside its cell, cells
+  double worstOutside = 0.0; ///< maximum distance of an interval's middle from its cell, in cells
 };
 
-/// Walks the ray and checks the guarantees that hold for every finite ray.
+/// Walks along the ray and checks the guarantees that hold for every finite ray.
 WalkResult checkWalk(const Ray& ray, const Interval& range, const Size3& cells) {
   WalkResult walked;
   const Interval inside = Box{Vec3::Zero(), cells.cast<double>()}.clip(ray, range);
@@ -57,7 +57,7 @@ double signedUniform(Random& random) {
   return 2.0 * random.uniform() - 1.0;
 }
 
-/// Coordinate that is often a face, a corner, zero or an extreme.
+/// Coordinate that is often at a face or a corner, zero or extreme.
 double makeAwkwardCoordinate(Random& random, double extent) {
   switch (random.bits() % 6) {
   case 0:
@@ -101,7 +101,7 @@ TEST(GridWalk, VisitsTheCellsOfAnAxisInOrder) {
   EXPECT_TRUE(walk.isDone());
 }
 
-TEST(GridWalk, MissesAndEmptyRangesAreDoneAtOnce) {
+TEST(GridWalk, MissesAndEmptyRangesAreDoneImmediately) {
   const Size3 cells(4, 4, 4);
   EXPECT_TRUE(GridWalk({{5.0, 1.0, 1.0}, {1.0, 0.0, 0.0}}, {}, cells).isDone());
   EXPECT_TRUE(GridWalk({{-1.0, 9.0, 1.0}, {1.0, 0.1, 0.0}}, {}, cells).isDone());
@@ -115,7 +115,7 @@ TEST(GridWalk, StartOnAFaceIsInTheCellAhead) {
   EXPECT_EQ(GridWalk({{4.0, 4.0, 4.0}, {-1.0, -1.0, -1.0}}, {}, cells).cell(), 63);
 }
 
-TEST(GridWalk, RunsAlongOuterFacesInsideTheGrid) {
+TEST(GridWalk, FollowsOuterFacesInsideTheGrid) {
   const Size3 cells(4, 5, 6);
   EXPECT_EQ(checkWalk({{4.0, 5.0, -2.0}, {0.0, 0.0, 1.0}}, {}, cells).cells, 6);
   EXPECT_EQ(checkWalk({{0.0, 9.0, 0.0}, {0.0, -1.0, 0.0}}, {}, cells).cells, 5);
@@ -179,7 +179,7 @@ TEST(GridWalk, RaysThroughCornersTileTheirRange) {
   Random random(13, 14, 15);
   const Size3 cells(9, 10, 11);
   for (int trial = 0; trial < reduceSamples(500000) && !HasFailure(); ++trial) {
-    Vec3 from, to; // half of the corners lie on the grid's surface, where the walk begins
+    Vec3 from, to; // half of the corners are on the grid's surface, where the walk begins
     for (int axis = 0; axis < 3; ++axis) {
       from[axis] = 30.0 * signedUniform(random);
       to[axis] = static_cast<double>(random.bits() % static_cast<std::uint64_t>(cells[axis] + 1));

@@ -1,4 +1,4 @@
-// Round trips of pictures through files: the retained values, and the effects of a failure.
+// Round trips of images through files: which values are preserved, and the effects of a failure.
 
 #include "ImageTesting.h"
 #include "io/EmbeddedResources.h"
@@ -32,7 +32,7 @@ Image makePixel(float r, float g, float b, float a) {
   return {1, 1, {{"R", {r}}, {"G", {g}}, {"B", {b}}, {"A", {a}}}, {}};
 }
 
-/// Full disk: during the object's life no file grows beyond `bytes`.
+/// Full disk: during the object's lifetime no file grows beyond `bytes`.
 class FullDisk {
 public:
   explicit FullDisk(rlim_t bytes) : m_handler(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -54,14 +54,14 @@ using ExrFiles = ImageFiles;
 using NrrdFiles = ImageFiles;
 using DisplayFiles = ImageFiles;
 
-TEST(EmbeddedResources, HoldTheColourConfiguration) {
+TEST(EmbeddedResources, ContainTheColorConfiguration) {
   EXPECT_TRUE(findResource("color/fenestra.ocio").starts_with("ocio_profile_version"));
   EXPECT_TRUE(findResource("color/other.ocio").empty());
   EXPECT_EQ(listResources("color/"), std::vector<std::string>{"color/fenestra.ocio"});
   EXPECT_TRUE(listResources("nothing/").empty());
 }
 
-TEST_F(ExrFiles, RoundTripKeepsChannelsBitForBitAndTheHeader) {
+TEST_F(ExrFiles, RoundTripPreservesChannelsBitForBitAndTheHeader) {
   Image image = makeTestImage();
   image.channels["Z"][3] = infinite;
   image.channels["R"][0] = notANumber;
@@ -112,7 +112,7 @@ TEST_F(ExrFiles, TilesOfHalfFloatAndIntegerWithAnOffsetWindowAreRead) {
   }
 }
 
-TEST_F(ImageFiles, EqualPicturesGiveEqualBytes) {
+TEST_F(ImageFiles, EqualImagesGiveEqualBytes) {
   for (const char* extension : {".exr", ".nrrd", ".png", ".tif"}) {
     const auto first = save(makeTestImage(), std::string("first") + extension);
     const auto second = save(makeTestImage(), std::string("second") + extension);
@@ -121,7 +121,7 @@ TEST_F(ImageFiles, EqualPicturesGiveEqualBytes) {
   }
 }
 
-TEST_F(NrrdFiles, RoundTripKeepsColourAndDepth) {
+TEST_F(NrrdFiles, RoundTripPreservesColorAndDepth) {
   Image image = makeTestImage();
   image.channels["A"][5] = 0.25f;
   image.channels["Z"][3] = infinite;
@@ -147,21 +147,21 @@ TEST_F(NrrdFiles, MissingAlphaIsOpaqueAndMissingDepthWritesOneFile) {
 
 TEST_F(NrrdFiles, ForeignDepthFileIsNotReplaced) {
   const Image image = makeTestImage();
-  save(image, "view.nrrd"); // its depth file bears the mark
+  save(image, "view.nrrd"); // its depth file has the provenance tag
   save(image, "view.nrrd");
   std::string depth = readContent(path("view-Z.nrrd"));
   const std::size_t tag = depth.find("Software:=");
   writeContent(path("view-Z.nrrd"), depth.erase(tag, depth.find('\n', tag) + 1 - tag));
-  save(image, "view.nrrd"); // format of earlier versions: the same grid
-  writeContent(path("view-Z.nrrd"), "somebody else's");
+  save(image, "view.nrrd"); // same grid: accepted as a file of an earlier version
+  writeContent(path("view-Z.nrrd"), "foreign content");
   EXPECT_EQ(catchErrorKind([&] { save(image, "view.nrrd"); }, "view-Z.nrrd"), ErrorKind::usage);
-  EXPECT_EQ(readContent(path("view-Z.nrrd")), "somebody else's");
+  EXPECT_EQ(readContent(path("view-Z.nrrd")), "foreign content");
 }
 
-TEST_F(DisplayFiles, DefaultNameReplacesOnlyFilesOfFenestra) {
+TEST_F(DisplayFiles, DefaultNameReplacesOnlyFilesWrittenByFenestra) {
   for (const bool isOwn : {true, false}) {
     if (!isOwn)
-      writeContent(path("a.png"), "somebody else's");
+      writeContent(path("a.png"), "foreign content");
     const auto declare = [&] {
       Outputs outputs;
       declareImage(path("a.png"), outputs, NameOrigin::standard);
@@ -176,8 +176,8 @@ TEST_F(DisplayFiles, DefaultNameReplacesOnlyFilesOfFenestra) {
   }
 }
 
-TEST_F(NrrdFiles, HeaderHoldsThePlaneInLps) {
-  // View from anterior: the patient's right is on the picture's left, superior is up.
+TEST_F(NrrdFiles, HeaderContainsThePlaneInLps) {
+  // View from anterior: the patient's right is on the left of the image, superior is up.
   const ImagePlane plane{{90.0, 100.0, 80.0}, {-0.5, 0.0, 0.0}, {0.0, 0.0, -0.25}};
   const std::string content = readContent(save(makeTestImage(), "view.nrrd", plane));
   const std::string header = content.substr(0, content.find("\n\n"));
@@ -199,7 +199,7 @@ TEST_F(NrrdFiles, PlaneKeepsThePrecisionOfDoubles) {
 }
 
 TEST_F(DisplayFiles, KnownValuesHaveStraightAlpha) {
-  // Middle grey is 0.4614 in sRGB: 117.6 of 255.
+  // Middle gray is 0.4614 in sRGB: 117.6 of 255.
   const float gray = 0.18f;
   for (const auto& [name, tolerance] :
        {std::pair("a.png", 0.5f / 255.0f), std::pair("a.tif", 0.5f / 65535.0f)}) {
@@ -240,7 +240,7 @@ TEST_F(DisplayFiles, NanIsBlackAndInfinityIsWhite) {
   EXPECT_EQ(read.channels.at("B")[0], 0.0f);
 }
 
-TEST_F(ImageFiles, UnknownFormatAndMissingColourAreRefused) {
+TEST_F(ImageFiles, UnknownFormatAndMissingColorAreRejected) {
   const auto write = [](const Image& image, const fs::path& file) {
     return [=] { writeImage(image, {}, file); };
   };
@@ -257,14 +257,14 @@ TEST_F(ImageFiles, UnknownFormatAndMissingColourAreRefused) {
   EXPECT_EQ(fileCount(), 0u);
 }
 
-TEST_F(ImageFiles, FailedWriteKeepsTheFormerFile) {
+TEST_F(ImageFiles, FailedWriteKeepsThePreviousFile) {
   const Image image = makeTestImage(300, 200);
   for (const std::string name : {"a.exr", "a.nrrd", "a.png", "a.tif"}) {
     writeImage(image, {}, path(name));
     const std::string before = readContent(path(name));
     const std::size_t count = fileCount();
-    // Limits at the start, midway, and within the last block, where a buffered writer no longer
-    // checks.
+    // Limits at the start, in the middle, and within the last block, after which a buffered writer
+    // makes no further checks.
     for (const std::size_t limit : {std::size_t{0}, before.size() / 2, before.size() - 1}) {
       const FullDisk full(limit);
       ::testing::internal::CaptureStderr();
@@ -279,10 +279,10 @@ TEST_F(ImageFiles, FailedWriteKeepsTheFormerFile) {
   }
 }
 
-TEST_F(ImageFiles, ReferencePictureIsRead) {
+TEST_F(ImageFiles, ReferenceImageIsRead) {
   const fs::path reference = fs::path(FENESTRA_REFERENCE) / "S1_best.exr";
   if (!fs::exists(reference))
-    GTEST_SKIP() << "no reference pictures in " << FENESTRA_REFERENCE;
+    GTEST_SKIP() << "no reference images in " << FENESTRA_REFERENCE;
   const Image image = readImage(reference);
   EXPECT_GT(image.width, 0);
   for (const char* name : {"R", "G", "B"})

@@ -1,5 +1,5 @@
 #pragma once
-// Pictures to write, and a folder for them.
+// Images to write, and a folder for them.
 
 #include "WriteResults.h"
 #include "base/Error.h"
@@ -24,11 +24,11 @@ inline std::string readContent(const fs::path& path) {
 }
 
 inline void writeContent(const fs::path& path, const std::string& content) {
-  fs::remove(path); // overwriting makes some file systems wait for the disk
+  fs::remove(path); // overwriting makes some file systems flush to the disk
   std::ofstream(path, std::ios::binary) << content;
 }
 
-/// Kind of the Error thrown by `action`; expects a text of one line that contains `named`.
+/// Kind of the Error thrown by `action`; expects a message of one line that contains `subject`.
 inline ErrorKind catchErrorKind(const std::function<void()>& action,
                                 const std::string& subject = "") {
   try {
@@ -39,7 +39,7 @@ inline ErrorKind catchErrorKind(const std::function<void()>& action,
     EXPECT_NE(line.find(subject), std::string::npos) << line;
     return error.kind();
   }
-  ADD_FAILURE() << "nothing thrown for " << subject;
+  ADD_FAILURE() << "no error was thrown for " << subject;
   return {};
 }
 

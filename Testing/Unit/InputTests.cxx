@@ -1,4 +1,4 @@
-// Input: opened once for all that is read from it, with the files of each reading.
+// Input: opened once for everything that is read from it; lists the files of each read.
 
 #include "scene/NamedPresets.h"
 #include "scene/PreparedScene.h"
@@ -8,10 +8,10 @@
 namespace fenestra::InputTests {
 namespace {
 
-/// Archive with a CT, a label map of its grid, and a volume property.
-class InputOfAnArchive : public ::testing::Test {
+/// Archive with a CT, a label map on the same grid, and a volume property.
+class ArchiveInput : public ::testing::Test {
 protected:
-  InputOfAnArchive() {
+  ArchiveInput() {
     FileGeometry geometry;
     geometry.origin = {10, 20, 30};
     geometry.spacing = {1, 2, 3};
@@ -30,10 +30,10 @@ protected:
   const std::filesystem::path archive = folder / "a.mrb";
 };
 
-TEST_F(InputOfAnArchive, IsOpenedOnceForAllCopies) {
+TEST_F(ArchiveInput, IsOpenedOnceForAllCopies) {
   const Input input(archive), copy = input;
   ASSERT_TRUE(input.document());
-  std::filesystem::remove(archive); // a second opening would fail
+  std::filesystem::remove(archive); // opening it again would fail
   const Volume volume = copy.volume({}).volume;
   EXPECT_EQ(volume.name, "CT");
   EXPECT_EQ(copy.segments({{}, "L"}, volume.grid).segmentation.segments().size(), 1U);
@@ -42,7 +42,7 @@ TEST_F(InputOfAnArchive, IsOpenedOnceForAllCopies) {
   EXPECT_EQ(input.propertyNames(), std::vector<std::string>{"P"});
 }
 
-TEST_F(InputOfAnArchive, IsOpenedOnceForSceneAndChanges) {
+TEST_F(ArchiveInput, IsOpenedOnceForSceneAndChanges) {
   RenderRequest request;
   request.input = archive;
   request.transfer = "P";
@@ -58,7 +58,7 @@ TEST_F(InputOfAnArchive, IsOpenedOnceForSceneAndChanges) {
   EXPECT_TRUE(changed.focus());
 }
 
-TEST_F(InputOfAnArchive, ListsTheFilesOfEachReading) {
+TEST_F(ArchiveInput, ListsTheFilesOfEachRead) {
   const std::string inArchive = archive.string() + "/a/";
   const Input input(archive);
   const VolumeInput read = input.volume({});
@@ -68,7 +68,7 @@ TEST_F(InputOfAnArchive, ListsTheFilesOfEachReading) {
   EXPECT_EQ(input.settings({}, true).files, InputFiles{archive.string()});
 }
 
-TEST(Input, OfAFileHasNoSceneOrSettings) {
+TEST(Input, FromAVolumeFileHasNoSceneOrSettings) {
   const SceneFolder folder;
   const Input input(folder / "ct.nrrd");
   EXPECT_FALSE(input.document());
@@ -78,7 +78,7 @@ TEST(Input, OfAFileHasNoSceneOrSettings) {
   EXPECT_EQ(input.volume({}).files, InputFiles{(folder / "ct.nrrd").string()});
 }
 
-TEST(LookText, BraceTellsTextFromNames) {
+TEST(InlineJson, BraceDistinguishesJsonFromNames) {
   EXPECT_TRUE(isInlineJson(R"({"lights": []})"));
   EXPECT_TRUE(isInlineJson("{"));
   for (const char* name : {"", "studio", "lights.json", "./{.json", " {}"})

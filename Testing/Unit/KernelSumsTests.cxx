@@ -14,8 +14,8 @@ namespace {
 constexpr std::size_t maxLength = 37;
 constexpr double untouched = -7e77;
 
-/// Calls check(row, sums) for rows of every length on every instruction set. `sums` has one number
-/// more, the last, which must stay `untouched`.
+/// Calls check(row, sums) for rows of every length on every instruction set. `sums` has one
+/// additional number at its end, which must stay `untouched`.
 template <typename Check>
 void forEachRow(Check&& check) {
   Random random(1, 0, 0);
@@ -23,7 +23,7 @@ void forEachRow(Check&& check) {
     SCOPED_TRACE(hwy::TargetName(left & -left));
     hwy::SetSupportedTargetsForTest(left & -left);
     for (std::size_t length = 0; length <= maxLength; ++length) {
-      std::vector<double> row(length); // exact length: sanitizers detect reads beyond
+      std::vector<double> row(length); // exact length: sanitizers detect reads beyond it
       for (double& x : row)
         x = uniform(random, -1, 1);
       std::vector<double> sums(length + 1, 0.25);
@@ -46,7 +46,7 @@ TEST(KernelSums, RowEqualsTheSumOfTerms) {
     terms.push_back({Vec2(uniform(random, -1, 1), uniform(random, -1, 1)), uniform(random, -2, 2)});
   forEachRow([&](std::vector<double>& row, std::vector<double>& sums) {
     constexpr double v = 0.125;
-    if (row.size() > 4) { // one on a site, one next to it
+    if (row.size() > 4) { // one point at a site, one next to it
       row[3] = terms[0].site.x();
       row[4] = row[3] + 1e-160;
     }

@@ -1,4 +1,4 @@
-// Tables of names for the values of label maps.
+// Tables that name the values of label maps.
 
 #include "TemporaryFolder.h"
 
@@ -52,33 +52,32 @@ TEST(LabelNames, EveryFormatGivesTheSameNames) {
   }
 }
 
-TEST(LabelNames, NamesKeepTheirBlanksWhereTheFormatHasThem) {
+TEST(LabelNames, NamesCanContainBlanksWhereTheFormatAllowsIt) {
   EXPECT_EQ(read("a.label", "7 0 0 0 1 1 1 \"Left \"great\" toe\"").at(7).name,
             "Left \"great\" toe");
   EXPECT_EQ(read("a.json", R"({"-7": "left foot"})").at(-7).name, "left foot");
 }
 
-TEST(LabelNames, RefusalsNamePlaceAndReason) {
+TEST(LabelNames, ErrorsGiveTheLineAndTheReason) {
   EXPECT_EQ(catchError("a.ctbl", "x liver 1 2 3 4"),
-            "a.ctbl: line 1: must begin with a whole number of 32 bits");
+            "a.ctbl: line 1: must begin with a 32-bit integer");
   EXPECT_EQ(catchError("a.ctbl", "1 a 0 0 0 0\n1 b 0 0 0 0"),
-            "a.ctbl: line 2: names the value 1 again, which is \"a\" already");
+            "a.ctbl: line 2: names the value 1, which already is \"a\"; remove one of them");
   EXPECT_EQ(catchError("a.label", "3 0 0 0 1 1 1 liver"),
             "a.label: line 1: has no name; name the value, or remove it");
   EXPECT_EQ(catchError("a.csv", "organ,size\n1,2\n"),
-            "a.csv: line 1: has no columns \"label\" and \"name\"; name them so");
+            "a.csv: line 1: has no columns \"label\" and \"name\"; rename the columns");
   EXPECT_EQ(catchError("a.json", R"({"99999999999": "x"})"),
-            "a.json: \"99999999999\": must begin with a whole number of 32 bits");
-  EXPECT_EQ(catchError("a.json", "{}"), "a.json: names no value; is it a table of labels?");
+            "a.json: \"99999999999\": must begin with a 32-bit integer");
+  EXPECT_EQ(catchError("a.json", "{}"), "a.json: names no value; give a label table");
   EXPECT_NE(catchError("a.json", R"({"1": 2})").find("a.json: 1: "), std::string::npos);
-  EXPECT_NE(catchError("a.xlsx", "").find("no table of labels by its extension"),
-            std::string::npos);
+  EXPECT_NE(catchError("a.xlsx", "").find("has no extension of a label table"), std::string::npos);
 }
 
-TEST(LabelNames, CompiledTablesHaveTheirClasses) {
+TEST(LabelNames, BuiltInTablesHaveTheirClasses) {
   EXPECT_EQ(findBuiltInLabelNames("totalsegmentator1")->size(), 104u);
   EXPECT_EQ(findBuiltInLabelNames("totalsegmentator2")->size(), 117u);
-  // One value, two organs: why the version matters.
+  // The versions assign one value to different organs.
   EXPECT_EQ(findBuiltInLabelNames("totalsegmentator1")->at(7).name, "aorta");
   EXPECT_EQ(findBuiltInLabelNames("totalsegmentator2")->at(7).name, "pancreas");
   EXPECT_EQ(findBuiltInLabelNames("freesurfer")->at(17).name, "Left-Hippocampus");
@@ -88,7 +87,7 @@ TEST(LabelNames, CompiledTablesHaveTheirClasses) {
   EXPECT_EQ(listBuiltInLabelTables().size(), 3u);
 }
 
-TEST(LabelNames, XmlOfAHeaderExtensionGivesNamesAndColors) {
+TEST(LabelNames, XmlOfAHeaderExtensionHasNamesAndColors) {
   const std::string xml =
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?> <CaretExtension><VolumeInformation Index=\"0\">"
       "<LabelTable><Label Key=\"1\" Red=\"0\" Green=\"1.0\" Blue=\"0.5\" "

@@ -1,4 +1,4 @@
-// Which names a label map's values get: the user's, the file's own, or those of a table beside it.
+// Source of the names of a label map's values: the user's table, the file, or a table beside it.
 
 #include "NiftiFile.h"
 #include "Refusals.h"
@@ -25,7 +25,7 @@ std::string makeLabelXml(const LabelNames& names) {
   return xml + "</LabelTable> </VolumeInformation></CaretExtension>\n        ";
 }
 
-/// Label map of 24 voxels, of the values 0, 5 and 7.
+/// Label map of 24 voxels with the values 0, 5 and 7.
 std::string makeLabelMap(const std::string& extension = {}) {
   NiftiFile file;
   file.sformCode = 1;
@@ -42,7 +42,7 @@ std::string findName(const Segmentation& segmentation, std::int32_t value) {
   return "none";
 }
 
-TEST(LabelSearch, WantedTableNamesValuesAndLeavesTheRest) {
+TEST(LabelSearch, RequestedTableNamesItsValuesOnly) {
   const TemporaryFolder folder;
   const auto map = folder.write("map.nii", makeLabelMap());
   const auto table = folder.write("names.ctbl", "5 liver 1 2 3 255\n9 spleen 1 2 3 255\n");
@@ -54,12 +54,12 @@ TEST(LabelSearch, WantedTableNamesValuesAndLeavesTheRest) {
   EXPECT_EQ(findName(readSegmentation(map, nullptr, "totalsegmentator2"), 7), "pancreas");
   EXPECT_EQ(named.makeFocusMask({"liver"}, named.grid()).count, 1);
   const auto other = folder.write("other.csv", "1,a\n2,b\n");
-  expectRefused(map, "names none of its values (5, 7)",
+  expectRefused(map, "names none of the label values (5, 7)",
                 [&] { readSegmentation(map, nullptr, other.string()); });
   EXPECT_THROW(readSegmentation(map, nullptr, "nosuch"), Error);
 }
 
-TEST(LabelSearch, TableInTheFileOfEachVersionIsTaken) {
+TEST(LabelSearch, TableInTheFileIsUsedForEachVersion) {
   const TemporaryFolder folder;
   for (const auto& [version, organ] :
        {std::pair("totalsegmentator1", "aorta"), {"totalsegmentator2", "pancreas"}}) {
@@ -74,15 +74,15 @@ TEST(LabelSearch, TableInTheFileOfEachVersionIsTaken) {
     }
   }
   const auto plain = folder.write("plain.nii", makeLabelMap());
-  expectRefused(plain, "does not say which version",
+  expectRefused(plain, "does not state its TotalSegmentator version",
                 [&] { readSegmentation(plain, nullptr, "totalsegmentator"); });
-  const auto own = folder.write("own.nii", makeLabelMap(makeLabelXml({{5, {"tumour"}}})));
-  EXPECT_EQ(findName(readSegmentation(own), 5), "tumour");
-  expectRefused(own, "does not say which version",
+  const auto own = folder.write("own.nii", makeLabelMap(makeLabelXml({{5, {"tumor"}}})));
+  EXPECT_EQ(findName(readSegmentation(own), 5), "tumor");
+  expectRefused(own, "does not state its TotalSegmentator version",
                 [&] { readSegmentation(own, nullptr, "totalsegmentator"); });
 }
 
-TEST(LabelSearch, TableBesideTheMapIsTakenIfItFits) {
+TEST(LabelSearch, TableBesideTheMapIsUsedIfItMatches) {
   const TemporaryFolder folder;
   const auto map = folder.write("map.nii", makeLabelMap());
   EXPECT_TRUE(readSegmentInfos(map).empty());
@@ -90,12 +90,12 @@ TEST(LabelSearch, TableBesideTheMapIsTakenIfItFits) {
   EXPECT_EQ(findName(readSegmentation(map), 7), "b");
   EXPECT_EQ(readSegmentation(map).namesSource(), exact.string());
   EXPECT_EQ(readSegmentInfos(map).at(0).name, "a");
-  // One that names more is another map's; with the map's stem it may.
+  // A table with more values belongs to another map, unless it has the stem of this map's name.
   folder.write("seg_labels.json", R"({"5": "a", "7": "b", "8": "c"})");
   const Segmentation unnamed = readSegmentation(map);
   EXPECT_EQ(findName(unnamed, 7), "Segment_7");
   ASSERT_EQ(unnamed.warnings().size(), 1u);
-  EXPECT_NE(unnamed.warnings()[0].find("seg_labels.json: names other values than map.nii holds"),
+  EXPECT_NE(unnamed.warnings()[0].find("seg_labels.json: does not match the values of map.nii"),
             std::string::npos);
   EXPECT_TRUE(readSegmentInfos(map).empty());
   folder.write("map.csv", "5,x\n7,y\n8,z\n");
@@ -106,14 +106,14 @@ TEST(LabelSearch, TableBesideTheMapIsTakenIfItFits) {
   EXPECT_EQ(readSegmentation(map).warnings().size(), 2u);
 }
 
-TEST(LabelSearch, SegmentationThatNamesItsSegmentsRefusesATable) {
+TEST(LabelSearch, SegmentationWithNamesRejectsATable) {
   const TemporaryFolder folder;
   const std::string header =
       "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 1 1 1\nencoding: raw\n"
       "space: left-posterior-superior\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n"
       "space origin: (0,0,0)\nSegment0_ID:=a\nSegment0_LabelValue:=1\n\n\1";
   const auto file = folder.write("s.seg.nrrd", header);
-  expectRefused(file, "names its segments itself; leave out --labels",
+  expectRefused(file, "already names its segments; remove --labels",
                 [&] { readSegmentation(file, nullptr, "freesurfer"); });
 }
 

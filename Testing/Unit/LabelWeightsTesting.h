@@ -1,12 +1,12 @@
 #pragma once
-// Random segments, a scene of dense matter around them, and pictures of it.
+// Random segments, a scene with a dense medium around them, and its film.
 
 #include "Support.h"
 #include "base/Random.h"
 
 namespace fenestra::testing {
 
-/// Box of a labelmap with `value` (0 to 255) in each voxel: index coordinates of the labelmap.
+/// Box of a labelmap with value(voxel) (0 to 255) in each voxel; `first` is its first voxel.
 template <typename Value>
 Mask makeMask(const Size3& first, const Size3& size, const Value& value) {
   Affine map = Affine::Identity();
@@ -23,7 +23,7 @@ Mask makeMask(const Size3& first, const Size3& size, const Value& value) {
   return mask;
 }
 
-/// Boxes of random indicators that overlap, with a margin of 0; priorities 0 to 2.
+/// Overlapping boxes of random indicators with a margin of 0; priorities 0 to 2.
 inline std::vector<LabelWeights::Part> makeRandomParts(int count) {
   std::vector<LabelWeights::Part> parts;
   for (int i = 0; i < count; ++i) {
@@ -47,7 +47,7 @@ inline std::vector<LabelWeights::Part> makeRandomParts(int count) {
   return parts;
 }
 
-/// Dense matter on a grid off that of makeRandomParts(), and partly beyond it.
+/// Dense medium whose grid is offset from that of makeRandomParts() and extends partly beyond it.
 inline TestScene makePartsScene() {
   const LabelWeights weights = makeLabelWeights(makeRandomParts(12));
   Affine map = weights.grid().indexToWorld;
@@ -61,7 +61,7 @@ inline TestScene makePartsScene() {
            .scale = 8.0}};
 }
 
-/// Film of 64 samples a pixel, with normals.
+/// Film of 64 samples per pixel, with normals.
 inline Film renderFilm(const TestScene& scene, Integrator integrator) {
   RenderSettings settings;
   settings.samples = 64;
@@ -70,7 +70,7 @@ inline Film renderFilm(const TestScene& scene, Integrator integrator) {
   return scene.render(settings).film;
 }
 
-/// Root mean square over pixels and channels of the difference of `value`.
+/// Root mean square over pixels and channels of the differences of value(pixel).
 template <typename Value>
 double computeRmsDifference(const Film& a, const Film& b, const Value& value) {
   double sum = 0.0;

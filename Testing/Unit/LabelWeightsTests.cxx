@@ -19,7 +19,7 @@ WeightMap getWeights(const LabelWeights& weights, const Vec3& world) {
   return sums;
 }
 
-/// Shares at a voxel's centre by the definition, 0 to 1, not rounded.
+/// Weights (0 to 1, not rounded) at a voxel center, computed from the definition.
 WeightMap computeExpected(const std::vector<LabelWeights::Part>& parts, const Vec3& world) {
   WeightMap weights;
   double remaining = 1.0;
@@ -44,7 +44,7 @@ WeightMap computeExpected(const std::vector<LabelWeights::Part>& parts, const Ve
   return weights;
 }
 
-/// Calls visit(world point) for voxel centres of a grid, its outermost too.
+/// Calls visit(world point) for all voxel centers of a grid, including the outermost.
 template <typename Visit>
 void forEachVoxel(const Grid& grid, const Visit& visit) {
   for (std::int64_t z = 0; z < grid.size.z(); ++z)
@@ -53,7 +53,7 @@ void forEachVoxel(const Grid& grid, const Visit& visit) {
         visit(grid.indexToWorld * Size3(x, y, z).cast<double>());
 }
 
-TEST(LabelWeights, AreThoseOfTheDefinitionAtVoxels) {
+TEST(LabelWeights, MatchTheDefinitionAtVoxels) {
   const std::vector<LabelWeights::Part> parts = makeRandomParts(12);
   const LabelWeights weights = makeLabelWeights(parts);
   forEachVoxel(weights.grid(), [&](const Vec3& at) {
@@ -63,7 +63,8 @@ TEST(LabelWeights, AreThoseOfTheDefinitionAtVoxels) {
       sum += labelWeight;
     ASSERT_NEAR(sum, 1.0, 1e-12);
     for (const auto& [component, labelWeight] : defined)
-      ASSERT_NEAR(found[component], labelWeight, 2.5 / 255.0) << component; // others' rounding, too
+      ASSERT_NEAR(found[component], labelWeight, 2.5 / 255.0)
+          << component; // rounding of all weights
   });
   const auto last = [](const LabelWeights::Plane& plane) { return plane.isLast != 0; };
   EXPECT_FALSE(std::ranges::all_of(weights.planes(), last)); // some bricks have two planes
@@ -103,7 +104,7 @@ TEST(LabelWeights, DoNotDependOnTheOrderOfParts) {
   });
 }
 
-TEST(LabelWeights, WhatPlanesLeaveIsNothingWhereOthersHaveAll) {
+TEST(LabelWeights, RemainderIsZeroWhereThePlanesSumToOne) {
   const auto pattern = [](const Size3& v) { return (37 * v.x() + 91 * v.y() + 53 * v.z()) % 256; };
   const Size3 first(0, 0, 0), size(12, 9, 9);
   const auto makePart = [&](std::uint8_t component, const auto& value) {
@@ -114,7 +115,7 @@ TEST(LabelWeights, WhatPlanesLeaveIsNothingWhereOthersHaveAll) {
        makePart(2, [&](const Size3& v) { return v.x() < 8 ? 255 - pattern(v) : 0; }),
        makePart(3, [](const Size3& v) { return v.x() < 8 ? 0 : 255; })});
   Random random(3, 0, 0);
-  for (int i = 0; i < 2000; ++i) { // in bricks that have all three
+  for (int i = 0; i < 2000; ++i) { // in bricks with all three components
     const Vec3 at(4.0 + 3.0 * random.uniform(), 8.0 * random.uniform(), 8.0 * random.uniform());
     weights.forEachWeight(at, [&](std::uint8_t component, double) { ASSERT_LT(component, 3); });
   }
@@ -130,14 +131,14 @@ TEST(LabelWeights, BricksOfOneComponentArePure) {
   EXPECT_TRUE(weights.planes().empty());
 }
 
-TEST(LabelWeights, MixedBricksOfTwoComponentsTakeOnePlane) {
+TEST(LabelWeights, BricksOfTwoComponentsNeedOnePlane) {
   const auto half = [](const Size3& voxel) { return voxel.x() < 6 ? 255 : 0; };
   const LabelWeights weights = makeLabelWeights({{makeMask({0, 0, 0}, {13, 5, 5}, half), 1, 1}});
   EXPECT_EQ(weights.bricks(), (std::vector<std::int32_t>{1, ~0, 0}));
   EXPECT_EQ(weights.bytes(), 3 * sizeof(std::int32_t) + 128);
 }
 
-/// Components that differ in colour; two of them have the matter's own.
+/// Components of different colors, except two with the medium's own.
 TestScene makeTintedScene() {
   TestScene scene = makePartsScene();
   scene.tint = Tint{std::make_shared<const LabelWeights>(makeLabelWeights(makeRandomParts(12))),
@@ -155,7 +156,7 @@ Film renderFilm(TestScene scene, bool isTinted, Integrator integrator) {
   return renderFilm(scene, integrator);
 }
 
-TEST(Tint, LanesAreTheScalarEstimator) {
+TEST(Tint, SimdEqualsScalarIntegrator) {
   const TestScene scene = makeTintedScene();
   const Film simd = renderFilm(scene, true, Integrator::simd);
   const Film scalar = renderFilm(scene, true, Integrator::scalar);
@@ -167,7 +168,7 @@ TEST(Tint, LanesAreTheScalarEstimator) {
   EXPECT_GT(computeRmsDifference(untinted, scalar, albedo), 0.03);
 }
 
-TEST(Tint, MarchInLanesIsTheReadableOne) {
+TEST(Tint, SimdFeaturesEqualScalarFeatures) {
   makeTintedScene().visitView([](const SceneView& scene) {
     ASSERT_TRUE(canUseSimd(scene));
     const FeatureBuffers simd = computeFeatures(scene), scalar = computeScalarFeatures(scene);
@@ -179,7 +180,7 @@ TEST(Tint, MarchInLanesIsTheReadableOne) {
   });
 }
 
-TEST(Tint, ChangesNothingButColour) {
+TEST(Tint, ChangesOnlyColors) {
   const TestScene scene = makeTintedScene();
   for (const Integrator integrator : {Integrator::simd, Integrator::scalar}) {
     const Film untinted = renderFilm(scene, false, integrator),

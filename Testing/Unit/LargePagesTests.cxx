@@ -12,7 +12,7 @@ using namespace fenestra;
 
 namespace {
 
-/// Flags (VmFlags of /proc/self/smaps) of the mapping that holds an address; empty: none does.
+/// Flags (VmFlags of /proc/self/smaps) of the mapping that contains an address; empty: none does.
 std::string readFlags(const void* address) {
   std::ifstream maps("/proc/self/smaps");
   const auto target = reinterpret_cast<std::uintptr_t>(address);
@@ -35,24 +35,24 @@ std::uintptr_t toInteger(const void* address) {
 
 } // namespace
 
-TEST(LargePages, AreAskedForWhereAnArrayFillsThem) {
+TEST(LargePages, AreRequestedForArraysThatFillThem) {
   constexpr std::size_t page = std::size_t{2} << 20;
   const LargeArray<float> large(3 * page / sizeof(float) + 1, 1.0F);
   EXPECT_EQ(toInteger(large.data()) % page, 0U);
   const std::string flags = readFlags(large.data());
   if (flags.empty())
-    GTEST_SKIP() << "no /proc/self/smaps here";
+    GTEST_SKIP() << "/proc/self/smaps is not available";
   if (!std::ifstream("/sys/kernel/mm/transparent_hugepage/enabled"))
-    GTEST_SKIP() << "the system has no large pages";
+    GTEST_SKIP() << "the system does not support large pages";
   EXPECT_NE(flags.find(" hg "), std::string::npos) << flags;
 }
 
-TEST(LargePages, SmallArraysBeginALineOfTheCache) {
+TEST(LargePages, SmallArraysStartAtACacheLine) {
   for (const std::size_t size : std::array<std::size_t, 3>{1, 15, 4096})
     EXPECT_EQ(toInteger(LargeArray<char>(size).data()) % 64, 0U) << size;
 }
 
-TEST(LargePages, TooLargeArraysAreRefused) {
+TEST(LargePages, ArraysThatAreTooLargeAreRejected) {
   LargePages<double> pages;
   EXPECT_THROW((void)pages.allocate(static_cast<std::size_t>(-1) / 4), std::bad_alloc);
 }

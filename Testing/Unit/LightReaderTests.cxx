@@ -1,4 +1,4 @@
-// Lights from JSON, environment maps from EXR, and refusals.
+// Lights from JSON, environment maps from EXR, and invalid input.
 
 #include "Approx.h"
 #include "WriteResults.h"
@@ -98,7 +98,7 @@ TEST(LightReader, ColorIsThatOfAWhiteSurfaceInTheLight) {
   EXPECT_NEAR(luminance(std::get<SphereLight>(lights.at(4)).radiance), 2.0, 1e-12);
 }
 
-TEST(LightReader, RefusesWhatIsNoColor) {
+TEST(LightReader, RejectsInvalidColors) {
   const auto refuse = [](const std::string& color, const std::string& radiance,
                          const std::string& text) {
     const std::string json = R"({"lights": [{"type": "environment", "color": )" + color +
@@ -107,7 +107,7 @@ TEST(LightReader, RefusesWhatIsNoColor) {
   };
   for (const char* color : {"1", "null", "\"\"", "\"d8a090\"", "\"#d8a09\"", "\"#d8a0900\"",
                             "\"#d8a09g\"", "\"# d8a09\"", "\"#-8a090\"", "\"red\"", "[1, 1, 1]"})
-    refuse(color, "1", "color: must be a colour such as \"#d8a090\"");
+    refuse(color, "1", "color: must be a color such as \"#d8a090\"");
   refuse("\"#000000\"", "1", "color: is black");
   refuse("\"#d8a090\"", "[1, 1, 1]", "radiance: must be one number with \"color\"");
   refuse("\"#d8a090\"", "-1", "radiance: is -1");
@@ -130,7 +130,7 @@ TEST(LightReader, ErrorNamesTheField) {
   refuse(R"({"type": "environment", "radiance": [1, -1, 1]})", "lights[1].radiance[1]: is -1");
   refuse(R"({"type": "environment", "radiance": [1, 1, 1e35]})", "lights[1].radiance[2]");
   refuse(R"({"type": "environment", "radiance": 1})",
-         "lights[1].radiance: must be one number with \"color\", and three without");
+         "lights[1].radiance: must be one number with \"color\", and three numbers without");
   refuse(R"({"type": "environment", "colour": 1})", "lights[1]: unknown key \"colour\"");
   refuse(R"({"type": "directional", "direction": [0, 0, 0], "irradiance": [1, 1, 1]})",
          "lights[1].direction: is the zero vector");
@@ -138,7 +138,7 @@ TEST(LightReader, ErrorNamesTheField) {
   refuse(R"({"type": "disk", )" + area + R"("normal": [0, 0, 0], "size": 1})", "lights[1].normal");
   refuse(R"({"type": "disk", )" + area + R"("normal": [0, 0, 1], "size": 0})", "lights[1].size");
   refuse(R"({"type": "disk", )" + area + R"("normal": [0, 0, 1], "size": [1, 2]})",
-         "lights[1].size: of a disk");
+         "lights[1].size: must be one number for a disk");
   refuse(R"({"type": "rectangle", )" + area + R"("normal": [0, 0, 1], "size": 1})",
          "lights[1].size");
   refuse(R"({"type": "rectangle", )" + area +
@@ -161,7 +161,7 @@ TEST(LightReader, ErrorNamesTheField) {
                 [] { parseLights(R"({"lights": [], "light": 1})", "test"); });
 }
 
-Image sky(float value = 0.5f) {
+Image makeSky(float value = 0.5f) {
   Image image{.width = 4, .height = 2, .channels = {}, .header = {}};
   for (const char* name : {"R", "G", "B"})
     image.channels[name].assign(8, 0.25f);
@@ -169,10 +169,10 @@ Image sky(float value = 0.5f) {
   return image;
 }
 
-TEST(LightReader, ReadsEnvironmentMapBesideItsFile) {
+TEST(LightReader, ReadsEnvironmentMapRelativeToItsFile) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "maps");
-  writeImage(sky(), {}, folder / "maps/sky.exr");
+  writeImage(makeSky(), {}, folder / "maps/sky.exr");
   const auto path = folder.write(
       "lights.json",
       R"({"lights": [{"type": "environment", "file": "maps/sky.exr", "radiance": [2, 2, 2]}]})");
@@ -186,7 +186,7 @@ TEST(LightReader, ReadsEnvironmentMapBesideItsFile) {
   EXPECT_EQ(light.radiance[0], 2.0);
 }
 
-TEST(LightReader, RefusesBadEnvironmentMaps) {
+TEST(LightReader, RejectsInvalidEnvironmentMaps) {
   const TemporaryFolder folder;
   const auto path = folder / "sky.exr";
   const auto refuse = [&path](const std::string& text) {
@@ -194,12 +194,12 @@ TEST(LightReader, RefusesBadEnvironmentMaps) {
   };
   refuse("no such file");
   for (const float value : {-0.1f, std::nanf(""), std::numeric_limits<float>::infinity(), 3e38f}) {
-    writeImage(sky(value), {}, path);
+    writeImage(makeSky(value), {}, path);
     refuse("channel G at pixel 2, 1");
   }
   folder.write("sky.exr", "v/1\x01 nothing");
   refuse("damaged");
-  expectRefused(folder / "sky.png", "name a .exr", [&] { readEnvironmentMap(folder / "sky.png"); });
+  expectRefused(folder / "sky.png", "give a .exr", [&] { readEnvironmentMap(folder / "sky.png"); });
 }
 
 TEST(LightReader, ReadsEveryPreset) {
@@ -209,16 +209,16 @@ TEST(LightReader, ReadsEveryPreset) {
     EXPECT_NO_THROW(parseLights(findResource(name), name)) << name;
 }
 
-TEST(LightReader, CinemasKeyIsAboutFourTimesItsFillAndSky) {
+TEST(LightReader, KeyLightOfCinemaIsAboutFourTimesItsFillAndSkyTogether) {
   const auto lights = parseLights(findResource("lights/cinema.json"), "cinema");
   ASSERT_EQ(lights.size(), 4u);
   const Grid grid({10, 10, 10}, Affine::Identity());
   const Camera camera({}, 8, 8);
   const auto measureIrradiance =
-      [&](std::size_t i) { // irradiance over pi of a plane that faces the light
+      [&](std::size_t i) { // irradiance over pi on a plane that faces the light
         const LightSet set({lights[i]}, grid, camera);
         double sum = 0.0;
-        constexpr int n = 64; // n x n points of the light
+        constexpr int n = 64; // n x n points on the light
         for (int k = 0; k < n * n; ++k) {
           const Vec2 u((k % n + 0.5) / n, (k / n + 0.5) / n);
           const auto sample = set.sample(grid.worldCenter(), 0.0, u);

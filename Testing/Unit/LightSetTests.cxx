@@ -14,7 +14,7 @@ Camera makeCamera() {
   return {pose, 8, 8};
 }
 
-/// Map with rows of very different brightness, one black texel, one far brighter than the rest.
+/// Map with rows of very different brightness, one black texel and one much brighter than the rest.
 EnvironmentMap makeRoughMap() {
   EnvironmentMap map{12, 6, {}};
   for (int i = 0; i < 72; ++i) {
@@ -31,7 +31,7 @@ TEST(EnvironmentSampler, SamplingMatchesPdf) {
                            [&](const Vec3& d) { return sampler.pdf(d); }, 1.0, 120);
 }
 
-TEST(EnvironmentSampler, NeverDrawsABlackTexelAtTheEndsOfTheRandomRange) {
+TEST(EnvironmentSampler, NeverSamplesABlackTexelAtTheLimitsOfTheRandomRange) {
   const EnvironmentSampler sampler({Rgb::Ones(), makeRoughMap()});
   const double last = std::nextafter(1.0, 0.0);
   for (const double u : {0.0, 0.5, last})
@@ -44,19 +44,19 @@ TEST(EnvironmentSampler, NeverDrawsABlackTexelAtTheEndsOfTheRandomRange) {
 
 TEST(EnvironmentSampler, ColumnsLieAroundAnteriorAndRight) {
   EnvironmentMap map{4, 2, std::vector<float>(24, 0.0F)};
-  const auto light = [&](int column, int row) {
+  const auto makeSampler = [&](int column, int row) {
     EnvironmentMap lit = map;
     lit.rgb[static_cast<std::size_t>(3 * (column + 4 * row))] = 1.0F;
     return EnvironmentSampler({Rgb::Ones(), lit});
   };
   // Columns 1 and 2 meet at anterior; right is a quarter turn to the right.
-  EXPECT_EQ(light(2, 0).radiance(Vec3(0.1, 1, 0.5).normalized())[0], 1.0);
-  EXPECT_EQ(light(1, 0).radiance(Vec3(-0.1, 1, 0.5).normalized())[0], 1.0);
-  EXPECT_EQ(light(2, 1).radiance(Vec3(1, 0.1, -0.5).normalized())[0], 1.0);
-  EXPECT_EQ(light(3, 1).radiance(Vec3(1, -0.1, -0.5).normalized())[0], 1.0);
+  EXPECT_EQ(makeSampler(2, 0).radiance(Vec3(0.1, 1, 0.5).normalized())[0], 1.0);
+  EXPECT_EQ(makeSampler(1, 0).radiance(Vec3(-0.1, 1, 0.5).normalized())[0], 1.0);
+  EXPECT_EQ(makeSampler(2, 1).radiance(Vec3(1, 0.1, -0.5).normalized())[0], 1.0);
+  EXPECT_EQ(makeSampler(3, 1).radiance(Vec3(1, -0.1, -0.5).normalized())[0], 1.0);
 }
 
-/// Expects LightSet::sample() to draw directions by the pdfs of sumEmitterHits() and environment().
+/// Expects that LightSet::sample() follows the pdfs of sumEmitterHits() and evaluateEnvironment().
 void expectConsistent(const std::vector<Light>& lights, const Vec3& point, int fine) {
   const LightSet set(lights, grid, makeCamera());
   const auto sampleDirection = [&](Random& r) -> Vec3 {
@@ -104,7 +104,7 @@ TEST(LightSet, SamplingOfSeveralLightsMatchesPdf) {
   expectConsistent({constant, black, map, DirectionalLight{}}, {1, 2, 3}, 120);
 }
 
-TEST(LightSet, AreaLightsShineFromOneSide) {
+TEST(LightSet, AreaLightsEmitFromOneSide) {
   AreaLight light;
   light.center = {0, 0, 10};
   light.normal = Vec3::UnitZ(); // away from the origin
@@ -125,7 +125,7 @@ TEST(LightSet, CameraFrameIsRightUpAndTowardTheViewer) {
   const auto sample = set.sample(grid.worldCenter(), random);
   ASSERT_TRUE(sample);
   EXPECT_NEAR(sample->distance, 3.0 * grid.boundingRadius(), 0.1 * grid.boundingRadius());
-  EXPECT_LT(sample->direction.y(), -0.99) << "the viewer stands at negative y";
+  EXPECT_LT(sample->direction.y(), -0.99) << "the camera is at negative y";
 }
 
 SphereLight makeBall(const Vec3& center, double diameter) {
@@ -143,8 +143,8 @@ TEST(LightSet, SamplingOfASphereMatchesPdf) {
   expectConsistent({makeBall({4, -3, 9}, 7), disk, makeBall({4, 4, 6}, 7)}, {4.5, 4.5, 4.5}, 300);
 }
 
-/// Irradiance that one light of the set sends to a point of a plane that faces `normal`, over pi:
-/// the mean of samples, and the integral over directions that meet the light.
+/// Irradiance over pi from the set's one light at a point of a plane with this normal: the mean of
+/// samples, and the integral over directions that hit the light.
 std::array<double, 2> measureIrradiance(const LightSet& set, const Vec3& point,
                                         const Vec3& normal) {
   double sampled = 0.0;
@@ -167,7 +167,7 @@ std::array<double, 2> measureIrradiance(const LightSet& set, const Vec3& point,
 }
 
 TEST(LightSet, SphereLightsAFacingPlaneByTheSquareOfRadiusOverDistance) {
-  // E = pi L (r / d)^2 outside, seen whole; pi L inside.
+  // E = pi L (r / d)^2 from outside, with the complete sphere visible; pi L from inside.
   const Vec3 toward = Vec3(2, -1, 2) / 3.0;
   const double radius = 3.0;
   for (const double distance : {0.0, 1.0, 2.999, 3.001, 4.0, 12.0}) {
@@ -179,29 +179,29 @@ TEST(LightSet, SphereLightsAFacingPlaneByTheSquareOfRadiusOverDistance) {
   }
 }
 
-TEST(LightSet, SmallFarAndNearSpheresKeepTheirDigits) {
+TEST(LightSet, SmallDistantAndNearSpheresKeepTheirPrecision) {
   const Vec3 toward = Vec3(1, 2, -2) / 3.0;
-  const auto sampled = [&](double radius, double distance, const Vec2& u) {
+  const auto sampleBall = [&](double radius, double distance, const Vec2& u) {
     const LightSet set({makeBall(distance * toward, 2.0 * radius)}, grid, makeCamera());
     return set.sample(Vec3::Zero(), 0.0, u);
   };
-  const auto far = sampled(1e-6, 1e6, {0.5, 0.5});
+  const auto far = sampleBall(1e-6, 1e6, {0.5, 0.5});
   ASSERT_TRUE(far);
   EXPECT_NEAR(far->pdf * pi * 1e-24, 1.0, 1e-12) << "1 over the solid angle";
   EXPECT_NEAR(far->distance, 1e6, 1e-6);
   EXPECT_NEAR(far->direction.dot(toward), 1.0, 1e-15);
   for (const double gap : {1e-9, -1e-9}) { // touching, from outside and inside
-    const auto near = sampled(1.0, 1.0 + gap, {0.0, 0.5});
+    const auto near = sampleBall(1.0, 1.0 + gap, {0.0, 0.5});
     ASSERT_TRUE(near);
     EXPECT_NEAR(near->distance, gap > 0.0 ? 1e-9 : 2.0, 1e-8);
     EXPECT_NEAR(near->pdf * 2.0 * pi, gap > 0.0 ? 1.0 : 0.5, 1e-4);
   }
-  const auto center = sampled(1.0, 0.0, {0.3, 0.7});
+  const auto center = sampleBall(1.0, 0.0, {0.3, 0.7});
   ASSERT_TRUE(center);
   EXPECT_NEAR(center->distance, 1.0, 1e-12);
 }
 
-TEST(LightSet, ARayMeetsASphereOnceAndOnlyAhead) {
+TEST(LightSet, RayHitsASphereOnceAndOnlyAhead) {
   const LightSet set({makeBall({10, 0, 0}, 4)}, grid, makeCamera());
   const auto intersect = [&](const Vec3& from, const Vec3& direction, double end) {
     const auto radiance = [](const EmitterHit& hit) { return hit.radiance; };
@@ -219,7 +219,7 @@ TEST(LightSet, ARayMeetsASphereOnceAndOnlyAhead) {
   EXPECT_EQ(intersect({11, 0, 0}, -x, 3.1), 2.0);
 }
 
-TEST(LightSet, FocusFrameIsTheWorldAroundTheFocus) {
+TEST(LightSet, FocusFrameIsTheWorldCenteredAtTheFocus) {
   SphereLight sphere = makeBall({0, 0, 20}, 0.01);
   sphere.frame = LightFrame::focus;
   AreaLight disk;
@@ -237,7 +237,7 @@ TEST(LightSet, FocusFrameIsTheWorldAroundTheFocus) {
   }
 }
 
-/// Irradiance that arrives from all around on a plane with that normal, over pi.
+/// Irradiance over pi from the environment on a plane with this normal.
 Rgb measureSkyIrradiance(const LightSet& set, const Vec3& normal) {
   Rgb sum = Rgb::Zero();
   for (int channel = 0; channel < 3; ++channel) {
@@ -250,7 +250,7 @@ Rgb measureSkyIrradiance(const LightSet& set, const Vec3& normal) {
   return sum;
 }
 
-TEST(LightSet, SkyLightsAPlaneByTwoThirdsOfItsEndAndOneThirdOfItsMiddle) {
+TEST(LightSet, SkyIrradianceIsTwoThirdsOfItsEndPlusOneThirdOfItsMiddle) {
   // E / pi = 2 int_0^1 (middle + (top - middle) t) t dt
   const Vec3 up = Vec3(1, 2, -2) / 3.0;
   SkyLight sky{Rgb(3, 2, 1), Rgb(0.3, 0.6, 0.9), Rgb(0, 0.5, 4), up, LightFrame::world};
@@ -259,12 +259,12 @@ TEST(LightSet, SkyLightsAPlaneByTwoThirdsOfItsEndAndOneThirdOfItsMiddle) {
             2e-3);
   EXPECT_LT((measureSkyIrradiance(set, -up) - (2 * sky.bottom + sky.middle) / 3).abs().maxCoeff(),
             2e-3);
-  EXPECT_EQ(set.evaluateEnvironment(up).pdf, 0.0) << "never sampled";
+  EXPECT_EQ(set.evaluateEnvironment(up).pdf, 0.0) << "skies are never sampled";
   Random random(1, 1, 1);
   EXPECT_FALSE(set.sample(Vec3::Zero(), random));
 }
 
-TEST(LightSet, SkyOfTheCameraTurnsWithTheCamera) {
+TEST(LightSet, SkyOfTheCameraFrameRotatesWithTheCamera) {
   SkyLight sky;
   sky.bottom = Rgb::Zero();
   sky.middle = Rgb::Constant(0.5);
@@ -277,7 +277,7 @@ TEST(LightSet, SkyOfTheCameraTurnsWithTheCamera) {
   EXPECT_NEAR(toViewer.evaluateEnvironment(Vec3::UnitX()).radiance[0], 0.5, 1e-12);
 }
 
-TEST(LightSet, WithoutLightsNothingIsDrawn) {
+TEST(LightSet, WithoutLightsNothingIsSampled) {
   const LightSet set({}, grid, makeCamera());
   Random random(1, 1, 1);
   EXPECT_FALSE(set.sample(Vec3::Zero(), random));

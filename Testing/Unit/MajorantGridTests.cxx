@@ -19,7 +19,7 @@ LargeArray<Voxel> makeNoise(const Size3& size, double low, double high) {
   LargeArray<Voxel> voxels;
   for (std::int64_t i = 0; i < size.prod(); ++i) {
     Random random(6, static_cast<std::uint64_t>(i), 0);
-    // One half nearly flat, the other with rare peaks, so that ranges differ from cell to cell.
+    // One half is nearly constant, the other has rare peaks, so that the ranges of cells differ.
     const double most = i % size.x() < size.x() / 2 ? 0.02 : 1.0;
     voxels.push_back(
         static_cast<Voxel>(low + most * (high - low) * std::pow(random.uniform(), 20.0)));
@@ -27,7 +27,7 @@ LargeArray<Voxel> makeNoise(const Size3& size, double low, double high) {
   return voxels;
 }
 
-/// Index of the cell that holds a point (index space).
+/// Index of the cell that contains a point (index space).
 std::int64_t findCell(const MajorantGrid& majorants, const Grid& grid, const Vec3& p) {
   const Vec3 inCells = majorants.worldToCell() * (grid.indexToWorld * p);
   Size3 cell;
@@ -37,7 +37,7 @@ std::int64_t findCell(const MajorantGrid& majorants, const Grid& grid, const Vec
   return cell.x() + majorants.cellCount().x() * (cell.y() + majorants.cellCount().y() * cell.z());
 }
 
-/// A point at most MajorantGrid::margin away along each axis, in the box.
+/// Random point of the box within MajorantGrid::margin of `p` along each axis.
 Vec3 randomNeighbor(const Vec3& p, const Box& box, Random& random) {
   Vec3 q;
   for (int axis = 0; axis < 3; ++axis)
@@ -46,7 +46,7 @@ Vec3 randomNeighbor(const Vec3& p, const Box& box, Random& random) {
   return q;
 }
 
-/// Expects extinction <= the cell's majorant at every point of the cell and of the strip around it.
+/// Expects extinction <= majorant at random points of the cells and within the margin around them.
 template <typename Voxel>
 void expectConservative(const TransferFunction& transfer, double low, double high) {
   Affine map = Affine::Identity();
@@ -65,32 +65,32 @@ void expectConservative(const TransferFunction& transfer, double low, double hig
     Vec3 p;
     for (int axis = 0; axis < 3; ++axis) {
       p[axis] = box.lower[axis] + random.uniform() * (box.upper[axis] - box.lower[axis]);
-      if (random.uniform() < 0.3) // often on voxel centres and cell faces
+      if (random.uniform() < 0.3) // often on voxel centers and cell faces
         p[axis] = std::round(2.0 * p[axis]) / 2.0;
     }
     const std::int64_t index = findCell(majorants, grid, p);
     const Vec3 q = randomNeighbor(p, box, random);
     ASSERT_LE(medium.extinction(q), static_cast<double>(majorants.cell(index).majorant))
-        << "at " << q << " beside the cell of " << p;
+        << "at " << q << " near the cell of " << p;
     const double sigma_t = medium.extinction(p);
     ASSERT_LE(sigma_t, static_cast<double>(majorants.cell(index).majorant)) << "at " << p;
     tightest = std::min(tightest, static_cast<double>(majorants.cell(index).majorant));
   }
-  EXPECT_LT(tightest, transfer.extinction.range(-1e9, 1e9)[1]) << "some cell must be tighter";
+  EXPECT_LT(tightest, transfer.extinction.range(-1e9, 1e9)[1]) << "no cell is below the maximum";
 }
 
 const ColorFunction gray({{0.0, Rgb::Constant(0.5)}});
 
-TEST(MajorantGrid, BoundsANonMonotoneFunction) {
+TEST(MajorantGrid, BoundsNonMonotonicExtinction) {
   const TransferFunction transfer{
       ScalarFunction({knot(0, 0), knot(40, 0), knot(50, 8), knot(60, 0), knot(200, 1)}), gray};
   expectConservative<std::uint8_t>(transfer, 0, 255);
   expectConservative<float>(transfer, -20, 220);
 }
 
-TEST(MajorantGrid, MatterBoxHoldsAllMatterAndAtMostACellMore) {
+TEST(MajorantGrid, OccupiedBoundsAreTightToOneCell) {
   const Grid grid({160, 129, 96}, Affine::Identity());
-  const Vec3 first(11, 6, 67), last(130, 8, 95); // voxels of a block, both included
+  const Vec3 first(11, 6, 67), last(130, 8, 95); // corner voxels of a block, inclusive
   Volume volume = makeVolume<std::uint8_t>(grid, [&](const Vec3& p) {
     const bool inside = (p.array() >= first.array()).all() && (p.array() <= last.array()).all();
     return inside ? 200.0 : 10.0;
@@ -111,7 +111,7 @@ TEST(MajorantGrid, MatterBoxHoldsAllMatterAndAtMostACellMore) {
   EXPECT_EQ(computeBounds(5.0).lower, grid.indexBox().lower);
   EXPECT_TRUE((computeBounds(5.0).upper.array() >= grid.indexBox().upper.array()).all());
   EXPECT_EQ(computeBounds(250.0), Box::makeEmpty());
-  EXPECT_GT(edge.minCoeff(), 1.0) << "cells of several voxels";
+  EXPECT_GT(edge.minCoeff(), 1.0) << "cells must span several voxels";
 }
 
 TEST(MajorantGrid, BoundsStepsAndSpikes) {
@@ -127,7 +127,7 @@ TEST(MajorantGrid, BoundsGradientOpacity) {
   expectConservative<std::uint16_t>(transfer, 0, 255);
 }
 
-/// Share of cells with majorant 0.
+/// Fraction of cells with majorant 0.
 double emptyFraction(const MajorantGrid& grid) {
   std::int64_t empty = 0;
   for (std::int64_t i = 0; i < grid.cellCount().prod(); ++i)
@@ -135,7 +135,7 @@ double emptyFraction(const MajorantGrid& grid) {
   return static_cast<double>(empty) / static_cast<double>(grid.cellCount().prod());
 }
 
-TEST(MajorantGrid, ClippedCellsAreEmptyAndCutOnesMarked) {
+TEST(MajorantGrid, ClippedCellsAreEmptyAndCutCellsAreMarked) {
   const Grid grid(Size3(32, 32, 32), Affine::Identity());
   Volume volume{grid, LargeArray<float>(32768, 1.0F), 1.0, 1.0, "ones", {}};
   const MinMaxGrid ranges(volume, 0);
@@ -144,7 +144,7 @@ TEST(MajorantGrid, ClippedCellsAreEmptyAndCutOnesMarked) {
   pose.position = {16, 16, 100};
   pose.target = {16, 16, 16};
   pose.up = Vec3::UnitY();
-  // Clip plane through the middle of a layer of cells; the part above is removed.
+  // The clip plane halves a layer of cells and removes the part above.
   const Clip plane = ClipPlane{Camera(pose, 8, 8), Vec3(0, 0, 15.9), Vec3::UnitZ()};
   const MajorantGrid clipped(grid, ranges, opaque, plane);
   const double layer = 1.0 / static_cast<double>(clipped.cellCount().z());
@@ -158,7 +158,7 @@ TEST(MajorantGrid, ClippedCellsAreEmptyAndCutOnesMarked) {
   EXPECT_EQ(emptyFraction(MajorantGrid(grid, ranges, empty, ClipNone{})), 1.0);
 }
 
-TEST(MajorantGrid, ClipAndStyleAreBoundedInTheStripAroundACell) {
+TEST(MajorantGrid, BoundsClipAndContextStyleWithinMarginOfCells) {
   const Grid grid(Size3(24, 24, 24), Affine::Identity());
   Volume volume{grid, LargeArray<float>(13824, 1.0F), 1.0, 1.0, "ones", {}};
   const TransferFunction opaque{ScalarFunction({knot(0, 0), knot(1, 2)}), gray};
@@ -181,7 +181,7 @@ TEST(MajorantGrid, ClipAndStyleAreBoundedInTheStripAroundACell) {
     Vec3 p;
     for (int axis = 0; axis < 3; ++axis) {
       p[axis] = box.lower[axis] + random.uniform() * (box.upper[axis] - box.lower[axis]);
-      if (random.uniform() < 0.8) // often in a face
+      if (random.uniform() < 0.8) // often on a voxel face
         p[axis] = std::floor(p[axis]) + 0.5;
     }
     const MajorantGrid::Cell& cell = majorants.cell(findCell(majorants, grid, p));
@@ -192,7 +192,7 @@ TEST(MajorantGrid, ClipAndStyleAreBoundedInTheStripAroundACell) {
   }
 }
 
-TEST(MinMaxGrid, ThickSlicesMakeNoLongCells) {
+TEST(MinMaxGrid, ThickSlicesDoNotElongateCells) {
   Affine map = Affine::Identity();
   map.linear() = Mat3::Diagonal({0.5, 0.5, 5.0});
   const Grid grid(Size3(512, 512, 60), map);

@@ -1,4 +1,4 @@
-// Margins and smoothed labels, against balls and slabs.
+// Margins and smoothing of masks, tested on balls and slabs.
 
 #include "ClippingTesting.h"
 #include "base/Error.h"
@@ -14,7 +14,7 @@ namespace {
 
 const Grid volume = makeCenteredGrid({61, 61, 41}, {1.0, 1.0, 1.5});
 
-/// Mask as returned by readers: cropped to the segment plus one voxel.
+/// Mask of a ball, cropped like the masks that readers return.
 Mask ball(double radius) {
   return makeMask(makeCenteredGrid({33, 33, 25}, {1.0, 1.0, 1.5}),
                   [&](const Vec3& p) { return p.norm() <= radius; });
@@ -31,7 +31,7 @@ double ballVolume(double radius) {
 TEST(MaskShaping, BallGrowsByItsMargin) {
   for (const double margin : {1.5, 4.0, 9.0}) {
     const Mask grownBall = applyMargin(ball(10.0), margin, volume);
-    // Voxels whose centres lie within the margin of focus centres: uncertain by half a voxel.
+    // Distances are between voxel centers, so the radius is uncertain by half a voxel.
     EXPECT_GT(volumeMm3(grownBall), ballVolume(10.0 + margin - 0.7));
     EXPECT_LT(volumeMm3(grownBall), ballVolume(10.0 + margin + 0.5));
     EXPECT_LT(grownBall.grid.worldCenter().norm(), 1e-9);
@@ -45,14 +45,14 @@ TEST(MaskShaping, BallShrinksByItsMargin) {
   EXPECT_EQ(applyMargin(ball(10.0), -30.0, volume).count, 0);
 }
 
-TEST(MaskShaping, LargeMarginEndsAtMostTwoVoxelsBeyondTheVolume) {
+TEST(MaskShaping, LargeMarginExtendsAtMostTwoVoxelsBeyondVolume) {
   const Mask all = applyMargin(ball(10.0), 1000.0, volume);
   EXPECT_TRUE((all.grid.size.array() <= volume.size.array() + 4).all());
   EXPECT_EQ(all.count, all.grid.voxelCount());
 }
 
-TEST(MaskShaping, ShrinkingKeepsAFocusWholeWhereTheVolumeCutsIt) {
-  // Outermost voxels along x are focus: the focus continues beyond.
+TEST(MaskShaping, ShrinkingPreservesFocusAtVolumeFaces) {
+  // The focus reaches both faces along x, so it is assumed to continue beyond them.
   const Mask slab = makeMask(makeCenteredGrid({61, 21, 21}), [](const Vec3& p) {
     return std::abs(p.y()) < 6.5 && std::abs(p.z()) < 6.5;
   });
@@ -60,7 +60,7 @@ TEST(MaskShaping, ShrinkingKeepsAFocusWholeWhereTheVolumeCutsIt) {
   EXPECT_EQ(shrunk.count, 61 * 9 * 9);
 }
 
-TEST(MaskShaping, UnionCountsTheVoxelsOfBothMasks) {
+TEST(MaskShaping, UnionCountsVoxelsOfBothMasks) {
   const auto box = [](const Vec3& lower, const Vec3& upper) {
     const Grid grid = makeCenteredGrid({40, 40, 40});
     return makeBoxMask(grid, lower, upper);
@@ -73,7 +73,7 @@ TEST(MaskShaping, UnionCountsTheVoxelsOfBothMasks) {
   EXPECT_EQ(uniteMasks({a, a}).count, a.count);
 }
 
-/// Range of the visible surface's distances from a sphere of `radius`, over its central part, mm.
+/// Step height, mm: range of distances from the visible surface's center to a sphere of `radius`.
 double stepHeight(const Mask& mask, double radius) {
   const Camera camera = makeAnteriorCamera(Projection::orthographic, 100, 20, 128, 128);
   const FocusDepth focus = FocusTracer(camera, volume, mask).traceDepths();
@@ -89,28 +89,28 @@ double stepHeight(const Mask& mask, double radius) {
   return greatest - least;
 }
 
-TEST(MaskShaping, SmoothingRemovesStairsAndKeepsTheRadius) {
+TEST(MaskShaping, SmoothingRemovesStepsAndPreservesRadius) {
   const double radius = 12.0;
   const Mask steps = ball(radius), smooth = smoothMask(steps, 1.2, volume);
   EXPECT_EQ(smooth.maxValue, 255);
   EXPECT_GT(stepHeight(steps, radius), 0.5);
   EXPECT_LT(stepHeight(smooth, radius), 0.6 * stepHeight(steps, radius));
-  // A ball shrinks by deviation^2 / radius.
+  // Smoothing shrinks a ball's radius by sigma^2 / radius.
   EXPECT_NEAR(std::cbrt(volumeMm3(smooth) / ballVolume(1.0)),
               std::cbrt(volumeMm3(steps) / ballVolume(1.0)) - 1.44 / radius, 0.12);
 }
 
-TEST(MaskShaping, SmoothingKeepsAFlatFace) {
+TEST(MaskShaping, SmoothingPreservesFlatFaces) {
   const Mask box = makeBoxMask(makeCenteredGrid({60, 60, 40}), {-20, -9, -15}, {20, 9, 15});
   const Camera camera = makeAnteriorCamera(Projection::orthographic, 100, 20, 64, 64);
   const auto depth = [&](const Mask& mask) {
     const FocusDepth focus = FocusTracer(camera, volume, mask).traceDepths();
     return focus.depth.at(focus.depth.viewportSample(32, 32));
   };
-  EXPECT_NEAR(depth(smoothMask(box, 1.0, volume)), depth(box), 0.01) << "a byte's rounding";
+  EXPECT_NEAR(depth(smoothMask(box, 1.0, volume)), depth(box), 0.01) << "rounding to 8 bits";
 }
 
-/// Range of the visible surface's distances from y = slope z along its normal, mm.
+/// Step height, mm: range of distances from the visible surface to the plane y = slope z.
 double slopeStepHeight(const Mask& mask, double slope) {
   const Camera camera = makeAnteriorCamera(Projection::orthographic, 100, 5, 128, 128);
   const FocusDepth focus = FocusTracer(camera, volume, mask).traceDepths();
@@ -127,8 +127,8 @@ double slopeStepHeight(const Mask& mask, double slope) {
   return greatest - least;
 }
 
-TEST(MaskShaping, SurfaceThatLeansAcrossThickSlicesIsASlope) {
-  for (const double slope : {1.0, 2.0}) { // 2 and 4 mm from slice to slice
+TEST(MaskShaping, ObliqueSurfaceAcrossThickSlicesIsSmooth) {
+  for (const double slope : {1.0, 2.0}) { // 2 and 4 mm per slice
     const Mask steps = makeMask(makeCenteredGrid({41, 121, 21}, {0.5, 0.5, 2.0}),
                                 [&](const Vec3& p) { return p.y() >= slope * p.z() + 0.1; });
     EXPECT_GT(slopeStepHeight(smoothMask(steps, 0.6, volume), slope), 0.3);
@@ -136,8 +136,8 @@ TEST(MaskShaping, SurfaceThatLeansAcrossThickSlicesIsASlope) {
   }
 }
 
-/// Voxels of a smoothed mask against the sum of its definition.
-TEST(MaskShaping, SmoothingIsASampledGaussian) {
+/// Compares voxels of a smoothed mask with an explicit Gaussian sum.
+TEST(MaskShaping, SmoothingEqualsSampledGaussian) {
   const Mask mask = makeMask(makeCenteredGrid({9, 12, 40}, {1.0, 0.5, 1.5}), [](const Vec3& p) {
     return p.x() + p.y() > 0.3 && std::abs(p.z() - 2.0) < 14.0;
   });
@@ -166,16 +166,16 @@ TEST(MaskShaping, SmoothingIsASampledGaussian) {
   }
 }
 
-TEST(MaskShaping, AutomaticSmoothingGoesByTheLongestEdge) {
+TEST(MaskShaping, AutomaticSmoothingDependsOnLongestVoxelEdge) {
   EXPECT_NEAR(chooseSmoothing(makeCenteredGrid({9, 9, 9}, {1.0, 0.5, 1.5})), 0.9, 1e-12);
-  const Grid thick = makeCenteredGrid({9, 9, 9}, {0.9, 0.5, 5.0}); // five slices in place of one
+  const Grid thick = makeCenteredGrid({9, 9, 9}, {0.9, 0.5, 5.0}); // each becomes five slices
   EXPECT_NEAR(chooseSmoothing(thick), 0.6, 1e-12);
   Mask mask = makeMask(thick, [](const Vec3& p) { return p.norm() < 4.0; });
   EXPECT_NEAR(chooseSmoothing(interpolateSlices(mask).grid), 0.6, 1e-12);
 }
 
-/// Parts that vanish stay as labelled, also beside others that do not.
-TEST(MaskShaping, AutomaticSmoothingKeepsThinParts) {
+/// Parts that smoothing would erase keep their labels, even if other parts are smoothed.
+TEST(MaskShaping, AutomaticSmoothingPreservesThinParts) {
   const Mask mask = makeMask(makeCenteredGrid({41, 31, 31}), [](const Vec3& p) {
     const bool isLine = std::hypot(p.x() + 15.0, p.y()) < 0.5;
     return (isLine || (p - Vec3(5.0, 0.0, 0.0)).norm() < 6.0) && std::abs(p.z()) < 14.0;
@@ -188,14 +188,14 @@ TEST(MaskShaping, AutomaticSmoothingKeepsThinParts) {
   EXPECT_NEAR(smooth.smoothing, 0.6, 1e-12);
   EXPECT_LT(valueAt(plain, Vec3(-15.0, 0.0, 3.0)), plain.threshold());
   EXPECT_EQ(valueAt(smooth, Vec3(-15.0, 0.0, 3.0)), 255);
-  EXPECT_EQ(smooth.count, plain.count + 27) << "27 voxels of a line";
+  EXPECT_EQ(smooth.count, plain.count + 27) << "the line has 27 voxels";
   EXPECT_EQ(valueAt(smooth, Vec3(11.0, 0.0, 0.0)), valueAt(plain, Vec3(11.0, 0.0, 0.0)));
   const Mask flakes = makeMask(makeCenteredGrid({9, 9, 9}, {1.0, 1.0, 0.01}),
                                [](const Vec3& p) { return std::abs(p.x()) < 2.5; });
-  EXPECT_EQ(smoothMaskAuto(flakes, volume).maxValue, 1) << "as labelled";
+  EXPECT_EQ(smoothMaskAuto(flakes, volume).maxValue, 1) << "unchanged";
 }
 
-TEST(MaskShaping, WideSmoothingTakesTimeThatItsWidthDoesNotChange) {
+TEST(MaskShaping, SmoothingHandlesKernelsOfManyVoxels) {
   const Mask mask = makeMask(makeCenteredGrid({21, 21, 21}, {1.0, 1.0, 0.02}),
                              [](const Vec3& p) { return std::abs(p.x()) < 4.5; });
   const Mask smooth = smoothMask(mask, 1.0, volume);
@@ -208,7 +208,7 @@ TEST(MaskShaping, WideSmoothingTakesTimeThatItsWidthDoesNotChange) {
   EXPECT_LT(at(5), 128);
 }
 
-TEST(MaskShaping, InterpolationKeepsThickSlicesAndTheVolumeOfABall) {
+TEST(MaskShaping, InterpolationPreservesSlicesAndVolumeOfBall) {
   const double radius = 10.0;
   for (const int axis : {0, 1, 2}) {
     Vec3 spacing = Vec3::Constant(0.5);
@@ -240,7 +240,7 @@ TEST(MaskShaping, NearlyCubicVoxelsAreNotInterpolated) {
   EXPECT_EQ(interpolateSlices(mask).voxels, mask.voxels);
 }
 
-TEST(MaskShaping, OneMarginShrinksTouchingSegmentsAsOne) {
+TEST(MaskShaping, SingleMarginShrinksUnionOfSegments) {
   const Grid grid = makeCenteredGrid({40, 40, 40});
   LargeArray<std::uint8_t> labels;
   for (std::int64_t z = 0; z < 40; ++z)
@@ -257,7 +257,7 @@ TEST(MaskShaping, OneMarginShrinksTouchingSegmentsAsOne) {
   EXPECT_EQ(count({{-1.0, -1.0}}), 2 * 8 * 8 * 8);
 }
 
-TEST(MaskShaping, EachSegmentTakesItsOwnMargin) {
+TEST(MaskShaping, MarginsApplyPerSegment) {
   const Grid grid = makeCenteredGrid({40, 40, 40});
   LargeArray<std::uint8_t> labels;
   for (std::int64_t z = 0; z < 40; ++z)
@@ -273,8 +273,8 @@ TEST(MaskShaping, EachSegmentTakesItsOwnMargin) {
   EXPECT_EQ(count({{0.0, 1.0}}), 8);
   EXPECT_EQ(count({{1.5, 1.0}}), 19 + 7);
   EXPECT_THROW(count({{1.0, 2.0, 3.0}}), Error);
-  EXPECT_THROW(count({{-1.0}}), Error) << "nothing is left";
-  EXPECT_THROW(count({{}, 5.0}), Error) << "nothing is left";
+  EXPECT_THROW(count({{-1.0}}), Error) << "the focus is empty";
+  EXPECT_THROW(count({{}, 5.0}), Error) << "the focus is empty";
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-// Tables of materials and changes to them: content, refusals, and the library that is compiled in.
+// Material tables and changes to them: content, errors, and the built-in library.
 
 #include "files/appearance/MaterialReader.h"
 #include "io/EmbeddedResources.h"
@@ -30,7 +30,7 @@ double evalExtinction(const Material& material, double scalar) {
   return (*material.extinction)(scalar).value();
 }
 
-TEST(MaterialReader, ReadsEveryFieldOfAMaterial) {
+TEST(MaterialReader, ReadsEveryFieldOfMaterial) {
   const auto materials = parseMaterials(organs, "test").materials;
   ASSERT_EQ(materials.size(), 5u);
   const Material& liver = materials.at("liver");
@@ -39,14 +39,14 @@ TEST(MaterialReader, ReadsEveryFieldOfAMaterial) {
   EXPECT_FALSE(liver.colorIsAlbedo);
   EXPECT_EQ(liver.color->knots().size(), 2u);
   EXPECT_NEAR((*liver.color)(50)[0], std::pow((0x96 / 255.0 + 0.055) / 1.055, 2.4), 1e-12);
-  EXPECT_FALSE(liver.extinction) << "the volume's own";
+  EXPECT_FALSE(liver.extinction) << "the volume's";
   EXPECT_EQ(liver.g, 0.5);
   EXPECT_EQ(liver.diffuse, 1.0) << "the default";
   EXPECT_EQ(liver.specular, 0.25);
   EXPECT_EQ(liver.roughness, 0.35);
   EXPECT_EQ(liver.interfaceWeight, 0.1);
   const Material& lesion = materials.at("lesion");
-  EXPECT_EQ(lesion.kind, MaterialKind::medium) << "extinction of its own";
+  EXPECT_EQ(lesion.kind, MaterialKind::medium) << "it has its own extinction";
   EXPECT_TRUE(lesion.colorIsAlbedo);
   EXPECT_EQ((*lesion.color)(-1000)[2], 0.1);
   EXPECT_EQ(evalExtinction(lesion, 1e6), 6.0);
@@ -55,10 +55,10 @@ TEST(MaterialReader, ReadsEveryFieldOfAMaterial) {
   EXPECT_EQ(evalExtinction(materials.at("bone"), 200), 4.0);
   EXPECT_EQ(materials.at("stone").kind, MaterialKind::medium);
   EXPECT_EQ((*materials.at("stone").color)(0)[1], 0.2);
-  EXPECT_FALSE(materials.at("tissue").color) << "the volume's own";
+  EXPECT_FALSE(materials.at("tissue").color) << "the volume's";
 }
 
-TEST(MaterialReader, ReadsEveryFieldOfARule) {
+TEST(MaterialReader, ReadsEveryFieldOfRule) {
   const MaterialTable table = parseMaterials(organs, "test");
   ASSERT_EQ(table.rules.size(), 2u);
   const MaterialRule& rule = table.rules[0];
@@ -84,14 +84,14 @@ TEST(MaterialReader, ReadsEveryFieldOfARule) {
   EXPECT_EQ(bare.context.lightness, 0.0);
 }
 
-TEST(MaterialReader, AFileStandsOnTheTableBeneath) {
+TEST(MaterialReader, FileOverridesBaseTable) {
   const MaterialTable base = parseMaterials(organs, "test");
   const MaterialTable table = parseMaterials(
       R"({"version": 1, "materials": {"lesion": {"color": "#00ff00"}},
           "segments": [{"match": {"names": ["spleen"]}, "material": "liver"}]})",
       "mine", base);
   EXPECT_EQ(table.materials.size(), 5u);
-  EXPECT_FALSE(table.materials.at("lesion").extinction) << "replaced whole";
+  EXPECT_FALSE(table.materials.at("lesion").extinction) << "replaced completely";
   ASSERT_EQ(table.rules.size(), 3u);
   EXPECT_EQ(table.rules[0].patterns.names, std::vector<NamePattern>{"spleen"});
   EXPECT_TRUE(table.rules[0].isFromFile);
@@ -99,7 +99,7 @@ TEST(MaterialReader, AFileStandsOnTheTableBeneath) {
   EXPECT_EQ(table.rest, "tissue");
 }
 
-TEST(MaterialReader, SeenColorOfAnAlbedoIsItsReflectance) {
+TEST(MaterialReader, AlbedoConvertsToReflectanceColor) {
   const auto materials = parseMaterials(organs, "test").materials;
   const Material& lesion = materials.at("lesion");
   EXPECT_NEAR((*toReflectanceColor(lesion))(0)[0], toReflectance(0.9, -0.5), 1e-12);
@@ -120,9 +120,9 @@ void refuseRule(const std::string& fields, const std::string& text) {
   refuse(R"({"version": 1, "materials": {"m": {}}, "segments": [{)" + fields + "}]}", text);
 }
 
-TEST(MaterialReader, ErrorNamesTheFieldOfATable) {
+TEST(MaterialReader, ErrorNamesFieldOfTable) {
   refuse("[]", "must be an object");
-  refuse("{", "is not JSON");
+  refuse("{", "is not valid JSON");
   refuse("{}", "has no \"version\"; add it");
   refuse(R"({"version": 2})", "version: must be 1");
   refuse(R"({"version": "1"})", "version: must be a number");
@@ -130,20 +130,20 @@ TEST(MaterialReader, ErrorNamesTheFieldOfATable) {
   refuse(R"({"version": 1, "materials": []})", "materials: must be an object");
   refuse(R"({"version": 1, "segments": {}})", "segments: must be an array");
   refuse(R"({"version": 1, "rest": {"material": "air"}})",
-         "rest.material: there is no material \"air\"; name one");
+         "rest.material: there is no material \"air\"; use one");
   refuse(R"({"version": 1, "rest": {}})", "rest: has no \"material\"");
   refuse(R"({"version": 1, "context": {"saturation": 2}})", "context.saturation: is 2; it must be");
   refuse(R"({"version": 1, "contrast": "much"})", "contrast: must be true or false");
   refuse(R"({"version": 1, "context": {"hue": 2}})", "context: unknown key \"hue\"");
 }
 
-TEST(MaterialReader, ErrorNamesTheFieldOfAMaterial) {
-  refuseMaterial(R"("colour": "#ffffff")", "materials.m: unknown key \"colour\"");
+TEST(MaterialReader, ErrorNamesFieldOfMaterial) {
+  refuseMaterial(R"("colors": "#ffffff")", "materials.m: unknown key \"colors\"");
   refuseMaterial(R"("emission": [0, 0, 1])", "unknown key \"emission\"");
-  refuseMaterial(R"("color": "red")", "materials.m.color: must be a colour such as");
+  refuseMaterial(R"("color": "red")", "materials.m.color: must be a color such as");
   refuseMaterial(R"("color": [[0, "#ffffff", 1]])", "materials.m.color[0]: must be [scalar");
   refuseMaterial(R"("color": [])", "materials.m.color: has 0 points");
-  refuseMaterial(R"("color": "#ffffff", "albedo": [1, 1, 1])", "color: and albedo contradict");
+  refuseMaterial(R"("color": "#ffffff", "albedo": [1, 1, 1])", "color: cannot be combined");
   refuseMaterial(R"("albedo": [1, 1])", "materials.m.albedo: must have 3 numbers, not 2");
   refuseMaterial(R"("albedo": [1, 1, 2])", "materials.m.albedo[2]: is 2; it must be from 0 to 1");
   refuseMaterial(R"("albedo": [[0, 1, 1]])", "materials.m.albedo[0]: must have 4 numbers");
@@ -163,7 +163,7 @@ TEST(MaterialReader, ErrorNamesTheFieldOfAMaterial) {
   refuseMaterial(R"("border": -0.1)", "materials.m.border: is -0.1; it must be from 0 to 10");
 }
 
-TEST(MaterialReader, ErrorNamesTheFieldOfARule) {
+TEST(MaterialReader, ErrorNamesFieldOfRule) {
   const std::string match = R"("match": {"names": ["a"]}, )";
   refuseRule(R"("material": "m")", "segments[0]: has no \"match\"");
   refuseRule(R"("match": {}, "material": "m")", "segments[0].match: has no \"codes\", \"names\"");
@@ -173,21 +173,21 @@ TEST(MaterialReader, ErrorNamesTheFieldOfARule) {
   refuseRule(R"("match": {"codes": ["10200004"]}, "material": "m")",
              "codes[0]: must be a code like");
   refuseRule(R"("match": {"category": "altered"}, "material": "m")", "category: must be a code");
-  refuseRule(R"("match": {"values": [0]}, "material": "m")", "values[0]: is 0, which is the back");
-  refuseRule(R"("match": {"values": [1.5]}, "material": "m")", "values[0]: must be a whole number");
+  refuseRule(R"("match": {"values": [0]}, "material": "m")", "values[0]: is 0, the background");
+  refuseRule(R"("match": {"values": [1.5]}, "material": "m")", "values[0]: must be an integer");
   refuseRule(R"("match": {"values": [3e9]}, "material": "m")", "values[0]: is 3000000000");
   refuseRule(match + R"("material": "liver")",
              "segments[0].material: there is no material \"liver\"");
   refuseRule(match + R"("materials": "m")", "segments[0]: unknown key \"materials\"");
   refuseRule(match + R"("priority": 1)", "segments[0]: has no \"material\"");
-  refuseRule(match + R"("material": "m", "priority": 1.5)", "priority: must be a whole number");
+  refuseRule(match + R"("material": "m", "priority": 1.5)", "priority: must be an integer");
   refuseRule(match + R"("material": "m", "priority": -1)", "priority: is -1; it must be from 0");
   refuseRule(match + R"("material": "m", "clip": "no")", "segments[0].clip: must be true or false");
   refuseRule(match + R"("material": "m", "density": 1001)", "density: is 1001; it must be from 0");
   refuseRule(match + R"("material": "m", "importance": 1)", "unknown key \"importance\"");
 }
 
-TEST(MaterialReader, ChangesOneSegment) {
+TEST(MaterialReader, ChangesSingleSegment) {
   const MaterialTable table = parseMaterials(organs, "test");
   const MaterialChange change =
       parseMaterialChange("Liver: left : color=#00ff00, density=2.5 ,clip=no,priority=7", table);
@@ -210,19 +210,19 @@ TEST(MaterialReader, ChangesOneSegment) {
   EXPECT_EQ(medium.material.kind, MaterialKind::tint);
 }
 
-TEST(MaterialReader, ErrorNamesTheFieldOfAChange) {
+TEST(MaterialReader, ErrorNamesFieldOfChange) {
   const MaterialTable table = parseMaterials(organs, "test");
   const auto refuseChange = [&](const std::string& text, const std::string& source,
                                 const std::string& line) {
     expectRefused("--material " + source, line, [&] { parseMaterialChange(text, table); });
   };
-  refuseChange("liver", "liver", "must name a segment and what to change");
-  refuseChange(": density=2", ": density=2", "must name a segment");
+  refuseChange("liver", "liver", "must give a segment and what to change");
+  refuseChange(": density=2", ": density=2", "must give a segment");
   refuseChange("liver:", "liver", "changes nothing");
   refuseChange("liver: density", "liver", "\" density\" must be a key and a value");
   refuseChange("liver: density=2, density=3", "liver", "density: is given twice");
-  refuseChange("liver: colour=#ffffff", "liver", "unknown key \"colour\"");
-  refuseChange("liver: color=red", "liver", "color: must be a colour such as");
+  refuseChange("liver: colors=#ffffff", "liver", "unknown key \"colors\"");
+  refuseChange("liver: color=red", "liver", "color: must be a color such as");
   refuseChange("liver: den\x97sity=2", "liver", "unknown key \"den?sity\"");
   refuseChange("liver: clip=maybe", "liver", "clip: must be true or false");
   refuseChange("liver: density=-1", "liver", "density: is -1");
@@ -232,9 +232,9 @@ TEST(MaterialReader, ErrorNamesTheFieldOfAChange) {
   expectRefused("--material a", "has no \"g\"", [&] { applyChange(backward, color, table); });
 }
 
-/// Each file stands alone, no name or code says two things, and all colours are constant: scalars
-/// of MR have no unit.
-TEST(MaterialReader, ReadsTheLibrary) {
+/// Each file must parse alone, and define each name and code once. Colors are constant, since MR
+/// scalars have no unit.
+TEST(MaterialReader, ReadsLibrary) {
   const auto files = listResources("materials/");
   EXPECT_GE(files.size(), 8u);
   std::set<std::string> names, codes;

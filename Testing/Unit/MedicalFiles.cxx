@@ -45,7 +45,7 @@ void writeFile(const std::filesystem::path& path, const std::vector<T>& samples,
   io->Write(samples.data());
 }
 
-// Types written by tests.
+// Sample types that tests write.
 template void writeFile(const std::filesystem::path&, const std::vector<std::int8_t>&,
                         const FileGeometry&);
 template void writeFile(const std::filesystem::path&, const std::vector<std::uint8_t>&,

@@ -1,5 +1,5 @@
 #pragma once
-// Small medical image files for tests, in a folder that is removed with its test.
+// Writes small medical image files for tests.
 
 #include "Refusals.h"
 
@@ -16,7 +16,7 @@ std::string rawBytes(const std::vector<T>& samples) {
   return {reinterpret_cast<const char*>(samples.data()), samples.size() * sizeof(T)};
 }
 
-/// Geometry in ITK's convention: LPS.
+/// Geometry in LPS, as in ITK.
 struct FileGeometry {
   std::vector<std::size_t> size = {3, 4, 2};
   std::vector<std::vector<double>> directions = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -40,7 +40,7 @@ inline void addSegment(FileGeometry& geometry, int n, const std::string& id,
     geometry.fields[prefix + "Layer"] = layer;
 }
 
-/// Writes the samples through ITK, in the format of the file name's ending.
+/// Writes the samples through ITK; the file extension selects the format.
 template <typename T>
 void writeFile(const std::filesystem::path& path, const std::vector<T>& samples,
                const FileGeometry& geometry = {});

@@ -1,4 +1,4 @@
-// Valid volume headers with unsupported content: refusals with correct reasons, and warnings.
+// Volume headers with valid but unsupported content: errors that state the cause, and warnings.
 
 #include "files/medical/VolumeReader.h"
 
@@ -17,7 +17,7 @@ protected:
   static void refuse(const Path& path, const std::string& text) {
     expectRefused(path, text, [&path] { readVolume(path); });
   }
-  /// File of 3x4x2 samples; each of `lines` ends with a line break.
+  /// Writes a file of 3x4x2 samples; each of the header `lines` ends with a line break.
   Path writeNrrd(const std::string& lines, const std::string& encoding = "raw",
                  const std::string& data = std::string(24, 'x')) const {
     return folder.write("v.nrrd", "NRRD0004\ntype: unsigned char\ndimension: 3\nsizes: 3 4 2\n"
@@ -42,20 +42,19 @@ TEST_F(MedicalHeaders, BadGeometryIsRefused) {
            "space directions: each must be a vector of 1e-9 to 1e9 mm");
   refuse(writeNrrd(space + "space directions: (1,0,0) (0,1,0) none\n"),
          "space directions: has 2 vectors");
-  refuse(writeNrrd("axis mins: 10 0 0\naxis maxs: 17 7 21\n"),
-         "axis mins: has no spacings with it");
-  refuse(writeNrrd("axismaxs: 17 7 21\n"), "axis maxs: has no spacings with it");
+  refuse(writeNrrd("axis mins: 10 0 0\naxis maxs: 17 7 21\n"), "axis mins: requires spacings");
+  refuse(writeNrrd("axismaxs: 17 7 21\n"), "axis maxs: requires spacings");
   EXPECT_EQ(readVolume(writeNrrd("spacings: 1 2 3\naxis mins: 10 0 0\n")).grid.spacing(),
             Vec3(1, 2, 3));
   refuse(writeNrrd("spacings: 1 1 1e10\n"), "must be from 1e-9 to 1e9 mm");
-  refuse(writeNrrd(space + "spacings: 1 1 3\n"), "spacings: are not read beside a space");
+  refuse(writeNrrd(space + "spacings: 1 1 3\n"), "spacings: cannot be combined with a space");
 }
 
-TEST_F(MedicalHeaders, MissingSpacingWarnsAndIsOneMillimetre) {
+TEST_F(MedicalHeaders, MissingSpacingWarnsAndDefaultsToOneMillimeter) {
   for (const std::string& lines : {std::string(), space + "space directions: none none none\n"}) {
     const Volume volume = readVolume(writeNrrd(lines));
     ASSERT_EQ(volume.warnings.size(), 1u) << lines;
-    EXPECT_NE(volume.warnings[0].find("has no spacing; voxels are taken to be 1 mm"),
+    EXPECT_NE(volume.warnings[0].find("has no spacing; 1 mm voxels are assumed"),
               std::string::npos);
     EXPECT_EQ(volume.grid.spacing(), Vec3(1, 1, 1));
   }
@@ -66,24 +65,26 @@ TEST_F(MedicalHeaders, MissingSpacingWarnsAndIsOneMillimetre) {
   EXPECT_TRUE(readVolume(writeMeta(size + "ElementSpacing = 1 1 1\n")).warnings.empty());
 }
 
-TEST_F(MedicalHeaders, UnitsOtherThanMillimetresAreRefused) {
+TEST_F(MedicalHeaders, UnitsOtherThanMillimetersAreRefused) {
   const std::string placed = space + unitDirections;
   for (const char* unit : {"m", "cm", "Inch", "um"})
     refuse(writeNrrd(placed + "space units: \"" + unit + "\" \"mm\" \"mm\"\n"),
-           "space units: \"" + std::string(unit) + "\" is not read");
-  refuse(writeNrrd("spacings: 1 1 1\nunits: \"cm\" \"cm\" \"cm\"\n"), "units: \"cm\" is not read");
+           "space units: \"" + std::string(unit) + "\" is not supported");
+  refuse(writeNrrd("spacings: 1 1 1\nunits: \"cm\" \"cm\" \"cm\"\n"),
+         "units: \"cm\" is not supported");
   for (const char* units : {R"("mm" "mm" "mm")", R"("" "" "")", R"("MM" "millimeters" "?")"})
     EXPECT_EQ(readVolume(writeNrrd(placed + "space units: " + units + "\n")).maximum, 'x') << units;
-  refuse(writeMeta("DimSize = 3 4 2\nDistanceUnits = m\n"), "DistanceUnits: \"m\" is not read");
+  refuse(writeMeta("DimSize = 3 4 2\nDistanceUnits = m\n"),
+         "DistanceUnits: \"m\" is not supported");
   EXPECT_EQ(readVolume(writeMeta("DimSize = 3 4 2\nDistanceUnits = mm\n")).maximum, 'x');
 }
 
 TEST_F(MedicalHeaders, UnsupportedRescalingIsRefused) {
   const std::string size = "DimSize = 3 4 2\n";
   refuse(writeMeta(size + "ElementToIntensityFunctionSlope = 2\n"),
-         "ElementToIntensityFunctionSlope: is not read, unless it is 1");
+         "ElementToIntensityFunctionSlope: only 1 is supported");
   refuse(writeMeta(size + "ElementToIntensityFunctionOffset = -1024\n"),
-         "ElementToIntensityFunctionOffset: is not read, unless it is 0");
+         "ElementToIntensityFunctionOffset: only 0 is supported");
   EXPECT_EQ(readVolume(writeMeta(size + "ElementToIntensityFunctionSlope = 1.0\n"
                                         "ElementToIntensityFunctionOffset = 0\n"))
                 .maximum,
@@ -97,7 +98,7 @@ TEST_F(MedicalHeaders, UnsupportedRescalingIsRefused) {
   }
 }
 
-TEST_F(MedicalHeaders, ByteSkipInAStreamIsLimited) {
+TEST_F(MedicalHeaders, ByteSkipInCompressedDataIsLimited) {
   const std::string samples = "abc" + std::string(24, 'x');
   std::string stream(200, '\0');
   z_stream z{};
@@ -115,20 +116,20 @@ TEST_F(MedicalHeaders, ByteSkipInAStreamIsLimited) {
            "byte skip: must be from 0 to 1048576 in compressed data");
 }
 
-TEST_F(MedicalHeaders, RefusalNamesTheFieldAndItsCause) {
+TEST_F(MedicalHeaders, ErrorNamesFieldAndCause) {
   for (const char* encoding : {"bzip2", "bz2", "zrl"})
     refuse(writeNrrd("spacings: 1 1 1\n", encoding),
-           "encoding: \"" + std::string(encoding) + "\" is not read; write raw or gzip");
+           "encoding: \"" + std::string(encoding) + "\" is not supported; use raw or gzip");
   const std::string head = "NRRD0004\ntype: unsigned char\nencoding: raw\n";
   refuse(folder.write("two.nrrd", head + "dimension: 2\nsizes: 3 4\n" + space +
                                       "space directions: (1,0,0) (0,1,0)\n\n" +
                                       std::string(12, 'x')),
-         "is a picture of 2 axes, not a volume");
+         "is an image of 2 axes, not a volume");
   const std::string series = head + "dimension: 4\nsizes: 3 4 2 1\n" + space +
                              "space directions: (1,0,0) (0,1,0) (0,0,1) none\n";
   for (const std::string kinds : {"", "kinds: domain domain domain time\n"})
     refuse(folder.write("four.nrrd", series + kinds + "\n" + std::string(24, 'x')),
-           "kinds: 4 axes do not lie in a space of three");
+           "kinds: 4 spatial axes in a space of three dimensions");
   EXPECT_EQ(readVolume(folder.write("one.nrrd", series + "kinds: domain domain domain list\n\n" +
                                                     std::string(24, 'x')))
                 .grid.size,
@@ -138,10 +139,9 @@ TEST_F(MedicalHeaders, RefusalNamesTheFieldAndItsCause) {
                                        "data file: LIST\nhalf.raw\nhalf.raw\n\n"),
          "data file: its LIST has an empty line");
   refuse(writeNrrd(space + unitDirections + "units: \"mm\" \"mm\" \"mm\"\n"),
-         "units: are not read beside a space; write space units");
-  refuse(writeMeta("DimSize = -3 4 2\n"),
-         "DimSize: each must be a whole number from 1 to 2147483647");
-  refuse(writeMeta("DimSize = 3 4.5 2\n"), "DimSize: each must be a whole number");
+         "units: cannot be combined with a space; write space units");
+  refuse(writeMeta("DimSize = -3 4 2\n"), "DimSize: each must be an integer from 1 to 2147483647");
+  refuse(writeMeta("DimSize = 3 4.5 2\n"), "DimSize: each must be an integer");
 }
 
 } // namespace

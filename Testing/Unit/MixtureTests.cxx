@@ -1,4 +1,4 @@
-// Mixtures: their parts by definition, and the same picture from both estimators.
+// Mixtures: weighted extinctions, sampling of components, and equal images from both integrators.
 
 #include "model/medium/Mixture.h"
 
@@ -16,7 +16,7 @@ Component makeComponent(double extinction, const Rgb& albedo, double g = 0.0) {
   return {makeLinearTransfer(extinction, albedo, g)};
 }
 
-/// Share of component 1: x / 8 along a row of nine voxels, 0.5 mm apart; the rest is component 0's.
+/// Weight of component 1: x / 8 along a row of nine voxels, 0.5 mm apart; component 0 has the rest.
 Mixture makeRampMixture() {
   const auto value = [](const Size3& voxel) {
     return std::lround(255.0 * static_cast<double>(voxel.x()) / 8.0);
@@ -32,7 +32,7 @@ std::map<int, double> listParts(const MixtureField& field, const MixturePoint& p
   return parts;
 }
 
-TEST(Mixture, PartsAreSharesOfEachExtinction) {
+TEST(Mixture, PartsAreWeightedExtinctions) {
   Mixture mixture = makeRampMixture();
   const MixtureField field(mixture, mixture.weights->grid());
   const MixturePoint point{Vec3(2.0, 0.5, 0.5), 0.5, 1.0};
@@ -48,10 +48,11 @@ TEST(Mixture, PartsAreSharesOfEachExtinction) {
   EXPECT_FALSE(field.hasUnclipped());
   EXPECT_NEAR(unclipped.extinction({point.index, 0.5, 0.25}), 0.25 * parts.at(0) + parts.at(1),
               1e-12);
-  EXPECT_EQ(listParts(unclipped, {point.index, 0.5, 0.0}).count(0), 0U) << "a part of 0 is none";
+  EXPECT_EQ(listParts(unclipped, {point.index, 0.5, 0.0}).count(0), 0U)
+      << "empty parts are skipped";
 }
 
-TEST(Mixture, ComponentsAreDrawnByTheirExtinction) {
+TEST(Mixture, ComponentsAreSampledByExtinction) {
   const Mixture mixture = makeRampMixture();
   const MixtureField field(mixture, mixture.weights->grid());
   const MixturePoint point{Vec3(3.0, 0.5, 0.5), 0.5, 1.0};
@@ -63,24 +64,23 @@ TEST(Mixture, ComponentsAreDrawnByTheirExtinction) {
   const double expected = listParts(field, point).at(1) / field.extinction(point);
   const double error = std::sqrt(expected * (1.0 - expected) / samples);
   EXPECT_NEAR(second / double{samples}, expected, 4.0 * error);
-  EXPECT_GT(expected, 0.62) << "by shares alone it would be 3/8";
+  EXPECT_GT(expected, 0.62) << "label weights alone would give 3/8";
 
   Random single(5, 0, 0), unused(5, 0, 0);
   EXPECT_EQ(field.sampleComponent({Vec3(8.0, 0.0, 0.0), 0.5, 1.0}, single), 1);
-  EXPECT_EQ(field.sampleComponent({Vec3(3.0, 0.5, 0.5), 0.0, 1.0}, single), 0)
-      << "nothing is there";
-  EXPECT_EQ(single.bits(), unused.bits()) << "one component takes no number";
+  EXPECT_EQ(field.sampleComponent({Vec3(3.0, 0.5, 0.5), 0.0, 1.0}, single), 0) << "no extinction";
+  EXPECT_EQ(single.bits(), unused.bits()) << "a single component needs no random number";
 }
 
-TEST(Mixture, GradientsOfSharesAreInTheWorld) {
+TEST(Mixture, WeightGradientsAreInWorldSpace) {
   const Mixture mixture = makeRampMixture();
   const MixtureField field(mixture, mixture.weights->grid());
   const Vec3 gradient = field.weightGradient(1, Vec3(4.0, 0.5, 0.5));
-  EXPECT_LT((gradient - Vec3(0.25, 0.0, 0.0)).norm(), 1e-2) << "1/8 a voxel of 0.5 mm";
+  EXPECT_LT((gradient - Vec3(0.25, 0.0, 0.0)).norm(), 1e-2) << "1/8 per voxel of 0.5 mm";
   EXPECT_LT((field.weightGradient(0, Vec3(4.0, 0.5, 0.5)) + gradient).norm(), 1e-12);
 }
 
-/// Dense matter of seven components that differ in all; two of them the clip leaves.
+/// Dense medium of seven components that differ in every property; two are not clipped.
 TestScene makeMixtureScene(bool isHybrid) {
   TestScene scene = makePartsScene();
   if (isHybrid)
@@ -113,7 +113,7 @@ double meanDepth(const Film& film) {
   return sum / count;
 }
 
-TEST(Mixture, LanesAreTheScalarEstimator) {
+TEST(Mixture, SimdMatchesScalarIntegrator) {
   for (const bool isHybrid : {false, true}) {
     const TestScene scene = makeMixtureScene(isHybrid);
     scene.visitView([](const SceneView& all) { ASSERT_TRUE(canUseSimd(all)); });
@@ -127,7 +127,7 @@ TEST(Mixture, LanesAreTheScalarEstimator) {
   }
 }
 
-TEST(Mixture, MarchInLanesIsTheReadableOne) {
+TEST(Mixture, SimdFeaturesMatchScalarFeatures) {
   makeMixtureScene(true).visitView([](const SceneView& scene) {
     const FeatureBuffers simd = computeFeatures(scene), scalar = computeScalarFeatures(scene);
     double albedo = 0.0, hit = 0.0;
@@ -142,8 +142,8 @@ TEST(Mixture, MarchInLanesIsTheReadableOne) {
   });
 }
 
-/// In front of the clip there is only what it leaves.
-TEST(Mixture, TheClipLeavesWhatIsFree) {
+/// Only the unclipped components are visible if the clip plane removes everything else.
+TEST(Mixture, ClipPreservesUnclippedComponents) {
   TestScene scene = makeMixtureScene(false);
   const Vec3 center = scene.volume.grid.worldCenter();
   const Camera camera(scene.pose, scene.width, scene.height);
@@ -154,7 +154,7 @@ TEST(Mixture, TheClipLeavesWhatIsFree) {
       sum += static_cast<double>(pixel.collidedSamples);
     return sum / 64.0;
   };
-  scene.clip = ClipPlane{camera, center - 100.0 * Vec3::UnitY(), Vec3(0.0, 1.0, 0.0)}; // all of it
+  scene.clip = ClipPlane{camera, center - 100.0 * Vec3::UnitY(), Vec3(0.0, 1.0, 0.0)};
   for (const Integrator integrator : {Integrator::simd, Integrator::scalar})
     EXPECT_GT(countVisible(integrator), 5.0) << "pixels";
   for (Component& component : scene.mixture->components)
@@ -163,7 +163,7 @@ TEST(Mixture, TheClipLeavesWhatIsFree) {
     EXPECT_EQ(countVisible(integrator), 0.0);
 }
 
-TEST(Mixture, BordersAsSurfacesAreTheScalarEstimators) {
+TEST(Mixture, InterfaceSurfacesRequireScalarIntegrator) {
   TestScene scene = makeMixtureScene(true);
   scene.mixture->components[3].interfaceWeight = 0.5;
   scene.visitView([](const SceneView& all) { EXPECT_FALSE(canUseSimd(all)); });

@@ -1,4 +1,4 @@
-// Looks in scenes: volume properties, and displays that a rendering follows.
+// Appearance in scenes: volume properties, and slice displays that a rendering follows.
 
 #include "SceneTesting.h"
 
@@ -22,7 +22,7 @@ double readExtinction(const std::string& nodes,
   return readSceneProperty(scene, findNode(scene, "p")).extinction(100)[0];
 }
 
-TEST(MrmlLooks, PropertyComesFromItsFileElseFromTheScene) {
+TEST(MrmlAppearance, PropertyFilePrecedesScene) {
   const std::string text =
       "1\n1\n0.9\n0.1\n0.2\n10\n4 0 0 100 0.75\n4 0 1 255 1\n8 0 0 0 0 100 1 1 1\n";
   const std::string json = R"({"volumeProperties": [{"components": [{
@@ -41,7 +41,7 @@ TEST(MrmlLooks, PropertyComesFromItsFileElseFromTheScene) {
               std::log(8.0), 3e-4);
 }
 
-TEST(MrmlLooks, RefusesAPropertyWithoutPoints) {
+TEST(MrmlAppearance, RefusesPropertyWithoutPoints) {
   const SceneFolder folder;
   const auto path = folder.writeScene(R"(<VolumeProperty id="p" name="mine"/>
       <VolumeProperty id="q" scalarOpacity="3 0 0 1" colorTransfer="4 0 1 1 1"/>)");
@@ -52,7 +52,7 @@ TEST(MrmlLooks, RefusesAPropertyWithoutPoints) {
                 [&] { readSceneProperty(scene, findNode(scene, "q")); });
 }
 
-TEST(MrmlLooks, WindowOfTheDisplayBecomesAnOpacityRamp) {
+TEST(MrmlAppearance, DisplayWindowBecomesOpacityRamp) {
   const MrmlDocument document(R"(<MRML><GPURayCastVolumeRendering/>
     <GPURayCastVolumeRendering ignoreVolumeDisplayNodeThreshold="1"/>
     <VolumeDisplay window="100" level="150" lowerThreshold="-32768" upperThreshold="32767"/>
@@ -65,7 +65,7 @@ TEST(MrmlLooks, WindowOfTheDisplayBecomesAnOpacityRamp) {
     return 1.0 - std::exp(-f.extinction(s)[0]);
   };
   const auto full = convertSliceDisplay(nodes[0], nodes[2], {0, 400});
-  ASSERT_TRUE(full); // a ramp over the whole range
+  ASSERT_TRUE(full); // a ramp over the full range
   EXPECT_NEAR(opacity(*full, 100), 0.25, 1e-3);
   EXPECT_NEAR(opacity(*full, 300), 0.75, 1e-3);
   EXPECT_NEAR(full->albedo(100)[0], 0.0, 1e-6); // black to white over the window
@@ -82,7 +82,7 @@ TEST(MrmlLooks, WindowOfTheDisplayBecomesAnOpacityRamp) {
   EXPECT_NEAR(opacity(*threshold, 300), 0.0, 1e-9);
   EXPECT_NEAR(threshold->albedo(100)[0], 1.0, 1e-6);
 
-  EXPECT_FALSE(convertSliceDisplay(nodes[0], nodes[3], {0, 400})); // another colour table
+  EXPECT_FALSE(convertSliceDisplay(nodes[0], nodes[3], {0, 400})); // unsupported color table
 }
 
 } // namespace

@@ -13,7 +13,7 @@ void refuse(const std::string& text, const std::string& reason) {
   expectRefused("test", reason, [&] { MrmlDocument(text, "test"); });
 }
 
-TEST(MrmlDocument, ReadsNodesInTheirOrder) {
+TEST(MrmlDocument, ReadsNodesInOrder) {
   const MrmlDocument document = parse(R"(<Volume id="v" name="a &amp; b"></Volume>
     <!-- <Volume id="commented"/> --> <View id="w"/><Volume id="x"/>)");
   ASSERT_EQ(document.nodes().size(), 3U);
@@ -64,7 +64,7 @@ TEST(MrmlDocument, ReadsReferencesOfOldScenes) {
   EXPECT_EQ(document.nodes()[3].referenceId("color"), "c");
 }
 
-TEST(MrmlDocument, PrefersTheNewFormOfAReference) {
+TEST(MrmlDocument, PrefersNewFormOfReferences) {
   const MrmlDocument document =
       parse(R"(<Volume displayNodeRef="old" storageNodeRef="s" references="display:new;"/>)");
   EXPECT_EQ(document.nodes()[0].references.at("display"), std::vector<std::string>{"new"});
@@ -78,7 +78,7 @@ TEST(MrmlDocument, SkipsMalformedReferences) {
   EXPECT_EQ(document.nodes()[0].referenceId("c"), "1");
 }
 
-TEST(MrmlDocument, ConvertsAttributesToFlagsAndNumbers) {
+TEST(MrmlDocument, ConvertsAttributesToBooleansAndNumbers) {
   const MrmlDocument document =
       parse(R"(<N a="true" b="false" c="1" d="0" e="yes" n=" 1  -2e3 2.2250738585072e-308 "
                   m="1 2x" i="1 inf" o=""/>)");
@@ -96,11 +96,11 @@ TEST(MrmlDocument, ConvertsAttributesToFlagsAndNumbers) {
   EXPECT_FALSE(node.numbers("missing"));
 }
 
-TEST(MrmlDocument, RefusesTextThatIsNoScene) {
-  refuse("", "no whole XML");
-  refuse("words", "no whole XML");
-  refuse("<MRML><Volume></MRML>", "no whole XML");
-  refuse("<MRML><Volume id=\"v\"", "no whole XML");
+TEST(MrmlDocument, RefusesTextThatIsNotScene) {
+  refuse("", "not complete XML");
+  refuse("words", "not complete XML");
+  refuse("<MRML><Volume></MRML>", "not complete XML");
+  refuse("<MRML><Volume id=\"v\"", "not complete XML");
   refuse("<VTKFile/>", "no MRML element");
 }
 
@@ -127,7 +127,7 @@ TEST(MrmlDocument, DeepNestingIsReadOrRefused) {
   std::string deep = "<MRML>";
   for (int i = 0; i < 200'000; ++i)
     deep += "<a>";
-  refuse(deep, "no whole XML");
+  refuse(deep, "not complete XML");
   for (int i = 0; i < 200'000; ++i)
     deep += "</a>";
   EXPECT_EQ(MrmlDocument(deep + "</MRML>", "test").nodes().size(), 1U);

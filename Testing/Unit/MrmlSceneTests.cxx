@@ -1,4 +1,4 @@
-// Meaning of nodes: geometry, transforms, cropping boxes, cameras, visibility.
+// Nodes of scenes: geometry, transforms, crop boxes, cameras, visibility.
 
 #include "Approx.h"
 #include "SceneTesting.h"
@@ -25,10 +25,9 @@ Affine makeAffine(std::initializer_list<double> rows) {
   return map;
 }
 
-// ---- volumes
-// -------------------------------------------------------------------------------------
+// Volumes.
 
-TEST(MrmlScene, GeometryComesFromTheFileNotFromTheScene) {
+TEST(MrmlScene, GeometryComesFromFileNotFromScene) {
   const SceneFolder folder;
   MrmlScene scene = folder.makeScene(volumeNode);
   const Volume volume = readSceneVolume(scene, findNode(scene, "vol1"));
@@ -45,7 +44,7 @@ Grid readGrid(const SceneFolder& folder, const std::string& attributes) {
   return readSceneVolume(scene, findNode(scene, "v")).grid;
 }
 
-TEST(MrmlScene, StorageAttributesCentreOrReorientTheVolume) {
+TEST(MrmlScene, StorageAttributesCenterOrReorientVolume) {
   const SceneFolder folder;
   const Affine fromFile = makeAffine({-1, 0, 0, -10, 0, -2, 0, -20, 0, 0, 3, 30});
   expectSame(readGrid(folder, R"(centerImage="0" UseOrientationFromFile="1")").indexToWorld,
@@ -57,18 +56,18 @@ TEST(MrmlScene, StorageAttributesCentreOrReorientTheVolume) {
              makeAffine({1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 3, 0}));
 }
 
-TEST(MrmlScene, ErrorNamesTheNodeOfAMissingFile) {
+TEST(MrmlScene, ErrorNamesNodeOfMissingFile) {
   const SceneFolder folder;
   const auto path = folder.writeScene(R"(<Volume id="v" name="CT" storageNodeRef="s"/>
     <VolumeArchetypeStorage id="s" fileName="gone.nrrd"/><Volume id="w" name="MR"/>)");
   MrmlScene scene(path);
-  expectRefused(path, "gone.nrrd, which is not there",
+  expectRefused(path, "gone.nrrd, which does not exist",
                 [&] { readSceneVolume(scene, findNode(scene, "v")); });
-  expectRefused(path, "Volume MR (w): names no file",
+  expectRefused(path, "Volume MR (w): has no file",
                 [&] { readSceneVolume(scene, findNode(scene, "w")); });
 }
 
-TEST(MrmlScene, WarningNamesAVolumeByItsPathInTheArchive) {
+TEST(MrmlScene, WarningNamesVolumeByPathInArchive) {
   const SceneFolder folder;
   std::vector<float> samples(24, 0.0F);
   samples[5] = std::nanf("");
@@ -85,7 +84,7 @@ TEST(MrmlScene, WarningNamesAVolumeByItsPathInTheArchive) {
       << volume.warnings[0];
 }
 
-TEST(MrmlScene, SegmentationAndLabelMapLieInTheWorld) {
+TEST(MrmlScene, SegmentationAndLabelMapAreInWorldSpace) {
   const SceneFolder folder;
   std::vector<std::uint8_t> labels(24, 0);
   labels[1] = 5;
@@ -107,7 +106,7 @@ TEST(MrmlScene, SegmentationAndLabelMapLieInTheWorld) {
   EXPECT_EQ(labelMap.segments().at(0).labelValue, 5);
 }
 
-TEST(MrmlScene, LabelMapOfAnArchiveTakesNamesFromTheUsersFile) {
+TEST(MrmlScene, UserLabelTablePrecedesTableInArchive) {
   const SceneFolder folder;
   std::vector<std::uint8_t> labels(24, 0);
   labels[1] = 5;
@@ -133,13 +132,12 @@ TEST(MrmlScene, ReadsVisibilityOfSegments) {
             (std::map<std::string, bool>{{"A b", true}, {"c", false}, {"d", false}}));
 }
 
-// ---- transforms
-// ----------------------------------------------------------------------------------
+// Transforms.
 
 const std::string rotation = "0 -1 0 5  1 0 0 6  0 0 1 7  0 0 0 1";
 const Affine rotationMap = makeAffine({0, -1, 0, 5, 1, 0, 0, 6, 0, 0, 1, 7});
 
-TEST(MrmlScene, AppliesTransformsUpTheChain) {
+TEST(MrmlScene, AppliesChainOfTransforms) {
   const SceneFolder folder;
   MrmlScene scene = folder.makeScene(
       R"(
@@ -162,7 +160,7 @@ TEST(MrmlScene, ReadsMatrixTransformFromParent) {
   expectSame(toWorld(scene, findNode(scene, "n")), rotationMap.inverse());
 }
 
-/// ITK text transform that shifts by (1, 2, 3) in LPS.
+/// ITK text transform: a translation by (1, 2, 3) in LPS.
 const std::string shiftFile = "#Insight Transform File V1.0\n#Transform 0\n"
                               "Transform: TranslationTransform_double_3_3\n"
                               "Parameters: 1 2 3.0000000001\nFixedParameters:\n";
@@ -176,8 +174,8 @@ Affine readShift(const std::string& tag, const std::string& attributes) {
   return toWorld(scene, findNode(scene, "n"));
 }
 
-TEST(MrmlScene, PrefersTheTransformFileToTheMatrixInTheScene) {
-  const Vec3 toParent(1, 2, -3.0000000001); // LPS, from the parent
+TEST(MrmlScene, TransformFilePrecedesMatrixInScene) {
+  const Vec3 toParent(1, 2, -3.0000000001); // the file maps from the parent, in LPS
   EXPECT_EQ(readShift("Transform", "").translation(), toParent);
   EXPECT_EQ(
       readShift("LinearTransform", R"(matrixTransformToParent="1 0 0 1 0 1 0 2 0 0 1 -3 0 0 0 1")")
@@ -185,19 +183,19 @@ TEST(MrmlScene, PrefersTheTransformFileToTheMatrixInTheScene) {
       toParent);
 }
 
-TEST(MrmlScene, AttributeOfOldScenesSetsTheSenseOfTheFile) {
+TEST(MrmlScene, AttributeOfOldScenesSetsDirectionOfTransformFile) {
   const Vec3 toParent(1, 2, -3.0000000001);
   EXPECT_EQ(readShift("Transform", R"(readWriteAsTransformToParent="false")").translation(),
             toParent);
   EXPECT_EQ(readShift("Transform", R"(readWriteAsTransformToParent="true")").translation(),
             -toParent);
   EXPECT_EQ(readShift("LinearTransform", R"(readWriteAsTransformToParent="true")").translation(),
-            toParent); // Slicer wrote the inverse
+            toParent); // Slicer writes the inverse
   EXPECT_EQ(readShift("LinearTransform", R"(readWriteAsTransformToParent="false")").translation(),
             -toParent);
 }
 
-TEST(MrmlScene, RefusesNonlinearAndLoopingTransforms) {
+TEST(MrmlScene, RefusesNonlinearAndCyclicTransforms) {
   const SceneFolder folder;
   const auto refuse = [&](const std::string& transforms, const std::string& reason) {
     const auto path = folder.writeScene("<N id=\"n\" transformNodeRef=\"t\"/>" + transforms);
@@ -212,14 +210,13 @@ TEST(MrmlScene, RefusesNonlinearAndLoopingTransforms) {
              rotation + "\"/>",
          "loop");
   refuse(R"(<LinearTransform id="t" matrixTransformToParent="1 0 0 0 0 1 0 0 0 0 0 0 0 0 0 1"/>)",
-         "cannot be inverted");
+         "must be invertible");
   refuse(R"(<LinearTransform id="t" matrixTransformToParent="1 0 0 0 0 1 0 0 0 0 1 0 0 0 1 1"/>)",
          "last row");
   refuse(R"(<LinearTransform id="t" matrixTransformToParent="1 0 0"/>)", "16 numbers");
 }
 
-// ---- cropping boxes
-// ------------------------------------------------------------------------------
+// Crop boxes.
 
 Affine readBox(const std::string& nodes, const std::map<std::string, std::string>& files = {}) {
   const SceneFolder folder;
@@ -239,7 +236,7 @@ std::string makeRoiJson(const std::string& system, const std::string& more = "")
 }
 
 TEST(MrmlScene, ReadsRegionInLpsAndRas) {
-  // Object axes are the columns of the orientation; LPS negates its first two rows.
+  // The columns of the orientation are the object's axes; LPS negates the first two rows.
   const Affine ras = makeAffine({0, -2, 0, 10, 1, 0, 0, 20, 0, 0, 3, 30});
   const Affine lps = makeAffine({0, 2, 0, -10, -1, 0, 0, -20, 0, 0, 3, 30});
   const auto read = [](const std::string& system) {
@@ -252,7 +249,7 @@ TEST(MrmlScene, ReadsRegionInLpsAndRas) {
   expectSame(read(R"("coordinateSystem": 1, )"), lps);
 }
 
-TEST(MrmlScene, RegionIsMovedByItsTransform) {
+TEST(MrmlScene, AppliesTransformToRegion) {
   const Affine box = readBox(R"(<MarkupsROI id="r" references="storage:s;transform:t;"/>
       <MarkupsROIJsonStorage id="s" fileName="roi.mrk.json"/>
       <LinearTransform id="t" matrixTransformToParent=")" +
@@ -288,12 +285,11 @@ TEST(MrmlScene, RefusesMalformedRegions) {
   refuseJson(makeRoiJson(R"("coordinateSystem": "XYZ", )"), "must be \"LPS\" or \"RAS\"");
   const auto path = folder.writeScene(R"(<AnnotationROI id="r" ctrlPtsCoord="1 2 3"/>)");
   MrmlScene scene(path);
-  expectRefused(path, "AnnotationROI (r): needs a centre and a radius",
+  expectRefused(path, "AnnotationROI (r): needs a center and a radius",
                 [&] { readSceneRoi(scene, findNode(scene, "r")); });
 }
 
-// ---- cameras and views
-// ---------------------------------------------------------------------------
+// Cameras and views.
 
 CameraPose readPose(const std::string& attributes, const std::string& more = "") {
   const SceneFolder folder;
@@ -317,7 +313,7 @@ TEST(MrmlScene, ReadsParallelAndPerspectiveCameras) {
   EXPECT_EQ(readPose("").angle, 30.0); // VTK's default
 }
 
-TEST(MrmlScene, AppliedTransformDoesNotMoveACameraAgain) {
+TEST(MrmlScene, AppliedTransformDoesNotMoveCameraAgain) {
   const std::string transform =
       "<LinearTransform id=\"t\" matrixTransformToParent=\"" + rotation + "\"/>";
   const CameraPose applied =
@@ -328,20 +324,20 @@ TEST(MrmlScene, AppliedTransformDoesNotMoveACameraAgain) {
   EXPECT_TRUE(isApprox(notYet.up, Vec3(0, 0, 1)));
 }
 
-TEST(MrmlScene, RefusesCamerasThatLookNowhere) {
+TEST(MrmlScene, RefusesDegenerateCameras) {
   const SceneFolder folder;
   const auto refuse = [&](const std::string& attributes, const std::string& reason) {
     const auto path = folder.writeScene("<Camera id=\"c\" " + attributes + "/>");
     MrmlScene scene(path);
     expectRefused(path, reason, [&] { readSceneCamera(scene, findNode(scene, "c")); });
   };
-  refuse(R"(position="1 2 3" focalPoint="1 2 3" viewUp="0 0 1")", "looks nowhere");
-  refuse(R"(position="1 2 3" focalPoint="1 2 9" viewUp="0 0 1")", "looks nowhere");
+  refuse(R"(position="1 2 3" focalPoint="1 2 3" viewUp="0 0 1")", "has a bad pose");
+  refuse(R"(position="1 2 3" focalPoint="1 2 9" viewUp="0 0 1")", "has a bad pose");
   refuse(R"(position="1 2 3" focalPoint="1 9 3")", "viewUp: must be three numbers");
   refuse(R"(position="1 2 3" focalPoint="1 9 3" viewUp="0 0 1" viewAngle="0")", "viewAngle");
 }
 
-TEST(MrmlScene, ReadsBackgroundOfTheView) {
+TEST(MrmlScene, ReadsBackgroundOfView) {
   const MrmlDocument document(
       R"(<MRML><View backgroundColor="0.1 0.2 0.3" backgroundColor2="0.4 0.5 0.6"/>
          <View backgroundColor="0.1 0.2 0.3"/><View/></MRML>)",
@@ -352,12 +348,11 @@ TEST(MrmlScene, ReadsBackgroundOfTheView) {
   EXPECT_TRUE(readViewBackground(document.nodes()[2]).bottom == Rgb::Zero());
 }
 
-// ---- real files
-// ----------------------------------------------------------------------------------
+// Real files.
 
 const std::filesystem::path slicerScenes = std::filesystem::path(FENESTRA_DATA) / "slicer_scenes";
 
-TEST(RealScenes, EveryPresetIsRead) {
+TEST(RealScenes, ReadsEveryPreset) {
   if (!std::filesystem::exists(slicerScenes))
     GTEST_SKIP() << slicerScenes << " is absent";
   std::size_t presets = 0;
@@ -376,7 +371,7 @@ TEST(RealScenes, EveryPresetIsRead) {
   EXPECT_GE(presets, 40U);
 }
 
-TEST(RealScenes, RegionOfAnAnnotationIsRead) {
+TEST(RealScenes, ReadsAnnotationRegion) {
   const auto file = slicerScenes / "slicer_core/AnnotationROI.acsv";
   if (!std::filesystem::exists(file))
     GTEST_SKIP() << file << " is absent";
@@ -386,7 +381,7 @@ TEST(RealScenes, RegionOfAnAnnotationIsRead) {
              makeAffine({56.6131, 0, 0, -26.5869, 0, 121.875, 0, 0, 0, 0, 121.875, 0}));
 }
 
-TEST(RealScenes, TransformFileAgreesWithTheMatrixToSixDigits) {
+TEST(RealScenes, TransformFileMatchesMatrixToSixDigits) {
   const auto file = slicerScenes / "slicer_5_2_written/chest_transformed_cropped.mrb";
   if (!std::filesystem::exists(file))
     GTEST_SKIP() << file << " is absent";
@@ -397,7 +392,8 @@ TEST(RealScenes, TransformFileAgreesWithTheMatrixToSixDigits) {
   const Affine sixDigits =
       makeAffine({n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9], n[10], n[11]});
   expectSame(toWorld(scene, volume), sixDigits, 1e-6);
-  EXPECT_GT(frobeniusNorm(toWorld(scene, volume).linear() - sixDigits.linear()), 1e-8); // has more
+  EXPECT_GT(frobeniusNorm(toWorld(scene, volume).linear() - sixDigits.linear()),
+            1e-8); // more digits
   const Affine roi = readSceneRoi(scene, *scene.document.findByTag("MarkupsROI").at(0)).boxToWorld;
   expectSame(roi, makeAffine({150, 0, 0, 0, 0, 130, 0, -20, 0, 0, 110, -170}), 1e-9);
 }

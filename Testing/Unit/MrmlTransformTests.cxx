@@ -1,4 +1,4 @@
-// Numbers in a scene that are valid alone but not in composition.
+// Transforms of scenes: limits of matrices and of their products, and files that several nodes use.
 
 #include "Approx.h"
 #include "SceneTesting.h"
@@ -10,14 +10,14 @@ const MrmlNode& findNode(const MrmlScene& scene, const std::string& id) {
   return *scene.document.find(id);
 }
 
-/// Node t of three rows of four numbers, under the node `above`.
+/// Transform node of three rows of four numbers, below the node `parent`.
 std::string makeTransform(const std::string& rows, const std::string& id = "t",
                           const std::string& parent = "") {
   return "<LinearTransform id=\"" + id + "\" transformNodeRef=\"" + parent +
          "\" matrixTransformToParent=\"" + rows + " 0 0 0 1\"/>";
 }
 
-/// Nodes t, t1, t2, ...: each under the next.
+/// Transform nodes t, t1, t2, ..., each below the next.
 std::string makeChain(const std::string& rows, int count) {
   const auto name = [](int i) { return std::string("t").append(std::to_string(i)); };
   std::string nodes = makeTransform(rows, "t", "t1");
@@ -26,8 +26,8 @@ std::string makeChain(const std::string& rows, int count) {
   return nodes;
 }
 
-/// Maps under which a point loses the precision of a voxel, or paths never end.
-TEST(MrmlTransform, RefusesMapsThatCannotBeInverted) {
+/// With these transforms points lose voxel precision, or paths do not end.
+TEST(MrmlTransform, RefusesNonInvertibleTransforms) {
   const SceneFolder folder;
   const auto refuse = [&](const std::string& transforms, const std::string& reason) {
     const auto path = folder.writeScene("<N id=\"n\" transformNodeRef=\"t\"/>" + transforms);
@@ -37,21 +37,21 @@ TEST(MrmlTransform, RefusesMapsThatCannotBeInverted) {
   for (const char* rows : {"1e60 0 0 0  0 1e60 0 0  0 0 1e60 0", "1.1 1e308 0 0  0 1 0 0  0 0 1 0",
                            "1 0 0 1e300  0 1 0 0  0 0 1 0", "1e8 0 0 0  0 1e-10 0 0  0 0 1 0",
                            "1 1e15 0 0  0 1 0 0  0 0 1 0", "1e-60 0 0 0  0 1e-60 0 0  0 0 1e-60 0"})
-    refuse(makeTransform(rows), "matrixTransformToParent: cannot be inverted");
-  const std::string product = "the product of the transforms above it cannot be inverted";
+    refuse(makeTransform(rows), "matrixTransformToParent: must be invertible");
+  const std::string product = "the product of the transforms above it must be invertible";
   refuse(makeChain("100 0 0 0  0 100 0 0  0 0 100 0", 5), product);
   refuse(makeChain("1e8 0 0 0  0 1e8 0 0  0 0 1e8 0", 900), product);
   refuse(makeChain("1 0 0 5e8  0 1 0 0  0 0 1 0", 3), product);
 }
 
-TEST(MrmlTransform, AcceptsAnyUsefulScale) {
+TEST(MrmlTransform, AcceptsSmallScale) {
   const SceneFolder folder;
   MrmlScene scene = folder.makeScene("<N id=\"n\" transformNodeRef=\"t\"/>" +
                                      makeTransform("1e-5 0 0 0  0 1e-5 0 0  0 0 1e-5 0"));
   EXPECT_EQ(toWorld(scene, findNode(scene, "n")).linear()(0, 0), 1e-5);
 }
 
-TEST(MrmlTransform, ChainIsCountedUpTo1000Transforms) {
+TEST(MrmlTransform, ListsAtMost1000ParentTransforms) {
   const SceneFolder folder;
   const std::string rows = "1 0 0 0  0 1 0 0  0 0 1 0",
                     child = "<N id=\"n\" transformNodeRef=\"t\"/>";
@@ -65,7 +65,7 @@ TEST(MrmlTransform, ChainIsCountedUpTo1000Transforms) {
   EXPECT_EQ(countAbove(makeChain(rows, 2000)), 1000u);
 }
 
-/// A scene can name a slow file many times.
+/// A scene may refer to a slow file many times.
 TEST(MrmlTransform, ReadsEachFileOnce) {
   const SceneFolder folder;
   const std::string nodes = R"(<N id="n" transformNodeRef="a"/>
@@ -91,7 +91,7 @@ TEST(MrmlTransform, ReadsEachFileOnce) {
   refuse();
 }
 
-TEST(MrmlTransform, RefusesPlacesBeyondTheInvertibleRange) {
+TEST(MrmlTransform, RefusesPositionsBeyondInvertibleRange) {
   const SceneFolder folder;
   writeFile(folder / "v.nrrd", std::vector<std::uint8_t>(24, 1), {.spacing = {1e5, 1e5, 1e5}});
   const auto path = folder.writeScene(makeTransform("1e5 0 0 0  0 1e5 0 0  0 0 1e5 0") +
@@ -101,13 +101,13 @@ TEST(MrmlTransform, RefusesPlacesBeyondTheInvertibleRange) {
       <ROI id="r" xyz="1 2 3" radiusXYZ="1e5 1e5 1e5" transformNodeRef="t"/>
       <Camera id="c" position="0 0 0" focalPoint="0 1e9 0" viewUp="0 0 1" transformNodeRef="t"/>)");
   MrmlScene scene(path);
-  expectRefused(path, "its place in the world cannot be inverted",
+  expectRefused(path, "its world transform must be invertible",
                 [&] { readSceneVolume(scene, findNode(scene, "v")); });
-  expectRefused(path, "its place in the world cannot be inverted",
+  expectRefused(path, "its world transform must be invertible",
                 [&] { readSceneSegmentation(scene, findNode(scene, "l")); });
-  expectRefused(path, "its box in the world cannot be inverted",
+  expectRefused(path, "its world transform must be invertible",
                 [&] { readSceneRoi(scene, findNode(scene, "r")); });
-  expectRefused(path, "looks nowhere: position and target",
+  expectRefused(path, "has a bad pose: position and target",
                 [&] { readSceneCamera(scene, findNode(scene, "c")); });
 }
 

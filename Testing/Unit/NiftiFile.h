@@ -1,6 +1,6 @@
 #pragma once
-// Bytes of a NIfTI-1 file of one part with any geometry and header extension: ITK's writer makes
-// only its own.
+// Bytes of a single-file NIfTI-1 image with any geometry and header extension, which ITK's writer
+// cannot produce.
 
 #include "base/Vector.h"
 
@@ -20,7 +20,7 @@ struct NiftiFile {
   std::array<float, 3> quaternion = {0, 0, 0}, quaternionOffset = {0, 0, 0};
   std::array<float, 12> rows = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}; ///< srow_x, _y, _z
   std::array<float, 4> pixdim = {1, 1, 1, 1};                        ///< the first: qfac
-  char units = 2;                                                    ///< millimetres
+  char units = 2;                                                    ///< millimeters
   std::string extension = {};
 
   void setSform(const Affine& map) {
@@ -31,14 +31,14 @@ struct NiftiFile {
                        : map.translation()[std::ptrdiff_t(row)]);
   }
 
-  /// Axes at right angles only.
+  /// The axes of `map` must be orthogonal.
   void setQform(const Affine& map) {
     Mat3 r = map.linear().normalizedColumns();
     const Vec3 spacing = map.linear().columnNorms();
     pixdim[0] = r.determinant() < 0.0 ? -1.0f : 1.0f;
     if (pixdim[0] < 0.0f)
       r.col(2) = -r.col(2);
-    // Quaternion of the largest of its four components (nifti_mat44_to_quatern).
+    // Starts from the largest component of the quaternion, like nifti_mat44_to_quatern.
     const double trace = r.trace();
     std::array<double, 4> q{};
     const double squares[] = {1.0 + trace, 1.0 + 2.0 * r(0, 0) - trace, 1.0 + 2.0 * r(1, 1) - trace,
@@ -77,7 +77,7 @@ struct NiftiFile {
     put(70, std::int16_t{4});
     put(72, std::int16_t{16});
     put(76, pixdim);
-    // An extension: its size, a multiple of 16 with these eight bytes, its code, its content.
+    // Extension: size (a multiple of 16 that includes these 8 bytes), code and content.
     std::string block;
     if (!extension.empty()) {
       block = std::string(8, '\0') + extension;
@@ -100,8 +100,8 @@ struct NiftiFile {
   }
 };
 
-/// Volume along RAS axes with its voxels stored in another order of axes, those of the bits of
-/// `reversed` from their other end. `map` becomes index to RAS; the file has neither form yet.
+/// Volume along RAS axes whose voxels are stored in another order of axes; axes with a bit in
+/// `reversed` are flipped. `map` becomes index to RAS; the file has no qform or sform yet.
 template <typename Value>
 NiftiFile makeReordered(const Size3& size, const Vec3& spacing, const Vec3& origin, Value&& valueOf,
                         const std::array<int, 3>& order, int reversed, Affine& map) {

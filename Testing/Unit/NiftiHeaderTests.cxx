@@ -1,4 +1,4 @@
-// Geometry of NIfTI files: qform, sform, both, and those that other programs write.
+// Geometry of NIfTI files: qform, sform, both, and files written by other programs.
 
 #include "NiftiFile.h"
 #include "Refusals.h"
@@ -21,7 +21,7 @@ std::int16_t referenceValue(const Size3& voxel) {
   return static_cast<std::int16_t>(voxel.x() + 3 * (voxel.y() + 4 * voxel.z()) - 7);
 }
 
-/// True if each voxel of the volume has the reference's value at its place.
+/// True if each voxel of the volume has the reference value of its position.
 bool isReference(const Volume& volume) {
   const Size3& size = volume.grid.size;
   bool isEqual = size.prod() == referenceSize.prod();
@@ -40,7 +40,7 @@ bool isReference(const Volume& volume) {
   return isEqual;
 }
 
-TEST(NiftiHeader, EveryOrderAndSignOfAxesGivesTheSameVolume) {
+TEST(NiftiHeader, AxisOrderAndDirectionDoNotChangeVolume) {
   const TemporaryFolder folder;
   std::array<int, 3> order = {0, 1, 2};
   do {
@@ -48,7 +48,7 @@ TEST(NiftiHeader, EveryOrderAndSignOfAxesGivesTheSameVolume) {
       Affine map, elsewhere = makeTranslation({500.0, 0.0, 0.0});
       NiftiFile file = makeReordered(referenceSize, referenceSpacing, referenceOrigin,
                                      referenceValue, order, reversed, map);
-      // Codes of qform and sform; the second pair of maps is of no effect.
+      // Codes and maps of qform and sform; the map `elsewhere` must be ignored.
       struct {
         std::int16_t qform, sform;
         const Affine &ofQform, &ofSform;
@@ -70,8 +70,8 @@ TEST(NiftiHeader, EveryOrderAndSignOfAxesGivesTheSameVolume) {
   } while (std::next_permutation(order.begin(), order.end()));
 }
 
-/// Header as nibabel wrote it, which ITK calls damaged.
-TEST(NiftiHeader, SformThatIsARotationButForRoundingIsTaken) {
+/// A header written by nibabel, which ITK rejects as damaged.
+TEST(NiftiHeader, NearlyOrthonormalSformIsAccepted) {
   NiftiFile file;
   file.sformCode = 2;
   file.pixdim = {1.0f, 0.9765625f, 0.97656244f, 0.99999511f};
@@ -102,10 +102,10 @@ TEST(NiftiHeader, ShearedSformIsRefused) {
   };
   EXPECT_NO_THROW(readVolume(writeSheared(1e-3f)));
   const auto sheared = writeSheared(3e-3f);
-  expectRefused(sheared, "srow: shears", [&] { readVolume(sheared); });
+  expectRefused(sheared, "srow: is sheared", [&] { readVolume(sheared); });
   file.rows = {};
   const auto flat = folder.write("v.nii", file.bytes());
-  expectRefused(flat, "srow: its axes do not span space", [&] { readVolume(flat); });
+  expectRefused(flat, "srow: the axes are linearly dependent", [&] { readVolume(flat); });
 }
 
 TEST(NiftiHeader, UnitsScaleGeometry) {
@@ -115,23 +115,23 @@ TEST(NiftiHeader, UnitsScaleGeometry) {
   file.setSform(Affine(Mat3::Diagonal({2.0, 2.0, 2.0}), {5.0, 0.0, 0.0}));
   file.pixdim = {1, 2, 2, 2};
   for (const auto& [units, factor] : {std::pair(1, 1000.0), {2, 1.0}, {3, 0.001}, {0, 1.0}}) {
-    file.units = static_cast<char>(units | 8); // and seconds
+    file.units = static_cast<char>(units | 8); // plus seconds
     const Affine map = readVolume(folder.write("v.nii", file.bytes())).grid.indexToWorld;
     EXPECT_NEAR(map.linear()(0, 0), 2.0 * factor, 1e-9 * factor);
     EXPECT_NEAR(map.translation()[0], 5.0 * factor, 1e-9 * factor);
   }
 }
 
-TEST(NiftiHeader, FileWithoutFormsIsPlacedWithAWarning) {
+TEST(NiftiHeader, MissingFormsWarn) {
   const TemporaryFolder folder;
   const Volume volume = readVolume(folder.write("v.nii", NiftiFile().bytes()));
   EXPECT_EQ(volume.grid.indexToWorld.linear(), lpsToRas);
   ASSERT_EQ(volume.warnings.size(), 1u);
-  EXPECT_NE(volume.warnings[0].find("neither qform nor sform"), std::string::npos);
+  EXPECT_NE(volume.warnings[0].find("no qform or sform"), std::string::npos);
 }
 
-/// Found by fuzzing: converted before it was bounded.
-TEST(NiftiHeader, OffsetBeforeTheSamplesIsTheirs) {
+/// Found by fuzzing: the offset was converted to an integer before its range was checked.
+TEST(NiftiHeader, OffsetInsideHeaderIsIgnored) {
   const TemporaryFolder folder;
   const std::string original = NiftiFile().bytes();
   for (const float offset : {-1e38f, -std::numeric_limits<float>::infinity(), 0.0f, 351.9f}) {

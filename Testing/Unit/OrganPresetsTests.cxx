@@ -41,7 +41,7 @@ OrganPreset preset(const std::string& name, Modality modality, const SegmentPatt
   return {.name = name, .title = name, .modality = modality, .focus = focus, .before = before};
 }
 
-TEST(OrganPresets, FocusTakesSegmentsByNameOrCode) {
+TEST(OrganPresets, FocusMatchesSegmentsByNameOrCode) {
   const SegmentPatterns patterns{
       {"lung*"}, {"nodule"}, {"SCT^39607008", "SCT^4147007~SCT^39607008"}};
   const std::vector<SegmentInfo> all = {segment("heart", "SCT^80891009"),
@@ -55,11 +55,11 @@ TEST(OrganPresets, FocusTakesSegmentsByNameOrCode) {
   EXPECT_EQ(listNames(findFocusSegments(patterns, all)), (Strings{"left lung", "Segment_6", "A"}));
 }
 
-TEST(OrganPresets, PresetFitsSegmentsAndModality) {
+TEST(OrganPresets, PresetMatchesSegmentsAndModality) {
   const std::vector<OrganPreset> presets = {
       preset("liver", Modality::ct, {{"liver"}}),
       preset("brain", Modality::mr, {{"brain"}}),
-      preset("tumour", Modality::mr, {{"tumo*r"}}, {"brain"}),
+      preset("tumor", Modality::mr, {{"tumo*r"}}, {"brain"}),
       preset("head-ct", Modality::ct, {{"brain"}}),
   };
   const auto match = [&](const Strings& names, Modality known) {
@@ -70,20 +70,20 @@ TEST(OrganPresets, PresetFitsSegmentsAndModality) {
   EXPECT_EQ(match({"Liver", "Spleen"}, Modality::ct), "liver");
   EXPECT_EQ(match({"brain"}, Modality::mr), "brain");
   EXPECT_EQ(match({"brain"}, Modality::ct), "head-ct");
-  EXPECT_EQ(match({"brain", "Tumor"}, Modality::mr), "tumour");
+  EXPECT_EQ(match({"brain", "Tumor"}, Modality::mr), "tumor");
   const auto refuse = [&](const Strings& names, const std::string& text) {
     expectRefused("s.seg.nrrd", text, [&] { match(names, Modality::mr); });
   };
-  refuse({"Spleen", "Kidney"}, "no preset knows a segment of it (Spleen, Kidney)");
-  EXPECT_EQ(match({"brain", "tumour", "liver"}, Modality::mr), "tumour");
+  refuse({"Spleen", "Kidney"}, "no preset matches a segment (Spleen, Kidney)");
+  EXPECT_EQ(match({"brain", "tumour", "liver"}, Modality::mr), "tumor");
 }
 
-TEST(OrganPresets, SeveralFittingPresetsAreListed) {
+TEST(OrganPresets, SeveralMatchingPresetsAreListed) {
   const std::vector<OrganPreset> presets = {preset("liver", Modality::ct, {{"liver"}}),
                                             preset("heart", Modality::ct, {{"heart"}})};
-  expectRefused("s", "several presets fit, liver (liver), heart (heart)", [&] {
+  expectRefused("s", "several presets match, liver (liver), heart (heart)", [&] {
     findMatchingPreset(presets, segments({"liver", "heart"}), "s", [](Modality) -> bool {
-      throw std::logic_error("the modality says nothing here");
+      throw std::logic_error("the modality must not matter");
     });
   });
 }
@@ -98,7 +98,7 @@ Strings listPresets(const SegmentInfo& segment) {
 }
 
 /// Names used by TotalSegmentator, by Slicer's terminology and in common label lists.
-TEST(OrganPresets, BuiltInPresetsMatchUsualNames) {
+TEST(OrganPresets, BuiltInPresetsMatchCommonNames) {
   const std::vector<std::pair<std::string, Strings>> expected = {
       {"liver", {"liver", "Liver", "Liver_1"}},
       {"heart", {"heart", "heart_myocardium", "heart_atrium_left", "Left Ventricle"}},
@@ -121,7 +121,7 @@ TEST(OrganPresets, BuiltInPresetsMatchUsualNames) {
     EXPECT_EQ(listPresets(segment(none)), Strings{}) << none;
 }
 
-/// A segment's code alone is sufficient.
+/// A segment's code is sufficient without a name.
 TEST(OrganPresets, BuiltInPresetsMatchSlicerCodes) {
   EXPECT_EQ(listPresets(segment("S", "SCT^10200004")), Strings{"liver"});
   EXPECT_EQ(listPresets(segment("S", "SCT^39607008", "SCT^1")), Strings{"lungs"});
@@ -130,7 +130,7 @@ TEST(OrganPresets, BuiltInPresetsMatchSlicerCodes) {
   EXPECT_EQ(listPresets(segment("S", "SCT^4147007", "SCT^10200004")), Strings{});
 }
 
-TEST(OrganPresets, RangeDecidesWhetherAVolumeIsCt) {
+TEST(OrganPresets, ScalarRangeDistinguishesCt) {
   const Grid grid = testing::makeCenteredGrid({10, 10, 10}, Vec3::Ones());
   const auto volume = [&](double low, double high) {
     return testing::makeVolume<std::int16_t>(
@@ -143,8 +143,8 @@ TEST(OrganPresets, RangeDecidesWhetherAVolumeIsCt) {
   EXPECT_TRUE(canSuit(Modality::us, volume(0, 255)));
 }
 
-/// 100 000 values, 0 to 99 999, each once: percentiles are known.
-TEST(OrganPresets, UsualRangeLiesBetweenThePercentiles) {
+/// Each value from 0 to 99 999 occurs once, so that the percentiles are known.
+TEST(OrganPresets, RobustRangeLiesBetweenPercentiles) {
   const Volume volume =
       testing::makeVolume(testing::makeCenteredGrid({100, 100, 10}, Vec3::Ones()),
                           [](const Vec3& i) { return i.x() + 100.0 * i.y() + 10000.0 * i.z(); });

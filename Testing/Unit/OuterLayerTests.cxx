@@ -1,4 +1,4 @@
-// Skin found from the scalars, around balls of water in air.
+// Skin detected from the scalars, on bodies of water in air.
 
 #include "model/masks/OuterLayer.h"
 
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double radius = 30.0, depth = 2.5; // mm
 
-/// CT of what is water where isWater(world) says so, else air.
+/// CT volume: water where isWater(world) is true, else air.
 template <typename IsWater>
 Volume makeCt(const Grid& grid, const IsWater& isWater) {
   LargeArray<std::int16_t> voxels;
@@ -29,7 +29,7 @@ double evalMask(const Mask& mask, const Vec3& world) {
          mask.maxValue;
 }
 
-/// Grids of several spacings, the axes of the last one turned and mirrored.
+/// Grids of several spacings; the last one has rotated and mirrored axes.
 std::vector<Grid> makeGrids() {
   std::vector<Grid> all = {makeCenteredGrid({81, 81, 81}, Vec3(1.0, 1.0, 1.0)),
                            makeCenteredGrid({121, 121, 41}, Vec3(0.7, 0.7, 2.2))};
@@ -38,7 +38,7 @@ std::vector<Grid> makeGrids() {
   return all;
 }
 
-TEST(OuterLayer, IsAsDeepAsAsked) {
+TEST(OuterLayer, HasRequestedDepth) {
   for (const Grid& grid : makeGrids()) {
     const Mask skin = findOuterLayer(makeCt(grid, [](const Vec3& p) { return p.norm() < radius; }),
                                      -300.0, depth);
@@ -53,9 +53,9 @@ TEST(OuterLayer, IsAsDeepAsAsked) {
   }
 }
 
-/// Air in the body is not around it, though it be cut open where the scan ends; a fold from the
-/// side is.
-TEST(OuterLayer, LiesAtTheAirAround) {
+/// Air inside the body does not count, even if the end of the scan cuts it open. Air in a fold that
+/// opens to the side does.
+TEST(OuterLayer, LiesAtSurroundingAir) {
   for (const Grid& grid : makeGrids()) {
     const auto isWater = [](const Vec3& p) {
       const bool isInLung = std::hypot(p.x() - 10.0, p.y()) < 6.0;
@@ -70,16 +70,16 @@ TEST(OuterLayer, LiesAtTheAirAround) {
   }
 }
 
-TEST(OuterLayer, IsNothingWithoutAirOrBody) {
+TEST(OuterLayer, IsEmptyWithoutAirOrBody) {
   const Grid grid = makeGrids().front();
   EXPECT_EQ(findOuterLayer(makeCt(grid, [](const Vec3&) { return true; }), -300.0, depth).count, 0);
   EXPECT_EQ(findOuterLayer(makeCt(grid, [](const Vec3&) { return false; }), -300.0, depth).count,
             0);
   const auto inside = [](const Vec3& p) { return p.norm() > 5.0; };
-  EXPECT_EQ(findOuterLayer(makeCt(grid, inside), -300.0, depth).count, 0) << "a bubble";
+  EXPECT_EQ(findOuterLayer(makeCt(grid, inside), -300.0, depth).count, 0) << "enclosed air";
 }
 
-TEST(OuterLayer, TakesVoxelsOfAnySize) {
+TEST(OuterLayer, AcceptsVoxelsOfAnySize) {
   for (const double spacing : {1e-300, 1e-9, 1e-3, 50.0, 1e9, 1e300})
     for (const Size3& size : {Size3(1, 1, 1), Size3(9, 1, 4), Size3(9, 9, 9)}) {
       const Grid grid = makeCenteredGrid(size, Vec3(spacing, 1.0, spacing));
@@ -89,7 +89,7 @@ TEST(OuterLayer, TakesVoxelsOfAnySize) {
     }
 }
 
-TEST(OuterLayer, LiesOnTheVoxelsOfLabels) {
+TEST(OuterLayer, ResamplesOnLatticeOfLabels) {
   const Grid volume = makeGrids().front();
   const Mask skin = findOuterLayer(makeCt(volume, [](const Vec3& p) { return p.norm() < radius; }),
                                    -300.0, depth);
@@ -114,8 +114,7 @@ TEST(OuterLayer, LiesOnTheVoxelsOfLabels) {
       }
   EXPECT_LT(greatest, 0.501 / 255.0);
   const Grid tiny({7, 5, 3}, Affine(0.01 * Mat3::Identity()));
-  EXPECT_EQ(resampleMask(skin, tiny, volume).voxels, std::vector<std::uint8_t>{0})
-      << "10^12 voxels";
+  EXPECT_EQ(resampleMask(skin, tiny, volume).voxels, std::vector<std::uint8_t>{0}) << "too large";
 }
 
 } // namespace

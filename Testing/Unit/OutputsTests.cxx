@@ -1,5 +1,5 @@
-// Results: the files that they may replace, their joint appearance, and the state after a failure
-// or another run.
+// Output files: what they may replace, their joint commit, and the state after a failure or another
+// run.
 
 #include "TemporaryFolder.h"
 #include "base/Error.h"
@@ -27,7 +27,7 @@ using namespace std::string_literals;
 
 class OutputFiles : public ::testing::Test {
 protected:
-  /// Message of the Error thrown by `action`, which must be of `kind` and on one line.
+  /// Message of the Error that `action` throws; it must be of `kind` and have one line.
   template <typename Action>
   static std::string catchError(ErrorKind kind, Action&& action) {
     try {
@@ -72,7 +72,7 @@ TEST_F(OutputFiles, CommitPlacesAllFilesTogether) {
   EXPECT_EQ(fileCount(), 2u);
 }
 
-TEST_F(OutputFiles, WithoutACommitNothingIsLeft) {
+TEST_F(OutputFiles, WithoutCommitNothingRemains) {
   folder.write("a", "old");
   {
     Outputs uncommitted;
@@ -84,7 +84,7 @@ TEST_F(OutputFiles, WithoutACommitNothingIsLeft) {
   EXPECT_EQ(fileCount(), 1u);
 }
 
-TEST_F(OutputFiles, FailedCommitRestoresTheFormerFiles) {
+TEST_F(OutputFiles, FailedCommitRestoresPreviousFiles) {
   folder.write("a", "old");
   outputs.add(folder / "a");
   outputs.add(folder / "b");
@@ -98,7 +98,7 @@ TEST_F(OutputFiles, FailedCommitRestoresTheFormerFiles) {
   EXPECT_TRUE(fs::is_directory(folder / "c"));
 }
 
-TEST_F(OutputFiles, InputIsNotReplacedUnderAnyName) {
+TEST_F(OutputFiles, InputIsNotReplacedUnderAnyOfItsNames) {
   read("volume");
   fs::create_symlink("volume", folder / "link");
   fs::create_hard_link(folder / "volume", folder / "hard");
@@ -126,12 +126,12 @@ TEST_F(OutputFiles, OwnOutputIsRefusedAsInput) {
   outputs.write(folder / "a", "new");
   outputs.commit();
   catchError(ErrorKind::input, [&] { requireFile(folder / "a", ""); });
-  fs::remove(folder / "a"); // its inode number is free for others
+  fs::remove(folder / "a"); // its inode number may be reused
   folder.write("a", "another one");
   requireFile(folder / "a", "");
 }
 
-TEST_F(OutputFiles, SameFileTwiceIsRefused) {
+TEST_F(OutputFiles, DuplicateOutputIsRefused) {
   folder.write("a", "old");
   fs::create_hard_link(folder / "a", folder / "hard");
   fs::create_symlink("none", folder / "link");
@@ -142,7 +142,7 @@ TEST_F(OutputFiles, SameFileTwiceIsRefused) {
               std::string::npos);
 }
 
-TEST_F(OutputFiles, LinksAreWrittenThroughAndKept) {
+TEST_F(OutputFiles, LinksAreFollowedAndPreserved) {
   folder.write("real", "old");
   fs::create_symlink("real", folder / "link");
   fs::create_symlink("later", folder / "dangling");
@@ -171,9 +171,9 @@ TEST_F(OutputFiles, FoldersDevicesAndProtectedFilesAreRefused) {
   EXPECT_EQ(fileCount(), 3u);
 }
 
-TEST_F(OutputFiles, ForeignFileInAStickyFolderIsRefused) {
+TEST_F(OutputFiles, FileOfAnotherUserInStickyFolderIsRefused) {
   if (::geteuid() != 0)
-    GTEST_SKIP() << "takes root, to give a file away";
+    GTEST_SKIP() << "requires root, to change the owner of a file";
   constexpr uid_t owner = 1234, other = 1235;
   folder.write("theirs.png", "old");
   ::chmod((folder / "theirs.png").c_str(), 0666);
@@ -182,7 +182,7 @@ TEST_F(OutputFiles, ForeignFileInAStickyFolderIsRefused) {
   outputs.add(folder / "theirs.png"); // allowed for root
   ASSERT_EQ(::seteuid(other), 0);
   EXPECT_NE(catchError(ErrorKind::output, [&] { Outputs().add(folder / "theirs.png"); })
-                .find("belongs to somebody else"),
+                .find("belongs to another user"),
             std::string::npos);
   EXPECT_EQ(::seteuid(0), 0);
 }
@@ -195,7 +195,7 @@ TEST_F(OutputFiles, NameOf255BytesIsWritten) {
   EXPECT_EQ(readBytes(folder / name), "new");
 }
 
-TEST_F(OutputFiles, ModeAndOwnerOfAReplacedFileAreKept) {
+TEST_F(OutputFiles, ReplacedFileKeepsModeAndOwner) {
   folder.write("private", "old");
   ::chmod((folder / "private").c_str(), 0600);
   const bool isRoot = ::geteuid() == 0;
@@ -218,26 +218,26 @@ TEST_F(OutputFiles, ModeAndOwnerOfAReplacedFileAreKept) {
   EXPECT_EQ(readMode(folder / "fresh"), readMode(usual));
 }
 
-TEST_F(OutputFiles, DefaultNameReplacesOnlySealedFiles) {
-  folder.write("theirs", "somebody else made this");
+TEST_F(OutputFiles, DefaultNameReplacesOnlyTaggedFiles) {
+  folder.write("theirs", "file of another program");
   const std::string ours = sealProvenanceTag("x " + std::string(blankProvenanceTag) + "12345 y");
   folder.write("ours", ours);
   folder.write("ours.end",
                sealProvenanceTag(std::string(1 << 20, 'x') + std::string(blankProvenanceTag)));
-  for (const std::size_t before : {9U, 19U, 25U}) // across block ends, if blocks are 1 MB
+  for (const std::size_t before : {9U, 19U, 25U}) // the tag crosses the end of a 1 MB block
     folder.write("ours." + std::to_string(before),
                  sealProvenanceTag(std::string((1 << 20) - before, 'x') +
                                    std::string(blankProvenanceTag) + "1 2"));
   folder.write("edited", "an" + ours);
   folder.write("edited.end", ours + " and more");
   folder.write("claimed", std::string(blankProvenanceTag));
-  std::string many; // each mark would need a checksum of the whole file
+  std::string many; // each tag would need a checksum of the complete file
   for (int i = 0; i < 100; ++i)
     many += blankProvenanceTag;
   folder.write("many", many);
   for (const char* name : {"theirs", "edited", "edited.end", "claimed", "many"})
     EXPECT_NE(catchError(ErrorKind::usage, [&] { outputs.add(folder / name, hasProvenanceTag); })
-                  .find("Fenestra did not write it"),
+                  .find("was not written by Fenestra"),
               std::string::npos);
   outputs.add(folder / "ours", hasProvenanceTag);
   outputs.add(folder / "ours.end", hasProvenanceTag);
@@ -249,12 +249,12 @@ TEST_F(OutputFiles, DefaultNameReplacesOnlySealedFiles) {
 TEST_F(OutputFiles, FileCreatedMeanwhileIsNotReplaced) {
   outputs.add(folder / "a", hasProvenanceTag);
   outputs.write(folder / "a", "new");
-  folder.write("a", "somebody else's");
+  folder.write("a", "another program's");
   catchError(ErrorKind::usage, [&] { outputs.commit(); });
-  EXPECT_EQ(readBytes(folder / "a"), "somebody else's");
+  EXPECT_EQ(readBytes(folder / "a"), "another program's");
 }
 
-TEST_F(OutputFiles, DescriptorsAndPipesAreWrittenAtTheCommit) {
+TEST_F(OutputFiles, DescriptorsAndPipesAreWrittenAtCommit) {
   const fs::path pipe = folder / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
@@ -272,19 +272,19 @@ TEST_F(OutputFiles, DescriptorsAndPipesAreWrittenAtTheCommit) {
   EXPECT_EQ(readBytes(folder / "open"), "described");
   ::close(reader);
   ::close(file);
-  outputs.write(pipe, "nobody reads");
+  outputs.write(pipe, "no reader");
   catchError(ErrorKind::output, [&] { outputs.commit(); });
   catchError(ErrorKind::output, [&] { outputs.add("/dev/fd/987"); });
 }
 
-TEST_F(OutputFiles, CleanupLeavesFilesOfACommittingRun) {
+TEST_F(OutputFiles, CleanupPreservesFilesOfCommittingRun) {
   folder.write("a", "old");
   TemporaryFile file(folder / "a");
   file.write("new");
   file.finish(Durability::none);
   file.place();
   removeStaleTempFiles(folder.path(), tempFilePrefix,
-                       TempFileGuard::Kind::file); // as in another run
+                       TempFileGuard::Kind::file); // as another run does
   file.undoPlace();
   EXPECT_EQ(readBytes(folder / "a"), "old");
 }
@@ -292,9 +292,9 @@ TEST_F(OutputFiles, CleanupLeavesFilesOfACommittingRun) {
 TEST_F(OutputFiles, NextRunRemovesFilesOfKilledRuns) {
   const std::string stale = makeTempName(tempFilePrefix);
   const std::string inUse = makeTempName(tempFilePrefix);
-  folder.write(stale, "left");
+  folder.write(stale, "stale");
   for (const char* name : {".fenestra-notes", ".fenestra-0123456789ab"})
-    folder.write(name, "somebody's");
+    folder.write(name, "of a user");
   const int active = ::open(folder.write(inUse, "in use").c_str(), O_RDONLY);
   ASSERT_EQ(::flock(active, LOCK_EX), 0);
   outputs.add(folder / "a");
@@ -311,7 +311,7 @@ TEST_F(OutputFiles, NamesOfTemporaryFilesAreRefused) {
             std::string::npos);
 }
 
-TEST_F(OutputFiles, CommitWaitsForTheLockOfTheFolder) {
+TEST_F(OutputFiles, CommitWaitsForFolderLock) {
   outputs.add(folder / "a");
   outputs.write(folder / "a", "new");
   const int other = ::open(folder.path().c_str(), O_RDONLY | O_DIRECTORY);
@@ -324,7 +324,7 @@ TEST_F(OutputFiles, CommitWaitsForTheLockOfTheFolder) {
   EXPECT_EQ(readBytes(folder / "a"), "new");
 }
 
-TEST_F(OutputFiles, WrittenReturnsTheStateAtTheCommit) {
+TEST_F(OutputFiles, WrittenReturnsStateAtCommit) {
   for (const char* name : {"a", "b"})
     outputs.add(folder / name);
   outputs.write(folder / "a", "new");
@@ -334,7 +334,7 @@ TEST_F(OutputFiles, WrittenReturnsTheStateAtTheCommit) {
   EXPECT_EQ(outputs.writtenDigest(folder / "b"), std::nullopt);
 }
 
-TEST_F(OutputFiles, NameLockIsHeldByOneAtATime) {
+TEST_F(OutputFiles, NameLockIsExclusive) {
   const fs::path name = folder / "turn.turntable.json";
   {
     const NameLock first(name);
@@ -342,7 +342,7 @@ TEST_F(OutputFiles, NameLockIsHeldByOneAtATime) {
     EXPECT_FALSE(NameLock(name).isHeld());
     EXPECT_TRUE(NameLock(folder / "others.turntable.json").isHeld());
     removeStaleTempFiles(folder.path(), tempFilePrefix, TempFileGuard::Kind::file);
-    EXPECT_FALSE(NameLock(name).isHeld()) << "after another run has looked for abandoned files";
+    EXPECT_FALSE(NameLock(name).isHeld()) << "after another run removed stale files";
     EXPECT_EQ(fileCount(), 1u);
   }
   EXPECT_EQ(fileCount(), 0u);
@@ -350,8 +350,8 @@ TEST_F(OutputFiles, NameLockIsHeldByOneAtATime) {
   catchError(ErrorKind::output, [&] { NameLock(folder / "nowhere/a"); });
 }
 
-/// Names as long as a path in an archive may be.
-TEST_F(OutputFiles, OverlongNameIsNoLeftover) {
+/// Paths in archives may be longer than file names.
+TEST_F(OutputFiles, OverlongNameIsNotReportedAsRemaining) {
   { const TempFileGuard file(folder / std::string(300, 'x'), TempFileGuard::Kind::file); }
   EXPECT_EQ(remainingTempFiles(), std::vector<fs::path>());
 }
@@ -364,7 +364,7 @@ TEST_F(OutputFiles, LockedTemporaryFileIsNotRemoved) {
   EXPECT_EQ(fileCount(), 1u);
 }
 
-TEST(Inputs, FilesOutsideTheArchivesFolderAreRefused) {
+TEST(Inputs, FilesOutsideArchiveFolderAreRefused) {
   const TemporaryFolder inside, outside;
   const fs::path member = inside.write("member", "1"), secret = outside.write("secret", "2");
   fs::create_symlink(secret, inside / "link");
@@ -375,15 +375,15 @@ TEST(Inputs, FilesOutsideTheArchivesFolderAreRefused) {
     EXPECT_THROW(requireFile(path, ""), Error) << path;
 }
 
-TEST(Inputs, FileBeyondTheSizeLimitIsRefused) {
+TEST(Inputs, FileAboveSizeLimitIsRefused) {
   const TemporaryFolder folder;
   const fs::path file = folder.write("a", std::string(100, 'x'));
   requireFile(file, "", 100);
   EXPECT_THROW(requireFile(file, "", 99), Error);
 }
 
-/// The system ends a name at a zero byte: a folder's name with a zero byte and more text would
-/// contain the folder's files, whose names again are the folder's.
+/// The system ends a path at a zero byte. A folder's path with text after that byte would list the
+/// folder's entries, whose paths again resolve to the folder, without end.
 TEST_F(OutputFiles, ZeroByteInANameIsRefused) {
   const fs::path file = read("a");
   const std::string zero(1, '\0');
@@ -402,7 +402,7 @@ TEST(PrivateFolders, NextRunRemovesFoldersOfKilledRuns) {
   const std::string stale = makeTempName("fenestra-scene-");
   fs::create_directories(temporary / stale / "Data");
   fs::permissions(temporary / stale, fs::perms::owner_all);
-  temporary.write(stale + "/Data/patient.nrrd", "left");
+  temporary.write(stale + "/Data/patient.nrrd", "stale");
   const std::string shared = makeTempName("fenestra-scene-");
   const std::vector<std::string> others = {"fenestra-others", "fenestra-scene-of-mine",
                                            "fenestra-scene-0123456789ab", shared};
@@ -421,7 +421,7 @@ TEST(PrivateFolders, NextRunRemovesFoldersOfKilledRuns) {
   ::setenv("TMPDIR", before.c_str(), 1);
 }
 
-TEST(PrivateFolders, FolderIsRemovedWithItsContent) {
+TEST(PrivateFolders, FolderIsRemovedWithContent) {
   fs::path path;
   {
     PrivateFolder folder;

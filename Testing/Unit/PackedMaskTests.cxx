@@ -9,7 +9,7 @@
 namespace fenestra::PackedMaskTests {
 namespace {
 
-/// Rows of zeros, of one value, of values that all differ, and of stretches of 1 to 300 voxels.
+/// Mask with rows of zeros, of one value, of distinct values, and of runs of 1 to 300 voxels.
 Mask makeRows(std::int64_t columns) {
   Mask mask;
   mask.maxValue = 255;
@@ -33,7 +33,7 @@ Mask makeRows(std::int64_t columns) {
   return mask;
 }
 
-TEST(PackedMask, GivesBackEveryRow) {
+TEST(PackedMask, UnpacksEveryRow) {
   for (const std::int64_t columns : {1, 2, 3, 127, 128, 129, 130, 255, 256, 257, 1000}) {
     const Mask mask = makeRows(columns);
     const PackedMask packed(mask);

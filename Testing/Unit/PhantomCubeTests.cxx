@@ -21,7 +21,7 @@ std::vector<int> listSlices(const Phantom& cube) {
 
 } // namespace
 
-TEST(PhantomCube, PublishedCubeCountsSlicesFromTheMiddle) {
+TEST(PhantomCube, PublishedCubeNumbersSlicesFromCenter) {
   const Phantom cube = makeCubePhantom();
   EXPECT_EQ(cube.volume.grid.size, Size3(512, 512, 512));
   const std::vector<int> slices = listSlices(cube);
@@ -33,7 +33,7 @@ TEST(PhantomCube, PublishedCubeCountsSlicesFromTheMiddle) {
   EXPECT_EQ(cube.volume.maximum, 255.0);
 }
 
-TEST(PhantomCube, SmallCubeKeepsRangeAndProportions) {
+TEST(PhantomCube, SmallCubePreservesRangeAndProportions) {
   const Phantom cube = makeCubePhantom({1.0, 24});
   const std::vector<int> slices = listSlices(cube);
   EXPECT_EQ(slices.front(), -255);
@@ -48,7 +48,7 @@ TEST(PhantomCube, SmallCubeKeepsRangeAndProportions) {
   EXPECT_EQ(cube.labels.layers[0], std::vector<std::uint8_t>(12 * 12 * 18, 1));
 }
 
-TEST(PhantomCube, CubeIsCentredOnTheOrigin) {
+TEST(PhantomCube, CubeIsCenteredAtOrigin) {
   for (const double edge : {1.0, 512.0}) {
     const Grid grid = makeCubePhantom({edge, 16}).volume.grid;
     EXPECT_TRUE(isApprox(grid.worldCorner(0), Vec3::Constant(-0.5 * edge)));
@@ -56,7 +56,7 @@ TEST(PhantomCube, CubeIsCentredOnTheOrigin) {
   }
 }
 
-TEST(PhantomCube, OpacityAndColourDoNotDependOnTheEdge) {
+TEST(PhantomCube, OpacityAndColorDoNotDependOnEdge) {
   for (const double edge : {1.0, 512.0}) {
     const TransferFunction transfer = tabulate(makeCubePhantom({edge, 16}).property, "cube");
     EXPECT_NEAR(transfer.extinction(17.0).value() * edge, 100.0 * std::log(100.0), 1.0);

@@ -23,14 +23,14 @@ std::size_t countVoxels(int label) {
   return static_cast<std::size_t>(std::count(labels.begin(), labels.end(), label));
 }
 
-TEST(PhantomFetus, ValuesAreEightBitsOfUltrasound) {
+TEST(PhantomFetus, ValuesAreEightBit) {
   const auto& voxels = getVoxels(smallFetus());
   EXPECT_GE(*std::min_element(voxels.begin(), voxels.end()), 0);
   EXPECT_LE(*std::max_element(voxels.begin(), voxels.end()), 255);
   EXPECT_GT(*std::max_element(voxels.begin(), voxels.end()), 150);
 }
 
-/// The head is roughly an ellipsoid of 35 x 43 x 36 mm, with face, jaw and neck.
+/// The head is roughly an ellipsoid with semi-axes 35, 43 and 36 mm, plus face, jaw and neck.
 TEST(PhantomFetus, SegmentsHaveAnatomicalVolumes) {
   const double voxel = std::pow(112.0 / 64.0, 3.0) / 1000.0; // ml
   ASSERT_EQ(smallFetus().segments.size(), 3u);
@@ -39,11 +39,11 @@ TEST(PhantomFetus, SegmentsHaveAnatomicalVolumes) {
   EXPECT_LT(head, 420.0);
   for (const int label : {2, 3})
     EXPECT_GT(countVoxels(label), 100u) << label;
-  EXPECT_GT(countVoxels(0), countVoxels(1) / 2); // fluid around it
+  EXPECT_GT(countVoxels(0), countVoxels(1) / 2); // amniotic fluid
 }
 
 /// A ray from the front to any part of the face meets the uterine wall first.
-TEST(PhantomFetus, WallHidesTheFace) {
+TEST(PhantomFetus, WallOccludesFace) {
   const Phantom& fetus = smallFetus();
   const auto& labels = fetus.labels.layers.front();
   const Size3& size = fetus.volume.grid.size;
@@ -66,7 +66,7 @@ TEST(PhantomFetus, WallHidesTheFace) {
   EXPECT_EQ(hidden, columns);
 }
 
-TEST(PhantomFetus, SpeckleIsSmallerThanTheSignalOfTissue) {
+TEST(PhantomFetus, SpeckleIsWeakerThanTissueSignal) {
   const Phantom& fetus = smallFetus();
   const auto& labels = fetus.labels.layers.front();
   const auto& voxels = getVoxels(fetus);
@@ -88,14 +88,14 @@ TEST(PhantomFetus, SpeckleIsSmallerThanTheSignalOfTissue) {
   EXPECT_LT(sigma, 0.6 * mean);
 }
 
-TEST(PhantomFetus, IsTheSameOnEveryRunAndAnyNumberOfThreads) {
+TEST(PhantomFetus, IsReproducibleWithAnyNumberOfThreads) {
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   const Phantom again = makeFetusPhantom({64, 64, 64});
   EXPECT_EQ(getVoxels(again), getVoxels(smallFetus()));
   EXPECT_EQ(again.labels.layers, smallFetus().labels.layers);
 }
 
-TEST(PhantomFetus, RefusesSizesBeyondItsLimits) {
+TEST(PhantomFetus, RefusesSizesOutOfRange) {
   EXPECT_THROW(makeFetusPhantom({8, 64, 64}), Error);
 }
 

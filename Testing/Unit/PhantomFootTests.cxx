@@ -76,7 +76,7 @@ std::vector<std::string> listBoneIds() {
 
 } // namespace
 
-TEST(PhantomFoot, HasTheTwentySixBonesAndTwoStumps) {
+TEST(PhantomFoot, HasTwentySixBonesAndTwoStumps) {
   const std::vector<std::string> ids = listBoneIds();
   ASSERT_EQ(ids.size(), 28u);
   const auto count = [&](const std::string& part) {
@@ -93,14 +93,14 @@ TEST(PhantomFoot, HasTheTwentySixBonesAndTwoStumps) {
     EXPECT_GT(findVoxels(smallFoot(), id).size(), 15u) << id;
 }
 
-TEST(PhantomFoot, BonesLieAsInARightFoot) {
+TEST(PhantomFoot, BonesAreArrangedAsInRightFoot) {
   const Phantom& foot = smallFoot();
   const auto at = [&](const char* id) { return computeCentroid(foot, id); };
   for (int ray = 1; ray < 5; ++ray) {
     const std::string inner = std::to_string(ray), outer = std::to_string(ray + 1);
     EXPECT_LT(computeCentroid(foot, "metatarsal_" + inner).x() + 8.0,
               computeCentroid(foot, "metatarsal_" + outer).x())
-        << "the great toe is medial, to the left in a right foot";
+        << "the great toe of a right foot is medial, at smaller x";
   }
   for (int ray = 1; ray <= 5; ++ray) {
     const std::string n = std::to_string(ray);
@@ -118,7 +118,7 @@ TEST(PhantomFoot, BonesLieAsInARightFoot) {
   EXPECT_LT(at("achilles_tendon").y(), at("tibia").y() - 20.0);
 }
 
-/// Two bones of a joint come close but do not touch.
+/// The two bones of a joint are close but do not touch.
 TEST(PhantomFoot, JointsAreNarrowGaps) {
   const FootBones bones;
   const auto index = [&](const std::string& id) {
@@ -164,10 +164,10 @@ TEST(PhantomFoot, JointsAreNarrowGaps) {
     EXPECT_GT((width[{index(a), index(b)}]), 0.5) << a << ' ' << b;
     EXPECT_LT((width[{index(a), index(b)}]), 4.5) << a << ' ' << b;
   }
-  EXPECT_GT(overlap, 0.0) << "no place is in two bones";
+  EXPECT_GT(overlap, 0.0) << "bones must not overlap";
 }
 
-TEST(PhantomFoot, BonesSegmentHoldsVoxelsFrom200Hounsfield) {
+TEST(PhantomFoot, BonesSegmentContainsVoxelsFrom200Hounsfield) {
   const Phantom& foot = smallFoot();
   const PhantomSegment& bones = findSegment(foot, "bones");
   EXPECT_EQ(bones.layer, 1u);
@@ -179,7 +179,7 @@ TEST(PhantomFoot, BonesSegmentHoldsVoxelsFrom200Hounsfield) {
       continue;
     const auto distances = skeleton.distances(voxelPosition(foot.volume.grid, i));
     EXPECT_LT(*std::min_element(distances.begin(), distances.end()), 1.6)
-        << "soft tissue, and no bone shares the voxel";
+        << "a soft-tissue voxel without adjacent bone";
   }
   const auto total = static_cast<double>(findVoxels(foot, "bones").size());
   double anatomical = 0.0;
@@ -189,7 +189,7 @@ TEST(PhantomFoot, BonesSegmentHoldsVoxelsFrom200Hounsfield) {
   EXPECT_LT(total / anatomical, 1.1);
 }
 
-TEST(PhantomFoot, TissuesHaveTheirHounsfieldUnits) {
+TEST(PhantomFoot, TissuesHaveTypicalHounsfieldUnits) {
   const Phantom& foot = smallFoot();
   EXPECT_NEAR(computeMedian(foot, "fat"), -105.0, 15.0);
   EXPECT_NEAR(computeMedian(foot, "muscles"), 52.0, 15.0);
@@ -197,7 +197,7 @@ TEST(PhantomFoot, TissuesHaveTheirHounsfieldUnits) {
   EXPECT_GT(computeMedian(foot, "talus"), 300.0);
   const FootSubject layers;
   const FootSite shaft = layers.makeSite({-14.0, 168.0, 39.0});
-  EXPECT_LT(footMarrowSignal(shaft), 0.0) << "a metatarsal's canal holds fat";
+  EXPECT_LT(footMarrowSignal(shaft), 0.0) << "the canal of a metatarsal contains fat";
   EXPECT_GT(footCortexSignal(shaft), 1200.0);
   EXPECT_NEAR(getVoxels(foot).front(), -1000.0, 60.0) << "air";
 }
@@ -215,7 +215,7 @@ TEST(PhantomFoot, SkinCoversEveryBone) {
   EXPECT_GT(thinnest, 2.0);
 }
 
-TEST(PhantomFoot, PlaceDoesNotDependOnSizeNorVoxelsOnThreads) {
+TEST(PhantomFoot, PositionIsIndependentOfSizeAndVoxelsOfThreads) {
   const Size3 size(48, 24, 28);
   const Phantom many = makeFootPhantom(size);
   const Grid& grid = many.volume.grid;
@@ -229,7 +229,7 @@ TEST(PhantomFoot, PlaceDoesNotDependOnSizeNorVoxelsOnThreads) {
   EXPECT_THROW(makeFootPhantom({48, 15, 28}), Error);
 }
 
-TEST(PhantomFoot, BothLayersRoundTripThroughTheFile) {
+TEST(PhantomFoot, BothLayersRoundTripThroughFile) {
   const TemporaryFolder folder;
   const Phantom foot = makeFootPhantom({48, 24, 28});
   writePhantom(foot, folder.path(), "foot");

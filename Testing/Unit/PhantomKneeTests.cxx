@@ -71,7 +71,7 @@ double measureThickness(const KneeBones& bones, double x, double angle) {
 
 } // namespace
 
-TEST(PhantomKnee, EverySegmentHasVoxelsAndANameOfItsOwn) {
+TEST(PhantomKnee, EverySegmentHasVoxelsAndUniqueName) {
   const Phantom& knee = smallKnee();
   std::map<int, std::int64_t> count;
   for (const std::uint8_t label : getLabels(knee))
@@ -87,7 +87,7 @@ TEST(PhantomKnee, EverySegmentHasVoxelsAndANameOfItsOwn) {
   EXPECT_GT(count[0], knee.volume.grid.voxelCount() / 10) << "air";
 }
 
-TEST(PhantomKnee, IsTheSameOnOneThreadAndOnMany) {
+TEST(PhantomKnee, IsReproducibleWithAnyNumberOfThreads) {
   const Size3 size(24, 28, 24);
   const Phantom many = makeKneePhantom(size);
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
@@ -96,7 +96,7 @@ TEST(PhantomKnee, IsTheSameOnOneThreadAndOnMany) {
   EXPECT_EQ(getLabels(many), getLabels(single));
 }
 
-TEST(PhantomKnee, KeepsItsPlaceAtEverySize) {
+TEST(PhantomKnee, PositionIsIndependentOfSize) {
   for (const Size3& size : {Size3(300, 344, 120), Size3(30, 43, 20)}) {
     const Grid grid = makeKneePhantom(size.cwiseMin(24)).volume.grid;
     EXPECT_TRUE(
@@ -109,12 +109,12 @@ TEST(PhantomKnee, KeepsItsPlaceAtEverySize) {
   EXPECT_TRUE(isApprox(axes.col(2), Vec3(1, 0, 0))) << "right";
 }
 
-TEST(PhantomKnee, RefusesSizesBeyondItsLimits) {
+TEST(PhantomKnee, RefusesSizesOutOfRange) {
   EXPECT_THROW(makeKneePhantom({8, 100, 100}), Error);
   EXPECT_THROW(makeKneePhantom({100, 100, 4000}), Error);
 }
 
-TEST(PhantomKnee, HasTheProportionsOfAnAdult) {
+TEST(PhantomKnee, HasAdultProportions) {
   const KneeBones bones;
   const auto extent = [&](auto distance, const Vec3& from, const Vec3& to) {
     int inside = 0;
@@ -156,10 +156,10 @@ TEST(PhantomKnee, FemoralCartilageHasAnatomicalThickness) {
   EXPECT_LE(thickest, 2.8);
   EXPECT_GT(sum / count, 1.6);
   EXPECT_LT(sum / count, 2.6);
-  EXPECT_GT(thickest - thinnest, 0.5) << "it varies";
+  EXPECT_GT(thickest - thinnest, 0.5) << "the thickness must vary";
 }
 
-TEST(PhantomKnee, OneLesionReachesTheBoneAndOneGoesHalfway) {
+TEST(PhantomKnee, OneLesionReachesBoneAndOneReachesHalfDepth) {
   const KneeBones bones;
   const auto width = [&](const CartilageLesion& lesion) {
     int missing = 0;
@@ -189,9 +189,9 @@ TEST(PhantomKnee, LesionsFaceInferiorAndAnterior) {
   }
 }
 
-// Otherwise a view of the femoral cartilage from the front would be clipped down to the rear of the
-// condyles, beside the trochlea and behind the lesion.
-TEST(PhantomKnee, CartilageSeenFromAnteriorIsNotItsRear) {
+// If anterior rays met posterior cartilage first, an anterior view would be clipped down to the
+// rear of the condyles, beside the trochlea and behind the lesion.
+TEST(PhantomKnee, AnteriorRaysMeetAnteriorCartilage) {
   const Phantom& knee = smallKnee();
   const std::uint8_t label = findLabel(knee, "FemoralCartilage");
   const Grid& grid = knee.volume.grid;
@@ -209,7 +209,7 @@ TEST(PhantomKnee, CartilageSeenFromAnteriorIsNotItsRear) {
   EXPECT_GT(columns, 500);
 }
 
-TEST(PhantomKnee, MedianSignalsAreThoseOfT1) {
+TEST(PhantomKnee, MedianSignalsMatchT1) {
   const Phantom& knee = smallKnee();
   EXPECT_NEAR(computeMedian(knee, "MedialGastrocnemius"), 350.0, 45.0);
   EXPECT_NEAR(computeMedian(knee, "SubcutaneousFat"), 850.0, 80.0);
@@ -229,7 +229,7 @@ TEST(PhantomKnee, BiasFieldStaysWithinFifteenPercent) {
         EXPECT_NEAR(biasField({x, y, z}), 1.0, 0.15);
 }
 
-TEST(PhantomKnee, PropertyShowsCartilageDenseAndAirClear) {
+TEST(PhantomKnee, CartilageIsDenseAndAirTransparent) {
   const TransferFunction transfer = tabulate(smallKnee().property, "knee");
   const auto sigma = [&](double s) { return transfer.extinction(s).value(); };
   EXPECT_EQ(sigma(14.0), 0.0); // the mean of noise in air

@@ -32,7 +32,7 @@ Vec3 readVec3(const pugi::xml_node& node, const char* attribute) {
   return values.size() == 3 ? Vec3(values[0], values[1], values[2]) : Vec3(Vec3::Zero());
 }
 
-/// Knee whose voxel axes are not the world's, so that confused axes are detected.
+/// The voxel axes of the knee differ from the world axes, so that swapped axes are detected.
 struct PhantomSceneFiles : ::testing::Test {
   TemporaryFolder folder;
   Phantom phantom = makeKneePhantom({32, 36, 16});
@@ -76,14 +76,14 @@ struct PhantomSceneFiles : ::testing::Test {
   }
 };
 
-TEST_F(PhantomSceneFiles, RootHasSlicersVersion) {
+TEST_F(PhantomSceneFiles, RootHasSlicerVersion) {
   EXPECT_TRUE(readBytes(folder / "knee.mrml")
                   .starts_with("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<MRML "));
   EXPECT_EQ(text(scene, "version"), "Slicer 5.2.2 31383");
   EXPECT_EQ(text(scene, "userTags"), "");
 }
 
-TEST_F(PhantomSceneFiles, EveryNodeHasItsClassInItsIdAndOccursOnce) {
+TEST_F(PhantomSceneFiles, EveryNodeHasClassInIdAndOccursOnce) {
   const std::map<std::string, std::string> classes = {
       {"View", "vtkMRMLViewNode"},
       {"Camera", "vtkMRMLCameraNode"},
@@ -115,7 +115,7 @@ TEST_F(PhantomSceneFiles, EveryNodeHasItsClassInItsIdAndOccursOnce) {
   EXPECT_EQ(tags.size(), classes.size());
 }
 
-TEST_F(PhantomSceneFiles, EveryReferenceLeadsToItsNode) {
+TEST_F(PhantomSceneFiles, EveryReferenceResolvesToNode) {
   const std::map<std::string, std::map<std::string, std::vector<std::string>>> expected = {
       {"Volume",
        {{"display", {"VolumeDisplay", "GPURayCastVolumeRendering"}},
@@ -164,7 +164,7 @@ TEST_F(PhantomSceneFiles, StorageNodesNameExistingFiles) {
   expectAttributes("MarkupsROIJsonStorage", {{"coordinateSystem", "LPS"}});
 }
 
-TEST_F(PhantomSceneFiles, VolumeNodeHoldsItsGridInRas) {
+TEST_F(PhantomSceneFiles, VolumeNodeHasGridInRas) {
   const pugi::xml_node volume = node("Volume");
   const Grid& grid = phantom.volume.grid;
   EXPECT_TRUE(isApprox(readVec3(volume, "spacing"), grid.spacing(), 1e-5));
@@ -180,7 +180,7 @@ TEST_F(PhantomSceneFiles, VolumeNodeHoldsItsGridInRas) {
             phantom.volume.maximum - phantom.volume.minimum);
 }
 
-TEST_F(PhantomSceneFiles, SegmentationIsALabelmapForOldAndNewSlicers) {
+TEST_F(PhantomSceneFiles, SegmentationIsLabelmapForOldAndNewSlicer) {
   expectAttributes("Segmentation", {{"MasterRepresentationName", "Binary labelmap"},
                                     {"SourceRepresentationName", "Binary labelmap"},
                                     {"segmentListFilterEnabled", "false"}});
@@ -203,7 +203,7 @@ TEST_F(PhantomSceneFiles, RenderingIsNotCropped) {
                                                  {"useSingleVolumeProperty", "0"}});
 }
 
-TEST_F(PhantomSceneFiles, PropertyIsEqualInTheSceneAndInItsFile) {
+TEST_F(PhantomSceneFiles, PropertyIsEqualInSceneAndFile) {
   const pugi::xml_node property = node("VolumeProperty");
   std::istringstream file(readBytes(folder / "knee.vp"));
   for (const char* attribute :
@@ -227,7 +227,7 @@ TEST_F(PhantomSceneFiles, PropertyIsEqualInTheSceneAndInItsFile) {
   EXPECT_EQ(text(property, "shade"), "1");
 }
 
-TEST_F(PhantomSceneFiles, CameraBelongsToTheViewAndFramesTheVolume) {
+TEST_F(PhantomSceneFiles, CameraBelongsToViewAndFitsVolume) {
   const pugi::xml_node camera = node("Camera"), view = node("View");
   EXPECT_EQ(text(camera, "singletonTag"), text(view, "layoutName"));
   EXPECT_EQ(text(view, "singletonTag"), text(view, "layoutName"));
@@ -243,7 +243,7 @@ TEST_F(PhantomSceneFiles, CameraBelongsToTheViewAndFramesTheVolume) {
   const Grid& grid = phantom.volume.grid;
   EXPECT_TRUE(isApprox(target, grid.worldCenter(), 1e-5));
   const Vec3 backward = (position - target).normalized();
-  EXPECT_GT(backward.y(), 0.7) << "from in front";
+  EXPECT_GT(backward.y(), 0.7) << "the camera must be anterior";
   EXPECT_TRUE(isApprox(backward, phantom.towardViewer.normalized(), 1e-4));
   EXPECT_NEAR(up.dot(backward), 0.0, 1e-5);
   EXPECT_NEAR(up.norm(), 1.0, 1e-5);
@@ -254,12 +254,12 @@ TEST_F(PhantomSceneFiles, CameraBelongsToTheViewAndFramesTheVolume) {
   for (int i = 0; i < 8; ++i) {
     const Vec3 offset = grid.worldCorner(i) - target;
     extent = std::max({extent, std::abs(offset.dot(up)), std::abs(offset.dot(up.cross(backward)))});
-    EXPECT_LT(offset.dot(backward), (position - target).norm()) << "in front of the camera";
+    EXPECT_LT(offset.dot(backward), (position - target).norm()) << "a corner is behind the camera";
   }
   EXPECT_NEAR(extent / scale, 1.0 / 1.05, 1e-4) << "half the viewport's height";
 }
 
-TEST_F(PhantomSceneFiles, RegionOfInterestIsTheVolumesBoxInLps) {
+TEST_F(PhantomSceneFiles, RegionOfInterestIsVolumeBoxInLps) {
   const auto json = nlohmann::json::parse(readBytes(folder / "knee-roi.mrk.json"));
   EXPECT_NE(json.at("@schema").get<std::string>().find("markups-schema-v1.0.3.json#"),
             std::string::npos);
@@ -274,7 +274,7 @@ TEST_F(PhantomSceneFiles, RegionOfInterestIsTheVolumesBoxInLps) {
                             o = vector("orientation");
   ASSERT_EQ(o.size(), 9u);
   const Grid& grid = phantom.volume.grid;
-  Affine boxToWorld = Affine::Identity(); // map of [-1/2, 1/2]^3
+  Affine boxToWorld = Affine::Identity(); // maps [-1/2, 1/2]^3
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column)
       boxToWorld.linear()(row, column) = flip[row] * o[static_cast<std::size_t>(3 * row + column)] *
@@ -312,7 +312,7 @@ struct ZipFile {
   zip_t* archive;
 };
 
-TEST_F(PhantomSceneFiles, ArchiveHoldsTheSceneAndItsDataInSlicersLayout) {
+TEST_F(PhantomSceneFiles, ArchiveHasSceneAndDataInSlicerLayout) {
   const ZipFile zip(folder / "knee.mrb");
   ASSERT_TRUE(zip.archive);
   EXPECT_EQ(zip.names(), (std::vector<std::string>{"knee/knee.mrml", "knee/Data/knee.nrrd",
@@ -335,7 +335,7 @@ TEST_F(PhantomSceneFiles, ArchiveHoldsTheSceneAndItsDataInSlicersLayout) {
   EXPECT_GT(same, 250u);
 }
 
-TEST_F(PhantomSceneFiles, ArchiveHasAFixedDate) {
+TEST_F(PhantomSceneFiles, ArchiveHasFixedDate) {
   const ZipFile zip(folder / "knee.mrb");
   ASSERT_TRUE(zip.archive);
   for (const std::string& name : zip.names()) {
@@ -347,7 +347,7 @@ TEST_F(PhantomSceneFiles, ArchiveHasAFixedDate) {
   }
 }
 
-TEST_F(PhantomSceneFiles, FilesAreTheSameOnEveryRun) {
+TEST_F(PhantomSceneFiles, FilesAreReproducible) {
   const TemporaryFolder again;
   writePhantom(phantom, again.path(), "knee");
   EXPECT_EQ(files.size(), 7u);
@@ -355,7 +355,7 @@ TEST_F(PhantomSceneFiles, FilesAreTheSameOnEveryRun) {
     EXPECT_EQ(readBytes(folder / file), readBytes(again / file)) << file;
 }
 
-TEST(PhantomScene, EscapesCharactersReservedByXmlAndAddresses) {
+TEST(PhantomScene, EscapesReservedCharactersOfXmlAndUrls) {
   Phantom phantom = makeCubePhantom({1.0, 16});
   phantom.segments[0].id = "a b|c";
   const std::string text = makePhantomScene(phantom, "R&D <\"1\">", "my file%1/");
@@ -371,7 +371,7 @@ TEST(PhantomScene, EscapesCharactersReservedByXmlAndAddresses) {
           .starts_with("a%20b%7Cc OverrideColorR"));
 }
 
-TEST(PhantomScene, PropertyHoldsOpacitiesOfAMillimetre) {
+TEST(PhantomScene, PropertyOpacitiesArePerMillimeter) {
   const auto readOpacity = [](double edge) {
     const std::string text = makePhantomScene(makeCubePhantom({edge, 16}), "cube");
     pugi::xml_document document;

@@ -9,14 +9,14 @@
 
 namespace fenestra::PhantomShapesTests {
 
-TEST(PhantomShapes, BlendsEqualTheSharpOperationAwayFromTheSeam) {
+TEST(PhantomShapes, BlendsEqualSharpOperationsAwayFromEdge) {
   EXPECT_DOUBLE_EQ(smoothUnion(1.0, 5.0, 2.0), 1.0);
   EXPECT_DOUBLE_EQ(smoothIntersection(1.0, 5.0, 2.0), 5.0);
   EXPECT_DOUBLE_EQ(smoothDifference(-6.0, 3.0, 2.0), -3.0);
-  EXPECT_DOUBLE_EQ(smoothUnion(1.0, 1.0, 2.0), 0.5); // deepest at the seam: a quarter of the blend
+  EXPECT_DOUBLE_EQ(smoothUnion(1.0, 1.0, 2.0), 0.5); // largest at the edge: width / 4
 }
 
-TEST(PhantomShapes, TubeDistanceIsThatOfItsAxisLessItsRadius) {
+TEST(PhantomShapes, TubeDistanceIsAxisDistanceMinusRadius) {
   const Solid solid = makeTube({{{0, 0, -10}, 2.0}, {{0, 0, 0}, 2.0}, {{0, 0, 10}, 2.0}});
   EXPECT_NEAR(solid.distance({5, 0, 1}), 3.0, 1e-12);
   EXPECT_NEAR(solid.distance({0, 0, 0.3}), -2.0, 1e-12);
@@ -24,13 +24,13 @@ TEST(PhantomShapes, TubeDistanceIsThatOfItsAxisLessItsRadius) {
   EXPECT_TRUE(isApprox(solid.box.upper, Vec3(2, 2, 12)));
 }
 
-TEST(PhantomShapes, BandIsStretchedAcrossButNotAlongItsThickness) {
+TEST(PhantomShapes, BandIsStretchedInWidthButNotInThickness) {
   const Solid band = makeTube({{{0, 0, 0}, 1.5}, {{0, 0, 20}, 1.5}}, {4, 1, 1});
   EXPECT_NEAR(band.distance({0, 1.5, 10}), 0.0, 1e-12);
   EXPECT_NEAR(band.distance({6, 0, 10}), 0.0, 1e-12);
 }
 
-TEST(PhantomShapes, LoftOfEqualCirclesIsACylinder) {
+TEST(PhantomShapes, LoftOfEqualCirclesIsCylinder) {
   const Solid cylinder =
       makeLoft({{-20, {1, 2}, {5, 5}}, {0, {1, 2}, {5, 5}}, {20, {1, 2}, {5, 5}}}, 0.0, 1.0);
   EXPECT_NEAR(cylinder.distance({9, 2, 3}), 3.0, 1e-9);
@@ -38,7 +38,7 @@ TEST(PhantomShapes, LoftOfEqualCirclesIsACylinder) {
   EXPECT_NEAR(cylinder.distance({1, 2.5, 24}), 4.0, 1e-9);
 }
 
-TEST(PhantomShapes, LoftPassesThroughItsSections) {
+TEST(PhantomShapes, LoftPassesThroughSections) {
   const std::vector<LoftSection> sections = {
       {-10, {0, 0}, {4, 6}}, {0, {2, 1}, {7, 5}}, {15, {3, -1}, {5, 3}}, {30, {0, 0}, {2, 2}}};
   const Solid solid = makeLoft(sections, 0.6, 1.0);
@@ -49,20 +49,20 @@ TEST(PhantomShapes, LoftPassesThroughItsSections) {
   }
 }
 
-TEST(PhantomShapes, BlockIsABoxWithRoundEdgesInItsOwnAxes) {
-  // Axes across, up and along: x, z and y of the world.
+TEST(PhantomShapes, BlockIsRotatedBoxWithRoundEdges) {
+  // The block's axes are x, z and y of the world.
   const Solid solid =
       placeSolid(toShape({1, 2, 3}, Vec3::UnitY(), Vec3::UnitZ()), makeBlock({4, 5, 6}, 2.0));
   EXPECT_NEAR(solid.distance({1, 2, 3}), -4.0, 1e-12);
   EXPECT_NEAR(solid.distance({8, 2, 3}), 3.0, 1e-12);
   EXPECT_NEAR(solid.distance({1, 2, 9}), 1.0, 1e-12);
   EXPECT_NEAR(solid.distance({1, 10, 3}), 2.0, 1e-12);
-  EXPECT_NEAR(solid.distance({5, 8, 8}), std::sqrt(12.0) - 2.0, 1e-12) << "its corner";
+  EXPECT_NEAR(solid.distance({5, 8, 8}), std::sqrt(12.0) - 2.0, 1e-12) << "corner";
   EXPECT_TRUE(isApprox(solid.box.lower, Vec3(-3, -4, -2)));
   EXPECT_TRUE(isApprox(solid.box.upper, Vec3(5, 8, 8)));
 }
 
-TEST(PhantomShapes, PlacedLoftRunsAlongItsAxis) {
+TEST(PhantomShapes, PlacedLoftFollowsAxis) {
   const Solid upright = makeLoft({{0, {0, 0}, {2, 3}}, {10, {0, 0}, {2, 3}}}, 0.0, 1.0);
   const Solid solid = placeSolid(toShape({0, 5, 0}, Vec3::UnitY(), Vec3::UnitZ()), upright);
   EXPECT_NEAR(solid.distance({2, 10, 0}), 0.0, 1e-9);
@@ -71,7 +71,7 @@ TEST(PhantomShapes, PlacedLoftRunsAlongItsAxis) {
   EXPECT_TRUE(contains(solid.box, {2, 15, 3}));
 }
 
-TEST(PhantomAnatomy, PartsAreJoinedInTheirOrder) {
+TEST(PhantomAnatomy, PartsAreCombinedInOrder) {
   const Solid solid = Anatomy::parse(R"([
     {"name": "Ball", "ellipsoid": [[0, 0, 0], [5, 5, 5]]},
     {"name": "Two bars", "tube": [[4, 0, -9, 1], [4, 0, 9, 1]], "paired": true, "unite": 0.5},
@@ -84,7 +84,7 @@ TEST(PhantomAnatomy, PartsAreJoinedInTheirOrder) {
   EXPECT_GT(solid.distance({0, 3, -3}), 1.0) << "below";
 }
 
-TEST(PhantomAnatomy, PartHasAFrameOfItsOwn) {
+TEST(PhantomAnatomy, PartHasItsOwnFrame) {
   const Solid solid = Anatomy::parse(R"({"loft": [[0, 0, 0, 2, 3], [10, 0, 0, 2, 3]],
     "squareness": 0, "cap": 1, "frame": [[0, 5, 0], [0, 1, 0], [0, 0, 1]]})");
   EXPECT_NEAR(solid.distance({2, 10, 0}), 0.0, 1e-9);
@@ -105,7 +105,7 @@ TEST(PhantomNoise, NormalNoiseHasNormalMoments) {
   EXPECT_NEAR(within, 0.6827, 0.007);
 }
 
-TEST(PhantomNoise, ValueNoiseIsContinuousAndWithinItsRange) {
+TEST(PhantomNoise, ValueNoiseIsContinuousAndBounded) {
   for (int i = 0; i < 2000; ++i) {
     const Vec3 p(0.37 * i - 300.0, -0.21 * i, 0.11 * i);
     const double value = valueNoise(p, 5);
@@ -116,7 +116,7 @@ TEST(PhantomNoise, ValueNoiseIsContinuousAndWithinItsRange) {
   EXPECT_NE(valueNoise({0.5, 0.5, 0.5}, 1), valueNoise({0.5, 0.5, 0.5}, 2));
 }
 
-TEST(PhantomNoise, RicianMomentsEqualPublishedOnes) {
+TEST(PhantomNoise, RicianMomentsMatchPublishedValues) {
   constexpr int n = 200000;
   constexpr double sigma = 11.0;
   double air = 0.0, muscle = 0.0, square = 0.0;
@@ -126,8 +126,7 @@ TEST(PhantomNoise, RicianMomentsEqualPublishedOnes) {
     muscle += m / n;
     square += m * m / n;
   }
-  // Gudbjartsson and Patz 1995: Rayleigh distribution without signal, nearly normal for a strong
-  // signal.
+  // Gudbjartsson and Patz 1995: Rayleigh distribution at zero signal, nearly normal at high signal.
   EXPECT_NEAR(air, sigma * std::sqrt(pi / 2.0), 0.1);
   EXPECT_NEAR(muscle, std::sqrt(350.0 * 350.0 + sigma * sigma), 0.15);
   EXPECT_NEAR(std::sqrt(square - muscle * muscle), sigma, 0.1);

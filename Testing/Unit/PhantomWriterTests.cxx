@@ -47,7 +47,7 @@ std::string readField(const itk::NrrdImageIO& io, const std::string& key) {
   return value;
 }
 
-/// Position of a voxel as stated in the file, converted from LPS to RAS.
+/// Position of a voxel from the file header, converted from LPS to RAS.
 Vec3 voxelPosition(const itk::NrrdImageIO& io, const Vec3& index) {
   Vec3 lps;
   for (unsigned axis = 0; axis < 3; ++axis)
@@ -58,7 +58,7 @@ Vec3 voxelPosition(const itk::NrrdImageIO& io, const Vec3& index) {
   return {-lps.x(), -lps.y(), lps.z()};
 }
 
-TEST_F(PhantomFiles, VolumeRoundTripsVoxelForVoxelInItsPlace) {
+TEST_F(PhantomFiles, VoxelsAndPositionOfVolumeRoundTrip) {
   const auto io = open("knee.nrrd");
   EXPECT_EQ(readField(*io, "NRRD_space"), "left-posterior-superior");
   for (int corner = 0; corner < 8; ++corner) {
@@ -70,7 +70,7 @@ TEST_F(PhantomFiles, VolumeRoundTripsVoxelForVoxelInItsPlace) {
                                  std::get<LargeArray<std::int16_t>>(phantom.volume.voxels)));
 }
 
-TEST_F(PhantomFiles, SegmentationHasSlicersFieldsForEverySegment) {
+TEST_F(PhantomFiles, SegmentationHasSlicerFieldsForEverySegment) {
   const auto io = open("knee.seg.nrrd");
   const std::vector<std::uint8_t> labels = read<std::uint8_t>(*io);
   EXPECT_EQ(labels, phantom.labels.layers.at(0));
@@ -88,8 +88,8 @@ TEST_F(PhantomFiles, SegmentationHasSlicersFieldsForEverySegment) {
   EXPECT_EQ(readField(*io, "Segment" + std::to_string(phantom.segments.size()) + "_ID"), "");
 }
 
-// Slicer crops a whole layer to the extent of its first segment.
-TEST_F(PhantomFiles, ExtentOfASegmentHoldsItsLayer) {
+// Slicer crops a complete layer to the extent of its first segment.
+TEST_F(PhantomFiles, ExtentOfSegmentCoversLayer) {
   const std::string first = readField(*open("knee.seg.nrrd"), "Segment0_Extent");
   EXPECT_EQ(readField(*open("knee.seg.nrrd"), "Segment3_Extent"), first);
   std::istringstream text(first);
@@ -111,7 +111,7 @@ TEST_F(PhantomFiles, ExtentOfASegmentHoldsItsLayer) {
   }
 }
 
-TEST_F(PhantomFiles, PropertyIsSlicersJson) {
+TEST_F(PhantomFiles, PropertyIsSlicerJson) {
   std::ifstream file(folder / "knee.vp.json");
   const nlohmann::json json = nlohmann::json::parse(file);
   EXPECT_NE(json.at("@schema").get<std::string>().find("volume-property-schema-v1.0.0.json#"),
@@ -128,7 +128,7 @@ TEST_F(PhantomFiles, PropertyIsSlicersJson) {
   EXPECT_EQ(component.at("rgbTransferFunction").at("points").size(), phantom.property.color.size());
 }
 
-TEST_F(PhantomFiles, OnlySevenFilesAreLeft) {
+TEST_F(PhantomFiles, SevenFilesAreWritten) {
   std::size_t count = 0;
   for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder))
     ++count;
@@ -140,7 +140,7 @@ std::string readContent(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Removes the marks, which earlier versions did not write.
+/// Removes the provenance tags, which earlier versions did not write.
 void removeTags(const std::filesystem::path& folder) {
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     std::string text = readContent(entry.path());
@@ -155,10 +155,10 @@ void removeTags(const std::filesystem::path& folder) {
 
 TEST_F(PhantomFiles, FilesOfEarlierPhantomsAreReplaced) {
   writePhantom(phantom, folder, "knee");
-  writePhantom(makeKneePhantom({24, 28, 16}), folder, "knee"); // recognised by the marks
+  writePhantom(makeKneePhantom({24, 28, 16}), folder, "knee"); // recognized by tags
   writePhantom(phantom, folder, "knee");
   removeTags(folder);
-  writePhantom(phantom, folder, "knee"); // recognised by volume and scene
+  writePhantom(phantom, folder, "knee"); // recognized by volume and scene
 }
 
 TEST_F(PhantomFiles, EditedFilesAreNotReplaced) {
@@ -172,12 +172,12 @@ TEST_F(PhantomFiles, EditedFilesAreNotReplaced) {
   }
 }
 
-TEST_F(PhantomFiles, ForeignFilesAreNotReplaced) {
+TEST_F(PhantomFiles, FilesOfOtherProgramsAreNotReplaced) {
   for (const char* name : {"knee.nrrd", "knee.seg.nrrd", "knee.vp.json", "knee.vp",
                            "knee-roi.mrk.json", "knee.mrml", "knee.mrb"}) {
     std::filesystem::remove_all(folder);
     std::filesystem::create_directory(folder);
-    std::ofstream(folder / name) << "somebody else's";
+    std::ofstream(folder / name) << "another program's";
     try {
       writePhantom(phantom, folder, "knee");
       ADD_FAILURE() << name;
@@ -185,16 +185,16 @@ TEST_F(PhantomFiles, ForeignFilesAreNotReplaced) {
       EXPECT_EQ(error.kind(), ErrorKind::usage);
       EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << error.what();
     }
-    EXPECT_EQ(readContent(folder / name), "somebody else's");
+    EXPECT_EQ(readContent(folder / name), "another program's");
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
   }
 }
 
-TEST_F(PhantomFiles, FolderThatCannotBeMadeIsAnOutputError) {
+TEST_F(PhantomFiles, FolderThatCannotBeCreatedIsOutputError) {
   const auto file = folder / "knee.nrrd";
   try {
     writePhantom(phantom, file / "inside", "knee");
-    FAIL() << "no error";
+    FAIL() << "no error was thrown";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::output);
     EXPECT_NE(std::string(error.what()).find(file.string()), std::string::npos);

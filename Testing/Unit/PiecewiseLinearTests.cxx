@@ -13,7 +13,7 @@ ScalarFunction::Knot knot(double s, double y) {
   return {s, ScalarFunction::Value(y)};
 }
 
-/// Value by definition: linear search.
+/// Reference: the definition, by linear search.
 double evalReference(const Knots& knots, double s) {
   if (s < knots.front().position)
     return knots.front().value.value();
@@ -28,14 +28,14 @@ double evalReference(const Knots& knots, double s) {
   return knots[0].value.value() + f * (knots[1].value - knots[0].value).value();
 }
 
-TEST(PiecewiseLinear, EqualsItsDefinitionOnRandomKnots) {
+TEST(PiecewiseLinear, MatchesReferenceOnRandomKnots) {
   for (int trial = 0; trial < 200; ++trial) {
     Random random(1, static_cast<std::uint64_t>(trial), 0);
     Knots knots;
     double s = -10.0;
     const int count = 1 + static_cast<int>(random.uniform() * 40);
     for (int i = 0; i < count; ++i) {
-      // Very uneven gaps, and sometimes a step.
+      // Very uneven gaps, and some steps.
       s += random.uniform() < 0.2 ? 0.0 : std::pow(random.uniform(), 8.0) * 100.0;
       knots.push_back(knot(s, random.uniform()));
     }
@@ -48,7 +48,7 @@ TEST(PiecewiseLinear, EqualsItsDefinitionOnRandomKnots) {
   }
 }
 
-TEST(PiecewiseLinear, RangeBoundsEveryValueOfAnInterval) {
+TEST(PiecewiseLinear, RangeBoundsEveryValueOfInterval) {
   for (int trial = 0; trial < 200; ++trial) {
     Random random(2, static_cast<std::uint64_t>(trial), 0);
     Knots knots;
@@ -66,22 +66,22 @@ TEST(PiecewiseLinear, RangeBoundsEveryValueOfAnInterval) {
   }
 }
 
-TEST(PiecewiseLinear, StepBelongsToItsRightSide) {
+TEST(PiecewiseLinear, StepHasValueOfRightSide) {
   const ScalarFunction f({knot(0, 0), knot(1, 0), knot(1, 5), knot(2, 5)});
   EXPECT_EQ(f(std::nextafter(1.0, 0.0)).value(), 0.0);
   EXPECT_EQ(f(1.0).value(), 5.0);
   EXPECT_EQ(f.range(0.5, 1.0)[1], 5.0);
-  EXPECT_EQ(f.range(1.0, 1.5)[0], 0.0) << "both sides of a step at the end count";
+  EXPECT_EQ(f.range(1.0, 1.5)[0], 0.0) << "includes both values of a step at its end";
 }
 
-TEST(PiecewiseLinear, OneKnotGivesItsValueAlsoForNan) {
+TEST(PiecewiseLinear, SingleKnotIsConstantAlsoForNan) {
   const ScalarFunction f({knot(3, 7)});
   for (const double s : {-1e300, 3.0, 1e300, std::nan("")})
     EXPECT_EQ(f(s).value(), 7.0);
   EXPECT_EQ(f.span(), 0.0);
 }
 
-TEST(PiecewiseLinear, SortingKeepsTheOrderOfEqualPositions) {
+TEST(PiecewiseLinear, SortingIsStable) {
   const ScalarFunction f({knot(2, 1), knot(0, 0), knot(1, 3), knot(1, 4)});
   EXPECT_EQ(f.knots()[1].value.value(), 3.0);
   EXPECT_EQ(f.knots()[2].value.value(), 4.0);

@@ -1,4 +1,4 @@
-// Organ presets: content of their files, refusals, and matches of name patterns.
+// Organ presets: content of their files, errors, and name patterns.
 
 #include "base/Text.h"
 #include "files/appearance/PresetReader.h"
@@ -35,7 +35,7 @@ TEST(PresetReader, ReadsEveryField) {
   EXPECT_EQ(preset.options, options);
 }
 
-TEST(PresetReader, ErrorNamesTheField) {
+TEST(PresetReader, ErrorNamesField) {
   const auto refuse = [](const std::string& json, const std::string& text) {
     expectRefused("test", text, [&] { parsePreset(json, "test"); });
   };
@@ -46,7 +46,7 @@ TEST(PresetReader, ErrorNamesTheField) {
   refuse("{" + t + f + g + "}", "has no \"modality\"");
   refuse("{" + t + m + g + "}", "has no \"focus\"");
   refuse("{" + t + R"("modality": "MR", "focus": {"names": ["a"]}})", "has no \"flags\"");
-  refuse("{" + t + m + f + g + R"(, "colour": 1})", "unknown key \"colour\"");
+  refuse("{" + t + m + f + g + R"(, "colors": 1})", "unknown key \"colors\"");
   refuse("{" + t + R"("modality": "PET", )" + f + g + "}", "modality: must be \"CT\"");
   refuse("{" + t + m + R"("focus": {"except": ["a"]}, )" + g + "}", "focus: has neither");
   refuse("{" + t + m + R"("focus": {"names": "a"}, )" + g + "}", "focus.names: must be an array");
@@ -61,14 +61,14 @@ TEST(PresetReader, ErrorNamesTheField) {
   refuse("{" + t + m + f + R"("flags": {"view": [1, "a"]}})", "flags.view[1]: must be a number");
   refuse("{" + t + m + f + R"("flags": {"new\nline": null}})", "flags.new line: must be a string");
   refuse("[]", "must be an object");
-  refuse("{", "is not JSON");
+  refuse("{", "is not valid JSON");
 }
 
 bool matchesName(const std::string& pattern, const std::string& name) {
   return NamePattern(pattern).matches(splitName(name));
 }
 
-TEST(PresetReader, MatchesWordsInAnyCaseAndSpelling) {
+TEST(PresetReader, MatchesWordsInAnyCaseAndSeparation) {
   for (const char* name : {"lung", "Left Lung", "lung_upper_lobe_left", "LungRight", "LUNG-R",
                            "right.lung", "  lung  ", "LeftLungMask"})
     EXPECT_TRUE(matchesName("lung", name)) << name;
@@ -88,8 +88,8 @@ TEST(PresetReader, MatchesWordsInAnyCaseAndSpelling) {
   EXPECT_FALSE(matchesName("-", "lung"));
 }
 
-/// Time would grow as a power of the number of stars if every star were tried everywhere.
-TEST(PresetReader, PatternOfManyStarsMatchesQuickly) {
+/// Naive backtracking would take time exponential in the number of stars.
+TEST(PresetReader, PatternWithManyStarsIsFast) {
   std::string stars;
   for (int i = 0; i < 60; ++i)
     stars += "a*";
@@ -109,7 +109,7 @@ TEST(PresetReader, ReadsEveryBuiltInPreset) {
       EXPECT_FALSE(findResource("presets/" + other + ".json").empty()) << other;
     for (const auto& [option, value] : preset.options)
       if (option == "transfer") {
-        // Scalars of MR and ultrasound are unknown in advance.
+        // Scalars of MR and ultrasound have no absolute scale.
         const TransferFile transfer =
             parseTransferJson(findResource("transfer/" + value + ".json"), value);
         EXPECT_EQ(transfer.isRelative, preset.modality != Modality::ct);

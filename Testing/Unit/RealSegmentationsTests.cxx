@@ -1,4 +1,4 @@
-// Segmentations of real patients, where the data are present.
+// Segmentations of real patients, if the data are present.
 
 #include "files/medical/VolumeReader.h"
 #include "files/segments/SegmentationReader.h"
@@ -12,7 +12,7 @@ std::filesystem::path findData(const std::string& name) {
   return std::filesystem::path(FENESTRA_DATA) / name;
 }
 
-TEST(RealSegmentations, SegmentsAndLayersAreRead) {
+TEST(RealSegmentations, ReadsSegmentsAndLayers) {
   if (!std::filesystem::exists(findData("slicerio_segnrrd")))
     GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
   const Grid chest = readVolume(findData("slicerio_segnrrd/CTChest4.nrrd")).grid;
@@ -38,9 +38,9 @@ TEST(RealSegmentations, SegmentsAndLayersAreRead) {
   EXPECT_EQ(legacy.makeFocusMask({"Expanded_5_5_5_Bladder"}, legacy.grid()).count, 84024);
 }
 
-/// Oldest format, against the surfaces of the same patient (EclipseProstate_Structures.seg, RAS):
-/// the bladder expanded by 5 mm, and its union with the target volume.
-TEST(RealSegmentations, OldFormatLiesAtTheSurfacesOfThePatient) {
+/// Compares files of the oldest format with surfaces of the same patient, in RAS, from
+/// EclipseProstate_Structures.seg: the bladder plus 5 mm, and its union with the target volume.
+TEST(RealSegmentations, OldFormatMatchesSurfacesOfPatient) {
   const std::filesystem::path folder = findData("slicer_scenes/slicerrt_scenes");
   if (!std::filesystem::exists(folder))
     GTEST_SKIP() << "no real data at " << FENESTRA_DATA;

@@ -1,4 +1,4 @@
-// Colour as seen of a thick scattering medium. That renders show it: Statistical/ColorTests.
+// Reflectance of a thick scattering medium. Statistical/ColorTests compares it with renders.
 
 #include "Approx.h"
 #include "Support.h"
@@ -10,15 +10,15 @@
 namespace fenestra::testing::ReflectanceTests {
 namespace {
 
-/// Reflectance of a half-space of isotropic scattering, to 5e-5: 1 - sqrt(1 - a) H(1) with
+/// Reflectance of an isotropically scattering half-space, to 5e-5: 1 - sqrt(1 - a) H(1) with
 /// Chandrasekhar's H.
-TEST(Reflectance, EqualsChandrasekharsForIsotropicScattering) {
+TEST(Reflectance, MatchesChandrasekharForIsotropicScattering) {
   EXPECT_NEAR(toReflectance(0.5, 0.0), 0.1152, 0.01 * 0.1152);
   EXPECT_NEAR(toReflectance(0.9, 0.0), 0.4149, 0.01 * 0.4149);
   EXPECT_NEAR(toReflectance(0.99, 0.0), 0.7527, 0.01 * 0.7527);
 }
 
-TEST(Reflectance, EndsAtBlackAndWhite) {
+TEST(Reflectance, MapsBlackToZeroAndWhiteToOne) {
   for (const double g : {-0.5, 0.0, 0.6, 0.95, 0.999}) {
     EXPECT_EQ(toReflectance(0.0, g), 0.0);
     EXPECT_NEAR(toReflectance(1.0, g), 1.0, 1e-12);
@@ -29,7 +29,7 @@ TEST(Reflectance, EndsAtBlackAndWhite) {
   }
 }
 
-TEST(Reflectance, IsInvertedByItsAlbedo) {
+TEST(Reflectance, IsInverseOfAlbedo) {
   for (const double g : {0.0, 0.3, 0.5, 0.9, 0.95})
     for (double r = 0.01; r <= maxReflectance; r += 0.01) {
       EXPECT_NEAR(toReflectance(toAlbedo(r, g), g), r, 1e-9) << r << " " << g;
@@ -37,14 +37,14 @@ TEST(Reflectance, IsInvertedByItsAlbedo) {
     }
 }
 
-/// Forward scattering goes deeper: the same albedo looks darker.
-TEST(Reflectance, FallsWithG) {
+/// Forward scattering penetrates deeper, so that the same albedo looks darker.
+TEST(Reflectance, DecreasesWithG) {
   for (double a = 0.1; a < 1.0; a += 0.1)
     for (double g = 0.0; g < 0.9; g += 0.1)
       EXPECT_GT(toReflectance(a, g), toReflectance(a, g + 0.05)) << a << " " << g;
 }
 
-TEST(SeenColors, AreLinearBetweenKnots) {
+TEST(ReflectanceColors, AreLinearBetweenKnots) {
   const Rgb dark(0.1, 0.2, 0.05), light(0.9, 0.6, 0.95);
   for (const double g : {0.0, 0.5}) {
     const ColorFunction albedo =
@@ -56,7 +56,7 @@ TEST(SeenColors, AreLinearBetweenKnots) {
                     (g > 0.0 ? 0.1 : 0.02) * color[c] + 0.003)
             << s;
     }
-    EXPECT_TRUE(isApprox(albedo(30.0), toAlbedo(dark, g), 1e-12)) << "a step stays one";
+    EXPECT_TRUE(isApprox(albedo(30.0), toAlbedo(dark, g), 1e-12)) << "a step stays a step";
     EXPECT_TRUE(isApprox(albedo(50.0), toAlbedo(dark, g), 1e-12));
   }
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Files that a reader must refuse, and the form of the refusal.
+// Expectations on files that a reader must reject.
 
 #include "TemporaryFolder.h"
 #include "base/Error.h"
@@ -11,8 +11,8 @@
 
 namespace fenestra {
 
-/// Expects an Error (input) of one line that contains the file's name and `text`, and no output on
-/// standard error.
+/// Expects an Error (input): one line that begins with the path and contains `text`. Nothing may be
+/// printed to standard error.
 template <typename Call>
 void expectRefused(const std::filesystem::path& path, const std::string& text, Call&& call) {
   ::testing::internal::CaptureStderr();

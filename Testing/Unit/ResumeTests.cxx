@@ -1,5 +1,5 @@
-// A render that goes on from a film ends as one that was never interrupted, and parts of a picture
-// add up to it.
+// A render resumed from a checkpoint equals an uninterrupted one, and shards add up to the complete
+// image.
 
 #include "FilmTesting.h"
 
@@ -16,8 +16,8 @@ RenderSettings makeSettings(std::uint64_t samples, double noise = -1.0) {
   return settings;
 }
 
-/// Results that a render of `scene` keeps each time that its threads have looked `period` times
-/// whether it should; some are in the middle of a pass.
+/// Results at the checkpoints of a render of `scene`. One is due after every `period` polls by the
+/// threads; some are in the middle of a pass.
 std::vector<RenderResult> collectCheckpoints(const TestScene& scene, const RenderSettings& settings,
                                              int period) {
   std::vector<RenderResult> checkpoints;
@@ -45,12 +45,12 @@ void expectSameEnd(const RenderResult& once, const RenderResult& again) {
   EXPECT_EQ(once.reason, again.reason);
 }
 
-/// True if some pixels have more samples than the finished passes give them.
+/// True if some pixels have samples beyond the finished passes.
 bool isAhead(const RenderResult& result) {
   return result.film.sampleCounts().max > result.finishedSamples;
 }
 
-TEST(Continued, EndsAtTheSameBits) {
+TEST(Resume, EndsAtTheSameBits) {
   const TestScene scene = makeWavyScene();
   const RenderSettings settings = makeSettings(37);
   const RenderResult once = scene.render(settings);
@@ -62,13 +62,13 @@ TEST(Continued, EndsAtTheSameBits) {
   expectSameEnd(once, resume(scene, settings, once));
 }
 
-TEST(Continued, MoreSamplesGoOnWhereFewerEnded) {
+TEST(Resume, HigherLimitContinuesAfterALowerOne) {
   const TestScene scene = makeWavyScene();
   const RenderResult fewer = scene.render(makeSettings(13));
   expectSameEnd(scene.render(makeSettings(40)), resume(scene, makeSettings(40), fewer));
 }
 
-TEST(Continued, PlanByNoiseEndsAtTheSameBits) {
+TEST(Resume, AdaptivePlanEndsAtTheSameBits) {
   const TestScene scene = makeWavyScene(80, 72);
   const RenderSettings settings = makeSettings(1000, 0.05);
   const RenderResult once = scene.render(settings);
@@ -81,7 +81,7 @@ TEST(Continued, PlanByNoiseEndsAtTheSameBits) {
   expectSameEnd(once, resume(scene, settings, once));
 }
 
-TEST(Continued, LimitOfSamplesLeavesThePassesTowardANoiseAsTheyAre) {
+TEST(Resume, SampleLimitDoesNotChangeThePassesOfANoiseTarget) {
   const TestScene scene = makeWavyScene(80, 72);
   const RenderResult once = scene.render(makeSettings(1000, 0.05));
   const std::pair<std::uint64_t, std::uint64_t> limitsAndPasses[] = {
@@ -94,7 +94,7 @@ TEST(Continued, LimitOfSamplesLeavesThePassesTowardANoiseAsTheyAre) {
   }
 }
 
-TEST(Continued, LooksAtTheSeenNoiseFallOnTheSameCounts) {
+TEST(Resume, DisplayNoiseIsEstimatedAtTheSameCounts) {
   const TestScene scene = makeWavyScene();
   RenderSettings settings = makeSettings(1000, 0.05);
   settings.displayNoise = [](const Film& film) {
@@ -106,11 +106,11 @@ TEST(Continued, LooksAtTheSeenNoiseFallOnTheSameCounts) {
     expectSameEnd(once, resume(scene, settings, checkpoint));
 }
 
-TEST(Shards, AddUpToThePicture) {
+TEST(Shards, AddUpToTheCompleteImage) {
   const TestScene scene = makeWavyScene();
   RenderSettings settings = makeSettings(9);
   const RenderResult once = scene.render(settings);
-  for (const int count : {1, 3, 7, 40}) { // more parts than tiles
+  for (const int count : {1, 3, 7, 40}) { // more shards than tiles
     Film sum = once.film;
     for (int row = 0; row < sum.height(); ++row)
       for (int column = 0; column < sum.width(); ++column)
@@ -121,7 +121,7 @@ TEST(Shards, AddUpToThePicture) {
       for (int row = 0; row < sum.height(); ++row)
         for (int column = 0; column < sum.width(); ++column)
           if (shard.at(column, row).samples > 0) {
-            EXPECT_EQ(sum.at(column, row).samples, 0U) << "two parts have this pixel";
+            EXPECT_EQ(sum.at(column, row).samples, 0U) << "two shards have this pixel";
             sum.at(column, row) = shard.at(column, row);
           }
     }
@@ -129,7 +129,7 @@ TEST(Shards, AddUpToThePicture) {
   }
 }
 
-TEST(Tiles, PartsAreEvenAndScattered) {
+TEST(Tiles, ShardsAreEquallyLargeAndScattered) {
   const Tiles tiles(500, 300);
   EXPECT_EQ(tiles.count(), 63 * 38);
   for (const int count : {1, 3, 7, 16}) {

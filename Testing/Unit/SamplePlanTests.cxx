@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint64_t pilotSamples = SamplePlan::pilotSamples;
 
-/// Pilot with pixels of mean 0.5 and standard deviation `deviation(column, row)`.
+/// Film of a pilot pass, with pixels of mean 0.5 and standard deviation `sigma(column, row)`.
 template <typename Sigma>
 Film makePilot(int width, int height, Sigma&& sigma, double scatterings = 1.0) {
   Film film(width, height);
@@ -25,7 +25,7 @@ Film makePilot(int width, int height, Sigma&& sigma, double scatterings = 1.0) {
   return film;
 }
 
-/// Deviation: noisy on the left, quiet on the right.
+/// Standard deviation: higher in the left half.
 double leftNoise(int column, int) {
   return column < 32 ? 0.4 : 0.1;
 }
@@ -37,14 +37,14 @@ double computeMeanCount(const SamplePlan::Stage& stage, std::size_t pixels) {
   return sum / static_cast<double>(pixels);
 }
 
-TEST(SamplePlan, WithoutAPilotAllPixelsGetTheSame) {
+TEST(SamplePlan, AllPixelsGetEqualCountsWithoutPilot) {
   const SamplePlan plan;
   for (const std::uint64_t mean : {0U, 1U, 1000U})
     for (const std::size_t pixel : {std::size_t{0}, std::size_t{12345}})
       EXPECT_EQ(plan.at(mean).count(pixel), mean);
 }
 
-TEST(SamplePlan, SharesAreProportionalToTheNoise) {
+TEST(SamplePlan, CountsAreProportionalToNoise) {
   const Film pilot = makePilot(64, 64, leftNoise);
   const SamplePlan plan(pilot);
   const SamplePlan::Stage stage = plan.at(1000);
@@ -55,7 +55,7 @@ TEST(SamplePlan, SharesAreProportionalToTheNoise) {
   EXPECT_NEAR(stage.maxRatio(), left / 1000.0, 0.01);
 }
 
-TEST(SamplePlan, CostlyPathsGetFewerSamples) {
+TEST(SamplePlan, ExpensivePathsGetFewerSamples) {
   Film pilot = makePilot(64, 64, [](int, int) { return 0.3; });
   for (int row = 0; row < 64; ++row)
     for (int column = 0; column < 32; ++column)
@@ -65,11 +65,11 @@ TEST(SamplePlan, CostlyPathsGetFewerSamples) {
   EXPECT_LT(stage.count(64 * 30 + 10), stage.count(64 * 30 + 50));
 }
 
-TEST(SamplePlan, EveryPixelGetsThePilotAndCountsNeverFall) {
+TEST(SamplePlan, EveryPixelGetsThePilotAndCountsNeverDecrease) {
   const Film pilot = makePilot(64, 64, leftNoise);
   const SamplePlan plan(pilot);
   for (const std::uint64_t mean : {1U, 7U, 16U})
-    EXPECT_EQ(plan.at(mean).count(0), mean) << "a stage of the pilot";
+    EXPECT_EQ(plan.at(mean).count(0), mean) << "a stage within the pilot";
   for (std::size_t pixel = 0; pixel < pilot.pixelCount(); pixel += 97) {
     std::uint64_t before = 0;
     for (std::uint64_t mean = 0; mean < 200; mean += 3) {
@@ -81,8 +81,9 @@ TEST(SamplePlan, EveryPixelGetsThePilotAndCountsNeverFall) {
   }
 }
 
-/// A pixel's own samples influence its count only through all pixels' noise together.
-TEST(SamplePlan, OwnSamplesDoNotDecideOnTheirNumber) {
+/// A pixel's samples may affect its own count only through the noise of all pixels; otherwise the
+/// estimate is biased.
+TEST(SamplePlan, CountBarelyDependsOnThePixelsOwnSamples) {
   const SamplePlan plain(makePilot(64, 64, leftNoise));
   const SamplePlan other(makePilot(64, 64, [](int column, int row) {
     return column == 10 && row == 30 ? 4.0 : leftNoise(column, row);
@@ -90,11 +91,10 @@ TEST(SamplePlan, OwnSamplesDoNotDecideOnTheirNumber) {
   const std::size_t pixel = 64 * 30 + 10;
   const auto expected = static_cast<double>(plain.at(1000).count(pixel));
   EXPECT_NEAR(static_cast<double>(other.at(1000).count(pixel)), expected, 0.03 * expected);
-  EXPECT_GT(static_cast<double>(other.at(1000).count(pixel + 1)), 1.2 * expected)
-      << "its neighbour's";
+  EXPECT_GT(static_cast<double>(other.at(1000).count(pixel + 1)), 1.2 * expected) << "the neighbor";
 }
 
-TEST(SamplePlan, QuietAndTinyPicturesAreSampledUniformly) {
+TEST(SamplePlan, NoiselessAndTinyImagesAreSampledUniformly) {
   const SamplePlan noiseless(makePilot(64, 64, [](int, int) { return 0.0; }));
   EXPECT_EQ(noiseless.at(100).count(5), 100U);
   EXPECT_EQ(noiseless.at(100).maxRatio(), 1.0);

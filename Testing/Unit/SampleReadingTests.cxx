@@ -1,4 +1,4 @@
-// Samples read from a file block by block into the smallest type that holds them all.
+// Reads samples of a file in blocks into the smallest type that can hold all of them.
 
 #include "files/medical/VolumeReader.h"
 
@@ -17,12 +17,12 @@
 namespace fenestra::SampleReadingTests {
 namespace {
 
-constexpr std::size_t count = 600'000; // several blocks, the last one partial
+constexpr std::size_t count = 600'000; // several blocks, of which the last is partial
 const std::string sizes = "100 100 60";
 
 using Store = SampleStore<std::uint8_t, std::int16_t, std::uint16_t, float>;
 
-/// Small integers, except for one sample near the end.
+/// Small integers, except one sample near the end.
 template <typename T>
 std::vector<T> makeSamples(T outlier) {
   std::vector<T> samples(count);
@@ -66,7 +66,7 @@ void expectStoredAs(T outlier) {
         << i;
 }
 
-TEST(SampleReading, LateSampleWidensEarlierBlocks) {
+TEST(SampleReading, LateSampleConvertsEarlierBlocks) {
   expectStoredAs<std::uint8_t, std::int32_t>(255);
   expectStoredAs<std::int16_t, std::int32_t>(-1);
   expectStoredAs<std::int16_t, std::int32_t>(32767);
@@ -78,9 +78,9 @@ TEST(SampleReading, LateSampleWidensEarlierBlocks) {
   expectStoredAs<float, double>(0.1);
 }
 
-TEST(SampleReading, WidensMoreThanOnce) {
+TEST(SampleReading, CanConvertMoreThanOnce) {
   std::vector<std::int32_t> samples = makeSamples<std::int32_t>(-7);
-  samples[300'000] = 40'000; // to uint16, then to float for the negative sample
+  samples[300'000] = 40'000; // to uint16; the negative sample then requires float
   const Store::Vectors vectors = storeSamples(samples);
   const auto& stored = std::get<LargeArray<float>>(vectors);
   EXPECT_TRUE(std::equal(stored.begin(), stored.end(), samples.begin(), samples.end(),
@@ -88,7 +88,7 @@ TEST(SampleReading, WidensMoreThanOnce) {
 }
 
 TEST(SampleReading, ReplacesNonFiniteSamplesInAnyBlock) {
-  for (const float outlier : {0.5f, 7.0f}) { // stays float; becomes integers
+  for (const float outlier : {0.5f, 7.0f}) { // stays float; can be stored as integers
     std::vector<float> samples = makeSamples(outlier);
     samples[3] = std::numeric_limits<float>::quiet_NaN();
     samples[400'000] = std::numeric_limits<float>::infinity();
@@ -109,7 +109,7 @@ TEST(SampleReading, ReplacesNonFiniteSamplesInAnyBlock) {
   }
 }
 
-TEST(SampleReading, SampleThatNoTypeHoldsIsReported) {
+TEST(SampleReading, ReportsSamplesThatNoTypeCanHold) {
   SampleStore<std::uint8_t, std::int16_t> store(2);
   const std::vector<float> samples = {1.0f, 0.5f};
   store.append(std::span(samples), computeStats(std::span(samples)));
@@ -117,7 +117,6 @@ TEST(SampleReading, SampleThatNoTypeHoldsIsReported) {
 }
 
 // ---- files
-// ---------------------------------------------------------------------------------------
 
 std::string deflateBytes(const std::string& bytes, int windowBits) {
   z_stream stream{};
@@ -151,7 +150,7 @@ std::string makeMetaHeader(const std::string& fields) {
          "ElementType = MET_SHORT\nElementDataFile = LOCAL\n";
 }
 
-TEST(SampleReading, ReadsBothByteOrdersInEveryStorage) {
+TEST(SampleReading, ReadsBothByteOrdersInEveryEncoding) {
   const std::vector<std::int16_t> samples = makeSamples<std::int16_t>(-1000);
   std::vector<std::int16_t> swapped = samples;
   for (std::int16_t& x : swapped)
@@ -184,7 +183,7 @@ TEST(SampleReading, ReadsBothByteOrdersInEveryStorage) {
   }
 }
 
-TEST(SampleReading, RefusesStreamsOfAnotherLength) {
+TEST(SampleReading, RefusesStreamsOfWrongLength) {
   const TemporaryFolder folder;
   const std::string samples = rawBytes(makeSamples<std::int16_t>(-1000));
   const auto refuse = [&](const std::string& name, const std::string& content) {

@@ -16,7 +16,7 @@ constexpr std::uint64_t size = Sampler::blockSize;
 constexpr std::size_t dimensionCount = 8;
 using Dimensions = std::array<double, dimensionCount>;
 
-/// The eight numbers that have strata, in pairs.
+/// The stratified dimensions, in pairs.
 Dimensions toDimensions(const PrimarySamples& numbers) {
   const Vec2 position = toUniform2(numbers.position);
   const Vec2 scattered = toUniform2(numbers.direction);
@@ -31,7 +31,7 @@ Dimensions toDimensions(const PrimarySamples& numbers) {
           choices.y()};
 }
 
-/// Sample number of a place in a block.
+/// Number of the sample at an offset in a block of one half buffer.
 std::uint64_t sampleIndex(std::uint64_t block, std::uint64_t half, std::uint64_t offset) {
   return 2 * (block * size + offset) + half;
 }
@@ -48,7 +48,7 @@ void expectUniform(const std::vector<double>& counts, const std::string& what) {
   EXPECT_LT(std::abs(chiSquaredZScore(counts, expected)), 4.5) << what;
 }
 
-/// Counts of `cells` x `cells` cells of two numbers, drawn by draw(pixel).
+/// Expects the pairs that sample(pixel) returns to be uniform over `cells` x `cells` cells.
 template <typename Sample>
 void expectJointlyUniform(Sample&& sample, std::size_t cells, const std::string& what) {
   constexpr std::uint64_t pixels = 40000;
@@ -60,13 +60,13 @@ void expectJointlyUniform(Sample&& sample, std::size_t cells, const std::string&
   expectUniform(counts, what);
 }
 
-TEST(Strata, BlocksHitEachStratumOnce) {
+TEST(StratifiedSampler, BlockHitsEachStratumOnce) {
   const Sampler source(Sampling::stratified, 3);
   for (std::uint64_t pixel = 0; pixel < 200; ++pixel)
     for (std::uint64_t half = 0; half < 2; ++half)
       for (const std::uint64_t block : {0ULL, 1ULL, 5ULL, 1ULL << 40}) {
         std::array<std::set<std::size_t>, dimensionCount> strata;
-        std::array<std::set<std::size_t>, dimensionCount> boxes; // pair i: in [2 i] and [2 i + 1]
+        std::array<std::set<std::size_t>, dimensionCount> boxes; // of pair i: [2 i] and [2 i + 1]
         for (std::uint64_t offset = 0; offset < size; ++offset) {
           const Dimensions values =
               toDimensions(source.generate(pixel, sampleIndex(block, half, offset)));
@@ -78,14 +78,14 @@ TEST(Strata, BlocksHitEachStratumOnce) {
           }
         }
         for (std::size_t i = 0; i < dimensionCount; ++i) {
-          ASSERT_EQ(strata[i].size(), size) << "number " << i;
+          ASSERT_EQ(strata[i].size(), size) << "dimension " << i;
           ASSERT_EQ(boxes[i].size(), size) << "boxes " << i;
         }
       }
 }
 
-/// Each sample alone is drawn as an independent one is, at each place of a block.
-TEST(Strata, NumbersOfASampleAreUniformAndIndependent) {
+/// A single sample, at any offset in a block, is distributed like an independent sample.
+TEST(StratifiedSampler, DimensionsOfASampleAreUniformAndIndependent) {
   for (const Sampling sampling : {Sampling::stratified, Sampling::independent}) {
     const Sampler source(sampling, 11);
     for (const std::uint64_t sample : {0ULL, 1ULL, 2ULL, 14ULL, 15ULL, 16ULL, 77ULL}) {
@@ -97,21 +97,21 @@ TEST(Strata, NumbersOfASampleAreUniformAndIndependent) {
                 return std::array{values[i], values[j]};
               },
               16, std::to_string(sample) + ": " + std::to_string(i) + ", " + std::to_string(j));
-      std::vector<double> orthants(256, 0.0); // of all eight numbers
+      std::vector<double> orthants(256, 0.0); // lower or upper half of each dimension
       for (std::uint64_t pixel = 0; pixel < 40000; ++pixel) {
         std::size_t half = 0;
         for (const double number : toDimensions(source.generate(pixel, sample)))
           half = 2 * half + findCell(number, 2);
         orthants[half] += 1.0;
       }
-      expectUniform(orthants, "halves");
+      expectUniform(orthants, "orthants");
     }
   }
 }
 
-/// Two samples of one block: no number of one tells more of a number of another pair of the other
-/// than that they differ in their strata.
-TEST(Strata, PairsOfNumbersAreShuffledApart) {
+/// For two samples of a block, a dimension of one predicts a dimension of another pair in the other
+/// only to the extent that both differ in their strata.
+TEST(StratifiedSampler, PairsOfDimensionsAreShuffledIndependently) {
   const Sampler source(Sampling::stratified, 12);
   for (const std::uint64_t offset : {1ULL, 4ULL, 7ULL})
     for (const auto& [i, j] : {std::pair{0U, 4U}, {0U, 6U}, {2U, 6U}, {4U, 6U}}) {
@@ -124,13 +124,13 @@ TEST(Strata, PairsOfNumbersAreShuffledApart) {
         ASSERT_TRUE(first > 0 && second > 0);
         counts[(first - 1) * (size - 1) + second - 1] += 1.0;
       }
-      // Two of eight random factors stand for 1.
+      // Factor 0 of Sampler::nets stands for 1, so factor 1 is twice as likely as others.
       for (const double count : counts)
         EXPECT_TRUE(count > 40000.0 / 64 * 0.8 && count < 40000.0 / 16 * 1.1) << count;
     }
 }
 
-TEST(Strata, HalvesAndBlocksAreIndependent) {
+TEST(StratifiedSampler, HalfBuffersAndBlocksAreIndependent) {
   const Sampler source(Sampling::stratified, 13);
   const std::uint64_t reference = sampleIndex(0, 0, 3);
   for (std::uint64_t offset = 0; offset < size; ++offset)
@@ -147,7 +147,7 @@ TEST(Strata, HalvesAndBlocksAreIndependent) {
                 std::to_string(other));
 }
 
-TEST(Strata, NeighboursAndSeedsShareNothing) {
+TEST(StratifiedSampler, NeighborsAndSeedsAreIndependent) {
   for (const bool otherSeed : {false, true}) {
     const Sampler a(Sampling::stratified, 1);
     const Sampler b(Sampling::stratified, otherSeed ? 2 : 1);
@@ -156,11 +156,11 @@ TEST(Strata, NeighboursAndSeedsShareNothing) {
           return std::array{toUniform(a.generate(pixel, 4).opticalDepth),
                             toUniform(b.generate(pixel + (otherSeed ? 0 : 1), 4).opticalDepth)};
         },
-        size, otherSeed ? "seeds" : "neighbours");
+        size, otherSeed ? "seeds" : "neighbors");
   }
 }
 
-TEST(Independent, SamplesShareNothing) {
+TEST(IndependentSampler, SamplesAreIndependent) {
   const Sampler source(Sampling::independent, 14);
   EXPECT_EQ(source.samplesPerBlock(), 1U);
   for (const std::uint64_t other : {1ULL, 2ULL, 3ULL, 14ULL})
@@ -173,8 +173,8 @@ TEST(Independent, SamplesShareNothing) {
           size, std::to_string(i) + ": " + std::to_string(other));
 }
 
-/// Every bit of the seed of all further numbers is as often 0 as 1, and strata do not touch it.
-TEST(Strata, TheRestIsAsWithoutThem) {
+/// Stratification does not change the seed of a path's other dimensions. All its bits are uniform.
+TEST(StratifiedSampler, PathSeedIsThatOfIndependentSampler) {
   const Sampler strata(Sampling::stratified, 15);
   const Sampler independent(Sampling::independent, 15);
   std::array<int, 64> ones = {};
@@ -189,14 +189,14 @@ TEST(Strata, TheRestIsAsWithoutThem) {
     EXPECT_NEAR(n, count / 2, 4.5 * std::sqrt(count) / 2);
 }
 
-TEST(Numbers, EndsOfTheUnitIntervalAreFinite) {
+TEST(SamplerConversion, EndsOfTheUnitIntervalGiveFiniteValues) {
   for (const std::uint64_t bits : {std::uint64_t{0}, ~std::uint64_t{0}}) {
     const double u = toUniform(bits);
     EXPECT_TRUE(u >= 0.0 && u < 1.0);
     EXPECT_TRUE((toUniform2(bits).array() >= 0.0).all() && (toUniform2(bits).array() < 1.0).all());
     EXPECT_TRUE(std::isfinite(toExponential(u)) && toExponential(u) >= 0.0);
   }
-  EXPECT_NEAR(toExponential(0x1p-50) / 0x1p-50, 1.0, 1e-12) << "precise near 0";
+  EXPECT_NEAR(toExponential(0x1p-50) / 0x1p-50, 1.0, 1e-12) << "must be precise near 0";
 }
 
 } // namespace

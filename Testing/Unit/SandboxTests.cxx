@@ -1,5 +1,5 @@
-// Work in a child process: restrictions on the child, crashes that would have ended this process,
-// and invalid answers. The jobs below run in the child, which is this executable.
+// Sandboxed child process: its restrictions, crashes that would have ended this process, and
+// invalid replies. The jobs below run in the child, which is this executable.
 
 #include "io/Sandbox.h"
 
@@ -29,7 +29,7 @@ constexpr std::uint64_t memoryLimit = std::uint64_t{2} << 30;
 
 const SandboxJob echoJob("test-echo", [](const std::string& request) { return request; });
 
-/// Misbehaves in the way that the question names.
+/// Fails in the way that the request names.
 std::string misbehave(const std::string& how) {
   if (how == "throw")
     throw std::runtime_error("no");
@@ -47,9 +47,9 @@ std::string misbehave(const std::string& how) {
   if (how == "sleep")
     for (;;)
       ::pause();
-  if (how == "take memory")
+  if (how == "allocate")
     return std::string(3 * memoryLimit / 2, 'x');
-  if (how == "number")
+  if (how == "pid")
     return std::to_string(::getpid());
   constexpr int connection = 3;
   if (how == "half a frame" && ::write(connection, "\1\0\0", 3) == 3)
@@ -63,7 +63,7 @@ std::string misbehave(const std::string& how) {
 
 const SandboxJob misbehavingJob("test-misbehave", misbehave, {1, memoryLimit});
 
-TEST(SandboxedReader, AnswersInTurnWithinTheSizeLimits) {
+TEST(Sandbox, RepliesWithinTheSizeLimits) {
   SandboxedReader child(echoJob);
   EXPECT_EQ(child.request("hello", maxBytes), "hello");
   const std::string large(60000, 'x');
@@ -74,7 +74,7 @@ TEST(SandboxedReader, AnswersInTurnWithinTheSizeLimits) {
   EXPECT_EQ(child.request("hello", 5), "hello");
 }
 
-TEST(SandboxedReader, SurvivesCrashesAndTimeoutsOfTheChild) {
+TEST(Sandbox, SurvivesCrashesAndTimeoutsOfTheChild) {
   ::testing::internal::CaptureStderr();
   ::testing::internal::CaptureStdout();
   {
@@ -89,49 +89,49 @@ TEST(SandboxedReader, SurvivesCrashesAndTimeoutsOfTheChild) {
   }
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
   EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
-  EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a child is left";
+  EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a child process remains";
 }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__clang__) // sanitizers map terabytes
-TEST(SandboxedReader, ChildCannotTakeMuchMemory) {
+TEST(Sandbox, ChildCannotExceedItsMemoryLimit) {
   SandboxedReader child(misbehavingJob);
-  EXPECT_EQ(child.request("take memory", 2 * memoryLimit), "");
+  EXPECT_EQ(child.request("allocate", 2 * memoryLimit), "");
 }
 #endif
 
-/// Words for each action that the child is allowed, for the test below.
+/// Lists the actions that the child is permitted, for the test below.
 std::string listPermissions(const std::string& path) {
   std::string permissions;
   if (::open(path.c_str(), O_WRONLY | O_CREAT, 0600) >= 0)
-    permissions += "made a file; ";
+    permissions += "created a file; ";
   for (int file = 0; file < 1024; ++file)
     if (file > 3 && ::fcntl(file, F_GETFD) >= 0)
-      permissions += "has file " + std::to_string(file) + "; ";
+      permissions += "inherited file " + std::to_string(file) + "; ";
   int files = 0;
   while (::open("/dev/null", O_RDONLY) >= 0)
     ++files;
   if (files > 32)
-    permissions += "opens " + std::to_string(files) + " files; ";
+    permissions += "opened " + std::to_string(files) + " files; ";
   for (const auto limit : {RLIMIT_CORE, RLIMIT_FSIZE}) {
     rlimit now{};
     ::getrlimit(limit, &now);
     if (now.rlim_max != 0)
-      permissions += "may write; ";
+      permissions += "can write; ";
   }
   sigset_t blocked;
   ::sigprocmask(SIG_SETMASK, nullptr, &blocked);
   struct sigaction term {};
   ::sigaction(SIGTERM, nullptr, &term);
   if (::sigismember(&blocked, SIGINT) || term.sa_handler != SIG_DFL)
-    permissions += "has signals of its parent's; ";
+    permissions += "inherited signal settings; ";
   if (::getpgrp() != ::getpid())
-    permissions += "is in its parent's group; ";
-  return permissions + "no more";
+    permissions += "is in its parent's process group; ";
+  return permissions + "end";
 }
 
 const SandboxJob permissionsJob("test-allowed", listPermissions);
 
-TEST(SandboxedReader, ChildInheritsNothingAndWritesNothing) {
+TEST(Sandbox, ChildInheritsNothingAndWritesNothing) {
   const TemporaryFolder folder;
   const std::string path = folder / "made";
   const int file = ::open("/dev/null", O_RDONLY); // inherited unless the child closes it
@@ -141,19 +141,19 @@ TEST(SandboxedReader, ChildInheritsNothingAndWritesNothing) {
   ::pthread_sigmask(SIG_BLOCK, &blocked, &before);
   const auto handler = ::signal(SIGTERM, SIG_IGN);
   SandboxedReader child(permissionsJob);
-  std::string permissions = child.request(path, maxBytes).value_or("nothing");
+  std::string permissions = child.request(path, maxBytes).value_or("no reply");
   ::signal(SIGTERM, handler);
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   ::close(file);
-  // Kernels without Landlock let the child make a file, which stays empty.
-  if (const std::string made = "made a file; "; permissions.starts_with(made)) {
+  // On kernels without Landlock the child can create a file, which stays empty.
+  if (const std::string made = "created a file; "; permissions.starts_with(made)) {
     EXPECT_EQ(std::filesystem::file_size(path), 0u);
     permissions = permissions.substr(made.size());
   }
-  EXPECT_EQ(permissions, "no more");
+  EXPECT_EQ(permissions, "end");
 }
 
-TEST(SandboxedReader, UnstartableProcessIsAnOutputError) {
+TEST(Sandbox, FailedProcessStartIsAnOutputError) {
   rlimit before{};
   ::getrlimit(RLIMIT_NOFILE, &before);
   const rlimit none{0, before.rlim_max};
@@ -164,14 +164,14 @@ TEST(SandboxedReader, UnstartableProcessIsAnOutputError) {
     child.request("hello", maxBytes);
   } catch (const Error& error) {
     ::setrlimit(RLIMIT_NOFILE, &before); // first: sanitizers inspect objects through a pipe
-    line = error.kind() == ErrorKind::output ? error.what() : "of another kind";
+    line = error.kind() == ErrorKind::output ? error.what() : "another kind of error";
   }
   ::setrlimit(RLIMIT_NOFILE, &before);
-  EXPECT_EQ(line, "memory: no process can be started to read files in; close other programs");
+  EXPECT_EQ(line, "memory: cannot start a process to read files; close other programs");
   EXPECT_EQ(child.request("hello", maxBytes), "hello");
 }
 
-TEST(SandboxedReader, EachThreadMayHaveAChild) {
+TEST(Sandbox, EveryThreadCanHaveAChild) {
   std::vector<std::thread> threads;
   std::array<int, 8> correct{};
   for (int& count : correct)
@@ -187,15 +187,15 @@ TEST(SandboxedReader, EachThreadMayHaveAChild) {
     EXPECT_EQ(count, 4);
 }
 
-/// A process queries a child, reports the child's number, and has the child sleep; then the process
-/// is killed.
-TEST(SandboxedReader, ChildEndsWithItsParent) {
+/// A process sends its child's pid to the test and then lets the child sleep. The test kills the
+/// process.
+TEST(Sandbox, ChildEndsWithItsParent) {
   std::array<int, 2> pipe{};
   ASSERT_EQ(::pipe(pipe.data()), 0);
   const pid_t parent = ::fork();
   if (parent == 0) {
     SandboxedReader child(misbehavingJob);
-    const int pid = std::stoi(child.request("number", maxBytes).value_or("0"));
+    const int pid = std::stoi(child.request("pid", maxBytes).value_or("0"));
     if (::write(pipe[1], &pid, sizeof pid) == sizeof pid)
       child.request("sleep", maxBytes);
     ::_exit(0);
@@ -207,14 +207,14 @@ TEST(SandboxedReader, ChildEndsWithItsParent) {
   ::kill(parent, SIGKILL);
   ::waitpid(parent, nullptr, 0);
   pollfd ended{process, POLLIN, 0};
-  constexpr int timeout = 60'000; // ms; the child would sleep for ever
+  constexpr int timeout = 60'000; // ms; the child would sleep forever
   EXPECT_EQ(::poll(&ended, 1, timeout), 1);
   ::close(process);
   ::close(pipe[0]);
   ::close(pipe[1]);
 }
 
-TEST(ReplyReader, ReturnsTheValuesThatWerePut) {
+TEST(ReplyReader, ReturnsTheValuesThatWereWritten) {
   ReplyWriter writer;
   writer.put("text");
   writer.put(std::vector<double>{1.5, -2.0});
@@ -229,7 +229,7 @@ TEST(ReplyReader, ReturnsTheValuesThatWerePut) {
   EXPECT_TRUE(reader.isAtEnd());
 }
 
-TEST(ReplyReader, RefusesTruncatedAndOverlongAnswers) {
+TEST(ReplyReader, RejectsTruncatedAndOverlongReplies) {
   ReplyWriter writer;
   writer.put(std::vector<double>{1.0, 2.0});
   const std::string& complete = writer.bytes();

@@ -17,7 +17,7 @@ class HenyeyGreenstein : public ::testing::TestWithParam<double> {};
 
 TEST_P(HenyeyGreenstein, SamplingMatchesPdf) {
   const PhaseScattering phase(incoming, GetParam(), Rgb::Ones());
-  // Peaked lobes need a finer rule for the bins' integrals.
+  // Peaked lobes need a finer midpoint rule.
   expectSamplingMatchesPdf([&](Random& r) { return phase.sample(r.uniform2()).outgoing; },
                            [&](const Vec3& d) { return phase.pdf(d); }, 1.0,
                            std::abs(GetParam()) > 0.9 ? 400 : 60);
@@ -50,7 +50,7 @@ TEST_P(HenyeyGreenstein, WeightIsTheAlbedo) {
 INSTANTIATE_TEST_SUITE_P(MeanCosines, HenyeyGreenstein,
                          ::testing::Values(-0.95, -0.5, -1e-7, 0.0, 1e-9, 0.3, 0.85, 0.97));
 
-TEST(HenyeyGreensteinExtremes, DirectionIsUnitAndPdfFinite) {
+TEST(HenyeyGreensteinExtremes, DirectionHasUnitLengthAndPdfIsFinite) {
   for (const double g : {-0.9999, 0.9999, 0.9999999}) {
     const PhaseScattering phase(-Vec3::UnitZ(), g, Rgb::Ones());
     for (int i = 0; i < 100000; ++i) {
@@ -64,7 +64,7 @@ TEST(HenyeyGreensteinExtremes, DirectionIsUnitAndPdfFinite) {
 }
 
 struct SurfaceCase {
-  double cosine; ///< cosine of the viewer's direction
+  double cosine; ///< of the angle between normal and viewer
   SurfaceShading shading;
 };
 
@@ -81,8 +81,8 @@ protected:
 
 TEST_P(Surface, SamplingMatchesPdf) {
   const SurfaceScattering s = surface();
-  // Directions below the surface have no density: the missing mass is their share of the glossy
-  // lobe.
+  // Sampled directions below the surface have pdf 0: the mass that they have in the glossy lobe is
+  // missing from the pdf's integral.
   double lostMass = 0.0;
   constexpr int n = 200000;
   for (int i = 0; i < n; ++i) {
@@ -97,7 +97,7 @@ TEST_P(Surface, SamplingMatchesPdf) {
       [&](const Vec3& d) { return s.pdf(d); }, 1.0 - lostMass, 100);
 }
 
-TEST_P(Surface, ReflectsNoMoreThanArrives) {
+TEST_P(Surface, ConservesEnergy) {
   const SurfaceScattering s = surface();
   Rgb reflected = Rgb::Zero();
   constexpr int n = 200000;
@@ -134,7 +134,7 @@ SurfaceScattering makeSurface(double cosine, const SurfaceShading& shading, cons
   return {-toViewer, -Vec3::UnitZ(), shading, albedo};
 }
 
-/// Share of the light of a uniform environment that goes to the viewer.
+/// Directional albedo: the reflected fraction of a uniform environment's light.
 double estimateAlbedo(const SurfaceScattering& surface) {
   double sum = 0.0;
   constexpr int n = 100000;
@@ -145,7 +145,7 @@ double estimateAlbedo(const SurfaceScattering& surface) {
   return sum;
 }
 
-TEST(Coat, LeavesAWhiteSurfaceWhite) {
+TEST(Coat, WhiteSurfaceStaysWhite) {
   for (const double cosine : {1.0, 0.5}) {
     const double albedo =
         estimateAlbedo(makeSurface(cosine, SurfaceShading::makeCoated(0.2, 0.3), Rgb::Ones()));

@@ -1,5 +1,5 @@
-// A changed request gives the same scene as a fresh request, and rebuilds only dependent parts.
-
+// A changed request gives the same scene as a new scene with that request, and updates only the
+// dependent stages.
 #include "scene/PreparedScene.h"
 
 #include "MedicalFiles.h"
@@ -16,11 +16,11 @@ struct Change {
   UpdatedStages updated;
 };
 
-/// Ball in a box of 16^3 voxels, and two labels in the ball.
 constexpr const char* focusLamp =
     R"({"lights": [{"type": "sphere", "center": [0, 20, 0], "diameter": 5, "radiance": [9, 9, 9],
                     "frame": "focus"}]})";
 
+/// Ball in a box of 16^3 voxels, and two labels in the ball.
 class SceneChange : public ::testing::TestWithParam<Change> {
 protected:
   SceneChange() {
@@ -61,7 +61,7 @@ protected:
   RenderRequest request;
 };
 
-TEST_P(SceneChange, RemakesOnlyDependentStages) {
+TEST_P(SceneChange, UpdatesOnlyDependentStages) {
   const PreparedScene before(request);
   GetParam().apply(request);
   if (request.lights == "lamp.json")
@@ -125,17 +125,18 @@ INSTANTIATE_TEST_SUITE_P(
         Change{"Clip",
                [](RenderRequest& r) { r.clip.mode = ClipMode::cutaway; },
                {.clip = true, .majorants = true}},
-        Change{"Materials",
-               [](RenderRequest& r) { r.materials = "library"; },
-               {.majorants = true, .tint = true, .labelWeights = true}}, // no pale context
+        Change{
+            "Materials",
+            [](RenderRequest& r) { r.materials = "library"; },
+            {.majorants = true, .tint = true, .labelWeights = true}}, // the context keeps its color
         Change{"Volume",
                [](RenderRequest& r) { r.input = *r.segmentation; },
                {true, true, true, true, true, true, true, true}}),
     [](const auto& info) { return info.param.name; });
 
-TEST_F(SceneChange, LampAtTheFocusFollowsIt) {
+TEST_F(SceneChange, LampInFocusFrameFollowsTheFocus) {
   request.lights = focusLamp;
-  request.view.position = Vec3(0, -100, 0); // the camera stays where it is
+  request.view.position = Vec3(0, -100, 0); // keeps the camera fixed
   request.view.target = Vec3::Zero();
   const PreparedScene before(request);
   const auto findLamp = [](const PreparedScene& scene) {
@@ -149,7 +150,7 @@ TEST_F(SceneChange, LampAtTheFocusFollowsIt) {
   EXPECT_TRUE(moved.updatedStages().lights);
   EXPECT_GT((findLamp(moved) - findLamp(before)).norm(), 1.0);
   request.focus.clear();
-  expectRefused("--lights", "lights[0].frame: is \"focus\", and there is no focus; name one",
+  expectRefused("--lights", "lights[0].frame: is \"focus\", but there is no focus; add --focus",
                 [&] { PreparedScene{request}; });
 }
 
@@ -171,15 +172,15 @@ TEST_F(SceneChange, AutomaticViewFollowsFocusAndTransferFunction) {
   expectSameAsFresh(wider.withRequest(request));
 }
 
-TEST_F(SceneChange, AutomaticScaleFramesTheMatterAlone) {
+TEST_F(SceneChange, AutomaticScaleFramesTheVisibleMedium) {
   request.focus.clear();
-  const PreparedScene ball(request); // of radius 6 among 16 voxels
+  const PreparedScene ball(request); // radius 6 in 16 voxels
   const auto makeTransfer = [](double from) {
     return R"({"extinction": [[)" + std::to_string(from) +
            R"(, 0], [300, 0.2]], "albedo": [[0, 1, 1, 1]]})";
   };
   request.transfer = makeTransfer(149.0);
-  const PreparedScene partial = ball.withRequest(request); // x > 9, and |y - 7.5|, |z - 7.5| < 6
+  const PreparedScene partial = ball.withRequest(request); // x > 9; |y - 7.5| and |z - 7.5| < 6
   EXPECT_TRUE(partial.updatedStages().camera);
   const auto [position, scale] =
       std::pair(partial.camera().pose().target, partial.camera().pose().scale);
@@ -187,22 +188,22 @@ TEST_F(SceneChange, AutomaticScaleFramesTheMatterAlone) {
   EXPECT_GT((partial.volume().grid.worldToIndex * position).x(), 10.0);
   request.transfer = makeTransfer(299.0);
   const PreparedScene empty = ball.withRequest(request);
-  EXPECT_EQ(empty.camera().pose().scale, 1.05 * 8.0) << "the whole volume";
+  EXPECT_EQ(empty.camera().pose().scale, 1.05 * 8.0) << "the complete volume";
 }
 
-TEST_F(SceneChange, LookThatLeavesTheFocusTransparentIsWarnedOf) {
+TEST_F(SceneChange, WarnsIfTheTransferFunctionHidesTheFocus) {
   EXPECT_EQ(PreparedScene(request).warnings(), std::vector<std::string>());
   request.transfer = R"({"extinction": [[149, 0], [300, 0.2]], "albedo": [[0, 1, 1, 1]]})";
   const std::vector<std::string> warnings = PreparedScene(request).warnings();
   ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_NE(warnings[0].find("leaves 100 % of the focus transparent"), std::string::npos)
+  EXPECT_NE(warnings[0].find("makes 100 % of the focus transparent"), std::string::npos)
       << warnings[0];
 }
 
-TEST_F(SceneChange, LabelsAreReadOnceAndSharedByColours) {
+TEST_F(SceneChange, ColorChangesReuseTheLabels) {
   request.materials = "library";
   const PreparedScene before(request);
-  std::filesystem::remove(*request.segmentation); // a second reading would fail
+  std::filesystem::remove(*request.segmentation); // reading it again would fail
   request.materialChanges = {"1: color=#00ff00"};
   const PreparedScene green = before.withRequest(request);
   EXPECT_TRUE(green.updatedStages().tint);
@@ -218,23 +219,24 @@ TEST_F(SceneChange, LabelsAreReadOnceAndSharedByColours) {
   EXPECT_FALSE(green.withRequest(request).tint());
 }
 
-TEST_F(SceneChange, MaterialsLeaveTheContextItsColoursUnlessAsked) {
+TEST_F(SceneChange, MaterialsKeepTheContextSaturatedUnlessRequested) {
   ASSERT_LT(PreparedScene(request).contrast().saturation, 1.0);
   request.materials = "library";
   EXPECT_EQ(PreparedScene(request).contrast().saturation, 1.0);
-  EXPECT_FALSE(PreparedScene(request).contrast().contrast) << "it would be of other colours";
+  EXPECT_FALSE(PreparedScene(request).contrast().contrast)
+      << "it would be computed for other colors";
   request.focusStyle.contextSaturation = 0.4;
   EXPECT_EQ(PreparedScene(request).contrast().saturation, 0.4);
 }
 
-TEST_F(SceneChange, NewCameraDoesNotRemakeLightsOfTheWorld) {
+TEST_F(SceneChange, NewCameraDoesNotUpdateLightsInWorldFrame) {
   request.lights = folder / "lamp.json";
   const PreparedScene before(request);
   request.view.name = "left";
   EXPECT_FALSE(before.withRequest(request).updatedStages().lights);
 }
 
-TEST_F(SceneChange, LightsAsTextEqualLightsAsFile) {
+TEST_F(SceneChange, InlineLightsEqualLightsFromFile) {
   request.lights = folder / "lamp.json";
   const PreparedScene file(request);
   request.lights = readBytes(request.lights);
@@ -247,7 +249,7 @@ TEST_F(SceneChange, LightsAsTextEqualLightsAsFile) {
   EXPECT_EQ(text.files(), files);
 }
 
-TEST_F(SceneChange, RefusedChangeLeavesTheSceneAsItWas) {
+TEST_F(SceneChange, InvalidRequestLeavesTheSceneUnchanged) {
   const PreparedScene before(request);
   const Film expected = renderFilm(before);
   RenderRequest invalid = request;

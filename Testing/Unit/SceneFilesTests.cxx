@@ -1,4 +1,4 @@
-// Locations of a scene's files: beside a .mrml, inside a .mrb, and names that lead elsewhere.
+// Locates files of a scene: beside a .mrml, inside a .mrb, and outside either.
 
 #include "SceneTesting.h"
 
@@ -15,9 +15,9 @@ TEST(SceneFiles, FindsFilesBesideTheScene) {
   const TemporaryFolder folder;
   folder.write("a b.txt", "escaped");
   folder.write("50%.txt", "percent");
-  folder.write("%20.txt", "an escape of the escape");
+  folder.write("%20.txt", "an escaped escape");
   folder.write("it's <\"x\">.txt", "all six");
-  folder.write("plus+%41.txt", "no other escapes");
+  folder.write("plus+%41.txt", "not an escape");
   std::filesystem::create_directory(folder / "sub");
   const auto scene = folder.write("sub/scene.MRML", "<MRML/>");
   SceneFiles files(scene);
@@ -25,14 +25,14 @@ TEST(SceneFiles, FindsFilesBesideTheScene) {
   EXPECT_EQ(readLocated(files, "../a%20b.txt"), "escaped");
   EXPECT_EQ(readLocated(files, "../a b.txt"), "escaped");
   EXPECT_EQ(readLocated(files, "../50%25.txt"), "percent");
-  EXPECT_EQ(readLocated(files, "../%2520.txt"), "an escape of the escape");
+  EXPECT_EQ(readLocated(files, "../%2520.txt"), "an escaped escape");
   EXPECT_EQ(readLocated(files, "../it%27s%20%3C%22x%22%3E.txt"), "all six");
-  EXPECT_EQ(readLocated(files, "../plus+%41.txt"), "no other escapes");
+  EXPECT_EQ(readLocated(files, "../plus+%41.txt"), "not an escape");
   EXPECT_EQ(readLocated(files, (folder / "a b.txt").string()), "escaped"); // absolute
-  expectRefused(scene, "nowhere.nrrd, which is not there", [&] { files.locate("nowhere.nrrd"); });
+  expectRefused(scene, "nowhere.nrrd, which does not exist", [&] { files.locate("nowhere.nrrd"); });
 }
 
-TEST(SceneFiles, FindsFilesInAnArchiveAndCleansUp) {
+TEST(SceneFiles, FindsFilesInAnArchiveAndRemovesUnpackedOnes) {
   const TemporaryFolder folder;
   const auto archive = folder / "my.mrb";
   writeArchive(archive, {{"Study/Study.mrml", "<MRML/>"},
@@ -62,13 +62,13 @@ TEST(SceneFiles, FindsFilesInAnArchiveAndCleansUp) {
     });
     expectRefused(archive, "outside the archive", [&] { files.locate("../../up.txt"); });
     expectRefused(archive, "outside the archive", [&] { files.locate("/etc/passwd"); });
-    expectRefused(archive, "does not hold", [&] { files.locate("Data/missing.txt"); });
+    expectRefused(archive, "is not in the archive", [&] { files.locate("Data/missing.txt"); });
   }
   EXPECT_FALSE(std::filesystem::exists(unpacked));
   EXPECT_FALSE(std::filesystem::exists(unpacked.parent_path().parent_path().parent_path()));
 }
 
-TEST(SceneFiles, UnpacksFilesThatAHeaderNames) {
+TEST(SceneFiles, UnpacksFilesNamedInAHeader) {
   const TemporaryFolder folder;
   const auto archive = folder / "my.mrb";
   writeArchive(archive, {{"s/s.mrml", "<MRML/>"},
@@ -81,21 +81,21 @@ TEST(SceneFiles, UnpacksFilesThatAHeaderNames) {
   EXPECT_EQ(readBytes(files.locate("v.nhdr").parent_path() / "Data/v.raw"), "samples");
   EXPECT_EQ(files.locate("Data/v.raw"), files.locate("v.nhdr").parent_path() / "Data/v.raw");
   EXPECT_EQ(readBytes(files.locate("b.vtm").parent_path() / "b/1.vtp"), "surface");
-  files.locate("w.nhdr"); // refused later by its reader
+  files.locate("w.nhdr"); // the reader refuses it later
 }
 
-TEST(SceneFiles, ErrorNamesAFileOnOneLine) {
+TEST(SceneFiles, ErrorIsOneLineForNamesWithLineBreaks) {
   const TemporaryFolder folder;
   writeArchive(folder / "a.mrb", {{"a.mrml", "<MRML/>"}});
   SceneFiles archive(folder / "a.mrb");
-  expectRefused(folder / "a.mrb", "names a b, which it", [&] { archive.locate("a\nb"); });
-  expectRefused(folder / "a.mrb", "names ../a b, which is", [&] { archive.locate("../a\nb"); });
+  expectRefused(folder / "a.mrb", "names a b, which", [&] { archive.locate("a\nb"); });
+  expectRefused(folder / "a.mrb", "names ../a b, which", [&] { archive.locate("../a\nb"); });
   const auto scene = folder.write("a.mrml", "<MRML/>");
   SceneFiles beside(scene);
-  expectRefused(scene, "a b, which is not there", [&] { beside.locate("a\nb"); });
+  expectRefused(scene, "a b, which", [&] { beside.locate("a\nb"); });
 }
 
-TEST(SceneFiles, UnpacksAFileOnRequestOnly) {
+TEST(SceneFiles, UnpacksAFileOnlyOnRequest) {
   const TemporaryFolder folder;
   const TemporaryFolder temporary;
   setenv("TMPDIR", temporary.path().c_str(), 1);
@@ -105,7 +105,7 @@ TEST(SceneFiles, UnpacksAFileOnRequestOnly) {
     EXPECT_TRUE(std::filesystem::is_empty(temporary.path()));
     files.locate("big");
     EXPECT_FALSE(std::filesystem::is_empty(temporary.path()));
-    removeAllTempFiles(); // as a signal's handler does
+    removeAllTempFiles(); // as the signal handler does
     EXPECT_TRUE(std::filesystem::is_empty(temporary.path()));
   }
   unsetenv("TMPDIR");
@@ -124,7 +124,7 @@ TEST(SceneFiles, ChoosesTheMainSceneAsSlicerDoes) {
   expectRefused(folder / "case.mrb", "several scenes (x/a.mrml, x/b.mrml)", [&] {
     readMainScene({{"x/a.mrml", ""}, {"x/b.mrml", ""}});
   });
-  expectRefused(folder / "case.mrb", "holds no .mrml", [&] { readMainScene({{"x/a.txt", ""}}); });
+  expectRefused(folder / "case.mrb", "has no .mrml", [&] { readMainScene({{"x/a.txt", ""}}); });
 }
 
 TEST(SceneFiles, RefusesDamagedAndEscapingArchives) {
@@ -139,14 +139,14 @@ TEST(SceneFiles, RefusesDamagedAndEscapingArchives) {
   refuse({{"a.mrml", "<MRML/>"}, {"x/../../evil", "x"}}, "leads out of the archive");
 
   const auto textFile = folder.write("words.mrb", "not an archive");
-  expectRefused(textFile, "no whole archive", [&] { SceneFiles files(textFile); });
+  expectRefused(textFile, "is not a complete archive", [&] { SceneFiles files(textFile); });
   writeArchive(folder / "whole.mrb", {{"a.mrml", "<MRML/>" + std::string(5000, ' ')}});
   const std::string bytes = readBytes(folder / "whole.mrb");
   const auto truncated = folder.write("half.mrb", bytes.substr(0, bytes.size() / 2));
-  expectRefused(truncated, "no whole archive", [&] { SceneFiles files(truncated); });
+  expectRefused(truncated, "is not a complete archive", [&] { SceneFiles files(truncated); });
 }
 
-TEST(SceneFiles, RefusesOverlongNames) {
+TEST(SceneFiles, RefusesNamesThatAreTooLong) {
   const TemporaryFolder folder;
   std::string deep;
   for (int i = 0; i < 60; ++i)
@@ -154,7 +154,7 @@ TEST(SceneFiles, RefusesOverlongNames) {
   for (const std::string& name : {deep + "a.nrrd", std::string(300, 'n')}) {
     writeArchive(folder / "long.mrb", {{"a.mrml", "<MRML/>"}, {name, "x"}});
     SceneFiles files(folder / "long.mrb");
-    expectRefused(folder / "long.mrb", "is too long", [&] { files.locate(name); });
+    expectRefused(folder / "long.mrb", "limit for file names", [&] { files.locate(name); });
   }
 }
 
@@ -166,17 +166,18 @@ TEST(SceneFiles, RefusesEntriesBeyondTheSizeLimit) {
     byte = static_cast<char>(random());
   writeArchive(folder / "a.mrb", {{"a.mrml", "<MRML/>"}, {"big", noise}});
   std::string bytes = readBytes(folder / "a.mrb");
-  const std::size_t entry = bytes.rfind("PK\1\2"); // of the last file in the central directory
+  const std::size_t entry = bytes.rfind("PK\1\2"); // last entry of the central directory
   ASSERT_EQ(bytes.substr(entry + 46, 3), "big");
   for (const char* size : {"\0\0\0\x60", "\0\0\0\x70"}) { // 1.6 and 1.9 GB
     bytes.replace(entry + 24, 4, size, 4);
     folder.write("b.mrb", bytes);
     SceneFiles files(folder / "b.mrb");
-    expectRefused(folder / "b.mrb", "more bytes than a scene packs", [&] { files.locate("big"); });
+    expectRefused(folder / "b.mrb", "exceeds, with the files before it, the unpacked size",
+                  [&] { files.locate("big"); });
   }
 }
 
-TEST(SceneFiles, RefusesDamagedAndBoundlessEntries) {
+TEST(SceneFiles, RefusesDamagedAndOversizedEntries) {
   const TemporaryFolder folder;
   std::mt19937 random(1);
   std::string noise(4000, ' '); // incompressible, hence stored
@@ -188,14 +189,14 @@ TEST(SceneFiles, RefusesDamagedAndBoundlessEntries) {
   bytes[at] = static_cast<char>(bytes[at] ^ 1);
   const auto damaged = folder.write("damaged.mrb", bytes);
   SceneFiles files(damaged);
-  expectRefused(damaged, "data in it is damaged", [&] { files.locate("data"); });
+  expectRefused(damaged, "data: is damaged", [&] { files.locate("data"); });
 
-  // Uncompressed size in the central directory, set to 4 GB less one.
+  // Sets the uncompressed size in the central directory to almost 4 GB.
   bytes = readBytes(folder / "a.mrb");
   const std::size_t directory = bytes.find("PK\x01\x02", bytes.find("PK\x01\x02") + 4);
   ASSERT_NE(directory, std::string::npos);
   bytes.replace(directory + 24, 4, "\xfe\xff\xff\xff");
-  const auto boundless = folder.write("boundless.mrb", bytes);
+  const auto boundless = folder.write("oversized.mrb", bytes);
   expectRefused(boundless, "", [&] {
     SceneFiles archive(boundless);
     archive.locate("data");

@@ -1,4 +1,4 @@
-// Nodes of a scene that a picture shows; refused and ignored nodes, with reasons.
+// Selects the nodes of a scene to render; lists refused and ignored nodes, with reasons.
 
 #include "files/slicer/ScenePlan.h"
 
@@ -32,7 +32,7 @@ TEST(ScenePlan, ChoosesTheVolumeRenderedInSlicer) {
                                        <GPURayCastVolumeRendering id="d2" visibility="true"/>)"),
             "v2");
   EXPECT_EQ(findVolume(threeVolumes + R"(<CPURayCastVolumeRendering id="d2" visibility="false"/>)"),
-            "v2"); // the only volume with settings
+            "v2"); // the only volume with rendering settings
   EXPECT_EQ(findVolume(threeVolumes + R"(<Selection references="ActiveVolume:v3;"/>)"), "v3");
   EXPECT_EQ(findVolume(threeVolumes + R"(<Selection activeVolumeID="v1"/>)"), "v1");
   EXPECT_EQ(findVolume(R"(<Volume id="v"/><LabelMapVolume id="l"/><Volume id="m" labelMap="1"/>
@@ -40,16 +40,16 @@ TEST(ScenePlan, ChoosesTheVolumeRenderedInSlicer) {
             "v");
 }
 
-TEST(ScenePlan, ChoosesTheVolumeThatTheUserNames) {
+TEST(ScenePlan, ChoosesTheVolumeNamedByTheUser) {
   const std::string rendered = threeVolumes + R"(<GPURayCastVolumeRendering id="d1"/>)";
   EXPECT_EQ(findVolume(rendered, "v3"), "v3");
   EXPECT_EQ(findVolume(rendered, "three"), "v3");
   EXPECT_EQ(findVolume(R"(<Volume id="a" name="b"/><Volume id="b" name="a"/>)", "a"),
-            "a"); // ids first
+            "a"); // ids take precedence
   refuse(rendered, "has no scalar volume \"four\"; it has one (v1), two (v2), three (v3)",
          {.volume = "four"});
   refuse(R"(<Volume id="a" name="x"/><Volume id="b" name="x"/>)",
-         "--volume x can be any of x (a), x (b); name one by its id", {.volume = "x"});
+         "--volume x matches several: x (a), x (b); choose one by its id", {.volume = "x"});
 }
 
 TEST(ScenePlan, RefusesAmbiguousVolumes) {
@@ -59,10 +59,10 @@ TEST(ScenePlan, RefusesAmbiguousVolumes) {
   refuse(threeVolumes +
              R"(<GPURayCastVolumeRendering id="d1"/><GPURayCastVolumeRendering id="d2"/>)",
          "several volumes to render (one (v1), two (v2))");
-  refuse("<Model/>", "holds no scalar volume");
+  refuse("<Model/>", "has no scalar volume");
 }
 
-TEST(ScenePlan, FollowsTheRenderingToPropertyAndRegion) {
+TEST(ScenePlan, FindsVolumePropertyAndRoiOfTheRendering) {
   const MrmlDocument document = parse(R"(
     <Volume id="v" displayNodeRef="s d"/><VolumeDisplay id="s"/>
     <GPURayCastVolumeRendering id="d" croppingEnabled="1"
@@ -88,7 +88,7 @@ TEST(ScenePlan, CropsOnlyIfCroppingIsOn) {
   ASSERT_EQ(planRender(withoutRoi, {}).warnings.size(), 1U);
 }
 
-TEST(ScenePlan, FollowsTheVolumeDisplayIfTheRenderingDoes) {
+TEST(ScenePlan, UsesTheVolumeDisplayIfTheRenderingFollowsIt) {
   const std::string nodes = R"(<Volume id="v" displayNodeRef="d s"/><VolumeDisplay id="s"/>
     <GPURayCastVolumeRendering id="d" followVolumeDisplayNode=")";
   const MrmlDocument following = parse(nodes + "1\"/>");
@@ -97,13 +97,13 @@ TEST(ScenePlan, FollowsTheVolumeDisplayIfTheRenderingDoes) {
   EXPECT_FALSE(planRender(own, {}).sliceDisplay);
 }
 
-TEST(ScenePlan, WarnsOfAnActiveClipNode) {
+TEST(ScenePlan, WarnsAboutAnActiveClipNode) {
   const std::string nodes = R"(<Volume id="v" displayNodeRef="d"/><Model id="m" name="knife"/>
     <GPURayCastVolumeRendering id="d" references="ClipNode:m;" clipping=")";
   const MrmlDocument on = parse(nodes + "true\"/>");
   EXPECT_EQ(planRender(on, {}).warnings,
             std::vector<std::string>{
-                "Model knife (m): clips the rendering in Slicer, and is ignored here"});
+                "Model knife (m): clips the rendering in Slicer, but is ignored here"});
   const MrmlDocument off = parse(nodes + "false\"/>");
   EXPECT_TRUE(planRender(off, {}).warnings.empty());
 }
@@ -140,7 +140,7 @@ TEST(ScenePlan, PairsTheCameraWithItsView) {
   EXPECT_EQ(findCamera(R"(<Camera id="c"/>)"), "none c");
 }
 
-TEST(ScenePlan, ChoosesTheViewOfTheRendering) {
+TEST(ScenePlan, ChoosesTheViewThatShowsTheRendering) {
   const std::string views = R"(<View id="w1" layoutName="1"/><View id="w2" layoutName="2")";
   EXPECT_EQ(findCamera(views + "/>"), "w1 none");
   EXPECT_EQ(findCamera(views + R"( active="true"/>)"), "w2 none");
@@ -170,7 +170,7 @@ TEST(ScenePlan, ChoosesTheVisibleOrNamedSegmentation) {
   EXPECT_EQ(findSegmentation("", {.segmentation = "file.nrrd", .needsSegmentation = true}), "none");
   refuse("<Volume id=\"v\"/><Segmentation id=\"s\"/><Segmentation id=\"t\"/>",
          "several segmentations ((s), (t)); choose one with --segmentation", any);
-  refuse("<Volume id=\"v\"/>", "no segmentation to find segments in", any);
+  refuse("<Volume id=\"v\"/>", "has no segmentation, but a focus needs one", any);
 }
 
 TEST(ScenePlan, ListsIgnoredNodes) {

@@ -1,5 +1,5 @@
 #pragma once
-// Slicer scenes for tests: a folder with a small volume and a .mrml of given nodes.
+// Slicer scenes for tests: a folder with a small volume and .mrml files.
 
 #include "files/slicer/MrmlScene.h"
 
@@ -9,7 +9,7 @@
 
 namespace fenestra {
 
-/// A folder with ct.nrrd (3x4x2 int16, LPS origin 10,20,30 and spacing 1,2,3) and scenes.
+/// A folder for scenes with ct.nrrd (3x4x2 int16, LPS origin 10,20,30 and spacing 1,2,3).
 class SceneFolder : public TemporaryFolder {
 public:
   SceneFolder() {
@@ -36,7 +36,7 @@ inline const std::string volumeNode = R"(
 <Volume id="vol1" name="CT" references="storage:store1;" spacing="9 9 9" origin="7 7 7"
   ijkToRASDirections="0 1 0 1 0 0 0 0 1"/>)";
 
-/// Writes a zip archive of the files, with names unchanged.
+/// Writes a zip archive with these files; names are not changed.
 inline void writeArchive(const std::filesystem::path& path,
                          const std::map<std::string, std::string>& files) {
   int failure = 0;
@@ -46,7 +46,7 @@ inline void writeArchive(const std::filesystem::path& path,
     zip_source_t* source = zip_source_buffer(archive, content.data(), content.size(), 0);
     ASSERT_GE(zip_file_add(archive, name.c_str(), source, 0), 0) << name;
   }
-  ASSERT_EQ(zip_close(archive), 0); // reads the contents
+  ASSERT_EQ(zip_close(archive), 0); // reads the contents, which must still exist
 }
 
 } // namespace fenestra

@@ -1,4 +1,4 @@
-// Segments chosen by id, name or value, and the answer to a choice that is none.
+// Chooses segments by id, name or label value; errors for choices that match none or several.
 
 #include "files/segments/SegmentationReader.h"
 
@@ -7,7 +7,7 @@
 namespace fenestra::SegmentChoiceTests {
 namespace {
 
-TEST(SegmentChoice, PrefersIdsToNamesToValues) {
+TEST(SegmentChoice, IdsPrecedeNamesAndNamesPrecedeValues) {
   const TemporaryFolder folder;
   FileGeometry geometry;
   addSegment(geometry, 0, "2", "first", "1", "0");
@@ -15,7 +15,7 @@ TEST(SegmentChoice, PrefersIdsToNamesToValues) {
   addSegment(geometry, 2, "c", "twin", "3", "0");
   addSegment(geometry, 3, "d", "twin", "4", "0");
   std::vector<std::uint8_t> labels(24, 0);
-  for (std::size_t i = 0; i < 10; ++i) // 1 once, 2 twice, 3 three times, 4 four times
+  for (std::size_t i = 0; i < 10; ++i) // value n occurs n times
     labels[i] = static_cast<std::uint8_t>(i < 1 ? 1 : i < 3 ? 2 : i < 6 ? 3 : 4);
   writeFile(folder / "s.seg.nrrd", labels, geometry);
   const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
@@ -29,7 +29,7 @@ TEST(SegmentChoice, PrefersIdsToNamesToValues) {
                 [&] { s.makeFocusMask({"spleen"}, s.grid()); });
 }
 
-TEST(SegmentChoice, RefusesEmptyFocusAndListsTwelveSegments) {
+TEST(SegmentChoice, RefusesEmptyFocusAndListsAtMostTwelveSegments) {
   const TemporaryFolder folder;
   FileGeometry geometry;
   for (int n = 0; n < 60; ++n)
@@ -43,7 +43,7 @@ TEST(SegmentChoice, RefusesEmptyFocusAndListsTwelveSegments) {
   expectRefused(folder / "s.seg.nrrd", "", [&] { s.makeFocusMask({}, s.grid()); });
 }
 
-TEST(SegmentChoice, UnknownSegmentIsAnsweredByThoseThatMayBeMeant) {
+TEST(SegmentChoice, ErrorSuggestsSimilarSegments) {
   const TemporaryFolder folder;
   FileGeometry geometry;
   addSegment(geometry, 0, "a", "kidney_left", "1", "0");

@@ -1,4 +1,4 @@
-// Materials that segments get, by names and codes as programs write them.
+// Materials assigned to segments by names and codes as common programs write them.
 
 #include "base/Color.h"
 #include "files/segments/LabelNames.h"
@@ -29,7 +29,7 @@ SegmentMaterial findMaterial(const SegmentInfo& segment,
   return assignMaterials({segment}, table).at(0);
 }
 
-/// Spleen, kidneys and so on, with the material of each.
+/// Segment names and the materials that they must get.
 const std::vector<std::pair<std::string, std::string>> expectedMaterials = {
     // TotalSegmentator
     {"spleen", "spleen"},
@@ -61,7 +61,7 @@ const std::vector<std::pair<std::string, std::string>> expectedMaterials = {
     {"intracerebral_hemorrhage", "clot"},
     {"pleural_effusion", "fluid"},
     {"left_ventricular_outflow_tract", "heart"},
-    // SPL's atlases of knee, head and abdomen, and Slicer's generic colours
+    // SPL's atlases of knee, head and abdomen, and Slicer's generic colors
     {"infrapatellar_fat_body", "fat"},
     {"anterior_cruciate_ligament", "connective-tissue"},
     {"iliotibial_tract", "connective-tissue"},
@@ -80,7 +80,7 @@ const std::vector<std::pair<std::string, std::string>> expectedMaterials = {
     {"Cervical7", "bone"},
     {"left_palatine_bone", "bone"},
     {"gray_matter_of_spinal_cord", "grey-matter"},
-    // FreeSurfer, radiotherapy, and what people type
+    // FreeSurfer, radiotherapy, and names that people type
     {"Left-Inf-Lat-Vent", "fluid"},
     {"Left-VentralDC", "grey-matter"},
     {"ctx-lh-bankssts", "grey-matter"},
@@ -96,7 +96,7 @@ const std::vector<std::pair<std::string, std::string>> expectedMaterials = {
     {"Bone, left", "bone"},
 };
 
-TEST(SegmentMaterials, NamesMeanWhatAClinicianMeans) {
+TEST(SegmentMaterials, NamesGetTheMaterialThatAClinicianExpects) {
   for (const auto& [name, material] : expectedMaterials) {
     const SegmentMaterial found = findMaterial(makeSegment(name));
     EXPECT_EQ(found.name, material) << name << ": " << found.reason;
@@ -105,7 +105,7 @@ TEST(SegmentMaterials, NamesMeanWhatAClinicianMeans) {
     EXPECT_EQ(findMaterial(makeSegment(unknown)).name, "") << unknown;
 }
 
-TEST(SegmentMaterials, EveryClassOfTheTablesHasAMaterial) {
+TEST(SegmentMaterials, EveryLabelOfTheBuiltInTablesHasAMaterial) {
   for (const std::string& table : listBuiltInLabelTables()) {
     const LabelNames labels = *findBuiltInLabelNames(table);
     for (const auto& [value, label] : labels) {
@@ -118,7 +118,7 @@ TEST(SegmentMaterials, EveryClassOfTheTablesHasAMaterial) {
   EXPECT_EQ(findBuiltInLabelNames("totalsegmentator2")->size(), 117u);
 }
 
-TEST(SegmentMaterials, CodesWinOverNames) {
+TEST(SegmentMaterials, CodesPrecedeNames) {
   const std::string anatomy = "SCT^123037004", altered = "SCT^49755003";
   const auto expect = [](const SegmentInfo& segment, const char* material, const char* reason) {
     const SegmentMaterial found = findMaterial(segment);
@@ -146,7 +146,7 @@ MaterialTable parseRules(const std::string& rules) {
                         "test", materialLibrary());
 }
 
-TEST(SegmentMaterials, RulesOfAFileWinOverTheLibrary) {
+TEST(SegmentMaterials, RulesOfAFilePrecedeTheLibrary) {
   const MaterialTable table = parseRules(
       R"({"match": {"names": ["liver"], "except": ["vessel*"]}, "material": "a", "priority": 1},
          {"match": {"values": [7]}, "material": "b", "clip": false, "density": 3},
@@ -154,8 +154,8 @@ TEST(SegmentMaterials, RulesOfAFileWinOverTheLibrary) {
          {"match": {"codes": ["SCT^4147007~SCT^10200004"]}, "material": "b"})");
   EXPECT_EQ(findMaterial(makeSegment("Liver"), table).name, "a");
   EXPECT_EQ(findMaterial(makeCodedSegment("", "SCT^10200004", "", "Liver"), table).name, "a");
-  EXPECT_EQ(findMaterial(makeSegment("liver vessels"), table).name, "vessel") << "excepted";
-  EXPECT_EQ(findMaterial(makeSegment("left liver"), table).name, "b") << "of the greater priority";
+  EXPECT_EQ(findMaterial(makeSegment("liver vessels"), table).name, "vessel") << "an exception";
+  EXPECT_EQ(findMaterial(makeSegment("left liver"), table).name, "b") << "has the higher priority";
   EXPECT_EQ(findMaterial(makeSegment("spleen"), table).name, "spleen");
   EXPECT_EQ(findMaterial(makeCodedSegment("", "SCT^4147007", "SCT^10200004"), table).reason,
             "by SCT^4147007~SCT^10200004");
@@ -169,18 +169,18 @@ TEST(SegmentMaterials, RulesOfAFileWinOverTheLibrary) {
   EXPECT_EQ(found.medium.density, 3.0);
 }
 
-/// Names that a rule excepts are excepted whatever their code.
-TEST(SegmentMaterials, ExceptionsHoldForCodes) {
+/// The exceptions of a rule are names; they also apply if the segment's code matches.
+TEST(SegmentMaterials, ExceptionsApplyToCodes) {
   EXPECT_EQ(findMaterial(makeCodedSegment("", "SCT^10200004", "", "hepatic vein")).name, "vein");
   EXPECT_EQ(findMaterial(makeCodedSegment("", "SCT^10200004", "", "liver mass")).name, "lesion");
 }
 
-TEST(SegmentMaterials, UnknownSegmentsKeepTheirColorOrGetOneOfThePalette) {
+TEST(SegmentMaterials, UnknownSegmentsKeepTheirColorOrGetAPaletteColor) {
   std::vector<SegmentInfo> segments(22, makeSegment("unknown"));
   segments[1].color = Rgb(0.2, 0.4, 0.6);
   const std::vector<SegmentMaterial> found = assignMaterials(segments, materialLibrary());
   EXPECT_EQ(found[0].reason, "by palette");
-  EXPECT_EQ(found[1].reason, "by its own colour");
+  EXPECT_EQ(found[1].reason, "by its own color");
   const Rgb expected = encodeSrgb((*found[1].medium.material.color)(0));
   EXPECT_LT((expected - segments[1].color).abs().maxCoeff(), 1e-12);
   std::vector<Lab> palette;
@@ -191,10 +191,10 @@ TEST(SegmentMaterials, UnknownSegmentsKeepTheirColorOrGetOneOfThePalette) {
   for (std::size_t i = 0; i < 20; ++i)
     for (std::size_t j = 0; j < i; ++j)
       EXPECT_GT(deltaE76(palette[i], palette[j]), 30.0) << i << ' ' << j;
-  EXPECT_EQ(deltaE76(palette[20], palette[0]), 0.0) << "the palette begins again";
+  EXPECT_EQ(deltaE76(palette[20], palette[0]), 0.0) << "the palette repeats";
 }
 
-TEST(SegmentMaterials, PriorityIsThatOfTheKind) {
+TEST(SegmentMaterials, PriorityDependsOnTheKindOfTissue) {
   const auto priority = [](const char* name) {
     return findMaterial(makeSegment(name)).medium.priority;
   };

@@ -1,4 +1,4 @@
-// Slicer's tags of segments, which are read without the labels.
+// Slicer's segment tags, which can be read without the labels.
 
 #include "files/segments/SegmentationReader.h"
 
@@ -7,10 +7,10 @@
 namespace fenestra::SegmentTagsTests {
 namespace {
 
-TEST(SegmentTags, AnatomyOfSegmentsIsReadWithoutTheirLabels) {
+TEST(SegmentTags, TerminologyIsReadWithoutTheLabels) {
   const TemporaryFolder folder;
   FileGeometry geometry;
-  const std::vector<std::string> names = {"left lung", "mass", "untold"};
+  const std::vector<std::string> names = {"left lung", "mass", "no terminology"};
   for (std::size_t i = 0; i < names.size(); ++i) {
     const std::string segment = "Segment" + std::to_string(i);
     geometry.fields[segment + "_ID"] = std::to_string(i);

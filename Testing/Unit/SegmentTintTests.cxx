@@ -1,4 +1,4 @@
-// Components by segments and their materials, as a tint and as a mixture, and refusals.
+// Components of segments and their materials, as a tint and as a mixture; refused requests.
 
 #include "model/medium/Reflectance.h"
 #include "scene/SegmentTint.h"
@@ -8,8 +8,8 @@
 namespace fenestra::SegmentTintTests {
 namespace {
 
-/// Labelmap of one row, a voxel a segment (value i + 1 at voxel 2 i + 2, names as given); of the
-/// segment "empty" there is none.
+/// Labelmap of one row with one voxel per segment: value i + 1 at voxel 2 i + 2. The segment
+/// "empty" has no voxel.
 Handle<SegmentsInput> makeRow(const std::vector<std::string>& names) {
   std::vector<SegmentInfo> segments;
   LargeArray<std::uint8_t> labels(2 * names.size() + 3);
@@ -42,25 +42,25 @@ TintPlan makePlan(const Handle<SegmentsInput>& segments, const Handle<NamedMater
 
 using Parts = std::vector<TintPart>;
 
-TEST(SegmentTint, OnePartAColourAndPriority) {
+TEST(SegmentTint, MakesOnePartPerColorAndPriority) {
   const auto segments = makeRow({"kidney_left", "empty", "aorta", "kidney_right", "body_trunc"});
   const TintPlan plan = makePlan(segments, library, {});
-  EXPECT_EQ(plan.components.size(), 3U) << "the volume's own, kidney, artery";
+  EXPECT_EQ(plan.components.size(), 3U) << "the volume's own color, kidney, artery";
   EXPECT_EQ(plan.parts, (Parts{{{2}, 15, 1}, {{0, 3}, 10, 2}}))
-      << "the body has the volume's own look, and no priority over anything";
+      << "the body keeps the volume's own color and overrides no segment";
   const TintPlan raised = makePlan(segments, library, {"aorta: priority=3"});
   EXPECT_EQ(raised.parts, (Parts{{{4}, 5, 0}, {{2}, 3, 1}, {{0, 3}, 10, 2}}))
-      << "the body takes from the aorta what both cover";
+      << "the body overrides the aorta where both overlap";
 }
 
-TEST(SegmentTint, OrderInAFileMakesNoDifference) {
+TEST(SegmentTint, DoesNotDependOnTheOrderInTheFile) {
   const TintPlan one = makePlan(makeRow({"spleen", "aorta", "liver"}), automatic, {}, {"liver"}),
                  other = makePlan(makeRow({"liver", "spleen", "aorta"}), automatic, {}, {"liver"});
   EXPECT_EQ(one.names, other.names);
   EXPECT_EQ(one.isFocus, other.isFocus);
 }
 
-TEST(SegmentTint, ChangesOfASegmentMakeItAComponentOfItsOwn) {
+TEST(SegmentTint, ChangedSegmentGetsItsOwnComponent) {
   const auto segments = makeRow({"kidney_left", "kidney_right", "spleen"});
   const TintPlan red = makePlan(segments, library, {"kidney_left: color=#ff0000"});
   EXPECT_EQ(red.parts, (Parts{{{0}, 10, 1}, {{1}, 10, 2}, {{2}, 10, 3}}));
@@ -72,8 +72,9 @@ TEST(SegmentTint, ChangesOfASegmentMakeItAComponentOfItsOwn) {
   EXPECT_EQ(same.parts, (Parts{{{0, 1, 2}, 10, 1}}));
 }
 
-/// Set off, the focus has components of its own, be they of the context's colour or of the rest's.
-TEST(SegmentTint, FocusIsApartWhereItIsSetOff) {
+/// With contrast adjustment, the focus has its own components, even if a context segment or the
+/// rest has the same color.
+TEST(SegmentTint, FocusIsSeparateIfContrastIsAdjusted) {
   const auto segments = makeRow({"kidney_left", "kidney_right", "aorta", "body", "Thing"});
   const TintPlan one = makePlan(segments, automatic, {}, {"kidney_right"});
   EXPECT_EQ(one.names,
@@ -83,13 +84,13 @@ TEST(SegmentTint, FocusIsApartWhereItIsSetOff) {
   const TintPlan both = makePlan(segments, automatic, {}, {"1", "body", "id1"});
   EXPECT_EQ(both.names, (std::vector<std::string>{"the rest", "aorta", "body", "kidney"}));
   EXPECT_EQ(both.isFocus, (std::vector<bool>{false, false, true, true}));
-  EXPECT_FALSE(both.components[2].material.color) << "the volume's own";
+  EXPECT_FALSE(both.components[2].material.color) << "the volume's own color";
   EXPECT_EQ(makePlan(segments, library, {}, {"aorta"}).isFocus, std::vector<bool>(4, false));
 }
 
-/// A name that says nothing gets a palette's colour from the library, and none beside a focus that
-/// is to stand out.
-TEST(SegmentTint, AutoColoursOnlyWhatIsKnown) {
+/// The library gives segments with unknown names palette colors; contrast adjustment does not,
+/// since they would compete with the focus.
+TEST(SegmentTint, AutoColorsOnlyKnownSegments) {
   const auto segments = makeRow({"liver", "Thing", "Other"});
   EXPECT_EQ(makePlan(segments, library).components.size(), 4U);
   EXPECT_EQ(makePlan(segments, automatic).components.size(), 2U);
@@ -97,7 +98,7 @@ TEST(SegmentTint, AutoColoursOnlyWhatIsKnown) {
   EXPECT_EQ(requested.components.size(), 3U);
 }
 
-TEST(SegmentTint, RestColoursWhatNoSegmentCovers) {
+TEST(SegmentTint, RestColorsVoxelsOutsideAllSegments) {
   const auto segments = makeRow({"liver", "body"});
   const TintPlan plan =
       makePlan(segments, makeMaterials(R"({"version": 1, "materials": {"red": {"color": "#ff0000"}},
@@ -105,13 +106,13 @@ TEST(SegmentTint, RestColoursWhatNoSegmentCovers) {
                {});
   ASSERT_EQ(plan.components.size(), 3U);
   EXPECT_EQ(plan.components[0].material.color->knots()[0].value.x(), 1.0);
-  EXPECT_FALSE(plan.components[1].material.color) << "the body's: the volume's own, not the rest's";
+  EXPECT_FALSE(plan.components[1].material.color) << "the body keeps the volume's own color";
   const TintPlan bodyOnly = makePlan(makeRow({"body"}), library, {});
-  EXPECT_EQ(bodyOnly.parts, (Parts{{{0}, 5, 0}})) << "nothing is coloured, and there is a part";
+  EXPECT_EQ(bodyOnly.parts, (Parts{{{0}, 5, 0}})) << "one part, without a color";
 }
 
-/// Segments of one colour are apart where their matter differs; an empty one is nothing.
-TEST(SegmentTint, MatterMakesAMixture) {
+/// Segments of one color get separate components if their media differ; empty segments get none.
+TEST(SegmentTint, DifferentMediaMakeAMixture) {
   const auto segments = makeRow({"kidney_left", "kidney_right", "spleen", "empty"});
   EXPECT_TRUE(isTintOnly(makePlan(segments, library)));
   EXPECT_TRUE(isTintOnly(makePlan(segments, library, {"empty: density=2"})));
@@ -126,7 +127,7 @@ TEST(SegmentTint, MatterMakesAMixture) {
             (Parts{{{0, 1}, 10, 1}, {{2}, 10, 2}}));
 }
 
-TEST(SegmentTint, MixturesHaveTheMatterOfTheirMaterials) {
+TEST(SegmentTint, MixturesHaveTheMediaOfTheirMaterials) {
   const auto segments = makeRow({"kidney_left", "kidney_right", "liver", "spleen"});
   TransferFunction own{
       ScalarFunction({{0.0, ScalarFunction::Value(0.0)}, {100.0, ScalarFunction::Value(2.0)}}),
@@ -155,12 +156,12 @@ TEST(SegmentTint, MixturesHaveTheMatterOfTheirMaterials) {
   EXPECT_EQ(evalExtinction(2, 50.0), 1.0);
   EXPECT_FALSE(mixture.components[2].isClipped);
   EXPECT_TRUE(mixture.components[1].isClipped);
-  EXPECT_EQ(mixture.components[2].transfer.g, 0.3) << "a tint keeps the volume's scattering";
+  EXPECT_EQ(mixture.components[2].transfer.g, 0.3) << "a tint keeps the volume's phase function";
 
   const Component& spleen = mixture.components[4];
   EXPECT_EQ(evalExtinction(4, -500.0), 1.5);
-  EXPECT_EQ(evalExtinction(3, 50.0), 1.0) << "the base's";
-  EXPECT_FALSE(spleen.transfer.gradientOpacity) << "of the base's extinction";
+  EXPECT_EQ(evalExtinction(3, 50.0), 1.0) << "the volume's";
+  EXPECT_FALSE(spleen.transfer.gradientOpacity) << "it applies to the volume's extinction only";
   EXPECT_TRUE(mixture.components[3].transfer.gradientOpacity);
   EXPECT_EQ(spleen.transfer.g, 0.6);
   EXPECT_EQ(spleen.interfaceWeight, 0.5);
@@ -168,30 +169,30 @@ TEST(SegmentTint, MixturesHaveTheMatterOfTheirMaterials) {
   EXPECT_NEAR(toReflectance(spleen.transfer.albedo(0.0).x(), 0.6), gray, 1e-3);
   EXPECT_EQ(spleen.transfer.shading->diffuse, 0.7);
   EXPECT_EQ(spleen.transfer.shading->specular, 0.4);
-  EXPECT_EQ(spleen.transfer.shading->gamma, 0.7) << "the base's";
+  EXPECT_EQ(spleen.transfer.shading->gamma, 0.7) << "the volume's";
   EXPECT_TRUE(spleen.transfer.shading->coated);
 
   own.shading.reset();
   for (const Component& component :
        buildMixture(*plan, buildTint(plan, weights, own.g), own).components)
-    EXPECT_FALSE(component.transfer.shading) << "as the volume's own";
+    EXPECT_FALSE(component.transfer.shading) << "the volume has none";
 }
 
-TEST(SegmentTint, RefusesWhatItCannotShow) {
+TEST(SegmentTint, RefusesInvalidRequests) {
   const auto segments = makeRow({"liver", "empty"});
   expectRefused("row.seg.nrrd", "has no segment \"live\"; did you mean liver?",
                 [&] { makePlan(segments, library, {"live: color=#ffffff"}); });
-  expectRefused("row.seg.nrrd", "no segment has a voxel, so there is nothing to colour",
+  expectRefused("row.seg.nrrd", "no segment has a voxel, so nothing can be colored",
                 [&] { makePlan(makeRow({"empty"}), library, {}); });
   const auto refuseTable = [&](const std::string& members, const std::string& text) {
     const auto table = makeMaterials(R"({"version": 1, )" + members + "}");
     expectRefused("m.json", text, [&] { makePlan(segments, table, {}); });
   };
-  refuseTable(R"("context": {"saturation": 0.5})", "context: is what is not focus; add --focus");
-  refuseTable(R"("context": {"lightness": 0})", "context: is what is not focus; add --focus");
+  refuseTable(R"("context": {"saturation": 0.5})", "context: needs a focus; add --focus");
+  refuseTable(R"("context": {"lightness": 0})", "context: needs a focus; add --focus");
 }
 
-TEST(SegmentTint, RefusesMoreColoursThanAByteCounts) {
+TEST(SegmentTint, RefusesMoreThan255Materials) {
   std::vector<SegmentInfo> segments;
   LargeArray<std::int16_t> labels;
   for (int i = 0; i < 256; ++i) {
@@ -211,7 +212,7 @@ TEST(SegmentTint, RefusesMoreColoursThanAByteCounts) {
   EXPECT_EQ(makePlan(makeInput(255), library, {}).components.size(), 256U);
 }
 
-TEST(SegmentTint, SharesAndColoursLieWhereTheLabelsAre) {
+TEST(SegmentTint, WeightsAndColorsMatchTheLabels) {
   const auto segments = makeRow({"liver", "spleen"});
   const auto plan = std::make_shared<TintPlan>(makePlan(segments, library, {}));
   const Grid& grid = segments->segmentation.grid();
@@ -245,14 +246,14 @@ TEST(SegmentTint, SharesAndColoursLieWhereTheLabelsAre) {
   };
   const double liver = sumLiverWeight(plan->parts);
   EXPECT_GT(liver, 0.0);
-  EXPECT_LT(liver, 0.5) << "smoothed as asked";
+  EXPECT_LT(liver, 0.5) << "smoothing as requested";
   std::vector<TintPart> focus = plan->parts;
   for (TintPart& part : focus)
     part.isFocus = part.component == 1;
-  EXPECT_NEAR(sumLiverWeight(focus), 2.0 * liver, 0.01) << "a focus has twice its share";
+  EXPECT_NEAR(sumLiverWeight(focus), 2.0 * liver, 0.01) << "a focus has twice the weight";
 }
 
-/// Skin at the first of the row's voxels and the air before it.
+/// Mask of detected skin: the first voxel of the row.
 Handle<Mask> makeSkin(const Grid& grid) {
   Mask skin{
       grid, std::vector<std::uint8_t>(static_cast<std::size_t>(grid.voxelCount())), 1, {}, 255};
@@ -260,7 +261,7 @@ Handle<Mask> makeSkin(const Grid& grid) {
   return std::make_shared<Mask>(skin);
 }
 
-TEST(SegmentTint, SkinNeedsNoSegment) {
+TEST(SegmentTint, DetectedSkinIsAPartWithoutSegment) {
   const auto segments = makeRow({"liver", "spleen"});
   const Grid& grid = segments->segmentation.grid();
   const TintPlan plan = makePlan(segments, automatic, {}, {"liver"}, makeSkin(grid));
@@ -287,7 +288,7 @@ TEST(SegmentTint, SkinNeedsNoSegment) {
   EXPECT_TRUE(makePlan(makeRow({"body"}), automatic, {}, {}, makeSkin(grid)).hasDetectedSkin());
 }
 
-TEST(SegmentTint, AlbedoIsTakenAsItIs) {
+TEST(SegmentTint, AlbedoIsUsedUnchanged) {
   const auto segments = makeRow({"liver"});
   const auto plan = std::make_shared<TintPlan>(makePlan(
       segments,

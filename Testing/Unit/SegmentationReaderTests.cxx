@@ -1,4 +1,4 @@
-// Labelmaps and Slicer segmentations, and the masks made of their segments.
+// Labelmaps and Slicer segmentations, and focus masks of their segments.
 
 #include "files/medical/VolumeReader.h"
 #include "files/segments/SegmentationReader.h"
@@ -25,7 +25,7 @@ int getVoxel(const Mask& mask, const Vec3& world) {
   return mask.voxels[static_cast<std::size_t>(index(mask.grid, v.x(), v.y(), v.z()))];
 }
 
-/// Labelmap of 6^3 voxels of 1 mm from the origin, with some labels.
+/// Labelmap of 6^3 voxels of `spacing` mm with some labels.
 Segmentation makeLabelmap(const std::vector<std::pair<Size3, int>>& labels,
                           Vec3 origin = Vec3::Zero(), double spacing = 1.0) {
   const Grid grid = makeGrid(Size3::Constant(6), origin, spacing);
@@ -40,7 +40,7 @@ Segmentation makeLabelmap(const std::vector<std::pair<Size3, int>>& labels,
   return {"test", grid, 1, voxels, segments};
 }
 
-TEST(SegmentationReader, MaskIsCroppedToTheExtentPlusAMargin) {
+TEST(SegmentationReader, MaskIsCroppedToTheSegmentsPlusAMargin) {
   const Segmentation s = makeLabelmap({{{1, 2, 3}, 1}, {{3, 3, 3}, 2}, {{5, 5, 5}, 3}});
   const Mask mask = s.makeFocusMask({"1", "2"}, makeGrid({50, 50, 50}, {-20, -20, -20}));
   EXPECT_EQ(mask.grid.size, Size3(5, 4, 3));
@@ -54,17 +54,17 @@ TEST(SegmentationReader, MaskIsCroppedToTheExtentPlusAMargin) {
   EXPECT_TRUE(isApprox(mask.grid.indexToWorld * Vec3::Zero(), Vec3(0, 1, 2)));
 }
 
-TEST(SegmentationReader, MaskEndsWithZerosInsideTheVolume) {
+TEST(SegmentationReader, MaskHasAMarginOfZerosInsideTheVolume) {
   const Segmentation s = makeLabelmap({{{0, 0, 0}, 1}});
   const Mask mask = s.makeFocusMask({"1"}, makeGrid({50, 50, 50}, {-20, -20, -20}));
   EXPECT_EQ(mask.grid.size, Size3(3, 3, 3));
   EXPECT_EQ(std::count(mask.voxels.begin(), mask.voxels.end(), 1), 1);
 }
 
-TEST(SegmentationReader, MaskContinuesOverFacesOfTheVolume) {
+TEST(SegmentationReader, MaskIsExtendedBeyondFacesOfTheVolume) {
   const Segmentation s = makeLabelmap({{{0, 0, 5}, 1}, {{1, 0, 5}, 2}});
-  // The volume shares the labelmap's lower faces of x and y; its upper z face lies two voxels
-  // further in.
+  // The labelmap's lower x and y faces are faces of the volume; its upper z face is two voxels
+  // inside it.
   const Mask mask = s.makeFocusMask({"1", "2"}, makeGrid({8, 12, 8}, {0, 0, 0}, 1.0));
   EXPECT_EQ(mask.count, 2);
   EXPECT_EQ(getVoxel(mask, {-1, 0, 5}), 1);
@@ -77,7 +77,7 @@ TEST(SegmentationReader, MaskContinuesOverFacesOfTheVolume) {
   EXPECT_EQ(full.count, 2);
 }
 
-TEST(SegmentationReader, FacesWithinHalfAVoxelAreShared) {
+TEST(SegmentationReader, FacesWithinHalfAVoxelCoincide) {
   const Segmentation s = makeLabelmap({{{0, 3, 3}, 1}});
   const auto isExtended = [&s](double offset, double spacing = 1.0) {
     return getVoxel(s.makeFocusMask({"1"}, makeGrid({9, 9, 9}, {offset, -3, -3}, spacing)),
@@ -88,21 +88,21 @@ TEST(SegmentationReader, FacesWithinHalfAVoxelAreShared) {
   EXPECT_TRUE(isExtended(-0.45));
   EXPECT_FALSE(isExtended(0.6));
   EXPECT_FALSE(isExtended(-0.6));
-  EXPECT_TRUE(isExtended(0.5, 2.0)); // faces at -0.5 and -0.5
-  // A labelmap that touches the volume from outside shares no face.
+  EXPECT_TRUE(isExtended(0.5, 2.0)); // both faces at -0.5
+  // A labelmap that touches the volume from outside has no coinciding face.
   EXPECT_EQ(getVoxel(s.makeFocusMask({"1"}, makeGrid({6, 9, 9}, {-6, -3, -3})), {-1, 3, 3}), 0);
 }
 
-TEST(SegmentationReader, FlippedGridSharesFacesAndObliqueDoesNot) {
+TEST(SegmentationReader, FacesOfFlippedGridsCoincideButNotOfObliqueOnes) {
   const Segmentation s = makeLabelmap({{{0, 3, 3}, 1}});
-  // Grid that fills the labelmap's box, with permuted axes.
+  // Grid of the labelmap's box with permuted axes.
   const Affine flipped(Mat3({0, 1, 0}, {0, 0, -1}, {-1, 0, 0}), {5, 0, 5});
   EXPECT_EQ(getVoxel(s.makeFocusMask({"1"}, Grid({6, 6, 6}, flipped)), {-1, 3, 3}), 1);
   const Affine oblique = makeRotation(0.4, Vec3::UnitZ());
   EXPECT_EQ(getVoxel(s.makeFocusMask({"1"}, Grid({6, 6, 6}, oblique)), {-1, 3, 3}), 0);
 }
 
-TEST(SegmentationReader, ReadsPlainLabelmapsOfEveryFormat) {
+TEST(SegmentationReader, ReadsPlainLabelmapsInEveryFormat) {
   const TemporaryFolder folder;
   std::vector<std::int16_t> labels(24, 0);
   labels[5] = 300;
@@ -127,22 +127,22 @@ TEST(SegmentationReader, ReadsOneLayerWithoutLayerField) {
   const TemporaryFolder folder;
   FileGeometry geometry;
   addSegment(geometry, 0, "a", "liver", "1", "");
-  addSegment(geometry, 1, "b", "tumour", "2", "");
+  addSegment(geometry, 1, "b", "tumor", "2", "");
   std::vector<std::uint8_t> labels(24, 0);
   labels[3] = 1;
   labels[7] = labels[8] = 2;
   writeFile(folder / "s.seg.nrrd", labels, geometry);
   const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
   EXPECT_EQ(s.makeFocusMask({"liver"}, s.grid()).count, 1);
-  EXPECT_EQ(s.makeFocusMask({"tumour"}, s.grid()).count, 2);
+  EXPECT_EQ(s.makeFocusMask({"tumor"}, s.grid()).count, 2);
 }
 
 TEST(SegmentationReader, ReadsOverlappingLayers) {
   const TemporaryFolder folder;
-  for (const bool isOld : {false, true}) { // older files have no Layer
+  for (const bool isOld : {false, true}) { // older files have no Layer field
     FileGeometry geometry{.components = 2, .compress = true};
     addSegment(geometry, 0, "a", "liver", "1", isOld ? "" : "0");
-    addSegment(geometry, 1, "b", "tumour", "1", isOld ? "" : "1");
+    addSegment(geometry, 1, "b", "tumor", "1", isOld ? "" : "1");
     std::vector<std::uint8_t> labels(48, 0);
     for (const std::size_t voxel : {3u, 4u, 5u})
       labels[2 * voxel] = 1;
@@ -155,13 +155,13 @@ TEST(SegmentationReader, ReadsOverlappingLayers) {
     EXPECT_TRUE(s.segments()[0].color == Rgb(0.5, 0.25, 1));
     EXPECT_EQ(s.makeFocusMask({"liver"}, s.grid()).count, 3);
     EXPECT_EQ(s.makeFocusMask({"b"}, s.grid()).count, 2);
-    EXPECT_EQ(s.makeFocusMask({"a", "tumour"}, s.grid()).count, 4);
-    expectRefused(folder / "s.seg.nrrd", "a (liver), b (tumour)",
+    EXPECT_EQ(s.makeFocusMask({"a", "tumor"}, s.grid()).count, 4);
+    expectRefused(folder / "s.seg.nrrd", "a (liver), b (tumor)",
                   [&] { s.makeFocusMask({"1"}, s.grid()); });
   }
 }
 
-TEST(SegmentationReader, RefusesFilesThatAreNoSegmentation) {
+TEST(SegmentationReader, RefusesFilesThatAreNotSegmentations) {
   const TemporaryFolder folder;
   const auto refuse = [&folder](const std::string& text) {
     expectRefused(folder / "s.nrrd", text, [&] { readSegmentation(folder / "s.nrrd"); });
@@ -170,10 +170,10 @@ TEST(SegmentationReader, RefusesFilesThatAreNoSegmentation) {
   std::vector<float> fraction(24, 0.0f);
   fraction[3] = 0.5f;
   writeFile(folder / "s.nrrd", fraction);
-  refuse("whole numbers");
+  refuse("not integers");
   fraction[3] = std::numeric_limits<float>::quiet_NaN();
   writeFile(folder / "s.nrrd", fraction);
-  refuse("whole numbers");
+  refuse("not integers");
   fraction[3] = 2147483648.0f;
   writeFile(folder / "s.nrrd", fraction);
   refuse("32 bits");
@@ -189,12 +189,11 @@ TEST(SegmentationReader, RefusesFilesThatAreNoSegmentation) {
   refuse("Segment0_LabelValue");
 }
 
-// ---- variants found in Slicer's files
-// ----------------------------------------------------------------------------------
+// ---- variants in Slicer's files
 
-/// World centre of a segment's voxels.
+/// Center of a segment's voxels in world space.
 Vec3 computeCentroid(const Segmentation& segmentation, const std::string& selector) {
-  const Grid distantGrid = makeGrid({1, 1, 1}, Vec3::Constant(1e6)); // shares no face
+  const Grid distantGrid = makeGrid({1, 1, 1}, Vec3::Constant(1e6)); // no coinciding face
   const Mask mask = segmentation.makeFocusMask({selector}, distantGrid);
   Vec3 sum = Vec3::Zero();
   for (std::int64_t z = 0; z < mask.grid.size.z(); ++z)
@@ -205,7 +204,7 @@ Vec3 computeCentroid(const Segmentation& segmentation, const std::string& select
   return sum / static_cast<double>(mask.count);
 }
 
-TEST(SegmentationReader, OriginOfACroppedFileIncludesItsOffset) {
+TEST(SegmentationReader, OriginOfACroppedFileAlreadyIncludesTheOffset) {
   const TemporaryFolder folder;
   FileGeometry geometry{.spacing = {2, 3, 4}, .origin = {10, 20, 30}};
   addSegment(geometry, 0, "a", "liver", "1", "0");
@@ -218,7 +217,7 @@ TEST(SegmentationReader, OriginOfACroppedFileIncludesItsOffset) {
   EXPECT_TRUE(isApprox(computeCentroid(s, "liver"), Vec3(-12, -20, 30)));
 }
 
-TEST(SegmentationReader, IgnoresStatedExtentOfSegments) {
+TEST(SegmentationReader, IgnoresTheExtentFieldOfSegments) {
   const TemporaryFolder folder;
   FileGeometry geometry;
   addSegment(geometry, 0, "a", "liver", "1", "0");
@@ -236,14 +235,14 @@ TEST(SegmentationReader, IgnoresLabelValuesWithoutSegment) {
   const TemporaryFolder folder;
   FileGeometry geometry{.components = 2};
   addSegment(geometry, 0, "a", "liver", "7", "0");
-  addSegment(geometry, 1, "b", "tumour", "300", "1");
+  addSegment(geometry, 1, "b", "tumor", "300", "1");
   std::vector<std::int16_t> labels(48, 0);
   labels[0] = labels[2] = 7;      // liver
-  labels[4] = 5;                  // no segment's value
-  labels[6] = 300;                // tumour's value, in the liver's layer
-  labels[1] = 7;                  // liver's value, in the tumour's layer
-  labels[5] = labels[9] = 300;    // tumour
-  labels[11] = labels[13] = -300; // no segment's value
+  labels[4] = 5;                  // not a segment's value
+  labels[6] = 300;                // tumor's value, but in liver's layer
+  labels[1] = 7;                  // liver's value, but in tumor's layer
+  labels[5] = labels[9] = 300;    // tumor
+  labels[11] = labels[13] = -300; // not a segment's value
   writeFile(folder / "s.seg.nrrd", labels, geometry);
   const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
   EXPECT_EQ(s.makeFocusMask({"liver"}, s.grid()).count, 2);
@@ -256,7 +255,7 @@ TEST(SegmentationReader, IgnoresLabelValuesWithoutSegment) {
   EXPECT_EQ(statistics[1].voxels, 2);
 }
 
-TEST(SegmentationReader, ReadsOldColoursAndReplacesBrokenOnes) {
+TEST(SegmentationReader, ReadsOldColorsAndReplacesInvalidOnes) {
   const TemporaryFolder folder;
   FileGeometry geometry;
   for (int n = 0; n < 6; ++n)
@@ -266,7 +265,7 @@ TEST(SegmentationReader, ReadsOldColoursAndReplacesBrokenOnes) {
   for (std::size_t n = 0; n < 6; ++n) {
     const std::string prefix = std::string("Segment") + std::to_string(n);
     geometry.fields[prefix + "_DefaultColor"] = colors[n];
-    if (n < 5) // the last has a Color as well, which takes precedence
+    if (n < 5) // the last also has a Color field, which takes precedence
       geometry.fields.erase(prefix + "_Color");
   }
   writeFile(folder / "s.seg.nrrd", std::vector<std::uint8_t>(24, 1), geometry);
@@ -296,23 +295,23 @@ TEST(SegmentationReader, IgnoresOtherFieldsWrittenBySlicer) {
   EXPECT_EQ(s.makeFocusMask({s.segments()[0].name}, s.grid()).count, 24);
 }
 
-TEST(SegmentationReader, PlacesTheOldestFilesByTheirExtent) {
+TEST(SegmentationReader, PlacesTheOldestFilesByTheirExtentField) {
   const TemporaryFolder folder;
   FileGeometry geometry{.size = {3, 4, 2, 2},
                         .directions = {{-1, 0, 0}, {0, -1, 0}, {0, 0, 1}},
                         .spacing = {2, 3, 4},
                         .origin = {100, 200, -50}};
   geometry.fields["Segmentation_Extent"] = "10 12 20 23 5 6";
-  for (const int n : {0, 1}) { // one frame each, with value 1
+  for (const int n : {0, 1}) { // one frame per segment, with value 1
     const std::string prefix = "Segment" + std::to_string(n) + "_";
     geometry.fields[prefix + "ID"] = n == 0 ? "a" : "b";
-    geometry.fields[prefix + "Name"] = n == 0 ? "liver" : "tumour";
+    geometry.fields[prefix + "Name"] = n == 0 ? "liver" : "tumor";
     geometry.fields[prefix + "DefaultColor"] = "0.5 0.5 0.5";
     geometry.fields[prefix + "Extent"] = "10 12 20 23 5 6";
   }
   std::vector<std::uint8_t> frames(48, 0);
   frames[0] = frames[1] = 1;       // liver: voxels 0 0 0 and 1 0 0
-  frames[24 + 1] = 1;              // tumour: 1 0 0,
+  frames[24 + 1] = 1;              // tumor: 1 0 0,
   frames[24 + 1 + 3 * 3 + 12] = 1; // and 1 3 1
   writeFile(folder / "s.seg.nrrd", frames, geometry);
   const Segmentation s = readSegmentation(folder / "s.seg.nrrd");
@@ -320,14 +319,14 @@ TEST(SegmentationReader, PlacesTheOldestFilesByTheirExtent) {
   EXPECT_EQ(s.makeFocusMask({"liver"}, s.grid()).count, 2);
   EXPECT_TRUE(
       isApprox(computeCentroid(s, "liver"), Vec3(100 - 10.5 * 2, 200 - 20 * 3, -50 + 5 * 4)));
-  EXPECT_EQ(s.makeFocusMask({"tumour"}, s.grid()).count, 2);
+  EXPECT_EQ(s.makeFocusMask({"tumor"}, s.grid()).count, 2);
   EXPECT_TRUE(
-      isApprox(computeCentroid(s, "tumour"), Vec3(100 - 11 * 2, 200 - 21.5 * 3, -50 + 5.5 * 4)));
+      isApprox(computeCentroid(s, "tumor"), Vec3(100 - 11 * 2, 200 - 21.5 * 3, -50 + 5.5 * 4)));
   EXPECT_EQ(s.makeFocusMask({"a", "b"}, s.grid()).count, 3);
 
   geometry.fields["Segmentation_Extent"] = "10 12 20 23 5";
   writeFile(folder / "s.seg.nrrd", frames, geometry);
-  expectRefused(folder / "s.seg.nrrd", "Segmentation_Extent: must be six whole numbers",
+  expectRefused(folder / "s.seg.nrrd", "Segmentation_Extent: must be six integers",
                 [&] { readSegmentation(folder / "s.seg.nrrd"); });
 }
 
@@ -344,7 +343,7 @@ TEST(SegmentationReader, RefusesABrokenGzipStream) {
   FileGeometry geometry{.size = {32, 32, 32}, .compress = true};
   addSegment(geometry, 0, "a", "liver", "1", "0");
   std::vector<std::uint8_t> labels(32768);
-  for (std::size_t i = 0; i < labels.size(); ++i) // hardly compressible
+  for (std::size_t i = 0; i < labels.size(); ++i) // almost incompressible
     labels[i] = static_cast<std::uint8_t>((i * 2654435761u >> 13) & 1);
   const std::filesystem::path file = folder / "s.seg.nrrd";
   writeFile(file, labels, geometry);
@@ -357,19 +356,19 @@ TEST(SegmentationReader, RefusesABrokenGzipStream) {
   };
   const std::size_t half = samples + (full.size() - samples) / 2;
   refuse(full.substr(0, samples), "no stream");
-  refuse(full.substr(0, half), "half of it");
-  refuse(full.substr(0, full.size() - 9), "its last block cut");
-  refuse(full.substr(0, full.size() - 4), "without its length");
+  refuse(full.substr(0, half), "half of the stream");
+  refuse(full.substr(0, full.size() - 9), "last block truncated");
+  refuse(full.substr(0, full.size() - 4), "length field missing");
   std::string damaged = full;
   damaged[half] = static_cast<char>(damaged[half] ^ 0x10);
-  refuse(damaged, "a flipped bit");
+  refuse(damaged, "flipped bit");
   damaged = full;
   damaged[full.size() - 6] = static_cast<char>(damaged[full.size() - 6] ^ 1);
-  refuse(damaged, "a wrong checksum");
+  refuse(damaged, "wrong checksum");
 }
 
-TEST(SegmentationReader, StatisticsHoldVoxelsAndBoundsOfEachSegment) {
-  // Permuted axes: index x runs along S, y along -R, z along A.
+TEST(SegmentationReader, StatisticsHaveVoxelsAndBoundsOfEachSegment) {
+  // Permuted axes: index x runs along S, y along L, z along A.
   const Affine map(Mat3({0, 0, 1}, {-2, 0, 0}, {0, 3, 0}), {10, 20, 30});
   const Grid grid({4, 5, 6}, map);
   LargeArray<std::uint8_t> labels(240, 0); // two layers

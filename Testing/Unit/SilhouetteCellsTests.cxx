@@ -1,4 +1,4 @@
-// Exact surface between samples: the focus's own depth.
+// Depth of the exact clipping surface between buffer samples: it must equal the depth of the focus.
 
 #include "ClippingTesting.h"
 #include "clip/surface/ClippingSurface.h"
@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array projections{Projection::orthographic, Projection::perspective};
 
-/// Ball, steep at its outline, seen by pixels smaller than its voxels.
+/// Ball with pixels smaller than its voxels; its depth is steep at the outline.
 struct Ball {
   Domain volume{makeCenteredGrid({60, 60, 60})};
   Mask focus = makeSphereMask(makeCenteredGrid({60, 60, 60}), 20.3);
@@ -26,7 +26,7 @@ struct Ball {
   }
 };
 
-/// Depth of a ray in the focus, by stepping.
+/// Depth at which a ray enters the focus, found by ray marching.
 double findFocusDepth(const Ball& ball, const Vec2& at) {
   const Ray ray = ball.camera.makePlaneRay(at);
   const Mask& mask = ball.focus;
@@ -51,9 +51,9 @@ double findFocusDepth(const Ball& ball, const Vec2& at) {
   return infinity;
 }
 
-/// Point at which a radial line leaves the ball.
+/// Points on both sides of the ball's outline on a radial line.
 struct OutlinePoint {
-  Vec2 inside, outside; ///< 1e-7 mm apart
+  Vec2 inside, outside; ///< at most 1e-7 mm apart
 };
 OutlinePoint findOutlinePoint(const FocusTracer& tracer, const Vec2& direction) {
   double inner = 17.0, outer = 22.0;
@@ -78,11 +78,11 @@ TEST(SilhouetteCells, DepthBetweenSamplesIsThatOfTheFocus) {
         differences.push_back(std::abs(depth - clip.surfaceDepth(at)));
     }
     std::ranges::sort(differences);
-    EXPECT_LT(differences[399], 0.02) << "a step of this test's search";
+    EXPECT_LT(differences[399], 0.02) << "the step of this test's ray marching";
   }
 }
 
-TEST(SilhouetteCells, DepthContinuesAtTheEdgeOfTheFocus) {
+TEST(SilhouetteCells, DepthIsContinuousAtTheOutline) {
   for (const Projection projection : projections) {
     const Ball ball(projection);
     const ClippingSurface surface = ball.surface();
@@ -98,11 +98,11 @@ TEST(SilhouetteCells, DepthContinuesAtTheEdgeOfTheFocus) {
     }
     std::ranges::sort(steps);
     EXPECT_LT(steps[190], 1e-3);
-    EXPECT_LT(steps[199], 1.5) << "where two voxels' outlines cross";
+    EXPECT_LT(steps[199], 1.5) << "where the outlines of two voxels cross";
   }
 }
 
-TEST(SilhouetteCells, DepthJoinsTheSamplesWithoutASteepSlope) {
+TEST(SilhouetteCells, DepthReachesTheSamplesWithoutASteepSlope) {
   const Ball ball(Projection::orthographic);
   const ClippingSurface surface = ball.surface();
   const auto& clip = std::get<ClipDepth>(surface.clip);
@@ -119,12 +119,11 @@ TEST(SilhouetteCells, DepthJoinsTheSamplesWithoutASteepSlope) {
   }
   std::ranges::sort(slopes);
   EXPECT_LT(slopes[slopes.size() * 9 / 10], 2.0);
-  EXPECT_LT(slopes[slopes.size() * 998 / 1000], 20.0) << "but for outlines that cross";
+  EXPECT_LT(slopes[slopes.size() * 998 / 1000], 20.0) << "except where outlines cross";
 }
 
-TEST(SilhouetteCells, KeepEqualsThatOfTheFullSurface) {
-  // keep queries only as much of the surface as it needs; the result equals that of the full
-  // surface.
+TEST(SilhouetteCells, ClipWeightEqualsThatOfTheFullSurface) {
+  // clipWeight() evaluates only the part of the surface that affects its result.
   for (const Projection projection : projections)
     for (const double softness : {0.0, 1.5}) {
       const Ball ball(projection);
@@ -154,7 +153,7 @@ TEST(SilhouetteCells, KeepEqualsThatOfTheFullSurface) {
     }
 }
 
-TEST(SilhouetteCells, DepthMeetsASmoothedFocus) {
+TEST(SilhouetteCells, DepthIsThatOfASmoothedFocus) {
   Ball ball(Projection::orthographic);
   ball.focus = makeMask(ball.volume.grid(), [](const Vec3&) { return false; });
   ball.focus.maxValue = 255;
@@ -173,13 +172,13 @@ TEST(SilhouetteCells, DepthMeetsASmoothedFocus) {
     const OutlinePoint outline =
         findOutlinePoint(tracer, {std::cos(0.0628 * i), std::sin(0.0628 * i)});
     EXPECT_NEAR(outline.inside.norm(), 20.3, 0.05);
-    EXPECT_NEAR(clip.surfaceDepth(outline.outside), 200.0, 1.0) << "the ball ends in its middle";
+    EXPECT_NEAR(clip.surfaceDepth(outline.outside), 200.0, 1.0) << "the depth of the ball's center";
     EXPECT_NEAR(clip.surfaceDepth(outline.outside), clip.surfaceDepth(outline.inside), 0.01);
     EXPECT_NEAR(clip.surfaceDepth(1.02 * outline.outside), 200.0, 1.0);
   }
 }
 
-TEST(SilhouetteCells, SelfHidingFocusHasTheFartherDepthBetween) {
+TEST(SilhouetteCells, SelfOccludingFocusHasTheFartherDepthBetween) {
   // The right half lies 10 mm deeper.
   const Grid volume = makeCenteredGrid({60, 60, 60});
   const Mask focus = makeMask(volume, [](const Vec3& p) {
@@ -195,10 +194,10 @@ TEST(SilhouetteCells, SelfHidingFocusHasTheFartherDepthBetween) {
     const double depth = clip.surfaceDepth({x, 0.3});
     partialCount += depth > 95.0 && depth < 103.0;
   }
-  EXPECT_LT(partialCount * 0.01, 1.0) << "mm; the voxels' own slope";
+  EXPECT_LT(partialCount * 0.01, 1.0) << "mm; the slope of the voxels themselves";
 }
 
-TEST(SilhouetteCells, OffsetMovesTheDepth) {
+TEST(SilhouetteCells, OffsetShiftsTheDepth) {
   const Ball ball(Projection::orthographic);
   SurfaceOptions options;
   options.boundary = Boundary::exact;

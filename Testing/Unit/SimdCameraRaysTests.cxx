@@ -1,4 +1,4 @@
-// Where paths begin in lanes, against the scalar code, on each of the machine's instruction sets.
+// Camera rays and primary samples of SIMD code against scalar code, on each instruction set.
 
 #include "integrator/simd/CameraRays.h"
 
@@ -45,7 +45,7 @@ std::vector<View> makeViews() {
            crop}};
 }
 
-/// All that begins paths in a scene.
+/// Everything needed to start paths in a scene.
 struct PathSetup {
   Domain domain;
   SimdTracker tracker;
@@ -62,7 +62,7 @@ struct PathSetup {
         cameraTable(domain, s.camera) {}
 };
 
-/// Starts of one sample each in neighbouring pixels.
+/// One camera sample in each of consecutive pixels.
 void fill(CameraSamples& samples, const Sampler& source, std::uint64_t pixel,
           std::uint64_t sample) {
   samples.isStratified = source.isStratified();
@@ -79,7 +79,7 @@ void fill(CameraSamples& samples, const Sampler& source, std::uint64_t pixel,
   }
 }
 
-TEST_P(SimdCameraRays, NumbersAreThoseOfTheSource) {
+TEST_P(SimdCameraRays, SamplesEqualThoseOfTheSampler) {
   const Grid grid = makeCenteredGrid({30, 20, 40}, {1.0, 1.5, 0.8});
   const Volume volume = makeVolume(grid, [](const Vec3&) { return 1.0; });
   TestScene scene{volume, makeLinearTransfer(0.1, Rgb::Ones()), {}, makeViews()[0].pose, width,
@@ -121,9 +121,9 @@ TEST_P(SimdCameraRays, NumbersAreThoseOfTheSource) {
   });
 }
 
-/// Origins, lengths and depths as they are in double, to some last places of the volume's edge,
-/// however far away the eye is.
-TEST_P(SimdCameraRays, RaysAreThoseInDouble) {
+/// Origins, lengths and depths match double precision within a few ulps of the volume's extent, at
+/// any distance of the camera.
+TEST_P(SimdCameraRays, RaysMatchDoublePrecision) {
   const Grid grid = makeCenteredGrid({30, 20, 40}, {1.0, 1.5, 0.8});
   const Volume volume = makeVolume(grid, [](const Vec3&) { return 1.0; });
   for (const View& view : makeViews()) {

@@ -1,5 +1,5 @@
-// Lanes' environment maps against the scalar ones', on every instruction set: what is drawn, with
-// which density, and what escaping rays meet.
+// SIMD light sampling and evaluation against scalar code on each instruction set: sampled
+// directions, their densities, and the radiance along escaping rays.
 
 #include "EachInstructionSet.h"
 #include "Histogram.h"
@@ -21,7 +21,7 @@ EnvironmentMap makeRandomMap(int width, int height, std::uint64_t seed) {
   return map;
 }
 
-/// One texel of light; the pole's row among them.
+/// Map with one bright texel.
 EnvironmentMap makeLamp(int width, int height, int litTexel) {
   EnvironmentMap map{width, height,
                      std::vector<float>(static_cast<std::size_t>(3 * width * height))};
@@ -52,7 +52,7 @@ std::vector<LightCase> makeLightCases() {
   };
 }
 
-/// A thin volume of 1 mm voxels around the origin, index axes along RAS; albedo 1, isotropic.
+/// Thin medium of 1 mm voxels around the origin, with index axes along RAS; albedo 1, isotropic.
 struct Fog {
   static Volume makeVolume() {
     Affine toWorld = Affine::Identity();
@@ -84,14 +84,14 @@ struct Fog {
   }
 };
 
-/// Lights that one scattering in the fog draws: a direction, and radiance times phase
-/// function over the sum of both densities, channel by channel.
+/// Light sample of a scattering in the fog. `estimate`: per channel, radiance times phase function
+/// over the sum of the densities of light and phase function sampling.
 struct ShadowSample {
   Vec3 direction;
   Rgb estimate;
 };
 
-/// Sets path i, at the middle of the fog.
+/// Sets path i to a vertex at the center of the fog.
 void setPath(PathBatch& paths, std::size_t i, const Vec3& direction, const Vec2& scattered,
              std::uint64_t key) {
   paths.rays.set(i, {Vec3::Constant(3.5), direction}, 9.0);
@@ -110,7 +110,7 @@ void setPath(PathBatch& paths, std::size_t i, const Vec3& direction, const Vec2&
   paths.counter[i] = static_cast<std::uint32_t>(key >> 32);
 }
 
-/// Light drawn by paths that scatter at the origin; those that drew none are left out.
+/// Light samples of paths that scatter at the origin; omits paths without one.
 std::vector<ShadowSample> sampleLights(const Fog& fog, std::uint64_t seed, std::size_t count) {
   const auto paths = std::make_unique<PathBatch>();
   const auto lights = std::make_unique<ShadowBatch>();
@@ -138,7 +138,7 @@ std::vector<ShadowSample> sampleLights(const Fog& fog, std::uint64_t seed, std::
   return all;
 }
 
-/// Light that rays scattered with density 1 / 4 pi take from beyond the fog.
+/// Light that rays, scattered with density 1 / 4 pi, receive from outside the fog.
 std::vector<Rgb> collectEmitted(const Fog& fog, const std::vector<Vec3>& directions) {
   const auto paths = std::make_unique<PathBatch>();
   const auto lights = std::make_unique<ShadowBatch>();
@@ -159,8 +159,8 @@ std::vector<Rgb> collectEmitted(const Fog& fog, const std::vector<Vec3>& directi
   return all;
 }
 
-/// Light of the scalar lights for a scattering with density 1 / 4 pi in that direction: both of
-/// sampling and of meeting the light, for both have the same estimate.
+/// Estimate of the scalar lights for a scattering with density 1 / 4 pi in that direction. It is
+/// the same for light sampling and for phase function sampling.
 Rgb computeExpected(const LightSet& lights, const Vec3& direction) {
   const EmitterHit hit = lights.evaluateEnvironment(direction);
   return hit.radiance * (0.25 / pi / (0.25 / pi + hit.pdf));
@@ -170,8 +170,8 @@ bool isNear(const Rgb& a, const Rgb& b) {
   return ((a - b).abs() <= 2e-5 * (1e-3 + a.abs() + b.abs())).all();
 }
 
-/// Number of directions in which values differ from the truth: all but those beside edges of
-/// texels.
+/// Number of directions in which values differ from the scalar lights. Only directions at texel
+/// edges should differ.
 template <typename Values, typename DirectionOf, typename ValueOf>
 std::size_t countMismatches(const Fog& fog, const Values& values, DirectionOf&& getDirection,
                             ValueOf&& getValue) {
@@ -183,7 +183,7 @@ std::size_t countMismatches(const Fog& fog, const Values& values, DirectionOf&& 
 
 class SimdLights : public InstructionSetTest {};
 
-/// Chi-squared of two histograms of equal weight against each other, as a standard normal deviate.
+/// Chi-squared test of two histograms with equal sample counts, as a z-score.
 double compareHistograms(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> mean(a.size()),
       deviating(a.size()); // (apart - mean)^2 / mean = (a - b)^2 / (a + b)
@@ -194,7 +194,7 @@ double compareHistograms(const std::vector<double>& a, const std::vector<double>
   return chiSquaredZScore(deviating, mean);
 }
 
-TEST_P(SimdLights, DrawDirectionsAsTheScalarLightsDo) {
+TEST_P(SimdLights, SampledDirectionsMatchTheScalarLights) {
   for (const LightCase& s : makeLightCases()) {
     SCOPED_TRACE(s.name);
     const Fog fog(s.lights);
@@ -212,7 +212,7 @@ TEST_P(SimdLights, DrawDirectionsAsTheScalarLightsDo) {
     const std::size_t deviating = countMismatches(
         fog, all, [&](std::size_t i) { return all[i].direction; },
         [&](std::size_t i) { return all[i].estimate; });
-    EXPECT_LT(deviating, count / 10000) << "the scalar lights' radiance and density";
+    EXPECT_LT(deviating, count / 10000) << "different radiance or density";
   }
 }
 
@@ -220,7 +220,7 @@ TEST_P(SimdLights, MeanOfRadianceOverDensityIsTheIntegral) {
   for (const LightCase& s : makeLightCases()) {
     SCOPED_TRACE(s.name);
     const Fog fog(s.lights);
-    // Sampling and meeting together, each by its weight, estimate the mean radiance.
+    // Light and phase function sampling, weighted (MIS), together estimate the mean radiance.
     constexpr std::size_t count = 200000;
     std::vector<Vec3> directions;
     for (std::size_t i = 0; i < count; ++i) {
@@ -241,13 +241,13 @@ TEST_P(SimdLights, MeanOfRadianceOverDensityIsTheIntegral) {
         expected += each.sampler.mean();
     for (const auto& sky : fog.lights.tables().skies) // linear in the cosine
       expected += sky.middle + 0.25 * (sky.toTop + sky.toBottom);
-    const Rgb maxStandardError = squares.sqrt() / count; // no less than the standard error
+    const Rgb maxStandardError = squares.sqrt() / count; // at least the standard error
     EXPECT_TRUE(((sum / count - expected).abs() <= 4.5 * maxStandardError).all())
-        << sum[0] / count << " for " << expected[0];
+        << sum[0] / count << " instead of " << expected[0];
   }
 }
 
-TEST_P(SimdLights, EscapingRaysMeetTheScalarLights) {
+TEST_P(SimdLights, EscapingRaysMatchTheScalarLights) {
   std::vector<Vec3> directions = {{0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {0, 1, 0}};
   for (std::size_t i = 0; i < 100000; ++i) {
     Random random(6, i, 0);
@@ -281,7 +281,7 @@ std::vector<std::uint64_t> toProbabilities(const AliasTables& tables) {
   return units;
 }
 
-TEST(AliasTables, DrawBinsByTheirProbabilitiesToTheLastBit) {
+TEST(AliasTables, SampleBinsWithExactProbabilities) {
   for (const std::size_t bins : {1U, 2U, 255U, 256U, 257U, 5000U}) {
     std::vector<double> sums{0.0};
     for (std::size_t i = 0; i < bins; ++i) {
@@ -297,7 +297,7 @@ TEST(AliasTables, DrawBinsByTheirProbabilitiesToTheLastBit) {
     for (std::size_t i = 0; i < units.size(); ++i) {
       const double probability = i < bins ? sums[i + 1] - sums[i] : 0.0;
       ASSERT_NEAR(static_cast<double>(units[i]), 0x1p32 * probability, 1.0) << bins << ", " << i;
-      ASSERT_TRUE(probability > 0.0 || units[i] == 0U) << "a bin of probability 0";
+      ASSERT_TRUE(probability > 0.0 || units[i] == 0U) << "sampled a bin of probability 0";
     }
   }
 }

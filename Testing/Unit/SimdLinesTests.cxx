@@ -20,7 +20,7 @@ SimdLines makeLines(const std::vector<std::array<double, 2>>& points) {
   return SimdLines({&function});
 }
 
-/// Line that lanes read for a scalar, as Medium-inl.h finds it, and the value on it.
+/// Line segment that SIMD code finds for a scalar (Medium-inl.h), and its value there.
 struct Lookup {
   bool isLine;
   double value;
@@ -33,7 +33,7 @@ Lookup lookUp(const SimdLines& table, double scalar) {
           static_cast<double>(line.value + (bin - std::floor(bin)) * line.slope)};
 }
 
-/// Expects lines to be the function, and no more bins without a line than knots can explain.
+/// Expects the lines to equal the function, and only bins around knots to have no line.
 void expectFunction(const ScalarFunction& function, double tolerance) {
   const SimdLines table({&function});
   const double start = function.knots().front().position;
@@ -52,29 +52,29 @@ void expectFunction(const ScalarFunction& function, double tolerance) {
   EXPECT_LE(withoutLine, 3 * static_cast<std::ptrdiff_t>(function.knots().size()));
 }
 
-TEST(SimdLines, LinesAreTheFunction) {
+TEST(SimdLines, EqualTheFunction) {
   expectFunction(makeFunction({{-1000, 0}, {-300.3, 0}, {45, 0.7}, {45.5, 2.5}, {3071, 9}}), 1e-3);
   expectFunction(makeFunction({{0, 0}, {255, 3}}), 1e-5);
   expectFunction(makeFunction({{0, 0}, {100, 0}, {100, 5}, {101, 5}, {101, 0}, {1000, 0.1}}), 1e-3);
 }
 
-TEST(SimdLines, BinsOfKnotsHaveNoLine) {
+TEST(SimdLines, BinsWithKnotsHaveNoLine) {
   const SimdLines table = makeLines({{0, 0}, {100.05, 1}, {1024, 0}});
   EXPECT_FALSE(lookUp(table, 100.5).isLine);
   EXPECT_TRUE(lookUp(table, 99.5).isLine);
   EXPECT_TRUE(lookUp(table, 101.5).isLine);
   const SimdLines jump = makeLines({{0, 0}, {512, 0}, {512, 1}, {1024, 1}});
-  EXPECT_FALSE(lookUp(jump, 511.9).isLine) << "rounding may take a scalar to the other side";
+  EXPECT_FALSE(lookUp(jump, 511.9).isLine) << "a scalar may be rounded to the other side";
   EXPECT_FALSE(lookUp(jump, 512.1).isLine);
 }
 
-TEST(SimdLines, DegenerateFunctionsAreRead) {
+TEST(SimdLines, DegenerateFunctionsAreSupported) {
   const SimdLines one = makeLines({{5, 2}});
   EXPECT_EQ(lookUp(one, -1e30).value, 2.0);
   EXPECT_EQ(lookUp(one, 1e30).value, 2.0);
   EXPECT_FALSE(lookUp(makeLines({{5, 2}, {5, 3}}), 4.0).isLine);
   EXPECT_FALSE(lookUp(makeLines({{0, 1}, {1e-44, 3}}), 1.0).isLine);
-  // A span of a few last places: no float tells which bin a scalar lies in.
+  // The span is a few ulps of float, so the bin of a scalar is ambiguous.
   EXPECT_FALSE(lookUp(makeLines({{1e6, 1}, {1e6 + 1.0, 3}}), 1e6).isLine);
 }
 

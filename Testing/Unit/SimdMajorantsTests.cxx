@@ -12,7 +12,7 @@ constexpr std::int64_t edge = 96;
 /// Extinction at a voxel, mm^-1.
 using Extinction = double (*)(const Vec3&);
 
-/// Cells of a volume of 1 mm voxels whose scalars are extinctions.
+/// Majorants of a volume of 1 mm voxels whose scalars are the extinctions.
 MajorantGrid makeMajorants(Extinction extinction, const Clip& clip = ClipNone{}) {
   const Grid grid(Size3(edge, edge, edge), Affine::Identity());
   LargeArray<float> voxels;
@@ -29,7 +29,7 @@ MajorantGrid makeMajorants(Extinction extinction, const Clip& clip = ClipNone{})
   return {grid, MinMaxGrid(volume, 0), transfer, clip};
 }
 
-/// Contents of a code, as lanes decode it.
+/// Fields of a cell's code, as SIMD code decodes them.
 struct DecodedCell {
   float majorant;
   std::int32_t skipRadius;
@@ -41,7 +41,7 @@ struct MajorantPair {
   SimdMajorants simd{majorants};
   Size3 count = simd.count;
 
-  /// Greatest majorant of the cells that cell c is made of; cut if one of them is.
+  /// Maximum majorant of the scalar cells merged into cell c; cut if one of them is.
   MajorantGrid::Cell mergeCells(const Size3& c) const {
     MajorantGrid::Cell merged{0.0F, false};
     const Size3& fine = majorants.cellCount();
@@ -76,7 +76,7 @@ struct MajorantPair {
   }
 };
 
-/// Checks the bounds that a cell states for the cells within its reach; for one cell in sixteen.
+/// Checks, for one cell in sixteen, that its majorant bounds all cells within its skip radius.
 void expectBounds(const MajorantPair& pair) {
   pair.forEach([&](const Size3& c) {
     if ((c.x() + 3 * c.y() + 7 * c.z()) % 16 != 0)
@@ -85,7 +85,7 @@ void expectBounds(const MajorantPair& pair) {
     const MajorantGrid::Cell exact = pair.mergeCells(c);
     ASSERT_EQ(cell.majorant == 0.0F, exact.majorant == 0.0F) << c;
     ASSERT_EQ(cell.isCut, exact.isCut) << c;
-    if (cell.skipRadius == 0) { // fifteen bits, rounded up
+    if (cell.skipRadius == 0) { // rounded up to fifteen bits
       ASSERT_LE(cell.majorant, exact.majorant * (1.0F + 0x1p-15F)) << c;
     }
     const Size3 radius = Size3::Constant(cell.skipRadius);
@@ -96,14 +96,14 @@ void expectBounds(const MajorantPair& pair) {
   });
 }
 
-/// Extinction: dense in a ball, thin mist below, 0 above.
+/// Extinction: high in a ball, low in mist at low z, 0 above.
 double ballInMist(const Vec3& p) {
   const bool isInBall = (p - Vec3::Constant(0.5 * edge)).norm() < 0.2 * edge;
   const double mist = p.z() < 0.6 * edge ? 1e-3 * (1.0 + p.x() / edge) : 0.0;
   return isInBall ? 2.0 + std::sin(p.y()) : mist;
 }
 
-TEST(SimdMajorants, MajorantBoundsEveryCellInReach) {
+TEST(SimdMajorants, MajorantBoundsEveryCellWithinTheSkipRadius) {
   const MajorantPair pair{makeMajorants(ballInMist)};
   expectBounds(pair);
   EXPECT_GT(pair.cell(Size3::Constant(4)).skipRadius, 3) << "mist";
@@ -113,21 +113,21 @@ TEST(SimdMajorants, MajorantBoundsEveryCellInReach) {
   EXPECT_GT(above.skipRadius, 0);
 }
 
-TEST(SimdMajorants, ReachIsZeroInCutCells) {
+TEST(SimdMajorants, SkipRadiusIsZeroInCutCells) {
   const CameraPose pose{
       .position = {0.0, 0.0, -200.0}, .target = Vec3::Zero(), .up = Vec3::UnitY()};
   const ClipPlane plane{Camera(pose, 8, 8), Vec3::Constant(0.5 * edge), Vec3(1.0, 2.0, 3.0)};
   const MajorantPair pair{makeMajorants(ballInMist, plane)};
   expectBounds(pair);
-  int isCut = 0;
+  int cutCount = 0;
   pair.forEach([&](const Size3& c) {
-    isCut += pair.cell(c).isCut ? 1 : 0;
+    cutCount += pair.cell(c).isCut ? 1 : 0;
     EXPECT_TRUE(!pair.cell(c).isCut || pair.cell(c).skipRadius == 0) << c;
   });
-  EXPECT_GT(isCut, 100);
+  EXPECT_GT(cutCount, 100);
 }
 
-TEST(SimdMajorants, CellsOfFewVoxelsAreMergedAndOthersNot) {
+TEST(SimdMajorants, MergesOnlyCellsOfFewVoxels) {
   EXPECT_EQ(MajorantPair{makeMajorants(ballInMist)}.simd.merged, 2) << "2^3 voxels";
   const Grid grid(Size3(256, 256, 256), Affine::Identity());
   const Volume volume{grid, LargeArray<std::uint8_t>(1 << 24, 1), 0.0, 1.0, "", {}};
@@ -139,7 +139,7 @@ TEST(SimdMajorants, CellsOfFewVoxelsAreMergedAndOthersNot) {
   EXPECT_EQ(simd.count, Size3(64, 64, 64));
 }
 
-TEST(SimdMajorants, ExtinctionsOfAnySizeAreBounded) {
+TEST(SimdMajorants, BoundsExtinctionsOfAnyMagnitude) {
   const MajorantPair pair{
       makeMajorants([](const Vec3& p) { return std::pow(10.0, 0.4 * p.x() - 33.0); })};
   expectBounds(pair);

@@ -1,4 +1,4 @@
-// Presets of an installed 3D Slicer: the searched folders, and the content.
+// Presets of an installed 3D Slicer: where they are searched, and their content.
 
 #include "files/slicer/SlicerPresets.h"
 
@@ -19,7 +19,7 @@ constexpr const char* presetsText = R"(<?xml version="1.0" encoding="UTF-8"?>
   <VolumeProperty name="Broken" scalarOpacity="3 0 0 100" colorTransfer="4 0 1 1 1"/>
 </MRML>)";
 
-/// Environment variable for the duration of a test.
+/// Sets an environment variable for its own lifetime.
 class ScopedVariable {
 public:
   ScopedVariable(const char* name, const std::string& value) : m_name(name) {
@@ -36,7 +36,7 @@ private:
   std::optional<std::string> m_before;
 };
 
-/// Folder as installed by Slicer.
+/// Creates the files of a Slicer installation that matter; returns the path of its presets.
 std::filesystem::path installPresets(const TemporaryFolder& folder, const std::string& home,
                                      const std::string& version) {
   const auto moduleFolder =
@@ -47,7 +47,7 @@ std::filesystem::path installPresets(const TemporaryFolder& folder, const std::s
   return moduleFolder / "presets.xml";
 }
 
-TEST(SlicerPresets, FoundInSlicerHome) {
+TEST(SlicerPresets, AreFoundInSlicerHome) {
   const TemporaryFolder folder;
   const auto presets = installPresets(folder, "home", "5.8");
   const ScopedVariable path("PATH", "/nowhere");
@@ -59,7 +59,7 @@ TEST(SlicerPresets, FoundInSlicerHome) {
   EXPECT_FALSE(findSlicerPresets());
 }
 
-TEST(SlicerPresets, FoundBesideTheLauncherInThePath) {
+TEST(SlicerPresets, AreFoundBesideTheLauncherInPath) {
   const TemporaryFolder folder;
   const auto presets = installPresets(folder, "home", "5.8");
   std::filesystem::create_directory(folder / "bin");
@@ -70,7 +70,7 @@ TEST(SlicerPresets, FoundBesideTheLauncherInThePath) {
   EXPECT_TRUE(std::filesystem::equivalent(*findSlicerPresets(), presets));
 }
 
-TEST(SlicerPresets, PresetsAreVolumePropertiesWithNames) {
+TEST(SlicerPresets, AreNamedVolumeProperties) {
   const MrmlDocument presets(presetsText, "presets.xml");
   EXPECT_EQ(listPropertyNames(presets), (std::vector<std::string>{"CT-Mine", "Broken"}));
   const auto properties = presets.findByTag("VolumeProperty");
@@ -81,11 +81,11 @@ TEST(SlicerPresets, PresetsAreVolumePropertiesWithNames) {
                 [&] { readInlineProperty(presets, *properties.at(1)); });
 }
 
-TEST(SlicerPresets, EveryPresetOfARealSlicerIsRead) {
+TEST(SlicerPresets, EveryPresetOfARealSlicerCanBeRead) {
   const std::filesystem::path file =
       std::filesystem::path(FENESTRA_DATA) / "slicer_scenes" / "slicer_core" / "presets.xml";
   if (!std::filesystem::exists(file))
-    GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
+    GTEST_SKIP() << "no test data at " << FENESTRA_DATA;
   const MrmlDocument presets(readText(file), file.string());
   EXPECT_EQ(listPropertyNames(presets).size(), 31u);
   for (const MrmlNode* node : presets.findByTag("VolumeProperty"))

@@ -1,5 +1,5 @@
-// Continuation of the exact boundary against known solutions: constants, the plate under tension
-// along a straight edge, depth jumps.
+// Continuation of the exact boundary compared with known solutions: constants, a plate under
+// tension along a straight edge, and depth jumps.
 
 #include "ClippingTesting.h"
 #include "clip/surface/SmoothFill.h"
@@ -13,7 +13,7 @@ using namespace testing_clipping;
 
 namespace {
 
-/// Buffer of 100 mm, with the depths of its focus samples.
+/// Depth buffer of 100 mm with given depths at its focus samples.
 struct Sheet {
   Camera camera;
   DepthBuffer buffer;
@@ -48,16 +48,16 @@ TEST(SmoothFill, ConstantDepthContinuesAsConstant) {
     EXPECT_NEAR(sheet.buffer.at(sample), 290.0, 1e-4);
 }
 
-/// Solution of u'''' = u'' / length² with u(0) = 0, u'(0) = slope, level at the buffer's end.
+/// Solution of u'''' = u'' / length^2 with u(0) = 0, u'(0) = slope and u' = 0 at the buffer's end.
 class StraightEdge : public ::testing::TestWithParam<std::pair<double, double>> {};
 
-TEST_P(StraightEdge, FillEqualsThePlateUnderTension) {
+TEST_P(StraightEdge, FillEqualsAPlateUnderTension) {
   const auto [slope, length] = GetParam();
   for (const int pixels : {64, 128, 256, 512}) {
     Sheet sheet(pixels, [slope = slope](const Vec2& x) {
       return x.x() < -20.0 ? std::optional(300.0 + slope * (x.x() + 20.0)) : std::nullopt;
     });
-    double edge = -100.0, end = 0.0; // last sample of the focus, and of the buffer
+    double edge = -100.0, end = 0.0; // positions of the last samples of the focus and the buffer
     for (std::int64_t column = 0; column < sheet.buffer.columns(); ++column)
       (sheet.isFocus(column) ? edge : end) = sheet.position(column).x();
     const double range = (end - edge) / length;
@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(Slopes, StraightEdge,
                          ::testing::Values(std::pair{0.5, 5.0}, std::pair{-0.9, 10.0},
                                            std::pair{7.0, 10.0}, std::pair{0.2, 20.0}));
 
-TEST(SmoothFill, FillLeavesACurvedBoundaryWithItsSlope) {
+TEST(SmoothFill, ContinuesTheSlopeOfACurvedBoundary) {
   Sheet sheet(512, [](const Vec2& x) {
     return x.norm() < 20.0 ? std::optional(300.0 + 0.01 * x.squaredNorm()) : std::nullopt;
   });
@@ -94,7 +94,7 @@ TEST(SmoothFill, FillLeavesACurvedBoundaryWithItsSlope) {
   }
 }
 
-TEST(SmoothFill, DepthJumpDoesNotRing) {
+TEST(SmoothFill, DepthJumpDoesNotOvershoot) {
   Sheet sheet(256, [](const Vec2& x) -> std::optional<double> {
     if (x.norm() >= 20.0)
       return std::nullopt;
@@ -107,7 +107,7 @@ TEST(SmoothFill, DepthJumpDoesNotRing) {
   }
 }
 
-/// A jump is as steep as the samples beside the boundary, and gentler with distance.
+/// A jump is as steep as the samples beside the boundary, and flattens with distance from it.
 TEST(SmoothFill, JumpFlattensWithDistance) {
   Sheet sheet(256, [](const Vec2& x) -> std::optional<double> {
     if (std::abs(x.x()) >= 20.0)
@@ -130,8 +130,8 @@ TEST(SmoothFill, JumpFlattensWithDistance) {
   EXPECT_LT(findMaxStep(30.0), 0.7 * findMaxStep(25.0));
 }
 
-/// Samples are coarser beyond a small viewport; a single column or row is a sheet as well.
-TEST(SmoothFill, BufferOfAnyShapeIsFilled) {
+/// Samples outside a small viewport are coarser; a buffer may be a single column or row.
+TEST(SmoothFill, FillsBuffersOfAnyShape) {
   for (const double width : {100.0, 30.0})
     for (const int pixels : {1, 2, 33, 100}) {
       Sheet sheet(

@@ -1,4 +1,4 @@
-// Stopping a render while its paths are under way, for all kinds of matter.
+// Stops a render while paths are being traced, for all kinds of media.
 
 #include "Support.h"
 
@@ -13,8 +13,8 @@
 namespace fenestra::testing::StopTests {
 namespace {
 
-/// Scene whose corner cells have majorant 1 / mm and voxels of 1e8 mm, although almost no point of
-/// a ray there has any extinction: about 1e8 null collisions a ray.
+/// Scene with voxels of 1e8 mm whose corner cells have majorant 1 / mm, although the extinction is
+/// almost 0 along nearly every ray: about 1e8 null collisions per ray.
 TestScene makeEndlessScene() {
   const Grid grid = makeCenteredGrid({4, 4, 4}, Vec3::Constant(1e8));
   TestScene s{makeVolume(grid, [](const Vec3& p) { return p.isZero() ? 255.0 : 0.0; }),
@@ -28,7 +28,7 @@ TestScene makeEndlessScene() {
   return s;
 }
 
-/// Calls work(scene, majorants, ray) with a ray through such cells.
+/// Calls work(scene, majorants, ray) with a ray through these cells.
 template <typename Work>
 void visitEndlessRay(Work&& work) {
   const TestScene s = makeEndlessScene();
@@ -36,7 +36,7 @@ void visitEndlessRay(Work&& work) {
   work(s, majorants, Ray{Vec3(-1.2e8, -1e9, -1.2e8), Vec3::UnitY()});
 }
 
-TEST(Stop, EndsAWalkThatMeetsNothing) {
+TEST(Stop, EndsTrackingWithoutCollision) {
   visitEndlessRay([](const TestScene& s, const MajorantGrid& majorants, const Ray& ray) {
     const StopFlag stop = true;
     const Medium<float> medium(s.volume.grid, std::get<LargeArray<float>>(s.volume.voxels),
@@ -51,7 +51,7 @@ TEST(Stop, EndsAWalkThatMeetsNothing) {
   });
 }
 
-TEST(Stop, EndsTheLanesOfABatch) {
+TEST(Stop, EndsTrackingOfARayBatch) {
   visitEndlessRay([](const TestScene& s, const MajorantGrid& majorants, const Ray& ray) {
     const StopFlag stop = true;
     const Domain domain(s.volume.grid);
@@ -70,8 +70,8 @@ TEST(Stop, EndsTheLanesOfABatch) {
   });
 }
 
-/// Each measure would take minutes without the stop.
-TEST(Stop, EndsMeasuresOfEndlessWalks) {
+/// Without the stop, each metric would take minutes.
+TEST(Stop, EndsComputationOfFocusMetrics) {
   const TestScene s = makeEndlessScene();
   const Camera camera(s.pose, s.width, s.height);
   const LightSet lights(s.lights, s.volume.grid, camera);
@@ -84,8 +84,8 @@ TEST(Stop, EndsMeasuresOfEndlessWalks) {
   measureLight(scene, scene, points, 1, stop);
 }
 
-/// A stopped path is dropped, together with its tile; tiles whose paths have all ended count whole.
-TEST(Stop, EndsARenderOfEndlessPaths) {
+/// A stopped path is discarded together with its tile; tiles whose paths have all ended are kept.
+TEST(Stop, EndsARenderWithEndlessPaths) {
   const TestScene s = makeEndlessScene();
   const Camera camera(s.pose, s.width, s.height);
   const LightSet lights(s.lights, s.volume.grid, camera);
@@ -101,7 +101,7 @@ TEST(Stop, EndsARenderOfEndlessPaths) {
     monitor.stop = true;
     const RenderResult result = rendering.get();
     EXPECT_EQ(result.reason, StopReason::request);
-    constexpr int tile = 8; // pixels; paths in the volume's corner do not end
+    constexpr int tile = 8; // pixels; paths in the volume's corners do not end
     std::uint64_t minSamples = std::numeric_limits<std::uint64_t>::max();
     for (int row = 0; row < s.height; ++row)
       for (int column = 0; column < s.width; ++column) {

@@ -1,4 +1,4 @@
-// Clipping surface on a turntable: the measures of its changes, and its steadying.
+// Clipping surface on a turntable: metrics of its change, and temporal smoothing.
 
 #include "Approx.h"
 #include "ClippingTesting.h"
@@ -12,7 +12,7 @@ using namespace testing_clipping;
 
 namespace {
 
-TEST(Turn, GoesAroundTheTargetCounterClockwiseAsSeenFromAbove) {
+TEST(RotateAroundTarget, IsCounterClockwiseSeenFromAbove) {
   CameraPose pose;
   pose.target = {1, 2, 3};
   pose.position = {1, 102, 43}; // anterior, and above
@@ -24,19 +24,19 @@ TEST(Turn, GoesAroundTheTargetCounterClockwiseAsSeenFromAbove) {
   EXPECT_EQ(rotateAroundTarget(pose, 77.0).up, pose.up);
 }
 
-/// Picture of 4 x 4 pixels of 1 mm with a level surface at the target's depth, all context.
+/// Image of 4 x 4 pixels of 1 mm; the surface is flat at the target's depth, all of it context.
 VisibleSurface makeLevelSurface() {
   const Camera camera = makeAnteriorCamera(Projection::orthographic, 100.0, 2.0, 4, 4);
   return {camera, std::vector<Region>(16, Region::context), std::vector<double>(16, 100.0)};
 }
 
-TEST(SurfaceChange, ChangeIsPerDegreeOverPixelsThatStayContext) {
+TEST(SurfaceChange, IsPerDegreeOverPixelsThatStayContext) {
   VisibleSurface before = makeLevelSurface(), after = makeLevelSurface();
   for (std::size_t pixel = 0; pixel < 16; ++pixel)
     after.depths[pixel] += pixel < 4 ? 3.0 : -1.0;
   before.regions[4] = Region::focus;
   after.regions[5] = Region::outside;
-  after.depths[4] = after.depths[5] = 1e6; // neither counts
+  after.depths[4] = after.depths[5] = 1e6; // must be ignored
   const SurfaceChange change = measureChange(before, after, Vec3::UnitZ(), -2.0);
   EXPECT_DOUBLE_EQ(change.mean, (4 * 1.5 + 10 * 0.5) / 14.0);
   EXPECT_DOUBLE_EQ(change.p95, 1.5);
@@ -45,18 +45,18 @@ TEST(SurfaceChange, ChangeIsPerDegreeOverPixelsThatStayContext) {
 
 TEST(SurfaceChange, ExcessIsRelativeToTheSpeedOfTheFocus) {
   VisibleSurface before = makeLevelSurface(), after = makeLevelSurface();
-  after.regions[3] = Region::focus; // the top right pixel, 1.5 mm to the right and above
-  after.depths[3] = 98.0;           // and 2 mm nearer to the eye: 2.5 mm from the axis
+  after.regions[3] = Region::focus; // the top right pixel, 1.5 mm right of and above the center,
+  after.depths[3] = 98.0;           // and 2 mm closer to the camera: 2.5 mm from the axis
   after.depths[8] = 101.0;
   const SurfaceChange change = measureChange(before, after, Vec3(0, 0, 7), 1.0);
   EXPECT_NEAR(change.focus, 2.5 * pi / 180.0, 1e-12);
   EXPECT_DOUBLE_EQ(change.max, 1.0);
   EXPECT_DOUBLE_EQ(change.excess(), 1.0 - change.focus);
   EXPECT_EQ(measureChange(before, before, Vec3::UnitZ(), 1.0).excess(), 0.0);
-  EXPECT_EQ(measureChange(before, before, Vec3::UnitZ(), 1.0).focus, 0.0) << "no focus is seen";
+  EXPECT_EQ(measureChange(before, before, Vec3::UnitZ(), 1.0).focus, 0.0) << "no visible focus";
 }
 
-/// Balls of 7 and 5 mm that emerge from behind each other, in a block, with cameras around.
+/// Balls of 7 and 5 mm in a block that appear from behind each other as the camera orbits them.
 class RotatedBalls : public ::testing::Test {
 protected:
   const Grid grid = makeCenteredGrid({80, 80, 40});
@@ -93,15 +93,15 @@ protected:
   }
 };
 
-TEST_F(RotatedBalls, SeenDepthsAreThoseOfTheSurface) {
+TEST_F(RotatedBalls, VisibleDepthsAreThoseOfTheSurface) {
   const VisibleSurface visible = makeVisible(0.0, 0.0);
-  // Foremost point of the near ball in the picture's centre, and no focus near the left edge.
+  // The front of the near ball is at the image center; there is no focus near the left edge.
   EXPECT_EQ(visible.regions[30 * 60 + 30], Region::focus);
   EXPECT_NEAR(visible.depths[30 * 60 + 30], 200.0 - 14.0 - 7.0, 0.5);
   EXPECT_EQ(visible.regions[30 * 60 + 2], Region::context);
 }
 
-TEST_F(RotatedBalls, WithoutSteadyingTheSurfaceIsUnchanged) {
+TEST_F(RotatedBalls, SurfaceIsUnchangedWithoutSmoothing) {
   const auto depths = [&](double steady, SurfaceMode mode) {
     options.mode = mode;
     return std::get<ClipDepth>(makeSurface(20.0, steady).clip).buffer->depthsFromReference();
@@ -114,7 +114,7 @@ TEST_F(RotatedBalls, WithoutSteadyingTheSurfaceIsUnchanged) {
   EXPECT_NE(depths(8.0, SurfaceMode::surface), depths(0.0, SurfaceMode::surface));
 }
 
-TEST_F(RotatedBalls, SteadySurfaceMeetsTheFocus) {
+TEST_F(RotatedBalls, SmoothedSurfaceMeetsTheFocus) {
   const ClippingSurface plain = makeSurface(20.0, 0.0), steady = makeSurface(20.0, 8.0);
   const DepthBuffer& a = *std::get<ClipDepth>(plain.clip).buffer;
   const DepthBuffer& b = *std::get<ClipDepth>(steady.clip).buffer;
@@ -125,14 +125,14 @@ TEST_F(RotatedBalls, SteadySurfaceMeetsTheFocus) {
       if (plain.focus.isFocus(column, row)) {
         EXPECT_EQ(difference, 0.0);
       } else if (plain.focus.isFocus(column - 1, row) || plain.focus.isFocus(column + 1, row)) {
-        EXPECT_LT(difference, 0.25) << "one sample away, of 8 mm that it takes";
+        EXPECT_LT(difference, 0.25) << "one sample of the blend over 8 mm";
         ++adjacentCount;
       }
     }
   EXPECT_GT(adjacentCount, 20);
 }
 
-TEST_F(RotatedBalls, SteadySurfaceChangesMoreSlowly) {
+TEST_F(RotatedBalls, SmoothedSurfaceChangesMoreSlowly) {
   const double unsmoothed = findMaxP95(0.0), steady = findMaxP95(8.0);
   EXPECT_LT(steady, 0.6 * unsmoothed) << unsmoothed << " mm per degree";
 }

@@ -1,6 +1,6 @@
-// Mesh of the clipping surface: its points are samples of the buffer, on their rays, at their
-// depths; its triangles face the eye, meet at whole edges, and deviate from samples by at most the
-// tolerance.
+// Mesh of the clipping surface. Its points are buffer samples, on their camera rays at their
+// depths. Its triangles face the camera, share complete edges, and deviate from the samples by at
+// most the tolerance.
 
 #include "Approx.h"
 #include "ClippingTesting.h"
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::array projections{Projection::orthographic, Projection::perspective};
 
-/// Clip with a buffer of depths given by (x, y).
+/// Clip with a buffer of the depths depth(x, y).
 template <typename Depth>
 ClipDepth makeClip(const Camera& camera, const Grid& volume, const Depth& depth) {
   DepthBuffer buffer(camera, volume);
@@ -30,7 +30,7 @@ ClipDepth makeClip(const Camera& camera, const Grid& volume, const Depth& depth)
   return {camera, std::make_shared<const DepthBuffer>(std::move(buffer)), std::move(pyramid)};
 }
 
-/// Camera that looks obliquely at the origin.
+/// Camera with an oblique view of the origin.
 Camera makeSlantedCamera(Projection projection, int width = 48, int height = 36) {
   CameraPose pose;
   pose.projection = projection;
@@ -67,7 +67,7 @@ std::map<std::string, Shape> makeShapes(const Camera& camera) {
   };
 }
 
-/// Signed area on the plane through the target, mm²; counter-clockwise is positive.
+/// Signed area on the plane through the target, mm^2; positive if counter-clockwise.
 double signedArea(const Vec2& a, const Vec2& b, const Vec2& c) {
   return 0.5 * ((b - a).x() * (c - a).y() - (b - a).y() * (c - a).x());
 }
@@ -77,7 +77,7 @@ Vec3 computeNormal(const SurfaceMesh& mesh, const std::array<std::uint32_t, 3>& 
   return (mesh.points[b] - mesh.points[a]).cross(mesh.points[c] - mesh.points[a]);
 }
 
-/// Expects properties of any mesh: finite points, all used, and triangles that face the eye.
+/// Expects finite points that are all used, and triangles that face the camera.
 void expectValidMesh(const SurfaceMesh& mesh, const Camera& camera) {
   ASSERT_FALSE(mesh.triangles.empty());
   ASSERT_EQ(mesh.points.size(), mesh.depths.size());
@@ -96,17 +96,18 @@ void expectValidMesh(const SurfaceMesh& mesh, const Camera& camera) {
     ASSERT_TRUE(allFinite(mesh.points[i]) && std::isfinite(mesh.depths[i]));
 }
 
-TEST(SurfaceMesh, PlaneSeenAlongAnAxisLiesInItsPlace) {
+TEST(SurfaceMesh, PlaneHasCorrectPositions) {
   const Camera camera = makeAnteriorCamera(Projection::orthographic, 300.0, 8.0, 24, 16);
-  const Grid volume = makeCenteredGrid({20, 30, 10}); // in R, A and S: narrower than the viewport
+  const Grid volume =
+      makeCenteredGrid({20, 30, 10}); // along R, A and S; narrower than the viewport
   const auto plane = [](const Vec2& p) { return 290.0 + 0.25 * p.x() - 0.5 * p.y(); };
   const SurfaceMesh mesh = buildSurfaceMesh(makeClip(camera, volume, plane), volume, 0.0);
   expectValidMesh(mesh, camera);
   Vec3 lower = Vec3::Constant(infinity), upper = -lower;
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
-    const Vec3& p = mesh.points[i]; // x is R, y is S, and depth grows along A
+    const Vec3& p = mesh.points[i]; // x is R, y is S, and depth increases along A
     EXPECT_NEAR(p.y(), -10.0 + 0.25 * p.x() - 0.5 * p.z(), 1e-6);
-    EXPECT_NEAR(std::abs(p.x() - std::round(p.x())), 0.5, 1e-6) << "a pixel's centre";
+    EXPECT_NEAR(std::abs(p.x() - std::round(p.x())), 0.5, 1e-6) << "a pixel center";
     EXPECT_NEAR(mesh.depths[i], p.y() + 300.0, 1e-4);
     lower = lower.cwiseMin(p);
     upper = upper.cwiseMax(p);
@@ -114,12 +115,12 @@ TEST(SurfaceMesh, PlaneSeenAlongAnAxisLiesInItsPlace) {
   const Vec2 pixel(1.0, 1.0);
   for (const auto& [extent, halfSize] : {std::pair{Vec2(lower.x(), lower.z()), Vec2(-10.0, -5.0)},
                                          {Vec2(upper.x(), upper.z()), Vec2(10.0, 5.0)}}) {
-    EXPECT_GE((extent.cwiseAbs() - halfSize.cwiseAbs()).minCoeff(), -1e-9) << "all of the volume";
-    EXPECT_LE((extent.cwiseAbs() - halfSize.cwiseAbs() - pixel).maxCoeff(), 1e-9) << "and no more";
+    EXPECT_GE((extent.cwiseAbs() - halfSize.cwiseAbs()).minCoeff(), -1e-9) << "covers the volume";
+    EXPECT_LE((extent.cwiseAbs() - halfSize.cwiseAbs() - pixel).maxCoeff(), 1e-9) << "and not more";
   }
 }
 
-TEST(SurfaceMesh, PointsProjectToTheirSamplesAndHaveTheirDepths) {
+TEST(SurfaceMesh, PointsProjectToSamplesAndHaveTheirDepths) {
   for (const Projection projection : projections) {
     const Camera camera = makeSlantedCamera(projection);
     const Grid volume = makeCenteredGrid({60, 50, 40});
@@ -154,7 +155,7 @@ TEST(SurfaceMesh, CoversTheVolumesProjection) {
     std::vector<Vec2> corners;
     for (int i = 0; i < 8; ++i)
       corners.push_back(toBuffer(camera, volume.worldCorner(i)).head<2>());
-    double hull = 0.0; // area of the projection, from edges with all corners on their left
+    double hull = 0.0; // area of the projection, summed over edges with all corners on their left
     for (const Vec2& a : corners)
       for (const Vec2& b : corners) {
         const Vec2 edge = b - a;
@@ -166,11 +167,11 @@ TEST(SurfaceMesh, CoversTheVolumesProjection) {
       }
     const double sample = camera.pixelPitch() * clip.buffer->xAxis().factor;
     EXPECT_GT(area, hull);
-    EXPECT_LT(area, hull + 4.0 * sample * 2.0 * std::sqrt(pi * hull)) << "its edge's steps";
+    EXPECT_LT(area, hull + 4.0 * sample * 2.0 * std::sqrt(pi * hull)) << "the steps at its edge";
   }
 }
 
-TEST(SurfaceMesh, OmitsSamplesWithoutDepthOrBehindTheEye) {
+TEST(SurfaceMesh, OmitsSamplesWithoutDepthOrBehindTheCamera) {
   const Grid volume = makeCenteredGrid({40, 40, 40});
   const Camera parallel = makeAnteriorCamera(Projection::orthographic, 300.0, 10.0, 40, 40);
   const auto disk = [](const Vec2& p) { return p.norm() < 6.0 ? 290.0 : -infinity; };
@@ -180,7 +181,7 @@ TEST(SurfaceMesh, OmitsSamplesWithoutDepthOrBehindTheEye) {
   for (const auto& triangle : cutaway.triangles)
     area += 0.5 * computeNormal(cutaway, triangle).norm();
   EXPECT_LT(area, pi * 36.0);
-  EXPECT_GT(area, pi * 36.0 - 2.0 * pi * 6.0 * parallel.pixelPitch()) << "but its edge's halves";
+  EXPECT_GT(area, pi * 36.0 - 2.0 * pi * 6.0 * parallel.pixelPitch()) << "except half edge cells";
 
   const Camera inside = makeAnteriorCamera(Projection::perspective, 10.0, 10.0, 40, 40);
   const auto ramp = [](const Vec2& p) { return 3.0 + 0.5 * p.x(); };
@@ -197,11 +198,11 @@ TEST(SurfaceMesh, OmitsSamplesWithoutDepthOrBehindTheEye) {
   EXPECT_TRUE(buildSurfaceMesh(makeClip(parallel, volume, none), volume, 1e-3).points.empty());
 }
 
-/// Greatest depth difference between samples and mesh, and number of triangles over each sample,
-/// computed from the world triangles alone.
+/// Errors of a mesh, computed from its triangles in world space only.
 struct MeshError {
-  double maximum = 0.0;
-  std::map<std::pair<std::int64_t, std::int64_t>, int> coverage; ///< column and row, not on edges
+  double maximum = 0.0; ///< largest depth difference between samples and mesh
+  /// Number of triangles over each sample (column, row); not counted on their edges.
+  std::map<std::pair<std::int64_t, std::int64_t>, int> coverage;
 };
 
 MeshError measureError(const SurfaceMesh& mesh, const ClipDepth& clip) {
@@ -239,8 +240,8 @@ MeshError measureError(const SurfaceMesh& mesh, const ClipDepth& clip) {
   return error;
 }
 
-/// Expects one triangle on each side of an edge, or an edge of the outline; and no point inside an
-/// edge of the outline, as if one triangle beside the edge were halved alone.
+/// Expects each edge to have one triangle per side or to belong to the outline, and no point inside
+/// an outline edge, which would be a T-junction.
 void expectNoCracks(const SurfaceMesh& mesh, const Camera& camera) {
   std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
   for (const auto& [a, b, c] : mesh.triangles)
@@ -265,7 +266,7 @@ void expectNoCracks(const SurfaceMesh& mesh, const Camera& camera) {
          point != sorted.end() && point->first < high - 1e-6 * pitch; ++point) {
       const Vec2 d = at[point->second] - a;
       ASSERT_GT(std::abs(d.x() * direction.y() - d.y() * direction.x()), 1e-3 * pitch)
-          << "a point within an outer edge";
+          << "a point inside an outline edge";
     }
   }
 }
@@ -294,10 +295,10 @@ TEST(SurfaceMesh, ErrorAtSamplesIsWithinTheTolerance) {
     }
 }
 
-TEST(SurfaceMesh, CoversEveryCellWithThreeDepths) {
+TEST(SurfaceMesh, CoversEveryCellWithAtLeastThreeDepths) {
   const Camera camera = makeAnteriorCamera(Projection::orthographic, 300.0, 10.0, 37, 50);
   const Grid volume =
-      makeCenteredGrid({60, 60, 60}); // covers the viewport, and is coarser around it
+      makeCenteredGrid({60, 60, 60}); // exceeds the viewport; coarser samples outside it
   for (const auto& [name, shape] : makeShapes(camera)) {
     const ClipDepth clip = makeClip(camera, volume, shape);
     const DepthBuffer& buffer = *clip.buffer;
@@ -320,11 +321,11 @@ TEST(SurfaceMesh, CoversEveryCellWithThreeDepths) {
   }
 }
 
-TEST(SurfaceMesh, PlaneHasTwoTrianglesAndNoiseAllOfThem) {
+TEST(SurfaceMesh, PlaneNeedsTwoTrianglesAndNoiseAllSamples) {
   const Grid volume = makeCenteredGrid({30, 30, 30});
   for (const Projection projection : projections) {
     const Camera camera = makeAnteriorCamera(projection, 300.0, 15.0, 200, 200);
-    // Plane, whose depth in perspective is not linear over the picture.
+    // In perspective, the depth of a plane is not linear in the image.
     const auto plane = [&](const Vec2& p) {
       const Vec3 normal(0.3, 1.0, -0.2);
       const Ray ray = camera.makePlaneRay(p);
@@ -339,7 +340,7 @@ TEST(SurfaceMesh, PlaneHasTwoTrianglesAndNoiseAllOfThem) {
     EXPECT_EQ(flatMesh.points.size(), 4u);
     EXPECT_LE(measureError(flatMesh, flat).maximum, tolerance);
 
-    // A step costs as many triangles as its own edge needs; noise needs every sample, but no more.
+    // A step costs triangles in proportion to the length of its edge; noise needs every sample.
     const auto step = [&](const Vec2& p) { return plane(p) + (p.x() < 0.31 * p.y() ? 0.0 : 9.0); };
     const auto columns = static_cast<std::size_t>(flat.buffer->columns());
     EXPECT_LT(buildSurfaceMesh(makeClip(camera, volume, step), volume, tolerance).triangles.size(),
@@ -351,7 +352,7 @@ TEST(SurfaceMesh, PlaneHasTwoTrianglesAndNoiseAllOfThem) {
   }
 }
 
-TEST(SurfaceMesh, TriangleCountDoesNotDependOnTheSubjectsSize) {
+TEST(SurfaceMesh, TriangleCountDoesNotDependOnTheSizeOfTheSubject) {
   std::vector<std::size_t> triangles;
   for (const double size : {1.0, 512.0}) {
     const Camera camera =

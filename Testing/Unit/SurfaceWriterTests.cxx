@@ -1,4 +1,4 @@
-// Surface files: their content, read back here.
+// Surface files, read back with independent code.
 
 #include "base/Error.h"
 #include "clip/mesh/SurfaceWriter.h"
@@ -31,7 +31,7 @@ SurfaceMesh makeRoof() {
   return mesh;
 }
 
-/// Reader of numbers from the front of a file's bytes.
+/// Reads values from the start of a file's bytes.
 class ByteReader {
 public:
   explicit ByteReader(std::string bytes) : m_bytes(std::move(bytes)) {}
@@ -63,7 +63,7 @@ private:
   std::size_t m_at = 0;
 };
 
-/// Bytes of base64 digits; a partial byte is dropped.
+/// Decodes base64; drops a partial byte.
 std::string decodeBase64(const std::string& text) {
   const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string bytes;
@@ -83,7 +83,7 @@ bool isNear(const Vec3& a, const Vec3& b) {
   return (a - b).norm() <= 1e-6 * b.norm();
 }
 
-TEST(SurfaceWriter, VtpKeepsEveryDigitAndTheDepths) {
+TEST(SurfaceWriter, VtpHasFullPrecisionAndDepths) {
   const TemporaryFolder folder;
   const SurfaceMesh mesh = makeRoof();
   writeSurface(mesh, folder / "roof.vtp");
@@ -105,7 +105,7 @@ TEST(SurfaceWriter, VtpKeepsEveryDigitAndTheDepths) {
   EXPECT_EQ(bytes.remaining(), 0u);
 }
 
-TEST(SurfaceWriter, PlyHasTheDepthsOfItsVertices) {
+TEST(SurfaceWriter, PlyHasDepthsOfItsVertices) {
   const TemporaryFolder folder;
   const SurfaceMesh mesh = makeRoof();
   writeSurface(mesh, folder / "ROOF.PLY");
@@ -133,7 +133,7 @@ TEST(SurfaceWriter, StlHasUnitNormals) {
   writeSurface(mesh, folder / "roof.stl");
   ByteReader file(readBytes(folder / "roof.stl"));
   const std::string header = file.text(80);
-  EXPECT_FALSE(header.starts_with("solid")) << "which text files start with";
+  EXPECT_FALSE(header.starts_with("solid")) << "which marks a text file";
   EXPECT_NE(header.find("SPACE=RAS"), std::string::npos);
   ASSERT_EQ(file.read<std::uint32_t>(), 2u);
   for (const auto& triangle : mesh.triangles) {
@@ -150,7 +150,7 @@ TEST(SurfaceWriter, StlHasUnitNormals) {
   EXPECT_EQ(file.remaining(), 0u);
 }
 
-TEST(SurfaceWriter, EqualSurfacesGiveEqualBytesAndEmptyOnesAFile) {
+TEST(SurfaceWriter, IsDeterministicAndWritesEmptySurfaces) {
   const TemporaryFolder folder;
   for (const std::string ending : {".vtp", ".ply", ".stl"}) {
     writeSurface(makeRoof(), folder / ("a" + ending));
@@ -177,8 +177,8 @@ TEST(SurfaceWriter, RefusesUnknownExtensionsAndMissingFolders) {
     };
     expectError([&] { writeSurface(makeRoof(), folder / name); });
   };
-  expectRefusal("a.obj", ErrorKind::usage, "a.obj: has no known extension; name a file .vtp");
-  expectRefusal("a", ErrorKind::usage, "has no known extension");
+  expectRefusal("a.obj", ErrorKind::usage, "a.obj: unknown file extension; use .vtp");
+  expectRefusal("a", ErrorKind::usage, "unknown file extension");
   expectRefusal("missing/a.vtp", ErrorKind::output, "missing/a.vtp: cannot be written: ");
   Outputs outputs;
   declareSurface(folder / "a.stl", outputs);

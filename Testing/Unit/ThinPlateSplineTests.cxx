@@ -1,4 +1,4 @@
-// The spline solved in the unit disc equals the spline of the equations in mm.
+// The spline, solved in the unit disk, equals the spline solved in mm.
 
 #include "ClippingTesting.h"
 #include "RunSettings.h"
@@ -20,7 +20,7 @@ struct Data {
   ThinPlateSpline spline(double smoothing) const { return {sites, values, smoothing}; }
 };
 
-/// Sites on a wavy closed curve around (120, -300) mm, at about `radius` mm.
+/// Sites on a wavy closed curve around (120, -300) mm with a mean radius of about `radius` mm.
 Data makeOutline(int count, double radius) {
   Data data;
   for (int i = 0; i < count; ++i) {
@@ -69,7 +69,7 @@ TEST(ThinPlateSpline, ReproducesPlanesForAnySmoothing) {
     }
 }
 
-TEST(ThinPlateSpline, InterpolatesAtOneAndApproximatesBelow) {
+TEST(ThinPlateSpline, InterpolatesForSmoothingOneAndApproximatesBelow) {
   const Data data = makeOutline(50, 60.0);
   double maxError = 0.0, maxResidual = 0.0;
   for (std::size_t i = 0; i < data.sites.size(); ++i) {
@@ -94,7 +94,7 @@ TEST(ThinPlateSpline, ZeroSmoothingGivesTheLeastSquaresPlane) {
   EXPECT_LT(normalEquations.norm(), 1e-7);
 }
 
-TEST(ThinPlateSpline, TurnsShiftsAndScalesWithItsSites) {
+TEST(ThinPlateSpline, IsEquivariantUnderRotationTranslationAndScaling) {
   Random random(2, 0, 0);
   const Data data = makeScattered(random, 30, 40.0);
   const auto rotate = [c = std::cos(0.7), s = std::sin(0.7)](const Vec2& x) {
@@ -104,7 +104,7 @@ TEST(ThinPlateSpline, TurnsShiftsAndScalesWithItsSites) {
     Data moved = data;
     for (Vec2& site : moved.sites)
       site = s * rotate(site) + Vec2(-300, 1000);
-    // lambda scales with s^2: in mm, a larger copy of a shape is smoothed less.
+    // lambda scales with s^2: for equal smoothing in mm, a larger copy of a shape is smoothed less.
     const double lambda = (1.0 - 0.5) / 0.5 * s * s;
     const ThinPlateSpline a = data.spline(0.5), b = moved.spline(1.0 / (1.0 + lambda));
     for (const Vec2& x : {Vec2(0, 0), Vec2(17, -33), Vec2(-90, 120)}) {
@@ -113,7 +113,7 @@ TEST(ThinPlateSpline, TurnsShiftsAndScalesWithItsSites) {
   }
 }
 
-TEST(ThinPlateSpline, IsWellConditionedInTheUnitDisc) {
+TEST(ThinPlateSpline, IsWellConditionedInTheUnitDisk) {
   Random random(3, 0, 0);
   for (const double radius : {1.0, 50.0, 300.0}) {
     EXPECT_LT(computeConditionNumber(makeOutline(50, radius).spline(0.5)), 3e3) << radius;
@@ -131,7 +131,7 @@ TEST(ThinPlateSpline, RowsAgreeWithPoints) {
   }
 }
 
-/// Greatest difference from f over a tile of samples at `pitch` mm.
+/// Largest error of evaluateTile over a tile of samples every `pitch` mm.
 double findMaxTileError(const ThinPlateSpline& spline, const Vec2& corner, double pitch,
                         std::size_t columns, std::size_t rows, double tolerance) {
   std::vector<double> x(columns), y(rows), values(columns * rows);
@@ -146,10 +146,10 @@ double findMaxTileError(const ThinPlateSpline& spline, const Vec2& corner, doubl
   return maximum;
 }
 
-TEST(ThinPlateSpline, TilesAgreeWithPointsToTheirTolerance) {
+TEST(ThinPlateSpline, TilesAgreeWithPointsWithinTheTolerance) {
   Random random(4, 0, 0);
   double maximum = 0.0;
-  std::uint64_t trials = 0; // a brief run makes a part of them
+  std::uint64_t trials = 0; // a brief run tests only some of them
   for (const double radius : {0.5, 60.0, 300.0})
     for (const double smoothing : {0.0, 0.5, 1.0 - 1e-6, 1.0})
       for (const int count : {2, 3, 50, 300}) {
@@ -157,27 +157,27 @@ TEST(ThinPlateSpline, TilesAgreeWithPointsToTheirTolerance) {
         for (double& value : data.values)
           value *= 50.0; // jumps of 2000 mm
         const ThinPlateSpline spline = data.spline(smoothing);
-        const double rounding = 1e-14 * computeConditionNumber(spline); // of the points themselves
+        const double rounding = 1e-14 * computeConditionNumber(spline); // relative error of a point
         for (const double pitch : {1e-9 * radius, 1e-3 * radius, 0.01 * radius, 0.3 * radius})
           for (const double distanceRatio : {0.0, 1.0, 3.0, 30.0, 3e3})
             for (const auto& [columns, rows] : {std::pair{64, 64}, {64, 1}, {1, 1}, {5, 13}}) {
               const Vec2 corner = distanceRatio * radius * randomPoint(random, -1, 1).head<2>();
-              ++trials; // every fourth shifts the shape
+              ++trials; // the offset of every fourth varies the tested tile shape
               if ((trials + trials / 4) % fenestra::testing::sampleDivisor() != 0)
                 continue;
               const double error =
                   findMaxTileError(spline, corner, pitch, static_cast<std::size_t>(columns),
                                    static_cast<std::size_t>(rows), 1e-6);
               ASSERT_LE(error, 1e-6 + rounding * (2000.0 + std::abs(spline(corner))))
-                  << count << " sites to " << radius << " mm, p " << smoothing << ", " << columns
+                  << count << " sites in " << radius << " mm, p " << smoothing << ", " << columns
                   << "x" << rows << " every " << pitch << " mm at " << corner;
               maximum = std::max(maximum, smoothing == 0.5 && distanceRatio < 10.0 ? error : 0.0);
             }
       }
-  std::printf("greatest deviation at p = 0.5: %.1e mm\n", maximum);
+  std::printf("largest error at p = 0.5: %.1e mm\n", maximum);
 }
 
-TEST(LocalExpansion, EqualsTheSumOfItsTermsOrIsNone) {
+TEST(LocalExpansion, EqualsTheSumOfItsTermsOrDoesNotExist) {
   Random random(5, 0, 0);
   const Vec2 center(0.3, -0.2);
   const double radius = 0.4;
@@ -204,14 +204,14 @@ TEST(LocalExpansion, EqualsTheSumOfItsTermsOrIsNone) {
       maximum = std::max(maximum, std::abs(value - sum));
     }
     EXPECT_LE(maximum, tolerance);
-    EXPECT_GE(maximum, 1e-5 * tolerance) << "longer than it need be";
+    EXPECT_GE(maximum, 1e-5 * tolerance) << "more terms than necessary";
   }
   EXPECT_FALSE(LocalExpansion::make(terms, center, radius, 1e-16));
   terms[0].weight = 1e12;
   EXPECT_FALSE(LocalExpansion::make(terms, center, radius, 1e-6));
 }
 
-TEST(ThinPlateSpline, FewCoincidentOrCollinearSitesGiveMeanOrLine) {
+TEST(ThinPlateSpline, FewCoincidentOrCollinearSitesGiveAMeanOrALine) {
   const Data one{{{3, 4}}, {7}};
   EXPECT_NEAR(one.spline(0.5)({100, 100}), 7.0, 1e-12);
   const Data same{{{3, 4}, {3, 4}, {3, 4}}, {7, 8, 9}};
@@ -226,13 +226,13 @@ TEST(ThinPlateSpline, FewCoincidentOrCollinearSitesGiveMeanOrLine) {
   for (const double smoothing : {0.0, 0.5, 1.0}) {
     const ThinPlateSpline spline = line.spline(smoothing);
     EXPECT_NEAR(spline({1.0, 7.0}), 14.0, 1e-9);
-    EXPECT_NEAR(spline(Vec2(1.0, 7.0) + 50.0 * Vec2(2, -1)), 14.0, 1e-9); // level across the line
+    EXPECT_NEAR(spline(Vec2(1.0, 7.0) + 50.0 * Vec2(2, -1)), 14.0, 1e-9); // constant across it
   }
   const Data three{{{0, 0}, {10, 0}, {0, 10}}, {1, 2, 3}};
   EXPECT_NEAR(three.spline(0.5)({10, 10}), 4.0, 1e-12);
 }
 
-TEST(ThinPlateSpline, NearlyCoincidentSitesStayFinite) {
+TEST(ThinPlateSpline, NearlyCoincidentSitesGiveFiniteValues) {
   Data data = makeOutline(50, 60.0);
   data.sites[1] = data.sites[0] + Vec2(1e-9, 0);
   data.values[1] = data.values[0] + 5.0;

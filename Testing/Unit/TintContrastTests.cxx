@@ -1,4 +1,4 @@
-// Contrast of a tinted focus: what borders on it, and how colours are changed until they differ.
+// Contrast of a tinted focus: its interfaces, and the adjustment of colors until they differ.
 
 #include "scene/TintContrast.h"
 
@@ -27,21 +27,21 @@ ColorAdjustment choose(const std::vector<InterfaceColors>& colors,
                        const ContextColors& context = {}) {
   return chooseAdjustment(colors, context, Adjustable::both, 1.0, 0.0);
 }
-/// Surroundings of a focus that is tinted, not painted, before a knob is turned.
+/// Initial adjustment of a tinted focus: the context is desaturated.
 constexpr ColorAdjustment muted{.contextSaturation = 0.6};
 
 double computeScore(const ColorAdjustment& adjustment, const InterfaceColors& colors) {
   return contrastScore(measureAdjustedContrast(adjustment, colors, 1.0, 0.0));
 }
 
-// ---- colours
+// ---- colors
 
-TEST(TintContrast, LinearIsTheInverseOfLab) {
+TEST(TintContrast, LinearColorIsTheInverseOfLab) {
   for (const Rgb& color : {liver, bone, teal, Rgb(Rgb::Zero()), Rgb(1e-3, 2e-3, 5e-4)})
     EXPECT_LT((toLinear(toLab(color)) - color).abs().maxCoeff(), 1e-9);
 }
 
-TEST(TintContrast, KnobsChangeWhatTheySay) {
+TEST(TintContrast, AdjustmentsChangeColorsAsDocumented) {
   EXPECT_LT((adjustContext(liver, {}) - liver).abs().maxCoeff(), 1e-9);
   EXPECT_LT((adjustFocus(liver, {}) - liver).abs().maxCoeff(), 1e-9);
   const Lab before = toLab(liver);
@@ -60,11 +60,12 @@ TEST(TintContrast, KnobsChangeWhatTheySay) {
   EXPECT_NEAR(half.a, 0.5 * (before.a + lesion.a), 1e-6);
   EXPECT_NEAR(half.b, 0.5 * (before.b + lesion.b), 1e-6);
   const Rgb white = adjustFocus(Rgb::Constant(0.94), {.focusLightness = 12.0});
-  EXPECT_EQ(white.maxCoeff(), maxReflectance) << "no whiter than matter can be";
+  EXPECT_EQ(white.maxCoeff(), maxReflectance) << "at most as white as a medium can be";
 }
 
-/// An artery's red has no darker and more colourful one: it loses chroma, not its lightness or hue.
-TEST(TintContrast, ColoursBeyondTheDisplayKeepLightnessAndHue) {
+/// A darker color of more chroma than an artery's red is out of gamut: chroma is reduced instead of
+/// lightness or hue.
+TEST(TintContrast, OutOfGamutColorsKeepLightnessAndHue) {
   const Lab before = toLab(artery);
   const Rgb color = adjustFocus(artery, {.focusLightness = -12.0, .focusChroma = 1.4});
   const Lab after = toLab(color);
@@ -72,22 +73,22 @@ TEST(TintContrast, ColoursBeyondTheDisplayKeepLightnessAndHue) {
   EXPECT_NEAR(after.L, before.L - 12.0, 1e-3);
   EXPECT_NEAR(after.b / after.a, before.b / before.a, 1e-3);
   EXPECT_LT(std::hypot(after.a, after.b), 1.4 * std::hypot(before.a, before.b));
-  EXPECT_LT(color.minCoeff(), 1e-3) << "as much chroma as there is";
+  EXPECT_LT(color.minCoeff(), 1e-3) << "chroma is reduced no more than necessary";
 }
 
-// ---- knobs
+// ---- adjustments
 
-TEST(TintContrast, LeavesColoursThatDiffer) {
+TEST(TintContrast, DistinguishableColorsAreUnchanged) {
   EXPECT_EQ(choose({{spleen, bone, 1.0}}), muted);
   EXPECT_EQ(computeScore({}, {spleen, bone, 1.0}), 1.0);
 }
 
-TEST(TintContrast, FocusWithoutNeighboursStaysAsItIs) {
+TEST(TintContrast, FocusWithoutNeighborsIsUnchanged) {
   EXPECT_EQ(choose({}), ColorAdjustment());
 }
 
-/// Expects that `knob` alone is turned, in the middle of its range, and that a twentieth of the
-/// range less would not be enough.
+/// Expects that only `member` is adjusted, to the middle of its range, and that a twentieth of the
+/// range less is insufficient.
 void expectSingleAdjustment(double ColorAdjustment::*member, double limit,
                             const InterfaceColors& colors) {
   const ColorAdjustment adjustment = choose({colors});
@@ -100,17 +101,17 @@ void expectSingleAdjustment(double ColorAdjustment::*member, double limit,
   reduced.*member -= step;
   EXPECT_LT(computeScore(reduced, colors), sufficientScore);
   reduced.*member = muted.*member;
-  EXPECT_EQ(reduced, muted) << "others are turned, too";
+  EXPECT_EQ(reduced, muted) << "others are adjusted as well";
 }
 
-TEST(TintContrast, TurnsAKnobNoFurtherThanNeeded) {
+TEST(TintContrast, AdjustsNoMoreThanNecessary) {
   expectSingleAdjustment(&ColorAdjustment::contextSaturation, 0.5,
                          {hexToLinear(0x882a2e), hexToLinear(0xe1806a), 1.0});
   expectSingleAdjustment(&ColorAdjustment::contextLightness, 0.35, {liver, fat, 1.0});
 }
 
-/// A later knob is turned only if the earlier are turned out.
-TEST(TintContrast, TurnsKnobsInTheirOrder) {
+/// A later adjustment is used only once all earlier ones have reached their limits.
+TEST(TintContrast, UsesAdjustmentsInOrder) {
   const auto chooseOnRed = [](std::uint32_t context) {
     return choose({{hexToLinear(0x882a2e), hexToLinear(context), 1.0}});
   };
@@ -126,30 +127,30 @@ TEST(TintContrast, TurnsKnobsInTheirOrder) {
   EXPECT_EQ(three.focusChroma, 1.0);
 }
 
-TEST(TintContrast, DarkFociAreDarkenedAndLightOnesSetBeforeDimmerSurroundings) {
+TEST(TintContrast, DarkFociGetDarkerAndLightFociGetDarkerSurroundings) {
   const ColorAdjustment dark = choose({{hexToLinear(0x882a2e), hexToLinear(0xed674d), 1.0}});
   EXPECT_EQ(dark.contextGoal, 72.0);
   EXPECT_LT(dark.focusLightness, 0.0);
   const ColorAdjustment light = choose({{Rgb::Constant(0.6), Rgb::Constant(0.2), 1.0}});
-  EXPECT_EQ(light.contextSaturation, 1.0) << "it has none";
+  EXPECT_EQ(light.contextSaturation, 1.0) << "gray has no saturation to reduce";
   EXPECT_EQ(light.contextGoal, 40.0);
   EXPECT_GT(light.focusLightness, 0.0);
 }
 
-/// Turns knobs beyond what tissue looks like, where the focus would not be told from its like.
-TEST(TintContrast, LikeInLikeIsPainted) {
+/// If natural tissue colors cannot distinguish focus and context, adjustments may exceed them.
+TEST(TintContrast, SimilarColorsGetAnAccentBeyondNaturalTissue) {
   const InterfaceColors colors{hexToLinear(0xe2a08c), fat, 1.0};
   const ColorAdjustment adjustment = choose({colors});
   EXPECT_GT(adjustment.focusAccent, 0.35);
   EXPECT_LE(adjustment.focusAccent, 0.6);
-  EXPECT_EQ(adjustment.accent, 0U) << "yellow: a pale organ in dark red would be taken for muscle";
+  EXPECT_EQ(adjustment.accent, 0U) << "yellow, since a pale organ in dark red looks like muscle";
   const Contrast contrast = measureAdjustedContrast(adjustment, colors, 1.0, 0.0);
   EXPECT_GT(contrast.deltaE[0], 20.0);
   EXPECT_GT(contrast.colorBlind(), 12.0);
   EXPECT_GT(contrast.deltaL, 8.0);
 }
 
-/// An accent is the last resort, a part of the way alone, and no other would be worth more.
+/// An accent is the last adjustment, within the natural range; other accents score lower.
 TEST(TintContrast, AccentComesLast) {
   const InterfaceColors colors{pancreas, fat, 1.0};
   const ColorAdjustment adjustment = choose({colors});
@@ -163,9 +164,9 @@ TEST(TintContrast, AccentComesLast) {
     EXPECT_LT(computeScore(other, colors), computeScore(adjustment, colors));
 }
 
-/// Every knob that is turned is needed: a twentieth less of any leaves less than there is, or less
-/// than enough.
-TEST(TintContrast, WhatIsNotNeededIsTurnedBack) {
+/// Each adjustment is needed: reducing any by a twentieth lowers the score, or makes it
+/// insufficient.
+TEST(TintContrast, UnnecessaryAdjustmentsAreRelaxed) {
   constexpr std::array members = {&ColorAdjustment::contextSaturation,
                                   &ColorAdjustment::contextLightness,
                                   &ColorAdjustment::focusLightness, &ColorAdjustment::focusChroma,
@@ -188,9 +189,9 @@ TEST(TintContrast, WhatIsNotNeededIsTurnedBack) {
   }
 }
 
-/// Greys differ by lightness alone, of which pictures have 43 %, less by 4 where a dark focus
-/// shades what is around it, and by 3 where that is in more light than a light focus.
-TEST(TintContrast, EdgesAreShownInTheLightAndInAGroove) {
+/// Grays differ only in lightness, of which images show 43 %. A dark focus shades its surroundings,
+/// which costs 4; the surroundings of a light focus receive more light than it, which costs 3.
+TEST(TintContrast, ModelsEdgesInTheLightAndInAGroove) {
   const Rgb dark = toLinear({40.0, 0.0, 0.0}), light = toLinear({80.0, 0.0, 0.0});
   for (const auto& [colors, loss] : {std::pair(InterfaceColors{dark, light, 1.0}, 4.0),
                                      std::pair(InterfaceColors{light, dark, 1.0}, 3.0)}) {
@@ -204,8 +205,8 @@ TEST(TintContrast, EdgesAreShownInTheLightAndInAGroove) {
   EXPECT_NEAR(measureAdjustedContrast({}, hues, 1.0, 0.0).deltaE[0], std::hypot(chroma, 4.0), 0.1);
 }
 
-/// Green and red of one lightness: normal sight needs nothing, the red-blind do.
-TEST(TintContrast, MindsTheColourBlindAndGreyPrints) {
+/// Green and red of equal lightness: sufficient for normal vision, not for red-blind viewers.
+TEST(TintContrast, ConsidersColorBlindnessAndGrayscalePrints) {
   Contrast contrast{{30.0, 15.0, 15.0, 30.0}, 20.0};
   EXPECT_EQ(contrastScore(contrast), 1.0);
   for (double* value :
@@ -225,7 +226,7 @@ TEST(TintContrast, MindsTheColourBlindAndGreyPrints) {
   EXPECT_GT(after.deltaL, before.deltaL);
 }
 
-TEST(TintContrast, WhatTheUserSetsIsNotTurned) {
+TEST(TintContrast, ValuesSetByTheUserAreNotAdjusted) {
   const std::vector<InterfaceColors> colors = {{liver, muscle, 1.0}};
   const ColorAdjustment pale = choose(colors, {.saturation = 0.8, .lightness = {}});
   EXPECT_EQ(pale.contextSaturation, 0.8);
@@ -236,11 +237,11 @@ TEST(TintContrast, WhatTheUserSetsIsNotTurned) {
   EXPECT_EQ(light.contextGoal, 100.0) << "white";
   const ColorAdjustment fixed =
       chooseAdjustment(colors, {.saturation = 0.8, .lightness = {}}, Adjustable::nothing, 1.0, 0.0);
-  EXPECT_EQ(fixed, ColorAdjustment{.contextSaturation = 0.8}) << "nothing else is turned unasked";
+  EXPECT_EQ(fixed, ColorAdjustment{.contextSaturation = 0.8}) << "nothing else is adjusted";
 }
 
-/// Most of the border decides.
-TEST(TintContrast, PartsCountByTheirArea) {
+/// The largest part of the interface decides.
+TEST(TintContrast, InterfacesAreWeightedByArea) {
   const Lab own = toLab(skin);
   const InterfaceColors dark{skin, toLinear({own.L + 12.0, own.a, own.b}), 1.0},
       light{skin, toLinear({own.L - 12.0, own.a, own.b}), 1.0};
@@ -254,8 +255,8 @@ TEST(TintContrast, PartsCountByTheirArea) {
   EXPECT_GT(chooseLightness(1.0, 10.0), 0.0);
 }
 
-/// A context paled by --contextsaturation 0 is grey, whatever its tint.
-TEST(TintContrast, KnowsHowFarTheContextIsPaled) {
+/// With --contextsaturation 0, the context is gray in any tint.
+TEST(TintContrast, ConsidersTheSaturationOfTheContext) {
   const InterfaceColors colors{liver, teal, 1.0};
   const Contrast gray = measureAdjustedContrast({}, colors, 0.0, 0.0);
   const double own = luminance(toAlbedo(teal, 0.0));
@@ -263,10 +264,10 @@ TEST(TintContrast, KnowsHowFarTheContextIsPaled) {
   EXPECT_NEAR(gray.deltaE[0], measureAdjustedContrast({}, same, 1.0, 0.0).deltaE[0], 0.05);
 }
 
-// ---- borders
+// ---- interfaces
 
-/// Cube of 6^3 voxels (component 1), whose neighbours are component 2 where x is beyond it, else
-/// the rest; scalars 10, 20, 30; voxels of 1 x 2 x 4 mm.
+/// Cube of 6^3 voxels (component 1, scalar 20). Its neighbors are component 2 beyond it in x
+/// (scalar 30), and elsewhere the rest (scalar 10). Voxels of 1 x 2 x 4 mm.
 class InterfaceTests : public ::testing::Test {
 protected:
   static constexpr std::int64_t edge = 16, low = 5, high = 11;
@@ -299,7 +300,7 @@ protected:
   const TransferFunction all{ScalarFunction({makeKnot(0.0, 1.0)}), ColorFunction({{0.0, skin}})};
 };
 
-TEST_F(InterfaceTests, AreMeasuredInSquareMillimetres) {
+TEST_F(InterfaceTests, AreasAreInSquareMillimeters) {
   const std::vector<ComponentInterface> found = measureInterfaces(all);
   ASSERT_EQ(found.size(), 2U);
   const double x = 36 * 8.0, y = 36 * 4.0, z = 36 * 2.0;
@@ -315,7 +316,7 @@ TEST_F(InterfaceTests, AreMeasuredInSquareMillimetres) {
   EXPECT_EQ(found[1].contextScalar, 30.0);
 }
 
-TEST_F(InterfaceTests, WhatIsTransparentIsNoNeighbour) {
+TEST_F(InterfaceTests, TransparentMediaAreNoNeighbors) {
   TransferFunction transfer = all;
   transfer.extinction = ScalarFunction({makeKnot(10.0, 0.0), makeKnot(20.0, 1.0)});
   const std::vector<ComponentInterface> found = measureInterfaces(transfer);
@@ -323,11 +324,11 @@ TEST_F(InterfaceTests, WhatIsTransparentIsNoNeighbour) {
   EXPECT_EQ(found[0].context, 2);
 }
 
-/// A neighbour of less than a twentieth of the border does not turn a knob.
-TEST_F(InterfaceTests, SmallOnesDoNotCount) {
+/// A neighbor with less than a twentieth of the area does not affect the adjustment.
+TEST_F(InterfaceTests, SmallOnesAreIgnored) {
   const TintPlan plan{.parts = {},
                       .components = {{}, {}, {}},
-                      .names = {"the rest", "focus", "neighbour"},
+                      .names = {"the rest", "focus", "neighbor"},
                       .isFocus = {false, true, false}};
   Tint tint{nullptr, {}};
   for (const Rgb& color : {bone, spleen, spleen})
@@ -342,7 +343,7 @@ TEST_F(InterfaceTests, SmallOnesDoNotCount) {
   EXPECT_EQ(at(4.0).neighbor, "the rest");
   EXPECT_NE(at(6.0).adjustment, muted);
   EXPECT_EQ(at(6.0).segment, "focus");
-  EXPECT_EQ(at(6.0).neighbor, "neighbour");
+  EXPECT_EQ(at(6.0).neighbor, "neighbor");
   EXPECT_FALSE(adjustContrast({}, plan, tint, table, all, 1.0).contrast);
 
   Tint unknown = tint;
@@ -350,7 +351,7 @@ TEST_F(InterfaceTests, SmallOnesDoNotCount) {
   const ColorAdjustment adjustment =
       adjustContrast({{1, 2, 10.0, 0.0, 0.0}}, plan, unknown, table, all, 1.0).adjustment;
   EXPECT_EQ(adjustFocus(skin, adjustment).matrix(), adjustFocus(skin, {}).matrix())
-      << "of which nothing is known";
+      << "a focus of unknown material keeps its color";
   EXPECT_LT(
       chooseAdjustment({{skin, fat, 1.0}}, {}, Adjustable::context, 1.0, 0.0).contextSaturation,
       0.5);
@@ -361,12 +362,12 @@ TEST_F(InterfaceTests, SmallOnesDoNotCount) {
     return std::hypot(lab.a, lab.b);
   };
   EXPECT_LT(chroma(0), 0.5);
-  EXPECT_GT(chroma(1), 10.0) << "the focus's";
+  EXPECT_GT(chroma(1), 10.0) << "the focus keeps its chroma";
   EXPECT_LT(chroma(2), 0.5);
 }
 
-/// Colours that are the volume's own are changed over the scalar, knot by knot.
-TEST_F(InterfaceTests, OwnColoursAreChangedToo) {
+/// The volume's own colors are functions of the scalar; the adjustment changes all their knots.
+TEST_F(InterfaceTests, VolumeColorsAreAdjusted) {
   TransferFunction transfer = all;
   transfer.albedo = ColorFunction({{0.0, toAlbedo(skin, 0.0)}, {9.0, toAlbedo(liver, 0.0)}});
   const TintPlan plan{.parts = {}, .components = {{}}, .names = {"the rest"}, .isFocus = {false}};

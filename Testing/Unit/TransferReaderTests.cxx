@@ -1,4 +1,4 @@
-// Transfer functions: Fenestra's own, Slicer's .vp and .vp.json, and invalid files.
+// Transfer functions in Fenestra's format and Slicer's .vp and .vp.json; invalid files.
 
 #include "files/appearance/TransferReader.h"
 
@@ -14,7 +14,7 @@ TransferFunction parse(const std::string& json) {
   return parseTransferJson(json, "test").function;
 }
 
-TEST(TransferReader, ReadsItsOwnFormat) {
+TEST(TransferReader, ReadsFenestraJson) {
   const TransferFunction f = parse(
       R"({"extinction": [[100, 4], [0, 0]], "albedo": [[0, 0.1, 0.2, 0.3], [10, 0.5, 0.6, 1]],
           "g": -0.5, "shading": "hybrid"})");
@@ -30,7 +30,7 @@ TEST(TransferReader, ReadsItsOwnFormat) {
   EXPECT_FALSE(minimal.shading);
 }
 
-TEST(TransferReader, RelativeScalarsAreAShareOfTheUsualRange) {
+TEST(TransferReader, RelativeScalarsAreFractionsOfAScalarRange) {
   const std::string rest =
       R"("extinction": [[0.5, 0], [1, 4]], "albedo": [[0, 0, 0, 0], [1, 1, 1, 1]]})";
   const TransferFile relative = parseTransferJson(R"({"scalars": "relative", )" + rest, "test");
@@ -52,7 +52,7 @@ TEST(TransferReader, RelativeScalarsAreAShareOfTheUsualRange) {
                 [&] { parseTransferJson(R"({"scalars": "percent", )" + rest, "test"); });
 }
 
-TEST(TransferReader, ColorIsWhatIsSeen) {
+TEST(TransferReader, ColorIsTheReflectedColor) {
   const std::string e = R"("extinction": [[0, 0], [100, 4]], "shading": "hybrid")";
   const TransferFunction f =
       parse("{" + e + R"(, "color": [[100, "#bcbcbc"], [0, "#000000"]], "g": 0.5})");
@@ -69,7 +69,7 @@ TEST(TransferReader, ColorIsWhatIsSeen) {
   EXPECT_NEAR(f.shading->oddsFactor, 0.235, 1e-12);
   const TransferFunction glossy = parse("{" + e + R"(, "albedo": [[0, 0.5, 0.5, 0.5]],
       "specular": 0.5, "roughness": 0.1})");
-  EXPECT_EQ(glossy.albedo(0)[0], 0.5) << "albedo stays what it is";
+  EXPECT_EQ(glossy.albedo(0)[0], 0.5) << "an albedo is used unchanged";
   ASSERT_TRUE(glossy.shading && glossy.shading->coated);
   EXPECT_EQ(glossy.shading->specular, 0.5);
   EXPECT_NEAR(glossy.shading->power, 198.0, 1e-9);
@@ -82,9 +82,9 @@ void expectRefusal(const std::string& json, const std::string& text) {
   expectRefused("test", text, [&] { parseTransferJson(json, "test"); });
 }
 
-TEST(TransferReader, ErrorNamesTheField) {
+TEST(TransferReader, ErrorNamesTheInvalidField) {
   const std::string e = R"("extinction": [[0, 1], [5, 2]])", a = R"("albedo": [[0, 1, 1, 1]])";
-  expectRefusal("{" + e + "}", "has no \"albedo\"");
+  expectRefusal("{" + e + "}", "has neither \"albedo\" nor \"color\"");
   expectRefusal("{" + a + "}", "has no \"extinction\"");
   expectRefusal("{" + e + "," + a + R"(, "opacity": 1})", "unknown key \"opacity\"");
   expectRefusal("{" + e + "," + a + R"(, "new\nline": 1})", "unknown key");
@@ -100,34 +100,34 @@ TEST(TransferReader, ErrorNamesTheField) {
   expectRefusal("{" + e + R"(, "albedo": [[0, 1, 1.5, 1]]})",
                 "albedo[0]: values must be from 0 to 1");
   expectRefusal("{" + e + "," + a + R"(, "color": [[0, "#ffffff"]]})",
-                "color: and albedo contradict");
+                "color: cannot be combined with \"albedo\"");
   for (const char* color :
        {"white", "#fff", "#12345", "#1234567", "#12345g", "# 12345", "12345678"})
     expectRefusal("{" + e + R"(, "color": [[0, ")" + color + R"("]]})",
-                  "color[0][1]: must be a colour such as \"#d8a090\"");
+                  "color[0][1]: must be a color such as \"#d8a090\"");
   expectRefusal("{" + e + R"(, "color": [[0, 1, 1, 1]]})",
                 "color[0]: must be [scalar, \"#rrggbb\"]");
   expectRefusal("{" + e + R"(, "color": []})", "color: has 0 points");
   expectRefusal("{" + e + "," + a + R"(, "specular": 0.2})",
-                "specular: is of surfaces; add \"shading\"");
+                "specular: applies to surfaces only; add \"shading\"");
   expectRefusal("{" + e + "," + a + R"(, "shading": "hybrid", "roughness": 0})", "roughness: ");
   expectRefusal("{" + e + "," + a + R"(, "shading": "hybrid", "specular": 1.5})", "specular: ");
   expectRefusal("[]", "must be an object");
-  expectRefusal("", "is not JSON");
-  expectRefusal("{\"extinction\": [[0,", "is not JSON");
+  expectRefusal("", "is not valid JSON");
+  expectRefusal("{\"extinction\": [[0,", "is not valid JSON");
   expectRefusal("{\"extinction\": 1e999}", "");
-  expectRefusal("{\"extinction\": \"\xff\"}", "is not JSON");
+  expectRefusal("{\"extinction\": \"\xff\"}", "is not valid JSON");
   expectRefusal(std::string(1'000'000, '['), "is nested deeper than 64");
   std::string many = "{\"extinction\": [0";
   for (int i = 0; i < 200'000; ++i)
     many += ",0";
-  expectRefusal(many + "]}", "holds more than 200000 values");
+  expectRefusal(many + "]}", "contains more than 200000 values");
   const TemporaryFolder folder;
   const auto large = folder.write("large.json", std::string((4 << 20) + 1, ' '));
-  expectRefused(large, "has more than 4 MB", [&large] { readTransferFile(large); });
+  expectRefused(large, "is larger than 4 MB", [&large] { readTransferFile(large); });
 }
 
-/// Text of a .vp.json with these members in its property and component.
+/// Text of a .vp.json with additional members in its volume property and its component.
 std::string makeSlicerJson(const std::string& property, const std::string& component) {
   return R"({"@schema": "x", "volumeProperties": [{"effectiveRange": [0, "bad"], )" + property +
          R"("components": [{)" + component + R"(
@@ -138,7 +138,7 @@ std::string makeSlicerJson(const std::string& property, const std::string& compo
       {"x": 0, "color": [1, 0.5, 0], "midpoint": 0.5, "sharpness": 0}]}}]}]})";
 }
 
-TEST(TransferReader, ReadsSlicersJson) {
+TEST(TransferReader, ReadsSlicerJson) {
   const TransferFunction f = parse(makeSlicerJson(R"("scatteringAnisotropy": 0.3, )",
                                                   R"("scalarOpacityUnitDistance": 2, "shade": true,
                 "lighting": {"ambient": 0.1, "diffuse": 0.6, "specular": 0.3, "specularPower": 20},
@@ -191,11 +191,11 @@ const std::string propertyText = "1\r\n1\n0.42\n0.44\n0.46\n38.5\n"
                                  "4 -17 1 235 1\n"
                                  "8 -17 1 0 0.5 235 1 1 1\n";
 
-TEST(TransferReader, ReadsSlicersText) {
+TEST(TransferReader, ReadsSlicerText) {
   const TemporaryFolder folder;
   const TransferFunction f = readTransferFunction(folder.write("a.vp", propertyText));
   EXPECT_NEAR(f.extinction(-2)[0], -std::log1p(-0.1), 1e-4 * 0.1);
-  EXPECT_DOUBLE_EQ(f.extinction(13)[0], -std::log1p(-0.6)); // equal positions make a step
+  EXPECT_DOUBLE_EQ(f.extinction(13)[0], -std::log1p(-0.6)); // two nodes at one position: a step
   EXPECT_NEAR(f.extinction(13 - 1e-9)[0], -std::log1p(-0.2), 1e-6);
   EXPECT_TRUE(isApprox(f.albedo(235), Rgb(1, 1, 1)));
   EXPECT_FALSE(f.gradientOpacity);
@@ -205,7 +205,7 @@ TEST(TransferReader, ReadsSlicersText) {
   EXPECT_EQ(f.shading->power, 38.5);
 }
 
-TEST(TransferReader, RefusesDamagedText) {
+TEST(TransferReader, RefusesDamagedSlicerText) {
   const TemporaryFolder folder;
   const auto refuse = [&folder](const std::string& from, const std::string& to,
                                 const std::string& text) {
@@ -226,7 +226,7 @@ TEST(TransferReader, RefusesDamagedText) {
 
 TEST(TransferReader, RefusesUnknownAndMissingFilesAndFolders) {
   const TemporaryFolder folder;
-  expectRefused(folder / "x.txt", "name a .vp", [&] { readTransferFunction(folder / "x.txt"); });
+  expectRefused(folder / "x.txt", "give a .vp", [&] { readTransferFunction(folder / "x.txt"); });
   expectRefused(folder / "x.vp", "no such file", [&] { readTransferFunction(folder / "x.vp"); });
   std::filesystem::create_directory(folder / "d.json");
   expectRefused(folder / "d.json", "is a folder", [&] { readTransferFunction(folder / "d.json"); });
@@ -235,7 +235,7 @@ TEST(TransferReader, RefusesUnknownAndMissingFilesAndFolders) {
 TEST(TransferReader, ReadsRealVolumeProperties) {
   const std::filesystem::path root = std::filesystem::path(FENESTRA_DATA) / "slicer_scenes";
   if (!std::filesystem::exists(root))
-    GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
+    GTEST_SKIP() << "no test data at " << FENESTRA_DATA;
   int read = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(root)) {
     const std::string name = entry.path().filename().string();
@@ -247,10 +247,10 @@ TEST(TransferReader, ReadsRealVolumeProperties) {
   EXPECT_GE(read, 4);
 }
 
-TEST(TransferReader, ReadsTransferFunctionsOfTheReference) {
+TEST(TransferReader, ReadsTransferFunctionsOfTheReferenceImages) {
   const std::filesystem::path root(FENESTRA_REFERENCE);
   if (!std::filesystem::exists(root / "S1.transfer.json"))
-    GTEST_SKIP() << "no references at " << FENESTRA_REFERENCE;
+    GTEST_SKIP() << "no reference images at " << FENESTRA_REFERENCE;
   for (const char* name : {"S1", "S2", "S2hi", "S3het"})
     EXPECT_NO_THROW(readTransferFunction(root / (std::string(name) + ".transfer.json"))) << name;
 }

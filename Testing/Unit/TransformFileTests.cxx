@@ -1,4 +1,4 @@
-// Every linear transform that ITK writes, against ITK's own result for a point; and invalid files.
+// All linear transforms that ITK writes, compared with ITK's own mapping; invalid files.
 
 #include "files/slicer/TransformFile.h"
 
@@ -58,8 +58,8 @@ std::filesystem::path write(const TemporaryFolder& folder, const std::string& ex
   return path;
 }
 
-/// Expects the file to map LPS points as ITK's object, and the read transform to map these points
-/// in RAS, in the inverse direction.
+/// Writes `transform` to files and reads them. Expects the read transform to map points in RAS as
+/// the inverse of the ITK object maps them in LPS.
 template <typename Real>
 void expectSameMap(const itk::Transform<Real, 3, 3>* transform,
                    const Extensions& extensions = allExtensions) {
@@ -84,7 +84,7 @@ void expectSameMap(const itk::Transform<Real, 3, 3>* transform,
   }
 }
 
-/// Rotation about a centre, with asymmetric numbers.
+/// Rotation about a center and translation, without symmetries that could hide errors.
 template <typename Transform>
 typename Transform::Pointer makeRotated() {
   auto transform = Transform::New();
@@ -107,12 +107,12 @@ typename Transform::Pointer makeRotated() {
                            typename Transform::ScalarType(0.3));
   else if constexpr (requires { transform->Rotate3D(axis, 0.7); })
     transform->Rotate3D(axis, static_cast<typename Transform::ScalarType>(0.7));
-  if (transform->GetNumberOfParameters() >= 6) // otherwise no parameter stores the shift
+  if (transform->GetNumberOfParameters() >= 6) // with fewer, the translation is not stored
     transform->SetTranslation(shift);
   return transform;
 }
 
-TEST(TransformFile, ReadsEveryLinearKind) {
+TEST(TransformFile, ReadsEveryLinearTransformType) {
   expectSameMap(makeRotated<itk::AffineTransform<double, 3>>().GetPointer());
   expectSameMap(makeRotated<itk::Euler3DTransform<double>>().GetPointer());
   expectSameMap(makeRotated<itk::CenteredEuler3DTransform<double>>().GetPointer());
@@ -139,7 +139,7 @@ typename Transform::Pointer makeStretched() {
   auto transform = makeRotated<Transform>();
   const double stretch[] = {1.5, 0.5, 2.0};
   transform->SetScale(stretch);
-  transform->SetCenter(transform->GetCenter()); // some of ITK's kept an old offset
+  transform->SetCenter(transform->GetCenter()); // some ITK classes otherwise keep an old offset
   return transform;
 }
 
@@ -159,7 +159,7 @@ TEST(TransformFile, ReadsFloatsAndTheOrderOfEulerAngles) {
   expectSameMap(euler.GetPointer());
 }
 
-TEST(TransformFile, AppliesTheLastOfACompositeFirst) {
+TEST(TransformFile, AppliesTheLastTransformOfACompositeFirst) {
   const auto composite = itk::CompositeTransform<double, 3>::New();
   auto first = itk::TranslationTransform<double, 3>::New();
   const double shift[] = {10, 0, 0};
@@ -172,7 +172,7 @@ TEST(TransformFile, AppliesTheLastOfACompositeFirst) {
   expectSameMap(composite.GetPointer(), {".tfm", ".txt", ".h5", "z.h5"});
 }
 
-TEST(TransformFile, ReadsMatColumnsOfTheOtherByteOrder) {
+TEST(TransformFile, ReadsMatFilesOfTheOtherByteOrder) {
   const TemporaryFolder folder;
   const auto affine = makeRotated<itk::AffineTransform<double, 3>>();
   const Affine expected = readLinearTransform(write(folder, ".mat", affine.GetPointer())).inverse();
@@ -196,7 +196,7 @@ TEST(TransformFile, ReadsMatColumnsOfTheOtherByteOrder) {
   EXPECT_TRUE(isApprox(readLinearTransform(path).inverse(), expected, 1e-15));
 }
 
-/// File as written by the HDF5 library itself and by older ITK: groups are symbol tables.
+/// File as the HDF5 library and older ITK write it, with groups as symbol tables.
 std::filesystem::path writeOldHdf5(const TemporaryFolder& folder, int count) {
   const auto path = folder / "old.h5";
   const hid_t file = H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
@@ -229,7 +229,7 @@ std::filesystem::path writeOldHdf5(const TemporaryFolder& folder, int count) {
 
 TEST(TransformFile, ReadsOldHdf5) {
   const TemporaryFolder folder;
-  for (const int count : {2, 5, 100}) { // symbol tables of one leaf, and of many
+  for (const int count : {2, 5, 100}) { // symbol tables with one leaf and with many
     const Affine toParent = readLinearTransform(writeOldHdf5(folder, count)).inverse();
     EXPECT_TRUE(
         isApprox(toParent.translation(), Vec3(count - 1, count * (count - 1), -3 * (count - 1))));
@@ -276,39 +276,39 @@ TEST(TransformFile, RefusesNonlinearTransforms) {
   expectRefused(folder.write("field.nrrd", "NRRD0004"), "is a displacement field");
 }
 
-TEST(TransformFile, RefusesMapsThatCannotBeInverted) {
+TEST(TransformFile, RefusesSingularMatrices) {
   const TemporaryFolder folder;
   for (const char* matrix : {"0 0 0 0 1 0 0 0 1", "1 0 0 1 0 0 0 0 1", "1e-300 0 0 0 1 0 0 0 1",
                              "1e300 0 0 0 1e300 0 0 0 1e300"})
     expectRefused(folder.write("s.tfm", replaceText(affineText, "1 0 0 0 1 0 0 0 1", matrix)),
-                  "cannot be inverted");
+                  "must be invertible");
   for (const char* offset : {"nan 20 30", "1e999 20 30", "inf 0 0", "10 20", "10 20 30 40", "x"})
     expectRefused(folder.write("n.tfm", replaceText(affineText, "10 20 30", offset)), "is damaged");
   expectRefused(folder.write("f.tfm", replaceText(affineText, "10 20 30", "1e200 0 0")),
-                "cannot be inverted");
+                "must be invertible");
 }
 
-TEST(TransformFile, RefusesSeveralPlanarAndNestedTransforms) {
+TEST(TransformFile, RefusesMultiplePlanarAndNestedTransforms) {
   const TemporaryFolder folder;
-  expectRefused(folder.write("two.tfm", affineText + affineText), "holds 2 transforms");
+  expectRefused(folder.write("two.tfm", affineText + affineText), "has 2 transforms");
   expectRefused(write(folder, ".tfm", itk::Euler2DTransform<double>::New().GetPointer()),
                 "is not linear");
   expectRefused(folder.write("2d.tfm", replaceText(affineText, "AffineTransform_double_3_3",
                                                    "AffineTransform_double_2_2")),
-                "is not a transform of three axes");
+                "is not a 3D transform");
   expectRefused(folder.write("c.tfm", "Transform: CompositeTransform_double_3_3\n"
                                       "ComponentTransformFile: ../../other.tfm\n"),
-                "ComponentTransformFile: further files are not read");
+                "ComponentTransformFile: is not supported");
   expectRefused(folder.write("nested.tfm", "Transform: CompositeTransform_double_3_3\n"
                                            "Transform: CompositeTransform_double_3_3\n"),
                 "is damaged");
 }
 
-TEST(TransformFile, RefusesFilesThatAreNoTransform) {
+TEST(TransformFile, RefusesFilesThatAreNotTransforms) {
   const TemporaryFolder folder;
-  expectRefused(folder / "none.tfm", "there is no such file");
+  expectRefused(folder / "none.tfm", "no such file");
   expectRefused(folder.path(), "is a folder");
-  expectRefused(folder.write("t.xyz", affineText), "has no known extension");
+  expectRefused(folder.write("t.xyz", affineText), "has no extension of a transform");
   for (const std::string extension : {".tfm", ".txt", ".h5", ".hdf5", ".mat"}) {
     expectRefused(folder.write("empty" + extension, ""), "is damaged");
     expectRefused(folder.write("text" + extension, "what is this"), "is damaged");
@@ -319,18 +319,18 @@ TEST(TransformFile, RefusesFilesThatAreNoTransform) {
                 "is damaged");
   const auto large = folder.write("large.tfm", affineText);
   std::filesystem::resize_file(large, (64 << 20) + 1);
-  expectRefused(large, "is larger than 1 MB"); // text
+  expectRefused(large, "is larger than 1 MB"); // the limit for text
   const auto binary = folder.write("large.h5", affineText);
   std::filesystem::resize_file(binary, (64 << 20) + 1);
   expectRefused(binary, "is larger than 64 MB");
 }
 
-/// HDF5's means of opening other files through the library; in a file that is read apart.
-TEST(TransformFile, RefusesHdf5ThatOpensOtherFiles) {
+/// External storage and external links make the HDF5 library open other files.
+TEST(TransformFile, RefusesHdf5ThatRefersToOtherFiles) {
   const TemporaryFolder folder;
   const auto other = folder.write("other.raw", std::string(80, '\0'));
   using AddReference = std::function<void(hid_t file)>;
-  const AddReference values = [&](hid_t file) { // data set with its values in another file
+  const AddReference values = [&](hid_t file) { // data set with values in another file
     const hsize_t size = 10;
     const hid_t space = H5Screate_simple(1, &size, nullptr),
                 creation = H5Pcreate(H5P_DATASET_CREATE);
@@ -356,8 +356,8 @@ TEST(TransformFile, RefusesHdf5ThatOpensOtherFiles) {
   }
 }
 
-/// Damaged bytes must be read, or refused on one line.
-TEST(TransformFile, DamagedBytesAreReadOrRefused) {
+/// Corrupted files must be read, or refused with a one-line error.
+TEST(TransformFile, CorruptedFilesAreReadOrRefused) {
   const TemporaryFolder folder;
   const auto composite = itk::CompositeTransform<double, 3>::New();
   composite->AddTransform(makeRotated<itk::Euler3DTransform<double>>());
@@ -386,12 +386,12 @@ TEST(TransformFile, DamagedBytesAreReadOrRefused) {
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
-/// File written by Slicer 5.2.2, and the matrix stored beside.
+/// File written by Slicer 5.2.2; the expected matrix is from the same scene.
 TEST(TransformFile, ReadsAFileWrittenBySlicer) {
   const auto scene = std::filesystem::path(FENESTRA_DATA) / "slicer_scenes" / "slicer_5_2_written" /
                      "chest_transformed_cropped.mrb";
   if (!std::filesystem::exists(scene))
-    GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
+    GTEST_SKIP() << "no test data at " << FENESTRA_DATA;
   SceneFiles files(scene);
   const std::filesystem::path path = files.locate("Data/tilt.h5");
   const Affine expected(Mat3::FromRows({0.939693, -0.34202, 0}, {0.34202, 0.939693, 0}, {0, 0, 1}),

@@ -1,4 +1,4 @@
-// Table of the medium against the formulas that it approximates.
+// Tabulated transfer functions compared with the formulas that they approximate.
 
 #include "Curves.h"
 #include "base/Error.h"
@@ -21,7 +21,7 @@ double evalExtinction(const VolumeProperty& p, double x) {
   return -std::log1p(-std::min(interpolateCurve(p.scalarOpacity, x), 0.9999)) / p.unitDistance;
 }
 
-/// Greatest relative error of the table's extinction, beyond the documented floor.
+/// Largest relative error of the tabulated extinction, above the documented absolute floor.
 double findMaxExtinctionError(const VolumeProperty& p, const TransferFunction& f) {
   const double low = p.scalarOpacity.front().x, high = p.scalarOpacity.back().x;
   double maximum = 0.0;
@@ -39,7 +39,7 @@ double findMaxExtinctionError(const VolumeProperty& p, const TransferFunction& f
   return maxError;
 }
 
-/// Port of vtkPiecewiseFunction::GetTable between two nodes.
+/// Port of vtkPiecewiseFunction::GetTable, between two nodes.
 double evalVtkCurve(const OpacityNode& a, const OpacityNode& b, double x) {
   const double m = std::clamp(a.midpoint, 0.00001, 0.99999);
   double s = (x - a.x) / (b.x - a.x);
@@ -60,7 +60,7 @@ double evalVtkCurve(const OpacityNode& a, const OpacityNode& b, double x) {
                     std::max(a.value, b.value));
 }
 
-TEST(VolumeProperty, InterpolatesAsVtkDoes) {
+TEST(VolumeProperty, InterpolatesLikeVtk) {
   for (const double midpoint : {0.0, 1e-3, 0.3, 0.5, 0.9, 1.0})
     for (const double sharpness : {0.0, 0.009, 0.01, 0.3, 0.5, 0.99, 0.995, 1.0}) {
       const std::vector<OpacityNode> nodes = {{-100, 0.8, midpoint, sharpness}, {300, 0.1}};
@@ -73,7 +73,7 @@ TEST(VolumeProperty, InterpolatesAsVtkDoes) {
     }
 }
 
-TEST(VolumeProperty, ColoursFollowTheCurveOfOpacity) {
+TEST(VolumeProperty, ColorsInterpolateLikeOpacity) {
   const std::vector<ColorNode> nodes = {{0, {0, 0.5, 1}, 0.3, 0.4}, {10, {1, 0.25, 0.5}}};
   const std::vector<OpacityNode> red = {{0, 0, 0.3, 0.4}, {10, 1}};
   for (double x = -1; x < 12; x += 0.1) {
@@ -125,7 +125,7 @@ TEST(VolumeProperty, ExtinctionOfSharpCurvesIsWithin1e4OfTheFormula) {
     }
 }
 
-TEST(VolumeProperty, NodesAreKnots) {
+TEST(VolumeProperty, EveryNodeIsAKnot) {
   const VolumeProperty p = makeProperty({{-7, 0.1}, {0.1, 0.7}, {13, 0.2}});
   const TransferFunction f = tabulate(p, "test");
   for (const OpacityNode& node : p.scalarOpacity)
@@ -148,7 +148,7 @@ TEST(VolumeProperty, FullOpacityIsCapped) {
   EXPECT_NEAR(f.extinction(0.99995)[0], -std::log(0.0001), 1e-12);
 }
 
-TEST(VolumeProperty, AlbedoIsWithin1e4OfTheDecodedColour) {
+TEST(VolumeProperty, AlbedoIsWithin1e4OfTheDecodedColor) {
   VolumeProperty p = makeProperty({{0, 0.5}});
   p.color = {{0, {0, 0.5, 1}, 0.3, 0.6}, {10, {1, 0.001, 0.02}}, {11, {0, 0, 0}}};
   const TransferFunction f = tabulate(p, "test");
@@ -182,7 +182,7 @@ TEST(VolumeProperty, OmitsGradientOpacityOfOne) {
   EXPECT_DOUBLE_EQ((*f.gradientOpacity)(51)[0], 0.2);
 }
 
-TEST(VolumeProperty, ShadeTurnsShadingOn) {
+TEST(VolumeProperty, ShadeEnablesShading) {
   VolumeProperty p = makeProperty({{0, 0.5}});
   EXPECT_FALSE(tabulate(p, "test").shading);
   p.shade = true;
@@ -191,7 +191,7 @@ TEST(VolumeProperty, ShadeTurnsShadingOn) {
   EXPECT_EQ(tabulate(p, "test").shading->power, 30.0);
 }
 
-TEST(VolumeProperty, RefusesUnusableValues) {
+TEST(VolumeProperty, RefusesInvalidValues) {
   const auto expectRefused = [](auto&& change) {
     VolumeProperty p = makeProperty({{0, 0}, {1, 0.5}});
     change(p);

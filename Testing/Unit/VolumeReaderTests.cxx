@@ -1,4 +1,4 @@
-// Round trips through every format and sample type, and invalid files.
+// Round trips through every file format and sample type; invalid files.
 
 #include "files/medical/VolumeReader.h"
 
@@ -15,7 +15,7 @@ const LargeArray<Stored>& getVoxels(const Volume& volume) {
   return std::get<LargeArray<Stored>>(volume.voxels);
 }
 
-/// Ramp of 24 samples, for the default geometry.
+/// Linear ramp of 24 samples, the number of the default geometry.
 template <typename T>
 std::vector<T> makeRamp(double first, double step) {
   std::vector<T> samples(24);
@@ -82,7 +82,7 @@ TEST(VolumeReader, RoundsDoublesToFloats) {
 TEST(VolumeReader, ReplacesNonFiniteVoxels) {
   const TemporaryFolder folder;
   for (const char* name : {"v.nrrd", "v.nii.gz", "v.mha"})
-    for (const double step : {0.5, 1.0}) { // stays float; becomes integers
+    for (const double step : {0.5, 1.0}) { // stays float; can be stored as integers
       auto samples = makeRamp<float>(-3, step);
       samples[5] = std::numeric_limits<float>::quiet_NaN();
       samples[6] = std::numeric_limits<float>::infinity();
@@ -126,13 +126,13 @@ TEST(VolumeReader, ConvertsObliqueGeometryToRas) {
   }
 }
 
-/// Raw NRRD written by hand; `head`: the fields that vary.
+/// Text of a raw NRRD; `head`: the fields that differ between tests.
 std::string makeNrrd(const std::string& head, const std::string& data,
                      const std::string& encoding = "raw") {
   return "NRRD0004\ntype: unsigned char\nencoding: " + encoding + "\n" + head + "\n\n" + data;
 }
 
-TEST(VolumeReader, ReadsRasAndShearedHeaders) {
+TEST(VolumeReader, ReadsRasSpaceAndShearedAxes) {
   const TemporaryFolder folder;
   const std::string samples(24, 'x');
   const auto path = folder.write(
@@ -149,7 +149,7 @@ TEST(VolumeReader, ReadsRasAndShearedHeaders) {
   EXPECT_TRUE(isApprox(readVolume(lps).grid.indexToWorld * Vec3(1, 1, 1), Vec3(1, -1, 6), 1e-12));
 }
 
-TEST(VolumeReader, ReadsDetachedDataAndLists) {
+TEST(VolumeReader, ReadsDetachedDataAndFileLists) {
   const TemporaryFolder folder;
   const std::string head = "dimension: 3\nsizes: 3 4 2\n";
   folder.write("half.raw", std::string(12, '\1'));
@@ -172,7 +172,7 @@ TEST(VolumeReader, ReadsAsciiAndHexEncoding) {
   EXPECT_EQ(readVolume(folder.write("h.nrrd", head + "encoding: hex\n\n" + hex)).minimum, 1.0);
 }
 
-TEST(VolumeReader, DropsTrailingAxesOfOneFrame) {
+TEST(VolumeReader, DropsTrailingAxesOfSizeOne) {
   const TemporaryFolder folder;
   const auto path = folder.write(
       "legacy.nrrd",
@@ -191,7 +191,7 @@ void expectRefusal(const std::filesystem::path& path, const std::string& text) {
   expectRefused(path, text, [&path] { readVolume(path); });
 }
 
-TEST(VolumeReader, RefusesFramesVectorsAndPictures) {
+TEST(VolumeReader, RefusesFramesVectorsAndImages) {
   const TemporaryFolder folder;
   const std::vector<std::uint8_t> samples(96, 1);
   for (const std::string end : {".nrrd", ".nii.gz", ".mha"}) {
@@ -210,7 +210,7 @@ TEST(VolumeReader, RefusesMissingAndUnknownFiles) {
   const TemporaryFolder folder;
   expectRefusal(folder / "missing.nrrd", "no such file");
   expectRefusal(folder / "", "is a folder");
-  expectRefusal(folder.write("volume.dat", "x"), "no known extension");
+  expectRefusal(folder.write("volume.dat", "x"), "has an unknown extension");
   for (const char* name : {"a.nrrd", "a.nhdr", "a.nii", "a.nii.gz", "a.mha", "a.mhd"}) {
     expectRefusal(folder.write(name, ""), "");
     expectRefusal(folder.write(name, "something else\nentirely\n"), "");
@@ -279,7 +279,7 @@ TEST(VolumeReader, RefusesSizesThatTheFileCannotHold) {
   expectRefusal(writeMeta("3 3 3\nNDims = 4000", ""), "NDims");
   expectRefusal(writeMeta("3 3 3\nNDims" + std::string(1, '\0') + " = -1\nDimSize = 1", ""),
                 "damaged");
-  // MetaIO reads endlessly after such fields.
+  // MetaIO does not terminate after such fields.
   expectRefusal(writeMeta("3 3 3\nElementSpacing: 1 = 1", ""), "damaged");
   expectRefusal(writeMeta("3 3 3\nComment = a\x05"
                           "b",
@@ -289,14 +289,15 @@ TEST(VolumeReader, RefusesSizesThatTheFileCannotHold) {
   expectRefusal(writeMeta("1 1 1\nTransformMatrix = 1 0", ""), "TransformMatrix");
   writeFile(folder / "v.nii", makeRamp<float>(0, 1));
   std::string nifti = readBytes(folder / "v.nii");
-  for (const std::size_t axis : {1u, 2u, 3u}) { // dim[] begins at byte 40, two bytes each
+  for (const std::size_t axis : {1u, 2u, 3u}) { // dim[] starts at byte 40, two bytes per entry
     nifti[40 + 2 * axis] = '\xff';
     nifti[41 + 2 * axis] = '\x7f';
   }
   expectRefusal(folder.write("huge.nii", nifti), "truncated");
 }
 
-/// ITK's NRRD library copies lines, names and numbers into 1024 bytes, and sizes into 16 entries.
+/// Teem, ITK's NRRD library, copies lines, names and numbers to buffers of 1024 bytes, and sizes to
+/// one of 16 entries, without checking their length.
 TEST(VolumeReader, RefusesNrrdHeadersThatCrashTeem) {
   const TemporaryFolder folder;
   const std::string sizes = "dimension: 3\nsizes: 3 4 2\n";
@@ -314,14 +315,14 @@ TEST(VolumeReader, RefusesNrrdHeadersThatCrashTeem) {
                   "damaged");
   expectRefusal(folder.write("v.nrrd", "NRRD0004" + std::string(2000, 'x') + "\n" + sizes), "");
   expectRefusal(writeWithLine("data file: LIST\n" + std::string(1000, 'x')), "500 bytes");
-  expectRefusal(writeWithLine("dimension: 3"), "dimension: is there twice");
-  expectRefusal(writeWithLine("datafile: v.nrrd\nData file: v.nrrd"), "datafile: is there twice");
+  expectRefusal(writeWithLine("dimension: 3"), "dimension: occurs twice");
+  expectRefusal(writeWithLine("datafile: v.nrrd\nData file: v.nrrd"), "datafile: occurs twice");
   std::string many = "dimension: 16\nsizes:";
   for (int axis = 0; axis < 17; ++axis)
     many += " 1";
   expectRefusal(folder.write("v.nrrd", makeNrrd(many, samples)), "dimension");
   expectRefusal(folder.write("a.nrrd", makeNrrd(sizes, std::string(2000, '1') + " 1", "ascii")),
-                "number of more than 500 characters");
+                "a number has more than 500 characters");
   std::string deep = folder.path().string();
   for (int level = 0; level < 5; ++level)
     deep += "/" + std::string(200, 'd');
@@ -330,7 +331,7 @@ TEST(VolumeReader, RefusesNrrdHeadersThatCrashTeem) {
   expectRefusal(deep + "/v.nrrd", "path of more than 900 bytes");
 }
 
-TEST(VolumeReader, RefusesNrrdHeadersOfTooManyLines) {
+TEST(VolumeReader, RefusesNrrdHeadersWithTooManyLines) {
   const TemporaryFolder folder;
   const auto writeLines = [&](int lines) {
     std::string head = "dimension: 3\nsizes: 3 4 2\n";
@@ -374,10 +375,10 @@ TEST(VolumeReader, RefusesSingularGeometry) {
 TEST(VolumeReader, RefusesVolumesWithoutAFiniteVoxel) {
   const TemporaryFolder folder;
   writeFile(folder / "v.nrrd", std::vector<double>(24, std::nan("")));
-  expectRefusal(folder / "v.nrrd", "no voxel is a finite number");
+  expectRefusal(folder / "v.nrrd", "has no finite voxel");
 }
 
-TEST(VolumeReader, RefusesBadDataFiles) {
+TEST(VolumeReader, RefusesInvalidDataFiles) {
   const TemporaryFolder folder;
   for (const char* name : {"-", "/dev/zero", ".", "missing.raw", "part%03d.raw 1 9 1"})
     expectRefusal(
@@ -392,7 +393,7 @@ TEST(VolumeReader, RefusesBadDataFiles) {
         "");
 }
 
-TEST(VolumeReader, RefusesNonFiniteNiftiForms) {
+TEST(VolumeReader, RefusesNonFiniteNiftiTransforms) {
   const TemporaryFolder folder;
   writeFile(folder / "v.nii", makeRamp<std::uint8_t>(0, 1));
   const std::string good = readBytes(folder / "v.nii");
@@ -400,13 +401,13 @@ TEST(VolumeReader, RefusesNonFiniteNiftiForms) {
     for (const float bad : {std::numeric_limits<float>::quiet_NaN(),
                             -std::numeric_limits<float>::infinity(), 1e38f}) {
       std::string bytes = good;
-      bytes.replace(252, 4, std::string("\1\0\1\0", 4)); // both forms apply
+      bytes.replace(252, 4, std::string("\1\0\1\0", 4)); // qform and sform are both set
       bytes.replace(at, 4, rawBytes(std::vector<float>{bad}));
       expectRefusal(folder.write("bad.nii", bytes), "qform");
     }
 }
 
-TEST(VolumeReader, AppliesTheRescalingOfNifti) {
+TEST(VolumeReader, AppliesTheIntensityScalingOfNifti) {
   const TemporaryFolder folder;
   writeFile(folder / "v.nii", makeRamp<std::uint8_t>(0, 1));
   std::string bytes = readBytes(folder / "v.nii");
@@ -419,7 +420,6 @@ TEST(VolumeReader, AppliesTheRescalingOfNifti) {
 }
 
 // ---- real data
-// -----------------------------------------------------------------------------------
 
 std::filesystem::path findData(const std::string& name) {
   return std::filesystem::path(FENESTRA_DATA) / name;
@@ -427,7 +427,7 @@ std::filesystem::path findData(const std::string& name) {
 
 TEST(VolumeReader, ReadsRealScans) {
   if (!std::filesystem::exists(findData("torso_ct_ccth_a01")))
-    GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
+    GTEST_SKIP() << "no test data at " << FENESTRA_DATA;
   const Volume torso = readVolume(findData("torso_ct_ccth_a01/ct.nii.gz"));
   EXPECT_EQ(torso.grid.size, Size3(493, 389, 296));
   EXPECT_TRUE(std::holds_alternative<LargeArray<std::int16_t>>(torso.voxels));
@@ -435,7 +435,7 @@ TEST(VolumeReader, ReadsRealScans) {
   EXPECT_NEAR(torso.grid.spacing().z(), 2.5, 1e-3);
   const Volume abdomen = readVolume(findData("abdomen_ct_totalseg/ct.nii.gz"));
   EXPECT_EQ(abdomen.grid.size, Size3(122, 101, 112));
-  EXPECT_TRUE(std::holds_alternative<LargeArray<std::int16_t>>(abdomen.voxels)); // from int32
+  EXPECT_TRUE(std::holds_alternative<LargeArray<std::int16_t>>(abdomen.voxels)); // file: int32
   const Volume head = readVolume(findData("head_mr_seg3d/t1.nii.gz"));
   EXPECT_EQ(head.grid.size, Size3(160, 232, 160));
   EXPECT_NEAR(head.maximum, 255 * 2.007843, 1e-3); // uint8 in the file, rescaled

@@ -16,7 +16,7 @@ Grid makeObliqueGrid(const Size3& size) {
   return {size, map};
 }
 
-TEST(Grid, MapsBothWaysAndReturnsItsSpacing) {
+TEST(Grid, MapsBothWaysAndHasCorrectSpacing) {
   const Grid grid = makeObliqueGrid({5, 6, 7});
   EXPECT_TRUE(isApprox(grid.worldToIndex * (grid.indexToWorld * Vec3(1, 2, 3)), Vec3(1, 2, 3)));
   EXPECT_TRUE(isApprox(grid.spacing(), Vec3(0.5, 2.0, 1.25)));
@@ -41,7 +41,7 @@ TEST(Field, ReproducesALinearFunctionAndItsGradient) {
   }
 }
 
-TEST(Field, ClampsInTheOuterHalfVoxelAndOnSingleSlices) {
+TEST(Field, IsClampedInTheOuterHalfVoxelAndOnSingleSlices) {
   const std::vector<std::uint8_t> voxels = {10, 20, 30};
   const Field<std::uint8_t> row(Grid({3, 1, 1}, Affine::Identity()), voxels);
   EXPECT_EQ(row.value({-0.5, 0.3, -0.4}), 10.0);
@@ -50,7 +50,7 @@ TEST(Field, ClampsInTheOuterHalfVoxelAndOnSingleSlices) {
   EXPECT_EQ(row.gradient({1.0, 0.0, 0.0}), Vec3(10, 0, 0));
 }
 
-TEST(Box, ClipsRaysAlongFacesAndAxes) {
+TEST(Box, ClipsRaysParallelToFacesAndAxes) {
   const Box box{Vec3::Zero(), Vec3::Ones()};
   EXPECT_EQ(box.clip({{-1, 0.5, 0.5}, {1, 0, 0}}).begin, 1.0);
   EXPECT_EQ(box.clip({{-1, 0.5, 0.5}, {1, 0, 0}}).end, 2.0);
