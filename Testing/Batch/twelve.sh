@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# A study of 12 cases, real data and phantoms: killed half way and run again, it has to end whole, with
-# no row made twice.
-# usage: twelve.sh FENESTRA DATA FOLDER [FLAGS...]
-# DATA: folder of the real data; without it the study is skipped, visibly. FOLDER: for table, phantoms
-# and results, emptied first. FLAGS: for all rows, in place of --size 400x400 --samples 24 --workers 2.
+# Runs a batch of 12 cases, real data and phantoms, kills it halfway and runs it again. The second run must
+# complete it and not render finished rows again.
+# usage: twelve.sh FENESTRA DATA FOLDER [OPTIONS...]
+# DATA: folder of the real data; exit status 77 if it does not exist. FOLDER: for table, phantoms and
+# results; emptied first. OPTIONS: for all rows, instead of --size 400x400 --samples 24 --workers 2.
 set -euo pipefail
 fenestra=$(realpath "$1") data=$2 folder=$3
 shift 3
@@ -13,7 +13,7 @@ fail() {
   exit 1
 }
 if [ ! -d "$data/torso_ct_ccth_a01" ]; then
-  printf 'SKIPPED: the study of 12 cases, for there is no real data at %s\n' "$data"
+  printf 'SKIPPED: needs the real data in %s\n' "$data"
   exit 77
 fi
 data=$(realpath "$data")
@@ -38,26 +38,26 @@ head MR,$data/head_mr_seg3d/t1.nii.gz,$data/head_mr_seg3d/seg_brain_skull.nii.gz
 head CT DICOM,$data/head_ct_slicer_dicom/dicom,,,,,anterior
 knee atlas,$data/spl_knee_atlas_labels/SYNTHETIC_mr_256.nii.gz,$data/spl_knee_atlas_labels/seg_256.nii.gz,$data/spl_knee_atlas_labels/knee.ctbl,,knee-cartilage,
 TABLE
-study=("$fenestra" study cases.csv --output results "$@")
+batch=("$fenestra" batch cases.csv --output results "$@")
 
-# done_rows: how many rows their records tell to be done.
+# done_rows: number of finished rows, by their manifests.
 done_rows() { { grep -ls '"status": 0$' results/*/*.study.json || true; } | wc -l; }
 
-"${study[@]}" >first.log 2>&1 &
+"${batch[@]}" >first.log 2>&1 &
 id=$!
 while [ "$(done_rows)" -lt 6 ] && kill -0 $id 2>/dev/null; do sleep 0.1; done
-kill -KILL $id || fail "the study ended before it could be killed: $(tail -n 1 first.log)"
+kill -KILL $id || fail "the batch ended before it could be killed: $(tail -n 1 first.log)"
 wait $id 2>/dev/null || true
 before=$(done_rows)
-[ ! -e results/study.csv ] || fail "a study that was killed has written its summary"
+[ ! -e results/study.csv ] || fail "the killed batch has written its summary"
 grep -ls '"status": 0$' results/*/*.study.json | sed 's/study.json$/json/' | tr '\n' '\0' |
-  xargs -0 sha256sum >kept.sums
+  xargs -0 sha256sum >finished.sums
 
-"${study[@]}" | tee second.log
-sha256sum --quiet -c kept.sums || fail "a row that was done was made again"
+"${batch[@]}" | tee second.log
+sha256sum --quiet -c finished.sums || fail "a finished row was rendered again"
 [ "$(done_rows)" -eq 12 ] || fail "$(done_rows) of 12 rows are done"
 grep -q "12 of 12 rows done, $((12 - before)) rendered now" second.log ||
-  fail "not exactly the missing rows were made: $(tail -n 1 second.log)"
-[ "$(grep -c ',done,0,' results/study.csv)" -eq 12 ] || fail "the summary lacks rows"
-[ "$(find results -type f | wc -l)" -eq $((2 + 12 * 3)) ] || fail "files are left: $(find results -type f)"
-printf 'Killed with %s of 12 rows done, and ended whole: %s\n' "$before" "$folder/results/study.png"
+  fail "expected exactly the missing rows to be rendered: $(tail -n 1 second.log)"
+[ "$(grep -c ',done,0,' results/study.csv)" -eq 12 ] || fail "the summary has too few finished rows"
+[ "$(find results -type f | wc -l)" -eq $((2 + 12 * 3)) ] || fail "unexpected files: $(find results -type f)"
+printf 'Killed after %s of 12 rows, then completed: %s\n' "$before" "$folder/results/study.png"

@@ -1,4 +1,4 @@
-// `fenestra study`: a row's failure is its own, and no row is made twice.
+// `fenestra batch`: failed rows do not affect others, and finished rows are not rendered again.
 
 #include "CommandTesting.h"
 #include "base/Stopwatch.h"
@@ -10,15 +10,15 @@
 #include <sstream>
 #include <thread>
 
-namespace fenestra::StudyCommandTests {
+namespace fenestra::BatchCommandTests {
 namespace {
 
 const Arguments quick = {"--size", "16x16", "--samples", "2"};
 
-class StudyCommand : public SmallScene {
+class BatchCommand : public SmallScene {
 protected:
   static Arguments makeArguments(const Arguments& more, const std::string& table = "t.csv") {
-    Arguments all = {"study", table, "--output", "out"};
+    Arguments all = {"batch", table, "--output", "out"};
     all.insert(all.end(), quick.begin(), quick.end());
     all.insert(all.end(), more.begin(), more.end());
     return all;
@@ -32,7 +32,7 @@ protected:
   nlohmann::json readManifest(const std::string& row) const {
     return nlohmann::json::parse(readOutput(row + "/" + row + ".study.json"));
   }
-  /// Line of the summary that begins with a row's name.
+  /// Line of a row in study.csv; empty if it is missing.
   std::string findSummary(const std::string& row) const {
     std::istringstream lines(readOutput("study.csv"));
     for (std::string line; std::getline(lines, line);)
@@ -42,7 +42,7 @@ protected:
   }
 };
 
-TEST_F(StudyCommand, RowsEqualThoseOfRender) {
+TEST_F(BatchCommand, RowsEqualThoseOfRender) {
   folder.write("t.csv", "\xef\xbb\xbfname,input,segmentation,focus,view,samples\r\n"
                         "left,volume.nrrd,segments.seg.nrrd,A,left,\r\n"
                         "\"Bone, left\",volume.nrrd,segments.seg.nrrd,\"Bone\\, left\",,3\r\n"
@@ -70,14 +70,14 @@ TEST_F(StudyCommand, RowsEqualThoseOfRender) {
   }
   EXPECT_EQ(readImage(folder / "out/left/left.exr").header.at("command").find(folder.path()),
             std::string::npos)
-      << "the header's names are relative";
+      << "paths in the header are relative";
   EXPECT_NE(findSummary("\"Bone, left\"").find("done,0,,\"Bone, left/Bone, left.png\","),
             std::string::npos);
   EXPECT_GT(readImage(folder / "out/study.png").width, 16);
-  EXPECT_EQ(listFiles(folder / "out").size(), 2U + 2 * (1 + 4)) << "four files in each folder";
+  EXPECT_EQ(listFiles(folder / "out").size(), 2U + 2 * (1 + 4)) << "folder and four files per row";
 }
 
-TEST_F(StudyCommand, AFailingRowEndsNoOther) {
+TEST_F(BatchCommand, FailedRowsDoNotEndTheOthers) {
   folder.write("torn.nrrd", NrrdText().encode("x"));
   folder.write("t.csv", "name,input,focus\na,torn.nrrd,\nb,nowhere.nrrd,\nc,volume.nrrd,7\n"
                         "d,volume.nrrd,\n");
@@ -93,7 +93,7 @@ TEST_F(StudyCommand, AFailingRowEndsNoOther) {
   EXPECT_TRUE(findSummary("d").starts_with("d,done,0,,d/d.png,")) << findSummary("d");
   EXPECT_EQ(readManifest("b")["finished"][0]["status"], 3);
   EXPECT_NE(
-      readManifest("b")["finished"][0]["error"].get<std::string>().find("nowhere.nrrd: there is"),
+      readManifest("b")["finished"][0]["error"].get<std::string>().find("nowhere.nrrd: no such"),
       std::string::npos);
 
   folder.write("torn.nrrd", NrrdText().encode(makeRamp()));
@@ -102,7 +102,7 @@ TEST_F(StudyCommand, AFailingRowEndsNoOther) {
   EXPECT_NE(again.out.find("3 of 4 rows done, 3 rendered now"), std::string::npos) << again.out;
 }
 
-TEST_F(StudyCommand, MakesOnlyRowsWhoseFlagsOrFilesHaveChanged) {
+TEST_F(BatchCommand, RendersOnlyRowsWhoseOptionsOrFilesChanged) {
   folder.write("other.nrrd", NrrdText().encode(makeRamp()));
   NrrdText header;
   header.fields = "data file: voxels.raw\n";
@@ -133,7 +133,7 @@ TEST_F(StudyCommand, MakesOnlyRowsWhoseFlagsOrFilesHaveChanged) {
   expectRendered(0, {"--exposure", "1"});
 }
 
-TEST_F(StudyCommand, GoesOnAfterAKillWithTheSameFiles) {
+TEST_F(BatchCommand, ResumesAfterAKillWithTheSameFiles) {
   std::string table = "name,input\n";
   for (char row = 'a'; row < 'g'; ++row)
     table += std::string(1, row) + ",volume.nrrd\n";
@@ -148,7 +148,7 @@ TEST_F(StudyCommand, GoesOnAfterAKillWithTheSameFiles) {
     output = process.output();
   }
   EXPECT_FALSE(std::filesystem::exists(folder / "out/study.csv"));
-  std::map<std::string, std::string> before; // statistics of the rows that are done
+  std::map<std::string, std::string> before; // statistics of the finished rows
   for (char row = 'a'; row < 'g'; ++row)
     if (output.find(std::string(1, row) + ": ") != std::string::npos)
       before[std::string(1, row)] = readOutput(std::string(1, row) + "/" + row + ".json");
@@ -157,15 +157,15 @@ TEST_F(StudyCommand, GoesOnAfterAKillWithTheSameFiles) {
   EXPECT_NE(rest.out.find("6 of 6 rows done, "), std::string::npos) << rest.out;
   EXPECT_EQ(rest.out.find("6 rendered now"), std::string::npos) << rest.out;
   for (const auto& [row, stats] : before)
-    EXPECT_EQ(readOutput(row + "/" + row + ".json"), stats) << "a row is made twice";
-  EXPECT_EQ(listFiles(folder / "out").size(), 2U + 6 * (1 + 3)) << "something is left";
+    EXPECT_EQ(readOutput(row + "/" + row + ".json"), stats) << "a finished row was rendered again";
+  EXPECT_EQ(listFiles(folder / "out").size(), 2U + 6 * (1 + 3)) << "unexpected files remain";
 }
 
-TEST_F(StudyCommand, ALongRowGoesOnFromItsFilm) {
+TEST_F(BatchCommand, ALongRowResumesFromItsCheckpoint) {
   namespace fs = std::filesystem;
   folder.write("t.csv", "name,input,size\na,volume.nrrd,96x96\n");
   const auto arguments = [](const std::string& output, const std::string& samples) {
-    return Arguments{"study", "t.csv",     "--output", output,      "--formats",
+    return Arguments{"batch", "t.csv",     "--output", output,      "--formats",
                      "exr",   "--samples", samples,    "--threads", "1"};
   };
   {
@@ -184,7 +184,7 @@ TEST_F(StudyCommand, ALongRowGoesOnFromItsFilm) {
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_NE(outcome.out.find("1 of 1 rows done, 1 rendered now"), std::string::npos)
         << outcome.out;
-    EXPECT_EQ(listFiles(folder / output / "a").size(), 4U) << "something is left";
+    EXPECT_EQ(listFiles(folder / output / "a").size(), 4U) << "unexpected files remain";
     return nlohmann::json::parse(readBytes(folder / output / "a/a.json")).value("pathsFromFilm", 0);
   };
   EXPECT_GT(pathsFromFilm("out", "300"), 0);
@@ -193,10 +193,10 @@ TEST_F(StudyCommand, ALongRowGoesOnFromItsFilm) {
                 .status,
             0);
   EXPECT_EQ(readImage(folder / "out/a/a.exr").channels, readImage(folder / "alone.exr").channels);
-  EXPECT_EQ(pathsFromFilm("other", "1"), 0) << "a film of other flags";
+  EXPECT_EQ(pathsFromFilm("other", "1"), 0) << "a checkpoint with other options was used";
 }
 
-TEST_F(StudyCommand, ARowWhoseFilmIsRefusedBeginsAnew) {
+TEST_F(BatchCommand, ARowWithAnUnusableCheckpointStartsOver) {
   folder.write("late.nrrd", NrrdText().encode("x"));
   folder.write("t.csv", "name,input\na,late.nrrd\n");
   EXPECT_EQ(runBatch().status, 3);
@@ -209,15 +209,15 @@ TEST_F(StudyCommand, ARowWhoseFilmIsRefusedBeginsAnew) {
   for (const char* file : {"a.png", "a.json"})
     std::filesystem::remove(folder / ("out/a/" + std::string(file)));
   folder.write("out/a/a.film", "mine");
-  EXPECT_NE(runBatch().err.find("out/a/a.film: is there, and no a.study.json"), std::string::npos);
+  EXPECT_NE(runBatch().err.find("a.film: already exists, and no a.study.json"), std::string::npos);
   EXPECT_EQ(readOutput("a/a.film"), "mine");
 }
 
-TEST_F(StudyCommand, StopsOnRequestAndGoesOn) {
+TEST_F(BatchCommand, StopsOnRequestAndReportsTheRows) {
   folder.write("t.csv", "name,input,samples,size\na,volume.nrrd,2,16x16\n"
                         "b,volume.nrrd,1000000,64x64\nc,volume.nrrd,2,16x16\n");
-  for (const int milliseconds : {0, 300}) { // before the row's process has begun, and within it
-    Process process({"study", "t.csv", "--output", "out", "--restart"}, folder.path());
+  for (const int milliseconds : {0, 300}) { // before the row's process starts, and while it renders
+    Process process({"batch", "t.csv", "--output", "out", "--restart"}, folder.path());
     ASSERT_TRUE(process.waitForOutput("a: "));
     const Stopwatch watch;
     while (!std::filesystem::exists(folder / "out/b/b.study.json") && watch.seconds() < 10.0)
@@ -233,7 +233,7 @@ TEST_F(StudyCommand, StopsOnRequestAndGoesOn) {
   }
 }
 
-TEST_F(StudyCommand, PartsOfTheRowsMakeTheWhole) {
+TEST_F(BatchCommand, SubsetsOfRowsAreCompletedByTheFullCommand) {
   folder.write("t.csv", "name,input\na,volume.nrrd\nb,volume.nrrd\nc,volume.nrrd\n");
   for (const char* part : {"1/2", "2/2"})
     ASSERT_EQ(runBatch({"--rows", part}).status, 0);
@@ -244,13 +244,13 @@ TEST_F(StudyCommand, PartsOfTheRowsMakeTheWhole) {
   EXPECT_TRUE(std::filesystem::exists(folder / "out/study.png"));
 }
 
-TEST_F(StudyCommand, LeavesOthersFilesAlone) {
+TEST_F(BatchCommand, LeavesForeignFilesUnchanged) {
   folder.write("t.csv", "name,input\na,volume.nrrd\nb,volume.nrrd\n");
   std::filesystem::create_directories(folder / "out/a");
   folder.write("out/a/a.png", "mine");
   const Outcome refused = runBatch();
   EXPECT_EQ(refused.status, 2);
-  EXPECT_NE(refused.err.find("out/a/a.png: is there, and no a.study.json tells what it is of"),
+  EXPECT_NE(refused.err.find("out/a/a.png: already exists, and no a.study.json describes it"),
             std::string::npos)
       << refused.err;
   EXPECT_EQ(readOutput("a/a.png"), "mine");
@@ -258,7 +258,7 @@ TEST_F(StudyCommand, LeavesOthersFilesAlone) {
   folder.write("out/b/b.png", "mine");
   folder.write("out/a/a.study.json", "{\"request\": 7}");
   const Outcome edited = runBatch();
-  EXPECT_NE(edited.err.find("out/b/b.png: is not the row that was recorded"), std::string::npos)
+  EXPECT_NE(edited.err.find("out/b/b.png: differs from the recorded row"), std::string::npos)
       << edited.err;
   EXPECT_NE(edited.err.find("out/a/a.study.json: request: must be an object"), std::string::npos)
       << edited.err;
@@ -270,25 +270,25 @@ TEST_F(StudyCommand, LeavesOthersFilesAlone) {
   EXPECT_EQ(readOutput("study.csv"), "mine");
 }
 
-TEST_F(StudyCommand, RefusesDamagedTables) {
+TEST_F(BatchCommand, RejectsInvalidTables) {
   const std::vector<std::array<std::string, 2>> tables = {
-      {"", "holds no row"},
-      {"name,input\n", "holds no row"},
-      {"name\na\n", "line 1: has no column 'input'; add it"},
-      {"input\na\n", "line 1: has no column 'name'; add it"},
-      {"name,input,veiw\na,b,c\n", "line 1: 'veiw' is no column of a study; did you mean view?"},
-      {"name,input,stats\na,b,c\n", "line 1: 'stats' is no column of a study"},
-      {"name,input,view,view\na,b,,\n", "line 1: has the column 'view' twice"},
+      {"", "has no row"},
+      {"name,input\n", "has no row"},
+      {"name\na\n", "line 1: column 'input' is missing; add it"},
+      {"input\na\n", "line 1: column 'name' is missing; add it"},
+      {"name,input,veiw\na,b,c\n", "line 1: 'veiw' is no valid column; did you mean view?"},
+      {"name,input,stats\na,b,c\n", "line 1: 'stats' is no valid column"},
+      {"name,input,view,view\na,b,,\n", "line 1: duplicate column 'view'"},
       {"name,input\na\n", "line 2: has 1 fields, the first line 2"},
-      {"name,input\n../a,b\n", "line 2: '../a' cannot be a folder's name"},
-      {"name,input\n.a,b\n", "line 2: '.a' cannot be a folder's name"},
-      {"name,input\n=1+2,b\n", "line 2: '=1+2' cannot be a folder's name"},
-      {"name,input\n\"a\nb\",b\n", "line 2, name: holds a line's end"},
-      {"name,input\n,b\n", "line 2: '' cannot be a folder's name"},
-      {"name,input\na,\n", "line 2: names no input"},
-      {"name,input\na,b\nA,b\n", "line 3: has the name of line 2, 'A'; rename one"},
-      {"name,input\na,\"b\n", "line 2: its quotes do not close"},
-      {"name,input\n" + std::string(101, 'a') + ",b\n", "cannot be a folder's name"}};
+      {"name,input\n../a,b\n", "line 2: '../a' is not a valid folder name"},
+      {"name,input\n.a,b\n", "line 2: '.a' is not a valid folder name"},
+      {"name,input\n=1+2,b\n", "line 2: '=1+2' is not a valid folder name"},
+      {"name,input\n\"a\nb\",b\n", "line 2, name: contains a line break"},
+      {"name,input\n,b\n", "line 2: '' is not a valid folder name"},
+      {"name,input\na,\n", "line 2: input is empty"},
+      {"name,input\na,b\nA,b\n", "line 3: has the same name as line 2, 'A'; rename one"},
+      {"name,input\na,\"b\n", "line 2: quotes are not closed"},
+      {"name,input\n" + std::string(101, 'a') + ",b\n", "is not a valid folder name"}};
   for (const auto& [text, message] : tables) {
     folder.write("t.csv", text);
     expectErrors({{text, makeArguments({}), 3, "t.csv: "}}, folder.path());
@@ -297,10 +297,10 @@ TEST_F(StudyCommand, RefusesDamagedTables) {
   folder.write("t.csv", "name,input\na,volume.nrrd\n");
   expectErrors({{"rows", makeArguments({"--rows", "3/2"}), 2, "--rows: expected K/N"},
                 {"formats", makeArguments({"--formats", "gif"}), 2, "--formats: expected exr"},
-                {"flag", makeArguments({"--surface", "a.vtp"}), 2, "--surface: no such flag"},
-                {"no table", {"study", "none.csv"}, 3, "none.csv: there is no such file"}},
+                {"option", makeArguments({"--surface", "a.vtp"}), 2, "--surface: unknown option"},
+                {"no table; old name", {"study", "none.csv"}, 3, "none.csv: no such file"}},
                folder.path());
 }
 
 } // namespace
-} // namespace fenestra::StudyCommandTests
+} // namespace fenestra::BatchCommandTests

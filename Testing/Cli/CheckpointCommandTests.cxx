@@ -1,4 +1,4 @@
-// Films of renders that are under way: the same command goes on, and no other one does.
+// Checkpoint files: the same command resumes from them, and any other command is rejected.
 
 #include "CommandTesting.h"
 #include "ImageTesting.h"
@@ -20,9 +20,9 @@ protected:
     all.insert(all.end(), more.begin(), more.end());
     return renderVolume(all);
   }
-  /// Refusal of the film a.film, for a command with other words.
-  ExcludedOptions refusal(const std::string& name, const Arguments& arguments,
-                          const std::string& text, int status = 2) const {
+  /// Error of a command with checkpoint a.film and these arguments.
+  ExpectedError refusal(const std::string& name, const Arguments& arguments,
+                        const std::string& text, int status = 2) const {
     Arguments all = {"volume.nrrd", "--checkpoint", "a.film", "--output", "a.exr"};
     all.insert(all.end(), arguments.begin(), arguments.end());
     return {name, all, status, text};
@@ -31,7 +31,7 @@ protected:
   const Arguments small = {"--size", "16x16", "--samples", "2"};
 };
 
-TEST_F(CheckpointCommand, MoreSamplesGoOnFromTheFilm) {
+TEST_F(CheckpointCommand, MoreSamplesResumeFromTheCheckpoint) {
   const Outcome more = run({"volume.nrrd", "--size", "16x16", "--samples", "9", "--checkpoint",
                             "a.film", "--output", "more.exr", "--threads", "1"},
                            folder.path());
@@ -42,7 +42,7 @@ TEST_F(CheckpointCommand, MoreSamplesGoOnFromTheFilm) {
   expectSameImage(folder / "once.exr", folder / "more.exr");
 }
 
-TEST_F(CheckpointCommand, FinishedFilmGivesThePictureAgain) {
+TEST_F(CheckpointCommand, FinishedCheckpointGivesTheSameImage) {
   const std::string checkpoint = readBytes(folder / "a.film"), image = readBytes(folder / "a.exr");
   const Outcome again = renderCheckpoint({"--output", "a.png", "--denoise", "on"});
   EXPECT_EQ(again.status, 0) << again.err;
@@ -53,7 +53,7 @@ TEST_F(CheckpointCommand, FinishedFilmGivesThePictureAgain) {
                                                              "segments.seg.nrrd", "volume.nrrd"}));
 }
 
-TEST_F(CheckpointCommand, StoppedRenderGoesOnToTheSameBits) {
+TEST_F(CheckpointCommand, StoppedRenderResumesBitIdentically) {
   const auto arguments = [](const std::string& name) {
     return Arguments{"volume.nrrd", "--size",       "64x64",         "--samples", "600",
                      "--noise",     "0.1",          "--noisetarget", "raw",       "--progress",
@@ -66,19 +66,19 @@ TEST_F(CheckpointCommand, StoppedRenderGoesOnToTheSameBits) {
   process.send(SIGTERM);
   const Outcome stopped = process.wait();
   ASSERT_EQ(stopped.status, 5) << stopped.err;
-  EXPECT_NE(stopped.out.find("the same command goes on"), std::string::npos) << stopped.out;
+  EXPECT_NE(stopped.out.find("the same command resumes"), std::string::npos) << stopped.out;
   const Outcome rest = run(arguments("two"), folder.path());
   ASSERT_EQ(rest.status, 0) << rest.err;
   expectSameImage(folder / "once.exr", folder / "two.exr");
 }
 
-TEST_F(CheckpointCommand, FilmOfAnotherRenderIsRefused) {
+TEST_F(CheckpointCommand, CheckpointOfAnotherRenderIsRejected) {
   folder.write("other.json", R"({"extinction": [[0, 0], [64, 1]], "albedo": [[0, 1, 1, 1]]})");
   const auto addSize = [this](Arguments arguments) {
     arguments.insert(arguments.end(), small.begin(), small.end());
     return arguments;
   };
-  std::vector<ExcludedOptions> refusals = {
+  std::vector<ExpectedError> refusals = {
       refusal("seed", addSize({"--seed", "3"}), "--seed was not given, is 3"),
       refusal("size", {"--size", "16x17", "--samples", "2"}, "--size was 16x16, is 16x17"),
       refusal("view", addSize({"--view", "left"}), "--view was not given, is left"),
@@ -87,24 +87,24 @@ TEST_F(CheckpointCommand, FilmOfAnotherRenderIsRefused) {
       refusal("bounces", addSize({"--bounces", "1"}), "--bounces"),
       refusal("sampling", addSize({"--sampling", "independent"}), "--sampling"),
       refusal("fewer samples", {"--size", "16x16", "--samples", "1"}, "has up to 2 samples"),
-      refusal("turntable", {}, "--checkpoint: a turntable records"),
+      refusal("turntable", {}, "--checkpoint: not needed"),
   };
   refusals.back().arguments.insert(refusals.back().arguments.begin(), "turntable");
-  for (ExcludedOptions& one : refusals)
+  for (ExpectedError& one : refusals)
     one.arguments.insert(one.arguments.end(), {"--progress", "xml"});
   expectErrors(refusals, folder.path());
 }
 
-TEST_F(CheckpointCommand, ChangedInputsAreRefused) {
+TEST_F(CheckpointCommand, ChangedInputsAreRejected) {
   std::string samples = makeRamp();
   samples[77] = 9;
   folder.write("volume.nrrd", NrrdText().encode(samples));
   const Outcome outcome = renderCheckpoint();
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_NE(outcome.err.find("volume.nrrd has changed since"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("volume.nrrd has changed"), std::string::npos) << outcome.err;
 }
 
-TEST_F(CheckpointCommand, PlanByNoiseIsNotChangedBeyondThePilot) {
+TEST_F(CheckpointCommand, RawNoiseTargetCannotBeAddedAfterThePilot) {
   const Arguments arguments = {"volume.nrrd",  "--size", "16x16",    "--samples", "20",
                                "--checkpoint", "b.film", "--output", "b.exr"};
   ASSERT_EQ(run(arguments, folder.path()).status, 0);
@@ -112,10 +112,10 @@ TEST_F(CheckpointCommand, PlanByNoiseIsNotChangedBeyondThePilot) {
   planned.insert(planned.end(), {"--noise", "1e-4"});
   const Outcome outcome = run(planned, folder.path());
   EXPECT_EQ(outcome.status, 2);
-  EXPECT_NE(outcome.err.find("--noise: b.film lacks"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("--noise: b.film was not"), std::string::npos) << outcome.err;
 }
 
-TEST_F(CheckpointCommand, OtherInstructionSetIsRefused) {
+TEST_F(CheckpointCommand, OtherInstructionSetIsRejected) {
   ::setenv("FENESTRA_INSTRUCTIONS", "SCALAR", 1);
   const Outcome outcome = renderCheckpoint();
   ::unsetenv("FENESTRA_INSTRUCTIONS");
@@ -123,7 +123,7 @@ TEST_F(CheckpointCommand, OtherInstructionSetIsRefused) {
   EXPECT_NE(outcome.err.find("is SCALAR"), std::string::npos) << outcome.err;
 }
 
-TEST_F(CheckpointCommand, DamagedFilmIsRefusedAndKept) {
+TEST_F(CheckpointCommand, DamagedCheckpointIsRejectedAndKept) {
   const std::string checkpoint = readBytes(folder / "a.film");
   for (const std::size_t at : {std::size_t{3}, checkpoint.size() / 2, checkpoint.size() - 2}) {
     std::string damaged = checkpoint;
@@ -134,15 +134,15 @@ TEST_F(CheckpointCommand, DamagedFilmIsRefusedAndKept) {
     EXPECT_NE(outcome.err.find("a.film: is "), std::string::npos) << outcome.err;
     EXPECT_TRUE(readBytes(folder / "a.film") == damaged);
   }
-  folder.write("a.film", "somebody's notes");
+  folder.write("a.film", "a user's notes");
   EXPECT_EQ(renderCheckpoint().status, 3);
-  EXPECT_EQ(readBytes(folder / "a.film"), "somebody's notes");
+  EXPECT_EQ(readBytes(folder / "a.film"), "a user's notes");
   folder.write("a.film", "");
   EXPECT_EQ(renderCheckpoint().status, 0);
   EXPECT_EQ(readBytes(folder / "a.film").size(), checkpoint.size());
 }
 
-TEST_F(CheckpointCommand, FilmOfARunningRenderIsRefused) {
+TEST_F(CheckpointCommand, CheckpointOfARunningRenderIsRejected) {
   const Arguments arguments = {"volume.nrrd", "--size",     "64x64", "--samples",
                                "1000000",     "--progress", "xml",   "--checkpoint",
                                "c.film",      "--output",   "c.exr"};
@@ -150,17 +150,17 @@ TEST_F(CheckpointCommand, FilmOfARunningRenderIsRefused) {
   ASSERT_TRUE(process.waitForOutput("<filter-start>"));
   const Outcome second = run(arguments, folder.path());
   EXPECT_EQ(second.status, 2);
-  EXPECT_NE(second.err.find("another process is writing this film"), std::string::npos)
+  EXPECT_NE(second.err.find("another process is writing this file"), std::string::npos)
       << second.err;
 }
 
-TEST_F(CheckpointCommand, FilmThatCannotBeWrittenIsOneWarning) {
+TEST_F(CheckpointCommand, UnwritableCheckpointGivesOneWarning) {
   Process process({"volume.nrrd", "--size", "64x64", "--samples", "1000000", "--seconds", "1.6",
                    "--threads", "1", "--progress", "xml", "--checkpoint", "c.film", "--output",
                    "c.exr"},
                   folder.path());
   ASSERT_TRUE(process.waitForOutput("<filter-start>"));
-  std::filesystem::create_directory(folder / "c.film"); // as a failing disk, in its place
+  std::filesystem::create_directory(folder / "c.film"); // makes writing fail
   const Outcome outcome = process.wait();
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;

@@ -1,5 +1,5 @@
 #pragma once
-// Small input files for the executable, and the form of every refusal.
+// Small input files for the executable, and the common checks of its error messages.
 
 #include "Process.h"
 #include "TemporaryFolder.h"
@@ -19,8 +19,8 @@ struct NrrdText {
   std::string encoding = "raw";
   std::string fields = {}; ///< further lines
 
-  /// Volume with 1 mm voxels and its first voxel's centre at the origin; without a space unless it
-  /// has three axes.
+  /// File with 1 mm voxels and the center of the first voxel at the origin. Only volumes with three
+  /// axes have a space.
   std::string encode(const std::string& samples) const {
     const auto axes = 1 + std::count(sizes.begin(), sizes.end(), ' ');
     std::string text = "NRRD0004\ntype: " + type + "\ndimension: " + std::to_string(axes) + "\n";
@@ -32,7 +32,7 @@ struct NrrdText {
   }
 };
 
-/// 4x4x4 different 16-bit values.
+/// Samples of a 4x4x4 volume: the 16-bit values 0 to 63.
 inline std::string makeRamp() {
   std::string samples;
   for (char value = 0; value < 64; ++value)
@@ -50,7 +50,7 @@ inline std::string compressGzip(const std::string& bytes, const TemporaryFolder&
   return result;
 }
 
-/// Segments A ("Bone, left", one voxel in the middle, value 1) and B ("Void", no voxel, value 2).
+/// Segmentation with A ("Bone, left", one central voxel, value 1) and B ("Void", empty, value 2).
 inline std::string makeSegments() {
   NrrdText text;
   text.type = "uint8";
@@ -70,7 +70,7 @@ protected:
     folder.write("segments.seg.nrrd", makeSegments());
   }
 
-  /// Runs `fenestra volume.nrrd … ` at 16x16 pixels and 2 samples a pixel.
+  /// Runs `fenestra volume.nrrd … ` with 16x16 pixels and 2 samples per pixel.
   Outcome renderVolume(const Arguments& arguments) const {
     Arguments all = {"volume.nrrd", "--size", "16x16", "--samples", "2"};
     all.insert(all.end(), arguments.begin(), arguments.end());
@@ -80,13 +80,13 @@ protected:
   TemporaryFolder folder;
 };
 
-/// Folder with a knee of 60x68x24 voxels in knee/, made once a program by the executable.
+/// Folder with a knee of 60x68x24 voxels in knee/. The executable creates it once per process.
 inline const TemporaryFolder& kneeFolder() {
   static const TemporaryFolder folder;
   static const Outcome outcome =
       run({"phantom", "knee", "--size", "60x68x24", "--output", "knee"}, folder.path());
   if (outcome.status != 0)
-    throw std::runtime_error("no knee: " + outcome.err);
+    throw std::runtime_error("the knee phantom cannot be created: " + outcome.err);
   return folder;
 }
 
@@ -97,20 +97,20 @@ inline std::set<std::string> listFiles(const std::filesystem::path& folder) {
   return names;
 }
 
-/// Command line that must be refused.
-struct ExcludedOptions {
+/// Command line that must fail with this exit status and message.
+struct ExpectedError {
   std::string name;
   Arguments arguments;
   int status;
-  std::string text; ///< part of the error line
+  std::string text; ///< part of the error message
 };
 
-/// Runs each command line; expects its exit status, one line on standard error, nothing on standard
-/// output, and an unchanged set of files.
-inline void expectErrors(const std::vector<ExcludedOptions>& errors,
+/// Runs each command line. Expects its exit status, one line on standard error, nothing on standard
+/// output, and no file created or removed.
+inline void expectErrors(const std::vector<ExpectedError>& errors,
                          const std::filesystem::path& folder) {
   const std::set<std::string> before = listFiles(folder);
-  for (const ExcludedOptions& error : errors) {
+  for (const ExpectedError& error : errors) {
     SCOPED_TRACE(error.name);
     const Outcome outcome = run(error.arguments, folder);
     EXPECT_EQ(outcome.status, error.status) << outcome.err;

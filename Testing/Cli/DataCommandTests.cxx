@@ -1,5 +1,5 @@
-// Expected result for every file of the folder of real data: a picture, or a refusal for a stated
-// reason. Skipped, visibly, if the folder is missing.
+// Expected result for every file in the folder of real data: an image, or a specific error. Skipped
+// if the folder is missing.
 
 #include "CommandTesting.h"
 
@@ -8,9 +8,10 @@ namespace {
 
 const std::filesystem::path data = FENESTRA_DATA;
 
-/// Command line on real files ("@": the folder); an empty `refusal` expects a picture.
+/// Command line for real files ("@" is their folder). An empty `refusal` expects an image, any
+/// other an error that contains it.
 struct Expectation {
-  std::string files; ///< tested files, separated by blanks; a trailing * matches any ending
+  std::string files; ///< tested files, separated by blanks; a trailing * is a wildcard
   std::string arguments;
   std::string refusal = {};
 };
@@ -55,8 +56,8 @@ const std::vector<Expectation>& expectations() {
        "@/spl_knee_atlas_labels/SYNTHETIC_mr_256.nii.gz --segmentation "
        "@/spl_knee_atlas_labels/seg.nrrd --focus 83"},
       {"spl_knee_atlas_labels/knee.ctbl", "@/spl_knee_atlas_labels/knee.ctbl",
-       "knee.ctbl: has no known extension"},
-      // segmentations of Slicer
+       "knee.ctbl: has an unknown extension"},
+      // segmentations written by Slicer
       {"slicerio_segnrrd/CTChest4.nrrd slicerio_segnrrd/Segmentation.seg.nrrd",
        chest + "--segmentation @/slicerio_segnrrd/Segmentation.seg.nrrd --focus ribs"},
       {"slicerio_segnrrd/SegmentationOverlapping.seg.nrrd",
@@ -74,18 +75,18 @@ const std::vector<Expectation>& expectations() {
        "slicer_scenes/slicerrt_scenes/EclipseProstate_Structures.seg/*",
        dose + "--segmentation @/slicer_scenes/slicerrt_scenes/EclipseProstate_Structures.seg.vtm "
               "--focus Bladder",
-       "holds planar contours, not a closed surface"},
+       "is planar contours, not a closed surface"},
       {"slicer_scenes/slicerrt_scenes/TinyPatientCT.nrrd "
        "slicer_scenes/slicerrt_scenes/TinyPatientStructureSet.seg.vtm "
        "slicer_scenes/slicerrt_scenes/TinyPatientStructureSet.seg/*",
        tiny + "--segmentation @/slicer_scenes/slicerrt_scenes/TinyPatientStructureSet.seg.vtm "
               "--focus Tumor_Contour",
-       "holds planar contours, not a closed surface"},
+       "is planar contours, not a closed surface"},
       {"slicer_scenes/slicerrt_scenes/TinyPatientDose.nrrd",
        "@/slicer_scenes/slicerrt_scenes/TinyPatientDose.nrrd"},
       {"slicer_scenes/slicerrt_scenes/EclipseProstate_Structures_ColorTable.ctbl",
        "@/slicer_scenes/slicerrt_scenes/EclipseProstate_Structures_ColorTable.ctbl",
-       "has no known extension"},
+       "has an unknown extension"},
       {"torso_pet_ccth_a01/pet_suv.nii.gz", "@/torso_pet_ccth_a01/pet_suv.nii.gz"},
       {"head_stroke/stroke_T1.nii.gz", "@/head_stroke/stroke_T1.nii.gz"},
       {"head_stroke/stroke_T2.nii.gz", "@/head_stroke/stroke_T2.nii.gz"},
@@ -101,20 +102,19 @@ const std::vector<Expectation>& expectations() {
        "@/slicer_scenes/slicerrt_scenes/Scenes/TinyPatient_ExternalBeamPlanning_Scene.mrml "
        "--volume vtkMRMLScalarVolumeNode2"},
       {"slicer_scenes/slicer_core/vol_and_cube.mrml",
-       "@/slicer_scenes/slicer_core/vol_and_cube.mrml", "TestData/fixed.nrrd, which is not there"},
+       "@/slicer_scenes/slicer_core/vol_and_cube.mrml", "fixed.nrrd, which does not exist"},
       {"slicer_scenes/slicer_core/volRender.mrml", "@/slicer_scenes/slicer_core/volRender.mrml",
-       "holds no scalar volume"},
+       "has no scalar volume"},
       {"slicer_scenes/slicer_core/restoreSceneSnapshotCompareView.mrml",
-       "@/slicer_scenes/slicer_core/restoreSceneSnapshotCompareView.mrml",
-       "holds no scalar volume"},
+       "@/slicer_scenes/slicer_core/restoreSceneSnapshotCompareView.mrml", "has no scalar volume"},
       {"spl_knee_atlas_labels/KneeAtlas-2015Sept-Slicer4-4Version.mrml",
        "@/spl_knee_atlas_labels/KneeAtlas-2015Sept-Slicer4-4Version.mrml",
-       "which is not there; put it back"},
+       "which does not exist; restore it"},
       {"slicer_scenes/vr_properties/SM_presets.mrml",
-       "@/slicer_scenes/vr_properties/SM_presets.mrml", "holds no scalar volume"},
+       "@/slicer_scenes/vr_properties/SM_presets.mrml", "has no scalar volume"},
       {"slicer_scenes/vr_properties/US-VrPresets.mrml",
-       "@/slicer_scenes/vr_properties/US-VrPresets.mrml", "holds no scalar volume"},
-      // looks
+       "@/slicer_scenes/vr_properties/US-VrPresets.mrml", "has no scalar volume"},
+      // transfer functions
       {"slicer_scenes/slicer_core/VolumeProperty.vp",
        chest + "--transfer @/slicer_scenes/slicer_core/VolumeProperty.vp"},
       {"slicer_scenes/vr_properties/FluoroRenderingPreset_01.vp",
@@ -123,13 +123,13 @@ const std::vector<Expectation>& expectations() {
        chest + "--transfer @/slicer_scenes/vr_properties/FluoroRenderingPreset_02.vp"},
       {"slicer_scenes/vr_properties/FluoroRenderingPreset_03.vp",
        chest + "--transfer @/slicer_scenes/vr_properties/FluoroRenderingPreset_03.vp"},
-      {"slicer_scenes/slicer_core/presets.xml", // its presets are read one by one in a unit test
-       chest + "--transfer @/slicer_scenes/slicer_core/presets.xml", "is no transfer function"},
+      {"slicer_scenes/slicer_core/presets.xml", // a unit test reads its presets
+       chest + "--transfer @/slicer_scenes/slicer_core/presets.xml", "is not a transfer function"},
       {"slicer_scenes/slicer_core/volume-property-schema-v1.0.0.json",
        chest + "--transfer @/slicer_scenes/slicer_core/volume-property-schema-v1.0.0.json",
        "unknown key"},
-      {"slicer_scenes/slicer_core/AnnotationROI.acsv", // read as a region in a unit test
-       "@/slicer_scenes/slicer_core/AnnotationROI.acsv", "has no known extension"},
+      {"slicer_scenes/slicer_core/AnnotationROI.acsv", // a unit test reads it as a region
+       "@/slicer_scenes/slicer_core/AnnotationROI.acsv", "has an unknown extension"},
   };
   return table;
 }
@@ -147,9 +147,9 @@ bool matches(const std::string& pattern, const std::string& file) {
                                 : file == pattern;
 }
 
-TEST(RealData, EveryFileHasAStatedExpectation) {
+TEST(RealData, EveryFileHasAnExpectation) {
   if (!std::filesystem::exists(data))
-    GTEST_SKIP() << data << " is absent";
+    GTEST_SKIP() << data << " does not exist";
   for (const std::string& file : listFiles(data)) {
     const std::string name = std::filesystem::path(file).filename().string();
     if (std::filesystem::is_directory(data / file) || name.starts_with("README") ||
@@ -159,15 +159,15 @@ TEST(RealData, EveryFileHasAStatedExpectation) {
     for (const Expectation& expectation : expectations())
       for (const std::string& pattern : splitAtBlanks(expectation.files))
         known = known || matches(pattern, file);
-    EXPECT_TRUE(known) << file << ": say what is expected of it";
+    EXPECT_TRUE(known) << file << ": add its expected result to expectations()";
   }
 }
 
 class RealFiles : public ::testing::TestWithParam<Expectation> {};
 
-TEST_P(RealFiles, RenderOrAreRefusedForTheStatedReason) {
+TEST_P(RealFiles, RenderOrFailAsExpected) {
   if (!std::filesystem::exists(data))
-    GTEST_SKIP() << data << " is absent";
+    GTEST_SKIP() << data << " does not exist";
   const TemporaryFolder folder;
   Arguments arguments = splitAtBlanks(GetParam().arguments);
   for (std::string& argument : arguments)

@@ -1,5 +1,5 @@
-// Program told to others: its version and libraries, its manual page. completions.sh asks the
-// shells.
+// `--version` and `fenestra describe`: version, libraries and manual page. completions.sh tests the
+// completions in the shells themselves.
 
 #include "CommandTesting.h"
 #include "base/Text.h"
@@ -61,7 +61,7 @@ TEST_F(VersionCommand, JsonHasAVersionOfEachLibrary) {
   EXPECT_EQ(names, libraries);
 }
 
-TEST_F(VersionCommand, InstructionSetIsThatWhichARenderWouldUse) {
+TEST_F(VersionCommand, InstructionSetIsThatOfARender) {
   const std::vector<std::string> sets = version()["instructionSets"];
   const char* const pinned = std::getenv("FENESTRA_INSTRUCTIONS");
   EXPECT_EQ(version()["instructions"], pinned ? pinned : sets.front());
@@ -69,7 +69,7 @@ TEST_F(VersionCommand, InstructionSetIsThatWhichARenderWouldUse) {
   ::setenv("FENESTRA_INSTRUCTIONS", sets.back().c_str(), 1);
   EXPECT_EQ(version()["instructions"], sets.back());
   ::setenv("FENESTRA_INSTRUCTIONS", "ABACUS", 1);
-  expectErrors({{"no such set", {"--version"}, 2, "ABACUS"}}, folder.path());
+  expectErrors({{"unknown set", {"--version"}, 2, "ABACUS"}}, folder.path());
   pinned ? ::setenv("FENESTRA_INSTRUCTIONS", before.c_str(), 1)
          : ::unsetenv("FENESTRA_INSTRUCTIONS");
 }
@@ -86,12 +86,12 @@ TEST_F(VersionCommand, TextHasTheFactsOfTheJson) {
 
 class DescribeCommand : public VersionCommand {};
 
-TEST_F(DescribeCommand, ManualPageHasItsSectionsAndEveryFlagOfTheHelp) {
+TEST_F(DescribeCommand, ManualPageHasAllSectionsAndOptions) {
   const Outcome outcome = run({"describe", "man"}, folder.path());
   EXPECT_EQ(outcome.status, 0);
   EXPECT_EQ(outcome.err, "");
   std::size_t place = 0;
-  for (const char* section : {"NAME", "SYNOPSIS", "DESCRIPTION", "FLAGS", "ENVIRONMENT",
+  for (const char* section : {"NAME", "SYNOPSIS", "DESCRIPTION", "OPTIONS", "ENVIRONMENT",
                               "EXIT STATUS", "EXAMPLES", "SEE ALSO"}) {
     const std::size_t found = outcome.out.find(std::string("\n.Sh ") + section + "\n");
     EXPECT_TRUE(found != std::string::npos && found >= place) << section;
@@ -108,7 +108,7 @@ TEST_F(DescribeCommand, ManualPageHasItsSectionsAndEveryFlagOfTheHelp) {
   }
 }
 
-TEST_F(DescribeCommand, WhatACommandRefusesIsNotOffered) {
+TEST_F(DescribeCommand, HelpOmitsUnsupportedOptions) {
   using Pair = std::pair<const char*, const char*>;
   for (const auto& [command, flag] :
        {Pair("serve", "--stats"), Pair("serve", "--checkpoint"), Pair("turntable", "--surface"),
@@ -121,10 +121,10 @@ TEST_F(DescribeCommand, WhatACommandRefusesIsNotOffered) {
             std::string::npos);
 }
 
-TEST_F(DescribeCommand, UnknownKindIsRefused) {
+TEST_F(DescribeCommand, UnknownKindIsRejected) {
   expectErrors({{"shell", {"describe", "csh"}, 2, "KIND: 'csh' is unknown"},
-                {"none", {"describe"}, 2, "KIND: is missing"},
-                {"two", {"describe", "man", "bash"}, 2, "one argument too many"}},
+                {"none", {"describe"}, 2, "KIND: missing"},
+                {"two", {"describe", "man", "bash"}, 2, "'bash': unexpected argument"}},
                folder.path());
 }
 

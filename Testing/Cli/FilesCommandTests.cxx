@@ -1,4 +1,4 @@
-// Files that cannot be read or written: one line, exit status 3 or 4, no file left behind.
+// Files that cannot be read or written: one error line, exit status 3 or 4, no remaining file.
 
 #include "CommandTesting.h"
 
@@ -10,7 +10,7 @@ namespace {
 
 class FilesCommand : public SmallScene {};
 
-TEST_F(FilesCommand, RefusesInputThatIsNoVolume) {
+TEST_F(FilesCommand, RejectsInputThatIsNotAVolume) {
   folder.write("text.nrrd", "These are\nonly words.\n");
   folder.write("text.txt", "words");
   folder.write(".nrrd", NrrdText().encode(makeRamp()));
@@ -27,27 +27,27 @@ TEST_F(FilesCommand, RefusesInputThatIsNoVolume) {
           {"missing", {"missing.nrrd"}, 3, "missing.nrrd: "},
           {"a folder", {"."}, 3, ".: "},
           {"a device", {"/dev/zero"}, 3, "/dev/zero: "},
-          {"an empty name", {""}, 2, "INPUT: is empty"},
-          {"a folder without a name", {"/"}, 2, "--output: is missing"},
-          {"an ending alone", {".nrrd"}, 2, "--output: is missing, and .nrrd gives"},
-          {"a segmentation", {"a.seg.vtm"}, 3, "a.seg.vtm: is a segmentation; name its volume"},
+          {"an empty name", {""}, 2, "INPUT: must not be empty"},
+          {"a folder without a name", {"/"}, 2, "--output: missing"},
+          {"only an extension", {".nrrd"}, 2, "--output: missing, and .nrrd gives"},
+          {"a segmentation", {"a.seg.vtm"}, 3, "a.seg.vtm: is a segmentation; give its volume"},
           {"text", {"text.nrrd"}, 3, "text.nrrd: is not a NRRD file"},
-          {"another extension", {"text.txt"}, 3, "text.txt: has no known extension; name a .nrrd"},
+          {"unknown extension", {"text.txt"}, 3, "has an unknown extension; give a .nrrd"},
           {"an empty file", {"empty.nrrd"}, 3, "empty.nrrd: is not a NRRD file"},
           {"a PNG called NRRD",
            {"picture.nrrd", "--output", "p.png"},
            3,
            "picture.nrrd: is not a NRRD file"},
-          {"a PNG", {"picture.png"}, 3, "picture.png: has no known extension"},
-          {"two axes", {"flat.nrrd"}, 3, "flat.nrrd: is a picture of 2 axes"},
+          {"a PNG", {"picture.png"}, 3, "picture.png: has an unknown extension"},
+          {"two axes", {"flat.nrrd"}, 3, "flat.nrrd: is an image of 2 axes"},
           {"four axes", {"film.nrrd"}, 3, "film.nrrd: has 4 axes"},
           {"no voxels", {"none.nrrd"}, 3, "none.nrrd: sizes: "},
-          {"fewer than no voxels", {"negative.nrrd"}, 3, "negative.nrrd: sizes: "},
+          {"negative size", {"negative.nrrd"}, 3, "negative.nrrd: sizes: "},
       },
       folder.path());
 }
 
-TEST_F(FilesCommand, RefusesTruncatedVolumes) {
+TEST_F(FilesCommand, RejectsTruncatedVolumes) {
   const std::string deflated = compressGzip(makeRamp(), folder);
   NrrdText gzip{"4 4 4", "int16", "gzip"};
   folder.write("raw.nrrd", NrrdText().encode(makeRamp().substr(1)));
@@ -60,7 +60,7 @@ TEST_F(FilesCommand, RefusesTruncatedVolumes) {
   folder.write("hugegzip.nrrd", gzip.encode(deflated));
   expectErrors(
       {
-          {"raw", {"raw.nrrd"}, 3, "announces 128 bytes of samples, the file has 127"},
+          {"raw", {"raw.nrrd"}, 3, "declares 128 bytes of samples, the file has 127"},
           {"gzip", {"gzip.nrrd"}, 3, "gzip.nrrd: "},
           {"larger than the file", {"larger.nrrd"}, 3, "larger.nrrd: is truncated"},
           {"larger than gzip holds", {"largergzip.nrrd"}, 3, "largergzip.nrrd: is truncated"},
@@ -70,7 +70,7 @@ TEST_F(FilesCommand, RefusesTruncatedVolumes) {
       folder.path());
 }
 
-TEST_F(FilesCommand, RefusesMissingOrEmptyFocus) {
+TEST_F(FilesCommand, RejectsMissingOrEmptyFocus) {
   std::string far = makeSegments();
   const std::string origin = "space origin: (0,0,0)";
   far.replace(far.find(origin), origin.size(), "space origin: (5000,0,0)");
@@ -102,13 +102,13 @@ TEST_F(FilesCommand, RefusesMissingOrEmptyFocus) {
       folder.path());
 }
 
-TEST_F(FilesCommand, RefusesMissingOrDamagedLooks) {
+TEST_F(FilesCommand, RejectsMissingOrDamagedAppearance) {
   folder.write("cut.json", R"({"extinction": [[0,)");
   folder.write("word.json", R"({"extinction": [[0, "x"]], "albedo": [[0, 1, 1, 1]]})");
   folder.write("words.vp", "words");
   folder.write("none.vp.json", R"({"volumeProperties": []})");
   folder.write("spot.json", R"({"lights": [{"type": "spot"}]})");
-  folder.write("dark.exr", "no picture");
+  folder.write("dark.exr", "not an image");
   const std::string albedo = R"("albedo": [[0, 1, 1, 1]], "g": 0, "shading": )";
   folder.write("hybrid.json", R"({"extinction": [[0, 0], [9, 1]], )" + albedo + R"("hybrid"})");
   folder.write("thick.json", R"({"extinction": [[0, 0], [9, 1e20]], )" + albedo + R"("volume"})");
@@ -122,34 +122,37 @@ TEST_F(FilesCommand, RefusesMissingOrDamagedLooks) {
            "one of ct-bone, ct-heart, ct-liver"},
           {"transfer file", makeArguments("--transfer", "missing.vp"), 3,
            "missing.vp: no such file"},
-          {"half of a .json", makeArguments("--transfer", "cut.json"), 3, "cut.json: is not JSON"},
+          {"truncated .json", makeArguments("--transfer", "cut.json"), 3,
+           "cut.json: is not valid JSON"},
           {"word for a number", makeArguments("--transfer", "word.json"), 3, "extinction[0][1]: "},
           {"damaged .vp", makeArguments("--transfer", "words.vp"), 3, "words.vp: line 1"},
           {"empty .vp.json", makeArguments("--transfer", "none.vp.json"), 3,
            "volumeProperties: is empty"},
-          {"a volume", makeArguments("--transfer", "volume.nrrd"), 3, "is no transfer function"},
-          {"endless paths", makeArguments("--transfer", "thick.json"), 3,
+          {"a volume", makeArguments("--transfer", "volume.nrrd"), 3, "is not a transfer function"},
+          {"excessive extinction", makeArguments("--transfer", "thick.json"), 3,
            "thick.json: extinction: reaches 1e+20"},
-          {"no gradient",
+          {"zero gradient",
            {"constant.nrrd", "--transfer", "hybrid.json"},
            3,
-           "constant.nrrd: every voxel has the same value"},
+           "constant.nrrd: all voxels have the same value"},
           {"light preset", makeArguments("--lights", "sun"), 3,
            "one of amber, cinema, headlight, soft, studio"},
           {"light type", makeArguments("--lights", "spot.json"), 3, "spot.json: lights[0].type: "},
-          {"half of a light", makeArguments("--lights", "cut.json"), 3, "cut.json: is not JSON"},
-          {"half of a text", makeArguments("--lights", R"({"lights": [)"), 3,
-           "--lights: is not JSON at byte 13; check its brackets"},
+          {"truncated lights", makeArguments("--lights", "cut.json"), 3,
+           "cut.json: is not valid JSON"},
+          {"truncated inline JSON", makeArguments("--lights", R"({"lights": [)"), 3,
+           "--lights: is not valid JSON at byte 13; check its brackets"},
           {"no lights", makeArguments("--lights", "{}"), 3, "--lights: has no \"lights\"; add it"},
-          {"light type in text", makeArguments("--lights", R"({"lights": [{"type": "spot"}]})"), 3,
+          {"light type in inline JSON",
+           makeArguments("--lights", R"({"lights": [{"type": "spot"}]})"), 3,
            "--lights: lights[0].type: must be environment"},
-          {"key of two lines", makeArguments("--lights", R"({"a\nb": 1})"), 3,
+          {"key with a line break", makeArguments("--lights", R"({"a\nb": 1})"), 3,
            "--lights: unknown key"},
-          {"map of a text",
+          {"map in inline JSON",
            makeArguments("--lights",
                          R"({"lights": [{"type": "environment", "file": "missing.exr"}]})"),
-           3, "missing.exr: there is no such file"},
-          {"half of a look's text", makeArguments("--transfer", R"({"extinction": []})"), 3,
+           3, "missing.exr: no such file"},
+          {"inline transfer function", makeArguments("--transfer", R"({"extinction": []})"), 3,
            "--transfer: extinction: is empty"},
           {"environment", makeArguments("--environment", "missing.exr"), 3, "missing.exr: "},
           {"damaged environment", makeArguments("--environment", "dark.exr"), 3, "dark.exr: "},
@@ -157,12 +160,12 @@ TEST_F(FilesCommand, RefusesMissingOrDamagedLooks) {
       folder.path());
 }
 
-/// Unreadable path like another user's closed folder, but also for root.
-TEST_F(FilesCommand, UnreadablePathIsNamedWithItsCause) {
+/// A loop of symbolic links is unreadable for every user, unlike missing permissions for root.
+TEST_F(FilesCommand, ErrorNamesAnUnreadablePathAndTheCause) {
   std::filesystem::create_symlink("loop", folder / "loop");
   folder.write("s.mrml", R"(<MRML><Volume id="v" references="storage:s;"/>)"
                          R"(<VolumeArchetypeStorage id="s" fileName="loop/a.nrrd"/></MRML>)");
-  const std::string reason = ": cannot be read: Too many levels of symbolic links; its links lead";
+  const std::string reason = ": cannot be read: Too many levels of symbolic links; its symbolic";
   const auto makeArguments = [](const std::string& flag, const std::string& value) {
     return Arguments{"volume.nrrd", flag, value};
   };
@@ -189,7 +192,7 @@ TEST_F(FilesCommand, UnreadablePathIsNamedWithItsCause) {
       << inspected.out << inspected.err;
 }
 
-TEST_F(FilesCommand, AbsoluteNamesWorkInADeletedFolder) {
+TEST_F(FilesCommand, AbsolutePathsWorkInADeletedFolder) {
   std::filesystem::create_directory(folder / "gone");
   const std::string folderPath = folder.path().string();
   const auto runInDeletedFolder = [&](const std::string& arguments) {
@@ -208,14 +211,14 @@ TEST_F(FilesCommand, AbsoluteNamesWorkInADeletedFolder) {
       << readBytes(folder / "said");
 }
 
-TEST_F(FilesCommand, RefusesUnwritableOutputs) {
+TEST_F(FilesCommand, RejectsUnwritableOutputs) {
   std::filesystem::create_directory(folder / "folder.png");
   std::filesystem::create_directory(folder / "depth-Z.nrrd");
   folder.write("a-Z.nrrd", NrrdText().encode(makeRamp()));
   const auto outputArguments = [](const std::string& file) {
     return Arguments{"volume.nrrd", "--output", file};
   };
-  const std::string extensions = "has no known extension; name a file .exr, .nrrd, .png or .tif";
+  const std::string extensions = "has an unknown extension; give a file .exr, .nrrd, .png or .tif";
   expectErrors(
       {
           {"missing folder", outputArguments("missing/a.png"), 4,
@@ -230,7 +233,7 @@ TEST_F(FilesCommand, RefusesUnwritableOutputs) {
           {"the input", outputArguments("./volume.nrrd"), 2,
            "./volume.nrrd: would replace an input file"},
           {"twice", {"volume.nrrd", "--output", "a.png", "--output", "./a.png"}, 2, "twice"},
-          {"stats over the picture",
+          {"stats over the image",
            {"volume.nrrd", "--output", "a.png", "--stats", "a.png"},
            2,
            "a.png: would be written twice"},
@@ -245,18 +248,18 @@ TEST_F(FilesCommand, RefusesUnwritableOutputs) {
           {"no color",
            {"volume.nrrd", "--layers", "depth"},
            2,
-           "--layers: only .exr and .nrrd have"},
+           "--layers: only for .exr and .nrrd"},
           {"PNG without color",
            {"volume.nrrd", "--layers", "depth", "--output", "a.exr", "--output", "b.png"},
            2,
-           "--layers: b.png needs color"},
+           "--layers: b.png requires color"},
           {"stats", {"volume.nrrd", "--stats", "missing/a.json"}, 4, "missing/a.json: "},
           {"stats on a device", {"volume.nrrd", "--stats", "/dev/full"}, 4, "/dev/full: is a "},
       },
       folder.path());
 }
 
-/// TIFF of one grey pixel, uncompressed.
+/// Uncompressed TIFF of one gray pixel.
 std::string makeTiff(std::uint16_t orientation) {
   const auto bytes = [](std::uint32_t value, int count) {
     std::string text;
@@ -275,7 +278,7 @@ std::string makeTiff(std::uint16_t orientation) {
   return tiff + bytes(0, 4);
 }
 
-TEST_F(FilesCommand, CompareRefusesARotatedTiff) {
+TEST_F(FilesCommand, CompareRejectsARotatedTiff) {
   folder.write("upright.tif", makeTiff(1));
   folder.write("turned.tif", makeTiff(3));
   EXPECT_EQ(run({"compare", "upright.tif", "upright.tif"}, folder.path()).status, 0);
@@ -284,7 +287,7 @@ TEST_F(FilesCommand, CompareRefusesARotatedTiff) {
       folder.path());
 }
 
-TEST_F(FilesCommand, CompareRefusesDifferentSizesAndUnreadablePictures) {
+TEST_F(FilesCommand, CompareRejectsDifferentSizesAndUnreadableImages) {
   ASSERT_EQ(renderVolume({"--output", "a.png"}).status, 0);
   ASSERT_EQ(renderVolume({"--size", "8x8", "--output", "b.png"}).status, 2) << "--size twice";
   ASSERT_EQ(
@@ -297,29 +300,29 @@ TEST_F(FilesCommand, CompareRefusesDifferentSizesAndUnreadablePictures) {
       {
           {"sizes", {"compare", "a.png", "b.png"}, 3, "a.png, b.png: "},
           {"missing", {"compare", "a.png", "missing.png"}, 3, "missing.png: "},
-          {"text", {"compare", "a.png", "text.txt"}, 3, "text.txt: has no known extension"},
+          {"text", {"compare", "a.png", "text.txt"}, 3, "text.txt: has an unknown extension"},
           {"damaged", {"compare", "a.png", "text.png"}, 3, "text.png: "},
-          {"one picture", {"compare", "a.png"}, 2, "B: is missing"},
+          {"one image", {"compare", "a.png"}, 2, "B: missing"},
           {"over an input", {"compare", "a.png", "a.png", "--output", "a.png"}, 2, "replace"},
           {"unwritable", {"compare", "a.png", "a.png", "--output", "no/a.png"}, 4, "no/a.png: "},
       },
       folder.path());
 }
 
-TEST_F(FilesCommand, PhantomRefusesBadKindSizeOrFolder) {
+TEST_F(FilesCommand, PhantomRejectsBadKindSizeOrFolder) {
   const auto phantomArguments = [](const std::string& where) {
     return Arguments{"phantom", "knee", "--size", "16x16x16", "--output", where};
   };
   expectErrors(
       {
           {"kind", {"phantom", "elbow"}, 2, "KIND: 'elbow' is unknown; use knee"},
-          {"no kind", {"phantom"}, 2, "KIND: is missing"},
+          {"no kind", {"phantom"}, 2, "KIND: missing"},
           {"one number", {"phantom", "knee", "--size", "64"}, 2, "--size: expected WIDTHxHEIGHT"},
-          {"too small", {"phantom", "knee", "--size", "1x1x1"}, 2, "between 16 and 1024"},
-          {"too large", {"phantom", "knee", "--size", "99999x16x16"}, 2, "between 16 and 1024"},
-          {"no permission", phantomArguments("/proc/knee"), 4, "/proc/knee: cannot be made"},
-          {"a file", phantomArguments("volume.nrrd"), 4, "volume.nrrd: cannot be made"},
-          {"a device", phantomArguments("/dev/null"), 4, "/dev/null: cannot be made"},
+          {"too small", {"phantom", "knee", "--size", "1x1x1"}, 2, "have 16 to 1024"},
+          {"too large", {"phantom", "knee", "--size", "99999x16x16"}, 2, "have 16 to 1024"},
+          {"no permission", phantomArguments("/proc/knee"), 4, "/proc/knee: cannot be created"},
+          {"a file", phantomArguments("volume.nrrd"), 4, "volume.nrrd: cannot be created"},
+          {"a device", phantomArguments("/dev/null"), 4, "/dev/null: cannot be created"},
       },
       folder.path());
 }

@@ -1,4 +1,4 @@
-// Filtered pictures as a user meets them: what is filtered, what is not, and what is said of it.
+// Denoising on the command line: which images and channels are denoised, and how outputs report it.
 
 #include "CommandTesting.h"
 
@@ -9,7 +9,7 @@
 namespace fenestra::FilterCommandTests {
 namespace {
 
-/// Folder with a knee, rendered at 48x48 pixels.
+/// Renders of the knee with 48x48 pixels.
 class FilterCommand : public ::testing::Test {
 protected:
   Outcome runKnee(const Arguments& arguments) const {
@@ -47,27 +47,27 @@ TEST_F(FilterCommand, RawChannelsKeepTheirBits) {
   EXPECT_GT(on.channels.size(), off.channels.size());
 }
 
-TEST_F(FilterCommand, OnAddsChannelsBesideTheRawOnes) {
+TEST_F(FilterCommand, OnAddsChannelsToTheRawOnes) {
   render({"--samples", "4", "--denoise", "on", "--output", "a.exr", "--output", "a.nrrd"});
   const Image image = readImage(folder / "a.exr");
   for (const char* name :
        {"R", "A", "Z", "denoised.R", "denoised.G", "denoised.B", "denoised.A", "denoised.error.R",
         "expected.albedo.R", "expected.normal.X", "expected.Z"})
     EXPECT_TRUE(image.find(name)) << name;
-  EXPECT_NE(image.header.at("filter").find("R, G, B and A are not filtered"), std::string::npos);
+  EXPECT_NE(image.header.at("filter").find("R, G, B and A are not denoised"), std::string::npos);
   EXPECT_EQ(listFiles(folder.path()),
             (std::set<std::string>{"a.exr", "a.nrrd", "a-Z.nrrd", "a-denoised.nrrd"}));
   EXPECT_EQ(*readImage(folder / "a-denoised.nrrd").find("R"), *image.find("denoised.R"));
   EXPECT_EQ(*readImage(folder / "a.nrrd").find("R"), *image.find("R"));
 }
 
-TEST_F(FilterCommand, AutoFiltersPicturesForTheEyeAndSaysSo) {
+TEST_F(FilterCommand, AutoDenoisesDisplayImagesAndRecordsIt) {
   const Arguments all = {"--samples", "2",        "--output", "a.png",   "--output",
                          "a.tif",     "--output", "a.exr",    "--stats", "s.json"};
   render(all);
   const std::string png = readBytes(folder / "a.png"), tiff = readBytes(folder / "a.tif");
-  EXPECT_NE(png.find("filtered for the eye"), std::string::npos);
-  EXPECT_NE(tiff.find("filtered for the eye"), std::string::npos);
+  EXPECT_NE(png.find("denoised by local linear regression"), std::string::npos);
+  EXPECT_NE(tiff.find("denoised by local linear regression"), std::string::npos);
   const Image exr = readImage(folder / "a.exr");
   EXPECT_FALSE(channelNames(exr).contains("denoised.R"));
   EXPECT_FALSE(exr.header.contains("filter"));
@@ -77,13 +77,14 @@ TEST_F(FilterCommand, AutoFiltersPicturesForTheEyeAndSaysSo) {
   Arguments off = all;
   off.insert(off.end(), {"--denoise", "off"});
   render(off);
-  EXPECT_EQ(readBytes(folder / "a.png").find("filtered for the eye"), std::string::npos);
+  EXPECT_EQ(readBytes(folder / "a.png").find("denoised by local linear regression"),
+            std::string::npos);
   EXPECT_NE(readBytes(folder / "a.png"), png);
   EXPECT_FALSE(stats().contains("noiseFiltered"));
   EXPECT_EQ(stats()["seconds"]["features"], 0.0);
 }
 
-TEST_F(FilterCommand, OneSampleIsFilteredButTellsNoError) {
+TEST_F(FilterCommand, OneSampleIsDenoisedWithoutAnErrorEstimate) {
   render({"--samples", "1", "--denoise", "on", "--output", "a.exr", "--stats", "s.json"});
   const Image image = readImage(folder / "a.exr");
   EXPECT_TRUE(image.find("denoised.R"));
@@ -91,7 +92,7 @@ TEST_F(FilterCommand, OneSampleIsFilteredButTellsNoError) {
   EXPECT_TRUE(stats()["noiseFiltered"].is_null());
 }
 
-TEST_F(FilterCommand, NoiseMeansTheFilteredPictureIfThatIsAllThereIs) {
+TEST_F(FilterCommand, NoiseLimitsTheDenoisedNoiseIfAllOutputsAreDisplayImages) {
   const Arguments noise = {"--noise", "0.15", "--stats", "s.json", "--output", "a.png"};
   render(noise);
   const std::uint64_t few = stats()["samplesPerPixel"]["max"];
@@ -105,12 +106,12 @@ TEST_F(FilterCommand, NoiseMeansTheFilteredPictureIfThatIsAllThereIs) {
   render(raw);
   EXPECT_LE(stats()["noise"], 0.15);
   Arguments filtered = raw;
-  filtered.insert(filtered.end(), {"--noisetarget", "filtered"});
+  filtered.insert(filtered.end(), {"--noisetarget", "denoised"});
   render(filtered);
   EXPECT_EQ(stats()["samplesPerPixel"]["max"], few);
 }
 
-TEST_F(FilterCommand, ThreadsChangeNoBit) {
+TEST_F(FilterCommand, ResultDoesNotDependOnTheThreads) {
   std::set<std::string> images;
   for (const char* threads : {"1", "2", "7"}) {
     render({"--samples", "2", "--denoise", "on", "--output", "a.exr", "--threads", threads});
@@ -123,13 +124,13 @@ TEST_F(FilterCommand, ThreadsChangeNoBit) {
   EXPECT_EQ(images.size(), 1U);
 }
 
-TEST_F(FilterCommand, ContradictionsAreRefused) {
+TEST_F(FilterCommand, ContradictionsAreRejected) {
   const auto expectUsageError = [&](const Arguments& arguments, const std::string& hint) {
     const Outcome outcome = runKnee(arguments);
     EXPECT_EQ(outcome.status, 2);
     EXPECT_NE(outcome.err.find(hint), std::string::npos) << outcome.err;
   };
-  expectUsageError({"--noise", "0.1", "--noisetarget", "filtered", "--denoise", "off"},
+  expectUsageError({"--noise", "0.1", "--noisetarget", "denoised", "--denoise", "off"},
                    "--denoise on");
   expectUsageError({"--noise", "0.1", "--noisetarget", "filtered", "--output", "a.exr"},
                    "--denoise on");

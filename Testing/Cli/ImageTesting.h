@@ -1,5 +1,5 @@
 #pragma once
-// Pictures compared bit for bit.
+// Bitwise comparison of images.
 
 #include "files/images/ImageReader.h"
 
@@ -9,7 +9,7 @@
 
 namespace fenestra {
 
-/// Expects the same channels, and the same sample count in the header, if it has one.
+/// Expects equal channels and, if the headers have one, an equal sample count.
 inline void expectSameImage(const std::filesystem::path& a, const std::filesystem::path& b) {
   const Image one = readImage(a), other = readImage(b);
   EXPECT_FALSE(one.channels.empty());

@@ -1,5 +1,4 @@
-// `fenestra inspect`: its output for small inputs, word by word in JSON, and its agreement with a
-// render.
+// `fenestra inspect`: its JSON output for small inputs, and its agreement with a render.
 
 #include "InspectTesting.h"
 
@@ -13,7 +12,7 @@ TEST_F(InspectCommand, DescribesVolume) {
   EXPECT_EQ(volume["size"], Json({4, 4, 4}));
   EXPECT_EQ(volume["spacing"], Json({1.0, 1.0, 1.0}));
   EXPECT_EQ(volume["center"], Json({-1.5, -1.5, 1.5}));
-  EXPECT_EQ(volume["voxelType"], "uint8") << "the least that holds its values";
+  EXPECT_EQ(volume["voxelType"], "uint8") << "the smallest type for these values";
   EXPECT_EQ(volume["range"], Json({0.0, 63.0}));
   EXPECT_EQ(report["render"]["look"]["source"], "range");
   EXPECT_EQ(report["render"]["camera"]["projection"], "orthographic");
@@ -41,7 +40,7 @@ TEST_F(InspectCommand, DescribesSegments) {
   EXPECT_TRUE(segments[1]["bounds"].is_null());
 }
 
-TEST_F(InspectCommand, TellsWhatEachSegmentIsMadeOf) {
+TEST_F(InspectCommand, ReportsTheMaterialOfEachSegment) {
   const Json report = inspect({"segments.seg.nrrd"});
   const Json& bone = report["segmentations"][0]["segments"][0]["material"];
   EXPECT_EQ(bone["name"], "bone");
@@ -66,7 +65,7 @@ TEST_F(InspectCommand, ReportsLabelMapAsSegmentation) {
   ASSERT_EQ(report["segmentations"][0]["segments"].size(), 2u);
   EXPECT_EQ(report["segmentations"][0]["segments"][1]["name"], "Segment_7");
   EXPECT_EQ(report["segmentations"][0]["segments"][1]["voxels"], 16);
-  EXPECT_EQ(report["render"]["volume"]["range"], Json({0.0, 7.0})) << "it renders as a volume, too";
+  EXPECT_EQ(report["render"]["volume"]["range"], Json({0.0, 7.0})) << "usable as a volume";
 }
 
 TEST_F(InspectCommand, ListsSegmentationGivenBesideVolume) {
@@ -77,7 +76,7 @@ TEST_F(InspectCommand, ListsSegmentationGivenBesideVolume) {
   EXPECT_EQ(report["segmentations"][0]["used"], true);
   EXPECT_EQ(report["segmentations"][0]["segments"].size(), 2u);
   const Json missing = inspect({"volume.nrrd", "--segmentation", "none.nrrd"});
-  EXPECT_NE(missing["segmentations"][0]["problem"].get<std::string>().find("there is no such file"),
+  EXPECT_NE(missing["segmentations"][0]["problem"].get<std::string>().find("no such file"),
             std::string::npos);
 }
 
@@ -114,7 +113,7 @@ TEST_F(InspectCommand, ListsSceneNodesAndThoseRendered) {
 
   const Json& render = report["render"];
   EXPECT_EQ(render["volume"]["id"], "vol1");
-  EXPECT_EQ(render["volume"]["center"], Json({8.5, 18.5, 31.5})) << "moved by the transform";
+  EXPECT_EQ(render["volume"]["center"], Json({8.5, 18.5, 31.5})) << "after the transform";
   EXPECT_EQ(render["volume"]["transforms"], Json({"t1"}));
   EXPECT_EQ(render["look"],
             Json::parse(R"({"source": "volumeProperty", "id": "prop1", "name": "Warm"})"));
@@ -125,14 +124,13 @@ TEST_F(InspectCommand, ListsSceneNodesAndThoseRendered) {
   EXPECT_EQ(render["camera"]["scale"], 20.0);
   EXPECT_EQ(render["background"]["bottom"], Json({1.0, 0.0, 0.0}));
   EXPECT_EQ(render["segmentation"], "seg1");
-  EXPECT_NE(text.find("#ff0000 below to #0000ff above"), std::string::npos) << text;
+  EXPECT_NE(text.find("#ff0000 (bottom) to #0000ff (top)"), std::string::npos) << text;
   ASSERT_EQ(report["warnings"].size(), 1u);
-  EXPECT_EQ(report["warnings"][0],
-            "the cropping box lies outside the volume: nothing is left of it");
+  EXPECT_EQ(report["warnings"][0], "the crop box lies outside the volume, so the image is empty");
   expectSameAsRender(report, "scene.mrml");
 }
 
-TEST_F(InspectCommand, VolumeFlagChoosesAmongSeveral) {
+TEST_F(InspectCommand, VolumeOptionChoosesOneOfSeveral) {
   const std::string second = R"(<Volume id="vol2" name="MR" references="storage:store1;"/>)";
   const std::string volumes = R"(
     <VolumeArchetypeStorage id="store1" name="s" fileName="volume.nrrd"/>
@@ -142,8 +140,7 @@ TEST_F(InspectCommand, VolumeFlagChoosesAmongSeveral) {
   EXPECT_TRUE(open["render"].is_null());
   EXPECT_EQ(open["volumes"].size(), 2u);
   EXPECT_NE(open["refused"].get<std::string>().find("choose one with --volume"), std::string::npos);
-  EXPECT_NE(text.find("A render would be refused: scene.mrml: has several volumes"),
-            std::string::npos)
+  EXPECT_NE(text.find("A render would fail: scene.mrml: has several volumes"), std::string::npos)
       << text;
   expectSameAsRender(open, "scene.mrml");
 
@@ -159,7 +156,7 @@ TEST_F(InspectCommand, ReportsAmbiguousSegmentation) {
   const std::string second =
       R"(<Segmentation id="seg2" name="Rest" references="storage:store2;"/>)";
   const Json open = inspectScene(volumeNode + segmentationNode + settingNodes + second);
-  EXPECT_TRUE(open["refused"].is_null()) << "without a focus there is nothing to choose";
+  EXPECT_TRUE(open["refused"].is_null()) << "no segmentation is needed without a focus";
   EXPECT_TRUE(open["render"]["segmentation"].is_null());
   EXPECT_NE(open["render"]["segmentationProblem"].get<std::string>().find("--segmentation"),
             std::string::npos);
@@ -170,22 +167,22 @@ TEST_F(InspectCommand, ReportsAmbiguousSegmentation) {
   const Json none =
       inspectScene(volumeNode + segmentationNode + settingNodes, {"--segmentation", "nowhere"});
   EXPECT_EQ(none["render"]["segmentationProblem"],
-            "--segmentation nowhere: is neither in the scene nor a file");
+            "--segmentation nowhere: neither a node of the scene nor a file");
 }
 
-// ---- real files
-// ----------------------------------------------------------------------------------
+// ---- real data
+// -----------------------------------------------------------------------------------
 
 struct RealScene {
   std::string file;
   std::size_t volumes, segmentations, properties;
-  std::string refused; ///< part of the line; empty: renders
+  std::string refused; ///< part of the error; empty: can be rendered
 };
 
 TEST_F(InspectCommand, DescribesRealScenes) {
   const std::filesystem::path root(FENESTRA_DATA);
   if (!std::filesystem::exists(root))
-    GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
+    GTEST_SKIP() << "real data not found: " << FENESTRA_DATA;
   const std::string slicer = "slicer_scenes/";
   for (const RealScene& scene : std::vector<RealScene>{
            {slicer + "slicer_5_2_written/chest.mrb", 1, 1, 1, ""},
@@ -194,13 +191,13 @@ TEST_F(InspectCommand, DescribesRealScenes) {
            {slicer + "slicerrt_scenes/Scenes/TinyPatient_ExternalBeamPlanning_Scene.mrml", 2, 1, 0,
             "has several volumes"},
            {"spl_knee_atlas_labels/KneeAtlas-2015Sept-Slicer4-4Version.mrml", 1, 1, 0,
-            "which is not there"},
-           {slicer + "slicer_core/volRender.mrml", 0, 0, 1, "holds no scalar volume"},
-           {slicer + "slicer_core/vol_and_cube.mrml", 1, 0, 0, "which is not there"},
+            "which does not exist"},
+           {slicer + "slicer_core/volRender.mrml", 0, 0, 1, "has no scalar volume"},
+           {slicer + "slicer_core/vol_and_cube.mrml", 1, 0, 0, "which does not exist"},
            {slicer + "slicer_core/restoreSceneSnapshotCompareView.mrml", 0, 0, 0,
-            "holds no scalar volume"},
-           {slicer + "vr_properties/US-VrPresets.mrml", 0, 0, 8, "holds no scalar volume"},
-           {slicer + "vr_properties/SM_presets.mrml", 0, 0, 2, "holds no scalar volume"},
+            "has no scalar volume"},
+           {slicer + "vr_properties/US-VrPresets.mrml", 0, 0, 8, "has no scalar volume"},
+           {slicer + "vr_properties/SM_presets.mrml", 0, 0, 2, "has no scalar volume"},
        }) {
     SCOPED_TRACE(scene.file);
     const std::string file = (root / scene.file).string();
@@ -220,14 +217,14 @@ TEST_F(InspectCommand, DescribesRealScenes) {
 TEST_F(InspectCommand, ListsDicomSeries) {
   const auto series = std::filesystem::path(FENESTRA_DATA) / "head_ct_slicer_dicom" / "dicom";
   if (!std::filesystem::exists(series))
-    GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
+    GTEST_SKIP() << "real data not found: " << FENESTRA_DATA;
   const Json report = inspect({series.string()});
   EXPECT_EQ(report["kind"], "dicom");
   ASSERT_EQ(report["series"].size(), 1u);
   EXPECT_EQ(report["series"][0]["files"], 93);
   EXPECT_EQ(report["series"][0]["modality"], "CT");
   EXPECT_EQ(report["render"]["volume"]["size"], Json({64, 64, 93}));
-  EXPECT_EQ(report["render"]["look"]["name"], "ct-soft") << "its air is at 0";
+  EXPECT_EQ(report["render"]["look"]["name"], "ct-soft") << "a CT with air at 0";
   EXPECT_EQ(report["segmentations"], Json::array());
   const Json other = inspect({series.string(), "--volume", "none"});
   EXPECT_TRUE(other["render"].is_null());
@@ -238,7 +235,7 @@ TEST_F(InspectCommand, DescribesSceneWrittenBySlicer) {
   const auto file = std::filesystem::path(FENESTRA_DATA) / "slicer_scenes" / "slicer_5_2_written" /
                     "chest_transformed_cropped.mrb";
   if (!std::filesystem::exists(file))
-    GTEST_SKIP() << "no real data at " << FENESTRA_DATA;
+    GTEST_SKIP() << "real data not found: " << FENESTRA_DATA;
   const Json report = inspect({file.string()});
   EXPECT_EQ(report["version"], "Slicer 5.2.2 31383");
   const Json& render = report["render"];

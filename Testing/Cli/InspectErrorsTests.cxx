@@ -1,10 +1,10 @@
-// `fenestra inspect` of what a render refuses: damaged, ambiguous and hostile inputs.
+// `fenestra inspect` of inputs that cannot be rendered: damaged, ambiguous and hostile ones.
 
 #include "InspectTesting.h"
 
 #include <sstream>
 
-namespace fenestra::InspectRefusalsTests {
+namespace fenestra::InspectErrorsTests {
 namespace {
 
 std::vector<std::string> splitLines(const std::string& text) {
@@ -15,7 +15,7 @@ std::vector<std::string> splitLines(const std::string& text) {
   return all;
 }
 
-TEST_F(InspectCommand, ReportsWhyRenderWouldRefuse) {
+TEST_F(InspectCommand, ReportsTheErrorOfARender) {
   struct Case {
     std::string name, nodes, line;
   };
@@ -23,7 +23,7 @@ TEST_F(InspectCommand, ReportsWhyRenderWouldRefuse) {
     <VolumeArchetypeStorage id="store1" name="s" fileName="volume.nrrd"/>
     <Volume id="vol1" name="CT" references="storage:store1;transform:t1;"/>)";
   for (const Case& c : std::vector<Case>{
-           {"no volume", segmentationNode, "holds no scalar volume"},
+           {"no volume", segmentationNode, "has no scalar volume"},
            {"technique",
             volumeNode + settingNodes + R"(<View id="view1" name="V" layoutName="1" active="true"
               raycastTechnique="MaximumIntensityProjection"/>)",
@@ -31,7 +31,7 @@ TEST_F(InspectCommand, ReportsWhyRenderWouldRefuse) {
            {"missing file",
             R"(<VolumeArchetypeStorage id="s" fileName="gone.nrrd"/>
                <Volume id="vol1" name="CT" references="storage:s;"/>)",
-            "gone.nrrd, which is not there"},
+            "gone.nrrd, which does not exist"},
            {"warp", plainVolume + R"(<BSplineTransform id="t1" name="Warp"/>)", "is not linear"},
            {"camera", plainVolume + R"(<Camera id="c" name="Eye" position="1 2" focalPoint="0 0 0"
               viewUp="0 0 1"/>)",
@@ -47,7 +47,7 @@ TEST_F(InspectCommand, ReportsWhyRenderWouldRefuse) {
   }
 }
 
-TEST_F(InspectCommand, NamesTheDamagedPart) {
+TEST_F(InspectCommand, NamesTheDamagedNode) {
   folder.write("cut.seg.nrrd", makeSegments().substr(0, makeSegments().size() - 9));
   const std::string cut = R"(<SegmentationStorage id="store3" fileName="cut.seg.nrrd"/>
     <Segmentation id="seg2" name="Cut" references="storage:store3;"/>
@@ -71,11 +71,11 @@ TEST_F(InspectCommand, NamesTheDamagedPart) {
   EXPECT_NE(text.find("gone away.nrrd (missing)"), std::string::npos) << text;
 }
 
-/// HDF5 file of symbols in a tree of five levels; the `children` entries of each node all point to
-/// one node below: a walk meets children^5 leaves.
+/// HDF5 file with a symbol table tree of five levels. All `children` entries of a node point to the
+/// same node, so a naive traversal visits children^5 leaves.
 std::string makeExponentialTree(std::size_t children) {
   using namespace std::string_literals;
-  const auto number = [](std::uint64_t value, std::size_t size) { // little-endian, as here
+  const auto number = [](std::uint64_t value, std::size_t size) { // little-endian
     return std::string(reinterpret_cast<const char*>(&value), size);
   };
   constexpr std::size_t root = 72, firstNode = 200;
@@ -83,7 +83,7 @@ std::string makeExponentialTree(std::size_t children) {
   const std::size_t leaf = firstNode + 5 * nodeSize, heap = leaf + 8 + 4 * 40;
   std::string file = "\x89HDF\r\n\x1a\n"s + std::string(5, '\0') + "\x08\x08" +
                      std::string(49, '\0') + number(root, 8);
-  file += "\1"s + std::string(7, '\0') + number(24, 4) + number(0, 4); // header of the root
+  file += "\1"s + std::string(7, '\0') + number(24, 4) + number(0, 4); // root group
   file += number(0x11, 2) + number(16, 2) + number(0, 4) + number(firstNode, 8) + number(heap, 8);
   for (std::size_t level = 0; level < 5; ++level) {
     const std::size_t begin = firstNode + level * nodeSize;
@@ -100,8 +100,8 @@ std::string makeExponentialTree(std::size_t children) {
          number('a', 8) + number(0, 8);
 }
 
-TEST_F(InspectCommand, RefusesHdf5TreeThatFansOut) {
-  const std::string line = "t.h5: is damaged, truncated or no transform of ITK's; save it again";
+TEST_F(InspectCommand, RejectsAnHdf5TreeOfExponentialSize) {
+  const std::string line = "t.h5: is damaged, truncated or not an ITK transform; save it again";
   writeScene(volumeNode + R"(<LinearTransformStorage id="ts" fileName="t.h5"/>
     <LinearTransform id="t1" references="storage:ts;"/>)");
   folder.write("t.h5", makeExponentialTree(40));
@@ -128,33 +128,32 @@ TEST_F(InspectCommand, PrintsUntrustedNamesOnOneLine) {
     EXPECT_EQ(std::count_if(line.begin(), line.end(), [](char c) { return c >= 0 && c < ' '; }), 0);
     EXPECT_FALSE(line.ends_with(' ')) << line;
   }
-  EXPECT_LT(splitLines(text).size(), 60u) << "300 models are a number";
+  EXPECT_LT(splitLines(text).size(), 60u) << "300 models are summarized in one line";
   EXPECT_NE(text.find("Model (300)"), std::string::npos) << text;
   EXPECT_EQ(report["others"]["Model"], 300);
 }
 
-TEST_F(InspectCommand, RefusesInputThatIsNoVolumeOrScene) {
+TEST_F(InspectCommand, RejectsInputThatIsNotAVolumeOrScene) {
   folder.write("text.nrrd", "These are\nonly words.\n");
   folder.write("text.mrml", "<html/>");
   folder.write("text.mrb", "words");
   const auto inspectArguments = [](const std::string& file) { return Arguments{"inspect", file}; };
   expectErrors(
       {
-          {"nothing", {"inspect"}, 2, "INPUT: is missing"},
-          {"missing", inspectArguments("missing.nrrd"), 3, "missing.nrrd: there is no such file"},
-          {"missing scene", inspectArguments("missing.mrml"), 3,
-           "missing.mrml: there is no such file"},
+          {"nothing", {"inspect"}, 2, "INPUT: missing"},
+          {"missing", inspectArguments("missing.nrrd"), 3, "missing.nrrd: no such file"},
+          {"missing scene", inspectArguments("missing.mrml"), 3, "missing.mrml: no such file"},
           {"words", inspectArguments("text.nrrd"), 3, "text.nrrd: is not a NRRD file"},
           {"web page", inspectArguments("text.mrml"), 3, "text.mrml: has no MRML element"},
-          {"no archive", inspectArguments("text.mrb"), 3, "text.mrb: "},
+          {"not an archive", inspectArguments("text.mrb"), 3, "text.mrb: "},
           {"no images", inspectArguments("."), 3, ".: "},
-          {"switch with a value", {"inspect", "volume.nrrd", "--json=1"}, 2, "--json: is a switch"},
-          {"volume of one", {"inspect", "volume.nrrd", "--volume", "CT"}, 2, "--volume: only a"},
-          {"flag of another", {"inspect", "volume.nrrd", "--seed", "1"}, 2, "no such flag"},
-          {"misspelt", {"inspct", "volume.nrrd"}, 2, "did you mean fenestra inspect?"},
+          {"switch with a value", {"inspect", "volume.nrrd", "--json=1"}, 2, "--json: takes no"},
+          {"volume of one", {"inspect", "volume.nrrd", "--volume", "CT"}, 2, "--volume: only"},
+          {"other option", {"inspect", "volume.nrrd", "--seed", "1"}, 2, "--seed: unknown"},
+          {"misspelled", {"inspct", "volume.nrrd"}, 2, "did you mean fenestra inspect?"},
       },
       folder.path());
 }
 
 } // namespace
-} // namespace fenestra::InspectRefusalsTests
+} // namespace fenestra::InspectErrorsTests

@@ -1,5 +1,5 @@
 #pragma once
-// Small scenes for `fenestra inspect`, and what it says of them.
+// Small scenes for `fenestra inspect`, and helpers that parse its output.
 
 #include "CommandTesting.h"
 
@@ -36,7 +36,7 @@ protected:
     folder.write("scene.mrml", "<MRML version=\"Slicer 5.6.2 32448\">" + nodes + "</MRML>");
   }
 
-  /// JSON of an inspection that must succeed, with a text that is not empty.
+  /// JSON of an inspection that must succeed. Also keeps the plain output in `text`.
   Json inspect(Arguments arguments) const {
     arguments.insert(arguments.begin(), "inspect");
     text = run(arguments, folder.path()).out;
@@ -55,8 +55,8 @@ protected:
     return inspect(arguments);
   }
 
-  /// Expects a render to be refused in the words of the inspection, or to succeed if it reports no
-  /// refusal.
+  /// Expects that a render fails with the error that the inspection predicts, or succeeds if it
+  /// predicts none.
   void expectSameAsRender(const Json& report, const std::string& input) const {
     const Outcome rendered =
         run({input, "--size", "4x4", "--samples", "1", "--output", "a.png"}, folder.path());
@@ -66,7 +66,7 @@ protected:
       EXPECT_EQ(rendered.err, "fenestra: " + report["refused"].get<std::string>() + "\n");
   }
 
-  mutable std::string text; ///< output of the last inspection
+  mutable std::string text; ///< plain output of the last inspection
 };
 
 } // namespace fenestra

@@ -1,4 +1,4 @@
-// Materials on the command line: what they change of a picture, what they leave, and refusals.
+// Materials on the command line: their effect on an image, and errors.
 
 #include "CommandTesting.h"
 #include "files/images/ImageReader.h"
@@ -23,7 +23,7 @@ bool isColorChannel(const std::string& channel) {
                              : channel.starts_with("error.") || channel.starts_with("albedo.");
 }
 
-/// Expects that materials change colours of the picture, and nothing else in it by a bit.
+/// Expects that materials change the color channels, and leave all other channels bit-identical.
 void expectOnlyColors(Arguments arguments, const std::string& materials = "library") {
   const TemporaryFolder folder;
   arguments.insert(arguments.end(), {"--size", "40x40", "--samples", "2"});
@@ -37,7 +37,7 @@ void expectOnlyColors(Arguments arguments, const std::string& materials = "libra
     EXPECT_TRUE(tinted.find(name)) << name;
   for (const auto& [name, plane] : none.channels)
     if (isColorChannel(name))
-      EXPECT_NE(tinted.channels.at(name), plane) << name << " is not tinted";
+      EXPECT_NE(tinted.channels.at(name), plane) << name << " is unchanged";
     else
       EXPECT_EQ(tinted.channels.at(name), plane) << name;
   const auto stats = nlohmann::json::parse(readBytes(folder / "s.json"));
@@ -57,13 +57,13 @@ void expectOnlyColors(Arguments arguments, const std::string& materials = "libra
   }
 }
 
-TEST(Materials, ChangeColoursAloneOfTheKnee) {
+TEST(Materials, ChangeOnlyColorsOfTheKnee) {
   const std::string knee = (kneeFolder() / "knee").string();
   expectOnlyColors({knee + "/knee.nrrd", "--segmentation", knee + "/knee.seg.nrrd", "--focus",
                     "FemoralCartilage", "--transfer", knee + "/knee.vp.json"});
 }
 
-TEST(Materials, ChangeColoursAloneOfTheKneeWithContrast) {
+TEST(Materials, ChangeOnlyColorsOfTheKneeWithContrast) {
   const std::string knee = (kneeFolder() / "knee").string();
   expectOnlyColors({knee + "/knee.nrrd", "--segmentation", knee + "/knee.seg.nrrd", "--focus",
                     "FemoralCartilage", "--transfer", knee + "/knee.vp.json"},
@@ -74,30 +74,30 @@ class RealMaterials : public ::testing::Test {
 protected:
   void SetUp() override {
     if (!std::filesystem::exists(data))
-      GTEST_SKIP() << data << " is absent";
+      GTEST_SKIP() << data << " does not exist";
   }
 };
 
-TEST_F(RealMaterials, ChangeColoursAloneOfAnAbdomen) {
+TEST_F(RealMaterials, ChangeOnlyColorsOfAnAbdomen) {
   const std::string folder = (data / "abdomen_ct_totalseg").string();
   expectOnlyColors({folder + "/ct.nii.gz", "--segmentation", folder + "/seg_multiorgan.nii.gz",
                     "--focus", "liver"});
 }
 
-TEST_F(RealMaterials, ChangeColoursAloneOfAKneeAtlas) {
+TEST_F(RealMaterials, ChangeOnlyColorsOfAKneeAtlas) {
   const std::string folder = (data / "spl_knee_atlas_labels").string();
   expectOnlyColors({folder + "/SYNTHETIC_mr_256.nii.gz", "--segmentation",
                     folder + "/seg_256.nii.gz", "--labels", folder + "/knee.ctbl", "--focus",
                     "83"});
 }
 
-TEST_F(RealMaterials, ChangeColoursAloneOfOverlappingLayers) {
+TEST_F(RealMaterials, ChangeOnlyColorsOfOverlappingLayers) {
   const std::string folder = (data / "slicerio_segnrrd").string();
   expectOnlyColors({folder + "/CTChest4.nrrd", "--segmentation",
                     folder + "/SegmentationOverlapping.seg.nrrd", "--focus", "ribs"});
 }
 
-/// The volume and its segments, of which "Bone, left" has a voxel and "Void" none.
+/// Renders of the volume with its segments "Bone, left" (one voxel) and "Void" (empty).
 class MaterialsCommand : public SmallScene {
 protected:
   static Arguments makeArguments(const Arguments& more) {
@@ -108,17 +108,17 @@ protected:
   }
 };
 
-TEST_F(MaterialsCommand, NeedNoFocusAndAreTold) {
+TEST_F(MaterialsCommand, NeedNoFocusAndAppearInTheStatusLine) {
   const Outcome outcome =
       run(makeArguments({"--materials", "library", "--output", "a.png"}), folder.path());
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
   EXPECT_EQ(outcome.statusLine,
-            "look: by the volume's range; light: cinema; materials: library, 1 colour");
+            "look: by the volume's range; lights: cinema; materials: library, 1 color");
 }
 
-/// "Bone, left" is known, and "Void" is not.
-TEST_F(MaterialsCommand, AKnownFocusIsSetOffByDefault) {
+/// The library has a material for "Bone, left", but none for "Void".
+TEST_F(MaterialsCommand, DefaultIsAutoIfTheMaterialOfTheFocusIsKnown) {
   const auto renderChannels = [&](const Arguments& more) {
     return renderImage(makeArguments(more), folder.path()).channels;
   };
@@ -156,7 +156,7 @@ TEST_F(MaterialsCommand, FilesAndChangesOverrideTheLibrary) {
   EXPECT_LT(albedo({"--materials", "library", "--material", "1: color=#00ff00"})[0], library[0]);
 }
 
-TEST_F(MaterialsCommand, ContextOfAFileIsAppliedAroundAFocus) {
+TEST_F(MaterialsCommand, ContextOfAFileAppliesAroundAFocus) {
   const std::string context = R"("context": {"saturation": 0.7, "lightness": 0.2}})";
   folder.write("given.json", R"({"version": 1, )" + context);
   folder.write("contrast.json", R"({"version": 1, "contrast": true, )" + context);
@@ -176,12 +176,12 @@ TEST_F(MaterialsCommand, ContextOfAFileIsAppliedAroundAFocus) {
   }
   EXPECT_EQ(renderContrast("given.json").at("focusLightness"), 0.0);
   expectErrors({{"no focus", makeArguments({"--materials", "given.json"}), 3,
-                 "given.json: context: is what is not focus; add --focus, or leave it out"}},
+                 "given.json: context: needs a focus; add --focus, or remove this member"}},
                folder.path());
 }
 
-/// A segment that is not clipped stands where the clip removes the rest.
-TEST_F(MaterialsCommand, MatterCanBeDenserAndStandThroughTheClip) {
+/// The clip removes everything but a segment with clip=no.
+TEST_F(MaterialsCommand, DensityAndClippingCanBeSetPerSegment) {
   folder.write("dense.json",
                R"({"version": 1, "segments":
                    [{"match": {"names": ["bone*"]}, "material": "bone", "density": 8}]})");
@@ -208,10 +208,10 @@ TEST_F(MaterialsCommand, MatterCanBeDenserAndStandThroughTheClip) {
   EXPECT_GT(sumAlphaClipped({"--material", "A: clip=no"}), 0.0F);
 }
 
-TEST_F(MaterialsCommand, RefusesInOneLine) {
+TEST_F(MaterialsCommand, ErrorsAreOneLine) {
   folder.write("broken.json", R"({"version": 1, "materials": {"a": {"colour": "#ffffff"}}})");
   const auto refusal = [](Arguments more, int status, const std::string& text) {
-    return ExcludedOptions{text, makeArguments(more), status, text};
+    return ExpectedError{text, makeArguments(more), status, text};
   };
   const Arguments on = {"--materials", "library"};
   const auto change = [&](const std::string& text, const std::string& message) {
@@ -222,19 +222,19 @@ TEST_F(MaterialsCommand, RefusesInOneLine) {
           {"no labels",
            {"volume.nrrd", "--materials", "library"},
            2,
-           "--materials: needs --segmentation FILE with the segments to colour"},
+           "--materials: requires --segmentation FILE"},
           {"smoothing",
            {"volume.nrrd", "--labelsmoothing", "1"},
            2,
-           "--labelsmoothing: needs a focus or materials; add --focus or --materials"},
-          refusal({"--materials", "none"}, 2, "--segmentation: only --focus, --materials and"),
-          refusal({"--material", "A: g=0"}, 2, "--material: changes what --materials gives"),
+           "--labelsmoothing: requires a focus or materials; add --focus or --materials"},
+          refusal({"--materials", "none"}, 2, "--segmentation: used only with"),
+          refusal({"--material", "A: g=0"}, 2, "--material: requires --materials"),
           refusal({"--materials", "liver"}, 3,
-                  "liver: no such file, and no preset of that name; --materials takes none, "
+                  "liver: no such file or preset; --materials takes none, "
                   "auto, library, or a file"),
           refusal({"--materials", "broken.json"}, 3,
                   "broken.json: materials.a: unknown key \"colour\""),
-          change("A", "must name a segment and what to change"),
+          change("A", "must give a segment and what to change"),
           change("A: colour=#ffffff", "--material A: unknown key \"colour\""),
           change("A: color=red", "--material A: color"),
           change("C: color=#ffffff", "has no segment \"C\"; it has A (Bone, left), B (Void)"),
@@ -242,8 +242,8 @@ TEST_F(MaterialsCommand, RefusesInOneLine) {
       folder.path());
 }
 
-/// Materials need no focus, use the scene's segmentation, and may not name a file.
-TEST_F(MaterialsCommand, StoredMaterialsReproduceThePicture) {
+/// Stored materials need no focus, apply to the scene's segmentation, and must not name a file.
+TEST_F(MaterialsCommand, StoredMaterialsReproduceTheImage) {
   const auto write = [&](const std::string& name, const std::string& stored) {
     folder.write(name, R"(<MRML version="Slicer 5.6.2 32448">
         <Volume id="v" name="ramp" references="storage:vs;"/>
@@ -291,14 +291,14 @@ TEST_F(MaterialsCommand, StoredMaterialsReproduceThePicture) {
            "Bone, left: material=bone, color=#ff0000", "--material", "B: priority=2"})));
   EXPECT_EQ(renderScene({"library.mrml", "--materials", "library"}),
             renderScene(makeArguments({"--materials", "library"})))
-      << "given materials replace the stored changes, too";
+      << "--materials also replaces the stored changes of segments";
   EXPECT_EQ(renderScene({"library.mrml", "--materials", "none"}), none);
   EXPECT_EQ(
-      renderScene({"file.mrml"}, "materials \"mine.json\" names a file, which a scene may not"),
+      renderScene({"file.mrml"}, "materials \"mine.json\" names a file, which a scene must not"),
       none);
 }
 
-TEST_F(MaterialsCommand, AServerTakesThemAsAList) {
+TEST_F(MaterialsCommand, ServeAcceptsAListOfChanges) {
   Process process({"serve", "volume.nrrd", "--segmentation", "segments.seg.nrrd", "--materials",
                    "library", "--size", "8x8", "--samples", "2", "--output", "a.exr"},
                   folder.path());

@@ -1,17 +1,17 @@
-// Wrong usage: exit status 2 and one line that names the flag and the remedy.
+// Wrong usage: exit status 2 and one line that names the option and the fix.
 
 #include "CommandTesting.h"
 
 #include <regex>
 #include <unistd.h>
 
-namespace fenestra::FlagsCommandTests {
+namespace fenestra::OptionsCommandTests {
 namespace {
 
-class FlagsCommand : public SmallScene {
+class OptionsCommand : public SmallScene {
 protected:
-  /// Refusal of `volume.nrrd flags…` as wrong usage.
-  static ExcludedOptions refusal(Arguments flags, const std::string& text) {
+  /// Usage error of `fenestra volume.nrrd …` with these options.
+  static ExpectedError refusal(Arguments flags, const std::string& text) {
     std::string name;
     for (const std::string& flag : flags)
       name += flag + " ";
@@ -20,51 +20,51 @@ protected:
   }
 };
 
-TEST_F(FlagsCommand, RefusesUnknownArgumentsAndSuggestsTheNearest) {
+TEST_F(OptionsCommand, RejectsUnknownArgumentsAndSuggestsSimilarOnes) {
   expectErrors(
       {
-          {"nothing", {}, 2, "INPUT: is missing"},
-          {"render alone", {"render"}, 2, "INPUT: is missing"},
-          {"render misspelt", {"rendr", "volume.nrrd"}, 2, "did you mean fenestra render?"},
-          {"compare misspelt", {"comprae", "a", "b"}, 2, "did you mean fenestra compare?"},
-          {"two volumes", {"volume.nrrd", "other.nrrd"}, 2, "'other.nrrd': one argument too many"},
-          refusal({"--sample", "3"}, "--sample: no such flag; did you mean --samples?"),
+          {"nothing", {}, 2, "INPUT: missing"},
+          {"only render", {"render"}, 2, "INPUT: missing"},
+          {"render misspelled", {"rendr", "volume.nrrd"}, 2, "did you mean fenestra render?"},
+          {"compare misspelled", {"comprae", "a", "b"}, 2, "did you mean fenestra compare?"},
+          {"two volumes", {"volume.nrrd", "other.nrrd"}, 2, "'other.nrrd': unexpected argument"},
+          refusal({"--sample", "3"}, "--sample: unknown option; did you mean --samples?"),
           refusal({"--smaples", "3"}, "did you mean --samples?"),
           refusal({"--Output=a.png"}, "did you mean --output?"),
-          refusal({"-output", "a.png"}, "-output: no such flag; did you mean --output?"),
-          refusal({"--zzz"}, "--zzz: no such flag (fenestra render --help"),
-          refusal({"-s", "3"}, "-s: no such flag"),
-          {"flag of another command", {"compare", "a", "b", "--seed", "1"}, 2, "no such flag"},
+          refusal({"-output", "a.png"}, "-output: unknown option; did you mean --output?"),
+          refusal({"--zzz"}, "--zzz: unknown option (see fenestra render --help"),
+          refusal({"-s", "3"}, "-s: unknown option"),
+          {"option of render", {"compare", "a", "b", "--seed", "1"}, 2, "--seed: unknown option"},
       },
       folder.path());
 }
 
-TEST_F(FlagsCommand, RefusesFlagsNotYetImplemented) {
-  std::vector<ExcludedOptions> refusals;
-  refusals.push_back(refusal({"--resume", "1"}, "--resume: no such flag"));
+TEST_F(OptionsCommand, RejectsUnimplementedOptions) {
+  std::vector<ExpectedError> refusals;
+  refusals.push_back(refusal({"--resume", "1"}, "--resume: unknown option"));
   refusals.push_back(
       refusal({"--segmentation", "segments.seg.nrrd", "--focus", "A", "--boundary", "smooth"},
               "--boundary: expected spline or exact, got 'smooth'"));
   expectErrors(refusals, folder.path());
 }
 
-TEST_F(FlagsCommand, RefusesMissingAndRepeatedValues) {
+TEST_F(OptionsCommand, RejectsMissingAndRepeatedValues) {
   expectErrors(
       {
-          refusal({"--samples"}, "--samples: its value is missing; write --samples N"),
-          refusal({"--samples", "--seed", "3"}, "--samples: its value is missing"),
-          refusal({"--samples="}, "--samples: its value is missing"),
-          refusal({"--samples", ""}, "--samples: its value is empty"),
-          refusal({"--samples", "--help="}, "--samples: its value is missing"),
-          refusal({"--echo=1"}, "--echo: is a switch; write it without a value"),
-          refusal({"--", "--echo"}, "'--echo': one argument too many after INPUT"),
-          refusal({"--samples", "3", "--samples", "4"}, "--samples: is given more than once"),
+          refusal({"--samples"}, "--samples: value is missing; write --samples N"),
+          refusal({"--samples", "--seed", "3"}, "--samples: value is missing"),
+          refusal({"--samples="}, "--samples: value is missing"),
+          refusal({"--samples", ""}, "--samples: value is empty"),
+          refusal({"--samples", "--help="}, "--samples: value is missing"),
+          refusal({"--echo=1"}, "--echo: takes no value"),
+          refusal({"--", "--echo"}, "'--echo': unexpected argument after INPUT"),
+          refusal({"--samples", "3", "--samples", "4"}, "--samples: given more than once"),
       },
       folder.path());
 }
 
-TEST_F(FlagsCommand, RefusesNumbersOutOfRange) {
-  std::vector<ExcludedOptions> refusals;
+TEST_F(OptionsCommand, RejectsNumbersOutOfRange) {
+  std::vector<ExpectedError> refusals;
   const auto refuseAll = [&](const std::string& flag, const Arguments& values) {
     for (const std::string& value : values)
       refusals.push_back(refusal({flag, value}, flag + ": "));
@@ -94,8 +94,8 @@ TEST_F(FlagsCommand, RefusesNumbersOutOfRange) {
   expectErrors(refusals, folder.path());
 }
 
-TEST_F(FlagsCommand, RefusesAnglesAndPlanesOutOfRange) {
-  std::vector<ExcludedOptions> refusals;
+TEST_F(OptionsCommand, RejectsAnglesAndPlanesOutOfRange) {
+  std::vector<ExpectedError> refusals;
   for (const char* angle : {"0", "180", "-30", "nan", "inf", "wide"})
     refusals.push_back(
         refusal({"--projection", "perspective", "--angle", angle}, "--angle: expected a number"));
@@ -104,20 +104,20 @@ TEST_F(FlagsCommand, RefusesAnglesAndPlanesOutOfRange) {
   expectErrors(refusals, folder.path());
 }
 
-TEST_F(FlagsCommand, RefusesPictureLargerThanMemory) {
+TEST_F(OptionsCommand, RejectsAnImageLargerThanMemory) {
   const double memory =
       static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGESIZE));
   if (memory > 60e9)
-    GTEST_SKIP() << "this machine has memory for the largest picture";
+    GTEST_SKIP() << "this machine has enough memory for the largest image";
   expectErrors({{"largest", {"volume.nrrd", "--size", "16384x16384"}, 4, "GB of memory"}},
                folder.path());
 }
 
-TEST_F(FlagsCommand, RefusesUnknownWords) {
+TEST_F(OptionsCommand, RejectsUnknownWords) {
   expectErrors(
       {
           refusal({"--view", "top"}, "--view: expected anterior"),
-          refusal({"--view", "auto"}, "--view: auto looks for a focus; add --focus"),
+          refusal({"--view", "auto"}, "--view: auto requires a focus; add --focus"),
           refusal({"--projection", "fisheye"},
                   "--projection: expected orthographic or perspective"),
           refusal({"--clip", "drill"},
@@ -128,7 +128,7 @@ TEST_F(FlagsCommand, RefusesUnknownWords) {
       folder.path());
 }
 
-TEST_F(FlagsCommand, RefusesContradictions) {
+TEST_F(OptionsCommand, RejectsContradictions) {
   const auto withFocus = [](Arguments flags, const std::string& text) {
     const Arguments focus = {"--segmentation", "segments.seg.nrrd", "--focus", "A"};
     flags.insert(flags.begin(), focus.begin(), focus.end());
@@ -137,42 +137,42 @@ TEST_F(FlagsCommand, RefusesContradictions) {
   expectErrors(
       {
           refusal({"--view", "left", "--position", "1,2,3"}, "--view and --position contradict"),
-          refusal({"--plane", "0,0,0,0,0,1"}, "--plane: only --clip plane uses it"),
-          refusal({"--clip", "none", "--plane", "0,0,0,0,0,1"}, "--plane: only --clip plane"),
-          refusal({"--clip", "plane"}, "--clip: plane needs --plane OX,OY,OZ,NX,NY,NZ"),
-          refusal({"--clip", "surface"}, "--clip: surface needs a focus; add --focus"),
-          refusal({"--clip", "cutaway"}, "--clip: cutaway needs a focus; add --focus"),
+          refusal({"--plane", "0,0,0,0,0,1"}, "--plane: used only with --clip plane"),
+          refusal({"--clip", "none", "--plane", "0,0,0,0,0,1"}, "--plane: used only with"),
+          refusal({"--clip", "plane"}, "--clip: plane requires --plane OX,OY,OZ,NX,NY,NZ"),
+          refusal({"--clip", "surface"}, "--clip: surface requires a focus; add --focus"),
+          refusal({"--clip", "cutaway"}, "--clip: cutaway requires a focus; add --focus"),
           refusal({"--projection", "perspective", "--scale", "10"}, "--scale: only for"),
           refusal({"--angle", "20"}, "--angle: only for --projection perspective"),
-          refusal({"--focus", "A"}, "--focus: needs --segmentation FILE"),
+          refusal({"--focus", "A"}, "--focus: requires --segmentation FILE"),
           refusal({"--segmentation", "segments.seg.nrrd"},
-                  "--segmentation: only --focus, --materials and --preset"),
-          withFocus({"--clip", "none", "--smoothing", "1"}, "--smoothing: only --clip surface"),
-          withFocus({"--clip", "cutaway", "--smoothing", "1"}, "--smoothing: only --clip surface"),
+                  "--segmentation: used only with --focus, --materials or --preset"),
+          withFocus({"--clip", "none", "--smoothing", "1"}, "--smoothing: used only with"),
+          withFocus({"--clip", "cutaway", "--smoothing", "1"}, "--smoothing: used only with"),
           refusal({"--controlpoints", "9"},
-                  "--controlpoints: only --clip surface and ghost use it"),
-          refusal({"--clip", "hole"}, "--clip: hole needs a focus; add --focus"),
-          refusal({"--clip", "ghost"}, "--clip: ghost needs a focus; add --focus"),
-          withFocus({"--hole", "box"}, "--hole: only --clip hole uses it; add --clip hole"),
-          withFocus({"--holemargin", "2"}, "--holemargin: only --clip hole uses it"),
+                  "--controlpoints: used only with --clip surface and ghost"),
+          refusal({"--clip", "hole"}, "--clip: hole requires a focus; add --focus"),
+          refusal({"--clip", "ghost"}, "--clip: ghost requires a focus; add --focus"),
+          withFocus({"--hole", "box"}, "--hole: used only with --clip hole; add that"),
+          withFocus({"--holemargin", "2"}, "--holemargin: used only with --clip hole"),
           withFocus({"--clip", "hole", "--holemargin", "-1"}, "--holemargin: "),
           withFocus({"--clip", "hole", "--hole", "cone"}, "--hole: "),
-          withFocus({"--ghost", "0.2"}, "--ghost: only --clip ghost uses it"),
+          withFocus({"--ghost", "0.2"}, "--ghost: used only with --clip ghost"),
           withFocus({"--clip", "ghost", "--ghost", "1.5"}, "--ghost: "),
-          withFocus({"--clip", "none", "--offset", "2"}, "--offset: without a clip"),
-          withFocus({"--clip", "none", "--soft", "2"}, "--soft: without a clip"),
-          refusal({"--margin", "2"}, "--margin: needs a focus; add --focus"),
-          refusal({"--labelsmoothing", "1"}, "--labelsmoothing: needs a focus or materials"),
-          refusal({"--contextdensity", "0.5"}, "--contextdensity: needs a focus"),
-          refusal({"--contextsaturation", "0.5"}, "--contextsaturation: needs a focus"),
-          withFocus({"--margin", "1,2,3"}, "--margin: give one for all segments of --focus"),
+          withFocus({"--clip", "none", "--offset", "2"}, "--offset: has no effect without a clip"),
+          withFocus({"--clip", "none", "--soft", "2"}, "--soft: has no effect without a clip"),
+          refusal({"--margin", "2"}, "--margin: requires a focus; add --focus"),
+          refusal({"--labelsmoothing", "1"}, "--labelsmoothing: requires a focus or materials"),
+          refusal({"--contextdensity", "0.5"}, "--contextdensity: requires a focus"),
+          refusal({"--contextsaturation", "0.5"}, "--contextsaturation: requires a focus"),
+          withFocus({"--margin", "1,2,3"}, "--margin: give one value for all segments of --focus"),
           withFocus({"--margin", "1,x"}, "--margin: "),
           withFocus({"--margin", "2000"}, "--margin: must be from -1000 to 1000 mm"),
-          refusal({"--surface", "a.vtp"}, "--surface: --clip none and plane have none"),
+          refusal({"--surface", "a.vtp"}, "--surface: not available with --clip none and plane"),
           withFocus({"--clip", "none", "--surface", "a.vtp"},
-                    "--surface: --clip none and plane have none"),
+                    "--surface: not available with --clip none and plane"),
           withFocus({"--clip", "plane", "--plane", "0,0,0,0,0,1", "--surface", "a.vtp"},
-                    "--surface: --clip none and plane have none"),
+                    "--surface: not available with --clip none and plane"),
           refusal({"--position", "1,2,3", "--target", "1,2,3"}, "two different points"),
           refusal({"--position", "0,0,9", "--target", "0,0,0", "--up", "0,0,1"},
                   "--up: up must not"),
@@ -182,7 +182,7 @@ TEST_F(FlagsCommand, RefusesContradictions) {
       folder.path());
 }
 
-TEST_F(FlagsCommand, HelpNamesEveryFlagOnStandardOutput) {
+TEST_F(OptionsCommand, HelpListsEveryOptionOnStandardOutput) {
   const std::vector<std::pair<Arguments, Arguments>> commands = {
       {{"--help"},
        {"INPUT",
@@ -246,7 +246,7 @@ TEST_F(FlagsCommand, HelpNamesEveryFlagOnStandardOutput) {
   }
 }
 
-TEST_F(FlagsCommand, VersionIsTheFirstLineForEverySubcommand) {
+TEST_F(OptionsCommand, VersionIsTheFirstLineForEveryCommand) {
   for (const Arguments& arguments : {Arguments{"--version"},
                                      {"render", "--version"},
                                      {"compare", "--version"},
@@ -261,4 +261,4 @@ TEST_F(FlagsCommand, VersionIsTheFirstLineForEverySubcommand) {
 }
 
 } // namespace
-} // namespace fenestra::FlagsCommandTests
+} // namespace fenestra::OptionsCommandTests

@@ -1,4 +1,4 @@
-// Organ presets, and Slicer's presets by name, through the command line.
+// Organ presets, and Slicer's volume property presets by name, on the command line.
 
 #include "CommandTesting.h"
 #include "files/images/ImageReader.h"
@@ -11,7 +11,7 @@
 namespace fenestra::PresetsCommandTests {
 namespace {
 
-/// Runs `fenestra knee.nrrd …` in the knee's folder, at 16x16 pixels and 2 samples a pixel.
+/// Runs `fenestra knee.nrrd …` in the knee's folder, with 16x16 pixels and 2 samples per pixel.
 Outcome renderKnee(const Arguments& arguments, const std::string& input = "knee/knee.nrrd") {
   Arguments all = {input, "--size", "16x16", "--samples", "2", "--output", "preset.exr"};
   all.insert(all.end(), arguments.begin(), arguments.end());
@@ -45,7 +45,7 @@ Image readResult() {
   return readImage(kneeFolder() / "preset.exr");
 }
 
-TEST(PresetsCommand, PresetSetsFocusLookViewAndClip) {
+TEST(PresetsCommand, PresetSetsFocusAppearanceViewAndClip) {
   const auto lines = renderEcho(withSegments({"--preset", "knee-cartilage", "--stats", "s.json"}));
   for (const char* line : {"preset: knee-cartilage", "focus: FemoralCartilage",
                            "focus: TibialCartilage", "transfer: mr-knee", "clip: surface"})
@@ -69,7 +69,7 @@ TEST(PresetsCommand, PresetSetsFocusLookViewAndClip) {
   EXPECT_FALSE(readResult().header.contains("preset"));
 }
 
-TEST(PresetsCommand, FlagsOverrideThePreset) {
+TEST(PresetsCommand, OptionsOverrideThePreset) {
   const auto lines = renderEcho(
       withSegments({"--preset", "knee-cartilage", "--view", "superior", "--clip", "cutaway",
                     "--transfer", "ct-bone", "--focus", "Femur", "--scale", "70"}));
@@ -77,9 +77,10 @@ TEST(PresetsCommand, FlagsOverrideThePreset) {
                            "scale: 70", "lights: studio", "preset: knee-cartilage"})
     EXPECT_TRUE(lines.contains(line)) << line;
   EXPECT_FALSE(hasLine(lines, "boundary"));
-  EXPECT_TRUE(hasLine(lines, "labelsmoothing")); // kept: the focus's own in any mode
+  EXPECT_TRUE(
+      hasLine(lines, "labelsmoothing")); // still the preset's, since every clip mode uses it
   EXPECT_FALSE(lines.contains("focus: FemoralCartilage"));
-  // Likewise with a flag that conflicts with the preset's surface.
+  // An option that conflicts with the preset's --boundary also overrides it.
   const auto others = renderEcho(withSegments(
       {"--preset", "knee-cartilage", "--controlpoints", "20", "--position", "0,300,0"}));
   EXPECT_TRUE(others.contains("clip: surface"));
@@ -87,7 +88,7 @@ TEST(PresetsCommand, FlagsOverrideThePreset) {
   EXPECT_FALSE(hasLine(others, "view"));
 }
 
-/// Slicer's panel passes all flags, most with their default values.
+/// Slicer's panel passes all options, most with their default values.
 TEST(PresetsCommand, DefaultValuesFromSlicerDoNotOverrideThePreset) {
   const auto lines = renderEcho(withSegments(
       {"--preset", "knee-cartilage", "--clip", "auto", "--boundary", "spline", "--controlpoints",
@@ -111,11 +112,11 @@ TEST(PresetsCommand, WithoutSegmentationSetsNeitherFocusNorClip) {
   EXPECT_FALSE(hasLine(lines, "clip"));
 }
 
-/// Clip and look are for another modality: the requested picture is rendered all the same.
-TEST(PresetsCommand, LookForAnotherModalityIsReplacedWithAWarning) {
+/// A preset for another modality still renders, with the default transfer function.
+TEST(PresetsCommand, TransferFunctionForAnotherModalityIsReplacedWithAWarning) {
   const Outcome outcome = renderKnee(withSegments({"--preset", "liver", "--focus", "Femur"}));
   EXPECT_EQ(outcome.status, 0);
-  EXPECT_NE(outcome.err.find("made for CT, which this volume does not seem to be"),
+  EXPECT_NE(outcome.err.find("is for CT, which does not seem to be this volume's modality"),
             std::string::npos)
       << outcome.err;
   EXPECT_EQ(readResult().header.at("look"), "by the volume's range");
@@ -125,7 +126,7 @@ TEST(PresetsCommand, LookForAnotherModalityIsReplacedWithAWarning) {
       "");
 }
 
-TEST(PresetsCommand, PresetMayBeAFile) {
+TEST(PresetsCommand, PresetCanBeAFile) {
   const TemporaryFolder& folder = kneeFolder();
   folder.write("menisci.json", R"({"title": "Menisci", "modality": "MR",
     "focus": {"names": ["menisc*"]}, "flags": {"view": "superior", "transfer":
@@ -136,7 +137,7 @@ TEST(PresetsCommand, PresetMayBeAFile) {
   EXPECT_TRUE(hasLine(lines, "transfer: {"));
 }
 
-TEST(PresetsCommand, RefusesUnknownAndDamagedPresets) {
+TEST(PresetsCommand, RejectsUnknownAndDamagedPresets) {
   const TemporaryFolder& folder = kneeFolder();
   folder.write("values.nrrd", NrrdText{.type = "uint8"}.encode(std::string(64, '\1')));
   folder.write("size.json", R"({"title": "", "focus": {"names": ["a"]}, "modality": "MR",
@@ -147,37 +148,36 @@ TEST(PresetsCommand, RefusesUnknownAndDamagedPresets) {
   const auto refusal = [](const std::string& name, Arguments arguments, int status,
                           const std::string& text) {
     arguments.insert(arguments.begin(), "knee/knee.nrrd");
-    return ExcludedOptions{name, arguments, status, text};
+    return ExpectedError{name, arguments, status, text};
   };
   expectErrors(
       {
           refusal("unknown", withSegments({"--preset", "spleen"}), 3,
-                  "spleen: no such file, and no preset of that name; --preset takes auto, a file, "
-                  "or one of brain-surface, brain-tumour"),
+                  "spleen: no such file or preset; --preset takes auto, a file, "
+                  "or one of brain-surface, brain-tumor"),
           refusal("no such segment", withSegments({"--preset", "liver"}), 3,
-                  "knee.seg.nrrd: --preset liver: none of its segments is one (Femur, Tibia"),
-          refusal("values alone", {"--segmentation", "values.nrrd", "--preset", "liver"}, 3,
-                  "have no names, only values; name them with --labels, or say which are meant "
-                  "with --focus"),
+                  "knee.seg.nrrd: --preset liver: none of its segments found (only Femur, Tibia"),
+          refusal("values without names", {"--segmentation", "values.nrrd", "--preset", "liver"}, 3,
+                  "have no names, only values; add --labels with names, or --focus"),
           refusal("auto by values", {"--segmentation", "values.nrrd", "--preset", "auto"}, 3,
-                  "have no names, only values; name them with --labels, or name a preset"),
-          refusal("auto by nothing", {"--preset", "auto"}, 2, "add --segmentation FILE"),
+                  "have no names, only values; add --labels with names, or name a preset"),
+          refusal("auto without segments", {"--preset", "auto"}, 2, "add --segmentation FILE"),
           refusal("auto unknown", withSegments({"--preset", "auto", "--focus", "Femur"}), 3,
-                  "no preset knows a segment of it (Femur)"),
-          refusal("not a look", withSegments({"--preset", "size.json", "--focus", "1"}), 3,
-                  "size.json: flags: \"size\" is no flag of clipping, view or look"),
+                  "no preset matches a segment (Femur)"),
+          refusal("other option", withSegments({"--preset", "size.json", "--focus", "1"}), 3,
+                  "size.json: flags: \"size\" is not an option of clipping, view or appearance"),
           refusal("not JSON", withSegments({"--preset", "brackets.json"}), 3,
-                  "brackets.json: is not JSON"),
+                  "brackets.json: is not valid JSON"),
           refusal("modality", withSegments({"--preset", "modality.json"}), 3,
                   "modality.json: modality: must be"),
           refusal("twice", withSegments({"--preset", "liver", "--preset", "auto"}), 2,
-                  "--preset: is given more than once"),
+                  "--preset: given more than once"),
       },
       folder.path());
 }
 
-/// Preset on the command line against flags stored with a scene.
-TEST(PresetsCommand, GivenPresetOverridesFlagsStoredInTheScene) {
+/// A preset on the command line overrides only those stored options that it sets itself.
+TEST(PresetsCommand, GivenPresetOverridesOptionsStoredInTheScene) {
   const TemporaryFolder& folder = kneeFolder();
   const std::string scene = readBytes(folder / "knee/knee.mrml");
   const auto writeStored = [&](const std::string& flags) {
@@ -231,7 +231,7 @@ TEST(PresetsCommand, ServeSetsAndResetsThePreset) {
 // ---- Slicer's presets
 // ----------------------------------------------------------------------------
 
-/// Slicer installation for the duration of a test.
+/// Sets SLICER_HOME to a fake Slicer installation during its lifetime.
 class SlicerHome {
 public:
   explicit SlicerHome(const std::filesystem::path& folder) {
@@ -256,7 +256,7 @@ TEST(PresetsCommand, TransferFindsSlicerPresetByName) {
     EXPECT_EQ(readResult().header.at("look"), "CT-Mine");
     const Outcome unknown = renderKnee({"--transfer", "CT-Other"});
     EXPECT_EQ(unknown.status, 3);
-    EXPECT_NE(unknown.err.find("of Slicer CT-Mine"), std::string::npos) << unknown.err;
+    EXPECT_NE(unknown.err.find("in Slicer: CT-Mine"), std::string::npos) << unknown.err;
     EXPECT_NE(unknown.err.find("ct-soft"), std::string::npos) << unknown.err;
   }
   const Outcome gone = renderKnee({"--transfer", "CT-Mine"});
@@ -273,7 +273,7 @@ TEST(PresetsCommand, TransferFindsVolumePropertyOfTheSceneByName) {
   EXPECT_EQ(readResult().channels, before.channels);
   const Outcome unknown = renderKnee({"--transfer", "other property"}, "knee/knee.mrb");
   EXPECT_EQ(unknown.status, 3);
-  EXPECT_NE(unknown.err.find("of the scene knee property"), std::string::npos) << unknown.err;
+  EXPECT_NE(unknown.err.find("in the scene: knee property"), std::string::npos) << unknown.err;
 }
 
 } // namespace

@@ -18,12 +18,12 @@
 namespace fenestra {
 namespace {
 
-/// Time limit of a process, seconds.
+/// Time limit of a process in seconds.
 double timeLimit() {
   return 30.0 * static_cast<double>(testing::sampleDivisor());
 }
 
-/// Content by a separate file position: child and reader would share a position otherwise.
+/// Content of a file. Opens it again, since reading through `file` would move the child's position.
 std::string readContent(int file) {
   const std::ifstream stream("/proc/self/fd/" + std::to_string(file), std::ios::binary);
   return {std::istreambuf_iterator<char>(stream.rdbuf()), {}};
@@ -47,11 +47,11 @@ Process::Process(const Arguments& arguments, const std::filesystem::path& folder
     : m_out(::memfd_create("out", MFD_CLOEXEC)), m_err(::memfd_create("err", MFD_CLOEXEC)) {
   int in[2], unread[2];
   if (m_out < 0 || m_err < 0 || ::pipe2(in, O_CLOEXEC) != 0 || ::pipe2(unread, O_CLOEXEC) != 0)
-    throw std::runtime_error("no files for a process");
+    throw std::runtime_error("cannot create files for a process");
   ::close(unread[0]);
   m_id = ::fork();
   if (m_id < 0)
-    throw std::runtime_error("no process");
+    throw std::runtime_error("cannot start a process");
   if (m_id == 0)
     execProgram(arguments, folder, in[0],
                 reader == Reader::test         ? m_out
@@ -75,7 +75,7 @@ Process::~Process() {
 
 void Process::write(const std::string& text) const {
   if (::write(m_in, text.data(), text.size()) != static_cast<ssize_t>(text.size()))
-    throw std::runtime_error("a process does not read");
+    throw std::runtime_error("cannot write to a process");
 }
 
 void Process::closeInput() {

@@ -1,4 +1,4 @@
-// Progress: its receivers and its content.
+// Progress reports: where they are written, and their content.
 
 #include "CommandTesting.h"
 
@@ -7,7 +7,7 @@ namespace {
 
 class ProgressCommand : public SmallScene {
 protected:
-  /// Render of about half a second: long enough for several reports.
+  /// Renders for half a second, which is enough for several reports.
   Outcome renderWithProgress(const Arguments& flags) const {
     Arguments all = {"volume.nrrd", "--size", "32x32", "--seconds", "0.5"};
     all.insert(all.end(), flags.begin(), flags.end());
@@ -53,7 +53,7 @@ TEST_F(ProgressCommand, BarIsErasedFromStandardError) {
     EXPECT_LE(line.size(), 79 + std::string("\x1b[K").size()) << line;
 }
 
-TEST_F(ProgressCommand, WithoutATerminalNoProgressIsWritten) {
+TEST_F(ProgressCommand, NoProgressIsWrittenWithoutATerminal) {
   for (const char* kind : {"auto", "none"}) {
     const Outcome outcome = renderWithProgress({"--progress", kind});
     ASSERT_EQ(outcome.status, 0);

@@ -1,4 +1,4 @@
-// Outputs of a render: pictures, statistics and messages.
+// Outputs of a render: images, statistics and messages.
 
 #include "CommandTesting.h"
 #include "files/images/ImageReader.h"
@@ -7,10 +7,10 @@
 
 #include <array>
 
-namespace fenestra::RendersCommandTests {
+namespace fenestra::RenderCommandTests {
 namespace {
 
-class RendersCommand : public SmallScene {
+class RenderCommand : public SmallScene {
 protected:
   Image render(const Arguments& arguments) const {
     Arguments all = arguments;
@@ -26,14 +26,15 @@ protected:
   }
 };
 
-TEST_F(RendersCommand, DefaultNameIsThatOfTheInputInTheCurrentFolder) {
+TEST_F(RenderCommand, DefaultOutputIsTheInputNameInTheCurrentFolder) {
   std::filesystem::create_directory(folder / "data");
   std::filesystem::rename(folder / "volume.nrrd", folder / "data/volume.nrrd");
   const Outcome outcome =
       run({"render", "data/volume.nrrd", "--size", "16x8", "--samples", "1"}, folder.path());
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
-  EXPECT_TRUE(outcome.out.starts_with("volume.png: 16x8 pixels, 1 sample each")) << outcome.out;
+  EXPECT_TRUE(outcome.out.starts_with("volume.png: 16x8 pixels, 1 sample per pixel"))
+      << outcome.out;
   const Image image = readImage(folder / "volume.png");
   EXPECT_EQ(image.width, 16);
   EXPECT_EQ(image.height, 8);
@@ -41,20 +42,20 @@ TEST_F(RendersCommand, DefaultNameIsThatOfTheInputInTheCurrentFolder) {
             (std::set<std::string>{"data", "data/volume.nrrd", "segments.seg.nrrd", "volume.png"}));
 }
 
-TEST_F(RendersCommand, TellsWhatItChose) {
+TEST_F(RenderCommand, StatusLineNamesAppearanceAndLights) {
   EXPECT_EQ(renderVolume({"--output", "a.png"}).statusLine,
-            "look: by the volume's range; light: cinema");
+            "look: by the volume's range; lights: cinema");
   EXPECT_EQ(renderVolume({"--output", "a.png", "--environment", "1"}).statusLine,
-            "look: by the volume's range; light: all around");
+            "look: by the volume's range; lights: environment");
   EXPECT_EQ(renderVolume({"--output", "a.png", "--progress", "none"}).statusLine, "");
   const Outcome ct = renderVolume({"--output", "a.png", "--transfer", "ct-bone"});
-  EXPECT_EQ(ct.statusLine, "look: ct-bone; light: cinema");
-  EXPECT_NE(ct.err.find("ct-bone is made for CT, which this volume does not seem to be"),
+  EXPECT_EQ(ct.statusLine, "look: ct-bone; lights: cinema");
+  EXPECT_NE(ct.err.find("ct-bone is for CT, but this volume does not seem to be CT"),
             std::string::npos);
 }
 
-TEST_F(RendersCommand, BackgroundIsAGradientUnlessSomethingIsSaid) {
-  const Arguments nothing = {"--scale", "100", "--denoise", "off"}; // in the corners
+TEST_F(RenderCommand, DefaultBackgroundIsAGradient) {
+  const Arguments nothing = {"--scale", "100", "--denoise", "off"}; // leaves the corners empty
   const auto renderChannels = [&](const Arguments& more) {
     Arguments arguments = nothing;
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -67,14 +68,14 @@ TEST_F(RendersCommand, BackgroundIsAGradientUnlessSomethingIsSaid) {
   EXPECT_EQ(renderChannels({"--background", "0,0,0"}).at("R").front(), 0.0f);
 }
 
-TEST_F(RendersCommand, OneNumberIsAGrey) {
+TEST_F(RenderCommand, OneNumberIsAGray) {
   renderVolume({"--output", "a.exr", "--environment", "0.5", "--background", "0.25"});
   renderVolume(
       {"--output", "b.exr", "--environment", "0.5,0.5,0.5", "--background", "0.25,0.25,0.25"});
   EXPECT_EQ(readImage(folder / "a.exr").channels, readImage(folder / "b.exr").channels);
 }
 
-TEST_F(RendersCommand, ExposureAndToneChangePicturesForTheEyeAlone) {
+TEST_F(RenderCommand, ExposureAndToneChangeOnlyDisplayImages) {
   const auto renderChannels = [&](const Arguments& more, const std::string& name) {
     Arguments arguments = {"--denoise", "on",           "--output", name + ".exr",
                            "--output",  name + ".nrrd", "--output", name + ".png",
@@ -104,7 +105,7 @@ TEST_F(RendersCommand, ExposureAndToneChangePicturesForTheEyeAlone) {
   EXPECT_EQ(stats("c.json")["display"]["exposure"], -1.5);
 }
 
-TEST_F(RendersCommand, EveryFormatEqualsItselfInCompare) {
+TEST_F(RenderCommand, EveryFormatEqualsItselfInCompare) {
   const Arguments names = {"a.png", "a.tif", "A.EXR", "a.nrrd"};
   Arguments arguments;
   for (const std::string& name : names)
@@ -115,7 +116,7 @@ TEST_F(RendersCommand, EveryFormatEqualsItselfInCompare) {
     const Outcome outcome = run({"compare", name, name}, folder.path());
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_NE(outcome.out.find("\nlargest     0\n"), std::string::npos) << name << outcome.out;
-    // relMSE has the reference's own variance subtracted if the picture states it
+    // relMSE subtracts the reference's variance if the image has error channels
     EXPECT_EQ(outcome.out.starts_with("relMSE      0\n"), name != "A.EXR") << outcome.out;
   }
   EXPECT_TRUE(readImage(folder / "A.EXR").find("normal.X"));
@@ -124,7 +125,7 @@ TEST_F(RendersCommand, EveryFormatEqualsItselfInCompare) {
   EXPECT_EQ(*linear.find("Z"), *readImage(folder / "a-Z.nrrd").find("Z"));
 }
 
-TEST_F(RendersCommand, EnvironmentVariablePinsTheInstructionSet) {
+TEST_F(RenderCommand, EnvironmentVariableSelectsTheInstructionSet) {
   ::setenv("FENESTRA_INSTRUCTIONS", "MMX", 1);
   const Outcome refused =
       run({"volume.nrrd", "--size", "16x16", "--samples", "2", "--output", "refused.exr"},
@@ -140,12 +141,12 @@ TEST_F(RendersCommand, EnvironmentVariablePinsTheInstructionSet) {
   EXPECT_TRUE(target.ends_with("-" + last)) << target;
 }
 
-TEST_F(RendersCommand, WritesRequestedLayersAndTheHeader) {
+TEST_F(RenderCommand, WritesRequestedLayersAndTheHeader) {
   const Image all = render({});
   for (const char* name : {"R", "A", "Z", "albedo.G", "normal.Y", "error.B", "samples.N"})
     EXPECT_TRUE(all.find(name)) << name;
   EXPECT_EQ(all.header.at("seed"), "0");
-  EXPECT_EQ(all.header.at("sampling"), "strata");
+  EXPECT_EQ(all.header.at("sampling"), "stratified");
   EXPECT_EQ(all.header.at("samples"), "2");
   EXPECT_EQ(all.header.at("command"),
             "fenestra volume.nrrd --size 16x16 --samples 2 --output picture.exr");
@@ -161,7 +162,7 @@ TEST_F(RendersCommand, WritesRequestedLayersAndTheHeader) {
     EXPECT_EQ(samples, 2.0f);
 }
 
-TEST_F(RendersCommand, StatsCountOnlyFilesAndRaysThatTheSceneNeeds) {
+TEST_F(RenderCommand, StatsCountOnlyRequiredFilesAndRays) {
   folder.write("sky.json", R"({"lights": [{"type": "environment", "radiance": [1, 1, 1]}]})");
   folder.write("haze.json",
                R"({"extinction": [[0, 0], [63, 0.5]], "albedo": [[0, 0.8, 0.8, 0.8]]})");
@@ -191,12 +192,12 @@ TEST_F(RendersCommand, StatsCountOnlyFilesAndRaysThatTheSceneNeeds) {
 
   const nlohmann::json focused = renderStats({"--segmentation", "segments.seg.nrrd", "--focus", "A",
                                               "--clip", "cutaway", "--labelsmoothing", "0"});
-  EXPECT_EQ(focused["focusVoxels"], 27) << "one, and a margin";
+  EXPECT_EQ(focused["focusVoxels"], 27) << "one voxel and its neighbors";
   EXPECT_EQ(focused["filesRead"],
             (nlohmann::json{"haze.json", "segments.seg.nrrd", "volume.nrrd"}));
 }
 
-TEST_F(RendersCommand, LightsAsFileOrTextGiveTheSamePicture) {
+TEST_F(RenderCommand, LightsAsFileOrInlineJsonGiveTheSameImage) {
   render({"--background", "1,2,3"});
   std::filesystem::create_directory(folder / "maps");
   std::filesystem::rename(folder / "picture.exr", folder / "maps/sky.exr");
@@ -212,17 +213,18 @@ TEST_F(RendersCommand, LightsAsFileOrTextGiveTheSamePicture) {
   EXPECT_EQ(file.channels, render({"--lights=" + longerThanPaths}).channels);
 }
 
-TEST_F(RendersCommand, SamplingIsChosenAndTold) {
+TEST_F(RenderCommand, SamplingIsSelectedAndReported) {
   const Image stratified = render({"--stats", "s.json"});
-  EXPECT_EQ(stats("s.json")["sampling"], "strata");
+  EXPECT_EQ(stats("s.json")["sampling"], "stratified");
   const Image plain = render({"--sampling", "independent", "--stats", "s.json"});
   EXPECT_EQ(stats("s.json")["sampling"], "independent");
   EXPECT_EQ(plain.header.at("sampling"), "independent");
   EXPECT_NE(stratified.channels.at("R"), plain.channels.at("R"));
-  EXPECT_EQ(stratified.channels, render({"--sampling", "strata"}).channels);
+  for (const char* name : {"stratified", "strata"}) // also the old name
+    EXPECT_EQ(stratified.channels, render({"--sampling", name}).channels) << name;
 }
 
-TEST_F(RendersCommand, SameSeedGivesTheSamePictureForAnyThreads) {
+TEST_F(RenderCommand, ImageDependsOnTheSeedButNotOnTheThreads) {
   const Image one = render({"--threads", "1", "--seed", "7"});
   const Image two = render({"--threads", "2", "--seed", "7"});
   const Image many = render({"--threads", "64", "--seed", "7"});
@@ -232,7 +234,7 @@ TEST_F(RendersCommand, SameSeedGivesTheSamePictureForAnyThreads) {
   EXPECT_NE(one.channels.at("R"), other.channels.at("R"));
 }
 
-TEST_F(RendersCommand, StopsAtTimeLimitAndAtNoiseTarget) {
+TEST_F(RenderCommand, StopsAtTimeLimitAndAtNoiseTarget) {
   Outcome outcome = run({"volume.nrrd", "--size", "32x32", "--seconds", "0.3", "--stats", "s.json"},
                         folder.path());
   ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -242,7 +244,7 @@ TEST_F(RendersCommand, StopsAtTimeLimitAndAtNoiseTarget) {
   outcome =
       run({"volume.nrrd", "--size", "32x32", "--noise", "0.1", "--stats", "n.json"}, folder.path());
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_LE(stats("n.json")["noiseFiltered"], 0.1); // of the picture for the eye
+  EXPECT_LE(stats("n.json")["noiseFiltered"], 0.1); // of the display image
   outcome = run({"volume.nrrd", "--size", "32x32", "--noise", "0.1", "--noisetarget", "raw",
                  "--stats", "r.json"},
                 folder.path());
@@ -251,7 +253,7 @@ TEST_F(RendersCommand, StopsAtTimeLimitAndAtNoiseTarget) {
   EXPECT_GE(stats("r.json")["samplesPerPixel"]["min"], 16);
 }
 
-TEST_F(RendersCommand, StatsHaveEveryDocumentedKey) {
+TEST_F(RenderCommand, StatsHaveEveryDocumentedKey) {
   const Outcome outcome = run(
       {"knee/knee.nrrd", "--segmentation", "knee/knee.seg.nrrd", "--focus", "FemoralCartilage",
        "--transfer", "knee/knee.vp.json", "--labelsmoothing", "0", "--size", "32x32", "--samples",
@@ -288,7 +290,7 @@ TEST_F(RendersCommand, StatsHaveEveryDocumentedKey) {
   EXPECT_TRUE(json["warnings"].is_array());
 }
 
-TEST_F(RendersCommand, NegativeNumbersAreValuesNotFlags) {
+TEST_F(RenderCommand, NegativeNumbersAreValuesNotOptions) {
   const Image joined = render({"--position=-1,20,3", "--shift=-5"});
   const Image apart = render({"--position", "-1,20,3", "--shift", "-5"});
   const Image bare = render({"--position", "-1.0,20,3.", "--shift", "-.5e1"});
@@ -298,7 +300,7 @@ TEST_F(RendersCommand, NegativeNumbersAreValuesNotFlags) {
       << joined.header.at("camera");
 }
 
-TEST_F(RendersCommand, CameraFlagsFromTheHeaderReproduceThePicture) {
+TEST_F(RenderCommand, CameraOptionsOfTheHeaderReproduceTheImage) {
   const Image named = render({"--view", "left"});
   Arguments pose;
   std::istringstream words(named.header.at("camera"));
@@ -307,7 +309,7 @@ TEST_F(RendersCommand, CameraFlagsFromTheHeaderReproduceThePicture) {
   EXPECT_EQ(named.channels, render(pose).channels);
 }
 
-TEST_F(RendersCommand, FindsTheFocusByIdNameAndLabelValue) {
+TEST_F(RenderCommand, FindsTheFocusByIdNameAndLabelValue) {
   const auto renderFocus = [this](Arguments arguments) {
     arguments.insert(arguments.begin(), {"--segmentation", "segments.seg.nrrd"});
     return render(arguments).channels;
@@ -320,7 +322,7 @@ TEST_F(RendersCommand, FindsTheFocusByIdNameAndLabelValue) {
   EXPECT_EQ(byId, renderFocus({"--focus", "A", "--focus=B"}));
 }
 
-TEST_F(RendersCommand, FileNamesMayLookLikeFlagsOrSubcommands) {
+TEST_F(RenderCommand, FileNamesMayLookLikeOptionsOrCommands) {
   std::filesystem::copy(folder / "volume.nrrd", folder / "--volume.nrrd");
   std::filesystem::copy(folder / "volume.nrrd", folder / "rendr.nrrd");
   for (const char* input : {"./--volume.nrrd", "rendr.nrrd"}) {
@@ -331,23 +333,23 @@ TEST_F(RendersCommand, FileNamesMayLookLikeFlagsOrSubcommands) {
   }
 }
 
-TEST_F(RendersCommand, DefaultNameReplacesOnlyItsOwnPictures) {
+TEST_F(RenderCommand, DefaultOutputReplacesOnlyImagesOfFenestra) {
   const std::string volume = readBytes(folder / "volume.nrrd");
-  folder.write("named.png", "somebody's picture");
+  folder.write("named.png", "another program's image");
   ASSERT_EQ(renderVolume({"--output", "named.png"}).status, 0);
   EXPECT_EQ(readImage(folder / "named.png").width, 16);
   ASSERT_EQ(renderVolume({}).status, 0); // volume.png, a default name
   ASSERT_EQ(renderVolume({}).status, 0);
   EXPECT_EQ(readImage(folder / "volume.png").width, 16);
-  folder.write("volume.png", "somebody's picture");
+  folder.write("volume.png", "another program's image");
   const Outcome refused = renderVolume({});
   EXPECT_EQ(refused.status, 2);
-  EXPECT_NE(refused.err.find("volume.png: is there, and Fenestra did not write it"),
+  EXPECT_NE(refused.err.find("volume.png: exists and was not written by Fenestra"),
             std::string::npos)
       << refused.err;
-  EXPECT_EQ(readBytes(folder / "volume.png"), "somebody's picture");
+  EXPECT_EQ(readBytes(folder / "volume.png"), "another program's image");
   EXPECT_EQ(readBytes(folder / "volume.nrrd"), volume);
 }
 
 } // namespace
-} // namespace fenestra::RendersCommandTests
+} // namespace fenestra::RenderCommandTests

@@ -1,4 +1,4 @@
-// Results: their places, the files that they replace, and their record of inputs.
+// Output files: where they are written, which files they replace, and which inputs they record.
 
 #include "CommandTesting.h"
 #include "files/images/ImageReader.h"
@@ -21,7 +21,7 @@ protected:
   }
 };
 
-TEST_F(ResultsCommand, StatsOnStandardOutputFollowTheReport) {
+TEST_F(ResultsCommand, StatsOnStandardOutputFollowTheSummary) {
   const Outcome outcome = renderVolume({"--output", "a.png", "--stats", "/dev/stdout"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const std::size_t json = outcome.out.find('{');
@@ -33,7 +33,7 @@ TEST_F(ResultsCommand, StatsOnStandardOutputFollowTheReport) {
   EXPECT_TRUE(S_ISLNK(status.st_mode));
 }
 
-TEST_F(ResultsCommand, ReportStaysOneLineForNamesWithControlCharacters) {
+TEST_F(ResultsCommand, SummaryIsOneLineForNamesWithControlCharacters) {
   const std::string name = "a\x1b[31m\nb";
   const auto expectOneLine = [](const Outcome& outcome) {
     EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -64,7 +64,7 @@ TEST_F(ResultsCommand, FullStandardOutputIsAnOutputError) {
   EXPECT_EQ(readImage(folder / "a.png").width, 8);
 }
 
-TEST_F(ResultsCommand, PathsInTheHeaderAreRelativeToThePicture) {
+TEST_F(ResultsCommand, PathsInTheHeaderAreRelativeToTheImage) {
   std::filesystem::create_directories(folder / "Doe^John_19501231/dicom");
   std::filesystem::create_directory(folder / "Doe^John_19501231/pictures");
   std::filesystem::rename(folder / "volume.nrrd", folder / "Doe^John_19501231/dicom/volume.nrrd");
@@ -93,8 +93,8 @@ TEST_F(ResultsCommand, TurntableRendersAnEmptyFrameAgain) {
   EXPECT_EQ(readBytes(folder / "turn_0000.png"), complete);
 }
 
-/// Frames replaced by a longer file, a cut file, and an unrelated file.
-TEST_F(ResultsCommand, TurntableRefusesToReplaceAnEditedFrame) {
+/// The frame is replaced by a longer file, a truncated file, and an unrelated file.
+TEST_F(ResultsCommand, TurntableDoesNotReplaceAnEditedFrame) {
   ASSERT_EQ(runTurntable().status, 0);
   const std::string complete = readBytes(folder / "turn_0000.png");
   for (const std::string& edited :
@@ -102,14 +102,14 @@ TEST_F(ResultsCommand, TurntableRefusesToReplaceAnEditedFrame) {
     folder.write("turn_0000.png", edited);
     const Outcome again = runTurntable();
     EXPECT_EQ(again.status, 2);
-    EXPECT_NE(again.err.find("turn_0000.png: is not the frame that was recorded; move it away"),
+    EXPECT_NE(again.err.find("turn_0000.png: differs from the recorded frame; move it away"),
               std::string::npos)
         << again.err;
     EXPECT_EQ(readBytes(folder / "turn_0000.png"), edited);
   }
 }
 
-TEST_F(ResultsCommand, TurntableRefusesALinkInPlaceOfAFrame) {
+TEST_F(ResultsCommand, TurntableRejectsALinkInPlaceOfAFrame) {
   ASSERT_EQ(runTurntable().status, 0);
   folder.write("mine.txt", "mine");
   std::filesystem::remove(folder / "turn_0001.png");
@@ -118,7 +118,8 @@ TEST_F(ResultsCommand, TurntableRefusesALinkInPlaceOfAFrame) {
   EXPECT_EQ(readBytes(folder / "mine.txt"), "mine");
 }
 
-/// A run killed between a frame and its record leaves a frame that bears the mark.
+/// A run that was killed after writing a frame, but before the manifest, leaves an unrecorded frame
+/// with a provenance tag.
 TEST_F(ResultsCommand, ResumedTurntableReplacesOnlyItsOwnUnrecordedFrames) {
   for (const std::string ending : {".png", ".exr", ".tif", ".nrrd"}) {
     const Arguments arguments = {"turntable", "volume.nrrd", "--size", "8x8",      "--samples",
@@ -138,7 +139,7 @@ TEST_F(ResultsCommand, ResumedTurntableReplacesOnlyItsOwnUnrecordedFrames) {
     const Outcome refused = run(arguments, folder.path());
     EXPECT_EQ(refused.status, 2) << refused.err;
     EXPECT_NE(refused.err.find("go_0001" + ending +
-                               ": is there, and Fenestra did not write it; "
+                               ": exists and was not written by Fenestra; "
                                "move it away"),
               std::string::npos)
         << refused.err;
@@ -146,7 +147,7 @@ TEST_F(ResultsCommand, ResumedTurntableReplacesOnlyItsOwnUnrecordedFrames) {
   }
 }
 
-TEST_F(ResultsCommand, SecondTurntableOfTheSameFramesIsRefused) {
+TEST_F(ResultsCommand, SecondTurntableOfTheSameFramesIsRejected) {
   {
     Process first({"turntable", "volume.nrrd", "--size", "64x64", "--samples", "20000", "--frames",
                    "2", "--output", "turn.png", "--progress", "xml"},
@@ -166,19 +167,19 @@ TEST_F(ResultsCommand, SecondTurntableOfTheSameFramesIsRefused) {
                   folder.path())
                   .status,
               0)
-        << "of other names";
+        << "frames with other names";
   } // killed
   EXPECT_EQ(runTurntable({"--restart"}).status, 0);
   for (const std::string& file : listFiles(folder.path()))
     EXPECT_FALSE(file.starts_with(".fenestra")) << file;
 }
 
-TEST_F(ResultsCommand, WarnsOfDepthFileLeftByAnEarlierPicture) {
+TEST_F(ResultsCommand, WarnsOfADepthFileOfAnEarlierImage) {
   ASSERT_EQ(renderVolume({"--output", "a.nrrd"}).err, "");
   const Outcome colorOnly =
       renderVolume({"--output", "a.nrrd", "--layers", "color", "--stats", "s"});
   EXPECT_EQ(colorOnly.status, 0);
-  const std::string warning = "a-Z.nrrd: is of an earlier picture than a.nrrd; remove it";
+  const std::string warning = "a-Z.nrrd: belongs to an earlier image than a.nrrd; remove it";
   EXPECT_EQ(colorOnly.err, "fenestra: warning: " + warning + "\n");
   EXPECT_EQ(nlohmann::json::parse(readBytes(folder / "s"))["warnings"],
             nlohmann::json::array({warning}));
@@ -186,21 +187,21 @@ TEST_F(ResultsCommand, WarnsOfDepthFileLeftByAnEarlierPicture) {
   EXPECT_EQ(renderVolume({"--output", "a.nrrd"}).err, "");
 }
 
-TEST_F(ResultsCommand, RestartWarnsOfFramesLeftOver) {
+TEST_F(ResultsCommand, RestartWarnsOfRemainingFrames) {
   ASSERT_EQ(runTurntable({"--frames", "5"}).status, 0);
-  folder.write("turn_0003.png", "edited since");
+  folder.write("turn_0003.png", "edited");
   const Outcome fewer = runTurntable({"--restart"});
   EXPECT_EQ(fewer.status, 0);
-  EXPECT_EQ(fewer.err, "fenestra: warning: turn_0002.png to turn_0004.png: 2 files are of the "
-                       "turntable that was there before; remove them\n");
+  EXPECT_EQ(fewer.err, "fenestra: warning: turn_0002.png to turn_0004.png: 2 files are from "
+                       "the previous turntable of that name; remove them\n");
   EXPECT_EQ(runTurntable({"--restart"}).err, "");
 }
 
-TEST_F(ResultsCommand, RestartRefusesAFileThatIsNoRecord) {
-  folder.write("turn.turntable.json", "somebody's notes");
+TEST_F(ResultsCommand, RestartRejectsAFileThatIsNotAManifest) {
+  folder.write("turn.turntable.json", "a user's notes");
   const Outcome outcome = runTurntable({"--restart"});
   EXPECT_EQ(outcome.status, 2) << outcome.err;
-  EXPECT_EQ(readBytes(folder / "turn.turntable.json"), "somebody's notes");
+  EXPECT_EQ(readBytes(folder / "turn.turntable.json"), "a user's notes");
   folder.write("turn.turntable.json", // format of earlier versions
                R"({"request": {"version": "0.1", "arguments": []}, "finished": []})");
   EXPECT_EQ(runTurntable({"--restart"}).status, 0);

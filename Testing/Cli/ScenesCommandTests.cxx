@@ -1,5 +1,5 @@
-// Slicer scenes through the command line. The picture of a solid box is compared with its outline
-// by the scene's own numbers, projected by code written here from VTK's conventions.
+// Slicer scenes on the command line. The image of a solid box must match the outline that this file
+// computes independently: from the scene's numbers, by VTK's camera conventions.
 
 #include "CommandTesting.h"
 #include "files/images/ImageReader.h"
@@ -23,7 +23,7 @@ struct ViewNumbers {
   double parallelScale, viewAngle;
 };
 
-/// Boxes as maps from [-1, 1]^3 to the world; the picture shows their intersection.
+/// Boxes as maps from [-1, 1]^3 to world space; their intersection is visible.
 using Boxes = std::vector<Map>;
 
 bool intersects(const Vector& origin, const Vector& direction, const Boxes& boxes) {
@@ -42,7 +42,7 @@ bool intersects(const Vector& origin, const Vector& direction, const Boxes& boxe
   return from < to;
 }
 
-/// True if the ray through a raster position, in pixels from the upper left, meets the boxes.
+/// True if the ray through a raster position (pixels from the upper left) hits the boxes.
 bool isCovered(const ViewNumbers& view, const Boxes& boxes, int size, double column, double row) {
   const Vector forward = (view.focalPoint - view.position).normalized();
   const Vector right = forward.cross(view.viewUp).normalized();
@@ -57,8 +57,8 @@ bool isCovered(const ViewNumbers& view, const Boxes& boxes, int size, double col
 
 constexpr int size = 96;
 
-/// Renders the scene with every scalar opaque; expects the boxes' outline in all pixels not crossed
-/// by an edge.
+/// Renders the scene with an opaque transfer function. Expects alpha 0 or 1 as in the outline of
+/// the boxes, except in pixels that an edge crosses.
 void expectOutline(const TemporaryFolder& folder, const std::string& scene,
                    const Arguments& arguments, const ViewNumbers& view, const Boxes& boxes) {
   folder.write("solid.json", R"({"extinction": [[0, 1000]], "albedo": [[0, 0.5, 0.5, 0.5]]})");
@@ -100,8 +100,8 @@ void expectOutline(const TemporaryFolder& folder, const std::string& scene,
   EXPECT_GT(edges, 10);
 }
 
-// ---- a scene with everything
-// ---------------------------------------------------------------------
+// ---- a scene with all kinds of nodes
+// -------------------------------------------------------------
 
 Map makeMap(std::initializer_list<double> rows) {
   Map map;
@@ -111,7 +111,7 @@ Map makeMap(std::initializer_list<double> rows) {
   return map;
 }
 
-/// Sixteen numbers of a map, row by row.
+/// The 16 matrix elements in row-major order.
 std::string formatMatrix(const Map& map) {
   std::ostringstream text;
   text.precision(17);
@@ -121,7 +121,7 @@ std::string formatMatrix(const Map& map) {
   return text.str();
 }
 
-/// Map of [-1, 1]^3 onto the 4x4x4 volume of NrrdText, RAS.
+/// Map from [-1, 1]^3 onto the 4x4x4 volume of NrrdText, in RAS.
 Map volumeCube() {
   return makeMap({-2, 0, 0, -1.5, 0, -2, 0, -1.5, 0, 0, 2, 1.5});
 }
@@ -170,7 +170,7 @@ protected:
   Map outer, inner, roi;
 };
 
-TEST_F(ScenesCommand, ParallelCameraOfTheScenePlacesTheVolume) {
+TEST_F(ScenesCommand, ParallelCameraOfTheSceneIsUsed) {
   folder.write("s.mrml", scene(R"(parallelProjection="true" parallelScale="4")", false));
   expectOutline(folder, "s.mrml", {}, view, {outer * inner * volumeCube()});
 }
@@ -181,7 +181,7 @@ TEST_F(ScenesCommand, PerspectiveViewIsCroppedByTheRotatedRegion) {
   expectOutline(folder, "s.mrml", {}, view, {outer * inner * volumeCube(), roi});
 }
 
-TEST_F(ScenesCommand, FlagsOverrideTheCameraOfTheScene) {
+TEST_F(ScenesCommand, OptionsOverrideTheCameraOfTheScene) {
   folder.write("s.mrml", scene(R"(viewAngle="16" parallelScale="4")", true));
   const Boxes boxes = {outer * inner * volumeCube(), roi};
   expectOutline(folder, "s.mrml", {"--projection", "orthographic"}, view, boxes);
@@ -192,7 +192,7 @@ TEST_F(ScenesCommand, FlagsOverrideTheCameraOfTheScene) {
                 boxes);
 }
 
-TEST_F(ScenesCommand, LookAndBackgroundComeFromTheSceneUnlessGiven) {
+TEST_F(ScenesCommand, TransferFunctionAndBackgroundDefaultToTheScene) {
   folder.write("s.mrml", scene(R"(parallelProjection="true" parallelScale="4")", false));
   const auto render = [&](const Arguments& more) {
     Arguments all = {"s.mrml", "--size", "16x16", "--samples", "64", "--output", "look.exr"};
@@ -205,7 +205,7 @@ TEST_F(ScenesCommand, LookAndBackgroundComeFromTheSceneUnlessGiven) {
   const Image own = render({});
   EXPECT_EQ(own.header.at("look"), "warm and cold");
   const double green = std::pow((0.4 + 0.055) / 1.055, 2.4);
-  EXPECT_NEAR(own.find("G")->front(), green, 1e-6); // the view's background, decoded
+  EXPECT_NEAR(own.find("G")->front(), green, 1e-6); // the view's background as linear color
   const std::size_t middle = 16 * 8 + 8;
   EXPECT_GT(own.find("albedo.B")->at(middle), 0.9); // high values are blue
   EXPECT_LT(own.find("albedo.R")->at(middle), 0.1);
@@ -217,7 +217,7 @@ TEST_F(ScenesCommand, LookAndBackgroundComeFromTheSceneUnlessGiven) {
   EXPECT_NEAR(changed.find("albedo.G")->at(middle), 0.8, 0.05);
 }
 
-TEST_F(ScenesCommand, FocusIsFoundInTheScenesSegmentationOrInAFile) {
+TEST_F(ScenesCommand, FocusIsFoundInTheSceneOrInAFile) {
   folder.write("s.mrml", scene(R"(parallelProjection="true" parallelScale="4")", false));
   const Arguments common = {"s.mrml", "--size",  "64x64",    "--samples", "1",
                             "--clip", "cutaway", "--layers", "color,clip"};
@@ -232,16 +232,16 @@ TEST_F(ScenesCommand, FocusIsFoundInTheScenesSegmentationOrInAFile) {
   EXPECT_EQ(with({"--focus", "A", "--segmentation", "parts", "--output", "named.exr"}).status, 0);
   EXPECT_EQ(*readImage(folder / "own.exr").find("clip.Z"),
             *readImage(folder / "named.exr").find("clip.Z"));
-  // A file has no transform: its voxel lies beside the volume, which a transform has moved.
+  // A segmentation file has no transform, so its voxel lies outside the transformed volume.
   const Outcome file =
       with({"--focus", "A", "--segmentation", "segments.seg.nrrd", "--output", "file.exr"});
   EXPECT_EQ(file.status, 3);
-  EXPECT_NE(file.err.find("cannot be seen"), std::string::npos) << file.err;
+  EXPECT_NE(file.err.find("is not visible"), std::string::npos) << file.err;
 }
 
-/// The flags stored with a picture reproduce it; flags on the command line win, with all flags of
-/// their kind.
-TEST_F(ScenesCommand, StoredFlagsReproduceThePicture) {
+/// Stored options reproduce an image. An option on the command line overrides all stored options of
+/// its group.
+TEST_F(ScenesCommand, StoredOptionsReproduceTheImage) {
   const std::string plain = scene(R"(parallelProjection="true" parallelScale="4")", false);
   std::string stored = plain;
   stored.insert(stored.find("</MRML>"), R"(
@@ -294,7 +294,7 @@ TEST_F(ScenesCommand, StoredFlagsReproduceThePicture) {
       << inspected.out;
 }
 
-TEST_F(ScenesCommand, RefusesDamagedScenesAndMissingNodes) {
+TEST_F(ScenesCommand, RejectsDamagedScenesAndMissingNodes) {
   folder.write("s.mrml", scene(R"(parallelProjection="true" parallelScale="4")", false));
   folder.write("perspective.mrml", scene(R"(viewAngle="16")", false));
   folder.write("none.mrml", "<MRML/>");
@@ -311,11 +311,11 @@ TEST_F(ScenesCommand, RefusesDamagedScenesAndMissingNodes) {
   };
   expectErrors(
       {
-          {"no volume", with("none.mrml", {}), 3, "none.mrml: holds no scalar volume"},
+          {"no volume", with("none.mrml", {}), 3, "none.mrml: has no scalar volume"},
           {"entities", with("entities.mrml", {}), 3, "entities.mrml: has a document type"},
-          {"half", with("half.mrml", {}), 3, "half.mrml: is no whole XML"},
-          {"no archive", with("words.mrb", {}), 3, "words.mrb: is no whole archive"},
-          {"missing", with("missing.mrml", {}), 3, "missing.mrml: there is no such file"},
+          {"half", with("half.mrml", {}), 3, "half.mrml: is not complete XML"},
+          {"not an archive", with("words.mrb", {}), 3, "words.mrb: is not a complete archive"},
+          {"missing", with("missing.mrml", {}), 3, "missing.mrml: no such file"},
           {"MIP", with("mip.mrml", {}), 3, "maximum intensity projection"},
           {"volume", with("s.mrml", {"--volume", "x"}), 3, "no scalar volume \"x\"; it has ramp"},
           {"segmentation", with("s.mrml", {"--segmentation", "x", "--focus", "A"}), 3,
@@ -328,7 +328,7 @@ TEST_F(ScenesCommand, RefusesDamagedScenesAndMissingNodes) {
       folder.path());
 }
 
-TEST_F(ScenesCommand, ErrorNamesTheFileWithinTheArchive) {
+TEST_F(ScenesCommand, ErrorNamesTheFileInTheArchive) {
   folder.write("s.mrml", scene(R"(parallelProjection="true" parallelScale="4")", false));
   int failure = 0;
   zip_t* zip = zip_open((folder / "s.mrb").c_str(), ZIP_CREATE, &failure);
@@ -340,10 +340,10 @@ TEST_F(ScenesCommand, ErrorNamesTheFileWithinTheArchive) {
       folder.path());
 }
 
-// ---- scenes that Slicer wrote
+// ---- scenes written by Slicer
 // --------------------------------------------------------------------
 
-/// Text of the .mrml in an archive written by Slicer.
+/// The .mrml in an archive written by Slicer.
 std::string readScene(const std::filesystem::path& archive) {
   int failure = 0;
   zip_t* zip = zip_open(archive.c_str(), ZIP_RDONLY, &failure);
@@ -371,13 +371,13 @@ std::vector<double> readNumbers(const std::string& text) {
   return numbers;
 }
 
-class SlicersOwnScenes : public ::testing::TestWithParam<const char*> {
+class SlicerScenes : public ::testing::TestWithParam<const char*> {
 protected:
   void SetUp() override {
     archive =
         std::filesystem::path(FENESTRA_DATA) / "slicer_scenes/slicer_5_2_written" / GetParam();
     if (!std::filesystem::exists(archive))
-      GTEST_SKIP() << archive << " is absent";
+      GTEST_SKIP() << archive << " does not exist";
     const std::string scene = readScene(archive);
     const auto vector = [&](const std::string& name) {
       const auto n = readNumbers(findAttribute(scene, "Camera", name));
@@ -389,7 +389,7 @@ protected:
             findAttribute(scene, "Camera", "parallelProjection") == "true",
             readNumbers(findAttribute(scene, "Camera", "parallelScale")).at(0),
             readNumbers(findAttribute(scene, "Camera", "viewAngle")).at(0)};
-    // 128 x 128 x 34 voxels; geometry from the scene's copy
+    // The volume has 128 x 128 x 34 voxels; the scene repeats its spacing and origin.
     const auto spacing = readNumbers(findAttribute(scene, "Volume", "spacing"));
     const auto origin = readNumbers(findAttribute(scene, "Volume", "origin"));
     const Vector half(64 * spacing[0], 64 * spacing[1], 17 * spacing[2]);
@@ -401,7 +401,7 @@ protected:
     const auto m = readNumbers(findAttribute(scene, "LinearTransform", "matrixTransformToParent"));
     boxes[0] = makeMap({m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8], m[9], m[10], m[11]}) *
                boxes[0];
-    // Data/Volume rendering ROI.mrk.json: centre 0 20 -170 in LPS, sizes 300 260 220
+    // Data/Volume rendering ROI.mrk.json: center 0 20 -170 in LPS, sizes 300 260 220
     boxes.push_back(Eigen::Translation3d(0, -20, -170) * Eigen::Scaling(150.0, 130.0, 110.0));
   }
 
@@ -411,13 +411,13 @@ protected:
   Boxes boxes;
 };
 
-TEST_P(SlicersOwnScenes, CameraMatchesStoredValues) {
+TEST_P(SlicerScenes, CameraMatchesStoredValues) {
   expectOutline(folder, archive.string(), {}, view, boxes);
   view.parallel = true;
   expectOutline(folder, archive.string(), {"--projection", "orthographic"}, view, boxes);
 }
 
-INSTANTIATE_TEST_SUITE_P(Real, SlicersOwnScenes,
+INSTANTIATE_TEST_SUITE_P(Real, SlicerScenes,
                          ::testing::Values("chest.mrb", "chest_transformed_cropped.mrb"));
 
 } // namespace

@@ -1,4 +1,4 @@
-// `fenestra serve`: changes in, pictures out; its answers to bad lines, and its end.
+// `fenestra serve`: images after changes, error events for invalid lines, and how it ends.
 
 #include "CommandTesting.h"
 #include "RunSettings.h"
@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Seconds; an idle machine takes about 0.1, slow builds more.
+/// Time limit in seconds: about 0.1 is needed on an idle machine, more by slow builds.
 const double timeLimit = 2.0 * static_cast<double>(testing::sampleDivisor());
 
 class ServeCommand : public SmallScene {
@@ -30,17 +30,17 @@ protected:
       all.push_back(json::parse(line));
     return all;
   }
-  /// Waits for the last picture of a change.
+  /// Waits for the final image of a change.
   static bool waitForImage(const Process& process, const std::string& id) {
     return process.waitForOutput("\"picture\",\"id\":" + id + ",[^\n]*\"done\":true[^\n]*\n");
   }
-  /// Waits for the refusal of a change.
+  /// Waits for the error event of a change.
   static bool waitForError(const Process& process, const std::string& id,
                            const std::string& message) {
     return process.waitForOutput("\"error\",\"id\":" + id + ",\"message\":\"[^\n]*" + message);
   }
 
-  /// Picture of `fenestra volume.nrrd …` with these flags.
+  /// Image of `fenestra volume.nrrd …` with these options.
   Image renderImage(const Arguments& flags) const {
     Arguments all = {"volume.nrrd", "--size", "16x16", "--samples", "4", "--output", "b.exr"};
     all.insert(all.end(), flags.begin(), flags.end());
@@ -52,7 +52,7 @@ protected:
   }
 };
 
-TEST_F(ServeCommand, PicturesEqualThoseOfRender) {
+TEST_F(ServeCommand, ImagesEqualThoseOfRender) {
   Process process(makeArguments(), folder.path());
   ASSERT_TRUE(waitForImage(process, "null")) << process.output();
   expectImage({});
@@ -91,7 +91,7 @@ TEST_F(ServeCommand, PicturesEqualThoseOfRender) {
   EXPECT_EQ(outcome.err, "");
 }
 
-TEST_F(ServeCommand, HeaderHoldsTheCommandOfTheChangedPicture) {
+TEST_F(ServeCommand, HeaderHasTheCommandOfTheChangedImage) {
   Process process(makeArguments(), folder.path());
   process.write("{\"id\": 1, \"view\": \"left\", \"seed\": 5}\n");
   ASSERT_TRUE(waitForImage(process, "1")) << process.output();
@@ -101,7 +101,7 @@ TEST_F(ServeCommand, HeaderHoldsTheCommandOfTheChangedPicture) {
   EXPECT_NE(command.find(" --view=left"), std::string::npos) << command;
 }
 
-TEST_F(ServeCommand, PictureIsRefinedUntilTheNextChange) {
+TEST_F(ServeCommand, ImageIsRefinedUntilTheNextChange) {
   Process process(makeArguments("256x256", "1000000"), folder.path());
   ASSERT_TRUE(process.waitForOutput("\"done\":false[^\n]*\n[^\n]*\"done\":false[^\n]*\n"));
   const std::vector<json> refined = readEvents(process);
@@ -115,19 +115,19 @@ TEST_F(ServeCommand, PictureIsRefinedUntilTheNextChange) {
     EXPECT_EQ(event["event"], "picture");
 }
 
-TEST_F(ServeCommand, BadLineIsAnsweredAndChangesNothing) {
+TEST_F(ServeCommand, BadLineGivesAnErrorAndChangesNothing) {
   Process process(makeArguments(), folder.path());
   ASSERT_TRUE(waitForImage(process, "null"));
   const std::vector<std::array<std::string, 3>> lines = {
-      {"{\"view\"", "null", "not JSON"},
+      {"{\"view\"", "null", "not valid JSON"},
       {"[1, 2]", "null", "expected a JSON object"},
-      {"\xff\xfe", "null", "not JSON"},
-      {R"({"id": 1, "veiw": "left"})", "1", "veiw: no such flag; did you mean view"},
+      {"\xff\xfe", "null", "not valid JSON"},
+      {R"({"id": 1, "veiw": "left"})", "1", "veiw: unknown option; did you mean view"},
       {R"({"id": 2, "view": "top"})", "2", "--view: expected anterior"},
-      {R"({"id": 2, "view": "auto"})", "2", "--view: auto looks for a focus"},
+      {R"({"id": 2, "view": "auto"})", "2", "--view: auto requires a focus"},
       {R"({"id": 3, "view": {}})", "3", "view: expected a text"},
       {R"({"id": 4, "output": "b.png"})", "4", "output: cannot change"},
-      {R"({"id": 5, "focus": "A"})", "5", "--focus: needs --segmentation"},
+      {R"({"id": 5, "focus": "A"})", "5", "--focus: requires --segmentation"},
       {R"({"id": 6, "segmentation": "missing.nrrd", "focus": "A"})", "6", "missing.nrrd"},
       {R"({"id": 7, "segmentation": "segments.seg.nrrd", "focus": "C"})", "7", "C"},
       {R"({"id": 8, "size": "0x0"})", "8", "--size"},
@@ -149,10 +149,10 @@ TEST_F(ServeCommand, BadLineIsAnsweredAndChangesNothing) {
   }
   process.write("{\"id\": 99, \"view\": \"left\"}\n");
   ASSERT_TRUE(waitForImage(process, "99")) << process.output();
-  expectImage({"--view", "left"}); // and no refused change
+  expectImage({"--view", "left"}); // and none of the rejected changes
 }
 
-/// Lines sent together, which the server reads together.
+/// Sends the lines in one write, so that the server reads them together.
 TEST_F(ServeCommand, GoodLinesAroundABadOneApply) {
   Process process(makeArguments(), folder.path());
   ASSERT_TRUE(waitForImage(process, "null"));
@@ -178,7 +178,7 @@ TEST_F(ServeCommand, GoodLinesAroundABadOneApply) {
   EXPECT_EQ(refused, bad.size());
 }
 
-TEST_F(ServeCommand, TurnedViewEndsWithTheFilteredPictureOfRender) {
+TEST_F(ServeCommand, ChangedViewEndsWithTheDenoisedImageOfRender) {
   const Arguments flags = {"volume.nrrd", "--size", "32x32", "--samples", "8", "--output"};
   Arguments arguments = flags;
   arguments.insert(arguments.begin(), "serve");
@@ -196,8 +196,8 @@ TEST_F(ServeCommand, TurnedViewEndsWithTheFilteredPictureOfRender) {
   EXPECT_EQ(readBytes(folder / "a.png"), readBytes(folder / "b.png"));
 }
 
-/// A failing write, as on a full disk: the current render and the server go on.
-TEST_F(ServeCommand, WriteFailureIsAnsweredAndServingGoesOn) {
+/// If an image cannot be written, as on a full disk, the render and the server continue.
+TEST_F(ServeCommand, WriteFailureGivesAnErrorAndServingContinues) {
   const std::filesystem::path place = folder / "results";
   std::filesystem::create_directory(place);
   Process process({"serve", "volume.nrrd", "--size", "16x16", "--samples", "100000000", "--output",
@@ -220,7 +220,7 @@ TEST_F(ServeCommand, EndOfInputEndsWithStatus0) {
     EXPECT_EQ(outcome.status, 0);
     EXPECT_EQ(outcome.err, "");
     EXPECT_LT(outcome.seconds, timeLimit);
-    EXPECT_EQ(listFiles(folder.path()).size(), 3u); // two inputs and the picture
+    EXPECT_EQ(listFiles(folder.path()).size(), 3u); // two inputs and the image
   }
 }
 
@@ -240,15 +240,15 @@ TEST_F(ServeCommand, ClosedOutputEndsWithStatus4) {
   Process process(makeArguments(), folder.path(), Reader::closedPipe);
   const Outcome outcome = process.wait();
   EXPECT_EQ(outcome.status, 4);
-  EXPECT_NE(outcome.err.find("nobody reads"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("standard output was closed"), std::string::npos) << outcome.err;
 }
 
-TEST_F(ServeCommand, RefusesMissingInputStatsAndSurface) {
+TEST_F(ServeCommand, RejectsMissingInputStatsAndSurface) {
   expectErrors(
-      {{"no input", {"serve"}, 2, "INPUT: is missing"},
+      {{"no input", {"serve"}, 2, "INPUT: missing"},
        {"missing", {"serve", "missing.nrrd"}, 3, "missing.nrrd"},
-       {"stats", {"serve", "volume.nrrd", "--stats", "a.json"}, 2, "--stats: serve tells"},
-       {"surface", {"serve", "volume.nrrd", "--surface", "a.vtp"}, 2, "--surface: serve writes"}},
+       {"stats", {"serve", "volume.nrrd", "--stats", "a.json"}, 2, "--stats: not for serve"},
+       {"surface", {"serve", "volume.nrrd", "--surface", "a.vtp"}, 2, "--surface: not for serve"}},
       folder.path());
 }
 

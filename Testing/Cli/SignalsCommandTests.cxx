@@ -1,4 +1,4 @@
-// Ctrl-C and SIGTERM: exit status 5 at once; finished passes are kept, files are complete.
+// Signals that stop a render: exit status 5 at once, with complete files of the finished passes.
 
 #include "CommandTesting.h"
 #include "RunSettings.h"
@@ -14,7 +14,7 @@
 namespace fenestra::SignalsCommandTests {
 namespace {
 
-/// Seconds; an idle machine takes about 0.1, slow builds more.
+/// Time limit in seconds: about 0.1 is needed on an idle machine, more by slow builds.
 const double timeLimit = 2.0 * static_cast<double>(testing::sampleDivisor());
 
 class SignalsCommand : public SmallScene, public ::testing::WithParamInterface<int> {};
@@ -28,7 +28,7 @@ TEST_P(SignalsCommand, FirstSignalWritesFinishedPasses) {
                   folder.path());
   ASSERT_TRUE(process.waitForOutput("<filter-progress>0\\.0*[1-9]"));
   process.send(GetParam());
-  process.send(GetParam()); // one event may come as two signals
+  process.send(GetParam()); // a terminal may send a signal twice
   const Outcome outcome = process.wait();
   std::cout << "stopped within " << outcome.seconds << " s\n";
   EXPECT_EQ(outcome.status, 5) << outcome.err;
@@ -45,10 +45,10 @@ TEST_P(SignalsCommand, FirstSignalWritesFinishedPasses) {
   EXPECT_EQ(listFiles(folder.path()).size(), 5u); // two inputs, three results
 }
 
-TEST_P(SignalsCommand, SecondSignalEndsAtOnceWithoutWriting) {
+TEST_P(SignalsCommand, SecondSignalEndsImmediatelyWithoutWriting) {
   folder.write("a.exr", "old");
   const auto before = listFiles(folder.path());
-  // No pass ends within the test, and a path takes long: the matter scatters and never absorbs.
+  // Neither a pass nor a path ends during the test: the medium scatters without absorption.
   folder.write("dense.json", R"({"extinction": [[0, 1e4], [64, 1e4]], "albedo": [[0, 1, 1, 1]]})");
   Process process({"volume.nrrd", "--transfer", "dense.json", "--size", "1024x1024", "--samples",
                    "100000", "--bounces", "1000000", "--progress", "xml", "--output", "a.exr"},
@@ -78,7 +78,7 @@ TEST_P(SignalsCommand, SignalIgnoredAtStartStaysIgnored) {
   EXPECT_TRUE(std::filesystem::exists(folder / "a.png"));
 }
 
-TEST_P(SignalsCommand, SignalLeavesNothingOfAnUnpackedArchive) {
+TEST_P(SignalsCommand, SignalRemovesUnpackedFilesOfAnArchive) {
   const std::filesystem::path& knee = kneeFolder().path();
   const TemporaryFolder temporary;
   ::setenv("TMPDIR", temporary.path().c_str(), 1);
@@ -105,7 +105,7 @@ TEST_P(SignalsCommand, SignalBeforeTheFirstPassWritesNothing) {
   EXPECT_EQ(outcome.status, 5) << outcome.err;
   EXPECT_LT(outcome.seconds, timeLimit);
   EXPECT_EQ(outcome.err,
-            "fenestra: stopped on request before the first pass; no picture was written\n");
+            "fenestra: stopped on request before the first pass; no image was written\n");
   EXPECT_EQ(listFiles(kneeFolder().path()), before);
 }
 
@@ -116,7 +116,7 @@ TEST_P(SignalsCommand, SignalWhileLoadingWritesNothing) {
   const auto before = listFiles(folder.path());
   Process process({"large.nrrd", "--size", "16x16", "--samples", "1"}, folder.path());
   ASSERT_TRUE(process.waitUntilHandling(GetParam()));
-  std::this_thread::sleep_for(std::chrono::milliseconds(20)); // past the check of the outputs
+  std::this_thread::sleep_for(std::chrono::milliseconds(20)); // until the outputs are checked
   process.send(GetParam());
   const Outcome outcome = process.wait();
   std::cout << "stopped within " << outcome.seconds << " s\n";
@@ -126,7 +126,7 @@ TEST_P(SignalsCommand, SignalWhileLoadingWritesNothing) {
   EXPECT_EQ(listFiles(folder.path()), before);
 }
 
-TEST_P(SignalsCommand, SignalLeavesNoPartOfAPhantom) {
+TEST_P(SignalsCommand, SignalRemovesFilesOfAnUnfinishedPhantom) {
   const auto before = listFiles(folder.path());
   Process process({"phantom", "knee"}, folder.path());
   ASSERT_TRUE(process.waitUntilHandling(GetParam()));

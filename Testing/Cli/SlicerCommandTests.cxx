@@ -1,5 +1,6 @@
-// Executable as a command line module of Slicer: its description by the rules of Slicer's execution
-// model (whose parser refuses the module at the first fault), and a run in Slicer's way.
+// The executable as a command line module of Slicer: its XML description follows the rules of
+// Slicer's execution model, whose parser rejects a module at its first error, and it runs with the
+// arguments that Slicer passes.
 
 #include "CommandTesting.h"
 
@@ -18,7 +19,7 @@ const Names numberTypes = {"integer", "double"};
 const Names simpleTypes = {"integer", "double", "string", "boolean", "string-enumeration"};
 const Names vectorTypes = {"string-vector", "double-vector"};
 
-/// Attributes allowed for each type.
+/// Allowed attributes per parameter type.
 const std::map<std::string, Names> allowedAttributes = {
     {"integer", {}},
     {"double", {}},
@@ -55,7 +56,7 @@ void checkConstraints(const pugi::xml_node& parameter, const std::string& name) 
   EXPECT_GT(constraints.child("step").text().as_double(), 0.0) << name;
 }
 
-/// Slicer passes the content of every number or choice field, so each needs a default.
+/// Slicer always passes the values of number and choice fields, so each needs a default.
 void checkDefault(const pugi::xml_node& parameter, const std::string& name, bool isReturned) {
   const std::string type = parameter.name();
   const std::string start = parameter.child_value("default");
@@ -87,7 +88,7 @@ void checkParameter(const pugi::xml_node& parameter, Names& known) {
     EXPECT_TRUE(seen.insert(child.name()).second || child.name() == std::string("element")) << name;
   }
   EXPECT_TRUE(std::regex_match(name, identifier)) << name;
-  EXPECT_TRUE(known.insert(name).second) << name << " twice";
+  EXPECT_TRUE(known.insert(name).second) << name << " occurs twice";
   EXPECT_NE(std::string(parameter.child_value("label")), "") << name;
   EXPECT_NE(std::string(parameter.child_value("description")), "") << name;
   const std::string channel = parameter.child_value("channel");
@@ -119,7 +120,7 @@ protected:
     return document;
   }
 
-  /// All flags with the values of an untouched panel in Slicer.
+  /// The options that Slicer passes if no value in its panel was changed.
   static Arguments makeDefaultArguments(const pugi::xml_document& document) {
     Arguments flags;
     for (const pugi::xml_node& group : document.child("executable").children("parameters"))
@@ -134,7 +135,7 @@ protected:
   }
 };
 
-TEST_F(SlicerCommand, XmlHoldsOnlyElementsThatSlicerAllows) {
+TEST_F(SlicerCommand, XmlHasOnlyElementsThatSlicerAllows) {
   const pugi::xml_document document = description();
   const pugi::xml_node module = document.child("executable");
   ASSERT_TRUE(module);
@@ -158,7 +159,7 @@ TEST_F(SlicerCommand, XmlHoldsOnlyElementsThatSlicerAllows) {
   EXPECT_GT(known.size(), 30u);
 }
 
-TEST_F(SlicerCommand, XmlDescribesEveryFlagOfTheHelp) {
+TEST_F(SlicerCommand, XmlDescribesEveryOptionOfTheHelp) {
   Names described = {
       "help", "version", "xml", "echo", "returnparameterfile", "processinformationaddress"};
   const pugi::xml_document document = description();
@@ -172,7 +173,7 @@ TEST_F(SlicerCommand, XmlDescribesEveryFlagOfTheHelp) {
   EXPECT_EQ(described, helped);
 }
 
-TEST_F(SlicerCommand, TableOfTheReadmeEqualsTheXml) {
+TEST_F(SlicerCommand, ReadmeTableEqualsTheXml) {
   std::string table = "| flag | what it does | in Slicer's panel |\n|---|---|---|\n";
   const pugi::xml_document document = description();
   for (const pugi::xpath_node& flag : document.select_nodes("//parameters/*[longflag]")) {
@@ -197,9 +198,8 @@ TEST_F(SlicerCommand, FileBesideTheExecutableEqualsTheXml) {
   EXPECT_EQ(readBytes(sibling), run({"--xml"}, folder.path()).out);
 }
 
-TEST_F(SlicerCommand, ArgumentsOfAnUntouchedPanelRender) {
-  // Small picture with few samples; other flags as in the untouched panel, whose values must not
-  // conflict.
+TEST_F(SlicerCommand, DefaultPanelArgumentsRender) {
+  // Only size and samples are reduced: the default values of the other options must not conflict.
   Arguments arguments = makeDefaultArguments(description());
   const auto size = std::find(arguments.begin(), arguments.end(), "--size");
   ASSERT_NE(size, arguments.end());
@@ -217,7 +217,7 @@ TEST_F(SlicerCommand, ArgumentsOfAnUntouchedPanelRender) {
     EXPECT_TRUE(outcome.out.starts_with("<filter-start>")) << outcome.out;
     EXPECT_NE(outcome.out.find("<filter-progress>1"), std::string::npos) << outcome.out;
     EXPECT_TRUE(std::filesystem::exists(folder / "picture.nrrd"));
-    EXPECT_FALSE(std::filesystem::exists(folder / "picture-Z.nrrd")); // Slicer would not find it
+    EXPECT_FALSE(std::filesystem::exists(folder / "picture-Z.nrrd")); // Slicer does not expect it
     const std::string values = readBytes(folder / "values.params");
     EXPECT_TRUE(values.starts_with("samplesPerPixel = 2\n")) << values;
     EXPECT_NE(values.find("\nrenderSeconds = "), std::string::npos) << values;

@@ -1,4 +1,4 @@
-// `--surface`: the clipping surface as a mesh, its refusals, and leftover files.
+// `--surface`: the clipping surface as a mesh, errors, and remaining files.
 
 #include "CommandTesting.h"
 #include "files/images/ImageReader.h"
@@ -22,7 +22,7 @@ Arguments kneeArguments(const Arguments& more) {
   return all;
 }
 
-/// Content of a .ply written by Fenestra: x, y, z and depth of every vertex, number of faces.
+/// Content of a .ply written by Fenestra: x, y, z and depth per vertex, and the number of faces.
 struct PlyContent {
   std::vector<std::array<float, 4>> vertices;
   std::size_t faces = 0;
@@ -45,7 +45,7 @@ PlyContent readPly(const std::filesystem::path& path) {
 
 class SurfaceCommand : public ::testing::TestWithParam<const char*> {
 protected:
-  /// Renders in the knee's folder.
+  /// Renders the knee.
   Outcome render(const Arguments& more) const {
     return run(kneeArguments(more), kneeFolder().path());
   }
@@ -77,7 +77,7 @@ TEST_P(SurfaceCommand, WritesTheSameMeshInEveryFormat) {
   EXPECT_EQ(std::filesystem::file_size(folder / "a.STL"), 84 + 50 * ply.faces);
 }
 
-TEST_P(SurfaceCommand, MeshLiesAtTheDepthsOfTheClipChannel) {
+TEST_P(SurfaceCommand, MeshHasTheDepthsOfTheClipChannel) {
   ASSERT_EQ(render({"--clip", GetParam(), "--view", "left", "--scale", "30", "--output",
                     outputPath("a.exr"), "--surface", outputPath("a.ply")})
                 .status,
@@ -89,7 +89,7 @@ TEST_P(SurfaceCommand, MeshLiesAtTheDepthsOfTheClipChannel) {
   for (std::string word; camera >> word;)
     if (word.starts_with("--position="))
       std::sscanf(word.c_str(), "--position=%lf,%lf,%lf", &position[0], &position[1], &position[2]);
-  // View from the left: depth grows along +R, columns along -A, rows along -S, 1.5 mm a pixel.
+  // View from the left: depth grows along +R, columns along -A, rows along -S, 1.5 mm per pixel.
   std::size_t inside = 0;
   for (const auto& [x, y, z, depth] : readPly(folder / "a.ply").vertices) {
     EXPECT_NEAR(x, position[0] + depth, 1e-3);
@@ -108,19 +108,20 @@ TEST_P(SurfaceCommand, MeshLiesAtTheDepthsOfTheClipChannel) {
 INSTANTIATE_TEST_SUITE_P(Clips, SurfaceCommand, ::testing::Values("surface", "cutaway"),
                          [](const auto& info) { return std::string(info.param); });
 
-TEST(SurfaceCommandLine, RefusesUnwritableFilesAndRendersWithoutSurface) {
+TEST(SurfaceCommandLine, RejectsUnwritableFilesAndRendersWithoutSurface) {
   const TemporaryFolder folder;
   std::filesystem::create_directory_symlink(kneeFolder() / "knee", folder / "knee");
   std::filesystem::create_directory(folder / "folder.vtp");
   const auto surfaceArguments = [](const std::string& file) {
     return kneeArguments({"--surface", file});
   };
-  const std::string extensions = "has no known extension; name a file .vtp, .ply or .stl";
-  const std::string unavailable = "--surface: --clip none and plane have none; add --focus";
+  const std::string extensions = "unknown file extension; use .vtp, .ply or .stl";
+  const std::string unavailable =
+      "--surface: not available with --clip none and plane; add --focus";
   expectErrors(
       {
-          {"another ending", surfaceArguments("a.obj"), 2, "--surface a.obj: " + extensions},
-          {"no ending", surfaceArguments("a"), 2, extensions},
+          {"unknown extension", surfaceArguments("a.obj"), 2, "--surface a.obj: " + extensions},
+          {"no extension", surfaceArguments("a"), 2, extensions},
           {"no clip", kneeArguments({"--surface", "a.vtp", "--clip", "none"}), 2, unavailable},
           {"no focus", {"knee/knee.nrrd", "--surface", "a.vtp"}, 2, unavailable},
           {"a missing folder", surfaceArguments("missing/a.vtp"), 4,
@@ -129,11 +130,11 @@ TEST(SurfaceCommandLine, RefusesUnwritableFilesAndRendersWithoutSurface) {
           {"a folder", surfaceArguments("folder.vtp"), 4, "folder.vtp: is a folder"},
           {"over the stats", kneeArguments({"--surface", "a.vtp", "--stats", "./a.vtp"}), 2,
            "a.vtp: would be written twice"},
-          {"over an input that is not there",
+          {"over a missing input",
            {"knee/knee.nrrd", "--segmentation", "knee/bone.vtp", "--focus", "1", "--surface",
             "knee/bone.vtp"},
            3,
-           "knee/bone.vtp: there is no such file"},
+           "knee/bone.vtp: no such file"},
           {"twice", kneeArguments({"--surface", "a.vtp", "--surface", "b.vtp"}), 2,
            "more than once"},
       },

@@ -1,4 +1,4 @@
-// Machine that starts no more threads, as at the limit of a user's processes.
+// Renders on a system that starts no more threads, as at a user's process limit (ulimit -u).
 
 #include "CommandTesting.h"
 
@@ -19,8 +19,8 @@ namespace {
 
 using ThreadsCommand = SmallScene;
 
-/// Refuses new threads, but not processes, to this process and its children from now on. A limit
-/// (RLIMIT_NPROC) would not hold for root.
+/// Makes thread creation fail in this process and its children; new processes still start. Uses
+/// seccomp, since RLIMIT_NPROC does not apply to root.
 bool forbidThreads() {
   constexpr auto refused = SECCOMP_RET_ERRNO | EAGAIN;
   sock_filter filter[] = {
@@ -37,7 +37,7 @@ bool forbidThreads() {
          ::prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
 }
 
-/// Ends without destructors: the parent still uses the folders of other tests.
+/// Ends without calling destructors, since the parent still uses the temporary folders.
 [[noreturn]] void runWithoutThreads(Arguments arguments, const std::filesystem::path& folder) {
   if (!forbidThreads())
     std::_Exit(77);
@@ -48,11 +48,11 @@ bool forbidThreads() {
   std::_Exit(outcome.status);
 }
 
-TEST_F(ThreadsCommand, UnstartableThreadsAreRefusedAndOneThreadRenders) {
+TEST_F(ThreadsCommand, FailedThreadStartIsAnErrorAndOneThreadRenders) {
   if (std::thread::hardware_concurrency() < 2)
-    GTEST_SKIP() << "one core: no thread is wanted";
+    GTEST_SKIP() << "needs more than one core";
   if (::prctl(PR_GET_SECCOMP) < 0)
-    GTEST_SKIP() << "this system filters no calls";
+    GTEST_SKIP() << "needs seccomp";
   const Arguments render = {"volume.nrrd", "--output", "a.png", "--threads"};
   const Arguments turntable = {"turntable", "volume.nrrd", "--output",  "t.png",
                                "--frames",  "1",           "--threads", "1"};

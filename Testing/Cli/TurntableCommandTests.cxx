@@ -1,5 +1,5 @@
-// `fenestra turntable`: its frames equal those of render, and none is rendered twice. Also --view
-// auto, which may choose the first frame's view.
+// `fenestra turntable`: its frames equal images of render, and finished frames are not rendered
+// again. Also tests --view auto, which can choose the view of the first frame.
 
 #include "CommandTesting.h"
 #include "ImageTesting.h"
@@ -18,8 +18,8 @@ const Arguments focus = {"--segmentation", "segments.seg.nrrd", "--focus", "A"};
 
 class TurntableCommand : public SmallScene {
 protected:
-  /// Arguments of `fenestra turntable volume.nrrd` for segment A: four frames of 16x16 pixels and 2
-  /// samples a pixel.
+  /// Arguments of `fenestra turntable volume.nrrd` with focus A: four frames of 16x16 pixels with 2
+  /// samples per pixel.
   static Arguments makeArguments(const Arguments& more) {
     Arguments all = {"turntable", "volume.nrrd", "--size", "16x16", "--frames", "4"};
     all.insert(all.end(), focus.begin(), focus.end());
@@ -28,10 +28,12 @@ protected:
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
-  Outcome turn(const Arguments& more) const { return run(makeArguments(more), folder.path()); }
+  Outcome runTurntable(const Arguments& more) const {
+    return run(makeArguments(more), folder.path());
+  }
 
-  static std::string frame(int number) { return "turn_000" + std::to_string(number) + ".exr"; }
-  /// Camera flags from a frame's header.
+  static std::string frameName(int number) { return "turn_000" + std::to_string(number) + ".exr"; }
+  /// Camera options from a frame's header.
   Arguments readCamera(const std::string& file) const {
     std::istringstream words(readImage(folder / file).header.at("camera"));
     Arguments flags;
@@ -39,7 +41,7 @@ protected:
       flags.push_back(word);
     return flags;
   }
-  /// Three numbers of one of these flags.
+  /// Vector value of one of these options.
   Vec3 readVector(const std::string& file, const std::string& flag) const {
     for (const std::string& word : readCamera(file))
       if (word.starts_with(flag)) {
@@ -51,7 +53,7 @@ protected:
       }
     throw std::runtime_error(file + " has no " + flag);
   }
-  /// Unit direction from a frame's target to its eye.
+  /// Unit vector from a frame's target to its camera.
   Vec3 cameraDirection(const std::string& file) const {
     return (readVector(file, "--position=") - readVector(file, "--target=")).normalized();
   }
@@ -62,8 +64,8 @@ protected:
 
 TEST_F(TurntableCommand, FramesEqualThoseOfRender) {
   const Outcome outcome =
-      turn({"--output", "turn.exr", "--output", "turn.png", "--output", "turn.nrrd", "--boundary",
-            "exact", "--steady", "0", "--stats", "all.json"});
+      runTurntable({"--output", "turn.exr", "--output", "turn.png", "--output", "turn.nrrd",
+                    "--boundary", "exact", "--steady", "0", "--stats", "all.json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_TRUE(outcome.out.starts_with("turn_0000.exr to turn_0003.exr: 4 of 4 frames"))
       << outcome.out;
@@ -71,55 +73,57 @@ TEST_F(TurntableCommand, FramesEqualThoseOfRender) {
     for (const char* ending : {".png", ".nrrd", "-Z.nrrd"})
       EXPECT_TRUE(std::filesystem::exists(folder / ("turn_000" + std::to_string(i) + ending)));
     Arguments arguments = {"--output", "single.exr", "--boundary", "exact"};
-    for (const Arguments& more : {focus, readCamera(frame(i))})
+    for (const Arguments& more : {focus, readCamera(frameName(i))})
       arguments.insert(arguments.end(), more.begin(), more.end());
     ASSERT_EQ(renderVolume(arguments).status, 0);
-    const Image single = readImage(folder / "single.exr"), turned = readImage(folder / frame(i));
+    const Image single = readImage(folder / "single.exr"),
+                turned = readImage(folder / frameName(i));
     EXPECT_EQ(single.channels, turned.channels) << i;
     EXPECT_EQ(single.header.at("camera"), turned.header.at("camera"));
   }
-  EXPECT_NE(readImage(folder / frame(0)).channels, readImage(folder / frame(1)).channels);
+  EXPECT_NE(readImage(folder / frameName(0)).channels, readImage(folder / frameName(1)).channels);
   const auto stats = nlohmann::json::parse(readBytes(folder / "all.json"));
   EXPECT_EQ(stats["rendered"], 4);
   EXPECT_GT(stats["surfaceChangeMmPerDegree"]["max"], 0.0);
   EXPECT_EQ(listFiles(folder.path()).size(),
-            2U + 4 * 4 + 3); // inputs, frames, one picture, two .json
+            2U + 4 * 4 + 3); // inputs, frames, single.exr, two .json
 }
 
-TEST_F(TurntableCommand, TurnsAroundTheTargetFromTheRequestedView) {
-  ASSERT_EQ(turn({"--output", "turn.exr", "--view", "anterior", "--degrees", "-180"}).status, 0);
-  EXPECT_LT((cameraDirection(frame(0)) - Vec3::UnitY()).norm(), 1e-12);
-  EXPECT_LT((cameraDirection(frame(2)) - Vec3::UnitX()).norm(), 1e-12)
+TEST_F(TurntableCommand, RotatesAroundTheTargetFromTheRequestedView) {
+  ASSERT_EQ(
+      runTurntable({"--output", "turn.exr", "--view", "anterior", "--degrees", "-180"}).status, 0);
+  EXPECT_LT((cameraDirection(frameName(0)) - Vec3::UnitY()).norm(), 1e-12);
+  EXPECT_LT((cameraDirection(frameName(2)) - Vec3::UnitX()).norm(), 1e-12)
       << "clockwise, to the patient's right";
-  EXPECT_LT((cameraDirection(frame(3)) - Vec3(1, -1, 0).normalized()).norm(), 1e-12);
-  EXPECT_EQ(readVector(frame(0), "--target="), readVector(frame(3), "--target="));
+  EXPECT_LT((cameraDirection(frameName(3)) - Vec3(1, -1, 0).normalized()).norm(), 1e-12);
+  EXPECT_EQ(readVector(frameName(0), "--target="), readVector(frameName(3), "--target="));
 }
 
 TEST_F(TurntableCommand, RendersOnlyMissingFrames) {
-  ASSERT_EQ(turn({"--output", "turn.exr"}).status, 0);
-  const Image lost = readImage(folder / frame(2));
+  ASSERT_EQ(runTurntable({"--output", "turn.exr"}).status, 0);
+  const Image lost = readImage(folder / frameName(2));
   std::map<int, std::filesystem::file_time_type> written;
   for (const int index : {0, 1, 3})
-    written[index] = std::filesystem::last_write_time(folder / frame(index));
-  std::filesystem::remove(folder / frame(2));
-  const Outcome outcome = turn({"--output", "turn.exr", "--threads", "1"});
+    written[index] = std::filesystem::last_write_time(folder / frameName(index));
+  std::filesystem::remove(folder / frameName(2));
+  const Outcome outcome = runTurntable({"--output", "turn.exr", "--threads", "1"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("4 of 4 frames, 1 rendered now"), std::string::npos) << outcome.out;
   for (const auto& [index, when] : written)
-    EXPECT_EQ(std::filesystem::last_write_time(folder / frame(index)), when) << index;
-  EXPECT_EQ(readImage(folder / frame(2)).channels, lost.channels);
+    EXPECT_EQ(std::filesystem::last_write_time(folder / frameName(index)), when) << index;
+  EXPECT_EQ(readImage(folder / frameName(2)).channels, lost.channels);
   EXPECT_EQ(readManifest()["finished"].size(), 4U);
 }
 
-/// A .nrrd without depth is one file.
+/// Without depth, a .nrrd frame is a single file.
 TEST_F(TurntableCommand, ResumesAfterFramesWithoutDepth) {
   const Arguments flags = {"--output", "turn.nrrd", "--layers", "color"};
-  ASSERT_EQ(turn(flags).status, 0);
-  const Outcome again = turn(flags);
+  ASSERT_EQ(runTurntable(flags).status, 0);
+  const Outcome again = runTurntable(flags);
   EXPECT_NE(again.out.find("4 of 4 frames, 0 rendered now"), std::string::npos) << again.out;
 }
 
-TEST_F(TurntableCommand, ResumesAfterAnInterruptionBitForBit) {
+TEST_F(TurntableCommand, ResumesAfterAnInterruptionWithIdenticalFrames) {
   Arguments arguments = makeArguments({"--output", "turn.exr", "--samples", "60"});
   *std::find(arguments.begin(), arguments.end(), "16x16") = "64x64";
   {
@@ -130,65 +134,64 @@ TEST_F(TurntableCommand, ResumesAfterAnInterruptionBitForBit) {
     process.send(SIGINT);
     const Outcome outcome = process.wait();
     EXPECT_EQ(outcome.status, 5) << outcome.err;
-    EXPECT_NE(outcome.out.find("(stopped on request; the same command goes on)"), std::string::npos)
+    EXPECT_NE(outcome.out.find("(stopped on request; the same command resumes)"), std::string::npos)
         << outcome.out;
   }
   const auto finished = readManifest()["finished"].size();
   ASSERT_GE(finished, 1U);
   ASSERT_LT(finished, 4U);
-  EXPECT_EQ(listFiles(folder.path()).size(), 2 + finished + 1) << "no frame is left half-written";
+  EXPECT_EQ(listFiles(folder.path()).size(), 2 + finished + 1) << "an unfinished frame remains";
   std::map<int, std::string> before;
   for (int i = 0; i < static_cast<int>(finished); ++i)
-    before[i] = readBytes(folder / frame(i));
+    before[i] = readBytes(folder / frameName(i));
 
   const Outcome rest = run(arguments, folder.path());
   ASSERT_EQ(rest.status, 0) << rest.err;
   EXPECT_NE(rest.out.find(std::to_string(4 - finished) + " rendered now"), std::string::npos);
   for (const auto& [i, bytes] : before)
-    EXPECT_EQ(readBytes(folder / frame(i)), bytes) << i;
+    EXPECT_EQ(readBytes(folder / frameName(i)), bytes) << i;
   const nlohmann::json resumed = readManifest();
   Arguments complete = arguments;
   *std::find(complete.begin(), complete.end(), "turn.exr") = "whole.exr";
   ASSERT_EQ(run(complete, folder.path()).status, 0);
   for (int i = 0; i < 4; ++i)
     EXPECT_EQ(readImage(folder / ("whole_000" + std::to_string(i) + ".exr")).channels,
-              readImage(folder / frame(i)).channels)
+              readImage(folder / frameName(i)).channels)
         << i;
-  // The files differ in their headers, by the command.
+  // The files themselves differ, since their headers contain the command.
   const nlohmann::json atOnce = nlohmann::json::parse(readBytes(folder / "whole.turntable.json"));
   for (std::size_t i = 0; i < 4; ++i)
     EXPECT_EQ(atOnce["finished"][i]["surfaceChange"], resumed["finished"][i]["surfaceChange"]);
 }
 
-TEST_F(TurntableCommand, RefusesFramesOfAnotherTurntable) {
-  ASSERT_EQ(turn({"--output", "turn.exr"}).status, 0);
+TEST_F(TurntableCommand, RejectsFramesOfAnotherTurntable) {
+  ASSERT_EQ(runTurntable({"--output", "turn.exr"}).status, 0);
   folder.write("frame_0001.png", "mine");
   folder.write("damaged.turntable.json", "{\"request\": 7}");
   expectErrors(
       {
           {"other samples", makeArguments({"--output", "turn.exr", "--samples", "3"}), 2,
-           "turn.turntable.json: is of another turntable (--samples=2 there, --samples=3 here); "
-           "choose another --output, or add --restart"},
+           "turn.turntable.json: belongs to another turntable (--samples=2 before, "
+           "--samples=3 now); use another --output, or add --restart"},
           {"other seed", makeArguments({"--output", "turn.exr", "--seed", "3"}), 2,
-           "another turntable (--seed=3 here)"},
-          {"others' frame", makeArguments({"--output", "frame.png"}), 2,
-           "frame_0001.png: is there, and no frame.turntable.json tells what it is of"},
+           "another turntable (--seed=3 now)"},
+          {"foreign frame", makeArguments({"--output", "frame.png"}), 2,
+           "frame_0001.png: already exists, and no frame.turntable.json describes it"},
           {"damaged", makeArguments({"--output", "damaged.png"}), 3, "damaged.turntable.json: "},
       },
       folder.path());
-  const Outcome again = turn({"--output", "turn.exr", "--seed", "3", "--restart"});
+  const Outcome again = runTurntable({"--output", "turn.exr", "--seed", "3", "--restart"});
   ASSERT_EQ(again.status, 0) << again.err;
   EXPECT_NE(again.out.find("4 rendered now"), std::string::npos) << again.out;
-  EXPECT_EQ(readImage(folder / frame(1)).header.at("seed"), "3");
+  EXPECT_EQ(readImage(folder / frameName(1)).header.at("seed"), "3");
 
   folder.write("segments.seg.nrrd", makeSegments() + " ");
-  const Outcome changed = turn({"--output", "turn.exr", "--seed", "3"});
+  const Outcome changed = runTurntable({"--output", "turn.exr", "--seed", "3"});
   EXPECT_EQ(changed.status, 2);
-  EXPECT_NE(changed.err.find("segments.seg.nrrd has changed since"), std::string::npos)
-      << changed.err;
+  EXPECT_NE(changed.err.find("segments.seg.nrrd has changed"), std::string::npos) << changed.err;
 }
 
-TEST_F(TurntableCommand, RefusesToResumeAfterAFileOfTheSceneChanged) {
+TEST_F(TurntableCommand, DoesNotResumeAfterAFileOfTheSceneChanged) {
   std::filesystem::copy(kneeFolder() / "knee", folder / "knee");
   const Arguments turn = {
       "turntable", "knee/knee.mrml",    "--size",   "8x8", "--samples", "1",
@@ -199,15 +202,15 @@ TEST_F(TurntableCommand, RefusesToResumeAfterAFileOfTheSceneChanged) {
     const auto before = std::filesystem::last_write_time(folder / file);
     std::filesystem::last_write_time(folder / file, before + std::chrono::seconds(1));
     expectErrors({{file, turn, 2,
-                   "knee.turntable.json: is of another turntable (" + std::string(file) +
-                       " has changed since)"}},
+                   "knee.turntable.json: belongs to another turntable (" + std::string(file) +
+                       " has changed)"}},
                  folder.path());
     std::filesystem::last_write_time(folder / file, before);
   }
   EXPECT_EQ(run(turn, folder.path()).status, 0);
 }
 
-TEST_F(TurntableCommand, RefusesToResumeAfterDetachedVoxelsChanged) {
+TEST_F(TurntableCommand, DoesNotResumeAfterDetachedVoxelsChanged) {
   NrrdText header;
   header.fields = "data file: voxels.raw\n";
   folder.write("volume.nhdr", header.encode(""));
@@ -220,11 +223,10 @@ TEST_F(TurntableCommand, RefusesToResumeAfterDetachedVoxelsChanged) {
   const auto before = std::filesystem::last_write_time(folder / "voxels.raw");
   folder.write("voxels.raw", others);
   std::filesystem::last_write_time(folder / "voxels.raw", before);
-  expectErrors({{"voxels", arguments, 2, "(the volume or the focus has changed since)"}},
-               folder.path());
+  expectErrors({{"voxels", arguments, 2, "(the volume or the focus has changed)"}}, folder.path());
 }
 
-TEST_F(TurntableCommand, ReadsARecordOfTenThousandFrames) {
+TEST_F(TurntableCommand, ReadsAManifestOfTenThousandFrames) {
   Arguments arguments =
       makeArguments({"--output", "turn.png", "--samples", "1", "--progress", "xml"});
   *std::find(arguments.begin(), arguments.end(), "4") = "10000";
@@ -238,7 +240,7 @@ TEST_F(TurntableCommand, ReadsARecordOfTenThousandFrames) {
   nlohmann::json complete = readManifest();
   const nlohmann::json finished = complete["finished"].at(1);
   for (int frame = static_cast<int>(complete["finished"].size()); frame < 10000; ++frame) {
-    complete["finished"].push_back(finished); // of lost files
+    complete["finished"].push_back(finished); // of files that do not exist
     complete["finished"].back()["frame"] = frame;
   }
   folder.write("turn.turntable.json", complete.dump(1));
@@ -248,33 +250,33 @@ TEST_F(TurntableCommand, ReadsARecordOfTenThousandFrames) {
   EXPECT_EQ(again.status, 5) << again.err;
 }
 
-TEST_F(TurntableCommand, StopsWithinASurface) {
+TEST_F(TurntableCommand, StopsDuringTheComputationOfASurface) {
   Arguments arguments =
       makeArguments({"--output", "turn.exr", "--samples", "1", "--boundary", "exact", "--degrees",
                      "90", "--stats", "all.json", "--progress", "xml"});
-  *std::find(arguments.begin(), arguments.end(), "16x16") = "1024x1024"; // five surfaces a frame
+  *std::find(arguments.begin(), arguments.end(), "16x16") = "1024x1024"; // five surfaces per frame
   const Stopwatch watch;
   Process process(arguments, folder.path());
   ASSERT_TRUE(process.waitForOutput("frame 2 of 4"));
-  const double frame = watch.seconds(); // most of it for surfaces
+  const double frame = watch.seconds(); // mostly spent on surfaces
   process.send(SIGINT);
   const Outcome outcome = process.wait();
-  std::cout << "stopped within " << outcome.seconds << " s, after a frame of " << frame << " s\n";
+  std::cout << "stopped within " << outcome.seconds << " s; a frame took " << frame << " s\n";
   EXPECT_EQ(outcome.status, 5) << outcome.err;
   EXPECT_LT(outcome.seconds, frame / 4.0);
   EXPECT_NE(outcome.out.find("1 of 4 frames, 1 rendered now"), std::string::npos) << outcome.out;
   EXPECT_EQ(nlohmann::json::parse(readBytes(folder / "all.json"))["finished"], 1);
-  EXPECT_EQ(listFiles(folder.path()).size(), 2U + 3) << "inputs, a frame, and two .json";
+  EXPECT_EQ(listFiles(folder.path()).size(), 2U + 3) << "inputs, one frame, two .json";
 }
 
-TEST_F(TurntableCommand, RefusesFlagsForASinglePicture) {
+TEST_F(TurntableCommand, RejectsOptionsForASingleImage) {
   folder.write("volume_0002.nrrd", readBytes(folder / "volume.nrrd"));
   expectErrors(
       {
           {"surface", makeArguments({"--surface", "a.vtp"}), 2,
-           "--surface: is for a single picture"},
-          {"xml", makeArguments({"--xml"}), 2, "--xml: is for a single picture"},
-          {"no folder", makeArguments({"--output", "nowhere/turn.png"}), 4,
+           "--surface: only for a single image"},
+          {"xml", makeArguments({"--xml"}), 2, "--xml: only for a single image"},
+          {"missing folder", makeArguments({"--output", "nowhere/turn.png"}), 4,
            "fenestra: nowhere/turn.turntable.json: cannot be written: No such file"},
           {"no frames", makeArguments({"--steady", "50"}), 2,
            "--steady: expected a number from 0 to 45"},
@@ -283,28 +285,28 @@ TEST_F(TurntableCommand, RefusesFlagsForASinglePicture) {
            {"turntable", "volume_0002.nrrd", "--output", "volume.nrrd"},
            2,
            "volume_0002.nrrd: would replace an input file"},
-          {"an input anew",
+          {"an input with --restart",
            {"turntable", "volume_0002.nrrd", "--output", "volume.nrrd", "--restart"},
            2,
            "volume_0002.nrrd: would replace an input file"},
           {"auto without a focus",
            {"turntable", "volume.nrrd", "--view", "auto"},
            2,
-           "--view: auto looks for a focus"},
+           "--view: auto requires a focus"},
       },
       folder.path());
 }
 
-TEST_F(TurntableCommand, AutomaticViewBeginsWithTheViewOfRender) {
-  ASSERT_EQ(turn({"--output", "turn.exr", "--view", "auto"}).status, 0);
+TEST_F(TurntableCommand, AutomaticViewStartsWithTheViewOfRender) {
+  ASSERT_EQ(runTurntable({"--output", "turn.exr", "--view", "auto"}).status, 0);
   for (const char* size : {"16x16", "48x32"}) {
     const std::string file = std::string(size) + ".exr";
     Arguments arguments = {"volume.nrrd", "--view", "auto",     "--samples", "1",
                            "--size",      size,     "--output", file};
     arguments.insert(arguments.end(), focus.begin(), focus.end());
     ASSERT_EQ(run(arguments, folder.path()).status, 0);
-    EXPECT_LT((cameraDirection(file) - cameraDirection(frame(0))).norm(), 1e-12)
-        << "whatever the picture's size";
+    EXPECT_LT((cameraDirection(file) - cameraDirection(frameName(0))).norm(), 1e-12)
+        << "depends on the size";
   }
 }
 
@@ -323,8 +325,8 @@ TEST_F(TurntableCommand, AutomaticViewShowsKneeCartilageFromAnterior) {
   }
 }
 
-/// Each refusal names the file and the error in it.
-TEST_F(TurntableCommand, RefusesRecordFieldsOfTheWrongType) {
+/// Each error names the file and the invalid member.
+TEST_F(TurntableCommand, RejectsManifestMembersOfTheWrongType) {
   const std::string request = R"("version": "0.1", "arguments": ["a"], "inputs": [{"file": "b"}])";
   const std::vector<std::pair<std::string, std::string>> records = {
       {R"({"request": {"arguments": [], "inputs": []}})", R"(request: has no "version")"},
@@ -340,7 +342,7 @@ TEST_F(TurntableCommand, RefusesRecordFieldsOfTheWrongType) {
        "request.inputs[0].file: must be a string"},
       {R"({"request": {"version": "", "arguments": [], "inputs": [], "more": 5}})",
        "request: unknown key \"more\""},
-      {R"({"request": [)" + request + "]}", "is not JSON"},
+      {R"({"request": [)" + request + "]}", "is not valid JSON"},
       {R"({"request": 6, "finished": []})", "request: must be an object"},
       {"[]", "must be an object"}};
   for (const auto& [text, message] : records) {
@@ -351,7 +353,7 @@ TEST_F(TurntableCommand, RefusesRecordFieldsOfTheWrongType) {
   }
 }
 
-TEST_F(TurntableCommand, PartsRenderTheirFramesBesideEachOther) {
+TEST_F(TurntableCommand, ShardsRenderTheirFramesIntoOneFolder) {
   const auto turn = [this](const std::string& output, const Arguments& more) {
     Arguments all = {"turntable", "volume.nrrd", "--size", "8x8",      "--samples",
                      "1",         "--frames",    "5",      "--output", output};

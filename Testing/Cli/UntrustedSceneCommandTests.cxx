@@ -1,12 +1,12 @@
-// Scenes from untrusted sources: limits on the files they make the program read and write, and on
-// resources.
+// Scenes from untrusted sources must not make the program read or write arbitrary files, or use
+// excessive resources.
 
 #include "CommandTesting.h"
 #include "files/images/ImageReader.h"
 
 #include <zip.h>
 
-namespace fenestra::TrustCommandTests {
+namespace fenestra::UntrustedSceneCommandTests {
 namespace {
 
 const std::string scene = R"(<MRML version="Slicer 5.6.2 32448">
@@ -15,9 +15,9 @@ const std::string scene = R"(<MRML version="Slicer 5.6.2 32448">
   <SegmentationStorage id="labels" fileName="segments.seg.nrrd"/>
   <Segmentation id="s" name="parts" references="storage:labels;"/>)";
 
-class TrustCommand : public SmallScene {
+class UntrustedSceneCommand : public SmallScene {
 protected:
-  /// Writes a scene whose render node has these attributes.
+  /// Writes a scene with these attributes in its FenestraRender node.
   void writeScene(const std::string& attributes) const {
     folder.write("scene.mrml",
                  scene + "<FenestraRender id=\"f\" name=\"now\" " + attributes + "/></MRML>");
@@ -30,7 +30,7 @@ protected:
     return run(all, folder.path());
   }
 
-  /// Picture without the scene's stored flags.
+  /// Image of the scene without stored options.
   std::map<std::string, std::vector<float>> renderPlain(const Arguments& flags) const {
     writeScene("");
     EXPECT_EQ(render("plain.exr", flags).status, 0);
@@ -38,7 +38,7 @@ protected:
   }
 };
 
-TEST_F(TrustCommand, StoredFlagsWriteNoFilesAndRunNoPrograms) {
+TEST_F(UntrustedSceneCommand, StoredOptionsWriteNoFilesAndRunNoPrograms) {
   folder.write("program", "#!/bin/sh\ntouch ran\n");
   std::filesystem::permissions(folder / "program", std::filesystem::perms::all);
   writeScene(R"(size="8x8" samples="1" output="a.png" stats="b.json" surface="c.vtp" focus="A"
@@ -56,11 +56,11 @@ TEST_F(TrustCommand, StoredFlagsWriteNoFilesAndRunNoPrograms) {
   EXPECT_EQ(readImage(folder / "picture.exr").width, 8);
 }
 
-/// Each file is no valid look: reading it would end the render.
-TEST_F(TrustCommand, StoredFlagsThatNameFilesAreIgnored) {
+/// The files are invalid, so that reading one would fail the render.
+TEST_F(UntrustedSceneCommand, StoredOptionsThatNameFilesAreIgnored) {
   const Arguments small = {"--size", "8x8", "--samples", "1", "--progress", "none"};
   const auto expected = renderPlain(small);
-  const std::string secret = folder.write("secret.exr", "another's").string();
+  const std::string secret = folder.write("secret.exr", "confidential").string();
   for (const auto& [attribute, flag] : std::vector<std::pair<std::string, std::string>>{
            {"transfer=\"" + secret + "\"", "transfer"},
            {"transfer=\"secret.exr\"", "transfer"},
@@ -77,15 +77,15 @@ TEST_F(TrustCommand, StoredFlagsThatNameFilesAreIgnored) {
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_NE(outcome.err.find("warning: FenestraRender now (f): " + flag + " "), std::string::npos)
         << outcome.err;
-    EXPECT_NE(outcome.err.find("; give --" + flag + " "), std::string::npos) << outcome.err;
-    EXPECT_EQ(outcome.err.find("another's"), std::string::npos) << outcome.err;
-    if (flag != "segmentation") { // the scene's own is used instead
+    EXPECT_NE(outcome.err.find("; to use it, add --" + flag), std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.err.find("confidential"), std::string::npos) << outcome.err;
+    if (flag != "segmentation") { // replaced by the scene's segmentation
       EXPECT_EQ(readImage(folder / "picture.exr").channels, expected) << attribute;
     }
   }
 }
 
-TEST_F(TrustCommand, StoredNamesAndTextsApply) {
+TEST_F(UntrustedSceneCommand, StoredNamesAndValuesApply) {
   writeScene(R"(transfer="mr-knee" lights="headlight" environment="1,2,3" size="8x8" samples="1")");
   const Outcome named = render("named.exr", {"--echo"});
   EXPECT_EQ(named.status, 0);
@@ -94,22 +94,22 @@ TEST_F(TrustCommand, StoredNamesAndTextsApply) {
     EXPECT_NE(named.out.find(flag), std::string::npos) << named.out;
 }
 
-TEST_F(TrustCommand, StoredSizeAndSamplesAreLimited) {
+TEST_F(UntrustedSceneCommand, StoredSizeAndSamplesAreLimited) {
   writeScene(R"(size="9000x9000" samples="100000000")");
   const Outcome outcome =
       render("picture.exr", {"--progress", "none", "--seconds", "0.01", "--bounces", "0"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("now (f): size "), std::string::npos) << outcome.err;
-  EXPECT_NE(outcome.err.find("; give --size 9000x9000"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("add --size 9000x9000"), std::string::npos) << outcome.err;
   EXPECT_EQ(readImage(folder / "picture.exr").width, 512);
   writeScene(R"(size="8x8" samples="100000000")");
   const Outcome fewer = render("picture.exr", {"--progress", "none"});
   EXPECT_EQ(fewer.status, 0) << fewer.err;
-  EXPECT_NE(fewer.err.find("; give --samples 100000000"), std::string::npos) << fewer.err;
+  EXPECT_NE(fewer.err.find("add --samples 100000000"), std::string::npos) << fewer.err;
 }
 
-/// A header in an archive may name only files of the archive.
-TEST_F(TrustCommand, ArchiveReadsNoFileOutsideItself) {
+/// A header in an archive must name only files in that archive.
+TEST_F(UntrustedSceneCommand, ArchiveReferencesOnlyItsOwnFiles) {
   const std::string outside = folder.write("outside.raw", std::string(64, 'x')).string();
   const auto archive = [&](const std::string& header, bool asMeta) {
     const std::string name = asMeta ? "volume.mhd" : "volume.nhdr";
@@ -151,4 +151,4 @@ TEST_F(TrustCommand, ArchiveReadsNoFileOutsideItself) {
 }
 
 } // namespace
-} // namespace fenestra::TrustCommandTests
+} // namespace fenestra::UntrustedSceneCommandTests

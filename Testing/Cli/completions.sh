@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Asks a shell to complete commands, flags and values, by the script that the program prints for it; or
-# mandoc for faults of the manual page. Exits 1 with the wrong answers, 77 where the shell is missing.
+# Loads the printed completions in a shell and checks how it completes commands, options and values; or
+# checks the manual page with mandoc. Exit status 1 with the errors, 77 if the shell is not installed.
 # usage: completions.sh FENESTRA bash|zsh|fish|man
 set -euo pipefail
 export LC_ALL=C.UTF-8
 program=$(realpath "$1")
 kind=$2
 tool=${kind/#man/mandoc}
-command -v "$tool" >/dev/null || { echo "SKIPPED: there is no $tool here"; exit 77; }
+command -v "$tool" >/dev/null || { echo "SKIPPED: needs $tool"; exit 77; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
@@ -15,7 +15,7 @@ cd "$work"
 mkdir folder
 (cd folder && touch scan.nrrd labels.nrrd look.json)
 
-# Line as typed, and the words that complete its last; none: no completion.
+# Line as typed|completion of its last word; empty: no completion.
 cases='fenestra --cl|--clip
 fenestra --clip su|surface
 fenestra --clip=su|surface
@@ -27,12 +27,12 @@ fenestra turntable --surf|
 fenestra --checkp|--checkpoint
 fenestra inspect --js|--json
 fenestra serve scan.nrrd --noiset|--noisetarget
-fenestra serve scan.nrrd --noisetarget fi|filtered
+fenestra serve scan.nrrd --noisetarget de|denoised
 fenestra phantom kn|knee
 fenestra phantom cube --ed|--edge
 fenestra describe zs|zsh
 fenestra scan.nrrd --transfer ct-li|ct-liver
-fenestra --preset brain-t|brain-tumour
+fenestra --preset brain-t|brain-tumor
 fenestra --lights ci|cinema
 fenestra --layers den|denoised
 fenestra --soft au|auto
@@ -43,16 +43,16 @@ fenestra sc|scan.nrrd
 fenestra --volume sc|
 fenestra describe sc|'
 
-# Each prints, for every line of its input, the candidates for its last word, in a line each, and a line "/".
-ask_bash() {
+# complete_SHELL: prints the completions of each line of standard input, one per line, followed by "/".
+complete_bash() {
   (
-    set +e # as in a terminal
+    set +e # as in an interactive shell
     cd folder
     source ../described
     complete -p fenestra | grep -qx 'complete -F _fenestra fenestra' || echo "not registered"
     while IFS= read -r line; do
       COMP_WORDS=()
-      for word in $line; do # as readline splits words, where = breaks them
+      for word in $line; do # as readline does: "=" separates words
         if [[ $word == --*=* ]]; then COMP_WORDS+=("${word%%=*}" = "${word#*=}"); else COMP_WORDS+=("$word"); fi
       done
       [[ $line != *' ' ]] || COMP_WORDS+=("")
@@ -63,7 +63,7 @@ ask_bash() {
     done
   )
 }
-ask_fish() {
+complete_fish() {
   HOME=$work fish --no-config -c 'cd folder
     source ../described
     while read -l line
@@ -71,9 +71,9 @@ ask_fish() {
         echo /
     end'
 }
-# A zsh of its own behind a terminal: what stands in its line after a tab, beyond what was typed.
-ask_zsh() {
-  cat >ask.zsh <<'Z'
+# Uses an interactive zsh in a pseudoterminal, since completion needs its line editor.
+complete_zsh() {
+  cat >complete.zsh <<'Z'
 zmodload zsh/zpty
 zpty shell zsh -f -i
 zpty -w shell 'PROMPT= PS2= RPROMPT=; stty -echo; unsetopt beep zle_bracketed_paste 2>/dev/null; cd folder'
@@ -91,10 +91,10 @@ while IFS= read -r line; do
 done
 zpty -d shell
 Z
-  timeout 60 zsh -f ask.zsh
+  timeout 60 zsh -f complete.zsh
 }
 
-# Every flag of every command's help stands in what was printed.
+# The printed script or page must contain every option of every command's help.
 for command in render inspect turntable serve compare phantom describe; do
   "$program" "$command" --help | sed -n 's/^  --\([a-z]*\).*/\1/p'
 done | sort -u >flags
@@ -111,12 +111,12 @@ done <flags >missing
 if [ "$kind" = man ]; then
   mandoc -Tlint described >>missing || true
   mandoc -Tutf8 described >page || true
-  [ "$(wc -l <page)" -gt 200 ] || echo "the page is short" >>missing
+  [ "$(wc -l <page)" -gt 200 ] || echo "the page is too short" >>missing
 else
-  "$kind" -n described >>missing 2>&1 || echo "$kind does not parse it" >>missing
-  cut -d '|' -f 1 <<<"$cases" | "ask_$kind" >answers
+  "$kind" -n described >>missing 2>&1 || echo "$kind cannot parse the script" >>missing
+  cut -d '|' -f 1 <<<"$cases" | "complete_$kind" >actual
   cut -d '|' -f 2 <<<"$cases" | sed 's/$/\n\//' | sed '/^$/d' >expected
-  diff --label expected --label answered -U 99 expected answers >>missing || true
+  diff --label expected --label actual -U 99 expected actual >>missing || true
 fi
 cat missing
 [ ! -s missing ]

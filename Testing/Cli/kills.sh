@@ -1,20 +1,20 @@
 #!/usr/bin/env bash
-# Kills a render with a film (--checkpoint) by SIGKILL at random moments, runs it again, and so on; each
-# picture that it ends with must equal, byte for byte, that of a run that nothing interrupted, and beside
-# picture and film nothing may be left. Prints counts; exits 1 where a picture or a file is wrong.
-# usage: kills.sh FENESTRA KILLS [LEAST [SAMPLES [THREADS]]]
-#   LEAST    kills after a film was written, at least; there may be more kills until then [0]
-#   SAMPLES  a pixel; so many that the render takes a few seconds [400]
+# Kills a render with --checkpoint by SIGKILL at random times and starts it again, repeatedly. Each completed
+# image must equal that of an uninterrupted run byte for byte, and only the image and its checkpoint may
+# remain. Prints counts; exit status 1 if an image differs or other files remain.
+# usage: kills.sh FENESTRA KILLS [MINIMUM [SAMPLES [THREADS]]]
+#   MINIMUM  minimum number of kills after a checkpoint was written; may need more than KILLS [0]
+#   SAMPLES  per pixel; enough for a render of a few seconds [400]
 set -uo pipefail
 export LC_ALL=C
 program=$(realpath "$1")
-kills=$2 least=${3:-0} samples=${4:-400} threads=${5:-1}
+kills=$2 minimum=${3:-0} samples=${4:-400} threads=${5:-1}
 work=$(mktemp -d "${TMPDIR:-/tmp}/kills-XXXXXX")
 trap 'rm -rf "$work"' EXIT
 RANDOM=1
 mkdir "$work/once" "$work/again"
 
-# A volume of 4^3 voxels, and the same command in both folders.
+# Both folders get the same volume of 4^3 voxels and the same command.
 for folder in once again; do
   {
     printf 'NRRD0004\ntype: uint8\ndimension: 3\nspace: left-posterior-superior\nsizes: 4 4 4\n'
@@ -27,7 +27,7 @@ command=("$program" volume.nrrd --size 64x64 --samples "$samples" --threads "$th
 (cd "$work/once" && "${command[@]}") || exit 1
 cd "$work/again" || exit 1
 
-# Time until the first film is there, ms; kills come in the half of that time more.
+# Milliseconds until the first checkpoint exists; kills come before 1.5 times that, plus 0.1 s.
 begin=$(date +%s%N)
 "${command[@]}" >out 2>&1 &
 run=$!
@@ -39,19 +39,19 @@ kill -9 "$run" 2>/dev/null
 wait "$run" 2>/dev/null
 rm -f out v.*
 
-killed=0 after=0 pictures=0 wrong=0
-# check: the picture of a whole run, and what is left beside it; then begins anew.
+killed=0 after=0 images=0 wrong=0
+# check: compares the image of a completed run, checks the remaining files, and removes both results.
 check() {
-  pictures=$((pictures + 1))
+  images=$((images + 1))
   cmp ../once/v.exr v.exr || wrong=$((wrong + 1))
   if [ "$(ls -A | tr '\n' ' ')" != "v.exr v.film volume.nrrd " ]; then
-    echo "left over: $(ls -A | tr '\n' ' ')"
+    echo "unexpected files: $(ls -A | tr '\n' ' ')"
     wrong=$((wrong + 1))
   fi
   rm -f v.exr v.film
 }
-# A busy machine may write no film for long: up to ten times as many kills then.
-while [ "$killed" -lt "$kills" ] || { [ "$after" -lt "$least" ] && [ "$killed" -lt $((10 * kills)) ]; }; do
+# A busy machine may write no checkpoint for long, so up to ten times as many kills are allowed.
+while [ "$killed" -lt "$kills" ] || { [ "$after" -lt "$minimum" ] && [ "$killed" -lt $((10 * kills)) ]; }; do
   "${command[@]}" >out 2>&1 &
   run=$!
   sleep "$(awk -v r="$RANDOM" -v first="$first" 'BEGIN { print 0.1 + 1.5 * r / 32768 * first / 1000 }')"
@@ -71,5 +71,5 @@ while [ "$killed" -lt "$kills" ] || { [ "$after" -lt "$least" ] && [ "$killed" -
 done
 "${command[@]}" || wrong=$((wrong + 1))
 check
-echo "$killed kills, $after of them after a film was written; $pictures pictures, $wrong wrong"
-[ "$wrong" -eq 0 ] && [ "$after" -ge "$least" ]
+echo "$killed kills, $after of them after a checkpoint was written; $images images, $wrong errors"
+[ "$wrong" -eq 0 ] && [ "$after" -ge "$minimum" ]

@@ -1,65 +1,65 @@
 #!/usr/bin/env bash
-# Names as an output, in every way known, what the request reads or what somebody else made. Each way
-# runs in a fresh folder of copies. All must be refused before anything is rendered: one line, exit
-# status 2, 3 or 4, nothing on standard output, no file more; `told` ways are refused by serve's answer.
-# Whatever was in the folder stays as it was, links included. Prints a row of a table for each way that
-# breaks this, and exits 1. usage: overwrites.sh FENESTRA [WAY...]
+# Attacks on input files and foreign files: each case names one as an output. Each case runs in a new
+# folder with copies of the test data. The command must fail before it renders: one error line, exit status
+# 2, 3 or 4, nothing on standard output, no new file (`event` cases: an error event of serve). All existing
+# files and links must be unchanged. Prints one table row per failed case; exit status 1 if there is one.
+# usage: overwrites.sh FENESTRA [CASE...]
 set -uo pipefail
 export LC_ALL=C
 program=$(realpath "$1")
 data=$(realpath "$(dirname "${BASH_SOURCE[0]}")/../Data")
 corpus=$data/../Fuzz/Corpus
-apart=$data/../Fuzz/Apart
+sandbox=$data/../Fuzz/Sandbox
 shift
 work=$(mktemp -d -p "$([ -w /dev/shm ] && echo /dev/shm || echo "${TMPDIR:-/tmp}")" overwrites-XXXXXX)
 trap 'rm -rf "$work"' EXIT
 
-# Words of the table below. Each of the first renders; `serve` takes its changes from standard input.
+# Commands of the table below. `serve` reads its changes from standard input.
 quick=(--size 8x8 --samples 1)
 render() { "$program" render "$@" "${quick[@]}" --progress xml; }
 turn() { "$program" turntable "$@" "${quick[@]}" --frames 4 --progress xml; }
 serve() { "$program" serve "$@" "${quick[@]}"; }
 compare() { "$program" compare "$@"; }
 phantom() { "$program" phantom "$@" --size 16; }
-# scene FROM TO: the scene with one word replaced, as s.mrml.
+# scene FROM TO: writes s.mrml, the scene with FROM replaced by TO.
 scene() { sed "s#$1#$2#" scene.mrml >s.mrml; }
-# unused FILE [ATTRIBUTES]: the scene with one more volume, which no render of it shows, as s.mrml.
+# unused FILE [ATTRIBUTES]: writes s.mrml, the scene with an additional volume that is not rendered.
 unused() {
   sed "s#</MRML>#<VolumeArchetypeStorage id=\"us\" fileName=\"$1\" ${2-}/><Volume id=\"u\" name=\"u\" references=\"storage:us;\"/>&#" scene.mrml >s.mrml
 }
-# shifted FILE: the scene with its inner transform in a file, as s.mrml.
+# shifted FILE: writes s.mrml, the scene with its inner transform in FILE.
 shifted() {
   sed -e 's#\(name="Inner" references="\)\([^"]*\)" matrix[^>]*>#\1storage:ts;\2">#' \
     -e "s#</MRML>#<TransformStorage id=\"ts\" fileName=\"$1\"/></MRML>#" scene.mrml >s.mrml
 }
-# until_said EXPRESSION: waits until serve has said it, or has ended.
-until_said() {
+# wait_for_output EXPRESSION: waits until the output of serve matches, or serve has ended.
+wait_for_output() {
   while [ -e ../out ] && [ ! -e ../after ] && ! grep -qE "$1" ../out; do
     sleep 0.1
   done 2>/dev/null
 }
-# talk CHANGE: says it to serve after its first picture, and waits for the answer.
-talk() {
-  until_said '"id":null,.*"done":true'
+# send_change CHANGE: sends it to serve after the first image, and waits for the event that results.
+send_change() {
+  wait_for_output '"id":null,.*"done":true'
   echo "{\"id\":1,$1}"
-  until_said '"id":1,.*("done":true|"message")'
+  wait_for_output '"id":1,.*("done":true|"message")'
 }
-mine() { printf 'somebody else made this\n' >"$1"; }
+write_foreign() { printf 'data of another program\n' >"$1"; }
 slicer=home/share/Slicer-5.6/qt-loadable-modules/VolumeRendering
 look='name="Mine" scalarOpacity="4 0 0 200 1" gradientOpacity="4 0 1 255 1" colorTransfer="4 0 1 1 1" shade="0"'
 
-# What the folder of every way holds.
+# Fills the folder of a case.
 fill() {
   cp "$data"/traps/{scene.mrml,plain.nrrd,layers.seg.nrrd,labels.nrrd,property.vp,roi.mrk.json} \
     "$data"/traps/{detached.nhdr,detached.raw,lights.json,thin.json} "$data/cube/cube.mrb" .
   cp "$data/baselines/plain.exr" sky.exr
   cp sky.exr other.exr
   mkdir d
-  cp "$apart/Dicom/native.dcm" d/a.dcm
+  cp "$sandbox/Dicom/native.dcm" d/a.dcm
 }
 
-# WAY | EXPECTED | BEFORE | COMMAND
-ways() {
+# CASE | EXPECTED | PREPARATION | COMMAND
+cases() {
   cat <<'END'
 volume of a scene                    | refused |  | render scene.mrml --output plain.nrrd
 volume of a scene, return values     | refused |  | render scene.mrml --output o.png --returnparameterfile plain.nrrd
@@ -77,18 +77,18 @@ segmentation of a scene              | refused |  | render scene.mrml --focus He
 segmentation of a scene, no focus    | refused |  | render scene.mrml --output layers.seg.nrrd
 property of a scene                  | refused |  | render scene.mrml --output o.png --stats property.vp
 box of a scene                       | refused |  | render scene.mrml --output o.png --stats roi.mrk.json
-transform of a scene                 | refused | cp "$apart/Transform/affine.tfm" t.tfm; shifted t.tfm | render s.mrml --output o.png --stats t.tfm
-part of a scene's closed surface     | refused | cp "$corpus/Surface/box.vtm" b.vtm; sed 1s/^.// -i b.vtm; sed 1s/^.// "$corpus/Surface/box.vtp" >s.vtp | render plain.nrrd --segmentation b.vtm --focus 1 --output o.png --surface s.vtp
-part of a scene's unused segmentation | refused | mkdir b; cp "$corpus/Surface/box.vtm" b.vtm; sed -e 1s/^.// -e s#s.vtp#b/s.vtp# -i b.vtm; sed 1s/^.// "$corpus/Surface/box.vtp" >b/s.vtp; scene layers.seg.nrrd b.vtm | render s.mrml --output o.png --stats b/s.vtp
-unused volume of a scene             | refused | mine u.nrrd; unused u.nrrd | render s.mrml --output u.nrrd
+transform of a scene                 | refused | cp "$sandbox/Transform/affine.tfm" t.tfm; shifted t.tfm | render s.mrml --output o.png --stats t.tfm
+piece of a closed surface            | refused | cp "$corpus/Surface/box.vtm" b.vtm; sed 1s/^.// -i b.vtm; sed 1s/^.// "$corpus/Surface/box.vtp" >s.vtp | render plain.nrrd --segmentation b.vtm --focus 1 --output o.png --surface s.vtp
+piece of an unused closed surface    | refused | mkdir b; cp "$corpus/Surface/box.vtm" b.vtm; sed -e 1s/^.// -e s#s.vtp#b/s.vtp# -i b.vtm; sed 1s/^.// "$corpus/Surface/box.vtp" >b/s.vtp; scene layers.seg.nrrd b.vtm | render s.mrml --output o.png --stats b/s.vtp
+unused volume of a scene             | refused | write_foreign u.nrrd; unused u.nrrd | render s.mrml --output u.nrrd
 unused volume, samples of a header   | refused | unused detached.nhdr | render s.mrml --output o.png --stats detached.raw
 unused volume, samples of a .nrrd    | refused | mv detached.nhdr a.nrrd; unused a.nrrd | render s.mrml --output o.png --stats detached.raw
-unused volume, a header's list       | refused | mine b.raw; printf 'NRRD0004\ndata file: LIST\na.raw\nb.raw\n' >u.nhdr; unused u.nhdr | render s.mrml --output o.png --stats b.raw
-unused volume, a header's series     | refused | mine b07.raw; printf 'NRRD0004\ndata file: b%%02d.raw 1 9 1\n\n' >u.nhdr; unused u.nhdr | render s.mrml --output o.png --stats b07.raw
-unused volume, samples of a .mhd     | refused | mine b.raw; printf 'ObjectType = Image\nElementDataFile = b.raw\n' >u.mhd; unused u.mhd | render s.mrml --output o.png --stats b.raw
-unused volume, other half of a pair  | refused | mine u.img; mine u.hdr; unused u.hdr | render s.mrml --output o.png --stats u.img
-unused volume, a slice of its list   | refused | mine a.dcm; mine b.dcm; unused a.dcm 'fileListMember0="a.dcm" fileListMember1="b.dcm"' | render s.mrml --output o.png --stats b.dcm
-file of a scene view                 | refused | mine v.nrrd; sed 's#</MRML>#<SceneView id="v"><VolumeArchetypeStorage id="vs" fileName="v.nrrd"/></SceneView>&#' scene.mrml >s.mrml | render s.mrml --output o.png --stats v.nrrd
+unused volume, a header's list       | refused | write_foreign b.raw; printf 'NRRD0004\ndata file: LIST\na.raw\nb.raw\n' >u.nhdr; unused u.nhdr | render s.mrml --output o.png --stats b.raw
+unused volume, a header's series     | refused | write_foreign b07.raw; printf 'NRRD0004\ndata file: b%%02d.raw 1 9 1\n\n' >u.nhdr; unused u.nhdr | render s.mrml --output o.png --stats b07.raw
+unused volume, samples of a .mhd     | refused | write_foreign b.raw; printf 'ObjectType = Image\nElementDataFile = b.raw\n' >u.mhd; unused u.mhd | render s.mrml --output o.png --stats b.raw
+unused volume, second file of a pair | refused | write_foreign u.img; write_foreign u.hdr; unused u.hdr | render s.mrml --output o.png --stats u.img
+unused volume, a slice of its list   | refused | write_foreign a.dcm; write_foreign b.dcm; unused a.dcm 'fileListMember0="a.dcm" fileListMember1="b.dcm"' | render s.mrml --output o.png --stats b.dcm
+file of a scene view                 | refused | write_foreign v.nrrd; sed 's#</MRML>#<SceneView id="v"><VolumeArchetypeStorage id="vs" fileName="v.nrrd"/></SceneView>&#' scene.mrml >s.mrml | render s.mrml --output o.png --stats v.nrrd
 samples of a header                  | refused |  | render detached.nhdr --output o.png --stats detached.raw
 samples of a header, a .nrrd         | refused | mv detached.raw data.nrrd; sed -i s/detached.raw/data.nrrd/ detached.nhdr | render detached.nhdr --output data.nrrd
 samples of a scene's header          | refused | scene plain.nrrd detached.nhdr | render s.mrml --output o.png --stats detached.raw
@@ -96,15 +96,15 @@ samples of a MetaImage header        | refused | mv detached.raw raw.nrrd; print
 slice of a DICOM folder, stats       | refused |  | render d --output o.png --stats d/a.dcm
 slice of a DICOM folder, values      | refused |  | render d --output o.png --returnparameterfile d/a.dcm
 slice of a DICOM folder with a slash | refused |  | render d/ --output o.png --stats d/a.dcm
-slice that is called .nrrd           | refused | mv d/a.dcm d/a.nrrd | render d --output d/a.nrrd
+slice with extension .nrrd           | refused | mv d/a.dcm d/a.nrrd | render d --output d/a.nrrd
 slice of another series              | refused | sed 's/1[.]2[.]3/1.2.4/g' d/a.dcm >d/b.dcm | render d --volume 1.2.3 --output o.png --stats d/b.dcm
-file of a DICOM folder, no slice     | refused | mine d/notes.json | render d --output o.png --stats d/notes.json
-depth beside a picture, a volume     | refused | mv plain.nrrd a-Z.nrrd; scene plain.nrrd a-Z.nrrd | render s.mrml --output a.nrrd
-depth beside a picture, INPUT        | refused | mv plain.nrrd a-Z.nrrd | render a-Z.nrrd --output a.nrrd
-depth beside a picture, foreign      | refused | mine a-Z.nrrd | render plain.nrrd --output a.nrrd
-depth beside a picture, other volume | refused | cp labels.nrrd a-Z.nrrd | render plain.nrrd --output a.nrrd
-default output, foreign              | refused | mine plain.png | render plain.nrrd
-default output, another's picture    | refused | cp "$corpus/Picture/picture.png" plain.png; sed -i 1s/^.// plain.png | render plain.nrrd
+file of a DICOM folder, no slice     | refused | write_foreign d/notes.json | render d --output o.png --stats d/notes.json
+depth of an image = volume           | refused | mv plain.nrrd a-Z.nrrd; scene plain.nrrd a-Z.nrrd | render s.mrml --output a.nrrd
+depth of an image = INPUT            | refused | mv plain.nrrd a-Z.nrrd | render a-Z.nrrd --output a.nrrd
+depth of an image, foreign           | refused | write_foreign a-Z.nrrd | render plain.nrrd --output a.nrrd
+depth of an image, label map         | refused | cp labels.nrrd a-Z.nrrd | render plain.nrrd --output a.nrrd
+default output, foreign              | refused | write_foreign plain.png | render plain.nrrd
+default output, image without tag    | refused | cp "$corpus/Picture/picture.png" plain.png; sed -i 1s/^.// plain.png | render plain.nrrd
 map of --lights                      | refused | echo '{"lights":[{"type":"environment","file":"sky.exr"}]}' >l.json | render plain.nrrd --lights l.json --output sky.exr
 map of --environment                 | refused |  | render plain.nrrd --environment sky.exr --output sky.exr
 file of --lights                     | refused |  | render plain.nrrd --lights lights.json --output o.png --stats lights.json
@@ -122,13 +122,13 @@ INPUT, a scene                       | refused |  | render scene.mrml --output o
 INPUT, an archive                    | refused |  | render cube.mrb --output o.png --stats cube.mrb
 INPUT, an archive's hard link        | refused | ln cube.mrb c.json | render cube.mrb --output o.png --stats c.json
 INPUT, a header                      | refused |  | render detached.nhdr --output o.png --stats detached.nhdr
-two outputs, one name                | refused | mine o.png | render plain.nrrd --output o.png --output ./o.png
-two outputs, one file                | refused | mine o.png; ln o.png p.png | render plain.nrrd --output o.png --output p.png
+two outputs, one name                | refused | write_foreign o.png | render plain.nrrd --output o.png --output ./o.png
+two outputs, one file                | refused | write_foreign o.png; ln o.png p.png | render plain.nrrd --output o.png --output p.png
 two outputs, folder's links          | refused | ln -s . a; ln -s . b | render plain.nrrd --output a/o.png --output b/o.png
 two outputs, one a link              | refused | ln -s o.png p.png | render plain.nrrd --output o.png --output p.png
-stats = output                       | refused | mine o.png | render plain.nrrd --output o.png --stats o.png
-stats = depth beside a picture       | refused |  | render plain.nrrd --output o.nrrd --stats o-Z.nrrd
-output = depth beside a picture      | refused |  | render plain.nrrd --output o.nrrd --output o-Z.nrrd
+stats = output                       | refused | write_foreign o.png | render plain.nrrd --output o.png --stats o.png
+stats = depth of an image            | refused |  | render plain.nrrd --output o.nrrd --stats o-Z.nrrd
+output = depth of an image           | refused |  | render plain.nrrd --output o.nrrd --output o-Z.nrrd
 stats = values                       | refused |  | render plain.nrrd --output o.png --stats s.json --returnparameterfile s.json
 compare: A                           | refused |  | compare sky.exr other.exr --output sky.exr
 compare: B                           | refused |  | compare sky.exr other.exr --output other.exr
@@ -136,74 +136,74 @@ compare: hard link of B              | refused | ln other.exr h.exr | compare sk
 compare: error of A                  | refused | cp sky.exr e.exr | compare sky.exr other.exr --errora e.exr --errorb sky.exr --output e.exr
 compare: error of B                  | refused | cp sky.exr e.exr | compare sky.exr other.exr --errora sky.exr --errorb e.exr --output e.exr
 turntable: frame = volume            | refused | mv plain.nrrd turn_0003.nrrd; scene plain.nrrd turn_0003.nrrd | turn s.mrml --output turn.nrrd
-turntable: frame = volume, anew      | refused | mv plain.nrrd turn_0003.nrrd; scene plain.nrrd turn_0003.nrrd | turn s.mrml --output turn.nrrd --restart
-default output, of the folder's dot  | refused | mine d/d.png | cd d && render .
-turntable: frame = INPUT, anew       | refused | mv plain.nrrd turn_0003.nrrd | turn turn_0003.nrrd --output turn.nrrd --restart
+turntable: frame = volume, restart   | refused | mv plain.nrrd turn_0003.nrrd; scene plain.nrrd turn_0003.nrrd | turn s.mrml --output turn.nrrd --restart
+default output of the folder .       | refused | write_foreign d/d.png | cd d && render .
+turntable: frame = INPUT, restart    | refused | mv plain.nrrd turn_0003.nrrd | turn turn_0003.nrrd --output turn.nrrd --restart
 turntable: frame's depth = volume    | refused | mv plain.nrrd turn_0001-Z.nrrd; scene plain.nrrd turn_0001-Z.nrrd | turn s.mrml --output turn.nrrd --restart
-turntable: frame's depth, foreign    | refused | mine turn_0001-Z.nrrd | turn plain.nrrd --output turn.nrrd --restart
+turntable: frame's depth, foreign    | refused | write_foreign turn_0001-Z.nrrd | turn plain.nrrd --output turn.nrrd --restart
 turntable: stats = volume            | refused |  | turn scene.mrml --output turn.png --stats plain.nrrd
-turntable: record = a scene's file   | refused | mv roi.mrk.json turn.turntable.json; scene roi.mrk.json turn.turntable.json | turn s.mrml --output turn.png --restart
-turntable: record, foreign           | refused | mine turn.turntable.json | turn plain.nrrd --output turn.png --restart
-turntable: record, foreign JSON      | refused | cp lights.json turn.turntable.json | turn plain.nrrd --output turn.png --restart
-turntable: record = stats            | refused |  | turn plain.nrrd --output turn.png --stats turn.turntable.json
-serve: volume of a scene             | refused |  | serve scene.mrml --output plain.nrrd < <(talk '"seed":1')
-serve: hard link of a volume         | refused | ln plain.nrrd hard.nrrd | serve scene.mrml --output hard.nrrd < <(talk '"seed":1')
-serve: output that a change reads    | told    |  | serve plain.nrrd --output new.exr < <(talk '"environment":"new.exr"')
-serve: output that its lights read   | told    | echo '{"lights":[{"type":"environment","file":"new.exr"}]}' >l.json | serve plain.nrrd --output new.exr < <(talk '"lights":"l.json"')
-serve: map that a change writes      | told    |  | serve plain.nrrd --environment sky.exr --output o.exr < <(talk '"output":["sky.exr"]')
+turntable: manifest = scene file     | refused | mv roi.mrk.json turn.turntable.json; scene roi.mrk.json turn.turntable.json | turn s.mrml --output turn.png --restart
+turntable: manifest, foreign         | refused | write_foreign turn.turntable.json | turn plain.nrrd --output turn.png --restart
+turntable: manifest, foreign JSON    | refused | cp lights.json turn.turntable.json | turn plain.nrrd --output turn.png --restart
+turntable: manifest = stats          | refused |  | turn plain.nrrd --output turn.png --stats turn.turntable.json
+serve: volume of a scene             | refused |  | serve scene.mrml --output plain.nrrd < <(send_change '"seed":1')
+serve: hard link of a volume         | refused | ln plain.nrrd hard.nrrd | serve scene.mrml --output hard.nrrd < <(send_change '"seed":1')
+serve: output that a change reads    | event   |  | serve plain.nrrd --output new.exr < <(send_change '"environment":"new.exr"')
+serve: output that its lights read   | event   | echo '{"lights":[{"type":"environment","file":"new.exr"}]}' >l.json | serve plain.nrrd --output new.exr < <(send_change '"lights":"l.json"')
+serve: map that a change writes      | event   |  | serve plain.nrrd --environment sky.exr --output o.exr < <(send_change '"output":["sky.exr"]')
 phantom: foreign volume              | refused | cp plain.nrrd cube.nrrd; rm cube.mrb | phantom cube --output .
 phantom: foreign segmentation        | refused | cp labels.nrrd cube.seg.nrrd; rm cube.mrb | phantom cube --output .
 phantom: foreign scene               | refused | cp scene.mrml cube.mrml; rm cube.mrb | phantom cube --output .
-phantom: foreign archive             | refused | mine cube.mrb | phantom cube --output .
+phantom: foreign archive             | refused | write_foreign cube.mrb | phantom cube --output .
 phantom: foreign property            | refused | cp property.vp cube.vp; rm cube.mrb | phantom cube --output .
 phantom: foreign box                 | refused | cp roi.mrk.json cube-roi.mrk.json; rm cube.mrb | phantom cube --output .
 phantom: link to a foreign file      | refused | ln -s plain.nrrd cube.nrrd; rm cube.mrb | phantom cube --output .
-phantom: through a folder's link     | refused | mkdir p; mine p/cube.vp.json; ln -s p q | phantom cube --output q
+phantom: through a folder's link     | refused | mkdir p; write_foreign p/cube.vp.json; ln -s p q | phantom cube --output q
 END
 }
 
-# state: name, kind, target of a link and digest of all that the folder holds.
+# state: name, type, link target and digest of everything in the folder.
 state() {
   find . ! -name . -printf '%P|%y|%l|' \( -type f -exec sha256sum {} \; -o -printf '\n' \) | sort
 }
 
-# broken EXPECTED STATUS: what is wrong with the run, nothing where it is right.
-broken() {
+# find_errors EXPECTED STATUS: prints the violations of a run, nothing if there are none.
+find_errors() {
   local lost more
   lost=$(comm -23 ../before ../after | cut -d'|' -f1 | paste -sd' ')
   more=$(comm -13 <(cut -d'|' -f1 ../before | sort) <(cut -d'|' -f1 ../after | sort) | paste -sd' ')
-  [ -z "$lost" ] || printf 'changed or gone: %s; ' "$lost"
-  if [ "$1" = told ]; then
-    grep -q '"event":"error"' ../out || printf 'not told; '
+  [ -z "$lost" ] || printf 'changed or removed: %s; ' "$lost"
+  if [ "$1" = event ]; then
+    grep -q '"event":"error"' ../out || printf 'no error event; '
     return
   fi
-  [ -z "$more" ] || printf 'more files: %s; ' "$more"
+  [ -z "$more" ] || printf 'new files: %s; ' "$more"
   [[ $2 == [234] ]] || printf 'status %s; ' "$2"
   [ ! -s ../out ] || printf 'rendered; '
   [ "$(grep -vc '^fenestra: warning' ../err)" = 1 ] || printf 'not one line; '
 }
 
-trimmed() { sed 's/^ *//; s/ *$//' <<<"$1"; }
+trim() { sed 's/^ *//; s/ *$//' <<<"$1"; }
 
 count=0 failed=0
-while IFS='|' read -r way expected before command; do
-  way=$(trimmed "$way")
-  [ $# -eq 0 ] || [[ " $* " == *" $way "* ]] || continue
+while IFS='|' read -r name expected prepare command; do
+  name=$(trim "$name")
+  [ $# -eq 0 ] || [[ " $* " == *" $name "* ]] || continue
   rm -rf "${work:?}"/*
   mkdir "$work/folder"
   count=$((count + 1))
   wrong=$(
-    cd "$work/folder" && fill && eval "$before" || printf 'not prepared; '
+    cd "$work/folder" && fill && eval "$prepare" || printf 'preparation failed; '
     state >../before
     eval "$command" >../out 2>../err
     status=$?
     cd "$work/folder" && state >../after
-    broken "$(trimmed "$expected")" "$status"
+    find_errors "$(trim "$expected")" "$status"
   )
   [ -z "$wrong" ] && continue
-  [ $failed -gt 0 ] || printf '| way | command | what is wrong | what it said |\n|---|---|---|---|\n'
+  [ $failed -gt 0 ] || printf '| case | command | violation | error |\n|---|---|---|---|\n'
   failed=$((failed + 1))
-  printf '| %s | `%s` | %s | %s |\n' "$way" "$(trimmed "$command")" "${wrong%; }" "$(head -1 "$work/err")"
-done < <(ways)
-echo "$((count - failed)) of $count ways hold"
+  printf '| %s | `%s` | %s | %s |\n' "$name" "$(trim "$command")" "${wrong%; }" "$(head -1 "$work/err")"
+done < <(cases)
+echo "$((count - failed)) of $count cases pass"
 [ $count -gt 0 ] && [ $failed -eq 0 ]

@@ -1,10 +1,10 @@
-# Sourced: a Slurm of one machine (munged, slurmctld, slurmd) in a folder of its own, for a test.
-# begin_test FENESTRA FOLDER goes to the folder, emptied, or skips where there is no Slurm; start_cluster
-# starts it and sets SLURM_CONF; what was started ends with the test.
+# For sourcing: a single-node Slurm cluster (munged, slurmctld, slurmd) in the folder of a test.
+# begin_test FENESTRA FOLDER empties and enters the folder, or skips the test without Slurm; start_cluster
+# starts the daemons and sets SLURM_CONF. The daemons end with the test.
 
 cluster_ids=()
 
-# can_run_cluster: says why not, where it cannot.
+# can_run_cluster: status 1 and a reason if Slurm cannot run here.
 can_run_cluster() {
   local name
   for name in munged slurmctld slurmd sbatch squeue; do
@@ -25,7 +25,7 @@ skip() {
 
 begin_test() {
   local why
-  why=$(can_run_cluster) || skip "the array job, for $why"
+  why=$(can_run_cluster) || skip "$why"
   export FENESTRA
   FENESTRA=$(realpath "$1")
   rm -rf "$2"
@@ -34,10 +34,10 @@ begin_test() {
   trap stop_cluster EXIT
 }
 
-# print_jobs: the log of the jobs, as slurmctld keeps it, and what they printed.
+# print_jobs: prints the log of slurmctld about the jobs, and their output.
 print_jobs() {
   local log
-  printf -- '-- jobs, as slurmctld records them\n'
+  printf -- '-- jobs, from the log of slurmctld\n'
   grep -oE '\<(JobId|Name|JobState|StartTime|EndTime|NodeList|ArrayJobId|ArrayTaskId|ExitCode)=[^ ]+' \
     slurm/jobs.log | tr '\n' ' ' | sed 's/ JobId/\nJobId/g; s/ $/\n/'
   for log in fenestra-*.log; do
@@ -48,7 +48,7 @@ print_jobs() {
 
 free_port() { python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])'; }
 
-# in_background LOG COMMAND...: starts a daemon in the foreground of its own.
+# in_background LOG COMMAND...: starts a daemon, which stop_cluster ends.
 in_background() {
   local log=$1
   shift
@@ -110,7 +110,7 @@ CONF
   return 1
 }
 
-# wait_for_jobs SECONDS: until the queue is empty.
+# wait_for_jobs SECONDS: waits until the queue is empty; status 1 after SECONDS.
 wait_for_jobs() {
   local tries
   for tries in $(seq $((2 * $1))); do

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Resources/cluster/mpi.sbatch as a real job of a Slurm of one machine: the picture of its two ranks is that
-# of `fenestra render` on this machine, bit for bit, with a number of samples and toward a noise target.
+# Runs Resources/cluster/mpi.sbatch on a single-node Slurm cluster: the image of two MPI ranks must equal that of
+# `fenestra render` bit for bit, with --samples and with --noise.
 # usage: mpi.sh FENESTRA FENESTRA_MPI FOLDER; FOLDER is emptied first. Exit status 77: skipped.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 top=$(cd "$here/../.." && pwd)
 source "$here/cluster.sh"
-[ -x "$2" ] || skip "the job of mpirun, for $2 is not built"
+[ -x "$2" ] || skip "$2 is not built"
 FENESTRA_MPI=$(realpath "$2")
 export FENESTRA_MPI OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 begin_test "$1" "$3"
@@ -25,8 +25,8 @@ print_jobs
 "$FENESTRA" "${flags[@]}" --samples 16 --output alone-samples.exr --output alone-samples.png >alone.log 2>&1
 "$FENESTRA" "${flags[@]}" --noise 0.1 --output alone-noise.exr --output alone-noise.png >>alone.log 2>&1
 for kind in samples noise; do
-  cmp "alone-$kind.png" "$kind.png" || fail "the picture of job ${!kind} differs"
+  cmp "alone-$kind.png" "$kind.png" || fail "the image of job ${!kind} differs"
   "$FENESTRA" compare "$kind.exr" "alone-$kind.exr" | grep -q '^largest  *0$' ||
     fail "the channels of job ${!kind} differ"
 done
-printf '\nThe jobs %s and %s, of two ranks each, made the pictures of one process.\n' "$samples" "$noise"
+printf '\nThe jobs %s and %s, with two ranks each, rendered the images of a single process.\n' "$samples" "$noise"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Pictures by several ranks of mpirun equal, byte for byte, those of one process: with a number of samples
-# and toward a noise target. A rank that dies ends the job, which names it, and one process goes on from the
-# film. --seconds, a stop, other instruction sets and a wrong command end all ranks.
+# Images by several MPI ranks must equal those of one process byte for byte, with --samples and with --noise.
+# If a rank is killed, the job must end with its number, and a single process must resume from the checkpoint.
+# --seconds, a signal, different instruction sets and a usage error must end all ranks.
 # usage: ranks.sh FENESTRA FENESTRA_MPI RANKS...; exit status 77: skipped.
 set -euo pipefail
 export LC_ALL=C
@@ -9,7 +9,7 @@ skip() {
   printf 'SKIPPED: %s\n' "$*"
   exit 77
 }
-[ -x "$2" ] || skip "$2 is not built, for MPI was not found"
+[ -x "$2" ] || skip "$2 is not built"
 command -v mpirun >/dev/null || skip "mpirun is not installed"
 program=$(realpath "$1") ranked=$(realpath "$2")
 shift 2
@@ -22,14 +22,14 @@ fail() {
   wrong=$((wrong + 1))
 }
 
-# on RANKS COMMAND...
-on() {
+# run_ranks RANKS COMMAND...: runs a command by mpirun.
+run_ranks() {
   local ranks=$1
   shift
   timeout 120 mpirun --oversubscribe --bind-to none -n "$ranks" "$@"
 }
 
-# in_folder NAME: goes to an empty folder with a volume of 4^3 voxels.
+# in_folder NAME: enters a new folder with a volume of 4^3 voxels.
 in_folder() {
   mkdir -p "$work/$1"
   cd "$work/$1"
@@ -40,8 +40,8 @@ in_folder() {
   } >volume.nrrd
 }
 
-# of_rank RANK: process of that rank below this shell's mpirun.
-of_rank() {
+# find_rank RANK: process id of that rank of the job in the current folder.
+find_rank() {
   local id
   for id in $(pgrep -f "^$ranked " || true); do
     if tr '\0' '\n' <"/proc/$id/environ" 2>/dev/null | grep -qx "OMPI_COMM_WORLD_RANK=$1" &&
@@ -52,19 +52,19 @@ of_rank() {
   done
 }
 
-# begin COMMAND...: starts two ranks, and waits until their film is there.
+# begin COMMAND...: starts two ranks, and waits until their checkpoint exists.
 begin() {
-  on 2 "$ranked" "$@" >out 2>&1 &
+  run_ranks 2 "$ranked" "$@" >out 2>&1 &
   run=$!
   local tries
   for tries in $(seq 200); do
     [ -e v.film ] && return
     sleep 0.05
   done
-  fail "no film: $(cat out)"
+  fail "no checkpoint: $(cat out)"
 }
 
-# end_of_run: waits for what begin has started; sets status.
+# end_of_run: waits for the job of begin; sets status.
 end_of_run() {
   status=0
   wait "$run" || status=$?
@@ -78,22 +78,22 @@ for kind in samples noise; do
   "$program" "${flags[@]}" >out 2>&1 || fail "$(cat out)"
   for ranks in "$@"; do
     in_folder "$kind-$ranks"
-    on "$ranks" "$ranked" "${flags[@]}" >out 2>&1 || fail "$kind by $ranks ranks: $(cat out)"
+    run_ranks "$ranks" "$ranked" "${flags[@]}" >out 2>&1 || fail "$kind with $ranks ranks: $(cat out)"
     for file in ../"$kind"-alone/v.*; do
       cmp "$file" "$(basename "$file")" || fail "$kind: $ranks ranks differ from one process"
     done
   done
 done
 
-# Files come from rank 0: the other one works where there are none.
+# Only rank 0 reads files, so the other rank can run in a folder without them.
 in_folder elsewhere
 timeout 120 mpirun --oversubscribe --bind-to none -n 1 "$ranked" "${samples[@]}" : \
   -n 1 --wdir / "$ranked" "${samples[@]}" >out 2>&1 || fail "files of rank 0: $(cat out)"
-cmp ../samples-alone/v.exr v.exr || fail 'files of rank 0: the picture differs'
+cmp ../samples-alone/v.exr v.exr || fail 'files of rank 0: the image differs'
 
 in_folder seconds
 begun=$SECONDS
-on 2 "$ranked" volume.nrrd --size 64x64 --seconds 1 --threads 1 --progress none --output v.exr >out 2>&1 ||
+run_ranks 2 "$ranked" volume.nrrd --size 64x64 --seconds 1 --threads 1 --progress none --output v.exr >out 2>&1 ||
   fail "--seconds: $(cat out)"
 [ $((SECONDS - begun)) -le 20 ] || fail "--seconds 1 took $((SECONDS - begun)) s"
 
@@ -102,31 +102,31 @@ in_folder long-alone
 "$program" "${long[@]}" >out 2>&1 || fail "$(cat out)"
 in_folder dead
 begin "${long[@]}"
-kill -9 "$(of_rank 1)" || fail 'no rank 1'
+kill -9 "$(find_rank 1)" || fail 'no rank 1'
 end_of_run
-[ "$status" -ne 0 ] || fail 'a dead rank went unnoticed'
-grep -q 'rank 1 ' out || fail "the dead rank is not named: $(cat out)"
+[ "$status" -ne 0 ] || fail 'the job succeeds although rank 1 was killed'
+grep -q 'rank 1 ' out || fail "the output does not name the killed rank: $(cat out)"
 rm -f v.exr
-"$program" "${long[@]}" >out 2>&1 || fail "the film of a dead job does not go on: $(cat out)"
-cmp ../long-alone/v.exr v.exr || fail 'the picture that went on differs'
+"$program" "${long[@]}" >out 2>&1 || fail "cannot resume from the checkpoint of the killed job: $(cat out)"
+cmp ../long-alone/v.exr v.exr || fail 'the resumed image differs'
 
 in_folder stopped
 begin "${long[@]}"
-kill -TERM "$(of_rank 0)" || fail 'no rank 0'
+kill -TERM "$(find_rank 0)" || fail 'no rank 0'
 end_of_run
-[ "$status" -eq 5 ] || fail "a stop ends with status $status: $(cat out)"
-[ -e v.exr ] || fail 'a stop writes no picture'
+[ "$status" -eq 5 ] || fail "SIGTERM ends with status $status: $(cat out)"
+[ -e v.exr ] || fail 'no image after SIGTERM'
 
 in_folder refused
 status=0
 timeout 120 mpirun --oversubscribe --bind-to none -n 1 -x FENESTRA_INSTRUCTIONS=SSE4 "$ranked" "${samples[@]}" : \
   -n 1 -x FENESTRA_INSTRUCTIONS=SCALAR "$ranked" "${samples[@]}" >out 2>&1 || status=$?
 { [ "$status" -eq 2 ] && grep -q 'rank 1 is .*, rank 0 is ' out; } ||
-  fail "other instructions end with status $status: $(cat out)"
+  fail "different instruction sets end with status $status: $(cat out)"
 status=0
-on 2 "$ranked" volume.nrrd --samples none >out 2>&1 || status=$?
+run_ranks 2 "$ranked" volume.nrrd --samples none >out 2>&1 || status=$?
 { [ "$status" -eq 2 ] && [ "$(grep -c '^fenestra: ' out)" -eq 1 ]; } ||
-  fail "a wrong command ends with status $status: $(cat out)"
+  fail "a usage error ends with status $status: $(cat out)"
 
-echo "$wrong wrong"
+echo "$wrong errors"
 [ "$wrong" -eq 0 ]

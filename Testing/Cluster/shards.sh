@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Resources/cluster/shards.sbatch as a real array job of a Slurm of one machine: merged, its parts are the
-# picture of `fenestra render` on this machine, bit for bit.
+# Runs Resources/cluster/shards.sbatch as an array job on a single-node Slurm cluster: the merged shards must
+# equal the image of `fenestra render` bit for bit.
 # usage: shards.sh FENESTRA FOLDER; FOLDER is emptied first. Exit status 77: skipped.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -11,14 +11,14 @@ begin_test "$1" "$2"
 cp "$top/Testing/Data/knee/knee.mrb" .
 flags=(knee.mrb --focus FemoralCartilage --size 96x96 --samples 16)
 start_cluster
-array=$(sbatch --parsable --cpus-per-task=1 --array=1-5 "$top/Resources/cluster/shards.sbatch" parts "${flags[@]}")
+array=$(sbatch --parsable --cpus-per-task=1 --array=1-5 "$top/Resources/cluster/shards.sbatch" shards "${flags[@]}")
 last=$(sbatch --parsable --dependency="afterok:$array" --output=fenestra-merge-%j.log \
-  --wrap="\"$FENESTRA\" merge parts/*.film --output merged.exr --output merged.png")
+  --wrap="\"$FENESTRA\" merge shards/*.film --output merged.exr --output merged.png")
 squeue
 wait_for_jobs 300
 print_jobs
 
 "$FENESTRA" "${flags[@]}" --output alone.exr --output alone.png >alone.log 2>&1
-cmp alone.png merged.png || fail "the merged picture differs (job $last)"
+cmp alone.png merged.png || fail "the merged image differs (job $last)"
 "$FENESTRA" compare merged.exr alone.exr | grep -q '^largest  *0$' || fail "the merged channels differ (job $last)"
-printf '\nThe array job %s made 5 parts, and merged they are the picture of one machine.\n' "$array"
+printf '\nThe 5 shards of array job %s were merged to the image of a single run.\n' "$array"

@@ -17,7 +17,7 @@
 namespace fenestra::faults {
 namespace {
 
-/// System call; `argument`: index, from 0, of the path or descriptor that it is about.
+/// System call; `argument` is the index, from 0, of its path or descriptor.
 struct FileCall {
   const char* name;
   unsigned number;
@@ -132,7 +132,7 @@ std::vector<sock_filter> makeFilter() {
     }
   filter.push_back({equal, 1, 0, SYS_mmap});
   filter.push_back(allow);
-  // Anonymous memory has descriptor -1.
+  // Anonymous mappings have descriptor -1.
   filter.push_back({load, 0, 0, offsetof(seccomp_data, args) + 4 * sizeof(std::uint64_t)});
   filter.push_back({equal, 0, 1, ~0U});
   filter.push_back(allow);

@@ -1,5 +1,5 @@
 #pragma once
-// System calls that touch files: their selection and their description.
+// System calls on files: selects and describes them.
 
 #include <span>
 #include <string>
@@ -11,14 +11,14 @@ struct sock_filter;
 
 namespace fenestra::faults {
 
-/// Filter that stops with RET_TRACE at calls that touch files, a file's mmap included; other calls
-/// pass.
+/// seccomp filter that returns RET_TRACE for calls on files, including mmap of a file, and allows
+/// all other calls.
 std::span<const sock_filter> fileCallFilter();
 
-/// True for renames, links, unlinks and writes: calls that a signal must not interrupt.
+/// True for renames, links, unlinks and writes, at which signals are injected.
 bool isCommitting(const user_regs_struct& registers);
 
-/// Text such as "openat /dev/shm/x/o.png" for a thread stopped before the call.
+/// Description such as "openat /dev/shm/x/o.png" of the call that `thread` is about to execute.
 std::string describeCall(pid_t thread, const user_regs_struct& registers);
 
 } // namespace fenestra::faults

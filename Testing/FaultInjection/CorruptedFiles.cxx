@@ -1,7 +1,7 @@
-// Renders and inspects damaged files of every format. usage: Mutations FENESTRA FIRST LAST
-// Mutations are functions of their number. Prints the outcomes as tables in Markdown; exit status 1
-// if a run crashed, hung, took more than 2 GB, printed more than one line or left a file. A single
-// mutation (FIRST = LAST) leaves its files in mutation-FIRST/ of the current folder.
+// Renders and inspects corrupted files of every format. usage: CorruptedFiles FENESTRA FIRST LAST
+// The number of a run determines its file and corruption. Prints CSV, and violations to standard
+// error; exit status 1 if a run crashes, hangs, uses more than 2 GB, prints more than one line or
+// leaves a file. A single run (FIRST = LAST) saves its files to corrupted-FIRST/.
 #include "Corruption.h"
 #include "Invariants.h"
 
@@ -19,11 +19,11 @@ namespace {
 namespace fs = std::filesystem;
 using Arguments = std::vector<std::string>;
 
-/// File to damage, with the files that belong to it, and the command that reads it.
+/// File to corrupt, with other files that the command reads, and the command.
 struct Target {
   std::string name;
   Files files;
-  bool isPacked = false; ///< packed into a.mrb, with other files beside
+  bool isPacked = false; ///< packed into a.mrb with the other files
   Arguments arguments;   ///< arguments of a render or a comparison
 };
 
@@ -34,10 +34,10 @@ public:
   std::string read(const std::string& name) const {
     const std::string bytes = readBytes(m_data / name);
     if (bytes.empty())
-      throw std::runtime_error(name + " is not there");
+      throw std::runtime_error(name + " does not exist");
     return bytes;
   }
-  /// Seed of a fuzz target, without the digit that selects the format.
+  /// Seed of a fuzz target, without its first byte, which selects the format.
   std::string readSeed(const std::string& name) const {
     return read("../Fuzz/Corpus/" + name).substr(1);
   }
@@ -46,7 +46,7 @@ private:
   fs::path m_data;
 };
 
-/// Adds traps/scene.mrml and the files that it names; each is the victim once.
+/// Adds traps/scene.mrml and the files that it references; each is corrupted in turn.
 void addScene(std::vector<Target>& targets, const Samples& samples) {
   Files files;
   for (const char* name :
@@ -58,7 +58,7 @@ void addScene(std::vector<Target>& targets, const Samples& samples) {
   }
 }
 
-/// Adds scenes whose volume is moved by a transform file.
+/// Adds scenes that transform the volume by a transform file.
 void addTransforms(std::vector<Target>& targets, const Samples& samples) {
   for (const char* name : {"affine.h5", "affine.mat", "affine.tfm", "composite.tfm"}) {
     const std::string scene =
@@ -67,7 +67,7 @@ void addTransforms(std::vector<Target>& targets, const Samples& samples) {
         "\"/><Transform id=\"t\" references=\"storage:ts;\"/><VolumeArchetypeStorage id=\"s\" "
         "fileName=\"plain.nrrd\"/><Volume id=\"v\" references=\"storage:s;transform:t;\"/></MRML>";
     targets.push_back({name,
-                       {{name, samples.read("../Fuzz/Apart/Transform/" + std::string(name))},
+                       {{name, samples.read("../Fuzz/Sandbox/Transform/" + std::string(name))},
                         {"s.mrml", scene},
                         {"plain.nrrd", samples.read("traps/plain.nrrd")}},
                        false,
@@ -88,12 +88,12 @@ void addVolumes(std::vector<Target>& targets, const Samples& samples) {
     targets.push_back(
         {"d/" + std::string(name),
          {{"d/", ""},
-          {"d/" + std::string(name), samples.read("../Fuzz/Apart/Dicom/" + std::string(name))}},
+          {"d/" + std::string(name), samples.read("../Fuzz/Sandbox/Dicom/" + std::string(name))}},
          false,
          {"render", "d"}});
 }
 
-/// Adds transfer functions, segmentations and maps beside a volume.
+/// Adds files that options name: transfer functions, lights, presets, segmentations and maps.
 void addOptionFiles(std::vector<Target>& targets, const Samples& samples) {
   const Files volume = {{"plain.nrrd", samples.read("traps/plain.nrrd")}};
   const auto add = [&](const std::string& name, const std::string& content, Arguments arguments,
@@ -134,7 +134,7 @@ std::vector<Target> makeTargets(const Samples& samples) {
   return targets;
 }
 
-/// Writes the files of a mutation into the place's folder; returns the command.
+/// Writes the files of run `number` to the workspace; returns the command.
 Arguments prepare(const Target& target, long number, const Workspace& workspace) {
   std::mt19937_64 random(static_cast<std::uint64_t>(number));
   Files files = target.files;
@@ -157,25 +157,25 @@ Arguments prepare(const Target& target, long number, const Workspace& workspace)
   return arguments;
 }
 
-/// Violation of a run; empty if the file was accepted or refused properly.
-std::string finding(const Outcome& outcome, const Files& before, const Workspace& workspace) {
+/// Violation of a run; empty if the file was accepted or correctly rejected.
+std::string findViolation(const Outcome& outcome, const Files& before, const Workspace& workspace) {
   constexpr long maxMemory = 2'000'000; // kB
   if (outcome.hung)
     return "hangs";
   if (outcome.signal != 0)
-    return "dies of signal " + std::to_string(outcome.signal) + " in " +
+    return "crashes with signal " + std::to_string(outcome.signal) + " in " +
            findCulprit(outcome.frames).function;
   if (outcome.status != 0 && outcome.status != 2 && outcome.status != 3 && outcome.status != 4)
-    return "ends with " + std::to_string(outcome.status);
+    return "ends with status " + std::to_string(outcome.status);
   if (outcome.peakKilobytes > maxMemory)
-    return "takes more than 2 GB";
+    return "uses more than 2 GB";
   const std::size_t lines = errorLines(outcome).size();
   if (lines != (outcome.status == 0 ? 0U : 1U))
-    return std::to_string(lines) + " lines and status " + std::to_string(outcome.status);
+    return std::to_string(lines) + " error lines and status " + std::to_string(outcome.status);
   Files after = workspace.files();
   after.erase("o.png");
   if (after != before || !workspace.tempFiles().empty())
-    return "leaves or changes a file";
+    return "creates or changes a file";
   return "";
 }
 
@@ -189,7 +189,7 @@ Result runOne(const std::vector<Target>& targets, long number, const Workspace& 
   const Arguments arguments = prepare(target, number, workspace);
   const Files before = workspace.files();
   const Outcome outcome = workspace.run(arguments, {});
-  return {outcome.status, finding(outcome, before, workspace)};
+  return {outcome.status, findViolation(outcome, before, workspace)};
 }
 
 std::vector<Result> runAll(const std::vector<Target>& targets, long first, long last,
@@ -204,7 +204,7 @@ std::vector<Result> runAll(const std::vector<Target>& targets, long first, long 
         Result& result = results[static_cast<std::size_t>(number - first)];
         result = runOne(targets, number, workspace);
         if (!result.violation.empty())
-          std::fprintf(stderr, "%ld %s\n", number, result.violation.c_str());
+          std::fprintf(stderr, "%ld: %s\n", number, result.violation.c_str());
       }
     });
   for (std::thread& worker : workers)
@@ -212,38 +212,32 @@ std::vector<Result> runAll(const std::vector<Target>& targets, long first, long 
   return results;
 }
 
-/// Prints the tables; returns true if there is no finding.
+/// Prints the results as CSV. True if there is no violation.
 bool print(const std::vector<Target>& targets, const std::vector<Result>& results, long first) {
   struct Row {
     long runs = 0, accepted = 0, rejected = 0;
   };
   std::map<std::string, Row> rows;
-  std::map<std::string, std::vector<long>> findings;
+  bool passed = true;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const long number = first + static_cast<long>(i);
     const Target& target = targets[static_cast<std::size_t>(number) % targets.size()];
-    const std::string name = target.name + (target.isPacked ? " in a .mrb" : "");
-    Row& row = rows[name];
+    Row& row = rows[target.name + (target.isPacked ? " in a .mrb" : "")];
     ++row.runs;
     ++(results[i].status == 0 ? row.accepted : row.rejected);
-    if (!results[i].violation.empty())
-      findings[name + ": " + results[i].violation].push_back(number);
+    passed = passed && results[i].violation.empty();
   }
-  std::puts(
-      "# Mutations of whole files\n\n| damaged | runs | taken | refused |\n|---|---|---|---|");
+  std::puts("file,runs,accepted,rejected");
   for (const auto& [name, row] : rows)
-    std::printf("| %s | %ld | %ld | %ld |\n", name.c_str(), row.runs, row.accepted, row.rejected);
-  std::puts(findings.empty() ? "\nNo finding." : "\n| finding | runs | first |\n|---|---|---|");
-  for (const auto& [text, numbers] : findings)
-    std::printf("| %s | %zu | %ld |\n", text.c_str(), numbers.size(), numbers.front());
-  return findings.empty();
+    std::printf("%s,%ld,%ld,%ld\n", name.c_str(), row.runs, row.accepted, row.rejected);
+  return passed;
 }
 
-/// Keeps the files and the command that reproduce a finding by hand.
+/// Saves the files of a run and prints the command, to reproduce a violation manually.
 void saveInputs(const std::vector<Target>& targets, long number, const Tools& tools) {
   const Workspace workspace(tools);
   const Target& target = targets[static_cast<std::size_t>(number) % targets.size()];
-  const fs::path folder = "mutation-" + std::to_string(number);
+  const fs::path folder = "corrupted-" + std::to_string(number);
   std::string command = "cd " + folder.string() + " && fenestra";
   for (const std::string& word : prepare(target, number, workspace))
     command += " " + word;
@@ -254,7 +248,7 @@ void saveInputs(const std::vector<Target>& targets, long number, const Tools& to
 
 int runCorruptedFiles(int count, char** arguments) {
   if (count != 4) {
-    std::fputs("usage: Mutations FENESTRA FIRST LAST\n", stderr);
+    std::fputs("usage: CorruptedFiles FENESTRA FIRST LAST\n", stderr);
     return 2;
   }
   const Tools tools = {fs::canonical(arguments[1]), FENESTRA_PRELOAD, FENESTRA_TEST_DATA};
@@ -272,7 +266,7 @@ int main(int count, char** arguments) {
   try {
     return fenestra::faults::runCorruptedFiles(count, arguments);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "Mutations: %s\n", error.what());
+    std::fprintf(stderr, "CorruptedFiles: %s\n", error.what());
     return 1;
   }
 }

@@ -19,7 +19,7 @@ struct Span {
 using Spans = std::vector<Span>;
 
 std::size_t randomBelow(std::mt19937_64& random, std::size_t limit) {
-  return limit == 0 ? 0 : random() % limit; // equal on every machine
+  return limit == 0 ? 0 : random() % limit; // the same on every machine, unlike std distributions
 }
 
 template <typename Container>
@@ -64,7 +64,7 @@ constexpr std::string_view extremes[] = {
     "18446744073709551616",
 };
 
-/// Text before samples and tables of bytes.
+/// Leading text, before binary samples or tables.
 std::string_view textPart(std::string_view bytes) {
   return bytes.substr(0, bytes.find('\0'));
 }
@@ -87,7 +87,7 @@ Spans findNumbers(std::string_view bytes) {
   return found;
 }
 
-/// Spans of name="value" with the space before.
+/// Spans of name="value", including the space before them.
 Spans findAttributes(std::string_view bytes) {
   Spans found;
   for (std::size_t at = 0; (at = bytes.find("=\"", at)) != bytes.npos;) {
@@ -118,7 +118,7 @@ Span randomBlock(std::string_view bytes, std::mt19937_64& random) {
   return {begin, 1 + randomBelow(random, maxLength)};
 }
 
-/// Removes a part, repeats, moves or multiplies it, or exchanges it for its like.
+/// Removes or repeats a part, copies it to the start of the other, or replaces it by the other.
 void change(std::string& bytes, Span part, Span other, std::mt19937_64& random) {
   const std::string text = bytes.substr(part.begin, part.length);
   switch (randomBelow(random, 5)) {
@@ -155,7 +155,7 @@ void changeNumber(std::string& bytes, std::mt19937_64& random) {
   bytes.replace(number.begin, number.length, randomElement(extremes, random));
 }
 
-/// Lengthens the bytes at one place: long names and values find buffers.
+/// Repeats one byte many times, since long names and values can overflow buffers.
 void lengthen(std::string& bytes, std::mt19937_64& random) {
   const std::size_t at = randomBelow(random, bytes.size());
   bytes.insert(at, std::string(std::size_t{1} << randomBelow(random, 18), bytes[at]));

@@ -1,13 +1,12 @@
 #pragma once
-// Damages a file as people, programs and disks do: in its numbers, attributes, lines, blocks and
-// bytes.
+// Corrupts a file at several levels: numbers, attributes, lines, blocks and bytes.
 
 #include <random>
 #include <string>
 
 namespace fenestra::faults {
 
-/// Damaged bytes; a function of the bytes and the random numbers only.
+/// Corrupted bytes. The same bytes and random state give the same result on all machines.
 std::string corrupt(std::string bytes, std::mt19937_64& random);
 
 } // namespace fenestra::faults

@@ -1,8 +1,8 @@
-// Injects every fault in turn into a request's runs, and reports the consequences.
-// usage: Faults FENESTRA [RUNS]                            all, or RUNS of each kind, evenly spread
-//        Faults FENESTRA REQUEST KIND NUMBER [VALUE]       one, to reproduce a violation
-// Prints tables in Markdown. Exit status 1 if a run violates an invariant, 77 if processes cannot
-// be traced here.
+// Fault injection: runs each request once per possible fault, and reports violated invariants.
+// usage: FaultInjection FENESTRA [RUNS]                       all, or RUNS per kind, evenly spaced
+//        FaultInjection FENESTRA REQUEST KIND NUMBER [VALUE]  one, to reproduce a violation
+// Prints CSV, and violations to standard error. Exit status 1 if there is a violation, 77 if
+// processes cannot be traced.
 #include "Invariants.h"
 
 #include <algorithm>
@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <fstream>
 #include <limits>
 #include <optional>
 #include <thread>
@@ -21,7 +22,7 @@
 namespace fenestra::faults {
 namespace {
 
-constexpr int skipped = 77; ///< exit status by which ctest reports a skipped test
+constexpr int skipped = 77; ///< exit status of a test that ctest reports as skipped
 
 struct FaultKind {
   Fault::Kind kind;
@@ -67,7 +68,7 @@ long countPlaces(const Baseline& subject, const FaultKind& kind) {
   return kind.kind == Fault::Kind::allocation ? outcome.allocations : outcome.commits;
 }
 
-/// Cases for all places, or for `most` places evenly spread.
+/// Cases for at most `maxCount` places, evenly spaced.
 std::vector<Case> makeCases(const Baseline& subject, const FaultKind& kind, long maxCount) {
   std::vector<Case> cases;
   const long places = countPlaces(subject, kind);
@@ -77,20 +78,20 @@ std::vector<Case> makeCases(const Baseline& subject, const FaultKind& kind, long
   return cases;
 }
 
-Result runCase(const Case& testCase, const Workspace& place) {
+Result runCase(const Case& testCase, const Workspace& workspace) {
   Result result;
   result.violations =
       checkRun(*testCase.subject, {testCase.kind->kind, testCase.number, testCase.kind->value},
-               place, result.outcome);
+               workspace, result.outcome);
   return result;
 }
 
-/// Reports progress every minute, since a run takes hours.
+/// Prints the progress once per minute, since all runs take hours.
 class Progress {
 public:
   explicit Progress(std::size_t total) : m_total(total) {}
 
-  /// Called from one thread; 0 < `done` <= whole.
+  /// Must be called from a single thread; 0 < `done` <= number of runs.
   void report(std::size_t done) {
     using std::chrono::duration_cast, std::chrono::minutes;
     const Clock::duration spent = Clock::now() - m_start;
@@ -115,10 +116,11 @@ std::string formatName(const Case& testCase) {
   return *testCase.kind->valueName ? name + " " + testCase.kind->valueName : name;
 }
 
-/// Reports violations at once: a run takes hours.
+/// Prints violations immediately, since all runs take hours.
 void reportViolations(const Case& testCase, const Result& result) {
   for (const std::string& line : result.violations)
-    std::fprintf(stderr, "%s: %s\n", formatName(testCase).c_str(), line.c_str());
+    std::fprintf(stderr, "%s, %s: %s\n", formatName(testCase).c_str(), result.outcome.place.c_str(),
+                 line.c_str());
 }
 
 std::vector<Result> runAll(const std::vector<Case>& cases, const Tools& tools, unsigned threads) {
@@ -128,9 +130,9 @@ std::vector<Result> runAll(const std::vector<Case>& cases, const Tools& tools, u
   std::vector<std::thread> workers;
   for (unsigned i = 0; i < threads; ++i)
     workers.emplace_back([&, i] {
-      const Workspace place(tools);
+      const Workspace workspace(tools);
       for (std::size_t at; (at = next++) < cases.size();) {
-        results[at] = runCase(cases[at], place);
+        results[at] = runCase(cases[at], workspace);
         reportViolations(cases[at], results[at]);
         if (i == 0)
           progress.report(at + 1);
@@ -141,7 +143,7 @@ std::vector<Result> runAll(const std::vector<Case>& cases, const Tools& tools, u
   return results;
 }
 
-/// Number of occurrences, and the place of the first.
+/// Number of occurrences, and where the first occurred.
 struct Tally {
   long runs = 0;
   std::string first;
@@ -152,19 +154,19 @@ struct Tally {
   }
 };
 
-void printTallies(const char* title, const char* what,
-                  const std::map<std::string, Tally>& tallies) {
-  std::printf("\n## %s\n\n", title);
-  if (tallies.empty()) {
-    std::puts("None.");
+/// Writes crashes after failed allocations, by function, to fault-injection-crashes.csv in the
+/// folder FENESTRA_REPORT if that is set.
+void writeCrashes(const std::map<std::string, Tally>& crashes) {
+  const char* const folder = std::getenv("FENESTRA_REPORT");
+  if (!folder)
     return;
-  }
-  std::printf("| %s | runs | first |\n|---|---|---|\n", what);
-  for (const auto& [text, tally] : tallies)
-    std::printf("| %s | %ld | %s |\n", text.c_str(), tally.runs, tally.first.c_str());
+  std::ofstream file(std::filesystem::path(folder) / "fault-injection-crashes.csv");
+  file << "function,runs,first run\n";
+  for (const auto& [function, tally] : crashes)
+    file << function << ',' << tally.runs << ',' << tally.first << '\n';
 }
 
-/// Totals for a request and a kind of fault, in the order of the tables' columns.
+/// Table row: totals for a request and a kind of fault.
 struct Row {
   long places = 0, runs = 0, triggered = 0, statuses[6] = {}, crashes = 0, violations = 0;
 
@@ -178,44 +180,39 @@ struct Row {
   }
 
   void print(const std::string& request, const std::string& fault) const {
-    std::printf("| %s | %s | %ld | %ld | %ld | %ld | %ld | %ld | %ld | %ld | %ld | %ld |\n",
-                request.c_str(), fault.c_str(), places, runs, triggered, statuses[0], statuses[2],
-                statuses[3], statuses[4], statuses[5], crashes, violations);
+    std::printf("%s,%s,%ld,%ld,%ld,%ld,%ld,%ld,%ld,%ld,%ld,%ld\n", request.c_str(), fault.c_str(),
+                places, runs, triggered, statuses[0], statuses[2], statuses[3], statuses[4],
+                statuses[5], crashes, violations);
   }
 };
 
-/// Prints the tables; returns true if there is no violation.
+/// Prints the results as CSV. True if there is no violation.
 bool print(const std::vector<Case>& cases, const std::vector<Result>& results) {
-  std::puts("# Faults, in turn\n\n"
-            "| request | fault | places | runs | met it | ended 0 | 2 | 3 | 4 | 5 | by a signal | "
-            "wrong |\n|---|---|---|---|---|---|---|---|---|---|---|---|");
-  std::map<std::string, Tally> crashes, violations;
+  std::puts("request,fault,places,runs,triggered,exit 0,exit 2,exit 3,exit 4,exit 5,"
+            "ended by signal,violations");
+  std::map<std::string, Tally> crashes;
+  bool passed = true;
   Row row;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const Case& testCase = cases[i];
-    const auto& [outcome, wrong] = results[i];
+    const Outcome& outcome = results[i].outcome;
     row.places = countPlaces(*testCase.subject, *testCase.kind);
     row.add(results[i]);
     if (testCase.kind->kind == Fault::Kind::allocation && outcome.signal != 0)
       crashes[findCulprit(outcome.frames).function].add(formatName(testCase));
-    const std::string call = outcome.place.substr(0, outcome.place.find(' '));
-    for (const std::string& line : wrong)
-      violations[testCase.subject->request->name + ", " + testCase.kind->word + " at " + call +
-                 ": " + line]
-          .add(formatName(testCase) + ": " + outcome.place);
+    passed = passed && results[i].violations.empty();
     const bool isLast = i + 1 == cases.size() || cases[i + 1].subject != testCase.subject ||
                         cases[i + 1].kind != testCase.kind;
+    const std::string value = testCase.kind->valueName;
     if (isLast)
       std::exchange(row, {}).print(testCase.subject->request->name,
-                                   std::string(testCase.kind->word) + " " +
-                                       testCase.kind->valueName);
+                                   testCase.kind->word + (value.empty() ? "" : " " + value));
   }
-  printTallies("Deaths where an allocation fails, by function", "innermost function", crashes);
-  printTallies("Violations", "what", violations);
-  return violations.empty();
+  writeCrashes(crashes);
+  return passed;
 }
 
-/// Case given by the words REQUEST KIND NUMBER [VALUE].
+/// Case of the arguments REQUEST KIND NUMBER [VALUE]; empty if there is no such case.
 std::optional<Case> findCase(const std::vector<Baseline>& subjects, char** words, int count) {
   for (const Baseline& subject : subjects)
     for (const FaultKind& kind : kinds)
@@ -227,23 +224,23 @@ std::optional<Case> findCase(const std::vector<Baseline>& subjects, char** words
 
 int runOne(const Case& testCase, const Tools& tools) {
   const Result result = runCase(testCase, Workspace(tools));
-  std::printf("%s: met %s; status %d, signal %d\n%s", formatName(testCase).c_str(),
+  std::printf("%s: fault at %s; status %d, signal %d\n%s", formatName(testCase).c_str(),
               result.outcome.place.c_str(), result.outcome.status, result.outcome.signal,
               result.outcome.errors.c_str());
   for (const Frame& frame : result.outcome.frames)
     std::printf("  in %s\n", functionName(frame).c_str());
   for (const std::string& line : result.violations)
-    std::printf("wrong: %s\n", line.c_str());
+    std::printf("violation: %s\n", line.c_str());
   return result.violations.empty() ? 0 : 1;
 }
 
 int runFaults(int count, char** words) {
   if (count != 2 && count != 3 && count != 5 && count != 6) {
-    std::fputs("usage: Faults FENESTRA [RUNS | REQUEST KIND NUMBER [VALUE]]\n", stderr);
+    std::fputs("usage: FaultInjection FENESTRA [RUNS | REQUEST KIND NUMBER [VALUE]]\n", stderr);
     return 2;
   }
   if (!canTrace()) {
-    std::puts("SKIPPED: this process may not trace others (ptrace, seccomp)");
+    std::puts("SKIPPED: needs ptrace and seccomp");
     return skipped;
   }
   const Tools tools = {std::filesystem::canonical(words[1]), FENESTRA_PRELOAD, FENESTRA_TEST_DATA};
@@ -261,7 +258,7 @@ int runFaults(int count, char** words) {
       const std::vector<Case> more = makeCases(subject, kind, maxCount);
       cases.insert(cases.end(), more.begin(), more.end());
     }
-  // A sample of faults runs as a test, beside other tests.
+  // With RUNS it is a short test that runs in parallel with others.
   const unsigned threads = count == 3 ? 1 : std::max(1U, std::thread::hardware_concurrency());
   return print(cases, runAll(cases, tools, threads)) ? 0 : 1;
 }
@@ -273,7 +270,7 @@ int main(int count, char** words) {
   try {
     return fenestra::faults::runFaults(count, words);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "Faults: %s\n", error.what());
+    std::fprintf(stderr, "FaultInjection: %s\n", error.what());
     return 1;
   }
 }

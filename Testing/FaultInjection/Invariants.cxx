@@ -16,7 +16,7 @@ namespace {
 
 using Lines = std::vector<std::string>;
 
-/// Exit statuses allowed for a run with the fault.
+/// Exit statuses that are valid for a run with this fault.
 std::vector<int> allowedStatuses(const Fault& fault) {
   switch (fault.kind) {
   case Fault::Kind::none:
@@ -41,13 +41,13 @@ Lines checkEnd(const Fault& fault, const Outcome& outcome) {
     return {};
   const std::vector<int> allowed = allowedStatuses(fault);
   if (outcome.signal != 0) {
-    violations.push_back("dies of signal " + std::to_string(outcome.signal));
+    violations.push_back("crashes with signal " + std::to_string(outcome.signal));
     if (!outcome.frames.empty())
       violations.back() += " in " + findCulprit(outcome.frames).function;
   } else if (std::find(allowed.begin(), allowed.end(), outcome.status) == allowed.end())
     violations.push_back("status " + std::to_string(outcome.status));
   if (const Lines lines = errorLines(outcome); lines.size() > 1)
-    violations.push_back(std::to_string(lines.size()) + " lines");
+    violations.push_back(std::to_string(lines.size()) + " error lines");
   return violations;
 }
 
@@ -71,13 +71,13 @@ Lines findLeftovers(const Baseline& baseline, const Files& files, const Outcome&
   };
   for (const auto& [name, text] : files)
     if (!isUnfinished(name) && !baseline.before.contains(name) && !baseline.after.contains(name))
-      violations.push_back("leaves a file in the folder");
+      violations.push_back("leaves a temporary file in the folder");
   if (!workspace.tempFiles().empty())
     violations.push_back("leaves files in TMPDIR");
   return violations;
 }
 
-/// Violations: files that are neither old nor new, torn in the middle of a write.
+/// Violations by partially written files, which equal neither the old nor the new version.
 Lines findTornFiles(const Baseline& baseline, const Files& files) {
   Lines violations;
   for (const Lines& group : baseline.request->groups)
@@ -90,12 +90,12 @@ Lines findTornFiles(const Baseline& baseline, const Files& files) {
     violations.push_back(checkpoint + " is neither old nor new");
   for (const std::string& name : {baseline.request->stats, baseline.request->manifest})
     if (!name.empty() && !nlohmann::json::accept(findContent(files, name)))
-      violations.push_back(name + " is not whole");
+      violations.push_back(name + " is not complete JSON");
   return violations;
 }
 
-/// Violations: groups whose files stem from two requests, or whose stats are of another request; a
-/// film that stayed old without a warning.
+/// Violations by combinations of files: a group or its stats belong to two different requests, or
+/// files stay old although the run succeeds (a checkpoint file: without a warning).
 Lines findMixedFiles(const Baseline& baseline, const Files& files, const Outcome& outcome) {
   const bool isDone = outcome.status == 0;
   Lines violations;
@@ -105,18 +105,18 @@ Lines findMixedFiles(const Baseline& baseline, const Files& files, const Outcome
     isAllNew = isAllNew && isNew;
     isAnyNew = isAnyNew || isNew;
     if (!isNew && !areEqual(files, baseline.before, group))
-      violations.push_back("files of two requests beside each other");
+      violations.push_back("files of one group belong to two requests");
   }
   const std::string& stats = baseline.request->stats;
   const bool isStatsNew = stats.empty() || !areEqual(files, baseline.before, {stats});
   if (!stats.empty() && isStatsNew && !isAnyNew)
-    violations.push_back("stats of a request whose pictures are not there");
+    violations.push_back("stats of a request without its images");
   if (isDone && !(isAllNew && isStatsNew))
-    violations.push_back("status 0 without all files");
+    violations.push_back("status 0, but not all files are new");
   const std::string& checkpoint = baseline.request->checkpoint;
   const bool isCheckpointNew = checkpoint.empty() || areEqual(files, baseline.after, {checkpoint});
   if (isDone && !isCheckpointNew && outcome.errors.find(checkpoint + ": ") == std::string::npos)
-    violations.push_back("status 0 without a film, and without a warning");
+    violations.push_back("status 0 without a new checkpoint or a warning");
   return violations;
 }
 
@@ -160,18 +160,18 @@ Lines checkRun(const Baseline& baseline, const Fault& fault, const Workspace& wo
   const Files files = workspace.files();
   append(violations, findTornFiles(baseline, files));
   if (!areEqual(files, baseline.before, baseline.inputs))
-    violations.push_back("an input is changed or gone");
-  // Leftovers of a kill, or of a death outside our code, must be gone after the next run.
+    violations.push_back("an input was changed or removed");
+  // After a kill or a crash, the next run must succeed and remove the remaining files.
   if (outcome.signal == 0) {
     append(violations, findMixedFiles(baseline, files, outcome));
     append(violations, findLeftovers(baseline, files, outcome, workspace));
   } else {
     const Outcome next = workspace.run(baseline.request->arguments, {});
     if (next.status != 0)
-      violations.push_back("the next run ends with " + std::to_string(next.status));
+      violations.push_back("the next run ends with status " + std::to_string(next.status));
     append(violations, findMixedFiles(baseline, workspace.files(), next));
     for (const std::string& line : findLeftovers(baseline, workspace.files(), next, workspace))
-      violations.push_back(line + " that the next run does not remove");
+      violations.push_back(line + ", not removed by the next run");
   }
   return violations;
 }
@@ -199,7 +199,8 @@ std::string functionName(const Frame& frame) {
 Culprit findCulprit(const std::vector<Frame>& frames) {
   constexpr const char* runtime[] = {"libc.so", "libstdc++", "libgcc_s",
                                      "libm.so", "ld-linux",  "libfaults"};
-  std::string unnamedModule; // module of a nameless function: its caller there may have a name
+  std::string
+      unnamedModule; // module of a function without a symbol: use its caller in the same module
   for (const Frame& frame : frames) {
     const std::string module = std::filesystem::path(frame.module).filename().string();
     const bool isRuntime =
@@ -215,7 +216,7 @@ Culprit findCulprit(const std::vector<Frame>& frames) {
       return {function + " (" + module + ")",
               function.find("fenestra::") != std::string::npos || function == "main"};
   }
-  return {"a function without a name (" + unnamedModule + ")", unnamedModule.empty()};
+  return {"unknown function (" + unnamedModule + ")", unnamedModule.empty()};
 }
 
 } // namespace fenestra::faults

@@ -1,26 +1,25 @@
 #pragma once
-// Memory shared by the test program and the library preloaded into the process under test.
+// Memory shared by the test program and Preload.cxx in the process under test.
 
 #include <atomic>
 #include <cstdint>
 
 namespace fenestra::faults {
 
-/// Environment variable that holds the page's file, for the preloaded library.
+/// Environment variable with the path of the page's file.
 inline constexpr const char* pageVariable = "FENESTRA_FAULTS_PAGE";
 
-/// Argument of the system call that marks the start of `main`: lseek(-1, 0, mainMarker), which
-/// fails.
+/// The system call lseek(-1, 0, mainMarker), which fails, tells the tracer that `main` starts.
 inline constexpr int mainMarker = 0x4d41;
 
 struct Frame {
   char module[200];       ///< path of the executable or library
-  char function[300];     ///< exported symbol, mangled; empty: none
+  char function[300];     ///< mangled exported symbol; empty: none
   std::uintptr_t address; ///< offset in the module
 };
 
 struct Page {
-  std::atomic<std::int64_t> allocations; ///< requests since `main` began
+  std::atomic<std::int64_t> allocations; ///< allocations since the start of `main`
   std::int64_t failingNumber;            ///< number of the failing allocation, from 1; 0: none
   std::atomic<int> signal;               ///< signal that ended the process; 0: none
   int frameCount;

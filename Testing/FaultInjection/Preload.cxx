@@ -1,5 +1,5 @@
-// Library preloaded into the process under test: counts allocations from `main` on and makes one
-// fail, signals to the tracer that `main` begins, and records the stack at a crash.
+// Library for LD_PRELOAD in the process under test. From the start of `main`, which it reports to
+// the tracer, it counts allocations and lets one fail. It also records the stack at a crash.
 #include "Page.h"
 
 #include <cerrno>
@@ -16,7 +16,7 @@
 #include <unistd.h>
 
 extern "C" {
-// Names of glibc's own allocator.
+// The allocator of glibc.
 void* __libc_malloc(std::size_t size);
 void* __libc_calloc(std::size_t count, std::size_t size);
 void* __libc_realloc(void* memory, std::size_t size);
@@ -27,7 +27,7 @@ namespace {
 
 using fenestra::faults::Page;
 
-Page* page = nullptr; ///< null until `main` begins
+Page* page = nullptr; ///< null until `main` starts
 
 bool shouldFail() {
   if (!page || ++page->allocations != page->failingNumber)
@@ -36,7 +36,7 @@ bool shouldFail() {
   return true;
 }
 
-/// Writes the stack at a crash into the page; then lets the signal take its default action.
+/// Writes the stack of a crash to the page, then raises the signal with its default action.
 void onDeath(int signal) {
   int none = 0;
   if (page->signal.compare_exchange_strong(none, signal)) {
@@ -69,7 +69,7 @@ int tracedMain(int count, char** words, char** environment) {
         ::mmap(nullptr, sizeof(Page), PROT_READ | PROT_WRITE, MAP_SHARED, opened, 0);
     ::close(opened);
     void* unused[1];
-    ::backtrace(unused, 1); // loads what it needs
+    ::backtrace(unused, 1); // loads libgcc now, so that a crash handler need not allocate
     for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT})
       std::signal(signal, onDeath);
     if (shared != MAP_FAILED)

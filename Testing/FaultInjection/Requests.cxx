@@ -27,7 +27,7 @@ std::vector<Request> makeRequests() {
   const Arguments turntable = concat({"turntable", "knee.mrb", "--frames", "2", "--output", "t.png",
                                       "--stats", "s.json", "--restart"},
                                      quick);
-  const Arguments batch = concat({"study", "t.csv", "--output", "d"}, quick);
+  const Arguments batch = concat({"batch", "t.csv", "--output", "d"}, quick);
   const Arguments phantom = {"phantom", "cube", "--output", "p", "--size", "16"};
   const auto renderCheckpointed = [](const char* samples) {
     return Arguments{"render",       "knee.mrb",  "--size",   "16x16",      "--samples",
@@ -55,7 +55,7 @@ std::vector<Request> makeRequests() {
        "s.json",
        "t.turntable.json"},
       phantomRequest,
-      {"study",
+      {"batch",
        batch,
        {concat(batch, {"--seed", "7"})},
        {{"d/a/a.png"}},
@@ -112,7 +112,7 @@ Workspace::Workspace(const Tools& tools) : m_tools(tools) {
        "faults-XXXXXX")
           .string();
   if (!::mkdtemp(name.data()))
-    throw std::runtime_error("no folder for runs");
+    throw std::runtime_error("cannot create a folder for runs");
   m_root = name;
 }
 
@@ -158,7 +158,7 @@ Baseline recordBaseline(const Request& request, const Tools& tools) {
     if (outcome.status != 0)
       throw std::runtime_error(request.name + " fails without a fault: " + outcome.errors);
   if (baseline.outcome.calls == 0 || baseline.outcome.allocations == 0)
-    throw std::runtime_error("where main begins is not seen");
+    throw std::runtime_error("the start of main was not traced");
   return baseline;
 }
 

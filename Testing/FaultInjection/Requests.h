@@ -1,5 +1,5 @@
 #pragma once
-// Command lines of the program under test, and the folders in which they run.
+// Command lines of the program under test, and the folders that they run in.
 
 #include "Tracer.h"
 
@@ -10,33 +10,33 @@ namespace fenestra::faults {
 struct Request {
   std::string name;
   std::vector<std::string> arguments; ///< arguments, without the executable
-  /// Arguments of the runs that wrote the files already there.
+  /// Commands that create the existing files, before the run with a fault.
   std::vector<std::vector<std::string>> before;
-  std::vector<std::vector<std::string>> groups; ///< files that must stem from one request
-  std::string stats;    ///< name of the JSON file written after the groups; may be empty
-  std::string manifest; ///< name of the JSON file that may precede some groups; may be empty
-  /// Name of a film that is kept meanwhile, and may stay old in a run that succeeds with a warning;
-  /// may be empty.
+  std::vector<std::vector<std::string>>
+      groups;           ///< sets of files; all files of a set must belong to one request
+  std::string stats;    ///< JSON file that is written after the groups; may be empty
+  std::string manifest; ///< JSON file that may be written before some groups; may be empty
+  /// Checkpoint file, which may stay old if the run succeeds with a warning; may be empty.
   std::string checkpoint = {};
-  /// Name of a film that a run which is not done may leave, for the next one; may be empty.
+  /// Checkpoint file that may remain if the run does not succeed; may be empty.
   std::string leftCheckpoint = {};
-  std::map<std::string, std::string> inputs = {}; ///< files beside knee.mrb, by name
+  std::map<std::string, std::string> inputs = {}; ///< further input files by name
 };
 
-/// Requests: a render with all kinds of files, two frames of a turntable, a phantom, a study, a
-/// render that goes on from a film, parts that are merged.
+/// A render with all kinds of outputs, a turntable, a phantom, a batch, a render that resumes from
+/// a checkpoint, and a merge of shards.
 const std::vector<Request>& requests();
 
 struct Tools {
   std::filesystem::path executable, preload, data;
 };
 
-/// Content by name; folders end with a slash and have no content.
+/// File contents by name. The names of folders end with a slash.
 using Files = std::map<std::string, std::string>;
 
 std::string readBytes(const std::filesystem::path& path);
 
-/// Folder for runs, in /dev/shm if writable, with an empty TMPDIR beside.
+/// Temporary folder for runs, in /dev/shm if possible, with a separate TMPDIR.
 class Workspace {
 public:
   explicit Workspace(const Tools& tools);
@@ -44,9 +44,9 @@ public:
   Workspace(const Workspace&) = delete;
   Workspace& operator=(const Workspace&) = delete;
 
-  /// Empties both folders and writes these files.
+  /// Empties the folder and TMPDIR, then writes these files.
   void fill(const Files& files) const;
-  /// Runs a command in the folders without changing their files first.
+  /// Runs a command with the files that are currently in the folders.
   Outcome run(const std::vector<std::string>& arguments, const Fault& fault) const;
 
   std::filesystem::path folder() const { return m_root / "folder"; }
@@ -55,14 +55,14 @@ public:
   Files tempFiles() const { return listFiles(temporary()); }
 
 private:
-  /// Files of a folder and its subfolders.
+  /// Files in a folder and its subfolders.
   static Files listFiles(const std::filesystem::path& folder);
 
   const Tools& m_tools;
   std::filesystem::path m_root;
 };
 
-/// Request with its files before and after a run without a fault.
+/// Request with its files before and after a run without faults.
 struct Baseline {
   const Request* request;
   Files before, after;
@@ -70,7 +70,7 @@ struct Baseline {
   Outcome outcome;
 };
 
-/// Throws std::runtime_error where a request fails without a fault.
+/// Runs a request without faults. Throws std::runtime_error if it fails.
 Baseline recordBaseline(const Request& request, const Tools& tools);
 
 } // namespace fenestra::faults

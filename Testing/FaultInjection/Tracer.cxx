@@ -29,21 +29,21 @@ extern char** environ;
 namespace fenestra::faults {
 namespace {
 
-constexpr auto timeLimit = std::chrono::seconds(20); ///< time limit of a run
+constexpr auto timeLimit = std::chrono::seconds(20); ///< time limit per run
 
 /// File in memory.
 class MemoryFile {
 public:
   explicit MemoryFile(const char* name) : m_file(::memfd_create(name, MFD_CLOEXEC)) {
     if (m_file < 0)
-      throw std::runtime_error("no file in memory");
+      throw std::runtime_error("memfd_create failed");
   }
   ~MemoryFile() { ::close(m_file); }
   MemoryFile(const MemoryFile&) = delete;
   MemoryFile& operator=(const MemoryFile&) = delete;
 
   int number() const { return m_file; }
-  /// Path of the file, valid in this process and in children while this process lives.
+  /// Path of the file for this process and its children, valid while this process runs.
   std::string path() const {
     return "/proc/" + std::to_string(::getpid()) + "/fd/" + std::to_string(m_file);
   }
@@ -60,11 +60,11 @@ class SharedPage {
 public:
   SharedPage() {
     if (::ftruncate(m_file.number(), sizeof(Page)) != 0)
-      throw std::runtime_error("no memory to share");
+      throw std::runtime_error("cannot create shared memory");
     m_page = static_cast<Page*>(
         ::mmap(nullptr, sizeof(Page), PROT_READ | PROT_WRITE, MAP_SHARED, m_file.number(), 0));
     if (m_page == MAP_FAILED)
-      throw std::runtime_error("no memory to share");
+      throw std::runtime_error("cannot create shared memory");
   }
   ~SharedPage() { ::munmap(m_page, sizeof(Page)); }
   SharedPage(const SharedPage&) = delete;
@@ -93,7 +93,7 @@ public:
   Watchdog(const Watchdog&) = delete;
   Watchdog& operator=(const Watchdog&) = delete;
 
-  /// Ends the watch; true if the process was killed.
+  /// Stops the watchdog. True if it has killed the process.
   bool end() {
     {
       const std::lock_guard lock(m_mutex);
@@ -112,11 +112,11 @@ private:
   std::thread m_thread;
 };
 
-/// Data for the child, prepared before the fork: the child must not allocate.
+/// Data for the child, prepared before the fork since the child must not allocate.
 struct Start {
   Start(const Command& command, const SharedPage& page) : folder(command.folder) {
     variables = {"TMPDIR=" + command.temporary.string(), "LD_PRELOAD=" + command.preload.string(),
-                 std::string(pageVariable) + "=" + page.path()}; // of equal names the first counts
+                 std::string(pageVariable) + "=" + page.path()}; // the first of equal names is used
     for (char** variable = environ; *variable; ++variable)
       variables.emplace_back(*variable);
     for (const std::string& word : command.arguments)
@@ -139,7 +139,7 @@ struct Start {
                               const_cast<sock_filter*>(filter.data())};
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   const int in = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
-  for (const int stop : {SIGHUP, SIGQUIT, SIGINT, SIGTERM, SIGPIPE}) // nohup, for one, ignores some
+  for (const int stop : {SIGHUP, SIGQUIT, SIGINT, SIGTERM, SIGPIPE}) // nohup ignores SIGHUP
     ::signal(stop, SIG_DFL);
   if (fault.kind == Fault::Kind::ignored)
     ::signal(fault.value, SIG_IGN);
@@ -154,7 +154,7 @@ struct Start {
   ::_exit(127);
 }
 
-/// Process of a thread.
+/// Process id of a thread.
 pid_t findProcess(pid_t thread) {
   std::ifstream status("/proc/" + std::to_string(thread) + "/status");
   for (std::string line; std::getline(status, line);)
@@ -163,13 +163,13 @@ pid_t findProcess(pid_t thread) {
   return thread;
 }
 
-/// Follows a process, its threads and its children.
+/// Traces a process, its threads and its children.
 class Trace {
 public:
   Trace(pid_t root, const Fault& fault, Outcome& outcome)
       : m_root(root), m_fault(fault), m_outcome(outcome) {}
 
-  /// Follows until all of its processes have ended.
+  /// Traces until all processes have ended.
   void follow() {
     int state = 0;
     rusage usage = {};
@@ -184,7 +184,7 @@ public:
   }
 
 private:
-  /// Examines a stopped thread; returns the signal with which it continues.
+  /// Handles a stopped thread; returns the signal to continue it with.
   long signalAfter(pid_t thread, int state) {
     const int event = state >> 16;
     if (event == PTRACE_EVENT_SECCOMP)
@@ -254,12 +254,12 @@ private:
   pid_t m_root;
   const Fault& m_fault;
   Outcome& m_outcome;
-  std::set<pid_t> m_started;          ///< processes that have reached `main`
-  std::map<pid_t, pid_t> m_processes; ///< process of each thread
+  std::set<pid_t> m_started;          ///< processes in which `main` has started
+  std::map<pid_t, pid_t> m_processes; ///< process id per thread
   std::vector<pid_t> m_children;
 };
 
-/// Waits for the child's stop and starts following it.
+/// Waits until the child stops itself, then lets it run traced.
 bool attach(pid_t child) {
   int state = 0;
   constexpr long options = PTRACE_O_TRACESECCOMP | PTRACE_O_TRACEFORK | PTRACE_O_TRACEVFORK |
@@ -306,7 +306,7 @@ Outcome run(const Command& command, const Fault& fault) {
   if (child == 0)
     execCommand(start, out.number(), err.number(), fault, traced);
   if (child < 0 || (traced && !attach(child)))
-    throw std::runtime_error("no process to follow");
+    throw std::runtime_error("cannot start or trace a process");
   Watchdog watchdog(child);
   Trace(child, fault, outcome).follow();
   outcome.hung = watchdog.end();

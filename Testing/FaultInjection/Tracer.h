@@ -1,5 +1,5 @@
 #pragma once
-// Runs a command with one injected fault.
+// Runs a command with one injected fault, by ptrace and seccomp.
 
 #include "Page.h"
 
@@ -12,39 +12,39 @@ namespace fenestra::faults {
 struct Fault {
   enum class Kind {
     none,
-    counting,   ///< no fault; places for faults are counted
-    call,       ///< a call that touches files fails with the error `value`
+    counting,   ///< no fault: counts the places for faults
+    call,       ///< a call on a file fails with the error `value`
     allocation, ///< an allocation fails
-    signal,     ///< the signal `value` arrives at a rename, link, unlink or write
-    ignored,    ///< like `signal`, but ignored since the process began
+    signal,     ///< the signal `value` is sent before a rename, link, unlink or write
+    ignored,    ///< like `signal`, but the process starts with the signal ignored
   };
   Kind kind = Kind::none;
-  long number = 0; ///< index of the fault's place since `main` began, from 1
+  long number = 0; ///< number of the place since the start of `main`, from 1
   int value = 0;
 };
 
 struct Command {
-  std::vector<std::string> arguments; ///< the executable first
+  std::vector<std::string> arguments; ///< executable and arguments
   std::filesystem::path folder, temporary;
-  std::filesystem::path preload; ///< the library
+  std::filesystem::path preload; ///< path of the preloaded library
 };
 
 /// Result of a run.
 struct Outcome {
-  int status = -1;    ///< exit status; -1 where a signal ended the process
+  int status = -1;    ///< exit status; -1 if a signal ended the process
   int signal = 0;     ///< signal that ended the process; 0: none
   bool hung = false;  ///< killed at the time limit
   std::string errors; ///< standard error
-  std::string place;  ///< call that met the fault; empty: none
-  long calls = 0, commits = 0, allocations = 0; ///< numbers of each; calls only if traced
-  long peakKilobytes = 0;                       ///< of resident memory
+  std::string place;  ///< call at which the fault was injected; empty: none
+  long calls = 0, commits = 0, allocations = 0; ///< counts; calls and commits only if traced
+  long peakKilobytes = 0;                       ///< maximum resident memory
   std::vector<Frame> frames;                    ///< stack at a crash, innermost first
 };
 
-/// True if this machine and user permit tracing.
+/// True if this process can use ptrace and seccomp.
 bool canTrace();
 
-/// Runs a command to its end. Safe to call from several threads.
+/// Runs a command until it ends. Thread-safe.
 Outcome run(const Command& command, const Fault& fault);
 
 } // namespace fenestra::faults

@@ -1,4 +1,4 @@
-// Slicer's archives (.mrb).
+// Slicer scene archives (.mrb).
 #include "SceneInputs.h"
 
 #include <zlib.h>
@@ -20,7 +20,7 @@ void put(std::string& bytes, std::size_t at, std::uint32_t value) {
     std::memcpy(&bytes[at], &value, sizeof(value));
 }
 
-/// Corrects the checksums of stored entries; otherwise no mutated entry would be read.
+/// Corrects the checksums of stored entries, since libzip rejects every changed entry otherwise.
 std::string fixChecksums(std::string zip) {
   for (std::size_t at = 0; (at = zip.find("PK\1\2", at)) != std::string::npos; at += 4) {
     const std::uint64_t local = get<std::uint32_t>(zip, at + 42);

@@ -1,4 +1,4 @@
-// Table of a study, or record of finished work; the first byte chooses.
+// Table of a batch, or a manifest; the first byte selects which.
 #include "Harness.h"
 
 #include "program/BatchTable.h"
@@ -15,7 +15,7 @@ FENESTRA_FUZZ(Batch, input) {
     for (const BatchRow& row : readBatchTable(path, OptionValues(batchSyntax().options)))
       if (row.name.find('/') != row.name.npos || row.input.empty() ||
           !names.insert(row.name).second)
-        throw std::logic_error("a row that has no folder of its own, or no input");
+        throw std::logic_error("a row has no input, or no unique folder");
     return;
   }
   Manifest manifest(path, "row", {"--seed=7"});

@@ -1,11 +1,11 @@
-// Films on disk, whose digest is always right: a wrong one ends every reading at once.
+// Checkpoint files with a valid digest, since the reader rejects an invalid one immediately.
 #include "Harness.h"
 
 #include "io/Digest.h"
 #include "io/JsonNode.h"
 #include "program/Checkpoint.h"
 
-FENESTRA_FUZZ(Film, input) {
+FENESTRA_FUZZ(Checkpoint, input) {
   fenestra::Digest digest;
   digest.add(input);
   std::string content(input);
@@ -14,14 +14,13 @@ FENESTRA_FUZZ(Film, input) {
   fenestra::fuzzing::expectReadOrError([&] {
     const fenestra::CheckpointFile film(path);
     const nlohmann::json here = {{"settings", {{"seed", {"1"}}}}, {"inputs", {{{"file", "a"}}}}};
-    fenestra::findDifference(film.made(), here, path.string());
-    constexpr int maxSize =
-        64; // pixels of a row and a column: a command knows the size, and checks it
+    fenestra::findDifference(film.metadata(), here, path.string());
+    constexpr int maxSize = 64; // pixels; a command checks the size against its own
     if (film.width() > maxSize || film.height() > maxSize)
       return;
-    fenestra::RenderResult result = film.begun();
-    film.read(result.film);
-    if (result.film.sampleCounts().greatest > 1)
+    fenestra::RenderResult result = film.readProgress();
+    film.readPixels(result.film);
+    if (result.film.sampleCounts().max > 1)
       result.film.at(0, 0).standardError();
   });
 }

@@ -1,4 +1,4 @@
-// Command line of a render, one word a line. No file is read or written.
+// Command line of a render, one word per line. Reads and writes no files.
 #include "Harness.h"
 
 #include "program/CommandLine.h"
@@ -12,7 +12,7 @@ FENESTRA_FUZZ(CommandLine, input) {
   while (!input.empty() && words.size() < 64) {
     const std::string_view word = input.substr(0, input.find('\n'));
     input.remove_prefix(std::min(input.size(), word.size() + 1));
-    words.emplace_back(word.substr(0, word.find('\0'))); // as in a process's arguments
+    words.emplace_back(word.substr(0, word.find('\0'))); // as in argv
   }
   std::vector<char*> argv;
   for (std::string& word : words)

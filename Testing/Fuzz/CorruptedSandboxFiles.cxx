@@ -1,5 +1,5 @@
-// Sends damaged DICOM and transform files through the child that reads them: each must be read, or
-// refused by an Error (input) of one line that names the file. usage: ApartMutations COUNT [SEED]
+// Reads corrupted DICOM and transform files in the sandbox. Each must be read, or fail with an
+// input Error of one line that names the file. usage: CorruptedSandboxFiles COUNT [SEED]
 
 #include "TemporaryFolder.h"
 #include "base/Error.h"
@@ -30,8 +30,8 @@ std::vector<Seed> loadSeeds(const Path& folder) {
   return seeds;
 }
 
-/// Applies up to six mutations: another byte, an extreme number, a removed, moved or repeated
-/// range, an early end.
+/// Applies up to six changes: replaces a byte or a number, removes or duplicates a range, or
+/// truncates the bytes.
 std::string corrupt(std::string bytes, Random& random) {
   const auto randomBelow = [&random](std::size_t limit) {
     return std::uniform_int_distribution<std::size_t>(0, limit - 1)(random);
@@ -80,7 +80,7 @@ void classify(Counts& counts, const Path& path, const Read& read) {
     }
     problem = line;
   } catch (const std::exception& error) {
-    problem = std::string("another exception: ") + error.what();
+    problem = std::string("unexpected exception: ") + error.what();
   }
   ++counts.wrong;
   std::filesystem::copy_file(path,
@@ -106,7 +106,7 @@ int runAll(int total, Random random) {
         readLinearTransform(path).inverse();
     });
   }
-  std::printf("%d files: %d read, %d refused, %d neither\n", total, counts.read, counts.refused,
+  std::printf("%d files: %d read, %d rejected, %d errors\n", total, counts.read, counts.refused,
               counts.wrong);
   return counts.wrong == 0 ? 0 : 1;
 }
@@ -117,7 +117,7 @@ int runAll(int total, Random random) {
 int main(int argc, char** argv) {
   fenestra::serveSandbox(argc, argv);
   if (argc != 2 && argc != 3) {
-    std::fprintf(stderr, "usage: ApartMutations COUNT [SEED]\n");
+    std::fprintf(stderr, "usage: CorruptedSandboxFiles COUNT [SEED]\n");
     return 2;
   }
   return fenestra::runAll(std::atoi(argv[1]),

@@ -1,5 +1,5 @@
-// DICOM: the input is a child's answer about a file, which may be any bytes if a malicious file
-// controls the child. ApartMutations sends files.
+// DICOM: the input is the reply of the sandboxed child, which can be any bytes if a malicious file
+// has taken over the child. CorruptedSandboxFiles tests the files themselves.
 #include "Harness.h"
 
 #include "files/medical/DicomReader.h"
@@ -10,7 +10,7 @@ FENESTRA_FUZZ(Dicom, input) {
     try {
       return parseDicomHeader(input);
     } catch (const std::runtime_error&) { // as DicomReader does
-      throw inputError("slice.dcm", "is no answer");
+      throw inputError("slice.dcm", "is not a valid reply");
     }
   }();
   checkDicomPixels(fuzzing::writeInput(input, "slice.dcm"), header);

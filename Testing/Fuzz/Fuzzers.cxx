@@ -1,5 +1,4 @@
-// All fuzz targets in one executable. The environment variable FENESTRA_FUZZ_TARGET selects the
-// target to run.
+// All fuzz targets in one executable. The environment variable FENESTRA_FUZZ_TARGET selects one.
 #include "Harness.h"
 #include "io/Sandbox.h"
 
@@ -26,7 +25,7 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
     std::exit(2);
   }
   chosen = found->second;
-  // Separates the product's output from libFuzzer's own lines.
+  // Fenestra's output would mix with libFuzzer's.
   std::cout.rdbuf(nullptr);
   std::cerr.rdbuf(nullptr);
   return 0;

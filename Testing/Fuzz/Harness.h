@@ -1,7 +1,7 @@
 #pragma once
-// Common part of the fuzz targets: puts the input where a reader finds it, and checks that the
-// reader accepts or refuses it. Any other outcome (another exception, a crash, a sanitizer's
-// report, too much time or memory) is a finding, which libFuzzer reports.
+// Common part of the fuzz targets: writes the input to a file, and checks that the reader either
+// succeeds or throws an Error. libFuzzer reports any other outcome: another exception, a crash, a
+// sanitizer error, or excessive time or memory.
 
 #include "TemporaryFolder.h"
 #include "base/Error.h"
@@ -20,7 +20,7 @@
 
 namespace fenestra::fuzzing {
 
-/// Folder of this process under TMPDIR, which run.sh puts in memory.
+/// Temporary folder of this process. run.sh sets TMPDIR to a folder in memory.
 inline const TemporaryFolder& folder() {
   static const TemporaryFolder made;
   return made;
@@ -35,11 +35,11 @@ inline std::filesystem::path writeInput(std::string_view bytes, const std::strin
   if (file >= 0)
     ::close(file);
   if (!isComplete)
-    throw std::runtime_error("no room for the input under " + path.string());
+    throw std::runtime_error("cannot write the input to " + path.string());
   return path;
 }
 
-/// Runs a reader, which may throw only an Error whose text is one line, not empty.
+/// Runs a reader. It may only throw an Error, whose text must be one line and not empty.
 template <typename Read>
 void expectReadOrError(Read&& read) {
   try {
@@ -47,22 +47,22 @@ void expectReadOrError(Read&& read) {
   } catch (const Error& error) {
     const std::string_view line = error.what();
     if (line.empty() || line.find('\n') != std::string_view::npos)
-      throw std::logic_error("not one line: " + std::string(line));
+      throw std::logic_error("error text is not one line: " + std::string(line));
   }
 }
 
-/// File name chosen by the input's first byte, which is removed from the input.
+/// File name selected by the first byte of the input, which is removed from it.
 template <std::size_t N>
 std::string chooseName(std::string_view& input, const std::array<const char*, N>& names) {
   if (input.empty())
     return names[0];
   const auto first = static_cast<unsigned char>(input[0]);
   input.remove_prefix(1);
-  // Seeds are text written by people: they start with a digit.
+  // Seeds start with a digit, since they are written by hand.
   return names[(first >= '0' ? first - std::size_t{'0'} : first) % N];
 }
 
-/// Fuzz target by name; FENESTRA_FUZZ_TARGET chooses one (Fuzzers.cxx).
+/// Named fuzz target; FENESTRA_FUZZ_TARGET selects one (see Fuzzers.cxx).
 struct Target {
   using Function = void (*)(std::string_view);
   Target(const char* name, Function function) { all()[name] = function; }
@@ -74,7 +74,7 @@ struct Target {
 
 } // namespace fenestra::fuzzing
 
-/// Defines a target's function; its body sees the input as `std::string_view input`.
+/// Defines the function of a target, with the parameter `std::string_view input`.
 #define FENESTRA_FUZZ(name, input)                                                                 \
   static void fuzz##name(std::string_view input);                                                  \
   static const fenestra::fuzzing::Target target##name(#name, fuzz##name);                          \

@@ -1,4 +1,4 @@
-// Tables of names for label maps; the first byte chooses the format.
+// Label name tables; the first byte selects the format.
 #include "Harness.h"
 
 #include "files/segments/LabelNames.h"
@@ -11,5 +11,5 @@ FENESTRA_FUZZ(Labels, input) {
                          ? parseLabelNamesXml(input, name)
                          : std::optional(readLabelNames(fuzzing::writeInput(input, name)));
   if (names && (names->empty() || names->contains(0)))
-    throw std::logic_error("a table without names, or one that names the background");
+    throw std::logic_error("the table has no names, or names the background");
 }

@@ -1,4 +1,4 @@
-// Lights.
+// Lights (.json).
 #include "Harness.h"
 
 #include "files/appearance/LightReader.h"

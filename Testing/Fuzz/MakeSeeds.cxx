@@ -1,5 +1,4 @@
-// usage: MakeSeeds FOLDER: writes the seeds that are not text into FOLDER/<target>/ and
-// FOLDER/../Apart/.
+// usage: MakeSeeds FOLDER: writes the binary seeds to FOLDER/<target>/ and FOLDER/../Sandbox/.
 #include "Regression/SampleFiles.h"
 #include "SceneFixtures.h"
 #include "TemporaryFolder.h"
@@ -30,7 +29,7 @@ void save(const fs::path& folder, const std::string& name, const std::string& by
   std::ofstream(folder / name, std::ios::binary) << bytes;
 }
 
-/// Volume of 3x3x2 16-bit voxels with both of NIfTI's transforms (qform and sform).
+/// NIfTI volume of 3x3x2 16-bit voxels with a qform and an sform.
 std::string makeNifti() {
   std::string header(352, '\0');
   const auto put = [&header](std::size_t at, auto value) {
@@ -79,7 +78,7 @@ void makeImages(const fs::path& corpus) {
   Image image{3, 2, {}, {{"seed", "1"}}};
   for (const char* channel : {"R", "G", "B", "A"})
     image.channels[channel] = {0.0f, 0.1f, 0.5f, 1.0f, 1.0f, 1.0f};
-  // The digit selects the format.
+  // The first byte selects the format.
   for (const auto& [digit, name] : {std::pair{"0", "picture.exr"},
                                     {"1", "picture.png"},
                                     {"2", "picture.tif"},
@@ -100,13 +99,13 @@ void makeTransforms(const fs::path& corpus) {
     writer->SetTransformIO(io);
     writer->SetInput(transform);
     writer->Update();
-    fenestra::save(corpus / "../Apart/Transform", name, readBytes(folder / name));
+    fenestra::save(corpus / "../Sandbox/Transform", name, readBytes(folder / name));
   };
   save("affine.h5", itk::HDF5TransformIOTemplate<double>::New());
   save("affine.mat", itk::MatlabTransformIOTemplate<double>::New());
 }
 
-/// Writes a child's answers about such files.
+/// Writes replies of a sandboxed child about such files.
 void makeReplies(const fs::path& corpus) {
   ReplyWriter composite;
   for (const char* type : {"CompositeTransform_double_3_3", "AffineTransform_double_3_3",
@@ -128,7 +127,7 @@ void makeReplies(const fs::path& corpus) {
 }
 
 void makeSlices(const fs::path& corpus) {
-  const fs::path folder = corpus / "../Apart/Dicom";
+  const fs::path folder = corpus / "../Sandbox/Dicom";
   fs::create_directories(folder);
   for (const bool compress : {false, true}) {
     const auto io = itk::GDCMImageIO::New();
@@ -153,8 +152,8 @@ void makeSlices(const fs::path& corpus) {
   }
 }
 
-/// Writes the scene of Corpus/Scene with its files. deflated.mrb holds the same, packed by
-/// Info-ZIP.
+/// Writes the scene of Corpus/Scene with its files as stored.mrb. deflated.mrb has the same
+/// content, packed by Info-ZIP.
 void makeArchive(const fs::path& corpus) {
   std::string scene = readBytes(corpus / "Scene/new.mrml");
   const std::string attribute = "fileName=\"";
@@ -177,7 +176,7 @@ int main(int argc, char** argv) {
   }
   try {
     const fenestra::TemporaryFolder traps;
-    constexpr double spacing = 12.0; // mm: 3 voxels an axis
+    constexpr double spacing = 12.0; // mm: 3 voxels per axis
     fenestra::testing::writeTraps(traps.path(), spacing);
     fenestra::makeVolumes(argv[1], traps.path());
     fenestra::makeImages(argv[1]);

@@ -1,4 +1,4 @@
-// Materials; a line without a brace is a change to one segment.
+// Materials (.json), or, if the input has no brace, a change of one segment.
 #include "Harness.h"
 
 #include "files/appearance/MaterialReader.h"

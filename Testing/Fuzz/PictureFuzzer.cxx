@@ -1,4 +1,4 @@
-// Pictures to compare or to use as environments; the first byte selects the format.
+// Images for comparison or environment maps; the first byte selects the format.
 #include "Harness.h"
 
 #include "files/images/ImageReader.h"
@@ -11,5 +11,5 @@ FENESTRA_FUZZ(Picture, input) {
   for (const auto& [channel, plane] : image.channels)
     if (plane.size() !=
         static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height))
-      throw std::logic_error(channel + " is not of the picture's size");
+      throw std::logic_error(channel + " differs from the image size");
 }

@@ -1,4 +1,4 @@
-// Organ presets, with a name to match against their patterns.
+// Organ presets. A name pattern without wildcards must match its own text.
 #include "Harness.h"
 
 #include "base/Text.h"
@@ -9,5 +9,5 @@ FENESTRA_FUZZ(Preset, input) {
   for (const fenestra::NamePattern& pattern : preset.focus.names)
     if (!pattern.matches(fenestra::splitName(pattern.text)) && !pattern.words.empty() &&
         pattern.text.find_first_of("*?") == pattern.text.npos)
-      throw std::logic_error("a name that is not itself");
+      throw std::logic_error("a name does not match itself");
 }

@@ -16,5 +16,5 @@ FENESTRA_FUZZ(Roi, input) {
   static MrmlScene scene(scenePath);
   const CropBox box = readSceneRoi(scene, *scene.document.find("roi"));
   if (!allFinite(box.worldToBox))
-    throw std::logic_error("a box that is none");
+    throw std::logic_error("the box is not finite");
 }

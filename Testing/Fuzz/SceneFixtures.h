@@ -1,5 +1,5 @@
 #pragma once
-// Smallest valid files to which a scene refers, one of each kind.
+// Minimal valid files that a scene can reference, one per kind.
 
 #include "Harness.h"
 
@@ -8,7 +8,7 @@
 
 namespace fenestra::fuzzing {
 
-/// Content by name.
+/// Contents by file name.
 inline std::map<std::string, std::string> sceneFixtures() {
   const std::string nrrd = "NRRD0004\ntype: uint8\ndimension: 3\nspace: left-posterior-superior\n"
                            "sizes: 2 2 2\nspace directions: (1,0,0) (0,1,0) (0,0,1)\n"
@@ -29,7 +29,7 @@ inline std::map<std::string, std::string> sceneFixtures() {
   };
 }
 
-/// Writes the neighbours to folder() at the first call.
+/// Writes the files to folder() at the first call.
 inline void writeSceneFixtures() {
   static const bool written = [] {
     for (const auto& [name, content] : sceneFixtures())

@@ -1,4 +1,4 @@
-// Slicer scenes (.mrml), beside the files that a scene may name.
+// Slicer scenes (.mrml), in a folder with files that they can reference.
 #include "SceneFixtures.h"
 #include "SceneInputs.h"
 

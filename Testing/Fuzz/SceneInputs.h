@@ -12,11 +12,11 @@ inline void loadScene(const std::filesystem::path& path) {
   const Input input(path);
   const Volume volume = input.volume({}).volume;
   const SceneSettings settings = input.settings({}, true);
-  input.look({}, {volume.minimum, volume.maximum});
+  input.transfer({}, {volume.minimum, volume.maximum});
   if (!allFinite(volume.grid.indexToWorld) ||
       (settings.crop && !allFinite(settings.crop->worldToBox)))
-    throw std::logic_error("a place that is none");
-  input.segments({}, volume.grid).segmentation.mask({"A"}, volume.grid);
+    throw std::logic_error("a transform is not finite");
+  input.segments({}, volume.grid).segmentation.makeFocusMask({"A"}, volume.grid);
 }
 
 } // namespace fenestra::fuzzing

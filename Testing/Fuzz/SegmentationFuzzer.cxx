@@ -1,4 +1,4 @@
-// Segmentations: their metadata, and the mask of the first segments.
+// Segmentations: metadata, and the mask of the first three segments.
 #include "Harness.h"
 
 #include "files/segments/SegmentationReader.h"
@@ -10,7 +10,7 @@ FENESTRA_FUZZ(Segmentation, input) {
   for (const SegmentInfo& segment : segmentation.segments())
     if (focus.size() < 3)
       focus.push_back(segment.id);
-  const Mask mask = segmentation.mask(focus, segmentation.grid());
+  const Mask mask = segmentation.makeFocusMask(focus, segmentation.grid());
   if (mask.count < 1 || mask.names.size() != focus.size())
-    throw std::logic_error("a mask of nothing");
+    throw std::logic_error("the mask is empty or incomplete");
 }

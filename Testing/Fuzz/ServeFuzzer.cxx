@@ -1,4 +1,4 @@
-// One line of a server's input. Only looks are read, and nothing is written.
+// One input line of `fenestra serve`. Reads only files that define the appearance; writes nothing.
 #include "Harness.h"
 
 #include "io/JsonNode.h"
@@ -6,9 +6,9 @@
 
 FENESTRA_FUZZ(Serve, input) {
   using namespace fenestra;
-  OptionValues flags(renderSyntax.flags);
+  OptionValues flags(renderSyntax.options);
   flags.add("INPUT", "volume.nrrd");
   const nlohmann::json change = parseJson(input, "a line");
-  idOf(change);
+  readId(change);
   checkChange(change, applyChange(change, flags), Input("volume.nrrd"));
 }

@@ -1,5 +1,5 @@
 // Closed-surface segmentations: the first byte selects whether the input is the .vtm, or the .vtp
-// named by a valid .vtm.
+// of a valid .vtm.
 #include "Harness.h"
 
 #include "files/segments/SegmentationReader.h"

@@ -1,4 +1,4 @@
-// Transfer functions: Fenestra's own, and Slicer's volume properties as text and as JSON.
+// Transfer functions: Fenestra's format, and Slicer's volume properties as text and as JSON.
 #include "Approx.h"
 #include "Harness.h"
 
@@ -9,10 +9,10 @@ namespace {
 void readTransfer(std::string_view input, const std::string& name) {
   using namespace fenestra;
   const TransferFunction transfer =
-      readTransferFile(fuzzing::writeInput(input, name)).over(-1e3, 1e3);
+      readTransferFile(fuzzing::writeInput(input, name)).mapRange(-1e3, 1e3);
   for (const double s : {-1e30, -1000.0, 0.0, 0.5, 300.0, 1e30})
     if (!(transfer.extinction(s)[0] >= 0.0) || !allFinite(transfer.albedo(s)))
-      throw std::logic_error("a medium that is none");
+      throw std::logic_error("extinction or albedo is invalid");
 }
 
 } // namespace

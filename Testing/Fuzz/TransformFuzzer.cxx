@@ -1,5 +1,5 @@
-// Linear transform files: the input is a child's answer about a file, which may be any bytes if a
-// malicious file controls the child. ApartMutations sends files.
+// Linear transforms: the input is the reply of the sandboxed child, which can be any bytes if a
+// malicious file has taken over the child. CorruptedSandboxFiles tests the files themselves.
 #include "Approx.h"
 #include "Harness.h"
 
@@ -9,5 +9,5 @@ FENESTRA_FUZZ(Transform, input) {
   using namespace fenestra;
   const Affine toParent = parseTransformReply("t.h5", input).inverse();
   if (!allFinite(toParent))
-    throw std::logic_error("a map that is none");
+    throw std::logic_error("the map is not finite");
 }

@@ -1,5 +1,4 @@
-// Volumes of every format; the first byte selects the format. Samples of a detached header are in
-// `samples.raw`.
+// Volumes; the first byte selects the format. Detached headers can name `samples.raw`.
 #include "Harness.h"
 
 #include "files/medical/VolumeReader.h"

@@ -1,6 +1,6 @@
-// Whole request, from bytes to pixels: a scene's text, a line `---`, and its volume, v.nrrd; other
-// files that the scene may name lie beside. The first byte selects whether there is a focus. Only
-// this target tests combinations of scene and volume (positions, boxes, cameras, majorants, paths).
+// Complete request, from bytes to pixels. The input is one byte that selects whether there is a
+// focus, a scene, a line `---`, and the volume v.nrrd. Only this target tests combinations of scene
+// and volume (positions, boxes, cameras, majorants, paths).
 #include "Approx.h"
 #include "Harness.h"
 #include "SceneFixtures.h"
@@ -19,8 +19,8 @@ using namespace fenestra;
 constexpr std::int64_t maxVoxels = 32 * 32 * 32;
 constexpr std::uint64_t maxBounces = 8;
 
-/// Requests that a render stop after half a second: dense matter may take that long, stopping must
-/// not.
+/// Requests a stop after half a second, since dense media can take long. The render must then stop
+/// quickly.
 class StopTimer {
 public:
   explicit StopTimer(std::atomic<bool>& stop)
@@ -49,7 +49,7 @@ private:
 void checkPixels(const Film& film) {
   for (const PixelSums& pixel : film.pixels())
     if (!allFinite(pixel.mean) || (pixel.mean < 0.0).any())
-      throw std::logic_error("a pixel that is no light");
+      throw std::logic_error("a pixel is negative or not finite");
 }
 
 void renderRequest(const RenderRequest& request) {

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Builds the fuzz targets with clang and runs them two at a time (each may take 2 GB), each for SECONDS (5) or up to
-# FENESTRA_FUZZ_RUNS executions, from the seeds of Corpus/ and what earlier runs found (FENESTRA_FUZZ_DIR,
-# build-asan-ubsan/fuzz), and says of each how many inputs it took. What stops a target is kept in
-# FENESTRA_FUZZ_DIR/findings, and the exit status is 1. usage: run.sh [SECONDS] [TARGET...]
+# Builds the fuzz targets with clang and runs them, two at a time (each may use 2 GB). Each runs for SECONDS [5] or
+# FENESTRA_FUZZ_RUNS executions, from the seeds in Corpus/ and inputs found by earlier runs (in FENESTRA_FUZZ_DIR
+# [build-asan-ubsan/fuzz]), and prints its statistics. Inputs that fail are saved in FENESTRA_FUZZ_DIR/findings, and
+# the exit status is 1. usage: run.sh [SECONDS] [TARGET...]
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../../Resources/setup.sh"
 seconds=${1:-5}
@@ -11,15 +11,15 @@ here=$top/Testing/Fuzz
 build_folder=${FENESTRA_FUZZ_BUILD:-$top/build-asan-ubsan}
 work=${FENESTRA_FUZZ_DIR:-$build_folder/fuzz}
 
-# The words that a target's inputs are made of; not every target has some.
+# dictionary TARGET: libFuzzer option for its dictionary, if it has one.
 dictionary() {
   case $1 in
-    Film | Transfer | PropertyJson | Lights | Materials | Preset | Serve) echo "-dict=$here/Dictionaries/Json.dict" ;;
+    Checkpoint | Transfer | PropertyJson | Lights | Materials | Preset | Serve) echo "-dict=$here/Dictionaries/Json.dict" ;;
     *) [ ! -f "$here/Dictionaries/$1.dict" ] || echo "-dict=$here/Dictionaries/$1.dict" ;;
   esac
 }
 
-# summary LOG: what libFuzzer counted.
+# summary LOG: statistics of libFuzzer.
 summary() {
   awk -F': +' '
     /^stat::number_of_executed_units/ { runs = $2 }
@@ -29,11 +29,11 @@ summary() {
     END { printf "%10d runs %7d /s  %6d edges  %5d MB", runs, rate, edges[1], rss }' "$1"
 }
 
-# fuzz TARGET: status 1 where it found something.
+# fuzz TARGET: runs it; status 1 if an input fails.
 fuzz() {
   local target=$1 log=$work/$1.log status=0
   mkdir -p "$work/corpus/$target" "$work/findings"
-  # An exception unpoisons the shadow of the stack, 1 MB, which costs more by mmap than by memset.
+  # Every exception clears 1 MB of stack shadow memory, which is faster with memset than with mmap.
   local options=detect_leaks=0:allocator_may_return_null=0:clear_shadow_mmap_threshold=4000000
   TMPDIR=$memory ASAN_OPTIONS=$options:quarantine_size_mb=32 FENESTRA_FUZZ_TARGET=$target \
     "$build_folder/bin/Fuzzers" "$work/corpus/$target" "$here/Corpus/$target" \
@@ -41,7 +41,7 @@ fuzz() {
     -rss_limit_mb=2048 -close_fd_mask=1 -print_final_stats=1 -reload=0 \
     -artifact_prefix="$work/findings/$target-" $(dictionary "$target") >"$log" 2>&1 || status=$?
   printf '%-14s %s  %s\n' "$target" "$(summary "$log")" \
-    "$([ $status -eq 0 ] && echo fine || echo "FINDING, see $log")"
+    "$([ $status -eq 0 ] && echo ok || echo "FINDING, see $log")"
   return $((status != 0))
 }
 
@@ -53,7 +53,7 @@ targets=("$@")
 [ ${#targets[@]} -gt 0 ] || mapfile -t targets < <(ls "$here/Corpus")
 memory=$(mktemp -d -p "$([ -w /dev/shm ] && echo /dev/shm || echo "${TMPDIR:-/tmp}")" fenestra-fuzz-XXXXXX)
 trap 'rm -rf "$memory"' EXIT
-say "Fuzzing, $seconds s a target"
+say "Fuzzing, $seconds s per target"
 export -f dictionary summary fuzz
 export here seconds build_folder work memory
 printf '%s\n' "${targets[@]}" | xargs -P 2 -I{} bash -c 'fuzz {}' || exit 1

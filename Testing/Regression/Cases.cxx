@@ -49,14 +49,14 @@ std::vector<RegressionCase> readCases() {
       continue;
     std::vector<std::string> all = expandWords(line, names);
     if (all.size() < 3)
-      throw std::runtime_error(std::string(FENESTRA_REGRESSION_CASES) + ": too short: " + line);
+      throw std::runtime_error(std::string(FENESTRA_REGRESSION_CASES) + ": too few words: " + line);
     if (all[1] == "=")
       names[all[0]] = {all.begin() + 2, all.end()};
     else
       cases.push_back(makeCase(all[0], std::stoull(all[1]), {all.begin() + 2, all.end()}));
   }
   if (cases.empty())
-    throw std::runtime_error(std::string(FENESTRA_REGRESSION_CASES) + ": has no cases");
+    throw std::runtime_error(std::string(FENESTRA_REGRESSION_CASES) + ": no cases");
   return cases;
 }
 
@@ -72,7 +72,7 @@ Image renderCase(const RegressionCase& c, std::uint64_t seed, std::uint64_t samp
                  const std::filesystem::path& folder, const std::filesystem::path& output) {
   std::filesystem::create_directories(output.parent_path());
   Arguments arguments = c.arguments;
-  // The shortest form of the arguments, since the picture's header stores them.
+  // Relative paths, since the image header stores the arguments.
   arguments.insert(arguments.end(),
                    {"--seed", std::to_string(seed), "--samples", std::to_string(samples),
                     "--layers", "color,error,samples", "--progress", "none", "--output",

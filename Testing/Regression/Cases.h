@@ -1,5 +1,5 @@
 #pragma once
-// Cases of cases.txt, their renders, and the comparison of a render with its baseline.
+// Regression cases (cases.txt): rendering one, and comparing the image with its baseline.
 
 #include "image/Image.h"
 
@@ -13,12 +13,12 @@ namespace fenestra::testing {
 
 struct RegressionCase {
   std::string name;
-  std::string baseline;               ///< name of the case that owns the baseline; may be this case
-  std::uint64_t samples = 0;          ///< samples a pixel of the test
+  std::string baseline;               ///< name of the case whose baseline is used; may be this case
+  std::uint64_t samples = 0;          ///< samples per pixel of the test
   std::vector<std::string> arguments; ///< arguments of `fenestra`, run in Testing/Data
 };
 
-/// GoogleTest's text of a case.
+/// Prints a case in messages of GoogleTest.
 inline void PrintTo(const RegressionCase& c, std::ostream* out) {
   for (const std::string& argument : c.arguments)
     *out << argument << ' ';
@@ -27,23 +27,23 @@ inline void PrintTo(const RegressionCase& c, std::ostream* out) {
 /// Throws std::runtime_error for an invalid table.
 std::vector<RegressionCase> readCases();
 
-/// Testing/Data, and the baseline of a case in that folder.
+/// The folder Testing/Data, and the baseline of a case in it.
 std::filesystem::path dataFolder();
 std::filesystem::path baselinePath(const RegressionCase& c);
 
-/// Runs the executable in `folder` (Testing/Data, or a copy with a planted fault), writes the
-/// picture to `output` and returns it. Throws std::runtime_error with the executable's error text.
+/// Runs the executable in `folder` (Testing/Data or a modified copy), writes the image to `output`
+/// and returns it. Throws std::runtime_error with the executable's error message.
 Image renderCase(const RegressionCase& c, std::uint64_t seed, std::uint64_t samples,
                  const std::filesystem::path& folder, const std::filesystem::path& output);
 
-/// Probability of the largest difference at three scales: pixels detect what has moved, the mean a
-/// small overall change, tiles of 8 pixels anything in between.
+/// Probability of the largest difference at three scales. Pixels detect geometric changes, the mean
+/// small global changes, and tiles of 8x8 pixels changes in between.
 struct Agreement {
   double pixels = 0.0, tiles = 0.0, mean = 0.0;
 
-  /// Probability of all three scales together (Šidák 1967).
+  /// Combined probability of the three scales (Šidák 1967).
   double probability() const;
-  /// True if the difference may be chance; false once in ten thousand renders of one scene.
+  /// True if the difference can be noise. Wrongly false for one in 10,000 renders.
   bool holds() const { return probability() >= 1e-4; }
 };
 

@@ -7,9 +7,9 @@
 
 namespace {
 
-/// Seed that no test uses.
+/// Seed that is not used by any test.
 constexpr std::uint64_t seed = 20001;
-/// Factor between the samples of a baseline and of its test: the baseline adds 6 % to the noise.
+/// Samples of a baseline per sample of its test: noise of the baseline adds 6 % to the difference.
 constexpr std::uint64_t moreSamples = 8;
 
 } // namespace

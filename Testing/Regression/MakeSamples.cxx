@@ -10,7 +10,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    constexpr double spacing = 1.6; // mm: 25 voxels an axis, the largest file has 130 KB
+    constexpr double spacing = 1.6; // mm: 25 voxels per axis; the largest file has 130 KB
     fenestra::testing::writeTraps(argv[1], spacing);
     return 0;
   } catch (const std::exception& error) {

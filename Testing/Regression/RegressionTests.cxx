@@ -1,4 +1,4 @@
-// Every case of cases.txt against its baseline, and proof that the comparison finds planted faults.
+// Compares every case with its baseline, and checks that the comparison detects mutations.
 #include "Cases.h"
 #include "RunSettings.h"
 #include "TemporaryFolder.h"
@@ -25,7 +25,7 @@ std::filesystem::path resultFolder(const RegressionCase& c) {
   return std::filesystem::path(FENESTRA_REGRESSION_RESULTS) / c.name;
 }
 
-/// Writes the pictures needed to see an error; returns a text that names their folder.
+/// Writes images that show the differences; returns a text that names their folder.
 std::string writeErrorImages(const Image& image, const Image& baseline,
                              const std::filesystem::path& folder) {
   const Image z = differenceImage(image, baseline);
@@ -53,10 +53,10 @@ TEST_P(Regression, AgreesWithItsBaseline) {
 INSTANTIATE_TEST_SUITE_P(Cases, Regression, ::testing::ValuesIn(readCases()),
                          [](const auto& info) { return info.param.name; });
 
-// ---- planted faults
-// -----------------------------------------------------------------------------
+// ---- mutations
+// ----------------------------------------------------------------------------------
 
-/// Replaces a text that occurs once in a file.
+/// Replaces the first occurrence of a text in a file.
 void replaceIn(const std::filesystem::path& path, const std::string& from, const std::string& to) {
   std::string bytes = readBytes(path);
   const std::size_t at = bytes.find(from);
@@ -68,12 +68,12 @@ void replaceIn(const std::filesystem::path& path, const std::string& from, const
 struct Mutation {
   std::string name;
   std::string caseName;
-  /// Plants the fault in a copy of Testing/Data, or in the arguments.
+  /// Modifies a copy of Testing/Data, or the arguments.
   std::function<void(const std::filesystem::path& data, RegressionCase& c)> apply;
 };
 
-/// plain.nrrd and fog.nrrd have voxels of 1.6 mm, which extend in x and y from 19.2 mm to -19.2 mm
-/// in LPS.
+/// plain.nrrd and fog.nrrd have voxels of 1.6 mm, with centers from 19.2 mm to -19.2 mm along x and
+/// y in LPS.
 const std::vector<Mutation> mutations = {
     {"HalfVoxelShift", "plain",
      [](const auto& data, RegressionCase&) {
@@ -105,11 +105,11 @@ void PrintTo(const Mutation& mutation, std::ostream* out) {
   *out << "in " << mutation.caseName;
 }
 
-class PlantedFault : public ::testing::TestWithParam<Mutation> {};
+class RegressionMutation : public ::testing::TestWithParam<Mutation> {};
 
-TEST_P(PlantedFault, DiffersFromTheBaseline) {
+TEST_P(RegressionMutation, DiffersFromTheBaseline) {
   if (sampleDivisor() > 1)
-    GTEST_SKIP() << "a brief run has too few samples to find it";
+    GTEST_SKIP() << "FENESTRA_BRIEF leaves too few samples";
   const std::vector<RegressionCase> cases = readCases();
   const auto it = std::find_if(cases.begin(), cases.end(), [](const RegressionCase& c) {
     return c.name == GetParam().caseName;
@@ -126,7 +126,7 @@ TEST_P(PlantedFault, DiffersFromTheBaseline) {
   EXPECT_FALSE(result.holds()) << describe(result);
 }
 
-INSTANTIATE_TEST_SUITE_P(Faults, PlantedFault, ::testing::ValuesIn(mutations),
+INSTANTIATE_TEST_SUITE_P(Mutations, RegressionMutation, ::testing::ValuesIn(mutations),
                          [](const auto& info) { return info.param.name; });
 
 } // namespace

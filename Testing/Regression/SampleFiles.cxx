@@ -19,17 +19,17 @@ namespace {
 
 constexpr double fieldOfView = 40.0; // mm, around the origin
 
-/// Positions of voxels: RAS mm.
+/// Voxel grid in RAS, mm.
 struct Axes {
   Size3 size;
   Mat3 steps; ///< column: step to the next voxel along that axis
-  Vec3 first; ///< centre of the first voxel
+  Vec3 first; ///< center of the first voxel
 
   Vec3 position(int i, int j, int k) const { return first + steps * Vec3(i, j, k); }
 };
 
-/// Axes along unit directions (columns); the grid is centred at the origin and fills the field of
-/// view.
+/// Grid along unit directions (columns of `directions`), centered at the origin, that fills the
+/// field of view.
 Axes makeAxes(const Mat3& directions, const Vec3& spacing) {
   Axes axes;
   axes.size = (fieldOfView / spacing.array()).round().cast<std::int64_t>();
@@ -44,7 +44,7 @@ Mat3 makeColumns(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 const Mat3 identity = Mat3::Identity();
 
-/// Rotation by 20 degrees about an axis oblique to the world's axes.
+/// Rotation by 20 degrees about an oblique axis.
 Mat3 makeTilt() {
   return makeRotation(0.35, Vec3(1.0, 2.0, -1.5).normalized()).linear();
 }
@@ -86,7 +86,7 @@ std::string compressGzip(const std::string& bytes) {
   z_stream stream{};
   constexpr int gzipFormat = 15 + 16;
   if (deflateInit2(&stream, 9, Z_DEFLATED, gzipFormat, 8, Z_DEFAULT_STRATEGY) != Z_OK)
-    throw std::runtime_error("zlib does not start");
+    throw std::runtime_error("deflateInit2 failed");
   std::string result(deflateBound(&stream, bytes.size()), '\0');
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
   stream.avail_in = static_cast<uInt>(bytes.size());
@@ -96,7 +96,7 @@ std::string compressGzip(const std::string& bytes) {
   result.resize(stream.total_out);
   deflateEnd(&stream);
   if (status != Z_STREAM_END)
-    throw std::runtime_error("zlib does not end");
+    throw std::runtime_error("deflate failed");
   return result;
 }
 
@@ -120,7 +120,7 @@ std::string formatTriple(const Vec3& v) {
   return text.str();
 }
 
-/// Header without the empty line at its end.
+/// NRRD header without the empty line at its end.
 std::string makeHeader(const Nrrd& nrrd) {
   const Vec3 toSpace =
       nrrd.space == "right-anterior-superior" ? Vec3(1.0, 1.0, 1.0) : Vec3(-1.0, -1.0, 1.0);
@@ -150,7 +150,7 @@ void write(const std::filesystem::path& path, const std::string& bytes) {
     throw std::runtime_error(path.string() + ": cannot be written");
 }
 
-/// Writes the subject, with `offset` added to its scalars.
+/// Writes the subject plus `offset` as a volume.
 template <typename T>
 void writeVolume(const std::filesystem::path& path, const Nrrd& nrrd, double offset = 0.0) {
   const Value value = [offset](const Vec3& p) { return subject(p) + offset; };
@@ -171,7 +171,7 @@ void writeVolume(const std::filesystem::path& path, const Nrrd& nrrd, double off
 // ---- traps
 // --------------------------------------------------------------------------------------
 
-/// Writes volumes with axes that are not the world's.
+/// Writes volumes with different directions and spacings of their axes.
 void writeGeometries(const std::filesystem::path& folder, double s) {
   const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY(), z = Vec3::UnitZ(), cube = Vec3::Constant(s);
   writeVolume<std::uint8_t>(folder / "plain.nrrd", {"uint8", makeAxes(identity, cube)});
@@ -186,7 +186,7 @@ void writeGeometries(const std::filesystem::path& folder, double s) {
   writeVolume<std::uint8_t>(folder / "ras.nrrd",
                             {"uint8", makeAxes(identity, cube), "right-anterior-superior"});
   Axes sheared = makeAxes(identity, cube);
-  sheared.steps.col(2) += 0.3 * s * y; // a tilted gantry
+  sheared.steps.col(2) += 0.3 * s * y; // as by a tilted gantry
   sheared.first = -0.5 * (sheared.steps * (sheared.size - Size3::Ones()).cast<double>());
   writeVolume<std::uint8_t>(folder / "sheared.nrrd", {"uint8", sheared});
 }
@@ -233,7 +233,7 @@ Value makeLabels(std::vector<std::pair<double (*)(const Vec3&), int>> organs) {
 void writeSegments(const std::filesystem::path& folder, double s) {
   const std::string common = "Segmentation_ContainedRepresentationNames:=Binary labelmap|\n"
                              "Segmentation_MasterRepresentation:=Binary labelmap\n";
-  // Overlapping segments: one value in two layers, on a grid of their own.
+  // Overlapping segments: two layers use the same label value; the grid differs from the volume's.
   const Axes fine = makeAxes(identity, Vec3::Constant(0.8 * s));
   Nrrd layers{"uint8",
               fine,
@@ -248,7 +248,7 @@ void writeSegments(const std::filesystem::path& folder, double s) {
       fine, {makeLabels({{liver, 1}, {tumor, 7}}), makeLabels({{heart, 1}, {tumor, 2}})});
   write(folder / "layers.seg.nrrd", makeHeader(layers) + "\n" + compressGzip(both));
 
-  // Part of the volume's grid; the origin is already the part's own.
+  // A part of the volume's grid. Its origin already includes the extent offset.
   Axes part = makeAxes(identity, Vec3::Constant(s));
   const Size3 offset = part.size / 2;
   part.first = part.position(static_cast<int>(offset.x()), static_cast<int>(offset.y()), 0);
@@ -266,7 +266,7 @@ void writeSegments(const std::filesystem::path& folder, double s) {
         makeHeader(cropped) + "\n" +
             makeRawSamples<std::int16_t>(part, {makeLabels({{liver, 300}})}));
 
-  // Plain label map with gaps between its values.
+  // Label map without segment names, with gaps between its values.
   const Axes tilt = makeAxes(makeTilt(), Vec3::Constant(s));
   write(folder / "labels.nrrd",
         makeHeader({"uint8", tilt}) + "\n" +

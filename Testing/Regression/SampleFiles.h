@@ -1,6 +1,6 @@
 #pragma once
-// Format traps: one analytic subject in files that store it in different ways, written byte by
-// byte, without the libraries that the readers use.
+// Format traps: files that store the same analytic subject in different ways, such as axes, types
+// and encodings. They are written without the libraries that the readers use.
 
 #include <filesystem>
 

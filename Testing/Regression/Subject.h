@@ -1,6 +1,6 @@
 #pragma once
-// Subject of the format traps: a body with four organs, no two alike and none on an axis, so that
-// every flip, swap and shift of axes shows.
+// Analytic subject of the format traps: a body with four different organs, none on an axis, so that
+// every flip, permutation or shift of axes changes the image.
 
 #include "base/Vector.h"
 
@@ -17,7 +17,7 @@ inline double sphere(const Vec3& p, const Vec3& center, double radius) {
   return (p - center).norm() - radius;
 }
 
-/// Signed distances of organs, mm; `p` in RAS mm.
+/// Signed distances of the organs in mm; `p` is in RAS, mm.
 inline double liver(const Vec3& p) {
   return sphere(p, {7.0, 7.0, 5.0}, 5.5);
 }
@@ -33,7 +33,7 @@ inline double spine(const Vec3& p) {
   return std::max(across, p.z() - 3.0);
 }
 
-/// Scalar of the subject, 0 (air) to 250; the body has about 60.
+/// Scalar of the subject, from 0 (air) to 250; about 60 in the body.
 inline double subject(const Vec3& p) {
   const double body = (p.cwiseQuotient(Vec3(17.0, 15.0, 16.0)).norm() - 1.0) * 15.0;
   double value = 60.0 * coverage(body);

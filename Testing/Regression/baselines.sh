@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Makes the samples of Testing/Data and their baselines anew, or the baselines of these cases alone.
-# Look at what changed before you commit it. usage: bash Testing/Regression/baselines.sh [CASE...]
+# Regenerates the samples of Testing/Data and all baselines, or only the baselines of these cases. Review the
+# changes before you commit them. usage: bash Testing/Regression/baselines.sh [CASE...]
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../../Resources/setup.sh"
 binaries=${FENESTRA_BUILD:-$top/build}/bin
