@@ -1,7 +1,7 @@
-// Independent check of the clipping surface's boundary on twelve views of a knee, a liver and a
-// vertebra; prints the table kept in Testing/Report.
+// Independent check of the clipping surface on twelve views of a knee, a liver and a vertebra.
+// Prints Testing/Report/boundary-views.csv; the README there explains the columns.
 //
-//     BoundaryCheck [PIXELS [VIEWS]]     (default: 512 a side, 12 views)
+//     BoundaryCheck [PIXELS [VIEWS]]     (default: 512 per side, 12 views)
 
 #include "BoundaryMeasure.h"
 #include "Subjects.h"
@@ -16,7 +16,7 @@
 namespace fenestra::accuracy {
 namespace {
 
-/// Worst figures over several views, for the summary.
+/// Worst values over several views, for the summary.
 struct Worst {
   double jumpFraction = 0.0, rayJumpFraction = 0.0, strictFraction = 1.0, halfVoxelFraction = 1.0,
          halfVoxelSmooth = 1.0;
@@ -37,27 +37,25 @@ struct Worst {
   }
 };
 
-/// Prints the end of a row: figures that Worst and BoundaryMeasure share.
+constexpr const char* header =
+    "subject,view in degrees,boundary,outline points,jumps in percent,gap mean in mm,gap p95 in mm,"
+    "gap max in mm,gap over 0.2 mm in percent,cut p95 in mm,cut max in mm,"
+    "shown to 0.2 mm in percent,shown to half a voxel in percent,rays at jumps in percent,"
+    "shown elsewhere in percent";
+
+/// Prints the end of a row: the values that Worst and BoundaryMeasure have in common.
 template <typename Figures>
 void printFigures(const Figures& f) {
-  std::printf(" %.1f %% | %.3f | %.3f | %.3f | %.3f %% | %.3f | %.3f | %.2f %% | %.2f %% | %.1f %% "
-              "| %.3f %% |\n",
-              100.0 * f.jumpFraction, f.gap.mean, f.gap.p95, f.gap.max, 100.0 * f.gap.wideFraction,
-              f.cut.p95, f.cut.max, 100.0 * f.strictFraction, 100.0 * f.halfVoxelFraction,
-              100.0 * f.rayJumpFraction, 100.0 * f.halfVoxelSmooth);
+  std::printf(",%.1f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.2f,%.2f,%.1f,%.3f\n", 100.0 * f.jumpFraction,
+              f.gap.mean, f.gap.p95, f.gap.max, 100.0 * f.gap.wideFraction, f.cut.p95, f.cut.max,
+              100.0 * f.strictFraction, 100.0 * f.halfVoxelFraction, 100.0 * f.rayJumpFraction,
+              100.0 * f.halfVoxelSmooth);
 }
-
-constexpr const char* figureTitles = " jumps | gap mean | p95 | max | over 0.2 mm | cut p95 | max "
-                                     "| shown to 0.2 mm | to half a voxel | rays at "
-                                     "jumps | shown elsewhere |\n";
-constexpr const char* figureRule = "---|---|---|---|---|---|---|---|---|---|---|\n";
 
 constexpr const char* boundaries[] = {"spline", "exact"};
 
 void sweep(const Subject& subject, int size, int views) {
   const FocusField field(readIndicator(subject));
-  std::printf("\n## %s\n\n| view | boundary | outline |%s|---|---|---|%s", subject.name.c_str(),
-              figureTitles, figureRule);
   Worst worst[2];
   for (int number = 0; number < views; ++number) {
     const View view = makeView(field, number, views, size, subject.elevation);
@@ -65,22 +63,22 @@ void sweep(const Subject& subject, int size, int views) {
     for (std::size_t i = 0; i < 2; ++i) {
       const BoundaryMeasure measure = focus.measure(clippingSurface(subject, view, boundaries[i]));
       worst[i].add(measure);
-      std::printf("| %d° | %s | %.0f |", 360 * number / views, boundaries[i],
+      std::printf("\"%s\",%d,%s,%.0f", subject.name.c_str(), 360 * number / views, boundaries[i],
                   measure.outlinePoints);
       printFigures(measure);
       std::fflush(stdout);
     }
   }
   for (std::size_t i = 0; i < 2; ++i) {
-    std::printf("| worst | %s | |", boundaries[i]);
+    std::printf("\"%s\",worst,%s,", subject.name.c_str(), boundaries[i]);
     printFigures(worst[i]);
   }
 }
 
-/// Subject with smoothed labels, seen from above or below.
+/// Copy of a subject with smoothed labels, viewed from above or below.
 Subject makeSmoothed(Subject subject, double smoothing, double elevation) {
   char name[100];
-  std::snprintf(name, sizeof name, "%s, labels smoothed by %g mm, seen from %g° %s",
+  std::snprintf(name, sizeof name, "%s, labels smoothed by %g mm, viewed from %g° %s",
                 subject.name.c_str(), smoothing, std::abs(elevation),
                 elevation > 0.0 ? "above" : "below");
   subject.name = name;
@@ -101,11 +99,12 @@ void sweepAll(int size, int views) {
                             "20", 20};
   const Subject subjects[] = {knee, liver, vertebra, makeSmoothed(knee, 0.6, 25.0),
                               makeSmoothed(vertebra, 1.0, -25.0)};
+  std::puts(header);
   for (const Subject& subject : subjects)
     if (std::filesystem::exists(subject.labelmap))
       sweep(subject, size, views);
     else
-      std::printf("\n## %s\n\nSkipped: no real data.\n", subject.name.c_str());
+      std::fprintf(stderr, "%s: SKIPPED: the data set is not available\n", subject.name.c_str());
 }
 
 } // namespace

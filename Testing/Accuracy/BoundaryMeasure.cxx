@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t raysAcrossPixel = 4;
 
-/// Hash of a number to [0, 1) (splitmix64).
+/// Hash of an integer to [0, 1) (splitmix64).
 double jitter(std::uint64_t number) {
   std::uint64_t x = (number + 1) * 0x9e3779b97f4a7c15ULL;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
@@ -19,7 +19,7 @@ double jitter(std::uint64_t number) {
   return static_cast<double>((x ^ (x >> 31)) >> 11) * 0x1p-53;
 }
 
-/// Four pixel centres around a raster position; `first`: the top left one.
+/// The four pixel centers around a raster position; `first`: index of the top left one.
 struct Cell {
   std::size_t first;
 
@@ -189,8 +189,8 @@ BoundaryMeasure FocusView::measure(const Surface& surface) const {
 }
 
 ImageMatch FocusView::match(const std::vector<float>& depths, const Surface& surface) const {
-  constexpr double tolerance = 0.1; // mm: some free paths
-  constexpr double step = 0.25;     // pixels between the examined points
+  constexpr double tolerance = 0.1; // mm: a few mean free paths
+  constexpr double step = 0.25;     // pixels between examined points
   const auto size = static_cast<std::size_t>(m_view.size);
   ImageMatch result;
   for (std::size_t row = 1; row + 1 < size; ++row)

@@ -1,4 +1,4 @@
-// Clipping surface of a knee against rays traced by the test.
+// Clipping surface of a knee, compared with independently traced rays.
 
 #include "BoundaryMeasure.h"
 #include "Subjects.h"
@@ -11,8 +11,8 @@ using namespace fenestra::accuracy;
 
 namespace {
 
-/// Ball of 20 voxels' radius; intersections are known to the accuracy of its voxels.
-TEST(FocusField, FirstMeetingWithABallEqualsClosedForm) {
+/// A ball of 20 voxels radius: intersections are exact up to its voxelization.
+TEST(FocusField, FirstHitOnBallMatchesClosedForm) {
   Indicator ball{Size3(50, 50, 50), Affine::Identity(), {}};
   const Vec3 center(24.0, 25.0, 26.0);
   for (int z = 0; z < 50; ++z)
@@ -33,8 +33,8 @@ TEST(FocusField, FirstMeetingWithABallEqualsClosedForm) {
   }
 }
 
-/// Along an axis the level 0.5 lies half way between two voxels.
-TEST(FocusField, BoxFaceLiesHalfwayBetweenVoxelCentres) {
+/// Along an axis, the level 0.5 is halfway between two voxel centers.
+TEST(FocusField, BoxFaceIsHalfwayBetweenVoxelCenters) {
   Indicator box{Size3(8, 8, 8), Affine::Identity(), std::vector<std::uint8_t>(512, 0)};
   for (std::size_t z = 2; z < 6; ++z)
     for (std::size_t y = 2; y < 6; ++y)
@@ -47,13 +47,13 @@ TEST(FocusField, BoxFaceLiesHalfwayBetweenVoxelCentres) {
 }
 
 struct ViewCase {
-  int number; ///< number of the view, of twelve
+  int number; ///< of the twelve views
   bool isPerspective;
-  double smoothing; ///< smoothing of the labels, mm
+  double smoothing; ///< of the labels, mm
   double elevation; ///< degrees
 };
 
-TEST(Boundary, ExactSurfaceGapIsBelowAThirdOfTheSplines) {
+TEST(Boundary, ExactSurfaceGapIsBelowAThirdOfTheSpline) {
   const TemporaryFolder folder;
   Subject knee = makeKnee(folder.path(), "150x172x60");
   for (const ViewCase& seen :
@@ -80,8 +80,8 @@ TEST(Boundary, ExactSurfaceGapIsBelowAThirdOfTheSplines) {
   }
 }
 
-/// The picture shows the context just beyond the focus at the surface's depth.
-TEST(Boundary, PictureShowsContextAtTheSurfaceDepth) {
+/// Next to the focus, the rendered depth of the context is that of the surface.
+TEST(Boundary, ImageShowsContextAtTheSurfaceDepth) {
   const TemporaryFolder folder;
   Subject knee = makeKnee(folder.path(), "150x172x60");
   knee.smoothing = 0.6;

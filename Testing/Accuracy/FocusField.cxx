@@ -8,11 +8,11 @@ namespace fenestra::accuracy {
 
 namespace {
 
-constexpr std::uint8_t farthest = 12; ///< greatest radius searched for low cells, in cells
+constexpr std::uint8_t farthest = 12; ///< maximum empty radius, in cells
 constexpr double rounding = 1e-14;    ///< rounding error of the field
 constexpr double step = 1.0 / 16.0;   ///< step, in voxels along the ray's fastest axis
 
-/// Boundary between false (t = a) and true (t = b).
+/// Bisection for the boundary between false (t = a) and true (t = b).
 template <typename Predicate>
 double bisect(double a, double b, const Predicate& predicate) {
   for (int i = 0; i < 48; ++i) {
@@ -22,7 +22,7 @@ double bisect(double a, double b, const Predicate& predicate) {
   return b;
 }
 
-/// Maximum of a function with one maximum between a and b.
+/// Ternary search for the maximum of a function that is unimodal between a and b.
 template <typename Function>
 double findMaximum(double a, double b, const Function& f) {
   for (int i = 0; i < 80; ++i) {
@@ -35,7 +35,7 @@ double findMaximum(double a, double b, const Function& f) {
   return 0.5 * (a + b);
 }
 
-/// Next t at which a ray, at `index` for t, meets a face between cells.
+/// Next t at which a ray, at `index` for t, crosses a face between cells.
 double nextFace(const Vec3& index, const Vec3& direction, double t) {
   double least = infinity;
   for (int axis = 0; axis < 3; ++axis) {
@@ -47,7 +47,7 @@ double nextFace(const Vec3& index, const Vec3& direction, double t) {
   return least;
 }
 
-/// Replaces each value by the least value of its 3 x 3 x 3 neighbourhood.
+/// Minimum filter: replaces each value by the minimum of its 3 x 3 x 3 neighborhood.
 void filterMinimum(std::vector<std::uint8_t>& values, const Size3& size) {
   const std::int64_t strides[] = {1, size.x(), size.x() * size.y()};
   std::vector<std::uint8_t> old;
@@ -119,7 +119,7 @@ void FocusField::computeEmptyRadii() {
                                                    at.x())] >= 0.5)
             m_emptyRadius[static_cast<std::size_t>((z * m_cells.y() + y) * m_cells.x() + x)] = 0;
         }
-  // After `farthest` rounds each cell knows its distance to the nearest cell that is not low.
+  // After `farthest` rounds, each cell has its distance to the nearest cell with a weight >= 1/2.
   std::vector<std::uint8_t> minimum = m_emptyRadius;
   for (std::uint8_t round = 1; round < farthest; ++round) {
     filterMinimum(minimum, m_cells);
@@ -168,8 +168,8 @@ double FocusField::firstHit(const Vec3& origin, const Vec3& direction) const {
   const auto isInsideAt = [&](double s) { return value(s) >= 0.5; };
   const double voxel = 1.0 / d.cwiseAbs().maxCoeff(); // mm
   const double stride = step * voxel;
-  // Steps end at the faces of cells, between which the field is smooth. A field that rises after
-  // one end and falls before the other may exceed 1/2 for less than a step in between.
+  // Steps end at cell faces, between which the field is smooth. A field that rises after one end of
+  // a step and falls before the other may exceed 1/2 in between.
   const double near = 1e-6 * stride;
   const auto rises = [&](double from, double to) { return value(to) > from + rounding; };
   double here = value(t);

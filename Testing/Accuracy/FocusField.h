@@ -1,5 +1,5 @@
 #pragma once
-// First intersection of a ray with a labelmap's segment, by short steps and bisection on the
+// First intersection of a ray with a segment of a label map, by short steps and bisection on the
 // interpolated indicator. Shares no code with the renderer's search (clip/focus/FocusCells.h).
 
 #include "base/Vector.h"
@@ -9,11 +9,11 @@
 
 namespace fenestra::accuracy {
 
-/// Indicator of the focus on the volume's own grid, x fastest: 1 in the focus, 0 outside; for
-/// smoothed labels the share of the focus, out of 255.
+/// Indicator of the focus on the volume's grid, x fastest: 1 in the focus, 0 outside. With smoothed
+/// labels, it is the weight of the focus, 0 to 255.
 struct Indicator {
   Size3 size;
-  Affine indexToWorld; ///< to RAS mm; integer indices are voxel centres
+  Affine indexToWorld; ///< to RAS mm; integer indices are voxel centers
   std::vector<std::uint8_t> voxels;
   double full = 1.0; ///< value of a voxel entirely in the focus
 };
@@ -22,30 +22,30 @@ class FocusField {
 public:
   explicit FocusField(const Indicator& indicator);
 
-  /// Least distance, mm, at which a ray of unit direction is in the focus (trilinear indicator >=
-  /// 0.5) and in the volume's box; infinity: ray misses.
+  /// Smallest distance, mm, at which a ray of unit direction is in the focus (trilinear indicator
+  /// >= 0.5) and in the volume's box; infinity: the ray misses.
   double firstHit(const Vec3& origin, const Vec3& direction) const;
 
-  /// Centre of the focus's voxels, world mm.
+  /// Center of the focus voxels' bounding box, world mm.
   Vec3 center() const { return m_center; }
-  double radius() const { return m_radius; }           ///< mm, bounding sphere around the centre
+  double radius() const { return m_radius; }           ///< mm, bounding sphere around the center
   double longestEdge() const { return m_longestEdge; } ///< longest edge of a voxel, mm
 
 private:
-  /// Trilinear indicator, 0 to 1; constant beyond the outermost voxel centres.
+  /// Trilinear indicator, 0 to 1; constant beyond the outermost voxel centers.
   double at(const Vec3& index) const;
   bool isInside(const Vec3& index) const { return at(index) >= 0.5; }
   std::size_t cell(const Vec3& index) const;
   void computeEmptyRadii();
 
-  /// Cell c lies between the voxel centres c - 1 and c of the stored part: the focus and two voxels
-  /// on every side, fewer at the volume's faces.
+  /// Cell c lies between the voxel centers c - 1 and c of the stored part, which is the focus with
+  /// a margin of two voxels, less at the faces of the volume.
   Size3 m_size, m_cells;
   Vec3 m_lower, m_upper;           ///< box of the part, in its own index space
   Affine m_worldToIndex;           ///< index space of the part
-  std::vector<double> m_fractions; ///< of the focus in each voxel, 0 to 1
-  /// Radius, in cells, of each cell's neighbourhood in which no share reaches 1/2: nor does the
-  /// field.
+  std::vector<double> m_fractions; ///< weight of the focus in each voxel, 0 to 1
+  /// Radius, in cells, of each cell's neighborhood in which all weights are below 1/2. The
+  /// interpolated indicator is below 1/2 there, too.
   std::vector<std::uint8_t> m_emptyRadius;
   Vec3 m_center;
   double m_radius = 0.0, m_longestEdge = 0.0;

@@ -24,10 +24,10 @@ std::string quote(const std::string& word) {
 void runFenestra(const std::string& arguments) {
   const std::string command = quote(FENESTRA_EXECUTABLE) + " " + arguments + " > /dev/null";
   if (std::system(command.c_str()) != 0)
-    throw std::runtime_error("failed: " + command);
+    throw std::runtime_error("command failed: " + command);
 }
 
-/// Vector as the value of a flag.
+/// Formats a vector as an option value.
 std::string toOptionValue(const Vec3& v) {
   std::ostringstream text;
   text.precision(17);
@@ -42,7 +42,7 @@ RenderRequest makeRequest(const Subject& subject) {
     request.segmentation = subject.labelmap.string();
   request.focus = {subject.focus};
   request.focusStyle.shaping.smoothing = subject.smoothing;
-  request.clip.softness = 0.0; // depths are those of the surface itself
+  request.clip.softness = 0.0; // compare the depths of the surface itself
   return request;
 }
 
@@ -58,7 +58,7 @@ Subject makeKnee(const std::filesystem::path& folder, const std::string& size) {
   const std::filesystem::path knee = folder / "knee";
   runFenestra("phantom knee --output " + quote(knee.string()) +
               (size.empty() ? "" : " --size " + size));
-  constexpr int femoralCartilage = 5; // number of this segment in the phantom
+  constexpr int femoralCartilage = 5; // label value in the phantom
   return {"knee", knee / "knee.mrml", knee / "knee.seg.nrrd", "FemoralCartilage", femoralCartilage};
 }
 
@@ -75,7 +75,7 @@ Indicator readIndicator(const Subject& subject) {
   const auto size = labels->GetLargestPossibleRegion().GetSize();
   Indicator indicator;
   for (unsigned axis = 0; axis < 3; ++axis) {
-    const double mirrored = axis < 2 ? -1.0 : 1.0; // ITK's world is LPS
+    const double mirrored = axis < 2 ? -1.0 : 1.0; // ITK uses LPS
     indicator.size[axis] = static_cast<std::int64_t>(size[axis]);
     for (unsigned column = 0; column < 3; ++column)
       indicator.indexToWorld.linear()(axis, column) =

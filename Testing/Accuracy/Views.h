@@ -1,6 +1,6 @@
 #pragma once
-// Cameras of the boundary check: --position, --target, --up and --scale or --angle, by the check's
-// own arithmetic.
+// Cameras of the boundary check (--position, --target, --up and --scale or --angle), computed
+// independently of the renderer.
 
 #include "base/Vector.h"
 
@@ -9,12 +9,12 @@
 
 namespace fenestra::accuracy {
 
-/// A square picture. Raster positions are in pixels, (0, 0) the top left corner of the picture.
+/// View of a square image. Raster positions are in pixels; (0, 0) is the top left corner.
 struct View {
   Vec3 position, target, up;
   bool isPerspective = false;
-  double halfHeight = 1.0; ///< half the visible height on the plane through the target, mm
-  int size = 1;            ///< pixels a side
+  double halfHeight = 1.0; ///< half of the visible height on the plane through the target, mm
+  int size = 1;            ///< pixels per side
 
   struct CameraRay {
     Vec3 origin, direction; ///< a unit vector

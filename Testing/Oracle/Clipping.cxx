@@ -7,7 +7,7 @@
 namespace fenestra::oracle {
 namespace {
 
-/// Maximum in [low, high] of a function with one maximum there.
+/// Position, in [low, high], of the maximum of a function with one maximum there (ternary search).
 template <typename Function>
 double findMaximum(const Function& f, double low, double high) {
   for (int i = 0; i < 60; ++i) {
@@ -18,21 +18,21 @@ double findMaximum(const Function& f, double low, double high) {
   return 0.5 * (low + high);
 }
 
-/// View of a focus along a ray.
+/// Result of a search for the focus along a ray.
 struct DepthHit {
-  double t;      ///< first t with indicator >= 1/2, else the summit; infinity: neither
+  double t;      ///< first t with indicator >= 1/2, else that of the maximum; infinity: neither
   double height; ///< indicator at t
 
-  /// Replaces the summit by a later one if 1/2 - `there` < (1/2 - height) / 64.
+  /// Replaces the maximum by a later one if 1/2 - `there` < (1/2 - height) / 64.
   void update(double top, double there) {
     if (there > 0.25 && (height <= 0.25 || 0.5 - there < (0.5 - height) / 64.0))
       *this = {top, there};
   }
 };
 
-/// Sight along a ray within the volume: sampled twenty-five times a voxel and at every summit
-/// between samples, where a ray may graze the surface; then bisected. Steps beyond the focus's box,
-/// where the indicator is 0, are counted and not looked at.
+/// Searches a ray within the volume: samples the indicator twenty-five times per voxel and at each
+/// maximum between samples, where a ray may graze the surface; then bisects. Steps outside the
+/// focus's box, where the indicator is 0, are counted but not evaluated.
 DepthHit searchRay(const FocusField& focus, const Medium& matter, const Ray& ray,
                    const Interval& range) {
   Interval part = matter.boxInterval(ray.origin, ray.direction);
@@ -80,17 +80,17 @@ double findFirstHit(const FocusField& focus, const Medium& matter, const Ray& ra
   return hit.height >= 0.5 ? hit.t : infinity;
 }
 
-/// Spline solved from its textbook equations.
+/// Spline solved from the textbook equations.
 using Spline = testing_clipping::SaddleSpline<long double>;
 
-/// Intersection of an eye ray with the focus.
+/// Intersection of a camera ray with the focus.
 struct Intersection {
   Vec2 onPlane;
   Vec3 world;
   double depth;
 };
 
-/// Depths of a hole beside the focus.
+/// Depth of a hole outside the focus's outline.
 class Hole {
 public:
   Hole(const HoleDescription& description, const View& view, const std::vector<Intersection>& hits)
@@ -124,7 +124,7 @@ public:
   }
 
 private:
-  /// Larger solution t of |origin + t direction - center| = radius.
+  /// Depth at the larger solution t of |origin + t direction - center| = radius.
   double sphereDepth(const Ray& ray) const {
     const Vec3 from = ray.origin - m_center;
     const double a = ray.direction.squaredNorm(), b = 2.0 * from.dot(ray.direction),
@@ -182,8 +182,8 @@ double edgeWeight(const Edge& edge, double behind) {
   return edge.ghost + (1.0 - edge.ghost) * std::min(1.0, behind / edge.softness);
 }
 
-/// Position of a coordinate among monotone samples: the sample before and the share of the way to
-/// the next one, clamped at the ends.
+/// Position of a coordinate among monotone samples: index of the sample before it, and fraction of
+/// the distance to the next one. Clamped at the ends.
 struct SamplePosition {
   std::size_t before;
   double fraction;
@@ -278,7 +278,7 @@ double Clipping::depthClipWeight(double here, const Vec2& at) const {
   const auto cell = clip.silhouettes.find(y.before * clip.columns.size() + x.before);
   if (cell == clip.silhouettes.end())
     return weightBehind(between);
-  // The surface lies between two depths. What is kept alike behind both is kept so behind it.
+  // The surface lies between two depths. If both give the same weight, no search is needed.
   const double weight = weightBehind(std::max(between, cell->second.max));
   if (weight == weightBehind(std::min(between, cell->second.min)))
     return weight;
@@ -319,7 +319,7 @@ Vec3 Clipping::cutGradient(const Vec3& world) const {
     return Vec3::Zero();
   const Edge& edge = plane ? plane->edge : depth->edge;
   const double weight = clipWeight(world);
-  if (!(weight > edge.ghost && weight < 1.0)) // not within the softness
+  if (!(weight > edge.ghost && weight < 1.0)) // outside the softness
     return Vec3::Zero();
   Vec3 inward = m_view.forward;
   if (plane)

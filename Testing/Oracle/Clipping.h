@@ -1,5 +1,5 @@
 #pragma once
-// Keep at a point, computed from a clip's description.
+// Clip weight at a point, computed from a clip's description.
 
 #include "Medium.h"
 #include "View.h"
@@ -15,28 +15,28 @@ public:
 
   /// Trilinear indicator at a world point; 0 outside the mask's voxels.
   double at(const Vec3& world) const;
-  /// Interval of a world ray, t >= 0, beyond which the indicator is 0; empty: ray misses.
+  /// Interval of a world ray, t >= 0, outside which the indicator is 0; empty: the ray misses.
   Interval boxInterval(const Ray& ray) const;
   double shortestEdge() const { return m_mask.grid.spacing().minCoeff(); } ///< of a voxel, mm
 
 private:
   const Mask& m_mask;
   Affine m_worldToIndex;
-  Vec3 m_lower, m_upper; ///< index positions beyond which the indicator is 0
+  Vec3 m_lower, m_upper; ///< box in index space outside which the indicator is 0
 };
 
 class Clipping {
 public:
-  /// Builds the whole buffer for a depth clip.
+  /// Builds the complete buffer of a depth clip.
   Clipping(const ClipDescription& description, const View& view, const Medium& matter);
 
-  /// Share of the extinction that the clip leaves, 0 to 1.
+  /// Factor on the extinction, 0 to 1.
   double clipWeight(const Vec3& world) const;
 
-  /// Gradient that a soft cut adds to matter's, spans of the transfer function per mm: from 0 to
-  /// `softness` behind the cut half a span over `softness`, along the cut's normal, into the
-  /// matter. A depth clip's normal is that of the surface linear between samples, by differences;
-  /// where the surface has steps, the view's axis.
+  /// Gradient that a soft cut adds to the scalar's, spans of the transfer function per mm. From 0
+  /// to `softness` behind the cut it is half a span over `softness`, along the cut's normal into
+  /// the medium. A depth clip's normal is that of the surface linear between samples, by
+  /// differences; where the surface has steps, the view axis.
   Vec3 cutGradient(const Vec3& world) const;
 
   /// Depth buffer of a depth clip, mm, row by row; -infinity where a cutaway removes nothing.
@@ -44,9 +44,9 @@ public:
 
 private:
   double depthClipWeight(double here, const Vec2& at) const;
-  /// Depth of sample (column, row), or of the last one.
+  /// Depth of sample (column, row), clamped to the last row and column.
   double sampleDepth(std::size_t column, std::size_t row) const;
-  /// Depth of a surface without steps, linear between samples.
+  /// Depth of a surface without steps, by bilinear interpolation between samples.
   double linearSurface(const Vec2& at) const;
   double silhouetteSurface(const DepthClip::SilhouetteCell& cell, const Vec2& at,
                            double between) const;

@@ -1,5 +1,5 @@
 #pragma once
-// Estimates of a picture's pixels, with their variances.
+// Estimates of an image's pixels, with their variances.
 
 #include "base/Vector.h"
 
@@ -16,13 +16,13 @@ struct PathEstimate {
   Rgb albedo = Rgb::Zero(); ///< at the first collision; 0: no collision
 };
 
-/// First collision as numbers, or averages of them: collided (0 or 1), depth (mm; 0: no collision),
+/// First collision as numbers, or means of them: collided (0 or 1), depth (mm; 0: no collision),
 /// mean albedo.
 using FirstCollision = Array<double, 3>;
 
 struct PixelEstimate {
   double samples = 0.0;
-  /// Radiance: mean, and sums of squared and cubed deviations (Pébay 2008).
+  /// Radiance: mean, and sums of squared and of cubed deviations from it (Pébay 2008).
   Rgb mean = Rgb::Zero(), m2 = Rgb::Zero(), m3 = Rgb::Zero();
   FirstCollision first = FirstCollision::Zero(), firstM2 = FirstCollision::Zero();
 
@@ -40,7 +40,7 @@ struct PixelEstimate {
     firstM2 += ahead * (value - first);
   }
 
-  /// Variance of the mean; 0 with fewer than two samples.
+  /// Variance of the mean; 0 below two samples.
   Rgb variance() const {
     return samples > 1.0 ? Rgb(m2 / (samples * (samples - 1.0))) : Rgb(Rgb::Zero());
   }
@@ -52,7 +52,7 @@ struct PixelEstimate {
 
 struct Estimates {
   int width, height;
-  std::uint64_t samples;             ///< a pixel
+  std::uint64_t samples;             ///< per pixel
   std::vector<PixelEstimate> pixels; ///< row by row from the top
 
   Estimates(int widthIn, int heightIn, std::uint64_t samplesIn)

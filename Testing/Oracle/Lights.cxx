@@ -3,7 +3,7 @@
 namespace fenestra::oracle {
 namespace {
 
-/// Largest distance of a corner of the volume's box from its centre, mm.
+/// Maximum distance of a corner of the volume's box from its center, mm.
 double boundingRadius(const Grid& grid, const Vec3& center) {
   double radius = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
@@ -16,7 +16,7 @@ double boundingRadius(const Grid& grid, const Vec3& center) {
   return radius;
 }
 
-/// Centre and radius of the volume, origin and unit of the camera's frame.
+/// Bounding sphere of the volume: origin and unit of the camera's light frame.
 struct BoundingSphere {
   Vec3 center;
   double radius;
@@ -56,7 +56,7 @@ PlacedSphere place(const SphereLight& light, const Grid& grid, const View& view)
   return {middle + radius * from, 0.5 * radius * light.diameter, light.radiance};
 }
 
-/// Uniform point, by rejection.
+/// Uniform point on the unit sphere, by rejection.
 Vec3 sampleUnitSphere(Generator& generator) {
   for (;;) {
     const Vec3 p(2.0 * uniform(generator) - 1.0, 2.0 * uniform(generator) - 1.0,
@@ -78,7 +78,7 @@ Rgb evaluate(const EnvironmentLight& light, const Vec3& direction) {
   return light.radiance * Rgb(rgb[0], rgb[1], rgb[2]);
 }
 
-/// A sky's direction up in world space.
+/// A sky with its up direction in world space.
 SkyLight place(const SkyLight& light, const View& view) {
   SkyLight sky = light;
   if (light.frame == LightFrame::camera)

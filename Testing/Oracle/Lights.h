@@ -1,6 +1,6 @@
 #pragma once
-// Lights that a ray can hit (environments, skies, areas, spheres), and directional lights, which it
-// cannot.
+// Lights that a ray can hit (environments, skies, areas, spheres) and directional lights, which no
+// ray hits.
 
 #include "Scatter.h"
 #include "View.h"
@@ -11,21 +11,21 @@ namespace fenestra::oracle {
 struct PlacedArea {
   AreaLight::Shape shape;
   Vec3 center, normal, right, up;
-  Vec2 size; ///< full edges; for a disk, the diameter in both
+  Vec2 size; ///< full edges; for a disk, its diameter twice
   Rgb radiance;
 
   double area() const;
-  /// Distance at which a ray hits the light from either side; infinity: ray misses.
+  /// Distance at which a ray hits the light from either side; infinity: the ray misses.
   double intersect(const Ray& ray) const;
 };
 
-/// Sphere of light in world space, mm.
+/// Spherical light in world space, mm.
 struct PlacedSphere {
   Vec3 center;
   double radius;
   Rgb radiance;
 
-  /// Distances ahead at which a ray crosses the sphere: none, one (from inside) or two.
+  /// Distances > 0 at which a ray crosses the sphere: none, one (from inside) or two.
   std::vector<double> intersections(const Ray& ray) const;
 };
 
@@ -33,13 +33,13 @@ class Lights {
 public:
   Lights(const std::vector<Light>& lights, const Grid& volume, const View& view);
 
-  /// Radiance of all environments and skies; `direction`: of travel, toward the environment.
+  /// Radiance of all environments and skies. `direction` points toward the environment.
   Rgb environment(const Vec3& direction) const;
   /// Radiance of all area lights that a ray hits on their emitting side before `end`, mm, and of
-  /// all spheres that it hits, counted once.
+  /// all spheres that it hits; each sphere counts once.
   Rgb areaRadiance(const Ray& ray, double end) const;
   bool hasAreas() const { return m_areas.size() + m_spheres.size() > 0; }
-  /// Direction from `point` to a uniform point on one of the area lights or spheres; areaPdf:
+  /// Direction from `point` to a uniform point on one of the area lights or spheres. areaPdf() is
   /// its pdf per steradian.
   Vec3 sampleArea(const Vec3& point, Generator& generator) const;
   double areaPdf(const Ray& ray) const;

@@ -1,11 +1,12 @@
-// Table of what an eye sees of a thick scattering medium, for
+// Makes the table of the reflectance of a thick scattering medium for
 // Renderer/model/medium/Reflectance.cxx:
 //
 //     MakeReflectance > Renderer/model/medium/ReflectanceTable.h
 //
 // Photons enter a half-space of unit extinction along its normal and scatter without loss until
-// they leave; one that leaves after n scatterings counts albedo^n, whatever the albedo. By
-// reciprocity this is the radiance seen along the normal under uniform light of radiance 1.
+// they leave. A photon that leaves after n scatterings contributes albedo^n, so one simulation
+// serves all albedos. By reciprocity the sum is the radiance seen along the normal under uniform
+// light of radiance 1.
 
 #include "Scatter.h"
 #include "model/medium/Reflectance.h"
@@ -26,14 +27,14 @@ using fenestra::oracle::uniform;
 
 constexpr int rows = 16, columns = 32;
 constexpr int photons = 1 << 20, parts = 64;
-constexpr double maxFollowed = 500.0; ///< scatterings, times 1 - g
+constexpr double maxFollowed = 500.0; ///< maximum number of scatterings, times 1 - g
 
-/// Albedo of similarity parameter s = sqrt((1 - a) / (1 - g a)).
+/// Albedo for similarity parameter s = sqrt((1 - a) / (1 - g a)).
 double computeAlbedo(double s, double g) {
   return (1.0 - s * s) / (1.0 - g * s * s);
 }
 
-/// Cosine of scattering after Henyey and Greenstein (1941), by inversion.
+/// Cosine of the scattering angle by inversion of Henyey and Greenstein (1941).
 double sampleCosine(double g, double u) {
   if (g == 0.0)
     return 2.0 * u - 1.0;
@@ -41,7 +42,7 @@ double sampleCosine(double g, double u) {
   return (1.0 + g * g - t * t) / (2.0 * g);
 }
 
-/// Number of scatterings until a photon leaves; `most`: it is still inside.
+/// Number of scatterings until a photon leaves; `most` if it is still inside.
 int countScatterings(double g, int most, Generator& generator) {
   double depth = 0.0, down = 1.0; // down: cosine to the inner normal
   for (int n = 0; n < most; ++n) {
@@ -56,8 +57,8 @@ int countScatterings(double g, int most, Generator& generator) {
   return most;
 }
 
-/// Mean of albedo^n over photons that are still inside after `most` scatterings: a random walk's
-/// first return, of density n^(-3/2), from there on.
+/// Mean of albedo^n over photons still inside after `most` scatterings. From there on their exits
+/// follow the first return of a random walk, of density n^(-3/2).
 double findTailMean(double albedo, int most) {
   const double x = -std::log(albedo) * most;
   return std::exp(-x) - std::sqrt(fenestra::pi * x) * std::erfc(std::sqrt(x));
@@ -65,7 +66,7 @@ double findTailMean(double albedo, int most) {
 
 using Counts = std::vector<double>;
 
-/// Share of photons by the number of scatterings after which they leave; last: those still inside.
+/// Fraction of photons by the number of scatterings before they leave; last: those still inside.
 Counts simulateEscapes(double g, std::uint64_t seed) {
   const int most = static_cast<int>(maxFollowed / (1.0 - g));
   Counts fractions(static_cast<std::size_t>(most) + 1);
@@ -107,7 +108,7 @@ int main() {
     for (int c = 0; c < columns; ++c) {
       const double s = c / (columns - 1.0);
       double ratio = 1.0;   // s = 0: all photons leave
-      if (c == columns - 1) // small albedos a: one scattering, and 1 - s = (1 - g) a / 2
+      if (c == columns - 1) // limit of small albedo a: one scattering, and 1 - s = (1 - g) a / 2
         ratio = 6.0 * fractions[1] / (1.0 - g);
       else if (c > 0)
         ratio = reflectance(fractions, computeAlbedo(s, g)) * (1.0 + 2.0 * s) / (1.0 - s);

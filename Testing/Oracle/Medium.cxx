@@ -59,7 +59,7 @@ bool Medium::contains(const Vec3& world) const {
   return !m_worldToCrop || (*m_worldToCrop * world).cwiseAbs().maxCoeff() <= 1.0;
 }
 
-/// Trilinear sum of eight voxels; points beyond the outermost voxel centres are clamped to these.
+/// Trilinear sum of eight voxels; points outside the outermost voxel centers are clamped to them.
 double Medium::scalarAtIndex(const Vec3& index) const {
   Size3 base;
   Vec3 fraction;

@@ -1,17 +1,17 @@
 #pragma once
-// Classified volume at a point, straight from the voxels and the knots of the medium's table.
+// The classified volume at a point, straight from the voxels and the knots of the medium's table.
 
 #include "OracleScene.h"
 
 namespace fenestra::oracle {
 
-/// Value at s of sorted knots; at a step, the value on its right.
+/// Value at s from sorted knots; at a step, the value on its right.
 Rgb evaluate(const ColorFunction& f, double s);
 
-/// Greatest extinction, mm^-1, that a transfer function has anywhere.
+/// Maximum extinction of a transfer function, mm^-1.
 double findMaxExtinction(const TransferFunction& transfer);
 
-/// Interval of a ray, t >= 0, inside a box; empty: ray misses.
+/// Interval of a ray, t >= 0, inside a box; empty: the ray misses.
 Interval intersectBox(const Box& box, const Ray& ray);
 
 class Medium {
@@ -23,18 +23,18 @@ public:
   double scalar(const Vec3& world) const { return scalarAtIndex(m_worldToIndex * world); }
   /// Gradient of the scalar, per mm, world axes.
   Vec3 gradient(const Vec3& world) const;
-  /// Transfer function of the volume; that of a component may stand in its place below.
+  /// Transfer function of the volume; below, a component's may be passed instead.
   const TransferFunction& transfer() const { return m_transfer; }
-  /// Gradient in spans of the volume's transfer function, which must have two knots.
+  /// Gradient in spans of the volume's transfer function, which must have at least two knots.
   Vec3 spansPerMm(const Vec3& world) const;
-  /// Extinction, mm^-1, by a transfer function; valid inside only.
+  /// Extinction, mm^-1, by a transfer function; valid inside the volume only.
   double extinction(const TransferFunction& transfer, const Vec3& world, double scalar) const;
-  /// Probability that a collision scatters at a surface (Kroes, Post, Botha 2012), where matter's
-  /// gradient is `slope`, spans per mm.
+  /// Probability that a collision scatters at a surface (Kroes, Post, Botha 2012). `slope` is the
+  /// gradient's magnitude, spans per mm.
   double surfaceProbability(const TransferFunction& transfer, const Vec3& world,
                             double slope) const;
 
-  /// Interval of a world ray, t >= 0, inside the volume's box; empty: ray misses.
+  /// Interval of a world ray, t >= 0, inside the volume's box; empty: the ray misses.
   Interval boxInterval(const Vec3& origin, const Vec3& direction) const;
 
 private:

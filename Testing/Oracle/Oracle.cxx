@@ -33,10 +33,10 @@ public:
     for (const Component& component : m_components)
       m_majorant = std::max(m_majorant, findMaxExtinction(component.transfer));
     if (scene.background.kind == Background::Kind::gradient)
-      throw std::invalid_argument("the oracle has no gradient background");
+      throw std::invalid_argument("the oracle does not support gradient backgrounds");
   }
 
-  /// Traces one path through a raster position, in pixels from the picture's top left corner.
+  /// Traces one path through a raster position, in pixels from the image's top left corner.
   PathEstimate tracePath(double column, double row, Generator& generator) const {
     const double pitch = 2.0 * m_view.halfHeight / m_scene.height;
     Ray ray = m_view.makeRay((column - 0.5 * m_scene.width) * pitch,
@@ -74,7 +74,7 @@ public:
   const Clipping& clipping() const { return m_clipping; }
 
 private:
-  /// Matter that a path meets at a collision.
+  /// What a collision samples from the medium.
   struct Collision {
     std::size_t component;
     Rgb albedo;
@@ -82,8 +82,8 @@ private:
 
   bool isMixed() const { return m_scene.components && !m_scene.components->isTint; }
 
-  /// Distance to the next real collision, by delta tracking with one majorant for the whole volume;
-  /// every tentative collision is tested at its place.
+  /// Distance to the next real collision, by delta tracking with one majorant for the complete
+  /// volume. Each tentative collision is tested at its own point.
   double findCollision(const Ray& ray, Generator& generator) const {
     const Interval part = m_medium.boxInterval(ray.origin, ray.direction);
     if (part.isEmpty() || m_majorant == 0.0)
@@ -101,7 +101,7 @@ private:
     }
   }
 
-  /// Extinction, mm^-1, of each component: keep w sigma(s), with keep 1 where the clip leaves it.
+  /// Extinction, mm^-1, of each component: clip weight (1 if unclipped) times w sigma(s).
   Segments::Weights extinctions(const Vec3& point) const {
     Segments::Weights all{};
     Segments::Weights fractions{1.0};
@@ -123,7 +123,7 @@ private:
     return sum;
   }
 
-  /// One component, drawn in proportion to the extinctions.
+  /// Samples one component in proportion to the extinctions.
   Collision sampleComponent(const Vec3& point, Generator& generator) const {
     std::size_t drawn = 0;
     if (isMixed()) {
@@ -165,7 +165,7 @@ private:
   double styleFactor(const Vec3& point) const {
     return isStyled(point) ? m_scene.style->extinction : 1.0;
   }
-  /// Albedo of a component; of a tint, the mean of all, weighted by their shares.
+  /// Albedo of a component; for a tint the mean over all, weighted by their label weights.
   Rgb albedo(std::size_t number, const Vec3& point) const {
     const double scalar = m_medium.scalar(point);
     Rgb own = evaluate(m_components[number].transfer.albedo, scalar);
@@ -181,8 +181,8 @@ private:
     return m_scene.style->saturation * own + (1.0 - m_scene.style->saturation) * gray;
   }
 
-  /// Radiance from parallel lights, scattered toward the eye at a collision: all of a light, or 0
-  /// if a flight toward the light collides.
+  /// Radiance from directional lights, scattered toward the camera. A light contributes in full, or
+  /// 0 if a free flight toward it collides.
   Rgb estimateParallelLight(const Vec3& point, const Scatterer& scatterer,
                             Generator& generator) const {
     Rgb sum = Rgb::Zero();
@@ -194,8 +194,8 @@ private:
     return sum;
   }
 
-  /// Radiance from area lights by one probe, which goes half the time toward a light and half the
-  /// time as the path would, and counts the lights that it hits.
+  /// Radiance from area lights, by one probe ray. Its direction is sampled with equal probability
+  /// from the lights or from scattering; it adds all lights that it hits.
   Rgb estimateAreaLight(const Vec3& point, const Scatterer& scatterer, Generator& generator) const {
     if (!m_lights.hasAreas())
       return Rgb::Zero();
@@ -207,8 +207,8 @@ private:
     return light * scatterer.f(probe.direction) / density;
   }
 
-  /// Russian roulette for paths of low weight. (With analog absorption a dark medium would show too
-  /// few bright paths to estimate the error of their mean.)
+  /// Russian roulette at low throughput. (Analog absorption in a dark medium would leave too few
+  /// bright paths to estimate the error of their mean.)
   static bool playRoulette(Rgb& throughput, Generator& generator) {
     constexpr double threshold = 0.05;
     const double most = throughput.maxCoeff();
@@ -226,8 +226,8 @@ private:
   Clipping m_clipping;
   std::optional<FocusField> m_styledFocus;
   std::optional<Segments> m_segments;
-  std::vector<Component> m_components; ///< of the medium; of a tint one, the volume's own matter
-  double m_majorant = 0.0;             ///< greatest extinction anywhere, mm^-1
+  std::vector<Component> m_components; ///< of the medium; with a tint, the volume's own alone
+  double m_majorant = 0.0;             ///< maximum extinction anywhere, mm^-1
   Lights m_lights;
 };
 

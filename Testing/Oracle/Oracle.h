@@ -1,12 +1,12 @@
 #pragma once
-// The oracle's paths and pictures.
+// Renders images with the oracle.
 
 #include "Estimates.h"
 #include "OracleScene.h"
 
 namespace fenestra::oracle {
 
-/// Traces `samples` independent paths a pixel. `depths` receives a depth clip's buffer
+/// Traces `samples` independent paths per pixel. `depths` receives a depth clip's buffer
 /// (Clipping.h). Throws std::invalid_argument for a gradient background.
 Estimates render(const OracleScene& scene, std::uint64_t samples, std::uint64_t seed,
                  std::vector<double>* depths = nullptr);

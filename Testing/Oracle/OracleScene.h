@@ -1,5 +1,5 @@
 #pragma once
-// Input of the oracle: the product's plain data, without code that computes.
+// Input of the oracle: plain data of the product, without code that computes.
 
 #include "model/camera/Background.h"
 #include "model/camera/Camera.h"
@@ -15,13 +15,13 @@
 
 namespace fenestra::oracle {
 
-/// Edge of a clip: removed matter keeps `ghost` of its extinction; behind the surface the full
-/// extinction returns over `softness` mm.
+/// Edge of a clip: removed parts keep the factor `ghost` on their extinction. Behind the surface
+/// the full extinction returns over `softness` mm.
 struct Edge {
   double ghost = 0.0, softness = 0.0;
 };
 
-/// Removes the half-space into which the normal points; world mm.
+/// Removes the half-space that the normal points into; world mm.
 struct PlaneClip {
   Vec3 point, normal; ///< the normal is a unit vector
   Edge edge = {};
@@ -34,8 +34,8 @@ struct HoleDescription {
   double margin = 0.0;
 };
 
-/// Removes everything nearer to the eye than the focus (cutaway), the clipping surface, or the
-/// bottom of a hole.
+/// Removes everything nearer to the camera than the focus (cutaway), than the clipping surface, or
+/// than the bottom of a hole.
 struct DepthClip {
   bool isCutaway = false;
   Mask focus;
@@ -44,15 +44,16 @@ struct DepthClip {
   std::vector<double> depths;        ///< of the control points, mm
   double smoothing = 0.5;            ///< p of the thin plate spline
   std::optional<HoleDescription> hole = {};
-  /// Depths, mm, of the samples that are not focus; empty: computed.
+  /// Depths, mm, of the samples outside the focus; empty: computed.
   std::vector<double> givenDepths = {};
-  /// Cell between samples in which the surface is the focus's own depth, keyed by its first sample.
-  /// `least`, `greatest`: range of that depth if all samples around are focus, mm, offset included.
+  /// Silhouette cell: its surface is the depth of the focus itself, not interpolated. Keyed by its
+  /// first sample. If all samples around it are focus, `min` and `max` bound that depth, mm, offset
+  /// included.
   struct SilhouetteCell {
     double min = -infinity, max = infinity;
   };
   std::map<std::size_t, SilhouetteCell> silhouettes = {};
-  double offset = 0.0; ///< shift of the surface away from the eye, mm
+  double offset = 0.0; ///< shift of the surface away from the camera, mm
   Edge edge = {};
 
   bool hasSteps() const { return isCutaway || hole; }
@@ -66,24 +67,24 @@ struct StyleDescription {
   double extinction = 1.0, saturation = 1.0;
 };
 
-/// Components of the medium: one of what is in no segment, and those of the segments, whose labels
-/// lie on voxels of one labelmap.
+/// Components of the medium: number 0 for everything outside segments, and those of the segments,
+/// whose masks lie on voxels of one label map.
 struct ComponentsDescription {
   struct Segment {
     Mask mask;
-    int priority;          ///< where segments overlap, the greater takes what it covers
-    std::size_t component; ///< 0: what is in no segment
+    int priority;          ///< where segments overlap, the higher one wins
+    std::size_t component; ///< 0: outside segments
   };
   struct Component {
-    TransferFunction transfer; ///< with surfaces where the volume's own has them
-    bool isClipped = true;     ///< false: the clip leaves it
-    /// Weight of its share's gradient, per mm, beside the scalar's in spans per mm.
+    TransferFunction transfer; ///< has surface shading if the volume's own has
+    bool isClipped = true;     ///< false: the clip does not affect it
+    /// Weight of the label weight's gradient, per mm, next to the scalar's in spans per mm.
     double interfaceWeight = 0.0;
   };
   std::vector<Segment> segments;
   std::vector<Component> components;
-  /// True: only albedo differs between components, and a point has the mean of it. False: a
-  /// collision meets one component.
+  /// True: components differ in albedo alone, and a point has their mean albedo. False: a collision
+  /// samples one component.
   bool isTint = false;
 };
 
@@ -94,7 +95,7 @@ struct OracleScene {
   CameraPose pose = {};
   int width = 16, height = 16;
   ClipDescription clip = {};
-  std::optional<Affine> crop = {}; ///< maps [-1, 1]^3 onto the part kept; empty: all is kept
+  std::optional<Affine> crop = {}; ///< maps [-1, 1]^3 to the part that stays; empty: no crop
   Background background = {};      ///< any but a gradient
   std::uint64_t bounces = std::numeric_limits<std::uint64_t>::max();
   std::optional<StyleDescription> style = {};

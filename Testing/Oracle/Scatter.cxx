@@ -18,13 +18,13 @@ Vec3 sampleCone(const Vec3& direction, double cosine, Generator& generator) {
   return (cosine * direction + sine * std::cos(phi) * u + sine * std::sin(phi) * v).normalized();
 }
 
-/// The inversion below cancels near g = 0; drawing with 0 instead is unbiased, since density() uses
-/// the same g.
+/// Near g = 0 the inversion below suffers from cancellation. Using g = 0 instead is unbiased, since
+/// pdf() uses the same value.
 double avoidCancellation(double g) {
   return std::abs(g) < 1e-3 ? 0.0 : g;
 }
 
-/// Direction by inversion of Henyey and Greenstein's distribution of the cosine.
+/// Samples a direction by inversion of Henyey and Greenstein's distribution of the cosine.
 Vec3 sampleHenyeyGreenstein(const Vec3& incoming, double g, Generator& generator) {
   const double u = uniform(generator);
   if (g == 0.0)
@@ -34,7 +34,7 @@ Vec3 sampleHenyeyGreenstein(const Vec3& incoming, double g, Generator& generator
   return sampleCone(incoming, cosine, generator);
 }
 
-/// Square of GGX's roughness for a Blinn-Phong exponent.
+/// GGX roughness squared, from a Blinn-Phong exponent.
 double roughness2(const SurfaceShading& shading) {
   return 2.0 / (shading.power + 2.0);
 }
@@ -71,8 +71,8 @@ Scatterer Scatterer::makeSurface(const Vec3& incoming, const Rgb& albedo, const 
 
 /// At a surface, Lambert: albedo / pi; GGX (Walter et al. 2007): D F G / (4 cos_i cos_o), D of
 /// roughness^2 = 2 / (power + 2), G the product of Smith's two terms, F Schlick's with F0 = 0.04.
-/// Coat of weight w, F0 = 0.028 over a matte base (Kelemen, Szirmay-Kalos 2001):
-/// base / pi (1 - w E(cos_i)) (1 - w E(cos_o)) / (1 - w E_mean), E what the coat reflects in all,
+/// Coat of weight w, F0 = 0.028, over a matte base (Kelemen, Szirmay-Kalos 2001):
+/// base / pi (1 - w E(cos_i)) (1 - w E(cos_o)) / (1 - w E_mean). E is the coat's total reflectance,
 /// E_mean the integral of 2 x E(x); base / (1 - base) is odds times albedo / (1 - albedo).
 Rgb Scatterer::f(const Vec3& outgoing) const {
   if (!m_shading)

@@ -17,8 +17,8 @@ inline double uniform(Generator& generator) {
 /// Henyey and Greenstein 1941, per steradian; `cosine`: between the directions of travel.
 double henyeyGreenstein(double cosine, double g);
 
-/// Collision at which a path scatters by the phase function, or at a surface (gradient not zero).
-/// f: factor on radiance per steradian, with albedo and, at surfaces, the cosine.
+/// Collision that scatters by the phase function, or at a surface (gradient not zero). f: factor on
+/// radiance per steradian, including albedo and, at surfaces, the cosine.
 class Scatterer {
 public:
   static Scatterer makePhase(const Vec3& incoming, const Rgb& albedo, double g);
@@ -26,8 +26,8 @@ public:
                                const SurfaceShading& shading);
 
   Rgb f(const Vec3& outgoing) const;
-  /// Random direction of travel; density(): its pdf per steradian. Drawn from the phase function;
-  /// at a surface half the time from Lambert's law, else as the mirror of `incoming` at a GGX
+  /// Samples a direction of travel; pdf() is its pdf per steradian. From the phase function; at a
+  /// surface with equal probability from Lambert's law or as the reflection of `incoming` at a GGX
   /// microfacet (Walter et al. 2007, eq. 35, 36 and 38).
   Vec3 sample(Generator& generator) const;
   double pdf(const Vec3& outgoing) const;

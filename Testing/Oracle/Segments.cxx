@@ -7,7 +7,7 @@
 namespace fenestra::oracle {
 namespace {
 
-/// First voxel of a mask in the labelmap's index space.
+/// First voxel of a mask in the label map's index space.
 Vec3 findFirst(const Mask& mask, const Affine& worldToIndex) {
   return (worldToIndex * mask.grid.indexToWorld.translation()).array().round();
 }
@@ -18,7 +18,7 @@ Segments::Segments(const ComponentsDescription& description)
     : m_description(description),
       m_worldToIndex(description.segments.front().mask.grid.indexToWorld.inverse()) {
   if (description.components.size() > maxComponents)
-    throw std::invalid_argument("the oracle has no more than 16 components");
+    throw std::invalid_argument("the oracle supports at most 16 components");
   Box box = Box::makeEmpty();
   for (const auto& segment : description.segments) {
     const Vec3 first = findFirst(segment.mask, m_worldToIndex);
@@ -39,7 +39,7 @@ Segments::Weights Segments::atIndex(const Vec3& index) const {
   Weights sum{};
   for (int corner = 0; corner < 8; ++corner) {
     double weight = 1.0;
-    Vec3 from = base - m_first; // the voxel, counted from the first one
+    Vec3 from = base - m_first; // the voxel, relative to the first one
     for (int axis = 0; axis < 3; ++axis) {
       const bool upper = corner >> axis & 1;
       weight *= upper ? index[axis] - base[axis] : 1.0 - index[axis] + base[axis];
@@ -95,7 +95,7 @@ Segments::Weights Segments::computeVoxel(const Vec3& at) const {
   }
   weights[0] += left;
 
-  // Whole 255ths; the greatest share takes the rest.
+  // Rounds to integers that sum to 255; the largest weight absorbs the difference.
   const auto greatest = std::ranges::max_element(weights) - weights.begin();
   double sum = 0.0;
   for (double& weight : weights)

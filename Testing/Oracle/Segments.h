@@ -1,5 +1,5 @@
 #pragma once
-// Shares of components at a point, straight from the labels of their segments.
+// Label weights of components at a point, straight from the masks of their segments.
 
 #include "OracleScene.h"
 
@@ -10,15 +10,15 @@ namespace fenestra::oracle {
 class Segments {
 public:
   static constexpr std::size_t maxComponents = 16; ///< components
-  /// Shares of each component; all sum to 1.
+  /// Label weight of each component; all sum to 1.
   using Weights = std::array<double, maxComponents>;
 
   /// Throws std::invalid_argument for too many components.
   explicit Segments(const ComponentsDescription& description);
 
-  /// Trilinear between the voxels of the first segment's labelmap.
+  /// Trilinear between the voxels of the first segment's label map.
   Weights at(const Vec3& world) const { return atIndex(m_worldToIndex * world); }
-  /// Gradient of a component's share, per mm, world axes: from one voxel to each side.
+  /// Gradient of a component's label weight, per mm, world axes: differences over two voxels.
   Vec3 gradient(std::size_t component, const Vec3& world) const;
 
 private:
@@ -28,7 +28,7 @@ private:
 
   const ComponentsDescription& m_description;
   Affine m_worldToIndex;
-  Vec3 m_first, m_count; ///< voxels beyond which there is component 0 alone
+  Vec3 m_first, m_count; ///< box of voxels outside which component 0 has weight 1
   std::vector<Weights> m_voxels;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Eye rays and view space, computed from the pose alone.
+// Camera rays and view space, computed from the pose alone.
 
 #include "OracleScene.h"
 
@@ -20,7 +20,7 @@ struct View {
     halfHeight = isPerspective ? targetDepth * std::tan(pose.angle * pi / 180.0 / 2.0) : pose.scale;
   }
 
-  /// Eye ray through (x, y), mm, on the plane through the target; unit direction.
+  /// Camera ray through (x, y), mm, on the plane through the target; unit direction.
   Ray makeRay(double x, double y) const {
     const Vec3 onPlane = position + targetDepth * forward + x * right + y * up;
     if (isPerspective)
@@ -30,7 +30,7 @@ struct View {
 
   double depth(const Vec3& world) const { return (world - position).dot(forward); }
 
-  /// (x, y), mm, at which the eye ray through a point meets the plane through the target.
+  /// (x, y), mm, at which the camera ray through a point meets the plane through the target.
   Vec2 toPlane(const Vec3& world) const {
     const Vec3 d = world - position;
     const double scale = isPerspective ? targetDepth / d.dot(forward) : 1.0;

@@ -1,5 +1,5 @@
-// Adaptive sampling, steered by a pilot, against uniform sampling: the means over many seeds must
-// agree.
+// Adaptive sampling, planned by a pilot render, must agree with uniform sampling in the means over
+// many seeds.
 
 #include "RunSettings.h"
 #include "Support.h"
@@ -9,8 +9,8 @@
 namespace fenestra::testing::AdaptiveTests {
 namespace {
 
-/// Small bright light beside a ball in the dark: few paths find the light by chance, which makes
-/// the samples of a pixel very skewed.
+/// Small bright light next to a dark ball: few paths hit the light by chance, so the samples of a
+/// pixel are very skewed.
 TestScene makeSkewedScene() {
   const Grid grid = makeCenteredGrid({12, 12, 12}, {1.0, 1.0, 1.0});
   const Vec3 center(5.5, 5.5, 5.5);
@@ -45,7 +45,7 @@ struct Moments {
 
 constexpr int tile = 16;
 
-/// Moments of each tile's mean over seeds.
+/// Moments over seeds of each tile's mean.
 std::vector<Moments> computeTileMoments(const TestScene& scene, RenderSettings settings, int seeds,
                                         std::uint64_t firstSeed) {
   std::vector<Moments> tiles(static_cast<std::size_t>(scene.width * scene.height / (tile * tile)));
@@ -64,9 +64,9 @@ std::vector<Moments> computeTileMoments(const TestScene& scene, RenderSettings s
   return tiles;
 }
 
-TEST(AdaptiveSampling, MeanEqualsThatOfUniformSampling) {
+TEST(AdaptiveSampling, MeanEqualsUniformSampling) {
   const TestScene scene = makeSkewedScene();
-  const int seeds = std::max(8, scaleSamples(24)); // fewer seeds estimate their spread badly
+  const int seeds = std::max(8, scaleSamples(24)); // fewer seeds would estimate the variance badly
   RenderSettings adaptive;
   adaptive.samples = 1U << 20;
   adaptive.noise = relaxError(0.05);
@@ -85,7 +85,7 @@ TEST(AdaptiveSampling, MeanEqualsThatOfUniformSampling) {
   EXPECT_LT(std::abs(difference), 4.0 * std::sqrt(variance));
 }
 
-TEST(AdaptiveSampling, StopsAtItsTargetWithUnequalCounts) {
+TEST(AdaptiveSampling, StopsAtTargetWithUnequalSampleCounts) {
   RenderSettings settings;
   settings.samples = 1U << 20;
   settings.noise = relaxError(0.03);

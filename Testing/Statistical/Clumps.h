@@ -1,13 +1,13 @@
 #pragma once
 // Small volume of random voxels, with an extinction that is not monotone in the scalar, and
-// pictures that show all of it.
+// images that show all of it.
 
 #include "RgbEstimate.h"
 
 namespace fenestra::testing {
 
-/// Volume with albedo `dark` at scalar 0 and `bright` at 1, on a rotated grid of unequal spacing,
-/// about 2 mm in radius; a third of the incident light passes.
+/// Volume with albedo `dark` at scalar 0 and `bright` at 1, on a rotated grid of unequal spacing.
+/// Its radius is about 2 mm; a third of the incident light passes.
 inline TestScene makeClumps(const Rgb& dark, const Rgb& bright, double g) {
   Grid grid = makeCenteredGrid({5, 4, 6}, {0.5, 0.7, 0.4});
   const Affine turn(makeRotation(0.5, Vec3(1.0, -2.0, 1.5).normalized()));
@@ -26,8 +26,8 @@ inline TestScene makeClumps(const Rgb& dark, const Rgb& bright, double g) {
   return scene;
 }
 
-/// Radiance scattered toward -`sight`, integrated over a picture plane that holds the whole volume,
-/// mm^2 per steradian. Light: parallel, travelling along `light` with irradiance 1.
+/// Radiance scattered toward -`viewDirection`, integrated over an image plane that covers the
+/// complete volume, mm^2 per steradian. Parallel light travels along `light` with irradiance 1.
 inline RgbEstimate estimateScattered(TestScene& scene, const Vec3& light, const Vec3& viewDirection,
                                      std::uint64_t samples, std::uint64_t seed) {
   const double radius = scene.volume.grid.boundingRadius();

@@ -1,4 +1,4 @@
-// Colour as it is asked for: a thick medium under an environment of 1, seen from the front, has it.
+// A thick medium in an environment of 1, seen from the front, must have the requested color.
 
 #include "Slab.h"
 
@@ -8,14 +8,14 @@
 namespace fenestra::testing::ColorTests {
 namespace {
 
-/// Thickness in free paths that stands for a half-space: with g, as many more as light goes on.
+/// Thickness in free paths that replaces a half-space; grows with the transport mean free path.
 double halfSpaceThickness(double g) {
   return 300.0 / (1.0 - g);
 }
 
-class SeenColor : public ::testing::TestWithParam<double> {};
+class RenderedColor : public ::testing::TestWithParam<double> {};
 
-TEST_P(SeenColor, IsRenderedByVolumeShading) {
+TEST_P(RenderedColor, VolumeShadingMatches) {
   const double g = GetParam();
   for (const Rgb& color : {Rgb(0.05, 0.1, 0.2), Rgb(0.35, 0.5, 0.65), Rgb(0.8, 0.9, 0.05)}) {
     TestScene scene = makeInfiniteSlab(halfSpaceThickness(g), toAlbedo(color, g));
@@ -24,7 +24,7 @@ TEST_P(SeenColor, IsRenderedByVolumeShading) {
   }
 }
 
-/// Segment of `color` and mean cosine g that is all of a slab, in a volume of another mean cosine.
+/// Slab that is completely one segment of `color` and mean cosine g, in a volume of another g.
 TestScene makeMaterialSlab(const Rgb& color, double g) {
   TestScene scene = makeInfiniteSlab(halfSpaceThickness(g), Rgb::Constant(0.5));
   scene.transfer.g = 0.3;
@@ -42,14 +42,14 @@ TestScene makeMaterialSlab(const Rgb& color, double g) {
   return scene;
 }
 
-TEST_P(SeenColor, IsThatOfASegment) {
+TEST_P(RenderedColor, SegmentMatches) {
   for (const Rgb& color : {Rgb(0.05, 0.1, 0.2), Rgb(0.35, 0.5, 0.65), Rgb(0.8, 0.9, 0.05)})
     expectMean(renderMean(makeMaterialSlab(color, GetParam()), 100, 45), color, 0.04, 0.03);
 }
 
-INSTANTIATE_TEST_SUITE_P(Anisotropies, SeenColor, ::testing::Values(0.0, 0.5, 0.9));
+INSTANTIATE_TEST_SUITE_P(Anisotropies, RenderedColor, ::testing::Values(0.0, 0.5, 0.9));
 
-/// Matter of `color` below air, where hybrid shading finds a surface: the scalar goes from 0 to 1
+/// Medium of `color` below air, with a surface of hybrid shading: the scalar goes from 0 to 1
 /// within `ramp` mm.
 TestScene makeStepScene(const Rgb& color, double ramp, const SurfaceShading& shading) {
   const Grid grid = makeCenteredGrid({2, 2, 400}, {10000.0, 10000.0, ramp});
@@ -63,7 +63,7 @@ TestScene makeStepScene(const Rgb& color, double ramp, const SurfaceShading& sha
   return scene;
 }
 
-TEST(SeenColor, IsNearlyRenderedByHybridShading) {
+TEST(RenderedColor, HybridShadingNearlyMatches) {
   const SurfaceShading skin = SurfaceShading::makeCoated(0.2, 0.4);
   for (const double ramp : {1.0, 3.0})
     for (const Rgb& color : {Rgb(0.05, 0.1, 0.2), Rgb(0.35, 0.5, 0.65), Rgb(0.8, 0.9, 0.05)}) {
@@ -75,17 +75,17 @@ TEST(SeenColor, IsNearlyRenderedByHybridShading) {
     }
 }
 
-/// Diffuse 1 without a coat: nothing is lost at any surface.
-TEST(Furnace, IsOneForAWhiteSurface) {
+/// Diffuse 1 without a coat: surfaces lose no energy.
+TEST(Furnace, WhiteSurfaceHasRadianceOne) {
   TestScene scene = makeStepScene(Rgb::Ones(), 0.5, SurfaceShading::makeCoated(0.0, 0.4));
   scene.transfer.albedo = ColorFunction({{0.0, Rgb::Ones()}});
   const RgbEstimate estimate = renderMean(scene, 400, 47);
-  EXPECT_NEAR(estimate.mean[0], 1.0, 4.0 * estimate.error[0] + 1e-6); // lanes are float
+  EXPECT_NEAR(estimate.mean[0], 1.0, 4.0 * estimate.error[0] + 1e-6); // SIMD code uses float
   EXPECT_LT(estimate.error[0], 0.01);
 }
 
-/// Coat and base return what arrives but for a few thousandths, by both transports.
-TEST(Furnace, IsNearlyOneForAWhiteSurfaceUnderACoat) {
+/// Coat and base together reflect all light except a few thousandths, in both integrators.
+TEST(Furnace, CoatedWhiteSurfaceHasNearlyRadianceOne) {
   TestScene scene = makeStepScene(Rgb::Ones(), 0.5, SurfaceShading::makeCoated(0.5, 0.4));
   scene.transfer.albedo = ColorFunction({{0.0, Rgb::Ones()}});
   for (const Integrator integrator : {Integrator::simd, Integrator::scalar}) {

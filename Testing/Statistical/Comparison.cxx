@@ -14,7 +14,7 @@ oracle::Estimates toEstimates(const Film& film, std::uint64_t samples) {
   for (std::size_t i = 0; i < film.pixelCount(); ++i) {
     const PixelSums& sums = film.pixels()[i];
     oracle::PixelEstimate& pixel = estimates.pixels[i];
-    pixel.samples = static_cast<double>(samples); // all samples, even for certain pixels
+    pixel.samples = static_cast<double>(samples); // also of deterministic pixels
     pixel.mean = sums.mean;
     pixel.m2 = sums.standardError().square() * pixel.samples * (pixel.samples - 1.0);
     pixel.first = oracle::FirstCollision(static_cast<double>(sums.collidedSamples), sums.depth,
@@ -24,13 +24,13 @@ oracle::Estimates toEstimates(const Film& film, std::uint64_t samples) {
   return estimates;
 }
 
-/// One path's radiance in each channel over a whole picture: events that are rare in one pixel
-/// occur in others. See Estimated.
+/// Moments of one path's radiance per channel, over a complete image: events that are rare in one
+/// pixel occur in others. See Estimated.
 struct PathMoments {
   Rgb skewness = Rgb::Zero(), brightness = Rgb::Zero();
 };
 
-/// Sums over pixels, for the mean of their means.
+/// Sums over pixels, which give the mean of their means.
 struct Sums {
   Rgb mean = Rgb::Zero(), variance = Rgb::Zero();
   oracle::FirstCollision first = oracle::FirstCollision::Zero();
@@ -51,7 +51,7 @@ struct Sums {
             samples,          moments.skewness[c],
             blocks,           moments.brightness[c]};
   }
-  /// Sums of pictures whose samples depend on each other within blocks of `size`
+  /// Sums of images whose samples depend on each other within blocks of `size`
   /// (PixelSums::block).
   Sums withBlocks(double size) const {
     Sums sums = *this;
@@ -90,7 +90,7 @@ Sums sumPixels(const oracle::Estimates& image, int left, int top, int size) {
   return sums;
 }
 
-/// Least of many probabilities, corrected for their number.
+/// Minimum of many p-values, corrected for their number.
 class MinProbability {
 public:
   void add(const std::optional<double>& probability) {
@@ -105,7 +105,7 @@ private:
   double m_minimum = 1.0, m_count = 0.0;
 };
 
-/// Compares squares of `size` pixels; `visit` receives the probability of one channel of each.
+/// Compares tiles of `size` x `size` pixels; `visit` receives the p-value of one channel of each.
 template <typename Visit>
 double compareTiles(const Outcome& outcome, int size, Visit&& visit) {
   const PathMoments moments = computePathMoments(outcome.reference);
@@ -135,13 +135,13 @@ void compareImage(Outcome& outcome) {
     minimum.add(welchProbability(a.channel(c, moments), b.channel(c, moments)));
   const double collidedFraction =
       0.5 * (a.first[0] / a.pixels + b.first[0] / b.pixels); // colliding paths
-  // Both draw first collisions from the same distribution, so the oracle's variance serves for
-  // both.
+  // Both renderers sample first collisions from the same distribution: the oracle's variance
+  // applies to both.
   for (int i = 0; i < 3; ++i) {
     double variance = b.firstVariance[i] / (b.pixels * b.pixels);
-    if (variance == 0.0) { // the oracle's paths are all alike: what both say of that
+    if (variance == 0.0) { // the oracle's paths are all equal: use both renderers' means
       const double mean = 0.5 * (a.first[i] + b.first[i]) / a.pixels;
-      const bool isRareMedium = i == 2 && b.first[i] == 0.0; // of any albedo, amid black
+      const bool isRareMedium = i == 2 && b.first[i] == 0.0; // with albedo, amid black medium
       variance = isRareMedium ? mean * (1.0 - mean) / b.samples
                  : collidedFraction > 0.0
                      ? (1.0 - collidedFraction) * mean * mean / collidedFraction / b.samples
@@ -173,7 +173,7 @@ void compareDepths(const std::vector<double>& product, const std::vector<double>
     if (difference < 0.01)
       outcome.depthDifference = std::max(outcome.depthDifference, difference);
     else
-      ++outcome.depthDisagreements; // focus for one renderer only
+      ++outcome.depthDisagreements; // focus of one renderer only
   }
 }
 
@@ -234,14 +234,13 @@ std::vector<HypothesisTest> testHypotheses(const std::vector<Outcome>& outcomes)
   const auto n = static_cast<double>(outcomes.size());
   const auto nTiles = static_cast<double>(tileProbabilities.size());
   const auto nImages = static_cast<double>(imageProbabilities.size());
-  return {
-      {"largest difference of a pixel", n, pixels.corrected()},
-      {"largest difference of a tile", n, tiles.corrected()},
-      {"largest difference of a picture", n, images.corrected()},
-      {"tiles' probabilities are uniform", nTiles, uniformityProbability(tileProbabilities)},
-      {"pictures' probabilities are uniform", nImages, uniformityProbability(imageProbabilities)},
-      {"pictures' mean difference is 0", nImages,
-       normalTail(sum / std::sqrt(std::max(nImages, 1.0)))}};
+  return {{"largest difference of a pixel", n, pixels.corrected()},
+          {"largest difference of a tile", n, tiles.corrected()},
+          {"largest difference of an image", n, images.corrected()},
+          {"tiles' p-values are uniform", nTiles, uniformityProbability(tileProbabilities)},
+          {"images' p-values are uniform", nImages, uniformityProbability(imageProbabilities)},
+          {"images' mean difference is 0", nImages,
+           normalTail(sum / std::sqrt(std::max(nImages, 1.0)))}};
 }
 
 } // namespace fenestra::testing

@@ -1,6 +1,6 @@
 #pragma once
-// One combination of the matrix, rendered by the product and by the oracle, and the significance of
-// their difference at three scales: pixels, tiles of 4 x 4 pixels, the whole picture.
+// Renders one combination of the matrix with the product and with the oracle, and computes the
+// significance of their difference at three scales: pixels, tiles of 4 x 4 pixels, complete image.
 
 #include "Matrix.h"
 #include "Oracle/Estimates.h"
@@ -15,29 +15,29 @@ namespace fenestra::testing {
 
 /// Seeds and budget of a run over the matrix.
 struct MatrixSettings {
-  std::uint64_t samples = 128; ///< a pixel, of each renderer
+  std::uint64_t samples = 128; ///< per pixel, of each renderer
   std::uint64_t seed = 1;
   Integrator integrator = Integrator::simd; ///< of the product
 };
 
 struct Outcome {
   Combination combination;
-  /// Probability of the largest difference: over all pixels and channels; over all tiles and
-  /// channels; over the picture's channels, share of colliding paths, depth and albedo.
+  /// Corrected p-values of the largest difference: over all pixels and channels; over all tiles and
+  /// channels; over the image's channels, fraction of colliding paths, depth and albedo.
   double pixels = 1.0, tiles = 1.0, image = 1.0;
-  /// Probabilities of one channel a tile, and of the picture: independent, hence uniform in [0, 1].
-  /// Only from even means (isEven): those of uneven means are too rarely near 0 or 1.
+  /// p-values of one channel per tile, and of the image: independent, so uniform in [0, 1]. Only of
+  /// means of many paths (hasManyPaths): those of few paths are too rarely near 0 or 1.
   std::vector<double> tileProbabilities;
   std::optional<double> imageProbability;
-  /// Picture's channel: (product - oracle) / oracle's mean, and / standard error of the difference.
+  /// One channel of the image: (product - oracle) / oracle, and / the difference's standard error.
   double difference = 0.0, z = 0.0;
-  /// Largest difference of the two depth buffers, mm, over samples on whose kind (focus or not)
-  /// both agree; and number of samples on which they disagree.
+  /// Largest difference of the two depth buffers, mm, over samples that both classify alike as
+  /// focus or not; and number of samples that they classify differently.
   double depthDifference = 0.0;
   int depthDisagreements = 0;
   oracle::Estimates product, reference; ///< for error images
 
-  /// Probability of all three scales together.
+  /// Corrected p-value of all three scales.
   double probability() const;
 };
 
@@ -51,15 +51,15 @@ OracleRender renderOracle(const Combination& c, const MatrixSettings& settings);
 Outcome compareWithOracle(const Combination& c, const MatrixSettings& settings,
                           OracleRender oracleRender);
 
-/// Hypothesis about all combinations together, and the probability of the observation under it.
+/// Test of a hypothesis about all combinations: `probability` is its p-value.
 struct HypothesisTest {
   std::string name;
   double count;
   double probability;
 };
 
-/// Verdicts on pixels, tiles and pictures; on uniformity of the tiles' and the pictures'
-/// probabilities; on the pictures' mean deviate.
+/// Tests the largest differences of pixels, tiles and images, the uniformity of the tiles' and of
+/// the images' p-values, and the images' mean z.
 std::vector<HypothesisTest> testHypotheses(const std::vector<Outcome>& outcomes);
 
 } // namespace fenestra::testing

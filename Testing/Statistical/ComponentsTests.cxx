@@ -1,4 +1,4 @@
-// Matter of several components: against one component, closed forms, a furnace, and its bound.
+// Media of several components, against one component, closed forms, a furnace, and their majorants.
 
 #include "Slab.h"
 
@@ -12,7 +12,7 @@ namespace {
 
 constexpr Integrator integrators[] = {Integrator::simd, Integrator::scalar};
 
-/// Ball in a labelmap of one voxel a mm, turned against the volumes, and smooth over 2 mm or hard.
+/// Ball in a rotated label map of 1 mm voxels, with a sharp edge or one that is soft over 2 mm.
 Mask makeBallMask(const Vec3& center, double radius, bool isSoft) {
   const Grid flat = makeCenteredGrid(Size3::Constant(23), Vec3::Constant(1.0));
   const Grid grid(flat.size,
@@ -31,7 +31,7 @@ Mask makeBallMask(const Vec3& center, double radius, bool isSoft) {
   return mask;
 }
 
-/// Parts 1 to `count`, a ball each, some of which overlap, of three priorities.
+/// Parts 1 to `count`: balls of three priorities, some of which overlap.
 std::vector<LabelWeights::Part> makeBalls(int count, bool isSoft) {
   std::vector<LabelWeights::Part> parts;
   for (int i = 0; i < count; ++i) {
@@ -48,7 +48,7 @@ Mixture makeMixture(const std::vector<LabelWeights::Part>& parts,
   return {std::make_shared<const LabelWeights>(makeLabelWeights(parts)), std::move(components)};
 }
 
-/// Hills of scalars from 0 to 1, seen from the front.
+/// Hills of scalars 0 to 1, seen from the front.
 TestScene makeHillScene(const TransferFunction& transfer) {
   TestScene scene{makeVolume(makeCenteredGrid({20, 24, 18}, {1.0, 0.8, 1.3}),
                              [](const Vec3& p) {
@@ -81,10 +81,10 @@ RenderSettings makeSettings(Integrator integrator, std::uint64_t samples, std::u
   return settings;
 }
 
-// ---- one matter
+// ---- identical components
 // ----------------------------------------------------------------------------------
 
-/// Expects two pictures of one scene: the sum of squared z over pixels and channels, and the mean
+/// Expects two images of one scene, by the sum of squared z over pixels and channels, and the mean
 /// z.
 void expectSame(const Film& a, const Film& b) {
   double n = 0.0, squares = 0.0, sum = 0.0;
@@ -95,7 +95,7 @@ void expectSame(const Film& a, const Film& b) {
     for (int c = 0; c < 3; ++c)
       if (variance[c] > 0.0) {
         const double z = difference[c] / std::sqrt(variance[c]);
-        n += 1.0 / 3.0; // channels of a path go together
+        n += 1.0 / 3.0; // channels of a path are correlated
         squares += z * z / 3.0;
         sum += z / 3.0;
       }
@@ -106,8 +106,8 @@ void expectSame(const Film& a, const Film& b) {
   EXPECT_LT(std::abs(squares - n) / std::sqrt(2.0 * n), 4.0);
 }
 
-/// Segments of the volume's own matter change nothing but random numbers.
-TEST(OneMatter, IsThatOfEverySegment) {
+/// Segments of the volume's own medium change random numbers only.
+TEST(IdenticalComponents, RenderLikeOneMedium) {
   TransferFunction steep = makeCoatedTransfer();
   steep.gradientOpacity = ScalarFunction({makeKnot(0.0, 0.1), makeKnot(0.3, 1.0)});
   for (const TransferFunction& transfer : {makeCoatedTransfer(), steep})
@@ -123,7 +123,7 @@ TEST(OneMatter, IsThatOfEverySegment) {
 // ---- slabs
 // ---------------------------------------------------------------------------------------
 
-/// Indicators of a segment over the voxels of a column along z, 1 mm each, of 255.
+/// Mask values of a segment, 0 to 255, along a column of 1 mm voxels in z.
 using Column = std::vector<std::uint8_t>;
 
 Mask makeLayerMask(const Column& column) {
@@ -136,8 +136,8 @@ Mask makeLayerMask(const Column& column) {
   return mask;
 }
 
-/// Integral over z of a function that is linear between the voxels of a column and, beyond the
-/// outermost ones, constant for half a voxel.
+/// Integral over z of a function that is linear between the voxels of a column, and constant in the
+/// outer half voxels.
 double integrate(const std::vector<double>& values) {
   double sum = 0.5 * (values.front() + values.back());
   for (std::size_t i = 0; i + 1 < values.size(); ++i)
@@ -148,7 +148,7 @@ double integrate(const std::vector<double>& values) {
 const Column lower = {255, 255, 250, 180, 77, 13, 0, 0};
 const Column upper = {0, 40, 120, 200, 255, 255, 90, 20};
 
-/// Slab of 8 mm with two segments that overlap, of extinctions 0.6 and 0.1 per mm, in 0.25.
+/// Slab of 8 mm and 0.25 per mm, with two overlapping segments of 0.6 and 0.1 per mm.
 TestScene makeTwoSegmentSlab(int lowerPriority, int upperPriority) {
   TestScene scene = makeSlab(20000.0, 8.0, Rgb::Zero(), 0.25);
   scene.pose.scale = 1.0;
@@ -163,7 +163,7 @@ TestScene makeTwoSegmentSlab(int lowerPriority, int upperPriority) {
   return scene;
 }
 
-/// Optical depth along z; the shares of a voxel in 255ths, as they are kept.
+/// Optical depth along z, with label weights in 255ths, as they are stored.
 double computeOpticalDepth(int lowerPriority, int upperPriority) {
   std::vector<double> extinctions;
   for (std::size_t i = 0; i < lower.size(); ++i) {
@@ -198,20 +198,20 @@ void expectTransmittance(TestScene scene, double depth, std::uint64_t seed) {
     }
 }
 
-TEST(SlabOfComponents, LetsThroughWhatTheIntegralOfTheirExtinctionsLeaves) {
+TEST(SlabOfComponents, TransmitsExpOfIntegral) {
   expectTransmittance(makeTwoSegmentSlab(20, 10), computeOpticalDepth(20, 10), 1000);
   expectTransmittance(makeTwoSegmentSlab(10, 20), computeOpticalDepth(10, 20), 1100);
   expectTransmittance(makeTwoSegmentSlab(10, 10), computeOpticalDepth(10, 10), 1200);
 }
 
-/// In the removed half only the upper segment is left.
-TEST(SlabOfComponents, LosesToAClipWhatIsClipped) {
+/// The removed half contains only the upper, unclipped segment.
+TEST(SlabOfComponents, ClipRemovesOnlyClippedComponents) {
   TestScene scene = makeTwoSegmentSlab(20, 10);
   scene.mixture->components[2].isClipped = false;
   scene.clip =
       ClipPlane{Camera(scene.pose, scene.width, scene.height), Vec3::Zero(), Vec3::UnitZ()};
   const auto sum = [](std::size_t first, std::size_t end, auto&& extinction) {
-    double all = 0.0; // from the middle of the slab, half-way between two voxels, to its face
+    double all = 0.0; // from the middle of the slab, between two voxels, to a face
     for (std::size_t i = first; i < end; ++i)
       all += extinction(i);
     return all;
@@ -224,7 +224,7 @@ TEST(SlabOfComponents, LosesToAClipWhatIsClipped) {
     return 0.6 * a + 0.1 * b + 0.25 * (1.0 - a - b);
   };
   const auto left = [&](std::size_t i) { return 0.1 * upperWeight(i); };
-  // Trapezoids: what lies between voxels 3 and 4 is halved at the plane.
+  // Trapezoidal rule: the plane halves the interval between voxels 3 and 4.
   const double kept = sum(0, 4, all) + (all(4) - all(3)) / 8.0;
   const double removed = sum(4, 8, left) - (left(4) - left(3)) / 8.0;
   expectTransmittance(scene, kept + removed, 1300);
@@ -233,8 +233,8 @@ TEST(SlabOfComponents, LosesToAClipWhatIsClipped) {
 // ---- furnace
 // -------------------------------------------------------------------------------------
 
-/// Fourteen materials of albedo 1, each with a phase function, density and roughness of its own, of
-/// which the clip leaves every fourth.
+/// Materials of albedo 1 with different phase functions, densities and roughnesses; every fourth is
+/// unclipped.
 std::vector<Component> makeWhiteComponents(bool isHybrid) {
   std::vector<Component> all;
   for (int i = 0; i < 15; ++i) {
@@ -251,7 +251,7 @@ std::vector<Component> makeWhiteComponents(bool isHybrid) {
   return all;
 }
 
-TEST(FurnaceOfComponents, IsOne) {
+TEST(FurnaceOfComponents, HasRadianceOne) {
   for (const bool isHybrid : {false, true})
     for (const bool isCutaway : {false, true})
       for (const Integrator integrator : integrators) {
@@ -260,7 +260,7 @@ TEST(FurnaceOfComponents, IsOne) {
         scene.mixture = makeMixture(makeBalls(14, true), components);
         const Camera camera(scene.pose, scene.width, scene.height);
         scene.clip = ClipPlane{camera, Vec3(0.0, 2.0, 0.0), Vec3(0.2, 1.0, 0.1).normalized()};
-        // A map is sampled, which makes noise; a constant environment is not.
+        // Sampling a map adds noise; a constant environment is not sampled.
         scene.lights = {EnvironmentLight{Rgb::Ones(), {8, 4, std::vector<float>(96, 1.0F)}}};
         if (isCutaway) {
           scene.lights = {EnvironmentLight{}};
@@ -270,9 +270,9 @@ TEST(FurnaceOfComponents, IsOne) {
                            .clip;
         }
         const RenderResult result = scene.render(makeSettings(integrator, 128, 71));
-        EXPECT_GT(result.counters.collisions, 10000U) << "the medium must matter";
+        EXPECT_GT(result.counters.collisions, 10000U) << "the medium must have an effect";
         const Estimate estimate = estimateMean(result.film);
-        EXPECT_NEAR(estimate.mean, 1.0, 4.0 * estimate.error + 1e-5); // lanes are float
+        EXPECT_NEAR(estimate.mean, 1.0, 4.0 * estimate.error + 1e-5); // SIMD code uses float
         EXPECT_LT(estimate.error, relaxError(0.01));
         if (isCutaway) {
           for (const PixelSums& pixel : result.film.pixels())
@@ -284,8 +284,8 @@ TEST(FurnaceOfComponents, IsOne) {
 // ---- order, bound
 // --------------------------------------------------------------------------------
 
-/// Neither segments' order nor that of priorities in it tells anything.
-TEST(OrderOfSegments, ChangesNoBit) {
+/// The order of segments has no effect, neither within one priority nor across priorities.
+TEST(SegmentOrder, DoesNotChangeImage) {
   for (const bool isSoft : {false, true})
     for (const Integrator integrator : integrators) {
       std::vector<LabelWeights::Part> parts = makeBalls(7, isSoft);
@@ -295,7 +295,7 @@ TEST(OrderOfSegments, ChangesNoBit) {
       const Film first = scene.render(settings).film;
       std::ranges::reverse(parts);
       std::rotate(parts.begin(), parts.begin() + 2, parts.end());
-      // A labelmap begins where its first part does: all of these begin there.
+      // A label map starts where its first part starts: all of these start at one position.
       scene.mixture = makeMixture(parts, makeWhiteComponents(true));
       const Film other = scene.render(settings).film;
       for (std::size_t i = 0; i < first.pixelCount(); ++i)
@@ -303,8 +303,8 @@ TEST(OrderOfSegments, ChangesNoBit) {
     }
 }
 
-/// Expects no extinction above its cell's majorant at points of the cell and of the strip around it
-/// in which the bound holds; returns the greatest share of a majorant that was met.
+/// Expects no extinction above its cell's majorant, at points of the cell and of the padding in
+/// which the majorant holds; returns the maximum ratio of an extinction to its majorant.
 double expectBound(const TestScene& scene) {
   double maximum = 0.0;
   scene.visitView([&](const SceneView& parts) {
@@ -359,7 +359,7 @@ TEST(MajorantOfComponents, IsNeverExceeded) {
         if (isThin)
           scene.style.emplace(ContextStyle{
               std::make_shared<const Mask>(makeBallMask(Vec3::Zero(), 4.0, false)), 0.3, 1.0});
-        EXPECT_GT(expectBound(scene), 0.95) << "the bound is no better than it must be";
+        EXPECT_GT(expectBound(scene), 0.95) << "majorants are too loose";
       }
 }
 

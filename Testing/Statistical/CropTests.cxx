@@ -1,4 +1,4 @@
-// Cropping against closed forms, and against a volume of the crop's shape.
+// Cropping, against closed forms and against a volume of the crop's shape.
 
 #include "Support.h"
 
@@ -17,7 +17,7 @@ Affine makeRotatedBox(const Vec3& center, const Vec3& half, double angle) {
          makeScaling(half);
 }
 
-/// Length of a ray, t >= 0, inside a parallelepiped: on the inner side of all six planes.
+/// Length of a ray, t >= 0, inside a parallelepiped, by intersection of its six half-spaces.
 double chord(const Affine& box, const Ray& ray) {
   double begin = 0.0;
   double end = infinity;
@@ -54,9 +54,9 @@ TEST_P(CroppedTransmittance, IsExponentialAlongTheChord) {
   const Volume volume = makeUniformVolume(makeCenteredGrid({30, 30, 30}, {1.0, 1.0, 1.0}));
   const double sigma_t = 0.2;
   const TransferFunction transfer = makeLinearTransfer(sigma_t, Rgb::Zero());
-  const TransferFunction looser = transfer.withDensity(2.0); // not every collision is real
+  const TransferFunction looser = transfer.withDensity(2.0); // adds null collisions
   Affine box = makeRotatedBox({0.3, -0.4, 0.2}, {3.0, 5.0, 4.0}, 0.7);
-  if (GetParam()) // sheared, as by a transform above the box
+  if (GetParam()) // sheared, as by a parent transform of the box
     box = Affine(Mat3::FromRows({1.0, 0.3, 0.0}, {0.0, 1.0, -0.2}, {0.1, 0.0, 0.8})) * box;
   const MajorantGrid majorants(volume.grid, MinMaxGrid(volume, 0), looser, ClipNone{});
   const Medium<float> medium(volume.grid, std::get<LargeArray<float>>(volume.voxels), transfer);
@@ -107,9 +107,9 @@ TestScene makeLitScene(Volume volume, const Shape& shape) {
   return scene;
 }
 
-/// Eye, scattered and light rays all end at the crop: a box cropped from a larger constant volume
-/// looks like a volume of that box, at any rotation against the voxels.
-TEST_P(CroppedImage, EqualsThePictureOfAVolumeOfThatShape) {
+/// Camera rays, scattered rays and shadow rays all end at the crop: a box cropped from a larger
+/// constant volume looks like a volume of that shape, at any rotation relative to the voxels.
+TEST_P(CroppedImage, EqualsImageOfVolumeOfThatShape) {
   const Vec3 half(5.0, 4.0, 3.0);
   const Affine box = makeRotatedBox({1.0, 0.0, -1.0}, half, GetParam().angle);
   // Grid of 10 x 8 x 6 voxels of 1 mm that fills the box.
@@ -133,7 +133,7 @@ TEST_P(CroppedImage, EqualsThePictureOfAVolumeOfThatShape) {
     const double variance =
         a.pixels()[i].standardError().square()[1] + b.pixels()[i].standardError().square()[1];
     const double difference = a.pixels()[i].mean[1] - b.pixels()[i].mean[1];
-    EXPECT_EQ(variance == 0.0, difference == 0.0) << "beside the box nothing is met";
+    EXPECT_EQ(variance == 0.0, difference == 0.0) << "rays outside the box hit nothing";
     if (variance == 0.0)
       continue;
     chiSquared += difference * difference / variance;
@@ -142,15 +142,15 @@ TEST_P(CroppedImage, EqualsThePictureOfAVolumeOfThatShape) {
     all.variance += variance;
   }
   EXPECT_GT(count, 200.0);
-  EXPECT_LT(count, 500.0) << "some pixels must see beside the box";
-  // Pixels hit by few paths are far from normal: their chi-squared spreads more.
+  EXPECT_LT(count, 500.0) << "some pixels must be outside the box";
+  // Pixels of few colliding paths are far from normal: their chi-squared varies more.
   EXPECT_NEAR(chiSquared, count, 6.0 * std::sqrt(2.0 * count));
   EXPECT_NEAR(all.z(), 0.0, 4.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, CroppedImage,
                          ::testing::Values(Shape{"upright", 0.0, Projection::orthographic},
-                                           Shape{"turned", 0.6, Projection::orthographic},
+                                           Shape{"rotated", 0.6, Projection::orthographic},
                                            Shape{"perspective", 1.1, Projection::perspective}),
                          [](const auto& info) { return std::string(info.param.name); });
 

@@ -1,4 +1,4 @@
-// Energy balance of parallel light in a heterogeneous volume: scattered + absorbed = not
+// Energy balance of parallel light in a heterogeneous volume: scattered + absorbed = incident -
 // transmitted.
 
 #include "Clumps.h"
@@ -7,8 +7,8 @@
 namespace fenestra::testing::EnergyTests {
 namespace {
 
-/// Ray along `direction` from a square of half edge `half` that faces `direction`, 2 `half` before
-/// the volume's centre; `u` in [0, 1)^2 selects the point.
+/// Ray along `direction` from a square of half edge `half`, perpendicular to `direction`, 2 `half`
+/// in front of the volume's center; `u` in [0, 1)^2 selects the point.
 Ray makeParallelRay(const Grid& grid, const Vec3& direction, double half, const Vec2& u) {
   const Frame frame(direction);
   return {grid.worldCenter() - 2.0 * half * direction +
@@ -16,8 +16,8 @@ Ray makeParallelRay(const Grid& grid, const Vec3& direction, double half, const 
           direction};
 }
 
-/// Light of irradiance 1 that collides, mm^2: 1 - exp(-optical depth), integrated over a plane that
-/// faces the light by the midpoint rule on `lines`^2 rays.
+/// Colliding light at irradiance 1, mm^2: 1 - exp(-optical depth), integrated over a plane that
+/// faces the light, by the midpoint rule on `lines`^2 rays.
 double computeCollidedLight(const TestScene& scene, const Vec3& light, int lines) {
   const LineIntegral integral(scene.volume, scene.transfer);
   const double half = scene.volume.grid.boundingRadius();
@@ -29,10 +29,10 @@ double computeCollidedLight(const TestScene& scene, const Vec3& light, int lines
   return sum * 4.0 * half * half / (lines * lines);
 }
 
-/// Light scattered into all directions: two random directions in each of many equal parts of the
-/// sphere, whose difference estimates the variance within a part.
+/// Light scattered into all directions, stratified: two random directions in each of many equal
+/// parts of the sphere, whose difference estimates the variance within the part.
 RgbEstimate estimateScatteredLight(TestScene& scene, const Vec3& light, std::uint64_t seed) {
-  constexpr int rows = 20; // rows around the light's direction
+  constexpr int rows = 20; // around the light's direction
   constexpr int columns = 12;
   const Frame frame(light);
   RgbEstimate sum;
@@ -56,7 +56,7 @@ RgbEstimate estimateScatteredLight(TestScene& scene, const Vec3& light, std::uin
   return sum * (4.0 * pi / (rows * columns));
 }
 
-// ---- what is absorbed, by a forward random walk of its own
+// ---- absorbed light, by an independent forward random walk
 // ---------------------------------------
 
 Rgb interpolateAlbedo(const TransferFunction& transfer, double scalar) {
@@ -64,7 +64,7 @@ Rgb interpolateAlbedo(const TransferFunction& transfer, double scalar) {
   return knots[0].value + scalar * (knots[1].value - knots[0].value);
 }
 
-/// Direction by inversion of Henyey and Greenstein's distribution of the cosine.
+/// Samples Henyey and Greenstein's distribution by inversion.
 Vec3 sampleDirection(const Vec3& direction, double g, const Vec2& u) {
   const double s = (1.0 - g * g) / (1.0 - g + 2.0 * g * u.x());
   const double cosine = g == 0.0 ? 2.0 * u.x() - 1.0 : (1.0 + g * g - s * s) / (2.0 * g);
@@ -76,7 +76,7 @@ Vec3 sampleDirection(const Vec3& direction, double g, const Vec2& u) {
       .normalized();
 }
 
-/// Absorbed share of a walk's power: free paths with one majorant; a real collision absorbs 1 -
+/// Absorbed fraction of a walk's power: free paths with one majorant; a real collision absorbs 1 -
 /// albedo.
 Rgb traceAbsorbedPower(const TestScene& scene, const LineIntegral& medium, Ray ray,
                        Random& random) {
@@ -85,7 +85,7 @@ Rgb traceAbsorbedPower(const TestScene& scene, const LineIntegral& medium, Ray r
     majorant = std::max(majorant, knot.value.value());
   Rgb absorbedPower = Rgb::Zero();
   Rgb power = Rgb::Ones();
-  while (power.maxCoeff() > 1e-4) { // the rest is negligible
+  while (power.maxCoeff() > 1e-4) { // the remainder is negligible
     const Interval inside = medium.boxInterval(ray);
     const double distance = std::max(inside.begin, 0.0) - std::log1p(-random.uniform()) / majorant;
     if (!(distance < inside.end))
@@ -102,7 +102,7 @@ Rgb traceAbsorbedPower(const TestScene& scene, const LineIntegral& medium, Ray r
   return absorbedPower;
 }
 
-/// Absorbed light for irradiance 1, mm^2.
+/// Absorbed light at irradiance 1, mm^2.
 RgbEstimate estimateAbsorbedLight(const TestScene& scene, const Vec3& light, std::uint64_t seed) {
   const LineIntegral medium(scene.volume, scene.transfer);
   const double half = scene.volume.grid.boundingRadius();
@@ -121,10 +121,10 @@ RgbEstimate estimateAbsorbedLight(const TestScene& scene, const Vec3& light, std
   return RgbEstimate{mean, ((squares / n - mean.square()) / n).sqrt()} * (4.0 * half * half);
 }
 
-// ---- the balance
+// ---- energy balance
 // ---------------------------------------------------------------------------------
 
-/// Relative error of stopped() with this number of lines.
+/// Relative error of computeCollidedLight() with this number of lines.
 constexpr double quadratureError = 3e-4;
 constexpr int lines = 120;
 
@@ -137,7 +137,7 @@ TEST_P(Energy, WithoutAbsorptionOutgoingEqualsIncoming) {
   const double in = computeCollidedLight(scene, lightDirection, lines);
   EXPECT_NEAR(computeCollidedLight(scene, lightDirection, 2 * lines) / in, 1.0, quadratureError);
   const double silhouette = 4.0 * std::pow(scene.volume.grid.boundingRadius(), 2.0);
-  EXPECT_GT(in, 0.1 * silhouette) << "the medium must matter";
+  EXPECT_GT(in, 0.1 * silhouette) << "the medium must have an effect";
   expectMean(estimateScatteredLight(scene, lightDirection, shiftSeed(7000)), Rgb::Constant(in),
              0.01, quadratureError);
 }
@@ -147,8 +147,8 @@ TEST_P(Energy, OutgoingPlusAbsorbedEqualsIncoming) {
   const double in = computeCollidedLight(scene, lightDirection, lines);
   const RgbEstimate out = estimateScatteredLight(scene, lightDirection, shiftSeed(8000));
   const RgbEstimate absorbedLight = estimateAbsorbedLight(scene, lightDirection, shiftSeed(8500));
-  EXPECT_GT((out.mean / absorbedLight.mean).minCoeff(), 0.2) << "both must matter";
-  EXPECT_LT((out.mean / absorbedLight.mean).maxCoeff(), 5.0) << "both must matter";
+  EXPECT_GT((out.mean / absorbedLight.mean).minCoeff(), 0.2) << "both must have an effect";
+  EXPECT_LT((out.mean / absorbedLight.mean).maxCoeff(), 5.0) << "both must have an effect";
   expectMean(out + absorbedLight, Rgb::Constant(in), 0.01, quadratureError);
 }
 

@@ -1,19 +1,19 @@
 #pragma once
-// The standard errors that pictures tell, against how far pictures of many seeds lie apart.
+// Compares the standard errors that images estimate with the spread of images over many seeds.
 
 #include "Support.h"
 
 namespace fenestra::testing {
 
-/// Sum over pixels of the told variance / that of the variance over seeds, with its standard error:
-/// 1 if pictures tell their error as it is.
+/// Sum over pixels of the estimated variance / sum of the variance over seeds, with its standard
+/// error: 1 if images estimate their error correctly.
 struct ErrorRatio {
   double ratio = 0.0, error = 0.0;
-  double variance = 0.0; ///< over seeds, mean of pixels
+  double variance = 0.0; ///< over seeds, mean over pixels
 };
 
-/// Ratio in the green channel, which should be everywhere as noisy. `settings.seed` is the first
-/// seed.
+/// Ratio in the green channel, whose noise should be similar everywhere. `settings.seed` is the
+/// first seed.
 inline ErrorRatio measureErrorRatio(const TestScene& scene, RenderSettings settings, int seeds) {
   struct Pixel {
     double mean = 0.0, m2 = 0.0, estimated = 0.0;
@@ -42,8 +42,8 @@ inline ErrorRatio measureErrorRatio(const TestScene& scene, RenderSettings setti
           measuredSum / static_cast<double>(pixels.size())};
 }
 
-/// Fog between the eye and an environment: most of the noise lies in the first collision and the
-/// first direction.
+/// Fog between the camera and an environment: the first collision and the first direction cause
+/// most of the noise.
 inline TestScene makeFogScene() {
   const Grid grid = makeCenteredGrid({16, 16, 16}, {1.0, 1.0, 1.0});
   const Vec3 center(7.5, 7.5, 7.5);

@@ -1,5 +1,5 @@
 #pragma once
-// Estimates as pictures: for error images, and for comparisons that take pictures.
+// Converts estimates to images, for error images and for comparisons of images.
 
 #include "Oracle/Estimates.h"
 #include "image/Image.h"

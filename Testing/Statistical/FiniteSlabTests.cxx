@@ -1,10 +1,10 @@
-// Finite slabs with isotropic scattering, against the integral equation for their source function,
-// solved here. With optical depth t from the lit face and thickness T,
+// Finite slabs with isotropic scattering, against the integral equation of their source function,
+// which is solved here. With optical depth t from the lit face and thickness T,
 //   S(t) = w (J0(t) + 1/2 ∫_0^T E1(|t - s|) S(s) ds)
 //   I(mu) = ∫_0^T S(t) exp(-t / mu) dt / mu           (from t = 0; likewise from t = T)
-// (Chandrasekhar, Radiative Transfer, 1960, ch. I). J0, the light that arrives unscattered: L/2
-// (E2(t) + E2(T - t)) for an environment of radiance L; F / (4 pi) exp(-t / mu0) for parallel light
-// of irradiance F on a plane that faces the light.
+// (Chandrasekhar, Radiative Transfer, 1960, ch. I). J0 is the unscattered light: L/2 (E2(t) + E2(T
+// - t)) for an environment of radiance L; F / (4 pi) exp(-t / mu0) for parallel light of irradiance
+// F on a plane that faces the light.
 
 #include "Slab.h"
 
@@ -30,9 +30,9 @@ struct SlabLight {
   double mu0 = 1.0;
 };
 
-/// Source function, constant in each of several cells, which are finest at the faces, where its
-/// slope is infinite. The equation is averaged over each cell (Galerkin), with exact integrals of
-/// the kernel.
+/// Piecewise constant source function. Its cells are finest at the faces, where its slope is
+/// infinite. The equation is averaged over each cell (Galerkin), with exact integrals of the
+/// kernel.
 class SourceFunction {
 public:
   SourceFunction(double thickness, double albedo, const SlabLight& light, int cells)
@@ -55,7 +55,7 @@ public:
     m_values = system.partialPivLu().solve(direct);
   }
 
-  /// Radiance that leaves the upper face, and the lower face.
+  /// Radiance that leaves the upper or the lower face.
   double above(double mu) const { return emergent(mu, false); }
   double below(double mu) const { return emergent(mu, true); }
 
@@ -90,13 +90,13 @@ struct View {
   bool isFromBelow;
 };
 
-/// Relative error of Emission's radiances.
+/// Relative error of the radiances of Emission.
 constexpr double quadratureError = 1e-4;
 constexpr std::array<View, 3> views = {{{1.0, false}, {0.25, false}, {0.7, true}}};
 const Rgb albedos(0.5, 0.9, 1.0);
 
-/// Radiance that leaves slabs of these albedos, extrapolated from two grids: half the cell size has
-/// a quarter of the error.
+/// Radiance that leaves slabs of these albedos, by Richardson extrapolation from two grids: half
+/// the cell size has a quarter of the error.
 class Emission {
 public:
   Emission(double thickness, const SlabLight& light, int cells = 240) {
@@ -133,7 +133,7 @@ TEST(Emission, QuadratureErrorIsBelowItsBound) {
         const Rgb radiance = emission.emittedRadiance(view);
         EXPECT_LT((radiance / refined.emittedRadiance(view) - 1.0).abs().maxCoeff(),
                   quadratureError);
-        if (light.environment > 0.0) { // without absorption as bright as the environment
+        if (light.environment > 0.0) { // without absorption: environment minus transmission
           EXPECT_NEAR(radiance[2], 1.0 - std::exp(-thickness / view.mu), 1e-9);
         }
       }

@@ -1,5 +1,5 @@
-// Furnace: albedo 1 in a constant environment of 1 shows 1 everywhere, for every medium,
-// projection, clip and crop; and so it does under a sky of one colour.
+// Furnace test: a medium of albedo 1 in a constant environment of 1 has radiance 1 everywhere, for
+// every medium, projection, clip and crop. A sky of one color equals a constant environment.
 
 #include "Support.h"
 
@@ -24,7 +24,7 @@ Volume makeMediumVolume(MediumKind kind) {
   });
 }
 
-/// Non-monotone extinction: 0 at both ends of the range, dense in a thin band between.
+/// Non-monotone extinction: 0 at the lower end of the range, dense in thin bands.
 TransferFunction makeSpikes() {
   return {ScalarFunction({makeKnot(0.0, 0.0), makeKnot(0.45, 0.0), makeKnot(0.5, 4.0),
                           makeKnot(0.55, 0.0), makeKnot(0.9, 0.0), makeKnot(0.9, 1.5),
@@ -32,7 +32,7 @@ TransferFunction makeSpikes() {
           ColorFunction({{0.0, Rgb::Ones()}})};
 }
 
-/// Ball of radius 4 mm, off-centre.
+/// Off-center ball of radius 4 mm.
 Mask makeBallMask() {
   const Grid grid = makeCenteredGrid({16, 16, 16}, {1.0, 1.0, 1.0});
   Mask mask{grid, {}, 0, {"ball"}};
@@ -46,7 +46,7 @@ Mask makeBallMask() {
   return mask;
 }
 
-/// Rotated crop that cuts the ball and two of the volume's corners.
+/// Rotated crop box that cuts the ball and two of the volume's corners.
 CropBox makeRotatedCrop() {
   return CropBox(makeTranslation({0.5, -2.0, 1.0}) *
                  makeRotation(0.5, Vec3(1.0, 1.0, -2.0).normalized()) *
@@ -96,7 +96,7 @@ TEST_P(Furnace, RadianceIsOne) {
   settings.path.background.kind = Background::Kind::environment;
   const RenderResult result = scene.render(settings);
   const Estimate estimate = estimateMean(result.film);
-  EXPECT_GT(result.counters.collisions, 10000U) << "the medium must matter";
+  EXPECT_GT(result.counters.collisions, 10000U) << "the medium must have an effect";
   EXPECT_NEAR(estimate.mean, 1.0, 4.0 * estimate.error);
   EXPECT_LT(estimate.error, 0.02);
 }
@@ -118,7 +118,7 @@ INSTANTIATE_TEST_SUITE_P(Cropped, Furnace,
                                                               ClipKind::cutaway, ClipKind::surface),
                                             ::testing::Values(0.7), ::testing::Values(true)));
 
-TEST(SkyOfOneColour, EqualsAConstantEnvironment) {
+TEST(SingleColorSky, EqualsConstantEnvironment) {
   const Rgb color(0.9, 0.6, 0.3);
   TestScene scene{makeMediumVolume(MediumKind::heterogeneous),
                   makeLinearTransfer(0.4, Rgb(0.9, 0.7, 0.5)),

@@ -3,7 +3,7 @@
 namespace fenestra::testing {
 namespace {
 
-/// Roots of c1 + 2 c2 u + 3 c3 u^2 in (0, 1), with 0 and 1, in order.
+/// Roots of c1 + 2 c2 u + 3 c3 u^2 in (0, 1), and 0 and 1, sorted.
 std::vector<double> splitMonotone(double c1, double c2, double c3) {
   std::vector<double> ends = {0.0, 1.0};
   const auto add = [&ends](double u) {
@@ -74,8 +74,8 @@ double LineIntegral::interpolate(const Vec3& point) const {
   return interpolateInCell(index, index);
 }
 
-/// Trilinear scalar at `index` in the cell that contains `inCell`: both ends of a segment use one
-/// cell. Constant beyond the outermost voxel centres.
+/// Trilinear scalar at `index`, from the cell that contains `inCell`, so that both ends of a
+/// segment use one cell. Constant beyond the outermost voxel centers.
 double LineIntegral::interpolateInCell(const Vec3& index, const Vec3& inCell) const {
   double value = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
@@ -99,7 +99,7 @@ LineIntegral::Cubic LineIntegral::fitCubic(const Vec3& from, const Vec3& to) con
   double value[4];
   for (int n = 0; n < 4; ++n)
     value[n] = interpolateInCell(from + n / 3.0 * (to - from), 0.5 * (from + to));
-  // Newton's divided differences at 0, 1/3, 2/3, 1, written out in powers of u.
+  // Newton's divided differences at 0, 1/3, 2/3, 1, expanded in powers of u.
   const double d1 = 3.0 * (value[1] - value[0]);
   const double d2 = 4.5 * (value[2] - 2.0 * value[1] + value[0]);
   const double d3 = 4.5 * (value[3] - 3.0 * value[2] + 3.0 * value[1] - value[0]);
@@ -124,7 +124,7 @@ void LineIntegral::addKnotCrossings(const Cubic& cubic, std::vector<double>& bre
     }
 }
 
-/// Between crossings of knots, extinction is a cubic of u: Gauss' rule with two points is exact.
+/// Between crossings of knots, extinction is a cubic in u, so two-point Gauss quadrature is exact.
 double LineIntegral::meanExtinction(const Cubic& cubic) const {
   std::vector<double> breaks = {0.0, 1.0};
   addKnotCrossings(cubic, breaks);

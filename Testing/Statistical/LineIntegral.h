@@ -1,6 +1,6 @@
 #pragma once
-// Medium and optical depth along a ray, exact to rounding and independent of tracking: from the
-// voxels and the knots of the medium's table alone.
+// Optical depth along a ray, exact up to rounding and independent of tracking: it uses only the
+// voxels and the knots of the transfer function.
 
 #include "model/medium/TransferFunction.h"
 #include "model/volume/Volume.h"
@@ -11,7 +11,7 @@ namespace fenestra::testing {
 
 class LineIntegral {
 public:
-  /// Requires a scene without clip and gradient opacity.
+  /// Requires a scene without a clip and without gradient opacity.
   LineIntegral(const Volume& volume, const TransferFunction& transfer);
 
   /// Interval of a ray (world, unit direction), t >= 0, inside the volume's box.
@@ -19,14 +19,14 @@ public:
   /// Scalar at a point (world) inside the box; extinction at a scalar, mm^-1.
   double interpolate(const Vec3& point) const;
   double extinction(double scalar) const;
-  /// Optical depth of the ray's part that is inside the box and within `range`, mm.
+  /// Optical depth of the part of the ray that is inside the box and within `range` (mm).
   double opticalDepth(const Ray& ray, const Interval& range = {}) const;
 
 private:
   struct Knot {
     double position, extinction;
   };
-  /// Scalar along a ray within one cell between voxel centres: a cubic in u, 0 to 1.
+  /// Scalar along a ray within one cell between voxel centers: a cubic in u, 0 to 1.
   struct Cubic {
     double c0, c1, c2, c3;
     double operator()(double u) const { return c0 + u * (c1 + u * (c2 + u * c3)); }

@@ -14,7 +14,7 @@ int level(int factor, int index, int levels) {
   std::vector<int> order(static_cast<std::size_t>(levels));
   std::iota(order.begin(), order.end(), 0);
   Generator generator(static_cast<std::uint64_t>(1000 * factor + index / levels));
-  for (std::size_t i = order.size() - 1; i > 0; --i) // std::shuffle, but the same everywhere
+  for (std::size_t i = order.size() - 1; i > 0; --i) // a std::shuffle that is equal everywhere
     std::swap(order[i], order[generator() % (i + 1)]);
   return order[static_cast<std::size_t>(index % levels)];
 }
@@ -41,7 +41,7 @@ Combination makeCombination(int index) {
   c.background = static_cast<BackgroundFactor>(next(3));
   c.bounces = bounces[next(5)];
   const int edge = next(4);
-  const auto style = static_cast<StyleFactor>(std::max(0, next(6) - 2)); // half of them: none
+  const auto style = static_cast<StyleFactor>(std::max(0, next(6) - 2)); // one half: none
   constexpr double offsets[] = {0.0, 0.7, -0.7};
   const double offset = offsets[next(3)];
   const bool isVariantClip = next(2) == 0;
@@ -59,7 +59,7 @@ Combination makeCombination(int index) {
   c.isCoated = isCoated && c.isHybrid;
   c.haveInterfaces = next(3) == 0 && c.areMedia && c.isHybrid;
   if (index % 4 == 1 ||
-      index % 4 == 2) { // the others are plain, which shows errors of other factors best
+      index % 4 == 2) { // the others stay simple, which shows errors of other factors best
     c.edge = static_cast<EdgeFactor>(isSoftCut ? 2 + edge % 2 : edge);
     c.style = style;
     c.offset = offset;
@@ -72,8 +72,8 @@ Combination makeCombination(int index) {
     c.light = LightFactor::sky;
   if (isVariantLight && c.light == LightFactor::disk)
     c.light = LightFactor::sphere;
-  // Parallel light reaches the eye only through the phase function's peak: at g = 0.99 hardly one
-  // path in ten thousand shows the light, and means are far from normal.
+  // Parallel light reaches the camera only through the phase function's peak: at g = 0.99 hardly
+  // one path in ten thousand carries light, and means are far from normally distributed.
   const bool hasParallel = c.light == LightFactor::directional || c.light == LightFactor::several;
   if (hasParallel && c.g > 0.9)
     c.g = 0.9;
@@ -115,7 +115,7 @@ Grid makeGrid(const Combination& c, Generator& generator) {
   return {};
 }
 
-/// Smooth hills over the world, 0 to 1.
+/// Smooth hills over world space, 0 to 1.
 struct Hills {
   Vec3 a, b, c;
 
@@ -178,7 +178,7 @@ Volume makeCombinationVolume(const Combination& c, Generator& generator) {
 // ---- the medium
 // --------------------------------------------------------------------------------
 
-/// Function with knots placed relative to the scalar's range, [0, 1].
+/// Function with knots at relative positions, 0 to 1, within the scalar range.
 ScalarFunction makeCurve(const Range& range, std::initializer_list<std::array<double, 2>> knots) {
   std::vector<ScalarFunction::Knot> placed;
   for (const auto& [u, value] : knots)
@@ -248,7 +248,7 @@ TransferFunction makeTransfer(const Combination& c) {
   return transfer;
 }
 
-// ---- lights, eye, clip
+// ---- lights, camera, crop, background
 // -------------------------------------------------------------------------
 
 EnvironmentMap makeMap(Generator& generator) {
@@ -261,7 +261,7 @@ EnvironmentMap makeMap(Generator& generator) {
 }
 
 AreaLight makeAreaLight(AreaLight::Shape shape, LightFrame frame, Generator& generator) {
-  // In the camera's frame the unit is the bounding sphere's radius, about 10 mm.
+  // Lights in the camera's frame use the bounding sphere's radius as unit, about 10 mm.
   const double unit = frame == LightFrame::world ? 10.0 : 1.0;
   AreaLight light;
   light.shape = shape;
@@ -279,7 +279,7 @@ SkyLight makeSky(LightFrame frame, Generator& generator) {
           frame};
 }
 
-/// Around a part of the volume, beside it, or far away.
+/// Sphere around a part of the volume, next to it, or far away.
 SphereLight makeSphereLight(const Combination& c, LightFrame frame, Generator& generator) {
   const double unit = frame == LightFrame::world ? 10.0 : 1.0;
   constexpr double distances[] = {0.3, 0.9, 2.2};
@@ -322,7 +322,7 @@ CameraPose makePose(const Combination& c, Generator& generator) {
       c.view == ViewFactor::perspective || c.view == ViewFactor::perspectiveInside;
   const bool wantsInside =
       c.view == ViewFactor::orthographicInside || c.view == ViewFactor::perspectiveInside;
-  // A clipping surface requires an eye outside the volume.
+  // A clipping surface requires a camera outside the volume.
   const bool isInside = wantsInside && (c.clip == ClipFactor::none || c.clip == ClipFactor::plane);
   pose.projection = isPerspective ? Projection::perspective : Projection::orthographic;
   pose.target = 1.5 * randomDirection(generator);
@@ -368,8 +368,8 @@ std::string describe(const Combination& c) {
   static constexpr const char* clips[] = {"no clip", "plane",         "cutaway",
                                           "surface", "exact surface", "hole"};
   static constexpr const char* edges[] = {"", ", ghost", ", soft", ", soft ghost"};
-  static constexpr const char* styles[] = {"", ", thin context", ", pale context",
-                                           ", thin pale context"};
+  static constexpr const char* styles[] = {"", ", thin context", ", desaturated context",
+                                           ", thin desaturated context"};
   static constexpr const char* segments[] = {"overlapping", "nested", "disjoint"};
   static constexpr const char* lights[] = {"constant", "map",     "directional", "rectangle",
                                            "disk",     "several", "sky",         "sphere"};
@@ -377,7 +377,7 @@ std::string describe(const Combination& c) {
   static constexpr const char* transfers[] = {
       "linear", "step", "spike", "non-monotone", "gradient opacity", "steep gradient opacity"};
   static constexpr const char* voxels[] = {"uint8", "int16", "uint16", "float"};
-  static constexpr const char* grids[] = {"cubes", "thick slices", "turned", "sheared mirrored",
+  static constexpr const char* grids[] = {"cubes", "thick slices", "rotated", "sheared mirrored",
                                           "fine"};
   static constexpr const char* backgrounds[] = {"color", "transparent", "environment"};
   const auto name = [](const auto& names, auto kind) { return names[static_cast<int>(kind)]; };
@@ -389,8 +389,8 @@ std::string describe(const Combination& c) {
     text << (c.offset < 0.0 ? ", nearer" : ", deeper");
   if (c.segmentCount > 0)
     text << ", " << c.segmentCount << (c.haveSoftEdges ? " soft " : " hard ")
-         << name(segments, c.segments) << (c.areMedia ? " matter" : " tints")
-         << (c.haveInterfaces ? " with borders" : "");
+         << name(segments, c.segments) << (c.areMedia ? " media" : " tints")
+         << (c.haveInterfaces ? " with interfaces" : "");
   text << name(styles, c.style) << (c.isCropped ? ", cropped" : "") << " | "
        << name(lights, c.light) << " | " << c.g << " | " << name(albedos, c.albedo) << " | "
        << name(transfers, c.transfer) << (c.isHybrid ? c.isCoated ? ", coated" : ", hybrid" : "")

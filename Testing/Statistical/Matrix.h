@@ -1,15 +1,15 @@
 #pragma once
 // Matrix of small scenes in which the product is compared with the oracle: all kinds of views,
-// clips, lights and media, in combinations that a Latin design spreads evenly.
+// clips, lights and media, in evenly distributed combinations (a Latin design).
 //
-// Each factor runs through its levels in blocks, every block in its own order: over n combinations
-// every level occurs n / levels times, and every pair of levels of two factors about n / levels^2
-// times. Every eighth combination has hybrid shading and, if it has a clip, a soft edge, whatever
-// the design says of these two: by itself it makes too few for each kind of clip. Combination i is
-// always the same scene; only the estimators' seeds change.
+// Each factor runs through its levels in blocks, and each block has its own order. Over n
+// combinations, every level occurs n / levels times, and every pair of levels of two factors about
+// n / levels^2 times. The design alone has too few soft edges with hybrid shading per kind of clip.
+// So every eighth combination has hybrid shading and, if it has a clip, a soft edge. Combination i
+// is always the same scene; only the seeds of the renderers change.
 //
-// Every other combination has segments, half of these of matter. Beyond the first `shortCount` two
-// of three have segments of matter, so that over 640 combinations more than 320 have.
+// Every other combination has segments, half of them with media of their own. After the first
+// `shortCount` combinations, two of three have such segments: more than 320 of all 640.
 
 #include "Oracle/OracleScene.h"
 #include "Support.h"
@@ -22,7 +22,7 @@ enum class ViewFactor { orthographic, perspective, orthographicInside, perspecti
 enum class ClipFactor { none, plane, cutaway, surface, exactSurface, hole };
 /// Sharpness of a clip's edge.
 enum class EdgeFactor { sharp, ghost, soft, softGhost };
-/// Look of the context.
+/// Appearance of the context.
 enum class StyleFactor { none, thin, desaturated, thinDesaturated };
 enum class LightFactor { constant, map, directional, rectangle, disk, several, sky, sphere };
 enum class AlbedoFactor { black, half, nearlyOne, one, perChannel, byScalar };
@@ -38,7 +38,7 @@ enum class VoxelFactor { uint8, int16, uint16, float32 };
 enum class GridFactor { cubes, thickSlices, rotated, shearedMirrored, fine };
 enum class BackgroundFactor { color, transparent, environment };
 
-/// How segments lie.
+/// Arrangement of the segments.
 enum class SegmentFactor { overlapping, nested, disjoint };
 
 struct Combination {
@@ -61,18 +61,18 @@ struct Combination {
   double offset = 0.0; ///< of the clip, mm
   int segmentCount = 0;
   SegmentFactor segments{};
-  bool haveSoftEdges = false;  ///< segments, at their borders
-  bool areMedia = false;       ///< segments: all of their matter is their own, not albedo alone
-  bool haveInterfaces = false; ///< segments: some borders are surfaces
+  bool haveSoftEdges = false;  ///< segments have soft edges
+  bool areMedia = false;       ///< segments have media of their own; false: only albedos
+  bool haveInterfaces = false; ///< some segments' interfaces are surfaces
 };
 
-/// Combinations of the short version of the suite, and of the long one.
+/// Numbers of combinations of the short and of the long version of the suite.
 inline constexpr int shortCount = 240, longCount = 640;
 
-/// First `count` combinations of an endless list.
+/// First `count` combinations of an infinite list.
 std::vector<Combination> makeCombinations(int count);
 
-/// "12 perspective surface map g 0.9 ..."
+/// Levels of the factors, separated by " | ": "perspective | surface | map | 0.9 | ..."
 std::string describe(const Combination& c);
 
 /// One scene for both renderers.
@@ -82,7 +82,7 @@ struct MatrixScene {
   oracle::ClipDescription clip = {};
   std::optional<oracle::StyleDescription> style = {};
   std::optional<oracle::ComponentsDescription> components = {};
-  /// Depth clip's buffer, mm, row by row, for comparison with the oracle's.
+  /// Buffer of a depth clip, mm, row by row, for comparison with the oracle's.
   std::vector<double> productDepths = {};
 
   oracle::OracleScene toOracleScene() const;

@@ -5,7 +5,7 @@
 namespace fenestra::testing {
 namespace {
 
-/// Two balls, one of which has a hole right through.
+/// Two balls, one of which has a cylindrical hole.
 Mask makeFocus() {
   const Grid grid = makeCenteredGrid({17, 17, 17}, Vec3::Constant(0.75));
   Mask mask{grid, {}, 0, {"balls"}};
@@ -22,8 +22,8 @@ Mask makeFocus() {
   return mask;
 }
 
-/// Describes the product's exact surface: its depths at the samples are given; between samples the
-/// oracle finds the depth itself in the seams.
+/// Describes the product's exact surface by its depths at the samples. Between samples, in
+/// silhouette cells, the oracle computes the depth itself.
 void describeExact(const ClipDepth& surface, oracle::DepthClip& clip) {
   const DepthBuffer& buffer = *surface.buffer;
   for (std::int64_t i = 0; i < buffer.size(); ++i)

@@ -6,6 +6,7 @@
 #include <array>
 #include <fstream>
 #include <iomanip>
+#include <regex>
 
 namespace fenestra::testing {
 namespace {
@@ -21,7 +22,7 @@ Histogram makeHistogram(const std::vector<double>& probabilities) {
   return histogram;
 }
 
-/// Draws one histogram, 320 x 180, with the expected height and two standard deviations about it.
+/// Draws one histogram, 320 x 180, with the expected height and two standard deviations around it.
 void drawHistogram(std::ostream& svg, int left, const std::vector<double>& probabilities,
                    const std::string& title) {
   constexpr double width = 320.0, height = 180.0, top = 40.0;
@@ -54,8 +55,13 @@ void writeHistograms(const std::filesystem::path& path, const std::vector<double
          "font-family='sans-serif' font-size='13'>\n<rect width='760' height='260' "
          "fill='white'/>\n";
   drawHistogram(svg, 30, tiles, std::to_string(tiles.size()) + " tiles");
-  drawHistogram(svg, 410, images, std::to_string(images.size()) + " pictures");
+  drawHistogram(svg, 410, images, std::to_string(images.size()) + " images");
   svg << "</svg>\n";
+}
+
+/// Quoted cells of a description (Matrix.h), which separates factors by " | ".
+std::string toCsvCells(const std::string& description) {
+  return '"' + std::regex_replace(description, std::regex(" \\| "), "\",\"") + '"';
 }
 
 } // namespace
@@ -73,27 +79,21 @@ void recordMatrix(const std::vector<Outcome>& outcomes, const std::vector<Hypoth
   }
   writeHistograms(*folder / "probabilities.svg", tiles, images);
 
-  std::ofstream md(*folder / "matrix.md");
-  md << "# The product against the oracle\n\n"
-     << outcomes.size() << " combinations, 16 x 16 pixels, " << settings.samples
-     << " samples a pixel of each renderer, seed " << settings.seed << ".\n\n"
-     << "| hypothesis | values | probability of what was seen |\n|---|---|---|\n"
-     << std::setprecision(3);
+  std::ofstream summary(*folder / "matrix-summary.csv");
+  summary
+      << std::setprecision(3)
+      << "hypothesis,values,probability,significance level,combinations,samples per pixel,seed\n";
   for (const HypothesisTest& test : tests)
-    md << "| " << test.name << " | " << test.count << " | " << test.probability << " |\n";
-  md << "\nEach is held to " << significanceLevel(tests.size())
-     << ", so that all of them together fail once in a thousand runs by chance.\n\n"
-     << "![Histograms of the probabilities](probabilities.svg)\n\n"
-     << "Probabilities of the differences in tiles and pictures: uniform where there is no "
-        "difference but noise. Grey: two standard deviations about what is expected.\n\n"
-     << "<details><summary>All combinations</summary>\n\n"
-     << "| | view | clip | light | g | albedo | transfer function | voxels | grid | background | "
-        "bounces | difference of the picture | in errors | probability |\n"
-     << "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+    summary << test.name << ',' << std::llround(test.count) << ',' << test.probability << ','
+            << significanceLevel(tests.size()) << ',' << outcomes.size() << ',' << settings.samples
+            << ',' << settings.seed << '\n';
+  std::ofstream csv(*folder / "matrix.csv");
+  csv << std::setprecision(3)
+      << "combination,view,clip,light,g,albedo,transfer function,voxels,grid,background,bounces,"
+         "difference of the image in percent,z,probability\n";
   for (const Outcome& c : outcomes)
-    md << "| " << c.combination.index << " | " << describe(c.combination) << " | "
-       << 100.0 * c.difference << " % | " << c.z << " | " << c.probability() << " |\n";
-  md << "\n</details>\n";
+    csv << c.combination.index << ',' << toCsvCells(describe(c.combination)) << ','
+        << 100.0 * c.difference << ',' << c.z << ',' << c.probability() << '\n';
 }
 
 } // namespace fenestra::testing

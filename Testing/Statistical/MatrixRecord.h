@@ -1,12 +1,12 @@
 #pragma once
-// Report of a run over the matrix.
+// Record of a run over the matrix.
 
 #include "Comparison.h"
 
 namespace fenestra::testing {
 
-/// Writes matrix.md (tables) and probabilities.svg (histograms) if a report is requested
-/// (RunSettings.h).
+/// If a report is requested (RunSettings.h), writes matrix.csv (combinations), matrix-summary.csv
+/// (hypothesis tests) and probabilities.svg (histograms).
 void recordMatrix(const std::vector<Outcome>& outcomes, const std::vector<HypothesisTest>& tests,
                   const MatrixSettings& settings);
 

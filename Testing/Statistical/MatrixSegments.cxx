@@ -4,12 +4,12 @@ namespace fenestra::testing {
 namespace {
 
 struct Ball {
-  Vec3 center; ///< labelmap's index space
+  Vec3 center; ///< index space of the label map
   double radius;
   int priority;
 };
 
-/// Balls as the combination has them, in a labelmap of 17 voxels along each axis.
+/// Balls of the combination, in a label map of 17 voxels along each axis.
 std::vector<Ball> makeBalls(const Combination& c, Generator& generator) {
   const Vec3 middle = Vec3::Constant(8.0);
   std::vector<Ball> all;
@@ -27,7 +27,7 @@ std::vector<Ball> makeBalls(const Combination& c, Generator& generator) {
   return all;
 }
 
-/// Indicator of a ball, over its own extent.
+/// Mask of a ball over its own extent.
 Mask makeBallMask(const Ball& ball, const Grid& labels, bool isSoft) {
   const Size3 first = (ball.center.array() - ball.radius - 2.0).floor().cast<std::int64_t>();
   const Size3 end = (ball.center.array() + ball.radius + 3.0).ceil().cast<std::int64_t>();
@@ -55,7 +55,7 @@ ColorFunction makeColors(const ScalarFunction& extinction, Generator& generator)
   return ColorFunction({{knots.front().position, color()}, {knots.back().position, color()}});
 }
 
-/// Extinction of a segment's own: one for all scalars, or over them.
+/// A segment's own extinction: constant, or a function of the scalar.
 ScalarFunction makeSegmentExtinction(const ScalarFunction& volume, bool isConstant,
                                      Generator& generator) {
   const double low = volume.knots().front().position, high = volume.knots().back().position;
@@ -67,8 +67,7 @@ ScalarFunction makeSegmentExtinction(const ScalarFunction& volume, bool isConsta
   return ScalarFunction({at(low), at(0.6 * low + 0.4 * high), at(high)});
 }
 
-/// Matter of segment `number`, from 1. The volume's own extinction, denser or thinner, is that of
-/// every third.
+/// Medium of segment `number`, from 1. Every third has a multiple of the volume's own extinction.
 Component makeComponent(const Combination& c, std::size_t number, const TransferFunction& volume,
                         Generator& generator) {
   constexpr double anisotropies[] = {-0.4, 0.0, 0.5, 0.8};
@@ -85,7 +84,7 @@ Component makeComponent(const Combination& c, std::size_t number, const Transfer
   if (transfer.shading) {
     transfer.shading = SurfaceShading::makeCoated(uniform(generator, 0.0, 1.0),
                                                   uniform(generator, 0.05, 0.95), transfer.g);
-    transfer.shading->gamma = volume.shading->gamma; // the same for all
+    transfer.shading->gamma = volume.shading->gamma; // one for all components
     transfer.shading->diffuse = uniform(generator, 0.0, 1.0);
   }
   if (c.haveInterfaces && number % 2 == 1)
@@ -113,7 +112,7 @@ void placeSegments(const Combination& c, Generator& generator, MatrixScene& scen
     parts.push_back({mask, ball.priority, static_cast<std::uint8_t>(number)});
     all.segments.push_back({mask, ball.priority, number});
     Component component{volume};
-    if (number == 2) { // what is in no segment, too, has this matter
+    if (number == 2) { // has the volume's own medium
       tint.albedo.emplace_back();
     } else if (c.areMedia) {
       component = makeComponent(c, number, volume, generator);

@@ -1,12 +1,12 @@
 #pragma once
-// Segments of the matrix's scenes: built for the product, and described for the oracle.
+// Segments of the matrix's scenes, for the product and as descriptions for the oracle.
 
 #include "MatrixClips.h"
 
 namespace fenestra::testing {
 
-/// Gives the combination's segments their matter or colours, after the volume is made: their
-/// labelmap is turned against it, and does not cover it.
+/// Adds the combination's segments with their media or colors; requires the scene's volume. Their
+/// label map is rotated relative to the volume and does not cover it.
 void placeSegments(const Combination& c, Generator& generator, MatrixScene& scene);
 
 } // namespace fenestra::testing

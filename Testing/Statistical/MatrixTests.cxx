@@ -1,4 +1,4 @@
-// Product against oracle over the whole matrix.
+// Compares the product with the oracle in all combinations of the matrix.
 
 #include "Comparison.h"
 #include "EstimateImages.h"
@@ -16,7 +16,7 @@
 namespace fenestra::testing {
 namespace {
 
-/// Writes the pictures needed to see an error; returns a text that names their folder.
+/// Writes the images that show an error; returns a message that names their folder.
 std::string writeErrorImages(const Outcome& c) {
   const std::filesystem::path folder =
       std::filesystem::path(FENESTRA_MATRIX_RESULTS) / std::to_string(c.combination.index);
@@ -28,8 +28,8 @@ std::string writeErrorImages(const Outcome& c) {
   return "see product.exr, oracle.exr and z.png in " + folder.string();
 }
 
-/// Oracle's picture of a combination, rendered at the first call. Its seed does not depend on the
-/// product's transport: both transports are compared with the same picture.
+/// Oracle's render of a combination, computed at the first call. Its seed does not depend on the
+/// product's integrator: both integrators are compared with the same render.
 const OracleRender& findOracleRender(const Combination& c, const MatrixSettings& settings) {
   static std::map<int, OracleRender> renders;
   const auto found = renders.find(c.index);
@@ -39,7 +39,7 @@ const OracleRender& findOracleRender(const Combination& c, const MatrixSettings&
 
 class Matrix : public ::testing::TestWithParam<Integrator> {};
 
-TEST_P(Matrix, AgreesWithTheOracle) {
+TEST_P(Matrix, AgreesWithOracle) {
   const MatrixSettings settings{isLongRun() ? 512U : 128U, seedBase(), GetParam()};
   const std::vector<Combination> all =
       makeCombinations(static_cast<int>(readEnvironmentNumber("FENESTRA_COMBINATIONS")
@@ -50,7 +50,7 @@ TEST_P(Matrix, AgreesWithTheOracle) {
     const Outcome& result = outcomes.back();
     EXPECT_GT(result.probability(), significanceLevel(all.size()))
         << c.index << ": " << describe(c) << "\n  pixels " << result.pixels << ", tiles "
-        << result.tiles << ", picture " << result.image << " (" << 100.0 * result.difference
+        << result.tiles << ", image " << result.image << " (" << 100.0 * result.difference
         << " %)\n  " << writeErrorImages(result);
     EXPECT_LT(result.depthDifference, 1e-3) << describe(c);
     EXPECT_EQ(result.depthDisagreements, 0) << describe(c);
@@ -64,10 +64,10 @@ TEST_P(Matrix, AgreesWithTheOracle) {
     recordMatrix(outcomes, results, settings);
 }
 
-INSTANTIATE_TEST_SUITE_P(Transports, Matrix,
+INSTANTIATE_TEST_SUITE_P(Integrators, Matrix,
                          ::testing::Values(Integrator::simd, Integrator::scalar),
                          [](const auto& info) {
-                           return info.param == Integrator::simd ? "fast" : "readable";
+                           return info.param == Integrator::simd ? "simd" : "scalar";
                          });
 
 } // namespace

@@ -1,8 +1,13 @@
-// Every planted error (Faults/README.md) must be found by the suite of MatrixTests.
+// Mutation testing: the suite of MatrixTests must find each error of Mutations/mutations.json. One
+// build contains all of them (Mutations/ApplyMutations.cmake). Each is switched on for one
+// combination after another, until the product's image differs from the oracle's as significantly
+// as the suite requires. An entry's "transport" names the integrator in which it shows: the SIMD
+// one by default, "readable": the scalar one, or "both". Entries with "shows": "estimated error"
+// affect no mean; they must show in the images' standard errors (ErrorRatio.h).
 
 #include "Comparison.h"
 #include "ErrorRatio.h"
-#include "Faults/Planted.h"
+#include "Mutations/Mutant.h"
 #include "RunSettings.h"
 
 #include <gtest/gtest.h>
@@ -14,149 +19,149 @@
 namespace fenestra::testing {
 namespace {
 
-struct Fault {
+struct Mutation {
   std::string name, why;
-  Integrator transport;     ///< transport in which it shows
-  bool inToldError;         ///< shows in the error that pictures tell, in place of the matrix
-  std::string foundIn = {}; ///< first combination in which it shows, or the told error
-  double probability = 1.0; ///< where it was found, or least so far
-  std::vector<std::pair<double, Combination>> hints = {}; ///< probabilities of the matrix
+  Integrator integrator;    ///< in which it shows
+  bool inEstimatedError;    ///< shows in the images' standard errors, not in the matrix
+  std::string foundIn = {}; ///< first combination in which it shows, or "the estimated error"
+  double probability = 1.0; ///< where it was found, or minimum so far
+  std::vector<std::pair<double, Combination>> candidates = {}; ///< probabilities in the matrix
 
-  bool isLookedFor() const { return foundIn.empty() && !inToldError; }
+  bool isPending() const { return foundIn.empty() && !inEstimatedError; }
 };
 
-/// Transports in which an entry of faults.json shows; without a word, the fast one.
-std::vector<Integrator> transportsOf(const nlohmann::json& entry) {
-  const std::string named = entry.value("transport", "fast");
+/// Integrators in which an entry of mutations.json shows.
+std::vector<Integrator> parseIntegrators(const nlohmann::json& entry) {
+  const std::string named = entry.value("transport", "simd");
   if (named == "both")
     return {Integrator::simd, Integrator::scalar};
-  return {named == "fast" ? Integrator::simd : Integrator::scalar};
+  return {named == "simd" ? Integrator::simd : Integrator::scalar};
 }
 
-/// FENESTRA_PLANTED, names between commas; unset: all errors are looked for.
-bool isWanted(const std::string& name) {
-  const char* const wanted = std::getenv("FENESTRA_PLANTED");
-  return !wanted || (',' + std::string(wanted) + ',').find(',' + name + ',') != std::string::npos;
+/// FENESTRA_MUTATIONS: comma-separated names; unset: all mutations are tested.
+bool isSelected(const std::string& name) {
+  const char* const names = std::getenv("FENESTRA_MUTATIONS");
+  return !names || (',' + std::string(names) + ',').find(',' + name + ',') != std::string::npos;
 }
 
-std::vector<Fault> readFaults() {
-  std::ifstream file(FENESTRA_FAULTS);
-  std::vector<Fault> faults;
+std::vector<Mutation> readMutations() {
+  std::ifstream file(FENESTRA_MUTATION_LIST);
+  std::vector<Mutation> mutations;
   for (const auto& entry : nlohmann::json::parse(file))
-    if (isWanted(entry.at("name")))
-      for (const Integrator transport : transportsOf(entry)) {
+    if (isSelected(entry.at("name")))
+      for (const Integrator integrator : parseIntegrators(entry)) {
         std::string why = entry.at("why");
         why += entry.value("transport", "") != "both" ? ""
-               : transport == Integrator::simd        ? " (fast transport)"
-                                                      : " (readable transport)";
-        faults.push_back(
-            {entry.at("name"), why, transport, entry.value("shows", "") == "told error"});
+               : integrator == Integrator::simd       ? " (SIMD integrator)"
+                                                      : " (scalar integrator)";
+        mutations.push_back(
+            {entry.at("name"), why, integrator, entry.value("shows", "") == "estimated error"});
       }
-  return faults;
+  return mutations;
 }
 
-/// Switches one error on for the object's lifetime.
-struct Planting {
-  explicit Planting(std::string_view name) { plantedFault = faultKey(name); }
-  ~Planting() { plantedFault = 0; }
+/// Activates one mutation for the object's lifetime.
+struct ActiveMutation {
+  explicit ActiveMutation(std::string_view name) { activeMutation = mutationKey(name); }
+  ~ActiveMutation() { activeMutation = 0; }
 };
 
-void record(const std::vector<Fault>& faults) {
+/// Writes mutations.csv if a report is requested (RunSettings.h).
+void writeRecord(const std::vector<Mutation>& mutations) {
   const std::optional<std::filesystem::path> folder = reportFolder();
   if (!folder)
     return;
-  std::ofstream md(*folder / "faults.md");
-  md << "# Planted errors\n\nEach is planted in a copy of the renderer and looked for in the "
-        "matrix, one combination after the other, until one disagrees with the oracle; errors that "
-        "show in no mean are looked for in the standard errors that pictures tell.\n\n"
-        "| planted | found in combination | probability there |\n|---|---|---|\n";
-  for (const Fault& fault : faults)
-    md << "| **" << fault.name << "**: " << fault.why << " | " << fault.foundIn << " | "
-       << fault.probability << " |\n";
+  std::ofstream csv(*folder / "mutations.csv");
+  csv << "mutation,why,found in combination,probability\n";
+  for (const Mutation& m : mutations)
+    csv << m.name << ",\"" << m.why << "\",\"" << m.foundIn << "\"," << m.probability << '\n';
 }
 
-/// Probability of what pictures of sixteen samples tell of their error, if it is right.
-double toldErrorProbability(Integrator transport) {
+/// p-value of the standard errors estimated by images of sixteen samples per pixel.
+double computeErrorProbability(Integrator integrator) {
   RenderSettings settings;
   settings.samples = 16;
-  settings.integrator = transport;
-  const ErrorRatio told = measureErrorRatio(makeFogScene(), settings, 200);
-  return normalTail((told.ratio - 1.0) / told.error);
+  settings.integrator = integrator;
+  const ErrorRatio measured = measureErrorRatio(makeFogScene(), settings, 200);
+  return normalTail((measured.ratio - 1.0) / measured.error);
 }
 
-/// Looks for the errors that show in no mean.
-void findInToldErrors(std::vector<Fault>& faults, double bound) {
-  for (const Integrator transport : {Integrator::simd, Integrator::scalar})
-    EXPECT_GT(toldErrorProbability(transport), bound) << "without an error planted";
-  for (Fault& fault : faults)
-    if (fault.inToldError) {
-      const Planting planting(fault.name);
-      fault.probability = toldErrorProbability(fault.transport);
-      std::cout << fault.name << ": in the told error, probability " << fault.probability << '\n';
-      if (fault.probability <= bound)
-        fault.foundIn = "the told error";
+/// Tests the mutations that affect no mean.
+void testEstimatedErrors(std::vector<Mutation>& mutations, double bound) {
+  for (const Integrator integrator : {Integrator::simd, Integrator::scalar})
+    EXPECT_GT(computeErrorProbability(integrator), bound) << "without a mutation";
+  for (Mutation& mutation : mutations)
+    if (mutation.inEstimatedError) {
+      const ActiveMutation active(mutation.name);
+      mutation.probability = computeErrorProbability(mutation.integrator);
+      std::cout << mutation.name << ": in the estimated error, probability " << mutation.probability
+                << '\n';
+      if (mutation.probability <= bound)
+        mutation.foundIn = "the estimated error";
     }
 }
 
-/// Compares one combination without an error, and with each that is still looked for.
-void lookIn(const Combination& c, MatrixSettings settings, std::vector<Fault*> faults, double bound,
-            const char* how) {
-  const OracleRender truth = renderOracle(c, settings);
-  for (const Integrator transport : {Integrator::simd, Integrator::scalar}) {
-    settings.integrator = transport;
-    EXPECT_GT(compareWithOracle(c, settings, truth).probability(), bound)
-        << "without an error planted: " << describe(c) << how;
+/// Compares one combination without a mutation, and with each of `mutations`.
+void testCombination(const Combination& c, MatrixSettings settings,
+                     std::vector<Mutation*> mutations, double bound, const char* suffix) {
+  const OracleRender reference = renderOracle(c, settings);
+  for (const Integrator integrator : {Integrator::simd, Integrator::scalar}) {
+    settings.integrator = integrator;
+    EXPECT_GT(compareWithOracle(c, settings, reference).probability(), bound)
+        << "without a mutation: " << describe(c) << suffix;
   }
-  for (Fault* fault : faults) {
-    const Planting planting(fault->name);
-    settings.integrator = fault->transport;
-    const double probability = compareWithOracle(c, settings, truth).probability();
-    fault->hints.emplace_back(probability, c);
+  for (Mutation* mutation : mutations) {
+    const ActiveMutation active(mutation->name);
+    settings.integrator = mutation->integrator;
+    const double probability = compareWithOracle(c, settings, reference).probability();
+    mutation->candidates.emplace_back(probability, c);
     if (probability > bound)
       continue;
-    fault->foundIn = std::to_string(c.index) + how;
-    fault->probability = probability;
-    std::cout << fault->name << ": in " << fault->foundIn << ", probability " << probability
+    mutation->foundIn = std::to_string(c.index) + suffix;
+    mutation->probability = probability;
+    std::cout << mutation->name << ": in " << mutation->foundIn << ", probability " << probability
               << '\n';
   }
 }
 
-/// Looks again where an error that was not found seemed most likely: other random numbers, and
-/// sixteen times as many.
-void lookAgain(std::vector<Fault>& faults, double bound) {
-  constexpr std::size_t places = 3;
+/// Repeats the three most promising combinations of each mutation that was not found, with another
+/// seed and sixteen times the samples.
+void retest(std::vector<Mutation>& mutations, double bound) {
+  constexpr std::size_t maxCombinations = 3;
   MatrixSettings settings;
   settings.samples *= 16;
   settings.seed += 1;
-  for (Fault& fault : faults) {
-    std::ranges::sort(fault.hints, {}, [](const auto& hint) { return hint.first; });
-    const auto hints = fault.hints; // which lookIn adds to
-    for (std::size_t i = 0; fault.isLookedFor() && i < std::min(places, hints.size()); ++i)
-      lookIn(hints[i].second, settings, {&fault}, bound, ", looked at again");
+  for (Mutation& mutation : mutations) {
+    std::ranges::sort(mutation.candidates, {}, [](const auto& c) { return c.first; });
+    const auto candidates = mutation.candidates; // a copy, because testCombination appends
+    for (std::size_t i = 0;
+         mutation.isPending() && i < std::min(maxCombinations, candidates.size()); ++i)
+      testCombination(candidates[i].second, settings, {&mutation}, bound, ", retested");
   }
 }
 
-TEST(PlantedErrors, EveryErrorIsFound) {
+TEST(Mutations, AreAllFound) {
   constexpr int count = shortCount; // sets the bound for a single combination
-  std::vector<Fault> faults = readFaults();
-  ASSERT_FALSE(faults.empty());
-  findInToldErrors(faults, significanceLevel(count));
+  std::vector<Mutation> mutations = readMutations();
+  ASSERT_FALSE(mutations.empty());
+  testEstimatedErrors(mutations, significanceLevel(count));
   for (const Combination& c : makeCombinations(count)) {
-    std::vector<Fault*> lookedFor;
-    for (Fault& fault : faults)
-      if (fault.isLookedFor())
-        lookedFor.push_back(&fault);
-    if (lookedFor.empty())
+    std::vector<Mutation*> pending;
+    for (Mutation& mutation : mutations)
+      if (mutation.isPending())
+        pending.push_back(&mutation);
+    if (pending.empty())
       break;
-    lookIn(c, {}, lookedFor, significanceLevel(count), "");
+    testCombination(c, {}, pending, significanceLevel(count), "");
   }
-  lookAgain(faults, significanceLevel(count));
-  for (const Fault& fault : faults)
-    EXPECT_FALSE(fault.foundIn.empty()) << fault.name << " was not found: " << fault.why;
-  std::cout << "planted errors found: "
-            << std::ranges::count_if(faults, [](const Fault& f) { return !f.foundIn.empty(); })
-            << " of " << faults.size() << '\n';
-  record(faults);
+  retest(mutations, significanceLevel(count));
+  for (const Mutation& mutation : mutations)
+    EXPECT_FALSE(mutation.foundIn.empty()) << mutation.name << " was not found: " << mutation.why;
+  std::cout << "mutations found: "
+            << std::ranges::count_if(mutations,
+                                     [](const Mutation& m) { return !m.foundIn.empty(); })
+            << " of " << mutations.size() << '\n';
+  writeRecord(mutations);
 }
 
 } // namespace

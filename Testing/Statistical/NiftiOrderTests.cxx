@@ -1,4 +1,4 @@
-// One phantom in every order and sign of a NIfTI file's axes: one picture, within its errors.
+// Images of one phantom must agree within their errors for every order and sign of NIfTI axes.
 
 #include "Unit/NiftiFile.h"
 
@@ -18,7 +18,7 @@ namespace {
 const Size3 size(10, 12, 14);
 const Vec3 spacing(1.2, 1.0, 0.8), origin(-20.0, 30.0, 5.0);
 
-/// Ellipsoid without the piece beyond an oblique plane: equal to itself in no other order of axes.
+/// Ellipsoid cut by an oblique plane: any other order of axes changes it.
 std::int16_t computeValue(const Size3& voxel) {
   const Vec3 at = (voxel.cast<double>().array() + 0.5) / size.cast<double>().array() - 0.5;
   return at.norm() < 0.48 && at.dot(Vec3(1.0, 0.6, 0.3)) < 0.12 ? 300 : -1000;
@@ -28,7 +28,7 @@ Image renderFile(const std::filesystem::path& file, std::uint64_t seed) {
   RenderRequest request;
   request.input = file;
   request.transfer = "ct-soft";
-  request.view.position = Vec3(60.0, 110.0, 70.0); // sees all three axes, and the cut
+  request.view.position = Vec3(60.0, 110.0, 70.0); // shows all three axes and the cut
   request.width = request.height = 24;
   const PreparedScene scene(request);
   RenderSettings settings;
@@ -39,7 +39,7 @@ Image renderFile(const std::filesystem::path& file, std::uint64_t seed) {
   return makeImage(film, scene.camera(), scene.clip(), parseLayers({}));
 }
 
-TEST(NiftiOrder, EveryOrderAndSignOfAxesGivesThePictureWithinItsErrors) {
+TEST(NiftiOrder, EveryOrderAndSignOfAxesRendersTheSameImage) {
   const TemporaryFolder folder;
   Affine map;
   NiftiFile unpermuted = makeReordered(size, spacing, origin, computeValue, {0, 1, 2}, 0, map);
@@ -52,7 +52,7 @@ TEST(NiftiOrder, EveryOrderAndSignOfAxesGivesThePictureWithinItsErrors) {
   do {
     for (int reversed = 0; reversed < 8; ++reversed)
       for (const auto& [qform, sform] : codes) {
-        // The short run takes each order and each sign once, and each pair of codes twelve times.
+        // The short run tests each order and each sign once, and each pair of codes twelve times.
         if (!isLongRun() && number++ % 4 != reversed % 4)
           continue;
         NiftiFile file = makeReordered(size, spacing, origin, computeValue, order, reversed, map);

@@ -1,8 +1,8 @@
-// Reciprocity: the light that travels along b and leaves a volume against a, in total, equals the
-// light that travels along a and leaves against b, because extinction does not depend on direction
-// and the phase function only on the angle between directions. Hybrid surfaces are excluded: their
-// weight is reflectance times the cosine toward the light, without the cosine toward the viewer, so
-// exchanging light and viewer changes the result.
+// Reciprocity: the light that enters a volume along b and leaves it along -a equals the light that
+// enters along a and leaves along -b. Extinction does not depend on direction, and the phase
+// function only on the angle between directions. Hybrid surfaces are excluded: their weight is
+// reflectance times the cosine toward the light, without the cosine toward the viewer, so swapping
+// light and viewer changes the result.
 
 #include "Clumps.h"
 
@@ -13,8 +13,8 @@ namespace {
 
 enum class Cut { none, plane };
 
-/// Plate that is clear at one end, dense and bright at the other: paths through its faces and its
-/// ends differ as much as possible, and so do the effects of errors.
+/// Plate that is clear at one end, dense and bright at the other: paths through its faces and ends
+/// differ as much as possible, and so do the effects of errors.
 Volume makePlate() {
   Random random(92, 0, 0);
   return makeVolume(makeCenteredGrid({9, 6, 3}, Vec3::Constant(0.6)),
@@ -23,14 +23,14 @@ Volume makePlate() {
 
 class Reciprocity : public ::testing::TestWithParam<std::tuple<double, Cut>> {};
 
-/// Clip that keeps more than half of the volume; the camera is irrelevant in parallel projection.
+/// Clip that leaves more than half of the volume; its camera is irrelevant in parallel projection.
 Clip makeClip(Cut cut, const CameraPose& pose) {
   if (cut == Cut::none)
     return ClipNone{};
   return ClipPlane{Camera(pose, 1, 1), Vec3(0.1, -0.3, 0.2), Vec3(0.5, -1.0, 0.3).normalized()};
 }
 
-TEST_P(Reciprocity, SwappingLightAndViewerKeepsTheRadiance) {
+TEST_P(Reciprocity, SwappingLightAndViewerKeepsRadiance) {
   const auto [g, cut] = GetParam();
   TestScene scene = makeClumps(Rgb(0.9, 0.3, 0.6), Rgb(1.0, 0.9, 0.4), g);
   scene.volume = makePlate();

@@ -1,5 +1,5 @@
-// Scenes of ../shared/reference against converged pictures of independent renderers, through the
-// product's own command line.
+// Compares scenes of ../shared/reference with converged images of independent renderers. Options
+// are parsed like those of `fenestra render`.
 
 #include "EstimateImages.h"
 #include "Oracle/Oracle.h"
@@ -30,7 +30,7 @@ struct ReferenceCase {
   double noise = 0.0; ///< noise target; 0: none
 };
 
-/// Options of `fenestra` from NAME.arguments, one argument a line, in the reference folder.
+/// Options of `fenestra` from NAME.arguments in the reference folder, one argument per line.
 RenderOptions readArguments(const ReferenceCase& c) {
   std::filesystem::current_path(FENESTRA_REFERENCE);
   std::vector<std::string> arguments = {"fenestra"};
@@ -74,18 +74,18 @@ bool hasReferences() {
   return std::filesystem::exists(std::string(FENESTRA_REFERENCE) + "/S1.arguments");
 }
 
-/// Appends a line to the report's table.
+/// Appends a row to references.csv, if a report is requested; `who`: "renderer,scene".
 void appendRecord(const std::string& who, const ZStatistics& z) {
   if (const std::optional<std::filesystem::path> folder = reportFolder())
-    std::ofstream(*folder / "references.md", std::ios::app)
-        << std::setprecision(3) << "| " << who << " | " << z.count << " | " << z.mean << " | "
-        << z.deviation << " | " << z.imageMean << " |\n";
+    std::ofstream(*folder / "references.csv", std::ios::app)
+        << std::setprecision(3) << who << ',' << z.count << ',' << z.mean << ',' << z.deviation
+        << ',' << z.imageMean[0] << ',' << z.imageMean[1] << ',' << z.imageMean[2] << '\n';
 }
 
-/// Bounds on the distribution of z over tiles: four standard errors of each figure, for S2, which
-/// fills three quarters of its picture.
+/// Bounds on the distribution of z over tiles: four standard errors of each value, for S2, which
+/// fills three quarters of its image.
 struct Bounds {
-  int tileSize; ///< pixels to a side
+  int tileSize; ///< side in pixels
   double mean, deviation;
 };
 
@@ -110,32 +110,32 @@ void expectAgreement(const Image& image, const ReferenceCase& c, const Bounds& b
 
 class Reference : public ::testing::TestWithParam<ReferenceCase> {};
 
-TEST_P(Reference, PictureAgreesWithinStatistics) {
+TEST_P(Reference, ImageAgreesWithinErrors) {
   if (!hasReferences())
-    GTEST_SKIP() << "no reference pictures at " << FENESTRA_REFERENCE;
-  // Near the thin shells of S2 a pixel's samples are so skewed that its z needs thousands of
-  // samples for mean 0; a tile's z needs hundreds.
+    GTEST_SKIP() << "no reference images at " << FENESTRA_REFERENCE;
+  // Near the thin shells of S2, samples are very skewed: the mean of z reaches 0 after thousands of
+  // samples for a pixel, and after hundreds for a tile.
   const Bounds bounds = sampleDivisor() > 1 ? Bounds{16, 0.3, 0.2}
                         : isLongRun()       ? Bounds{1, 0.02, 0.03}
                                             : Bounds{4, 0.07, 0.05};
   expectAgreement(renderReference(GetParam()), GetParam(), bounds,
-                  std::string("product, ") + GetParam().name);
+                  std::string("product,") + GetParam().name);
 }
 
-std::uint64_t samples(std::uint64_t few, std::uint64_t many) {
+std::uint64_t chooseSamples(std::uint64_t few, std::uint64_t many) {
   return sampleDivisor() > 1 ? 8 : isLongRun() ? many : few;
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Reference,
-                         ::testing::Values(ReferenceCase{"S1", samples(128, 1024)},
-                                           ReferenceCase{"S2", samples(192, 4096)}),
+                         ::testing::Values(ReferenceCase{"S1", chooseSamples(128, 1024)},
+                                           ReferenceCase{"S2", chooseSamples(192, 4096)}),
                          [](const auto& info) { return std::string(info.param.name); });
 
 class NoiseTarget : public ::testing::TestWithParam<ReferenceCase> {};
 
 TEST_P(NoiseTarget, TrueErrorIsWithinAFifthOfTheTarget) {
   if (!hasReferences())
-    GTEST_SKIP() << "no reference pictures at " << FENESTRA_REFERENCE;
+    GTEST_SKIP() << "no reference images at " << FENESTRA_REFERENCE;
   const ReferenceCase& c = GetParam();
   Image reference = readImage(std::string(FENESTRA_REFERENCE) + "/" + c.name + "_best.exr");
   const Image image = renderReference(c);
@@ -150,12 +150,12 @@ INSTANTIATE_TEST_SUITE_P(Scenes, NoiseTarget,
 
 class OracleReference : public ::testing::TestWithParam<ReferenceCase> {};
 
-TEST_P(OracleReference, PictureAgreesWithinStatistics) {
+TEST_P(OracleReference, ImageAgreesWithinErrors) {
   if (!hasReferences())
-    GTEST_SKIP() << "no reference pictures at " << FENESTRA_REFERENCE;
+    GTEST_SKIP() << "no reference images at " << FENESTRA_REFERENCE;
   const Bounds bounds = isLongRun() ? Bounds{4, 0.07, 0.05} : Bounds{16, 0.3, 0.2};
   expectAgreement(toImage(renderOracle(GetParam())), GetParam(), bounds,
-                  std::string("oracle, ") + GetParam().name);
+                  std::string("oracle,") + GetParam().name);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, OracleReference,
@@ -163,15 +163,15 @@ INSTANTIATE_TEST_SUITE_P(Scenes, OracleReference,
                                            ReferenceCase{"S2", isLongRun() ? 128U : 4U}),
                          [](const auto& info) { return std::string(info.param.name); });
 
-/// Albedo 1 in an environment of 1 without weights: every path returns 1.
-TEST(OracleReferenceFurnace, S3hetIsOneEverywhere) {
+/// Albedo 1 in an environment of 1: every path of the oracle returns 1.
+TEST(OracleReferenceFurnace, EveryPixelOfS3hetIsOne) {
   if (!hasReferences())
     GTEST_SKIP() << "no reference scenes at " << FENESTRA_REFERENCE;
   for (const oracle::PixelEstimate& pixel : renderOracle({"S3het", 1}).pixels)
     ASSERT_NEAR(pixel.mean[1], 1.0, 1e-9);
 }
 
-TEST(ReferenceFurnace, S3hetIsOneEverywhere) {
+TEST(ReferenceFurnace, MeanOfS3hetIsOne) {
   if (!hasReferences())
     GTEST_SKIP() << "no reference scenes at " << FENESTRA_REFERENCE;
   const Image image = renderReference({"S3het", scaleSamples(32U)});
@@ -182,7 +182,7 @@ TEST(ReferenceFurnace, S3hetIsOneEverywhere) {
     const std::vector<float>& errors = *image.find(std::string("error.") + channel);
     for (std::size_t i = 0; i < values.size(); ++i) {
       mean += static_cast<double>(values[i]);
-      variance += 3.0 * std::pow(static_cast<double>(errors[i]), 2.0); // grey: channels are equal
+      variance += 3.0 * std::pow(static_cast<double>(errors[i]), 2.0); // gray: channels are equal
     }
   }
   const double n = 3.0 * image.width * image.height;

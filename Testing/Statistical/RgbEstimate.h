@@ -1,5 +1,5 @@
 #pragma once
-// Estimates and comparisons for tests against closed forms.
+// RGB estimates, and their comparison with closed forms.
 
 #include "RunSettings.h"
 #include "Support.h"
@@ -18,7 +18,7 @@ inline RgbEstimate operator+(const RgbEstimate& a, const RgbEstimate& b) {
   return {a.mean + b.mean, (a.error.square() + b.error.square()).sqrt()};
 }
 
-/// Mean radiance of a picture, with every pixel's own error: pixels may differ.
+/// Mean radiance of an image, from every pixel's own error: pixels may differ.
 inline RgbEstimate estimateRgb(const Film& film) {
   RgbEstimate sum;
   Rgb variance = Rgb::Zero();
@@ -30,9 +30,9 @@ inline RgbEstimate estimateRgb(const Film& film) {
   return {sum.mean / n, variance.sqrt() / n};
 }
 
-/// Expects |mean - expected| <= 4 standard errors + `known` * expected in every channel (`known`:
-/// relative error of `expected`), and a standard error <= `sharpness` * expected. A bias of 6
-/// `sharpness` * expected is then found almost surely.
+/// Expects |mean - expected| <= 4 standard errors + `relativeError` * expected in every channel
+/// (`relativeError`: that of `expected`), and a standard error <= `maxRelativeError` * expected. A
+/// bias of 6 `maxRelativeError` * expected is then found almost certainly.
 inline void expectMean(const RgbEstimate& estimate, const Rgb& expected, double maxRelativeError,
                        double relativeError = 0.0) {
   for (int c = 0; c < 3; ++c) {

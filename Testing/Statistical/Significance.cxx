@@ -12,7 +12,7 @@ double square(double x) {
   return x * x;
 }
 
-/// Estimate with a variance, where none of its samples saw what the other's did.
+/// Estimate with a variance, also if all its samples are 0.
 Estimated withRareEvents(Estimated e, const Estimated& other) {
   if (e.mean == 0.0 && e.variance == 0.0)
     e.variance = std::abs(other.mean) * e.brightness / e.samples;
@@ -25,7 +25,7 @@ std::optional<double> welchProbability(const Estimated& one, const Estimated& ot
   const Estimated a = withRareEvents(one, other), b = withRareEvents(other, one);
   const double difference = a.mean - b.mean;
   const double variance = a.variance + b.variance;
-  // Rounding error of equal numbers: the product's lanes compute in float.
+  // Rounding error of equal numbers: the product's SIMD code computes in float.
   const double rounding = 1e-6 * std::max(std::abs(a.mean), std::abs(b.mean));
   if (std::abs(difference) <= rounding && variance <= square(rounding))
     return std::nullopt;

@@ -1,6 +1,6 @@
-// Single scattering in a homogeneous slab under parallel light, in closed form. With thickness T in
-// free paths, light of irradiance F on a plane that faces the light, at mu0 to the slab's normal,
-// and phase function p,
+// Single scattering in a homogeneous slab under parallel light, against the closed form. T is the
+// thickness in free paths, F the irradiance on a plane that faces the light, mu0 the light's cosine
+// to the slab's normal, and p the phase function:
 //   reflected:   I(mu) = w p F mu0 / (mu + mu0) (1 - exp(-T / mu - T / mu0))
 //   transmitted: I(mu) = w p F mu0 / (mu - mu0) (exp(-T / mu) - exp(-T / mu0))
 // (Chandrasekhar, Radiative Transfer, 1960, ch. IX: the first of successive scatterings).
@@ -10,8 +10,8 @@
 namespace fenestra::testing::SingleScatterTests {
 namespace {
 
-/// Henyey and Greenstein 1941, per steradian; `cosine`: between the directions of travel before and
-/// after.
+/// Henyey and Greenstein 1941, per steradian; `cosine`: of the angle between the directions of
+/// travel before and after scattering.
 double henyeyGreenstein(double g, double cosine) {
   return (1.0 - g * g) / (4.0 * pi * std::pow(1.0 + g * g - 2.0 * g * cosine, 1.5));
 }
@@ -46,7 +46,7 @@ TEST_P(SingleScatter, RadianceEqualsClosedForm) {
         }
 }
 
-/// Mean of a picture that shows everywhere the same, and its standard error.
+/// Mean of an image of one radiance, and its standard error.
 RgbEstimate averagePixels(const Film& film) {
   Rgb sum = Rgb::Zero(), squares = Rgb::Zero();
   for (const PixelSums& pixel : film.pixels()) {
@@ -58,9 +58,9 @@ RgbEstimate averagePixels(const Film& film) {
   return {mean, ((squares / count - mean.square()) / (count - 1.0)).sqrt()};
 }
 
-/// Each collision looks at one of three lights, drawn from strata that eight samples share out:
-/// their sum, of blocks whole and begun.
-TEST(SingleScatterOfLights, DrawnFromStrataAddUp) {
+/// Each collision samples one of three lights, stratified over blocks of eight samples: their sum
+/// must be right with complete and with incomplete blocks.
+TEST(SingleScatterOfLights, StratifiedLightsAddUp) {
   const double thickness = 1.5;
   const Rgb albedo(1.0, 0.6, 0.2);
   TestScene scene = makeInfiniteSlab(thickness, albedo);
@@ -74,7 +74,7 @@ TEST(SingleScatterOfLights, DrawnFromStrataAddUp) {
     const double layer = mu0 / (0.95 + mu0) * -std::expm1(-thickness / 0.95 - thickness / mu0);
     expected += albedo * irradiance * (0.25 / pi * layer);
   }
-  scene.lights.erase(scene.lights.begin()); // the slab's environment
+  scene.lights.erase(scene.lights.begin()); // the slab's default environment
   for (const Integrator integrator : {Integrator::simd, Integrator::scalar})
     for (const std::uint64_t samples : {1U, 3U, 16U}) {
       SCOPED_TRACE(std::to_string(samples));

@@ -1,12 +1,12 @@
 #pragma once
-// Homogeneous slab with faces across z, for tests with known radiance. Angles are given by their
-// cosine to the z axis.
+// Homogeneous slab with faces perpendicular to z, for tests of known radiance. Angles are given as
+// cosines to the z axis.
 
 #include "RgbEstimate.h"
 
 namespace fenestra::testing {
 
-/// Slab of side x side x thickness mm of one medium, seen from above, z down.
+/// Slab of one medium, side x side x thickness mm, seen from above: the camera looks along -z.
 inline TestScene makeSlab(double side, double thickness, const Rgb& albedo, double sigma_t = 1.0) {
   const Grid grid = makeCenteredGrid({2, 2, 2}, {side / 2.0, side / 2.0, thickness / 2.0});
   TestScene scene{makeVolume(grid, [](const Vec3&) { return 1.0; }),
@@ -22,8 +22,8 @@ inline TestScene makeSlab(double side, double thickness, const Rgb& albedo, doub
   return scene;
 }
 
-/// Slab that is infinitely wide in double precision: the loss through the sides of a slab a few
-/// free paths thick decays by exp(-r / (one or two free paths)) over 10000 free paths.
+/// Slab that is infinitely wide in double precision: the loss through the sides, 10000 free paths
+/// away, decays like exp(-r / (one or two free paths)) in a slab a few free paths thick.
 inline TestScene makeInfiniteSlab(double thickness, const Rgb& albedo) {
   TestScene scene = makeSlab(20000.0, thickness, albedo);
   scene.pose.scale = 1.0;
@@ -36,13 +36,13 @@ inline Vec3 downwardDirection(double mu, double azimuth = 0.0) {
   return {sine * std::cos(azimuth), sine * std::sin(azimuth), -mu};
 }
 
-/// Turns the camera to look along `direction` at the slab's centre.
+/// Makes the camera look along `direction` at the slab's center.
 inline void aimCamera(TestScene& scene, const Vec3& direction) {
   scene.pose.target = Vec3::Zero();
-  scene.pose.position = -1000.0 * direction; // above the face, however oblique
+  scene.pose.position = -1000.0 * direction; // outside the slab even at oblique angles
 }
 
-/// Mean radiance in the scene's camera, against a black background.
+/// Mean radiance of the image, in front of a black background.
 inline RgbEstimate renderMean(const TestScene& scene, std::uint64_t samples, std::uint64_t seed,
                               std::uint64_t bounces = PathSettings().bounces) {
   RenderSettings settings;

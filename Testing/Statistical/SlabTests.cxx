@@ -1,4 +1,4 @@
-// Homogeneous slab against closed forms: transmittance, and the reflectance of a half-space.
+// Homogeneous slabs against closed forms: transmittance, and the reflectance of a half-space.
 
 #include "Slab.h"
 
@@ -17,21 +17,21 @@ TEST_P(SlabTransmittance, EqualsExpOfMinusDepth) {
   settings.path.background.kind = Background::Kind::environment;
   const Estimate estimate = estimateMean(scene.render(settings).film);
   const double expected = std::exp(-depth);
-  // Every sample is exactly 0 or 1: the binomial error is known even if no sample passed.
+  // Every sample is exactly 0 or 1, so the binomial error is known even if no sample passes.
   const double error = std::sqrt(expected * (1.0 - expected) / (64.0 * 2000.0));
   EXPECT_NEAR(estimate.mean, expected, 4.0 * error);
 }
 
 INSTANTIATE_TEST_SUITE_P(Depths, SlabTransmittance, ::testing::Values(0.01, 0.5, 1.0, 3.0, 6.0));
 
-TEST(RatioTracking, ShadowThroughASlabIsExponential) {
+TEST(RatioTracking, TransmittanceOfSlabIsExponential) {
   const double depth = 2.0;
   const TestScene scene = makeSlab(100.0, depth, Rgb::Zero());
   const Camera camera(scene.pose, 8, 8);
   const MinMaxGrid ranges(scene.volume, 0);
   const MajorantGrid majorants(scene.volume.grid, ranges, scene.transfer, ClipNone{});
   const auto& voxels = std::get<LargeArray<float>>(scene.volume.voxels);
-  // Majorant twice the extinction, so that not all ratios are 0: a scaled grid.
+  // A grid with twice the majorant, so that not all ratios are 0.
   const TransferFunction doubledTransfer = scene.transfer.withDensity(2.0);
   const MajorantGrid loose(scene.volume.grid, ranges, doubledTransfer, ClipNone{});
   const Medium<float> medium(scene.volume.grid, voxels, scene.transfer);
@@ -89,14 +89,14 @@ struct HalfSpaceCase {
 
 class HalfSpace : public ::testing::TestWithParam<HalfSpaceCase> {};
 
-TEST_P(HalfSpace, ReflectanceEqualsChandrasekhars) {
+TEST_P(HalfSpace, ReflectanceEqualsChandrasekharsValue) {
   const auto [albedo, reflectance] = GetParam();
   EXPECT_NEAR(1.0 - std::sqrt(1.0 - albedo) * ChandrasekharH(albedo)(1.0), reflectance, 2e-4);
   TestScene scene = makeSlab(140.0, 70.0, Rgb::Constant(albedo)); // half-width 70, thickness 70
   RenderSettings settings;
   settings.samples = albedo > 0.95 ? 400 : 1000;
   const Estimate estimate = estimateMean(scene.render(settings).film);
-  EXPECT_NEAR(estimate.mean, reflectance, 4.0 * estimate.error + 5e-5); // four digits given
+  EXPECT_NEAR(estimate.mean, reflectance, 4.0 * estimate.error + 5e-5); // four known digits
   EXPECT_LT(estimate.error, 0.004);
 }
 
@@ -104,12 +104,11 @@ INSTANTIATE_TEST_SUITE_P(Albedos, HalfSpace,
                          ::testing::Values(HalfSpaceCase{0.5, 0.1152}, HalfSpaceCase{0.9, 0.4149},
                                            HalfSpaceCase{0.99, 0.7527}));
 
-/// Optical thickness that stands for a half-space: light returned from below 60 free paths is less
-/// than exp(-2 · 0.17 · 60) of all, with 0.17 per free path the slowest decay at albedo 0.99.
+/// Optical thickness that replaces a half-space. Less than exp(-2 · 0.17 · 60) of the light returns
+/// from below 60 free paths; 0.17 per free path is the slowest decay at albedo 0.99.
 constexpr double halfSpaceDepth = 60.0;
 const Rgb halfSpaceAlbedo(0.5, 0.9, 0.99);
-constexpr double relativeErrorOfH =
-    2e-4; ///< relative error of H: its reflectances above have four digits
+constexpr double relativeErrorOfH = 2e-4; ///< the reflectances above have four digits
 
 std::array<ChandrasekharH, 3> makeHalfSpaceH() {
   return {ChandrasekharH(halfSpaceAlbedo[0]), ChandrasekharH(halfSpaceAlbedo[1]),
@@ -134,7 +133,7 @@ TEST(HalfSpace, EnvironmentReflectanceEqualsClosedFormAtAnyAngle) {
 
 /// Law of diffuse reflection (Chandrasekhar, ch. III and V): under parallel light of irradiance F
 /// on a plane that faces the light, I(mu) = w F / (4 pi) mu0 / (mu + mu0) H(mu) H(mu0).
-TEST(HalfSpace, ParallelLightFollowsTheLawOfDiffuseReflection) {
+TEST(HalfSpace, ParallelLightFollowsLawOfDiffuseReflection) {
   const std::array<ChandrasekharH, 3> h = makeHalfSpaceH();
   std::uint64_t seed = 30;
   for (const double mu0 : {1.0, 0.4})

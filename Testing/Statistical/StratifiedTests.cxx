@@ -1,4 +1,4 @@
-// Strata: the same means as without them, less noise, and the error that pictures tell.
+// Stratified sampling: unbiased means, less noise, and correct estimates of the error.
 
 #include "ErrorRatio.h"
 #include "RunSettings.h"
@@ -26,8 +26,8 @@ RenderSettings makeSettings(const Mode& mode, std::uint64_t samples, std::uint64
   return settings;
 }
 
-/// Numbers of samples that leave blocks incomplete, too.
-TEST(Strata, MeansAreThoseOfIndependentSamples) {
+/// Also with sample counts that leave blocks incomplete.
+TEST(StratifiedSampling, MeansEqualIndependentSampling) {
   const TestScene scene = makeFogScene();
   const int seeds = scaleSamples(80);
   for (const std::uint64_t samples : {3U, 8U, 24U}) {
@@ -50,14 +50,14 @@ TEST(Strata, MeansAreThoseOfIndependentSamples) {
     for (std::size_t a = 0; a < means.size(); ++a)
       for (std::size_t b = a + 1; b < means.size(); ++b) {
         const Rgb z = (means[a] - means[b]) / (variances[a] + variances[b]).sqrt();
-        EXPECT_LT(z.abs().maxCoeff(), 4.5) << samples << " samples, ways " << a << " and " << b;
+        EXPECT_LT(z.abs().maxCoeff(), 4.5) << samples << " samples, modes " << a << " and " << b;
       }
   }
 }
 
 class EstimatedErrors : public ::testing::TestWithParam<std::uint64_t> {};
 
-TEST_P(EstimatedErrors, AreThoseOverSeeds) {
+TEST_P(EstimatedErrors, EqualSpreadOverSeeds) {
   const TestScene scene = makeFogScene();
   const std::uint64_t samples = GetParam();
   for (const Mode& mode : modes) {
@@ -65,8 +65,8 @@ TEST_P(EstimatedErrors, AreThoseOverSeeds) {
                                        static_cast<int>(samples + 10));
     const ErrorRatio measured = measureErrorRatio(scene, makeSettings(mode, samples, 5000), seeds);
     std::printf("%d samples, %s, %s: ratio of variances %.4f +- %.4f\n", static_cast<int>(samples),
-                mode.sampling == Sampling::stratified ? "strata" : "plain",
-                mode.integrator == Integrator::simd ? "fast" : "readable", measured.ratio,
+                mode.sampling == Sampling::stratified ? "stratified" : "independent",
+                mode.integrator == Integrator::simd ? "simd" : "scalar", measured.ratio,
                 measured.error);
     EXPECT_LT(measured.error, 0.05);
     EXPECT_GT(measured.ratio, 1.0 - 4.5 * measured.error);
@@ -77,7 +77,7 @@ TEST_P(EstimatedErrors, AreThoseOverSeeds) {
 
 INSTANTIATE_TEST_SUITE_P(Samples, EstimatedErrors, ::testing::Values(2, 8, 16, 17, 64));
 
-TEST(Strata, TakeNoiseAway) {
+TEST(StratifiedSampling, ReducesNoise) {
   const TestScene scene = makeFogScene();
   for (const std::size_t first : {0U, 2U}) {
     const int seeds = scaleSamples(240);
@@ -85,7 +85,8 @@ TEST(Strata, TakeNoiseAway) {
         measureErrorRatio(scene, makeSettings(modes[first], 16, 9000), seeds).variance;
     const double independent =
         measureErrorRatio(scene, makeSettings(modes[first + 1], 16, 9000), seeds).variance;
-    std::printf("variance of independent samples / of strata: %.3f\n", independent / stratified);
+    std::printf("variance of independent / of stratified samples: %.3f\n",
+                independent / stratified);
     EXPECT_GT(independent / stratified, 1.15);
   }
 }

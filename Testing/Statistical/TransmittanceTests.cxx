@@ -24,7 +24,7 @@ TransferFunction makeTransfer(const std::vector<std::pair<double, double>>& knot
   return {ScalarFunction(list), ColorFunction({{0.0, Rgb::Ones()}})};
 }
 
-/// Voxels drawn uniformly from [0, greatest].
+/// Voxels sampled uniformly from [0, greatest].
 template <typename Voxel = float>
 Volume makeNoise(const Size3& size, const Vec3& spacing, double greatest = 1.0) {
   Random random(77, static_cast<std::uint64_t>(size.prod()), 0);
@@ -46,8 +46,8 @@ Volume rotateGrid(Volume volume) {
   return volume;
 }
 
-/// Subjects: a linear ramp; one trilinear cell; a spike inside the range, with 0 on both sides;
-/// steps, in 8 bit; all kinds of knots, dense, so that little light passes.
+/// A linear ramp; one trilinear cell; a spike inside the range, with 0 on both sides; steps, in 8
+/// bits; all kinds of knots, so dense that little light passes.
 std::vector<Subject> makeSubjects() {
   return {
       {"ramp", makeRamp(), makeTransfer({{0.0, 0.0}, {5.0, 5.0 * rampSlope}})},
@@ -61,11 +61,11 @@ std::vector<Subject> makeSubjects() {
        makeTransfer({{0.1, 0.2}, {0.3, 3.0}, {0.35, 0.1}, {0.6, 0.8}, {0.6, 2.5}, {0.9, 0.4}})}};
 }
 
-Subject subject(int index) {
+Subject makeSubject(int index) {
   return std::move(makeSubjects()[static_cast<std::size_t>(index)]);
 }
 
-/// Ray toward a point inside, from outside or from another point inside.
+/// Ray toward a point inside, from a point outside or inside.
 Ray randomRay(const Volume& volume, Random& random) {
   const auto inside = [&] {
     const Box box = volume.grid.indexBox();
@@ -78,13 +78,13 @@ Ray randomRay(const Volume& volume, Random& random) {
   return {origin, (target - origin).normalized()};
 }
 
-// ---- the integral itself
+// ---- the line integral
 // -------------------------------------------------------------------------
 
 TEST(LineIntegral, LinearRampEqualsClosedForm) {
-  const Subject ramp = subject(0);
+  const Subject ramp = makeSubject(0);
   const LineIntegral integral(ramp.volume, ramp.transfer);
-  // Antiderivative of clamp(x, 0, 5): the outer half voxels clamp x.
+  // Antiderivative of clamp(x, 0, 5): x is clamped in the outer half voxels.
   const auto antiderivative = [](double x) {
     return x < 0.0 ? 0.0 : x < 5.0 ? 0.5 * x * x : 12.5 + 5.0 * (x - 5.0);
   };
@@ -100,10 +100,10 @@ TEST(LineIntegral, LinearRampEqualsClosedForm) {
   }
 }
 
-/// Reference: midpoint rule on Medium's own extinction.
-TEST(LineIntegral, EqualsTheMidpointRuleWithSmallSteps) {
+/// Reference: midpoint rule with Medium's own extinction.
+TEST(LineIntegral, EqualsMidpointRuleWithSmallSteps) {
   for (int index = 0; index < 5; ++index) {
-    const Subject s = subject(index);
+    const Subject s = makeSubject(index);
     const LineIntegral integral(s.volume, s.transfer);
     std::visit(
         [&](const auto& voxels) {
@@ -118,7 +118,7 @@ TEST(LineIntegral, EqualsTheMidpointRuleWithSmallSteps) {
             for (int n = 0; n < steps; ++n)
               sum += step * medium.extinction(s.volume.grid.worldToIndex *
                                               ray.at(range.begin + (n + 0.5) * step));
-            // Each of a few dozen steps of the table costs up to its height times half a step.
+            // The error per discontinuity of the table is at most its height times half a step.
             EXPECT_NEAR(integral.opticalDepth(ray), sum, 2e-3) << s.name;
           }
         },
@@ -129,7 +129,7 @@ TEST(LineIntegral, EqualsTheMidpointRuleWithSmallSteps) {
 // ---- the tracker
 // ---------------------------------------------------------------------------------
 
-/// Sums of differences from expectations and of their squares, binned by expectation.
+/// Sums of differences from expected values and of their squares, binned by expected value.
 class Differences {
 public:
   void add(double estimate, double expected) {
@@ -141,7 +141,8 @@ public:
     bin.squares += difference * difference;
   }
 
-  /// Expects sums within 4 standard errors in every bin whose expectation is known to 2 percent.
+  /// Expects sums within 4 standard errors in every bin whose relative standard error is below 2
+  /// percent.
   void expectUnbiased(const std::string& what) const {
     int sharpBins = 0;
     for (const Bin& bin : m_bins) {
@@ -162,14 +163,14 @@ private:
   Bin m_bins[3];
 };
 
-/// Ray to follow, with its own random numbers.
+/// Ray with its own random numbers.
 struct TestRay {
   Ray ray;
   Interval range;
   Random random;
 };
 
-/// Follows rays one by one, or in lanes; results are in the rays' order.
+/// Uniform interface of both trackers; results are in the order of the rays.
 class TrackerAdapter {
 public:
   virtual ~TrackerAdapter() = default;
@@ -256,7 +257,7 @@ private:
   SimdTracker m_tracker;
 };
 
-/// Follower "scalar", or the lanes of an instruction set; null if the machine lacks that set.
+/// "scalar", or the SIMD tracker of an instruction set; null if the machine lacks that set.
 std::unique_ptr<TrackerAdapter> makeAdapter(const Subject& subject, const MajorantGrid& majorants,
                                             const Clip& clip, const std::string& name) {
   if (name == "scalar")
@@ -275,7 +276,7 @@ std::unique_ptr<TrackerAdapter> makeAdapter(const Subject& subject, const Majora
   return std::make_unique<SimdAdapter>(subject, majorants, clip);
 }
 
-/// Subject, and the follower of its rays.
+/// A medium, and the tracker under test.
 class Tracking : public ::testing::TestWithParam<std::tuple<int, std::string>> {
 protected:
   void SetUp() override {
@@ -283,11 +284,11 @@ protected:
                         m_clip);
     m_adapter = makeAdapter(m_subject, *m_majorants, m_clip, std::get<1>(GetParam()));
     if (!m_adapter)
-      GTEST_SKIP() << "this machine has no " << std::get<1>(GetParam());
+      GTEST_SKIP() << "this machine does not support " << std::get<1>(GetParam());
   }
   void TearDown() override { useInstructionSet(instructionSets().front()); }
 
-  Subject m_subject = subject(std::get<0>(GetParam()));
+  Subject m_subject = makeSubject(std::get<0>(GetParam()));
   LineIntegral m_integral{m_subject.volume, m_subject.transfer};
   Clip m_clip = ClipNone{};
   std::optional<MajorantGrid> m_majorants;
@@ -299,7 +300,7 @@ TEST_P(Tracking, MeanTransmittanceEqualsExpOfIntegral) {
   for (std::uint64_t i = 0; i < scaleSamples(100000UL); ++i) {
     Random random(shiftSeed(6), i, 0);
     const Ray ray = randomRay(m_subject.volume, random);
-    // Range up to a near light, or infinite.
+    // Range up to a nearby light, or infinite.
     const Interval inside = m_integral.boxInterval(ray);
     const double end =
         i % 2 == 0 ? infinity : inside.begin + random.uniform() * (inside.end - inside.begin);
@@ -317,9 +318,9 @@ TEST_P(Tracking, MeanTransmittanceEqualsExpOfIntegral) {
   survived.expectUnbiased("survival");
 }
 
-/// Optical depth at the collision, as a share of the rays that collide before it: uniform. Rays
-/// that pass get a random share above that of all their collisions.
-TEST_P(Tracking, CollisionsFollowTheExactDistribution) {
+/// The cumulative probability at the collision must be uniform. Rays that pass get a random value
+/// above the probability of a collision.
+TEST_P(Tracking, CollisionsFollowExactDistribution) {
   std::vector<TestRay> testRays;
   for (std::uint64_t i = 0; i < scaleSamples(100000UL); ++i) {
     Random random(shiftSeed(7), i, 0);
@@ -336,8 +337,7 @@ TEST_P(Tracking, CollisionsFollowTheExactDistribution) {
   EXPECT_GT(uniformityProbability(quantiles), 1e-4);
 }
 
-/// A ray's result does not depend on the other rays of the batch.
-TEST_P(Tracking, RayResultDoesNotDependOnItsBatch) {
+TEST_P(Tracking, ResultDoesNotDependOnOtherRaysOfBatch) {
   std::vector<TestRay> testRays;
   for (std::uint64_t i = 0; i < 1000; ++i) {
     Random random(9, i, 0);
@@ -352,15 +352,15 @@ TEST_P(Tracking, RayResultDoesNotDependOnItsBatch) {
   }
 }
 
-/// Matter in front of an exact surface, by each follower of rays.
+/// Medium in front of an exact clipping surface, with each tracker.
 class SilhouetteTracking : public ::testing::TestWithParam<std::string> {
 protected:
   void TearDown() override { useInstructionSet(instructionSets().front()); }
 };
 
-/// Short segments of eye rays where the surface between samples differs from the samples: past the
-/// edge of a ball, in fog that little light passes.
-TEST_P(SilhouetteTracking, TransmittanceBesideTheFocusFollowsTheExactSurface) {
+/// Short segments of camera rays in dense fog beside the silhouette of a ball, where the exact
+/// surface differs from interpolated samples.
+TEST_P(SilhouetteTracking, TransmittanceBesideFocusFollowsExactSurface) {
   const Grid grid = makeCenteredGrid({40, 40, 40}, Vec3::Ones());
   const Subject fog{"fog", makeVolume(grid, [](const Vec3&) { return 1.0; }),
                     makeTransfer({{0.0, 0.0}, {1.0, 8.0}})};
@@ -381,7 +381,7 @@ TEST_P(SilhouetteTracking, TransmittanceBesideTheFocusFollowsTheExactSurface) {
     const MajorantGrid majorants(grid, MinMaxGrid(fog.volume, 0), fog.transfer, clip);
     const auto adapter = makeAdapter(fog, majorants, clip, GetParam());
     if (!adapter)
-      GTEST_SKIP() << "this machine has no " << GetParam();
+      GTEST_SKIP() << "this machine does not support " << GetParam();
     std::vector<TestRay> testRays;
     std::vector<double> expected;
     for (std::uint64_t i = 0; testRays.size() < scaleSamples(20000UL); ++i) {
@@ -404,7 +404,7 @@ TEST_P(SilhouetteTracking, TransmittanceBesideTheFocusFollowsTheExactSurface) {
       difference += passed[i] - expected[i];
       squares += std::pow(passed[i] - expected[i], 2);
     }
-    // Lanes in float see the outline slightly displaced: some of a thousand rays lie on its other
+    // In float, the silhouette is slightly displaced: a few of a thousand rays are on its other
     // side.
     EXPECT_NEAR(difference, 0.0,
                 4.0 * std::sqrt(squares) + 2e-3 * static_cast<double>(passed.size()));
@@ -419,7 +419,7 @@ INSTANTIATE_TEST_SUITE_P(Media, Tracking,
                                             ::testing::Values("scalar", "AVX3", "AVX2", "SSE4",
                                                               "SCALAR")),
                          [](const auto& info) {
-                           return std::string(subject(std::get<0>(info.param)).name) + "_" +
+                           return std::string(makeSubject(std::get<0>(info.param)).name) + "_" +
                                   std::get<1>(info.param);
                          });
 

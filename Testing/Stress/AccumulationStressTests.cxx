@@ -1,4 +1,4 @@
-// A million samples a pixel: sums neither drift nor wrap.
+// A million samples per pixel: sums neither drift nor wrap.
 
 #include "StressSupport.h"
 
@@ -25,7 +25,7 @@ TestScene makeSmallScene() {
   return scene;
 }
 
-/// Samples first ... first + count - 1 of a pixel, drawn as in a render.
+/// Samples first ... first + count - 1 of a pixel, generated as in a render.
 std::vector<PathSample> traceSamples(const TestScene& scene, int column, int row,
                                      std::uint64_t first, std::uint64_t count) {
   std::vector<PathSample> samples;
@@ -44,7 +44,7 @@ std::vector<PathSample> traceSamples(const TestScene& scene, int column, int row
 }
 
 struct Moments {
-  long double mean = 0.0L, m2 = 0.0L; ///< red channel, computed in two passes
+  long double mean = 0.0L, m2 = 0.0L; ///< red channel, in two passes
 };
 
 Moments computeTwoPass(const std::vector<PathSample>& samples) {
@@ -70,7 +70,7 @@ TEST(Accumulation, MillionSamplesEqualTwoPasses) {
   EXPECT_NEAR(sums.mean[0] / static_cast<double>(exact.mean), 1.0, 1e-12);
   EXPECT_NEAR(sums.m2[0] / static_cast<double>(exact.m2), 1.0, 1e-12);
 
-  // A large offset must not cost the variance's digits, beyond the offset's own roundoff.
+  // A large offset must not reduce the variance's precision beyond the offset's own roundoff.
   PixelSums shifted;
   std::vector<PathSample> far = samples;
   for (PathSample& sample : far) {
@@ -82,7 +82,7 @@ TEST(Accumulation, MillionSamplesEqualTwoPasses) {
   EXPECT_NEAR(shifted.m2[0] / static_cast<double>(exactFar.m2), 1.0, 1e-9);
 }
 
-TEST(Accumulation, MillionSamplesEqualARenderAndDoNotDrift) {
+TEST(Accumulation, MillionSamplesEqualRenderAndDoNotDrift) {
   const TestScene scene = makeSmallScene();
   RenderSettings settings;
   settings.samples = million;

@@ -1,4 +1,4 @@
-// Cameras inside the volume, on faces and corners of voxels, with extreme angles and picture sizes,
+// Cameras inside the volume, on faces and corners of voxels, with extreme angles and image sizes,
 // against the chord of each ray; and the sharpest phase functions.
 
 #include "StressSupport.h"
@@ -8,7 +8,7 @@ namespace {
 
 constexpr double sigma = 0.25;
 
-/// 6x5x4 mm, absorbing, in an environment of 1.
+/// Absorbing volume of 6 x 5 x 4 mm in an environment of 1.
 TestScene makeAbsorber(const CameraPose& pose, int width, int height) {
   return {makeVolume(makeCenteredGrid({6, 5, 4}, Vec3::Ones()), [](const Vec3&) { return 1.0; }),
           makeLinearTransfer(sigma, Rgb::Zero()),
@@ -18,8 +18,8 @@ TestScene makeAbsorber(const CameraPose& pose, int width, int height) {
           height};
 }
 
-/// Eye ray through a raster position: rows from the top, `scale` half the picture's height, `angle`
-/// the full height.
+/// Camera ray through a raster position; rows count from the top. `scale` is half the image's
+/// height, `angle` covers the full height.
 Ray makeCameraRay(const CameraPose& pose, int width, int height, double column, double row) {
   const Vec3 forward = (pose.target - pose.position).normalized();
   const Vec3 right = forward.cross(pose.up).normalized();
@@ -33,10 +33,10 @@ Ray makeCameraRay(const CameraPose& pose, int width, int height, double column, 
   return {pose.position, (forward + slope * offset).normalized()};
 }
 
-/// Expects each pixel to match the mean of exp(-sigma chord) over its area: the sum of z^2 to 4 of
-/// its standard errors, and the sum of the differences. Samples are 0 or 1, so the variance is
-/// known. The expected mean is taken over a raster of rays, finer in the long version, whose
-/// samples resolve the raster's error at the box's silhouette.
+/// Expects each pixel to equal the mean of exp(-sigma chord) over its area: the sum of z^2 and the
+/// sum of the differences within 4 of their standard errors. Samples are 0 or 1, so the variance is
+/// known. The expected mean is computed from a raster of rays. It is finer in the long version,
+/// whose errors are as small as the raster's error at the box's silhouette.
 void expectChords(const TestScene& scene, int samples) {
   const int subdivisions = isLongRun() ? 128 : 16;
   const RenderResult result = renderScene(scene, samples);
@@ -81,8 +81,8 @@ CameraPose makePose(Projection projection, const Vec3& position, const Vec3& for
   return result;
 }
 
-TEST(CameraInsideVolume, TransmittanceIsThatOfTheChordAhead) {
-  // Voxel centres lie at half-integers in x and z, at integers in y.
+TEST(CameraInsideVolume, TransmittanceFollowsChordAhead) {
+  // Voxel centers are at half-integers in x and z, at integers in y.
   const Vec3 positions[] = {{0.5, 0.0, 0.5},  {0.0, 0.0, 0.0}, {0.0, 0.5, 1.0}, {0.5, 0.5, 0.5},
                             {3.0, 0.0, 0.0},  {3.0, 2.5, 2.0}, {3.0, 2.5, 0.3}, {2.9, 2.4, 1.9},
                             {-3.0, 0.1, 0.2}, {0.0, -2.5, 0.0}};
@@ -112,7 +112,7 @@ TEST(CameraInsideVolume, FurnaceIsOne) {
   expectRadianceOne(renderScene(scene, scaleSamples(100)));
 }
 
-TEST(FieldOfView, MillionthOfADegreeEqualsOrthographic) {
+TEST(FieldOfView, MillionthOfDegreeEqualsOrthographic) {
   constexpr double angle = 1e-6;
   CameraPose near = makePose(Projection::orthographic, {20.0, -30.0, 15.0}, {-20.0, 30.0, -15.0});
   near.target = Vec3::Zero();
@@ -120,7 +120,7 @@ TEST(FieldOfView, MillionthOfADegreeEqualsOrthographic) {
   CameraPose far = near;
   far.projection = Projection::perspective;
   far.angle = angle;
-  // At 4.6e8 mm half the angle spans 4 mm.
+  // At 4.6e8 mm, half the angle covers 4 mm.
   far.position = near.position.normalized() * (4.0 / std::tan(angle * pi / 360.0));
   TestScene scene = makeAbsorber(near, 16, 16);
   scene.volume = makeVolume(scene.volume.grid, [](const Vec3& p) {
@@ -132,7 +132,7 @@ TEST(FieldOfView, MillionthOfADegreeEqualsOrthographic) {
   expectSameImage(expected.film, renderScene(scene, scaleSamples(300), 2).film);
 }
 
-TEST(FieldOfView, ExtremeAnglesSeeTheChordAhead) {
+TEST(FieldOfView, ExtremeAnglesFollowChordAhead) {
   for (const double angle : {1e-6, 1e-3, 150.0, 179.0})
     for (const Vec3& position : {Vec3(-3.5, 0.2, 0.1), Vec3(0.1, 0.0, 0.0), Vec3(-3.0, 0.0, 0.0)}) {
       CameraPose wide = makePose(Projection::perspective, position, {1.0, 0.03, 0.02});
@@ -141,7 +141,7 @@ TEST(FieldOfView, ExtremeAnglesSeeTheChordAhead) {
     }
 }
 
-TEST(PictureSize, OnePixelOrOneRowSeesTheChordAhead) {
+TEST(ImageSize, OnePixelOrOneRowFollowsChordAhead) {
   const CameraPose outside = makePose(Projection::orthographic, {-9.0, 0.2, 0.1}, {1.0, 0.3, 0.2});
   for (const auto& [width, height] :
        {std::pair(1, 1), std::pair(1, 4096), std::pair(4096, 1), std::pair(3, 17)}) {
@@ -158,14 +158,14 @@ TEST(PictureSize, OnePixelOrOneRowSeesTheChordAhead) {
 
 // ---- scattering
 
-TEST(SharpScattering, FurnaceIsOneInABoundedNumberOfCollisions) {
+TEST(SharpScattering, FurnaceIsOneWithBoundedNumberOfCollisions) {
   for (const double g : {-0.9999, 0.9999, -0.9999999999, 0.9999999999}) {
     TestScene scene =
         makeAbsorber(makePose(Projection::orthographic, {-9, 1, 2}, {9, -1, -2}), 12, 12);
     scene.transfer = makeLinearTransfer(1.0, Rgb::Ones(), g);
     const RenderResult result = renderScene(scene, scaleSamples(200));
     expectRadianceOne(result);
-    // Scattering straight on or straight back in 4 mm on average: a walk in one dimension.
+    // A one-dimensional walk: scattering is forward or backward, through 4 mm on average.
     const double collisions = static_cast<double>(result.counters.collisions) /
                               static_cast<double>(result.counters.paths);
     EXPECT_TRUE(collisions > 1.0 && collisions < 40.0) << collisions;
@@ -187,7 +187,7 @@ TEST(SharpScattering, MirrorsReflectNoMoreThanArrives) {
   for (const double power : {0.0, 1e4, 1e8, 1e16, 1e300}) {
     const Estimate estimate = estimateMean(renderScene(makeMirrors(power), scaleSamples(100)).film);
     EXPECT_LT(estimate.mean, 1.0 + 4.0 * estimate.error) << power;
-    EXPECT_GT(estimate.mean, 0.1) << power; // 0.3 diffuse, seen once, and the background
+    EXPECT_GT(estimate.mean, 0.1) << power; // one diffuse reflection of 0.3, and the background
   }
 }
 

@@ -1,5 +1,5 @@
 // Extinctions from 1e-8 to 1e8 per mm in one volume, against closed forms and against the same
-// scene in another unit of length; and the amount of work in the worst case.
+// scene in another unit of length. Also bounds the work in the worst case.
 
 #include "StressSupport.h"
 
@@ -50,7 +50,7 @@ class LogarithmicRamp : public ::testing::TestWithParam<RampCase> {};
 TEST_P(LogarithmicRamp, TransmittanceEqualsExpOfIntegral) {
   const auto [begin, depth] = GetParam();
   constexpr double spacing = 0.002;
-  const Volume volume = makeLayers(9, spacing, 0.1); // two decades a voxel
+  const Volume volume = makeLayers(9, spacing, 0.1); // two decades per voxel
   const RayProbe<> probe(volume, makeLogarithmicRamp(8.0, 96, Rgb::Zero()));
   const ScalarFunction& extinction = probe.medium().transfer().extinction;
   double end = begin;
@@ -73,8 +73,8 @@ INSTANTIATE_TEST_SUITE_P(LaneIntervals, LogarithmicRamp,
                                            RampCase{6.0, 1.0}, RampCase{7.0, 0.2},
                                            RampCase{7.0, 3.0}, RampCase{7.9, 1.0}));
 
-TEST(NullCollisions, ThinMatterUnderALargeMajorantIsClear) {
-  // Optical depth 1.6e-10 under a majorant of 1e8: the ratio may lose that depth and roundoff.
+TEST(NullCollisions, ThinMediumUnderLargeMajorantIsClear) {
+  // Optical depth 1.6e-10 under a majorant of 1e8: the ratio may miss that depth, plus roundoff.
   const Volume volume = makeVolume(makeCenteredGrid({8, 8, 8}, Vec3::Constant(0.002)),
                                    [](const Vec3& p) { return p.x(); });
   const RayProbe<> probe(volume, {ScalarFunction({makeKnot(0.0, thinnest), makeKnot(0.0, thinnest),
@@ -95,8 +95,8 @@ TEST(NullCollisions, ThinMatterUnderALargeMajorantIsClear) {
   }
 }
 
-// ---- half-spaces: every opaque layered medium of one albedo reflects as Chandrasekhar's
-// half-space, whatever its profile
+// ---- half-spaces: every opaque layered medium of one albedo reflects like Chandrasekhar's
+// half-space, for any profile
 
 struct Profile {
   const char* name;
@@ -104,8 +104,7 @@ struct Profile {
 };
 
 constexpr int depthVoxels = 33;
-constexpr double opaqueExtinction =
-    1e6; ///< 1e8 beside clear voxels would take a minute of null collisions
+constexpr double opaqueExtinction = 1e6; ///< 1e8 next to clear voxels: a minute of null collisions
 
 TransferFunction makeDense(const Rgb& albedo) {
   return {ScalarFunction({makeKnot(0.0, densest)}), ColorFunction({{0.0, albedo}})};
@@ -129,7 +128,7 @@ TransferFunction makeStriped(const Rgb& albedo) {
       ColorFunction({{0.0, albedo}})};
 }
 
-/// Greatest optical depth that lanes accept, from clear to opaque.
+/// Maximum optical depth that the SIMD tracker supports, from clear to opaque.
 constexpr double maxSimdDepth = 1.6e5;
 TransferFunction makeDeep(const Rgb& albedo) {
   return {ScalarFunction({makeKnot(0.0, 0.0), makeKnot(depthVoxels - 1, maxSimdDepth)}),
@@ -139,7 +138,7 @@ TransferFunction makeDeep(const Rgb& albedo) {
 using ReflectanceCase = std::tuple<Profile, std::pair<double, double>>;
 class HalfSpaceProfile : public ::testing::TestWithParam<ReflectanceCase> {};
 
-TEST_P(HalfSpaceProfile, ReflectanceEqualsChandrasekhars) {
+TEST_P(HalfSpaceProfile, ReflectanceEqualsChandrasekharsValue) {
   const auto& [profile, reflectance] = GetParam();
   TestScene scene{makeLayers(depthVoxels, 0.0005, 0.4), // 0.0165 mm deep: no loss at the sides
                   profile.transfer(Rgb::Constant(reflectance.first)),
@@ -147,13 +146,13 @@ TEST_P(HalfSpaceProfile, ReflectanceEqualsChandrasekhars) {
                   {},
                   8,
                   8};
-  scene.pose.position = {0.0, 0.0, -1.0}; // the thin end faces the eye
+  scene.pose.position = {0.0, 0.0, -1.0}; // the thin end faces the camera
   scene.pose.target = Vec3::Zero();
   scene.pose.up = Vec3::UnitY();
   scene.pose.scale = 0.001;
   const RenderResult result = renderScene(scene, scaleSamples(250));
   const Estimate estimate = estimateMean(result.film);
-  EXPECT_NEAR(estimate.mean, reflectance.second, 4.0 * estimate.error + 5e-5); // four digits given
+  EXPECT_NEAR(estimate.mean, reflectance.second, 4.0 * estimate.error + 5e-5); // four known digits
   EXPECT_LT(estimate.error, relaxError(0.005));
   RecordProperty("lookupsPerPath", std::to_string(result.counters.lookups / result.counters.paths));
 }
@@ -170,14 +169,14 @@ INSTANTIATE_TEST_SUITE_P(
              (std::get<1>(info.param).first == 0.5 ? "Dark" : "Bright");
     });
 
-TEST(HalfSpace, LanesServeDepthsUpToTheirLimit) {
+TEST(HalfSpace, SimdTrackerSupportsDepthsUpToItsLimit) {
   const Volume volume = makeLayers(depthVoxels, 0.0005, 0.4);
   EXPECT_TRUE(SimdTracker::isSupported(volume, makeDeep(Rgb::Ones())));
   EXPECT_FALSE(SimdTracker::isSupported(volume, makeDeep(Rgb::Ones()).withDensity(1.2)));
   EXPECT_FALSE(SimdTracker::isSupported(volume, makeStepped(Rgb::Ones())));
 }
 
-// ---- whole pictures
+// ---- images
 
 /// 8^3 voxels, alternating 0 and 1.
 Volume makeCheckerboard(double spacing) {
@@ -215,7 +214,7 @@ TEST(ExtremeContrast, FurnaceIsOneWithoutAbsorption) {
 
 using SceneMaker = TestScene (*)(double unit);
 
-/// Scene with lengths multiplied and extinctions divided by `unit`. Powers of two change no bit.
+/// Scenes with lengths multiplied and extinctions divided by `unit`. Powers of two change no bit.
 TestScene makeRampScene(double unit) {
   return makeCornerScene(makeDiagonalRamp(0.002 * unit),
                          makeLogarithmicRamp(1.0, 64, Rgb(0.9, 0.5, 0.0)).withDensity(1.0 / unit));
@@ -230,7 +229,7 @@ TestScene makeHomogeneousScene(double unit) {
                          makeLinearTransfer(0.3 / unit, Rgb(1.0, 0.9, 0.5)));
 }
 
-TEST(UnitOfLength, PowerOfTwoKeepsEveryBitOfThePicture) {
+TEST(UnitOfLength, PowerOfTwoKeepsEveryBitOfImage) {
   struct Case {
     SceneMaker make;
     double unit;
@@ -253,7 +252,7 @@ TEST(UnitOfLength, PowerOfTwoKeepsEveryBitOfThePicture) {
 }
 
 TEST(ExtremeContrast, NumberOfCollisionsIsBounded) {
-  // One crossing takes at most (majorant x length) tentative collisions, plus Poisson's spread.
+  // A crossing ray has (majorant x length) tentative collisions on average; Poisson-distributed.
   const double crossing = densest * 0.016 * std::sqrt(3.0);
   const auto maximum = static_cast<std::uint64_t>(crossing + 6.0 * std::sqrt(crossing));
   for (const TestScene& scene : {makeRampScene(1.0), makeCheckerScene(1.0)}) {
@@ -269,16 +268,16 @@ TEST(ExtremeContrast, NumberOfCollisionsIsBounded) {
     }
     EXPECT_LE(worst, maximum);
     RecordProperty("worstLookupsOfARay", std::to_string(worst));
-    std::cout << "worst null collisions of a ray: " << worst
-              << ", of a path: " << renderScene(scene, 1).counters.lookups / 64 << " on average\n";
+    std::cout << "maximum null collisions of a ray: " << worst
+              << ", mean per path: " << renderScene(scene, 1).counters.lookups / 64 << '\n';
   }
 }
 
-// Distances at which a free path is no longer than the spacing of doubles at the volume.
+// Distances at which a free path is shorter than the spacing of doubles at the volume.
 TEST(FarCamera, TransmittanceDoesNotDependOnDistance) {
   const Volume volume = makeVolume(makeCenteredGrid({8, 8, 8}, Vec3::Constant(20.0)),
                                    [](const Vec3& p) { return p.x() < 4.0 ? 0.0 : 1.0; });
-  // Thin where the ray passes, with a majorant 10 000 times as high.
+  // Thin where the ray passes, but with a majorant 10 000 times as high.
   const RayProbe<> probe(volume, {ScalarFunction({makeKnot(0.4, 0.005), makeKnot(0.5, 50.0)}),
                                   ColorFunction({{0.0, Rgb::Zero()}})});
   const double crossing = 160.0 * 50.0;

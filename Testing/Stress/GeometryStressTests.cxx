@@ -1,5 +1,5 @@
-// Invariance to the volume's placement: extreme spacings, far origins, oblique, sheared and
-// mirrored axes, against the same scene in easy numbers.
+// Invariance to the volume's geometry: extreme spacings, far origins, oblique, sheared and mirrored
+// axes, against the same scene with simple numbers.
 
 #include "StressSupport.h"
 
@@ -25,7 +25,7 @@ TestScene makeBumpScene() {
   return scene;
 }
 
-/// Whole scene, camera included, in another place.
+/// Transforms a scene, including its camera.
 TestScene transformScene(TestScene scene, const Affine& map) {
   Grid& grid = scene.volume.grid;
   grid = Grid(grid.size, map * grid.indexToWorld);
@@ -47,7 +47,7 @@ struct Place {
 
 class Placed : public ::testing::TestWithParam<Place> {};
 
-TEST_P(Placed, PictureIsUnchanged) {
+TEST_P(Placed, ImageIsUnchanged) {
   const TestScene scene = makeBumpScene();
   const TestScene elsewhere = transformScene(scene, GetParam().map);
   const int samples = scaleSamples(400);
@@ -55,8 +55,8 @@ TEST_P(Placed, PictureIsUnchanged) {
 }
 
 TEST_P(Placed, IndexRoundTripKeepsVoxelPrecision) {
-  // Rounding of a coordinate of size c: half an ulp of c for each of a few operations, in voxels.
-  // At 1e6 mm and 1 mm voxels: 1e-9 of a voxel.
+  // Rounding error, in voxels, of a few operations with coordinates of magnitude `far`: half an ulp
+  // each. At 1e6 mm and 1 mm voxels: 1e-9 of a voxel.
   const Grid grid = transformScene(makeBumpScene(), GetParam().map).volume.grid;
   const double far = 100.0 + grid.indexToWorld.translation().cwiseAbs().maxCoeff();
   const double bound = 16.0 * 0x1p-53 * far / grid.spacing().minCoeff();
@@ -71,12 +71,12 @@ INSTANTIATE_TEST_SUITE_P(
     Places, Placed,
     ::testing::Values(Place{"far", Affine(makeTranslation({1e6, -1e6, 1e6}))},
                       Place{"farther", Affine(makeTranslation({-1e9, 7e8, 1e9}))},
-                      Place{"turned", makeRigid(1.0)},
-                      Place{"turnedFar", makeRigid(2.0, {1e6, 1e6, -1e6})},
-                      Place{"turnedLittle", makeRigid(1e-9)}, Place{"halfTurn", makeRigid(pi)}),
+                      Place{"rotated", makeRigid(1.0)},
+                      Place{"rotatedFar", makeRigid(2.0, {1e6, 1e6, -1e6})},
+                      Place{"rotatedSlightly", makeRigid(1e-9)}, Place{"halfTurn", makeRigid(pi)}),
     [](const auto& info) { return std::string(info.param.name); });
 
-TEST(MirroredAxes, PictureIsUnchanged) {
+TEST(MirroredAxes, ImageIsUnchanged) {
   const TestScene scene = makeBumpScene();
   const Size3 size = scene.volume.grid.size;
   for (int axis = 0; axis < 3; ++axis) {
@@ -92,7 +92,7 @@ TEST(MirroredAxes, PictureIsUnchanged) {
   }
 }
 
-/// Field that is linear in the world, on any grid; grids differ only outside the crop.
+/// Field that is linear in world space, sampled on any grid; grids differ only outside the crop.
 TestScene makeLinearScene(const Size3& size, const Mat3& axes) {
   Affine map;
   map.linear() = axes;
@@ -108,7 +108,7 @@ TestScene makeLinearScene(const Size3& size, const Mat3& axes) {
   return scene;
 }
 
-TEST(ShearedAxes, PictureIsUnchanged) {
+TEST(ShearedAxes, ImageIsUnchanged) {
   const TestScene straight = makeLinearScene({14, 14, 14}, Mat3::Identity());
   const Mat3 sheared = Mat3::FromRows({1.0, 0.9, 0.3}, {0.0, 0.8, -0.7}, {0.0, 0.0, 1.1});
   const Mat3 flat = // two axes nearly parallel
@@ -117,8 +117,8 @@ TEST(ShearedAxes, PictureIsUnchanged) {
   const RenderResult expected = renderScene(straight, samples, 5);
   expectSameImage(expected.film,
                   renderScene(makeLinearScene({50, 50, 30}, sheared), samples, 6).film);
-  // The flat parallelepiped holds only a small part of the crop; the part common to both is
-  // compared by eye rays through an even smaller crop.
+  // The flat parallelepiped contains only a small part of the crop. The part common to both is
+  // compared by camera rays through a still smaller crop.
   TestScene small = straight;
   small.crop = CropBox(Affine(makeScaling(Vec3(0.01, 0.01, 0.5))));
   small.pose.scale = 0.3;
@@ -136,7 +136,7 @@ double needleValue(double i, double j, double z) {
   return 0.5 + 0.3 * std::sin(1.1 * i + 0.4 * j) + 0.2 * std::sin(z / 30.0 + j);
 }
 
-/// 24x24 needles of two slices; or the same field on slices of 20 mm.
+/// 24 x 24 needles of two slices, or the same field in slices of 20 mm.
 Volume makeNeedles(bool resampled) {
   const auto value = [](const Vec3& p, double z) { // linear between z = -50 and 50, clamped
     const double f = std::clamp((z + 50.0) / 100.0, 0.0, 1.0);
@@ -157,7 +157,7 @@ TestScene makeNeedleScene(bool resampled, const Rgb& albedo) {
   return scene;
 }
 
-TEST(NeedleVoxels, PictureEqualsThatOfSlicesOfTheSameField) {
+TEST(NeedleVoxels, ImageEqualsResampledField) {
   const int samples = scaleSamples(1000);
   const Rgb albedo = Rgb::Constant(0.5);
   expectSameImage(renderScene(makeNeedleScene(false, albedo), samples, 1).film,
@@ -177,7 +177,7 @@ TEST(NeedleVoxels, DiagonalTransmittanceEqualsExpOfIntegral) {
     const Vec3 to = volume.grid.worldCorner(7 - i);
     const Ray ray{from, (to - from).normalized()};
     const double length = (to - from).norm();
-    // Reference: the field's formula, bilinear across the voxels' values, midpoint rule.
+    // Reference: midpoint rule on the interpolated voxels.
     constexpr int steps = 20000;
     double depth = 0.0;
     const auto& voxels = std::get<LargeArray<float>>(volume.voxels);

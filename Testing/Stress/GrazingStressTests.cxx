@@ -1,4 +1,4 @@
-// Rays along faces, edges, diagonals and through corners, exactly and within rounding.
+// Rays along faces, edges and diagonals, and through corners, exactly and within rounding.
 
 #include "StressSupport.h"
 
@@ -21,7 +21,7 @@ std::vector<GrazedGrid> makeGrids() {
   const Grid unit = makeCenteredGrid({6, 5, 4}, Vec3::Ones());
   return {{"unit", unit},
           {"uneven", makeCenteredGrid({6, 5, 4}, {0.3, 0.7, 1.1})},
-          {"turned", rotate(unit)},
+          {"rotated", rotate(unit)},
           {"far", Grid(unit.size, Affine(makeTranslation({1e6, 1e6, 1e6})) * unit.indexToWorld)}};
 }
 
@@ -40,7 +40,7 @@ protected:
       : m_grid(makeGrids()[static_cast<std::size_t>(GetParam())].grid),
         m_volume(makeUniformVolume(m_grid)) {}
 
-  /// Rounding of a world coordinate, and its effect on a chord, mm.
+  /// Bound of a world coordinate's rounding error and of its effect on a chord, mm.
   double rounding() const {
     return 64.0 * 0x1p-53 * (20.0 + m_grid.indexToWorld.translation().cwiseAbs().maxCoeff());
   }
@@ -59,7 +59,7 @@ protected:
 /// Off-axis components of an axis-parallel direction.
 constexpr double slopes[] = {0.0, -0.0, 5e-324, -5e-324, 1e-300, -1e-300, 1e-17, -1e-17};
 
-TEST_P(Grazing, RayAlongAFaceOrEdgeWalksAllOrNothing) {
+TEST_P(Grazing, RayAlongFaceOrEdgeWalksAllOrNothing) {
   const RayProbe<> probe(m_volume, makeLinearTransfer(sigma, Rgb::Zero()));
   const Box box = m_grid.indexBox();
   int inside = 0, outside = 0;
@@ -81,14 +81,14 @@ TEST_P(Grazing, RayAlongAFaceOrEdgeWalksAllOrNothing) {
             const double walked = probe.measureWalk(ray);
             (walked > 0.5 * full ? inside : outside) += 1;
             EXPECT_LT(walked, full + rounding());
-            // The rounded slope of a rotated ray may lead out of the face.
+            // The rounded slope of a rotated ray may leave the face.
             EXPECT_TRUE(isRotated() || walked > full - rounding() || walked == 0.0)
                 << walked << " of " << full;
           }
   EXPECT_GT(inside, 0);
 }
 
-TEST_P(Grazing, RayNextToAFaceWalksTheChord) {
+TEST_P(Grazing, RayNextToFaceWalksChord) {
   const RayProbe<> probe(m_volume, makeLinearTransfer(sigma, Rgb::Zero()));
   const Box box = m_grid.indexBox();
   for (int along = 0; along < 3; ++along)
@@ -107,7 +107,7 @@ TEST_P(Grazing, RayNextToAFaceWalksTheChord) {
         }
 }
 
-/// Directions through corners of voxels: the 26 neighbours and knight's moves.
+/// Directions through corners of voxels: to voxels at index offsets of up to 2.
 std::vector<Vec3> makeLatticeDirections() {
   std::vector<Vec3> directions;
   for (int x = -2; x <= 2; ++x)
@@ -118,7 +118,7 @@ std::vector<Vec3> makeLatticeDirections() {
   return directions;
 }
 
-TEST_P(Grazing, RayThroughCentresAndCornersOfVoxelsWalksTheChord) {
+TEST_P(Grazing, RayThroughVoxelCentersAndCornersWalksChord) {
   const RayProbe<> probe(m_volume, makeLinearTransfer(sigma, Rgb::Zero()));
   double greatest = 0.0;
   for (const Vec3& offset : {Vec3(0, 0, 0), Vec3(0.5, 0, 0), Vec3(0.5, 0.5, 0), Vec3(0.5, 0.5, 0.5),
@@ -136,7 +136,7 @@ TEST_P(Grazing, RayThroughCentresAndCornersOfVoxelsWalksTheChord) {
   EXPECT_GT(greatest, 2.0);
 }
 
-TEST_P(Grazing, RayFromACornerWalksTheChordInwardAndNothingOutward) {
+TEST_P(Grazing, RayFromCornerWalksChordInwardAndNothingOutward) {
   const RayProbe<> probe(m_volume, makeLinearTransfer(sigma, Rgb::Zero()));
   const Box box = m_grid.indexBox();
   for (int corner = 0; corner < 8; ++corner) {
@@ -154,7 +154,7 @@ INSTANTIATE_TEST_SUITE_P(Grids, Grazing, ::testing::Range(0, 4), [](const auto& 
 });
 
 // Faces that are exact in binary: a ray that lies in such a face counts as inside (Box::clip).
-TEST(ExactFaces, RayInAFaceCountsAsInside) {
+TEST(ExactFaces, RayInFaceCountsAsInside) {
   const Grid grid = makeCenteredGrid({6, 4, 2}, Vec3::Ones());
   const Volume volume = makeUniformVolume(grid);
   const RayProbe<> probe(volume, makeLinearTransfer(sigma, Rgb::Zero()));

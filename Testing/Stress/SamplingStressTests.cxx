@@ -1,4 +1,4 @@
-// Sampling routines at both ends of the random range: u = 0 and the largest u below 1.
+// Sampling routines at both ends of the range of random numbers: u = 0 and the largest u below 1.
 
 #include "Approx.h"
 #include "StressSupport.h"
@@ -16,7 +16,7 @@ std::vector<Vec2> makeCorners() {
   return result;
 }
 
-TEST(ChosenDraws, ChosenDrawReturnsTheChosenBits) {
+TEST(SelectedDraws, SelectedDrawReturnsSelectedBits) {
   for (const int draw : {1, 2, 3, 7, 200})
     for (const std::uint64_t bits : {std::uint64_t{0}, ~std::uint64_t{0}, std::uint64_t{12345}}) {
       Random random = makeRandomWithDraw(draw, bits);
@@ -56,12 +56,12 @@ TEST(DirectionEnds, DirectionIsUnit) {
 
 struct PhaseCase {
   double g;
-  double precision; ///< relative error of the density: the direction's rounding / lobe width
+  double precision; ///< relative error of the density: rounding of the direction / lobe width
 };
 
 class PhaseEnds : public ::testing::TestWithParam<PhaseCase> {};
 
-/// Inverse of Henyey and Greenstein's distribution, as 1 - cos, for |g|, in long double.
+/// Inverse of Henyey and Greenstein's distribution for |g|, as 1 - cos, in long double.
 long double oneMinusCosine(long double g, long double u) {
   if (g == 0.0L)
     return 2.0L * u;
@@ -96,14 +96,14 @@ INSTANTIATE_TEST_SUITE_P(MeanCosines, PhaseEnds,
 
 // ---- surface lobes
 
-/// Unit direction of incidence with this cosine to the normal z, as exact as doubles allow.
+/// Unit direction of incidence with this cosine to the normal z, as exact as double allows.
 Vec3 makeIncident(double cosine) {
   return {std::sqrt((1.0 - cosine) * (1.0 + cosine)), 0.0, -cosine};
 }
 
 TEST(SurfaceEnds, DirectionIsUnitAndWeightBounded) {
-  // The mixture of lobes is drawn in proportion to albedo and the viewer's Fresnel term: a weight
-  // is at most the greatest Fresnel term over the least, 1 / F0 = 25.
+  // Lobes are sampled in proportion to the albedo and to the viewer's Fresnel term. So a weight is
+  // at most the ratio of the maximum to the minimum Fresnel term, 1 / F0 = 25.
   constexpr double greatestWeight = 25.0 * (1.0 + 1e-9);
   constexpr double most = std::numeric_limits<double>::max();
   const Vec2 strengths[] = {{1, 0}, {0, 1}, {0.9, 0.2}, {0, 0}, {1e-300, 1e-300}, {1e300, 1e300}};
@@ -126,7 +126,7 @@ TEST(SurfaceEnds, DirectionIsUnitAndWeightBounded) {
               drawn += sample.pdf > 0.0 ? 1 : 0;
             }
         }
-  EXPECT_GT(drawn, 50000) << "most draws have to have a direction";
+  EXPECT_GT(drawn, 50000) << "most samples must have a direction";
 }
 
 // ---- lights
@@ -140,7 +140,7 @@ Camera makeCamera() {
   return {pose, 8, 8};
 }
 
-/// Map of 8 x 4 texels; texels with `isLit(column, row)` have this radiance, others 0.
+/// Map of 8 x 4 texels: `radiance` where `isLit(column, row)`, 0 elsewhere.
 template <typename IsLit>
 EnvironmentLight makeMapLight(IsLit&& isLit, float radiance = 1.0F) {
   EnvironmentLight light;
@@ -165,14 +165,14 @@ std::vector<EnvironmentLight> makeEnvironments() {
           makeMapLight(checker, least)};
 }
 
-TEST(EnvironmentEnds, DirectionIsUnitInOrNextToALitTexel) {
+TEST(EnvironmentEnds, DirectionIsUnitInOrNextToLitTexel) {
   for (const EnvironmentLight& light : makeEnvironments()) {
     const EnvironmentSampler sampler(light);
     for (const Vec2& u : makeCorners()) {
       const Vec3 direction = sampler.sample(u);
       EXPECT_NEAR(direction.norm(), 1.0, 4e-16);
       EXPECT_TRUE(sampler.pdf(direction) >= 0.0 && std::isfinite(sampler.pdf(direction)));
-      // A direction on a texel's border may read as the neighbour's: a lit texel must lie next to
+      // A direction on a texel's edge may be assigned to the neighbor: a lit texel must be next to
       // it.
       double greatest = 0.0;
       for (int i = 0; i < 32; ++i) { // around, above and below
@@ -185,7 +185,7 @@ TEST(EnvironmentEnds, DirectionIsUnitInOrNextToALitTexel) {
   }
 }
 
-TEST(EnvironmentEnds, BlackMapIsNeverDrawn) {
+TEST(EnvironmentEnds, BlackMapIsNeverSampled) {
   const EnvironmentLight black = makeMapLight([](int, int) { return false; });
   const EnvironmentSampler sampler(black);
   const LightSet set({black}, unitGrid, makeCamera());
@@ -246,7 +246,7 @@ TEST(LightEnds, DirectionIsUnitAndContributionFinite) {
   EXPECT_GT(drawn, 20000);
 }
 
-TEST(LightEnds, LightInTheVolumesCentreLeavesUsableShares) {
+TEST(LightEnds, LightInVolumeCenterLeavesUsableProbabilities) {
   AreaLight light = makeAreaLight(AreaLight::Shape::disk, 1.0);
   light.center = unitGrid.worldCenter();
   const EnvironmentLight sky{Rgb::Ones(), {2, 1, std::vector<float>(6, 1.0F)}};
@@ -254,7 +254,7 @@ TEST(LightEnds, LightInTheVolumesCentreLeavesUsableShares) {
   EXPECT_NEAR(set.evaluateEnvironment(Vec3::UnitX()).pdf, 0.5 * 0.25 / pi, 1e-12);
 }
 
-// ---- distances and whole paths, which take a Random: each of its draws in turn is at an end
+// ---- distances and paths: each number of their Random in turn is at an end of the range
 
 constexpr std::uint64_t endBits[] = {0, ~std::uint64_t{0}};
 
@@ -264,7 +264,7 @@ Volume makeBumps() {
   });
 }
 
-TEST(TrackingEnds, CollisionsStayInTheRange) {
+TEST(TrackingEnds, CollisionsStayInRange) {
   const Volume volume = makeBumps();
   const RayProbe<> probe(volume, makeLinearTransfer(2.0, Rgb::Ones()));
   const Interval range{1.0, 12.0};
@@ -291,7 +291,7 @@ PathSample tracePath(const TestScene& scene, const PrimarySamples& numbers, Coun
   });
 }
 
-TEST(PathEnds, RadianceIsBoundedByTheNumberOfCollisions) {
+TEST(PathEnds, RadianceIsBoundedByNumberOfCollisions) {
   for (const bool hybrid : {false, true})
     for (const double g : {-0.9999, 0.0, 0.9999}) {
       TestScene scene{

@@ -8,7 +8,7 @@
 namespace fenestra::testing::SizeStressTests {
 namespace {
 
-/// Continuous field from the voxel array, by definition: trilinear, clamped.
+/// Continuous field by its definition: trilinear interpolation of the voxels, clamped.
 template <typename Voxel>
 double evaluateField(const Volume& volume, const Vec3& index) {
   const auto& voxels = std::get<LargeArray<Voxel>>(volume.voxels);
@@ -33,7 +33,7 @@ double evaluateField(const Volume& volume, const Vec3& index) {
   return sum;
 }
 
-/// Integral of the field along the segment, by the midpoint rule.
+/// Integral of the field along a segment, by the midpoint rule.
 template <typename Voxel>
 double integrateField(const Volume& volume, const Vec3& from, const Vec3& to, int steps = 20000) {
   double sum = 0.0;
@@ -87,7 +87,7 @@ TEST_P(SmallSizes, GradientIsZeroAlongSingleVoxels) {
     const Vec3 index = sampleIndex(grid, random);
     const Vec3 gradient = probe.medium().evaluate(index, true).gradient;
     for (int axis = 0; axis < 3; ++axis) {
-      // The derivative along index axis a is the gradient's component along column a.
+      // The derivative along an index axis is the gradient's dot product with that axis's column.
       const Vec3 step = Vec3::Unit(axis);
       const double expected = 0.5 * (evaluateField<float>(m_volume, index + step) -
                                      evaluateField<float>(m_volume, index - step));
@@ -125,7 +125,7 @@ INSTANTIATE_TEST_SUITE_P(Sizes, SmallSizes,
 
 // ---- cells
 
-TEST(MajorantCells, AnyShapeHasAboutAQuarterOfAMillionCells) {
+TEST(MajorantCells, AnyShapeHasAboutQuarterMillionCells) {
   constexpr double target = 1 << 18;
   struct Shape {
     Size3 size;
@@ -187,7 +187,7 @@ constexpr bool isSanitized() {
 #endif
 }
 
-/// Volume with blocks of 16^3 voxels of 100 and 200 in two opposite corners; 0 elsewhere.
+/// Volume of 0, with blocks of 16^3 voxels of 100 and of 200 in two opposite corners.
 Volume makeHugeVolume(std::int64_t side) {
   LargeArray<std::uint8_t> voxels(static_cast<std::size_t>(side * side * side));
   for (std::int64_t k = 0; k < 16; ++k)
@@ -205,9 +205,9 @@ Volume makeHugeVolume(std::int64_t side) {
           {}};
 }
 
-TEST(HugeVolume, VoxelsBeyond31BitsAreSeen) {
+TEST(HugeVolume, VoxelsBeyond31BitsAreVisible) {
   if (isSanitized() || availableGigabytes() < 8.0)
-    GTEST_SKIP() << "needs 8 GB of free memory and no sanitizer";
+    GTEST_SKIP() << "requires 8 GB of free memory and no sanitizer";
   constexpr std::int64_t side = 1300;
   // 1 mm of the far block has an optical depth of 1.
   TestScene scene{makeHugeVolume(side),
@@ -235,7 +235,7 @@ TEST(HugeVolume, VoxelsBeyond31BitsAreSeen) {
     probe.expectTransmittance({from, direction.normalized()}, {0.0, (last - from).norm()},
                               std::exp(-depth), scaleSamples(4000));
   }
-  // The far block must look like a small volume that equals the last corner.
+  // The far block must look like a small volume with the content of the last corner.
   scene.pose.position = last + Vec3(3, 4, 5);
   scene.pose.target = last - Vec3::Constant(0.8);
   scene.pose.scale = 1.5;

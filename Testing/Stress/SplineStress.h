@@ -1,5 +1,5 @@
 #pragma once
-// Sites and values for stress tests of the thin plate spline, and its solution in 50 digits.
+// Sites and values for stress tests of the thin plate spline, and its solution with 50 digits.
 
 #include "SaddleSpline.h"
 #include "SplineCondition.h"
@@ -27,12 +27,12 @@ struct SplineData {
   ThinPlateSpline spline(double smoothing) const { return {sites, values, smoothing}; }
   SaddleSpline<FiftyDigits> exact(double smoothing) const { return {sites, values, smoothing}; }
 
-  /// Range of the values, mm.
+  /// Maximum - minimum of the values, mm.
   double range() const {
     const auto [least, greatest] = std::ranges::minmax(values);
     return greatest - least;
   }
-  /// Greatest distance from the first site, mm.
+  /// Maximum distance from the first site, mm.
   double extent() const {
     double extent = 0.0;
     for (const Vec2& site : sites)
@@ -46,7 +46,7 @@ inline Vec2 sampleDisk(Random& random, double radius) {
   return radius * std::sqrt(random.uniform()) * Vec2(std::cos(angle), std::sin(angle));
 }
 
-/// Random sites over a disc, random values in [500, 500 + range] mm.
+/// Random sites in a disk, random values in [500, 500 + range] mm.
 inline SplineData makeScattered(Random& random, int count, double radius, const Vec2& center,
                                 double range) {
   SplineData data;
@@ -55,8 +55,8 @@ inline SplineData makeScattered(Random& random, int count, double radius, const 
   return data;
 }
 
-/// Evaluation points: eight of the sites, points 1e-9 mm beside these, `near` points within three
-/// extents of the first site, and four points 10 m away.
+/// Evaluation points: about eight of the sites, points 1e-9 mm from these, `near` points within
+/// three extents of the first site, and four points 10 m away.
 inline std::vector<Vec2> makeEvaluationPoints(Random& random, const SplineData& data, int near) {
   std::vector<Vec2> points;
   for (std::size_t i = 0; i < data.sites.size(); i += 1 + data.sites.size() / 8) {
@@ -70,8 +70,8 @@ inline std::vector<Vec2> makeEvaluationPoints(Random& random, const SplineData& 
   return points;
 }
 
-/// Error norm of every bound here: greatest |f - g| / (range of the values + |g|) over the places;
-/// infinity if f is not finite at some place.
+/// Error norm of all bounds: maximum |f - g| / (range of the values + |g|) over the points;
+/// infinity if f is not finite at a point.
 template <typename F, typename G>
 double maxError(const F& f, const G& g, const std::vector<Vec2>& points, double range) {
   double worst = 0.0;
@@ -82,7 +82,7 @@ double maxError(const F& f, const G& g, const std::vector<Vec2>& points, double 
   return worst;
 }
 
-/// Bound promised in ThinPlateSpline.h, at least 1e-9.
+/// Error bound documented in ThinPlateSpline.h, at least 1e-9.
 inline double errorBound(const ThinPlateSpline& spline) {
   return std::max(1e-9, 1e-14 * computeConditionNumber(spline));
 }

@@ -1,6 +1,6 @@
-// Thin plate spline against its solution in 50 digits, on ordinary and on adversarial sites;
-// against the functions that degenerate sites determine; against itself in other units, places and
-// orders. Errors are relative to |f| and the range of the values (maxError).
+// Thin plate spline: against its solution with 50 digits, for ordinary and adversarial sites;
+// against the functions that degenerate sites determine; and against itself in other units,
+// positions and orders. Errors are relative to |f| and the range of the values (maxError).
 
 #include "SplineStress.h"
 
@@ -17,14 +17,14 @@ namespace {
 constexpr std::array smoothings{0.0, 5e-324, 1e-300, 1e-12, 0.5, 1.0 - 1e-6, 1.0};
 constexpr std::array origins{0.0, 120.3, 1e6};
 
-/// Smoothing for the saddle system, which does not exist at p = 0: its solution at 1e-30 is closer
-/// to the limit than double precision.
+/// Smoothing for the saddle system, which does not exist at p = 0. In double precision, its
+/// solution at 1e-30 equals the limit.
 double clampAboveZero(double smoothing) {
   return std::max(smoothing, 1e-30);
 }
 
-/// Expects the spline of `data` to be the exact spline of `same`: the same data, or their merged
-/// equivalent.
+/// Expects the spline of `data` to equal the exact spline of `same`: the same data, or an
+/// equivalent with merged sites.
 void expectExact(const SplineData& data, const SplineData& same, double smoothing) {
   Random random(7, 0, 0);
   const ThinPlateSpline spline = data.spline(smoothing);
@@ -42,7 +42,7 @@ void expectExact(const SplineData& data) {
 
 // ---- against the exact solution
 
-TEST(SplineStress, RandomSitesEqualTheFiftyDigitSolution) {
+TEST(SplineStress, RandomSitesEqualFiftyDigitSolution) {
   Random random(1, 0, 0);
   constexpr int cases = 240;
   constexpr std::array ps{1e-3, 0.1, 0.5, 0.9, 1.0 - 1e-6, 1.0};
@@ -60,16 +60,16 @@ TEST(SplineStress, RandomSitesEqualTheFiftyDigitSolution) {
     worst = std::max(worst, error);
     worstCondition = std::max(worstCondition, computeConditionNumber(spline));
   }
-  std::printf("%d cases: worst relative error %.1e, worst condition number %.1e\n", cases, worst,
+  std::printf("%d cases: maximum relative error %.1e, condition number %.1e\n", cases, worst,
               worstCondition);
   RecordProperty("worstError", (std::ostringstream() << worst).str());
 }
 
-TEST(SplineStress, ThousandSitesEqualTheSaddleSystem) {
-  // Disc of 1 mm, in which the saddle system is well enough conditioned for long double.
+TEST(SplineStress, ThousandSitesEqualSaddleSystem) {
+  // In a disk of 1 mm the saddle system is well enough conditioned for long double.
   Random random(2, 0, 0);
   const SplineData data = makeScattered(random, 1000, 1.0, {0.3, -0.2}, 500.0);
-  const double p = 1.0 / (1.0 + 1e-4); // equals p = 0.5 in a disc of 100 mm
+  const double p = 1.0 / (1.0 + 1e-4); // equals p = 0.5 in a disk of 100 mm
   const ThinPlateSpline spline = data.spline(p);
   const SaddleSpline<long double> exact(data.sites, data.values, p);
   EXPECT_LE(maxError(spline, exact, makeEvaluationPoints(random, data, 50), data.range()),
@@ -81,7 +81,7 @@ TEST(SplineStress, ThousandSitesEqualTheSaddleSystem) {
   EXPECT_LE(miss, errorBound(through) * 1000.0);
 }
 
-TEST(SplineStress, DepthJumpsOnACircleAreExact) {
+TEST(SplineStress, DepthJumpsOnCircleAreExact) {
   SplineData data;
   for (int i = 0; i < 40; ++i) {
     const double angle = 2.0 * pi * i / 40;
@@ -108,7 +108,7 @@ TEST(SplineStress, ClustersAtTwoScalesAreExact) {
     }
     for (const double smoothing : {0.0, 1e-12, 0.5, 1.0 - 1e-6, 1.0}) {
       SCOPED_TRACE(std::to_string(width) + " mm, p " + std::to_string(smoothing));
-      // At p = 1, sites closer than 1e-8 of the disc are merged.
+      // At p = 1, sites closer than 1e-8 of the disk are merged.
       expectExact(data, smoothing == 1.0 && width == 1e-6 ? centers : data, smoothing);
     }
   }
@@ -140,7 +140,7 @@ TEST(SplineStress, NearlyCollinearSitesAreExact) {
   }
 }
 
-TEST(SplineStress, SitesInATinyDiscAreExact) {
+TEST(SplineStress, SitesInTinyDiskAreExact) {
   for (const double radius : {1e-3, 1e-6, 1e-12}) {
     Random random(6, 0, 0);
     SCOPED_TRACE(radius);
@@ -148,7 +148,7 @@ TEST(SplineStress, SitesInATinyDiscAreExact) {
   }
 }
 
-// ---- functions that degenerate sites determine
+// ---- degenerate sites
 
 TEST(SplineStress, NoSitesGiveZero) {
   for (const double smoothing : smoothings) {
@@ -173,7 +173,7 @@ TEST(SplineStress, OneSiteAndCoincidentSitesGiveTheirMean) {
       }
 }
 
-TEST(SplineStress, CollinearSitesGiveTheLeastSquaresLineAlongThem) {
+TEST(SplineStress, CollinearSitesGiveTheirLeastSquaresLine) {
   const Vec2 along = Vec2(0.3, 0.7).normalized(), across(-along.y(), along.x());
   for (const double smoothing : smoothings)
     for (const double origin : origins)
@@ -194,17 +194,17 @@ TEST(SplineStress, CollinearSitesGiveTheLeastSquaresLineAlongThem) {
             for (const double aside : {0.0, radius, -1e4}) {
               const auto line = static_cast<double>((z - slope * t) / n + slope * place);
               const Vec2 x = Vec2(origin, -origin) + place * along + aside * across;
-              // Rounding of coordinates (the sites' and x's) and of the slope.
+              // Rounding of the coordinates of sites and x, and of the slope.
               const double reach = std::hypot(place, aside);
               const double rounded = 1e-15 * (origin * (1.0 + reach / radius) + reach);
               ASSERT_NEAR(spline(x), line,
                           1e-9 * (data.range() + std::abs(line)) + data.range() / radius * rounded)
-                  << count << " sites to " << radius << " mm at " << origin << ", p " << smoothing;
+                  << count << " sites in " << radius << " mm at " << origin << ", p " << smoothing;
             }
         }
 }
 
-TEST(SplineStress, SitesCollinearTo1e9OfTheirExtentAreLevelAcross) {
+TEST(SplineStress, SitesCollinearTo1e9OfExtentAreConstantAcross) {
   Random random(16, 0, 0);
   SplineData data;
   for (int i = 0; i < 30; ++i)
@@ -225,7 +225,7 @@ TEST(SplineStress, ThreeSitesGiveTheirPlane) {
         data.add(o + Vec2(size, 0), 2.0);
         data.add(o + Vec2(0, size), 501.0);
         for (const Vec2& at : {Vec2(0, 0), Vec2(1, 1), Vec2(-7, 1e4)}) {
-          // Coordinates at 1e6 are themselves rounded.
+          // Coordinates near 1e6 are rounded themselves.
           const Vec2 x = o + size * at, u = (x - o) / (data.sites[1].x() - o.x());
           const double plane = 1.0 + u.x() + 500.0 * u.y();
           const double error = 1e-9 + 1e-15 * origin / size;
@@ -253,7 +253,7 @@ SplineData mapSites(const SplineData& data, const Map& map) {
   return moved;
 }
 
-TEST(SplineStress, DoesNotDependOnTheUnit) {
+TEST(SplineStress, DoesNotDependOnUnit) {
   Random random(10, 0, 0);
   for (const int count : {5, 50, 300})
     for (const double lambda : {0.0, 1e-3, 1.0, 1e3})
@@ -267,7 +267,7 @@ TEST(SplineStress, DoesNotDependOnTheUnit) {
       }
 }
 
-TEST(SplineStress, ShiftsWithItsSites) {
+TEST(SplineStress, IsInvariantToTranslation) {
   Random random(11, 0, 0);
   SplineData data = makeScattered(random, 50, 40.0, {0, 0}, 40.0);
   for (Vec2& site : data.sites) // multiples of 2^-12 mm, so that the shift is exact
@@ -284,7 +284,7 @@ TEST(SplineStress, ShiftsWithItsSites) {
     }
 }
 
-TEST(SplineStress, TurnsWithItsSites) {
+TEST(SplineStress, IsInvariantToRotation) {
   Random random(12, 0, 0);
   for (const double origin : origins)
     for (const double smoothing : smoothings)
@@ -294,13 +294,13 @@ TEST(SplineStress, TurnsWithItsSites) {
           const double c = std::cos(angle), s = std::sin(angle);
           return {c * x.x() - s * x.y() + origin, s * x.x() + c * x.y() - origin};
         };
-        // At 1e6 mm coordinates are rounded by 1e-10 mm, which slopes turn into errors of f.
+        // At 1e6 mm, coordinates are rounded by 1e-10 mm; slopes turn that into errors of f.
         const double bound = origin > 1e5 ? 1e-7 : 1e-9;
         expectSame(data, smoothing, mapSites(data, turn), smoothing, turn, bound);
       }
 }
 
-TEST(SplineStress, DoesNotDependOnTheOrderOfSites) {
+TEST(SplineStress, DoesNotDependOnOrderOfSites) {
   Random random(13, 0, 0);
   for (const double smoothing : smoothings) {
     const SplineData data = makeScattered(random, 50, 40.0, {120, -300}, 40.0);
@@ -314,7 +314,7 @@ TEST(SplineStress, DoesNotDependOnTheOrderOfSites) {
 
 // ---- condition numbers
 
-/// Wavy closed curve, like a contour.
+/// Wavy closed curve, similar to a contour.
 SplineData makeOutline(int count, double radius) {
   SplineData data;
   for (int i = 0; i < count; ++i) {
@@ -325,7 +325,7 @@ SplineData makeOutline(int count, double radius) {
   return data;
 }
 
-TEST(SplineStress, ConditionNumberEqualsTheRatioOfEigenvalues) {
+TEST(SplineStress, ConditionNumberEqualsRatioOfEigenvalues) {
   Random random(14, 0, 0);
   for (const SplineData& data :
        {makeOutline(50, 60.0), makeScattered(random, 30, 5.0, {10, 20}, 1.0)}) {
@@ -338,9 +338,9 @@ TEST(SplineStress, ConditionNumberEqualsTheRatioOfEigenvalues) {
 }
 
 TEST(SplineStress, ConditionNumberStaysSmall) {
-  std::printf("condition number in the unit disc\n%10s %6s %10s %10s %10s\n", "", "N", "1 mm",
+  std::printf("condition number in the unit disk\n%10s %6s %10s %10s %10s\n", "", "N", "1 mm",
               "100 mm", "p = 1");
-  for (const char* layout : {"outline", "disc"})
+  for (const char* layout : {"outline", "disk"})
     for (const int count : {10, 50, 200, 1000}) {
       Random random(15, 0, 0);
       const auto sites = [&](double radius) {
@@ -356,7 +356,7 @@ TEST(SplineStress, ConditionNumberStaysSmall) {
       if (count == 50 && *layout == 'o') {
         EXPECT_LE(*std::ranges::max_element(conditions), 3e3);
       }
-      // |phi| <= 4 ln 4 in the unit disc, hence |K| <= 5.6 N; outlines are 1.3 wide.
+      // |phi| <= 4 ln 4 in the unit disk, so |K| <= 5.6 N; the outline's radius is up to 1.3.
       EXPECT_LE(conditions[0], 1.0 + 5.6 * 1.69 * count);
       EXPECT_LE(conditions[1], 1.0 + 5.6 * 1.69 * count * 1e4);
       EXPECT_LE(conditions[2], 5.6 * count * 1e12); // closer sites would be merged

@@ -1,6 +1,6 @@
 #pragma once
-// Helpers of the stress tests: estimates along one ray, chords, comparison of two pictures, and
-// random generators with chosen draws.
+// Support for the stress tests: estimates along one ray, chords, comparison of two images, and
+// random generators with selected numbers.
 
 #include "RunSettings.h"
 #include "Support.h"
@@ -31,14 +31,14 @@ constexpr std::uint64_t unmixBits(std::uint64_t y) {
   return unshift(y, 30);
 }
 
-/// Random whose `draw`-th call of bits(), counted from 1, returns `bits`; other draws stay random.
-/// Feeds 0 and the largest u to code that takes only a Random.
+/// Random whose `draw`-th call of bits(), counted from 1, returns `bits`; other calls stay random.
+/// Passes 0 and the largest u to code that accepts only a Random.
 inline Random makeRandomWithDraw(int draw, std::uint64_t bits) {
   return Random(unmixBits(bits) - static_cast<std::uint64_t>(draw) * Random::gamma);
 }
 
-/// Numbers of a path of which the `draw`-th one, in the order of PrimarySamples from depth on, is
-/// `bits`.
+/// Numbers of a path, the `draw`-th of which is `bits`, counted in the order of PrimarySamples from
+/// `depth`.
 inline PrimarySamples makeSamplesWithDraw(int draw, std::uint64_t bits) {
   constexpr int given = 4;
   Random random = makeRandomWithDraw(draw, bits);
@@ -51,7 +51,7 @@ inline PrimarySamples makeSamplesWithDraw(int draw, std::uint64_t bits) {
   return {0, depth, acceptance, direction, choices, rest};
 }
 
-/// Length of a ray inside a grid's box, t >= 0, mm; in long double, without the product's code.
+/// Length of a ray inside a grid's box, t >= 0, mm; in long double, without the renderer's code.
 inline double chord(const Grid& grid, const Ray& ray) {
   using Vector = Eigen::Matrix<long double, 3, 1>;
   const auto precise = [](const Vec3& v) { return Vector(v.x(), v.y(), v.z()); };
@@ -97,8 +97,8 @@ public:
   const MajorantGrid& majorants() const { return m_majorants; }
   const Medium<Voxel>& medium() const { return m_medium; }
 
-  /// Compares free paths and ratio tracking with a known transmittance. Both estimates lie in
-  /// [0, 1]: variance <= T (1 - T). Returns the counters of `n` rays of each.
+  /// Compares free paths and ratio tracking with a known transmittance T. Both estimates are in
+  /// [0, 1], so variance <= T (1 - T). Returns the counters of `n` rays of each.
   Counters expectTransmittance(const Ray& ray, const Interval& range, double expected,
                                int n) const {
     double survived = 0.0;
@@ -118,7 +118,7 @@ public:
     return counters;
   }
 
-  /// Length of the ray covered by the walk over majorant cells, mm; expects no gaps or overlaps.
+  /// Length of the ray that the walk over majorant cells covers, mm; expects no gaps or overlaps.
   double measureWalk(const Ray& ray) const {
     const Interval interval =
         m_domain.clip(transformRay(m_domain.grid().worldToIndex, ray), Interval{});
@@ -144,7 +144,7 @@ private:
   Domain m_domain;
 };
 
-/// Calls `work` with the path estimator of a scene, built as in a render.
+/// Calls `work` with the path integrator of a scene, built as in a render.
 template <typename Work>
 auto withIntegrator(const TestScene& scene, Work&& work) {
   const Camera camera(scene.pose, scene.width, scene.height);
@@ -156,9 +156,9 @@ auto withIntegrator(const TestScene& scene, Work&& work) {
                                     camera, scene.clip, settings, stop));
 }
 
-/// Expects two pictures of independent seeds to differ by chance alone: their means to 4 standard
-/// errors, the sum of squared z over the pixels to 4 of its own (Wilson and Hilferty 1931). Pixels
-/// without variance in both must be equal.
+/// Expects two images of independent seeds to differ only by chance: their means by at most 4
+/// standard errors, the sum of squared z over the pixels by at most 4 of its own (Wilson and
+/// Hilferty 1931). Pixels without variance in both must be equal.
 inline void expectSameImage(const Film& a, const Film& b) {
   ASSERT_EQ(a.pixelCount(), b.pixelCount());
   double difference = 0.0, variance = 0.0, chi2 = 0.0;
@@ -177,7 +177,7 @@ inline void expectSameImage(const Film& a, const Film& b) {
     chi2 += d * d / v;
     ++pixels;
   }
-  ASSERT_GT(pixels, 0) << "nothing varies: the pictures say nothing";
+  ASSERT_GT(pixels, 0) << "no pixel varies: the images test nothing";
   const double spread = 2.0 / (9.0 * pixels);
   EXPECT_LT((std::cbrt(chi2 / pixels) - (1.0 - spread)) / std::sqrt(spread), 4.0)
       << "mean squared z " << chi2 / pixels << " over " << pixels << " pixels";
@@ -192,7 +192,7 @@ inline void expectEqualBits(const Film& a, const Film& b) {
   }
 }
 
-/// Renders `samples` a pixel against an environment, visible behind the volume.
+/// Renders with `samples` per pixel; the environment is visible behind the volume.
 inline RenderResult renderScene(const TestScene& scene, int samples, std::uint64_t seed = 1) {
   RenderSettings settings;
   settings.samples = static_cast<std::uint64_t>(samples);
@@ -201,7 +201,7 @@ inline RenderResult renderScene(const TestScene& scene, int samples, std::uint64
   return scene.render(settings);
 }
 
-/// Furnace: expects radiance 1 for albedo 1 in an environment of 1.
+/// Furnace test: expects radiance 1 for albedo 1 in an environment of 1.
 inline void expectRadianceOne(const RenderResult& result) {
   const Estimate estimate = estimateMean(result.film);
   EXPECT_NEAR(estimate.mean, 1.0, 4.0 * estimate.error + 1e-7);

@@ -1,7 +1,6 @@
 #pragma once
-// Properties of every clipping surface, whatever its focus and view: every depth is finite, the
-// focus keeps its own depth, keep is defined everywhere and agrees with visible and
-// boundClipWeight.
+// Properties of every clipping surface: every depth is finite, the focus keeps its own depth, and
+// clipWeight is defined everywhere and agrees with visibleInterval and boundClipWeight.
 
 #include "Unit/ClippingTesting.h"
 #include "clip/surface/ClippingSurface.h"
@@ -27,7 +26,7 @@ struct View {
   }
 };
 
-/// Expects a depth in the focus's range, extended by a length for extrapolated slopes.
+/// Expects a depth in the focus's depth range, extended because the spline extrapolates slopes.
 inline void expectBounded(double depth, const ClippingSurface& surface, const View& view) {
   double least = infinity, greatest = -infinity;
   for (std::int64_t i = 0; i < surface.focus.depth.size(); ++i)
@@ -40,8 +39,8 @@ inline void expectBounded(double depth, const ClippingSurface& surface, const Vi
   ASSERT_LE(depth, greatest + distance);
 }
 
-/// Expects focus samples to keep their depth, and other samples to have the spline's depth, or some
-/// finite depth near the focus, or, in a cutaway and beside a hole, nothing to remove.
+/// Expects focus samples to keep their depth. Other samples must have the spline's depth, a finite
+/// depth near the focus, or, in a cutaway and outside a hole, -infinity: nothing is removed.
 inline void expectDepths(const View& view, const ClippingSurface& surface,
                          const SurfaceOptions& options) {
   const auto& clip = std::get<ClipDepth>(surface.clip);
@@ -54,7 +53,7 @@ inline void expectDepths(const View& view, const ClippingSurface& surface,
   const ThinPlateSpline spline(sites, depths, options.smoothing);
   const DepthBuffer& buffer = *clip.buffer;
   const double depth = clip.camera.targetDepth();
-  const std::int64_t stride = 1 + buffer.rows() / 200; // fewer rows, for speed
+  const std::int64_t stride = 1 + buffer.rows() / 200; // skips rows of large buffers
   for (std::int64_t row = 0; row < buffer.rows(); row += stride)
     for (std::int64_t column = 0; column < buffer.columns(); ++column) {
       const std::int64_t i = buffer.sample(column, row);
@@ -74,12 +73,12 @@ inline void expectDepths(const View& view, const ClippingSurface& surface,
       } else {
         const double f = spline(buffer.position(column, row));
         ASSERT_TRUE(std::isfinite(buffer.at(i)));
-        ASSERT_NEAR(buffer.at(i), f, 1e-6 * (std::abs(f) + depth)); // a float's precision
+        ASSERT_NEAR(buffer.at(i), f, 1e-6 * (std::abs(f) + depth)); // precision of float
       }
     }
 }
 
-/// Expects distinct focus samples, at most the requested number, and consistent mismatches.
+/// Expects distinct focus samples, at most the requested number, and a consistent mismatch.
 inline void expectControlPoints(const ClippingSurface& surface, const SurfaceOptions& options) {
   const auto requested = static_cast<std::size_t>(options.controlPoints);
   EXPECT_GE(surface.controlPoints.size(), 1U);
@@ -95,13 +94,13 @@ inline void expectControlPoints(const ClippingSurface& surface, const SurfaceOpt
   EXPECT_LE(mismatch.p95, mismatch.max);
   EXPECT_TRUE(std::isfinite(mismatch.max));
   const std::string warning =
-      "the focus covers hardly a pixel: the clipping surface is flat; choose "
+      "the focus covers hardly a pixel, so the clipping surface is flat; use "
       "a larger --size, or a view that frames the focus";
   EXPECT_EQ(std::ranges::count(surface.warnings, warning),
             surface.controlPoints.size() < std::min<std::size_t>(3, requested) ? 1 : 0);
 }
 
-/// Expects 0 or 1 in and around the volume, up to double's limits, and where projection fails.
+/// Expects clip weights 0 or 1 everywhere: up to double's limits, and where projection fails.
 inline void expectClipWeightEverywhere(const View& view, const Clip& clip) {
   Random random(1, 0, 0);
   const Camera& camera = view.camera;
@@ -126,7 +125,7 @@ inline void expectClipWeightEverywhere(const View& view, const Clip& clip) {
   }
 }
 
-/// Expects eye rays to be kept from the start of visible on, and not before.
+/// Expects camera rays to have clip weight 1 from the start of visibleInterval, and 0 before.
 inline void expectVisibleInterval(const View& view, const Clip& clip) {
   Random random(2, 0, 0);
   const Camera& camera = view.camera;
@@ -136,7 +135,7 @@ inline void expectVisibleInterval(const View& view, const Clip& clip) {
     const Interval interval = visibleInterval(clip, ray);
     ASSERT_TRUE(std::isfinite(interval.begin) && interval.begin >= 0.0);
     ASSERT_EQ(interval.end, infinity);
-    // Rounding of a position times the surface's slope is an error of depth.
+    // A position's rounding error times the surface's slope is an error of depth.
     const double step = 1e-9 * (ray.origin.norm() + interval.begin + camera.targetDepth()) + 1e-6;
     ASSERT_EQ(clipWeight(clip, ray.at(interval.begin + step)), 1.0) << interval.begin;
     ASSERT_EQ(clipWeight(clip, ray.at(2.0 * interval.begin + 1e3)), 1.0) << interval.begin;
@@ -148,7 +147,7 @@ inline void expectVisibleInterval(const View& view, const Clip& clip) {
   }
 }
 
-/// Expects no box to be reported as wholly kept, or removed, if a point of it is not.
+/// Expects bounds of 0 or 1 only for boxes without any point of another clip weight.
 inline void expectBoxes(const View& view, const Clip& clip) {
   Random random(3, 0, 0);
   const double radius = view.volume.boundingRadius();
@@ -169,8 +168,8 @@ inline void expectBoxes(const View& view, const Clip& clip) {
   }
 }
 
-/// Expects the cut to end where the focus begins, at the centres of the picture's focus pixels; an
-/// exact cut may end behind, where the focus falls away steeply.
+/// Expects the cut to end where the focus begins, at the centers of the image's focus pixels. An
+/// exact cut may end behind a steep focus surface.
 inline void expectFocusVisible(const View& view, const ClippingSurface& surface,
                                Boundary boundary) {
   const DepthBuffer& buffer = surface.focus.depth;
@@ -200,8 +199,8 @@ inline void expectValid(const View& view, const SurfaceOptions& options) {
   expectFocusVisible(view, surface, options.boundary);
 }
 
-/// For every edge and offset, expects keep in [0, 1], at least the ghost in front of the eye, and
-/// bounded by boxes.
+/// For every edge and offset, expects clip weights within the bounds of boxes, and at least the
+/// ghost in front of the camera.
 inline void expectEdges(const View& view) {
   Random random(4, 0, 0);
   const double radius = view.volume.boundingRadius();
@@ -233,7 +232,7 @@ inline void expectEdges(const View& view) {
     }
 }
 
-/// Tests every mode, smoothing and number of control points; for large buffers only one.
+/// Tests every mode, smoothing and number of control points; only one case for large buffers.
 inline void expectValid(const View& view) {
   if (DepthBuffer(view.camera, view.volume).size() > 40'000)
     return expectValid(view, {.controlPoints = 30, .smoothing = 1.0});

@@ -1,4 +1,4 @@
-// Clipping surface of awkward focuses and views (SurfaceChecks.h).
+// Clipping surfaces of difficult focuses and views (SurfaceChecks.h).
 
 #include "Stress/SurfaceChecks.h"
 #include "base/Error.h"
@@ -6,11 +6,11 @@
 namespace fenestra::SurfaceStressTests {
 namespace {
 
-// ---- the focuses
+// ---- focuses
 
 const Grid cube = makeCenteredGrid({32, 32, 32});
 
-/// Tests views from 100 mm in front, `scale` mm up and down at the centre.
+/// Tests views from 100 mm in front; `scale`: half the view's height at the center, mm.
 void expectValidFromFront(const Mask& focus, double scale, const Grid& volume = cube) {
   for (const auto projection : projections)
     for (const auto& [width, height] : {std::pair{40, 30}, std::pair{5, 13}}) {
@@ -23,24 +23,24 @@ Mask makeOneVoxel() {
   return makeBoxMask(cube, Vec3::Constant(0.1), Vec3::Constant(0.9));
 }
 
-TEST(SurfaceStress, OneVoxelGivesASoundSurface) {
+TEST(SurfaceStress, OneVoxelIsValid) {
   for (const double scale : {0.9, 4.0})
     expectValidFromFront(makeOneVoxel(), scale);
 }
 
-TEST(SurfaceStress, OnePixelGivesAFlatSurfaceAndAWarning) {
+TEST(SurfaceStress, OnePixelGivesFlatSurfaceAndWarning) {
   const Camera camera = makeAnteriorCamera(Projection::orthographic, 100.0, 20.0, 40, 40);
   const View view{camera, cube, makeOneVoxel()};
   const ClippingSurface surface = view.surface({});
   EXPECT_EQ(surface.controlPoints.size(), 1U);
   EXPECT_EQ(surface.warnings.size(), 1U);
   EXPECT_EQ(surface.warnings[0],
-            "the focus covers hardly a pixel: the clipping surface is flat; choose a larger "
+            "the focus covers hardly a pixel, so the clipping surface is flat; use a larger "
             "--size, or a view that frames the focus");
   expectValid(view);
 }
 
-TEST(SurfaceStress, FocusAtTheVolumesBorderIsSound) {
+TEST(SurfaceStress, FocusAtVolumeBoundaryIsValid) {
   for (const Vec3& corner : {Vec3(-16, -16, -16), Vec3(16, 16, 16), Vec3(-16, 16, 0)}) {
     const Mask focus =
         makeMask(cube, [&](const Vec3& p) { return (p - corner).cwiseAbs().maxCoeff() < 9.0; });
@@ -49,7 +49,7 @@ TEST(SurfaceStress, FocusAtTheVolumesBorderIsSound) {
   }
 }
 
-TEST(SurfaceStress, FocusThatFillsTheViewIsSound) {
+TEST(SurfaceStress, FocusThatFillsViewIsValid) {
   const Mask everything = makeMask(cube, [](const Vec3&) { return true; });
   for (const double scale : {5.0, 15.9, 16.0, 40.0})
     expectValidFromFront(everything, scale);
@@ -64,7 +64,7 @@ TEST(SurfaceStress, FocusThatFillsTheViewIsSound) {
   expectValidFromFront(makeSphereMask(cube, 14.0), 3.0);
 }
 
-TEST(SurfaceStress, ManyComponentsAreSound) {
+TEST(SurfaceStress, ManyComponentsAreValid) {
   const auto every = [](const Vec3& p, double n) {
     const Vec3 cell = (p.array() + 15.5) / n;
     return cell == Vec3(cell.array().floor());
@@ -73,7 +73,7 @@ TEST(SurfaceStress, ManyComponentsAreSound) {
     expectValidFromFront(makeMask(cube, [&](const Vec3& p) { return every(p, n); }), 17.0);
 }
 
-TEST(SurfaceStress, HolesInTheFocusAreSound) {
+TEST(SurfaceStress, HolesInFocusAreValid) {
   const Mask plate = makeMask(cube, [](const Vec3& p) {
     const bool isHole = std::hypot(std::remainder(p.x(), 8.0), std::remainder(p.z(), 8.0)) < 2.5;
     return std::abs(p.y()) < 3.0 && !isHole;
@@ -85,8 +85,8 @@ TEST(SurfaceStress, HolesInTheFocusAreSound) {
   expectValidFromFront(ring, 17.0);
 }
 
-TEST(SurfaceStress, SheetSeenEdgeOnIsSound) {
-  // Sheet one voxel thick along the view: exactly parallel, and where the sheet is a staircase.
+TEST(SurfaceStress, SheetSeenEdgeOnIsValid) {
+  // Sheet one voxel thick, parallel to the view, and tilted: a staircase of voxels.
   for (const double tilt : {0.0, 1e-3, 0.3}) {
     const Mask sheet = makeMask(cube, [&](const Vec3& p) {
       const double x = p.x() - tilt * p.y();
@@ -97,8 +97,8 @@ TEST(SurfaceStress, SheetSeenEdgeOnIsSound) {
   }
 }
 
-TEST(SurfaceStress, DepthJumpsAreSound) {
-  // Stripes and a chequerboard of plates, two voxels thick each, 500 mm apart.
+TEST(SurfaceStress, DepthJumpsAreValid) {
+  // Stripes and a checkerboard of plates, each two voxels thick, 500 mm apart.
   const Grid deep = makeCenteredGrid({32, 32, 32}, {1.0, 20.0, 1.0});
   const auto plate = [](const Vec3& p, bool isNear) {
     return std::abs(p.y() + (isNear ? 250.0 : -250.0)) < 20.0;
@@ -116,7 +116,7 @@ TEST(SurfaceStress, DepthJumpsAreSound) {
   }
 }
 
-// ---- the views
+// ---- views
 
 /// Camera whose middle pixel looks at the target.
 Camera makeCamera(Projection projection, const Vec3& from, const Vec3& to, double scale,
@@ -131,7 +131,7 @@ Camera makeCamera(Projection projection, const Vec3& from, const Vec3& to, doubl
   return {pose, 17, 13};
 }
 
-TEST(SurfaceStress, CameraInsideTheVolumeIsSound) {
+TEST(SurfaceStress, CameraInsideVolumeIsValid) {
   const Mask ball = makeSphereMask(cube, 6.0);
   for (const auto projection : projections)
     for (const Vec3& from : {Vec3(10, -11, 3), Vec3(8, 0, 0), Vec3(-16, -16, -16), Vec3(2, 1, 3)})
@@ -141,7 +141,7 @@ TEST(SurfaceStress, CameraInsideTheVolumeIsSound) {
       }
 }
 
-TEST(SurfaceStress, CameraInsideTheFocusIsSound) {
+TEST(SurfaceStress, CameraInsideFocusIsValid) {
   const Mask everything = makeMask(cube, [](const Vec3&) { return true; });
   for (const auto projection : projections) {
     const View view{makeCamera(projection, {3, 2, 1}, {-1, 5, 2}, 5.0), cube, everything};
@@ -160,8 +160,8 @@ TEST(SurfaceStress, CameraInsideTheFocusIsSound) {
   }
 }
 
-TEST(SurfaceStress, ViewsAlongAxesAndDiagonalsAreSound) {
-  const Mask box = makeBoxMask(cube, {-6, -6, -6}, {6, 6, 6}); // voxel centres at half-integers
+TEST(SurfaceStress, ViewsAlongAxesAndDiagonalsAreValid) {
+  const Mask box = makeBoxMask(cube, {-6, -6, -6}, {6, 6, 6}); // voxel centers at half-integers
   for (const auto projection : projections)
     for (const Vec3& direction : {Vec3(1, 0, 0), Vec3(0, 0, -1), Vec3(1, 1, 0), Vec3(1, 1, 1)})
       for (const double offset : {0.0, 0.5}) {
@@ -171,7 +171,7 @@ TEST(SurfaceStress, ViewsAlongAxesAndDiagonalsAreSound) {
       }
 }
 
-TEST(SurfaceStress, ExtremeFieldsOfViewAreSound) {
+TEST(SurfaceStress, ExtremeFieldsOfViewAreValid) {
   const Mask ball = makeSphereMask(cube, 9.0);
   for (const double angle : {1.0, 150.0, 179.0})
     for (const double distance : {20.0, 60.0}) {
@@ -181,14 +181,14 @@ TEST(SurfaceStress, ExtremeFieldsOfViewAreSound) {
     }
   expectValid(
       {makeCamera(Projection::orthographic, {0, -60, 0.2}, Vec3::Zero(), 100.0), cube, ball});
-  // Picture of one point of the focus, 1e-6 mm wide.
+  // Image of one point of the focus, 1e-6 mm wide.
   expectValid(
       {makeCamera(Projection::orthographic, {0, -60, 0.2}, Vec3::Zero(), 5e-7), cube, ball});
   expectValid(
       {makeCamera(Projection::perspective, {0, -60, 0.2}, Vec3::Zero(), 1, 1e-6), cube, ball});
 }
 
-TEST(SurfaceStress, FlatVoxelsAreSound) {
+TEST(SurfaceStress, FlatVoxelsAreValid) {
   const Grid flat = makeCenteredGrid({100, 100, 3}, {0.01, 0.01, 100.0});
   const Mask focus = makeBoxMask(flat, {-0.2, -0.3, -1.0}, {0.2, 0.3, 1.0});
   for (const auto projection : projections) {
@@ -198,7 +198,7 @@ TEST(SurfaceStress, FlatVoxelsAreSound) {
   }
 }
 
-TEST(SurfaceStress, FarFromTheOriginDepthsAreUnchanged) {
+TEST(SurfaceStress, FarFromOriginDepthsAreUnchanged) {
   const Vec3 far(1e6, -1e6, 1e6);
   Mask ball = makeSphereMask(cube, 9.0);
   for (const auto projection : projections) {
@@ -221,7 +221,7 @@ TEST(SurfaceStress, FarFromTheOriginDepthsAreUnchanged) {
   }
 }
 
-// ---- refusals
+// ---- errors
 
 void expectRefused(const Camera& camera, const Domain& volume, const Mask& focus) {
   for (const auto mode : {SurfaceMode::cutaway, SurfaceMode::surface})
@@ -230,15 +230,15 @@ void expectRefused(const Camera& camera, const Domain& volume, const Mask& focus
       ADD_FAILURE() << "no Error";
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::input);
-      EXPECT_EQ(std::string(error.what()).find("focus A: cannot be seen: "), 0U) << error.what();
+      EXPECT_EQ(std::string(error.what()).find("focus A: is not visible: "), 0U) << error.what();
     }
 }
 
-TEST(SurfaceStress, FocusThatNoRayMeetsIsRefused) {
+TEST(SurfaceStress, FocusThatNoRayHitsIsError) {
   const Mask ball = makeSphereMask(cube, 4.0);
   const Camera ahead = makeAnteriorCamera(Projection::perspective, 100.0, 20.0, 16, 16);
   expectRefused(ahead, cube, makeMask(cube, [](const Vec3&) { return false; }));
-  // Focus behind the eye, and the eye in the volume.
+  // Focus behind the camera, and the camera in the volume.
   expectRefused(makeCamera(Projection::perspective, {0, 12, 0}, {0, 20, 0}, 1.0), cube, ball);
   expectRefused(makeCamera(Projection::orthographic, {0, 12, 0}, {0, 20, 0}, 5.0), cube, ball);
   // Focus smaller than a pixel, between the samples.

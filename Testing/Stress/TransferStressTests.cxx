@@ -1,5 +1,4 @@
-// Extreme transfer functions, and volumes of one value, against analytic integrals of the
-// functions.
+// Extreme transfer functions and constant volumes, against analytic integrals of the functions.
 
 #include "StressSupport.h"
 
@@ -20,7 +19,7 @@ Volume makeScalarRamp() {
   });
 }
 
-/// Value just right of s (a step belongs to its right side), from sorted knots.
+/// Right-hand limit at s (a step has the value of its right side), from sorted knots.
 double evaluate(const Knots& knots, double s) {
   double value = knots.front().value[0];
   for (std::size_t i = 0; i < knots.size(); ++i) {
@@ -35,7 +34,7 @@ double evaluate(const Knots& knots, double s) {
   return value;
 }
 
-/// Integral of the function over the volume's scalars: trapezia between knots.
+/// Integral of the function over the volume's scalars, by trapezoids between knots.
 double integrate(const Knots& knots) {
   std::vector<double> ends = {lowest, highest};
   for (const auto& k : knots)
@@ -45,14 +44,14 @@ double integrate(const Knots& knots) {
   double sum = 0.0;
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
     const double width = ends[i + 1] - ends[i];
-    if (width > 1e-6) // linear inside: two interior points determine the line
+    if (width > 1e-6) // linear inside, so two interior points determine the line
       sum += 0.5 * width *
              (evaluate(knots, ends[i] + 0.25 * width) + evaluate(knots, ends[i] + 0.75 * width));
   }
   return sum;
 }
 
-/// Optical depth of a ray along the ramp: 10 mm, plus half a voxel of the scalar at either end.
+/// Optical depth of a ray along the ramp: 10 mm, plus half a voxel at each end.
 double computeOpticalDepth(const Knots& knots) {
   return 0.5 * evaluate(knots, lowest) + integrate(knots) / (highest - lowest) * 10.0 +
          0.5 * evaluate(knots, highest);
@@ -76,11 +75,11 @@ std::vector<TransferCase> makeTransferCases() {
       {"stepsInOneVoxel",
        {makeKnot(20, 0), makeKnot(20, 1), makeKnot(25, 1), makeKnot(25, 0), makeKnot(30, 0),
         makeKnot(30, 2), makeKnot(32, 2), makeKnot(32, 0)}},
-      {"stepAtTheLeastScalar", {makeKnot(lowest, 0.8), makeKnot(lowest, 0.1)}},
-      {"stepAtTheGreatestScalar", {makeKnot(highest, 0.1), makeKnot(highest, 0.4)}},
-      {"stepAtAVoxel", {makeKnot(100, 0.0), makeKnot(100, 0.2)}},
+      {"stepAtMinimum", {makeKnot(lowest, 0.8), makeKnot(lowest, 0.1)}},
+      {"stepAtMaximum", {makeKnot(highest, 0.1), makeKnot(highest, 0.4)}},
+      {"stepAtVoxel", {makeKnot(100, 0.0), makeKnot(100, 0.2)}},
       {"oneUlpWide", {makeKnot(50, 0.05), makeKnot(next, 0.3)}},
-      {"leastSpan", {makeKnot(0, 0.05), makeKnot(5e-324, 0.3)}},
+      {"minimumSpan", {makeKnot(0, 0.05), makeKnot(5e-324, 0.3)}},
       {"subnormalSpan", {makeKnot(0, 0.05), makeKnot(1e-310, 0.2), makeKnot(2e-310, 0.3)}},
       {"below", {makeKnot(-5000, 0), makeKnot(-4000, 0.2)}},
       {"above", {makeKnot(4000, 0.1), makeKnot(5000, 0.9)}},
@@ -100,7 +99,7 @@ class TransferExtremes : public ::testing::TestWithParam<TransferCase> {};
 TEST_P(TransferExtremes, TransmittanceEqualsExpOfIntegral) {
   const Volume volume = makeScalarRamp();
   const double expected = std::exp(-computeOpticalDepth(GetParam().knots));
-  Knots unsorted = GetParam().knots; // any order of positions; coincident knots keep their order
+  Knots unsorted = GetParam().knots; // positions in any order; coincident knots keep their order
   std::stable_sort(unsorted.begin(), unsorted.end(),
                    [](const auto& a, const auto& b) { return a.position > b.position; });
   for (const Knots& knots : {GetParam().knots, unsorted}) {
@@ -143,7 +142,7 @@ struct PropertyCase {
 
 class PropertyExtremes : public ::testing::TestWithParam<PropertyCase> {};
 
-TEST_P(PropertyExtremes, TransmittanceEqualsTheFormula) {
+TEST_P(PropertyExtremes, TransmittanceEqualsFormula) {
   VolumeProperty property;
   property.scalarOpacity = GetParam().opacity;
   property.color = {{0.0, Rgb::Zero()}};
@@ -158,7 +157,7 @@ TEST_P(PropertyExtremes, TransmittanceEqualsTheFormula) {
     const double opacity = std::min(interpolateCurve(property.scalarOpacity, s), 0.9999);
     depth -= std::log1p(-opacity) / property.unitDistance * 0.5 / steps;
   }
-  // The table's relative error is <= 1e-4.
+  // The table's relative error is at most 1e-4.
   ASSERT_LT(depth, 8.0);
   probe.expectTransmittance({{0.2, -0.3, -0.25}, Vec3::UnitZ()}, {0.0, 0.5}, std::exp(-depth),
                             scaleSamples(20000));
@@ -168,18 +167,18 @@ INSTANTIATE_TEST_SUITE_P(
     Properties, PropertyExtremes,
     ::testing::Values(
         PropertyCase{"opaque", {{0.0, 1.0}}, 1.0},
-        PropertyCase{"opaqueFromHere", {{0.0, 0.0}, {50.0, 1.0}, {100.0, 1.0}}, 1.0},
-        PropertyCase{"opaqueAtAPoint", {{0.0, 0.0}, {50.0, 1.0}, {100.0, 0.0}}, 1.0},
+        PropertyCase{"opaqueAbove", {{0.0, 0.0}, {50.0, 1.0}, {100.0, 1.0}}, 1.0},
+        PropertyCase{"opaqueAtPoint", {{0.0, 0.0}, {50.0, 1.0}, {100.0, 0.0}}, 1.0},
         PropertyCase{"clear", {{0.0, 0.0}}, 1.0},
         PropertyCase{"step", {{50.0, 0.1}, {50.0, 0.7}}, 1.0},
         PropertyCase{"sharp", {{0.0, 0.1, 0.5, 1.0}, {100.0, 0.8, 0.5, 1.0}}, 1.0},
-        PropertyCase{"midpointAtItsEnd", {{40.0, 0.1, 1.0, 0.0}, {60.0, 0.8, 0.0, 0.0}}, 1.0},
+        PropertyCase{"midpointAtEnd", {{40.0, 0.1, 1.0, 0.0}, {60.0, 0.8, 0.0, 0.0}}, 1.0},
         PropertyCase{"sharpMidpoint", {{40.0, 0.1, 0.0, 0.5}, {60.0, 0.8, 0.5, 0.0}}, 1.0},
         PropertyCase{"longUnit", {{0.0, 1.0}}, 1e30},
         PropertyCase{"farNodes", {{-1e38, 0.3}, {1e38, 0.5}}, 1.0}),
     [](const auto& info) { return std::string(info.param.name); });
 
-// ---- one value everywhere
+// ---- constant volumes
 
 template <typename Voxel>
 void expectConstantIs(double value, double sigma_t) {
@@ -195,7 +194,7 @@ void expectConstantIs(double value, double sigma_t) {
   scene.pose.position = {10.0, -10.0, 8.0};
   scene.pose.target = Vec3::Zero();
   scene.pose.scale = 3.0;
-  for (const bool hybrid : {false, true}) { // no gradient: never a surface
+  for (const bool hybrid : {false, true}) { // no gradient, so no surface
     if (hybrid)
       scene.transfer.shading = SurfaceShading{};
     expectRadianceOne(renderScene(scene, scaleSamples(60)));
@@ -203,7 +202,7 @@ void expectConstantIs(double value, double sigma_t) {
 }
 
 TEST(Classification, ConstantVolumeHasConstantExtinction) {
-  expectConstantIs<std::uint8_t>(0.0, 0.3); // a step belongs to its right side
+  expectConstantIs<std::uint8_t>(0.0, 0.3); // a step has the value of its right side
   expectConstantIs<std::int16_t>(0.0, 0.3);
   expectConstantIs<float>(0.0, 0.3);
   expectConstantIs<float>(-0.0, 0.3);

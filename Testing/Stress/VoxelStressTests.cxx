@@ -1,6 +1,5 @@
-// Unusual voxel values of every storage type: the reader must store the documented replacement, and
-// the picture must equal that of a file with the replaced values. And limits on a scene's
-// extinction.
+// Unusual voxel values of every type: the reader must store the documented replacement, and the
+// image must equal that of a file with the replaced values. Also the limit of a scene's extinction.
 
 #include "Approx.h"
 #include "StressSupport.h"
@@ -14,8 +13,8 @@ namespace {
 /// Geometry of 4x4x4 voxels of 1 mm.
 const FileGeometry cube{.size = {4, 4, 4}};
 
-/// Ordinary values 0 to 94 (steps of 1.5 if the type has fractions), with the values `odd` in
-/// between.
+/// Ordinary values 0 to 94 (steps of 1.5 if the type has fractions), and the values `odd` among
+/// them.
 template <typename T>
 std::vector<T> makeSamples(const std::vector<T>& odd) {
   std::vector<T> samples(64);
@@ -26,8 +25,8 @@ std::vector<T> makeSamples(const std::vector<T>& odd) {
   return samples;
 }
 
-/// Documented replacement: NaN and -infinity become the least finite value, +infinity the greatest;
-/// values beyond float are clamped to its range.
+/// Documented replacement: NaN and -infinity become the minimum finite value, +infinity the
+/// maximum; values beyond float are clamped to its range.
 template <typename T>
 std::vector<float> replaceOdd(const std::vector<T>& samples) {
   std::vector<long double> finite;
@@ -56,7 +55,7 @@ Film renderFilm(RenderRequest request, int samples) {
   return render(scene.view(), settings, monitor).film;
 }
 
-/// Picture by the command line's defaults, in an environment of 1.
+/// Image with the command line's defaults, in an environment of 1.
 Film renderFile(const std::filesystem::path& volume, const std::optional<std::string>& transfer) {
   RenderRequest request;
   request.input = volume;
@@ -65,7 +64,7 @@ Film renderFile(const std::filesystem::path& volume, const std::optional<std::st
   return renderFilm(request, 16);
 }
 
-/// Compares the stored voxels and the pictures, under a given look and under the default look.
+/// Compares the stored voxels and the images, with a given and with the default transfer function.
 template <typename T>
 void expectReplaced(const std::vector<T>& odd) {
   const TemporaryFolder folder;
@@ -86,7 +85,7 @@ void expectReplaced(const std::vector<T>& odd) {
   EXPECT_EQ(volume.maximum, static_cast<double>(*greatest));
 
   const std::string transferFile =
-      folder.write("look.json", R"({"extinction": [[-50, 0.1], [20, 0], [80, 1.5], [80, 0.4]],
+      folder.write("transfer.json", R"({"extinction": [[-50, 0.1], [20, 0], [80, 1.5], [80, 0.4]],
                                     "albedo": [[0, 0.9, 0.5, 0.1], [90, 0.2, 0.8, 0.9]]})");
   for (const std::optional<std::string>& transfer :
        {std::optional(transferFile), std::optional<std::string>{}}) {
@@ -97,7 +96,7 @@ void expectReplaced(const std::vector<T>& odd) {
       ASSERT_TRUE((pixel.mean >= 0.0).all() && allFinite(pixel.mean));
       sum += pixel.mean.sum();
     }
-    EXPECT_GT(sum, 0.0) << "black says nothing";
+    EXPECT_GT(sum, 0.0) << "a black image tests nothing";
   }
 }
 
@@ -145,11 +144,11 @@ TEST(OddVoxels, NonFiniteDoublesAreReplaced) {
   expectReplaced<double>({1e-310, 1e-40, -1e-40, 1e39, -1e300});
 }
 
-TEST(OddVoxels, WithoutFiniteVoxelIsRefusedWithOneIsConstant) {
+TEST(OddVoxels, NoFiniteVoxelIsErrorOneIsConstantVolume) {
   const TemporaryFolder folder;
   const double nan = std::nan("");
   writeFile(folder / "none.nrrd", std::vector<double>(64, nan), cube);
-  expectRefused(folder / "none.nrrd", "no voxel is a finite number",
+  expectRefused(folder / "none.nrrd", "has no finite voxel",
                 [&] { renderFile(folder / "none.nrrd", {}); });
   std::vector<double> one(64, nan);
   one[63] = -1000.0;
@@ -158,7 +157,7 @@ TEST(OddVoxels, WithoutFiniteVoxelIsRefusedWithOneIsConstant) {
   expectEqualBits(renderFile(folder / "one.nrrd", {}), renderFile(folder / "easy.nrrd", {}));
 }
 
-TEST(ConstantFiles, DefaultLookDoesNotDependOnTheValue) {
+TEST(ConstantFiles, DefaultTransferDoesNotDependOnValue) {
   const TemporaryFolder folder;
   const auto renderConstant = [&](double value) {
     writeFile(folder / "v.nrrd", std::vector<float>(64, static_cast<float>(value)), cube);
@@ -170,7 +169,7 @@ TEST(ConstantFiles, DefaultLookDoesNotDependOnTheValue) {
     expectEqualBits(renderConstant(value), usual);
 }
 
-// ---- limits on a scene's extinction
+// ---- limit of a scene's extinction
 
 std::string makeDenseTransfer(double extinction) {
   std::ostringstream text;
@@ -179,7 +178,7 @@ std::string makeDenseTransfer(double extinction) {
   return text.str();
 }
 
-TEST(ExtinctionLimit, OpticalDepthAboveTenMillionIsRefused) {
+TEST(ExtinctionLimit, OpticalDepthAboveTenMillionIsError) {
   const TemporaryFolder folder;
   writeFile(folder / "v.nrrd", std::vector<std::uint8_t>(64, 10), cube);
   const double limit = 1e7 / (4.0 * std::sqrt(3.0)); // across the diagonal of 4 mm
@@ -189,9 +188,9 @@ TEST(ExtinctionLimit, OpticalDepthAboveTenMillionIsRefused) {
                   [&] { renderFile(folder / "v.nrrd", transferFile); });
   }
   const auto transferFile = folder.write("at.json", makeDenseTransfer(0.999 * limit));
-  // Every eye ray meets a half-space of albedo 0.9 head-on: Chandrasekhar's reflectance.
+  // Every camera ray hits a half-space of albedo 0.9 head-on: Chandrasekhar's reflectance.
   const Estimate estimate = estimateMean(renderFile(folder / "v.nrrd", transferFile));
-  EXPECT_GT(estimate.mean, 0.25); // rays beside the volume show black
+  EXPECT_GT(estimate.mean, 0.25); // rays that miss the volume are black
   RenderRequest request;
   request.input = folder / "v.nrrd";
   request.transfer = transferFile;
@@ -199,7 +198,7 @@ TEST(ExtinctionLimit, OpticalDepthAboveTenMillionIsRefused) {
   expectRefused(transferFile, "extinction: reaches", [&] { PreparedScene scene(request); });
 }
 
-TEST(ExtinctionLimit, ReflectanceEqualsChandrasekhars) {
+TEST(ExtinctionLimit, ReflectanceEqualsChandrasekharsValue) {
   const TemporaryFolder folder;
   writeFile(folder / "v.nrrd", std::vector<std::uint8_t>(64, 10), cube);
   const auto transferFile = folder.write("at.json", makeDenseTransfer(1e6));
