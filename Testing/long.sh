@@ -1,96 +1,91 @@
 #!/usr/bin/env bash
-# The long version of everything that checks, and its record: Testing/Report. An hour or several.
+# Runs the long version of all checks and writes their record, Testing/Report. Takes several hours.
 # usage: bash Testing/long.sh [STAGE...]
-# Stages, in this order where none is named:
-#   accuracy      Release: the statistical, stress and regression tests with long budgets
+# Stages; without arguments, all of the first group run in this order:
+#   accuracy      statistical, stress and regression tests with large sample counts, in Release
 #   seeds         the short matrix with twenty seed bases, on every instruction set
-#   planted       the errors planted in a copy of the renderer
-#   instructions  the statistical tests and the planted errors on every instruction set
-#   addresses     the whole suite under AddressSanitizer and UndefinedBehaviorSanitizer, each access
-#                 checked
-#   threads       the whole suite under ThreadSanitizer, with a oneTBB that it can see into
-#   clang         the whole suite, and the benchmarks that nothing tests, built by clang
-#   headers       each header of the renderer compiled alone
-#   faults        every fault that Testing/Faults makes, and 20,000 damaged files
-#   films         200 kills of a render that keeps a film, a picture merged from 16 parts, and
-#                 pictures by up to 7 ranks of mpirun
-#   study         a study of 12 cases, killed half way; jobs of a real Slurm
-#   paths         instructions a path, against the record in Testing/Benchmarks/Report
-#   package       the archive in a root with busybox alone, in Debian 11, in the extension's package; built
-#                 twice; the Debian package by lintian
-# and only where it is named:
-#   fuzz          10^6 executions of every fuzz target, in an hour each at most, and 10^4 damaged
-#                 files through the child that reads DICOM and transforms
-#   boundary      the clipping surface's boundary on sub-pixel rays; what its record says of the
-#                 figures is written by hand
-# Each stage writes a file of its own there and leaves the others as they are; logs of what failed
-# are in build/report.
+#   mutations     mutation testing of the renderer
+#   instructions  statistical tests and mutation testing on every instruction set
+#   asan          all tests under AddressSanitizer and UndefinedBehaviorSanitizer, every access checked
+#   tsan          all tests under ThreadSanitizer, with an instrumented oneTBB
+#   clang         all tests built with clang; also builds the benchmarks
+#   headers       compiles each header of the renderer alone
+#   faults        every fault of Testing/FaultInjection, and 20,000 corrupted files
+#   checkpoints   200 kills of a render with a checkpoint file, an image merged from 16 shards, and images
+#                 by up to 7 ranks of mpirun
+#   batch         a batch of 12 cases, killed half way and resumed; jobs in a Slurm of this machine
+#   paths         CPU instructions per path, compared with Testing/Benchmarks/Report
+#   package       the archive in a root with only Busybox, in Debian 11, in the extension's package; a
+#                 reproducible build; the Debian package in lintian
+# Only if named:
+#   fuzz          10^6 executions of every fuzz target, at most an hour each, and 10^4 corrupted files
+#                 through the sandboxed reader of DICOM and transform files
+#   boundary      the boundary of the clipping surface on subpixel rays
+# Each stage replaces its own CSV files of the record; Testing/Report/README.md, the summary, is edited by
+# hand. Logs of failures are in build/report.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../Resources/setup.sh"
 record=$top/Testing/Report
 logs=$top/build/report
 labels=(unit statistical stress regression cli slicer)
-sets=(AVX3 AVX2 SSE4 SCALAR) # instruction sets, by Highway's names
+sets=(AVX3 AVX2 SSE4 SCALAR) # instruction sets, as named by Highway
 
-# in_record FILE COMMAND...: the file of the record becomes what the command prints.
-in_record() {
-  local file=$record/$1
+# store FILE COMMAND...: replaces a file of the record by the output of a command, unless that is empty or the
+# command was skipped (exit status 77). Returns its exit status.
+store() {
+  local file=$record/$1 status=0
   shift
-  "$@" >"$file.tmp"
-  mv "$file.tmp" "$file"
+  "$@" >"$file.tmp" || status=$?
+  if [ $status -ne 77 ] && [ -s "$file.tmp" ]; then mv "$file.tmp" "$file"; fi
+  rm -f "$file.tmp"
+  return $status
 }
 
-# counts LOG START: cells of a table: what passed, was skipped, failed, and seconds since START.
+# counts LOG START: prints CSV cells: tests passed, skipped, failed, and seconds since START.
 counts() {
-  printf '%s | %s | %s | %s' "$(grep -c '   Passed ' "$1")" "$(grep -c '\*\*\*Skipped' "$1")" \
+  printf '%s,%s,%s,%s' "$(grep -c '   Passed ' "$1")" "$(grep -c '\*\*\*Skipped' "$1")" \
     "$(grep -cE '\*\*\*(Failed|Timeout|Exception)' "$1")" $((SECONDS - $2))
 }
 
-# run_labels TITLE FOLDER LABEL...: runs tests by label and prints a table of what came of them.
+# run_labels FOLDER LABEL...: runs the tests with these labels and prints a table of the results.
 run_labels() {
-  local title=$1 folder=$2
-  shift 2
-  printf '# %s\n\n' "$title"
-  printf '| tests | passed | skipped | failed | seconds |\n|---|---|---|---|---|\n'
+  local folder=$1
+  shift
+  printf 'tests,passed,skipped,failed,seconds\n'
   local label start log
   for label in "$@"; do
     log=$logs/$(basename "$folder")-$label.log
     start=$SECONDS
     ctest --test-dir "$folder" -L "^$label\$" -j"$(nproc)" \
       --output-on-failure >"$log" 2>&1 || say "some $label tests failed: see $log" >&2
-    printf '| %s | %s |\n' "$label" "$(counts "$log" "$start")"
+    printf '%s,%s\n' "$label" "$(counts "$log" "$start")"
   done
 }
 
 stage_accuracy() {
   build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON
-  {
-    printf '# Pictures converged by independent renderers\n\n'
-    printf '| who, scene | values | mean of z | deviation of z | image means in errors |\n|---|---|---|---|---|\n'
-  } >"$record/references.md"
-  FENESTRA_LONG=1 FENESTRA_REPORT=$record in_record accuracy.md \
-    run_labels 'Statistical, stress and regression tests with long budgets' "$top/build" \
+  echo 'renderer,scene,values,mean of z,standard deviation of z,z of red mean,z of green mean,z of blue mean' \
+    >"$record/references.csv"
+  FENESTRA_LONG=1 FENESTRA_REPORT=$record store accuracy.csv run_labels "$top/build" \
     statistical stress regression
 }
 
-# machine_has SET: whether programs can be pinned to an instruction set here.
+# machine_has SET: true if programs can be pinned to an instruction set on this machine.
 machine_has() {
   FENESTRA_INSTRUCTIONS=$1 "$top/build/bin/MatrixTests" --gtest_list_tests >/dev/null 2>&1
 }
 
-# seed_row SET SEED: a row of the table, in $rows/SET-SEED.
+# seed_row SET SEED: writes a row of the table to $rows/SET-SEED.
 seed_row() {
-  local held=yes out
-  out=$(FENESTRA_INSTRUCTIONS=$1 FENESTRA_SEED=$2 "$top/build/bin/MatrixTests" --gtest_filter='*fast') || held=no
-  printf '| %s | %s | %s%s |\n' "$1" "$2" \
-    "$(sed -n 's/.*: probability \([^ ]*\) .*/\1 | /p' <<<"$out" | tr -d '\n')" "$held" >"$rows/$1-$2"
+  local passed=yes out
+  out=$(FENESTRA_INSTRUCTIONS=$1 FENESTRA_SEED=$2 "$top/build/bin/MatrixTests" --gtest_filter='*simd') || passed=no
+  printf '%s,%s,%s%s\n' "$1" "$2" \
+    "$(sed -n 's/.*: probability \([^ ]*\) .*/\1,/p' <<<"$out" | tr -d '\n')" "$passed" >"$rows/$1-$2"
 }
 
-# print_seeds FOLDER: the table of the rows in it.
+# print_seeds FOLDER: prints the table of the rows in a folder.
 print_seeds() {
-  printf '# Twenty seed bases of the short matrix, on every instruction set\n\n'
-  printf '| instructions | seed base | %s | all hold |\n|---|---|---|---|---|---|---|---|---|\n' \
-    'pixel | tile | picture | tiles uniform | pictures uniform | mean is 0'
+  printf 'instruction set,seed base,pixel,tile,image,tiles uniform,images uniform,mean is 0,all pass\n'
   local name seed
   for name in "${sets[@]}"; do
     for seed in $(seq 20); do
@@ -108,31 +103,30 @@ stage_seeds() {
     machine_has "$name" || continue
     seq 20 | top=$top rows=$rows xargs -P "$(nproc)" -I{} bash -c "seed_row $name {}"
   done
-  in_record seeds.md print_seeds "$rows"
+  store seeds.csv print_seeds "$rows"
   rm -r "$rows"
 }
 
-# Builds what looks for planted errors, for run_planted.
-build_planted() {
+# Builds the program of run_mutations.
+build_mutations() {
   build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON
-  cmake --build "$top/build" --target PlantedTests
+  cmake --build "$top/build" --target MutationTests
 }
 
-# run_planted LOG: looks for them, on FENESTRA_INSTRUCTIONS where that is set.
-run_planted() {
-  "$top/build/bin/PlantedTests" >"$1" 2>&1
+# run_mutations LOG: searches all mutations, on FENESTRA_INSTRUCTIONS if that is set.
+run_mutations() {
+  "$top/build/bin/MutationTests" >"$1" 2>&1
 }
 
-stage_planted() {
-  build_planted
-  FENESTRA_REPORT=$record run_planted "$logs/planted.log" ||
-    say "not all planted errors are found: see $logs/planted.log"
+stage_mutations() {
+  build_mutations
+  FENESTRA_REPORT=$record run_mutations "$logs/mutations.log" ||
+    say "some mutations were not found: see $logs/mutations.log"
 }
 
-# run_instructions: prints a table of the statistical tests on each that the machine has.
+# run_instructions: prints a table of the statistical tests and mutations on each instruction set.
 run_instructions() {
-  printf '# The statistical tests on every instruction set\n\nAn error planted in both transports counts as two.\n\n'
-  printf '| instructions | passed | skipped | failed | seconds | planted errors found |\n|---|---|---|---|---|---|\n'
+  printf 'instruction set,passed,skipped,failed,seconds,mutations found\n'
   local name start log row
   for name in "${sets[@]}"; do
     machine_has "$name" || continue
@@ -141,33 +135,31 @@ run_instructions() {
     FENESTRA_INSTRUCTIONS=$name ctest --test-dir "$top/build" -L '^statistical$' -j"$(nproc)" \
       --output-on-failure >"$log" 2>&1 || say "some tests failed on $name: see $log" >&2
     row=$(counts "$log" "$start")
-    log=$logs/planted-$name.log
-    FENESTRA_INSTRUCTIONS=$name run_planted "$log" || say "not all planted errors are found on $name: see $log" >&2
-    printf '| %s | %s | %s |\n' "$name" "$row" "$(sed -n 's/^planted errors found: //p' "$log")"
+    log=$logs/mutations-$name.log
+    FENESTRA_INSTRUCTIONS=$name run_mutations "$log" || say "some mutations were not found on $name: see $log" >&2
+    printf '%s,%s,%s\n' "$name" "$row" "$(sed -n 's/^mutations found: //p' "$log")"
   done
 }
 
 stage_instructions() {
-  build_planted
-  in_record instructions.md run_instructions
+  build_mutations
+  store instruction-sets.csv run_instructions
 }
 
-# Sanitizers look at what is computed, not at its error: a fourth of the samples, a tenth of the
-# matrix.
-smaller=', brief: a fourth of the samples, 24 combinations'
+# Sanitizers check memory accesses and threads, not errors of the result, so fewer samples suffice:
+# FENESTRA_BRIEF=4 divides the sample counts by 4, and the matrix has 24 combinations.
 
-stage_addresses() {
+stage_asan() {
   install_packages clang libclang-rt-14-dev
   (cd "$top" && cmake --preset asan-ubsan -DFENESTRA_CHECK_ACCESSES=ON >/dev/null &&
     cmake --build build-asan-ubsan)
   LSAN_OPTIONS="suppressions=$top/Testing/lsan.supp" FENESTRA_BRIEF=4 FENESTRA_COMBINATIONS=24 \
-    in_record addresses.md run_labels "AddressSanitizer and UndefinedBehaviorSanitizer$smaller" \
-    "$top/build-asan-ubsan" "${labels[@]}"
+    store address-sanitizer.csv run_labels "$top/build-asan-ubsan" "${labels[@]}"
 }
 
-# A oneTBB under ThreadSanitizer: what Debian ships hides how its threads wait for each other. Says
-# where it lies.
-seen_tbb() {
+# Builds oneTBB with ThreadSanitizer, which cannot see the synchronization of Debian's library. Prints its
+# folder.
+instrumented_tbb() {
   local folder=$top/build-tsan/onetbb
   if [ ! -e "$folder/libtbb.so" ]; then
     mkdir -p "$folder/source"
@@ -185,107 +177,108 @@ seen_tbb() {
   printf '%s' "$folder"
 }
 
-stage_threads() {
+stage_tsan() {
   (cd "$top" && cmake --preset tsan >/dev/null && cmake --build build-tsan)
   local tbb
-  tbb=$(seen_tbb)
+  tbb=$(instrumented_tbb)
   LD_LIBRARY_PATH=$tbb TSAN_OPTIONS=halt_on_error=1 FENESTRA_BRIEF=4 FENESTRA_COMBINATIONS=24 \
-    in_record threads.md run_labels "ThreadSanitizer$smaller" "$top/build-tsan" "${labels[@]}"
+    store thread-sanitizer.csv run_labels "$top/build-tsan" "${labels[@]}"
 }
 
 stage_clang() {
   install_packages clang
   (cd "$top" && cmake --preset dev -B build-clang -DCMAKE_CXX_COMPILER=clang++ >/dev/null &&
     cmake --build build-clang --target all MicroBenchmarks ChangeBenchmark LoadingBenchmark)
-  in_record clang.md run_labels 'clang' "$top/build-clang" "${labels[@]}"
+  store clang.csv run_labels "$top/build-clang" "${labels[@]}"
 }
 
 stage_headers() {
   (cd "$top" && cmake --preset dev -B build-headers -DCMAKE_VERIFY_INTERFACE_HEADER_SETS=ON \
     -DFENESTRA_BUILD_TESTS=OFF >/dev/null &&
     cmake --build build-headers --target all_verify_interface_header_sets) >"$logs/headers.log" ||
-    say "a header does not stand alone: $logs/headers.log"
+    say "a header does not compile alone: $logs/headers.log"
 }
 
 stage_faults() {
   build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON
-  "$top/build/bin/Faults" "$top/build/bin/fenestra" >"$record/faults-in-turn.md" ||
-    say "faults do harm: see $record/faults-in-turn.md"
-  "$top/build/bin/Mutations" "$top/build/bin/fenestra" 1 20000 >"$record/mutations.md" ||
-    say "damaged files do harm: see $record/mutations.md"
+  local program=$top/build/bin/fenestra log
+  log=$logs/fault-injection.log
+  FENESTRA_REPORT=$record store fault-injection.csv "$top/build/bin/FaultInjection" "$program" 2> >(tee "$log" >&2) ||
+    say "faults violate an invariant: see $log"
+  log=$logs/corrupted-files.log
+  store corrupted-files.csv "$top/build/bin/CorruptedFiles" "$program" 1 20000 2> >(tee "$log" >&2) ||
+    say "corrupted files violate an invariant: see $log"
 }
 
-stage_films() {
+stage_checkpoints() {
   build release -DFENESTRA_BUILD_TESTS=ON -DFENESTRA_TEST_READERS=ON
-  "$top/Testing/Cli/kills.sh" "$top/build/bin/fenestra" 200 150 >"$logs/films.log" 2>&1 ||
-    say "a killed render does not go on: $logs/films.log"
-  FENESTRA_LONG=1 "$top/build/bin/CommandTests" --gtest_filter='MergeCommand.*' >>"$logs/films.log" 2>&1 ||
-    say "merged parts are not the picture: $logs/films.log"
+  "$top/Testing/Cli/kills.sh" "$top/build/bin/fenestra" 200 150 >"$logs/checkpoints.log" 2>&1 ||
+    say "a killed render does not resume correctly: $logs/checkpoints.log"
+  FENESTRA_LONG=1 "$top/build/bin/CommandTests" --gtest_filter='MergeCommand.*' >>"$logs/checkpoints.log" 2>&1 ||
+    say "merged shards differ from the image: $logs/checkpoints.log"
   local status=0
   "$top/Testing/Cluster/ranks.sh" "$top/build/bin/fenestra" "$top/build/bin/fenestra-mpi" 1 2 3 7 \
     >"$logs/ranks.log" 2>&1 || status=$?
   case $status in
     0) ;;
     77) tail -n 1 "$logs/ranks.log" ;;
-    *) say "ranks of mpirun do not make the picture of one process: $logs/ranks.log" ;;
+    *) say "ranks of mpirun do not make the image of one process: $logs/ranks.log" ;;
   esac
 }
 
-# in_study NAME COMMAND...: a study whose end is in a log; says where it was skipped, or failed.
-in_study() {
+# run_logged NAME COMMAND...: runs a script with its output in a log, and reports a failure or a skip.
+run_logged() {
   local log=$logs/$1.log status=0
   shift
   "$@" >"$log" 2>&1 || status=$?
   case $status in
     0) ;;
     77) tail -n 1 "$log" ;;
-    *) say "a study does not end whole: see $log" ;;
+    *) say "a batch or a job failed: see $log" ;;
   esac
 }
 
-stage_study() {
+stage_batch() {
   build release
   local data
   data=$(sed -n 's/^FENESTRA_DATA:PATH=//p' "$top/build/CMakeCache.txt")
-  in_study twelve "$top/Testing/Batch/twelve.sh" "$top/build/bin/fenestra" "$data" "$logs/twelve"
-  in_study slurm-study "$top/Testing/Cluster/batch.sh" "$top/build/bin/fenestra" "$logs/slurm-study"
-  in_study slurm-shards "$top/Testing/Cluster/shards.sh" "$top/build/bin/fenestra" "$logs/slurm-shards"
-  in_study slurm-mpi "$top/Testing/Cluster/mpi.sh" "$top/build/bin/fenestra" "$top/build/bin/fenestra-mpi" \
+  run_logged twelve "$top/Testing/Batch/twelve.sh" "$top/build/bin/fenestra" "$data" "$logs/twelve"
+  run_logged slurm-batch "$top/Testing/Cluster/batch.sh" "$top/build/bin/fenestra" "$logs/slurm-batch"
+  run_logged slurm-shards "$top/Testing/Cluster/shards.sh" "$top/build/bin/fenestra" "$logs/slurm-shards"
+  run_logged slurm-mpi "$top/Testing/Cluster/mpi.sh" "$top/build/bin/fenestra" "$top/build/bin/fenestra-mpi" \
     "$logs/slurm-mpi"
 }
 
 stage_paths() {
   bash "$top/Testing/Benchmarks/instructions.sh" >"$logs/paths.log" 2>&1 ||
-    say "a path takes more instructions than the record has: $logs/paths.log"
+    say "a path takes more instructions than recorded: $logs/paths.log"
 }
 
 stage_package() {
   install_packages patchelf busybox-static jq debootstrap lintian
   build release -DFENESTRA_BUILD_TESTS=ON
   bash "$top/Testing/Package/check.sh" "$top/build" contents moved busybox debian slicer again \
-    >"$logs/package.log" 2>&1 || say "the archive does not hold, or a stage was left out: $logs/package.log"
+    >"$logs/package.log" 2>&1 || say "the archive has errors, or a stage was skipped: $logs/package.log"
   bash "$top/Testing/Package/deb.sh" "$top/build" strictly >"$logs/deb.log" 2>&1 ||
-    say "the Debian package does not hold: $logs/deb.log"
+    say "the Debian package has errors: $logs/deb.log"
 }
 
 stage_boundary() {
   (cd "$top" && cmake --preset release >/dev/null && cmake --build build --target BoundaryCheck)
-  (sed '/^## /,$d' "$record/boundary.md" && "$top/build/bin/BoundaryCheck" 256 12) \
-    >"$record/boundary.md.tmp"
-  mv "$record/boundary.md.tmp" "$record/boundary.md"
+  store boundary-views.csv "$top/build/bin/BoundaryCheck" 256 12
 }
 
 stage_fuzz() {
   FENESTRA_FUZZ_RUNS=1000000 bash "$top/Testing/Fuzz/run.sh" 3600 >"$logs/fuzz.log" 2>&1 ||
-    say "fuzzing found something: $logs/fuzz.log"
-  (cd "$top" && cmake --preset release >/dev/null && cmake --build build --target ApartMutations)
-  (cd "$logs" && "$top/build/bin/ApartMutations" 10000 >apart.log) ||
-    say "damaged files are neither read nor refused: $logs/apart.log"
+    say "fuzzing found an error: $logs/fuzz.log"
+  (cd "$top" && cmake --preset release >/dev/null && cmake --build build --target CorruptedSandboxFiles)
+  (cd "$logs" && "$top/build/bin/CorruptedSandboxFiles" 10000 >sandbox.log) ||
+    say "corrupted files are neither read nor rejected: $logs/sandbox.log"
 }
 
 mkdir -p "$logs"
 install_packages "${build_packages[@]}" libgmock-dev libboost-dev libbenchmark-dev qtbase5-dev lld
-[ $# -gt 0 ] || set -- accuracy seeds planted instructions addresses threads clang headers faults films study paths \
+[ $# -gt 0 ] || set -- accuracy seeds mutations instructions asan tsan clang headers faults checkpoints batch paths \
   package
 for name in "$@"; do
   say "$name"

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Installs what Fenestra and its tests need, builds, and passes the tests: all of them in Release,
-# the unit tests again under AddressSanitizer and UndefinedBehaviorSanitizer, those of readers there alone.
-# Says where the time went. Where the environment's Slicer_DIR names a build of 3D Slicer, the extension is built and
-# tested in it. usage: bash Testing/run.sh
+# Installs the required packages, builds, and runs the tests: in Release all except the unit tests of file
+# readers, under AddressSanitizer and UndefinedBehaviorSanitizer all unit tests. Prints the time of each
+# stage. If the environment variable Slicer_DIR names a build of 3D Slicer, the extension is built and tested
+# in it. usage: bash Testing/run.sh
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../Resources/setup.sh"
 
@@ -18,4 +18,4 @@ stage "unit tests (ASan, UBSan)" 80 run_tests asan-ubsan
 
 print_stages
 [ -n "${Slicer_DIR:-}" ] ||
-  say "SKIPPED: the tests inside 3D Slicer, for Slicer_DIR names no build of it"
+  say "SKIPPED: the tests inside 3D Slicer, because Slicer_DIR is not set"

@@ -1,6 +1,6 @@
-// How a picture looks, in numbers, over the scenes of a table (README.md here): spread of lightness
-// where there is no focus, else the difference of colour across the focus's edge. Prints a table in
-// Markdown.
+// Measures the appearance of images over the scenes of a table (see README.md in this folder): the
+// spread of lightness if there is no focus, else the color difference across the focus edge. Prints
+// CSV.
 
 #include "Program.h"
 #include "References.h"
@@ -21,13 +21,13 @@ namespace {
 constexpr const char* group = "Benchmark";
 const Option flags[] = {
     {"scenes", "A,B,...", group, "Scenes of the table [all]"},
-    {"phantoms", "DIR", group, "Where the phantoms are [benchmarks of the build]"},
-    {"table", "FILE", group, "Table of scenes [look-scenes.txt beside the sources]"},
+    {"phantoms", "DIR", group, "Folder of the phantoms [benchmarks of the build]"},
+    {"table", "FILE", group, "Table of scenes [appearance-scenes.txt of the source tree]"},
 };
 
-const CommandSyntax syntax = {"LookBenchmark", "Measures how pictures look.", {}, flags};
+const CommandSyntax syntax = {"AppearanceBenchmark", "Measures image appearance.", {}, flags};
 
-/// Filtered picture as displayed, R G B A by pixel, before nothing.
+/// Denoised display image with a transparent background: R G B A per pixel.
 std::vector<float> renderDisplay(const PreparedScene& scene, RenderSettings settings) {
   settings.path.background.kind = Background::Kind::transparent;
   RenderMonitor monitor;
@@ -40,7 +40,7 @@ std::vector<float> renderDisplay(const PreparedScene& scene, RenderSettings sett
   return toDisplay(rgba, {});
 }
 
-/// Mean of encoded colours.
+/// Mean of display-encoded colors.
 struct MeanColor {
   Rgb sum = Rgb::Zero();
   double count = 0.0;
@@ -71,12 +71,12 @@ void printSpread(const std::vector<float>& rgba) {
     count += 1.0;
   }
   const Rgb color = 255.0 * mean.sum / count;
-  std::cout << std::sqrt(squares / count - sum / count * sum / count) << " at " << sum / count
-            << " | " << std::lround(color[0]) << ", " << std::lround(color[1]) << ", "
-            << std::lround(color[2]) << " | | | | |" << std::endl;
+  std::cout << sum / count << ',' << std::sqrt(squares / count - sum / count * sum / count) << ','
+            << std::lround(color[0]) << ',' << std::lround(color[1]) << ',' << std::lround(color[2])
+            << ",,,,,," << std::endl;
 }
 
-/// Distance of pixels from those of the other kind, pixels.
+/// Distance, in pixels, of a pixel to the nearest one on the other side of the focus edge.
 class EdgeDistance {
 public:
   EdgeDistance(const std::vector<double>& focusDepth, int width, int height)
@@ -102,7 +102,7 @@ private:
   int m_width, m_height;
 };
 
-/// Mean colours from 3 to 8 pixels to both sides of the focus's edge, and what tells them apart.
+/// Prints the differences between the mean colors 3 to 8 pixels inside and outside the focus edge.
 void printContrast(const PreparedScene& scene, const std::vector<float>& rgba) {
   constexpr int nearest = 3, farthest = 8;
   const Camera& camera = scene.camera();
@@ -120,27 +120,27 @@ void printContrast(const PreparedScene& scene, const std::vector<float>& rgba) {
   const auto seenLab = [&](const MeanColor& color, ColorVision sight) {
     return toLab(simulateVision(sight, color.linear()));
   };
-  std::cout << "| ";
+  std::cout << ",,,,,";
   for (const ColorVision sight : {ColorVision::normal, ColorVision::protan, ColorVision::deutan})
-    std::cout << "| " << deltaE76(seenLab(inside, sight), seenLab(outside, sight)) << ' ';
-  std::cout << "| " << std::abs(toLab(inside.linear()).L - toLab(outside.linear()).L) << " | ";
+    std::cout << deltaE76(seenLab(inside, sight), seenLab(outside, sight)) << ',';
+  std::cout << std::abs(toLab(inside.linear()).L - toLab(outside.linear()).L) << ",\"";
   if (const TintContrast* tint = scene.tintContrast())
     std::cout << summary(*tint);
   else
     std::cout << summary(scene.contrast());
-  std::cout << " |" << std::endl;
+  std::cout << '"' << std::endl;
 }
 
 void measureScene(const SceneCase& sceneCase) {
-  std::cout << std::setprecision(3) << "| " << sceneCase.name << " | ";
   if (!sceneCase.missing.empty()) {
-    std::cout << "not present |" << std::endl;
+    std::cerr << sceneCase.name << ": not present: " << sceneCase.missing << std::endl;
     return;
   }
   RenderOptions options = sceneCase.options();
   options.scene.features = options.scene.measure = true;
   const PreparedScene scene(options.scene);
   const std::vector<float> rgba = renderDisplay(scene, makeSettings(options, scene.background()));
+  std::cout << std::setprecision(3) << sceneCase.name << ',';
   if (scene.focus())
     printContrast(scene, rgba);
   else
@@ -153,11 +153,11 @@ int benchmark(int argc, char** argv) {
     return 0;
   const std::filesystem::path build = FENESTRA_BENCHMARK_FOLDER;
   const std::vector<std::string> scenes = values->list("scenes");
-  std::cout << "| scene | L* spread at mean | mean sRGB | ΔE*ab | protan | deutan | ΔL* | told "
-               "|\n|---|---|---|---|---|---|---|---|"
+  std::cout << "scene,lightness_mean,lightness_spread,mean_red,mean_green,mean_blue,delta_e,"
+               "delta_e_protan,delta_e_deutan,delta_lightness,predicted"
             << std::endl;
   for (const SceneCase& scene : readScenes(
-           values->text("table").value_or(FENESTRA_LOOK_TABLE),
+           values->text("table").value_or(FENESTRA_APPEARANCE_TABLE),
            {FENESTRA_REFERENCE, FENESTRA_DATA, values->text("phantoms").value_or(build.string())}))
     if (scenes.empty() || std::ranges::find(scenes, scene.name) != scenes.end())
       measureScene(scene);
@@ -169,5 +169,5 @@ int benchmark(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace fenestra::benchmarks;
-  return runBenchmark("LookBenchmark", benchmark, argc, argv);
+  return runBenchmark("AppearanceBenchmark", benchmark, argc, argv);
 }

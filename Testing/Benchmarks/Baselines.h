@@ -1,6 +1,6 @@
 #pragma once
-// Other renderers' trackers for the product's path estimator: delta tracking with one majorant for
-// the whole volume, and the fixed steps of medical renderers. Both have Tracker's members.
+// Trackers of other renderers, for use in our path estimator: delta tracking with one majorant for
+// the volume, and ray marching as in medical renderers. Both have the members of Tracker.
 
 #include "integrator/render/Render.h"
 
@@ -9,9 +9,9 @@
 
 namespace fenestra::benchmarks {
 
-/// Part of a ray inside the volume; length 0 is the entry.
+/// Part of a ray inside the volume; distances start at the entry point.
 struct Crossing {
-  double start, length; ///< mm; length <= 0: ray misses
+  double start, length; ///< mm; length <= 0: the ray misses
   Ray world, index;
 
   Crossing(const Domain& domain, const Ray& ray, const Interval& range) {
@@ -51,7 +51,7 @@ public:
   }
 
 private:
-  /// Greatest extinction over the volume's range of scalars, mm^-1.
+  /// Maximum extinction over the volume's scalar range, mm^-1.
   static double maxExtinction(const SceneView& scene) {
     const TransferFunction& transfer = scene.transfer;
     const double greatest =
@@ -84,14 +84,14 @@ private:
   double m_majorant; ///< mm^-1
 };
 
-/// Fixed steps from a random start (Kroes, Post, Botha 2012, section 3, as in Exposure Render): a
-/// path collides at the sample where the summed optical depth exceeds an exponential deviate;
-/// transmittance is exp(-sum), or 0 below 1/1000. Biased: matter between samples is missed, and
-/// exp(-sum) is on average too large.
+/// Ray marching with fixed steps from a random start (Kroes, Post, Botha 2012, section 3, as in
+/// Exposure Render). A path collides at the sample where the accumulated optical depth exceeds an
+/// exponential variate. Transmittance is exp(-sum), or 0 below 1/1000. Biased: the medium between
+/// samples is missed, and exp(-sum) is too large on average.
 template <typename Voxel>
 class MarchingTracker {
 public:
-  /// `step`: in voxels of the shortest edge, as in medical renderers.
+  /// `step`: in units of the shortest voxel edge, as in medical renderers.
   MarchingTracker(const SceneView& scene, const Medium<Voxel>& medium, double step)
       : m_domain(scene.volume.grid, scene.crop),
         m_medium(medium),
@@ -123,7 +123,7 @@ public:
   }
 
 private:
-  /// Calls visit(t, optical depth up to and including the sample at t) until it returns false.
+  /// Calls visit(t, optical depth including the sample at t) until it returns false.
   template <typename Visit>
   void march(const Ray& ray, const Interval& range, Random& random, Counters& counters,
              Visit&& visit) const {
@@ -146,8 +146,8 @@ private:
   double m_step; ///< mm
 };
 
-/// Renders independent samples of every pixel by the readable estimator, with the tracker from
-/// `makeTracker(medium)`. Stops at settings.samples only.
+/// Renders independent samples of every pixel with the scalar estimator and the tracker that
+/// `makeTracker(medium)` returns. Stops only at settings.samples.
 template <typename MakeTracker>
 Film traceImage(const SceneView& scene, const RenderSettings& settings, MakeTracker&& makeTracker) {
   Film film(scene.camera.width(), scene.camera.height());

@@ -1,5 +1,5 @@
-// Tests of the benchmark: its baselines, its figures, and a run of the whole program on small
-// pictures. No test measures time.
+// Tests of the benchmark: its baselines, its statistics, and a run of the complete program on small
+// images. No test measures time.
 
 #include "Benchmarks/Baselines.h"
 #include "Benchmarks/Report.h"
@@ -36,11 +36,11 @@ Image renderMode(const char* mode, const PreparedScene& scene, const RenderOptio
 
 class UnbiasedMode : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(UnbiasedMode, PictureAgreesWithReadableMode) {
+TEST_P(UnbiasedMode, ImageAgreesWithScalarMode) {
   const RenderOptions options = makeCase(std::string("knee product") + knee).options();
   const PreparedScene scene(options.scene);
   const Image image = renderMode(GetParam(), scene, options, 96, 1);
-  const Image reference = renderMode("readable", scene, options, 96, 2);
+  const Image reference = renderMode("scalar", scene, options, 96, 2);
   for (const int tile : {8, 32})
     EXPECT_GT(computeAgreement(computeTileMeans(image, tile), computeTileMeans(reference, tile)),
               1e-4);
@@ -49,7 +49,7 @@ TEST_P(UnbiasedMode, PictureAgreesWithReadableMode) {
 INSTANTIATE_TEST_SUITE_P(Modes, UnbiasedMode, ::testing::Values("product", "adaptive", "global"),
                          [](const auto& info) { return std::string(info.param); });
 
-/// Mean of R over the picture, relative to another picture's, minus 1; and its standard error.
+/// Mean of R over the image, relative to that of another image, minus 1; and its standard error.
 std::pair<double, double> measureBias(const Image& image, const Image& reference) {
   const Image a = computeTileMeans(image, image.width),
               b = computeTileMeans(reference, reference.width);
@@ -58,11 +58,11 @@ std::pair<double, double> measureBias(const Image& image, const Image& reference
           std::hypot(a.find("error.R")->front(), b.find("error.R")->front()) / mean};
 }
 
-/// Foot in voxels of 6 mm: steps of one voxel miss its skin.
+/// The foot has voxels of 6 mm, so steps of one voxel miss its skin.
 TEST(Marching, BiasShrinksWithShorterSteps) {
   const RenderOptions options = makeCase(std::string("foot product") + foot).options();
   const PreparedScene scene(options.scene);
-  const Image reference = renderMode("readable", scene, options, 128, 1);
+  const Image reference = renderMode("scalar", scene, options, 128, 1);
   const auto [whole, error] =
       measureBias(renderMode("marching", scene, options, 128, 2), reference);
   const auto [half, halfError] =
@@ -71,13 +71,13 @@ TEST(Marching, BiasShrinksWithShorterSteps) {
   EXPECT_LT(std::abs(half), std::abs(whole)) << half << " ± " << halfError;
 }
 
-/// Ray across a homogeneous wall a quarter of a voxel thick (voxels of 1 mm): a tracker's mean
-/// transmittance, and its share of passing flights.
+/// A ray across a homogeneous wall that is a quarter of a voxel thick (voxels of 1 mm). Returns the
+/// mean transmittance of a tracker, and the fraction of its rays that pass without a collision.
 class Wall {
 public:
   static constexpr double sigma_t = 3.0;
   static constexpr int trials = 20000;
-  static constexpr double tolerance = 4.0 * 0.5 / 141.0; ///< four standard errors, at most
+  static constexpr double tolerance = 4.0 * 0.5 / 141.0; ///< at most four standard errors
 
   template <typename MakeTracker>
   std::pair<double, double> cross(MakeTracker&& makeTracker) const {
@@ -121,8 +121,8 @@ TEST(GlobalTracker, ThinWallTransmittanceIsExponential) {
   EXPECT_NEAR(passing, expected, Wall::tolerance);
 }
 
-/// One march in four has a sample in the wall: the mean transmittance is 3/4 + exp(-sigma_t step) /
-/// 4, not exp(-sigma_t step / 4).
+/// One ray march in four has a sample in the wall. The mean transmittance is 3/4 + exp(-sigma_t
+/// step) / 4, not exp(-sigma_t step / 4).
 TEST(Marching, ThreeMarchesInFourMissAThinWall) {
   const auto [light, passing] = Wall().cross([](const auto& scene, const auto& medium) {
     return MarchingTracker<float>(scene, medium, 1.0);
@@ -132,7 +132,7 @@ TEST(Marching, ThreeMarchesInFourMissAThinWall) {
   EXPECT_NEAR(passing, expected, Wall::tolerance);
 }
 
-/// Curve with relMSE = 1 / (20 seconds): efficiency 20.
+/// Curve with relMSE = 1 / (20 seconds), so that its efficiency is 20.
 std::vector<Point> idealCurve(std::initializer_list<double> seconds) {
   std::vector<Point> curve;
   for (const double s : seconds)
@@ -159,16 +159,16 @@ TEST(Efficiency, TargetBeyondTheCurveTakesTheNearestPoint) {
 
 TEST(CurveRecords, MergingReplacesTheSameSceneAndMode) {
   const TemporaryFolder folder;
-  const std::vector<CurveRecord> old = {{"a", "readable", "oracle", 1e-3, idealCurve({1.0, 2.0})},
+  const std::vector<CurveRecord> old = {{"a", "scalar", "oracle", 1e-3, idealCurve({1.0, 2.0})},
                                         {"a", "global", "oracle", 1e-3, idealCurve({3.0})},
                                         {"b", "", "", 0.0}};
   writeReport(folder.path(), old, "");
   const std::vector<CurveRecord> measured = {
-      {"b", "product", "readable", 2e-3, idealCurve({4.0})},
-      {"a", "readable", "oracle", 1e-3, idealCurve({5.0, 6.0, 7.0})}};
+      {"b", "product", "scalar", 2e-3, idealCurve({4.0})},
+      {"a", "scalar", "oracle", 1e-3, idealCurve({5.0, 6.0, 7.0})}};
   const auto all = mergeCurves(readCurves(folder.path()), measured, {"a", "b"});
   ASSERT_EQ(all.size(), 3U);
-  EXPECT_EQ(all[0].mode, "readable");
+  EXPECT_EQ(all[0].mode, "scalar");
   EXPECT_EQ(all[0].points.size(), 3U);
   EXPECT_EQ(all[1].mode, "global");
   EXPECT_NEAR(all[1].points[0].cpuSeconds, 3.0, 1e-5);
@@ -176,7 +176,7 @@ TEST(CurveRecords, MergingReplacesTheSameSceneAndMode) {
   EXPECT_EQ(all[2].mode, "product");
 }
 
-/// Run of the program on three scenes, one of which is missing.
+/// Runs the program on three scenes, one of which is missing.
 class WholeRun : public ::testing::Test {
 protected:
   static int runProgram(const TemporaryFolder& folder) {

@@ -1,7 +1,7 @@
-// Time from a change to the first new sample, which the user of a preview waits for all day.
+// Time from a change to the first new sample: the latency of an interactive preview.
 //
-//     ChangeBenchmark FOCUS ARGUMENTS...     (FOCUS: the changed focus, or coloured segment;
-//                                             ARGUMENTS: of `fenestra`)
+//     ChangeBenchmark FOCUS ARGUMENTS...     (FOCUS: the new focus, or the recolored segment;
+//                                             ARGUMENTS: of `fenestra`); prints CSV
 
 #include "base/Error.h"
 #include "base/Stopwatch.h"
@@ -31,16 +31,16 @@ std::string listStages(const UpdatedStages& made) {
                                                  {"clip", made.clip},
                                                  {"ranges", made.minMaxGrid},
                                                  {"majorants", made.majorants},
-                                                 {"labels' shares", made.labelWeights},
-                                                 {"colours", made.tint}};
+                                                 {"label weights", made.labelWeights},
+                                                 {"colors", made.tint}};
   std::string list;
   for (const auto& [name, isMade] : stages)
     if (isMade)
-      list.append(list.empty() ? "" : ", ").append(name);
+      list.append(list.empty() ? "" : "; ").append(name);
   return list;
 }
 
-/// Seconds for one sample in every pixel.
+/// Seconds for one sample per pixel.
 double timeFirstSample(const PreparedScene& scene, RenderSettings settings) {
   settings.samples = 1;
   settings.noise = -1.0;
@@ -50,14 +50,14 @@ double timeFirstSample(const PreparedScene& scene, RenderSettings settings) {
   return watch.seconds();
 }
 
-/// Makes a scene, prints the row of that change, and returns it.
+/// Prepares a scene, prints the row of this change, and returns the scene.
 PreparedScene printChange(const char* change, const RenderSettings& settings,
                           const std::function<PreparedScene()>& prepare) {
   const Stopwatch watch;
   PreparedScene scene = prepare();
   const double made = watch.seconds();
-  std::cout << "| " << change << " | " << listStages(scene.updatedStages()) << " | " << made
-            << " | " << made + timeFirstSample(scene, settings) << " |\n";
+  std::cout << change << ',' << listStages(scene.updatedStages()) << ',' << made << ','
+            << made + timeFirstSample(scene, settings) << '\n';
   return scene;
 }
 
@@ -68,11 +68,11 @@ void measure(const std::string& other, const RenderOptions& options) {
       {"clip", [](RenderRequest& r) { r.clip.mode = ClipMode::cutaway; }},
       {"transfer function", [](RenderRequest& r) { r.density *= 2.0; }},
       {"lights", [](RenderRequest& r) { r.environment = Rgb(1.0, 1.0, 1.0); }}};
-  std::cout << "| change | made anew | seconds | and with the first sample |\n|---|---|---|---|\n"
+  std::cout << "change,recomputed,seconds,seconds_with_first_sample\n"
             << std::fixed << std::setprecision(3);
   const RenderSettings& settings = options.settings;
-  const PreparedScene before = printChange("nothing, from the start", settings,
-                                           [&] { return PreparedScene(options.scene); });
+  const PreparedScene before =
+      printChange("none (initial scene)", settings, [&] { return PreparedScene(options.scene); });
   for (const Change& change : changes) {
     RenderRequest request = options.scene;
     change.apply(request);
@@ -85,9 +85,10 @@ void measure(const std::string& other, const RenderOptions& options) {
     request.materialChanges.push_back(other + ": color=" + color);
     return request;
   };
-  const PreparedScene blue = printChange("a segment's colour, for the first time", settings,
+  const PreparedScene blue = printChange("first color of a segment", settings,
                                          [&] { return before.withRequest(colored("#3060c0")); });
-  printChange("its colour again", settings, [&] { return blue.withRequest(colored("#c06030")); });
+  printChange("next color of the segment", settings,
+              [&] { return blue.withRequest(colored("#c06030")); });
 }
 
 } // namespace

@@ -10,7 +10,7 @@
 namespace fenestra::benchmarks {
 namespace {
 
-/// Measurements of one render.
+/// Measurements from one render.
 struct Sample {
   double cpuSeconds, relMse;
   double bias, ownError, referenceError; ///< of the image mean, relative to the reference's
@@ -23,8 +23,8 @@ Sample measure(const Mode& mode, const PreparedScene& scene, const RenderSetting
   const double seconds = cpuSeconds() - before;
   const Image image = toImage(film, scene);
 
-  // The whole picture is one tile. Channels of one path are correlated: error of their mean <= mean
-  // of their errors.
+  // One tile covers the image. The channels of a path are correlated, so the error of their mean is
+  // at most the mean of their errors.
   const int whole = std::max(image.width, image.height);
   const Image mean = computeTileMeans(image, whole),
               referenceMean = computeTileMeans(reference, whole);
@@ -47,7 +47,7 @@ Point summarize(std::uint64_t samples, const std::vector<Sample>& renders) {
   point.cpuSeconds = mean([](const Sample& s) { return s.cpuSeconds; });
   point.relMse = mean([](const Sample& s) { return s.relMse; });
   point.bias = mean([](const Sample& s) { return s.bias; });
-  // The reference's error is the same for all seeds.
+  // All seeds share the reference's error.
   point.biasError = std::hypot(mean([](const Sample& s) { return s.ownError; }) / std::sqrt(n),
                                renders.front().referenceError);
   if (renders.size() > 1)

@@ -1,5 +1,5 @@
-// Gain and cost of the filter, and whether its told error is true, over scenes and sample counts
-// (README.md here): prints a table in Markdown.
+// Gain and cost of the denoiser, and accuracy of its error estimate, over scenes and sample counts
+// (see README.md in this folder). Prints CSV.
 
 #include "Program.h"
 #include "References.h"
@@ -18,19 +18,19 @@ namespace {
 constexpr const char* group = "Benchmark";
 const Option flags[] = {
     {"scenes", "A,B,...", group, "Scenes of the table [all]"},
-    {"counts", "N,...", group, "Samples a pixel [1,2,4,8,16,64,1024]"},
-    {"seeds", "N", group, "Renders of a count below 1024 [3]", ValueSpec::integer(1, 1000)},
-    {"referencesamples", "N", group, "Samples of references that are made here [1024]",
+    {"counts", "N,...", group, "Samples per pixel [1,2,4,8,16,64,1024]"},
+    {"seeds", "N", group, "Renders per count below 1024 [3]", ValueSpec::integer(1, 1000)},
+    {"referencesamples", "N", group, "Samples per pixel of new references [1024]",
      ValueSpec::integer(16, 1 << 20)},
-    {"references", "DIR", group, "Where references are kept [benchmarks/filter of the build]"},
-    {"phantoms", "DIR", group, "Where the phantoms are [benchmarks of the build]"},
-    {"table", "FILE", group, "Table of scenes [filter-scenes.txt beside the sources]"},
+    {"references", "DIR", group, "Cache of references [benchmarks/filter of the build]"},
+    {"phantoms", "DIR", group, "Folder of the phantoms [benchmarks of the build]"},
+    {"table", "FILE", group, "Table of scenes [denoiser-scenes.txt of the source tree]"},
 };
 
 const CommandSyntax syntax = {
-    "FilterBenchmark", "Measures the filter against references.", {}, flags};
+    "DenoiserBenchmark", "Compares denoised images with references.", {}, flags};
 
-/// Result and CPU seconds of some work.
+/// Runs some work; returns its result and its CPU seconds.
 template <typename Work>
 auto timeWork(const Work& work, double& seconds) {
   const double before = cpuSeconds();
@@ -39,10 +39,10 @@ auto timeWork(const Work& work, double& seconds) {
   return result;
 }
 
-/// Means over the seeds of a count.
+/// Means over the seeds of one sample count.
 struct Row {
   double raw = 0.0, filtered = 0.0;  ///< relMSE
-  double estimated = 0.0;            ///< relMSE that the filter tells
+  double estimated = 0.0;            ///< relMSE as estimated by the denoiser
   double render = 0.0, filter = 0.0; ///< CPU seconds
 
   void add(const Row& other, double weight) {
@@ -74,12 +74,12 @@ Row measureRender(const PreparedScene& scene, const RenderSettings& settings,
 void print(const std::string& scene, std::uint64_t samples, const Row& row, double march) {
   const double efficiency =
       row.raw * row.render / (row.filtered * (row.render + row.filter + march));
-  std::cout << std::setprecision(3) << "| " << scene << " | " << samples << " | " << row.raw
-            << " | " << row.filtered << " | " << row.raw / row.filtered << " | ";
+  std::cout << std::setprecision(3) << scene << ',' << samples << ',' << row.raw << ','
+            << row.filtered << ',' << row.raw / row.filtered << ',';
   if (row.estimated > 0.0)
     std::cout << row.estimated / row.filtered;
-  std::cout << " | " << efficiency << " | " << row.render << " | " << march << " | " << row.filter
-            << " |" << std::endl;
+  std::cout << ',' << efficiency << ',' << row.render << ',' << march << ',' << row.filter
+            << std::endl;
 }
 
 /// Throws Error (usage).
@@ -87,7 +87,7 @@ std::uint64_t parseCount(const std::string& text) {
   std::uint64_t count = 0;
   const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), count);
   if (failed != std::errc() || end != text.data() + text.size() || count == 0)
-    throw usageError("--counts: expected whole numbers above 0, got '" + text + "'");
+    throw usageError("--counts: expected positive integers, got '" + text + "'");
   return count;
 }
 
@@ -101,7 +101,7 @@ std::vector<std::uint64_t> parseCounts(const OptionValues& values) {
 void measureScene(const SceneCase& sceneCase, const OptionValues& values,
                   const ReferenceSettings& wanted) {
   if (!sceneCase.missing.empty()) {
-    std::cout << "| " << sceneCase.name << " | not present |" << std::endl;
+    std::cerr << sceneCase.name << ": not present: " << sceneCase.missing << std::endl;
     return;
   }
   RenderOptions options = sceneCase.options();
@@ -132,11 +132,11 @@ int benchmark(int argc, char** argv) {
   const ReferenceSettings wanted{.folder = folder("references", build / "filter"),
                                  .samples = values->integer("referencesamples").value_or(1024)};
   const std::vector<std::string> scenes = values->list("scenes");
-  std::cout << "| scene | samples | relMSE raw | filtered | gain | told / true | gain × time "
-               "| CPU s render | march | filter |\n|---|---|---|---|---|---|---|---|---|---|"
+  std::cout << "scene,samples,relmse_raw,relmse_denoised,gain,estimated_over_true_error,"
+               "efficiency_gain,render_cpu_seconds,features_cpu_seconds,denoise_cpu_seconds"
             << std::endl;
   for (const SceneCase& scene :
-       readScenes(folder("table", FENESTRA_FILTER_TABLE),
+       readScenes(folder("table", FENESTRA_DENOISER_TABLE),
                   {FENESTRA_REFERENCE, FENESTRA_DATA, folder("phantoms", build)}))
     if (scenes.empty() || std::ranges::find(scenes, scene.name) != scenes.end())
       measureScene(scene, *values, wanted);
@@ -148,5 +148,5 @@ int benchmark(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   using namespace fenestra::benchmarks;
-  return runBenchmark("FilterBenchmark", benchmark, argc, argv);
+  return runBenchmark("DenoiserBenchmark", benchmark, argc, argv);
 }

@@ -12,7 +12,7 @@ constexpr int panelsPerRow = 3;
 constexpr double panelWidth = 360.0, panelHeight = 310.0, legendHeight = 34.0;
 constexpr double left = 52.0, right = 14.0, top = 28.0, bottom = 44.0; ///< margins of a panel
 
-/// Okabe and Ito's colours, which colour-blind readers can distinguish.
+/// Colors of Okabe and Ito, which color-blind readers can distinguish.
 constexpr std::array<const char*, 7> colors = {"#d55e00", "#0072b2", "#009e73", "#e69f00",
                                                "#cc79a7", "#56b4e9", "#000000"};
 
@@ -23,7 +23,7 @@ const char* modeColor(const std::string& mode) {
   return colors[i % colors.size()];
 }
 
-/// Logarithmic axis over whole decades.
+/// Logarithmic axis over complete decades.
 struct Axis {
   int first = 1000, last = -1000; ///< powers of ten
   double from = 0.0, to = 1.0;    ///< positions of `first` and `last`, pixels
@@ -137,7 +137,7 @@ void drawLegend(std::ostream& svg) {
 std::string drawCurves(const std::vector<CurveRecord>& curves) {
   const std::vector<Panel> panels = makePanels(curves);
   const int count = static_cast<int>(panels.size());
-  const int columns = std::clamp(count, 2, panelsPerRow); // at least two, for the legend's width
+  const int columns = std::clamp(count, 2, panelsPerRow); // at least two, to fit the legend
   const int rows = (count + columns - 1) / columns;
   const double width = columns * panelWidth, height = legendHeight + rows * panelHeight;
   std::ostringstream svg;

@@ -1,4 +1,4 @@
-// Error against time over scenes and modes (README.md here).
+// Error against time over scenes and modes (see README.md in this folder).
 
 #include "Program.h"
 #include "Report.h"
@@ -19,21 +19,20 @@ namespace {
 constexpr const char* group = "Benchmark";
 const Option flags[] = {
     {"scenes", "A,B,...", group, "Scenes of the table [all]"},
-    {"modes", "A,B,...", group, "Ways to render, as Modes.cxx has them [all]"},
-    {"budget", "SECONDS", group, "CPU time of one curve [60]", ValueSpec::number(1e-3, 1e6)},
-    {"seeds", "N", group, "Renders of a point, as many as the budget allows [3]",
+    {"modes", "A,B,...", group, "Render modes of Modes.cxx [all]"},
+    {"budget", "SECONDS", group, "CPU time per curve [60]", ValueSpec::number(1e-3, 1e6)},
+    {"seeds", "N", group, "Maximum renders per point, within the budget [3]",
      ValueSpec::integer(1, 1000)},
-    {"threads", "K", group, "Threads of a render [all]", ValueSpec::integer(1, 1024)},
-    {"size", "WxH", group, "Pixels [as the table says]"},
-    {"noise", "E", group, "Noise of references that are made here [0.03]",
-     ValueSpec::number(1e-4, 1.0)},
-    {"limit", "SECONDS", group, "Time that making one may take [1800]",
+    {"threads", "K", group, "Threads per render [all]", ValueSpec::integer(1, 1024)},
+    {"size", "WxH", group, "Image size in pixels [from the table]"},
+    {"noise", "E", group, "Noise target of new references [0.03]", ValueSpec::number(1e-4, 1.0)},
+    {"limit", "SECONDS", group, "Time limit of a new reference [1800]",
      ValueSpec::number(1e-3, 1e6)},
-    {"references", "DIR", group, "Where references are kept [benchmarks/references of the build]"},
-    {"phantoms", "DIR", group, "Where the phantoms are [benchmarks of the build]"},
-    {"table", "FILE", group, "Table of scenes [scenes.txt beside the sources]"},
+    {"references", "DIR", group, "Cache of references [benchmarks/references of the build]"},
+    {"phantoms", "DIR", group, "Folder of the phantoms [benchmarks of the build]"},
+    {"table", "FILE", group, "Table of scenes [scenes.txt of the source tree]"},
     {"output", "DIR", group,
-     "Where the report is; what it holds of other scenes and modes stays [benchmarks/report of "
+     "Report folder; results of other scenes and modes in it are kept [benchmarks/report of "
      "the build]"},
 };
 
@@ -51,7 +50,7 @@ struct Options {
   std::filesystem::path output;
 };
 
-/// Width and height from --size, "WxH".
+/// Width and height from --size.
 std::optional<std::pair<int, int>> parseSize(const OptionValues& values) {
   const auto text = values.text("size");
   if (!text)
@@ -120,14 +119,14 @@ std::string processorName() {
   for (std::string line; std::getline(file, line);)
     if (line.starts_with("model name"))
       return line.substr(line.find(':') + 2);
-  return "an unknown processor";
+  return "an unknown CPU";
 }
 
 std::string makeNotes(const Options& options) {
   std::ostringstream out;
   out << "Last run on " << processorName() << ", " << std::thread::hardware_concurrency()
-      << " threads, with " << options.curve.budget << " CPU seconds a curve and up to "
-      << options.curve.seeds << " seeds a point.";
+      << " threads, with " << options.curve.budget << " CPU seconds per curve and up to "
+      << options.curve.seeds << " seeds per point.";
   return out.str();
 }
 
@@ -143,7 +142,7 @@ int benchmark(int argc, char** argv) {
     if (!options.scenes.empty() &&
         std::ranges::find(options.scenes, scene.name) == options.scenes.end())
       continue;
-    // Written after each scene: a stopped run leaves its finished scenes.
+    // Written after each scene, so that an interrupted run keeps its finished scenes.
     writeReport(options.output,
                 mergeCurves(readCurves(options.output), measureScene(scene, options), names),
                 makeNotes(options));

@@ -1,5 +1,5 @@
-// Time and memory from the start to the first sample of a large volume, against ITK's bare read of
-// the same file. Each runs in its own process, in turns; the least of several runs counts.
+// Time and memory from the start to the first sample of a large volume, compared with reading the
+// file by ITK alone. They run alternately, each in its own process; the minimum of the runs counts.
 //
 //     LoadingBenchmark [EDGE [RUNS]]     (default: 512 voxels, 3 runs)
 
@@ -32,7 +32,7 @@ namespace {
 
 using Path = std::filesystem::path;
 
-/// Body with fat, muscle, lungs and ribs, with noise as in a CT: gzip halves its size.
+/// Phantom of a body with fat, muscle, lungs and ribs. Its noise is CT-like: gzip halves the size.
 std::vector<std::int16_t> makeBody(std::int64_t edge) {
   std::vector<std::int16_t> voxels;
   voxels.reserve(static_cast<std::size_t>(edge * edge * edge));
@@ -82,8 +82,8 @@ void readWithItk(const std::string& file) {
 }
 
 struct Cost {
-  double seconds = infinity, cpuSeconds = infinity; ///< from start to end
-  double peakMegabytes = infinity;                  ///< of 10^6 bytes
+  double seconds = infinity, cpuSeconds = infinity; ///< of the process
+  double peakMegabytes = infinity;                  ///< in 10^6 bytes
 
   void keepMinimum(const Cost& other) {
     seconds = std::min(seconds, other.seconds);
@@ -122,7 +122,7 @@ void print(const std::string& name, const Cost& cost) {
             << '\n';
 }
 
-/// Compares the bare read with the whole program, in turns.
+/// Compares reading by ITK with the complete program, alternately.
 void compare(const std::string& self, const Path& folder, const std::string& name, int runs) {
   const std::string file = folder / name;
   Cost bare;
@@ -136,7 +136,7 @@ void compare(const std::string& self, const Path& folder, const std::string& nam
   print("ITK " + name, bare);
   print("Fenestra " + name, first);
   std::cout << std::setprecision(2) << "  " << first.seconds / bare.seconds
-            << " x the bare read's time (CPU: " << first.cpuSeconds / bare.cpuSeconds << " x), "
+            << " x the time of ITK alone (CPU: " << first.cpuSeconds / bare.cpuSeconds << " x), "
             << first.seconds - bare.seconds << " s more\n";
 }
 

@@ -1,4 +1,4 @@
-// Parts of a path and of the first pass, one by one, on one thread (README.md here).
+// Single parts of a path and of the clipping pass, on one thread (see README.md in this folder).
 
 #include "Scenes.h"
 
@@ -17,7 +17,7 @@ namespace {
 
 constexpr int imageSize = 512;
 
-/// Knee with its clip, with access to all parts.
+/// The clipped knee, and access to all parts of its scene.
 struct Subject {
   std::string label;
   RenderRequest request;
@@ -48,7 +48,7 @@ struct Subject {
 
 using Voxel = std::int16_t; ///< storage type of the phantoms
 
-/// Tracking's data, with positions and rays to query: enough of these to cycle through the caches.
+/// Data for tracking, and queries: enough of them to exceed the caches.
 struct Probe {
   static constexpr std::size_t count = 1 << 14;
   const Subject& subject;
@@ -58,10 +58,10 @@ struct Probe {
   SceneView parts = subject.scene.view();
   Tracker<Voxel> tracker{subject.domain(), medium, parts.majorants, parts.clip};
   std::vector<Ray> cameraRays;
-  std::vector<Vec3> collisions; ///< world; first collisions of eye rays
-  std::vector<Vec3> inside;     ///< collisions in index space
+  std::vector<Vec3> collisions; ///< world; first collisions of camera rays
+  std::vector<Vec3> inside;     ///< the collisions in index space
   std::vector<Ray> scattered;   ///< from the collisions, in random directions
-  std::vector<Vec3> anywhere;   ///< index space
+  std::vector<Vec3> anywhere;   ///< random positions in index space
   Random random{1, 2, 3};
   Counters counters;
 
@@ -84,7 +84,7 @@ struct Probe {
   }
 };
 
-/// Times visit(i) over i = 0 … count - 1, repeatedly.
+/// Times visit(i) for i = 0 … count - 1, repeatedly.
 template <typename Visit>
 void cycle(benchmark::State& state, const std::string& label, std::size_t count, Visit&& visit) {
   std::size_t i = 0;
@@ -101,21 +101,22 @@ void addTracking(Probe& p) {
       cycle(state, p.subject.label, count, visit);
     });
   };
-  add("flight/eye ray", p.cameraRays.size(), [&p](std::size_t i) {
+  add("collision/camera ray", p.cameraRays.size(), [&p](std::size_t i) {
     const Ray& ray = p.cameraRays[i];
     return p.tracker.sampleCollision(ray, visibleInterval(p.parts.clip, ray), p.random.uniform2(),
                                      p.random, p.counters);
   });
-  add("flight/scattered ray", Probe::count, [&p](std::size_t i) {
+  add("collision/scattered ray", Probe::count, [&p](std::size_t i) {
     return p.tracker.sampleCollision(p.scattered[i], {}, p.random.uniform2(), p.random, p.counters);
   });
   add("transmittance/scattered ray", Probe::count, [&p](std::size_t i) {
     return p.tracker.transmittance(p.scattered[i], {}, p.random, p.counters);
   });
-  add("look-up/anywhere", Probe::count,
+  add("interpolation/random positions", Probe::count,
       [&p](std::size_t i) { return p.field.value(p.anywhere[i]); });
-  add("look-up/one place", 1, [&p](std::size_t i) { return p.field.value(p.anywhere[i]); });
-  add("classification/one place", 1,
+  add("interpolation/one position", 1,
+      [&p](std::size_t i) { return p.field.value(p.anywhere[i]); });
+  add("classification/one position", 1,
       [&p](std::size_t i) { return p.medium.extinction(p.anywhere[i]); });
   add("classification/collisions", Probe::count,
       [&p](std::size_t i) { return p.medium.extinction(p.inside[i]); });
@@ -159,17 +160,17 @@ void addFirstPass(const Subject& subject) {
     return s.focusSeconds + s.splineSeconds + s.fillSeconds;
   });
   addStage(
-      "first pass/seams and fill, exact", [](const ClippingSurface& s) { return s.fillSeconds; },
+      "first pass/exact fill", [](const ClippingSurface& s) { return s.fillSeconds; },
       Boundary::exact);
 }
 
-/// First clipped knee in the table whose phantom exists.
+/// Finds the clipped knee in the table, with the first phantom that exists.
 SceneCase chooseScene() {
   for (const char* phantoms : {FENESTRA_BENCHMARK_FOLDER, FENESTRA_SAMPLES})
     for (const SceneCase& scene : readScenes(FENESTRA_BENCHMARK_TABLE, {"", "", phantoms}))
       if (scene.name == "knee-clipped" && scene.missing.empty())
         return scene;
-  throw std::runtime_error("there is no knee-clipped in the table of scenes, or no knee for it");
+  throw std::runtime_error("the table of scenes has no knee-clipped, or its phantom is missing");
 }
 
 } // namespace

@@ -18,7 +18,7 @@ Film renderGlobal(const SceneView& scene, const RenderSettings& settings) {
   });
 }
 
-/// Renders with steps of `step` voxels.
+/// Ray marching with steps of `step` voxels.
 Film renderMarching(const SceneView& scene, const RenderSettings& settings, double step) {
   return traceImage(scene, settings, [&]<typename Voxel>(const Medium<Voxel>& medium) {
     return MarchingTracker<Voxel>(scene, medium, step);
@@ -26,28 +26,28 @@ Film renderMarching(const SceneView& scene, const RenderSettings& settings, doub
 }
 
 constexpr Mode table[] = {
-    {"product", "what `fenestra` does by default",
+    {"product", "the default of `fenestra`",
      [](const SceneView& scene, RenderSettings settings) {
        return renderProduct(scene, settings);
      }},
     {"adaptive",
-     "the same toward a noise target: noisier pixels get more samples, after a pilot of 16",
+     "like product, toward a noise target: noisier pixels get more samples, after a pilot of 16",
      [](const SceneView& scene, RenderSettings settings) {
-       settings.noise = 1e-6; // never reached: the number of samples ends the render
+       settings.noise = 1e-6; // out of reach: the sample count ends the render
        return renderProduct(scene, settings);
      }},
-    {"readable", "the scalar estimator, null collisions in a majorant grid, independent samples",
+    {"scalar", "the scalar integrator: null collisions in a majorant grid, independent samples",
      [](const SceneView& scene, RenderSettings settings) {
        settings.integrator = Integrator::scalar;
        return renderProduct(scene, settings);
      }},
-    {"global", "the same, null collisions against one majorant for the whole volume",
+    {"global", "like scalar, with one majorant for the volume",
      [](const SceneView& scene, RenderSettings settings) { return renderGlobal(scene, settings); }},
-    {"marching", "the same, fixed steps of one voxel: biased",
+    {"marching", "like scalar, with fixed steps of one voxel: biased",
      [](const SceneView& scene, RenderSettings settings) {
        return renderMarching(scene, settings, 1.0);
      }},
-    {"marching-half", "the same, fixed steps of half a voxel: biased",
+    {"marching-half", "like scalar, with fixed steps of half a voxel: biased",
      [](const SceneView& scene, RenderSettings settings) {
        return renderMarching(scene, settings, 0.5);
      }},
@@ -66,7 +66,7 @@ const Mode& findMode(const std::string& name) {
       return mode;
     known += (known.empty() ? "" : ", ") + std::string(mode.name);
   }
-  throw usageError("--modes: '" + name + "' is unknown; use some of " + known);
+  throw usageError("--modes: '" + name + "' is unknown; expected some of " + known);
 }
 
 } // namespace fenestra::benchmarks

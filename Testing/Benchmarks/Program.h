@@ -1,5 +1,5 @@
 #pragma once
-// Parts of the benchmark programs: CPU time, and the end of a program by an error.
+// Parts of the benchmark programs: CPU time, and error handling of main().
 
 #include "base/Error.h"
 
@@ -10,7 +10,7 @@
 
 namespace fenestra::benchmarks {
 
-/// User and system time of this process so far.
+/// User and system time that this process has used.
 inline double cpuSeconds() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -20,7 +20,7 @@ inline double cpuSeconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-/// Exit status of main(): of the benchmark, or of the error that it throws, which is told.
+/// Runs a benchmark, prints the error that it throws, and returns the exit status for main().
 inline int runBenchmark(const char* name, int (*benchmark)(int, char**), int argc, char** argv) {
   try {
     return benchmark(argc, argv);

@@ -19,7 +19,7 @@
 namespace fenestra::benchmarks {
 namespace {
 
-/// Seeds that no measured render uses.
+/// First seed of references, above those of measured renders.
 constexpr std::uint64_t firstReferenceSeed = std::uint64_t{1} << 40;
 
 constexpr const char* colors[] = {"R", "G", "B"};
@@ -28,7 +28,7 @@ std::vector<float>& channel(Image& image, const std::string& name) {
   return image.channels.at(name);
 }
 
-/// Adds one more picture to the mean of `parts` pictures of equal quality.
+/// Adds one more image to the mean of `parts` images of equal quality.
 void addPart(Image& sum, const Image& part, double parts) {
   for (const char* name : colors) {
     std::vector<float>& mean = channel(sum, name);
@@ -43,8 +43,8 @@ void addPart(Image& sum, const Image& part, double parts) {
   }
 }
 
-/// Mean of independent pictures with equal sample counts, each with its own seed, until all wanted
-/// samples are there, or else the noise target or the time limit is reached.
+/// Mean of independent images with equal sample counts and different seeds. Stops at the sample
+/// count of `wanted`, or else at its noise target or time limit.
 template <typename RenderPart>
 Image accumulate(const ReferenceSettings& wanted, std::uint64_t samples, RenderPart&& renderPart) {
   const Stopwatch watch;
@@ -70,7 +70,7 @@ Image renderByProduct(const PreparedScene& scene, RenderSettings settings,
   });
 }
 
-/// Lights from a file, or from a preset.
+/// Lights of a file or a built-in preset.
 std::vector<Light> readPresetLights(const std::string& name) {
   const std::string_view preset = findResource("lights/" + name + ".json");
   return preset.empty() ? readLights(name) : parseLights(preset, name);
@@ -80,7 +80,7 @@ Image renderByOracle(const RenderOptions& options, const PreparedScene& scene,
                      const RenderSettings& settings, const ReferenceSettings& wanted) {
   const SceneView parts = scene.view();
   if (!std::holds_alternative<ClipNone>(parts.clip))
-    throw inputError("scenes.txt", "asks the oracle for a clipped reference; use product");
+    throw inputError("scenes.txt", "requests an oracle reference for a clip; use product");
   const oracle::OracleScene subject{.volume = parts.volume,
                                     .transfer = parts.transfer,
                                     .lights = readPresetLights(options.scene.lights),
@@ -115,7 +115,7 @@ std::optional<Reference> findIndependent(const SceneCase& sceneCase, const Prepa
   return Reference(*std::move(image), "independent");
 }
 
-/// Text that identifies the request of a cached reference.
+/// Identifies the request of a cached reference.
 std::string makeCacheKey(const SceneCase& sceneCase, const PreparedScene& scene,
                          const ReferenceSettings& wanted) {
   std::string text = std::to_string(scene.camera().width()) + "x" +

@@ -1,5 +1,5 @@
 #pragma once
-// Reference pictures, against which renders are measured.
+// Reference images to which renders are compared.
 
 #include "Scenes.h"
 
@@ -12,21 +12,21 @@ struct ReferenceSettings {
   std::filesystem::path folder; ///< cache of references
   double noise = 0.03;          ///< target of Film::noise() for a new reference
   double seconds = 1800.0;      ///< time limit of a new reference
-  std::uint64_t samples = 0;    ///< of a new reference, in place of noise and seconds; 0: by these
+  std::uint64_t samples = 0;    ///< of a new reference; replaces noise and seconds; 0: unused
 };
 
 struct Reference {
   Image image; ///< R, G, B and their standard errors
   std::string maker;
-  double relMse = 0.0; ///< of the reference itself, from its standard errors
+  double relMse = 0.0; ///< of the reference, from its standard errors
 
   Reference(Image imageIn, std::string makerIn);
 };
 
-/// Returns the scene's independent reference if there is one of the picture's size, else the
-/// reference cached in the folder, else a new one, which is cached. The header of a cached
-/// reference holds its command line; the reference is rebuilt if that line has changed, but not if
-/// files named in the line have. Throws Error.
+/// Returns the scene's independent reference if there is one of the same size, else the cached
+/// reference, else a new one, which is cached. A cached reference stores its command line in the
+/// header. It is rebuilt if that line has changed, but not if files named in it have changed.
+/// Throws Error.
 Reference findReference(const SceneCase& sceneCase, const PreparedScene& scene,
                         const RenderSettings& settings, const ReferenceSettings& wanted);
 

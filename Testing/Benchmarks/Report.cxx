@@ -39,7 +39,7 @@ std::vector<std::string> splitCells(const std::string& line) {
   return cells;
 }
 
-/// Adds a row of cells in the order of csvHeader.
+/// Adds a row, with cells in the order of csvHeader.
 void addRow(const std::vector<std::string>& cells, std::vector<CurveRecord>& curves) {
   if (curves.empty() || curves.back().scene != cells[0] || curves.back().mode != cells[1])
     curves.push_back({cells[0], cells[1], cells[2], std::stod(cells[3])});
@@ -61,7 +61,7 @@ const CurveRecord* find(const std::vector<CurveRecord>& curves, const std::strin
   return found == curves.end() ? nullptr : &*found;
 }
 
-/// Names of the scenes, each once, in their order.
+/// Names of the scenes, each once, in order of occurrence.
 std::vector<std::string> listScenes(const std::vector<CurveRecord>& curves) {
   std::vector<std::string> scenes;
   for (const CurveRecord& curve : curves)
@@ -79,7 +79,7 @@ std::string toScientific(double x) {
 std::string makeEfficiencyCell(const CurveRecord& curve) {
   const std::optional<Efficiency> efficiency = efficiencyNear(curve.points, quotedRelMse);
   if (!efficiency)
-    return "no error left";
+    return "no measurable error";
   std::ostringstream out;
   out << std::setprecision(3) << efficiency->value;
   if (efficiency->relMse != quotedRelMse)
@@ -96,7 +96,7 @@ std::string makeBiasCell(const CurveRecord& curve) {
   return out.str();
 }
 
-/// Writes a table with a row per scene: `first` of one of its curves, then `cell` of each curve.
+/// Writes a table with a row per scene: `first` for one of its curves, then `cell` for each curve.
 template <typename First, typename Cell>
 void writeTable(std::ostream& out, const std::vector<CurveRecord>& curves, const char* second,
                 First&& first, Cell&& cell) {
@@ -117,23 +117,23 @@ void writeTable(std::ostream& out, const std::vector<CurveRecord>& curves, const
   out << "\n\n";
 }
 
-/// Efficiency of other programs in the scenes that have independent references, as measured once on
-/// an idle machine of two cores with two threads; empty: not measured.
+/// Efficiency of another renderer in the scenes with independent references, measured once on an
+/// idle dual-core machine with two threads; empty: not measured.
 struct Peer {
   const char *name, *s1, *s2, *s2hi;
 };
 constexpr Peer peers[] = {
     {"pbrt-v4, volumetric path tracer", "4.0", "4.5", ""},
     {"Cycles (Blender 3.4), step rate 1: biased", "3.1", "9.8", ""},
-    {"plain scalar tracker: delta tracking, 32³ majorants", "29", "51", "14"},
+    {"simple scalar tracker: delta tracking, 32³ majorants", "29", "51", "14"},
 };
 
 void writePeers(std::ostream& out, const std::vector<CurveRecord>& curves) {
-  out << "## Other renderers\n\nThe same scenes, lights and cameras, 256 × 256 pixels, two "
-         "threads, "
-         "measured once on another machine of two cores: they tell the order, not the last digit. "
-         "Cycles marches in steps of a voxel; pbrt absorbs whole paths, meets the volume's box as "
-         "triangles after every collision, and renders colour by wavelengths.\n\n"
+  out << "## Other renderers\n\nEfficiency with the same scenes, lights and cameras, 256 × 256 "
+         "pixels and two threads. It was measured once on another dual-core machine, so only the "
+         "order of magnitude is comparable. Cycles marches in steps of one voxel. pbrt terminates "
+         "paths by absorption, intersects the volume's box as triangles after every collision, and "
+         "renders spectrally.\n\n"
          "| renderer | S1 | S2 | S2hi |\n|---|---|---|---|\n| Fenestra (above) |";
   for (const char* scene : {"S1", "S2", "S2hi"}) {
     const CurveRecord* curve = find(curves, scene, "product");
@@ -155,14 +155,30 @@ double largestSpread(const std::vector<CurveRecord>& curves) {
   return largest;
 }
 
+/// Records of other programs, next to this report.
+constexpr const char* otherRecords =
+    "## Other records\n\n| file | content | script |\n|---|---|---|\n"
+    "| [denoiser.csv](denoiser.csv) | [gain, cost and error estimate of the "
+    "denoiser](../README.md#denoiser) | `denoiser.sh` |\n"
+    "| [appearance.csv](appearance.csv) | [lightness and color differences of "
+    "images](../README.md#appearance) | `appearance.sh` |\n"
+    "| [instructions.csv](instructions.csv) | [CPU instructions per "
+    "path](../README.md#instructions-per-path) | `instructions.sh --record` |\n"
+    "| [components.csv](components.csv) | [time of single components, on one "
+    "thread](../README.md#components) | `run.sh` |\n"
+    "| [changes.csv](changes.csv) | [time from a change to the first new "
+    "sample](../README.md#changes) | `run.sh` |\n";
+
 std::string makeReadme(const std::vector<CurveRecord>& curves, const std::string& notes) {
   std::ostringstream out;
-  out << "# Error against time\n\nMade by `bash Testing/Benchmarks/run.sh`; what is measured and "
-         "how: [../README.md](../README.md). Every point: [curves.csv](curves.csv).\n\n"
-      << notes << "\n\n![relMSE over CPU seconds, a panel a scene](curves.svg)\n\n"
-      << "## Efficiency\n\n1 / (relMSE × CPU seconds) of rendering, where the curve passes relMSE "
-      << toScientific(quotedRelMse) << " (interpolated in logarithms); \"at\" another one: the "
-      << "measured point nearest to that.\n\n";
+  out << "# Error against time\n\nGenerated by `bash Testing/Benchmarks/run.sh`; see the "
+         "[description "
+         "of the method](../README.md#error-against-time). All points: [curves.csv](curves.csv)."
+         "\n\n"
+      << notes << "\n\n![relMSE over CPU seconds, one panel per scene](curves.svg)\n\n"
+      << "## Efficiency\n\n1 / (relMSE × CPU seconds) of rendering, where the curve crosses relMSE "
+      << toScientific(quotedRelMse) << " (interpolated in logarithms). Otherwise \"at\" gives the "
+      << "relMSE of the nearest measured point.\n\n";
   writeTable(
       out, curves, "reference (its relMSE)",
       [](const CurveRecord& curve) {
@@ -170,16 +186,17 @@ std::string makeReadme(const std::vector<CurveRecord>& curves, const std::string
       },
       makeEfficiencyCell);
   writePeers(out, curves);
-  out << "## Bias\n\nOf the image mean at the most samples measured, in percent of the "
-         "reference's, and one standard error.\n\n";
+  out << "## Bias\n\nRelative bias of the image mean at the largest measured sample count, with "
+         "one standard error, in percent.\n\n";
   writeTable(
       out, curves, "reference", [](const CurveRecord& curve) { return curve.reference; },
       makeBiasCell);
   out << "## Modes\n\n";
   for (const Mode& mode : modes())
     out << "- `" << mode.name << "`: " << mode.description << '\n';
-  out << "\nThe standard deviation of relMSE over a point's seeds is at most "
-      << std::setprecision(2) << 100.0 * largestSpread(curves) << " % of it.\n";
+  out << "\nThe standard deviation of relMSE over the seeds of a point is at most "
+      << std::setprecision(2) << 100.0 * largestSpread(curves) << " % of relMSE.\n\n"
+      << otherRecords;
   return out.str();
 }
 
@@ -194,7 +211,7 @@ std::vector<CurveRecord> readCurves(const std::filesystem::path& folder) {
     return curves;
   const std::size_t columns = splitCells(csvHeader).size();
   if (line != csvHeader)
-    throw inputError(path.string(), "has other columns; move it away, or name another --output");
+    throw inputError(path.string(), "has unexpected columns; move it away, or change --output");
   while (std::getline(file, line)) {
     const std::vector<std::string> cells = splitCells(line);
     if (cells.size() > 1 && cells[1] == absent)
@@ -202,7 +219,7 @@ std::vector<CurveRecord> readCurves(const std::filesystem::path& folder) {
     else if (cells.size() == columns)
       addRow(cells, curves);
     else
-      throw inputError(path.string(), "'" + line + "': is cut off; move the file away");
+      throw inputError(path.string(), "'" + line + "': truncated row; move the file away");
   }
   return curves;
 }

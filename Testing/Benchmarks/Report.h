@@ -1,5 +1,5 @@
 #pragma once
-// Report of a run: every point as CSV, curves as SVG, efficiencies as a table.
+// Report of a run: all points as CSV, curves as SVG, efficiencies and biases as Markdown tables.
 
 #include "Curve.h"
 
@@ -9,33 +9,33 @@
 
 namespace fenestra::benchmarks {
 
-/// Curve of a mode in a scene. A missing scene has one record, without mode and points.
+/// Curve of a mode in a scene. A missing scene has one record without a mode and points.
 struct CurveRecord {
   std::string scene, mode;
   std::string reference;        ///< maker of the reference
-  double referenceRelMse = 0.0; ///< relMSE of the reference itself
+  double referenceRelMse = 0.0; ///< of the reference itself
   std::vector<Point> points = {};
 };
 
-/// Reads curves.csv of a folder; empty if the file is missing. Throws Error (input) for an invalid
-/// file.
+/// Reads curves.csv from a folder; empty if the file is missing. Throws Error (input) for an
+/// invalid file.
 std::vector<CurveRecord> readCurves(const std::filesystem::path& folder);
 
-/// `kept`, with records of the same scene and mode replaced by those in `measured`; ordered by
-/// `scenes`, then modes().
+/// Returns `previous`, in which records with the same scene and mode are replaced by those of
+/// `measured`. Sorted by `scenes`, then modes().
 std::vector<CurveRecord> mergeCurves(const std::vector<CurveRecord>& previous,
                                      const std::vector<CurveRecord>& measured,
                                      const std::vector<std::string>& scenes);
 
-/// Writes curves.csv, curves.svg and README.md. `notes`: a paragraph on the machine and the run.
+/// Writes curves.csv, curves.svg and README.md. `notes`: a paragraph about the machine and the run.
 /// Throws Error (output).
 void writeReport(const std::filesystem::path& folder, const std::vector<CurveRecord>& curves,
                  const std::string& notes);
 
-/// SVG with a log-log panel per scene: relMSE over CPU seconds.
+/// SVG with one log-log panel per scene: relMSE over CPU seconds.
 std::string drawCurves(const std::vector<CurveRecord>& curves);
 
-/// RelMSE at which efficiency is quoted.
+/// relMSE at which efficiency is quoted.
 inline constexpr double quotedRelMse = 1e-3;
 
 } // namespace fenestra::benchmarks

@@ -12,8 +12,7 @@ namespace {
 
 using Arguments = std::vector<std::string>;
 
-/// Arguments from a file, one a line, relative to its folder: names of files there become full
-/// paths.
+/// Arguments from a file with one per line. Files in its folder are replaced by their full path.
 Arguments readArguments(const std::filesystem::path& path) {
   Arguments words;
   std::ifstream file(path);
@@ -48,12 +47,12 @@ public:
         scenes.push_back(parseScene(words));
     }
     if (scenes.empty())
-      throw inputError(m_path.string(), "has no scenes; it needs lines NAME REFERENCE ARGUMENTS");
+      throw inputError(m_path.string(), "has no scenes; expected lines NAME REFERENCE ARGUMENTS");
     return scenes;
   }
 
 private:
-  /// Words of a line, with each "@name" replaced by its definition.
+  /// Splits a line into words, and replaces each "@name" by its definition.
   Arguments split(const std::string& line) const {
     Arguments words;
     std::istringstream stream(line);
@@ -75,7 +74,7 @@ private:
     const auto found = makers.find(word);
     if (found == makers.end())
       throw inputError(m_path.string(),
-                       "'" + word + "': REFERENCE is independent, oracle or product");
+                       "'" + word + "': expected REFERENCE independent, oracle or product");
     return found->second;
   }
 
@@ -97,7 +96,7 @@ private:
     return scene;
   }
 
-  /// Word with its folder's path; sets scene.missing if the file does not exist.
+  /// Replaces a folder's name by its path. Sets scene.missing if the file does not exist.
   std::string resolvePath(const std::string& word, SceneCase& scene) const {
     for (const auto& [name, folder] : m_folders)
       if (word.starts_with(name)) {
@@ -124,7 +123,7 @@ RenderOptions SceneCase::options() const {
     argv.push_back(word.data());
   const auto flags = parseCommandLine(renderSyntax, static_cast<int>(argv.size()), argv.data(), 1);
   if (!flags)
-    throw usageError("--scenes: " + name + " asks for help, not for a picture; mend scenes.txt");
+    throw usageError("--scenes: " + name + " only prints help; fix its line in scenes.txt");
   return makeRenderOptions(*flags);
 }
 

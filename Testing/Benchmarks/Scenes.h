@@ -9,15 +9,15 @@
 
 namespace fenestra::benchmarks {
 
-/// Folders for the table's {reference}, {data} and {phantoms}.
+/// Folders that replace {reference}, {data} and {phantoms} in the table.
 struct Folders {
   std::filesystem::path reference, data, phantoms;
 };
 
 enum class ReferenceMaker {
-  independent, ///< other renderers: FILE_best.exr and FILE_best_se.exr beside FILE.arguments
+  independent, ///< other renderers: FILE_best.exr and FILE_best_se.exr next to FILE.arguments
   oracle,      ///< Testing/Oracle; for scenes without a clip
-  product,     ///< the renderer itself with other seeds, if the oracle would take hours
+  product,     ///< the renderer with other seeds, for scenes that would take the oracle hours
 };
 
 struct SceneCase {
@@ -25,7 +25,7 @@ struct SceneCase {
   ReferenceMaker maker = ReferenceMaker::product;
   std::filesystem::path independent;  ///< FILE of an independent reference
   std::vector<std::string> arguments; ///< arguments of `fenestra`
-  std::string missing; ///< a file that the scene needs and that does not exist, or empty
+  std::string missing;                ///< a required file that does not exist, or empty
 
   RenderOptions options() const; ///< Throws Error (usage).
 };

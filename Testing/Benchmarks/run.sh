@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Builds Release, measures error against time over scenes and modes, and the parts one by one, and
-# writes Testing/Benchmarks/Report. Nothing else should run on the machine.
+# Builds Release, measures error against time over scenes and modes, then single components and the time
+# after a change, and writes Testing/Benchmarks/Report. Run it on an idle machine.
 # usage: bash Testing/Benchmarks/run.sh [--scenes A,B] [--modes A,B] [--budget CPU-SECONDS] [...]
-# All arguments are EfficiencyBenchmark's own, which --help lists; what the report holds of other
-# scenes and modes stays. FENESTRA_BUILD names another build folder.
+# All arguments are passed to EfficiencyBenchmark (see its --help). Results of other scenes and modes in
+# the report are kept. FENESTRA_BUILD selects another build folder.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../../Resources/setup.sh"
 folder=${FENESTRA_BUILD:-$top/build}
@@ -23,27 +23,25 @@ done
 say "Error against time"
 "$folder/bin/EfficiencyBenchmark" --output "$report" "$@"
 # The README quotes medians over all scenes.
-# median_ratio COLUMN: of the product's efficiency and that of the mode in the column.
+# median_ratio COLUMN: ratio of the product's efficiency to that of the mode in the column.
 median_ratio() {
   sed -n '/^## Efficiency/,/^## Other/p' "$report/README.md" |
     awk -F '|' -v column="$1" '$4 + 0 > 0 { print $4 / $column }' | sort -g |
     awk '{ ratios[NR] = $1 } END { printf "%.2g", (ratios[int((NR + 1) / 2)] + ratios[int(NR / 2) + 1]) / 2 }'
 }
-sed -i "/^<!-- speed: /,/^<!-- end of speed/s|^[^<].*|In the median of the benchmark's scenes it has \
-$(median_ratio 7) times the efficiency, 1 / (relMSE × CPU seconds), of delta tracking with one majorant, and \
+sed -i "/^<!-- speed: /,/^<!-- end of speed/s|^[^<].*|In the median over the benchmark's scenes, its \
+efficiency, 1 / (relMSE × CPU seconds), is $(median_ratio 7) times that of delta tracking with one majorant, and \
 $(median_ratio 8) times that of ray marching, which is biased.|" "$top/README.md"
-say "The parts, on one thread"
-"$folder/bin/MicroBenchmarks" --benchmark_format=console | tee "$folder/benchmarks/parts.txt"
-{
-  printf '# The parts, on one thread\n\nMade by `bash Testing/Benchmarks/run.sh`.\n\n```\n'
-  cat "$folder/benchmarks/parts.txt"
-  printf '```\n'
-} >"$report/parts.md"
-say "From a change to the first new sample"
-{
-  printf '# From a change to the first new sample, by the clock\n\n'
-  printf 'The knee at 256 × 256. Made by `bash Testing/Benchmarks/run.sh`.\n\n'
-  "$folder/bin/ChangeBenchmark" TibialCartilage "$folder/benchmarks/knee/knee.mrml" \
-    --focus FemoralCartilage --size 256x256
-} >"$report/changes.md"
-say "The report is $report/README.md"
+# store NAME COMMAND...: prints the output of a command, and stores it as the record NAME if it succeeds.
+store() {
+  local output=$folder/benchmarks/$1.csv
+  "${@:2}" | tee "$output"
+  cp "$output" "$report/$1.csv"
+}
+
+say "Single components, on one thread"
+store components "$folder/bin/MicroBenchmarks" --benchmark_format=csv
+say "Time from a change to the first new sample"
+store changes "$folder/bin/ChangeBenchmark" TibialCartilage "$folder/benchmarks/knee/knee.mrml" \
+  --focus FemoralCartilage --size 256x256
+say "Wrote $report/README.md"

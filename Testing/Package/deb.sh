@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# The Debian package of a build: its name, what it holds and needs, the program in it. With `strictly`, lintian's
-# verdict, too, and that it has the same bytes when it is made again. Exit status 77: Debian's tools are missing.
+# Tests the Debian package of a build: name, files, dependencies, and the program in it. With `strictly`, also requires
+# that lintian accepts it and that packaging is reproducible. Exit status 77: Debian's tools are missing.
 # usage: bash Testing/Package/deb.sh BUILD [strictly]
 set -euo pipefail
 export LC_ALL=C
 build=$(cd "$1" && pwd)
 for tool in cpack dpkg-deb dpkg-shlibdeps ${2:+lintian}; do
-  command -v "$tool" >/dev/null || { echo "SKIPPED: there is no $tool here"; exit 77; }
+  command -v "$tool" >/dev/null || { echo "SKIPPED: needs $tool"; exit 77; }
 done
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -16,13 +16,13 @@ fail() {
 }
 # pack FOLDER: makes the package there.
 pack() {
-  (cd "$build" && cpack -B "$1") >"$work/log" 2>&1 || fail "no package: $(tail "$work/log")"
+  (cd "$build" && cpack -B "$1") >"$work/log" 2>&1 || fail "packaging failed: $(tail "$work/log")"
 }
 pack "$work"
 said=$("$build/bin/fenestra" --version)
 version=$(head -n 1 <<<"$said" | cut -d ' ' -f 2)
 package=$work/fenestra_$version-1_$(dpkg --print-architecture).deb
-[ -f "$package" ] || fail "another name: $(ls "$work"/*.deb)"
+[ -f "$package" ] || fail "unexpected package name: $(ls "$work"/*.deb)"
 
 dpkg-deb -x "$package" "$work/root"
 usr=$work/root/usr
@@ -38,17 +38,17 @@ expected='./bin/fenestra
 ./share/lintian/overrides/fenestra
 ./share/man/man1/fenestra.1.gz
 ./share/zsh/vendor-completions/_fenestra'
-[ "$files" = "$expected" ] || fail "other files: $(diff <(echo "$expected") <(echo "$files"))"
-# Libraries whose names end in their version, by the release of Debian.
+[ "$files" = "$expected" ] || fail "unexpected files: $(diff <(echo "$expected") <(echo "$files"))"
+# Only the beginnings of these names: they end in a version that depends on Debian's release.
 needs=$(dpkg-deb -f "$package" Depends)
 for library in libc6 libinsighttoolkit libopencolorio libopenexr libtbb libhwy libzip libpng libtiff; do
-  [[ $needs == *$library* ]] || fail "it does not depend on $library: $needs"
+  [[ $needs == *$library* ]] || fail "missing dependency on $library: $needs"
 done
-[ "$("$usr/bin/fenestra" --version)" = "$said" ] || fail "the packed program is another"
+[ "$("$usr/bin/fenestra" --version)" = "$said" ] || fail "the packaged program differs from the build's"
 [ "$(gzip -dc "$usr/share/man/man1/fenestra.1.gz")" = "$("$usr/bin/fenestra" describe man)" ] ||
-  fail "the manual page is another"
+  fail "the manual page differs from 'fenestra describe man'"
 [ $# -lt 2 ] && exit
 verdict=$(lintian --allow-root --fail-on error,warning "$package" 2>&1) || fail "$verdict"
 [ -z "$verdict" ] || fail "$verdict"
 pack "$work/again"
-cmp "$package" "$work/again/${package##*/}" || fail "made again, it is another"
+cmp "$package" "$work/again/${package##*/}" || fail "packaging is not reproducible"
