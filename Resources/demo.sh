@@ -1,27 +1,27 @@
 #!/usr/bin/env bash
-# From a fresh Debian 12 to the paper's figure 1 on the synthetic knee: installs what it needs,
-# builds, makes the knee, renders it with the four clip modes and puts them side by side.
-# Can be run again cheaply. usage: bash Resources/demo.sh [FOLDER]
+# Reproduces figure 1 of the paper on a fresh Debian 12: installs packages, builds, writes a synthetic knee,
+# renders it with four clip modes and puts the images side by side. Later runs reuse build and knee.
+# usage: bash Resources/demo.sh [FOLDER]
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 out=$(mkdir -p "${1:-$top/demo}" && cd "${1:-$top/demo}" && pwd) || die "cannot make folder ${1:-$top/demo}"
 
 install_packages "${build_packages[@]}" imagemagick fonts-dejavu-core
-say "Building (some minutes the first time)"
+say "Building (takes some minutes the first time)"
 build release -DFENESTRA_BUILD_TESTS=OFF
 fenestra=$top/build/bin/fenestra
 
 if [ ! -s "$out/knee/knee.nrrd" ] || [ "$fenestra" -nt "$out/knee/knee.nrrd" ]; then
-  say "Making the synthetic knee"
+  say "Writing the synthetic knee"
   "$fenestra" phantom knee --output "$out/knee"
 fi
 
-# The femoral cartilage from in front and a little below, with its two lesions; without the steps of the
-# labelmap's 1 mm slices (labelsmoothing), and those of the scan's own on its border (soft).
+# View from the front and slightly below, onto both lesions of the femoral cartilage. labelsmoothing removes the
+# steps of the label map's 1 mm slices, soft those of the scan at the border of the cartilage.
 scene=(--transfer "$out/knee/knee.vp.json" --segmentation "$out/knee/knee.seg.nrrd"
   --focus "Femoral cartilage" --labelsmoothing 0.6 --position=-15,200,-90 --size 384x384 --samples 16)
 
-render() { # MODE [flags]
+render() { # MODE [options]
   local mode=$1
   shift
   say "Rendering: $mode"
@@ -30,7 +30,7 @@ render() { # MODE [flags]
 }
 start=$SECONDS
 render surface --boundary exact --soft 2
-say "The first picture is $out/surface.png"
+say "First image: $out/surface.png"
 render none
 render plane --plane=0,10,-5,0,0.91,-0.41
 render cutaway --soft 2
@@ -41,8 +41,8 @@ montage -font DejaVu-Sans -pointsize 18 -geometry +6+6 -background '#181818' -fi
   -label 'b  Clip plane: poor coverage' "$out/plane.png" \
   -label 'c  Cut-away: cliffs, dark focus' "$out/cutaway.png" \
   -label 'd  Clipping surface' "$out/surface.png" \
-  -tile 4x1 "$out/figure1.png" || die "montage could not put the pictures side by side"
+  -tile 4x1 "$out/figure1.png" || die "montage failed (see above)"
 
-say "Done. Look at:"
+say "Done. Results:"
 echo "$out/figure1.png"
 ls "$out"/*.exr

@@ -1,5 +1,5 @@
-# Sourced by demo.sh and the scripts of Testing: installs the Debian packages that Fenestra needs, and builds.
-# Sets `top` (the project's folder). Prints a plain reason and exits where something is missing.
+# Sourced by demo.sh and the scripts in Testing. Functions that install the required Debian packages and build.
+# Sets `top`, the project's folder. Functions print the reason and exit if something is missing.
 
 top=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
@@ -10,24 +10,24 @@ die() {
 }
 
 stages=()
-# stage NAME BUDGET COMMAND...: runs it, and remembers its seconds beside its budget: seconds on two quiet cores.
+# stage NAME BUDGET COMMAND...: runs a command and records its time and budget, seconds on two idle cores.
 stage() {
   local name=$1 budget=$2 start=$SECONDS took late=
   shift 2
   say "$name"
   "$@" || die "$name failed"
   took=$((SECONDS - start))
-  [ $((2 * took)) -le $((3 * budget)) ] || late="  <== TOO LONG: over its budget by half or more"
+  [ $((2 * took)) -le $((3 * budget)) ] || late="  <== TOO LONG: at least half over its budget"
   stages+=("$(printf '%5d s of %4d s  %s%s' "$took" "$budget" "$name" "$late")")
 }
 print_stages() {
-  say "Where the time went"
+  say "Time by stage"
   printf '%s\n' "${stages[@]}"
 }
 
-# install_packages PACKAGE...: only those that are missing; as root, or through sudo.
+# install_packages PACKAGE...: installs the missing ones, as root or with sudo.
 install_packages() {
-  command -v dpkg-query >/dev/null || die "this set-up needs Debian or a derivative (dpkg is missing)"
+  command -v dpkg-query >/dev/null || die "dpkg: not found; this script needs Debian or a derivative"
   local package missing=()
   for package in "$@"; do
     [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] ||
@@ -37,7 +37,7 @@ install_packages() {
   say "Installing ${missing[*]}"
   local root=()
   if [ "$(id -u)" -ne 0 ]; then
-    command -v sudo >/dev/null || die "installing packages needs root or sudo: ${missing[*]}"
+    command -v sudo >/dev/null || die "sudo: not found; install as root: ${missing[*]}"
     root=(sudo)
   fi
   local log
@@ -45,7 +45,7 @@ install_packages() {
   { "${root[@]}" apt-get update &&
     "${root[@]}" env DEBIAN_FRONTEND=noninteractive \
       apt-get install -y --no-install-recommends "${missing[@]}"; } >"$log" 2>&1 ||
-    { tail -n 15 "$log" >&2; die "apt-get could not install ${missing[*]} (log: $log)"; }
+    { tail -n 15 "$log" >&2; die "apt-get: cannot install ${missing[*]} (log: $log)"; }
   rm -f "$log"
 }
 
@@ -55,7 +55,7 @@ build_packages=(
   nlohmann-json3-dev libpugixml-dev libzip-dev libgtest-dev libpng-dev libtiff-dev
   zlib1g-dev)
 
-# build PRESET [cmake arguments]: configures and builds into the preset's folder.
+# build PRESET [cmake arguments]: configures and builds in the preset's folder.
 build() {
   local preset=$1
   shift

@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# The paper's figure 1: the knee whole, by plane, cut-away and clipping surface, the surface's control
-# points, and the bones of a foot; on the synthetic subjects, and on real data where there is some:
-# Resources/figures/figure1.md. usage: bash Resources/figures/figure1.sh
+# Reproduces figure 1 of the paper: a knee without a clip, with plane, cut-away and clipping surface, the
+# control points of that surface, and the bones of a foot. Uses phantoms, and real data if present. Writes
+# section "figure1" of README.md. usage: bash Resources/figures/figure1.sh
 source "$(dirname "${BASH_SOURCE[0]}")/figures.sh"
-page=$shown/figure1.md
+page=$out/figure1.md
 
-# outlined NAME FROM arguments...: the picture FROM with the focus's outline in yellow and the control
-# points in green. The outline is that of a picture of the focus alone.
-outlined() {
+# draw_outline NAME FROM arguments...: draws the outline of the focus (yellow) and the control points (green)
+# on the image FROM. The outline comes from an image of the focus alone.
+draw_outline() {
   local name=$1 from=$2 dots=()
   shift 2
   render "$name-alone" "$@" --clip none --contextdensity 0 --background transparent
@@ -30,19 +30,19 @@ render knee-none "${knee[@]}" --clip none
 render knee-hand-plane "${knee[@]}" --clip plane --plane=0,10,-5,0,0.91,-0.41
 render knee-cutaway "${knee[@]}" --clip cutaway --soft 2
 render knee-spline "${knee[@]}" --clip surface --soft 2
-outlined knee-points knee-spline "${knee[@]}"
+draw_outline knee-points knee-spline "${knee[@]}"
 render foot-spline "${foot[@]}" --clip surface
 row figure1.jpg knee-none "a  Whole" knee-hand-plane "b  Plane, by hand" knee-cutaway "c  Cut-away" \
   knee-spline "d  Clipping surface" knee-points "e  Outline, control points" foot-spline "f  Foot"
 
-first() { number "$1" '(.seconds.focus + .seconds.spline + .seconds.fill) * 1000' %.0f; }
-share() { number "$1" '100 * (.seconds.focus + .seconds.spline + .seconds.fill) / (.seconds.transport * 100 / '"$samples"')' "$2"; }
+first_pass_ms() { number "$1" '(.seconds.focus + .seconds.spline + .seconds.fill) * 1000' %.0f; }
+first_pass_percent() { number "$1" '100 * (.seconds.focus + .seconds.spline + .seconds.fill) / (.seconds.transport * 100 / '"$samples"')' "$2"; }
 {
   cat <<'END'
-# The paper's figure 1
+## Figure 1 of the paper
 
-Made by `figure1.sh`. Knee: synthetic T1 MR, 300 x 344 x 120 voxels of 0.4 x 0.4 x 1 mm, as the paper's;
-foot: synthetic CT, bones as the focus.
+Written by `figure1.sh`. The knee is a synthetic T1 MR of 300 × 344 × 120 voxels of 0.4 × 0.4 × 1 mm, as in the paper. The
+foot is a synthetic CT with the bones as the focus.
 
 ![Figure 1, a to f](figure1.jpg)
 
@@ -73,36 +73,34 @@ if [ -d "$torso" ]; then
     torso-exact "Surface, exact"
   cat >>"$page" <<'END'
 
-On a real CT (TCIA CC-Tumor-Heterogeneity, CCTH-A01, CC BY 4.0), bones by a threshold of 200 HU, as the
-paper's foot:
+A real CT (TCIA CC-Tumor-Heterogeneity, CCTH-A01, CC BY 4.0), with bones by a threshold of 200 HU as in the paper's foot:
 
 ![A torso's bones, four ways](figure1-real.jpg)
 END
 else
-  printf '\nReal data: SKIPPED, there is no torso_ct_ccth_a01 in FENESTRA_DATA.\n' >>"$page"
+  printf '\nReal data: SKIPPED, FENESTRA_DATA has no torso_ct_ccth_a01.\n' >>"$page"
 fi
 
 cat >>"$page" <<END
 
-## What the paper says of it, and what we find
+### The paper's statements and our findings
 
-- **A plane covers the cartilage badly, a cut-away leaves cliffs and shadows, the surface shows it all and
-  lit**: holds; see the table.
-- **"C0, C1, C2 continuity"**: f itself is not C2 where it has a control point (r² ln r² has a
-  logarithmic second derivative there). Across the focus's outline the surface is not even C0: between control
-  points it misses the focus's depth by the gap above, and its slope nowhere meets the focus's. \`--boundary
-  exact\` does, up to a limit of slope ([techniques](techniques.md)).
-- **N = 50 control points**: enough for a smooth, single outline; between them the miss stays, since p = 0.5
-  smooths as well: [the gap by N and p](#the-gap-by-n-and-p).
-- **p = 0.5**: means nothing without a unit of length, which the paper does not name. Ours is mm: the same
-  shape at 1 mm and at 512 mm is smoothed differently ([figure 3](figure3.md)).
-- **First pass in 0.1 s** at 512 x 512 (dual core i7 with a Quadro K2200): here $(first knee-spline) ms at
-  $size x $size on $(nproc) cores, without a graphics card.
-- **First pass as one iteration in 100**: here it costs $(share knee-spline %.2f) % of a picture of 100 samples a pixel.
+- **A plane covers the cartilage badly, a cut-away leaves cliffs and shadows, the surface shows all of it, and lit**: the table
+  confirms it.
+- **"C0, C1, C2 continuity"**: f is not C2 at a control point, where r² ln r² has a logarithmic second derivative. Across the
+  outline of the focus the surface is not even C0: between control points it misses the depth of the focus by the gap
+  above, and its slope does not match. \`--boundary exact\` matches both, up to a limit of slope.
+- **N = 50 control points**: enough for a smooth, single outline. A gap between them remains, since p = 0.5 also smooths; see
+  the table below.
+- **p = 0.5** means nothing without a unit of length, which the paper does not state. Ours is mm, so the same shape at 1 mm
+  and at 512 mm is smoothed differently ([figure 3](#figure-3-of-the-paper)).
+- **First pass in 0.1 s** at 512 × 512 (dual-core i7 with a Quadro K2200): here $(first_pass_ms knee-spline) ms at
+  $size × $size on $(nproc) cores, without a GPU.
+- **First pass as one iteration of 100**: here $(first_pass_percent knee-spline %.2f) % of an image with 100 samples per pixel.
 END
 
 {
-  printf '\n## The gap by N and p\n\nMean gap in mm of the knee at 192 x 192:\n\n| N | p = 0.5 | 0.9 | 0.99 | 1 |\n|---|---|---|---|---|\n'
+  printf '\nMean gap in mm by N and p, for the knee at 192 × 192:\n\n| N | p = 0.5 | 0.9 | 0.99 | 1 |\n|---|---|---|---|---|\n'
   for n in 10 25 50 100 400; do
     printf '| %s |' "$n"
     for p in 0.5 0.9 0.99 1; do
@@ -112,4 +110,4 @@ END
     echo
   done
 } >>"$page"
-say "Done: $page"
+write_section figure1

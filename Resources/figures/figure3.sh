@@ -1,17 +1,17 @@
 #!/usr/bin/env bash
-# The paper's figure 3: the cube of its z index at an oblique view, as a cube of 1 mm and one of 512 mm:
-# Resources/figures/figure3.md. usage: bash Resources/figures/figure3.sh
+# Reproduces figure 3 of the paper: an oblique view of a cube whose scalar is the z index, with an edge of 1 mm
+# and of 512 mm. Writes section "figure3" of README.md. usage: bash Resources/figures/figure3.sh
 source "$(dirname "${BASH_SOURCE[0]}")/figures.sh"
-page=$shown/figure3.md
+page=$out/figure3.md
 
-# plot NAME MM: the clipping surface $out/NAME.ply as the eye sees it and from its side, turned by 90
-# degrees about the picture's upright axis, coloured by depth.
+# plot NAME MM: plots the clipping surface $out/NAME.ply from the camera and turned by 90 degrees about the
+# vertical axis of the image, colored by depth.
 plot() {
   local name=$1 mm=$2 header count
   header=$(($(grep -abo -m1 end_header "$out/$name.ply" | cut -d: -f1) + 11))
   count=$(grep -a -m1 'element vertex' "$out/$name.ply" | cut -d' ' -f3)
-  # Triangles are as large as the surface allows: points all over each of them.
-  awk -v apart="$(bc -l <<<"$mm / 130")" '
+  # The mesh has large triangles where the surface is flat, so each triangle is filled with points.
+  awk -v spacing="$(bc -l <<<"$mm / 130")" '
     function distance(a, b) { return sqrt((x[a] - x[b]) ^ 2 + (y[a] - y[b]) ^ 2 + (z[a] - z[b]) ^ 2) }
     function greater(a, b) { return a > b ? a : b }
     NF == 4 { x[n] = $1; y[n] = $2; z[n] = $3; depth[n++] = $4 }
@@ -19,7 +19,7 @@ plot() {
       for (i = 0; i < 3; ++i)
         v[i] = $(4 * i + 2) + 256 * ($(4 * i + 3) + 256 * $(4 * i + 4))
       longest = greater(distance(v[0], v[1]), greater(distance(v[1], v[2]), distance(v[2], v[0])))
-      steps = int(longest / apart) + 1
+      steps = int(longest / spacing) + 1
       for (i = 0; i <= steps; ++i)
         for (j = 0; i + j <= steps; ++j) {
           a = i / steps; b = j / steps; c = 1 - a - b
@@ -28,7 +28,7 @@ plot() {
         }
     }' <(od -An -v -w16 -tf4 -j "$header" -N $((16 * count)) "$out/$name.ply") \
     <(od -An -v -w13 -tu1 -j $((header + 16 * count)) "$out/$name.ply") >"$out/$name.points"
-  # The view's right and up, from the camera that the stats do not have: the cube's own (its scene).
+  # Right and up directions of the view: the camera of the cube's scene, which the stats do not contain.
   gnuplot <<END
 set terminal pngcairo size 1000,430 font 'DejaVu Sans,11' background '#181818'
 set output '$out/$name-plot.png'
@@ -41,7 +41,7 @@ ux = 0.140625; uy = -0.312499; uz = 0.939451
 rx = fy*uz - fz*uy; ry = fz*ux - fx*uz; rz = fx*uy - fy*ux
 set multiplot layout 1,2
 set size ratio -1
-set title 'd  as the eye sees it' textcolor rgb 'white'
+set title 'd  from the camera' textcolor rgb 'white'
 set xlabel 'right, mm'; set ylabel 'up, mm'
 plot '$out/$name.points' using (\$1*rx+\$2*ry+\$3*rz):(\$1*ux+\$2*uy+\$3*uz):4 with points pt 5 ps 0.35 palette
 set title 'd  turned by 90 degrees' textcolor rgb 'white'
@@ -52,11 +52,11 @@ END
 }
 
 cat >"$page" <<'END'
-# The paper's figure 3
+## Figure 3 of the paper
 
-Made by `figure3.sh`: a cube of 512 x 512 x 512 voxels whose value is its z index, from -255 (blue) to 255
-(red), and a cuboid of 255 x 255 x 391 voxels in its middle as the focus, seen obliquely. The paper's "unit
-cube" has a side of 1 without a unit; p = 0.5 smooths by one, so here are both.
+Written by `figure3.sh`: a cube of 512³ voxels whose scalar is the z index, from -255 (blue) to 255 (red). The focus is a
+cuboid of 255 × 255 × 391 voxels in its center. The paper's "unit cube" has an edge of 1
+without a unit, but smoothing with p = 0.5 depends on the unit. Here are two edges.
 END
 for mm in 1 512; do
   phantom cube "cube-$mm" --edge "$mm"
@@ -73,12 +73,12 @@ for mm in 1 512; do
   row "figure3-$mm.jpg" "cube$mm-plane" "a  Cut plane" "cube$mm-cutaway" "b  Cut-away" \
     "cube$mm-spline" "c  Clipping surface, spline" "cube$mm-exact" "c  Clipping surface, exact"
   for boundary in spline exact; do
-    convert "$out/cube$mm-$boundary-plot.png" -quality 88 "$shown/figure3-$mm-$boundary.jpg"
+    convert "$out/cube$mm-$boundary-plot.png" -quality 88 "$figures/figure3-$mm-$boundary.jpg"
   done
   {
-    printf '\n## A cube of %s mm\n\n![a to c](figure3-%s.jpg)\n\nThe clipping surface itself, spline:\n\n' "$mm" "$mm"
-    printf '![d, spline](figure3-%s-spline.jpg)\n\nand exact:\n\n![d, exact](figure3-%s-exact.jpg)\n\n' "$mm" "$mm"
-    echo "| | gap mm: mean | p95 | max | slope jump | focus kept | focus shown | light on the focus |"
+    printf '\n**Edge of %s mm**: clips, clipping surface `spline`, clipping surface `exact`\n![a to c](figure3-%s.jpg)\n' "$mm" "$mm"
+    printf '![d, spline](figure3-%s-spline.jpg)\n![d, exact](figure3-%s-exact.jpg)\n\n' "$mm" "$mm"
+    echo "| clip | gap mm: mean | p95 | max | slope jump | focus kept | focus shown | light on the focus |"
     echo "|---|---|---|---|---|---|---|---|"
     for name in plane cutaway spline exact; do
       echo "| $name | $(number "cube$mm-$name" .boundaryGapMm.mean %.4f) | $(number "cube$mm-$name" .boundaryGapMm.p95 %.4f)" \
@@ -89,13 +89,11 @@ for mm in 1 512; do
 done
 cat >>"$page" <<'END'
 
-## What we find
-
-- The focus's front is three faces that meet in edges, so its outline is not plane: a plane cuts parts of the
-  focus off, and the thin plate spline rounds the corners of the outline.
-- At 1 mm, λ = (1 − p) / p = 1 is enormous against a shape of that size: the spline is all but the
-  least-squares plane, and misses the outline by a share of the cube. At 512 mm it all but interpolates.
-- "The continuity of the surface with the object boundary" of the paper's figure is that of a well-chosen size;
-  `--boundary exact` has it at any.
+- The visible side of the focus has three faces that meet in edges, so its outline is not planar. A plane cuts off parts of
+  the focus, and the thin plate spline rounds the corners of the outline.
+- At 1 mm, λ = (1 − p) / p = 1 is huge compared to the shape: the spline is close to the least-squares plane and misses the
+  outline by a noticeable fraction of the cube. At 512 mm it almost interpolates.
+- "The continuity of the surface with the object boundary" in the paper's figure is that of a suitable size. `--boundary
+  exact` has it at any size.
 END
-say "Done: $page"
+write_section figure3

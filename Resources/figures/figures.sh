@@ -1,28 +1,28 @@
-# Sourced by the scripts of figures: where the renderer, subjects and pictures are, and how a picture is
-# made. Pictures and numbers go into build/figures; what a script shows goes into Resources/figures.
-# Environment: FENESTRA_DATA, a folder of real volumes (left out where there is none); SIZE and SAMPLES
-# for rougher or finer pictures.
+# Sourced by the scripts in this folder: paths, and functions that render images and write README.md.
+# Renders and stats go to build/figures; images and numbers of the page go to Resources/figures.
+# Environment: FENESTRA_DATA, a folder of real volumes (figures without their data are skipped); SIZE and
+# SAMPLES of the renders; FENESTRA, another program.
 
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../setup.sh"
 install_packages imagemagick fonts-dejavu-core jq gnuplot-nox bc
 fenestra=${FENESTRA:-$top/build/bin/fenestra}
-[ -x "$fenestra" ] || die "$fenestra is not there; build first: bash Resources/demo.sh, or FENESTRA=FILE"
-shown=$top/Resources/figures
+[ -x "$fenestra" ] || die "$fenestra: not found; build it with bash Resources/demo.sh, or set FENESTRA=FILE"
+figures=$top/Resources/figures
 out=$top/build/figures
 data=${FENESTRA_DATA:-$top/../shared/data}
 size=${SIZE:-384}
 samples=${SAMPLES:-96}
 mkdir -p "$out"
 
-# phantom KIND [FOLDER [flags]]: makes a subject, once.
+# phantom KIND [FOLDER [options]]: writes a phantom unless it exists.
 phantom() {
   local kind=$1 folder=$out/${2:-$1}
   [ -s "$folder/$kind.nrrd" ] || "$fenestra" phantom "$kind" --output "$folder" "${@:3}" >/dev/null
 }
 
-# render NAME arguments...: $out/NAME.png and NAME.json, unless they are there from the same arguments
-# and executable.
+# render NAME arguments...: writes $out/NAME.png and NAME.json unless they exist from the same arguments
+# and program.
 render() {
   local name=$1
   shift
@@ -35,14 +35,14 @@ render() {
   fi
 }
 
-# number NAME KEY [FORMAT]: of its stats; a dash where it has none.
+# number NAME KEY [FORMAT]: prints a value of the stats of NAME; a dash if it is null or missing.
 number() {
   local value
   value=$(jq -r "$2 // empty" "$out/$1.json")
   [ -n "$value" ] && printf "${3:-%.2f}" "$value" || printf -- '-'
 }
 
-# row FILE.jpg NAME CAPTION ...: pictures side by side.
+# row FILE.jpg NAME CAPTION ...: puts images side by side.
 row() {
   local file=$1 labels=()
   shift
@@ -51,5 +51,18 @@ row() {
     shift 2
   done
   montage -font DejaVu-Sans -pointsize 15 -background '#181818' -fill white -tile x1 -geometry +5+5 \
-    "${labels[@]}" -quality 88 "$shown/$file"
+    "${labels[@]}" -quality 88 "$figures/$file"
+}
+
+# write_section NAME: replaces the lines between <!-- NAME --> and <!-- end of NAME --> of README.md by
+# $out/NAME.md.
+write_section() {
+  local page=$figures/README.md begin="<!-- $1 -->" end="<!-- end of $1 -->"
+  grep -qx -e "$begin" "$page" && grep -qx -e "$end" "$page" || die "$page: has no section \"$1\""
+  awk -v begin="$begin" -v end="$end" -v section="$out/$1.md" '
+    $0 == end { inside = 0 }
+    !inside
+    $0 == begin { inside = 1; while ((getline line < section) > 0) print line }' "$page" >"$page.tmp"
+  mv "$page.tmp" "$page"
+  say "Done: section \"$1\" of $page"
 }

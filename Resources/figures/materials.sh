@@ -1,75 +1,71 @@
 #!/usr/bin/env bash
-# Pictures of foci in the colours of what they are made of, each beside how a deuteranope sees it, from real
-# volumes: Resources/figures/materials.md. What was measured stands there if LookBenchmark is built
-# (Testing/Benchmarks/look.sh builds it). usage: bash Resources/figures/materials.sh
+# Renders focus segments of real volumes in their library colors, each beside a simulation of deuteranopia.
+# Writes section "materials" of README.md, with measured contrasts if AppearanceBenchmark is built
+# (Testing/Benchmarks/appearance.sh builds it). usage: bash Resources/figures/materials.sh
 source "$(dirname "${BASH_SOURCE[0]}")/figures.sh"
-page=$shown/materials.md
+page=$out/materials.md
 size=${SIZE:-1024}
 samples=${SAMPLES:-32}
-look=$top/build/bin/LookBenchmark
-[ -e "$data" ] || die "$data is not there: FENESTRA_DATA names the folder of volumes"
+benchmark=$top/build/bin/AppearanceBenchmark
+[ -e "$data" ] || die "$data: not found; set FENESTRA_DATA to the folder of volumes"
 
 abdomen="$data/abdomen_ct_totalseg/ct.nii.gz --segmentation $data/abdomen_ct_totalseg/seg_multiorgan.nii.gz"
 knee="$data/spl_knee_atlas_labels/SYNTHETIC_mr_256.nii.gz --segmentation $data/spl_knee_atlas_labels/seg_256.nii.gz"
 knee+=" --labels $data/spl_knee_atlas_labels/knee.ctbl"
 torso="$data/torso_ct_ccth_a01/ct.nii.gz --segmentation $data/torso_ct_ccth_a01/seg_totalsegmentator_rtstruct.nii.gz"
 
-cat >"$page" <<'END_OF_PAGE'
-# Colours of what segments are made of
+cat >"$page" <<'END'
+## Segment colors
 
-Made by `materials.sh` with `--materials auto`: the library's [colours](../materials/README.md), changed no more than
-the focus needs to be told from what surrounds it. Right: as a deuteranope sees it (Machado, Oliveira, Fernandes 2009).
-The numbers were [measured](../../Testing/Benchmarks/README.md#the-look-lookbenchmark) at 512 × 512 across the edge of
-the focus, in CIELAB, for normal sight, for the red-blind, for the green-blind, and of lightness alone; wanted are 20,
-12, 12 and 8.
+Written by `materials.sh` with `--materials auto`: the library's [colors](../materials/README.md), changed no more than the
+focus needs to be distinguishable from its surroundings. Right: a simulation of deuteranopia (Machado, Oliveira, Fernandes
+2009). The contrasts are [measured](../../Testing/Benchmarks/README.md) in CIELAB at 512 × 512 across the edge of the focus: ΔE
+for normal, protan and deutan vision, and ΔL*. The targets are 20, 12, 12 and 8.
+END
 
-END_OF_PAGE
-
-# measured "ARGUMENTS": ΔE*ab, protan, deutan, ΔL* of the picture, to 0.6 (look-scenes.txt); a dash without
-# LookBenchmark.
-measured() {
+# measure_contrast "ARGUMENTS": prints ΔE*ab for normal, protan and deutan vision, and ΔL* of the image, within
+# 0.6 (appearance-scenes.txt); a dash without the benchmark.
+measure_contrast() {
   local cells="" table=$out/materials-scene.txt
-  if [ -x "$look" ]; then
+  if [ -x "$benchmark" ]; then
     echo "this product $1 --samples 8 --size 512x512" >"$table"
-    cells=$("$look" --table "$table" | awk -F ' *[|] *' 'NR == 3 { print $5 ", " $6 ", " $7 " and " $8 }')
+    cells=$("$benchmark" --table "$table" | awk -F , 'NR == 2 { print $7 ", " $8 ", " $9 " and " $10 }')
   fi
   echo "${cells:--}"
 }
 
-# show NAME TITLE "WHAT" "ARGUMENTS": the picture, twice, and a paragraph of the page.
+# show NAME TITLE "TEXT" "ARGUMENTS": renders an image and its simulation, and adds them to the page.
 show() {
   local name=materials-$1
   # shellcheck disable=SC2086
   render "$name" $4
   convert "$out/$name.png" \( +clone -colorspace RGB -color-matrix \
     '0.367322 0.860646 -0.227968 0.280085 0.672501 0.047413 -0.011820 0.042940 0.968881' -colorspace sRGB \) \
-    +append -quality 84 "$shown/$name.jpg"
-  {
-    printf '## %s\n\n![%s](%s.jpg)\n\n%s\n\n`%s`\n\n' "$2" "$2" "$name" "$3" "${4//$data\//}"
-  } >>"$page"
+    +append -quality 84 "$figures/$name.jpg"
+  printf '\n![%s](%s.jpg)\n**%s.** %s\n`%s`\n' "$2" "$name" "$2" "$3" "${4//$data\//}" >>"$page"
 }
 
-# setOff NAME TITLE "WHAT" "ARGUMENTS": show, with --materials auto and what was measured.
-setOff() {
+# show_contrast NAME TITLE "TEXT" "ARGUMENTS": show with --materials auto and the measured contrast.
+show_contrast() {
   local all="$4 --materials auto"
-  show "$1" "$2" "$3 Told from what surrounds it by $(measured "$all")." "$all"
+  show "$1" "$2" "$3 Contrast: $(measure_contrast "$all")." "$all"
 }
 
-setOff liver "Liver" "The liver's own colour; fat around it a little lighter." "$abdomen --focus liver --view auto"
-setOff kidneys "Kidneys from behind" "A little darker than the library has them, since fat around them lies in their shade." \
+show_contrast liver "Liver" "Its library color; the fat around it is slightly lighter." "$abdomen --focus liver --view auto"
+show_contrast kidneys "Kidneys from behind" "Slightly darker than in the library, since the fat around them is in their shadow." \
   "$abdomen --focus kidney_left --focus kidney_right --view posterior"
-setOff aorta "Aorta with veins" "Behind it the vena cava, the portal vein, liver, gallbladder, spleen and kidney by name." \
+show_contrast aorta "Aorta with veins" "Behind it, colored by name: vena cava, portal vein, liver, gallbladder, spleen, kidney." \
   "$abdomen --focus aorta --view auto"
-setOff cartilage "Cartilage of the knee" "What surrounds it is dimmed, since much of that is nearly as white: bone, fat, menisci." \
+show_contrast cartilage "Cartilage of the knee" "The surroundings are darkened, since bone, fat and menisci are nearly as white." \
   "$knee --focus 83 --view auto"
-setOff torso "Torso: bones, lungs and liver" "Of the lungs the transfer function shows the vessels." "$torso --focus liver --view auto"
+show_contrast torso "Torso: bones, lungs and liver" "The transfer function shows the vessels of the lungs." "$torso --focus liver --view auto"
 
-# What the clip leaves of an opened abdomen.
+# Segments that the clip does not remove.
 opened="$abdomen --view anterior --clip plane --plane 0,135,300,0,1,0 --materials library"
 for segment in aorta inferior_vena_cava portal_vein_and_splenic_vein iliac_artery_left iliac_artery_right kidney_left \
   kidney_right; do
   opened+=" --material $segment:clip=no"
 done
-show opened "Vessels and kidneys stand in an opened abdomen" \
-  "Each of them has \`clip=no\`: the plane removes all else in front of it." "$opened"
-say "Done: $page"
+show opened "Vessels and kidneys in an opened abdomen" \
+  "They have \`clip=no\`; the plane removes everything else in front of them." "$opened"
+write_section materials

@@ -1,15 +1,15 @@
-# Sourced by release.sh: licences of what is in the archive, and its bill of materials. Reads `root` (the archive's
-# folder), `parts`, `version`, `name`, `epoch` and `origin` (the file of each library but our own); sets `package`
-# (Debian's, of each of these).
+# Sourced by release.sh: licenses of the archive's contents, and its bill of materials. Reads `root` (the archive's
+# folder), `parts`, `version`, `name`, `epoch` and `origin` (the file of each library except the stubs). Sets `package`
+# (the Debian package of each of these).
 
-# Whose headers are compiled in.
+# Packages whose headers are compiled in.
 header_packages=(libeigen3-dev nlohmann-json3-dev)
 
 # find_packages: sets `package`.
 find_packages() {
   local file library who names=()
   local -A owner
-  for file in "${origin[@]}"; do # Debian knows a file by the name that it was packed with
+  for file in "${origin[@]}"; do # dpkg knows files by the path in their package
     names+=("$file" "/usr$file" "$(realpath "$file")" "/usr$(realpath "$file")")
   done
   while read -r who file; do
@@ -21,25 +21,25 @@ find_packages() {
       who=${owner[$file]:-${owner[/usr$file]:-}}
       [ -z "$who" ] || package[$library]=$who
     done
-    [ -v "package[$library]" ] || die "$library belongs to no package: its licence cannot be told"
+    [ -v "package[$library]" ] || die "$library: belongs to no Debian package, so its license is unknown"
   done
 }
 
-# packages: those of Debian that have a share in the archive, by name.
+# packages: prints the Debian packages that contribute to the archive, by name.
 packages() { printf '%s\n' "${package[@]}" "${header_packages[@]}" | sort -u; }
 
-# license PACKAGE: its SPDX expression in licenses.txt.
+# license PACKAGE: prints its SPDX expression from licenses.txt.
 license() {
   sed -n "s/^${1//./[.]} \{1,\}//p" "$parts/licenses.txt" | grep . ||
-    die "no licence of $1 is known: read /usr/share/doc/$1/copyright, add a line to Resources/release/licenses.txt"
+    die "$1: has no known license; read /usr/share/doc/$1/copyright and add a line to Resources/release/licenses.txt"
 }
 
-# write_notices: each package's copyright file, and the licences' texts that those refer to.
+# write_notices: writes the copyright file of each package, and the license texts that these reference.
 write_notices() {
   local one text
   while read -r one; do
     license "$one" >/dev/null
-    cp -L "/usr/share/doc/$one/copyright" "$root/licenses/$one.txt" || die "$one has no copyright file"
+    cp -L "/usr/share/doc/$one/copyright" "$root/licenses/$one.txt" || die "$one: has no copyright file"
   done < <(packages)
   cat "$root"/licenses/*.txt | grep -oE '/usr/share/common-licenses/[A-Za-z]+(-[0-9]+(\.[0-9]+)*)?' | sort -u |
     while read -r text; do
@@ -47,21 +47,21 @@ write_notices() {
     done
 }
 
-# list ITEM...: items of a list of JSON.
+# list ITEM...: prints a JSON array.
 list() {
   local IFS=,
   printf '[%s]' "$*"
 }
 
-# described ID NAME VERSION LICENSE PLACE [MORE]: a package of the bill.
-described() {
+# print_package ID NAME VERSION LICENSE PLACE [MORE]: prints a package of the bill.
+print_package() {
   printf '\n{"SPDXID":"SPDXRef-%s","name":"%s","versionInfo":"%s","licenseConcluded":"%s","licenseDeclared":"%s",' \
     "$1" "$2" "$3" "$4" "$4"
   printf '"downloadLocation":"%s","filesAnalyzed":false,"copyrightText":"NOASSERTION"%s}' "$5" "${6:-}"
 }
 
-# located PACKAGE: its package URL, as a member of a package of the bill.
-located() {
+# print_url PACKAGE: prints its package URL, as a member of a package of the bill.
+print_url() {
   local url=pkg:deb/debian/$1@
   url+=$(dpkg-query -W -f='${Version}\n' "$1" | sed -n 1p)
   url=${url//+/%2B}
@@ -69,8 +69,8 @@ located() {
   printf '"referenceLocator":"%s"}]' "$url"
 }
 
-# filed ID FILE: a file of the bill.
-filed() {
+# print_file ID FILE: prints a file of the bill.
+print_file() {
   local library=${2##*/} expression=Apache-2.0
   [ ! -v "package[$library]" ] || expression=$(license "${package[$library]}")
   printf '\n{"SPDXID":"SPDXRef-%s","fileName":"./%s","licenseConcluded":"%s",' "$1" "${2#"$root"/}" "$expression"
@@ -79,30 +79,30 @@ filed() {
   printf '{"algorithm":"SHA256","checksumValue":"%s"}]}' "$(sha256sum <"$2" | cut -c1-64)"
 }
 
-# related FROM HOW TO
-related() {
+# print_relation FROM TYPE TO: prints a relationship of the bill.
+print_relation() {
   printf '\n{"spdxElementId":"SPDXRef-%s","relationshipType":"%s","relatedSpdxElement":"SPDXRef-%s"}' "$@"
 }
 
-# write_bill: the bill of materials, SPDX 2.3 as JSON: a package for each of Debian's, a file for each library.
+# write_bill: prints the bill of materials (SPDX 2.3, JSON) with the Debian packages and the libraries.
 write_bill() {
   local one id source built place file library bill=() files=() relations=()
-  bill+=("$(described fenestra fenestra "$version" Apache-2.0 NOASSERTION)")
-  relations+=("$(related DOCUMENT DESCRIBES fenestra)")
+  bill+=("$(print_package fenestra fenestra "$version" Apache-2.0 NOASSERTION)")
+  relations+=("$(print_relation DOCUMENT DESCRIBES fenestra)")
   while read -r one; do
     id=${one//[^A-Za-z0-9.-]/-}
     read -r source built < <(dpkg-query -W -f='${source:Package} ${source:Version}\n' "$one" | sed -n 1p)
     place=https://snapshot.debian.org/package/$source/$built/
-    bill+=("$(described "$id" "$one" "$built" "$(license "$one")" "$place" "$(located "$one")")")
-    relations+=("$(related fenestra CONTAINS "$id")")
+    bill+=("$(print_package "$id" "$one" "$built" "$(license "$one")" "$place" "$(print_url "$one")")")
+    relations+=("$(print_relation fenestra CONTAINS "$id")")
   done < <(packages)
   for file in "$root"/lib/* "$root/libexec/fenestra"; do
     library=${file##*/}
     id=File-${library//[^A-Za-z0-9.-]/-}
-    files+=("$(filed "$id" "$file")")
+    files+=("$(print_file "$id" "$file")")
     one=fenestra
     [ ! -v "package[$library]" ] || one=${package[$library]//[^A-Za-z0-9.-]/-}
-    relations+=("$(related "$id" GENERATED_FROM "$one")")
+    relations+=("$(print_relation "$id" GENERATED_FROM "$one")")
   done
   printf '{"spdxVersion":"SPDX-2.3","dataLicense":"CC0-1.0","SPDXID":"SPDXRef-DOCUMENT","name":"%s",' "$name"
   printf '"documentNamespace":"https://spdx.org/spdxdocs/%s-%s",' "$name" \

@@ -1,18 +1,18 @@
-/* What libraries of the archive ask of two that it leaves out. Compiled once for each, by
- * release.sh.
+/* Stubs of two libraries that the archive does not contain, for the symbols that its libraries use.
+ * release.sh compiles this file once for each.
  *
- * ABSENT_CURL: HDF5 reads files from the web with libcurl, which Fenestra never asks it to; libcurl
- * would bring 26 more libraries. ABSENT_JBIG: libtiff reads JBIG's bilevel pictures with libjbig,
- * which is under the GPL: such a picture is refused here. */
+ * STUB_CURL: HDF5 uses libcurl to read files from the web, which Fenestra never does. libcurl would
+ * add 26 libraries. STUB_JBIG: libtiff uses libjbig, which is under the GPL, to read bilevel JBIG
+ * images. They are rejected here. */
 
-#ifdef ABSENT_CURL
-/* Success: HDF5 prepares libcurl before it knows whether it needs it. */
+#ifdef STUB_CURL
+/* Succeeds, since HDF5 initializes libcurl even if it does not need it. */
 int curl_global_init(long flags) {
   (void)flags;
   return 0;
 }
 void curl_global_cleanup(void) {}
-/* Null: no connection. */
+/* Returns null: no connection. */
 void* curl_easy_init(void) {
   return 0;
 }
@@ -39,8 +39,8 @@ void curl_slist_free_all(void* list) {
 }
 #endif
 
-#ifdef ABSENT_JBIG
-enum { refused = 1 };
+#ifdef STUB_JBIG
+enum { unsupported = 1 };
 void jbg_dec_init(void* state) {
   (void)state;
 }
@@ -49,11 +49,11 @@ int jbg_dec_in(void* state, unsigned char* data, unsigned long size, unsigned lo
   (void)data;
   (void)size;
   (void)read;
-  return refused;
+  return unsupported;
 }
 const char* jbg_strerror(int status) {
   (void)status;
-  return "pictures in JBIG are not read by this build";
+  return "JBIG images are not supported by this build";
 }
 unsigned long jbg_dec_getsize(const void* state) {
   (void)state;
@@ -70,7 +70,7 @@ void jbg_dec_free(void* state) {
 int jbg_newlen(unsigned char* data, unsigned long size) {
   (void)data;
   (void)size;
-  return refused;
+  return unsupported;
 }
 void jbg_enc_init(void* state) {
   (void)state;
