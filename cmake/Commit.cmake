@@ -1,9 +1,9 @@
-# Writes FILE from TEMPLATE with @COMMIT@, @COMMIT_DATE@ (2026-11-26) and @COMMIT_TIME@ (for mails), of the checkout
-# SOURCE; leaves FILE alone where nothing has changed. Outside git the commit is unknown, and the time that of the
-# environment's SOURCE_DATE_EPOCH, else now.
+# Writes FILE from TEMPLATE with @COMMIT@, @COMMIT_DATE@ (2026-11-26) and @COMMIT_TIME@ (for mails) of the checkout
+# SOURCE, unless FILE is up to date. Outside git, the commit is unknown, and the time is SOURCE_DATE_EPOCH of the
+# environment, or now.
 # usage: cmake -DSOURCE=FOLDER -DGIT=PROGRAM -DTEMPLATE=FILE.in -DFILE=FILE -P Commit.cmake
 set(COMMIT unknown)
-if(GIT AND EXISTS "${SOURCE}/.git") # not the repository of a folder above
+if(GIT AND EXISTS "${SOURCE}/.git") # not the repository of a parent folder
   execute_process(COMMAND "${GIT}" -C "${SOURCE}" describe --always --dirty --exclude=* --abbrev=40
     OUTPUT_VARIABLE found OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
   execute_process(COMMAND "${GIT}" -C "${SOURCE}" show --no-patch --format=%ct HEAD

@@ -1,5 +1,5 @@
-# The Debian package: `cpack` in the folder of a Release build makes fenestra_VERSION-1_ARCHITECTURE.deb, for the
-# release of Debian that it was built on, whose libraries it names as its dependencies.
+# The Debian package: `cpack` in the build folder of a Release build creates fenestra_VERSION-1_ARCHITECTURE.deb. It
+# depends on the libraries of the Debian release that it was built on.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME fenestra)
 set(CPACK_PACKAGE_CONTACT "The Fenestra maintainers <fenestra-render@users.noreply.github.com>")
@@ -13,9 +13,9 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "path tracer for medical volumes that leaves the focus unoccluded")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION
-"Renders CT, MR and ultrasound volumes, of files or of 3D Slicer's scenes, by
-unbiased Monte Carlo path tracing. Nothing hides the segments of interest: a
-smooth clipping surface goes through them, and on into what surrounds them.
+"Renders CT, MR and ultrasound volumes, from files or 3D Slicer scenes, by
+unbiased Monte Carlo path tracing. A smooth clipping surface exposes the
+segments of interest and continues into the surrounding tissue.
 .
 Reads NRRD, NIfTI, MetaImage, DICOM, and scenes (.mrml, .mrb); writes PNG,
 TIFF, OpenEXR and NRRD. No graphics card is needed.")

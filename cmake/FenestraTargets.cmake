@@ -1,6 +1,6 @@
-# How every target of this project is made: one warning set, one sanitizer set, no global flags.
+# Definition of all targets: one set of warnings, one set of sanitizers, no global flags.
 
-# Warnings stop the build of developers alone: a newer compiler has new ones.
+# Warnings are errors in developer builds only, since newer compilers add warnings.
 add_library(fenestra_warnings INTERFACE)
 target_compile_options(fenestra_warnings INTERFACE -Wall -Wextra -Wconversion
   $<$<BOOL:${FENESTRA_DEVELOPER}>:-Werror>)
@@ -9,15 +9,15 @@ add_library(fenestra_sanitizers INTERFACE)
 if(FENESTRA_SANITIZERS)
   target_compile_options(fenestra_sanitizers INTERFACE
     -fsanitize=${FENESTRA_SANITIZERS} -fno-omit-frame-pointer -fno-sanitize-recover=all)
-  # g++ warns of what its own instrumentation hides from it.
+  # g++ warns about variables that its own instrumentation hides from it.
   target_compile_options(fenestra_sanitizers INTERFACE
     $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   target_link_options(fenestra_sanitizers INTERFACE -fsanitize=${FENESTRA_SANITIZERS})
 endif()
 
-# Checks of which each access has one take a third of the time of compiling: the long run alone has all.
-# AddressSanitizer sees most of what null and object-size would; bytes become numbers, and may be
-# unaligned, in what reads files. There, too, is what leads libFuzzer.
+# Checks of every memory access take a third of the compile time, so only the long test run has all of
+# them. AddressSanitizer detects most of what null and object-size would. Code that reads files keeps
+# the alignment check, since it converts bytes to numbers, and gets libFuzzer's instrumentation.
 add_library(fenestra_reading INTERFACE)
 if(FENESTRA_SANITIZERS MATCHES "undefined" AND NOT FENESTRA_CHECK_ACCESSES)
   target_compile_options(fenestra_sanitizers INTERFACE -fno-sanitize=null,alignment,object-size)
@@ -27,17 +27,17 @@ if(FENESTRA_FUZZING)
   target_compile_options(fenestra_reading INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
-# fenestra_simd_sources(sources...): sources that Highway compiles once for each instruction set. No multiply
-# and add may be fused that is not written so: a lane's result must not depend on what was inlined
-# around it. Sanitizers see lanes that are emulated (what gathers read is then checked), and nothing
-# else of them: it would take clang a quarter of an hour.
+# fenestra_simd_sources(sources...): sources that Highway compiles once per instruction set. A multiplication
+# and an addition are fused only where the source says so: results must not depend on inlining.
+# Sanitizer builds emulate the lanes, so that the reads of gathers are checked, and omit the undefined
+# behavior checks of clang here, which would take a quarter of an hour to compile.
 function(fenestra_simd_sources)
   set(options -ffp-contract=off)
   if(FENESTRA_SANITIZERS)
     list(APPEND options -DHWY_COMPILE_ONLY_EMU128
       $<$<CXX_COMPILER_ID:Clang>:-fno-sanitize=undefined>)
   endif()
-  # Highway includes a source by its name, once for each instruction set.
+  # Highway includes a source by its name, once per instruction set.
   set(root "${PROJECT_BINARY_DIR}/include/highway")
   foreach(source ${ARGN})
     if(NOT IS_ABSOLUTE "${source}")
@@ -53,10 +53,10 @@ function(fenestra_simd_sources)
 endfunction()
 
 # fenestra_library(FOLDER sources... [PUBLIC libraries...] [PRIVATE libraries...])
-# A concept of the renderer: the target fenestra_NAME, NAME being the last part of FOLDER (clip/focus:
-# fenestra_focus). Its headers are included as "FOLDER/Header.h", and found by those alone that link it,
-# for each library has an include root of its own, of links to its headers: an include that the floor plan
-# forbids does not compile.
+# A module of the renderer: the target fenestra_NAME, NAME being the last part of FOLDER (clip/focus:
+# fenestra_focus). Its headers are included as "FOLDER/Header.h". Each library has its own include root
+# with links to its headers, and only targets that link the library search that root: an include that
+# violates the layers does not compile.
 function(fenestra_library folder)
   cmake_parse_arguments(arg "" "" "PUBLIC;PRIVATE" ${ARGN})
   get_filename_component(name ${folder} NAME)
@@ -74,7 +74,7 @@ function(fenestra_library folder)
     endif()
   endforeach()
   target_include_directories(${target} PUBLIC "${root}")
-  # With CMAKE_VERIFY_INTERFACE_HEADER_SETS, all_verify_interface_header_sets compiles each header alone.
+  # With CMAKE_VERIFY_INTERFACE_HEADER_SETS, all_verify_interface_header_sets compiles each header on its own.
   target_sources(${target} INTERFACE FILE_SET HEADERS BASE_DIRS "${root}" FILES ${alone})
   target_link_libraries(${target} PUBLIC ${arg_PUBLIC} fenestra_sanitizers
     PRIVATE ${arg_PRIVATE} fenestra_warnings)

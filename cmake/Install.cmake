@@ -1,9 +1,9 @@
-# What `cmake --install` puts where distributions expect it, and Resources/release.sh into its archive: component
-# `program`. Presets, lights, tables and materials are compiled in.
+# Installs the component `program`, with files where distributions expect them; Resources/release.sh builds its archive
+# from it. Presets, lights, tables and materials are compiled in.
 set(CMAKE_INSTALL_DOCDIR share/doc/fenestra CACHE PATH "Folder of README and changes")
 include(GNUInstallDirs)
 set(elsewhere)
-if(Slicer_DIR) # the extension's package holds the archive
+if(Slicer_DIR) # the extension's package contains the archive
   set(elsewhere EXCLUDE_FROM_ALL)
 endif()
 install(TARGETS fenestra RUNTIME COMPONENT program ${elsewhere})

@@ -1,7 +1,7 @@
 #pragma once
 // Debian's ITK 5.2 was configured for g++ alone: its itk_compiler_detection.h stops clang with
-// "Unsupported compiler". CMake puts this file before every source that includes ITK; for clang,
-// which knows all of C++17, the file defines what that header would; for other compilers the file
+// "Unsupported compiler". CMake includes this file at the start of every source that includes ITK.
+// For clang, which supports all of C++17, it defines what that header would. For other compilers it
 // is empty.
 
 #ifdef __clang__

@@ -1,9 +1,9 @@
-# Run by CPack on the installed files: gives them the form and the places that Debian's policy asks for.
+# Run by CPack on the installed files: gives them the form and the places that Debian's policy requires.
 find_program(GZIP gzip REQUIRED)
 set(usr "${CPACK_TEMPORARY_INSTALL_DIRECTORY}/usr")
 set(doc "${usr}/share/doc/fenestra")
 
-file(REMOVE "${doc}/LICENSE") # copyright has it
+file(REMOVE "${doc}/LICENSE") # the file copyright contains it
 file(RENAME "${doc}/CHANGELOG.md" "${doc}/changelog")
 file(COPY "${CMAKE_CURRENT_LIST_DIR}/copyright" DESTINATION "${doc}")
 set(VERSION "${CPACK_DEBIAN_PACKAGE_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}")
