@@ -120,9 +120,9 @@ void checkMemory(const RenderRequest& scene) {
 
 RenderSettings ImageDenoiser::settings() {
   RenderSettings settings = makeSettings(m_options, m_scene.background());
-  if (m_options.noiseTarget == NoiseTarget::filtered)
+  if (m_options.noiseTarget == NoiseTarget::denoised)
     settings.displayNoise = [this](const Film& film) {
-      m_checked = denoise(film, m_scene);
+      m_checked = denoise(film, m_scene.view(), *m_scene.features());
       m_checkedSamples = film.sampleCounts().max;
       // Two standard errors more, so that the render does not stop by chance.
       return std::sqrt(m_checked.estimatedError + 2.0 * m_checked.errorUncertainty);
@@ -135,7 +135,7 @@ std::optional<FilteredImage> ImageDenoiser::apply(const RenderResult& result) co
     return std::nullopt;
   if (result.reason == StopReason::noise && m_checkedSamples == result.finishedSamples)
     return m_checked;
-  return denoise(result.film, m_scene);
+  return denoise(result.film, m_scene.view(), *m_scene.features());
 }
 
 std::optional<double> denoisedNoise(const std::optional<FilteredImage>& filtered) {

@@ -2,8 +2,8 @@
 // Steps shared by render, serve, turntable and merge. Files are checked before the long render, and
 // written after it.
 
+#include "denoise/features/Denoising.h"
 #include "program/MergedOptions.h"
-#include "scene/Denoising.h"
 #include "scene/PreparedScene.h"
 
 namespace fenestra {

@@ -16,18 +16,6 @@ double meanDepth(const PixelSums& pixel) {
 
 } // namespace
 
-Plane makeClipDepth(const Camera& camera, const Clip& clip) {
-  Plane result;
-  for (int row = 0; row < camera.height(); ++row)
-    for (int column = 0; column < camera.width(); ++column) {
-      const Ray ray = camera.makeRay(column + 0.5, row + 0.5);
-      const Interval range = intervalBehindSurface(clip, ray);
-      const double start = range.isEmpty() ? infinity : range.begin * camera.depthPerLength(ray);
-      result.push_back(static_cast<float>(start));
-    }
-  return result;
-}
-
 LayerSet parseLayers(const std::vector<std::string>& names) {
   for (const std::string& name : names)
     if (!allLayers.contains(name))

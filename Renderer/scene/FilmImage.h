@@ -30,10 +30,6 @@ void addExpected(Image& image, const FeatureBuffers& features);
 /// Image with the channels R, G, B and A of the denoised image.
 Image makeFilteredImage(const FilteredImage& result, int width, int height);
 
-/// Depth at which the camera ray through each pixel center crosses the clip surface, mm. Infinity:
-/// the ray has no unclipped part.
-Plane makeClipDepth(const Camera& camera, const Clip& clip);
-
 /// Position and size of the image in the world, on the plane through the target.
 ImagePlane makeImagePlane(const Camera& camera);
 

@@ -5,11 +5,12 @@
 #include "Program.h"
 #include "References.h"
 #include "base/Color.h"
+#include "denoise/features/Denoising.h"
 #include "files/images/DisplayTransform.h"
 #include "image/ColorVision.h"
 #include "program/CommandLine.h"
-#include "scene/Denoising.h"
 #include "scene/FilmImage.h"
+#include "scene/PreparedScene.h"
 
 #include <algorithm>
 #include <iomanip>
@@ -19,20 +20,21 @@ namespace fenestra::benchmarks {
 namespace {
 
 constexpr const char* group = "Benchmark";
-const Option flags[] = {
+const Option optionTable[] = {
     {"scenes", "A,B,...", group, "Scenes of the table [all]"},
     {"phantoms", "DIR", group, "Folder of the phantoms [benchmarks of the build]"},
     {"table", "FILE", group, "Table of scenes [appearance-scenes.txt of the source tree]"},
 };
 
-const CommandSyntax syntax = {"AppearanceBenchmark", "Measures image appearance.", {}, flags};
+const CommandSyntax syntax = {"AppearanceBenchmark", "Measures image appearance.", {}, optionTable};
 
 /// Denoised display image with a transparent background: R G B A per pixel.
 std::vector<float> renderDisplay(const PreparedScene& scene, RenderSettings settings) {
   settings.path.background.kind = Background::Kind::transparent;
   RenderMonitor monitor;
   const Film film = render(scene.view(), settings, monitor).film;
-  const Image image = makeFilteredImage(denoise(film, scene), film.width(), film.height());
+  const Image image = makeFilteredImage(denoise(film, scene.view(), *scene.features()),
+                                        film.width(), film.height());
   std::vector<float> rgba;
   for (std::size_t i = 0; i < image.find("A")->size(); ++i)
     for (const char* channel : {"R", "G", "B", "A"})
@@ -117,12 +119,12 @@ void printContrast(const PreparedScene& scene, const std::vector<float>& rgba) {
       if (isOpaque(pixel) && distance >= nearest && distance <= farthest)
         (edge.isFocus(column, row) ? inside : outside).add(pixel);
     }
-  const auto seenLab = [&](const MeanColor& color, ColorVision sight) {
-    return toLab(simulateVision(sight, color.linear()));
+  const auto toSimulatedLab = [&](const MeanColor& color, ColorVision vision) {
+    return toLab(simulateVision(vision, color.linear()));
   };
   std::cout << ",,,,,";
-  for (const ColorVision sight : {ColorVision::normal, ColorVision::protan, ColorVision::deutan})
-    std::cout << deltaE76(seenLab(inside, sight), seenLab(outside, sight)) << ',';
+  for (const ColorVision vision : {ColorVision::normal, ColorVision::protan, ColorVision::deutan})
+    std::cout << deltaE76(toSimulatedLab(inside, vision), toSimulatedLab(outside, vision)) << ',';
   std::cout << std::abs(toLab(inside.linear()).L - toLab(outside.linear()).L) << ",\"";
   if (const TintContrast* tint = scene.tintContrast())
     std::cout << summary(*tint);

@@ -3,9 +3,10 @@
 
 #include "Program.h"
 #include "References.h"
+#include "denoise/features/Denoising.h"
 #include "image/Compare.h"
 #include "program/CommandLine.h"
-#include "scene/Denoising.h"
+#include "scene/PreparedScene.h"
 
 #include <algorithm>
 #include <charconv>
@@ -16,7 +17,7 @@ namespace fenestra::benchmarks {
 namespace {
 
 constexpr const char* group = "Benchmark";
-const Option flags[] = {
+const Option optionTable[] = {
     {"scenes", "A,B,...", group, "Scenes of the table [all]"},
     {"counts", "N,...", group, "Samples per pixel [1,2,4,8,16,64,1024]"},
     {"seeds", "N", group, "Renders per count below 1024 [3]", ValueSpec::integer(1, 1000)},
@@ -28,7 +29,7 @@ const Option flags[] = {
 };
 
 const CommandSyntax syntax = {
-    "DenoiserBenchmark", "Compares denoised images with references.", {}, flags};
+    "DenoiserBenchmark", "Compares denoised images with references.", {}, optionTable};
 
 /// Runs some work; returns its result and its CPU seconds.
 template <typename Work>
@@ -63,7 +64,8 @@ Row measureRender(const PreparedScene& scene, const RenderSettings& settings,
         return render(scene.view(), settings, monitor).film;
       },
       row.render);
-  const FilteredImage denoised = timeWork([&] { return denoise(film, scene); }, row.filter);
+  const FilteredImage denoised =
+      timeWork([&] { return denoise(film, scene.view(), *scene.features()); }, row.filter);
   row.raw = compareImages(toImage(film, scene), reference).relMse;
   row.filtered =
       compareImages(makeFilteredImage(denoised, film.width(), film.height()), reference).relMse;

@@ -1,8 +1,9 @@
 // Filter input from a film and its scene, and the denoised image.
 
-#include "scene/Denoising.h"
+#include "denoise/features/Denoising.h"
 
 #include "MedicalFiles.h"
+#include "scene/PreparedScene.h"
 
 #include <stdexcept>
 
@@ -49,7 +50,7 @@ protected:
 TEST_F(Denoising, InactivePixelsAreTheEmptyOnesWhateverTheSamplesHit) {
   const PreparedScene scene(request);
   const Film film = renderFilm(scene);
-  const FilterInput input = makeFilterInput(film, scene);
+  const FilterInput input = makeFilterInput(film, scene.view(), *scene.features());
   std::size_t missed = 0, deterministic = 0;
   for (std::size_t i = 0; i < film.pixelCount(); ++i) {
     const PixelSums& pixel = film.pixels()[i];
@@ -65,8 +66,8 @@ TEST_F(Denoising, InactivePixelsAreTheEmptyOnesWhateverTheSamplesHit) {
 
 TEST_F(Denoising, FeaturesDoNotDependOnSamples) {
   const PreparedScene scene(request);
-  const FilterInput one = makeFilterInput(renderFilm(scene, 1), scene);
-  const FilterInput other = makeFilterInput(renderFilm(scene, 2), scene);
+  const FilterInput one = makeFilterInput(renderFilm(scene, 1), scene.view(), *scene.features());
+  const FilterInput other = makeFilterInput(renderFilm(scene, 2), scene.view(), *scene.features());
   EXPECT_GE(one.features.size(), 8U);
   EXPECT_EQ(one.features, other.features);
   EXPECT_NE(one.even, other.even);
@@ -74,13 +75,14 @@ TEST_F(Denoising, FeaturesDoNotDependOnSamples) {
 
 TEST_F(Denoising, DependentHalfBuffersAreRejected) {
   const PreparedScene scene(request);
-  EXPECT_THROW(makeFilterInput(Film(48, 48, false), scene), std::logic_error);
+  EXPECT_THROW(makeFilterInput(Film(48, 48, false), scene.view(), *scene.features()),
+               std::logic_error);
 }
 
 TEST_F(Denoising, HalfBuffersAverageToTheImage) {
   const PreparedScene scene(request);
   const Film film = renderFilm(scene, 3, 4);
-  const FilterInput input = makeFilterInput(film, scene);
+  const FilterInput input = makeFilterInput(film, scene.view(), *scene.features());
   for (std::size_t i = 0; i < film.pixelCount(); ++i)
     ASSERT_NEAR(0.5 * static_cast<double>(input.even[1][i] + input.odd[1][i]),
                 film.pixels()[i].mean[1], 1e-6);
@@ -96,7 +98,7 @@ double sumSquaredErrors(const FilteredImage& image, const Film& reference) {
 TEST_F(Denoising, FilteredImageIsCloserToTheReference) {
   const PreparedScene scene(request);
   const Film reference = renderFilm(scene, 9, 512), film = renderFilm(scene, 1, 4);
-  const FilteredImage filtered = denoise(film, scene);
+  const FilteredImage filtered = denoise(film, scene.view(), *scene.features());
   double raw = 0.0;
   for (std::size_t i = 0; i < film.pixelCount(); ++i)
     raw += std::pow(film.pixels()[i].mean[0] - reference.pixels()[i].mean[0], 2.0);
@@ -107,8 +109,8 @@ TEST_F(Denoising, FilteredImageIsCloserToTheReference) {
 TEST_F(Denoising, InactivePixelsStayRawAtAnySampleCount) {
   const PreparedScene scene(request);
   const Film film = renderFilm(scene, 4, 3);
-  const FilterInput input = makeFilterInput(film, scene);
-  const FilteredImage filtered = denoise(film, scene);
+  const FilterInput input = makeFilterInput(film, scene.view(), *scene.features());
+  const FilteredImage filtered = denoise(film, scene.view(), *scene.features());
   for (std::size_t i = 0; i < film.pixelCount(); ++i) {
     const auto mean = static_cast<float>(film.pixels()[i].mean[1]);
     ASSERT_TRUE(input.isActive[i] != 0 || filtered.color[1][i] == mean);
@@ -125,11 +127,11 @@ TEST_F(Denoising, OnePixelWithOneSampleDisablesHalfBuffersButNotFiltering) {
   sample.radiance = Rgb::Ones();
   film.at(static_cast<int>(first) % 48, static_cast<int>(first) / 48) = PixelSums();
   film.at(static_cast<int>(first) % 48, static_cast<int>(first) / 48).add(sample);
-  const FilterInput input = makeFilterInput(film, scene);
+  const FilterInput input = makeFilterInput(film, scene.view(), *scene.features());
   EXPECT_FALSE(input.hasHalfBuffers);
   for (std::size_t i = 0; i < film.pixelCount(); ++i)
     ASSERT_EQ(input.even[0][i], static_cast<float>(film.pixels()[i].mean[0]));
-  EXPECT_TRUE(denoise(film, scene).error[0].empty());
+  EXPECT_TRUE(denoise(film, scene.view(), *scene.features()).error[0].empty());
 }
 
 } // namespace

@@ -6,8 +6,8 @@ namespace fenestra {
 
 namespace {
 
-/// A box farther than this from the surface, mm, counts as fully removed or fully kept. Far above
-/// rounding, far below visibility.
+/// A box farther than this from the surface, mm, counts as entirely in front of it or behind it.
+/// Far larger than rounding errors, far too small to be visible.
 constexpr double slack = 1e-6;
 
 Interval findUnclipped(const ClipNone&, const Ray&) {
@@ -152,6 +152,18 @@ Interval visibleInterval(const Clip& clip, const Ray& cameraRay) {
 
 ClipBounds boundClipWeight(const Clip& clip, const Corners& corners) {
   return std::visit([&](const auto& kind) { return boundBox(kind, corners); }, clip);
+}
+
+std::vector<float> makeClipDepth(const Camera& camera, const Clip& clip) {
+  std::vector<float> result;
+  for (int row = 0; row < camera.height(); ++row)
+    for (int column = 0; column < camera.width(); ++column) {
+      const Ray ray = camera.makeRay(column + 0.5, row + 0.5);
+      const Interval range = intervalBehindSurface(clip, ray);
+      const double start = range.isEmpty() ? infinity : range.begin * camera.depthPerLength(ray);
+      result.push_back(static_cast<float>(start));
+    }
+  return result;
 }
 
 } // namespace fenestra

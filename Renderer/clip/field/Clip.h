@@ -14,6 +14,7 @@
 #include <array>
 #include <memory>
 #include <variant>
+#include <vector>
 
 namespace fenestra {
 
@@ -68,8 +69,8 @@ struct ClipDepth {
     return surfaceDepth(position, {-infinity, infinity});
   }
 
-  /// Surface depth at `position`, mm. If it lies outside `queryRange`, only the side is guaranteed,
-  /// not the value, which saves queries of the focus.
+  /// Surface depth at `position`, mm. Outside `queryRange` it may be inexact, but is on the correct
+  /// side of the range, which saves queries of the focus.
   double surfaceDepth(const Vec2& position, const Interval& queryRange) const {
     if (lookup == Lookup::nearest)
       return buffer->nearestDepth(position);
@@ -153,5 +154,9 @@ inline constexpr ClipBounds ClipBounds::none{0.0, true}, ClipBounds::some{1.0, f
     ClipBounds::all{1.0, true};
 
 ClipBounds boundClipWeight(const Clip& clip, const Corners& corners);
+
+/// Depth at which the camera ray through each pixel center crosses the clip surface, mm. Infinity:
+/// the ray has no unclipped part.
+std::vector<float> makeClipDepth(const Camera& camera, const Clip& clip);
 
 } // namespace fenestra

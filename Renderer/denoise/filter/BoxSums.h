@@ -1,5 +1,5 @@
 #pragma once
-// Sums and means over square windows of an image, by running sums in double.
+// Sums and means over square windows of an image, computed as running sums in double precision.
 
 #include "denoise/filter/FilterInput.h"
 

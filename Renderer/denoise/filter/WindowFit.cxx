@@ -24,9 +24,9 @@ public:
       : m_rows(rows), m_planes(planes), m_width(width), m_values(rows * planes * width, 0.0F) {}
 
   float* at(std::int64_t row, std::size_t plane) {
-    constexpr std::int64_t before = 1000; // rows begin above the image; keeps the index positive
-    const auto place = static_cast<std::size_t>(row + before) % m_rows;
-    return &m_values[(place * m_planes + plane) * m_width];
+    constexpr std::int64_t offset = 1000; // makes the negative rows above the image positive
+    const auto slot = static_cast<std::size_t>(row + offset) % m_rows;
+    return &m_values[(slot * m_planes + plane) * m_width];
   }
   std::size_t planes() const { return m_planes; }
   std::size_t width() const { return m_width; }
@@ -190,17 +190,17 @@ private:
     const std::int64_t end = std::min(
         {begin + m_cell, (m_row + rows) * m_cell, static_cast<std::int64_t>(m_input.height)});
     for (std::int64_t y = std::max(begin, m_row * m_cell); y < end; ++y) {
-      const double down = (static_cast<double>(y) + 0.5) / static_cast<double>(m_cell) - 0.5;
-      evaluate(y, row, static_cast<float>(down - static_cast<double>(row)));
+      const double cellRow = (static_cast<double>(y) + 0.5) / static_cast<double>(m_cell) - 0.5;
+      evaluate(y, row, static_cast<float>(cellRow - static_cast<double>(row)));
     }
   }
 
-  HWY_INLINE void evaluate(std::int64_t y, std::int64_t row, float down) {
+  HWY_INLINE void evaluate(std::int64_t y, std::int64_t row, float rowFraction) {
     for (std::size_t plane = 0; plane < m_means.planes(); ++plane) {
       const float *upper = m_means.at(row, plane), *lower = m_means.at(row + 1, plane);
       float* interpolated = &m_interpolated[plane * width];
       for (std::size_t x = 0; x < width; ++x)
-        interpolated[x] = upper[x] + down * (lower[x] - upper[x]);
+        interpolated[x] = upper[x] + rowFraction * (lower[x] - upper[x]);
     }
     const std::int64_t first = m_column * m_cell;
     const std::int64_t end = std::min<std::int64_t>((m_column + edge) * m_cell, m_input.width);
@@ -212,30 +212,30 @@ private:
         continue;
       m_count = static_cast<std::size_t>((end - x + m_cell - 1) / m_cell);
       // If cells are single pixels, the pixel is at the center of the next cell.
-      const std::int64_t place = m_cell > 1 ? before : 1;
-      const float across =
+      const std::int64_t cell = m_cell > 1 ? before : 1;
+      const float columnFraction =
           m_cell > 1 ? (static_cast<float>(phase) + 0.5F) / static_cast<float>(m_cell) : 0.0F;
       evaluateStrided(static_cast<std::size_t>(y * m_input.width + x),
-                      static_cast<std::size_t>(place), across);
+                      static_cast<std::size_t>(cell), columnFraction);
     }
   }
 
-  /// Evaluates every m_cell-th pixel from `start`. The first lies between indices `place` and
-  /// `place` + 1 of the means, at fraction `across`.
-  HWY_INLINE void evaluateStrided(std::size_t start, std::size_t place, float across) {
+  /// Evaluates every m_cell-th pixel from `start`. The first lies between indices `cell` and
+  /// `cell` + 1 of the means, at fraction `columnFraction`.
+  HWY_INLINE void evaluateStrided(std::size_t start, std::size_t cell, float columnFraction) {
     const auto step = static_cast<std::size_t>(m_cell);
     for (std::size_t i = 0; i < m_layout.features; ++i)
       for (std::size_t x = 0; x < m_count; ++x)
         m_features[i][x] = m_input.features[i][start + x * step];
     std::array<float, edge + 1> weights, pixels;
-    interpolate(0, place, across, weights);
+    interpolate(0, cell, columnFraction, weights);
     for (std::size_t c = 0; c < m_layout.colors; ++c) {
-      interpolate(m_layout.intercept(c), place, across, pixels);
+      interpolate(m_layout.intercept(c), cell, columnFraction, pixels);
       for (std::size_t i = 0; i < m_layout.features; ++i) {
         const float* f = m_features[i].data();
-        const float* slope = &m_interpolated[m_layout.slope(c, i) * width + place];
+        const float* slope = &m_interpolated[m_layout.slope(c, i) * width + cell];
         for (std::size_t x = 0; x < m_count; ++x)
-          pixels[x] += (slope[x] + across * (slope[x + 1] - slope[x])) * f[x];
+          pixels[x] += (slope[x] + columnFraction * (slope[x + 1] - slope[x])) * f[x];
       }
       for (std::size_t x = 0; x < m_count; ++x) {
         const std::size_t at = start + x * step;
@@ -245,11 +245,11 @@ private:
     }
   }
 
-  HWY_INLINE void interpolate(std::size_t plane, std::size_t place, float across,
+  HWY_INLINE void interpolate(std::size_t plane, std::size_t cell, float columnFraction,
                               std::array<float, edge + 1>& out) const {
-    const float* in = &m_interpolated[plane * width + place];
+    const float* in = &m_interpolated[plane * width + cell];
     for (std::size_t x = 0; x < m_count; ++x)
-      out[x] = in[x] + across * (in[x + 1] - in[x]);
+      out[x] = in[x] + columnFraction * (in[x + 1] - in[x]);
   }
 
   const FitInput& m_input;
@@ -282,10 +282,10 @@ HWY_EXPORT(fitTile);
 
 std::vector<Plane> fitWindows(const FitInput& input, int level) {
   std::vector<Plane> out = input.color;
-  const std::int64_t across = std::int64_t{tileColumns} << level,
-                     down = std::int64_t{tileRows} << level;
-  const std::int64_t columns = (input.width + across - 1) / across,
-                     rows = (input.height + down - 1) / down;
+  const std::int64_t tileWidth = std::int64_t{tileColumns} << level,
+                     tileHeight = std::int64_t{tileRows} << level;
+  const std::int64_t columns = (input.width + tileWidth - 1) / tileWidth,
+                     rows = (input.height + tileHeight - 1) / tileHeight;
   tbb::parallel_for(std::int64_t{0}, columns * rows, [&](std::int64_t tile) {
     HWY_DYNAMIC_DISPATCH(fitTile)
     (input, level, tile % columns * tileColumns, tile / columns * tileRows, out);

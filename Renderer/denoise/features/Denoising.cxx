@@ -1,6 +1,4 @@
-#include "scene/Denoising.h"
-
-#include "scene/FilmImage.h"
+#include "denoise/features/Denoising.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -92,19 +90,19 @@ Plane fillClipDepth(const Camera& camera, const Clip& clip) {
   return plane;
 }
 
-void addFeatures(const PreparedScene& scene, const FeatureBuffers& features, FilterInput& input) {
+void addFeatures(const SceneView& scene, const FeatureBuffers& features, FilterInput& input) {
   for (const Plane& plane : features.albedo)
     input.features.push_back(plane);
   // With surface shading, `surfaceNormal` weights normals by the probability of surface scattering.
-  for (const Plane& plane : scene.transfer().shading ? features.surfaceNormal : features.normal)
+  for (const Plane& plane : scene.transfer.shading ? features.surfaceNormal : features.normal)
     input.features.push_back(plane);
   input.features.push_back(features.light);
   const Plane depth = centerDepth(features);
   input.features.push_back(computeSlope(depth, input.width, input.height, false));
   input.features.push_back(computeSlope(depth, input.width, input.height, true));
   input.features.push_back(depth);
-  if (!std::holds_alternative<ClipNone>(scene.clip()))
-    input.features.push_back(fillClipDepth(scene.camera(), scene.clip()));
+  if (!std::holds_alternative<ClipNone>(scene.clip))
+    input.features.push_back(fillClipDepth(scene.camera, scene.clip));
 }
 
 bool hasHalfBuffers(const Film& film) {
@@ -115,13 +113,14 @@ bool hasHalfBuffers(const Film& film) {
 
 } // namespace
 
-FilterInput makeFilterInput(const Film& film, const PreparedScene& scene) {
+FilterInput makeFilterInput(const Film& film, const SceneView& scene,
+                            const FeatureBuffers& features) {
   if (!film.hasIndependentHalves())
     throw std::logic_error("a film without independent halves cannot be denoised");
   FilterInput input{film.width(), film.height(), {}, {}, {}, {}, {}, hasHalfBuffers(film)};
-  input.isActive = findActivePixels(film, *scene.features());
+  input.isActive = findActivePixels(film, features);
   fillHalfBuffers(film, input);
-  addFeatures(scene, *scene.features(), input);
+  addFeatures(scene, features, input);
   return input;
 }
 

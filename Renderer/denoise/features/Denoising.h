@@ -1,0 +1,23 @@
+#pragma once
+// Conversion of a film and the features of its scene to the input of the denoiser.
+
+#include "denoise/features/FeatureBuffers.h"
+#include "denoise/filter/Filter.h"
+#include "image/Film.h"
+
+namespace fenestra {
+
+/// Collects the half buffers of the film and the features of the scene: expected albedo, normal,
+/// depth and light, the slope of the depth, and the clip depth. There are no half buffers unless
+/// all pixels with variance have at least two samples. Pixels are inactive if they are
+/// deterministic, or if no camera ray around them hits anything. Throws std::logic_error for a film
+/// whose halves are not independent: the estimated error would be wrong.
+FilterInput makeFilterInput(const Film& film, const SceneView& scene,
+                            const FeatureBuffers& features);
+
+inline FilteredImage denoise(const Film& film, const SceneView& scene,
+                             const FeatureBuffers& features) {
+  return filterImage(makeFilterInput(film, scene, features));
+}
+
+} // namespace fenestra
