@@ -29,10 +29,10 @@ using namespace qSlicerFenestraWidgets;
 
 namespace {
 
-constexpr int pictureSide = 48; ///< pixels of an anatomy's icon
+constexpr int iconSide = 48; ///< pixels of a preset's icon
 
 /// Anatomy presets of the renderer with their display names.
-QList<Choice> anatomies() {
+QList<Choice> listAnatomies() {
   const auto tr = [](const char* text) { return QObject::tr(text); };
   return {{tr("Knee cartilage (MR)"), "knee-cartilage"},
           {tr("Bones of the foot (CT)"), "foot-bones"},
@@ -41,7 +41,7 @@ QList<Choice> anatomies() {
           {tr("Lungs and airways (CT)"), "lungs"},
           {tr("Liver (CT)"), "liver"},
           {tr("Brain surface (MR)"), "brain-surface"},
-          {tr("Brain tumor (MR)"), "brain-tumour"},
+          {tr("Brain tumor (MR)"), "brain-tumor"},
           {tr("Face of a fetus (US)"), "fetal-face"}};
 }
 
@@ -54,7 +54,7 @@ QLabel* makeLabel(const QString& name) {
   return label;
 }
 
-QPushButton* button(const QString& name, const QString& text, const QString& help) {
+QPushButton* makeButton(const QString& name, const QString& text, const QString& help) {
   auto* one = new QPushButton(text);
   one->setObjectName(name);
   one->setToolTip(help);
@@ -68,12 +68,12 @@ QSpinBox* makeSpinBox(const QString& name, int least, int greatest) {
   return box;
 }
 
-QDoubleSpinBox* makeLimitBox(const QString& name, double greatest, int parseDecimals,
+QDoubleSpinBox* makeLimitBox(const QString& name, double greatest, int decimals,
                              const QString& suffix) {
   auto* box = new QDoubleSpinBox;
   box->setObjectName(name);
   box->setRange(0.0, greatest);
-  box->setDecimals(parseDecimals);
+  box->setDecimals(decimals);
   box->setSuffix(suffix);
   box->setSpecialValueText(QObject::tr("no limit"));
   return box;
@@ -137,8 +137,8 @@ qMRMLNodeComboBox* qSlicerFenestraPanel::makeNodeBox(const QString& type, const 
 void qSlicerFenestraPanel::buildSubject(QVBoxLayout* layout) {
   QFormLayout* form = addSection(layout, tr("What to show"), false);
   m_subject = form;
-  sample = button("SampleButton", tr("Load a sample knee"),
-                  tr("A synthetic knee with segments, generated on this computer"));
+  sample = makeButton("SampleButton", tr("Load a sample knee"),
+                      tr("A synthetic knee with segments, generated on this computer"));
   form->addRow(sample);
   volume = makeNodeBox("vtkMRMLScalarVolumeNode", "VolumeBox");
   volume->setNoneEnabled(true);
@@ -151,7 +151,7 @@ void qSlicerFenestraPanel::buildSubject(QVBoxLayout* layout) {
       "PresetBox", {{tr("Custom"), ""}, {tr("By segment names"), "auto"}},
       tr("Sets focus, clipping, tissue colors, light and view for an anatomy; your own "
          "choices override it"));
-  preset->setIconSize({pictureSide, pictureSide});
+  preset->setIconSize({iconSide, iconSide});
   form->addRow(tr("Anatomy:"), preset);
   preset->hide();
   form->labelForField(preset)->hide();
@@ -165,8 +165,8 @@ void qSlicerFenestraPanel::buildSubject(QVBoxLayout* layout) {
   focusHint->hide();
   form->addRow(focusHint);
   withheld = makeLabel("WithheldLabel");
-  allow = button("AllowButton", tr("Open these files"),
-                 tr("The scene names these files. Open them only if you trust its author"));
+  allow = makeButton("AllowButton", tr("Open these files"),
+                     tr("The scene names these files. Open them only if you trust its author"));
   for (QWidget* one : {static_cast<QWidget*>(withheld), static_cast<QWidget*>(allow)}) {
     one->hide();
     form->addRow(one);
@@ -203,8 +203,10 @@ void qSlicerFenestraPanel::buildPreview(QVBoxLayout* layout) {
 
 void qSlicerFenestraPanel::buildRender(QVBoxLayout* layout) {
   auto* row = new QHBoxLayout;
-  render = button("RenderButton", tr("Render"), tr("Renders an image and adds it to the scene"));
-  stop = button("StopButton", tr("Stop"), tr("Stops the render and keeps its finished samples"));
+  render =
+      makeButton("RenderButton", tr("Render"), tr("Renders an image and adds it to the scene"));
+  stop =
+      makeButton("StopButton", tr("Stop"), tr("Stops the render and keeps its finished samples"));
   stop->setEnabled(false);
   row->addWidget(render, 2);
   row->addWidget(stop, 1);
@@ -303,9 +305,9 @@ void qSlicerFenestraPanel::buildAnimation(QVBoxLayout* layout) {
   steady->setToolTip(
       tr("Spreads sudden changes of the clipping surface over this part of the rotation"));
   form->addRow(tr("Surface smoothing:"), steady);
-  turn = button("TurnButton", tr("Render turntable"),
-                tr("Rotates around the focus, starting at the view above; each frame has the "
-                   "quality above"));
+  turn = makeButton("TurnButton", tr("Render turntable"),
+                    tr("Rotates around the focus, starting at the view above; each frame has the "
+                       "quality above"));
   form->addRow(turn);
 }
 
@@ -326,35 +328,38 @@ void qSlicerFenestraPanel::buildResults(QVBoxLayout* layout) {
   measures->setTextFormat(Qt::RichText);
   form->addRow(measures);
   auto* row = new QHBoxLayout;
-  show = button("ShowButton", tr("Show"), tr("Shows the image beside the 3D view"));
-  back = button("BackButton", tr("Back"), tr("Restores the views from before the image was shown"));
-  repeat = button("RepeatButton", tr("Repeat"), tr("Renders with the same settings again"));
+  show = makeButton("ShowButton", tr("Show"), tr("Shows the image beside the 3D view"));
+  back = makeButton("BackButton", tr("Back"),
+                    tr("Restores the views from before the image was shown"));
+  repeat = makeButton("RepeatButton", tr("Repeat"), tr("Renders with the same settings again"));
   resume =
-      button("ResumeButton", tr("Continue"), tr("Renders the missing frames of the turntable"));
+      makeButton("ResumeButton", tr("Continue"), tr("Renders the missing frames of the turntable"));
   resume->hide();
-  save = button("SaveButton", tr("Save as..."),
-                tr("A .png for display, or an .exr with linear color and depth; the frames of a "
-                   "turntable as numbered .png"));
+  save =
+      makeButton("SaveButton", tr("Save as..."),
+                 tr("A .png for display, or an .exr with linear color and depth; the frames of a "
+                    "turntable as numbered .png"));
   for (QPushButton* one : {show, back, repeat, resume, save})
     row->addWidget(one);
   form->addRow(row);
 }
 
-void qSlicerFenestraPanel::setCapabilities(const qFenestraCapabilities& abilities) {
+void qSlicerFenestraPanel::setCapabilities(const qFenestraCapabilities& capabilities) {
   const QString best = tr("Best view of the focus");
-  setChoiceOffered(view, 1, {best, "auto"}, abilities.hasChoice("view", "auto"));
-  const bool presets = abilities.flags.contains("preset");
+  setChoiceOffered(view, 1, {best, "auto"}, capabilities.hasChoice("view", "auto"));
+  const bool presets = capabilities.flags.contains("preset");
   showRow(m_subject, preset, presets);
-  for (Choice anatomy : anatomies()) {
-    const QString picture = ":/Icons/preset-" + anatomy.data + ".png";
-    if (QFile::exists(picture))
-      anatomy.icon = QIcon(picture);
-    setChoiceOffered(preset, preset->count(), anatomy, abilities.mentions("preset", anatomy.data));
+  for (Choice anatomy : listAnatomies()) {
+    const QString icon = ":/Icons/preset-" + anatomy.data + ".png";
+    if (QFile::exists(icon))
+      anatomy.icon = QIcon(icon);
+    setChoiceOffered(preset, preset->count(), anatomy,
+                     capabilities.mentions("preset", anatomy.data));
   }
-  look->setCapabilities(abilities);
-  m_materials->setVisible(abilities.flags.contains("material"));
-  animation->setVisible(abilities.hasTurntable());
-  const bool hasSteady = abilities.turntable.contains("--steady");
+  look->setCapabilities(capabilities);
+  m_materials->setVisible(capabilities.flags.contains("material"));
+  animation->setVisible(capabilities.hasTurntable());
+  const bool hasSteady = capabilities.turntable.contains("--steady");
   showRow(qobject_cast<QFormLayout*>(animation->layout()), steady, hasSteady);
 }
 
@@ -364,7 +369,7 @@ void qSlicerFenestraPanel::offerPresetView(bool chosen) {
 
 void qSlicerFenestraPanel::showWithheld(const std::map<std::string, std::string>& what,
                                         bool files) {
-  constexpr std::size_t maxShown = 200; // shown characters of a value
+  constexpr std::size_t maxShown = 200; // characters of a value
   QStringList lines = {tr("Stored in this scene, but not used:")};
   for (const auto& [name, value] : what)
     lines << QString::fromStdString(name + ": " + value.substr(0, maxShown));

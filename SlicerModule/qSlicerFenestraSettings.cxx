@@ -37,7 +37,7 @@ namespace {
 using Node = vtkMRMLFenestraRenderNode;
 constexpr const char* rigAttribute = "Fenestra.Lights"; ///< value: "rig key fill rim environment"
 
-/// Flag value of a limit; empty, so not passed: no limit.
+/// Flag value of a limit; empty (not passed): no limit.
 std::string toLimitFlag(double value) {
   return value > 0.0 ? QString::number(value, 'g', 6).toStdString() : std::string();
 }
@@ -55,32 +55,31 @@ qSlicerFenestraSettings::qSlicerFenestraSettings(qSlicerFenestraPanel* panel,
 }
 
 void qSlicerFenestraSettings::connectPanel() {
-  using SettingsHandle = qSlicerFenestraSettings;
+  using Settings = qSlicerFenestraSettings;
   const qSlicerFenestraPanel& panel = *m_panel;
   connect(panel.volume, SIGNAL(currentNodeChanged(vtkMRMLNode*)), this,
           SLOT(takeVolume(vtkMRMLNode*)));
   connect(panel.segmentation, SIGNAL(currentNodeChanged(vtkMRMLNode*)), this,
           SLOT(takeSegmentation(vtkMRMLNode*)));
   connect(panel.view3D, SIGNAL(currentNodeChanged(vtkMRMLNode*)), this, SLOT(take()));
-  connect(panel.focus, &QListWidget::itemChanged, this, &SettingsHandle::take);
-  connect(panel.clipping, &qSlicerFenestraClipping::changed, this, &SettingsHandle::take);
+  connect(panel.focus, &QListWidget::itemChanged, this, &Settings::take);
+  connect(panel.clipping, &qSlicerFenestraClipping::changed, this, &Settings::take);
   connect(panel.preset, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
-          &SettingsHandle::takePreset);
-  connect(panel.view, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
-          &SettingsHandle::take);
-  connect(panel.look, &qSlicerFenestraLook::changed, this, &SettingsHandle::take);
-  connect(panel.materials, &qSlicerFenestraMaterials::changed, this, &SettingsHandle::take);
+          &Settings::takePreset);
+  connect(panel.view, QOverload<int>::of(&QComboBox::currentIndexChanged), this, &Settings::take);
+  connect(panel.look, &qSlicerFenestraLook::changed, this, &Settings::take);
+  connect(panel.materials, &qSlicerFenestraMaterials::changed, this, &Settings::take);
   connect(panel.allow, &QPushButton::clicked, this, [this] {
     if (m_node)
       m_node->AllowFiles();
   });
-  connect(panel.follow, &QCheckBox::toggled, this, &SettingsHandle::take);
+  connect(panel.follow, &QCheckBox::toggled, this, &Settings::take);
   connect(panel.quality, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
-          &SettingsHandle::takeQuality);
+          &Settings::takeQuality);
   for (QSpinBox* box : {panel.samples, panel.width, panel.height, panel.frames})
-    connect(box, QOverload<int>::of(&QSpinBox::valueChanged), this, &SettingsHandle::take);
+    connect(box, QOverload<int>::of(&QSpinBox::valueChanged), this, &Settings::take);
   for (QDoubleSpinBox* box : {panel.noise, panel.seconds, panel.degrees, panel.steady})
-    connect(box, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this, &SettingsHandle::take);
+    connect(box, QOverload<double>::of(&QDoubleSpinBox::valueChanged), this, &Settings::take);
 }
 
 // ---- the node
@@ -110,7 +109,7 @@ void qSlicerFenestraSettings::copy(Node* render) {
 
 /// Chooses the first volume, segmentation and 3D view that are visible to users.
 void qSlicerFenestraSettings::chooseDefaults() {
-  const auto byDefault = [this](const char* role, const char* className) {
+  const auto setDefault = [this](const char* role, const char* className) {
     if (m_node->GetNodeReference(role))
       return;
     std::vector<vtkMRMLNode*> nodes;
@@ -122,17 +121,17 @@ void qSlicerFenestraSettings::chooseDefaults() {
         return;
       }
   };
-  byDefault(Node::VolumeRole, "vtkMRMLScalarVolumeNode");
-  byDefault(Node::SegmentationRole, "vtkMRMLSegmentationNode");
+  setDefault(Node::VolumeRole, "vtkMRMLScalarVolumeNode");
+  setDefault(Node::SegmentationRole, "vtkMRMLSegmentationNode");
   if (!hasPreset()) // a preset may choose the view
-    byDefault(Node::ViewRole, "vtkMRMLViewNode");
+    setDefault(Node::ViewRole, "vtkMRMLViewNode");
 }
 
 bool qSlicerFenestraSettings::hasPreset() const {
   return !m_node->GetFlag("preset").empty();
 }
 
-QList<qSlicerFenestraSegment> qSlicerFenestraSettings::focusSegments() const {
+QList<qSlicerFenestraSegment> qSlicerFenestraSettings::listFocusSegments() const {
   QList<qSlicerFenestraSegment> focus;
   auto* node =
       vtkMRMLSegmentationNode::SafeDownCast(m_node->GetNodeReference(Node::SegmentationRole));
@@ -263,7 +262,8 @@ void qSlicerFenestraSettings::showSegments() {
 
 void qSlicerFenestraSettings::showSubject(const Flags& flags) {
   using Plane = qSlicerFenestraClipping::Plane;
-  const QString preset = findFlag(flags, "preset");
+  const QString stored = findFlag(flags, "preset");
+  const QString preset = stored == "brain-tumour" ? "brain-tumor" : stored; // its name in 0.1
   const auto verdict = SlicerExport::checkFlag("preset", preset.toStdString());
   (verdict == SlicerExport::Verdict::file ? selectOrAdd : selectData)(m_panel->preset, preset);
   m_panel->offerPresetView(hasPreset());
@@ -273,7 +273,7 @@ void qSlicerFenestraSettings::showSubject(const Flags& flags) {
                           m_plane    ? Plane::node
                           : isPlaced ? Plane::fixed
                                      : Plane::automatic,
-                          focusSegments(), hasPreset());
+                          listFocusSegments(), hasPreset());
 }
 
 void qSlicerFenestraSettings::showView(const Flags& flags) {
@@ -352,7 +352,7 @@ void qSlicerFenestraSettings::takeClipping(Flags& flags) {
                 byPreset || !flags["focus"].empty(), byPreset);
 }
 
-/// Does not set the flags that the preset sets, until the user chooses them. Without a preset,
+/// Clears the flags that the preset sets; the user may then set them again. Without a preset,
 /// restores the defaults.
 void qSlicerFenestraSettings::takePreset() {
   if (!m_node || m_showing)

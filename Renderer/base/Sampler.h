@@ -14,19 +14,18 @@ enum class Sampling {
 };
 
 constexpr const char* toString(Sampling sampling) {
-  return sampling == Sampling::stratified ? "strata" : "independent";
+  return sampling == Sampling::stratified ? "stratified" : "independent";
 }
 
-/// Random bits of one sample, independent of each other: the eight numbers with most influence, and
-/// the seed of all others.
+/// Random bits of one sample, independent of each other: the eight numbers that contribute most to
+/// the noise, and the seed of all others.
 struct PrimarySamples {
-  std::uint64_t position; ///< in the pixel: toUniform2
-  std::uint64_t opticalDepth,
-      acceptance;          ///< optical depth to the camera ray's first tentative collision,
-                           ///< and whether that collision is real: toUniform
-  std::uint64_t direction; ///< the first scattered direction: toUniform2
-  std::uint64_t choices;   ///< whether the first collision is at a surface, and the light
-                           ///< sampled there: toUniform2
+  std::uint64_t position;     ///< in the pixel: toUniform2
+  std::uint64_t opticalDepth; ///< to the camera ray's first tentative collision: toUniform
+  std::uint64_t acceptance;   ///< whether that collision is real: toUniform
+  std::uint64_t direction;    ///< the first scattered direction: toUniform2
+  /// Whether the first collision is at a surface, and the light sampled there: toUniform2.
+  std::uint64_t choices;
   std::uint64_t pathSeed;
 };
 
@@ -99,7 +98,7 @@ public:
 
   /// Strata of a pair, at blockSize * factor + index: the product of elements `index` and `factor`
   /// modulo x^3 + x + 1 in a word's leading bits, followed by the product's bits in reverse order.
-  /// Factor 0 stands for 1.
+  /// Factor 0 counts as 1.
   using Nets = std::array<std::uint32_t, blockSize * blockSize>;
   static const Nets nets;
 
@@ -108,7 +107,7 @@ private:
   /// (8, 9), and the low bits of depth and acceptance, which SIMD code omits.
   using Words = std::array<std::uint32_t, shuffleWords>;
 
-  /// Replaces leading bits by strata.
+  /// Replaces the leading bits of each number by its stratum.
   static void stratify(const Stream& stream, std::uint32_t sample, Words& words) {
     const std::uint32_t index = sample / 2 % blockSize;
     const std::uint32_t block = Stream::wordsPerSample * (sample - 2 * index) + shuffleWords;

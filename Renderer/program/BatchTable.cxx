@@ -164,7 +164,7 @@ const CommandSyntax& batchSyntax() {
     return all;
   }();
   static const CommandSyntax syntax = {
-      "study",
+      "batch",
       "Renders a table of cases, one per row, each in a process of its own, so that a row that "
       "fails does not end the others. The columns are name, input and options of fenestra render, "
       "such as segmentation, preset or view. An empty cell sets no option, and files are relative "

@@ -34,6 +34,16 @@ ordered_json collectOptions(const OptionValues& options, const fs::path& folder,
   return collected;
 }
 
+/// Values of a stored option, with new spellings for those of version 0.1.
+json resolveAliases(const json& options, const std::string& name) {
+  json values = options.value(name, json());
+  if (const Option* option = findOption(renderSyntax.options, name); option && values.is_array())
+    for (json& value : values)
+      if (value.is_string())
+        value = option->resolveAlias(value.get<std::string>());
+  return values;
+}
+
 std::string joinValues(const json& options, const std::string& name) {
   if (!options.contains(name))
     return "not given";
@@ -49,7 +59,7 @@ std::string findOptionDifference(const json& stored, const json& current) {
     for (const auto& [name, values] : options->items())
       names.insert(name);
   for (const std::string& name : names)
-    if (stored.value(name, json()) != current.value(name, json()))
+    if (resolveAliases(stored, name) != resolveAliases(current, name))
       return concat(name == "INPUT" ? "" : "--", name, " was ", joinValues(stored, name), ", is ",
                     joinValues(current, name));
   return "";

@@ -42,7 +42,8 @@ std::span<const Command> commands() {
 }
 
 int dispatch(int argc, char** argv) {
-  const std::string_view word = argc > 1 ? argv[1] : "";
+  const std::string_view given = argc > 1 ? argv[1] : "";
+  const std::string_view word = given == "study" ? "batch" : given; // its name in version 0.1
   for (const auto& [syntax, run] : commands())
     if (word == syntax().name)
       return run(argc, argv, 2);

@@ -56,7 +56,7 @@ std::vector<SegmentInfo> selectFocus(const OptionValues& given,
 
 OrganPreset choosePreset(const OptionValues& given, const Input& input,
                          const std::optional<SegmentNames>& names) {
-  const std::string name = *given.text("preset");
+  const std::string name = given.word("preset");
   if (name != "auto")
     return findOrganPreset(name);
   if (!names)

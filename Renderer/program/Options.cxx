@@ -51,6 +51,11 @@ std::string Option::help() const {
   return hasDefault ? description : description + " [" + spec.defaultValue + "]";
 }
 
+std::string Option::resolveAlias(const std::string& value) const {
+  const auto alias = spec.aliases.find(value);
+  return alias == spec.aliases.end() ? value : alias->second;
+}
+
 const Option* findOption(std::span<const Option> flags, std::string_view name) {
   const auto it = std::ranges::find(flags, name, &Option::name);
   return it == flags.end() ? nullptr : &*it;
@@ -123,7 +128,7 @@ Vec3 OptionValues::triple(const std::string& name) const {
 }
 
 std::string OptionValues::word(const std::string& name) const {
-  std::string given = *text(name);
+  std::string given = option(name).resolveAlias(*text(name));
   const std::vector<std::string>& words = option(name).spec.choices;
   if (words.empty() || std::ranges::find(words, given) != words.end())
     return given;

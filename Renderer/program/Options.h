@@ -30,7 +30,8 @@ struct ValueSpec {
   std::vector<std::string> choices = {};         ///< all values of an enumeration; empty: free
   std::vector<std::string> namedValues = {};     ///< some valid values of a free text or number
   std::string defaultValue = {}; ///< default, shown in the help and in Slicer's panel; empty: none
-  bool canRepeat = false;        ///< each occurrence adds one text
+  std::map<std::string, std::string> aliases = {}; ///< values of version 0.1, not shown: new ones
+  bool canRepeat = false;                          ///< each occurrence adds one text
   std::optional<double> noEffectValue = {}; ///< number that has no effect, with any other options
   /// Stores a given value in its variable; empty: the command looks up the value by name.
   std::function<void(const OptionValues&, const std::string& name)> store = {};
@@ -110,6 +111,12 @@ struct ValueSpec {
     spec.namedValues = std::move(known);
     return spec;
   }
+  /// Accepts former spellings of values, in pairs of the old and the new one.
+  ValueSpec withAliases(std::map<std::string, std::string> former) const {
+    ValueSpec spec = *this;
+    spec.aliases = std::move(former);
+    return spec;
+  }
   /// Replaces the displayed default; empty: none.
   ValueSpec withDefault(const std::string& text) const {
     ValueSpec spec = *this;
@@ -162,6 +169,8 @@ struct Option {
   bool canNameFile() const { return placeholder.find("FILE") != std::string::npos; }
   /// Description and default: "… [50]".
   std::string help() const;
+  /// The value, or the new spelling of one from version 0.1.
+  std::string resolveAlias(const std::string& value) const;
 };
 
 struct Positional {

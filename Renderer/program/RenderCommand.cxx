@@ -144,7 +144,8 @@ std::string makeStatsJson(const RenderStats& stats, const RenderOptions& options
   json["samplesPerPixel"] = {{"min", samples.min}, {"mean", samples.mean}, {"max", samples.max}};
   json["noise"] = result.film.noise(); // null: infinite
   if (scene.features())
-    json["noiseFiltered"] = stats.filtered ? Json(*stats.filtered) : Json(); // null: unknown
+    for (const char* key : {"noiseDenoised", "noiseFiltered"})     // and its name in version 0.1
+      json[key] = stats.filtered ? Json(*stats.filtered) : Json(); // null: unknown
   json["peakBytes"] = static_cast<std::int64_t>(usage.ru_maxrss) * 1024;
   addClip(json, scene, stats.focus);
   if (scene.focus())

@@ -152,7 +152,10 @@ struct RenderOptionTable {
        concat("Anatomy preset for focus, appearance, view and clip: ",
               join(listBuiltinPresets("presets"), ", "),
               ", a .json file, or auto (chosen by segment names); other options override it"),
-       ValueSpec::text().bind(options.preset).withNamedValues(presetNames("presets", {"auto"}))},
+       ValueSpec::text()
+           .bind(options.preset)
+           .withNamedValues(presetNames("presets", {"auto"}))
+           .withAliases({{"brain-tumour", "brain-tumor"}})},
       {"output", "FILE", sceneGroup,
        "Output image: .png .tif (for display), .exr (all channels), .nrrd (linear RGBA and depth); "
        "may be repeated [INPUT.png]",
@@ -306,11 +309,12 @@ struct RenderOptionTable {
        ValueSpec::number(1e-6, 1e6).bind(settings.noise).withDefault(""), OverrideGroup::stop},
       {"noisetarget", "KIND", qualityGroup,
        "Noise that --noise limits: raw (before denoising; noisier pixels get more samples), "
-       "filtered (estimated error after denoising), or auto: filtered if all outputs are .png or "
+       "denoised (estimated error after denoising), or auto: denoised if all outputs are .png or "
        ".tif",
        ValueSpec::choice(options.noiseTarget, {{"auto", NoiseTarget::automatic},
                                                {"raw", NoiseTarget::raw},
-                                               {"filtered", NoiseTarget::filtered}}),
+                                               {"denoised", NoiseTarget::denoised}})
+           .withAliases({{"filtered", "denoised"}}),
        OverrideGroup::stop},
       {"denoise", "KIND", qualityGroup,
        "auto: denoise .png and .tif, leave the colors of .exr and .nrrd raw; on: also write "
@@ -322,10 +326,12 @@ struct RenderOptionTable {
        ValueSpec::integer(0, unlimited).bind(settings.path.bounces).withDefault("")},
       {"seed", "S", qualityGroup, "Random seed", ValueSpec::integer(0, 0x1p64).bind(settings.seed)},
       {"sampling", "KIND", qualityGroup,
-       "strata: first-bounce dimensions are stratified in groups of 8 samples; independent: plain "
+       "stratified: first-bounce dimensions are stratified in groups of 8 samples; independent: "
+       "plain "
        "random numbers (noisier); both are unbiased",
-       ValueSpec::choice(settings.sampling, {{"strata", Sampling::stratified},
-                                             {"independent", Sampling::independent}})},
+       ValueSpec::choice(settings.sampling, {{"stratified", Sampling::stratified},
+                                             {"independent", Sampling::independent}})
+           .withAliases({{"strata", "stratified"}})},
       {"threads", "K", qualityGroup, "Number of threads, at most one per core; 0: all cores",
        ValueSpec::integer(0, 1024).bind(settings.threads), OverrideGroup::process},
       {"volume", "NAME", outputGroup,
@@ -381,7 +387,7 @@ const CommandSyntax renderSyntax = {
     "render",
     "Renders a medical volume by Monte Carlo path tracing, with a clipping surface that uncovers a "
     "focus segment. The word \"render\" is optional. Other commands: fenestra inspect, fenestra "
-    "compare, fenestra phantom, fenestra serve, fenestra turntable, fenestra study, fenestra "
+    "compare, fenestra phantom, fenestra serve, fenestra turntable, fenestra batch, fenestra "
     "merge, fenestra describe.",
     {{"INPUT", "Volume (.nrrd .nhdr .nii .nii.gz .mha .mhd), DICOM folder, or Slicer scene (.mrml "
                ".mrb)"}},

@@ -143,8 +143,8 @@ void resolveDenoising(const OptionValues& values, RenderOptions& options) {
     throw usageError(
         "--denoise: on requires the layer denoised or expected; add one to --layers, or "
         "omit --denoise");
-  if (options.noiseTarget == NoiseTarget::filtered && !options.scene.features)
-    throw usageError("--noisetarget: filtered requires a denoised image; write a .png, or add "
+  if (options.noiseTarget == NoiseTarget::denoised && !options.scene.features)
+    throw usageError("--noisetarget: denoised requires a denoised image; write a .png, or add "
                      "--denoise on");
   if (values.hasNonDefault("noisetarget") && !values.has("noise"))
     throw usageError("--noisetarget: used only with --noise; add --noise E, or omit it");
@@ -154,7 +154,7 @@ void resolveDenoising(const OptionValues& values, RenderOptions& options) {
   if (options.noiseTarget == NoiseTarget::automatic)
     options.noiseTarget =
         options.scene.features && std::ranges::all_of(options.outputs, isDisplayFile)
-            ? NoiseTarget::filtered
+            ? NoiseTarget::denoised
             : NoiseTarget::raw;
 }
 

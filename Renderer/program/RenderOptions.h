@@ -13,7 +13,7 @@ namespace fenestra {
 enum class Denoise { automatic, on, off };
 /// Noise that --noise limits: of the raw or of the denoised image. Automatic: denoised if all
 /// outputs are display images.
-enum class NoiseTarget { automatic, raw, filtered };
+enum class NoiseTarget { automatic, raw, denoised };
 
 enum class ProgressMode { automatic, bar, xml, none };
 

@@ -112,7 +112,8 @@ private:
     event["samples"] = result.finishedSamples;
     event["noise"] = result.film.noise(); // null: infinite
     if (filtered)
-      event["noiseFiltered"] = *filtered;
+      for (const char* key : {"noiseDenoised", "noiseFiltered"}) // and its name in version 0.1
+        event[key] = *filtered;
     event["seconds"] = m_change.age.seconds();
     event["done"] = last;
     for (const std::filesystem::path& path : m_options.outputs)

@@ -108,7 +108,7 @@ TEST(OrganPresets, BuiltInPresetsMatchCommonNames) {
       {"foot-bones", {"Calcaneus", "Metatarsal 1", "metatarsals_feet", "phalanges_feet", "Talus"}},
       {"knee-cartilage", {"Femoral cartilage", "FemoralCartilage", "tibial cartilage"}},
       {"brain-surface", {"Brain", "brain_left_hemisphere", "Cerebral Grey Matter"}},
-      {"brain-tumour", {"tumor", "Tumour core", "enhancing_tumor", "Glioblastoma"}},
+      {"brain-tumor", {"tumor", "Tumour core", "enhancing_tumor", "Glioblastoma"}},
       {"fetal-face", {"Fetal face", "face", "fetus"}},
   };
   for (const auto& [name, organs] : expected)
@@ -126,7 +126,7 @@ TEST(OrganPresets, BuiltInPresetsMatchSlicerCodes) {
   EXPECT_EQ(listPresets(segment("S", "SCT^10200004")), Strings{"liver"});
   EXPECT_EQ(listPresets(segment("S", "SCT^39607008", "SCT^1")), Strings{"lungs"});
   EXPECT_EQ(listPresets(segment("S", "SCT^122496007")), Strings{"spine"});
-  EXPECT_EQ(listPresets(segment("S", "SCT^4147007", "SCT^12738006")), Strings{"brain-tumour"});
+  EXPECT_EQ(listPresets(segment("S", "SCT^4147007", "SCT^12738006")), Strings{"brain-tumor"});
   EXPECT_EQ(listPresets(segment("S", "SCT^4147007", "SCT^10200004")), Strings{});
 }
 
