@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# clang-format over every source file, clang-tidy over the library's. usage: bash Testing/style.sh
+# clang-format over all sources, the spelling list, clang-tidy over the library. usage: bash Testing/style.sh
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/../Resources/setup.sh"
 install_packages clang-format clang-tidy
@@ -8,15 +8,12 @@ say "clang-format"
 git ls-files '*.h' '*.cxx' | xargs clang-format --dry-run --Werror || die "run clang-format -i on the files above"
 twice=$(git ls-files 'Renderer/*.h' | xargs grep -hoE '^(struct|class) \w+( final)?( :| \{)' | awk '{ print $2 }' |
   sort | uniq -d)
-[ -z "$twice" ] || die "two types have one name, which the linker takes for one: $twice"
-say "words"
-# The rest of CONTRIBUTING.md's rules needs a reader.
-openings=$(git ls-files '*.h' '*.cxx' |
-  xargs grep -nE '///?<? ?(Of|What|Those|The same|As) ' || true)
-[ -z "$openings" ] || die "a comment begins with a noun or a verb: $openings"
+[ -z "$twice" ] || die "two types have the same name, which the linker would merge: $twice"
+say "spelling"
+bash Testing/spelling.sh || die "the words above have another form here: see Testing/spelling.txt"
 say "clang-tidy"
-# A folder's sources at once: what they include is parsed once. One instruction set is enough: the
-# lanes' sources are the same for all.
+# Sources of a folder are checked together, which parses shared headers once. SIMD sources are the same for all
+# instruction sets, so one set is enough.
 cmake --preset release -B build/style -DFENESTRA_BUILD_TESTS=OFF -DCMAKE_UNITY_BUILD=ON \
   -DCMAKE_UNITY_BUILD_BATCH_SIZE=0 -DCMAKE_EXPORT_COMPILE_COMMANDS=ON >/dev/null
 sed -n 's/^ *"file": "\(.*Renderer.*\)",*$/\1/p' build/style/compile_commands.json | grep -v /Commit.cxx |
